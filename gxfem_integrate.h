@@ -3,7 +3,7 @@
 
    A polyhedron is given by its boundary triangles, nothing else: no tetrahedralisation, no quadrature points. The
    divergence theorem (GXFEM Eq. 21) turns an integral over the inside into a sum over the triangles, in closed form, to
-   any degree; the shape may be non-convex, have tunnels and cavities, or be in several pieces. Closed forms for linear
+   any degree; the shape may be non-convex, have tunnels and cavities, or be disconnected. Closed forms for linear
    tetrahedra (gradients, mass, load) and for parts of them (GXFEM Eq. 13, 14) build on it.
 
    ONE MINUTE
@@ -19,17 +19,20 @@
            gxi_surface surface = { p, 4, t, 4 };
            double moments[20], work[20];                                   // gxi_monomial_count(3) = 20
            if (gxi_polyhedron_monomials(&surface, p, 3, moments, work) != GX_OK) return 1;
-           printf("volume %g, integral of x %g, of x y z %g\n", moments[0], moments[1], moments[gxi_monomial_index(1, 1,
-   1)]); return 0;                                                       // volume 10, integral of x 12.5, of x y z 5
+           printf("volume %g, integral of x %g, ", moments[0], moments[1]);                        // 10, 12.5
+           printf("of x y z %g\n", moments[gxi_monomial_index(1, 1, 1)]);                          // 5
+           return 0;
        }
 
-   CONTENTS (search for these)
+   CONTENTS (search for the anchors; functions call functions of their own section and of earlier ones only)
+       >>shared       result codes
        >>types        the structs
        >>moments      volume, first and second moments: what linear elements need
        >>monomials    all monomials up to a degree: over polyhedra, over surfaces by area, over surfaces by normal
        >>element      linear tetrahedra: gradients, volume, mass
        >>part         parts of a linear tetrahedron: mass, load, loads on cut faces
-       >>implementation, then >>config >>math >>second-order >>recurrence >>validation >>public
+       >>implementation, then >>config limits, >>math vectors, >>second-order volume, first and second moments,
+       >>recurrence monomials, >>validation of surfaces, >>public the other public functions
 
    THE ORIGIN IS YOURS TO CHOOSE
    Moments are integrals of powers of x - origin. A triangle contributes the signed integral over its cone to the
@@ -158,7 +161,7 @@ typedef struct gx_jobs {
 extern "C" {
 #endif
 
-/* >>types */
+/* >>types ---------------------------------------------------------------------------------------------------------- */
 
 /* The highest degree of a monomial: multinomial coefficients stay below 3^256 = 1e122, and every buffer below 2^27
  * bytes. */
@@ -180,8 +183,9 @@ typedef struct gxi_moments2 {
     double second[6]; /* length^5: xx xy xz yy yz zz */
 } gxi_moments2;
 
-/* >>moments
-   The functions without a result code trust their arguments: no NULL, no NaN. */
+/* >>moments -------------------------------------------------------------------------------------------------------- */
+
+/* The functions without a result code trust their arguments: no NULL, no NaN. */
 
 /* Adds the cone from the origin of coordinates to the triangle a b c; its volume is positive if a b c is
    counter-clockwise seen from outside. Added for every boundary triangle, m holds the moments of the polyhedron. */
@@ -214,8 +218,9 @@ GXFEM_API int gxi_moments2_repair(gxi_moments2 *m, const double lower[3], const 
    Fails: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE. */
 GXFEM_API gx_result gxi_polyhedron_moments2(const gxi_surface *surface, const double origin[3], gxi_moments2 *m);
 
-/* >>monomials
-   Results are ordered by degree, then by falling power of x, then of y: 1  x y z  xx xy xz yy yz zz  xxx xxy ...
+/* >>monomials ------------------------------------------------------------------------------------------------------ */
+
+/* Results are ordered by degree, then by falling power of x, then of y: 1  x y z  xx xy xz yy yz zz  xxx xxy ...
    NULL origin: (0, 0, 0). On failure all buffers are as they were. All fail with: ARGUMENT, EMPTY, INDEX, NOT_FINITE,
    RANGE. */
 
@@ -251,8 +256,9 @@ GXFEM_API gx_result gxi_surface_flux_monomials(const gxi_surface *surface, const
    moments: [gxi_monomial_count(degree)]. Fails: ARGUMENT, NOT_FINITE, RANGE (degree). */
 GXFEM_API gx_result gxi_monomials_translate(unsigned degree, const double shift[3], double *moments);
 
-/* >>element
-   Linear tetrahedra. positions: [4][3]; the volume is positive if (x1 - x0) x (x2 - x0) points to the side of x3.
+/* >>element -------------------------------------------------------------------------------------------------------- */
+
+/* Linear tetrahedra. positions: [4][3]; the volume is positive if (x1 - x0) x (x2 - x0) points to the side of x3.
    Symmetric 4 x 4 blocks are stored as 10 numbers: 00 01 02 03 11 12 13 22 23 33. */
 
 /* Signed volume. */
@@ -265,8 +271,9 @@ GXFEM_API gx_result gxi_tet_gradients(const double positions[12], double gradien
 /* Mass of a whole element: density volume (1 + delta_ij) / 20 (GXFEM Eq. 13). */
 GXFEM_API void gxi_tet_mass(double volume, double density, double mass[10]);
 
-/* >>part
-   A part of an element (a cell Omega^{e,s}, GXFEM Eq. 20) is bounded by triangles whose corners have barycentric
+/* >>part ----------------------------------------------------------------------------------------------------------- */
+
+/* A part of an element (a cell Omega^{e,s}, GXFEM Eq. 20) is bounded by triangles whose corners have barycentric
    coordinates lambda_0 ... lambda_3 in the element. It is integrated in a frame that has vertex k of the element as its
    origin and the lambdas of the other three as coordinates, where the element has volume 1/6. Choose as k the vertex
    that the part lies at. The lambdas that should be 0 or 1 (corners on faces and at vertices of the element) must be so
@@ -319,8 +326,10 @@ GXFEM_API void gxi_face_mass_add(const double a[4], const double b[4], const dou
 #endif
 #endif /* GXFEM_INTEGRATE_INCLUDED */
 
-/* >>implementation
-   Outside the declaration guard, so that a file that included the header plainly first still gets it. */
+/* >>implementation ------------------------------------------------------------------------------------------------- */
+
+/* Outside the declaration guard, so that a file that included the header plainly first still gets the implementation.
+ */
 #if defined(GXFEM_IMPLEMENTATION) && !defined(GXFEM_INTEGRATE_IMPLEMENTATION)
 #define GXFEM_INTEGRATE_IMPLEMENTATION
 #endif
@@ -337,18 +346,23 @@ extern "C" {
 #pragma clang attribute push(__attribute__((target("no-simd128"))), apply_to = function)
 #endif
 
-/* >>config */
+/* >>config: limits of rounding and of results ---------------------------------------------------------------------- */
 
-/* What a moment may be off, beside the mass it is part of: a few roundings of 2^-53. */
+/* In and out: macros only. Each says what it bounds; none of them changes a result that is right within rounding. */
+
+/* Error of a moment relative to the mass that it is part of: a few roundings of 2^-53. */
 #define GXIP_ROUNDING 1e-15
 
-/* No part of an element has a lambda of this size: the coordinates are not barycentric ones. */
+/* A larger lambda cannot belong to a part of an element: the coordinates are not barycentric. */
 #define GXIP_LAMBDA_MAX 65536.0
 
 /* A bound 2^GXIP_EXPONENT_MAX on every intermediate result keeps them all finite. */
 #define GXIP_EXPONENT_MAX 1022
 
-/* >>math */
+/* >>math: bits and vectors of three -------------------------------------------------------------------------------- */
+
+/* In and out: a few numbers. Differences are taken before products, so that small shapes far from the origin lose no
+   more than their coordinates lost. */
 
 /* The exponent bits of x, all set for infinity and NaN. Under -ffast-math comparisons with these fold away, bits do
  * not. */
@@ -412,15 +426,17 @@ static inline double gxip_determinant(const double a[3], const double b[3], cons
     return gxip_dot(a, n);
 }
 
-/* >>second-order
-   Pairs of axes as stored: xx xy xz yy yz zz; of shape functions: 00 01 02 03 11 12 13 22 23 33. */
+/* >>second-order: volume, first and second moments ----------------------------------------------------------------- */
+
+/* In: triangles, or moments. Out: moments, moved, mapped or repaired. Pairs of axes as stored: xx xy xz yy yz zz; of
+ * shape functions: 00 01 02 03 11 12 13 22 23 33. */
 
 static inline size_t gxip_packed3(size_t a, size_t b) { return a < b ? a * (5 - a) / 2 + b : b * (5 - b) / 2 + a; }
 
 static inline size_t gxip_packed4(size_t a, size_t b) { return a < b ? a * (7 - a) / 2 + b : b * (7 - b) / 2 + a; }
 
-/* Integrals over the tetrahedron 0 a b c = cone over a b c, det = 6 volumes: of 1 det/6, of x det/24 s, of x x^T
-   det/120 (a a^T + b b^T + c c^T + s s^T), where s = a + b + c. */
+/* Integrals over the tetrahedron 0 a b c, the cone over a b c, with det = 6 volumes and s = a + b + c:
+       of 1: det/6,   of x: det/24 s,   of x x^T: det/120 (a a^T + b b^T + c c^T + s s^T) */
 GXFEM_API void gxi_moments2_add_triangle(gxi_moments2 *m, const double a[3], const double b[3], const double c[3]) {
     const double det = gxip_determinant(a, b, c), sixth = det / 6, quarter = 0.25 * sixth, part = det / 120;
     const double s[3] = {a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2]};
@@ -578,14 +594,20 @@ GXFEM_API int gxi_moments2_repair(gxi_moments2 *m, const double lower[3], const 
     return 1;
 }
 
-/* >>recurrence
-   Let h_n(y_0, y_1, ...) be the sum of all products of n factors y. Over a simplex T of dimension s with corners v_0
-   ... v_s integral of (t.x)^n = |T| s! n! / (n + s)! h_n(t.v_0, ..., t.v_s)                                  ([BBLKV],
-   section 3) and, summed over n, h_n has the generating function h_0 + h_1 + h_2 + ... = product over the corners of 1
-   / (1 - t.v). Compare coefficients of t^(i,j,k), n = i + j + k, where q_ijk is that of the product: integral of x^i
-   y^j z^k = |T| s! i! j! k! / (n + s)! q_ijk. Multiplication by 1 / (1 - t.v) is the recurrence q'_ijk = q_ijk + v_x
-   q'_(i-1)jk + v_y q'_i(j-1)k + v_z q'_ij(k-1), in place and without a subtraction. A corner at the origin is a factor
-   1: the cone over a triangle takes three sweeps like the triangle itself. */
+/* >>recurrence: monomials of any degree ---------------------------------------------------------------------------- */
+
+/* In: corners of a triangle. Out: sums over it or over its cone to the origin, before they are scaled.
+   Let h_n(y_0, y_1, ...) be the sum of all products of n factors y. Over a simplex T of dimension s with corners
+   v_0 ... v_s
+       integral of (t.x)^n = |T| s! n! / (n + s)! h_n(t.v_0, ..., t.v_s)          ([BBLKV], section 3)
+   and, summed over n, h_n has the generating function
+       h_0 + h_1 + h_2 + ... = product over the corners of 1 / (1 - t.v).
+   Compare coefficients of t^(i,j,k), n = i + j + k, where q_ijk is that of the product:
+       integral of x^i y^j z^k = |T| s! i! j! k! / (n + s)! q_ijk.
+   Multiplication by 1 / (1 - t.v) is the recurrence
+       q'_ijk = q_ijk + v_x q'_(i-1)jk + v_y q'_i(j-1)k + v_z q'_ij(k-1),
+   in place and without a subtraction. A corner at the origin is a factor 1: the cone over a triangle takes three sweeps
+   like the triangle itself. */
 
 /* Number of monomials of degree n exactly, and below n. */
 static inline size_t gxip_layer(size_t n) { return (n + 1) * (n + 2) / 2; }
@@ -663,7 +685,10 @@ static double gxip_coefficient(double p[3][3], unsigned i, unsigned j, unsigned 
     return sum;
 }
 
-/* >>validation */
+/* >>validation: surfaces and reach --------------------------------------------------------------------------------- */
+
+/* In: what the caller gives. Out: a result code, or the corners of a triangle about the origin. No result is written
+   here. */
 
 /* Smallest e >= -1022 with |x| < 2^e. */
 static int gxip_exponent_above(double x) { return gxip_exponent_field(x) - 1022; }
@@ -706,7 +731,10 @@ static void gxip_corners(const gxi_surface *surface, const double *origin, size_
         }
 }
 
-/* >>public */
+/* >>public: the other public functions ----------------------------------------------------------------------------- */
+
+/* Each checks what it is given and then adds up over triangles. Outputs are written only after all checks have passed.
+ */
 
 GXFEM_API gx_result gxi_polyhedron_moments2(const gxi_surface *surface, const double origin[3], gxi_moments2 *m) {
     gx_result result = m ? gxip_check_surface(surface, origin, 2) : GX_ERROR_ARGUMENT;
@@ -989,8 +1017,9 @@ GXFEM_API gx_result gxi_part_moments_at(const double *lambdas, size_t lambda_cou
 }
 
 /* With a, b the frame's axes, f and S its first and second moments, and lambda_k = 1 - sum of lambda_a:
-       lambda_a lambda_b: S_ab,   lambda_k lambda_a: f_a - sum_b S_ab,   lambda_k lambda_k: volume - sum_a (2 f_a -
-   sum_b S_ab) */
+       lambda_a lambda_b: S_ab
+       lambda_k lambda_a: f_a - sum_b S_ab
+       lambda_k lambda_k: volume - sum_a (2 f_a - sum_b S_ab) */
 GXFEM_API void gxi_part_mass(const gxi_moments2 *reference, unsigned k, double element_volume, double density,
                              double mass[10]) {
     double scale = 6 * element_volume * density, corner = reference->volume;

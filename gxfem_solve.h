@@ -29,61 +29,76 @@
  *         return (int)result;
  *     }
  *
- * CONTENTS (search for the anchors; in the order of the file)
- *   >>shared      result codes, allocator, jobs    >>lattice     structure of the multigrid
- *   >>types       materials, elements, step        >>lights      copies with next to no mass
- *   >>functions   the API                          >>system      all that a model is made into
- *   >>platform    finite by bits                   >>followers   constraints between copies
- *   >>memory      pools, the solver's own form     >>operator    product, linearisation, block diagonal
- *   >>jobs        a loop, by threads or not        >>multigrid   the cycle, numbers of its levels, assembly
- *   >>lanes       rsqrt, log for vectors           >>update      what a cut changes
- *   >>material    energies and stresses            >>pieces      translations of loose pieces
- *   >>svd         stretches and rotations of F     >>points      springs and contact
- *   >>tangent     Hessian of one block             >>cg          conjugate gradients
- *   >>element     passes over one block            >>sleep       what rests is left out
- *   >>chunk       passes over chunks               >>newton      line search, Newton, integrators
- *   >>model       order of elements, chunks, lanes >>check       of what is given
- *   >>forms       assembled forms, one F (last)    >>api         the public functions
+ * CONTENTS (search for the anchors; in the order of the file. Functions call functions of their own section and of
+ * earlier ones only)
+ *   interface:    >>shared result codes, allocator, jobs | >>types materials, elements, step | >>functions the API
+ *   foundations:  >>constants sizes, limits | >>scalars bits, sums | >>memory pools | >>structs the solver's own form |
+ *                 >>columns arrays over copies, slots, chunks | >>jobs loops
+ *   kernels:      >>svd stretches and rotations of F | >>material energies, stresses | >>tangent Hessian of one block |
+ *                 >>element passes over one block
+ *   chunks:       >>masses of parts of elements | >>order of elements | >>lanes of a chunk | >>chunks blocks, slots |
+ *                 >>copies fixed, following, connected | >>followers constraints between copies
+ *   structure:    >>transfer between levels | >>levels their patterns | >>pattern of level 1 | >>hierarchy all levels |
+ *                 >>lights copies with next to no mass | >>sharing of memory | >>system a model in the solver's form
+ *   operator:     >>forces energies, forces | >>blocks 3x3 blocks | >>product single precision | >>doubles double
+ *                 precision | >>linearise Hessians, block diagonal
+ *   multigrid:    >>galerkin coarse matrices | >>factor of the last level | >>assembly the assembled matrix |
+ *                 >>smoother its step length | >>cycle the V-cycle
+ *   changes:      >>edits lanes that a cut changes | >>renewal copies and components | >>update levels, all of it
+ *   steps:        >>components momentum | >>points springs, contact | >>cg conjugate gradients | >>ageing of coarse
+ *                 matrices | >>sleep rest | >>balance residual, start | >>search lengths | >>integrators BDF, midpoint
+ * |
+ *                 >>newton iterations, bound on E | >>midpoint second half, end of a step
+ *   entrance:     >>check what is given | >>api the public functions | >>forms assembled forms, one F
+ *
+ * WORDS. Copy: a node's displacement for one connected set of cells. Component: copies joined by elements and
+ * constraints. Lane, block, chunk: an element's place, eight lanes, 48 blocks. Slot: a copy's place in the results of
+ * one chunk. Loose component: no copy of it is held or touched by springs or contact. Light copy: next to none of the
+ * mass around it is its own. Base: where a step would end that only moves held copies to their targets.
  *
  * WHAT IT DOES. A step of length h is the minimum over the displacements u of the incremental potential
  *
  *     E(u) = |u - u_n - h v_n|_M^2 / (2 h^2) + U(u) + C(u) - f . u        GXFEM Eq. 10 divided by h^2; joule
  *
- * M: mass, U: elastic energy, C: springs and contact, f = M g + nodal forces: a linear term, so that M is never
- * inverted. Then v = (u - u_n) / h. That is backward Euler; BDF2 and the implicit midpoint rule differ in what takes
- * the place of h and u_n + h v_n, statics have no mass, Rayleigh damping is in the first term (mass) and in U
- * (stiffness). E is minimised by Newton's method with a line search on E. The Hessian of every element is projected to
- * the nearest positive semi-definite one in closed form (analytic eigensystem); where Newton goes on and steps are
- * whole, near the end, the exact one is tried. Products are matrix-free: eight elements side by side in a block, 48
- * blocks in a chunk, each chunk summed by itself and the chunks in their order, so that results are the same for any
- * number of threads. The linear systems go to conjugate gradients with multigrid: the model itself smoothed by
- * block-Jacobi, coarse levels on lattices whose points are doubled where a cut runs between the copies around them, and
- * a factorised one as soon as that is cheap. Coarse matrices serve until iterations rise. The last two steps'
- * directions are the guess for the next. E is a sum over pieces (copies joined by elements), and each has a step length
- * of its own in the line search, so that none of them is flung about for what another gains. Every loose piece (none of
- * its copies is held or touched by springs and contact) moves as a whole first so that its momentum balances, and the
- * later iterates leave its momentum alone: it is right to rounding whatever the tolerances are, and free fall takes no
- * iteration. Newton starts at u_n + h v_n; a piece that ends above E at u_n, translated so, is brought down on the way
- * from there: E(u) <= E(u_n) always, piece by piece and however fast it falls, so a step cannot blow up; the midpoint
- * rule, which goes on from there as far again, goes less far where it would gain energy. Residuals are measured twice,
- * both times scaled by the block diagonal D of the Hessian: in energy, sqrt(sum r_i . D_i^-1 r_i), and in displacement,
- * sqrt(sum |D_i^-1 r_i|^2). The second sees a piece of 1e-12 of its neighbour's volume as well as the neighbour. A
- * piece that has been slow for long sleeps if gxs_step_desc.sleep_speed says so; steps do without it until something
- * touches it.
+ * M: mass, U: elastic energy, C: springs and contact, f = M g + nodal forces. f is a linear term, so that M is never
+ * inverted. Then v = (u - u_n) / h. That is backward Euler. BDF2 and the implicit midpoint rule replace h and
+ * u_n + h v_n by others; statics have no mass. Rayleigh damping is in the first term (mass) and in U (stiffness).
+ *
+ * Newton's method with a line search minimises E. The Hessian of every element is projected to the nearest positive
+ * semi-definite one in closed form (analytic eigensystem). Near the end, where steps are whole, the exact one is tried.
+ * Products are matrix-free: eight elements side by side in a block, 48 blocks in a chunk. Each chunk is summed by
+ * itself and the chunks in their order, so that results are the same for any number of threads.
+ *
+ * Conjugate gradients with multigrid solve the linear systems. The finest level is the model itself, smoothed by
+ * block-Jacobi. Coarse levels live on lattices whose points are doubled where a cut separates the copies around them;
+ * the first level for which that is cheap is factorised. Coarse matrices serve until iterations rise. The last two
+ * steps' directions are the guess for the next.
+ *
+ * E is a sum over components, and each has a step length of its own in the line search, so that none of them is flung
+ * about for the gain of another. Every loose component first moves as a whole so that its momentum balances, and later
+ * iterates leave its momentum alone: it is right to rounding whatever the tolerances are, and free fall takes no
+ * iteration. Newton's method starts at u_n + h v_n. A component that ends above E at u_n, translated so, is brought
+ * down on the way from there. So E(u) <= E(u_n) always, component by component and however fast it falls: a step cannot
+ * blow up. The midpoint rule continues from there as far again, or less far where it would gain energy.
+ *
+ * Residuals are measured twice, both times scaled by the block diagonal D of the Hessian: in energy, sqrt(sum r_i .
+ * D_i^-1 r_i), and in displacement, sqrt(sum |D_i^-1 r_i|^2). The second measure sees a component of 1e-12 of its
+ * neighbour's volume as well as the neighbour. A component that has been slow for long sleeps if
+ * gxs_step_desc.sleep_speed says so; steps leave it out until something touches it.
  *
  * WHAT IT DOES NOT DO. No cutting and no meshes: it sees elements of four copies. No search for contacts between
- * pieces: give points, planes and your own forces. No threads of its own: see gx_jobs; a task takes up to 90 kB of
+ * components: give points, planes and your own forces. No threads of its own: see gx_jobs; a task takes up to 90 kB of
  * stack.
  *
- * LIMITS. poisson in [0, 0.5), beyond 0.49999 the single precision of the Hessian tells; copies and elements below
- * 2^30. Energies, forces and states are doubles; the Hessian, its products and the preconditioner are single precision,
- * which sets no limit to what Newton reaches, only to what one linear solve does (about 1e-6 of the residual; a free
+ * LIMITS. poisson in [0, 0.5); beyond 0.49999 the Hessian's single precision shows. Copies and elements below 2^30.
+ * Energies, forces and states are doubles. The Hessian, its products and the preconditioner are single precision, which
+ * does not limit what Newton's method reaches, only what one linear solve does (about 1e-6 of the residual; a free
  * body's slowest modes are solved as well while inertia is above some 1e-6 of stiffness, rho h^2 / (E dt^2) for
- * elements of size h). Where the mass of a part of an element has its centre is rounded once, by at most 1e-7 of the
- * element, and all is right for the mass so placed. Memory: 240 to 270 bytes per element in all, of a mesh with four
- * elements per copy; 290 to 350 where cuts leave two or three. The material can invert without a failure and comes back
- * by itself; an element collapsed to a point, where its energy is stationary, is opened as if it were not quite one.
- * Same input, same binary: same bits. Nothing here needs isnan or infinities: it is right under -ffast-math, where sums
+ * elements of size h). The centre of the mass of a part of an element is rounded once, by at most 1e-7 of the element;
+ * all is right for the mass so placed. Memory: 240 to 270 bytes per element in all, of a mesh with four elements per
+ * copy; 290 to 350 where cuts leave two or three. The material can invert without a failure and recovers by itself. An
+ * element collapsed to a point, where its energy is stationary, is opened as if it were not quite collapsed. Same
+ * input, same binary: same bits. Nothing here needs isnan or infinities: it is right under -ffast-math, where sums
  * round otherwise.
  *
  * REFERENCES. GXFEM: Generalized eXtended Finite Element Method for Deformable Cutting via Boolean Operations, 2024.
@@ -194,15 +209,15 @@ typedef enum gxs_material_kind {
     GXS_CUSTOM                  /* the caller's own, by energy below */
 } gxs_material_kind;
 
-/* Energy density, J/m3, at a deformation gradient F (3x3 by rows), finite wherever F is. stress: P = d energy / dF, Pa,
- * by rows; hessian: dP_i/dF_j at [9 i + j], symmetric, it need not be semi-definite; either may be NULL. Called on the
+/* Energy density, J/m3, at a deformation gradient F (3x3 by rows); finite wherever F is. stress: P = d energy / dF, Pa,
+ * by rows; hessian: dP_i/dF_j at [9 i + j], symmetric, not necessarily semi-definite. Either may be NULL. Called on the
  * threads of gx_jobs. */
 typedef double (*gxs_energy_fn)(void *user, const double *deformation, double *stress, double *hessian);
 
 typedef struct gxs_material {
     gxs_material_kind kind;
-    double young;         /* Pa, above 0; of GXS_CUSTOM: about its stiffness, for scaling only */
-    double poisson;       /* 0 <= poisson < 0.5; of GXS_CUSTOM: checked, not used */
+    double young;         /* Pa, above 0; GXS_CUSTOM: about its stiffness, for scaling only */
+    double poisson;       /* 0 <= poisson < 0.5; GXS_CUSTOM: checked, not used */
     double damping;       /* Rayleigh's beta, s, 0 or more: stress grows by beta times its rate of change */
     gxs_energy_fn energy; /* GXS_CUSTOM only */
     void *user;
@@ -210,66 +225,66 @@ typedef struct gxs_material {
 
 /* A linear tetrahedron, or the part of one that a cut has left. */
 typedef struct gxs_element {
-    uint32_t copy[4]; /* whose displacement each corner follows; below copy_count */
-    /* of the four shape functions, 1/m; row 0 is minus the sum of the others and not read */
+    uint32_t copy[4]; /* the copy that moves each corner; below copy_count */
+    /* of the four shape functions, 1/m; row 0, minus the sum of the others, is not read */
     double gradient[4][3];
     double weight; /* volume, m3; 0 or more */
-    /* rho int N_i N_j, kg, symmetric, semi-definite (made so, if it is not) 4x4 block: 00 01 02 03 11 12 13 22 23 33;
-     * of a row sum below 2^-25 of all, nothing */
+    /* rho int N_i N_j, kg, symmetric, semi-definite (made so if it is not) 4x4 block: 00 01 02 03 11 12 13 22 23 33. A
+     * row sum below 2^-25 of the element's mass counts as 0 */
     double mass[10];
     uint32_t material; /* below material_count */
-    /* the caller's, below 2^30: elements of one group are replaced together, see gxs_solver_update; else not read */
+    /* the caller's, below 2^30: elements of one group are replaced together. Read by gxs_solver_update only */
     uint32_t group;
 } gxs_element;
 
-/* A copy that follows others: in every step its displacement changes by the sum of weight x what theirs change by. A
- * held copy follows nothing; masters follow nothing themselves. */
+/* A copy that follows others: in every step its displacement changes by the weighted sum of the changes of theirs. A
+ * held copy follows nothing. Masters follow nothing themselves. */
 typedef struct gxs_constraint {
     uint32_t copy;
     uint32_t master[4]; /* below copy_count, also where the weight is 0 */
-    double weight[4];   /* 1 in sum where the copy shall follow translations */
+    double weight[4];   /* 1 in sum if the copy is to follow translations */
 } gxs_constraint;
 
 /* Borrowed for the time of a call. */
 typedef struct gxs_model {
     size_t copy_count;
-    /* copy_count x 3: the copies' nodes at rest, m; NULL: no multigrid, and more memory: elements whose gradients are
-     * those of their copies' positions (to 1e-11) are kept without them */
+    /* copy_count x 3: the copies' nodes at rest, m; NULL: no multigrid, and more memory. With positions, gradients that
+     * agree with them (to 1e-11) are not stored */
     const double *positions;
     const gxs_element *elements; /* element_count */
     size_t element_count;
-    const gxs_material *materials; /* material_count, as many as there are differing elements if need be */
+    const gxs_material *materials; /* material_count, up to one per element */
     size_t material_count;
-    const uint8_t *held;               /* copy_count flags: not 0 keeps the copy's displacement; NULL: none is held */
-    uint32_t lumped_mass;              /* not 0: row sums of the mass; 0: as given (consistent) */
+    const uint8_t *held;  /* copy_count flags: not 0: the copy keeps its displacement; NULL: none is held */
+    uint32_t lumped_mass; /* not 0: row sums of the mass; 0: as given (consistent) */
     const gxs_constraint *constraints; /* constraint_count, each of another copy */
     size_t constraint_count;
-    /* names this numbering of copies. Springs, contact points, forces and targets of a step say which one they are of:
-     * those of another are GX_ERROR_STALE. 0 everywhere is fine as long as copies keep their numbers */
+    /* names this numbering of copies. Springs, contact points, forces and targets of a step name the numbering that
+     * they use; another one is GX_ERROR_STALE. 0 everywhere is fine as long as copies keep their numbers */
     uint64_t epoch;
 } gxs_model;
 
-/* What a cut has changed of a model. Borrowed for the time of a call. */
+/* The change that a cut makes to a model. Borrowed for the time of a call. */
 typedef struct gxs_change {
     size_t copy_count; /* from now on */
-    /* copy_count: 2 x the index so far of the copy that this one is, or, for a new one, 2 x that of the copy whose
-     * position and motion it takes over, + 1 */
+    /* copy_count: 2 x the copy's index so far; for a new copy 2 x the index of the copy whose position and motion it
+     * takes over, + 1 */
     const uint32_t *origins;
     const uint8_t *held;    /* copy_count flags as the model's; NULL: none is held */
-    const uint32_t *groups; /* group_count, ascending: all elements of these go */
+    const uint32_t *groups; /* group_count, ascending: all elements of these groups go */
     size_t group_count;
-    /* element_count, by ascending group: what comes in their place; of the model's materials */
+    /* element_count, by ascending group: the elements in their place, of the model's materials */
     const gxs_element *elements;
     size_t element_count;
-    const gxs_constraint *constraints; /* constraint_count: all that there are from now on */
+    const gxs_constraint *constraints; /* constraint_count: all constraints from now on */
     size_t constraint_count;
     uint64_t epoch; /* of the numbering from now on */
 } gxs_change;
 
 typedef enum gxs_preconditioner {
-    /* multigrid where it pays: in large pieces, in steps in which stiffness outweighs inertia */
+    /* multigrid where it pays: in large components, in steps in which stiffness outweighs inertia */
     GXS_AUTOMATIC = 0,
-    GXS_BLOCK_JACOBI, /* least memory; iterations grow with size, loose fragments and thin layers */
+    GXS_BLOCK_JACOBI, /* least memory; iterations grow with size, with loose fragments and with thin layers */
     GXS_MULTIGRID,    /* coarse functions that never cross a cut */
     GXS_VOLUME_RATIO  /* RXFEM Eq. 26, for comparison: each copy by the volume of its support */
 } gxs_preconditioner;
@@ -289,24 +304,24 @@ typedef struct gxs_solver_desc {
 
 /* How time is discretised. All are implicit and minimise a potential of the form of E above. */
 typedef enum gxs_integrator {
-    GXS_BDF1 = 0, /* backward Euler: first order, damps what it cannot resolve */
-    GXS_BDF2,     /* second order, damps less; the first step, without one before it, is backward Euler */
+    GXS_BDF1 = 0, /* backward Euler: first order, damps motion that it cannot resolve */
+    GXS_BDF2,     /* second order, damps less; the first step is backward Euler */
     /* implicit midpoint: second order, damps nothing; needs steps that resolve the motion. Where Newton or CG end
-       early, or springs or contact begin to act after the middle of a step, its second half is shortened piece by
-       piece: none gains more than 1 % of its kinetic energy */
+       early, or springs or contact begin to act after the middle of a step, its second half is shortened, component by
+       component: none gains more than 1 % of its kinetic energy */
     GXS_MIDPOINT,
-    /* no inertia, velocities 0. dt 0: balance of forces, GX_ERROR_FREE where a piece is held by nothing. dt above 0:
-       the mass over dt^2 holds every copy where it was, so that free pieces have an answer */
+    /* no inertia, velocities 0. dt 0: balance of forces; GX_ERROR_FREE if nothing holds a component. dt above 0: the
+       mass over dt^2 holds every copy where it was, so that free components have an answer */
     GXS_STATIC
 } gxs_integrator;
 
-/* A material point: it is where the sum of weight x copy has moved it. A node, a point of an element, a vertex of a
- * skin. */
+/* A material point: a node, a point of an element, a vertex of a skin. Its displacement is the sum of weight x that of
+ * copy. */
 typedef struct gxs_point {
     uint32_t copy[4];   /* below copy_count, also where the weight is 0 */
     double weight[4];   /* of the shape functions there, 1 in sum */
     double position[3]; /* at rest, m */
-    uint64_t epoch;     /* of the numbering that copy is of: the model's, else GX_ERROR_STALE */
+    uint64_t epoch;     /* names the numbering of copy: the model's, else GX_ERROR_STALE */
 } gxs_point;
 
 /* Pulls a point to a target: a hand, a haptic tool, an elastic tether. Energy stiffness/2 |x - target|^2 */
@@ -316,8 +331,8 @@ typedef struct gxs_spring {
     double stiffness; /* N/m, 0 or more */
 } gxs_spring;
 
-/* Keeps contact points on the side of normal . x >= offset by a penalty of stiffness/2 depth^2 a point. Friction holds
- * a point by friction x the normal force at the step's start, up to sticking_speed in proportion to the speed. */
+/* Keeps contact points on the side of normal . x >= offset by a penalty of stiffness/2 depth^2 a point. Friction is
+ * friction x the normal force at the step's start; below sticking_speed it is proportional to the speed. */
 typedef struct gxs_plane {
     double normal[3];      /* of length 1 */
     double offset;         /* m */
@@ -327,32 +342,32 @@ typedef struct gxs_plane {
 } gxs_plane;
 
 /* A contact point's energy, J, at a position; force: on the point, minus its gradient, N; hessian: of the energy, N/m,
- * semi-definite, 00 01 02 11 12 22, NULL if it is not asked for. Called on the thread of the step only. */
+ * semi-definite, 00 01 02 11 12 22, or NULL. Called on the thread of the step only. */
 typedef double (*gxs_contact_fn)(void *user, size_t point, const double *position, double *force, double *hessian);
 
 typedef struct gxs_step_desc {
-    double dt;            /* s, above 0; GXS_STATIC: 0 is possible */
+    double dt;            /* s, above 0; GXS_STATIC: 0 or more */
     double gravity[3];    /* m/s2 */
     const double *forces; /* copy_count x 3, N; NULL: none */
     gxs_integrator integrator;
     /* copy_count x 3, of the step before; BDF2 only; NULL: none */
     const double *previous_displacement, *previous_velocity;
     double previous_dt; /* s, of the step before; BDF2 only */
-    /* copy_count x 3: displacement of held copies at the step's end, others not read; NULL: they stay */
+    /* copy_count x 3: displacement of held copies at the step's end; others are not read. NULL: held copies stay */
     const double *targets;
-    /* of the numbering of forces and targets: the model's, else GX_ERROR_STALE; read where one of them is given */
+    /* names the numbering of forces and targets: the model's, else GX_ERROR_STALE. Read if one of them is given */
     uint64_t epoch;
     double mass_damping;        /* Rayleigh's alpha, 1/s, 0 or more: force -alpha M v */
-    uint32_t newton_iterations; /* at most so many; 0: 1 */
-    /* stop at this residual (see gxs_step_report); 0: 1e-8, far below what one iteration leaves of motion */
+    uint32_t newton_iterations; /* at most; 0: 1 */
+    /* stop at this residual (see gxs_step_report); 0: 1e-8, far below what one iteration leaves in motion */
     double newton_tolerance;
     uint32_t cg_iterations; /* per Newton iteration, at most; 0: 1000 */
-    /* reduction of the residual by each linear solve, below 1; 0: 1e-2, of the midpoint rule, which does not damp what
-     * is left, 1e-3 */
+    /* reduction of the residual by each linear solve, below 1; 0: 1e-2, and 1e-3 with the midpoint rule, which does not
+     * damp the error */
     double cg_tolerance;
     const gxs_spring *springs; /* spring_count */
     size_t spring_count;
-    /* spring_count x 3: written, the force of each spring on the body at the end, N; NULL: not asked for */
+    /* spring_count x 3: receives the force of each spring on the body at the end, N; or NULL */
     double *spring_forces;
     const gxs_point *points; /* point_count: of contact */
     size_t point_count;
@@ -360,17 +375,17 @@ typedef struct gxs_step_desc {
     size_t plane_count;
     gxs_contact_fn contact; /* for every contact point; NULL: none */
     void *contact_user;
-    /* m/s: a piece (copies joined by elements) none of whose copies has been faster for sleep_time sleeps: steps leave
-     * it out until something touches it: what is given here changes for it, or its state is written. What contact()
-     * knows is not seen: where that moves, set rest_times to 0. 0: none sleeps */
+    /* m/s: a component (copies joined by elements) sleeps when none of its copies has been faster for sleep_time. Steps
+     * leave it out until something touches it: what is given here changes for it, or its state is written. Changes
+     * inside contact() are not seen: set rest_times to 0 where it moves. 0: none sleeps */
     double sleep_speed;
     double sleep_time; /* s; 0: 0.5 */
-    /* copy_count: for how long each copy has been slower, s; read and written. Needed by sleep_speed */
+    /* copy_count: for how long each copy has been slower, s; read and written. Required with sleep_speed */
     double *rest_times;
-    double (*clock)(void *user); /* s; NULL: none, the report's seconds are 0, and there may be no budget_seconds */
+    double (*clock)(void *user); /* s; NULL: the report's seconds are 0, and budget_seconds must be 0 */
     void *clock_user;
-    /* after so long no further iteration begins, and the step ends with what it has; 0: no limit. Results then depend
-     * on the machine */
+    /* no iteration begins after this time, and the step ends with what it has; 0: no limit. Results then depend on the
+     * machine */
     double budget_seconds;
 } gxs_step_desc;
 
@@ -379,90 +394,90 @@ typedef enum gxs_stop {
     GXS_STOP_BALANCE = 0, /* the residual is below newton_tolerance */
     GXS_STOP_ITERATIONS,  /* newton_iterations are done */
     GXS_STOP_SECONDS,     /* budget_seconds are over */
-    GXS_STOP_ROUNDING,    /* no lower energy can be told in doubles */
-    GXS_STOP_ASLEEP       /* nothing to move: every piece sleeps or is held */
+    GXS_STOP_ROUNDING,    /* doubles cannot tell a lower energy */
+    GXS_STOP_ASLEEP       /* nothing to move: every component sleeps or is held */
 } gxs_stop;
 
 typedef struct gxs_step_report {
     gxs_stop stop;
-    /* displacements solved for: three for each copy that is not held, follows nothing and is awake */
+    /* displacements solved for: three per copy that is awake, not held and follows nothing */
     size_t active_unknowns;
-    uint32_t newton_iterations; /* done; 0 when the start was in balance to rounding */
+    uint32_t newton_iterations; /* 0: the start was in balance to rounding */
     uint32_t cg_iterations;     /* sum over Newton iterations */
-    uint32_t line_search_steps; /* step lengths tried, sum over Newton iterations */
-    /* |load - inertia - elastic| / (|load| + |inertia| + |elastic|) on the copies not held, the larger of the two
+    uint32_t line_search_steps; /* step lengths tried; sum over Newton iterations */
+    /* |load - inertia - elastic| / (|load| + |inertia| + |elastic|) on copies that are not held; the larger of the two
      * measures (see above) */
     double residual;
-    /* E at the end, J, without pieces asleep and up to a constant: the load on held copies. Of the midpoint rule this
-     * and the residual are those of its displacement at half the step */
+    /* E at the end, J, without sleeping components and up to a constant, the load on held copies. With the midpoint
+     * rule this and the residual are those at half the step */
     double energy;
-    gxs_preconditioner preconditioner; /* of the last linear solve; GXS_AUTOMATIC: there was none */
-    double seconds;           /* of the step; from gx_body_step with the renewal of the solver's model after a cut */
-    double seconds_linearise; /* in Hessians and their diagonal, */
-    double seconds_prepare;   /* in numbers of the preconditioner and assembly, */
-    double seconds_solve;     /* in conjugate gradients; all 0 without a clock */
+    gxs_preconditioner preconditioner; /* in the last linear solve; GXS_AUTOMATIC: there was none */
+    double seconds;           /* of the step; gx_body_step includes the renewal of the solver's model after a cut */
+    double seconds_linearise; /* in Hessians and their diagonal */
+    double seconds_prepare;   /* in assembly and the numbers of the preconditioner */
+    double seconds_solve;     /* in conjugate gradients */
 } gxs_step_report;
 
-/* What acted on all pieces in a step: a change of it wakes those that sleep. */
+/* What acts on all components in a step. A change of it wakes sleeping ones. */
 typedef struct gxs_scene {
     double gravity[3];                /* m/s2 */
-    uint64_t planes, forces, springs; /* hashes of what was given */
+    uint64_t planes, forces, springs; /* hashes */
 } gxs_scene;
 
 /* A model in the solver's own form, and the workspace of its steps; one call at a time. */
 typedef struct gxs_solver gxs_solver;
 
 /* >>functions
- * Those that return a gx_result check all they read: GX_ERROR_ARGUMENT, _EMPTY, _LIMIT, _RANGE, _INDEX, _NOT_FINITE
- * (index: of the element, material, constraint, copy, spring, point or plane), _INVERTED (weight below 0; index:
- * element). Steps also GX_ERROR_STALE (copies of another epoch than the model's; index: spring or point, SIZE_MAX:
- * forces or targets). Outputs are written on GX_OK only. failure and report may be NULL. */
+ * Functions that return a gx_result check all that they read: GX_ERROR_ARGUMENT, _EMPTY, _LIMIT, _RANGE, _INDEX,
+ * _NOT_FINITE (index: of the element, material, constraint, copy, spring, point or plane), _INVERTED (weight below 0;
+ * index: element). Steps also GX_ERROR_STALE (copies of another epoch than the model's; index: spring or point,
+ * SIZE_MAX: forces or targets). Outputs are written on GX_OK only. failure and report may be NULL. */
 
 /* Advances displacement (m) and velocity (m/s), both copy_count x 3 of the model set last and not overlapping, by one
- * step. Held copies keep their displacement or go to their target, copies without an element of any weight or mass stay
- * where they are; both get the velocity of that. GX_ERROR_ARGUMENT if no model is set; GX_ERROR_DIVERGED and
- * (GXS_STATIC) GX_ERROR_FREE are possible: displacement and velocity are then unchanged. A residual above
- * newton_tolerance when the iterations are used up is no error: see the report. Allocates (GX_ERROR_MEMORY) only where
- * there are more springs and contact points than ever before. */
+ * step. Held copies keep their displacement or go to their target. Copies that no element gives weight or mass stay
+ * where they are. Both get the velocity of that motion. GX_ERROR_ARGUMENT: no model is set. GX_ERROR_DIVERGED and, with
+ * GXS_STATIC, GX_ERROR_FREE leave displacement and velocity unchanged. A residual above newton_tolerance when the
+ * iterations are used up is no error: see the report. Allocates (GX_ERROR_MEMORY) only if there are more springs and
+ * contact points than ever before. */
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
                                     double *velocity, gxs_step_report *report, gx_failure *failure);
 
-/* What the next steps move, after each cut and each change of material or of what is held. All is copied into the
- * solver's own form. GX_ERROR_MEMORY is possible; on any error the model before stays. */
+/* Sets the model that the next steps move; again after each cut and each change of materials or held copies. All is
+ * copied into the solver's own form. GX_ERROR_MEMORY is possible. On any error the model before stays. */
 GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *model, gx_failure *failure);
 
-/* Changes the model in time that goes by the size of the change, but for what is proportional to the number of copies
- * and small. Steps go on with what they have learnt so far. Results are those of the whole model set anew but for
- * rounding and the tolerances of steps. GX_ERROR_ARGUMENT if no model is set, an order is not as it should be (index:
- * of the group or element), or a constraint cannot be (its index). GX_ERROR_LIMIT if the change does not fit what there
- * is: a matrix is assembled, mass is lumped, GXS_VOLUME_RATIO, lanes that changes have left behind are a quarter of
- * all, a copy is held and was not or the other way round, no element is left, elements that stay have lost a copy. On
- * this and on GX_ERROR_MEMORY no model is set any more: set it. On other errors the model before stays. */
+/* Changes the model. The time is proportional to the size of the change, but for small work proportional to the number
+ * of copies. Preconditioner and guesses are kept. Results are those of the whole model set anew, but for rounding and
+ * the tolerances of steps. GX_ERROR_ARGUMENT: no model is set, groups or elements are not in order (index: of the group
+ * or element), or a constraint is not allowed (its index). GX_ERROR_LIMIT: the change does not fit. Either the matrix
+ * is assembled, mass is lumped, GXS_VOLUME_RATIO is used, empty lanes are a quarter of all, a copy is held that was not
+ * or the other way round, no element is left, or an element that stays has lost a copy. After this and GX_ERROR_MEMORY
+ * no model is set any more: set it. On other errors the model before stays. */
 GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure);
-/* Sets the rest times of copies to 0 whose state has been written since the last step, so that their pieces wake
- * although another model is set before the next one, or another solver takes it. Vectors are of the copies of now;
- * origins (count): as in gxs_change. */
+/* Sets the rest times of copies to 0 whose state has been written since the last step. Their components then wake even
+ * if another model is set before the next step, or another solver takes it. Vectors use the present numbering; origins
+ * (count): as in gxs_change. */
 GXFEM_API void gxs_solver_note_written(const gxs_solver *solver, const uint32_t *origins, size_t count,
                                        const double *displacement, const double *velocity, double *rest_times);
-/* For whoever saves a state and goes on from it later: the scene of the last step, and a solver as if its model had
- * just been set after a step in that scene; a model that has been updated is dropped, and must be set. Two solvers so
- * resumed with the same model, scene and states take the same steps, bit by bit. */
+/* For saving a state and continuing later. gxs_solver_scene gives the scene of the last step. gxs_solver_resume makes
+ * the solver as if its model had just been set after a step in that scene; a model that has been updated is dropped and
+ * must be set. Two solvers resumed with the same model, scene and states take the same steps, bit by bit. */
 GXFEM_API void gxs_solver_scene(const gxs_solver *solver, gxs_scene *scene);
 GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene);
 
 /* The model's operator for other uses than steps: a Krylov method of one's own, modes, an adjoint. gxs_solver_linearise
- * makes it at a displacement, gxs_solver_product applies it as often as one likes, matrix-free; both by the solver's
- * jobs: product = (K + rate M) direction                    N; m; rate: 1/s2, 0 or more K: Hessian of U, projected or,
- * exact not 0, as it is; M: the mass, lumped if the model says so. Springs, contact and damping belong to steps and are
- * not in it, pieces asleep are. It acts on what can move: directions of held copies and of copies without an element
- * count as 0, those of followers are what their masters' make of them, and the product is 0 there, what acts on
- * followers goes to their masters. So it is symmetric, and semi-definite unless exact. Vectors are copy_count x 3
- * doubles; between them numbers are single precision: of the Hessian, of what an element's copies move by relative to
- * the first (taken in double precision: translations meet no stiffness at all), of its forces; sums over elements are
- * single precision within chunks, double between them. A power of two times a direction gives exactly that times its
- * product. What is made lasts until the next step, update or model; then, or before anything is made, product is
- * GX_ERROR_ARGUMENT. GX_ERROR_RANGE: the Hessian is beyond single precision. Neither allocates, nor changes what steps
- * do. product may not overlap direction. */
+ * makes it at a displacement. gxs_solver_product applies it any number of times, matrix-free. Both use the solver's
+ * jobs. product = (K + rate M) direction, N; direction: m; rate: 1/s2, 0 or more. K: Hessian of U, projected unless
+ * exact is not 0; M: the mass, lumped if the model says so. Springs, contact and damping belong to steps and are left
+ * out; sleeping components are included. Directions of held copies and of copies without an element count as 0, and
+ * followers move as their masters make them. The product is 0 on all of these; forces on followers go to their masters.
+ * So the operator is symmetric, and semi-definite unless exact. Vectors are copy_count x 3 doubles. The Hessian, the
+ * motion of an element's copies relative to its first one, and its forces are single precision; the differences are
+ * taken in double precision, so that translations meet no stiffness at all. Sums over elements are single precision
+ * within chunks, double between them. A direction times a power of two gives exactly its product times that power. The
+ * operator lasts until the next step, update or model; without one, product is GX_ERROR_ARGUMENT. GX_ERROR_RANGE: the
+ * Hessian is beyond single precision. Neither function allocates or changes what steps do. product may not overlap
+ * direction. */
 GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displacement, double rate, uint32_t exact,
                                          gx_failure *failure);
 GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *direction, double *product,
@@ -512,7 +527,11 @@ extern "C" {
 #pragma clang attribute push(__attribute__((target("no-simd128"))), apply_to = function)
 #endif
 
-/* elements side by side in a block: whole vectors on every instruction set up to 512 bits of doubles */
+/* >>constants: sizes, limits and measured choices ------------------------------------------------------------------ */
+
+/* In and out: nothing but macros and the types of vectors. Numbers that were measured say on what. */
+
+/* Elements side by side in a block: whole vectors on every instruction set up to 512 bits of doubles */
 #define GXSP_LANES 8
 
 /* Blocks of a chunk: 384 elements, whose nodes (about 150) stay in the first-level cache. */
@@ -526,150 +545,150 @@ extern "C" {
  * Optimization]. */
 #define GXSP_ARMIJO 1e-4
 
-/* Newton ends after so many iterations in a row without a gain that doubles can tell. */
+/* Newton's method ends after this many iterations in a row whose gain doubles cannot tell. */
 #define GXSP_STALLS 4
 
-/* A direction that goes twice as far as the linear model's minimum along it, or further, is begun at that minimum. */
+/* The line search starts at the linear model's minimum along a direction that goes at least twice as far as that. */
 #define GXSP_TOO_LONG 0.5
 
-/* Line search: at worst each trial halves the step; after 60 nothing of it is left. */
+/* Trials of the line search. Each at least halves the step; after 60 nothing of it is left. */
 #define GXSP_TRIALS 60
 
-/* no piece, no node, no chunk */
+/* No component, node, chunk or copy */
 #define GXSP_NONE UINT32_MAX
 
-/* States of a piece: a copy is held; it has no mass, or constraints that do not follow translations; springs or contact
- * have acted on it since Newton's method began; it sleeps; they act on it at this linearisation */
+/* States of a component. HELD: a copy of it is held. UNBALANCED: it has no mass, or constraints that do not follow
+ * translations. TOUCHED: springs or contact have acted on it since Newton's method began. ASLEEP: it sleeps.
+ * TOUCHES: springs or contact act on it at this linearisation. */
 #define GXSP_HELD       1u
 #define GXSP_UNBALANCED 2u
 #define GXSP_TOUCHED    4u
 #define GXSP_ASLEEP     8u
 #define GXSP_TOUCHES    16u
 
-/* A cycle of the multigrid that makes a residual's energy so many times as large has met a coarse matrix that rounding
- * has made senseless. */
+/* If a cycle of the multigrid multiplies a residual's energy by this, rounding has made a coarse matrix senseless. */
 #define GXSP_ABSURD 1e20
 
-/* Gradients within so much of those of the rest positions, beside their largest entry, are taken to be rounded ones of
- * these. */
+/* Gradients that differ from those of the rest positions by no more than this, relative to their largest entry, are
+ * taken for rounded ones of these. */
 #define GXSP_PLACED 1e-11
 
-/* The midpoint rule's second half gains no more than this share of the kinetic energy: exact solutions gain less where
+/* The midpoint rule's second half gains at most this share of the kinetic energy: exact solutions gain less where
  * steps resolve the motion. GXSP_GAIN_TRIALS lengths are tried. */
 #define GXSP_GAIN        0.01
 #define GXSP_GAIN_TRIALS 8
 
-/* Hessians of elements so stretched that their entries, beside the moduli, were larger than this are those of elements
- * stretched less, times the fourth power of the rest, as which they grow at most; up to this weight, J: single
- * precision holds the one times the other. */
+/* Single precision must hold weight times Hessian. Where the Hessian's entries relative to the moduli would exceed
+ * GXSP_STRETCHED, the stretches are clamped, and the weight is scaled by the fourth power of the excess, the
+ * fastest growth there is, up to GXSP_HEAVIEST, J. */
 #define GXSP_STRETCHED 1e24
 #define GXSP_HEAVIEST  1e12
 
-/* A copy between parts of elements is light if it has a smaller share than this of their mass (of whole ones it is
- * 1/4), or of a neighbour's. */
+/* A copy between parts of elements is light if its share of their mass is below GXSP_LIGHT (in whole elements the
+ * share is 1/4), or its mass below GXSP_LIGHTER of a neighbour's. */
 #define GXSP_LIGHT   0.1
 #define GXSP_LIGHTER 0.02
 
-/* Directions of light copies are bounded in so many iterations of a step, where that takes no more than this share of
- * the slope of their piece. */
+/* Directions of light copies are bounded in the first GXSP_BOUNDED iterations of a step, where that costs at most
+ * GXSP_BOUND_COST of the slope of their component. */
 #define GXSP_BOUNDED    8
 #define GXSP_BOUND_COST 0.1
 
-/* An element all whose stretches are smaller is all but a point, where its forces vanish: directions are found as if it
- * were GXSP_NUDGE of its size. */
+/* An element is collapsed if all its stretches are below GXSP_COLLAPSED: its forces vanish there. Directions are
+ * found as if it were GXSP_NUDGE of its size. */
 #define GXSP_COLLAPSED 1e-4
 #define GXSP_NUDGE     0.1
 
-/* How many nodes or slots ahead of themselves passes ask for what is in no order in memory */
+/* Passes prefetch data that is in no order in memory this many nodes or slots ahead. */
 #define GXSP_AHEAD 128
 
-/* How many blocks ahead passes ask for what products read, and for what forces and Hessians are made of, which takes
- * longer */
+/* Passes prefetch the data of products, and that of forces and Hessians, which take longer, this many blocks ahead. */
 #define GXSP_TANGENTS_AHEAD 8
 #define GXSP_RESTS_AHEAD    2
 
-/* Copies that one task of a pass over copies takes, and how many sums it may make. */
+/* Copies of one task of a pass over copies, and how many sums it may make */
 #define GXSP_RANGE 512
 #define GXSP_SUMS  6
 
-/* Square of the sine of the angle between two guesses, measured in energy, below which single precision does not tell
- * them apart */
+/* Single precision cannot tell two guesses apart if the square of the sine of their angle, measured in energy, is
+ * below this. */
 #define GXSP_PARALLEL 1e-5
 
 /* Spacing of the first lattice of the multigrid, in edges of an average element. */
 #define GXSP_SPACING 2.5
 
-/* Where a piece has more nodes of the first lattice for each copy than GXSP_CROWDED, it is given fewer: if it is
- * shorter than so many spacings along each axis, its affine motions, which are four nodes, or twice the spacing.
- * Measured: 0.08 to 0.16 nodes of bodies in one piece, cut or not, 0.37 to 0.44 of those in pieces of 60 copies. */
+/* A component with more than GXSP_CROWDED nodes of the first lattice per copy gets fewer: its affine motions, which
+ * are four nodes, if it is shorter than GXSP_AFFINE spacings along each axis; a lattice of twice the spacing if it
+ * is shorter than GXSP_COARSE. Measured: 0.08 to 0.16 nodes per copy in bodies of one component, cut or not, 0.37
+ * to 0.44 in components of 60 copies. */
 #define GXSP_CROWDED 0.25f
 #define GXSP_AFFINE  2
 #define GXSP_COARSE  3
 
-/* In pieces of fewer copies block-Jacobi is at least as fast as multigrid; but for nearly incompressible ones. */
+/* In components of fewer copies block-Jacobi is at least as fast as multigrid. For nearly incompressible ones the
+ * bound is lower. */
 #define GXSP_MULTIGRID_FROM       150
 #define GXSP_MULTIGRID_FROM_STIFF 60
 #define GXSP_STIFF_POISSON        0.48
 
-/* A level is factored that takes no more multiplications than this for each copy, level 1 than half of that, which
- * takes most memory; or that the next would not make smaller by a third. Slender bodies need it: coarser levels hardly
- * bend with them, and an exact solution two levels down saves two iterations in three. */
+/* A level is factored if that takes at most this many multiplications per copy (level 1: half of that, since it
+ * takes most memory), or if the next level would not be smaller by a third. Slender bodies need it: coarser levels
+ * hardly bend with them, and an exact solution two levels down saves two iterations in three. */
 #define GXSP_FACTOR_COST 3000
 #define GXSP_LEVELS      12
 
-/* Where inertia has a larger mean share of the Hessian's diagonal blocks, block-Jacobi takes less time: few iterations,
- * as the share bounds the spectrum from below. Measured on blocks of 2,000 to 8,000 copies, cut and not, lattice and
- * jittered, E of 1e6 and 1e8: as long as multigrid at a share of 0.015 to 0.06, 0.8 to 1 times as long above, 1.1
- * to 2.7 times at 0.005 and below. */
+/* Block-Jacobi takes less time than multigrid where inertia's mean share of the Hessian's diagonal blocks is larger
+ * than this: few iterations, as the share bounds the spectrum from below. Measured on blocks of 2,000 to 8,000
+ * copies, cut and not, lattice and jittered, E of 1e6 and 1e8: as long as multigrid at a share of 0.015 to 0.06,
+ * 0.8 to 1 times as long above, 1.1 to 2.7 times at 0.005 and below. */
 #define GXSP_INERTIA 0.03
 
-/* Multigrid's diagonal grows by this share, so that what single precision leaves of its matrices is positive definite.
- */
+/* Multigrid's diagonal grows by this share, so that its matrices stay positive definite in single precision. */
 #define GXSP_SHIFT 1e-5f
 
-/* The stiffness of a whole element in the linear systems: 2^40 leaves room for pieces down to 1e-40 of it, and for
- * masses above. */
+/* Binary exponent of a whole element's stiffness in the linear systems: leaves room for components down to 1e-40 of
+ * it, and for masses above. */
 #define GXSP_STIFFNESS 40
 
-/* Coarse matrices cost as much as so many iterations. The first of a model serve for GXSP_LIFE iterations before new
- * ones show what age has cost; where that is less than GXSP_AGEING of what there is, the next trial comes GXSP_PATIENCE
- * times as late. */
+/* Making coarse matrices costs as much as GXSP_REMAKE iterations. The first of a model serve for GXSP_LIFE
+ * iterations. New ones then show what age has cost. If that is less than GXSP_AGEING of the pace, the next ones
+ * serve GXSP_PATIENCE times as long. */
 #define GXSP_REMAKE   5
 #define GXSP_LIFE     40
 #define GXSP_AGEING   0.2
 #define GXSP_PATIENCE 2
 
-/* After a cut, coarse numbers are made for entries of dirty nodes only, where no larger a share of chunks follows such:
- * these need a Hessian of their own, at the state of the other numbers. */
+/* After a cut, coarse numbers are made for entries of dirty nodes only, unless a larger share of chunks follows
+ * such nodes: these need a Hessian of their own, at the state of the other numbers. */
 #define GXSP_DIRTY 0.6
 
-/* How fast conjugate gradients are is read from so many iterations, of several solves if need be. */
+/* Iterations, of several solves if need be, over which the pace of conjugate gradients is measured. */
 #define GXSP_READING 10
 
-/* Coarse matrices are of no use any more when it takes so many times as many of them. */
+/* Coarse matrices are worn when iterations are this many times slower than at first. */
 #define GXSP_WORN 2
 
-/* The smoother's step length times the largest eigenvalue that is met is below this; at 2 the cycle would be
- * indefinite, and the eigenvalue is known to a tenth. */
+/* Bound on the smoother's step length times the largest eigenvalue met. At 2 the cycle would be indefinite; the
+ * eigenvalue is known to a tenth. */
 #define GXSP_OMEGA 1.75
 
-/* Linear solves for which the smoother's step length stays safe after it has proved too large; twice as many each
- * further time */
+/* Linear solves for which the smoother's step length stays the safe one after it has proved too large. Twice as
+ * many each further time. */
 #define GXSP_PAUSE 8
 
-/* Stiffness in the linear systems below which single precision makes nothing of an inverse: it is left alone. */
+/* A diagonal block of less stiffness in the linear systems has no inverse in single precision: it is left alone. */
 #define GXSP_TINY 1e-28
 
-/* Up to so many coarse nodes a chunk has a table of matrix entries; of more, entries are looked for each time. */
+/* A chunk with at most this many coarse nodes has a table of matrix entries. With more, each entry is searched for. */
 #define GXSP_CHUNK_PARENTS 192
 
-/* Memory begins at multiples of this: no vector lies across two cache lines. */
+/* Arrays begin at multiples of this many bytes: no vector lies across two cache lines. */
 #define GXSP_ALIGNMENT 64
 
-/* Bits of the table in which changed groups are looked up first; a power of two. */
+/* Bits of the filter of changed groups; a power of two. */
 #define GXSP_FILTER 65536u
 
-/* Groups of elements are below this: as many bits as gxsp_sort goes by. */
+/* Groups of elements are below this: gxsp_sort sorts by 30 bits. */
 #define GXSP_GROUPS ((uint32_t)1 << 30)
 
 /* Arrays of a block's passes never overlap. */
@@ -681,16 +700,15 @@ extern "C" {
 #define GXSP_RESTRICT
 #endif
 
-/* Functions of column numbers that compilers know only once they are inlined: else these might be equal, and no vectors
- * follow. */
+/* Inlined, so that compilers know the column numbers: columns that might be equal are not vectorised. */
 #if defined(__GNUC__)
 #define GXSP_INLINE static inline __attribute__((always_inline))
 #else
 #define GXSP_INLINE static inline
 #endif
 
-/* Loops over the lanes of a block, and of two. Clang is told not to unroll them, since it else does so before it could
- * vectorise. */
+/* Loops over the lanes of a block, and of two. Clang is told not to unroll them: it would unroll before it
+ * vectorises. */
 #if defined(__clang__)
 #define GXSP_EACH(l, count) _Pragma("clang loop unroll(disable)") for (l = 0; l < (count); l++)
 #elif defined(__GNUC__)
@@ -701,8 +719,9 @@ extern "C" {
 #define GXSP_EACH_LANE(l)   GXSP_EACH(l, GXSP_LANES)
 #define GXSP_EACH_OF_TWO(l) GXSP_EACH(l, 2 * GXSP_LANES)
 
-/* Vectors for what compilers do not make of loops: shuffles of nodes' vectors and blocks, many sums at a time. Shuffles
- * of vectors longer than there are they make number by number, hence eight only where there are eight. */
+/* Vectors for code that compilers do not vectorise: shuffles of nodes' vectors and blocks, many sums at a time.
+ * Shuffles of vectors longer than the machine's are compiled number by number. Hence vectors of eight floats with
+ * AVX only. */
 #if defined(__GNUC__) && (defined(__clang__) || __GNUC__ >= 12) && !defined(GXFEM_SCALAR)
 #define GXSP_SHUFFLES
 typedef __attribute__((vector_size(8), aligned(4), may_alias)) float gxsp_two;
@@ -713,11 +732,15 @@ typedef __attribute__((vector_size(32), aligned(4), may_alias)) float gxsp_eight
 #endif
 #endif
 
-/* one number per element of a block */
+/* One number per element of a block */
 typedef double gxsp_lanes[GXSP_LANES];
 typedef float gxsp_singles[GXSP_LANES];
 
-/* >>platform: comparisons with NaN mean nothing under -ffast-math, so finiteness is read off the bits */
+/* >>scalars: bits, sums, functions of one number ------------------------------------------------------------------- */
+
+/* Functions of numbers and arrays of numbers only. Finiteness is read off the bits, since comparisons with NaN
+ * mean nothing under -ffast-math. Compilers turn these functions into vector instructions; they leave sqrt alone
+ * for the sake of errno. */
 
 static int gxsp_finite(double value) {
     uint64_t bits;
@@ -737,6 +760,14 @@ static size_t gxsp_first_not_finite(const double *values, size_t count) {
     for (i = 0; i < count; i++)
         if (!gxsp_finite(values[i])) break;
     return i;
+}
+
+static int gxsp_all_finite_single(const void *numbers, size_t bytes) {
+    const float *number = (const float *)numbers;
+    size_t i;
+    for (i = 0; i < bytes / sizeof *number; i++)
+        if (!gxsp_finite_single(number[i])) return 0;
+    return 1;
 }
 
 static gx_result gxsp_fail(gx_failure *failure, gx_result result, size_t index) {
@@ -773,462 +804,7 @@ static int gxsp_packed3(int i, int j) { return i * (5 - i) / 2 + j; }
 
 static int gxsp_packed9(int i, int j) { return i <= j ? i * (17 - i) / 2 + j : j * (17 - j) / 2 + i; }
 
-/* >>memory */
-
-static void *gxsp_malloc(void *user, size_t size) {
-    (void)user;
-    return malloc(size);
-}
-
-static void gxsp_free(void *user, void *memory, size_t size) {
-    (void)user;
-    (void)size;
-    free(memory);
-}
-
-/* Head of an allocation of a pool; the memory follows it, at the next multiple of GXSP_ALIGNMENT. */
-typedef struct gxsp_owned {
-    struct gxsp_owned *next;
-    size_t size; /* with this head */
-} gxsp_owned;
-
-/* Allocations that are given back together. */
-typedef struct gxsp_pool {
-    gx_allocator allocator;
-    gxsp_owned *last;
-    int failed; /* an allocation returned NULL */
-} gxsp_pool;
-
-static void *gxsp_memory(gxsp_owned *owned) {
-    unsigned char *memory = (unsigned char *)(owned + 1);
-    return memory + (GXSP_ALIGNMENT - (uintptr_t)memory % GXSP_ALIGNMENT) % GXSP_ALIGNMENT;
-}
-
-/* count x size bytes, zero; NULL, and failed is set, when there are none. Callers check failed once, at their end. */
-static void *gxsp_take(gxsp_pool *pool, size_t count, size_t size) {
-    gxsp_owned *owned;
-    size_t bytes = (count > 0 ? count : 1) * size;
-    if (pool->failed) return NULL;
-    owned = (gxsp_owned *)pool->allocator.allocate(pool->allocator.user, sizeof *owned + GXSP_ALIGNMENT + bytes);
-    if (!owned) {
-        pool->failed = 1;
-        return NULL;
-    }
-    owned->next = pool->last;
-    owned->size = sizeof *owned + GXSP_ALIGNMENT + bytes;
-    pool->last = owned;
-    return memset(gxsp_memory(owned), 0, bytes);
-}
-
-/* Memory of room x size bytes in place of some of used x size, or of NULL, whose contents it has; the old one is given
- * back. NULL, and the old one stays, when there is none. */
-static void *gxsp_retake(gxsp_pool *pool, void *memory, size_t used, size_t room, size_t size) {
-    void *larger = gxsp_take(pool, room, size);
-    gxsp_owned **link = &pool->last, *owned;
-    if (!larger || !memory) return larger;
-    memcpy(larger, memory, used * size);
-    while (gxsp_memory(*link) != memory) link = &(*link)->next;
-    owned = *link;
-    *link = owned->next;
-    pool->allocator.release(pool->allocator.user, owned, owned->size);
-    return larger;
-}
-
-/* Gives back what was taken after mark was pool->last. */
-static void gxsp_release_to(gxsp_pool *pool, gxsp_owned *mark) {
-    while (pool->last != mark) {
-        gxsp_owned *owned = pool->last;
-        pool->last = owned->next;
-        pool->allocator.release(pool->allocator.user, owned, owned->size);
-    }
-}
-
-static gxsp_pool gxsp_pool_make(const gx_allocator *allocator) {
-    gxsp_pool pool;
-    pool.allocator = *allocator;
-    pool.last = NULL;
-    pool.failed = 0;
-    return pool;
-}
-
-/* Memory that is cut into arrays, one after the other */
-typedef struct gxsp_space {
-    unsigned char *memory; /* NULL: arrays are only counted */
-    size_t used;
-} gxsp_space;
-
-/* The next array of a space: count x size bytes. NULL if there is no memory. */
-static void *gxsp_carve(gxsp_space *space, size_t count, size_t size) {
-    const size_t at = space->used;
-    space->used = at + (count * size + GXSP_ALIGNMENT - 1) / GXSP_ALIGNMENT * GXSP_ALIGNMENT;
-    return space->memory ? space->memory + at : NULL;
-}
-
-/* What a step works on, cut into elements of a block, blocks of a chunk. Lanes without an element have weight, mass and
- * gradients 0 and name nodes of the chunk, to which they add zeros. */
-typedef struct gxsp_rest {
-    double weight[GXSP_LANES]; /* m3 */
-    /* kg: m of the block m (1 + delta_ij); in chunks that have moments all of the element's */
-    double mass[GXSP_LANES];
-    uint32_t material[GXSP_LANES];
-} gxsp_rest;
-
-/* Gradients of shape functions 1 ... 3 of a block, by rows, 1/m, where they are not what rest positions say */
-typedef struct gxsp_gradients {
-    double entry[9][GXSP_LANES];
-} gxsp_gradients;
-
-/* Nodes of a block, numbered in its chunk; apart from the rest, of which products need nothing else */
-typedef struct gxsp_corners {
-    uint16_t node[4][GXSP_LANES];
-} gxsp_corners;
-
-/* Moments of masses that are not those of whole elements: M_ij = mass (c_i c_j + R_i . R_j), semi-definite however it
- * is rounded, of slivers too. c: centre of mass in barycentric coordinates, R R^T: their covariance; c_0 = 1 - sum c,
- * R_0 = -sum R. */
-typedef struct gxsp_moments {
-    float centre[3][GXSP_LANES]; /* of corners 1 ... 3, in whole units of 2^-24: with c_0 they are exactly 1 in sum */
-    float root[6][GXSP_LANES];   /* of corners 1 ... 3, lower triangle by rows */
-} gxsp_moments;
-
-/* Projected Hessian of a block: dP = U (h : U^T dF V) V^T. */
-typedef struct gxsp_tangent {
-    /* U of F = U S V^T as sqrt 2 times its unit quaternion: x, y, z, w; any such numbers make it symmetric */
-    float frame[4][GXSP_LANES];
-    float gradient[9][GXSP_LANES]; /* shape function gradients 1..3 times V, by rows, 1/m */
-    float stretch[6][GXSP_LANES];  /* weight x h: stretches; J */
-    float even[3][GXSP_LANES];     /* of the off-diagonal pairs (12), (20), (01): to themselves; J */
-    float odd[3][GXSP_LANES];      /* and to each other; J */
-    float mass[GXSP_LANES];        /* gxsp_rest.mass x rate, kg/s2 */
-} gxsp_tangent;
-
-/* Projected Hessian of a block of GXS_CUSTOM, which has no frame (U and V are 1): weight x dP_i/dF_j, upper triangle by
- * rows; J */
-typedef struct gxsp_general {
-    float hessian[45][GXSP_LANES];
-} gxsp_general;
-
-/* Entries of the assembled matrix to which a block's corners i <= j add, in the order of gxs_element.mass: row the
- * lower copy */
-typedef struct gxsp_fine {
-    uint32_t entry[10][GXSP_LANES]; /* GXSP_NONE: a corner follows others */
-} gxsp_fine;
-
-/* What a chunk has of one piece */
-typedef struct gxsp_part {
-    double energies[3]; /* of the pass under way: elastic, kinetic, size of the terms they are sums of; J */
-    uint32_t piece;
-} gxsp_part;
-
-typedef struct gxsp_chunk {
-    gxsp_rest *rest; /* block_count, as are those without a count of their own */
-    gxsp_corners *corners;
-    /* block_count + 1: bit i: corner i is not the one of the block before, in each lane; at the end all */
-    uint8_t *fresh;
-    gxsp_tangent *tangents;
-    gxsp_gradients *gradients; /* NULL: they are found in each pass, of system->positions */
-    gxsp_moments *moments;     /* NULL: elements are whole, or masses lumped */
-    gxsp_general *generals;    /* of GXS_CUSTOM; NULL: gxsp_tangent has the Hessians */
-    /* block_count x GXSP_LANES: group of the element in each lane; GXSP_NONE: there is none */
-    uint32_t *groups;
-    uint32_t first_block, block_count; /* blocks are counted through all chunks */
-    uint32_t first_node, node_count;   /* into nodes and slots */
-    uint32_t first_part, part_count;   /* into parts: one for each piece of its nodes, ascending */
-    uint32_t class_index;              /* see gxsp_class */
-    uint32_t edge_count;               /* see gxsp_edges; 0: not known */
-    int open;                          /* made by an update, with room for GXSP_CHUNK_BLOCKS */
-    gxs_material_kind kind;
-} gxsp_chunk;
-
-/* A vector of copies in single precision is n x 4, the fourth unused: one load per copy. */
-typedef float gxsp_vector4[4];
-
-/* A level of the multigrid; level 0 is the model. Transfer: value of node i = sum of weight[i][k] x value of
- * parent[i][k]. */
-typedef struct gxsp_level {
-    uint32_t n;
-    int32_t (*place)[3];   /* n: lattice point; not of level 0 */
-    uint32_t (*parent)[4]; /* n: nodes of the next level, GXSP_NONE where the weight is 0 */
-    float (*weight)[4];
-    /* n + 1: rows of the symmetric matrix on and above its diagonal; not of level 0 if it is matrix-free */
-    uint32_t *start;
-    uint32_t *column; /* ascending in a row: the first is the row's own */
-    /* 9 per entry, by columns; of a last level after the first in shared memory: only from gxsp_lend to gxsp_give_back
-     */
-    float *block;
-    float *inverse; /* n x 6: of the diagonal blocks, packed */
-    /* n: solution, right-hand side, residual; borrowed on level 0. The last level has no parents, weights, inverses,
-     * residual */
-    gxsp_vector4 *x, *b, *r;
-} gxsp_level;
-
-/* Edges: pairs of a chunk's nodes, i < j, that share an element; numbered from 1. */
-typedef struct gxsp_edges {
-    size_t table_size;
-    /* table_size, nodes (nodes - 1) / 2 of the chunk that has most: the edge of two nodes i < j, at j (j - 1) / 2 + i,
-     * if ends says so, else one of another chunk */
-    uint16_t *table;
-    uint32_t *ends;         /* i << 16 | j */
-    float (*block)[9];      /* i's row and j's column of the Hessian, by columns */
-    uint16_t *first, *next; /* the edges to higher nodes as a list: first by node, next by edge; 0: there is none */
-    uint8_t *joined;        /* by node: it has an edge */
-    uint32_t nodes, count;  /* count: with edge 0, which takes what is not wanted */
-    uint16_t (*element)[6][GXSP_LANES]; /* by block: edges of its elements */
-    float (*own)[9];                    /* by node: what its edges leave for its own block, see gxsp_half_row */
-    float *mass;                        /* by node: half the row sum of the mass, scaled, kg/s2 */
-    uint16_t (*parent)[4];              /* by node: numbers of its parents, see gxsp_pairs */
-    /* by number: a node's row of half the Hessian times the transfer; 0 but for the row at work */
-    float (*half)[9];
-    uint16_t *touched; /* numbers of those that are not 0 */
-} gxsp_edges;
-
-/* Pairs of coarse nodes that the nodes of one chunk follow, numbered in the chunk from 1: where their entry of level
- * 1's matrix is. Number 0 is where a node has no parent. */
-typedef struct gxsp_pairs {
-    /* count x count, if that is GXSP_CHUNK_PARENTS at most: 2 x the entry, + 1 where it is that of the pair turned */
-    uint32_t *entry;
-    uint32_t *local; /* by coarse node: its number in the chunk; of use as scratch elsewhere */
-    uint32_t *node;  /* by number: the coarse node */
-    uint32_t *seen;  /* by number: the chunk's node, plus 1, that has last touched it */
-    uint32_t *stamp; /* by coarse node: the round in which it was numbered */
-    uint32_t round;  /* one for each visit of a chunk */
-    uint32_t count;  /* numbers given in this round, with 0 */
-    uint32_t most;   /* of any chunk; 0: the matrix is made from an assembled one */
-    /* by node of the first level whose matrix is another level's: a row of that one times its transfer */
-    float (*half)[9];
-} gxsp_pairs;
-
-/* Cholesky factor of the last level, row by row within its envelope. */
-typedef struct gxsp_factor {
-    uint32_t n;      /* unknowns */
-    uint32_t *order; /* n / 3: node of the level in each place */
-    uint32_t *first; /* n / 3: first column of the rows of each place */
-    size_t *row;     /* n / 3: where column 0 of the first of them would be in entry, see gxsp_factor_row */
-    float *entry;    /* entry_count; diagonal inverted */
-    size_t entry_count;
-    double *x;    /* n: solution */
-    double *rows; /* 3 x n: the three rows at work; in shared memory */
-} gxsp_factor;
-
-typedef struct gxsp_material {
-    gxs_material_kind kind;
-    double mu, lambda; /* Pa; of GXS_CUSTOM a factor of its energy, and about its stiffness */
-    double damping;    /* s */
-    gxs_energy_fn energy;
-    void *user;
-} gxsp_material;
-
-/* Copies joined by elements and constraints. E is a sum over pieces, but for points of contact and springs that join
- * some: of those the first leads, and what is told of energies and steps is that of all that it leads. */
-typedef struct gxsp_piece {
-    double sum[3];      /* over its copies, of the pass under way */
-    double mass;        /* kg */
-    double energies[3]; /* of the last evaluation: elastic with springs and contact, kinetic, size of their terms; J */
-    double before[3];   /* at current */
-    double base_energy; /* elastic, of what the last step returned, J; of use if gxsp_system.base_known */
-    /* E where the step starts, which it is not to exceed, and where Newton's method has ended; J */
-    double limit, ended;
-    /* of the midpoint rule: E at base, and less that E at the middle without drift, and at a trial; J */
-    double base, low, gain;
-    double drift[3];    /* of its second half, what is not shortened, m */
-    double slope, work; /* dE/dlength of the direction, and the load's work along it; J */
-    double left;        /* what the linear solve has left of the residual, along the direction; J */
-    double rounding;    /* of positions and of the load's terms, in units in the last place; J */
-    double length;      /* share of the direction that it goes */
-    int settled;        /* its length is found: chunks all of whose pieces are settled are not evaluated again */
-    int risen;          /* E has ended above limit */
-    uint32_t lead;      /* which piece leads it; itself: it leads */
-    uint64_t forces[2]; /* hash of its nodal forces and contact points: of the step before, of this one */
-    int sprung[2];      /* a spring acts on it: in the step before, in this one */
-    int woken, tired;   /* something touches it in this step; nothing does, and it has been slow for long */
-    uint32_t state;     /* GXSP_HELD ... GXSP_TOUCHES; 0: loose, a translation of it meets no stiffness */
-} gxsp_piece;
-
-/* A follower of the model */
-typedef struct gxsp_follower {
-    uint32_t copy, master[4];
-    double weight[4];
-} gxsp_follower;
-
-/* A copy with next to nothing of the mass around it, such as the far corner of what a cut has left of an element; the
- * lane whose others guide it */
-typedef struct gxsp_light {
-    uint32_t copy, chunk;
-    uint16_t lane, corner;
-} gxsp_light;
-
-/* Hessian of springs and contact at one point, times scale */
-typedef struct gxsp_term {
-    uint32_t copy[4];
-    float weight[4], hessian[6];
-    int assembled; /* the assembled matrix has it */
-} gxsp_term;
-
-/* What the solver keeps from model to model */
-typedef struct gxsp_lasting {
-    gxsp_term *term; /* of the present linearisation */
-    size_t count, capacity;
-    gxs_scene scene; /* of the step before */
-} gxsp_lasting;
-
-/* A model in the solver's form, with all that a step works with. n: copy_count. Vectors are n x 3 unless said. */
-typedef struct gxsp_system {
-    gxsp_pool pool;
-    gxsp_pool coarse; /* levels of the multigrid below the model, and what their numbers are made with */
-    const gx_jobs *jobs;
-    size_t n, element_count, block_count, slot_count, range_count;
-    uint64_t epoch;              /* of the copies' numbering */
-    size_t copy_room, slot_room; /* of arrays over copies and slots, from the first update on */
-    /* shared_room bytes: slots, search, product and scaled; while coarse numbers are made, what they are made with */
-    unsigned char *shared;
-    size_t shared_room;
-    uint32_t chunk_count, chunk_room, material_count;
-    gxsp_material *materials; /* material_count: as given */
-    /* material_count: what the step under way works with: Rayleigh damping makes them stiffer */
-    gxsp_material *damped;
-    gxsp_chunk *chunks;
-    uint32_t *nodes;      /* slot_count: the copy of each node of each chunk; and GXSP_AHEAD zeros */
-    uint32_t *copy_start; /* n + 1, into copy_slot */
-    /* slot_count: a copy's slots, in the order of chunks: sums over them are the same for any number of threads; and
-     * GXSP_AHEAD zeros */
-    uint32_t *copy_slot;
-    /* slot_count: number in the chunk of the least node that elements of the chunk join with this one; from the first
-     */
-    uint16_t *slot_root;
-    int roots_known; /* update on, when this is set */
-    /* slot_count: what a chunk's pass has for each node: 3 doubles, 4 floats (of products), or 6 */
-    double (*slots)[3];
-    double (*range_sum)[GXSP_SUMS]; /* range_count: of passes over copies; added up in their order */
-    gxsp_part *parts;               /* part_count: of the chunks, in their order */
-    uint32_t part_count;
-    uint8_t *chunk_collapsed; /* chunk_count: the last linearisation found an element collapsed to a point */
-    double *positions;        /* rest, m; NULL: not given */
-    double *lumped;           /* n: row sums of the mass, kg */
-    uint8_t *held;            /* n: as the model says */
-    uint8_t *fixed;           /* n: held, or without an element and a follower of nothing */
-    uint8_t *still;           /* n: fixed or asleep: what this step leaves alone */
-    uint8_t *chunk_still;     /* chunk_count: all copies are */
-    uint32_t *piece;          /* n: number of the piece */
-    gxsp_piece *pieces;       /* piece_count */
-    uint32_t piece_count, loose_count, free_count; /* loose: of state 0; free: but for GXSP_TOUCHED */
-    gxsp_follower *followers;
-    uint32_t follower_count;
-    uint32_t follower_room; /* of followers */
-    /* n: index of the copy's entry in followers; GXSP_NONE: it follows none; of use if there are followers */
-    uint32_t *follower;
-    size_t follower_copies; /* room of follower */
-    gxsp_lasting *lasting;  /* of the solver */
-    gxsp_light *lights;     /* light_count */
-    uint32_t light_count, light_room;
-    float *volume;    /* n: inverse volume of the support, scaled; of GXS_VOLUME_RATIO only */
-    double *target;   /* where inertia (and mass damping) alone lead; of backward Euler u_n + dt v_n */
-    double *damping;  /* what Rayleigh damping adds to the load, N; NULL: no material is damped */
-    double *current;  /* displacement: Newton's iterate */
-    double *force;    /* inertia + elastic at the iterate, N */
-    double *residual; /* load - force; conjugate gradients use it up */
-    /* displacement: tried by the line search; in the memory of the residual, of which there is no need then */
-    double *trial;
-    double *direction; /* the solution of the linear system */
-    /* of conjugate gradients: direction, Hessian times it, preconditioned residual */
-    gxsp_vector4 *search, *product, *scaled;
-    float *diagonal; /* n x 6: inverse of the Hessian's diagonal blocks, packed; 0 for fixed copies */
-    int lumped_mass;
-    int stiff;  /* a material is nearly incompressible */
-    int damps;  /* a material is damped */
-    int chosen; /* the preconditioner was chosen by the size of pieces */
-    /* power of two by which the linear systems are multiplied, so that single precision holds tiny pieces too */
-    double scale;
-    gxsp_level levels[GXSP_LEVELS];
-    uint32_t level_count; /* 0: no multigrid */
-    int coarse_used;      /* the levels precondition the solve at work */
-    /* of the chunk at work on level 1's matrix; in scratch or shared memory, and else nowhere, as pairs are */
-    gxsp_edges edges;
-    gxsp_pairs pairs;
-    gxsp_factor factor;
-    float omega;       /* step length of the smoother; 0: not known */
-    float omega_found; /* by the largest eigenvalue found, which may have grown since */
-    /* linear solves for which it stays the safe one, 0: it is omega_found; and the next time */
-    uint32_t omega_rest, omega_pause;
-    /* n: the copy's diagonal is of other elements than when omega was found; from the first update on, of use if */
-    uint8_t *renewed;
-    int omega_renewed;    /* there are such copies */
-    double coarse_rate;   /* for which the coarse matrices were made; below 0: never made */
-    double *coarse_state; /* displacement at which; of a multigrid only */
-    int coarse_worn;      /* to be made anew */
-    /* sums of springs' and contact's Hessians: now, when coarse matrices were made */
-    double term_stiffness, coarse_stiffness;
-    gxsp_fine *fine;        /* block_count: places in the assembled matrix, levels[0]; NULL: matrix-free */
-    uint32_t coarse_served; /* iterations since they were made */
-    uint32_t coarse_life;   /* for how many iterations they are to serve */
-    uint32_t coarse_lived;  /* for how many those before did */
-    uint32_t read;          /* iterations since the last reading */
-    double read_nepers;     /* and by how many factors of e they have reduced residuals */
-    double pace;            /* iterations for each factor of e, by the last reading; 0: none yet */
-    double pace_young;      /* by the first one */
-    double pace_old;        /* by the last one of the matrices before; 0: of another time step, or there was none */
-    int still_known;        /* still and chunk_still are those of the pieces' states */
-    size_t active;          /* unknowns of this step */
-    int stepped;            /* current is what the last step returned, copies of cuts since where theirs were */
-    int base_known;         /* current is what the last step returned, and the pieces know its elastic energies */
-    int failed;             /* the last step has: what woke in it stays awake */
-    double product_rate;    /* of the linearisation for gxs_solver_product; below 0: there is none */
-    gxsp_vector4 *right;    /* n: residual in single precision; of GXS_MATRIX_ASSEMBLED only, else NULL */
-    gxsp_vector4 *guess[2]; /* n: directions of the first iterations of the last step and of the one before */
-    uint32_t guess_count;   /* how many of them there are */
-} gxsp_system;
-
-/* A step under way */
-typedef struct gxsp_problem {
-    gxsp_system *system;
-    const gxs_step_desc *step;
-    double rate;            /* of the inertia: rate/2 |u - target|_M^2, 1/s2 */
-    double speed;           /* v = speed (u - a mean of the displacements before), 1/s */
-    double mean[2];         /* its weights: of given and of previous_displacement */
-    uint32_t cg_iterations; /* with the defaults put in */
-    double cg_tolerance;
-    /* by how many factors of e the last linear solve has reduced the residual that its guess left */
-    double nepers;
-    double energies[3];  /* at current, sums over pieces; J */
-    const double *given; /* displacement at the step's start, u_n */
-    double start;        /* on the clock */
-    gxs_scene scene;
-    int exact;          /* the linearisation is not projected */
-    int indefinite;     /* conjugate gradients met negative curvature */
-    int projected_only; /* the exact one has proved indefinite in this step */
-    int shortened;      /* the line search did not take the whole step */
-    int damps;          /* damping adds to the load */
-    int stalls;         /* iterations in a row that noise ended and that gained next to nothing */
-    double least;       /* residual so far */
-    int based;          /* pieces know E at base */
-    int noise;          /* the line search ended where energies differ by rounding only */
-    int collapsed;      /* the linearisation found elements collapsed to a point */
-    gxs_step_report report;
-} gxsp_problem;
-
-struct gxs_solver {
-    gx_allocator allocator;
-    gx_jobs jobs;
-    gxs_preconditioner preconditioner;
-    gxs_matrix matrix;
-    gxsp_lasting lasting;
-    gxsp_system *system; /* in its own pool; NULL before the first model */
-};
-
-/* >>jobs */
-
-/* task(context, i) for every i below count, by the host's threads if it has any. */
-static void gxsp_parallel(const gx_jobs *jobs, size_t count, void (*task)(void *, size_t), void *context) {
-    size_t i;
-    if (jobs->parallel_for && count > 1)
-        jobs->parallel_for(jobs->user, count, task, context);
-    else
-        for (i = 0; i < count; i++) task(context, i);
-}
-
-/* >>lanes: functions of one number that compilers turn into vector instructions; sqrt they leave alone for errno's sake
- */
-
-/* 1 / sqrt(x) of a normal x > 0, to 3 units in the last place: the exponent halved, then Newton's method */
+/* 1 / sqrt(x) of a normal x > 0, to 3 units in the last place: halves the exponent, then Newton's method. */
 static inline float gxsp_rsqrt(float x) {
     uint32_t bits;
     float y;
@@ -1240,9 +816,9 @@ static inline float gxsp_rsqrt(float x) {
     return y * (1.5f - 0.5f * x * y * y);
 }
 
-/* x - log(1 + x) for x >= -3/4 without cancellation. 1 + x = 2^k (1 + w), 1 + w in [sqrt 1/2, sqrt 2); with z = w / (2
- * + w) w - log(1 + w) = w z - 2 z^3 (1/3 + z^2/5 + z^4/7 + ...), |z| < 0.172: the first term left out is below 1e-17
- * w^2. */
+/* x - log(1 + x) for x >= -3/4 without cancellation. 1 + x = 2^k (1 + w), 1 + w in [sqrt 1/2, sqrt 2).
+ * With z = w / (2 + w): w - log(1 + w) = w z - 2 z^3 (1/3 + z^2/5 + z^4/7 + ...), |z| < 0.172.
+ * The first term left out is below 1e-17 w^2. */
 static inline double gxsp_log_rest(double x) {
     const double y = 1 + x;
     uint64_t bits, exponent;
@@ -1270,8 +846,950 @@ static inline double gxsp_log_rest(double x) {
            (x - w - k * 0.69314718055994531);
 }
 
-/* >>material: energy density (J/m3) and first Piola-Kirchhoff stress P (Pa) from G = F - 1, so that nothing cancels
- * near rest. size: of the terms whose rounding the energy carries. */
+/* The larger magnitude */
+static inline float gxsp_larger(float a, float b) {
+    const float x = a < 0 ? -a : a, y = b < 0 ? -b : b;
+    return x > y ? x : y;
+}
+
+/* An entry beside others of size 1; 0 if it is far below their rounding in single precision. Powers of such entries
+ * would be denormal, which cost processors a hundred cycles. Falling bodies have many. */
+GXSP_INLINE float gxsp_clean(float entry) { return entry < 1e-9f && entry > -1e-9f ? 0.0f : entry; }
+
+/* 2^k, |k| < 1023, about the inverse of the largest value's size: single precision holds the values times that, and
+ * their product. 0: a value is not finite. */
+static double gxsp_unit_factor(const double *values, size_t count) {
+    const uint64_t exponent = (uint64_t)0x7ff << 52, one = (uint64_t)1 << 52;
+    uint64_t largest = one, bits;
+    double factor;
+    size_t i;
+    for (i = 0; i < count; i++) {
+        memcpy(&bits, &values[i], sizeof bits);
+        largest = (bits & exponent) > largest ? bits & exponent : largest;
+    }
+    if (largest == exponent) return 0;
+    bits = 2046 * one - (largest < 2045 * one ? largest : 2045 * one);
+    memcpy(&factor, &bits, sizeof factor);
+    return factor;
+}
+
+/* Hash of values appended to a hash; never 0, and 1 for no values */
+static uint64_t gxsp_hash(uint64_t hash, const double *values, size_t count) {
+    size_t i;
+    for (i = 0; i < count; i++) {
+        uint64_t bits;
+        memcpy(&bits, &values[i], sizeof bits);
+        hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
+        hash ^= hash >> 29;
+    }
+    return hash | 1;
+}
+
+static int gxsp_differs(const double *a, const double *b) { return memcmp(a, b, 3 * sizeof *a) != 0; }
+
+/* >>memory: pools -------------------------------------------------------------------------------------------------- */
+
+/* In: the caller's allocator. Every array of the solver belongs to a pool and is zero when it is taken. There is
+ * one way to grow: gxsp_grow takes a larger array, copies what is kept and gives the old one back; gxsp_room says
+ * how large. Arrays that are never needed at the same time lie in one allocation, which a gxsp_space cuts into
+ * arrays. */
+
+static void *gxsp_malloc(void *user, size_t size) {
+    (void)user;
+    return malloc(size);
+}
+
+static void gxsp_free(void *user, void *memory, size_t size) {
+    (void)user;
+    (void)size;
+    free(memory);
+}
+
+/* Head of an allocation of a pool; the memory follows it, at the next multiple of GXSP_ALIGNMENT. */
+typedef struct gxsp_owned {
+    struct gxsp_owned *next;
+    size_t size; /* with this head */
+} gxsp_owned;
+
+/* Allocations that are given back together */
+typedef struct gxsp_pool {
+    gx_allocator allocator;
+    gxsp_owned *last;
+    int failed; /* an allocation returned NULL */
+} gxsp_pool;
+
+static void *gxsp_memory(gxsp_owned *owned) {
+    unsigned char *memory = (unsigned char *)(owned + 1);
+    return memory + (GXSP_ALIGNMENT - (uintptr_t)memory % GXSP_ALIGNMENT) % GXSP_ALIGNMENT;
+}
+
+/* count x size bytes, zero. NULL, and failed is set, if there is no memory. Callers check failed once, at their end. */
+static void *gxsp_take(gxsp_pool *pool, size_t count, size_t size) {
+    gxsp_owned *owned;
+    size_t bytes = (count > 0 ? count : 1) * size;
+    if (pool->failed) return NULL;
+    owned = (gxsp_owned *)pool->allocator.allocate(pool->allocator.user, sizeof *owned + GXSP_ALIGNMENT + bytes);
+    if (!owned) {
+        pool->failed = 1;
+        return NULL;
+    }
+    owned->next = pool->last;
+    owned->size = sizeof *owned + GXSP_ALIGNMENT + bytes;
+    pool->last = owned;
+    return memset(gxsp_memory(owned), 0, bytes);
+}
+
+/* Replaces an array by one of room x size bytes, keeps its first used x size bytes and gives the old one back.
+ * memory NULL: there is none yet. Returns NULL, and the old array stays, if there is no memory. */
+static void *gxsp_grow(gxsp_pool *pool, void *memory, size_t used, size_t room, size_t size) {
+    void *larger = gxsp_take(pool, room, size);
+    gxsp_owned **link = &pool->last, *owned;
+    if (!larger || !memory) return larger;
+    memcpy(larger, memory, used * size);
+    while (gxsp_memory(*link) != memory) link = &(*link)->next;
+    owned = *link;
+    *link = owned->next;
+    pool->allocator.release(pool->allocator.user, owned, owned->size);
+    return larger;
+}
+
+/* Gives back everything taken since mark was pool->last. */
+static void gxsp_release_to(gxsp_pool *pool, gxsp_owned *mark) {
+    while (pool->last != mark) {
+        gxsp_owned *owned = pool->last;
+        pool->last = owned->next;
+        pool->allocator.release(pool->allocator.user, owned, owned->size);
+    }
+}
+
+/* Entries for which an array that grows is given room, so that it seldom grows */
+static size_t gxsp_room(size_t count) { return count + count / 8; }
+
+static gxsp_pool gxsp_pool_make(const gx_allocator *allocator) {
+    gxsp_pool pool;
+    pool.allocator = *allocator;
+    pool.last = NULL;
+    pool.failed = 0;
+    return pool;
+}
+
+/* One allocation that is cut into arrays, one after the other */
+typedef struct gxsp_space {
+    unsigned char *memory; /* NULL: arrays are only counted */
+    size_t used;
+} gxsp_space;
+
+/* The next array of a space: count x size bytes; NULL if the space has no memory and only counts. */
+static void *gxsp_carve(gxsp_space *space, size_t count, size_t size) {
+    const size_t at = space->used;
+    space->used = at + (count * size + GXSP_ALIGNMENT - 1) / GXSP_ALIGNMENT * GXSP_ALIGNMENT;
+    return space->memory ? space->memory + at : NULL;
+}
+
+/* >>structs: the solver's own form of a model ---------------------------------------------------------------------- */
+
+/* In and out: types only. A model is elements in lanes, lanes in blocks, blocks in chunks; copies have a slot in
+ * each chunk that they are in. gxsp_system is divided by lifetime. The comment on an array says its shape, its
+ * unit and when it is valid. */
+
+/* Constants of a block's elements. A lane without an element has weight, mass and gradients 0 and names nodes of
+ * the chunk, to which it adds zeros. */
+typedef struct gxsp_rest {
+    double weight[GXSP_LANES]; /* m3 */
+    /* kg: m of the block m (1 + delta_ij); the element's mass in chunks that have moments */
+    double mass[GXSP_LANES];
+    uint32_t material[GXSP_LANES];
+} gxsp_rest;
+
+/* Gradients of shape functions 1 ... 3 of a block, by rows, 1/m. Only where they differ from those of the rest
+ * positions */
+typedef struct gxsp_gradients {
+    double entry[9][GXSP_LANES];
+} gxsp_gradients;
+
+/* Nodes of a block, numbered in its chunk. Apart from gxsp_rest, because products need nothing else */
+typedef struct gxsp_corners {
+    uint16_t node[4][GXSP_LANES];
+} gxsp_corners;
+
+/* Moments of the mass of a part of an element: M_ij = mass (c_i c_j + R_i . R_j), semi-definite however it is rounded,
+ * for slivers too. c: centre of mass in barycentric coordinates; R R^T: their covariance; c_0 = 1 - sum c, R_0 = -sum
+ * R. */
+typedef struct gxsp_moments {
+    float centre[3][GXSP_LANES]; /* of corners 1 ... 3, in whole units of 2^-24: exactly 1 in sum with c_0 */
+    float root[6][GXSP_LANES];   /* of corners 1 ... 3, lower triangle by rows */
+} gxsp_moments;
+
+/* Projected Hessian of a block: dP = U (h : U^T dF V) V^T. */
+typedef struct gxsp_tangent {
+    /* U of F = U S V^T as sqrt 2 times its unit quaternion: x, y, z, w. Any four numbers give a symmetric Hessian */
+    float frame[4][GXSP_LANES];
+    float gradient[9][GXSP_LANES]; /* shape function gradients 1..3 times V, by rows, 1/m */
+    float stretch[6][GXSP_LANES];  /* weight x h: stretches; J */
+    float even[3][GXSP_LANES];     /* factor of an off-diagonal entry (12), (20), (01) to itself; J */
+    float odd[3][GXSP_LANES];      /* factor of an off-diagonal entry to its mirror; J */
+    float mass[GXSP_LANES];        /* gxsp_rest.mass x rate, kg/s2 */
+} gxsp_tangent;
+
+/* Projected Hessian of a block of GXS_CUSTOM, which has no frame (U and V are 1): weight x dP_i/dF_j, upper
+ * triangle by rows; J */
+typedef struct gxsp_general {
+    float hessian[45][GXSP_LANES];
+} gxsp_general;
+
+/* Entries of the assembled matrix to which a block's corners i <= j add, in the order of gxs_element.mass. Row: the
+ * lower copy */
+typedef struct gxsp_fine {
+    uint32_t entry[10][GXSP_LANES]; /* GXSP_NONE: a corner follows others */
+} gxsp_fine;
+
+/* A chunk's energies of one component */
+typedef struct gxsp_partial {
+    double energies[3]; /* of the last pass: elastic, kinetic, size of the terms that were summed; J */
+    uint32_t component;
+} gxsp_partial;
+
+typedef struct gxsp_chunk {
+    gxsp_rest *rest; /* block_count, like every array here without a count of its own */
+    gxsp_corners *corners;
+    /* block_count + 1: bit i: some lane's corner i differs from that of the block before; behind the last block all
+     * bits */
+    uint8_t *changed;
+    gxsp_tangent *tangents;
+    gxsp_gradients *gradients; /* NULL: passes compute them from the rest positions */
+    gxsp_moments *moments;     /* NULL: elements are whole, or masses lumped */
+    gxsp_general *generals;    /* GXS_CUSTOM only; NULL: gxsp_tangent has the Hessians */
+    /* block_count x GXSP_LANES: group of the element in each lane; GXSP_NONE: there is none */
+    uint32_t *groups;
+    uint32_t first_block, block_count;     /* blocks are counted through all chunks */
+    uint32_t first_node, node_count;       /* into nodes and slots */
+    uint32_t first_partial, partial_count; /* into partials: one per component of its nodes, ascending */
+    uint32_t class_index;                  /* see gxsp_class */
+    uint32_t edge_count;                   /* see gxsp_edges; 0: not known */
+    int open;                              /* made by an update, with room for GXSP_CHUNK_BLOCKS */
+    gxs_material_kind kind;
+} gxsp_chunk;
+
+/* A vector over copies in single precision is n x 4: one load per copy. The fourth number is unused. */
+typedef float gxsp_vector4[4];
+
+/* A level of the multigrid. Level 0 is the model. Transfer: value of node i = sum of weight[i][k] x value of
+ * parent[i][k]. */
+typedef struct gxsp_level {
+    uint32_t n;
+    int32_t (*place)[3];   /* n: lattice point; not of level 0 */
+    uint32_t (*parent)[4]; /* n: nodes of the next level, GXSP_NONE where the weight is 0 */
+    float (*weight)[4];
+    /* n + 1: rows of the symmetric matrix on and above its diagonal; not of level 0 if it is matrix-free */
+    uint32_t *start;
+    uint32_t *column; /* ascending in a row; the first is the diagonal */
+    /* 9 per entry, by columns. The last level, unless it is level 1, has it in shared memory, between gxsp_lend_memory
+     * and gxsp_return_memory
+     */
+    float *block;
+    float *inverse; /* n x 6: of the diagonal blocks, packed */
+    /* n: solution, right-hand side, residual; those of level 0 are vectors of gxsp_vectors. The last level has no
+     * parents, weights, inverses and residual */
+    gxsp_vector4 *x, *b, *r;
+} gxsp_level;
+
+/* Edges: pairs of a chunk's nodes, i < j, that share an element, numbered from 1. */
+typedef struct gxsp_edges {
+    size_t table_size;
+    /* table_size, nodes (nodes - 1) / 2 of the largest chunk: the edge of two nodes i < j, at j (j - 1) / 2 + i. Valid
+     * if ends agrees; otherwise an edge of another chunk */
+    uint16_t *table;
+    uint32_t *ends;         /* i << 16 | j */
+    float (*block)[9];      /* i's row and j's column of the Hessian, by columns */
+    uint16_t *first, *next; /* the edges to higher nodes as a list: first by node, next by edge; 0: there is none */
+    uint8_t *joined;        /* by node: it has an edge */
+    uint32_t nodes, count;  /* count: with edge 0, which collects what no edge needs */
+    uint16_t (*element)[6][GXSP_LANES]; /* by block: edges of its elements */
+    float (*own)[9];                    /* by node: half its diagonal block, see gxsp_half_row */
+    float *mass;                        /* by node: half the row sum of the mass, scaled, kg/s2 */
+    uint16_t (*parent)[4];              /* by node: numbers of its parents, see gxsp_pairs */
+    /* by number: a node's row of half the Hessian times the transfer; 0 between rows */
+    float (*half)[9];
+    uint16_t *touched; /* numbers in half that are not 0 */
+} gxsp_edges;
+
+/* Pairs of coarse nodes that are parents of one chunk's nodes, and their entries of level 1's matrix. Coarse nodes
+ * are numbered in the chunk from 1; number 0 stands for no parent. */
+typedef struct gxsp_pairs {
+    /* count x count, if count is at most GXSP_CHUNK_PARENTS: 2 x the entry, + 1 if it is the entry of the transposed
+     * pair */
+    uint32_t *entry;
+    uint32_t *local; /* by coarse node: its number in the chunk. gxsp_lower_numbers has it as scratch */
+    uint32_t *node;  /* by number: the coarse node. gxsp_coarsen lists nodes of the next level in it */
+    uint32_t *seen;  /* by number, in gxsp_coarsen by node: the row, plus 1, that touched it last */
+    uint32_t *stamp; /* by coarse node: the round in which it was numbered */
+    uint32_t round;  /* one for each visit of a chunk */
+    uint32_t count;  /* numbers given in this round, 0 included */
+    uint32_t most;   /* largest count of any chunk; 0: the matrix is made from an assembled one */
+    /* by node of the next level: a row of a level's matrix times its transfer */
+    float (*half)[9];
+} gxsp_pairs;
+
+/* Cholesky factor of the last level, row by row within its envelope */
+typedef struct gxsp_factor {
+    uint32_t n;      /* unknowns */
+    uint32_t *order; /* n / 3: node of the level in each place */
+    uint32_t *first; /* n / 3: first column of the rows of each place */
+    size_t *row;     /* n / 3: index in entry of column 0 of a place's first row, see gxsp_factor_row */
+    float *entry;    /* entry_count; diagonal inverted */
+    size_t entry_count;
+    double *x;    /* n: solution */
+    double *rows; /* 3 x n: the three rows at work; in shared memory */
+} gxsp_factor;
+
+typedef struct gxsp_material {
+    gxs_material_kind kind;
+    double mu, lambda; /* Pa; GXS_CUSTOM: a factor of its energy, and about its stiffness */
+    double damping;    /* s */
+    gxs_energy_fn energy;
+    void *user;
+} gxsp_material;
+
+/* Copies joined by elements and constraints. E is a sum over components, but for springs and contact points that
+ * join some. The first of those so joined leads the others; its energies and step length are those of all that it
+ * leads. */
+typedef struct gxsp_component {
+    double sum[3];      /* over its copies, in the pass at work */
+    double mass;        /* kg */
+    double energies[3]; /* at the last evaluation: elastic with springs and contact, kinetic, size of their terms; J */
+    double before[3];   /* at current */
+    double base_energy; /* elastic energy of the state that the last step returned, J; valid while base_known */
+    /* E at the step's start, which the step must not exceed, and E where Newton's method has ended; J */
+    double limit, ended;
+    /* midpoint rule: E at base; E at the middle without drift and E at a trial, both minus base; J */
+    double base, low, gain;
+    double drift[3];    /* midpoint rule: translation of the second half, which is not shortened, m */
+    double slope, work; /* dE/dlength of the direction, and the load's work along it; J */
+    double left;        /* work of the linear solve's remaining residual along the direction; J */
+    double rounding;    /* size of the rounding of positions and of the load's terms, in units in the last place; J */
+    double length;      /* step length, as a share of the direction */
+    int settled;        /* its length is found. A chunk whose components are all settled is not evaluated again */
+    int risen;          /* E has ended above limit */
+    uint32_t lead;      /* index of the component that leads it; its own index: it leads */
+    uint64_t forces[2]; /* hash of its nodal forces and contact points: of the step before, of this one */
+    int has_spring[2];  /* a spring acts on it: in the step before, in this one */
+    int woken, resting; /* woken: something touches it in this step. resting: nothing does, and it has been slow for
+                           long */
+    uint32_t state;     /* GXSP_HELD ... GXSP_TOUCHES. 0: loose, so that a translation of it meets no stiffness */
+} gxsp_component;
+
+/* A copy that follows others */
+typedef struct gxsp_follower {
+    uint32_t copy, master[4];
+    double weight[4];
+} gxsp_follower;
+
+/* A copy with next to none of the mass around it, such as the far corner of an element's thin rest after a cut; and
+ * the lane of the element whose other corners guide it */
+typedef struct gxsp_light {
+    uint32_t copy, chunk;
+    uint16_t lane, corner;
+} gxsp_light;
+
+/* Hessian of the springs and contact at one point, times scale */
+typedef struct gxsp_term {
+    uint32_t copy[4];
+    float weight[4], hessian[6];
+    int assembled; /* the assembled matrix has it */
+} gxsp_term;
+
+/* What the solver keeps from model to model */
+typedef struct gxsp_lasting {
+    gxsp_pool pool;  /* of term */
+    gxsp_term *term; /* of the present linearisation */
+    size_t count, room;
+    gxs_scene scene; /* of the step before */
+} gxsp_lasting;
+
+/* The model, in the solver's own order. Written when a model is set and by updates; steps only read it, except for the
+ * step fields of the components. n: copies. */
+typedef struct gxsp_model {
+    size_t n;         /* gxs_model.copy_count */
+    size_t copy_room; /* copies for which the columns over copies have room */
+    size_t element_count;
+    size_t range_count; /* n / GXSP_RANGE, rounded up */
+    uint64_t epoch;     /* names the numbering of copies */
+    double scale; /* power of two that multiplies the linear systems: single precision then holds tiny components */
+    int lumped_mass;
+    int stiff; /* a material is nearly incompressible */
+    int damps; /* a material is damped */
+    uint32_t material_count;
+    gxsp_material *materials; /* material_count: as given */
+    double *positions;        /* n x 3: rest positions, m; NULL: not given */
+    double *lumped;           /* n: row sums of the mass, kg */
+    uint8_t *held;            /* n: as given */
+    uint8_t *fixed;           /* n: held, or neither supported by an element nor a follower */
+    uint32_t *component;      /* n: index of the copy's component */
+    gxsp_component *components;
+    uint32_t component_count;
+    gxsp_follower *followers;
+    uint32_t follower_count, follower_room;
+    /* n: index of the copy's entry in followers; GXSP_NONE: it follows none. Valid while there are followers */
+    uint32_t *follower;
+    gxsp_light *lights;
+    uint32_t light_count, light_room;
+    float *volume; /* n: inverse volume of the support, scaled; GXS_VOLUME_RATIO only, else NULL */
+} gxsp_model;
+
+/* The elements in chunks, and the slots into which chunks write. Written when a model is set and by updates. */
+typedef struct gxsp_mesh {
+    gxsp_chunk *chunks;
+    uint32_t chunk_count, chunk_room;
+    size_t block_count; /* of all chunks; not kept up to date by updates */
+    size_t slot_count;  /* nodes of all chunks: one slot each */
+    size_t slot_room;
+    uint32_t *nodes;      /* slot_count: the copy of the slot; then GXSP_AHEAD zeros */
+    uint32_t *copy_start; /* n + 1: a copy's range in copy_slot */
+    /* slot_count: a copy's slots in the order of chunks, so that sums do not depend on threads; then GXSP_AHEAD zeros
+     */
+    uint32_t *copy_slot;
+    /* slot_count: the least node of the chunk that the chunk's elements connect with this one. Valid while roots_known
+     */
+    uint16_t *slot_root;
+    int roots_known;        /* set by the first update */
+    gxsp_partial *partials; /* partial_count: those of the first chunk, then of the next */
+    uint32_t partial_count;
+} gxsp_mesh;
+
+/* Structure of the multigrid, and the numbers of its matrices. Everything below level 0 is in its own pool, which an
+ * update replaces. */
+typedef struct gxsp_multigrid {
+    gxsp_pool pool;
+    gxsp_level levels[GXSP_LEVELS]; /* level 0 is the model */
+    uint32_t level_count;           /* 0: no multigrid */
+    int chosen;                     /* the preconditioner was chosen by the size of components */
+    int used;                       /* the levels precondition the solve at work */
+    gxsp_fine *fine;                /* block_count: entries of the assembled matrix, levels[0]; NULL: matrix-free */
+    gxsp_edges edges;               /* of the chunk at work; its arrays are in scratch or shared memory */
+    gxsp_pairs pairs;               /* of the chunk at work; its arrays are in scratch or shared memory */
+    gxsp_factor factor;
+} gxsp_multigrid;
+
+/* At which state the coarse matrices were made, and how they age. A reading measures the pace of conjugate gradients.
+ */
+typedef struct gxsp_coarse {
+    double rate;          /* of the inertia in the matrices; below 0: they were never made */
+    double *displacement; /* n x 3: at which they were made; of a multigrid only */
+    double stiffness;     /* sum of springs' and contact's Hessians in them */
+    int worn;             /* they must be made anew */
+    uint32_t served;      /* iterations since they were made */
+    uint32_t life;        /* iterations that they are to serve */
+    uint32_t lived;       /* iterations that those before served */
+    uint32_t read;        /* iterations since the last reading */
+    double read_nepers;   /* factors of e by which those iterations reduced residuals */
+    double pace;          /* iterations for each factor of e, by the last reading; 0: none yet */
+    double pace_young;    /* by the first reading */
+    double pace_old;      /* by the last reading of the matrices before; 0: none, or of another time step */
+} gxsp_coarse;
+
+/* The step length of the smoother on level 0. */
+typedef struct gxsp_smoother {
+    float omega;            /* step length in use; 0: not known */
+    float found;            /* by the largest eigenvalue found, which may have grown since */
+    uint32_t cautious;      /* linear solves during which omega stays the safe length; 0: omega is the one found */
+    uint32_t next_cautious; /* cautious, the next time that omega proves too large */
+    uint8_t *renewed;       /* n: the copy's elements are not those for which omega was found. Valid if any_renewed */
+    int any_renewed;
+} gxsp_smoother;
+
+/* The vectors of a step, n x 3 unless said, and the memory that passes and coarse numbers share. */
+typedef struct gxsp_vectors {
+    double *target;    /* where inertia and mass damping alone lead, m; backward Euler: u_n + dt v_n */
+    double *damping;   /* what Rayleigh damping adds to the load, N; NULL: no material is damped */
+    double *current;   /* Newton's iterate, m */
+    double *force;     /* inertia + elastic at the iterate, N */
+    double *residual;  /* load - force, N; conjugate gradients use it up, then gxsp_trial has its memory */
+    double *direction; /* solution of the linear system, m */
+    float *diagonal;   /* n x 6: inverse of the Hessian's diagonal blocks, packed; 0 for fixed copies */
+    /* n: directions of the first iterations of the last step and of the one before; see gxsp_state.guess_count */
+    gxsp_vector4 *guess[2];
+    gxsp_vector4 *right;            /* n: residual in single precision; GXS_MATRIX_ASSEMBLED only, else NULL */
+    double (*range_sum)[GXSP_SUMS]; /* range_count: sums of a pass over copies; added up in their order */
+    /* shared_room bytes. Passes have slots, search, product and scaled in it. Between gxsp_lend_memory and
+     * gxsp_return_memory the making of coarse numbers has its arrays there: see gxsp_numbers_carve */
+    unsigned char *shared;
+    size_t shared_room;
+    double (*slots)[3];                      /* slot_count: a chunk's result for each node: 3 doubles, 4 or 6 floats */
+    gxsp_vector4 *search, *product, *scaled; /* n: CG's direction, Hessian times it, preconditioned residual */
+} gxsp_vectors;
+
+/* What one step leaves to the next, and what the step under way leaves alone. */
+typedef struct gxsp_history {
+    gxsp_material *damped;    /* material_count: the step's materials, stiffer by Rayleigh damping */
+    uint8_t *still;           /* n: fixed or asleep: the step leaves the copy alone */
+    uint8_t *chunk_still;     /* chunk_count: all copies of the chunk are still */
+    int still_known;          /* still and chunk_still agree with the states of the components */
+    uint8_t *chunk_collapsed; /* chunk_count: the last linearisation found an element collapsed to a point */
+    uint32_t loose_count;     /* components of state 0 */
+    uint32_t free_count;      /* components of no state but GXSP_TOUCHED */
+    double term_stiffness;    /* sum of springs' and contact's Hessians */
+    size_t active;            /* unknowns of this step */
+    int stepped;    /* current is what the last step returned; copies that a cut has made are at their origin's place */
+    int base_known; /* current is what the last step returned, and components know its elastic energies */
+    int failed;     /* the last step failed: the components that it woke stay awake */
+    double product_rate;  /* of the linearisation for gxs_solver_product; below 0: there is none */
+    uint32_t guess_count; /* valid guesses: 0, 1 or 2 */
+} gxsp_history;
+
+/* A model in the solver's form, and all that its steps work with. One allocation of pool, as are its arrays. */
+typedef struct gxsp_system {
+    gxsp_pool pool;
+    const gx_jobs *jobs;   /* of the solver */
+    gxsp_lasting *lasting; /* of the solver */
+    gxsp_model model;
+    gxsp_mesh mesh;
+    gxsp_multigrid multigrid;
+    gxsp_coarse coarse;
+    gxsp_smoother smoother;
+    gxsp_vectors vectors;
+    gxsp_history state;
+} gxsp_system;
+
+/* The line search's trial displacement, n x 3. It lies in the residual's memory: nothing needs the residual while
+ * lengths are tried. */
+static double *gxsp_trial(const gxsp_system *system) { return system->vectors.residual; }
+
+/* A step under way */
+typedef struct gxsp_problem {
+    gxsp_system *system;
+    const gxs_step_desc *step;
+    double rate;            /* factor of inertia, rate/2 |u - target|_M^2; 1/s2 */
+    double speed;           /* v = speed (u - a mean of the displacements before), 1/s */
+    double mean[2];         /* weights of given and of previous_displacement in that mean */
+    uint32_t cg_iterations; /* with defaults filled in */
+    double cg_tolerance;
+    /* factors of e by which the last linear solve reduced the residual left by its guess */
+    double nepers;
+    double energies[3];  /* at current, sums over components; J */
+    const double *given; /* the caller's displacement at the step's start, u_n */
+    double start;        /* on the clock */
+    gxs_scene scene;
+    int exact;          /* the linearisation is not projected */
+    int indefinite;     /* conjugate gradients met negative curvature */
+    int projected_only; /* the exact linearisation has proved indefinite in this step */
+    int shortened;      /* the line search did not take the whole step */
+    int damps;          /* damping adds to the load */
+    int stalls;         /* consecutive iterations that noise ended and that gained next to nothing */
+    double least;       /* smallest residual so far */
+    int based;          /* components know E at base */
+    int noise;          /* at the end of the line search energies differed by rounding only */
+    int collapsed;      /* the linearisation found elements collapsed to a point */
+    gxs_step_report report;
+} gxsp_problem;
+
+/* In- and output of a pass. Unused fields are 0. Vectors have one entry per copy. */
+typedef struct gxsp_pass {
+    gxsp_system *system;
+    double rate;        /* 1/s2; in products and linearisations times scale */
+    const double *from; /* x 3: displacement, m */
+    double *sum;        /* x 3: forces, N */
+    const gxsp_material *materials;
+    const double *rotated; /* x 3: stresses are rotated with the elements' motion from `from` to this displacement;
+                              NULL: they are not */
+    int inertia;           /* with forces and energy of inertia */
+    int nudge;             /* collapsed elements get the forces of nearly collapsed ones */
+    int exact;             /* Hessians are not projected */
+    gxsp_vector4 *x;       /* of products: input */
+    gxsp_vector4 *y;       /* output */
+    const double *right;   /* x 3: output is this minus the product; NULL: it is the product */
+    double factor;         /* in passes over copies: multiplies x */
+    const gxsp_problem *problem; /* for passes that need the load */
+} gxsp_pass;
+
+struct gxs_solver {
+    gx_allocator allocator;
+    gx_jobs jobs;
+    gxs_preconditioner preconditioner;
+    gxs_matrix matrix;
+    gxsp_lasting lasting;
+    gxsp_system *system; /* in its own pool; NULL before the first model */
+};
+
+/* >>columns: arrays that have one entry for each copy, slot or chunk ----------------------------------------------- */
+
+/* The tables list them once. Making, growth and updates go by the tables, and touch no other array but the sums
+ * of ranges. A column that a model does not need is NULL and stays so. */
+
+/* When a column is made: by the code that needs it, with the model, or last, for steps */
+enum { GXSP_BY_OWNER, GXSP_WITH_MODEL, GXSP_FOR_STEPS };
+
+typedef struct gxsp_column {
+    size_t offset; /* of the array's pointer, in gxsp_system */
+    size_t size;   /* bytes of an entry */
+    size_t extra;  /* entries behind the last */
+    int made;      /* GXSP_BY_OWNER ... GXSP_FOR_STEPS */
+    int kept;      /* growth keeps the entries, and updates move them with their copies; else they are made anew */
+} gxsp_column;
+
+#define GXSP_IN(field) offsetof(gxsp_system, field)
+
+/* clang-format off */
+static const gxsp_column gxsp_copy_columns[] = {
+    /* array                                                     bytes                 extra       made          kept */
+    {GXSP_IN(model.positions),                                  3 * sizeof(double),   0,          GXSP_BY_OWNER,   1},
+    {GXSP_IN(model.lumped),                                     sizeof(double),       0,          GXSP_WITH_MODEL, 1},
+    {GXSP_IN(model.component),                                  sizeof(uint32_t),     0,          GXSP_WITH_MODEL, 1},
+    {GXSP_IN(model.fixed),                                      1,                    0,          GXSP_WITH_MODEL, 1},
+    {GXSP_IN(model.held),                                       1,                    0,          GXSP_WITH_MODEL, 1},
+    {GXSP_IN(model.follower),                                   sizeof(uint32_t),     0,          GXSP_BY_OWNER,   0},
+    {GXSP_IN(mesh.copy_start),                                  sizeof(uint32_t),     2,          GXSP_WITH_MODEL, 0},
+    {GXSP_IN(state.still),                                      1,                    0,          GXSP_WITH_MODEL, 0},
+    {GXSP_IN(vectors.target),                                   3 * sizeof(double),   0,          GXSP_FOR_STEPS,  0},
+    {GXSP_IN(vectors.damping),                                  3 * sizeof(double),   0,          GXSP_BY_OWNER,   0},
+    {GXSP_IN(vectors.current),                                  3 * sizeof(double),   0,          GXSP_FOR_STEPS,  1},
+    {GXSP_IN(vectors.force),                                    3 * sizeof(double),   0,          GXSP_FOR_STEPS,  0},
+    {GXSP_IN(vectors.residual),                                 3 * sizeof(double),   0,          GXSP_FOR_STEPS,  0},
+    {GXSP_IN(vectors.direction),                                3 * sizeof(double),   0,          GXSP_FOR_STEPS,  0},
+    {GXSP_IN(vectors.diagonal),                                 6 * sizeof(float),    0,          GXSP_FOR_STEPS,  0},
+    {GXSP_IN(vectors.guess),                                    sizeof(gxsp_vector4), 0,          GXSP_FOR_STEPS,  1},
+    {GXSP_IN(vectors.guess) + sizeof(gxsp_vector4 *),           sizeof(gxsp_vector4), 0,          GXSP_FOR_STEPS,  1},
+    {GXSP_IN(vectors.right),                                    sizeof(gxsp_vector4), 0,          GXSP_BY_OWNER,   0},
+    {GXSP_IN(smoother.renewed),                                 1,                    0,          GXSP_FOR_STEPS,  0},
+    {GXSP_IN(coarse.displacement),                              3 * sizeof(double),   0,          GXSP_BY_OWNER,   1},
+    {GXSP_IN(multigrid.levels) + offsetof(gxsp_level, parent),  4 * sizeof(uint32_t), 0,          GXSP_BY_OWNER,   1},
+    {GXSP_IN(multigrid.levels) + offsetof(gxsp_level, weight),  4 * sizeof(float),    0,          GXSP_BY_OWNER,   1}};
+
+static const gxsp_column gxsp_slot_columns[] = {
+    {GXSP_IN(mesh.nodes),                                       sizeof(uint32_t),     GXSP_AHEAD, GXSP_BY_OWNER,   0},
+    {GXSP_IN(mesh.copy_slot),                                   sizeof(uint32_t),     GXSP_AHEAD, GXSP_BY_OWNER,   0},
+    {GXSP_IN(mesh.slot_root),                                   sizeof(uint16_t),     0,          GXSP_BY_OWNER,   0}};
+
+static const gxsp_column gxsp_chunk_columns[] = {
+    {GXSP_IN(mesh.chunks),                                      sizeof(gxsp_chunk),   0,          GXSP_WITH_MODEL, 1},
+    {GXSP_IN(state.chunk_collapsed),                            1,                    0,          GXSP_WITH_MODEL, 0},
+    {GXSP_IN(state.chunk_still),                                1,                    0,          GXSP_WITH_MODEL, 0}};
+/* clang-format on */
+
+/* The columns of a table and how many there are */
+#define GXSP_COLUMNS(table) table, sizeof(table) / sizeof *(table)
+
+static void *gxsp_column_array(const gxsp_system *system, const gxsp_column *column) {
+    void *array;
+    memcpy(&array, (const unsigned char *)system + column->offset, sizeof array);
+    return array;
+}
+
+static void gxsp_set_column(gxsp_system *system, const gxsp_column *column, void *array) {
+    memcpy((unsigned char *)system + column->offset, &array, sizeof array);
+}
+
+/* Makes the columns of a stage, with room for so many entries; all entries are 0. */
+static void gxsp_columns_make(gxsp_system *system, const gxsp_column *columns, size_t count, int made, size_t room) {
+    size_t i;
+    for (i = 0; i < count; i++)
+        if (columns[i].made == made)
+            gxsp_set_column(system, &columns[i], gxsp_take(&system->pool, room + columns[i].extra, columns[i].size));
+}
+
+/* Gives the columns that there are room for so many entries. used: entries of those that are kept */
+static void gxsp_columns_grow(gxsp_system *system, const gxsp_column *columns, size_t count, size_t used, size_t room) {
+    size_t i;
+    for (i = 0; i < count; i++) {
+        void *array = gxsp_column_array(system, &columns[i]);
+        if (array)
+            gxsp_set_column(
+                system, &columns[i],
+                gxsp_grow(&system->pool, array, columns[i].kept ? used : 0, room + columns[i].extra, columns[i].size));
+    }
+}
+
+/* Room for so many copies. The columns that are kept keep the entries of the copies so far. */
+static void gxsp_copies_room(gxsp_system *system, size_t count) {
+    const size_t room = gxsp_room(count);
+    if (count <= system->model.copy_room) return;
+    gxsp_columns_grow(system, GXSP_COLUMNS(gxsp_copy_columns), system->model.n, room);
+    system->vectors.range_sum = (double(*)[GXSP_SUMS])gxsp_grow(
+        &system->pool, system->vectors.range_sum, 0, room / GXSP_RANGE + 1, sizeof *system->vectors.range_sum);
+    system->model.copy_room = room;
+}
+
+/* Room for so many slots, and roots of them. What they held is lost. */
+static void gxsp_slots_room(gxsp_system *system, size_t count) {
+    if (count > system->mesh.slot_room) {
+        system->mesh.slot_room = gxsp_room(count);
+        gxsp_columns_grow(system, GXSP_COLUMNS(gxsp_slot_columns), 0, system->mesh.slot_room);
+    }
+    if (!system->mesh.slot_root)
+        system->mesh.slot_root = (uint16_t *)gxsp_take(&system->pool, system->mesh.slot_room, sizeof(uint16_t));
+    system->mesh.slot_count = count;
+}
+
+/* Room for one more chunk */
+static void gxsp_chunk_room(gxsp_system *system) {
+    const uint32_t count = system->mesh.chunk_count;
+    if (count < system->mesh.chunk_room) return;
+    system->mesh.chunk_room = (uint32_t)gxsp_room(count) + 8;
+    gxsp_columns_grow(system, GXSP_COLUMNS(gxsp_chunk_columns), count, system->mesh.chunk_room);
+}
+
+/* Moves the entries of the kept columns with their copies. moved: moved_count copies that are not where their origins
+ * (as of gxs_change) were; saved: room for as many entries of the largest kind, 3 doubles */
+static void gxsp_columns_move(gxsp_system *system, const uint32_t *origins, const uint32_t *moved, size_t moved_count,
+                              unsigned char *saved) {
+    size_t c, i;
+    for (c = 0; c < sizeof gxsp_copy_columns / sizeof *gxsp_copy_columns; c++) {
+        const size_t size = gxsp_copy_columns[c].size;
+        unsigned char *array = (unsigned char *)gxsp_column_array(system, &gxsp_copy_columns[c]);
+        if (!array || !gxsp_copy_columns[c].kept) continue;
+        for (i = 0; i < moved_count; i++) memcpy(saved + i * size, array + (origins[moved[i]] >> 1) * size, size);
+        for (i = 0; i < moved_count; i++) memcpy(array + moved[i] * size, saved + i * size, size);
+    }
+}
+
+/* >>jobs: loops, by threads or not --------------------------------------------------------------------------------- */
+
+/* In: a task and how often to call it. A task writes its own chunk, slots, range or sums only; sums of ranges are
+ * added up in their order, so that results do not depend on threads. */
+
+/* Calls task(context, i) for every i below count, by the host's threads if there are any. */
+static void gxsp_parallel(const gx_jobs *jobs, size_t count, void (*task)(void *, size_t), void *context) {
+    size_t i;
+    if (jobs->parallel_for && count > 1)
+        jobs->parallel_for(jobs->user, count, task, context);
+    else
+        for (i = 0; i < count; i++) task(context, i);
+}
+
+/* The first copy of a range, and one past its last, which is returned */
+static size_t gxsp_range(const gxsp_system *system, size_t index, size_t *first) {
+    *first = index * GXSP_RANGE;
+    return *first + GXSP_RANGE < system->model.n ? *first + GXSP_RANGE : system->model.n;
+}
+
+/* A pass over all copies. sums: the first count of the sums that it makes for each range, or NULL */
+static void gxsp_over_ranges(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass, double *sums,
+                             int count) {
+    size_t i;
+    int k;
+    pass->system = system;
+    gxsp_parallel(system->jobs, system->model.range_count, task, pass);
+    for (k = 0; k < count; k++)
+        for (i = 0, sums[k] = 0; i < system->model.range_count; i++) sums[k] += system->vectors.range_sum[i][k];
+}
+
+/* Prefetches memory that is read soon: a block is too long for processors to see the next one in time. Always
+ * inline: gcc takes functions that do nothing else for functions without effect and drops their calls. */
+GXSP_INLINE void gxsp_prefetch(const void *memory, size_t size) {
+#if defined(__GNUC__)
+    const char *line = (const char *)memory;
+    size_t k;
+    for (k = 0; k < size; k += 64) __builtin_prefetch(line + k);
+#else
+    (void)memory;
+    (void)size;
+#endif
+}
+
+/* >>svd: stretches and rotations of F ------------------------------------------------------------------------------ */
+
+/* In: displacement gradients of one or two blocks. Out: F = U diag(s) V^T in single precision; a rotation can be
+ * polished to double precision. */
+
+typedef struct gxsp_svd {
+    gxsp_singles u[9], v[9]; /* rotations, determinant 1 */
+    gxsp_singles s[3];       /* signed, in order of size; F = U diag(s) V^T */
+} gxsp_svd;
+
+/* F V and V of two blocks, on the way to an SVD. Each rotation waits for the one before it, so that the second
+ * block costs little. */
+typedef struct gxsp_jacobi {
+    float b[9][2 * GXSP_LANES], v[9][2 * GXSP_LANES];
+    float scale[2 * GXSP_LANES]; /* multiplies b */
+} gxsp_jacobi;
+
+/* Rotates (x, y) by the angle of cosine c and sine s. */
+static inline void gxsp_turn(float c, float s, float *x, float *y) {
+    const float rotated = c * *x - s * *y;
+    *y = s * *x + c * *y;
+    *x = rotated;
+}
+
+/* Rotates columns i and j of b and of v in lane l. */
+static inline void gxsp_turn_columns(gxsp_jacobi *of, int i, int j, int l, float c, float s) {
+    gxsp_turn(c, s, &of->b[i][l], &of->b[j][l]);
+    gxsp_turn(c, s, &of->b[3 + i][l], &of->b[3 + j][l]);
+    gxsp_turn(c, s, &of->b[6 + i][l], &of->b[6 + j][l]);
+    gxsp_turn(c, s, &of->v[i][l], &of->v[j][l]);
+    gxsp_turn(c, s, &of->v[3 + i][l], &of->v[3 + j][l]);
+    gxsp_turn(c, s, &of->v[6 + i][l], &of->v[6 + j][l]);
+}
+
+static inline float gxsp_jacobi_product(const gxsp_jacobi *of, int i, int j, int l) {
+    return of->b[i][l] * of->b[j][l] + of->b[3 + i][l] * of->b[3 + j][l] + of->b[6 + i][l] * of->b[6 + j][l];
+}
+
+/* Makes columns i and j of b orthogonal. U and V stay rotations whatever the rounding: a Hessian built on them is a
+ * congruence of a semi-definite one. */
+GXSP_INLINE void gxsp_orthogonalise(gxsp_jacobi *GXSP_RESTRICT of, int i, int j) {
+    int l;
+    GXSP_EACH_OF_TWO(l) {
+        const float gamma = 2 * gxsp_jacobi_product(of, i, j, l);
+        const float gap = gxsp_jacobi_product(of, j, j, l) - gxsp_jacobi_product(of, i, i, l);
+        const float size = gap < 0 ? -gap : gap, square = gap * gap + gamma * gamma + 1e-35f;
+        const float tangent = (gap < 0 ? -gamma : gamma) / (size + square * gxsp_rsqrt(square));
+        const float c = gxsp_rsqrt(1 + tangent * tangent);
+        gxsp_turn_columns(of, i, j, l, c, c * tangent);
+    }
+}
+
+/* Makes column i the longer one of i and j, by a quarter turn, so that det V stays 1. */
+GXSP_INLINE void gxsp_order_columns(gxsp_jacobi *GXSP_RESTRICT of, int i, int j) {
+    int l;
+    GXSP_EACH_OF_TWO(l) {
+        const float s = gxsp_jacobi_product(of, j, j, l) > gxsp_jacobi_product(of, i, i, l) ? -1.0f : 0.0f;
+        gxsp_turn_columns(of, i, j, l, 1 + s, s);
+    }
+}
+
+/* U, V and s of the block that begins at first_lane, from the columns of b, which are orthogonal and sorted by
+ * falling length. Where columns vanish, U is completed to a rotation. */
+static void gxsp_frame(const gxsp_jacobi *GXSP_RESTRICT from, int first_lane, gxsp_svd *GXSP_RESTRICT of) {
+    const float *scale = from->scale + first_lane;
+    int k, l;
+    for (k = 0; k < 9; k++) memcpy(of->v[k], from->v[k] + first_lane, sizeof of->v[k]);
+    GXSP_EACH_LANE(l) {
+        const int m = first_lane + l;
+        const float a0 = from->b[0][m], a1 = from->b[3][m], a2 = from->b[6][m], b0 = from->b[1][m], b1 = from->b[4][m],
+                    b2 = from->b[7][m];
+        const float c0 = from->b[2][m], c1 = from->b[5][m], c2 = from->b[8][m];
+        const float first = a0 * a0 + a1 * a1 + a2 * a2, some = first > 1e-30f ? 1.0f : 0.0f;
+        const float reach = gxsp_rsqrt(first + 1e-30f) * some;
+        const float u0 = a0 * reach + (1 - some), u1 = a1 * reach, u2 = a2 * reach;
+        const float along = u0 * b0 + u1 * b1 + u2 * b2;
+        const float p0 = b0 - along * u0, p1 = b1 - along * u1, p2 = b2 - along * u2;
+        /* F maps to a line: any direction across it will do; take that of the axis least along it */
+        const float s0 = u0 * u0, s1 = u1 * u1, s2 = u2 * u2;
+        const float x = s0 <= s1 && s0 <= s2 ? 1.0f : 0.0f, y = (1 - x) * (s1 <= s2 ? 1.0f : 0.0f), z = 1 - x - y;
+        const float part = x * u0 + y * u1 + z * u2;
+        const float n0 = x - part * u0, n1 = y - part * u1, n2 = z - part * u2;
+        const float across = p0 * p0 + p1 * p1 + p2 * p2, wide = across > 1e-12f * first + 1e-30f ? 1.0f : 0.0f,
+                    thin = 1 - wide;
+        const float q0 = wide * p0 + thin * n0, q1 = wide * p1 + thin * n1, q2 = wide * p2 + thin * n2;
+        const float unit = gxsp_rsqrt(q0 * q0 + q1 * q1 + q2 * q2);
+        const float w0 = q0 * unit, w1 = q1 * unit, w2 = q2 * unit;
+        const float t0 = u1 * w2 - u2 * w1, t1 = u2 * w0 - u0 * w2, t2 = u0 * w1 - u1 * w0;
+        of->u[0][l] = u0, of->u[3][l] = u1, of->u[6][l] = u2;
+        of->u[1][l] = w0, of->u[4][l] = w1, of->u[7][l] = w2;
+        of->u[2][l] = t0, of->u[5][l] = t1, of->u[8][l] = t2;
+        of->s[0][l] = scale[l] * (u0 * a0 + u1 * a1 + u2 * a2);
+        of->s[1][l] = scale[l] * (w0 * b0 + w1 * b1 + w2 * b2);
+        of->s[2][l] = scale[l] * (t0 * c0 + t1 * c1 + t2 * c2);
+    }
+}
+
+/* Are the columns of b orthogonal to single precision in every lane? The largest entry of b is 1. */
+static int gxsp_orthogonal(const gxsp_jacobi *GXSP_RESTRICT of) {
+    float square[2 * GXSP_LANES], most = 0;
+    int l;
+    GXSP_EACH_OF_TWO(l) {
+        const float x = gxsp_jacobi_product(of, 0, 1, l), y = gxsp_jacobi_product(of, 0, 2, l),
+                    z = gxsp_jacobi_product(of, 1, 2, l);
+        square[l] = x * x + y * y + z * z;
+    }
+    for (l = 0; l < 2 * GXSP_LANES; l++) most = square[l] > most ? square[l] : most;
+    return most < 1e-13f;
+}
+
+/* F = 1 + G of a block, divided by its largest entry, as columns at first_lane, and V = 1 */
+static void gxsp_jacobi_begin(gxsp_lanes *GXSP_RESTRICT g, int first_lane, gxsp_jacobi *GXSP_RESTRICT of) {
+    int k, l;
+    GXSP_EACH_LANE(l) {
+        const int m = first_lane + l;
+        const float f0 = (float)(g[0][l] + 1), f1 = (float)g[1][l], f2 = (float)g[2][l], f3 = (float)g[3][l],
+                    f4 = (float)(g[4][l] + 1), f5 = (float)g[5][l], f6 = (float)g[6][l], f7 = (float)g[7][l],
+                    f8 = (float)(g[8][l] + 1);
+        const float a = gxsp_larger(gxsp_larger(f0, f1), gxsp_larger(f2, f3)),
+                    b = gxsp_larger(gxsp_larger(f4, f5), gxsp_larger(f6, f7));
+        const float largest = gxsp_larger(gxsp_larger(a, b), f8), scale = largest > 1e-30f ? largest : 1.0f,
+                    inverse = 1 / scale;
+        of->scale[m] = scale;
+        of->b[0][m] = gxsp_clean(inverse * f0), of->b[1][m] = gxsp_clean(inverse * f1),
+        of->b[2][m] = gxsp_clean(inverse * f2);
+        of->b[3][m] = gxsp_clean(inverse * f3), of->b[4][m] = gxsp_clean(inverse * f4),
+        of->b[5][m] = gxsp_clean(inverse * f5);
+        of->b[6][m] = gxsp_clean(inverse * f6), of->b[7][m] = gxsp_clean(inverse * f7),
+        of->b[8][m] = gxsp_clean(inverse * f8);
+    }
+    for (k = 0; k < 9; k++) GXSP_EACH_LANE(l) of->v[k][first_lane + l] = k % 4 == 0 ? 1.0f : 0.0f;
+}
+
+/* F = 1 + G = U diag(s) V^T of two blocks, or of one if last is NULL, by one-sided Jacobi with the same number of
+ * sweeps in every lane. of: one entry per block. */
+static void gxsp_decompose(gxsp_lanes *first, gxsp_lanes *last, gxsp_svd *of) {
+    gxsp_jacobi at;
+    int sweep;
+    gxsp_jacobi_begin(first, 0, &at);
+    gxsp_jacobi_begin(last ? last : first, GXSP_LANES, &at);
+    /* convergence is quadratic: 4 sweeps reach single precision even for extreme F */
+    for (sweep = 0; sweep < 4 && !gxsp_orthogonal(&at); sweep++) {
+        gxsp_orthogonalise(&at, 0, 1);
+        gxsp_orthogonalise(&at, 0, 2);
+        gxsp_orthogonalise(&at, 1, 2);
+    }
+    gxsp_order_columns(&at, 0, 1);
+    gxsp_order_columns(&at, 0, 2);
+    gxsp_order_columns(&at, 1, 2);
+    gxsp_frame(&at, 0, &of[0]);
+    if (last) gxsp_frame(&at, GXSP_LANES, &of[1]);
+}
+
+/* Cofactors of a 3x3: the derivative of its determinant */
+static void gxsp_cofactors(const double *a, double *cofactors) {
+    cofactors[0] = a[4] * a[8] - a[5] * a[7];
+    cofactors[1] = a[5] * a[6] - a[3] * a[8];
+    cofactors[2] = a[3] * a[7] - a[4] * a[6];
+    cofactors[3] = a[2] * a[7] - a[1] * a[8];
+    cofactors[4] = a[0] * a[8] - a[2] * a[6];
+    cofactors[5] = a[1] * a[6] - a[0] * a[7];
+    cofactors[6] = a[1] * a[5] - a[2] * a[4];
+    cofactors[7] = a[2] * a[3] - a[0] * a[5];
+    cofactors[8] = a[0] * a[4] - a[1] * a[3];
+}
+
+/* One step of Newton's method for the rotation R of F = R S: R (1 + skew omega) with (tr S - S) omega = axis of S's
+ * skew part, then orthogonal again to second order. Does nothing where tr S - S is singular: R is not unique there. */
+static void gxsp_polish_rotation(const double *f, double *rotation) {
+    double s[9], a[9], inverse[9], axis[3], omega[3], rotated[9], square[9], determinant, trace;
+    int r, c, k;
+    for (r = 0; r < 3; r++)
+        for (c = 0; c < 3; c++)
+            s[3 * r + c] = rotation[r] * f[c] + rotation[3 + r] * f[3 + c] + rotation[6 + r] * f[6 + c];
+    trace = s[0] + s[4] + s[8];
+    for (r = 0; r < 3; r++)
+        for (c = 0; c < 3; c++) a[3 * r + c] = (r == c ? trace : 0) - 0.5 * (s[3 * r + c] + s[3 * c + r]);
+    gxsp_cofactors(a, inverse);
+    determinant = a[0] * inverse[0] + a[1] * inverse[1] + a[2] * inverse[2];
+    axis[0] = s[7] - s[5], axis[1] = s[2] - s[6], axis[2] = s[3] - s[1];
+    if (fabs(determinant) <= 1e-6 * fabs(trace * trace * trace)) return;
+    for (r = 0; r < 3; r++)
+        omega[r] = (inverse[r] * axis[0] + inverse[3 + r] * axis[1] + inverse[6 + r] * axis[2]) / determinant;
+    for (r = 0; r < 3; r++) {
+        const double *from = rotation + 3 * r;
+        rotated[3 * r] = from[0] + from[1] * omega[2] - from[2] * omega[1];
+        rotated[3 * r + 1] = from[1] - from[0] * omega[2] + from[2] * omega[0];
+        rotated[3 * r + 2] = from[2] + from[0] * omega[1] - from[1] * omega[0];
+    }
+    for (r = 0; r < 3; r++)
+        for (c = 0; c < 3; c++)
+            square[3 * r + c] = (r == c ? 1.5 : 0) - 0.5 * (rotated[r] * rotated[c] + rotated[3 + r] * rotated[3 + c] +
+                                                            rotated[6 + r] * rotated[6 + c]);
+    for (r = 0; r < 3; r++)
+        for (c = 0; c < 3; c++) {
+            double sum = 0;
+            for (k = 0; k < 3; k++) sum += rotated[3 * r + k] * square[3 * k + c];
+            rotation[3 * r + c] = sum;
+        }
+}
+
+/* >>material: energies and stresses -------------------------------------------------------------------------------- */
+
+/* In: G = F - 1, so that nothing cancels near rest. Out: energy density (J/m3), first Piola-Kirchhoff stress P
+ * (Pa), and the size of the terms whose rounding the energy carries. */
 
 static gxsp_material gxsp_material_make(const gxs_material *given) {
     double shear = given->young / (2 * (1 + given->poisson));
@@ -1295,7 +1813,7 @@ static gxsp_material gxsp_material_make(const gxs_material *given) {
     return material;
 }
 
-/* Density of a block and what it needs */
+/* Energy density and stress of a block, and their arguments */
 typedef struct gxsp_state {
     gxsp_lanes g[9]; /* displacement gradient, by rows */
     gxsp_lanes p[9]; /* first Piola-Kirchhoff stress */
@@ -1367,216 +1885,9 @@ static void gxsp_kirchhoff(gxsp_state *GXSP_RESTRICT s, double bend) {
     }
 }
 
-/* >>svd */
-
-typedef struct gxsp_svd {
-    gxsp_singles u[9], v[9]; /* rotations, determinant 1 */
-    gxsp_singles s[3];       /* signed, in order of size; F = U diag(s) V^T */
-} gxsp_svd;
-
-/* F V and V of two blocks on the way there: each turn waits for the one before it, so that the second block costs
- * little. */
-typedef struct gxsp_columns {
-    float b[9][2 * GXSP_LANES], v[9][2 * GXSP_LANES];
-    float scale[2 * GXSP_LANES]; /* what b is to be multiplied by */
-} gxsp_columns;
-
-/* (x, y) turned by the angle of cosine c and sine s */
-static inline void gxsp_turn(float c, float s, float *x, float *y) {
-    const float turned = c * *x - s * *y;
-    *y = s * *x + c * *y;
-    *x = turned;
-}
-
-/* Columns i and j of b and of v in lane l */
-static inline void gxsp_turn_columns(gxsp_columns *of, int i, int j, int l, float c, float s) {
-    gxsp_turn(c, s, &of->b[i][l], &of->b[j][l]);
-    gxsp_turn(c, s, &of->b[3 + i][l], &of->b[3 + j][l]);
-    gxsp_turn(c, s, &of->b[6 + i][l], &of->b[6 + j][l]);
-    gxsp_turn(c, s, &of->v[i][l], &of->v[j][l]);
-    gxsp_turn(c, s, &of->v[3 + i][l], &of->v[3 + j][l]);
-    gxsp_turn(c, s, &of->v[6 + i][l], &of->v[6 + j][l]);
-}
-
-static inline float gxsp_column_product(const gxsp_columns *of, int i, int j, int l) {
-    return of->b[i][l] * of->b[j][l] + of->b[3 + i][l] * of->b[3 + j][l] + of->b[6 + i][l] * of->b[6 + j][l];
-}
-
-/* Makes columns i and j of b orthogonal. Whatever the rounding, U and V stay rotations: a Hessian built on them is a
- * congruence of a semi-definite one. */
-GXSP_INLINE void gxsp_orthogonalise(gxsp_columns *GXSP_RESTRICT of, int i, int j) {
-    int l;
-    GXSP_EACH_OF_TWO(l) {
-        const float gamma = 2 * gxsp_column_product(of, i, j, l);
-        const float gap = gxsp_column_product(of, j, j, l) - gxsp_column_product(of, i, i, l);
-        const float size = gap < 0 ? -gap : gap, square = gap * gap + gamma * gamma + 1e-35f;
-        const float tangent = (gap < 0 ? -gamma : gamma) / (size + square * gxsp_rsqrt(square));
-        const float c = gxsp_rsqrt(1 + tangent * tangent);
-        gxsp_turn_columns(of, i, j, l, c, c * tangent);
-    }
-}
-
-/* Brings the longer of columns i and j to i, by a quarter turn, so that det V stays 1. */
-GXSP_INLINE void gxsp_order_columns(gxsp_columns *GXSP_RESTRICT of, int i, int j) {
-    int l;
-    GXSP_EACH_OF_TWO(l) {
-        const float s = gxsp_column_product(of, j, j, l) > gxsp_column_product(of, i, i, l) ? -1.0f : 0.0f;
-        gxsp_turn_columns(of, i, j, l, 1 + s, s);
-    }
-}
-
-/* U, V and s of the block that begins at first_lane, from the columns of b, orthogonal and the longest first; where
- * columns vanish, U is completed to a rotation. */
-static void gxsp_frame(const gxsp_columns *GXSP_RESTRICT from, int first_lane, gxsp_svd *GXSP_RESTRICT of) {
-    const float *scale = from->scale + first_lane;
-    int k, l;
-    for (k = 0; k < 9; k++) memcpy(of->v[k], from->v[k] + first_lane, sizeof of->v[k]);
-    GXSP_EACH_LANE(l) {
-        const int m = first_lane + l;
-        const float a0 = from->b[0][m], a1 = from->b[3][m], a2 = from->b[6][m], b0 = from->b[1][m], b1 = from->b[4][m],
-                    b2 = from->b[7][m];
-        const float c0 = from->b[2][m], c1 = from->b[5][m], c2 = from->b[8][m];
-        const float first = a0 * a0 + a1 * a1 + a2 * a2, some = first > 1e-30f ? 1.0f : 0.0f;
-        const float reach = gxsp_rsqrt(first + 1e-30f) * some;
-        const float u0 = a0 * reach + (1 - some), u1 = a1 * reach, u2 = a2 * reach;
-        const float along = u0 * b0 + u1 * b1 + u2 * b2;
-        const float p0 = b0 - along * u0, p1 = b1 - along * u1, p2 = b2 - along * u2;
-        /* a line: any direction across will do; the axis least along it */
-        const float s0 = u0 * u0, s1 = u1 * u1, s2 = u2 * u2;
-        const float x = s0 <= s1 && s0 <= s2 ? 1.0f : 0.0f, y = (1 - x) * (s1 <= s2 ? 1.0f : 0.0f), z = 1 - x - y;
-        const float part = x * u0 + y * u1 + z * u2;
-        const float n0 = x - part * u0, n1 = y - part * u1, n2 = z - part * u2;
-        const float across = p0 * p0 + p1 * p1 + p2 * p2, wide = across > 1e-12f * first + 1e-30f ? 1.0f : 0.0f,
-                    thin = 1 - wide;
-        const float q0 = wide * p0 + thin * n0, q1 = wide * p1 + thin * n1, q2 = wide * p2 + thin * n2;
-        const float unit = gxsp_rsqrt(q0 * q0 + q1 * q1 + q2 * q2);
-        const float w0 = q0 * unit, w1 = q1 * unit, w2 = q2 * unit;
-        const float t0 = u1 * w2 - u2 * w1, t1 = u2 * w0 - u0 * w2, t2 = u0 * w1 - u1 * w0;
-        of->u[0][l] = u0, of->u[3][l] = u1, of->u[6][l] = u2;
-        of->u[1][l] = w0, of->u[4][l] = w1, of->u[7][l] = w2;
-        of->u[2][l] = t0, of->u[5][l] = t1, of->u[8][l] = t2;
-        of->s[0][l] = scale[l] * (u0 * a0 + u1 * a1 + u2 * a2);
-        of->s[1][l] = scale[l] * (w0 * b0 + w1 * b1 + w2 * b2);
-        of->s[2][l] = scale[l] * (t0 * c0 + t1 * c1 + t2 * c2);
-    }
-}
-
-/* Are the columns of b, the largest entry of which is 1, orthogonal to single precision in every lane? */
-static int gxsp_orthogonal(const gxsp_columns *GXSP_RESTRICT of) {
-    float square[2 * GXSP_LANES], most = 0;
-    int l;
-    GXSP_EACH_OF_TWO(l) {
-        const float x = gxsp_column_product(of, 0, 1, l), y = gxsp_column_product(of, 0, 2, l),
-                    z = gxsp_column_product(of, 1, 2, l);
-        square[l] = x * x + y * y + z * z;
-    }
-    for (l = 0; l < 2 * GXSP_LANES; l++) most = square[l] > most ? square[l] : most;
-    return most < 1e-13f;
-}
-
-static inline float gxsp_larger(float a, float b) {
-    const float x = a < 0 ? -a : a, y = b < 0 ? -b : b;
-    return x > y ? x : y;
-}
-
-/* An entry of what has others of size 1; 0 where that is far from being told apart in single precision: the next powers
- * of such entries would be denormal, over which processors take a hundred cycles. Bodies that fall have many. */
-GXSP_INLINE float gxsp_clean(float entry) { return entry < 1e-9f && entry > -1e-9f ? 0.0f : entry; }
-
-/* F = 1 + G of a block as columns at first_lane, by its largest entry, and V = 1 */
-static void gxsp_columns_begin(gxsp_lanes *GXSP_RESTRICT g, int first_lane, gxsp_columns *GXSP_RESTRICT of) {
-    int k, l;
-    GXSP_EACH_LANE(l) {
-        const int m = first_lane + l;
-        const float f0 = (float)(g[0][l] + 1), f1 = (float)g[1][l], f2 = (float)g[2][l], f3 = (float)g[3][l],
-                    f4 = (float)(g[4][l] + 1), f5 = (float)g[5][l], f6 = (float)g[6][l], f7 = (float)g[7][l],
-                    f8 = (float)(g[8][l] + 1);
-        const float a = gxsp_larger(gxsp_larger(f0, f1), gxsp_larger(f2, f3)),
-                    b = gxsp_larger(gxsp_larger(f4, f5), gxsp_larger(f6, f7));
-        const float largest = gxsp_larger(gxsp_larger(a, b), f8), scale = largest > 1e-30f ? largest : 1.0f,
-                    inverse = 1 / scale;
-        of->scale[m] = scale;
-        of->b[0][m] = gxsp_clean(inverse * f0), of->b[1][m] = gxsp_clean(inverse * f1),
-        of->b[2][m] = gxsp_clean(inverse * f2);
-        of->b[3][m] = gxsp_clean(inverse * f3), of->b[4][m] = gxsp_clean(inverse * f4),
-        of->b[5][m] = gxsp_clean(inverse * f5);
-        of->b[6][m] = gxsp_clean(inverse * f6), of->b[7][m] = gxsp_clean(inverse * f7),
-        of->b[8][m] = gxsp_clean(inverse * f8);
-    }
-    for (k = 0; k < 9; k++) GXSP_EACH_LANE(l) of->v[k][first_lane + l] = k % 4 == 0 ? 1.0f : 0.0f;
-}
-
-/* F = 1 + G = U diag(s) V^T of two blocks, or of one if last is NULL, by one-sided Jacobi, every lane the same number
- * of sweeps. of: as many. */
-static void gxsp_decompose(gxsp_lanes *first, gxsp_lanes *last, gxsp_svd *of) {
-    gxsp_columns at;
-    int sweep;
-    gxsp_columns_begin(first, 0, &at);
-    gxsp_columns_begin(last ? last : first, GXSP_LANES, &at);
-    /* quadratic at the end: 4 reach single precision for extreme F too */
-    for (sweep = 0; sweep < 4 && !gxsp_orthogonal(&at); sweep++) {
-        gxsp_orthogonalise(&at, 0, 1);
-        gxsp_orthogonalise(&at, 0, 2);
-        gxsp_orthogonalise(&at, 1, 2);
-    }
-    gxsp_order_columns(&at, 0, 1);
-    gxsp_order_columns(&at, 0, 2);
-    gxsp_order_columns(&at, 1, 2);
-    gxsp_frame(&at, 0, &of[0]);
-    if (last) gxsp_frame(&at, GXSP_LANES, &of[1]);
-}
-
-/* Cofactors of a 3x3: the derivative of its determinant. */
-static void gxsp_cofactors(const double *a, double *cofactors) {
-    cofactors[0] = a[4] * a[8] - a[5] * a[7];
-    cofactors[1] = a[5] * a[6] - a[3] * a[8];
-    cofactors[2] = a[3] * a[7] - a[4] * a[6];
-    cofactors[3] = a[2] * a[7] - a[1] * a[8];
-    cofactors[4] = a[0] * a[8] - a[2] * a[6];
-    cofactors[5] = a[1] * a[6] - a[0] * a[7];
-    cofactors[6] = a[1] * a[5] - a[2] * a[4];
-    cofactors[7] = a[2] * a[3] - a[0] * a[5];
-    cofactors[8] = a[0] * a[4] - a[1] * a[3];
-}
-
-/* One step of Newton's method for the rotation R of F = R S: R (1 + skew omega), (tr S - S) omega = axis of S's skew
- * part, then orthogonal again to second order. Left alone where tr S - S is singular: R is not unique there. */
-static void gxsp_polish_rotation(const double *f, double *rotation) {
-    double s[9], a[9], inverse[9], axis[3], omega[3], turned[9], square[9], determinant, trace;
-    int r, c, k;
-    for (r = 0; r < 3; r++)
-        for (c = 0; c < 3; c++)
-            s[3 * r + c] = rotation[r] * f[c] + rotation[3 + r] * f[3 + c] + rotation[6 + r] * f[6 + c];
-    trace = s[0] + s[4] + s[8];
-    for (r = 0; r < 3; r++)
-        for (c = 0; c < 3; c++) a[3 * r + c] = (r == c ? trace : 0) - 0.5 * (s[3 * r + c] + s[3 * c + r]);
-    gxsp_cofactors(a, inverse);
-    determinant = a[0] * inverse[0] + a[1] * inverse[1] + a[2] * inverse[2];
-    axis[0] = s[7] - s[5], axis[1] = s[2] - s[6], axis[2] = s[3] - s[1];
-    if (fabs(determinant) <= 1e-6 * fabs(trace * trace * trace)) return;
-    for (r = 0; r < 3; r++)
-        omega[r] = (inverse[r] * axis[0] + inverse[3 + r] * axis[1] + inverse[6 + r] * axis[2]) / determinant;
-    for (r = 0; r < 3; r++) {
-        const double *from = rotation + 3 * r;
-        turned[3 * r] = from[0] + from[1] * omega[2] - from[2] * omega[1];
-        turned[3 * r + 1] = from[1] - from[0] * omega[2] + from[2] * omega[0];
-        turned[3 * r + 2] = from[2] + from[0] * omega[1] - from[1] * omega[0];
-    }
-    for (r = 0; r < 3; r++)
-        for (c = 0; c < 3; c++)
-            square[3 * r + c] = (r == c ? 1.5 : 0) - 0.5 * (turned[r] * turned[c] + turned[3 + r] * turned[3 + c] +
-                                                            turned[6 + r] * turned[6 + c]);
-    for (r = 0; r < 3; r++)
-        for (c = 0; c < 3; c++) {
-            double sum = 0;
-            for (k = 0; k < 3; k++) sum += turned[3 * r + k] * square[3 * k + c];
-            rotation[3 * r + c] = sum;
-        }
-}
-
 /* Fixed corotated [Stomakhin 2012]: psi = mu |F - R|^2 + lambda/2 (J - 1)^2, P = 2 mu (F - R) + lambda (J - 1) cof F, R
- * the rotation of F's polar decomposition. R = U V^T is known to single precision; a Newton step for the rotation that
- * makes R^T F symmetric, (tr S - S) omega = its skew part, squares the error. */
+ * the rotation of F's polar decomposition. R = U V^T is known to single precision; each Newton step for the rotation
+ * that makes R^T F symmetric squares the error. */
 static void gxsp_corotated(gxsp_state *GXSP_RESTRICT s) {
     gxsp_svd of;
     int l, r, c, k, round;
@@ -1609,13 +1920,13 @@ static void gxsp_custom(gxsp_state *s) {
         double f[9], p[9];
         for (k = 0; k < 9; k++) f[k] = s->g[k][l] + (k % 4 == 0 ? 1 : 0);
         s->energy[l] = s->mu[l] * s->material[l]->energy(s->material[l]->user, f, p, NULL);
-        /* its own rounding is not known: that of terms as large as its stiffness */
+        /* its rounding is not known: take that of terms as large as its stiffness */
         s->size[l] = fabs(s->energy[l]) + s->lambda[l];
         for (k = 0; k < 9; k++) s->p[k][l] = s->mu[l] * p[k];
     }
 }
 
-/* Energy and stress of a block, from s->g. */
+/* Energy and stress of a block at s->g */
 static void gxsp_material_state(gxs_material_kind kind, gxsp_state *s) {
     switch (kind) {
     case GXS_CUSTOM: gxsp_custom(s); break;
@@ -1626,10 +1937,12 @@ static void gxsp_material_state(gxs_material_kind kind, gxsp_state *s) {
     }
 }
 
-/* >>tangent: Hessian of psi at F = diag(s), projected. Every isotropic energy has this form: a 3x3 of the stretches,
- * and for the pair (F_ij, F_ji), k the third index, a 2x2 with eigenvalues flip = (psi_i - psi_j) / (s_i - s_j) for
- * F_ij = F_ji and twist = (psi_i + psi_j) / (s_i + s_j) for F_ij = -F_ji, psi_i = d psi / d s_i. even, odd: half their
- * sum and difference. */
+/* >>tangent: Hessian of one block ---------------------------------------------------------------------------------- */
+
+/* The Hessian of psi at F = diag(s), projected. Every isotropic energy has this form: a 3x3 of the stretches, and
+ * for each pair (F_ij, F_ji), k the third index, a 2x2. The eigenvalues of the 2x2 are flip = (psi_i - psi_j) /
+ * (s_i - s_j) for F_ij = F_ji and twist = (psi_i + psi_j) / (s_i + s_j) for F_ij = -F_ji, where psi_i = d psi / d
+ * s_i. even and odd are half their sum and half their difference. */
 
 typedef struct gxsp_principal {
     gxsp_singles mu, lambda, weight;
@@ -1691,7 +2004,7 @@ static void gxsp_corotated_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_prin
     }
 }
 
-/* The same at every F: U and V are 1. */
+/* The Hessian is the same at every F: U and V are 1. */
 static void gxsp_linear_principal(gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to) {
     int k, l;
     for (k = 0; k < 9; k++) GXSP_EACH_LANE(l) of->u[k][l] = of->v[k][l] = k % 4 == 0 ? 1.0f : 0.0f;
@@ -1704,7 +2017,7 @@ static void gxsp_linear_principal(gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GX
     }
 }
 
-/* One Jacobi turn of the symmetric a (n x n) that makes a_ij zero; the turn also goes to the columns of v. */
+/* One Jacobi rotation of the symmetric a (n x n) that makes a_ij zero. The columns of v are rotated too. */
 static void gxsp_diagonalise(double *a, double *v, int n, int i, int j) {
     double zeta, t, c, s;
     int k;
@@ -1750,7 +2063,8 @@ static void gxsp_project_lane(gxsp_singles *stretch, int lane) {
         for (j = i; j < 3; j++) stretch[gxsp_packed3(i, j)][lane] = (float)a[3 * i + j];
 }
 
-/* Is every lane's 3x3 of the stretches positive definite? (leading minors by elimination) */
+/* Projects the 3x3 of the stretches in lanes where it is not positive definite, which leading minors by elimination
+ * decide. */
 static void gxsp_project(gxsp_principal *GXSP_RESTRICT of) {
     gxsp_singles least;
     int l;
@@ -1767,7 +2081,7 @@ static void gxsp_project(gxsp_principal *GXSP_RESTRICT of) {
         if (!(least[l] > 0)) gxsp_project_lane(of->stretch, l);
 }
 
-/* The Hessian of a block of the caller's energy at s->g, times scale, exact or projected */
+/* The Hessian of a block of the caller's energy at s->g, times scale; exact or projected */
 static void gxsp_general_make(const gxsp_rest *rest, gxsp_lanes *gradients, double scale, int exact, gxsp_state *s,
                               gxsp_tangent *tangent, gxsp_general *general) {
     int k, l, i, j;
@@ -1785,7 +2099,7 @@ static void gxsp_general_make(const gxsp_rest *rest, gxsp_lanes *gradients, doub
     }
 }
 
-/* Makes elements collapsed to a point, F = 0, small instead: F = GXSP_NUDGE. Were there any? */
+/* Sets F = GXSP_NUDGE in elements collapsed to a point, F = 0. Returns whether there were any. */
 static int gxsp_nudge(gxsp_lanes *g) {
     gxsp_lanes square;
     int k, l, any = 0;
@@ -1802,8 +2116,8 @@ static int gxsp_nudge(gxsp_lanes *g) {
     return any;
 }
 
-/* sqrt 2 times the unit quaternions of rotations u, by rows, from the largest of their four numbers: 4 q_i q_j are sums
- * of entries of u */
+/* sqrt 2 times the unit quaternions of the rotations u, by rows. Starts from the largest of the four numbers: 4 q_i
+ * q_j are sums of entries of u. */
 static void gxsp_pack_rotation(gxsp_singles *GXSP_RESTRICT u, gxsp_singles *GXSP_RESTRICT frame) {
     int l;
     GXSP_EACH_LANE(l) {
@@ -1823,8 +2137,8 @@ static void gxsp_pack_rotation(gxsp_singles *GXSP_RESTRICT u, gxsp_singles *GXSP
     }
 }
 
-/* What Hessians of one or two blocks of a kind are made from, where it is needed; last: NULL if there is but one. Was
- * an element collapsed? */
+/* The SVD that Hessians of one or two blocks of a kind need; last: NULL if there is one block. Returns whether an
+ * element was collapsed. */
 static int gxsp_tangent_begin(gxs_material_kind kind, gxsp_state *first, gxsp_state *last, gxsp_svd *of) {
     int collapsed;
     if (kind == GXS_CUSTOM || kind == GXS_LINEAR) return 0;
@@ -1834,8 +2148,8 @@ static int gxsp_tangent_begin(gxs_material_kind kind, gxsp_state *first, gxsp_st
     return collapsed;
 }
 
-/* What principal Hessians are made from, such that single precision holds them: moduli beside their sum, by which
- * weights grow, and stretches that are not too large */
+/* Arguments of principal Hessians, scaled so that single precision holds them: moduli relative to their sum, by
+ * which weights grow, and clamped stretches */
 static void gxsp_scale_principal(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, double scale,
                                  gxsp_state *GXSP_RESTRICT s, gxsp_svd *GXSP_RESTRICT of,
                                  gxsp_principal *GXSP_RESTRICT to) {
@@ -1847,7 +2161,7 @@ static void gxsp_scale_principal(gxs_material_kind kind, const gxsp_rest *GXSP_R
         to->lambda[l] = (float)(s->lambda[l] / modulus);
         weight[l] = scale * rest->weight[l] * modulus;
     }
-    for (l = 0; l < GXSP_LANES && kind != GXS_LINEAR; l++) { /* whose Hessians have no stretches */
+    for (l = 0; l < GXSP_LANES && kind != GXS_LINEAR; l++) { /* its Hessians have no stretches */
         const double a = (double)of->s[0][l] * (double)of->s[0][l], b = (double)of->s[1][l] * (double)of->s[1][l],
                      size = a * (b > 1 ? b : 1);
         if (size > GXSP_STRETCHED) {
@@ -1860,7 +2174,7 @@ static void gxsp_scale_principal(gxs_material_kind kind, const gxsp_rest *GXSP_R
     GXSP_EACH_LANE(l) to->weight[l] = (float)weight[l];
 }
 
-/* The Hessian of a block at s->g, times scale, exact or projected. of: by gxsp_tangent_begin. general: of GXS_CUSTOM
+/* The Hessian of a block at s->g, times scale; exact or projected. of: by gxsp_tangent_begin. general: GXS_CUSTOM
  * only, else NULL. */
 static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest,
                               gxsp_lanes *GXSP_RESTRICT gradients, double scale, int exact, gxsp_state *s,
@@ -1895,7 +2209,10 @@ static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_REST
                                       (float)gradients[3 * r + 2][l] * of->v[6 + c][l];
 }
 
-/* >>element: passes over one block. Vectors of its corners: x[3 corner + axis][lane]. */
+/* >>element: passes over one block --------------------------------------------------------------------------------- */
+
+/* In: a block and vectors of its corners, x[3 corner + axis][lane]. Out: forces, products, and blocks of the
+ * Hessian that couple two corners. Nothing else is read or written. */
 
 /* Entries of gxs_element.mass */
 static const int gxsp_packed_mass[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
@@ -1919,7 +2236,7 @@ static void gxsp_gradients_make(const double *GXSP_RESTRICT weight, gxsp_lanes *
     }
 }
 
-/* G = sum (u_i - u_0) grad N_i, exactly 0 for translations */
+/* G = sum (u_i - u_0) grad N_i: exactly 0 for translations */
 static void gxsp_block_gradient(gxsp_lanes *GXSP_RESTRICT gradients, gxsp_lanes *GXSP_RESTRICT x,
                                 gxsp_lanes *GXSP_RESTRICT g) {
     int r, l;
@@ -1931,7 +2248,7 @@ static void gxsp_block_gradient(gxsp_lanes *GXSP_RESTRICT gradients, gxsp_lanes 
         }
 }
 
-/* force += weight x P : grad N; the four add up to zero but for rounding */
+/* force += weight x P : grad N. The four add up to zero but for rounding. */
 static void gxsp_block_force(const double *GXSP_RESTRICT weight, gxsp_lanes *GXSP_RESTRICT gradients,
                              gxsp_lanes *GXSP_RESTRICT p, gxsp_lanes *GXSP_RESTRICT force) {
     int r, l;
@@ -1947,7 +2264,7 @@ static void gxsp_block_force(const double *GXSP_RESTRICT weight, gxsp_lanes *GXS
         }
 }
 
-/* y += rate M x; energy = rate/2 x M x. moments: NULL where rest->mass says it all */
+/* y += rate M x; energy = rate/2 x M x. moments: NULL where rest->mass is enough */
 static void gxsp_block_inertia(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_moments *GXSP_RESTRICT moments,
                                double rate, gxsp_lanes *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT y,
                                double *GXSP_RESTRICT energy) {
@@ -1977,14 +2294,15 @@ static void gxsp_block_inertia(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_m
         }
 }
 
-/* y += (K + rate M) x, one lane after the other in registers. m: NULL where elements are whole. apart: x of corners 1
- * ... 3 is what they have more than corner 0, which callers know better than single precision could tell. */
-GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, const gxsp_moments *GXSP_RESTRICT m, int apart,
-                                    gxsp_singles *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT y) {
+/* y += (K + rate M) x, one lane after the other in registers. m: NULL where elements are whole. relative: x of
+ * corners 1 ... 3 is their difference to corner 0, which the caller knows more accurately than single precision
+ * could. */
+GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, const gxsp_moments *GXSP_RESTRICT m,
+                                    int relative, gxsp_singles *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT y) {
     int l;
     GXSP_EACH_LANE(l) {
         const float x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
-        const float o0 = apart ? 0 : x0, o1 = apart ? 0 : x1, o2 = apart ? 0 : x2;
+        const float o0 = relative ? 0 : x0, o1 = relative ? 0 : x1, o2 = relative ? 0 : x2;
         const float g0 = b->gradient[0][l], g1 = b->gradient[1][l], g2 = b->gradient[2][l], g3 = b->gradient[3][l],
                     g4 = b->gradient[4][l], g5 = b->gradient[5][l], g6 = b->gradient[6][l], g7 = b->gradient[7][l],
                     g8 = b->gradient[8][l];
@@ -2054,9 +2372,9 @@ GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, const g
 }
 
 /* y += K x for a Hessian without a frame */
-static void gxsp_general_product(const gxsp_tangent *b, const gxsp_general *h, int apart, gxsp_singles *x,
+static void gxsp_general_product(const gxsp_tangent *b, const gxsp_general *h, int relative, gxsp_singles *x,
                                  gxsp_singles *y) {
-    const float from = apart ? 0.0f : 1.0f;
+    const float from = relative ? 0.0f : 1.0f;
     gxsp_singles d[9], p[9];
     int i, j, k, l;
     for (i = 0; i < 9; i++) GXSP_EACH_LANE(l) {
@@ -2077,7 +2395,7 @@ static void gxsp_general_product(const gxsp_tangent *b, const gxsp_general *h, i
     }
 }
 
-/* c and R of a corner: out[0], out[1 ... 3] */
+/* c and R of a corner: out[0] and out[1 ... 3] */
 static void gxsp_corner_moments(const gxsp_moments *moments, int corner, gxsp_singles *out) {
     int k, l;
     for (k = 0; k < 4; k++) GXSP_EACH_LANE(l) {
@@ -2102,8 +2420,8 @@ static void gxsp_block_mass(const gxsp_tangent *tangent, const gxsp_moments *mom
         GXSP_EACH_LANE(l) mass[l] = tangent->mass[l] * (p == q ? 2.0f : 1.0f);
 }
 
-/* y += rate M x. apart: as of gxsp_block_product */
-static void gxsp_inertia_product(const gxsp_tangent *b, const gxsp_moments *moments, int apart, gxsp_singles *x,
+/* y += rate M x. relative: see gxsp_block_product */
+static void gxsp_inertia_product(const gxsp_tangent *b, const gxsp_moments *moments, int relative, gxsp_singles *x,
                                  gxsp_singles *y) {
     gxsp_singles mass;
     int i, j, r, l;
@@ -2111,21 +2429,21 @@ static void gxsp_inertia_product(const gxsp_tangent *b, const gxsp_moments *mome
         for (j = 0; j < 4; j++) {
             gxsp_block_mass(b, moments, i, j, mass);
             for (r = 0; r < 3; r++)
-                GXSP_EACH_LANE(l) y[3 * i + r][l] += mass[l] * (x[3 * j + r][l] + (apart && j > 0 ? x[r][l] : 0));
+                GXSP_EACH_LANE(l) y[3 * i + r][l] += mass[l] * (x[3 * j + r][l] + (relative && j > 0 ? x[r][l] : 0));
         }
 }
 
-/* The same for either */
+/* y += (K + rate M) x for any kind of material */
 GXSP_INLINE void gxsp_kind_product(gxs_material_kind kind, const gxsp_tangent *b, const gxsp_moments *m,
-                                   const gxsp_general *h, int apart, gxsp_singles *x, gxsp_singles *y) {
+                                   const gxsp_general *h, int relative, gxsp_singles *x, gxsp_singles *y) {
     if (kind == GXS_CUSTOM) {
-        gxsp_general_product(b, h, apart, x, y);
-        gxsp_inertia_product(b, m, apart, x, y);
-    } else if (m && apart)
+        gxsp_general_product(b, h, relative, x, y);
+        gxsp_inertia_product(b, m, relative, x, y);
+    } else if (m && relative)
         gxsp_block_product(b, m, 1, x, y);
     else if (m)
         gxsp_block_product(b, m, 0, x, y);
-    else if (apart)
+    else if (relative)
         gxsp_block_product(b, NULL, 1, x, y);
     else
         gxsp_block_product(b, NULL, 0, x, y);
@@ -2142,8 +2460,8 @@ static void gxsp_general_couple(const gxsp_general *general, gxsp_singles *p, gx
         }
 }
 
-/* block = U B U^T, B_rs = sum h_rk,sl p_k q_l: the part of the Hessian that couples two shape functions with gradients
- * p and q in the frame of V; by rows. */
+/* block = U B U^T, B_rs = sum h_rk,sl p_k q_l, by rows: the block of the Hessian that couples two shape functions.
+ * p, q: their gradients in the frame of V */
 static void gxsp_block_couple(const gxsp_tangent *GXSP_RESTRICT t, const gxsp_general *general, /* or NULL */
                               gxsp_singles *p, gxsp_singles *q,                                 /* may be the same */
                               gxsp_singles *GXSP_RESTRICT block) {
@@ -2188,370 +2506,179 @@ static void gxsp_block_corner(const gxsp_tangent *GXSP_RESTRICT t, int corner, g
                              : -(t->gradient[k][l] + t->gradient[3 + k][l] + t->gradient[6 + k][l]);
 }
 
-/* >>chunk: passes over one chunk, which only writes its own slots and sums */
-
-/* What a pass reads and writes; unused fields are 0. Vectors have one entry per copy. */
-typedef struct gxsp_pass {
-    gxsp_system *system;
-    double rate;        /* 1/s2; of products and linearisations times scale */
-    const double *from; /* x 3: displacement, m */
-    double *sum;        /* x 3: forces, N */
-    const gxsp_material *materials;
-    const double *turned; /* x 3: stresses are turned as elements are from here on to there; NULL: they are not */
-    int inertia;          /* forces and energy of the mass too */
-    int nudge;            /* forces of collapsed elements as if they were not quite */
-    int exact;            /* Hessians are not projected */
-    gxsp_vector4 *x;      /* of products: input */
-    gxsp_vector4 *y;      /* output */
-    const double *right;  /* x 3: output is this minus the product; NULL: it is the product */
-    double factor;        /* of passes over copies: what x is multiplied by */
-    const gxsp_problem *problem; /* of what needs the load */
-} gxsp_pass;
-
-/* Copies of the range with this index: from first, not including the one returned */
-static size_t gxsp_range(const gxsp_system *system, size_t index, size_t *first) {
-    *first = index * GXSP_RANGE;
-    return *first + GXSP_RANGE < system->n ? *first + GXSP_RANGE : system->n;
+/* U of a block's Hessian, by rows */
+static void gxsp_block_frame(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *GXSP_RESTRICT u) {
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float a = t->frame[0][l], b = t->frame[1][l], c = t->frame[2][l], d = t->frame[3][l];
+        u[0][l] = 1 - (b * b + c * c), u[1][l] = a * b - c * d, u[2][l] = a * c + b * d;
+        u[3][l] = a * b + c * d, u[4][l] = 1 - (a * a + c * c), u[5][l] = b * c - a * d;
+        u[6][l] = a * c - b * d, u[7][l] = b * c + a * d, u[8][l] = 1 - (a * a + b * b);
+    }
 }
 
-/* A pass over all copies; sums: of those that it makes for each range, the first count, or NULL */
-static void gxsp_over_ranges(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass, double *sums,
-                             int count) {
-    size_t i;
+/* own += U B U^T, packed: couples a shape function with itself, B as in gxsp_block_couple. p: its gradient */
+static void gxsp_block_own(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *GXSP_RESTRICT u,
+                           gxsp_singles *GXSP_RESTRICT p, gxsp_singles *GXSP_RESTRICT own) {
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float p0 = p[0][l], p1 = p[1][l], p2 = p[2][l], q0 = p0 * p0, q1 = p1 * p1, q2 = p2 * p2;
+        const float e0 = t->even[0][l], e1 = t->even[1][l], e2 = t->even[2][l];
+        const float b0 = t->stretch[0][l] * q0 + e2 * q1 + e1 * q2, b3 = t->stretch[3][l] * q1 + e2 * q0 + e0 * q2,
+                    b5 = t->stretch[5][l] * q2 + e1 * q0 + e0 * q1, b1 = (t->stretch[1][l] + t->odd[2][l]) * p0 * p1,
+                    b2 = (t->stretch[2][l] + t->odd[1][l]) * p0 * p2, b4 = (t->stretch[4][l] + t->odd[0][l]) * p1 * p2;
+        const float u0 = u[0][l], u1 = u[1][l], u2 = u[2][l], u3 = u[3][l], u4 = u[4][l], u5 = u[5][l], u6 = u[6][l],
+                    u7 = u[7][l], u8 = u[8][l];
+        const float a0 = u0 * b0 + u1 * b1 + u2 * b2, a1 = u0 * b1 + u1 * b3 + u2 * b4,
+                    a2 = u0 * b2 + u1 * b4 + u2 * b5, a3 = u3 * b0 + u4 * b1 + u5 * b2,
+                    a4 = u3 * b1 + u4 * b3 + u5 * b4, a5 = u3 * b2 + u4 * b4 + u5 * b5,
+                    a6 = u6 * b0 + u7 * b1 + u8 * b2, a7 = u6 * b1 + u7 * b3 + u8 * b4,
+                    a8 = u6 * b2 + u7 * b4 + u8 * b5;
+        own[0][l] += a0 * u0 + a1 * u1 + a2 * u2, own[1][l] += a0 * u3 + a1 * u4 + a2 * u5,
+            own[2][l] += a0 * u6 + a1 * u7 + a2 * u8;
+        own[3][l] += a3 * u3 + a4 * u4 + a5 * u5, own[4][l] += a3 * u6 + a4 * u7 + a5 * u8,
+            own[5][l] += a6 * u6 + a7 * u7 + a8 * u8;
+    }
+}
+
+/* The same for a Hessian without a frame */
+static void gxsp_general_own(const gxsp_general *general, gxsp_singles *p, gxsp_singles *own) {
+    static const int packed[6] = {0, 1, 2, 4, 5, 8};
+    gxsp_singles block[9];
+    int k, l;
+    gxsp_general_couple(general, p, p, block);
+    for (k = 0; k < 6; k++) GXSP_EACH_LANE(l) own[k][l] += block[packed[k]][l];
+}
+
+/* >>masses: an element's mass in its lane -------------------------------------------------------------------------- */
+
+/* In: gxs_element.mass. Out: the mass of a whole element, or mass, centre and covariance of a part of one. */
+
+/* Is the mass block m (1 + delta_ij), as that of a whole element, to the rounding of its ten integrals? */
+static int gxsp_whole(const double *mass) {
+    static const int own[10] = {2, 1, 1, 1, 2, 1, 1, 2, 1, 2};
     int k;
-    pass->system = system;
-    gxsp_parallel(system->jobs, system->range_count, task, pass);
-    for (k = 0; k < count; k++)
-        for (i = 0, sums[k] = 0; i < system->range_count; i++) sums[k] += system->range_sum[i][k];
-}
-
-static const gxsp_moments *gxsp_block_moments(const gxsp_chunk *chunk, uint32_t block) {
-    return chunk->moments ? &chunk->moments[block] : NULL;
-}
-
-static gxsp_general *gxsp_block_general(const gxsp_chunk *chunk, uint32_t block) {
-    return chunk->generals ? &chunk->generals[block] : NULL;
-}
-
-/* Asks for memory that is soon read: a block is too long for processors to see the next one in time. Always inline: gcc
- * takes functions that do nothing else for functions without effect, and leaves calls of them out. */
-GXSP_INLINE void gxsp_fetch(const void *memory, size_t size) {
-#if defined(__GNUC__)
-    const char *line = (const char *)memory;
-    size_t k;
-    for (k = 0; k < size; k += 64) __builtin_prefetch(line + k);
-#else
-    (void)memory;
-    (void)size;
-#endif
-}
-
-/* Asks for what a pass soon reads of the block this many further on, in the chunk or the next one: its tangents, or
- * what they are made of. */
-GXSP_INLINE void gxsp_fetch_block(const gxsp_system *system, size_t index, uint32_t block, uint32_t ahead,
-                                  int tangents) {
-    const gxsp_chunk *chunk = &system->chunks[index];
-    uint32_t b = block + ahead;
-    if (b >= chunk->block_count) {
-        b -= chunk->block_count;
-        if (index + 1 == system->chunk_count || b >= chunk[1].block_count) return;
-        chunk++;
-    }
-    gxsp_fetch(&chunk->corners[b], sizeof *chunk->corners);
-    if (tangents)
-        gxsp_fetch(&chunk->tangents[b], sizeof *chunk->tangents);
-    else
-        gxsp_fetch(&chunk->rest[b], sizeof *chunk->rest);
-    if (chunk->moments) gxsp_fetch(&chunk->moments[b], sizeof *chunk->moments);
-}
-
-/* x of a chunk's nodes: x 3, and one more number */
-static void gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *x,
-                            double *GXSP_RESTRICT to) {
-    const uint32_t *copies = system->nodes + chunk->first_node;
-    size_t i, c;
-    for (i = 0; i < chunk->node_count; i++) {
-        gxsp_fetch(x + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *x);
-        for (c = 0; c < 3; c++) to[3 * i + c] = x[3 * (size_t)copies[i] + c];
-    }
-    to[3 * i] = 0;
-}
-
-/* Three numbers of each of four nodes to three arrays; behind those of the last node there is one more. */
-static inline void gxsp_load_four(const uint16_t *node, const double *x, double *to0, double *to1, double *to2) {
-#if defined(GXSP_SHUFFLES)
-    const gxsp_four_doubles a = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[0]),
-                            b = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[1]),
-                            c = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[2]),
-                            d = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[3]);
-    const gxsp_four_doubles p = __builtin_shufflevector(a, b, 0, 4, 2, 6),
-                            q = __builtin_shufflevector(c, d, 0, 4, 2, 6);
-    const gxsp_four_doubles r = __builtin_shufflevector(a, b, 1, 5, 3, 7),
-                            s = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-    *(gxsp_four_doubles *)to0 = __builtin_shufflevector(p, q, 0, 1, 4, 5);
-    *(gxsp_four_doubles *)to1 = __builtin_shufflevector(r, s, 0, 1, 4, 5);
-    *(gxsp_four_doubles *)to2 = __builtin_shufflevector(p, q, 2, 3, 6, 7);
-#else
-    int l;
-    for (l = 0; l < 4; l++)
-        to0[l] = x[3 * (size_t)node[l]], to1[l] = x[3 * (size_t)node[l] + 1], to2[l] = x[3 * (size_t)node[l] + 2];
-#endif
-}
-
-/* x of a block's corners from that of the chunk's nodes; of those that are not fresh it is there from the block before
- */
-static void gxsp_block_load(const gxsp_chunk *chunk, uint32_t b, const double *GXSP_RESTRICT x,
-                            gxsp_lanes *GXSP_RESTRICT corners) {
-    const gxsp_corners *corner = &chunk->corners[b];
-    int i, l;
-    for (i = 0; i < 4; i++)
-        for (l = 0; l < GXSP_LANES && chunk->fresh[b] >> i & 1; l += 4)
-            gxsp_load_four(corner->node[i] + l, x, corners[3 * i] + l, corners[3 * i + 1] + l, corners[3 * i + 2] + l);
-}
-
-/* The same of x of all copies, without that of the chunk's nodes */
-static void gxsp_block_load_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, const double *x,
-                                   gxsp_lanes *corners) {
-    const uint32_t *copies = system->nodes + chunk->first_node;
-    int i, l;
-    for (i = 0; i < 4; i++)
-        for (l = 0; l < GXSP_LANES && chunk->fresh[b] >> i & 1; l++) {
-            const double *of = x + 3 * (size_t)copies[chunk->corners[b].node[i][l]];
-            corners[3 * i][l] = of[0], corners[3 * i + 1][l] = of[1], corners[3 * i + 2][l] = of[2];
-        }
-}
-
-/* Shape function gradients of a block. rest: positions of the chunk's nodes; corners: of the block's, as of
- * gxsp_block_load */
-static gxsp_lanes *gxsp_block_gradients(const gxsp_chunk *chunk, uint32_t b, const double *rest, gxsp_lanes *corners,
-                                        gxsp_lanes *made) {
-    if (chunk->gradients) return chunk->gradients[b].entry;
-    gxsp_block_load(chunk, b, rest, corners);
-    gxsp_gradients_make(chunk->rest[b].weight, corners, made);
-    return made;
-}
-
-/* Parameters of a block's materials */
-static void gxsp_block_parameters(const gxsp_material *materials, const gxsp_rest *rest, gxsp_state *s) {
-    int l;
-    for (l = 0; l < GXSP_LANES; l++) {
-        const gxsp_material *material = &materials[rest->material[l]];
-        s->mu[l] = material->mu;
-        s->lambda[l] = material->lambda;
-        s->material[l] = material;
-    }
-}
-
-/* Forces of a block into the chunk's slots, 3 doubles each, and 0 in their place; those of corners that the next block
- * has too stay. */
-static void gxsp_block_store(const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *GXSP_RESTRICT values,
-                             double *GXSP_RESTRICT slots) {
-    const gxsp_corners *corner = &chunk->corners[b];
-    int i, k, l;
-    for (i = 0; i < 4; i++) {
-        if (!(chunk->fresh[b + 1] >> i & 1)) continue;
-        for (l = 0; l < GXSP_LANES; l++) {
-            double *to = slots + 3 * (size_t)corner->node[i][l];
-            to[0] += values[3 * i][l];
-            to[1] += values[3 * i + 1][l];
-            to[2] += values[3 * i + 2][l];
-        }
-        for (k = 3 * i; k < 3 * i + 3; k++) GXSP_EACH_LANE(l) values[k][l] = 0;
-    }
-}
-
-/* P of elements with displacement gradients from, turned by what turns their rotations into those at to; left alone
- * where that is more than a right angle: such an element is tangled. */
-static void gxsp_turn_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p) {
-    gxsp_svd of[2];
-    int r, c, k, l;
-    gxsp_decompose(from, to, of);
-    for (l = 0; l < GXSP_LANES; l++) {
-        double a[9], b[9], turn[9], stress[9], f[9], h[9];
-        for (r = 0; r < 3; r++)
-            for (c = 0; c < 3; c++) {
-                a[3 * r + c] = b[3 * r + c] = 0;
-                for (k = 0; k < 3; k++) {
-                    a[3 * r + c] += (double)(of[0].u[3 * r + k][l] * of[0].v[3 * c + k][l]);
-                    b[3 * r + c] += (double)(of[1].u[3 * r + k][l] * of[1].v[3 * c + k][l]);
-                }
-            }
-        for (k = 0; k < 9; k++) {
-            f[k] = from[k][l] + (k % 4 == 0 ? 1 : 0);
-            h[k] = to[k][l] + (k % 4 == 0 ? 1 : 0);
-        }
-        /* else each step's load would have another error of single precision, and no body come to rest */
-        gxsp_polish_rotation(f, a);
-        gxsp_polish_rotation(h, b);
-        for (k = 0; k < 9; k++) {
-            turn[k] =
-                b[k / 3 * 3] * a[k % 3 * 3] + b[k / 3 * 3 + 1] * a[k % 3 * 3 + 1] + b[k / 3 * 3 + 2] * a[k % 3 * 3 + 2];
-            stress[k] = p[k][l];
-        }
-        for (k = 0; k < 9 && turn[0] + turn[4] + turn[8] > 1; k++)
-            p[k][l] = turn[k / 3 * 3] * stress[k % 3] + turn[k / 3 * 3 + 1] * stress[3 + k % 3] +
-                      turn[k / 3 * 3 + 2] * stress[6 + k % 3];
-    }
-}
-
-/* Is a copy of the chunk elsewhere than inertia alone leads? Where Newton's method starts hardly any is. */
-static int gxsp_accelerates(const gxsp_system *system, const gxsp_chunk *chunk, const double *from) {
-    const uint32_t *copies = system->nodes + chunk->first_node;
-    uint32_t i;
-    for (i = 0; i < chunk->node_count; i++)
-        if (memcmp(from + 3 * (size_t)copies[i], system->target + 3 * (size_t)copies[i], 3 * sizeof(double)) != 0)
-            return 1;
-    return 0;
-}
-
-/* Have all pieces of a chunk found their lengths? */
-static int gxsp_chunk_settled(const gxsp_system *system, const gxsp_chunk *chunk) {
-    uint32_t i;
-    for (i = 0; i < chunk->part_count; i++)
-        if (!system->pieces[system->pieces[system->parts[chunk->first_part + i].piece].lead].settled) return 0;
+    for (k = 0; k < 10; k++)
+        if (fabs(mass[k] - 0.5 * own[k] * mass[0]) > 1e-14 * mass[0]) return 0;
     return 1;
 }
 
-/* What a chunk has of a piece of its nodes */
-static gxsp_part *gxsp_find_part(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t piece) {
-    gxsp_part *parts = system->parts + chunk->first_part;
-    uint32_t low = 0, high = chunk->part_count - 1;
-    while (low < high) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (parts[middle].piece < piece)
-            low = middle + 1;
-        else
-            high = middle;
+static const uint8_t gxsp_own_order[4] = {0, 1, 2, 3};
+
+/* Returns an element's mass. centre: barycentric coordinates of its centre, row sums over their sum. rounded: the
+ * same in whole units of 2^-24, 1 in sum and none below 0 */
+static double gxsp_find_centre(const double *mass, double *centre, double *rounded) {
+    const double unit = 16777216;
+    double sum = 0;
+    int k, j, most = 1;
+    for (k = 0; k < 4; k++) {
+        for (j = 0, centre[k] = 0; j < 4; j++) centre[k] += mass[gxsp_packed_mass[k][j]];
+        sum += centre[k];
     }
-    return &parts[low];
+    rounded[0] = 1;
+    for (k = 3; k >= 0; k--) {
+        centre[k] = sum > 0 ? centre[k] / sum : 0;
+        if (k > 0) rounded[0] -= rounded[k] = floor(unit * centre[k] + 0.5) / unit;
+    }
+    most = rounded[2] > rounded[most] ? 2 : most;
+    most = rounded[3] > rounded[most] ? 3 : most;
+    if (rounded[0] < 0) rounded[most] += rounded[0], rounded[0] = 0;
+    return sum > 0 ? sum : 0;
 }
 
-/* Energies of a block's elements, added to the parts that they belong to */
-static void gxsp_add_energies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *energies) {
-    const uint32_t *copies = system->nodes + chunk->first_node;
-    int k, l;
-    for (k = 0; k < 3 && chunk->part_count == 1; k++) {
-        double sum = 0;
-        for (l = 0; l < GXSP_LANES; l++) sum += energies[k][l];
-        system->parts[chunk->first_part].energies[k] += sum;
-    }
-    for (l = 0; l < GXSP_LANES && chunk->part_count > 1; l++) {
-        gxsp_part *part = gxsp_find_part(system, chunk, system->piece[copies[chunk->corners[b].node[0][l]]]);
-        for (k = 0; k < 3; k++) part->energies[k] += energies[k][l];
-    }
-}
-
-/* Energies of a chunk at pass->from, part by part, and elastic + inertial forces. */
-static void gxsp_task_state(void *context, size_t index) {
-    const gxsp_pass *pass = (const gxsp_pass *)context;
-    gxsp_system *system = pass->system;
-    const gxsp_chunk *chunk = &system->chunks[index];
-    double *slots = &system->slots[chunk->first_node][0];
-    uint32_t b;
-    int k, l, inertia;
-    double rest_at[3 * 4 * GXSP_CHUNK + 1], at[3 * 4 * GXSP_CHUNK + 1];
-    gxsp_lanes corners[12], x[12], other[12], forces[12], made[9];
-    if (gxsp_chunk_settled(system, chunk)) return;
-    for (b = 0; b < chunk->part_count; b++)
-        memset(system->parts[chunk->first_part + b].energies, 0, sizeof system->parts->energies);
-    memset(slots, 0, 3 * (size_t)chunk->node_count * sizeof *slots);
-    if (system->chunk_still[index]) return;
-    inertia = pass->inertia && gxsp_accelerates(system, chunk, pass->from);
-    gxsp_chunk_load(system, chunk, pass->from, at);
-    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->positions, rest_at);
-    memset(forces, 0, sizeof forces);
-    for (b = 0; b < chunk->block_count; b++) {
-        const gxsp_rest *rest = &chunk->rest[b];
-        gxsp_lanes ahead[9], led[12], energies[3], *gradients;
-        gxsp_state s;
-        gxsp_fetch_block(system, index, b, GXSP_RESTS_AHEAD, 0);
-        gxsp_block_load(chunk, b, at, x);
-        gradients = gxsp_block_gradients(chunk, b, rest_at, corners, made);
-        if (inertia || pass->turned) /* never both: what is turned has no inertia */
-            gxsp_block_load_copies(system, chunk, b, inertia ? system->target : pass->turned, other);
-        gxsp_block_parameters(pass->materials, rest, &s);
-        gxsp_block_gradient(gradients, x, s.g);
-        if (pass->turned) gxsp_block_gradient(gradients, other, ahead);
-        if (pass->nudge && chunk->kind != GXS_LINEAR && chunk->kind != GXS_CUSTOM) gxsp_nudge(s.g);
-        gxsp_material_state(chunk->kind, &s);
-        if (pass->turned && chunk->kind != GXS_LINEAR) gxsp_turn_stress(s.g, ahead, s.p);
-        gxsp_block_force(rest->weight, gradients, s.p, forces);
-        for (l = 0; l < GXSP_LANES; l++) {
-            energies[0][l] = rest->weight[l] * s.energy[l];
-            energies[1][l] = 0;
-            energies[2][l] = rest->weight[l] * s.size[l];
-        }
-        if (inertia) {
-            for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) led[k][l] = x[k][l] - other[k][l];
-            gxsp_block_inertia(rest, gxsp_block_moments(chunk, b), pass->rate, led, forces, energies[1]);
-            for (l = 0; l < GXSP_LANES; l++) energies[2][l] += energies[1][l];
-        }
-        gxsp_add_energies(system, chunk, b, energies);
-        gxsp_block_store(chunk, b, forces, slots);
-    }
-}
-
-/* sum = over the slots of each copy, 3 doubles each */
-static void gxsp_task_sum(void *context, size_t index) {
-    const gxsp_pass *pass = (const gxsp_pass *)context;
-    const gxsp_system *system = pass->system;
-    const double *slots = &system->slots[0][0];
-    size_t i, end = gxsp_range(system, index, &i);
-    for (; i < end; i++) {
-        double x = 0, y = 0, z = 0;
-        uint32_t s;
-        for (s = system->copy_start[i]; s < system->copy_start[i + 1]; s++) {
-            const double *from = slots + 3 * (size_t)system->copy_slot[s];
-            gxsp_fetch(slots + 3 * (size_t)system->copy_slot[s + GXSP_AHEAD], 3 * sizeof *slots);
-            x += from[0], y += from[1], z += from[2];
-        }
-        pass->sum[3 * i] = x, pass->sum[3 * i + 1] = y, pass->sum[3 * i + 2] = z;
-    }
-}
-
-/* The piece that leads a copy's */
-static gxsp_piece *gxsp_lead_of(const gxsp_system *system, size_t copy) {
-    return &system->pieces[system->pieces[system->piece[copy]].lead];
-}
-
-/* Energies of the pieces' elements at from, and elastic + inertial forces, 0 on what sleeps. turned: see gxsp_pass */
-static void gxsp_evaluate_elements(gxsp_system *system, double rate, const double *from, const double *turned,
-                                   int nudge, double *force) {
-    gxsp_pass pass;
-    uint32_t p;
+/* Mass of each corner: row sums as the solver has them */
+static void gxsp_row_masses(const gxs_element *element, double *rows) {
+    const int whole = gxsp_whole(element->mass);
+    double centre[4], mass = whole ? 2.5 * element->mass[0] : gxsp_find_centre(element->mass, centre, rows);
     int k;
-    memset(&pass, 0, sizeof pass);
-    pass.system = system;
-    pass.materials = system->damped;
-    pass.rate = rate;
-    pass.from = from;
-    pass.sum = force;
-    pass.inertia = rate > 0 && !system->lumped_mass;
-    pass.turned = turned;
-    pass.nudge = nudge;
-    gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_state, &pass);
-    gxsp_over_ranges(system, gxsp_task_sum, &pass, NULL, 0);
-    for (p = 0; p < system->piece_count; p++) memset(system->pieces[p].energies, 0, sizeof system->pieces->energies);
-    for (p = 0; p < system->part_count; p++)
-        for (k = 0; k < 3; k++)
-            system->pieces[system->pieces[system->parts[p].piece].lead].energies[k] += system->parts[p].energies[k];
-    if (rate > 0 && system->lumped_mass) {
-        size_t i;
-        for (i = 0; i < 3 * system->n; i++)
-            if (!system->still[i / 3]) {
-                double moved = from[i] - system->target[i], inertia = rate * system->lumped[i / 3] * moved;
-                double *energies = gxsp_lead_of(system, i / 3)->energies;
-                force[i] += inertia;
-                energies[1] += 0.5 * inertia * moved;
-                energies[2] += 0.5 * inertia * moved;
-            }
-    }
+    for (k = 0; k < 4; k++) rows[k] = whole ? mass : mass * rows[k];
 }
 
-/* >>model: elements sorted by material kind, by whether they are whole, and along a curve through space, then cut into
- * chunks, seated in lanes */
+/* Does the element give corner i stiffness or mass? */
+static int gxsp_supports(const gxs_element *element, int i) {
+    double rows[4];
+    if (element->weight > 0) return 1;
+    gxsp_row_masses(element, rows);
+    return rows[i] > 0;
+}
 
-/* Forests of joined indices: the root of a tree is its least. */
+/* Cholesky factor of a symmetric 3x3, which is used up. The largest pivot goes first, so that rounding stays small
+ * where the matrix is singular or worse. Rotating columns, which leaves factor factor^T as it is, then makes it
+ * lower triangular. */
+static void gxsp_factor3(double c[3][3], double factor[3][3]) {
+    int done[3] = {0, 0, 0}, step, i, j, k;
+    memset(factor, 0, 9 * sizeof(double));
+    for (step = 0; step < 3; step++) {
+        double root;
+        for (i = 0, k = -1; i < 3; i++)
+            if (!done[i] && (k < 0 || c[i][i] > c[k][k])) k = i;
+        if (!(c[k][k] > 0)) break;
+        root = sqrt(c[k][k]);
+        done[k] = 1;
+        for (i = 0; i < 3; i++)
+            if (!done[i]) {
+                const double most = c[i][i] > 0 ? sqrt(c[i][i]) : 0;
+                factor[i][step] = fabs(c[i][k]) < root * most ? c[i][k] / root : copysign(most, c[i][k]);
+            }
+        factor[k][step] = root;
+        for (i = 0; i < 3; i++)
+            for (j = 0; j < 3 && !done[i]; j++) c[i][j] -= factor[i][step] * factor[j][step];
+    }
+    for (i = 0; i < 2; i++)
+        for (j = i + 1; j < 3; j++) {
+            const double length = sqrt(factor[i][i] * factor[i][i] + factor[i][j] * factor[i][j]);
+            const double cosine = length > 0 ? factor[i][i] / length : 1, sine = length > 0 ? factor[i][j] / length : 0;
+            for (k = i; k < 3; k++) {
+                const double a = factor[k][i], b = factor[k][j];
+                factor[k][i] = cosine * a + sine * b, factor[k][j] = cosine * b - sine * a;
+            }
+        }
+}
+
+/* Moments of a lane whose mass is not that of a whole element. Returns its mass. */
+static double gxsp_place_moments(const double *mass, const uint8_t *order, gxsp_moments *moments, size_t lane) {
+    double centre[4], rounded[4], covariance[3][3], root[3][3];
+    const double sum = gxsp_find_centre(mass, centre, rounded), all = sum > 0 ? sum : 1;
+    const uint8_t *own = order + 1;
+    int i, j;
+    for (i = 0; i < 3; i++)
+        for (j = 0; j < 3; j++)
+            covariance[i][j] = mass[gxsp_packed_mass[own[i]][own[j]]] / all - centre[own[i]] * centre[own[j]];
+    gxsp_factor3(covariance, root);
+    for (i = 0; i < 3; i++) {
+        moments->centre[i][lane] = (float)rounded[own[i]];
+        for (j = 0; j <= i; j++) moments->root[i * (i + 1) / 2 + j][lane] = (float)root[i][j];
+    }
+    return sum;
+}
+
+/* Puts an element into lane `at` of a chunk. order: corner of the element for each corner of the lane */
+static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *element, const uint8_t *order, uint32_t at,
+                               uint32_t lumped) {
+    gxsp_rest *rest = &chunk->rest[at / GXSP_LANES];
+    size_t lane = at % GXSP_LANES;
+    int i, k;
+    for (i = 0; i < 3 && chunk->gradients; i++)
+        for (k = 0; k < 3; k++)
+            chunk->gradients[at / GXSP_LANES].entry[3 * i + k][lane] =
+                order[1 + i] > 0 ? element->gradient[order[1 + i]][k]
+                                 : -(element->gradient[1][k] + element->gradient[2][k] + element->gradient[3][k]);
+    rest->weight[lane] = element->weight;
+    rest->material[lane] = element->material;
+    chunk->groups[at] = element->group % GXSP_GROUPS; /* a caller who does not update may leave it unset */
+    if (chunk->moments)
+        rest->mass[lane] = gxsp_place_moments(element->mass, order, &chunk->moments[at / GXSP_LANES], lane);
+    else
+        rest->mass[lane] = lumped ? 0 : 0.5 * element->mass[0];
+}
+
+/* >>order: the order of elements ----------------------------------------------------------------------------------- */
+
+/* In: the model and the components of its copies. Out: elements sorted by class, then by component, then along a
+ * curve through space, so that chunks have few nodes and sleep with their component. Sorting and forests of
+ * joined indices serve later sections too. */
+
+/* Forests of joined indices: the root of a tree is its least index. */
 static uint32_t gxsp_root(uint32_t *parent, uint32_t i) {
     while (parent[i] != i) {
         parent[i] = parent[parent[i]];
@@ -2569,7 +2696,7 @@ static void gxsp_join(uint32_t *parent, uint32_t i, uint32_t j) {
         parent[i] = j;
 }
 
-/* The ten bits of x with two zeros between each two */
+/* The ten bits of x with two zeros between neighbours */
 static uint32_t gxsp_spread(uint32_t x) {
     x = (x | x << 16) & 0x030000ffu;
     x = (x | x << 8) & 0x0300f00fu;
@@ -2577,7 +2704,7 @@ static uint32_t gxsp_spread(uint32_t x) {
     return (x | x << 2) & 0x09249249u;
 }
 
-/* Position of a place along the Z-order curve of 1024^3 cells */
+/* Position of a point along the Z-order curve through 1024^3 cells */
 static uint32_t gxsp_curve(const double *at, const double *low, double per_cell) {
     uint32_t code = 0;
     int k;
@@ -2588,28 +2715,20 @@ static uint32_t gxsp_curve(const double *at, const double *low, double per_cell)
     return code;
 }
 
-/* Is the mass block m (1 + delta_ij), as a whole element's is? To rounding of its ten integrals. */
-static int gxsp_whole(const double *mass) {
-    static const int own[10] = {2, 1, 1, 1, 2, 1, 1, 2, 1, 2};
-    int k;
-    for (k = 0; k < 10; k++)
-        if (fabs(mass[k] - 0.5 * own[k] * mass[0]) > 1e-14 * mass[0]) return 0;
-    return 1;
-}
-
-/* An element's place in the order: class, then piece, then curve, the last of each ten bits first */
+/* An element's place in the order: by class, then component, then curve. Sorting takes ten bits at a time, the last
+ * first. */
 typedef struct gxsp_sorted {
-    uint32_t place, piece, class_index;
-    uint32_t index; /* of the element or, while pieces are sorted, of the piece */
+    uint32_t place, component, class_index;
+    uint32_t index; /* of the element or, while components are sorted, of the component */
 } gxsp_sorted;
 
 static uint32_t gxsp_sorted_digit(const gxsp_sorted *of, int pass) {
     return pass < 3 ? of->place >> (10 * pass) & 1023u
-         : pass < 6 ? of->piece >> (10 * (pass - 3)) & 1023u
+         : pass < 6 ? of->component >> (10 * (pass - 3)) & 1023u
                     : of->class_index;
 }
 
-/* Stable sort, least digit first; digits all alike are left out. other: room for as many */
+/* Stable radix sort, least digit first. A digit that is the same everywhere is skipped. other: room for as many */
 static gxsp_sorted *gxsp_sort(gxsp_sorted *sorted, gxsp_sorted *other, size_t count) {
     int pass, digit;
     for (pass = 0; pass < 7; pass++) {
@@ -2646,23 +2765,23 @@ static void gxsp_place_elements(const gxs_model *model, gxsp_sorted *sorted) {
     }
 }
 
-/* Pieces in the order in which the curve first meets them. rank: by piece */
-static void gxsp_rank_pieces(const gxsp_system *system, const gxs_model *model, const gxsp_sorted *elements,
-                             gxsp_sorted *pieces, gxsp_sorted *other, uint32_t *rank) {
+/* Ranks components in the order in which the curve first meets them. rank: by component */
+static void gxsp_rank_components(const gxsp_system *system, const gxs_model *model, const gxsp_sorted *elements,
+                                 gxsp_sorted *components, gxsp_sorted *other, uint32_t *rank) {
     size_t i;
-    for (i = 0; i < system->piece_count; i++) {
-        pieces[i].index = (uint32_t)i;
-        pieces[i].place = UINT32_MAX;
+    for (i = 0; i < system->model.component_count; i++) {
+        components[i].index = (uint32_t)i;
+        components[i].place = UINT32_MAX;
     }
     for (i = 0; i < model->element_count; i++) {
-        gxsp_sorted *piece = &pieces[system->piece[model->elements[i].copy[0]]];
-        piece->place = elements[i].place < piece->place ? elements[i].place : piece->place;
+        gxsp_sorted *component = &components[system->model.component[model->elements[i].copy[0]]];
+        component->place = elements[i].place < component->place ? elements[i].place : component->place;
     }
-    pieces = gxsp_sort(pieces, other, system->piece_count);
-    for (i = 0; i < system->piece_count; i++) rank[pieces[i].index] = (uint32_t)i;
+    components = gxsp_sort(components, other, system->model.component_count);
+    for (i = 0; i < system->model.component_count; i++) rank[components[i].index] = (uint32_t)i;
 }
 
-/* Are an element's gradients those that the rest positions x of its corners say, but for rounding? */
+/* Are an element's gradients those of the rest positions x of its corners, but for rounding? */
 static int gxsp_is_placed(const gxs_element *element, const double x[4][3]) {
     double edge[3][3], made[3][3], determinant = 0, most = 0, off = 0;
     int i, k;
@@ -2684,9 +2803,9 @@ static int gxsp_is_placed(const gxs_element *element, const double x[4][3]) {
     return off <= GXSP_PLACED * most;
 }
 
-/* What elements of one chunk are alike in: 4 x kind + 2 x (gradients are not those of the positions) + (masses are not
- * those of whole elements). positions: at 3 x copy, or, origins (as of gxs_change) given, of what the copy was; NULL:
- * there are none */
+/* Class of an element; a chunk has elements of one class: 4 x kind + 2 x (gradients differ from those of the
+ * positions) + (mass is not that of a whole element). positions: at 3 x copy, or, with origins (as in gxs_change),
+ * at 3 x the copy's origin; NULL: there are none */
 static uint32_t gxsp_class(gxs_material_kind kind, const gxs_element *element, uint32_t lumped, const double *positions,
                            const uint32_t *origins) {
     double x[4][3];
@@ -2699,130 +2818,36 @@ static uint32_t gxsp_class(gxs_material_kind kind, const gxs_element *element, u
            (lumped || gxsp_whole(element->mass) ? 0u : 1u);
 }
 
-/* The order of elements. Elements of one piece are together, so that chunks have few nodes and sleep with their piece.
- */
+/* The elements in their order, in scratch */
 static gxsp_sorted *gxsp_order_elements(const gxsp_system *system, const gxs_model *model, gxsp_pool *scratch) {
-    const size_t count = model->element_count, pieces = system->piece_count, most = count > pieces ? count : pieces;
+    const size_t count = model->element_count, components = system->model.component_count,
+                 most = count > components ? count : components;
     gxsp_sorted *sorted = (gxsp_sorted *)gxsp_take(scratch, count, sizeof *sorted);
     gxsp_sorted *other = (gxsp_sorted *)gxsp_take(scratch, most, sizeof *other);
-    gxsp_sorted *ranked = (gxsp_sorted *)gxsp_take(scratch, pieces, sizeof *ranked);
-    uint32_t *rank = (uint32_t *)gxsp_take(scratch, pieces, sizeof(uint32_t));
+    gxsp_sorted *ranked = (gxsp_sorted *)gxsp_take(scratch, components, sizeof *ranked);
+    uint32_t *rank = (uint32_t *)gxsp_take(scratch, components, sizeof(uint32_t));
     size_t i;
     if (scratch->failed) return NULL;
     gxsp_place_elements(model, sorted);
-    gxsp_rank_pieces(system, model, sorted, ranked, other, rank);
+    gxsp_rank_components(system, model, sorted, ranked, other, rank);
     for (i = 0; i < count; i++) {
         const gxs_element *element = &model->elements[i];
         sorted[i].index = (uint32_t)i;
-        sorted[i].piece = rank[system->piece[element->copy[0]]];
+        sorted[i].component = rank[system->model.component[element->copy[0]]];
         sorted[i].class_index =
             gxsp_class(model->materials[element->material].kind, element, model->lumped_mass, model->positions, NULL);
     }
     return gxsp_sort(sorted, other, count);
 }
 
-static const uint8_t gxsp_own_order[4] = {0, 1, 2, 3};
+/* >>lanes: which element of a chunk goes to which lane ------------------------------------------------------------- */
 
-/* An element's mass, returned, and its centre in barycentric coordinates: row sums over their sum. rounded: to whole
- * units of 2^-24, so that the four are 1 in sum, and none below 0 */
-static double gxsp_find_centre(const double *mass, double *centre, double *rounded) {
-    const double unit = 16777216;
-    double sum = 0;
-    int k, j, most = 1;
-    for (k = 0; k < 4; k++) {
-        for (j = 0, centre[k] = 0; j < 4; j++) centre[k] += mass[gxsp_packed_mass[k][j]];
-        sum += centre[k];
-    }
-    rounded[0] = 1;
-    for (k = 3; k >= 0; k--) {
-        centre[k] = sum > 0 ? centre[k] / sum : 0;
-        if (k > 0) rounded[0] -= rounded[k] = floor(unit * centre[k] + 0.5) / unit;
-    }
-    most = rounded[2] > rounded[most] ? 2 : most;
-    most = rounded[3] > rounded[most] ? 3 : most;
-    if (rounded[0] < 0) rounded[most] += rounded[0], rounded[0] = 0;
-    return sum > 0 ? sum : 0;
-}
+/* In: nodes of a chunk's elements. Out: a lane for each element. Neighbours go to successive blocks, so that
+ * elements of one block seldom share nodes: where they do, sums into slots wait for the ones before. A pass over
+ * blocks neither loads nor stores a corner that is the same as in the block before in every lane. Hence lanes are
+ * filled with strips around an edge: four elements, each with all but one corner of the one before. */
 
-/* What each corner's copy has of an element's mass: row sums as the solver has them */
-static void gxsp_row_masses(const gxs_element *element, double *rows) {
-    const int whole = gxsp_whole(element->mass);
-    double centre[4], mass = whole ? 2.5 * element->mass[0] : gxsp_find_centre(element->mass, centre, rows);
-    int k;
-    for (k = 0; k < 4; k++) rows[k] = whole ? mass : mass * rows[k];
-}
-
-/* Cholesky factor of a symmetric 3x3, which is used up, the largest pivot first, so that rounding stays as small as it
- * was where the matrix is next to singular or worse; then made lower triangular by turning columns, which leaves factor
- * factor^T as it is. */
-static void gxsp_factor3(double c[3][3], double factor[3][3]) {
-    int done[3] = {0, 0, 0}, step, i, j, k;
-    memset(factor, 0, 9 * sizeof(double));
-    for (step = 0; step < 3; step++) {
-        double root;
-        for (i = 0, k = -1; i < 3; i++)
-            if (!done[i] && (k < 0 || c[i][i] > c[k][k])) k = i;
-        if (!(c[k][k] > 0)) break;
-        root = sqrt(c[k][k]);
-        done[k] = 1;
-        for (i = 0; i < 3; i++)
-            if (!done[i]) {
-                const double most = c[i][i] > 0 ? sqrt(c[i][i]) : 0;
-                factor[i][step] = fabs(c[i][k]) < root * most ? c[i][k] / root : copysign(most, c[i][k]);
-            }
-        factor[k][step] = root;
-        for (i = 0; i < 3; i++)
-            for (j = 0; j < 3 && !done[i]; j++) c[i][j] -= factor[i][step] * factor[j][step];
-    }
-    for (i = 0; i < 2; i++)
-        for (j = i + 1; j < 3; j++) {
-            const double length = sqrt(factor[i][i] * factor[i][i] + factor[i][j] * factor[i][j]);
-            const double cosine = length > 0 ? factor[i][i] / length : 1, sine = length > 0 ? factor[i][j] / length : 0;
-            for (k = i; k < 3; k++) {
-                const double a = factor[k][i], b = factor[k][j];
-                factor[k][i] = cosine * a + sine * b, factor[k][j] = cosine * b - sine * a;
-            }
-        }
-}
-
-/* Masses of a lane that are not those of a whole element. Returns all of it. */
-static double gxsp_place_moments(const double *mass, const uint8_t *order, gxsp_moments *moments, size_t lane) {
-    double centre[4], rounded[4], covariance[3][3], root[3][3];
-    const double sum = gxsp_find_centre(mass, centre, rounded), all = sum > 0 ? sum : 1;
-    const uint8_t *own = order + 1;
-    int i, j;
-    for (i = 0; i < 3; i++)
-        for (j = 0; j < 3; j++)
-            covariance[i][j] = mass[gxsp_packed_mass[own[i]][own[j]]] / all - centre[own[i]] * centre[own[j]];
-    gxsp_factor3(covariance, root);
-    for (i = 0; i < 3; i++) {
-        moments->centre[i][lane] = (float)rounded[own[i]];
-        for (j = 0; j <= i; j++) moments->root[i * (i + 1) / 2 + j][lane] = (float)root[i][j];
-    }
-    return sum;
-}
-
-/* order: which of the element's corners come to be the lane's */
-static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *element, const uint8_t *order, uint32_t at,
-                               uint32_t lumped) {
-    gxsp_rest *rest = &chunk->rest[at / GXSP_LANES];
-    size_t lane = at % GXSP_LANES;
-    int i, k;
-    for (i = 0; i < 3 && chunk->gradients; i++)
-        for (k = 0; k < 3; k++)
-            chunk->gradients[at / GXSP_LANES].entry[3 * i + k][lane] =
-                order[1 + i] > 0 ? element->gradient[order[1 + i]][k]
-                                 : -(element->gradient[1][k] + element->gradient[2][k] + element->gradient[3][k]);
-    rest->weight[lane] = element->weight;
-    rest->material[lane] = element->material;
-    chunk->groups[at] = element->group % GXSP_GROUPS; /* who does not update may have left it unset */
-    if (chunk->moments)
-        rest->mass[lane] = gxsp_place_moments(element->mass, order, &chunk->moments[at / GXSP_LANES], lane);
-    else
-        rest->mass[lane] = lumped ? 0 : 0.5 * element->mass[0];
-}
-
-/* Ascending, by insertion */
+/* Sorts ascending, by insertion. */
 static void gxsp_sort_row(uint32_t *row, uint32_t count) {
     uint32_t i, j;
     for (i = 1; i < count; i++) {
@@ -2834,13 +2859,13 @@ static void gxsp_sort_row(uint32_t *row, uint32_t count) {
 
 /* Numbers of copies in the chunk at work */
 typedef struct gxsp_numbers {
-    uint32_t *local; /* n: the number, where stamp is the round */
+    uint32_t *local; /* n: the number; valid where stamp is the round */
     uint32_t *stamp; /* n, 0 at first */
-    uint32_t round;  /* one for each chunk */
+    uint32_t round;  /* one per chunk */
 } gxsp_numbers;
 
-/* The nodes of a chunk in the order of their copies, which is that of memory. copies: of count elements; GXSP_NONE
- * where there is none, else numbers of nodes come in their place. Returns how many nodes there are. */
+/* Numbers the nodes of a chunk in the order of their copies, which is that of memory. copies: of count elements,
+ * GXSP_NONE where there is none; numbers of nodes replace them. Returns the number of nodes. */
 static uint32_t gxsp_number_nodes(uint32_t (*copies)[4], uint32_t count, gxsp_numbers *numbers, uint32_t *nodes) {
     uint32_t e, i, k, found = 0;
     numbers->round++;
@@ -2857,48 +2882,42 @@ static uint32_t gxsp_number_nodes(uint32_t (*copies)[4], uint32_t count, gxsp_nu
     return found;
 }
 
-/* Corners of a chunk's blocks. nodes: by lane, GXSP_NONE where there is no element: such a lane has the corners of the
- * block before */
+/* Corners of a chunk's blocks. nodes: by lane; GXSP_NONE: there is no element, and the lane keeps the corners of
+ * the block before */
 static void gxsp_set_corners(const gxsp_chunk *chunk, uint32_t (*nodes)[4]) {
     uint32_t b, l, k;
     for (b = 0; b < chunk->block_count; b++) {
         gxsp_corners *corner = &chunk->corners[b];
         const gxsp_corners *before = b > 0 ? corner - 1 : corner;
-        chunk->fresh[b] = b > 0 ? 0 : 15;
+        chunk->changed[b] = b > 0 ? 0 : 15;
         for (k = 0; k < 4; k++)
             for (l = 0; l < GXSP_LANES; l++) {
                 const uint32_t node = nodes[b * GXSP_LANES + l][k];
                 corner->node[k][l] = node != GXSP_NONE ? (uint16_t)node : b > 0 ? before->node[k][l] : 0;
-                chunk->fresh[b] =
-                    (uint8_t)(chunk->fresh[b] | (corner->node[k][l] != before->node[k][l] ? 1u << k : 0u));
+                chunk->changed[b] =
+                    (uint8_t)(chunk->changed[b] | (corner->node[k][l] != before->node[k][l] ? 1u << k : 0u));
             }
     }
-    chunk->fresh[b] = 15;
+    chunk->changed[b] = 15;
 }
 
-/* --- lanes: which element of a chunk goes where ---
- * Neighbours come to lie in successive blocks, so that those of one block hardly share nodes: where they do, sums into
- * slots wait for the ones before them. And a pass over blocks neither reads nor writes a corner that is the same as in
- * the block before, in each lane. So lanes are made of chains around an edge: four elements, each with all but one
- * corner of the one before. */
+enum { GXSP_STRIP = 4, GXSP_FACES = 4096 };
 
-enum { GXSP_CHAIN = 4, GXSP_FACES = 4096 };
-
-typedef struct gxsp_seating {
-    uint32_t (*nodes)[4]; /* count: of each element */
+typedef struct gxsp_layout {
+    uint32_t (*nodes)[4]; /* count: nodes of each element */
     uint32_t count;
-    uint16_t across[GXSP_CHUNK][4]; /* the element beyond the face that a corner is not on, or count */
-    uint8_t seated[GXSP_CHUNK];
-    uint16_t chain[GXSP_CHUNK];   /* elements of the chains of one length, one after the other */
-    uint8_t turn[GXSP_CHUNK][4];  /* and the order of their corners */
-    uint16_t seat[GXSP_CHUNK];    /* by lane: the element there, or count */
+    uint16_t across[GXSP_CHUNK][4]; /* the element beyond the face opposite the corner, or count */
+    uint8_t placed[GXSP_CHUNK];
+    uint16_t strip[GXSP_CHUNK];   /* elements of the strips of one length, one strip after the other */
+    uint8_t turn[GXSP_CHUNK][4];  /* the order of their corners */
+    uint16_t element[GXSP_CHUNK]; /* by lane: the element there, or count */
     uint8_t order[GXSP_CHUNK][4]; /* by lane */
-} gxsp_seating;
+} gxsp_layout;
 
-/* Where three nodes stand in an element: their corners, and the fourth one; 4: not each is there once. Without
- * branches, which could not be foretold */
+/* Finds three nodes in an element: their corners, and returns the fourth corner; 4: not each is there once. Without
+ * branches, which processors could not predict */
 static int gxsp_find_face(const uint32_t *element, const uint32_t *face, uint8_t *corners) {
-    static const uint8_t corner_of[16] = {4, 0, 1, 4, 2, 4, 4, 4, 3, 4, 4, 4, 4, 4, 4, 4}; /* of a single bit */
+    static const uint8_t corner_of[16] = {4, 0, 1, 4, 2, 4, 4, 4, 3, 4, 4, 4, 4, 4, 4, 4}; /* by its bit */
     unsigned met[3];
     int i;
     for (i = 0; i < 3; i++) {
@@ -2910,185 +2929,222 @@ static int gxsp_find_face(const uint32_t *element, const uint32_t *face, uint8_t
     return (corners[0] | corners[1] | corners[2]) & 4 ? 4 : corner_of[15 & ~(met[0] | met[1] | met[2])];
 }
 
-/* The nodes of the face that a corner is not on */
+/* The nodes of the face opposite a corner */
 static void gxsp_face_of(const uint32_t *element, int corner, uint32_t *face) {
     int i;
     for (i = 0; i < 3; i++) face[i] = element[i < corner ? i : i + 1];
 }
 
-/* Fills across by a table of faces that have been met. */
-static void gxsp_find_across(gxsp_seating *seating) {
+/* Fills across, with a hash table of the faces met so far. */
+static void gxsp_find_across(gxsp_layout *layout) {
     uint16_t table[GXSP_FACES]; /* 4 x element + corner, from 1 */
     uint32_t f, at, face[3];
     uint8_t corners[3];
     memset(table, 0, sizeof table);
-    for (f = 0; f < 4 * seating->count; f++) {
-        seating->across[f / 4][f % 4] = (uint16_t)seating->count;
-        gxsp_face_of(seating->nodes[f / 4], (int)(f % 4), face);
+    for (f = 0; f < 4 * layout->count; f++) {
+        layout->across[f / 4][f % 4] = (uint16_t)layout->count;
+        gxsp_face_of(layout->nodes[f / 4], (int)(f % 4), face);
         for (at = (face[0] * face[0] + face[1] * face[1] + face[2] * face[2]) * 40503u / 16 % GXSP_FACES; table[at];
              at = (at + 1) % GXSP_FACES) {
             const uint32_t other = (table[at] - 1u) / 4;
-            const int corner = gxsp_find_face(seating->nodes[other], face, corners);
+            const int corner = gxsp_find_face(layout->nodes[other], face, corners);
             if (corner != (int)((table[at] - 1u) % 4)) continue;
-            seating->across[f / 4][f % 4] = (uint16_t)other;
-            seating->across[other][corner] = (uint16_t)(f / 4);
+            layout->across[f / 4][f % 4] = (uint16_t)other;
+            layout->across[other][corner] = (uint16_t)(f / 4);
             break;
         }
         if (!table[at]) table[at] = (uint16_t)(f + 1);
     }
 }
 
-/* Walks from the chain's first element around the edge of its first two corners. Is there a way for length elements? */
-static int gxsp_walk_chain(const gxsp_seating *seating, uint32_t length, uint16_t *chain, uint8_t (*order)[4]) {
+/* Walks from the strip's first element around the edge of its first two corners. Are there length elements? */
+static int gxsp_walk_strip(const gxsp_layout *layout, uint32_t length, uint16_t *strip, uint8_t (*order)[4]) {
     uint32_t i, k;
     for (i = 1; i < length; i++) {
-        const uint32_t moving = i % 2 ? 2 : 3, e = seating->across[chain[i - 1]][order[i - 1][moving]];
-        const uint32_t *before = seating->nodes[chain[i - 1]];
+        const uint32_t moving = i % 2 ? 2 : 3, e = layout->across[strip[i - 1]][order[i - 1][moving]];
+        const uint32_t *before = layout->nodes[strip[i - 1]];
         uint32_t face[3];
         uint8_t corners[3] = {0, 0, 0};
         int other;
-        if (e == seating->count || seating->seated[e]) return 0;
+        if (e == layout->count || layout->placed[e]) return 0;
         for (k = 0; k < i; k++)
-            if (chain[k] == e) return 0;
+            if (strip[k] == e) return 0;
         face[0] = before[order[i - 1][0]], face[1] = before[order[i - 1][1]],
         face[2] = before[order[i - 1][5 - moving]];
-        other = gxsp_find_face(seating->nodes[e], face, corners);
+        other = gxsp_find_face(layout->nodes[e], face, corners);
         if (other == 4) return 0;
         order[i][moving] = (uint8_t)other;
         order[i][0] = corners[0], order[i][1] = corners[1], order[i][5 - moving] = corners[2];
-        chain[i] = (uint16_t)e;
+        strip[i] = (uint16_t)e;
     }
     return 1;
 }
 
-/* A chain of so many elements that begins with e, which is not seated */
-static int gxsp_find_chain(const gxsp_seating *seating, uint32_t e, uint32_t length, uint16_t *chain,
+/* A strip of length elements that begins with e, which has no lane yet. Returns whether there is one. */
+static int gxsp_find_strip(const gxsp_layout *layout, uint32_t e, uint32_t length, uint16_t *strip,
                            uint8_t (*order)[4]) {
     static const uint8_t edges[6][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2},
                                         {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}};
-    int edge, turned;
+    int edge, swapped;
     for (edge = 0; edge < 6; edge++)
-        for (turned = 0; turned < 2; turned++) {
-            chain[0] = (uint16_t)e;
+        for (swapped = 0; swapped < 2; swapped++) {
+            strip[0] = (uint16_t)e;
             memcpy(order[0], edges[edge], 4);
-            order[0][2] = edges[edge][2 + turned], order[0][3] = edges[edge][3 - turned];
-            if (gxsp_walk_chain(seating, length, chain, order)) return 1;
+            order[0][2] = edges[edge][2 + swapped], order[0][3] = edges[edge][3 - swapped];
+            if (gxsp_walk_strip(layout, length, strip, order)) return 1;
         }
     return 0;
 }
 
-/* Chains of so many elements, of those not seated yet. Returns how many chains there are. */
-static uint32_t gxsp_list_chains(gxsp_seating *seating, uint32_t length) {
+/* Lists strips of length elements that have no lane yet. Returns how many strips there are. */
+static uint32_t gxsp_list_strips(gxsp_layout *layout, uint32_t length) {
     uint32_t e, i, found = 0;
-    for (e = 0; e < seating->count; e++)
-        if (!seating->seated[e] &&
-            gxsp_find_chain(seating, e, length, &seating->chain[found * length], &seating->turn[found * length])) {
-            for (i = 0; i < length; i++) seating->seated[seating->chain[found * length + i]] = 1;
+    for (e = 0; e < layout->count; e++)
+        if (!layout->placed[e] &&
+            gxsp_find_strip(layout, e, length, &layout->strip[found * length], &layout->turn[found * length])) {
+            for (i = 0; i < length; i++) layout->placed[layout->strip[found * length + i]] = 1;
             found++;
         }
     return found;
 }
 
-/* Seats chains of so many elements in the blocks from first on, side by side, each in a lane. All of single elements;
- * of longer ones those that fill blocks. Returns the first block that is left. */
-static uint32_t gxsp_seat_chains(gxsp_seating *seating, uint32_t blocks, uint32_t length, uint32_t first) {
-    const uint32_t chains = gxsp_list_chains(seating, length), rows = length > 1 ? chains / GXSP_LANES : blocks - first;
+/* Puts strips of length elements side by side into the blocks from first on, one strip per lane. Single elements
+ * all get a lane; of longer strips those that fill whole blocks. Returns the first block that is left. */
+static uint32_t gxsp_place_strips(gxsp_layout *layout, uint32_t blocks, uint32_t length, uint32_t first) {
+    const uint32_t strips = gxsp_list_strips(layout, length), rows = length > 1 ? strips / GXSP_LANES : blocks - first;
     uint32_t c, i;
-    for (c = 0; c < chains; c++)
+    for (c = 0; c < strips; c++)
         for (i = 0; i < length; i++) {
-            const uint32_t at = c * length + i, e = seating->chain[at];
+            const uint32_t at = c * length + i, e = layout->strip[at];
             const uint32_t lane = c < rows * GXSP_LANES ? (first + c % rows * length + i) * GXSP_LANES + c / rows : 0;
-            seating->seated[e] = c < rows * GXSP_LANES;
-            if (!seating->seated[e]) continue;
-            seating->seat[lane] = (uint16_t)e;
-            memcpy(seating->order[lane], seating->turn[at], 4);
+            layout->placed[e] = c < rows * GXSP_LANES;
+            if (!layout->placed[e]) continue;
+            layout->element[lane] = (uint16_t)e;
+            memcpy(layout->order[lane], layout->turn[at], 4);
         }
     return first + rows * length;
 }
 
-/* The lane of each element of a chunk. nodes: of the elements, neighbours together */
-static void gxsp_seat_elements(gxsp_seating *seating, uint32_t (*nodes)[4], uint32_t count, uint32_t blocks) {
+/* The lane of each element of a chunk. nodes: of the elements; neighbours follow each other */
+static void gxsp_assign_lanes(gxsp_layout *layout, uint32_t (*nodes)[4], uint32_t count, uint32_t blocks) {
     uint32_t lane, length, first = 0;
-    seating->nodes = nodes;
-    seating->count = count;
-    memset(seating->seated, 0, sizeof seating->seated);
-    for (lane = 0; lane < GXSP_CHUNK; lane++) seating->seat[lane] = (uint16_t)count;
-    gxsp_find_across(seating);
-    for (length = GXSP_CHAIN; length > 0; length /= 2) first = gxsp_seat_chains(seating, blocks, length, first);
+    layout->nodes = nodes;
+    layout->count = count;
+    memset(layout->placed, 0, sizeof layout->placed);
+    for (lane = 0; lane < GXSP_CHUNK; lane++) layout->element[lane] = (uint16_t)count;
+    gxsp_find_across(layout);
+    for (length = GXSP_STRIP; length > 0; length /= 2) first = gxsp_place_strips(layout, blocks, length, first);
 }
 
-/* Elements of a chunk in their lanes. elements: sorted; nodes: theirs, numbered in the chunk */
+/* >>chunks: blocks and slots --------------------------------------------------------------------------------------- */
+
+/* In: the sorted elements. Out: chunks with their blocks and nodes, and the slots of every copy. Writes
+ * gxsp_mesh. */
+
+static const gxsp_moments *gxsp_block_moments(const gxsp_chunk *chunk, uint32_t block) {
+    return chunk->moments ? &chunk->moments[block] : NULL;
+}
+
+static gxsp_general *gxsp_block_general(const gxsp_chunk *chunk, uint32_t block) {
+    return chunk->generals ? &chunk->generals[block] : NULL;
+}
+
+static void gxsp_lane_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t block, int lane,
+                             uint32_t *copies) {
+    const gxsp_corners *corner = &chunk->corners[block];
+    int i;
+    for (i = 0; i < 4; i++) copies[i] = system->mesh.nodes[chunk->first_node + corner->node[i][lane]];
+}
+
+/* Row sum of the mass of a lane's element at corner k */
+static double gxsp_lane_mass(const gxsp_chunk *chunk, uint32_t lane, int k) {
+    const size_t b = lane / GXSP_LANES, l = lane % GXSP_LANES;
+    const gxsp_moments *of = gxsp_block_moments(chunk, (uint32_t)b);
+    return chunk->rest[b].mass[l] *
+           (!of ? 5
+                : (double)(k > 0 ? of->centre[k - 1][l]
+                                 : 1 - (of->centre[0][l] + of->centre[1][l] + of->centre[2][l])));
+}
+
+/* Does the element of a lane give corner k stiffness or mass? */
+static int gxsp_lane_supports(const gxsp_chunk *chunk, uint32_t lane, int k) {
+    return chunk->rest[lane / GXSP_LANES].weight[lane % GXSP_LANES] > 0 || gxsp_lane_mass(chunk, lane, k) > 0;
+}
+
+/* Puts elements of a chunk into their lanes. elements: sorted; nodes: theirs, numbered in the chunk */
 static void gxsp_fill_chunk(const gxsp_chunk *chunk, const gxs_model *model, const gxsp_sorted *elements,
                             uint32_t (*nodes)[4], uint32_t count) {
-    gxsp_seating seating;
-    uint32_t seated[GXSP_CHUNK][4], lane;
+    gxsp_layout layout;
+    uint32_t placed[GXSP_CHUNK][4], lane;
     int k;
-    gxsp_seat_elements(&seating, nodes, count, chunk->block_count);
-    memset(seated, 0xff, sizeof seated);
+    gxsp_assign_lanes(&layout, nodes, count, chunk->block_count);
+    memset(placed, 0xff, sizeof placed);
     for (lane = 0; lane < chunk->block_count * GXSP_LANES; lane++) {
-        const uint32_t e = seating.seat[lane];
-        if (e == count) { /* of no weight, but of a material there is */
+        const uint32_t e = layout.element[lane];
+        if (e == count) { /* no weight, but a valid material */
             chunk->rest[lane / GXSP_LANES].material[lane % GXSP_LANES] = model->elements[elements[0].index].material;
             continue;
         }
-        gxsp_place_element(chunk, &model->elements[elements[e].index], seating.order[lane], lane, model->lumped_mass);
-        for (k = 0; k < 4; k++) seated[lane][k] = nodes[e][seating.order[lane][k]];
+        gxsp_place_element(chunk, &model->elements[elements[e].index], layout.order[lane], lane, model->lumped_mass);
+        for (k = 0; k < 4; k++) placed[lane][k] = nodes[e][layout.order[lane][k]];
     }
-    gxsp_set_corners(chunk, seated);
+    gxsp_set_corners(chunk, placed);
 }
 
-/* Blocks and nodes of the chunks */
+/* Blocks and nodes of all chunks */
 static void gxsp_fill_chunks(gxsp_system *system, const gxs_model *model, const gxsp_sorted *sorted,
                              gxsp_numbers *numbers) {
     uint32_t copies[GXSP_CHUNK][4], c;
     size_t first = 0;
-    for (c = 0; c < system->chunk_count; c++) {
-        gxsp_chunk *chunk = &system->chunks[c];
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        gxsp_chunk *chunk = &system->mesh.chunks[c];
         uint32_t e;
         for (e = 0; first + e < model->element_count && e < chunk->block_count * GXSP_LANES &&
                     sorted[first + e].class_index == chunk->class_index;
              e++) {
             const gxs_element *element = &model->elements[sorted[first + e].index];
-            gxsp_fetch(element, sizeof *element);
+            gxsp_prefetch(element, sizeof *element);
             memcpy(copies[e], element->copy, sizeof copies[e]);
         }
-        chunk->first_node = (uint32_t)system->slot_count;
-        chunk->node_count = gxsp_number_nodes(copies, e, numbers, system->nodes + system->slot_count);
+        chunk->first_node = (uint32_t)system->mesh.slot_count;
+        chunk->node_count = gxsp_number_nodes(copies, e, numbers, system->mesh.nodes + system->mesh.slot_count);
         gxsp_fill_chunk(chunk, model, sorted + first, copies, e);
         first += e;
-        system->slot_count += chunk->node_count;
+        system->mesh.slot_count += chunk->node_count;
     }
 }
 
-/* Chunks of the sorted elements: which blocks, what class. Returns how many. chunks: NULL, or room for all */
+/* Cuts the sorted elements into chunks: their blocks and classes. Returns the number of chunks. chunks: NULL, or
+ * room for all */
 static uint32_t gxsp_plan_chunks(gxsp_system *system, const gxsp_sorted *sorted, gxsp_chunk *chunks) {
     uint32_t chunk_count = 0;
     size_t i = 0;
-    system->block_count = 0;
-    while (i < system->element_count) {
+    system->mesh.block_count = 0;
+    while (i < system->model.element_count) {
         uint32_t class_index = sorted[i].class_index, count = 0;
         gxsp_chunk chunk;
         memset(&chunk, 0, sizeof chunk);
-        while (i < system->element_count && sorted[i].class_index == class_index && count < GXSP_CHUNK) ++i, ++count;
+        while (i < system->model.element_count && sorted[i].class_index == class_index && count < GXSP_CHUNK)
+            ++i, ++count;
         chunk.class_index = class_index;
         chunk.kind = (gxs_material_kind)(class_index / 4);
-        chunk.first_block = (uint32_t)system->block_count;
+        chunk.first_block = (uint32_t)system->mesh.block_count;
         chunk.block_count = (count + GXSP_LANES - 1) / GXSP_LANES;
-        system->block_count += chunk.block_count;
+        system->mesh.block_count += chunk.block_count;
         if (chunks) chunks[chunk_count] = chunk;
         chunk_count++;
     }
     return chunk_count;
 }
 
-/* Blocks of chunks count of which are planned, but for those of steps: see gxsp_steps_make */
+/* Blocks of the planned chunks, without those that linearisations write */
 static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count) {
     gxsp_rest *rest;
     gxsp_corners *corners;
     gxsp_gradients *gradients;
     gxsp_moments *moments;
     uint32_t *groups;
-    uint8_t *fresh;
+    uint8_t *changed;
     size_t blocks = 0, own = 0, general = 0;
     uint32_t c;
     for (c = 0; c < count; c++) {
@@ -3101,20 +3157,20 @@ static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count
     groups = (uint32_t *)gxsp_take(pool, blocks * GXSP_LANES, sizeof(uint32_t));
     gradients = (gxsp_gradients *)gxsp_take(pool, own, sizeof(gxsp_gradients));
     moments = (gxsp_moments *)gxsp_take(pool, general, sizeof(gxsp_moments));
-    fresh = (uint8_t *)gxsp_take(pool, blocks + count, 1);
+    changed = (uint8_t *)gxsp_take(pool, blocks + count, 1);
     if (pool->failed) return;
     memset(groups, 0xff, blocks * GXSP_LANES * sizeof *groups);
     for (c = 0; c < count; c++) {
         chunks[c].rest = rest;
         chunks[c].corners = corners;
         chunks[c].groups = groups;
-        chunks[c].fresh = fresh;
+        chunks[c].changed = changed;
         chunks[c].gradients = chunks[c].class_index & 2 ? gradients : NULL;
         chunks[c].moments = chunks[c].class_index & 1 ? moments : NULL;
         rest += chunks[c].block_count;
         corners += chunks[c].block_count;
         groups += chunks[c].block_count * GXSP_LANES;
-        fresh += chunks[c].block_count + 1;
+        changed += chunks[c].block_count + 1;
         gradients += chunks[c].class_index & 2 ? chunks[c].block_count : 0;
         moments += chunks[c].class_index & 1 ? chunks[c].block_count : 0;
     }
@@ -3144,76 +3200,80 @@ static void gxsp_tangents_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t cou
 static void gxsp_list_slots(gxsp_system *system) {
     uint32_t i;
     size_t s;
-    memset(system->copy_start, 0, (system->n + 2) * sizeof *system->copy_start);
-    for (s = 0; s < system->slot_count; s++) system->copy_start[system->nodes[s] + 2]++;
-    for (i = 0; i < system->n; i++) system->copy_start[i + 2] += system->copy_start[i + 1];
-    for (s = 0; s < system->slot_count; s++) /* slots are in the order of chunks */
-        system->copy_slot[system->copy_start[system->nodes[s] + 1]++] = (uint32_t)s;
-    memset(system->copy_slot + system->slot_count, 0, GXSP_AHEAD * sizeof *system->copy_slot);
-    memset(system->nodes + system->slot_count, 0, GXSP_AHEAD * sizeof *system->nodes);
+    memset(system->mesh.copy_start, 0, (system->model.n + 2) * sizeof *system->mesh.copy_start);
+    for (s = 0; s < system->mesh.slot_count; s++) system->mesh.copy_start[system->mesh.nodes[s] + 2]++;
+    for (i = 0; i < system->model.n; i++) system->mesh.copy_start[i + 2] += system->mesh.copy_start[i + 1];
+    for (s = 0; s < system->mesh.slot_count; s++) /* slots follow the order of chunks */
+        system->mesh.copy_slot[system->mesh.copy_start[system->mesh.nodes[s] + 1]++] = (uint32_t)s;
+    memset(system->mesh.copy_slot + system->mesh.slot_count, 0, GXSP_AHEAD * sizeof *system->mesh.copy_slot);
+    memset(system->mesh.nodes + system->mesh.slot_count, 0, GXSP_AHEAD * sizeof *system->mesh.nodes);
 }
 
 static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model) {
     gxsp_sorted *sorted = gxsp_order_elements(system, model, scratch);
     gxsp_numbers numbers;
     uint32_t *nodes;
-    numbers.local = (uint32_t *)gxsp_take(scratch, system->n, sizeof(uint32_t));
-    numbers.stamp = (uint32_t *)gxsp_take(scratch, system->n, sizeof(uint32_t));
+    numbers.local = (uint32_t *)gxsp_take(scratch, system->model.n, sizeof(uint32_t));
+    numbers.stamp = (uint32_t *)gxsp_take(scratch, system->model.n, sizeof(uint32_t));
     numbers.round = 0;
     if (scratch->failed) return;
-    system->chunk_count = gxsp_plan_chunks(system, sorted, NULL);
-    system->chunks = (gxsp_chunk *)gxsp_take(&system->pool, system->chunk_count, sizeof(gxsp_chunk));
-    system->chunk_collapsed = (uint8_t *)gxsp_take(&system->pool, system->chunk_count, 1);
-    system->chunk_still = (uint8_t *)gxsp_take(&system->pool, system->chunk_count, 1);
-    system->copy_start = (uint32_t *)gxsp_take(&system->pool, system->n + 2, sizeof(uint32_t));
-    /* its size is not known yet */
-    system->nodes = (uint32_t *)gxsp_take(scratch, 4 * system->element_count, sizeof(uint32_t));
+    system->mesh.chunk_count = gxsp_plan_chunks(system, sorted, NULL);
+    system->mesh.chunk_room = system->mesh.chunk_count;
+    gxsp_columns_make(system, GXSP_COLUMNS(gxsp_chunk_columns), GXSP_WITH_MODEL, system->mesh.chunk_count);
+    /* the number of slots is not known yet */
+    system->mesh.nodes = (uint32_t *)gxsp_take(scratch, 4 * system->model.element_count, sizeof(uint32_t));
     if (scratch->failed || system->pool.failed) return;
-    (void)gxsp_plan_chunks(system, sorted, system->chunks);
-    gxsp_blocks_make(&system->pool, system->chunks, system->chunk_count);
+    (void)gxsp_plan_chunks(system, sorted, system->mesh.chunks);
+    gxsp_blocks_make(&system->pool, system->mesh.chunks, system->mesh.chunk_count);
     if (system->pool.failed) return;
     gxsp_fill_chunks(system, model, sorted, &numbers);
-    system->copy_slot = (uint32_t *)gxsp_take(&system->pool, system->slot_count + GXSP_AHEAD, sizeof(uint32_t));
-    nodes = (uint32_t *)gxsp_take(&system->pool, system->slot_count + GXSP_AHEAD, sizeof(uint32_t));
+    system->mesh.copy_slot =
+        (uint32_t *)gxsp_take(&system->pool, system->mesh.slot_count + GXSP_AHEAD, sizeof(uint32_t));
+    nodes = (uint32_t *)gxsp_take(&system->pool, system->mesh.slot_count + GXSP_AHEAD, sizeof(uint32_t));
     if (system->pool.failed) return;
-    memcpy(nodes, system->nodes, system->slot_count * sizeof(uint32_t));
-    system->nodes = nodes;
+    memcpy(nodes, system->mesh.nodes, system->mesh.slot_count * sizeof(uint32_t));
+    system->mesh.nodes = nodes;
     gxsp_list_slots(system);
 }
 
-/* Does the element give corner i stiffness or mass? */
-static int gxsp_supports(const gxs_element *element, int i) {
-    double rows[4];
-    if (element->weight > 0) return 1;
-    gxsp_row_masses(element, rows);
-    return rows[i] > 0;
+/* >>copies: which copies move, which follow others, which belong together ------------------------------------------ */
+
+/* In: held copies, constraints and elements. Out: fixed copies, followers, components and the partial sums of
+ * chunks. Writes gxsp_model; marks in gxsp_history what a step leaves alone. */
+
+/* Columns over copies that come with the model. positions: as given, or NULL */
+static void gxsp_copies_make(gxsp_system *system, const double *positions) {
+    const size_t n = system->model.copy_room = system->model.n;
+    if (positions) system->model.positions = (double *)gxsp_take(&system->pool, n, 3 * sizeof(double));
+    if (system->model.positions) memcpy(system->model.positions, positions, 3 * n * sizeof(double));
+    gxsp_columns_make(system, GXSP_COLUMNS(gxsp_copy_columns), GXSP_WITH_MODEL, n);
 }
 
-/* Copies that no element supports are fixed like held ones; row sums of the mass. */
+/* Row sums of the mass. Copies that no element supports are fixed, like held ones. */
 static void gxsp_find_fixed(gxsp_system *system, const gxs_model *model) {
     size_t e, i;
     int k;
-    memset(system->fixed, 1, system->n);
+    memset(system->model.fixed, 1, system->model.n);
     for (e = 0; e < model->element_count; e++) {
         const gxs_element *element = &model->elements[e];
         double rows[4];
         gxsp_row_masses(element, rows);
         for (k = 0; k < 4; k++) {
-            if (gxsp_supports(element, k)) system->fixed[element->copy[k]] = 0;
-            system->lumped[element->copy[k]] += rows[k];
+            if (gxsp_supports(element, k)) system->model.fixed[element->copy[k]] = 0;
+            system->model.lumped[element->copy[k]] += rows[k];
         }
     }
     if (model->held)
-        for (i = 0; i < system->n; i++)
-            if (model->held[i]) system->held[i] = system->fixed[i] = 1;
+        for (i = 0; i < system->model.n; i++)
+            if (model->held[i]) system->model.held[i] = system->model.fixed[i] = 1;
 }
 
 static inline int gxsp_follows(const gxsp_system *system, size_t copy) {
-    return system->follower_count > 0 && system->follower[copy] != GXSP_NONE;
+    return system->model.follower_count > 0 && system->model.follower[copy] != GXSP_NONE;
 }
 
-/* Index of a constraint that cannot be, as its copy has two or a master follows others; SIZE_MAX if all can. held: n
- * flags or NULL; follows: n, scratch, 0 */
+/* Index of a constraint that is not allowed: its copy has two, or a master follows others. SIZE_MAX: all are
+ * allowed. held: n flags or NULL; follows: n zeros, scratch */
 static size_t gxsp_bad_constraint(const gxs_constraint *constraints, size_t count, const uint8_t *held,
                                   uint8_t *follows) {
     size_t i;
@@ -3231,52 +3291,49 @@ static size_t gxsp_bad_constraint(const gxs_constraint *constraints, size_t coun
 
 /* Room for so many followers, and for the copies that there are */
 static void gxsp_followers_room(gxsp_system *system, size_t count) {
-    gxsp_pool *pool = &system->pool;
-    if (count > system->follower_room) {
-        system->follower_room = (uint32_t)(count + count / 8);
-        system->followers =
-            (gxsp_follower *)gxsp_retake(pool, system->followers, 0, system->follower_room, sizeof(gxsp_follower));
+    gxsp_model *model = &system->model;
+    if (count > model->follower_room) {
+        model->follower_room = (uint32_t)gxsp_room(count);
+        model->followers =
+            (gxsp_follower *)gxsp_grow(&system->pool, model->followers, 0, model->follower_room, sizeof(gxsp_follower));
     }
-    if (count > 0 && system->n > system->follower_copies) {
-        system->follower_copies = system->n > system->copy_room ? system->n : system->copy_room;
-        system->follower =
-            (uint32_t *)gxsp_retake(pool, system->follower, 0, system->follower_copies, sizeof(uint32_t));
-    }
+    if (count > 0 && !model->follower)
+        model->follower = (uint32_t *)gxsp_take(&system->pool, model->copy_room, sizeof(uint32_t));
 }
 
-/* Which copies follow others: none of them is fixed unless it is held. */
+/* Sets the followers. None of them is fixed unless it is held. */
 static void gxsp_set_followers(gxsp_system *system, const gxs_constraint *constraints, size_t count) {
     size_t i;
     gxsp_followers_room(system, count);
-    system->follower_count = 0;
+    system->model.follower_count = 0;
     if (system->pool.failed || count == 0) return;
-    memset(system->follower, 0xff, system->n * sizeof *system->follower);
+    memset(system->model.follower, 0xff, system->model.n * sizeof *system->model.follower);
     for (i = 0; i < count; i++) {
-        gxsp_follower *follower = &system->followers[system->follower_count];
-        if (system->held[constraints[i].copy]) continue;
+        gxsp_follower *follower = &system->model.followers[system->model.follower_count];
+        if (system->model.held[constraints[i].copy]) continue;
         follower->copy = constraints[i].copy;
         memcpy(follower->master, constraints[i].master, sizeof follower->master);
         memcpy(follower->weight, constraints[i].weight, sizeof follower->weight);
-        system->fixed[follower->copy] = 0;
-        system->follower[follower->copy] = system->follower_count++;
+        system->model.fixed[follower->copy] = 0;
+        system->model.follower[follower->copy] = system->model.follower_count++;
     }
 }
 
-/* Joins what constraints couple. forest: n */
+/* Joins copies that constraints couple. forest: n */
 static void gxsp_join_followers(const gxsp_system *system, uint32_t *forest) {
     size_t i;
     int k;
-    for (i = 0; i < system->follower_count; i++)
+    for (i = 0; i < system->model.follower_count; i++)
         for (k = 0; k < 4; k++)
-            if (fabs(system->followers[i].weight[k]) > 0)
-                gxsp_join(forest, system->followers[i].copy, system->followers[i].master[k]);
+            if (fabs(system->model.followers[i].weight[k]) > 0)
+                gxsp_join(forest, system->model.followers[i].copy, system->model.followers[i].master[k]);
 }
 
-/* Joins what elements and constraints couple. forest: n */
+/* Joins copies that elements and constraints couple. forest: n */
 static void gxsp_join_copies(const gxsp_system *system, const gxs_model *model, uint32_t *forest) {
     size_t e, i;
     int k;
-    for (i = 0; i < system->n; i++) forest[i] = (uint32_t)i;
+    for (i = 0; i < system->model.n; i++) forest[i] = (uint32_t)i;
     for (e = 0; e < model->element_count; e++)
         for (k = 1; k < 4; k++)
             if (gxsp_supports(&model->elements[e], 0) || gxsp_supports(&model->elements[e], k))
@@ -3284,66 +3341,175 @@ static void gxsp_join_copies(const gxsp_system *system, const gxs_model *model, 
     gxsp_join_followers(system, forest);
 }
 
-/* Numbers the pieces: trees of a forest of copies */
-static void gxsp_number_pieces(gxsp_system *system, uint32_t *forest) {
+/* Numbers the components: the trees of a forest of copies */
+static void gxsp_number_components(gxsp_system *system, uint32_t *forest) {
     size_t i;
-    system->piece_count = 0;
-    for (i = 0; i < system->n; i++) { /* roots come before their copies: the lower index wins in gxsp_join */
+    system->model.component_count = 0;
+    for (i = 0; i < system->model.n; i++) { /* roots come before their copies: the lower index wins in gxsp_join */
         uint32_t root = gxsp_root(forest, (uint32_t)i);
-        system->piece[i] = root == i ? system->piece_count++ : system->piece[root];
+        system->model.component[i] = root == i ? system->model.component_count++ : system->model.component[root];
     }
 }
 
-/* Masses and states of the pieces, which are 0. A translation of one of state 0 meets no stiffness: K T = 0, so
- * T^T (K + rate M) x = rate x sum of lumped x. */
-static void gxsp_fill_pieces(gxsp_system *system) {
+/* Masses and states of the components, which are zero before. A translation of a component of state 0 meets no
+ * stiffness: K T = 0, so T^T (K + rate M) x = rate x sum of lumped x. */
+static void gxsp_fill_components(gxsp_system *system) {
     size_t i;
     uint32_t p;
-    for (i = 0; i < system->n; i++) {
-        gxsp_piece *piece = &system->pieces[system->piece[i]];
-        piece->mass += system->lumped[i];
-        piece->state |= system->fixed[i] ? GXSP_HELD : 0;
+    for (i = 0; i < system->model.n; i++) {
+        gxsp_component *component = &system->model.components[system->model.component[i]];
+        component->mass += system->model.lumped[i];
+        component->state |= system->model.fixed[i] ? GXSP_HELD : 0;
     }
-    for (i = 0; i < system->follower_count; i++) {
-        const double *w = system->followers[i].weight;
+    for (i = 0; i < system->model.follower_count; i++) {
+        const double *w = system->model.followers[i].weight;
         if (fabs(w[0] + w[1] + w[2] + w[3] - 1) > 1e-12)
-            system->pieces[system->piece[system->followers[i].copy]].state |= GXSP_UNBALANCED;
+            system->model.components[system->model.component[system->model.followers[i].copy]].state |= GXSP_UNBALANCED;
     }
-    for (p = 0; p < system->piece_count; p++)
-        system->pieces[p].state |= system->pieces[p].mass > 0 ? 0 : GXSP_UNBALANCED;
+    for (p = 0; p < system->model.component_count; p++)
+        system->model.components[p].state |= system->model.components[p].mass > 0 ? 0 : GXSP_UNBALANCED;
 }
 
-/* The pieces of every chunk, ascending. parts: NULL, or room for all. Returns how many there are. */
-static uint32_t gxsp_list_parts(gxsp_system *system, gxsp_part *parts) {
+/* The components of every chunk, ascending. partials: NULL, or room for all. Returns how many there are. */
+static uint32_t gxsp_list_partials(gxsp_system *system, gxsp_partial *partials) {
     uint32_t c, k, count = 0;
-    for (c = 0; c < system->piece_count; c++)
-        system->pieces[c].lead = GXSP_NONE; /* here: the chunk that has met it last */
-    for (c = 0; c < system->chunk_count; c++) {
-        gxsp_chunk *chunk = &system->chunks[c];
-        chunk->first_part = count;
+    for (c = 0; c < system->model.component_count; c++)
+        system->model.components[c].lead = GXSP_NONE; /* in this loop: the last chunk that has met it */
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        gxsp_chunk *chunk = &system->mesh.chunks[c];
+        chunk->first_partial = count;
         for (k = 0; k < chunk->node_count; k++) {
-            const uint32_t piece = system->piece[system->nodes[chunk->first_node + k]];
+            const uint32_t component = system->model.component[system->mesh.nodes[chunk->first_node + k]];
             uint32_t at = count;
-            if (system->pieces[piece].lead == c) continue;
-            system->pieces[piece].lead = c;
-            for (; parts && at > chunk->first_part && parts[at - 1].piece > piece; at--)
-                parts[at].piece = parts[at - 1].piece;
-            if (parts) parts[at].piece = piece;
+            if (system->model.components[component].lead == c) continue;
+            system->model.components[component].lead = c;
+            for (; partials && at > chunk->first_partial && partials[at - 1].component > component; at--)
+                partials[at].component = partials[at - 1].component;
+            if (partials) partials[at].component = component;
             count++;
         }
-        chunk->part_count = count - chunk->first_part;
+        chunk->partial_count = count - chunk->first_partial;
     }
-    for (c = 0; c < system->piece_count; c++) system->pieces[c].lead = c;
+    for (c = 0; c < system->model.component_count; c++) system->model.components[c].lead = c;
     return count;
 }
 
-/* Parts of the chunks, in place of those there were */
-static void gxsp_parts_make(gxsp_system *system) {
-    const uint32_t count = gxsp_list_parts(system, NULL);
-    system->parts = (gxsp_part *)gxsp_retake(&system->pool, system->parts, 0, count, sizeof(gxsp_part));
-    system->part_count = count;
-    if (!system->pool.failed) (void)gxsp_list_parts(system, system->parts);
+/* Partial sums of the chunks, in place of those before */
+static void gxsp_partials_make(gxsp_system *system) {
+    const uint32_t count = gxsp_list_partials(system, NULL);
+    system->mesh.partials =
+        (gxsp_partial *)gxsp_grow(&system->pool, system->mesh.partials, 0, count, sizeof(gxsp_partial));
+    system->mesh.partial_count = count;
+    if (!system->pool.failed) (void)gxsp_list_partials(system, system->mesh.partials);
 }
+
+/* The component that leads a copy's component */
+static gxsp_component *gxsp_lead_of(const gxsp_system *system, size_t copy) {
+    return &system->model.components[system->model.components[system->model.component[copy]].lead];
+}
+
+/* Marks the copies and chunks that the components' states leave alone. */
+static void gxsp_mark_still(gxsp_system *system) {
+    uint32_t c, k;
+    size_t i;
+    for (i = 0; i < system->model.n; i++)
+        system->state.still[i] =
+            system->model.fixed[i] || (system->model.components[system->model.component[i]].state & GXSP_ASLEEP);
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        system->state.chunk_still[c] = 1;
+        for (k = 0; k < system->mesh.chunks[c].node_count; k++)
+            system->state.chunk_still[c] &=
+                system->state.still[system->mesh.nodes[system->mesh.chunks[c].first_node + k]];
+    }
+}
+
+/* The copies that move an element's corner, and their weights: its own copy, or its masters. Returns how many. */
+static int gxsp_corner_masters(const gxsp_system *system, uint32_t copy, uint32_t *masters, float *weights) {
+    const gxsp_follower *follower;
+    int k, count = 0;
+    if (!gxsp_follows(system, copy)) {
+        masters[0] = copy;
+        weights[0] = 1;
+        return 1;
+    }
+    follower = &system->model.followers[system->model.follower[copy]];
+    for (k = 0; k < 4; k++)
+        if (fabs(follower->weight[k]) > 0) {
+            masters[count] = follower->master[k];
+            weights[count++] = (float)follower->weight[k];
+        }
+    return count;
+}
+
+static int gxsp_element_follows(const gxsp_system *system, const uint32_t *copies) {
+    return gxsp_follows(system, copies[0]) || gxsp_follows(system, copies[1]) || gxsp_follows(system, copies[2]) ||
+           gxsp_follows(system, copies[3]);
+}
+
+/* >>followers: motion from masters, forces to masters -------------------------------------------------------------- */
+
+/* In and out: vectors over copies. A follower moves by the weighted sum of its masters' motion; its forces act on
+ * them. */
+
+/* Increments x of followers from those of their masters */
+static void gxsp_extend(const gxsp_system *system, gxsp_vector4 *x) {
+    uint32_t i, k, c;
+    for (i = 0; i < system->model.follower_count; i++) {
+        const gxsp_follower *follower = &system->model.followers[i];
+        gxsp_vector4 sum = {0, 0, 0, 0};
+        for (k = 0; k < 4; k++)
+            for (c = 0; c < 3; c++) sum[c] += (float)follower->weight[k] * x[follower->master[k]][c];
+        memcpy(x[follower->copy], sum, sizeof sum);
+    }
+}
+
+/* Adds forces y on followers to those on their masters; 0 on followers. */
+static void gxsp_reduce(const gxsp_system *system, gxsp_vector4 *y) {
+    uint32_t i, k, c;
+    for (i = 0; i < system->model.follower_count; i++) {
+        const gxsp_follower *follower = &system->model.followers[i];
+        for (k = 0; k < 4; k++)
+            for (c = 0; c < 3; c++) y[follower->master[k]][c] += (float)follower->weight[k] * y[follower->copy][c];
+        memset(y[follower->copy], 0, sizeof *y);
+    }
+}
+
+/* Displacements of followers: that at from (NULL: 0), and the motion of their masters since then */
+static void gxsp_follow(const gxsp_system *system, const double *from, double *displacement) {
+    uint32_t i, k, c;
+    for (i = 0; i < system->model.follower_count; i++) {
+        const gxsp_follower *follower = &system->model.followers[i];
+        double *to = displacement + 3 * (size_t)follower->copy;
+        for (c = 0; c < 3; c++) {
+            double sum = from ? from[3 * (size_t)follower->copy + c] : 0;
+            for (k = 0; k < 4; k++) {
+                const size_t master = 3 * (size_t)follower->master[k] + c;
+                sum += follower->weight[k] * (displacement[master] - (from ? from[master] : 0));
+            }
+            to[c] = sum;
+        }
+    }
+}
+
+/* Adds residuals of followers to those of their masters, unless these are still. still: n */
+static void gxsp_reduce_residual(const gxsp_system *system, const uint8_t *still, double *r) {
+    uint32_t i, k, c;
+    for (i = 0; i < system->model.follower_count; i++) {
+        const gxsp_follower *follower = &system->model.followers[i];
+        for (k = 0; k < 4; k++)
+            for (c = 0; c < 3 && !still[follower->master[k]]; c++)
+                r[3 * (size_t)follower->master[k] + c] += follower->weight[k] * r[3 * (size_t)follower->copy + c];
+        memset(r + 3 * (size_t)follower->copy, 0, 3 * sizeof *r);
+    }
+}
+
+/* >>transfer: from one level of the multigrid to the next ---------------------------------------------------------- */
+
+/* In: places of a level's nodes in spacings of the next lattice, and which nodes are neighbours. Out: the next
+ * level's nodes, parents and weights. A coarse node is a point of the lattice together with one cluster, that is
+ * one connected set of the nodes in its support, so that coarse functions never cross a cut (the copies' own
+ * idea, one level up). Values between lattice points are linear on the six tetrahedra around a cell's diagonal:
+ * at most four weights, exact for affine fields. */
 
 /* Rest positions in spacings of the first lattice: GXSP_SPACING edges of an average whole element. 0: there is none. */
 static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, float (*to)[3]) {
@@ -3360,33 +3526,17 @@ static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, f
     }
     if (counted == 0) return 0;
     spacing = GXSP_SPACING * cbrt(5 * volume / (double)counted); /* five elements to a cube */
-    for (i = 0; i < system->n; i++)
+    for (i = 0; i < system->model.n; i++)
         for (k = 0; k < 3; k++) {
             double place = (model->positions[3 * i + k] - model->positions[k]) / spacing;
-            if (!(fabs(place) < 1e6)) /* single precision would not place it */
+            if (!(fabs(place) < 1e6)) /* single precision could not hold it */
                 return 0;
-            to[i][k] = (float)place + 0.31f; /* lattice planes off the mesh's own */
+            to[i][k] = (float)place + 0.31f; /* keeps lattice planes off those of the mesh */
         }
     return 1;
 }
 
-/* What is known of every copy */
-static void gxsp_copies_make(gxsp_system *system, const double *positions) {
-    if (positions) system->positions = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
-    if (system->positions) memcpy(system->positions, positions, 3 * system->n * sizeof(double));
-    system->lumped = (double *)gxsp_take(&system->pool, system->n, sizeof(double));
-    system->piece = (uint32_t *)gxsp_take(&system->pool, system->n, sizeof(uint32_t));
-    system->fixed = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
-    system->still = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
-    system->held = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
-}
-
-/* >>lattice: the multigrid's structure. A coarse node is a point of a lattice together with one connected component of
- * the nodes in its support, so that coarse functions never cross a cut (the copies' own trick, one level up). Values
- * between lattice points are linear on the six tetrahedra around a cell's diagonal: at most four weights, exact for
- * affine fields. */
-
-/* Lattice cell, order of axes and weights at a place. */
+/* Lattice cell, order of axes and weights at a place */
 static void gxsp_locate(const float *place, int32_t *cell, uint8_t *axis, float *weight) {
     float f[3];
     int k;
@@ -3409,8 +3559,8 @@ static void gxsp_locate(const float *place, int32_t *cell, uint8_t *axis, float 
     weight[3] = f[axis[2]];
 }
 
-/* Lattice points as one number; never 0. 2^20 points along each axis suffice for any 32-bit count of elements near each
- * other; farther ones would only share a number, not a component. */
+/* A lattice point as one number, never 0. 2^20 points along each axis suffice for any 32-bit count of elements near
+ * each other; farther ones would share a number, but no cluster. */
 static uint64_t gxsp_lattice_key(const int32_t *point) {
     return ((uint64_t)((uint32_t)point[0] & 0x1fffffu) << 42 | (uint64_t)((uint32_t)point[1] & 0x1fffffu) << 21 |
             ((uint32_t)point[2] & 0x1fffffu)) +
@@ -3429,13 +3579,13 @@ static void gxsp_tetrahedron_keys(const int32_t *cell, const uint8_t *axis, uint
     }
 }
 
-/* What the transfer of a level is made from: four lattice points around each node, those of weight 0 left out */
+/* Scratch for the transfer of a level: the four lattice points around each node; those of weight 0 are left out */
 typedef struct gxsp_transfer {
     uint64_t *key;    /* n x 4; 0: left out */
     uint32_t *forest; /* n x 4 */
 } gxsp_transfer;
 
-/* Nodes i and j are neighbours: the lattice points around both belong to one component there. */
+/* Nodes i and j are neighbours: they are in one cluster of each lattice point around both. */
 static void gxsp_join_nodes(gxsp_transfer *transfer, uint32_t i, uint32_t j) {
     const uint64_t *a = transfer->key + 4 * (size_t)i, *b = transfer->key + 4 * (size_t)j;
     uint32_t p, q;
@@ -3444,7 +3594,8 @@ static void gxsp_join_nodes(gxsp_transfer *transfer, uint32_t i, uint32_t j) {
             if (a[p] == b[q] && a[p] != 0) gxsp_join(transfer->forest, 4 * i + p, 4 * j + q);
 }
 
-/* Points and weights of a level's nodes, before components are joined. place: n x 3, in spacings of the next lattice */
+/* Lattice points and weights of a level's nodes, before clusters are joined. place: n x 3, in spacings of the next
+ * lattice */
 static void gxsp_transfer_begin(const gxsp_level *level, float (*place)[3], const uint8_t *fixed,
                                 gxsp_transfer *transfer) {
     uint32_t i;
@@ -3456,7 +3607,8 @@ static void gxsp_transfer_begin(const gxsp_level *level, float (*place)[3], cons
         gxsp_tetrahedron_keys(cell, axis, transfer->key + 4 * (size_t)i);
         for (k = 0; k < 4; k++) {
             transfer->forest[4 * (size_t)i + (size_t)k] = 4 * i + (uint32_t)k;
-            /* 1e-4: what this leaves out of an affine field is far below the smoother's part */
+            /* the error that dropping weights below 1e-4 makes in an affine field is far below what the smoother
+             * removes */
             if (level->weight[i][k] < 1e-4f || (fixed && fixed[i])) {
                 transfer->key[4 * (size_t)i + (size_t)k] = 0;
                 level->weight[i][k] = 0;
@@ -3465,7 +3617,7 @@ static void gxsp_transfer_begin(const gxsp_level *level, float (*place)[3], cons
     }
 }
 
-/* Numbers the components: the next level's nodes. Returns how many. */
+/* Numbers the clusters, which are the next level's nodes. Returns how many there are. */
 static uint32_t gxsp_transfer_end(gxsp_level *level, gxsp_transfer *transfer) {
     uint32_t slot, count = 0;
     /* roots come first in their tree: the lower index wins in gxsp_join */
@@ -3494,13 +3646,13 @@ static void gxsp_transfer_places(const gxsp_level *level, const gxsp_transfer *t
         }
 }
 
-/* Room for the transfer of a level to the next */
+/* Memory for the transfer of a level to the next */
 static void gxsp_transfer_make(gxsp_pool *pool, gxsp_level *level) {
     level->parent = (uint32_t(*)[4])gxsp_take(pool, level->n, sizeof *level->parent);
     level->weight = (float(*)[4])gxsp_take(pool, level->n, sizeof *level->weight);
 }
 
-/* Room for a coarse level of n nodes, but for its matrix and what only those have that are not the last */
+/* Memory for a coarse level of n nodes, without its matrix and what the last level does not have */
 static void gxsp_level_make(gxsp_pool *pool, gxsp_level *level, uint32_t n) {
     level->n = n;
     level->place = (int32_t(*)[3])gxsp_take(pool, n, sizeof *level->place);
@@ -3509,10 +3661,15 @@ static void gxsp_level_make(gxsp_pool *pool, gxsp_level *level, uint32_t n) {
     level->b = (gxsp_vector4 *)gxsp_take(pool, n, sizeof(gxsp_vector4));
 }
 
-/* Numbers of the blocks of a level's matrix; products read four numbers of a column, hence one more */
+/* >>levels: patterns of the coarse matrices, envelope of the factor ------------------------------------------------ */
+
+/* In: a level's pattern and transfer. Out: the pattern of the next level's matrix, and order and envelope of the
+ * last one's factor. Writes gxsp_multigrid, but no numbers. */
+
+/* Numbers in the blocks of a level's matrix, and one more: products read a column as four numbers. */
 static size_t gxsp_block_numbers(const gxsp_level *level) { return 9 * (size_t)level->start[level->n] + 1; }
 
-/* Growing list of a matrix's entries: rows and columns, the row the lower; in a pool of temporary memory */
+/* Growing list of a matrix's entries (row, column), row <= column; in scratch */
 typedef struct gxsp_list {
     gxsp_pool *scratch;
     uint32_t (*pair)[2], count, room;
@@ -3520,17 +3677,18 @@ typedef struct gxsp_list {
 
 static void gxsp_list_add(gxsp_list *list, uint32_t row, uint32_t column) {
     if (list->count == list->room) {
-        uint32_t(*larger)[2] = (uint32_t(*)[2])gxsp_take(list->scratch, 2 * (size_t)list->room + 1024, sizeof *larger);
+        const uint32_t room = 2 * list->room + 1024;
+        uint32_t(*larger)[2] = (uint32_t(*)[2])gxsp_grow(list->scratch, list->pair, list->count, room, sizeof *larger);
         if (!larger) return;
-        if (list->count > 0) memcpy(larger, list->pair, list->count * sizeof *larger);
         list->pair = larger;
-        list->room = 2 * list->room + 1024;
+        list->room = room;
     }
     list->pair[list->count][0] = row;
     list->pair[list->count++][1] = column;
 }
 
-/* Rows of a level's matrix from its entries on and above the diagonal, (row, column), of which some may come twice. */
+/* Rows of a level's matrix from its entries (row, column) on and above the diagonal, which may be listed more than
+ * once */
 static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *level, uint32_t (*list)[2],
                            uint32_t listed) {
     uint32_t *start = (uint32_t *)gxsp_take(scratch, (size_t)level->n + 2, sizeof(uint32_t));
@@ -3545,7 +3703,7 @@ static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *leve
         for (k = start[i]; k < start[i + 1]; k++)
             if (seen[columns[k]] != i + 1) {
                 seen[columns[k]] = i + 1;
-                columns[count++] = columns[k]; /* no more are kept than have been read */
+                columns[count++] = columns[k]; /* writes never overtake reads */
             }
         gxsp_sort_row(columns + level->start[i], count - level->start[i]);
     }
@@ -3554,7 +3712,20 @@ static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *leve
     if (!pool->failed) memcpy(level->column, columns, count * sizeof(uint32_t));
 }
 
-/* Rows of the next level's matrix, transfer^T A transfer, from a level's */
+/* Index of column j in row i, or of a lower column if the row does not have it */
+static uint32_t gxsp_find_entry(const gxsp_level *level, uint32_t i, uint32_t j) {
+    uint32_t low = level->start[i], high = level->start[i + 1];
+    while (high - low > 1) {
+        uint32_t middle = low + (high - low) / 2;
+        if (level->column[middle] <= j)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* Rows of the next level's matrix, transfer^T A transfer, from those of a level */
 static void gxsp_coarse_rows(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *level) {
     gxsp_level *next = level + 1;
     uint32_t *seen = (uint32_t *)gxsp_take(scratch, next->n, sizeof(uint32_t)),
@@ -3580,11 +3751,11 @@ static void gxsp_coarse_rows(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *le
     if (!scratch->failed) gxsp_rows_make(pool, scratch, next, list.pair, list.count);
 }
 
-/* The level after levels[at], at > 0, of twice its spacing. 0: it would not be much smaller. Scratch is left in the
- * pool of temporary memory. */
+/* Adds the level after levels[at], at > 0, with twice its spacing. 0: it would not be much smaller. What it takes
+ * of scratch stays there. */
 static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at) {
-    gxsp_level *level = &system->levels[at], *next = level + 1;
-    gxsp_pool *pool = &system->coarse;
+    gxsp_level *level = &system->multigrid.levels[at], *next = level + 1;
+    gxsp_pool *pool = &system->multigrid.pool;
     gxsp_owned *mark = pool->last;
     gxsp_transfer transfer;
     float(*place)[3] = (float(*)[3])gxsp_take(scratch, level->n, sizeof *place);
@@ -3613,7 +3784,7 @@ static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at) 
     return !pool->failed && !scratch->failed;
 }
 
-/* Neighbours of each node of a level, both ways; in temporary memory */
+/* Neighbours of each node of a level, in both directions; in scratch */
 typedef struct gxsp_graph {
     uint32_t n, *start, *other; /* start: n + 2 */
 } gxsp_graph;
@@ -3637,7 +3808,7 @@ static gxsp_graph gxsp_graph_make(gxsp_pool *scratch, const gxsp_level *level) {
     return graph;
 }
 
-/* Breadth-first order of the component of a seed, appended to order; place: those met have theirs, others GXSP_NONE.
+/* Appends the connected component of a seed to order, breadth first. place: GXSP_NONE for nodes not met yet.
  * Returns the new length. */
 static uint32_t gxsp_order_component(const gxsp_graph *graph, uint32_t seed, uint32_t count, uint32_t *order,
                                      uint32_t *place) {
@@ -3661,8 +3832,8 @@ static uint32_t gxsp_first_place(const gxsp_graph *graph, const uint32_t *order,
     return first;
 }
 
-/* Order for a small envelope: component by component, breadth first from a node that is last from some other. place: n,
- * scratch. Returns the multiplications of a factorisation. */
+/* Order for a small envelope: one connected component after the other, each breadth first from a node that was last
+ * from some other. place: n, scratch. Returns the multiplications of a factorisation. */
 static double gxsp_order_level(const gxsp_graph *graph, uint32_t *order, uint32_t *place) {
     uint32_t seed, i, k, count = 0, end;
     double cost = 0;
@@ -3676,7 +3847,7 @@ static double gxsp_order_level(const gxsp_graph *graph, uint32_t *order, uint32_
     }
     for (i = 0; i < graph->n; i++) {
         const double width = i - gxsp_first_place(graph, order, place, i) + 1;
-        cost += 13.5 * width * width; /* three rows, each of a width squared / 2 */
+        cost += 13.5 * width * width; /* three rows, each of width squared / 2 */
     }
     return cost;
 }
@@ -3692,54 +3863,52 @@ static int gxsp_factors(gxsp_pool *scratch, const gxsp_level *level, size_t copi
     return factors;
 }
 
-/* Row i of the factor, by columns from 0 on, of which it has those from first on. Rows of a place are one column longer
- * each. */
+/* Row i of the factor, indexed by column; valid from its first column on. Each row of a place is one column longer
+ * than the one before. */
 static inline float *gxsp_factor_row(const gxsp_factor *factor, uint32_t i) {
     const uint32_t place = i / 3, r = i % 3;
     return factor->entry + (factor->row[place] + r * (size_t)(3 * place - factor->first[place] + 1) + (r == 2));
 }
 
-/* Order and envelope of the last level */
+/* Order and envelope of the last level's factor */
 static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch) {
-    const gxsp_level *level = &system->levels[system->level_count - 1];
-    gxsp_factor *factor = &system->factor;
+    const gxsp_level *level = &system->multigrid.levels[system->multigrid.level_count - 1];
+    gxsp_factor *factor = &system->multigrid.factor;
     uint32_t *place = (uint32_t *)gxsp_take(scratch, level->n, sizeof(uint32_t)), i;
     const gxsp_graph graph = gxsp_graph_make(scratch, level);
     size_t entries = 0;
     factor->n = 3 * level->n;
-    factor->order = (uint32_t *)gxsp_take(&system->coarse, level->n, sizeof(uint32_t));
-    factor->first = (uint32_t *)gxsp_take(&system->coarse, level->n, sizeof(uint32_t));
-    factor->row = (size_t *)gxsp_take(&system->coarse, level->n, sizeof(size_t));
-    factor->x = (double *)gxsp_take(&system->coarse, factor->n, sizeof(double));
-    if (scratch->failed || system->coarse.failed) return;
+    factor->order = (uint32_t *)gxsp_take(&system->multigrid.pool, level->n, sizeof(uint32_t));
+    factor->first = (uint32_t *)gxsp_take(&system->multigrid.pool, level->n, sizeof(uint32_t));
+    factor->row = (size_t *)gxsp_take(&system->multigrid.pool, level->n, sizeof(size_t));
+    factor->x = (double *)gxsp_take(&system->multigrid.pool, factor->n, sizeof(double));
+    if (scratch->failed || system->multigrid.pool.failed) return;
     (void)gxsp_order_level(&graph, factor->order, place);
     for (i = 0; i < level->n; i++) {
         const uint32_t first = 3 * gxsp_first_place(&graph, factor->order, place, i);
         factor->first[i] = first;
-        factor->row[i] = entries - first; /* no less than 0: every row before has an entry */
+        factor->row[i] = entries - first; /* not negative: every row before has an entry */
         entries += 3 * (size_t)(3 * i - first) + 6;
     }
-    factor->entry = (float *)gxsp_take(&system->coarse, entries, sizeof(float));
+    factor->entry = (float *)gxsp_take(&system->multigrid.pool, entries, sizeof(float));
     factor->entry_count = entries;
 }
 
-static void gxsp_lane_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t block, int lane,
-                             uint32_t *copies) {
-    const gxsp_corners *corner = &chunk->corners[block];
-    int i;
-    for (i = 0; i < 4; i++) copies[i] = system->nodes[chunk->first_node + corner->node[i][lane]];
-}
+/* >>pattern: edges of chunks, pattern of level 1 and of the assembled matrix --------------------------------------- */
+
+/* In: chunks and the transfer of level 0. Out: the rows of level 1's matrix, found without an assembled one, and
+ * the pattern of the assembled matrix. Edges and pairs are of one chunk at a time, in scratch or shared memory. */
 
 /* Corners of the ten blocks of an element, in the order of gxs_element.mass */
 static const int gxsp_pair_corners[10][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {1, 1},
                                              {1, 2}, {1, 3}, {2, 2}, {2, 3}, {3, 3}};
 
-/* Arrays for the edges of any chunk; numbers: with those of the Hessian's blocks, for which edges have been counted */
+/* Arrays for the edges of any chunk. numbers: with those for blocks of the Hessian; edges are counted then */
 static void gxsp_edges_carve(gxsp_system *system, gxsp_space *space, int numbers) {
-    gxsp_edges *edges = &system->edges;
+    gxsp_edges *edges = &system->multigrid.edges;
     size_t c, lanes = 0, nodes = 1, most = 0;
-    for (c = 0; c < system->chunk_count; c++) {
-        const gxsp_chunk *chunk = &system->chunks[c];
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        const gxsp_chunk *chunk = &system->mesh.chunks[c];
         const size_t of = chunk->block_count * GXSP_LANES, count = numbers ? chunk->edge_count : 1 + 6 * of;
         lanes = of > lanes ? of : lanes;
         nodes = chunk->node_count > nodes ? chunk->node_count : nodes;
@@ -3747,7 +3916,7 @@ static void gxsp_edges_carve(gxsp_system *system, gxsp_space *space, int numbers
     }
     edges->table = (uint16_t *)gxsp_carve(space, nodes * (nodes - 1) / 2, sizeof(uint16_t));
     edges->table_size = nodes * (nodes - 1) / 2;
-    edges->ends = (uint32_t *)gxsp_carve(space, most + 1, sizeof(uint32_t)); /* one more is written than counts */
+    edges->ends = (uint32_t *)gxsp_carve(space, most + 1, sizeof(uint32_t)); /* one more is written than counted */
     edges->parent = (uint16_t(*)[4])gxsp_carve(space, nodes, sizeof *edges->parent);
     if (!numbers) return;
     edges->block = (float(*)[9])gxsp_carve(space, most, sizeof *edges->block);
@@ -3759,7 +3928,7 @@ static void gxsp_edges_carve(gxsp_system *system, gxsp_space *space, int numbers
     edges->mass = (float *)gxsp_carve(space, nodes, sizeof(float));
 }
 
-/* Room for listing the edges of any chunk, in temporary memory */
+/* Memory for listing the edges of any chunk, in scratch */
 static void gxsp_edges_make(gxsp_system *system, gxsp_pool *scratch) {
     gxsp_space space = {NULL, 0};
     gxsp_edges_carve(system, &space, 0);
@@ -3773,8 +3942,8 @@ static void gxsp_edges_begin(gxsp_edges *edges, const gxsp_chunk *chunk) {
     edges->count = 1;
 }
 
-/* The edge of two nodes, made where there is none; 0 of a node and itself. There is no branch on whether there is one:
- * it could not be foretold. count: of edges so far */
+/* The edge of two nodes, made if there is none yet; 0 for a node and itself. Has no branch on whether there is one:
+ * processors could not predict it. count: edges so far */
 static inline uint16_t gxsp_find_edge(const gxsp_edges *edges, uint32_t i, uint32_t j, uint32_t *count) {
     const uint32_t low = i < j ? i : j, high = i < j ? j : i, ends = low << 16 | high;
     uint16_t *at = &edges->table[high * (high - 1) / 2 + low];
@@ -3787,7 +3956,7 @@ static inline uint16_t gxsp_find_edge(const gxsp_edges *edges, uint32_t i, uint3
     return *at;
 }
 
-/* The six edges of each element of a block; 0 where it has no weight */
+/* The six edges of each element of a block; 0 where the element has no weight */
 static void gxsp_block_edges(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b, uint16_t (*edge)[GXSP_LANES]) {
     const gxsp_corners *corner = &chunk->corners[b];
     uint32_t count = edges->count;
@@ -3801,63 +3970,64 @@ static void gxsp_block_edges(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_
     edges->count = count;
 }
 
-/* All edges of a chunk's elements of any weight */
+/* Lists the edges of a chunk's elements that have weight. */
 static void gxsp_list_edges(gxsp_system *system, gxsp_chunk *chunk) {
     uint16_t edge[6][GXSP_LANES];
     uint32_t b;
-    gxsp_edges_begin(&system->edges, chunk);
-    for (b = 0; b < chunk->block_count; b++) gxsp_block_edges(&system->edges, chunk, b, edge);
-    chunk->edge_count = system->edges.count;
+    gxsp_edges_begin(&system->multigrid.edges, chunk);
+    for (b = 0; b < chunk->block_count; b++) gxsp_block_edges(&system->multigrid.edges, chunk, b, edge);
+    chunk->edge_count = system->multigrid.edges.count;
 }
 
-/* Counts the edges of chunks of which they are not known. */
+/* Counts the edges of chunks for which they are not known. */
 static void gxsp_count_edges(gxsp_system *system) {
     uint32_t c;
-    for (c = 0; c < system->chunk_count; c++)
-        if (system->chunks[c].edge_count == 0) gxsp_list_edges(system, &system->chunks[c]);
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        if (system->mesh.chunks[c].edge_count == 0) gxsp_list_edges(system, &system->mesh.chunks[c]);
 }
 
-/* Numbers the coarse nodes that a chunk's nodes follow. */
+/* Numbers the coarse nodes that are parents of a chunk's nodes. */
 static void gxsp_pairs_begin(gxsp_system *system, const gxsp_chunk *chunk) {
-    gxsp_pairs *pairs = &system->pairs;
+    gxsp_pairs *pairs = &system->multigrid.pairs;
     uint32_t i, k;
     pairs->round++;
     pairs->count = 1;
     for (i = 0; i < chunk->node_count; i++)
         for (k = 0; k < 4; k++) {
-            const uint32_t parent = system->levels[0].parent[system->nodes[chunk->first_node + i]][k];
-            system->edges.parent[i][k] = 0;
+            const uint32_t parent = system->multigrid.levels[0].parent[system->mesh.nodes[chunk->first_node + i]][k];
+            system->multigrid.edges.parent[i][k] = 0;
             if (parent == GXSP_NONE) continue;
             if (pairs->stamp[parent] != pairs->round) {
                 pairs->stamp[parent] = pairs->round;
                 pairs->node[pairs->count] = parent;
                 pairs->local[parent] = pairs->count++;
             }
-            system->edges.parent[i][k] = (uint16_t)pairs->local[parent];
+            system->multigrid.edges.parent[i][k] = (uint16_t)pairs->local[parent];
         }
     memset(pairs->seen, 0, pairs->count * sizeof *pairs->seen);
 }
 
-/* Arrays for the pairs of any chunk; numbers: with those for entries of matrices */
+/* Arrays for the pairs of any chunk. numbers: with those for entries of matrices */
 static void gxsp_pairs_carve(gxsp_system *system, gxsp_space *space, int numbers) {
-    gxsp_pairs *pairs = &system->pairs;
-    const size_t n = system->levels[1].n, side = pairs->most < GXSP_CHUNK_PARENTS ? pairs->most : GXSP_CHUNK_PARENTS;
+    gxsp_pairs *pairs = &system->multigrid.pairs;
+    const size_t n = system->multigrid.levels[1].n,
+                 side = pairs->most < GXSP_CHUNK_PARENTS ? pairs->most : GXSP_CHUNK_PARENTS;
     /* the first level whose matrix is that of another one times transfers */
-    const uint32_t next = system->fine ? 1 : 2;
+    const uint32_t next = system->multigrid.fine ? 1 : 2;
     pairs->local = (uint32_t *)gxsp_carve(space, n, sizeof(uint32_t));
     pairs->stamp = (uint32_t *)gxsp_carve(space, n, sizeof(uint32_t));
     pairs->node = (uint32_t *)gxsp_carve(space, n + 1, sizeof(uint32_t));
     pairs->seen = (uint32_t *)gxsp_carve(space, n + 1, sizeof(uint32_t));
     if (!numbers) return;
     pairs->entry = (uint32_t *)gxsp_carve(space, side * side, sizeof(uint32_t));
-    system->edges.half = (float(*)[9])gxsp_carve(space, pairs->most, sizeof *system->edges.half);
-    /* one more is written than counts */
-    system->edges.touched = (uint16_t *)gxsp_carve(space, (size_t)pairs->most + 1, sizeof(uint16_t));
-    pairs->half =
-        (float(*)[9])gxsp_carve(space, next < system->level_count ? system->levels[next].n : 0, sizeof *pairs->half);
+    system->multigrid.edges.half = (float(*)[9])gxsp_carve(space, pairs->most, sizeof *system->multigrid.edges.half);
+    /* one more is written than counted */
+    system->multigrid.edges.touched = (uint16_t *)gxsp_carve(space, (size_t)pairs->most + 1, sizeof(uint16_t));
+    pairs->half = (float(*)[9])gxsp_carve(
+        space, next < system->multigrid.level_count ? system->multigrid.levels[next].n : 0, sizeof *pairs->half);
 }
 
-/* Room for listing the pairs of any chunk, in temporary memory, and how many coarse nodes it has at most */
+/* Memory for listing the pairs of any chunk, in scratch, and the largest number of coarse nodes of a chunk */
 static void gxsp_pairs_make(gxsp_system *system, gxsp_pool *scratch) {
     gxsp_space space = {NULL, 0};
     uint32_t c;
@@ -3865,14 +4035,16 @@ static void gxsp_pairs_make(gxsp_system *system, gxsp_pool *scratch) {
     space.memory = (unsigned char *)gxsp_take(scratch, space.used, 1);
     space.used = 0;
     gxsp_pairs_carve(system, &space, 0);
-    system->pairs.round = system->pairs.most = 0;
-    for (c = 0; c < system->chunk_count && !scratch->failed && !system->fine; c++) {
-        gxsp_pairs_begin(system, &system->chunks[c]);
-        system->pairs.most = system->pairs.count > system->pairs.most ? system->pairs.count : system->pairs.most;
+    system->multigrid.pairs.round = system->multigrid.pairs.most = 0;
+    for (c = 0; c < system->mesh.chunk_count && !scratch->failed && !system->multigrid.fine; c++) {
+        gxsp_pairs_begin(system, &system->mesh.chunks[c]);
+        system->multigrid.pairs.most = system->multigrid.pairs.count > system->multigrid.pairs.most
+                                         ? system->multigrid.pairs.count
+                                         : system->multigrid.pairs.most;
     }
 }
 
-/* Sets of a chunk's coarse nodes, a bit for each, words to a set */
+/* Sets of a chunk's coarse nodes, as bits in `words` words */
 typedef struct gxsp_sets {
     uint64_t *own, *reach; /* by node: its parents; those of its neighbours too */
     uint64_t *row;         /* by number of the coarse node: those that it shares an element with */
@@ -3887,18 +4059,19 @@ static void gxsp_join_sets(uint64_t *to, const uint64_t *from, size_t words) {
 /* The sets of a chunk after gxsp_pairs_begin. memory: room for all */
 static gxsp_sets gxsp_find_sets(gxsp_system *system, const gxsp_chunk *chunk, uint64_t *memory) {
     gxsp_sets sets;
-    const size_t words = sets.words = (system->pairs.count + 63) / 64;
+    const size_t words = sets.words = (system->multigrid.pairs.count + 63) / 64;
     uint32_t i, k, b;
     size_t word;
     int l;
     sets.own = memory;
     sets.reach = sets.own + chunk->node_count * words;
     sets.row = sets.reach + chunk->node_count * words;
-    memset(memory, 0, (2 * (size_t)chunk->node_count + system->pairs.count) * words * sizeof *memory);
+    memset(memory, 0, (2 * (size_t)chunk->node_count + system->multigrid.pairs.count) * words * sizeof *memory);
     for (i = 0; i < chunk->node_count; i++)
         for (k = 0; k < 4; k++)
-            if (system->levels[0].parent[system->nodes[chunk->first_node + i]][k] != GXSP_NONE)
-                sets.own[i * words + system->edges.parent[i][k] / 64] |= (uint64_t)1 << system->edges.parent[i][k] % 64;
+            if (system->multigrid.levels[0].parent[system->mesh.nodes[chunk->first_node + i]][k] != GXSP_NONE)
+                sets.own[i * words + system->multigrid.edges.parent[i][k] / 64] |=
+                    (uint64_t)1 << system->multigrid.edges.parent[i][k] % 64;
     for (b = 0; b < chunk->block_count; b++)
         for (l = 0; l < GXSP_LANES; l++) {
             const gxsp_rest *rest = &chunk->rest[b];
@@ -3914,21 +4087,21 @@ static gxsp_sets gxsp_find_sets(gxsp_system *system, const gxsp_chunk *chunk, ui
         }
     for (i = 0; i < chunk->node_count; i++)
         for (k = 0; k < 4; k++)
-            if (system->levels[0].parent[system->nodes[chunk->first_node + i]][k] != GXSP_NONE)
-                gxsp_join_sets(sets.row + system->edges.parent[i][k] * words, sets.reach + i * words, words);
+            if (system->multigrid.levels[0].parent[system->mesh.nodes[chunk->first_node + i]][k] != GXSP_NONE)
+                gxsp_join_sets(sets.row + system->multigrid.edges.parent[i][k] * words, sets.reach + i * words, words);
     return sets;
 }
 
-/* Lists the entries of level 1's matrix that a chunk needs. dirty: by coarse node; only entries of one at least are
- * listed; NULL: all are. memory: see gxsp_find_sets */
+/* Lists the entries of level 1's matrix to which a chunk adds. dirty: by coarse node; only entries with a dirty
+ * node are listed; NULL: all are. memory: see gxsp_find_sets */
 static void gxsp_list_pairs(gxsp_system *system, const gxsp_chunk *chunk, uint64_t *memory, const uint8_t *dirty,
                             gxsp_list *list) {
-    const uint32_t *node = system->pairs.node;
+    const uint32_t *node = system->multigrid.pairs.node;
     gxsp_sets sets;
     uint32_t i, k;
     gxsp_pairs_begin(system, chunk);
     sets = gxsp_find_sets(system, chunk, memory);
-    for (i = 0; i < system->pairs.count; i++)
+    for (i = 0; i < system->multigrid.pairs.count; i++)
         for (k = 0; k < sets.words; k++) {
             uint64_t set = sets.row[i * sets.words + k];
             uint32_t j;
@@ -3938,19 +4111,20 @@ static void gxsp_list_pairs(gxsp_system *system, const gxsp_chunk *chunk, uint64
         }
 }
 
-/* Does a chunk have a node that follows one of the dirty? */
+/* Does a node of the chunk have a dirty parent? */
 static int gxsp_follows_dirty(const gxsp_system *system, const gxsp_chunk *chunk, const uint8_t *dirty) {
     uint32_t i, k;
     for (i = 0; i < chunk->node_count; i++)
         for (k = 0; k < 4; k++) {
-            const uint32_t parent = system->levels[0].parent[system->nodes[chunk->first_node + i]][k];
+            const uint32_t parent = system->multigrid.levels[0].parent[system->mesh.nodes[chunk->first_node + i]][k];
             if (parent != GXSP_NONE && dirty[parent]) return 1;
         }
     return 0;
 }
 
-/* Level 1's matrix: two nodes are neighbours where an element follows both; every node is its own. before: the level of
- * which all but the dirty nodes and those after its own have the neighbours that they had; NULL: none has. */
+/* Pattern of level 1's matrix: two nodes are neighbours where an element has both as parents; every node is its own
+ * neighbour. before: the level before an update; nodes that are in it and not dirty keep their neighbours. NULL:
+ * all are found anew */
 static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gxsp_level *before,
                                const uint8_t *dirty) {
     uint32_t c, i, k, nodes = 0;
@@ -3958,58 +4132,23 @@ static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gx
     gxsp_list list;
     memset(&list, 0, sizeof list);
     list.scratch = scratch;
-    for (c = 0; c < system->chunk_count; c++)
-        nodes = system->chunks[c].node_count > nodes ? system->chunks[c].node_count : nodes;
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        nodes = system->mesh.chunks[c].node_count > nodes ? system->mesh.chunks[c].node_count : nodes;
     /* four parents to a node */
     memory = (uint64_t *)gxsp_take(scratch, (6 * (size_t)nodes + 1) * (nodes / 16 + 1), sizeof(uint64_t));
     if (scratch->failed) return;
-    for (i = 0; i < system->levels[1].n; i++) gxsp_list_add(&list, i, i);
+    for (i = 0; i < system->multigrid.levels[1].n; i++) gxsp_list_add(&list, i, i);
     for (i = 0; before && i < before->n; i++)
         for (k = before->start[i]; k < before->start[i + 1] && !dirty[i]; k++)
             if (before->column[k] > i && !dirty[before->column[k]]) gxsp_list_add(&list, i, before->column[k]);
-    for (c = 0; c < system->chunk_count; c++)
-        if (!before || gxsp_follows_dirty(system, &system->chunks[c], dirty))
-            gxsp_list_pairs(system, &system->chunks[c], memory, before ? dirty : NULL, &list);
-    if (!scratch->failed) gxsp_rows_make(&system->coarse, scratch, &system->levels[1], list.pair, list.count);
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        if (!before || gxsp_follows_dirty(system, &system->mesh.chunks[c], dirty))
+            gxsp_list_pairs(system, &system->mesh.chunks[c], memory, before ? dirty : NULL, &list);
+    if (!scratch->failed)
+        gxsp_rows_make(&system->multigrid.pool, scratch, &system->multigrid.levels[1], list.pair, list.count);
 }
 
-/* Index of column j in row i, or that of a lower one if the row does not have it */
-static uint32_t gxsp_find_entry(const gxsp_level *level, uint32_t i, uint32_t j) {
-    uint32_t low = level->start[i], high = level->start[i + 1];
-    while (high - low > 1) {
-        uint32_t middle = low + (high - low) / 2;
-        if (level->column[middle] <= j)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
-}
-
-/* The copies that an element's corner moves, with their weights: its own, or its masters. Returns how many. */
-static int gxsp_corner_masters(const gxsp_system *system, uint32_t copy, uint32_t *masters, float *weights) {
-    const gxsp_follower *follower;
-    int k, count = 0;
-    if (!gxsp_follows(system, copy)) {
-        masters[0] = copy;
-        weights[0] = 1;
-        return 1;
-    }
-    follower = &system->followers[system->follower[copy]];
-    for (k = 0; k < 4; k++)
-        if (fabs(follower->weight[k]) > 0) {
-            masters[count] = follower->master[k];
-            weights[count++] = (float)follower->weight[k];
-        }
-    return count;
-}
-
-static int gxsp_element_follows(const gxsp_system *system, const uint32_t *copies) {
-    return gxsp_follows(system, copies[0]) || gxsp_follows(system, copies[1]) || gxsp_follows(system, copies[2]) ||
-           gxsp_follows(system, copies[3]);
-}
-
-/* Rows and columns, the row the lower, that an element adds to. Returns how many. */
+/* Entries (row, column), row <= column, to which an element adds. Returns how many. */
 static uint32_t gxsp_element_pairs(const gxsp_system *system, const uint32_t *copies, uint32_t (*list)[2]) {
     uint32_t all[16], count = 0, listed = 0, i, j;
     float weights[4];
@@ -4023,25 +4162,25 @@ static uint32_t gxsp_element_pairs(const gxsp_system *system, const uint32_t *co
     return listed;
 }
 
-/* The assembled matrix of what followers leave free: copies are neighbours where they share an element; every copy is
- * its own. */
+/* The pattern of the assembled matrix on copies that follow nothing: copies are neighbours where they share an
+ * element; every copy is its own neighbour. */
 static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch) {
-    gxsp_level *fine = &system->levels[0];
+    gxsp_level *fine = &system->multigrid.levels[0];
     uint32_t(*list)[2] = NULL, c, b, i, count, room = 0;
     int l, pair, pass;
-    system->fine = (gxsp_fine *)gxsp_take(&system->pool, system->block_count, sizeof(gxsp_fine));
-    fine->start = (uint32_t *)gxsp_take(&system->pool, system->n + 1, sizeof(uint32_t));
-    fine->inverse = (float *)gxsp_take(&system->pool, 6 * system->n, sizeof(float));
+    system->multigrid.fine = (gxsp_fine *)gxsp_take(&system->pool, system->mesh.block_count, sizeof(gxsp_fine));
+    fine->start = (uint32_t *)gxsp_take(&system->pool, system->model.n + 1, sizeof(uint32_t));
+    fine->inverse = (float *)gxsp_take(&system->pool, 6 * system->model.n, sizeof(float));
     if (system->pool.failed) return;
     for (pass = 0; pass < 2; pass++) { /* count, then list */
         if (pass == 1 && !(list = (uint32_t(*)[2])gxsp_take(scratch, room, sizeof *list))) return;
         for (i = 0, count = 0; i < fine->n; i++, count++)
             if (list) list[count][0] = list[count][1] = i;
-        for (c = 0; c < system->chunk_count; c++)
-            for (b = 0; b < system->chunks[c].block_count; b++)
+        for (c = 0; c < system->mesh.chunk_count; c++)
+            for (b = 0; b < system->mesh.chunks[c].block_count; b++)
                 for (l = 0; l < GXSP_LANES; l++) {
                     uint32_t copies[4], pairs[136][2];
-                    gxsp_lane_copies(system, &system->chunks[c], b, l, copies);
+                    gxsp_lane_copies(system, &system->mesh.chunks[c], b, l, copies);
                     count += gxsp_element_pairs(system, copies, list ? list + count : pairs);
                 }
         room = count;
@@ -4049,133 +4188,147 @@ static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch) {
     gxsp_rows_make(&system->pool, scratch, fine, list, count);
     if (!scratch->failed) fine->block = (float *)gxsp_take(&system->pool, gxsp_block_numbers(fine), sizeof(float));
     if (scratch->failed || system->pool.failed) return;
-    for (c = 0; c < system->chunk_count; c++)
-        for (i = 0; i < system->chunks[c].block_count * GXSP_LANES; i++) {
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        for (i = 0; i < system->mesh.chunks[c].block_count * GXSP_LANES; i++) {
             uint32_t copies[4];
-            gxsp_lane_copies(system, &system->chunks[c], i / GXSP_LANES, (int)(i % GXSP_LANES), copies);
+            gxsp_lane_copies(system, &system->mesh.chunks[c], i / GXSP_LANES, (int)(i % GXSP_LANES), copies);
             for (pair = 0; pair < 10; pair++) {
                 const uint32_t p = copies[gxsp_pair_corners[pair][0]], q = copies[gxsp_pair_corners[pair][1]];
-                system->fine[system->chunks[c].first_block + i / GXSP_LANES].entry[pair][i % GXSP_LANES] =
-                    gxsp_element_follows(system, copies) ? GXSP_NONE
-                                                         : gxsp_find_entry(fine, p < q ? p : q, p < q ? q : p);
+                system->multigrid.fine[system->mesh.chunks[c].first_block + i / GXSP_LANES]
+                    .entry[pair][i % GXSP_LANES] = gxsp_element_follows(system, copies)
+                                                     ? GXSP_NONE
+                                                     : gxsp_find_entry(fine, p < q ? p : q, p < q ? q : p);
             }
         }
 }
+
+/* >>hierarchy: all levels ------------------------------------------------------------------------------------------ */
+
+/* In: the model with its transfer to be made. Out: level_count and the structure of every level; 0 levels if
+ * there is nothing to coarsen. */
 
 /* The rows of level 1 and all levels after it. before, dirty: see gxsp_first_pattern */
 static void gxsp_levels_make(gxsp_system *system, gxsp_pool *scratch, const gxsp_level *before, const uint8_t *dirty) {
     uint32_t at;
     gxsp_pairs_make(system, scratch);
     if (scratch->failed) return;
-    if (system->fine)
-        gxsp_coarse_rows(&system->coarse, scratch, &system->levels[0]);
+    if (system->multigrid.fine)
+        gxsp_coarse_rows(&system->multigrid.pool, scratch, &system->multigrid.levels[0]);
     else
         gxsp_first_pattern(system, scratch, before, dirty);
     gxsp_count_edges(system);
-    if (scratch->failed || system->coarse.failed) return;
+    if (scratch->failed || system->multigrid.pool.failed) return;
     for (at = 1;
-         at + 1 < GXSP_LEVELS && !gxsp_factors(scratch, &system->levels[at], at == 1 ? system->n / 2 : system->n) &&
+         at + 1 < GXSP_LEVELS &&
+         !gxsp_factors(scratch, &system->multigrid.levels[at], at == 1 ? system->model.n / 2 : system->model.n) &&
          gxsp_add_level(system, scratch, at);
          at++)
         ;
-    system->level_count = at + 1;
-    for (at = 1; !scratch->failed && !system->coarse.failed && (at == 1 || at + 1 < system->level_count); at++)
-        system->levels[at].block =
-            (float *)gxsp_take(&system->coarse, gxsp_block_numbers(&system->levels[at]), sizeof(float));
+    system->multigrid.level_count = at + 1;
+    for (at = 1;
+         !scratch->failed && !system->multigrid.pool.failed && (at == 1 || at + 1 < system->multigrid.level_count);
+         at++)
+        system->multigrid.levels[at].block = (float *)gxsp_take(
+            &system->multigrid.pool, gxsp_block_numbers(&system->multigrid.levels[at]), sizeof(float));
     gxsp_factor_make(system, scratch);
 }
 
-/* The transfer of the model by a lattice. place: n x 3, in its spacings. Returns how many nodes level 1 has. */
+/* The transfer of the model by a lattice. place: n x 3, in its spacings. Returns the number of level 1's nodes. */
 static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], gxsp_transfer *transfer) {
     uint32_t c, e;
-    gxsp_transfer_begin(&system->levels[0], place, system->fixed, transfer);
-    for (c = 0; c < system->chunk_count; c++) {
-        const uint32_t *copies = system->nodes + system->chunks[c].first_node;
-        gxsp_list_edges(system, &system->chunks[c]);
-        for (e = 1; e < system->edges.count; e++)
-            gxsp_join_nodes(transfer, copies[system->edges.ends[e] >> 16], copies[system->edges.ends[e] & 0xffff]);
+    gxsp_transfer_begin(&system->multigrid.levels[0], place, system->model.fixed, transfer);
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        const uint32_t *copies = system->mesh.nodes + system->mesh.chunks[c].first_node;
+        gxsp_list_edges(system, &system->mesh.chunks[c]);
+        for (e = 1; e < system->multigrid.edges.count; e++)
+            gxsp_join_nodes(transfer, copies[system->multigrid.edges.ends[e] >> 16],
+                            copies[system->multigrid.edges.ends[e] & 0xffff]);
     }
-    for (e = 0; e < 4 * system->follower_count; e++)
-        if (fabs(system->followers[e / 4].weight[e % 4]) > 0)
-            gxsp_join_nodes(transfer, system->followers[e / 4].copy, system->followers[e / 4].master[e % 4]);
-    return gxsp_transfer_end(&system->levels[0], transfer);
+    for (e = 0; e < 4 * system->model.follower_count; e++)
+        if (fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
+            gxsp_join_nodes(transfer, system->model.followers[e / 4].copy,
+                            system->model.followers[e / 4].master[e % 4]);
+    return gxsp_transfer_end(&system->multigrid.levels[0], transfer);
 }
 
-/* What the first lattice has of a piece */
-typedef struct gxsp_crumb {
+/* A component on the first lattice: its copies, nodes and box */
+typedef struct gxsp_extent {
     uint32_t copies, nodes;
     float low[3], high[3], length; /* in spacings; length: the longest of high - low */
-} gxsp_crumb;
+} gxsp_extent;
 
-static gxsp_crumb *gxsp_find_crumbs(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
-    gxsp_crumb *crumbs = (gxsp_crumb *)gxsp_take(scratch, system->piece_count, sizeof *crumbs);
+static gxsp_extent *gxsp_find_extents(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
+    gxsp_extent *extents = (gxsp_extent *)gxsp_take(scratch, system->model.component_count, sizeof *extents);
     uint32_t slot, i, k, nodes = 0;
-    if (!crumbs) return NULL;
-    for (slot = 0; slot < 4 * system->n; slot++) /* nodes are numbered as they are met */
-        if (system->levels[0].parent[slot / 4][slot % 4] == nodes) {
-            crumbs[system->piece[slot / 4]].nodes++;
+    if (!extents) return NULL;
+    for (slot = 0; slot < 4 * system->model.n; slot++) /* nodes are numbered as they are met */
+        if (system->multigrid.levels[0].parent[slot / 4][slot % 4] == nodes) {
+            extents[system->model.component[slot / 4]].nodes++;
             nodes++;
         }
-    for (i = 0; i < system->n; i++) {
-        gxsp_crumb *crumb = &crumbs[system->piece[i]];
+    for (i = 0; i < system->model.n; i++) {
+        gxsp_extent *extent = &extents[system->model.component[i]];
         for (k = 0; k < 3; k++) {
-            crumb->low[k] = crumb->copies == 0 || place[i][k] < crumb->low[k] ? place[i][k] : crumb->low[k];
-            crumb->high[k] = crumb->copies == 0 || place[i][k] > crumb->high[k] ? place[i][k] : crumb->high[k];
+            extent->low[k] = extent->copies == 0 || place[i][k] < extent->low[k] ? place[i][k] : extent->low[k];
+            extent->high[k] = extent->copies == 0 || place[i][k] > extent->high[k] ? place[i][k] : extent->high[k];
         }
-        crumb->copies++;
+        extent->copies++;
     }
-    for (i = 0; i < system->piece_count; i++)
+    for (i = 0; i < system->model.component_count; i++)
         for (k = 0; k < 3; k++)
-            crumbs[i].length = crumbs[i].high[k] - crumbs[i].low[k] > crumbs[i].length
-                                 ? crumbs[i].high[k] - crumbs[i].low[k]
-                                 : crumbs[i].length;
-    return crumbs;
+            extents[i].length = extents[i].high[k] - extents[i].low[k] > extents[i].length
+                                  ? extents[i].high[k] - extents[i].low[k]
+                                  : extents[i].length;
+    return extents;
 }
 
-/* Small pieces have so many lattice points about them that fewer serve nearly as well: places of those that are crowded
- * after gxsp_first_transfer go into one tetrahedron of a lattice of their own size, whose functions are their affine
- * motions, or, where pieces are larger, into a lattice of twice the spacing. Not of long ones, which would hardly bend.
- * Returns whether there are any. */
-static int gxsp_thin_crumbs(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
-    const gxsp_crumb *crumbs = gxsp_find_crumbs(system, scratch, place);
+/* Small components have so many lattice points around them that fewer serve nearly as well. After
+ * gxsp_first_transfer, the places of crowded ones go into one tetrahedron of a lattice of their own size, whose
+ * functions are their affine motions, or, if they are larger, into a lattice of twice the spacing. Long ones stay,
+ * since they would hardly bend. Returns whether there are any. */
+static int gxsp_thin_crowded(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
+    const gxsp_extent *extents = gxsp_find_extents(system, scratch, place);
     uint32_t i, k;
     int any = 0;
-    for (i = 0; i < system->n && crumbs; i++) {
-        const gxsp_crumb *crumb = &crumbs[system->piece[i]];
-        if ((float)crumb->nodes <= GXSP_CROWDED * (float)crumb->copies || !(crumb->length < GXSP_COARSE)) continue;
+    for (i = 0; i < system->model.n && extents; i++) {
+        const gxsp_extent *extent = &extents[system->model.component[i]];
+        if ((float)extent->nodes <= GXSP_CROWDED * (float)extent->copies || !(extent->length < GXSP_COARSE)) continue;
         any = 1;
         for (k = 0; k < 3; k++) /* else where coordinates descend: in thirds of a cell */
             place[i][k] =
-                crumb->length >= GXSP_AFFINE
+                extent->length >= GXSP_AFFINE
                     ? 0.5f * place[i][k]
-                    : 0.3f * (place[i][k] - crumb->low[k]) / (crumb->length + 1e-30f) + (float)(2 - k) / 3 + 0.01f;
+                    : 0.3f * (place[i][k] - extent->low[k]) / (extent->length + 1e-30f) + (float)(2 - k) / 3 + 0.01f;
     }
     return any;
 }
 
-/* All levels of the multigrid below the model; place: n x 3, see gxsp_find_places. level_count stays 0 if there is
+/* All levels of the multigrid below the model. place: n x 3, see gxsp_find_places. level_count stays 0 if there is
  * nothing to coarsen. */
 static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
-    gxsp_level *fine = &system->levels[0];
+    gxsp_level *fine = &system->multigrid.levels[0];
     gxsp_transfer transfer;
     uint32_t count;
     gxsp_edges_make(system, scratch);
-    transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint64_t));
-    transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint32_t));
+    transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint64_t));
+    transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
     if (scratch->failed) return;
     count = gxsp_first_transfer(system, place, &transfer);
-    if (gxsp_thin_crumbs(system, scratch, place)) count = gxsp_first_transfer(system, place, &transfer);
+    if (gxsp_thin_crowded(system, scratch, place)) count = gxsp_first_transfer(system, place, &transfer);
     if (count == 0 || scratch->failed) return;
-    gxsp_level_make(&system->coarse, fine + 1, count);
-    if (system->coarse.failed) return;
+    gxsp_level_make(&system->multigrid.pool, fine + 1, count);
+    if (system->multigrid.pool.failed) return;
     gxsp_transfer_places(fine, &transfer, fine + 1);
     gxsp_levels_make(system, scratch, NULL, NULL);
 }
 
-/* >>lights: copies around which there are only parts of elements, nearly all of whose mass is that of others. They are
- * listed with the model and by its updates; >>newton starts them where their neighbours lead, and bounds their way. */
+/* >>lights: copies with next to no mass ---------------------------------------------------------------------------- */
 
-/* What is known of a copy before it is called light */
+/* In: chunks and row sums of masses. Out: the list of light copies: copies with only parts of elements around
+ * them, nearly all of whose mass belongs to other copies. >>balance starts them where their neighbours lead,
+ * >>search bounds their way. */
+
+/* Masses around a copy, by which it is light or not */
 typedef struct gxsp_weighed {
     gxsp_light light; /* in the lane with its heaviest neighbour */
     double all, most; /* mass of the elements around it; of the neighbour, kg */
@@ -4184,25 +4337,25 @@ typedef struct gxsp_weighed {
 
 static void gxsp_weigh_corner(const gxsp_system *system, uint32_t c, uint32_t lane, int corner, const uint32_t *copies,
                               gxsp_weighed *weighed) {
-    const gxsp_chunk *chunk = &system->chunks[c];
+    const gxsp_chunk *chunk = &system->mesh.chunks[c];
     int k;
     weighed->whole |= !chunk->moments;
     weighed->all += chunk->rest[lane / GXSP_LANES].mass[lane % GXSP_LANES];
     for (k = 0; k < 4; k++)
-        if (k != corner && system->lumped[copies[k]] > weighed->most) {
-            weighed->most = system->lumped[copies[k]];
+        if (k != corner && system->model.lumped[copies[k]] > weighed->most) {
+            weighed->most = system->model.lumped[copies[k]];
             weighed->light.copy = copies[corner], weighed->light.chunk = c;
             weighed->light.lane = (uint16_t)lane, weighed->light.corner = (uint16_t)corner;
         }
 }
 
-/* Of each copy, or each that is touched. touched: n flags, or NULL: all */
+/* Weighs each copy, or each touched one. touched: n flags, or NULL: all */
 static void gxsp_weigh_copies(const gxsp_system *system, const uint8_t *touched, gxsp_weighed *weighed) {
     uint32_t c, i, lane, copies[4];
     int k;
-    for (c = 0; c < system->chunk_count; c++) {
-        const gxsp_chunk *chunk = &system->chunks[c];
-        for (i = 0; touched && i < chunk->node_count && !touched[system->nodes[chunk->first_node + i]]; i++)
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        const gxsp_chunk *chunk = &system->mesh.chunks[c];
+        for (i = 0; touched && i < chunk->node_count && !touched[system->mesh.nodes[chunk->first_node + i]]; i++)
             ;
         for (lane = 0; lane < chunk->block_count * GXSP_LANES && !(touched && i == chunk->node_count); lane++) {
             if (chunk->groups[lane] == GXSP_NONE) continue;
@@ -4214,41 +4367,42 @@ static void gxsp_weigh_copies(const gxsp_system *system, const uint8_t *touched,
 }
 
 static int gxsp_is_light(const gxsp_system *system, size_t copy, const gxsp_weighed *weighed) {
-    const double mass = system->lumped[copy];
-    return !weighed->whole && !system->fixed[copy] && weighed->most > 0 &&
+    const double mass = system->model.lumped[copy];
+    return !weighed->whole && !system->model.fixed[copy] && weighed->most > 0 &&
            (mass < GXSP_LIGHT * weighed->all || mass < GXSP_LIGHTER * weighed->most);
 }
 
-/* Lists light copies. touched: n flags: those of others stay as they are listed; NULL: all are listed anew */
+/* Lists light copies. touched: n flags: other copies stay as they are listed; NULL: all are listed anew */
 static void gxsp_list_lights(gxsp_system *system, gxsp_pool *scratch, const uint8_t *touched) {
-    gxsp_weighed *weighed = (gxsp_weighed *)gxsp_take(scratch, system->n, sizeof *weighed);
+    gxsp_weighed *weighed = (gxsp_weighed *)gxsp_take(scratch, system->model.n, sizeof *weighed);
     uint32_t i, count = 0, room;
     if (scratch->failed) return;
     gxsp_weigh_copies(system, touched, weighed);
-    for (i = 0; i < system->light_count && touched; i++)
-        if (!touched[system->lights[i].copy]) system->lights[count++] = system->lights[i];
-    system->light_count = room = count;
-    for (i = 0; i < system->n; i++) room += (uint32_t)gxsp_is_light(system, i, &weighed[i]);
-    if (room > system->light_room) {
-        system->light_room = room + room / 8;
-        system->lights =
-            (gxsp_light *)gxsp_retake(&system->pool, system->lights, count, system->light_room, sizeof(gxsp_light));
+    for (i = 0; i < system->model.light_count && touched; i++)
+        if (!touched[system->model.lights[i].copy]) system->model.lights[count++] = system->model.lights[i];
+    system->model.light_count = room = count;
+    for (i = 0; i < system->model.n; i++) room += (uint32_t)gxsp_is_light(system, i, &weighed[i]);
+    if (room > system->model.light_room) {
+        system->model.light_room = (uint32_t)gxsp_room(room);
+        system->model.lights = (gxsp_light *)gxsp_grow(&system->pool, system->model.lights, count,
+                                                       system->model.light_room, sizeof(gxsp_light));
     }
-    for (i = 0; i < system->n && !system->pool.failed; i++)
-        if (gxsp_is_light(system, i, &weighed[i])) system->lights[system->light_count++] = weighed[i].light;
+    for (i = 0; i < system->model.n && !system->pool.failed; i++)
+        if (gxsp_is_light(system, i, &weighed[i])) system->model.lights[system->model.light_count++] = weighed[i].light;
 }
 
-/* What guides a light copy at vector x, less another one or NULL (n x 3): the mean over the other corners, by their
- * masses. Returns the heaviest. */
+/* Mean of a vector x, minus another one (or NULL), over the corners that guide a light copy, weighted by their
+ * masses; n x 3. Returns the heaviest of these copies. */
 static uint32_t gxsp_guide(const gxsp_system *system, const gxsp_light *light, const double *x, const double *less,
                            double *mean) {
     double sum = 0, most = 0;
     uint32_t copies[4], heaviest = light->copy;
     int k, c;
-    gxsp_lane_copies(system, &system->chunks[light->chunk], light->lane / GXSP_LANES, light->lane % GXSP_LANES, copies);
+    gxsp_lane_copies(system, &system->mesh.chunks[light->chunk], light->lane / GXSP_LANES, light->lane % GXSP_LANES,
+                     copies);
     mean[0] = mean[1] = mean[2] = 0;
     for (k = 0; k < 4; k++) {
-        const double mass = k == light->corner ? 0 : system->lumped[copies[k]];
+        const double mass = k == light->corner ? 0 : system->model.lumped[copies[k]];
         sum += mass;
         for (c = 0; c < 3; c++)
             mean[c] +=
@@ -4259,9 +4413,76 @@ static uint32_t gxsp_guide(const gxsp_system *system, const gxsp_light *light, c
     return heaviest;
 }
 
-/* >>system: a model in the solver's own form, all that does not depend on its state */
+/* >>sharing: memory that passes and coarse numbers have in turn ---------------------------------------------------- */
 
-/* 2^GXSP_STIFFNESS over Young's modulus times the length of the largest element, but for the mantissa */
+/* In: sizes of the model and its levels. Out: arrays in gxsp_vectors.shared. Passes have it except between
+ * gxsp_lend_memory and gxsp_return_memory. */
+
+/* Arrays with which coarse numbers are made */
+static void gxsp_numbers_carve(gxsp_system *system, gxsp_space *space) {
+    gxsp_level *last = &system->multigrid.levels[system->multigrid.level_count - 1];
+    if (!system->multigrid.fine) gxsp_edges_carve(system, space, 1);
+    gxsp_pairs_carve(system, space, 1);
+    if (system->multigrid.level_count > 2) /* level 1 keeps its own: updates make only part of it anew */
+        last->block = (float *)gxsp_carve(space, gxsp_block_numbers(last), sizeof(float));
+    system->multigrid.factor.rows = (double *)gxsp_carve(space, 3 * (size_t)system->multigrid.factor.n, sizeof(double));
+}
+
+/* Arrays of passes over chunks and of conjugate gradients */
+static void gxsp_passes_carve(gxsp_system *system, gxsp_space *space) {
+    system->vectors.slots = (double(*)[3])gxsp_carve(space, system->mesh.slot_count, sizeof *system->vectors.slots);
+    system->vectors.search = (gxsp_vector4 *)gxsp_carve(space, system->model.n, sizeof(gxsp_vector4));
+    system->vectors.product = (gxsp_vector4 *)gxsp_carve(space, system->model.n, sizeof(gxsp_vector4));
+    system->vectors.scaled = (gxsp_vector4 *)gxsp_carve(space, system->model.n, sizeof(gxsp_vector4));
+}
+
+/* Shared memory goes back to passes. Its vectors become 0: their unused numbers take part in sums too. */
+static void gxsp_return_memory(gxsp_system *system) {
+    memset(system->vectors.search, 0, system->model.n * sizeof *system->vectors.search);
+    memset(system->vectors.product, 0, system->model.n * sizeof *system->vectors.product);
+    memset(system->vectors.scaled, 0, system->model.n * sizeof *system->vectors.scaled);
+}
+
+/* Makes shared memory large enough for passes and for coarse numbers, which have it in turn. */
+static void gxsp_share_memory(gxsp_system *system) {
+    gxsp_space passes = {NULL, 0}, numbers = {NULL, 0};
+    size_t size;
+    gxsp_passes_carve(system, &passes);
+    if (system->multigrid.level_count > 0) gxsp_numbers_carve(system, &numbers);
+    size = passes.used > numbers.used ? passes.used : numbers.used;
+    if (size > system->vectors.shared_room) {
+        const size_t room = system->vectors.shared ? gxsp_room(size) : size;
+        unsigned char *larger = (unsigned char *)gxsp_grow(&system->pool, system->vectors.shared, 0, room, 1);
+        if (!larger) return;
+        system->vectors.shared = larger;
+        system->vectors.shared_room = room;
+    }
+    passes.memory = system->vectors.shared;
+    passes.used = 0;
+    gxsp_passes_carve(system, &passes);
+    gxsp_return_memory(system);
+}
+
+/* Lends shared memory to the making of coarse numbers, until gxsp_return_memory. */
+static void gxsp_lend_memory(gxsp_system *system) {
+    gxsp_space space = {NULL, 0};
+    space.memory = system->vectors.shared;
+    gxsp_numbers_carve(system, &space);
+    if (!system->multigrid.fine) {
+        memset(system->multigrid.edges.table, 0,
+               system->multigrid.edges.table_size * sizeof *system->multigrid.edges.table);
+        memset(system->multigrid.edges.half, 0, system->multigrid.pairs.most * sizeof *system->multigrid.edges.half);
+        memset(system->multigrid.pairs.stamp, 0, system->multigrid.levels[1].n * sizeof *system->multigrid.pairs.stamp);
+        system->multigrid.pairs.round = 0;
+    }
+}
+
+/* >>system: a model in the solver's own form ----------------------------------------------------------------------- */
+
+/* In: the caller's model, already checked. Out: a gxsp_system, with all that does not depend on the state and the
+ * memory of steps. */
+
+/* 2^GXSP_STIFFNESS / (Young's modulus times the length of the largest element), rounded to a power of two */
 static double gxsp_choose_scale(const gxs_model *model) {
     double young = 0, volume = 0, size;
     size_t i;
@@ -4275,91 +4496,94 @@ static double gxsp_choose_scale(const gxs_model *model) {
     return ldexp(1, GXSP_STIFFNESS - exponent);
 }
 
-/* Inverse volumes of supports, the least of the size of a whole copy's inverse stiffness */
+/* Inverse volumes of supports; the least is about the inverse stiffness of a whole copy */
 static void gxsp_find_volumes(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model) {
-    double *volume = (double *)gxsp_take(scratch, system->n, sizeof(double)), largest = 0;
+    double *volume = (double *)gxsp_take(scratch, system->model.n, sizeof(double)), largest = 0;
     size_t e, i;
     int k;
-    system->volume = (float *)gxsp_take(&system->pool, system->n, sizeof(float));
+    system->model.volume = (float *)gxsp_take(&system->pool, system->model.n, sizeof(float));
     if (system->pool.failed || scratch->failed) return;
     for (e = 0; e < model->element_count; e++)
         for (k = 0; k < 4; k++) volume[model->elements[e].copy[k]] += model->elements[e].weight;
-    for (i = 0; i < system->n; i++) largest = volume[i] > largest ? volume[i] : largest;
-    for (i = 0; i < system->n; i++)
-        system->volume[i] = volume[i] > 1e-20 * largest ? (float)ldexp(largest / volume[i], -GXSP_STIFFNESS) : 0;
+    for (i = 0; i < system->model.n; i++) largest = volume[i] > largest ? volume[i] : largest;
+    for (i = 0; i < system->model.n; i++)
+        system->model.volume[i] = volume[i] > 1e-20 * largest ? (float)ldexp(largest / volume[i], -GXSP_STIFFNESS) : 0;
 }
 
-/* Copies from which on a piece is large enough for multigrid */
+/* A component is large enough for multigrid from this many copies on. */
 static uint32_t gxsp_large(const gxsp_system *system) {
-    return system->stiff ? GXSP_MULTIGRID_FROM_STIFF : GXSP_MULTIGRID_FROM;
+    return system->model.stiff ? GXSP_MULTIGRID_FROM_STIFF : GXSP_MULTIGRID_FROM;
 }
 
-/* Does multigrid pay for a piece? All take as many iterations as the one that takes most. count: piece_count, scratch
- */
-static int gxsp_large_piece(const gxsp_system *system, uint32_t *count) {
+/* Does multigrid pay for a component? All components take as many iterations as the slowest one. count:
+ * component_count, scratch */
+static int gxsp_large_component(const gxsp_system *system, uint32_t *count) {
     const uint32_t from = gxsp_large(system);
     size_t i;
-    memset(count, 0, system->piece_count * sizeof *count);
-    for (i = 0; i < system->n; i++)
-        if (++count[system->piece[i]] >= from) return 1;
+    memset(count, 0, system->model.component_count * sizeof *count);
+    for (i = 0; i < system->model.n; i++)
+        if (++count[system->model.component[i]] >= from) return 1;
     return 0;
 }
 
-/* What depends on the choice of matrix and preconditioner. forest: n, scratch */
+/* Everything that depends on the choice of matrix and preconditioner. forest: n, scratch */
 static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model,
                                      gxs_preconditioner preconditioner, gxs_matrix matrix, uint32_t *forest) {
     float(*place)[3]; /* rest positions in spacings of the first lattice */
-    const int multigrid = model->positions && (preconditioner == GXS_MULTIGRID ||
-                                               (preconditioner == GXS_AUTOMATIC && gxsp_large_piece(system, forest)));
-    system->chosen = model->positions && preconditioner == GXS_AUTOMATIC;
+    const int multigrid =
+        model->positions &&
+        (preconditioner == GXS_MULTIGRID || (preconditioner == GXS_AUTOMATIC && gxsp_large_component(system, forest)));
+    system->multigrid.chosen = model->positions && preconditioner == GXS_AUTOMATIC;
     if (preconditioner == GXS_VOLUME_RATIO) gxsp_find_volumes(system, scratch, model);
-    system->levels[0].n = (uint32_t)system->n;
+    system->multigrid.levels[0].n = (uint32_t)system->model.n;
     if (matrix == GXS_MATRIX_ASSEMBLED) gxsp_fine_make(system, scratch);
     if (!multigrid) return;
-    gxsp_transfer_make(&system->pool, &system->levels[0]);
-    place = (float(*)[3])gxsp_take(scratch, system->n, sizeof *place);
+    gxsp_transfer_make(&system->pool, &system->multigrid.levels[0]);
+    place = (float(*)[3])gxsp_take(scratch, system->model.n, sizeof *place);
     if (!system->pool.failed && !scratch->failed && gxsp_find_places(system, model, place))
         gxsp_multigrid_make(system, scratch, place);
 }
 
-/* Everything about a model that does not depend on its state; scratch holds what is needed for the time being. Returns
- * the index of a constraint that cannot be, SIZE_MAX if all can. */
+/* Everything about a model that does not depend on its state. scratch: for temporary memory. Returns the index of a
+ * constraint that is not allowed, or SIZE_MAX. */
 static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model,
                                 const gxs_solver *solver) {
     uint32_t i, *forest = (uint32_t *)gxsp_take(scratch, model->copy_count, sizeof(uint32_t));
     gxsp_owned *mark;
     size_t bad;
-    system->n = model->copy_count;
-    system->epoch = model->epoch;
-    system->element_count = model->element_count;
-    system->range_count = (system->n + GXSP_RANGE - 1) / GXSP_RANGE;
-    system->lumped_mass = model->lumped_mass != 0;
-    system->scale = gxsp_choose_scale(model);
-    system->coarse_rate = system->product_rate = -1;
-    system->coarse_life = GXSP_LIFE;
-    system->material_count = (uint32_t)model->material_count;
-    system->materials = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
-    system->damped = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
+    system->model.n = model->copy_count;
+    system->model.epoch = model->epoch;
+    system->model.element_count = model->element_count;
+    system->model.range_count = (system->model.n + GXSP_RANGE - 1) / GXSP_RANGE;
+    system->model.lumped_mass = model->lumped_mass != 0;
+    system->model.scale = gxsp_choose_scale(model);
+    system->coarse.rate = system->state.product_rate = -1;
+    system->coarse.life = GXSP_LIFE;
+    system->model.material_count = (uint32_t)model->material_count;
+    system->model.materials = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
+    system->state.damped = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
     gxsp_copies_make(system, model->positions);
     if (scratch->failed || system->pool.failed) return SIZE_MAX;
-    for (i = 0; i < system->material_count; i++) {
-        system->damped[i] = system->materials[i] = gxsp_material_make(&model->materials[i]);
-        system->damps |= model->materials[i].damping > 0;
-        system->stiff |= model->materials[i].kind != GXS_CUSTOM && model->materials[i].poisson > GXSP_STIFF_POISSON;
+    for (i = 0; i < system->model.material_count; i++) {
+        system->state.damped[i] = system->model.materials[i] = gxsp_material_make(&model->materials[i]);
+        system->model.damps |= model->materials[i].damping > 0;
+        system->model.stiff |=
+            model->materials[i].kind != GXS_CUSTOM && model->materials[i].poisson > GXSP_STIFF_POISSON;
     }
     gxsp_find_fixed(system, model);
-    bad = gxsp_bad_constraint(model->constraints, model->constraint_count, model->held, system->still);
+    bad = gxsp_bad_constraint(model->constraints, model->constraint_count, model->held, system->state.still);
     if (bad == SIZE_MAX) gxsp_set_followers(system, model->constraints, model->constraint_count);
     if (bad != SIZE_MAX || system->pool.failed) return bad;
-    memcpy(system->still, system->fixed, system->n);
+    memcpy(system->state.still, system->model.fixed, system->model.n);
     gxsp_join_copies(system, model, forest);
-    gxsp_number_pieces(system, forest);
-    system->pieces = (gxsp_piece *)gxsp_take(&system->pool, system->piece_count, sizeof(gxsp_piece));
+    gxsp_number_components(system, forest);
+    system->model.components =
+        (gxsp_component *)gxsp_take(&system->pool, system->model.component_count, sizeof(gxsp_component));
     if (system->pool.failed) return SIZE_MAX;
-    gxsp_fill_pieces(system);
+    gxsp_fill_components(system);
     mark = scratch->last;
     gxsp_chunks_make(system, scratch, model);
-    if (!scratch->failed && !system->pool.failed) gxsp_parts_make(system);
+    if (!scratch->failed && !system->pool.failed) gxsp_partials_make(system);
     if (!scratch->failed && !system->pool.failed) gxsp_list_lights(system, scratch, NULL);
     gxsp_release_to(scratch, mark);
     if (!scratch->failed && !system->pool.failed)
@@ -4367,132 +4591,350 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     return SIZE_MAX;
 }
 
-/* --- memory of steps --- */
-
-/* Arrays with which coarse numbers are made */
-static void gxsp_numbers_carve(gxsp_system *system, gxsp_space *space) {
-    gxsp_level *last = &system->levels[system->level_count - 1];
-    if (!system->fine) gxsp_edges_carve(system, space, 1);
-    gxsp_pairs_carve(system, space, 1);
-    if (system->level_count > 2) /* level 1 keeps its own: updates make only a part of it anew */
-        last->block = (float *)gxsp_carve(space, gxsp_block_numbers(last), sizeof(float));
-    system->factor.rows = (double *)gxsp_carve(space, 3 * (size_t)system->factor.n, sizeof(double));
-}
-
-static void gxsp_passes_carve(gxsp_system *system, gxsp_space *space) {
-    system->slots = (double(*)[3])gxsp_carve(space, system->slot_count, sizeof *system->slots);
-    system->search = (gxsp_vector4 *)gxsp_carve(space, system->n, sizeof(gxsp_vector4));
-    system->product = (gxsp_vector4 *)gxsp_carve(space, system->n, sizeof(gxsp_vector4));
-    system->scaled = (gxsp_vector4 *)gxsp_carve(space, system->n, sizeof(gxsp_vector4));
-}
-
-/* Vectors in shared memory are 0 again: what is unused of them, too, takes part in sums. */
-static void gxsp_give_back(gxsp_system *system) {
-    memset(system->search, 0, system->n * sizeof *system->search);
-    memset(system->product, 0, system->n * sizeof *system->product);
-    memset(system->scaled, 0, system->n * sizeof *system->scaled);
-}
-
-/* Room in shared memory for passes and for coarse numbers, in turn */
-static void gxsp_share(gxsp_system *system) {
-    gxsp_space passes = {NULL, 0}, numbers = {NULL, 0};
-    size_t size;
-    gxsp_passes_carve(system, &passes);
-    if (system->level_count > 0) gxsp_numbers_carve(system, &numbers);
-    size = passes.used > numbers.used ? passes.used : numbers.used;
-    if (size > system->shared_room) {
-        const size_t room = system->shared ? size + size / 8 : size;
-        unsigned char *larger = (unsigned char *)gxsp_retake(&system->pool, system->shared, 0, room, 1);
-        if (!larger) return;
-        system->shared = larger;
-        system->shared_room = room;
-    }
-    passes.memory = system->shared;
-    passes.used = 0;
-    gxsp_passes_carve(system, &passes);
-    gxsp_give_back(system);
-}
-
-/* What only steps need: taken last, when all that a model is made with has been given back */
+/* Memory that only steps need. Taken last, when temporary memory has been given back */
 static void gxsp_steps_make(gxsp_system *system) {
-    double **vectors[6];
-    gxsp_vector4 **singles[3];
-    int i;
-    vectors[0] = &system->target, vectors[1] = &system->current, vectors[2] = &system->force,
-    vectors[3] = &system->residual;
-    vectors[4] = &system->direction, vectors[5] = &system->coarse_state;
-    for (i = 0; i < (system->level_count > 0 ? 6 : 5); i++)
-        *vectors[i] = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
-    system->trial = system->residual;
-    if (system->damps) system->damping = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
-    singles[0] = &system->guess[0], singles[1] = &system->guess[1], singles[2] = &system->right;
-    for (i = 0; i < (system->fine ? 3 : 2); i++)
-        *singles[i] = (gxsp_vector4 *)gxsp_take(&system->pool, system->n, sizeof(gxsp_vector4));
-    system->diagonal = (float *)gxsp_take(&system->pool, 6 * system->n, sizeof(float));
-    system->range_sum = (double(*)[GXSP_SUMS])gxsp_take(&system->pool, system->range_count, sizeof *system->range_sum);
-    gxsp_share(system);
-    gxsp_tangents_make(&system->pool, system->chunks, system->chunk_count);
+    const size_t n = system->model.n;
+    gxsp_vectors *vectors = &system->vectors;
+    gxsp_columns_make(system, GXSP_COLUMNS(gxsp_copy_columns), GXSP_FOR_STEPS, n);
+    if (system->multigrid.level_count > 0)
+        system->coarse.displacement = (double *)gxsp_take(&system->pool, n, 3 * sizeof(double));
+    if (system->model.damps) vectors->damping = (double *)gxsp_take(&system->pool, n, 3 * sizeof(double));
+    if (system->multigrid.fine) vectors->right = (gxsp_vector4 *)gxsp_take(&system->pool, n, sizeof(gxsp_vector4));
+    vectors->range_sum =
+        (double(*)[GXSP_SUMS])gxsp_take(&system->pool, system->model.range_count, sizeof *vectors->range_sum);
+    gxsp_share_memory(system);
+    gxsp_tangents_make(&system->pool, system->mesh.chunks, system->mesh.chunk_count);
 }
 
-/* >>followers: what follows a copy gets its motion, and gives it its forces */
+static void gxsp_system_destroy(gxsp_system *system) {
+    gxsp_pool pool;
+    if (!system) return;
+    gxsp_release_to(&system->multigrid.pool, NULL);
+    pool = system->pool; /* the pool also holds the system itself */
+    gxsp_release_to(&pool, NULL);
+}
 
-/* Increments x of all copies from those of masters */
-static void gxsp_extend(const gxsp_system *system, gxsp_vector4 *x) {
-    uint32_t i, k, c;
-    for (i = 0; i < system->follower_count; i++) {
-        const gxsp_follower *follower = &system->followers[i];
-        gxsp_vector4 sum = {0, 0, 0, 0};
-        for (k = 0; k < 4; k++)
-            for (c = 0; c < 3; c++) sum[c] += (float)follower->weight[k] * x[follower->master[k]][c];
-        memcpy(x[follower->copy], sum, sizeof sum);
+static void gxsp_drop_system(gxs_solver *solver) {
+    gxsp_system_destroy(solver->system);
+    solver->system = NULL;
+}
+
+/* >>forces: energies and forces of chunks -------------------------------------------------------------------------- */
+
+/* In: displacements. Out: energies of components; elastic and inertial forces of copies. A task writes the slots
+ * and partial sums of its own chunk only. */
+
+/* Prefetches the block that a pass reads `ahead` blocks later, in this chunk or the next: its tangents, or the data
+ * that they are made from. */
+GXSP_INLINE void gxsp_prefetch_block(const gxsp_system *system, size_t index, uint32_t block, uint32_t ahead,
+                                     int tangents) {
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    uint32_t b = block + ahead;
+    if (b >= chunk->block_count) {
+        b -= chunk->block_count;
+        if (index + 1 == system->mesh.chunk_count || b >= chunk[1].block_count) return;
+        chunk++;
     }
+    gxsp_prefetch(&chunk->corners[b], sizeof *chunk->corners);
+    if (tangents)
+        gxsp_prefetch(&chunk->tangents[b], sizeof *chunk->tangents);
+    else
+        gxsp_prefetch(&chunk->rest[b], sizeof *chunk->rest);
+    if (chunk->moments) gxsp_prefetch(&chunk->moments[b], sizeof *chunk->moments);
 }
 
-/* Forces y on masters; 0 on followers */
-static void gxsp_reduce(const gxsp_system *system, gxsp_vector4 *y) {
-    uint32_t i, k, c;
-    for (i = 0; i < system->follower_count; i++) {
-        const gxsp_follower *follower = &system->followers[i];
-        for (k = 0; k < 4; k++)
-            for (c = 0; c < 3; c++) y[follower->master[k]][c] += (float)follower->weight[k] * y[follower->copy][c];
-        memset(y[follower->copy], 0, sizeof *y);
+/* x of a chunk's nodes: x 3, and one more number, which vectors read */
+static void gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *x,
+                            double *GXSP_RESTRICT to) {
+    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
+    size_t i, c;
+    for (i = 0; i < chunk->node_count; i++) {
+        gxsp_prefetch(x + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *x);
+        for (c = 0; c < 3; c++) to[3 * i + c] = x[3 * (size_t)copies[i] + c];
     }
+    to[3 * i] = 0;
 }
 
-/* Displacements of followers: that at from, which may be NULL for 0, and what their masters have moved since then */
-static void gxsp_follow(const gxsp_system *system, const double *from, double *displacement) {
-    uint32_t i, k, c;
-    for (i = 0; i < system->follower_count; i++) {
-        const gxsp_follower *follower = &system->followers[i];
-        double *to = displacement + 3 * (size_t)follower->copy;
-        for (c = 0; c < 3; c++) {
-            double sum = from ? from[3 * (size_t)follower->copy + c] : 0;
-            for (k = 0; k < 4; k++) {
-                const size_t master = 3 * (size_t)follower->master[k] + c;
-                sum += follower->weight[k] * (displacement[master] - (from ? from[master] : 0));
-            }
-            to[c] = sum;
+/* Three numbers of each of four nodes to three arrays. The last node's are followed by one more. */
+static inline void gxsp_load_four(const uint16_t *node, const double *x, double *to0, double *to1, double *to2) {
+#if defined(GXSP_SHUFFLES)
+    const gxsp_four_doubles a = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[0]),
+                            b = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[1]),
+                            c = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[2]),
+                            d = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[3]);
+    const gxsp_four_doubles p = __builtin_shufflevector(a, b, 0, 4, 2, 6),
+                            q = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+    const gxsp_four_doubles r = __builtin_shufflevector(a, b, 1, 5, 3, 7),
+                            s = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    *(gxsp_four_doubles *)to0 = __builtin_shufflevector(p, q, 0, 1, 4, 5);
+    *(gxsp_four_doubles *)to1 = __builtin_shufflevector(r, s, 0, 1, 4, 5);
+    *(gxsp_four_doubles *)to2 = __builtin_shufflevector(p, q, 2, 3, 6, 7);
+#else
+    int l;
+    for (l = 0; l < 4; l++)
+        to0[l] = x[3 * (size_t)node[l]], to1[l] = x[3 * (size_t)node[l] + 1], to2[l] = x[3 * (size_t)node[l] + 2];
+#endif
+}
+
+/* x of a block's corners from that of the chunk's nodes. A corner that has not changed since the block before keeps
+ * its values. */
+static void gxsp_block_load(const gxsp_chunk *chunk, uint32_t b, const double *GXSP_RESTRICT x,
+                            gxsp_lanes *GXSP_RESTRICT corners) {
+    const gxsp_corners *corner = &chunk->corners[b];
+    int i, l;
+    for (i = 0; i < 4; i++)
+        for (l = 0; l < GXSP_LANES && chunk->changed[b] >> i & 1; l += 4)
+            gxsp_load_four(corner->node[i] + l, x, corners[3 * i] + l, corners[3 * i + 1] + l, corners[3 * i + 2] + l);
+}
+
+/* The same from x of all copies */
+static void gxsp_block_load_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, const double *x,
+                                   gxsp_lanes *corners) {
+    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
+    int i, l;
+    for (i = 0; i < 4; i++)
+        for (l = 0; l < GXSP_LANES && chunk->changed[b] >> i & 1; l++) {
+            const double *of = x + 3 * (size_t)copies[chunk->corners[b].node[i][l]];
+            corners[3 * i][l] = of[0], corners[3 * i + 1][l] = of[1], corners[3 * i + 2][l] = of[2];
         }
+}
+
+/* Shape function gradients of a block. rest: positions of the chunk's nodes; corners: of the block's, kept from
+ * block to block as in gxsp_block_load */
+static gxsp_lanes *gxsp_block_gradients(const gxsp_chunk *chunk, uint32_t b, const double *rest, gxsp_lanes *corners,
+                                        gxsp_lanes *made) {
+    if (chunk->gradients) return chunk->gradients[b].entry;
+    gxsp_block_load(chunk, b, rest, corners);
+    gxsp_gradients_make(chunk->rest[b].weight, corners, made);
+    return made;
+}
+
+/* Parameters of a block's materials */
+static void gxsp_block_parameters(const gxsp_material *materials, const gxsp_rest *rest, gxsp_state *s) {
+    int l;
+    for (l = 0; l < GXSP_LANES; l++) {
+        const gxsp_material *material = &materials[rest->material[l]];
+        s->mu[l] = material->mu;
+        s->lambda[l] = material->lambda;
+        s->material[l] = material;
     }
 }
 
-/* Residuals: those of followers are given to masters, but not to copies that are still. still: n */
-static void gxsp_reduce_residual(const gxsp_system *system, const uint8_t *still, double *r) {
-    uint32_t i, k, c;
-    for (i = 0; i < system->follower_count; i++) {
-        const gxsp_follower *follower = &system->followers[i];
-        for (k = 0; k < 4; k++)
-            for (c = 0; c < 3 && !still[follower->master[k]]; c++)
-                r[3 * (size_t)follower->master[k] + c] += follower->weight[k] * r[3 * (size_t)follower->copy + c];
-        memset(r + 3 * (size_t)follower->copy, 0, 3 * sizeof *r);
+/* Adds forces of a block to the chunk's slots, 3 doubles each, and sets them to 0. Forces on a corner that the next
+ * block has too are kept for it. */
+static void gxsp_block_store(const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *GXSP_RESTRICT values,
+                             double *GXSP_RESTRICT slots) {
+    const gxsp_corners *corner = &chunk->corners[b];
+    int i, k, l;
+    for (i = 0; i < 4; i++) {
+        if (!(chunk->changed[b + 1] >> i & 1)) continue;
+        for (l = 0; l < GXSP_LANES; l++) {
+            double *to = slots + 3 * (size_t)corner->node[i][l];
+            to[0] += values[3 * i][l];
+            to[1] += values[3 * i + 1][l];
+            to[2] += values[3 * i + 2][l];
+        }
+        for (k = 3 * i; k < 3 * i + 3; k++) GXSP_EACH_LANE(l) values[k][l] = 0;
     }
 }
 
-/* >>operator */
+/* Rotates P of elements by the rotation from their orientation at displacement gradients `from` to that at `to`. P
+ * stays where that is more than a right angle: such an element is tangled. */
+static void gxsp_rotate_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p) {
+    gxsp_svd of[2];
+    int r, c, k, l;
+    gxsp_decompose(from, to, of);
+    for (l = 0; l < GXSP_LANES; l++) {
+        double a[9], b[9], turn[9], stress[9], f[9], h[9];
+        for (r = 0; r < 3; r++)
+            for (c = 0; c < 3; c++) {
+                a[3 * r + c] = b[3 * r + c] = 0;
+                for (k = 0; k < 3; k++) {
+                    a[3 * r + c] += (double)(of[0].u[3 * r + k][l] * of[0].v[3 * c + k][l]);
+                    b[3 * r + c] += (double)(of[1].u[3 * r + k][l] * of[1].v[3 * c + k][l]);
+                }
+            }
+        for (k = 0; k < 9; k++) {
+            f[k] = from[k][l] + (k % 4 == 0 ? 1 : 0);
+            h[k] = to[k][l] + (k % 4 == 0 ? 1 : 0);
+        }
+        /* otherwise each step's load would have its own single-precision error, and no body would come to rest */
+        gxsp_polish_rotation(f, a);
+        gxsp_polish_rotation(h, b);
+        for (k = 0; k < 9; k++) {
+            turn[k] =
+                b[k / 3 * 3] * a[k % 3 * 3] + b[k / 3 * 3 + 1] * a[k % 3 * 3 + 1] + b[k / 3 * 3 + 2] * a[k % 3 * 3 + 2];
+            stress[k] = p[k][l];
+        }
+        for (k = 0; k < 9 && turn[0] + turn[4] + turn[8] > 1; k++)
+            p[k][l] = turn[k / 3 * 3] * stress[k % 3] + turn[k / 3 * 3 + 1] * stress[3 + k % 3] +
+                      turn[k / 3 * 3 + 2] * stress[6 + k % 3];
+    }
+}
 
-/* --- blocks: nine numbers by columns --- */
+/* Is a copy of the chunk off its target? Hardly any is where Newton's method starts. */
+static int gxsp_accelerates(const gxsp_system *system, const gxsp_chunk *chunk, const double *from) {
+    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
+    uint32_t i;
+    for (i = 0; i < chunk->node_count; i++)
+        if (memcmp(from + 3 * (size_t)copies[i], system->vectors.target + 3 * (size_t)copies[i], 3 * sizeof(double)) !=
+            0)
+            return 1;
+    return 0;
+}
 
-/* By whole vectors: narrower stores would not be forwarded to the loads that soon follow. */
+/* Have all components of a chunk found their lengths? */
+static int gxsp_chunk_settled(const gxsp_system *system, const gxsp_chunk *chunk) {
+    uint32_t i;
+    for (i = 0; i < chunk->partial_count; i++)
+        if (!system->model
+                 .components[system->model.components[system->mesh.partials[chunk->first_partial + i].component].lead]
+                 .settled)
+            return 0;
+    return 1;
+}
+
+/* The chunk's partial sum of a component */
+static gxsp_partial *gxsp_find_partial(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t component) {
+    gxsp_partial *partials = system->mesh.partials + chunk->first_partial;
+    uint32_t low = 0, high = chunk->partial_count - 1;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (partials[middle].component < component)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return &partials[low];
+}
+
+/* Adds the energies of a block's elements to the partial sums of their components. */
+static void gxsp_add_energies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *energies) {
+    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
+    int k, l;
+    for (k = 0; k < 3 && chunk->partial_count == 1; k++) {
+        double sum = 0;
+        for (l = 0; l < GXSP_LANES; l++) sum += energies[k][l];
+        system->mesh.partials[chunk->first_partial].energies[k] += sum;
+    }
+    for (l = 0; l < GXSP_LANES && chunk->partial_count > 1; l++) {
+        gxsp_partial *partial =
+            gxsp_find_partial(system, chunk, system->model.component[copies[chunk->corners[b].node[0][l]]]);
+        for (k = 0; k < 3; k++) partial->energies[k] += energies[k][l];
+    }
+}
+
+/* Energies of a chunk at pass->from, component by component, and elastic + inertial forces */
+static void gxsp_task_state(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    double *slots = &system->vectors.slots[chunk->first_node][0];
+    uint32_t b;
+    int k, l, inertia;
+    double rest_at[3 * 4 * GXSP_CHUNK + 1], at[3 * 4 * GXSP_CHUNK + 1];
+    gxsp_lanes corners[12], x[12], other[12], forces[12], made[9];
+    if (gxsp_chunk_settled(system, chunk)) return;
+    for (b = 0; b < chunk->partial_count; b++)
+        memset(system->mesh.partials[chunk->first_partial + b].energies, 0, sizeof system->mesh.partials->energies);
+    memset(slots, 0, 3 * (size_t)chunk->node_count * sizeof *slots);
+    if (system->state.chunk_still[index]) return;
+    inertia = pass->inertia && gxsp_accelerates(system, chunk, pass->from);
+    gxsp_chunk_load(system, chunk, pass->from, at);
+    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, rest_at);
+    memset(forces, 0, sizeof forces);
+    for (b = 0; b < chunk->block_count; b++) {
+        const gxsp_rest *rest = &chunk->rest[b];
+        gxsp_lanes ahead[9], led[12], energies[3], *gradients;
+        gxsp_state s;
+        gxsp_prefetch_block(system, index, b, GXSP_RESTS_AHEAD, 0);
+        gxsp_block_load(chunk, b, at, x);
+        gradients = gxsp_block_gradients(chunk, b, rest_at, corners, made);
+        if (inertia || pass->rotated) /* never both: rotated stresses come without inertia */
+            gxsp_block_load_copies(system, chunk, b, inertia ? system->vectors.target : pass->rotated, other);
+        gxsp_block_parameters(pass->materials, rest, &s);
+        gxsp_block_gradient(gradients, x, s.g);
+        if (pass->rotated) gxsp_block_gradient(gradients, other, ahead);
+        if (pass->nudge && chunk->kind != GXS_LINEAR && chunk->kind != GXS_CUSTOM) gxsp_nudge(s.g);
+        gxsp_material_state(chunk->kind, &s);
+        if (pass->rotated && chunk->kind != GXS_LINEAR) gxsp_rotate_stress(s.g, ahead, s.p);
+        gxsp_block_force(rest->weight, gradients, s.p, forces);
+        for (l = 0; l < GXSP_LANES; l++) {
+            energies[0][l] = rest->weight[l] * s.energy[l];
+            energies[1][l] = 0;
+            energies[2][l] = rest->weight[l] * s.size[l];
+        }
+        if (inertia) {
+            for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) led[k][l] = x[k][l] - other[k][l];
+            gxsp_block_inertia(rest, gxsp_block_moments(chunk, b), pass->rate, led, forces, energies[1]);
+            for (l = 0; l < GXSP_LANES; l++) energies[2][l] += energies[1][l];
+        }
+        gxsp_add_energies(system, chunk, b, energies);
+        gxsp_block_store(chunk, b, forces, slots);
+    }
+}
+
+/* sum = sum over the slots of each copy, 3 doubles each */
+static void gxsp_task_sum(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    const double *slots = &system->vectors.slots[0][0];
+    size_t i, end = gxsp_range(system, index, &i);
+    for (; i < end; i++) {
+        double x = 0, y = 0, z = 0;
+        uint32_t s;
+        for (s = system->mesh.copy_start[i]; s < system->mesh.copy_start[i + 1]; s++) {
+            const double *from = slots + 3 * (size_t)system->mesh.copy_slot[s];
+            gxsp_prefetch(slots + 3 * (size_t)system->mesh.copy_slot[s + GXSP_AHEAD], 3 * sizeof *slots);
+            x += from[0], y += from[1], z += from[2];
+        }
+        pass->sum[3 * i] = x, pass->sum[3 * i + 1] = y, pass->sum[3 * i + 2] = z;
+    }
+}
+
+/* Energies of the components' elements at from, and elastic + inertial forces, 0 where a component sleeps. rotated:
+ * see gxsp_pass */
+static void gxsp_evaluate_elements(gxsp_system *system, double rate, const double *from, const double *rotated,
+                                   int nudge, double *force) {
+    gxsp_pass pass;
+    uint32_t p;
+    int k;
+    memset(&pass, 0, sizeof pass);
+    pass.system = system;
+    pass.materials = system->state.damped;
+    pass.rate = rate;
+    pass.from = from;
+    pass.sum = force;
+    pass.inertia = rate > 0 && !system->model.lumped_mass;
+    pass.rotated = rotated;
+    pass.nudge = nudge;
+    gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_state, &pass);
+    gxsp_over_ranges(system, gxsp_task_sum, &pass, NULL, 0);
+    for (p = 0; p < system->model.component_count; p++)
+        memset(system->model.components[p].energies, 0, sizeof system->model.components->energies);
+    for (p = 0; p < system->mesh.partial_count; p++)
+        for (k = 0; k < 3; k++)
+            system->model.components[system->model.components[system->mesh.partials[p].component].lead].energies[k] +=
+                system->mesh.partials[p].energies[k];
+    if (rate > 0 && system->model.lumped_mass) {
+        size_t i;
+        for (i = 0; i < 3 * system->model.n; i++)
+            if (!system->state.still[i / 3]) {
+                double moved = from[i] - system->vectors.target[i],
+                       inertia = rate * system->model.lumped[i / 3] * moved;
+                double *energies = gxsp_lead_of(system, i / 3)->energies;
+                force[i] += inertia;
+                energies[1] += 0.5 * inertia * moved;
+                energies[2] += 0.5 * inertia * moved;
+            }
+    }
+}
+
+/* >>blocks: vectors of copies and 3x3 blocks, nine numbers by columns ---------------------------------------------- */
+
+/* In and out: a few numbers at a time. Vector code stands beside plain C that computes the same. */
+
+/* Stores whole vectors: processors cannot forward narrower stores to the wide loads that soon follow. */
 static inline void gxsp_transpose_block(const float *GXSP_RESTRICT a, float *GXSP_RESTRICT transposed) {
 #if defined(GXSP_SHUFFLES) && defined(__AVX__)
     const gxsp_eight all = *(const gxsp_eight *)a;
@@ -4527,7 +4969,8 @@ static void gxsp_add_scaled(float a, const float *GXSP_RESTRICT x, float *GXSP_R
 /* y += a x for four numbers */
 static inline void gxsp_add_four(float a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y) {
 #if defined(GXSP_SHUFFLES)
-    const gxsp_four all = {a, a, a, a}; /* of a alone x87 makes a long double, which no vector is multiplied by */
+    const gxsp_four all = {a, a, a, a}; /* x87 would make a long double of a alone, by which no vector can be multiplied
+                                         */
     *(gxsp_four *)y += all * *(const gxsp_four *)x;
 #else
     int k;
@@ -4537,14 +4980,15 @@ static inline void gxsp_add_four(float a, const float *GXSP_RESTRICT x, float *G
 
 static void gxsp_add_mass(float mass, float *to) { to[0] += mass, to[4] += mass, to[8] += mass; }
 
-/* y -= a x; the fourth of y is without meaning, as is what follows a */
+/* y -= a x. The fourth number of y has no meaning, nor has the one behind a. */
 static void gxsp_subtract_block(const float *GXSP_RESTRICT a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y) {
     int k;
     for (k = 0; k < 4; k++) y[k] -= a[k] * x[0] + a[3 + k] * x[1] + a[6 + k] * x[2];
 }
 
 /* y -= a^T x */
-static void gxsp_subtract_turned(const float *GXSP_RESTRICT a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y) {
+static void gxsp_subtract_transposed(const float *GXSP_RESTRICT a, const float *GXSP_RESTRICT x,
+                                     float *GXSP_RESTRICT y) {
     y[0] -= a[0] * x[0] + a[1] * x[1] + a[2] * x[2];
     y[1] -= a[3] * x[0] + a[4] * x[1] + a[5] * x[2];
     y[2] -= a[6] * x[0] + a[7] * x[1] + a[8] * x[2];
@@ -4590,7 +5034,7 @@ static inline void gxsp_gather_four(const uint16_t *node, const gxsp_vector4 *x,
     *(gxsp_four *)to2 = __builtin_shufflevector(r, s, 0, 1, 4, 5);
 }
 
-/* Of vectors longer than there are, compilers make their shuffles number by number. */
+/* Compilers shuffle vectors longer than the machine's number by number. */
 static inline void gxsp_gather_eight(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2) {
     gxsp_gather_four(node, x, to0, to1, to2);
     gxsp_gather_four(node + 4, x, to0 + 4, to1 + 4, to2 + 4);
@@ -4607,15 +5051,16 @@ static inline void gxsp_scatter_four(const uint16_t *node, const float *from0, c
     *(gxsp_four *)y[node[3]] += __builtin_shufflevector(high, r, 2, 3, 7, 7);
 }
 
-static inline void gxsp_turn_four(const float *a, const float *b, const float *c, const float *d, gxsp_four *turned) {
+static inline void gxsp_transpose_four(const float *a, const float *b, const float *c, const float *d,
+                                       gxsp_four *transposed) {
     const gxsp_four p = *(const gxsp_four *)a, q = *(const gxsp_four *)b, r = *(const gxsp_four *)c,
                     s = *(const gxsp_four *)d;
     const gxsp_four low = __builtin_shufflevector(p, q, 0, 4, 1, 5), high = __builtin_shufflevector(p, q, 2, 6, 3, 7);
     const gxsp_four next = __builtin_shufflevector(r, s, 0, 4, 1, 5), last = __builtin_shufflevector(r, s, 2, 6, 3, 7);
-    turned[0] = __builtin_shufflevector(low, next, 0, 1, 4, 5);
-    turned[1] = __builtin_shufflevector(low, next, 2, 3, 6, 7);
-    turned[2] = __builtin_shufflevector(high, last, 0, 1, 4, 5);
-    turned[3] = __builtin_shufflevector(high, last, 2, 3, 6, 7);
+    transposed[0] = __builtin_shufflevector(low, next, 0, 1, 4, 5);
+    transposed[1] = __builtin_shufflevector(low, next, 2, 3, 6, 7);
+    transposed[2] = __builtin_shufflevector(high, last, 0, 1, 4, 5);
+    transposed[3] = __builtin_shufflevector(high, last, 2, 3, 6, 7);
 }
 
 /* Six numbers of each of four lanes to those of their nodes, six side by side */
@@ -4624,7 +5069,7 @@ static inline void gxsp_scatter_six(const uint16_t *node, gxsp_singles *from, in
     const gxsp_four low = __builtin_shufflevector(p, q, 0, 4, 1, 5), high = __builtin_shufflevector(p, q, 2, 6, 3, 7);
     gxsp_four first[4];
     int k;
-    gxsp_turn_four(from[0] + lane, from[1] + lane, from[2] + lane, from[3] + lane, first);
+    gxsp_transpose_four(from[0] + lane, from[1] + lane, from[2] + lane, from[3] + lane, first);
     for (k = 0; k < 4; k++) *(gxsp_four *)(y + 6 * (size_t)node[k]) += first[k];
     *(gxsp_two *)(y + 6 * (size_t)node[0] + 4) += __builtin_shufflevector(low, low, 0, 1);
     *(gxsp_two *)(y + 6 * (size_t)node[1] + 4) += __builtin_shufflevector(low, low, 2, 3);
@@ -4637,8 +5082,8 @@ static inline void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, fl
     int l, k;
     for (l = 0; l < GXSP_LANES; l += 4) {
         gxsp_four first[4], second[4];
-        gxsp_turn_four(block[0] + l, block[1] + l, block[2] + l, block[3] + l, first);
-        gxsp_turn_four(block[4] + l, block[5] + l, block[6] + l, block[7] + l, second);
+        gxsp_transpose_four(block[0] + l, block[1] + l, block[2] + l, block[3] + l, first);
+        gxsp_transpose_four(block[4] + l, block[5] + l, block[6] + l, block[7] + l, second);
         for (k = 0; k < 4; k++) {
             float *at = to[entry[l + k]];
             *(gxsp_four *)at += first[k];
@@ -4672,22 +5117,28 @@ static void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, float (*t
 }
 #endif
 
-/* x of a block's corners; of those that are not fresh it is there from the block before */
+/* >>product: the Hessian times a vector, in single precision ------------------------------------------------------- */
+
+/* In: the last linearisation and a vector. Out: the product on copies that follow nothing; what sleeps counts as
+ * 0. */
+
+/* x of a block's corners. A corner that has not changed since the block before keeps its values. */
 static void gxsp_block_gather(const gxsp_chunk *chunk, uint32_t b, const gxsp_vector4 *GXSP_RESTRICT x,
                               gxsp_singles *GXSP_RESTRICT to) {
     const gxsp_corners *corner = &chunk->corners[b];
     int i;
     for (i = 0; i < 4; i++)
-        if (chunk->fresh[b] >> i & 1) gxsp_gather_eight(corner->node[i], x, to[3 * i], to[3 * i + 1], to[3 * i + 2]);
+        if (chunk->changed[b] >> i & 1) gxsp_gather_eight(corner->node[i], x, to[3 * i], to[3 * i + 1], to[3 * i + 2]);
 }
 
-/* What a block adds to its corners, and 0 in its place; what those get that the next block has too stays. */
+/* Adds a block's result to its corners, and sets it to 0. The result at a corner that the next block has too is
+ * kept for it. */
 static void gxsp_block_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *GXSP_RESTRICT from,
                                gxsp_vector4 *GXSP_RESTRICT y) {
     const gxsp_corners *corner = &chunk->corners[b];
     int i, k, l;
     for (i = 0; i < 4; i++) {
-        if (!(chunk->fresh[b + 1] >> i & 1)) continue;
+        if (!(chunk->changed[b + 1] >> i & 1)) continue;
         for (l = 0; l < GXSP_LANES; l += 4)
             gxsp_scatter_four(corner->node[i] + l, from[3 * i] + l, from[3 * i + 1] + l, from[3 * i + 2] + l, y);
         for (k = 3 * i; k < 3 * i + 3; k++) GXSP_EACH_LANE(l) from[k][l] = 0;
@@ -4697,21 +5148,21 @@ static void gxsp_block_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles
 static void gxsp_task_product(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
-    const gxsp_chunk *chunk = &system->chunks[index];
-    const uint32_t *copies = system->nodes + chunk->first_node;
-    gxsp_vector4 in[4 * GXSP_CHUNK]; /* apart from the chunks', so that it stays in the cache */
-    gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->slots + chunk->first_node;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
+    gxsp_vector4 in[4 * GXSP_CHUNK]; /* not the chunks' own memory: stays in the cache */
+    gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
     gxsp_singles from[12], to[12];
     uint32_t b, i;
-    if (system->chunk_still[index]) return;
+    if (system->state.chunk_still[index]) return;
     for (i = 0; i < chunk->node_count; i++) {
-        gxsp_fetch(pass->x[copies[i + GXSP_AHEAD]], sizeof *pass->x);
+        gxsp_prefetch(pass->x[copies[i + GXSP_AHEAD]], sizeof *pass->x);
         memcpy(in[i], pass->x[copies[i]], sizeof *in);
     }
     memset(out, 0, chunk->node_count * sizeof *out);
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; b++) {
-        gxsp_fetch_block(system, index, b, GXSP_TANGENTS_AHEAD, 1);
+        gxsp_prefetch_block(system, index, b, GXSP_TANGENTS_AHEAD, 1);
         gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
         gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_moments(chunk, b), gxsp_block_general(chunk, b),
                           0, from, to);
@@ -4723,17 +5174,17 @@ static void gxsp_task_product(void *context, size_t index) {
 static void gxsp_task_product_sum(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
-    gxsp_vector4 *slots = (gxsp_vector4 *)(void *)system->slots;
+    gxsp_vector4 *slots = (gxsp_vector4 *)(void *)system->vectors.slots;
     size_t i, end = gxsp_range(system, index, &i);
     double work = 0;
     for (; i < end; i++) {
-        const float *at = pass->x[i], m = system->lumped_mass ? (float)(pass->rate * system->lumped[i]) : 0;
+        const float *at = pass->x[i], m = system->model.lumped_mass ? (float)(pass->rate * system->model.lumped[i]) : 0;
         const double *right = pass->right ? pass->right + 3 * i : NULL;
         float x = m * at[0], y = m * at[1], z = m * at[2], *to = pass->y[i];
         uint32_t s;
-        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; s++) {
-            const float *from = slots[system->copy_slot[s]];
-            gxsp_fetch(slots[system->copy_slot[s + GXSP_AHEAD]], sizeof *slots);
+        for (s = system->mesh.copy_start[i]; s < system->mesh.copy_start[i + 1] && !system->state.still[i]; s++) {
+            const float *from = slots[system->mesh.copy_slot[s]];
+            gxsp_prefetch(slots[system->mesh.copy_slot[s + GXSP_AHEAD]], sizeof *slots);
             x += from[0], y += from[1], z += from[2];
         }
         if (right)
@@ -4742,26 +5193,26 @@ static void gxsp_task_product_sum(void *context, size_t index) {
             to[0] = x, to[1] = y, to[2] = z;
         work += (double)at[0] * (double)x + (double)at[1] * (double)y + (double)at[2] * (double)z;
     }
-    system->range_sum[index][0] = work;
+    system->vectors.range_sum[index][0] = work;
 }
 
 /* y = A x by the assembled matrix, on copies that are not still. Returns x . y. */
 static double gxsp_rows_product(const gxsp_system *system, gxsp_vector4 *x, gxsp_vector4 *y) {
-    const gxsp_level *fine = &system->levels[0];
+    const gxsp_level *fine = &system->multigrid.levels[0];
     double work = 0;
     uint32_t i, k;
     int c;
-    memset(y, 0, system->n * sizeof *y);
+    memset(y, 0, system->model.n * sizeof *y);
     for (i = 0; i < fine->n; i++) {
         gxsp_vector4 minus = {0, 0, 0, 0};
-        const float turned[3] = {-x[i][0], -x[i][1], -x[i][2]};
+        const float minus_x[3] = {-x[i][0], -x[i][1], -x[i][2]};
         gxsp_subtract_block(fine->block + 9 * (size_t)fine->start[i], x[i], minus);
         for (k = fine->start[i] + 1; k < fine->start[i + 1]; k++) {
             gxsp_subtract_block(fine->block + 9 * (size_t)k, x[fine->column[k]], minus);
-            gxsp_subtract_turned(fine->block + 9 * (size_t)k, turned, y[fine->column[k]]);
+            gxsp_subtract_transposed(fine->block + 9 * (size_t)k, minus_x, y[fine->column[k]]);
         }
         for (c = 0; c < 3; c++) { /* all rows before have added to it */
-            y[i][c] = system->still[i] ? 0 : y[i][c] - minus[c];
+            y[i][c] = system->state.still[i] ? 0 : y[i][c] - minus[c];
             work += (double)x[i][c] * (double)y[i][c];
         }
     }
@@ -4786,8 +5237,8 @@ static double gxsp_add_terms(const gxsp_lasting *lasting, float sign, gxsp_vecto
     return work;
 }
 
-/* y = A x, or right - A x unless right is NULL, A = scale (K + rate M), K the projected Hessian of the last
- * linearisation, on copies that follow nothing; x of followers is written too. right: 0 where nothing moves;
+/* y = A x, or right - A x unless right is NULL, with A = scale (K + rate M), K the Hessian of the last
+ * linearisation, on copies that follow nothing. x of followers is written too. right: 0 where nothing moves;
  * matrix-free only. Returns x . A x. */
 static double gxsp_product_from(gxsp_system *system, double rate, const double *right, gxsp_vector4 *x,
                                 gxsp_vector4 *y) {
@@ -4795,15 +5246,15 @@ static double gxsp_product_from(gxsp_system *system, double rate, const double *
     double work;
     memset(&pass, 0, sizeof pass);
     pass.system = system;
-    pass.rate = system->scale * rate;
+    pass.rate = system->model.scale * rate;
     pass.x = x;
     pass.y = y;
     pass.right = right;
     gxsp_extend(system, x);
-    if (system->fine)
+    if (system->multigrid.fine)
         work = gxsp_rows_product(system, x, y);
     else {
-        gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_product, &pass);
+        gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_product, &pass);
         gxsp_over_ranges(system, gxsp_task_product_sum, &pass, &work, 1);
     }
     work += gxsp_add_terms(system->lasting, right ? -1.0f : 1.0f, x, y);
@@ -4816,14 +5267,17 @@ static double gxsp_product(gxsp_system *system, double rate, gxsp_vector4 *x, gx
     return gxsp_product_from(system, rate, NULL, x, y);
 }
 
-/* --- products of doubles --- */
+/* >>doubles: products of vectors in double precision, for gxs_solver_product --------------------------------------- */
 
-/* How a direction moves a copy, times pass->factor: as it says, as its masters' make it if it follows them, not at all
- * if it is fixed */
+/* In: the last linearisation and a direction. Out: the product, with what sleeps. Differences between an
+ * element's corners are taken in double precision. */
+
+/* Motion of a copy by a direction, times pass->factor: the direction's own, that of its masters if it follows them,
+ * 0 if it is fixed */
 static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GXSP_RESTRICT to) {
     const gxsp_system *system = pass->system;
     const double *from = pass->from + 3 * (size_t)copy;
-    double factor = system->fixed[copy] ? 0 : pass->factor;
+    double factor = system->model.fixed[copy] ? 0 : pass->factor;
     int k, c;
     if (!gxsp_follows(system, copy)) {
         to[0] = factor * from[0], to[1] = factor * from[1], to[2] = factor * from[2];
@@ -4831,14 +5285,14 @@ static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GX
     }
     to[0] = to[1] = to[2] = 0;
     for (k = 0; k < 4; k++) {
-        const gxsp_follower *follower = &system->followers[system->follower[copy]];
+        const gxsp_follower *follower = &system->model.followers[system->model.follower[copy]];
         from = pass->from + 3 * (size_t)follower->master[k];
-        factor = system->fixed[follower->master[k]] ? 0 : pass->factor * follower->weight[k];
+        factor = system->model.fixed[follower->master[k]] ? 0 : pass->factor * follower->weight[k];
         for (c = 0; c < 3; c++) to[c] += factor * from[c];
     }
 }
 
-/* The first three of four doubles less those of origin, in single precision */
+/* The first three of four doubles minus those of origin, in single precision */
 static inline void gxsp_narrow_four(const double *x, const double *origin, float *to) {
 #if defined(GXSP_SHUFFLES)
     *(gxsp_four *)to =
@@ -4849,8 +5303,8 @@ static inline void gxsp_narrow_four(const double *x, const double *origin, float
 #endif
 }
 
-/* What a block's corner 0 has and what the others have more; where neither is fresh it is there from the block before.
- * in: x 3, and one more double */
+/* x of a block's corner 0, and of the others relative to it. Where neither corner has changed since the block
+ * before, values are kept. in: x 3, and one more double */
 static void gxsp_block_gather_doubles(const gxsp_chunk *chunk, uint32_t b, const double *GXSP_RESTRICT in,
                                       gxsp_singles *GXSP_RESTRICT to) {
     const gxsp_corners *corner = &chunk->corners[b];
@@ -4859,7 +5313,7 @@ static void gxsp_block_gather_doubles(const gxsp_chunk *chunk, uint32_t b, const
     gxsp_vector4 lanes[GXSP_LANES];
     int i, l;
     for (i = 0; i < 4; i++) {
-        if (!((chunk->fresh[b] | chunk->fresh[b] >> i) & 1)) continue;
+        if (!((chunk->changed[b] | chunk->changed[b] >> i) & 1)) continue;
         for (l = 0; l < GXSP_LANES; l++)
             gxsp_narrow_four(in + 3 * (size_t)corner->node[i][l], i > 0 ? in + 3 * (size_t)corner->node[0][l] : zero,
                              lanes[l]);
@@ -4871,10 +5325,10 @@ static void gxsp_block_gather_doubles(const gxsp_chunk *chunk, uint32_t b, const
 static void gxsp_task_apply(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
-    const gxsp_chunk *chunk = &system->chunks[index];
-    const uint32_t *copies = system->nodes + chunk->first_node;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
     double in[3 * 4 * GXSP_CHUNK + 1]; /* one more than is read as numbers */
-    gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->slots + chunk->first_node;
+    gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
     gxsp_singles from[12], to[12];
     uint32_t b, i;
     for (i = 0; i < chunk->node_count; i++) gxsp_copy_direction(pass, copies[i], in + 3 * (size_t)i);
@@ -4882,7 +5336,7 @@ static void gxsp_task_apply(void *context, size_t index) {
     memset(out, 0, chunk->node_count * sizeof *out);
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; b++) {
-        gxsp_fetch_block(system, index, b, GXSP_TANGENTS_AHEAD, 1);
+        gxsp_prefetch_block(system, index, b, GXSP_TANGENTS_AHEAD, 1);
         gxsp_block_gather_doubles(chunk, b, in, from);
         gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_moments(chunk, b), gxsp_block_general(chunk, b),
                           1, from, to);
@@ -4890,21 +5344,21 @@ static void gxsp_task_apply(void *context, size_t index) {
     }
 }
 
-/* pass->sum = the product, from the slots, and what lumped masses make of it */
+/* pass->sum = the product, from the slots and from lumped masses */
 static void gxsp_task_apply_sum(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
-    gxsp_vector4 *slots = (gxsp_vector4 *)(void *)system->slots;
-    const double unit = 1 / system->scale, back = 1 / pass->factor;
+    gxsp_vector4 *slots = (gxsp_vector4 *)(void *)system->vectors.slots;
+    const double unit = 1 / system->model.scale, back = 1 / pass->factor;
     size_t i, end = gxsp_range(system, index, &i);
     for (; i < end; i++) {
-        double at[3] = {0, 0, 0}, mass = system->lumped_mass ? pass->rate * system->lumped[i] : 0, x, y, z;
+        double at[3] = {0, 0, 0}, mass = system->model.lumped_mass ? pass->rate * system->model.lumped[i] : 0, x, y, z;
         uint32_t s;
         if (mass > 0) gxsp_copy_direction(pass, (uint32_t)i, at);
         x = mass * at[0], y = mass * at[1], z = mass * at[2];
-        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->fixed[i]; s++) {
-            const float *from = slots[system->copy_slot[s]];
-            gxsp_fetch(slots[system->copy_slot[s + GXSP_AHEAD]], sizeof *slots);
+        for (s = system->mesh.copy_start[i]; s < system->mesh.copy_start[i + 1] && !system->model.fixed[i]; s++) {
+            const float *from = slots[system->mesh.copy_slot[s]];
+            gxsp_prefetch(slots[system->mesh.copy_slot[s + GXSP_AHEAD]], sizeof *slots);
             x += (double)from[0], y += (double)from[1], z += (double)from[2];
         }
         pass->sum[3 * i] = x * unit * back, pass->sum[3 * i + 1] = y * unit * back,
@@ -4912,36 +5366,11 @@ static void gxsp_task_apply_sum(void *context, size_t index) {
     }
 }
 
-/* 2^k, |k| < 1023, about the inverse of the largest of the values, so that single precision holds them and their
- * product; 0: one is not finite */
-static double gxsp_unit_factor(const double *values, size_t count) {
-    const uint64_t exponent = (uint64_t)0x7ff << 52, one = (uint64_t)1 << 52;
-    uint64_t largest = one, bits;
-    double factor;
-    size_t i;
-    for (i = 0; i < count; i++) {
-        memcpy(&bits, &values[i], sizeof bits);
-        largest = (bits & exponent) > largest ? bits & exponent : largest;
-    }
-    if (largest == exponent) return 0;
-    bits = 2046 * one - (largest < 2045 * one ? largest : 2045 * one);
-    memcpy(&factor, &bits, sizeof factor);
-    return factor;
-}
-
-static int gxsp_all_finite_single(const void *numbers, size_t bytes) {
-    const float *number = (const float *)numbers;
-    size_t i;
-    for (i = 0; i < bytes / sizeof *number; i++)
-        if (!gxsp_finite_single(number[i])) return 0;
-    return 1;
-}
-
 /* Are the Hessians and masses of all elements finite? */
 static int gxsp_tangents_finite(const gxsp_system *system) {
     uint32_t c;
-    for (c = 0; c < system->chunk_count; c++) {
-        const gxsp_chunk *chunk = &system->chunks[c];
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        const gxsp_chunk *chunk = &system->mesh.chunks[c];
         if (!gxsp_all_finite_single(chunk->tangents, chunk->block_count * sizeof *chunk->tangents) ||
             !gxsp_all_finite_single(chunk->generals,
                                     chunk->generals ? chunk->block_count * sizeof *chunk->generals : 0))
@@ -4950,51 +5379,12 @@ static int gxsp_tangents_finite(const gxsp_system *system) {
     return 1;
 }
 
-/* U of a block's Hessian, by rows */
-static void gxsp_block_frame(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *GXSP_RESTRICT u) {
-    int l;
-    GXSP_EACH_LANE(l) {
-        const float a = t->frame[0][l], b = t->frame[1][l], c = t->frame[2][l], d = t->frame[3][l];
-        u[0][l] = 1 - (b * b + c * c), u[1][l] = a * b - c * d, u[2][l] = a * c + b * d;
-        u[3][l] = a * b + c * d, u[4][l] = 1 - (a * a + c * c), u[5][l] = b * c - a * d;
-        u[6][l] = a * c - b * d, u[7][l] = b * c + a * d, u[8][l] = 1 - (a * a + b * b);
-    }
-}
+/* >>linearise: Hessians of elements, and the inverse block diagonal ------------------------------------------------ */
 
-/* own += U B U^T, packed, B as of gxsp_block_couple: what couples a shape function with itself. p: its gradient */
-static void gxsp_block_own(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *GXSP_RESTRICT u,
-                           gxsp_singles *GXSP_RESTRICT p, gxsp_singles *GXSP_RESTRICT own) {
-    int l;
-    GXSP_EACH_LANE(l) {
-        const float p0 = p[0][l], p1 = p[1][l], p2 = p[2][l], q0 = p0 * p0, q1 = p1 * p1, q2 = p2 * p2;
-        const float e0 = t->even[0][l], e1 = t->even[1][l], e2 = t->even[2][l];
-        const float b0 = t->stretch[0][l] * q0 + e2 * q1 + e1 * q2, b3 = t->stretch[3][l] * q1 + e2 * q0 + e0 * q2,
-                    b5 = t->stretch[5][l] * q2 + e1 * q0 + e0 * q1, b1 = (t->stretch[1][l] + t->odd[2][l]) * p0 * p1,
-                    b2 = (t->stretch[2][l] + t->odd[1][l]) * p0 * p2, b4 = (t->stretch[4][l] + t->odd[0][l]) * p1 * p2;
-        const float u0 = u[0][l], u1 = u[1][l], u2 = u[2][l], u3 = u[3][l], u4 = u[4][l], u5 = u[5][l], u6 = u[6][l],
-                    u7 = u[7][l], u8 = u[8][l];
-        const float a0 = u0 * b0 + u1 * b1 + u2 * b2, a1 = u0 * b1 + u1 * b3 + u2 * b4,
-                    a2 = u0 * b2 + u1 * b4 + u2 * b5, a3 = u3 * b0 + u4 * b1 + u5 * b2,
-                    a4 = u3 * b1 + u4 * b3 + u5 * b4, a5 = u3 * b2 + u4 * b4 + u5 * b5,
-                    a6 = u6 * b0 + u7 * b1 + u8 * b2, a7 = u6 * b1 + u7 * b3 + u8 * b4,
-                    a8 = u6 * b2 + u7 * b4 + u8 * b5;
-        own[0][l] += a0 * u0 + a1 * u1 + a2 * u2, own[1][l] += a0 * u3 + a1 * u4 + a2 * u5,
-            own[2][l] += a0 * u6 + a1 * u7 + a2 * u8;
-        own[3][l] += a3 * u3 + a4 * u4 + a5 * u5, own[4][l] += a3 * u6 + a4 * u7 + a5 * u8,
-            own[5][l] += a6 * u6 + a7 * u7 + a8 * u8;
-    }
-}
+/* In: a displacement. Out: the tangents of all blocks, gxsp_vectors.diagonal, and whether an element has
+ * collapsed. */
 
-/* The same of a Hessian without a frame */
-static void gxsp_general_own(const gxsp_general *general, gxsp_singles *p, gxsp_singles *own) {
-    static const int packed[6] = {0, 1, 2, 4, 5, 8};
-    gxsp_singles block[9];
-    int k, l;
-    gxsp_general_couple(general, p, p, block);
-    for (k = 0; k < 6; k++) GXSP_EACH_LANE(l) own[k][l] += block[packed[k]][l];
-}
-
-/* Diagonal blocks of a block's Hessian, packed: own[6 corner ...] += */
+/* Adds the diagonal blocks of a block's Hessian, packed, to own[6 corner ...]. */
 static void gxsp_block_diagonal(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *own) {
     static const int diagonal[3] = {0, 3, 5};
     const gxsp_tangent *tangent = &chunk->tangents[b];
@@ -5013,13 +5403,13 @@ static void gxsp_block_diagonal(const gxsp_chunk *chunk, uint32_t b, gxsp_single
     }
 }
 
-/* Diagonal blocks into the chunk's slots, 6 floats each, and 0 in their place; those of corners that the next block has
- * too stay. */
+/* Adds diagonal blocks to the chunk's slots, 6 floats each, and sets them to 0. Those of corners that the next
+ * block has too are kept for it. */
 static void gxsp_diagonal_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *GXSP_RESTRICT own,
                                   float *GXSP_RESTRICT slots) {
     int corner, k, l;
     for (corner = 0; corner < 4; corner++) {
-        if (!(chunk->fresh[b + 1] >> corner & 1)) continue;
+        if (!(chunk->changed[b + 1] >> corner & 1)) continue;
         for (l = 0; l < GXSP_LANES; l += 4)
             gxsp_scatter_six(chunk->corners[b].node[corner] + l, own + 6 * corner, l, slots);
         for (k = 6 * corner; k < 6 * corner + 6; k++) GXSP_EACH_LANE(l) own[k][l] = 0;
@@ -5030,36 +5420,36 @@ static void gxsp_diagonal_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_sing
 static void gxsp_task_linearise(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     gxsp_system *system = pass->system;
-    const gxsp_chunk *chunk = &system->chunks[index];
-    float *slots = (float *)(void *)system->slots[chunk->first_node];
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    float *slots = (float *)(void *)system->vectors.slots[chunk->first_node];
     double rest_at[3 * 4 * GXSP_CHUNK + 1], at[3 * 4 * GXSP_CHUNK + 1];
     gxsp_lanes corners[12], x[12], made[2][9], *gradients[2];
     gxsp_singles own[24];
     uint32_t b, k, blocks;
     int l;
-    system->chunk_collapsed[index] = 0;
-    if (system->chunk_still[index]) return;
+    system->state.chunk_collapsed[index] = 0;
+    if (system->state.chunk_still[index]) return;
     memset(slots, 0, 6 * (size_t)chunk->node_count * sizeof *slots);
     memset(own, 0, sizeof own);
     gxsp_chunk_load(system, chunk, pass->from, at);
-    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->positions, rest_at);
+    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, rest_at);
     for (b = 0; b < chunk->block_count; b += blocks) { /* two at a time */
         gxsp_state s[2];
         gxsp_svd of[2];
         blocks = b + 1 < chunk->block_count ? 2 : 1;
         for (k = 0; k < blocks; k++) {
-            gxsp_fetch_block(system, index, b + k, GXSP_RESTS_AHEAD, 0);
+            gxsp_prefetch_block(system, index, b + k, GXSP_RESTS_AHEAD, 0);
             gxsp_block_load(chunk, b + k, at, x);
             gxsp_block_parameters(pass->materials, &chunk->rest[b + k], &s[k]);
             gradients[k] = gxsp_block_gradients(chunk, b + k, rest_at, corners, made[k]);
             gxsp_block_gradient(gradients[k], x, s[k].g);
         }
-        system->chunk_collapsed[index] |=
+        system->state.chunk_collapsed[index] |=
             (uint8_t)gxsp_tangent_begin(chunk->kind, &s[0], blocks > 1 ? &s[1] : NULL, of);
         for (k = 0; k < blocks; k++) {
             const gxsp_rest *rest = &chunk->rest[b + k];
             gxsp_tangent *tangent = &chunk->tangents[b + k];
-            gxsp_tangent_make(chunk->kind, rest, gradients[k], system->scale, pass->exact, &s[k], &of[k], tangent,
+            gxsp_tangent_make(chunk->kind, rest, gradients[k], system->model.scale, pass->exact, &s[k], &of[k], tangent,
                               gxsp_block_general(chunk, b + k));
             GXSP_EACH_LANE(l) tangent->mass[l] = (float)(pass->rate * rest->mass[l]);
             gxsp_block_diagonal(chunk, b + k, own);
@@ -5068,10 +5458,10 @@ static void gxsp_task_linearise(void *context, size_t index) {
     }
 }
 
-/* Inverse of a positive semi-definite 3x3, packed in place, as W^T W with W the inverse Cholesky factor: semi-definite
- * in spite of rounding. 1e-7 of the trace is added (the entries are sums in single precision), so that a direction
- * without stiffness gives a large number, not an infinite one. Zero stays zero: such a copy is left alone; what is not
- * finite stays so. */
+/* Inverse of a positive semi-definite 3x3, packed, in place, as W^T W with W the inverse Cholesky factor:
+ * semi-definite in spite of rounding. 1e-7 of the trace is added, since the entries are sums in single precision: a
+ * direction without stiffness gives a large number, not an infinite one. Zero stays zero: such a copy is left
+ * alone. What is not finite stays so. */
 static void gxsp_invert3(double *a) {
     const double shift = 1e-7;
     double trace = a[0] + a[3] + a[5], scale, l00, l10, l20, l11, l21, l22, w10, w20, w21;
@@ -5104,29 +5494,29 @@ static void gxsp_invert3(double *a) {
 static void gxsp_task_diagonal(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
-    const float *slots = (const float *)(const void *)system->slots;
+    const float *slots = (const float *)(const void *)system->vectors.slots;
     size_t i, end = gxsp_range(system, index, &i);
     for (; i < end; i++) {
         double sum[6] = {0, 0, 0, 0, 0, 0};
         uint32_t s;
         int k;
-        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; s++) {
-            gxsp_fetch(slots + 6 * (size_t)system->copy_slot[s + GXSP_AHEAD], 6 * sizeof *slots);
-            for (k = 0; k < 6; k++) sum[k] += (double)slots[6 * (size_t)system->copy_slot[s] + (size_t)k];
+        for (s = system->mesh.copy_start[i]; s < system->mesh.copy_start[i + 1] && !system->state.still[i]; s++) {
+            gxsp_prefetch(slots + 6 * (size_t)system->mesh.copy_slot[s + GXSP_AHEAD], 6 * sizeof *slots);
+            for (k = 0; k < 6; k++) sum[k] += (double)slots[6 * (size_t)system->mesh.copy_slot[s] + (size_t)k];
         }
-        for (k = 0; system->lumped_mass && k < 6; k++)
-            sum[k] += k == 0 || k == 3 || k == 5 ? pass->rate * system->lumped[i] : 0;
-        if (system->still[i] || sum[0] + sum[3] + sum[5] < GXSP_TINY) /* only what is coarser moves such a copy */
+        for (k = 0; system->model.lumped_mass && k < 6; k++)
+            sum[k] += k == 0 || k == 3 || k == 5 ? pass->rate * system->model.lumped[i] : 0;
+        if (system->state.still[i] || sum[0] + sum[3] + sum[5] < GXSP_TINY) /* only coarser levels move such a copy */
             memset(sum, 0, sizeof sum);
         gxsp_invert3(sum);
-        for (k = 0; k < 6; k++) system->diagonal[6 * i + (size_t)k] = (float)sum[k];
+        for (k = 0; k < 6; k++) system->vectors.diagonal[6 * i + (size_t)k] = (float)sum[k];
     }
 }
 
-/* Springs, contact and followers add to the diagonal blocks: all goes to a copy's first slot, from which the blocks are
+/* Adds springs, contact and followers to the diagonal blocks: to a copy's first slot, from which the blocks are
  * summed. */
 static void gxsp_extra_diagonal(gxsp_system *system) {
-    float *slots = (float *)(void *)system->slots;
+    float *slots = (float *)(void *)system->vectors.slots;
     size_t t;
     uint32_t i, s;
     int k, m;
@@ -5134,65 +5524,717 @@ static void gxsp_extra_diagonal(gxsp_system *system) {
         for (k = 0; k < 4; k++) {
             const gxsp_term *term = &system->lasting->term[t];
             const uint32_t copy = term->copy[k];
-            for (m = 0; m < 6 && system->copy_start[copy] < system->copy_start[copy + 1]; m++)
-                slots[6 * (size_t)system->copy_slot[system->copy_start[copy]] + (size_t)m] +=
+            for (m = 0; m < 6 && system->mesh.copy_start[copy] < system->mesh.copy_start[copy + 1]; m++)
+                slots[6 * (size_t)system->mesh.copy_slot[system->mesh.copy_start[copy]] + (size_t)m] +=
                     term->weight[k] * term->weight[k] * term->hessian[m];
         }
-    for (i = 0; i < system->follower_count; i++)
-        for (s = system->copy_start[system->followers[i].copy]; s < system->copy_start[system->followers[i].copy + 1];
-             s++)
+    for (i = 0; i < system->model.follower_count; i++)
+        for (s = system->mesh.copy_start[system->model.followers[i].copy];
+             s < system->mesh.copy_start[system->model.followers[i].copy + 1]; s++)
             for (k = 0; k < 4; k++) {
-                const uint32_t copy = system->followers[i].master[k];
-                const float weight = (float)system->followers[i].weight[k];
-                float *from = slots + 6 * (size_t)system->copy_slot[s];
-                for (m = 0; m < 6 && weight * weight > 0 && system->copy_start[copy] < system->copy_start[copy + 1];
+                const uint32_t copy = system->model.followers[i].master[k];
+                const float weight = (float)system->model.followers[i].weight[k];
+                float *from = slots + 6 * (size_t)system->mesh.copy_slot[s];
+                for (m = 0;
+                     m < 6 && weight * weight > 0 && system->mesh.copy_start[copy] < system->mesh.copy_start[copy + 1];
                      m++)
-                    slots[6 * (size_t)system->copy_slot[system->copy_start[copy]] + (size_t)m] +=
+                    slots[6 * (size_t)system->mesh.copy_slot[system->mesh.copy_start[copy]] + (size_t)m] +=
                         weight * weight * from[m];
             }
-    for (i = 0; i < system->follower_count; i++)
-        for (s = system->copy_start[system->followers[i].copy]; s < system->copy_start[system->followers[i].copy + 1];
-             s++)
-            memset(slots + 6 * (size_t)system->copy_slot[s], 0, 6 * sizeof *slots);
+    for (i = 0; i < system->model.follower_count; i++)
+        for (s = system->mesh.copy_start[system->model.followers[i].copy];
+             s < system->mesh.copy_start[system->model.followers[i].copy + 1]; s++)
+            memset(slots + 6 * (size_t)system->mesh.copy_slot[s], 0, 6 * sizeof *slots);
 }
 
-/* Hessian of the elements, times scale, and inverse block diagonal at a displacement. 0 if a number overflowed. */
+/* Hessian of the elements, times scale, and inverse block diagonal at a displacement. 0: a number overflowed. */
 static int gxsp_linearise(gxsp_system *system, double rate, const double *from, int exact, int *collapsed) {
     gxsp_pass pass;
     size_t i;
     memset(&pass, 0, sizeof pass);
     pass.system = system;
-    pass.materials = system->damped;
-    pass.rate = system->scale * rate;
+    pass.materials = system->state.damped;
+    pass.rate = system->model.scale * rate;
     pass.from = from;
     pass.exact = exact;
-    gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_linearise, &pass);
+    gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_linearise, &pass);
     gxsp_extra_diagonal(system);
     gxsp_over_ranges(system, gxsp_task_diagonal, &pass, NULL, 0);
     *collapsed = 0;
-    for (i = 0; i < system->chunk_count; i++) *collapsed |= system->chunk_collapsed[i];
-    for (i = 0; i < 6 * system->n; i++)
-        if (!gxsp_finite_single(system->diagonal[i])) return 0;
+    for (i = 0; i < system->mesh.chunk_count; i++) *collapsed |= system->state.chunk_collapsed[i];
+    for (i = 0; i < 6 * system->model.n; i++)
+        if (!gxsp_finite_single(system->vectors.diagonal[i])) return 0;
     return 1;
 }
 
-/* >>multigrid: a level's matrix in block rows, of which only the upper half is stored; block Gauss-Seidel forward
- * before and backward after the coarse correction, so that the whole is symmetric. The order is that of the nodes. */
+/* >>galerkin: numbers of the coarse matrices, transfer^T A transfer ------------------------------------------------ */
 
-/* r = b without what the entries left of the diagonal make of x; if solve is set, x is solved for on the way, row by
- * row. */
+/* In: the last linearisation, or a level's matrix. Out: the next level's matrix. Level 1's is made chunk by chunk
+ * from the elements, in shared memory, without an assembled matrix. */
+
+/* Turns a block by rows into one by columns, for the row of the lower of the two nodes p and q, and adds its mass. */
+static void gxsp_order_block(const uint16_t *GXSP_RESTRICT p, const uint16_t *GXSP_RESTRICT q,
+                             const float *GXSP_RESTRICT mass, gxsp_singles *GXSP_RESTRICT block) {
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float b1 = block[1][l], b2 = block[2][l], b3 = block[3][l], b5 = block[5][l], b6 = block[6][l],
+                    b7 = block[7][l];
+        const int transposed = p[l] > q[l];
+        block[0][l] += mass[l], block[4][l] += mass[l], block[8][l] += mass[l];
+        block[1][l] = transposed ? b1 : b3, block[3][l] = transposed ? b3 : b1;
+        block[2][l] = transposed ? b2 : b6, block[6][l] = transposed ? b6 : b2;
+        block[5][l] = transposed ? b5 : b7, block[7][l] = transposed ? b7 : b5;
+    }
+}
+
+/* Adds half the row sums of a block's masses to its nodes. */
+static void gxsp_own_mass(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b) {
+    const gxsp_moments *moments = gxsp_block_moments(chunk, b);
+    gxsp_singles of[4], half;
+    int k, l;
+    for (k = 0; k < 4; k++) {
+        if (moments) gxsp_corner_moments(moments, k, of);
+        GXSP_EACH_LANE(l)
+        half[l] = chunk->rest[b].weight[l] > 0 ? (moments ? 0.5f * of[0][l] : 2.5f) * chunk->tangents[b].mass[l] : 0;
+        for (l = 0; l < GXSP_LANES; l++) edges->mass[chunk->corners[b].node[k][l]] += half[l];
+    }
+}
+
+/* The edges of a chunk, with lists by node. Their numbers are 0. */
+static void gxsp_edges_clear(gxsp_edges *edges, const gxsp_chunk *chunk) {
+    uint32_t b, e;
+    gxsp_edges_begin(edges, chunk);
+    for (b = 0; b < chunk->block_count; b++) gxsp_block_edges(edges, chunk, b, edges->element[b]);
+    memset(edges->first, 0, edges->nodes * sizeof *edges->first);
+    memset(edges->joined, 0, edges->nodes);
+    for (e = edges->count; --e > 0;) {
+        const uint32_t low = edges->ends[e] >> 16, high = edges->ends[e] & 0xffff;
+        edges->joined[low] = edges->joined[high] = 1;
+        edges->next[e] = edges->first[low];
+        edges->first[low] = (uint16_t)e;
+    }
+    memset(edges->block, 0, edges->count * sizeof *edges->block);
+    memset(edges->own, 0, edges->nodes * sizeof *edges->own);
+    memset(edges->mass, 0, edges->nodes * sizeof *edges->mass);
+}
+
+/* Blocks of a chunk's edges: the Hessian of its elements in i's row and j's column, with their mass; and the masses
+ * of nodes */
+static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk) {
+    gxsp_edges *edges = &system->multigrid.edges;
+    uint32_t b;
+    int pair, k, at;
+    gxsp_edges_clear(edges, chunk);
+    for (b = 0; b < chunk->block_count; b++) {
+        const gxsp_corners *corner = &chunk->corners[b];
+        const gxsp_tangent *tangent = &chunk->tangents[b];
+        gxsp_singles gamma[4][3];
+        for (k = 0; k < 4; k++) gxsp_block_corner(tangent, k, gamma[k]);
+        for (pair = at = 0; pair < 10; pair++) {
+            const int p = gxsp_pair_corners[pair][0], q = gxsp_pair_corners[pair][1];
+            gxsp_singles block[9], mass;
+            if (p == q) continue;
+            gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma[p], gamma[q], block);
+            gxsp_block_mass(tangent, gxsp_block_moments(chunk, b), p, q, mass);
+            gxsp_order_block(corner->node[p], corner->node[q], mass, block);
+            gxsp_add_lanes(edges->element[b][at++], block, edges->block);
+        }
+        gxsp_own_mass(edges, chunk, b);
+    }
+}
+
+/* Entries of level 1's matrix for the pairs of a chunk's coarse nodes */
+static void gxsp_pairs_find(gxsp_pairs *pairs, const gxsp_level *next) {
+    const uint32_t count = pairs->count;
+    uint32_t i, k;
+    for (i = 1; i < count && count <= GXSP_CHUNK_PARENTS; i++)
+        for (k = next->start[pairs->node[i]]; k < next->start[pairs->node[i] + 1]; k++) {
+            const uint32_t column = next->column[k],
+                           j = pairs->stamp[column] == pairs->round ? pairs->local[column] : 0;
+            pairs->entry[j * count + i] = 2 * k + 1;
+            pairs->entry[i * count + j] = 2 * k;
+        }
+}
+
+/* The entry of one pair: see gxsp_pairs */
+static uint32_t gxsp_pair_entry(const gxsp_pairs *pairs, const gxsp_level *next, uint32_t i, uint32_t j) {
+    const uint32_t row = pairs->node[i], column = pairs->node[j];
+    if (pairs->count <= GXSP_CHUNK_PARENTS) return pairs->entry[i * pairs->count + j];
+    return row <= column ? 2 * gxsp_find_entry(next, row, column) : 2 * gxsp_find_entry(next, column, row) + 1;
+}
+
+/* Adds a block in node i's row and another node's column, times the transfer, to edges->half. count: numbers
+ * touched so far. Returns how many are. */
+static inline uint32_t gxsp_add_half(const gxsp_system *system, uint32_t i, uint32_t other, const float *weight,
+                                     const float *block, uint32_t count) {
+    const gxsp_edges *edges = &system->multigrid.edges;
+    uint32_t *seen = system->multigrid.pairs.seen;
+    int q;
+    for (q = 0; q < 4; q++) {
+        const uint16_t number = edges->parent[other][q];
+        edges->touched[count] = number;
+        count += seen[number] != i + 1;
+        seen[number] = i + 1;
+        gxsp_add_scaled(weight[q], block, edges->half[number]);
+    }
+    return count;
+}
+
+/* Node i's row of S, where the Hessian is S + S^T, times the transfer, in edges->half by number. S has the edges to
+ * higher nodes and half the diagonal. Rows of stiffness add up to 0: hence half the diagonal is half the mass minus
+ * half the sum of the node's edges, transposed or not. Returns how many numbers are touched. */
+static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint32_t i) {
+    const gxsp_level *fine = &system->multigrid.levels[0];
+    gxsp_edges *edges = &system->multigrid.edges;
+    uint32_t e, count = 0;
+    system->multigrid.pairs.seen[0] = i + 1;
+    for (e = edges->first[i]; e != 0; e = edges->next[e]) {
+        const uint32_t other = edges->ends[e] & 0xffff;
+        gxsp_add_scaled(-0.5f, edges->block[e], edges->own[i]);
+        gxsp_add_scaled(-0.5f, edges->block[e], edges->own[other]);
+        count = gxsp_add_half(system, i, other, fine->weight[copies[other]], edges->block[e], count);
+    }
+    gxsp_add_mass(edges->mass[i], edges->own[i]);
+    return gxsp_add_half(system, i, i, fine->weight[copies[i]], edges->own[i], count);
+}
+
+/* Adds a node's contribution to level 1's matrix. A coarse node's own entry only gets half, to which its transpose
+ * is added later. dirty: only entries in rows or columns of dirty nodes */
+static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32_t i, const uint8_t *dirty) {
+    const float *weight = system->multigrid.levels[0].weight[copies[i]];
+    const gxsp_pairs *pairs = &system->multigrid.pairs;
+    gxsp_level *next = &system->multigrid.levels[1];
+    uint32_t p, t, count;
+    if (!system->multigrid.edges.joined[i] && !(system->multigrid.edges.mass[i] > 0)) /* elements without weight have no
+                                                                                         entries */
+        return;
+    count = gxsp_half_row(system, copies, i);
+    for (t = 0; t < count; t++) {
+        const uint32_t other = system->multigrid.edges.touched[t];
+        float *half = system->multigrid.edges.half[other], transposed[9];
+        gxsp_transpose_block(half, transposed);
+        for (p = 0; p < 4; p++) {
+            const uint32_t number = system->multigrid.edges.parent[i][p];
+            if (number > 0 && (!dirty || dirty[pairs->node[number]] || dirty[pairs->node[other]])) {
+                const uint32_t entry = gxsp_pair_entry(pairs, next, number, other);
+                gxsp_add_scaled(weight[p], entry & 1 ? transposed : half, next->block + 9 * (size_t)(entry >> 1));
+            }
+        }
+        memset(half, 0, sizeof transposed);
+    }
+}
+
+/* Level 1's matrix from the last linearisation. dirty: only the rows and columns of dirty nodes, whose blocks are 0
+ * before; NULL: all */
+static void gxsp_coarse_elements(gxsp_system *system, const uint8_t *dirty) {
+    gxsp_level *next = &system->multigrid.levels[1];
+    uint32_t c, i;
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        const gxsp_chunk *chunk = &system->mesh.chunks[c];
+        if (dirty && !gxsp_follows_dirty(system, chunk, dirty)) continue;
+        gxsp_edge_blocks(system, chunk);
+        gxsp_pairs_begin(system, chunk);
+        gxsp_pairs_find(&system->multigrid.pairs, next);
+        for (i = 0; i < chunk->node_count; i++)
+            gxsp_coarse_node(system, system->mesh.nodes + chunk->first_node, i, dirty);
+    }
+    for (i = 0; i < next->n; i++)
+        if (!dirty || dirty[i]) {
+            float *own = next->block + 9 * (size_t)next->start[i], transposed[9];
+            gxsp_transpose_block(own, transposed);
+            gxsp_add_scaled(1, transposed, own);
+        }
+}
+
+/* A node's row, its own block halved, times the transfer, in pairs->half by node of the next level. pairs->node
+ * lists the touched ones. Returns how many there are. */
+static uint32_t gxsp_level_half_row(const gxsp_level *level, gxsp_pairs *pairs, uint32_t i) {
+    uint32_t k, b, count = 0;
+    int m;
+    for (k = level->start[i]; k < level->start[i + 1]; k++)
+        for (b = 0; b < 4; b++) {
+            const uint32_t other = level->column[k], parent = level->parent[other][b];
+            const float *block = level->block + 9 * (size_t)k,
+                        weight = level->weight[other][b] * (other == i ? 0.5f : 1.0f);
+            if (parent == GXSP_NONE) continue;
+            if (pairs->seen[parent] == i + 1)
+                gxsp_add_scaled(weight, block, pairs->half[parent]);
+            else {
+                pairs->seen[parent] = i + 1;
+                pairs->node[count++] = parent;
+                for (m = 0; m < 9; m++) pairs->half[parent][m] = weight * block[m];
+            }
+        }
+    return count;
+}
+
+/* next's matrix = transfer^T A transfer = S + S^T, with S from A's upper half */
+static void gxsp_coarsen(const gxsp_level *level, gxsp_level *next, gxsp_pairs *pairs) {
+    uint32_t i, a, t, count;
+    memset(next->block, 0, 9 * (size_t)next->start[next->n] * sizeof *next->block);
+    memset(pairs->seen, 0, next->n * sizeof *pairs->seen);
+    for (i = 0; i < level->n; i++) {
+        count = gxsp_level_half_row(level, pairs, i);
+        for (a = 0; a < 4; a++)
+            for (t = 0; t < count && level->parent[i][a] != GXSP_NONE; t++) {
+                const uint32_t row = level->parent[i][a], column = pairs->node[t];
+                const float weight = level->weight[i][a], *half = pairs->half[column];
+                float transposed[9];
+                if (row <= column)
+                    gxsp_add_scaled(weight, half, next->block + 9 * (size_t)gxsp_find_entry(next, row, column));
+                if (row < column) continue;
+                gxsp_transpose_block(half, transposed);
+                gxsp_add_scaled(weight, transposed, next->block + 9 * (size_t)gxsp_find_entry(next, column, row));
+            }
+    }
+}
+
+/* Lumped masses between coarse functions */
+static void gxsp_coarse_lumped(gxsp_system *system, double rate) {
+    const gxsp_level *fine = &system->multigrid.levels[0];
+    gxsp_level *next = &system->multigrid.levels[1];
+    uint32_t i;
+    int p, q;
+    for (i = 0; i < fine->n; i++)
+        for (p = 0; p < 4; p++)
+            for (q = 0; q < 4; q++)
+                if (fine->parent[i][p] <= fine->parent[i][q] && fine->parent[i][q] != GXSP_NONE)
+                    gxsp_add_mass((float)(rate * system->model.lumped[i]) * fine->weight[i][p] * fine->weight[i][q],
+                                  next->block +
+                                      9 * (size_t)gxsp_find_entry(next, fine->parent[i][p], fine->parent[i][q]));
+}
+
+/* Springs and contact between coarse functions, where level 1's matrix has an entry for them */
+static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
+    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    const gxsp_level *fine = &system->multigrid.levels[0];
+    gxsp_level *next = &system->multigrid.levels[1];
+    int i, j, p, q, k;
+    for (i = 0; i < 16; i++)
+        for (j = 0; j < 16; j++) {
+            const uint32_t a = term->copy[i / 4], b = term->copy[j / 4], row = fine->parent[a][i % 4],
+                           column = fine->parent[b][j % 4];
+            uint32_t entry;
+            p = i % 4, q = j % 4;
+            if (row > column || column == GXSP_NONE) continue;
+            entry = gxsp_find_entry(next, row, column);
+            if (next->column[entry] != column) continue;
+            for (k = 0; k < 9; k++)
+                next->block[9 * (size_t)entry + (size_t)k] += term->weight[i / 4] * term->weight[j / 4] *
+                                                              fine->weight[a][p] * fine->weight[b][q] *
+                                                              term->hessian[full[k]];
+        }
+}
+
+/* >>factor: the last level's Cholesky factor, and all numbers below level 0 ---------------------------------------- */
+
+/* In: level 1's matrix. Out: the matrices and inverse diagonals of all levels, the factor of the last one. 0 is
+ * returned if a number overflowed. */
+
+/* Inverse of a symmetric block, packed; 0 where single precision has no inverse. Returns 0 if a number overflowed. */
+static int gxsp_invert_block(const float *block, float *inverse) {
+    static const int packed[6] = {0, 3, 6, 4, 7, 8};
+    double sum[6];
+    int k;
+    for (k = 0; k < 6; k++) sum[k] = (double)block[packed[k]];
+    if (sum[0] + sum[3] + sum[5] < GXSP_TINY) memset(sum, 0, sizeof sum);
+    gxsp_invert3(sum);
+    for (k = 0; k < 6; k++) {
+        inverse[k] = (float)sum[k];
+        if (!gxsp_finite_single(inverse[k])) return 0;
+    }
+    return 1;
+}
+
+/* Adds GXSP_SHIFT to the diagonal, of dirty nodes only unless dirty is NULL, and inverts it. 0: a number overflowed. */
+static int gxsp_invert_diagonal(gxsp_level *level, const uint8_t *dirty) {
+    uint32_t i;
+    for (i = 0; i < level->n; i++) {
+        float *block = level->block + 9 * (size_t)level->start[i];
+        if (!dirty || dirty[i]) gxsp_add_mass(GXSP_SHIFT * (block[0] + block[4] + block[8]), block);
+        if (level->inverse && !gxsp_invert_block(block, level->inverse + 6 * (size_t)i)) return 0;
+    }
+    return 1;
+}
+
+/* Copies a level's matrix into the lower half of the factor's envelope. place: n, scratch */
+static void gxsp_fill_factor(gxsp_factor *factor, const gxsp_level *level, uint32_t *place) {
+    uint32_t i, k, r, c;
+    memset(factor->entry, 0, factor->entry_count * sizeof *factor->entry);
+    for (i = 0; i < level->n; i++) place[factor->order[i]] = i;
+    for (i = 0; i < level->n; i++)
+        for (k = level->start[i]; k < level->start[i + 1]; k++)
+            for (r = 0; r < 3; r++)
+                for (c = 0; c < 3; c++) {
+                    const uint32_t row = 3 * place[i] + r, column = 3 * place[level->column[k]] + c;
+                    gxsp_factor_row(factor, column <= row ? row : column)[column <= row ? column : row] =
+                        level->block[9 * (size_t)k + 3 * c + r];
+                }
+}
+
+/* dots[3 r + c] = row r of a times row c of b, in four sums side by side. The three rows of a are n apart. */
+static void gxsp_nine_dots(const double *GXSP_RESTRICT a, size_t n, const float *const *b, size_t count,
+                           double *GXSP_RESTRICT dots) {
+    size_t k = 0;
+#if defined(GXSP_SHUFFLES)
+    gxsp_four_doubles s0 = {0, 0, 0, 0}, s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0, s8 = s0;
+    for (; k + 4 <= count; k += 4) {
+        const gxsp_four_doubles x = __builtin_convertvector(*(const gxsp_four *)(b[0] + k), gxsp_four_doubles);
+        const gxsp_four_doubles y = __builtin_convertvector(*(const gxsp_four *)(b[1] + k), gxsp_four_doubles);
+        const gxsp_four_doubles z = __builtin_convertvector(*(const gxsp_four *)(b[2] + k), gxsp_four_doubles);
+        const gxsp_four_doubles p = *(const gxsp_four_doubles *)(a + k), q = *(const gxsp_four_doubles *)(a + n + k),
+                                r = *(const gxsp_four_doubles *)(a + 2 * n + k);
+        s0 += p * x, s1 += p * y, s2 += p * z;
+        s3 += q * x, s4 += q * y, s5 += q * z;
+        s6 += r * x, s7 += r * y, s8 += r * z;
+    }
+    dots[0] = (s0[0] + s0[2]) + (s0[1] + s0[3]), dots[1] = (s1[0] + s1[2]) + (s1[1] + s1[3]),
+    dots[2] = (s2[0] + s2[2]) + (s2[1] + s2[3]);
+    dots[3] = (s3[0] + s3[2]) + (s3[1] + s3[3]), dots[4] = (s4[0] + s4[2]) + (s4[1] + s4[3]),
+    dots[5] = (s5[0] + s5[2]) + (s5[1] + s5[3]);
+    dots[6] = (s6[0] + s6[2]) + (s6[1] + s6[3]), dots[7] = (s7[0] + s7[2]) + (s7[1] + s7[3]),
+    dots[8] = (s8[0] + s8[2]) + (s8[1] + s8[3]);
+#else
+    memset(dots, 0, 9 * sizeof *dots);
+#endif
+    for (; k < count; k++) {
+        const double x = (double)b[0][k], y = (double)b[1][k], z = (double)b[2][k], p = a[k], q = a[n + k],
+                     r = a[2 * n + k];
+        dots[0] += p * x, dots[1] += p * y, dots[2] += p * z;
+        dots[3] += q * x, dots[4] += q * y, dots[5] += q * z;
+        dots[6] += r * x, dots[7] += r * y, dots[8] += r * z;
+    }
+}
+
+/* Columns of the factor to the left of a node's own, in its three rows from row i on */
+static void gxsp_factor_left(gxsp_factor *factor, uint32_t i) {
+    const uint32_t first = factor->first[i / 3], n = factor->n;
+    float *own[3];
+    uint32_t j, m, r, c;
+    for (r = 0; r < 3; r++) {
+        own[r] = gxsp_factor_row(factor, i + r);
+        for (j = first; j <= i + r; j++) factor->rows[r * (size_t)n + j] = (double)own[r][j];
+    }
+    for (j = first; j < i; j += 3) {
+        const float *other[3], *from[3];
+        double dots[9];
+        m = factor->first[j / 3] > first ? factor->first[j / 3] : first;
+        for (c = 0; c < 3; c++) {
+            other[c] = gxsp_factor_row(factor, j + c);
+            from[c] = other[c] + m;
+        }
+        gxsp_nine_dots(factor->rows + m, n, from, j - m, dots);
+        for (r = 0; r < 3; r++) {
+            double *sum = factor->rows + r * (size_t)n + j;
+            sum[0] = (sum[0] - dots[3 * r]) * (double)other[0][j];
+            sum[1] = (sum[1] - dots[3 * r + 1] - (double)other[1][j] * sum[0]) * (double)other[1][j + 1];
+            sum[2] = (sum[2] - dots[3 * r + 2] - (double)other[2][j] * sum[0] - (double)other[2][j + 1] * sum[1]) *
+                     (double)other[2][j + 2];
+            for (c = 0; c < 3; c++) own[r][j + c] = (float)sum[c];
+        }
+    }
+}
+
+/* A node's own columns in row i + r, once its other columns are known. 0: a number overflowed. */
+static int gxsp_factor_own(gxsp_factor *factor, uint32_t i, uint32_t r) {
+    const uint32_t first = factor->first[i / 3];
+    float *row = gxsp_factor_row(factor, i + r);
+    double *sum = factor->rows + r * (size_t)factor->n;
+    const double own = sum[i + r], least = 0.5 * (double)GXSP_SHIFT * own;
+    uint32_t j;
+    for (j = i; j < i + r; j++) {
+        const float *other = gxsp_factor_row(factor, j);
+        sum[j] = (sum[j] - gxsp_long_dot(other + first, sum + first, j - first)) * (double)other[j];
+        row[j] = (float)sum[j];
+    }
+    sum[j] -= gxsp_long_dot(row + first, sum + first, j - first);
+    row[j] = own < GXSP_TINY ? 1 : sum[j] > least ? (float)(1 / sqrt(sum[j])) : 0;
+    return gxsp_finite_single(row[j]);
+}
+
+/* Cholesky of the last level, node by node. Without rounding no pivot is below GXSP_SHIFT of its diagonal. One
+ * below half of that is rounding, as in components that are small beside the lattice, whose coarse functions are
+ * nearly alike: its unknown is left out, for any other pivot would let later entries grow without bound. Entries
+ * are single precision, which leaves the product of the factors positive semi-definite; the rows at work are
+ * double. 0: a number overflowed. */
+static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t *place) {
+    uint32_t i, r;
+    gxsp_fill_factor(factor, level, place);
+    for (i = 0; i < factor->n; i += 3) {
+        gxsp_factor_left(factor, i);
+        for (r = 0; r < 3; r++)
+            if (!gxsp_factor_own(factor, i, r)) return 0;
+    }
+    return 1;
+}
+
+/* All numbers that follow from level 1's matrix. dirty: nodes of level 1 whose numbers are new; NULL: all are. 0: a
+ * number overflowed. */
+static int gxsp_lower_numbers(gxsp_system *system, const uint8_t *dirty) {
+    uint32_t at;
+    for (at = 1; at < system->multigrid.level_count; at++) {
+        gxsp_level *level = &system->multigrid.levels[at];
+        if (!gxsp_invert_diagonal(level, at == 1 ? dirty : NULL)) return 0;
+        if (at + 1 < system->multigrid.level_count) gxsp_coarsen(level, level + 1, &system->multigrid.pairs);
+    }
+    return gxsp_factorise(&system->multigrid.factor, &system->multigrid.levels[system->multigrid.level_count - 1],
+                          system->multigrid.pairs.local);
+}
+
+/* The matrices of all coarse levels from the last linearisation. 0: a number overflowed. */
+static int gxsp_coarse_numbers(gxsp_system *system, double rate) {
+    gxsp_level *fine = &system->multigrid.levels[0];
+    int finite;
+    size_t t;
+    gxsp_lend_memory(system);
+    if (system->multigrid.fine)
+        gxsp_coarsen(fine, fine + 1, &system->multigrid.pairs);
+    else {
+        memset(fine[1].block, 0, 9 * (size_t)fine[1].start[fine[1].n] * sizeof(float));
+        gxsp_coarse_elements(system, NULL);
+        if (system->model.lumped_mass) gxsp_coarse_lumped(system, system->model.scale * rate);
+    }
+    for (t = 0; t < system->lasting->count; t++)
+        if (!system->lasting->term[t].assembled) gxsp_coarse_term(system, &system->lasting->term[t]);
+    finite = gxsp_lower_numbers(system, NULL);
+    gxsp_return_memory(system);
+    return finite;
+}
+
+/* >>assembly: the assembled matrix --------------------------------------------------------------------------------- */
+
+/* In: the last linearisation. Out: levels[0].block and its inverse diagonal; GXS_MATRIX_ASSEMBLED only. */
+
+/* Adds a corner pair's block, on and above the diagonal, where corners follow others. same: both corners are one */
+static void gxsp_assemble_following(gxsp_system *system, uint32_t p, uint32_t q, int same, const float *block) {
+    gxsp_level *fine = &system->multigrid.levels[0];
+    uint32_t a[4], b[4];
+    float wa[4], wb[4], transposed[9];
+    const int as = gxsp_corner_masters(system, p, a, wa), bs = gxsp_corner_masters(system, q, b, wb);
+    int i, j;
+    gxsp_transpose_block(block, transposed);
+    for (i = 0; i < as; i++)
+        for (j = 0; j < bs; j++) {
+            const uint32_t low = a[i] < b[j] ? a[i] : b[j], high = a[i] < b[j] ? b[j] : a[i];
+            float *to = fine->block + 9 * (size_t)gxsp_find_entry(fine, low, high);
+            if (same && a[i] > b[j]) /* its mirror is added in its own turn */
+                continue;
+            gxsp_add_scaled(wa[i] * wb[j], a[i] <= b[j] ? block : transposed, to);
+            if (a[i] == b[j] && !same) gxsp_add_scaled(wa[i] * wb[j], transposed, to);
+        }
+}
+
+/* Adds a block's elements. Each lane's corner pair adds to one entry, or to those of its masters. */
+static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, uint32_t b) {
+    gxsp_level *fine = &system->multigrid.levels[0];
+    const gxsp_corners *corner = &chunk->corners[b];
+    const gxsp_tangent *tangent = &chunk->tangents[b];
+    gxsp_singles gamma[4][3];
+    int pair, l;
+    for (l = 0; l < 4; l++) gxsp_block_corner(tangent, l, gamma[l]);
+    for (pair = 0; pair < 10; pair++) {
+        const int p = gxsp_pair_corners[pair][0], q = gxsp_pair_corners[pair][1];
+        gxsp_singles block[9], masses;
+        gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma[p], gamma[q], block);
+        gxsp_block_mass(tangent, gxsp_block_moments(chunk, b), p, q, masses);
+        for (l = 0; l < GXSP_LANES; l++) {
+            const uint32_t *copies = system->mesh.nodes + chunk->first_node,
+                           entry = system->multigrid.fine[chunk->first_block + b].entry[pair][l];
+            const uint32_t i = copies[corner->node[p][l]], j = copies[corner->node[q][l]];
+            float own[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0},
+                  *to = entry == GXSP_NONE ? own : fine->block + 9 * (size_t)entry;
+            gxsp_add_lane(block, l, entry != GXSP_NONE && i > j, masses[l], to);
+            if (entry == GXSP_NONE)
+                gxsp_assemble_following(system, i, j, p == q, own);
+            else if (p != q && i == j) /* both corners follow one copy */
+                gxsp_add_lane(block, l, 1, masses[l], to);
+        }
+    }
+}
+
+/* Adds a spring or contact, on and above the diagonal, if the matrix has all the entries it needs. Returns whether
+ * it has. */
+static int gxsp_assemble_term(gxsp_system *system, const gxsp_term *term) {
+    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    gxsp_level *fine = &system->multigrid.levels[0];
+    uint32_t a[16], i, j, count = 0, entry;
+    float w[16];
+    int k, adds;
+    for (k = 0; k < 4; k++)
+        if (term->weight[k] * term->weight[k] > 0) {
+            const uint32_t first = count;
+            for (count += (uint32_t)gxsp_corner_masters(system, term->copy[k], a + count, w + count), i = first;
+                 i < count; i++)
+                w[i] *= term->weight[k];
+        }
+    for (adds = 0; adds < 2; adds++)
+        for (i = 0; i < count; i++)
+            for (j = 0; j < count; j++) {
+                if (a[i] > a[j]) continue;
+                entry = gxsp_find_entry(fine, a[i], a[j]);
+                if (fine->column[entry] != a[j]) return 0;
+                for (k = 0; k < 9 && adds; k++)
+                    fine->block[9 * (size_t)entry + (size_t)k] += w[i] * w[j] * term->hessian[full[k]];
+            }
+    return 1;
+}
+
+/* The assembled matrix from the last linearisation */
+static void gxsp_assemble(gxsp_system *system, double rate) {
+    gxsp_level *fine = &system->multigrid.levels[0];
+    uint32_t c, b, i;
+    size_t t;
+    memset(fine->block, 0, 9 * (size_t)fine->start[fine->n] * sizeof(float));
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        for (b = 0; b < system->mesh.chunks[c].block_count && !system->state.chunk_still[c]; b++)
+            gxsp_assemble_block(system, &system->mesh.chunks[c], b);
+    for (i = 0; i < fine->n && system->model.lumped_mass; i++) {
+        uint32_t a[4], p, q;
+        float w[4];
+        const uint32_t count = (uint32_t)gxsp_corner_masters(system, i, a, w);
+        for (p = 0; p < count; p++)
+            for (q = 0; q < count; q++)
+                if (a[p] <= a[q])
+                    gxsp_add_mass(w[p] * w[q] * (float)(rate * system->model.lumped[i]),
+                                  fine->block + 9 * (size_t)gxsp_find_entry(fine, a[p], a[q]));
+    }
+    for (t = 0; t < system->lasting->count; t++)
+        system->lasting->term[t].assembled = gxsp_assemble_term(system, &system->lasting->term[t]);
+}
+
+/* Inverse diagonal blocks of the assembled matrix with springs and contact, for block Gauss-Seidel; 0 where nothing
+ * moves. Returns 0 if a number overflowed. */
+static int gxsp_invert_fine(gxsp_system *system) {
+    static const int packed[6] = {0, 3, 6, 4, 7, 8}, full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    gxsp_level *fine = &system->multigrid.levels[0];
+    uint32_t i, k;
+    size_t t;
+    int m;
+    for (i = 0; i < fine->n; i++)
+        for (m = 0; m < 6; m++)
+            fine->inverse[6 * (size_t)i + (size_t)m] = fine->block[9 * (size_t)fine->start[i] + (size_t)packed[m]];
+    for (t = 0; t < system->lasting->count; t++)
+        for (k = 0; k < 4 && !system->lasting->term[t].assembled; k++) {
+            const gxsp_term *term = &system->lasting->term[t];
+            for (m = 0; m < 6; m++)
+                fine->inverse[6 * (size_t)term->copy[k] + (size_t)m] +=
+                    term->weight[k] * term->weight[k] * term->hessian[m];
+        }
+    for (i = 0; i < fine->n; i++) {
+        float *inverse = fine->inverse + 6 * (size_t)i, block[9];
+        for (m = 0; m < 9; m++) block[m] = system->state.still[i] || gxsp_follows(system, i) ? 0 : inverse[full[m]];
+        if (!gxsp_invert_block(block, inverse)) return 0;
+    }
+    return 1;
+}
+
+/* >>smoother: its step length -------------------------------------------------------------------------------------- */
+
+/* In: the last linearisation and its block diagonal. Out: gxsp_smoother. Uses the search and product vectors. */
+
+/* Largest eigenvalue of D^-1 (K + rate M) on copies that are not still, by the power method from a start that
+ * favours none; 0 if nothing moves */
+static double gxsp_largest_eigenvalue(gxsp_system *system, double rate) {
+    gxsp_vector4 *x = system->vectors.search, *y = system->vectors.product;
+    uint32_t random = 1;
+    size_t i;
+    int c, round;
+    double largest = 0;
+    for (i = 0; i < system->model.n; i++)
+        for (c = 0; c < 3; c++) {
+            random = random * 1664525u + 1013904223u;
+            x[i][c] = system->state.still[i] ? 0 : (float)(random >> 8) / 8388608.0f - 1;
+        }
+    for (round = 0; round < 6; round++) {
+        double before = 0, after = 0;
+        float scale;
+        gxsp_product(system, rate, x, y);
+        for (i = 0; i < system->model.n; i++) {
+            float z[3];
+            gxsp_apply_packed(system->vectors.diagonal + 6 * i, y[i], z);
+            for (c = 0; c < 3; c++) {
+                before += (double)y[i][c] * (double)x[i][c];
+                after += (double)y[i][c] * (double)z[c];
+                x[i][c] = z[c];
+            }
+        }
+        if (!(before > 0) || !(after > 0)) break;
+        largest = after / before;
+        scale = (float)(1 / sqrt(after));
+        for (i = 0; i < system->model.n; i++)
+            for (c = 0; c < 3; c++) x[i][c] *= scale;
+    }
+    return largest;
+}
+
+/* The smoother's step length: 3/2 over the largest eigenvalue. Conjugate gradients prefer it to the 4/3 that damp
+ * the upper half of the spectrum most. An eigenvalue a third larger would leave the cycle definite. */
+static float gxsp_omega(const gxsp_system *system, double largest) {
+    largest = largest > 0 ? 1.05 * largest : 4;
+    if (largest > 4 && system->model.follower_count == 0) /* no element's own D^-1 K exceeds 4 */
+        largest = 4;
+    return (float)(1.5 / largest);
+}
+
+/* Shortens the step length if the cycle might become indefinite where updates have changed the operator. Elsewhere
+ * the largest eigenvalue is no larger than it was. */
+static void gxsp_renew_omega(gxsp_system *system, double rate) {
+    double largest;
+    uint32_t c, k;
+    size_t i;
+    for (i = 0; i < system->model.n; i++) system->state.still[i] |= !system->smoother.renewed[i];
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        uint8_t still = 1;
+        for (k = 0; k < system->mesh.chunks[c].node_count; k++)
+            still &= system->state.still[system->mesh.nodes[system->mesh.chunks[c].first_node + k]];
+        system->state.chunk_still[c] |= still;
+    }
+    largest = gxsp_largest_eigenvalue(system, rate);
+    if (GXSP_OMEGA < (double)system->smoother.found * largest) system->smoother.found = (float)(GXSP_OMEGA / largest);
+    gxsp_mark_still(system);
+}
+
+/* The step length for the next solve */
+static void gxsp_choose_omega(gxsp_system *system, double rate) {
+    if (!(system->smoother.omega > 0))
+        system->smoother.found = gxsp_omega(system, gxsp_largest_eigenvalue(system, rate));
+    else if (system->smoother.any_renewed)
+        gxsp_renew_omega(system, rate);
+    system->smoother.any_renewed = 0;
+    system->smoother.cautious -= system->smoother.cautious > 0;
+    if (system->smoother.cautious == 0) system->smoother.omega = system->smoother.found;
+}
+
+/* Sets the step length that keeps the cycle definite at any state: no element's own D^-1 K exceeds 4, and so no sum
+ * of them does; with followers it may, and the quotient met counts. quotient: x . A x / x . D x of an x for which
+ * the length was too large; 0: not known */
+static void gxsp_shorten_omega(gxsp_system *system, double quotient) {
+    const double largest = system->model.follower_count > 0 && 1.25 * quotient > 4 ? 1.25 * quotient : 4;
+    system->smoother.omega = (float)(1.5 / largest);
+    system->smoother.next_cautious = system->smoother.next_cautious > 0 ? system->smoother.next_cautious : GXSP_PAUSE;
+    system->smoother.cautious = system->smoother.next_cautious;
+    system->smoother.next_cautious += system->smoother.next_cautious < 1024 ? system->smoother.next_cautious : 0;
+}
+
+/* >>cycle: the V-cycle --------------------------------------------------------------------------------------------- */
+
+/* In: the residual. Out: the preconditioned residual in gxsp_vectors.scaled. A level's matrix is stored as the
+ * upper half of its block rows. Block Gauss-Seidel goes forward before the coarse correction and backward after
+ * it, in the order of the nodes, so that the whole is symmetric. */
+
+/* r = b minus the entries left of the diagonal times x. solve: x is solved for on the way, row by row */
 static void gxsp_sweep_lower(gxsp_level *level, int solve) {
     uint32_t i, k;
     memcpy(level->r, level->b, level->n * sizeof *level->r);
     for (i = 0; i < level->n; i++) {
         if (solve) gxsp_apply_packed(level->inverse + 6 * (size_t)i, level->r[i], level->x[i]);
         for (k = level->start[i] + 1; k < level->start[i + 1]; k++)
-            gxsp_subtract_turned(level->block + 9 * (size_t)k, level->x[i], level->r[level->column[k]]);
+            gxsp_subtract_transposed(level->block + 9 * (size_t)k, level->x[i], level->r[level->column[k]]);
     }
 }
 
-/* x from 0 by one forward sweep: only the rows' entries left of the diagonal count. What the sweep leaves of b is then
- * minus the entries right of the diagonal times x. */
+/* x from 0 by one forward sweep, for which only entries left of the diagonal count. The residual then is minus the
+ * entries right of the diagonal times x. */
 static void gxsp_sweep_forward(gxsp_level *level) {
     uint32_t i, k;
     gxsp_sweep_lower(level, 1);
@@ -5261,9 +6303,9 @@ static void gxsp_factor_solve(const gxsp_factor *factor, gxsp_level *level) {
 
 /* x = the multigrid's answer to b on levels[at] and below, at > 0 */
 static void gxsp_cycle(gxsp_system *system, uint32_t at) {
-    gxsp_level *level = &system->levels[at];
-    if (at + 1 == system->level_count) {
-        gxsp_factor_solve(&system->factor, level);
+    gxsp_level *level = &system->multigrid.levels[at];
+    if (at + 1 == system->multigrid.level_count) {
+        gxsp_factor_solve(&system->multigrid.factor, level);
         return;
     }
     gxsp_sweep_forward(level);
@@ -5279,746 +6321,76 @@ static void gxsp_task_smooth(void *context, size_t index) {
     size_t i, end = gxsp_range(system, index, &i);
     for (; i < end; i++) {
         float y[3];
-        gxsp_apply_packed(system->diagonal + 6 * i, system->product[i], y);
-        system->scaled[i][0] += system->omega * y[0];
-        system->scaled[i][1] += system->omega * y[1];
-        system->scaled[i][2] += system->omega * y[2];
+        gxsp_apply_packed(system->vectors.diagonal + 6 * i, system->vectors.product[i], y);
+        system->vectors.scaled[i][0] += system->smoother.omega * y[0];
+        system->vectors.scaled[i][1] += system->smoother.omega * y[1];
+        system->vectors.scaled[i][2] += system->smoother.omega * y[2];
     }
 }
 
-/* The smoother's step length that keeps the cycle definite at any state: no element's own D^-1 K exceeds 4, and so no
- * sum of them; but for followers, with what was met. quotient: x . A x / x . D x of an x, by which the length so far
- * was too large; 0: not known */
-static void gxsp_shorten_omega(gxsp_system *system, double quotient) {
-    const double largest = system->follower_count > 0 && 1.25 * quotient > 4 ? 1.25 * quotient : 4;
-    system->omega = (float)(1.5 / largest);
-    system->omega_pause = system->omega_pause > 0 ? system->omega_pause : GXSP_PAUSE;
-    system->omega_rest = system->omega_pause;
-    system->omega_pause += system->omega_pause < 1024 ? system->omega_pause : 0;
-}
-
-/* scaled = V-cycle of the residual. Level 0 is smoothed by omega D^-1, once on entry, see gxsp_scale, or by block
- * Gauss-Seidel if it is assembled. A state in violent motion may have a larger eigenvalue than omega was found for: the
- * residual, in which it grows, shows it. energy: residual . D^-1 residual; scratch: product */
-static void gxsp_multigrid(gxsp_system *system, double rate, double energy) {
-    gxsp_level *fine = &system->levels[0];
+/* scaled = V-cycle of the residual. Level 0 is smoothed by omega D^-1, once on entry (see gxsp_scale), or by block
+ * Gauss-Seidel if it is assembled. In violent motion the largest eigenvalue may exceed the one for which omega was
+ * found: the residual grows in it and shows it. energy: residual . D^-1 residual; product: scratch */
+static void gxsp_v_cycle(gxsp_system *system, double rate, double energy) {
+    gxsp_level *fine = &system->multigrid.levels[0];
     gxsp_pass pass;
     double work;
     size_t i;
-    fine->x = system->scaled, fine->b = system->right, fine->r = system->product;
-    if (system->fine) {
-        for (i = 0; i < 3 * system->n; i++)
-            system->right[i / 3][i % 3] = system->still[i / 3] ? 0 : (float)system->residual[i];
+    fine->x = system->vectors.scaled, fine->b = system->vectors.right, fine->r = system->vectors.product;
+    if (system->multigrid.fine) {
+        for (i = 0; i < 3 * system->model.n; i++)
+            system->vectors.right[i / 3][i % 3] = system->state.still[i / 3] ? 0 : (float)system->vectors.residual[i];
         gxsp_cycle(system, 0);
         return;
     }
-    work = gxsp_product_from(system, rate, system->residual, fine->x, fine->r);
-    if (work > GXSP_OMEGA * (double)system->omega * energy && system->omega_rest == 0) {
-        const float before = system->omega;
+    work = gxsp_product_from(system, rate, system->vectors.residual, fine->x, fine->r);
+    if (work > GXSP_OMEGA * (double)system->smoother.omega * energy && system->smoother.cautious == 0) {
+        const float before = system->smoother.omega;
         gxsp_shorten_omega(system, work / ((double)before * (double)before * energy));
-        for (i = 0; i < 3 * system->n; i++) fine->x[i / 3][i % 3] *= system->omega / before;
-        (void)gxsp_product_from(system, rate, system->residual, fine->x, fine->r);
+        for (i = 0; i < 3 * system->model.n; i++) fine->x[i / 3][i % 3] *= system->smoother.omega / before;
+        (void)gxsp_product_from(system, rate, system->vectors.residual, fine->x, fine->r);
     }
     gxsp_restrict(fine, fine + 1);
     gxsp_cycle(system, 1);
     gxsp_prolong(fine, fine + 1);
-    (void)gxsp_product_from(system, rate, system->residual, fine->x, fine->r);
+    (void)gxsp_product_from(system, rate, system->vectors.residual, fine->x, fine->r);
     memset(&pass, 0, sizeof pass);
     gxsp_over_ranges(system, gxsp_task_smooth, &pass, NULL, 0);
 }
 
-/* --- numbers of the coarse levels --- */
+/* >>edits: which lanes an update changes --------------------------------------------------------------------------- */
 
-/* A block by rows, with its mass, to one by columns: that of the lower node's row, where corners p and q have the nodes
- */
-static void gxsp_order_block(const uint16_t *GXSP_RESTRICT p, const uint16_t *GXSP_RESTRICT q,
-                             const float *GXSP_RESTRICT mass, gxsp_singles *GXSP_RESTRICT block) {
-    int l;
-    GXSP_EACH_LANE(l) {
-        const float b1 = block[1][l], b2 = block[2][l], b3 = block[3][l], b5 = block[5][l], b6 = block[6][l],
-                    b7 = block[7][l];
-        const int turned = p[l] > q[l];
-        block[0][l] += mass[l], block[4][l] += mass[l], block[8][l] += mass[l];
-        block[1][l] = turned ? b1 : b3, block[3][l] = turned ? b3 : b1;
-        block[2][l] = turned ? b2 : b6, block[6][l] = turned ? b6 : b2;
-        block[5][l] = turned ? b5 : b7, block[7][l] = turned ? b7 : b5;
-    }
-}
+/* In: a gxs_change. Out: elements in their lanes and nodes of chunks. Elements are replaced where they were;
+ * further ones go to chunks at the end. Chunks in which nothing has changed only get the new numbers of their
+ * copies. */
 
-/* Half the row sums of a block's masses to its nodes */
-static void gxsp_own_mass(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b) {
-    const gxsp_moments *moments = gxsp_block_moments(chunk, b);
-    gxsp_singles of[4], half;
-    int k, l;
-    for (k = 0; k < 4; k++) {
-        if (moments) gxsp_corner_moments(moments, k, of);
-        GXSP_EACH_LANE(l)
-        half[l] = chunk->rest[b].weight[l] > 0 ? (moments ? 0.5f * of[0][l] : 2.5f) * chunk->tangents[b].mass[l] : 0;
-        for (l = 0; l < GXSP_LANES; l++) edges->mass[chunk->corners[b].node[k][l]] += half[l];
-    }
-}
-
-/* The edges of a chunk, with lists by node, and all their numbers 0 */
-static void gxsp_edges_clear(gxsp_edges *edges, const gxsp_chunk *chunk) {
-    uint32_t b, e;
-    gxsp_edges_begin(edges, chunk);
-    for (b = 0; b < chunk->block_count; b++) gxsp_block_edges(edges, chunk, b, edges->element[b]);
-    memset(edges->first, 0, edges->nodes * sizeof *edges->first);
-    memset(edges->joined, 0, edges->nodes);
-    for (e = edges->count; --e > 0;) {
-        const uint32_t low = edges->ends[e] >> 16, high = edges->ends[e] & 0xffff;
-        edges->joined[low] = edges->joined[high] = 1;
-        edges->next[e] = edges->first[low];
-        edges->first[low] = (uint16_t)e;
-    }
-    memset(edges->block, 0, edges->count * sizeof *edges->block);
-    memset(edges->own, 0, edges->nodes * sizeof *edges->own);
-    memset(edges->mass, 0, edges->nodes * sizeof *edges->mass);
-}
-
-/* Blocks of a chunk's edges: the Hessian of its elements, of i's row and j's column, with their mass; and the nodes'
- * mass */
-static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk) {
-    gxsp_edges *edges = &system->edges;
-    uint32_t b;
-    int pair, k, at;
-    gxsp_edges_clear(edges, chunk);
-    for (b = 0; b < chunk->block_count; b++) {
-        const gxsp_corners *corner = &chunk->corners[b];
-        const gxsp_tangent *tangent = &chunk->tangents[b];
-        gxsp_singles gamma[4][3];
-        for (k = 0; k < 4; k++) gxsp_block_corner(tangent, k, gamma[k]);
-        for (pair = at = 0; pair < 10; pair++) {
-            const int p = gxsp_pair_corners[pair][0], q = gxsp_pair_corners[pair][1];
-            gxsp_singles block[9], mass;
-            if (p == q) continue;
-            gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma[p], gamma[q], block);
-            gxsp_block_mass(tangent, gxsp_block_moments(chunk, b), p, q, mass);
-            gxsp_order_block(corner->node[p], corner->node[q], mass, block);
-            gxsp_add_lanes(edges->element[b][at++], block, edges->block);
-        }
-        gxsp_own_mass(edges, chunk, b);
-    }
-}
-
-/* Entries of level 1's matrix for the pairs of a chunk's coarse nodes */
-static void gxsp_pairs_find(gxsp_pairs *pairs, const gxsp_level *next) {
-    const uint32_t count = pairs->count;
-    uint32_t i, k;
-    for (i = 1; i < count && count <= GXSP_CHUNK_PARENTS; i++)
-        for (k = next->start[pairs->node[i]]; k < next->start[pairs->node[i] + 1]; k++) {
-            const uint32_t column = next->column[k],
-                           j = pairs->stamp[column] == pairs->round ? pairs->local[column] : 0;
-            pairs->entry[j * count + i] = 2 * k + 1;
-            pairs->entry[i * count + j] = 2 * k;
-        }
-}
-
-/* The entry of one pair: see gxsp_pairs */
-static uint32_t gxsp_pair_entry(const gxsp_pairs *pairs, const gxsp_level *next, uint32_t i, uint32_t j) {
-    const uint32_t row = pairs->node[i], column = pairs->node[j];
-    if (pairs->count <= GXSP_CHUNK_PARENTS) return pairs->entry[i * pairs->count + j];
-    return row <= column ? 2 * gxsp_find_entry(next, row, column) : 2 * gxsp_find_entry(next, column, row) + 1;
-}
-
-/* A block of node i's row and another's column, times the transfer, to edges->half. Returns how many numbers are
- * touched, of which count were. */
-static inline uint32_t gxsp_add_half(const gxsp_system *system, uint32_t i, uint32_t other, const float *weight,
-                                     const float *block, uint32_t count) {
-    const gxsp_edges *edges = &system->edges;
-    uint32_t *seen = system->pairs.seen;
-    int q;
-    for (q = 0; q < 4; q++) {
-        const uint16_t number = edges->parent[other][q];
-        edges->touched[count] = number;
-        count += seen[number] != i + 1;
-        seen[number] = i + 1;
-        gxsp_add_scaled(weight[q], block, edges->half[number]);
-    }
-    return count;
-}
-
-/* Node i's row of S, where the Hessian is S + S^T, times the transfer, in edges->half by number; S has the edges to
- * higher nodes and half of what is on the diagonal. Rows of stiffness add up to 0, so that this half is half the mass
- * less half of all the node's edges, turned or not. Returns how many numbers are touched. */
-static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint32_t i) {
-    const gxsp_level *fine = &system->levels[0];
-    gxsp_edges *edges = &system->edges;
-    uint32_t e, count = 0;
-    system->pairs.seen[0] = i + 1;
-    for (e = edges->first[i]; e != 0; e = edges->next[e]) {
-        const uint32_t other = edges->ends[e] & 0xffff;
-        gxsp_add_scaled(-0.5f, edges->block[e], edges->own[i]);
-        gxsp_add_scaled(-0.5f, edges->block[e], edges->own[other]);
-        count = gxsp_add_half(system, i, other, fine->weight[copies[other]], edges->block[e], count);
-    }
-    gxsp_add_mass(edges->mass[i], edges->own[i]);
-    return gxsp_add_half(system, i, i, fine->weight[copies[i]], edges->own[i], count);
-}
-
-/* A node's part of level 1's matrix; of a coarse node's own entry half, to which its turned half is missing. dirty: of
- * entries in rows or columns of dirty nodes only */
-static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32_t i, const uint8_t *dirty) {
-    const float *weight = system->levels[0].weight[copies[i]];
-    const gxsp_pairs *pairs = &system->pairs;
-    gxsp_level *next = &system->levels[1];
-    uint32_t p, t, count;
-    if (!system->edges.joined[i] && !(system->edges.mass[i] > 0)) /* elements without weight have no entries */
-        return;
-    count = gxsp_half_row(system, copies, i);
-    for (t = 0; t < count; t++) {
-        const uint32_t other = system->edges.touched[t];
-        float *half = system->edges.half[other], turned[9];
-        gxsp_transpose_block(half, turned);
-        for (p = 0; p < 4; p++) {
-            const uint32_t number = system->edges.parent[i][p];
-            if (number > 0 && (!dirty || dirty[pairs->node[number]] || dirty[pairs->node[other]])) {
-                const uint32_t entry = gxsp_pair_entry(pairs, next, number, other);
-                gxsp_add_scaled(weight[p], entry & 1 ? turned : half, next->block + 9 * (size_t)(entry >> 1));
-            }
-        }
-        memset(half, 0, sizeof turned);
-    }
-}
-
-/* Level 1's matrix from the last linearisation. dirty: only the rows and columns of dirty nodes, whose blocks are 0;
- * NULL: all */
-static void gxsp_coarse_elements(gxsp_system *system, const uint8_t *dirty) {
-    gxsp_level *next = &system->levels[1];
-    uint32_t c, i;
-    for (c = 0; c < system->chunk_count; c++) {
-        const gxsp_chunk *chunk = &system->chunks[c];
-        if (dirty && !gxsp_follows_dirty(system, chunk, dirty)) continue;
-        gxsp_edge_blocks(system, chunk);
-        gxsp_pairs_begin(system, chunk);
-        gxsp_pairs_find(&system->pairs, next);
-        for (i = 0; i < chunk->node_count; i++) gxsp_coarse_node(system, system->nodes + chunk->first_node, i, dirty);
-    }
-    for (i = 0; i < next->n; i++)
-        if (!dirty || dirty[i]) {
-            float *own = next->block + 9 * (size_t)next->start[i], turned[9];
-            gxsp_transpose_block(own, turned);
-            gxsp_add_scaled(1, turned, own);
-        }
-}
-
-/* Inverse of a symmetric block, packed; 0 where single precision makes nothing of it. 0 if a number overflowed. */
-static int gxsp_invert_block(const float *block, float *inverse) {
-    static const int packed[6] = {0, 3, 6, 4, 7, 8};
-    double sum[6];
-    int k;
-    for (k = 0; k < 6; k++) sum[k] = (double)block[packed[k]];
-    if (sum[0] + sum[3] + sum[5] < GXSP_TINY) memset(sum, 0, sizeof sum);
-    gxsp_invert3(sum);
-    for (k = 0; k < 6; k++) {
-        inverse[k] = (float)sum[k];
-        if (!gxsp_finite_single(inverse[k])) return 0;
-    }
-    return 1;
-}
-
-/* The diagonal raised by its share, of dirty nodes only unless dirty is NULL, and inverted. 0 if a number overflowed.
- */
-static int gxsp_invert_diagonal(gxsp_level *level, const uint8_t *dirty) {
-    uint32_t i;
-    for (i = 0; i < level->n; i++) {
-        float *block = level->block + 9 * (size_t)level->start[i];
-        if (!dirty || dirty[i]) gxsp_add_mass(GXSP_SHIFT * (block[0] + block[4] + block[8]), block);
-        if (level->inverse && !gxsp_invert_block(block, level->inverse + 6 * (size_t)i)) return 0;
-    }
-    return 1;
-}
-
-/* A node's row, its own block halved, times the transfer, in pairs->half by node of the next level. Returns how many
- * are touched; which, is in pairs->node. */
-static uint32_t gxsp_level_half_row(const gxsp_level *level, gxsp_pairs *pairs, uint32_t i) {
-    uint32_t k, b, count = 0;
-    int m;
-    for (k = level->start[i]; k < level->start[i + 1]; k++)
-        for (b = 0; b < 4; b++) {
-            const uint32_t other = level->column[k], parent = level->parent[other][b];
-            const float *block = level->block + 9 * (size_t)k,
-                        weight = level->weight[other][b] * (other == i ? 0.5f : 1.0f);
-            if (parent == GXSP_NONE) continue;
-            if (pairs->seen[parent] == i + 1)
-                gxsp_add_scaled(weight, block, pairs->half[parent]);
-            else {
-                pairs->seen[parent] = i + 1;
-                pairs->node[count++] = parent;
-                for (m = 0; m < 9; m++) pairs->half[parent][m] = weight * block[m];
-            }
-        }
-    return count;
-}
-
-/* next's matrix = transfer^T A transfer = S + S^T, S of A's upper half */
-static void gxsp_coarsen(const gxsp_level *level, gxsp_level *next, gxsp_pairs *pairs) {
-    uint32_t i, a, t, count;
-    memset(next->block, 0, 9 * (size_t)next->start[next->n] * sizeof *next->block);
-    memset(pairs->seen, 0, next->n * sizeof *pairs->seen);
-    for (i = 0; i < level->n; i++) {
-        count = gxsp_level_half_row(level, pairs, i);
-        for (a = 0; a < 4; a++)
-            for (t = 0; t < count && level->parent[i][a] != GXSP_NONE; t++) {
-                const uint32_t row = level->parent[i][a], column = pairs->node[t];
-                const float weight = level->weight[i][a], *half = pairs->half[column];
-                float turned[9];
-                if (row <= column)
-                    gxsp_add_scaled(weight, half, next->block + 9 * (size_t)gxsp_find_entry(next, row, column));
-                if (row < column) continue;
-                gxsp_transpose_block(half, turned);
-                gxsp_add_scaled(weight, turned, next->block + 9 * (size_t)gxsp_find_entry(next, column, row));
-            }
-    }
-}
-
-/* A level's matrix into the lower half of the factor's envelope. place: n, scratch */
-static void gxsp_fill_factor(gxsp_factor *factor, const gxsp_level *level, uint32_t *place) {
-    uint32_t i, k, r, c;
-    memset(factor->entry, 0, factor->entry_count * sizeof *factor->entry);
-    for (i = 0; i < level->n; i++) place[factor->order[i]] = i;
-    for (i = 0; i < level->n; i++)
-        for (k = level->start[i]; k < level->start[i + 1]; k++)
-            for (r = 0; r < 3; r++)
-                for (c = 0; c < 3; c++) {
-                    const uint32_t row = 3 * place[i] + r, column = 3 * place[level->column[k]] + c;
-                    gxsp_factor_row(factor, column <= row ? row : column)[column <= row ? column : row] =
-                        level->block[9 * (size_t)k + 3 * c + r];
-                }
-}
-
-/* dots[3 r + c] = sum of row r of a, of three that are n apart, times row c of b, four sums side by side */
-static void gxsp_nine_dots(const double *GXSP_RESTRICT a, size_t n, const float *const *b, size_t count,
-                           double *GXSP_RESTRICT dots) {
-    size_t k = 0;
-#if defined(GXSP_SHUFFLES)
-    gxsp_four_doubles s0 = {0, 0, 0, 0}, s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0, s8 = s0;
-    for (; k + 4 <= count; k += 4) {
-        const gxsp_four_doubles x = __builtin_convertvector(*(const gxsp_four *)(b[0] + k), gxsp_four_doubles);
-        const gxsp_four_doubles y = __builtin_convertvector(*(const gxsp_four *)(b[1] + k), gxsp_four_doubles);
-        const gxsp_four_doubles z = __builtin_convertvector(*(const gxsp_four *)(b[2] + k), gxsp_four_doubles);
-        const gxsp_four_doubles p = *(const gxsp_four_doubles *)(a + k), q = *(const gxsp_four_doubles *)(a + n + k),
-                                r = *(const gxsp_four_doubles *)(a + 2 * n + k);
-        s0 += p * x, s1 += p * y, s2 += p * z;
-        s3 += q * x, s4 += q * y, s5 += q * z;
-        s6 += r * x, s7 += r * y, s8 += r * z;
-    }
-    dots[0] = (s0[0] + s0[2]) + (s0[1] + s0[3]), dots[1] = (s1[0] + s1[2]) + (s1[1] + s1[3]),
-    dots[2] = (s2[0] + s2[2]) + (s2[1] + s2[3]);
-    dots[3] = (s3[0] + s3[2]) + (s3[1] + s3[3]), dots[4] = (s4[0] + s4[2]) + (s4[1] + s4[3]),
-    dots[5] = (s5[0] + s5[2]) + (s5[1] + s5[3]);
-    dots[6] = (s6[0] + s6[2]) + (s6[1] + s6[3]), dots[7] = (s7[0] + s7[2]) + (s7[1] + s7[3]),
-    dots[8] = (s8[0] + s8[2]) + (s8[1] + s8[3]);
-#else
-    memset(dots, 0, 9 * sizeof *dots);
-#endif
-    for (; k < count; k++) {
-        const double x = (double)b[0][k], y = (double)b[1][k], z = (double)b[2][k], p = a[k], q = a[n + k],
-                     r = a[2 * n + k];
-        dots[0] += p * x, dots[1] += p * y, dots[2] += p * z;
-        dots[3] += q * x, dots[4] += q * y, dots[5] += q * z;
-        dots[6] += r * x, dots[7] += r * y, dots[8] += r * z;
-    }
-}
-
-/* Columns of the factor to the left of a node's own, in its three rows from row i on */
-static void gxsp_factor_left(gxsp_factor *factor, uint32_t i) {
-    const uint32_t first = factor->first[i / 3], n = factor->n;
-    float *own[3];
-    uint32_t j, m, r, c;
-    for (r = 0; r < 3; r++) {
-        own[r] = gxsp_factor_row(factor, i + r);
-        for (j = first; j <= i + r; j++) factor->rows[r * (size_t)n + j] = (double)own[r][j];
-    }
-    for (j = first; j < i; j += 3) {
-        const float *other[3], *from[3];
-        double dots[9];
-        m = factor->first[j / 3] > first ? factor->first[j / 3] : first;
-        for (c = 0; c < 3; c++) {
-            other[c] = gxsp_factor_row(factor, j + c);
-            from[c] = other[c] + m;
-        }
-        gxsp_nine_dots(factor->rows + m, n, from, j - m, dots);
-        for (r = 0; r < 3; r++) {
-            double *sum = factor->rows + r * (size_t)n + j;
-            sum[0] = (sum[0] - dots[3 * r]) * (double)other[0][j];
-            sum[1] = (sum[1] - dots[3 * r + 1] - (double)other[1][j] * sum[0]) * (double)other[1][j + 1];
-            sum[2] = (sum[2] - dots[3 * r + 2] - (double)other[2][j] * sum[0] - (double)other[2][j + 1] * sum[1]) *
-                     (double)other[2][j + 2];
-            for (c = 0; c < 3; c++) own[r][j + c] = (float)sum[c];
-        }
-    }
-}
-
-/* Columns of a node's own in row i + r, whose other columns are known. 0 if a number overflowed. */
-static int gxsp_factor_own(gxsp_factor *factor, uint32_t i, uint32_t r) {
-    const uint32_t first = factor->first[i / 3];
-    float *row = gxsp_factor_row(factor, i + r);
-    double *sum = factor->rows + r * (size_t)factor->n;
-    const double own = sum[i + r], least = 0.5 * (double)GXSP_SHIFT * own;
-    uint32_t j;
-    for (j = i; j < i + r; j++) {
-        const float *other = gxsp_factor_row(factor, j);
-        sum[j] = (sum[j] - gxsp_long_dot(other + first, sum + first, j - first)) * (double)other[j];
-        row[j] = (float)sum[j];
-    }
-    sum[j] -= gxsp_long_dot(row + first, sum + first, j - first);
-    row[j] = own < GXSP_TINY ? 1 : sum[j] > least ? (float)(1 / sqrt(sum[j])) : 0;
-    return gxsp_finite_single(row[j]);
-}
-
-/* Cholesky of the last level, node by node. Without rounding no pivot is below GXSP_SHIFT of its diagonal. One below
- * half of that is rounding (of pieces that are small beside the lattice, whose coarse functions are nearly alike): its
- * unknown is left out, for with any other pivot later entries could grow without bound. Entries are of single
- * precision, which leaves the product of the factors positive semi-definite; the rows at work are of double. 0 if a
- * number overflowed. */
-static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t *place) {
-    uint32_t i, r;
-    gxsp_fill_factor(factor, level, place);
-    for (i = 0; i < factor->n; i += 3) {
-        gxsp_factor_left(factor, i);
-        for (r = 0; r < 3; r++)
-            if (!gxsp_factor_own(factor, i, r)) return 0;
-    }
-    return 1;
-}
-
-/* Lumped masses between coarse functions */
-static void gxsp_coarse_lumped(gxsp_system *system, double rate) {
-    const gxsp_level *fine = &system->levels[0];
-    gxsp_level *next = &system->levels[1];
-    uint32_t i;
-    int p, q;
-    for (i = 0; i < fine->n; i++)
-        for (p = 0; p < 4; p++)
-            for (q = 0; q < 4; q++)
-                if (fine->parent[i][p] <= fine->parent[i][q] && fine->parent[i][q] != GXSP_NONE)
-                    gxsp_add_mass((float)(rate * system->lumped[i]) * fine->weight[i][p] * fine->weight[i][q],
-                                  next->block +
-                                      9 * (size_t)gxsp_find_entry(next, fine->parent[i][p], fine->parent[i][q]));
-}
-
-/* Springs and contact between coarse functions, where level 1's matrix has an entry for them */
-static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
-    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    const gxsp_level *fine = &system->levels[0];
-    gxsp_level *next = &system->levels[1];
-    int i, j, p, q, k;
-    for (i = 0; i < 16; i++)
-        for (j = 0; j < 16; j++) {
-            const uint32_t a = term->copy[i / 4], b = term->copy[j / 4], row = fine->parent[a][i % 4],
-                           column = fine->parent[b][j % 4];
-            uint32_t entry;
-            p = i % 4, q = j % 4;
-            if (row > column || column == GXSP_NONE) continue;
-            entry = gxsp_find_entry(next, row, column);
-            if (next->column[entry] != column) continue;
-            for (k = 0; k < 9; k++)
-                next->block[9 * (size_t)entry + (size_t)k] += term->weight[i / 4] * term->weight[j / 4] *
-                                                              fine->weight[a][p] * fine->weight[b][q] *
-                                                              term->hessian[full[k]];
-        }
-}
-
-/* Adds a corner pair's block, on and above the diagonal, where corners follow others. same: both are one corner */
-static void gxsp_assemble_following(gxsp_system *system, uint32_t p, uint32_t q, int same, const float *block) {
-    gxsp_level *fine = &system->levels[0];
-    uint32_t a[4], b[4];
-    float wa[4], wb[4], turned[9];
-    const int as = gxsp_corner_masters(system, p, a, wa), bs = gxsp_corner_masters(system, q, b, wb);
-    int i, j;
-    gxsp_transpose_block(block, turned);
-    for (i = 0; i < as; i++)
-        for (j = 0; j < bs; j++) {
-            const uint32_t low = a[i] < b[j] ? a[i] : b[j], high = a[i] < b[j] ? b[j] : a[i];
-            float *to = fine->block + 9 * (size_t)gxsp_find_entry(fine, low, high);
-            if (same && a[i] > b[j]) /* its mirror comes by itself */
-                continue;
-            gxsp_add_scaled(wa[i] * wb[j], a[i] <= b[j] ? block : turned, to);
-            if (a[i] == b[j] && !same) gxsp_add_scaled(wa[i] * wb[j], turned, to);
-        }
-}
-
-/* A block's elements, of which each lane's corner pair adds to one entry, or to those of its masters */
-static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, uint32_t b) {
-    gxsp_level *fine = &system->levels[0];
-    const gxsp_corners *corner = &chunk->corners[b];
-    const gxsp_tangent *tangent = &chunk->tangents[b];
-    gxsp_singles gamma[4][3];
-    int pair, l;
-    for (l = 0; l < 4; l++) gxsp_block_corner(tangent, l, gamma[l]);
-    for (pair = 0; pair < 10; pair++) {
-        const int p = gxsp_pair_corners[pair][0], q = gxsp_pair_corners[pair][1];
-        gxsp_singles block[9], masses;
-        gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma[p], gamma[q], block);
-        gxsp_block_mass(tangent, gxsp_block_moments(chunk, b), p, q, masses);
-        for (l = 0; l < GXSP_LANES; l++) {
-            const uint32_t *copies = system->nodes + chunk->first_node,
-                           entry = system->fine[chunk->first_block + b].entry[pair][l];
-            const uint32_t i = copies[corner->node[p][l]], j = copies[corner->node[q][l]];
-            float own[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0},
-                  *to = entry == GXSP_NONE ? own : fine->block + 9 * (size_t)entry;
-            gxsp_add_lane(block, l, entry != GXSP_NONE && i > j, masses[l], to);
-            if (entry == GXSP_NONE)
-                gxsp_assemble_following(system, i, j, p == q, own);
-            else if (p != q && i == j) /* two corners that follow one copy */
-                gxsp_add_lane(block, l, 1, masses[l], to);
-        }
-    }
-}
-
-/* Adds a spring or contact, on and above the diagonal, if the matrix has entries for all of it. Has it? */
-static int gxsp_assemble_term(gxsp_system *system, const gxsp_term *term) {
-    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    gxsp_level *fine = &system->levels[0];
-    uint32_t a[16], i, j, count = 0, entry;
-    float w[16];
-    int k, adds;
-    for (k = 0; k < 4; k++)
-        if (term->weight[k] * term->weight[k] > 0) {
-            const uint32_t first = count;
-            for (count += (uint32_t)gxsp_corner_masters(system, term->copy[k], a + count, w + count), i = first;
-                 i < count; i++)
-                w[i] *= term->weight[k];
-        }
-    for (adds = 0; adds < 2; adds++)
-        for (i = 0; i < count; i++)
-            for (j = 0; j < count; j++) {
-                if (a[i] > a[j]) continue;
-                entry = gxsp_find_entry(fine, a[i], a[j]);
-                if (fine->column[entry] != a[j]) return 0;
-                for (k = 0; k < 9 && adds; k++)
-                    fine->block[9 * (size_t)entry + (size_t)k] += w[i] * w[j] * term->hessian[full[k]];
-            }
-    return 1;
-}
-
-/* The assembled matrix from the last linearisation */
-static void gxsp_assemble(gxsp_system *system, double rate) {
-    gxsp_level *fine = &system->levels[0];
-    uint32_t c, b, i;
-    size_t t;
-    memset(fine->block, 0, 9 * (size_t)fine->start[fine->n] * sizeof(float));
-    for (c = 0; c < system->chunk_count; c++)
-        for (b = 0; b < system->chunks[c].block_count && !system->chunk_still[c]; b++)
-            gxsp_assemble_block(system, &system->chunks[c], b);
-    for (i = 0; i < fine->n && system->lumped_mass; i++) {
-        uint32_t a[4], p, q;
-        float w[4];
-        const uint32_t count = (uint32_t)gxsp_corner_masters(system, i, a, w);
-        for (p = 0; p < count; p++)
-            for (q = 0; q < count; q++)
-                if (a[p] <= a[q])
-                    gxsp_add_mass(w[p] * w[q] * (float)(rate * system->lumped[i]),
-                                  fine->block + 9 * (size_t)gxsp_find_entry(fine, a[p], a[q]));
-    }
-    for (t = 0; t < system->lasting->count; t++)
-        system->lasting->term[t].assembled = gxsp_assemble_term(system, &system->lasting->term[t]);
-}
-
-/* Inverse diagonal blocks of the assembled matrix with springs and contact, for block Gauss-Seidel. 0 where nothing
- * moves. 0 if a number overflowed. */
-static int gxsp_invert_fine(gxsp_system *system) {
-    static const int packed[6] = {0, 3, 6, 4, 7, 8}, full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    gxsp_level *fine = &system->levels[0];
-    uint32_t i, k;
-    size_t t;
-    int m;
-    for (i = 0; i < fine->n; i++)
-        for (m = 0; m < 6; m++)
-            fine->inverse[6 * (size_t)i + (size_t)m] = fine->block[9 * (size_t)fine->start[i] + (size_t)packed[m]];
-    for (t = 0; t < system->lasting->count; t++)
-        for (k = 0; k < 4 && !system->lasting->term[t].assembled; k++) {
-            const gxsp_term *term = &system->lasting->term[t];
-            for (m = 0; m < 6; m++)
-                fine->inverse[6 * (size_t)term->copy[k] + (size_t)m] +=
-                    term->weight[k] * term->weight[k] * term->hessian[m];
-        }
-    for (i = 0; i < fine->n; i++) {
-        float *inverse = fine->inverse + 6 * (size_t)i, block[9];
-        for (m = 0; m < 9; m++) block[m] = system->still[i] || gxsp_follows(system, i) ? 0 : inverse[full[m]];
-        if (!gxsp_invert_block(block, inverse)) return 0;
-    }
-    return 1;
-}
-
-/* What follows from level 1's matrix. dirty: nodes of level 1 whose numbers are new; NULL: all are. 0 if a number
- * overflowed. */
-static int gxsp_lower_numbers(gxsp_system *system, const uint8_t *dirty) {
-    uint32_t at;
-    for (at = 1; at < system->level_count; at++) {
-        gxsp_level *level = &system->levels[at];
-        if (!gxsp_invert_diagonal(level, at == 1 ? dirty : NULL)) return 0;
-        if (at + 1 < system->level_count) gxsp_coarsen(level, level + 1, &system->pairs);
-    }
-    return gxsp_factorise(&system->factor, &system->levels[system->level_count - 1], system->pairs.local);
-}
-
-/* Shared memory while coarse numbers are made */
-static void gxsp_lend(gxsp_system *system) {
-    gxsp_space space = {NULL, 0};
-    space.memory = system->shared;
-    gxsp_numbers_carve(system, &space);
-    if (!system->fine) {
-        memset(system->edges.table, 0, system->edges.table_size * sizeof *system->edges.table);
-        memset(system->edges.half, 0, system->pairs.most * sizeof *system->edges.half);
-        memset(system->pairs.stamp, 0, system->levels[1].n * sizeof *system->pairs.stamp);
-        system->pairs.round = 0;
-    }
-}
-
-/* The matrices of all coarse levels from the last linearisation. 0 if a number overflowed. */
-static int gxsp_coarse_numbers(gxsp_system *system, double rate) {
-    gxsp_level *fine = &system->levels[0];
-    int finite;
-    size_t t;
-    gxsp_lend(system);
-    if (system->fine)
-        gxsp_coarsen(fine, fine + 1, &system->pairs);
-    else {
-        memset(fine[1].block, 0, 9 * (size_t)fine[1].start[fine[1].n] * sizeof(float));
-        gxsp_coarse_elements(system, NULL);
-        if (system->lumped_mass) gxsp_coarse_lumped(system, system->scale * rate);
-    }
-    for (t = 0; t < system->lasting->count; t++)
-        if (!system->lasting->term[t].assembled) gxsp_coarse_term(system, &system->lasting->term[t]);
-    finite = gxsp_lower_numbers(system, NULL);
-    gxsp_give_back(system);
-    return finite;
-}
-
-/* Largest eigenvalue of D^-1 (K + rate M) on what is not still, by the power method from a start that favours none; 0
- * if nothing moves */
-static double gxsp_largest_eigenvalue(gxsp_system *system, double rate) {
-    gxsp_vector4 *x = system->search, *y = system->product;
-    uint32_t random = 1;
-    size_t i;
-    int c, round;
-    double largest = 0;
-    for (i = 0; i < system->n; i++)
-        for (c = 0; c < 3; c++) {
-            random = random * 1664525u + 1013904223u;
-            x[i][c] = system->still[i] ? 0 : (float)(random >> 8) / 8388608.0f - 1;
-        }
-    for (round = 0; round < 6; round++) {
-        double before = 0, after = 0;
-        float scale;
-        gxsp_product(system, rate, x, y);
-        for (i = 0; i < system->n; i++) {
-            float z[3];
-            gxsp_apply_packed(system->diagonal + 6 * i, y[i], z);
-            for (c = 0; c < 3; c++) {
-                before += (double)y[i][c] * (double)x[i][c];
-                after += (double)y[i][c] * (double)z[c];
-                x[i][c] = z[c];
-            }
-        }
-        if (!(before > 0) || !(after > 0)) break;
-        largest = after / before;
-        scale = (float)(1 / sqrt(after));
-        for (i = 0; i < system->n; i++)
-            for (c = 0; c < 3; c++) x[i][c] *= scale;
-    }
-    return largest;
-}
-
-/* The smoother's step length: 3/2 of the inverse of the spectrum's end, which conjugate gradients like better than the
- * 4/3 that damp its upper half most. An eigenvalue a third larger would still leave the cycle definite. */
-static float gxsp_omega(const gxsp_system *system, double largest) {
-    largest = largest > 0 ? 1.05 * largest : 4;
-    if (largest > 4 && system->follower_count == 0) /* no element's own D^-1 K exceeds 4 */
-        largest = 4;
-    return (float)(1.5 / largest);
-}
-
-/* Which copies and chunks the pieces' states leave alone */
-static void gxsp_mark_still(gxsp_system *system) {
-    uint32_t c, k;
-    size_t i;
-    for (i = 0; i < system->n; i++)
-        system->still[i] = system->fixed[i] || (system->pieces[system->piece[i]].state & GXSP_ASLEEP);
-    for (c = 0; c < system->chunk_count; c++) {
-        system->chunk_still[c] = 1;
-        for (k = 0; k < system->chunks[c].node_count; k++)
-            system->chunk_still[c] &= system->still[system->nodes[system->chunks[c].first_node + k]];
-    }
-}
-
-/* Shortens the step length where the cycle might become indefinite where updates have changed the operator: elsewhere
- * the largest eigenvalue is no larger than it was. */
-static void gxsp_renew_omega(gxsp_system *system, double rate) {
-    double largest;
-    uint32_t c, k;
-    size_t i;
-    for (i = 0; i < system->n; i++) system->still[i] |= !system->renewed[i];
-    for (c = 0; c < system->chunk_count; c++) {
-        uint8_t still = 1;
-        for (k = 0; k < system->chunks[c].node_count; k++)
-            still &= system->still[system->nodes[system->chunks[c].first_node + k]];
-        system->chunk_still[c] |= still;
-    }
-    largest = gxsp_largest_eigenvalue(system, rate);
-    if (GXSP_OMEGA < (double)system->omega_found * largest) system->omega_found = (float)(GXSP_OMEGA / largest);
-    gxsp_mark_still(system);
-}
-
-/* The step length for the solve to come */
-static void gxsp_choose_omega(gxsp_system *system, double rate) {
-    if (!(system->omega > 0))
-        system->omega_found = gxsp_omega(system, gxsp_largest_eigenvalue(system, rate));
-    else if (system->omega_renewed)
-        gxsp_renew_omega(system, rate);
-    system->omega_renewed = 0;
-    system->omega_rest -= system->omega_rest > 0;
-    if (system->omega_rest == 0) system->omega = system->omega_found;
-}
-
-/* >>update: what a cut has changed goes into the chunks and levels that there are. Elements are replaced where they
- * were, further ones go to chunks at the end; of chunks and coarse nodes of which nothing has changed only numbers are
- * copied. */
-
-/* A lane whose element goes */
-typedef struct gxsp_hole {
+/* A lane whose element goes, comes or is replaced */
+typedef struct gxsp_edit {
     uint32_t chunk, lane, group;
-    uint32_t element; /* of the change: what takes the lane; GXSP_NONE: nothing does */
-} gxsp_hole;
+    uint32_t element; /* of the change, that takes the lane; GXSP_NONE: none does */
+} gxsp_edit;
 
 typedef struct gxsp_renewal {
     gxsp_system *system;
     gxsp_pool *scratch;
     const gxs_change *change;
-    size_t before;                           /* copies so far */
-    uint32_t *successor;                     /* before: what a copy is from now on; GXSP_NONE: it is no more */
-    uint8_t *touched;                        /* change->copy_count: an element around the copy has gone or come */
-    gxsp_hole *holes;                        /* hole_count; then, as holes of new chunks, what is placed elsewhere */
-    uint32_t hole_count, placed_count;       /* placed: of elements that took no hole */
-    uint32_t *left, *left_class, left_count; /* elements of the change that take no hole, and what they are alike in */
-    uint8_t *dirty;                          /* by node of level 1 so far: some that follow it are touched */
-    uint8_t *alike;                          /* change->copy_count: the copy follows what it followed */
+    size_t before;       /* copies so far */
+    uint32_t *successor; /* before: new number of a copy; GXSP_NONE: it is gone */
+    uint8_t *touched;    /* change->copy_count: an element around the copy goes or comes */
+    gxsp_edit *edits;    /* edit_count lanes of changed groups; then placed_count lanes of further elements */
+    uint32_t edit_count, placed_count;       /* see edits */
+    uint32_t *left, *left_class, left_count; /* left_count elements of the change that take no lane of their group, and
+                                                their classes */
+    uint8_t *dirty; /* by node of level 1 before the update: some of its followers are touched */
+    uint8_t *alike; /* change->copy_count: the copy follows the same copies as before */
 } gxsp_renewal;
 
-/* What corner k's copy has of the mass of a lane's element: its row sum */
-static double gxsp_lane_mass(const gxsp_chunk *chunk, uint32_t lane, int k) {
-    const size_t b = lane / GXSP_LANES, l = lane % GXSP_LANES;
-    const gxsp_moments *of = gxsp_block_moments(chunk, (uint32_t)b);
-    return chunk->rest[b].mass[l] *
-           (!of ? 5
-                : (double)(k > 0 ? of->centre[k - 1][l]
-                                 : 1 - (of->centre[0][l] + of->centre[1][l] + of->centre[2][l])));
-}
-
-/* Does the element of a lane give corner k stiffness or mass? */
-static int gxsp_lane_supports(const gxsp_chunk *chunk, uint32_t lane, int k) {
-    return chunk->rest[lane / GXSP_LANES].weight[lane % GXSP_LANES] > 0 || gxsp_lane_mass(chunk, lane, k) > 0;
-}
-
-/* --- which lanes change --- */
-
-/* Groups that change: a bit for each, of as many low bits of their numbers as make GXSP_FILTER */
+/* Groups that change: a bit for each, indexed by the low bits of their numbers */
 typedef struct gxsp_filter {
     uint64_t bit[GXSP_FILTER / 64];
 } gxsp_filter;
 
+/* Does a group change? */
 static int gxsp_changes(const gxs_change *change, const gxsp_filter *filter, uint32_t group) {
     size_t low = 0, high = change->group_count;
     if (!(filter->bit[group % GXSP_FILTER / 64] >> group % 64 & 1)) return 0;
@@ -6033,9 +6405,9 @@ static int gxsp_changes(const gxs_change *change, const gxsp_filter *filter, uin
 }
 
 /* All lanes of the groups that change, in the order of groups, then of lanes */
-static void gxsp_find_holes(gxsp_renewal *update) {
+static void gxsp_find_edits(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
-    gxsp_hole *found = NULL;
+    gxsp_edit *found = NULL;
     gxsp_sorted *sorted, *other;
     gxsp_filter filter;
     uint32_t c, lane, pass, count = 0;
@@ -6044,10 +6416,10 @@ static void gxsp_find_holes(gxsp_renewal *update) {
     for (i = 0; i < update->change->group_count; i++)
         filter.bit[update->change->groups[i] % GXSP_FILTER / 64] |= (uint64_t)1 << update->change->groups[i] % 64;
     for (pass = 0; pass < 2 && update->change->group_count > 0; pass++) { /* count, then list */
-        if (pass == 1 && !(found = (gxsp_hole *)gxsp_take(update->scratch, count, sizeof *found))) return;
-        for (c = 0, count = 0; c < system->chunk_count; c++)
-            for (lane = 0; lane < system->chunks[c].block_count * GXSP_LANES; lane++) {
-                const uint32_t group = system->chunks[c].groups[lane];
+        if (pass == 1 && !(found = (gxsp_edit *)gxsp_take(update->scratch, count, sizeof *found))) return;
+        for (c = 0, count = 0; c < system->mesh.chunk_count; c++)
+            for (lane = 0; lane < system->mesh.chunks[c].block_count * GXSP_LANES; lane++) {
+                const uint32_t group = system->mesh.chunks[c].groups[lane];
                 if (group == GXSP_NONE || !gxsp_changes(update->change, &filter, group)) continue;
                 if (found) found[count].chunk = c, found[count].lane = lane, found[count].group = group;
                 count++;
@@ -6055,27 +6427,27 @@ static void gxsp_find_holes(gxsp_renewal *update) {
     }
     sorted = (gxsp_sorted *)gxsp_take(update->scratch, count, sizeof *sorted);
     other = (gxsp_sorted *)gxsp_take(update->scratch, count, sizeof *other);
-    update->holes =
-        (gxsp_hole *)gxsp_take(update->scratch, count + update->change->element_count, sizeof *update->holes);
+    update->edits =
+        (gxsp_edit *)gxsp_take(update->scratch, count + update->change->element_count, sizeof *update->edits);
     if (update->scratch->failed) return;
     for (i = 0; i < count; i++) sorted[i].place = found[i].group, sorted[i].index = (uint32_t)i;
     if (count > 0) sorted = gxsp_sort(sorted, other, count);
     for (i = 0; i < count; i++) {
-        update->holes[i] = found[sorted[i].index];
-        update->holes[i].element = GXSP_NONE;
+        update->edits[i] = found[sorted[i].index];
+        update->edits[i].element = GXSP_NONE;
     }
-    update->hole_count = count;
+    update->edit_count = count;
 }
 
-/* Before copies are moved */
+/* Class of an element of the change. Called before copies are moved */
 static uint32_t gxsp_class_of(const gxsp_renewal *update, const gxs_element *element) {
     const gxsp_system *system = update->system;
-    return gxsp_class(system->materials[element->material].kind, element, 0, system->positions,
+    return gxsp_class(system->model.materials[element->material].kind, element, 0, system->model.positions,
                       update->change->origins);
 }
 
-/* Elements take the lanes of their group as far as these are of their class. */
-static void gxsp_match_holes(gxsp_renewal *update) {
+/* Gives elements the lanes of their group, as far as these are of their class. */
+static void gxsp_match_edits(gxsp_renewal *update) {
     const gxs_change *change = update->change;
     uint32_t first = 0, e, i;
     update->left = (uint32_t *)gxsp_take(update->scratch, change->element_count, sizeof(uint32_t));
@@ -6083,13 +6455,13 @@ static void gxsp_match_holes(gxsp_renewal *update) {
     for (e = 0; e < change->element_count && !update->scratch->failed; e++) {
         const gxs_element *element = &change->elements[e];
         const uint32_t class_index = gxsp_class_of(update, element);
-        while (first < update->hole_count && update->holes[first].group < element->group) first++;
-        for (i = first; i < update->hole_count && update->holes[i].group == element->group; i++)
-            if (update->holes[i].element == GXSP_NONE &&
-                update->system->chunks[update->holes[i].chunk].class_index == class_index)
+        while (first < update->edit_count && update->edits[first].group < element->group) first++;
+        for (i = first; i < update->edit_count && update->edits[i].group == element->group; i++)
+            if (update->edits[i].element == GXSP_NONE &&
+                update->system->mesh.chunks[update->edits[i].chunk].class_index == class_index)
                 break;
-        if (i < update->hole_count && update->holes[i].group == element->group)
-            update->holes[i].element = e;
+        if (i < update->edit_count && update->edits[i].group == element->group)
+            update->edits[i].element = e;
         else {
             update->left_class[update->left_count] = class_index;
             update->left[update->left_count++] = e;
@@ -6097,22 +6469,20 @@ static void gxsp_match_holes(gxsp_renewal *update) {
     }
 }
 
-/* --- chunks --- */
-
-/* Copies around what goes, and the coarse nodes that these follow */
+/* Touches the copies around elements that go, and marks the coarse nodes that these follow as dirty. */
 static void gxsp_touch_removed(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
     uint32_t i, copies[4];
     int k, q;
-    for (i = 0; i < update->hole_count; i++) {
-        const gxsp_hole *hole = &update->holes[i];
-        gxsp_lane_copies(system, &system->chunks[hole->chunk], hole->lane / GXSP_LANES, (int)(hole->lane % GXSP_LANES),
-                         copies);
+    for (i = 0; i < update->edit_count; i++) {
+        const gxsp_edit *edit = &update->edits[i];
+        gxsp_lane_copies(system, &system->mesh.chunks[edit->chunk], edit->lane / GXSP_LANES,
+                         (int)(edit->lane % GXSP_LANES), copies);
         for (k = 0; k < 4; k++) {
             if (update->successor[copies[k]] != GXSP_NONE) update->touched[update->successor[copies[k]]] = 1;
-            for (q = 0; q < 4 && system->level_count > 0; q++)
-                if (system->levels[0].parent[copies[k]][q] != GXSP_NONE)
-                    update->dirty[system->levels[0].parent[copies[k]][q]] = 1;
+            for (q = 0; q < 4 && system->multigrid.level_count > 0; q++)
+                if (system->multigrid.levels[0].parent[copies[k]][q] != GXSP_NONE)
+                    update->dirty[system->multigrid.levels[0].parent[copies[k]][q]] = 1;
         }
     }
 }
@@ -6131,22 +6501,16 @@ static void gxsp_empty_lane(const gxsp_chunk *chunk, uint32_t lane) {
     chunk->groups[lane] = GXSP_NONE;
     rest->weight[l] = rest->mass[l] = 0;
     for (k = 0; k < 9 && chunk->gradients; k++)
-        chunk->gradients[lane / GXSP_LANES].entry[k][l] = 0; /* wherever its corners are: F = 1 */
+        chunk->gradients[lane / GXSP_LANES].entry[k][l] = 0; /* F = 1 wherever its corners are */
 }
 
-/* A new chunk at the end, without a block in use but with room for all that a chunk can have */
+/* A new chunk at the end. No block is in use, but there is memory for all that a chunk can have. */
 static gxsp_chunk *gxsp_open_chunk(gxsp_system *system, uint32_t class_index) {
     gxsp_pool *pool = &system->pool;
     gxsp_chunk *chunk;
-    if (system->chunk_count >= system->chunk_room) {
-        const uint32_t room = system->chunk_count + system->chunk_count / 8 + 8;
-        system->chunks = (gxsp_chunk *)gxsp_retake(pool, system->chunks, system->chunk_count, room, sizeof(gxsp_chunk));
-        system->chunk_collapsed = (uint8_t *)gxsp_retake(pool, system->chunk_collapsed, 0, room, 1);
-        system->chunk_still = (uint8_t *)gxsp_retake(pool, system->chunk_still, 0, room, 1);
-        system->chunk_room = room;
-    }
+    gxsp_chunk_room(system);
     if (pool->failed) return NULL;
-    chunk = &system->chunks[system->chunk_count];
+    chunk = &system->mesh.chunks[system->mesh.chunk_count];
     memset(chunk, 0, sizeof *chunk);
     chunk->class_index = class_index;
     chunk->kind = (gxs_material_kind)(class_index / 4);
@@ -6156,11 +6520,11 @@ static gxsp_chunk *gxsp_open_chunk(gxsp_system *system, uint32_t class_index) {
     gxsp_tangents_make(pool, chunk, 1);
     chunk->block_count = 0;
     if (pool->failed) return NULL;
-    system->chunk_count++;
+    system->mesh.chunk_count++;
     return chunk;
 }
 
-/* A free lane of the open chunk at index, or GXSP_NONE */
+/* The first free lane of a chunk from a lane on, or GXSP_NONE */
 static uint32_t gxsp_free_lane(gxsp_chunk *chunk, uint32_t from) {
     uint32_t lane;
     for (lane = from; lane < chunk->block_count * GXSP_LANES; lane++)
@@ -6171,56 +6535,56 @@ static uint32_t gxsp_free_lane(gxsp_chunk *chunk, uint32_t from) {
 /* Index of the last open chunk of a class, or chunk_count */
 static uint32_t gxsp_find_open(const gxsp_system *system, uint32_t class_index) {
     uint32_t c;
-    for (c = system->chunk_count; c-- > 0;)
-        if (system->chunks[c].open && system->chunks[c].class_index == class_index) return c;
-    return system->chunk_count;
+    for (c = system->mesh.chunk_count; c-- > 0;)
+        if (system->mesh.chunks[c].open && system->mesh.chunks[c].class_index == class_index) return c;
+    return system->mesh.chunk_count;
 }
 
-/* Lanes of the class's open chunk, or of new ones, for those elements without a hole that are of this class */
+/* Puts those elements of a class that took no lane of their group into its open chunk, or into new ones. */
 static void gxsp_place_class(gxsp_renewal *update, uint32_t class_index) {
     gxsp_system *system = update->system;
     uint32_t i, l, c = gxsp_find_open(system, class_index), lane = 0;
     for (i = 0; i < update->left_count; i++) {
-        gxsp_hole *hole = &update->holes[update->hole_count + update->placed_count];
+        gxsp_edit *edit = &update->edits[update->edit_count + update->placed_count];
         if (update->left_class[i] != class_index) continue;
-        lane = c < system->chunk_count ? gxsp_free_lane(&system->chunks[c], lane) : GXSP_NONE;
+        lane = c < system->mesh.chunk_count ? gxsp_free_lane(&system->mesh.chunks[c], lane) : GXSP_NONE;
         if (lane == GXSP_NONE) {
-            c = system->chunk_count;
+            c = system->mesh.chunk_count;
             lane = 0;
             if (!gxsp_open_chunk(system, class_index)) return;
         }
-        /* its other lanes are of no weight, but of a material there is */
-        if (lane == system->chunks[c].block_count * GXSP_LANES) {
+        /* its other lanes have no weight, but a valid material */
+        if (lane == system->mesh.chunks[c].block_count * GXSP_LANES) {
             for (l = 0; l < GXSP_LANES; l++)
-                system->chunks[c].rest[lane / GXSP_LANES].material[l] =
+                system->mesh.chunks[c].rest[lane / GXSP_LANES].material[l] =
                     update->change->elements[update->left[i]].material;
-            system->chunks[c].block_count++;
+            system->mesh.chunks[c].block_count++;
         }
-        hole->chunk = c, hole->lane = lane, hole->element = update->left[i];
-        gxsp_place_element(&system->chunks[c], &update->change->elements[hole->element], gxsp_own_order, lane, 0);
+        edit->chunk = c, edit->lane = lane, edit->element = update->left[i];
+        gxsp_place_element(&system->mesh.chunks[c], &update->change->elements[edit->element], gxsp_own_order, lane, 0);
         update->placed_count++;
         lane++;
     }
 }
 
-/* Elements in their lanes; corners and nodes still are what they were. */
+/* Puts elements into their lanes. Corners and nodes stay as they were. */
 static void gxsp_replace_elements(gxsp_renewal *update) {
     uint32_t i, class_index;
-    for (i = 0; i < update->hole_count; i++) {
-        const gxsp_hole *hole = &update->holes[i];
-        const gxsp_chunk *chunk = &update->system->chunks[hole->chunk];
-        if (hole->element == GXSP_NONE)
-            gxsp_empty_lane(chunk, hole->lane);
+    for (i = 0; i < update->edit_count; i++) {
+        const gxsp_edit *edit = &update->edits[i];
+        const gxsp_chunk *chunk = &update->system->mesh.chunks[edit->chunk];
+        if (edit->element == GXSP_NONE)
+            gxsp_empty_lane(chunk, edit->lane);
         else
-            gxsp_place_element(chunk, &update->change->elements[hole->element], gxsp_own_order, hole->lane, 0);
+            gxsp_place_element(chunk, &update->change->elements[edit->element], gxsp_own_order, edit->lane, 0);
     }
     for (class_index = 0; class_index < 4 * (GXS_CUSTOM + 1) && !update->system->pool.failed; class_index++)
         gxsp_place_class(update, class_index);
 }
 
-/* Nodes of a chunk of which lanes have changed. next: by hole, the next one of its chunk. 0: an element that stays has
- * lost a copy. */
-static int gxsp_renew_chunk(gxsp_renewal *update, gxsp_chunk *chunk, uint32_t hole, const uint32_t *next,
+/* Nodes of a chunk whose lanes have changed. edit: the chunk's first; next: the next edit of the same chunk. 0: an
+ * element that stays has lost a copy. */
+static int gxsp_renew_chunk(gxsp_renewal *update, gxsp_chunk *chunk, uint32_t edit, const uint32_t *next,
                             gxsp_numbers *numbers, uint32_t *nodes) {
     const gxsp_system *system = update->system;
     uint32_t copies[GXSP_CHUNK][4], lane, used = 0;
@@ -6231,9 +6595,9 @@ static int gxsp_renew_chunk(gxsp_renewal *update, gxsp_chunk *chunk, uint32_t ho
         gxsp_lane_copies(system, chunk, lane / GXSP_LANES, (int)(lane % GXSP_LANES), copies[lane]);
         for (k = 0; k < 4; k++) copies[lane][k] = update->successor[copies[lane][k]];
     }
-    for (; hole != GXSP_NONE; hole = next[hole])
-        if (update->holes[hole].element != GXSP_NONE)
-            memcpy(copies[update->holes[hole].lane], update->change->elements[update->holes[hole].element].copy,
+    for (; edit != GXSP_NONE; edit = next[edit])
+        if (update->edits[edit].element != GXSP_NONE)
+            memcpy(copies[update->edits[edit].lane], update->change->elements[update->edits[edit].element].copy,
                    sizeof copies[0]);
     for (lane = 0; lane < chunk->block_count * GXSP_LANES; lane++)
         if (chunk->groups[lane] != GXSP_NONE) {
@@ -6248,7 +6612,7 @@ static int gxsp_renew_chunk(gxsp_renewal *update, gxsp_chunk *chunk, uint32_t ho
     return 1;
 }
 
-/* Nodes of a chunk joined by its elements: by node, the least one that it is joined with */
+/* Joins nodes of a chunk by its elements. roots: by node, the least node that it is joined with */
 static void gxsp_find_roots(const gxsp_chunk *chunk, uint16_t *roots) {
     uint32_t forest[GXSP_CHUNK * 4], i, lane;
     int k;
@@ -6263,28 +6627,14 @@ static void gxsp_find_roots(const gxsp_chunk *chunk, uint16_t *roots) {
     for (i = 0; i < chunk->node_count; i++) roots[i] = (uint16_t)gxsp_root(forest, i);
 }
 
-/* Room for so many slots */
-static void gxsp_slots_room(gxsp_system *system, size_t count) {
-    gxsp_pool *pool = &system->pool;
-    if (count > system->slot_room) {
-        system->slot_room = count + count / 8;
-        system->nodes =
-            (uint32_t *)gxsp_retake(pool, system->nodes, 0, system->slot_room + GXSP_AHEAD, sizeof(uint32_t));
-        system->copy_slot =
-            (uint32_t *)gxsp_retake(pool, system->copy_slot, 0, system->slot_room + GXSP_AHEAD, sizeof(uint32_t));
-        system->slot_root = (uint16_t *)gxsp_retake(pool, system->slot_root, 0, system->slot_room, sizeof(uint16_t));
-    }
-    system->slot_count = count;
-}
-
 /* Nodes of all chunks. 0: an element that stays has lost a copy. */
 static int gxsp_renew_nodes(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     const size_t n = update->change->copy_count;
-    const uint32_t holes = update->hole_count + update->placed_count;
-    const size_t room = system->slot_count + 4 * (size_t)holes;
-    uint32_t *first = (uint32_t *)gxsp_take(update->scratch, system->chunk_count, sizeof(uint32_t)), c, i;
-    uint32_t *next = (uint32_t *)gxsp_take(update->scratch, holes, sizeof(uint32_t));
+    const uint32_t edits = update->edit_count + update->placed_count;
+    const size_t room = system->mesh.slot_count + 4 * (size_t)edits;
+    uint32_t *first = (uint32_t *)gxsp_take(update->scratch, system->mesh.chunk_count, sizeof(uint32_t)), c, i;
+    uint32_t *next = (uint32_t *)gxsp_take(update->scratch, edits, sizeof(uint32_t));
     uint32_t *nodes = (uint32_t *)gxsp_take(update->scratch, room, sizeof(uint32_t));
     uint16_t *roots = (uint16_t *)gxsp_take(update->scratch, room, sizeof(uint16_t));
     size_t count = 0;
@@ -6293,113 +6643,78 @@ static int gxsp_renew_nodes(gxsp_renewal *update) {
     numbers.stamp = (uint32_t *)gxsp_take(update->scratch, n, sizeof(uint32_t));
     numbers.round = 0;
     if (update->scratch->failed) return 1;
-    memset(first, 0xff, system->chunk_count * sizeof *first);
-    for (i = holes; i-- > 0;) {
-        next[i] = first[update->holes[i].chunk];
-        first[update->holes[i].chunk] = i;
+    memset(first, 0xff, system->mesh.chunk_count * sizeof *first);
+    for (i = edits; i-- > 0;) {
+        next[i] = first[update->edits[i].chunk];
+        first[update->edits[i].chunk] = i;
     }
-    for (c = 0; c < system->chunk_count; c++) {
-        gxsp_chunk *chunk = &system->chunks[c];
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        gxsp_chunk *chunk = &system->mesh.chunks[c];
         const uint32_t before = chunk->first_node;
         if (first[c] != GXSP_NONE && !gxsp_renew_chunk(update, chunk, first[c], next, &numbers, nodes + count))
             return 0;
         for (i = 0; i < chunk->node_count && first[c] == GXSP_NONE; i++) {
-            nodes[count + i] = update->successor[system->nodes[before + i]];
+            nodes[count + i] = update->successor[system->mesh.nodes[before + i]];
             if (nodes[count + i] == GXSP_NONE) return 0;
         }
-        if (first[c] != GXSP_NONE || !system->roots_known)
+        if (first[c] != GXSP_NONE || !system->mesh.roots_known)
             gxsp_find_roots(chunk, roots + count);
         else
-            memcpy(roots + count, system->slot_root + before, chunk->node_count * sizeof *roots);
+            memcpy(roots + count, system->mesh.slot_root + before, chunk->node_count * sizeof *roots);
         chunk->first_node = (uint32_t)count;
         count += chunk->node_count;
     }
     gxsp_slots_room(system, count);
     if (system->pool.failed) return 1;
-    memcpy(system->nodes, nodes, count * sizeof *nodes);
-    memcpy(system->slot_root, roots, count * sizeof *roots);
-    system->roots_known = 1;
+    memcpy(system->mesh.nodes, nodes, count * sizeof *nodes);
+    memcpy(system->mesh.slot_root, roots, count * sizeof *roots);
+    system->mesh.roots_known = 1;
     return 1;
 }
 
-/* --- copies --- */
+/* >>renewal: copies and components after an update ----------------------------------------------------------------- */
 
-/* Room for so many copies; what they have stays theirs. */
-static void gxsp_copies_room(gxsp_system *system, size_t count) {
-    gxsp_pool *pool = &system->pool;
-    const size_t n = system->n, most = count > n ? count : n, room = most + most / 8;
-    gxsp_level *fine = &system->levels[0];
-    if (count <= system->copy_room) return;
-    system->target = (double *)gxsp_retake(pool, system->target, 0, 3 * room, sizeof(double));
-    if (system->damping) system->damping = (double *)gxsp_retake(pool, system->damping, 0, 3 * room, sizeof(double));
-    system->current = (double *)gxsp_retake(pool, system->current, 3 * n, 3 * room, sizeof(double));
-    system->force = (double *)gxsp_retake(pool, system->force, 0, 3 * room, sizeof(double));
-    system->trial = system->residual = (double *)gxsp_retake(pool, system->residual, 0, 3 * room, sizeof(double));
-    system->direction = (double *)gxsp_retake(pool, system->direction, 0, 3 * room, sizeof(double));
-    system->guess[0] = (gxsp_vector4 *)gxsp_retake(pool, system->guess[0], n, room, sizeof(gxsp_vector4));
-    system->guess[1] = (gxsp_vector4 *)gxsp_retake(pool, system->guess[1], n, room, sizeof(gxsp_vector4));
-    system->range_sum =
-        (double(*)[GXSP_SUMS])gxsp_retake(pool, system->range_sum, 0, room / GXSP_RANGE + 1, sizeof *system->range_sum);
-    system->diagonal = (float *)gxsp_retake(pool, system->diagonal, 0, 6 * room, sizeof(float));
-    system->copy_start = (uint32_t *)gxsp_retake(pool, system->copy_start, 0, room + 2, sizeof(uint32_t));
-    if (system->positions)
-        system->positions = (double *)gxsp_retake(pool, system->positions, 3 * n, 3 * room, sizeof(double));
-    system->lumped = (double *)gxsp_retake(pool, system->lumped, n, room, sizeof(double));
-    system->piece = (uint32_t *)gxsp_retake(pool, system->piece, n, room, sizeof(uint32_t));
-    system->fixed = (uint8_t *)gxsp_retake(pool, system->fixed, n, room, 1);
-    system->still = (uint8_t *)gxsp_retake(pool, system->still, 0, room, 1);
-    system->held = (uint8_t *)gxsp_retake(pool, system->held, n, room, 1);
-    system->renewed = (uint8_t *)gxsp_retake(pool, system->renewed, 0, room, 1);
-    if (system->level_count > 0) {
-        system->coarse_state = (double *)gxsp_retake(pool, system->coarse_state, 3 * n, 3 * room, sizeof(double));
-        fine->parent = (uint32_t(*)[4])gxsp_retake(pool, fine->parent, n, room, sizeof *fine->parent);
-        fine->weight = (float(*)[4])gxsp_retake(pool, fine->weight, n, room, sizeof *fine->weight);
+/* In: new numbers of copies, touched copies. Out: the columns over copies in their new order, masses, followers,
+ * light copies and components. */
+
+/* The new number of each copy so far. 0: two copies have the same origin, or a copy is not held as before. */
+static int gxsp_find_successors(gxsp_renewal *update) {
+    const gxs_change *change = update->change;
+    uint32_t i;
+    memset(update->successor, 0xff, update->before * sizeof *update->successor);
+    for (i = 0; i < change->copy_count; i++) {
+        uint32_t *of = &update->successor[change->origins[i] >> 1];
+        if ((change->held && change->held[i]) != (update->system->model.held[change->origins[i] >> 1] != 0)) return 0;
+        if (change->origins[i] & 1)
+            update->touched[i] = 1;
+        else if (*of != GXSP_NONE)
+            return 0;
+        else
+            *of = i;
     }
-    system->copy_room = room;
+    return 1;
 }
 
-/* Entries of an array over copies go where their copies go. moved: copies that are not what they were, moved_count;
- * kept: scratch */
-static void gxsp_move(const gxs_change *change, const uint32_t *moved, size_t moved_count, void *array, size_t size,
-                      unsigned char *kept) {
-    unsigned char *bytes = (unsigned char *)array;
-    size_t i;
-    for (i = 0; i < moved_count; i++) memcpy(kept + i * size, bytes + (change->origins[moved[i]] >> 1) * size, size);
-    for (i = 0; i < moved_count; i++) memcpy(bytes + moved[i] * size, kept + i * size, size);
-}
-
-/* What is known of copies, for those there are from now on */
+/* Brings the columns over copies into the new numbering. */
 static void gxsp_move_copies(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     const gxs_change *change = update->change;
     uint32_t *moved = (uint32_t *)gxsp_take(update->scratch, change->copy_count, sizeof(uint32_t)), i;
-    unsigned char *kept;
+    unsigned char *saved;
     size_t count = 0;
     gxsp_copies_room(system, change->copy_count);
     for (i = 0; i < change->copy_count && moved; i++)
         if (change->origins[i] >> 1 != i) moved[count++] = i;
-    kept = (unsigned char *)gxsp_take(update->scratch, count, 3 * sizeof(double)); /* the largest entry */
+    saved = (unsigned char *)gxsp_take(update->scratch, count, 3 * sizeof(double)); /* the largest entry */
     if (update->scratch->failed || system->pool.failed) return;
-    gxsp_move(change, moved, count, system->current, 3 * sizeof(double), kept);
-    gxsp_move(change, moved, count, system->guess[0], sizeof(gxsp_vector4), kept);
-    gxsp_move(change, moved, count, system->guess[1], sizeof(gxsp_vector4), kept);
-    if (system->positions) gxsp_move(change, moved, count, system->positions, 3 * sizeof(double), kept);
-    gxsp_move(change, moved, count, system->lumped, sizeof(double), kept);
-    gxsp_move(change, moved, count, system->piece, sizeof(uint32_t), kept);
-    gxsp_move(change, moved, count, system->fixed, 1, kept);
-    gxsp_move(change, moved, count, system->held, 1, kept);
-    if (system->level_count > 0) {
-        gxsp_move(change, moved, count, system->coarse_state, 3 * sizeof(double), kept);
-        gxsp_move(change, moved, count, system->levels[0].parent, sizeof *system->levels[0].parent, kept);
-        gxsp_move(change, moved, count, system->levels[0].weight, sizeof *system->levels[0].weight, kept);
-    }
-    system->n = change->copy_count;
-    system->epoch = change->epoch;
-    system->levels[0].n = (uint32_t)change->copy_count;
-    system->range_count = (system->n + GXSP_RANGE - 1) / GXSP_RANGE;
+    gxsp_columns_move(system, change->origins, moved, count, saved);
+    system->model.n = change->copy_count;
+    system->model.epoch = change->epoch;
+    system->multigrid.levels[0].n = (uint32_t)change->copy_count;
+    system->model.range_count = (system->model.n + GXSP_RANGE - 1) / GXSP_RANGE;
 }
 
-/* A follower is as it was, but for the numbers of copies? */
+/* Is a follower the same as before, but for the numbers of copies? */
 static int gxsp_follows_alike(const gxsp_renewal *update, const gxsp_follower *follower,
                               const gxs_constraint *constraint) {
     int k;
@@ -6408,38 +6723,38 @@ static int gxsp_follows_alike(const gxsp_renewal *update, const gxsp_follower *f
     return memcmp(follower->weight, constraint->weight, sizeof follower->weight) == 0;
 }
 
-/* Copies that follow others from now on or no more, and what they follow, are touched, and the coarse nodes of both;
- * not those of which all is alike. */
+/* Touches copies that begin or cease to follow others, and their masters, and marks the coarse nodes of both as
+ * dirty. Followers that are the same as before are left out. */
 static void gxsp_touch_followers(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
     const gxs_change *change = update->change;
     size_t i;
     int k, q;
-    for (i = 0; i < change->constraint_count && system->follower_count > 0; i++) {
+    for (i = 0; i < change->constraint_count && system->model.follower_count > 0; i++) {
         const uint32_t copy = change->constraints[i].copy, origin = change->origins[copy];
         if (!(origin & 1) && gxsp_follows(system, origin >> 1))
-            update->alike[copy] = (uint8_t)gxsp_follows_alike(update, &system->followers[system->follower[origin >> 1]],
-                                                              &change->constraints[i]);
+            update->alike[copy] = (uint8_t)gxsp_follows_alike(
+                update, &system->model.followers[system->model.follower[origin >> 1]], &change->constraints[i]);
     }
-    for (i = 0; i < system->follower_count; i++) { /* as they were */
-        const uint32_t copy = system->followers[i].copy;
+    for (i = 0; i < system->model.follower_count; i++) { /* followers before the update */
+        const uint32_t copy = system->model.followers[i].copy;
         if (update->successor[copy] != GXSP_NONE && update->alike[update->successor[copy]]) continue;
         for (k = -1; k < 4; k++) {
-            const uint32_t other = k < 0 ? copy : system->followers[i].master[k];
+            const uint32_t other = k < 0 ? copy : system->model.followers[i].master[k];
             if (update->successor[other] != GXSP_NONE) update->touched[update->successor[other]] = 1;
-            for (q = 0; q < 4 && system->level_count > 0; q++)
-                if (system->levels[0].parent[other][q] != GXSP_NONE)
-                    update->dirty[system->levels[0].parent[other][q]] = 1;
+            for (q = 0; q < 4 && system->multigrid.level_count > 0; q++)
+                if (system->multigrid.levels[0].parent[other][q] != GXSP_NONE)
+                    update->dirty[system->multigrid.levels[0].parent[other][q]] = 1;
         }
     }
-    for (i = 0; i < change->constraint_count; i++) /* as they are */
+    for (i = 0; i < change->constraint_count; i++) /* followers from now on */
         for (k = -1; k < 4 && !update->alike[change->constraints[i].copy]; k++) {
             const uint32_t other = k < 0 ? change->constraints[i].copy : change->constraints[i].master[k],
                            origin = change->origins[other] >> 1;
             update->touched[other] = 1;
-            for (q = 0; q < 4 && system->level_count > 0; q++)
-                if (system->levels[0].parent[origin][q] != GXSP_NONE)
-                    update->dirty[system->levels[0].parent[origin][q]] = 1;
+            for (q = 0; q < 4 && system->multigrid.level_count > 0; q++)
+                if (system->multigrid.levels[0].parent[origin][q] != GXSP_NONE)
+                    update->dirty[system->multigrid.levels[0].parent[origin][q]] = 1;
         }
 }
 
@@ -6449,73 +6764,78 @@ static void gxsp_recount_copies(const gxsp_renewal *update) {
     const uint8_t *touched = update->touched;
     uint32_t c, i, lane, copies[4];
     int k;
-    for (i = 0; i < system->n; i++)
+    for (i = 0; i < system->model.n; i++)
         if (touched[i]) {
-            system->lumped[i] = 0;
-            system->fixed[i] = 1;
+            system->model.lumped[i] = 0;
+            system->model.fixed[i] = 1;
         }
-    for (c = 0; c < system->chunk_count; c++) {
-        const gxsp_chunk *chunk = &system->chunks[c];
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        const gxsp_chunk *chunk = &system->mesh.chunks[c];
         int any = 0;
-        for (i = 0; i < chunk->node_count; i++) any |= touched[system->nodes[chunk->first_node + i]];
+        for (i = 0; i < chunk->node_count; i++) any |= touched[system->mesh.nodes[chunk->first_node + i]];
         for (lane = 0; lane < chunk->block_count * GXSP_LANES && any; lane++) {
             if (chunk->groups[lane] == GXSP_NONE) continue;
             gxsp_lane_copies(system, chunk, lane / GXSP_LANES, (int)(lane % GXSP_LANES), copies);
             for (k = 0; k < 4; k++)
                 if (touched[copies[k]]) {
-                    system->lumped[copies[k]] += gxsp_lane_mass(chunk, lane, k);
-                    system->fixed[copies[k]] &= !gxsp_lane_supports(chunk, lane, k);
+                    system->model.lumped[copies[k]] += gxsp_lane_mass(chunk, lane, k);
+                    system->model.fixed[copies[k]] &= !gxsp_lane_supports(chunk, lane, k);
                 }
         }
     }
-    for (i = 0; i < system->n; i++) system->fixed[i] |= system->held[i];
+    for (i = 0; i < system->model.n; i++) system->model.fixed[i] |= system->model.held[i];
 }
 
-/* Light copies, by their numbers of now */
+/* Light copies, in the new numbering */
 static void gxsp_renew_lights(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     uint32_t i, count = 0;
-    for (i = 0; i < system->light_count; i++) {
-        system->lights[count] = system->lights[i];
-        system->lights[count].copy = update->successor[system->lights[i].copy];
-        count += system->lights[count].copy != GXSP_NONE;
+    for (i = 0; i < system->model.light_count; i++) {
+        system->model.lights[count] = system->model.lights[i];
+        system->model.lights[count].copy = update->successor[system->model.lights[i].copy];
+        count += system->model.lights[count].copy != GXSP_NONE;
     }
-    system->light_count = count;
+    system->model.light_count = count;
     gxsp_list_lights(system, update->scratch, update->touched);
 }
 
-/* Pieces, of which those sleep that are parts of sleeping ones: what has touched them wakes them again */
-static void gxsp_renew_pieces(gxsp_renewal *update) {
+/* Components. Those made of sleeping ones sleep; touched ones are woken later. */
+static void gxsp_renew_components(gxsp_renewal *update) {
     gxsp_system *system = update->system;
-    uint32_t *forest = (uint32_t *)gxsp_take(update->scratch, system->n, sizeof(uint32_t)), c, i, p;
-    uint8_t *asleep = (uint8_t *)gxsp_take(update->scratch, system->n, 1);
+    uint32_t *forest = (uint32_t *)gxsp_take(update->scratch, system->model.n, sizeof(uint32_t)), c, i, p;
+    uint8_t *asleep = (uint8_t *)gxsp_take(update->scratch, system->model.n, 1);
     if (update->scratch->failed) return;
-    for (i = 0; i < system->n; i++) {
+    for (i = 0; i < system->model.n; i++) {
         forest[i] = i;
-        asleep[i] = (system->pieces[system->piece[i]].state & GXSP_ASLEEP) != 0;
+        asleep[i] = (system->model.components[system->model.component[i]].state & GXSP_ASLEEP) != 0;
     }
-    for (c = 0; c < system->chunk_count; c++)
-        for (i = 0; i < system->chunks[c].node_count; i++) {
-            const uint32_t at = system->chunks[c].first_node + i;
-            gxsp_join(forest, system->nodes[at], system->nodes[system->chunks[c].first_node + system->slot_root[at]]);
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        for (i = 0; i < system->mesh.chunks[c].node_count; i++) {
+            const uint32_t at = system->mesh.chunks[c].first_node + i;
+            gxsp_join(forest, system->mesh.nodes[at],
+                      system->mesh.nodes[system->mesh.chunks[c].first_node + system->mesh.slot_root[at]]);
         }
     gxsp_join_followers(system, forest);
-    gxsp_number_pieces(system, forest);
-    system->pieces =
-        (gxsp_piece *)gxsp_retake(&system->pool, system->pieces, 0, system->piece_count, sizeof(gxsp_piece));
-    if (!system->pool.failed) gxsp_parts_make(system);
+    gxsp_number_components(system, forest);
+    system->model.components = (gxsp_component *)gxsp_grow(&system->pool, system->model.components, 0,
+                                                           system->model.component_count, sizeof(gxsp_component));
+    if (!system->pool.failed) gxsp_partials_make(system);
     if (system->pool.failed) return;
-    gxsp_fill_pieces(system);
-    for (p = 0; p < system->piece_count; p++) system->pieces[p].state |= GXSP_ASLEEP;
-    for (i = 0; i < system->n; i++)
-        if (!system->fixed[i] && !asleep[i]) system->pieces[system->piece[i]].state &= ~GXSP_ASLEEP;
+    gxsp_fill_components(system);
+    for (p = 0; p < system->model.component_count; p++) system->model.components[p].state |= GXSP_ASLEEP;
+    for (i = 0; i < system->model.n; i++)
+        if (!system->model.fixed[i] && !asleep[i])
+            system->model.components[system->model.component[i]].state &= ~GXSP_ASLEEP;
 }
 
-/* --- multigrid --- */
+/* >>update: levels after an update, and the whole of it ------------------------------------------------------------ */
 
-/* Copies i and j are neighbours: they belong to one component of each dirty node that both follow. */
+/* In: dirty nodes of level 1: those that touched copies follow. Out: clusters of dirty nodes, new levels below
+ * the model, and numbers. Numbers of entries between other nodes are copied. */
+
+/* Copies i and j are neighbours: they are in one cluster of each dirty node that both follow. */
 static void gxsp_join_parents(const gxsp_renewal *update, uint32_t i, uint32_t j, uint32_t *forest) {
-    const gxsp_level *fine = &update->system->levels[0];
+    const gxsp_level *fine = &update->system->multigrid.levels[0];
     uint32_t p, q;
     for (p = 0; p < 4; p++) {
         const uint32_t parent = fine->parent[i][p];
@@ -6526,31 +6846,32 @@ static void gxsp_join_parents(const gxsp_renewal *update, uint32_t i, uint32_t j
     }
 }
 
-/* Of components that touched copies belong to, what is joined now. forest: n x 4 */
+/* Joins the clusters of dirty nodes anew. forest: n x 4 */
 static void gxsp_join_dirty(gxsp_renewal *update, uint32_t *forest) {
     gxsp_system *system = update->system;
-    const gxsp_level *fine = &system->levels[0];
+    const gxsp_level *fine = &system->multigrid.levels[0];
     uint32_t c, e, slot;
     for (slot = 0; slot < 4 * fine->n; slot++) forest[slot] = slot;
-    for (c = 0; c < system->chunk_count; c++) {
-        const uint32_t *copies = system->nodes + system->chunks[c].first_node;
-        if (!gxsp_follows_dirty(system, &system->chunks[c], update->dirty)) continue;
-        gxsp_list_edges(system, &system->chunks[c]);
-        for (e = 1; e < system->edges.count; e++)
-            gxsp_join_parents(update, copies[system->edges.ends[e] >> 16], copies[system->edges.ends[e] & 0xffff],
-                              forest);
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        const uint32_t *copies = system->mesh.nodes + system->mesh.chunks[c].first_node;
+        if (!gxsp_follows_dirty(system, &system->mesh.chunks[c], update->dirty)) continue;
+        gxsp_list_edges(system, &system->mesh.chunks[c]);
+        for (e = 1; e < system->multigrid.edges.count; e++)
+            gxsp_join_parents(update, copies[system->multigrid.edges.ends[e] >> 16],
+                              copies[system->multigrid.edges.ends[e] & 0xffff], forest);
     }
-    for (e = 0; e < 4 * system->follower_count; e++)
-        if (fabs(system->followers[e / 4].weight[e % 4]) > 0)
-            gxsp_join_parents(update, system->followers[e / 4].copy, system->followers[e / 4].master[e % 4], forest);
+    for (e = 0; e < 4 * system->model.follower_count; e++)
+        if (fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
+            gxsp_join_parents(update, system->model.followers[e / 4].copy, system->model.followers[e / 4].master[e % 4],
+                              forest);
 }
 
-/* Dirty coarse nodes fall apart: the first component of each keeps its number, further ones get new ones. from: n x 4,
- * room: by new node, which one it was part of. Returns how many nodes there are. */
+/* Splits dirty coarse nodes into clusters: the first one of each node keeps its number, others get new ones. from:
+ * n x 4, room: by new node, the node that it was part of. Returns the number of nodes. */
 static uint32_t gxsp_number_dirty(gxsp_renewal *update, uint32_t *forest, uint32_t *from) {
     gxsp_system *system = update->system;
-    const gxsp_level *fine = &system->levels[0];
-    const uint32_t before = system->levels[1].n;
+    const gxsp_level *fine = &system->multigrid.levels[0];
+    const uint32_t before = system->multigrid.levels[1].n;
     uint32_t slot, count = before;
     uint8_t *kept = (uint8_t *)gxsp_take(update->scratch, before, 1);
     for (slot = 0; slot < 4 * fine->n && kept; slot++) {
@@ -6558,7 +6879,8 @@ static uint32_t gxsp_number_dirty(gxsp_renewal *update, uint32_t *forest, uint32
         if (*parent == GXSP_NONE || !update->dirty[*parent]) continue;
         root = gxsp_root(forest, slot);
         if (root != slot)
-            *parent = fine->parent[root / 4][root % 4]; /* roots come first in their tree: it has its number */
+            *parent = fine->parent[root / 4][root % 4]; /* roots come first in their tree: the root has its number
+                                                           already */
         else if (kept[*parent]) {
             from[count - before] = *parent;
             *parent = count++;
@@ -6568,18 +6890,18 @@ static uint32_t gxsp_number_dirty(gxsp_renewal *update, uint32_t *forest, uint32
     return count;
 }
 
-/* Copies that nothing moves any more follow nothing. */
+/* Copies that nothing moves any more have no parents. */
 static void gxsp_drop_fixed(const gxsp_renewal *update) {
-    gxsp_level *fine = &update->system->levels[0];
+    gxsp_level *fine = &update->system->multigrid.levels[0];
     uint32_t i;
     for (i = 0; i < fine->n; i++)
-        if (update->touched[i] && update->system->fixed[i]) {
+        if (update->touched[i] && update->system->model.fixed[i]) {
             memset(fine->parent[i], 0xff, sizeof fine->parent[i]);
             memset(fine->weight[i], 0, sizeof fine->weight[i]);
         }
 }
 
-/* Blocks of level 1's entries between nodes that are not dirty, from the level as it was */
+/* Copies blocks of level 1's entries between nodes that are not dirty, from the level before. */
 static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const uint8_t *dirty) {
     uint32_t i, k, at;
     for (i = 0; i < before->n; i++) {
@@ -6592,137 +6914,121 @@ static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const 
     }
 }
 
-/* Numbers of the coarse levels: those of entries of dirty nodes from the Hessian at the state at which the others were
- * made, so that all together are semi-definite as ever. */
+/* Numbers of the coarse levels. Those of entries with dirty nodes come from the Hessian at the state at which the
+ * others were made, so that the matrix stays semi-definite. */
 static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, const uint8_t *dirty) {
     gxsp_system *system = update->system;
     gxsp_pass pass;
     uint32_t c;
     int finite;
-    gxsp_keep_blocks(before, &system->levels[1], dirty);
+    gxsp_keep_blocks(before, &system->multigrid.levels[1], dirty);
     memset(&pass, 0, sizeof pass);
     pass.system = system;
-    pass.materials = system->damped;
-    pass.rate = system->scale * system->coarse_rate;
-    pass.from = system->coarse_state;
-    for (c = 0; c < system->chunk_count; c++)
-        if (gxsp_follows_dirty(system, &system->chunks[c], dirty)) {
-            system->chunk_still[c] = 0;
+    pass.materials = system->state.damped;
+    pass.rate = system->model.scale * system->coarse.rate;
+    pass.from = system->coarse.displacement;
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        if (gxsp_follows_dirty(system, &system->mesh.chunks[c], dirty)) {
+            system->state.chunk_still[c] = 0;
             gxsp_task_linearise(&pass, c);
         }
-    gxsp_lend(system);
+    gxsp_lend_memory(system);
     gxsp_coarse_elements(system, dirty);
     finite = gxsp_lower_numbers(system, dirty);
-    gxsp_give_back(system);
+    gxsp_return_memory(system);
     return finite;
 }
 
-/* Do so many chunks follow dirty nodes that all numbers anew, from the Hessian of the next step, cost no more than some
- * of them? */
+/* Do so many chunks follow dirty nodes that making all numbers anew, from the Hessian of the next step, costs no
+ * more than making some? */
 static int gxsp_most_are_dirty(const gxsp_system *system, const uint8_t *dirty) {
     uint32_t c, count = 0;
-    for (c = 0; c < system->chunk_count; c++) count += (uint32_t)gxsp_follows_dirty(system, &system->chunks[c], dirty);
-    return (double)count > GXSP_DIRTY * (double)system->chunk_count;
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        count += (uint32_t)gxsp_follows_dirty(system, &system->mesh.chunks[c], dirty);
+    return (double)count > GXSP_DIRTY * (double)system->mesh.chunk_count;
 }
 
-/* Is it known that the coarse matrices are as old as they can be? */
-static int gxsp_coarse_ends(const gxsp_system *system) { return system->coarse_served >= system->coarse_life; }
+/* Have the coarse matrices served their time? */
+static int gxsp_coarse_ends(const gxsp_system *system) { return system->coarse.served >= system->coarse.life; }
 
 static void gxsp_renew_levels(gxsp_renewal *update) {
     gxsp_system *system = update->system;
-    gxsp_pool *scratch = update->scratch, old = system->coarse;
-    gxsp_level before = system->levels[1];
-    uint32_t *forest = (uint32_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint32_t));
-    uint32_t *from = (uint32_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint32_t)), count = 0, i;
+    gxsp_pool *scratch = update->scratch, old = system->multigrid.pool;
+    gxsp_level before = system->multigrid.levels[1];
+    uint32_t *forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
+    uint32_t *from = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t)), count = 0, i;
     uint8_t *dirty = NULL;
-    system->coarse = gxsp_pool_make(&old.allocator);
+    system->multigrid.pool = gxsp_pool_make(&old.allocator);
     gxsp_edges_make(system, scratch);
-    if (!scratch->failed && !system->coarse.failed) {
+    if (!scratch->failed && !system->multigrid.pool.failed) {
         gxsp_drop_fixed(update);
         gxsp_join_dirty(update, forest);
         count = gxsp_number_dirty(update, forest, from);
-        memset(&system->levels[1], 0, (GXSP_LEVELS - 1) * sizeof system->levels[1]);
-        gxsp_level_make(&system->coarse, &system->levels[1], count);
+        memset(&system->multigrid.levels[1], 0, (GXSP_LEVELS - 1) * sizeof system->multigrid.levels[1]);
+        gxsp_level_make(&system->multigrid.pool, &system->multigrid.levels[1], count);
         dirty = (uint8_t *)gxsp_take(scratch, count, 1);
     }
-    if (!scratch->failed && !system->coarse.failed) {
+    if (!scratch->failed && !system->multigrid.pool.failed) {
         memset(dirty, 1, count);
         memcpy(dirty, update->dirty, before.n);
-        memcpy(system->levels[1].place, before.place, before.n * sizeof *before.place);
+        memcpy(system->multigrid.levels[1].place, before.place, before.n * sizeof *before.place);
         for (i = before.n; i < count; i++)
-            memcpy(system->levels[1].place[i], before.place[from[i - before.n]], sizeof *before.place);
+            memcpy(system->multigrid.levels[1].place[i], before.place[from[i - before.n]], sizeof *before.place);
         gxsp_levels_make(system, scratch, &before, dirty);
     }
-    if (!scratch->failed && !system->coarse.failed) gxsp_share(system);
-    if (!scratch->failed && !system->coarse.failed && !system->pool.failed && system->coarse_rate >= 0 &&
-        (system->coarse_stiffness > 0 || system->coarse_worn || gxsp_coarse_ends(system) ||
+    if (!scratch->failed && !system->multigrid.pool.failed) gxsp_share_memory(system);
+    if (!scratch->failed && !system->multigrid.pool.failed && !system->pool.failed && system->coarse.rate >= 0 &&
+        (system->coarse.stiffness > 0 || system->coarse.worn || gxsp_coarse_ends(system) ||
          gxsp_most_are_dirty(system, dirty) || !gxsp_renew_numbers(update, &before, dirty)))
-        /* all numbers are made anew by the next step; springs and contact are not known any more */
-        system->coarse_rate = -1;
+        /* the next step makes all numbers anew; springs and contact are no longer known */
+        system->coarse.rate = -1;
     gxsp_release_to(&old, NULL);
 }
 
-/* --- all of it --- */
-
-/* What copies so far have become. 0: two say that they are one, or one is not held as before. */
-static int gxsp_find_successors(gxsp_renewal *update) {
-    const gxs_change *change = update->change;
-    uint32_t i;
-    memset(update->successor, 0xff, update->before * sizeof *update->successor);
-    for (i = 0; i < change->copy_count; i++) {
-        uint32_t *of = &update->successor[change->origins[i] >> 1];
-        if ((change->held && change->held[i]) != (update->system->held[change->origins[i] >> 1] != 0)) return 0;
-        if (change->origins[i] & 1)
-            update->touched[i] = 1;
-        else if (*of != GXSP_NONE)
-            return 0;
-        else
-            *of = i;
-    }
-    return 1;
-}
-
-/* What steps have learnt and what depends on all copies */
+/* History of steps, and data that depends on all copies */
 static void gxsp_renew_steps(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     size_t i;
-    system->still_known = 0;
-    system->base_known = 0;
-    for (i = 0; i < system->n; i++)
-        system->renewed[i] = update->touched[i] | (system->omega_renewed ? system->renewed[i] : 0);
-    system->omega_renewed = 1;
-    memcpy(system->still, system->fixed, system->n);
+    system->state.still_known = 0;
+    system->state.base_known = 0;
+    for (i = 0; i < system->model.n; i++)
+        system->smoother.renewed[i] =
+            update->touched[i] | (system->smoother.any_renewed ? system->smoother.renewed[i] : 0);
+    system->smoother.any_renewed = 1;
+    memcpy(system->state.still, system->model.fixed, system->model.n);
     gxsp_list_slots(system);
 }
 
 /* Can the model's form take changes? */
 static int gxsp_is_flexible(const gxsp_system *system) {
-    return !system->fine && !system->volume && !system->lumped_mass;
+    return !system->multigrid.fine && !system->model.volume && !system->model.lumped_mass;
 }
 
-/* Are the chunks still worth keeping, and the choice of preconditioner? */
+/* Are the chunks still worth keeping, and is the choice of preconditioner still right? */
 static int gxsp_is_compact(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
-    uint32_t *count = (uint32_t *)gxsp_take(update->scratch, system->piece_count, sizeof(uint32_t)), c;
+    uint32_t *count = (uint32_t *)gxsp_take(update->scratch, system->model.component_count, sizeof(uint32_t)), c;
     size_t lanes = 0;
-    for (c = 0; c < system->chunk_count; c++) lanes += system->chunks[c].block_count * GXSP_LANES;
-    if (lanes > system->element_count + system->element_count / 4 + 2 * GXSP_CHUNK) return 0;
-    return !count || !system->chosen || gxsp_large_piece(system, count) == (system->level_count > 0);
+    for (c = 0; c < system->mesh.chunk_count; c++) lanes += system->mesh.chunks[c].block_count * GXSP_LANES;
+    if (lanes > system->model.element_count + system->model.element_count / 4 + 2 * GXSP_CHUNK) return 0;
+    return !count || !system->multigrid.chosen ||
+           gxsp_large_component(system, count) == (system->multigrid.level_count > 0);
 }
 
-/* 0: the change does not fit. Memory may also have run out: see the pools. */
+/* Applies a cut's changes to the existing chunks and levels. 0: the change does not fit. Memory may also have run
+ * out: see the pools. */
 static int gxsp_update_system(gxsp_renewal *update) {
     gxsp_system *system = update->system;
-    gxsp_find_holes(update);
-    gxsp_match_holes(update);
+    gxsp_find_edits(update);
+    gxsp_match_edits(update);
     if (update->scratch->failed) return 1;
     gxsp_touch_removed(update);
     gxsp_touch_followers(update);
-    system->element_count += update->change->element_count;
-    system->element_count -= update->hole_count;
+    system->model.element_count += update->change->element_count;
+    system->model.element_count -= update->edit_count;
     gxsp_replace_elements(update);
     if (system->pool.failed) return 1;
-    if (system->element_count == 0 || !gxsp_renew_nodes(update)) return 0;
+    if (system->model.element_count == 0 || !gxsp_renew_nodes(update)) return 0;
     gxsp_move_copies(update);
     if (update->scratch->failed || system->pool.failed) return 1;
     gxsp_renew_steps(update);
@@ -6731,129 +7037,141 @@ static int gxsp_update_system(gxsp_renewal *update) {
     gxsp_renew_lights(update);
     gxsp_set_followers(system, update->change->constraints, update->change->constraint_count);
     if (system->pool.failed) return 1;
-    gxsp_renew_pieces(update);
-    if (!update->scratch->failed && !system->pool.failed && system->level_count > 0)
+    gxsp_renew_components(update);
+    if (!update->scratch->failed && !system->pool.failed && system->multigrid.level_count > 0)
         gxsp_renew_levels(update);
     else if (!system->pool.failed)
-        gxsp_share(system);
+        gxsp_share_memory(system);
     return gxsp_is_compact(update);
 }
 
-/* >>pieces */
+/* >>components: translations and momentum of loose components ------------------------------------------------------ */
 
-/* Gravity, nodal forces and what damping adds to them on a copy, N; 0 on what this step leaves alone */
+/* In: vectors over copies and the load. Out: the vectors without momentum, or translated so that momentum
+ * balances. Uses gxsp_component.sum. */
+
+/* Load on a copy: gravity, nodal forces and the load of damping, N; 0 if the step leaves the copy alone */
 GXSP_INLINE void gxsp_load(const gxsp_problem *problem, size_t copy, double *load) {
     const gxsp_system *system = problem->system;
-    const double *gravity = problem->step->gravity, *forces = problem->step->forces, *damping = system->damping;
-    const double mass = system->still[copy] ? 0 : system->lumped[copy];
+    const double *gravity = problem->step->gravity, *forces = problem->step->forces, *damping = system->vectors.damping;
+    const double mass = system->state.still[copy] ? 0 : system->model.lumped[copy];
     load[0] = mass * gravity[0], load[1] = mass * gravity[1], load[2] = mass * gravity[2];
-    if (forces && !system->still[copy])
+    if (forces && !system->state.still[copy])
         load[0] += forces[3 * copy], load[1] += forces[3 * copy + 1], load[2] += forces[3 * copy + 2];
     if (problem->damps)
         load[0] += damping[3 * copy], load[1] += damping[3 * copy + 1], load[2] += damping[3 * copy + 2];
 }
 
-/* Sums over pieces: cleared, copies added one by one, then as a mean over each piece's mass. 0: of pieces that have any
- * state but those ignored */
-static void gxsp_clear_pieces(gxsp_system *system) {
+/* Sums over components: cleared, then copies are added one by one, then divided by each component's mass. The mean
+ * is 0 for components with any state but those ignored. */
+static void gxsp_clear_components(gxsp_system *system) {
     uint32_t p;
-    for (p = 0; p < system->piece_count; p++) memset(system->pieces[p].sum, 0, sizeof system->pieces[p].sum);
+    for (p = 0; p < system->model.component_count; p++)
+        memset(system->model.components[p].sum, 0, sizeof system->model.components[p].sum);
 }
 
-static void gxsp_add_to_piece(gxsp_system *system, size_t copy, double x, double y, double z) {
-    double *sum = system->pieces[system->piece[copy]].sum;
+static void gxsp_add_to_component(gxsp_system *system, size_t copy, double x, double y, double z) {
+    double *sum = system->model.components[system->model.component[copy]].sum;
     sum[0] += x, sum[1] += y, sum[2] += z;
 }
 
-static void gxsp_average_pieces(gxsp_system *system, uint32_t ignored) {
+static void gxsp_average_components(gxsp_system *system, uint32_t ignored) {
     uint32_t p, r;
-    for (p = 0; p < system->piece_count; p++) {
-        gxsp_piece *piece = &system->pieces[p];
-        for (r = 0; r < 3; r++) piece->sum[r] = piece->state & ~ignored ? 0 : piece->sum[r] / piece->mass;
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        for (r = 0; r < 3; r++)
+            component->sum[r] = component->state & ~ignored ? 0 : component->sum[r] / component->mass;
     }
 }
 
-/* Subtracts from x, piece by piece, the translation with x's momentum. */
+/* Subtracts from x, component by component, the translation with x's momentum. */
 static void gxsp_remove_translations(gxsp_system *system, gxsp_vector4 *x) {
     size_t i;
     int r;
-    if (system->loose_count == 0) return;
-    gxsp_clear_pieces(system);
-    for (i = 0; i < system->n; i++) {
-        const double m = system->lumped[i];
-        gxsp_add_to_piece(system, i, m * (double)x[i][0], m * (double)x[i][1], m * (double)x[i][2]);
+    if (system->state.loose_count == 0) return;
+    gxsp_clear_components(system);
+    for (i = 0; i < system->model.n; i++) {
+        const double m = system->model.lumped[i];
+        gxsp_add_to_component(system, i, m * (double)x[i][0], m * (double)x[i][1], m * (double)x[i][2]);
     }
-    gxsp_average_pieces(system, 0);
-    for (i = 0; i < system->n; i++)
-        for (r = 0; r < 3; r++) x[i][r] -= (float)system->pieces[system->piece[i]].sum[r];
+    gxsp_average_components(system, 0);
+    for (i = 0; i < system->model.n; i++)
+        for (r = 0; r < 3; r++) x[i][r] -= (float)system->model.components[system->model.component[i]].sum[r];
 }
 
-/* Takes the momentum of every loose piece out of x. */
+/* Subtracts from x the momentum of every loose component. */
 static void gxsp_remove_momentum(gxsp_system *system, double *x) {
     size_t i, r;
-    if (system->loose_count == 0) return;
-    gxsp_clear_pieces(system);
-    for (i = 0; i < system->n; i++) {
-        const double m = system->lumped[i];
-        gxsp_add_to_piece(system, i, m * x[3 * i], m * x[3 * i + 1], m * x[3 * i + 2]);
+    if (system->state.loose_count == 0) return;
+    gxsp_clear_components(system);
+    for (i = 0; i < system->model.n; i++) {
+        const double m = system->model.lumped[i];
+        gxsp_add_to_component(system, i, m * x[3 * i], m * x[3 * i + 1], m * x[3 * i + 2]);
     }
-    gxsp_average_pieces(system, 0);
-    for (i = 0; i < system->n; i++)
-        for (r = 0; r < 3; r++) x[3 * i + r] -= system->pieces[system->piece[i]].sum[r];
+    gxsp_average_components(system, 0);
+    for (i = 0; i < system->model.n; i++)
+        for (r = 0; r < 3; r++) x[3 * i + r] -= system->model.components[system->model.component[i]].sum[r];
 }
 
-/* Translates every piece of x that has no state but those ignored so that load = rate M (base + x - target) in sum.
- * base: n x 3, or NULL: 0 */
+/* Translates every component of x that has no state but those ignored so that load = rate M (base + x - target) in
+ * sum. base: n x 3, or NULL: 0 */
 static void gxsp_balance_momentum(const gxsp_problem *problem, uint32_t ignored, const double *base, double *x) {
     gxsp_system *system = problem->system;
     size_t i, r;
-    if ((ignored ? system->free_count : system->loose_count) == 0) return;
-    gxsp_clear_pieces(system);
-    for (i = 0; i < system->n; i++) {
-        const double rate = problem->rate * system->lumped[i], *from = system->target + 3 * i;
+    if ((ignored ? system->state.free_count : system->state.loose_count) == 0) return;
+    gxsp_clear_components(system);
+    for (i = 0; i < system->model.n; i++) {
+        const double rate = problem->rate * system->model.lumped[i], *from = system->vectors.target + 3 * i;
         double f[3];
         gxsp_load(problem, i, f);
         for (r = 0; r < 3; r++) f[r] -= rate * (x[3 * i + r] + (base ? base[3 * i + r] : 0) - from[r]);
-        gxsp_add_to_piece(system, i, f[0], f[1], f[2]);
+        gxsp_add_to_component(system, i, f[0], f[1], f[2]);
     }
-    gxsp_average_pieces(system, ignored);
-    for (i = 0; i < system->n; i++)
-        for (r = 0; r < 3; r++) x[3 * i + r] += system->pieces[system->piece[i]].sum[r] / problem->rate;
+    gxsp_average_components(system, ignored);
+    for (i = 0; i < system->model.n; i++)
+        for (r = 0; r < 3; r++)
+            x[3 * i + r] += system->model.components[system->model.component[i]].sum[r] / problem->rate;
 }
 
-/* Translates every piece of the direction that nothing acts on now so that its momentum balances: linear solves are in
- * single precision, to which that of a piece of next to no mass, which contact has pushed before, is rounding. */
+/* Translates the direction on every component that nothing acts on now so that its momentum balances. Linear solves
+ * are single precision: the momentum of a component of next to no mass, which contact has pushed before, is lost in
+ * their rounding. */
 static void gxsp_balance_direction(const gxsp_problem *problem) {
-    gxsp_balance_momentum(problem, GXSP_TOUCHED, problem->system->current, problem->system->direction);
+    gxsp_balance_momentum(problem, GXSP_TOUCHED, problem->system->vectors.current, problem->system->vectors.direction);
 }
 
-/* Forgets what springs and contact have acted on. */
-static void gxsp_untouch_pieces(gxsp_system *system) {
+/* Forgets which components springs and contact have acted on. */
+static void gxsp_untouch_components(gxsp_system *system) {
     uint32_t p;
-    for (p = 0; p < system->piece_count; p++) system->pieces[p].state &= ~(GXSP_TOUCHED | GXSP_TOUCHES);
+    for (p = 0; p < system->model.component_count; p++)
+        system->model.components[p].state &= ~(GXSP_TOUCHED | GXSP_TOUCHES);
 }
 
-/* Pieces that springs and contact act on, of which terms tells, are not loose, nor are they again in this run of
- * Newton's method: their momentum is no longer that of the start. */
-static void gxsp_touch_pieces(gxsp_system *system) {
+/* Components on which springs and contact act, by their terms, are not loose for the rest of this run of Newton's
+ * method: their momentum is no longer that of the start. */
+static void gxsp_touch_components(gxsp_system *system) {
     size_t t;
     uint32_t p;
     int k;
-    for (p = 0; p < system->piece_count; p++) system->pieces[p].state &= ~GXSP_TOUCHES;
+    for (p = 0; p < system->model.component_count; p++) system->model.components[p].state &= ~GXSP_TOUCHES;
     for (t = 0; t < system->lasting->count; t++)
         for (k = 0; k < 4; k++)
             if (system->lasting->term[t].weight[k] * system->lasting->term[t].weight[k] > 0)
-                system->pieces[system->piece[system->lasting->term[t].copy[k]]].state |= GXSP_TOUCHED | GXSP_TOUCHES;
-    system->loose_count = system->free_count = 0;
-    for (p = 0; p < system->piece_count; p++) {
-        system->loose_count += system->pieces[p].state == 0;
-        system->free_count += (system->pieces[p].state & ~GXSP_TOUCHED) == 0;
+                system->model.components[system->model.component[system->lasting->term[t].copy[k]]].state |=
+                    GXSP_TOUCHED | GXSP_TOUCHES;
+    system->state.loose_count = system->state.free_count = 0;
+    for (p = 0; p < system->model.component_count; p++) {
+        system->state.loose_count += system->model.components[p].state == 0;
+        system->state.free_count += (system->model.components[p].state & ~GXSP_TOUCHED) == 0;
     }
 }
 
-/* >>points: springs and contact at material points */
+/* >>points: springs and contact at material points ----------------------------------------------------------------- */
 
-/* What acts on one point */
+/* In: the step's springs, contact points and planes. Out: their energies, forces and Hessians (terms), and which
+ * components they join. */
+
+/* A spring or contact at one point */
 typedef struct gxsp_pull {
     double position[3]; /* of the point, m */
     double energy;      /* J */
@@ -6868,18 +7186,18 @@ static void gxsp_point_position(const gxs_point *point, const double *displaceme
         for (c = 0; c < 3; c++) x[c] += point->weight[k] * displacement[3 * (size_t)point->copy[k] + (size_t)c];
 }
 
-/* A copy of the piece that it belongs to */
+/* A copy of the component that the point belongs to */
 static size_t gxsp_point_copy(const gxs_point *point) {
     int k = 0;
     while (k < 3 && !(fabs(point->weight[k]) > 0)) k++;
     return point->copy[k];
 }
 
-/* Can the step move it? */
+/* Can the step move the point? */
 static int gxsp_point_moves(const gxsp_system *system, const gxs_point *point) {
     int k;
     for (k = 0; k < 4; k++)
-        if (fabs(point->weight[k]) > 0 && !system->still[point->copy[k]]) return 1;
+        if (fabs(point->weight[k]) > 0 && !system->state.still[point->copy[k]]) return 1;
     return 0;
 }
 
@@ -6895,7 +7213,7 @@ static void gxsp_spring_pull(const gxs_spring *spring, const double *displacemen
     }
 }
 
-/* Adds a 1 + b n n^T */
+/* hessian += a 1 + b n n^T */
 static void gxsp_add_dyad(double a, double b, const double *n, double *hessian) {
     int i, j;
     for (i = 0; i < 3; i++)
@@ -6903,8 +7221,9 @@ static void gxsp_add_dyad(double a, double b, const double *n, double *hessian) 
 }
 
 /* Friction: energy load phi(|y|), y the way across the plane since the step's start, phi(s) = s^2 / (2 reach) up to
- * reach and s - reach/2 beyond. Convex, so its Hessian is semi-definite. cautious: in its place stands phi'(s) / s in
- * every direction, which bounds it: exact ones overshoot the kink at the end of sticking to and fro. */
+ * reach and s - reach/2 beyond. It is convex, so its Hessian is semi-definite. cautious: phi'(s) / s in every
+ * direction takes the Hessian's place, which it bounds. Exact ones overshoot the kink at the end of sticking to and
+ * fro. */
 static void gxsp_friction_pull(const gxs_plane *plane, double load, double reach, const double *way, int cautious,
                                gxsp_pull *pull) {
     const double *n = plane->normal, along = n[0] * way[0] + n[1] * way[1] + n[2] * way[2];
@@ -6922,7 +7241,7 @@ static void gxsp_friction_pull(const gxs_plane *plane, double load, double reach
     if (s > reach && !cautious) gxsp_add_dyad(0, -factor, unit, pull->hessian);
 }
 
-/* before: where the point was at the step's start; dt: since then */
+/* before: where the point was at the step's start; dt: time since then */
 static void gxsp_plane_pull(const gxs_plane *plane, double dt, const double *before, int cautious, gxsp_pull *pull) {
     const double *n = plane->normal, *x = pull->position,
                  depth = plane->offset - (n[0] * x[0] + n[1] * x[1] + n[2] * x[2]);
@@ -6961,8 +7280,8 @@ static void gxsp_contact_pull(const gxsp_problem *problem, size_t i, const doubl
     }
 }
 
-/* The points of a step one after the other: springs, then those of contact. NULL at the end; points that do not move
- * are left out. */
+/* The next point of a step: springs first, then contact points. NULL at the end. Points that do not move are
+ * skipped. */
 static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *at, const double *displacement,
                                        gxsp_pull *pull) {
     const gxs_step_desc *step = problem->step;
@@ -6981,23 +7300,23 @@ static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *at, 
     return NULL;
 }
 
-/* Who leads piece p so far */
-static uint32_t gxsp_lead_root(gxsp_piece *pieces, uint32_t p) {
-    while (pieces[p].lead != p) {
-        pieces[p].lead = pieces[pieces[p].lead].lead;
-        p = pieces[p].lead;
+/* The component that leads p so far */
+static uint32_t gxsp_lead_root(gxsp_component *components, uint32_t p) {
+    while (components[p].lead != p) {
+        components[p].lead = components[components[p].lead].lead;
+        p = components[p].lead;
     }
     return p;
 }
 
-/* Which pieces lead which in this step: the first of those that points join */
+/* Chooses which components lead in this step: the first of those that points join. */
 static void gxsp_choose_leads(const gxsp_problem *problem) {
     const gxs_step_desc *step = problem->step;
-    gxsp_piece *pieces = problem->system->pieces;
+    gxsp_component *components = problem->system->model.components;
     size_t i;
     uint32_t p;
     int k;
-    for (p = 0; p < problem->system->piece_count; p++) pieces[p].lead = p;
+    for (p = 0; p < problem->system->model.component_count; p++) components[p].lead = p;
     for (i = 0; i < step->spring_count + step->point_count; i++) {
         const gxs_point *point =
             i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
@@ -7005,27 +7324,27 @@ static void gxsp_choose_leads(const gxsp_problem *problem) {
         for (k = 0; k < 4; k++) {
             uint32_t first;
             if (!(fabs(point->weight[k]) > 0)) continue;
-            p = gxsp_lead_root(pieces, problem->system->piece[point->copy[k]]);
+            p = gxsp_lead_root(components, problem->system->model.component[point->copy[k]]);
             joined = joined == GXSP_NONE ? p : joined;
             first = p < joined ? p : joined;
-            pieces[p].lead = pieces[joined].lead = first;
+            components[p].lead = components[joined].lead = first;
             joined = first;
         }
     }
-    for (p = 0; p < problem->system->piece_count; p++) /* who leads comes first */
-        pieces[p].lead = pieces[pieces[p].lead].lead;
+    for (p = 0; p < problem->system->model.component_count; p++) /* leads come first */
+        components[p].lead = components[components[p].lead].lead;
 }
 
-/* Sums over pieces of what they had when they were evaluated last */
+/* Sums of the components' energies at the last evaluation */
 static void gxsp_sum_energies(const gxsp_system *system, double *energies) {
     uint32_t p;
     int k;
     energies[0] = energies[1] = energies[2] = 0;
-    for (p = 0; p < system->piece_count; p++)
-        for (k = 0; k < 3; k++) energies[k] += system->pieces[p].energies[k];
+    for (p = 0; p < system->model.component_count; p++)
+        for (k = 0; k < 3; k++) energies[k] += system->model.components[p].energies[k];
 }
 
-/* Energies of elements and points, piece by piece, and their forces with inertia */
+/* Energies of elements and points, component by component, and their forces with inertia */
 static void gxsp_evaluate(const gxsp_problem *problem, const double *from, int nudge, double *force) {
     const gxs_point *point;
     gxsp_pull pull;
@@ -7036,16 +7355,16 @@ static void gxsp_evaluate(const gxsp_problem *problem, const double *from, int n
         double *energies = gxsp_lead_of(problem->system, gxsp_point_copy(point))->energies;
         energies[0] += pull.energy;
         energies[2] += fabs(pull.energy);
-        for (c = 0; c < 3; c++) /* the gap of a spring is a small difference of positions */
+        for (c = 0; c < 3; c++) /* the gap of a spring is a small difference of large positions */
             energies[2] += fabs(pull.force[c]) * (fabs(point->position[c]) + fabs(pull.position[c]));
         for (k = 0; k < 4; k++)
-            for (c = 0; c < 3 && !problem->system->still[point->copy[k]]; c++)
+            for (c = 0; c < 3 && !problem->system->state.still[point->copy[k]]; c++)
                 force[3 * (size_t)point->copy[k] + (size_t)c] -= point->weight[k] * pull.force[c];
     }
 }
 
-/* Are springs and contact so much stiffer or softer, all in all, than when the coarse matrices were made that these are
- * of no use? */
+/* Coarse matrices are worn if springs and contact are, in all, four times stiffer or softer than when they were
+ * made. */
 static void gxsp_compare_terms(gxsp_system *system) {
     double sum = 0;
     size_t t;
@@ -7053,11 +7372,11 @@ static void gxsp_compare_terms(gxsp_system *system) {
         const float *h = system->lasting->term[t].hessian;
         sum += (double)h[0] + (double)h[3] + (double)h[5];
     }
-    system->term_stiffness = sum;
-    system->coarse_worn |= sum > 4 * system->coarse_stiffness || 4 * sum < system->coarse_stiffness;
+    system->state.term_stiffness = sum;
+    system->coarse.worn |= sum > 4 * system->coarse.stiffness || 4 * sum < system->coarse.stiffness;
 }
 
-/* Hessians of all points at a displacement as terms, and which pieces they touch */
+/* Hessians of all points at a displacement as terms, and which components they touch */
 static void gxsp_terms_make(const gxsp_problem *problem, const double *displacement) {
     gxsp_lasting *lasting = problem->system->lasting;
     const gxs_point *point;
@@ -7073,38 +7392,41 @@ static void gxsp_terms_make(const gxsp_problem *problem, const double *displacem
         memcpy(term->copy, point->copy, sizeof term->copy);
         term->assembled = 0;
         for (k = 0; k < 4; k++) term->weight[k] = (float)point->weight[k];
-        for (k = 0; k < 6; k++) term->hessian[k] = (float)(problem->system->scale * pull.hessian[k]);
+        for (k = 0; k < 6; k++) term->hessian[k] = (float)(problem->system->model.scale * pull.hessian[k]);
     }
-    gxsp_touch_pieces(problem->system);
+    gxsp_touch_components(problem->system);
     gxsp_compare_terms(problem->system);
 }
 
-/* >>cg */
+/* >>cg: conjugate gradients ---------------------------------------------------------------------------------------- */
 
-/* The two measures of a vector r of forces, squared: r . D^-1 r (energy) and |D^-1 r|^2 (displacement). */
+/* In: the last linearisation and the residual, which is used up. Out: the direction, and for each component what
+ * the solve has left. */
+
+/* The two measures of a vector r of forces, squared: r . D^-1 r (energy) and |D^-1 r|^2 (displacement) */
 typedef struct gxsp_norms {
     double energy, displacement;
 } gxsp_norms;
 
-static int gxsp_reduced(const gxsp_norms *now, const gxsp_norms *first, double goal) {
+static int gxsp_converged(const gxsp_norms *now, const gxsp_norms *first, double goal) {
     return now->energy <= goal * first->energy && now->displacement <= goal * first->displacement;
 }
 
-/* scaled = D^-1 r, times the step length of the smoother, of copies first to end - 1; sums: r . D^-1 r, |D^-1 r|^2 */
+/* scaled = D^-1 r, times the step length of the smoother, of copies first ... end - 1. sums: r . D^-1 r, |D^-1 r|^2 */
 static void gxsp_scale_copies(const gxsp_system *system, const double *r, size_t first, size_t end, double *sums) {
-    const double factor = system->coarse_used && !system->fine ? (double)system->omega : 1;
+    const double factor = system->multigrid.used && !system->multigrid.fine ? (double)system->smoother.omega : 1;
     double energy = 0, displacement = 0;
     size_t i;
     for (i = first; i < end; i++) {
-        const float *d = system->diagonal + 6 * i;
+        const float *d = system->vectors.diagonal + 6 * i;
         const double a = r[3 * i], b = r[3 * i + 1], c = r[3 * i + 2];
         const double x = (double)d[0] * a + (double)d[1] * b + (double)d[2] * c,
                      y = (double)d[1] * a + (double)d[3] * b + (double)d[4] * c,
                      z = (double)d[2] * a + (double)d[4] * b + (double)d[5] * c;
         energy += x * a + y * b + z * c;
         displacement += x * x + y * y + z * z;
-        system->scaled[i][0] = (float)(factor * x), system->scaled[i][1] = (float)(factor * y),
-        system->scaled[i][2] = (float)(factor * z);
+        system->vectors.scaled[i][0] = (float)(factor * x), system->vectors.scaled[i][1] = (float)(factor * y),
+        system->vectors.scaled[i][2] = (float)(factor * z);
     }
     sums[0] = energy;
     sums[1] = displacement;
@@ -7113,10 +7435,10 @@ static void gxsp_scale_copies(const gxsp_system *system, const double *r, size_t
 static void gxsp_task_scale(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     size_t first, end = gxsp_range(pass->system, index, &first);
-    gxsp_scale_copies(pass->system, pass->from, first, end, pass->system->range_sum[index]);
+    gxsp_scale_copies(pass->system, pass->from, first, end, pass->system->vectors.range_sum[index]);
 }
 
-/* Over all ranges, by a task that scales them. */
+/* Norms over all ranges, by a task that scales them */
 static gxsp_norms gxsp_norms_of(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass) {
     gxsp_norms norms;
     double sums[2];
@@ -7132,20 +7454,20 @@ static gxsp_norms gxsp_scale(gxsp_system *system, const double *r) {
     return gxsp_norms_of(system, gxsp_task_scale, &pass);
 }
 
-/* direction += factor x, residual -= factor y, and the residual is scaled */
+/* direction += factor x, residual -= factor y; then scales the residual. */
 static void gxsp_task_advance(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     size_t i, first, end = gxsp_range(system, index, &first), c;
     for (i = first; i < end; i++)
         for (c = 0; c < 3; c++) {
-            system->direction[3 * i + c] += pass->factor * (double)pass->x[i][c];
-            system->residual[3 * i + c] -= pass->factor * (double)pass->y[i][c];
+            system->vectors.direction[3 * i + c] += pass->factor * (double)pass->x[i][c];
+            system->vectors.residual[3 * i + c] -= pass->factor * (double)pass->y[i][c];
         }
-    gxsp_scale_copies(system, system->residual, first, end, system->range_sum[index]);
+    gxsp_scale_copies(system, system->vectors.residual, first, end, system->vectors.range_sum[index]);
 }
 
-/* The direction goes on by length x, and the residual by as much of y = A x. Returns what is left. */
+/* Advances the direction by length x, and the residual by as much of y = A x. Returns the norms of the new residual. */
 static gxsp_norms gxsp_advance(gxsp_system *system, double length, gxsp_vector4 *x, gxsp_vector4 *y) {
     gxsp_pass pass;
     memset(&pass, 0, sizeof pass);
@@ -7155,60 +7477,63 @@ static gxsp_norms gxsp_advance(gxsp_system *system, double length, gxsp_vector4 
     return gxsp_norms_of(system, gxsp_task_advance, &pass);
 }
 
-/* Sums: residual . x, x . y if there is a y */
+/* Sums: residual . x, and x . y if there is a y */
 static void gxsp_task_work(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     size_t i, end = gxsp_range(system, index, &i), c;
-    double *sums = system->range_sum[index];
+    double *sums = system->vectors.range_sum[index];
     sums[0] = sums[1] = 0;
     for (; i < end; i++)
         for (c = 0; c < 3; c++) {
-            sums[0] += system->residual[3 * i + c] * (double)pass->x[i][c];
+            sums[0] += system->vectors.residual[3 * i + c] * (double)pass->x[i][c];
             sums[1] += pass->y ? (double)pass->x[i][c] * (double)pass->y[i][c] : 0;
         }
 }
 
-/* z = M^-1 r from D^-1 r, both scaled; without translations of loose pieces. energy: r . D^-1 r. Returns r . z. */
+/* z = M^-1 r from D^-1 r, both in scaled, without translations of loose components. energy: r . D^-1 r. Returns r .
+ * z. */
 static double gxsp_precondition(gxsp_system *system, double rate, double energy) {
     gxsp_pass pass;
     double sums[2];
     size_t i;
     int c;
-    if (system->coarse_used) gxsp_multigrid(system, rate, energy);
-    for (i = 0; i < system->n && system->volume; i++)
+    if (system->multigrid.used) gxsp_v_cycle(system, rate, energy);
+    for (i = 0; i < system->model.n && system->model.volume; i++)
         for (c = 0; c < 3; c++)
-            system->scaled[i][c] =
-                system->still[i] ? 0 : system->volume[i] * (float)system->residual[3 * i + (size_t)c];
-    gxsp_extend(system, system->scaled);
-    gxsp_remove_translations(system, system->scaled);
+            system->vectors.scaled[i][c] =
+                system->state.still[i] ? 0
+                                       : system->model.volume[i] * (float)system->vectors.residual[3 * i + (size_t)c];
+    gxsp_extend(system, system->vectors.scaled);
+    gxsp_remove_translations(system, system->vectors.scaled);
     memset(&pass, 0, sizeof pass);
-    pass.x = system->scaled;
+    pass.x = system->vectors.scaled;
     gxsp_over_ranges(system, gxsp_task_work, &pass, sums, 1);
     return sums[0];
 }
 
-/* Is r . z that of something definite, and of a size that can be? energy: r . D^-1 r, of which single precision tells
- * 1e7 times as much at most */
+/* Can r . z be that of a definite preconditioner? energy: r . D^-1 r; single precision allows 1e7 times as much at
+ * most */
 static int gxsp_is_definite(double rho, double energy) {
     return gxsp_finite(rho) && rho > 0 && rho <= GXSP_ABSURD * energy;
 }
 
-/* As gxsp_precondition, but definite: should the cycle prove not to be, it is smoothed more carefully, and at worst
- * left out of this solve. now: measures of the residual; changed: the preconditioner is not the one before */
+/* As gxsp_precondition, but definite: if the cycle proves not to be, it is smoothed more carefully, and at worst
+ * left out of this solve. now: measures of the residual; changed: the preconditioner differs from the one before */
 static double gxsp_precondition_definite(gxsp_system *system, double rate, const gxsp_norms *now, int *changed) {
-    const float omega = system->omega;
+    const float omega = system->smoother.omega;
     double rho = gxsp_precondition(system, rate, now->energy);
-    if (!gxsp_is_definite(rho, now->energy) && system->coarse_used && !system->fine && system->omega_rest == 0) {
+    if (!gxsp_is_definite(rho, now->energy) && system->multigrid.used && !system->multigrid.fine &&
+        system->smoother.cautious == 0) {
         gxsp_shorten_omega(system, 0);
-        (void)gxsp_scale(system, system->residual);
+        (void)gxsp_scale(system, system->vectors.residual);
         rho = gxsp_precondition(system, rate, now->energy);
     }
-    *changed = omega < system->omega || omega > system->omega;
-    if (!gxsp_is_definite(rho, now->energy) && system->coarse_used) {
-        system->coarse_used = 0;
-        system->coarse_worn = *changed = 1;
-        (void)gxsp_scale(system, system->residual);
+    *changed = omega < system->smoother.omega || omega > system->smoother.omega;
+    if (!gxsp_is_definite(rho, now->energy) && system->multigrid.used) {
+        system->multigrid.used = 0;
+        system->coarse.worn = *changed = 1;
+        (void)gxsp_scale(system, system->vectors.residual);
         rho = gxsp_precondition(system, rate, now->energy);
     }
     return rho;
@@ -7225,15 +7550,15 @@ static int gxsp_out_of_time(gxsp_problem *problem) {
     return problem->report.stop == GXS_STOP_SECONDS;
 }
 
-/* A guess made ready for what is still now, and its product. Returns its curvature; work: with the residual, cross: of
- * the product with the other guess, if there is one. */
+/* Makes a guess 0 on copies that are still now, and applies the Hessian to it. Returns its curvature. work: with
+ * the residual; cross: of the product with the other guess, if there is one */
 static double gxsp_weigh_guess(gxsp_system *system, double rate, gxsp_vector4 *guess, gxsp_vector4 *other,
                                gxsp_vector4 *product, double *work, double *cross) {
     gxsp_pass pass;
     double sums[2], curvature;
     size_t i;
-    for (i = 0; i < system->n; i++)
-        if (system->still[i]) memset(guess[i], 0, sizeof *guess);
+    for (i = 0; i < system->model.n; i++)
+        if (system->state.still[i]) memset(guess[i], 0, sizeof *guess);
     gxsp_extend(system, guess);
     gxsp_remove_translations(system, guess);
     curvature = gxsp_product(system, rate, guess, product);
@@ -7250,37 +7575,37 @@ static double gxsp_weigh_guess(gxsp_system *system, double rate, gxsp_vector4 *g
     return curvature;
 }
 
-/* Takes what is best of the plane of the last two steps' first directions as the start of conjugate gradients: where
- * the acceleration changes little from step to step, that is most of the solution. Returns what is left of the
- * residual, of norms now. */
+/* Starts conjugate gradients at the best point of the plane of the last two steps' first directions. Where the
+ * acceleration changes little from step to step, that is most of the solution. now: norms of the residual; returns
+ * those of the new one. */
 static gxsp_norms gxsp_guess_direction(gxsp_system *system, double rate, gxsp_norms now) {
-    gxsp_vector4 *product = system->search;
+    gxsp_vector4 *product = system->vectors.search;
     double curvature, work, first, cross = 0, second = 0;
-    curvature = gxsp_weigh_guess(system, rate, system->guess[0], NULL, product, &work, NULL);
+    curvature = gxsp_weigh_guess(system, rate, system->vectors.guess[0], NULL, product, &work, NULL);
     first = work / curvature;
     if (!(curvature > 0) || !gxsp_finite(work) || !gxsp_finite(curvature) || !gxsp_finite(first)) return now;
-    if (system->guess_count > 1) {
-        double further,
-            own = gxsp_weigh_guess(system, rate, system->guess[1], system->guess[0], system->product, &further, &cross);
+    if (system->state.guess_count > 1) {
+        double further, own = gxsp_weigh_guess(system, rate, system->vectors.guess[1], system->vectors.guess[0],
+                                               system->vectors.product, &further, &cross);
         const double share = cross / curvature, rest = own - share * cross;
         second = (further - share * work) / rest;
         if (!(rest > GXSP_PARALLEL * own) || !gxsp_finite(own) || !gxsp_finite(share) || !gxsp_finite(second))
             second = 0;
         first -= second > 0 || second < 0 ? second * share : 0;
     }
-    now = gxsp_advance(system, first, system->guess[0], product);
-    if (second > 0 || second < 0) now = gxsp_advance(system, second, system->guess[1], system->product);
+    now = gxsp_advance(system, first, system->vectors.guess[0], product);
+    if (second > 0 || second < 0) now = gxsp_advance(system, second, system->vectors.guess[1], system->vectors.product);
     return now;
 }
 
-/* The direction found is the next step's first guess, the one before its second. */
+/* The direction found becomes the next step's first guess, the one before its second. */
 static void gxsp_keep_guess(gxsp_system *system) {
-    gxsp_vector4 *oldest = system->guess[1];
+    gxsp_vector4 *oldest = system->vectors.guess[1];
     size_t i;
-    system->guess[1] = system->guess[0];
-    system->guess[0] = oldest;
-    for (i = 0; i < 3 * system->n; i++) oldest[i / 3][i % 3] = (float)system->direction[i];
-    system->guess_count += system->guess_count < 2;
+    system->vectors.guess[1] = system->vectors.guess[0];
+    system->vectors.guess[0] = oldest;
+    for (i = 0; i < 3 * system->model.n; i++) oldest[i / 3][i % 3] = (float)system->vectors.direction[i];
+    system->state.guess_count += system->state.guess_count < 2;
 }
 
 /* search = scaled + factor search */
@@ -7290,23 +7615,24 @@ static void gxsp_task_search(void *context, size_t index) {
     const float factor = (float)pass->factor;
     size_t i, end = gxsp_range(system, index, &i), c;
     for (; i < end; i++)
-        for (c = 0; c < 4; c++) system->search[i][c] = system->scaled[i][c] + factor * system->search[i][c];
+        for (c = 0; c < 4; c++)
+            system->vectors.search[i][c] = system->vectors.scaled[i][c] + factor * system->vectors.search[i][c];
 }
 
-/* For each piece the work along the direction of what is left of the residual */
+/* For each component, the work of the remaining residual along the direction */
 static void gxsp_note_left(gxsp_system *system) {
     size_t i;
     uint32_t p;
-    for (p = 0; p < system->piece_count; p++) system->pieces[p].left = 0;
-    for (i = 0; i < system->n; i++)
+    for (p = 0; p < system->model.component_count; p++) system->model.components[p].left = 0;
+    for (i = 0; i < system->model.n; i++)
         gxsp_lead_of(system, i)->left +=
-            gxsp_dot(system->residual + 3 * i, system->direction + 3 * i, 1) / system->scale;
+            gxsp_dot(system->vectors.residual + 3 * i, system->vectors.direction + 3 * i, 1) / system->model.scale;
 }
 
-/* Solves scale (K + rate M) direction = scale residual to a share of the residual, which is used up. The directions of
- * free pieces carry no momentum: their translations are projected out of the preconditioned residual (deflated
- * conjugate gradients; the residual has none, see gxsp_start). Operator and preconditioner are of single precision,
- * vectors and sums of double. 0 if a number overflowed. */
+/* Solves scale (K + rate M) direction = scale residual to a share of the residual, which is used up. Directions of
+ * free components carry no momentum: their translations are projected out of the preconditioned residual (deflated
+ * conjugate gradients; the residual has none, see gxsp_start). Operator and preconditioner are single precision,
+ * vectors and sums double. 0: a number overflowed. */
 static int gxsp_conjugate_gradients(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     const double goal = problem->cg_tolerance * problem->cg_tolerance, rate = problem->rate;
@@ -7318,108 +7644,115 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem) {
     double rho = 0;
     size_t i;
     problem->indefinite = 0;
-    for (i = 0; i < 3 * system->n; i++) system->residual[i] *= system->scale;
-    now = first = gxsp_scale(system, system->residual);
-    memset(system->direction, 0, 3 * system->n * sizeof(double));
-    if (start && system->guess_count > 0) now = gxsp_guess_direction(system, rate, now);
+    for (i = 0; i < 3 * system->model.n; i++) system->vectors.residual[i] *= system->model.scale;
+    now = first = gxsp_scale(system, system->vectors.residual);
+    memset(system->vectors.direction, 0, 3 * system->model.n * sizeof(double));
+    if (start && system->state.guess_count > 0) now = gxsp_guess_direction(system, rate, now);
     guessed = now;
-    if (!gxsp_reduced(&now, &first, goal)) rho = gxsp_precondition_definite(system, rate, &now, &changed);
-    memcpy(system->search, system->scaled, system->n * sizeof *system->search);
+    if (!gxsp_converged(&now, &first, goal)) rho = gxsp_precondition_definite(system, rate, &now, &changed);
+    memcpy(system->vectors.search, system->vectors.scaled, system->model.n * sizeof *system->vectors.search);
     memset(&pass, 0, sizeof pass);
-    for (iteration = 0; iteration < problem->cg_iterations && !gxsp_reduced(&now, &first, goal); iteration++) {
-        const double curvature = gxsp_product(system, rate, system->search, system->product), before = rho;
+    for (iteration = 0; iteration < problem->cg_iterations && !gxsp_converged(&now, &first, goal); iteration++) {
+        const double curvature = gxsp_product(system, rate, system->vectors.search, system->vectors.product),
+                     before = rho;
         if (!gxsp_finite(curvature) || !gxsp_finite(rho)) return 0;
-        if (curvature <= 0 || rho <= 0) { /* of projected Hessians: rounding is all that is left */
+        if (curvature <= 0 || rho <= 0) { /* with a projected Hessian: only rounding is left */
             problem->indefinite = 1;
             break;
         }
-        now = gxsp_advance(system, rho / curvature, system->search, system->product);
+        now = gxsp_advance(system, rho / curvature, system->vectors.search, system->vectors.product);
         problem->report.cg_iterations++;
-        if (gxsp_reduced(&now, &first, goal) || gxsp_out_of_time(problem)) break;
+        if (gxsp_converged(&now, &first, goal) || gxsp_out_of_time(problem)) break;
         rho = gxsp_precondition_definite(system, rate, &now, &changed);
         pass.factor = changed ? 0 : rho / before;
         gxsp_over_ranges(system, gxsp_task_search, &pass, NULL, 0);
     }
     problem->nepers = now.energy > 0 && guessed.energy > now.energy ? 0.5 * log(guessed.energy / now.energy) : 0;
     gxsp_note_left(system);
-    gxsp_follow(system, NULL, system->direction);
+    gxsp_follow(system, NULL, system->vectors.direction);
     gxsp_balance_direction(problem);
-    if (gxsp_first_not_finite(system->direction, 3 * system->n) < 3 * system->n) return 0;
+    if (gxsp_first_not_finite(system->vectors.direction, 3 * system->model.n) < 3 * system->model.n) return 0;
     if (start) gxsp_keep_guess(system);
     return 1;
 }
 
-/* Does multigrid pay at this rate? In a large piece whose copies' mean share of inertia in the linearisation's diagonal
- * blocks is small, each counted up to 4/3 of the bound, so that a quarter of stiff ones is enough; or where it is asked
- * for */
+/* >>ageing: when coarse matrices are made anew --------------------------------------------------------------------- */
+
+/* In: the linearisation, counts of iterations. Out: matrices and preconditioner ready for a solve, and the solve
+ * itself. Writes gxsp_coarse. */
+
+/* Does multigrid pay at this rate? It does where it was asked for, and if a large component has a small mean share
+ * of inertia in the linearisation's diagonal blocks. Each copy counts up to 4/3 of the bound, so that a quarter of
+ * stiff ones is enough. */
 static int gxsp_coarse_pays(gxsp_system *system, double rate) {
-    const double bound = 3 * GXSP_INERTIA / (system->scale * rate);
+    const double bound = 3 * GXSP_INERTIA / (system->model.scale * rate);
     size_t i;
     uint32_t p;
-    if (!system->chosen || !(rate > 0)) return 1;
-    gxsp_clear_pieces(system);
-    for (i = 0; i < system->n; i++) {
-        double *sum = system->pieces[system->piece[i]].sum; /* share, copies */
-        const float *d = system->diagonal + 6 * i;
-        const double compliance = (double)d[0] + (double)d[3] + (double)d[5], share = system->lumped[i] * compliance;
-        if (system->still[i] || !(compliance > 0)) continue;
+    if (!system->multigrid.chosen || !(rate > 0)) return 1;
+    gxsp_clear_components(system);
+    for (i = 0; i < system->model.n; i++) {
+        double *sum = system->model.components[system->model.component[i]].sum; /* share, copies */
+        const float *d = system->vectors.diagonal + 6 * i;
+        const double compliance = (double)d[0] + (double)d[3] + (double)d[5],
+                     share = system->model.lumped[i] * compliance;
+        if (system->state.still[i] || !(compliance > 0)) continue;
         sum[0] += share < 4 * bound / 3 ? share : 4 * bound / 3;
         sum[1] += 1;
     }
-    for (p = 0; p < system->piece_count; p++)
-        if (system->pieces[p].sum[1] >= gxsp_large(system) &&
-            system->pieces[p].sum[0] <= bound * system->pieces[p].sum[1])
+    for (p = 0; p < system->model.component_count; p++)
+        if (system->model.components[p].sum[1] >= gxsp_large(system) &&
+            system->model.components[p].sum[0] <= bound * system->model.components[p].sum[1])
             return 1;
     return 0;
 }
 
-/* Brings matrix and preconditioner up to date with the linearisation: the coarse matrices are made anew where they are
- * missing, where the rate has changed, where iterations have doubled since they were made, or before they rise by more
- * than a renewal costs. */
+/* Updates matrix and preconditioner to the linearisation. Coarse matrices are made anew if there are none, if the
+ * rate has changed, if iterations have doubled since they were made, or before they rise by more than new ones
+ * cost. */
 static int gxsp_prepare(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
-    int other; /* than the rate of the coarse matrices */
-    if (system->fine) {
-        gxsp_assemble(system, system->scale * problem->rate);
+    int other; /* the rate differs from that of the coarse matrices */
+    if (system->multigrid.fine) {
+        gxsp_assemble(system, system->model.scale * problem->rate);
         if (!gxsp_invert_fine(system)) return 0;
     }
-    system->coarse_used = system->level_count > 0 && gxsp_coarse_pays(system, problem->rate);
-    if (!system->coarse_used) return 1;
-    if (!system->fine) gxsp_choose_omega(system, problem->rate);
-    other = system->coarse_rate < problem->rate || system->coarse_rate > problem->rate;
-    if (!other && (problem->exact || !(system->coarse_worn || gxsp_coarse_ends(system)))) return 1;
-    system->coarse_lived = system->coarse_served;
-    system->pace_old = other ? 0 : system->pace;
-    system->pace = system->read_nepers = 0;
-    system->read = system->coarse_served = 0;
-    system->coarse_rate = problem->rate;
-    memcpy(system->coarse_state, system->current, 3 * system->n * sizeof(double));
-    system->coarse_worn = 0;
-    system->coarse_stiffness = system->term_stiffness;
+    system->multigrid.used = system->multigrid.level_count > 0 && gxsp_coarse_pays(system, problem->rate);
+    if (!system->multigrid.used) return 1;
+    if (!system->multigrid.fine) gxsp_choose_omega(system, problem->rate);
+    other = system->coarse.rate < problem->rate || system->coarse.rate > problem->rate;
+    if (!other && (problem->exact || !(system->coarse.worn || gxsp_coarse_ends(system)))) return 1;
+    system->coarse.lived = system->coarse.served;
+    system->coarse.pace_old = other ? 0 : system->coarse.pace;
+    system->coarse.pace = system->coarse.read_nepers = 0;
+    system->coarse.read = system->coarse.served = 0;
+    system->coarse.rate = problem->rate;
+    memcpy(system->coarse.displacement, system->vectors.current, 3 * system->model.n * sizeof(double));
+    system->coarse.worn = 0;
+    system->coarse.stiffness = system->state.term_stiffness;
     return gxsp_coarse_numbers(system, problem->rate);
 }
 
-/* For how long the coarse matrices are to serve, now that their first reading tells how much slower the ones before
- * were in the end: if the share lost grows to that evenly, cost / life + share / lived x life / 2 is least. */
+/* Chooses how long the coarse matrices are to serve. Their first reading tells how much slower the ones before were
+ * in the end. If the share lost grows to that evenly, cost / life + share / lived x life / 2 is least. */
 static void gxsp_learn_life(gxsp_system *system) {
-    const double share = system->pace_old / system->pace - 1, lived = system->coarse_lived;
+    const double share = system->coarse.pace_old / system->coarse.pace - 1, lived = system->coarse.lived;
     const double best = share > GXSP_AGEING ? sqrt(2 * GXSP_REMAKE * lived / share) : GXSP_PATIENCE * lived;
-    system->coarse_life = best < 1e9 ? (uint32_t)best + 1 : 1000000000;
+    system->coarse.life = best < 1e9 ? (uint32_t)best + 1 : 1000000000;
 }
 
 /* Takes a reading when it is due. */
 static void gxsp_read_pace(gxsp_system *system) {
-    const int first = !(system->pace > 0);
-    if (system->read < GXSP_READING || !(system->read_nepers > 0)) return;
-    system->pace = system->read / system->read_nepers;
-    system->read = 0;
-    system->read_nepers = 0;
-    if (first) system->pace_young = system->pace;
-    if (first && system->pace_old > 0) gxsp_learn_life(system);
-    system->coarse_worn |= system->pace > GXSP_WORN * system->pace_young;
+    const int first = !(system->coarse.pace > 0);
+    if (system->coarse.read < GXSP_READING || !(system->coarse.read_nepers > 0)) return;
+    system->coarse.pace = system->coarse.read / system->coarse.read_nepers;
+    system->coarse.read = 0;
+    system->coarse.read_nepers = 0;
+    if (first) system->coarse.pace_young = system->coarse.pace;
+    if (first && system->coarse.pace_old > 0) gxsp_learn_life(system);
+    system->coarse.worn |= system->coarse.pace > GXSP_WORN * system->coarse.pace_young;
 }
 
-/* Solves the linear system and learns from the count of iterations how the coarse matrices age. */
+/* Solves the linear system, and learns from the iterations how the coarse matrices age. */
 static int gxsp_solve(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     uint32_t before = problem->report.cg_iterations, count;
@@ -7430,44 +7763,33 @@ static int gxsp_solve(gxsp_problem *problem) {
     problem->report.seconds_prepare += prepared - start;
     problem->report.seconds_solve += gxsp_now(problem) - prepared;
     count = problem->report.cg_iterations - before;
-    problem->report.preconditioner = system->coarse_used ? GXS_MULTIGRID
-                                   : system->volume      ? GXS_VOLUME_RATIO
-                                                         : GXS_BLOCK_JACOBI;
-    if (!system->coarse_used) return solved;
-    system->coarse_served += count;
-    system->read += count;
-    system->read_nepers += count > 0 ? problem->nepers : 0;
+    problem->report.preconditioner = system->multigrid.used ? GXS_MULTIGRID
+                                   : system->model.volume   ? GXS_VOLUME_RATIO
+                                                            : GXS_BLOCK_JACOBI;
+    if (!system->multigrid.used) return solved;
+    system->coarse.served += count;
+    system->coarse.read += count;
+    system->coarse.read_nepers += count > 0 ? problem->nepers : 0;
     gxsp_read_pace(system);
     return solved;
 }
 
-/* >>sleep: a piece that has been slow for long is left out until something touches it: loads, targets, springs, contact
- * points or planes that change, a state or a rest time that the caller has written */
+/* >>sleep: components at rest are left out ------------------------------------------------------------------------- */
 
-/* 1 of no values, never 0 */
-static uint64_t gxsp_hash(uint64_t hash, const double *values, size_t count) {
-    size_t i;
-    for (i = 0; i < count; i++) {
-        uint64_t bits;
-        memcpy(&bits, &values[i], sizeof bits);
-        hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
-        hash ^= hash >> 29;
-    }
-    return hash | 1;
-}
+/* In: the step, the state that the caller gives, rest times. Out: which components sleep. A component that has
+ * been slow for long sleeps until something touches it: loads, targets, springs, contact points or planes that
+ * change, or a state or rest time that the caller has written. */
 
-static int gxsp_differs(const double *a, const double *b) { return memcmp(a, b, 3 * sizeof *a) != 0; }
-
-/* Hashes of nodal forces and contact points, in all and by piece. Copies without a force do not count. */
+/* Hashes of nodal forces and contact points, in all and by component. Copies without a force do not count. */
 static uint64_t gxsp_hash_forces(gxsp_system *system, const gxs_step_desc *step) {
     static const double zero[3] = {0, 0, 0};
     uint64_t all = 1;
     uint32_t p;
     size_t i;
-    for (p = 0; p < system->piece_count; p++) system->pieces[p].forces[1] = 1;
-    for (i = 0; step->forces && i < system->n; i++)
+    for (p = 0; p < system->model.component_count; p++) system->model.components[p].forces[1] = 1;
+    for (i = 0; step->forces && i < system->model.n; i++)
         if (gxsp_differs(step->forces + 3 * i, zero)) {
-            uint64_t *hash = &system->pieces[system->piece[i]].forces[1];
+            uint64_t *hash = &system->model.components[system->model.component[i]].forces[1];
             const double index = (double)i;
             *hash = gxsp_hash(gxsp_hash(*hash, &index, 1), step->forces + 3 * i, 3);
             all = gxsp_hash(gxsp_hash(all, &index, 1), step->forces + 3 * i, 3);
@@ -7475,7 +7797,7 @@ static uint64_t gxsp_hash_forces(gxsp_system *system, const gxs_step_desc *step)
     for (i = 0; i < 4 * step->point_count && step->sleep_speed > 0; i++) {
         const gxs_point *point = &step->points[i / 4];
         const double values[2] = {(double)point->copy[i % 4], point->weight[i % 4]};
-        uint64_t *hash = &system->pieces[system->piece[point->copy[i % 4]]].forces[1];
+        uint64_t *hash = &system->model.components[system->model.component[point->copy[i % 4]]].forces[1];
         if (fabs(values[1]) > 0) {
             *hash = gxsp_hash(gxsp_hash(*hash, values, 2), point->position, 3);
             all = gxsp_hash(gxsp_hash(all, values, 2), point->position, 3);
@@ -7496,58 +7818,61 @@ static gxs_scene gxsp_scene_make(gxsp_system *system, const gxs_step_desc *step)
     }
     scene.forces = gxsp_hash_forces(system, step);
     scene.springs = 1;
-    for (i = 0; i < system->piece_count; i++) system->pieces[i].sprung[1] = 0;
+    for (i = 0; i < system->model.component_count; i++) system->model.components[i].has_spring[1] = 0;
     for (i = 0; i < 4 * step->spring_count; i++) {
         const gxs_spring *spring = &step->springs[i / 4];
         const double values[3] = {(double)spring->point.copy[i % 4], spring->point.weight[i % 4], spring->stiffness};
         scene.springs =
             gxsp_hash(gxsp_hash(gxsp_hash(scene.springs, spring->target, 3), spring->point.position, 3), values, 3);
         if (fabs(spring->point.weight[i % 4]) > 0)
-            system->pieces[system->piece[spring->point.copy[i % 4]]].sprung[1] = 1;
+            system->model.components[system->model.component[spring->point.copy[i % 4]]].has_spring[1] = 1;
     }
     return scene;
 }
 
-/* Is the state of a copy not what the last step returned? Of velocities only those of sleepers are known: 0. */
+/* Does the state of a copy differ from the one that the last step returned? Of velocities only those of sleepers
+ * are known: 0. */
 static int gxsp_is_written(const gxsp_system *system, size_t copy, const double *displacement, const double *velocity) {
     static const double zero[3] = {0, 0, 0};
-    if (system->fixed[copy]) return 0;
-    return ((system->pieces[system->piece[copy]].state & GXSP_ASLEEP) && gxsp_differs(velocity, zero)) ||
-           (system->stepped && gxsp_differs(displacement, system->current + 3 * copy));
+    if (system->model.fixed[copy]) return 0;
+    return ((system->model.components[system->model.component[copy]].state & GXSP_ASLEEP) &&
+            gxsp_differs(velocity, zero)) ||
+           (system->state.stepped && gxsp_differs(displacement, system->vectors.current + 3 * copy));
 }
 
-/* Wakes the pieces of which something has changed. */
+/* Wakes the components that a change touches. */
 static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement, const double *velocity) {
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
     const gxs_scene *before = &system->lasting->scene, *now = &problem->scene;
     const int springs = now->springs != before->springs, forces = now->forces != before->forces,
-              known = system->still_known;
+              known = system->state.still_known;
     const int all =
         gxsp_differs(now->gravity, before->gravity) || now->planes != before->planes || (!known && (springs || forces));
     size_t i;
     uint32_t p;
-    for (p = 0; p < system->piece_count; p++) {
-        gxsp_piece *piece = &system->pieces[p];
-        piece->woken = (system->failed && piece->woken) || all || (forces && piece->forces[0] != piece->forces[1]) ||
-                       (springs && (piece->sprung[0] || piece->sprung[1]));
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        component->woken = (system->state.failed && component->woken) || all ||
+                           (forces && component->forces[0] != component->forces[1]) ||
+                           (springs && (component->has_spring[0] || component->has_spring[1]));
     }
-    for (i = 0; i < system->n; i++) {
-        gxsp_piece *piece = &system->pieces[system->piece[i]];
-        if (step->targets && system->held[i] && gxsp_differs(step->targets + 3 * i, displacement + 3 * i))
-            piece->woken = 1;
+    for (i = 0; i < system->model.n; i++) {
+        gxsp_component *component = &system->model.components[system->model.component[i]];
+        if (step->targets && system->model.held[i] && gxsp_differs(step->targets + 3 * i, displacement + 3 * i))
+            component->woken = 1;
         if (step->sleep_speed > 0 && gxsp_is_written(system, i, displacement + 3 * i, velocity + 3 * i))
-            piece->woken = 1;
+            component->woken = 1;
     }
 }
 
-/* Is a copy faster than what may sleep? velocity: its own */
+/* Is a copy too fast to sleep? velocity: its own */
 static int gxsp_too_fast(const gxs_step_desc *step, const double *velocity) {
     return gxsp_dot(velocity, velocity, 1) > step->sleep_speed * step->sleep_speed;
 }
 
-/* Rouses the pieces that springs and contact points tie to those that are awake. Were there any? */
-static int gxsp_rouse_tied(gxsp_system *system, const gxs_step_desc *step) {
+/* Wakes the components that springs and contact points join to awake ones. Returns whether there were any. */
+static int gxsp_wake_joined(gxsp_system *system, const gxs_step_desc *step) {
     int any = 0, k;
     size_t i;
     for (i = 0; i < step->spring_count + step->point_count; i++) {
@@ -7555,18 +7880,18 @@ static int gxsp_rouse_tied(gxsp_system *system, const gxs_step_desc *step) {
             i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
         int awake = 0;
         for (k = 0; k < 4; k++)
-            awake |= fabs(point->weight[k]) > 0 && !system->fixed[point->copy[k]] &&
-                     !system->pieces[system->piece[point->copy[k]]].tired;
+            awake |= fabs(point->weight[k]) > 0 && !system->model.fixed[point->copy[k]] &&
+                     !system->model.components[system->model.component[point->copy[k]]].resting;
         for (k = 0; k < 4 && awake; k++) {
-            gxsp_piece *piece = &system->pieces[system->piece[point->copy[k]]];
-            any |= fabs(point->weight[k]) > 0 && piece->tired;
-            piece->tired &= !(fabs(point->weight[k]) > 0);
+            gxsp_component *component = &system->model.components[system->model.component[point->copy[k]]];
+            any |= fabs(point->weight[k]) > 0 && component->resting;
+            component->resting &= !(fabs(point->weight[k]) > 0);
         }
     }
     return any;
 }
 
-/* Which pieces sleep in this step, and so which copies are still. */
+/* Chooses the components that sleep in this step, and so the copies that are still. */
 static void gxsp_choose_sleepers(gxsp_problem *problem, const double *displacement, const double *velocity) {
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
@@ -7576,55 +7901,59 @@ static void gxsp_choose_sleepers(gxsp_problem *problem, const double *displaceme
     size_t i;
     problem->scene = gxsp_scene_make(system, step);
     gxsp_wake_touched(problem, displacement, velocity);
-    for (p = 0; p < system->piece_count; p++)
-        system->pieces[p].tired = step->sleep_speed > 0 && !system->pieces[p].woken;
-    for (i = 0; i < system->n && step->sleep_speed > 0; i++)
-        if (!system->fixed[i] && (step->rest_times[i] < time || gxsp_too_fast(step, velocity + 3 * i)))
-            system->pieces[system->piece[i]].tired = 0;
-    while (step->sleep_speed > 0 && gxsp_rouse_tied(system, step)) {}
-    for (p = 0; p < system->piece_count; p++) {
-        gxsp_piece *piece = &system->pieces[p];
-        const uint32_t state = (piece->state & ~GXSP_ASLEEP) | (piece->tired ? GXSP_ASLEEP : 0);
-        changed |= state != piece->state;
-        system->coarse_worn |= (piece->state & ~state & GXSP_ASLEEP) != 0; /* its matrices are old */
-        piece->state = state;
+    for (p = 0; p < system->model.component_count; p++)
+        system->model.components[p].resting = step->sleep_speed > 0 && !system->model.components[p].woken;
+    for (i = 0; i < system->model.n && step->sleep_speed > 0; i++)
+        if (!system->model.fixed[i] && (step->rest_times[i] < time || gxsp_too_fast(step, velocity + 3 * i)))
+            system->model.components[system->model.component[i]].resting = 0;
+    while (step->sleep_speed > 0 && gxsp_wake_joined(system, step)) {}
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        const uint32_t state = (component->state & ~GXSP_ASLEEP) | (component->resting ? GXSP_ASLEEP : 0);
+        changed |= state != component->state;
+        system->coarse.worn |= (component->state & ~state & GXSP_ASLEEP) != 0; /* its coarse matrices are old */
+        component->state = state;
     }
-    if (!changed && system->still_known) return;
-    system->still_known = 1;
-    system->base_known &= !changed;
+    if (!changed && system->state.still_known) return;
+    system->state.still_known = 1;
+    system->state.base_known &= !changed;
     gxsp_mark_still(system);
-    system->active = 3 * system->n;
-    for (i = 0; i < system->n; i++) system->active -= system->still[i] ? 3 : 0;
-    for (i = 0; i < system->follower_count; i++) system->active -= system->still[system->followers[i].copy] ? 0 : 3;
+    system->state.active = 3 * system->model.n;
+    for (i = 0; i < system->model.n; i++) system->state.active -= system->state.still[i] ? 3 : 0;
+    for (i = 0; i < system->model.follower_count; i++)
+        system->state.active -= system->state.still[system->model.followers[i].copy] ? 0 : 3;
 }
 
-/* The rest times of a step that has ended with these velocities */
+/* Rest times after a step that has ended with these velocities */
 static void gxsp_count_rest(const gxsp_problem *problem, const double *velocity) {
     const gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
     size_t i;
     if (!(step->sleep_speed > 0)) return;
-    for (i = 0; i < system->n; i++) {
-        const int rests = !gxsp_too_fast(step, velocity + 3 * i) && !system->pieces[system->piece[i]].woken;
+    for (i = 0; i < system->model.n; i++) {
+        const int rests =
+            !gxsp_too_fast(step, velocity + 3 * i) && !system->model.components[system->model.component[i]].woken;
         step->rest_times[i] = rests ? step->rest_times[i] + step->dt : 0;
     }
 }
 
-/* >>newton */
+/* >>balance: residual, energies and the start of Newton's method --------------------------------------------------- */
 
-/* Adds the forces on held copies, which have no D of their own, scaled by the mean of the others'. A body that only its
- * held copies deform has no other force when it is in balance. */
+/* In: a displacement. Out: energies of components, forces, the residual and its measure. */
+
+/* Adds the forces on held copies, which have no D of their own, scaled by the mean of the others'. A body that only
+ * its held copies deform has no other force when it is in balance. */
 static void gxsp_add_reactions(const gxsp_system *system, gxsp_norms *norms) {
     double stiffness = 0, square = 0, compliance;
     size_t i, counted = 0;
-    for (i = 0; i < system->n; i++) {
-        const float *d = system->diagonal + 6 * i;
+    for (i = 0; i < system->model.n; i++) {
+        const float *d = system->vectors.diagonal + 6 * i;
         const double trace = (double)d[0] + (double)d[3] + (double)d[5];
         if (trace > 0) {
             stiffness += 3 / trace;
             counted++;
         }
-        if (system->held[i]) square += gxsp_dot(system->force + 3 * i, system->force + 3 * i, 1);
+        if (system->model.held[i]) square += gxsp_dot(system->vectors.force + 3 * i, system->vectors.force + 3 * i, 1);
     }
     compliance = stiffness > 0 ? (double)counted / stiffness : 0;
     norms->energy += square * compliance;
@@ -7640,22 +7969,24 @@ static void gxsp_add_norms(const float *d, const double *r, double *sums) {
     sums[1] += x * x + y * y + z * z;
 }
 
-/* residual = load - force, 0 at fixed copies; sums: measures of load, inertia and elastic forces; inertia by the lumped
- * mass */
+/* residual = load - force, 0 at fixed copies. sums: measures of load, inertia and elastic forces; inertia by the
+ * lumped mass */
 static void gxsp_task_balance(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
-    double *sums = system->range_sum[index];
+    double *sums = system->vectors.range_sum[index];
     size_t i, end = gxsp_range(system, index, &i), k;
-    memset(sums, 0, sizeof *system->range_sum);
+    memset(sums, 0, sizeof *system->vectors.range_sum);
     for (; i < end; i++) {
-        const float *d = system->diagonal + 6 * i;
+        const float *d = system->vectors.diagonal + 6 * i;
         double load[3], inertia[3], elastic[3];
         gxsp_load(pass->problem, i, load);
         for (k = 0; k < 3; k++) {
-            inertia[k] = pass->rate * system->lumped[i] * (system->current[3 * i + k] - system->target[3 * i + k]);
-            elastic[k] = system->force[3 * i + k] - inertia[k];
-            system->residual[3 * i + k] = system->still[i] ? 0 : load[k] - system->force[3 * i + k];
+            inertia[k] = pass->rate * system->model.lumped[i] *
+                         (system->vectors.current[3 * i + k] - system->vectors.target[3 * i + k]);
+            elastic[k] = system->vectors.force[3 * i + k] - inertia[k];
+            system->vectors.residual[3 * i + k] =
+                system->state.still[i] ? 0 : load[k] - system->vectors.force[3 * i + k];
         }
         gxsp_add_norms(d, load, sums);
         gxsp_add_norms(d, inertia, sums + 2);
@@ -7663,7 +7994,7 @@ static void gxsp_task_balance(void *context, size_t index) {
     }
 }
 
-/* residual at current, and its size relative to load, inertia and elastic forces (see gxs_step_report) */
+/* residual at current. Returns its size relative to load, inertia and elastic forces (see gxs_step_report). */
 static double gxsp_balance(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     gxsp_norms elastic, residual;
@@ -7675,8 +8006,8 @@ static double gxsp_balance(gxsp_problem *problem) {
     gxsp_over_ranges(system, gxsp_task_balance, &pass, sums, GXSP_SUMS);
     elastic.energy = sums[4], elastic.displacement = sums[5];
     gxsp_add_reactions(system, &elastic);
-    gxsp_reduce_residual(system, system->still, system->residual);
-    residual = gxsp_scale(system, system->residual);
+    gxsp_reduce_residual(system, system->state.still, system->vectors.residual);
+    residual = gxsp_scale(system, system->vectors.residual);
     energy = sqrt(sums[0]) + sqrt(sums[2]) + sqrt(elastic.energy);
     displacement = sqrt(sums[1]) + sqrt(sums[3]) + sqrt(elastic.displacement);
     by_energy = energy > 0 ? sqrt(residual.energy) / energy : 0;
@@ -7684,82 +8015,93 @@ static double gxsp_balance(gxsp_problem *problem) {
     return by_energy > by_displacement ? by_energy : by_displacement;
 }
 
-/* What the pieces were evaluated to last is what they have at current. */
+/* The components' energies at the last evaluation become those at current. */
 static void gxsp_keep_energies(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     uint32_t p;
-    for (p = 0; p < system->piece_count; p++)
-        memcpy(system->pieces[p].before, system->pieces[p].energies, sizeof system->pieces->before);
+    for (p = 0; p < system->model.component_count; p++)
+        memcpy(system->model.components[p].before, system->model.components[p].energies,
+               sizeof system->model.components->before);
     gxsp_sum_energies(system, problem->energies);
 }
 
-/* Energies and forces at current. 0 if they are not finite. */
-static int gxsp_update(gxsp_problem *problem) {
+/* Energies and forces at current. 0: they are not finite. */
+static int gxsp_evaluate_current(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
-    gxsp_evaluate(problem, system->current, 0, system->force);
+    gxsp_evaluate(problem, system->vectors.current, 0, system->vectors.force);
     gxsp_keep_energies(problem);
     return gxsp_finite(problem->energies[0]) && gxsp_finite(problem->energies[1]) &&
-           gxsp_first_not_finite(system->force, 3 * system->n) == 3 * system->n;
+           gxsp_first_not_finite(system->vectors.force, 3 * system->model.n) == 3 * system->model.n;
 }
 
-/* Where everything is in a step that moves only held copies, to their targets, and what follows these: base */
+/* Base: the displacement of a step that only moves held copies to their targets, and their followers */
 static void gxsp_find_base(const gxsp_problem *problem, double *to) {
     const gxsp_system *system = problem->system;
     const double *targets = problem->step->targets;
     size_t k;
-    memcpy(to, problem->given, 3 * system->n * sizeof *to);
-    for (k = 0; k < 3 * system->n && targets; k++)
-        if (system->held[k / 3])
+    memcpy(to, problem->given, 3 * system->model.n * sizeof *to);
+    for (k = 0; k < 3 * system->model.n && targets; k++)
+        if (system->model.held[k / 3])
             to[k] = problem->step->integrator == GXS_MIDPOINT ? 0.5 * (to[k] + targets[k]) : targets[k];
     gxsp_follow(system, problem->given, to);
 }
 
-/* Light copies start where inertia leads what guides them: they have next to none of their own, and were they to start
- * where they fly, the linearisation would be that of an element torn apart. */
+/* Light copies start where inertia leads the copies that guide them. They have next to no inertia of their own;
+ * started where they fly, the linearisation would be that of an element torn apart. */
 static void gxsp_lead_lights(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     uint32_t i;
     int c;
-    for (i = 0; i < system->light_count; i++) {
-        const uint32_t copy = system->lights[i].copy;
+    for (i = 0; i < system->model.light_count; i++) {
+        const uint32_t copy = system->model.lights[i].copy;
         double mean[3];
-        if (system->still[copy]) continue;
-        (void)gxsp_guide(system, &system->lights[i], system->target, problem->given, mean);
+        if (system->state.still[copy]) continue;
+        (void)gxsp_guide(system, &system->model.lights[i], system->vectors.target, problem->given, mean);
         for (c = 0; c < 3; c++)
-            system->current[3 * (size_t)copy + (size_t)c] = problem->given[3 * (size_t)copy + (size_t)c] + mean[c];
+            system->vectors.current[3 * (size_t)copy + (size_t)c] =
+                problem->given[3 * (size_t)copy + (size_t)c] + mean[c];
     }
 }
 
-/* Start of Newton at base or where inertia leads, each loose piece translated so that its momentum balances. The rest
- * of the iteration cannot change momentum: elastic forces have none, and directions balance it. */
+/* Starts Newton's method at base, or where inertia leads; each loose component is translated so that its momentum
+ * balances. The iteration cannot change momentum: elastic forces have none, and directions balance it. */
 static int gxsp_start(gxsp_problem *problem, int led) {
     gxsp_system *system = problem->system;
     size_t i;
-    gxsp_find_base(problem, system->current);
-    for (i = 0; i < system->n && led; i++)
-        if (!system->still[i]) memcpy(system->current + 3 * i, system->target + 3 * i, 3 * sizeof(double));
+    gxsp_find_base(problem, system->vectors.current);
+    for (i = 0; i < system->model.n && led; i++)
+        if (!system->state.still[i])
+            memcpy(system->vectors.current + 3 * i, system->vectors.target + 3 * i, 3 * sizeof(double));
     if (led) gxsp_lead_lights(problem);
-    gxsp_follow(system, problem->given, system->current);
-    gxsp_untouch_pieces(system);
-    gxsp_terms_make(problem, system->current);
-    gxsp_balance_momentum(problem, 0, NULL, system->current);
-    return gxsp_first_not_finite(system->current, 3 * system->n) == 3 * system->n && gxsp_update(problem);
+    gxsp_follow(system, problem->given, system->vectors.current);
+    gxsp_untouch_components(system);
+    gxsp_terms_make(problem, system->vectors.current);
+    gxsp_balance_momentum(problem, 0, NULL, system->vectors.current);
+    return gxsp_first_not_finite(system->vectors.current, 3 * system->model.n) == 3 * system->model.n &&
+           gxsp_evaluate_current(problem);
 }
 
-/* The direction takes no light copy further from what guides it than they are apart, at rest or now, unless the piece's
- * way down depends on that: what a copy of so little weight is left with hardly shows in E, which so could not tell a
- * length for it. Later iterations, which few steps have, are left alone: they converge by themselves. */
+/* >>search: the line search ---------------------------------------------------------------------------------------- */
+
+/* In: current and direction. Out: current at the point found, its energies and forces, a length for each
+ * component. The trial displacement has the residual's memory. */
+
+/* Bounds the direction of light copies: relative to the copies that guide them, at most as far as they are apart,
+ * at rest or now, unless the component's descent depends on it. E hardly shows a copy of so little weight, so the
+ * line search could not find a length for it. Later iterations, which few steps have, are left alone: they converge
+ * by themselves. */
 static void gxsp_bound_lights(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
-    const double *rest = system->positions, *moved = system->current;
+    const double *rest = system->model.positions, *moved = system->vectors.current;
     uint32_t i;
     size_t c;
     int any = 0;
-    for (i = 0; i < system->light_count && rest && problem->report.newton_iterations < GXSP_BOUNDED; i++) {
-        const size_t copy = 3 * (size_t)system->lights[i].copy;
-        gxsp_piece *piece = gxsp_lead_of(system, copy / 3);
-        double *way = system->direction + copy, mean[3], less[3], gap[3], now[3], load[3], size, most, work;
-        const size_t guide = 3 * (size_t)gxsp_guide(system, &system->lights[i], system->direction, NULL, mean);
+    for (i = 0; i < system->model.light_count && rest && problem->report.newton_iterations < GXSP_BOUNDED; i++) {
+        const size_t copy = 3 * (size_t)system->model.lights[i].copy;
+        gxsp_component *component = gxsp_lead_of(system, copy / 3);
+        double *way = system->vectors.direction + copy, mean[3], less[3], gap[3], now[3], load[3], size, most, work;
+        const size_t guide =
+            3 * (size_t)gxsp_guide(system, &system->model.lights[i], system->vectors.direction, NULL, mean);
         for (c = 0; c < 3; c++) {
             less[c] = mean[c] - way[c];
             gap[c] = rest[copy + c] - rest[guide + c];
@@ -7767,107 +8109,109 @@ static void gxsp_bound_lights(const gxsp_problem *problem) {
         }
         size = gxsp_dot(less, less, 1);
         most = fmax(gxsp_dot(gap, gap, 1), gxsp_dot(now, now, 1));
-        if (system->still[copy / 3] || gxsp_follows(system, copy / 3) || size <= most) continue;
+        if (system->state.still[copy / 3] || gxsp_follows(system, copy / 3) || size <= most) continue;
         for (c = 0; c < 3; c++) less[c] *= 1 - sqrt(most / size);
         gxsp_load(problem, copy / 3, load);
         work = gxsp_dot(load, less, 1);
-        if (gxsp_dot(system->force + copy, less, 1) - work > GXSP_BOUND_COST * -piece->slope) continue;
-        piece->slope += gxsp_dot(system->force + copy, less, 1) - work;
-        piece->work += work;
+        if (gxsp_dot(system->vectors.force + copy, less, 1) - work > GXSP_BOUND_COST * -component->slope) continue;
+        component->slope += gxsp_dot(system->vectors.force + copy, less, 1) - work;
+        component->work += work;
         for (c = 0; c < 3; c++) way[c] += less[c];
         any = 1;
     }
     if (any) {
-        gxsp_follow(system, NULL, system->direction);
+        gxsp_follow(system, NULL, system->vectors.direction);
         gxsp_balance_direction(problem);
     }
 }
 
-/* What the line search knows of the pieces before its first trial. Linear solves end by a measure of all pieces
- * together, and may have left one that weighs next to nothing far beyond the minimum of its own linear model: it begins
- * at that. 0 if a number is not finite. */
+/* Slopes, rounding and first lengths of the components. Linear solves end by a measure of all components together.
+ * They may leave one that weighs next to nothing far beyond the minimum of its own linear model: it starts at that
+ * minimum. 0: a number is not finite. */
 static int gxsp_begin_search(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     int finite = 1;
     size_t i, k;
     uint32_t p;
-    for (p = 0; p < system->piece_count; p++) {
-        gxsp_piece *piece = &system->pieces[p];
-        piece->slope = piece->work = piece->rounding = 0;
-        piece->length = 1;
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        component->slope = component->work = component->rounding = 0;
+        component->length = 1;
     }
-    for (i = 0; i < system->n; i++) {
-        gxsp_piece *piece = gxsp_lead_of(system, i);
-        const double *force = system->force + 3 * i, *way = system->direction + 3 * i;
+    for (i = 0; i < system->model.n; i++) {
+        gxsp_component *component = gxsp_lead_of(system, i);
+        const double *force = system->vectors.force + 3 * i, *way = system->vectors.direction + 3 * i;
         double load[3], work, rounding = 0;
         gxsp_load(problem, i, load);
         work = gxsp_dot(load, way, 1);
-        for (k = 0; k < 3; k++) rounding += fabs(force[k] * system->current[3 * i + k]) + fabs(load[k] * way[k]);
-        piece->slope += gxsp_dot(force, way, 1) - work;
-        piece->work += work;
-        piece->rounding += rounding;
+        for (k = 0; k < 3; k++)
+            rounding += fabs(force[k] * system->vectors.current[3 * i + k]) + fabs(load[k] * way[k]);
+        component->slope += gxsp_dot(force, way, 1) - work;
+        component->work += work;
+        component->rounding += rounding;
     }
     gxsp_bound_lights(problem);
-    for (p = 0; p < system->piece_count; p++) {
-        gxsp_piece *piece = &system->pieces[p];
-        const double curvature = -piece->slope - piece->left; /* of the linear model */
-        finite &= gxsp_finite(piece->slope);
-        if (piece->slope < 0 && -piece->slope < GXSP_TOO_LONG * curvature) piece->length = -piece->slope / curvature;
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        const double curvature = -component->slope - component->left; /* of the linear model */
+        finite &= gxsp_finite(component->slope);
+        if (component->slope < 0 && -component->slope < GXSP_TOO_LONG * curvature)
+            component->length = -component->slope / curvature;
     }
     return finite;
 }
 
-/* Has the piece gone far enough down? If not, it will try a shorter length. */
-static void gxsp_judge_length(gxsp_problem *problem, gxsp_piece *piece) {
-    const double *now = piece->energies, *before = piece->before, length = piece->length,
-                 promise = length * piece->slope;
-    const double change = (now[0] - before[0]) + (now[1] - before[1]) - length * piece->work;
-    const double slack = 1e-15 * (now[2] + before[2] + piece->rounding);
+/* Has the component gone down far enough? If not, it will try a shorter length. */
+static void gxsp_judge_length(gxsp_problem *problem, gxsp_component *component) {
+    const double *now = component->energies, *before = component->before, length = component->length,
+                 promise = length * component->slope;
+    const double change = (now[0] - before[0]) + (now[1] - before[1]) - length * component->work;
+    const double slack = 1e-15 * (now[2] + before[2] + component->rounding);
     double next;
     if (gxsp_finite(change) && gxsp_finite(now[2]) && change <= (promise < 0 ? GXSP_ARMIJO * promise : 0) + slack) {
         problem->noise &= fabs(change) <= slack;
-        piece->settled = 1;
+        component->settled = 1;
         return;
     }
     /* minimum of the parabola through the two energies and the slope, within 1/10 to 1/2 of the length */
     next = gxsp_finite(change) && change > promise ? -0.5 * promise * length / (change - promise) : 0.1 * length;
     next = next < 0.1 * length ? 0.1 * length : next > 0.5 * length ? 0.5 * length : next;
-    piece->length = promise < 0 ? next : 0;
+    component->length = promise < 0 ? next : 0;
 }
 
-/* Energies and forces at trial: current and each piece's length of the direction from there */
+/* Energies and forces at trial = current + each component's length of the direction */
 static void gxsp_try_lengths(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     size_t i, k;
-    for (i = 0; i < system->n; i++) {
+    for (i = 0; i < system->model.n; i++) {
         const double length = gxsp_lead_of(system, i)->length;
-        for (k = 3 * i; k < 3 * i + 3; k++) system->trial[k] = system->current[k] + length * system->direction[k];
+        for (k = 3 * i; k < 3 * i + 3; k++)
+            gxsp_trial(system)[k] = system->vectors.current[k] + length * system->vectors.direction[k];
     }
-    gxsp_evaluate(problem, system->trial, 0, system->force);
+    gxsp_evaluate(problem, gxsp_trial(system), 0, system->vectors.force);
 }
 
-/* Pieces that have found no length stay, and all may be evaluated again. Returns how many went down; left: how many
- * stay. */
+/* Components that have found no length stay. Returns how many went down; left: how many stay. */
 static size_t gxsp_end_search(gxsp_system *system, size_t *left) {
     size_t down = 0;
     uint32_t p;
     *left = 0;
-    for (p = 0; p < system->piece_count; p++) {
-        gxsp_piece *piece = &system->pieces[p];
-        if (piece->lead != p) continue;
-        down += piece->settled && piece->slope < 0;
-        *left += !piece->settled;
-        piece->length = piece->settled ? piece->length : 0;
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        if (component->lead != p) continue;
+        down += component->settled && component->slope < 0;
+        *left += !component->settled;
+        component->length = component->settled ? component->length : 0;
     }
     return down;
 }
 
-/* A step length for each piece along the direction, by backtracking on E, which is a sum over pieces: so it falls in
- * each of them, and none waits for another. current becomes the point found, and force and energies its own. 0: no
- * finite point of lower energy. */
+/* A step length for each component along the direction, by backtracking on E. E is a sum over components: it falls
+ * in each of them, and none waits for another. current becomes the point found, with its forces and energies. 0: no
+ * finite point of lower energy was found. */
 static int gxsp_line_search(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
-    double *found = system->trial;
+    double *found = gxsp_trial(system);
     size_t left = 1, down;
     uint32_t p;
     int trial;
@@ -7876,39 +8220,33 @@ static int gxsp_line_search(gxsp_problem *problem) {
     for (trial = 0; trial < GXSP_TRIALS && left > 0 && (trial == 0 || !gxsp_out_of_time(problem)); trial++) {
         problem->report.line_search_steps++;
         gxsp_try_lengths(problem);
-        for (p = 0, left = 0; p < system->piece_count; p++) {
-            gxsp_piece *piece = &system->pieces[p];
-            if (piece->lead == p && !piece->settled) gxsp_judge_length(problem, piece);
-            left += piece->lead == p && !piece->settled;
+        for (p = 0, left = 0; p < system->model.component_count; p++) {
+            gxsp_component *component = &system->model.components[p];
+            if (component->lead == p && !component->settled) gxsp_judge_length(problem, component);
+            left += component->lead == p && !component->settled;
         }
     }
     problem->shortened = trial > 1;
     down = gxsp_end_search(system, &left);
     if (left > 0) gxsp_try_lengths(problem);
-    for (p = 0; p < system->piece_count; p++) system->pieces[p].settled = 0;
+    for (p = 0; p < system->model.component_count; p++) system->model.components[p].settled = 0;
     gxsp_keep_energies(problem);
-    system->trial = system->residual = system->current;
-    system->current = found;
+    system->vectors.residual = system->vectors.current;
+    system->vectors.current = found;
     return left == 0 || down > 0;
 }
 
-/* E at a displacement of these energies, J */
-static double gxsp_potential(const gxsp_problem *problem, const double *energies, const double *displacement) {
-    double work = 0;
-    size_t i;
-    for (i = 0; i < problem->system->n; i++) {
-        double load[3];
-        gxsp_load(problem, i, load);
-        work += gxsp_dot(load, displacement + 3 * i, 1);
-    }
-    return energies[0] + energies[1] - work;
-}
+/* >>integrators: BDF1, BDF2, midpoint, statics --------------------------------------------------------------------- */
 
-/* The step's integrator as rate and target: the equation of motion is M rate (u - target) = f - dU/du. With v = speed
- * (u - mean) BDF1      speed = 1 / dt, mean = u_n;   rate = speed^2, target = mean + v_n / speed BDF2      r = dt / dt
- * of the step before; a0 = (1 + 2 r) / (1 + r), a1 = -(1 + r), a2 = r^2 / (1 + r): speed = a0 / dt, mean = -(a1 u_n +
- * a2 u_n-1) / a0, and the same of velocities: target = mean + mean of v / speed midpoint  u is the displacement at half
- * the step: BDF1 of half the step, finished in gxsp_finish static    speed = 0, rate = 1 / dt^2 or 0, target = u_n */
+/* In: the step and the state at its start. Out: rate, speed, target and the load of damping. */
+
+/* The step's integrator as rate and target: the equation of motion is M rate (u - target) = f - dU/du, and
+ * v = speed (u - mean).
+ *   BDF1      speed = 1 / dt, mean = u_n; rate = speed^2, target = mean + v_n / speed
+ *   BDF2      r = dt / dt of the step before; a0 = (1 + 2 r) / (1 + r), a1 = -(1 + r), a2 = r^2 / (1 + r);
+ *             speed = a0 / dt, mean = -(a1 u_n + a2 u_n-1) / a0; target = mean + mean of v / speed
+ *   midpoint  u is the displacement at half the step: BDF1 of half the step, finished in gxsp_finish
+ *   static    speed = 0, rate = 1 / dt^2 or 0, target = u_n */
 static void gxsp_choose_integrator(gxsp_problem *problem) {
     const gxs_step_desc *step = problem->step;
     double dt = step->integrator == GXS_MIDPOINT ? 0.5 * step->dt : step->dt;
@@ -7929,85 +8267,91 @@ static void gxsp_choose_integrator(gxsp_problem *problem) {
     problem->rate = problem->speed * problem->speed + problem->speed * step->mass_damping;
 }
 
-/* Elastic forces at a displacement with the materials times their damping x factor, added to those of damping */
+/* Adds elastic forces at a displacement, with moduli times damping x factor, to the load of damping. */
 static void gxsp_add_damping(gxsp_problem *problem, double factor, const double *displacement) {
     gxsp_system *system = problem->system;
     size_t i;
-    for (i = 0; i < system->material_count; i++) {
-        system->damped[i].mu = factor * system->materials[i].damping * system->materials[i].mu;
-        system->damped[i].lambda = factor * system->materials[i].damping * system->materials[i].lambda;
+    for (i = 0; i < system->model.material_count; i++) {
+        system->state.damped[i].mu = factor * system->model.materials[i].damping * system->model.materials[i].mu;
+        system->state.damped[i].lambda =
+            factor * system->model.materials[i].damping * system->model.materials[i].lambda;
     }
-    gxsp_evaluate_elements(system, 0, displacement, system->target, 0, system->force);
-    for (i = 0; i < 3 * system->n; i++) system->damping[i] += system->force[i];
+    gxsp_evaluate_elements(system, 0, displacement, system->vectors.target, 0, system->vectors.force);
+    for (i = 0; i < 3 * system->model.n; i++) system->vectors.damping[i] += system->vectors.force[i];
 }
 
-/* Rayleigh's stiffness damping: stress P(F) + beta dP/dt, the rate taken as that of the integrator, speed (P(F) - P of
- * the mean before). All energies are linear in their moduli, so that is the energy (1 + beta speed) U(u) with a load of
- * the forces before. These are turned as the elements are by inertia alone: rotations of what is under stress are not
- * damped, to first order in the step. */
+/* Rayleigh's stiffness damping: stress P(F) + beta dP/dt, with the integrator's rate speed (P(F) - P of the mean
+ * before). Energies are linear in their moduli, so that is the energy (1 + beta speed) U(u) and a load of the
+ * forces before. Those forces are rotated with the elements' motion by inertia alone: rotations under stress are
+ * not damped, to first order in the step. */
 static void gxsp_begin_damping(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     size_t i;
-    problem->damps = system->damps && problem->speed > 0;
+    problem->damps = system->model.damps && problem->speed > 0;
     if (problem->damps) {
-        system->base_known = 0;
-        memset(system->damping, 0, 3 * system->n * sizeof(double));
+        system->state.base_known = 0;
+        memset(system->vectors.damping, 0, 3 * system->model.n * sizeof(double));
         gxsp_add_damping(problem, problem->speed * problem->mean[0], problem->given);
         if (problem->mean[1] < 0)
             gxsp_add_damping(problem, problem->speed * problem->mean[1], problem->step->previous_displacement);
     }
-    for (i = 0; i < system->material_count; i++) {
-        const double factor = 1 + problem->speed * system->materials[i].damping;
-        system->damped[i] = system->materials[i];
-        system->damped[i].mu *= factor;
-        system->damped[i].lambda *= factor;
+    for (i = 0; i < system->model.material_count; i++) {
+        const double factor = 1 + problem->speed * system->model.materials[i].damping;
+        system->state.damped[i] = system->model.materials[i];
+        system->state.damped[i].mu *= factor;
+        system->state.damped[i].lambda *= factor;
     }
 }
 
-/* mean of the displacements before. displacement: at the step's start */
+/* Mean of the displacements before. displacement: at the step's start */
 static double gxsp_mean(const gxsp_problem *problem, const double *displacement, size_t k) {
     double mean = problem->mean[0] * displacement[k];
     return problem->mean[1] < 0 ? mean + problem->mean[1] * problem->step->previous_displacement[k] : mean;
 }
 
-/* Target; forces of damping */
+/* Target and load of damping */
 static void gxsp_begin(gxsp_problem *problem, const double *velocity) {
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
     const double *displacement = problem->given;
-    /* s; the rest of the rate is mass damping's */
+    /* s; mass damping makes up the rest of the rate */
     const double lead = problem->speed > 0 ? problem->speed / problem->rate : 0;
     size_t k;
-    system->base_known = system->base_known && !step->targets && step->spring_count + step->point_count == 0 &&
-                         memcmp(displacement, system->current, 3 * system->n * sizeof(double)) == 0;
-    for (k = 0; k < 3 * system->n; k++) {
+    system->state.base_known = system->state.base_known && !step->targets &&
+                               step->spring_count + step->point_count == 0 &&
+                               memcmp(displacement, system->vectors.current, 3 * system->model.n * sizeof(double)) == 0;
+    for (k = 0; k < 3 * system->model.n; k++) {
         double speed = problem->mean[0] * velocity[k];
         if (problem->mean[1] < 0) speed += problem->mean[1] * step->previous_velocity[k];
-        system->target[k] = gxsp_mean(problem, displacement, k) + lead * speed;
-        /* what a held copy is accelerated by acts on its neighbours */
-        if (system->still[k / 3] && !system->held[k / 3]) system->target[k] = displacement[k];
+        system->vectors.target[k] = gxsp_mean(problem, displacement, k) + lead * speed;
+        /* the acceleration of a held copy acts on its neighbours */
+        if (system->state.still[k / 3] && !system->model.held[k / 3]) system->vectors.target[k] = displacement[k];
     }
     gxsp_begin_damping(problem);
 }
+
+/* >>newton: Newton's method, and the bound on E -------------------------------------------------------------------- */
+
+/* In: target and base. Out: current, where E is no higher than at base in any component. */
 
 static int gxsp_linearise_all(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     const double start = gxsp_now(problem);
     int finite;
-    gxsp_terms_make(problem, system->current);
-    finite = gxsp_linearise(system, problem->rate, system->current, problem->exact, &problem->collapsed);
+    gxsp_terms_make(problem, system->vectors.current);
+    finite = gxsp_linearise(system, problem->rate, system->vectors.current, problem->exact, &problem->collapsed);
     problem->report.seconds_linearise += gxsp_now(problem) - start;
     return finite;
 }
 
-/* Elements collapsed to a point have no force that would open them: what they have all but collapsed takes its place,
- * for the direction and its slope. Energies stay as they are. */
+/* Elements collapsed to a point have no force that would open them. For the direction and its slope they get the
+ * force of an element that has all but collapsed. Energies stay as they are. */
 static void gxsp_nudge_forces(gxsp_problem *problem) {
-    gxsp_evaluate(problem, problem->system->current, 1, problem->system->force);
+    gxsp_evaluate(problem, problem->system->vectors.current, 1, problem->system->vectors.force);
     gxsp_balance(problem);
 }
 
-/* The next direction. Near the end, where projected Hessians converge slowly, the exact one is tried: should it prove
+/* The next direction. Near the end, where projected Hessians converge slowly, the exact one is tried; if it proves
  * indefinite, the projected one serves from there on. */
 static int gxsp_find_direction(gxsp_problem *problem) {
     if (!gxsp_solve(problem)) return 0;
@@ -8019,8 +8363,8 @@ static int gxsp_find_direction(gxsp_problem *problem) {
     return gxsp_solve(problem);
 }
 
-/* Does Newton's method go on? before: residual an iteration ago. Says why not. */
-static int gxsp_goes_on(gxsp_problem *problem, double before) {
+/* Does Newton's method continue? If not, report.stop says why. before: the residual an iteration ago */
+static int gxsp_continues(gxsp_problem *problem, double before) {
     const gxs_step_desc *step = problem->step;
     const uint32_t budget = step->newton_iterations ? step->newton_iterations : 1,
                    done = problem->report.newton_iterations;
@@ -8040,8 +8384,8 @@ static int gxsp_goes_on(gxsp_problem *problem, double before) {
     return 1;
 }
 
-/* Newton's method, to balance or to the end of the budget, from a start that gxsp_start found finite or from where it
- * has ended. */
+/* Newton's method, to balance or to the end of the budget, from a start that gxsp_start found finite or from where
+ * it has ended. */
 static gx_result gxsp_newton(gxsp_problem *problem) {
     uint32_t *done = &problem->report.newton_iterations;
     double before = 0;
@@ -8050,107 +8394,111 @@ static gx_result gxsp_newton(gxsp_problem *problem) {
     for (;;) {
         problem->report.residual = gxsp_balance(problem);
         if (!gxsp_finite(problem->report.residual)) return GX_ERROR_DIVERGED;
-        if (!gxsp_goes_on(problem, before)) return GX_OK;
+        if (!gxsp_continues(problem, before)) return GX_OK;
         before = problem->report.residual;
         if (*done > 0 && !gxsp_linearise_all(problem)) break;
         if (problem->collapsed) gxsp_nudge_forces(problem);
         if (!gxsp_find_direction(problem) || !gxsp_line_search(problem)) break;
         ++*done;
     }
-    /* no further: what there is after a first success is lower than the start */
+    /* no further progress; after a first success the state is lower than the start */
     if (problem->report.stop != GXS_STOP_SECONDS) problem->report.stop = GXS_STOP_ROUNDING;
     return *done > 0 || problem->report.stop == GXS_STOP_SECONDS ? GX_OK : GX_ERROR_DIVERGED;
 }
 
-/* E of every piece at current, and its limit: E at a displacement at which all were evaluated last, or, elastic set, of
- * another one without the kinetic energy */
+/* E of every component at current, and its limit: E at a displacement at which all were evaluated last, or, with
+ * elastic, at another one without the kinetic energy */
 static void gxsp_limit_energies(const gxsp_problem *problem, const double *displacement, int elastic) {
     gxsp_system *system = problem->system;
     size_t i;
     uint32_t p;
-    for (p = 0; p < system->piece_count; p++) {
-        gxsp_piece *piece = &system->pieces[p];
-        piece->limit = elastic ? piece->base_energy : piece->energies[0] + piece->energies[1];
-        piece->ended = piece->before[0] + piece->before[1];
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        component->limit = elastic ? component->base_energy : component->energies[0] + component->energies[1];
+        component->ended = component->before[0] + component->before[1];
     }
-    for (i = 0; i < system->n; i++) {
-        gxsp_piece *piece = gxsp_lead_of(system, i);
+    for (i = 0; i < system->model.n; i++) {
+        gxsp_component *component = gxsp_lead_of(system, i);
         double load[3];
         gxsp_load(problem, i, load);
-        piece->limit -= gxsp_dot(load, displacement + 3 * i, 1);
-        piece->ended -= gxsp_dot(load, system->current + 3 * i, 1);
+        component->limit -= gxsp_dot(load, displacement + 3 * i, 1);
+        component->ended -= gxsp_dot(load, system->vectors.current + 3 * i, 1);
     }
 }
 
-/* How many pieces have ended above their limit by more than rounding? risen says which. */
+/* Counts the components that have ended above their limit by more than rounding; risen marks them. */
 static size_t gxsp_count_risen(gxsp_system *system) {
     size_t count = 0;
     uint32_t p;
-    for (p = 0; p < system->piece_count; p++) {
-        gxsp_piece *piece = &system->pieces[p];
-        const double slack = 1e-12 * fabs(piece->limit) + GXSP_ROUNDING * piece->before[2];
-        piece->risen = piece->lead == p && gxsp_finite(piece->limit) && piece->ended > piece->limit + slack;
-        count += piece->risen != 0;
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        const double slack = 1e-12 * fabs(component->limit) + GXSP_ROUNDING * component->before[2];
+        component->risen =
+            component->lead == p && gxsp_finite(component->limit) && component->ended > component->limit + slack;
+        count += component->risen != 0;
     }
     return count;
 }
 
-/* Where the pieces would be without a step, but for translations of loose ones: into trial */
-static void gxsp_stay(gxsp_problem *problem) {
-    gxsp_find_base(problem, problem->system->trial);
-    gxsp_balance_momentum(problem, 0, NULL, problem->system->trial);
+/* Base, with loose components translated so that their momentum balances: into trial */
+static void gxsp_translate_base(gxsp_problem *problem) {
+    gxsp_find_base(problem, gxsp_trial(problem->system));
+    gxsp_balance_momentum(problem, 0, NULL, gxsp_trial(problem->system));
 }
 
-/* E of every piece at base, when the limits are those at trial, to which loose pieces were translated: E is a parabola
- * along that */
+/* E of every component at base, once the limits are E at trial, to which loose components were translated: E is a
+ * parabola along the translation. */
 static void gxsp_note_base(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     uint32_t p;
-    for (p = 0; p < system->piece_count; p++) system->pieces[p].base = system->pieces[p].limit;
-    for (p = 0; p < system->piece_count; p++) {
-        const gxsp_piece *piece = &system->pieces[p];
-        if (piece->state == 0)
-            system->pieces[piece->lead].base += 0.5 * piece->mass * gxsp_dot(piece->sum, piece->sum, 1) / problem->rate;
+    for (p = 0; p < system->model.component_count; p++)
+        system->model.components[p].base = system->model.components[p].limit;
+    for (p = 0; p < system->model.component_count; p++) {
+        const gxsp_component *component = &system->model.components[p];
+        if (component->state == 0)
+            system->model.components[component->lead].base +=
+                0.5 * component->mass * gxsp_dot(component->sum, component->sum, 1) / problem->rate;
     }
 }
 
-/* Pieces whose E is above that at trial go on from there to where they are as far as it falls. Returns how many there
- * were. */
+/* Components whose E exceeds that at trial go from there towards their point as far as E falls. Returns how many
+ * there were. */
 static size_t gxsp_bring_down(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     size_t i, k, count;
     uint32_t p;
-    gxsp_evaluate(problem, system->trial, 0, system->force);
-    gxsp_limit_energies(problem, system->trial, 0);
+    gxsp_evaluate(problem, gxsp_trial(system), 0, system->vectors.force);
+    gxsp_limit_energies(problem, gxsp_trial(system), 0);
     gxsp_note_base(problem);
     problem->based = 1;
     count = gxsp_count_risen(system);
     if (count == 0) return 0;
-    for (i = 0; i < system->n; i++) {
+    for (i = 0; i < system->model.n; i++) {
         const int risen = gxsp_lead_of(system, i)->risen;
         for (k = 3 * i; k < 3 * i + 3; k++) {
-            system->direction[k] = risen ? system->current[k] - system->trial[k] : 0;
-            system->current[k] = risen ? system->trial[k] : system->current[k];
+            system->vectors.direction[k] = risen ? system->vectors.current[k] - gxsp_trial(system)[k] : 0;
+            system->vectors.current[k] = risen ? gxsp_trial(system)[k] : system->vectors.current[k];
         }
     }
-    for (p = 0; p < system->piece_count; p++) {
-        system->pieces[p].left = 0;
-        if (system->pieces[p].risen)
-            memcpy(system->pieces[p].before, system->pieces[p].energies, sizeof system->pieces->before);
+    for (p = 0; p < system->model.component_count; p++) {
+        system->model.components[p].left = 0;
+        if (system->model.components[p].risen)
+            memcpy(system->model.components[p].before, system->model.components[p].energies,
+                   sizeof system->model.components->before);
     }
-    if (!gxsp_line_search(problem)) (void)gxsp_update(problem);
+    if (!gxsp_line_search(problem)) (void)gxsp_evaluate_current(problem);
     return count;
 }
 
-/* Newton's method from target, which is close to the answer in all but violent motion. A piece that ends higher in E
- * than it was at base, translated as its momentum says if it is loose, is brought down on the way from there, and
- * Newton's method goes on with what is left of its iterations: so E(u) <= E(base) always, piece by piece, and what a
- * step can add to the energy is bounded. */
+/* Newton's method from target, which is close to the answer except in violent motion. A component that ends higher
+ * in E than at base (translated by its momentum if it is loose) is brought down on the way from there, and Newton's
+ * method continues with the iterations that are left. So E(u) <= E(base) always, component by component, which
+ * bounds the energy that a step can add. */
 static gx_result gxsp_minimise(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     gx_result result = GX_ERROR_DIVERGED;
-    if (system->active == 0) {
-        gxsp_find_base(problem, system->current);
+    if (system->state.active == 0) {
+        gxsp_find_base(problem, system->vectors.current);
         problem->report.stop = GXS_STOP_ASLEEP;
         return GX_OK;
     }
@@ -8160,34 +8508,39 @@ static gx_result gxsp_minimise(gxsp_problem *problem) {
         problem->report.newton_iterations = 0;
         return gxsp_start(problem, 0) ? gxsp_newton(problem) : GX_ERROR_DIVERGED;
     }
-    gxsp_stay(problem);
-    gxsp_limit_energies(problem, system->trial, 1);
-    if (system->base_known && problem->step->integrator != GXS_MIDPOINT && gxsp_count_risen(system) == 0)
-        return GX_OK; /* lower even without the kinetic energy that staying at base would take */
+    gxsp_translate_base(problem);
+    gxsp_limit_energies(problem, gxsp_trial(system), 1);
+    if (system->state.base_known && problem->step->integrator != GXS_MIDPOINT && gxsp_count_risen(system) == 0)
+        return GX_OK; /* lower than base even without the kinetic energy that staying there would take */
     if (gxsp_bring_down(problem) > 0) result = gxsp_newton(problem);
     return result;
 }
 
-/* E of every piece at a displacement, less that at base: into gain. evaluated: 1: that was evaluated last; 0: it is
- * current */
+/* >>midpoint: the second half of the midpoint rule, and the end of a step ------------------------------------------ */
+
+/* In: current, where Newton's method has ended. Out: the caller's displacement, velocity, rest times and spring
+ * forces, and what the next step is told. */
+
+/* gain = E of every component at a displacement, minus that at base. evaluated: 1: the displacement was evaluated
+ * last; 0: it is current */
 static void gxsp_find_gains(const gxsp_problem *problem, const double *displacement, int evaluated) {
     gxsp_system *system = problem->system;
     size_t i;
     uint32_t p;
-    for (p = 0; p < system->piece_count; p++) {
-        gxsp_piece *piece = &system->pieces[p];
-        const double *energies = evaluated ? piece->energies : piece->before;
-        piece->gain = energies[0] + energies[1] - piece->base;
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        const double *energies = evaluated ? component->energies : component->before;
+        component->gain = energies[0] + energies[1] - component->base;
     }
-    for (i = 0; i < system->n; i++) {
+    for (i = 0; i < system->model.n; i++) {
         double load[3];
         gxsp_load(problem, i, load);
         gxsp_lead_of(system, i)->gain -= gxsp_dot(load, displacement + 3 * i, 1);
     }
 }
 
-/* Pieces that springs or contact act on at a displacement are not loose any more. */
-static void gxsp_touch_pieces_at(const gxsp_problem *problem, const double *displacement) {
+/* Components on which springs or contact act at a displacement are not loose any more. */
+static void gxsp_touch_components_at(const gxsp_problem *problem, const double *displacement) {
     gxsp_system *system = problem->system;
     const gxs_point *point;
     gxsp_pull pull;
@@ -8195,144 +8548,164 @@ static void gxsp_touch_pieces_at(const gxsp_problem *problem, const double *disp
     int k;
     while ((point = gxsp_next_pull(problem, &at, displacement, &pull)) != NULL)
         for (k = 0; k < 4 && (fabs(pull.energy) > 0 || gxsp_dot(pull.force, pull.force, 1) > 0); k++)
-            if (fabs(point->weight[k]) > 0) system->pieces[system->piece[point->copy[k]]].state |= GXSP_TOUCHED;
+            if (fabs(point->weight[k]) > 0)
+                system->model.components[system->model.component[point->copy[k]]].state |= GXSP_TOUCHED;
 }
 
-/* Is the second half short enough for the piece? If not, it will try a shorter one, in the end none: E is about a
- * parabola with its minimum, low, where nothing is left of what is taken off. */
-static void gxsp_judge_gain(gxsp_piece *piece, int last) {
-    const double low = piece->low, gain = piece->gain;
+/* Is the second half short enough for the component? If not, it will try a shorter one, in the end none: E is about
+ * a parabola whose minimum, low, is where nothing of the second half is left. */
+static void gxsp_judge_gain(gxsp_component *component, int last) {
+    const double low = component->low, gain = component->gain;
     double next;
-    if (gxsp_finite(gain) &&
-        gain <= GXSP_GAIN * piece->energies[1] + 1e-12 * fabs(piece->base) + GXSP_ROUNDING * piece->energies[2]) {
-        piece->settled = 1;
+    if (gxsp_finite(gain) && gain <= GXSP_GAIN * component->energies[1] + 1e-12 * fabs(component->base) +
+                                         GXSP_ROUNDING * component->energies[2]) {
+        component->settled = 1;
         return;
     }
-    next = gxsp_finite(gain) && low < 0 && gain > low ? piece->length * sqrt(low / (low - gain)) : 0;
-    piece->length = last ? 0 : next < 0.1 * piece->length ? 0.1 * piece->length : next;
+    next = gxsp_finite(gain) && low < 0 && gain > low ? component->length * sqrt(low / (low - gain)) : 0;
+    component->length = last ? 0 : next < 0.1 * component->length ? 0.1 * component->length : next;
 }
 
-/* Light copies keep their place beside what guides them: in x, n x 3, they go as the mean of their guides. */
+/* Light copies keep their place beside the copies that guide them: in x, n x 3, they move by the mean of these. */
 static void gxsp_guide_lights(const gxsp_system *system, double *x) {
     uint32_t i;
-    for (i = 0; i < system->light_count; i++) {
-        const uint32_t copy = system->lights[i].copy;
-        if (!system->still[copy] && !gxsp_follows(system, copy)) {
+    for (i = 0; i < system->model.light_count; i++) {
+        const uint32_t copy = system->model.lights[i].copy;
+        if (!system->state.still[copy] && !gxsp_follows(system, copy)) {
             double mean[3];
-            (void)gxsp_guide(system, &system->lights[i], x, NULL, mean);
+            (void)gxsp_guide(system, &system->model.lights[i], x, NULL, mean);
             memcpy(x + 3 * (size_t)copy, mean, sizeof mean);
         }
     }
 }
 
-/* The second half of the midpoint rule from current: drift of loose pieces, and direction. What springs or contact act
- * on at its end is not loose. trial: that end. */
+/* The second half of the midpoint rule from current: drift of loose components, and direction. Components on which
+ * springs or contact act at its end are not loose. trial: that end. */
 static void gxsp_find_second_half(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
-    const size_t count = 3 * system->n;
+    const size_t count = 3 * system->model.n;
     size_t i;
     uint32_t p;
-    gxsp_find_base(problem, system->trial);
-    for (i = 0; i < count; i++) system->direction[i] = system->current[i] - system->trial[i];
-    gxsp_clear_pieces(system); /* nothing does if none is loose */
-    gxsp_remove_momentum(system, system->direction);
-    for (p = 0; p < system->piece_count; p++)
-        memcpy(system->pieces[p].drift, system->pieces[p].sum, sizeof system->pieces->drift);
-    gxsp_guide_lights(system, system->direction);
-    gxsp_remove_momentum(system, system->direction);
+    gxsp_find_base(problem, gxsp_trial(system));
+    for (i = 0; i < count; i++) system->vectors.direction[i] = system->vectors.current[i] - gxsp_trial(system)[i];
+    gxsp_clear_components(system); /* nothing else does if none is loose */
+    gxsp_remove_momentum(system, system->vectors.direction);
+    for (p = 0; p < system->model.component_count; p++)
+        memcpy(system->model.components[p].drift, system->model.components[p].sum,
+               sizeof system->model.components->drift);
+    gxsp_guide_lights(system, system->vectors.direction);
+    gxsp_remove_momentum(system, system->vectors.direction);
     for (i = 0; i < count; i++)
-        system->trial[i] =
-            system->current[i] + (system->direction[i] + system->pieces[system->piece[i / 3]].drift[i % 3]);
-    gxsp_touch_pieces_at(problem, system->trial);
+        gxsp_trial(system)[i] =
+            system->vectors.current[i] +
+            (system->vectors.direction[i] + system->model.components[system->model.component[i / 3]].drift[i % 3]);
+    gxsp_touch_components_at(problem, gxsp_trial(system));
     for (i = 0; i < count; i++)
-        system->direction[i] = system->pieces[system->piece[i / 3]].state == 0 ? system->direction[i]
-                                                                               : system->trial[i] - system->current[i];
-    for (p = 0; p < system->piece_count; p++) { /* a drift has its own part of the kinetic energy */
-        gxsp_piece *piece = &system->pieces[p];
-        if (piece->state == 0)
-            system->pieces[piece->lead].low +=
-                0.5 * problem->rate * piece->mass * gxsp_dot(piece->drift, piece->drift, 1);
+        system->vectors.direction[i] = system->model.components[system->model.component[i / 3]].state == 0
+                                         ? system->vectors.direction[i]
+                                         : gxsp_trial(system)[i] - system->vectors.current[i];
+    for (p = 0; p < system->model.component_count; p++) { /* a drift has its own share of the kinetic energy */
+        gxsp_component *component = &system->model.components[p];
+        if (component->state == 0)
+            system->model.components[component->lead].low +=
+                0.5 * problem->rate * component->mass * gxsp_dot(component->drift, component->drift, 1);
         else
-            memset(piece->drift, 0, sizeof piece->drift);
+            memset(component->drift, 0, sizeof component->drift);
     }
 }
 
-/* The midpoint rule goes on from current by as much as from base to current, to an energy of E there, as that of the
- * start is E(base). These are equal but for terms of third order in the way, for what Newton's method and conjugate
- * gradients have left, which would add up from step to step and grow without end, and for springs and contact that
- * first act beyond current. Where a piece would gain more than a share of its kinetic energy, its second half is
- * shortened, but for the translation of a piece that nothing acts on at either place. At worst the step ends at
- * current, where E is not above E(base). Light copies go as what guides them: nothing would damp them. direction
- * becomes the end. */
+/* The midpoint rule continues from current by as much as from base to current; E there is the end's energy, as
+ * E(base) is the start's. The two are equal but for terms of third order in the way, for what Newton's method and
+ * conjugate gradients have left, which would add up from step to step without bound, and for springs and contact
+ * that first act beyond current. If a component would gain more than a share of its kinetic energy, its second half
+ * is shortened, except the translation of a component that nothing acts on at either place. At worst the step ends
+ * at current, where E is not above E(base). Light copies move with the copies that guide them: nothing would damp
+ * them. direction becomes the end. */
 static void gxsp_bound_gain(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
-    const size_t count = 3 * system->n;
+    const size_t count = 3 * system->model.n;
     size_t i, left = 1;
     uint32_t p;
     int trial;
-    /* which begin to act anywhere */
+    /* springs and contact may begin to act anywhere */
     if (!problem->based || problem->step->spring_count + problem->step->point_count > 0) {
-        gxsp_find_base(problem, system->trial);
-        gxsp_evaluate(problem, system->trial, 0, system->force);
-        for (p = 0; p < system->piece_count; p++) system->pieces[p].base = 0;
-        gxsp_find_gains(problem, system->trial, 1);
-        for (p = 0; p < system->piece_count; p++) system->pieces[p].base = system->pieces[p].gain;
+        gxsp_find_base(problem, gxsp_trial(system));
+        gxsp_evaluate(problem, gxsp_trial(system), 0, system->vectors.force);
+        for (p = 0; p < system->model.component_count; p++) system->model.components[p].base = 0;
+        gxsp_find_gains(problem, gxsp_trial(system), 1);
+        for (p = 0; p < system->model.component_count; p++)
+            system->model.components[p].base = system->model.components[p].gain;
     }
-    gxsp_find_gains(problem, system->current, 0);
-    for (p = 0; p < system->piece_count; p++) {
-        system->pieces[p].low = system->pieces[p].gain;
-        system->pieces[p].length = 1;
+    gxsp_find_gains(problem, system->vectors.current, 0);
+    for (p = 0; p < system->model.component_count; p++) {
+        system->model.components[p].low = system->model.components[p].gain;
+        system->model.components[p].length = 1;
     }
     gxsp_find_second_half(problem);
     for (trial = 0; trial < GXSP_GAIN_TRIALS && left > 0; trial++) {
         for (i = 0; i < count; i++)
-            system->trial[i] = system->current[i] + (system->pieces[system->piece[i / 3]].drift[i % 3] +
-                                                     gxsp_lead_of(system, i / 3)->length * system->direction[i]);
-        gxsp_evaluate(problem, system->trial, 0, system->force);
-        gxsp_find_gains(problem, system->trial, 1);
-        for (p = 0, left = 0; p < system->piece_count; p++) {
-            gxsp_piece *piece = &system->pieces[p];
-            if (piece->lead == p && !piece->settled) gxsp_judge_gain(piece, trial + 2 >= GXSP_GAIN_TRIALS);
-            left += piece->lead == p && !piece->settled;
+            gxsp_trial(system)[i] =
+                system->vectors.current[i] + (system->model.components[system->model.component[i / 3]].drift[i % 3] +
+                                              gxsp_lead_of(system, i / 3)->length * system->vectors.direction[i]);
+        gxsp_evaluate(problem, gxsp_trial(system), 0, system->vectors.force);
+        gxsp_find_gains(problem, gxsp_trial(system), 1);
+        for (p = 0, left = 0; p < system->model.component_count; p++) {
+            gxsp_component *component = &system->model.components[p];
+            if (component->lead == p && !component->settled) gxsp_judge_gain(component, trial + 2 >= GXSP_GAIN_TRIALS);
+            left += component->lead == p && !component->settled;
         }
     }
     for (i = 0; i < count; i++)
-        system->direction[i] = gxsp_lead_of(system, i / 3)->settled ? system->trial[i] : system->current[i];
-    for (p = 0; p < system->piece_count; p++) system->pieces[p].settled = 0;
+        system->vectors.direction[i] =
+            gxsp_lead_of(system, i / 3)->settled ? gxsp_trial(system)[i] : system->vectors.current[i];
+    for (p = 0; p < system->model.component_count; p++) system->model.components[p].settled = 0;
 }
 
-/* Writes the state out, all of it or, if a number is not finite, none. */
+/* E at a displacement whose energies are given, J */
+static double gxsp_potential(const gxsp_problem *problem, const double *energies, const double *displacement) {
+    double work = 0;
+    size_t i;
+    for (i = 0; i < problem->system->model.n; i++) {
+        double load[3];
+        gxsp_load(problem, i, load);
+        work += gxsp_dot(load, displacement + 3 * i, 1);
+    }
+    return energies[0] + energies[1] - work;
+}
+
+/* Writes the state out: all of it, or none if a number is not finite. residual and direction have the new velocity
+ * and displacement here. */
 static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double *velocity) {
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
-    const int midpoint = step->integrator == GXS_MIDPOINT, bounded = midpoint && system->active > 0;
-    size_t i, count = 3 * system->n;
-    double *speeds = system->residual, *ends = system->direction;
+    const int midpoint = step->integrator == GXS_MIDPOINT, bounded = midpoint && system->state.active > 0;
+    size_t i, count = 3 * system->model.n;
+    double *speeds = system->vectors.residual, *ends = system->vectors.direction;
     if (bounded) gxsp_bound_gain(problem);
     for (i = 0; i < count; i++)
-        if (!bounded || system->still[i / 3])
-            ends[i] = midpoint ? 2 * system->current[i] - displacement[i] : system->current[i];
+        if (!bounded || system->state.still[i / 3])
+            ends[i] = midpoint ? 2 * system->vectors.current[i] - displacement[i] : system->vectors.current[i];
     gxsp_follow(system, displacement, ends);
     for (i = 0; i < count; i++) {
-        if (system->still[i / 3])
+        if (system->state.still[i / 3])
             speeds[i] = step->integrator == GXS_STATIC ? 0 : (ends[i] - displacement[i]) / step->dt;
         else
             speeds[i] = problem->speed * (ends[i] - gxsp_mean(problem, displacement, i)) - (midpoint ? velocity[i] : 0);
     }
-    problem->report.energy = gxsp_potential(problem, problem->energies, system->current);
+    problem->report.energy = gxsp_potential(problem, problem->energies, system->vectors.current);
     if (gxsp_first_not_finite(speeds, count) < count || gxsp_first_not_finite(ends, count) < count ||
         !gxsp_finite(problem->report.energy))
         return GX_ERROR_DIVERGED;
     memcpy(displacement, ends, count * sizeof(double));
     memcpy(velocity, speeds, count * sizeof(double));
-    if (midpoint) memcpy(system->current, ends, count * sizeof(double));
-    system->stepped = 1;
-    system->base_known = !midpoint && step->spring_count + step->point_count == 0;
+    if (midpoint) memcpy(system->vectors.current, ends, count * sizeof(double));
+    system->state.stepped = 1;
+    system->state.base_known = !midpoint && step->spring_count + step->point_count == 0;
     system->lasting->scene = problem->scene;
-    for (i = 0; i < system->piece_count; i++) {
-        system->pieces[i].forces[0] = system->pieces[i].forces[1];
-        system->pieces[i].sprung[0] = system->pieces[i].sprung[1];
-        system->pieces[i].base_energy = system->pieces[i].before[0];
+    for (i = 0; i < system->model.component_count; i++) {
+        system->model.components[i].forces[0] = system->model.components[i].forces[1];
+        system->model.components[i].has_spring[0] = system->model.components[i].has_spring[1];
+        system->model.components[i].base_energy = system->model.components[i].before[0];
     }
     gxsp_count_rest(problem, velocity);
     return GX_OK;
@@ -8344,12 +8717,15 @@ static void gxsp_report_springs(const gxsp_problem *problem) {
     size_t i;
     for (i = 0; i < step->spring_count && step->spring_forces; i++) {
         gxsp_pull pull;
-        gxsp_spring_pull(&step->springs[i], problem->system->current, &pull);
+        gxsp_spring_pull(&step->springs[i], problem->system->vectors.current, &pull);
         memcpy(step->spring_forces + 3 * i, pull.force, sizeof pull.force);
     }
 }
 
-/* >>check */
+/* >>check: of what is given ---------------------------------------------------------------------------------------- */
+
+/* In: what the caller gives. Out: a result code, and the index of what is wrong. Nothing is written but the
+ * failure and, by gxsp_check_free, marks of touched components. */
 
 static gx_result gxsp_check_element(const gxs_element *element, const gxs_model *model, size_t index,
                                     gx_failure *failure) {
@@ -8400,7 +8776,8 @@ static gx_result gxsp_check_model(const gxs_model *model, gx_failure *failure) {
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     if (model->copy_count == 0 || model->element_count == 0 || model->material_count == 0)
         return gxsp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
-    /* 1024: no array takes more bytes per object, so sizes cannot overflow; elements have four slots at most */
+    /* no array takes more than 1024 bytes per object, so that sizes cannot overflow; an element has at most four slots
+     */
     if (model->copy_count >= UINT32_MAX / 4 || model->element_count >= UINT32_MAX / 4 ||
         model->material_count >= UINT32_MAX || model->copy_count >= SIZE_MAX / 1024 ||
         model->element_count >= SIZE_MAX / 1024 || model->material_count >= SIZE_MAX / 1024 ||
@@ -8416,7 +8793,7 @@ static gx_result gxsp_check_model(const gxs_model *model, gx_failure *failure) {
                                                : result;
 }
 
-/* dt within what the square of it and of its inverse can hold */
+/* dt within the range where its square and the inverse of that are finite */
 static int gxsp_dt_fits(double dt) { return dt >= 1e-100 && dt <= 1e100; }
 
 static gx_result gxsp_check_step(const gxs_step_desc *step, gx_failure *failure) {
@@ -8442,7 +8819,7 @@ static gx_result gxsp_check_step(const gxs_step_desc *step, gx_failure *failure)
     return GX_OK;
 }
 
-/* Is all that names copies of one numbering? */
+/* Does everything that names copies use the model's numbering? */
 static gx_result gxsp_check_epochs(const gxs_step_desc *step, uint64_t epoch, gx_failure *failure) {
     size_t i;
     if ((step->forces || step->targets) && step->epoch != epoch) return gxsp_fail(failure, GX_ERROR_STALE, SIZE_MAX);
@@ -8508,20 +8885,55 @@ static gx_result gxsp_check_vectors(const gxs_step_desc *step, size_t n, const d
     return result;
 }
 
-/* >>api */
-
-static void gxsp_system_destroy(gxsp_system *system) {
-    gxsp_pool pool;
-    if (!system) return;
-    gxsp_release_to(&system->coarse, NULL);
-    pool = system->pool; /* which holds system itself */
-    gxsp_release_to(&pool, NULL);
+/* Is the change one of this model? */
+static gx_result gxsp_check_change(const gxsp_system *system, const gxs_change *change, gx_failure *failure) {
+    gxs_model model;
+    gx_result result = GX_OK;
+    size_t i;
+    if (!change || !change->origins || (!change->groups && change->group_count > 0) ||
+        (!change->elements && change->element_count > 0) || (!change->constraints && change->constraint_count > 0))
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    if (change->copy_count == 0) return gxsp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
+    if (change->copy_count >= UINT32_MAX / 4 || change->element_count >= UINT32_MAX / 4 - system->model.element_count ||
+        change->constraint_count > change->copy_count)
+        return gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
+    for (i = 0; i < change->copy_count; i++)
+        if (change->origins[i] >> 1 >= system->model.n) return gxsp_fail(failure, GX_ERROR_INDEX, i);
+    for (i = 1; i < change->group_count; i++)
+        if (change->groups[i - 1] >= change->groups[i]) return gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
+    for (i = 1; i < change->element_count; i++)
+        if (change->elements[i - 1].group > change->elements[i].group) return gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
+    memset(&model, 0, sizeof model);
+    model.copy_count = change->copy_count;
+    model.material_count = system->model.material_count;
+    for (i = 0; i < change->element_count && result == GX_OK; i++)
+        result = change->elements[i].group < GXSP_GROUPS ? gxsp_check_element(&change->elements[i], &model, i, failure)
+                                                         : gxsp_fail(failure, GX_ERROR_LIMIT, i);
+    for (i = 0; i < change->constraint_count && result == GX_OK; i++)
+        result = gxsp_check_constraint(&change->constraints[i], change->copy_count, i, failure);
+    return result;
 }
 
-static void gxsp_drop_system(gxs_solver *solver) {
-    gxsp_system_destroy(solver->system);
-    solver->system = NULL;
+/* A balance of forces without inertia needs every component to be held, by a copy or a spring. */
+static gx_result gxsp_check_free(const gxsp_problem *problem, gx_failure *failure) {
+    const gxsp_system *system = problem->system;
+    const gxs_step_desc *step = problem->step;
+    size_t i, k;
+    gxsp_untouch_components(problem->system);
+    for (k = 0; k < step->spring_count; k++)
+        for (i = 0; i < 4 && step->springs[k].stiffness > 0; i++)
+            if (fabs(step->springs[k].point.weight[i]) > 0)
+                system->model.components[system->model.component[step->springs[k].point.copy[i]]].state |= GXSP_TOUCHED;
+    for (i = 0; i < system->model.n && !(problem->rate > 0); i++)
+        if (!(system->model.components[system->model.component[i]].state & (GXSP_HELD | GXSP_TOUCHED | GXSP_ASLEEP)))
+            return gxsp_fail(failure, GX_ERROR_FREE, i);
+    return GX_OK;
 }
+
+/* >>api: the public functions -------------------------------------------------------------------------------------- */
+
+/* Each checks what it is given, then calls the sections above. Memory of the solver itself is of the allocator,
+ * all else of pools. */
 
 GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *model, gx_failure *failure) {
     gx_failure ignored;
@@ -8539,15 +8951,16 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
     system = (gxsp_system *)gxsp_take(&pool, 1, sizeof *system);
     if (!system) return gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
     system->pool = pool;
-    system->coarse = gxsp_pool_make(&solver->allocator);
+    system->multigrid.pool = gxsp_pool_make(&solver->allocator);
     system->jobs = &solver->jobs;
     system->lasting = &solver->lasting;
     bad = gxsp_system_build(system, &scratch, model, solver);
     gxsp_release_to(&scratch, NULL);
-    if (bad == SIZE_MAX && !scratch.failed && !system->pool.failed && !system->coarse.failed) gxsp_steps_make(system);
+    if (bad == SIZE_MAX && !scratch.failed && !system->pool.failed && !system->multigrid.pool.failed)
+        gxsp_steps_make(system);
     if (bad != SIZE_MAX)
         gxsp_fail(failure, GX_ERROR_ARGUMENT, bad);
-    else if (scratch.failed || system->pool.failed || system->coarse.failed)
+    else if (scratch.failed || system->pool.failed || system->multigrid.pool.failed)
         gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
     if (failure->result != GX_OK) {
         gxsp_system_destroy(system);
@@ -8556,35 +8969,6 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
     gxsp_system_destroy(solver->system);
     solver->system = system;
     return GX_OK;
-}
-
-/* Is the change one of this model? */
-static gx_result gxsp_check_change(const gxsp_system *system, const gxs_change *change, gx_failure *failure) {
-    gxs_model model;
-    gx_result result = GX_OK;
-    size_t i;
-    if (!change || !change->origins || (!change->groups && change->group_count > 0) ||
-        (!change->elements && change->element_count > 0) || (!change->constraints && change->constraint_count > 0))
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    if (change->copy_count == 0) return gxsp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
-    if (change->copy_count >= UINT32_MAX / 4 || change->element_count >= UINT32_MAX / 4 - system->element_count ||
-        change->constraint_count > change->copy_count)
-        return gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
-    for (i = 0; i < change->copy_count; i++)
-        if (change->origins[i] >> 1 >= system->n) return gxsp_fail(failure, GX_ERROR_INDEX, i);
-    for (i = 1; i < change->group_count; i++)
-        if (change->groups[i - 1] >= change->groups[i]) return gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
-    for (i = 1; i < change->element_count; i++)
-        if (change->elements[i - 1].group > change->elements[i].group) return gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
-    memset(&model, 0, sizeof model);
-    model.copy_count = change->copy_count;
-    model.material_count = system->material_count;
-    for (i = 0; i < change->element_count && result == GX_OK; i++)
-        result = change->elements[i].group < GXSP_GROUPS ? gxsp_check_element(&change->elements[i], &model, i, failure)
-                                                         : gxsp_fail(failure, GX_ERROR_LIMIT, i);
-    for (i = 0; i < change->constraint_count && result == GX_OK; i++)
-        result = gxsp_check_constraint(&change->constraints[i], change->copy_count, i, failure);
-    return result;
 }
 
 GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure) {
@@ -8604,15 +8988,15 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
         return failure->result;
     }
     scratch = gxsp_pool_make(&solver->allocator);
-    system->product_rate = -1;
+    system->state.product_rate = -1;
     memset(&update, 0, sizeof update);
     update.system = system;
     update.scratch = &scratch;
     update.change = change;
-    update.before = system->n;
-    update.successor = (uint32_t *)gxsp_take(&scratch, system->n, sizeof(uint32_t));
+    update.before = system->model.n;
+    update.successor = (uint32_t *)gxsp_take(&scratch, system->model.n, sizeof(uint32_t));
     update.touched = (uint8_t *)gxsp_take(&scratch, change->copy_count, 1);
-    update.dirty = (uint8_t *)gxsp_take(&scratch, system->levels[1].n, 1);
+    update.dirty = (uint8_t *)gxsp_take(&scratch, system->multigrid.levels[1].n, 1);
     update.alike = (uint8_t *)gxsp_take(&scratch, change->copy_count, 1);
     follows = (uint8_t *)gxsp_take(&scratch, change->copy_count, 1);
     bad = scratch.failed ? SIZE_MAX
@@ -8623,7 +9007,7 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
     }
     fits = scratch.failed || (gxsp_is_flexible(system) && gxsp_find_successors(&update) && gxsp_update_system(&update));
     gxsp_release_to(&scratch, NULL);
-    if (scratch.failed || system->pool.failed || system->coarse.failed)
+    if (scratch.failed || system->pool.failed || system->multigrid.pool.failed)
         gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
     else if (!fits)
         gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
@@ -8640,20 +9024,20 @@ GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displ
     gxsp_fail(failure, GX_OK, SIZE_MAX);
     if (!solver || !solver->system) return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     system = solver->system;
-    if (gxsp_check_vector(displacement, system->n, failure) != GX_OK) return failure->result;
+    if (gxsp_check_vector(displacement, system->model.n, failure) != GX_OK) return failure->result;
     if (!gxsp_finite(rate)) return gxsp_fail(failure, GX_ERROR_NOT_FINITE, SIZE_MAX);
     if (rate < 0) return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     memset(&pass, 0, sizeof pass);
     pass.system = system;
-    pass.materials = system->materials;
-    pass.rate = system->scale * rate;
+    pass.materials = system->model.materials;
+    pass.rate = system->model.scale * rate;
     pass.from = displacement;
     pass.exact = exact != 0;
-    memset(system->chunk_still, 0, system->chunk_count); /* what sleeps is part of it */
-    gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_linearise, &pass);
+    memset(system->state.chunk_still, 0, system->mesh.chunk_count); /* sleeping components are included */
+    gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_linearise, &pass);
     gxsp_mark_still(system);
-    system->product_rate = gxsp_tangents_finite(system) ? rate : -1;
-    return system->product_rate < 0 ? gxsp_fail(failure, GX_ERROR_RANGE, SIZE_MAX) : GX_OK;
+    system->state.product_rate = gxsp_tangents_finite(system) ? rate : -1;
+    return system->state.product_rate < 0 ? gxsp_fail(failure, GX_ERROR_RANGE, SIZE_MAX) : GX_OK;
 }
 
 GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *direction, double *product,
@@ -8663,19 +9047,19 @@ GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *directi
     gxsp_pass pass;
     failure = failure ? failure : &ignored;
     gxsp_fail(failure, GX_OK, SIZE_MAX);
-    if (!solver || !solver->system || solver->system->product_rate < 0 || !direction || !product)
+    if (!solver || !solver->system || solver->system->state.product_rate < 0 || !direction || !product)
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     system = solver->system;
     memset(&pass, 0, sizeof pass);
     pass.system = system;
-    pass.rate = system->scale * system->product_rate;
+    pass.rate = system->model.scale * system->state.product_rate;
     pass.from = direction;
     pass.sum = product;
-    pass.factor = gxsp_unit_factor(direction, 3 * system->n);
-    if (!(pass.factor > 0)) return gxsp_check_vector(direction, system->n, failure);
-    gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_apply, &pass);
+    pass.factor = gxsp_unit_factor(direction, 3 * system->model.n);
+    if (!(pass.factor > 0)) return gxsp_check_vector(direction, system->model.n, failure);
+    gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_apply, &pass);
     gxsp_over_ranges(system, gxsp_task_apply_sum, &pass, NULL, 0);
-    gxsp_reduce_residual(system, system->fixed, product);
+    gxsp_reduce_residual(system, system->model.fixed, product);
     return GX_OK;
 }
 
@@ -8685,67 +9069,49 @@ GXFEM_API void gxs_solver_note_written(const gxs_solver *solver, const uint32_t 
     size_t i;
     for (i = 0; system && i < count; i++) {
         const size_t before = origins[i] >> 1;
-        if (before < system->n && gxsp_is_written(system, before, displacement + 3 * i, velocity + 3 * i))
+        if (before < system->model.n && gxsp_is_written(system, before, displacement + 3 * i, velocity + 3 * i))
             rest_times[i] = 0;
     }
 }
 
 GXFEM_API void gxs_solver_scene(const gxs_solver *solver, gxs_scene *scene) { *scene = solver->lasting.scene; }
 
-/* All that one step leaves to the next goes; what depends on the model alone stays. */
+/* Forgets what one step leaves to the next. What depends on the model alone stays. */
 GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene) {
     gxsp_system *system = solver->system;
     uint32_t p;
     solver->lasting.scene = *scene;
-    if (system && system->roots_known) gxsp_drop_system(solver);
+    if (system && system->mesh.roots_known) gxsp_drop_system(solver);
     if (!solver->system) return;
-    system->product_rate = -1;
-    system->still_known = system->base_known = system->stepped = 0;
-    system->guess_count = 0;
-    system->omega = 0;
-    system->omega_rest = system->omega_pause = 0;
-    system->coarse_rate = -1;
-    system->coarse_stiffness = 0;
-    system->coarse_worn = 0;
-    system->coarse_served = system->read = 0;
-    system->coarse_life = GXSP_LIFE;
-    system->pace = system->read_nepers = 0;
-    for (p = 0; p < system->piece_count; p++) {
-        gxsp_piece *piece = &system->pieces[p];
-        piece->state &= ~(GXSP_TOUCHED | GXSP_TOUCHES | GXSP_ASLEEP);
-        piece->forces[0] = piece->forces[1] = 0;
-        piece->sprung[0] = piece->sprung[1] = 0;
+    system->state.product_rate = -1;
+    system->state.still_known = system->state.base_known = system->state.stepped = 0;
+    system->state.guess_count = 0;
+    system->smoother.omega = 0;
+    system->smoother.cautious = system->smoother.next_cautious = 0;
+    system->coarse.rate = -1;
+    system->coarse.stiffness = 0;
+    system->coarse.worn = 0;
+    system->coarse.served = system->coarse.read = 0;
+    system->coarse.life = GXSP_LIFE;
+    system->coarse.pace = system->coarse.read_nepers = 0;
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        component->state &= ~(GXSP_TOUCHED | GXSP_TOUCHES | GXSP_ASLEEP);
+        component->forces[0] = component->forces[1] = 0;
+        component->has_spring[0] = component->has_spring[1] = 0;
     }
 }
 
-/* Room for the terms of a step */
-static int gxsp_reserve_terms(gxs_solver *solver, size_t count) {
-    gxsp_lasting *lasting = &solver->lasting;
+/* Memory for the terms of a step */
+static int gxsp_reserve_terms(gxsp_lasting *lasting, size_t count) {
     gxsp_term *larger;
-    if (count <= lasting->capacity) return 1;
-    larger = (gxsp_term *)solver->allocator.allocate(solver->allocator.user, count * sizeof *larger);
+    if (count <= lasting->room) return 1;
+    lasting->pool.failed = 0;
+    larger = (gxsp_term *)gxsp_grow(&lasting->pool, lasting->term, 0, count, sizeof *larger);
     if (!larger) return 0;
-    if (lasting->term)
-        solver->allocator.release(solver->allocator.user, lasting->term, lasting->capacity * sizeof *larger);
     lasting->term = larger;
-    lasting->capacity = count;
+    lasting->room = count;
     return 1;
-}
-
-/* A balance of forces without inertia needs every piece to be held, by a copy or a spring. */
-static gx_result gxsp_check_free(const gxsp_problem *problem, gx_failure *failure) {
-    const gxsp_system *system = problem->system;
-    const gxs_step_desc *step = problem->step;
-    size_t i, k;
-    gxsp_untouch_pieces(problem->system);
-    for (k = 0; k < step->spring_count; k++)
-        for (i = 0; i < 4 && step->springs[k].stiffness > 0; i++)
-            if (fabs(step->springs[k].point.weight[i]) > 0)
-                system->pieces[system->piece[step->springs[k].point.copy[i]]].state |= GXSP_TOUCHED;
-    for (i = 0; i < system->n && !(problem->rate > 0); i++)
-        if (!(system->pieces[system->piece[i]].state & (GXSP_HELD | GXSP_TOUCHED | GXSP_ASLEEP)))
-            return gxsp_fail(failure, GX_ERROR_FREE, i);
-    return GX_OK;
 }
 
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
@@ -8757,17 +9123,17 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     failure = failure ? failure : &ignored;
     gxsp_fail(failure, GX_OK, SIZE_MAX);
     if (!solver || !solver->system) return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    n = solver->system->n;
+    n = solver->system->model.n;
     if ((result = gxsp_check_step(step, failure)) != GX_OK ||
-        (result = gxsp_check_epochs(step, solver->system->epoch, failure)) != GX_OK ||
+        (result = gxsp_check_epochs(step, solver->system->model.epoch, failure)) != GX_OK ||
         (result = gxsp_check_points(step, n, failure)) != GX_OK ||
-        (result = gxsp_check_vectors(step, n, displacement, velocity, solver->system->held, failure)) != GX_OK)
+        (result = gxsp_check_vectors(step, n, displacement, velocity, solver->system->model.held, failure)) != GX_OK)
         return result;
-    if (!gxsp_reserve_terms(solver, step->spring_count + step->point_count))
+    if (!gxsp_reserve_terms(&solver->lasting, step->spring_count + step->point_count))
         return gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
     memset(&problem, 0, sizeof problem);
     problem.system = solver->system;
-    problem.system->product_rate = -1;
+    problem.system->state.product_rate = -1;
     problem.step = step;
     problem.given = displacement;
     problem.cg_iterations = step->cg_iterations ? step->cg_iterations : 1000;
@@ -8775,14 +9141,14 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     problem.start = gxsp_now(&problem);
     gxsp_choose_integrator(&problem);
     gxsp_choose_sleepers(&problem, displacement, velocity);
-    problem.system->failed = 1;
+    problem.system->state.failed = 1;
     if ((result = gxsp_check_free(&problem, failure)) != GX_OK) return result;
     gxsp_begin(&problem, velocity);
-    problem.report.active_unknowns = problem.system->active;
+    problem.report.active_unknowns = problem.system->state.active;
     result = gxsp_minimise(&problem);
     if (result == GX_OK) result = gxsp_finish(&problem, displacement, velocity);
     if (result != GX_OK) return gxsp_fail(failure, result, SIZE_MAX);
-    problem.system->failed = 0;
+    problem.system->state.failed = 0;
     gxsp_report_springs(&problem);
     problem.report.seconds = gxsp_now(&problem) - problem.start;
     if (report) *report = problem.report;
@@ -8807,6 +9173,7 @@ GXFEM_API gx_result gxs_solver_create(const gxs_solver_desc *desc, gxs_solver **
     if (!made) return GX_ERROR_MEMORY;
     memset(made, 0, sizeof *made);
     made->allocator = used;
+    made->lasting.pool = gxsp_pool_make(&used);
     if (desc) {
         made->jobs = desc->jobs;
         made->preconditioner = desc->preconditioner;
@@ -8821,13 +9188,14 @@ GXFEM_API void gxs_solver_destroy(gxs_solver *solver) {
     if (!solver) return;
     allocator = solver->allocator;
     gxsp_system_destroy(solver->system);
-    if (solver->lasting.term)
-        allocator.release(allocator.user, solver->lasting.term,
-                          solver->lasting.capacity * sizeof *solver->lasting.term);
+    gxsp_release_to(&solver->lasting.pool, NULL);
     allocator.release(allocator.user, solver, sizeof *solver);
 }
 
-/* >>forms: the assembled forms, eight elements of the caller's array at a time */
+/* >>forms: assembled forms, and a material at one F ---------------------------------------------------------------- */
+
+/* Eight elements of the caller's array at a time, or one deformation gradient. Nothing is kept; no system is
+ * needed. */
 
 typedef struct gxsp_group {
     gxsp_rest rest;
@@ -8839,7 +9207,7 @@ typedef struct gxsp_group {
     const gxs_element *elements;
 } gxsp_group;
 
-/* The next elements of one kind from at on. */
+/* The next elements of one kind from at on */
 static void gxsp_group_load(const gxs_model *model, size_t at, gxsp_group *group) {
     size_t lane;
     int k;
@@ -8877,7 +9245,7 @@ static void gxsp_group_scatter(const gxsp_group *group, gxsp_lanes *values, doub
             for (r = 0; r < 3; r++) y[3 * (size_t)group->elements[lane].copy[i] + (size_t)r] += values[3 * i + r][lane];
 }
 
-/* Model and an input vector of one of the assembled forms. */
+/* Checks the model and an input vector of one of the assembled forms. */
 static gx_result gxsp_check_form(const gxs_model *model, const double *vector, const void *output) {
     gx_failure failure;
     gx_result result = gxsp_check_model(model, &failure);
@@ -8949,7 +9317,7 @@ GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const doub
         gxsp_tangent_make(group.kind, &group.rest, group.gradients, 1, 0, &group.state, &of, &tangent, &general);
         gxsp_group_gather(&group, direction, x);
         for (k = 0; k < 12; k++)
-            GXSP_EACH_LANE(l) from[k][l] = (float)(x[k][l] - x[k % 3][l]); /* of translations exactly 0 */
+            GXSP_EACH_LANE(l) from[k][l] = (float)(x[k][l] - x[k % 3][l]); /* exactly 0 for translations */
         memset(to, 0, sizeof to);
         gxsp_kind_product(group.kind, &tangent, NULL, &general, 1, from, to);
         for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) x[k][l] = (double)to[k][l];
@@ -9019,7 +9387,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
     memset(to, 0, sizeof to);
     rest.weight[0] = 1;
     memset(gradients, 0, sizeof gradients);
-    gradients[0][0] = gradients[4][0] = gradients[8][0] = 1; /* u_i - u_0 are the columns of dF, forces those of dP */
+    gradients[0][0] = gradients[4][0] = gradients[8][0] = 1; /* u_i - u_0 are the columns of dF, the forces those of dP
+                                                              */
     (void)gxsp_tangent_begin(material->kind, &state, NULL, &of);
     gxsp_tangent_make(material->kind, &rest, gradients, 1, 0, &state, &of, &tangent, &general);
     for (k = 0; k < 3; k++)
@@ -9096,6 +9465,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_INERTIA
 #undef GXSP_PARALLEL
 #undef GXSP_SUMS
+#undef GXSP_IN
+#undef GXSP_COLUMNS
 #undef GXSP_SHUFFLES
 #ifdef GXFEM_SCALAR
 #pragma clang attribute pop

@@ -356,7 +356,7 @@ static gxs_solver *cube_solver(const cube *c) {
     expect(gxs_solver_create(&desc, &solver) == GX_OK && gxs_solver_set_model(solver, &c->model, NULL) == GX_OK,
            "no solver");
     expect(gxs_solver_step(solver, &step, u, v, NULL, NULL) == GX_OK, "no step");
-    expect(solver->system->level_count > 1, "the multigrid has no coarse level");
+    expect(solver->system->multigrid.level_count > 1, "the multigrid has no coarse level");
     return solver;
 }
 
@@ -367,13 +367,14 @@ static void ask_cycle(const cube *c, gxs_solver *solver, matrix p) {
     size_t i, j, r, k;
     for (j = 0; j < c->model.copy_count; j++)
         for (r = 0; r < 3 && !constraint_of(c, j); r++) {
-            memset(system->residual, 0, 3 * system->n * sizeof(double));
-            system->residual[3 * j + r] = 1;
-            now = gxsp_scale(system, system->residual);
+            memset(system->vectors.residual, 0, 3 * system->model.n * sizeof(double));
+            system->vectors.residual[3 * j + r] = 1;
+            now = gxsp_scale(system, system->vectors.residual);
             (void)gxsp_precondition(system, 1 / (dt * dt), now.energy);
             for (i = 0; i < c->model.copy_count; i++)
                 for (k = 0; k < 3 && !constraint_of(c, i); k++)
-                    p[3 * c->free[i] + k][3 * c->free[j] + r] = system->scale / (dt * dt) * (real)system->scaled[i][k];
+                    p[3 * c->free[i] + k][3 * c->free[j] + r] =
+                        system->model.scale / (dt * dt) * (real)system->vectors.scaled[i][k];
         }
 }
 

@@ -322,15 +322,15 @@ START_TEST(block_product_equals_assembled_forms) {
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
     system = solver->system;
     ck_assert(gxsp_linearise(system, rate, s.displacement, 0, &collapsed));
-    if (desc.matrix == GXS_MATRIX_ASSEMBLED) gxsp_assemble(system, system->scale * rate);
+    if (desc.matrix == GXS_MATRIX_ASSEMBLED) gxsp_assemble(system, system->model.scale * rate);
     gxsp_product(system, rate, in, out);
     ck_assert_int_eq(gxs_solver_linearise(solver, s.displacement, rate, 0, NULL), GX_OK);
     ck_assert_int_eq(gxs_solver_product(solver, x, product, NULL), GX_OK);
     ck_assert_int_eq(gxs_model_hessian_product(&s.model, s.displacement, x, expected), GX_OK);
     ck_assert_int_eq(gxs_model_mass_product(&s.model, x, mass), GX_OK);
     for (i = 0; i < n; i++) {
-        double sum = expected[i] + rate * (s.model.lumped_mass ? system->lumped[i / 3] * x[i] : mass[i]);
-        double got = (double)out[i / 3][i % 3] / system->scale;
+        double sum = expected[i] + rate * (s.model.lumped_mass ? system->model.lumped[i / 3] * x[i] : mass[i]);
+        double got = (double)out[i / 3][i % 3] / system->model.scale;
         assert_that(fabs(got - sum) < 4e-6 * (1e6 + fabs(sum)), "%g %g", got, sum);
         assert_that(fabs(product[i] - sum) < 4e-6 * (1e6 + fabs(sum)), "%g %g", product[i], sum);
     }
@@ -339,11 +339,11 @@ START_TEST(block_product_equals_assembled_forms) {
         for (k = 0; k < 3; k++) { /* D^-1 times column k of D is a unit vector */
             float unit[3];
             size_t r;
-            if (system->fixed[i]) continue;
+            if (system->model.fixed[i]) continue;
             memset(in, 0, copies * sizeof *in);
             in[i][k] = 1;
             gxsp_product(system, rate, in, out);
-            gxsp_apply_packed(system->diagonal + 6 * i, out[i], unit);
+            gxsp_apply_packed(system->vectors.diagonal + 6 * i, out[i], unit);
             for (r = 0; r < 3; r++) assert_that(fabs((double)unit[r] - (r == k ? 1 : 0)) < 1e-3, "%g", (double)unit[r]);
         }
     free(x), free(expected), free(mass), free(product), free(in), free(out);
@@ -510,7 +510,7 @@ START_TEST(operator_acts_on_what_can_move) {
     follow(ties, 3, x);
     ck_assert_int_eq(gxs_model_hessian_product(&s.model, s.displacement, x, expected), GX_OK);
     ck_assert_int_eq(gxs_model_mass_product(&s.model, x, mass), GX_OK);
-    for (i = 0; i < n; i++) expected[i] += rate * (lumped ? solver->system->lumped[i / 3] * x[i] : mass[i]);
+    for (i = 0; i < n; i++) expected[i] += rate * (lumped ? solver->system->model.lumped[i / 3] * x[i] : mass[i]);
     give(ties, 3, expected);
     for (i = 0; i < n; i++) {
         const int still = s.held[i / 3] || i / 3 == 30 || i / 3 == 41 || i / 3 == 8 || i >= n - 3;
@@ -1282,10 +1282,10 @@ static size_t own_gradients(const gxs_solver *solver) {
     size_t count = 0;
     uint32_t c, b;
     size_t lane;
-    for (c = 0; c < system->chunk_count; c++)
-        for (b = 0; b < system->chunks[c].block_count && system->chunks[c].gradients; b++)
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        for (b = 0; b < system->mesh.chunks[c].block_count && system->mesh.chunks[c].gradients; b++)
             for (lane = 0; lane < sizeof(gxsp_lanes) / sizeof(double); lane++)
-                count += system->chunks[c].rest[b].weight[lane] > 0;
+                count += system->mesh.chunks[c].rest[b].weight[lane] > 0;
     return count;
 }
 

@@ -47,7 +47,7 @@ static uint32_t advance(gx_body *body, const gx_step_desc *step, int steps) {
  * doubles could tell. */
 static double apart(gx_body *a, gx_body *b) {
     const gx_view of = view_of(a), to = view_of(b);
-    const double *mass = a->solver->system->lumped;
+    const double *mass = a->solver->system->model.lumped;
     double most = 0, gap = 0;
     size_t i;
     ck_assert_uint_eq(of.copy_count, to.copy_count);
@@ -122,17 +122,17 @@ static double check_lanes(gx_body *body) {
     uint32_t c, b, i, l;
     gxs_model model;
     ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
-    ck_assert(memcmp(model.positions, system->positions, 3 * model.copy_count * sizeof(double)) == 0);
-    for (c = 0; c < system->chunk_count; c++) {
-        const gxsp_chunk *chunk = &system->chunks[c];
-        ck_assert_uint_eq(chunk->fresh[chunk->block_count], 15);
+    ck_assert(memcmp(model.positions, system->model.positions, 3 * model.copy_count * sizeof(double)) == 0);
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        const gxsp_chunk *chunk = &system->mesh.chunks[c];
+        ck_assert_uint_eq(chunk->changed[chunk->block_count], 15);
         ck_assert_ptr_null(chunk->gradients); /* of no element of a body */
         blocks += chunk->block_count;
         for (b = 0; b < chunk->block_count; b++)
             for (i = 0; i < 4; i++) {
                 const uint16_t *node = chunk->corners[b].node[i];
                 const int differs = b == 0 || memcmp(node, chunk->corners[b - 1].node[i], lanes * sizeof *node) != 0;
-                ck_assert_int_eq(chunk->fresh[b] >> i & 1, differs);
+                ck_assert_int_eq(chunk->changed[b] >> i & 1, differs);
                 fresh += (size_t)differs;
                 for (l = 0; l < lanes; l++) {
                     ck_assert_uint_lt(node[l], chunk->node_count);
@@ -163,9 +163,9 @@ START_TEST(cuts_change_the_model) {
         advance(whole, &step, 2);
         updates += changed->model_updated != 0;
         ck_assert(!whole->model_updated);
-        ck_assert_uint_eq(changed->solver->system->follower_count, whole->solver->system->follower_count);
-        ck_assert_uint_eq(changed->solver->system->light_count, whole->solver->system->light_count);
-        followers += changed->model_updated ? changed->solver->system->follower_count : 0;
+        ck_assert_uint_eq(changed->solver->system->model.follower_count, whole->solver->system->model.follower_count);
+        ck_assert_uint_eq(changed->solver->system->model.light_count, whole->solver->system->model.light_count);
+        followers += changed->model_updated ? changed->solver->system->model.follower_count : 0;
         ck_assert_msg(apart(changed, whole) < 1e-6, "after cut %zu: %g", c, apart(changed, whole));
         check_operator(changed, whole);
         check_lanes(changed);
@@ -262,22 +262,23 @@ START_TEST(small_cuts_keep_coarse_numbers) {
     advance(body, &step, 3);
     for (c = 0; c < w.surface_count; c++) {
         gxsp_system *system = body->solver->system;
-        const double before[3] = {system->coarse_state[3], system->coarse_state[4], system->coarse_state[5]};
-        const gxsp_level *level = &system->levels[1];
+        const double before[3] = {system->coarse.displacement[3], system->coarse.displacement[4],
+                                  system->coarse.displacement[5]};
+        const gxsp_level *level = &system->multigrid.levels[1];
         size_t bytes;
         float *block;
         int collapsed;
-        ck_assert_uint_gt(system->level_count, 1);
+        ck_assert_uint_gt(system->multigrid.level_count, 1);
         cut_by(body, &w, c, 1);
         advance(body, &step, 1);
         ck_assert(body->model_updated);
-        ck_assert(memcmp(before, system->coarse_state + 3, sizeof before) == 0); /* no step has made them */
-        ck_assert(system->coarse_rate > 0);
+        ck_assert(memcmp(before, system->coarse.displacement + 3, sizeof before) == 0); /* no step has made them */
+        ck_assert(system->coarse.rate > 0);
         bytes = 9 * (size_t)level->start[level->n] * sizeof *block;
         block = (float *)malloc(bytes);
         memcpy(block, level->block, bytes);
-        ck_assert(gxsp_linearise(system, system->coarse_rate, system->coarse_state, 0, &collapsed));
-        ck_assert(gxsp_coarse_numbers(system, system->coarse_rate));
+        ck_assert(gxsp_linearise(system, system->coarse.rate, system->coarse.displacement, 0, &collapsed));
+        ck_assert(gxsp_coarse_numbers(system, system->coarse.rate));
         ck_assert_msg(coarse_difference(level, block) < 3e-5, "cut %zu: %g", c, coarse_difference(level, block));
         free(block);
     }
@@ -875,7 +876,7 @@ START_TEST(small_pieces_beside_a_large_one) {
     step.cg_tolerance = 1e-4;
     ck_assert_int_eq(gxs_solver_create(&desc, &solver), GX_OK);
     ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
-    ck_assert_uint_gt(solver->system->level_count, 1);
+    ck_assert_uint_gt(solver->system->multigrid.level_count, 1);
     for (i = 0; i < 3; i++) {
         ck_assert_int_eq(gxs_solver_step(solver, &step, state, state + 3 * model.copy_count, &report, NULL), GX_OK);
         iterations += report.cg_iterations;
