@@ -2007,11 +2007,11 @@ static gx_result gxp_look_for_joint(gx_body *body, uint32_t leaf, gxp_joint *joi
     gxb_complex *cx = body->complex;
     uint32_t first, count = 0, i, j, e0, en;
     gx_result result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
-    if (result == GX_OK) result = gxb_leaf_facets(cx, leaf, &first, &count);
+    if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     joint->found = 0;
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint32_t facet = cx->pool[first + i];
-        result = gxb_facet_edges(cx, facet, &e0, &en);
+        result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
         for (j = 0; j < en && result == GX_OK; j++) {
             const uint32_t e = cx->pool[e0 + j];
             if (joint->point != GXB_NONE ? cx->edges[e >> 1].v[e & 1] != joint->point : e >> 1 != joint->edge) continue;
@@ -2241,9 +2241,9 @@ static gx_result gxp_leaf_points(gx_body *body, uint32_t leaf) {
     uint32_t first, count = 0, i, j, e0, en;
     gx_result result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
     body->list.count = 0;
-    if (result == GX_OK) result = gxb_leaf_facets(cx, leaf, &first, &count);
+    if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
-        result = gxb_facet_edges(cx, cx->pool[first + i], &e0, &en);
+        result = gxb_facet_resolve_edges(cx, cx->pool[first + i], &e0, &en);
         for (j = 0; j < en && result == GX_OK; j++) {
             const uint32_t e = cx->pool[e0 + j];
             result = gxp_push(body, &body->list, cx->edges[e >> 1].v[e & 1]);
@@ -2305,7 +2305,7 @@ static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_
     uint32_t first, count = 0, i;
     gx_result result = GX_OK;
     if (winding != 0) result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
-    if (result == GX_OK) result = gxb_leaf_facets(cx, leaf, &first, &count);
+    if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
         const gxb_facet *f = &cx->facets[cx->pool[first + i]];
         const int front = f->leaf[0] == leaf;
@@ -2433,7 +2433,7 @@ static gx_result gxp_rough_area(gxb_complex *cx, uint32_t facet, double *area, d
     const gxb_ball *o = NULL;
     double a[2] = {0, 0}, b[2] = {0, 0}, sum = 0;
     uint32_t e0, en, i;
-    const gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
+    const gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
     *error = 0;
     for (i = 0; i < en && result == GX_OK; i++) {
         const gxb_ball *p = &cx->points[cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1]].ball;
@@ -2492,7 +2492,7 @@ static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
 static gx_result gxp_facet_points(gx_body *body, uint32_t facet) {
     gxb_complex *cx = body->complex;
     uint32_t e0, en, i;
-    gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
+    gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
     body->seeds.count = 0;
     if (result == GX_OK) result = gxp_words_room(body, &body->seeds, en);
     for (i = 0; i < en && result == GX_OK; i++)
@@ -2719,7 +2719,7 @@ static gx_result gxp_walk_leaves(gx_body *body, uint32_t start) {
     if (result == GX_OK) result = gxp_push(body, &body->link_first, body->links.count);
     while (done < body->queue.count && result == GX_OK) {
         const uint32_t leaf = body->queue.data[done++];
-        result = gxb_leaf_facets(cx, leaf, &first, &count);
+        result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
         if (result == GX_OK) result = gxp_keys_room(body, &body->links, count);
         for (i = 0; i < count && result == GX_OK; i++) {
             const uint32_t facet = cx->pool[first + i];
@@ -2784,7 +2784,7 @@ static gx_result gxp_divide_cell(gxp_cut *cut, uint32_t cell) {
 static gx_result gxp_touch_around(gx_body *body, uint32_t leaf) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i;
-    gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
+    gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
         const gxb_facet *f = &cx->facets[cx->pool[first + i]];
         const uint32_t other = f->leaf[f->leaf[0] == leaf];
@@ -2915,7 +2915,7 @@ static gx_result gxp_cross_faces(gx_body *body, uint32_t cell, uint32_t node) {
                 if (k != local) result = gxp_cross_whole_face(body, element, k);
             continue;
         }
-        result = gxb_leaf_facets(cx, leaf, &first, &count);
+        result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
         for (i = 0; i < count && result == GX_OK; i++) {
             const uint32_t facet = cx->pool[first + i], face = cx->facets[facet].face;
             if (face != GXB_NONE && face != opposite) result = gxp_cross_facet(body, facet, leaf);
@@ -3180,7 +3180,7 @@ static gx_result gxp_add_boundary_point(gx_body *body, uint32_t element, uint32_
 static gx_result gxp_add_boundary_facet(gx_body *body, uint32_t element, uint32_t facet, int inward) {
     gxb_complex *cx = body->complex;
     uint32_t e0, en, i, corner[3] = {0, 0, 0};
-    gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
+    gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
     if (result == GX_OK) result = gxp_words_room(body, &body->triangles, 3 * (size_t)en);
     for (i = 0; i < en && result == GX_OK; i++) {
         const uint32_t e = cx->pool[e0 + i];
@@ -3201,7 +3201,7 @@ static gx_result gxp_add_boundary_facet(gx_body *body, uint32_t element, uint32_
 static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, int all) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i;
-    gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
+    gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint32_t facet = cx->pool[first + i];
         const gxb_facet *f = &cx->facets[facet];
@@ -6339,7 +6339,7 @@ static gx_result gxp_add_skin_facet(gx_body *body, const gxp_skin_face *face, ui
     gxb_complex *cx = body->complex;
     const int inward = cx->facets[facet].leaf[0] == leaf;
     uint32_t *p, *v, e0, en, i, n, vertex = GXP_NONE;
-    gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
+    gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
     body->faces.count = body->queue.count = 0;
     for (i = 0; i < en && result == GX_OK; i++) {
         const uint32_t point = cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1];
@@ -6430,7 +6430,7 @@ static void gxp_cut_face(const gx_body *body, uint32_t facet, uint32_t leaf, gxp
 static gx_result gxp_skin_leaf(gx_body *body, uint32_t leaf, gxp_skin_face *face) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i, k;
-    gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
+    gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint32_t facet = cx->pool[first + i];
         const int kind = gxp_visible(body, facet, leaf);
@@ -6866,7 +6866,7 @@ static gx_result gxp_push_neighbours(gx_body *body, uint32_t cell) {
     uint32_t leaf, first, count, i;
     gx_result result = gxb_complex_open_element(cx, element);
     for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next) {
-        result = gxb_leaf_facets(cx, leaf, &first, &count);
+        result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
         for (i = 0; i < count && result == GX_OK; i++) {
             const gxb_facet *f = &cx->facets[cx->pool[first + i]];
             const uint32_t other = f->leaf[f->leaf[0] == leaf];

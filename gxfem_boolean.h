@@ -34,8 +34,8 @@
  * gxb_side, compare, orient_in_plane
  *     >>complex     the cell complex (points, planes, edges, facets, leaves): gxb_complex_create, destroy; begin,
  * commit, rollback, reserve; to divide: add_point, add_plane, insert, open_element, cover_edge, cover_node, set_wall,
- * set_removed; to read: gxb_leaf_facets, gxb_facet_edges; to ask: gxb_complex_side, turn, compare, winding,
- * barycentric, support, barycentric_fine
+ * set_removed; to bring lists up to date: gxb_leaf_resolve_facets, gxb_facet_resolve_edges; to read: gxb_complex_point
+ * and others; to ask: gxb_complex_side, turn, compare, winding, barycentric, support, barycentric_fine
  *     >>stream      a complex as bytes: gxb_stream_pass, has; gxb_complex_save, load
  *     >>boolean     Booleans of closed triangle surfaces, exact and chainable: gxb_boolean_create, add, evaluate,
  * destroy; how results are read off: set_triangulation, set_fine, set_mend; what else there is to know of one:
@@ -453,10 +453,55 @@ GXFEM_API gx_result gxb_complex_set_wall(gxb_complex *complex, uint32_t facet);
 GXFEM_API gx_result gxb_complex_set_removed(gxb_complex *complex, uint32_t leaf);
 /* Makes the four facets of an untouched element. */
 GXFEM_API gx_result gxb_complex_open_element(gxb_complex *complex, uint32_t element);
-/* The leaf's facets, as they are divided now (in complex.pool, until the next call that changes the complex). */
-GXFEM_API gx_result gxb_leaf_facets(gxb_complex *complex, uint32_t leaf, uint32_t *first, uint32_t *count);
-/* The facet's edges, as they are divided now. */
-GXFEM_API gx_result gxb_facet_edges(gxb_complex *complex, uint32_t facet, uint32_t *first, uint32_t *count);
+/* Brings a leaf's list of facets, or a facet's loop of edges, up to date: divided items are replaced by their parts.
+   The list is at gxb_complex_list(complex, *first), *count long. Calls for other leaves and facets leave it there. May
+   append to the lists and to the undo log. Errors: MEMORY, LIMIT. */
+GXFEM_API gx_result gxb_leaf_resolve_facets(gxb_complex *complex, uint32_t leaf, uint32_t *first, uint32_t *count);
+GXFEM_API gx_result gxb_facet_resolve_edges(gxb_complex *complex, uint32_t facet, uint32_t *first, uint32_t *count);
+
+/* Read access. Indices must be below the counts. Pointers are valid until the next call that changes or resolves. */
+GXFEM_API const gxb_cpoint *gxb_complex_point(const gxb_complex *complex, uint32_t point);
+GXFEM_API const gxb_cplane *gxb_complex_plane(const gxb_complex *complex, uint32_t plane);
+GXFEM_API const gxb_edge *gxb_complex_edge(const gxb_complex *complex, uint32_t edge);
+GXFEM_API const gxb_facet *gxb_complex_facet(const gxb_complex *complex, uint32_t facet);
+GXFEM_API const gxb_leaf *gxb_complex_leaf(const gxb_complex *complex, uint32_t leaf);
+GXFEM_API const gxb_node *gxb_complex_tree_node(const gxb_complex *complex, uint32_t node);
+GXFEM_API const gxb_label *gxb_complex_label(const gxb_complex *complex, uint32_t label);
+/* A list of facets, or a loop of signed edges (edge * 2, + 1 if walked backwards), from its first item on. */
+GXFEM_API const uint32_t *gxb_complex_list(const gxb_complex *complex, uint32_t first);
+/* The point from which a signed edge leaves. */
+GXFEM_API uint32_t gxb_complex_edge_start(const gxb_complex *complex, uint32_t signed_edge);
+GXFEM_API uint32_t gxb_complex_point_count(const gxb_complex *complex);
+GXFEM_API uint32_t gxb_complex_facet_count(const gxb_complex *complex);
+GXFEM_API uint32_t gxb_complex_leaf_count(const gxb_complex *complex);
+GXFEM_API uint32_t gxb_complex_label_count(const gxb_complex *complex);
+/* The facets that were labelled or made walls since begin, as often as that was done. */
+GXFEM_API uint32_t gxb_complex_marked_count(const gxb_complex *complex);
+GXFEM_API uint32_t gxb_complex_marked_facet(const gxb_complex *complex, uint32_t index);
+/* 1: this made a wall of a facet that was open. */
+GXFEM_API int gxb_complex_marked_wall(const gxb_complex *complex, uint32_t index);
+
+/* The mesh, which never changes. Rows of one array: what is behind element 0's row are the other elements' rows. */
+GXFEM_API uint32_t gxb_complex_node_count(const gxb_complex *complex);
+GXFEM_API uint32_t gxb_complex_element_count(const gxb_complex *complex);
+GXFEM_API uint32_t gxb_complex_face_count(const gxb_complex *complex);
+GXFEM_API uint32_t gxb_complex_mesh_edge_count(const gxb_complex *complex);
+/* 4 nodes; 4 faces, opposite to node k; 6 mesh edges between nodes 01 02 03 12 13 23 */
+GXFEM_API const uint32_t *gxb_complex_element_nodes(const gxb_complex *complex, uint32_t element);
+GXFEM_API const uint32_t *gxb_complex_element_faces(const gxb_complex *complex, uint32_t element);
+GXFEM_API const uint32_t *gxb_complex_element_edges(const gxb_complex *complex, uint32_t element);
+/* The 2 elements at a face: GXB_NONE outside the mesh */
+GXFEM_API const uint32_t *gxb_complex_face_elements(const gxb_complex *complex, uint32_t face);
+/* The facet (edge) that a face (mesh edge) became, undivided; GXB_NONE until something touched it */
+GXFEM_API uint32_t gxb_complex_face_facet(const gxb_complex *complex, uint32_t face);
+GXFEM_API uint32_t gxb_complex_mesh_edge(const gxb_complex *complex, uint32_t mesh_edge);
+/* The element's tree: leaf * 2, or node * 2 + 1 */
+GXFEM_API uint32_t gxb_complex_root(const gxb_complex *complex, uint32_t element);
+/* The frame of balls and plane filters: (x - origin) * 2^shift */
+GXFEM_API const double *gxb_complex_origin(const gxb_complex *complex);
+GXFEM_API int gxb_complex_shift(const gxb_complex *complex);
+/* Prefetches the element's rows, root and first leaf. */
+GXFEM_API void gxb_complex_prefetch_element(const gxb_complex *complex, uint32_t element);
 
 /* Sign of a point against a plane of the complex, exact. */
 GXFEM_API int gxb_complex_side(gxb_complex *complex, uint32_t point, uint32_t plane);
@@ -2911,6 +2956,92 @@ GXFEM_API GXBP_RARE void gxb_complex_destroy(gxb_complex *cx) {
     gxbp_release(&a, cx, sizeof *cx);
 }
 
+/* >>access: reading a complex ------------------------------------------------------------------------------------- */
+
+/* In: a complex and an index. Out: the item. Nothing changes. These functions are what gxfem.h knows of the arrays.
+   They are small enough to be inlined. */
+
+static uint32_t gxbp_edge_start(const gxb_complex *cx, uint32_t signed_edge) {
+    return cx->edges[signed_edge >> 1].v[signed_edge & 1];
+}
+
+GXFEM_API const gxb_cpoint *gxb_complex_point(const gxb_complex *cx, uint32_t point) { return &cx->points[point]; }
+
+GXFEM_API const gxb_cplane *gxb_complex_plane(const gxb_complex *cx, uint32_t plane) { return &cx->planes[plane]; }
+
+GXFEM_API const gxb_edge *gxb_complex_edge(const gxb_complex *cx, uint32_t edge) { return &cx->edges[edge]; }
+
+GXFEM_API const gxb_facet *gxb_complex_facet(const gxb_complex *cx, uint32_t facet) { return &cx->facets[facet]; }
+
+GXFEM_API const gxb_leaf *gxb_complex_leaf(const gxb_complex *cx, uint32_t leaf) { return &cx->leaves[leaf]; }
+
+GXFEM_API const gxb_node *gxb_complex_tree_node(const gxb_complex *cx, uint32_t node) { return &cx->nodes[node]; }
+
+GXFEM_API const gxb_label *gxb_complex_label(const gxb_complex *cx, uint32_t label) { return &cx->labels[label]; }
+
+GXFEM_API const uint32_t *gxb_complex_list(const gxb_complex *cx, uint32_t first) { return cx->pool + first; }
+
+GXFEM_API uint32_t gxb_complex_edge_start(const gxb_complex *cx, uint32_t signed_edge) {
+    return gxbp_edge_start(cx, signed_edge);
+}
+
+GXFEM_API uint32_t gxb_complex_point_count(const gxb_complex *cx) { return cx->point_count; }
+
+GXFEM_API uint32_t gxb_complex_facet_count(const gxb_complex *cx) { return cx->facet_count; }
+
+GXFEM_API uint32_t gxb_complex_leaf_count(const gxb_complex *cx) { return cx->leaf_count; }
+
+GXFEM_API uint32_t gxb_complex_label_count(const gxb_complex *cx) { return cx->label_count; }
+
+GXFEM_API uint32_t gxb_complex_marked_count(const gxb_complex *cx) { return cx->wall_count; }
+
+GXFEM_API uint32_t gxb_complex_marked_facet(const gxb_complex *cx, uint32_t index) { return cx->walls[index] >> 1; }
+
+GXFEM_API int gxb_complex_marked_wall(const gxb_complex *cx, uint32_t index) { return (int)(cx->walls[index] & 1); }
+
+GXFEM_API uint32_t gxb_complex_node_count(const gxb_complex *cx) { return cx->node_count; }
+
+GXFEM_API uint32_t gxb_complex_element_count(const gxb_complex *cx) { return cx->element_count; }
+
+GXFEM_API uint32_t gxb_complex_face_count(const gxb_complex *cx) { return cx->face_count; }
+
+GXFEM_API uint32_t gxb_complex_mesh_edge_count(const gxb_complex *cx) { return cx->mesh_edge_count; }
+
+GXFEM_API const uint32_t *gxb_complex_element_nodes(const gxb_complex *cx, uint32_t element) {
+    return cx->elements + 4 * (size_t)element;
+}
+
+GXFEM_API const uint32_t *gxb_complex_element_faces(const gxb_complex *cx, uint32_t element) {
+    return cx->element_faces + 4 * (size_t)element;
+}
+
+GXFEM_API const uint32_t *gxb_complex_element_edges(const gxb_complex *cx, uint32_t element) {
+    return cx->element_edges + 6 * (size_t)element;
+}
+
+GXFEM_API const uint32_t *gxb_complex_face_elements(const gxb_complex *cx, uint32_t face) {
+    return cx->face_elements + 2 * (size_t)face;
+}
+
+GXFEM_API uint32_t gxb_complex_face_facet(const gxb_complex *cx, uint32_t face) { return cx->face_facet[face]; }
+
+GXFEM_API uint32_t gxb_complex_mesh_edge(const gxb_complex *cx, uint32_t mesh_edge) { return cx->mesh_edge[mesh_edge]; }
+
+GXFEM_API uint32_t gxb_complex_root(const gxb_complex *cx, uint32_t element) { return cx->root[element]; }
+
+GXFEM_API const double *gxb_complex_origin(const gxb_complex *cx) { return cx->origin; }
+
+GXFEM_API int gxb_complex_shift(const gxb_complex *cx) { return cx->shift; }
+
+GXFEM_API void gxb_complex_prefetch_element(const gxb_complex *cx, uint32_t element) {
+    GXBP_FETCH(&cx->leaves[element]);
+    GXBP_FETCH(cx->element_faces + 4 * (size_t)element);
+    GXBP_FETCH(cx->element_edges + 6 * (size_t)element);
+    GXBP_FETCH(cx->root + element);
+    (void)cx;
+    (void)element;
+}
+
 /* >>split: dividing edges, facets and leaves by a plane
  * --------------------------------------------------------------------
  *
@@ -2974,7 +3105,7 @@ static void gxbp_push_edges(gxb_complex *cx, uint32_t signed_edge) {
     }
 }
 
-GXFEM_API gx_result gxb_facet_edges(gxb_complex *cx, uint32_t facet, uint32_t *first, uint32_t *count) {
+GXFEM_API gx_result gxb_facet_resolve_edges(gxb_complex *cx, uint32_t facet, uint32_t *first, uint32_t *count) {
     gxb_facet *f = &cx->facets[facet];
     const uint32_t total = gxbp_count_loop(cx, facet);
     if (total != f->loop_count) {
@@ -2993,7 +3124,7 @@ GXFEM_API gx_result gxb_facet_edges(gxb_complex *cx, uint32_t facet, uint32_t *f
     return GX_OK;
 }
 
-GXFEM_API gx_result gxb_leaf_facets(gxb_complex *cx, uint32_t leaf, uint32_t *first, uint32_t *count) {
+GXFEM_API gx_result gxb_leaf_resolve_facets(gxb_complex *cx, uint32_t leaf, uint32_t *first, uint32_t *count) {
     gxb_leaf *l = &cx->leaves[leaf];
     const uint32_t total = gxbp_count_list(cx, l);
     if (total != l->facet_count) {
@@ -3012,10 +3143,6 @@ GXFEM_API gx_result gxb_leaf_facets(gxb_complex *cx, uint32_t leaf, uint32_t *fi
     *first = l->facets;
     *count = l->facet_count;
     return GX_OK;
-}
-
-static uint32_t gxbp_edge_start(const gxb_complex *cx, uint32_t signed_edge) {
-    return cx->edges[signed_edge >> 1].v[signed_edge & 1];
 }
 
 /* The cutting plane, and (explicit_line) the line in which the facets to be divided meet it, where that is a triangle's
@@ -3629,7 +3756,7 @@ GXFEM_API GXBP_RARE gx_result gxb_complex_cover_node(gxb_complex *cx, gxb_triang
 /* The triangle lies in the plane of some of the leaf's facets. */
 static gx_result gxbp_cover_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t leaf) {
     uint32_t first, count, i, j;
-    gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
+    gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
         uint32_t facet = cx->pool[first + i];
         for (j = 0; j < cx->facets[facet].loop_count; j++) {

@@ -792,7 +792,7 @@ static double check_leaf(const model *m, uint32_t leaf) {
     uint32_t first, count, i, j, uses_count = 0, edge_first, edge_count, *facets;
     use *uses = (use *)malloc(sizeof *uses);
     double six_volumes = 0;
-    ck_assert_int_eq(gxb_leaf_facets(cx, leaf, &first, &count), GX_OK);
+    ck_assert_int_eq(gxb_leaf_resolve_facets(cx, leaf, &first, &count), GX_OK);
     facets = copy_list(cx, first, count);
     for (i = 0; i < count; i++) {
         const gxb_facet *f = &cx->facets[facets[i]];
@@ -801,7 +801,7 @@ static double check_leaf(const model *m, uint32_t leaf) {
         double area[3], volume = 0;
         assert_that(f->child == GXB_NONE && (f->leaf[0] == leaf) != (f->leaf[1] == leaf), "facet %u of leaf %u",
                     facets[i], leaf);
-        ck_assert_int_eq(gxb_facet_edges(cx, facets[i], &edge_first, &edge_count), GX_OK);
+        ck_assert_int_eq(gxb_facet_resolve_edges(cx, facets[i], &edge_first, &edge_count), GX_OK);
         loop = copy_list(cx, edge_first, edge_count);
         check_loop(m, facets[i], loop, edge_count);
         uses = (use *)realloc(uses, (uses_count + edge_count + 1) * sizeof *uses);
@@ -826,7 +826,7 @@ static void check_neighbours(const model *m) {
     uint32_t *listed = (uint32_t *)calloc(cx->facet_count + 1, sizeof *listed), leaf, i, first, count;
     for (leaf = 0; leaf < cx->leaf_count; leaf++) {
         if (cx->leaves[leaf].facet_count == 0) continue;
-        ck_assert_int_eq(gxb_leaf_facets(cx, leaf, &first, &count), GX_OK);
+        ck_assert_int_eq(gxb_leaf_resolve_facets(cx, leaf, &first, &count), GX_OK);
         for (i = 0; i < count; i++) listed[cx->pool[first + i]]++;
     }
     for (i = 0; i < cx->facet_count; i++) {
@@ -956,7 +956,7 @@ static void check_walls(const model *m, uint32_t cut) {
         assert_that(cx->facets[i].wall == 1, "facet %u is no wall", i);
         assert_that(big_sign(big_dot(own.n, m->planes[cx->facets[i].plane].n)) == label->orientation,
                     "facet %u, cut %u: orientation", i, cut);
-        ck_assert_int_eq(gxb_facet_edges(cx, i, &first, &count), GX_OK);
+        ck_assert_int_eq(gxb_facet_resolve_edges(cx, i, &first, &count), GX_OK);
         loop = copy_list(cx, first, count);
         for (k = 0; k < count; k++)
             assert_that(pc_exact_side(&m->points[edge_start(cx, loop[k])], &own) == 0, "facet %u off cut %u", i, cut);
@@ -998,7 +998,7 @@ static void check_barycentric(const model *m, uint32_t element) {
     uint32_t leaf, first, count, i, k, j;
     for (leaf = 0; leaf < cx->leaf_count; leaf++) {
         if (cx->leaves[leaf].element != element || cx->leaves[leaf].facet_count == 0) continue;
-        ck_assert_int_eq(gxb_leaf_facets(cx, leaf, &first, &count), GX_OK);
+        ck_assert_int_eq(gxb_leaf_resolve_facets(cx, leaf, &first, &count), GX_OK);
         for (i = 0; i < count; i++) {
             const uint32_t point = edge_start(cx, cx->pool[cx->facets[cx->pool[first + i]].loop]);
             double lambda[4];
@@ -1549,9 +1549,9 @@ END_TEST
 static void read_lists(gxb_complex *cx) {
     uint32_t leaf, first, count, edge_first, edge_count, i;
     for (leaf = 0; leaf < cx->leaf_count; leaf++) {
-        ck_assert_int_eq(gxb_leaf_facets(cx, leaf, &first, &count), GX_OK);
+        ck_assert_int_eq(gxb_leaf_resolve_facets(cx, leaf, &first, &count), GX_OK);
         for (i = 0; i < count; i++)
-            ck_assert_int_eq(gxb_facet_edges(cx, cx->pool[first + i], &edge_first, &edge_count), GX_OK);
+            ck_assert_int_eq(gxb_facet_resolve_edges(cx, cx->pool[first + i], &edge_first, &edge_count), GX_OK);
     }
 }
 
