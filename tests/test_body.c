@@ -2449,7 +2449,7 @@ START_TEST(cost_of_many_triangles) {
         gx_body *body;
         add_cap(&w, i == 0 ? 20 : 40, 2);
         body = cut_at_once(&w);
-        calls[i] = body->complex->filter_calls;
+        calls[i] = body->complex->store.filter_calls;
         gx_body_destroy(body);
         wl_free(&w);
     }
