@@ -1,13 +1,19 @@
-/* How close static solutions come to closed forms and published values, and with which order.
- * usage: accuracy [FILE [--small]]     rows go to stdout and to FILE, a table to stderr; --small: without the finest
- * meshes
- *
- * value and reference are in the units that the case's comment gives; order is log(error / error before) / log(h / h
- * before) within a case; imbalance is the largest force left on a free copy over the largest reaction or load: where it
- * is not small the solve has not converged, whatever value says; newton and cg are its iterations. What linear
- * tetrahedra can represent (homogeneous states) must come out to the tolerance of the solver. All else converges from
- * the stiff side: these elements lock in bending, and coarse levels are off by tens of percent. That is what the rows
- * show. Where the reference itself is a model (beams) or an extrapolation (Cook), its own error is the limit. */
+/* accuracy.c - how close static solutions come to closed forms and published values, and with which order.
+
+   usage: accuracy [FILE [--small]]; rows go to stdout and to FILE, a table to stderr. --small leaves out the finest
+   meshes.
+
+   Columns:
+       value, reference  in the units that the case's comment gives
+       order             log(error / error before) / log(h / h before) within a case
+       imbalance         the largest force left on a free copy over the largest reaction or load. Where it is not
+                         small the solve has not converged, whatever value says
+       newton, cg        iterations
+
+   Linear tetrahedra can represent homogeneous states, so these must come out to the tolerance of the solver. All
+   other cases converge from the stiff side: the elements lock in bending, and coarse levels are off by tens of
+   percent. The rows show it. Where the reference is a model (beams) or an extrapolation (Cook), its own error is the
+   limit. */
 #define _POSIX_C_SOURCE 200112L
 #define GXFEM_SOLVE_IMPLEMENTATION
 #include "../gxfem_solve.h"
@@ -24,7 +30,7 @@ enum { KINDS = 4, CASES = 10, MOST_SERIES = 32 };
 static int small;
 static size_t done; /* cases */
 
-/* The finest mesh of a case, cells along an edge */
+/* The finest mesh of a case: cells along an edge */
 static size_t finest_of(size_t n) { return small ? n / 2 : n; }
 
 /* ---- rows */
@@ -33,7 +39,7 @@ static size_t finest_of(size_t n) { return small ? n / 2 : n; }
 static double imbalance;
 static gxs_step_report report;
 
-/* A quantity that is followed under refinement; n: cells along an edge */
+/* A quantity under refinement; n: cells along an edge */
 typedef struct series {
     char name[80];
     const char *quantity, *source;
@@ -49,7 +55,7 @@ static series series_make(const char *name, const char *of, const char *quantity
     return s;
 }
 
-/* For the table: the last row of each series that is refined; of the others the worst */
+/* For the table: the last row of each refined series; for the others, the worst row */
 typedef struct last_row {
     series of;
     char order[32];
@@ -110,7 +116,7 @@ static void series_row(series *s, size_t elements, double n, double value, doubl
 
 /* ---- static equilibrium */
 
-/* Independent of the solver's own residual */
+/* The largest force on a free copy, found without the solver's own residual */
 static double measure_imbalance(const scene *s) {
     double *g = (double *)zeroed(3 * s->model.copy_count, sizeof(double)), left = 0, largest = 0;
     size_t i;
@@ -151,7 +157,7 @@ static double energy(const scene *s) {
     return sum;
 }
 
-/* dU/du; of held copies that is the force that holds them. Where forces act on them it is subtracted. */
+/* dU/du. On held copies it is the force that holds them; applied forces are subtracted. */
 static double *reactions(const scene *s) {
     double *g = (double *)zeroed(3 * s->model.copy_count, sizeof(double));
     size_t i;
@@ -161,8 +167,8 @@ static double *reactions(const scene *s) {
     return g;
 }
 
-/* mean first Piola-Kirchhoff stress: sum of reactions times rest positions over the volume, if all the boundary is held
- */
+/* Mean first Piola-Kirchhoff stress, if all the boundary is held: sum of reactions times rest positions over the
+   volume */
 static void mean_stress(const scene *s, double volume, double stress[9]) {
     double *g = reactions(s);
     size_t i, r, c;
@@ -214,7 +220,7 @@ static void load_triangle(scene *s, const uint32_t copy[3], const double *x[3], 
     }
 }
 
-/* Traction on the boundary faces of the plane x[axis] = value of the mesh m that s was made of. */
+/* Traction on the boundary faces of mesh m in the plane x[axis] = value. s was made from m. */
 static void load_plane(scene *s, const mesh *m, size_t axis, double value, traction_fn traction, const double *user) {
     size_t e, c, k, i;
     for (e = 0; e < m->element_count; e++)
@@ -396,7 +402,7 @@ static void homogeneous(gxs_material_kind kind, const char *name, const double f
     mesh_free(&m);
 }
 
-/* The b of F = diag(a, b, b) without lateral stress, by bisection to the last digit */
+/* The b of F = diag(a, b, b) that leaves no lateral stress, by bisection to the last digit */
 static double contraction(gxs_material_kind kind, double young, double poisson, double a) {
     double low = 0.5, high = 1.5, f[9] = {0}, p[9];
     int pass;
@@ -413,8 +419,9 @@ static double contraction(gxs_material_kind kind, double young, double poisson, 
     return 0.5 * (low + high);
 }
 
-/* Traction on the face x = 1, which closed forms say stretches the cube by a; the face x = 0 is held where it then is,
- * contracted already, since held copies have no free components. Stretch, lateral stretch, energy (J), reaction (N). */
+/* Traction on the face x = 1. Closed forms say that it stretches the cube by a. The face x = 0 is held where it then
+   is, already contracted, since held copies have no free components. Gives stretch, lateral stretch, energy (J) and
+   reaction (N). */
 static void uniaxial(gxs_material_kind kind, const char *name, double a) {
     double young = 1e5, poisson = 0.35, f[9] = {0}, p[9], psi, traction[3] = {0}, sum = 0, *g;
     mesh m = irregular_cube();
@@ -496,7 +503,8 @@ static void traction_parabola(const double *user, const double x[3], double trac
     traction[1] = -user[0] * (user[1] - x[1] * x[1]);
 }
 
-/* Root held at the exact displacement, exact traction at the end: deflection of the axis' end (m) */
+/* The root is held at the exact displacement, the end has the exact traction. Gives the deflection of the axis's end
+   (m). */
 static void cantilever_exact(void) {
     static const beam b = {4, 1, 0.5, 1e6, 0, 100};
     series row = series_make("cantilever with parabolic end load", "linear", "end deflection",
@@ -521,9 +529,11 @@ static void cantilever_exact(void) {
     }
 }
 
-/* Clamped root, own weight as forces; w: weight per length, N/m;
- * deflection w L^4 / (8 E I) + w L^2 / (2 kappa G A), kappa = 10 (1 + nu) / (12 + 11 nu) [Cowper 1966]. A beam's clamp
- * lets the root contract; the clamp here does not: the last percent is the model's. */
+/* Clamped root, own weight as forces; w: weight per length, N/m.
+
+       deflection w L^4 / (8 E I) + w L^2 / (2 kappa G A), kappa = 10 (1 + nu) / (12 + 11 nu) [Cowper 1966]
+
+   A beam's clamp lets the root contract; the clamp here does not. So the last percent is the model's. */
 static void cantilever_weight(gxs_material_kind kind) {
     static const beam b = {10, 1, 1, 1e6, 0.3, 0};
     double weight = 0.05, area = b.depth * b.width, shear = b.young / (2 * (1 + b.poisson)), l = b.length;
@@ -577,8 +587,8 @@ static void elastica_run(double alpha, double curvature, double state[4]) {
     }
 }
 
-/* End of the elastica with alpha = P L^2 / (E I), over its length: the curvature at the root for which that at the end
- * is 0 */
+/* End of the elastica with alpha = P L^2 / (E I), in units of its length. The curvature at the root is the one for
+   which the curvature at the end is 0. */
 static void elastica_end(double alpha, double *x, double *y) {
     double low = 0, high = alpha, state[4];
     int pass;
@@ -593,8 +603,8 @@ static void elastica_end(double alpha, double *x, double *y) {
     *y = state[3];
 }
 
-/* Large rotations: slender clamped beam with a dead load at its end, P L^2 / (E I) = 3. The elastica neither stretches
- * nor shears: the last few 1e-3 are the model's. End deflection and shortening (m) */
+/* Large rotations: slender clamped beam with a dead load at its end, P L^2 / (E I) = 3. Gives end deflection and
+   shortening (m). The elastica neither stretches nor shears, so the last few 1e-3 are the model's. */
 static void cantilever_large(gxs_material_kind kind, size_t finest) {
     static const beam b = {20, 1, 1, 1e6, 0, 0};
     double alpha = 3, load = alpha * b.young * second_moment(&b) / (b.length * b.length), x, y, traction[3] = {0};
@@ -621,10 +631,11 @@ static void cantilever_large(gxs_material_kind kind, size_t finest) {
 }
 
 /* ---- Cook's membrane: corners (0,0) (48,44) (48,60) (0,44), clamped on the left, shear traction on the right.
- * Plane strain without constraints on components: one layer whose upper nodes follow the copies of the lower ones, so
- * that an element's four corners follow three copies. The field is then the same at every height, elements are linear
- * triangles in effect, and nothing drives it out of the plane. With two layers no copy is at two corners of an element;
- * the solution is the same. */
+
+   Plane strain without constraints on components: in one layer the upper nodes follow the copies of the lower ones.
+   An element's four corners then follow three copies. The field is the same at every height, elements are linear
+   triangles in effect, and nothing drives it out of the plane. With two layers no copy is at two corners of an
+   element; the solution is the same. */
 enum { LAYERS = 1 };
 
 static mesh cook_mesh(size_t n) {
@@ -642,7 +653,7 @@ static mesh cook_mesh(size_t n) {
     return m;
 }
 
-/* Nodes from copies on follow those below: forces of theirs go there too. */
+/* Nodes from `copies` on follow those below, and their forces act there too. */
 static void make_periodic(scene *s, uint32_t copies) {
     size_t e, i, k;
     for (e = 0; e < s->model.element_count; e++)
@@ -698,8 +709,8 @@ static void cook_membranes(void) {
 /* ---- torsion of a square column, |x|, |y| <= 1/2, along z: exact with Saint-Venant's solution and its warping at both
  * ends */
 
-/* Warping of twist 1: xy - 8 / pi^3 sum (-1)^k / n^3 sin(n pi x) sinh(n pi y) / cosh(n pi / 2), n = 2 k + 1. The
- * quotient is written with exponentials that do not overflow. [Timoshenko and Goodier, art. 109] */
+/* Warping of twist 1: xy - 8 / pi^3 sum (-1)^k / n^3 sin(n pi x) sinh(n pi y) / cosh(n pi / 2), n = 2 k + 1
+   [Timoshenko and Goodier, art. 109]. The quotient is written with exponentials that do not overflow. */
 static double warping(double x, double y) {
     double sum = 0;
     int k;
@@ -718,8 +729,8 @@ static double torsion_constant(void) {
     return 1.0 / 3 - 64 * sum;
 }
 
-/* moment about z of the reactions of the end z = length, at the deformed positions or, for the linear material, those
- * at rest */
+/* Moment about z of the reactions of the end z = length, at the deformed positions; for the linear material, at the
+   rest positions */
 static double end_torque(const scene *s, double length) {
     double *g = reactions(s), sum = 0;
     size_t i, moved = s->material.kind != GXS_LINEAR;
@@ -765,9 +776,10 @@ static void torsion_square(gxs_material_kind kind, double twist) {
 }
 
 /* ---- finite twist of a solid cylinder of radius and length 1
- * Torsion with free sides keeps the form r = f(R), angle = Theta + tau Z, z = Z for every isotropic material. In the
- * frames of cylindrical coordinates F = [f' 0 0; 0 f/R tau f; 0 0 1], so f minimises W = 2 pi int psi(F) R dR, a
- * problem of one variable: f = R (1 + c_0 + c_1 R^2 + ...), odd and analytic. Torque = dW / dtau. */
+
+   Torsion with free sides has the form r = f(R), angle = Theta + tau Z, z = Z for every isotropic material. In the
+   frames of cylindrical coordinates F = [f' 0 0; 0 f/R tau f; 0 0 1]. So f minimises W = 2 pi int psi(F) R dR, a
+   problem of one variable: f = R (1 + c_0 + c_1 R^2 + ...) is odd and analytic. Torque = dW / dtau. */
 enum { TERMS = 8, POINTS = 24 };
 
 typedef struct cylinder {
@@ -804,7 +816,7 @@ static double radius_of(const cylinder *c, double at) {
     return at * sum;
 }
 
-/* dW/dc and, on the way, energy, torque and axial force */
+/* dW/dc; also energy, torque and axial force */
 static void cylinder_gradient(cylinder *c, double gradient[TERMS]) {
     int i, k;
     memset(gradient, 0, TERMS * sizeof(double));
@@ -890,7 +902,7 @@ static size_t disc_ring(size_t k, uint32_t (*triangle)[3]) {
     return count;
 }
 
-/* Prism on a triangle of ascending nodes a < b < c in three tetrahedra: neighbours choose the same diagonal */
+/* Prism on a triangle of ascending nodes a < b < c, as three tetrahedra. Neighbours choose the same diagonal. */
 static void mesh_prism(const uint32_t triangle[3], uint32_t below, uint32_t above, uint32_t (*element)[4]) {
     uint32_t v[3], kept;
     int i, j;
@@ -928,7 +940,7 @@ static mesh mesh_cylinder(size_t n) {
     return m;
 }
 
-/* where the solution of one variable takes a point */
+/* Where the solution of one variable takes a point */
 static void cylinder_target(const cylinder *c, const double x[3], double u[3]) {
     double radius = sqrt(x[0] * x[0] + x[1] * x[1]), ratio = radius > 0 ? radius_of(c, radius) / radius : 1;
     double cosine = cos(c->twist * x[2]), sine = sin(c->twist * x[2]);
@@ -946,7 +958,8 @@ static double end_force(const scene *s, double length) {
     return sum;
 }
 
-/* Torque (Nm), axial force (N), energy (J) of a twist by 1 rad; both ends held where the exact solution has them */
+/* Torque (Nm), axial force (N) and energy (J) of a twist by 1 rad; both ends are held where the exact solution has
+   them */
 static void torsion_cylinder(gxs_material_kind kind, double twist) {
     const char *source = "minimum of one variable to 1e-9 (see accuracy.c)";
     series torque = series_make("twisted cylinder", kind_name[kind], "torque", source);
@@ -980,7 +993,7 @@ static void cantilever_large_neo_hookean(void) { cantilever_large(GXS_STABLE_NEO
 static void cantilever_large_corotated(void) { cantilever_large(GXS_FIXED_COROTATED, 4); }
 static void torsion_square_linear(void) { torsion_square(GXS_LINEAR, 0.1); }
 static void torsion_cylinder_neo_hookean(void) { torsion_cylinder(GXS_STABLE_NEO_HOOKEAN, 1); }
-/* at 1 a minimum with crumpled elements is lower: the material allows that */
+/* At twist 1 a minimum with crumpled elements is lower: the material allows it. */
 static void torsion_cylinder_kirchhoff(void) { torsion_cylinder(GXS_ST_VENANT_KIRCHHOFF, 0.5); }
 static void torsion_cylinder_corotated(void) { torsion_cylinder(GXS_FIXED_COROTATED, 1); }
 

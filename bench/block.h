@@ -1,11 +1,13 @@
 /* block.h - the benches' scenes: a cube that hangs by its top, cut in several ways.
 
    Edge 1 m, n^3 cells of 5 tetrahedra, every other cell mirrored so that diagonals meet. Cuts are placed in units of
-   cells, at fractions of a cell that differ from cut to cut and stay clear of lattice planes, so that a scene of any
-   size is the same kind of scene: as many cells between two cuts, elements divided as unevenly. uncut       one piece
-       accordion   horizontal cuts 2.5 cells apart, from the left and from the right in turn, each through 87 % of the
-   block: one piece, which hangs together in a zigzag loose       planes 2.5 cells apart across each axis: pieces
-   without a link; the top ones are held, the others fall
+   cells, at fractions of a cell that differ from cut to cut and stay clear of lattice planes. So a scene is of the
+   same kind at any size: the same number of cells between two cuts, elements divided as unevenly.
+       uncut       one fragment
+       accordion   horizontal cuts 2.5 cells apart, from the left and from the right in turn, each through 87 % of
+                   the block: one fragment, which hangs together in a zigzag
+       loose       planes 2.5 cells apart across each axis: fragments without a link; the top ones are held, the
+                   others fall
 
    Include after gxfem.h. */
 #ifndef GXFEM_BENCH_BLOCK_H
@@ -18,7 +20,7 @@ enum { BLOCK_UNCUT, BLOCK_ACCORDION, BLOCK_LOOSE, BLOCK_CUTS };
 
 typedef struct block_desc {
     uint32_t cells;              /* along an edge */
-    double jitter;               /* inner nodes move by up to so many cells along each axis */
+    double jitter;               /* inner nodes move by up to this many cells along each axis */
     int cut;                     /* BLOCK_UNCUT ... */
     double young;                /* Pa */
     gx_allocator allocator;      /* of the body; zero: malloc, free */
@@ -27,8 +29,8 @@ typedef struct block_desc {
 
 static const char *const block_cut_names[BLOCK_CUTS] = {"uncut", "accordion", "loose"};
 
-/* 2.5 and a little: the fraction of a cell at which cuts lie drifts, and in the largest block it is still 0.1 from a
- * lattice plane. */
+/* A little more than 2.5, so that the fraction of a cell at which cuts lie drifts. In the largest block it is still
+   0.1 away from a lattice plane. */
 static const double block_spacing = 2.5137;
 
 /* Of the first cut of the accordion, and of the first plane across each axis; cells. */
@@ -68,8 +70,8 @@ static void block_place_node(block_mesh *mesh, const size_t at[3], double jitter
     }
 }
 
-/* The five tetrahedra of a cell; bits 0, 1, 2 of a corner are its steps along the axes. A mirror image has its last two
-   corners exchanged, which makes its volume positive again. */
+/* The five tetrahedra of a cell; bits 0, 1, 2 of a corner are its steps along the axes. A mirror image has its last
+   two corners exchanged, so that its volume is positive again. */
 static void block_fill_cell(block_mesh *mesh, const size_t at[3]) {
     static const unsigned corners[5][4] = {{0, 5, 3, 6}, {1, 3, 0, 5}, {2, 0, 3, 6}, {4, 6, 5, 0}, {7, 5, 6, 3}};
     const size_t cells = mesh->side - 1, cell = (at[2] * cells + at[1]) * cells + at[0];
@@ -96,8 +98,8 @@ static void block_fill(block_mesh *mesh, double jitter) {
 
 /* ---- cuts ---- */
 
-/* A rectangle across an axis, at a distance from the origin; it covers low to high of the next axis and all of the
- * third. */
+/* A rectangle across an axis, at a distance from the origin. It covers low to high of the next axis and all of the
+   third. */
 static gx_result block_cut_rectangle(gx_body *body, uint32_t axis, double distance, double low, double high) {
     static const uint32_t triangles[6] = {0, 1, 2, 0, 2, 3};
     const double along[4] = {low, high, high, low}, across[4] = {-0.1, -0.1, 1.1, 1.1};
@@ -121,7 +123,8 @@ static gx_result block_cut_rectangle(gx_body *body, uint32_t axis, double distan
     return gx_body_cut(body, &desc, NULL, NULL);
 }
 
-/* Cuts across an axis as long as a cell is left beyond the last; in turn from either side, or through. */
+/* Cuts across an axis as long as a cell is left beyond the last one; from either side in turn, or all the way
+   through */
 static gx_result block_cut_axis(gx_body *body, const block_desc *desc, uint32_t axis, int through) {
     gx_result result = GX_OK;
     double at = block_offset[axis];
@@ -184,8 +187,7 @@ static gx_result block_make_mesh_and_body(const block_desc *desc, gx_body **body
     return result;
 }
 
-/* The scene: made, cut and held at z = 1. GX_ERROR_INVERTED if the jitter is so large that it turned an element inside
- * out. */
+/* The scene: made, cut and held at z = 1. GX_ERROR_INVERTED if the jitter turned an element inside out. */
 static inline gx_result block_create(const block_desc *desc, gx_body **body) {
     const gx_region top = {2, 1, 1.0 - 1e-9};
     gx_result result = block_make_mesh_and_body(desc, body);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-/* From some fixed instant; user is not used (the signature is gx_body_desc's). */
+/* Seconds from some fixed instant. user is not used; the signature is that of gx_body_desc.clock. */
 static inline double seconds(void *user) {
     struct timespec now;
     (void)user;
@@ -18,7 +18,7 @@ static inline int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Sorts the values. 0 of none */
+/* Sorts the values; 0 if there are none */
 static inline double median(double *values, size_t count) {
     if (count == 0) return 0;
     qsort(values, count, sizeof *values, ascending);

@@ -1,26 +1,30 @@
-/* Condition numbers of the system matrix of a cut cube: RXFEM's Fig. 14 with RXFEM's basis and ours, and a corner
- * piece. usage: conditioning [FILE [--small]]     rows go to stdout and to FILE, a table to stderr; --small: the same,
- * it takes seconds
- *
- * As in RXFEM section 7: the cube [-1, 1]^3 of five tetrahedra, free; A = M + dt^2 K at rest, E = 1e6 Pa, nu = 0.3,
- * rho = 1000 kg/m3, dt = 1e-3 s.
- *   case       uncut; slice: plane x = 1 - eps; corner: plane that cuts off a corner, eps: the piece's share of its
- * element basis      copies: one displacement per node and side (this library); sign: shifted sign enrichment (RXFEM
- * section 4.3), u = sum N_i u_i + sum psi_i N_i a_i, psi_i = (sgn(x) - sgn(x_i)) / 2, as bench/rxfem.h finds it. They
- * span the same space: where a node has two copies, that on its own side is u_i, the other u_i + a_i or u_i - a_i
- *   scaling    S of S^T A S: none; diagonal: A_kk^-1/2; block: the inverse factors of the 3x3 diagonal blocks; volume:
- * RXFEM Eq. 26 and 27, the share of its node's one-ring on which a function is not 0, to the power -1/2; by exact
- *              volumes: RXFEM's rules are right to 1e-15 of the element only, and it constrains functions below 1e-9;
- * multigrid, of the copies' basis: the solver's own V-cycle P in place of S S^T, asked for P of each unit vector, in
- * single precision as it comes. Translations of whole fragments are solved apart, exactly, and count as 1 extension
- * off: no copy follows others (support_below is 1e-300) on: gx_body_desc.support_below is 1/2, so that the four copies
- * of the corner piece move together, as a point. The constraints are those of gx_body_model; in the sign basis what
- * they leave is spanned by u_i and a_i
- *
- * Condition numbers go up to 1e41, so eigenvalues are not taken from A. A in the copies' basis is a graded matrix whose
- * factor L, A = L L^T, has small relative errors; any other basis and scaling is a factor F = S^T B^T L, and one-sided
- * Jacobi rotations of F's columns give its singular values with small relative errors too [Demmel and Veselic 1992].
- * With double in place of long double the same four digits come out. */
+/* conditioning.c - condition numbers of the system matrix of a cut cube: RXFEM's Fig. 14 with RXFEM's basis and
+   ours, and a corner tetrahedron.
+
+   usage: conditioning [FILE [--small]]; rows go to stdout and to FILE, a table to stderr. --small: the same; it
+   takes seconds.
+
+   As in RXFEM section 7: the cube [-1, 1]^3 of five tetrahedra, free; A = M + dt^2 K at rest, E = 1e6 Pa, nu = 0.3,
+   rho = 1000 kg/m3, dt = 1e-3 s.
+       case       uncut; slice: plane x = 1 - eps; corner: a plane cuts off a corner, eps: its share of its element
+       basis      copies: one displacement per node and side (this library). sign: shifted sign enrichment (RXFEM
+                  section 4.3), u = sum N_i u_i + sum psi_i N_i a_i, psi_i = (sgn(x) - sgn(x_i)) / 2, from
+                  bench/rxfem.h. Both span the same space: where a node has two copies, the one on its own side is
+                  u_i, the other u_i + a_i or u_i - a_i
+       scaling    S of S^T A S. none; diagonal: A_kk^-1/2; block: inverse factors of the 3x3 diagonal blocks; volume:
+                  RXFEM Eq. 26 and 27, the share of its node's one-ring on which a function is not 0, to the power
+                  -1/2, by exact volumes (RXFEM's rules are right to 1e-15 of the element only, and it constrains
+                  functions below 1e-9); multigrid, for the copies' basis: the solver's own V-cycle P instead of S
+                  S^T. P is applied to each unit vector, in single precision. Translations of whole fragments are
+                  solved apart, exactly, and count as 1
+       extension  off: no copy follows others (support_below is 1e-300). on: gx_body_desc.support_below is 1/2, so
+                  that the corner's four copies move together, as a point. Constraints are those of gx_body_model; in
+                  the sign basis, what they leave is spanned by u_i and a_i
+
+   Condition numbers go up to 1e41, so eigenvalues are not computed from A. In the copies' basis A is a graded
+   matrix. Its factor L, A = L L^T, has small relative errors. Any other basis and scaling is a factor F = S^T B^T L.
+   One-sided Jacobi rotations of F's columns give its singular values with small relative errors too [Demmel and
+   Veselic 1992]. With double in place of long double the same four digits come out. */
 #define _POSIX_C_SOURCE 200112L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
@@ -47,7 +51,7 @@ static void expect(int holds, const char *what) {
     exit(1);
 }
 
-/* The copies of a cut cube that follow no others ("free") and its matrix */
+/* The copies of a cut cube that follow no others ("free"), and its matrix */
 typedef struct cube {
     gx_body *body;
     gxs_model model;
@@ -118,13 +122,13 @@ static void cube_number(cube *c, const gx_view *view) {
 
 /* ---- RXFEM's functions */
 
-/* Is the fragment's centre in front of the plane (n, d of n . x = d); NULL: there is one side only */
+/* Is the fragment's centre in front of the plane (n, d of n . x = d)? NULL: there is one side only */
 static int is_in_front(const gx_view *view, size_t cell, const double plane[4]) {
     const double *y = view->fragment_center + 3 * (size_t)view->cell_fragment[cell];
     return plane && plane[0] * y[0] + plane[1] * y[1] + plane[2] * y[2] > plane[3];
 }
 
-/* The cell that is RXFEM's piece: of the same element, on the same side if there are two */
+/* The cell that is RXFEM's piece: in the same element, on the same side if there are two */
 static size_t cell_of(const gx_view *view, const rx_body *b, const rx_piece *piece, const double plane[4], int turned) {
     const int divided = b->patch_first[piece->element] < b->patch_first[piece->element + 1];
     size_t cell;
@@ -136,7 +140,7 @@ static size_t cell_of(const gx_view *view, const rx_body *b, const rx_piece *pie
     return cell;
 }
 
-/* Values of the functions at free copies: u of each node, then the enrichments */
+/* Values of the functions at free copies: first u of each node, then the enrichments */
 static void read_functions(cube *c, const gx_view *view, const rx_body *b, const double plane[4], int turned) {
     uint32_t functions[64];
     int psi[64], k;
@@ -160,8 +164,8 @@ static int free_copies(const cube *c, uint32_t node) {
     return count;
 }
 
-/* Leaves out the functions that free copies have no use for: those of nodes that have none, enrichments of nodes that
- * have one. */
+/* Leaves out functions without use for free copies: those of nodes without a copy, and enrichments of nodes with
+   one. */
 static void keep_functions(cube *c, const rx_body *b) {
     size_t i, kept = 0;
     for (i = 0; i < b->node_count + b->enrichment_count; i++) {
@@ -173,7 +177,7 @@ static void keep_functions(cube *c, const rx_body *b) {
     expect(kept == c->count, "RXFEM has another number of functions");
 }
 
-/* The cube cut by RXFEM. Its plus side is in front of the triangle of the points; turned: behind the plane */
+/* The cube as RXFEM cuts it. The plus side is in front of the triangle of the points; turned: behind it */
 static void cube_enrich(cube *c, const gx_view *view, const double *points, const double *plane) {
     static const uint32_t triangle[3] = {0, 1, 2};
     rx_body *b = rx_body_create(rules, corners, 8, tetrahedra, 5);
@@ -193,8 +197,8 @@ static void cube_enrich(cube *c, const gx_view *view, const double *points, cons
 
 /* ---- the matrix */
 
-/* of one pair of corners: M_ij 1 + dt^2 w (lambda g_i g_j^T + mu g_j g_i^T + mu g_i . g_j 1), which is the stable
- * neo-Hookean material at rest as well */
+/* Block of one pair of corners: M_ij 1 + dt^2 w (lambda g_i g_j^T + mu g_j g_i^T + mu g_i . g_j 1). At rest the
+   stable neo-Hookean material has the same. */
 static void add_pair(real block[3][3], const gxs_element *e, int i, int j, real g[4][3]) {
     static const int packed[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
     real mu = (real)young / (2 * (1 + (real)poisson)), lambda = 2 * mu * poisson / (1 - 2 * (real)poisson);
@@ -206,7 +210,7 @@ static void add_pair(real block[3][3], const gxs_element *e, int i, int j, real 
                           (r == s ? (real)e->mass[packed[i][j]] : 0);
 }
 
-/* The free copies that one follows, itself if it is free; returns how many */
+/* The free copies that a copy follows, itself if it is free; returns their number */
 static int masters_of(const cube *c, uint32_t copy, uint32_t master[4], real weight[4]) {
     const gxs_constraint *constraint = constraint_of(c, copy);
     int k, count = 0;
@@ -251,8 +255,7 @@ static void add_element(cube *c, const gxs_element *e) {
     }
 }
 
-/* A = L L^T, pivots by size; rows of L stay where they are, columns come in the order of pivots. Destroys a copy of A.
- */
+/* A = L L^T with pivots by size. Rows of L stay in place, columns come in the order of pivots. Destroys a copy of A. */
 static void cube_factor(cube *c) {
     static matrix a;
     int done[SIZE] = {0};
@@ -287,8 +290,8 @@ static void change_basis(const cube *c, int sign, matrix f) {
             for (f[i][k] = 0, j = 0; j < c->count; j++) f[i][k] += c->sign[i / 3][j] * c->factor[3 * j + r][k];
 }
 
-/* Support's share of the one-ring of its node: of one free copy, or of one of RXFEM's functions. 1 where the node's
- * other copy follows others */
+/* The share of its node's one-ring on which a free copy, or a function of RXFEM, is not 0. It is 1 where the node's
+   other copy follows others. */
 static real volume_share(const cube *c, size_t at, int sign) {
     real support = 0, ring = 0;
     size_t i, node = COPIES;
@@ -341,7 +344,8 @@ static void scale_volume(const cube *c, int sign, matrix f) {
 
 /* ---- multigrid: L^T P L */
 
-/* A solver that has linearised the cube at rest, as far as doubles tell: its first step, as the cube slowly grows */
+/* A solver that has linearised the cube at rest, to the precision of doubles: its first step, as the cube slowly
+   grows */
 static gxs_solver *cube_solver(const cube *c) {
     double u[SIZE] = {0}, v[SIZE];
     gxs_solver_desc desc;
@@ -386,7 +390,7 @@ static void multiply(size_t n, matrix a, int transposed, matrix b, matrix f) {
             for (f[i][j] = 0, k = 0; k < n; k++) f[i][j] += (transposed ? a[k][i] : a[i][k]) * b[k][j];
 }
 
-/* Takes out of the rows of f what moves a fragment as a whole, L^T t, and puts it back with the eigenvalue 1. */
+/* Takes the motion of whole fragments, L^T t, out of the rows of f, and puts it back with the eigenvalue 1. */
 static void translate(const cube *c, matrix f) {
     size_t n = 3 * c->count, piece, r, i, k;
     for (piece = 0; piece < c->fragments; piece++)
@@ -438,7 +442,7 @@ static int rotate(matrix f, size_t n, size_t p, size_t q) {
     return 1;
 }
 
-/* of F F^T: the square of F's largest singular value over the smallest */
+/* Of F F^T: the squared ratio of F's largest singular value to the smallest */
 static real condition(matrix f, size_t n) {
     real least = 0, largest = 0;
     size_t p, q, i;
@@ -498,7 +502,7 @@ static void rows(const cube *c, const char *name, double eps, int extended) {
     static matrix f;
     int sign, k;
     for (sign = 0; sign < 2; sign++)
-        for (k = 0; k < SCALINGS - sign; k++) { /* multigrid is of copies only */
+        for (k = 0; k < SCALINGS - sign; k++) { /* multigrid: copies only */
             real number;
             change_basis(c, sign, f);
             if (k == 1)

@@ -1,6 +1,5 @@
-/* csv.h - tables of the benches. Rows go to stdout and, where there is one, to a file, which has its name when the
-   table is whole: until then
-   ".part" is behind it. Define _POSIX_C_SOURCE before the first header. */
+/* csv.h - tables of the benches. Rows go to stdout and, if there is one, to a file. The file has ".part" at the end
+   of its name until the table is whole. Define _POSIX_C_SOURCE before the first header. */
 #ifndef BENCH_CSV_H
 #define BENCH_CSV_H
 
@@ -60,13 +59,13 @@ static inline void csv_open(const char *program, const char *path, const char *h
     csv_row("%s", header);
 }
 
-/* A second table, which stdout does not get */
+/* A second table, which does not go to stdout */
 static inline void csv_open_second(const char *program, const char *path, const char *header) {
     csv_to_file_only = 1;
     csv_open(program, path, header);
 }
 
-/* 1, and says so, if the file could not be written */
+/* 1, with a message, if the file could not be written */
 static inline int csv_close(void) {
     char part[sizeof csv_path + 8];
     if (!csv_file) return 0;

@@ -1,9 +1,9 @@
 /* dense.h - small dense systems of the baselines: the Moore-Penrose pseudo-inverse by singular values.
 
-   T, the taller of A and A^T (n x m), is divided by Householder reflections with column pivoting, T P = Q R, which
-   tells the rank; the singular values of L = R^T (m x rank) come from one-sided Jacobi rotations of its columns [Drmac
-   and Veselic 2008]: L V = W = U S. So A^+ is Q V S^-2 W^T P^T for A = T^T, and P W S^-2 V^T Q^T for A = T. Out of
-   memory ends the program. */
+   T, the taller of A and A^T (n x m), is divided by Householder reflections with column pivoting, T P = Q R. That
+   gives the rank. The singular values of L = R^T (m x rank) come from one-sided Jacobi rotations of its columns
+   [Drmac and Veselic 2008]: L V = W = U S. So A^+ is Q V S^-2 W^T P^T for A = T^T, and P W S^-2 V^T Q^T for A = T.
+   Out of memory ends the program. */
 #ifndef BENCH_DENSE_H
 #define BENCH_DENSE_H
 
@@ -72,7 +72,7 @@ static inline double pinv_rest(const pinv *p, size_t j, size_t k) {
     return dense_dot(rest, rest, p->n - k);
 }
 
-/* The column of largest norm among k ... m - 1 comes to k; returns its square, summed. */
+/* Brings the column of largest norm among k ... m - 1 to k; returns its square, summed. */
 static inline double pinv_pivot(pinv *p, size_t k) {
     size_t j, best = k, i;
     for (j = k; j < p->m; j++)
@@ -90,8 +90,7 @@ static inline double pinv_pivot(pinv *p, size_t k) {
     return pinv_rest(p, k, k);
 }
 
-/* Squares of norms below row k lose the row's entry. Where little is left of what they were when summed, they are
- * summed again. */
+/* Squares of norms below row k lose the row's entry. Where little is left of their last sum, they are summed again. */
 static inline void pinv_shorten(pinv *p, size_t j, size_t k) {
     const double entry = p->qr[j * p->n + k];
     p->norm[j] -= entry * entry;
@@ -195,7 +194,7 @@ static inline void pinv_factor(pinv *p, const double *a, size_t rows, size_t col
     for (i = 0; i < p->rank; i++) p->scale[i] = p->norm[i] > cutoff * cutoff * largest ? 1 / p->norm[i] : 0;
 }
 
-/* x = A^+ b: of all that come nearest to A x = b the shortest */
+/* x = A^+ b: the shortest of all x that come nearest to A x = b */
 static inline void pinv_solve(pinv *p, const double *b, double *x) {
     double *y = p->work, *part;
     size_t i, k;

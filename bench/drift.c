@@ -1,15 +1,19 @@
-/* What each integrator does to the energy, the momenta and the motion of a free body, and with which order.
- * usage: drift [FILE [--small]]     rows go to stdout and to FILE, a table with orders to stderr; --small: the same, it
- * takes seconds
- *
- * The body: 3 x 3 x 6 cubes of 0.2 m, five tetrahedra each, stable neo-Hookean, stretched along z at the start,
- * spinning and flying, no gravity. Newton runs to 1e-12, so that what is left is the integrator's. energy_drift (E -
- * E_0) / E_0 where it is largest, kinetic + elastic, with its sign linear_momentum_drift   largest |p - p_0| / |p_0|
- *   angular_momentum_drift  largest |l - l_0| / |l_0|, about the origin
- *   position_error          |u - u_ref| / |X + u_ref - c| at the end, c: the centre; norms over nodes. The reference is
- * the implicit midpoint rule with the finest step, extrapolated with that of twice the step. Backward Euler and BDF2
- * keep linear momentum and lose energy and spin; the midpoint rule keeps both momenta to rounding and lets the energy
- * oscillate. */
+/* drift.c - what each integrator does to the energy, the momenta and the motion of a free body, and with which
+   order.
+
+   usage: drift [FILE [--small]]; rows go to stdout and to FILE, a table with orders to stderr. --small: the same; it
+   takes seconds.
+
+   The body: 3 x 3 x 6 cubes of 0.2 m, five tetrahedra each, stable neo-Hookean, stretched along z at the start,
+   spinning and flying, no gravity. Newton's method runs to 1e-12, so that the remaining error is the integrator's.
+       energy_drift            largest (E - E_0) / E_0, kinetic + elastic, with its sign
+       linear_momentum_drift   largest |p - p_0| / |p_0|
+       angular_momentum_drift  largest |l - l_0| / |l_0|, about the origin
+       position_error          |u - u_ref| / |X + u_ref - c| at the end, c: the centre; norms over nodes
+
+   The reference is the implicit midpoint rule with the finest step, extrapolated with that of twice the step.
+   Backward Euler and BDF2 keep linear momentum and lose energy and spin. The midpoint rule keeps both momenta to
+   rounding and lets the energy oscillate. */
 #define _POSIX_C_SOURCE 200112L
 #define GXFEM_SOLVE_IMPLEMENTATION
 #include "../gxfem_solve.h"
@@ -28,7 +32,7 @@ static const double finest = 1.0 / 1920;                        /* s */
 
 static const char *const integrator_name[] = {"BDF1", "BDF2", "midpoint"};
 
-/* What should not change */
+/* The quantities that should not change */
 typedef struct invariants {
     double energy, linear[3], angular[3];
 } invariants;
@@ -43,7 +47,7 @@ static void position(const scene *s, size_t i, double x[3]) {
     for (r = 0; r < 3; r++) x[r] = s->rest[3 * i + r] + s->displacement[3 * i + r];
 }
 
-/* p = sum (M v)_i, l = sum x_i x (M v)_i: with the consistent mass these are those of the field */
+/* p = sum (M v)_i, l = sum x_i x (M v)_i. With the consistent mass these are the field's. */
 static invariants measure(const scene *s, double *momentum) {
     invariants now;
     size_t i, r;
@@ -82,10 +86,10 @@ static void drift_update(drift *d, const invariants *start, const invariants *no
     d->angular = fmax(d->angular, distance(now->angular, start->angular) / distance(start->angular, zero));
 }
 
-/* Pulls the body to the balance of forces M a with a smooth field a along z, that of its lowest vibration; the mass
- * over a long step squared holds it against what the sum of the forces leaves. Stretched like this, little goes to the
- * vibrations of single elements. Of a homogeneous stretch much does: its faces are not free of stress; then no step
- * here resolves the motion, and orders mean nothing. */
+/* Pulls the body to the balance of forces M a with a smooth field a along z, that of its lowest vibration. The mass
+   over a long step squared holds it against the sum of the forces. A body stretched like this gives little energy to
+   the vibrations of single elements. A homogeneous stretch gives them much: its faces are not free of stress. No
+   step here would resolve that motion, and orders would mean nothing. */
 static void pull(scene *s) {
     gxs_step_desc step;
     size_t count = 3 * s->model.copy_count, i;
@@ -151,7 +155,7 @@ static scene *run(gxs_integrator integrator, size_t steps, drift *worst) {
     return s;
 }
 
-/* u_ref: the second order's error taken out of two runs of the midpoint rule */
+/* u_ref: two runs of the midpoint rule, extrapolated to remove the error of second order */
 static double *reference(void) {
     size_t steps = (size_t)(duration / finest + 0.5), i;
     drift ignored;
@@ -164,7 +168,7 @@ static double *reference(void) {
     return u;
 }
 
-/* relative to the distances from the centre of mass, which has moved with the flight */
+/* Relative to the distances from the centre of mass, which has moved with the flight */
 static double position_error(const scene *s, const double *u) {
     double error = 0, scale = 0;
     size_t i, r;
@@ -197,7 +201,7 @@ static result measure_rate(gxs_integrator kind, size_t rate, const double *u) {
     return r;
 }
 
-/* order: between a step and half of it */
+/* Order: between a step and half of it */
 static void print_table(const result *results) {
     size_t i;
     fprintf(stderr, "%-10s %6s %12s %6s %12s %12s %12s %6s\n", "integrator", "1/dt", "energy", "order", "linear mom.",

@@ -1,12 +1,13 @@
 /* failure.c - hard cases by every method: right, wrong (how), refused (why), diverged, crashed, or still busy after
    half a minute.
 
-   make bench-failure builds and runs it; it prints CSV and writes it to build/bench/failure.csv, a table to stderr.
-   usage: failure [FILE [--small]]     --small: three seconds of a processor for each run
-   What the cases are, and what is right: bench/hard.h. Methods are those of bench/method.h, element deletion, and ways
-   of integration where a case is about integrals. "Algorithm 1 mended" has what its Boolean allows today, cuts a
-   millionth as thick too. "but for volume": what a cut's thickness takes away. Each run has a process of its own, and
-   half a minute of its processor. */
+   make bench-failure builds and runs it. It prints CSV and writes it to build/bench/failure.csv, and a table to
+   stderr. usage: failure [FILE [--small]]; --small: three seconds of processor time for each run.
+
+   bench/hard.h has the cases and their right outcomes. The methods are those of bench/method.h, element deletion,
+   and ways of integration where a case is about integrals. "Algorithm 1 mended" has everything that its Boolean
+   allows today, and also cuts a millionth as thick. "but for volume" allows for the volume that a cut's thickness
+   takes away. Each run has a process of its own, and half a minute of processor time. */
 #define _XOPEN_SOURCE 600
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
@@ -27,10 +28,10 @@ static unsigned most_seconds = 30;
 
 /* ---- element deletion ---- */
 
-/* Elements whose inside a cut meets are taken away; the others are whole, on uncut nodes. */
+/* Elements whose inside a cut meets are removed; the others are whole, on uncut nodes. */
 typedef struct deletion {
-    method_body *cut;   /* says which elements are met */
-    method_body *uncut; /* moves */
+    method_body *cut;   /* Says which elements are met */
+    method_body *uncut; /* Moves */
     gxs_element *elements;
     size_t element_count;
     gxs_solver *solver;

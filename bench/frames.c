@@ -1,14 +1,14 @@
-/* frames.c - frames in which a cut happens beside frames in which none does.
+/* frames.c - frames with a cut beside frames without one.
 
-   make bench-frames builds it by -O2, as users do, and runs it; it prints CSV and writes it to build/bench/frames.csv,
-   a table to stderr.
+   make bench-frames builds it by -O2, as users do, and runs it. It prints CSV and writes it to build/bench/frames.csv,
+   and a table to stderr. usage: frames [FILE [--small]]; --small: the smallest block only.
 
-   usage: frames [FILE [--small]]     --small: the smallest block only
+   A block hangs by its top and swings. After every fourth frame a horizontal cut goes one cell deeper, in strips
+   that share their edges exactly, until it has crossed 7/8 of the block. A cut frame is the cut, the update of the
+   solver's model and the step.
 
-   A block that hangs by its top and swings; after every fourth frame a horizontal cut goes one cell deeper, in strips
-   that share their edges exactly, until it has crossed 7/8 of the block. A cut frame is the cut, the renewal of the
-   solver's model and the step. Columns: medians in ms; worst: the slowest cut frame; ratio: cut frame to mean frame,
-   those with a cut included; unknowns at the end. */
+   Columns: medians in ms. worst: the slowest cut frame. ratio: cut frame to mean frame, cut frames included.
+   unknowns: at the end. */
 #define _POSIX_C_SOURCE 200112L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"

@@ -1,11 +1,15 @@
-/* hard.h - the hard cases: a scene each, with what must come of it, and what a method makes of it.
+/* hard.h - the hard cases: each is a scene, its right outcome, and a judgement of what a method makes of it.
 
-   A cube of 2 x 2 x 2 cells of five tetrahedra (or one tetrahedron) is cut, and moves for twenty steps; nothing holds
-   it, or its top is held. Right is: as many pieces as the cuts leave, found by hand for each case (parts that share no
-   copy are apart); the volume that is left, and that of the smallest piece to 1 % (but for volume: to 50 %, as thick
-   cuts leave it); a motion without numbers that are not finite or faster than ten times a fall; where nothing is held,
-   each piece falls as a point does, to 1 %. Cases about integrals have a part of the unit tetrahedron too, under
-   planes, for ways of integration that are no method of cutting.
+   A cube of 2 x 2 x 2 cells of five tetrahedra (or one tetrahedron) is cut and moves for twenty steps. Nothing holds
+   it, or its top is held. An outcome is right if all of these hold:
+       pieces    as many as the cuts leave, found by hand for each case; parts that share no copy are apart
+       volume    the volume that is left, and that of the smallest piece, to 1 % (for "but for volume": to 50 %,
+                 since thick cuts take some away)
+       motion    only finite numbers, and nothing faster than ten times a fall
+       fall      where nothing is held, each piece falls as a point does, to 1 %
+
+   Cases about integrals also have a part of the unit tetrahedron under planes, for ways of integration that are no
+   method of cutting.
 
    Include after method.h. */
 #ifndef GXFEM_BENCH_HARD_H
@@ -23,11 +27,11 @@ typedef struct hard_trial {
     size_t pieces;    /* expected */
     double volume;    /* of the mesh, m3 */
     double removed;   /* by solids, m3 */
-    double tolerance; /* of volumes, share of the mesh's: what a solid's thickness takes away */
-    double smallest;  /* of the pieces, m3; 0: not said */
+    double tolerance; /* of volumes, as a share of the mesh's: what a solid's thickness takes away */
+    double smallest;  /* of the pieces, m3; 0: not given */
     int held;         /* 1: the top is */
-    /* Cases about integrals: parts of the unit tetrahedron under the planes z = levels, ascending, and between them; or
-       one under x + y + z = corner */
+    /* Cases about integrals: parts of the unit tetrahedron under the planes z = levels, ascending, and between them;
+       or one part under x + y + z = corner */
     double *levels;
     size_t level_count;
     double corner; /* 0: none */
@@ -140,7 +144,7 @@ static void hard_add_plane(replay *r, size_t frame, const double c[3], const dou
     hard_add_quad(r, frame, p, u, v);
 }
 
-/* The strip over a polyline in the x-z plane, along y */
+/* The strip over a polyline in the x-z plane, extended along y */
 static void hard_add_strip(replay *r, const double (*at)[2], uint32_t count) {
     gx_surface *s = hard_add_cut(r, 0, GX_SURFACE_SHEET);
     uint32_t i;
@@ -233,7 +237,7 @@ static void hard_missing_by_a_rounding(hard_trial *t) {
     t->scene.sever_below = 1e-9;
 }
 
-/* Three planes a unit in the last place beside the layers of nodes; every node is kicked. */
+/* Three planes a unit in the last place beside the layers of nodes. Every node is kicked. */
 static void hard_beside_nodes(hard_trial *t) {
     const double beside = nextafter(0.5, 1);
     uint32_t random = 1;
@@ -264,7 +268,7 @@ static void hard_slab(hard_trial *t, double thickness) {
 }
 
 static void hard_slab_1e12(hard_trial *t) { hard_slab(t, 1e-12); }
-/* Off the cube's top; of the tetrahedron: at its base */
+/* Below the cube's top; in the tetrahedron: at its base */
 static void hard_slice(hard_trial *t, double thickness) {
     const double at = 1 - thickness;
     hard_add_level(&t->scene, 0, at, 0, 0);
@@ -276,8 +280,7 @@ static void hard_slice_1e3(hard_trial *t) { hard_slice(t, 1e-3); }
 static void hard_slice_1e8(hard_trial *t) { hard_slice(t, 1e-8); }
 static void hard_slice_1e15(hard_trial *t) { hard_slice(t, 1e-15); }
 
-/* x + y + z = 3 - 2 size, of which the far corner has a piece with edges of that length; `size` is a multiple of 2^-53.
- */
+/* x + y + z = 3 - 2 size. The far corner has a piece with edges of that length. `size` is a multiple of 2^-53. */
 static void hard_corner(hard_trial *t, double size) {
     hard_add_level(&t->scene, 0, 2 - size, -1, -1);
     t->corner = size;
@@ -287,8 +290,8 @@ static void hard_corner(hard_trial *t, double size) {
 static void hard_corner_1e9(hard_trial *t) { hard_corner(t, 1e-3); }
 static void hard_corner_1e15(hard_trial *t) { hard_corner(t, 1e-5); }
 
-/* A small closed tetrahedron inside an element: it meets no face, and all copies of the piece inside have next to no
- * support. */
+/* A small closed tetrahedron inside an element: it meets no face, and no copy of the inner piece has support to
+   speak of. */
 static void hard_bubble(hard_trial *t) {
     static const uint32_t faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
     const double size = 0.0078125;
@@ -379,7 +382,7 @@ static void hard_thousand_parallel(hard_trial *t) {
     t->tolerance = 0.3;
 }
 
-/* Of a corner of space: boxes between planes, those that reach into x + y + z < 1 */
+/* Part of a corner of space: boxes between planes, those that reach into x + y + z < 1 */
 static void hard_crossing_3_20(hard_trial *t) {
     double at[22];
     int i, j, k;
@@ -469,7 +472,7 @@ static void hard_bridge(hard_trial *t) {
     t->held = 1;
 }
 
-/* One cell of the cube is cut free in its facets but for a strip of 1e-3 of the facet above it. */
+/* One cell of the cube is cut free along its facets except for a strip of 1e-3 of the facet above it. */
 static void hard_face_piece(hard_trial *t) {
     const double p[4][3] = {{-1, -1, 0.5}, {0.301, -1, 0.5}, {0.5, -1, -1}, {-1, 0.5, -1}};
     const double u[4][3] = {{1.3, 0, 0}, {0.199, 0, 0}, {0, 1.5, 0}, {1.5, 0, 0}},
@@ -554,7 +557,7 @@ static uint32_t hard_root_of(uint32_t *parent, uint32_t i) {
     return i;
 }
 
-/* Pieces: sets of parts that share copies; by the copy that stands for each */
+/* Pieces: sets of parts that share copies, by the copy that stands for each */
 typedef struct hard_pieces {
     gxs_model model;
     uint32_t *of;         /* copy_count: the copy that stands for its piece */
@@ -579,7 +582,7 @@ static double *hard_zeros(size_t count) {
     return x;
 }
 
-/* Displacement along z that the node at the place started with */
+/* The displacement along z with which the node at the place started */
 static double hard_start_of(const hard_trial *t, const double *place) {
     size_t i;
     for (i = 0; i < t->scene.node_count; i++)
@@ -633,12 +636,12 @@ static hard_pieces hard_pieces_of(const hard_trial *t, const gxs_model *m, const
     return p;
 }
 
-/* Of a point, by backward Euler: n steps from rest take it n (n + 1) / 2 dt^2 g. */
+/* Of a point, by backward Euler: after n steps from rest it has fallen n (n + 1) / 2 dt^2 g. */
 static double hard_fall_of(const hard_trial *t) {
     return 0.5 * HARD_STEPS * (HARD_STEPS + 1) * t->scene.dt * t->scene.dt * t->scene.gravity[2];
 }
 
-/* The farthest that a piece with mass is from where a point would have fallen to, as a share of the fall */
+/* The largest distance of a piece with mass from where a point would have fallen, as a share of the fall */
 static double hard_fall_error(const hard_trial *t, const hard_pieces *p) {
     const double fall = hard_fall_of(t);
     double worst = 0;
@@ -681,7 +684,7 @@ static void hard_judge_pieces(const hard_trial *t, const hard_pieces *p, const d
         snprintf(text, HARD_TEXT, "right%s", fabs(volume) > 1e-9 || fabs(small) > 0.01 ? " but for volume" : "");
 }
 
-/* Cuts and steps. What has become of it: one line */
+/* Cuts and steps. The outcome in one line */
 static void hard_judge(const hard_trial *t, const method *m, char text[HARD_TEXT]) {
     void *state = m->create(&t->scene);
     const char *cut_fails = NULL, *step_fails = NULL;
@@ -711,7 +714,7 @@ static void hard_judge(const hard_trial *t, const method *m, char text[HARD_TEXT
 
 /* ---- integrals ---- */
 
-/* Volume of the unit tetrahedron's part under a plane: z = at, or x + y + z = at. Negative: there is none to be had. */
+/* Volume of the unit tetrahedron's part under a plane: z = at, or x + y + z = at. Negative: it cannot be had. */
 typedef double (*hard_integral_fn)(const double vertices[9]);
 
 static void hard_region_plane(double at, int across, double vertices[9]) {
@@ -730,7 +733,7 @@ static double hard_sum_of(const sampling_rule *rule) {
 
 static const uint32_t hard_region_triangle[3] = {0, 1, 2};
 
-/* By points: adaptive to a depth, or, where that is 0, 50 cells along an edge */
+/* By points: adaptive to a depth; depth 0: 50 cells along an edge */
 static double hard_integral_by_points(const double vertices[9], int depth) {
     sampling_surface surface = sampling_surface_create(vertices, hard_region_triangle, 1);
     const sampling_region under = sampling_under(&surface);
@@ -800,8 +803,8 @@ static double hard_volume_between(double low, double high) {
     return (high - low) * (a * a + a * b + b * b) / 6;
 }
 
-/* The part under the corner's plane, or those between a level and the one before it; as hard_judge. Nothing is said
-   where the case is not about integrals. */
+/* The part under the corner's plane, or those between a level and the one before it; otherwise as hard_judge. It
+   gives nothing if the case is not about integrals. */
 static void hard_integral_judge(const hard_trial *t, const hard_integral_method *m, char text[HARD_TEXT]) {
     const size_t count = t->corner > 0 ? 1 : t->level_count;
     double vertices[9], below = 0, from = 0, worst = 0;

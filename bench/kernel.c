@@ -1,17 +1,23 @@
 /* kernel.c - Booleans of closed surfaces: A minus B0 (minus B1 ...), doubles in to doubles out.
 
-   make bench-kernel builds and runs it on generated workloads; make bench-kernel DATA=FOLDER on the files of a folder
-   too: NAME_A.off, NAME_B0.off, NAME_B1.off ... (as in "W1_A.off"). It prints CSV and writes it to
-   build/bench/kernel.csv, a table to stderr.
+   make bench-kernel builds and runs it on generated workloads. make bench-kernel DATA=FOLDER adds the files of a
+   folder: NAME_A.off, NAME_B0.off, NAME_B1.off ... (as in "W1_A.off"). It prints CSV and writes it to
+   build/bench/kernel.csv, and a table to stderr.
 
-   W1 a tetrahedron less a slab, W3 less a wavy slab of 1760 triangles, W4 a cube less 5 + 5 crossing slabs; "+" after a
-   name: evaluated after each operand. S: a bumpy sphere of 8,000 triangles less a turned copy. filter_share and
-   exact_share: of the signs asked for, those that the filter or the definitions decided, and those that took exact
-   arithmetic. Surfaces are vouched for as simple; "?": they are not. Each call creates, adds, evaluates, asks for the
-   components, and destroys; surface_us: the median where it does not ask. SECONDS per workload and way, at least three
-   calls. What a call gives back stays with the process, as with whoever calls often: otherwise the C library hands it
-   to the system or not, by what was there before, and where it does a third is added to large workloads by the system's
-   fresh pages. */
+       W1  a tetrahedron less a slab
+       W3  a tetrahedron less a wavy slab of 1760 triangles
+       W4  a cube less 5 + 5 crossing slabs
+       S   a bumpy sphere of 8,000 triangles less a turned copy
+       +   after a name: evaluated after each operand
+       ?   surfaces are not vouched for as simple; all others are
+
+   filter_share: the share of signs that the filter or the definitions decided. exact_share: the share that took
+   exact arithmetic. Each call creates, adds, evaluates, gets the components, and destroys. surface_us: the median
+   without components. SECONDS per workload and way, at least three calls.
+
+   Memory that a call releases stays with the process, as for a program that calls often. Otherwise the C library
+   returns it to the system or not, depending on earlier calls, and new pages from the system add a third to large
+   workloads. */
 #define _POSIX_C_SOURCE 200809L
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../gxfem_boolean.h"
@@ -103,7 +109,7 @@ static void print_table(void) {
     free(rows);
 }
 
-/* The median of the times of both ways, in turn, in microseconds; *least: of the one that asks */
+/* The medians of both ways' times, taken in turn, in microseconds; *least: the least of the way that gets components */
 static figures time_ways(const char *name, const gxb_operand *operands, size_t count, int each, double middle[2],
                          double *least) {
     static double us[2][CALLS];
@@ -117,7 +123,7 @@ static figures time_ways(const char *name, const gxb_operand *operands, size_t c
             f[ask] = run(name, operands, count, each, ask);
             us[ask][n] = 1e6 * (seconds(NULL) - before);
         }
-    for (ask = 0; ask < 2; ask++) middle[ask] = median(us[ask], n); /* which sorts them */
+    for (ask = 0; ask < 2; ask++) middle[ask] = median(us[ask], n); /* Sorts them */
     *least = us[1][0];
     return f[1];
 }
@@ -165,7 +171,7 @@ static void measure_workload(const char *name, const wl_surface *body, workload 
     wl_free(&w);
 }
 
-/* An octahedron whose faces are divided n x n, blown up to a sphere with bumps, in a frame */
+/* An octahedron whose faces are divided n x n, blown up to a sphere with bumps, in a rotated frame */
 static wl_surface bumpy_sphere(uint32_t n, const wl_frame *frame) {
     wl_surface s;
     uint32_t face, i, j;
@@ -245,7 +251,7 @@ static void measure_generated(void) {
 
 /* ---- from files ---- */
 
-/* An OFF file's polygons as fans. 0: there is none of this name. */
+/* An OFF file's polygons as fans. 0: there is no file of this name. */
 static int read_off(const char *path, wl_surface *s) {
     FILE *file = fopen(path, "r");
     unsigned long vertices, faces, edges, i;

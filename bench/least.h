@@ -1,14 +1,18 @@
-/* least.h - the least number of displacements that separate a cut mesh, counted by a path of its own, in doubles.
+/* least.h - the least number of displacements that separate a cut mesh, counted independently of the library, in
+   doubles.
 
-   Sheets are heights over one grid: z on (side + 1)^2 points, two triangles to a cell, cut from below left to above
-   right; they may cross each other. Each element is clipped by the upright prisms over the triangles that it reaches
-   into, what is left by the sheets' planes there: convex pieces. A piece's label says which sheets it is above. Pieces
-   of one element are one cell where prisms part them and no sheet does; cells of neighbours are linked where pieces of
-   one prism and one label reach a face that they share. least_result.least       for each node: sets of linked cells
-   among those of the elements around it, flooded star by star (GXFEM Eq. 18) least_result.replicas    virtual nodes:
-   each cell is a whole element with corners of its own, linked cells share those of the face between them [Sifakis,
-   Der, Fedkiw 2007] Decisions are signs of doubles: for sheets in general position, as random ones are, and grids whose
-   lines and diagonals meet no node. */
+   Sheets are heights over one grid: z on (side + 1)^2 points, two triangles to a cell, divided from below left to
+   above right. They may cross each other. Each element is clipped by the upright prisms over the triangles that it
+   reaches into. The parts are clipped by the sheets' planes there. That leaves convex pieces. A piece's label says
+   which sheets it is above. Pieces of one element are one cell if prisms separate them and no sheet does. Cells of
+   neighbours are linked if pieces of one prism and one label reach a face that they share.
+       least_result.least     for each node: sets of linked cells among those of the elements around it, flooded star
+                              by star (GXFEM Eq. 18)
+       least_result.replicas  virtual nodes: each cell is a whole element with corners of its own; linked cells share
+                              those of the face between them [Sifakis, Der, Fedkiw 2007]
+
+   Decisions are signs of doubles. So sheets must be in general position, as random ones are, and no line or diagonal
+   of the grid may meet a node. */
 #ifndef GXFEM_BENCH_LEAST_H
 #define GXFEM_BENCH_LEAST_H
 
@@ -41,21 +45,21 @@ typedef struct least_result {
     size_t least, replicas, cells;
 } least_result;
 
-/* Planes: 0 to 3 the element's faces, across from its corners; then walls of prisms, three for each grid point; then
- * sheets. */
+/* Planes: 0 to 3 are the element's faces, opposite to its corners; then walls of prisms, three for each grid point;
+   then sheets */
 typedef struct least_corner {
     double x[3];
     uint32_t plane[3];
 } least_corner;
 
-/* Convex: a corner is where three planes meet, and two corners that have two planes in common are joined by an edge. */
+/* Convex: three planes meet in a corner, and an edge joins two corners that have two planes in common. */
 typedef struct least_piece {
     least_corner corners[LEAST_CORNERS];
     uint32_t count, prism, cell;
     uint64_t label;
 } least_piece;
 
-/* A cell reaches a face there. */
+/* A cell reaches a face in this prism. */
 typedef struct least_reach {
     uint32_t element, face, prism, cell;
     uint64_t label;
@@ -64,7 +68,7 @@ typedef struct least_reach {
 typedef struct least_count {
     const least_mesh *mesh;
     const least_sheets *sheets;
-    uint64_t *names; /* of the sheets: a label is the sum of those that are below */
+    uint64_t *names; /* of the sheets: a label is the sum of the names of those below */
     /* of the element at hand */
     least_piece *pieces;
     size_t piece_count, piece_capacity;
@@ -90,7 +94,7 @@ static inline void *least_memory(void *old, size_t count, size_t size) {
 
 /* ---- clipping ---- */
 
-/* The two planes that corners have in common; 0: fewer */
+/* The two planes that the corners have in common; 0: fewer */
 static inline int least_edge(const least_corner *a, const least_corner *b, uint32_t common[2]) {
     int i, j, n = 0;
     for (i = 0; i < 3; i++)
@@ -116,7 +120,7 @@ static inline void least_cross(const least_corner *a, const least_corner *b, con
     c->plane[2] = plane;
 }
 
-/* What of the piece is above the plane and what is below it; values: of its corners. Either part may be empty. */
+/* The parts of the piece above and below the plane; values: at its corners. Either part may be empty. */
 static inline void least_split(const least_piece *p, const double *values, uint32_t plane, least_piece *above,
                                least_piece *below) {
     uint32_t i, j, common[2];
@@ -146,8 +150,8 @@ static inline uint32_t least_sheet_plane(const least_sheets *s, size_t sheet) {
     return 4 + 3 * least_point(s, 0, s->side + 1) + (uint32_t)sheet;
 }
 
-/* Height of the point over the sheet's plane in its prism: 2 * cell, the triangle below the diagonal, or 1 more, that
- * above */
+/* Height of the point over the sheet's plane in its prism: 2 * cell is the triangle below the diagonal, 2 * cell + 1
+   the one above */
 static inline double least_height(const least_sheets *s, size_t sheet, uint32_t prism, const double *x) {
     const uint32_t i = prism / 2 % s->side, j = prism / 2 / s->side;
     const double *z = s->z + sheet * (s->side + 1) * (s->side + 1) + least_point(s, i, j), *next = z + s->side + 1;
@@ -156,8 +160,8 @@ static inline double least_height(const least_sheets *s, size_t sheet, uint32_t 
                              : z[0] + u * (z[1] - z[0]) + v * (next[1] - z[1]));
 }
 
-/* Keeps what lies on the inner side of a wall of the prism: 0 the diagonal, 1 that along x, 2 that along y. Returns 0
- * where nothing does. */
+/* Keeps the part on the inner side of a wall of the prism: 0 the diagonal, 1 the wall along x, 2 the one along y.
+   Returns 0 if nothing is there. */
 static inline int least_clip(least_piece *p, const least_sheets *s, int wall) {
     static least_piece above, below;
     const uint32_t i = p->prism / 2 % s->side, j = p->prism / 2 / s->side, up = p->prism & 1;
@@ -214,7 +218,7 @@ static inline int least_side(const least_count *l, size_t element, size_t sheet,
         low = fmin(low, least_position(l->mesh, element, k)[2]);
         high = fmax(high, least_position(l->mesh, element, k)[2]);
     }
-    if (s->side == 1) { /* the box says little */
+    if (s->side == 1) { /* the box decides little */
         int above = 0;
         for (k = 0; k < 8; k++)
             above += least_height(s, sheet, (uint32_t)(k & 1), least_position(l->mesh, element, k / 2)) >= 0;
@@ -250,7 +254,7 @@ static inline void least_add_prism(least_count *l, size_t element, uint32_t pris
     if (!there) l->piece_count--;
 }
 
-/* Divides the element's pieces by a sheet, and says of each whether it is above. */
+/* Divides the element's pieces by a sheet and records for each whether it is above. */
 static inline void least_divide(least_count *l, size_t sheet) {
     static least_piece above, below;
     const size_t count = l->piece_count;
@@ -429,7 +433,7 @@ static inline const least_reach *least_reaches_of(const least_count *l, size_t e
     return l->reaches + from;
 }
 
-/* Links of the cells of neighbours e and f; their faces are across from corners j and k. */
+/* Links of the cells of neighbours e and f; their common face is opposite to corners j and k. */
 static inline void least_link(least_count *l, size_t e, uint32_t j, size_t f, uint32_t k) {
     size_t m, n, a = 0, b = 0;
     const least_reach *p = least_reaches_of(l, e, j, &m), *q = least_reaches_of(l, f, k, &n);
@@ -474,7 +478,7 @@ static inline int least_has_node(const least_mesh *m, size_t element, uint32_t n
     return n[0] == node || n[1] == node || n[2] == node || n[3] == node;
 }
 
-/* Corners of all cells, those that links make one */
+/* The corners of all cells, joined where links make them one */
 static inline size_t least_count_replicas(const least_count *l, const uint32_t *element) {
     const uint32_t n = 4 * l->cell_count;
     uint32_t *parent = (uint32_t *)least_memory(NULL, n, sizeof *parent), i;
@@ -517,7 +521,7 @@ static inline void least_list_stars(const least_mesh *m, size_t **first, uint32_
     for (i = 0; i < 4 * m->element_count; i++) (*ring)[(*first)[m->elements[i] + 1]++] = (uint32_t)(i / 4);
 }
 
-/* Marks, with the node, the cells around it that hang together with this one. */
+/* Marks, with the node, the cells around it that are connected with this one. */
 static inline void least_flood(const least_count *l, const uint32_t *element, const size_t *first, const uint32_t *to,
                                uint32_t node, uint32_t cell, uint32_t *mark, uint32_t *stack) {
     size_t depth = 0, i;

@@ -1,14 +1,14 @@
-/* literal.h - the cutting of GXFEM's Algorithm 1 as it is published: a mesh Boolean for each nodal subdomain and each
-   element subdomain that a cut may touch, by solids of some thickness, results rounded to doubles after each cut.
+/* literal.h - the cutting of GXFEM's Algorithm 1 as it is published: a mesh Boolean for each nodal subdomain and
+   each element subdomain that a cut may touch, by solids of some thickness, results rounded to doubles after each
+   cut.
 
-   A baseline of the bench. The Booleans are exact (gxb_boolean); what is the paper's is what is done with them: every
-   node and every element keeps its own triangle meshes, each cut on its own, and an element subdomain belongs to the
-   nodal subdomain that is nearest (Eq. 16). Element integrals are those of the subdomains' meshes (Eq. 21). The solver
-   is gxfem_solve.h's.
+   A baseline of the bench. The Booleans are exact (gxb_boolean); the rest is the paper's. Every node and every
+   element keeps its own triangle meshes, each cut on its own. An element subdomain belongs to the nearest nodal
+   subdomain (Eq. 16). Element integrals are those of the subdomains' meshes (Eq. 21). The solver is gxfem_solve.h's.
 
-   Algorithm 1 replaces a subdomain where the cut leaves more than one component of it (lines 5 and 15), and keeps it as
-   it was otherwise. So a cut that advances is given as all of it that there is so far; what ends inside a subdomain for
-   good, and only divides it together with a later cut, must be given again together with that.
+   Algorithm 1 replaces a subdomain where the cut leaves more than one component of it (lines 5 and 15). Otherwise it
+   keeps it as it was. So a cut that advances is given as its whole path so far. A cut that ends inside a subdomain
+   for good, and only divides it together with a later cut, must be given again together with that one.
 
    Include after the implementation of gxfem.h. A program that runs out of memory ends here. */
 #ifndef GXFEM_BENCH_LITERAL_H
@@ -78,8 +78,8 @@ typedef struct literal {
     uint32_t *copy_node;
     double *displacement, *velocity;
     size_t copy_count, copy_capacity;
-    uint8_t *dirty; /* elements whose integrals and copies are to be found anew */
-    /* by element subdomain; those there are are all up to date after literal_model */
+    uint8_t *dirty; /* elements whose integrals and copies are to be found again */
+    /* by element subdomain; all are up to date after literal_model */
     gxs_element *parts;
     size_t part_count;
     double *rest; /* copies x 3 */
@@ -204,7 +204,7 @@ static void literal_build_boxes(literal *l) {
     free(keys);
 }
 
-/* Marks the elements whose boxes meet the triangle's. */
+/* Marks the elements whose boxes meet the triangle's box. */
 static void literal_mark_elements(const literal *l, const double *const p[3], uint8_t *touched) {
     double low[3], high[3];
     uint32_t stack[64], depth = 0, i;
@@ -249,7 +249,7 @@ static void literal_sort3(uint32_t *v) {
             }
 }
 
-/* Faces of the elements that only one of them has; returns how many. */
+/* Faces that only one of the elements has; returns their number. */
 static size_t literal_boundary(const literal_desc *desc, const uint32_t *ring, size_t count, literal_face *faces) {
     size_t i, n = 0, kept = 0;
     int f, k;
@@ -392,7 +392,7 @@ static uint32_t literal_root(uint32_t *parent, uint32_t i) {
     return i;
 }
 
-/* Numbers the connected components of adjacent triangles (as the paper finds them); returns how many. */
+/* Numbers the connected components of adjacent triangles (as the paper finds them); returns their number. */
 static uint32_t literal_components(const gxb_boolean_result *result, uint32_t *component) {
     const uint32_t n = (uint32_t)result->triangle_count;
     literal_edge *edges = (literal_edge *)literal_memory(NULL, 3 * (size_t)n, sizeof *edges);
@@ -470,11 +470,11 @@ static gx_result literal_add_operand(gxb_boolean *boolean, const double *vertice
     operand.triangles = triangles;
     operand.triangle_count = triangle_count;
     operand.operation = operation;
-    operand.rule = GXB_POSITIVE; /* rounded surfaces may be turned inside out in places: no material */
+    operand.rule = GXB_POSITIVE; /* rounded surfaces may be turned inside out in places: no material there */
     return gxb_boolean_add(boolean, &operand, NULL);
 }
 
-/* Domain less solids. 0: none of them is near, or it cannot be had; there is no Boolean then */
+/* Domain less solids. 0: no solid is near, or the Boolean failed; there is no result then */
 static int literal_subtract(literal *l, const literal_domain *domain, const gx_surface *solids, size_t count,
                             gxb_boolean **boolean, gxb_boolean_result *result) {
     gx_result code;
@@ -504,8 +504,8 @@ static int literal_subtract(literal *l, const literal_domain *domain, const gx_s
     return 0;
 }
 
-/* Puts the components in the domain's place: the first has its slot, the others get new ones. Nodal ones but the first
- * get copies. */
+/* Puts the components in the domain's place: the first takes its slot, the others get new ones. Nodal ones other
+   than the first get copies. */
 static void literal_replace(literal *l, literal_domains *all, uint32_t owner, uint32_t at,
                             const gxb_boolean_result *result, const uint32_t *components, uint32_t count) {
     uint32_t *number = (uint32_t *)literal_memory(NULL, result->vertex_count, sizeof *number), c;
@@ -519,7 +519,7 @@ static void literal_replace(literal *l, literal_domains *all, uint32_t owner, ui
     free(number);
 }
 
-/* Lines 2 to 9, or 12 to 18, for the subdomains of one node or element. Returns 1 where one was replaced. */
+/* Lines 2 to 9, or 12 to 18, for the subdomains of one node or element. Returns 1 if one was replaced. */
 static int literal_cut_domains(literal *l, literal_domains *all, uint32_t owner, const gx_surface *solids,
                                size_t count) {
     uint32_t at, next;
@@ -554,8 +554,8 @@ static void literal_cull(const literal *l, const gx_surface *surface, uint8_t *t
     for (i = 0; i < 4 * l->desc.element_count; i++) nodes[l->desc.elements[i]] |= touched[i / 4];
 }
 
-/* Cuts by closed surfaces, all at once: lines 1 to 19. Only what the triangles of `fresh` may touch is looked at (NULL:
-   of all solids). Integrals and copies of elements: see literal_model. */
+/* Cuts by closed surfaces, all at once: lines 1 to 19. Only subdomains that the triangles of `fresh` may touch are
+   visited (NULL: of all solids). Integrals and copies of elements: see literal_model. */
 static void literal_cut(literal *l, const gx_surface *solids, size_t count, const gx_surface *fresh) {
     uint8_t *touched = (uint8_t *)literal_memory(NULL, l->desc.element_count, 1),
             *nodes = (uint8_t *)literal_memory(NULL, l->desc.node_count, 1);
@@ -575,7 +575,7 @@ static void literal_cut(literal *l, const gx_surface *solids, size_t count, cons
     free(nodes);
 }
 
-/* ---- which nodal subdomain an element subdomain belongs to (Eq. 15 and 16) ---- */
+/* ---- the nodal subdomain to which an element subdomain belongs (Eq. 15 and 16) ---- */
 
 static double literal_dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -618,7 +618,7 @@ static double literal_triangle_distance(const double *x, const double *const p[3
                 fmin(literal_segment_distance(x, p[1], p[2]), literal_segment_distance(x, p[2], p[0])));
 }
 
-/* Of a point to a subdomain; 0 inside */
+/* Distance of a point to a subdomain; 0 inside */
 static double literal_distance(const literal_domain *domain, const double x[3]) {
     double least = HUGE_VAL;
     size_t t;
@@ -689,7 +689,7 @@ static void literal_part(const literal *l, uint32_t element, const literal_domai
         memset(part->mass, 0, sizeof part->mass);
 }
 
-/* Lines 20 to 24, and what the solver takes but for the materials. Arrays are valid until the next cut. */
+/* Lines 20 to 24: the solver's model, without the materials. Arrays are valid until the next cut. */
 static void literal_model(literal *l, gxs_model *model) {
     const double start = seconds(NULL);
     size_t i;

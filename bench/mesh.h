@@ -1,6 +1,6 @@
-/* Meshes and scenes of the benches: blocks of cubes of five or six tetrahedra, discs extruded to cylinders, and what
- * the solver wants of them. Include after the implementation of gxfem_solve.h. A bench that runs out of memory or is
- * refused ends there. */
+/* mesh.h - meshes and scenes of the benches: blocks of cubes of five or six tetrahedra, discs extruded to cylinders,
+   and the solver's view of them. Include after the implementation of gxfem_solve.h. A bench that runs out of memory,
+   or whose mesh is refused, ends there. */
 #ifndef BENCH_MESH_H
 #define BENCH_MESH_H
 
@@ -54,8 +54,8 @@ static void mesh_free(mesh *m) {
     free(m->elements);
 }
 
-/* The cube's corners are numbered by bits: x 1, y 2, z 4. Five: the inner tetrahedron has the corners of one parity,
- * cubes of odd parity are mirrored so that diagonals meet. Six: along the cube's diagonal [Kuhn]. */
+/* The cube's corners are numbered by bits: x 1, y 2, z 4. Five: the inner tetrahedron has the corners of one parity;
+   cubes of odd parity are mirrored so that diagonals meet. Six: along the cube's diagonal [Kuhn]. */
 static size_t mesh_cube(int kind, int odd, const uint32_t corner[8], uint32_t (*element)[4]) {
     static const uint8_t five[5][4] = {{0, 3, 5, 6}, {1, 0, 3, 5}, {2, 0, 3, 6}, {4, 0, 5, 6}, {7, 3, 5, 6}};
     static const uint8_t six[6][4] = {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 3, 7},

@@ -1,6 +1,6 @@
 /* method.h - ways of cutting behind one interface: the library, RXFEM (rxfem.h), virtual nodes (vna.h), the literal
-   Algorithm 1 (literal.h). Each repeats a scene (replay.h) by the same time step, gxfem_solve.h's: only what is
-   compared differs. Include after replay.h. */
+   Algorithm 1 (literal.h). Each repeats a scene (replay.h) by the same time step, gxfem_solve.h's, so that only what
+   is compared differs. Include after replay.h. */
 #ifndef GXFEM_BENCH_METHOD_H
 #define GXFEM_BENCH_METHOD_H
 
@@ -9,25 +9,25 @@
 #include "rxfem_model.h"
 #include "vna.h"
 
-/* Of a frame */
+/* Of one frame */
 typedef struct method_times {
-    double booleans;         /* s: what finds the pieces, and which copies they have */
+    double booleans;         /* s: finding the parts and their copies */
     double integrals;        /* s: volumes and masses of the pieces */
     double derivatives;      /* s: Hessians of the elastic energy */
-    double derivatives_once; /* s: RXFEM's by one evaluation a piece; not in total */
+    double derivatives_once; /* s: RXFEM's with one evaluation for each part; not in total */
     double solve;            /* s: preconditioner and conjugate gradients */
     double total;            /* s: of the frame, the cut included */
-    size_t domains;          /* nodal and element subdomains that were looked at; 0: no cut */
+    size_t domains;          /* nodal and element subdomains that were visited; 0: no cut */
 } method_times;
 
-/* Those that can fail return NULL, or why they can't. */
+/* Functions that can fail return NULL, or the reason. */
 typedef struct method {
     const char *name;
     void *(*create)(const replay *scene);
     const char *(*cut)(void *state, const replay_cut *cut, method_times *times);
     const char *(*step)(void *state, method_times *times);
     size_t (*unknowns)(void *state);
-    /* Parts and copies as they are now, and where the copies are; borrowed */
+    /* Parts, copies and the copies' displacements as they are now; borrowed */
     void (*look)(void *state, gxs_model *model, const double **displacement);
     void (*destroy)(void *state);
 } method;
@@ -59,7 +59,7 @@ static inline void method_take_report(const gx_step_report *report, method_times
     times->solve += report->seconds_prepare + report->seconds_solve;
 }
 
-/* A step of copies by a solver, begun at `start` */
+/* A solver's step of copies, begun at `start` */
 static inline const char *method_solve(gxs_solver *solver, const replay *scene, double *displacement, double *velocity,
                                        double start, method_times *times) {
     const gx_step_desc desc = method_step_desc(scene);
@@ -222,7 +222,7 @@ static inline void *method_literal_create(const replay *scene) {
     return m;
 }
 
-/* With what a Boolean of today gives: results in few triangles, and defects of rounding mended */
+/* With everything that a Boolean allows today: results in few triangles, and defects of rounding mended */
 static inline void *method_mended_create(const replay *scene) {
     method_literal *m = (method_literal *)method_literal_create(scene);
     m->cutter->desc.mended = 1;
@@ -303,10 +303,10 @@ static inline void method_literal_destroy(void *state) {
 
 /* ---- RXFEM ---- */
 
-/* A cut that advances is one surface to RXFEM, whose patches its enrichments belong to: with each strip the mesh is cut
-   anew by the paths of all blades so far, and what is counted as the time of the cut is the share of patches that are
-   new. Elastic derivatives are taken at the rule's 24 points as published; their time is added to that of the common
-   step. Beside it stands, in no sum, what they take once a piece, in which F is constant. */
+/* To RXFEM a cut that advances is one surface, to whose patches its enrichments belong. With each strip the mesh is
+   cut from scratch by the paths of all blades so far. The time of the cut is the share of new patches. Elastic
+   derivatives are taken at the rule's 24 points, as published; their time is added to that of the common step.
+   derivatives_once is their time with one evaluation for each part, in which F is constant. It is in no sum. */
 typedef struct method_rxfem {
     const replay *scene;
     rx_rules *rules;
@@ -364,7 +364,7 @@ static inline void method_rxfem_center(const rx_body *b, const rx_piece *piece, 
     }
 }
 
-/* New copies start where those of the piece that they come from are. */
+/* New copies start with the values of the part from which they come. */
 static inline double *method_rxfem_carry(const method_rxfem *m, const rx_body *body, const rx_model *model,
                                          const double *old) {
     double *now = (double *)method_memory(NULL, 3 * model->value_count, sizeof(double));
@@ -407,7 +407,7 @@ static inline const char *method_rxfem_text(rx_result result) {
     }
 }
 
-/* Which path the cut goes on; path_count: none, it begins */
+/* The path that the cut continues; path_count: none, it begins a new one */
 static inline size_t method_rxfem_blade(const method_rxfem *m, const replay_cut *cut) {
     size_t i;
     for (i = 0; i < m->path_count && cut->first > 0; i++) {
@@ -467,8 +467,8 @@ static inline void method_rxfem_renew(method_rxfem *m) {
     m->changed = 0;
 }
 
-/* What an evaluation takes, of forces and tangents: at the rule's points, as published, or once a piece. At rest, since
-   its time does not depend on the state */
+/* The time of an evaluation of forces and tangents: at the rule's points, as published, or once for each part. It is
+   measured at rest, since it does not depend on the state. */
 static inline double method_rxfem_elastic(method_rxfem *m, int published) {
     const size_t count = 3 * (m->body->node_count + m->body->enrichment_count);
     double *unknowns = (double *)calloc(count, sizeof(double)), start;

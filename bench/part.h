@@ -1,11 +1,11 @@
-/* part.h - the part of a tetrahedron on one node's side of a surface, by the arrangement of gxfem_boolean.h: what truth
-   is read off.
+/* part.h - the part of a tetrahedron on one node's side of a surface, by the arrangement of gxfem_boolean.h: the
+   source of truth.
 
    part_moments are the integrals to degree 2 in barycentric coordinates, from boundary points whose coordinates have
-   180 bits, summed in long double. Shapes are in doubles: tetrahedra and boundary, for rules and for moments of higher
-   degree.
+   180 bits, summed in long double. Shapes are in doubles: tetrahedra and boundary, for rules and for moments of
+   higher degree.
 
-   Include after the implementation of gxfem_boolean.h. What fails ends the program. */
+   Include after the implementation of gxfem_boolean.h. A failure ends the program. */
 #ifndef BENCH_PART_H
 #define BENCH_PART_H
 
@@ -150,8 +150,8 @@ static inline void part_add_cone(long double m[10], long double x[3][3]) {
         for (j = i; j < 3; j++) m[at++] += det / 120 * (a[i] * a[j] + b[i] * b[j] + c[i] * c[j] + s[i] * s[j]);
 }
 
-/* Calls visit with the corners (in lambda 1, 2, 3) of each triangle of a leaf's facets, outward. Facets between leaves
-   that are flagged in own are left out: their two sides cancel. own NULL: all. */
+/* Calls visit with the corners (in lambda 1, 2, 3) of each triangle of a leaf's facets, outward. Facets between
+   leaves that `own` flags are left out: their two sides cancel. own NULL: all facets. */
 typedef void (*part_visit)(void *user, long double x[3][3]);
 
 static inline void part_walk_leaf(part *p, uint32_t leaf, const unsigned char *own, part_visit visit, void *user) {
@@ -203,7 +203,7 @@ typedef struct part_shape {
     double *corners; /* count x width */
     size_t count, capacity, width;
     double apex[3]; /* of the leaf at hand */
-    size_t points;  /* that its mean is of */
+    size_t points;  /* that were averaged for it */
 } part_shape;
 
 static inline double *part_shape_add(part_shape *s) {

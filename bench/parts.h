@@ -1,13 +1,14 @@
 /* parts.h - the parts into which cuts have divided a body's elements: integrals over them by points, in place of the
-   library's, and who has a point.
+   library's, and which part contains a point.
 
-   Parts are the elements of gx_body_model: cells whose four copies are the same are one. Which of them has a point is
-   told by the planes of the body's own arrangement, in doubles: kinder to sampling than a search of its own would be,
-   so that what is charged to it is points, not geometry. parts_regular    n^3 cells of each divided element's reference
-   tetrahedron (sampling.h) parts_adaptive   subdivision to a depth, rules of degree 2 in its tetrahedra parts_positive
-   positive weights at inner points from exact moments, degree 2 parts_rxfem      the moments that RXFEM's rule fits
-   (rxfem.h), where it makes the same pieces parts_delete is element deletion: what is left where every element whose
-   inside a cut meets is taken away, on uncut nodes.
+   Parts are the elements of gx_body_model: cells with the same four copies are one part. The planes of the body's
+   own arrangement decide, in doubles, which part contains a point. That is kinder to sampling than a search of its
+   own would be: sampling is charged with points, not with geometry.
+       parts_regular    n^3 cells of each divided element's reference tetrahedron (sampling.h)
+       parts_adaptive   subdivision to a depth, rules of degree 2 in its tetrahedra
+       parts_positive   positive weights at inner points from exact moments, degree 2
+       parts_rxfem      the moments that RXFEM's rule fits (rxfem.h), where it makes the same parts
+       parts_delete     element deletion: the whole elements, on uncut nodes, whose inside no cut meets
 
    Include after rxfem_model.h, part.h and sampling.h. Out of memory ends the program. */
 #ifndef GXFEM_BENCH_PARTS_H
@@ -16,7 +17,7 @@
 #define PARTS_NONE UINT32_MAX
 
 typedef struct parts_body {
-    gx_body *body;       /* borrowed; neither cut nor held anew as long as this is in use */
+    gx_body *body;       /* borrowed; it must neither be cut nor held again while this is in use */
     gxs_model model;     /* of the body */
     uint32_t *first;     /* element_count + 1: parts of each element in model.elements */
     uint32_t *leaf_part; /* by leaf of the body's complex; PARTS_NONE: removed */
@@ -80,7 +81,7 @@ static inline double parts_whole(const parts_body *p, uint32_t element) {
     return gxi_tet_volume(corners);
 }
 
-/* The part of the element that has the material point; PARTS_NONE: removed */
+/* The part of the element that contains the material point; PARTS_NONE: removed */
 static inline uint32_t parts_find(const parts_body *p, uint32_t element, const double x[3]) {
     const gxb_complex *cx = p->body->complex;
     uint32_t at = cx->root[element];
@@ -190,7 +191,7 @@ static inline void parts_moments(const gxs_element *of, double whole, double den
     for (i = 0; i < 6; i++) m[4 + i] = scale * of->mass[second[i]];
 }
 
-/* The leaves of a part as bench/part.h takes them; borrowed until the next call */
+/* The leaves of a part in the form of bench/part.h; borrowed until the next call */
 static inline part parts_shape(const parts_body *p, uint32_t element, uint32_t index) {
     const gx_body *body = p->body;
     uint32_t cell, leaf;
@@ -229,8 +230,8 @@ static inline void parts_positive(const parts_body *p, uint32_t element, double 
     sampling_free(&one);
 }
 
-/* The model's elements with weights and masses by a rule in each divided element; counts (by part): its points, 1 in
- * others. */
+/* The model's elements with weights and masses by a rule in each divided element; counts (by part): the rule's
+   points, 1 in other elements */
 static inline void parts_integrate(const parts_body *p, parts_rule_fn make, int knob, double density,
                                    gxs_element *elements, size_t *counts) {
     sampling_rule rule;
@@ -256,8 +257,8 @@ static inline void parts_integrate(const parts_body *p, parts_rule_fn make, int 
     sampling_free(&rule);
 }
 
-/* The same by RXFEM's rules for a mesh that it has cut by the same surfaces: each part by the piece that has its centre
- */
+/* The same by RXFEM's rules, for a mesh that it has cut by the same surfaces. Each part takes the piece with its
+   centre. */
 static inline void parts_rxfem(const parts_body *p, const rx_body *b, double density, gxs_element *elements,
                                size_t *counts) {
     size_t i;
@@ -280,13 +281,13 @@ static inline void parts_rxfem(const parts_body *p, const rx_body *b, double den
 
 /* ---- element deletion ---- */
 
-/* Does a cut meet the element's inside */
+/* Does a cut meet the element's inside? */
 static inline int parts_is_met(const gx_body *body, uint32_t element) {
     return (int)(body->complex->root[element] & 1);
 }
 
-/* Whole elements on uncut nodes, as many as there are left; elements: room for those of the mesh. uncut: its model
- * before any cut */
+/* Whole elements on uncut nodes; returns the number that is left. elements: room for those of the mesh. uncut: its
+   model before any cut */
 static inline size_t parts_delete(const parts_body *p, const gxs_model *uncut, gxs_element *elements) {
     size_t i, count = 0;
     for (i = 0; i < uncut->element_count; i++)

@@ -1,4 +1,4 @@
-/* progress.h - a progress bar on stderr, where that is a terminal. Define _POSIX_C_SOURCE before the first header. */
+/* progress.h - a progress bar on stderr, if that is a terminal. Define _POSIX_C_SOURCE before the first header. */
 #ifndef BENCH_PROGRESS_H
 #define BENCH_PROGRESS_H
 
@@ -7,7 +7,7 @@
 
 static int progress_drawn; /* a bar stands on the terminal's last line */
 
-/* Takes the bar away, so that a line can be printed in its place. */
+/* Removes the bar, so that a line can be printed in its place. */
 static inline void progress_clear(void) {
     if (!progress_drawn) return;
     fprintf(stderr, "\r\033[K");

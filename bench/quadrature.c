@@ -1,28 +1,37 @@
-/* quadrature.c - integrals over a part of a cut element: how exact, how long they take. RXFEM's Table 1 and what lies
-   around it. usage: quadrature [FILE [--small]]     rows go to stdout and to FILE, a table to stderr; --small: a tenth
-   of the time for each
+/* quadrature.c - integrals over a part of a cut element: how exact they are and how long they take. RXFEM's Table 1
+   and its surroundings.
 
-   The unit tetrahedron is cut; integrands are those of the table, over the part at the origin:
+   usage: quadrature [FILE [--small]]; rows go to stdout and to FILE, a table to stderr. --small: a tenth of the time
+   for each.
+
+   The unit tetrahedron is cut. Integrands are those of the table, over the part at the origin:
        plane    x + y + z <= 0.3 (RXFEM's, by its 560 of 50^3 samples)
-       kink     z + |x - y - 1/16| <= 0.3 (chosen here: the paper does not say its own)
-       sphere   octant of radius 0.5 about the origin (RXFEM's, by its 8219 samples), as triangles of a patch around it;
-   "spheres": of more and more of them truth: exact moments of the same triangles (bench/part.h; tests/test_baselines.c
-   holds it against rationals). What triangles are off the round sphere is charted apart, as method "triangles": no
-   method is charged with it.
+       kink     z + |x - y - 1/16| <= 0.3 (chosen here: the paper does not give its own)
+       sphere   octant of radius 0.5 about the origin (RXFEM's, by its 8219 samples), as triangles of a patch around
+                it
+       spheres  the same with more and more triangles
 
-   triangles: those that meet the element.
-   method     knob
-   gxfem      none: gx_body_cut; integrals are read off the part's mass block
-   positive   degree of a rule with positive weights at inner points (bench/sampling.h), from the arrangement
-   rxfem      degree of the volume rule; 2 as published. "clipped": interface points on what of the triangles is in the
-   element adaptive   depth; 4 as published. One point or four, by the integrand's degree regular    cells along an
-   edge; 50 as published published: what RXFEM's Table 1 says. error: relative to truth; error_of_element: to the
-   integral over the whole element. points: of the rule that stay in the part. geometry_us: where the surface meets the
-   element (for gxfem arrangement and enrichment; for adaptive and regular an index of the triangles); rule_us: what
-   follows, both sides of the cut for gxfem and rxfem. evaluate_us: one elastic evaluation (St. Venant-Kirchhoff stress
-   and nodal forces) at each point of the part; gxfem's and that of "rxfem one" is one for the part, in which F is
-   constant. amortised_us: evaluate_us and the share of the rest in EVALUATIONS of them. Times are the least of many
-   calls: where the machine has other work, a median is that of the other work. */
+   truth: exact moments of the same triangles (bench/part.h; tests/test_baselines.c compares it with rationals). The
+   distance of triangles from the round sphere is charted apart, as method "triangles". No method is charged with it.
+
+   Columns and knobs:
+       triangles   the number that meet the element
+       gxfem       no knob: gx_body_cut; integrals are read off the part's mass block
+       positive    degree of a rule with positive weights at inner points (bench/sampling.h), from the arrangement
+       rxfem       degree of the volume rule; 2 as published. "clipped": interface points only inside the element
+       adaptive    depth; 4 as published. One point or four, by the integrand's degree
+       regular     cells along an edge; 50 as published
+       published   the values of RXFEM's Table 1
+       error       relative to truth; error_of_element: relative to the integral over the whole element
+       points      of the rule, in the part
+       geometry_us where the surface meets the element (gxfem: arrangement and enrichment; adaptive and regular: an
+       index of the triangles)
+       rule_us     what follows; for gxfem and rxfem both sides of the cut
+       evaluate_us one elastic evaluation (St. Venant-Kirchhoff stress and nodal forces) at each point of the part;
+       for gxfem and "rxfem one" one for the part, in which F is constant
+       amortised_us  evaluate_us and the share of the rest in EVALUATIONS of them
+
+   Times are the least of many calls: where the machine has other work, a median measures the other work. */
 #define _POSIX_C_SOURCE 200809L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
@@ -92,7 +101,7 @@ static void integrands_of(const double m[10], double value[INTEGRANDS]) {
     value[3] = m[4] + m[7] + m[9];
 }
 
-static rx_rules *rules[RX_DEGREE_MAX + 1][2]; /* by degree and clipping: once for all elements */
+static rx_rules *rules[RX_DEGREE_MAX + 1][2]; /* By degree and clipping: made once for all elements */
 
 static rx_body *cut_rxfem(const region *r, rx_rules *by) {
     rx_body *body = rx_body_create(by, corners, 4, element, 1);
@@ -120,7 +129,7 @@ static void find_truth(region *r) {
     rx_body_destroy(counted);
 }
 
-/* Powers of two times 0.3, so that the triangle's corners are exactly in the plane of the double 0.3 */
+/* 0.3 times powers of two, so that the triangle's corners are exactly in the plane of the double 0.3 */
 static region make_plane(void) {
     static const double corner[9] = {4, -4, 1, 1, 4, -4, -4, 1, 4};
     region r = region_make("plane", 3, 1);
@@ -142,8 +151,8 @@ static region make_kink(void) {
     return r;
 }
 
-/* Directions around (1, 1, 1) by two angles, turned so that no edge lies along a face of the element. 1.2 rad reaches
-   past the axes, which are 0.96 away. */
+/* Directions around (1, 1, 1) by two angles, turned so that no edge lies along a face of the element. 1.2 rad
+   reaches past the axes, which are 0.96 rad away. */
 static void sphere_point(double u, double v, double radius, double x[3]) {
     const double turned[2] = {0.8 * tan(u) - 0.6 * tan(v), 0.6 * tan(u) + 0.8 * tan(v)};
     double length = radius / sqrt(1 + turned[0] * turned[0] + turned[1] * turned[1]);
@@ -174,8 +183,8 @@ static region make_sphere(const char *name, uint32_t n) {
 
 /* ---- evaluations ---- */
 
-/* F of the same linear field, its St. Venant-Kirchhoff stress, and what each point adds to the forces of corners 1, 2,
- * 3 */
+/* F of the same linear field, its St. Venant-Kirchhoff stress, and each point's contribution to the forces of
+   corners 1, 2 and 3 */
 static double evaluate(size_t points) {
     static const gxs_material material = {GXS_ST_VENANT_KIRCHHOFF, 1e6, 0.4, 0, NULL, NULL};
     double u[3][3] = {{0.1, 0.02, 0.03}, {0.01, -0.05, 0.02}, {0.04, 0.01, 0.07}}, force[9] = {0}, f[9], stress[9],
@@ -185,7 +194,8 @@ static double evaluate(size_t points) {
         for (k = 0; k < 9; k++) f[k] = (k % 4 == 0) + u[k % 3][k / 3];
         gxs_material_stress(&material, f, stress);
         for (k = 0; k < 9; k++) force[k] += 1e-3 * stress[k];
-        u[0][0] = force[0] * 1e-12 + 0.1; /* the next point waits for nothing else, and is not left out */
+        u[0][0] = force[0] * 1e-12 + 0.1; /* makes the next point depend on this one, so that it is not optimised away
+                                           */
     }
     for (k = 0; k < 9; k++) sum += force[k];
     return sum;
@@ -219,7 +229,8 @@ static void integrate(const double *points, size_t stride, const double *weights
     }
 }
 
-/* Mass is the integral of lambda_i lambda_j (density 1), lambda 1, 2, 3 are x, y, z, and the lambdas add up to 1. */
+/* The mass is the integral of lambda_i lambda_j (density 1). lambda 1, 2, 3 are x, y, z, and the lambdas add up to
+   1. */
 static void integrate_mass(const double mass[10], double value[INTEGRANDS]) {
     static const int packed[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
     int i, j;
@@ -233,7 +244,7 @@ static void integrate_mass(const double mass[10], double value[INTEGRANDS]) {
     value[3] = mass[4] + mass[7] + mass[9];
 }
 
-/* The part at node 0: it holds the copy of that node which has material where x < 1e-300. */
+/* The part at node 0: it has the copy of that node with material at x < 1e-300. */
 static void read_part(gx_body *body, double value[INTEGRANDS]) {
     static const gx_region beside = {0, -1, 1e-300};
     gxs_model model;
@@ -316,7 +327,7 @@ static void call_positive(const region *r, int knob, int option, run *out) {
     part_free(&p);
 }
 
-/* The surface's front is outside: the part is the piece on the minus side. */
+/* The surface's front is outside: the part is RXFEM's piece on the minus side. */
 static void call_rxfem(const region *r, int knob, int option, run *out) {
     rx_body *body = cut_rxfem(r, rules[knob][option & 1]);
     double weights[2][RX_POINTS], start;
@@ -331,7 +342,7 @@ static void call_rxfem(const region *r, int knob, int option, run *out) {
     rx_body_destroy(body);
 }
 
-/* degree 1 for the first two integrands, 2 for the others; times are those of degree 2 */
+/* Degree 1 for the first two integrands, 2 for the others; times are those of degree 2 */
 static void call_adaptive(const region *r, int knob, int option, run *out) {
     double start = seconds(NULL), value[INTEGRANDS];
     sampling_surface surface = sampling_surface_create(r->vertices, r->triangles, r->triangle_count);
@@ -372,7 +383,7 @@ static void call_regular(const region *r, int knob, int option, run *out) {
 /* ---- runs ---- */
 
 typedef void (*call_fn)(const region *r, int knob, int option, run *out);
-/* knobs end with 0 */
+/* Knobs end with 0 */
 typedef struct method {
     const char *name;
     call_fn call;
@@ -427,7 +438,8 @@ static void print_run(const region *r, const run *m) {
                 m->evaluate + (m->geometry + m->rule) / EVALUATIONS);
 }
 
-/* What triangles are off the round octant: its integrals are pi r^3 / 6, 3 pi r^4 / 16, r^5 / 5, pi r^5 / 10. */
+/* The error of the triangles against the round octant. Its integrals are pi r^3 / 6, 3 pi r^4 / 16, r^5 / 5, pi r^5
+   / 10. */
 static void print_triangles(const region *r) {
     const double round[INTEGRANDS] = {PI / 48, 3 * PI / 256, 1.0 / 160, PI / 320};
     int i;
@@ -436,8 +448,8 @@ static void print_triangles(const region *r) {
                 r->truth[i], round[i], fabs(r->truth[i] / round[i] - 1), fabs(r->truth[i] - round[i]) / whole[i]);
 }
 
-/* ---- RXFEM's Table 1: relative errors, to the analytic integrals, and contributing points (of adaptive those of
- * degree 2) ---- */
+/* ---- RXFEM's Table 1: relative errors against the analytic integrals, and contributing points (for adaptive: those
+   of degree 2) ---- */
 
 typedef struct published {
     const char *region, *method, *knob;
@@ -518,8 +530,7 @@ static const row *published_row(size_t i) {
     return NULL;
 }
 
-/* Of each region: is gxfem within 1e-14 of the element, and its whole cut cheaper than the making of RXFEM's rule
- * alone? */
+/* For each region: is gxfem within 1e-14 of the element, and its whole cut cheaper than making RXFEM's rule alone? */
 static void print_verdict(void) {
     size_t i, within = 0, regions = 0, dearer = 0;
     for (i = 0; i < row_count; i++) {

@@ -1,6 +1,6 @@
 /* replay.h - a scene's run as a file (--trace of the scenes, examples/scene.h): mesh, material, state at the start,
-   what is held, and the cuts of each frame. Read here, for methods to repeat. A file that is not one ends the program.
-   Include after gxfem.h. */
+   held regions, and the cuts of each frame. Methods repeat what is read here. A file of another kind ends the
+   program. Include after gxfem.h. */
 #ifndef GXFEM_BENCH_REPLAY_H
 #define GXFEM_BENCH_REPLAY_H
 
@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define REPLAY_THICKNESS 1e-4 /* GXFEM's Table 1, but for the single tetrahedron */
+#define REPLAY_THICKNESS 1e-4 /* GXFEM's Table 1, except for the single tetrahedron */
 
-/* Before a frame's step: the triangles from `first` on cut; those before it are what of the same blade's path was cut
- * earlier. */
+/* Before a frame's step: the triangles from `first` on cut. Those before it are the earlier part of the same blade's
+   path. */
 typedef struct replay_cut {
     size_t frame, first;
     gx_surface path;
@@ -163,7 +163,7 @@ static inline replay replay_read(const char *name) {
     return r;
 }
 
-/* SCENE=TRACE on the command line: the scene's name, and what it is; a word that is not so ends the program. */
+/* SCENE=TRACE on the command line: the scene's name, and the trace. Another word ends the program. */
 static inline replay replay_argument(const char *program, const char *argument, char name[32]) {
     const char *file = strchr(argument, '=');
     if (!file || file - argument >= 32) {
@@ -190,7 +190,7 @@ static inline void replay_free(replay *r) {
     memset(r, 0, sizeof *r);
 }
 
-/* Is a node where something is held? */
+/* Is a node at a held place? */
 static inline int replay_is_held(const replay *r, size_t node) {
     size_t i;
     for (i = 0; i < r->region_count; i++) {

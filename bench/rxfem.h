@@ -1,24 +1,28 @@
 /* rxfem.h - RXFEM, a baseline: Koschier, Bender, Thuerey, Robust eXtended Finite Elements for Complex Cutting of
    Deformables (2017).
 
-   A tetrahedral mesh is cut by oriented, manifold triangle surfaces. Which elements and one-rings they cut completely
-   is told by the intersection path (section 4.3); nodes get a shifted sign enrichment for each patch that separates
-   their one-ring (Eq. 10); each side of a cut element gets a quadrature rule by hierarchical moment fitting (section
-   5): Gauss rules on the pieces of edges, from these rules on faces, from these rules on the volume, each over an
+   Oriented, manifold triangle surfaces cut a tetrahedral mesh. The intersection path tells which elements and
+   one-rings they cut completely (section 4.3). Nodes get a shifted sign enrichment for each patch that separates
+   their one-ring (Eq. 10). Each side of a cut element gets a quadrature rule by hierarchical moment fitting (section
+   5): Gauss rules on the parts of edges, from these rules on faces, from these rules on the volume, each over an
    interface rule in a divergence-free basis. Section 6: perturbation, constrained functions, preconditioner.
 
-   What it cannot do it says: surfaces that cross within an element, T-junctions and surfaces that are not manifold or
-   not oriented alike are refused (the paper's limitations). An element that is cut partly stays whole.
+   It refuses what it cannot do: surfaces that cross within an element, T-junctions, and surfaces that are not
+   manifold or not oriented alike (the paper's limitations). An element that is cut partly stays whole.
 
-   Where the paper leaves something open, here is chosen:
-       signs            exact (gxb_orient3d), as section 6 suggests. Where one is 0, the vertices concerned are moved at
-   random by RX_PERTURBATION of the mesh's box, and the cut is tried again degrees          2 in the volume (the highest
-   in Eq. 11, 12) on 24 points; so 3 on faces (19 points, its antiderivatives are flux of volume moments) and for the
-   interface in the volume, 4 for the interface in a face; points: at least twice as many as functions, else the largest
-   segments and triangles are halved antiderivatives  the mean over the axes of the integrals along each, so that their
-   divergence is the polynomial clipping         rx_rules.clip 0: points lie on whole triangles and segments, as in the
-   paper's last paragraph of section 5; 1: on what of them is in the element signed distance  only its sign is used:
-   counted along the element's edges, from where and which way they cross the surface
+   Choices made here where the paper leaves something open:
+       signs            exact (gxb_orient3d), as section 6 suggests. If one is 0, its vertices are moved at random by
+                        RX_PERTURBATION of the mesh's box, and the cut is tried again
+       degrees          2 in the volume (the highest in Eq. 11, 12) on 24 points; so 3 on faces (19 points; their
+                        antiderivatives are the flux of volume moments) and for the interface in the volume, 4 for
+                        the interface in a face. Points: at least twice as many as functions; otherwise the largest
+                        segments and triangles are halved
+       antiderivatives  the mean over the axes of the integrals along each, so that their divergence is the
+                        polynomial
+       clipping         rx_rules.clip 0: points lie on whole triangles and segments, as in the paper's last paragraph
+                        of section 5; 1: only on their parts inside the element
+       signed distance  only its sign is used: counted along the element's edges, from where they cross the surface
+                        and in which direction
 
    Include after the implementation of gxfem_boolean.h. Out of memory ends the program. */
 #ifndef BENCH_RXFEM_H
@@ -67,7 +71,7 @@ typedef struct rx_patch {
     uint32_t element, cut;
     size_t first, count;        /* in rx_body.members: contacts */
     unsigned faces;             /* bit k: it meets face k */
-    unsigned open;              /* bit k: a rim edge of the surface pierces face k: there the intersection path ends */
+    unsigned open;              /* bit k: a rim edge of the surface pierces face k: the intersection path ends there */
     unsigned plus;              /* bit i: corner i is on the plus side */
     int enrichment[4];          /* of each corner; RX_NONE */
     double point[3];            /* one of its own, in the element */
@@ -83,7 +87,7 @@ typedef struct rx_enrichment {
     int plus;
 } rx_enrichment;
 
-/* A part of an element after all cuts; bit p of plus: on the plus side of the element's p-th complete patch */
+/* A part of an element after all cuts; bit p of plus: it is on the plus side of the element's p-th complete patch */
 typedef struct rx_piece {
     uint32_t element;
     uint64_t plus;
@@ -180,7 +184,7 @@ static inline void rx_find_rings(rx_body *b) {
 
 static inline void rx_divide(rx_body *b);
 
-/* The mesh is copied; elements have positive volume. rules outlive the body. */
+/* Copies the mesh; elements have positive volume. rules outlive the body. */
 static inline rx_body *rx_body_create(rx_rules *rules, const double *positions, size_t node_count,
                                       const uint32_t *elements, size_t element_count) {
     rx_body *b = (rx_body *)dense_memory(NULL, 1, sizeof *b);
@@ -228,7 +232,7 @@ static inline void rx_body_destroy(rx_body *b) {
 
 /* ---- the surface ---- */
 
-/* Pairs triangles by their edges; the two must pass the edge in opposite directions. */
+/* Pairs triangles by their edges. The two must pass the edge in opposite directions. */
 static inline rx_result rx_pair_triangles(rx_body *b, size_t first) {
     const size_t count = 3 * (b->triangle_count - first);
     uint32_t(*edges)[4] = (uint32_t(*)[4])dense_memory(NULL, count, sizeof *edges);
@@ -297,7 +301,7 @@ static inline int rx_boxes_apart(const double *const *a, int m, const double *co
 }
 
 /* Does the segment a b, whose ends are on the sides sa, sb of the triangle's plane, pass through the triangle?
- *degenerate is set where it may touch its boundary, or an end lies in it. */
+ *degenerate is set if it may touch the boundary, or if an end lies in the plane. */
 static inline int rx_pierces(const double *a, const double *b, int sa, int sb, const double *const t[3],
                              int *degenerate) {
     const double *segment[2];
@@ -313,7 +317,7 @@ static inline int rx_pierces(const double *a, const double *b, int sa, int sb, c
     return 1;
 }
 
-/* Fills the contact's bits; 0: they do not meet. */
+/* Sets the contact's bits; 0: triangle and element do not meet */
 static inline int rx_meet(const rx_body *b, rx_contact *c, int *degenerate) {
     const double *x[4], *t[3], *face[3];
     int side[4], out[3][4], e, k, v, all = 0, touches = 0;
@@ -353,8 +357,7 @@ static inline int rx_meet(const rx_body *b, rx_contact *c, int *degenerate) {
     return touches || c->edges || c->pierced;
 }
 
-/* Faces on which the triangle leaves a segment of the path: that its edges pierce or that have an edge that pierces it
- */
+/* Faces on which the triangle leaves a segment of the path: its edges pierce them, or an edge of theirs pierces it */
 static inline unsigned rx_contact_faces(const rx_contact *c) {
     unsigned faces = (c->pierced | c->pierced >> 4 | c->pierced >> 8) & 15;
     int e;
@@ -363,12 +366,12 @@ static inline unsigned rx_contact_faces(const rx_contact *c) {
     return faces;
 }
 
-/* Does the surface go on across edge v within the element? */
+/* Does the surface continue across edge v within the element? */
 static inline int rx_goes_on(const rx_contact *c, int v) {
     return (c->pierced >> (4 * v) & 15) != 0 || (c->outside >> (4 * v) & 15) == 0;
 }
 
-/* A lattice of boxes with the elements whose own boxes meet them */
+/* A lattice of boxes, each with the elements whose own boxes meet it */
 typedef struct rx_grid {
     double low[3], size;
     uint32_t n[3], *first, *items;
@@ -406,7 +409,7 @@ static inline void rx_grid_size(const rx_body *b, rx_grid *g) {
     for (a = 0; a < 3; a++) g->n[a] = 1 + (uint32_t)fmin(1000, (high[a] - g->low[a]) / g->size);
 }
 
-/* Counts, then fills: first[] ends as it must be. */
+/* Counts, then fills: first[] ends in its final form. */
 static inline rx_grid rx_grid_create(const rx_body *b) {
     rx_grid g;
     size_t cells, i;
@@ -530,7 +533,7 @@ static inline rx_result rx_trace(rx_body *b, uint32_t first) {
     return again ? RX_ERROR_DEGENERATE : RX_OK;
 }
 
-/* ---- what is refused ---- */
+/* ---- refusals ---- */
 
 static inline int rx_share_vertex(const rx_body *b, uint32_t s, uint32_t t) {
     int i;
@@ -579,7 +582,7 @@ static inline void rx_to_frame(const rx_body *b, uint32_t element, double frame[
     for (a = 0; a < 3; a++) xi[a] = dense_dot(frame[a], local, 3);
 }
 
-/* Does a part of the segment lie in the element */
+/* Does a part of the segment lie in the element? */
 static inline int rx_segment_inside(const rx_body *b, uint32_t element, const double *p, const double *q) {
     double frame[3][3], x[3], y[3], from = 0, to = 1;
     int k;
@@ -595,8 +598,8 @@ static inline int rx_segment_inside(const rx_body *b, uint32_t element, const do
     return from <= to;
 }
 
-/* Triangles of one plane overlap in more than their boundaries unless one of their edges has the other triangle beyond
- * it. */
+/* Triangles of one plane overlap in more than their boundaries unless the other triangle lies beyond one of their
+   edges. */
 static inline int rx_overlap_in_plane(const double *const s[3], const double *const t[3]) {
     const double *const *of[2];
     double n[3], corner[9], x[3][2];
@@ -757,7 +760,7 @@ static inline void rx_make_patches(rx_body *b, size_t before) {
     free(parent);
 }
 
-/* ---- the section that a patch makes of its element ---- */
+/* ---- the section of an element by a patch ---- */
 
 /* front: the edge's first corner is in front of the triangle */
 typedef struct rx_crossing {
@@ -770,7 +773,7 @@ static int rx_compare_crossings(const void *a, const void *b) {
     return (x->at > y->at) - (x->at < y->at);
 }
 
-typedef struct rx_sketch { /* what a section points to */
+typedef struct rx_sketch { /* references of a section */
     rx_section section;
     rx_crossing *found; /* of the edge at hand */
     double *memory;
@@ -807,8 +810,8 @@ static inline int rx_find_crossings(const rx_body *b, const rx_patch *p, int e, 
     return 1;
 }
 
-/* A patch that crosses no edge leaves all corners on one side, outside of its loops in the faces: with n out of the
-   plus side, the sum of x . n over a loop is twice its area where that is plus. */
+/* A patch that crosses no edge leaves all corners on one side, outside of its loops in the faces. With n out of the
+   plus side, the sum of x . n over a loop is twice its area if that side is plus. */
 static inline int rx_corners_off_loops(const rx_rules *r, const rx_section *s) {
     rx_list segments = {NULL, 0, 0};
     double sum = 0;
@@ -978,8 +981,8 @@ static inline int rx_corner_of(const rx_body *b, uint32_t element, uint32_t node
     return k;
 }
 
-/* Where the path of a patch ends on the boundary of the one-ring around corner k: the opposite face and the mesh's
- * boundary */
+/* Where the path of a patch ends on the boundary of the one-ring around corner k: in the opposite face, and on the
+   mesh's boundary */
 static inline int rx_is_open_for(const rx_body *b, const rx_patch *p, int k) {
     unsigned rim = 1u << k, f;
     for (f = 0; f < 4; f++)
@@ -994,7 +997,7 @@ typedef struct rx_walk {
     size_t first;
 } rx_walk;
 
-/* Collects the patches around the node that are connected with one of them; returns how many. */
+/* Collects the patches around the node that are connected with one of them; returns their number. */
 static inline size_t rx_walk_patches(const rx_body *b, rx_walk *w, uint32_t node, uint32_t patch) {
     size_t count = 1, done;
     uint32_t i;
@@ -1014,7 +1017,7 @@ static inline size_t rx_walk_patches(const rx_body *b, rx_walk *w, uint32_t node
     return count;
 }
 
-/* One more function for the node if what was collected separates its one-ring: then its path there is closed. */
+/* One more function for the node if the collected patches separate its one-ring: then their path there is closed. */
 static inline void rx_enrich(rx_body *b, const rx_walk *w, size_t count, uint32_t node) {
     rx_enrichment *e;
     size_t i;
@@ -1070,7 +1073,7 @@ static inline void rx_enrich_nodes(rx_body *b, size_t before, size_t first) {
 
 /* ---- pieces of elements ---- */
 
-/* On which side of a patch is a point of its element: crossings of the way from corner 0 */
+/* The side of a patch on which a point of its element lies: crossings of the way from corner 0 */
 static inline int rx_side_of_patch(const rx_body *b, const rx_patch *p, const double *x) {
     const double *x0 = rx_corner(b, p->element, 0);
     int plus = (int)(p->plus & 1), v, touched = 0;
@@ -1094,7 +1097,7 @@ static inline void rx_add_piece_once(rx_body *b, uint32_t element, uint64_t plus
     b->pieces[b->piece_count++].plus = plus;
 }
 
-/* K patches make K + 1 pieces: on either side of each, where that lies among the others. */
+/* K patches make K + 1 pieces: one on either side of each, placed among the others. */
 static inline void rx_list_pieces(rx_body *b, uint32_t element) {
     const uint32_t *list = b->patch_list + b->patch_first[element];
     const uint32_t count = b->patch_first[element + 1] - b->patch_first[element];
@@ -1110,7 +1113,7 @@ static inline void rx_list_pieces(rx_body *b, uint32_t element) {
     }
 }
 
-/* The piece of the element that has the point */
+/* The piece of the element that contains the point */
 static inline size_t rx_piece_at(const rx_body *b, uint32_t element, const double *x) {
     uint64_t plus = 0;
     uint32_t p, i;
@@ -1122,8 +1125,8 @@ static inline size_t rx_piece_at(const rx_body *b, uint32_t element, const doubl
     return i;
 }
 
-/* All of the element less what lies beyond each patch that bounds the piece: that is, whose other side is a piece too
- */
+/* The whole element less everything beyond each patch that bounds the piece, that is, whose other side is a piece
+   too */
 static inline void rx_piece_moments(const rx_body *b, rx_piece *piece) {
     const rx_fit *f = &b->rules->volume;
     const uint32_t *list = b->patch_list + b->patch_first[piece->element];
@@ -1166,9 +1169,9 @@ static inline void rx_divide(rx_body *b) {
     for (i = 0; i < b->piece_count; i++) rx_piece_moments(b, &b->pieces[i]);
 }
 
-/* Functions that are not 0 at a corner of a piece beside the standard one: psi (Eq. 10) is 1 or -1 where an odd number
-   of the patches of its enrichment lies between the corner and the piece. Returns how many, at most one for each patch.
- */
+/* Functions, besides the standard one, that are not 0 at a corner of a piece: psi (Eq. 10) is 1 or -1 if an odd
+   number of the patches of its enrichment lies between the corner and the piece. Returns their number, at most one
+   for each patch. */
 static inline size_t rx_piece_functions(const rx_body *b, const rx_piece *piece, int corner, uint32_t *enrichment,
                                         int *psi) {
     const uint32_t *list = b->patch_list + b->patch_first[piece->element];
@@ -1231,7 +1234,7 @@ static inline rx_result rx_cut_steps(rx_body *b, const rx_surface *surface, size
     return result == RX_OK ? rx_fit_patches(b, patches) : result;
 }
 
-/* Cuts the mesh; on anything but RX_OK it is as it was. */
+/* Cuts the mesh. On any result other than RX_OK it is as it was. */
 static inline rx_result rx_body_cut(rx_body *b, const rx_surface *surface) {
     const size_t contacts = b->contact_count, patches = b->patch_count, triangles = b->triangle_count,
                  vertices = b->vertex_count;
@@ -1262,9 +1265,9 @@ static inline double rx_element_volume(const rx_body *b, uint32_t element) {
     return dense_dot(n, edge[2], 3) / 6;
 }
 
-/* Eq. 27: of each enrichment the volume on which it is not 0, over that of its node's one-ring; both are sums of the
-   rules' weights, that is their moments of degree 0. Below RX_SUPPORT it is to be constrained; its preconditioner is 1
-   / sqrt(share) (Eq. 26), that of a standard function 1. */
+/* Eq. 27: for each enrichment the volume on which it is not 0, over the volume of its node's one-ring. Both are sums
+   of the rules' weights, that is, their moments of degree 0. Below RX_SUPPORT it is to be constrained. Its
+   preconditioner is 1 / sqrt(share) (Eq. 26); that of a standard function is 1. */
 static inline void rx_shares(const rx_body *b, double *share) {
     double *ring = (double *)dense_memory(NULL, b->node_count, sizeof(double));
     uint32_t functions[64];

@@ -1,14 +1,16 @@
-/* rxfem_model.h - a mesh cut by RXFEM (bench/rxfem.h) as a model for the library's time step, and RXFEM's own elastic
-   derivatives.
+/* rxfem_model.h - a mesh cut by RXFEM (bench/rxfem.h) as a model for the library's time step, and RXFEM's own
+   elastic derivatives.
 
-   rx_model_create: for each piece an element with the volume and mass that RXFEM's rule gives it. What a piece sees of
-   a node is a value, u_i + sum of psi a (Eq. 10); each different one is a copy of the model. So the step is over the
-   same space with other integrals: what is compared is the enrichment and the integration, not the solver. An
-   enrichment whose support is too small (Eq. 22) makes its value follow: by an affine function through the corners of
-   the best piece of its fragment, the one with most free corners, then the largest (the paper: "as-rigid-as-possible",
-   without a formula). rx_elastic: energy, forces and tangent stiffness of the paper's material, St. Venant-Kirchhoff,
-   in RXFEM's own unknowns u and a (Eq. 12), evaluated at each of the rule's points, or once for each piece, in which F
-   is constant. The tangent is the exact one, not projected.
+   rx_model_create makes for each piece an element with the volume and mass that RXFEM's rule gives it. At a node a
+   piece sees a value, u_i + sum of psi a (Eq. 10). Each different value is a copy of the model. So the step is over
+   the same space with other integrals: the enrichment and the integration are compared, not the solver. A value with
+   an enrichment of too small support (Eq. 22) follows an affine function through the corners of the best piece of
+   its fragment: the one with most free corners, then the largest. (The paper says "as-rigid-as-possible", without a
+   formula.)
+
+   rx_elastic computes energy, forces and tangent stiffness of the paper's material, St. Venant-Kirchhoff, in RXFEM's
+   own unknowns u and a (Eq. 12). It evaluates at each of the rule's points, or once for each piece, in which F is
+   constant. The tangent is the exact one, not projected.
 
    Include after the implementations of gxfem_boolean.h, gxfem_integrate.h and gxfem_solve.h. Out of memory ends the
    program. */
@@ -17,7 +19,7 @@
 
 #include "rxfem.h"
 
-/* What pieces see of a node: functions in rx_model.functions */
+/* The values of a node that pieces see: functions in rx_model.functions */
 /* next: another one of the node, UINT32_MAX */
 typedef struct rx_value {
     uint32_t node, next, first, count;
@@ -103,7 +105,7 @@ static inline void rx_find_fragments(const rx_body *b, rx_model *m) {
 
 /* ---- elements ---- */
 
-/* A node whose mass the rule makes negative has none. */
+/* A node whose mass the rule makes negative has no mass. */
 static inline void rx_clear_negative(double mass[10]) {
     static const int row[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
     int i, j;
@@ -138,7 +140,7 @@ static inline void rx_fill_element(const rx_body *b, const rx_model *m, size_t p
 
 /* ---- section 6, step 2 ---- */
 
-/* Does one of the value's enrichments have next to no support */
+/* Does one of the value's enrichments have next to no support? */
 static inline int rx_is_constrained(const rx_model *m, uint32_t value) {
     const rx_value *v = &m->values[value];
     uint32_t i;
@@ -147,7 +149,7 @@ static inline int rx_is_constrained(const rx_model *m, uint32_t value) {
     return 0;
 }
 
-/* The piece of the value's fragment with most free corners, then the largest; piece_count: none has any */
+/* The piece of the value's fragment with most free corners, then the largest; piece_count: no piece has any */
 static inline size_t rx_leading_piece(const rx_body *b, const rx_model *m, uint32_t value) {
     size_t i, best = b->piece_count;
     int most = 0, k;
@@ -163,8 +165,8 @@ static inline size_t rx_leading_piece(const rx_body *b, const rx_model *m, uint3
     return best;
 }
 
-/* Weights of the leader's free corners, 1 in sum, whose mean is nearest to the node: about the first, the shortest of
- * the least squares */
+/* Weights of the leader's free corners, with sum 1, whose mean is nearest to the node. Of several solutions, the
+   shortest about the first corner */
 static inline void rx_follow(const rx_body *b, const rx_model *m, uint32_t value, size_t leader, gxs_constraint *c) {
     const double *x = b->positions + 3 * (size_t)m->values[value].node;
     const double *first = NULL;

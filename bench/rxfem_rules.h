@@ -1,14 +1,14 @@
-/* rxfem_rules.h - RXFEM's quadrature for one side of a patch in one element: hierarchical moment fitting (RXFEM section
-   5). See bench/rxfem.h, which finds the patches, for what is chosen where the paper leaves something open.
+/* rxfem_rules.h - RXFEM's quadrature for one side of a patch in one element: hierarchical moment fitting (RXFEM
+   section 5). bench/rxfem.h finds the patches. It also says what is chosen where the paper leaves something open.
 
-   Everything is in the element's reference frame: corners 0 and the unit vectors. A rule is its moments (monomials to
-   its degree) and a fixed matrix that makes weights at fixed points of them (Eq. 17). Moments come from the boundary:
-   from rules on the faces, whose moments come from their own boundary, and an interface whose rule is fitted in a
-   divergence-free basis (Eq. 20, 21).
+   Everything is in the element's reference frame: corners 0 and the unit vectors. A rule is its moments (monomials
+   to its degree) and a fixed matrix that turns moments into weights at fixed points (Eq. 17). Moments come from the
+   boundary: from rules on the faces, whose moments come from their own boundary, and from an interface whose rule is
+   fitted in a divergence-free basis (Eq. 20, 21).
 
-   Sources of points: triangle 6 and 19: Dunavant (1985), tetrahedron 24: Keast (1986), which are those of Zhang, Cui,
-   Liu (2009) that the paper takes. Other degrees (RXFEM has none) use products of Gauss points, collapsed. Out of
-   memory ends the program. */
+   Sources of points: triangle 6 and 19: Dunavant (1985); tetrahedron 24: Keast (1986). These are the points of
+   Zhang, Cui, Liu (2009), which the paper takes. Other degrees (RXFEM has none) use products of Gauss points,
+   collapsed. Out of memory ends the program. */
 #ifndef BENCH_RXFEM_RULES_H
 #define BENCH_RXFEM_RULES_H
 
@@ -80,8 +80,8 @@ static inline double rx_simplex_integral(int dimension, unsigned i, unsigned j, 
     return value;
 }
 
-/* Divergence-free field: x^e along axis, and along the last axis what takes its divergence away: factor x^f [Mueller et
- * al. 2013] */
+/* Divergence-free field: x^e along `axis`, and along the last axis a term that removes its divergence: factor x^f
+   [Mueller et al. 2013] */
 typedef struct rx_field {
     int axis;
     size_t monomial, rest;
@@ -575,7 +575,7 @@ static inline void rx_triangle_normal(const double *p, double *n) {
     rx_cross(u, v, n);
 }
 
-/* The section's segments in face k. Out of the plus side is against the triangle's normal, as it shows in s and t. */
+/* The section's segments in face k. Out of the plus side is against the triangle's normal, as seen in s and t. */
 static inline void rx_face_segments(const rx_rules *r, const rx_section *s, int k, rx_list *segments) {
     size_t i;
     for (i = 0; i < s->count; i++) {
@@ -717,7 +717,7 @@ static inline void rx_halve_facets(rx_list *list, size_t least) {
     }
 }
 
-/* Flux of fields and antiderivatives through the plus side of face k, by the rule that its moments give */
+/* Flux of fields and antiderivatives through the plus side of face k, by the rule that the face's moments give */
 static inline void rx_add_face(rx_rules *r, const rx_section *s, int k, rx_list *segments) {
     const rx_fit *f = &r->face;
     size_t i;

@@ -1,15 +1,19 @@
-/* sampling.h - quadrature over parts of the unit tetrahedron by points: three other ways than RXFEM's (bench/rxfem.h).
+/* sampling.h - quadrature over parts of the unit tetrahedron by points: three other ways than RXFEM's
+   (bench/rxfem.h).
 
-   Which part has a point is asked of a sampling_region. That of one surface has one part, what lies on or under it:
-   points from which a ray upward (along z) meets its triangles an odd number of times. sampling_regular     n^3 cells
-   of the tetrahedron's bounding box, a point in the middle of each, as RXFEM's Table 1 has with n = 50
-       sampling_adaptive    the tetrahedron in eight, those again that the surface meets, to a depth; points where the
-   part is. As RXFEM's Table 1 has after Mueller et al. (2012) with depth 4; by its counts one point in each tetrahedron
-   for integrands of degree 1, four for degree 2. The surface meets a tetrahedron that has corners or middles of edges
-   in several parts sampling_positive    positive weights at inner points, no more of them than monomials, from exact
-   moments: a positive rule on tetrahedra that make up the part, whose points enter a basis of the moments one by one,
-   each for one that leaves (Caratheodory; Tchakaloff's theorem), then the least change of weights that makes moments
-   the given ones
+   A sampling_region tells which part contains a point. The region of one surface has one part, on or under the
+   surface: the points from which a ray upward (along z) meets its triangles an odd number of times.
+       sampling_regular    n^3 cells of the tetrahedron's bounding box, a point in the middle of each: RXFEM's Table
+                           1 with n = 50
+       sampling_adaptive   the tetrahedron in eight, and again those that the surface meets, to a depth; points in
+                           the part. RXFEM's Table 1 has this after Mueller et al. (2012) with depth 4. By its counts
+                           there is one point in each tetrahedron for integrands of degree 1, and there are four for
+                           degree 2. The surface meets a tetrahedron with corners or middles of edges in several
+                           parts
+       sampling_positive   positive weights at inner points, no more points than monomials, from exact moments: a
+                           positive rule on tetrahedra that make up the part. Its points enter a basis of the moments
+                           one by one, each in place of one that leaves (Caratheodory; Tchakaloff's theorem). Then
+                           the least change of weights that gives the exact moments
 
    Include after the implementation of gxfem_boolean.h. Out of memory ends the program. */
 #ifndef BENCH_SAMPLING_H
@@ -29,7 +33,7 @@ typedef struct sampling_rule {
     size_t count, capacity;
 } sampling_rule;
 
-/* The number of the part that has x; SAMPLING_OUTSIDE: none that is asked for */
+/* The number of the part that contains x; SAMPLING_OUTSIDE: none of those wanted */
 typedef struct sampling_region {
     int (*part_of)(const void *user, const double *x);
     const void *user;
@@ -114,14 +118,14 @@ static inline void sampling_surface_free(sampling_surface *s) {
     free(s->items);
 }
 
-/* Is x strictly to the left of the line from vertex a to b in the plane: the same answer for both triangles at an edge
- */
+/* Is x strictly to the left of the line from vertex a to b in the plane? The same answer for both triangles at an
+   edge */
 static inline int sampling_left(const sampling_surface *s, uint32_t a, uint32_t b, const double *x) {
     if (a < b) return gxb_orient2d(s->vertices + 3 * (size_t)a, s->vertices + 3 * (size_t)b, x) > 0;
     return gxb_orient2d(s->vertices + 3 * (size_t)b, s->vertices + 3 * (size_t)a, x) <= 0;
 }
 
-/* Does the ray upward from x meet the triangle */
+/* Does the ray upward from x meet the triangle? */
 static inline int sampling_meets(const sampling_surface *s, uint32_t triangle, const double *x) {
     const uint32_t *t = s->triangles + 3 * (size_t)triangle;
     const double *a = s->vertices + 3 * (size_t)t[0], *b = s->vertices + 3 * (size_t)t[1],
@@ -323,8 +327,8 @@ typedef struct sampling_basis {
     double inverse[SAMPLING_MONOMIALS][SAMPLING_MONOMIALS];
 } sampling_basis;
 
-/* Column `leaves` becomes one that is B y: its row of the inverse is divided by y there, multiples of it are taken from
- * the others. */
+/* Replaces column `leaves` by one that is B y: its row of the inverse is divided by y there, and multiples of it are
+   subtracted from the others. */
 static inline void sampling_exchange(sampling_basis *b, size_t leaves, const double *y) {
     double *row = b->inverse[leaves];
     size_t i, k;
@@ -333,9 +337,10 @@ static inline void sampling_exchange(sampling_basis *b, size_t leaves, const dou
         if (i != leaves) dense_add(b->inverse[i], -y[i], row, b->count);
 }
 
-/* The column that a new one, B y, is exchanged for, and how much of its weight w goes to the others first: an unused
-   one at once, else of those that come to weight 0 first as weights change by y, within SAMPLING_SLACK of all weight,
-   the one with the largest y [Harris 1973]; count: none does. What y is below SAMPLING_PIVOT is a rounding error. */
+/* The column that a new one, B y, replaces, and how much of its weight w goes to the others first. An unused column
+   is replaced at once. Else it is one of those whose weights reach 0 first as they change by y, within
+   SAMPLING_SLACK of all weight: the one with the largest y [Harris 1973]. count: none. y below SAMPLING_PIVOT is a
+   rounding error. */
 static inline size_t sampling_leaving(const sampling_basis *b, const double *y, double w, double *moved) {
     const double slack = SAMPLING_SLACK * b->total;
     double most = SAMPLING_PIVOT, limit = w;
@@ -395,8 +400,8 @@ static inline void sampling_scale(const double *points, size_t count, double sca
     scale[3] = 1 / scale[3];
 }
 
-/* The least change of weights, each in proportion to itself, by which the moments are the given ones. A weight that
-   would become negative keeps the rule as it is. */
+/* The least change of weights, each in proportion to itself, that gives the exact moments. If a weight would become
+   negative, the rule stays as it is. */
 static inline void sampling_correct(sampling_rule *r, unsigned degree, const double *moments) {
     double a[SAMPLING_MONOMIALS * SAMPLING_MONOMIALS], values[SAMPLING_MONOMIALS], left[SAMPLING_MONOMIALS],
         change[SAMPLING_MONOMIALS];
@@ -441,8 +446,8 @@ static inline sampling_sized *sampling_sort(const double *tetrahedra, size_t cou
     return list;
 }
 
-/* tetrahedra: count x 4 corners x 3, of positive volume; moments: of the part they make up, as gxi_polyhedron_monomials
- * gives them */
+/* tetrahedra: count x 4 corners x 3, of positive volume. moments: of the part that they make up, as
+   gxi_polyhedron_monomials gives them */
 static inline void sampling_positive(const double *tetrahedra, size_t count, unsigned degree, const double *moments,
                                      sampling_rule *r) {
     sampling_sized *list = sampling_sort(tetrahedra, count);

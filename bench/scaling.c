@@ -1,26 +1,36 @@
-/* scaling.c - what a cut and a step cost, against elements, number of cuts, and triangles of a cut: nothing should grow
-   faster than what is touched.
+/* scaling.c - the cost of a cut and a step against elements, number of cuts, and triangles of a cut. Nothing should
+   grow faster than what is touched.
 
-   make bench-scaling builds and runs it; it prints CSV and writes it to build/bench/scaling.csv; make charts draws it.
-   BENCH=--small: sizes that take seconds. MESH=FILE: also cuts through that body, of what examples/gxio.h reads.
+   make bench-scaling builds and runs it. It prints CSV and writes it to build/bench/scaling.csv; make charts draws
+   it. BENCH=--small: sizes that take seconds. MESH=FILE: also cuts through that body, in a format that
+   examples/gxio.h reads.
 
    A block of tetrahedra (block.h) is cut by planes or by gently curved sheets, all the way through.
-       elements   the first cut of a block of so many elements (its arrays still have to grow), and the median of those
-   after it; curved-pool: in memory that the host has had before, on pages of 2 MB cuts       the median of the last
-   half of so many cuts in one block: parallel planes at random heights, or planes of random direction through the
-   middle, which cross each other (to 100: the pieces grow with the cube of their number) triangles  one cut, curved, of
-   so many triangles mesh       as elements, through the body of the file, its longest side 1 m: across each of its
-   axes, planes and curved sheets of so many triangles Columns: created, cells that a cut makes (of the last, or the
-   mean of the last half); times in us and per touched element; the arrangement alone; step_ms, a step after the cuts
-   (its multigrid made before); peak_mb, of the body's memory. Unknowns, three for each displacement: unknowns_before,
-   unknowns   ours least      what separation demands: for each node, the pieces that the elements around it fall into;
-   counted in doubles by bench/least.h, which knows nothing of the library vna        corners of the replicas of cut
-   elements, those that links join counted once, from the same cells and links remeshed   a mesh whose elements end at
-   the cuts, at least: its old nodes, and each corner of the cut faces (where the cut's triangles and their edges cross
-   the elements' edges and faces, and the triangles' corners inside) once for each piece that it is on. No nodes are
-   counted that a mesher adds for the shape of its elements It ends with 1 if ours are not the least. A table goes to
-   stderr, with how costs grow: as a power of what is swept, by least squares over the upper half of its decades. What a
-   cut touches are the cells that it makes and its triangles. */
+       elements   the first cut of a block of that size (its arrays still have to grow), and the median of later
+                  ones; curved-pool: in memory that the host has used before, on pages of 2 MB
+       cuts       the median of the last half of the cuts in one block: parallel planes at random heights, or planes
+                  of random direction through the middle, which cross each other (up to 100: fragments grow with the
+                  cube of their number)
+       triangles  one curved cut of that many triangles
+       mesh       as elements, through the body of the file, its longest side 1 m: across each of its axes, planes
+                  and curved sheets of that many triangles
+
+   Columns: created: cells that a cut makes (of the last cut, or the mean of the last half); times in us and per
+   touched element; the arrangement alone; step_ms: a step after the cuts, with its multigrid already made; peak_mb:
+   of the body's memory. Unknowns, three for each displacement:
+       unknowns_before, unknowns   ours
+       least      what separation demands: for each node, the sets into which the cells around it fall; counted in
+                  doubles by bench/least.h, which knows nothing of the library
+       vna        corners of the replicas of cut elements, counted once where links join them, from the same cells
+                  and links
+       remeshed   a mesh whose elements end at the cuts, at least: its old nodes, and each corner of the cut faces
+                  (where the cut's triangles and their edges cross the elements' edges and faces, and the triangles'
+                  corners inside) once for each part that it is on. Nodes that a mesher adds for the shape of its
+                  elements are not counted
+
+   It exits with 1 if ours are not the least. A table goes to stderr. It shows how costs grow: as a power of the
+   swept quantity, by least squares over the upper half of its decades. A cut touches the cells that it makes and its
+   triangles. */
 #define _POSIX_C_SOURCE 200112L
 #define _DEFAULT_SOURCE /* madvise */
 #define GXFEM_IMPLEMENTATION
@@ -43,8 +53,8 @@ static void check(gx_result result) {
 
 /* ---- memory ---- */
 
-/* What a host may do that has its memory before the scene begins: blocks of powers of two out of one piece of large
-   pages (where the system has them for the asking), all touched before, and given back to the list of their size. */
+/* Memory of a host that has it before the scene begins: blocks of powers of two out of one area of large pages
+   (where the system provides them on request), all touched before, and returned to the list of their size. */
 typedef struct pool {
     unsigned char *memory;
     size_t size, used;
@@ -90,7 +100,7 @@ static void pool_give_back(pool *p, void *memory, size_t size) {
     *list = memory;
 }
 
-/* Memory of a body, counted; of the pool if there is one */
+/* Memory of a body, counted; from the pool if there is one */
 typedef struct meter {
     size_t now, peak;
     pool *pool;
@@ -154,7 +164,7 @@ static void *memory_of(void *old, size_t count, size_t size) {
     return memory;
 }
 
-/* From -1/4 to 5/4, and a little off: no line or diagonal of the grid meets a node of the block. */
+/* From -1/4 to 5/4, and a little off: no line or diagonal of the grid meets a node of the block */
 static sheet sheet_make(uint32_t side) {
     sheet s;
     uint32_t i, j, n = 0;
@@ -205,7 +215,7 @@ static void sheet_place(sheet *s, double height, const double slope[2], double w
 typedef struct scene {
     gx_body *body;
     least_mesh mesh;
-    double top; /* z; it begins at 0, as do x and y */
+    double top; /* z at the top; the body begins at 0, as in x and y */
     meter memory;
     uint32_t random;
     size_t unknowns; /* before cuts */
@@ -220,7 +230,7 @@ static double uniform(scene *s) {
     return (s->random >> 8) / 16777216.0;
 }
 
-/* The mesh stays the caller's until scene_free. held: from which z on it is */
+/* The mesh stays the caller's until scene_free. held: z from which on the body is held */
 static void scene_make(scene *s, const least_mesh *mesh, double top, double held, pool *p) {
     const gx_region region = {2, 1, held};
     gx_body_desc desc;
@@ -286,7 +296,7 @@ static double cut(scene *s, const sheet *by) {
     return 1e6 * (seconds(NULL) - start);
 }
 
-/* Milliseconds of the last of three */
+/* Milliseconds of the last of three steps */
 static double step(scene *s) {
     gx_step_desc desc;
     double start = 0;
@@ -308,7 +318,7 @@ typedef struct corner {
 
 static int corner_order(const void *a, const void *b) { return memcmp(a, b, sizeof(corner)); }
 
-/* Corners of the cut faces that are not nodes, once for each piece that they are on */
+/* Corners of the cut faces that are not nodes, once for each part that they are on */
 static size_t cut_corners(const gx_skin *skin) {
     corner *corners = (corner *)calloc(3 * skin->triangle_count + 1, sizeof *corners);
     size_t t, i, n = 0, distinct = 0;
@@ -361,7 +371,7 @@ static void count_unknowns(scene *s, const sheet *by, line *l) {
     l->remeshed = 3 * (view.node_count + cut_corners(&skin));
 }
 
-/* One row, of a scene as it is after its cuts: us of a cut, of which the arrangement */
+/* One row, for a scene after its cuts. us: of a cut, of which `arrangement` is a part */
 static void row(scene *s, const char *sweep, const char *kind, size_t cuts, const sheet *by, double first, double us,
                 double arrangement) {
     const double touched = (double)s->report.touched_elements, peak = (double)s->memory.peak;
@@ -395,8 +405,8 @@ static double swept(const line *l) {
                                                       : l->triangles);
 }
 
-/* Exponent of the cost of a touched element, or of memory, as a power of what is swept: over the rows from `from` to
-   `to` in the upper half of its decades */
+/* Exponent of the cost of a touched element, or of memory, as a power of the swept quantity: over the rows from
+   `from` to `to` in the upper half of its decades */
 static double exponent(size_t from, size_t to, double (*cost)(const line *l)) {
     const double middle = 0.5 * (log(swept(&lines[from])) + log(swept(&lines[to - 1])));
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;
@@ -445,7 +455,8 @@ static int print_table(void) {
 
 /* ---- sweeps ---- */
 
-/* Cuts across z at that share of the height; microseconds for each touched element. *arrangement: of these */
+/* Cuts across z at that share of the height. Returns microseconds for each touched element; *arrangement: the part
+   of these */
 static double cut_at(scene *s, sheet *by, double height, double wave, double *arrangement) {
     const double slope[2] = {0.05, 0.03};
     double us;
@@ -455,8 +466,8 @@ static double cut_at(scene *s, sheet *by, double height, double wave, double *ar
     return us;
 }
 
-/* The first cut of the scene, and those after it; what a touched element costs does not depend on how many each of them
- * touches. */
+/* The first cut of the scene, and later ones. The cost of a touched element does not depend on how many each of them
+   touches. */
 static void cut_across(scene *s, const char *sweep, const char *kind, double wave, uint32_t side) {
     double us[LATER_CUTS], arrangement[LATER_CUTS], first, touched;
     sheet by = sheet_make(side);
@@ -478,8 +489,8 @@ static void against_elements(uint32_t cells, double wave, uint32_t side, pool *p
     block_free_mesh(&block);
 }
 
-/* The mesh from 0 on, its longest side 1 m, its axes exchanged in turn so that the given one is z. Returns its height.
- */
+/* The mesh from 0 on, its longest side 1 m, its axes exchanged in turn so that the given one is z. Returns its
+   height. */
 static double turn_mesh(gxio_mesh *mesh, int axis) {
     double low[3], high[3], size = 0;
     size_t i;
@@ -578,7 +589,7 @@ int main(int argc, char **argv) {
     for (i = 0; i < blocks; i++) against_elements(cells[i], 0, 1, NULL);
     for (i = 0; i < blocks; i++) against_elements(cells[i], 0.05, cells[i], NULL);
     for (i = 0; i < blocks; i++) {
-        pool p; /* more than cuts take; steps may go on with malloc */
+        pool p; /* more than cuts take; steps may fall back on malloc */
         if (!pool_make(&p, (size_t)64 * LARGE_PAGE + (size_t)12500 * cells[i] * cells[i] * cells[i]))
             check(GX_ERROR_MEMORY);
         against_elements(cells[i], 0.05, cells[i], &p);

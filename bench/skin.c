@@ -1,13 +1,13 @@
-/* skin.c - the visual surface: what it costs to move it in each frame, and to rebuild it after a cut, beside the cut
+/* skin.c - the visual surface: the cost of moving it in each frame, and of updating it after a cut, beside the cut
    itself.
 
-   make bench-skin builds and runs it; it prints CSV and writes it to build/bench/skin.csv, a table to stderr.
-   usage: skin [FILE [--small]]     --small: the same, it takes seconds
+   make bench-skin builds and runs it. It prints CSV and writes it to build/bench/skin.csv, and a table to stderr.
+   usage: skin [FILE [--small]]; --small: the same; it takes seconds.
 
-   A block cut into loose pieces gives a skin of many vertices: positions_us and normals_us are gx_body_skin_vertices
-   without and with normals, pick_us a ray. Then a block in which a cut goes one cell deeper, strip by strip: cut_ms is
-   gx_body_cut, rebuild_ms gx_body_skin after it (which looks for fragments in all of the body), view_ms what
-   gx_body_view still has to do then, all_ms a skin made anew. Medians. */
+   A block cut into loose fragments gives a skin of many vertices: positions_us and normals_us are
+   gx_body_skin_vertices without and with normals, pick_us a ray. Then a cut goes one cell deeper in a block, strip
+   by strip: cut_ms is gx_body_cut; rebuild_ms is gx_body_skin after it (which numbers the fragments of the whole
+   body); view_ms is the rest of the work of gx_body_view; all_ms is a skin made from nothing. Medians. */
 #define _POSIX_C_SOURCE 200112L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"

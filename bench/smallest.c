@@ -1,5 +1,5 @@
-/* smallest.c - the smallest program with the kernel: one Boolean, a tetrahedron less what lies above a plane. What it
-   takes to compile, and its size: make bench-smallest. */
+/* smallest.c - the smallest program with the kernel: one Boolean, a tetrahedron less the half-space above a plane.
+   make bench-smallest prints its compile time and its size. */
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../gxfem_boolean.h"
 #include <stdio.h>

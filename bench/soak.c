@@ -1,12 +1,13 @@
 /* soak.c - bodies that are cut again and again while they swing, fall, bounce and are kicked (soak.h), for 100,000
    steps.
 
-   make bench-soak builds and runs it; it prints CSV and writes it to build/bench/soak.csv, a table to stderr.
-   usage: soak [FILE [--small]]     --small: 600 steps
-          soak --life INTEGRATOR SEED     one life, step by step
+   make bench-soak builds and runs it. It prints CSV and writes it to build/bench/soak.csv, and a table to stderr.
 
-   Columns: the worst of all lives of an integrator; strayed, hurried: lives in which a copy has been further, or once
-   faster, than ten times the rest; iterations: mean of a step. */
+       usage: soak [FILE [--small]]            --small: 600 steps
+              soak --life INTEGRATOR SEED      one life, step by step
+
+   Columns: the worst of all lives of an integrator. strayed, hurried: lives in which a copy has been further, or
+   once faster, than ten times the rest. iterations: mean of a step. */
 #define _POSIX_C_SOURCE 200112L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"

@@ -1,10 +1,10 @@
-/* soak.h - lives of bodies that are cut again and again while they swing, fall, bounce and are kicked: nothing may run
-   away, no energy be gained.
+/* soak.h - lives of bodies that are cut again and again while they swing, fall, bounce and are kicked. Nothing may
+   run away, and no energy may be gained.
 
    A life is a block of random size, lattice or jittered, of random materials, held at its top or free, above a floor
-   with friction. Every third step cuts it: by a random plane, by one on a lattice plane or a unit in the last place off
-   it, by a patch or by a solid box. Now and then every copy is kicked. It ends after some steps or when there are many
-   cells. What is measured: see row.
+   with friction. Every third step cuts it: by a random plane, by one on a lattice plane or a unit in the last place
+   off it, by a patch or by a solid box. Now and then every copy is kicked. A life ends after a number of steps or
+   when there are many cells. See row for what is measured.
 
    Include after gxfem.h with its implementation. */
 #ifndef GXFEM_BENCH_SOAK_H
@@ -23,9 +23,9 @@ static const double carries = 0.01; /* share of an element */
 typedef struct row {
     size_t lives, steps, cuts;
     size_t cells;  /* the most */
-    size_t errors; /* calls that failed, and sums of volumes that are off */
-    /* largest distance of a copy from the centre of its fragment, over that of the copies that carry a hundredth of an
-     * element or more, and no less than the edge of the block */
+    size_t errors; /* calls that failed, and sums of volumes that are wrong */
+    /* largest distance of a copy from the centre of its fragment, over that of the copies that carry a hundredth of
+       an element or more, and over no less than the edge of the block */
     double reach;
     double speed; /* largest speed of a copy, over the largest so far of those copies */
     /* BDF1, BDF2: rise of the potential E that a step minimises, over the size of its terms; midpoint: rise of the
@@ -91,7 +91,7 @@ static gx_result make_body(life *l) {
     elements = 5 * (size_t)l->cells * l->cells * l->cells;
     memset(material, 0, sizeof material);
     memset(&desc, 0, sizeof desc);
-    /* not GXS_LINEAR, which is for small rotations: loose fragments of it that tumble grow without end */
+    /* not GXS_LINEAR: loose fragments of it that tumble grow without end */
     for (i = 0; i < 3; i++) {
         material[i].elastic.kind = (gxs_material_kind)(same < 3 ? same : below(3));
         material[i].elastic.young = pow(10, 4 + 2 * uniform());
@@ -222,7 +222,7 @@ static gx_result find_points(life *l) {
     return GX_OK;
 }
 
-/* ---- what is measured ---- */
+/* ---- measurement ---- */
 
 /* U + floor - load, without inertia, J */
 static double potential(const life *l, const gxs_model *model, const double *u, double *work) {
@@ -251,8 +251,8 @@ static double kinetic(const gxs_model *model, const double *v, double *work) {
     return energy;
 }
 
-/* What a step should lower, and what it starts from. u_0, v_0: before; u, v: after; past: displacement and velocity a
- * step before, or NULL */
+/* The potential that a step must lower, from its start. u_0, v_0: before; u, v: after; past: displacement and
+   velocity one step before, or NULL */
 static double gain_of(const life *l, double previous_dt, double *const before[2], double *const past[2],
                       const gx_view *now) {
     const double dt = l->step.dt;
@@ -284,7 +284,7 @@ static double gain_of(const life *l, double previous_dt, double *const before[2]
     return r > 0 ? (end + kinetic_end - start - kinetic_start) / r : 0;
 }
 
-/* Of each copy the largest share that a cell around it has of its element */
+/* For each copy the largest share of its element that a cell around it has */
 static double *find_shares(const gx_body *body, const gx_view *view) {
     double *share = (double *)room(view->copy_count, sizeof *share);
     size_t i;
@@ -317,7 +317,7 @@ static void place_of(const life *l, const gx_view *view, size_t copy, double x[3
                view->displacement[3 * copy + (size_t)k];
 }
 
-/* How far copies are from the centre of their fragment, and how fast, beside those that carry something */
+/* How far copies are from the centre of their fragment, and how fast, relative to those that carry something */
 static void measure_copies(life *l, const gx_view *view, row *r) {
     double *share = find_shares(l->body, view), furthest = 1, far = 0, fast = 0;
     gx_motion *motion = (gx_motion *)room(view->fragment_count, sizeof *motion);
@@ -367,7 +367,7 @@ static double *copied(const double *values, size_t count) {
     return (double *)memcpy(room(count, sizeof *values), values, count * sizeof *values);
 }
 
-/* Returns 0 when there is nothing more to come. */
+/* Returns 0 at the end of the life. */
 static int live_a_step(life *l, row *r) {
     gx_view view;
     gx_step_report report;

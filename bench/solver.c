@@ -1,37 +1,45 @@
-/* solver: what a time step costs, by preconditioner and form of the matrix, beside a direct solver.
+/* solver.c - the cost of a time step, by preconditioner and form of the matrix, beside a direct solver.
 
-   make bench-solver [BENCH="--small --case NAME"] builds and runs it; it prints CSV and writes it to
-   build/bench/solver.csv, a table to stderr.
+   make bench-solver [BENCH="--small --case NAME"] builds and runs it. It prints CSV and writes it to
+   build/bench/solver.csv, and a table to stderr.
        --small      the smallest size only
        --case NAME  only the cases with NAME in their name: accordion, loose-jittered, 23k-1e8, ...
        --out DIR    where solver.csv and product.csv go; without it they are not written
 
-   A case is a block (block.h) that is let go from rest: backward Euler, 33 ms, one Newton iteration, linear systems to
-   1e-2. The direction of gravity sways by 0.05 rad, so that the block swings on: else backward Euler would have brought
-   a stiff one to rest to the last digit before the measurement ends. (Not by more: one Newton iteration does not follow
-   a stiff accordion that is shaken, and its linear systems get easier.) Every method starts from the same cut body at
-   rest and makes the same steps, of which the first four are not counted. Columns of solver.csv: setup_ms
-   gxs_solver_set_model: the structure, once per cut solve_ms     the preconditioner's numbers (or the assembled
-   matrix's) and conjugate gradients; median of the steps step_ms      all of gxs_solver_step; median of the steps
+   A case is a block (block.h) that is released from rest: backward Euler, 33 ms, one Newton iteration, linear
+   systems to 1e-2. The direction of gravity sways by 0.05 rad, so that the block keeps swinging. Otherwise backward
+   Euler would bring a stiff block to rest to the last digit before the measurement ends. It does not sway by more:
+   one Newton iteration does not follow a stiff accordion that is shaken, and its linear systems get easier. Every
+   method starts from the same cut body at rest and makes the same steps. The first four are not counted.
+
+   Columns of solver.csv:
+       setup_ms     gxs_solver_set_model: the structure, once per cut
+       solve_ms     the numbers of the preconditioner (or of the assembled matrix) and conjugate gradients; median of
+                    steps
+       step_ms      all of gxs_solver_step; median of the steps
        iterations   of conjugate gradients, mean of the steps
        peak_bytes   the most memory that the solver had at any time, from its allocator
        residual     of the last step's report, after the one Newton iteration
-   Of `cholmod` (SuiteSparse, as the system has it with its BLAS), for the linear system that follows the last step of
-   multigrid-free, in double precision:
+
+   Rows of `cholmod` (SuiteSparse, as the system has it, with its BLAS) are for the linear system that follows the
+   last step of multigrid-free, in double precision:
        setup_ms     cholmod_analyze: ordering and symbolic factorisation, once per cut
        solve_ms     cholmod_factorize and cholmod_solve; median of three
-       step_ms      the median step of multigrid-free with this solve_ms in place of its own; filling the matrix is not
-   counted peak_bytes   CHOLMOD's own count of the matrix, factor and workspace residual     |b - A x| / |b| of the
-   linear system: not to be compared with the others product.csv has the time of conjugate gradients per element and
-   iteration: one product and some vector work with block-Jacobi, three products with multigrid. And that of a product
-   alone, with inertia, matrix-free on one thread: of `single` vectors as conjugate gradients have them (gxsp_product),
-   of `double` ones as callers do (gxs_solver_product); medians of batches.
+       step_ms      the median step of multigrid-free with this solve_ms in place of its own, without filling the
+                    matrix
+       peak_bytes   CHOLMOD's own count of the matrix, factor and workspace
+       residual     |b - A x| / |b| of the linear system: not comparable with the others
 
-   contents
-     >>host      clock, memory, threads       >>direct    the linear system for CHOLMOD
-     >>run       one method on one body       >>cases     what is run
-     >>products  the operator alone           >>main      the command line
-     >>rows      what is printed */
+   product.csv has the time of conjugate gradients per element and iteration: one product and some vector work with
+   block-Jacobi, three products with multigrid. It also has the time of a product alone, with inertia, matrix-free on
+   one thread: of `single` vectors, as conjugate gradients use, and of `double` vectors, as callers use
+   (gxs_solver_product); medians of batches.
+
+   Contents:
+       >>host      clock, memory, threads       >>direct    the linear system for CHOLMOD
+       >>run       one method on one body       >>cases     what is run
+       >>products  the operator alone           >>main      the command line
+       >>rows      what is printed */
 #define _POSIX_C_SOURCE 200809L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
@@ -47,7 +55,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Distributions have it in a folder of its own or not. */
+/* Some distributions have it in a folder of its own. */
 #if defined(__has_include)
 #if __has_include(<suitesparse/cholmod.h>)
 #include <suitesparse/cholmod.h>
@@ -58,20 +66,20 @@
 #include <cholmod.h>
 #endif
 
-/* Steps from rest that are not counted, and the most that are made. */
+/* Steps from rest that are not counted, and the most steps that are made */
 enum { STEPS_SKIPPED = 4, STEPS = 20 };
 
-/* A method whose counted steps have taken so many seconds ends with the step it is at: block-Jacobi on the largest
- * blocks. */
+/* A method whose counted steps have taken this many seconds ends after its current step: block-Jacobi on the largest
+   blocks. */
 static const double patience = 30.0;
 
-/* High enough not to be met: a limit would make slow methods look fast. */
+/* High enough never to be reached: a limit would make slow methods look fast. */
 static const uint32_t cg_limit = 20000;
 
-/* What CHOLMOD may take: bytes of the factor, operations of the factorisation (minutes with a slow BLAS). */
+/* Limits for CHOLMOD: bytes of the factor, operations of the factorisation (minutes with a slow BLAS) */
 static const double direct_bytes = 2e9, direct_operations = 5e11;
 
-/* A step to 1e-5 that differs from CHOLMOD's by this share of it: of stiff blocks 1e-4 is seen. */
+/* A step to 1e-5 may differ from CHOLMOD's by this share of it. Stiff blocks differ by 1e-4. */
 static const double same_system = 1e-2;
 
 /* -------------------------------------------------------------------------------------------------- >>host */
@@ -95,9 +103,9 @@ static void meter_release(void *user, void *memory, size_t size) {
     free(memory);
 }
 
-/* One thread that helps the calling one: both take the next index until there is none. Between passes it yields instead
-   of sleeping, as job systems do: a pass takes some 20 microseconds, waking a thread not less. All that both write is
-   atomic. */
+/* One thread that helps the calling one: both take the next index until there is none. Between passes it yields
+   instead of sleeping, as job systems do: a pass takes some 20 microseconds, and waking a thread takes no less.
+   Everything that both write is atomic. */
 typedef struct helper {
     pthread_t thread;
     void (*task)(void *, size_t);
@@ -272,7 +280,7 @@ static gx_result set_and_swing(const gxs_solver_desc *desc, const gxs_model *mod
     return result;
 }
 
-/* A method on a model at rest; s is its state in the end. */
+/* A method on a model at rest; s is its state at the end. */
 static int run_method(const method *m, const gxs_model *model, int steps, state *s, outcome *o) {
     gxs_solver_desc desc;
     helper second;
@@ -301,7 +309,7 @@ static int run_method(const method *m, const gxs_model *model, int steps, state 
 
 enum { PRODUCT_BATCHES = 15 };
 
-/* A batch takes so many seconds. */
+/* The seconds that a batch takes */
 static const double product_batch = 0.01;
 
 typedef struct products {
@@ -347,7 +355,7 @@ static gx_result multiply_single(operands *o) {
 
 static gx_result multiply_doubles(operands *o) { return gxs_solver_product(o->solver, o->direction, o->product, NULL); }
 
-/* A batch: seconds of a product. count: products in it, 0 in the first one, which finds out */
+/* A batch: seconds of a product. count: the products in it; 0 in the first batch, which finds the number */
 static gx_result time_batch(operands *o, gx_result (*multiply)(operands *), int *count, double *sample) {
     const double start = seconds(NULL);
     gx_result result = multiply(o);
@@ -359,7 +367,7 @@ static gx_result time_batch(operands *o, gx_result (*multiply)(operands *), int 
     return result;
 }
 
-/* Medians; batches of either kind in turn, as the clock of the machine changes */
+/* Medians. Batches of either kind in turn, since the clock of the machine changes */
 static gx_result time_products(operands *o, products *p) {
     double single[PRODUCT_BATCHES], doubles[PRODUCT_BATCHES];
     int batch, single_count = 0, doubles_count = 0;
@@ -397,7 +405,7 @@ typedef struct kept_row {
     products alone; /* with the first method of the case; else 0 */
 } kept_row;
 
-/* sizes, cuts, jittered or not and soft or stiff; methods and cholmod */
+/* Sizes, cuts, jittered or not, soft or stiff; methods and cholmod */
 enum { ROWS = 4 * BLOCK_CUTS * 4 * (METHODS + 1) };
 
 static kept_row rows[ROWS];
@@ -418,11 +426,11 @@ static void add_row(const char *name, const char *method_name, const gxs_model *
 /* Nanoseconds per element */
 static double per_element(const kept_row *r, double time) { return 1e9 * time / (double)r->elements; }
 
-/* Of conjugate gradients per element and iteration; 0: there are none */
+/* Nanoseconds of conjugate gradients per element and iteration; 0: there are none */
 static double iteration_of(const kept_row *r) { return per_element(r, r->found.iteration); }
 
-/* Iterations / milliseconds of a step; cholmod: milliseconds. iteration: that of jacobi-free, which has one product in
- * it */
+/* Iterations / milliseconds of a step; cholmod: milliseconds. iteration: that of jacobi-free, which has one product
+   in it */
 static void print_table(void) {
     const kept_row *first = rows; /* of the case */
     size_t i;
@@ -476,8 +484,8 @@ static void say(const char *format, ...) {
 /* ------------------------------------------------------------------------------------------------ >>direct */
 
 /* (K + rate M) x = b, its lower triangle by columns as CHOLMOD wants it, without held copies and copies without an
-   element. A copy's three unknowns make a block; blocks of a column are sorted by rows, so that the diagonal one is the
-   first. Masses are consistent and no copy follows others: so are the bodies of block.h. */
+   element. A copy's three unknowns make a block. Blocks of a column are sorted by rows, so that the diagonal one is
+   the first. Masses are consistent and no copy follows others; the bodies of block.h are like that. */
 typedef struct direct {
     const gxs_model *model;
     uint32_t *row; /* copy_count: number of the copy's row of blocks; NO_ROW */
@@ -505,7 +513,8 @@ static void direct_number(direct *d) {
     }
 }
 
-/* The lower block of corners i and j, or 0 if it has none: that of the other order, or one of them is held. */
+/* The lower block of corners i and j; 0: it has none, because it is the other order's, or because one of them is
+   held */
 static int direct_block(const direct *d, const gxs_element *element, int i, int j, uint64_t *block) {
     const uint32_t row = d->row[element->copy[i]], column = d->row[element->copy[j]];
     *block = (uint64_t)column << 32 | row;
@@ -530,8 +539,8 @@ static void direct_list_blocks(direct *d) {
     for (i = 0; i < d->block_count; i++) d->column[(d->blocks[i] >> 32) + 1] = i + 1;
 }
 
-/* Where entry (r, s) of a block is in the matrix. A column of n blocks has 3 n, 3 n - 1 and 3 n - 2 entries in its
-   three columns: the diagonal block is a triangle. */
+/* The place of entry (r, s) of a block in the matrix. A column of n blocks has 3 n, 3 n - 1 and 3 n - 2 entries in
+   its three columns, since the diagonal block is a triangle. */
 static size_t direct_entry(const direct *d, size_t block, size_t r, size_t s) {
     const size_t column = d->blocks[block] >> 32, first = d->column[column], blocks = d->column[column + 1] - first;
     return 9 * first - 3 * column + s * 3 * blocks - s * (s + 1) / 2 + 3 * (block - first) + r;
@@ -551,7 +560,7 @@ static void direct_shape(direct *d) {
     column[3 * d->rows] = (int)d->matrix->nzmax;
 }
 
-/* dP/dF of an element at a displacement, 9x9, by the rows of F: made from nine products, symmetric but for rounding. */
+/* dP/dF of an element at a displacement, 9x9, by the rows of F: made from nine products, symmetric up to rounding */
 static void direct_tangent(const gxs_material *material, double gradient[4][3], const gxs_element *element,
                            const double *displacement, double tangent[9][9]) {
     double deformation[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, direction[9];
@@ -603,7 +612,7 @@ static void direct_add_element(direct *d, const gxs_element *element, const doub
     }
 }
 
-/* Mass times gravity less the elastic force, at a displacement: there the inertia of a step is 0. */
+/* Mass times gravity less the elastic force, at a displacement at which the inertia of a step is 0 */
 static gx_result direct_make_load(direct *d, const double *displacement, const double gravity[3]) {
     const size_t count = 3 * d->model->copy_count;
     double *fall = (double *)malloc(count * sizeof *fall), *weight = (double *)malloc(count * sizeof *weight);
@@ -671,7 +680,7 @@ static double direct_residual(direct *d) {
     return size > 0 ? cholmod_norm_dense(d->load, 2, &d->common) / size : 0.0;
 }
 
-/* Analyses, and tells whether the rest is bearable. */
+/* Analyses. Returns whether the factorisation is affordable. */
 static int direct_analyse(direct *d, outcome *o) {
     const double start = seconds(NULL);
     double bytes;
@@ -685,7 +694,7 @@ static int direct_analyse(direct *d, outcome *o) {
     return 0;
 }
 
-/* Factorises and solves, once; 0 if that failed. factorised: seconds of the first */
+/* Factorises and solves once; 0: it failed. factorised: seconds of the factorisation */
 static int direct_solve_once(direct *d, double *factorised, double *total) {
     const double start = seconds(NULL);
     cholmod_free_dense(&d->solution, &d->common);
@@ -700,7 +709,7 @@ static int direct_solve_once(direct *d, double *factorised, double *total) {
     return d->solution || complain("cholmod", GX_ERROR_MEMORY);
 }
 
-/* Three times: the first also pays for memory that steps keep. */
+/* Three times: the first also pays for memory that steps keep */
 static int direct_solve(direct *d, outcome *o) {
     const double operations = d->common.fl;
     double factorised[3], total[3];
@@ -710,7 +719,7 @@ static int direct_solve(direct *d, outcome *o) {
     o->solve = median(total, 3);
     o->peak_bytes = d->common.memory_usage;
     o->residual = direct_residual(d);
-    /* of a large block 20 with a good BLAS */
+    /* For a large block 20 with a good BLAS */
     say("    cholmod: %.1f Gflop/s\n", 1e-9 * operations / median(factorised, 3));
     return 1;
 }
@@ -724,9 +733,9 @@ static double mass_norm(const gxs_model *model, const double *x, double *scratch
     return sqrt(sum);
 }
 
-/* How far a step of the solver with a tight tolerance ends from where the solution says, relative to the solution, by
-   the mass: tells whether both solved the same system. It is that of the linear solve if the line search took the whole
-   step. */
+/* The distance between the end of a solver's step to a tight tolerance and the end that the solution predicts, by
+   the mass, relative to the solution: it tells whether both solved the same system. It is the error of the linear
+   solve if the line search took the whole step. */
 static double direct_difference(direct *d, const double *start, const state *end) {
     double *scratch = (double *)malloc(end->count * sizeof *scratch),
            *moved = (double *)calloc(end->count, sizeof *moved);
@@ -763,7 +772,7 @@ static gx_result step_tightly(const gxs_model *model, const gxs_step_desc *loose
     return result;
 }
 
-/* 0: it solved another system. A step that the line search has made shorter does not tell. */
+/* 0: it solved another system. A step that the line search shortened decides nothing. */
 static int direct_check(direct *d, const gxs_step_desc *step, const double *start, state *s) {
     gxs_step_report report;
     const gx_result result = step_tightly(d->model, step, s, &report);
@@ -777,8 +786,8 @@ static int direct_check(direct *d, const gxs_step_desc *step, const double *star
     return same;
 }
 
-/* The system of a step from the state at rest, as the solver has it. At rest light copies, too, start where they are: else
- * they start where their neighbours' velocities lead (docs/ARCHITECTURE.md). 0: left out or failed. */
+/* The system of a step from the state at rest, as the solver has it. At rest light copies start where they are. In
+   motion they start where their neighbours' velocities lead (docs/ARCHITECTURE.md). 0: left out or failed */
 static int run_direct(const gxs_model *model, state *s, outcome *o) {
     const gxs_step_desc step = step_make(s->steps);
     double *start = (double *)malloc(s->count * sizeof *start);
@@ -802,12 +811,12 @@ static int run_direct(const gxs_model *model, state *s, outcome *o) {
 
 /* ------------------------------------------------------------------------------------------------- >>cases */
 
-/* Cells along an edge for about so many unknowns after cutting. */
+/* Cells along an edge for about this many unknowns after cutting */
 enum { SIZES = 4 };
 static const char *const size_names[SIZES] = {"7k", "23k", "48k", "150k"};
 static const uint32_t size_cells[BLOCK_CUTS][SIZES] = {{12, 19, 24, 36}, {11, 16, 21, 30}, {8, 11, 15, 21}};
 
-/* The swing is followed for fewer steps where they are long. */
+/* The swing is followed for fewer steps where they take long. */
 static const int size_steps[SIZES] = {STEPS, STEPS, 12, 8};
 
 typedef struct scene {
@@ -829,7 +838,7 @@ static scene scene_make(int cut, int jittered, int size, int hard) {
     return s;
 }
 
-/* Two threads and one must give the same bits; that of runs of as many steps only. */
+/* Two threads and one must give the same bits. Compared are runs of as many steps only. */
 static int compare_threads(const state *one, const state *two) {
     int same;
     if (one->steps != two->steps) return 1;
@@ -839,7 +848,7 @@ static int compare_threads(const state *one, const state *two) {
     return same;
 }
 
-/* The methods of the library; 0 if one failed. */
+/* The methods of the library; 0: one failed */
 static int run_methods(const scene *s, const gxs_model *model, outcome found[METHODS], state ends[METHODS]) {
     int m, ok = 1;
     for (m = 0; m < METHODS; m++) {
@@ -910,7 +919,7 @@ static int take_arguments(settings *set, int argc, char **argv) {
     return 1;
 }
 
-/* The cases that are asked for; returns how many */
+/* The cases that are requested; returns their number */
 static size_t list_scenes(const settings *set, scene *list) {
     const int sizes = set->small ? 1 : SIZES;
     size_t count = 0;

@@ -1,21 +1,29 @@
-/* space.c - the error of the space: the same cuts in finer and finer meshes, beside fine meshes whose faces lie on the
-   cuts.
+/* space.c - the error of the space: the same cuts in finer and finer meshes, beside fine meshes whose faces lie on
+   the cuts.
 
-   make bench-space builds and runs it; it prints CSV and writes it to build/bench/space.csv, a table to stderr.
-   usage: space [FILE [--small]]
+   make bench-space builds and runs it. It prints CSV and writes it to build/bench/space.csv, and a table to stderr.
+   usage: space [FILE [--small]].
 
-   Strips of two scenes, one cube of 1 m wide, of linear elastic material, at rest under gravity: no error of time
-   steps, of large motion or of integrals is in it. Being linear, drops mean something beside each other only. slices of
-   slab_in_five: 6 x 1 x 1 cubes held at one end, four planes, slices of 1/15 to 5/15 of a cube; drop of each one's end
-       accordion   of accordion: 16 x 1 x 16 cubes held by the top, six cuts from both sides in turn, each through 7/8;
-   drop of the middle of the bottom method, by refinement (cubes along the edge of a cube) cut         the mesh, cut:
-   the library's copies and integrals. RXFEM has the same space VNA         the same copies, each part with all of its
-   element's mass and stiffness (vna.h) deletion    the elements that cuts meet are taken away (parts.h) conforming
-   nodes lie on the cuts. slices: cubes through the thickness of each; accordion: cubes of the mesh made less high
-   truth: drops of conforming meshes are 1/d = 1/d0 + c h^2 (a stiffness and what locking adds to it): d0 from the two
-   finest. The row "truth" has as its error how far off the d0 from one mesh coarser is. Columns: scene; piece; method;
-   refinement; thickness of the piece in elements; unknowns; drop, m; truth, m; error: |drop / truth - 1|. No drop:
-   nothing of the piece is left. */
+   Strips of two scenes, one cube of 1 m wide, of linear elastic material, at rest under gravity. So there is no
+   error of time steps, of large motion or of integrals. Since all is linear, drops have a meaning relative to each
+   other only.
+       slices      of slab_in_five: 6 x 1 x 1 cubes held at one end, four planes, slices of 1/15 to 5/15 of a cube;
+                   the drop of each slice's end
+       accordion   of accordion: 16 x 1 x 16 cubes held by the top, six cuts from both sides in turn, each through
+                   7/8; the drop of the middle of the bottom
+
+   Methods, by refinement (cubes along the edge of a cube):
+       cut         the mesh, cut: the library's copies and integrals. RXFEM has the same space
+       VNA         the same copies, each part with all of its element's mass and stiffness (vna.h)
+       deletion    elements that cuts meet are removed (parts.h)
+       conforming  nodes lie on the cuts. slices: cubes through the thickness of each; accordion: cubes of the mesh,
+                   made less high
+
+   truth: drops of conforming meshes are 1/d = 1/d0 + c h^2, a stiffness and the share of locking. d0 comes from the
+   two finest meshes. In the row "truth", error is the distance of the d0 from one mesh coarser.
+
+   Columns: scene; piece; method; refinement; thickness of the piece in elements; unknowns; drop, m; truth, m; error:
+   |drop / truth - 1|. No drop: nothing of the piece is left. */
 #define _POSIX_C_SOURCE 200809L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
@@ -60,7 +68,7 @@ typedef struct strip {
     size_t cut_count;
     size_t piece_count;
     double low[PIECES], high[PIECES]; /* z of each piece */
-    double point[PIECES][3];          /* of each: where its drop is taken */
+    double point[PIECES][3];          /* point of each at which its drop is measured */
     double truth[PIECES], trust[PIECES];
 } strip;
 
@@ -88,7 +96,7 @@ static strip make_slices(uint32_t length) {
     return s;
 }
 
-/* Where the scene's cuts lie, in cubes; ends are on planes of nodes. */
+/* Where the scene's cuts lie, in cubes. Ends are on planes of nodes. */
 static strip make_accordion(uint32_t cubes, size_t folds) {
     const gx_region top = {2, 1, cubes - 1e-9};
     strip s;
@@ -126,7 +134,8 @@ static gxio_mesh make_grid(const size_t n[3], const double size[3]) {
     return mesh;
 }
 
-/* Cubes of the mesh's width whose layers end on the cuts: as many in each band as come closest to cubes */
+/* Cubes of the mesh's width whose layers end on the cuts. Each band has the number of layers that comes closest to
+   cubes. */
 static gxio_mesh make_layers(const strip *s, uint32_t refinement) {
     const double top = s->cubes[2];
     double levels[1024];
@@ -254,8 +263,8 @@ static double height(const gxs_model *m, const gxs_element *e) {
     return z / mass;
 }
 
-/* How far the piece's point has gone down: by the part of the piece that has it, or is closest to it; 0: no part is
-   left. pieces: the model whose parts say which piece each element is of */
+/* The drop of the piece's point, by the part of the piece that contains it or is closest to it; 0: no part is left.
+   pieces: the model whose parts say which piece each element belongs to */
 static double drop_of(const strip *s, size_t piece, const gxs_model *m, const gxs_element *pieces,
                       const double *displacement) {
     double best = -HUGE_VAL, drop = 0;
@@ -294,7 +303,7 @@ static void print_row(const strip *s, size_t piece, int method, uint32_t refinem
             drop > 0 ? value : "nothing left", error);
 }
 
-/* Thickness of a piece, cubes: of a fold that between two cuts */
+/* Thickness of a piece in cubes; of a fold: the distance between two cuts */
 static double thickness_of(const strip *s, size_t piece) {
     return s->piece_count > 1 ? s->high[piece] - s->low[piece] : s->cuts[1].z - s->cuts[0].z;
 }
@@ -347,8 +356,8 @@ static void run_cut(const strip *s, uint32_t refinement) {
     gxio_mesh_release(&mesh);
 }
 
-/* A slice by itself, `refinement` cubes through its thickness; or the strip in layers that end on its cuts. Returns the
- * drop. */
+/* A slice by itself, `refinement` cubes through its thickness, or the strip in layers that end on its cuts. Returns
+   the drop. */
 static double run_conforming(const strip *s, size_t piece, uint32_t refinement, size_t *unknowns) {
     gxio_mesh mesh;
     gx_body *body;

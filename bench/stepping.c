@@ -1,27 +1,31 @@
-/* stepping.c - accuracy against speed: the error of a motion against the time that it takes, over what can be turned.
+/* stepping.c - accuracy against speed: the error of a motion against its time, over everything that can be varied.
 
-   make bench-stepping builds and runs it on the cut accordion and the slab in five slices (traces of the scenes, each
-   blade's whole path cut at the start); it prints CSV and writes it to build/bench/stepping.csv, to stderr where ours
-   is on the front and where another method is the better choice. usage: stepping FILE [--small] SCENE=TRACE... --small:
-   a fifth of the time
+   make bench-stepping builds and runs it on the cut accordion and the slab in five slices (traces of the scenes,
+   each blade's whole path cut at the start). It prints CSV and writes it to build/bench/stepping.csv. To stderr it
+   prints where ours is on the front and where another method is the better choice. usage: stepping FILE [--small]
+   SCENE=TRACE...; --small: a fifth of the time.
 
    Every run moves the body from rest for 0.33 s. Its error is the difference from the reference in displacement,
-   weighted by mass, as a share of how far the reference moves. The reference: thin cuts, exact integrals, the same
-   space, implicit midpoint with steps of 0.033/32 s, Newton to 1e-8. How far off it may be itself is in the row
-   "reference": BDF2's difference from it with steps half as long. The error of the space itself, under refinement, is
-   space.c's.
+   weighted by mass, as a share of the reference's motion. The reference: thin cuts, exact integrals, the same space,
+   implicit midpoint with steps of 0.033/32 s, Newton's method to 1e-8. The row "reference" bounds its own error:
+   BDF2's difference from it with steps half as long. space.c measures the error of the space itself, under
+   refinement.
 
-   What is turned: steps, integrators, lumped mass, Newton, CG, preconditioners; element duplication (VNA) and deletion;
-   and, all by BDF2 with steps of 0.033/4 s and CG to 1e-6, so that they differ in nothing else, integrals   of divided
-   elements, by points (bench/parts.h): "positive", degree; "adaptive", depth; "regular", cells along an edge; "RXFEM",
-   degree. A step then takes an elastic evaluation at each point, as published; "one": one for each part, in which F is
-   constant. RXFEM refuses cuts that cross: the accordion's thickness   of cuts, in edges (their mean): "gxfem; solids",
-   and "Algorithm 1" as published (bench/literal.h), of all blades at once: one after the other, blades that cross leave
-   pieces stuck. Each part of the thin cut moves as the largest part of the other body whose centre is in it, and where
-   there is none as if it had stayed where it was Columns: series and what was turned in it; dt; steps; ms_per_step, the
-   mean, the evaluations of its points included; ms_per_second, of simulated time; error; of_exact: the difference from
-   the same steps by thin cuts and exact integrals; integrals_ms: to integrate all divided elements, once; points: of
-   the mean divided part; note: why there is no motion. */
+   Varied are steps, integrators, lumped mass, Newton's method, CG, preconditioners; element duplication (VNA) and
+   deletion; and the following, all by BDF2 with steps of 0.033/4 s and CG to 1e-6, so that nothing else differs:
+       integrals   of divided elements, by points (bench/parts.h): "positive", degree; "adaptive", depth; "regular",
+                   cells along an edge; "RXFEM", degree. A step then takes an elastic evaluation at each point, as
+                   published; "one": one for each part, in which F is constant. RXFEM refuses cuts that cross, as the
+                   accordion's do
+       thickness   of cuts, in edges (their mean): "gxfem; solids", and "Algorithm 1" as published (bench/literal.h),
+                   for all blades at once: one after the other, blades that cross leave parts stuck. Each part of the
+                   thin cut moves as the largest part of the other body with its centre in it; if there is none, it
+                   stays in place
+
+   Columns: series, and the value that was varied in it; dt; steps; ms_per_step: the mean, with evaluations of
+   points; ms_per_second: of simulated time; error; of_exact: the difference from the same steps with thin cuts and
+   exact integrals; integrals_ms: to integrate all divided elements, once; points: of the mean divided part; note:
+   why there is no motion. */
 #define _POSIX_C_SOURCE 200809L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
@@ -94,7 +98,7 @@ static void keep_row(const mover *m, const knobs *k, double ms, double error, do
     kept->run_ms = ms / k->dt * duration + m->integrals_ms;
 }
 
-/* ms below 0: no motion, and note says why; of_exact below 0: not compared with exact, and in the front */
+/* ms below 0: no motion, and note says why. of_exact below 0: not compared with exact; the row counts in the front */
 static void print_row(const setting *s, const mover *m, const knobs *k, double ms, double error, double of_exact,
                       const char *note) {
     const unsigned long steps = (unsigned long)(duration / k->dt + 0.5);
@@ -117,7 +121,7 @@ static int cheaper(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Is it by the library's own means? Its block-Jacobi and assembled matrix are. */
+/* Is it by the library's own means? Its block-Jacobi and its assembled matrix count as such. */
 static int is_ours(const kept_row *r) {
     return strncmp(r->series, "VNA", 3) != 0 && strncmp(r->series, "deletion", 8) != 0 &&
            strstr(r->value, "RXFEM") == NULL;
@@ -143,8 +147,8 @@ static void print_choice(const kept_row *r) {
         fprintf(stderr, "  the better choice here: ours is never as exact\n");
 }
 
-/* The front of a scene: rows that nothing cheaper beats. Those of integrals and thickness, all by the same steps, are
- * left out. */
+/* The front of a scene: rows that no cheaper row beats. Rows of integrals and thickness, all by the same steps, are
+   left out. */
 static void print_front(const char *scene) {
     double least = HUGE_VAL;
     size_t i, front = 0, ours = 0;
@@ -163,8 +167,8 @@ static void print_front(const char *scene) {
     fprintf(stderr, "of this front %lu of %lu are ours\n", (unsigned long)ours, (unsigned long)front);
 }
 
-/* Integrals by other means, of the same steps: the better choice where the whole run, making them included, takes less
-   by more than the noise of times, and the motion is off by less than the steps' own error */
+/* Integrals by other means, with the same steps. They are the better choice where the whole run, with making them,
+   takes less time by more than noise, and the motion is off by less than the steps' own error. */
 static void print_integrals(void) {
     static const double noise = 0.15;
     const kept_row *exact = NULL;
@@ -189,7 +193,7 @@ static void print_integrals(void) {
 
 /* ---- the cut body ---- */
 
-/* Does a later cut go on where this one ends? */
+/* Does a later cut continue this one? */
 static int is_continued(const replay *scene, size_t cut) {
     const gx_surface *path = &scene->cuts[cut].path;
     size_t i;
@@ -202,7 +206,7 @@ static int is_continued(const replay *scene, size_t cut) {
     return 0;
 }
 
-/* The scene with one cut for each blade, all of its path; arrays but for the cuts are borrowed. */
+/* The scene with one cut for each blade: its whole path. Arrays other than the cuts are borrowed. */
 static replay whole_blades(const replay *scene) {
     replay r = *scene;
     size_t i;
@@ -277,8 +281,8 @@ static gxs_solver *make_solver(const mover *m, const knobs *k) {
     return solver;
 }
 
-/* One step; history: state before the last step and before this one, u and v of each, size numbers each. BDF2 needs the
- * former. */
+/* One step. history: the state before the last step and before this one, u and v of each, `size` numbers each. BDF2
+   needs the former. */
 static gx_result advance(gxs_solver *solver, gxs_step_desc *desc, double *u, double *v, double *history, size_t size) {
     double *before = history, *now = history + 2 * size;
     gx_result result;
@@ -319,8 +323,8 @@ static gx_result run(const setting *s, const mover *m, const knobs *k, double *u
     return result;
 }
 
-/* From `truth` (the setting's copies), over the setting's parts, each corner with its row of the mass, as a share of
- * the reference's motion */
+/* The distance from `truth` (the setting's copies) over the setting's parts, each corner with its row of the mass,
+   as a share of the reference's motion */
 static double error_of(const setting *s, const mover *m, const double *u, const double *truth) {
     static const int row[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
     double off = 0, moved = 0;
@@ -342,8 +346,8 @@ static double error_of(const setting *s, const mover *m, const double *u, const 
     return sqrt(off / moved);
 }
 
-/* Runs and prints; "SERIES one" beside it where the mover has points: one evaluation for each part. compare: with the
- * exact run of the same steps */
+/* Runs and prints; "SERIES one" beside it if the mover has points: one evaluation for each part. compare: with the
+   exact run of the same steps */
 static void row(const setting *s, const mover *m, const knobs *k, int compare) {
     double *u = (double *)method_memory(NULL, 3 * m->model.copy_count, sizeof(double)), ms, error, of_exact;
     const gx_result result = run(s, m, k, u, &ms);
@@ -374,8 +378,8 @@ static knobs knobs_of(const char *series, const char *value, double dt, gxs_inte
 
 /* ---- other movers ---- */
 
-/* Which copies of another body stand for the corners of the setting's parts; owners: the element of each of the model's
- * elements */
+/* The copies of another body that stand for the corners of the setting's parts. owners: the mesh element of each of
+   the model's elements */
 static uint32_t *match(const setting *s, const gxs_model *model, const uint32_t *owners) {
     const size_t count = s->own.model.element_count;
     uint32_t *corners = (uint32_t *)method_memory(NULL, 4 * count, sizeof *corners);
@@ -397,8 +401,8 @@ static uint32_t *match(const setting *s, const gxs_model *model, const uint32_t 
     return corners;
 }
 
-/* Milliseconds of forces and tangents of St. Venant-Kirchhoff at the points of divided parts, one by one as RXFEM takes
-   them; counted from the first MEASURED */
+/* Milliseconds of forces and tangents of St. Venant-Kirchhoff at the points of divided parts, one by one as in
+   RXFEM; counted from the first MEASURED */
 static double evaluate_ms(const setting *s, const gxs_element *elements, const size_t *counts, double *points) {
     enum { MEASURED = 200000 };
     static const double lame[2] = {1e6, 1e6};
@@ -418,12 +422,13 @@ static double evaluate_ms(const setting *s, const gxs_element *elements, const s
         seen += (double)counts[i];
         took = seconds(NULL) - begin;
     }
-    method_must(tangent[0] >= 0 ? GX_OK : GX_ERROR_DIVERGED, "evaluation"); /* read, so that it is not left out */
+    method_must(tangent[0] >= 0 ? GX_OK : GX_ERROR_DIVERGED, "evaluation"); /* is used, so that it is not optimised away
+                                                                             */
     *points = all / parts_seen;
     return seen > 0 ? 1e3 * took * all / seen : 0;
 }
 
-/* ---- what is turned: steps and solvers ---- */
+/* ---- variations: steps and solvers ---- */
 
 static void find_reference(setting *s) {
     knobs k = knobs_of("reference", "BDF2", longest / 32, GXS_MIDPOINT);
@@ -547,7 +552,7 @@ static knobs compared_knobs(const char *series, const char *value) {
     return k;
 }
 
-/* Cuts by all blades; NULL, or why RXFEM can't */
+/* Cuts by all blades; NULL, or why RXFEM refuses */
 static const char *cut_rxfem(const setting *s, rx_body *b) {
     size_t i;
     for (i = 0; i < s->scene.cut_count; i++) {
@@ -617,7 +622,7 @@ static void turn_integrals(setting *s) {
 
 enum { THICKNESSES = 5 };
 
-/* Of all blades; the caller's to free */
+/* Of all blades; the caller frees it */
 static gx_surface *make_solids(const setting *s, double thickness) {
     gx_surface *solids = (gx_surface *)method_memory(NULL, s->scene.cut_count, sizeof *solids);
     size_t i;

@@ -1,17 +1,23 @@
-/* table2.c - GXFEM's Table 2: what a run of each scene costs, by method.
+/* table2.c - GXFEM's Table 2: the cost of a run of each scene, by method.
 
-   make bench-table2 runs the scenes with the paper's numbers of frames, records them (--trace), and repeats them here
-   by each method; it prints CSV and writes it to build/bench/table2.csv, ratios to the published figures and to RXFEM
-   here to table2_ratios.csv, both as tables to stderr. usage: table2 FILE RATIOS [--small] SCENE=TRACE...     --small:
-   scenes are small ones, not to be compared with the paper's; ten seconds of a processor for each run
+   make bench-table2 runs the scenes with the paper's numbers of frames, records them (--trace), and repeats them
+   here by each method. It prints CSV and writes it to build/bench/table2.csv. Ratios to the published figures, and
+   to RXFEM here, go to table2_ratios.csv. Both go to stderr as tables. usage: table2 FILE RATIOS [--small]
+   SCENE=TRACE...; --small: scenes are small ones, not comparable with the paper's; ten seconds of processor time for
+   each run.
 
-   The columns are the paper's: EI, recomputing an element's integrals; MB, finding the pieces, per subdomain that was
-   looked at (ours: element that was touched; domains says how many); dpsi, Hessians of the elastic energy, per step
-   (the paper: energy derivatives); CG, the linear solve with its preconditioner; dt, a frame; C, sum over frames with a
-   cut; C+U, over all. ended: why a method stopped after so many frames (busy: each run is a process that has so many
-   seconds of a processor); its sums are of those. Of a run below a second three are made, and the median counts. Rows
-   "paper" are the published ones, of another machine (Intel i9-13900K). The paper's sticks are six, ours 36: more
-   unknowns for the same cube. */
+   The columns are the paper's:
+       EI      recomputing an element's integrals
+       MB      finding the parts, per visited subdomain (ours: per touched element; domains gives the number)
+       dpsi    Hessians of the elastic energy, per step (the paper: energy derivatives)
+       CG      the linear solve with its preconditioner
+       dt      a frame
+       C, C+U  sum over frames with a cut; over all frames
+       ended   why a method stopped after that many frames (busy: each run is a process with a limit of processor
+               time); its sums are of those frames
+
+   Runs below a second are made three times, and the median counts. Rows "paper" are the published ones, of another
+   machine (Intel i9-13900K). The paper's sticks are six, ours 36: more unknowns for the same cube. */
 #define _XOPEN_SOURCE 600
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
@@ -49,7 +55,7 @@ static const published paper[] = {
     {"octopus", "GXFEM", 20800, 0.048, 9.332, 7.18, 2.382, 17.3, 2.05, 137.7, 1230}};
 /* clang-format on */
 
-/* NULL: nothing that this run may be compared with */
+/* NULL: nothing to compare this run with */
 static const published *published_of(const char *scene, const char *of) {
     size_t i;
     for (i = 0; i < sizeof paper / sizeof paper[0] && !small; i++)
@@ -67,14 +73,14 @@ static void print_paper(const char *scene) {
     }
 }
 
-/* A method's run, as far as it has come */
+/* A method's run so far */
 typedef struct run {
     double integrals, booleans, derivatives, derivatives_once, solve, worst, cut, all; /* s */
     size_t domains, frames, unknowns;
     char ended[96]; /* early, and why; empty: not so */
 } run;
 
-/* All cuts of a frame, and its step; NULL or why it could not be */
+/* All cuts of a frame, and its step; NULL, or why it failed */
 static const char *play_frame(const replay *scene, const method *m, void *state, size_t frame, size_t *next,
                               method_times *times) {
     const char *why = NULL;
@@ -97,7 +103,7 @@ static void add_frame(run *r, const method_times *times) {
     r->frames++;
 }
 
-/* In a process of its own: tells after each frame how far it is. */
+/* In a process of its own. Reports its progress after each frame. */
 static void play(const replay *scene, const method *m, int to) {
     const struct rlimit limit = {most_seconds, most_seconds + 1};
     void *state;
@@ -189,7 +195,7 @@ static void print_table(void) {
     free(kept);
 }
 
-/* ---- what is promised of them ---- */
+/* ---- what is promised ---- */
 
 typedef struct ratio {
     char scene[32];
@@ -211,9 +217,9 @@ static void add_ratio(const char *scene, const char *of, double theirs, double o
     r->least = least;
 }
 
-/* Of the library's run to what is published; and, over the frames that others came, to RXFEM's and by Algorithm 1's
-   subdomains, which are the paper's: an element that is touched has one of its own and a share of those of its four
-   nodes. history: of ours */
+/* Ratios of the library's run to the published ones; and, over the frames that others reached, to RXFEM's, and per
+   subdomain of Algorithm 1. These are the paper's: a touched element has one of its own and a share of those of its
+   four nodes. history: of ours */
 static void compare(const char *scene, const run *ours, const run *history, const run *rxfem, const run *by_literal) {
     const published *gxfem_paper = published_of(scene, "GXFEM"), *rxfem_paper = published_of(scene, "RXFEM");
     if (gxfem_paper) {
@@ -252,7 +258,7 @@ static void print_ratios(void) {
     }
 }
 
-/* Short runs are played three times, and the one of median time counts: a machine's first milliseconds jitter most. */
+/* Short runs are made three times, and the one of median time counts: a machine's first milliseconds vary most. */
 static run play_fairly(const char *name, const replay *scene, const method *m, run *history) {
     run *histories[3], runs[3], median;
     int i, count, at = 0;

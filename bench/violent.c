@@ -1,22 +1,28 @@
-/* violent.c - starts from which Newton's method is known to fail: does the energy fall, does the step end, does the
+/* violent.c - starts from which Newton's method is known to fail. Does the energy fall, does the step end, does the
    body find its shape?
 
-   make bench-violent builds and runs it; it prints CSV and writes it to build/bench/violent.csv, a table to stderr.
-   usage: violent [FILE [--small]]     --small: the uncut block only
+   make bench-violent builds and runs it. It prints CSV and writes it to build/bench/violent.csv, and a table to
+   stderr. usage: violent [FILE [--small]]; --small: the uncut block only.
 
-   The block of block.h, 4^3 cells, E = 1e6 Pa, no gravity, not held: uncut, accordion, loose. Displaced at the start:
+   The block of block.h, 4^3 cells, E = 1e6 Pa, no gravity, not held: uncut, accordion, loose. Displaced at the
+   start:
        random      each node along each axis by up to one edge
        stretched   by 3 along all axes
        inverted    turned inside out: mirrored along z
        flattened   into a plane
        collapsed   to a point, where all forces vanish
-   One step to balance: k = 1, 2, ... Newton iterations, each from the start, so that their results are the iterates
-   that the longest run accepted; at most 40. rises          iterates whose E is above that of the one before by more
-   than 1e-12 of it not_finite     numbers of all states that are not finite stop           of the last: balance,
-   iterations (the budget is used up), rounding residual       of the last; energy: E of the start and of the last, J
-   Then frames of one Newton iteration each, as a scene takes them, up to 300:
-       frames         until kinetic and elastic energy together are below 1e-6 of the start's; of a collapsed body,
-   whose elastic energy at the start is that of its compression left           that share after the last frame */
+
+   One step to balance: k = 1, 2, ... Newton iterations, each from the start, at most 40. So the results are the
+   iterates that the longest run accepted.
+       rises       iterates whose E is above the one before by more than 1e-12 of it
+       not_finite  numbers of all states that are not finite
+       stop        of the last: balance, iterations (the budget is used up), rounding
+       residual    of the last; energy: E of the start and of the last, J
+
+   Then frames of one Newton iteration each, as in a scene, up to 300:
+       frames      until kinetic and elastic energy together are below 1e-6 of the start's; for a collapsed body, of
+                   the elastic energy of its compression
+       left        that share after the last frame */
 #define _POSIX_C_SOURCE 200112L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"

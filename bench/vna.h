@@ -1,16 +1,15 @@
-/* vna.h - the virtual node algorithm as a time step sees it: each part of a cut element is a whole element again, with
-   all of its mass and stiffness [Molino, Bao, Fedkiw 2004; without its limits on where cuts run: Sifakis, Der, Fedkiw
+/* vna.h - the virtual node algorithm as a time step sees it: each part of a cut element is a whole element again,
+   with all of its mass and stiffness [Molino, Bao, Fedkiw 2004; without its limits on cuts: Sifakis, Der, Fedkiw
    2007].
 
-   A baseline of the bench. Which replicas there are, and which virtual nodes they share, is what the library finds:
-   replicas share a node where their material hangs together around it, in both methods. Include after gxfem.h or
-   gxfem_solve.h. */
+   A baseline of the bench. The library finds which replicas there are and which virtual nodes they share: replicas
+   share a node where their material is connected around it, in both methods. Include after gxfem.h or gxfem_solve.h. */
 #ifndef GXFEM_BENCH_VNA_H
 #define GXFEM_BENCH_VNA_H
 
 #include <string.h>
 
-/* Volume of the element that has these gradients of shape functions, 1/m */
+/* Volume of the element with these gradients of shape functions, 1/m */
 static double vna_volume(const double gradient[4][3]) {
     const double *a = gradient[1], *b = gradient[2], *c = gradient[3];
     const double det =
