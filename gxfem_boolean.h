@@ -37,13 +37,24 @@
  * set_removed; to read: gxb_leaf_facets, gxb_facet_edges; to ask: gxb_complex_side, turn, compare, winding,
  * barycentric, support, barycentric_fine
  *     >>stream      a complex as bytes: gxb_stream_pass, has; gxb_complex_save, load
- *     >>boolean     Booleans of closed triangle surfaces, exact and chainable: gxb_boolean_create, add, evaluate,
- * destroy; how results are read off: set_triangulation, set_fine, set_mend; what else there is to know of one:
- * components, defects, statistics then, under GXFEM_BOOLEAN_IMPLEMENTATION, in this order, from the bottom up: of all
+ *     >>boolean     exact, chainable Booleans of closed triangle surfaces: gxb_boolean_create, add, evaluate, destroy;
+ * options of a result: set_triangulation, set_fine, set_mend; more about a result: components, defects, statistics
+ *
+ * then, under GXFEM_BOOLEAN_IMPLEMENTATION, in this order, from the bottom up: of all
  * >>bits and >>exact (arithmetic), >>filter (doubles with bounds), >>points (predicates), >>memory (arrays,
  * transactions) of complexes  >>topology (of the mesh; signs), >>split (by a plane), >>clip and >>insert (a triangle),
- * >>save, >>check (what was read) of Booleans   >>arrangement (on points, planes and exact numbers of a complex that
- * has no elements)
+ * >>save, >>check (what was read)
+ *
+ * of Booleans, in the order of the work:
+ *     the object      >>arrangement (its types and struct), >>arena (memory), >>keys (points by definition)
+ *     an operand      >>boxes (a tree of boxes), >>operands (reading one), >>sides (planes of its triangles)
+ *     intersection    >>meet (two triangles), >>edges (points on edges in order)
+ *     triangulation   >>triangulate (points), >>constrain (edges), >>divide (one source), >>flats (sources that overlap
+ *                     in one plane), >>merge (equal points)
+ *     the result      >>states (vectors of winding numbers), >>winding (one for each subtriangle), >>result (triangles
+ *                     and vertices), >>coarse (fewer triangles)
+ *     more about it   >>components (shells), >>volumes, >>containers (which shell lies in which), >>mend (defects)
+ *     functions       >>api
  *
  * How the complex works. Each element of the mesh starts as one convex leaf, bounded by four facets, which it shares
  * with its neighbours. A triangle is clipped down the element's tree of planes (a binary space partition); each leaf
@@ -5510,7 +5521,9 @@ static GXBP_COLD void gxbp_check(gxb_complex *cx, gxb_stream *s) {
     gxbp_release(&cx->allocator, block, words * sizeof *block);
 }
 
-/* >>arrangement: triangles of closed surfaces, divided where they meet (docs/KERNEL.md) ---------------------------- */
+/* >>arrangement: what a Boolean holds ------------------------------------------------------------------------------ */
+/* The types and the one struct of a Boolean. A source is an input triangle. Its triangulation consists of subtriangles.
+   Everything below works on these arrays. See docs/KERNEL.md for the method. */
 
 /* Labels of a facet's edge are lists: the triangles that meet the facet's plane in it (sources), in flats also edges of
    sources (half-edge | GXBP_EDGE_LABEL). */
@@ -5721,7 +5734,9 @@ struct gxb_boolean { /* what is used most comes first: its addresses are short *
     uint32_t out_twin_count, out_twin_capacity;
 };
 
-/* --- memory --- */
+/* >>arena: memory of a Boolean ------------------------------------------------------------------------------------- */
+/* In: sizes. Out: memory, counted against the limit; small amounts come from the arena behind the struct. Touches the
+   budget, the growing arrays and the first error of an evaluation. */
 
 #define GXBP_ARENA ((size_t)1 << 16)
 
@@ -5827,7 +5842,9 @@ static uint32_t gxbp_new_link(gxb_boolean *b, uint32_t value, uint32_t next) {
     return b->link_count++;
 }
 
-/* --- points: found by their coordinates or by what defines them --- */
+/* >>keys: points found by coordinates or by definition ------------------------------------------------------------- */
+/* In: coordinates of an input vertex, or the kind and the objects that define a point. Out: the point, new or known.
+   Touches the points, their hash table and the union-find of points found to be equal. */
 
 static uint32_t gxbp_mix(uint32_t hash, uint64_t value) {
     uint64_t x = (value ^ hash * UINT64_C(0xff51afd7ed558ccd)) * UINT64_C(0x9e3779b97f4a7c15);
@@ -5974,7 +5991,199 @@ static uint32_t gxbp_keyed_point(gxb_boolean *b, uint32_t kind, uint32_t p, uint
     return id;
 }
 
-/* --- operands --- */
+/* >>boxes: a tree of boxes for each operand ------------------------------------------------------------------------ */
+/* In: the corners of an operand's sources. Out: the sources along a Z-order curve, and boxes around groups of them.
+   Every box contains its triangles. Touches the boxes and leaf boxes only. */
+
+static const double *gxbp_corner_of(const gxb_boolean *b, uint32_t s, int k) {
+    return b->cx.points[b->sources[s].point[k]].ball.x;
+}
+
+/* Coordinates are below 2^128 and a float can't hold all of these, a sixteenth it can. A float's relative error is at
+   most 2^-23; what is flushed to zero is far below 2^-120. */
+static float gxbp_float_below(double x) {
+    return (float)(x * 0.0625 - (gxbp_abs(x) * gxbp_power(-26) + gxbp_power(-120)));
+}
+static float gxbp_float_above(double x) {
+    return (float)(x * 0.0625 + (gxbp_abs(x) * gxbp_power(-26) + gxbp_power(-120)));
+}
+
+static void gxbp_box_join(gxbp_box *a, const gxbp_box *c) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        a->low[k] = c->low[k] < a->low[k] ? c->low[k] : a->low[k];
+        a->high[k] = c->high[k] > a->high[k] ? c->high[k] : a->high[k];
+    }
+}
+
+static void gxbp_extent(const gxb_boolean *b, uint32_t s, double low[3], double high[3]) {
+    const double *p = gxbp_corner_of(b, s, 0), *q = gxbp_corner_of(b, s, 1), *r = gxbp_corner_of(b, s, 2);
+    int k;
+    for (k = 0; k < 3; k++) {
+        low[k] = gxbp_min(gxbp_min(p[k], q[k]), r[k]);
+        high[k] = gxbp_max(gxbp_max(p[k], q[k]), r[k]);
+    }
+}
+
+static gxbp_box gxbp_box_of(const gxb_boolean *b, uint32_t s) {
+    gxbp_box box;
+    double low[3], high[3];
+    int k;
+    gxbp_extent(b, s, low, high);
+    for (k = 0; k < 3; k++) {
+        box.low[k] = gxbp_float_below(low[k]);
+        box.high[k] = gxbp_float_above(high[k]);
+    }
+    return box;
+}
+
+static int gxbp_box_meets(const gxbp_box *a, const gxbp_box *c) {
+    return (a->low[0] <= c->high[0]) & (c->low[0] <= a->high[0]) & (a->low[1] <= c->high[1]) &
+           (c->low[1] <= a->high[1]) & (a->low[2] <= c->high[2]) &
+           (c->low[2] <= a->high[2]); /* without branches: nobody can foretell them */
+}
+
+/* Ten bits with two zeros after each */
+static uint32_t gxbp_spread(uint32_t x) {
+    x = (x | x << 16) & 0x030000ffu;
+    x = (x | x << 8) & 0x0300f00fu;
+    x = (x | x << 4) & 0x030c30c3u;
+    return (x | x << 2) & 0x09249249u;
+}
+
+static uint32_t gxbp_lattice(double t) { return t > 0 ? t < 1023 ? (uint32_t)t : 1023 : 0; }
+
+/* Sorts the sources along a Z-order curve by their first corners; work: two words of 64 bits each. */
+static GXBP_APART void gxbp_sort_sources(const gxb_boolean *b, const gxbp_operand *o, uint64_t *work) {
+    uint64_t *from = work, *to = work + o->source_count, *swap;
+    double low[3], high[3], scale[3];
+    uint32_t i, pass, k;
+    memcpy(low, gxbp_corner_of(b, o->source, 0), sizeof low);
+    memcpy(high, low, sizeof high);
+    for (i = 1; i < o->source_count; i++) {
+        const double *x = gxbp_corner_of(b, o->source + i, 0);
+        for (k = 0; k < 3; k++) {
+            low[k] = gxbp_min(x[k], low[k]);
+            high[k] = gxbp_max(x[k], high[k]);
+        }
+    }
+    for (k = 0; k < 3; k++) scale[k] = high[k] > low[k] ? 1023 / (high[k] - low[k]) : 0;
+    for (i = 0; i < o->source_count; i++) {
+        const double *x = gxbp_corner_of(b, o->source + i, 0);
+        uint32_t key = 0;
+        for (k = 0; k < 3; k++) key |= gxbp_spread(gxbp_lattice((x[k] - low[k]) * scale[k])) << k;
+        from[i] = (uint64_t)key << 32 | (o->source + i);
+    }
+    for (pass = 32; pass < 62; pass += 10) {
+        uint32_t count[1025];
+        memset(count, 0, sizeof count);
+        for (i = 0; i < o->source_count; i++) count[1 + (from[i] >> pass & 1023)]++;
+        for (i = 1; i < 1025; i++) count[i] += count[i - 1];
+        for (i = 0; i < o->source_count; i++) to[count[from[i] >> pass & 1023]++] = from[i];
+        swap = from;
+        from = to;
+        to = swap;
+    }
+    for (i = 0; i < o->source_count; i++) o->order[i] = (uint32_t)from[i];
+}
+
+/* Boxes of leaf i's sources, and around them */
+static void gxbp_fill_leaf(gxb_boolean *b, const gxbp_operand *o, uint32_t i) {
+    gxbp_leaf_boxes *leaf = &b->bounds[o->bounds + i];
+    gxbp_box *around = &b->boxes[o->tree.first + i];
+    uint32_t x, k;
+    for (x = 0; x < GXBP_LEAF; x++) {
+        gxbp_box box;
+        if (i * GXBP_LEAF + x < o->source_count) {
+            box = gxbp_box_of(b, o->order[i * GXBP_LEAF + x]);
+            if (x == 0)
+                *around = box;
+            else
+                gxbp_box_join(around, &box);
+        } else
+            for (k = 0; k < 3; k++) {
+                box.low[k] = (float)gxbp_power(126);
+                box.high[k] = -box.low[k];
+            }
+        for (k = 0; k < 3; k++) {
+            leaf->low[k][x] = box.low[k];
+            leaf->high[k][x] = box.high[k];
+        }
+    }
+}
+
+static void gxbp_fill_tree(gxb_boolean *b, const gxbp_operand *o) {
+    const gxbp_tree *t = &o->tree;
+    uint32_t i, l;
+    for (i = 0; i < t->size[0]; i++) gxbp_fill_leaf(b, o, i);
+    for (l = 1; l < t->levels; l++)
+        for (i = 0; i < t->size[l - 1]; i++) {
+            gxbp_box *box = &b->boxes[t->first + t->level[l] + i / 2];
+            const gxbp_box *child = &b->boxes[t->first + t->level[l - 1] + i];
+            if (i % 2 == 0)
+                *box = *child;
+            else
+                gxbp_box_join(box, child);
+        }
+}
+
+static GXBP_APART gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
+    gxbp_tree *t = &o->tree;
+    uint32_t size = (o->source_count + GXBP_LEAF - 1) / GXBP_LEAF, total = 0, i;
+    const size_t words = o->source_count;
+    o->order = (uint32_t *)gxbp_allocate(&b->cx.allocator, words * sizeof *o->order);
+    if (o->order == NULL) return GX_ERROR_MEMORY;
+    if (o->source_count > 4 * GXBP_LEAF) {
+        uint64_t *work = (uint64_t *)gxbp_borrow(b, 2 * words * sizeof *work);
+        if (work == NULL) return b->result;
+        gxbp_sort_sources(b, o, work);
+    } else
+        for (i = 0; i < o->source_count; i++) o->order[i] = o->source + i;
+    o->bounds = b->bound_count;
+    b->bound_count += size;
+    for (t->levels = 0;; size = (size + 1) / 2) {
+        t->level[t->levels] = total;
+        t->size[t->levels++] = size;
+        total += size;
+        if (size == 1) break;
+    }
+    t->first = b->box_count;
+    if (!GXBP_ROOM(b, boxes, box, total)) return GX_ERROR_MEMORY;
+    b->box_count += total;
+    gxbp_fill_tree(b, o);
+    return GX_OK;
+}
+
+/* Which of a leaf's boxes meet a box: without branches, all at once where the compiler can. Returns 0 where none does.
+ */
+static uint32_t gxbp_test_leaf(const gxbp_leaf_boxes *leaf, const gxbp_box *box, uint32_t meets[GXBP_LEAF]) {
+    uint32_t x, any = 0;
+    for (x = 0; x < GXBP_LEAF; x++)
+        meets[x] = (uint32_t)((leaf->low[0][x] <= box->high[0]) & (box->low[0] <= leaf->high[0][x]) &
+                              (leaf->low[1][x] <= box->high[1]) & (box->low[1] <= leaf->high[1][x]) &
+                              (leaf->low[2][x] <= box->high[2]) & (box->low[2] <= leaf->high[2][x]));
+    for (x = 0; x < GXBP_LEAF; x++) any |= meets[x];
+    return any;
+}
+
+static gxbp_box gxbp_leaf_box(const gxbp_leaf_boxes *leaf, uint32_t x) {
+    gxbp_box box;
+    uint32_t k;
+    for (k = 0; k < 3; k++) {
+        box.low[k] = leaf->low[k][x];
+        box.high[k] = leaf->high[k][x];
+    }
+    return box;
+}
+
+static int gxbp_boxes_meet(const gxb_boolean *b, const gxbp_tree *s, uint32_t l, uint32_t i, const gxbp_tree *t,
+                           uint32_t m, uint32_t j) {
+    return gxbp_box_meets(&b->boxes[s->first + s->level[l] + i], &b->boxes[t->first + t->level[m] + j]);
+}
+
+/* >>operands: reading an operand ----------------------------------------------------------------------------------- */
+/* In: a caller's surface, checked. Out: its points, sources with their neighbours across edges, one subtriangle for
+   each source, and the box tree. On an error the caller shortens the arrays again. */
 
 /* The input's coordinates in the frame: times 2^shift, exact. */
 static gx_result gxbp_scale(const gxb_boolean *b, const double x[3], double y[3]) {
@@ -6291,167 +6500,6 @@ static GXBP_APART gx_result gxbp_read_triangles(gxb_boolean *b, const gxb_operan
     return GX_OK;
 }
 
-static const double *gxbp_corner_of(const gxb_boolean *b, uint32_t s, int k) {
-    return b->cx.points[b->sources[s].point[k]].ball.x;
-}
-
-/* --- box trees --- */
-
-/* Coordinates are below 2^128 and a float can't hold all of these, a sixteenth it can. A float's relative error is at
-   most 2^-23; what is flushed to zero is far below 2^-120. */
-static float gxbp_float_below(double x) {
-    return (float)(x * 0.0625 - (gxbp_abs(x) * gxbp_power(-26) + gxbp_power(-120)));
-}
-static float gxbp_float_above(double x) {
-    return (float)(x * 0.0625 + (gxbp_abs(x) * gxbp_power(-26) + gxbp_power(-120)));
-}
-
-static void gxbp_box_join(gxbp_box *a, const gxbp_box *c) {
-    int k;
-    for (k = 0; k < 3; k++) {
-        a->low[k] = c->low[k] < a->low[k] ? c->low[k] : a->low[k];
-        a->high[k] = c->high[k] > a->high[k] ? c->high[k] : a->high[k];
-    }
-}
-
-static void gxbp_extent(const gxb_boolean *b, uint32_t s, double low[3], double high[3]) {
-    const double *p = gxbp_corner_of(b, s, 0), *q = gxbp_corner_of(b, s, 1), *r = gxbp_corner_of(b, s, 2);
-    int k;
-    for (k = 0; k < 3; k++) {
-        low[k] = gxbp_min(gxbp_min(p[k], q[k]), r[k]);
-        high[k] = gxbp_max(gxbp_max(p[k], q[k]), r[k]);
-    }
-}
-
-static gxbp_box gxbp_box_of(const gxb_boolean *b, uint32_t s) {
-    gxbp_box box;
-    double low[3], high[3];
-    int k;
-    gxbp_extent(b, s, low, high);
-    for (k = 0; k < 3; k++) {
-        box.low[k] = gxbp_float_below(low[k]);
-        box.high[k] = gxbp_float_above(high[k]);
-    }
-    return box;
-}
-
-static int gxbp_box_meets(const gxbp_box *a, const gxbp_box *c) {
-    return (a->low[0] <= c->high[0]) & (c->low[0] <= a->high[0]) & (a->low[1] <= c->high[1]) &
-           (c->low[1] <= a->high[1]) & (a->low[2] <= c->high[2]) &
-           (c->low[2] <= a->high[2]); /* without branches: nobody can foretell them */
-}
-
-/* Ten bits with two zeros after each */
-static uint32_t gxbp_spread(uint32_t x) {
-    x = (x | x << 16) & 0x030000ffu;
-    x = (x | x << 8) & 0x0300f00fu;
-    x = (x | x << 4) & 0x030c30c3u;
-    return (x | x << 2) & 0x09249249u;
-}
-
-static uint32_t gxbp_lattice(double t) { return t > 0 ? t < 1023 ? (uint32_t)t : 1023 : 0; }
-
-/* Sorts the sources along a Z-order curve by their first corners; work: two words of 64 bits each. */
-static GXBP_APART void gxbp_sort_sources(const gxb_boolean *b, const gxbp_operand *o, uint64_t *work) {
-    uint64_t *from = work, *to = work + o->source_count, *swap;
-    double low[3], high[3], scale[3];
-    uint32_t i, pass, k;
-    memcpy(low, gxbp_corner_of(b, o->source, 0), sizeof low);
-    memcpy(high, low, sizeof high);
-    for (i = 1; i < o->source_count; i++) {
-        const double *x = gxbp_corner_of(b, o->source + i, 0);
-        for (k = 0; k < 3; k++) {
-            low[k] = gxbp_min(x[k], low[k]);
-            high[k] = gxbp_max(x[k], high[k]);
-        }
-    }
-    for (k = 0; k < 3; k++) scale[k] = high[k] > low[k] ? 1023 / (high[k] - low[k]) : 0;
-    for (i = 0; i < o->source_count; i++) {
-        const double *x = gxbp_corner_of(b, o->source + i, 0);
-        uint32_t key = 0;
-        for (k = 0; k < 3; k++) key |= gxbp_spread(gxbp_lattice((x[k] - low[k]) * scale[k])) << k;
-        from[i] = (uint64_t)key << 32 | (o->source + i);
-    }
-    for (pass = 32; pass < 62; pass += 10) {
-        uint32_t count[1025];
-        memset(count, 0, sizeof count);
-        for (i = 0; i < o->source_count; i++) count[1 + (from[i] >> pass & 1023)]++;
-        for (i = 1; i < 1025; i++) count[i] += count[i - 1];
-        for (i = 0; i < o->source_count; i++) to[count[from[i] >> pass & 1023]++] = from[i];
-        swap = from;
-        from = to;
-        to = swap;
-    }
-    for (i = 0; i < o->source_count; i++) o->order[i] = (uint32_t)from[i];
-}
-
-/* Boxes of leaf i's sources, and around them */
-static void gxbp_fill_leaf(gxb_boolean *b, const gxbp_operand *o, uint32_t i) {
-    gxbp_leaf_boxes *leaf = &b->bounds[o->bounds + i];
-    gxbp_box *around = &b->boxes[o->tree.first + i];
-    uint32_t x, k;
-    for (x = 0; x < GXBP_LEAF; x++) {
-        gxbp_box box;
-        if (i * GXBP_LEAF + x < o->source_count) {
-            box = gxbp_box_of(b, o->order[i * GXBP_LEAF + x]);
-            if (x == 0)
-                *around = box;
-            else
-                gxbp_box_join(around, &box);
-        } else
-            for (k = 0; k < 3; k++) {
-                box.low[k] = (float)gxbp_power(126);
-                box.high[k] = -box.low[k];
-            }
-        for (k = 0; k < 3; k++) {
-            leaf->low[k][x] = box.low[k];
-            leaf->high[k][x] = box.high[k];
-        }
-    }
-}
-
-static void gxbp_fill_tree(gxb_boolean *b, const gxbp_operand *o) {
-    const gxbp_tree *t = &o->tree;
-    uint32_t i, l;
-    for (i = 0; i < t->size[0]; i++) gxbp_fill_leaf(b, o, i);
-    for (l = 1; l < t->levels; l++)
-        for (i = 0; i < t->size[l - 1]; i++) {
-            gxbp_box *box = &b->boxes[t->first + t->level[l] + i / 2];
-            const gxbp_box *child = &b->boxes[t->first + t->level[l - 1] + i];
-            if (i % 2 == 0)
-                *box = *child;
-            else
-                gxbp_box_join(box, child);
-        }
-}
-
-static GXBP_APART gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
-    gxbp_tree *t = &o->tree;
-    uint32_t size = (o->source_count + GXBP_LEAF - 1) / GXBP_LEAF, total = 0, i;
-    const size_t words = o->source_count;
-    o->order = (uint32_t *)gxbp_allocate(&b->cx.allocator, words * sizeof *o->order);
-    if (o->order == NULL) return GX_ERROR_MEMORY;
-    if (o->source_count > 4 * GXBP_LEAF) {
-        uint64_t *work = (uint64_t *)gxbp_borrow(b, 2 * words * sizeof *work);
-        if (work == NULL) return b->result;
-        gxbp_sort_sources(b, o, work);
-    } else
-        for (i = 0; i < o->source_count; i++) o->order[i] = o->source + i;
-    o->bounds = b->bound_count;
-    b->bound_count += size;
-    for (t->levels = 0;; size = (size + 1) / 2) {
-        t->level[t->levels] = total;
-        t->size[t->levels++] = size;
-        total += size;
-        if (size == 1) break;
-    }
-    t->first = b->box_count;
-    if (!GXBP_ROOM(b, boxes, box, total)) return GX_ERROR_MEMORY;
-    b->box_count += total;
-    gxbp_fill_tree(b, o);
-    return GX_OK;
-}
-
 /* With the first operand comes room for a second one of its size (gxbp_reserve adds half of what is asked for), and for
    thirds of it that the two divide: what is not used is not touched, and nothing large is copied. */
 static size_t gxbp_foresee(const gxb_boolean *b, size_t count, size_t thirds) {
@@ -6492,7 +6540,9 @@ static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operan
     return GX_OK;
 }
 
-/* --- where two triangles meet --- */
+/* >>sides: planes of sources; records of where they meet ----------------------------------------------------------- */
+/* In: sources and points. Out: sides of planes and folds, decided by the filter, by definition or exactly; planes, made
+   when needed; segments, and points on edges. Touches planes, segments, cuts, hits and the list of dirty sources. */
 
 /* What the filter leaves open: what is known by definition, then exact arithmetic. */
 static GXBP_APART int gxbp_point_side_beyond_filter(gxb_boolean *b, uint32_t point, uint32_t plane) {
@@ -6644,6 +6694,28 @@ static void gxbp_hit_edge(gxb_boolean *b, uint32_t s, int k, uint32_t point) {
     gxbp_mark_dirty(b, s);
     if (twin != GXB_NONE) gxbp_mark_dirty(b, twin / 3);
 }
+
+/* The side of a source's corner; each point remembers two answers, of which slot says the one to replace. */
+static int gxbp_corner_side(gxb_boolean *b, uint32_t s, int k, uint32_t plane, int slot) {
+    const uint32_t point = b->sources[s].point[k];
+    gxb_cpoint *p = &b->cx.points[point];
+    if (p->stamp[slot] != plane + 1) {
+        p->sign[slot] = (int8_t)(b->sources[s].plane == plane ? 0 : gxbp_point_side(b, point, plane));
+        p->stamp[slot] = plane + 1;
+    }
+    return p->sign[slot];
+}
+
+static void gxbp_sides(gxb_boolean *b, uint32_t s, uint32_t plane, int slot, int side[3]) {
+    int k;
+    for (k = 0; k < 3; k++) side[k] = gxbp_corner_side(b, s, k, plane, slot);
+}
+
+static int gxbp_all_on_one_side(const int side[3]) { return side[0] != 0 && side[0] == side[1] && side[0] == side[2]; }
+
+/* >>meet: where two triangles meet --------------------------------------------------------------------------------- */
+/* In: pairs of sources whose boxes overlap. Out: the points, segments and flats in which they meet. Every decision is a
+   predicate of input points. Touches what >>keys and >>sides offer, and the lists of flats. */
 
 /* Where a point of a triangle's plane lies: corner or edge -1: not there; both -1: inside. */
 typedef struct gxbp_spot {
@@ -6962,24 +7034,6 @@ static GXBP_COLD void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t)
         gxbp_record_meeting(b, s, t, &m);
 }
 
-/* The side of a source's corner; each point remembers two answers, of which slot says the one to replace. */
-static int gxbp_corner_side(gxb_boolean *b, uint32_t s, int k, uint32_t plane, int slot) {
-    const uint32_t point = b->sources[s].point[k];
-    gxb_cpoint *p = &b->cx.points[point];
-    if (p->stamp[slot] != plane + 1) {
-        p->sign[slot] = (int8_t)(b->sources[s].plane == plane ? 0 : gxbp_point_side(b, point, plane));
-        p->stamp[slot] = plane + 1;
-    }
-    return p->sign[slot];
-}
-
-static void gxbp_sides(gxb_boolean *b, uint32_t s, uint32_t plane, int slot, int side[3]) {
-    int k;
-    for (k = 0; k < 3; k++) side[k] = gxbp_corner_side(b, s, k, plane, slot);
-}
-
-static int gxbp_all_on_one_side(const int side[3]) { return side[0] != 0 && side[0] == side[1] && side[0] == side[2]; }
-
 /* Do they share an edge of their surface and else, as they are not in one plane, nothing? */
 static int gxbp_are_neighbours(const gxb_boolean *b, uint32_t s, uint32_t t) {
     const uint32_t *twin = b->sources[s].twin;
@@ -7034,30 +7088,6 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
     gxbp_record_meeting(b, s, t, &m);
 }
 
-/* --- broad phase: pairs of boxes of two trees, or of one --- */
-
-/* Which of a leaf's boxes meet a box: without branches, all at once where the compiler can. Returns 0 where none does.
- */
-static uint32_t gxbp_test_leaf(const gxbp_leaf_boxes *leaf, const gxbp_box *box, uint32_t meets[GXBP_LEAF]) {
-    uint32_t x, any = 0;
-    for (x = 0; x < GXBP_LEAF; x++)
-        meets[x] = (uint32_t)((leaf->low[0][x] <= box->high[0]) & (box->low[0] <= leaf->high[0][x]) &
-                              (leaf->low[1][x] <= box->high[1]) & (box->low[1] <= leaf->high[1][x]) &
-                              (leaf->low[2][x] <= box->high[2]) & (box->low[2] <= leaf->high[2][x]));
-    for (x = 0; x < GXBP_LEAF; x++) any |= meets[x];
-    return any;
-}
-
-static gxbp_box gxbp_leaf_box(const gxbp_leaf_boxes *leaf, uint32_t x) {
-    gxbp_box box;
-    uint32_t k;
-    for (k = 0; k < 3; k++) {
-        box.low[k] = leaf->low[k][x];
-        box.high[k] = leaf->high[k][x];
-    }
-    return box;
-}
-
 static GXBP_APART void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, uint32_t i, const gxbp_operand *q,
                                         uint32_t j) {
     uint32_t first[GXBP_LEAF], second[GXBP_LEAF], x, y;
@@ -7072,11 +7102,6 @@ static GXBP_APART void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, u
             gxbp_meet(b, o->order[i * GXBP_LEAF + x], q->order[j * GXBP_LEAF + y]);
         }
     }
-}
-
-static int gxbp_boxes_meet(const gxb_boolean *b, const gxbp_tree *s, uint32_t l, uint32_t i, const gxbp_tree *t,
-                           uint32_t m, uint32_t j) {
-    return gxbp_box_meets(&b->boxes[s->first + s->level[l] + i], &b->boxes[t->first + t->level[m] + j]);
 }
 
 /* Box i of level l of one tree and box j of level m of the other, which meet: of the larger, or of both, those in it.
@@ -7105,7 +7130,9 @@ static void gxbp_meet_operands(gxb_boolean *b, uint32_t i, uint32_t j) {
     if (i == j) o->simple = b->marks == marks && b->result == GX_OK;
 }
 
-/* --- edges: their inner points in order --- */
+/* >>edges: points on edges in order -------------------------------------------------------------------------------- */
+/* In: hits, that is points on edges of surfaces. Out: the points of each edge in order; equal points become one.
+   Touches cuts and their points. */
 
 /* gxbp_compare_points for points in which two planes cut one line of input points: p lies on the side of q's plane on
    which the end is that it is nearer to. Signs of points that are given by doubles, and of points of their lines, take
@@ -7245,7 +7272,10 @@ static GXBP_APART void gxbp_order_cuts(gxb_boolean *b) {
     b->hit_count = 0;
 }
 
-/* --- triangulations --- */
+/* >>triangulate: points into a triangulation ----------------------------------------------------------------------- */
+/* In: a source, or the root of a flat, with a triangulation, and a point of its plane. Out: the point as a vertex. The
+   point is found along a straight line from a vertex. Touches the subtriangles of this source and the hints of
+   vertices. */
 
 /* Is the point an end of this line of two input points, or defined as a point of it? */
 static int gxbp_on_input_line(const gxb_cpoint *p, uint32_t from, uint32_t to) {
@@ -7727,7 +7757,9 @@ static uint32_t gxbp_insert_point(gxb_boolean *b, uint32_t s, uint32_t x, uint32
     return x;
 }
 
-/* --- edges that must be there --- */
+/* >>constrain: edges that must be there ---------------------------------------------------------------------------- */
+/* In: two vertices of a triangulation and a label. Out: a path of labelled edges between them. The crossed subtriangles
+   are removed and both sides filled again. Touches the subtriangles of this source, links and the two rims. */
 
 /* Appends to b->rims or b->lefts a vertex, with what lies beyond edge k of f. */
 static void gxbp_push_margin(gxb_boolean *b, gxbp_margin **list, uint32_t vertex, uint32_t f, int k) {
@@ -7936,7 +7968,9 @@ static void gxbp_force_edge(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q, 
     }
 }
 
-/* --- dividing a source that is alone in its plane --- */
+/* >>divide: a source that is alone in its plane -------------------------------------------------------------------- */
+/* In: a dirty source with its new segments and the points on its edges. Out: its triangulation, with all segments as
+   edges. Chains of a simple surface divide an undivided source into polygons; all else goes in segment by segment. */
 
 /* Point i of an edge: its start, its inner points in order, its end. */
 static uint32_t gxbp_edge_point(gxb_boolean *b, uint32_t s, uint32_t k, uint32_t i) {
@@ -8446,7 +8480,9 @@ static void gxbp_divide_source(gxb_boolean *b, uint32_t s) {
     if (b->result == GX_OK) gxbp_note_rims(b, s);
 }
 
-/* --- flats: sources that overlap in one plane are divided together, within a frame around them --- */
+/* >>flats: sources that overlap in one plane ----------------------------------------------------------------------- */
+/* In: dirty sources. Out: their triangulations. Sources that overlap in one plane form a flat: they are divided
+   together, within a frame around them, and each subtriangle lists the sources that cover it. */
 
 /* A corner of the frame: where a line along the plane's axis meets it. */
 static GXBP_COLD uint32_t gxbp_frame_corner(gxb_boolean *b, uint32_t plane, double x, double y) {
@@ -8619,7 +8655,9 @@ static GXBP_APART void gxbp_divide_dirty(gxb_boolean *b) {
     b->dirty_count = 0;
 }
 
-/* --- points that are equal without having met in a triangulation --- */
+/* >>merge: equal points that did not meet in a triangulation ------------------------------------------------------- */
+/* In: the points computed since the last evaluation. Out: equal points united, under the older name. Touches the
+   union-find and the list of points along a direction. */
 
 typedef struct gxbp_projected {
     double t;
@@ -8686,7 +8724,9 @@ static GXBP_APART void gxbp_merge_points(gxb_boolean *b) {
     b->merged_points = b->vertex_count;
 }
 
-/* --- winding numbers: states are vectors of one number per operand, each kept once --- */
+/* >>states: vectors of winding numbers ----------------------------------------------------------------------------- */
+/* In: a state and a change of winding numbers. Out: the state with them. A state is a vector of one number per operand,
+   stored once, with a flag: inside or not. Touches the states and their table only. */
 
 static int gxbp_counts(uint32_t rule, int32_t winding) {
     switch (rule) {
@@ -8793,6 +8833,11 @@ static uint32_t gxbp_step_state(gxb_boolean *b, uint32_t from, uint32_t operand,
     if (step->change == change && step->from == from && step->operand == operand) return step->to;
     return gxbp_new_step(b, step, from, operand, change);
 }
+
+/* >>winding: a state for each subtriangle -------------------------------------------------------------------------- */
+/* In: a finished arrangement. Out: the state in front of each subtriangle. One ray gives the first state; labels of
+   edges give those of neighbours. New operands count 0 in older states wherever their boxes are not. Touches the states
+   of subtriangles and their vertices' names. */
 
 static uint32_t gxbp_root_plane(const gxb_boolean *b, uint32_t f) { return b->sources[b->pieces[f].source].plane; }
 
@@ -9286,7 +9331,9 @@ static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
     b->stated = b->operand_count;
 }
 
-/* --- the result: facets between inside and outside --- */
+/* >>result: subtriangles between inside and outside ---------------------------------------------------------------- */
+/* In: states. Out: the output's triangles with their sources, its vertices rounded and with their origins, and the
+   triangles that rounding turned over. Touches the output only, and the planes of sources that had none. */
 
 /* The input's coordinates again. */
 static double gxbp_unscale(const gxb_boolean *b, double y) {
@@ -9483,8 +9530,104 @@ static uint32_t gxbp_out_plane(gxb_boolean *b, uint32_t t) {
     return gxbp_need_plane(b, s) ? b->sources[s].plane : GXB_NONE;
 }
 
-/* --- coarse results: vertices that the outline of no face needs are taken away, one by one, and their stars filled
- * with fewer triangles --- */
+/* Of which source a triangle is, and how it faces */
+static GXBP_COLD void gxbp_copy_origin(gxb_boolean *b, uint32_t to, uint32_t from) {
+    b->out_operands[to] = b->out_operands[from];
+    b->out_sources[to] = b->out_sources[from];
+    b->out_planes[to] = b->out_planes[from];
+    b->out_reversed[to] = b->out_reversed[from];
+}
+
+/* Vertices that no triangle has any more are taken out, rounded or not yet; map: a word for each. */
+static GXBP_COLD void gxbp_drop_lonely(gxb_boolean *b, uint32_t *map) {
+    const int rounded = b->out_vertex_count > 0;
+    uint32_t i, n = 0;
+    memset(map, 0xff, b->out_point_count * sizeof *map);
+    for (i = 0; i < b->out_triangle_count; i++) map[b->out_triangles[i]] = 0;
+    for (i = 0; i < b->out_point_count; i++) {
+        if (map[i] == GXB_NONE) continue;
+        if (rounded) {
+            memmove(b->out_vertices + 3 * (size_t)n, b->out_vertices + 3 * (size_t)i, 3 * sizeof *b->out_vertices);
+            b->out_origins[n] = b->out_origins[i];
+        }
+        b->out_points[n] = b->out_points[i];
+        map[i] = n++;
+    }
+    for (i = 0; i < b->out_triangle_count; i++) b->out_triangles[i] = map[b->out_triangles[i]];
+    b->out_point_count = n;
+    if (rounded) {
+        b->out_origin_count = n;
+        b->out_vertex_count = 3 * n;
+    }
+}
+
+static GXBP_APART void gxbp_round_vertices(gxb_boolean *b) {
+    uint32_t i;
+    if (b->result != GX_OK || !GXBP_ROOM(b, out_vertices, out_vertex, 3 * (size_t)b->out_point_count) ||
+        !GXBP_ROOM(b, out_origins, out_origin, b->out_point_count))
+        return;
+    for (i = 0; i < b->out_point_count; i++) {
+        gxbp_round_point(b, b->out_points[i], b->out_vertices + 3 * (size_t)i);
+        gxbp_describe_point(b, b->out_points[i], &b->out_origins[i]);
+    }
+    b->out_vertex_count = 3 * b->out_point_count;
+    b->out_origin_count = b->out_point_count;
+}
+
+static GXBP_COLD int gxbp_faces_exactly(gxb_boolean *b, uint32_t plane, const double *p, const double *q,
+                                        const double *r) {
+    gxbp_vec store, given[3], n;
+    GXB_NUM(value);
+    gxbp_vec_set(&given[0], p);
+    gxbp_vec_set(&given[1], q);
+    gxbp_vec_set(&given[2], r);
+    gxbp_vec_init(&n);
+    gxbp_exact_plane(n.c, given[0].c, given[1].c, given[2].c);
+    gxbp_num_dot(&value, n.c, gxbp_exact_cplane(&b->cx, plane, &store));
+    return value.sign;
+}
+
+/* Sign of n.((q - p) x (r - p)) for a plane's normal n and rounded points, exact. The filter's bound is that of
+   gxbp_rough_volume, with n for d0. */
+static int gxbp_faces(gxb_boolean *b, uint32_t plane, const double *p, const double *q, const double *r) {
+    const gxb_plane_filter *f = &b->cx.planes[plane].filter;
+    double u[3], v[3], m[3], E, N;
+    int k, sign = 0;
+    /* else coordinates are not the frame's, and may be too large or too small to filter */
+    if (b->cx.shift == 0) {
+        for (k = 0; k < 3; k++) {
+            u[k] = gxbp_fence(q[k] - p[k]);
+            v[k] = gxbp_fence(r[k] - p[k]);
+        }
+        E = gxbp_filter_cross(m, u, 2 * GXBP_U * gxbp_max3(u) + GXBP_TINY, v, 2 * GXBP_U * gxbp_max3(v) + GXBP_TINY);
+        N = gxbp_max3(m);
+        sign = gxbp_filter_sign(f->n[0] * m[0] + f->n[1] * m[1] + f->n[2] * m[2],
+                                6 * (f->norm * E + f->error * (N + E)) + 48 * GXBP_U * f->norm * N + GXBP_TINY);
+    }
+    return sign != 0 ? sign : gxbp_faces_exactly(b, plane, p, q, r);
+}
+
+/* Triangles that rounding has turned over or left without area. Those of input vertices are as they were, unless they
+ * were mended. */
+static GXBP_APART void gxbp_find_defects(gxb_boolean *b) {
+    uint32_t t, k;
+    b->out_defect_count = 0;
+    for (t = 0; t < b->out_source_count && b->result == GX_OK; t++) {
+        const double *x[3];
+        int given = b->mend == NULL;
+        for (k = 0; k < 3; k++) {
+            given = given && b->cx.points[gxbp_out_corner(b, t, k)].kind == GXB_EXPLICIT;
+            x[k] = b->out_vertices + 3 * (size_t)b->out_triangles[3 * t + k];
+        }
+        if (given || gxbp_faces(b, gxbp_out_plane(b, t), x[0], x[1], x[2]) == (b->out_planes[t] & 1 ? -1 : 1)) continue;
+        if (GXBP_ROOM(b, out_defects, out_defect, 1)) b->out_defects[b->out_defect_count++] = t;
+    }
+    b->examined = b->result == GX_OK;
+}
+
+/* >>coarse: fewer triangles of the same surface -------------------------------------------------------------------- */
+/* In: the output's triangles before rounding. Out: each face in fewer triangles. Vertices that no outline needs are
+   removed one by one, and the polygons around them filled again. Touches the output's triangles and points. */
 
 /* The triangles of a face around a vertex, from outline to outline or all around. hint: one of the half-edges that
  * leave it there. */
@@ -9683,37 +9826,6 @@ static void gxbp_take_vertex(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
     }
 }
 
-/* Of which source a triangle is, and how it faces */
-static GXBP_COLD void gxbp_copy_origin(gxb_boolean *b, uint32_t to, uint32_t from) {
-    b->out_operands[to] = b->out_operands[from];
-    b->out_sources[to] = b->out_sources[from];
-    b->out_planes[to] = b->out_planes[from];
-    b->out_reversed[to] = b->out_reversed[from];
-}
-
-/* Vertices that no triangle has any more are taken out, rounded or not yet; map: a word for each. */
-static GXBP_COLD void gxbp_drop_lonely(gxb_boolean *b, uint32_t *map) {
-    const int rounded = b->out_vertex_count > 0;
-    uint32_t i, n = 0;
-    memset(map, 0xff, b->out_point_count * sizeof *map);
-    for (i = 0; i < b->out_triangle_count; i++) map[b->out_triangles[i]] = 0;
-    for (i = 0; i < b->out_point_count; i++) {
-        if (map[i] == GXB_NONE) continue;
-        if (rounded) {
-            memmove(b->out_vertices + 3 * (size_t)n, b->out_vertices + 3 * (size_t)i, 3 * sizeof *b->out_vertices);
-            b->out_origins[n] = b->out_origins[i];
-        }
-        b->out_points[n] = b->out_points[i];
-        map[i] = n++;
-    }
-    for (i = 0; i < b->out_triangle_count; i++) b->out_triangles[i] = map[b->out_triangles[i]];
-    b->out_point_count = n;
-    if (rounded) {
-        b->out_origin_count = n;
-        b->out_vertex_count = 3 * n;
-    }
-}
-
 /* What is left becomes the result. */
 static void gxbp_close_coarse(gxb_boolean *b, const gxbp_coarse *c) {
     uint32_t t, k, n = 0;
@@ -9753,71 +9865,9 @@ static GXBP_COLD void gxbp_coarsen(gxb_boolean *b) {
     gxbp_drop_fan(b, &fan);
 }
 
-static GXBP_APART void gxbp_round_vertices(gxb_boolean *b) {
-    uint32_t i;
-    if (b->result != GX_OK || !GXBP_ROOM(b, out_vertices, out_vertex, 3 * (size_t)b->out_point_count) ||
-        !GXBP_ROOM(b, out_origins, out_origin, b->out_point_count))
-        return;
-    for (i = 0; i < b->out_point_count; i++) {
-        gxbp_round_point(b, b->out_points[i], b->out_vertices + 3 * (size_t)i);
-        gxbp_describe_point(b, b->out_points[i], &b->out_origins[i]);
-    }
-    b->out_vertex_count = 3 * b->out_point_count;
-    b->out_origin_count = b->out_point_count;
-}
-
-static GXBP_COLD int gxbp_faces_exactly(gxb_boolean *b, uint32_t plane, const double *p, const double *q,
-                                        const double *r) {
-    gxbp_vec store, given[3], n;
-    GXB_NUM(value);
-    gxbp_vec_set(&given[0], p);
-    gxbp_vec_set(&given[1], q);
-    gxbp_vec_set(&given[2], r);
-    gxbp_vec_init(&n);
-    gxbp_exact_plane(n.c, given[0].c, given[1].c, given[2].c);
-    gxbp_num_dot(&value, n.c, gxbp_exact_cplane(&b->cx, plane, &store));
-    return value.sign;
-}
-
-/* Sign of n.((q - p) x (r - p)) for a plane's normal n and rounded points, exact. The filter's bound is that of
-   gxbp_rough_volume, with n for d0. */
-static int gxbp_faces(gxb_boolean *b, uint32_t plane, const double *p, const double *q, const double *r) {
-    const gxb_plane_filter *f = &b->cx.planes[plane].filter;
-    double u[3], v[3], m[3], E, N;
-    int k, sign = 0;
-    /* else coordinates are not the frame's, and may be too large or too small to filter */
-    if (b->cx.shift == 0) {
-        for (k = 0; k < 3; k++) {
-            u[k] = gxbp_fence(q[k] - p[k]);
-            v[k] = gxbp_fence(r[k] - p[k]);
-        }
-        E = gxbp_filter_cross(m, u, 2 * GXBP_U * gxbp_max3(u) + GXBP_TINY, v, 2 * GXBP_U * gxbp_max3(v) + GXBP_TINY);
-        N = gxbp_max3(m);
-        sign = gxbp_filter_sign(f->n[0] * m[0] + f->n[1] * m[1] + f->n[2] * m[2],
-                                6 * (f->norm * E + f->error * (N + E)) + 48 * GXBP_U * f->norm * N + GXBP_TINY);
-    }
-    return sign != 0 ? sign : gxbp_faces_exactly(b, plane, p, q, r);
-}
-
-/* Triangles that rounding has turned over or left without area. Those of input vertices are as they were, unless they
- * were mended. */
-static GXBP_APART void gxbp_find_defects(gxb_boolean *b) {
-    uint32_t t, k;
-    b->out_defect_count = 0;
-    for (t = 0; t < b->out_source_count && b->result == GX_OK; t++) {
-        const double *x[3];
-        int given = b->mend == NULL;
-        for (k = 0; k < 3; k++) {
-            given = given && b->cx.points[gxbp_out_corner(b, t, k)].kind == GXB_EXPLICIT;
-            x[k] = b->out_vertices + 3 * (size_t)b->out_triangles[3 * t + k];
-        }
-        if (given || gxbp_faces(b, gxbp_out_plane(b, t), x[0], x[1], x[2]) == (b->out_planes[t] & 1 ? -1 : 1)) continue;
-        if (GXBP_ROOM(b, out_defects, out_defect, 1)) b->out_defects[b->out_defect_count++] = t;
-    }
-    b->examined = b->result == GX_OK;
-}
-
-/* --- components: shells (triangles joined where the solid between them is one), and which shell lies in which --- */
+/* >>components: shells --------------------------------------------------------------------------------------------- */
+/* In: the output. Out: shells, that is sets of triangles joined where the solid between them is connected, and the
+   corners of each. Touches the caller's sets, and the twins if the result is mended. */
 
 static uint32_t gxbp_find_set(uint32_t *parent, uint32_t i) {
     while (parent[i] != i) {
@@ -9958,6 +10008,10 @@ static GXBP_APART void gxbp_join_shells(gxb_boolean *b, uint32_t *parent, int32_
     if (b->mend != NULL && GXBP_ROOM(b, out_twins, out_twin, words)) memcpy(b->out_twins, twin, words * sizeof *twin);
     gxbp_count_corners(twin, count, corners);
 }
+
+/* >>volumes: volumes of shells ------------------------------------------------------------------------------------- */
+/* In: the output and its shells. Out: six times the volume of each shell, by sums of doubles with bounds, or from
+   coordinates of 180 bits where these bounds are too large. Touches the caller's arrays only. */
 
 static GXBP_RARE void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *fine) {
     gxbp_vec store, rest;
@@ -10138,6 +10192,10 @@ static GXBP_APART void gxbp_measure_shells(gxb_boolean *b, const uint32_t *paren
     if (few) gxbp_sum_volumes(b, parent, volume, error, 0);
     gxbp_refine_volumes(b, parent, volume, error, 0);
 }
+
+/* >>containers: which shell lies in which -------------------------------------------------------------------------- */
+/* In: shells with their volumes. Out: components: each shell with its cavities and sheets; volume, Euler characteristic
+   and sides of each. Rays along x pass the triangles of one column. Touches the output's components. */
 
 /* gxbp_ray_left for points of the result, and a ray moved by way (h, h^2) */
 static GXBP_COLD int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p, uint32_t q, int way) {
@@ -10439,9 +10497,9 @@ static GXBP_APART void gxbp_find_components(gxb_boolean *b) {
     b->measured = b->result == GX_OK;
 }
 
-/* --- mending: a surface whose triangles rounding has turned over is changed within the rounding, until none is left or
-   nothing helps. The surface taken apart (out_twins: each edge joins two triangles) stays closed, and keeps its Euler
-   characteristic. --- */
+/* >>mend: removing defects within the rounding --------------------------------------------------------------------- */
+/* In: the rounded output with its defects, components and twins. Out: fewer defects, or the same. The surface, taken
+   apart where it only touches itself, stays closed and keeps its Euler characteristic. Touches the output only. */
 
 #define GXBP_MEND_REACH                                                                                                \
     4 /* units in the last place of the largest coordinate: how near are two vertices that may become one */
@@ -10699,7 +10757,9 @@ static GXBP_COLD void gxbp_mend(gxb_boolean *b) {
     if (b->result == GX_OK && b->out_defect_count > 0) gxbp_mend_defects(b);
 }
 
-/* --- the public functions --- */
+/* >>api: the public functions of a Boolean ------------------------------------------------------------------------- */
+/* Each checks its arguments and calls the sections above in their order: operands when added; meet to result when
+   evaluated; components and defects when first requested. After an error the Boolean holds its operands only. */
 
 static const gxbp_array gxbp_boolean_arrays[] = {
     GXBP_ARRAY(gxb_boolean, operands),       GXBP_ARRAY(gxb_boolean, sources),
