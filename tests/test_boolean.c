@@ -1398,7 +1398,7 @@ END_TEST
 
 static int refuse(void *user, uint32_t leaf) {
     (void)leaf;
-    *(int *)user++;
+    ++*(int *)user;
     return 0;
 }
 
