@@ -516,17 +516,17 @@ GXFEM_API gx_result gxb_complex_load(gxb_complex *complex, gxb_stream *stream, i
 
 /* >>boolean -------------------------------------------------------------------------------------------------------- */
 
-/* Booleans of closed triangle meshes. A Boolean holds operands and the exact arrangement of their triangles; the result
-   is read off it as often as wanted and more operands may follow: nothing is rounded in between (docs/KERNEL.md). */
+/* Booleans of closed triangle meshes. A Boolean holds operands and the exact arrangement of their triangles. Evaluating
+ * it computes the result. More operands may follow, and nothing is rounded in between (docs/KERNEL.md). */
 typedef struct gxb_boolean gxb_boolean;
 
-/* What an operand does to the result of those before it (to nothing, if it is the first). */
+/* How an operand combines with the result of those before it. The first one combines with nothing. */
 enum {
     GXB_UNION = 0,
     GXB_INTERSECTION,
     GXB_DIFFERENCE,
     GXB_SYMMETRIC_DIFFERENCE,
-    /* an open or closed sheet: it takes nothing away, and separates what lies on its two sides */
+    /* an open or closed sheet: it removes nothing and separates the material on its two sides */
     GXB_SPLIT
 };
 /* Which winding numbers of an operand's surface count as inside. */
@@ -541,25 +541,25 @@ typedef struct gxb_operand {
     size_t triangle_count;
     uint32_t operation; /* GXB_UNION ... */
     uint32_t rule;      /* GXB_NONZERO ...; a sheet has none */
-    /* 1: the caller vouches that this surface meets itself in common vertices and edges only, which saves looking */
+    /* 1: the caller vouches that this surface meets itself in common vertices and edges only; the test is skipped */
     uint32_t simple;
 } gxb_operand;
 
 /* How a result is divided into triangles. */
 enum {
-    GXB_DIVIDED = 0, /* as the operands have divided each other */
-    /* each source face in as few triangles as its outline allows: without vertices inside it, or on a straight part of
-       its outline where no other face ends; nothing is merged across source faces */
+    GXB_DIVIDED = 0, /* along the lines where the operands meet */
+    /* each source face in as few triangles as its outline allows. A face has no vertex inside it, and none on a
+       straight stretch of its outline unless another face ends there. Faces are not merged */
     GXB_COARSE,
-    /* as GXB_COARSE, of source faces that lie beside each other in one plane too: a triangle names one of them */
+    /* as GXB_COARSE, but adjacent source faces in one plane count as one face; a triangle names one of them */
     GXB_MERGED
 };
 
 typedef struct gxb_boolean_desc {
     gx_allocator allocator;
-    size_t memory_limit; /* in bytes, of all that the Boolean holds at a time; 0: none */
-    /* Instead of operations and rules: is a point around which the operands wind so often inside? NULL: by operations
-     * and rules. */
+    size_t memory_limit; /* the most bytes that the Boolean holds at any time; 0: no limit */
+    /* Replaces operations and rules: is a point with these winding numbers inside? NULL: operations and rules decide.
+     */
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
     void *user;
 } gxb_boolean_desc;
@@ -575,7 +575,7 @@ typedef struct gxb_origin {
     uint32_t kind, operand[3], index[3];
 } gxb_origin;
 
-/* Arrays belong to the Boolean and are valid until it is changed, evaluated again or destroyed. */
+/* The Boolean owns the arrays. They are valid until it is changed, evaluated again or destroyed. */
 typedef struct gxb_boolean_result {
     /* x 3; an input vertex has the input's bits, others are rounded once */
     const double *vertices;
@@ -588,23 +588,23 @@ typedef struct gxb_boolean_result {
     const uint8_t *triangle_reversed;                   /* triangle_count: 1 where it faces against that triangle */
 } gxb_boolean_result;
 
-/* What the interior of a result consists of. Arrays are valid as long as the result's. */
+/* The connected components of a result's interior. Arrays are valid as long as those of the result. */
 typedef struct gxb_components {
     size_t count;
     const double *volume; /* count */
-    /* count: vertices - edges + triangles of a component's boundary, taken apart where it only touches itself: 2 for a
-       ball, 0 for a ring, 2 more for each cavity */
+    /* count: vertices - edges + triangles of a component's boundary, which is separated where it only touches itself: 2
+     * for a ball, 0 for a ring, 2 more for each cavity */
     const int32_t *euler;
-    /* count x operands: 1 where a component lies only in front of a sheet (where its normals point), -1 only behind, 0
-     * both or not at it */
+    /* count x operands: 1: the component lies only in front of the sheet (where its normals point), -1: only behind, 0:
+     * on both sides, or not at it */
     const int8_t *side;
-    const uint32_t *triangle; /* of each triangle of the result: its component */
+    const uint32_t *triangle; /* component of each triangle of the result */
     double total_volume;
 } gxb_components;
 
-/* Triangles that rounding turned by a right angle or more from their source's plane, or left without area; exact. With
-   gxb_boolean_set_mend: what remains of them, and how many are none any more. A mended triangle is a part of its source
-   but for the rounding. */
+/* Triangles that rounding turned by a right angle or more from their source's plane, or left without area. The test is
+ * exact. With gxb_boolean_set_mend: those that remain, and how many were removed. A mended triangle lies in its source
+ * up to rounding. */
 typedef struct gxb_defects {
     const uint32_t *triangles;
     size_t count, mended_count;
@@ -612,7 +612,7 @@ typedef struct gxb_defects {
 
 /* Since creation */
 typedef struct gxb_statistics {
-    uint64_t filter_calls, exact_calls; /* signs asked for, and how many took exact arithmetic */
+    uint64_t filter_calls, exact_calls; /* signs requested, and how many of them took exact arithmetic */
     uint64_t allocations;
     size_t peak_bytes;
 } gxb_statistics;
@@ -620,24 +620,26 @@ typedef struct gxb_statistics {
 /* desc may be NULL. Errors: ARGUMENT, LIMIT, MEMORY, CONFIGURATION. */
 GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean);
 GXFEM_API void gxb_boolean_destroy(gxb_boolean *boolean);
-/* How results are read off the arrangement from now on; all are of the same exact surface. Errors: ARGUMENT. */
-/* GXB_DIVIDED (unless set) ... */
+/* Options of the following evaluations. The exact surface is the same for all of them. Errors: ARGUMENT. */
+/* GXB_DIVIDED (the default), GXB_COARSE or GXB_MERGED */
 GXFEM_API gx_result gxb_boolean_set_triangulation(gxb_boolean *boolean, uint32_t triangulation);
-/* 1: vertices are the doubles nearest to the exact points, volumes right to their last digits. 0 (unless set): vertices
-   proven within 1e-10 of the largest coordinate and volumes within 1e-7 of their size; both are mostly far nearer. */
+/* 1: vertices are the doubles nearest to the exact points, and volumes are right to their last digits. 0 (the default):
+ * vertices are proven within 1e-10 of the largest coordinate, and volumes within 1e-7 of their size. Most errors are
+ * far smaller. */
 GXFEM_API gx_result gxb_boolean_set_fine(gxb_boolean *boolean, int fine);
-/* 1: vertices and volumes as by gxb_boolean_set_fine; then defects are mended where that can be done within the
-   rounding: an edge is turned, a vertex becomes one with a neighbour 4 units of the last place away at most, or moves
-   by 2. The surface stays closed, input vertices stay, components and their Euler characteristics are the same. */
+/* 1: vertices and volumes as with gxb_boolean_set_fine. Then defects are removed where a change within the rounding
+ * does it: an edge is flipped, a vertex is merged with a neighbour at most 4 units in the last place away, or a vertex
+ * moves by at most 2 such units. The surface stays closed, input vertices stay, and so do components and their Euler
+ * characteristics. */
 GXFEM_API gx_result gxb_boolean_set_mend(gxb_boolean *boolean, int mend);
 /* Copies an operand. Errors: ARGUMENT, EMPTY, INDEX (triangle), NOT_FINITE and RANGE (vertex), NOT_CLOSED (triangle),
  * LIMIT, MEMORY. */
 GXFEM_API gx_result gxb_boolean_add(gxb_boolean *boolean, const gxb_operand *operand, gx_failure *failure);
 /* The result of all operands so far. Errors: EMPTY (no operand), MEMORY, LIMIT, OVERLAP (a surface vouched for as
-   simple is not). After an error the Boolean holds its operands and may be asked again. */
+ * simple is not). After an error the Boolean keeps its operands and can be evaluated again. */
 GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *boolean, gxb_boolean_result *result);
-/* Of the last result, found when first asked for. Errors: EMPTY (there is no result, or an operand has come since),
-   MEMORY, LIMIT. After an error the result is as it was. */
+/* Components and defects of the latest result, computed on the first call. Errors: EMPTY (no result, or an operand was
+ * added since), MEMORY, LIMIT. After an error the result is unchanged. */
 GXFEM_API gx_result gxb_boolean_components(gxb_boolean *boolean, gxb_components *components);
 GXFEM_API gx_result gxb_boolean_defects(gxb_boolean *boolean, gxb_defects *defects);
 GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *boolean, gxb_statistics *statistics);
@@ -5525,8 +5527,8 @@ static GXBP_COLD void gxbp_check(gxb_complex *cx, gxb_stream *s) {
 /* The types and the one struct of a Boolean. A source is an input triangle. Its triangulation consists of subtriangles.
    Everything below works on these arrays. See docs/KERNEL.md for the method. */
 
-/* Labels of a subtriangle's edge are lists: the triangles that meet the subtriangle's plane in it (sources), in flats
-   also edges of sources (half-edge | GXBP_EDGE_LABEL). */
+/* Labels of a subtriangle's edge form a list: the sources that meet the subtriangle's plane along it, and in flats also
+ * edges of sources (half-edge | GXBP_EDGE_LABEL). */
 #define GXBP_EDGE_LABEL ((uint32_t)1 << 31)
 #define GXBP_LOOSE      UINT32_MAX       /* an edge that only triangulates */
 #define GXBP_BARE       (UINT32_MAX - 1) /* the end of a list: an edge that must stay */
@@ -5559,7 +5561,7 @@ typedef struct gxbp_subtriangle { /* a triangle of a source's triangulation; edg
     uint32_t source; /* root of the flat; GXB_NONE: no longer in use */
     uint32_t next;
     uint32_t covers; /* in a flat: list of the sources that cover it */
-    /* winding numbers in front of it; GXB_NONE: not known. Kept from evaluation to evaluation */
+    /* the state (winding numbers) in front of it; GXB_NONE: not known. Kept between evaluations */
     uint32_t state;
 } gxbp_subtriangle;
 
@@ -5591,12 +5593,12 @@ typedef struct gxbp_hit {
 typedef struct gxbp_rim_vertex {
     uint32_t vertex, near, labels, made, dangling;
 } gxbp_rim_vertex;
-/* coordinates / 16, not less wide than what is in it: see gxbp_float_below */
+/* coordinates / 16, rounded outward: see gxbp_float_below */
 typedef struct gxbp_box {
     float low[3], high[3];
 } gxbp_box;
 
-/* Of a leaf's triangles, side by side; those that are not there meet nothing. */
+/* Boxes of a leaf's triangles, by columns. An unused box meets nothing. */
 typedef struct gxbp_leaf_boxes {
     float low[3][GXBP_LEAF], high[3][GXBP_LEAF];
 } gxbp_leaf_boxes;
@@ -5831,7 +5833,7 @@ static void gxbp_count_release(void *user, void *memory, size_t size) {
     const unsigned char *m = (const unsigned char *)memory;
     if (m >= b->budget.arena && m < b->budget.arena + b->budget.arena_size) {
         const size_t from = (size_t)(m - b->budget.arena);
-        /* what else is released there stays taken */
+        /* other memory of the arena is not reused */
         if (from + gxbp_whole_words(size) == b->budget.arena_used) b->budget.arena_used = from;
         return;
     }
@@ -5839,7 +5841,7 @@ static void gxbp_count_release(void *user, void *memory, size_t size) {
     gxbp_release(&b->budget.outer, memory, size);
 }
 
-/* Where the caller's memory can grow: what is not in the arena. */
+/* Memory that the caller's allocator can grow. A block of the arena is copied instead. */
 static void *gxbp_count_reallocate(void *user, void *old, size_t size, size_t larger) {
     gxb_boolean *b = (gxb_boolean *)user;
     const unsigned char *m = (const unsigned char *)old;
@@ -5863,13 +5865,13 @@ static void *gxbp_count_reallocate(void *user, void *old, size_t size, size_t la
     return memory;
 }
 
-/* The first error of an evaluation stays in b->error; what follows does nothing. */
+/* The first error of an evaluation stays in b->error; later steps see it and do nothing. */
 static GXBP_COLD int gxbp_stop(gxb_boolean *b, gx_result result) {
     if (b->error == GX_OK) b->error = result == GX_ERROR_MEMORY && b->budget.over_limit ? GX_ERROR_LIMIT : result;
     return 0;
 }
 
-/* Small cases should not pay for growing: an array's first items come from the arena at once. */
+/* The first items of an array come from the arena, so that small cases allocate nothing. */
 static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, size_t item, size_t extra) {
     uint32_t *capacity = gxbp_extent_of(array) + 1;
     const size_t least = *capacity == 0 && extra < 16 ? 16 : extra, room = gxbp_room_for(least);
@@ -5888,8 +5890,8 @@ static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, size_t item, size_t
     ((b)->counter##_count + (size_t)(extra) <= (b)->counter##_capacity ||                                              \
      gxbp_room(b, &(b)->array, sizeof *(b)->array, extra))
 
-/* Memory for as long as nobody else takes scratch; NULL: there is none. It is kept: what needs some next finds pages
- * that have been touched. */
+/* Memory that is valid until the next call of this function; NULL: there is none. It is kept, so that the next borrower
+ * gets pages that have been touched. */
 static GXBP_APART void *gxbp_borrow(gxb_boolean *b, size_t bytes) {
     b->work.room_count = 0;
     return GXBP_ROOM(b, work.room, work.room, bytes / sizeof *b->work.room + 1) ? b->work.room : NULL;
@@ -5924,7 +5926,7 @@ static uint32_t gxbp_hash_point(const gxb_boolean *b, uint32_t point) {
     return key[0] == GXB_FROM_VERTEX ? gxbp_hash_place(b->cx.points[point].ball.x) : gxbp_hash_key(key);
 }
 
-/* Another table, and all that is in it is to be listed again. */
+/* Replaces a table by a larger one. The caller enters its items again. */
 static GXBP_COLD int gxbp_renew_table(gxb_boolean *b, uint32_t **table, uint32_t *size, uint32_t larger) {
     uint32_t *renewed = (uint32_t *)gxbp_allocate(&b->cx.allocator, (size_t)larger * sizeof **table);
     if (renewed == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
@@ -5934,7 +5936,7 @@ static GXBP_COLD int gxbp_renew_table(gxb_boolean *b, uint32_t **table, uint32_t
     return 1;
 }
 
-/* Lists the points up to a number, but for those of frames. */
+/* Enters the first count points, except those of frames, in the table. */
 static GXBP_RARE void gxbp_list_points(gxb_boolean *b, uint32_t count) {
     const uint32_t last = b->points.table_size - 1;
     uint32_t i, k;
@@ -5955,7 +5957,7 @@ static GXBP_COLD int gxbp_grow_table(gxb_boolean *b, uint32_t extra) {
     return 1;
 }
 
-/* Room in the table for so many points more */
+/* Makes room in the table for extra points. */
 static int gxbp_table_room(gxb_boolean *b, uint32_t extra) {
     return ((uint64_t)b->points.table_used + extra) * 2 <= b->points.table_size || gxbp_grow_table(b, extra);
 }
@@ -5981,7 +5983,7 @@ static inline uint32_t gxbp_new_vertex(gxb_boolean *b, uint32_t kind, uint32_t p
     return id;
 }
 
-/* Follows names to the last one, and halves the way for whoever comes next. */
+/* Follows names to the last one, and halves the path for later calls. */
 static GXBP_APART uint32_t gxbp_find_same(gxbp_vertex *v, uint32_t point) {
     while (v[point].same != point) {
         v[point].same = v[v[point].same].same;
@@ -5994,7 +5996,7 @@ static uint32_t gxbp_same(gxb_boolean *b, uint32_t point) {
     return b->points.vertices[point].same == point ? point : gxbp_find_same(b->points.vertices, point);
 }
 
-/* Two names of one point: the first stays, by the second's definition where that is an input vertex. */
+/* Two names of one point: the first stays. It takes the second's definition if that is an input vertex. */
 static GXBP_RARE void gxbp_unite(gxb_boolean *b, uint32_t keep, uint32_t drop) {
     gxb_cpoint *p = &b->cx.points[keep];
     const gxb_cpoint *q = &b->cx.points[drop];
@@ -6009,8 +6011,8 @@ static GXBP_RARE void gxbp_unite(gxb_boolean *b, uint32_t keep, uint32_t drop) {
     p->def[0] = q->def[0];
 }
 
-/* The point of a plane where a line meets it, or of three planes. Where the ball is too large to filter by it comes
-   from exact coordinates: the ratio's relative error is below 2^-50. */
+/* Defines a point as the intersection of a line and a plane or of three planes. A ball that is too large to filter by
+ * is replaced by one from exact coordinates, whose ratio has a relative error below 2^-50. */
 static void gxbp_place_point(gxb_boolean *b, uint32_t point, uint32_t kind, uint32_t p, uint32_t q, uint32_t r) {
     gxb_cpoint *c = &b->cx.points[point];
     c->kind = (uint8_t)kind;
@@ -6102,7 +6104,7 @@ static gxbp_box gxbp_box_of(const gxb_boolean *b, uint32_t s) {
 static int gxbp_box_meets(const gxbp_box *a, const gxbp_box *c) {
     return (a->low[0] <= c->high[0]) & (c->low[0] <= a->high[0]) & (a->low[1] <= c->high[1]) &
            (c->low[1] <= a->high[1]) & (a->low[2] <= c->high[2]) &
-           (c->low[2] <= a->high[2]); /* without branches: nobody can foretell them */
+           (c->low[2] <= a->high[2]); /* without branches, which would be mispredicted */
 }
 
 /* Ten bits with two zeros after each */
@@ -6216,7 +6218,7 @@ static GXBP_APART gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
     return GX_OK;
 }
 
-/* Which of a leaf's boxes meet a box: without branches, all at once where the compiler can. Returns 0 where none does.
+/* Tests which boxes of a leaf meet a box, without branches, so that compilers vectorise it. Returns 0 if none does.
  */
 static uint32_t gxbp_test_leaf(const gxbp_leaf_boxes *leaf, const gxbp_box *box, uint32_t meets[GXBP_LEAF]) {
     uint32_t x, any = 0;
@@ -6247,7 +6249,7 @@ static int gxbp_boxes_meet(const gxb_boolean *b, const gxbp_tree *s, uint32_t l,
 /* In: a caller's surface, checked. Out: its points, sources with their neighbours across edges, one subtriangle for
    each source, and the box tree. On an error the caller shortens the arrays again. */
 
-/* The input's coordinates in the frame: times 2^shift, exact. */
+/* The input's coordinates in the frame: multiplied by 2^shift, exact. */
 static gx_result gxbp_scale(const gxb_boolean *b, const double x[3], double y[3]) {
     int k;
     for (k = 0; k < 3; k++) {
@@ -6263,7 +6265,7 @@ static gx_result gxbp_scale(const gxb_boolean *b, const double x[3], double y[3]
 
 #define GXBP_LARGEST 200 /* the first operand's largest coordinate is 2^+-this: cubes of 2^128 times it are finite */
 
-/* Scenes of ordinary size keep their scale. *bad: the vertex with the largest coordinate, where that is out of range */
+/* Scenes of ordinary size keep their scale. *bad: the vertex with the largest coordinate if that is out of range. */
 static gx_result gxbp_choose_scale(gxb_boolean *b, const gxb_operand *operand, size_t *bad) {
     int largest = -2000;
     size_t i, at = 0;
@@ -6300,9 +6302,9 @@ static uint32_t gxbp_input_point(gxb_boolean *b, const double y[3], uint32_t ope
 static uint32_t gxbp_next_edge(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
 static uint32_t gxbp_last_edge(uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
 
-/* An edge between vertex p and a later one, with which it is kept: how often it is passed forth (from p) and back, and
-   by which half-edges last. next: the later end of another edge of p. first: of the vertex itself, the half-edges
-   between it and later ones. */
+/* An edge from vertex p to a later vertex, stored with the later one: how often half-edges pass it forth (from p) and
+ * back, and the last ones that do. next: the later end of another edge of p. first: list of the half-edges between the
+ * vertex itself and later ones. */
 typedef struct gxbp_passage {
     uint32_t first, p, next, forth, back, there, home;
 } gxbp_passage;
@@ -6321,7 +6323,7 @@ static void gxbp_list_half_edges(const uint32_t *triangles, uint32_t count, gxbp
     }
 }
 
-/* Takes the half-edges from p's list: the passages of its edges. Returns the later end of the last of these. */
+/* Turns the half-edges in p's list into passages of its edges. Returns the later end of the last edge. */
 static uint32_t gxbp_take_passages(const uint32_t *triangles, gxbp_passage *passages, uint32_t p, uint32_t *twin) {
     uint32_t h, next, last = GXB_NONE;
     for (h = passages[p].first; h != GXB_NONE; h = next) {
@@ -6346,10 +6348,10 @@ static uint32_t gxbp_take_passages(const uint32_t *triangles, gxbp_passage *pass
     return last;
 }
 
-/* vertices of which a table has all pairs; half-edges that a byte names */
+/* the most vertices for a table of all pairs; the most triangles whose half-edges fit a byte */
 enum { GXBP_FEW = 32, GXBP_FEW_TRIANGLES = 80 };
 
-/* Of few vertices. 0: not all edges have one half-edge in each direction. */
+/* Twins for few vertices. 0: some edge has not exactly one half-edge in each direction. */
 static int gxbp_find_few_twins(const uint32_t *triangles, uint32_t count, uint32_t vertex_count, uint32_t *twin) {
     uint8_t at[GXBP_FEW * GXBP_FEW];
     uint32_t h, k, i, alone = 3 * count;
@@ -6370,8 +6372,8 @@ static int gxbp_find_few_twins(const uint32_t *triangles, uint32_t count, uint32
 /* Words of room that gxbp_find_twins works in */
 static size_t gxbp_twin_room(size_t vertex_count) { return vertex_count * (sizeof(gxbp_passage) / sizeof(uint32_t)); }
 
-/* twin of each half-edge, GXB_NONE where an edge has not one in each direction. *open: a half-edge whose edge is passed
-   more often in its direction than in the other, or GXB_NONE: the surface is closed. */
+/* Finds the twin of each half-edge; GXB_NONE where an edge has not exactly one half-edge in each direction. *open: a
+ * half-edge whose edge is passed more often in its direction than in the other; GXB_NONE: the surface is closed. */
 static void gxbp_find_twins(const uint32_t *triangles, size_t count, uint32_t vertex_count, uint32_t *twin,
                             uint32_t *open, uint32_t *room) {
     gxbp_passage *passages = (gxbp_passage *)(void *)room;
@@ -6396,7 +6398,7 @@ static void gxbp_find_twins(const uint32_t *triangles, size_t count, uint32_t ve
     }
 }
 
-/* Half-edges by the vertex that they leave, with the vertex in which they end. */
+/* Half-edges listed by the vertex that they leave, with the vertex in which they end. */
 typedef struct gxbp_exit {
     uint32_t half_edge, to;
 } gxbp_exit;
@@ -6470,7 +6472,7 @@ static int gxbp_has_area(const double *p, const double *q, const double *r) {
     return gxbp_has_area_exactly(p, q, r);
 }
 
-/* A source on its own: one subtriangle, behind those that there are, and room for it. */
+/* Resets a source to one subtriangle, which is appended. The caller has made room for it. */
 static inline void gxbp_reset_source(gxb_boolean *b, uint32_t s) {
     gxbp_source *t = &b->in.sources[s];
     gxbp_subtriangle *f = &b->mesh.subtriangles[b->mesh.subtriangle_count];
@@ -6501,7 +6503,7 @@ static void gxbp_fill_source(gxb_boolean *b, uint32_t s, uint32_t operand, const
     gxbp_reset_source(b, s);
 }
 
-/* Neighbours across an edge of a triangle without area are none. */
+/* A triangle without area is nobody's neighbour. */
 static void gxbp_forget_degenerate(gxb_boolean *b, uint32_t first) {
     uint32_t s, k;
     for (s = first; s < b->in.source_count; s++) {
@@ -6566,8 +6568,8 @@ static GXBP_APART gx_result gxbp_read_triangles(gxb_boolean *b, const gxb_operan
     return GX_OK;
 }
 
-/* With the first operand comes room for a second one of its size (gxbp_reserve adds half of what is asked for), and for
-   thirds of it that the two divide: what is not used is not touched, and nothing large is copied. */
+/* The first operand allocates room for a second one of its size too (gxbp_reserve adds half of the request), and for
+ * the given thirds of it that the two divide. Unused room is never touched, and nothing large is copied. */
 static size_t gxbp_presize(const gxb_boolean *b, size_t count, size_t thirds) {
     return b->in.operand_count > 0 ? count : count + thirds * count / 3;
 }
@@ -6611,7 +6613,7 @@ static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operan
 /* In: sources and points. Out: sides of planes and folds, decided by the filter, by definition or exactly; planes, made
    when needed; segments, and points on edges. Touches planes, segments, cuts, hits and the list of dirty sources. */
 
-/* What the filter leaves open: what is known by definition, then exact arithmetic. */
+/* Decides what the filter leaves open: first by definition, then by exact arithmetic. */
 static GXBP_APART int gxbp_point_side_beyond_filter(gxb_boolean *b, uint32_t point, uint32_t plane) {
     gxb_complex *cx = &b->cx;
     const gxb_cpoint *p = &cx->points[point];
@@ -6646,7 +6648,7 @@ static int gxbp_flat_turn(const gxb_boolean *b, uint32_t plane, const double *p,
     return gxb_orient2d(a, c, d) * f->axis_sign;
 }
 
-/* Where the filter leaves a fold open, it is remembered with both triangles at the edge, which ask for it in turn. */
+/* A fold that the filter leaves open is stored with both triangles at the edge, since both request it. */
 static GXBP_APART int gxbp_fold_beyond_filter(gxb_boolean *b, uint32_t half_edge, uint32_t twin) {
     gxbp_source *s = &b->in.sources[half_edge / 3], *t = &b->in.sources[twin / 3];
     const uint32_t mine = GXBP_FOLDS + 2 * (half_edge % 3), other = GXBP_FOLDS + 2 * (twin % 3);
@@ -6671,8 +6673,8 @@ static inline int gxbp_fold(gxb_boolean *b, uint32_t half_edge, uint32_t s, uint
     return value < -bound ? -1 : gxbp_fold_beyond_filter(b, half_edge, 3 * s + k);
 }
 
-/* A triangle that lies in the plane of a neighbour, and faces as it does, has the same plane: points on both are known
- * to be in it. */
+/* A triangle that lies in the plane of a neighbour and faces the same way shares its plane. Points on both are then
+ * known to be in it. */
 static int gxbp_share_plane(gxb_boolean *b, uint32_t s) {
     uint32_t k;
     for (k = 0; k < 3; k++) {
@@ -6763,7 +6765,7 @@ static void gxbp_hit_edge(gxb_boolean *b, uint32_t s, int k, uint32_t point) {
     if (twin != GXB_NONE) gxbp_mark_dirty(b, twin / 3);
 }
 
-/* The side of a source's corner; each point remembers two answers, of which slot says the one to replace. */
+/* The side of a source's corner. Each point caches two answers; slot selects the one to use. */
 static int gxbp_corner_side(gxb_boolean *b, uint32_t s, int k, uint32_t plane, int slot) {
     const uint32_t point = b->in.sources[s].point[k];
     gxb_cpoint *p = &b->cx.points[point];
@@ -6895,7 +6897,8 @@ static GXBP_COLD uint32_t gxbp_edge_edge_point(gxb_boolean *b, uint32_t s, int k
     return point;
 }
 
-/* What of the corners and edges of s lies in t; side: of the corners of s against t's plane. */
+/* Corners of s that lie in t, and points in which edges of s cross t. side: sides of the corners of s against t's
+ * plane. */
 static GXBP_COLD void gxbp_meet_one_way(gxb_boolean *b, uint32_t s, uint32_t t, const int side[3], gxbp_meeting *m) {
     int k;
     for (k = 0; k < 3; k++) {
@@ -7103,7 +7106,7 @@ static GXBP_COLD void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t)
         gxbp_record_meeting(b, s, t, &m);
 }
 
-/* Do they share an edge of their surface and else, as they are not in one plane, nothing? */
+/* Do they share an edge of their surface? Then they share nothing else unless they lie in one plane. */
 static int gxbp_are_neighbours(const gxb_boolean *b, uint32_t s, uint32_t t) {
     const uint32_t *twin = b->in.sources[s].twin;
     int k;
@@ -8196,7 +8199,7 @@ typedef struct gxbp_division {
     uint32_t chain_at[GXBP_SMALL]; /* of each rim point: the chain that ends there, or GXB_NONE */
     gxbp_chain chains[GXBP_SMALL];
     uint32_t chain_count;
-    gxbp_knot step[GXBP_SMALL];  /* of each segment: the point that it leaves; slot: its place in b->work.segment_ends */
+    gxbp_knot step[GXBP_SMALL]; /* of each segment: the point that it leaves; slot: its place in b->work.segment_ends */
     uint32_t step_count, labels; /* the segments' links, one after the other */
     gxbp_knot polygon[GXBP_SMALL];
     /* of steps, then of diagonals: the subtriangle's edge on the side that is there */
@@ -8778,8 +8781,8 @@ static GXBP_APART void gxbp_sort_projected(gxbp_projected *p, uint32_t count, gx
     gxbp_merge_projected(p, count / 2, count, work);
 }
 
-/* Computed points that are new since the last time are compared with all that lie within the errors of both along a
-   direction in which few points agree. The older name stays, in whatever order they are found. */
+/* Compares each new computed point with all points within both errors along a direction in which few points agree. The
+ * older name stays, whatever the order of discovery. */
 static GXBP_APART void gxbp_merge_points(gxb_boolean *b) {
     static const double direction[3] = {0.6180339887, 0.4142135623, 0.7320508075};
     const uint32_t old = b->points.projected_count;
@@ -9228,10 +9231,10 @@ static void gxbp_reach_operand(gxb_boolean *b, uint32_t f, int k) {
     b->work.pending[b->work.pending_count++] = g;
 }
 
-/* Without a look at the room: see gxbp_find_states. */
+/* Checks no capacity: see gxbp_find_states. */
 static void gxbp_stack(gxb_boolean *b, uint32_t value) { b->work.stack[b->work.stack_count++] = value; }
 
-/* To all subtriangles of f's triangulation that can be reached */
+/* Spreads the state to all subtriangles of f's triangulation that can be reached. */
 static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
     const uint32_t base = b->work.stack_count, flat = b->in.sources[b->mesh.subtriangles[f].source].flags & GXBP_FLAT;
     gxbp_stack(b, f);
@@ -9250,8 +9253,8 @@ static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
     }
 }
 
-/* Through a source's subtriangles, then across its edges to sources that have no states yet; in waves, so that the
-   memory of many is waited for at a time. */
+/* Spreads a state through a source's subtriangles, then across its edges to sources without states. The order is
+ * breadth-first, so that many cache misses overlap. */
 static void gxbp_spread_state(gxb_boolean *b, uint32_t first) {
     uint32_t i;
     b->work.stack_count = 0;
@@ -9400,7 +9403,7 @@ static GXBP_COLD void gxbp_close_states(gxb_boolean *b) {
         }
 }
 
-/* By a ray from a subtriangle to all that can be reached from it */
+/* Finds a state by a ray and spreads it to all subtriangles that can be reached. */
 static void gxbp_find_state_of(gxb_boolean *b, uint32_t f) {
     gxbp_note_reached(b, b->mesh.subtriangles[f].source);
     b->mesh.subtriangles[f].state = gxbp_state_by_ray(b, f, GXB_NONE, 0);
@@ -9418,7 +9421,7 @@ static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
     b->winding.unreached = b->in.operand_count - b->winding.stated;
     if (b->winding.stated > 0) gxbp_close_states(b);
     b->work.pending_count = b->work.stack_count = 0;
-    /* each source and each subtriangle is reached once */
+    /* each source and each subtriangle is pushed at most once */
     if (!GXBP_ROOM(b, work.stack, work.stack, (size_t)b->in.source_count + b->mesh.subtriangle_count)) return;
     /* first from input triangles, whose rays are cheap */
     for (s = 0; s < b->in.source_count && b->error == GX_OK; s++) {
@@ -9633,7 +9636,7 @@ static uint32_t gxbp_out_plane(gxb_boolean *b, uint32_t t) {
     return gxbp_need_plane(b, s) ? b->in.sources[s].plane : GXB_NONE;
 }
 
-/* Of which source a triangle is, and how it faces */
+/* Copies a triangle's source and orientation. */
 static GXBP_COLD void gxbp_copy_origin(gxb_boolean *b, uint32_t to, uint32_t from) {
     b->out.operands[to] = b->out.operands[from];
     b->out.sources[to] = b->out.sources[from];
@@ -9641,7 +9644,7 @@ static GXBP_COLD void gxbp_copy_origin(gxb_boolean *b, uint32_t to, uint32_t fro
     b->out.reversed[to] = b->out.reversed[from];
 }
 
-/* Vertices that no triangle has any more are taken out, rounded or not yet; map: a word for each. */
+/* Removes vertices that no triangle uses, before or after rounding. map: a word for each vertex. */
 static GXBP_COLD void gxbp_drop_lonely(gxb_boolean *b, uint32_t *map) {
     const int rounded = b->out.vertex_count > 0;
     uint32_t i, n = 0;
@@ -9898,7 +9901,7 @@ static void gxbp_fill_fan(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
     for (i = 0; i < b->work.stack_count; i++) c->corner[3 * b->work.stack[i]] = GXB_NONE;
 }
 
-/* May the vertex go? Not where an outline bends, ends or branches. */
+/* May the vertex be removed? Not where an outline bends, ends or branches. */
 static int gxbp_is_needless(gxb_boolean *b, const gxbp_coarse *c, uint32_t v) {
     uint32_t u, ends[2] = {GXB_NONE, GXB_NONE};
     if (c->degree[v] == 0) return 1;
@@ -9930,7 +9933,7 @@ static void gxbp_take_vertex(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
     }
 }
 
-/* What is left becomes the result. */
+/* Writes the remaining triangles to the output. */
 static void gxbp_close_coarse(gxb_boolean *b, const gxbp_coarse *c) {
     uint32_t t, k, n = 0;
     for (t = 0; t < b->out.source_count; t++) {
@@ -10077,7 +10080,7 @@ static void gxbp_count_corners(uint32_t *twin, uint32_t count, int32_t *corners)
         for (g = h; twin[g] != GXB_NONE;) { /* on to the half-edge that ends there too */
             const uint32_t next = twin[g];
             twin[g] = GXB_NONE;
-            g = next % 3 == 0 ? next + 2 : next - 1;
+            g = gxbp_last_edge(next);
         }
     }
 }
@@ -10212,8 +10215,8 @@ static double gxbp_rough_error(const gxb_boolean *b, uint32_t t, const gxb_ball 
     return gxbp_volume_error(gxbp_max3(d0), e, gxbp_max3(n), E);
 }
 
-/* A bound of them all: from the size S of the box around all vertices, 8u larger for what rounding takes from it, and
- * the largest of their errors */
+/* A bound for all triangles, from the size S of the box around all vertices (8u larger, to cover its rounding) and the
+ * largest error of a vertex */
 static double gxbp_largest_rough_error(const gxb_boolean *b) {
     const gxb_ball *first = &b->cx.points[b->out.points[0]].ball;
     double low[3], high[3], error = first->error, S = 0, e;
@@ -10234,8 +10237,7 @@ static double gxbp_largest_rough_error(const gxb_boolean *b) {
     return gxbp_volume_error(S, e, 2 * S * S, 8 * S * e + 4 * e * e + 32 * GXBP_U * S * S + GXBP_TINY);
 }
 
-#define GXBP_VOLUME_ERROR                                                                                              \
-    1e-7 /* relative: sums of doubles with a larger bound, mostly far above their error, give way to exact ones */
+#define GXBP_VOLUME_ERROR 1e-7 /* relative: a sum of doubles with a larger bound is replaced by an exact one */
 
 static int gxbp_is_rough(double volume, double error) { return error > GXBP_VOLUME_ERROR * gxbp_abs(volume); }
 
@@ -10323,7 +10325,7 @@ static GXBP_COLD int gxbp_ray_from(gxb_boolean *b, gxbp_ray *ray, uint32_t t) {
     return moved == 0 ? 1 : moved * turned;
 }
 
-/* By how much passing a triangle changes the number of its shell, along a ray moved by way (h, h^2) */
+/* The change of its shell's winding number where a ray moved by way (h, h^2) passes a triangle */
 static GXBP_COLD int gxbp_ray_passes(gxb_boolean *b, gxbp_ray *ray, int way, uint32_t t) {
     const uint32_t plane = gxbp_out_plane(b, t);
     const int facing = b->out.planes[t] & 1 ? -1 : 1;
@@ -10352,7 +10354,7 @@ static GXBP_COLD int gxbp_ray_passes(gxb_boolean *b, gxbp_ray *ray, int way, uin
 /* Of triangle t: the shell that it belongs to, of a cavity whose container is known that one */
 static uint32_t gxbp_shell_of(const uint32_t *parent, uint32_t t) { return parent[parent[t]]; }
 
-/* Columns along x, side x side of them, and the triangles of each: those that rays in it may pass */
+/* A grid of side x side columns along x, and the triangles that rays in each column may pass */
 typedef struct gxbp_columns {
     uint32_t *first, *list; /* side x side + 1; where a column's triangles are in the list */
     uint32_t *hit;          /* room for one word per triangle */
@@ -10383,7 +10385,7 @@ static uint32_t gxbp_columns_of(const gxb_boolean *b, const gxbp_columns *c, uin
     return (upto[0] - from[0] + 1) * (upto[1] - from[1] + 1);
 }
 
-/* The margin is more than points and rays may be away from where their balls are. */
+/* The margin exceeds the distance of any point or ray from the centre of its ball. */
 static void gxbp_bound_columns(const gxb_boolean *b, gxbp_columns *c) {
     const gxb_ball *first = &b->cx.points[b->out.points[0]].ball;
     double high[2], error = 0, largest = 0;
@@ -10403,7 +10405,7 @@ static void gxbp_bound_columns(const gxb_boolean *b, gxbp_columns *c) {
     for (k = 0; k < 2; k++) c->size[k] = high[k] - c->low[k] + c->margin;
 }
 
-/* As many columns as triangles, or fewer where these would be in more than eight columns each */
+/* As many columns as triangles; fewer if a triangle would be in more than eight columns on average */
 static GXBP_COLD int gxbp_make_columns(gxb_boolean *b, gxbp_columns *c) {
     const uint32_t count = b->out.source_count;
     uint32_t side = 1, t, i, j, from[2], upto[2];
@@ -10441,7 +10443,7 @@ static const uint32_t *gxbp_column_of(const gxbp_columns *c, const gxbp_ray *ray
     return c->first + gxbp_column_at(c, 0, ray->ball.x[1]) * c->side + gxbp_column_at(c, 1, ray->ball.x[2]);
 }
 
-/* Does shell t lie in shell u? Shells do not cross: one of its triangles says it. */
+/* Does shell t lie in shell u? Shells do not cross, so one triangle decides. */
 static GXBP_COLD int gxbp_lies_in(gxb_boolean *b, uint32_t t, uint32_t u, const uint32_t *parent,
                                   const gxbp_columns *c) {
     gxbp_ray ray;
@@ -10477,7 +10479,7 @@ static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, c
     return best;
 }
 
-/* Cavities and sheets go to their containers. Returns how many there are. */
+/* Assigns cavities and sheets to their containers. Returns their number. */
 static GXBP_APART uint32_t gxbp_place_cavities(gxb_boolean *b, uint32_t *parent, const double *volume,
                                                int32_t *winding) {
     const uint32_t count = b->out.source_count;
@@ -10498,7 +10500,7 @@ static GXBP_APART uint32_t gxbp_place_cavities(gxb_boolean *b, uint32_t *parent,
     return cavities;
 }
 
-/* Afterwards the sets are components. A shell and a cavity in it may nearly cancel: what is left is summed anew. */
+/* Makes components of the sets. A shell and its cavity may nearly cancel; their difference is then summed again. */
 static void gxbp_join_cavities(gxb_boolean *b, uint32_t *parent, double *volume, double *error, int32_t *winding) {
     int rough = 0;
     uint32_t t;
@@ -10610,10 +10612,8 @@ static GXBP_APART void gxbp_find_components(gxb_boolean *b) {
     4 /* units in the last place of the largest coordinate: how near are two vertices that may become one */
 #define GXBP_MEND_STEPS 2 /* such units by which a coordinate may be moved */
 
-static uint32_t gxbp_before_edge(uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
-
 /* The next half-edge that leaves the same corner of the surface */
-static uint32_t gxbp_around(const gxb_boolean *b, uint32_t h) { return b->out.twins[gxbp_before_edge(h)]; }
+static uint32_t gxbp_around(const gxb_boolean *b, uint32_t h) { return b->out.twins[gxbp_last_edge(h)]; }
 
 static const double *gxbp_out_place(const gxb_boolean *b, uint32_t vertex) {
     return b->out.vertices + 3 * (size_t)vertex;
@@ -10690,14 +10690,14 @@ static void gxbp_join_out(gxb_boolean *b, uint32_t h, uint32_t g) {
    lie beyond the old ones. */
 static int gxbp_flip(gxb_boolean *b, uint32_t h) {
     const uint32_t g = b->out.twins[h], t = h / 3, s = g / 3, h1 = gxbp_next_edge(h), g1 = gxbp_next_edge(g);
-    const uint32_t p = b->out.triangles[h], q = b->out.triangles[h1], r = b->out.triangles[gxbp_before_edge(h)],
-                   o = b->out.triangles[gxbp_before_edge(g)];
-    const uint32_t qr = b->out.twins[h1], rp = b->out.twins[gxbp_before_edge(h)], po = b->out.twins[g1],
-                   oq = b->out.twins[gxbp_before_edge(g)];
+    const uint32_t p = b->out.triangles[h], q = b->out.triangles[h1], r = b->out.triangles[gxbp_last_edge(h)],
+                   o = b->out.triangles[gxbp_last_edge(g)];
+    const uint32_t qr = b->out.twins[h1], rp = b->out.twins[gxbp_last_edge(h)], po = b->out.twins[g1],
+                   oq = b->out.twins[gxbp_last_edge(g)];
     uint32_t known;
     if (r == o || qr / 3 == s || rp / 3 == s || !gxbp_is_between(b, r, p, q)) return 0;
     if (gxbp_is_defect(b, s, p, o, r) || gxbp_is_defect(b, s, o, q, r)) return 0; /* one of them might be large */
-    gxbp_count_around(b, gxbp_before_edge(h), o, &known);
+    gxbp_count_around(b, gxbp_last_edge(h), o, &known);
     if (known != 0) return 0;
     gxbp_set_out_triangle(b, t, p, o, r);
     gxbp_set_out_triangle(b, s, o, q, r);
@@ -10713,7 +10713,7 @@ static int gxbp_flip(gxb_boolean *b, uint32_t h) {
 /* May the edge of h vanish? Its ends have but two neighbours in common, which keep three edges at least. */
 static int gxbp_links_meet(gxb_boolean *b, uint32_t h) {
     const uint32_t g = b->out.twins[h], v = b->out.triangles[h], w = b->out.triangles[g];
-    const uint32_t r = gxbp_before_edge(h), o = gxbp_before_edge(g);
+    const uint32_t r = gxbp_last_edge(h), o = gxbp_last_edge(g);
     uint32_t e = h, common = 0, known;
     if (b->out.triangles[r] == b->out.triangles[o] || gxbp_count_around(b, h, w, &known) < 3 || known != 1) return 0;
     if (gxbp_count_around(b, r, v, &known) < 4 || gxbp_count_around(b, o, v, &known) < 4) return 0;
@@ -10737,7 +10737,7 @@ static int gxbp_collapse(gxb_boolean *b, uint32_t h) {
         before += (uint32_t)gxbp_is_defective(b, e / 3);
         if (e != g1)
             after += (uint32_t)gxbp_is_defect(b, e / 3, w, b->out.triangles[gxbp_next_edge(e)],
-                                              b->out.triangles[gxbp_before_edge(e)]);
+                                              b->out.triangles[gxbp_last_edge(e)]);
         last = e;
     }
     if (after >= before + (uint32_t)gxbp_is_defective(b, h / 3)) return 0;
@@ -10751,7 +10751,7 @@ static int gxbp_collapse(gxb_boolean *b, uint32_t h) {
     return 1;
 }
 
-/* Once through the defects; how many flips and collapses there were. */
+/* One pass over the defects. Returns the number of flips and collapses. */
 static uint32_t gxbp_mend_edges(gxb_boolean *b) {
     uint32_t i, k, done = 0;
     for (i = 0; i < b->out.defect_count; i++) {
@@ -10764,7 +10764,7 @@ static uint32_t gxbp_mend_edges(gxb_boolean *b) {
     return done;
 }
 
-/* Triangles that are gone are taken out of all lists; map: room for one word per triangle. */
+/* Removes collapsed triangles from all lists. map: a word per triangle. */
 static void gxbp_drop_collapsed(gxb_boolean *b, uint32_t *map) {
     const uint32_t count = b->out.source_count;
     uint32_t t, k, left = 0;
@@ -10856,7 +10856,7 @@ static GXBP_COLD void gxbp_mend_defects(gxb_boolean *b) {
     gxbp_release(&b->cx.allocator, home, bytes);
 }
 
-/* Components and twins are the exact surface's: they are found before it is changed. */
+/* Components and twins belong to the exact surface, so they are computed before it is changed. */
 static GXBP_COLD void gxbp_mend(gxb_boolean *b) {
     gxbp_find_defects(b);
     gxbp_find_components(b);
@@ -11010,7 +11010,7 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
     return gxbp_fail(failure, result, bad);
 }
 
-/* After an error: the operands are as they came, nothing is arranged. Points that were found stay known. */
+/* After an error: operands are as they were added, and nothing is arranged. Computed points stay known. */
 static GXBP_COLD void gxbp_forget_arrangement(gxb_boolean *b) {
     uint32_t s;
     b->mesh.subtriangle_count = b->mesh.link_count = b->crossings.segment_count = b->crossings.cut_count =
@@ -11022,7 +11022,7 @@ static GXBP_COLD void gxbp_forget_arrangement(gxb_boolean *b) {
     }
 }
 
-/* Room for the planes of a sixth of the new triangles: what is not used is not touched, and little is copied. */
+/* Makes room for planes of a sixth of the new triangles. Unused room is never touched, and little is copied. */
 static void gxbp_presize_planes(gxb_boolean *b) {
     const uint32_t added = b->crossings.arranged < b->in.operand_count
                              ? b->in.source_count - b->in.operands[b->crossings.arranged].source
@@ -11075,7 +11075,7 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *res
     return b->error;
 }
 
-/* Whether there is a result to ask about, and room for the answer */
+/* Checks that there is a result, and an address for the answer. */
 static gx_result gxbp_begin_query(gxb_boolean *b, const void *answer) {
     if (b == NULL || answer == NULL) return GX_ERROR_ARGUMENT;
     if (!b->out.evaluated) return GX_ERROR_EMPTY;
