@@ -1113,7 +1113,7 @@ static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_
     uint32_t stack[128], depth = 0, count = 0, i, k;
     gx_result result = GX_OK;
     found->count = 0;
-    gxp_search_init(&search, p, ldexp(1, body->complex->shift), &body->boxes[0]);
+    gxp_search_init(&search, p, ldexp(1, gxb_complex_shift(body->complex)), &body->boxes[0]);
     stack[depth++] = 0;
     while (depth > 0 && result == GX_OK) {
         const gxp_box *box = &body->boxes[stack[--depth]];
@@ -1858,7 +1858,7 @@ static void gxp_map_triangle(const gx_body *body, const gx_surface *s, size_t tr
             map[4 * i + k] = square > 0 ? (du * g + dv * h) / square : 0;
             /* of sizes whose fourth powers doubles do not have */
             if (!gxp_is_finite(map[4 * i + k])) map[4 * i + k] = 0;
-            map[4 * i + 3] -= map[4 * i + k] * (a[k] - body->complex->origin[k]);
+            map[4 * i + 3] -= map[4 * i + k] * (a[k] - gxb_complex_origin(body->complex)[k]);
         }
     }
 }
@@ -1950,7 +1950,7 @@ static int gxp_borrow_plane(gx_body *body, gxp_surface *s, uint32_t t) {
 
 /* Does the triangle turn as the plane's own normal says? Seen along the plane's axis. */
 static void gxp_settle_orientation(const gx_body *body, const gxp_surface *s, gxb_triangle *t, uint32_t index) {
-    const gxb_cplane *plane = &body->complex->planes[t->plane];
+    const gxb_cplane *plane = gxb_complex_plane(body->complex, t->plane);
     const int i = (int)(plane->axis + 1) % 3, j = (int)(plane->axis + 2) % 3;
     double p[3][2];
     int k;
@@ -2007,18 +2007,18 @@ static gx_result gxp_look_for_joint(gx_body *body, uint32_t leaf, gxp_joint *joi
     gxb_complex *cx = body->complex;
     uint32_t first, count = 0, i, j, e0, en;
     gx_result result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
-    if (result == GX_OK) result = gxb_leaf_facets(cx, leaf, &first, &count);
+    if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     joint->found = 0;
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint32_t facet = cx->pool[first + i];
-        result = gxb_facet_edges(cx, facet, &e0, &en);
+        result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
         for (j = 0; j < en && result == GX_OK; j++) {
             const uint32_t e = cx->pool[e0 + j];
             if (joint->point != GXB_NONE ? cx->edges[e >> 1].v[e & 1] != joint->point : e >> 1 != joint->edge) continue;
             joint->found = 1;
-            joint->walled |=
-                cx->facets[facet].wall != 0 || cx->leaves[leaf].removed != 0 ||
-                (joint->point != GXB_NONE ? cx->points[joint->point].wall : cx->edges[joint->edge].wall) != 0;
+            joint->walled |= cx->facets[facet].wall != 0 || cx->leaves[leaf].removed != 0 ||
+                             (joint->point != GXB_NONE ? gxb_complex_point(cx, joint->point)->wall
+                                                       : cx->edges[joint->edge].wall) != 0;
         }
     }
     return result;
@@ -2130,7 +2130,7 @@ static uint32_t gxp_curve_place(const gxp_cut *cut, const gxp_surface *s, uint32
     const double *x = s->given->vertices + 3 * (size_t)s->given->triangles[3 * (size_t)triangle];
     uint32_t place = 0, k, b;
     for (k = 0; k < 3; k++) {
-        const uint32_t along = gxp_grid_place(x[k], cut->body->complex->shift);
+        const uint32_t along = gxp_grid_place(x[k], gxb_complex_shift(cut->body->complex));
         for (b = 0; b < 9; b++) place |= (along >> b & 1) << (3 * b + k);
     }
     return place;
@@ -2241,9 +2241,9 @@ static gx_result gxp_leaf_points(gx_body *body, uint32_t leaf) {
     uint32_t first, count = 0, i, j, e0, en;
     gx_result result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
     body->list.count = 0;
-    if (result == GX_OK) result = gxb_leaf_facets(cx, leaf, &first, &count);
+    if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
-        result = gxb_facet_edges(cx, cx->pool[first + i], &e0, &en);
+        result = gxb_facet_resolve_edges(cx, cx->pool[first + i], &e0, &en);
         for (j = 0; j < en && result == GX_OK; j++) {
             const uint32_t e = cx->pool[e0 + j];
             result = gxp_push(body, &body->list, cx->edges[e >> 1].v[e & 1]);
@@ -2305,7 +2305,7 @@ static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_
     uint32_t first, count = 0, i;
     gx_result result = GX_OK;
     if (winding != 0) result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
-    if (result == GX_OK) result = gxb_leaf_facets(cx, leaf, &first, &count);
+    if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
         const gxb_facet *f = &cx->facets[cx->pool[first + i]];
         const int front = f->leaf[0] == leaf;
@@ -2429,14 +2429,14 @@ typedef struct gxp_fine_point {
 /* Twice the area of a facet as seen along the axis of its plane, from approximate positions; *error: a bound for its
  * error. */
 static gx_result gxp_rough_area(gxb_complex *cx, uint32_t facet, double *area, double *error) {
-    const uint32_t axis = cx->planes[cx->facets[facet].plane].axis, x = (axis + 1) % 3, y = (axis + 2) % 3;
+    const uint32_t axis = gxb_complex_plane(cx, cx->facets[facet].plane)->axis, x = (axis + 1) % 3, y = (axis + 2) % 3;
     const gxb_ball *o = NULL;
     double a[2] = {0, 0}, b[2] = {0, 0}, sum = 0;
     uint32_t e0, en, i;
-    const gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
+    const gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
     *error = 0;
     for (i = 0; i < en && result == GX_OK; i++) {
-        const gxb_ball *p = &cx->points[cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1]].ball;
+        const gxb_ball *p = &gxb_complex_point(cx, gxb_complex_edge_start(cx, cx->pool[e0 + i]))->ball;
         double size;
         if (i == 0) o = p;
         a[0] = b[0];
@@ -2492,7 +2492,7 @@ static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
 static gx_result gxp_facet_points(gx_body *body, uint32_t facet) {
     gxb_complex *cx = body->complex;
     uint32_t e0, en, i;
-    gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
+    gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
     body->seeds.count = 0;
     if (result == GX_OK) result = gxp_words_room(body, &body->seeds, en);
     for (i = 0; i < en && result == GX_OK; i++)
@@ -2555,7 +2555,7 @@ static uint32_t gxp_fresh_index(const gx_body *body, uint32_t cell) {
 static gx_result gxp_rough_share(gx_body *body, uint32_t first, uint32_t end, double enough, double *share,
                                  double *error) {
     gxb_complex *cx = body->complex;
-    const gxb_cplane *plane = &cx->planes[cx->facets[GXP_LINK_FACET(body->links.data[first])].plane];
+    const gxb_cplane *plane = gxb_complex_plane(cx, cx->facets[GXP_LINK_FACET(body->links.data[first])].plane);
     const double whole = fabs(plane->filter.n[plane->axis]); /* the normal is a product of two of the face's edges */
     double part, part_error;
     gx_result result = GX_OK;
@@ -2719,7 +2719,7 @@ static gx_result gxp_walk_leaves(gx_body *body, uint32_t start) {
     if (result == GX_OK) result = gxp_push(body, &body->link_first, body->links.count);
     while (done < body->queue.count && result == GX_OK) {
         const uint32_t leaf = body->queue.data[done++];
-        result = gxb_leaf_facets(cx, leaf, &first, &count);
+        result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
         if (result == GX_OK) result = gxp_keys_room(body, &body->links, count);
         for (i = 0; i < count && result == GX_OK; i++) {
             const uint32_t facet = cx->pool[first + i];
@@ -2784,7 +2784,7 @@ static gx_result gxp_divide_cell(gxp_cut *cut, uint32_t cell) {
 static gx_result gxp_touch_around(gx_body *body, uint32_t leaf) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i;
-    gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
+    gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
         const gxb_facet *f = &cx->facets[cx->pool[first + i]];
         const uint32_t other = f->leaf[f->leaf[0] == leaf];
@@ -2915,7 +2915,7 @@ static gx_result gxp_cross_faces(gx_body *body, uint32_t cell, uint32_t node) {
                 if (k != local) result = gxp_cross_whole_face(body, element, k);
             continue;
         }
-        result = gxb_leaf_facets(cx, leaf, &first, &count);
+        result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
         for (i = 0; i < count && result == GX_OK; i++) {
             const uint32_t facet = cx->pool[first + i], face = cx->facets[facet].face;
             if (face != GXB_NONE && face != opposite) result = gxp_cross_facet(body, facet, leaf);
@@ -3153,11 +3153,12 @@ static void gxp_clear_boundary(gx_body *body, int other_element) {
 static gx_result gxp_new_boundary_point(gx_body *body, uint32_t element, uint32_t point, uint32_t *index) {
     gx_result result = GX_OK;
     if (point >= body->point_slot.count) {
-        result = gxp_words_room(body, &body->point_slot, body->complex->point_count - body->point_slot.count);
+        result =
+            gxp_words_room(body, &body->point_slot, gxb_complex_point_count(body->complex) - body->point_slot.count);
         if (result != GX_OK) return result;
         memset(body->point_slot.data + body->point_slot.count, 0xff,
-               (body->complex->point_count - body->point_slot.count) * sizeof(uint32_t));
-        body->point_slot.count = body->complex->point_count;
+               (gxb_complex_point_count(body->complex) - body->point_slot.count) * sizeof(uint32_t));
+        body->point_slot.count = gxb_complex_point_count(body->complex);
     }
     result =
         gxp_reserve(&body->allocator, &body->lambdas, 4 * sizeof(double), body->list.count, &body->lambda_capacity, 1);
@@ -3180,7 +3181,7 @@ static gx_result gxp_add_boundary_point(gx_body *body, uint32_t element, uint32_
 static gx_result gxp_add_boundary_facet(gx_body *body, uint32_t element, uint32_t facet, int inward) {
     gxb_complex *cx = body->complex;
     uint32_t e0, en, i, corner[3] = {0, 0, 0};
-    gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
+    gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
     if (result == GX_OK) result = gxp_words_room(body, &body->triangles, 3 * (size_t)en);
     for (i = 0; i < en && result == GX_OK; i++) {
         const uint32_t e = cx->pool[e0 + i];
@@ -3201,7 +3202,7 @@ static gx_result gxp_add_boundary_facet(gx_body *body, uint32_t element, uint32_
 static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, int all) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i;
-    gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
+    gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint32_t facet = cx->pool[first + i];
         const gxb_facet *f = &cx->facets[facet];
@@ -3388,10 +3389,11 @@ static uint32_t gxp_middle_leaf(const gxb_complex *cx, uint32_t element) {
     double middle[3] = {0, 0, 0};
     int k;
     for (n = 0; n < 4; n++)
-        for (k = 0; k < 3; k++) middle[k] += 0.25 * cx->points[cx->elements[4 * (size_t)element + n]].ball.x[k];
+        for (k = 0; k < 3; k++)
+            middle[k] += 0.25 * gxb_complex_point(cx, cx->elements[4 * (size_t)element + n])->ball.x[k];
     while (reference & 1) {
         const gxb_node *node = &cx->nodes[reference >> 1];
-        const gxb_plane_filter *f = &cx->planes[node->plane].filter;
+        const gxb_plane_filter *f = &gxb_complex_plane(cx, node->plane)->filter;
         double height = 0;
         for (k = 0; k < 3; k++) height += f->n[k] * (middle[k] - f->base[k]);
         reference = node->child[height > 0 ? 0 : 1];
@@ -3632,7 +3634,7 @@ GXP_FETCHES void gxp_fetch_links(const gx_body *body, uint32_t index) {
         for (j = at[index + 2]; j < at[index + 3]; j++) {
             const gxb_facet *f = &cx->facets[GXP_LINK_FACET(body->links.data[j])];
             GXP_FETCH(cx->pool + f->loop);
-            GXP_FETCH(&cx->planes[f->plane].axis);
+            GXP_FETCH(&gxb_complex_plane(cx, f->plane)->axis);
         }
     if (index + 1 < count)
         for (j = at[index + 1]; j < at[index + 2]; j++) {
@@ -6142,7 +6144,7 @@ static void gxp_set_texture(gx_body *body, uint32_t vertex, const gxp_skin_face 
     int i, k;
     for (i = 0; i < 2; i++) {
         double t = map != NULL ? map[4 * i + 3] : 0;
-        for (k = 0; k < 3 && map != NULL; k++) t += map[4 * i + k] * (x[k] - body->complex->origin[k]);
+        for (k = 0; k < 3 && map != NULL; k++) t += map[4 * i + k] * (x[k] - gxb_complex_origin(body->complex)[k]);
         for (k = 0; k < 4 && face->outer && body->texture != NULL; k++)
             t += lambda[k] * (double)body->texture[2 * (size_t)node[k] + (size_t)i];
         body->skin.texture[2 * (size_t)vertex + (size_t)i] = (float)t;
@@ -6339,7 +6341,7 @@ static gx_result gxp_add_skin_facet(gx_body *body, const gxp_skin_face *face, ui
     gxb_complex *cx = body->complex;
     const int inward = cx->facets[facet].leaf[0] == leaf;
     uint32_t *p, *v, e0, en, i, n, vertex = GXP_NONE;
-    gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
+    gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
     body->faces.count = body->queue.count = 0;
     for (i = 0; i < en && result == GX_OK; i++) {
         const uint32_t point = cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1];
@@ -6419,7 +6421,8 @@ static void gxp_cut_face(const gx_body *body, uint32_t facet, uint32_t leaf, gxp
     face->surface = first == GXP_NONE ? GX_SKIN_SEVERED : 1 + gxp_label_surface(body, face->label);
     memset(face->slots, 0xff, sizeof face->slots);
     for (k = 0; k < 3; k++)
-        face->normal[k] = front ? -cx->planes[face->plane].filter.n[k] : cx->planes[face->plane].filter.n[k];
+        face->normal[k] =
+            front ? -gxb_complex_plane(cx, face->plane)->filter.n[k] : gxb_complex_plane(cx, face->plane)->filter.n[k];
     face->group[0] = face->surface;
     if (body->skin.desc.smooth_cuts && first != GXP_NONE)
         face->group[1] = (uint32_t)(front ^ (cx->labels[first].orientation < 0));
@@ -6430,7 +6433,7 @@ static void gxp_cut_face(const gx_body *body, uint32_t facet, uint32_t leaf, gxp
 static gx_result gxp_skin_leaf(gx_body *body, uint32_t leaf, gxp_skin_face *face) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i, k;
-    gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
+    gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint32_t facet = cx->pool[first + i];
         const int kind = gxp_visible(body, facet, leaf);
@@ -6866,7 +6869,7 @@ static gx_result gxp_push_neighbours(gx_body *body, uint32_t cell) {
     uint32_t leaf, first, count, i;
     gx_result result = gxb_complex_open_element(cx, element);
     for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next) {
-        result = gxb_leaf_facets(cx, leaf, &first, &count);
+        result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
         for (i = 0; i < count && result == GX_OK; i++) {
             const gxb_facet *f = &cx->facets[cx->pool[first + i]];
             const uint32_t other = f->leaf[f->leaf[0] == leaf];
