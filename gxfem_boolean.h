@@ -38,13 +38,24 @@
  * set_removed; to bring lists up to date: gxb_leaf_resolve_facets, gxb_facet_resolve_edges; to read: gxb_complex_point
  * and others; to ask: gxb_complex_side, turn, compare, winding, barycentric, support, barycentric_fine
  *     >>stream      a complex as bytes: gxb_stream_pass, has; gxb_complex_save, load
- *     >>boolean     Booleans of closed triangle surfaces, exact and chainable: gxb_boolean_create, add, evaluate,
- * destroy; how results are read off: set_triangulation, set_fine, set_mend; what else there is to know of one:
- * components, defects, statistics then, under GXFEM_BOOLEAN_IMPLEMENTATION, in this order, from the bottom up: of all
+ *     >>boolean     exact, chainable Booleans of closed triangle surfaces: gxb_boolean_create, add, evaluate, destroy;
+ * options of a result: set_triangulation, set_fine, set_mend; more about a result: components, defects, statistics
+ *
+ * then, under GXFEM_BOOLEAN_IMPLEMENTATION, in this order, from the bottom up: of all
  * >>bits and >>exact (arithmetic), >>filter (doubles with bounds), >>points (predicates), >>memory (arrays,
  * transactions) of complexes  >>topology (of the mesh; signs), >>split (by a plane), >>clip and >>insert (a triangle),
- * >>save, >>check (what was read) of Booleans   >>arrangement (on points, planes and exact numbers of a complex that
- * has no elements)
+ * >>save, >>check (what was read)
+ *
+ * of Booleans, in the order of the work:
+ *     the object      >>arrangement (its types and struct), >>arena (memory), >>keys (points by definition)
+ *     an operand      >>boxes (a tree of boxes), >>operands (reading one), >>sides (planes of its triangles)
+ *     intersection    >>meet (two triangles), >>edges (points on edges in order)
+ *     triangulation   >>triangulate (points), >>constrain (edges), >>divide (one source), >>flats (sources that overlap
+ *                     in one plane), >>merge (equal points)
+ *     the result      >>states (vectors of winding numbers), >>winding (one for each subtriangle), >>result (triangles
+ *                     and vertices), >>coarse (fewer triangles)
+ *     more about it   >>components (shells), >>volumes, >>containers (which shell lies in which), >>mend (defects)
+ *     functions       >>api
  *
  * How the complex works. Each element of the mesh starts as one convex leaf, bounded by four facets, which it shares
  * with its neighbours. A triangle is clipped down the element's tree of planes (a binary space partition); each leaf
@@ -570,17 +581,17 @@ GXFEM_API gx_result gxb_complex_load(gxb_complex *complex, gxb_stream *stream, i
 
 /* >>boolean -------------------------------------------------------------------------------------------------------- */
 
-/* Booleans of closed triangle meshes. A Boolean holds operands and the exact arrangement of their triangles; the result
-   is read off it as often as wanted and more operands may follow: nothing is rounded in between (docs/KERNEL.md). */
+/* Booleans of closed triangle meshes. A Boolean holds operands and the exact arrangement of their triangles. Evaluating
+ * it computes the result. More operands may follow, and nothing is rounded in between (docs/KERNEL.md). */
 typedef struct gxb_boolean gxb_boolean;
 
-/* What an operand does to the result of those before it (to nothing, if it is the first). */
+/* How an operand combines with the result of those before it. The first one combines with nothing. */
 enum {
     GXB_UNION = 0,
     GXB_INTERSECTION,
     GXB_DIFFERENCE,
     GXB_SYMMETRIC_DIFFERENCE,
-    /* an open or closed sheet: it takes nothing away, and separates what lies on its two sides */
+    /* an open or closed sheet: it removes nothing and separates the material on its two sides */
     GXB_SPLIT
 };
 /* Which winding numbers of an operand's surface count as inside. */
@@ -595,25 +606,25 @@ typedef struct gxb_operand {
     size_t triangle_count;
     uint32_t operation; /* GXB_UNION ... */
     uint32_t rule;      /* GXB_NONZERO ...; a sheet has none */
-    /* 1: the caller vouches that this surface meets itself in common vertices and edges only, which saves looking */
+    /* 1: the caller vouches that this surface meets itself in common vertices and edges only; the test is skipped */
     uint32_t simple;
 } gxb_operand;
 
 /* How a result is divided into triangles. */
 enum {
-    GXB_DIVIDED = 0, /* as the operands have divided each other */
-    /* each source face in as few triangles as its outline allows: without vertices inside it, or on a straight part of
-       its outline where no other face ends; nothing is merged across source faces */
+    GXB_DIVIDED = 0, /* along the lines where the operands meet */
+    /* each source face in as few triangles as its outline allows. A face has no vertex inside it, and none on a
+       straight stretch of its outline unless another face ends there. Faces are not merged */
     GXB_COARSE,
-    /* as GXB_COARSE, of source faces that lie beside each other in one plane too: a triangle names one of them */
+    /* as GXB_COARSE, but adjacent source faces in one plane count as one face; a triangle names one of them */
     GXB_MERGED
 };
 
 typedef struct gxb_boolean_desc {
     gx_allocator allocator;
-    size_t memory_limit; /* in bytes, of all that the Boolean holds at a time; 0: none */
-    /* Instead of operations and rules: is a point around which the operands wind so often inside? NULL: by operations
-     * and rules. */
+    size_t memory_limit; /* the most bytes that the Boolean holds at any time; 0: no limit */
+    /* Replaces operations and rules: is a point with these winding numbers inside? NULL: operations and rules decide.
+     */
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
     void *user;
 } gxb_boolean_desc;
@@ -629,7 +640,7 @@ typedef struct gxb_origin {
     uint32_t kind, operand[3], index[3];
 } gxb_origin;
 
-/* Arrays belong to the Boolean and are valid until it is changed, evaluated again or destroyed. */
+/* The Boolean owns the arrays. They are valid until it is changed, evaluated again or destroyed. */
 typedef struct gxb_boolean_result {
     /* x 3; an input vertex has the input's bits, others are rounded once */
     const double *vertices;
@@ -642,23 +653,23 @@ typedef struct gxb_boolean_result {
     const uint8_t *triangle_reversed;                   /* triangle_count: 1 where it faces against that triangle */
 } gxb_boolean_result;
 
-/* What the interior of a result consists of. Arrays are valid as long as the result's. */
+/* The connected components of a result's interior. Arrays are valid as long as those of the result. */
 typedef struct gxb_components {
     size_t count;
     const double *volume; /* count */
-    /* count: vertices - edges + triangles of a component's boundary, taken apart where it only touches itself: 2 for a
-       ball, 0 for a ring, 2 more for each cavity */
+    /* count: vertices - edges + triangles of a component's boundary, which is separated where it only touches itself: 2
+     * for a ball, 0 for a ring, 2 more for each cavity */
     const int32_t *euler;
-    /* count x operands: 1 where a component lies only in front of a sheet (where its normals point), -1 only behind, 0
-     * both or not at it */
+    /* count x operands: 1: the component lies only in front of the sheet (where its normals point), -1: only behind, 0:
+     * on both sides, or not at it */
     const int8_t *side;
-    const uint32_t *triangle; /* of each triangle of the result: its component */
+    const uint32_t *triangle; /* component of each triangle of the result */
     double total_volume;
 } gxb_components;
 
-/* Triangles that rounding turned by a right angle or more from their source's plane, or left without area; exact. With
-   gxb_boolean_set_mend: what remains of them, and how many are none any more. A mended triangle is a part of its source
-   but for the rounding. */
+/* Triangles that rounding turned by a right angle or more from their source's plane, or left without area. The test is
+ * exact. With gxb_boolean_set_mend: those that remain, and how many were removed. A mended triangle lies in its source
+ * up to rounding. */
 typedef struct gxb_defects {
     const uint32_t *triangles;
     size_t count, mended_count;
@@ -666,7 +677,7 @@ typedef struct gxb_defects {
 
 /* Since creation */
 typedef struct gxb_statistics {
-    uint64_t filter_calls, exact_calls; /* signs asked for, and how many took exact arithmetic */
+    uint64_t filter_calls, exact_calls; /* signs requested, and how many of them took exact arithmetic */
     uint64_t allocations;
     size_t peak_bytes;
 } gxb_statistics;
@@ -674,24 +685,26 @@ typedef struct gxb_statistics {
 /* desc may be NULL. Errors: ARGUMENT, LIMIT, MEMORY, CONFIGURATION. */
 GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean);
 GXFEM_API void gxb_boolean_destroy(gxb_boolean *boolean);
-/* How results are read off the arrangement from now on; all are of the same exact surface. Errors: ARGUMENT. */
-/* GXB_DIVIDED (unless set) ... */
+/* Options of the following evaluations. The exact surface is the same for all of them. Errors: ARGUMENT. */
+/* GXB_DIVIDED (the default), GXB_COARSE or GXB_MERGED */
 GXFEM_API gx_result gxb_boolean_set_triangulation(gxb_boolean *boolean, uint32_t triangulation);
-/* 1: vertices are the doubles nearest to the exact points, volumes right to their last digits. 0 (unless set): vertices
-   proven within 1e-10 of the largest coordinate and volumes within 1e-7 of their size; both are mostly far nearer. */
+/* 1: vertices are the doubles nearest to the exact points, and volumes are right to their last digits. 0 (the default):
+ * vertices are proven within 1e-10 of the largest coordinate, and volumes within 1e-7 of their size. Most errors are
+ * far smaller. */
 GXFEM_API gx_result gxb_boolean_set_fine(gxb_boolean *boolean, int fine);
-/* 1: vertices and volumes as by gxb_boolean_set_fine; then defects are mended where that can be done within the
-   rounding: an edge is turned, a vertex becomes one with a neighbour 4 units of the last place away at most, or moves
-   by 2. The surface stays closed, input vertices stay, components and their Euler characteristics are the same. */
+/* 1: vertices and volumes as with gxb_boolean_set_fine. Then defects are removed where a change within the rounding
+ * does it: an edge is flipped, a vertex is merged with a neighbour at most 4 units in the last place away, or a vertex
+ * moves by at most 2 such units. The surface stays closed, input vertices stay, and so do components and their Euler
+ * characteristics. */
 GXFEM_API gx_result gxb_boolean_set_mend(gxb_boolean *boolean, int mend);
 /* Copies an operand. Errors: ARGUMENT, EMPTY, INDEX (triangle), NOT_FINITE and RANGE (vertex), NOT_CLOSED (triangle),
  * LIMIT, MEMORY. */
 GXFEM_API gx_result gxb_boolean_add(gxb_boolean *boolean, const gxb_operand *operand, gx_failure *failure);
 /* The result of all operands so far. Errors: EMPTY (no operand), MEMORY, LIMIT, OVERLAP (a surface vouched for as
-   simple is not). After an error the Boolean holds its operands and may be asked again. */
+ * simple is not). After an error the Boolean keeps its operands and can be evaluated again. */
 GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *boolean, gxb_boolean_result *result);
-/* Of the last result, found when first asked for. Errors: EMPTY (there is no result, or an operand has come since),
-   MEMORY, LIMIT. After an error the result is as it was. */
+/* Components and defects of the latest result, computed on the first call. Errors: EMPTY (no result, or an operand was
+ * added since), MEMORY, LIMIT. After an error the result is unchanged. */
 GXFEM_API gx_result gxb_boolean_components(gxb_boolean *boolean, gxb_components *components);
 GXFEM_API gx_result gxb_boolean_defects(gxb_boolean *boolean, gxb_defects *defects);
 GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *boolean, gxb_statistics *statistics);
@@ -5749,10 +5762,12 @@ static GXBP_COLD void gxbp_check(gxb_complex *cx, gxb_stream *s) {
     gxbp_release(&cx->store.allocator, block, words * sizeof *block);
 }
 
-/* >>arrangement: triangles of closed surfaces, divided where they meet (docs/KERNEL.md) ---------------------------- */
+/* >>arrangement: what a Boolean holds ------------------------------------------------------------------------------ */
+/* The types and the one struct of a Boolean. A source is an input triangle. Its triangulation consists of subtriangles.
+   Everything below works on these arrays. See docs/KERNEL.md for the method. */
 
-/* Labels of a facet's edge are lists: the triangles that meet the facet's plane in it (sources), in flats also edges of
-   sources (half-edge | GXBP_EDGE_LABEL). */
+/* Labels of a subtriangle's edge form a list: the sources that meet the subtriangle's plane along it, and in flats also
+ * edges of sources (half-edge | GXBP_EDGE_LABEL). */
 #define GXBP_EDGE_LABEL ((uint32_t)1 << 31)
 #define GXBP_LOOSE      UINT32_MAX       /* an edge that only triangulates */
 #define GXBP_BARE       (UINT32_MAX - 1) /* the end of a list: an edge that must stay */
@@ -5766,9 +5781,9 @@ typedef struct gxbp_source { /* an input triangle */
     uint32_t edge[3]; /* in cuts; GXB_NONE: nothing is known of the edge, and it has no inner points */
     uint32_t plane;   /* GXB_NONE until needed */
     uint32_t operand;
-    uint32_t facet;      /* first of its facets; of a flat: its root has them all */
-    uint32_t segments;   /* list */
-    uint32_t root, next; /* flat: union-find parent, next member */
+    uint32_t subtriangle; /* first of its subtriangles; of a flat: its root has them all */
+    uint32_t segments;    /* list */
+    uint32_t root, next;  /* flat: union-find parent, next member */
     uint32_t flags;
 } gxbp_source;
 enum {
@@ -5777,22 +5792,22 @@ enum {
     GXBP_DIVIDED = 4,
     GXBP_FLAT = 8,
     GXBP_REACHED = 16
-};                       /* one of its facets has got a state: all have, or will soon */
+};                       /* one of its subtriangles has got a state: all have, or will soon */
 enum { GXBP_FOLDS = 8 }; /* two bits of the flags for each edge from this one on, see gxbp_fold_beyond_filter */
 
-typedef struct gxbp_piece { /* a triangle of a source's triangulation; edge k from v[k] to v[k + 1] */
+typedef struct gxbp_subtriangle { /* a triangle of a source's triangulation; edge k from v[k] to v[k + 1] */
     uint32_t v[3], near[3], labels[3];
     uint32_t source; /* root of the flat; GXB_NONE: no longer in use */
     uint32_t next;
     uint32_t covers; /* in a flat: list of the sources that cover it */
-    /* winding numbers in front of it; GXB_NONE: not known. Kept from evaluation to evaluation */
+    /* the state (winding numbers) in front of it; GXB_NONE: not known. Kept between evaluations */
     uint32_t state;
-} gxbp_piece;
+} gxbp_subtriangle;
 
 typedef struct gxbp_vertex {   /* beside each point of the complex */
     uint32_t key[4];           /* kind and what defines it, see gxb_origin; half-edges and sources */
     uint32_t same;             /* union-find: points found to be equal */
-    uint32_t stamp, hint;      /* a facet around it in the triangulation at work */
+    uint32_t stamp, hint;      /* a subtriangle around it in the triangulation at work */
     uint32_t head, head_stamp; /* scratch */
     uint32_t slot;             /* scratch: place on the rim of the source at work; number in the output */
 } gxbp_vertex;
@@ -5806,23 +5821,23 @@ typedef struct gxbp_segment {
     uint32_t p, q, label, next;
     int32_t left;
 } gxbp_segment;
-/* An edge of a surface. Its inner points: in cut_points, in the half-edge's direction. rim: of the facets of divided
-   sources on its two sides (that of the half-edge first) those at its start, as 3 f + k. */
+/* An edge of a surface. Its inner points: in cut_points, in the half-edge's direction. rim: of the subtriangles of
+   divided sources on its two sides (that of the half-edge first) those at its start, as 3 f + k. */
 typedef struct gxbp_cut {
     uint32_t half_edge, first, count, rim[2];
 } gxbp_cut;
 typedef struct gxbp_hit {
     uint32_t cut, point;
 } gxbp_hit;
-typedef struct gxbp_margin {
+typedef struct gxbp_rim_vertex {
     uint32_t vertex, near, labels, made, dangling;
-} gxbp_margin;
-/* coordinates / 16, not less wide than what is in it: see gxbp_float_below */
+} gxbp_rim_vertex;
+/* coordinates / 16, rounded outward: see gxbp_float_below */
 typedef struct gxbp_box {
     float low[3], high[3];
 } gxbp_box;
 
-/* Of a leaf's triangles, side by side; those that are not there meet nothing. */
+/* Boxes of a leaf's triangles, by columns. An unused box meets nothing. */
 typedef struct gxbp_leaf_boxes {
     float low[3][GXBP_LEAF], high[3][GXBP_LEAF];
 } gxbp_leaf_boxes;
@@ -5836,45 +5851,24 @@ typedef struct gxbp_tree {  /* boxes over groups of GXBP_LEAF sources, then over
 typedef struct gxbp_operand {
     uint32_t operation, rule;
     uint32_t simple;  /* vouched for, or found */
-    uint32_t reached; /* a facet has got a state in the evaluation at work */
+    uint32_t reached; /* a subtriangle has got a state in the evaluation at work */
     uint32_t source, source_count;
     uint32_t bounds; /* of its leaves in gxb_boolean.bounds */
-    uint32_t *order; /* sources in the order of the tree's leaves, in one piece of memory of its own */
+    uint32_t *order; /* sources in the order of the tree's leaves, in memory of its own */
     gxbp_tree tree;
 } gxbp_operand;
 
 /* From a state one up or down in an operand's winding number */
-typedef struct gxbp_crossing {
+typedef struct gxbp_state_step {
     uint32_t from, operand, to;
     int32_t change;
-} gxbp_crossing;
+} gxbp_state_step;
 enum { GXBP_STEPS = 64 };
 
-struct gxb_boolean { /* what is used most comes first: its addresses are short */
+/* What the caller added: operands, their triangles and boxes. All of it lives as long as the Boolean. */
+typedef struct gxbp_input {
     gxbp_source *sources;
     uint32_t source_count, source_capacity;
-    gxbp_vertex *vertices;
-    uint32_t vertex_count, vertex_capacity;
-    gxbp_piece *pieces;
-    uint32_t piece_count, piece_capacity;
-    uint32_t *scratch;
-    uint32_t scratch_count, scratch_capacity;
-    gxbp_link *links;
-    uint32_t link_count, link_capacity;
-    gx_result result; /* of the evaluation at work */
-    gxb_store store;  /* points, planes and exact numbers */
-    gx_allocator outer;
-    size_t limit, used, peak;
-    unsigned char *arena; /* behind the struct: what small cases need comes from here */
-    size_t arena_size, arena_used;
-    uint64_t allocations;
-    int over_limit;
-    int evaluated, measured, examined; /* 1: there is a result; its components, its defects are known */
-    uint32_t fine, mended, triangulation;
-    /* NULL where not asked for: the setters name them, nothing else does */
-    void (*coarsen)(gxb_boolean *b), (*mend)(gxb_boolean *b);
-    int (*inside)(void *user, const int32_t *winding, size_t operand_count);
-    void *user;
     gxbp_operand *operands;
     uint32_t operand_count, operand_capacity;
     /* of each operand's sources, in its tree's order */
@@ -5883,9 +5877,26 @@ struct gxb_boolean { /* what is used most comes first: its addresses are short *
     /* of trees */
     gxbp_box *boxes;
     uint32_t box_count, box_capacity;
+} gxbp_input;
+
+/* How points are found again: by coordinates, by definition, by equality. Lives as long as the Boolean. */
+typedef struct gxbp_points {
+    gxbp_vertex *vertices; /* one beside each point of the store */
+    uint32_t vertex_count, vertex_capacity;
     /* hash of points by coordinates or key */
     uint32_t *table;
     uint32_t table_size, table_used;
+    uint32_t merged_count; /* points before it have been compared with each other */
+    /* the computed ones of these, along a direction */
+    struct gxbp_projected *projected;
+    uint32_t projected_count, projected_capacity;
+    double reach; /* the largest of their errors */
+    /* 1: since the last evaluation a point has got another name; an input vertex has ever */
+    uint32_t united, renamed;
+} gxbp_points;
+
+/* Where sources meet. Lives until an evaluation fails; hits and dirty sources are used up by each evaluation. */
+typedef struct gxbp_crossings {
     gxbp_segment *segments;
     uint32_t segment_count, segment_capacity;
     gxbp_cut *cuts;
@@ -5896,71 +5907,137 @@ struct gxb_boolean { /* what is used most comes first: its addresses are short *
     uint32_t hit_count, hit_capacity;
     uint32_t *dirty;
     uint32_t dirty_count, dirty_capacity;
-    uint32_t marks; /* how often a source was found to meet something */
-    /* sources that were, alone or as a flat's roots */
+    uint32_t marks;        /* how often a source was found to meet something */
+    uint32_t arranged;     /* operands that are in the arrangement */
+    uint32_t segment_mark; /* segments before it are in the triangulations */
+} gxbp_crossings;
+
+/* The triangulations of all sources. Lives until an evaluation fails. */
+typedef struct gxbp_mesh {
+    gxbp_subtriangle *subtriangles;
+    uint32_t subtriangle_count, subtriangle_capacity;
+    gxbp_link *links;
+    uint32_t link_count, link_capacity;
+    /* sources that were divided, alone or as roots of flats */
     uint32_t *divided;
     uint32_t divided_count, divided_capacity;
-    gxbp_margin *rims;
-    uint32_t rim_count, rim_capacity;
-    gxbp_margin *lefts;
-    uint32_t left_count, left_capacity;
-    uint32_t *chain;
-    uint32_t chain_count, chain_capacity;
-    uint32_t arranged;      /* operands that are in the arrangement */
-    uint32_t stated;        /* operands that states count; 0: facets have no states */
-    uint32_t unreached;     /* operands of which no facet has a state yet */
-    uint32_t segment_mark;  /* segments before it are in the triangulations */
-    uint32_t merged_points; /* points before it were compared with each other */
-    /* the computed ones of these, along a direction */
-    struct gxbp_projected *projected;
-    uint32_t projected_count, projected_capacity;
-    double reach; /* the largest of their errors */
-    /* 1: since the last evaluation a point has got another name; an input vertex has ever */
-    uint32_t united, renamed;
-    uint32_t plane, stamp, head_stamp; /* of the triangulation at work */
+} gxbp_mesh;
+
+/* States: vectors of winding numbers. They live until an evaluation fails. */
+typedef struct gxbp_winding {
     /* state x operand */
-    int32_t *windings;
-    uint32_t winding_count, winding_capacity;
+    int32_t *numbers;
+    uint32_t number_count, number_capacity;
     /* of each state: is it inside? */
-    uint32_t *states;
-    uint32_t state_count, state_capacity;
-    /* listed: how many states it has */
-    uint32_t *state_table;
-    uint32_t state_table_size, listed;
-    gxbp_crossing steps[GXBP_STEPS]; /* the last ones asked for */
-    double *out_vertices;
-    uint32_t out_vertex_count, out_vertex_capacity;
-    gxb_origin *out_origins;
-    uint32_t out_origin_count, out_origin_capacity;
-    uint32_t *out_points;
-    uint32_t out_point_count, out_point_capacity;
-    uint32_t *out_triangles;
-    uint32_t out_triangle_count, out_triangle_capacity;
-    uint32_t *out_operands;
-    uint32_t out_operand_count, out_operand_capacity;
-    uint32_t *out_sources;
-    uint32_t out_source_count, out_source_capacity;
-    /* of triangles */
-    uint32_t *out_components;
-    uint32_t out_component_count, out_component_capacity;
-    uint32_t *out_planes;
-    uint32_t out_plane_count, out_plane_capacity;
-    uint8_t *out_reversed;
-    uint32_t out_reversed_count, out_reversed_capacity;
-    int8_t *out_sides;
-    uint32_t out_side_count, out_side_capacity;
-    double *out_volumes;
-    uint32_t out_volume_count, out_volume_capacity;
-    int32_t *out_eulers;
-    uint32_t out_euler_count, out_euler_capacity;
-    uint32_t *out_defects;
-    uint32_t out_defect_count, out_defect_capacity;
-    /* of half-edges, to mend: wedges and corners apart */
-    uint32_t *out_twins;
-    uint32_t out_twin_count, out_twin_capacity;
+    uint32_t *inside;
+    uint32_t inside_count, inside_capacity;
+    /* hash of states; listed: how many are in it */
+    uint32_t *table;
+    uint32_t table_size, listed;
+    gxbp_state_step steps[GXBP_STEPS]; /* the latest ones */
+    uint32_t stated;                   /* operands that states count; 0: subtriangles have no states */
+    uint32_t unreached;                /* operands of which no subtriangle has a state yet */
+} gxbp_winding;
+
+/* The result, its components and its defects. Each evaluation makes it anew. */
+typedef struct gxbp_output {
+    double *vertices; /* x 3 */
+    uint32_t vertex_count, vertex_capacity;
+    gxb_origin *origins;
+    uint32_t origin_count, origin_capacity;
+    uint32_t *points; /* of each vertex: its point */
+    uint32_t point_count, point_capacity;
+    uint32_t *triangles; /* x 3; triangle_count counts corners, source_count triangles */
+    uint32_t triangle_count, triangle_capacity;
+    /* of each triangle */
+    uint32_t *operands;
+    uint32_t operand_count, operand_capacity;
+    uint32_t *sources;
+    uint32_t source_count, source_capacity;
+    uint32_t *components;
+    uint32_t component_count, component_capacity;
+    uint32_t *planes; /* 2 x subtriangle, + 1 where the triangle faces against its plane */
+    uint32_t plane_count, plane_capacity;
+    uint8_t *reversed;
+    uint32_t reversed_count, reversed_capacity;
+    /* of each component; sides: x operand */
+    int8_t *sides;
+    uint32_t side_count, side_capacity;
+    double *volumes;
+    uint32_t volume_count, volume_capacity;
+    int32_t *eulers;
+    uint32_t euler_count, euler_capacity;
+    /* triangles */
+    uint32_t *defects;
+    uint32_t defect_count, defect_capacity;
+    /* of half-edges, to mend: the surface is taken apart where it only touches itself */
+    uint32_t *twins;
+    uint32_t twin_count, twin_capacity;
+    int evaluated, measured, examined; /* 1: there is a result; its components, its defects are known */
+    uint32_t mended_count;             /* defects that mending removed */
+} gxbp_output;
+
+/* What the caller chose. coarsen and mend are NULL unless requested: only the setters name these functions. */
+typedef struct gxbp_options {
+    uint32_t fine, triangulation;
+    void (*coarsen)(gxb_boolean *b), (*mend)(gxb_boolean *b);
+    int (*inside)(void *user, const int32_t *winding, size_t operand_count);
+    void *user;
+} gxbp_options;
+
+/* Memory: where it comes from, and how much of it there is. */
+typedef struct gxbp_budget {
+    gx_allocator outer; /* the caller's */
+    size_t limit, used, peak;
+    unsigned char *arena; /* behind the struct: small cases need nothing else */
+    size_t arena_size, arena_used;
+    uint64_t allocations;
+    int over_limit;
+} gxbp_budget;
+
+/* Scratch. No array keeps anything from one step to the next; each has one meaning. */
+typedef struct gxbp_work {
+    /* subtriangles, or triangles of the output: a stack to visit, or a list of those to replace */
+    uint32_t *stack;
+    uint32_t stack_count, stack_capacity;
+    /* subtriangles that got a state, or lost one: neighbours are still to come */
+    uint32_t *pending;
+    uint32_t pending_count, pending_capacity;
+    /* memory that gxbp_borrow lends */
+    uint32_t *room;
+    uint32_t room_count, room_capacity;
+    /* points of the edge at work */
+    uint32_t *ordered;
+    uint32_t ordered_count, ordered_capacity;
+    /* new segments of the source at work, x 3, see gxbp_chain_segments */
+    uint32_t *segment_ends;
+    uint32_t segment_end_count, segment_end_capacity;
+    /* outlines to the right and the left of an edge that is being made */
+    gxbp_rim_vertex *rims;
+    uint32_t rim_count, rim_capacity;
+    gxbp_rim_vertex *lefts;
+    uint32_t left_count, left_capacity;
+    uint32_t plane;             /* in which gxbp_turn decides */
+    uint32_t stamp, head_stamp; /* of vertices in the triangulation at work, of those with heads */
+} gxbp_work;
+
+struct gxb_boolean { /* what is used most comes first: its addresses are short */
+    gxbp_input in;
+    gxbp_mesh mesh;
+    gxbp_points points;
+    gx_result error; /* the first one of the call at work */
+    gxb_store store; /* points, planes and exact numbers */
+    gxbp_budget budget;
+    gxbp_options options;
+    gxbp_crossings crossings;
+    gxbp_work work;
+    gxbp_winding winding;
+    gxbp_output out;
 };
 
-/* --- memory --- */
+/* >>arena: memory of a Boolean ------------------------------------------------------------------------------------- */
+/* In: sizes. Out: memory, counted against the limit; small amounts come from the arena behind the struct. Touches the
+   budget, the growing arrays and the first error of an evaluation. */
 
 #define GXBP_ARENA ((size_t)1 << 16)
 
@@ -5968,9 +6045,9 @@ static size_t gxbp_whole_words(size_t size) { return (size + 15) & ~(size_t)15; 
 
 /* From the arena; NULL: it has no such room. */
 static void *gxbp_take(gxb_boolean *b, size_t size) {
-    unsigned char *memory = b->arena + b->arena_used;
-    if (size > b->arena_size - b->arena_used) return NULL;
-    b->arena_used += gxbp_whole_words(size);
+    unsigned char *memory = b->budget.arena + b->budget.arena_used;
+    if (size > b->budget.arena_size - b->budget.arena_used) return NULL;
+    b->budget.arena_used += gxbp_whole_words(size);
     return memory;
 }
 
@@ -5978,62 +6055,62 @@ static void *gxbp_count_allocate(void *user, size_t size) {
     gxb_boolean *b = (gxb_boolean *)user;
     void *memory = gxbp_take(b, size);
     if (memory != NULL) return memory;
-    if (b->limit != 0 && (size > b->limit || b->used > b->limit - size)) {
-        b->over_limit = 1;
+    if (b->budget.limit != 0 && (size > b->budget.limit || b->budget.used > b->budget.limit - size)) {
+        b->budget.over_limit = 1;
         return NULL;
     }
-    memory = gxbp_allocate(&b->outer, size);
+    memory = gxbp_allocate(&b->budget.outer, size);
     if (memory == NULL) return NULL;
-    b->allocations++;
-    b->used += size;
-    if (b->used > b->peak) b->peak = b->used;
+    b->budget.allocations++;
+    b->budget.used += size;
+    if (b->budget.used > b->budget.peak) b->budget.peak = b->budget.used;
     return memory;
 }
 
 static void gxbp_count_release(void *user, void *memory, size_t size) {
     gxb_boolean *b = (gxb_boolean *)user;
     const unsigned char *m = (const unsigned char *)memory;
-    if (m >= b->arena && m < b->arena + b->arena_size) {
-        const size_t from = (size_t)(m - b->arena);
-        /* what else is released there stays taken */
-        if (from + gxbp_whole_words(size) == b->arena_used) b->arena_used = from;
+    if (m >= b->budget.arena && m < b->budget.arena + b->budget.arena_size) {
+        const size_t from = (size_t)(m - b->budget.arena);
+        /* other memory of the arena is not reused */
+        if (from + gxbp_whole_words(size) == b->budget.arena_used) b->budget.arena_used = from;
         return;
     }
-    b->used -= size;
-    gxbp_release(&b->outer, memory, size);
+    b->budget.used -= size;
+    gxbp_release(&b->budget.outer, memory, size);
 }
 
-/* Where the caller's memory can grow: what is not in the arena. */
+/* Memory that the caller's allocator can grow. A block of the arena is copied instead. */
 static void *gxbp_count_reallocate(void *user, void *old, size_t size, size_t larger) {
     gxb_boolean *b = (gxb_boolean *)user;
     const unsigned char *m = (const unsigned char *)old;
-    const int in_arena = m >= b->arena && m < b->arena + b->arena_size;
+    const int in_arena = m >= b->budget.arena && m < b->budget.arena + b->budget.arena_size;
     const size_t more = larger - size;
     void *memory;
-    if (!in_arena && b->limit != 0 && (more > b->limit || b->used > b->limit - more)) {
-        b->over_limit = 1;
+    if (!in_arena && b->budget.limit != 0 && (more > b->budget.limit || b->budget.used > b->budget.limit - more)) {
+        b->budget.over_limit = 1;
         return NULL;
     }
-    memory = in_arena ? gxbp_count_allocate(user, larger) : gxbp_reallocate(&b->outer, old, size, size, larger);
+    memory = in_arena ? gxbp_count_allocate(user, larger) : gxbp_reallocate(&b->budget.outer, old, size, size, larger);
     if (memory == NULL) return NULL;
     if (in_arena) {
         memcpy(memory, old, size);
         gxbp_count_release(user, old, size);
         return memory;
     }
-    b->allocations++;
-    b->used += more;
-    if (b->used > b->peak) b->peak = b->used;
+    b->budget.allocations++;
+    b->budget.used += more;
+    if (b->budget.used > b->budget.peak) b->budget.peak = b->budget.used;
     return memory;
 }
 
-/* The first error of an evaluation stays in b->result; what follows does nothing. */
+/* The first error of an evaluation stays in b->error; later steps see it and do nothing. */
 static GXBP_COLD int gxbp_stop(gxb_boolean *b, gx_result result) {
-    if (b->result == GX_OK) b->result = result == GX_ERROR_MEMORY && b->over_limit ? GX_ERROR_LIMIT : result;
+    if (b->error == GX_OK) b->error = result == GX_ERROR_MEMORY && b->budget.over_limit ? GX_ERROR_LIMIT : result;
     return 0;
 }
 
-/* Small cases should not pay for growing: an array's first items come from the arena at once. */
+/* The first items of an array come from the arena, so that small cases allocate nothing. */
 static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, uint32_t count, uint32_t *capacity, size_t item,
                                 size_t extra) {
     const size_t least = *capacity == 0 && extra < 16 ? 16 : extra, room = gxbp_room_for(least);
@@ -6052,21 +6129,23 @@ static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, uint32_t count, uin
     ((b)->counter##_count + (size_t)(extra) <= (b)->counter##_capacity ||                                              \
      gxbp_room(b, &(b)->array, (b)->counter##_count, &(b)->counter##_capacity, sizeof *(b)->array, extra))
 
-/* Memory for as long as nobody else takes scratch; NULL: there is none. It is kept: what needs some next finds pages
- * that have been touched. */
+/* Memory that is valid until the next call of this function; NULL: there is none. It is kept, so that the next borrower
+ * gets pages that have been touched. */
 static GXBP_APART void *gxbp_borrow(gxb_boolean *b, size_t bytes) {
-    b->scratch_count = 0;
-    return GXBP_ROOM(b, scratch, scratch, bytes / sizeof *b->scratch + 1) ? b->scratch : NULL;
+    b->work.room_count = 0;
+    return GXBP_ROOM(b, work.room, work.room, bytes / sizeof *b->work.room + 1) ? b->work.room : NULL;
 }
 
 static uint32_t gxbp_new_link(gxb_boolean *b, uint32_t value, uint32_t next) {
-    if (!GXBP_ROOM(b, links, link, 1)) return next;
-    b->links[b->link_count].value = value;
-    b->links[b->link_count].next = next;
-    return b->link_count++;
+    if (!GXBP_ROOM(b, mesh.links, mesh.link, 1)) return next;
+    b->mesh.links[b->mesh.link_count].value = value;
+    b->mesh.links[b->mesh.link_count].next = next;
+    return b->mesh.link_count++;
 }
 
-/* --- points: found by their coordinates or by what defines them --- */
+/* >>keys: points found by coordinates or by definition ------------------------------------------------------------- */
+/* In: coordinates of an input vertex, or the kind and the objects that define a point. Out: the point, new or known.
+   Touches the points, their hash table and the union-find of points found to be equal. */
 
 static uint32_t gxbp_mix(uint32_t hash, uint64_t value) {
     uint64_t x = (value ^ hash * UINT64_C(0xff51afd7ed558ccd)) * UINT64_C(0x9e3779b97f4a7c15);
@@ -6082,44 +6161,44 @@ static GXBP_APART uint32_t gxbp_hash_place(const double x[3]) {
 }
 
 static uint32_t gxbp_hash_point(const gxb_boolean *b, uint32_t point) {
-    const uint32_t *key = b->vertices[point].key;
+    const uint32_t *key = b->points.vertices[point].key;
     return key[0] == GXB_FROM_VERTEX ? gxbp_hash_place(b->store.points[point].ball.x) : gxbp_hash_key(key);
 }
 
-/* Another table, and all that is in it is to be listed again. */
+/* Replaces a table by a larger one. The caller enters its items again. */
 static GXBP_COLD int gxbp_renew_table(gxb_boolean *b, uint32_t **table, uint32_t *size, uint32_t larger) {
-    uint32_t *fresh = (uint32_t *)gxbp_allocate(&b->store.allocator, (size_t)larger * sizeof **table);
-    if (fresh == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
+    uint32_t *renewed = (uint32_t *)gxbp_allocate(&b->store.allocator, (size_t)larger * sizeof **table);
+    if (renewed == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
     gxbp_release(&b->store.allocator, *table, (size_t)*size * sizeof **table);
-    *table = fresh;
+    *table = renewed;
     *size = larger;
     return 1;
 }
 
-/* Lists the points up to a number, but for those of frames. */
+/* Enters the first count points, except those of frames, in the table. */
 static GXBP_RARE void gxbp_list_points(gxb_boolean *b, uint32_t count) {
-    const uint32_t last = b->table_size - 1;
+    const uint32_t last = b->points.table_size - 1;
     uint32_t i, k;
-    memset(b->table, 0xff, (size_t)b->table_size * sizeof *b->table);
-    for (i = b->table_used = 0; i < count; i++) {
-        if (b->vertices[i].key[0] == GXB_FROM_VERTEX && b->vertices[i].key[1] == GXB_NONE) continue;
-        for (k = gxbp_hash_point(b, i) & last; b->table[k] != GXB_NONE; k = (k + 1) & last) {}
-        b->table[k] = i;
-        b->table_used++;
+    memset(b->points.table, 0xff, (size_t)b->points.table_size * sizeof *b->points.table);
+    for (i = b->points.table_used = 0; i < count; i++) {
+        if (b->points.vertices[i].key[0] == GXB_FROM_VERTEX && b->points.vertices[i].key[1] == GXB_NONE) continue;
+        for (k = gxbp_hash_point(b, i) & last; b->points.table[k] != GXB_NONE; k = (k + 1) & last) {}
+        b->points.table[k] = i;
+        b->points.table_used++;
     }
 }
 
 static GXBP_COLD int gxbp_grow_table(gxb_boolean *b, uint32_t extra) {
-    uint32_t size = b->table_size == 0 ? 64 : b->table_size;
-    while ((uint64_t)size < ((uint64_t)b->table_used + extra) * 3 && size < (uint32_t)1 << 31) size *= 2;
-    if (!gxbp_renew_table(b, &b->table, &b->table_size, size)) return 0;
-    gxbp_list_points(b, b->vertex_count);
+    uint32_t size = b->points.table_size == 0 ? 64 : b->points.table_size;
+    while ((uint64_t)size < ((uint64_t)b->points.table_used + extra) * 3 && size < (uint32_t)1 << 31) size *= 2;
+    if (!gxbp_renew_table(b, &b->points.table, &b->points.table_size, size)) return 0;
+    gxbp_list_points(b, b->points.vertex_count);
     return 1;
 }
 
-/* Room in the table for so many points more */
+/* Makes room in the table for extra points. */
 static int gxbp_table_room(gxb_boolean *b, uint32_t extra) {
-    return ((uint64_t)b->table_used + extra) * 2 <= b->table_size || gxbp_grow_table(b, extra);
+    return ((uint64_t)b->points.table_used + extra) * 2 <= b->points.table_size || gxbp_grow_table(b, extra);
 }
 
 /* A point without coordinates yet. */
@@ -6127,13 +6206,13 @@ static inline uint32_t gxbp_new_vertex(gxb_boolean *b, uint32_t kind, uint32_t p
     uint32_t id;
     gx_result result;
     gxbp_vertex *v;
-    if (!GXBP_ROOM(b, vertices, vertex, 1)) return GXB_NONE;
+    if (!GXBP_ROOM(b, points.vertices, points.vertex, 1)) return GXB_NONE;
     result = gxbp_new_point(&b->store, &id);
     if (result != GX_OK) {
         gxbp_stop(b, result);
         return GXB_NONE;
     }
-    v = &b->vertices[b->vertex_count++];
+    v = &b->points.vertices[b->points.vertex_count++];
     memset(v, 0, sizeof *v);
     v->key[0] = kind;
     v->key[1] = p;
@@ -6143,7 +6222,7 @@ static inline uint32_t gxbp_new_vertex(gxb_boolean *b, uint32_t kind, uint32_t p
     return id;
 }
 
-/* Follows names to the last one, and halves the way for whoever comes next. */
+/* Follows names to the last one, and halves the path for later calls. */
 static GXBP_APART uint32_t gxbp_find_same(gxbp_vertex *v, uint32_t point) {
     while (v[point].same != point) {
         v[point].same = v[v[point].same].same;
@@ -6153,17 +6232,17 @@ static GXBP_APART uint32_t gxbp_find_same(gxbp_vertex *v, uint32_t point) {
 }
 
 static uint32_t gxbp_same(gxb_boolean *b, uint32_t point) {
-    return b->vertices[point].same == point ? point : gxbp_find_same(b->vertices, point);
+    return b->points.vertices[point].same == point ? point : gxbp_find_same(b->points.vertices, point);
 }
 
-/* Two names of one point: the first stays, by the second's definition where that is an input vertex. */
+/* Two names of one point: the first stays. It takes the second's definition if that is an input vertex. */
 static GXBP_RARE void gxbp_unite(gxb_boolean *b, uint32_t keep, uint32_t drop) {
     gxb_cpoint *p = &b->store.points[keep];
     const gxb_cpoint *q = &b->store.points[drop];
     if (keep == drop) return;
-    b->vertices[drop].same = keep;
-    b->united = 1;
-    if (q->kind == GXB_EXPLICIT && q->def[0] == drop) b->renamed = 1;
+    b->points.vertices[drop].same = keep;
+    b->points.united = 1;
+    if (q->kind == GXB_EXPLICIT && q->def[0] == drop) b->points.renamed = 1;
     if (p->kind == GXB_EXPLICIT || q->kind != GXB_EXPLICIT) return;
     p->kind = GXB_EXPLICIT;
     p->ball = q->ball;
@@ -6171,8 +6250,8 @@ static GXBP_RARE void gxbp_unite(gxb_boolean *b, uint32_t keep, uint32_t drop) {
     p->def[0] = q->def[0];
 }
 
-/* The point of a plane where a line meets it, or of three planes. Where the ball is too large to filter by it comes
-   from exact coordinates: the ratio's relative error is below 2^-50. */
+/* Defines a point as the intersection of a line and a plane or of three planes. A ball that is too large to filter by
+ * is replaced by one from exact coordinates, whose ratio has a relative error below 2^-50. */
 static void gxbp_place_point(gxb_boolean *b, uint32_t point, uint32_t kind, uint32_t p, uint32_t q, uint32_t r) {
     gxb_cpoint *c = &b->store.points[point];
     c->kind = (uint8_t)kind;
@@ -6194,348 +6273,34 @@ static void gxbp_place_point(gxb_boolean *b, uint32_t point, uint32_t kind, uint
     }
 }
 
-/* Finds or makes the entry of a point with this key. *fresh: it is new and has no place yet. */
-static uint32_t gxbp_keyed_point(gxb_boolean *b, uint32_t kind, uint32_t p, uint32_t q, uint32_t r, int *fresh) {
+/* Finds or makes the entry of a point with this key. *is_new: it is new and has no place yet. */
+static uint32_t gxbp_keyed_point(gxb_boolean *b, uint32_t kind, uint32_t p, uint32_t q, uint32_t r, int *is_new) {
     uint32_t key[4], k, id;
-    *fresh = 0;
+    *is_new = 0;
     if (!gxbp_table_room(b, 1)) return GXB_NONE;
     key[0] = kind;
     key[1] = p;
     key[2] = q;
     key[3] = r;
-    for (k = gxbp_hash_key(key) & (b->table_size - 1); b->table[k] != GXB_NONE; k = (k + 1) & (b->table_size - 1))
-        if (memcmp(b->vertices[b->table[k]].key, key, sizeof key) == 0) return gxbp_same(b, b->table[k]);
+    for (k = gxbp_hash_key(key) & (b->points.table_size - 1); b->points.table[k] != GXB_NONE;
+         k = (k + 1) & (b->points.table_size - 1))
+        if (memcmp(b->points.vertices[b->points.table[k]].key, key, sizeof key) == 0)
+            return gxbp_same(b, b->points.table[k]);
     id = gxbp_new_vertex(b, kind, p, q, r);
     if (id == GXB_NONE) return GXB_NONE;
-    b->table[k] = id;
-    b->table_used++;
-    *fresh = 1;
+    b->points.table[k] = id;
+    b->points.table_used++;
+    *is_new = 1;
     return id;
 }
 
-/* --- operands --- */
-
-/* The input's coordinates in the frame: times 2^shift, exact. */
-static gx_result gxbp_scale(const gxb_boolean *b, const double x[3], double y[3]) {
-    int k;
-    for (k = 0; k < 3; k++) {
-        const int e = gxbp_exponent_bits(x[k]);
-        if (e == 0x7ff) return GX_ERROR_NOT_FINITE;
-        y[k] = 0;
-        if (gxbp_is_zero(x[k])) continue;
-        if (e == 0 || e - 1023 + b->store.shift < -128 || e - 1023 + b->store.shift > 127) return GX_ERROR_RANGE;
-        y[k] = gxbp_double(gxbp_bits(x[k]) + ((uint64_t)(int64_t)b->store.shift << 52));
-    }
-    return GX_OK;
-}
-
-#define GXBP_LARGEST 200 /* the first operand's largest coordinate is 2^+-this: cubes of 2^128 times it are finite */
-
-/* Scenes of ordinary size keep their scale. *bad: the vertex with the largest coordinate, where that is out of range */
-static gx_result gxbp_choose_scale(gxb_boolean *b, const gxb_operand *operand, size_t *bad) {
-    int largest = -2000;
-    size_t i, at = 0;
-    for (i = 0; i < 3 * operand->vertex_count; i++) {
-        const int e = gxbp_exponent_bits(operand->vertices[i]) - 1023;
-        if (e > largest && e < 1024 && !gxbp_is_zero(operand->vertices[i])) {
-            largest = e;
-            at = i / 3;
-        }
-    }
-    b->store.shift = largest == -2000 || (largest >= -60 && largest <= 60) ? 0 : -largest;
-    if (largest == -2000 || (largest >= -GXBP_LARGEST && largest <= GXBP_LARGEST)) return GX_OK;
-    *bad = at;
-    return GX_ERROR_RANGE;
-}
-
-static uint32_t gxbp_input_point(gxb_boolean *b, const double y[3], uint32_t operand, uint32_t index) {
-    uint32_t k, id;
-    for (k = gxbp_hash_place(y) & (b->table_size - 1); b->table[k] != GXB_NONE; k = (k + 1) & (b->table_size - 1)) {
-        const uint32_t p = b->table[k];
-        if (b->vertices[p].key[0] == GXB_FROM_VERTEX && memcmp(b->store.points[p].ball.x, y, 3 * sizeof *y) == 0)
-            return p;
-    }
-    id = gxbp_new_vertex(b, GXB_FROM_VERTEX, operand, index, 0);
-    if (id == GXB_NONE) return GXB_NONE;
-    gxbp_ball_explicit(&b->store.points[id].ball, y);
-    b->store.points[id].def[0] = id;
-    b->table[k] = id;
-    b->table_used++;
-    return id;
-}
-
-static uint32_t gxbp_next_edge(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
-static uint32_t gxbp_last_edge(uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
-
-/* An edge between vertex p and a later one, with which it is kept: how often it is passed forth (from p) and back, and
-   by which half-edges last. next: the later end of another edge of p. first: of the vertex itself, the half-edges
-   between it and later ones. */
-typedef struct gxbp_passage {
-    uint32_t first, p, next, forth, back, there, home;
-} gxbp_passage;
-
-/* Half-edges in lists of their earlier vertices, in ascending order; next: of each half-edge. */
-static void gxbp_list_half_edges(const uint32_t *triangles, uint32_t count, gxbp_passage *passages, uint32_t *next) {
-    uint32_t h, k, i;
-    for (h = 3 * count; h > 0;) {
-        h -= 3;
-        for (k = 0, i = 2; k < 3; i = k++) {
-            const uint32_t p = triangles[h + i], q = triangles[h + k];
-            gxbp_passage *at = &passages[p < q ? p : q];
-            next[h + i] = p == q ? GXB_NONE : at->first;
-            if (p != q) at->first = h + i;
-        }
-    }
-}
-
-/* Takes the half-edges from p's list: the passages of its edges. Returns the later end of the last of these. */
-static uint32_t gxbp_take_passages(const uint32_t *triangles, gxbp_passage *passages, uint32_t p, uint32_t *twin) {
-    uint32_t h, next, last = GXB_NONE;
-    for (h = passages[p].first; h != GXB_NONE; h = next) {
-        const uint32_t from = triangles[h], q = from == p ? triangles[gxbp_next_edge(h)] : from;
-        gxbp_passage *e = &passages[q];
-        next = twin[h];
-        twin[h] = GXB_NONE;
-        if (e->p != p) {
-            e->p = p;
-            e->forth = e->back = 0;
-            e->next = last;
-            last = q;
-        }
-        if (from == p) {
-            e->forth++;
-            e->there = h;
-        } else {
-            e->back++;
-            e->home = h;
-        }
-    }
-    return last;
-}
-
-/* vertices of which a table has all pairs; half-edges that a byte names */
-enum { GXBP_FEW = 32, GXBP_FEW_TRIANGLES = 80 };
-
-/* Of few vertices. 0: not all edges have one half-edge in each direction. */
-static int gxbp_find_few_twins(const uint32_t *triangles, uint32_t count, uint32_t vertex_count, uint32_t *twin) {
-    uint8_t at[GXBP_FEW * GXBP_FEW];
-    uint32_t h, k, i, alone = 3 * count;
-    memset(at, 0xff, (size_t)vertex_count * vertex_count);
-    for (h = 0; h < 3 * count; h += 3)
-        for (k = 0, i = 2; k < 3; i = k++) {
-            const uint32_t p = triangles[h + i], q = triangles[h + k], back = at[q * vertex_count + p];
-            if (p == q || at[p * vertex_count + q] != 0xff) return 0;
-            at[p * vertex_count + q] = (uint8_t)(h + i);
-            if (back == 0xff) continue;
-            twin[h + i] = back;
-            twin[back] = h + i;
-            alone -= 2;
-        }
-    return alone == 0;
-}
-
-/* Words of room that gxbp_find_twins works in */
-static size_t gxbp_twin_room(size_t vertex_count) { return vertex_count * (sizeof(gxbp_passage) / sizeof(uint32_t)); }
-
-/* twin of each half-edge, GXB_NONE where an edge has not one in each direction. *open: a half-edge whose edge is passed
-   more often in its direction than in the other, or GXB_NONE: the surface is closed. */
-static void gxbp_find_twins(const uint32_t *triangles, size_t count, uint32_t vertex_count, uint32_t *twin,
-                            uint32_t *open, uint32_t *room) {
-    gxbp_passage *passages = (gxbp_passage *)(void *)room;
-    uint32_t p, q, odd;
-    *open = GXB_NONE;
-    if (vertex_count <= GXBP_FEW && count <= GXBP_FEW_TRIANGLES &&
-        gxbp_find_few_twins(triangles, (uint32_t)count, vertex_count, twin))
-        return;
-    for (p = 0; p < vertex_count; p++) passages[p].first = passages[p].p = GXB_NONE;
-    gxbp_list_half_edges(triangles, (uint32_t)count, passages, twin);
-    for (p = 0; p < vertex_count; p++) {
-        odd = GXB_NONE;
-        for (q = gxbp_take_passages(triangles, passages, p, twin); q != GXB_NONE; q = passages[q].next) {
-            const gxbp_passage *e = &passages[q];
-            if (e->forth == 1 && e->back == 1) {
-                twin[e->there] = e->home;
-                twin[e->home] = e->there;
-            } else if (e->forth != e->back)
-                odd = e->forth > e->back ? e->there : e->home;
-        }
-        if (*open == GXB_NONE) *open = odd;
-    }
-}
-
-/* Half-edges by the vertex that they leave, with the vertex in which they end. */
-typedef struct gxbp_exit {
-    uint32_t half_edge, to;
-} gxbp_exit;
-typedef struct gxbp_fan {
-    gxbp_exit *list;
-    uint32_t *first;
-    size_t bytes;
-} gxbp_fan;
-
-static GXBP_COLD int gxbp_make_fan(gxb_boolean *b, const uint32_t *triangles, size_t count, uint32_t vertex_count,
-                                   gxbp_fan *fan) {
-    uint32_t h;
-    fan->bytes = 3 * count * sizeof *fan->list + ((size_t)vertex_count + 1) * sizeof *fan->first;
-    fan->list = (gxbp_exit *)gxbp_allocate(&b->store.allocator, fan->bytes);
-    if (fan->list == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
-    fan->first = (uint32_t *)(void *)(fan->list + 3 * count);
-    memset(fan->first, 0, ((size_t)vertex_count + 1) * sizeof *fan->first);
-    for (h = 0; h < 3 * count; h++) fan->first[triangles[h]]++;
-    for (h = 1; h <= vertex_count; h++) fan->first[h] += fan->first[h - 1];
-    for (h = (uint32_t)(3 * count); h > 0;) {
-        gxbp_exit *e = &fan->list[--fan->first[triangles[--h]]];
-        e->half_edge = h;
-        e->to = triangles[gxbp_next_edge(h)];
-    }
-    return 1;
-}
-
-static void gxbp_drop_fan(gxb_boolean *b, gxbp_fan *fan) { gxbp_release(&b->store.allocator, fan->list, fan->bytes); }
-
-/* Component k of a x c, and the size of its products. A product of three fenced differences suffers three roundings in
-   them, two in itself and at most five in the sum that makes an orientation of it: within 32u of the products' sizes.
- */
-static double gxbp_cross_size(const double a[3], const double c[3], int i, int j, double *size) {
-    *size = gxbp_abs(a[i] * c[j]) + gxbp_abs(a[j] * c[i]);
-    return a[i] * c[j] - a[j] * c[i];
-}
-
-static void gxbp_cross_sizes(double m[3], double size[3], const double a[3], const double c[3]) {
-    int k;
-    for (k = 0; k < 3; k++) m[k] = gxbp_cross_size(a, c, (k + 1) % 3, (k + 2) % 3, &size[k]);
-}
-
-static GXBP_COLD int gxbp_has_area_exactly(const double *p, const double *q, const double *r) {
-    const double *x[3];
-    gxb_plane plane;
-    gxbp_vec n;
-    int sign[3];
-    x[0] = p;
-    x[1] = q;
-    x[2] = r;
-    if (gxbp_normal_short(x, sign)) return sign[0] != 0 || sign[1] != 0 || sign[2] != 0;
-    gxb_plane_init(&plane, p, q, r);
-    gxbp_plane_exact(&n, &plane);
-    return n.c[0].sign != 0 || n.c[1].sign != 0 || n.c[2].sign != 0;
-}
-
-/* Errors of the components: see gxbp_cross_size. */
-static int gxbp_has_area(const double *p, const double *q, const double *r) {
-    double a[3], c[3], m, size;
-    int k, i = 1, j = 2;
-    for (k = 0; k < 3; k++) {
-        a[k] = gxbp_fence(q[k] - p[k]);
-        c[k] = gxbp_fence(r[k] - p[k]);
-    }
-    for (k = 0; k < 3; i = j, j = k++) {
-        m = gxbp_cross_size(a, c, i, j, &size);
-        if (gxbp_abs(m) > 32 * GXBP_U * size + GXBP_TINY) return 1;
-    }
-    return gxbp_has_area_exactly(p, q, r);
-}
-
-/* A source on its own: one facet, behind those that there are, and room for it. */
-static inline void gxbp_reset_source(gxb_boolean *b, uint32_t s) {
-    gxbp_source *t = &b->sources[s];
-    gxbp_piece *f = &b->pieces[b->piece_count];
-    int k;
-    for (k = 0; k < 3; k++) {
-        t->edge[k] = GXB_NONE;
-        f->v[k] = t->point[k];
-        f->near[k] = GXB_NONE;
-        f->labels[k] = GXBP_BARE;
-    }
-    t->segments = t->next = GXB_NONE;
-    t->root = s;
-    f->source = t->flags & GXBP_DEGENERATE ? GXB_NONE : s;
-    f->next = f->covers = f->state = GXB_NONE;
-    t->facet = b->piece_count++;
-}
-
-static void gxbp_fill_source(gxb_boolean *b, uint32_t s, uint32_t operand, const uint32_t *twin, uint32_t first) {
-    gxbp_source *t = &b->sources[s];
-    const gxb_cpoint *x = b->store.points;
-    int k;
-    for (k = 0; k < 3; k++) t->twin[k] = twin[k] == GXB_NONE ? GXB_NONE : twin[k] + 3 * first;
-    t->plane = GXB_NONE;
-    t->operand = operand;
-    t->flags = gxbp_has_area(x[t->point[0]].ball.x, x[t->point[1]].ball.x, x[t->point[2]].ball.x)
-                 ? 0
-                 : (uint32_t)GXBP_DEGENERATE;
-    gxbp_reset_source(b, s);
-}
-
-/* Neighbours across an edge of a triangle without area are none. */
-static void gxbp_forget_degenerate(gxb_boolean *b, uint32_t first) {
-    uint32_t s, k;
-    for (s = first; s < b->source_count; s++) {
-        if (!(b->sources[s].flags & GXBP_DEGENERATE)) continue;
-        for (k = 0; k < 3; k++) {
-            const uint32_t h = b->sources[s].twin[k];
-            if (h != GXB_NONE) b->sources[h / 3].twin[h % 3] = GXB_NONE;
-            b->sources[s].twin[k] = GXB_NONE;
-        }
-        b->operands[b->operand_count - 1].simple = 0;
-    }
-}
-
-/* points and local: room for vertex_count; local triangles and twins: 3 per triangle. *distinct: no two vertices are at
- * one place, local is i. */
-static gx_result gxbp_read_points(gxb_boolean *b, const gxb_operand *o, uint32_t *points, uint32_t *local,
-                                  int *distinct, size_t *bad) {
-    size_t i;
-    *distinct = 1;
-    for (i = 0; i < o->vertex_count; i++) {
-        double y[3];
-        gxbp_vertex *v;
-        const gx_result result = gxbp_scale(b, o->vertices + 3 * i, y);
-        if (result != GX_OK) {
-            *bad = i;
-            return result;
-        }
-        points[i] = gxbp_input_point(b, y, b->operand_count, (uint32_t)i);
-        if (points[i] == GXB_NONE) return b->result;
-        v = &b->vertices[points[i]]; /* vertices at one place are one: the first of them */
-        if (v->head >= i || points[v->head] != points[i]) v->head = (uint32_t)i;
-        local[i] = v->head;
-        *distinct &= v->head == i;
-    }
-    return GX_OK;
-}
-
-static GXBP_APART gx_result gxbp_read_triangles(gxb_boolean *b, const gxb_operand *o, uint32_t *work, size_t *bad) {
-    uint32_t *points = work, *local = points + o->vertex_count, *joined = local + o->vertex_count;
-    uint32_t *twin = joined + 3 * o->triangle_count, open, first = b->source_count;
-    const uint32_t *triangles = o->triangles;
-    int distinct;
-    gx_result result = gxbp_read_points(b, o, points, local, &distinct, bad);
-    size_t h;
-    if (result != GX_OK) return result;
-    if (!distinct) {
-        for (h = 0; h < 3 * o->triangle_count; h++) joined[h] = local[o->triangles[h]];
-        triangles = joined;
-    }
-    gxbp_find_twins(triangles, o->triangle_count, (uint32_t)o->vertex_count, twin, &open, twin + 3 * o->triangle_count);
-    if (open != GXB_NONE && o->operation != GXB_SPLIT) {
-        *bad = open / 3;
-        return GX_ERROR_NOT_CLOSED;
-    }
-    for (h = 0; h < o->triangle_count; h++) {
-        gxbp_source *t = &b->sources[b->source_count];
-        int k;
-        for (k = 0; k < 3; k++) t->point[k] = points[triangles[3 * h + (size_t)k]];
-        gxbp_fill_source(b, b->source_count, b->operand_count, twin + 3 * h, first);
-        b->source_count++;
-    }
-    return GX_OK;
-}
+/* >>boxes: a tree of boxes for each operand ------------------------------------------------------------------------ */
+/* In: the corners of an operand's sources. Out: the sources along a Z-order curve, and boxes around groups of them.
+   Every box contains its triangles. Touches the boxes and leaf boxes only. */
 
 static const double *gxbp_corner_of(const gxb_boolean *b, uint32_t s, int k) {
-    return b->store.points[b->sources[s].point[k]].ball.x;
+    return b->store.points[b->in.sources[s].point[k]].ball.x;
 }
-
-/* --- box trees --- */
 
 /* Coordinates are below 2^128 and a float can't hold all of these, a sixteenth it can. A float's relative error is at
    most 2^-23; what is flushed to zero is far below 2^-120. */
@@ -6578,7 +6343,7 @@ static gxbp_box gxbp_box_of(const gxb_boolean *b, uint32_t s) {
 static int gxbp_box_meets(const gxbp_box *a, const gxbp_box *c) {
     return (a->low[0] <= c->high[0]) & (c->low[0] <= a->high[0]) & (a->low[1] <= c->high[1]) &
            (c->low[1] <= a->high[1]) & (a->low[2] <= c->high[2]) &
-           (c->low[2] <= a->high[2]); /* without branches: nobody can foretell them */
+           (c->low[2] <= a->high[2]); /* without branches, which would be mispredicted */
 }
 
 /* Ten bits with two zeros after each */
@@ -6627,8 +6392,8 @@ static GXBP_APART void gxbp_sort_sources(const gxb_boolean *b, const gxbp_operan
 
 /* Boxes of leaf i's sources, and around them */
 static void gxbp_fill_leaf(gxb_boolean *b, const gxbp_operand *o, uint32_t i) {
-    gxbp_leaf_boxes *leaf = &b->bounds[o->bounds + i];
-    gxbp_box *around = &b->boxes[o->tree.first + i];
+    gxbp_leaf_boxes *leaf = &b->in.bounds[o->bounds + i];
+    gxbp_box *around = &b->in.boxes[o->tree.first + i];
     uint32_t x, k;
     for (x = 0; x < GXBP_LEAF; x++) {
         gxbp_box box;
@@ -6656,8 +6421,8 @@ static void gxbp_fill_tree(gxb_boolean *b, const gxbp_operand *o) {
     for (i = 0; i < t->size[0]; i++) gxbp_fill_leaf(b, o, i);
     for (l = 1; l < t->levels; l++)
         for (i = 0; i < t->size[l - 1]; i++) {
-            gxbp_box *box = &b->boxes[t->first + t->level[l] + i / 2];
-            const gxbp_box *child = &b->boxes[t->first + t->level[l - 1] + i];
+            gxbp_box *box = &b->in.boxes[t->first + t->level[l] + i / 2];
+            const gxbp_box *child = &b->in.boxes[t->first + t->level[l - 1] + i];
             if (i % 2 == 0)
                 *box = *child;
             else
@@ -6673,53 +6438,404 @@ static GXBP_APART gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
     if (o->order == NULL) return GX_ERROR_MEMORY;
     if (o->source_count > 4 * GXBP_LEAF) {
         uint64_t *work = (uint64_t *)gxbp_borrow(b, 2 * words * sizeof *work);
-        if (work == NULL) return b->result;
+        if (work == NULL) return b->error;
         gxbp_sort_sources(b, o, work);
     } else
         for (i = 0; i < o->source_count; i++) o->order[i] = o->source + i;
-    o->bounds = b->bound_count;
-    b->bound_count += size;
+    o->bounds = b->in.bound_count;
+    b->in.bound_count += size;
     for (t->levels = 0;; size = (size + 1) / 2) {
         t->level[t->levels] = total;
         t->size[t->levels++] = size;
         total += size;
         if (size == 1) break;
     }
-    t->first = b->box_count;
-    if (!GXBP_ROOM(b, boxes, box, total)) return GX_ERROR_MEMORY;
-    b->box_count += total;
+    t->first = b->in.box_count;
+    if (!GXBP_ROOM(b, in.boxes, in.box, total)) return GX_ERROR_MEMORY;
+    b->in.box_count += total;
     gxbp_fill_tree(b, o);
     return GX_OK;
 }
 
-/* With the first operand comes room for a second one of its size (gxbp_reserve adds half of what is asked for), and for
-   thirds of it that the two divide: what is not used is not touched, and nothing large is copied. */
-static size_t gxbp_foresee(const gxb_boolean *b, size_t count, size_t thirds) {
-    return b->operand_count > 0 ? count : count + thirds * count / 3;
+/* Tests which boxes of a leaf meet a box, without branches, so that compilers vectorise it. Returns 0 if none does.
+ */
+static uint32_t gxbp_test_leaf(const gxbp_leaf_boxes *leaf, const gxbp_box *box, uint32_t meets[GXBP_LEAF]) {
+    uint32_t x, any = 0;
+    for (x = 0; x < GXBP_LEAF; x++)
+        meets[x] = (uint32_t)((leaf->low[0][x] <= box->high[0]) & (box->low[0] <= leaf->high[0][x]) &
+                              (leaf->low[1][x] <= box->high[1]) & (box->low[1] <= leaf->high[1][x]) &
+                              (leaf->low[2][x] <= box->high[2]) & (box->low[2] <= leaf->high[2][x]));
+    for (x = 0; x < GXBP_LEAF; x++) any |= meets[x];
+    return any;
+}
+
+static gxbp_box gxbp_leaf_box(const gxbp_leaf_boxes *leaf, uint32_t x) {
+    gxbp_box box;
+    uint32_t k;
+    for (k = 0; k < 3; k++) {
+        box.low[k] = leaf->low[k][x];
+        box.high[k] = leaf->high[k][x];
+    }
+    return box;
+}
+
+static int gxbp_boxes_meet(const gxb_boolean *b, const gxbp_tree *s, uint32_t l, uint32_t i, const gxbp_tree *t,
+                           uint32_t m, uint32_t j) {
+    return gxbp_box_meets(&b->in.boxes[s->first + s->level[l] + i], &b->in.boxes[t->first + t->level[m] + j]);
+}
+
+/* >>operands: reading an operand ----------------------------------------------------------------------------------- */
+/* In: a caller's surface, checked. Out: its points, sources with their neighbours across edges, one subtriangle for
+   each source, and the box tree. On an error the caller shortens the arrays again. */
+
+/* The input's coordinates in the frame: multiplied by 2^shift, exact. */
+static gx_result gxbp_scale(const gxb_boolean *b, const double x[3], double y[3]) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        const int e = gxbp_exponent_bits(x[k]);
+        if (e == 0x7ff) return GX_ERROR_NOT_FINITE;
+        y[k] = 0;
+        if (gxbp_is_zero(x[k])) continue;
+        if (e == 0 || e - 1023 + b->store.shift < -128 || e - 1023 + b->store.shift > 127) return GX_ERROR_RANGE;
+        y[k] = gxbp_double(gxbp_bits(x[k]) + ((uint64_t)(int64_t)b->store.shift << 52));
+    }
+    return GX_OK;
+}
+
+#define GXBP_LARGEST 200 /* the first operand's largest coordinate is 2^+-this: cubes of 2^128 times it are finite */
+
+/* Scenes of ordinary size keep their scale. *bad: the vertex with the largest coordinate if that is out of range. */
+static gx_result gxbp_choose_scale(gxb_boolean *b, const gxb_operand *operand, size_t *bad) {
+    int largest = -2000;
+    size_t i, at = 0;
+    for (i = 0; i < 3 * operand->vertex_count; i++) {
+        const int e = gxbp_exponent_bits(operand->vertices[i]) - 1023;
+        if (e > largest && e < 1024 && !gxbp_is_zero(operand->vertices[i])) {
+            largest = e;
+            at = i / 3;
+        }
+    }
+    b->store.shift = largest == -2000 || (largest >= -60 && largest <= 60) ? 0 : -largest;
+    if (largest == -2000 || (largest >= -GXBP_LARGEST && largest <= GXBP_LARGEST)) return GX_OK;
+    *bad = at;
+    return GX_ERROR_RANGE;
+}
+
+static uint32_t gxbp_input_point(gxb_boolean *b, const double y[3], uint32_t operand, uint32_t index) {
+    uint32_t k, id;
+    for (k = gxbp_hash_place(y) & (b->points.table_size - 1); b->points.table[k] != GXB_NONE;
+         k = (k + 1) & (b->points.table_size - 1)) {
+        const uint32_t p = b->points.table[k];
+        if (b->points.vertices[p].key[0] == GXB_FROM_VERTEX && memcmp(b->store.points[p].ball.x, y, 3 * sizeof *y) == 0)
+            return p;
+    }
+    id = gxbp_new_vertex(b, GXB_FROM_VERTEX, operand, index, 0);
+    if (id == GXB_NONE) return GXB_NONE;
+    gxbp_ball_explicit(&b->store.points[id].ball, y);
+    b->store.points[id].def[0] = id;
+    b->points.table[k] = id;
+    b->points.table_used++;
+    return id;
+}
+
+static uint32_t gxbp_next_edge(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
+static uint32_t gxbp_last_edge(uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
+
+/* An edge from vertex p to a later vertex, stored with the later one: how often half-edges pass it forth (from p) and
+ * back, and the last ones that do. next: the later end of another edge of p. first: list of the half-edges between the
+ * vertex itself and later ones. */
+typedef struct gxbp_passage {
+    uint32_t first, p, next, forth, back, there, home;
+} gxbp_passage;
+
+/* Half-edges in lists of their earlier vertices, in ascending order; next: of each half-edge. */
+static void gxbp_list_half_edges(const uint32_t *triangles, uint32_t count, gxbp_passage *passages, uint32_t *next) {
+    uint32_t h, k, i;
+    for (h = 3 * count; h > 0;) {
+        h -= 3;
+        for (k = 0, i = 2; k < 3; i = k++) {
+            const uint32_t p = triangles[h + i], q = triangles[h + k];
+            gxbp_passage *at = &passages[p < q ? p : q];
+            next[h + i] = p == q ? GXB_NONE : at->first;
+            if (p != q) at->first = h + i;
+        }
+    }
+}
+
+/* Turns the half-edges in p's list into passages of its edges. Returns the later end of the last edge. */
+static uint32_t gxbp_take_passages(const uint32_t *triangles, gxbp_passage *passages, uint32_t p, uint32_t *twin) {
+    uint32_t h, next, last = GXB_NONE;
+    for (h = passages[p].first; h != GXB_NONE; h = next) {
+        const uint32_t from = triangles[h], q = from == p ? triangles[gxbp_next_edge(h)] : from;
+        gxbp_passage *e = &passages[q];
+        next = twin[h];
+        twin[h] = GXB_NONE;
+        if (e->p != p) {
+            e->p = p;
+            e->forth = e->back = 0;
+            e->next = last;
+            last = q;
+        }
+        if (from == p) {
+            e->forth++;
+            e->there = h;
+        } else {
+            e->back++;
+            e->home = h;
+        }
+    }
+    return last;
+}
+
+/* the most vertices for a table of all pairs; the most triangles whose half-edges fit a byte */
+enum { GXBP_FEW = 32, GXBP_FEW_TRIANGLES = 80 };
+
+/* Twins for few vertices. 0: some edge has not exactly one half-edge in each direction. */
+static int gxbp_find_few_twins(const uint32_t *triangles, uint32_t count, uint32_t vertex_count, uint32_t *twin) {
+    uint8_t at[GXBP_FEW * GXBP_FEW];
+    uint32_t h, k, i, alone = 3 * count;
+    memset(at, 0xff, (size_t)vertex_count * vertex_count);
+    for (h = 0; h < 3 * count; h += 3)
+        for (k = 0, i = 2; k < 3; i = k++) {
+            const uint32_t p = triangles[h + i], q = triangles[h + k], back = at[q * vertex_count + p];
+            if (p == q || at[p * vertex_count + q] != 0xff) return 0;
+            at[p * vertex_count + q] = (uint8_t)(h + i);
+            if (back == 0xff) continue;
+            twin[h + i] = back;
+            twin[back] = h + i;
+            alone -= 2;
+        }
+    return alone == 0;
+}
+
+/* Words of room that gxbp_find_twins works in */
+static size_t gxbp_twin_room(size_t vertex_count) { return vertex_count * (sizeof(gxbp_passage) / sizeof(uint32_t)); }
+
+/* Finds the twin of each half-edge; GXB_NONE where an edge has not exactly one half-edge in each direction. *open: a
+ * half-edge whose edge is passed more often in its direction than in the other; GXB_NONE: the surface is closed. */
+static void gxbp_find_twins(const uint32_t *triangles, size_t count, uint32_t vertex_count, uint32_t *twin,
+                            uint32_t *open, uint32_t *room) {
+    gxbp_passage *passages = (gxbp_passage *)(void *)room;
+    uint32_t p, q, odd;
+    *open = GXB_NONE;
+    if (vertex_count <= GXBP_FEW && count <= GXBP_FEW_TRIANGLES &&
+        gxbp_find_few_twins(triangles, (uint32_t)count, vertex_count, twin))
+        return;
+    for (p = 0; p < vertex_count; p++) passages[p].first = passages[p].p = GXB_NONE;
+    gxbp_list_half_edges(triangles, (uint32_t)count, passages, twin);
+    for (p = 0; p < vertex_count; p++) {
+        odd = GXB_NONE;
+        for (q = gxbp_take_passages(triangles, passages, p, twin); q != GXB_NONE; q = passages[q].next) {
+            const gxbp_passage *e = &passages[q];
+            if (e->forth == 1 && e->back == 1) {
+                twin[e->there] = e->home;
+                twin[e->home] = e->there;
+            } else if (e->forth != e->back)
+                odd = e->forth > e->back ? e->there : e->home;
+        }
+        if (*open == GXB_NONE) *open = odd;
+    }
+}
+
+/* Half-edges listed by the vertex that they leave, with the vertex in which they end. */
+typedef struct gxbp_exit {
+    uint32_t half_edge, to;
+} gxbp_exit;
+typedef struct gxbp_exits {
+    gxbp_exit *list;
+    uint32_t *first;
+    size_t bytes;
+} gxbp_exits;
+
+static GXBP_COLD int gxbp_list_exits(gxb_boolean *b, const uint32_t *triangles, size_t count, uint32_t vertex_count,
+                                     gxbp_exits *exits) {
+    uint32_t h;
+    exits->bytes = 3 * count * sizeof *exits->list + ((size_t)vertex_count + 1) * sizeof *exits->first;
+    exits->list = (gxbp_exit *)gxbp_allocate(&b->store.allocator, exits->bytes);
+    if (exits->list == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
+    exits->first = (uint32_t *)(void *)(exits->list + 3 * count);
+    memset(exits->first, 0, ((size_t)vertex_count + 1) * sizeof *exits->first);
+    for (h = 0; h < 3 * count; h++) exits->first[triangles[h]]++;
+    for (h = 1; h <= vertex_count; h++) exits->first[h] += exits->first[h - 1];
+    for (h = (uint32_t)(3 * count); h > 0;) {
+        gxbp_exit *e = &exits->list[--exits->first[triangles[--h]]];
+        e->half_edge = h;
+        e->to = triangles[gxbp_next_edge(h)];
+    }
+    return 1;
+}
+
+static void gxbp_drop_exits(gxb_boolean *b, gxbp_exits *exits) {
+    gxbp_release(&b->store.allocator, exits->list, exits->bytes);
+}
+
+/* Component k of a x c, and the size of its products. A product of three fenced differences suffers three roundings in
+   them, two in itself and at most five in the sum that makes an orientation of it: within 32u of the products' sizes.
+ */
+static double gxbp_cross_size(const double a[3], const double c[3], int i, int j, double *size) {
+    *size = gxbp_abs(a[i] * c[j]) + gxbp_abs(a[j] * c[i]);
+    return a[i] * c[j] - a[j] * c[i];
+}
+
+static void gxbp_cross_sizes(double m[3], double size[3], const double a[3], const double c[3]) {
+    int k;
+    for (k = 0; k < 3; k++) m[k] = gxbp_cross_size(a, c, (k + 1) % 3, (k + 2) % 3, &size[k]);
+}
+
+static GXBP_COLD int gxbp_has_area_exactly(const double *p, const double *q, const double *r) {
+    const double *x[3];
+    gxb_plane plane;
+    gxbp_vec n;
+    int sign[3];
+    x[0] = p;
+    x[1] = q;
+    x[2] = r;
+    if (gxbp_normal_short(x, sign)) return sign[0] != 0 || sign[1] != 0 || sign[2] != 0;
+    gxb_plane_init(&plane, p, q, r);
+    gxbp_plane_exact(&n, &plane);
+    return n.c[0].sign != 0 || n.c[1].sign != 0 || n.c[2].sign != 0;
+}
+
+/* Errors of the components: see gxbp_cross_size. */
+static int gxbp_has_area(const double *p, const double *q, const double *r) {
+    double a[3], c[3], m, size;
+    int k, i = 1, j = 2;
+    for (k = 0; k < 3; k++) {
+        a[k] = gxbp_fence(q[k] - p[k]);
+        c[k] = gxbp_fence(r[k] - p[k]);
+    }
+    for (k = 0; k < 3; i = j, j = k++) {
+        m = gxbp_cross_size(a, c, i, j, &size);
+        if (gxbp_abs(m) > 32 * GXBP_U * size + GXBP_TINY) return 1;
+    }
+    return gxbp_has_area_exactly(p, q, r);
+}
+
+/* Resets a source to one subtriangle, which is appended. The caller has made room for it. */
+static inline void gxbp_reset_source(gxb_boolean *b, uint32_t s) {
+    gxbp_source *t = &b->in.sources[s];
+    gxbp_subtriangle *f = &b->mesh.subtriangles[b->mesh.subtriangle_count];
+    int k;
+    for (k = 0; k < 3; k++) {
+        t->edge[k] = GXB_NONE;
+        f->v[k] = t->point[k];
+        f->near[k] = GXB_NONE;
+        f->labels[k] = GXBP_BARE;
+    }
+    t->segments = t->next = GXB_NONE;
+    t->root = s;
+    f->source = t->flags & GXBP_DEGENERATE ? GXB_NONE : s;
+    f->next = f->covers = f->state = GXB_NONE;
+    t->subtriangle = b->mesh.subtriangle_count++;
+}
+
+static void gxbp_fill_source(gxb_boolean *b, uint32_t s, uint32_t operand, const uint32_t *twin, uint32_t first) {
+    gxbp_source *t = &b->in.sources[s];
+    const gxb_cpoint *x = b->store.points;
+    int k;
+    for (k = 0; k < 3; k++) t->twin[k] = twin[k] == GXB_NONE ? GXB_NONE : twin[k] + 3 * first;
+    t->plane = GXB_NONE;
+    t->operand = operand;
+    t->flags = gxbp_has_area(x[t->point[0]].ball.x, x[t->point[1]].ball.x, x[t->point[2]].ball.x)
+                 ? 0
+                 : (uint32_t)GXBP_DEGENERATE;
+    gxbp_reset_source(b, s);
+}
+
+/* A triangle without area is nobody's neighbour. */
+static void gxbp_forget_degenerate(gxb_boolean *b, uint32_t first) {
+    uint32_t s, k;
+    for (s = first; s < b->in.source_count; s++) {
+        if (!(b->in.sources[s].flags & GXBP_DEGENERATE)) continue;
+        for (k = 0; k < 3; k++) {
+            const uint32_t h = b->in.sources[s].twin[k];
+            if (h != GXB_NONE) b->in.sources[h / 3].twin[h % 3] = GXB_NONE;
+            b->in.sources[s].twin[k] = GXB_NONE;
+        }
+        b->in.operands[b->in.operand_count - 1].simple = 0;
+    }
+}
+
+/* points and local: room for vertex_count; local triangles and twins: 3 per triangle. *distinct: no two vertices are at
+ * one place, local is i. */
+static gx_result gxbp_read_points(gxb_boolean *b, const gxb_operand *o, uint32_t *points, uint32_t *local,
+                                  int *distinct, size_t *bad) {
+    size_t i;
+    *distinct = 1;
+    for (i = 0; i < o->vertex_count; i++) {
+        double y[3];
+        gxbp_vertex *v;
+        const gx_result result = gxbp_scale(b, o->vertices + 3 * i, y);
+        if (result != GX_OK) {
+            *bad = i;
+            return result;
+        }
+        points[i] = gxbp_input_point(b, y, b->in.operand_count, (uint32_t)i);
+        if (points[i] == GXB_NONE) return b->error;
+        v = &b->points.vertices[points[i]]; /* vertices at one place are one: the first of them */
+        if (v->head >= i || points[v->head] != points[i]) v->head = (uint32_t)i;
+        local[i] = v->head;
+        *distinct &= v->head == i;
+    }
+    return GX_OK;
+}
+
+static GXBP_APART gx_result gxbp_read_triangles(gxb_boolean *b, const gxb_operand *o, uint32_t *work, size_t *bad) {
+    uint32_t *points = work, *local = points + o->vertex_count, *joined = local + o->vertex_count;
+    uint32_t *twin = joined + 3 * o->triangle_count, open, first = b->in.source_count;
+    const uint32_t *triangles = o->triangles;
+    int distinct;
+    gx_result result = gxbp_read_points(b, o, points, local, &distinct, bad);
+    size_t h;
+    if (result != GX_OK) return result;
+    if (!distinct) {
+        for (h = 0; h < 3 * o->triangle_count; h++) joined[h] = local[o->triangles[h]];
+        triangles = joined;
+    }
+    gxbp_find_twins(triangles, o->triangle_count, (uint32_t)o->vertex_count, twin, &open, twin + 3 * o->triangle_count);
+    if (open != GXB_NONE && o->operation != GXB_SPLIT) {
+        *bad = open / 3;
+        return GX_ERROR_NOT_CLOSED;
+    }
+    for (h = 0; h < o->triangle_count; h++) {
+        gxbp_source *t = &b->in.sources[b->in.source_count];
+        int k;
+        for (k = 0; k < 3; k++) t->point[k] = points[triangles[3 * h + (size_t)k]];
+        gxbp_fill_source(b, b->in.source_count, b->in.operand_count, twin + 3 * h, first);
+        b->in.source_count++;
+    }
+    return GX_OK;
+}
+
+/* The first operand allocates room for a second one of its size too (gxbp_reserve adds half of the request), and for
+ * the given thirds of it that the two divide. Unused room is never touched, and nothing large is copied. */
+static size_t gxbp_presize(const gxb_boolean *b, size_t count, size_t thirds) {
+    return b->in.operand_count > 0 ? count : count + thirds * count / 3;
 }
 
 static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_t *bad) {
     const size_t words = 2 * o->vertex_count + 6 * o->triangle_count + gxbp_twin_room(o->vertex_count);
-    const size_t sources = gxbp_foresee(b, o->triangle_count, 1), pieces = gxbp_foresee(b, o->triangle_count, 3),
-                 points = gxbp_foresee(b, o->vertex_count, 3);
-    const size_t leaves = gxbp_foresee(b, (o->triangle_count + GXBP_LEAF - 1) / GXBP_LEAF, 1);
+    const size_t sources = gxbp_presize(b, o->triangle_count, 1), subtriangles = gxbp_presize(b, o->triangle_count, 3),
+                 points = gxbp_presize(b, o->vertex_count, 3);
+    const size_t leaves = gxbp_presize(b, (o->triangle_count + GXBP_LEAF - 1) / GXBP_LEAF, 1);
     gxbp_operand *mine;
     gx_result result;
     uint32_t *work;
-    if (!GXBP_ROOM(b, operands, operand, 1) || !GXBP_ROOM(b, sources, source, sources) ||
-        !GXBP_ROOM(b, bounds, bound, leaves) || !GXBP_ROOM(b, pieces, piece, pieces) ||
-        !GXBP_ROOM(b, vertices, vertex, points) || !gxbp_table_room(b, (uint32_t)o->vertex_count))
-        return b->result;
+    if (!GXBP_ROOM(b, in.operands, in.operand, 1) || !GXBP_ROOM(b, in.sources, in.source, sources) ||
+        !GXBP_ROOM(b, in.bounds, in.bound, leaves) ||
+        !GXBP_ROOM(b, mesh.subtriangles, mesh.subtriangle, subtriangles) ||
+        !GXBP_ROOM(b, points.vertices, points.vertex, points) || !gxbp_table_room(b, (uint32_t)o->vertex_count))
+        return b->error;
     result = GXBP_RESERVE(&b->store.allocator, &b->store, points, point, points);
     if (result != GX_OK) return result;
     work = (uint32_t *)gxbp_borrow(b, words * sizeof *work);
-    if (work == NULL) return b->result;
-    mine = &b->operands[b->operand_count];
+    if (work == NULL) return b->error;
+    mine = &b->in.operands[b->in.operand_count];
     memset(mine, 0, sizeof *mine);
     mine->operation = o->operation;
     mine->rule = o->rule;
     mine->simple = o->simple;
-    mine->source = b->source_count;
+    mine->source = b->in.source_count;
     mine->source_count = (uint32_t)o->triangle_count;
     result = gxbp_read_triangles(b, o, work, bad);
     if (result == GX_OK) result = gxbp_make_tree(b, mine);
@@ -6727,14 +6843,16 @@ static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operan
         gxbp_release(&b->store.allocator, mine->order, o->triangle_count * sizeof *mine->order);
         return result;
     }
-    b->operand_count++;
+    b->in.operand_count++;
     gxbp_forget_degenerate(b, mine->source);
     return GX_OK;
 }
 
-/* --- where two triangles meet --- */
+/* >>sides: planes of sources; records of where they meet ----------------------------------------------------------- */
+/* In: sources and points. Out: sides of planes and folds, decided by the filter, by definition or exactly; planes, made
+   when needed; segments, and points on edges. Touches planes, segments, cuts, hits and the list of dirty sources. */
 
-/* What the filter leaves open: what is known by definition, then exact arithmetic. */
+/* Decides what the filter leaves open: first by definition, then by exact arithmetic. */
 static GXBP_APART int gxbp_point_side_beyond_filter(gxb_boolean *b, uint32_t point, uint32_t plane) {
     gxb_store *store = &b->store;
     const gxb_cpoint *p = &store->points[point];
@@ -6769,9 +6887,9 @@ static int gxbp_flat_turn(const gxb_boolean *b, uint32_t plane, const double *p,
     return gxb_orient2d(a, c, d) * f->axis_sign;
 }
 
-/* Where the filter leaves a fold open, it is remembered with both triangles at the edge, which ask for it in turn. */
+/* A fold that the filter leaves open is stored with both triangles at the edge, since both request it. */
 static GXBP_APART int gxbp_fold_beyond_filter(gxb_boolean *b, uint32_t half_edge, uint32_t twin) {
-    gxbp_source *s = &b->sources[half_edge / 3], *t = &b->sources[twin / 3];
+    gxbp_source *s = &b->in.sources[half_edge / 3], *t = &b->in.sources[twin / 3];
     const uint32_t mine = GXBP_FOLDS + 2 * (half_edge % 3), other = GXBP_FOLDS + 2 * (twin % 3);
     uint32_t fold = s->flags >> mine & 3; /* 0: not known, else 2 more than it is */
     if (fold == 0) {
@@ -6785,32 +6903,33 @@ static GXBP_APART int gxbp_fold_beyond_filter(gxb_boolean *b, uint32_t half_edge
 /* How the surface is folded between a triangle that has a plane, at a half-edge, and its twin, edge k of s: 1 towards
    its front, as the corner beyond the edge lies in front of each, -1 to its back. */
 static inline int gxbp_fold(gxb_boolean *b, uint32_t half_edge, uint32_t s, uint32_t k) {
-    const uint32_t plane = b->sources[half_edge / 3].plane, corner = b->sources[s].point[k == 0 ? 2 : k - 1];
+    const uint32_t plane = b->in.sources[half_edge / 3].plane, corner = b->in.sources[s].point[k == 0 ? 2 : k - 1];
     double bound, value;
-    if (b->sources[s].plane == plane) return 0;
+    if (b->in.sources[s].plane == plane) return 0;
     value = gxbp_filter_side(&b->store.points[corner].ball, &b->store.planes[plane].filter, &bound);
     b->store.filter_calls++;
     if (value > bound) return 1;
     return value < -bound ? -1 : gxbp_fold_beyond_filter(b, half_edge, 3 * s + k);
 }
 
-/* A triangle that lies in the plane of a neighbour, and faces as it does, has the same plane: points on both are known
- * to be in it. */
+/* A triangle that lies in the plane of a neighbour and faces the same way shares its plane. Points on both are then
+ * known to be in it. */
 static int gxbp_share_plane(gxb_boolean *b, uint32_t s) {
     uint32_t k;
     for (k = 0; k < 3; k++) {
-        const uint32_t twin = b->sources[s].twin[k], plane = twin == GXB_NONE ? GXB_NONE : b->sources[twin / 3].plane;
+        const uint32_t twin = b->in.sources[s].twin[k],
+                       plane = twin == GXB_NONE ? GXB_NONE : b->in.sources[twin / 3].plane;
         if (plane == GXB_NONE || gxbp_fold(b, twin, s, k) != 0 ||
             gxbp_flat_turn(b, plane, gxbp_corner_of(b, s, 0), gxbp_corner_of(b, s, 1), gxbp_corner_of(b, s, 2)) <= 0)
             continue;
-        b->sources[s].plane = plane;
+        b->in.sources[s].plane = plane;
         return 1;
     }
     return 0;
 }
 
 static GXBP_APART int gxbp_find_plane(gxb_boolean *b, uint32_t s) {
-    gxbp_source *t = &b->sources[s];
+    gxbp_source *t = &b->in.sources[s];
     gx_result result;
     if (gxbp_share_plane(b, s)) return 1;
     result = gxbp_new_plane(&b->store, t->point[0], t->point[1], t->point[2], 0, &t->plane);
@@ -6823,67 +6942,89 @@ static GXBP_APART int gxbp_find_plane(gxb_boolean *b, uint32_t s) {
 }
 
 static int gxbp_need_plane(gxb_boolean *b, uint32_t s) {
-    return b->sources[s].plane != GXB_NONE || gxbp_find_plane(b, s);
+    return b->in.sources[s].plane != GXB_NONE || gxbp_find_plane(b, s);
 }
 
 static GXBP_APART void gxbp_list_dirty(gxb_boolean *b, uint32_t s) {
-    if (!GXBP_ROOM(b, dirty, dirty, 1)) return;
-    b->sources[s].flags |= GXBP_DIRTY;
-    b->dirty[b->dirty_count++] = s;
+    if (!GXBP_ROOM(b, crossings.dirty, crossings.dirty, 1)) return;
+    b->in.sources[s].flags |= GXBP_DIRTY;
+    b->crossings.dirty[b->crossings.dirty_count++] = s;
 }
 
 static void gxbp_mark_dirty(gxb_boolean *b, uint32_t s) {
-    b->marks++;
-    if (!(b->sources[s].flags & GXBP_DIRTY)) gxbp_list_dirty(b, s);
+    b->crossings.marks++;
+    if (!(b->in.sources[s].flags & GXBP_DIRTY)) gxbp_list_dirty(b, s);
 }
 
 /* A segment (a point, if p is q) in which a triangle (label) meets a source. */
 static void gxbp_add_segment(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q, uint32_t label, int left) {
     gxbp_segment *segment;
-    if (!GXBP_ROOM(b, segments, segment, 1)) return;
-    segment = &b->segments[b->segment_count];
+    if (!GXBP_ROOM(b, crossings.segments, crossings.segment, 1)) return;
+    segment = &b->crossings.segments[b->crossings.segment_count];
     segment->p = p;
     segment->q = q;
     segment->label = label;
-    segment->next = b->sources[s].segments;
+    segment->next = b->in.sources[s].segments;
     segment->left = left;
-    b->sources[s].segments = b->segment_count++;
+    b->in.sources[s].segments = b->crossings.segment_count++;
     gxbp_mark_dirty(b, s);
 }
 
 /* The half-edge by which an edge is named: the lower of the two. */
 static uint32_t gxbp_edge_name(const gxb_boolean *b, uint32_t s, int k) {
-    const uint32_t h = 3 * s + (uint32_t)k, twin = b->sources[s].twin[k];
+    const uint32_t h = 3 * s + (uint32_t)k, twin = b->in.sources[s].twin[k];
     return twin < h ? twin : h;
 }
 
 static GXBP_APART uint32_t gxbp_new_cut(gxb_boolean *b, uint32_t s, int k) {
-    const uint32_t twin = b->sources[s].twin[k];
+    const uint32_t twin = b->in.sources[s].twin[k];
     gxbp_cut *c;
-    if (!GXBP_ROOM(b, cuts, cut, 1)) return GXB_NONE;
-    c = &b->cuts[b->cut_count];
+    if (!GXBP_ROOM(b, crossings.cuts, crossings.cut, 1)) return GXB_NONE;
+    c = &b->crossings.cuts[b->crossings.cut_count];
     c->half_edge = gxbp_edge_name(b, s, k);
     c->first = c->count = 0;
     c->rim[0] = c->rim[1] = GXB_NONE;
-    b->sources[s].edge[k] = b->cut_count;
-    if (twin != GXB_NONE) b->sources[twin / 3].edge[twin % 3] = b->cut_count;
-    return b->cut_count++;
+    b->in.sources[s].edge[k] = b->crossings.cut_count;
+    if (twin != GXB_NONE) b->in.sources[twin / 3].edge[twin % 3] = b->crossings.cut_count;
+    return b->crossings.cut_count++;
 }
 
 /* The cut of an edge; GXB_NONE: no memory */
 static inline uint32_t gxbp_need_cut(gxb_boolean *b, uint32_t s, int k) {
-    return b->sources[s].edge[k] != GXB_NONE ? b->sources[s].edge[k] : gxbp_new_cut(b, s, k);
+    return b->in.sources[s].edge[k] != GXB_NONE ? b->in.sources[s].edge[k] : gxbp_new_cut(b, s, k);
 }
 
 /* A point inside an edge. */
 static void gxbp_hit_edge(gxb_boolean *b, uint32_t s, int k, uint32_t point) {
-    const uint32_t twin = b->sources[s].twin[k], cut = gxbp_need_cut(b, s, k);
-    if (cut == GXB_NONE || !GXBP_ROOM(b, hits, hit, 1)) return;
-    b->hits[b->hit_count].cut = cut;
-    b->hits[b->hit_count++].point = point;
+    const uint32_t twin = b->in.sources[s].twin[k], cut = gxbp_need_cut(b, s, k);
+    if (cut == GXB_NONE || !GXBP_ROOM(b, crossings.hits, crossings.hit, 1)) return;
+    b->crossings.hits[b->crossings.hit_count].cut = cut;
+    b->crossings.hits[b->crossings.hit_count++].point = point;
     gxbp_mark_dirty(b, s);
     if (twin != GXB_NONE) gxbp_mark_dirty(b, twin / 3);
 }
+
+/* The side of a source's corner. Each point caches two answers; slot selects the one to use. */
+static int gxbp_corner_side(gxb_boolean *b, uint32_t s, int k, uint32_t plane, int slot) {
+    const uint32_t point = b->in.sources[s].point[k];
+    gxb_cpoint *p = &b->store.points[point];
+    if (p->stamp[slot] != plane + 1) {
+        p->sign[slot] = (int8_t)(b->in.sources[s].plane == plane ? 0 : gxbp_point_side(b, point, plane));
+        p->stamp[slot] = plane + 1;
+    }
+    return p->sign[slot];
+}
+
+static void gxbp_sides(gxb_boolean *b, uint32_t s, uint32_t plane, int slot, int side[3]) {
+    int k;
+    for (k = 0; k < 3; k++) side[k] = gxbp_corner_side(b, s, k, plane, slot);
+}
+
+static int gxbp_all_on_one_side(const int side[3]) { return side[0] != 0 && side[0] == side[1] && side[0] == side[2]; }
+
+/* >>meet: where two triangles meet --------------------------------------------------------------------------------- */
+/* In: pairs of sources whose boxes overlap. Out: the points, segments and flats in which they meet. Every decision is a
+   predicate of input points. Touches what >>keys and >>sides offer, and the lists of flats. */
 
 /* Where a point of a triangle's plane lies: corner or edge -1: not there; both -1: inside. */
 typedef struct gxbp_spot {
@@ -6909,7 +7050,8 @@ static gxbp_spot gxbp_spot_of(const int sign[3]) {
 static gxbp_spot gxbp_spot_of_point(const gxb_boolean *b, const double *x, uint32_t s) {
     int sign[3], k;
     for (k = 0; k < 3; k++)
-        sign[k] = gxbp_flat_turn(b, b->sources[s].plane, gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, (k + 1) % 3), x);
+        sign[k] =
+            gxbp_flat_turn(b, b->in.sources[s].plane, gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, (k + 1) % 3), x);
     return gxbp_spot_of(sign);
 }
 
@@ -6963,11 +7105,11 @@ static void gxbp_found(gxb_boolean *b, gxbp_meeting *m, uint32_t point) {
 
 static uint32_t gxbp_edge_triangle_point(gxb_boolean *b, uint32_t s, int k, uint32_t t) {
     const uint32_t name = gxbp_edge_name(b, s, k);
-    int fresh;
-    const uint32_t point = gxbp_keyed_point(b, GXB_FROM_EDGE_TRIANGLE, name, t, 0, &fresh);
-    if (fresh)
-        gxbp_place_point(b, point, GXB_LINE_PLANE, b->sources[s].point[k], b->sources[s].point[(k + 1) % 3],
-                         b->sources[t].plane);
+    int is_new;
+    const uint32_t point = gxbp_keyed_point(b, GXB_FROM_EDGE_TRIANGLE, name, t, 0, &is_new);
+    if (is_new)
+        gxbp_place_point(b, point, GXB_LINE_PLANE, b->in.sources[s].point[k], b->in.sources[s].point[(k + 1) % 3],
+                         b->in.sources[t].plane);
     return point;
 }
 
@@ -6977,30 +7119,31 @@ static GXBP_COLD uint32_t gxbp_edge_edge_point(gxb_boolean *b, uint32_t s, int k
     const uint32_t e = gxbp_edge_name(b, s, k), f = gxbp_edge_name(b, t, j);
     /* first, so that a point without a place never stays */
     const gx_result room = GXBP_RESERVE(&b->store.allocator, &b->store, planes, plane, 1);
-    int fresh;
+    int is_new;
     uint32_t point;
     if (room != GX_OK) {
         gxbp_stop(b, room);
         return GXB_NONE;
     }
-    point = gxbp_keyed_point(b, GXB_FROM_EDGE_EDGE, e < f ? e : f, e < f ? f : e, 0, &fresh);
-    if (!fresh) return point;
+    point = gxbp_keyed_point(b, GXB_FROM_EDGE_EDGE, e < f ? e : f, e < f ? f : e, 0, &is_new);
+    if (!is_new) return point;
     if (plane == GXB_NONE) {
-        gxbp_new_plane(&b->store, b->sources[t].point[j], b->sources[t].point[(j + 1) % 3],
-                       b->store.planes[b->sources[t].plane].axis, 1, &plane);
+        gxbp_new_plane(&b->store, b->in.sources[t].point[j], b->in.sources[t].point[(j + 1) % 3],
+                       b->store.planes[b->in.sources[t].plane].axis, 1, &plane);
         gxbp_plane_axis(&b->store, plane);
     }
-    gxbp_place_point(b, point, GXB_LINE_PLANE, b->sources[s].point[k], b->sources[s].point[(k + 1) % 3], plane);
+    gxbp_place_point(b, point, GXB_LINE_PLANE, b->in.sources[s].point[k], b->in.sources[s].point[(k + 1) % 3], plane);
     return point;
 }
 
-/* What of the corners and edges of s lies in t; side: of the corners of s against t's plane. */
+/* Corners of s that lie in t, and points in which edges of s cross t. side: sides of the corners of s against t's
+ * plane. */
 static GXBP_COLD void gxbp_meet_one_way(gxb_boolean *b, uint32_t s, uint32_t t, const int side[3], gxbp_meeting *m) {
     int k;
     for (k = 0; k < 3; k++) {
         const int j = (k + 1) % 3;
         if (side[k] == 0) {
-            const uint32_t point = b->sources[s].point[k];
+            const uint32_t point = b->in.sources[s].point[k];
             const gxbp_spot spot = gxbp_spot_of_point(b, gxbp_corner_of(b, s, k), t);
             if (spot.outside) continue;
             if (spot.edge >= 0) gxbp_hit_edge(b, t, spot.edge, point);
@@ -7010,9 +7153,9 @@ static GXBP_COLD void gxbp_meet_one_way(gxb_boolean *b, uint32_t s, uint32_t t, 
             uint32_t point;
             if (spot.outside) continue;
             if (spot.corner >= 0)
-                point = b->sources[t].point[spot.corner];
+                point = b->in.sources[t].point[spot.corner];
             else if (spot.edge >= 0)
-                point = gxbp_edge_edge_point(b, s, k, t, spot.edge, b->sources[t].plane);
+                point = gxbp_edge_edge_point(b, s, k, t, spot.edge, b->in.sources[t].plane);
             else
                 point = gxbp_edge_triangle_point(b, s, k, t);
             if (point == GXB_NONE) return;
@@ -7032,7 +7175,7 @@ static inline void gxbp_record_crossing(gxb_boolean *b, uint32_t s, int k, uint3
     if (y[0] > 0 && y[1] > 0)
         point = gxbp_edge_triangle_point(b, s, k, t);
     else
-        point = gxbp_edge_edge_point(b, s, k, t, edge, b->sources[t].plane);
+        point = gxbp_edge_edge_point(b, s, k, t, edge, b->in.sources[t].plane);
     if (point == GXB_NONE) return;
     gxbp_hit_edge(b, s, k, point);
     if (y[0] == 0 || y[1] == 0) gxbp_hit_edge(b, t, edge, point);
@@ -7109,12 +7252,12 @@ static void gxbp_meet_across(gxb_boolean *b, uint32_t s, uint32_t t, const int o
 }
 
 static int gxbp_is_corner(gxb_boolean *b, uint32_t s, uint32_t point) {
-    const uint32_t *p = b->sources[s].point, same = gxbp_same(b, point);
+    const uint32_t *p = b->in.sources[s].point, same = gxbp_same(b, point);
     return same == gxbp_same(b, p[0]) || same == gxbp_same(b, p[1]) || same == gxbp_same(b, p[2]);
 }
 
 static void gxbp_record_meeting(gxb_boolean *b, uint32_t s, uint32_t t, const gxbp_meeting *m) {
-    if (b->result != GX_OK || m->count == 0) return;
+    if (b->error != GX_OK || m->count == 0) return;
     if (m->count == 1) {
         if (!gxbp_is_corner(b, s, m->point[0])) gxbp_add_segment(b, s, m->point[0], m->point[0], t, 0);
         if (!gxbp_is_corner(b, t, m->point[0])) gxbp_add_segment(b, t, m->point[0], m->point[0], s, 0);
@@ -7125,9 +7268,9 @@ static void gxbp_record_meeting(gxb_boolean *b, uint32_t s, uint32_t t, const gx
 }
 
 static uint32_t gxbp_root(gxb_boolean *b, uint32_t s) {
-    while (b->sources[s].root != s) {
-        b->sources[s].root = b->sources[b->sources[s].root].root;
-        s = b->sources[s].root;
+    while (b->in.sources[s].root != s) {
+        b->in.sources[s].root = b->in.sources[b->in.sources[s].root].root;
+        s = b->in.sources[s].root;
     }
     return s;
 }
@@ -7143,11 +7286,11 @@ static GXBP_RARE void gxbp_join_flats(gxb_boolean *b, uint32_t s, uint32_t t) {
         r = q;
         q = swap;
     }
-    for (last = q; b->sources[last].next != GXB_NONE; last = b->sources[last].next) {} /* mostly alone */
-    b->sources[last].next = b->sources[r].next;
-    b->sources[r].next = q;
-    b->sources[q].root = r;
-    b->sources[r].flags |= GXBP_FLAT;
+    for (last = q; b->in.sources[last].next != GXB_NONE; last = b->in.sources[last].next) {} /* mostly alone */
+    b->in.sources[last].next = b->in.sources[r].next;
+    b->in.sources[r].next = q;
+    b->in.sources[q].root = r;
+    b->in.sources[r].flags |= GXBP_FLAT;
 }
 
 /* No edge of s has all of t on its outer side (turn[k][j]: corner j of t against edge k of s). */
@@ -7166,12 +7309,12 @@ static GXBP_COLD void gxbp_meet_corner(gxb_boolean *b, uint32_t s, int k, uint32
     for (j = 0; j < 3; j++) sign[j] = turn[j][k] * orientation;
     spot = gxbp_spot_of(sign);
     if (spot.outside) return;
-    gxbp_found(b, m, b->sources[s].point[k]);
-    if (spot.edge >= 0) gxbp_hit_edge(b, t, spot.edge, b->sources[s].point[k]);
+    gxbp_found(b, m, b->in.sources[s].point[k]);
+    if (spot.edge >= 0) gxbp_hit_edge(b, t, spot.edge, b->in.sources[s].point[k]);
 }
 
 static GXBP_COLD void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t) {
-    const uint32_t plane = b->sources[s].plane;
+    const uint32_t plane = b->in.sources[s].plane;
     int of_s[3][3], of_t[3][3], k, j, facing;
     gxbp_meeting m;
     m.count = m.left = 0;
@@ -7202,27 +7345,9 @@ static GXBP_COLD void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t)
         gxbp_record_meeting(b, s, t, &m);
 }
 
-/* The side of a source's corner; each point remembers two answers, of which slot says the one to replace. */
-static int gxbp_corner_side(gxb_boolean *b, uint32_t s, int k, uint32_t plane, int slot) {
-    const uint32_t point = b->sources[s].point[k];
-    gxb_cpoint *p = &b->store.points[point];
-    if (p->stamp[slot] != plane + 1) {
-        p->sign[slot] = (int8_t)(b->sources[s].plane == plane ? 0 : gxbp_point_side(b, point, plane));
-        p->stamp[slot] = plane + 1;
-    }
-    return p->sign[slot];
-}
-
-static void gxbp_sides(gxb_boolean *b, uint32_t s, uint32_t plane, int slot, int side[3]) {
-    int k;
-    for (k = 0; k < 3; k++) side[k] = gxbp_corner_side(b, s, k, plane, slot);
-}
-
-static int gxbp_all_on_one_side(const int side[3]) { return side[0] != 0 && side[0] == side[1] && side[0] == side[2]; }
-
-/* Do they share an edge of their surface and else, as they are not in one plane, nothing? */
+/* Do they share an edge of their surface? Then they share nothing else unless they lie in one plane. */
 static int gxbp_are_neighbours(const gxb_boolean *b, uint32_t s, uint32_t t) {
-    const uint32_t *twin = b->sources[s].twin;
+    const uint32_t *twin = b->in.sources[s].twin;
     int k;
     for (k = 0; k < 3; k++)
         if (twin[k] != GXB_NONE && twin[k] / 3 == t) return 1;
@@ -7234,9 +7359,9 @@ static GXBP_RARE int gxbp_flat_apart(const gxb_boolean *b, uint32_t s, uint32_t 
     int k, j;
     for (k = 0; k < 3; k++) {
         const double *p = gxbp_corner_of(b, s, k), *q = gxbp_corner_of(b, s, (k + 1) % 3);
-        if (b->sources[s].twin[k] == GXB_NONE || b->sources[s].twin[k] / 3 != t) continue;
-        j = (int)(b->sources[s].twin[k] % 3);
-        return gxbp_flat_turn(b, b->sources[s].plane, p, q, gxbp_corner_of(b, t, (j + 2) % 3)) < 0;
+        if (b->in.sources[s].twin[k] == GXB_NONE || b->in.sources[s].twin[k] / 3 != t) continue;
+        j = (int)(b->in.sources[s].twin[k] % 3);
+        return gxbp_flat_turn(b, b->in.sources[s].plane, p, q, gxbp_corner_of(b, t, (j + 2) % 3)) < 0;
     }
     return 0;
 }
@@ -7250,23 +7375,23 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
     int of_t[3], of_s[3];
     gxbp_meeting m;
     int neighbours, flat, k, common = 0;
-    if (b->result != GX_OK || !gxbp_need_plane(b, s)) return;
-    gxbp_sides(b, t, b->sources[s].plane, 0, of_t);
+    if (b->error != GX_OK || !gxbp_need_plane(b, s)) return;
+    gxbp_sides(b, t, b->in.sources[s].plane, 0, of_t);
     if (gxbp_all_on_one_side(of_t) || !gxbp_need_plane(b, t)) return;
     flat = of_t[0] == 0 && of_t[1] == 0 && of_t[2] == 0;
-    neighbours = b->sources[s].operand == b->sources[t].operand && gxbp_are_neighbours(b, s, t);
+    neighbours = b->in.sources[s].operand == b->in.sources[t].operand && gxbp_are_neighbours(b, s, t);
     if (neighbours && !flat) return;
     if (flat) {
         if (!neighbours || !gxbp_flat_apart(b, s, t)) gxbp_meet_in_plane(b, s, t);
         return;
     }
-    gxbp_sides(b, s, b->sources[t].plane, 1, of_s);
+    gxbp_sides(b, s, b->in.sources[t].plane, 1, of_s);
     if (gxbp_all_on_one_side(of_s)) return;
     m.count = m.left = 0;
     if (of_s[0] * of_s[1] * of_s[2] != 0 && of_t[0] * of_t[1] * of_t[2] != 0)
         gxbp_meet_across(b, s, t, of_s, of_t, &m);
     else {
-        for (k = 0; k < 3; k++) common += gxbp_is_corner(b, t, b->sources[s].point[k]);
+        for (k = 0; k < 3; k++) common += gxbp_is_corner(b, t, b->in.sources[s].point[k]);
         if (common == 1 && (gxbp_touches_by_corner(of_s) || gxbp_touches_by_corner(of_t))) return;
         gxbp_meet_one_way(b, s, t, of_s, &m);
         gxbp_meet_one_way(b, t, s, of_t, &m);
@@ -7274,49 +7399,20 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
     gxbp_record_meeting(b, s, t, &m);
 }
 
-/* --- broad phase: pairs of boxes of two trees, or of one --- */
-
-/* Which of a leaf's boxes meet a box: without branches, all at once where the compiler can. Returns 0 where none does.
- */
-static uint32_t gxbp_test_leaf(const gxbp_leaf_boxes *leaf, const gxbp_box *box, uint32_t meets[GXBP_LEAF]) {
-    uint32_t x, any = 0;
-    for (x = 0; x < GXBP_LEAF; x++)
-        meets[x] = (uint32_t)((leaf->low[0][x] <= box->high[0]) & (box->low[0] <= leaf->high[0][x]) &
-                              (leaf->low[1][x] <= box->high[1]) & (box->low[1] <= leaf->high[1][x]) &
-                              (leaf->low[2][x] <= box->high[2]) & (box->low[2] <= leaf->high[2][x]));
-    for (x = 0; x < GXBP_LEAF; x++) any |= meets[x];
-    return any;
-}
-
-static gxbp_box gxbp_leaf_box(const gxbp_leaf_boxes *leaf, uint32_t x) {
-    gxbp_box box;
-    uint32_t k;
-    for (k = 0; k < 3; k++) {
-        box.low[k] = leaf->low[k][x];
-        box.high[k] = leaf->high[k][x];
-    }
-    return box;
-}
-
 static GXBP_APART void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, uint32_t i, const gxbp_operand *q,
                                         uint32_t j) {
     uint32_t first[GXBP_LEAF], second[GXBP_LEAF], x, y;
-    gxbp_test_leaf(&b->bounds[o->bounds + i], &b->boxes[q->tree.first + j], first);
+    gxbp_test_leaf(&b->in.bounds[o->bounds + i], &b->in.boxes[q->tree.first + j], first);
     for (x = 0; x < GXBP_LEAF; x++) {
         gxbp_box box;
-        if (!first[x] || b->sources[o->order[i * GXBP_LEAF + x]].flags & GXBP_DEGENERATE) continue;
-        box = gxbp_leaf_box(&b->bounds[o->bounds + i], x);
-        if (!gxbp_test_leaf(&b->bounds[q->bounds + j], &box, second)) continue;
+        if (!first[x] || b->in.sources[o->order[i * GXBP_LEAF + x]].flags & GXBP_DEGENERATE) continue;
+        box = gxbp_leaf_box(&b->in.bounds[o->bounds + i], x);
+        if (!gxbp_test_leaf(&b->in.bounds[q->bounds + j], &box, second)) continue;
         for (y = o == q && i == j ? x + 1 : 0; y < GXBP_LEAF; y++) {
-            if (!second[y] || b->sources[q->order[j * GXBP_LEAF + y]].flags & GXBP_DEGENERATE) continue;
+            if (!second[y] || b->in.sources[q->order[j * GXBP_LEAF + y]].flags & GXBP_DEGENERATE) continue;
             gxbp_meet(b, o->order[i * GXBP_LEAF + x], q->order[j * GXBP_LEAF + y]);
         }
     }
-}
-
-static int gxbp_boxes_meet(const gxb_boolean *b, const gxbp_tree *s, uint32_t l, uint32_t i, const gxbp_tree *t,
-                           uint32_t m, uint32_t j) {
-    return gxbp_box_meets(&b->boxes[s->first + s->level[l] + i], &b->boxes[t->first + t->level[m] + j]);
 }
 
 /* Box i of level l of one tree and box j of level m of the other, which meet: of the larger, or of both, those in it.
@@ -7326,7 +7422,7 @@ static GXBP_APART void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, ui
     const gxbp_tree *s = &o->tree, *t = &q->tree;
     const uint32_t of_s = l >= m, of_t = m >= l;
     uint32_t c, d;
-    if (b->result != GX_OK) return;
+    if (b->error != GX_OK) return;
     if (l == 0 && m == 0) {
         gxbp_meet_leaves(b, o, i, q, j);
         return;
@@ -7338,14 +7434,16 @@ static GXBP_APART void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, ui
 
 /* A surface that does not meet itself is known to be simple. */
 static void gxbp_meet_operands(gxb_boolean *b, uint32_t i, uint32_t j) {
-    gxbp_operand *o = &b->operands[i], *q = &b->operands[j];
-    const uint32_t l = o->tree.levels - 1, m = q->tree.levels - 1, marks = b->marks;
+    gxbp_operand *o = &b->in.operands[i], *q = &b->in.operands[j];
+    const uint32_t l = o->tree.levels - 1, m = q->tree.levels - 1, marks = b->crossings.marks;
     if (i == j && o->simple) return;
     if (gxbp_boxes_meet(b, &o->tree, l, 0, &q->tree, m, 0)) gxbp_meet_boxes(b, o, l, 0, q, m, 0);
-    if (i == j) o->simple = b->marks == marks && b->result == GX_OK;
+    if (i == j) o->simple = b->crossings.marks == marks && b->error == GX_OK;
 }
 
-/* --- edges: their inner points in order --- */
+/* >>edges: points on edges in order -------------------------------------------------------------------------------- */
+/* In: hits, that is points on edges of surfaces. Out: the points of each edge in order; equal points become one.
+   Touches cuts and their points. */
 
 /* gxbp_compare_points for points in which two planes cut one line of input points: p lies on the side of q's plane on
    which the end is that it is nearer to. Signs of points that are given by doubles, and of points of their lines, take
@@ -7438,54 +7536,61 @@ static uint32_t gxbp_edge_axis(const double *p, const double *q, int *direction)
     return axis;
 }
 
-/* Puts the new points of a cut, which are in b->scratch, in order with the old ones. */
+/* Puts the new points of a cut, which are in b->work.ordered, in order with the old ones. */
 static void gxbp_order_cut(gxb_boolean *b, uint32_t cut) {
-    gxbp_cut *c = &b->cuts[cut];
+    gxbp_cut *c = &b->crossings.cuts[cut];
     const uint32_t s = c->half_edge / 3, k = c->half_edge % 3;
     const double *p = gxbp_corner_of(b, s, (int)k), *q = gxbp_corner_of(b, s, (int)(k + 1) % 3);
     uint32_t count, axis;
     int direction;
-    if (!GXBP_ROOM(b, scratch, scratch, c->count)) return;
-    if (c->count > 0) memcpy(b->scratch + b->scratch_count, b->cut_points + c->first, c->count * sizeof *b->scratch);
-    b->scratch_count += c->count;
-    count = b->scratch_count;
-    if (!GXBP_ROOM(b, scratch, scratch, count) || !GXBP_ROOM(b, cut_points, cut_point, count)) return;
+    if (!GXBP_ROOM(b, work.ordered, work.ordered, c->count)) return;
+    if (c->count > 0)
+        memcpy(b->work.ordered + b->work.ordered_count, b->crossings.cut_points + c->first,
+               c->count * sizeof *b->work.ordered);
+    b->work.ordered_count += c->count;
+    count = b->work.ordered_count;
+    if (!GXBP_ROOM(b, work.ordered, work.ordered, count) ||
+        !GXBP_ROOM(b, crossings.cut_points, crossings.cut_point, count))
+        return;
     axis = gxbp_edge_axis(p, q, &direction);
-    count = gxbp_sort_points(b, b->scratch, count, axis, direction, b->scratch + b->scratch_count);
-    c->first = b->cut_point_count;
+    count = gxbp_sort_points(b, b->work.ordered, count, axis, direction, b->work.ordered + b->work.ordered_count);
+    c->first = b->crossings.cut_point_count;
     c->count = count;
-    memcpy(b->cut_points + c->first, b->scratch, count * sizeof *b->cut_points);
-    b->cut_point_count += count;
+    memcpy(b->crossings.cut_points + c->first, b->work.ordered, count * sizeof *b->crossings.cut_points);
+    b->crossings.cut_point_count += count;
 }
 
 /* Sorts the hits by cut (counting), then each cut's points. */
 static GXBP_APART void gxbp_order_cuts(gxb_boolean *b) {
-    const size_t words = (size_t)b->cut_count + 1 + b->hit_count;
+    const size_t words = (size_t)b->crossings.cut_count + 1 + b->crossings.hit_count;
     uint32_t *first, *points, i;
-    if (b->result != GX_OK || b->hit_count == 0) return;
+    if (b->error != GX_OK || b->crossings.hit_count == 0) return;
     first = (uint32_t *)gxbp_allocate(&b->store.allocator, words * sizeof *first);
     if (first == NULL) {
         gxbp_stop(b, GX_ERROR_MEMORY);
         return;
     }
-    points = first + b->cut_count + 1;
-    memset(first, 0, ((size_t)b->cut_count + 1) * sizeof *first);
-    for (i = 0; i < b->hit_count; i++) first[b->hits[i].cut]++;
-    for (i = 1; i <= b->cut_count; i++) first[i] += first[i - 1];
-    for (i = b->hit_count; i-- > 0;) points[--first[b->hits[i].cut]] = b->hits[i].point;
-    for (i = 0; i < b->cut_count && b->result == GX_OK; i++) {
+    points = first + b->crossings.cut_count + 1;
+    memset(first, 0, ((size_t)b->crossings.cut_count + 1) * sizeof *first);
+    for (i = 0; i < b->crossings.hit_count; i++) first[b->crossings.hits[i].cut]++;
+    for (i = 1; i <= b->crossings.cut_count; i++) first[i] += first[i - 1];
+    for (i = b->crossings.hit_count; i-- > 0;) points[--first[b->crossings.hits[i].cut]] = b->crossings.hits[i].point;
+    for (i = 0; i < b->crossings.cut_count && b->error == GX_OK; i++) {
         const uint32_t count = first[i + 1] - first[i];
-        b->scratch_count = 0;
-        if (count == 0 || !GXBP_ROOM(b, scratch, scratch, count)) continue;
-        memcpy(b->scratch, points + first[i], count * sizeof *points);
-        b->scratch_count = count;
+        b->work.ordered_count = 0;
+        if (count == 0 || !GXBP_ROOM(b, work.ordered, work.ordered, count)) continue;
+        memcpy(b->work.ordered, points + first[i], count * sizeof *points);
+        b->work.ordered_count = count;
         gxbp_order_cut(b, i);
     }
     gxbp_release(&b->store.allocator, first, words * sizeof *first);
-    b->hit_count = 0;
+    b->crossings.hit_count = 0;
 }
 
-/* --- triangulations --- */
+/* >>triangulate: points into a triangulation ----------------------------------------------------------------------- */
+/* In: a source, or the root of a flat, with a triangulation, and a point of its plane. Out: the point as a vertex. The
+   point is found along a straight line from a vertex. Touches the subtriangles of this source and the hints of
+   vertices. */
 
 /* Is the point an end of this line of two input points, or defined as a point of it? */
 static int gxbp_on_input_line(const gxb_cpoint *p, uint32_t from, uint32_t to) {
@@ -7495,21 +7600,21 @@ static int gxbp_on_input_line(const gxb_cpoint *p, uint32_t from, uint32_t to) {
 }
 
 static uint32_t gxbp_plane_beside(const gxb_boolean *b, uint32_t half_edge) {
-    return half_edge == GXB_NONE ? GXB_NONE : b->sources[half_edge / 3].plane;
+    return half_edge == GXB_NONE ? GXB_NONE : b->in.sources[half_edge / 3].plane;
 }
 
 /* Planes that a point is in by its definition: its own, and those of the input triangles at the edge that it is named
  * by */
 static uint32_t gxbp_planes_of(const gxb_boolean *b, uint32_t v, uint32_t plane[3]) {
     const gxb_cpoint *p = &b->store.points[v];
-    const uint32_t *key = b->vertices[v].key;
+    const uint32_t *key = b->points.vertices[v].key;
     if (p->kind == GXB_EXPLICIT) return 0;
     memcpy(plane, p->def, sizeof p->def);
     if (p->kind == GXB_THREE_PLANES) return 3;
     plane[0] = p->def[2];
     if (key[0] != GXB_FROM_EDGE_TRIANGLE) return 1;
     plane[1] = gxbp_plane_beside(b, key[1]);
-    plane[2] = gxbp_plane_beside(b, b->sources[key[1] / 3].twin[key[1] % 3]);
+    plane[2] = gxbp_plane_beside(b, b->in.sources[key[1] / 3].twin[key[1] % 3]);
     return 3;
 }
 
@@ -7538,7 +7643,7 @@ static int gxbp_on_definition_line(gxb_boolean *b, uint32_t p, uint32_t q, uint3
 
 /* Orientation in the plane of the triangulation at work, where the filter knows it; else 0 */
 static int gxbp_turn_by_filter(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t r) {
-    const gxb_cplane *f = &b->store.planes[b->plane];
+    const gxb_cplane *f = &b->store.planes[b->work.plane];
     const gxb_cpoint *x = b->store.points;
     b->store.filter_calls++;
     return f->axis_sign *
@@ -7551,49 +7656,49 @@ static int gxbp_turn(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t r) {
     const int turn = gxbp_turn_by_filter(b, p, q, r);
     if (turn != 0) return turn;
     if (p == q || q == r || r == p) return 0;
-    if (gxbp_on_definition_line(b, p, q, r, b->plane) || gxbp_on_definition_line(b, q, r, p, b->plane) ||
-        gxbp_on_definition_line(b, r, p, q, b->plane))
+    if (gxbp_on_definition_line(b, p, q, r, b->work.plane) || gxbp_on_definition_line(b, q, r, p, b->work.plane) ||
+        gxbp_on_definition_line(b, r, p, q, b->work.plane))
         return 0;
     store->exact_calls++;
-    return gxbp_store_turn(store, p, q, r, b->plane);
+    return gxbp_store_turn(store, p, q, r, b->work.plane);
 }
 
-static uint32_t gxbp_new_piece(gxb_boolean *b, uint32_t source) {
-    gxbp_piece *f;
-    if (!GXBP_ROOM(b, pieces, piece, 1)) return GXB_NONE;
-    f = &b->pieces[b->piece_count];
+static uint32_t gxbp_new_subtriangle(gxb_boolean *b, uint32_t source) {
+    gxbp_subtriangle *f;
+    if (!GXBP_ROOM(b, mesh.subtriangles, mesh.subtriangle, 1)) return GXB_NONE;
+    f = &b->mesh.subtriangles[b->mesh.subtriangle_count];
     f->source = source;
-    f->next = b->sources[source].facet;
+    f->next = b->in.sources[source].subtriangle;
     f->covers = f->state = GXB_NONE;
-    b->sources[source].facet = b->piece_count;
-    return b->piece_count++;
+    b->in.sources[source].subtriangle = b->mesh.subtriangle_count;
+    return b->mesh.subtriangle_count++;
 }
 
-static void gxbp_set_piece(gxb_boolean *b, uint32_t f, uint32_t p, uint32_t q, uint32_t r) {
-    gxbp_piece *piece = &b->pieces[f];
+static void gxbp_set_subtriangle(gxb_boolean *b, uint32_t f, uint32_t p, uint32_t q, uint32_t r) {
+    gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
     int k;
-    piece->v[0] = p;
-    piece->v[1] = q;
-    piece->v[2] = r;
+    sub->v[0] = p;
+    sub->v[1] = q;
+    sub->v[2] = r;
     for (k = 0; k < 3; k++) {
-        b->vertices[piece->v[k]].hint = f;
-        b->vertices[piece->v[k]].stamp = b->stamp;
+        b->points.vertices[sub->v[k]].hint = f;
+        b->points.vertices[sub->v[k]].stamp = b->work.stamp;
     }
 }
 
 static void gxbp_set_edge(gxb_boolean *b, uint32_t f, int k, uint32_t near, uint32_t labels) {
-    b->pieces[f].near[k] = near;
-    b->pieces[f].labels[k] = labels;
+    b->mesh.subtriangles[f].near[k] = near;
+    b->mesh.subtriangles[f].labels[k] = labels;
 }
 
-static int gxbp_corner_index(const gxbp_piece *f, uint32_t v) { return f->v[0] == v ? 0 : f->v[1] == v ? 1 : 2; }
+static int gxbp_corner_index(const gxbp_subtriangle *f, uint32_t v) { return f->v[0] == v ? 0 : f->v[1] == v ? 1 : 2; }
 
 /* Tells the neighbour across the edge from p to q (as seen from f) that f is there now. */
-static void gxbp_greet(gxb_boolean *b, uint32_t near, uint32_t p, uint32_t q, uint32_t f) {
-    gxbp_piece *n;
+static void gxbp_link_neighbour(gxb_boolean *b, uint32_t near, uint32_t p, uint32_t q, uint32_t f) {
+    gxbp_subtriangle *n;
     int k;
     if (near == GXB_NONE) return;
-    n = &b->pieces[near];
+    n = &b->mesh.subtriangles[near];
     for (k = 0; k < 3; k++)
         if (n->v[k] == q && n->v[(k + 1) % 3] == p) n->near[k] = f;
 }
@@ -7602,86 +7707,88 @@ static void gxbp_greet(gxb_boolean *b, uint32_t near, uint32_t p, uint32_t q, ui
 static void gxbp_open_triangulation(gxb_boolean *b, uint32_t s) {
     uint32_t f;
     int k;
-    b->plane = b->sources[s].plane;
-    b->stamp++;
-    for (f = b->sources[s].facet; f != GXB_NONE; f = b->pieces[f].next)
+    b->work.plane = b->in.sources[s].plane;
+    b->work.stamp++;
+    for (f = b->in.sources[s].subtriangle; f != GXB_NONE; f = b->mesh.subtriangles[f].next)
         for (k = 0; k < 3; k++) {
-            const uint32_t v = gxbp_same(b, b->pieces[f].v[k]);
-            b->pieces[f].v[k] = v;
-            b->vertices[v].hint = f;
-            b->vertices[v].stamp = b->stamp;
+            const uint32_t v = gxbp_same(b, b->mesh.subtriangles[f].v[k]);
+            b->mesh.subtriangles[f].v[k] = v;
+            b->points.vertices[v].hint = f;
+            b->points.vertices[v].stamp = b->work.stamp;
         }
 }
 
 /* One half of an edge that x divides: f = (p, q, r) with the edge at k becomes (p, x, r), the new one is (x, q, r). */
 static uint32_t gxbp_split_half(gxb_boolean *b, uint32_t f, int k, uint32_t x) {
-    const uint32_t g = gxbp_new_piece(b, b->pieces[f].source);
-    gxbp_piece old;
+    const uint32_t g = gxbp_new_subtriangle(b, b->mesh.subtriangles[f].source);
+    gxbp_subtriangle old;
     uint32_t p, q, r;
     if (g == GXB_NONE) return GXB_NONE;
-    old = b->pieces[f];
-    b->pieces[g].state = old.state;
+    old = b->mesh.subtriangles[f];
+    b->mesh.subtriangles[g].state = old.state;
     p = old.v[k];
     q = old.v[(k + 1) % 3];
     r = old.v[(k + 2) % 3];
-    gxbp_set_piece(b, f, p, x, r);
+    gxbp_set_subtriangle(b, f, p, x, r);
     gxbp_set_edge(b, f, 0, GXB_NONE, old.labels[k]);
     gxbp_set_edge(b, f, 1, g, GXBP_LOOSE);
     gxbp_set_edge(b, f, 2, old.near[(k + 2) % 3], old.labels[(k + 2) % 3]);
-    gxbp_set_piece(b, g, x, q, r);
+    gxbp_set_subtriangle(b, g, x, q, r);
     gxbp_set_edge(b, g, 0, GXB_NONE, old.labels[k]);
     gxbp_set_edge(b, g, 1, old.near[(k + 1) % 3], old.labels[(k + 1) % 3]);
     gxbp_set_edge(b, g, 2, f, GXBP_LOOSE);
-    gxbp_greet(b, old.near[(k + 1) % 3], q, r, g);
+    gxbp_link_neighbour(b, old.near[(k + 1) % 3], q, r, g);
     return g;
 }
 
 static void gxbp_split_side(gxb_boolean *b, uint32_t f, int k, uint32_t x) {
-    const uint32_t other = b->pieces[f].near[k], p = b->pieces[f].v[k];
+    const uint32_t other = b->mesh.subtriangles[f].near[k], p = b->mesh.subtriangles[f].v[k];
     uint32_t g, h;
-    if (!GXBP_ROOM(b, pieces, piece, 2)) return;
+    if (!GXBP_ROOM(b, mesh.subtriangles, mesh.subtriangle, 2)) return;
     g = gxbp_split_half(b, f, k, x);
     if (other == GXB_NONE) return;
-    k = (gxbp_corner_index(&b->pieces[other], p) + 2) % 3;
+    k = (gxbp_corner_index(&b->mesh.subtriangles[other], p) + 2) % 3;
     h = gxbp_split_half(b, other, k, x); /* other: (q, x, r'), h: (x, p, r') */
-    b->pieces[f].near[0] = h;
-    b->pieces[h].near[0] = f;
-    b->pieces[g].near[0] = other;
-    b->pieces[other].near[0] = g;
+    b->mesh.subtriangles[f].near[0] = h;
+    b->mesh.subtriangles[h].near[0] = f;
+    b->mesh.subtriangles[g].near[0] = other;
+    b->mesh.subtriangles[other].near[0] = g;
 }
 
 static void gxbp_split_inside(gxb_boolean *b, uint32_t f, uint32_t x) {
-    gxbp_piece old;
+    gxbp_subtriangle old;
     uint32_t part[3];
     int k;
-    if (!GXBP_ROOM(b, pieces, piece, 2)) return;
-    old = b->pieces[f];
+    if (!GXBP_ROOM(b, mesh.subtriangles, mesh.subtriangle, 2)) return;
+    old = b->mesh.subtriangles[f];
     part[0] = f;
-    part[1] = gxbp_new_piece(b, old.source);
-    part[2] = gxbp_new_piece(b, old.source);
+    part[1] = gxbp_new_subtriangle(b, old.source);
+    part[2] = gxbp_new_subtriangle(b, old.source);
     for (k = 0; k < 3; k++) {
-        b->pieces[part[k]].state = old.state;
-        gxbp_set_piece(b, part[k], old.v[k], old.v[(k + 1) % 3], x);
+        b->mesh.subtriangles[part[k]].state = old.state;
+        gxbp_set_subtriangle(b, part[k], old.v[k], old.v[(k + 1) % 3], x);
         gxbp_set_edge(b, part[k], 0, old.near[k], old.labels[k]);
         gxbp_set_edge(b, part[k], 1, part[(k + 1) % 3], GXBP_LOOSE);
         gxbp_set_edge(b, part[k], 2, part[(k + 2) % 3], GXBP_LOOSE);
-        gxbp_greet(b, old.near[k], old.v[k], old.v[(k + 1) % 3], part[k]);
+        gxbp_link_neighbour(b, old.near[k], old.v[k], old.v[(k + 1) % 3], part[k]);
     }
 }
 
 static int gxbp_has_label(const gxb_boolean *b, uint32_t list, uint32_t label) {
-    for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->links[list].next)
-        if (b->links[list].value == label) return 1;
+    for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->mesh.links[list].next)
+        if (b->mesh.links[list].value == label) return 1;
     return 0;
 }
 
 static void gxbp_label_edge(gxb_boolean *b, uint32_t f, int k, uint32_t label) {
-    const uint32_t old = b->pieces[f].labels[k], near = b->pieces[f].near[k], p = b->pieces[f].v[k];
+    const uint32_t old = b->mesh.subtriangles[f].labels[k], near = b->mesh.subtriangles[f].near[k],
+                   p = b->mesh.subtriangles[f].v[k];
     uint32_t list;
     if (gxbp_has_label(b, old, label)) return;
     list = gxbp_new_link(b, label, old == GXBP_LOOSE ? GXBP_BARE : old);
-    b->pieces[f].labels[k] = list;
-    if (near != GXB_NONE) b->pieces[near].labels[(gxbp_corner_index(&b->pieces[near], p) + 2) % 3] = list;
+    b->mesh.subtriangles[f].labels[k] = list;
+    if (near != GXB_NONE)
+        b->mesh.subtriangles[near].labels[(gxbp_corner_index(&b->mesh.subtriangles[near], p) + 2) % 3] = list;
 }
 
 /* --- along a straight line through a triangulation --- */
@@ -7703,15 +7810,15 @@ static GXBP_RARE void gxbp_set_line(gxb_boolean *b, gxbp_line *line, uint32_t s,
     line->sigma = 1;
     if (label & GXBP_EDGE_LABEL) return;
     if (left != 0) {
-        line->plane = b->sources[label].plane;
+        line->plane = b->in.sources[label].plane;
         line->sigma = left;
         return;
     }
     for (k = 0; k < 3; k++) {
-        const int side = gxbp_point_side(b, b->sources[s].point[k], b->sources[label].plane);
+        const int side = gxbp_point_side(b, b->in.sources[s].point[k], b->in.sources[label].plane);
         if (side == 0) continue;
-        line->plane = b->sources[label].plane;
-        line->sigma = side * gxbp_turn(b, p, x, b->sources[s].point[k]);
+        line->plane = b->in.sources[label].plane;
+        line->sigma = side * gxbp_turn(b, p, x, b->in.sources[s].point[k]);
         if (line->sigma != 0) return;
     }
     line->plane = GXB_NONE;
@@ -7719,7 +7826,7 @@ static GXBP_RARE void gxbp_set_line(gxb_boolean *b, gxbp_line *line, uint32_t s,
 
 /* Is a point, named by an edge and a triangle, in triangle t and not on its edge j? */
 static int gxbp_is_named_in(const gxb_boolean *b, uint32_t v, uint32_t t, uint32_t j) {
-    const uint32_t *key = b->vertices[v].key, twin = b->sources[key[1] / 3].twin[key[1] % 3];
+    const uint32_t *key = b->points.vertices[v].key, twin = b->in.sources[key[1] / 3].twin[key[1] % 3];
     return key[2] == t || (key[1] / 3 == t && key[1] % 3 != j) || (twin != GXB_NONE && twin / 3 == t && twin % 3 != j);
 }
 
@@ -7727,10 +7834,10 @@ static int gxbp_is_named_in(const gxb_boolean *b, uint32_t v, uint32_t t, uint32
    other corner is: so the two halves of a face that is flat but for rounding need no exact numbers of points computed
    in them. */
 static int gxbp_side_of_source(gxb_boolean *b, uint32_t v, uint32_t s) {
-    const uint32_t plane = b->sources[s].plane;
+    const uint32_t plane = b->in.sources[s].plane;
     double bound, value;
     int k;
-    if (b->store.points[v].kind != GXB_LINE_PLANE || b->vertices[v].key[0] != GXB_FROM_EDGE_TRIANGLE)
+    if (b->store.points[v].kind != GXB_LINE_PLANE || b->points.vertices[v].key[0] != GXB_FROM_EDGE_TRIANGLE)
         return gxbp_point_side(b, v, plane);
     value = gxbp_filter_side(&b->store.points[v].ball, &b->store.planes[plane].filter, &bound);
     if (value > bound || value < -bound) {
@@ -7738,9 +7845,9 @@ static int gxbp_side_of_source(gxb_boolean *b, uint32_t v, uint32_t s) {
         return value > 0 ? 1 : -1;
     }
     for (k = 0; k < 3; k++) {
-        const uint32_t twin = b->sources[s].twin[k];
+        const uint32_t twin = b->in.sources[s].twin[k];
         if (twin != GXB_NONE && gxbp_is_named_in(b, v, twin / 3, twin % 3))
-            return gxbp_point_side(b, b->sources[twin / 3].point[(twin % 3 + 2) % 3], plane);
+            return gxbp_point_side(b, b->in.sources[twin / 3].point[(twin % 3 + 2) % 3], plane);
     }
     return gxbp_point_side(b, v, plane);
 }
@@ -7762,38 +7869,39 @@ static int gxbp_left_by_filter(gxb_boolean *b, const gxbp_line *line, uint32_t v
     return line->sigma * gxbp_filter_sign(value, bound);
 }
 
-/* Where the line leaves the star of a vertex: through the edge opposite to corner k of facet f (u right of it, w left),
-   or along edge k (ahead 1) or k + 2 (ahead 2). of_w: what the filter says of w, which is the next facet's u; 2: it was
-   not asked. back: the walk around the vertex has come to the rim and goes the other way from the start. */
+/* Where the line leaves the star of a vertex: through the edge opposite to corner k of subtriangle f (u right of it, w
+   left), or along edge k (ahead 1) or k + 2 (ahead 2). of_w: what the filter says of w, which is the next subtriangle's
+   u; 2: it was not asked. back: the walk around the vertex has come to the rim and goes the other way from the start.
+ */
 typedef struct gxbp_way {
     uint32_t f;
     int k, ahead, of_w, back;
 } gxbp_way;
 
 static void gxbp_begin_star(const gxb_boolean *b, uint32_t v, gxbp_way *way) {
-    way->f = b->vertices[v].hint;
-    way->k = gxbp_corner_index(&b->pieces[way->f], v);
+    way->f = b->points.vertices[v].hint;
+    way->k = gxbp_corner_index(&b->mesh.subtriangles[way->f], v);
     way->of_w = 2;
     way->back = 0;
 }
 
-/* The next facet around v. 0: that was all. */
+/* The next subtriangle around v. 0: that was all. */
 static int gxbp_next_in_star(const gxb_boolean *b, uint32_t v, gxbp_way *way) {
-    uint32_t next = way->back ? GXB_NONE : b->pieces[way->f].near[(way->k + 2) % 3];
+    uint32_t next = way->back ? GXB_NONE : b->mesh.subtriangles[way->f].near[(way->k + 2) % 3];
     if (next == GXB_NONE) {
         if (!way->back) gxbp_begin_star(b, v, way);
         way->back = 1;
         way->of_w = 2;
-        next = b->pieces[way->f].near[way->k];
+        next = b->mesh.subtriangles[way->f].near[way->k];
     }
-    if (next == GXB_NONE || next == b->vertices[v].hint) return 0;
+    if (next == GXB_NONE || next == b->points.vertices[v].hint) return 0;
     way->f = next;
-    way->k = gxbp_corner_index(&b->pieces[next], v);
+    way->k = gxbp_corner_index(&b->mesh.subtriangles[next], v);
     return 1;
 }
 
 static int gxbp_try_way(gxb_boolean *b, const gxbp_line *line, gxbp_way *way) {
-    const gxbp_piece *f = &b->pieces[way->f];
+    const gxbp_subtriangle *f = &b->mesh.subtriangles[way->f];
     const uint32_t u = f->v[(way->k + 1) % 3], w = f->v[(way->k + 2) % 3];
     int of_u = way->of_w == 2 ? gxbp_left_by_filter(b, line, u) : way->of_w, of_w;
     way->of_w = 2;
@@ -7819,7 +7927,7 @@ static int gxbp_try_way(gxb_boolean *b, const gxbp_line *line, gxbp_way *way) {
 static int gxbp_find_edge(const gxb_boolean *b, uint32_t v, uint32_t goal, gxbp_way *way) {
     gxbp_begin_star(b, v, way);
     do {
-        const gxbp_piece *f = &b->pieces[way->f];
+        const gxbp_subtriangle *f = &b->mesh.subtriangles[way->f];
         way->ahead = f->v[(way->k + 1) % 3] == goal ? 1 : 2;
         if (f->v[(way->k + way->ahead) % 3] == goal) return 1;
     } while (gxbp_next_in_star(b, v, way));
@@ -7834,17 +7942,18 @@ static int gxbp_find_way(gxb_boolean *b, const gxbp_line *line, uint32_t v, gxbp
     return 0;
 }
 
-/* Where a point of the source lies in its triangulation: at a vertex, on edge k of facet f, inside f (k -1). */
+/* Where a point of the source lies in its triangulation: at a vertex, on edge k of subtriangle f, inside f (k -1). */
 typedef struct gxbp_location {
     uint32_t vertex, f;
     int k;
 } gxbp_location;
 
-/* Crosses facets from way's edge on. 1: found. 0: *v is a vertex on the line before the point. */
-static int gxbp_cross_facets(gxb_boolean *b, const gxbp_line *line, gxbp_way way, uint32_t *v, gxbp_location *spot) {
+/* Crosses subtriangles from way's edge on. 1: found. 0: *v is a vertex on the line before the point. */
+static int gxbp_cross_subtriangles(gxb_boolean *b, const gxbp_line *line, gxbp_way way, uint32_t *v,
+                                   gxbp_location *spot) {
     uint32_t f = way.f;
     int k = (way.k + 1) % 3; /* the edge to cross, from u to w */
-    uint32_t u = b->pieces[f].v[k], w = b->pieces[f].v[(k + 1) % 3];
+    uint32_t u = b->mesh.subtriangles[f].v[k], w = b->mesh.subtriangles[f].v[(k + 1) % 3];
     int t = gxbp_turn(b, u, w, line->x);
     for (;;) {
         uint32_t c;
@@ -7853,13 +7962,13 @@ static int gxbp_cross_facets(gxb_boolean *b, const gxbp_line *line, gxbp_way way
         spot->f = f;
         spot->k = t == 0 ? k : -1;
         if (t >= 0) return 1;
-        f = b->pieces[f].near[k];
+        f = b->mesh.subtriangles[f].near[k];
         if (f == GXB_NONE) {
             gxbp_stop(b, GX_ERROR_OVERLAP);
             return 1;
         }
-        j = gxbp_corner_index(&b->pieces[f], w); /* (w, u, c) */
-        c = b->pieces[f].v[(j + 2) % 3];
+        j = gxbp_corner_index(&b->mesh.subtriangles[f], w); /* (w, u, c) */
+        c = b->mesh.subtriangles[f].v[(j + 2) % 3];
         spot->f = f;
         spot->k = -1;
         if (gxbp_turn_by_filter(b, u, c, line->x) > 0 && gxbp_turn_by_filter(b, c, w, line->x) > 0) return 1;
@@ -7886,7 +7995,7 @@ static GXBP_RARE gxbp_location gxbp_locate(gxb_boolean *b, const gxbp_line *line
     gxbp_location spot;
     uint32_t v = line->p;
     memset(&spot, 0, sizeof spot);
-    while (b->result == GX_OK) {
+    while (b->error == GX_OK) {
         gxbp_way way;
         uint32_t ahead;
         int t;
@@ -7895,11 +8004,12 @@ static GXBP_RARE gxbp_location gxbp_locate(gxb_boolean *b, const gxbp_line *line
             break;
         }
         if (way.ahead == 0) {
-            if (gxbp_cross_facets(b, line, way, &v, &spot)) return spot;
+            if (gxbp_cross_subtriangles(b, line, way, &v, &spot)) return spot;
             continue;
         }
-        ahead = b->pieces[way.f].v[(way.k + way.ahead) % 3];
-        t = gxbp_turn(b, b->pieces[way.f].v[(way.k + 1) % 3], b->pieces[way.f].v[(way.k + 2) % 3], line->x);
+        ahead = b->mesh.subtriangles[way.f].v[(way.k + way.ahead) % 3];
+        t = gxbp_turn(b, b->mesh.subtriangles[way.f].v[(way.k + 1) % 3], b->mesh.subtriangles[way.f].v[(way.k + 2) % 3],
+                      line->x);
         spot.vertex = t == 0 ? ahead : GXB_NONE;
         spot.f = way.f;
         spot.k = way.ahead == 1 ? way.k : (way.k + 2) % 3;
@@ -7912,7 +8022,7 @@ static GXBP_RARE gxbp_location gxbp_locate(gxb_boolean *b, const gxbp_line *line
 /* Are two points named by one edge? Then they are not equal, or it would have been found when its points were put in
  * order. */
 static GXBP_RARE int gxbp_share_edge(const gxb_boolean *b, uint32_t p, uint32_t q) {
-    const uint32_t *k = b->vertices[p].key, *m = b->vertices[q].key;
+    const uint32_t *k = b->points.vertices[p].key, *m = b->points.vertices[q].key;
     if ((k[0] != GXB_FROM_EDGE_TRIANGLE && k[0] != GXB_FROM_EDGE_EDGE) ||
         (m[0] != GXB_FROM_EDGE_TRIANGLE && m[0] != GXB_FROM_EDGE_EDGE))
         return 0;
@@ -7941,7 +8051,7 @@ static int gxbp_points_equal(gxb_boolean *b, uint32_t p, uint32_t q) {
     return 1;
 }
 
-static int gxbp_is_placed(gxb_boolean *b, uint32_t v) { return b->vertices[v].stamp == b->stamp; }
+static int gxbp_is_placed(gxb_boolean *b, uint32_t v) { return b->points.vertices[v].stamp == b->work.stamp; }
 
 /* Makes a point a vertex of source s's triangulation, found from vertex p on; returns its name there. */
 static uint32_t gxbp_insert_point(gxb_boolean *b, uint32_t s, uint32_t x, uint32_t p, uint32_t label, int left) {
@@ -7955,7 +8065,7 @@ static uint32_t gxbp_insert_point(gxb_boolean *b, uint32_t s, uint32_t x, uint32
     }
     gxbp_set_line(b, &line, s, p, x, label, left);
     spot = gxbp_locate(b, &line);
-    if (b->result != GX_OK) return x;
+    if (b->error != GX_OK) return x;
     if (spot.vertex != GXB_NONE) {
         gxbp_unite(b, spot.vertex, x);
         return spot.vertex;
@@ -7967,23 +8077,25 @@ static uint32_t gxbp_insert_point(gxb_boolean *b, uint32_t s, uint32_t x, uint32
     return x;
 }
 
-/* --- edges that must be there --- */
+/* >>constrain: edges that must be there ---------------------------------------------------------------------------- */
+/* In: two vertices of a triangulation and a label. Out: a path of labelled edges between them. The crossed subtriangles
+   are removed and both sides filled again. Touches the subtriangles of this source, links and the two rims. */
 
-/* Appends to b->rims or b->lefts a vertex, with what lies beyond edge k of f. */
-static void gxbp_push_margin(gxb_boolean *b, gxbp_margin **list, uint32_t *count, uint32_t *capacity, uint32_t vertex,
-                             uint32_t f, int k) {
-    gxbp_margin *r;
+/* Appends to b->work.rims or b->work.lefts a vertex, with what lies beyond edge k of f. */
+static void gxbp_push_rim_vertex(gxb_boolean *b, gxbp_rim_vertex **list, uint32_t *count, uint32_t *capacity,
+                                 uint32_t vertex, uint32_t f, int k) {
+    gxbp_rim_vertex *r;
     if (*count == *capacity && !gxbp_room(b, list, *count, capacity, sizeof **list, 1)) return;
     r = *list + (*count)++;
     r->vertex = vertex;
     r->made = GXB_NONE;
     r->dangling = 0;
-    r->near = f == GXB_NONE ? GXB_NONE : b->pieces[f].near[k];
-    r->labels = f == GXB_NONE ? GXBP_LOOSE : b->pieces[f].labels[k];
+    r->near = f == GXB_NONE ? GXB_NONE : b->mesh.subtriangles[f].near[k];
+    r->labels = f == GXB_NONE ? GXBP_LOOSE : b->mesh.subtriangles[f].labels[k];
 }
 
 /* The apex over the base from rim[high] to rim[low]: no other vertex between lies in its triangle. */
-static uint32_t gxbp_choose_apex(gxb_boolean *b, const gxbp_margin *rim, uint32_t low, uint32_t high) {
+static uint32_t gxbp_choose_apex(gxb_boolean *b, const gxbp_rim_vertex *rim, uint32_t low, uint32_t high) {
     uint32_t best = low + 1, i;
     for (i = low + 2; i < high; i++) {
         const uint32_t v = rim[i].vertex;
@@ -7995,45 +8107,45 @@ static uint32_t gxbp_choose_apex(gxb_boolean *b, const gxbp_margin *rim, uint32_
     return best;
 }
 
-/* Joins edge k of f to what lies outside of the rim's piece i. A dangling piece has its other side in the rim too. */
-static void gxbp_attach_rim(gxb_boolean *b, gxbp_margin *rim, uint32_t count, uint32_t i, uint32_t f, int k) {
+/* Joins edge k of f to what lies outside of the rim's edge i. A dangling edge has its other side in the rim too. */
+static void gxbp_attach_rim(gxb_boolean *b, gxbp_rim_vertex *rim, uint32_t count, uint32_t i, uint32_t f, int k) {
     uint32_t j;
     gxbp_set_edge(b, f, k, rim[i].near, rim[i].labels);
     if (!rim[i].dangling) {
-        gxbp_greet(b, rim[i].near, rim[i].vertex, rim[i + 1].vertex, f);
+        gxbp_link_neighbour(b, rim[i].near, rim[i].vertex, rim[i + 1].vertex, f);
         return;
     }
     rim[i].made = f;
-    b->pieces[f].near[k] = GXB_NONE;
+    b->mesh.subtriangles[f].near[k] = GXB_NONE;
     for (j = 0; j + 1 < count; j++) {
         if (rim[j].vertex != rim[i + 1].vertex || rim[j + 1].vertex != rim[i].vertex || rim[j].made == GXB_NONE)
             continue;
-        b->pieces[f].near[k] = rim[j].made;
-        gxbp_greet(b, rim[j].made, rim[i].vertex, rim[i + 1].vertex, f);
+        b->mesh.subtriangles[f].near[k] = rim[j].made;
+        gxbp_link_neighbour(b, rim[j].made, rim[i].vertex, rim[i + 1].vertex, f);
     }
 }
 
-/* Triangulates what lies between rim[low] ... rim[high] and the base; facets are taken from the scratch list's end.
- * Returns the base's. */
-static GXBP_APART uint32_t gxbp_fill_rim(gxb_boolean *b, gxbp_margin *rim, uint32_t count, uint32_t low,
+/* Triangulates what lies between rim[low] ... rim[high] and the base; subtriangles are taken from the scratch list's
+ * end. Returns the base's. */
+static GXBP_APART uint32_t gxbp_fill_rim(gxb_boolean *b, gxbp_rim_vertex *rim, uint32_t count, uint32_t low,
                                          uint32_t high) {
-    const uint32_t apex = gxbp_choose_apex(b, rim, low, high), f = b->scratch[--b->scratch_count];
+    const uint32_t apex = gxbp_choose_apex(b, rim, low, high), f = b->work.stack[--b->work.stack_count];
     uint32_t g;
-    gxbp_set_piece(b, f, rim[high].vertex, rim[low].vertex, rim[apex].vertex);
+    gxbp_set_subtriangle(b, f, rim[high].vertex, rim[low].vertex, rim[apex].vertex);
     gxbp_set_edge(b, f, 0, GXB_NONE, GXBP_LOOSE);
     if (apex == low + 1)
         gxbp_attach_rim(b, rim, count, low, f, 1);
     else {
         g = gxbp_fill_rim(b, rim, count, low, apex);
         gxbp_set_edge(b, f, 1, g, GXBP_LOOSE);
-        b->pieces[g].near[0] = f;
+        b->mesh.subtriangles[g].near[0] = f;
     }
     if (apex + 1 == high)
         gxbp_attach_rim(b, rim, count, apex, f, 2);
     else {
         g = gxbp_fill_rim(b, rim, count, apex, high);
         gxbp_set_edge(b, f, 2, g, GXBP_LOOSE);
-        b->pieces[g].near[0] = f;
+        b->mesh.subtriangles[g].near[0] = f;
     }
     return f;
 }
@@ -8041,9 +8153,9 @@ static GXBP_APART uint32_t gxbp_fill_rim(gxb_boolean *b, gxbp_margin *rim, uint3
 /* The point where the line of a triangle (label) crosses an edge that must stay. */
 static GXBP_RARE uint32_t gxbp_crossing_point(gxb_boolean *b, uint32_t s, uint32_t labels, uint32_t label) {
     uint32_t other = GXB_NONE, id[3];
-    int fresh;
-    for (; other == GXB_NONE && labels != GXBP_BARE; labels = b->links[labels].next)
-        if (!(b->links[labels].value & GXBP_EDGE_LABEL)) other = b->links[labels].value;
+    int is_new;
+    for (; other == GXB_NONE && labels != GXBP_BARE; labels = b->mesh.links[labels].next)
+        if (!(b->mesh.links[labels].value & GXBP_EDGE_LABEL)) other = b->mesh.links[labels].value;
     if (other == GXB_NONE || label & GXBP_EDGE_LABEL) {
         gxbp_stop(b, GX_ERROR_OVERLAP);
         return GXB_NONE;
@@ -8052,32 +8164,33 @@ static GXBP_RARE uint32_t gxbp_crossing_point(gxb_boolean *b, uint32_t s, uint32
     id[1] = label;
     id[2] = other;
     gxbp_sort3(id);
-    other = gxbp_keyed_point(b, GXB_FROM_THREE_TRIANGLES, id[0], id[1], id[2], &fresh);
-    if (fresh)
-        gxbp_place_point(b, other, GXB_THREE_PLANES, b->sources[id[0]].plane, b->sources[id[1]].plane,
-                         b->sources[id[2]].plane);
+    other = gxbp_keyed_point(b, GXB_FROM_THREE_TRIANGLES, id[0], id[1], id[2], &is_new);
+    if (is_new)
+        gxbp_place_point(b, other, GXB_THREE_PLANES, b->in.sources[id[0]].plane, b->in.sources[id[1]].plane,
+                         b->in.sources[id[2]].plane);
     return other;
 }
 
 static void gxbp_push(gxb_boolean *b, uint32_t value) {
-    if (GXBP_ROOM(b, scratch, scratch, 1)) b->scratch[b->scratch_count++] = value;
+    if (GXBP_ROOM(b, work.stack, work.stack, 1)) b->work.stack[b->work.stack_count++] = value;
 }
 
-/* Facets that the line crosses from way on, up to the first vertex on it: into scratch; their rims on its right (from
-   the start) and its left (from the start, without it). 0: an edge that must stay is in the way; it has been divided
-   there. */
+/* Subtriangles that the line crosses from way on, up to the first vertex on it: into scratch; their rims on its right
+   (from the start) and its left (from the start, without it). 0: an edge that must stay is in the way; it has been
+   divided there. */
 static int gxbp_collect_crossed(gxb_boolean *b, uint32_t s, const gxbp_line *line, gxbp_way way, uint32_t label) {
-    uint32_t f = way.f, u = b->pieces[f].v[(way.k + 1) % 3], w = b->pieces[f].v[(way.k + 2) % 3];
+    uint32_t f = way.f, u = b->mesh.subtriangles[f].v[(way.k + 1) % 3], w = b->mesh.subtriangles[f].v[(way.k + 2) % 3];
     int k = (way.k + 1) % 3;
-    b->scratch_count = b->rim_count = b->left_count = 0;
-    gxbp_push_margin(b, &b->rims, &b->rim_count, &b->rim_capacity, b->pieces[f].v[way.k], f, way.k);
-    gxbp_push_margin(b, &b->lefts, &b->left_count, &b->left_capacity, w, f, (way.k + 2) % 3);
+    b->work.stack_count = b->work.rim_count = b->work.left_count = 0;
+    gxbp_push_rim_vertex(b, &b->work.rims, &b->work.rim_count, &b->work.rim_capacity, b->mesh.subtriangles[f].v[way.k],
+                         f, way.k);
+    gxbp_push_rim_vertex(b, &b->work.lefts, &b->work.left_count, &b->work.left_capacity, w, f, (way.k + 2) % 3);
     gxbp_push(b, f);
-    while (b->result == GX_OK) {
+    while (b->error == GX_OK) {
         uint32_t c;
         int j, of_c;
-        if (b->pieces[f].labels[k] != GXBP_LOOSE) {
-            const uint32_t x = gxbp_crossing_point(b, s, b->pieces[f].labels[k], label);
+        if (b->mesh.subtriangles[f].labels[k] != GXBP_LOOSE) {
+            const uint32_t x = gxbp_crossing_point(b, s, b->mesh.subtriangles[f].labels[k], label);
             if (x == GXB_NONE) return 0;
             if (gxbp_is_placed(b, x)) {
                 gxbp_stop(b, GX_ERROR_OVERLAP);
@@ -8086,20 +8199,22 @@ static int gxbp_collect_crossed(gxb_boolean *b, uint32_t s, const gxbp_line *lin
             gxbp_split_side(b, f, k, x);
             return 0;
         }
-        f = b->pieces[f].near[k];
+        f = b->mesh.subtriangles[f].near[k];
         if (f == GXB_NONE) {
             gxbp_stop(b, GX_ERROR_OVERLAP);
             return 0;
         }
         gxbp_push(b, f);
-        j = gxbp_corner_index(&b->pieces[f], w);
-        c = b->pieces[f].v[(j + 2) % 3];
+        j = gxbp_corner_index(&b->mesh.subtriangles[f], w);
+        c = b->mesh.subtriangles[f].v[(j + 2) % 3];
         of_c = gxbp_left(b, line, c);
-        if (of_c <= 0) gxbp_push_margin(b, &b->rims, &b->rim_count, &b->rim_capacity, u, f, (j + 1) % 3);
-        if (of_c >= 0) gxbp_push_margin(b, &b->lefts, &b->left_count, &b->left_capacity, c, f, (j + 2) % 3);
+        if (of_c <= 0)
+            gxbp_push_rim_vertex(b, &b->work.rims, &b->work.rim_count, &b->work.rim_capacity, u, f, (j + 1) % 3);
+        if (of_c >= 0)
+            gxbp_push_rim_vertex(b, &b->work.lefts, &b->work.left_count, &b->work.left_capacity, c, f, (j + 2) % 3);
         if (of_c == 0) {
-            gxbp_push_margin(b, &b->rims, &b->rim_count, &b->rim_capacity, c, GXB_NONE, 0);
-            return b->result == GX_OK;
+            gxbp_push_rim_vertex(b, &b->work.rims, &b->work.rim_count, &b->work.rim_capacity, c, GXB_NONE, 0);
+            return b->error == GX_OK;
         }
         if (of_c < 0) {
             u = c;
@@ -8114,37 +8229,37 @@ static int gxbp_collect_crossed(gxb_boolean *b, uint32_t s, const gxbp_line *lin
 
 #define GXBP_REMOVED (UINT32_MAX - 1)
 
-static void gxbp_find_dangling(const gxb_boolean *b, gxbp_margin *rim, uint32_t count) {
+static void gxbp_find_dangling(const gxb_boolean *b, gxbp_rim_vertex *rim, uint32_t count) {
     uint32_t i;
     for (i = 0; i < count; i++)
-        rim[i].dangling = rim[i].near != GXB_NONE && b->pieces[rim[i].near].state == GXBP_REMOVED;
+        rim[i].dangling = rim[i].near != GXB_NONE && b->mesh.subtriangles[rim[i].near].state == GXBP_REMOVED;
 }
 
-/* Retriangulates the crossed facets with an edge from the start to the vertex in which the right rim ends. */
+/* Retriangulates the crossed subtriangles with an edge from the start to the vertex in which the right rim ends. */
 static void gxbp_refill(gxb_boolean *b, uint32_t start) {
-    const uint32_t state = b->pieces[b->scratch[0]].state; /* of all: no label is between them */
+    const uint32_t state = b->mesh.subtriangles[b->work.stack[0]].state; /* of all: no label is between them */
     uint32_t i, n, f, g;
-    for (i = 0; i < b->scratch_count; i++) b->pieces[b->scratch[i]].state = GXBP_REMOVED;
-    gxbp_push_margin(b, &b->lefts, &b->left_count, &b->left_capacity, start, GXB_NONE, 0);
-    if (b->result != GX_OK) return;
+    for (i = 0; i < b->work.stack_count; i++) b->mesh.subtriangles[b->work.stack[i]].state = GXBP_REMOVED;
+    gxbp_push_rim_vertex(b, &b->work.lefts, &b->work.left_count, &b->work.left_capacity, start, GXB_NONE, 0);
+    if (b->error != GX_OK) return;
     /* the left rim goes backwards: turn it round, all but the start */
-    n = b->left_count - 1;
+    n = b->work.left_count - 1;
     for (i = 0; i < n / 2; i++) {
-        const gxbp_margin swap = b->lefts[i];
-        b->lefts[i] = b->lefts[n - 1 - i];
-        b->lefts[n - 1 - i] = swap;
+        const gxbp_rim_vertex swap = b->work.lefts[i];
+        b->work.lefts[i] = b->work.lefts[n - 1 - i];
+        b->work.lefts[n - 1 - i] = swap;
     }
-    gxbp_find_dangling(b, b->rims, b->rim_count);
-    gxbp_find_dangling(b, b->lefts, b->left_count);
-    for (i = 0; i < b->scratch_count; i++) b->pieces[b->scratch[i]].state = state;
-    f = gxbp_fill_rim(b, b->rims, b->rim_count, 0, b->rim_count - 1);
-    g = gxbp_fill_rim(b, b->lefts, b->left_count, 0, b->left_count - 1);
-    b->pieces[f].near[0] = g;
-    b->pieces[g].near[0] = f;
+    gxbp_find_dangling(b, b->work.rims, b->work.rim_count);
+    gxbp_find_dangling(b, b->work.lefts, b->work.left_count);
+    for (i = 0; i < b->work.stack_count; i++) b->mesh.subtriangles[b->work.stack[i]].state = state;
+    f = gxbp_fill_rim(b, b->work.rims, b->work.rim_count, 0, b->work.rim_count - 1);
+    g = gxbp_fill_rim(b, b->work.lefts, b->work.left_count, 0, b->work.left_count - 1);
+    b->mesh.subtriangles[f].near[0] = g;
+    b->mesh.subtriangles[g].near[0] = f;
 }
 
 static uint32_t gxbp_take_way(gxb_boolean *b, const gxbp_way *way, uint32_t label) {
-    const uint32_t ahead = b->pieces[way->f].v[(way->k + way->ahead) % 3];
+    const uint32_t ahead = b->mesh.subtriangles[way->f].v[(way->k + way->ahead) % 3];
     gxbp_label_edge(b, way->f, way->ahead == 1 ? way->k : (way->k + 2) % 3, label);
     return ahead;
 }
@@ -8161,7 +8276,7 @@ static void gxbp_force_edge(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q, 
         return;
     }
     gxbp_set_line(b, &line, s, p, q, label, left);
-    while (p != q && b->result == GX_OK) {
+    while (p != q && b->error == GX_OK) {
         if ((known || !gxbp_find_edge(b, p, q, &way)) && !gxbp_find_way(b, &line, p, &way)) {
             gxbp_stop(b, GX_ERROR_OVERLAP);
             return;
@@ -8176,36 +8291,39 @@ static void gxbp_force_edge(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q, 
     }
 }
 
-/* --- dividing a source that is alone in its plane --- */
+/* >>divide: a source that is alone in its plane -------------------------------------------------------------------- */
+/* In: a dirty source with its new segments and the points on its edges. Out: its triangulation, with all segments as
+   edges. Chains of a simple surface divide an undivided source into polygons; all else goes in segment by segment. */
 
 /* Point i of an edge: its start, its inner points in order, its end. */
 static uint32_t gxbp_edge_point(gxb_boolean *b, uint32_t s, uint32_t k, uint32_t i) {
-    const uint32_t cut = b->sources[s].edge[k], count = cut == GXB_NONE ? 0 : b->cuts[cut].count;
-    if (i == 0) return gxbp_same(b, b->sources[s].point[k]);
-    if (i > count) return gxbp_same(b, b->sources[s].point[(k + 1) % 3]);
-    return gxbp_same(b, b->cut_points[b->cuts[cut].first + (b->cuts[cut].half_edge == 3 * s + k ? i - 1 : count - i)]);
+    const uint32_t cut = b->in.sources[s].edge[k], count = cut == GXB_NONE ? 0 : b->crossings.cuts[cut].count;
+    if (i == 0) return gxbp_same(b, b->in.sources[s].point[k]);
+    if (i > count) return gxbp_same(b, b->in.sources[s].point[(k + 1) % 3]);
+    return gxbp_same(b, b->crossings.cut_points[b->crossings.cuts[cut].first +
+                                                (b->crossings.cuts[cut].half_edge == 3 * s + k ? i - 1 : count - i)]);
 }
 
 static uint32_t gxbp_edge_points(const gxb_boolean *b, uint32_t s, uint32_t k) {
-    return 2 + (b->sources[s].edge[k] == GXB_NONE ? 0 : b->cuts[b->sources[s].edge[k]].count);
+    return 2 + (b->in.sources[s].edge[k] == GXB_NONE ? 0 : b->crossings.cuts[b->in.sources[s].edge[k]].count);
 }
 
 /* Makes inner point x of an edge a vertex; u: a vertex before it on that edge, with none between */
 static void gxbp_split_rim(gxb_boolean *b, uint32_t u, uint32_t x) {
-    uint32_t f = b->vertices[u].hint;
-    int j = gxbp_corner_index(&b->pieces[f], u);
-    while (b->pieces[f].near[j] != GXB_NONE) {
-        f = b->pieces[f].near[j];
-        j = gxbp_corner_index(&b->pieces[f], u);
+    uint32_t f = b->points.vertices[u].hint;
+    int j = gxbp_corner_index(&b->mesh.subtriangles[f], u);
+    while (b->mesh.subtriangles[f].near[j] != GXB_NONE) {
+        f = b->mesh.subtriangles[f].near[j];
+        j = gxbp_corner_index(&b->mesh.subtriangles[f], u);
     }
-    if (b->pieces[f].v[(j + 1) % 3] != x) gxbp_split_side(b, f, j, x);
+    if (b->mesh.subtriangles[f].v[(j + 1) % 3] != x) gxbp_split_side(b, f, j, x);
 }
 
 /* All inner points of edge k that are no vertices yet */
 static void gxbp_divide_rim(gxb_boolean *b, uint32_t s, uint32_t k) {
     const uint32_t points = gxbp_edge_points(b, s, k);
     uint32_t i;
-    for (i = 1; i + 1 < points && b->result == GX_OK; i++)
+    for (i = 1; i + 1 < points && b->error == GX_OK; i++)
         gxbp_split_rim(b, gxbp_edge_point(b, s, k, i - 1), gxbp_edge_point(b, s, k, i));
 }
 
@@ -8213,49 +8331,54 @@ static void gxbp_divide_rim(gxb_boolean *b, uint32_t s, uint32_t k) {
 static void gxbp_find_rim_ends(gxb_boolean *b, uint32_t s, uint32_t n) {
     uint32_t i, k;
     for (i = 0; i < n; i++) {
-        const gxbp_segment *segment = &b->segments[b->chain[3 * i]];
-        b->vertices[gxbp_same(b, segment->p)].slot = b->vertices[gxbp_same(b, segment->q)].slot = GXB_NONE;
+        const gxbp_segment *segment = &b->crossings.segments[b->work.segment_ends[3 * i]];
+        b->points.vertices[gxbp_same(b, segment->p)].slot = b->points.vertices[gxbp_same(b, segment->q)].slot =
+            GXB_NONE;
     }
     for (k = 0; k < 3; k++)
-        for (i = 1; i + 1 < gxbp_edge_points(b, s, k); i++) b->vertices[gxbp_edge_point(b, s, k, i)].slot = 3 * i + k;
+        for (i = 1; i + 1 < gxbp_edge_points(b, s, k); i++)
+            b->points.vertices[gxbp_edge_point(b, s, k, i)].slot = 3 * i + k;
 }
 
 /* Is the end of a segment in the triangulation? One on the rim is put there now: what nobody needs yet would only be in
-   the way, as facets that a segment must cross. */
+   the way, as subtriangles that a segment must cross. */
 static int gxbp_enter(gxb_boolean *b, uint32_t s, uint32_t v) {
-    const uint32_t k = b->vertices[v].slot % 3;
-    uint32_t i = b->vertices[v].slot / 3, u;
+    const uint32_t k = b->points.vertices[v].slot % 3;
+    uint32_t i = b->points.vertices[v].slot / 3, u;
     if (gxbp_is_placed(b, v)) return 1;
-    if (b->vertices[v].slot == GXB_NONE) return 0;
+    if (b->points.vertices[v].slot == GXB_NONE) return 0;
     do u = gxbp_edge_point(b, s, k, --i);
     while (!gxbp_is_placed(b, u));
     gxbp_split_rim(b, u, v);
-    return b->result == GX_OK;
+    return b->error == GX_OK;
 }
 
 /* A segment that is not done yet and ends in v, by the lists that gxbp_chain_segments made. */
 static uint32_t gxbp_next_segment(const gxb_boolean *b, uint32_t v) {
-    uint32_t e = b->vertices[v].head_stamp == b->head_stamp ? b->vertices[v].head : GXB_NONE;
-    while (e != GXB_NONE && b->chain[3 * (e / 2)] == GXB_NONE) e = b->chain[3 * (e / 2) + 1 + e % 2];
+    uint32_t e = b->points.vertices[v].head_stamp == b->work.head_stamp ? b->points.vertices[v].head : GXB_NONE;
+    while (e != GXB_NONE && b->work.segment_ends[3 * (e / 2)] == GXB_NONE)
+        e = b->work.segment_ends[3 * (e / 2) + 1 + e % 2];
     return e == GXB_NONE ? GXB_NONE : e / 2;
 }
 
 /* chain: segment, next of the lists of its two ends */
 static uint32_t gxbp_chain_segments(gxb_boolean *b, uint32_t s) {
     uint32_t i, n = 0;
-    b->chain_count = 0;
-    b->head_stamp++;
-    for (i = b->sources[s].segments; i != GXB_NONE && i >= b->segment_mark; i = b->segments[i].next) {
+    b->work.segment_end_count = 0;
+    b->work.head_stamp++;
+    for (i = b->in.sources[s].segments; i != GXB_NONE && i >= b->crossings.segment_mark;
+         i = b->crossings.segments[i].next) {
         uint32_t e;
-        if (!GXBP_ROOM(b, chain, chain, 3)) return 0;
-        b->chain[3 * n] = i;
+        if (!GXBP_ROOM(b, work.segment_ends, work.segment_end, 3)) return 0;
+        b->work.segment_ends[3 * n] = i;
         for (e = 0; e < 2; e++) {
-            gxbp_vertex *v = &b->vertices[gxbp_same(b, e == 0 ? b->segments[i].p : b->segments[i].q)];
-            b->chain[3 * n + 1 + e] = v->head_stamp == b->head_stamp ? v->head : GXB_NONE;
-            v->head_stamp = b->head_stamp;
+            gxbp_vertex *v =
+                &b->points.vertices[gxbp_same(b, e == 0 ? b->crossings.segments[i].p : b->crossings.segments[i].q)];
+            b->work.segment_ends[3 * n + 1 + e] = v->head_stamp == b->work.head_stamp ? v->head : GXB_NONE;
+            v->head_stamp = b->work.head_stamp;
             v->head = 2 * n + e;
         }
-        b->chain_count += 3;
+        b->work.segment_end_count += 3;
         n++;
     }
     return n;
@@ -8263,27 +8386,28 @@ static uint32_t gxbp_chain_segments(gxb_boolean *b, uint32_t s) {
 
 /* Follows segments from one that has an end in the triangulation, so that each begins where the last one ended. */
 static void gxbp_trace_segments(gxb_boolean *b, uint32_t s, uint32_t i) {
-    const gxbp_segment *first = &b->segments[b->chain[3 * i]];
+    const gxbp_segment *first = &b->crossings.segments[b->work.segment_ends[3 * i]];
     uint32_t v = gxbp_same(b, first->p);
     if (!gxbp_enter(b, s, v) && gxbp_enter(b, s, gxbp_same(b, first->q))) v = gxbp_same(b, first->q);
-    if (!gxbp_is_placed(b, v)) v = gxbp_insert_point(b, s, v, gxbp_same(b, b->sources[s].point[0]), GXBP_EDGE_LABEL, 0);
-    for (; i != GXB_NONE && b->result == GX_OK; i = gxbp_next_segment(b, v)) {
-        const gxbp_segment segment = b->segments[b->chain[3 * i]];
+    if (!gxbp_is_placed(b, v))
+        v = gxbp_insert_point(b, s, v, gxbp_same(b, b->in.sources[s].point[0]), GXBP_EDGE_LABEL, 0);
+    for (; i != GXB_NONE && b->error == GX_OK; i = gxbp_next_segment(b, v)) {
+        const gxbp_segment segment = b->crossings.segments[b->work.segment_ends[3 * i]];
         const int forward = gxbp_same(b, segment.p) == v;
         const uint32_t other = gxbp_same(b, forward ? segment.q : segment.p);
         const int left = forward ? segment.left : -segment.left;
         uint32_t end = other;
-        b->chain[3 * i] = GXB_NONE;
+        b->work.segment_ends[3 * i] = GXB_NONE;
         if (!gxbp_enter(b, s, other)) end = gxbp_insert_point(b, s, other, v, segment.label, left);
-        if (b->result == GX_OK) gxbp_force_edge(b, s, v, end, segment.label, left);
+        if (b->error == GX_OK) gxbp_force_edge(b, s, v, end, segment.label, left);
         v = end;
     }
 }
 
 static void gxbp_note_divided(gxb_boolean *b, uint32_t s) {
-    if (b->sources[s].flags & GXBP_DIVIDED || !GXBP_ROOM(b, divided, divided, 1)) return;
-    b->sources[s].flags |= GXBP_DIVIDED;
-    b->divided[b->divided_count++] = s;
+    if (b->in.sources[s].flags & GXBP_DIVIDED || !GXBP_ROOM(b, mesh.divided, mesh.divided, 1)) return;
+    b->in.sources[s].flags |= GXBP_DIVIDED;
+    b->mesh.divided[b->mesh.divided_count++] = s;
 }
 
 /* --- dividing a source by chains: the generic small case --- */
@@ -8303,36 +8427,36 @@ typedef struct gxbp_knot {
     uint32_t before, after;
 } gxbp_knot;
 /* segments in gxbp_division.step, rim points at the ends */
-typedef struct gxbp_strand {
+typedef struct gxbp_chain {
     uint32_t first, count, from, to;
-} gxbp_strand;
+} gxbp_chain;
 
 typedef struct gxbp_division {
-    uint32_t source, spare, state; /* spare: the source's only facet, until it is used */
+    uint32_t source, spare, state; /* spare: the source's only subtriangle, until it is used */
     gxbp_knot rim[GXBP_SMALL];
     uint32_t rim_count;
     uint32_t corner[3]; /* places of the source's corners in the rim */
     /* of the source's edges; 1: the cut has its half-edge from the other triangle */
     uint32_t cut[3], other[3];
-    uint32_t chain[GXBP_SMALL]; /* of each rim point: the strand that ends there, or GXB_NONE */
-    gxbp_strand strand[GXBP_SMALL];
-    uint32_t strand_count;
-    gxbp_knot step[GXBP_SMALL];  /* of each segment: the point that it leaves; slot: its place in b->chain */
+    uint32_t chain_at[GXBP_SMALL]; /* of each rim point: the chain that ends there, or GXB_NONE */
+    gxbp_chain chains[GXBP_SMALL];
+    uint32_t chain_count;
+    gxbp_knot step[GXBP_SMALL]; /* of each segment: the point that it leaves; slot: its place in b->work.segment_ends */
     uint32_t step_count, labels; /* the segments' links, one after the other */
     gxbp_knot polygon[GXBP_SMALL];
-    /* of steps, then of diagonals: the facet's edge on the side that is there */
+    /* of steps, then of diagonals: the subtriangle's edge on the side that is there */
     uint32_t half[4 * GXBP_SMALL];
     uint32_t slot_count;
 } gxbp_division;
 
 static int gxbp_is_generic(const gxb_boolean *b, uint32_t s, uint32_t n) {
     uint32_t i, operand;
-    if (n > GXBP_SMALL || b->pieces[b->sources[s].facet].next != GXB_NONE) return 0;
+    if (n > GXBP_SMALL || b->mesh.subtriangles[b->in.sources[s].subtriangle].next != GXB_NONE) return 0;
     for (i = 0; i < n; i++) {
-        const gxbp_segment *segment = &b->segments[b->chain[3 * i]];
-        operand = b->sources[segment->label].operand;
-        if (segment->left == 0 || !b->operands[operand].simple ||
-            operand != b->sources[b->segments[b->chain[0]].label].operand)
+        const gxbp_segment *segment = &b->crossings.segments[b->work.segment_ends[3 * i]];
+        operand = b->in.sources[segment->label].operand;
+        if (segment->left == 0 || !b->in.operands[operand].simple ||
+            operand != b->in.sources[b->crossings.segments[b->work.segment_ends[0]].label].operand)
             return 0;
     }
     return 1;
@@ -8343,7 +8467,7 @@ static int gxbp_collect_rim(gxb_boolean *b, gxbp_division *d, uint32_t n) {
     const uint32_t s = d->source;
     uint32_t k, i, on;
     d->rim_count = 0;
-    b->stamp++;
+    b->work.stamp++;
     for (k = 0; k < 3; k++) {
         const uint32_t count = gxbp_edge_points(b, s, k) - 1;
         if (d->rim_count + count + n > GXBP_SMALL) return 0;
@@ -8353,12 +8477,12 @@ static int gxbp_collect_rim(gxb_boolean *b, gxbp_division *d, uint32_t n) {
             gxbp_knot *knot = &d->rim[d->rim_count];
             knot->vertex = gxbp_edge_point(b, s, k, i);
             if (gxbp_is_placed(b, knot->vertex)) return 0;
-            b->vertices[knot->vertex].stamp = b->stamp;
-            b->vertices[knot->vertex].hint = d->rim_count;
+            b->points.vertices[knot->vertex].stamp = b->work.stamp;
+            b->points.vertices[knot->vertex].hint = d->rim_count;
             knot->on = on;
             knot->bend = i == 0;
             knot->slot = GXB_NONE;
-            d->chain[d->rim_count++] = GXB_NONE;
+            d->chain_at[d->rim_count++] = GXB_NONE;
         }
     }
     return 1;
@@ -8370,7 +8494,7 @@ static int gxbp_mark_starts(gxb_boolean *b, gxbp_division *d) {
     for (k = 0; k < 3; k++) {
         const uint32_t cut = d->cut[k] = gxbp_need_cut(b, d->source, (int)k), end = d->corner[k == 2 ? 0 : k + 1];
         if (cut == GXB_NONE) return 0;
-        d->other[k] = b->cuts[cut].half_edge != 3 * d->source + k;
+        d->other[k] = b->crossings.cuts[cut].half_edge != 3 * d->source + k;
         d->rim[!d->other[k] ? d->corner[k] : (end == 0 ? d->rim_count : end) - 1].slot = GXBP_RIM + k;
     }
     return 1;
@@ -8379,30 +8503,30 @@ static int gxbp_mark_starts(gxb_boolean *b, gxbp_division *d) {
 /* Ends of segments in lists of vertices, see gxbp_chain_segments: 2 i + e. The other end at an inner point of a chain;
  * GXB_NONE: there are not two */
 static uint32_t gxbp_other_end(const gxb_boolean *b, uint32_t v, uint32_t end) {
-    const uint32_t first = b->vertices[v].head, second = b->chain[3 * (first / 2) + 1 + first % 2];
-    if (second == GXB_NONE || b->chain[3 * (second / 2) + 1 + second % 2] != GXB_NONE) return GXB_NONE;
+    const uint32_t first = b->points.vertices[v].head, second = b->work.segment_ends[3 * (first / 2) + 1 + first % 2];
+    if (second == GXB_NONE || b->work.segment_ends[3 * (second / 2) + 1 + second % 2] != GXB_NONE) return GXB_NONE;
     return first == end ? second : first;
 }
 
 /* Follows the chain that leaves a rim point by an end of a segment. 0: it is not one that leads to the rim. */
 static GXBP_APART int gxbp_follow_chain(gxb_boolean *b, gxbp_division *d, uint32_t from, uint32_t end, uint32_t n) {
-    gxbp_strand *strand = &d->strand[d->strand_count];
+    gxbp_chain *chain = &d->chains[d->chain_count];
     uint32_t v = d->rim[from].vertex;
-    strand->first = d->step_count;
-    strand->from = from;
+    chain->first = d->step_count;
+    chain->from = from;
     while (end != GXB_NONE && d->step_count < n) {
-        const gxbp_segment *segment = &b->segments[b->chain[3 * (end / 2)]];
+        const gxbp_segment *segment = &b->crossings.segments[b->work.segment_ends[3 * (end / 2)]];
         d->step[d->step_count].vertex = v;
         d->step[d->step_count++].slot = end / 2;
         end ^= 1;
         v = gxbp_same(b, end % 2 == 0 ? segment->p : segment->q);
         if (gxbp_is_placed(b, v)) {
-            const uint32_t to = b->vertices[v].hint;
-            strand->to = to;
-            strand->count = d->step_count - strand->first;
-            if (d->chain[to] != GXB_NONE || to == from || (strand->count == 1 && d->rim[from].on & d->rim[to].on))
+            const uint32_t to = b->points.vertices[v].hint;
+            chain->to = to;
+            chain->count = d->step_count - chain->first;
+            if (d->chain_at[to] != GXB_NONE || to == from || (chain->count == 1 && d->rim[from].on & d->rim[to].on))
                 return 0;
-            d->chain[from] = d->chain[to] = d->strand_count++;
+            d->chain_at[from] = d->chain_at[to] = d->chain_count++;
             d->rim[from].bend = d->rim[to].bend = 1;
             return 1;
         }
@@ -8413,11 +8537,11 @@ static GXBP_APART int gxbp_follow_chain(gxb_boolean *b, gxbp_division *d, uint32
 
 /* 1: v lies left of the way from p to q, by a segment (see gxbp_chain_segments) between them; v is not one of them. */
 static int gxbp_left_of_segment(gxb_boolean *b, uint32_t i, uint32_t p, uint32_t q, uint32_t v) {
-    const gxbp_segment *segment = &b->segments[b->chain[3 * i]];
+    const gxbp_segment *segment = &b->crossings.segments[b->work.segment_ends[3 * i]];
     gxbp_line line;
     line.p = p;
     line.x = q;
-    line.plane = b->sources[segment->label].plane;
+    line.plane = b->in.sources[segment->label].plane;
     line.source = segment->label;
     line.sigma = gxbp_same(b, segment->p) == p ? segment->left : -segment->left;
     return gxbp_left(b, &line, v);
@@ -8426,10 +8550,10 @@ static int gxbp_left_of_segment(gxb_boolean *b, uint32_t i, uint32_t p, uint32_t
 /* How a chain goes on at an inner point, from one segment to the next: where it passes an edge of the other surface, as
  * that is folded there. */
 static int gxbp_bend_of_chain(gxb_boolean *b, const gxbp_knot *from, const gxbp_knot *at, uint32_t next) {
-    const gxbp_segment *segment = &b->segments[b->chain[3 * from->slot]];
-    const uint32_t *key = b->vertices[at->vertex].key, t = segment->label,
-                   u = b->segments[b->chain[3 * at->slot]].label;
-    const uint32_t twin = key[0] == GXB_FROM_EDGE_TRIANGLE ? b->sources[key[1] / 3].twin[key[1] % 3] : GXB_NONE;
+    const gxbp_segment *segment = &b->crossings.segments[b->work.segment_ends[3 * from->slot]];
+    const uint32_t *key = b->points.vertices[at->vertex].key, t = segment->label,
+                   u = b->crossings.segments[b->work.segment_ends[3 * at->slot]].label;
+    const uint32_t twin = key[0] == GXB_FROM_EDGE_TRIANGLE ? b->in.sources[key[1] / 3].twin[key[1] % 3] : GXB_NONE;
     if (twin == GXB_NONE || !((key[1] / 3 == t && twin / 3 == u) || (key[1] / 3 == u && twin / 3 == t)))
         return gxbp_left_of_segment(b, from->slot, from->vertex, at->vertex, next);
     return gxbp_fold(b, key[1], twin / 3, twin % 3) *
@@ -8438,20 +8562,20 @@ static int gxbp_bend_of_chain(gxb_boolean *b, const gxbp_knot *from, const gxbp_
 
 static GXBP_APART int gxbp_collect_chains(gxb_boolean *b, gxbp_division *d, uint32_t n) {
     uint32_t i, m;
-    d->strand_count = d->step_count = 0;
+    d->chain_count = d->step_count = 0;
     for (i = 0; i < d->rim_count; i++) {
-        const gxbp_vertex *v = &b->vertices[d->rim[i].vertex];
-        if (v->head_stamp != b->head_stamp) continue;
-        if (b->chain[3 * (v->head / 2) + 1 + v->head % 2] != GXB_NONE) return 0;
-        if (d->chain[i] == GXB_NONE && !gxbp_follow_chain(b, d, i, v->head, n)) return 0;
+        const gxbp_vertex *v = &b->points.vertices[d->rim[i].vertex];
+        if (v->head_stamp != b->work.head_stamp) continue;
+        if (b->work.segment_ends[3 * (v->head / 2) + 1 + v->head % 2] != GXB_NONE) return 0;
+        if (d->chain_at[i] == GXB_NONE && !gxbp_follow_chain(b, d, i, v->head, n)) return 0;
     }
     if (d->step_count < n) return 0;
-    for (i = 0; i < d->strand_count; i++)
-        for (m = d->strand[i].first + 1; m < d->strand[i].first + d->strand[i].count; m++) {
-            const int last = m + 1 == d->strand[i].first + d->strand[i].count;
+    for (i = 0; i < d->chain_count; i++)
+        for (m = d->chains[i].first + 1; m < d->chains[i].first + d->chains[i].count; m++) {
+            const int last = m + 1 == d->chains[i].first + d->chains[i].count;
             d->step[m].on = 0;
             d->step[m].bend = gxbp_bend_of_chain(b, &d->step[m - 1], &d->step[m],
-                                                 last ? d->rim[d->strand[i].to].vertex : d->step[m + 1].vertex);
+                                                 last ? d->rim[d->chains[i].to].vertex : d->step[m + 1].vertex);
         }
     return 1;
 }
@@ -8459,7 +8583,8 @@ static GXBP_APART int gxbp_collect_chains(gxb_boolean *b, gxbp_division *d, uint
 /* 1: p comes before q along an edge (bit) of the source, the inside of which is to the left; -1: after it */
 static int gxbp_along_rim(const gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q,
                           uint32_t edge) {
-    const uint32_t first = d->corner[edge >> 1], i = b->vertices[p->vertex].hint, j = b->vertices[q->vertex].hint;
+    const uint32_t first = d->corner[edge >> 1], i = b->points.vertices[p->vertex].hint,
+                   j = b->points.vertices[q->vertex].hint;
     return (i < first ? i + d->rim_count : i) < (j < first ? j + d->rim_count : j) ? 1 : -1;
 }
 
@@ -8510,35 +8635,35 @@ static int gxbp_is_ear(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *
     return 1;
 }
 
-/* Edge k of a facet is the one in a slot: the second facet there meets the first. */
+/* Edge k of a subtriangle is the one in a slot: the second subtriangle there meets the first. */
 static inline void gxbp_use_slot(gxb_boolean *b, gxbp_division *d, uint32_t f, uint32_t k, uint32_t slot) {
-    gxbp_piece *piece = &b->pieces[f];
+    gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
     uint32_t other;
-    piece->near[k] = GXB_NONE;
-    piece->labels[k] = GXBP_BARE;
+    sub->near[k] = GXB_NONE;
+    sub->labels[k] = GXBP_BARE;
     if (slot >= GXBP_RIM) {
-        if (slot != GXB_NONE) b->cuts[d->cut[slot - GXBP_RIM]].rim[d->other[slot - GXBP_RIM]] = 3 * f + k;
+        if (slot != GXB_NONE) b->crossings.cuts[d->cut[slot - GXBP_RIM]].rim[d->other[slot - GXBP_RIM]] = 3 * f + k;
         return;
     }
-    piece->labels[k] = slot < d->step_count ? d->labels + slot : GXBP_LOOSE;
+    sub->labels[k] = slot < d->step_count ? d->labels + slot : GXBP_LOOSE;
     other = d->half[slot];
     d->half[slot] = 3 * f + k;
     if (other == GXB_NONE) return;
-    piece->near[k] = other / 3;
-    b->pieces[other / 3].near[other % 3] = f;
+    sub->near[k] = other / 3;
+    b->mesh.subtriangles[other / 3].near[other % 3] = f;
 }
 
 static void gxbp_cut_ear(gxb_boolean *b, gxbp_division *d, gxbp_knot *p, const gxbp_knot *q, const gxbp_knot *r,
                          uint32_t slot) {
-    const uint32_t f = d->spare != GXB_NONE ? d->spare : gxbp_new_piece(b, d->source);
-    gxbp_piece *piece;
+    const uint32_t f = d->spare != GXB_NONE ? d->spare : gxbp_new_subtriangle(b, d->source);
+    gxbp_subtriangle *sub;
     if (f == GXB_NONE) return;
     d->spare = GXB_NONE;
-    piece = &b->pieces[f];
-    piece->v[0] = p->vertex;
-    piece->v[1] = q->vertex;
-    piece->v[2] = r->vertex;
-    piece->state = d->state;
+    sub = &b->mesh.subtriangles[f];
+    sub->v[0] = p->vertex;
+    sub->v[1] = q->vertex;
+    sub->v[2] = r->vertex;
+    sub->state = d->state;
     gxbp_use_slot(b, d, f, 0, p->slot);
     gxbp_use_slot(b, d, f, 1, q->slot);
     gxbp_use_slot(b, d, f, 2, slot);
@@ -8560,7 +8685,7 @@ static GXBP_APART void gxbp_fill_polygon(gxb_boolean *b, gxbp_division *d, uint3
         polygon[i].after = i + 1 == n ? 0 : i + 1;
         concave += polygon[i].bend <= 0;
     }
-    for (; b->result == GX_OK; q = r) {
+    for (; b->error == GX_OK; q = r) {
         p = &polygon[q->before];
         r = &polygon[q->after];
         if (n > 3) {
@@ -8583,19 +8708,19 @@ static GXBP_APART void gxbp_fill_polygon(gxb_boolean *b, gxbp_division *d, uint3
 /* Along a chain from rim point i: what it passes becomes a part of the polygon. Returns the rim point in which it ends.
  */
 static uint32_t gxbp_walk_chain(gxbp_division *d, uint32_t i, uint32_t *n) {
-    const gxbp_strand *strand = &d->strand[d->chain[i]];
-    const int forward = strand->from == i;
+    const gxbp_chain *chain = &d->chains[d->chain_at[i]];
+    const int forward = chain->from == i;
     uint32_t m;
     d->polygon[*n] = d->rim[i];
-    d->polygon[(*n)++].slot = forward ? strand->first : strand->first + strand->count - 1;
-    for (m = 1; m < strand->count; m++) {
-        const uint32_t step = strand->first + (forward ? m : strand->count - m);
+    d->polygon[(*n)++].slot = forward ? chain->first : chain->first + chain->count - 1;
+    for (m = 1; m < chain->count; m++) {
+        const uint32_t step = chain->first + (forward ? m : chain->count - m);
         gxbp_knot *knot = &d->polygon[(*n)++];
         *knot = d->step[step];
         knot->slot = forward ? step : step - 1;
         if (!forward) knot->bend = -knot->bend;
     }
-    return forward ? strand->to : strand->from;
+    return forward ? chain->to : chain->from;
 }
 
 /* The polygons, each from one of its rim's edges on. */
@@ -8609,7 +8734,7 @@ static GXBP_APART void gxbp_fill_polygons(gxb_boolean *b, gxbp_division *d) {
             done |= 1u << i;
             d->polygon[n++] = d->rim[i];
             i = i + 1 == d->rim_count ? 0 : i + 1;
-            if (d->chain[i] != GXB_NONE) i = gxbp_walk_chain(d, i, &n);
+            if (d->chain_at[i] != GXB_NONE) i = gxbp_walk_chain(d, i, &n);
         } while (i != start);
         gxbp_fill_polygon(b, d, n);
     }
@@ -8621,38 +8746,38 @@ static GXBP_APART int gxbp_divide_by_chains(gxb_boolean *b, uint32_t s, uint32_t
     uint32_t i;
     if (!gxbp_is_generic(b, s, n)) return 0;
     d.source = s;
-    b->plane = b->sources[s].plane;
+    b->work.plane = b->in.sources[s].plane;
     if (!gxbp_collect_rim(b, &d, n) || !gxbp_collect_chains(b, &d, n)) return 0;
-    if (!GXBP_ROOM(b, links, link, n) || !gxbp_mark_starts(b, &d)) return 1;
+    if (!GXBP_ROOM(b, mesh.links, mesh.link, n) || !gxbp_mark_starts(b, &d)) return 1;
     for (i = 0; i < n; i++) {
-        gxbp_new_link(b, b->segments[b->chain[3 * d.step[i].slot]].label, GXBP_BARE);
+        gxbp_new_link(b, b->crossings.segments[b->work.segment_ends[3 * d.step[i].slot]].label, GXBP_BARE);
         d.half[i] = GXB_NONE;
     }
     d.slot_count = n;
-    d.labels = b->link_count - n;
-    d.spare = b->sources[s].facet;
-    d.state = b->pieces[d.spare].state;
+    d.labels = b->mesh.link_count - n;
+    d.spare = b->in.sources[s].subtriangle;
+    d.state = b->mesh.subtriangles[d.spare].state;
     gxbp_fill_polygons(b, &d);
     return 1;
 }
 
-/* Facets at the starts of a source's edges: half-edges that leave the corner, or come to it where the edge starts at
- * its other end. */
+/* Subtriangles at the starts of a source's edges: half-edges that leave the corner, or come to it where the edge starts
+ * at its other end. */
 static void gxbp_note_rims(gxb_boolean *b, uint32_t s) {
     uint32_t leaves[3], comes[3], *rim[3], cut[3], f, k, j;
     for (k = 0; k < 3; k++)
         if ((cut[k] = gxbp_need_cut(b, s, (int)k)) == GXB_NONE) return;
     for (k = 0; k < 3; k++) {
-        const int other = b->cuts[cut[k]].half_edge != 3 * s + k;
-        leaves[k] = other ? GXB_NONE : gxbp_same(b, b->sources[s].point[k]);
-        comes[k] = other ? gxbp_same(b, b->sources[s].point[(k + 1) % 3]) : GXB_NONE;
-        rim[k] = &b->cuts[cut[k]].rim[other];
+        const int other = b->crossings.cuts[cut[k]].half_edge != 3 * s + k;
+        leaves[k] = other ? GXB_NONE : gxbp_same(b, b->in.sources[s].point[k]);
+        comes[k] = other ? gxbp_same(b, b->in.sources[s].point[(k + 1) % 3]) : GXB_NONE;
+        rim[k] = &b->crossings.cuts[cut[k]].rim[other];
     }
-    for (f = b->sources[s].facet; f != GXB_NONE; f = b->pieces[f].next) {
-        const gxbp_piece *piece = &b->pieces[f];
+    for (f = b->in.sources[s].subtriangle; f != GXB_NONE; f = b->mesh.subtriangles[f].next) {
+        const gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
         for (j = 0; j < 3; j++) {
-            const uint32_t p = piece->v[j], q = piece->v[j == 2 ? 0 : j + 1];
-            if (piece->near[j] == GXB_NONE)
+            const uint32_t p = sub->v[j], q = sub->v[j == 2 ? 0 : j + 1];
+            if (sub->near[j] == GXB_NONE)
                 for (k = 0; k < 3; k++)
                     if (p == leaves[k] || q == comes[k]) *rim[k] = 3 * f + j;
         }
@@ -8665,10 +8790,10 @@ static GXBP_APART void gxbp_divide_by_segments(gxb_boolean *b, uint32_t s, uint3
     gxbp_open_triangulation(b, s);
     gxbp_find_rim_ends(b, s, n);
     for (pass = 0; pass < 2; pass++)
-        for (i = 0; i < n && b->result == GX_OK; i++) {
+        for (i = 0; i < n && b->error == GX_OK; i++) {
             const gxbp_segment *segment;
-            if (b->chain[3 * i] == GXB_NONE) continue;
-            segment = &b->segments[b->chain[3 * i]];
+            if (b->work.segment_ends[3 * i] == GXB_NONE) continue;
+            segment = &b->crossings.segments[b->work.segment_ends[3 * i]];
             if (pass == 1 || gxbp_enter(b, s, gxbp_same(b, segment->p)) || gxbp_enter(b, s, gxbp_same(b, segment->q)))
                 gxbp_trace_segments(b, s, i);
         }
@@ -8680,13 +8805,15 @@ static void gxbp_divide_source(gxb_boolean *b, uint32_t s) {
     if (!gxbp_need_plane(b, s)) return;
     gxbp_note_divided(b, s);
     n = gxbp_chain_segments(b, s);
-    if (b->result != GX_OK) return;
+    if (b->error != GX_OK) return;
     if (gxbp_divide_by_chains(b, s, n)) return;
     gxbp_divide_by_segments(b, s, n);
-    if (b->result == GX_OK) gxbp_note_rims(b, s);
+    if (b->error == GX_OK) gxbp_note_rims(b, s);
 }
 
-/* --- flats: sources that overlap in one plane are divided together, within a frame around them --- */
+/* >>flats: sources that overlap in one plane ----------------------------------------------------------------------- */
+/* In: dirty sources. Out: their triangulations. Sources that overlap in one plane form a flat: they are divided
+   together, within a frame around them, and each subtriangle lists the sources that cover it. */
 
 /* A corner of the frame: where a line along the plane's axis meets it. */
 static GXBP_COLD uint32_t gxbp_frame_corner(gxb_boolean *b, uint32_t plane, double x, double y) {
@@ -8709,12 +8836,12 @@ static GXBP_COLD uint32_t gxbp_frame_corner(gxb_boolean *b, uint32_t plane, doub
 }
 
 static GXBP_COLD void gxbp_make_frame(gxb_boolean *b, uint32_t r) {
-    const uint32_t plane = b->sources[r].plane, i = (b->store.planes[plane].axis + 1u) % 3,
+    const uint32_t plane = b->in.sources[r].plane, i = (b->store.planes[plane].axis + 1u) % 3,
                    j = (b->store.planes[plane].axis + 2u) % 3;
     uint32_t t, k, corner[4], f, g;
     double low[3], high[3], dx, dy;
     gxbp_extent(b, r, low, high);
-    for (t = b->sources[r].next; t != GXB_NONE; t = b->sources[t].next) {
+    for (t = b->in.sources[r].next; t != GXB_NONE; t = b->in.sources[t].next) {
         double its_low[3], its_high[3];
         gxbp_extent(b, t, its_low, its_high);
         for (k = 0; k < 3; k++) {
@@ -8728,16 +8855,16 @@ static GXBP_COLD void gxbp_make_frame(gxb_boolean *b, uint32_t r) {
     corner[1] = gxbp_frame_corner(b, plane, high[i] + dx, low[j] - dy);
     corner[2] = gxbp_frame_corner(b, plane, high[i] + dx, high[j] + dy);
     corner[3] = gxbp_frame_corner(b, plane, low[i] - dx, high[j] + dy);
-    f = gxbp_new_piece(b, r);
-    g = gxbp_new_piece(b, r);
-    if (b->result != GX_OK) return;
+    f = gxbp_new_subtriangle(b, r);
+    g = gxbp_new_subtriangle(b, r);
+    if (b->error != GX_OK) return;
     if (b->store.planes[plane].axis_sign < 0) {
         t = corner[1];
         corner[1] = corner[3];
         corner[3] = t;
     }
-    gxbp_set_piece(b, f, corner[0], corner[1], corner[2]);
-    gxbp_set_piece(b, g, corner[0], corner[2], corner[3]);
+    gxbp_set_subtriangle(b, f, corner[0], corner[1], corner[2]);
+    gxbp_set_subtriangle(b, g, corner[0], corner[2], corner[3]);
     for (t = 0; t < 3; t++) {
         gxbp_set_edge(b, f, (int)t, GXB_NONE, GXBP_BARE);
         gxbp_set_edge(b, g, (int)t, GXB_NONE, GXBP_BARE);
@@ -8749,13 +8876,13 @@ static GXBP_COLD void gxbp_make_frame(gxb_boolean *b, uint32_t r) {
 /* Each edge is there before points of the next one come: what they have to cross stays short. Returns the last vertex.
  */
 static GXBP_RARE uint32_t gxbp_place_flat_edges(gxb_boolean *b, uint32_t r) {
-    uint32_t last = b->pieces[b->sources[r].facet].v[0], t, k, i;
-    for (t = r; t != GXB_NONE; t = b->sources[t].next)
+    uint32_t last = b->mesh.subtriangles[b->in.sources[r].subtriangle].v[0], t, k, i;
+    for (t = r; t != GXB_NONE; t = b->in.sources[t].next)
         for (k = 0; k < 3; k++)
-            for (i = 0; i < gxbp_edge_points(b, t, k) && b->result == GX_OK; i++) {
+            for (i = 0; i < gxbp_edge_points(b, t, k) && b->error == GX_OK; i++) {
                 const uint32_t v = last;
                 last = gxbp_insert_point(b, r, gxbp_edge_point(b, t, k, i), v, GXBP_EDGE_LABEL, 0);
-                if (i > 0 && b->result == GX_OK)
+                if (i > 0 && b->error == GX_OK)
                     gxbp_force_edge(b, r, v, last, gxbp_edge_name(b, t, (int)k) | GXBP_EDGE_LABEL, 0);
             }
     return last;
@@ -8763,24 +8890,24 @@ static GXBP_RARE uint32_t gxbp_place_flat_edges(gxb_boolean *b, uint32_t r) {
 
 static GXBP_RARE void gxbp_place_flat_segments(gxb_boolean *b, uint32_t r, uint32_t last) {
     uint32_t t, i;
-    for (t = r; t != GXB_NONE; t = b->sources[t].next)
-        for (i = b->sources[t].segments; i != GXB_NONE && b->result == GX_OK; i = b->segments[i].next) {
-            const gxbp_segment segment = b->segments[i];
+    for (t = r; t != GXB_NONE; t = b->in.sources[t].next)
+        for (i = b->in.sources[t].segments; i != GXB_NONE && b->error == GX_OK; i = b->crossings.segments[i].next) {
+            const gxbp_segment segment = b->crossings.segments[i];
             const uint32_t v = gxbp_insert_point(b, r, segment.p, last, GXBP_EDGE_LABEL, 0);
-            if (b->result != GX_OK) return;
+            if (b->error != GX_OK) return;
             last = gxbp_insert_point(b, r, segment.q, v, GXBP_EDGE_LABEL, 0);
-            if (b->result == GX_OK) gxbp_force_edge(b, r, v, last, segment.label, 0);
+            if (b->error == GX_OK) gxbp_force_edge(b, r, v, last, segment.label, 0);
         }
 }
 
 /* 1: t faces as the plane's normal does. */
 static int gxbp_facing(const gxb_boolean *b, uint32_t r, uint32_t t) {
     return r == t ? 1
-                  : gxbp_flat_turn(b, b->sources[r].plane, gxbp_corner_of(b, t, 0), gxbp_corner_of(b, t, 1),
+                  : gxbp_flat_turn(b, b->in.sources[r].plane, gxbp_corner_of(b, t, 0), gxbp_corner_of(b, t, 1),
                                    gxbp_corner_of(b, t, 2));
 }
 
-/* A facet at the start of t's first edge, inside t. */
+/* A subtriangle at the start of t's first edge, inside t. */
 static GXBP_RARE uint32_t gxbp_first_covered(gxb_boolean *b, uint32_t r, uint32_t t) {
     const uint32_t u = gxbp_edge_point(b, t, 0, 0);
     const int facing = gxbp_facing(b, r, t);
@@ -8792,13 +8919,13 @@ static GXBP_RARE uint32_t gxbp_first_covered(gxb_boolean *b, uint32_t r, uint32_
         return GXB_NONE;
     }
     if (way.ahead == (facing > 0 ? 1 : 2)) return way.f;
-    return b->pieces[way.f].near[way.ahead == 1 ? way.k : (way.k + 2) % 3];
+    return b->mesh.subtriangles[way.f].near[way.ahead == 1 ? way.k : (way.k + 2) % 3];
 }
 
 static int gxbp_covers(const gxb_boolean *b, uint32_t f, uint32_t t) {
     uint32_t c;
-    for (c = b->pieces[f].covers; c != GXB_NONE; c = b->links[c].next)
-        if (b->links[c].value == t) return 1;
+    for (c = b->mesh.subtriangles[f].covers; c != GXB_NONE; c = b->mesh.links[c].next)
+        if (b->mesh.links[c].value == t) return 1;
     return 0;
 }
 
@@ -8809,20 +8936,21 @@ static int gxbp_is_edge_of(const gxb_boolean *b, uint32_t labels, uint32_t t) {
     return 0;
 }
 
-/* Gives its name to all facets within a member's edges. */
-static GXBP_RARE void gxbp_cover_facets(gxb_boolean *b, uint32_t r, uint32_t t) {
+/* Gives its name to all subtriangles within a member's edges. */
+static GXBP_RARE void gxbp_cover_subtriangles(gxb_boolean *b, uint32_t r, uint32_t t) {
     const uint32_t first = gxbp_first_covered(b, r, t);
     int k;
-    b->scratch_count = 0;
+    b->work.stack_count = 0;
     if (first == GXB_NONE) return;
-    b->pieces[first].covers = gxbp_new_link(b, t, b->pieces[first].covers);
+    b->mesh.subtriangles[first].covers = gxbp_new_link(b, t, b->mesh.subtriangles[first].covers);
     gxbp_push(b, first);
-    while (b->scratch_count > 0 && b->result == GX_OK) {
-        const uint32_t f = b->scratch[--b->scratch_count];
+    while (b->work.stack_count > 0 && b->error == GX_OK) {
+        const uint32_t f = b->work.stack[--b->work.stack_count];
         for (k = 0; k < 3; k++) {
-            const uint32_t g = b->pieces[f].near[k];
-            if (g == GXB_NONE || gxbp_is_edge_of(b, b->pieces[f].labels[k], t) || gxbp_covers(b, g, t)) continue;
-            b->pieces[g].covers = gxbp_new_link(b, t, b->pieces[g].covers);
+            const uint32_t g = b->mesh.subtriangles[f].near[k];
+            if (g == GXB_NONE || gxbp_is_edge_of(b, b->mesh.subtriangles[f].labels[k], t) || gxbp_covers(b, g, t))
+                continue;
+            b->mesh.subtriangles[g].covers = gxbp_new_link(b, t, b->mesh.subtriangles[g].covers);
             gxbp_push(b, g);
         }
     }
@@ -8831,35 +8959,38 @@ static GXBP_RARE void gxbp_cover_facets(gxb_boolean *b, uint32_t r, uint32_t t) 
 static GXBP_COLD void gxbp_divide_flat(gxb_boolean *b, uint32_t r) {
     uint32_t t, f;
     if (!gxbp_need_plane(b, r)) return;
-    for (t = r; t != GXB_NONE; t = b->sources[t].next) {
-        for (f = b->sources[t].facet; f != GXB_NONE; f = b->pieces[f].next) b->pieces[f].source = GXB_NONE;
-        b->sources[t].facet = GXB_NONE;
+    for (t = r; t != GXB_NONE; t = b->in.sources[t].next) {
+        for (f = b->in.sources[t].subtriangle; f != GXB_NONE; f = b->mesh.subtriangles[f].next)
+            b->mesh.subtriangles[f].source = GXB_NONE;
+        b->in.sources[t].subtriangle = GXB_NONE;
         gxbp_note_divided(b, t);
-        b->sources[t].flags |= GXBP_FLAT;
-        b->sources[t].flags &= ~(uint32_t)GXBP_DIRTY;
+        b->in.sources[t].flags |= GXBP_FLAT;
+        b->in.sources[t].flags &= ~(uint32_t)GXBP_DIRTY;
     }
     gxbp_open_triangulation(b, r);
     gxbp_make_frame(b, r);
-    if (b->result != GX_OK) return;
+    if (b->error != GX_OK) return;
     gxbp_place_flat_segments(b, r, gxbp_place_flat_edges(b, r));
-    for (t = r; t != GXB_NONE && b->result == GX_OK; t = b->sources[t].next) gxbp_cover_facets(b, r, t);
+    for (t = r; t != GXB_NONE && b->error == GX_OK; t = b->in.sources[t].next) gxbp_cover_subtriangles(b, r, t);
 }
 
 static GXBP_APART void gxbp_divide_dirty(gxb_boolean *b) {
     uint32_t i;
-    for (i = 0; i < b->dirty_count && b->result == GX_OK; i++) {
-        const uint32_t s = b->dirty[i], r = gxbp_root(b, s);
-        if (!(b->sources[s].flags & GXBP_DIRTY)) continue;
-        if (b->sources[r].flags & GXBP_FLAT)
+    for (i = 0; i < b->crossings.dirty_count && b->error == GX_OK; i++) {
+        const uint32_t s = b->crossings.dirty[i], r = gxbp_root(b, s);
+        if (!(b->in.sources[s].flags & GXBP_DIRTY)) continue;
+        if (b->in.sources[r].flags & GXBP_FLAT)
             gxbp_divide_flat(b, r);
         else
             gxbp_divide_source(b, s);
-        b->sources[s].flags &= ~(uint32_t)GXBP_DIRTY;
+        b->in.sources[s].flags &= ~(uint32_t)GXBP_DIRTY;
     }
-    b->dirty_count = 0;
+    b->crossings.dirty_count = 0;
 }
 
-/* --- points that are equal without having met in a triangulation --- */
+/* >>merge: equal points that did not meet in a triangulation ------------------------------------------------------- */
+/* In: the points computed since the last evaluation. Out: equal points united, under the older name. Touches the
+   union-find and the list of points along a direction. */
 
 typedef struct gxbp_projected {
     double t;
@@ -8892,41 +9023,43 @@ static GXBP_APART void gxbp_sort_projected(gxbp_projected *p, uint32_t count, gx
     gxbp_merge_projected(p, count / 2, count, work);
 }
 
-/* Computed points that are new since the last time are compared with all that lie within the errors of both along a
-   direction in which few points agree. The older name stays, in whatever order they are found. */
+/* Compares each new computed point with all points within both errors along a direction in which few points agree. The
+ * older name stays, whatever the order of discovery. */
 static GXBP_APART void gxbp_merge_points(gxb_boolean *b) {
     static const double direction[3] = {0.6180339887, 0.4142135623, 0.7320508075};
-    const uint32_t old = b->projected_count;
-    const size_t fresh = b->vertex_count - b->merged_points, size = (old + fresh) * sizeof(gxbp_projected);
+    const uint32_t old = b->points.projected_count;
+    const size_t added = b->points.vertex_count - b->points.merged_count, size = (old + added) * sizeof(gxbp_projected);
     gxbp_projected *p, *work;
     uint32_t i, j;
-    if (b->result != GX_OK || fresh == 0 || !GXBP_ROOM(b, projected, projected, fresh)) return;
+    if (b->error != GX_OK || added == 0 || !GXBP_ROOM(b, points.projected, points.projected, added)) return;
     work = (gxbp_projected *)gxbp_allocate(&b->store.allocator, size);
     if (work == NULL) {
         gxbp_stop(b, GX_ERROR_MEMORY);
         return;
     }
-    p = b->projected;
-    for (i = b->merged_points; i < b->vertex_count; i++) {
+    p = b->points.projected;
+    for (i = b->points.merged_count; i < b->points.vertex_count; i++) {
         const gxb_ball *x = &b->store.points[i].ball;
-        if (b->vertices[i].key[0] == GXB_FROM_VERTEX || b->vertices[i].same != i) continue;
-        p[b->projected_count].t = direction[0] * x->x[0] + direction[1] * x->x[1] + direction[2] * x->x[2];
-        p[b->projected_count++].point = i;
-        b->reach = gxbp_max(b->reach, x->error + 4 * GXBP_U * gxbp_max3(x->x));
+        if (b->points.vertices[i].key[0] == GXB_FROM_VERTEX || b->points.vertices[i].same != i) continue;
+        p[b->points.projected_count].t = direction[0] * x->x[0] + direction[1] * x->x[1] + direction[2] * x->x[2];
+        p[b->points.projected_count++].point = i;
+        b->points.reach = gxbp_max(b->points.reach, x->error + 4 * GXBP_U * gxbp_max3(x->x));
     }
-    gxbp_sort_projected(p + old, b->projected_count - old, work);
-    gxbp_merge_projected(p, old, b->projected_count, work);
-    for (i = 0; i < b->projected_count; i++)
-        for (j = i + 1; j < b->projected_count && p[j].t - p[i].t <= 8 * b->reach; j++) {
+    gxbp_sort_projected(p + old, b->points.projected_count - old, work);
+    gxbp_merge_projected(p, old, b->points.projected_count, work);
+    for (i = 0; i < b->points.projected_count; i++)
+        for (j = i + 1; j < b->points.projected_count && p[j].t - p[i].t <= 8 * b->points.reach; j++) {
             const uint32_t q = gxbp_same(b, p[i].point), r = gxbp_same(b, p[j].point);
-            if (q != r && (q >= b->merged_points || r >= b->merged_points) && gxbp_points_equal(b, q, r))
+            if (q != r && (q >= b->points.merged_count || r >= b->points.merged_count) && gxbp_points_equal(b, q, r))
                 gxbp_unite(b, q < r ? q : r, q < r ? r : q);
         }
     gxbp_release(&b->store.allocator, work, size);
-    b->merged_points = b->vertex_count;
+    b->points.merged_count = b->points.vertex_count;
 }
 
-/* --- winding numbers: states are vectors of one number per operand, each kept once --- */
+/* >>states: vectors of winding numbers ----------------------------------------------------------------------------- */
+/* In: a state and a change of winding numbers. Out: the state with them. A state is a vector of one number per operand,
+   stored once, with a flag: inside or not. Touches the states and their table only. */
 
 static int gxbp_counts(uint32_t rule, int32_t winding) {
     switch (rule) {
@@ -8940,9 +9073,9 @@ static int gxbp_counts(uint32_t rule, int32_t winding) {
 static GXBP_COLD int gxbp_is_inside(const gxb_boolean *b, const int32_t *winding) {
     uint32_t i;
     int inside = 0;
-    if (b->inside != NULL) return b->inside(b->user, winding, b->operand_count) != 0;
-    for (i = 0; i < b->operand_count; i++) {
-        const gxbp_operand *o = &b->operands[i];
+    if (b->options.inside != NULL) return b->options.inside(b->options.user, winding, b->in.operand_count) != 0;
+    for (i = 0; i < b->in.operand_count; i++) {
+        const gxbp_operand *o = &b->in.operands[i];
         const int counts = o->operation == GXB_SPLIT ? 0 : gxbp_counts(o->rule, winding[i]);
         switch (i == 0 && o->operation != GXB_SPLIT ? (uint32_t)GXB_UNION : o->operation) {
         case GXB_UNION: inside = inside || counts; break;
@@ -8965,58 +9098,60 @@ enum { GXBP_FEW_STATES = 8 }; /* among which a state is looked for without a tab
 
 /* A table of all states, with room for one more */
 static GXBP_COLD int gxbp_list_states(gxb_boolean *b) {
-    const uint32_t n = b->operand_count;
-    uint32_t size = b->state_table_size == 0 ? 64 : b->state_table_size, i, k;
-    while (2 * (b->state_count + 1) > size) size *= 2;
-    if (size > b->state_table_size && !gxbp_renew_table(b, &b->state_table, &b->state_table_size, size)) return 0;
-    memset(b->state_table, 0xff, (size_t)b->state_table_size * sizeof *b->state_table);
-    for (i = 0; i < b->state_count; i++) {
-        for (k = gxbp_hash_winding(b->windings + (size_t)i * n, n) & (size - 1); b->state_table[k] != GXB_NONE;
+    const uint32_t n = b->in.operand_count;
+    uint32_t size = b->winding.table_size == 0 ? 64 : b->winding.table_size, i, k;
+    while (2 * (b->winding.inside_count + 1) > size) size *= 2;
+    if (size > b->winding.table_size && !gxbp_renew_table(b, &b->winding.table, &b->winding.table_size, size)) return 0;
+    memset(b->winding.table, 0xff, (size_t)b->winding.table_size * sizeof *b->winding.table);
+    for (i = 0; i < b->winding.inside_count; i++) {
+        for (k = gxbp_hash_winding(b->winding.numbers + (size_t)i * n, n) & (size - 1); b->winding.table[k] != GXB_NONE;
              k = (k + 1) & (size - 1)) {}
-        b->state_table[k] = i;
+        b->winding.table[k] = i;
     }
-    b->listed = b->state_count;
+    b->winding.listed = b->winding.inside_count;
     return 1;
 }
 
 /* The state whose numbers stand behind those of all states. */
 static uint32_t gxbp_find_state(gxb_boolean *b) {
-    const uint32_t n = b->operand_count;
-    const int32_t *winding = b->windings + (size_t)b->state_count * n;
+    const uint32_t n = b->in.operand_count;
+    const int32_t *winding = b->winding.numbers + (size_t)b->winding.inside_count * n;
     uint32_t k = 0;
-    if (!GXBP_ROOM(b, states, state, 1)) return 0;
-    if (b->state_count < GXBP_FEW_STATES) {
-        for (; k < b->state_count; k++)
-            if (memcmp(b->windings + (size_t)k * n, winding, n * sizeof *winding) == 0) return k;
+    if (!GXBP_ROOM(b, winding.inside, winding.inside, 1)) return 0;
+    if (b->winding.inside_count < GXBP_FEW_STATES) {
+        for (; k < b->winding.inside_count; k++)
+            if (memcmp(b->winding.numbers + (size_t)k * n, winding, n * sizeof *winding) == 0) return k;
     } else {
-        if ((b->listed < b->state_count || 2 * (b->state_count + 1) > b->state_table_size) && !gxbp_list_states(b))
+        if ((b->winding.listed < b->winding.inside_count ||
+             2 * (b->winding.inside_count + 1) > b->winding.table_size) &&
+            !gxbp_list_states(b))
             return 0;
-        for (k = gxbp_hash_winding(winding, n) & (b->state_table_size - 1); b->state_table[k] != GXB_NONE;
-             k = (k + 1) & (b->state_table_size - 1))
-            if (memcmp(b->windings + (size_t)b->state_table[k] * n, winding, n * sizeof *winding) == 0)
-                return b->state_table[k];
-        b->state_table[k] = b->state_count;
-        b->listed++;
+        for (k = gxbp_hash_winding(winding, n) & (b->winding.table_size - 1); b->winding.table[k] != GXB_NONE;
+             k = (k + 1) & (b->winding.table_size - 1))
+            if (memcmp(b->winding.numbers + (size_t)b->winding.table[k] * n, winding, n * sizeof *winding) == 0)
+                return b->winding.table[k];
+        b->winding.table[k] = b->winding.inside_count;
+        b->winding.listed++;
     }
-    b->states[b->state_count] = (uint32_t)gxbp_is_inside(b, winding);
-    return b->state_count++;
+    b->winding.inside[b->winding.inside_count] = (uint32_t)gxbp_is_inside(b, winding);
+    return b->winding.inside_count++;
 }
 
 /* Room for one more vector behind the states', a copy of a state's or (GXB_NONE) zeros. NULL: no memory. */
 static int32_t *gxbp_copy_winding(gxb_boolean *b, uint32_t state) {
-    const uint32_t n = b->operand_count;
+    const uint32_t n = b->in.operand_count;
     int32_t *winding;
-    b->winding_count = b->state_count * n;
-    if (!GXBP_ROOM(b, windings, winding, n)) return NULL;
-    winding = b->windings + b->winding_count;
+    b->winding.number_count = b->winding.inside_count * n;
+    if (!GXBP_ROOM(b, winding.numbers, winding.number, n)) return NULL;
+    winding = b->winding.numbers + b->winding.number_count;
     if (state == GXB_NONE)
         memset(winding, 0, n * sizeof *winding);
     else
-        memcpy(winding, b->windings + (size_t)state * n, n * sizeof *winding);
+        memcpy(winding, b->winding.numbers + (size_t)state * n, n * sizeof *winding);
     return winding;
 }
 
-static GXBP_APART uint32_t gxbp_new_step(gxb_boolean *b, gxbp_crossing *step, uint32_t from, uint32_t operand,
+static GXBP_APART uint32_t gxbp_new_step(gxb_boolean *b, gxbp_state_step *step, uint32_t from, uint32_t operand,
                                          int change) {
     int32_t *winding = gxbp_copy_winding(b, from);
     if (winding == NULL) return 0;
@@ -9029,88 +9164,96 @@ static GXBP_APART uint32_t gxbp_new_step(gxb_boolean *b, gxbp_crossing *step, ui
 }
 
 static uint32_t gxbp_step_state(gxb_boolean *b, uint32_t from, uint32_t operand, int change) {
-    gxbp_crossing *step = &b->steps[(2 * (from + 5 * operand) + (change > 0)) % GXBP_STEPS];
+    gxbp_state_step *step = &b->winding.steps[(2 * (from + 5 * operand) + (change > 0)) % GXBP_STEPS];
     if (step->change == change && step->from == from && step->operand == operand) return step->to;
     return gxbp_new_step(b, step, from, operand, change);
 }
 
-static uint32_t gxbp_root_plane(const gxb_boolean *b, uint32_t f) { return b->sources[b->pieces[f].source].plane; }
+/* >>winding: a state for each subtriangle -------------------------------------------------------------------------- */
+/* In: a finished arrangement. Out: the state in front of each subtriangle. One ray gives the first state; labels of
+   edges give those of neighbours. New operands count 0 in older states wherever their boxes are not. Touches the states
+   of subtriangles and their vertices' names. */
 
-/* The side of t's plane on which facet f lies, which has edge k in it. If its apex is too near to tell, any corner of
-   the source tells: side times orientation with the edge is the same for all points. */
-static int gxbp_side_of_piece(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
-    const gxbp_piece *piece = &b->pieces[f];
-    const gxb_plane_filter *filter = &b->store.planes[b->sources[t].plane].filter;
+static uint32_t gxbp_root_plane(const gxb_boolean *b, uint32_t f) {
+    return b->in.sources[b->mesh.subtriangles[f].source].plane;
+}
+
+/* The side of t's plane on which subtriangle f lies, which has edge k in it. If its apex is too near to tell, any
+   corner of the source tells: side times orientation with the edge is the same for all points. */
+static int gxbp_side_of_subtriangle(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
+    const gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
+    const gxb_plane_filter *filter = &b->store.planes[b->in.sources[t].plane].filter;
     const gxb_cplane *plane = &b->store.planes[gxbp_root_plane(b, f)];
     const gxb_cpoint *x = b->store.points;
-    double bound, value = gxbp_filter_side(&x[piece->v[(k + 2) % 3]].ball, filter, &bound);
+    double bound, value = gxbp_filter_side(&x[sub->v[(k + 2) % 3]].ball, filter, &bound);
     int side = gxbp_filter_sign(value, bound), i;
     b->store.filter_calls++;
     for (i = 0; i < 3 && side == 0; i++) {
-        const uint32_t corner = b->sources[piece->source].point[i];
+        const uint32_t corner = b->in.sources[sub->source].point[i];
         value = gxbp_filter_side(&x[corner].ball, filter, &bound);
         side = gxbp_filter_sign(value, bound) * plane->axis_sign *
-               gxbp_filter_turn(&x[piece->v[k]].ball, &x[piece->v[(k + 1) % 3]].ball, &x[corner].ball,
+               gxbp_filter_turn(&x[sub->v[k]].ball, &x[sub->v[(k + 1) % 3]].ball, &x[corner].ball,
                                 (int)(plane->axis + 1) % 3, (int)(plane->axis + 2) % 3);
     }
-    return side != 0 ? side : gxbp_side_of_source(b, piece->v[(k + 2) % 3], t);
+    return side != 0 ? side : gxbp_side_of_source(b, sub->v[(k + 2) % 3], t);
 }
 
 /* How a label of edge k changes the winding number of its operand: a triangle with a part in front of f's plane is
    passed, from the side on which f lies. */
 static int gxbp_label_step(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
     int i;
-    if (t & GXBP_EDGE_LABEL || b->operands[b->sources[t].operand].operation == GXB_SPLIT) return 0;
+    if (t & GXBP_EDGE_LABEL || b->in.operands[b->in.sources[t].operand].operation == GXB_SPLIT) return 0;
     for (i = 0; i < 3; i++)
-        if (gxbp_corner_side(b, t, i, gxbp_root_plane(b, f), 0) > 0) return gxbp_side_of_piece(b, f, k, t);
+        if (gxbp_corner_side(b, t, i, gxbp_root_plane(b, f), 0) > 0) return gxbp_side_of_subtriangle(b, f, k, t);
     return 0;
 }
 
-/* The state in front of the facet beyond edge k. */
+/* The state in front of the subtriangle beyond edge k. */
 static uint32_t gxbp_state_beyond(gxb_boolean *b, uint32_t f, int k) {
-    uint32_t list = b->pieces[f].labels[k];
+    uint32_t list = b->mesh.subtriangles[f].labels[k];
     int32_t *winding = NULL;
-    for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->links[list].next) {
-        const uint32_t t = b->links[list].value;
+    for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->mesh.links[list].next) {
+        const uint32_t t = b->mesh.links[list].value;
         const int change = gxbp_label_step(b, f, k, t);
         if (change == 0) continue;
-        if (winding == NULL && b->links[list].next == GXBP_BARE)
-            return gxbp_step_state(b, b->pieces[f].state, b->sources[t].operand, change);
-        if (winding == NULL && (winding = gxbp_copy_winding(b, b->pieces[f].state)) == NULL) return 0;
-        winding[b->sources[t].operand] += change;
+        if (winding == NULL && b->mesh.links[list].next == GXBP_BARE)
+            return gxbp_step_state(b, b->mesh.subtriangles[f].state, b->in.sources[t].operand, change);
+        if (winding == NULL && (winding = gxbp_copy_winding(b, b->mesh.subtriangles[f].state)) == NULL) return 0;
+        winding[b->in.sources[t].operand] += change;
     }
-    return winding == NULL ? b->pieces[f].state : gxbp_find_state(b);
+    return winding == NULL ? b->mesh.subtriangles[f].state : gxbp_find_state(b);
 }
 
-/* Adds sign times the facet's own surfaces: behind it the winding number is larger by one for each that faces as its
- * plane does. */
+/* Adds sign times the subtriangle's own surfaces: behind it the winding number is larger by one for each that faces as
+ * its plane does. */
 static GXBP_COLD void gxbp_add_covers(const gxb_boolean *b, uint32_t f, int sign, int32_t *winding) {
-    const uint32_t r = b->pieces[f].source;
+    const uint32_t r = b->mesh.subtriangles[f].source;
     uint32_t c;
-    if (b->pieces[f].covers == GXB_NONE) {
-        if (b->operands[b->sources[r].operand].operation != GXB_SPLIT) winding[b->sources[r].operand] += sign;
+    if (b->mesh.subtriangles[f].covers == GXB_NONE) {
+        if (b->in.operands[b->in.sources[r].operand].operation != GXB_SPLIT) winding[b->in.sources[r].operand] += sign;
         return;
     }
-    for (c = b->pieces[f].covers; c != GXB_NONE; c = b->links[c].next) {
-        const uint32_t t = b->links[c].value;
-        if (b->operands[b->sources[t].operand].operation != GXB_SPLIT)
-            winding[b->sources[t].operand] += sign * gxbp_facing(b, r, t);
+    for (c = b->mesh.subtriangles[f].covers; c != GXB_NONE; c = b->mesh.links[c].next) {
+        const uint32_t t = b->mesh.links[c].value;
+        if (b->in.operands[b->in.sources[t].operand].operation != GXB_SPLIT)
+            winding[b->in.sources[t].operand] += sign * gxbp_facing(b, r, t);
     }
 }
 
 static uint32_t gxbp_state_behind(gxb_boolean *b, uint32_t f) {
-    const uint32_t operand = b->sources[b->pieces[f].source].operand;
+    const uint32_t operand = b->in.sources[b->mesh.subtriangles[f].source].operand;
     int32_t *winding;
-    if (b->pieces[f].covers == GXB_NONE)
-        return b->operands[operand].operation == GXB_SPLIT ? b->pieces[f].state
-                                                           : gxbp_step_state(b, b->pieces[f].state, operand, 1);
-    winding = gxbp_copy_winding(b, b->pieces[f].state);
+    if (b->mesh.subtriangles[f].covers == GXB_NONE)
+        return b->in.operands[operand].operation == GXB_SPLIT
+                 ? b->mesh.subtriangles[f].state
+                 : gxbp_step_state(b, b->mesh.subtriangles[f].state, operand, 1);
+    winding = gxbp_copy_winding(b, b->mesh.subtriangles[f].state);
     if (winding == NULL) return 0;
     gxbp_add_covers(b, f, 1, winding);
     return gxbp_find_state(b);
 }
 
-/* --- a first state by a ray along x from a point inside the facet, moved by (h, h^2) in y, z with h -> 0 (see
+/* --- a first state by a ray along x from a point inside the subtriangle, moved by (h, h^2) in y, z with h -> 0 (see
  * gxbp_ray_side) --- */
 
 typedef struct gxbp_ray {
@@ -9124,7 +9267,7 @@ typedef struct gxbp_ray {
 
 static const gxbp_probe *gxbp_exact_probe(gxb_boolean *b, gxbp_ray *ray) {
     if (!ray->exact) {
-        gxbp_probe_init(&b->store, b->pieces[ray->f].v, 3, &ray->probe);
+        gxbp_probe_init(&b->store, b->mesh.subtriangles[ray->f].v, 3, &ray->probe);
         ray->probe.shift = 0; /* triangles are given in the frame */
         ray->exact = 1;
     }
@@ -9139,7 +9282,7 @@ static void gxbp_set_ray(gxb_boolean *b, gxbp_ray *ray, uint32_t f) {
     ray->f = f;
     ray->exact = 0;
     for (k = 0; k < 3; k++) {
-        p[k] = &b->store.points[b->pieces[f].v[k]];
+        p[k] = &b->store.points[b->mesh.subtriangles[f].v[k]];
         given = given && p[k]->kind == GXB_EXPLICIT;
     }
     if (!given) gxbp_exact_probe(b, ray);
@@ -9160,35 +9303,35 @@ static int gxbp_ray_left(gxb_boolean *b, gxbp_ray *ray, const gxb_ball *p, const
 }
 
 static void gxbp_cross_ray(gxb_boolean *b, gxbp_ray *ray, uint32_t s) {
-    const gxb_ball *p = &b->store.points[b->sources[s].point[0]].ball,
-                   *q = &b->store.points[b->sources[s].point[1]].ball;
-    const gxb_ball *r = &b->store.points[b->sources[s].point[2]].ball;
-    const uint32_t own = b->pieces[ray->f].source;
+    const gxb_ball *p = &b->store.points[b->in.sources[s].point[0]].ball,
+                   *q = &b->store.points[b->in.sources[s].point[1]].ball;
+    const gxb_ball *r = &b->store.points[b->in.sources[s].point[2]].ball;
+    const uint32_t own = b->mesh.subtriangles[ray->f].source;
     const double *x[3];
     double value, bound;
     int left, behind;
-    if (s == own || (b->sources[s].flags & GXBP_DEGENERATE) || gxbp_covers(b, ray->f, s)) return;
+    if (s == own || (b->in.sources[s].flags & GXBP_DEGENERATE) || gxbp_covers(b, ray->f, s)) return;
     left = gxbp_ray_left(b, ray, p, q);
     if (left == 0 || gxbp_ray_left(b, ray, q, r) != left || gxbp_ray_left(b, ray, r, p) != left ||
         !gxbp_need_plane(b, s))
         return;
-    value = gxbp_filter_side(&ray->ball, &b->store.planes[b->sources[s].plane].filter, &bound);
+    value = gxbp_filter_side(&ray->ball, &b->store.planes[b->in.sources[s].plane].filter, &bound);
     behind = -gxbp_filter_sign(value, bound);
     x[0] = p->x;
     x[1] = q->x;
     x[2] = r->x;
     if (behind == 0) behind = gxbp_probe_orient(gxbp_exact_probe(b, ray), x);
-    if (behind == left) ray->winding[b->sources[s].operand] += left;
+    if (behind == left) ray->winding[b->in.sources[s].operand] += left;
 }
 
 static GXBP_APART void gxbp_shoot(gxb_boolean *b, gxbp_ray *ray, const gxbp_operand *o, uint32_t l, uint32_t i) {
     uint32_t meets[GXBP_LEAF], c;
-    if (!gxbp_box_meets(&ray->box, &b->boxes[o->tree.first + o->tree.level[l] + i])) return;
+    if (!gxbp_box_meets(&ray->box, &b->in.boxes[o->tree.first + o->tree.level[l] + i])) return;
     if (l > 0) {
         for (c = 2 * i; c < 2 * i + 2 && c < o->tree.size[l - 1]; c++) gxbp_shoot(b, ray, o, l - 1, c);
         return;
     }
-    gxbp_test_leaf(&b->bounds[o->bounds + i], &ray->box, meets);
+    gxbp_test_leaf(&b->in.bounds[o->bounds + i], &ray->box, meets);
     for (c = 0; c < GXBP_LEAF; c++)
         if (meets[c]) gxbp_cross_ray(b, ray, o->order[i * GXBP_LEAF + c]);
 }
@@ -9199,8 +9342,8 @@ static int gxbp_moved_side(gxb_boolean *b, uint32_t plane) {
     return side != 0 ? side : gxbp_normal_sign(&b->store, plane, 2);
 }
 
-/* The start lies on the side of the facet's plane that the first of n_y, n_z, n_x which is not 0 says; from behind (n_x
-   > 0) or from in front (n_x < 0) the ray passes the facet itself. */
+/* The start lies on the side of the subtriangle's plane that the first of n_y, n_z, n_x which is not 0 says; from
+   behind (n_x > 0) or from in front (n_x < 0) the ray passes the subtriangle itself. */
 static GXBP_RARE void gxbp_cross_own(gxb_boolean *b, const gxbp_ray *ray) {
     const uint32_t plane = gxbp_root_plane(b, ray->f);
     const int nx = gxbp_normal_sign(&b->store, plane, 0);
@@ -9210,172 +9353,176 @@ static GXBP_RARE void gxbp_cross_own(gxb_boolean *b, const gxbp_ray *ray) {
     if (side < 0) gxbp_add_covers(b, ray->f, -1, ray->winding); /* from the state behind to the one in front */
 }
 
-/* The state in front of a facet, from one (GXB_NONE: zeros) that does not count operands from the first on. */
+/* The state in front of a subtriangle, from one (GXB_NONE: zeros) that does not count operands from the first on. */
 static GXBP_APART uint32_t gxbp_state_by_ray(gxb_boolean *b, uint32_t f, uint32_t state, uint32_t first) {
     gxbp_ray ray;
     uint32_t i;
-    if (!gxbp_need_plane(b, b->pieces[f].source)) return 0;
+    if (!gxbp_need_plane(b, b->mesh.subtriangles[f].source)) return 0;
     ray.winding = gxbp_copy_winding(b, state);
     if (ray.winding == NULL) return 0;
     gxbp_set_ray(b, &ray, f);
-    for (i = first; i < b->operand_count && b->result == GX_OK; i++)
-        if (b->operands[i].operation != GXB_SPLIT)
-            gxbp_shoot(b, &ray, &b->operands[i], b->operands[i].tree.levels - 1, 0);
-    /* else the facet is of an older operand, and its own surfaces are counted */
+    for (i = first; i < b->in.operand_count && b->error == GX_OK; i++)
+        if (b->in.operands[i].operation != GXB_SPLIT)
+            gxbp_shoot(b, &ray, &b->in.operands[i], b->in.operands[i].tree.levels - 1, 0);
+    /* else the subtriangle is of an older operand, and its own surfaces are counted */
     if (first == 0) gxbp_cross_own(b, &ray);
     return gxbp_find_state(b);
 }
 
-/* --- states spread from facet to facet --- */
+/* --- states spread from subtriangle to subtriangle --- */
 
 /* Where points were united, vertices get their last names: those of divided sources, and of all where that changes any.
  */
 static GXBP_RARE void gxbp_rename_vertices(gxb_boolean *b) {
     uint32_t f, i, k;
-    for (i = 0; i < b->divided_count && b->united && !b->renamed; i++)
-        for (f = b->sources[b->divided[i]].facet; f != GXB_NONE; f = b->pieces[f].next)
-            for (k = 0; k < 3; k++) b->pieces[f].v[k] = gxbp_same(b, b->pieces[f].v[k]);
-    for (f = 0; f < b->piece_count && b->renamed; f++)
-        for (k = 0; k < 3; k++) b->pieces[f].v[k] = gxbp_same(b, b->pieces[f].v[k]);
-    b->united = 0;
+    for (i = 0; i < b->mesh.divided_count && b->points.united && !b->points.renamed; i++)
+        for (f = b->in.sources[b->mesh.divided[i]].subtriangle; f != GXB_NONE; f = b->mesh.subtriangles[f].next)
+            for (k = 0; k < 3; k++) b->mesh.subtriangles[f].v[k] = gxbp_same(b, b->mesh.subtriangles[f].v[k]);
+    for (f = 0; f < b->mesh.subtriangle_count && b->points.renamed; f++)
+        for (k = 0; k < 3; k++) b->mesh.subtriangles[f].v[k] = gxbp_same(b, b->mesh.subtriangles[f].v[k]);
+    b->points.united = 0;
 }
 
-/* The facet at the start of edge k of a source that is not in a flat; GXB_NONE where something else meets it there. */
-static uint32_t gxbp_rim_facet(const gxb_boolean *b, uint32_t s, uint32_t k) {
-    const gxbp_source *source = &b->sources[s];
+/* The subtriangle at the start of edge k of a source that is not in a flat; GXB_NONE where something else meets it
+ * there. */
+static uint32_t gxbp_rim_subtriangle(const gxb_boolean *b, uint32_t s, uint32_t k) {
+    const gxbp_source *source = &b->in.sources[s];
     const gxbp_cut *cut;
     uint32_t h;
-    if (!(source->flags & GXBP_DIVIDED)) return source->facet;
-    cut = &b->cuts[source->edge[k]];
+    if (!(source->flags & GXBP_DIVIDED)) return source->subtriangle;
+    cut = &b->crossings.cuts[source->edge[k]];
     h = cut->rim[cut->half_edge != 3 * s + k];
-    return b->pieces[h / 3].labels[h % 3] == GXBP_BARE ? h / 3 : GXB_NONE;
+    return b->mesh.subtriangles[h / 3].labels[h % 3] == GXBP_BARE ? h / 3 : GXB_NONE;
 }
 
-/* The facet with which that at the start of edge k of a source shares its rim, across the surface's edge; GXB_NONE
-   unless only the two meet there. */
+/* The subtriangle with which that at the start of edge k of a source shares its rim, across the surface's edge;
+   GXB_NONE unless only the two meet there. */
 static uint32_t gxbp_across_rim(const gxb_boolean *b, uint32_t s, uint32_t k) {
-    const uint32_t twin = b->sources[s].twin[k];
-    if (twin == GXB_NONE || b->sources[twin / 3].flags & GXBP_FLAT || gxbp_rim_facet(b, s, k) == GXB_NONE)
+    const uint32_t twin = b->in.sources[s].twin[k];
+    if (twin == GXB_NONE || b->in.sources[twin / 3].flags & GXBP_FLAT || gxbp_rim_subtriangle(b, s, k) == GXB_NONE)
         return GXB_NONE;
-    return gxbp_rim_facet(b, twin / 3, twin % 3);
+    return gxbp_rim_subtriangle(b, twin / 3, twin % 3);
 }
 
-/* The facet beyond edge k of f. Beyond the rim of a divided source: of each of its edges only at the start. */
+/* The subtriangle beyond edge k of f. Beyond the rim of a divided source: of each of its edges only at the start. */
 static uint32_t gxbp_neighbour(const gxb_boolean *b, uint32_t f, int k) {
-    const gxbp_piece *piece = &b->pieces[f];
-    const gxbp_source *s = &b->sources[piece->source];
+    const gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
+    const gxbp_source *s = &b->in.sources[sub->source];
     uint32_t i;
     if (s->flags & GXBP_FLAT)
-        return piece->near[k] != GXB_NONE && b->pieces[piece->near[k]].covers != GXB_NONE ? piece->near[k] : GXB_NONE;
-    if (piece->near[k] != GXB_NONE) return piece->near[k];
-    if (!(s->flags & GXBP_DIVIDED)) return gxbp_across_rim(b, piece->source, (uint32_t)k);
+        return sub->near[k] != GXB_NONE && b->mesh.subtriangles[sub->near[k]].covers != GXB_NONE ? sub->near[k]
+                                                                                                 : GXB_NONE;
+    if (sub->near[k] != GXB_NONE) return sub->near[k];
+    if (!(s->flags & GXBP_DIVIDED)) return gxbp_across_rim(b, sub->source, (uint32_t)k);
     for (i = 0; i < 3; i++) {
-        const gxbp_cut *cut = &b->cuts[s->edge[i]];
-        if (cut->rim[cut->half_edge != 3 * piece->source + i] == 3 * f + (uint32_t)k)
-            return gxbp_across_rim(b, piece->source, i);
+        const gxbp_cut *cut = &b->crossings.cuts[s->edge[i]];
+        if (cut->rim[cut->half_edge != 3 * sub->source + i] == 3 * f + (uint32_t)k)
+            return gxbp_across_rim(b, sub->source, i);
     }
     return GXB_NONE;
 }
 
-/* The source that alone crosses the edge of a facet; GXB_NONE: none or several do, or one has an edge there. */
+/* The source that alone crosses the edge of a subtriangle; GXB_NONE: none or several do, or one has an edge there. */
 static uint32_t gxbp_crossing_source(const gxb_boolean *b, uint32_t f, int k) {
-    const uint32_t list = b->pieces[f].labels[k];
-    if (b->pieces[f].near[k] == GXB_NONE || list == GXBP_LOOSE || list == GXBP_BARE || b->links[list].next != GXBP_BARE)
+    const uint32_t list = b->mesh.subtriangles[f].labels[k];
+    if (b->mesh.subtriangles[f].near[k] == GXB_NONE || list == GXBP_LOOSE || list == GXBP_BARE ||
+        b->mesh.links[list].next != GXBP_BARE)
         return GXB_NONE;
-    return b->links[list].value & GXBP_EDGE_LABEL ? GXB_NONE : b->links[list].value;
+    return b->mesh.links[list].value & GXBP_EDGE_LABEL ? GXB_NONE : b->mesh.links[list].value;
 }
 
-/* The facet of a source on the left of the edge from u to w, which is its edge *k; GXB_NONE: there is none. */
-static uint32_t gxbp_facet_at(const gxb_boolean *b, uint32_t s, uint32_t u, uint32_t w, int *k) {
+/* The subtriangle of a source on the left of the edge from u to w, which is its edge *k; GXB_NONE: there is none. */
+static uint32_t gxbp_subtriangle_at(const gxb_boolean *b, uint32_t s, uint32_t u, uint32_t w, int *k) {
     uint32_t f;
-    for (f = b->sources[s].facet; f != GXB_NONE; f = b->pieces[f].next)
+    for (f = b->in.sources[s].subtriangle; f != GXB_NONE; f = b->mesh.subtriangles[f].next)
         for (*k = 0; *k < 3; ++*k)
-            if (b->pieces[f].v[*k] == u && b->pieces[f].v[(*k + 1) % 3] == w) return f;
+            if (b->mesh.subtriangles[f].v[*k] == u && b->mesh.subtriangles[f].v[(*k + 1) % 3] == w) return f;
     return GXB_NONE;
 }
 
 static void gxbp_note_reached(gxb_boolean *b, uint32_t s) {
-    gxbp_operand *o = &b->operands[b->sources[s].operand];
-    b->unreached -= !o->reached;
+    gxbp_operand *o = &b->in.operands[b->in.sources[s].operand];
+    b->winding.unreached -= !o->reached;
     o->reached = 1;
 }
 
 static int gxbp_winds(const gxb_boolean *b, uint32_t s) {
-    return b->operands[b->sources[s].operand].operation != GXB_SPLIT;
+    return b->in.operands[b->in.sources[s].operand].operation != GXB_SPLIT;
 }
 
-/* From a facet to an operand of which no facet has a state yet, whose triangle crosses it in its edge k, where nothing
-   else is: four facets meet there, with the plane of each between two of the winding numbers. The facet that gets a
-   state goes to b->chain. */
+/* From a subtriangle to an operand of which no subtriangle has a state yet, whose triangle crosses it in its edge k,
+   where nothing else is: four subtriangles meet there, with the plane of each between two of the winding numbers. The
+   subtriangle that gets a state goes to b->work.pending. */
 static void gxbp_reach_operand(gxb_boolean *b, uint32_t f, int k) {
-    const uint32_t s = b->pieces[f].source, t = gxbp_crossing_source(b, f, k);
+    const uint32_t s = b->mesh.subtriangles[f].source, t = gxbp_crossing_source(b, f, k);
     int32_t *winding;
     uint32_t g;
     int j, side, other;
-    if (t == GXB_NONE || b->operands[b->sources[t].operand].reached || b->sources[t].flags & GXBP_FLAT) return;
-    g = gxbp_facet_at(b, t, b->pieces[f].v[k], b->pieces[f].v[(k + 1) % 3], &j);
-    if (g == GXB_NONE || gxbp_crossing_source(b, g, j) != s || b->pieces[g].state != GXB_NONE ||
-        !GXBP_ROOM(b, chain, chain, 1))
+    if (t == GXB_NONE || b->in.operands[b->in.sources[t].operand].reached || b->in.sources[t].flags & GXBP_FLAT) return;
+    g = gxbp_subtriangle_at(b, t, b->mesh.subtriangles[f].v[k], b->mesh.subtriangles[f].v[(k + 1) % 3], &j);
+    if (g == GXB_NONE || gxbp_crossing_source(b, g, j) != s || b->mesh.subtriangles[g].state != GXB_NONE ||
+        !GXBP_ROOM(b, work.pending, work.pending, 1))
         return;
-    side = gxbp_side_of_piece(b, f, k, t);
-    other = gxbp_side_of_piece(b, g, j, s);
-    if (side == 0 || other == 0 || (winding = gxbp_copy_winding(b, b->pieces[f].state)) == NULL) return;
-    if (other < 0 && gxbp_winds(b, s)) winding[b->sources[s].operand]++;
-    if (side < 0 && gxbp_winds(b, t)) winding[b->sources[t].operand]--;
-    b->pieces[g].state = gxbp_find_state(b);
+    side = gxbp_side_of_subtriangle(b, f, k, t);
+    other = gxbp_side_of_subtriangle(b, g, j, s);
+    if (side == 0 || other == 0 || (winding = gxbp_copy_winding(b, b->mesh.subtriangles[f].state)) == NULL) return;
+    if (other < 0 && gxbp_winds(b, s)) winding[b->in.sources[s].operand]++;
+    if (side < 0 && gxbp_winds(b, t)) winding[b->in.sources[t].operand]--;
+    b->mesh.subtriangles[g].state = gxbp_find_state(b);
     gxbp_note_reached(b, t);
-    b->chain[b->chain_count++] = g;
+    b->work.pending[b->work.pending_count++] = g;
 }
 
-/* Without a look at the room: see gxbp_find_states. */
-static void gxbp_stack(gxb_boolean *b, uint32_t value) { b->scratch[b->scratch_count++] = value; }
+/* Checks no capacity: see gxbp_find_states. */
+static void gxbp_stack(gxb_boolean *b, uint32_t value) { b->work.stack[b->work.stack_count++] = value; }
 
-/* To all facets of f's triangulation that can be reached */
+/* Spreads the state to all subtriangles of f's triangulation that can be reached. */
 static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
-    const uint32_t base = b->scratch_count, flat = b->sources[b->pieces[f].source].flags & GXBP_FLAT;
+    const uint32_t base = b->work.stack_count, flat = b->in.sources[b->mesh.subtriangles[f].source].flags & GXBP_FLAT;
     gxbp_stack(b, f);
-    while (b->scratch_count > base && b->result == GX_OK) {
+    while (b->work.stack_count > base && b->error == GX_OK) {
         int k;
-        f = b->scratch[--b->scratch_count];
+        f = b->work.stack[--b->work.stack_count];
         for (k = 0; k < 3; k++) {
-            const uint32_t near = b->pieces[f].near[k];
-            if (near == GXB_NONE || b->pieces[near].state != GXB_NONE || (flat && b->pieces[near].covers == GXB_NONE))
+            const uint32_t near = b->mesh.subtriangles[f].near[k];
+            if (near == GXB_NONE || b->mesh.subtriangles[near].state != GXB_NONE ||
+                (flat && b->mesh.subtriangles[near].covers == GXB_NONE))
                 continue;
-            b->pieces[near].state = gxbp_state_beyond(b, f, k);
-            if (b->unreached > 0 && !flat) gxbp_reach_operand(b, f, k);
+            b->mesh.subtriangles[near].state = gxbp_state_beyond(b, f, k);
+            if (b->winding.unreached > 0 && !flat) gxbp_reach_operand(b, f, k);
             gxbp_stack(b, near);
         }
     }
 }
 
-/* Through a source's facets, then across its edges to sources that have no states yet; in waves, so that the memory of
-   many is waited for at a time. */
+/* Spreads a state through a source's subtriangles, then across its edges to sources without states. The order is
+ * breadth-first, so that many cache misses overlap. */
 static void gxbp_spread_state(gxb_boolean *b, uint32_t first) {
     uint32_t i;
-    b->scratch_count = 0;
+    b->work.stack_count = 0;
     gxbp_stack(b, first);
-    for (i = 0; i < b->scratch_count && b->result == GX_OK; i++) {
-        const uint32_t f = b->scratch[i], s = b->pieces[f].source;
+    for (i = 0; i < b->work.stack_count && b->error == GX_OK; i++) {
+        const uint32_t f = b->work.stack[i], s = b->mesh.subtriangles[f].source;
         uint32_t k;
-        b->sources[s].flags |= GXBP_REACHED;
-        if (b->sources[s].flags & (GXBP_DIVIDED | GXBP_FLAT)) gxbp_spread_within(b, f);
-        if (b->sources[s].flags & GXBP_FLAT) continue;
+        b->in.sources[s].flags |= GXBP_REACHED;
+        if (b->in.sources[s].flags & (GXBP_DIVIDED | GXBP_FLAT)) gxbp_spread_within(b, f);
+        if (b->in.sources[s].flags & GXBP_FLAT) continue;
         for (k = 0; k < 3; k++) {
-            const uint32_t twin = b->sources[s].twin[k];
+            const uint32_t twin = b->in.sources[s].twin[k];
             uint32_t g;
-            if (twin == GXB_NONE || b->sources[twin / 3].flags & (GXBP_REACHED | GXBP_FLAT)) continue;
+            if (twin == GXB_NONE || b->in.sources[twin / 3].flags & (GXBP_REACHED | GXBP_FLAT)) continue;
             g = gxbp_across_rim(b, s, k);
             if (g == GXB_NONE) continue;
-            b->pieces[g].state = b->pieces[gxbp_rim_facet(b, s, k)].state;
-            b->sources[twin / 3].flags |= GXBP_REACHED;
+            b->mesh.subtriangles[g].state = b->mesh.subtriangles[gxbp_rim_subtriangle(b, s, k)].state;
+            b->in.sources[twin / 3].flags |= GXBP_REACHED;
             gxbp_stack(b, g);
         }
     }
 }
 
 static int gxbp_is_surface(const gxb_boolean *b, uint32_t f) {
-    const uint32_t s = b->pieces[f].source;
-    return s != GXB_NONE && (!(b->sources[s].flags & GXBP_FLAT) || b->pieces[f].covers != GXB_NONE);
+    const uint32_t s = b->mesh.subtriangles[f].source;
+    return s != GXB_NONE && (!(b->in.sources[s].flags & GXBP_FLAT) || b->mesh.subtriangles[f].covers != GXB_NONE);
 }
 
 /* --- states that are there already: new operands have the number 0 in them, which is right wherever their boxes are
@@ -9383,18 +9530,19 @@ static int gxbp_is_surface(const gxb_boolean *b, uint32_t f) {
 
 /* Lengthens the states by the numbers of new operands, all 0: each state keeps its place. */
 static GXBP_APART int gxbp_lengthen_states(gxb_boolean *b) {
-    const uint32_t n = b->operand_count, m = b->stated;
+    const uint32_t n = b->in.operand_count, m = b->winding.stated;
     uint32_t i;
-    memset(b->steps, 0, sizeof b->steps);
-    if (m == 0) b->state_count = 0;
-    b->winding_count = b->state_count * m;
-    if (!GXBP_ROOM(b, windings, winding, (size_t)b->state_count * (n - m) + n)) return 0;
-    for (i = b->state_count; i-- > 0;) {
-        memmove(b->windings + (size_t)i * n, b->windings + (size_t)i * m, m * sizeof *b->windings);
-        memset(b->windings + (size_t)i * n + m, 0, (n - m) * sizeof *b->windings);
+    memset(b->winding.steps, 0, sizeof b->winding.steps);
+    if (m == 0) b->winding.inside_count = 0;
+    b->winding.number_count = b->winding.inside_count * m;
+    if (!GXBP_ROOM(b, winding.numbers, winding.number, (size_t)b->winding.inside_count * (n - m) + n)) return 0;
+    for (i = b->winding.inside_count; i-- > 0;) {
+        memmove(b->winding.numbers + (size_t)i * n, b->winding.numbers + (size_t)i * m, m * sizeof *b->winding.numbers);
+        memset(b->winding.numbers + (size_t)i * n + m, 0, (n - m) * sizeof *b->winding.numbers);
     }
-    for (i = 0; i < b->state_count; i++) b->states[i] = (uint32_t)gxbp_is_inside(b, b->windings + (size_t)i * n);
-    b->listed = 0;
+    for (i = 0; i < b->winding.inside_count; i++)
+        b->winding.inside[i] = (uint32_t)gxbp_is_inside(b, b->winding.numbers + (size_t)i * n);
+    b->winding.listed = 0;
     return 1;
 }
 
@@ -9402,14 +9550,14 @@ static GXBP_APART int gxbp_lengthen_states(gxb_boolean *b) {
 #define GXBP_OPEN ((uint32_t)1 << 31)
 
 static int gxbp_is_open(const gxb_boolean *b, uint32_t f) {
-    return b->pieces[f].state != GXB_NONE && b->pieces[f].state & GXBP_OPEN;
+    return b->mesh.subtriangles[f].state != GXB_NONE && b->mesh.subtriangles[f].state & GXBP_OPEN;
 }
 
-/* Is the facet certainly beside the box along this axis? */
-static int gxbp_piece_misses(const gxb_boolean *b, uint32_t f, const gxbp_box *box, int axis) {
+/* Is the subtriangle certainly beside the box along this axis? */
+static int gxbp_subtriangle_misses(const gxb_boolean *b, uint32_t f, const gxbp_box *box, int axis) {
     int i, side = 0;
     for (i = 0; i < 3; i++) {
-        const gxb_ball *x = &b->store.points[b->pieces[f].v[i]].ball;
+        const gxb_ball *x = &b->store.points[b->mesh.subtriangles[f].v[i]].ball;
         const int mine = x->x[axis] + 2 * x->error < 16 * (double)box->low[axis]
                            ? -1
                            : x->x[axis] - 2 * x->error > 16 * (double)box->high[axis];
@@ -9419,115 +9567,121 @@ static int gxbp_piece_misses(const gxb_boolean *b, uint32_t f, const gxbp_box *b
     return 1;
 }
 
-/* Along the box's shortest side first. The facets go to b->chain. */
+/* Along the box's shortest side first. The subtriangles go to b->work.pending. */
 static GXBP_RARE void gxbp_open_states(gxb_boolean *b, const gxbp_box *box) {
     uint32_t f;
     int axis = 0, k;
     for (k = 1; k < 3; k++)
         if (box->high[k] - box->low[k] < box->high[axis] - box->low[axis]) axis = k;
-    for (f = 0; f < b->piece_count; f++) {
-        if (b->pieces[f].source == GXB_NONE || b->pieces[f].state == GXB_NONE || gxbp_piece_misses(b, f, box, axis))
+    for (f = 0; f < b->mesh.subtriangle_count; f++) {
+        if (b->mesh.subtriangles[f].source == GXB_NONE || b->mesh.subtriangles[f].state == GXB_NONE ||
+            gxbp_subtriangle_misses(b, f, box, axis))
             continue;
-        if (gxbp_piece_misses(b, f, box, (axis + 1) % 3) || gxbp_piece_misses(b, f, box, (axis + 2) % 3) ||
+        if (gxbp_subtriangle_misses(b, f, box, (axis + 1) % 3) || gxbp_subtriangle_misses(b, f, box, (axis + 2) % 3) ||
             gxbp_is_open(b, f))
             continue;
-        if (!GXBP_ROOM(b, chain, chain, 1)) return;
-        b->chain[b->chain_count++] = f;
-        b->pieces[f].state |= GXBP_OPEN;
+        if (!GXBP_ROOM(b, work.pending, work.pending, 1)) return;
+        b->work.pending[b->work.pending_count++] = f;
+        b->mesh.subtriangles[f].state |= GXBP_OPEN;
     }
 }
 
-/* The state of an open facet beyond edge k of g, which is not open: its own with g's numbers of new operands and those
- * of the labels between. */
+/* The state of an open subtriangle beyond edge k of g, which is not open: its own with g's numbers of new operands and
+ * those of the labels between. */
 static uint32_t gxbp_close_state(gxb_boolean *b, uint32_t g, int k, uint32_t f) {
-    const uint32_t n = b->operand_count, m = b->stated, own = b->pieces[f].state & ~GXBP_OPEN,
-                   from = b->pieces[g].state;
-    uint32_t list = b->pieces[g].near[k] == f ? b->pieces[g].labels[k] : GXBP_BARE, i;
+    const uint32_t n = b->in.operand_count, m = b->winding.stated, own = b->mesh.subtriangles[f].state & ~GXBP_OPEN,
+                   from = b->mesh.subtriangles[g].state;
+    uint32_t list = b->mesh.subtriangles[g].near[k] == f ? b->mesh.subtriangles[g].labels[k] : GXBP_BARE, i;
     int32_t *winding = gxbp_copy_winding(b, own);
     int differs = 0;
     if (winding == NULL) return own;
-    for (i = m; i < n; i++) winding[i] = b->windings[(size_t)from * n + i];
-    for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->links[list].next) {
-        const uint32_t t = b->links[list].value;
-        if (!(t & GXBP_EDGE_LABEL) && b->sources[t].operand >= m)
-            winding[b->sources[t].operand] += gxbp_label_step(b, g, k, t);
+    for (i = m; i < n; i++) winding[i] = b->winding.numbers[(size_t)from * n + i];
+    for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->mesh.links[list].next) {
+        const uint32_t t = b->mesh.links[list].value;
+        if (!(t & GXBP_EDGE_LABEL) && b->in.sources[t].operand >= m)
+            winding[b->in.sources[t].operand] += gxbp_label_step(b, g, k, t);
     }
     for (i = m; i < n; i++) differs = differs || winding[i] != 0;
     return differs ? gxbp_find_state(b) : own;
 }
 
-/* From a facet that is not open any more to open ones */
+/* From a subtriangle that is not open any more to open ones */
 static void gxbp_spread_closed(gxb_boolean *b, uint32_t first) {
-    b->scratch_count = 0;
+    b->work.stack_count = 0;
     gxbp_push(b, first);
-    while (b->scratch_count > 0 && b->result == GX_OK) {
-        const uint32_t f = b->scratch[--b->scratch_count];
+    while (b->work.stack_count > 0 && b->error == GX_OK) {
+        const uint32_t f = b->work.stack[--b->work.stack_count];
         int k;
         for (k = 0; k < 3; k++) {
             const uint32_t g = gxbp_neighbour(b, f, k);
             if (g == GXB_NONE || !gxbp_is_open(b, g)) continue;
-            b->pieces[g].state = gxbp_close_state(b, f, k, g);
+            b->mesh.subtriangles[g].state = gxbp_close_state(b, f, k, g);
             gxbp_push(b, g);
         }
     }
 }
 
-/* Facets that are not open lend to their open neighbours; where there are none, a ray helps. */
+/* Subtriangles that are not open lend to their open neighbours; where there are none, a ray helps. */
 static GXBP_COLD void gxbp_close_states(gxb_boolean *b) {
     uint32_t f, i, pass;
     int k;
-    b->chain_count = 0;
-    for (i = b->stated; i < b->operand_count; i++) {
-        const gxbp_tree *tree = &b->operands[i].tree;
-        gxbp_open_states(b, &b->boxes[tree->first + tree->level[tree->levels - 1]]);
+    b->work.pending_count = 0;
+    for (i = b->winding.stated; i < b->in.operand_count; i++) {
+        const gxbp_tree *tree = &b->in.operands[i].tree;
+        gxbp_open_states(b, &b->in.boxes[tree->first + tree->level[tree->levels - 1]]);
     }
     for (pass = 0; pass < 2; pass++)
-        for (i = 0; i < b->chain_count && b->result == GX_OK; i++) {
-            f = b->chain[i];
+        for (i = 0; i < b->work.pending_count && b->error == GX_OK; i++) {
+            f = b->work.pending[i];
             for (k = 0; k < 3 && gxbp_is_open(b, f); k++) {
                 const uint32_t g = gxbp_neighbour(b, f, k);
-                if (g != GXB_NONE && b->pieces[g].state != GXB_NONE && !gxbp_is_open(b, g)) gxbp_spread_closed(b, g);
+                if (g != GXB_NONE && b->mesh.subtriangles[g].state != GXB_NONE && !gxbp_is_open(b, g))
+                    gxbp_spread_closed(b, g);
             }
             if (pass == 0 || !gxbp_is_open(b, f)) continue;
-            b->pieces[f].state = gxbp_state_by_ray(b, f, b->pieces[f].state & ~GXBP_OPEN, b->stated);
+            b->mesh.subtriangles[f].state =
+                gxbp_state_by_ray(b, f, b->mesh.subtriangles[f].state & ~GXBP_OPEN, b->winding.stated);
             gxbp_spread_closed(b, f);
         }
 }
 
-/* By a ray from a facet to all that can be reached from it */
+/* Finds a state by a ray and spreads it to all subtriangles that can be reached. */
 static void gxbp_find_state_of(gxb_boolean *b, uint32_t f) {
-    gxbp_note_reached(b, b->pieces[f].source);
-    b->pieces[f].state = gxbp_state_by_ray(b, f, GXB_NONE, 0);
-    if (!GXBP_ROOM(b, chain, chain, 1)) return;
-    for (b->chain[b->chain_count++] = f; b->chain_count > 0 && b->result == GX_OK;)
-        gxbp_spread_state(b, b->chain[--b->chain_count]);
+    gxbp_note_reached(b, b->mesh.subtriangles[f].source);
+    b->mesh.subtriangles[f].state = gxbp_state_by_ray(b, f, GXB_NONE, 0);
+    if (!GXBP_ROOM(b, work.pending, work.pending, 1)) return;
+    for (b->work.pending[b->work.pending_count++] = f; b->work.pending_count > 0 && b->error == GX_OK;)
+        gxbp_spread_state(b, b->work.pending[--b->work.pending_count]);
 }
 
 static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
     uint32_t s, f;
-    if (b->result != GX_OK) return;
-    if (b->united || b->renamed) gxbp_rename_vertices(b);
+    if (b->error != GX_OK) return;
+    if (b->points.united || b->points.renamed) gxbp_rename_vertices(b);
     if (!gxbp_lengthen_states(b)) return;
-    for (s = 0; s < b->operand_count; s++) b->operands[s].reached = s < b->stated;
-    b->unreached = b->operand_count - b->stated;
-    if (b->stated > 0) gxbp_close_states(b);
-    b->chain_count = b->scratch_count = 0;
-    /* each source and each facet is reached once */
-    if (!GXBP_ROOM(b, scratch, scratch, (size_t)b->source_count + b->piece_count)) return;
+    for (s = 0; s < b->in.operand_count; s++) b->in.operands[s].reached = s < b->winding.stated;
+    b->winding.unreached = b->in.operand_count - b->winding.stated;
+    if (b->winding.stated > 0) gxbp_close_states(b);
+    b->work.pending_count = b->work.stack_count = 0;
+    /* each source and each subtriangle is pushed at most once */
+    if (!GXBP_ROOM(b, work.stack, work.stack, (size_t)b->in.source_count + b->mesh.subtriangle_count)) return;
     /* first from input triangles, whose rays are cheap */
-    for (s = 0; s < b->source_count && b->result == GX_OK; s++) {
-        f = b->sources[s].facet;
-        if (b->sources[s].flags & GXBP_DIVIDED || f == GXB_NONE || b->pieces[f].state != GXB_NONE ||
+    for (s = 0; s < b->in.source_count && b->error == GX_OK; s++) {
+        f = b->in.sources[s].subtriangle;
+        if (b->in.sources[s].flags & GXBP_DIVIDED || f == GXB_NONE || b->mesh.subtriangles[f].state != GXB_NONE ||
             !gxbp_is_surface(b, f))
             continue;
         gxbp_find_state_of(b, f);
     }
-    for (f = 0; f < b->piece_count; f++)
-        if (b->pieces[f].state == GXB_NONE && b->result == GX_OK && gxbp_is_surface(b, f)) gxbp_find_state_of(b, f);
-    b->stated = b->operand_count;
+    for (f = 0; f < b->mesh.subtriangle_count; f++)
+        if (b->mesh.subtriangles[f].state == GXB_NONE && b->error == GX_OK && gxbp_is_surface(b, f))
+            gxbp_find_state_of(b, f);
+    b->winding.stated = b->in.operand_count;
 }
 
-/* --- the result: facets between inside and outside --- */
+/* >>result: subtriangles between inside and outside ---------------------------------------------------------------- */
+/* In: states. Out: the output's triangles with their sources, its vertices rounded and with their origins, and the
+   triangles that rounding turned over. Touches the output only, and the planes of sources that had none. */
 
 /* The input's coordinates again. */
 static double gxbp_unscale(const gxb_boolean *b, double y) {
@@ -9570,7 +9724,7 @@ static GXBP_COLD void gxbp_round_exactly(gxb_boolean *b, uint32_t point, double 
     for (k = 0; k < 3; k++) out[k] = gxbp_unscale(b, gxbp_nearest(&x[k], &x[3]));
 }
 
-static int gxbp_is_fine(const gxb_boolean *b) { return b->fine || b->mend != NULL; }
+static int gxbp_is_fine(const gxb_boolean *b) { return b->options.fine || b->options.mend != NULL; }
 
 /* An input vertex as it was given; else the ball's middle where the ball is small, else from exact coordinates. */
 static void gxbp_round_point(gxb_boolean *b, uint32_t point, double out[3]) {
@@ -9583,8 +9737,8 @@ static void gxbp_round_point(gxb_boolean *b, uint32_t point, double out[3]) {
 }
 
 static void gxbp_name_source(const gxb_boolean *b, uint32_t s, uint32_t corner, uint32_t *operand, uint32_t *index) {
-    *operand = b->sources[s].operand;
-    *index = s - b->operands[*operand].source;
+    *operand = b->in.sources[s].operand;
+    *index = s - b->in.operands[*operand].source;
     if (corner < 3) *index = 3 * *index + corner;
 }
 
@@ -9593,7 +9747,7 @@ static GXBP_COLD int gxbp_holds_point(gxb_boolean *b, uint32_t s, uint32_t plane
     int k, left = 0, right = 0;
     for (k = 0; k < 3; k++) {
         const int turn =
-            gxbp_store_turn(&b->store, b->sources[s].point[k], b->sources[s].point[(k + 1) % 3], point, plane);
+            gxbp_store_turn(&b->store, b->in.sources[s].point[k], b->in.sources[s].point[(k + 1) % 3], point, plane);
         left |= turn > 0;
         right |= turn < 0;
     }
@@ -9603,16 +9757,16 @@ static GXBP_COLD int gxbp_holds_point(gxb_boolean *b, uint32_t s, uint32_t plane
 /* The source of a point that was found in s: in a flat, whose members share their triangulation, it may lie in another
  * of them. */
 static GXBP_RARE uint32_t gxbp_member_at(gxb_boolean *b, uint32_t s, uint32_t point) {
-    const uint32_t root = gxbp_root(b, s), plane = b->sources[root].plane;
+    const uint32_t root = gxbp_root(b, s), plane = b->in.sources[root].plane;
     uint32_t t;
-    if (!(b->sources[s].flags & GXBP_FLAT) || gxbp_holds_point(b, s, plane, point)) return s;
-    for (t = root; t != GXB_NONE && !gxbp_holds_point(b, t, plane, point); t = b->sources[t].next) {}
+    if (!(b->in.sources[s].flags & GXBP_FLAT) || gxbp_holds_point(b, s, plane, point)) return s;
+    for (t = root; t != GXB_NONE && !gxbp_holds_point(b, t, plane, point); t = b->in.sources[t].next) {}
     return t == GXB_NONE ? s : t;
 }
 
 static GXBP_APART void gxbp_describe_point(gxb_boolean *b, uint32_t point, gxb_origin *o) {
     const gxb_cpoint *p = &b->store.points[point];
-    const uint32_t *key = b->vertices[p->kind == GXB_EXPLICIT ? p->def[0] : point].key;
+    const uint32_t *key = b->points.vertices[p->kind == GXB_EXPLICIT ? p->def[0] : point].key;
     int k;
     memset(o, 0, sizeof *o);
     o->kind = key[0];
@@ -9634,75 +9788,75 @@ static GXBP_APART void gxbp_describe_point(gxb_boolean *b, uint32_t point, gxb_o
 }
 
 static uint32_t gxbp_out_vertex(gxb_boolean *b, uint32_t point) {
-    gxbp_vertex *v = &b->vertices[point];
+    gxbp_vertex *v = &b->points.vertices[point];
     if (v->slot != GXB_NONE) return v->slot;
-    if (!GXBP_ROOM(b, out_points, out_point, 1)) return 0;
-    v->slot = b->out_point_count;
-    b->out_points[b->out_point_count++] = point;
+    if (!GXBP_ROOM(b, out.points, out.point, 1)) return 0;
+    v->slot = b->out.point_count;
+    b->out.points[b->out.point_count++] = point;
     return v->slot;
 }
 
-/* The source of a facet's surface: of those that cover it one of a sheet (sheets 1) or a closed surface; GXB_NONE:
- * there is none. */
+/* The source of a subtriangle's surface: of those that cover it one of a sheet (sheets 1) or a closed surface;
+ * GXB_NONE: there is none. */
 static uint32_t gxbp_cover_of(const gxb_boolean *b, uint32_t f, int sheets) {
-    const uint32_t r = b->pieces[f].source;
+    const uint32_t r = b->mesh.subtriangles[f].source;
     uint32_t c;
-    if (b->pieces[f].covers == GXB_NONE)
-        return (b->operands[b->sources[r].operand].operation == GXB_SPLIT) == sheets ? r : GXB_NONE;
-    for (c = b->pieces[f].covers; c != GXB_NONE; c = b->links[c].next)
-        if ((b->operands[b->sources[b->links[c].value].operand].operation == GXB_SPLIT) == sheets)
-            return b->links[c].value;
+    if (b->mesh.subtriangles[f].covers == GXB_NONE)
+        return (b->in.operands[b->in.sources[r].operand].operation == GXB_SPLIT) == sheets ? r : GXB_NONE;
+    for (c = b->mesh.subtriangles[f].covers; c != GXB_NONE; c = b->mesh.links[c].next)
+        if ((b->in.operands[b->in.sources[b->mesh.links[c].value].operand].operation == GXB_SPLIT) == sheets)
+            return b->mesh.links[c].value;
     return GXB_NONE;
 }
 
 /* The arrays with one item for each triangle grow together. */
 static GXBP_APART int gxbp_more_triangles(gxb_boolean *b, size_t extra) {
-    return GXBP_ROOM(b, out_operands, out_operand, extra) && GXBP_ROOM(b, out_planes, out_plane, extra) &&
-           GXBP_ROOM(b, out_reversed, out_reversed, extra) && GXBP_ROOM(b, out_sources, out_source, extra);
+    return GXBP_ROOM(b, out.operands, out.operand, extra) && GXBP_ROOM(b, out.planes, out.plane, extra) &&
+           GXBP_ROOM(b, out.reversed, out.reversed, extra) && GXBP_ROOM(b, out.sources, out.source, extra);
 }
 
-/* reversed: the outside is behind the facet's plane. */
+/* reversed: the outside is behind the subtriangle's plane. */
 static void gxbp_emit(gxb_boolean *b, uint32_t f, int reversed, uint32_t source) {
-    const uint32_t n = b->out_triangle_count, *v = b->pieces[f].v;
+    const uint32_t n = b->out.triangle_count, *v = b->mesh.subtriangles[f].v;
     uint32_t i;
-    if (!GXBP_ROOM(b, out_triangles, out_triangle, 3) ||
-        (b->out_source_count == b->out_source_capacity && !gxbp_more_triangles(b, 1)))
+    if (!GXBP_ROOM(b, out.triangles, out.triangle, 3) ||
+        (b->out.source_count == b->out.source_capacity && !gxbp_more_triangles(b, 1)))
         return;
-    b->out_triangles[n] = gxbp_out_vertex(b, v[0]);
-    b->out_triangles[n + 1] = gxbp_out_vertex(b, v[reversed ? 2 : 1]);
-    b->out_triangles[n + 2] = gxbp_out_vertex(b, v[reversed ? 1 : 2]);
-    b->out_triangle_count += 3;
-    i = b->out_source_count++;
-    b->out_operand_count++;
-    gxbp_name_source(b, source, 3, &b->out_operands[i], &b->out_sources[i]);
-    b->out_planes[b->out_plane_count++] = 2 * f + (uint32_t)reversed;
-    b->out_reversed[b->out_reversed_count++] = reversed != (gxbp_facing(b, b->pieces[f].source, source) < 0);
+    b->out.triangles[n] = gxbp_out_vertex(b, v[0]);
+    b->out.triangles[n + 1] = gxbp_out_vertex(b, v[reversed ? 2 : 1]);
+    b->out.triangles[n + 2] = gxbp_out_vertex(b, v[reversed ? 1 : 2]);
+    b->out.triangle_count += 3;
+    i = b->out.source_count++;
+    b->out.operand_count++;
+    gxbp_name_source(b, source, 3, &b->out.operands[i], &b->out.sources[i]);
+    b->out.planes[b->out.plane_count++] = 2 * f + (uint32_t)reversed;
+    b->out.reversed[b->out.reversed_count++] = reversed != (gxbp_facing(b, b->mesh.subtriangles[f].source, source) < 0);
 }
 
 static GXBP_APART void gxbp_set_triangle_count(gxb_boolean *b, uint32_t n) {
-    b->out_triangle_count = 3 * n;
-    b->out_source_count = b->out_operand_count = b->out_plane_count = b->out_reversed_count = n;
+    b->out.triangle_count = 3 * n;
+    b->out.source_count = b->out.operand_count = b->out.plane_count = b->out.reversed_count = n;
 }
 
 static GXBP_APART void gxbp_extract(gxb_boolean *b) {
-    uint32_t f, state = GXB_NONE, operand = GXB_NONE; /* of the last facet that only its own source covers */
+    uint32_t f, state = GXB_NONE, operand = GXB_NONE; /* of the last subtriangle that only its own source covers */
     int front_in = 0, back_in = 0;
-    for (f = 0; f < b->vertex_count; f++) b->vertices[f].slot = GXB_NONE;
+    for (f = 0; f < b->points.vertex_count; f++) b->points.vertices[f].slot = GXB_NONE;
     gxbp_set_triangle_count(b, 0);
-    b->out_point_count = b->out_vertex_count = b->out_origin_count = 0;
-    if (!gxbp_more_triangles(b, b->piece_count / 2) ||
-        !GXBP_ROOM(b, out_triangles, out_triangle, 3 * (size_t)(b->piece_count / 2)))
+    b->out.point_count = b->out.vertex_count = b->out.origin_count = 0;
+    if (!gxbp_more_triangles(b, b->mesh.subtriangle_count / 2) ||
+        !GXBP_ROOM(b, out.triangles, out.triangle, 3 * (size_t)(b->mesh.subtriangle_count / 2)))
         return;
-    for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
-        const gxbp_piece *piece = &b->pieces[f];
+    for (f = 0; f < b->mesh.subtriangle_count && b->error == GX_OK; f++) {
+        const gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
         uint32_t source;
         if (!gxbp_is_surface(b, f)) continue;
-        if (piece->covers != GXB_NONE || piece->state != state || b->sources[piece->source].operand != operand) {
+        if (sub->covers != GXB_NONE || sub->state != state || b->in.sources[sub->source].operand != operand) {
             const uint32_t behind = gxbp_state_behind(b, f); /* may move the states */
-            back_in = b->states[behind] != 0;
-            front_in = b->states[piece->state] != 0;
-            state = piece->covers == GXB_NONE ? piece->state : GXB_NONE;
-            operand = b->sources[piece->source].operand;
+            back_in = b->winding.inside[behind] != 0;
+            front_in = b->winding.inside[sub->state] != 0;
+            state = sub->covers == GXB_NONE ? sub->state : GXB_NONE;
+            operand = b->in.sources[sub->source].operand;
         }
         if (front_in != back_in) {
             source = gxbp_cover_of(b, f, 0);
@@ -9715,296 +9869,57 @@ static GXBP_APART void gxbp_extract(gxb_boolean *b) {
 }
 
 static uint32_t gxbp_out_corner(const gxb_boolean *b, uint32_t t, uint32_t k) {
-    return b->out_points[b->out_triangles[3 * t + k % 3]];
+    return b->out.points[b->out.triangles[3 * t + k % 3]];
 }
 
 /* A source that met nothing may have had no plane yet. GXB_NONE: no memory. */
 static uint32_t gxbp_out_plane(gxb_boolean *b, uint32_t t) {
-    const uint32_t s = b->pieces[b->out_planes[t] / 2].source;
-    return gxbp_need_plane(b, s) ? b->sources[s].plane : GXB_NONE;
+    const uint32_t s = b->mesh.subtriangles[b->out.planes[t] / 2].source;
+    return gxbp_need_plane(b, s) ? b->in.sources[s].plane : GXB_NONE;
 }
 
-/* --- coarse results: vertices that the outline of no face needs are taken away, one by one, and their stars filled
- * with fewer triangles --- */
-
-/* The triangles of a face around a vertex, from outline to outline or all around. hint: one of the half-edges that
- * leave it there. */
-typedef struct gxbp_umbrella {
-    uint32_t vertex, hint, next;
-} gxbp_umbrella;
-
-/* Half-edges are 3 t + k. */
-typedef struct gxbp_coarse {
-    /* of each half-edge: the one across it in the same face, GXB_NONE on the face's outline */
-    uint32_t *near;
-    /* of each half-edge: the umbrella that it leaves from; GXB_NONE: its triangle is gone */
-    uint32_t *corner;
-    gxbp_umbrella *umbrellas;
-    uint32_t umbrella_count;
-    uint32_t *first;  /* of each vertex: its umbrellas */
-    uint32_t *degree; /* of each vertex: edges of outlines that end there */
-} gxbp_coarse;
-
-/* 1: triangle u is of t's face and faces as it does, -1: the other way (a sheet's other side), 0: it is of another
- * face. */
-static int gxbp_same_face(gxb_boolean *b, uint32_t t, uint32_t u) {
-    const int facing = b->out_planes[t] & 1 ? -1 : 1;
-    uint32_t k;
-    if (b->out_operands[t] == b->out_operands[u] && b->out_sources[t] == b->out_sources[u])
-        return b->out_planes[u] & 1 ? -facing : facing;
-    if (b->triangulation != GXB_MERGED) return 0;
-    b->plane = gxbp_out_plane(b, t);
-    if (b->plane == GXB_NONE) return 0;
-    for (k = 0; k < 3 && gxbp_out_plane(b, u) != b->plane; k++)
-        if (gxbp_point_side(b, gxbp_out_corner(b, u, k), b->plane) != 0) return 0;
-    return facing * gxbp_turn(b, gxbp_out_corner(b, u, 0), gxbp_out_corner(b, u, 1), gxbp_out_corner(b, u, 2));
-}
-
-/* Joins the half-edges between p and q that face alike, if all are of one face. 0: the edge belongs to an outline. */
-static int gxbp_pair_edge(gxb_boolean *b, const gxbp_fan *fan, uint32_t p, uint32_t q, uint32_t *near) {
-    uint32_t found[2][2], pass, i, first = GXB_NONE;
-    memset(found, 0xff, sizeof found);
-    for (pass = 0; pass < 2; pass++) {
-        const uint32_t from = pass == 0 ? p : q, to = pass == 0 ? q : p;
-        for (i = fan->first[from]; i < fan->first[from + 1]; i++) {
-            const uint32_t h = fan->list[i].half_edge;
-            int facing;
-            if (fan->list[i].to != to) continue;
-            if (first == GXB_NONE) first = h / 3;
-            facing = gxbp_same_face(b, first, h / 3);
-            if (facing == 0 || found[pass][facing > 0] != GXB_NONE) return 0;
-            found[pass][facing > 0] = h;
-        }
-    }
-    for (i = 0; i < 2; i++)
-        if ((found[0][i] == GXB_NONE) != (found[1][i] == GXB_NONE)) return 0;
-    for (i = 0; i < 2; i++)
-        if (found[0][i] != GXB_NONE) {
-            near[found[0][i]] = found[1][i];
-            near[found[1][i]] = found[0][i];
-        }
-    return 1;
-}
-
-static void gxbp_find_outlines(gxb_boolean *b, const gxbp_fan *fan, gxbp_coarse *c) {
-    uint32_t p, i, j;
-    for (p = 0; p < b->out_point_count; p++)
-        for (i = fan->first[p]; i < fan->first[p + 1]; i++) {
-            const uint32_t q = fan->list[i].to;
-            if (q < p || c->near[fan->list[i].half_edge] != GXB_NONE) continue;
-            for (j = fan->first[p]; j < i && fan->list[j].to != q; j++) {}
-            if (j < i || gxbp_pair_edge(b, fan, p, q, c->near)) continue;
-            c->degree[p]++;
-            c->degree[q]++;
-        }
-}
-
-static void gxbp_make_umbrellas(const gxb_boolean *b, gxbp_coarse *c) {
-    uint32_t h, e;
-    for (h = 0; h < b->out_triangle_count; h++) {
-        const uint32_t u = c->umbrella_count, v = b->out_triangles[h];
-        if (c->corner[h] != GXB_NONE) continue;
-        c->umbrellas[u].vertex = v;
-        c->umbrellas[u].hint = h;
-        c->umbrellas[u].next = c->first[v];
-        c->first[v] = c->umbrella_count++;
-        for (e = h; e != GXB_NONE && c->corner[e] == GXB_NONE; e = c->near[gxbp_last_edge(e)]) c->corner[e] = u;
-        for (e = c->near[h]; e != GXB_NONE && c->corner[gxbp_next_edge(e)] == GXB_NONE; e = c->near[gxbp_next_edge(e)])
-            c->corner[gxbp_next_edge(e)] = u;
-    }
-}
-
-/* The polygon that an umbrella's triangles fill goes to rims (umbrellas of its vertices, what lies beyond the edge to
-   the next), the triangles to scratch. 1: it is open, the vertex lies on the edge from the last to the first. */
-static int gxbp_open_umbrella(gxb_boolean *b, const gxbp_coarse *c, uint32_t u) {
-    uint32_t start = c->umbrellas[u].hint, e = start, n;
-    while (c->near[e] != GXB_NONE && (e = gxbp_next_edge(c->near[e])) != start) {}
-    start = e;
-    b->rim_count = b->scratch_count = 0;
-    do {
-        n = gxbp_next_edge(e);
-        if (!GXBP_ROOM(b, rims, rim, 2)) return 0;
-        b->rims[b->rim_count].vertex = c->corner[n];
-        b->rims[b->rim_count++].near = c->near[n];
-        gxbp_push(b, e / 3);
-        n = gxbp_next_edge(n);
-        e = c->near[n];
-    } while (e != GXB_NONE && e != start);
-    if (e == start) return 0;
-    b->rims[b->rim_count].vertex = c->corner[n];
-    b->rims[b->rim_count++].near = GXB_NONE;
-    return 1;
-}
-
-static uint32_t gxbp_coarse_point(const gxb_boolean *b, const gxbp_coarse *c, uint32_t u) {
-    return b->out_points[c->umbrellas[u].vertex];
-}
-
-static void gxbp_link_half_edges(uint32_t *near, uint32_t h, uint32_t other) {
-    near[h] = other;
-    if (other != GXB_NONE) near[other] = h;
-}
-
-/* A triangle of the polygon's vertices p, q and r, one after the other; what is left has an edge from p to r. */
-static void gxbp_fill_corner(gxb_boolean *b, gxbp_coarse *c, uint32_t p, uint32_t q, uint32_t r) {
-    const uint32_t h = 3 * b->scratch[--b->scratch_count];
-    uint32_t k;
-    c->corner[h] = b->rims[p].vertex;
-    c->corner[h + 1] = b->rims[q].vertex;
-    c->corner[h + 2] = b->rims[r].vertex;
-    for (k = 0; k < 3; k++) c->umbrellas[c->corner[h + k]].hint = h + k;
-    gxbp_link_half_edges(c->near, h, b->rims[p].near);
-    gxbp_link_half_edges(c->near, h + 1, b->rims[q].near);
-    c->near[h + 2] = GXB_NONE;
-    b->rims[p].near = h + 2;
-}
-
-/* Fills the polygon of an umbrella around v. It is seen from v, and stays so if a convex corner is cut off whose ends
-   are seen from v under no more than a straight angle: then v is left of the new edge or on it. Of at most two corners,
-   neighbours, the ends are seen under more, and a polygon has three that are convex; where v lies on an edge, the
-   corners of that edge are the two. */
-static void gxbp_fill_umbrella(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
-    gxbp_margin *rim = b->rims;
-    const int facing = b->out_planes[b->scratch[0]] & 1 ? -1 : 1;
-    uint32_t n = b->rim_count, i, q = 0, tried = 0;
-    for (i = 0; i < n; i++) {
-        rim[i].labels = (i + 1) % n;
-        rim[i].made = (i + n - 1) % n;
-    }
-    while (n > 3 && b->result == GX_OK) {
-        const uint32_t p = rim[q].made, r = rim[q].labels, end = gxbp_coarse_point(b, c, rim[r].vertex),
-                       start = gxbp_coarse_point(b, c, rim[p].vertex);
-        if (facing * gxbp_turn(b, start, gxbp_coarse_point(b, c, rim[q].vertex), end) > 0 &&
-            facing * gxbp_turn(b, start, end, v) >= 0) {
-            gxbp_fill_corner(b, c, p, q, r);
-            rim[p].labels = r;
-            rim[r].made = p;
-            q = p;
-            n--;
-            tried = 0;
-        } else if (++tried <= n)
-            q = r;
-        else
-            gxbp_stop(b, GX_ERROR_OVERLAP);
-    }
-    if (b->result != GX_OK) return;
-    gxbp_fill_corner(b, c, rim[q].made, q, rim[q].labels);
-    gxbp_link_half_edges(c->near, rim[rim[q].made].near, rim[rim[q].labels].near);
-    for (i = 0; i < b->scratch_count; i++) c->corner[3 * b->scratch[i]] = GXB_NONE;
-}
-
-/* May the vertex go? Not where an outline bends, ends or branches. */
-static int gxbp_is_needless(gxb_boolean *b, const gxbp_coarse *c, uint32_t v) {
-    uint32_t u, ends[2] = {GXB_NONE, GXB_NONE};
-    if (c->degree[v] == 0) return 1;
-    if (c->degree[v] != 2) return 0;
-    for (u = c->first[v]; u != GXB_NONE; u = c->umbrellas[u].next) {
-        uint32_t p, q;
-        if (!gxbp_open_umbrella(b, c, u)) continue;
-        p = c->umbrellas[b->rims[0].vertex].vertex;
-        q = c->umbrellas[b->rims[b->rim_count - 1].vertex].vertex;
-        if (p == q || (ends[0] != GXB_NONE && (p < q ? p : q) != ends[0]) ||
-            (ends[0] != GXB_NONE && (p < q ? q : p) != ends[1]))
-            return 0;
-        if (ends[0] != GXB_NONE) continue;
-        ends[0] = p < q ? p : q;
-        ends[1] = p < q ? q : p;
-        b->plane = gxbp_out_plane(b, b->scratch[0]);
-        if (b->plane == GXB_NONE || gxbp_turn(b, b->out_points[p], b->out_points[v], b->out_points[q]) != 0) return 0;
-    }
-    return b->result == GX_OK;
-}
-
-static void gxbp_take_vertex(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
-    uint32_t u;
-    for (u = c->first[v]; u != GXB_NONE && b->result == GX_OK; u = c->umbrellas[u].next) {
-        gxbp_open_umbrella(b, c, u);
-        b->plane = gxbp_out_plane(b, b->scratch[0]);
-        if (b->result == GX_OK) gxbp_fill_umbrella(b, c, b->out_points[v]);
-    }
-}
-
-/* Of which source a triangle is, and how it faces */
+/* Copies a triangle's source and orientation. */
 static GXBP_COLD void gxbp_copy_origin(gxb_boolean *b, uint32_t to, uint32_t from) {
-    b->out_operands[to] = b->out_operands[from];
-    b->out_sources[to] = b->out_sources[from];
-    b->out_planes[to] = b->out_planes[from];
-    b->out_reversed[to] = b->out_reversed[from];
+    b->out.operands[to] = b->out.operands[from];
+    b->out.sources[to] = b->out.sources[from];
+    b->out.planes[to] = b->out.planes[from];
+    b->out.reversed[to] = b->out.reversed[from];
 }
 
-/* Vertices that no triangle has any more are taken out, rounded or not yet; map: a word for each. */
+/* Removes vertices that no triangle uses, before or after rounding. map: a word for each vertex. */
 static GXBP_COLD void gxbp_drop_lonely(gxb_boolean *b, uint32_t *map) {
-    const int rounded = b->out_vertex_count > 0;
+    const int rounded = b->out.vertex_count > 0;
     uint32_t i, n = 0;
-    memset(map, 0xff, b->out_point_count * sizeof *map);
-    for (i = 0; i < b->out_triangle_count; i++) map[b->out_triangles[i]] = 0;
-    for (i = 0; i < b->out_point_count; i++) {
+    memset(map, 0xff, b->out.point_count * sizeof *map);
+    for (i = 0; i < b->out.triangle_count; i++) map[b->out.triangles[i]] = 0;
+    for (i = 0; i < b->out.point_count; i++) {
         if (map[i] == GXB_NONE) continue;
         if (rounded) {
-            memmove(b->out_vertices + 3 * (size_t)n, b->out_vertices + 3 * (size_t)i, 3 * sizeof *b->out_vertices);
-            b->out_origins[n] = b->out_origins[i];
+            memmove(b->out.vertices + 3 * (size_t)n, b->out.vertices + 3 * (size_t)i, 3 * sizeof *b->out.vertices);
+            b->out.origins[n] = b->out.origins[i];
         }
-        b->out_points[n] = b->out_points[i];
+        b->out.points[n] = b->out.points[i];
         map[i] = n++;
     }
-    for (i = 0; i < b->out_triangle_count; i++) b->out_triangles[i] = map[b->out_triangles[i]];
-    b->out_point_count = n;
+    for (i = 0; i < b->out.triangle_count; i++) b->out.triangles[i] = map[b->out.triangles[i]];
+    b->out.point_count = n;
     if (rounded) {
-        b->out_origin_count = n;
-        b->out_vertex_count = 3 * n;
+        b->out.origin_count = n;
+        b->out.vertex_count = 3 * n;
     }
-}
-
-/* What is left becomes the result. */
-static void gxbp_close_coarse(gxb_boolean *b, const gxbp_coarse *c) {
-    uint32_t t, k, n = 0;
-    for (t = 0; t < b->out_source_count; t++) {
-        if (c->corner[3 * t] == GXB_NONE) continue;
-        for (k = 0; k < 3; k++) b->out_triangles[3 * n + k] = c->umbrellas[c->corner[3 * t + k]].vertex;
-        gxbp_copy_origin(b, n++, t);
-    }
-    gxbp_set_triangle_count(b, n);
-    gxbp_drop_lonely(b, c->degree);
-}
-
-static GXBP_COLD void gxbp_coarsen(gxb_boolean *b) {
-    const size_t halves = b->out_triangle_count, points = b->out_point_count;
-    const size_t bytes = halves * (2 * sizeof(uint32_t) + sizeof(gxbp_umbrella)) + 2 * points * sizeof(uint32_t);
-    gxbp_coarse c;
-    gxbp_fan fan;
-    uint32_t v;
-    if (!gxbp_make_fan(b, b->out_triangles, b->out_source_count, b->out_point_count, &fan)) return;
-    c.umbrella_count = 0;
-    c.near = (uint32_t *)gxbp_allocate(&b->store.allocator, bytes);
-    if (c.near != NULL) {
-        memset(c.near, 0xff, (2 * halves + points) * sizeof *c.near);
-        c.corner = c.near + halves;
-        c.first = c.corner + halves;
-        c.degree = c.first + points;
-        c.umbrellas = (gxbp_umbrella *)(void *)(c.degree + points);
-        memset(c.degree, 0, points * sizeof *c.degree);
-        gxbp_find_outlines(b, &fan, &c);
-        gxbp_make_umbrellas(b, &c);
-        for (v = 0; v < points && b->result == GX_OK; v++)
-            if (gxbp_is_needless(b, &c, v)) gxbp_take_vertex(b, &c, v);
-        if (b->result == GX_OK) gxbp_close_coarse(b, &c);
-        gxbp_release(&b->store.allocator, c.near, bytes);
-    } else
-        gxbp_stop(b, GX_ERROR_MEMORY);
-    gxbp_drop_fan(b, &fan);
 }
 
 static GXBP_APART void gxbp_round_vertices(gxb_boolean *b) {
     uint32_t i;
-    if (b->result != GX_OK || !GXBP_ROOM(b, out_vertices, out_vertex, 3 * (size_t)b->out_point_count) ||
-        !GXBP_ROOM(b, out_origins, out_origin, b->out_point_count))
+    if (b->error != GX_OK || !GXBP_ROOM(b, out.vertices, out.vertex, 3 * (size_t)b->out.point_count) ||
+        !GXBP_ROOM(b, out.origins, out.origin, b->out.point_count))
         return;
-    for (i = 0; i < b->out_point_count; i++) {
-        gxbp_round_point(b, b->out_points[i], b->out_vertices + 3 * (size_t)i);
-        gxbp_describe_point(b, b->out_points[i], &b->out_origins[i]);
+    for (i = 0; i < b->out.point_count; i++) {
+        gxbp_round_point(b, b->out.points[i], b->out.vertices + 3 * (size_t)i);
+        gxbp_describe_point(b, b->out.points[i], &b->out.origins[i]);
     }
-    b->out_vertex_count = 3 * b->out_point_count;
-    b->out_origin_count = b->out_point_count;
+    b->out.vertex_count = 3 * b->out.point_count;
+    b->out.origin_count = b->out.point_count;
 }
 
 static GXBP_COLD int gxbp_faces_exactly(gxb_boolean *b, uint32_t plane, const double *p, const double *q,
@@ -10044,21 +9959,264 @@ static int gxbp_faces(gxb_boolean *b, uint32_t plane, const double *p, const dou
  * were mended. */
 static GXBP_APART void gxbp_find_defects(gxb_boolean *b) {
     uint32_t t, k;
-    b->out_defect_count = 0;
-    for (t = 0; t < b->out_source_count && b->result == GX_OK; t++) {
+    b->out.defect_count = 0;
+    for (t = 0; t < b->out.source_count && b->error == GX_OK; t++) {
         const double *x[3];
-        int given = b->mend == NULL;
+        int given = b->options.mend == NULL;
         for (k = 0; k < 3; k++) {
             given = given && b->store.points[gxbp_out_corner(b, t, k)].kind == GXB_EXPLICIT;
-            x[k] = b->out_vertices + 3 * (size_t)b->out_triangles[3 * t + k];
+            x[k] = b->out.vertices + 3 * (size_t)b->out.triangles[3 * t + k];
         }
-        if (given || gxbp_faces(b, gxbp_out_plane(b, t), x[0], x[1], x[2]) == (b->out_planes[t] & 1 ? -1 : 1)) continue;
-        if (GXBP_ROOM(b, out_defects, out_defect, 1)) b->out_defects[b->out_defect_count++] = t;
+        if (given || gxbp_faces(b, gxbp_out_plane(b, t), x[0], x[1], x[2]) == (b->out.planes[t] & 1 ? -1 : 1)) continue;
+        if (GXBP_ROOM(b, out.defects, out.defect, 1)) b->out.defects[b->out.defect_count++] = t;
     }
-    b->examined = b->result == GX_OK;
+    b->out.examined = b->error == GX_OK;
 }
 
-/* --- components: shells (triangles joined where the solid between them is one), and which shell lies in which --- */
+/* >>coarse: fewer triangles of the same surface -------------------------------------------------------------------- */
+/* In: the output's triangles before rounding. Out: each face in fewer triangles. Vertices that no outline needs are
+   removed one by one, and the polygons around them filled again. Touches the output's triangles and points. */
+
+/* The triangles of a face around a vertex, from outline to outline or all around. hint: one of the half-edges that
+ * leave it there. */
+typedef struct gxbp_fan {
+    uint32_t vertex, hint, next;
+} gxbp_fan;
+
+/* Half-edges are 3 t + k. */
+typedef struct gxbp_coarse {
+    /* of each half-edge: the one across it in the same face, GXB_NONE on the face's outline */
+    uint32_t *near;
+    /* of each half-edge: the fan that it leaves from; GXB_NONE: its triangle is gone */
+    uint32_t *corner;
+    gxbp_fan *fans;
+    uint32_t fan_count;
+    uint32_t *first;  /* of each vertex: its fans */
+    uint32_t *degree; /* of each vertex: edges of outlines that end there */
+} gxbp_coarse;
+
+/* 1: triangle u is of t's face and faces as it does, -1: the other way (a sheet's other side), 0: it is of another
+ * face. */
+static int gxbp_same_face(gxb_boolean *b, uint32_t t, uint32_t u) {
+    const int facing = b->out.planes[t] & 1 ? -1 : 1;
+    uint32_t k;
+    if (b->out.operands[t] == b->out.operands[u] && b->out.sources[t] == b->out.sources[u])
+        return b->out.planes[u] & 1 ? -facing : facing;
+    if (b->options.triangulation != GXB_MERGED) return 0;
+    b->work.plane = gxbp_out_plane(b, t);
+    if (b->work.plane == GXB_NONE) return 0;
+    for (k = 0; k < 3 && gxbp_out_plane(b, u) != b->work.plane; k++)
+        if (gxbp_point_side(b, gxbp_out_corner(b, u, k), b->work.plane) != 0) return 0;
+    return facing * gxbp_turn(b, gxbp_out_corner(b, u, 0), gxbp_out_corner(b, u, 1), gxbp_out_corner(b, u, 2));
+}
+
+/* Joins the half-edges between p and q that face alike, if all are of one face. 0: the edge belongs to an outline. */
+static int gxbp_pair_edge(gxb_boolean *b, const gxbp_exits *exits, uint32_t p, uint32_t q, uint32_t *near) {
+    uint32_t found[2][2], pass, i, first = GXB_NONE;
+    memset(found, 0xff, sizeof found);
+    for (pass = 0; pass < 2; pass++) {
+        const uint32_t from = pass == 0 ? p : q, to = pass == 0 ? q : p;
+        for (i = exits->first[from]; i < exits->first[from + 1]; i++) {
+            const uint32_t h = exits->list[i].half_edge;
+            int facing;
+            if (exits->list[i].to != to) continue;
+            if (first == GXB_NONE) first = h / 3;
+            facing = gxbp_same_face(b, first, h / 3);
+            if (facing == 0 || found[pass][facing > 0] != GXB_NONE) return 0;
+            found[pass][facing > 0] = h;
+        }
+    }
+    for (i = 0; i < 2; i++)
+        if ((found[0][i] == GXB_NONE) != (found[1][i] == GXB_NONE)) return 0;
+    for (i = 0; i < 2; i++)
+        if (found[0][i] != GXB_NONE) {
+            near[found[0][i]] = found[1][i];
+            near[found[1][i]] = found[0][i];
+        }
+    return 1;
+}
+
+static void gxbp_find_outlines(gxb_boolean *b, const gxbp_exits *exits, gxbp_coarse *c) {
+    uint32_t p, i, j;
+    for (p = 0; p < b->out.point_count; p++)
+        for (i = exits->first[p]; i < exits->first[p + 1]; i++) {
+            const uint32_t q = exits->list[i].to;
+            if (q < p || c->near[exits->list[i].half_edge] != GXB_NONE) continue;
+            for (j = exits->first[p]; j < i && exits->list[j].to != q; j++) {}
+            if (j < i || gxbp_pair_edge(b, exits, p, q, c->near)) continue;
+            c->degree[p]++;
+            c->degree[q]++;
+        }
+}
+
+static void gxbp_make_fans(const gxb_boolean *b, gxbp_coarse *c) {
+    uint32_t h, e;
+    for (h = 0; h < b->out.triangle_count; h++) {
+        const uint32_t u = c->fan_count, v = b->out.triangles[h];
+        if (c->corner[h] != GXB_NONE) continue;
+        c->fans[u].vertex = v;
+        c->fans[u].hint = h;
+        c->fans[u].next = c->first[v];
+        c->first[v] = c->fan_count++;
+        for (e = h; e != GXB_NONE && c->corner[e] == GXB_NONE; e = c->near[gxbp_last_edge(e)]) c->corner[e] = u;
+        for (e = c->near[h]; e != GXB_NONE && c->corner[gxbp_next_edge(e)] == GXB_NONE; e = c->near[gxbp_next_edge(e)])
+            c->corner[gxbp_next_edge(e)] = u;
+    }
+}
+
+/* The polygon that an fan's triangles fill goes to rims (fans of its vertices, what lies beyond the edge to
+   the next), the triangles to scratch. 1: it is open, the vertex lies on the edge from the last to the first. */
+static int gxbp_open_fan(gxb_boolean *b, const gxbp_coarse *c, uint32_t u) {
+    uint32_t start = c->fans[u].hint, e = start, n;
+    while (c->near[e] != GXB_NONE && (e = gxbp_next_edge(c->near[e])) != start) {}
+    start = e;
+    b->work.rim_count = b->work.stack_count = 0;
+    do {
+        n = gxbp_next_edge(e);
+        if (!GXBP_ROOM(b, work.rims, work.rim, 2)) return 0;
+        b->work.rims[b->work.rim_count].vertex = c->corner[n];
+        b->work.rims[b->work.rim_count++].near = c->near[n];
+        gxbp_push(b, e / 3);
+        n = gxbp_next_edge(n);
+        e = c->near[n];
+    } while (e != GXB_NONE && e != start);
+    if (e == start) return 0;
+    b->work.rims[b->work.rim_count].vertex = c->corner[n];
+    b->work.rims[b->work.rim_count++].near = GXB_NONE;
+    return 1;
+}
+
+static uint32_t gxbp_coarse_point(const gxb_boolean *b, const gxbp_coarse *c, uint32_t u) {
+    return b->out.points[c->fans[u].vertex];
+}
+
+static void gxbp_link_half_edges(uint32_t *near, uint32_t h, uint32_t other) {
+    near[h] = other;
+    if (other != GXB_NONE) near[other] = h;
+}
+
+/* A triangle of the polygon's vertices p, q and r, one after the other; what is left has an edge from p to r. */
+static void gxbp_fill_corner(gxb_boolean *b, gxbp_coarse *c, uint32_t p, uint32_t q, uint32_t r) {
+    const uint32_t h = 3 * b->work.stack[--b->work.stack_count];
+    uint32_t k;
+    c->corner[h] = b->work.rims[p].vertex;
+    c->corner[h + 1] = b->work.rims[q].vertex;
+    c->corner[h + 2] = b->work.rims[r].vertex;
+    for (k = 0; k < 3; k++) c->fans[c->corner[h + k]].hint = h + k;
+    gxbp_link_half_edges(c->near, h, b->work.rims[p].near);
+    gxbp_link_half_edges(c->near, h + 1, b->work.rims[q].near);
+    c->near[h + 2] = GXB_NONE;
+    b->work.rims[p].near = h + 2;
+}
+
+/* Fills the polygon of an fan around v. It is seen from v, and stays so if a convex corner is cut off whose ends
+   are seen from v under no more than a straight angle: then v is left of the new edge or on it. Of at most two corners,
+   neighbours, the ends are seen under more, and a polygon has three that are convex; where v lies on an edge, the
+   corners of that edge are the two. */
+static void gxbp_fill_fan(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
+    gxbp_rim_vertex *rim = b->work.rims;
+    const int facing = b->out.planes[b->work.stack[0]] & 1 ? -1 : 1;
+    uint32_t n = b->work.rim_count, i, q = 0, tried = 0;
+    for (i = 0; i < n; i++) {
+        rim[i].labels = (i + 1) % n;
+        rim[i].made = (i + n - 1) % n;
+    }
+    while (n > 3 && b->error == GX_OK) {
+        const uint32_t p = rim[q].made, r = rim[q].labels, end = gxbp_coarse_point(b, c, rim[r].vertex),
+                       start = gxbp_coarse_point(b, c, rim[p].vertex);
+        if (facing * gxbp_turn(b, start, gxbp_coarse_point(b, c, rim[q].vertex), end) > 0 &&
+            facing * gxbp_turn(b, start, end, v) >= 0) {
+            gxbp_fill_corner(b, c, p, q, r);
+            rim[p].labels = r;
+            rim[r].made = p;
+            q = p;
+            n--;
+            tried = 0;
+        } else if (++tried <= n)
+            q = r;
+        else
+            gxbp_stop(b, GX_ERROR_OVERLAP);
+    }
+    if (b->error != GX_OK) return;
+    gxbp_fill_corner(b, c, rim[q].made, q, rim[q].labels);
+    gxbp_link_half_edges(c->near, rim[rim[q].made].near, rim[rim[q].labels].near);
+    for (i = 0; i < b->work.stack_count; i++) c->corner[3 * b->work.stack[i]] = GXB_NONE;
+}
+
+/* May the vertex be removed? Not where an outline bends, ends or branches. */
+static int gxbp_is_needless(gxb_boolean *b, const gxbp_coarse *c, uint32_t v) {
+    uint32_t u, ends[2] = {GXB_NONE, GXB_NONE};
+    if (c->degree[v] == 0) return 1;
+    if (c->degree[v] != 2) return 0;
+    for (u = c->first[v]; u != GXB_NONE; u = c->fans[u].next) {
+        uint32_t p, q;
+        if (!gxbp_open_fan(b, c, u)) continue;
+        p = c->fans[b->work.rims[0].vertex].vertex;
+        q = c->fans[b->work.rims[b->work.rim_count - 1].vertex].vertex;
+        if (p == q || (ends[0] != GXB_NONE && (p < q ? p : q) != ends[0]) ||
+            (ends[0] != GXB_NONE && (p < q ? q : p) != ends[1]))
+            return 0;
+        if (ends[0] != GXB_NONE) continue;
+        ends[0] = p < q ? p : q;
+        ends[1] = p < q ? q : p;
+        b->work.plane = gxbp_out_plane(b, b->work.stack[0]);
+        if (b->work.plane == GXB_NONE || gxbp_turn(b, b->out.points[p], b->out.points[v], b->out.points[q]) != 0)
+            return 0;
+    }
+    return b->error == GX_OK;
+}
+
+static void gxbp_take_vertex(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
+    uint32_t u;
+    for (u = c->first[v]; u != GXB_NONE && b->error == GX_OK; u = c->fans[u].next) {
+        gxbp_open_fan(b, c, u);
+        b->work.plane = gxbp_out_plane(b, b->work.stack[0]);
+        if (b->error == GX_OK) gxbp_fill_fan(b, c, b->out.points[v]);
+    }
+}
+
+/* Writes the remaining triangles to the output. */
+static void gxbp_close_coarse(gxb_boolean *b, const gxbp_coarse *c) {
+    uint32_t t, k, n = 0;
+    for (t = 0; t < b->out.source_count; t++) {
+        if (c->corner[3 * t] == GXB_NONE) continue;
+        for (k = 0; k < 3; k++) b->out.triangles[3 * n + k] = c->fans[c->corner[3 * t + k]].vertex;
+        gxbp_copy_origin(b, n++, t);
+    }
+    gxbp_set_triangle_count(b, n);
+    gxbp_drop_lonely(b, c->degree);
+}
+
+static GXBP_COLD void gxbp_coarsen(gxb_boolean *b) {
+    const size_t halves = b->out.triangle_count, points = b->out.point_count;
+    const size_t bytes = halves * (2 * sizeof(uint32_t) + sizeof(gxbp_fan)) + 2 * points * sizeof(uint32_t);
+    gxbp_coarse c;
+    gxbp_exits exits;
+    uint32_t v;
+    if (!gxbp_list_exits(b, b->out.triangles, b->out.source_count, b->out.point_count, &exits)) return;
+    c.fan_count = 0;
+    c.near = (uint32_t *)gxbp_allocate(&b->store.allocator, bytes);
+    if (c.near != NULL) {
+        memset(c.near, 0xff, (2 * halves + points) * sizeof *c.near);
+        c.corner = c.near + halves;
+        c.first = c.corner + halves;
+        c.degree = c.first + points;
+        c.fans = (gxbp_fan *)(void *)(c.degree + points);
+        memset(c.degree, 0, points * sizeof *c.degree);
+        gxbp_find_outlines(b, &exits, &c);
+        gxbp_make_fans(b, &c);
+        for (v = 0; v < points && b->error == GX_OK; v++)
+            if (gxbp_is_needless(b, &c, v)) gxbp_take_vertex(b, &c, v);
+        if (b->error == GX_OK) gxbp_close_coarse(b, &c);
+        gxbp_release(&b->store.allocator, c.near, bytes);
+    } else
+        gxbp_stop(b, GX_ERROR_MEMORY);
+    gxbp_drop_exits(b, &exits);
+}
+
+/* >>components: shells --------------------------------------------------------------------------------------------- */
+/* In: the output. Out: shells, that is sets of triangles joined where the solid between them is connected, and the
+   corners of each. Touches the caller's sets, and the twins if the result is mended. */
 
 static uint32_t gxbp_find_set(uint32_t *parent, uint32_t i) {
     while (parent[i] != i) {
@@ -10085,72 +10243,72 @@ static void gxbp_flatten_sets(uint32_t *parent, uint32_t count) {
 
 /* Triangles around an edge from p to q, by angle. Seen along the edge, a triangle that passes it forwards (from p to q)
    has the solid at smaller angles, one that passes it backwards at larger ones. */
-typedef struct gxbp_blade {
+typedef struct gxbp_radial {
     uint32_t half_edge, apex, plane;
     int forward, toward, group;
-} gxbp_blade;
-typedef struct gxbp_blades {
-    gxbp_blade *list;
+} gxbp_radial;
+typedef struct gxbp_radials {
+    gxbp_radial *list;
     uint32_t count, capacity;
-} gxbp_blades;
+} gxbp_radials;
 
 /* 1: the apex of g lies at an angle between 0 and pi from f, -1: beyond, 0: in its plane */
-static int gxbp_blade_side(gxb_boolean *b, const gxbp_blade *f, const gxbp_blade *g) {
+static int gxbp_radial_side(gxb_boolean *b, const gxbp_radial *f, const gxbp_radial *g) {
     return f->toward * gxbp_point_side(b, g->apex, f->plane);
 }
 
-static int gxbp_blade_precedes(gxb_boolean *b, const gxbp_blade *f, const gxbp_blade *g) {
+static int gxbp_radial_precedes(gxb_boolean *b, const gxbp_radial *f, const gxbp_radial *g) {
     int side;
     if (f->group != g->group) return f->group < g->group;
-    side = f->group % 2 == 0 ? 0 : gxbp_blade_side(b, f, g);
+    side = f->group % 2 == 0 ? 0 : gxbp_radial_side(b, f, g);
     return side != 0 ? side > 0 : f->forward && !g->forward;
 }
 
-static GXBP_RARE void gxbp_make_blade(gxb_boolean *b, uint32_t h, uint32_t p, const gxbp_blade *first,
-                                      gxbp_blade *blade, uint32_t q) {
-    blade->half_edge = h;
-    blade->apex = gxbp_out_corner(b, h / 3, h % 3 + 2);
-    blade->plane = gxbp_out_plane(b, h / 3);
-    blade->forward = gxbp_out_corner(b, h / 3, h % 3) == p;
-    blade->toward = (b->out_planes[h / 3] & 1 ? -1 : 1) * (blade->forward ? 1 : -1);
-    blade->group = 0;
+static GXBP_RARE void gxbp_make_radial(gxb_boolean *b, uint32_t h, uint32_t p, const gxbp_radial *first,
+                                       gxbp_radial *radial, uint32_t q) {
+    radial->half_edge = h;
+    radial->apex = gxbp_out_corner(b, h / 3, h % 3 + 2);
+    radial->plane = gxbp_out_plane(b, h / 3);
+    radial->forward = gxbp_out_corner(b, h / 3, h % 3) == p;
+    radial->toward = (b->out.planes[h / 3] & 1 ? -1 : 1) * (radial->forward ? 1 : -1);
+    radial->group = 0;
     if (first == NULL) return;
-    blade->group = 2 - gxbp_blade_side(b, first, blade); /* 1: first half, 3: second half */
-    if (blade->group != 2) return;
-    b->plane = first->plane;
-    if (gxbp_turn(b, p, q, blade->apex) == gxbp_turn(b, p, q, first->apex)) blade->group = 0;
+    radial->group = 2 - gxbp_radial_side(b, first, radial); /* 1: first half, 3: second half */
+    if (radial->group != 2) return;
+    b->work.plane = first->plane;
+    if (gxbp_turn(b, p, q, radial->apex) == gxbp_turn(b, p, q, first->apex)) radial->group = 0;
 }
 
 /* Joins the triangles at the two sides of each wedge of the solid around an edge that more than two triangles share:
  * there they are twins. */
-static GXBP_COLD void gxbp_join_wedges(gxb_boolean *b, const gxbp_fan *fan, uint32_t i, uint32_t j, uint32_t *parent,
-                                       uint32_t *twin) {
-    const uint32_t p = b->out_points[i], q = b->out_points[j];
-    gxbp_blades blades = {NULL, 0, 0};
+static GXBP_COLD void gxbp_join_wedges(gxb_boolean *b, const gxbp_exits *exits, uint32_t i, uint32_t j,
+                                       uint32_t *parent, uint32_t *twin) {
+    const uint32_t p = b->out.points[i], q = b->out.points[j];
+    gxbp_radials radials = {NULL, 0, 0};
     uint32_t pass, k, m;
     for (pass = 0; pass < 2; pass++) {
         const uint32_t from = pass == 0 ? i : j, to = pass == 0 ? j : i;
-        for (k = fan->first[from]; k < fan->first[from + 1]; k++) {
-            gxbp_blade mine, *blade;
-            if (fan->list[k].to != to) continue;
-            if (!gxbp_room(b, &blades.list, blades.count, &blades.capacity, sizeof *blades.list, 1) ||
-                gxbp_out_plane(b, fan->list[k].half_edge / 3) == GXB_NONE)
+        for (k = exits->first[from]; k < exits->first[from + 1]; k++) {
+            gxbp_radial mine, *radial;
+            if (exits->list[k].to != to) continue;
+            if (!gxbp_room(b, &radials.list, radials.count, &radials.capacity, sizeof *radials.list, 1) ||
+                gxbp_out_plane(b, exits->list[k].half_edge / 3) == GXB_NONE)
                 break;
-            blade = blades.list;
-            gxbp_make_blade(b, fan->list[k].half_edge, p, blades.count == 0 ? NULL : blade, &mine, q);
-            for (m = blades.count++; m > 1 && gxbp_blade_precedes(b, &mine, &blade[m - 1]); m--)
-                blade[m] = blade[m - 1];
-            blade[m] = mine;
+            radial = radials.list;
+            gxbp_make_radial(b, exits->list[k].half_edge, p, radials.count == 0 ? NULL : radial, &mine, q);
+            for (m = radials.count++; m > 1 && gxbp_radial_precedes(b, &mine, &radial[m - 1]); m--)
+                radial[m] = radial[m - 1];
+            radial[m] = mine;
         }
     }
-    for (m = 0; m < blades.count; m++) {
-        const uint32_t h = blades.list[m].half_edge, g = blades.list[(m + 1) % blades.count].half_edge;
-        if (blades.list[m].forward) continue;
+    for (m = 0; m < radials.count; m++) {
+        const uint32_t h = radials.list[m].half_edge, g = radials.list[(m + 1) % radials.count].half_edge;
+        if (radials.list[m].forward) continue;
         gxbp_join_sets(parent, h / 3, g / 3);
         twin[h] = g;
         twin[g] = h;
     }
-    gxbp_release(&b->store.allocator, blades.list, (size_t)blades.capacity * sizeof *blades.list);
+    gxbp_release(&b->store.allocator, radials.list, (size_t)radials.capacity * sizeof *radials.list);
 }
 
 /* Of each triangle: how many corners of the solid are counted there. A corner is what triangles around a vertex make
@@ -10164,31 +10322,31 @@ static void gxbp_count_corners(uint32_t *twin, uint32_t count, int32_t *corners)
         for (g = h; twin[g] != GXB_NONE;) { /* on to the half-edge that ends there too */
             const uint32_t next = twin[g];
             twin[g] = GXB_NONE;
-            g = next % 3 == 0 ? next + 2 : next - 1;
+            g = gxbp_last_edge(next);
         }
     }
 }
 
 /* Edges that more than two triangles share */
 static GXBP_COLD void gxbp_join_all_wedges(gxb_boolean *b, uint32_t *parent, uint32_t *twin) {
-    const uint32_t *v = b->out_triangles;
+    const uint32_t *v = b->out.triangles;
     uint32_t h;
-    gxbp_fan fan;
-    if (!gxbp_make_fan(b, v, b->out_source_count, b->out_point_count, &fan)) return;
-    for (h = 0; h < 3 * b->out_source_count; h++)
+    gxbp_exits exits;
+    if (!gxbp_list_exits(b, v, b->out.source_count, b->out.point_count, &exits)) return;
+    for (h = 0; h < 3 * b->out.source_count; h++)
         if (twin[h] == GXB_NONE && v[h] < v[gxbp_next_edge(h)])
-            gxbp_join_wedges(b, &fan, v[h], v[gxbp_next_edge(h)], parent, twin);
-    gxbp_drop_fan(b, &fan);
+            gxbp_join_wedges(b, &exits, v[h], v[gxbp_next_edge(h)], parent, twin);
+    gxbp_drop_exits(b, &exits);
 }
 
 static GXBP_APART void gxbp_join_shells(gxb_boolean *b, uint32_t *parent, int32_t *corners) {
-    const uint32_t count = b->out_source_count;
+    const uint32_t count = b->out.source_count;
     const size_t words = 3 * (size_t)count;
-    uint32_t *twin = (uint32_t *)gxbp_borrow(b, (words + gxbp_twin_room(b->out_point_count)) * sizeof *twin), h, open,
+    uint32_t *twin = (uint32_t *)gxbp_borrow(b, (words + gxbp_twin_room(b->out.point_count)) * sizeof *twin), h, open,
              shared = 0;
-    b->out_twin_count = 0;
+    b->out.twin_count = 0;
     if (twin == NULL) return;
-    gxbp_find_twins(b->out_triangles, count, b->out_point_count, twin, &open, twin + words);
+    gxbp_find_twins(b->out.triangles, count, b->out.point_count, twin, &open, twin + words);
     for (h = 0; h < 3 * count; h++) {
         if (twin[h] == GXB_NONE)
             shared = 1;
@@ -10196,9 +10354,14 @@ static GXBP_APART void gxbp_join_shells(gxb_boolean *b, uint32_t *parent, int32_
             gxbp_join_sets(parent, h / 3, twin[h] / 3);
     }
     if (shared) gxbp_join_all_wedges(b, parent, twin);
-    if (b->mend != NULL && GXBP_ROOM(b, out_twins, out_twin, words)) memcpy(b->out_twins, twin, words * sizeof *twin);
+    if (b->options.mend != NULL && GXBP_ROOM(b, out.twins, out.twin, words))
+        memcpy(b->out.twins, twin, words * sizeof *twin);
     gxbp_count_corners(twin, count, corners);
 }
+
+/* >>volumes: volumes of shells ------------------------------------------------------------------------------------- */
+/* In: the output and its shells. Out: six times the volume of each shell, by sums of doubles with bounds, or from
+   coordinates of 180 bits where these bounds are too large. Touches the caller's arrays only. */
 
 static GXBP_RARE void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *fine) {
     gxbp_vec store, rest;
@@ -10213,8 +10376,8 @@ static GXBP_RARE void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *
     }
 }
 
-/* Coordinates of 180 bits of the result's vertices, each made once (then it has the stamp of b->head_stamp). first: of
- * a vertex' limbs */
+/* Coordinates of 180 bits of the result's vertices, each made once (then it has the stamp of b->work.head_stamp).
+ * first: of a vertex' limbs */
 typedef struct gxbp_fine {
     uint32_t first;
     gxb_num c[3];
@@ -10226,17 +10389,17 @@ typedef struct gxbp_fines {
 } gxbp_fines;
 
 static GXBP_RARE void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t vertex) {
-    const uint32_t point = b->out_points[vertex];
+    const uint32_t point = b->out.points[vertex];
     gxbp_fine *v = &fines->vertices[vertex];
     gxbp_vec x;
     uint32_t k;
-    if (b->vertices[point].head_stamp == b->head_stamp) return;
+    if (b->points.vertices[point].head_stamp == b->work.head_stamp) return;
     gxbp_fine_point(b, point, &x);
     if (!gxbp_room(b, &fines->limbs, fines->limb_count, &fines->limb_capacity, sizeof *fines->limbs,
                    (size_t)x.c[0].n + x.c[1].n + x.c[2].n))
         return;
     v->first = fines->limb_count;
-    b->vertices[point].head_stamp = b->head_stamp;
+    b->points.vertices[point].head_stamp = b->work.head_stamp;
     for (k = 0; k < 3; k++) {
         v->c[k] = x.c[k];
         memcpy(fines->limbs + fines->limb_count, x.c[k].d, x.c[k].n * sizeof *fines->limbs);
@@ -10259,9 +10422,9 @@ static GXBP_RARE double gxbp_fine_volume(gxb_boolean *b, uint32_t t, const uint3
     GXB_NUM(term);
     uint32_t k;
     for (; t != GXB_NONE; t = next[t]) {
-        const uint32_t *v = b->out_triangles + 3 * (size_t)t;
+        const uint32_t *v = b->out.triangles + 3 * (size_t)t;
         for (k = 0; k < 3; k++) gxbp_need_fine(b, fines, v[k]);
-        if (b->result != GX_OK) return 0;
+        if (b->error != GX_OK) return 0;
         gxbp_num_det3(&term, gxbp_use_fine(fines, v[0]), gxbp_use_fine(fines, v[1]), gxbp_use_fine(fines, v[2]));
         gxbp_num_increase(&total, &term, 1);
     }
@@ -10296,16 +10459,16 @@ static double gxbp_rough_error(const gxb_boolean *b, uint32_t t, const gxb_ball 
     return gxbp_volume_error(gxbp_max3(d0), e, gxbp_max3(n), E);
 }
 
-/* A bound of them all: from the size S of the box around all vertices, 8u larger for what rounding takes from it, and
- * the largest of their errors */
+/* A bound for all triangles, from the size S of the box around all vertices (8u larger, to cover its rounding) and the
+ * largest error of a vertex */
 static double gxbp_largest_rough_error(const gxb_boolean *b) {
-    const gxb_ball *first = &b->store.points[b->out_points[0]].ball;
+    const gxb_ball *first = &b->store.points[b->out.points[0]].ball;
     double low[3], high[3], error = first->error, S = 0, e;
     uint32_t i, k;
     memcpy(low, first->x, sizeof low);
     memcpy(high, first->x, sizeof high);
-    for (i = 1; i < b->out_point_count; i++) {
-        const gxb_ball *ball = &b->store.points[b->out_points[i]].ball;
+    for (i = 1; i < b->out.point_count; i++) {
+        const gxb_ball *ball = &b->store.points[b->out.points[i]].ball;
         for (k = 0; k < 3; k++) {
             low[k] = gxbp_min(ball->x[k], low[k]);
             high[k] = gxbp_max(ball->x[k], high[k]);
@@ -10318,8 +10481,7 @@ static double gxbp_largest_rough_error(const gxb_boolean *b) {
     return gxbp_volume_error(S, e, 2 * S * S, 8 * S * e + 4 * e * e + 32 * GXBP_U * S * S + GXBP_TINY);
 }
 
-#define GXBP_VOLUME_ERROR                                                                                              \
-    1e-7 /* relative: sums of doubles with a larger bound, mostly far above their error, give way to exact ones */
+#define GXBP_VOLUME_ERROR 1e-7 /* relative: a sum of doubles with a larger bound is replaced by an exact one */
 
 static int gxbp_is_rough(double volume, double error) { return error > GXBP_VOLUME_ERROR * gxbp_abs(volume); }
 
@@ -10327,8 +10489,8 @@ static int gxbp_is_rough(double volume, double error) { return error > GXBP_VOLU
 static void gxbp_sum_volumes(const gxb_boolean *b, const uint32_t *parent, double *volume, double *error,
                              double largest) {
     uint32_t t;
-    for (t = 0; t < b->out_source_count; t++) volume[t] = error[t] = 0;
-    for (t = 0; t < b->out_source_count; t++) {
+    for (t = 0; t < b->out.source_count; t++) volume[t] = error[t] = 0;
+    for (t = 0; t < b->out.source_count; t++) {
         const uint32_t root = parent[t];
         const gxb_ball *o = &b->store.points[gxbp_out_corner(b, root, 0)].ball;
         volume[root] += gxbp_rough_volume(b, t, o);
@@ -10338,7 +10500,7 @@ static void gxbp_sum_volumes(const gxb_boolean *b, const uint32_t *parent, doubl
 
 static int gxbp_any_is_rough(const gxb_boolean *b, const uint32_t *parent, const double *volume, const double *error) {
     uint32_t t;
-    for (t = 0; t < b->out_source_count; t++)
+    for (t = 0; t < b->out.source_count; t++)
         if (parent[t] == t && gxbp_is_rough(volume[t], error[t])) return 1;
     return 0;
 }
@@ -10346,8 +10508,8 @@ static int gxbp_any_is_rough(const gxb_boolean *b, const uint32_t *parent, const
 /* Exact sums where those of doubles are too rough, or of all */
 static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent, double *volume, double *error,
                                           int all) {
-    const uint32_t count = b->out_source_count;
-    const size_t vertices = b->out_point_count * sizeof(gxbp_fine), bytes = vertices + 2 * count * sizeof(uint32_t);
+    const uint32_t count = b->out.source_count;
+    const size_t vertices = b->out.point_count * sizeof(gxbp_fine), bytes = vertices + 2 * count * sizeof(uint32_t);
     gxbp_fines fines = {NULL, NULL, 0, 0};
     uint32_t t, *first, *next;
     fines.vertices = (gxbp_fine *)gxbp_allocate(&b->store.allocator, bytes);
@@ -10362,8 +10524,8 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent
         next[t] = first[parent[t]];
         first[parent[t]] = t;
     }
-    b->head_stamp++;
-    for (t = 0; t < count && b->result == GX_OK; t++)
+    b->work.head_stamp++;
+    for (t = 0; t < count && b->error == GX_OK; t++)
         if (parent[t] == t && (all || gxbp_is_rough(volume[t], error[t]))) {
             volume[t] = gxbp_fine_volume(b, first[t], next, &fines);
             error[t] = 2 * GXBP_U * gxbp_abs(volume[t]);
@@ -10375,12 +10537,16 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent
 /* Six times the volumes of the sets in volume[root], in the frame's units. One bound for all triangles costs less; it
  * is too large for many. */
 static GXBP_APART void gxbp_measure_shells(gxb_boolean *b, const uint32_t *parent, double *volume, double *error) {
-    const int few = b->out_source_count <= GXBP_FEW_TRIANGLES;
+    const int few = b->out.source_count <= GXBP_FEW_TRIANGLES;
     gxbp_sum_volumes(b, parent, volume, error, few ? gxbp_largest_rough_error(b) : 0);
     if (!gxbp_any_is_rough(b, parent, volume, error)) return;
     if (few) gxbp_sum_volumes(b, parent, volume, error, 0);
     gxbp_refine_volumes(b, parent, volume, error, 0);
 }
+
+/* >>containers: which shell lies in which -------------------------------------------------------------------------- */
+/* In: shells with their volumes. Out: components: each shell with its cavities and sheets; volume, Euler characteristic
+   and sides of each. Rays along x pass the triangles of one column. Touches the output's components. */
 
 /* gxbp_ray_left for points of the result, and a ray moved by way (h, h^2) */
 static GXBP_COLD int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p, uint32_t q, int way) {
@@ -10398,15 +10564,15 @@ static GXBP_COLD int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p,
 /* A ray from a triangle. It begins on the side on which that one's solid lies: on the other one, of a sheet, begins
  * another's. */
 static GXBP_COLD int gxbp_ray_from(gxb_boolean *b, gxbp_ray *ray, uint32_t t) {
-    const int turned = b->out_planes[t] & 1 ? 1 : -1, moved = gxbp_moved_side(b, gxbp_out_plane(b, t));
-    gxbp_set_ray(b, ray, b->out_planes[t] / 2);
+    const int turned = b->out.planes[t] & 1 ? 1 : -1, moved = gxbp_moved_side(b, gxbp_out_plane(b, t));
+    gxbp_set_ray(b, ray, b->out.planes[t] / 2);
     return moved == 0 ? 1 : moved * turned;
 }
 
-/* By how much passing a triangle changes the number of its shell, along a ray moved by way (h, h^2) */
+/* The change of its shell's winding number where a ray moved by way (h, h^2) passes a triangle */
 static GXBP_COLD int gxbp_ray_passes(gxb_boolean *b, gxbp_ray *ray, int way, uint32_t t) {
     const uint32_t plane = gxbp_out_plane(b, t);
-    const int facing = b->out_planes[t] & 1 ? -1 : 1;
+    const int facing = b->out.planes[t] & 1 ? -1 : 1;
     double value, bound;
     int left, behind;
     uint32_t c[3], k;
@@ -10425,14 +10591,14 @@ static GXBP_COLD int gxbp_ray_passes(gxb_boolean *b, gxbp_ray *ray, int way, uin
         behind = -side.sign;
     }
     if (behind == 0) behind = -way * gxbp_moved_side(b, plane);
-    if (behind == 0) behind = -facing; /* the other side of the facet, which lies across x */
+    if (behind == 0) behind = -facing; /* the other side of the subtriangle, which lies across x */
     return behind * facing == left ? left : 0;
 }
 
 /* Of triangle t: the shell that it belongs to, of a cavity whose container is known that one */
 static uint32_t gxbp_shell_of(const uint32_t *parent, uint32_t t) { return parent[parent[t]]; }
 
-/* Columns along x, side x side of them, and the triangles of each: those that rays in it may pass */
+/* A grid of side x side columns along x, and the triangles that rays in each column may pass */
 typedef struct gxbp_columns {
     uint32_t *first, *list; /* side x side + 1; where a column's triangles are in the list */
     uint32_t *hit;          /* room for one word per triangle */
@@ -10463,15 +10629,15 @@ static uint32_t gxbp_columns_of(const gxb_boolean *b, const gxbp_columns *c, uin
     return (upto[0] - from[0] + 1) * (upto[1] - from[1] + 1);
 }
 
-/* The margin is more than points and rays may be away from where their balls are. */
+/* The margin exceeds the distance of any point or ray from the centre of its ball. */
 static void gxbp_bound_columns(const gxb_boolean *b, gxbp_columns *c) {
-    const gxb_ball *first = &b->store.points[b->out_points[0]].ball;
+    const gxb_ball *first = &b->store.points[b->out.points[0]].ball;
     double high[2], error = 0, largest = 0;
     uint32_t i, k;
     memcpy(c->low, first->x + 1, sizeof c->low);
     memcpy(high, first->x + 1, sizeof high);
-    for (i = 0; i < b->out_point_count; i++) {
-        const gxb_ball *ball = &b->store.points[b->out_points[i]].ball;
+    for (i = 0; i < b->out.point_count; i++) {
+        const gxb_ball *ball = &b->store.points[b->out.points[i]].ball;
         for (k = 0; k < 2; k++) {
             c->low[k] = gxbp_min(ball->x[k + 1], c->low[k]);
             high[k] = gxbp_max(ball->x[k + 1], high[k]);
@@ -10483,9 +10649,9 @@ static void gxbp_bound_columns(const gxb_boolean *b, gxbp_columns *c) {
     for (k = 0; k < 2; k++) c->size[k] = high[k] - c->low[k] + c->margin;
 }
 
-/* As many columns as triangles, or fewer where these would be in more than eight columns each */
+/* As many columns as triangles; fewer if a triangle would be in more than eight columns on average */
 static GXBP_COLD int gxbp_make_columns(gxb_boolean *b, gxbp_columns *c) {
-    const uint32_t count = b->out_source_count;
+    const uint32_t count = b->out.source_count;
     uint32_t side = 1, t, i, j, from[2], upto[2];
     size_t total;
     gxbp_bound_columns(b, c);
@@ -10521,7 +10687,7 @@ static const uint32_t *gxbp_column_of(const gxbp_columns *c, const gxbp_ray *ray
     return c->first + gxbp_column_at(c, 0, ray->ball.x[1]) * c->side + gxbp_column_at(c, 1, ray->ball.x[2]);
 }
 
-/* Does shell t lie in shell u? Shells do not cross: one of its triangles says it. */
+/* Does shell t lie in shell u? Shells do not cross, so one triangle decides. */
 static GXBP_COLD int gxbp_lies_in(gxb_boolean *b, uint32_t t, uint32_t u, const uint32_t *parent,
                                   const gxbp_columns *c) {
     gxbp_ray ray;
@@ -10557,10 +10723,10 @@ static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, c
     return best;
 }
 
-/* Cavities and sheets go to their containers. Returns how many there are. */
+/* Assigns cavities and sheets to their containers. Returns their number. */
 static GXBP_APART uint32_t gxbp_place_cavities(gxb_boolean *b, uint32_t *parent, const double *volume,
                                                int32_t *winding) {
-    const uint32_t count = b->out_source_count;
+    const uint32_t count = b->out.source_count;
     gxbp_columns columns;
     uint32_t t, container, cavities = 0;
     columns.hit = NULL;
@@ -10578,13 +10744,13 @@ static GXBP_APART uint32_t gxbp_place_cavities(gxb_boolean *b, uint32_t *parent,
     return cavities;
 }
 
-/* Afterwards the sets are components. A shell and a cavity in it may nearly cancel: what is left is summed anew. */
+/* Makes components of the sets. A shell and its cavity may nearly cancel; their difference is then summed again. */
 static void gxbp_join_cavities(gxb_boolean *b, uint32_t *parent, double *volume, double *error, int32_t *winding) {
     int rough = 0;
     uint32_t t;
     if (gxbp_place_cavities(b, parent, volume, winding) > 0) {
-        gxbp_flatten_sets(parent, b->out_source_count);
-        for (t = 0; t < b->out_source_count; t++) {
+        gxbp_flatten_sets(parent, b->out.source_count);
+        for (t = 0; t < b->out.source_count; t++) {
             if (parent[t] == t) continue;
             volume[parent[t]] += volume[t];
             error[parent[t]] += error[t];
@@ -10597,63 +10763,63 @@ static void gxbp_join_cavities(gxb_boolean *b, uint32_t *parent, double *volume,
 /* number: room for a word per triangle */
 static GXBP_APART void gxbp_number_components(gxb_boolean *b, const uint32_t *parent, const double *volume,
                                               uint32_t *number) {
-    const uint32_t count = b->out_source_count;
+    const uint32_t count = b->out.source_count;
     uint32_t t;
     memset(number, 0, count * sizeof *number); /* of a set, + 1 */
-    for (t = 0; t < count && b->result == GX_OK; t++) {
+    for (t = 0; t < count && b->error == GX_OK; t++) {
         const uint32_t set = parent[t];
         if (number[set] == 0) {
-            if (!GXBP_ROOM(b, out_volumes, out_volume, 1)) return;
-            b->out_volumes[b->out_volume_count++] = volume[set] / 6;
-            number[set] = b->out_volume_count;
+            if (!GXBP_ROOM(b, out.volumes, out.volume, 1)) return;
+            b->out.volumes[b->out.volume_count++] = volume[set] / 6;
+            number[set] = b->out.volume_count;
         }
-        b->out_components[t] = number[set] - 1;
+        b->out.components[t] = number[set] - 1;
     }
-    b->out_component_count = count;
+    b->out.component_count = count;
 }
 
 /* Each triangle is 1 and 3 / 2 edges. */
 static void gxbp_find_eulers(gxb_boolean *b, const int32_t *corners) {
     uint32_t t;
-    b->out_euler_count = 0;
-    if (b->result != GX_OK || !GXBP_ROOM(b, out_eulers, out_euler, b->out_volume_count)) return;
-    b->out_euler_count = b->out_volume_count;
-    for (t = 0; t < b->out_euler_count; t++) b->out_eulers[t] = 0;
-    for (t = 0; t < b->out_source_count; t++) b->out_eulers[b->out_components[t]] += 2 * corners[t] - 1;
-    for (t = 0; t < b->out_euler_count; t++) b->out_eulers[t] /= 2;
+    b->out.euler_count = 0;
+    if (b->error != GX_OK || !GXBP_ROOM(b, out.eulers, out.euler, b->out.volume_count)) return;
+    b->out.euler_count = b->out.volume_count;
+    for (t = 0; t < b->out.euler_count; t++) b->out.eulers[t] = 0;
+    for (t = 0; t < b->out.source_count; t++) b->out.eulers[b->out.components[t]] += 2 * corners[t] - 1;
+    for (t = 0; t < b->out.euler_count; t++) b->out.eulers[t] /= 2;
 }
 
 /* On which sides of sheets the components lie, by the triangles that they have of them. */
 static GXBP_RARE void gxbp_find_sides(gxb_boolean *b) {
-    const size_t n = b->operand_count, size = (size_t)b->out_volume_count * n;
+    const size_t n = b->in.operand_count, size = (size_t)b->out.volume_count * n;
     size_t i;
     uint32_t t, sheets = 0;
-    b->out_side_count = 0;
-    if (b->result != GX_OK || !GXBP_ROOM(b, out_sides, out_side, size)) return;
-    memset(b->out_sides, 0, size);
-    for (i = 0; i < n; i++) sheets += b->operands[i].operation == GXB_SPLIT;
-    for (t = 0; t < b->out_source_count && sheets > 0; t++) {
-        int8_t *side = &b->out_sides[b->out_components[t] * n + b->out_operands[t]];
-        const int8_t mine = b->out_reversed[t] ? 1 : -1;
-        if (b->operands[b->out_operands[t]].operation == GXB_SPLIT) *side = *side == 0 || *side == mine ? mine : 2;
+    b->out.side_count = 0;
+    if (b->error != GX_OK || !GXBP_ROOM(b, out.sides, out.side, size)) return;
+    memset(b->out.sides, 0, size);
+    for (i = 0; i < n; i++) sheets += b->in.operands[i].operation == GXB_SPLIT;
+    for (t = 0; t < b->out.source_count && sheets > 0; t++) {
+        int8_t *side = &b->out.sides[b->out.components[t] * n + b->out.operands[t]];
+        const int8_t mine = b->out.reversed[t] ? 1 : -1;
+        if (b->in.operands[b->out.operands[t]].operation == GXB_SPLIT) *side = *side == 0 || *side == mine ? mine : 2;
     }
     for (i = 0; i < size && sheets > 0; i++)
-        if (b->out_sides[i] == 2) b->out_sides[i] = 0;
-    b->out_side_count = (uint32_t)size;
+        if (b->out.sides[i] == 2) b->out.sides[i] = 0;
+    b->out.side_count = (uint32_t)size;
 }
 
 /* From the frame's units */
 static void gxbp_scale_volumes(gxb_boolean *b) {
     uint32_t i;
-    for (i = 0; i < b->out_volume_count; i++) b->out_volumes[i] *= gxbp_power(-3 * b->store.shift);
+    for (i = 0; i < b->out.volume_count; i++) b->out.volumes[i] *= gxbp_power(-3 * b->store.shift);
 }
 
 /* parent: sets of triangles; work: room for a word per triangle; corners: see gxbp_count_corners */
 static void gxbp_measure_components(gxb_boolean *b, uint32_t *parent, uint32_t *work, const int32_t *corners) {
-    const size_t count = b->out_source_count;
+    const size_t count = b->out.source_count;
     double *volume = (double *)gxbp_borrow(b, 2 * count * sizeof *volume);
     if (volume == NULL) return;
-    gxbp_flatten_sets(parent, b->out_source_count);
+    gxbp_flatten_sets(parent, b->out.source_count);
     gxbp_measure_shells(b, parent, volume, volume + count);
     gxbp_join_cavities(b, parent, volume, volume + count, (int32_t *)work);
     gxbp_number_components(b, parent, volume, work);
@@ -10662,12 +10828,12 @@ static void gxbp_measure_components(gxb_boolean *b, uint32_t *parent, uint32_t *
 }
 
 static GXBP_APART void gxbp_find_components(gxb_boolean *b) {
-    const uint32_t count = b->out_source_count;
+    const uint32_t count = b->out.source_count;
     const size_t bytes = 3 * (size_t)count * sizeof(uint32_t);
     uint32_t *parent, t;
     int32_t *corners;
-    b->out_component_count = b->out_volume_count = 0;
-    if (b->result != GX_OK || count == 0 || !GXBP_ROOM(b, out_components, out_component, count)) return;
+    b->out.component_count = b->out.volume_count = 0;
+    if (b->error != GX_OK || count == 0 || !GXBP_ROOM(b, out.components, out.component, count)) return;
     parent = (uint32_t *)gxbp_allocate(&b->store.allocator, bytes);
     if (parent == NULL) {
         gxbp_stop(b, GX_ERROR_MEMORY);
@@ -10676,38 +10842,36 @@ static GXBP_APART void gxbp_find_components(gxb_boolean *b) {
     corners = (int32_t *)(void *)(parent + 2 * (size_t)count);
     for (t = 0; t < count; t++) parent[t] = t;
     gxbp_join_shells(b, parent, corners);
-    if (b->result == GX_OK) gxbp_measure_components(b, parent, parent + count, corners);
+    if (b->error == GX_OK) gxbp_measure_components(b, parent, parent + count, corners);
     gxbp_release(&b->store.allocator, parent, bytes);
     gxbp_find_sides(b);
-    b->measured = b->result == GX_OK;
+    b->out.measured = b->error == GX_OK;
 }
 
-/* --- mending: a surface whose triangles rounding has turned over is changed within the rounding, until none is left or
-   nothing helps. The surface taken apart (out_twins: each edge joins two triangles) stays closed, and keeps its Euler
-   characteristic. --- */
+/* >>mend: removing defects within the rounding --------------------------------------------------------------------- */
+/* In: the rounded output with its defects, components and twins. Out: fewer defects, or the same. The surface, taken
+   apart where it only touches itself, stays closed and keeps its Euler characteristic. Touches the output only. */
 
 #define GXBP_MEND_REACH                                                                                                \
     4 /* units in the last place of the largest coordinate: how near are two vertices that may become one */
 #define GXBP_MEND_STEPS 2 /* such units by which a coordinate may be moved */
 
-static uint32_t gxbp_before_edge(uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
-
 /* The next half-edge that leaves the same corner of the surface */
-static uint32_t gxbp_around(const gxb_boolean *b, uint32_t h) { return b->out_twins[gxbp_before_edge(h)]; }
+static uint32_t gxbp_around(const gxb_boolean *b, uint32_t h) { return b->out.twins[gxbp_last_edge(h)]; }
 
 static const double *gxbp_out_place(const gxb_boolean *b, uint32_t vertex) {
-    return b->out_vertices + 3 * (size_t)vertex;
+    return b->out.vertices + 3 * (size_t)vertex;
 }
 
 /* 1 where a triangle of three vertices would be a defect on the side of triangle t's plane */
 static int gxbp_is_defect(gxb_boolean *b, uint32_t t, uint32_t p, uint32_t q, uint32_t r) {
-    const int facing = b->out_planes[t] & 1 ? -1 : 1;
+    const int facing = b->out.planes[t] & 1 ? -1 : 1;
     return gxbp_faces(b, gxbp_out_plane(b, t), gxbp_out_place(b, p), gxbp_out_place(b, q), gxbp_out_place(b, r)) !=
            facing;
 }
 
 static int gxbp_is_defective(gxb_boolean *b, uint32_t t) {
-    const uint32_t *v = b->out_triangles + 3 * (size_t)t;
+    const uint32_t *v = b->out.triangles + 3 * (size_t)t;
     return gxbp_is_defect(b, t, v[0], v[1], v[2]);
 }
 
@@ -10739,7 +10903,7 @@ static int gxbp_is_between(const gxb_boolean *b, uint32_t vertex, uint32_t p, ui
 }
 
 static int gxbp_is_given(const gxb_boolean *b, uint32_t vertex) {
-    return b->store.points[b->out_points[vertex]].kind == GXB_EXPLICIT;
+    return b->store.points[b->out.points[vertex]].kind == GXB_EXPLICIT;
 }
 
 /* How many edges leave the corner from which h does; *to: how many of them lead to a vertex */
@@ -10748,36 +10912,36 @@ static uint32_t gxbp_count_around(const gxb_boolean *b, uint32_t h, uint32_t ver
     *to = 0;
     do {
         n++;
-        *to += b->out_triangles[gxbp_next_edge(g)] == vertex;
+        *to += b->out.triangles[gxbp_next_edge(g)] == vertex;
         g = gxbp_around(b, g);
     } while (g != h);
     return n;
 }
 
 static void gxbp_set_out_triangle(gxb_boolean *b, uint32_t t, uint32_t p, uint32_t q, uint32_t r) {
-    b->out_triangles[3 * t] = p;
-    b->out_triangles[3 * t + 1] = q;
-    b->out_triangles[3 * t + 2] = r;
+    b->out.triangles[3 * t] = p;
+    b->out.triangles[3 * t + 1] = q;
+    b->out.triangles[3 * t + 2] = r;
 }
 
 static void gxbp_join_out(gxb_boolean *b, uint32_t h, uint32_t g) {
-    b->out_twins[h] = g;
-    b->out_twins[g] = h;
+    b->out.twins[h] = g;
+    b->out.twins[g] = h;
 }
 
 /* The edge of h, from p to q, between triangles (p, q, r) and (q, p, o), becomes one from r to o. The triangle of h,
    which has no area to speak of, becomes a part of the other's source; r lies between p and q, or what is made would
    lie beyond the old ones. */
 static int gxbp_flip(gxb_boolean *b, uint32_t h) {
-    const uint32_t g = b->out_twins[h], t = h / 3, s = g / 3, h1 = gxbp_next_edge(h), g1 = gxbp_next_edge(g);
-    const uint32_t p = b->out_triangles[h], q = b->out_triangles[h1], r = b->out_triangles[gxbp_before_edge(h)],
-                   o = b->out_triangles[gxbp_before_edge(g)];
-    const uint32_t qr = b->out_twins[h1], rp = b->out_twins[gxbp_before_edge(h)], po = b->out_twins[g1],
-                   oq = b->out_twins[gxbp_before_edge(g)];
+    const uint32_t g = b->out.twins[h], t = h / 3, s = g / 3, h1 = gxbp_next_edge(h), g1 = gxbp_next_edge(g);
+    const uint32_t p = b->out.triangles[h], q = b->out.triangles[h1], r = b->out.triangles[gxbp_last_edge(h)],
+                   o = b->out.triangles[gxbp_last_edge(g)];
+    const uint32_t qr = b->out.twins[h1], rp = b->out.twins[gxbp_last_edge(h)], po = b->out.twins[g1],
+                   oq = b->out.twins[gxbp_last_edge(g)];
     uint32_t known;
     if (r == o || qr / 3 == s || rp / 3 == s || !gxbp_is_between(b, r, p, q)) return 0;
     if (gxbp_is_defect(b, s, p, o, r) || gxbp_is_defect(b, s, o, q, r)) return 0; /* one of them might be large */
-    gxbp_count_around(b, gxbp_before_edge(h), o, &known);
+    gxbp_count_around(b, gxbp_last_edge(h), o, &known);
     if (known != 0) return 0;
     gxbp_set_out_triangle(b, t, p, o, r);
     gxbp_set_out_triangle(b, s, o, q, r);
@@ -10792,14 +10956,14 @@ static int gxbp_flip(gxb_boolean *b, uint32_t h) {
 
 /* May the edge of h vanish? Its ends have but two neighbours in common, which keep three edges at least. */
 static int gxbp_links_meet(gxb_boolean *b, uint32_t h) {
-    const uint32_t g = b->out_twins[h], v = b->out_triangles[h], w = b->out_triangles[g];
-    const uint32_t r = gxbp_before_edge(h), o = gxbp_before_edge(g);
+    const uint32_t g = b->out.twins[h], v = b->out.triangles[h], w = b->out.triangles[g];
+    const uint32_t r = gxbp_last_edge(h), o = gxbp_last_edge(g);
     uint32_t e = h, common = 0, known;
-    if (b->out_triangles[r] == b->out_triangles[o] || gxbp_count_around(b, h, w, &known) < 3 || known != 1) return 0;
+    if (b->out.triangles[r] == b->out.triangles[o] || gxbp_count_around(b, h, w, &known) < 3 || known != 1) return 0;
     if (gxbp_count_around(b, r, v, &known) < 4 || gxbp_count_around(b, o, v, &known) < 4) return 0;
     do {
-        if (b->out_triangles[gxbp_next_edge(e)] != w) {
-            gxbp_count_around(b, g, b->out_triangles[gxbp_next_edge(e)], &known);
+        if (b->out.triangles[gxbp_next_edge(e)] != w) {
+            gxbp_count_around(b, g, b->out.triangles[gxbp_next_edge(e)], &known);
             common += known;
         }
         e = gxbp_around(b, e);
@@ -10809,74 +10973,75 @@ static int gxbp_links_meet(gxb_boolean *b, uint32_t h) {
 
 /* The vertex from which h leaves becomes the one to which it leads, if that leaves fewer defects. */
 static int gxbp_collapse(gxb_boolean *b, uint32_t h) {
-    const uint32_t g = b->out_twins[h], v = b->out_triangles[h], w = b->out_triangles[g];
+    const uint32_t g = b->out.twins[h], v = b->out.triangles[h], w = b->out.triangles[g];
     const uint32_t h1 = gxbp_next_edge(h), h2 = gxbp_next_edge(h1), g1 = gxbp_next_edge(g), g2 = gxbp_next_edge(g1);
     uint32_t e, before = 0, after = 0, last = h;
     if (v == w || gxbp_is_given(b, v) || !gxbp_are_near(b, v, w) || !gxbp_links_meet(b, h)) return 0;
     for (e = gxbp_around(b, h); e != h; e = gxbp_around(b, e)) {
         before += (uint32_t)gxbp_is_defective(b, e / 3);
         if (e != g1)
-            after += (uint32_t)gxbp_is_defect(b, e / 3, w, b->out_triangles[gxbp_next_edge(e)],
-                                              b->out_triangles[gxbp_before_edge(e)]);
+            after += (uint32_t)gxbp_is_defect(b, e / 3, w, b->out.triangles[gxbp_next_edge(e)],
+                                              b->out.triangles[gxbp_last_edge(e)]);
         last = e;
     }
     if (after >= before + (uint32_t)gxbp_is_defective(b, h / 3)) return 0;
     for (e = gxbp_around(b, h);; e = gxbp_around(b, e)) {
-        b->out_triangles[e] = w;
+        b->out.triangles[e] = w;
         if (e == last) break;
     }
-    gxbp_join_out(b, b->out_twins[h1], b->out_twins[h2]);
-    gxbp_join_out(b, b->out_twins[g1], b->out_twins[g2]);
-    b->out_triangles[3 * (h / 3)] = b->out_triangles[3 * (g / 3)] = GXB_NONE; /* no longer there */
+    gxbp_join_out(b, b->out.twins[h1], b->out.twins[h2]);
+    gxbp_join_out(b, b->out.twins[g1], b->out.twins[g2]);
+    b->out.triangles[3 * (h / 3)] = b->out.triangles[3 * (g / 3)] = GXB_NONE; /* no longer there */
     return 1;
 }
 
-/* Once through the defects; how many flips and collapses there were. */
+/* One pass over the defects. Returns the number of flips and collapses. */
 static uint32_t gxbp_mend_edges(gxb_boolean *b) {
     uint32_t i, k, done = 0;
-    for (i = 0; i < b->out_defect_count; i++) {
-        const uint32_t t = b->out_defects[i];
-        int helped = b->out_triangles[3 * t] == GXB_NONE || !gxbp_is_defective(b, t);
+    for (i = 0; i < b->out.defect_count; i++) {
+        const uint32_t t = b->out.defects[i];
+        int helped = b->out.triangles[3 * t] == GXB_NONE || !gxbp_is_defective(b, t);
         for (k = 0; k < 3 && !helped; k++) helped = gxbp_flip(b, 3 * t + k) && ++done;
         for (k = 0; k < 3 && !helped; k++)
-            helped = (gxbp_collapse(b, 3 * t + k) || gxbp_collapse(b, b->out_twins[3 * t + k])) && ++done;
+            helped = (gxbp_collapse(b, 3 * t + k) || gxbp_collapse(b, b->out.twins[3 * t + k])) && ++done;
     }
     return done;
 }
 
-/* Triangles that are gone are taken out of all lists; map: room for one word per triangle. */
+/* Removes collapsed triangles from all lists. map: a word per triangle. */
 static void gxbp_drop_collapsed(gxb_boolean *b, uint32_t *map) {
-    const uint32_t count = b->out_source_count;
+    const uint32_t count = b->out.source_count;
     uint32_t t, k, left = 0;
-    for (t = 0; t < count; t++) map[t] = b->out_triangles[3 * t] == GXB_NONE ? GXB_NONE : left++;
+    for (t = 0; t < count; t++) map[t] = b->out.triangles[3 * t] == GXB_NONE ? GXB_NONE : left++;
     for (t = 0; t < count; t++) {
         const uint32_t n = map[t];
         if (n == GXB_NONE) continue;
         for (k = 0; k < 3; k++) {
-            b->out_triangles[3 * n + k] = b->out_triangles[3 * t + k];
-            b->out_twins[3 * n + k] = 3 * map[b->out_twins[3 * t + k] / 3] + b->out_twins[3 * t + k] % 3;
+            b->out.triangles[3 * n + k] = b->out.triangles[3 * t + k];
+            b->out.twins[3 * n + k] = 3 * map[b->out.twins[3 * t + k] / 3] + b->out.twins[3 * t + k] % 3;
         }
         gxbp_copy_origin(b, n, t);
-        b->out_components[n] = b->out_components[t];
+        b->out.components[n] = b->out.components[t];
     }
     gxbp_set_triangle_count(b, left);
-    b->out_component_count = left;
-    b->out_twin_count = 3 * left;
+    b->out.component_count = left;
+    b->out.twin_count = 3 * left;
 }
 
 /* How many triangles around a vertex are defects, all corners there together */
-static uint32_t gxbp_defects_at(gxb_boolean *b, const gxbp_fan *fan, uint32_t v) {
+static uint32_t gxbp_defects_at(gxb_boolean *b, const gxbp_exits *exits, uint32_t v) {
     uint32_t i, n = 0;
-    for (i = fan->first[v]; i < fan->first[v + 1]; i++) n += (uint32_t)gxbp_is_defective(b, fan->list[i].half_edge / 3);
+    for (i = exits->first[v]; i < exits->first[v + 1]; i++)
+        n += (uint32_t)gxbp_is_defective(b, exits->list[i].half_edge / 3);
     return n;
 }
 
 /* Tries the places around the vertex's own (home): the first of those with the fewest defects. 1: it moved. */
-static int gxbp_move_vertex(gxb_boolean *b, const gxbp_fan *fan, uint32_t v, const double home[3]) {
+static int gxbp_move_vertex(gxb_boolean *b, const gxbp_exits *exits, uint32_t v, const double home[3]) {
     enum { WIDTH = 2 * GXBP_MEND_STEPS + 1 };
-    double *x = b->out_vertices + 3 * (size_t)v, best[3], old[3];
+    double *x = b->out.vertices + 3 * (size_t)v, best[3], old[3];
     const double unit = gxbp_unit_at(b, v);
-    uint32_t before = gxbp_defects_at(b, fan, v), least = before, i;
+    uint32_t before = gxbp_defects_at(b, exits, v), least = before, i;
     int k;
     memcpy(old, x, sizeof old);
     memcpy(best, x, sizeof best);
@@ -10887,7 +11052,7 @@ static int gxbp_move_vertex(gxb_boolean *b, const gxbp_fan *fan, uint32_t v, con
             const uint32_t steps = (digit[k] + 1) / 2;
             x[k] = gxbp_fence(home[k] + (digit[k] % 2 == 0 ? -(double)steps : (double)steps) * unit);
         }
-        n = gxbp_defects_at(b, fan, v);
+        n = gxbp_defects_at(b, exits, v);
         if (n < least) {
             least = n;
             memcpy(best, x, sizeof best);
@@ -10898,32 +11063,32 @@ static int gxbp_move_vertex(gxb_boolean *b, const gxbp_fan *fan, uint32_t v, con
 }
 
 static uint32_t gxbp_mend_places(gxb_boolean *b, const double *home) {
-    gxbp_fan fan;
+    gxbp_exits exits;
     uint32_t i, k, done = 0;
-    if (!gxbp_make_fan(b, b->out_triangles, b->out_source_count, b->out_point_count, &fan)) return 0;
-    for (i = 0; i < b->out_defect_count; i++)
-        for (k = 0; k < 3 && gxbp_is_defective(b, b->out_defects[i]); k++) {
-            const uint32_t v = b->out_triangles[3 * b->out_defects[i] + k];
-            if (!gxbp_is_given(b, v)) done += (uint32_t)gxbp_move_vertex(b, &fan, v, home + 3 * (size_t)v);
+    if (!gxbp_list_exits(b, b->out.triangles, b->out.source_count, b->out.point_count, &exits)) return 0;
+    for (i = 0; i < b->out.defect_count; i++)
+        for (k = 0; k < 3 && gxbp_is_defective(b, b->out.defects[i]); k++) {
+            const uint32_t v = b->out.triangles[3 * b->out.defects[i] + k];
+            if (!gxbp_is_given(b, v)) done += (uint32_t)gxbp_move_vertex(b, &exits, v, home + 3 * (size_t)v);
         }
-    gxbp_drop_fan(b, &fan);
+    gxbp_drop_exits(b, &exits);
     return done;
 }
 
 /* Each step leaves fewer defects than there were. */
 static GXBP_COLD void gxbp_mend_defects(gxb_boolean *b) {
-    const uint32_t words = b->out_source_count > b->out_point_count ? b->out_source_count : b->out_point_count;
-    const size_t places = 3 * (size_t)b->out_point_count * sizeof(double), bytes = places + words * sizeof(uint32_t);
+    const uint32_t words = b->out.source_count > b->out.point_count ? b->out.source_count : b->out.point_count;
+    const size_t places = 3 * (size_t)b->out.point_count * sizeof(double), bytes = places + words * sizeof(uint32_t);
     double *home;
-    uint32_t *map, found = b->out_defect_count, done = 1;
+    uint32_t *map, found = b->out.defect_count, done = 1;
     home = (double *)gxbp_allocate(&b->store.allocator, bytes);
     if (home == NULL) {
         gxbp_stop(b, GX_ERROR_MEMORY);
         return;
     }
     map = (uint32_t *)(void *)((char *)home + places);
-    memcpy(home, b->out_vertices, places);
-    while (done > 0 && b->out_defect_count > 0 && b->result == GX_OK) {
+    memcpy(home, b->out.vertices, places);
+    while (done > 0 && b->out.defect_count > 0 && b->error == GX_OK) {
         done = gxbp_mend_edges(b);
         gxbp_drop_collapsed(b, map);
         gxbp_find_defects(b);
@@ -10931,64 +11096,70 @@ static GXBP_COLD void gxbp_mend_defects(gxb_boolean *b) {
         gxbp_find_defects(b);
     }
     gxbp_drop_lonely(b, map);
-    b->mended = found - b->out_defect_count;
+    b->out.mended_count = found - b->out.defect_count;
     gxbp_release(&b->store.allocator, home, bytes);
 }
 
-/* Components and twins are the exact surface's: they are found before it is changed. */
+/* Components and twins belong to the exact surface, so they are computed before it is changed. */
 static GXBP_COLD void gxbp_mend(gxb_boolean *b) {
     gxbp_find_defects(b);
     gxbp_find_components(b);
-    if (b->result == GX_OK && b->out_defect_count > 0) gxbp_mend_defects(b);
+    if (b->error == GX_OK && b->out.defect_count > 0) gxbp_mend_defects(b);
 }
 
-/* --- the public functions --- */
+/* >>api: the public functions of a Boolean ------------------------------------------------------------------------- */
+/* Each checks its arguments and calls the sections above in their order: operands when added; meet to result when
+   evaluated; components and defects when first requested. After an error the Boolean holds its operands only. */
 
 static const gxbp_array gxbp_boolean_arrays[] = {/* all that grow */
-                                                 GXBP_ARRAY(gxb_boolean, operands, operand),
-                                                 GXBP_ARRAY(gxb_boolean, sources, source),
-                                                 GXBP_ARRAY(gxb_boolean, bounds, bound),
-                                                 GXBP_ARRAY(gxb_boolean, boxes, box),
-                                                 GXBP_ARRAY(gxb_boolean, vertices, vertex),
-                                                 GXBP_ARRAY(gxb_boolean, pieces, piece),
-                                                 GXBP_ARRAY(gxb_boolean, links, link),
-                                                 GXBP_ARRAY(gxb_boolean, segments, segment),
-                                                 GXBP_ARRAY(gxb_boolean, cuts, cut),
-                                                 GXBP_ARRAY(gxb_boolean, cut_points, cut_point),
-                                                 GXBP_ARRAY(gxb_boolean, hits, hit),
-                                                 GXBP_ARRAY(gxb_boolean, dirty, dirty),
-                                                 GXBP_ARRAY(gxb_boolean, divided, divided),
-                                                 GXBP_ARRAY(gxb_boolean, projected, projected),
-                                                 GXBP_ARRAY(gxb_boolean, rims, rim),
-                                                 GXBP_ARRAY(gxb_boolean, lefts, left),
-                                                 GXBP_ARRAY(gxb_boolean, scratch, scratch),
-                                                 GXBP_ARRAY(gxb_boolean, chain, chain),
-                                                 GXBP_ARRAY(gxb_boolean, windings, winding),
-                                                 GXBP_ARRAY(gxb_boolean, states, state),
-                                                 GXBP_ARRAY(gxb_boolean, out_vertices, out_vertex),
-                                                 GXBP_ARRAY(gxb_boolean, out_origins, out_origin),
-                                                 GXBP_ARRAY(gxb_boolean, out_points, out_point),
-                                                 GXBP_ARRAY(gxb_boolean, out_triangles, out_triangle),
-                                                 GXBP_ARRAY(gxb_boolean, out_operands, out_operand),
-                                                 GXBP_ARRAY(gxb_boolean, out_sources, out_source),
-                                                 GXBP_ARRAY(gxb_boolean, out_components, out_component),
-                                                 GXBP_ARRAY(gxb_boolean, out_planes, out_plane),
-                                                 GXBP_ARRAY(gxb_boolean, out_volumes, out_volume),
-                                                 GXBP_ARRAY(gxb_boolean, out_defects, out_defect),
-                                                 GXBP_ARRAY(gxb_boolean, out_reversed, out_reversed),
-                                                 GXBP_ARRAY(gxb_boolean, out_sides, out_side),
-                                                 GXBP_ARRAY(gxb_boolean, out_eulers, out_euler),
-                                                 GXBP_ARRAY(gxb_boolean, out_twins, out_twin)};
+                                                 GXBP_ARRAY(gxb_boolean, in.operands, in.operand),
+                                                 GXBP_ARRAY(gxb_boolean, in.sources, in.source),
+                                                 GXBP_ARRAY(gxb_boolean, in.bounds, in.bound),
+                                                 GXBP_ARRAY(gxb_boolean, in.boxes, in.box),
+                                                 GXBP_ARRAY(gxb_boolean, points.vertices, points.vertex),
+                                                 GXBP_ARRAY(gxb_boolean, mesh.subtriangles, mesh.subtriangle),
+                                                 GXBP_ARRAY(gxb_boolean, mesh.links, mesh.link),
+                                                 GXBP_ARRAY(gxb_boolean, crossings.segments, crossings.segment),
+                                                 GXBP_ARRAY(gxb_boolean, crossings.cuts, crossings.cut),
+                                                 GXBP_ARRAY(gxb_boolean, crossings.cut_points, crossings.cut_point),
+                                                 GXBP_ARRAY(gxb_boolean, crossings.hits, crossings.hit),
+                                                 GXBP_ARRAY(gxb_boolean, crossings.dirty, crossings.dirty),
+                                                 GXBP_ARRAY(gxb_boolean, mesh.divided, mesh.divided),
+                                                 GXBP_ARRAY(gxb_boolean, points.projected, points.projected),
+                                                 GXBP_ARRAY(gxb_boolean, work.rims, work.rim),
+                                                 GXBP_ARRAY(gxb_boolean, work.lefts, work.left),
+                                                 GXBP_ARRAY(gxb_boolean, work.stack, work.stack),
+                                                 GXBP_ARRAY(gxb_boolean, work.segment_ends, work.segment_end),
+                                                 GXBP_ARRAY(gxb_boolean, work.pending, work.pending),
+                                                 GXBP_ARRAY(gxb_boolean, work.room, work.room),
+                                                 GXBP_ARRAY(gxb_boolean, work.ordered, work.ordered),
+                                                 GXBP_ARRAY(gxb_boolean, winding.numbers, winding.number),
+                                                 GXBP_ARRAY(gxb_boolean, winding.inside, winding.inside),
+                                                 GXBP_ARRAY(gxb_boolean, out.vertices, out.vertex),
+                                                 GXBP_ARRAY(gxb_boolean, out.origins, out.origin),
+                                                 GXBP_ARRAY(gxb_boolean, out.points, out.point),
+                                                 GXBP_ARRAY(gxb_boolean, out.triangles, out.triangle),
+                                                 GXBP_ARRAY(gxb_boolean, out.operands, out.operand),
+                                                 GXBP_ARRAY(gxb_boolean, out.sources, out.source),
+                                                 GXBP_ARRAY(gxb_boolean, out.components, out.component),
+                                                 GXBP_ARRAY(gxb_boolean, out.planes, out.plane),
+                                                 GXBP_ARRAY(gxb_boolean, out.volumes, out.volume),
+                                                 GXBP_ARRAY(gxb_boolean, out.defects, out.defect),
+                                                 GXBP_ARRAY(gxb_boolean, out.reversed, out.reversed),
+                                                 GXBP_ARRAY(gxb_boolean, out.sides, out.side),
+                                                 GXBP_ARRAY(gxb_boolean, out.eulers, out.euler),
+                                                 GXBP_ARRAY(gxb_boolean, out.twins, out.twin)};
 
 static GXBP_COLD void gxbp_drop_boolean(gxb_boolean *b) {
     uint32_t i;
-    for (i = 0; i < b->operand_count; i++)
-        gxbp_release(&b->store.allocator, b->operands[i].order, (size_t)b->operands[i].source_count * sizeof(uint32_t));
+    for (i = 0; i < b->in.operand_count; i++)
+        gxbp_release(&b->store.allocator, b->in.operands[i].order,
+                     (size_t)b->in.operands[i].source_count * sizeof(uint32_t));
     gxbp_store_destroy(&b->store);
     gxbp_drop_arrays(&b->store.allocator, b, gxbp_boolean_arrays,
                      sizeof gxbp_boolean_arrays / sizeof *gxbp_boolean_arrays);
-    gxbp_release(&b->store.allocator, b->table, (size_t)b->table_size * sizeof *b->table);
-    gxbp_release(&b->store.allocator, b->state_table, (size_t)b->state_table_size * sizeof *b->state_table);
+    gxbp_release(&b->store.allocator, b->points.table, (size_t)b->points.table_size * sizeof *b->points.table);
+    gxbp_release(&b->store.allocator, b->winding.table, (size_t)b->winding.table_size * sizeof *b->winding.table);
 }
 
 GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean) {
@@ -11005,14 +11176,14 @@ GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean
     b = (gxb_boolean *)gxbp_allocate(&desc->allocator, gxbp_whole_words(sizeof *b) + arena);
     if (b == NULL) return GX_ERROR_MEMORY;
     memset(b, 0, sizeof *b);
-    b->arena = (unsigned char *)b + gxbp_whole_words(sizeof *b);
-    b->arena_size = arena;
-    b->used = b->peak = gxbp_whole_words(sizeof *b) + arena;
-    b->allocations = 1;
-    b->outer = desc->allocator;
-    b->limit = desc->memory_limit;
-    b->inside = desc->inside;
-    b->user = desc->user;
+    b->budget.arena = (unsigned char *)b + gxbp_whole_words(sizeof *b);
+    b->budget.arena_size = arena;
+    b->budget.used = b->budget.peak = gxbp_whole_words(sizeof *b) + arena;
+    b->budget.allocations = 1;
+    b->budget.outer = desc->allocator;
+    b->budget.limit = desc->memory_limit;
+    b->options.inside = desc->inside;
+    b->options.user = desc->user;
     b->store.allocator.allocate = gxbp_count_allocate;
     b->store.allocator.release = gxbp_count_release;
     if (desc->allocator.allocate == NULL || desc->allocator.reallocate != NULL)
@@ -11025,27 +11196,27 @@ GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean
 GXFEM_API void gxb_boolean_destroy(gxb_boolean *boolean) {
     gx_allocator outer;
     if (boolean == NULL) return;
-    outer = boolean->outer;
-    if (boolean->allocations > 1) gxbp_drop_boolean(boolean); /* else all is in the arena */
-    gxbp_release(&outer, boolean, gxbp_whole_words(sizeof *boolean) + boolean->arena_size);
+    outer = boolean->budget.outer;
+    if (boolean->budget.allocations > 1) gxbp_drop_boolean(boolean); /* else all is in the arena */
+    gxbp_release(&outer, boolean, gxbp_whole_words(sizeof *boolean) + boolean->budget.arena_size);
 }
 
 GXFEM_API gx_result gxb_boolean_set_triangulation(gxb_boolean *boolean, uint32_t triangulation) {
     if (boolean == NULL || triangulation > GXB_MERGED) return GX_ERROR_ARGUMENT;
-    boolean->triangulation = triangulation;
-    boolean->coarsen = triangulation == GXB_DIVIDED ? NULL : gxbp_coarsen;
+    boolean->options.triangulation = triangulation;
+    boolean->options.coarsen = triangulation == GXB_DIVIDED ? NULL : gxbp_coarsen;
     return GX_OK;
 }
 
 GXFEM_API gx_result gxb_boolean_set_fine(gxb_boolean *boolean, int fine) {
     if (boolean == NULL) return GX_ERROR_ARGUMENT;
-    boolean->fine = fine != 0;
+    boolean->options.fine = fine != 0;
     return GX_OK;
 }
 
 GXFEM_API gx_result gxb_boolean_set_mend(gxb_boolean *boolean, int mend) {
     if (boolean == NULL) return GX_ERROR_ARGUMENT;
-    boolean->mend = mend != 0 ? gxbp_mend : NULL;
+    boolean->options.mend = mend != 0 ? gxbp_mend : NULL;
     return GX_OK;
 }
 
@@ -11054,8 +11225,8 @@ static gx_result gxbp_check_operand(const gxb_boolean *b, const gxb_operand *o, 
     if (o->operation > GXB_SPLIT || o->rule > GXB_ODD) return GX_ERROR_ARGUMENT;
     if (o->triangle_count == 0 || o->vertex_count == 0) return GX_ERROR_EMPTY;
     if (o->vertices == NULL || o->triangles == NULL) return GX_ERROR_ARGUMENT;
-    if (o->triangle_count > INT32_MAX / 12 || o->triangle_count + b->source_count > INT32_MAX / 12 ||
-        o->vertex_count > INT32_MAX / 4 || b->operand_count > INT32_MAX / 64)
+    if (o->triangle_count > INT32_MAX / 12 || o->triangle_count + b->in.source_count > INT32_MAX / 12 ||
+        o->vertex_count > INT32_MAX / 4 || b->in.operand_count > INT32_MAX / 64)
         return GX_ERROR_LIMIT;
     for (i = 0; i < 3 * o->triangle_count; i++)
         if (o->triangles[i] >= o->vertex_count) {
@@ -11067,134 +11238,136 @@ static gx_result gxbp_check_operand(const gxb_boolean *b, const gxb_operand *o, 
 
 /* Forgets the points from count on. */
 static GXBP_COLD void gxbp_cut_points_back(gxb_boolean *b, uint32_t count) {
-    if (b->table_size > 0) gxbp_list_points(b, count);
-    b->vertex_count = b->store.point_count = count;
+    if (b->points.table_size > 0) gxbp_list_points(b, count);
+    b->points.vertex_count = b->store.point_count = count;
 }
 
 GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, gx_failure *failure) {
-    uint32_t sources, pieces, points, boxes, bounds;
+    uint32_t sources, subtriangles, points, boxes, bounds;
     size_t bad = SIZE_MAX;
     gx_result result;
     if (b == NULL || operand == NULL) return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     result = gxbp_check_operand(b, operand, &bad);
     if (result != GX_OK) return gxbp_fail(failure, result, bad);
-    sources = b->source_count;
-    pieces = b->piece_count;
-    points = b->vertex_count;
-    boxes = b->box_count;
-    bounds = b->bound_count;
-    b->result = GX_OK;
-    b->over_limit = 0;
-    result = b->operand_count == 0 ? gxbp_choose_scale(b, operand, &bad) : GX_OK;
+    sources = b->in.source_count;
+    subtriangles = b->mesh.subtriangle_count;
+    points = b->points.vertex_count;
+    boxes = b->in.box_count;
+    bounds = b->in.bound_count;
+    b->error = GX_OK;
+    b->budget.over_limit = 0;
+    result = b->in.operand_count == 0 ? gxbp_choose_scale(b, operand, &bad) : GX_OK;
     if (result == GX_OK) result = gxbp_append_operand(b, operand, &bad);
-    if (result == GX_ERROR_MEMORY && b->over_limit) result = GX_ERROR_LIMIT;
+    if (result == GX_ERROR_MEMORY && b->budget.over_limit) result = GX_ERROR_LIMIT;
     if (result != GX_OK) {
-        b->source_count = sources;
-        b->bound_count = bounds;
-        b->piece_count = pieces;
-        b->box_count = boxes;
+        b->in.source_count = sources;
+        b->in.bound_count = bounds;
+        b->mesh.subtriangle_count = subtriangles;
+        b->in.box_count = boxes;
         gxbp_cut_points_back(b, points);
     } else
-        b->evaluated = 0;
+        b->out.evaluated = 0;
     return gxbp_fail(failure, result, bad);
 }
 
-/* After an error: the operands are as they came, nothing is arranged. Points that were found stay known. */
+/* After an error: operands are as they were added, and nothing is arranged. Computed points stay known. */
 static GXBP_COLD void gxbp_forget_arrangement(gxb_boolean *b) {
     uint32_t s;
-    b->piece_count = b->link_count = b->segment_count = b->cut_count = b->cut_point_count = b->hit_count =
-        b->dirty_count = b->divided_count = 0;
-    b->arranged = b->segment_mark = b->stated = 0;
-    for (s = 0; s < b->source_count; s++) {
-        b->sources[s].flags &= (uint32_t)GXBP_DEGENERATE;
+    b->mesh.subtriangle_count = b->mesh.link_count = b->crossings.segment_count = b->crossings.cut_count =
+        b->crossings.cut_point_count = b->crossings.hit_count = b->crossings.dirty_count = b->mesh.divided_count = 0;
+    b->crossings.arranged = b->crossings.segment_mark = b->winding.stated = 0;
+    for (s = 0; s < b->in.source_count; s++) {
+        b->in.sources[s].flags &= (uint32_t)GXBP_DEGENERATE;
         gxbp_reset_source(b, s);
     }
 }
 
-/* Room for the planes of a sixth of the new triangles: what is not used is not touched, and little is copied. */
-static void gxbp_foresee_planes(gxb_boolean *b) {
-    const uint32_t fresh = b->arranged < b->operand_count ? b->source_count - b->operands[b->arranged].source : 0;
-    const gx_result result = GXBP_RESERVE(&b->store.allocator, &b->store, planes, plane, fresh / 6);
+/* Makes room for planes of a sixth of the new triangles. Unused room is never touched, and little is copied. */
+static void gxbp_presize_planes(gxb_boolean *b) {
+    const uint32_t added = b->crossings.arranged < b->in.operand_count
+                             ? b->in.source_count - b->in.operands[b->crossings.arranged].source
+                             : 0;
+    const gx_result result = GXBP_RESERVE(&b->store.allocator, &b->store, planes, plane, added / 6);
     if (result != GX_OK) gxbp_stop(b, result);
 }
 
 static GXBP_APART void gxbp_arrange(gxb_boolean *b) {
     uint32_t i, j;
-    gxbp_foresee_planes(b);
-    for (i = b->arranged; i < b->operand_count; i++)
-        for (j = 0; j <= i && b->result == GX_OK; j++) gxbp_meet_operands(b, i, j);
+    gxbp_presize_planes(b);
+    for (i = b->crossings.arranged; i < b->in.operand_count; i++)
+        for (j = 0; j <= i && b->error == GX_OK; j++) gxbp_meet_operands(b, i, j);
     gxbp_order_cuts(b);
-    if (b->result == GX_OK) gxbp_divide_dirty(b);
+    if (b->error == GX_OK) gxbp_divide_dirty(b);
     gxbp_merge_points(b);
-    b->segment_mark = b->segment_count;
-    b->arranged = b->operand_count;
+    b->crossings.segment_mark = b->crossings.segment_count;
+    b->crossings.arranged = b->in.operand_count;
 }
 
 static GXBP_APART void gxbp_show_result(const gxb_boolean *b, gxb_boolean_result *result) {
     memset(result, 0, sizeof *result);
-    result->vertices = b->out_vertices;
-    result->vertex_count = b->out_point_count;
-    result->triangles = b->out_triangles;
-    result->triangle_count = b->out_source_count;
-    result->vertex_origin = b->out_origins;
-    result->triangle_operand = b->out_operands;
-    result->triangle_source = b->out_sources;
-    result->triangle_reversed = b->out_reversed;
+    result->vertices = b->out.vertices;
+    result->vertex_count = b->out.point_count;
+    result->triangles = b->out.triangles;
+    result->triangle_count = b->out.source_count;
+    result->vertex_origin = b->out.origins;
+    result->triangle_operand = b->out.operands;
+    result->triangle_source = b->out.sources;
+    result->triangle_reversed = b->out.reversed;
 }
 
 GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *result) {
     if (b == NULL || result == NULL) return GX_ERROR_ARGUMENT;
-    if (b->operand_count == 0) return GX_ERROR_EMPTY;
-    b->result = GX_OK;
-    b->over_limit = b->measured = b->examined = 0;
-    b->mended = 0;
+    if (b->in.operand_count == 0) return GX_ERROR_EMPTY;
+    b->error = GX_OK;
+    b->budget.over_limit = b->out.measured = b->out.examined = 0;
+    b->out.mended_count = 0;
     gxbp_arrange(b);
     gxbp_find_states(b);
-    if (b->result == GX_OK) gxbp_extract(b);
-    if (b->result == GX_OK && b->coarsen != NULL && b->out_source_count > 0) b->coarsen(b);
+    if (b->error == GX_OK) gxbp_extract(b);
+    if (b->error == GX_OK && b->options.coarsen != NULL && b->out.source_count > 0) b->options.coarsen(b);
     gxbp_round_vertices(b);
-    if (b->result == GX_OK && b->mend != NULL) b->mend(b);
-    b->evaluated = b->result == GX_OK;
-    if (b->evaluated)
+    if (b->error == GX_OK && b->options.mend != NULL) b->options.mend(b);
+    b->out.evaluated = b->error == GX_OK;
+    if (b->out.evaluated)
         gxbp_show_result(b, result);
     else
         gxbp_forget_arrangement(b);
-    return b->result;
+    return b->error;
 }
 
-/* Whether there is a result to ask about, and room for the answer */
-static gx_result gxbp_ask(gxb_boolean *b, const void *answer) {
+/* Checks that there is a result, and an address for the answer. */
+static gx_result gxbp_begin_query(gxb_boolean *b, const void *answer) {
     if (b == NULL || answer == NULL) return GX_ERROR_ARGUMENT;
-    if (!b->evaluated) return GX_ERROR_EMPTY;
-    b->result = GX_OK;
-    b->over_limit = 0;
+    if (!b->out.evaluated) return GX_ERROR_EMPTY;
+    b->error = GX_OK;
+    b->budget.over_limit = 0;
     return GX_OK;
 }
 
 GXFEM_API gx_result gxb_boolean_components(gxb_boolean *b, gxb_components *components) {
-    const gx_result asked = gxbp_ask(b, components);
+    const gx_result asked = gxbp_begin_query(b, components);
     uint32_t i;
     if (asked != GX_OK) return asked;
-    if (!b->measured) gxbp_find_components(b);
-    if (b->result != GX_OK) return b->result;
+    if (!b->out.measured) gxbp_find_components(b);
+    if (b->error != GX_OK) return b->error;
     memset(components, 0, sizeof *components);
-    components->count = b->out_volume_count;
-    components->volume = b->out_volumes;
-    components->euler = b->out_eulers;
-    components->side = b->out_sides;
-    components->triangle = b->out_components;
-    for (i = 0; i < b->out_volume_count; i++) components->total_volume += b->out_volumes[i];
+    components->count = b->out.volume_count;
+    components->volume = b->out.volumes;
+    components->euler = b->out.eulers;
+    components->side = b->out.sides;
+    components->triangle = b->out.components;
+    for (i = 0; i < b->out.volume_count; i++) components->total_volume += b->out.volumes[i];
     return GX_OK;
 }
 
 GXFEM_API gx_result gxb_boolean_defects(gxb_boolean *b, gxb_defects *defects) {
-    const gx_result asked = gxbp_ask(b, defects);
+    const gx_result asked = gxbp_begin_query(b, defects);
     if (asked != GX_OK) return asked;
-    if (!b->examined) gxbp_find_defects(b);
-    if (b->result != GX_OK) return b->result;
-    defects->triangles = b->out_defects;
-    defects->count = b->out_defect_count;
-    defects->mended_count = b->mended;
+    if (!b->out.examined) gxbp_find_defects(b);
+    if (b->error != GX_OK) return b->error;
+    defects->triangles = b->out.defects;
+    defects->count = b->out.defect_count;
+    defects->mended_count = b->out.mended_count;
     return GX_OK;
 }
 
@@ -11202,8 +11375,8 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
     if (b == NULL || statistics == NULL) return GX_ERROR_ARGUMENT;
     statistics->filter_calls = b->store.filter_calls;
     statistics->exact_calls = b->store.exact_calls;
-    statistics->allocations = b->allocations;
-    statistics->peak_bytes = b->peak;
+    statistics->allocations = b->budget.allocations;
+    statistics->peak_bytes = b->budget.peak;
     return GX_OK;
 }
 
