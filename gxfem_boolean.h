@@ -9435,7 +9435,7 @@ static uint32_t gxbp_crossing_source(const gxb_boolean *b, uint32_t f, int k) {
 static uint32_t gxbp_subtriangle_at(const gxb_boolean *b, uint32_t s, uint32_t u, uint32_t w, int *k) {
     uint32_t f;
     for (f = b->in.sources[s].subtriangle; f != GXB_NONE; f = b->mesh.subtriangles[f].next)
-        for (*k = 0; *k < 3; ++*k)
+        for (*k = 0; *k < 3; (*k)++)
             if (b->mesh.subtriangles[f].v[*k] == u && b->mesh.subtriangles[f].v[(*k + 1) % 3] == w) return f;
     return GXB_NONE;
 }

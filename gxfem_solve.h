@@ -2734,7 +2734,7 @@ static gxsp_sorted *gxsp_sort(gxsp_sorted *sorted, gxsp_sorted *other, size_t co
     for (pass = 0; pass < 7; pass++) {
         size_t start[1025] = {0}, i;
         gxsp_sorted *swap = sorted;
-        for (i = 0; i < count; i++) ++start[gxsp_sorted_digit(&sorted[i], pass) + 1];
+        for (i = 0; i < count; i++) start[gxsp_sorted_digit(&sorted[i], pass) + 1]++;
         if (start[gxsp_sorted_digit(&sorted[0], pass) + 1] == count) continue;
         for (digit = 0; digit < 1024; digit++) start[digit + 1] += start[digit];
         for (i = 0; i < count; i++) other[start[gxsp_sorted_digit(&sorted[i], pass)]++] = sorted[i];
@@ -3125,7 +3125,7 @@ static uint32_t gxsp_plan_chunks(gxsp_system *system, const gxsp_sorted *sorted,
         gxsp_chunk chunk;
         memset(&chunk, 0, sizeof chunk);
         while (i < system->model.element_count && sorted[i].class_index == class_index && count < GXSP_CHUNK)
-            ++i, ++count;
+            i++, count++;
         chunk.class_index = class_index;
         chunk.kind = (gxs_material_kind)(class_index / 4);
         chunk.first_block = (uint32_t)system->mesh.block_count;
@@ -4105,7 +4105,7 @@ static void gxsp_list_pairs(gxsp_system *system, const gxsp_chunk *chunk, uint64
         for (k = 0; k < sets.words; k++) {
             uint64_t set = sets.row[i * sets.words + k];
             uint32_t j;
-            for (j = 64 * k; set != 0; set >>= 1, ++j)
+            for (j = 64 * k; set != 0; set >>= 1, j++)
                 if ((set & 1) && node[i] < node[j] && (!dirty || dirty[node[i]] || dirty[node[j]]))
                     gxsp_list_add(list, node[i], node[j]);
         }
@@ -7285,7 +7285,7 @@ static void gxsp_contact_pull(const gxsp_problem *problem, size_t i, const doubl
 static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *at, const double *displacement,
                                        gxsp_pull *pull) {
     const gxs_step_desc *step = problem->step;
-    for (; *at < step->spring_count + step->point_count; ++*at) {
+    for (; *at < step->spring_count + step->point_count; (*at)++) {
         const size_t i = *at;
         const gxs_point *point =
             i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
@@ -7294,7 +7294,7 @@ static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *at, 
             gxsp_spring_pull(&step->springs[i], displacement, pull);
         else
             gxsp_contact_pull(problem, i - step->spring_count, displacement, pull);
-        ++*at;
+        (*at)++;
         return point;
     }
     return NULL;
@@ -8399,7 +8399,7 @@ static gx_result gxsp_newton(gxsp_problem *problem) {
         if (*done > 0 && !gxsp_linearise_all(problem)) break;
         if (problem->collapsed) gxsp_nudge_forces(problem);
         if (!gxsp_find_direction(problem) || !gxsp_line_search(problem)) break;
-        ++*done;
+        (*done)++;
     }
     /* no further progress; after a first success the state is lower than the start */
     if (problem->report.stop != GXS_STOP_SECONDS) problem->report.stop = GXS_STOP_ROUNDING;

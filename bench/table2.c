@@ -85,7 +85,7 @@ static const char *play_frame(const replay *scene, const method *m, void *state,
                               method_times *times) {
     const char *why = NULL;
     memset(times, 0, sizeof *times);
-    for (; *next < scene->cut_count && scene->cuts[*next].frame == frame && !why; *next++)
+    for (; *next < scene->cut_count && scene->cuts[*next].frame == frame && !why; (*next)++)
         why = m->cut(state, &scene->cuts[*next], times);
     return why ? why : m->step(state, times);
 }

@@ -288,7 +288,7 @@ static gxs_element *slab_sampled_elements(const slab *b, const slab_box *boxes, 
         element->weight = sum.volume;
         for (i = 0; i < 10; i++) element->mass[i] = b->density * sum.product[i];
         *points += sum.points;
-        *count++;
+        (*count)++;
     }
     return elements;
 }
