@@ -1397,7 +1397,7 @@ END_TEST
 
 static int refuse(void *user, uint32_t leaf) {
     (void)leaf;
-    *(int *)user++;
+    (*(int *)user)++;
     return 0;
 }
 
