@@ -1,7 +1,7 @@
 # gxfem: everything is built in build/; the library itself needs no building. `make help` lists what there is.
 #
-# CC, CFLAGS, LDFLAGS, JOBS and BUILD may be given on the command line: make check CC=clang BUILD=build/clang; so may what a bench
-# is built and called with: make bench-solver BUILD=build/o2 BENCH_CFLAGS=-O2 BENCH=--small (a place of its own: tables and programs of other flags stay)
+# CC, CFLAGS, LDFLAGS, JOBS and BUILD may be given on the command line: make check CC=clang BUILD=build/clang. So may a bench's
+# flags and options: make bench-solver BUILD=build/o2 BENCH_CFLAGS=-O2 BENCH=--small. BUILD= keeps tables and programs of other flags.
 
 CC ?= cc
 CFLAGS ?= -O2
@@ -11,7 +11,7 @@ JOBS ?= 2
 BENCH_CFLAGS ?= -O3 -march=native
 
 headers = gxfem.h gxfem_boolean.h gxfem_integrate.h gxfem_solve.h
-# The largest, which take longest, first
+# The largest first, since they take longest
 tests = $(patsubst tests/%.c,%,$(shell ls -S tests/test_*.c))
 linked_tests = $(patsubst tests/%.c,%,$(shell grep -l GXFEM_LINKED tests/test_*.c))
 examples = $(patsubst examples/%.c,%,$(sort $(wildcard examples/*.c)))
@@ -34,7 +34,7 @@ help:
 	@echo "make format      lays out all C files by .clang-format; installs clang-format where it is missing"
 	@echo "make compile     the headers by every compiler and standard there is, C and C++"
 	@echo "make sanitize    the tests under AddressSanitizer and UndefinedBehaviorSanitizer"
-	@echo "make fuzz        random cases against what must be true of any; SEED=, CASES=, SECONDS= (0: no limit)"
+	@echo "make fuzz        random cases, checked by properties of any input; SEED=, CASES=, SECONDS= (0: no limit)"
 	@echo "make flags       exact predicates against rationals under each compiler and set of flags"
 	@echo "make hashes      the same cuts give the same topology under each compiler and set of flags"
 	@echo "make check-wasm  cuts, Booleans and random cases as WebAssembly, run by node, beside the native build; installs clang's"
@@ -42,10 +42,10 @@ help:
 	@echo "make bench       all benches anew (half an hour), then charts; BENCH=--small: minutes, and docs/ stays as it is"
 	@echo "make charts      docs/charts/, docs/BENCH.md, tables in README.md from what benches have measured; runs those"
 	@echo "                 that have not; installs gnuplot"
-	@echo "make bench-NAME  one of them: CSV on stdout and in $(BUILD)/bench/, a table on stderr"
+	@echo "make bench-NAME  one bench: CSV on stdout and in $(BUILD)/bench/, a table on stderr"
 	@echo "  quadrature     integrals over parts of cut elements beside RXFEM, adaptive and regular sampling"
-	@echo "  stepping       error of the motion against time, over all that can be turned; other methods"
-	@echo "  space          the same cuts under refinement beside conforming meshes: how thin slices lock"
+	@echo "  stepping       error of the motion against time, over all settings; other methods"
+	@echo "  space          the same cuts under refinement beside conforming meshes: locking of thin slices"
 	@echo "  table2         scenes of GXFEM's Table 2 by RXFEM, virtual nodes and the literal Algorithm 1 too"
 	@echo "  conditioning   RXFEM's Fig. 14, and a corner piece"
 	@echo "  failure        hard cases: which method is right, wrong, refuses, diverges, crashes"
@@ -53,12 +53,12 @@ help:
 	@echo "  kernel         Booleans of closed surfaces; DATA=FOLDER: also of the OFF files there"
 	@echo "  smallest       the smallest program with the kernel: time to compile and size, with and without GXFEM_STATIC"
 	@echo "  solver         time steps by preconditioner, beside CHOLMOD (installs SuiteSparse where it is missing)"
-	@echo "  violent        starts from which Newton's method is known to fail: inverted, flattened, collapsed bodies"
+	@echo "  violent        starts at which Newton's method is known to fail: inverted, flattened, collapsed bodies"
 	@echo "  accuracy       static solutions beside closed forms and published values"
-	@echo "  drift          what integrators keep: energy, momenta, order"
+	@echo "  drift          what integrators conserve: energy, momenta; their order"
 	@echo "  soak           100,000 steps of bodies that are cut, kicked and dropped: does a copy run away?"
-	@echo "  frames         frames in which a cut happens beside those in which none does"
-	@echo "  skin           the visual surface: moved in each frame, rebuilt after a cut"
+	@echo "  frames         frames with a cut beside frames without one"
+	@echo "  skin           the visual surface: moved in each frame, updated after a cut"
 	@echo "make amalgam     $(BUILD)/gxfem_all.h: the four headers in one"
 	@echo "make check-amalgam  compile tests of that header"
 	@echo "make install     the headers and gxfem.pc, for pkg-config; PREFIX=/usr/local, DESTDIR= (a stage)"
@@ -86,7 +86,7 @@ $(BUILD)/gxfem.o: $(headers)
 examples/player.h: examples/player.html examples/player.js examples/player.sh
 	sh examples/player.sh examples/player.html examples/player.js >$@.part && mv $@.part $@
 
-# Sticks along z: five planes across x, five across y. The foot of the cube is held as stretched; the rest springs back.
+# Sticks along z: five planes across x, five across y. The foot of the cube is held in its stretched place; the rest springs back.
 sixths = 0.16666666666666666 0.33333333333333331 0.5 0.66666666666666663 0.83333333333333337
 demo_cuts = $(foreach i,$(sixths),--sheet plane:$(i),0.5,0.5,1,0,0) $(foreach i,$(sixths),--sheet plane:0.5,$(i),0.5,0,1,0)
 
@@ -108,7 +108,7 @@ check-page: demo
 	@if sh tests/install.sh page; then node tests/check_page.mjs $(BUILD)/demo/demo.html 36 $(BUILD)/check-page; \
 	else echo "left out: no chromium"; fi
 
-# ---- scenes. Without gnuplot there is no chart, and nothing else is missing.
+# ---- scenes. Without gnuplot only the chart is missing.
 
 scenes: $(scenes:%=$(BUILD)/%)
 	$(if $(SMALL),,@sh tests/install.sh charts || true)
@@ -142,12 +142,12 @@ run-corpus: $(BUILD)/fuzz/fuzz
 $(tests:%=run-%): run-%: $(BUILD)/tests/%
 	@$< >$<.log 2>&1; code=$$?; cat $<.log; exit $$code
 
-# What a test does not call is left out: compiling is most of the time that tests take.
+# GXFEM_STATIC leaves out what a test does not call: compiling takes most of the tests' time.
 $(BUILD)/tests/%: tests/%.c $(headers) $(wildcard tests/*.h examples/*.h bench/*.h)
 	@mkdir -p $(@D)
 	$(compile) -DGXFEM_STATIC -Itests $(shell pkg-config --cflags check) $< -o $@ $(LDFLAGS) $(shell pkg-config --libs check) -lm
 
-# Tests that need nothing but the interface, which say GXFEM_LINKED, share the object of the examples.
+# Tests that need only the interface contain GXFEM_LINKED. They share the object of the examples.
 $(linked_tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: tests/%.c $(BUILD)/gxfem.o $(headers) $(wildcard tests/*.h examples/*.h bench/*.h)
 	@mkdir -p $(@D)
 	$(linked) -Itests $(shell pkg-config --cflags check) $< $(BUILD)/gxfem.o -o $@ $(LDFLAGS) $(shell pkg-config --libs check) -lm
@@ -159,7 +159,7 @@ $(BUILD)/recipes.h: docs/RECIPES.md tests/recipes.awk
 	@mkdir -p $(@D)
 	awk -f tests/recipes.awk $< >$@
 
-# All but the tests of what benches compare the library with
+# All tests except those of the benches' baselines
 sanitize:
 	@sh tests/install.sh check
 	@CK_TIMEOUT_MULTIPLIER=10 $(MAKE) --no-print-directory -k -j$(JOBS) check-programs BUILD=$(BUILD)/sanitize CFLAGS="$(sanitizers)" \
@@ -168,7 +168,8 @@ sanitize:
 sanitize-scenes:
 	@$(MAKE) --no-print-directory -j$(JOBS) scenes SMALL=1 BUILD=$(BUILD)/sanitize CFLAGS="$(sanitizers)"
 
-# By libFuzzer (with sanitizers) where there is clang with it, from the corpus on, for SECONDS; else, or with SEED or CASES, a loop over seeds.
+# By libFuzzer (with sanitizers) if clang has it, starting from the corpus, for SECONDS. Otherwise, or with SEED or CASES, a loop over
+# seeds.
 # A case that fails is written to $(BUILD)/fuzz and replays by itself: $(BUILD)/fuzz/fuzz FILE.
 SECONDS = 60
 libfuzzer = clang -std=c99 -O1 -g -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all -DFUZZ_LIBFUZZER
@@ -228,7 +229,7 @@ lint:
 	@sh tests/lint.sh
 	@sh tests/test_lint.sh
 
-# By clang-format 14, whose versions differ in details. What is between "clang-format off" and "on" stays: tables.
+# By clang-format 14; other versions differ in details. Tables between "clang-format off" and "on" stay as they are.
 formatted = $(headers) $(wildcard examples/*.[ch] tests/*.[ch] tests/compile/*.[ch] tests/compile/*.cc tests/package/*.c bench/*.[ch])
 format:
 	@sh tests/install.sh format
@@ -247,12 +248,12 @@ check-wasm:
 	@sh tests/install.sh wasm
 	@JOBS=$(JOBS) sh tests/wasm.sh $(BUILD)/wasm
 
-# ---- benches. Only what they print goes to stdout: it is CSV. BENCH=--small: smaller ones, whose tables and charts have a folder of their own
+# ---- benches. Only their CSV goes to stdout. BENCH=--small: smaller ones, with a folder of their own for tables and charts
 
 benches = quadrature stepping space table2 conditioning failure scaling kernel smallest solver violent accuracy drift frames skin soak
 small = $(filter --small,$(BENCH))
 tables = $(BUILD)/bench$(if $(small),/small)
-# What a compiler that is told nothing of a standard does: with -std=c99 gcc fuses no multiplications with additions, whatever -march says
+# The compiler's own default: with -std=c99 gcc fuses no multiplications with additions, whatever -march says.
 bench_standard = -std=gnu99
 traces = $(tables)/traces
 
@@ -318,7 +319,7 @@ bench:
 	@rm -f $(charted:%=$(tables)/%.csv)
 	@$(MAKE) --no-print-directory charts
 
-# One bench after the other: they measure. What fails is told in the end, and what there is is drawn.
+# One bench after the other, since they measure. Failures are reported at the end; the tables that exist are drawn.
 charts:
 	@sh tests/install.sh charts >&2
 	@mkdir -p $(tables) && rm -f $(tables)/failed

@@ -21,8 +21,8 @@
        peak_bytes   the most memory that the solver had at any time, from its allocator
        residual     of the last step's report, after the one Newton iteration
 
-   Rows of `cholmod` (SuiteSparse, as the system has it, with its BLAS) are for the linear system that follows the
-   last step of multigrid-free, in double precision:
+   Rows of `cholmod` (SuiteSparse, as the system has it, with its BLAS) are for the linear system of a step that starts
+   from rest in the last state of multigrid-free, in double precision:
        setup_ms     cholmod_analyze: ordering and symbolic factorisation, once per cut
        solve_ms     cholmod_factorize and cholmod_solve; median of three
        step_ms      the median step of multigrid-free with this solve_ms in place of its own, without filling the
@@ -786,8 +786,8 @@ static int direct_check(direct *d, const gxs_step_desc *step, const double *star
     return same;
 }
 
-/* The system of a step from the state at rest, as the solver has it. At rest light copies start where they are. In
-   motion they start where their neighbours' velocities lead (docs/ARCHITECTURE.md). 0: left out or failed */
+/* The system of a step from the state at rest, as the solver has it. At rest light copies start where they are;
+   otherwise they start where their neighbours' velocities lead (docs/ARCHITECTURE.md). 0: left out or failed */
 static int run_direct(const gxs_model *model, state *s, outcome *o) {
     const gxs_step_desc step = step_make(s->steps);
     double *start = (double *)malloc(s->count * sizeof *start);

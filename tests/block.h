@@ -1,4 +1,4 @@
-/* block.h - what the tests of gxfem_solve.h share: random numbers, blocks of cubes as scenes, a material of the
+/* block.h - shared by the tests of gxfem_solve.h: random numbers, blocks of cubes as scenes, a material of the
    caller's own, an allocator that fails. Include after gxfem_solve.h. */
 #ifndef BLOCK_H
 #define BLOCK_H
@@ -39,8 +39,7 @@ static inline double not_a_number(int infinite) {
     return value;
 }
 
-/* Says what was found, and the seed. All of it goes into Check's message: a test's process ends without writing out its
- * stdout. */
+/* Prints the finding and the seed, all in Check's message: a test's process ends without writing out its stdout. */
 #define assert_that(condition, ...)                                                                                    \
     do {                                                                                                               \
         if (!(condition)) {                                                                                            \
@@ -64,7 +63,7 @@ static inline double determinant3(const double a[3][3]) {
            a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
 }
 
-/* Gradients, volume and mass of an uncut tetrahedron; swaps two corners where it is turned inside out. */
+/* Gradients, volume and mass of an uncut tetrahedron. Swaps two corners if it is turned inside out. */
 static inline void make_element(gxs_element *element, const double *rest, double density) {
     static const double identity_mass[10] = {2, 1, 1, 1, 2, 1, 1, 2, 1, 2};
     double edge[3][3], volume;
@@ -98,8 +97,8 @@ static inline void *zeroed(size_t count, size_t size) {
     return memory;
 }
 
-/* nx x ny x nz cubes of edge size; inner and outer nodes moved by jitter x size; room for extra more copies, elements
- */
+/* nx x ny x nz cubes of edge `size`; inner and outer nodes are moved by jitter x size; room for `extra` more copies
+   and elements */
 static inline scene scene_block(int nx, int ny, int nz, double size, double jitter, size_t extra) {
     static const int order[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
     size_t copies = (size_t)((nx + 1) * (ny + 1) * (nz + 1)), elements = (size_t)(6 * nx * ny * nz), e = 0, i = 0;
@@ -277,8 +276,8 @@ static inline void failing_release(void *user, void *memory, size_t size) {
     free(memory);
 }
 
-/* run(f, which), which allocates by f and tells whether an allocation failed: the n-th fails, once and from then on,
- * until none does. */
+/* run(f, which) allocates by f and returns whether an allocation failed. The n-th one fails, once and from then on,
+   until none fails. */
 static inline void sweep_allocations(int (*run)(failing *f, int which), int which) {
     int forever, n;
     for (forever = 0; forever < 2; forever++)

@@ -1,4 +1,4 @@
-/* Bodies for tests: random numbers, a body of a workload, cut at once or in sequence, and what one asks of it. Include
+/* body.h - bodies for tests: random numbers, a body of a workload, cut at once or in sequence, and queries. Include
    gxfem.h with its implementation first. */
 #ifndef GXFEM_TESTS_BODY_H
 #define GXFEM_TESTS_BODY_H
@@ -156,8 +156,8 @@ static inline wl_surface *add_box(workload *w, int solid, double x0, double y0, 
     return s;
 }
 
-/* n x n squares of two triangles of a sphere of radius 2, over and beyond the unit square across an axis, bulging to
- * where it points */
+/* n x n squares of two triangles of a sphere of radius 2, over and beyond the unit square across an axis, bulging in
+   the axis's direction */
 static inline void add_cap(workload *w, uint32_t n, int axis) {
     wl_surface *s = wl_add_surface(w, 0);
     uint32_t i, j;
@@ -179,7 +179,7 @@ static inline void add_cap(workload *w, uint32_t n, int axis) {
 }
 
 #ifndef GXFEM_LINKED
-/* Nodes whose planes are no triangle's: no facet of such a plane has a label */
+/* Nodes with free planes: no facet of such a plane has a label */
 static inline size_t free_planes(const gx_body *body) {
     const gxb_complex *cx = body->complex;
     uint8_t *labelled = (uint8_t *)calloc(cx->store.plane_count, 1);

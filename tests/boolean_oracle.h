@@ -1,6 +1,6 @@
-/* boolean_oracle.h - what a Boolean of a few small surfaces must be, by oracle.h: space, as one large tetrahedron,
-   divided by all planes. Pieces are inside or not by exact winding numbers; components are pieces joined across faces
-   in which no sheet lies; the Euler characteristic is that of the faces between inside and outside (or at a sheet),
+/* boolean_oracle.h - the true Boolean of a few small surfaces, by oracle.h: space, as one large tetrahedron, divided
+   by all planes. Exact winding numbers tell whether a piece is inside. Components are pieces joined across faces in
+   which no sheet lies. The Euler characteristic is that of the faces between inside and outside (or at a sheet),
    joined around edges through the inside. */
 #ifndef GXFEM_TESTS_BOOLEAN_ORACLE_H
 #define GXFEM_TESTS_BOOLEAN_ORACLE_H
@@ -10,9 +10,9 @@
 enum { TRUTH_OPERANDS = 16, TRUTH_PARTS = 900 };
 
 typedef struct truth_question {
-    const oracle_surface *surface; /* count; those that are no solids divide, and do not wind */
+    const oracle_surface *surface; /* count; surfaces that are no solids divide, and do not wind */
     const size_t *vertex_count;    /* count */
-    size_t count, planes, pieces;  /* at most so many planes and pieces */
+    size_t count, planes, pieces;  /* count; limits of planes and pieces */
     int (*inside)(void *user, const int32_t *winding, size_t count);
     void *user;
 } truth_question;
@@ -20,7 +20,7 @@ typedef struct truth_question {
 typedef struct truth {
     size_t components;
     long euler;
-    double volume, part[TRUTH_PARTS]; /* part: of the components, of so many */
+    double volume, part[TRUTH_PARTS]; /* part: of the components, up to this number */
 } truth;
 
 /* ---- faces of pieces ---- */
@@ -28,7 +28,7 @@ typedef struct truth {
 typedef struct truth_face {
     size_t piece, neighbour;      /* SIZE_MAX: there is none */
     size_t corners, corner_count; /* into truth_faces.corner: points */
-    int plane, open;              /* open: inside goes on behind it */
+    int plane, open;              /* open: the inside continues behind it */
 } truth_face;
 
 typedef struct truth_faces {

@@ -3,8 +3,9 @@
 # usage: sh tests/compile.sh DIRECTORY [HEADERS]
 #     DIRECTORY   for objects and programs; made if needed
 #     HEADERS     the folder that the headers are included from; without it, the repository's own
-#     COMPILERS   which to try (gcc clang); each with its C++ front end      JOBS   how many at a time (2)
-#     STANDARDS   which to try (c99 c11 c17 gnu99 c++11 c++14 c++17 c++20); c99 and c++11 are linked and run
+#     COMPILERS   those to try (gcc clang), each with its C++ front end
+#     STANDARDS   those to try (c99 c11 c17 gnu99 c++11 c++14 c++17 c++20); c99 and c++11 are linked and run
+#     JOBS        the number at a time (2)
 #
 # - tests/compile/*.c and *.cc: each header alone, all together, twice, implementation before and after plain inclusion
 # - two translation units, C and C++ in all four combinations; two files with GXFEM_STATIC
@@ -88,10 +89,10 @@ known_standards() {
     done
 }
 
-# output_of STANDARD OBJECT: objects are linked below, of the oldest standards; of the others the warnings are enough
+# output_of STANDARD OBJECT: objects of the oldest standards are linked below; for the others the warnings are enough
 output_of() { case $1 in c99 | c++11) echo "-c -o $2" ;; *) echo "-fsyntax-only" ;; esac; }
 
-# level_of STANDARD FILE: some warnings need the optimiser; once is enough
+# level_of STANDARD FILE: some warnings need the optimiser, in one standard only
 level_of() { case $1:$2 in c99:together | c99:static | c++11:together | c++11:static) echo -O2 ;; *) echo -O0 ;; esac; }
 
 # What a shared library is compiled with: names are hidden unless GXFEM_API shows them.

@@ -1,9 +1,12 @@
-/* creation.c - what comes of creating a Boolean, a complex and a body, of cloning a body and of loading a saved one.
+/* creation.c - does creation work or refuse? Creates a Boolean, a complex and a body, clones a body and loads a
+   saved one.
 
-       creation made|refused           all must succeed; or creating must fail with GX_ERROR_CONFIGURATION and leave
-   nothing creation single                 with x87 set to 24 bits all of it must fail so, and before and after succeed
+       creation made      everything must succeed
+       creation refused   creation must fail with GX_ERROR_CONFIGURATION and leave nothing
+       creation single    with x87 set to 24 bits everything must fail like this, and must succeed before and after
 
-   Exit status 1, and a line for each that is another. For builds that mislead the library: see flags.sh and wasm.sh. */
+   Exit status 1, and a line for each different outcome. For builds that mislead the library: see flags.sh and
+   wasm.sh. */
 #define GXFEM_STATIC
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"

@@ -1,13 +1,14 @@
 #!/bin/sh
-# flags.sh - the predicates against exact rationals under each compiler and set of flags; and what creating says of builds that would
-# mislead them (creation.c).
+# flags.sh - the predicates against exact rationals under each compiler and set of flags; and creation.c in builds that would mislead
+# them: creation must refuse.
 #
 #     flags.sh [CASES] [PATTERN]...
 #
-# CASES: 5000 unless given; 10000000 is the full proof (some six minutes per configuration). Of the configurations only those
-# whose name matches a PATTERN (of the shell, with ? for a space: *fast*, gcc?c99?O2) are run. One line each, `N passed, N failed` at the end;
-# exit status 1 where one failed. VERBOSE=1 prints each configuration's figures (ns per call, shares of filter and exact stage).
-# JOBS: so many at once (default: the number of processors).
+# CASES: 5000 unless given; 10000000 is the full proof (some six minutes per configuration).
+# PATTERN: runs only the configurations whose names match (of the shell, with ? for a space: *fast*, gcc?c99?O2).
+# Prints a line for each, and `N passed, N failed` at the end. Exit status 1 if one failed.
+# VERBOSE=1 also prints each configuration's figures: ns per call, shares of filter and exact stage.
+# JOBS: the number at a time (default: the number of processors).
 here=$(cd "$(dirname "$0")" && pwd) || exit 2
 cases=5000
 case ${1-} in [0-9]*) cases=$1; shift ;; esac
@@ -27,7 +28,7 @@ chosen() {
     return 1
 }
 
-# builds PROBE COMPILER FLAGS...: can it make a program at all? Configurations run side by side, so each has a probe of its own.
+# builds PROBE COMPILER FLAGS...: does it build programs at all? Configurations run side by side, so each has a probe of its own.
 builds() {
     probe=$1
     shift
@@ -60,7 +61,7 @@ run_one() {
     if [ -n "${VERBOSE-}" ]; then cat "$out.log"; fi
 }
 
-# What creating says: run_creation NAME MODE FOLDER COMPILER FLAGS...; FOLDER has the headers, and creation.c in tests/
+# Does creation work or refuse? run_creation NAME MODE FOLDER COMPILER FLAGS...; FOLDER has the headers, and creation.c in tests/
 run_creation() {
     name=$1 mode=$2 folder=$3
     shift 3
@@ -79,7 +80,7 @@ run_creation() {
 }
 
 count=0
-# Side by side, so many at a time: next FUNCTION NAME ARGUMENTS...
+# Side by side, up to JOBS at a time: next FUNCTION NAME ARGUMENTS...
 next() {
     chosen "$2" || return 0
     "$@" &

@@ -1,25 +1,31 @@
-/* fuzz.c - Booleans of surfaces and the cell complex on cases made of bytes, each held against what must be true of any
-   input.
+/* fuzz.c - Booleans of surfaces and the cell complex on cases made from bytes. Each result is checked for properties
+   that hold for any input.
 
        fuzz FILE...                            replays cases
-       fuzz --seed=S --cases=N --seconds=T     random cases from seed S on, until N are done or T seconds have passed
-   (0: no such limit)
-            --out=FOLDER                       where a failing case is written (build/fuzz), as a file that replays by
-   itself
+       fuzz --seed=S --cases=N --seconds=T     random cases from seed S on, until N are done or T seconds have
+                                               passed (0: no such limit)
+            --out=FOLDER                       where a failing case is written (build/fuzz), as a file that replays
+                                               by itself
             --oracle=K                         the exact oracle on one case in K (100)
 
-   With -DFUZZ_LIBFUZZER it has no main: libFuzzer calls LLVMFuzzerTestOneInput. With -DGXFEM_LINKED it comes without
-   the library, which may then be built under flags that would mislead the checks. The bytes are read from the front, 0
-   where there are no more: the first says what is tested, the next how coordinates are made, then operands follow
-   (fuzz_cases.h). What is checked: results      an operand is refused with the code that the documentation has for it,
-   and leaves nothing behind surface      every directed edge is matched, every index in range, every component has a
-   volume, an even Euler characteristic provenance   the exact point of each vertex lies in each triangle and edge that
-   it is said to be of, and in the source of each triangle around it; how far rounding moved it volumes      vol(A) +
-   vol(B) = vol(A or B) + vol(A and B), and what follows for the others sameness     whatever the order of operands and
-   axes, at once or one after the other, by rules or by a callback rounding     a rounded result is a closed surface,
-   and worth the same volume complex      pieces of tetrahedra cut by triangles are those of the Boolean; a rollback
-   leaves nothing; what is saved can be loaded oracle       components, volume, Euler characteristic as by dividing
-   space by all planes, in rationals (boolean_oracle.h) */
+   With -DFUZZ_LIBFUZZER it has no main: libFuzzer calls LLVMFuzzerTestOneInput. With -DGXFEM_LINKED it does not
+   contain the library. The library may then be built under flags that would mislead the checks. Bytes are read from
+   the front, 0 after the last. The first says what is tested, the next how coordinates are made; operands follow
+   (fuzz_cases.h).
+
+   Checks:
+       results      an operand is refused with the code that the documentation gives, and leaves nothing behind
+       surface      every directed edge is matched, every index in range, every component has a volume and an even
+                    Euler characteristic
+       provenance   the exact point of each vertex lies in each triangle and edge of its origin, and in the source of
+                    each triangle around it; how far rounding moved it
+       volumes      vol(A) + vol(B) = vol(A or B) + vol(A and B), and the consequences for the other operations
+       sameness     in any order of operands and axes, at once or one after the other, by rules or by a callback
+       rounding     a rounded result is a closed surface of the same volume
+       complex      pieces of tetrahedra cut by triangles are those of the Boolean; a rollback leaves nothing; a
+                    saved complex can be loaded
+       oracle       components, volume and Euler characteristic agree with a division of space by all planes, in
+                    rationals (boolean_oracle.h) */
 #define _XOPEN_SOURCE 700
 #ifndef GXFEM_LINKED
 #define GXFEM_BOOLEAN_IMPLEMENTATION
@@ -32,7 +38,7 @@
 #include <stdarg.h>
 #include <time.h>
 #include <unistd.h>
-#if defined(__wasi__) /* has no signals, and no way back: the first failure ends the program */
+#if defined(__wasi__) /* no signals, and no jump back: the first failure ends the program */
 typedef int jmp_buf[1];
 #define setjmp(buffer)         ((void)(buffer), 0)
 #define longjmp(buffer, value) exit(value)
@@ -50,7 +56,7 @@ static struct {
     const uint8_t *bytes;
     size_t size;
     uint64_t seed;      /* of a random case */
-    int random, oracle; /* oracle: on one case in so many */
+    int random, oracle; /* oracle: on one case in this number */
     uint64_t number;
     const char *folder;
     jmp_buf back;
@@ -58,7 +64,7 @@ static struct {
 
 static struct { uint64_t cases, evaluations, refused, oracles, complexes, provenances, defects, mended; } count;
 
-/* Only what a signal handler may call. */
+/* Calls only functions that a signal handler may call. */
 static void write_case(void) {
     static const char digits[] = "0123456789abcdef";
     char path[512];
@@ -100,11 +106,11 @@ static void fail(const char *format, ...) {
 
 /* ---- one Boolean and its result ---- */
 
-typedef struct answer { /* what does not depend on how the arrangement was made */
+typedef struct answer { /* independent of how the arrangement was made */
     size_t components, triangles;
     long euler;
     double volume;
-    double part[PARTS]; /* of the components, ascending, where they are not more */
+    double part[PARTS]; /* of the components, ascending, if they fit */
 } answer;
 
 static int compare_doubles(const void *a, const void *b) {
@@ -112,12 +118,12 @@ static int compare_doubles(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Operands and what a callback counts as inside. */
+/* Operands, and what a callback counts as inside */
 typedef struct scene {
     const case_operand *operand;
     size_t count;
     int what;      /* of the callback: WHAT_CHAIN ... */
-    size_t states; /* how often it was asked */
+    size_t states; /* number of calls */
 } scene;
 
 enum { WHAT_CHAIN, WHAT_A, WHAT_B, WHAT_ANY, WHAT_BOTH, WHAT_MINUS, WHAT_ONE, WHATS };
@@ -173,7 +179,7 @@ static gxb_operand operand_of(const case_operand *c) {
     return o;
 }
 
-/* Directed edges by hash: how often each is passed one way less the other. */
+/* Directed edges by hash: the number of passes one way less the number the other way */
 enum { EDGE_TABLE = 1 << 15 };
 typedef struct edge_entry {
     uint64_t stamp;
@@ -197,8 +203,8 @@ static edge_entry *find_edge(uint32_t p, uint32_t q) {
     return &edges[k];
 }
 
-/* name: of each vertex, or NULL. Returns whether each edge is passed as often forth as back; big surfaces are taken at
- * their word. */
+/* name: of each vertex, or NULL. Returns whether each edge is passed equally often in both directions. Large
+   surfaces are not checked. */
 static int is_closed(const uint32_t *triangles, size_t n, const uint32_t *name) {
     size_t i;
     if (3 * n > EDGE_TABLE / 2) return 1;
@@ -287,7 +293,7 @@ static answer evaluate(gxb_boolean *b, const scene *s, gxb_boolean_result *r) {
     return check_result(b, s, r);
 }
 
-/* All operands; each: evaluated after each; the last result. */
+/* All operands; each: evaluated after each. Gives the last result. */
 static answer combine(scene *s, int fine, int each) {
     gxb_boolean *b = create(s, fine, 0);
     scene sofar = *s;
@@ -305,7 +311,7 @@ static answer combine(scene *s, int fine, int each) {
     return a;
 }
 
-/* Volumes are right to 1e-7 of themselves at least, to their last digits if fine. */
+/* Volumes are right to 1e-7 of themselves at least; with fine, to their last digits. */
 static int near(double x, double y, double size, int fine) { return fabs(x - y) <= (fine ? 1e-12 : 4e-7) * size; }
 
 static void check_parts(const char *how, const answer *a, const double *part, int fine) {
@@ -321,7 +327,7 @@ static void check_same(const char *how, const answer *a, const answer *b, int fi
     check_parts(how, a, b->part, fine);
 }
 
-/* ---- results: what an operand should be refused with ---- */
+/* ---- results: the code with which an operand should be refused ---- */
 
 static gx_result check_coordinate(double x, int shift) {
     uint64_t bits; /* denormal numbers compare as 0 where the processor is told to flush them */
@@ -334,7 +340,7 @@ static gx_result check_coordinate(double x, int shift) {
     return e - 1 + shift < -128 || e - 1 + shift > 127 ? GX_ERROR_RANGE : GX_OK;
 }
 
-/* A scene's scale is that of its first operand where it is outside of 2^-60 ... 2^60; beyond 2^-200 ... 2^200 there is
+/* A scene's scale is that of its first operand if it is outside of 2^-60 ... 2^60. Beyond 2^-200 ... 2^200 there is
    none. */
 static int scale_of(const case_operand *first) {
     int largest = -2000, e;
@@ -367,7 +373,7 @@ static gx_result expected(const case_operand *c, int shift) {
     return is_closed(&c->mesh.t[0][0], c->mesh.triangles, name) ? GX_OK : GX_ERROR_NOT_CLOSED;
 }
 
-/* Adds all operands; those that are refused are taken out of the case. */
+/* Adds all operands. Those that are refused are removed from the case. */
 static void add_operands(gxb_boolean *b, test_case *c) {
     size_t i, n = 0;
     int shift = 0;
@@ -389,7 +395,7 @@ static void add_operands(gxb_boolean *b, test_case *c) {
     c->operands = n;
 }
 
-/* ---- provenance: exact points from what is said to define them ---- */
+/* ---- provenance: exact points from their origins ---- */
 
 static void source_corners(const scene *s, uint32_t operand, uint32_t triangle, const double *x[3]) {
     const case_mesh *m = &s->operand[operand].mesh;
@@ -440,7 +446,7 @@ static int is_in_sources(const scene *s, const gxb_origin *o, const big h[4]) {
     return 1;
 }
 
-/* The point that an origin names: 0 where what it names does not meet in one point */
+/* The point that an origin names; 0: its triangles and edges do not meet in one point */
 static int exact_point(const scene *s, const gxb_origin *o, big h[4]) {
     oracle_plane p[4];
     int k;
@@ -472,7 +478,7 @@ static int is_nearest(double x, big num, big den) {
     return good;
 }
 
-/* Fine vertices are nearest to the exact point, others within 1e-10 of its largest coordinate. */
+/* Fine vertices are the doubles nearest to the exact point; others are within 1e-10 of its largest coordinate. */
 static void check_rounding(const double *x, const big h[4], int fine, size_t vertex) {
     double size = 0, exact[3];
     int k;
@@ -588,7 +594,7 @@ static void mirror_order(case_mesh *m) {
         }
 }
 
-/* The same operands with other axes, other orders of triangles and, where that may be, of operands */
+/* The same operands with other axes, other orders of triangles and, where allowed, of operands */
 static void check_sameness(const test_case *c, const answer *a, int fine) {
     static test_case other;
     scene s = {other.operand, c->operands, WHAT_CHAIN, 0};
@@ -612,8 +618,8 @@ static void check_sameness(const test_case *c, const answer *a, int fine) {
     check_same("operands the other way round", &b, a, fine);
 }
 
-/* What moving vertices by 1e-10 of the largest coordinate may do to the volume: so much of the surface's area, taken
- * large */
+/* The largest change of volume when vertices move by 1e-10 of the largest coordinate: that times the surface's area,
+   overestimated */
 static double rounding_of(const gxb_boolean_result *r) {
     double area = 0, largest = 0;
     size_t i;
@@ -631,7 +637,7 @@ static double rounding_of(const gxb_boolean_result *r) {
     return 4e-10 * largest * area;
 }
 
-/* A rounded result is a surface again. Its triangles may cross each other by the rounding. */
+/* A rounded result is a closed surface. Its triangles may cross each other because of the rounding. */
 static void check_again(const gxb_boolean_result *r, const answer *a, double size) {
     gxb_boolean *b = NULL;
     gxb_boolean_result again;
@@ -682,7 +688,7 @@ static void check_defects(const scene *s, const gxb_boolean_result *r, const gxb
     }
 }
 
-/* Vertices - edges + triangles of what is there, by their numbers. *plain: no edge has more than two triangles. */
+/* Vertices - edges + triangles, by their numbers. *plain: no edge has more than two triangles. */
 static long count_euler(const gxb_boolean_result *r, int *plain) {
     size_t i, pairs = 0, vertices = 0;
     static uint8_t seen[1 << 16];
@@ -700,7 +706,7 @@ static long count_euler(const gxb_boolean_result *r, int *plain) {
     return (long)vertices - (long)pairs + (long)r->triangle_count;
 }
 
-/* Mended: closed, of the same topology, no more defects than before, and those it says. */
+/* Mended: closed, of the same topology, no more defects than before, and exactly the listed ones */
 static void check_mending(scene *s, const answer *a) {
     gxb_boolean_result r[2];
     gxb_defects d[2];
@@ -755,7 +761,7 @@ static uint64_t allocations_of(const gxb_boolean *b) {
     return s.allocations;
 }
 
-/* One allocation fails, somewhere: the call says so and, made again, works. */
+/* One allocation fails somewhere: the call reports it and works when it is made again. */
 static void check_memory(const scene *s, const answer *a, int fine, uint64_t fail_at) {
     short_memory m = {0, fail_at, 0};
     gxb_boolean_desc desc;
@@ -859,7 +865,7 @@ static void test_boolean(test_case *c, int ask) {
 
 /* ---- the cell complex ---- */
 
-/* The sign that decides whether an element is one */
+/* The sign that decides whether four points are an element */
 static int element_sign(const test_case *c, const uint32_t *n) {
     const rat_mark mark = rat_arena_mark();
     const int sign = big_sign(big_orient3d(c->nodes[n[0]], c->nodes[n[1]], c->nodes[n[2]], c->nodes[n[3]]));
@@ -920,7 +926,7 @@ static size_t save_complex(gxb_complex *cx, unsigned char *bytes) {
     return s.result == GX_OK ? s.at : 0;
 }
 
-/* A complex that does not trust what is saved checks all of it, exactly. */
+/* A complex that does not trust saved bytes checks all of them, exactly. */
 static void load_complex(const test_case *c, const unsigned char *bytes, size_t size) {
     gxb_complex *cx = create_complex(c);
     gxb_stream s;
@@ -961,7 +967,7 @@ static void test_complex(test_case *c, int ask) {
         if (c->style % 4 == 0) {
             size[0] = save_complex(cx, saved[0]);
             gxb_complex_begin(cx);
-            cut_complex(cx, c, i + 1 < c->operands ? i + 1 : 1); /* another than the one that follows */
+            cut_complex(cx, c, i + 1 < c->operands ? i + 1 : 1); /* other operand than the following one */
             gxb_complex_rollback(cx);
             size[1] = save_complex(cx, saved[1]);
             REQUIRE(size[0] == size[1] && memcmp(saved[0], saved[1], size[0]) == 0,
@@ -1019,7 +1025,7 @@ static void on_signal(int number) {
     _exit(2);
 }
 
-/* Of the processor's time: other programs may take their share. */
+/* Processor time, since other programs may take their share */
 static void allow_a_case(void) {
     const struct itimerval limit = {{0, 0}, {CASE_SECONDS, 0}};
     setitimer(ITIMER_VIRTUAL, &limit, NULL);

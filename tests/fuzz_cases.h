@@ -1,8 +1,8 @@
-/* fuzz_cases.h - cases made of bytes: operands of Booleans, tetrahedra with the triangles that cut them.
+/* fuzz_cases.h - cases made from bytes: operands of Booleans, tetrahedra with the triangles that cut them.
 
-   Shapes lie on a lattice of a few steps, so that points, edges and planes coincide; what follows (style) moves them:
-   by rounding, by units of the last place, by powers of two, far away. Files in tests/corpus/ are read by what stands
-   here: new kinds go behind the old ones. */
+   Shapes lie on a lattice of a few steps, so that points, edges and planes coincide. A style then moves them: by
+   rounding, by units of the last place, by powers of two, far away. This file reads the files of tests/corpus/, so
+   new kinds must come after the old ones. */
 #ifndef GXFEM_TESTS_FUZZ_CASES_H
 #define GXFEM_TESTS_FUZZ_CASES_H
 
@@ -39,7 +39,7 @@ typedef struct test_case {
     /* 1: operand[0].mesh is the boundary of the tetrahedra, the others are sheets */
     int complex;
     uint32_t number;               /* any, of the bytes */
-    int style, fine, small, check; /* small: of tetrahedra; check: what else is looked at, CHECK_VOLUMES ... */
+    int style, fine, small, check; /* small: of tetrahedra; check: what else is checked, CHECK_VOLUMES ... */
     case_operand operand[CASE_OPERANDS + CASE_SHEETS];
     size_t operands;
     double nodes[8][3];
@@ -288,7 +288,7 @@ static inline void case_explode(case_mesh *m) {
         }
 }
 
-/* A flap of no thickness, or a triangle without area and its reverse */
+/* A flap without thickness, or a triangle without area and its reverse */
 static inline void case_flap(case_bytes *b, case_mesh *m) {
     const uint32_t head = case_take(b), i = case_random_vertex(b, m), j = case_random_vertex(b, m),
                    k = head & 1 ? i : case_random_vertex(b, m);
@@ -347,7 +347,7 @@ static inline void case_shape(case_bytes *b, case_mesh *m, uint32_t kind) {
     }
 }
 
-/* ---- what is done to coordinates ---- */
+/* ---- styles: changes of coordinates ---- */
 
 enum { CASE_STYLES = 12 };
 
@@ -418,7 +418,7 @@ static inline void case_style(case_mesh *m, int style, uint32_t seed) {
 
 /* ---- whole cases ---- */
 
-/* Bad input, now and then: what an operand must be refused for */
+/* Bad input, now and then, for which an operand must be refused */
 static inline void case_spoil(case_bytes *b, case_mesh *m) {
     const uint32_t what = case_take(b), i = case_take(b);
     if (m->vertices == 0 || m->triangles == 0) return;
@@ -442,7 +442,7 @@ static inline void case_operand_of(case_bytes *b, test_case *c) {
     memset(&o->mesh, 0, sizeof o->mesh);
     o->operation = i == 0 ? (uint32_t)(head / 16 % 16 == 15 ? 4 : 0) : head / 16 % 16 < 15 ? head / 16 % 5 : 0;
     o->rule = more % 8 < 5 ? 0 : more % 8 - 4;
-    /* like an operand before: the same, turned inside out, or a little beside it */
+    /* like an earlier operand: the same, turned inside out, or a little beside it */
     if (head % 16 >= 14 && i > 0) {
         o->mesh = c->operand[more / 8 % i].mesh;
         if (head % 16 == 15) {

@@ -1,8 +1,8 @@
-/* hash_boolean.c - prints a hash of Booleans of random cases: what hashes.sh compares between compilers and flags.
+/* hash_boolean.c - prints a hash of Booleans of random cases. hashes.sh compares it between compilers and flags.
 
-   Coordinates are integers, so that they are the same whatever the flags: lattice points, as they are, with 16 random
-   bits below them (nothing coincides), or with one or two far below (nearly everything does). What counts of a result:
-   vertices, to the last bit, from how many triangles of each source it is made, components and their Euler
+   Coordinates are integers, so that they are the same whatever the flags: lattice points as they are, with 16 random
+   bits below them (nothing coincides), or with one or two bits far below (nearly everything coincides). The hash
+   contains the vertices to the last bit, the number of triangles from each source, the components and their Euler
    characteristics. */
 #ifndef GXFEM_LINKED
 #define GXFEM_BOOLEAN_IMPLEMENTATION
@@ -27,8 +27,8 @@ static uint64_t scramble(uint64_t z) {
     return z ^ z >> 27;
 }
 
-/* Steps of the lattice become 2^16 or 2^44 of them. What is not on the lattice (copies turned a little) comes back to
- * it first. */
+/* Steps of the lattice become 2^16 or 2^44 of them. Points off the lattice (copies turned a little) are moved back
+   to it first. */
 static void place(case_mesh *m, uint64_t seed) {
     uint32_t i, k;
     for (i = 0; i < m->vertices; i++)
@@ -48,8 +48,8 @@ static uint64_t hash_bytes(uint64_t h, const void *data, size_t size) {
     return h;
 }
 
-/* A triangle by where it comes from and by its component. Its corners are not in it: of a flat polygon there are
-   several triangulations, and which one there is goes by the order of boxes, which are sorted by rounded numbers. */
+/* A triangle by its origin and its component, without its corners. A flat polygon has several triangulations, and
+   the order of boxes decides between them; boxes are sorted by rounded numbers. */
 static uint64_t hash_triangle(const gxb_boolean_result *r, const gxb_components *c, size_t t, size_t operands) {
     const uint32_t component = c->triangle[t];
     uint64_t h = UINT64_C(14695981039346656037);
@@ -60,7 +60,7 @@ static uint64_t hash_triangle(const gxb_boolean_result *r, const gxb_components 
     return hash_bytes(h, c->side + component * operands, operands);
 }
 
-/* Sums: triangles and vertices may stand in another order. */
+/* Sums, since triangles and vertices may be in another order */
 static void hash_result(const gxb_boolean_result *r, const gxb_components *c, size_t operands) {
     uint64_t sum = c->count;
     size_t i;
@@ -70,8 +70,8 @@ static void hash_result(const gxb_boolean_result *r, const gxb_components *c, si
     mix(&sum, sizeof sum);
 }
 
-/* Two sheets of 5 x 5 squares, one above the other, closed around: enough triangles to be sorted, at thirds, elevenths
- * and 31sts of their box */
+/* Two sheets of 5 x 5 squares, one above the other, closed around: enough triangles to be sorted, at thirds,
+   elevenths and 31sts of their box */
 static void add_terrain(case_operand *o, uint64_t seed, int axis) {
     static const double at[6] = {0, 2, 5, 6, 9, 11};
     case_mesh *m = &o->mesh;

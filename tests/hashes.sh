@@ -1,7 +1,8 @@
 #!/bin/sh
-# hashes.sh [DIR] - are results the same under every compiler and flag? Cuts the same files by gxcut built in many ways, and compares its
-# topology_hash; and hashes of Booleans of surfaces (hash_boolean.c). Are they true? Random cases (fuzz.c), by the same library.
-# Prints a line per build and `N passed, N failed`. JOBS=N: so many builds at a time. CASES=N: so many random cases in each (500).
+# hashes.sh [DIR] - are results the same under every compiler and flag, and are they right?
+# Builds gxcut in many ways, cuts the same files by each, and compares their topology_hash. Compares hashes of Booleans of surfaces
+# (hash_boolean.c). Lets the same builds of the library decide random cases, which fuzz.c checks.
+# Prints a line per build and `N passed, N failed`. JOBS=N: builds at a time. CASES=N: random cases in each (500).
 set -u
 dir=${1:-build/hashes}
 jobs=${JOBS:-2}
@@ -10,7 +11,7 @@ mkdir -p "$dir" || exit 1
 passed=0
 failed=0
 
-# Two wavy sheets that cross, and a box, as files: decimals read exactly, wherever they were made.
+# Two wavy sheets that cross, and a box, as files: decimals that every build reads exactly
 awk 'BEGIN { n = 17; for (s = 0; s < 2; s++) { file = ARGV[1] "/sheet" s ".obj"
         for (j = 0; j < n; j++) for (i = 0; i < n; i++) { u = -0.5 + 3 * i / (n - 1); v = -0.5 + 3 * j / (n - 1); w = 0.9 + 0.2 * sin(4 * u) * cos(3 * v)
             if (s == 0) printf "v %.17g %.17g %.17g\n", u, v, w > file; else printf "v %.17g %.17g %.17g\n", w, u, v > file }
@@ -32,21 +33,21 @@ hashes() { # binary
     hash_of "$1" grid:2,2,2,5 --sheet "$dir/sheet0.obj" --solid box:0.5,0.25,0.125,1.5,1,1.75 --sheet plane:1,1,1,1,0,0
 }
 
-# The checks of random cases, built without the flags that the library is built with: they count by doubles too.
+# The checks of random cases, built without the library's flags, since they compute with doubles too
 checks() { # compiler, -m32 or nothing
     "$@" -std=c99 -O1 -w -DGXFEM_LINKED -c tests/fuzz.c -o "$dir/fuzz_$*.o" 2>/dev/null
 }
 
 random() { "$1" tests/corpus/* && "$1" --out="$dir" --cases="$cases"; } # binary
 
-# one FILE COMPILER FLAGS...: builds the library and the programs, writes its hashes to FILE; nothing where no program at all is built
+# one FILE COMPILER FLAGS...: builds the library and the programs, writes the hashes to FILE; no file if nothing can be built here
 one() {
     file=$1
     shift
     printf '#include <errno.h>\n#include <stdint.h>\n#include <stdio.h>\nint main(void) { return 0; }\n' >"$file.c"
     "$@" -w "$file.c" -o "$file.probe" -lm >"$file.log" 2>&1 || return 0
     printf '#define GXFEM_IMPLEMENTATION\n#include "gxfem.h"\n' >"$file.c"
-    plain=$1 # what remains of the flags where the checks are linked
+    plain=$1 # the flags that are left for linking the checks
     case "$*" in *-m32*) plain="$1 -m32" ;; esac
     "$@" -w -I. -c "$file.c" -o "$file.o" >>"$file.log" 2>&1 &&
         "$@" -w -I. -DGXFEM_LINKED examples/gxcut.c "$file.o" -o "$file.gxcut" -lm >>"$file.log" 2>&1 &&
@@ -64,7 +65,7 @@ try() { # compiler flags...
     echo "$*" >"$dir/$count.build"
 }
 
-each() { # first: every build whose number is first, first + jobs, ...
+each() { # first: builds first, first + jobs, ...
     i=$1
     while [ "$i" -le $count ]; do
         one "$dir/$i" $(cat "$dir/$i.build")

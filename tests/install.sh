@@ -1,24 +1,24 @@
 #!/bin/sh
-# Installs what a group of targets needs where it is missing, by the system's own package manager; says what it does.
+# Installs what a group of targets needs and the system lacks, by the system's own package manager. Prints what it does.
 # usage: sh tests/install.sh GROUP...
 #     check   Check and pkg-config, for the unit tests
 #     cxx     a C++ compiler, for the compile tests
-#     bench   SuiteSparse, for the direct solver that benches compare with
+#     bench   SuiteSparse, the direct solver in the benches
 #     charts  gnuplot, for charts
-#     wasm    clang with what it takes to make WebAssembly of C, and node, which runs it
+#     wasm    clang with its parts for WebAssembly, and node, which runs it
 #     format  clang-format 14
 #     page    Chromium and node, for the page that the demo makes
 #     animation  the same, and img2webp, for the README's animated picture
-#     cmake   CMake, for the package that others find
-#     pictures  f3d, and a virtual display where there is no other, for pictures of scenes
+#     cmake   CMake, for the test of the installed package
+#     pictures  f3d, and a virtual display if there is no other, for pictures of scenes
 set -u
 
-# has PROGRAM...: are all there?
+# has PROGRAM...: are all installed?
 has() {
     for program in "$@"; do command -v "$program" >/dev/null 2>&1 || return 1; done
 }
 
-# Is there a header of this name? A file can only be looked for where the compiler looks.
+# Is there a header of this name? Only the compiler knows where it searches.
 header() {
     # shellcheck disable=SC2046
     printf '#include <%s>\n' "$1" | "${CC:-cc}" $(pkg-config --cflags CHOLMOD 2>/dev/null) -E - >/dev/null 2>&1

@@ -1,14 +1,18 @@
-/* oracle.h - what cutting a mesh must give, computed slowly and exactly: the truth that the library is held against.
+/* oracle.h - the true result of cutting a mesh, computed slowly and exactly.
 
-   It shares no idea with the library. Every element is divided by *all* planes of the input, extended to infinity: the
-   plane of every cut triangle, and through every edge where a cut surface ends or bends one plane that crosses it
-   there. The pieces are convex, and no face of a piece straddles the boundary of a cut surface. Then regions     pieces
-   joined across faces that lie in no cut triangle; one winding number each: solids remove them cells       pieces of
-   one element joined across faces that lie in no sheet links       cells of two elements whose pieces share a piece of
-   their common face (edge, node) that no sheet covers copies      per node: components of the cells of the elements
-   around it fragments   components of all cells All decisions are signs of exact numbers (rational.h); a volume is a
-   sum of positive exact volumes, each rounded once. The work grows with the cube of the number of planes: a dozen is
-   quick, a hundred is not.
+   It shares no idea with the library. Every element is divided by *all* planes of the input, extended to infinity:
+   the plane of every cut triangle, and one crossing plane through every edge at which a cut surface ends or bends.
+   The pieces are convex, and no face of a piece straddles the boundary of a cut surface. Then
+       regions     pieces joined across faces that lie in no cut triangle; each has one winding number: solids remove
+                   them
+       cells       pieces of one element joined across faces that lie in no sheet
+       links       cells of two elements whose pieces share a part of their common face (edge, node) that no sheet
+                   covers
+       copies      per node: components of the cells of the elements around it
+       fragments   components of all cells
+
+   All decisions are signs of exact numbers (rational.h). A volume is a sum of positive exact volumes, each rounded
+   once. The work grows with the cube of the number of planes: a dozen is quick, a hundred is not.
 
        oracle *truth = oracle_create(&mesh, surfaces, surface_count);
        ... truth->cell_count, truth->node_copies[i] ...
@@ -22,9 +26,9 @@ enum {
     ORACLE_WORDS = 4,
     ORACLE_FACE = 64 * ORACLE_WORDS - 4, /* first of the element's own four planes, face k opposite to its node k */
     ORACLE_NONE = -1,
-    /* Where two elements meet in an edge or a node only. 0: they come apart where a wall touches that edge piece or
-       node: a piece of a sheet inside an element or on a face. 1: also where a sheet touches it from outside of the
-       body and nowhere else (Omega minus Gamma, the limit of a thin solid). */
+    /* Where two elements meet in an edge or a node only. 0: they separate where a wall touches that part of the
+       edge, or that node: a part of a sheet inside an element or on a face. 1: also where a sheet touches it from
+       outside of the body and nowhere else (Omega minus Gamma, the limit of a thin solid). */
     ORACLE_TOUCH_FROM_OUTSIDE = 1
 };
 
@@ -216,7 +220,7 @@ static inline int oracle_plane_equal(const oracle_plane *p, const oracle_plane *
 
 /* ---- the planes ---- */
 
-/* Whether the plane leaves all nodes strictly on one side: it divides and touches nothing. */
+/* Does the plane leave all nodes strictly on one side? Then it divides and touches nothing. */
 static inline int oracle_plane_misses(const oracle *o, const oracle_plane *p) {
     size_t i;
     int first = oracle_side_of(p, o->mesh.positions);
@@ -268,7 +272,7 @@ static inline int oracle_turn(const double p[3], const double q[3], const big x[
     return sign;
 }
 
-/* Whether the surface goes on straight ahead beyond edge k of triangle t: nothing ends there. */
+/* Does the surface continue straight ahead beyond edge k of triangle t, so that nothing ends there? */
 static inline int oracle_edge_covered(const oracle *o, const oracle_triangle *t, int k) {
     const double *p = t->corner[k], *q = t->corner[(k + 1) % 3];
     size_t i;
@@ -291,7 +295,7 @@ static inline int oracle_edge_covered(const oracle *o, const oracle_triangle *t,
     return 0;
 }
 
-/* Whether a plane other than t's own runs through edge k of t. */
+/* Does a plane other than t's own run through edge k of t? */
 static inline int oracle_edge_crossed(const oracle *o, const oracle_triangle *t, int k) {
     size_t i;
     for (i = 0; i < o->plane_count; i++)
@@ -365,7 +369,7 @@ static inline const oracle_point *oracle_corner(const oracle *o, const oracle_pi
     return &o->points[o->corners[p->points + i]];
 }
 
-/* The planes before k and the element's faces: those that the pieces lie on one side of when it is k's turn */
+/* The planes before k and the element's faces: pieces lie on one side of each of these when it is k's turn. */
 static inline oracle_set oracle_done(size_t k) {
     oracle_set s = oracle_set_empty();
     int i;
@@ -374,8 +378,8 @@ static inline oracle_set oracle_done(size_t k) {
     return s;
 }
 
-/* Two corners span an edge of a convex piece when no other corner lies on all the planes that both lie on; only planes
-   that leave the piece on one side count. */
+/* Two corners span an edge of a convex piece if no other corner lies on all the planes on which both lie. Only
+   planes that leave the piece on one side count. */
 static inline int oracle_adjacent(const oracle *o, const oracle_piece *p, size_t a, size_t b, const oracle_set *done) {
     oracle_set common = oracle_set_and(&oracle_corner(o, p, a)->zero, &oracle_corner(o, p, b)->zero);
     size_t i;
@@ -597,7 +601,7 @@ static inline int oracle_in_triangle(const oracle_triangle *t, const big x[4]) {
     return !(plus && minus);
 }
 
-/* Whether the contact lies in a triangle of a sheet (or, with solids, of any surface). */
+/* Does the contact lie in a triangle of a sheet (or, with solids, of any surface)? */
 static inline int oracle_covered(const oracle *o, const oracle_contact *c, int solids) {
     size_t i;
     for (i = 0; i < o->triangle_count; i++) {
@@ -626,8 +630,8 @@ static inline size_t *oracle_singles(size_t count) {
     for (i = 0; i < count; i++) parent[i] = i;
     return parent;
 }
-/* Numbers the sets in order of their first members: parent[i] becomes the number of i's set. Returns how many there
- * are. */
+/* Numbers the sets in the order of their first members: parent[i] becomes the number of i's set. Returns the number
+   of sets. */
 static inline size_t oracle_number(size_t *parent, size_t count) {
     size_t *number = (size_t *)oracle_memory(NULL, count, sizeof *number), sets = 0, i;
     for (i = 0; i < count; i++) {
@@ -740,7 +744,7 @@ static inline void oracle_find_cells(oracle *o) {
 
 /* ---- links ---- */
 
-/* The nodes that elements e and f share, as sets of faces of e and of f that meet there; returns how many they are */
+/* The nodes that elements e and f share, as sets of faces of e and of f that meet there; returns their number */
 static inline size_t oracle_shared(const oracle *o, size_t e, size_t f, oracle_set *in_e, oracle_set *in_f) {
     const uint32_t *a = o->mesh.elements + 4 * e, *b = o->mesh.elements + 4 * f;
     size_t count = 0;
@@ -785,8 +789,8 @@ static inline int oracle_faces_at(const oracle *o, size_t e, size_t f, size_t g,
     return found == shared;
 }
 
-/* Whether a wall touches the contact c, at faces `on` of element e: c is on the rim of a covered facet of a piece of e.
- */
+/* Does a wall touch the contact c, at faces `on` of element e? Then c is on the rim of a covered facet of a piece of
+   e. */
 static inline int oracle_touches_wall_in(const oracle *o, size_t e, const oracle_set *on, size_t shared,
                                          const oracle_contact *c) {
     size_t i;
@@ -805,8 +809,8 @@ static inline int oracle_touches_wall_in(const oracle *o, size_t e, const oracle
     return 0;
 }
 
-/* Whether the contact c of elements e and f can't join them: something that was removed touches it, or a sheet does.
-   All elements that have the shared nodes are asked. */
+/* Is the contact c of elements e and f unable to join them, because something removed touches it, or a sheet does?
+   All elements with the shared nodes are examined. */
 static inline int oracle_severed(const oracle *o, size_t e, size_t f, size_t shared, const oracle_contact *c) {
     size_t g, i;
     if (shared == 3) return oracle_covered(o, c, 0);
@@ -825,7 +829,7 @@ static inline int oracle_severed(const oracle *o, size_t e, size_t f, size_t sha
     return 0;
 }
 
-/* Joins what two elements have in common: pieces of a face, of an edge, or a node (shared = 3, 2, 1 nodes; a piece of
+/* Joins the common parts of two elements: parts of a face, of an edge, or a node (shared = 3, 2, 1 nodes; a part of
    it has at least as many corners there). */
 static inline void oracle_link_elements(oracle *o, size_t e, size_t f) {
     oracle_set in_e, in_f;

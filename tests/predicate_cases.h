@@ -1,9 +1,9 @@
-/* predicate_cases.h - near-degenerate input for the predicates of gxfem_boolean.h, and what they must answer.
+/* predicate_cases.h - near-degenerate input for the predicates of gxfem_boolean.h, and the right answers.
 
-   Include after gxfem_boolean.h with its implementation: the filter's bounds are private functions. Exact answers come
-   from rational.h, by other formulas than the kernel's (coordinates about a vertex, Cramer's rule by columns), in
-   integers only, so that no compiler flag touches them. One case holds all that the predicates need: four planes, a
-   line and a point that (nearly) meet in one place. */
+   Include after gxfem_boolean.h with its implementation: the filter's bounds are private functions. Exact answers
+   come from rational.h, by other formulas than the kernel's (coordinates about a vertex, Cramer's rule by columns),
+   in integers only, so that no compiler flag touches them. One case has all the input of the predicates: four
+   planes, a line and a point that (nearly) meet in one place. */
 #ifndef GXFEM_TESTS_PREDICATE_CASES_H
 #define GXFEM_TESTS_PREDICATE_CASES_H
 
@@ -46,7 +46,7 @@ static inline uint64_t pc_bits(double x) {
 
 static inline double pc_power(int e) { return pc_from_bits((uint64_t)(e + 1023) << 52); }
 
-/* x moved by so many units of its last place; 0, and what would leave its sign or the doubles, stays */
+/* x moved by this number of units of its last place; x stays if it is 0, or if it would change its sign or overflow */
 static inline double pc_nudge(double x, int units) {
     const uint64_t b = pc_bits(x) + (uint64_t)(int64_t)units;
     return (pc_bits(x) << 1) == 0 || ((b ^ pc_bits(x)) >> 63) || ((b >> 52) & 0x7ff) == 0x7ff ? x : pc_from_bits(b);
@@ -79,7 +79,7 @@ static inline void pc_vector(pc_random *r, int lattice, double v[3]) {
     for (k = 0; k < 3; k++) v[k] = lattice ? ((double)pc_below(r, 17) - 8) / 8 : pc_uniform(r);
 }
 
-/* Three points whose plane passes through x along u and v but for rounding (on the lattice: exactly). */
+/* Three points whose plane passes through x along u and v up to rounding (on the lattice: exactly) */
 static inline void pc_plane_through(pc_random *r, int lattice, const double x[3], const double u[3], const double v[3],
                                     double p[3][3]) {
     const double a = lattice ? 1 : 0.7 + 0.5 * pc_uniform(r), b = lattice ? 1 : 0.7 + 0.5 * pc_uniform(r);
@@ -111,7 +111,8 @@ static inline void pc_wild(pc_random *r, double *x) {
     }
 }
 
-/* x plus u's coordinates in any order with any signs: as far from x, but for rounding (on the lattice: exactly). */
+/* x plus u's coordinates in any order with any signs: at the same distance from x up to rounding (on the lattice:
+   exactly) */
 static inline void pc_round_points(pc_random *r, const double x[3], const double u[3], pc_case *c) {
     uint32_t i, k;
     for (i = 0; i < 5; i++) {
@@ -124,7 +125,7 @@ static inline void pc_round_points(pc_random *r, const double x[3], const double
     }
 }
 
-/* Everything near one place, by one of many ways of nearly failing. */
+/* Everything near one place, in one of many ways of nearly failing */
 static inline void pc_generate(pc_random *r, pc_case *c) {
     const int lattice = pc_below(r, 8) < 3, shared = pc_below(r, 4) == 0, apart = pc_below(r, 2) == 0;
     const double thin = pc_below(r, 8) == 0 ? pc_power(-(int)pc_below(r, 45)) : 1;
@@ -309,7 +310,7 @@ static inline int pc_exact_insphere(const double (*p)[3]) {
     return big_sign(sum);
 }
 
-/* 0: one of the planes is none. The numbers live until the arena is released. */
+/* 0: one of the three has no plane. The numbers live until the arena is released. */
 static inline int pc_answer(const pc_case *c, int axis, pc_exact *e) {
     const double *o = c->plane[0][0];
     int i;
@@ -372,7 +373,7 @@ static inline int pc_call(const pc_objects *k, int kind) {
 }
 
 /* ---- the filter's bounds against the true errors: a bound that is too small shows here long before it costs a sign
- * ---- */
+   ---- */
 
 /* |value - num / den| as a share of the bound; above 1 the bound is wrong. */
 static inline double pc_share(double value, big offset, big num, big den, double bound) {

@@ -3,10 +3,9 @@
 
        predicates_flags [CASES] [nearest|up|down|zero] [flush] [seed=S]
 
-   Prints the wrong signs of CASES near-degenerate cases (100000) times nine predicates, nanoseconds per call where the
-   filter decides and where the exact stage does, the exact stage's share, and how much of each of the filter's bounds
-   the true errors used up. Exit status 1 where a sign is wrong, a bound was exceeded, or arithmetic is refused that is
-   good enough. */
+   For CASES near-degenerate cases (100000) times nine predicates it prints the wrong signs, nanoseconds per call by
+   the filter and by the exact stage, the exact stage's share, and the share of each of the filter's bounds that true
+   errors used up. Exit status 1 if a sign is wrong, a bound was exceeded, or good arithmetic is refused. */
 #define GXFEM_STATIC
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../gxfem_boolean.h"
@@ -21,14 +20,14 @@
 
 enum { BATCH = 512, BOUND_EVERY = 8, REPEATS = 16 };
 
-/* [0] decided by the filter, [1] exactly */
+/* [0] decided by the filter, [1] decided exactly */
 typedef struct tally {
     uint64_t calls[2], timed[2], wrong;
     clock_t ticks[2];
 } tally;
 
-/* ---- does the filter decide? The same bounds as in the predicates; a difference would only show in the shares printed
- * ---- */
+/* ---- does the filter decide? The same bounds as in the predicates; a difference would only show in the printed
+   shares ---- */
 
 static int filter_side(const gxb_point *point, const gxb_plane *plane) {
     double bound, value;

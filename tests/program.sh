@@ -1,4 +1,5 @@
-# program.sh - what tests of the examples' programs share. Sourced: . program.sh PROGRAM enters an empty folder, which goes at the end.
+# program.sh - shared by the tests of the examples' programs. Sourced: . program.sh PROGRAM enters an empty folder, which is removed
+# at the end.
 #     $program            the program's path
 #     $passed, $failed    tests so far
 #     check NAME WHY      counts a test, which failed if WHY is not empty

@@ -41,7 +41,7 @@ static inline void rat_stop(const char *why) {
 static inline rat_mark rat_arena_mark(void) { return rat_arena; }
 static inline void rat_arena_release(rat_mark mark) { rat_arena = mark; }
 
-/* Gives the blocks back as well; every number made so far is gone. */
+/* Releases the blocks as well; every number made so far is gone. */
 static inline void rat_arena_free(void) {
     size_t i;
     for (i = 0; i < RAT_BLOCKS; i++) {

@@ -1,4 +1,4 @@
-/* Runs a suite of Check, some of it under a sanitizer, and says how it went, as main returns it. */
+/* Runs a suite of Check, some of it under a sanitizer, and returns what main returns. */
 #ifndef GXFEM_TESTS_RUNNER_H
 #define GXFEM_TESTS_RUNNER_H
 

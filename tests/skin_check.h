@@ -1,5 +1,5 @@
-/* skin_check.h - is the skin a closed surface, and which? Vertices are merged as gx_skin says: same material point and
-   same copies of weight not 0. Include after gxfem.h. */
+/* skin_check.h - is the skin a closed surface? Vertices are merged by gx_skin's rule: same material point and same
+   copies of weight not 0. Include after gxfem.h. */
 #ifndef SKIN_CHECK_H
 #define SKIN_CHECK_H
 #include <stdlib.h>
@@ -32,7 +32,7 @@ static int skin_compare_edges(const void *a, const void *b) {
     return p->low != q->low ? (p->low < q->low ? -1 : 1) : p->high != q->high ? (p->high < q->high ? -1 : 1) : 0;
 }
 
-/* merged[v]: number of the corner that vertex v belongs to. Returns how many corners there are. */
+/* merged[v]: number of the corner to which vertex v belongs. Returns the number of corners. */
 static uint32_t skin_merge(const gx_skin *skin, uint32_t *merged) {
     skin_corner *corners = (skin_corner *)calloc(skin->vertex_count + 1, sizeof *corners);
     uint32_t count = 0;

@@ -1,8 +1,8 @@
-/* test_baselines.c - what the benches compare the library with: bench/dense.h, part.h, rxfem.h and what it rests on,
-   sampling.h, parts.h. Each must be as good as it is meant to be, else the comparison says nothing.
+/* test_baselines.c - the methods with which benches compare the library: bench/dense.h, part.h, rxfem.h and its
+   parts, sampling.h, parts.h. Each must be as good as intended, otherwise the comparison means nothing.
 
-   truth: part.h against rationals and the oracle; then rules against part.h, enrichments against the library's copies.
- */
+   Truth: part.h against rationals and the oracle; then rules against part.h, and enrichments against the library's
+   copies. */
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "../bench/part.h"
@@ -70,7 +70,7 @@ static void check_pseudo_inverse(pinv *p, size_t m, size_t n, size_t rank, uint6
         for (gradient = 0, i = 0; i < m; i++) gradient += a[i * n + j] * (back[i] - b[i]);
         CHECK_SEED(fabs(gradient) < 1e-10, seed);
     }
-    pinv_solve(p, back, again); /* A^+ A x = x: x is orthogonal to what A takes to 0 */
+    pinv_solve(p, back, again); /* A^+ A x = x: x is orthogonal to the null space of A */
     for (j = 0; j < n; j++) CHECK_SEED(fabs(again[j] - x[j]) < 1e-9, seed);
     for (i = 0, j = 0; j < p->rank; j++) i += p->scale[j] > 0;
     CHECK_SEED(i == rank, seed);
@@ -94,14 +94,14 @@ END_TEST
 
 /* ---- part.h ---- */
 
-/* d0 / (d0 - d) for the distances of two corners from the plane of a triangle: where it meets their edge */
+/* d0 / (d0 - d) for the distances of two corners from the plane of a triangle: where the plane meets their edge */
 static rat edge_share(const double *t, const double *x0, const double *x) {
     const big a = big_orient3d(t, t + 3, t + 6, x0), b = big_orient3d(t, t + 3, t + 6, x);
     return rat_ratio(a, big_sub(a, b));
 }
 
-/* The moments of what a plane leaves at corner 0: the simplex with the legs s_i: s1 s2 s3 / 6, times s_i / 4, s_i s_j
- * (1 + (i = j)) / 20 */
+/* The moments of the corner that a plane cuts off at node 0: the simplex with the legs s_i has s1 s2 s3 / 6, times
+   s_i / 4, times s_i s_j (1 + (i = j)) / 20 */
 static void corner_moments(const double *t, const double *x, rat m[10]) {
     rat s[3], all;
     int i, j, at = 4;
@@ -113,7 +113,7 @@ static void corner_moments(const double *t, const double *x, rat m[10]) {
         for (j = i; j < 3; j++) m[at++] = rat_div(rat_mul(rat_mul(all, s[i]), s[j]), rat_from_int(i == j ? 60 : 120));
 }
 
-/* A triangle that cuts corner 0 of the tetrahedron off, far beyond it */
+/* A triangle that cuts off corner 0 of the tetrahedron, and reaches far beyond it */
 static void cut_corner(const double *x, double *t) {
     double legs[3], p[9];
     int i, a;
@@ -214,8 +214,8 @@ START_TEST(fields_and_antiderivatives) {
 }
 END_TEST
 
-/* As many functions and points as the paper says: 24, 19; the fields to degree 3 in space are 50, to 4 in the plane 20.
- */
+/* The numbers of functions and points of the paper: 24, 19. Fields to degree 3 in space are 50, to 4 in the plane
+   20. */
 START_TEST(published_counts) {
     size_t i;
     double gauss = 0;
@@ -233,7 +233,7 @@ START_TEST(published_counts) {
 }
 END_TEST
 
-/* The largest error of the piece's moments, beside those of the whole reference element */
+/* The largest error of the piece's moments, relative to those of the whole reference element */
 static double moments_error(const rx_body *b, const rx_piece *piece, const long double m[10]) {
     const rx_basis *basis = &b->rules->volume.basis;
     double worst = 0;
@@ -316,7 +316,7 @@ static workload random_dihedral(uint64_t seed, int bent, double x[12]) {
 }
 
 /* Exact on planes, and on wedges too: the fields' normal components span all polynomials on two planes at once.
-   Triangles here reach 10 to 100 elements far; points on all of them, unclipped, cost digits. */
+   Triangles here reach 10 to 100 elements far. Points on the whole triangles, unclipped, cost digits. */
 START_TEST(rules_on_planes_and_wedges) {
     int clip, bent;
     for (clip = 0; clip < 2; clip++) {
@@ -362,8 +362,8 @@ END_TEST
 
 /* ---- RXFEM's enrichment ---- */
 
-/* The value at each corner of each cell by the functions: rows cell x 4 + corner, of the elements in order and their
- * cells by volume */
+/* The values of the functions at each corner of each cell: rows are cell x 4 + corner, elements in order and their
+   cells by volume */
 typedef struct span {
     double *a;
     size_t rows, columns;
@@ -458,7 +458,7 @@ static span side_by_side(const span *s, const span *t) {
     return both;
 }
 
-/* Cuts by both, in sequence: as many unknowns, and the same space. Returns how many enrichments there are. */
+/* Cuts by both, in sequence: the same number of unknowns, and the same space. Returns the number of enrichments. */
 static size_t check_same_space(const workload *w) {
     gx_body *body = cut_in_sequence(w);
     rx_body *b = rx_body_of(w);
@@ -504,7 +504,7 @@ START_TEST(same_space_as_copies) {
 }
 END_TEST
 
-/* Bumpy sheets, through and ending inside, on jittered meshes: as many pieces and unknowns as the exact topology has */
+/* Bumpy sheets, through and ending inside, on jittered meshes: as many pieces and unknowns as in the exact topology */
 START_TEST(complete_where_cells_are) {
     uint64_t seed;
     for (seed = 1; seed <= SEEDS / 4; seed++) {
@@ -553,7 +553,7 @@ START_TEST(patches_of_one_surface) {
         wl_add_triangle(s, i, i + 3, i + 2);
     }
     single = check_same_space(&w);
-    /* the plane alone enriches no more than the nodes of one layer on either side and those of the middle */
+    /* the plane alone enriches at most the nodes of one layer on either side and those of the middle */
     ck_assert_uint_gt(single, 18);
     wl_free(&w);
 }
@@ -597,7 +597,7 @@ START_TEST(complete_cuts) {
 }
 END_TEST
 
-/* The tent's inside is a pyramid, on no corner's side: its volume by the rule beside that of the exact one */
+/* The tent's inside is a pyramid that contains no corner: its volume by the rule against the exact one */
 START_TEST(sides_without_an_edge) {
     static const double vertices[12] = {0.25, 0.25, 0.1, 0.35, 0.2, -0.1, 0.25, 0.4, -0.1, 0.1, 0.2, -0.1};
     static const uint32_t tent[9] = {0, 1, 2, 0, 2, 3, 0, 3, 1};
@@ -612,9 +612,9 @@ START_TEST(sides_without_an_edge) {
 }
 END_TEST
 
-/* ---- refused ---- */
+/* ---- refusals ---- */
 
-/* Cuts by surface 0, then checks that 1 is refused with this result and changes nothing. */
+/* Cuts by surface 0. Then surface 1 must be refused with this result, and nothing may change. */
 static void check_refused(const workload *w, rx_result expected) {
     rx_body *b = rx_body_of(w);
     size_t pieces, enrichments, i;
@@ -639,7 +639,7 @@ static void drop_surface(workload *w) {
 START_TEST(crossing_cuts_are_refused) {
     static const double p[3] = {0.5, 0.52, 0.47}, beside[3] = {0.5, 0.52, 0.9}, along[3] = {0.1, 0.05, 1},
                         across[3] = {1, 0.1, 0.07};
-    /* its lower edge lies just below the first */
+    /* Its lower edge lies just below the first surface. */
     static const double ends[9] = {0.51, -3, 0.4, 0.52, 3, 0.41, 0.53, 0.1, 4};
     workload w = grid(1, 1, 1, 5);
     wl_surface *s;
@@ -662,7 +662,7 @@ START_TEST(crossing_cuts_are_refused) {
 }
 END_TEST
 
-/* A surface that crosses itself; three triangles at an edge; two that are oriented against each other */
+/* A surface that crosses itself; three triangles at an edge; two triangles with opposite orientations */
 START_TEST(bad_surfaces_are_refused) {
     static const double x[5][3] = {{0.5, -9, 0.3}, {0.5, 9, 0.31}, {-9, 0, 0.32}, {9, 0, 0.33}, {0.4, 0, 9}};
     static const uint32_t three[9] = {0, 1, 2, 1, 0, 3, 0, 1, 4}, against[6] = {0, 1, 2, 0, 1, 3};
@@ -701,8 +701,7 @@ END_TEST
 
 /* ---- section 6 ---- */
 
-/* Through nodes, along edges and facets: vertices are moved by a little, and what comes out is as far from what was
- * asked. */
+/* Through nodes, along edges and facets: vertices are moved by a little, and the result is off by as little. */
 START_TEST(perturbation) {
     workload w = grid(2, 2, 2, 5);
     rx_body *b;
@@ -726,7 +725,7 @@ START_TEST(perturbation) {
 }
 END_TEST
 
-/* A corner of legs s: the corner's own function is off it, the other three are on it alone. */
+/* A corner with legs s: the corner's own function is zero on it, the other three are nonzero on it alone. */
 START_TEST(shares_of_support) {
     static const uint32_t triangle[3] = {0, 1, 2};
     static const double legs[4] = {0.5, 0.1, 0.002, 0.0005};
@@ -754,8 +753,8 @@ START_TEST(shares_of_support) {
 }
 END_TEST
 
-/* A sheet of 1e-10 of the cube's edge is on no well supported function of its own but those of its outer nodes: the
-   others follow them, by weights that give back what lies in the sheet's plane. */
+/* On a sheet of 1e-10 of the cube's edge, only functions of its outer nodes have support. The others follow them, by
+   weights that reproduce points in the sheet's plane. */
 START_TEST(constrained_functions) {
     workload w = grid(1, 1, 1, 5);
     rx_body *b = rx_body_of(&w);
@@ -893,8 +892,8 @@ START_TEST(same_motion_on_planes) {
 }
 END_TEST
 
-/* RXFEM's derivatives at the rule's points and once for each piece are the same, and energy and forces those of the
- * library's model. */
+/* RXFEM's derivatives at the rule's points equal those once for each piece; energy and forces equal those of the
+   library's model. */
 START_TEST(elastic_derivatives) {
     static const double p[3] = {0.9, 0.52, 0.47}, normal[3] = {0.1, 0.05, 1};
     workload w = grid(2, 1, 1, 5);
@@ -978,7 +977,7 @@ END_TEST
 
 /* ---- sampling.h ---- */
 
-/* The numbers of points that RXFEM's Table 1 has for these regions: the plane's exactly; the adaptive ones depend on
+/* The numbers of points of RXFEM's Table 1 for these regions. The plane's agree exactly. The adaptive ones depend on
    how a cell is found to be crossed. */
 START_TEST(published_samples) {
     static const double plane[9] = {1.2, -1.2, 0.3, 0.3, 1.2, -1.2, -1.2, 0.3, 1.2};
@@ -1001,8 +1000,8 @@ START_TEST(published_samples) {
 }
 END_TEST
 
-/* Parity of crossings against the side of a plane; every sample of a bumpy sheet once above, once below its own
- * turned-over copy */
+/* Parity of crossings against the side of a plane. Every sample of a bumpy sheet is once above and once below the
+   sheet's turned-over copy. */
 START_TEST(inside_by_parity) {
     uint64_t seed;
     for (seed = 1; seed <= SEEDS; seed++) {
@@ -1028,8 +1027,8 @@ START_TEST(inside_by_parity) {
 }
 END_TEST
 
-/* An element without a surface above or below it is integrated as a whole; errors fall with depth and with the number
- * of cells. */
+/* An element without a surface above or below it is integrated as a whole. Errors fall with depth and with the
+   number of cells. */
 START_TEST(sampling_converges) {
     static const double high[9] = {-9, -9, 3, 9, -9, 3, 0, 9, 3},
                         plane[9] = {1.2, -1.2, 0.3, 0.3, 1.2, -1.2, -1.2, 0.3, 1.2};
@@ -1136,7 +1135,7 @@ static workload cut_block(size_t planes) {
     return w;
 }
 
-/* Largest difference of volumes and masses from the library's, beside those of the largest element */
+/* Largest difference of volumes and masses from the library's, relative to those of the largest element */
 static double worst_integral(const parts_body *p, const gxs_element *elements) {
     double worst = 0, volume = 0, mass = 0;
     size_t i, k;
@@ -1153,8 +1152,8 @@ static double worst_integral(const parts_body *p, const gxs_element *elements) {
     return worst;
 }
 
-/* By crossing planes: parts are convex, so each has its centre; and no two parts of an element have points with the
- * same sides. */
+/* By crossing planes. Parts are convex, so each contains its centre, and no two parts of an element contain points
+   with the same sides. */
 START_TEST(points_of_parts) {
     workload w = cut_block(3);
     gx_body *body = cut_in_sequence(&w);
@@ -1193,8 +1192,8 @@ START_TEST(points_of_parts) {
 }
 END_TEST
 
-/* Rules with positive weights give back the moments they are made of, others come closer with more points, those of
- * uncut elements stay. */
+/* Rules with positive weights reproduce the moments that they are made of. Others converge with more points. Uncut
+   elements do not change. */
 START_TEST(rules_in_parts) {
     static const struct {
         parts_rule_fn make;
@@ -1256,8 +1255,8 @@ START_TEST(rxfem_in_parts) {
 }
 END_TEST
 
-/* Deletion takes away what a plane passes through, and no more: elements with nodes on both sides; of a plane that ends
-   inside, also those that it does not divide; of one in faces none. */
+/* Deletion removes exactly the elements that a plane passes through: elements with nodes on both sides; of a plane
+   that ends inside, also those that it does not divide; of a plane in faces, none. */
 START_TEST(deleted_elements) {
     static const double level[3] = {0.52, 0.5, 0.4};
     int k;

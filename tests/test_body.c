@@ -1,4 +1,4 @@
-/* test_body.c - a body that is cut: what a cut must leave alone, degenerate and partial cuts, solids, scopes, held
+/* test_body.c - bodies that are cut: what a cut must not change, degenerate and partial cuts, solids, scopes, held
    regions, steps, far and long coordinates, bad input, the skin. Cells, copies and fragments of random cuts:
    test_oracle.c.
 
@@ -10,7 +10,7 @@
 
 enum { SEEDS = 40 / FEWER };
 
-/* Cuts at once, looks and forgets: cells, copies, fragments. */
+/* Cuts at once, counts and destroys: cells, copies, fragments */
 static void expect_counts(workload w, size_t cells, size_t copies, size_t fragments, int line) {
     int at_once;
     for (at_once = 0; at_once < 2; at_once++) {
@@ -435,8 +435,8 @@ START_TEST(same_cut_twice_changes_nothing) {
 }
 END_TEST
 
-/* However many of an element's cells a cut touches, it is one: all five elements by each of six planes, and by those
- * again. */
+/* An element counts once, however many of its cells a cut touches: all five elements by each of six planes, and
+   again by the same planes */
 START_TEST(touched_elements_count_once) {
     workload w = grid(1, 1, 1, 5);
     gx_body *body = body_of(&w);
@@ -547,7 +547,7 @@ START_TEST(three_planes_through_a_line_and_a_point) {
 }
 END_TEST
 
-/* What only touches the body cuts nothing: its faces, an edge, nodes. */
+/* A surface that only touches the body cuts nothing: its faces, an edge, nodes. */
 START_TEST(tangent_cuts_do_nothing) {
     static const double e[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, aside[3] = {1, -1, 0};
     workload w = corner_tet();
@@ -580,7 +580,7 @@ START_TEST(sheet_that_ends_inside_an_element) {
     gx_cut_report report;
     add_rectangle(&w, 0.25, -1, -1, 0.25, 2);  /* x < 1/4 */
     add_rectangle(&w, 0.25, 0.5, -1, 2, 2);    /* x > 1/2 */
-    add_rectangle(&w, 0.25, 0.25, -1, 0.5, 2); /* what is between */
+    add_rectangle(&w, 0.25, 0.25, -1, 0.5, 2); /* the strip between */
     add_rectangle(&w, 0.25, -1, -1, 2, 2);     /* all of it again */
     report = cut_by(body, &w, 0, 1);
     ck_assert_uint_eq(report.created_copies + report.created_cells, 0);
@@ -618,8 +618,8 @@ static void add_half(workload *w, double y, int side) {
     wl_add_triangle(s, 0, 1, 2);
 }
 
-/* One element of two is cut through; the sheet ends in their common face: only the node beyond it gets a further copy.
- */
+/* The sheet cuts through one element of two and ends in their common face. Only the node beyond the face gets a
+   further copy. */
 START_TEST(sheet_that_ends_between_elements) {
     workload w = wl_pair();
     add_half(&w, 0.25, 1);
@@ -795,7 +795,7 @@ START_TEST(self_crossing_folded_and_duplicate) {
 }
 END_TEST
 
-/* A surface of nothing but zero-area triangles is a cut that does nothing. */
+/* A surface of zero-area triangles only is a cut without effect. */
 START_TEST(nothing_but_flat_triangles) {
     workload w = corner_tet();
     wl_surface *s = wl_add_surface(&w, 0);
@@ -936,8 +936,8 @@ static double smallest_eigenvalue(double a[4][4]) {
     return low;
 }
 
-/* Every kept cell: a positive volume, and a mass block that is positive semi-definite, also when scaled to a unit
- * diagonal. */
+/* Every kept cell has a positive volume, and a mass block that is positive semi-definite, also when scaled to a unit
+   diagonal. */
 static void check_cells(gx_body *body, const char *what, uint64_t seed) {
     static const int at[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
     uint32_t i;
@@ -962,13 +962,13 @@ static void check_cells(gx_body *body, const char *what, uint64_t seed) {
     }
 }
 
-/* A slab of the element beside a node, of size 10^-k: its volume to 1e-10, as its true size in doubles says */
+/* A slab of the element beside a node, of size 10^-k: its volume is right to 1e-10 of its true size in doubles. */
 START_TEST(slivers) {
     int k, kind;
     for (k = 1; k <= 15; k++)
         for (kind = 0; kind < 3; kind++) {
             const double size = pow(10, -k);
-            volatile double cut = 1 - size; /* volatile: what is rounded here no compiler may see through */
+            volatile double cut = 1 - size; /* volatile: no compiler may see through this rounding */
             double a, b, truth, thin;       /* the slab from a to b, distances from the tip */
             workload w = corner_tet();
             gx_body *body;
@@ -1033,8 +1033,8 @@ START_TEST(slivers_in_general_position) {
 }
 END_TEST
 
-/* Thin wedges beside an edge of an element, whose cones have coordinates that are 0 and so terms much smaller than
-   their rounding: volumes as exact numbers say */
+/* Thin wedges beside an edge of an element. Their cones have coordinates that are 0, and so terms much smaller than
+   their rounding. Volumes must agree with exact numbers. */
 START_TEST(wedges) {
     uint64_t seed = (uint64_t)_i;
     int trial, k;
@@ -1073,7 +1073,7 @@ START_TEST(wedges) {
 }
 END_TEST
 
-/* A solid 1e-12 thick takes the cube apart and removes what it should: its thickness, as doubles hold it. */
+/* A solid 1e-12 thick cuts the cube in two and removes its thickness, as doubles represent it. */
 START_TEST(thin_solid) {
     workload w = grid(1, 1, 1, 5);
     gx_body *body = body_of(&w);
@@ -1106,7 +1106,7 @@ static gx_result cut_in_scope(gx_body *body, const workload *w, size_t surface, 
     return gx_body_cut(body, &desc, NULL, failure);
 }
 
-/* A blade through both halves of a cube that cuts one of them; by fragments and by cells; as sheet and as solid. */
+/* A blade through both halves of a cube cuts one of them; by fragments and by cells; as sheet and as solid. */
 START_TEST(scope_of_a_cut) {
     int by_cells, solid;
     for (by_cells = 0; by_cells < 2; by_cells++)
@@ -1154,8 +1154,8 @@ static double *left_of_elements(gx_body *body, const workload *w) {
     return left;
 }
 
-/* Of elements in scope a solid takes what it would take without a scope, of others nothing; also where elements are
-   missing, so that parts of the scope hang together by what is out of it, by a node, or not at all. */
+/* In elements in scope a solid removes the same as without a scope, in others nothing. Also where elements are
+   missing, so that parts of the scope are connected only by elements out of it, by a node, or not at all. */
 START_TEST(scope_of_a_solid) {
     uint64_t seed = (uint64_t)_i;
     int trial;
@@ -1282,7 +1282,7 @@ START_TEST(solids_remove) {
     w = grid(1, 1, 1, 5);
     add_box(&w, 1, -1, 0.25, -1, 2, 0.75, 2); /* a slab */
     EXPECT_VOLUMES(w, 0.5, 0.5, 2);
-    /* a shell: its inside is turned, what it holds stays */
+    /* a shell: its inside is turned, so what it encloses stays */
     w = grid(1, 1, 1, 5);
     s = add_box(&w, 1, 0.25, 0.25, 0.25, 0.75, 0.75, 0.75);
     wl_add_aligned_box(s, low, high);
@@ -1363,7 +1363,7 @@ START_TEST(solids_that_contain_everything) {
     view = view_of(body);
     ck_assert_uint_eq(view.fragment_count + view.copy_count + view.cell_count, 0);
     ck_assert(view.volume == 0 && view.mass == 0);
-    cut_by(body, &w, 2, 1); /* what is left can still be cut, looked at, moved */
+    cut_by(body, &w, 2, 1); /* the rest can still be cut, viewed and moved */
     cut_by(body, &w, 1, 1);
     ck_assert_uint_eq(view_of(body).cell_count, 0);
     ck_assert_int_eq(gx_body_skin(body, NULL, &skin), GX_OK);
@@ -1376,8 +1376,8 @@ START_TEST(solids_that_contain_everything) {
 }
 END_TEST
 
-/* A solid without volume: a rectangle and its reverse, by itself and beside a box; walls are only where something was
- * removed. */
+/* A solid without volume: a rectangle and its reverse, alone and beside a box. Walls are only where something was
+   removed. */
 START_TEST(solids_without_volume_do_nothing) {
     workload w = grid(1, 1, 1, 5);
     wl_surface *s = add_rectangle(&w, 0.5, -2, -2, 3, 3), *t;
@@ -1530,7 +1530,7 @@ START_TEST(solidified_sheets) {
     ck_assert_uint_eq(view_of(body).fragment_count, 2);
     gx_body_destroy(body);
     wl_free(&w);
-    w = grid(1, 1, 1, 5); /* a closed sheet becomes a shell: a bubble floats in it */
+    w = grid(1, 1, 1, 5); /* a closed sheet becomes a shell, and a bubble floats in it */
     add_octahedron(&w, 0, c, 0.25);
     v = solidify(&w, 0, 0.0625);
     body = body_of(&w);
@@ -1566,7 +1566,7 @@ START_TEST(solidified_sheets) {
         x[10] = NAN;
         ck_assert_int_eq(gx_surface_solidify(&sheet, ldexp(0.125, e), vertices, &nv, triangles, &nt, NULL),
                          GX_ERROR_NOT_FINITE);
-        for (i = 0; i < 24; i++) { /* what is beyond doubles is refused, on either side */
+        for (i = 0; i < 24; i++) { /* coordinates beyond doubles are refused, on either side */
             x[i % 12] = i % 3 < 2 ? corners[i % 12] : i < 12 ? DBL_MAX : -DBL_MAX;
             if (i % 12 < 11) continue;
             ck_assert_int_eq(gx_surface_solidify(&sheet, 1, vertices, &nv, triangles, &nt, NULL), GX_OK);
@@ -1607,7 +1607,7 @@ START_TEST(solidified_sheets_are_closed) {
 }
 END_TEST
 
-/* ---- meshes that hang together in an edge or a node ---- */
+/* ---- meshes joined in an edge or a node only ---- */
 
 /* Two tetrahedra that share an edge (shared = 2) or a node (1), on both sides of x + y = 0 */
 static workload pinched(int shared) {
@@ -1632,14 +1632,14 @@ START_TEST(pinched_meshes) {
     EXPECT_COUNTS(w, 2, 6, 1);
     w = pinched(1);
     EXPECT_COUNTS(w, 2, 7, 1);
-    /* through the common edge and both elements: four pieces, none of them joined */
+    /* through the common edge and both elements: four fragments, none of them joined */
     w = pinched(2);
     add_plane_through(&w, o, z, inside);
     EXPECT_COUNTS(w, 4, 16, 4);
     w = pinched(1);
     add_plane_through(&w, o, z, inside);
     EXPECT_COUNTS(w, 4, 16, 4);
-    w = pinched(2); /* across the edge: two pieces, each held together by its half of the edge */
+    w = pinched(2); /* across the edge: two fragments, each held together by its half of the edge */
     add_axis_plane(&w, 2, 0.5);
     EXPECT_COUNTS(w, 4, 12, 2);
     w = pinched(1); /* beside the node: cuts the first tetrahedron only */
@@ -1665,7 +1665,7 @@ START_TEST(cuts_that_only_touch_a_pinch) {
 }
 END_TEST
 
-/* A solid takes away the node or edge by which two elements hang together. */
+/* A solid removes the node or edge that joins two elements. */
 START_TEST(solid_around_a_pinch) {
     workload w = pinched(1);
     gx_body *body;
@@ -1764,8 +1764,8 @@ START_TEST(held_copies) {
 }
 END_TEST
 
-/* Layers: only the uppermost reaches the region, so only its copies of the upper nodes are held. On the border is not
- * inside. */
+/* Layers: only the uppermost reaches the region, so only its copies of the upper nodes are held. A node on the
+   border is not inside. */
 START_TEST(pieces_outside_the_region_are_free) {
     workload w = grid(1, 1, 1, 5);
     gx_region region = {2, 1, 0.75};
@@ -1823,8 +1823,8 @@ static double momentum(gx_body *body, double p[3]) {
     return size;
 }
 
-/* A body of which a solid has left nothing since the last step can be stepped, whether or not small corners have
- * supports. */
+/* A body can be stepped after a solid has removed all of it since the last step, with small corners supported or
+   not. */
 START_TEST(nothing_is_left_to_step) {
     workload w = grid(1, 1, 1, 5);
     gx_body_desc desc = desc_of(&w);
@@ -1913,7 +1913,7 @@ START_TEST(fragments_fall) {
 }
 END_TEST
 
-/* Held above, cut half through: hangs, near its place. Cut through: the lower half falls. */
+/* Held above and cut half through, it hangs near its place. Cut through, the lower half falls. */
 START_TEST(held_body_hangs) {
     workload w = grid(1, 1, 2, 5);
     gx_body *body = body_of(&w);
@@ -1936,7 +1936,7 @@ START_TEST(held_body_hangs) {
             if (view.copy_held[i / 3]) ck_assert(view.displacement[i] == 0);
         }
     }
-    /* the part held sags by about rho g L^2 / E = 0.04 at most; what the box cut off has fallen 9.81 / 2 m */
+    /* the held part sags by about rho g L^2 / E = 0.04 at most; the part that the box cut off has fallen 9.81 / 2 m */
     for (i = 0; i < view.copy_count; i++) {
         const double down = -view.displacement[3 * i + 2];
         ck_assert(down > -0.01 && (down < 0.3 || down > 3));
@@ -2029,7 +2029,8 @@ START_TEST(sticks_drift_apart) {
 }
 END_TEST
 
-/* Slivers beside sticks, a large step, a violent state: finite, or refused with the state as it was. */
+/* Slivers beside sticks, a large step, a violent state: the result is finite, or the step fails and the state is as
+   it was. */
 START_TEST(violent_steps_stay_finite) {
     uint64_t seed = (uint64_t)_i;
     workload w = random_scene(seed, 3, 1);
@@ -2115,7 +2116,7 @@ START_TEST(far_from_the_origin_exactly) {
 }
 END_TEST
 
-/* Rounded by the move: the same topology where nothing is degenerate; volumes as far as the rounded input allows. */
+/* Rounded by the move: the same topology where nothing is degenerate; volumes to the precision of the rounded input. */
 START_TEST(far_from_the_origin_rounded) {
     static const double offset[2][3] = {{1e6, -1e6, 0.7e6}, {1e8, 0.3e8, -1e8}};
     uint64_t seed = (uint64_t)_i;
@@ -2200,7 +2201,7 @@ END_TEST
 
 /* ---- many cuts ---- */
 
-/* Cuts that come in order leave trees as shallow as in any other order, and no leaf differs. */
+/* Cuts in an order of their own leave trees as shallow as cuts in any other order, and the same leaves. */
 START_TEST(ordered_cuts_make_no_chains) {
     enum { CUTS = 600 };
     workload w = grid(1, 1, 1, 5);
@@ -2236,8 +2237,8 @@ END_TEST
 
 /* ---- the skin ---- */
 
-/* Per fragment, the triangles enclose its volume, at rest and after an affine map; outer triangles lie in the mesh's
- * surface. */
+/* In each fragment the triangles enclose its volume, at rest and after an affine map. Outer triangles lie in the
+   mesh's surface. */
 static void check_skin(gx_body *body, uint64_t seed) {
     /* determinant 0.953125 */
     static const double map[3][3] = {{1.25, 0.25, 0}, {0, 0.75, 0.125}, {0.5, 0, 1}};
@@ -2332,8 +2333,8 @@ START_TEST(skin_tells_cut_faces) {
 }
 END_TEST
 
-/* ---- many triangles in one element: leaves are divided by planes of no triangle, which nothing but their number must
- * show ---- */
+/* ---- many triangles in one element: leaves are divided by free planes, and only the number of leaves may show it
+   ---- */
 
 /* A ball of 2 n (n - 1) triangles; returns its volume. */
 static double add_ball(workload *w, int solid, uint32_t n, const double center[3], double radius) {
@@ -2373,7 +2374,7 @@ static double add_ball(workload *w, int solid, uint32_t n, const double center[3
     return volume;
 }
 
-/* A fine mesh, in whose elements there are few triangles, is the measure. */
+/* The reference is a fine mesh with few triangles in each element. */
 START_TEST(cap_in_large_and_small_elements) {
     workload large = grid(1, 1, 1, 5), small = grid(14, 14, 14, 5);
     gx_body *a, *b;
@@ -2440,7 +2441,7 @@ START_TEST(ball_in_one_element) {
 }
 END_TEST
 
-/* Sides asked for by four times the triangles: hardly more than four times as many */
+/* Four times the triangles take hardly more than four times the signs. */
 START_TEST(cost_of_many_triangles) {
     uint64_t calls[2];
     int i;
@@ -2578,8 +2579,8 @@ START_TEST(bad_bodies) {
 }
 END_TEST
 
-/* Elements so flat that their volume, exactly positive, is negative in doubles: such a body would have a negative mass,
-   or could not be stepped. */
+/* Elements so flat that their volume, exactly positive, is negative in doubles. Such a body would have a negative
+   mass, or could not be stepped. */
 START_TEST(volumes_that_round_below_zero) {
     static const uint32_t n[4] = {0, 1, 2, 3};
     workload w = corner_tet();
@@ -2616,7 +2617,7 @@ END_TEST
 
 static int is_number(double x) { return isfinite(x) && (fabs(x) >= DBL_MIN || x == 0); }
 
-/* All that a body says of itself in numbers */
+/* All numbers that a body reports */
 static void expect_numbers(gx_body *body) {
     gx_view view = view_of(body);
     gx_motion motions[4];
@@ -2643,7 +2644,7 @@ static void expect_numbers(gx_body *body) {
     free(drawn);
 }
 
-/* A body within the limits is all numbers, as light and as heavy as it may be; others are refused. */
+/* A body within the limits reports only finite numbers, at the smallest and largest masses. Others are refused. */
 START_TEST(bodies_are_numbers_or_refused) {
     static const int powers[17] = {-1022, -600, -400, -350, -101, -100, -50, 0,   50,
                                    99,    100,  101,  333,  345,  400,  700, 1000};
@@ -2676,7 +2677,7 @@ START_TEST(bodies_are_numbers_or_refused) {
 }
 END_TEST
 
-/* The node that is too far out, the element that is too heavy or too light */
+/* The node that is too far out; the element that is too heavy or too light */
 START_TEST(what_is_out_of_range_is_named) {
     workload w = grid(2, 1, 1, 5);
     gx_material materials[3];
@@ -2709,7 +2710,7 @@ START_TEST(what_is_out_of_range_is_named) {
 }
 END_TEST
 
-/* A displacement or velocity that a motion can't be told from: of all that may overflow each by itself. */
+/* A displacement or velocity too large for the numbers of a motion. Each of these may overflow by itself. */
 START_TEST(motions_are_numbers_or_refused) {
     static const double far[3] = {1e200, 1e308, 1e140};
     workload w = corner_tet();
@@ -2850,7 +2851,7 @@ START_TEST(bad_cuts) {
     x[3] = DBL_MAX;
     x[7] = DBL_MAX;
     EXPECT_NO_CUT(GX_ERROR_RANGE, 1, 1);
-    for (i = 0; i < 9; i++) x[i] = v[i] + 40; /* far away, and such that no triangle uses */
+    for (i = 0; i < 9; i++) x[i] = v[i] + 40; /* far away, and used by no triangle */
     s[1].triangle_count = 1;
     x[2] = 1e-60;
     EXPECT_NO_CUT(GX_ERROR_RANGE, 0, 1);

@@ -28,7 +28,7 @@ static pc_random seeded(uint64_t seed) {
 
 /* ==== numbers ==== */
 
-/* A random sum of products of doubles, as the kernel and as the oracle see it. */
+/* A random sum of products of doubles, for the kernel and for the oracle */
 static void random_number(pc_random *r, gxb_num *a, big *b) {
     GXB_NUM(p);
     GXB_NUM(q);
@@ -170,8 +170,8 @@ START_TEST(predicates_have_the_right_sign) {
 }
 END_TEST
 
-/* ---- inherited errors: true values placed in the corners of what the filter is told, to see that its bounds cover
- * them ---- */
+/* ---- inherited errors: true values are moved to the corners of the filter's error boxes, to check that its bounds
+   cover them ---- */
 
 /* A multiple of 2^-20, so that adding errors of 2^-20 and more is exact. */
 static double grid(pc_random *r) { return (double)((int32_t)pc_below(r, 1 << 21) - (1 << 20)) / 1048576; }
@@ -253,8 +253,8 @@ static void inherited_shares(pc_random *r, double worst[INHERITS]) {
     pc_ball_share(&ball, &point, origin, &worst[INHERIT_PLANES]);
 }
 
-/* Above 1 a bound is wrong; far below what is seen here (0.5, 0.5, 0.5, 0.07, 0.07) it would be slack, or this test
- * blind. */
+/* Above 1 a bound is wrong. Far below the observed values (0.5, 0.5, 0.5, 0.07, 0.07) it would be slack, or this
+   test blind. */
 START_TEST(inherited_errors_stay_within_bounds) {
     pc_random r = seeded((uint64_t)_i + 1);
     double worst[INHERITS] = {0, 0, 0, 0, 0};
@@ -316,8 +316,8 @@ START_TEST(points_of_all_kinds_compare) {
 }
 END_TEST
 
-/* Collinear and coplanar up to last bits, at any power of two that a double has, and doubles of any size side by side.
- */
+/* Collinear and coplanar up to the last bits, at any power of two that a double has, and doubles of any size side by
+   side */
 static void any_range_points(pc_random *r, double x[4][3], int n) {
     const int power = (int)pc_below(r, 2090) - 1080, style = (int)pc_below(r, 4);
     int i, k;
@@ -375,7 +375,7 @@ START_TEST(orientation_is_as_documented) {
 END_TEST
 
 /* The format of Shewchuk's published test cases: number, coordinates, sign. */
-/* So many points of the given dimension, and the sign of the predicate that takes them */
+/* The number of points of the given dimension, and the sign of the predicate that takes them */
 static void check_fixture(const char *name, int dimension, int points) {
     const char *folder = getenv("GXFEM_DATA");
     char path[1024];
@@ -509,8 +509,8 @@ static const double cube_nodes[8][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 
 static const uint32_t cube_elements[6][4] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7},
                                              {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
 
-/* The first count of the six tetrahedra around a cube's diagonal; coordinates x * size + offset, jittered unless jitter
- * is 0. */
+/* The first `count` of the six tetrahedra around a cube's diagonal; coordinates are x * size + offset, jittered
+   unless jitter is 0 */
 static void make_mesh(scene *s, pc_random *r, size_t count, double size, double offset, double jitter) {
     size_t i, k;
     s->node_count = 8;
@@ -530,7 +530,7 @@ static void make_cuts(scene *s, pc_random *r, uint32_t count, int style, double 
                 const double wide = 1.5 * pc_uniform(r) + 0.5, lattice = ((double)pc_below(r, 9) - 2) / 4;
                 s->cuts[i][j][k] = (style == 0 ? wide : lattice) * size + offset;
             }
-        /* beside an earlier one, or the same, or another piece of its plane */
+        /* beside an earlier triangle, or the same, or elsewhere in its plane */
         if (style == 2 && i > 0 && pc_below(r, 2)) {
             const uint32_t other = pc_below(r, i), how = pc_below(r, 3);
             for (j = 0; j < 3; j++)
@@ -594,7 +594,7 @@ static gx_result insert_cut(gxb_complex *cx, const scene *s, inserted *in, uint3
     t->wall = 1;
     if (result == GX_OK) result = gxb_complex_add_plane(cx, t);
     for (e = 0; e < s->element_count && result == GX_OK; e++) result = gxb_complex_insert(cx, t, e, NULL, NULL);
-    gxb_complex_reserve(cx, 1 + c % 3); /* changes nothing, whether there is memory for it or not */
+    gxb_complex_reserve(cx, 1 + c % 3); /* changes nothing, whether memory is left or not */
     return result;
 }
 
@@ -941,8 +941,7 @@ static const gxb_label *find_label(const gxb_complex *cx, uint32_t facet, uint32
     return NULL;
 }
 
-/* The facets that carry the cut's label lie in its plane, face as it does, are walls, and have its area in every
- * element. */
+/* The facets with the cut's label lie in its plane, face its way, are walls, and have its area in every element. */
 static void check_walls(const model *m, uint32_t cut) {
     gxb_complex *cx = m->cx;
     const pc_plane own = pc_exact_plane(m->s->cuts[cut], m->s->nodes[0]);
@@ -1035,7 +1034,7 @@ static void check_barycentric(const model *m, uint32_t element) {
     }
 }
 
-/* Everything that must hold of a complex, whatever was inserted. */
+/* All invariants of a complex, whatever was inserted */
 static void check_complex(gxb_complex *cx, const scene *s, const inserted *in, pc_random *r) {
     const rat_mark mark = rat_arena_mark();
     model m = open_model(cx, s, in);
@@ -1118,7 +1117,7 @@ START_TEST(degenerate_cuts_conform) {
 }
 END_TEST
 
-/* Far from the origin, tiny and huge, and with corners whose difference to the origin is not a double. */
+/* Far from the origin, tiny and huge, and with corners whose difference from the origin is not a double */
 START_TEST(far_and_scaled_meshes_conform) {
     static const double sizes[6] = {1, 0x1p-20, 0x1p20, 1e-3, 0x1p-100, 0x1p100},
                         offsets[6] = {1048576, 1, 1e8, -1e6, 0, 0};
@@ -1136,7 +1135,7 @@ START_TEST(far_and_scaled_meshes_conform) {
 }
 END_TEST
 
-/* Seen from a mesh at 2^20, a corner at 1e-25 is not a double, and all depends on that rest. */
+/* Seen from a mesh at 2^20, a corner at 1e-25 is not a double, and every sign depends on that rest. */
 START_TEST(rests_below_the_last_bit_count) {
     pc_random r = seeded((uint64_t)_i + 1);
     const double tiny[6] = {0, 1e-25, -1e-25, 2e-25, 0x1p-90, -0x1p-90};
@@ -1179,10 +1178,10 @@ START_TEST(rests_below_the_last_bit_count) {
 }
 END_TEST
 
-/* Geometry that does not change leaves a topology that does not change: moved and scaled by powers of two, exactly. */
+/* Exact moves and scalings by powers of two leave the topology as it is. */
 static uint64_t mix(uint64_t hash, uint64_t value) { return (hash ^ value) * UINT64_C(1099511628211) ^ (hash >> 29); }
 
-/* Hash of all that a transaction may change, but for caches; geometry 0: only the topology. */
+/* Hash of everything that a transaction may change, except caches; geometry 0: only the topology */
 static uint64_t hash_complex(const gxb_complex *cx, int geometry) {
     uint64_t h = 7;
     uint32_t i, j;
@@ -1269,7 +1268,7 @@ START_TEST(topology_is_the_same_moved_and_scaled) {
 }
 END_TEST
 
-/* Stamps that have reached their last begin again, and none that points and edges still have counts as new. */
+/* Stamps that have reached their last value begin again, and no stamp left at points and edges counts as new. */
 START_TEST(stamps_begin_again) {
     pc_random r = seeded((uint64_t)_i + 1);
     scene s;
@@ -1283,7 +1282,7 @@ START_TEST(stamps_begin_again) {
     for (c = 0; c < s.cut_count / 2; c++) ck_assert_int_eq(insert_cut(cx, &s, &in, c), GX_OK);
     gxb_complex_commit(cx);
     for (before = 0; before < 2; before++) {
-        for (turn = 0; turn < 2; turn++) { /* what is undone stamped what is there again the next time */
+        for (turn = 0; turn < 2; turn++) { /* an undone turn has stamped what the next turn makes again */
             cx->store.stamp[0] = cx->store.stamp[1] = UINT32_MAX - before;
             cx->edge_stamp = 0x3fffffffu - before;
             gxb_complex_begin(cx);
@@ -1299,7 +1298,7 @@ START_TEST(stamps_begin_again) {
 }
 END_TEST
 
-/* ---- what walls separate does not depend on the order of the cuts ---- */
+/* ---- the order of cuts does not change what walls separate ---- */
 
 static uint32_t find_root(uint32_t *parent, uint32_t i) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
@@ -1311,7 +1310,7 @@ static int compare_doubles(const void *a, const void *b) {
     return x < y ? -1 : x > y;
 }
 
-/* Volumes of what open facets join, in ascending order, at most 256. */
+/* Volumes of leaves joined by open facets, in ascending order, at most 256 */
 static uint32_t piece_volumes(const scene *s, double volumes[256]) {
     const rat_mark mark = rat_arena_mark();
     inserted in;
@@ -1483,7 +1482,7 @@ START_TEST(rollback_restores_everything) {
 END_TEST
 
 /* Every allocation in turn fails, once or from then on: an error, an unchanged complex after rollback, and the same
- * result at the next try. */
+   result at the next attempt */
 START_TEST(every_allocation_may_fail) {
     pc_random r = seeded((uint64_t)_i / 2 + 1);
     heap h = {0, 0, 0, 0};
@@ -1676,7 +1675,7 @@ START_TEST(bad_meshes_are_named) {
 }
 END_TEST
 
-/* Coordinates too large for any frame are named with their node, as the header promises. */
+/* Coordinates too large for any frame are reported with their node, as the header promises. */
 START_TEST(huge_meshes_name_the_node) {
     pc_random r = seeded(1);
     scene s;

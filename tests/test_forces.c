@@ -1,6 +1,6 @@
-/* Tests of what acts on bodies in gxfem_solve.h besides their own elasticity: constraints, springs, planes with
- * friction, contact, statics, damping, sleep, time budgets, the assembled matrix; and of memory and random mixtures of
- * all of it. */
+/* test_forces.c - forces on bodies in gxfem_solve.h other than elasticity: constraints, springs, planes with
+   friction, contact, statics, damping, sleep, time budgets, the assembled matrix; memory, and random mixtures of
+   everything. */
 #ifndef GXFEM_LINKED
 #define GXFEM_SOLVE_IMPLEMENTATION
 #endif
@@ -12,7 +12,7 @@
 
 /* ---- scenes of several blocks ---- */
 
-/* every combination of preconditioner and matrix; the first is the plainest */
+/* Every combination of preconditioner and matrix; the first is the plainest */
 enum { SOLVERS = 6 };
 
 static gxs_solver_desc solver_desc(int which) {
@@ -55,8 +55,8 @@ static void *longer(void *memory, size_t from, size_t to, size_t size) {
     return moved;
 }
 
-/* Adds another block beside the first, which it consumes; its copies and elements follow those of s. Materials are
- * those of s. */
+/* Adds another block beside the first and consumes it. Its copies and elements follow those of s. Materials are
+   those of s. */
 static void scene_add(scene *s, scene *other, double x, double y, double z) {
     const size_t n = s->model.copy_count, more = other->model.copy_count, e = s->model.element_count,
                  last = e + other->model.element_count;
@@ -82,8 +82,8 @@ static void scene_add(scene *s, scene *other, double x, double y, double z) {
     scene_free(other);
 }
 
-/* The same block cut at x, where nodes lie (of no jitter), and tied there: elements on the right get copies of their
- * own, which follow. Returns the constraints, for the caller to free. */
+/* The same block cut at x, a plane of nodes (without jitter), and tied there: elements on the right get copies of
+   their own, which follow. Returns the constraints, which the caller frees. */
 static gxs_constraint *scene_split(scene *s, double x) {
     const size_t n = s->model.copy_count;
     uint32_t *twin = (uint32_t *)zeroed(n, sizeof *twin), count = 0;
@@ -259,8 +259,8 @@ static double plane_depth(const gxs_plane *plane, const double *x) {
     return depth > 0 ? depth : 0;
 }
 
-/* Sum over points of what the planes of a step do to them at displacement u, as the manual says, u_n being the start;
- * N. Returns the energy of what presses, J. */
+/* Sum over points of the forces of a step's planes at displacement u, by the manual's formulas; u_n is the start; N.
+   Returns the energy of contact, J. */
 static double plane_forces(const gxs_step_desc *step, const double *un, const double *u, double *force) {
     double energy = 0;
     size_t i, p;
@@ -291,7 +291,7 @@ static double plane_forces(const gxs_step_desc *step, const double *un, const do
 
 /* ---- constraints ---- */
 
-/* affine motion and some noise; of followers that of their masters */
+/* Affine motion and some noise; followers move as their masters make them */
 static void stir(scene *s, double affine, double noise) {
     double a[9];
     size_t i, r;
@@ -311,7 +311,7 @@ static void set_block(scene *s, int kind, int lumped, int held) {
     if (held) scene_hold_left(s);
 }
 
-/* a block whose halves are tied one to one moves as the whole block does */
+/* A block whose halves are tied one to one moves as the whole block does. */
 START_TEST(tied_blocks_move_as_one) {
     const int kind = _i / 4, lumped = _i / 2 % 2, held = _i % 2;
     gxs_step_desc step = step_tight(0.01, -9.81);
@@ -357,7 +357,7 @@ START_TEST(tied_blocks_move_as_one) {
 }
 END_TEST
 
-/* of a tied free block too it is right to rounding, at a CG tolerance of 1e-1 */
+/* Momentum of a tied free block is right to rounding too, at a CG tolerance of 1e-1. */
 START_TEST(momentum_of_tied_blocks_is_balanced) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_make(0.01, -9.81);
@@ -386,8 +386,8 @@ START_TEST(momentum_of_tied_blocks_is_balanced) {
 }
 END_TEST
 
-/* A cube below, eight cubes of half its edge above; their nodes on its face follow its four nodes there. The spaces are
- * continuous across it, since its diagonal is that of the small ones. */
+/* A cube below, eight cubes of half its edge above. Their nodes on its face follow its four nodes there. The space
+   is continuous across the face, since the cube's diagonal is that of the small ones. */
 static scene scene_hanging(gxs_constraint *ties) {
     scene s = scene_block(1, 1, 1, 1, 0, 0), above = scene_block(2, 2, 2, 0.5, 0, 0);
     uint32_t i, count = 0;
@@ -399,7 +399,8 @@ static scene scene_hanging(gxs_constraint *ties) {
             gxs_constraint *tie = &ties[count++];
             memset(tie, 0, sizeof *tie);
             tie->copy = i;
-            /* copies 4 ... 7 have z = 1; linear on the triangles on both sides of the diagonal x = y */
+            /* Copies 4 ... 7 have z = 1. The interpolation is linear on the triangles on both sides of the diagonal
+               x = y. */
             for (k = 0; k < 4; k++) tie->master[k] = 4 + (uint32_t)k;
             tie->weight[0] = 1 - (x > y ? x : y);
             tie->weight[1] = x > y ? x - y : 0;
@@ -412,8 +413,8 @@ static scene scene_hanging(gxs_constraint *ties) {
     return s;
 }
 
-/* The patch test: an affine displacement of the held copies is found everywhere, through the hanging nodes; the held
- * copies are targets'. */
+/* The patch test: an affine displacement of the held copies is found everywhere, through the hanging nodes. Held
+   copies follow targets. */
 START_TEST(hanging_nodes_pass_the_patch_test) {
     gxs_constraint ties[9];
     int which, r;
@@ -434,7 +435,7 @@ START_TEST(hanging_nodes_pass_the_patch_test) {
             const double inside = x[0] * (1 - x[0]) * x[1] * (1 - x[1]) * x[2] * (2 - x[2]);
             s.held[i] = _i == GXS_LINEAR ? x[2] < 1e-9 || x[2] > 2 - 1e-9 : inside < 1e-9;
             if (i >= 8 && fabs(x[2] - 1) < 1e-9) s.held[i] = 0;
-            /* of the linear one, whose sides are free: stretched by 1 %, narrower by Poisson's ratio */
+            /* Of the linear material, whose sides are free: stretched by 1 %, narrower by Poisson's ratio */
             for (r = 0; r < 3; r++)
                 targets[3 * i + (size_t)r] = _i == GXS_LINEAR
                                                ? (r == 2 ? 0.01 : -0.01 * s.material->poisson) * x[r]
@@ -452,7 +453,7 @@ START_TEST(hanging_nodes_pass_the_patch_test) {
 }
 END_TEST
 
-/* where the masters go, in motion; also with weights that are 1.5 in sum and below 0 */
+/* Followers are where their masters lead, in motion; also with weights whose sum is 1.5 or that are negative */
 START_TEST(followers_change_by_their_masters_mean) {
     gxs_constraint ties[9];
     int which, frame, k;
@@ -495,8 +496,8 @@ START_TEST(followers_change_by_their_masters_mean) {
 }
 END_TEST
 
-/* A block tied by its left face to held copies that move: as one whose left face itself is moved, velocities included.
- * (Lumped, so that the inertia of what is moved acts on nothing else.) */
+/* A block tied by its left face to held copies that move behaves like one whose left face itself is moved,
+   velocities included. (Lumped, so that the inertia of the moved face acts on nothing else.) */
 START_TEST(followers_of_moving_targets_go_along) {
     static const gxs_integrator integrators[3] = {GXS_BDF1, GXS_BDF2, GXS_MIDPOINT};
     double path[30][2][3 * 64];
@@ -516,7 +517,7 @@ START_TEST(followers_of_moving_targets_go_along) {
         s.material->young = 1e5;
         s.model.lumped_mass = 1;
         scene_hold_left(&s);
-        if (tied) { /* nine copies of no element are held and moved; what is on the left follows */
+        if (tied) { /* nine copies of no element are held and moved; the left face follows */
             for (i = 0; i < base; i++)
                 if (s.held[i]) {
                     ties[n - base].copy = (uint32_t)i;
@@ -572,8 +573,8 @@ START_TEST(followers_of_moving_targets_go_along) {
 }
 END_TEST
 
-/* A step is a minimum of E over what is free, also where targets move the rest: its gradient there is 0, by the
- * assembled forms. */
+/* A step is a minimum of E over the free copies, also where targets move the others: its gradient there is 0, by the
+   assembled forms. */
 START_TEST(moved_copies_have_inertia) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_tight(0.01, -9.81);
@@ -612,7 +613,7 @@ START_TEST(moved_copies_have_inertia) {
 }
 END_TEST
 
-/* all copies are held or follow held ones: no unknowns, and yet all moves */
+/* All copies are held or follow held ones: no unknowns, and yet everything moves. */
 START_TEST(followers_alone_go_along) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_make(0.01, -9.81);
@@ -640,7 +641,8 @@ START_TEST(followers_alone_go_along) {
 }
 END_TEST
 
-/* two ties of a free block, one of them wrong: a named error, and the solver steps the model it had, bit for bit */
+/* Two ties of a free block, one of them wrong: the error is named, and the solver steps the model that it had, bit
+   for bit. */
 static void expect_constraints(const gxs_constraint *ties, size_t count, gx_result expected, size_t index) {
     gxs_step_desc step = step_make(0.033, -9.81);
     double first[3 * 12];
@@ -695,7 +697,7 @@ START_TEST(bad_constraints_are_named) {
 }
 END_TEST
 
-/* a master of weight 0 that follows, and constraints of held copies, which follow nothing, are no chains */
+/* A master of weight 0 that follows, and constraints of held copies, which follow nothing, are no chains. */
 START_TEST(harmless_constraints_are_taken) {
     gxs_solver *solver = solver_make();
     gxs_step_desc step = step_make(0.033, -9.81);
@@ -765,8 +767,8 @@ START_TEST(springs_balance_momentum) {
 }
 END_TEST
 
-/* a block hung on three springs of unequal stiffness inside elements: their forces are its weight, with no torque about
- * any point */
+/* A block hung on three springs of unequal stiffness inside elements: their forces are its weight, without torque
+   about any point. */
 START_TEST(springs_carry_a_weight) {
     const double weights[4] = {0.1, 0.2, 0.3, 0.4};
     gxs_solver *solver = solver_of(_i);
@@ -815,7 +817,7 @@ START_TEST(springs_carry_a_weight) {
 }
 END_TEST
 
-/* springs of no stiffness, and springs on held copies only, change nothing but spring_forces */
+/* Springs without stiffness, and springs on held copies only, change nothing but spring_forces. */
 START_TEST(idle_springs_change_nothing) {
     double first[3 * 64];
     int run, frame;
@@ -856,7 +858,7 @@ START_TEST(idle_springs_change_nothing) {
 }
 END_TEST
 
-/* a hand of 1e9 N/m leads a corner and an inner point: both are where it is, but for force / stiffness */
+/* A spring of 1e9 N/m leads a corner and an inner point: both follow it to within force / stiffness. */
 START_TEST(stiff_springs_lead) {
     const double weights[4] = {0.25, 0.25, 0.25, 0.25};
     gxs_solver *solver = solver_of(_i);
@@ -896,8 +898,8 @@ START_TEST(stiff_springs_lead) {
 }
 END_TEST
 
-/* Springs at the middle of many elements and faces, of 1e-3 to 1e9 N/m, that come after steps without them: a solver
- * that has known other times solves as one that has not. */
+/* Springs at the middle of many elements and faces, of 1e-3 to 1e9 N/m, after steps without them: a solver with
+   other steps behind it solves as well as a new one. */
 START_TEST(later_springs_converge_as_well) {
     static const double stiffnesses[3] = {1e3, 1e6, 1e9};
     gxs_step_desc step = step_make(0.033, -9.81);
@@ -1056,7 +1058,7 @@ END_TEST
 
 /* ---- planes and contact ---- */
 
-/* A block dropped on the plane z = 0 comes to rest there; what presses is its weight. */
+/* A block dropped on the plane z = 0 comes to rest there. The contact force is its weight. */
 START_TEST(dropped_block_comes_to_rest) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_tight(0.02, -9.81);
@@ -1091,8 +1093,9 @@ START_TEST(dropped_block_comes_to_rest) {
 }
 END_TEST
 
-/* A block that vibrates wildly at and above a plane, 40 times: what changes its momentum is what the manual says acts
- * at the end of the step, also where points touch in the course of the iteration and not at its end. */
+/* A block that vibrates wildly at and above a plane, 40 times: the change of its momentum is due to the forces that
+   the manual states at the end of the step, also where points touch in the course of the iteration but not at its
+   end. */
 static void vibrate(int which, double friction, double tolerance) {
     int trial, missed = 0, touched = 0, r;
     for (trial = 0; trial < 40; trial++) {
@@ -1148,8 +1151,8 @@ END_TEST
 START_TEST(friction_balances_momentum) { vibrate(_i, 0.5, 1e-6); }
 END_TEST
 
-/* A block on a slope of angle a, after a second: below the critical angle it creeps slower than sticking_speed, above
- * it slides with g (sin a - mu cos a). */
+/* A block on a slope of angle a, after a second: below the critical angle it creeps slower than sticking_speed,
+   above it slides with g (sin a - mu cos a). */
 static double slide(int which, double angle, double friction, double sticking, double seconds, double *acceleration) {
     gxs_solver *solver = solver_of(which);
     gxs_step_desc step = step_make(0.005, -9.81);
@@ -1212,7 +1215,7 @@ START_TEST(friction_holds_and_slides) {
 }
 END_TEST
 
-/* falls, bounces, tumbles: kinetic + elastic + gravity's + contact's energy never grows */
+/* A body falls, bounces, tumbles: kinetic + elastic + gravity's + contact's energy never grows. */
 START_TEST(bounces_gain_no_energy) {
     gxs_solver *solver = solver_of(_i % SOLVERS);
     gxs_step_desc step = step_tight(0.01, -9.81);
@@ -1318,7 +1321,7 @@ static double constant_push(void *user, size_t point, const double *position, do
     return -(push[0] * position[0] + push[1] * position[1] + push[2] * position[2]);
 }
 
-/* A constant force by the callback, of no stiffness, gives a loose block the momentum of force x dt on each point. */
+/* A constant force by the callback, without stiffness, gives a loose block the momentum of force x dt on each point. */
 START_TEST(constant_contact_forces_give_their_momentum) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_tight(0.01, 0);
@@ -1347,9 +1350,9 @@ START_TEST(constant_contact_forces_give_their_momentum) {
 }
 END_TEST
 
-/* Friction opposes the way of a point since the step's start by friction x the normal force then, also of points that
- * hang on held copies, carried sideways (0) or lifted (1) by targets: forces on free copies balance, by the assembled
- * forms. */
+/* Friction opposes a point's motion since the step's start by friction x the normal force at that time, also at
+   points on held copies, which targets carry sideways (0) or lift (1). Forces on free copies balance, by the
+   assembled forms. */
 START_TEST(friction_acts_on_points_that_targets_carry) {
     const int lifted = _i % 2;
     gxs_solver *solver = solver_of(_i / 2);
@@ -1416,8 +1419,8 @@ static void part_momentum(const scene *s, size_t first, size_t end, double *p) {
     free(mv);
 }
 
-/* beside a block that bounces and one on a spring flies a third: its momentum is right to rounding, at a CG tolerance
- * of 1e-1 */
+/* Beside a block that bounces and one on a spring, a third one flies. Its momentum is right to rounding, at a CG
+   tolerance of 1e-1. */
 START_TEST(pieces_in_flight_keep_their_momentum) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_make(0.01, -9.81);
@@ -1474,12 +1477,12 @@ START_TEST(pieces_in_flight_keep_their_momentum) {
 }
 END_TEST
 
-/* ---- pieces: what one of them gains is not another's to lose ---- */
+/* ---- components: the gain of one must not be the loss of another ---- */
 
 enum { PIECES = 4 };
 
 /* A large block, stretched, that falls; three smaller ones, of 1/5 to 1/1000 of its edges, the last held or falling
- * too, all of whose nodes are anywhere within two edges and move. first: PIECES + 1 indices of copies */
+   too. All their nodes are displaced by up to two edges and move. first: PIECES + 1 indices of copies */
 static scene scene_of_pieces(uint64_t from, int held, size_t *first) {
     static const double edges[PIECES] = {0.25, 0.05, 0.01, 0.00025};
     size_t i;
@@ -1513,7 +1516,7 @@ static void part_of(const double *x, size_t first, size_t end, size_t n, double 
     memcpy(part + 3 * first, x + 3 * first, 3 * (end - first) * sizeof *part);
 }
 
-/* E(u) of the copies first to end - 1, a piece, that were at un with velocities vn */
+/* E(u) of the copies first to end - 1, a component, that were at un with velocities vn */
 static double part_potential(const scene *s, const gxs_step_desc *step, size_t first, size_t end, const double *un,
                              const double *vn, const double *u) {
     const size_t n = s->model.copy_count;
@@ -1531,7 +1534,8 @@ static double part_potential(const scene *s, const gxs_step_desc *step, size_t f
     return sum;
 }
 
-/* Where the piece stays but, if it is loose, for falling on: u_n + t, t of its momentum and weight */
+/* Where a component would be if it only stayed or, if it is loose, kept falling: u_n + t, t by its momentum and
+   weight */
 static void part_stay(const scene *s, const gxs_step_desc *step, size_t first, size_t end, const double *un,
                       const double *vn, double *u) {
     const size_t n = s->model.copy_count;
@@ -1550,8 +1554,8 @@ static void part_stay(const scene *s, const gxs_step_desc *step, size_t first, s
     free(ones);
 }
 
-/* E of no piece ends above where it would be had the piece only fallen on, though others gain a million times what it
- * may lose. */
+/* E of no component ends above its value had the component only kept falling, though others gain a million times
+   that. */
 START_TEST(energy_falls_in_every_piece) {
     gxs_solver *solver = solver_of(_i % SOLVERS);
     const gxs_step_desc step = step_make(0.033, -9.81);
@@ -1572,8 +1576,8 @@ START_TEST(energy_falls_in_every_piece) {
             part_stay(&s, &step, first[p], first[p + 1], un, vn, stay);
             ends = part_potential(&s, &step, first[p], first[p + 1], un, vn, s.displacement);
             stays = part_potential(&s, &step, first[p], first[p + 1], un, vn, stay);
-            /* of the small piece, which hangs turned by its hinge, E is a sum of terms 1e6 times as large: the solver
-             * takes 5e-9 of it for rounding */
+            /* E of the small component, which hangs turned by its hinge, is a sum of terms 1e6 times as large. The
+               solver takes 5e-9 of these for rounding. */
             assert_that(ends <= stays + 1e-8 * (fabs(stays) + fabs(ends)), "%s frame %d piece %d: %.17g above %.17g",
                         solver_name(_i % SOLVERS), frame, p, ends, stays);
         }
@@ -1584,9 +1588,9 @@ START_TEST(energy_falls_in_every_piece) {
 }
 END_TEST
 
-/* A step of pieces is a step of each by itself: none goes less far, or further, for another's sake. To 2 % (single
- * precision, most of all of block-Jacobi), and 2e-4 of how far all go: linear systems are solved to a share of the
- * residual of all. */
+/* A step of several components is a step of each by itself: none goes less far, or further, for another's sake. To 2
+   % (single precision, most of all of block-Jacobi), and 2e-4 of the distance that all go: linear systems are solved
+   to a share of the residual of all. */
 START_TEST(pieces_step_as_if_alone) {
     gxs_solver *solver = solver_of(_i % 4);
     gxs_step_desc step = step_make(0.033, -9.81);
@@ -1626,7 +1630,7 @@ START_TEST(pieces_step_as_if_alone) {
 }
 END_TEST
 
-/* Points that lie in several pieces join them: E is no sum over these any more, but falls in them together. */
+/* Points that lie in several components join them: E is no sum over these any more, but falls in them together. */
 START_TEST(energy_falls_in_joined_pieces) {
     gxs_solver *solver = solver_make();
     size_t first[PIECES + 1], n;
@@ -1637,7 +1641,7 @@ START_TEST(energy_falls_in_joined_pieces) {
     gxs_step_desc step = step_make(0.033, 0);
     int p;
     n = s.model.copy_count;
-    for (p = 0; p < 2; p++) { /* the first to the last piece, and that to the second */
+    for (p = 0; p < 2; p++) { /* the first to the last component, and that one to the second */
         gxs_point point = point_at(&s, first[p] + 3);
         point.copy[3] = (uint32_t)first[2] + 5;
         point.weight[0] = point.weight[3] = 0.5;
@@ -1666,7 +1670,7 @@ END_TEST
 
 /* ---- statics ---- */
 
-/* the balance of a hanging bar, of every material, is where damped motion ends */
+/* The balance of a hanging bar, of every material, is the end of damped motion. */
 START_TEST(static_balance_is_the_end_of_motion) {
     const int kind = _i / SOLVERS, which = _i % SOLVERS;
     gxs_solver *solver = solver_of(which);
@@ -1706,7 +1710,7 @@ START_TEST(static_balance_is_the_end_of_motion) {
 }
 END_TEST
 
-/* a balance through ties: a bar of three blocks, of which only the first is held */
+/* A balance through ties: a bar of three blocks; only the first is held */
 START_TEST(static_balance_reaches_through_ties) {
     double end[3 * 320];
     uint32_t iterations = 0;
@@ -1745,8 +1749,8 @@ START_TEST(static_balance_reaches_through_ties) {
 }
 END_TEST
 
-/* a held block and one that nothing holds: an error that names one of its copies; a spring or a time step gives it a
- * balance */
+/* A held block and a loose one: an error that names a copy of the loose one. A spring or a time step gives it a
+   balance. */
 START_TEST(static_balance_needs_a_hold) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_tight(0, -9.81);
@@ -1777,7 +1781,7 @@ START_TEST(static_balance_needs_a_hold) {
     step.springs = &spring;
     step.spring_count = 1;
     ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, &failure), GX_ERROR_FREE);
-    spring = spring_make(point_at(&s, 1), 1e5); /* of the other piece */
+    spring = spring_make(point_at(&s, 1), 1e5); /* of the other component */
     ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, &failure), GX_ERROR_FREE);
     ck_assert(memcmp(before, s.displacement, count * sizeof(double)) == 0 &&
               memcmp(before + count, s.velocity, count * sizeof(double)) == 0);
@@ -1789,7 +1793,7 @@ START_TEST(static_balance_needs_a_hold) {
     spring = spring_make(point_at(&s, s.model.copy_count - 1), 1e5); /* by a corner: it swings until it hangs */
     ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
     check_finite(&s);
-    step.spring_count = 0; /* that it was held once does not matter */
+    step.spring_count = 0; /* that it was held once does not count */
     ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, &failure), GX_ERROR_FREE);
     free(before);
     gxs_solver_destroy(solver);
@@ -1797,7 +1801,7 @@ START_TEST(static_balance_needs_a_hold) {
 }
 END_TEST
 
-/* a tangled bar: E never rises from iterate to iterate, and the end is a balance */
+/* A tangled bar: E never rises from iterate to iterate, and the end is a balance. */
 START_TEST(static_balance_is_found_from_afar) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_make(0, -9.81);
@@ -1827,8 +1831,8 @@ END_TEST
 
 /* ---- stiffness damping ---- */
 
-/* Longitudinal free vibration of a bar held at its left, in its first mode, by the midpoint rule: its energy after some
- * periods. frequency: of its zero crossings, rad/s */
+/* Longitudinal free vibration of a bar held at its left, in its first mode, by the midpoint rule: its energy after
+   some periods. frequency: by its zero crossings, rad/s */
 static double ring(int kind, double damping, double *frequency) {
     gxs_solver *solver = solver_make();
     gxs_step_desc step = step_tight(1.25e-4, 0); /* 1/320 of the period, which is 4 L sqrt(rho / E) */
@@ -1911,7 +1915,7 @@ START_TEST(damping_keeps_momentum) {
 }
 END_TEST
 
-/* damping by the stiffness has no noise of its own: a hanging bar comes to rest to (almost) all digits */
+/* Stiffness damping adds no noise: a hanging bar comes to rest to (almost) all digits. */
 START_TEST(damped_bodies_come_to_rest) {
     gxs_solver *solver = solver_make();
     gxs_step_desc step = step_tight(0.02, -9.81);
@@ -1933,7 +1937,7 @@ START_TEST(damped_bodies_come_to_rest) {
 }
 END_TEST
 
-/* What is left of a body's angular momentum and energy after a revolution; it starts without stress. */
+/* The shares of a body's angular momentum and energy left after a revolution; it starts without stress */
 static void revolve(int kind, double spin, double damping, double *left) {
     const double zero[3] = {0, 0, 0};
     gxs_solver *solver = solver_make();
@@ -1943,7 +1947,7 @@ static void revolve(int kind, double spin, double damping, double *left) {
     int frame;
     scene s = scene_block(4, 2, 2, 0.25, 0, 0);
     set_kind(s.material, kind);
-    /* so that what a step of the midpoint rule stretches is little beside the rest */
+    /* so that a step of the midpoint rule stretches little, compared with the rest */
     s.material->young = spin < 1 ? 1e4 : 1e6;
     s.material->damping = damping;
     for (i = 0; i < s.model.copy_count; i++) {
@@ -1964,8 +1968,7 @@ static void revolve(int kind, double spin, double damping, double *left) {
     scene_free(&s);
 }
 
-/* At 0.05/s, next to no stress, and at 3/s, where it is stretched by 1e-3: stiffness damping leaves both as they are
- * without it. */
+/* At 0.05/s, next to no stress, and at 3/s, where the body is stretched by 1e-3: stiffness damping changes neither. */
 START_TEST(rotation_is_not_damped) {
     const double spin = _i % 2 ? 3 : 0.05;
     double free_of_it[2], damped[2];
@@ -1980,8 +1983,8 @@ END_TEST
 
 /* ---- the midpoint rule ---- */
 
-/* A thin plate falls into its hold and swings. Nothing damps what one Newton iteration and a coarse solve leave, and
- * step by step it would add up without end; the body must never have more energy than it began with. */
+/* A thin plate falls into its hold and swings. Nothing damps the errors of one Newton iteration and a coarse solve,
+   and they would add up without end. The body must never have more energy than it began with. */
 START_TEST(midpoint_gains_no_energy) {
     static const double gravity[3] = {0, 0, -9.81}, dts[2] = {0.001, 0.004};
     gxs_solver *solver = solver_of(_i / 2);
@@ -2009,7 +2012,7 @@ START_TEST(midpoint_gains_no_energy) {
 }
 END_TEST
 
-/* What a callback's point has met: the plane of a scene, by its caller */
+/* The point of a callback: the plane of a scene, by its caller */
 static double energy_at_plane(const scene *s, const gxs_step_desc *step, const gxs_plane *plane,
                               const double *gravity) {
     double sum = total_energy(s, gravity);
@@ -2024,9 +2027,9 @@ static double energy_at_plane(const scene *s, const gxs_step_desc *step, const g
     return sum;
 }
 
-/* A free block meets a plane, given as such or by a callback, anywhere within a step, also after its middle: the step
- * gains no more than 1 % of the kinetic energy, however stiff the plane is; a block in flight beside it goes on as it
- * was. */
+/* A free block meets a plane, given as a plane or by a callback, anywhere within a step, also after its middle. The
+   step gains no more than 1 % of the kinetic energy, however stiff the plane is. A block in flight beside it
+   continues as it was. */
 START_TEST(midpoint_gains_nothing_where_contact_begins) {
     static const double gravity[3] = {0, 0, 0}, stiffness[3] = {1e5, 1e7, 1e9};
     gxs_solver *solver = solver_make();
@@ -2216,7 +2219,7 @@ static void touch(bedroom *room, int how, size_t copy) {
     }
 }
 
-/* what touches a block wakes it and no other */
+/* Touching a block wakes it and no other. */
 START_TEST(a_touch_wakes_one_block) {
     static const char *const names[TOUCH_COUNT] = {"force",  "velocity",  "displacement",
                                                    "spring", "rest time", "target"};
@@ -2250,7 +2253,7 @@ START_TEST(a_touch_wakes_one_block) {
 }
 END_TEST
 
-/* NULL forces are no forces: that they come and go touches what they act on only */
+/* NULL forces are no forces. When they come or go, only the copies on which they act are touched. */
 START_TEST(forces_that_come_and_go_wake_one_block) {
     bedroom room;
     bedroom_make(&room, _i);
@@ -2302,7 +2305,7 @@ START_TEST(changes_of_the_scene_wake_all) {
 }
 END_TEST
 
-/* A step that fails changes nothing, so the change that it has seen still wakes in the next. */
+/* A step that fails changes nothing. So a change that it has seen still wakes in the next step. */
 START_TEST(a_failed_step_swallows_no_touch) {
     bedroom room;
     int how;
@@ -2329,8 +2332,8 @@ START_TEST(a_failed_step_swallows_no_touch) {
 }
 END_TEST
 
-/* A velocity below sleep_speed that is written to a sleeper moves it, also when a step that fails comes before the one
- * that succeeds. */
+/* A velocity below sleep_speed that is written to a sleeper moves it, also if a failing step comes before the one
+   that succeeds. */
 START_TEST(a_failed_step_swallows_no_slow_kick) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_make(0.01, 0);
@@ -2364,7 +2367,7 @@ START_TEST(a_failed_step_swallows_no_slow_kick) {
 }
 END_TEST
 
-/* the same push moves a sleeping block as it moves one that was at rest awake */
+/* The same push moves a sleeping block as it moves one that was at rest awake. */
 START_TEST(a_woken_block_moves_as_before) {
     double path[40][3 * 64];
     int sleeps, frame;
@@ -2392,7 +2395,7 @@ START_TEST(a_woken_block_moves_as_before) {
 }
 END_TEST
 
-/* without gravity a body at rest in mid-air sleeps where it is, beside one that flies on awake */
+/* Without gravity a body at rest in mid-air sleeps in its place, beside one that keeps flying awake. */
 START_TEST(bodies_sleep_in_mid_air) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_make(0.02, 0);
@@ -2426,7 +2429,7 @@ START_TEST(bodies_sleep_in_mid_air) {
 }
 END_TEST
 
-/* with the caller's rest times sleep lasts over a new model of the same copies; zeroed ones wake */
+/* With the caller's rest times sleep continues over a new model of the same copies; zeroed rest times wake. */
 START_TEST(sleep_outlasts_a_new_model) {
     bedroom room;
     double *bits;
@@ -2454,7 +2457,7 @@ START_TEST(sleep_outlasts_a_new_model) {
 }
 END_TEST
 
-/* springs that do not change let a block sleep; one that does wakes it */
+/* Springs that do not change let a block sleep; one that does wakes it. */
 START_TEST(blocks_on_constant_springs_sleep) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_make(0.02, -9.81);
@@ -2490,7 +2493,7 @@ START_TEST(blocks_on_constant_springs_sleep) {
 }
 END_TEST
 
-/* What contact held is awake when its points are gone, and falls. */
+/* A block that contact held is awake when its points are gone, and falls. */
 START_TEST(points_that_go_wake_what_they_held) {
     bedroom room;
     double before;
@@ -2531,7 +2534,7 @@ START_TEST(a_spring_between_blocks_wakes_both) {
 }
 END_TEST
 
-/* tied blocks are one piece: they fall asleep and wake together */
+/* Tied blocks are one component: they fall asleep and wake together. */
 START_TEST(tied_blocks_sleep_together) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_make(0.02, -9.81);
@@ -2590,7 +2593,7 @@ static double potential(const scene *s, const gxs_step_desc *step, const double 
     return sum + plane_forces(step, un, u, force);
 }
 
-/* violent starts with springs and planes, however early the time is over: a finite state, no higher than the start */
+/* Violent starts with springs and planes, however early the time is over: a finite state, no higher than the start */
 START_TEST(budgets_end_in_good_states) {
     gxs_solver *solver = solver_of(_i);
     double budget, *un, *vn;
@@ -2641,7 +2644,7 @@ START_TEST(budgets_end_in_good_states) {
                 assert_that(fabs(s.velocity[i] - (s.displacement[i] - un[i]) / step.dt) <
                                 1e-9 * (1 + fabs(s.velocity[i])),
                             "velocity");
-            /* a few looks at the clock to end */
+            /* a few reads of the clock before the end */
             assert_that(now <= budget + 12, "start %d, budget %g: went on until %g", how, budget, now);
             assert_that(report.seconds_linearise >= 0 && report.seconds_prepare >= 0 && report.seconds_solve >= 0 &&
                             report.seconds_linearise + report.seconds_prepare + report.seconds_solve <= now,
@@ -2657,7 +2660,7 @@ START_TEST(budgets_end_in_good_states) {
 }
 END_TEST
 
-/* 0 without a clock; with one as many linearisations as it says; and looking at a clock changes no bits */
+/* 0 without a clock; with one, the number of its linearisations. Reading a clock changes no bits. */
 START_TEST(seconds_need_a_clock) {
     double first[3 * 64];
     int timed;
@@ -2688,8 +2691,8 @@ END_TEST
 
 /* ---- all matrices and preconditioners ---- */
 
-/* A tied bar with springs on a plane: every solver makes the same step; assembled multigrid takes not many more
- * iterations. */
+/* A tied bar with springs on a plane: every solver makes the same step; assembled multigrid takes few more
+   iterations. */
 START_TEST(solvers_agree) {
     double first[3 * 512], size = 0;
     uint32_t iterations[SOLVERS] = {0};
@@ -2750,8 +2753,8 @@ END_TEST
 
 /* ---- memory ---- */
 
-/* create, then models with ties that grow, with steps of more and more springs and points; returns whether an
- * allocation failed */
+/* Creates a solver, then sets models with ties that grow, with steps of more and more springs and points. Returns
+   whether an allocation failed. */
 static int run_with(failing *f, int which) {
     gxs_solver_desc desc = solver_desc(which);
     gxs_solver *solver = NULL;
@@ -2812,7 +2815,7 @@ static int run_with(failing *f, int which) {
 START_TEST(every_allocation_may_fail) { sweep_allocations(run_with, _i); }
 END_TEST
 
-/* steps of no more springs and points than there have been allocate nothing */
+/* Steps of no more springs and points than before allocate nothing. */
 START_TEST(steps_allocate_for_more_points_only) {
     gxs_solver_desc desc = solver_desc(_i);
     failing f = {-1, 0, 0, 0};
@@ -2846,8 +2849,8 @@ END_TEST
 
 /* ---- absurd input ---- */
 
-/* *user says what is wrong with the answer: force, energy, off-diagonal or diagonal of the Hessian, a Hessian far from
- * semi-definite */
+/* *user says what is wrong with the answer: force, energy, off-diagonal or diagonal of the Hessian, or a Hessian far
+   from semi-definite */
 static double bad_contact(void *user, size_t point, const double *position, double *force, double *hessian) {
     const int fault = *(const int *)user;
     const double nan = not_a_number(0);
@@ -2921,7 +2924,7 @@ static void absurdity_make(absurdity *a, int which) {
     for (i = 1; i < n; i++) a->ties[i - 1].copy = (uint32_t)i, a->ties[i - 1].weight[0] = 1;
 }
 
-/* what a step has of it; an energy that is not a number is the model's */
+/* the step's own error; an energy that is not a number is the model's */
 static void absurdity_apply(absurdity *a, int which) {
     if (which == ABSURD_SPRING) a->step.springs = a->springs, a->step.spring_count = 2;
     if (which == ABSURD_PLANE || which >= ABSURD_CONTACT)
@@ -2939,7 +2942,7 @@ static void absurdity_free(absurdity *a) {
     scene_free(&a->s);
 }
 
-/* Whatever it is asked for, a step ends in numbers, or says that it has diverged and leaves the state alone. */
+/* Whatever the request, a step ends in finite numbers, or says that it has diverged and leaves the state alone. */
 START_TEST(absurd_steps_lose_nothing) {
     const int which = _i / 4;
     int solver_index, frame;
@@ -3057,7 +3060,7 @@ static void soak_free(soak *k) {
     scene_free(&k->s);
 }
 
-/* what changes now and then between steps */
+/* Changes that happen now and then between steps */
 static void soak_change(soak *k, int frame) {
     static const double dts[4] = {0.001, 0.01, 0.02, 0.033};
     gxs_step_desc *step = &k->step;

@@ -1,6 +1,6 @@
-/* test_fragments.c - what one is told of fragments: ids that last, what cuts have changed, inertia, motion. The oracle
-   for ids is the displacement field, which no cut changes: each fragment is moved by a number of its own, and its
-   pieces show it. */
+/* test_fragments.c - what the library reports about fragments: ids that last, changes by cuts, inertia, motion. The
+   oracle for ids is the displacement field, which no cut changes: each fragment is moved by a number of its own, and
+   its parts show it. */
 #ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
 #endif
@@ -17,7 +17,7 @@ typedef struct piece {
     double mass, volumes;
 } piece;
 
-typedef struct memory { /* of the last look */
+typedef struct memory { /* of the last snapshot */
     piece pieces[MOST];
     size_t count;
     uint32_t largest; /* id so far */
@@ -54,7 +54,7 @@ static void remember(memory *m, const gx_view *v) {
         }
 }
 
-/* Index, at the last look, of the fragment that this one was part of */
+/* Index, in the last snapshot, of the fragment of which this one was a part */
 static size_t origin_of(const gx_view *v, size_t fragment, uint64_t seed) {
     size_t i, k, origin = SIZE_MAX;
     for (i = 0; i < v->cell_count; i++)
@@ -109,8 +109,8 @@ static void check_change(const memory *m, const gx_view *v, int touched, uint64_
     for (i = 0; i < m->count; i++) CHECK_SEED(is_listed(v, m->pieces[i].id) == (heaviest[i] == SIZE_MAX), seed);
 }
 
-/* Random cuts, several between looks now and then; skins, hashes and failed cuts in between tell nothing and change
- * nothing. */
+/* Random cuts, now and then several between snapshots. Skins, hashes and failed cuts in between assign no ids and
+   change nothing. */
 START_TEST(random_cuts) {
     const uint64_t seed = (uint64_t)_i + 1;
     static memory m;
@@ -128,7 +128,7 @@ START_TEST(random_cuts) {
         ck_assert_uint_eq(v.removed_count, 0);
     }
     m.count = m.largest = 1;
-    m.pieces[0].id = 1; /* the body as it was created; all else of it differs */
+    m.pieces[0].id = 1; /* the body as it was created; all its other cells differ */
     for (k = 0; k < 9; k++) {
         gx_skin skin;
         gx_view v;
@@ -239,7 +239,7 @@ START_TEST(every_change) {
 }
 END_TEST
 
-/* Looking changes ids but not states: halves of equal mass, the first keeps the id. */
+/* A snapshot changes ids but not states: halves of equal mass, the first keeps the id. */
 START_TEST(equal_halves) {
     workload w = grid(2, 1, 1, 5);
     gx_body *body = body_of(&w);
@@ -254,8 +254,8 @@ START_TEST(equal_halves) {
 }
 END_TEST
 
-/* A mesh of several fragments has ids of its own from the start, and a body that a solid takes altogether has none
- * left. */
+/* A mesh of several fragments has ids of its own from the start. A body that a solid removes completely has none
+   left. */
 START_TEST(many_meshes_and_nothing) {
     workload w = wl_empty();
     gx_body *body;
@@ -292,8 +292,8 @@ START_TEST(many_meshes_and_nothing) {
 }
 END_TEST
 
-/* Elements that meet in an edge only: a sheet through the edge that enters neither splits; removing one leaves a
-   fragment that lost material, though nothing of the other is cut. */
+/* Elements that meet in an edge only: a sheet through the edge that enters neither splits them. Removing one leaves
+   a fragment that lost material, although nothing of the other is cut. */
 START_TEST(pinched_fragments) {
     static const double x[6][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}};
     static const double n[3] = {1, 1, 0};
@@ -367,8 +367,8 @@ START_TEST(scope_beside_a_pinch) {
 }
 END_TEST
 
-/* A sheet in the face between two fragments, again and of one of them alone: a thin link inside of the other is not
- * severed. */
+/* A sheet in the face between two fragments, again and of one of them alone: a thin link inside the other is not
+   severed. */
 START_TEST(scope_of_severing) {
     static const double x[6][3] = {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0.25, 0.25}, {1, 0, 0}, {1, 1, 1}};
     /* of the face 1 2 4 */
@@ -450,7 +450,7 @@ static void move_inertia(double inertia[6], double m, const double d[3]) {
     inertia[4] -= m * d[1] * d[2];
 }
 
-/* Steiner: the pieces' inertia about the body's centre adds up to the body's. */
+/* Steiner: the fragments' inertia about the body's centre adds up to the body's. */
 START_TEST(inertia_adds_up) {
     const uint64_t seed = (uint64_t)_i + 1;
     workload w = grid(3, 3, 3, 5);
@@ -598,7 +598,8 @@ START_TEST(thrown_body) {
 }
 END_TEST
 
-/* A body pressed to a plane, to a line, to a point: what turns without inertia is left out, all else is as it is. */
+/* A body pressed to a plane, to a line, to a point: rotations without inertia are left out, everything else is
+   unchanged. */
 START_TEST(without_inertia) {
     const int gone = _i + 1; /* axes along which nothing is left */
     workload w = grid(2, 2, 2, 5);

@@ -3,7 +3,7 @@
 # usage: sh tests/test_gxboolean.sh PATH/TO/gxboolean
 . "$(dirname -- "$0")/program.sh"
 
-# refuses NAME CODE PATTERN ARGUMENTS...: exits with CODE, says one line that matches PATTERN, leaves no file behind
+# refuses NAME CODE PATTERN ARGUMENTS...: the program must exit with CODE, print one line that matches PATTERN, and leave no file
 refuses() {
     name=$1 code=$2 pattern=$3
     shift 3
@@ -18,7 +18,7 @@ refuses() {
     check "$name" "$why"
 }
 
-# gives NAME "EULER:VOLUME ..." ARGUMENTS...: these are the components, in any order, volumes to 1e-12
+# gives NAME "EULER:VOLUME ..." ARGUMENTS...: the result must have these components, in any order, volumes to 1e-12
 gives() {
     name=$1 want=$2
     shift 2

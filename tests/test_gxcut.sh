@@ -4,7 +4,7 @@
 source=$(cd "$(dirname -- "$0")/.." && pwd)
 . "$(dirname -- "$0")/program.sh"
 
-# refuses NAME CODE PATTERN ARGUMENTS...: exits with CODE, says one line that matches PATTERN, leaves no file behind
+# refuses NAME CODE PATTERN ARGUMENTS...: the program must exit with CODE, print one line that matches PATTERN, and leave no file
 refuses() {
     name=$1 code=$2 pattern=$3
     shift 3
@@ -19,7 +19,7 @@ refuses() {
     check "$name" "$why"
 }
 
-# runs NAME ARGUMENTS...: exits with 0 and says nothing on stderr
+# runs NAME ARGUMENTS...: the program must exit with 0 and print nothing on stderr
 runs() {
     name=$1
     shift
@@ -31,7 +31,7 @@ runs() {
     check "$name" "$why"
 }
 
-# has NAME KEY VALUE: the last report's number
+# has NAME KEY VALUE: the number in the last report must be VALUE
 has() {
     got=$(sed -n 's/^ *"'"$2"'": *\([^,]*\),*$/\1/p' r.json 2>/dev/null)
     if [ "$got" = "$3" ]; then check "$1: $2" ""; else check "$1: $2" "is '$got', not $3"; fi
@@ -43,7 +43,7 @@ near() {
     check "$1: $2" "$(awk -v a="$got" -v b="$3" 'BEGIN { d = a - b; if (a == "" || d > 1e-12 || d < -1e-12) print "is \"" a "\", not " b }')"
 }
 
-# sums NAME KEY VALUE: the numbers in the brackets of "KEY": [...] or {...} add up to VALUE and ascend within each [...]
+# sums NAME KEY VALUE: the numbers of "KEY": [...] or {...} must add up to VALUE and ascend within each [...]
 sums() {
     check "$1: sum of $2" "$(tr -d '\n ' <r.json | sed 's/.*"'"$2"'":\([[{]\)/\1/; s/,"[a-z_]*":.*//' | tr '{}' '\n\n' |
         sed 's/"[0-9]*":/\n/g' | tr -d '[]' | awk -F, -v want="$3" '

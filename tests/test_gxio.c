@@ -1,6 +1,6 @@
-/* test_gxio.c - what the examples read, examples/gxio.h, and generate, examples/gxshape.h: files good and bad, the same
-   mesh in every format; stuffed shapes: angles, closed manifold boundary, volume, convergence, that the library takes
-   them.
+/* test_gxio.c - the readers and generators of the examples, examples/gxio.h and examples/gxshape.h. Files good and
+   bad, the same mesh in every format. Stuffed shapes: angles, closed manifold boundary, volume, convergence,
+   acceptance by the library.
 
    Random tests print their seed. */
 #include "../examples/gxio.h"
@@ -101,7 +101,7 @@ static gxio_surface surface_from(const char *ending, const char *text) {
 }
 
 /* Reads the file cut off before each of its lines and, for accidents in memory, before each of its bytes. As long as
-   lines up to `needed` are missing it is refused. */
+   lines up to `needed` are missing, it is refused. */
 static void expect_truncation(const char *ending, const char *text, size_t needed, int surface) {
     size_t length, lines = 0;
     for (length = 0; length < strlen(text); length++) {
@@ -594,7 +594,7 @@ static double waves_value(const void *shape, const double x[3]) {
     return fmax(value, gxshape_length(x) - 3);
 }
 
-/* The proven bounds of LS, whatever the function is: here features from many spacings down to a fraction of one. */
+/* The proven bounds of LS, for any function; here with features from many spacings down to a fraction of one */
 START_TEST(angles_are_bounded) {
     /* clang-format off */
     const double low[3] = { -3.1, -3.1, -3.1 }, high[3] = { 3.1, 3.1, 3.1 }, steepness = ldexp(1, _i % 5);
@@ -615,7 +615,7 @@ START_TEST(angles_are_bounded) {
 }
 END_TEST
 
-/* One piece, closed, of positive elements; the library takes it. Returns its volume. */
+/* One connected, closed mesh of positive elements, which the library accepts. Returns its volume. */
 static double expect_solid(const gxio_mesh *mesh, long euler) {
     const double volume = volume_of(mesh->positions, mesh->elements, mesh->element_count);
     gx_body_desc desc;
@@ -694,7 +694,7 @@ START_TEST(shapes_are_solids) {
 }
 END_TEST
 
-/* Tubes as thin as GXSHAPE_THINNEST, in any direction and place, come out in one piece. */
+/* Tubes as thin as GXSHAPE_THINNEST, in any direction and place, come out connected. */
 START_TEST(thin_tubes_stay_whole) {
     gxshape_field field;
     gxshape_mesh made;

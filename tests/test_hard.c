@@ -1,5 +1,5 @@
-/* test_hard.c - the benches' hard cases (bench/hard.h), by the library as by the others: what is right is told from
-   what is wrong; and the count of the unknowns that separation demands (bench/least.h). */
+/* test_hard.c - the benches' hard cases (bench/hard.h): the judge tells right from wrong, by the library and by the
+   others; and the count of the unknowns that separation demands (bench/least.h). */
 #define _POSIX_C_SOURCE 199309L
 #ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
@@ -29,7 +29,7 @@ static const hard_case *row_named(const char *name) {
 
 /* ---- judgement ---- */
 
-/* By all cases that take no seconds */
+/* All cases that take less than seconds */
 START_TEST(right_by_the_library) {
     int i;
     for (i = 0; i < HARD_CASES; i++) {
@@ -43,7 +43,7 @@ START_TEST(right_by_the_library) {
     }
 }
 
-/* A case with something else expected of it; texts end with the rest. */
+/* A case with another expectation; the outcome ends with these texts */
 static void check_text(hard_trial *t, const char *method_name, const char *expected) {
     char text[HARD_TEXT];
     hard_judge(t, &methods[method_index(method_name)], text);
@@ -90,7 +90,7 @@ START_TEST(others_as_they_are) {
     check_text(&t, "RXFEM", "wrong: 2 of 3 pieces");
 }
 
-/* A motion as the library has it, then a piece that falls too far, then one that is nowhere */
+/* A motion by the library, then one with a piece that falls too far, then one with a piece that is nowhere */
 START_TEST(motion_is_judged) {
     hard_trial t;
     void *state;
@@ -191,7 +191,7 @@ START_TEST(mended_is_the_same) {
     ck_assert_uint_ne(triangles[0], triangles[1]);
 }
 
-/* ---- the least ---- */
+/* ---- the least number of copies ---- */
 
 /* A block of 2^3 to 3^3 cells, cut by sheets over a grid */
 typedef struct sheets_case {

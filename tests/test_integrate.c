@@ -1,13 +1,16 @@
-/* Tests of gxfem_integrate.h.
+/* test_integrate.c - tests of gxfem_integrate.h.
 
-   moments      ten integrals of cube, icosahedron, tetrahedron and boxes against analytic values; translation, map,
-   inertia monomials    random bodies of voxels (non-convex, tunnels, cavities), rotated, to degree 6 against
-   Gauss-Legendre; far from the origin; high degrees; translation surfaces     area and flux monomials against
-   Gauss-Legendre and the divergence theorem elements     gradients, mass parts        slivers at a vertex, layers,
-   random splits by planes, thin layers, noise, cut faces arguments    every refusal, with outputs unchanged
+       moments      ten integrals of cube, icosahedron, tetrahedron and boxes against analytic values; translation,
+                    map, inertia
+       monomials    random bodies of voxels (non-convex, tunnels, cavities), rotated, to degree 6 against
+                    Gauss-Legendre; far from the origin; high degrees; translation
+       surfaces     area and flux monomials against Gauss-Legendre and the divergence theorem
+       elements     gradients, mass
+       parts        slivers at a vertex, layers, random splits by planes, thin layers, noise, cut faces
+       arguments    every refusal, with outputs unchanged
 
-   GXFEM_DATA (environment): a folder with moments/cube, icosa, tetra and their *.volInt.out, compared where present.
-   GXFEM_SEED: the first seed of the random tests (default 1). */
+   GXFEM_DATA (environment): a folder with moments/cube, icosa, tetra and their *.volInt.out, compared if they are
+   there. GXFEM_SEED: the first seed of the random tests (default 1). */
 #define GXFEM_INTEGRATE_IMPLEMENTATION
 #include "../gxfem_integrate.h"
 
@@ -451,7 +454,7 @@ START_TEST(voxel_bodies_to_degree_6) {
 }
 END_TEST
 
-/* Coordinates in 1/1024, offset 1e8: exactly representable, so the result must not notice the offset. */
+/* Coordinates in 1/1024, offset 1e8: exactly representable, so the offset must not change the result. */
 START_TEST(far_from_the_origin) {
     double a[9], zero[3] = {0, 0, 0}, far[3] = {1e8, -1e8, 3e8}, near_moments[84], far_moments[84], work[84], back[3];
     mesh m = make_voxels(3, 0x5b7effdu), moved;
@@ -472,7 +475,7 @@ START_TEST(far_from_the_origin) {
     m2 = moments2_of(&moved, far);
     expected = moments2_of(&m, NULL);
     assert_moments2(&m2, &expected, 0, 0);
-    /* to the far origin and back: what translation keeps */
+    /* To the far origin and back: what translation preserves */
     gxi_moments2_translate(&m2, far);
     ASSERT_RELATIVE(m2.first[2], expected.volume * far[2] + expected.first[2], 1e-15);
     ASSERT_RELATIVE(m2.second[5],
@@ -939,8 +942,7 @@ static void cell_mass(const cell *c, double mass[10], double load[4], long doubl
     cell_oracle(lambdas, triangles, count, oracle);
 }
 
-/* The same about vertex k, without the triangles in the element's faces through it; returns how many of them there are.
- */
+/* The same about vertex k, without the triangles in the element's faces through it; returns their number */
 static size_t cell_mass_at(const cell *c, unsigned k, double mass[10]) {
     static double lambdas[4 * CELL_FACES * FACE_POINTS];
     static uint32_t triangles[3 * CELL_FACES * FACE_POINTS];
@@ -1050,7 +1052,7 @@ static cell *make_layer(const double plane[4], double h) {
     return NULL;
 }
 
-/* Layers in general position, 1e-2 ... 1e-18 thick: below 1e-16 nothing but rounding is left. */
+/* Layers in general position, 1e-2 ... 1e-18 thick; below 1e-16 only rounding is left. */
 START_TEST(thin_layers_are_semidefinite) {
     double h = pow(10, -_i), plane[4], mass[10], load[4];
     long double oracle[10];
@@ -1077,8 +1079,7 @@ START_TEST(thin_layers_are_semidefinite) {
 }
 END_TEST
 
-/* Prisms as thick as the last bits of their corners, both ways round: whatever the sum says, it becomes a mass among
- * the corners. */
+/* Prisms as thick as the last bits of their corners, in both orientations: any sum becomes a mass among the corners. */
 START_TEST(parts_of_noise) {
     const uint32_t prism[24] = {0, 1, 2, 3, 5, 4, 0, 3, 1, 1, 3, 4, 1, 4, 2, 2, 4, 5, 2, 5, 0, 0, 5, 3};
     double lambdas[24], load[4], mass[10], sum;
@@ -1115,7 +1116,7 @@ START_TEST(parts_of_noise) {
 }
 END_TEST
 
-/* Moments made of noise become those of some mass in the box; right moments stay as they are. */
+/* Moments made of noise become those of some mass in the box; right moments do not change. */
 START_TEST(repair) {
     double lower[3], upper[3], mass[10];
     const double small[3] = {0.4, 0.4, 0.4}, noise[] = {1e-300, 1e-30, 1e-16, 1e-3, 1};
@@ -1147,8 +1148,8 @@ START_TEST(repair) {
 }
 END_TEST
 
-/* A piece of a cut face in an element in space: integrals of lambda_i and lambda_i lambda_j against the surface
-   monomials, lambda_i = lambda_i(origin) + g_i . (x - origin). */
+/* A part of a cut face in an element in space: integrals of lambda_i and lambda_i lambda_j against the surface
+   monomials, lambda_i = lambda_i(origin) + g_i . (x - origin) */
 START_TEST(cut_faces) {
     double x[12], g[12], lambda[3][4], load[4] = {0}, mass[10] = {0}, n[3], area, moments[10], work[10];
     mesh m = {{0}, {0}, 0, 0};
@@ -1186,8 +1187,8 @@ START_TEST(cut_faces) {
 }
 END_TEST
 
-/* The two ways to a part's volume: in its frame times 6 V, and its triangles in space; orientation included, for every
- * k. */
+/* The two ways to a part's volume, in its frame times 6 V and by its triangles in space, agree with their
+   orientation for every k. */
 START_TEST(frames_and_space_agree) {
     double x[12], e[3], lambdas[16], matrix[9], positions[12] = {0};
     unsigned k, axes[3], i, j, d;
@@ -1281,7 +1282,7 @@ START_TEST(bad_surfaces) {
 }
 END_TEST
 
-/* The largest coordinates that are accepted give finite results, at every degree. */
+/* The largest accepted coordinates give finite results at every degree. */
 START_TEST(accepted_means_finite) {
     double p[12] = {0}, moments[1771], work[1771];
     const unsigned degree = (unsigned)_i;
@@ -1365,7 +1366,7 @@ START_TEST(bad_parts) {
 }
 END_TEST
 
-/* ---- published values, where present ---- */
+/* ---- published values, if they are there ---- */
 
 /* Format: vertex count, vertices, face count, faces (count, indices: clockwise from inside). */
 static int read_polyhedron(const char *path, mesh *m) {

@@ -1,5 +1,5 @@
-/* test_literal.c - the bench's literal Algorithm 1 and its virtual node algorithm: the same pieces, copies and
-   integrals as the library where cuts are solids in general position, and what is their own elsewhere. */
+/* test_literal.c - the bench's literal Algorithm 1 and its virtual node algorithm: the same parts, copies and
+   integrals as the library where cuts are solids in general position, and their own results elsewhere. */
 #define _POSIX_C_SOURCE 199309L
 #ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
@@ -42,7 +42,7 @@ static int part_order(const void *a, const void *b) {
     return order ? order : (x->weight > y->weight) - (x->weight < y->weight);
 }
 
-/* To millionths of 1/m, so that the same element has the same bits, however they were computed */
+/* In millionths of 1/m, so that the same element has the same bits, however it was computed */
 static void round_gradients(gxs_element *parts, size_t count) {
     size_t i;
     int k;
@@ -62,7 +62,7 @@ static double *supports_of(const gxs_model *m) {
     return volume;
 }
 
-/* more: by what theirs may be larger; Algorithm 1 leaves a subdomain alone from which a solid only takes a bit */
+/* more: by what theirs may be larger. Algorithm 1 leaves a subdomain alone if a solid only takes a bit of it. */
 static void compare_parts(const gxs_model *a, const gxs_model *b, double tolerance, double more) {
     gxs_element *x = (gxs_element *)malloc(a->element_count * sizeof *x),
                 *y = (gxs_element *)malloc(b->element_count * sizeof *y);
@@ -94,7 +94,7 @@ static void compare_copies(const gxs_model *a, const gxs_model *b, double tolera
     free(y);
 }
 
-/* The library's model, and what Algorithm 1 makes of the same cuts */
+/* The library's model, and that of Algorithm 1 for the same cuts */
 static void compare_models(const workload *w, double tolerance, double more) {
     gx_body *body = cut_in_sequence(w);
     literal *l = literal_cut_by(w);

@@ -1,11 +1,11 @@
-/* test_memory.c - memory runs out. The n-th allocation fails, once or from then on, n = 0, 1, 2 ... until the call
-   succeeds: every failed call returns GX_ERROR_MEMORY and leaves the body's state hash alone, nothing leaks, sizes
-   given back are sizes taken, nothing is written behind a block, and the same call made again gives the topology that
-   it gives without a failure. A call may also succeed all the same (exact coordinates are cached where there is room):
-   then with the same outcome. What fails once is asked of an allocator that has no reallocate, what fails from then on
-   and what fails again and again of one that has.
+/* test_memory.c - memory runs out. The n-th allocation fails, once or from then on, for n = 0, 1, 2 ... until the
+   call succeeds. Every failed call returns GX_ERROR_MEMORY and leaves the body's state hash alone. Nothing leaks,
+   released sizes are allocated sizes, nothing is written behind a block. The same call made again gives the topology
+   that it gives without a failure. A call may also succeed in spite of a failure, because exact coordinates are only
+   cached where there is room; the outcome must then be the same. Allocators that fail once have no reallocate; those
+   that fail from then on, or again and again, have one.
 
-   The tests run in one process each (Check's own fork), so they can be run under valgrind with CK_FORK=no. */
+   Each test runs in a process of its own (Check's fork), so the tests can be run under valgrind with CK_FORK=no. */
 #ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
 #endif
@@ -15,16 +15,16 @@
 /* ---- an allocator that fails ---- */
 
 typedef struct memory {
-    size_t bytes, blocks; /* that live */
+    size_t bytes, blocks; /* alive */
     size_t calls;
     size_t fail_at; /* this call fails, SIZE_MAX: none does */
     int from_then_on;
     int grows; /* blocks are made larger by the allocator */
-    /* did one fail; was a block given back with another size; was something written behind one */
+    /* did one fail? was a block released with another size? was something written behind one? */
     int failed, wrong, overrun;
 } memory;
 
-/* bytes before each block: its size; keeps alignment. Bytes behind it: stay as they are */
+/* Bytes before each block hold its size and keep alignment. Bytes behind it must not change. */
 enum { HEAD = 16, TAIL = 64 };
 
 static const unsigned char behind = 0xc3;
@@ -41,7 +41,7 @@ static void *take(void *user, size_t size) {
     block = (char *)malloc(HEAD + size + TAIL);
     if (block == NULL) abort();
     memcpy(block, &size, sizeof size);
-    memset(block + HEAD, 0xa5, size); /* what is not initialised shows */
+    memset(block + HEAD, 0xa5, size); /* uninitialised memory shows */
     memset(block + HEAD + size, behind, TAIL);
     m->bytes += size;
     m->blocks++;
@@ -65,7 +65,7 @@ static void give(void *user, void *block, size_t size) {
     free((char *)block - HEAD);
 }
 
-/* Always to another place, so that who keeps the old one shows */
+/* Always moves the block, so that a kept old pointer shows */
 static void *grow(void *user, void *block, size_t size, size_t larger) {
     memory *m = (memory *)user;
     void *moved = take(user, larger);
@@ -164,12 +164,12 @@ static gx_result cut(gx_body *body, const gx_surface *surfaces, size_t count, do
     ck_assert_int_eq(failure.result, (int)result);
     /* nothing is to blame */
     if (result == GX_ERROR_MEMORY) ck_assert(failure.index == SIZE_MAX && failure.surface == SIZE_MAX);
-    /* else the test tries nothing */
+    /* otherwise the test tries nothing */
     if (result == GX_OK && sever_below > 0) ck_assert_uint_gt(report.severed_links, 0);
     return result;
 }
 
-/* ---- what is tried ---- */
+/* ---- the actions ---- */
 
 typedef gx_result (*action)(gx_body *body);
 
@@ -210,7 +210,7 @@ static gx_result cut_all(gx_body *body) {
     return cut(body, s, 4, 0.01, 0);
 }
 
-/* A ring of squares of two triangles around z inside the middle element: so many that free planes divide its leaves */
+/* A ring of squares of two triangles around z inside the middle element: enough for free planes to divide its leaves */
 static gx_result cut_ring(gx_body *body) {
     enum { ROUND = 16, HIGH = 4 };
     double vertices[3 * ROUND * (HIGH + 1)];
@@ -268,7 +268,7 @@ static gx_result motion(gx_body *body) {
     return gx_body_motion(body, motions, 64);
 }
 
-/* What there is of a copy, if one was made, is right. */
+/* If a copy was made, it is right. */
 static gx_result compare_and_destroy(gx_result result, gx_body *body, gx_body *copy) {
     ck_assert((result == GX_OK) == (copy != NULL));
     if (copy != NULL) ck_assert(gx_body_state_hash(copy) == gx_body_state_hash(body));
@@ -293,7 +293,7 @@ static gx_result save_and_load(gx_body *body) {
     return compare_and_destroy(result, body, copy);
 }
 
-static gx_body *source; /* what bodies become again; its own memory lasts */
+static gx_body *source; /* bodies become this one again; its own memory lasts */
 static gx_result restore(gx_body *body) {
     const uint64_t state = gx_body_state_hash(source);
     const gx_result result = gx_body_restore(body, source);
@@ -301,7 +301,7 @@ static gx_result restore(gx_body *body) {
     return result;
 }
 
-/* Before the action: what the body has been through. */
+/* Before the action: the history of the body */
 static gx_body *prepared(memory *m, const action *before) {
     gx_body *body = NULL;
     ck_assert_int_eq(create(m, &body), GX_OK);
@@ -316,7 +316,7 @@ static uint64_t topology(gx_body *body) {
     return h;
 }
 
-/* What the body is after the action without a failure */
+/* The body after the action without a failure */
 typedef struct outcome {
     uint64_t topology, state;
     size_t cells, copies, fragments;
@@ -386,7 +386,7 @@ static void sweep_fresh(const char *what, const action *before, action act, cons
     }
 }
 
-/* One body on which the same call fails again and again, ever later */
+/* One body on which the same call fails again and again, at ever later allocations */
 static void sweep_stubborn(const char *what, const action *before, action act, const outcome *truth) {
     memory m;
     gx_body *body;
@@ -505,7 +505,7 @@ START_TEST(view_hold_skin_hash) {
 }
 END_TEST
 
-/* A region may be taken although the view after it fails: the state is then the one with the region. */
+/* A region may be taken even if the view after it fails: the state is then the one with the region. */
 START_TEST(holding) {
     sweep("a hold", after_a_cut, hold);
     {
@@ -561,7 +561,7 @@ START_TEST(copies) {
 }
 END_TEST
 
-/* To a body with other cuts, to one with other state only, to one with room for more than there was */
+/* To a body with other cuts, to one with another state only, to one with more room than before */
 START_TEST(restoring) {
     static const action *const sources[4] = {nothing, moved, moved, moved}, *const bodies[4] = {moved, after_a_cut,
                                                                                                 moved, unmoved};
@@ -582,7 +582,7 @@ END_TEST
 START_TEST(cut_after_steps) { sweep("a cut between steps", held, cut_second_sheet); }
 END_TEST
 
-/* A solid takes away the element at corner 1, and its copy of that corner */
+/* A solid removes the element at corner 1 and its copy of that corner. */
 static gx_result cut_corner(gx_body *body) {
     static const double corner[12] = {-1, -1, 0, 3, 3, 0, 3, -1, 4, 3, -9, -9};
     static const uint32_t triangles[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
@@ -644,7 +644,7 @@ START_TEST(cut_of_a_fan) {
 }
 END_TEST
 
-/* A model that there is no memory for does not keep the body from stepping: it moves as if none had been asked for. */
+/* If there is no memory for a model, a body can still step: it moves as if no model had been requested. */
 START_TEST(step_after_a_failed_model) {
     static const action one_step[] = {step, NULL}, two_steps[] = {step, step, NULL};
     gxs_model model;

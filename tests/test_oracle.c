@@ -91,8 +91,8 @@ static void random_point(const workload *w, double x[3]) {
     for (k = 0; k < 3; k++) x[k] = a[k] + t * (b[k] - a[k]) + random_real(-0.3, 0.3);
 }
 
-/* A point that makes trouble: a node, the middle of an edge, a point of a face or of an element, a lattice point, any
- * point */
+/* A point that makes trouble: a node, the middle of an edge, a point of a face or of an element, a lattice point, or
+   any point */
 static void special_point(const workload *w, double x[3]) {
     const uint32_t *n = w->elements + 4 * (size_t)random_below((int)w->element_count);
     const double *p = w->positions;
@@ -281,7 +281,7 @@ static workload random_scene(uint64_t seed) {
 
 /* ---- the library's answer ---- */
 
-typedef struct ordering { /* how the library is given the scene */
+typedef struct ordering { /* how the scene is given to the library */
     int at_once;          /* all cuts in one call, or one after another */
     size_t surface[WL_SURFACES];
     size_t *element; /* element i of the body is element[i] of the scene */
@@ -372,7 +372,7 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* The volumes, sorted, one by one: within 1e-10 of themselves or 1e-14 of the whole */
+/* The volumes, sorted and compared one by one: within 1e-10 of themselves or 1e-14 of the whole */
 static int same_volumes(double *a, double *b, size_t count, double whole) {
     size_t i;
     qsort(a, count, sizeof *a, ascending);
@@ -514,7 +514,7 @@ START_TEST(oracle_knows_the_paper) {
 }
 END_TEST
 
-/* An uncut node has one copy on any mesh; a wall that reaches the shared edge or node takes the two elements apart. */
+/* An uncut node has one copy on any mesh. A wall that reaches the shared edge or node separates the two elements. */
 START_TEST(oracle_knows_shared_edges_and_nodes) {
     double outside[3][3] = {{0, 0, 0}, {0, 0, 1}, {1, -1, 0}}, facet[3][3] = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}};
     int shared;

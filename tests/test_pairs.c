@@ -1,10 +1,11 @@
 /* test_pairs.c - a closed surface and another one, closed or open: union, intersection, difference and symmetric
-   difference, or the first divided by the second, beside the exact oracle (boolean_oracle.h); what is too large for it
-   beside what must be true of volumes, and beside the same with axes exchanged. A first surface that is open has to be
-   refused, with a triangle at its rim.
+   difference, or the first divided by the second. Compared with the exact oracle (boolean_oracle.h). Pairs too large
+   for it are checked by the identities of volumes and by the same operations with axes exchanged. A first surface
+   that is open must be refused, with a triangle at its rim.
 
-   GXFEM_DATA (environment): a data folder; the pairs in its folder boolean/ are taken too: MCUT's benchmark, and three
-   of manifold's tests, whose difference is known from CGAL's corefinement. GXFEM_VERBOSE: what each pair gives. */
+   GXFEM_DATA (environment): a data folder. The pairs in its folder boolean/ are used too: MCUT's benchmark, and
+   three of manifold's tests, whose difference is known from CGAL's corefinement. GXFEM_VERBOSE prints what each pair
+   gives. */
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../gxfem_boolean.h"
 #include "../examples/gxio.h"
@@ -64,7 +65,7 @@ static int compare_ends(const void *a, const void *b) {
     return 0;
 }
 
-/* A triangle's edges from the lower to the higher end, edges of no length left out. Returns how many. */
+/* A triangle's edges from the lower to the higher end, without edges of no length. Returns their number. */
 static size_t sides_of(const gxio_surface *s, size_t triangle, side *sides) {
     size_t k, n = 0;
     int j;
@@ -84,7 +85,8 @@ static size_t sides_of(const gxio_surface *s, size_t triangle, side *sides) {
     return n;
 }
 
-/* rim: of each triangle, whether an edge of it is passed more often one way than the other. Returns how many are. */
+/* rim: for each triangle, whether it has an edge that is passed more often one way than the other. Returns the
+   number of these. */
 static size_t find_rim(const gxio_surface *s, unsigned char *rim) {
     side *sides = (side *)calloc(3 * s->triangle_count + 1, sizeof *sides);
     size_t n = 0, i, from, found = 0;
@@ -205,7 +207,7 @@ static int ask_oracle(const gxio_surface *s, int operation, truth *t) {
     return s[0].triangle_count + s[1].triangle_count <= 2 * PLANES && truth_ask(&q, t);
 }
 
-/* Volumes are promised to 1e-7 of themselves. */
+/* Volumes are right to 1e-7 of themselves. */
 static void check_near(double x, double y, double size) { ck_assert_double_le(fabs(x - y), 4e-7 * size); }
 
 static void exchange_axes(gxio_surface *s) {
@@ -218,7 +220,7 @@ static void exchange_axes(gxio_surface *s) {
     }
 }
 
-/* What is true of any operands, though no oracle knows the numbers */
+/* Identities that hold for any operands, even if no oracle knows the numbers */
 static void check_volumes(gxio_surface *s, const answer *a) {
     const answer first = combine(s, 1, GXB_UNION), second = combine(s + 1, 1, GXB_UNION);
     const double size = first.volume + second.volume;

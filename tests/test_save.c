@@ -1,6 +1,6 @@
-/* test_save.c - saved, loaded, cloned and restored bodies: nothing that one can ask of them differs, later cuts give
-   the same cells, later steps the same bits. Damaged and hostile bytes: an error, or a body that can be used, but never
-   a crash; run it with make sanitize, too. */
+/* test_save.c - saved, loaded, cloned and restored bodies: no query tells them apart, later cuts give the same
+   cells, later steps the same bits. Damaged and hostile bytes give an error, or a body that can be used, but never a
+   crash; run this with make sanitize, too. */
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "body.h"
@@ -17,7 +17,7 @@ static void shake(gx_body *body, double size) {
     for (i = 0; i < v.copy_count; i++) v.rest_time[i] = random_real(0, 1);
 }
 
-/* Texture coordinates for any mesh or surface, rounded so that they are no exact numbers */
+/* Texture coordinates for any mesh or surface, rounded, so that they are not exact numbers */
 static const float *texture(void) {
     static float t[4096];
     size_t i;
@@ -36,8 +36,8 @@ static void cut_textured(gx_body *body, const workload *w, size_t surface, int t
     ck_assert_int_eq(gx_body_cut(body, &cut, NULL, NULL), GX_OK);
 }
 
-/* A body cut by the first surfaces, some at once, some with textures, with looks in between now and then; the rest is
- * spare. */
+/* A body cut by the first surfaces, some at once, some with textures, now and then with a view in between. The rest
+   is spare. */
 static gx_body *random_body(workload *w, int cuts, int spare) {
     gx_body_desc desc = desc_of(w);
     gx_body *body = NULL;
@@ -96,7 +96,7 @@ static gx_body *clone_of(gx_body *body) {
     return clone;
 }
 
-/* By way of bytes, or straight */
+/* By way of bytes, or directly */
 static gx_body *twin_of(gx_body *body, int by_bytes) {
     bytes b;
     gx_body *twin;
@@ -150,7 +150,7 @@ static void expect_equal_skins(gx_body *a, gx_body *b, uint64_t seed) {
     SAME(p.vertex_texture, q.vertex_texture, 2 * p.vertex_count);
 }
 
-/* State first: views and hashes open elements, and a view tells what has changed. */
+/* State first, since views and hashes open elements, and a view reports changes */
 static void expect_equal_cells(gx_body *a, gx_body *b, uint64_t seed) {
     CHECK_SEED(gx_body_state_hash(a) == gx_body_state_hash(b), seed);
     expect_equal_views(a, b, seed);
@@ -158,14 +158,14 @@ static void expect_equal_cells(gx_body *a, gx_body *b, uint64_t seed) {
     CHECK_SEED(gx_body_state_hash(a) == gx_body_state_hash(b), seed);
 }
 
-/* Also skins, of bodies that have been drawn at the same times: their order tells of the times before. */
+/* Also skins, of bodies that have been drawn at the same times: a skin's order depends on earlier times. */
 static void expect_equal(gx_body *a, gx_body *b, uint64_t seed) {
     expect_equal_cells(a, b, seed);
     expect_equal_skins(a, b, seed);
     CHECK_SEED(gx_body_state_hash(a) == gx_body_state_hash(b), seed);
 }
 
-/* ---- what is loaded is what was saved ---- */
+/* ---- a loaded body is the saved one ---- */
 
 START_TEST(random_bodies) {
     const uint64_t seed = (uint64_t)_i + 1;
@@ -186,7 +186,7 @@ START_TEST(random_bodies) {
     for (k = 0; k < 3; k++) { /* further cuts */
         cut_textured(body, &w, w.surface_count - 1 - k, k == 0);
         cut_textured(copy, &w, w.surface_count - 1 - k, k == 0);
-        if (k != 1) expect_equal(body, copy, seed); /* once without a look */
+        if (k != 1) expect_equal(body, copy, seed); /* once without a view */
     }
     free(b.data);
     free(again.data);
@@ -196,7 +196,7 @@ START_TEST(random_bodies) {
 }
 END_TEST
 
-/* Planes of no triangle, through points made for them, near and far from the origin; further cuts */
+/* Free planes, through points made for them, near and far from the origin; further cuts */
 START_TEST(many_triangles_in_an_element) {
     static const double sizes[3] = {1, 1e-3, 1e6}, offsets[3] = {0, 12345678.9, -3e7};
     workload w = grid(1, 1, 1, 5);
@@ -225,7 +225,7 @@ START_TEST(many_triangles_in_an_element) {
 }
 END_TEST
 
-/* The frame of the complex shifts and scales: given coordinates must come back as they were. */
+/* The frame of the complex shifts and scales. Given coordinates must come back unchanged. */
 START_TEST(far_and_small_bodies) {
     static const double sizes[6] = {1, 1e-6, 1e6, 1e-30, 4e-31, 6e29}, offsets[6] = {1e8, 0.3, 12345678.9, 0, 0, 0};
     size_t i, k;
@@ -324,8 +324,8 @@ static void expect_same_steps(gx_body *a, gx_body *b, const gx_step_desc *step, 
     }
 }
 
-/* Integrators, materials, springs, contact; the size is one at which multigrid is used. Some steps before, a save or a
-   clone in the middle, a cut and steps after. */
+/* Integrators, materials, springs, contact, at a size for which multigrid is used. Some steps, a save or a clone in
+   the middle, a cut and more steps. */
 START_TEST(steps_go_on) {
     static const gxs_integrator integrators[4] = {GXS_BDF1, GXS_BDF2, GXS_MIDPOINT, GXS_STATIC};
     const uint64_t seed = (uint64_t)_i;
@@ -429,7 +429,7 @@ START_TEST(steps_go_on) {
 }
 END_TEST
 
-/* A body at rest is not woken by being saved, cloned or restored, nor is its copy. */
+/* Saving, cloning or restoring wakes neither a body at rest nor its copy. */
 START_TEST(sleepers_sleep_on) {
     workload w = grid(2, 2, 2, 5);
     gx_body *body = body_of(&w), *copy, *clone;
@@ -464,8 +464,8 @@ END_TEST
 
 /* ---- clones and restoring ---- */
 
-/* Back to a clone after steps (the state alone), after cuts (all), and after another hold; then the same steps as
- * before. */
+/* Back to a clone after steps (the state alone), after cuts (everything), and after another hold; then the same
+   steps as before */
 START_TEST(rollback) {
     const uint64_t seed = (uint64_t)_i + 1;
     workload w = grid(3, 3, 3, 6);
@@ -481,7 +481,7 @@ START_TEST(rollback) {
     step.gravity[2] = -9.81;
     step.integrator = _i % 2 ? GXS_BDF2 : GXS_BDF1;
     for (i = 0; i < 2; i++) ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
-    view_of(body); /* what one has seen is state, too */
+    view_of(body); /* what one has viewed is state, too */
     snapshot = clone_of(body);
     before = gx_body_state_hash(snapshot);
     CHECK_SEED(gx_body_state_hash(body) == before, seed);
@@ -500,7 +500,7 @@ START_TEST(rollback) {
         ck_assert_msg(gx_body_state_hash(body) == after, "seed %llu, way %d: another end", (unsigned long long)seed,
                       way);
     }
-    ck_assert_int_eq(gx_body_restore(snapshot, body), GX_OK); /* brought up to date: both go on alike */
+    ck_assert_int_eq(gx_body_restore(snapshot, body), GX_OK); /* brought up to date: both continue alike */
     CHECK_SEED(gx_body_state_hash(snapshot) == after, seed);
     expect_same_steps(body, snapshot, &step, 3, seed);
     ck_assert_int_eq(gx_body_restore(body, body), GX_OK);
@@ -511,7 +511,7 @@ START_TEST(rollback) {
 }
 END_TEST
 
-/* Bodies of other meshes, materials or cuts that have the same counts are not taken for the same. */
+/* Bodies of other meshes, materials or cuts with the same counts are not taken for the same. */
 START_TEST(restoring_from_strangers) {
     workload w = grid(2, 1, 1, 5), v = grid(2, 1, 1, 5);
     gx_body_desc desc = desc_of(&w);
@@ -546,7 +546,7 @@ START_TEST(restoring_from_strangers) {
 }
 END_TEST
 
-/* Bodies that have been cut alike have the same epoch, however they came to be; others have others. */
+/* Bodies with the same cuts have the same epoch, whatever their history; others have others. */
 START_TEST(epochs_go_with_the_copies) {
     workload w = grid(2, 2, 1, 5);
     gx_body *body = body_of(&w), *twin, *clone;
@@ -589,7 +589,7 @@ START_TEST(epochs_go_with_the_copies) {
 }
 END_TEST
 
-/* Nothing of a copy is the body's: it lives on. */
+/* A copy shares nothing with the body and outlives it. */
 START_TEST(copies_stand_alone) {
     workload w = grid(2, 2, 1, 5);
     gx_body *body, *copy, *clone;
@@ -664,10 +664,10 @@ END_TEST
 
 enum { HEAD_BYTES = 40, AT_SIZE = 24, AT_CHECKSUM = 32 };
 
-/* changes have been looked at; elements share an edge only, part of which is a wall */
+/* changes have been viewed; elements share only an edge, part of which is a wall */
 enum { SEEN = 1, PINCHED = 2 };
 
-/* A small body with all there is: sheets, a partial one, a solid, held copies, history */
+/* A small body with a bit of everything: sheets, a partial one, a solid, held copies, history */
 static gx_body *small_body(workload *w, int variant) {
     gx_body *body;
     gx_step_desc step;
@@ -728,14 +728,14 @@ static gx_body *small_body(workload *w, int variant) {
     return body;
 }
 
-/* Damage with a checksum that is right. */
+/* Damage with a checksum that fits */
 static void seal(bytes b) {
     const uint64_t size = b.size, checksum = gxp_checksum(b.data + HEAD_BYTES, b.size - HEAD_BYTES);
     memcpy(b.data + AT_SIZE, &size, sizeof size);
     memcpy(b.data + AT_CHECKSUM, &checksum, sizeof checksum);
 }
 
-/* What was loaded is used in every way; errors are fine. */
+/* A loaded body is used in every way; errors are fine. */
 static void use(gx_body *body, const workload *w) {
     static const gx_region region = {0, 1, 0.3};
     static const double origin[3] = {0.2, 0.2, -3}, direction[3] = {0, 0.01, 1};
@@ -789,7 +789,7 @@ static int try_bytes(bytes b, const workload *w, const char *what, size_t at) {
     return result == GX_OK;
 }
 
-/* Every byte changed, every length: with the checksum as it was nothing passes. */
+/* Every byte changed, every length: with the old checksum nothing passes. */
 START_TEST(damage_is_seen) {
     workload w;
     gx_body *body = small_body(&w, SEEN);
@@ -801,7 +801,7 @@ START_TEST(damage_is_seen) {
         b.data[i] ^= (unsigned char)(1u << i % 8);
     }
     for (i = 0; i < b.size; i++) {
-        part.data = (unsigned char *)malloc(i + 1); /* so that a sanitizer sees what reads beyond it */
+        part.data = (unsigned char *)malloc(i + 1); /* so that a sanitizer sees reads beyond it */
         part.size = i;
         memcpy(part.data, b.data, i);
         ck_assert_msg(!try_bytes(part, &w, "cut short", i), "that it is cut short at %zu is not seen", i);
@@ -819,7 +819,7 @@ START_TEST(damage_is_seen) {
 }
 END_TEST
 
-/* What no body can be is damage: a density with which elements are too heavy, a cell larger than its element. */
+/* Impossible bodies are damage: a density that makes elements too heavy, a cell larger than its element. */
 START_TEST(damage_beyond_the_range) {
     workload w;
     gx_body *body = small_body(&w, SEEN), *other = NULL;
@@ -847,7 +847,8 @@ START_TEST(damage_beyond_the_range) {
 }
 END_TEST
 
-/* A bit of every byte flipped, each time another, and the checksum made right: an error, or a body that can be used. */
+/* A bit of every byte is flipped, each time another one, and the checksum is corrected: an error, or a body that can
+   be used. */
 START_TEST(hostile_bits) {
     workload w;
     gx_body *body = small_body(&w, _i % 4);
@@ -868,7 +869,7 @@ START_TEST(hostile_bits) {
 }
 END_TEST
 
-/* Every word replaced by ones that an index or a count might be. */
+/* Every word is replaced by typical indices and counts. */
 START_TEST(hostile_words) {
     static const uint32_t values[6] = {0, 1, UINT32_MAX, 0x7fffffff, 0x80000000u, 3};
     workload w;

@@ -1,4 +1,4 @@
-/* test_scenes.c - what scenes say of themselves, held against the exact oracle. */
+/* test_scenes.c - the scenes' own claims against the exact oracle. */
 #ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
 #endif
@@ -32,7 +32,7 @@ static oracle *cheese_truth(const cheese_surface *surfaces) {
     return oracle_create(&mesh, input, CHEESE_SURFACES);
 }
 
-/* One cut after the other, as the scene does */
+/* One cut after the other, as in the scene */
 static gx_body *cheese_body(const cheese_surface *surfaces) {
     gx_body_desc desc;
     gx_cut_desc cut;
@@ -73,7 +73,7 @@ static void compare_volumes(const oracle *truth, const gx_view *view) {
     free(exact);
 }
 
-/* The counts that swiss_cheese --small checks are the oracle's, and volumes of cells are too. */
+/* The counts that swiss_cheese --small checks are the oracle's, and so are the volumes of cells. */
 START_TEST(cheese_is_the_oracles) {
     cheese_surface *surfaces = (cheese_surface *)calloc(CHEESE_SURFACES, sizeof *surfaces);
     oracle *truth;

@@ -1,5 +1,5 @@
-/* test_skin.c - the visual surface: what is rebuilt after a cut is what would be built anew, changes are reported,
-   surfaces are watertight, normals, texture coordinates, rays. More on the skin: test_body.c.
+/* test_skin.c - the visual surface: an updated skin equals one made from nothing, changes are reported, surfaces are
+   watertight, normals, texture coordinates, rays. More on the skin: test_body.c.
 
    Random tests print their seed. GXFEM_SEED=n runs seed n alone. */
 #ifndef GXFEM_LINKED
@@ -41,10 +41,10 @@ static double length_of(const float *n) {
     return sqrt((double)n[0] * (double)n[0] + (double)n[1] * (double)n[1] + (double)n[2] * (double)n[2]);
 }
 
-/* ---- made anew ---- */
+/* ---- updates ---- */
 
-/* A triangle by what is at its corners, the smallest first. Normals and texture coordinates in coarse steps: they are
-   rounded otherwise where sums run in another order. */
+/* A triangle by the data at its corners, the smallest first. Normals and texture coordinates are compared in coarse
+   steps: their rounding depends on the order of sums. */
 typedef struct named_corner {
     uint32_t point, copies[4];
     double weights[4];
@@ -164,7 +164,7 @@ static void check_whole(gx_body *body, const gx_skin *skin, uint64_t seed) {
     free(x);
 }
 
-/* The user's own arrays, kept up to date by ranges */
+/* The user's own arrays, kept up to date by the reported ranges */
 typedef struct mirror {
     uint32_t *copies, *triangles, *surface;
     float *normal;
@@ -196,7 +196,7 @@ static void follow(mirror *m, const gx_skin *skin) {
     for (i = 0; i < skin->triangle_count; i++) ck_assert_uint_eq(m->surface[i], skin->triangle_surface[i]);
 }
 
-/* After each of some cuts: the skin that follows, and one made anew */
+/* After each of some cuts: the updated skin, and one made from nothing */
 START_TEST(follows_cuts) {
     uint64_t seed = (uint64_t)_i;
     workload w = random_scene(seed, 6, 1);
@@ -214,9 +214,9 @@ START_TEST(follows_cuts) {
     for (c = 0; c < w.surface_count; c++) {
         cut_by(body, &w, c, 1);
         cut_by(other, &w, c, 1);
-        if (random_below(3) == 0) continue; /* several cuts before a look */
+        if (random_below(3) == 0) continue; /* several cuts before an update */
         skin = skin_of(body, &desc);
-        skin_of(other, &another); /* of another description: nothing of it is kept */
+        skin_of(other, &another); /* with another description: nothing of it is kept */
         anew = skin_of(other, &desc);
         check_same(&skin, &anew, seed, c);
         move_at_random(body, 0.2);
@@ -235,7 +235,7 @@ START_TEST(follows_cuts) {
 }
 END_TEST
 
-/* A body that goes back to before a cut shows what it showed then, and follows later cuts from there. */
+/* A body restored to its state before a cut shows the same as then, and follows later cuts from there. */
 START_TEST(follows_restores) {
     uint64_t seed = (uint64_t)_i;
     workload w = random_scene(seed, 3, 1);
@@ -263,8 +263,8 @@ START_TEST(follows_restores) {
 END_TEST
 
 /* A small cut in a large body changes little of its skin. */
-/* Elements that an edge joins until half of it is cut and then the element beside it: the skin that follows is closed,
- * as made anew. */
+/* Elements that an edge joins until half of it is cut, and then the element beside it: the updated skin is closed
+   and equals one made from nothing. */
 START_TEST(follows_cuts_at_a_pinch) {
     static const double x[8][3] = {{0, 0, 0},      {0, 0, 1},       {1, -0.5, 0.5}, {1, 0.5, 0.5},
                                    {-1, 0.5, 0.5}, {-1, -0.5, 0.5}, {1, 0, -2},     {0.2, 1.5, 0.5}};
@@ -320,8 +320,8 @@ START_TEST(changes_are_local) {
 }
 END_TEST
 
-/* A sheet that ends in the first element it enters shows nothing, and leaves no gap where it divides the outer
- * surface's edges. */
+/* A sheet that ends in the first element that it enters shows nothing. It leaves no gap where it divides the outer
+   surface's edges. */
 START_TEST(partial_cuts_show_nothing) {
     workload w = grid(2, 2, 2, 5);
     gx_body *body = body_of(&w);
@@ -365,7 +365,8 @@ static void normal_of(const double *x, const uint32_t *t, double n[3]) {
     }
 }
 
-/* Flat: each corner has its triangle's normal, at rest and turned. Creases below a right angle: the same on a block. */
+/* Flat: each corner has its triangle's normal, at rest and turned. Creases below a right angle give the same on a
+   block. */
 START_TEST(flat_normals) {
     workload w = grid(2, 2, 1, 5);
     gx_body *body;
@@ -420,7 +421,8 @@ START_TEST(flat_normals) {
 }
 END_TEST
 
-/* A body as small or as large as may be, whose squares of areas are no floats, has the normals that it has of 1 m. */
+/* A body as small or as large as the limits allow, whose squared areas are no floats, has the same normals as at 1
+   m. */
 START_TEST(normals_at_any_size) {
     const double p[3] = {0.93, 1.07, 0.55}, q[3] = {1, 0.3, 0.2}, r[3] = {0.1, 1, 0.4};
     static const int powers[4] = {0, -100, 98, 50};
@@ -460,8 +462,8 @@ START_TEST(normals_at_any_size) {
 }
 END_TEST
 
-/* Smooth everywhere: a block has one vertex per outer node; its corner's normal is the mean by area of three faces. A
-   cut leaves the rest normals of the outer surface alone, and stays sharp against it. */
+/* Smooth everywhere: a block has one vertex per outer node; its corner's normal is the mean by area of three faces.
+   A cut leaves the rest normals of the outer surface alone and stays sharp against it. */
 START_TEST(smooth_normals) {
     workload w = grid(3, 3, 3, 5);
     gx_body *body = body_of(&w);
@@ -536,7 +538,8 @@ static float linear(const double *x, int k) {
     return (float)(k ? 0.5 * x[0] - 0.25 * x[1] + x[2] : x[0] + 2 * x[1] - 0.125 * x[2] + 3);
 }
 
-/* Linear in the material coordinates on nodes and on the cut's vertices: so everywhere. A surface without: 0. */
+/* Texture coordinates that are linear in the material coordinates on nodes and on the cut's vertices are so
+   everywhere. A surface without them: 0. */
 START_TEST(texture) {
     workload w = random_scene((uint64_t)_i, 2, 1);
     gx_body_desc desc = desc_of(&w);
@@ -598,7 +601,7 @@ static int meets(const double *o, const double *d, const double *a, const double
         v += d[k] * q[k];
         along += f[k] * q[k];
     }
-    if (fabs(det) < 1e-12) return -1; /* seen from the side, or next to nothing */
+    if (fabs(det) < 1e-12) return -1; /* seen from the side, or almost */
     u /= det;
     v /= det;
     *t = along / det;

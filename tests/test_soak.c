@@ -1,12 +1,12 @@
 /* test_soak.c - lives of bodies that are cut, kicked and dropped (bench/soak.h): nothing runs away, no energy is
- * gained, no call fails. */
+   gained, no call fails. */
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "../bench/soak.h"
 #include "body.h"
 
-/* A copy that runs away is beyond 1e10 times the rest; of speeds, one step of a light copy in contact is let pass (make
- * bench-soak tells). */
+/* A copy that runs away is beyond 1e10 times the rest. For speeds, one step of a light copy in contact is tolerated
+   (make bench-soak prints them). */
 START_TEST(nothing_runs_away) {
     row r;
     memset(&r, 0, sizeof r);

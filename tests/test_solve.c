@@ -1,4 +1,4 @@
-/* Tests of gxfem_solve.h: material, assembled forms, time step, violent starts, bad input, memory. */
+/* test_solve.c - tests of gxfem_solve.h: material, assembled forms, time step, violent starts, bad input, memory. */
 #define GXFEM_SOLVE_IMPLEMENTATION
 #include "../gxfem_solve.h"
 
@@ -104,7 +104,7 @@ START_TEST(stress_is_the_derivative_of_energy) {
         double f[9], stress[9], scale = 0;
         gxs_material material = material_make(_i, poissons[round % 4]);
         seed((uint64_t)round);
-        /* its rotation jumps where F is inverted */
+        /* Its rotation jumps where F is inverted. */
         random_deformation(f, round % 2 ? 0.3 : _i == GXS_FIXED_COROTATED ? 0.5 : 2);
         gxs_material_stress(&material, f, stress);
         for (k = 0; k < 9; k++) scale += fabs(stress[k]);
@@ -176,8 +176,9 @@ static void difference_hessian(const gxs_material *material, const double *f, do
         for (r = 0; r < 9; r++) h[c][r] = 0.5 * (raw[c][r] + raw[r][c]);
 }
 
-/* Where the true Hessian has no negative eigenvalue the product is the true one; elsewhere the difference (projected -
- * true) is semi-definite and has no part in the positive eigenspace, hence trace(projected x difference) = 0. */
+/* Where the true Hessian has no negative eigenvalue, the product is the true one. Elsewhere the difference
+   (projected - true) is semi-definite and has no part in the positive eigenspace, hence trace(projected x
+   difference) = 0. */
 START_TEST(hessian_is_the_projection_of_the_derivative_of_stress) {
     int round, r, c, same = 0, projected = 0;
     for (round = 0; round < 600; round++) {
@@ -282,8 +283,8 @@ START_TEST(model_gradient_and_hessian_match_differences) {
 }
 END_TEST
 
-/* the chunks' product and block diagonal against the assembled forms: whole and cut elements, an incomplete last block
- */
+/* The chunks' product and block diagonal against the assembled forms: whole and cut elements, an incomplete last
+   block */
 START_TEST(block_product_equals_assembled_forms) {
     size_t i, n, k, copies;
     double *x, *expected, *mass, *product;
@@ -304,9 +305,9 @@ START_TEST(block_product_equals_assembled_forms) {
     set_kind(s.material, _i / 4);
     for (i = 0; i < 300; i++) {
         s.elements[i].weight *= 0.3;
-        s.elements[i].mass[i % 10] *= 1.01; /* no longer that of a whole element */
+        s.elements[i].mass[i % 10] *= 1.01; /* no longer the mass of a whole element */
         for (k = 0; k < 12 && i % 3 == 0; k++)
-            s.elements[i].gradient[k / 3][k % 3] *= 1.02; /* nor what its corners' positions say */
+            s.elements[i].gradient[k / 3][k % 3] *= 1.02; /* nor the gradient by its corners' positions */
     }
     copies = s.model.copy_count;
     n = 3 * copies;
@@ -368,8 +369,8 @@ static double largest(const double *a, size_t n) {
     return most;
 }
 
-/* Exact, in a state that would be projected: the difference quotient of the gradient; at rest projected and exact are
- * the same. */
+/* Exact, in a state that would be projected: the difference quotient of the gradient. At rest, projected and exact
+   are the same. */
 START_TEST(operator_is_the_derivative_of_forces) {
     gxs_solver *solver = solver_make();
     size_t i, n;
@@ -407,7 +408,7 @@ START_TEST(operator_is_the_derivative_of_forces) {
 }
 END_TEST
 
-/* Masters' motion onto followers, and followers' forces onto masters */
+/* Masters' motion to followers, and followers' forces to masters */
 static void follow(const gxs_constraint *ties, size_t count, double *x) {
     size_t t, k;
     for (t = 0; t < 3 * count; t++) {
@@ -426,8 +427,8 @@ static void give(const gxs_constraint *ties, size_t count, double *y) {
     }
 }
 
-/* Falling bodies, and bodies nearly at rest, have tiny rotations and strains: no power of them is denormal in single
- * precision, which would make products twice as long. */
+/* Falling bodies, and bodies nearly at rest, have tiny rotations and strains. None of their powers may be denormal
+   in single precision: that would make products take twice as long. */
 START_TEST(small_strains_are_not_denormal) {
     static const double rate = 900;
     double size; /* m */
@@ -441,7 +442,7 @@ START_TEST(small_strains_are_not_denormal) {
     set_kind(s.material, _i);
     n = s.model.copy_count;
     for (i = 0; i < s.model.element_count; i += 3)
-        s.elements[i].mass[i % 10] *= 1.01; /* no longer that of a whole element */
+        s.elements[i].mass[i % 10] *= 1.01; /* no longer the mass of a whole element */
     in = (gxsp_vector4 *)zeroed(n, sizeof *in), out = (gxsp_vector4 *)zeroed(n, sizeof *out);
     ck_assert_int_eq(gxs_solver_create(NULL, &solver), GX_OK);
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
@@ -462,8 +463,8 @@ START_TEST(small_strains_are_not_denormal) {
 }
 END_TEST
 
-/* Held copies, followers of free and held ones, a copy without an element; far from rest: what is not read, what comes
- * out, symmetry */
+/* Held copies, followers of free and held ones, a copy without an element; far from rest. Checked: entries that must
+   not be read, the result, symmetry. */
 START_TEST(operator_acts_on_what_can_move) {
     /* clang-format off */
     static const gxs_constraint ties[3] = {{30, {31, 37, 31, 31}, {0.5, 0.5, 0, 0}},
@@ -504,7 +505,7 @@ START_TEST(operator_acts_on_what_can_move) {
     for (i = 0; i < n; i++)
         x[i] = s.held[i / 3] || i / 3 == 30 || i / 3 == 41 || i / 3 == 8 || i == n - 1 ? 1e6 * uniform() : x[i];
     ck_assert_int_eq(gxs_solver_product(solver, x, w, NULL), GX_OK);
-    for (i = 0; i < n; i++) /* the power of two by which it is scaled is another one */
+    for (i = 0; i < n; i++) /* another power of two by which it is scaled */
         assert_that(fabs(w[i] - y[i]) < 1e-5 * largest(y, n), "%g %g", w[i], y[i]);
     for (i = 0; i < n; i++) x[i] = s.held[i / 3] ? 0 : x[i];
     follow(ties, 3, x);
@@ -523,8 +524,8 @@ START_TEST(operator_acts_on_what_can_move) {
 }
 END_TEST
 
-/* Translations meet no stiffness, a power of two is a factor, tiny and huge directions lose nothing, no direction is of
- * negative energy. */
+/* Translations meet no stiffness, a power of two is a factor, tiny and huge directions lose nothing, no direction
+   has negative energy. */
 START_TEST(operator_is_linear_and_semidefinite) {
     gxs_solver *solver = solver_make();
     size_t i, n;
@@ -560,8 +561,8 @@ START_TEST(operator_is_linear_and_semidefinite) {
 }
 END_TEST
 
-/* What lasts until when, what is bad input; steps are the same with a linearisation between them, of a damped material
- * too. */
+/* How long a linearisation lasts, and bad input. Steps are the same with a linearisation between them, of a damped
+   material too. */
 START_TEST(operator_lasts_until_the_next_step) {
     gxs_solver *solver = solver_make(), *other = solver_make();
     gxs_step_desc step = step_make(0.01, -9.81);
@@ -652,7 +653,7 @@ START_TEST(free_fall_is_exact) {
 }
 END_TEST
 
-/* to rounding, at a CG tolerance of 1e-1 and in violent motion; with forces: their impulse */
+/* Momentum is right to rounding, at a CG tolerance of 1e-1 and in violent motion; with forces: their impulse */
 START_TEST(momentum_of_a_free_body_is_balanced) {
     gxs_solver *solver = solver_make();
     int frame, loaded;
@@ -766,7 +767,7 @@ START_TEST(held_copies_do_not_move) {
 }
 END_TEST
 
-/* a hanging body comes to rest in balance, and stays there bit for bit or nearly */
+/* A hanging body comes to rest in balance, and stays there bit for bit or nearly so. */
 START_TEST(hanging_body_finds_its_balance) {
     gxs_solver *solver = solver_make();
     gxs_step_desc step = step_make(10, -9.81);
@@ -790,7 +791,7 @@ START_TEST(hanging_body_finds_its_balance) {
 }
 END_TEST
 
-/* same input, same bits; also from a workspace that has seen a larger model */
+/* Same input, same bits; also from a workspace that has held a larger model */
 START_TEST(steps_are_repeatable) {
     gxs_solver *solver = solver_make();
     gxs_step_desc step = step_make(0.033, -9.81);
@@ -822,7 +823,8 @@ END_TEST
 
 /* ---- integrators ---- */
 
-/* A soft bar, bent a little and let go, after 0.32 s in steps of dt; end: displacement and velocity of its last copy */
+/* A soft bar, bent a little and released, after 0.32 s in steps of dt; end: displacement and velocity of its last
+   copy */
 static void swing(gxs_integrator integrator, double dt, double damping, double *end) {
     gxs_solver *solver = solver_make();
     gxs_step_desc step = step_make(dt, 0);
@@ -860,7 +862,7 @@ static void swing(gxs_integrator integrator, double dt, double damping, double *
     scene_free(&s);
 }
 
-/* halving the step halves backward Euler's error and quarters that of the other two */
+/* Halving the step halves backward Euler's error and quarters that of the other two. */
 START_TEST(integrators_have_their_order) {
     double truth[2], error[2];
     int k;
@@ -878,7 +880,7 @@ START_TEST(integrators_have_their_order) {
 }
 END_TEST
 
-/* a bar carried by its held end: it goes where the targets say, with their velocity, and takes the rest along */
+/* A bar carried by its held end: the end moves by the targets, with their velocity, and takes the rest along. */
 START_TEST(targets_move_held_copies) {
     gxs_solver *solver = solver_make();
     gxs_step_desc step = step_make(0.01, 0);
@@ -927,7 +929,7 @@ static void violate(scene *s, int how, double edge) {
         }
 }
 
-/* k Newton iterations from one start, k = 1, 2, ...: their results are the accepted iterates of the longest run */
+/* k Newton iterations from one start, k = 1, 2, ...: the results are the accepted iterates of the longest run */
 START_TEST(energy_falls_from_violent_starts) {
     static const double steps[2] = {0.033, 1}, ratios[2] = {0.4, 0.4999};
     gxs_solver *solver = solver_make();
@@ -967,8 +969,8 @@ START_TEST(energy_falls_from_violent_starts) {
 }
 END_TEST
 
-/* a hundred frames from a violent start, the exact collapse (a stationary point) among them, end at rest; so they do
- * when disturbed */
+/* A hundred frames from a violent start, the exact collapse (a stationary point) among them, end at rest; so they do
+   when disturbed. */
 START_TEST(tangled_body_recovers) {
     gxs_solver *solver = solver_make();
     int how, frame;
@@ -995,7 +997,7 @@ START_TEST(tangled_body_recovers) {
 }
 END_TEST
 
-/* ---- tiny pieces ---- */
+/* ---- tiny components ---- */
 
 /* CG iterations of one step of a hanging body; a share of the elements has weight and mass scaled by tiny */
 static uint32_t iterations_with(double tiny, double *residual) {
@@ -1024,7 +1026,7 @@ static uint32_t iterations_with(double tiny, double *residual) {
 START_TEST(tiny_weights_keep_iterations_bounded) {
     double residual, tiny;
     uint32_t plain = iterations_with(1, &residual), count;
-    /* from about 1e-40 on beyond single precision */
+    /* From about 1e-40 on, beyond single precision */
     for (tiny = 1e-3; tiny > 1e-300; tiny *= tiny > 1e-20 ? 1e-3 : 1e-9) {
         count = iterations_with(tiny, &residual);
         assert_that(count <= 3 * plain && residual < 1e-2, "%g: %u iterations, %u without, residual %g", tiny,
@@ -1033,9 +1035,9 @@ START_TEST(tiny_weights_keep_iterations_bounded) {
 }
 END_TEST
 
-/* Parts of tetrahedra around a point: corners' motions that leave the point where it is move hardly any mass. Single
- * precision must not make that negative, nor of another size. [rho int N_i N_j of a tetrahedron with corners b_a in
- * barycentric coordinates] */
+/* Parts of tetrahedra around a point. Motions of the corners that leave the point in place move hardly any mass.
+   Single precision must not make that mass negative, nor change its size. [rho int N_i N_j of a tetrahedron with
+   corners b_a in barycentric coordinates] */
 START_TEST(masses_of_slivers_are_semidefinite) {
     gxs_solver *solver = solver_make();
     gxs_material material = material_make(GXS_STABLE_NEO_HOOKEAN, 0.3);
@@ -1094,8 +1096,8 @@ START_TEST(masses_of_slivers_are_semidefinite) {
 }
 END_TEST
 
-/* Masses next to singular, with entries of nothing but rounding, of any size: the product is that of the masses as
- * given. */
+/* Masses next to singular, with entries that are only rounding, of any size: the product is that of the given
+   masses. */
 START_TEST(masses_next_to_singular) {
     static const double scales[4] = {1, 1e-200, 1e-280, 1e150};
     gxs_solver *solver = solver_make();
@@ -1151,8 +1153,8 @@ START_TEST(masses_next_to_singular) {
 }
 END_TEST
 
-/* Elements without weight, but with mass of which a corner has hardly any or none: the same copies move whether the
- * model is set or changed. */
+/* Elements without weight, but with a mass of which a corner has hardly any or none: the same copies move whether
+   the model is set or changed. */
 START_TEST(supports_are_the_same_after_updates) {
     scene s;
     gxs_solver *solver = solver_make();
@@ -1194,7 +1196,7 @@ START_TEST(supports_are_the_same_after_updates) {
 }
 END_TEST
 
-/* a tiny loose element stretched to twice its size beside a large body at rest must be seen and come back */
+/* A tiny loose element stretched to twice its size, beside a large body at rest, must be seen and must come back. */
 START_TEST(tiny_pieces_are_seen) {
     gxs_solver *solver = solver_make();
     gxs_step_desc step = step_make(1, 0);
@@ -1222,8 +1224,8 @@ START_TEST(tiny_pieces_are_seen) {
 }
 END_TEST
 
-/* Elements that stay where they are but for their material: energies of before are not those of now, and still no step
- * ends above where it starts. */
+/* Elements that keep everything but their material. Their earlier energies are not the present ones, and still no
+   step ends above its start. */
 START_TEST(another_material_does_not_lift_energy) {
     static const double speeds[5] = {20, 100, 500, 5, 2000};
     scene s;
@@ -1276,7 +1278,7 @@ END_TEST
 
 /* ---- gradients ---- */
 
-/* Elements whose gradients the solver has by itself */
+/* Elements whose gradients the solver computes itself */
 static size_t own_gradients(const gxs_solver *solver) {
     const gxsp_system *system = solver->system;
     size_t count = 0;
@@ -1294,7 +1296,7 @@ static void scale_gradient(gxs_element *element, double factor) {
     for (k = 0; k < 12; k++) element->gradient[k / 3][k % 3] *= factor;
 }
 
-/* Steps of a and of b, which has no positions, end alike. */
+/* Steps of a, and of b, which has no positions, end alike. */
 static void advance_both(gxs_solver **solvers, scene *s, gxs_step_desc *step, double *displacement, double *velocity) {
     const size_t n = 3 * s->model.copy_count;
     size_t i;
@@ -1308,8 +1310,8 @@ static void advance_both(gxs_solver **solvers, scene *s, gxs_step_desc *step, do
                     s->displacement[i], displacement[i]);
 }
 
-/* Elements need not fit their places: some of a body's have gradients of their own, before an update and after it,
- * which others have then. A solver that has no positions, and so all gradients, takes the same steps. */
+/* Elements need not fit their places. Some have gradients of their own before an update, and others after it. A
+   solver without positions, and so with all gradients given, takes the same steps. */
 START_TEST(gradients_need_not_be_those_of_positions) {
     gxs_solver *solvers[2];
     gxs_solver_desc desc;
@@ -1405,7 +1407,7 @@ static attempt attempt_make(void) {
     return a;
 }
 
-/* the step must fail so, at that index, and leave the state alone */
+/* The step must fail with this code, at that index, and leave the state alone. */
 static void expect(attempt *a, gx_result result, size_t index) {
     size_t bytes = 3 * sizeof(double) * (a->s.model.copy_count ? a->s.model.copy_count : 1);
     double *before = (double *)zeroed(2, bytes);
@@ -1479,7 +1481,7 @@ START_TEST(bad_input_is_named) {
 END_TEST
 
 /* numbers that are finite and too large to step with */
-/* An energy whose Hessians are beyond single precision once `left` of them have been asked for */
+/* An energy whose Hessians are beyond single precision once `left` of them have been computed */
 typedef struct failing_energy {
     const gxs_material *material;
     size_t left;
@@ -1499,8 +1501,7 @@ static double fail_later(void *user, const double *f, double *stress, double *he
     return gxs_material_energy(of->material, f);
 }
 
-/* A step that fails after iterations that went well ends with what these have found; one that fails at once, with an
- * error. */
+/* A step that fails after good iterations ends with their result; one that fails at once ends with an error. */
 START_TEST(late_failures_keep_what_was_found) {
     gxs_solver *solver = solver_make();
     gxs_material inner_material = material_make(GXS_STABLE_NEO_HOOKEAN, 0.3), custom = inner_material;
@@ -1592,7 +1593,7 @@ END_TEST
 
 /* ---- memory ---- */
 
-/* create and three steps, the model growing in between; returns whether an allocation failed */
+/* Creates a solver and takes three steps, the model growing in between. Returns whether an allocation failed. */
 static int run_with(failing *f, int which) {
     gxs_solver_desc desc;
     gxs_solver *solver = NULL;
@@ -1657,7 +1658,7 @@ END_TEST
 
 /* ---- multigrid ---- */
 
-/* from 7 to 13 nodes along the edge, soft and stiff: iterations stay, and stay below block-Jacobi's */
+/* From 7 to 13 nodes along the edge, soft and stiff: iterations do not grow, and stay below block-Jacobi's. */
 START_TEST(multigrid_iterations_do_not_grow) {
     static const double youngs[2] = {1e6, 1e9};
     uint32_t counts[2][2];
@@ -1689,9 +1690,9 @@ START_TEST(multigrid_iterations_do_not_grow) {
 }
 END_TEST
 
-/* A block that stretches far as it falls, held at a side (0), and one that spins (1): the matrices of a solver that has
- * made all steps are never so old that it takes a tenth more iterations, and one a step, than solvers that begin anew
- * with each step, and without a guess: new ones cost ten. */
+/* A block that stretches far as it falls, held at a side (0), and one that spins (1). A solver that has made all
+   steps is compared with solvers that begin again with each step, without a guess; new matrices cost ten iterations.
+   The old matrices may cost at most a tenth more iterations, and one a step. */
 START_TEST(coarse_matrices_do_not_grow_old) {
     gxs_step_desc step = step_make(0.033, _i ? 0 : -9.81);
     uint32_t kept = 0, anew = 0;
@@ -1733,8 +1734,8 @@ START_TEST(coarse_matrices_do_not_grow_old) {
 }
 END_TEST
 
-/* A block that hangs among loose tetrahedra, which are most of the copies: left to itself, the solver takes what the
- * block needs. */
+/* A block that hangs among loose tetrahedra, which have most of the copies. The solver's own choice is what the
+   block needs. */
 START_TEST(largest_piece_chooses_the_preconditioner) {
     static const gxs_preconditioner kinds[3] = {GXS_BLOCK_JACOBI, GXS_MULTIGRID, GXS_AUTOMATIC};
     enum { LOOSE = 400 };
@@ -1771,9 +1772,9 @@ START_TEST(largest_piece_chooses_the_preconditioner) {
 }
 END_TEST
 
-/* A block of so many cells along an edge, held at one side; soft: three quarters of its elements are 1e4 times softer.
- * What the solver chooses; counts: CG iterations by block-Jacobi, multigrid, and left to itself. Of 4 cells no piece is
- * large. */
+/* A block with this many cells along an edge, held at one side; soft: three quarters of its elements are 1e4 times
+   softer. Tests the solver's choice; counts: CG iterations by block-Jacobi, by multigrid, and by the solver's
+   choice. With 4 cells no component is large. */
 static gxs_preconditioner choice(int cells, double young, double dt, int soft, uint32_t *counts) {
     static const gxs_preconditioner kinds[3] = {GXS_BLOCK_JACOBI, GXS_MULTIGRID, GXS_AUTOMATIC};
     gxs_step_report report;
@@ -1805,8 +1806,8 @@ static gxs_preconditioner choice(int cells, double young, double dt, int soft, u
     return report.preconditioner;
 }
 
-/* Multigrid where stiffness outweighs inertia, in a quarter of the body too; block-Jacobi where it does not, or the
- * body is small. */
+/* Multigrid where stiffness outweighs inertia, even in a quarter of the body; block-Jacobi where it does not, or
+   where the body is small */
 START_TEST(inertia_chooses_the_preconditioner) {
     uint32_t counts[3];
     ck_assert_int_eq(choice(12, 1e6, 0.033, 0, counts), GXS_MULTIGRID);
@@ -1840,7 +1841,7 @@ static void *work(void *argument) {
     return NULL;
 }
 
-/* as many threads as *user says, each every so manyth index */
+/* As many threads as *user says; each takes the indices of one residue */
 static void threads(void *user, size_t count, void (*task)(void *, size_t), void *context) {
     size_t workers = *(const size_t *)user, k;
     worker w[4];
@@ -1852,8 +1853,8 @@ static void threads(void *user, size_t count, void (*task)(void *, size_t), void
     for (k = 0; k < workers; k++) ck_assert_int_eq(pthread_join(id[k], NULL), 0);
 }
 
-/* ten frames of a falling, tumbling, stretched body, and a product: the same bits in whatever order and on however many
- * threads */
+/* Ten frames of a falling, tumbling, stretched body, and a product: the same bits in any order and on any number of
+   threads */
 START_TEST(jobs_do_not_change_results) {
     double *first = NULL;
     size_t workers, count = 0;

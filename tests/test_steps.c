@@ -84,7 +84,7 @@ START_TEST(materials_by_element) {
     top = 0;
     stretch[0] = middle - low;
     stretch[1] = top - middle;
-    /* bars under their own weight and what hangs below: rho g L^2 / (2 E), and that with the lower part's weight */
+    /* Bars under their own weight and that below: rho g L^2 / (2 E), and the same with the lower part's weight */
     ck_assert_double_eq_tol(stretch[0], 1000 * 9.81 * 16 / 2e6, 0.03 * stretch[0]);
     ck_assert_double_eq_tol(stretch[1], (500 * 9.81 * 8 + 1000 * 9.81 * 16) / 4e6, 0.1 * stretch[1]);
     gx_body_destroy(body);
@@ -143,8 +143,8 @@ END_TEST
 
 /* ---- the model ---- */
 
-/* Whatever the cuts, the model has the body's volume and mass, and a solver of one's own that is given it does what the
- * body does. */
+/* Whatever the cuts, the model has the body's volume and mass. A separate solver with this model moves as the body
+   does. */
 START_TEST(model_is_what_the_body_moves) {
     const uint64_t seed = (uint64_t)_i;
     workload w = grid(3, 3, 3, 5);
@@ -207,9 +207,9 @@ static double violent(int how, size_t axis, double rest) {
     }
 }
 
-/* k Newton iterations from one start, k = 1, 2, ...: their results are the accepted iterates of the longest run. The
-   body is cut across, part way, and 1e-9 beside the first cut. Whatever it starts from, E falls with each and all is
-   finite; a collapsed body opens. */
+/* k Newton iterations from one start, k = 1, 2, ...: the results are the accepted iterates of the longest run. The
+   body is cut across, part way, and 1e-9 beside the first cut. From any start, E falls with each iterate and all
+   numbers are finite; a collapsed body opens. */
 START_TEST(energy_of_cut_bodies_falls_from_violent_starts) {
     static const double dts[2] = {0.033, 1}, ratios[2] = {0.4, 0.4999};
     static const double n[3][3] = {{0.3, 1, 0.2}, {1, 0.1, 0}, {0.3, 1, 0.2}};
@@ -266,8 +266,8 @@ END_TEST
 
 /* ---- history ---- */
 
-/* BDF2 on a body that falls: of second order, so exact from the second step on but for the first one's error; a cut in
-   between does not show in the motion, and so the history of new copies is that of the old. */
+/* BDF2 on a body that falls: of second order, so exact from the second step on except for the first one's error. A
+   cut in between does not show in the motion, so new copies have the history of the old. */
 START_TEST(bdf2_goes_on_after_a_cut) {
     workload w = grid(2, 2, 2, 5);
     gx_body *cut = body_of(&w), *whole = body_of(&w);
@@ -296,7 +296,7 @@ START_TEST(bdf2_goes_on_after_a_cut) {
             ck_assert_double_eq_tol(a.displacement[3 * i + (size_t)k], b.displacement[(size_t)k], 1e-13);
             ck_assert_double_eq_tol(a.velocity[3 * i + (size_t)k], 0.1 * k - (k == 2) * 9.81 * 0.1, 1e-12);
         }
-    /* after a step of another kind it starts anew, by backward Euler */
+    /* After a step of another kind it begins again, by backward Euler. */
     step.integrator = GXS_BDF1;
     advance(whole, &step, 1);
     step.integrator = GXS_BDF2;
@@ -314,8 +314,8 @@ END_TEST
 
 /* ---- sleep ---- */
 
-/* A block cut in two by its middle hangs on both sides and comes to rest; a cut wakes the side that it touches, not the
- * other. */
+/* A block cut in two by its middle hangs on both sides and comes to rest. A cut wakes the side that it touches, not
+   the other. */
 START_TEST(cuts_wake_what_they_touch) {
     workload w = grid(4, 2, 2, 5);
     gx_body_desc desc = desc_of(&w);
@@ -379,7 +379,7 @@ static gx_body *hung_asleep(const workload *w, double support_below, const gx_st
     return body;
 }
 
-/* What hangs asleep falls when its hold is released. */
+/* A sleeper that hangs falls when its hold is released. */
 START_TEST(released_sleepers_fall) {
     workload w = grid(4, 2, 2, 5);
     gx_step_desc step = step_of(0.033, -9.81);
@@ -420,7 +420,7 @@ static void write_right(gx_body *body, const workload *w, int velocity) {
         view.displacement[3 * right_of(&view, w)] += 0.3;
 }
 
-/* What is written to a sleeper wakes it, and its clone and loaded copy alike, bit for bit, whatever happens to the body
+/* Writing to a sleeper wakes it, and its clone and loaded copy alike, bit for bit, whatever happens to the body
    before the step: after the write (late 0) or before it (1). */
 START_TEST(sleepers_see_what_is_written_through_changes) {
     const int change = _i / 4, velocity = _i / 2 % 2, late = _i % 2;
@@ -478,7 +478,7 @@ END_TEST
 
 /* ---- copies without support ---- */
 
-/* A corner cut off so close to its node that it has 1e-12 ... 1e-3 of its element: falls like the rest, as a point
+/* A corner cut off so close to its node that it has 1e-12 ... 1e-3 of its element falls like the rest, as a point
    whether or not support_below says so. It never disturbs the body that it has left. */
 START_TEST(tiny_corners_fall) {
     static const double sizes[3] = {1e-1, 1e-2, 1e-4};
@@ -515,8 +515,8 @@ START_TEST(tiny_corners_fall) {
 }
 END_TEST
 
-/* Bodies most of whose copies have too little support for themselves can be stepped, and copies that follow others
- * follow none that do. */
+/* Bodies most of whose copies have too little support of their own can be stepped. Copies that follow others do not
+   follow followers. */
 START_TEST(few_supports_are_enough) {
     const gx_step_desc step = step_of(0.01, -9.81);
     int n, i, k, j;
@@ -553,8 +553,8 @@ START_TEST(few_supports_are_enough) {
 }
 END_TEST
 
-/* What is at rest is kicked, or moved, in one of the steps around the one in which it would fall asleep: it is awake
- * then. */
+/* A body at rest is kicked, or moved, in one of the steps around the one in which it would fall asleep: it is awake
+   then. */
 START_TEST(the_step_of_falling_asleep_sees_what_is_written) {
     workload w = grid(1, 1, 1, 5);
     gx_body *body = body_of(&w);
@@ -592,7 +592,7 @@ static double six_volumes(const workload *w, uint32_t element) {
            d[0][2] * (d[1][0] * d[2][1] - d[1][1] * d[2][0]);
 }
 
-/* Largest entry of a vector on copies that a hundredth of an element carries at least, or on all copies */
+/* Largest entry of a vector on copies that carry at least a hundredth of an element, or on all copies */
 static double most_of(const workload *w, const gx_view *view, const double *vector, int all) {
     double most = 0;
     size_t i, k;
@@ -602,9 +602,9 @@ static double most_of(const workload *w, const gx_view *view, const double *vect
     return most;
 }
 
-/* A kicked block hangs by its top, with slivers of 1e-30 of an element at a node that three planes all but meet, or
-   along layers of nodes, an ulp beside them: no copy is flung further or faster than ten times what the body moves by,
-   by any integrator, whatever support_below says. */
+/* A kicked block hangs by its top, with slivers of 1e-30 of an element at a node that three planes almost meet, or
+   along layers of nodes, an ulp beside them. No copy moves further or faster than ten times the body, by any
+   integrator and any support_below. */
 START_TEST(kicked_slivers_stay_with_their_body) {
     static const uint64_t seeds[4] = {87, 93, 124, 7};
     static const gxs_integrator integrators[3] = {GXS_BDF1, GXS_BDF2, GXS_MIDPOINT};
@@ -653,7 +653,7 @@ START_TEST(kicked_slivers_stay_with_their_body) {
 END_TEST
 
 /* A plane so close to a layer of nodes that the copies behind it have next to no support, in a block that hangs by
-   them: extended, they follow the field of what is before it, and the block hangs as the uncut one below. */
+   them. They follow the field of the cells before the plane, and the block hangs like the uncut one below. */
 START_TEST(copies_without_support_follow_their_fragment) {
     workload w = grid(2, 2, 4, 5);
     gx_body_desc desc = desc_of(&w);
@@ -699,7 +699,7 @@ END_TEST
 
 /* ---- points of the skin ---- */
 
-/* A corner of the skin of a cut body, pulled by a spring: what it is pulled by is what the rest is accelerated by. */
+/* A corner of the skin of a cut body, pulled by a spring: the spring's force is the rate of change of momentum. */
 START_TEST(springs_pull_points_of_the_skin) {
     workload w = grid(2, 2, 2, 5);
     gx_body *body;
@@ -743,7 +743,7 @@ START_TEST(springs_pull_points_of_the_skin) {
                 speed += model.elements[i].mass[rows[k][j]] * view.velocity[3 * model.elements[i].copy[k] + 1];
         }
     ck_assert(mass > 0 && force[1] > 900 && force[1] <= 1000);
-    /* the solver has centres of masses in single precision */
+    /* The solver keeps centres of mass in single precision. */
     ck_assert_double_eq_tol(speed, 0.01 * force[1], 1e-7 * speed);
     spring.point.copy[2] = 100000;
     ck_assert_int_eq(gx_body_step(body, &step, NULL, &failure), GX_ERROR_INDEX);
@@ -754,9 +754,9 @@ START_TEST(springs_pull_points_of_the_skin) {
 }
 END_TEST
 
-/* ---- copies by the numbering of before a cut ---- */
+/* ---- copies by the numbers from before a cut ---- */
 
-/* Something of each kind that names copies; kind: which is given to the step */
+/* Something of each kind that names copies; kind: the one that is given to the step */
 enum { BY_SPRING, BY_POINT, BY_FORCES, BY_TARGETS, KINDS_OF_NAMES };
 typedef struct naming {
     gxs_spring springs[2];
@@ -765,7 +765,7 @@ typedef struct naming {
     gx_step_desc step;
 } naming;
 
-/* All are made anew, of the first vertices of the skin. */
+/* All are made again, from the first vertices of the skin. */
 static void name_copies(naming *n, gx_body *body, int kind) {
     gx_view view = view_of(body);
     gx_skin skin;
@@ -798,7 +798,7 @@ static void name_copies(naming *n, gx_body *body, int kind) {
     if (kind == BY_FORCES || kind == BY_TARGETS) n->step.epoch = view.epoch;
 }
 
-/* The first ones are told the present epoch, so that the last one is to blame. */
+/* The first ones have the present epoch, so that the last one is to blame. */
 static void expect_stale(naming *n, gx_body *body, int kind) {
     const uint64_t epoch = view_of(body).epoch, state = gx_body_state_hash(body);
     gx_failure failure;
@@ -809,9 +809,9 @@ static void expect_stale(naming *n, gx_body *body, int kind) {
     ck_assert(gx_body_state_hash(body) == state);
 }
 
-/* A cut that leaves all copies leaves what names them. One that creates or removes some makes it stale until it is made
-   anew; a body of which nothing is left tells it as well. With support_below the solver is given each model anew, else
-   it may be told of changes. */
+/* A cut that leaves all copies leaves their numbers valid. One that creates or removes copies makes them stale until
+   they are made again; so it is in a body of which nothing is left. With support_below the solver gets each model
+   whole, otherwise it may get changes. */
 START_TEST(names_of_copies_go_stale) {
     const int kind = _i % KINDS_OF_NAMES;
     workload w = grid(2, 2, 2, 5);

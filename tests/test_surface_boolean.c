@@ -1,7 +1,7 @@
-/* test_surface_boolean.c - Booleans of closed surfaces: the named workloads against the exact oracle, at once and in
-   sequence; small random solids on a lattice (coplanar, touching, nested, self-crossing) against the oracle and against
-   what volumes must satisfy; provenance, sheets, winding rules, coarse results, memory that runs out, input that is
-   refused. */
+/* test_surface_boolean.c - Booleans of closed surfaces. The named workloads against the exact oracle, at once and in
+   sequence. Small random solids on a lattice (coplanar, touching, nested, self-crossing) against the oracle and
+   against the identities of volumes. Provenance, sheets, winding rules, coarse results, memory that runs out,
+   refused input. */
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../gxfem_boolean.h"
 #include "workloads.h"
@@ -127,7 +127,7 @@ static answer read_answer(gxb_boolean *b) {
     return a;
 }
 
-/* A Boolean of the operands whose results are to be read off as said */
+/* A Boolean of the operands; its results are read off as stated */
 static gxb_boolean *boolean_of(const gxb_operand *o, size_t count, uint32_t triangulation, int fine, int mend) {
     gxb_boolean *b = NULL;
     size_t i;
@@ -176,8 +176,8 @@ static void check_balls(const char *name, const answer *a) {
                a->components);
 }
 
-/* What is kept, every piece of it a ball, at once, in sequence and with every surface vouched for; and what is removed,
- * which shows cuts however thin. */
+/* The kept volume, every component of it a ball, at once, in sequence and with every surface vouched for; and the
+   removed volume, which shows cuts however thin. */
 static void check_cuts(const char *name, const workload *w, size_t components, double kept, double removed) {
     gxb_operand o[WL_SURFACES + 1];
     wl_surface body = boundary_of(w);
@@ -217,8 +217,8 @@ START_TEST(slabs) {
 }
 END_TEST
 
-/* Crossing boxes far away: a surface with them is not simple, and divides others segment by segment instead of by whole
- * chains. */
+/* Crossing boxes far away: a surface with them is not simple. It divides others segment by segment instead of by
+   whole chains. */
 static void add_crossing_boxes(wl_surface *s) {
     static const double low[2][3] = {{50, 50, 50}, {51, 51, 51}}, high[2][3] = {{52, 52, 52}, {53, 53, 53}};
     int i;
@@ -348,8 +348,8 @@ static wl_surface random_solid(int parts) {
     return s;
 }
 
-/* 1: turned, so that what was flat or equal is so but for rounding; 2: coordinates moved by units of their last place,
- * the surface torn nowhere */
+/* 1: turned, so that flat or equal parts are so only up to rounding; 2: coordinates moved by units of their last
+   place, without tearing the surface */
 static void disturb(wl_surface *s, int how) {
     wl_frame rotated = wl_rotated();
     size_t i;
@@ -366,7 +366,7 @@ static double volume_of(const wl_surface *s) {
     return evaluate(&o, 1, 0).volume;
 }
 
-/* vol(A) + vol(B) = vol(A or B) + vol(A and B), and what follows for the others */
+/* vol(A) + vol(B) = vol(A or B) + vol(A and B), and the consequences for the other operations */
 static void check_volumes(const wl_surface *p, const wl_surface *q, unsigned seed) {
     double vp = volume_of(p), vq = volume_of(q), size = vp + vq;
     double both = combine(p, GXB_INTERSECTION, q).volume, any = combine(p, GXB_UNION, q).volume;
@@ -454,7 +454,7 @@ START_TEST(the_same_from_elsewhere) {
 }
 END_TEST
 
-/* A tetrahedron less a random solid, beside the exact oracle */
+/* A tetrahedron less a random solid, compared with the exact oracle */
 START_TEST(random_cuts_beside_the_oracle) {
     unsigned seed;
     for (seed = 1; seed <= 60; seed++) {
@@ -570,7 +570,7 @@ START_TEST(cavities_belong_to_their_component) {
 }
 END_TEST
 
-/* A cube with `holes` slots through it is a ball with so many handles; where the two slots meet there are three. Two
+/* A cube with `holes` slots through it is a ball with as many handles; where two slots meet there are three. Two
    that touch in an edge are one. */
 static void check_handles(size_t holes, const double low[][3], const double high[][3], long euler) {
     static const double zero[3] = {0, 0, 0}, nine[3] = {9, 9, 9};
@@ -627,8 +627,8 @@ START_TEST(touching_solids) {
 }
 END_TEST
 
-/* A cube with 216 cavities, each with a core in it: each core is a component of its own, the cube has all cavities,
- * wherever they are. */
+/* A cube with 216 cavities, each with a core in it: each core is a component of its own, and the cube has all
+   cavities, wherever they are. */
 START_TEST(cavities_and_cores) {
     enum { SIDE = 6, ALL = SIDE * SIDE * SIDE };
     static const double zero[3] = {0, 0, 0}, far[3] = {64 * SIDE, 64 * SIDE, 64 * SIDE};
@@ -678,8 +678,8 @@ START_TEST(cavities_and_cores) {
 }
 END_TEST
 
-/* A cube less 16 slabs across x and 16 across y, whose ends lie in common planes: 17 x 17 sticks. Then 16 x 16 columns
-   upon its top, which they overlap within: all at once, and in any order. */
+/* A cube less 16 slabs across x and 16 across y, whose ends lie in common planes: 17 x 17 sticks. Then 16 x 16
+   columns on its top, which overlap the sticks inside: all at once, and in any order. */
 START_TEST(many_surfaces_at_once) {
     enum { SIDE = 16, WIDE = 64 * SIDE };
     static const double zero[3] = {0, 0, 0}, far[3] = {WIDE, WIDE, WIDE};
@@ -712,8 +712,8 @@ START_TEST(many_surfaces_at_once) {
 }
 END_TEST
 
-/* A sheet across a cube divides it; one that ends inside, or floats there, does not. Nothing is lost. Component, side
- * of the sheet: */
+/* A sheet across a cube divides it; one that ends inside, or floats there, does not. Nothing is lost. Checked for
+   each component: the side of the sheet. */
 static void check_sides(const wl_surface *cube, const wl_surface *sheet, size_t components) {
     gxb_operand o[2];
     gxb_boolean *b = NULL;
@@ -763,7 +763,7 @@ START_TEST(sheets_divide) {
 }
 END_TEST
 
-/* Its triangles within the cube meet nothing, and are there twice. */
+/* Its triangles within the cube meet nothing, and occur twice. */
 START_TEST(a_wave_divides) {
     static const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1};
     wl_frame axes = wl_axes();
@@ -781,8 +781,8 @@ START_TEST(a_wave_divides) {
 }
 END_TEST
 
-/* A closed sheet within a cube: what is inside it is another component, and what is around it has a cavity, whichever
- * of its triangles comes first. */
+/* A closed sheet within a cube: its inside is another component, and the component around it has a cavity, whichever
+   of its triangles comes first. */
 START_TEST(closed_sheets_divide) {
     static const double zero[3] = {0, 0, 0}, three[3] = {3, 3, 3}, one[3] = {1, 1, 1}, two[3] = {2, 2, 2};
     wl_surface cube, sheet;
@@ -915,7 +915,7 @@ END_TEST
 
 static const uint32_t triangulations[3] = {GXB_DIVIDED, GXB_COARSE, GXB_MERGED};
 
-/* The answer in each way to divide it; results are read off Booleans that stay until the caller destroys them. */
+/* The answer for each way to divide it. Results are read off Booleans that live until the caller destroys them. */
 static void divide_all_ways(const gxb_operand *o, size_t count, gxb_boolean *b[3], gxb_boolean_result r[3]) {
     int how;
     for (how = 0; how < 3; how++) {
@@ -960,7 +960,8 @@ START_TEST(faces_in_as_few_triangles_as_possible) {
     ck_assert_uint_lt(r[2].triangle_count, r[1].triangle_count);
     ck_assert_uint_le(r[1].triangle_count, r[0].triangle_count);
     for (i = 0; i < 3; i++) gxb_boolean_destroy(b[i]);
-    /* Boxes side by side and on top of each other: faces that fit are gone, those that meet in one plane become one. */
+    /* Boxes side by side and on top of each other: faces that fit disappear, those that meet in one plane become
+       one. */
     o[1] = operand_of(&s[3], GXB_UNION);
     count_ways(o, 2, 4 * 4 + 2 * 2, 12);
     o[1] = operand_of(&s[4], GXB_UNION);
@@ -1049,8 +1050,8 @@ static void check_ways(const gxb_operand *o, size_t count, const char *name, uns
         CHECK_CASE(close_to(c[how].total_volume, c[0].total_volume, size), "%s %u: volume %.17g, was %.17g", name, seed,
                    c[how].total_volume, c[0].total_volume);
         CHECK_CASE(c[how].count == c[0].count, "%s %u: %zu components", name, seed, c[how].count);
-        /* the Euler characteristic of the surface is the same: two triangles go with each vertex, more where more than
-         * two meet in an edge */
+        /* The Euler characteristic of the surface is the same: two triangles go with each vertex, more where more
+           than two meet in an edge. */
         gone = 2 * (r[0].vertex_count - r[how].vertex_count);
         CHECK_CASE(r[0].triangle_count - r[how].triangle_count == gone ||
                        (!is_manifold(&r[0]) && r[0].triangle_count - r[how].triangle_count > gone),
@@ -1122,7 +1123,7 @@ static int is_upright(const gxb_operand *o, const gxb_boolean_result *r, size_t 
     return sign > 0;
 }
 
-/* Evaluates as asked; the defects are those that there are. Volumes and topology: into *a. */
+/* Evaluates as requested. The listed defects are the true ones. Volumes and topology go to *a. */
 static size_t find_defects(const gxb_operand *o, size_t count, int fine, int mend, answer *a, size_t *mended) {
     gxb_boolean *b = boolean_of(o, count, GXB_DIVIDED, fine, mend);
     gxb_boolean_result r;
@@ -1142,7 +1143,7 @@ static size_t find_defects(const gxb_operand *o, size_t count, int fine, int men
     return listed;
 }
 
-/* Adds what rounding does to a workload, kept or removed, to sum: defects by fine, defects left by mend. */
+/* Adds the effects of rounding on a workload, kept or removed, to sum: defects by fine, defects left by mend */
 static void mend_workload(const char *name, workload w, int removed, size_t sum[2]) {
     gxb_operand o[WL_SURFACES + 1];
     wl_surface body = boundary_of(&w);
@@ -1229,8 +1230,8 @@ static double distance_from(const gxb_operand *o, uint32_t triangle, const doubl
     return inside ? fmin(least, fabs(dot_of(normal, off[0])) / sqrt(dot_of(normal, normal))) : least;
 }
 
-/* A ball less others, one after the other, each result mended and fed into the next: mending moves no more of the
-   surface than rounding does, and leaves no triangle beyond its source. */
+/* A ball less others, one after the other, each result mended and used for the next. Mending moves the surface no
+   further than rounding does, and leaves no triangle beyond its source. */
 START_TEST(mending_keeps_volumes) {
     wl_surface a;
     int step;
@@ -1308,8 +1309,8 @@ static void check_walls(const gxb_operand *o, const double *wall, size_t walls, 
     gxb_boolean_destroy(b);
 }
 
-/* Three hollow balls, one in the other, whose walls are four units of the last place thick: all six shells have nearly
-   one volume, of which the walls' are some 1e-15. Triangles and shells come in any order. */
+/* Three hollow balls, one in the other, with walls four units of the last place thick. All six shells have nearly
+   one volume; the walls' volumes are some 1e-15 of it. Triangles and shells come in any order. */
 START_TEST(walls_of_a_few_units) {
     enum { SHELLS = 6 };
     static const double zero[3] = {0, 0, 0};
@@ -1448,7 +1449,7 @@ static gx_result make_call(int i, const gxb_boolean_desc *desc, const gxb_operan
     return i % 4 == 2 ? gxb_boolean_components(*b, &c) : gxb_boolean_defects(*b, &d);
 }
 
-/* Adds three boxes, evaluates after each, and asks for all; a call that fails is made again, and then succeeds. */
+/* Adds three boxes, evaluates after each, and gets everything. A call that fails is made again, and then succeeds. */
 static answer despite_failures(memory *m, const gxb_operand *o, int *failed) {
     gxb_boolean_desc desc;
     gxb_boolean *b = NULL;
@@ -1459,7 +1460,7 @@ static answer despite_failures(memory *m, const gxb_operand *o, int *failed) {
     desc.allocator.allocate = take;
     desc.allocator.release = give;
     desc.allocator.user = m;
-    desc.memory_limit = (size_t)1 << 19; /* so little that each array is allocated by itself */
+    desc.memory_limit = (size_t)1 << 19; /* so little that each array is an allocation of its own */
     *failed = 0;
     for (i = -1; i < 12; i++) {
         for (;;) {
@@ -1561,7 +1562,7 @@ static gx_result refusal(const gxb_operand *o, size_t *index) {
     return result;
 }
 
-/* What two boxes have in common: the same at any size, or the first operand is refused. */
+/* The intersection of two boxes: the same at any size, or the first operand is refused */
 START_TEST(sizes_are_numbers_or_refused) {
     static const int powers[17] = {-1022, -1000, -400, -310, -201, -200, -100, -61, 0,
                                    61,    100,   200,  201,  310,  400,  1000, 1020};
@@ -1599,7 +1600,7 @@ START_TEST(sizes_are_numbers_or_refused) {
 }
 END_TEST
 
-/* The largest that there may be: a second operand 2^128 times as large as the first one */
+/* The largest possible: a second operand 2^128 times as large as the first one */
 START_TEST(largest_volumes_are_numbers) {
     static const double zero[3] = {0, 0, 0};
     const double one[3] = {0x1p200, 0x1p200, 0x1p200}, more[3] = {0x1p327, 0x1p327, 0x1p327};

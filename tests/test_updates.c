@@ -1,7 +1,7 @@
-/* test_updates.c - a cut changes the solver's model instead of making it anew (gxs_solver_update): the same motion as
-   with a model that is set whole after each cut, no more iterations, the same bits in any order of jobs and after a
-   save, sleepers that wake, bad changes, memory that runs out; how much of it solvers take; coarse functions of small
-   pieces. */
+/* test_updates.c - a cut changes the solver's model instead of making it again (gxs_solver_update). The motion is
+   the same as with a model that is set whole after each cut, with no more iterations, the same bits in any order of
+   jobs and after a save. Sleepers wake. Bad changes, memory that runs out. The size of solvers. Coarse functions of
+   small components. */
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "body.h"
@@ -43,8 +43,8 @@ static uint32_t advance(gx_body *body, const gx_step_desc *step, int steps) {
     return iterations;
 }
 
-/* Difference of displacements relative to these, both by the mass: a copy of 1e-60 of its element's has no place that
- * doubles could tell. */
+/* Difference of displacements relative to these, both by the mass. The place of a copy of 1e-60 of its element's
+   mass is beyond doubles. */
 static double apart(gx_body *a, gx_body *b) {
     const gx_view of = view_of(a), to = view_of(b);
     const double *mass = a->solver->system->model.lumped;
@@ -72,8 +72,8 @@ static void add_strip(workload *w, double z, double low, double high) {
     wl_add_quad(wl_add_surface(w, 0), a, b, c, d);
 }
 
-/* Cuts of a block: strips that grow together, sheets that end inside and cross, holes, planes that part it, a cut
- * through nodes */
+/* Cuts of a block: strips that grow together, sheets that end inside and cross, holes, planes that divide it, a cut
+   through nodes */
 static void add_cuts(workload *w) {
     const double p[3] = {3.1, 2.9, 3.3}, n[3] = {1, 0.3, 0.2}, q[3] = {2.13, 4.21, 1.93}, m[3] = {0.1, 1, 0.4};
     int i;
@@ -95,8 +95,8 @@ static workload block_with_cuts(uint64_t seed) {
     return w;
 }
 
-/* The operator of a model that has been changed, by that of one that has been set whole, within what single precision
- * makes of other orders */
+/* The operator of a changed model equals that of one set whole, to the precision that single precision leaves to
+   other orders */
 static void check_operator(gx_body *changed, gx_body *whole) {
     const gx_view view = view_of(changed);
     const size_t n = 3 * view.copy_count;
@@ -113,8 +113,8 @@ static void check_operator(gx_body *changed, gx_body *whole) {
     free(x);
 }
 
-/* What is told of blocks holds: which corners are not those of the block before, where there is no element. Returns how
- * many corners of a block differ from those of the one before, on average. */
+/* The flags of blocks are right: which corners differ from those of the block before, which lanes have no element.
+   Returns how many corners of a block differ from those of the one before, on average. */
 static double check_lanes(gx_body *body) {
     const gxsp_system *system = body->solver->system;
     const uint32_t lanes = (uint32_t)(sizeof(gxsp_singles) / sizeof(float));
@@ -179,7 +179,7 @@ START_TEST(cuts_change_the_model) {
 }
 END_TEST
 
-/* BDF2, damping and a material that is not the default: what the model keeps is of no one kind. */
+/* BDF2, damping and a material other than the default: the model keeps data of several kinds. */
 START_TEST(changed_models_are_of_any_kind) {
     static const gxs_material_kind kinds[4] = {GXS_ST_VENANT_KIRCHHOFF, GXS_FIXED_COROTATED, GXS_LINEAR,
                                                GXS_STABLE_NEO_HOOKEAN};
@@ -244,8 +244,8 @@ static double coarse_difference(const gxsp_level *level, const float *block) {
     return most;
 }
 
-/* A cut at one end of a long body: the coarse numbers are made anew there, at the state of those that stay, and are
- * what all anew are there. */
+/* A cut at one end of a long body: coarse numbers are made again there, at the state of those that stay. They equal
+   the numbers of a model whose numbers are all made at that state. */
 START_TEST(small_cuts_keep_coarse_numbers) {
     workload w = grid(40, 4, 4, 5 + (uint32_t)(_i % 2));
     const gx_region left = {0, -1, 1e-9};
@@ -287,7 +287,7 @@ START_TEST(small_cuts_keep_coarse_numbers) {
 }
 END_TEST
 
-/* One Newton iteration a step, as in a game: what is kept of the preconditioner is worth what a new one is. */
+/* One Newton iteration a step, as in a game: the kept preconditioner is worth as much as a new one. */
 START_TEST(changed_models_take_no_more_iterations) {
     workload w = grid(12, 12, 12, 5);
     gx_body *changed, *whole;
@@ -355,8 +355,7 @@ START_TEST(order_of_jobs_does_not_matter) {
 }
 END_TEST
 
-/* A body saved when its model has been changed, and when it is yet to be changed, takes the steps that its copy takes.
- */
+/* A body saved when its model has been changed, or is yet to be changed, takes the same steps as its copy. */
 START_TEST(saved_bodies_go_on_alike) {
     workload w = block_with_cuts(4);
     gx_body *body = body_of(&w), *copy = NULL, *before = NULL;
@@ -388,8 +387,7 @@ START_TEST(saved_bodies_go_on_alike) {
 }
 END_TEST
 
-/* A state that has been restored without a cut in between: the model is that of the same cells, but has been changed.
- */
+/* A state restored without a cut in between: the model has the same cells, but has been changed. */
 START_TEST(restored_states_go_on_alike) {
     workload w = block_with_cuts(5);
     gx_body *body = body_of(&w), *mark = NULL;
@@ -417,7 +415,7 @@ END_TEST
 
 /* ---- sleep ---- */
 
-/* Two halves hang asleep. One is cut; of the other the caller writes a displacement before the step: both wake. */
+/* Two halves hang asleep. One is cut; the caller writes a displacement to the other before the step. Both wake. */
 START_TEST(what_is_written_between_cut_and_step_wakes) {
     workload w = grid(4, 2, 2, 5);
     gx_body *body;
@@ -471,8 +469,8 @@ static double spring_energy(void *user, const double *deformation, double *stres
     return energy;
 }
 
-/* An element of the caller's own material beside others is cut: lanes that the change leaves empty ask no material that
- * has no energy. */
+/* An element of the caller's own material is cut, beside others. Lanes that the change leaves empty call no energy
+   of a material that has none. */
 START_TEST(own_materials_are_cut) {
     workload w = grid(1, 1, 1, 5);
     gx_body_desc desc = desc_of(&w);
@@ -497,7 +495,7 @@ END_TEST
 
 /* ---- the solver alone ---- */
 
-/* The block's model by a body that is at rest */
+/* The block's model, from a body that is at rest */
 static gxs_model model_of(gx_body *body) {
     gxs_model model;
     ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
@@ -610,7 +608,7 @@ START_TEST(bad_changes_are_named) {
     ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_OK);
     EXPECT(GX_OK, SIZE_MAX);
     ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_OK);
-    /* a copy is lost that elements have */
+    /* A copy is lost that elements have. */
     change.copy_count--;
     EXPECT(GX_ERROR_LIMIT, SIZE_MAX);
     change.copy_count++;
@@ -622,7 +620,7 @@ START_TEST(bad_changes_are_named) {
     EXPECT(GX_ERROR_LIMIT, SIZE_MAX);
     origins[7] = 14;
 #undef EXPECT
-    ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK); /* steps say of which numbering they are */
+    ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK); /* steps say to which numbering they belong */
     step.forces = u + 6 * model.copy_count;
     ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_OK);
     change.epoch = 9;
@@ -643,7 +641,7 @@ START_TEST(bad_changes_are_named) {
 }
 END_TEST
 
-/* Elements replaced by themselves, copies renumbered: nothing changes but for rounding. */
+/* Elements replaced by themselves, copies renumbered: nothing changes but rounding. */
 START_TEST(changes_of_nothing_change_nothing) {
     workload w = grid(BLOCK, BLOCK, BLOCK, 5);
     gx_body *body = body_of(&w);
@@ -723,7 +721,7 @@ static void give(void *user, void *block, size_t size) {
 }
 
 /* The n-th allocation of the step after a cut fails, once or from then on: the body is as it was, and the step made
- * again is as good. */
+   again is as good. */
 START_TEST(memory_may_run_out) {
     workload w = block_with_cuts(6);
     gx_body_desc desc = desc_of(&w);
@@ -766,7 +764,7 @@ START_TEST(memory_may_run_out) {
 }
 END_TEST
 
-/* ---- how much memory that takes ---- */
+/* ---- memory per element ---- */
 
 static void *counted(void *user, size_t size) {
     *(size_t *)user += size;
@@ -804,8 +802,8 @@ static double bytes_of(const gxs_model *model, gxs_preconditioner preconditioner
     return each;
 }
 
-/* Whole, cut by strips that leave it in one piece, cut to crumbs of so many cells a side: 350 bytes for an element of
-   the model, lists and multigrid included, with what the solver chooses and with multigrid forced upon it. */
+/* Whole, cut by strips that leave it connected, cut to small pieces of this many cells a side: at most 350 bytes for
+   an element of the model, lists and multigrid included, with the solver's own choice and with multigrid forced. */
 START_TEST(solvers_take_bounded_memory) {
     static const double sides[] = {0, 4, 2.53, 3.51, 4, 4.49, 5.51, 6.53};
     workload w = grid(_i < 2 ? 16 : 17, 16, 16, 6);
@@ -832,7 +830,7 @@ START_TEST(solvers_take_bounded_memory) {
 }
 END_TEST
 
-/* ---- coarse functions of small pieces ---- */
+/* ---- coarse functions of small components ---- */
 
 /* Appends a bar of cells of one size, apart from the others */
 static void add_bar(workload *w, double x, double size, uint32_t nx, uint32_t ny) {
@@ -849,8 +847,8 @@ static void add_bar(workload *w, double x, double size, uint32_t nx, uint32_t ny
     wl_free(&bar);
 }
 
-/* Fifty pieces of a hundredth to a half of a large one's cells beside it: their coarse functions go by their own size
-   (13,000 iterations where they went by the lattice's). */
+/* Fifty components with cells of a hundredth to a half of a large component's, beside it. Their coarse functions
+   depend on their own size (13,000 iterations where they depended on the lattice's). */
 START_TEST(small_pieces_beside_a_large_one) {
     workload w = grid(8, 8, 8, 6);
     gx_body *body;

@@ -1,6 +1,5 @@
-/* test_workloads.c - the named workloads (workloads.h) as cuts of a body: fragments, kept volume, removed volume, so
-   that a cut that was ignored is seen, however thin. Truth: the exact oracle; for W3, of 1760 triangles, exact cones.
- */
+/* test_workloads.c - the named workloads (workloads.h) as cuts of a body: fragments, kept volume, removed volume. An
+   ignored cut shows, however thin it is. Truth: the exact oracle; for W3, of 1760 triangles, exact cones. */
 #ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
 #endif

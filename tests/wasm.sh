@@ -1,15 +1,16 @@
 #!/bin/sh
-# wasm.sh [DIR] - the library as WebAssembly, with and without vectors, run by node: are results those of the native build?
-# Hashes of cuts (gxcut) and of Booleans of surfaces (hash_boolean.c), random cases (fuzz.c), and what creation says of a build that is
-# known to be wrong. Prints a line per build and `N passed, N failed`. JOBS=N: so many builds at a time (2). CASES=N: so many
-# random cases in each (2000). CLANG=: which (clang); its wasm-ld, wasi-libc in SYSROOT= (/usr).
+# wasm.sh [DIR] - the library as WebAssembly, with and without vectors, run by node: does it give the results of the native build?
+# Compares hashes of cuts (gxcut) and of Booleans of surfaces (hash_boolean.c), and random cases (fuzz.c). In a build that is known to
+# be wrong, creation must refuse (creation.c). Prints a line per build and `N passed, N failed`.
+# JOBS=N: builds at a time (2). CASES=N: random cases in each (2000). CLANG=: the compiler (clang), with its wasm-ld and with
+# wasi-libc in SYSROOT= (/usr).
 set -u
 dir=${1:-build/wasm}
 jobs=${JOBS:-2}
 cases=${CASES:-2000}
 clang=${CLANG:-clang}
 wasm="$clang --target=wasm32-wasi --sysroot=${SYSROOT:-/usr} -std=c99 -w -I."
-stack=-Wl,-z,stack-size=4194304         # wasm-ld's own 64 kB are too few: frames of 82 kB
+stack=-Wl,-z,stack-size=4194304         # wasm-ld's default of 64 kB is too small: there are frames of 82 kB
 mkdir -p "$dir" || exit 1
 rm -rf "${dir:?}"/*
 printf '#define GXFEM_IMPLEMENTATION\n#include "gxfem.h"\n' >"$dir/library.c"
@@ -30,14 +31,14 @@ cuts() { # FILE COMMAND...
     topology "$file" "$@" grid:3,2,2,5 --solid box:0.9,0.9,0.9,2.1,2.1,2.1 --sheet plane:1.5,1,1,1,0.25,0.125
 }
 
-# What it counts is compared too, but not how long it took.
+# Its counts are compared too, but not its time.
 random() { "$@" --out="$dir" --cases="$cases" | sed 's/, [0-9]* s$//'; }
 
 outcome() { # FILE GXCUT HASH_BOOLEAN FUZZ: commands
     { cuts "$1.json" $2; $3; random $4; } >"$1.out" 2>"$1.err"
 }
 
-# Programs come without the flags of the library: what is wrong is then the library's.
+# Programs are built without the library's flags, so that errors are the library's.
 programs() {
     for program in examples/gxcut tests/hash_boolean tests/fuzz; do
         "$@" -O1 -DGXFEM_LINKED -c $program.c -o "$dir/$prefix$(basename $program).o" || return
@@ -60,7 +61,7 @@ one() { # NAME FLAGS...
     outcome "$name" "node_run ${name}_gxcut.wasm" "node_run ${name}_hash_boolean.wasm" "node_run ${name}_fuzz.wasm"
 }
 
-# creation.c as it is, and with vectors where the headers make none: clang before 16 is then wrong, and creation must say so
+# creation.c as it is, and with vectors where the headers avoid them: clang before 16 is then wrong, and creation must refuse
 creation() { # NAME WHAT FOLDER
     $wasm -O2 -msimd128 "$3/tests/creation.c" $stack -o "$dir/$1.wasm" -lm && node_run "$dir/$1.wasm" "$2" >"$dir/$1.out" && echo "$2" >>"$dir/$1.out"
 }

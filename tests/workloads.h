@@ -1,11 +1,14 @@
 /* workloads.h - meshes, cut surfaces and the named workloads of the tests, all generated.
 
-   A workload is a mesh of tetrahedra and the surfaces that cut it; the numbers below are its defining parameters.
-       W1  rotated tetrahedron with unit edges, a slab through it      W2  the 24 tets around a node, a slab     W2f 32
-   tets W3  the tetrahedron, a wavy sheet of 800 triangles made solid (1760 triangles) W4  cube of 5 tets, 5 + 5
-   crossing slabs                        W4r the same, rotated D*  slabs in a facet, through corners, between two ulps
-   P*  a slab that ends inside, 1e-4 ... 1e-15 thick T*  a slab through, 1e-8 ... 1e-15 thick                        C*
-   a corner of size 1e-3 ... 1e-14 cut off */
+   A workload is a mesh of tetrahedra and the surfaces that cut it. The numbers below are its defining parameters.
+       W1   rotated tetrahedron with unit edges, a slab through it
+       W2   the 24 tetrahedra around a node, a slab; W2f: 32 tetrahedra
+       W3   the tetrahedron, a wavy sheet of 800 triangles made solid (1760 triangles)
+       W4   cube of 5 tetrahedra, 5 + 5 crossing slabs; W4r: the same, rotated
+       D*   slabs in a facet, through corners, between two ulps
+       P*   a slab that ends inside, 1e-4 ... 1e-15 thick
+       T*   a slab through, 1e-8 ... 1e-15 thick
+       C*   a corner of size 1e-3 ... 1e-14 cut off */
 #ifndef GXFEM_TESTS_WORKLOADS_H
 #define GXFEM_TESTS_WORKLOADS_H
 
@@ -316,7 +319,7 @@ static inline void wl_solidify(wl_surface *s, double thickness) {
             wl_add_triangle(s, a, up + b, up + a);
         }
     }
-    for (i = 0; i < triangles; i++) { /* the lower side looks down */
+    for (i = 0; i < triangles; i++) { /* the lower side faces down */
         uint32_t *n = s->triangles + 3 * i, b = n[1];
         n[1] = n[2];
         n[2] = b;
@@ -367,7 +370,7 @@ static inline workload wl_partial(double thickness) {
 }
 
 /* C: across the line from corner 0 to the middle of the opposite face, `size` away from the corner, a tenth of that
- * thick */
+   thick */
 static inline workload wl_corner_cut(double size) {
     workload w = wl_tetrahedron(wl_unit_tetrahedron);
     wl_frame f = {{0, 0, 0},
@@ -453,7 +456,7 @@ static inline wl_frame wl_rotated(void) {
     return f;
 }
 
-/* D1: z in [0, 2^-13], its lower side in a facet. D1b: just below it, nothing is removed. */
+/* D1: z in [0, 2^-13], its lower side in a facet. D1b: just below it; nothing is removed. */
 static inline workload wl_facet_slab(int below) {
     workload w = wl_tetrahedron(wl_corner_tetrahedron);
     double low[3] = {-1.1, -1.2, 0}, high[3] = {2.1, 2.3, 0.0001220703125};
@@ -534,7 +537,7 @@ static inline workload wl_ulp_slab(int general) {
 /* ---- views of a workload ---- */
 
 /* The hard slabs and corners by name: D coplanar and through nodes, P ends inside, T through and thin, C cuts off a
-   corner. pieces: what is left. */
+   corner. pieces: the number that is left */
 enum { WL_HARD = 17 };
 static inline workload wl_hard(int i, const char **name, size_t *pieces) {
     static const char *const names[WL_HARD] = {"D1",  "D1b", "D1c", "D2",  "D3", "D3g", "P4", "P9", "P12",
