@@ -49,7 +49,7 @@
  *                 matrices | >>sleep rest | >>balance residual, start | >>search lengths | >>integrators BDF, midpoint
  * |
  *                 >>newton iterations, bound on E | >>midpoint second half, end of a step
- *   entrance:     >>check what is given | >>api the public functions | >>forms assembled forms, one F
+ *   entrance:     >>check what is given | >>api the public functions | >>single a material at one F
  *
  * WORDS. Copy: a node's displacement for one connected set of cells. Component: copies joined by elements and
  * constraints. Lane, block, chunk: an element's place, eight lanes, 48 blocks. Slot: a copy's place in the results of
@@ -485,16 +485,6 @@ GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *directi
 
 GXFEM_API gx_result gxs_solver_create(const gxs_solver_desc *desc /* or NULL */, gxs_solver **solver);
 GXFEM_API void gxs_solver_destroy(gxs_solver *solver); /* NULL is allowed */
-
-/* Assembled forms, for tests and benches: no held copies, no constraints, no time. Vectors are copy_count x 3.
- * energy: U, J. gradient: dU/du, N. hessian_product: projected Hessian of U at displacement times direction, N, in
- * single precision as the solver has it. mass_product: M, not lumped, times direction. The output may not overlap an
- * input. */
-GXFEM_API gx_result gxs_model_energy(const gxs_model *model, const double *displacement, double *energy);
-GXFEM_API gx_result gxs_model_gradient(const gxs_model *model, const double *displacement, double *gradient);
-GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const double *displacement,
-                                              const double *direction, double *product);
-GXFEM_API gx_result gxs_model_mass_product(const gxs_model *model, const double *direction, double *product);
 
 /* The material at one deformation gradient F (3x3 by rows; nothing is checked): energy density, J/m3, 0 at rest; first
  * Piola-Kirchhoff stress P = d energy / dF, Pa; projected Hessian dP/dF times direction, Pa, in single precision. */
@@ -9192,157 +9182,10 @@ GXFEM_API void gxs_solver_destroy(gxs_solver *solver) {
     allocator.release(allocator.user, solver, sizeof *solver);
 }
 
-/* >>forms: assembled forms, and a material at one F ---------------------------------------------------------------- */
+/* >>single: a material at one deformation gradient ----------------------------------------------------------------- */
 
-/* Eight elements of the caller's array at a time, or one deformation gradient. Nothing is kept; no system is
- * needed. */
-
-typedef struct gxsp_group {
-    gxsp_rest rest;
-    gxsp_lanes gradients[9];
-    gxsp_state state;
-    gxsp_material material[GXSP_LANES];
-    gxs_material_kind kind;
-    uint32_t count; /* elements in it, of one kind */
-    const gxs_element *elements;
-} gxsp_group;
-
-/* The next elements of one kind from at on */
-static void gxsp_group_load(const gxs_model *model, size_t at, gxsp_group *group) {
-    size_t lane;
-    int k;
-    memset(group, 0, sizeof *group);
-    group->elements = model->elements + at;
-    group->kind = model->materials[group->elements->material].kind;
-    for (lane = 0; lane < GXSP_LANES; lane++) {
-        const gxs_element *element = &group->elements[lane];
-        if (at + lane >= model->element_count || model->materials[element->material].kind != group->kind) break;
-        group->material[lane] = gxsp_material_make(&model->materials[element->material]);
-        group->state.mu[lane] = group->material[lane].mu;
-        group->state.lambda[lane] = group->material[lane].lambda;
-        for (k = 0; k < 9; k++) group->gradients[k][lane] = element->gradient[1 + k / 3][k % 3];
-        group->rest.weight[lane] = element->weight;
-    }
-    group->count = (uint32_t)lane;
-    for (lane = 0; lane < GXSP_LANES; lane++)
-        group->state.material[lane] = &group->material[lane < group->count ? lane : 0];
-}
-
-static void gxsp_group_gather(const gxsp_group *group, const double *x, gxsp_lanes *corners) {
-    uint32_t lane;
-    int i, r;
-    memset(corners, 0, 12 * sizeof *corners);
-    for (lane = 0; lane < group->count; lane++)
-        for (i = 0; i < 4; i++)
-            for (r = 0; r < 3; r++) corners[3 * i + r][lane] = x[3 * (size_t)group->elements[lane].copy[i] + (size_t)r];
-}
-
-static void gxsp_group_scatter(const gxsp_group *group, gxsp_lanes *values, double *y) {
-    uint32_t lane;
-    int i, r;
-    for (lane = 0; lane < group->count; lane++)
-        for (i = 0; i < 4; i++)
-            for (r = 0; r < 3; r++) y[3 * (size_t)group->elements[lane].copy[i] + (size_t)r] += values[3 * i + r][lane];
-}
-
-/* Checks the model and an input vector of one of the assembled forms. */
-static gx_result gxsp_check_form(const gxs_model *model, const double *vector, const void *output) {
-    gx_failure failure;
-    gx_result result = gxsp_check_model(model, &failure);
-    if (result == GX_OK) result = gxsp_check_vector(vector, model->copy_count, &failure);
-    return result == GX_OK && !output ? GX_ERROR_ARGUMENT : result;
-}
-
-GXFEM_API gx_result gxs_model_energy(const gxs_model *model, const double *displacement, double *energy) {
-    gx_result result = gxsp_check_form(model, displacement, energy);
-    double sum = 0;
-    size_t e;
-    uint32_t lane;
-    if (result != GX_OK) return result;
-    for (e = 0; e < model->element_count;) {
-        gxsp_group group;
-        gxsp_lanes x[12];
-        gxsp_group_load(model, e, &group);
-        gxsp_group_gather(&group, displacement, x);
-        gxsp_block_gradient(group.gradients, x, group.state.g);
-        gxsp_material_state(group.kind, &group.state);
-        for (lane = 0; lane < group.count; lane++) sum += group.rest.weight[lane] * group.state.energy[lane];
-        e += group.count;
-    }
-    *energy = sum;
-    return GX_OK;
-}
-
-GXFEM_API gx_result gxs_model_gradient(const gxs_model *model, const double *displacement, double *gradient) {
-    gx_result result = gxsp_check_form(model, displacement, gradient);
-    size_t e;
-    if (result != GX_OK) return result;
-    memset(gradient, 0, 3 * model->copy_count * sizeof(double));
-    for (e = 0; e < model->element_count;) {
-        gxsp_group group;
-        gxsp_lanes x[12], force[12];
-        gxsp_group_load(model, e, &group);
-        gxsp_group_gather(&group, displacement, x);
-        gxsp_block_gradient(group.gradients, x, group.state.g);
-        gxsp_material_state(group.kind, &group.state);
-        memset(force, 0, sizeof force);
-        gxsp_block_force(group.rest.weight, group.gradients, group.state.p, force);
-        gxsp_group_scatter(&group, force, gradient);
-        e += group.count;
-    }
-    return GX_OK;
-}
-
-GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const double *displacement,
-                                              const double *direction, double *product) {
-    gx_result result = gxsp_check_form(model, displacement, product);
-    gx_failure failure;
-    size_t e;
-    if (result == GX_OK) result = gxsp_check_vector(direction, model->copy_count, &failure);
-    if (result != GX_OK) return result;
-    memset(product, 0, 3 * model->copy_count * sizeof(double));
-    for (e = 0; e < model->element_count;) {
-        gxsp_group group;
-        gxsp_tangent tangent;
-        gxsp_general general;
-        gxsp_lanes x[12];
-        gxsp_svd of;
-        gxsp_singles from[12], to[12];
-        int k, l;
-        gxsp_group_load(model, e, &group);
-        gxsp_group_gather(&group, displacement, x);
-        gxsp_block_gradient(group.gradients, x, group.state.g);
-        memset(&tangent, 0, sizeof tangent);
-        (void)gxsp_tangent_begin(group.kind, &group.state, NULL, &of);
-        gxsp_tangent_make(group.kind, &group.rest, group.gradients, 1, 0, &group.state, &of, &tangent, &general);
-        gxsp_group_gather(&group, direction, x);
-        for (k = 0; k < 12; k++)
-            GXSP_EACH_LANE(l) from[k][l] = (float)(x[k][l] - x[k % 3][l]); /* exactly 0 for translations */
-        memset(to, 0, sizeof to);
-        gxsp_kind_product(group.kind, &tangent, NULL, &general, 1, from, to);
-        for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) x[k][l] = (double)to[k][l];
-        gxsp_group_scatter(&group, x, product);
-        e += group.count;
-    }
-    return GX_OK;
-}
-
-GXFEM_API gx_result gxs_model_mass_product(const gxs_model *model, const double *direction, double *product) {
-    gx_result result = gxsp_check_form(model, direction, product);
-    size_t e, r;
-    int i, j;
-    if (result != GX_OK) return result;
-    memset(product, 0, 3 * model->copy_count * sizeof(double));
-    for (e = 0; e < model->element_count; e++) {
-        const gxs_element *element = &model->elements[e];
-        for (i = 0; i < 4; i++)
-            for (j = 0; j < 4; j++)
-                for (r = 0; r < 3; r++)
-                    product[3 * (size_t)element->copy[i] + r] +=
-                        element->mass[gxsp_packed_mass[i][j]] * direction[3 * (size_t)element->copy[j] + r];
-    }
-    return GX_OK;
-}
+/* In: a material as the caller gives it and one F. Out: energy, stress or the projected Hessian times a direction, by
+ * one lane of a block. Nothing is kept; no system is needed. */
 
 static gxsp_state gxsp_single_state(const gxsp_material *material, const double *deformation) {
     gxsp_state state;

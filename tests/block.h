@@ -3,6 +3,7 @@
 #ifndef BLOCK_H
 #define BLOCK_H
 #include "runner.h"
+#include "../bench/forms.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -184,13 +185,13 @@ static inline double incremental_potential(const scene *s, const gxs_step_desc *
                                            const double *vn, const double *u) {
     size_t n = s->model.copy_count, i;
     double *y = (double *)zeroed(3 * n, sizeof(double)), *my = (double *)zeroed(3 * n, sizeof(double)), sum = 0;
-    ck_assert_int_eq(gxs_model_energy(&s->model, u, &sum), GX_OK);
+    sum = form_energy(&s->model, u);
     for (i = 0; i < 3 * n; i++) y[i] = u[i] - un[i] - step->dt * vn[i];
-    ck_assert_int_eq(gxs_model_mass_product(&s->model, y, my), GX_OK);
+    form_mass_product(&s->model, y, my);
     for (i = 0; i < 3 * n; i++)
         sum += 0.5 * y[i] * my[i] / (step->dt * step->dt) - (step->forces ? step->forces[i] * u[i] : 0);
     for (i = 0; i < 3 * n; i++) y[i] = step->gravity[i % 3];
-    ck_assert_int_eq(gxs_model_mass_product(&s->model, y, my), GX_OK);
+    form_mass_product(&s->model, y, my);
     for (i = 0; i < 3 * n; i++) sum -= my[i] * u[i];
     free(y);
     free(my);
@@ -243,7 +244,7 @@ static inline void set_kind(gxs_material *material, int kind) {
 static inline void momentum(const scene *s, double *p) {
     double *mv = (double *)zeroed(3 * s->model.copy_count, sizeof *mv);
     size_t i;
-    ck_assert_int_eq(gxs_model_mass_product(&s->model, s->velocity, mv), GX_OK);
+    form_mass_product(&s->model, s->velocity, mv);
     p[0] = p[1] = p[2] = 0;
     for (i = 0; i < 3 * s->model.copy_count; i++) p[i % 3] += mv[i];
     free(mv);

@@ -129,11 +129,11 @@ static void mass_times(const scene *s, const double *x, double *y) {
     if (s->model.lumped_mass) {
         double *ones = (double *)zeroed(count, sizeof *ones);
         for (i = 0; i < count; i++) ones[i] = 1;
-        ck_assert_int_eq(gxs_model_mass_product(&s->model, ones, y), GX_OK);
+        form_mass_product(&s->model, ones, y);
         for (i = 0; i < count; i++) y[i] *= x[i];
         free(ones);
     } else
-        ck_assert_int_eq(gxs_model_mass_product(&s->model, x, y), GX_OK);
+        form_mass_product(&s->model, x, y);
 }
 
 static double mass_of(const scene *s) {
@@ -150,7 +150,7 @@ static double total_energy(const scene *s, const double *gravity) {
     const size_t count = 3 * s->model.copy_count;
     double *y = (double *)zeroed(2 * count, sizeof *y), sum;
     size_t i;
-    ck_assert_int_eq(gxs_model_energy(&s->model, s->displacement, &sum), GX_OK);
+    sum = form_energy(&s->model, s->displacement);
     mass_times(s, s->velocity, y);
     for (i = 0; i < count; i++) {
         sum += 0.5 * y[i] * s->velocity[i];
@@ -597,8 +597,8 @@ START_TEST(moved_copies_have_inertia) {
             y[i] = -s.displacement[i] - step.dt * s.velocity[i] - step.dt * step.dt * step.gravity[i % 3];
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
         for (i = 0; i < count; i++) y[i] = (y[i] + s.displacement[i]) / (step.dt * step.dt);
-        ck_assert_int_eq(gxs_model_mass_product(&s.model, y, my), GX_OK);
-        ck_assert_int_eq(gxs_model_gradient(&s.model, s.displacement, g), GX_OK);
+        form_mass_product(&s.model, y, my);
+        form_gradient(&s.model, s.displacement, g);
         for (i = 0; i < count; i++)
             if (!s.held[i / 3]) {
                 worst = fabs(my[i] + g[i]) > worst ? fabs(my[i] + g[i]) : worst;
@@ -801,7 +801,7 @@ START_TEST(springs_carry_a_weight) {
         }
     }
     for (i = 0; i < 3 * s.model.copy_count; i++) mg[i] = step.gravity[i % 3];
-    ck_assert_int_eq(gxs_model_mass_product(&s.model, mg, mg + 3 * s.model.copy_count), GX_OK);
+    form_mass_product(&s.model, mg, mg + 3 * s.model.copy_count);
     for (i = 0; i < 3 * s.model.copy_count; i += 3) {
         const double f = mg[3 * s.model.copy_count + i + 2];
         torque[0] += (s.rest[i + 1] + s.displacement[i + 1]) * f;
@@ -1387,8 +1387,8 @@ START_TEST(friction_acts_on_points_that_targets_carry) {
         for (i = 0; i < count; i++) y[i] = -s.displacement[i] - step.dt * s.velocity[i];
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
         for (i = 0; i < count; i++) y[i] = (y[i] + s.displacement[i]) / (step.dt * step.dt);
-        ck_assert_int_eq(gxs_model_mass_product(&s.model, y, my), GX_OK);
-        ck_assert_int_eq(gxs_model_gradient(&s.model, s.displacement, g), GX_OK);
+        form_mass_product(&s.model, y, my);
+        form_gradient(&s.model, s.displacement, g);
         for (i = 0; i < 6; i++) {
             gxs_step_desc one = step;
             one.points = &points[i];
@@ -1523,7 +1523,7 @@ static double part_potential(const scene *s, const gxs_step_desc *step, size_t f
     double *part = (double *)zeroed(9 * n, sizeof *part), *way = part + 3 * n, *product = way + 3 * n, sum;
     size_t i;
     part_of(u, first, end, n, part);
-    ck_assert_int_eq(gxs_model_energy(&s->model, part, &sum), GX_OK);
+    sum = form_energy(&s->model, part);
     for (i = 3 * first; i < 3 * end; i++) way[i] = u[i] - un[i] - step->dt * vn[i];
     mass_times(s, way, product);
     for (i = 3 * first; i < 3 * end; i++) sum += 0.5 * way[i] * product[i] / (step->dt * step->dt);
@@ -2166,7 +2166,7 @@ static void check_operator(bedroom *room) {
     for (i = 0; i < n; i++) x[i] = room->s.held[i / 3] ? 0 : uniform();
     ck_assert_int_eq(gxs_solver_linearise(room->solver, room->s.displacement, 0, 0, NULL), GX_OK);
     ck_assert_int_eq(gxs_solver_product(room->solver, x, y, NULL), GX_OK);
-    ck_assert_int_eq(gxs_model_hessian_product(&room->s.model, room->s.displacement, x, expected), GX_OK);
+    form_hessian_product(&room->s.model, room->s.displacement, x, expected);
     for (i = 0; i < n; i++) most = fabs(expected[i]) > most ? fabs(expected[i]) : most;
     for (i = 0; i < n; i++)
         assert_that(fabs(y[i] - (room->s.held[i / 3] ? 0 : expected[i])) < 4e-6 * most, "%g %g", y[i], expected[i]);

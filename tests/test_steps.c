@@ -5,6 +5,7 @@
 #define GXFEM_IMPLEMENTATION
 #endif
 #include "../gxfem.h"
+#include "../bench/forms.h"
 #include "body.h"
 
 static gx_step_desc step_of(double dt, double gravity) {
@@ -238,7 +239,7 @@ START_TEST(energy_of_cut_bodies_falls_from_violent_starts) {
     v = u + count;
     for (i = 0; i < count; i++) start[i] = violent(how, i % 3, model.positions[i]);
     ck_assert_int_eq(gxs_solver_create(NULL, &solver), GX_OK);
-    ck_assert_int_eq(gxs_model_energy(&model, start, &before), GX_OK);
+    before = form_energy(&model, start);
     for (k = 1; k <= 20; k++) {
         memcpy(u, start, count * sizeof *u);
         memset(v, 0, count * sizeof *v);
