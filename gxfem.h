@@ -466,7 +466,7 @@ extern "C" {
 #define GXP_FETCHES        static inline
 #endif
 
-/* --- types --- */
+/* >>state: what a body is made of ---------------------------------------------------------------------------------- */
 
 #define GXP_NONE UINT32_MAX
 /* Shares of an element, where gx_body_desc.support_below is 0: copies that nothing larger carries follow others;
@@ -719,7 +719,10 @@ struct gx_body {
     gxp_words link_first; /* fresh.count + 1, into links */
 };
 
-/* >>memory --------------------------------------------------------------------------------------------------------- */
+/* >>memory: allocation, growing arrays ----------------------------------------------------------------------------- */
+/* In: an allocator, arrays, the items that they are to hold. Out: room for them, or GX_ERROR_MEMORY or GX_ERROR_LIMIT
+   and everything as it was. gxp_reserve is the one way by which an array of this header grows; gxp_grow_rows does it
+   for all columns of a table. */
 
 static void *gxp_allocate(const gx_allocator *a, size_t size) {
     return a->allocate ? a->allocate(a->user, size) : malloc(size);
@@ -777,6 +780,108 @@ static void gxp_words_free(gx_body *body, gxp_words *words) {
     gxp_release(&body->allocator, words->data, (size_t)words->capacity * sizeof *words->data);
 }
 
+static gx_result gxp_set_words(gx_body *body, gxp_words *words, size_t count) {
+    words->count = 0;
+    return gxp_words_room(body, words, count);
+}
+
+#define GXP_FIRST(key)       ((uint32_t)((key) >> 32))
+#define GXP_SECOND(key)      ((uint32_t)(key))
+#define GXP_LINK_CELL(link)  ((uint32_t)((link) >> 33)) /* see gx_body.links: 31, 31 and 2 bits */
+#define GXP_LINK_FACET(link) ((uint32_t)((link) >> 2) & 0x7fffffffu)
+#define GXP_LINK_FACE(link)  ((uint32_t)(link)&3)
+
+static gx_result gxp_keys_room(gx_body *body, gxp_keys *keys, size_t extra) {
+    return gxp_reserve(&body->allocator, &keys->data, sizeof *keys->data, keys->count, &keys->capacity, extra);
+}
+
+static gx_result gxp_push_key(gx_body *body, gxp_keys *keys, uint32_t first, uint32_t second) {
+    const gx_result result = gxp_keys_room(body, keys, 1);
+    if (result == GX_OK) keys->data[keys->count++] = (uint64_t)first << 32 | second;
+    return result;
+}
+
+/* Makes room for extra further items in several arrays of the same length: in all of them, or in none. arrays: their
+ * addresses. */
+static gx_result gxp_reserve_columns(const gx_allocator *a, void *const *arrays, const size_t *items, int columns,
+                                     size_t count, uint32_t *capacity, size_t extra) {
+    const size_t need = count + extra, room = need + need / 2 + 16;
+    void *memory[8], *old;
+    int i, n;
+    if (need <= *capacity) return GX_OK;
+    for (n = 0; n < columns; n++) {
+        if (room > INT32_MAX || room > SIZE_MAX / items[n]) break;
+        memory[n] = gxp_allocate(a, room * items[n]);
+        if (memory[n] == NULL) break;
+    }
+    for (i = 0; i < n && n < columns; i++) gxp_release(a, memory[i], room * items[i]);
+    if (n < columns) return room > INT32_MAX || room > SIZE_MAX / items[n] ? GX_ERROR_LIMIT : GX_ERROR_MEMORY;
+    for (i = 0; i < columns; i++) {
+        memcpy(&old, arrays[i], sizeof old);
+        if (count > 0) memcpy(memory[i], old, count * items[i]);
+        gxp_release(a, old, (size_t)*capacity * items[i]);
+        memcpy(arrays[i], &memory[i], sizeof old);
+    }
+    *capacity = (uint32_t)room;
+    return GX_OK;
+}
+
+enum { GXP_VERTEX_COLUMNS = 7, GXP_TRIANGLE_COLUMNS = 6 };
+
+static void gxp_vertex_columns(gxp_skin *s, void **arrays, size_t *items) {
+    arrays[0] = &s->vertices;
+    items[0] = sizeof *s->vertices;
+    arrays[1] = &s->copies;
+    items[1] = 4 * sizeof *s->copies;
+    arrays[2] = &s->weights;
+    items[2] = 4 * sizeof *s->weights;
+    arrays[3] = &s->point;
+    items[3] = sizeof *s->point;
+    arrays[4] = &s->rest;
+    items[4] = 3 * sizeof *s->rest;
+    arrays[5] = &s->normal;
+    items[5] = 3 * sizeof *s->normal;
+    arrays[6] = &s->texture;
+    items[6] = 2 * sizeof *s->texture;
+}
+
+static void gxp_triangle_columns(gxp_skin *s, void **arrays, size_t *items) {
+    arrays[0] = &s->links;
+    items[0] = sizeof *s->links;
+    arrays[1] = &s->triangles;
+    items[1] = 3 * sizeof *s->triangles;
+    arrays[2] = &s->fragment;
+    items[2] = sizeof *s->fragment;
+    arrays[3] = &s->element;
+    items[3] = sizeof *s->element;
+    arrays[4] = &s->material;
+    items[4] = sizeof *s->material;
+    arrays[5] = &s->surface;
+    items[5] = sizeof *s->surface;
+}
+
+static void gxp_move_column_item(void *const *arrays, const size_t *items, int columns, size_t from, size_t to) {
+    int i;
+    for (i = 0; i < columns; i++) {
+        char *data;
+        memcpy(&data, arrays[i], sizeof data);
+        memcpy(data + to * items[i], data + from * items[i], items[i]);
+    }
+}
+
+static void gxp_release_columns(const gx_allocator *a, void *const *arrays, const size_t *items, int columns,
+                                uint32_t capacity) {
+    int i;
+    for (i = 0; i < columns; i++) {
+        void *data;
+        memcpy(&data, arrays[i], sizeof data);
+        gxp_release(a, data, capacity * items[i]);
+    }
+}
+
+/* >>basics: sorting, hashing, sets, vectors ------------------------------------------------------------------------ */
+/* Small functions that know nothing of a body. They change nothing but what they are given. */
+
 /* Ascending, by the bits from `bit` down: those without it first [radix exchange, Hildebrandt and Isbitz 1959] */
 static void gxp_sort_by_bits(uint32_t *w, uint32_t count, uint32_t bit) {
     while (count > 1 && bit != 0) {
@@ -807,22 +912,6 @@ static void gxp_sort_unique(gxp_words *w) {
     for (i = 0; i < w->count; i++)
         if (n == 0 || w->data[i] != w->data[n - 1]) w->data[n++] = w->data[i];
     w->count = n;
-}
-
-#define GXP_FIRST(key)       ((uint32_t)((key) >> 32))
-#define GXP_SECOND(key)      ((uint32_t)(key))
-#define GXP_LINK_CELL(link)  ((uint32_t)((link) >> 33)) /* see gx_body.links: 31, 31 and 2 bits */
-#define GXP_LINK_FACET(link) ((uint32_t)((link) >> 2) & 0x7fffffffu)
-#define GXP_LINK_FACE(link)  ((uint32_t)(link)&3)
-
-static gx_result gxp_keys_room(gx_body *body, gxp_keys *keys, size_t extra) {
-    return gxp_reserve(&body->allocator, &keys->data, sizeof *keys->data, keys->count, &keys->capacity, extra);
-}
-
-static gx_result gxp_push_key(gx_body *body, gxp_keys *keys, uint32_t first, uint32_t second) {
-    const gx_result result = gxp_keys_room(body, keys, 1);
-    if (result == GX_OK) keys->data[keys->count++] = (uint64_t)first << 32 | second;
-    return result;
 }
 
 static void gxp_sort_few_keys(uint64_t *key, uint32_t count) {
@@ -863,6 +952,42 @@ static gx_result gxp_sort_keys(gx_body *body, gxp_keys *keys, uint32_t from, uin
     return GX_OK;
 }
 
+static int gxp_contains(const gxp_words *words, uint32_t value) {
+    uint32_t i;
+    for (i = 0; i < words->count; i++)
+        if (words->data[i] == value) return 1;
+    return 0;
+}
+
+static uint32_t gxp_find(uint32_t *parent, uint32_t i) {
+    while (parent[i] != i) {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    return i;
+}
+
+static void gxp_unite(uint32_t *parent, uint32_t i, uint32_t j) {
+    i = gxp_find(parent, i);
+    j = gxp_find(parent, j);
+    if (i < j)
+        parent[j] = i;
+    else
+        parent[i] = j;
+}
+
+static void gxp_unite_all(uint32_t *parent, const uint32_t copies[4]) {
+    uint32_t root = gxp_find(parent, copies[0]), k;
+    for (k = 1; k < 4; k++) {
+        const uint32_t other = gxp_find(parent, copies[k]);
+        if (other < root) {
+            parent[root] = other;
+            root = other;
+        } else
+            parent[other] = root;
+    }
+}
+
 static gx_result gxp_fail(gx_failure *failure, gx_result result, size_t index, size_t surface) {
     if (failure != NULL) {
         failure->result = result;
@@ -885,9 +1010,132 @@ static uint64_t gxp_mix(uint64_t x) { /* splitmix64's finaliser */
     return x ^ (x >> 31);
 }
 
+static uint64_t gxp_hash_words(uint64_t hash, const uint32_t *words, size_t count) {
+    size_t i;
+    hash = gxp_mix(hash ^ count);
+    for (i = 0; i < count; i++) hash = gxp_mix(hash ^ words[i]);
+    return hash;
+}
+
+static uint64_t gxp_hash_doubles(uint64_t hash, const double *x, size_t count) {
+    for (; count > 0; count--, x++) {
+        uint64_t b;
+        memcpy(&b, x, sizeof b);
+        hash = gxp_mix(hash ^ b);
+    }
+    return hash;
+}
+
+/* count x 2, or NULL */
+static uint64_t gxp_hash_texture(uint64_t hash, const float *texture, size_t count) {
+    size_t i;
+    hash = gxp_mix(hash ^ (texture != NULL));
+    for (i = 0; i < 2 * count && texture != NULL; i++) {
+        uint32_t b;
+        memcpy(&b, &texture[i], sizeof b);
+        hash = gxp_mix(hash ^ b);
+    }
+    return hash;
+}
+
+static double gxp_dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* n made of length 1, however long it is. 0: it has no length, or is not finite, and unit is left alone. */
+static int gxp_unit(const double n[3], double unit[3]) {
+    double m[3] = {n[0], n[1], n[2]}, square = gxp_dot(n, n);
+    int exponent, k;
+    if (!gxp_is_finite(square) || square < 1e-280 || square > 1e280) {
+        const double a = fabs(n[0]), b = fabs(n[1]), c = fabs(n[2]), most = a > b ? (a > c ? a : c) : b > c ? b : c;
+        if (!gxp_is_finite(a) || !gxp_is_finite(b) || !gxp_is_finite(c) || !(most > 0)) return 0;
+        (void)frexp(most, &exponent);
+        for (k = 0; k < 3; k++) m[k] = ldexp(n[k], -exponent);
+        square = gxp_dot(m, m);
+    }
+    square = 1 / sqrt(square);
+    for (k = 0; k < 3; k++) unit[k] = square * m[k];
+    return 1;
+}
+
+/* (b - a) x (c - a) of a triangle's corners */
+static void gxp_triangle_normal(const double *x, const uint32_t *t, double n[3]) {
+    const double *a = x + 3 * (size_t)t[0], *b = x + 3 * (size_t)t[1], *c = x + 3 * (size_t)t[2];
+    const double p[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, q[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+    n[0] = p[1] * q[2] - p[2] * q[1];
+    n[1] = p[2] * q[0] - p[0] * q[2];
+    n[2] = p[0] * q[1] - p[1] * q[0];
+}
+
 static double gxp_seconds(const gx_body *body) { return body->clock ? body->clock(body->clock_user) : 0; }
 
-/* >>tree: axis-aligned boxes over the elements, median split ------------------------------------------------------- */
+/* >>mesh: elements, faces, nodes, boxes ---------------------------------------------------------------------------- */
+/* Reads the mesh: which elements are around a node, what is behind a face, volumes, densities. In: the mesh that
+   gx_body_create copied. Out: numbers, and at creation the tree of boxes over the elements (median split). Nothing here
+   changes after the creation. */
+
+/* nodes of the face opposite to each */
+static const uint8_t gxp_outward[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+
+static const uint8_t gxp_edge_nodes[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+
+static int gxp_local_node(const gx_body *body, uint32_t element, uint32_t node) {
+    const uint32_t *n = body->complex->elements + 4 * (size_t)element;
+    return (n[0] == node) + 2 * (n[1] == node) + 3 * (n[2] == node) + 4 * (n[3] == node) - 1;
+}
+
+/* The local node of the element that the face does not have */
+static uint32_t gxp_local_face(const gxb_complex *cx, uint32_t element, uint32_t face) {
+    const uint32_t *faces = cx->element_faces + 4 * (size_t)element;
+    return 3 - 3 * (uint32_t)(faces[0] == face) - 2 * (uint32_t)(faces[1] == face) - (uint32_t)(faces[2] == face);
+}
+
+static uint32_t gxp_neighbour(const gx_body *body, uint32_t element, uint32_t k) {
+    const uint32_t *pair =
+        body->complex->face_elements + 2 * (size_t)body->complex->element_faces[4 * (size_t)element + k];
+    return pair[0] == element ? pair[1] : pair[0];
+}
+
+/* An element with the face, and the node of it that the face does not have. */
+static uint32_t gxp_face_element(const gxb_complex *cx, uint32_t face, uint32_t *k) {
+    const uint32_t element =
+        cx->face_elements[2 * face] != GXB_NONE ? cx->face_elements[2 * face] : cx->face_elements[2 * face + 1];
+    *k = gxp_local_face(cx, element, face);
+    return element;
+}
+
+static void gxp_list_node_elements(gx_body *body) {
+    const uint32_t *elements = body->complex->elements;
+    uint32_t i;
+    memset(body->node_start, 0, ((size_t)body->node_count + 1) * sizeof *body->node_start);
+    for (i = 0; i < 4 * body->element_count; i++) body->node_start[elements[i] + 1]++;
+    for (i = 0; i < body->node_count; i++) body->node_start[i + 1] += body->node_start[i];
+    for (i = 0; i < 4 * body->element_count; i++) body->node_elements[body->node_start[elements[i]]++] = i / 4;
+    for (i = body->node_count; i > 0; i--) body->node_start[i] = body->node_start[i - 1];
+    body->node_start[0] = 0;
+}
+
+static void gxp_element_positions(const gx_body *body, uint32_t element, double x[12]) {
+    int k;
+    for (k = 0; k < 4; k++)
+        memcpy(x + 3 * k, body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)element + (size_t)k],
+               3 * sizeof *x);
+}
+
+static double gxp_element_volume(const gx_body *body, uint32_t element) {
+    double x[12];
+    gxp_element_positions(body, element, x);
+    return gxi_tet_volume(x);
+}
+
+/* Doubles may see an element as inverted that is not, as the solver would. */
+static int gxp_rounds_inverted(const gx_body *body, uint32_t element) {
+    double x[12], gradients[12];
+    gxp_element_positions(body, element, x);
+    return gxi_tet_gradients(x, gradients, NULL) == GX_ERROR_INVERTED;
+}
+
+static double gxp_density(const gx_body *body, uint32_t element) {
+    return body->materials[body->element_materials[element]].density;
+}
 
 static void gxp_box_of(const gx_body *body, gxp_box *box) {
     double low[3], high[3];
@@ -959,8 +1207,9 @@ static void gxp_build_boxes(gx_body *body) {
     }
 }
 
-/* nodes of the face opposite to each */
-static const uint8_t gxp_outward[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+/* >>search: the elements that a triangle may meet ------------------------------------------------------------------ */
+/* In: a triangle. Out: a list of elements, all that the triangle meets and few others. Rounding adds candidates and
+   never loses one: what is exact is decided by the complex. */
 
 /* A triangle whose elements are looked for. Differences are multiplied by a power of two, the frame's, so that no
  * product leaves the range. */
@@ -1142,187 +1391,9 @@ static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_
     return result;
 }
 
-/* >>create --------------------------------------------------------------------------------------------------------- */
-
-static const uint8_t gxp_edge_nodes[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
-
-static int gxp_local_node(const gx_body *body, uint32_t element, uint32_t node) {
-    const uint32_t *n = body->complex->elements + 4 * (size_t)element;
-    return (n[0] == node) + 2 * (n[1] == node) + 3 * (n[2] == node) + 4 * (n[3] == node) - 1;
-}
-
-static uint32_t gxp_neighbour(const gx_body *body, uint32_t element, uint32_t k) {
-    const uint32_t *pair =
-        body->complex->face_elements + 2 * (size_t)body->complex->element_faces[4 * (size_t)element + k];
-    return pair[0] == element ? pair[1] : pair[0];
-}
-
-static void gxp_list_node_elements(gx_body *body) {
-    const uint32_t *elements = body->complex->elements;
-    uint32_t i;
-    memset(body->node_start, 0, ((size_t)body->node_count + 1) * sizeof *body->node_start);
-    for (i = 0; i < 4 * body->element_count; i++) body->node_start[elements[i] + 1]++;
-    for (i = 0; i < body->node_count; i++) body->node_start[i + 1] += body->node_start[i];
-    for (i = 0; i < 4 * body->element_count; i++) body->node_elements[body->node_start[elements[i]]++] = i / 4;
-    for (i = body->node_count; i > 0; i--) body->node_start[i] = body->node_start[i - 1];
-    body->node_start[0] = 0;
-}
-
-/* Walks from element to element through faces that contain the node, stamping; *reached: how many. */
-static gx_result gxp_walk_around(gx_body *body, uint32_t start, uint32_t node, uint32_t *reached) {
-    gx_result result = GX_OK;
-    body->queue.count = 0;
-    *reached = 0;
-    body->cell_stamp[start] = body->stamp;
-    result = gxp_push(body, &body->queue, start);
-    while (*reached < body->queue.count && result == GX_OK) {
-        const uint32_t e = body->queue.data[(*reached)++];
-        uint32_t k;
-        for (k = 0; k < 4 && result == GX_OK; k++) {
-            const uint32_t other = gxp_neighbour(body, e, k), opposite = body->complex->elements[4 * (size_t)e + k];
-            if (other == GXP_NONE || body->cell_stamp[other] == body->stamp || opposite == node) continue;
-            body->cell_stamp[other] = body->stamp;
-            result = gxp_push(body, &body->queue, other);
-        }
-    }
-    return result;
-}
-
-/* Marks nodes and edges whose elements do not hang together through faces around them: there, edges and nodes link too.
-   (An edge's elements come in as many fans as it has pairs of boundary faces.) */
-static gx_result gxp_find_pinches(gx_body *body) {
-    const gxb_complex *cx = body->complex;
-    uint32_t i, j, k, reached;
-    gx_result result = GX_OK;
-    for (i = 0; i < body->node_count && result == GX_OK; i++) {
-        const uint32_t first = body->node_start[i], count = body->node_start[i + 1] - first;
-        if (count == 0) continue;
-        body->stamp++;
-        result = gxp_walk_around(body, body->node_elements[first], i, &reached);
-        if (result != GX_OK || reached == count) continue;
-        body->node_pinched[i] = 1;
-    }
-    /* an edge with one fan of elements has no or two boundary faces */
-    for (i = 0; i < body->element_count; i++)
-        for (k = 0; k < 4; k++)
-            for (j = 0; j < 6; j++) {
-                const uint32_t edge = cx->element_edges[6 * i + j];
-                if (gxp_neighbour(body, i, k) != GXP_NONE || gxp_edge_nodes[j][0] == k || gxp_edge_nodes[j][1] == k)
-                    continue;
-                if (body->edge_pinched[edge] < 3) body->edge_pinched[edge]++;
-            }
-    for (i = 0; i < cx->mesh_edge_count; i++) body->edge_pinched[i] = body->edge_pinched[i] > 2;
-    for (i = 0; i < body->element_count; i++)
-        for (j = 0; j < 6; j++) {
-            if (!body->edge_pinched[cx->element_edges[6 * i + j]]) continue;
-            body->node_pinched[cx->elements[4 * i + gxp_edge_nodes[j][0]]] |= 2;
-            body->node_pinched[cx->elements[4 * i + gxp_edge_nodes[j][1]]] |= 2;
-        }
-    return result;
-}
-
-static void gxp_element_positions(const gx_body *body, uint32_t element, double x[12]) {
-    int k;
-    for (k = 0; k < 4; k++)
-        memcpy(x + 3 * k, body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)element + (size_t)k],
-               3 * sizeof *x);
-}
-
-static double gxp_element_volume(const gx_body *body, uint32_t element) {
-    double x[12];
-    gxp_element_positions(body, element, x);
-    return gxi_tet_volume(x);
-}
-
-/* Doubles may see an element as inverted that is not, as the solver would. */
-static int gxp_rounds_inverted(const gx_body *body, uint32_t element) {
-    double x[12], gradients[12];
-    gxp_element_positions(body, element, x);
-    return gxi_tet_gradients(x, gradients, NULL) == GX_ERROR_INVERTED;
-}
-
-static double gxp_density(const gx_body *body, uint32_t element) {
-    return body->materials[body->element_materials[element]].density;
-}
-
-#define GXP_REACH  100 /* coordinates are at most 2^this, the longest side is at least 2^-this */
-#define GXP_WEIGHT 700 /* masses of elements are 2^-this ... 2^this: the inertia of 2^28 of them is below 2^940 */
-
-/* index: of a node that is too far out; none is where the body is too small */
-static gx_result gxp_check_size(const gx_body_desc *desc, size_t *index) {
-    const double most = ldexp(1, GXP_REACH);
-    double longest = 0;
-    size_t i;
-    int k;
-    for (k = 0; k < 3; k++) {
-        double low = desc->positions[k], high = low;
-        for (i = 0; i < desc->node_count; i++) {
-            const double x = desc->positions[3 * i + (size_t)k];
-            if (fabs(x) > most) {
-                *index = i;
-                return GX_ERROR_RANGE;
-            }
-            if (x < low) low = x;
-            if (x > high) high = x;
-        }
-        if (high - low > longest) longest = high - low;
-    }
-    return longest < 1 / most ? GX_ERROR_RANGE : GX_OK;
-}
-
-/* Exactly the volume is positive: in doubles it may be below. */
-static gx_result gxp_check_volume(const gx_body *body, uint32_t element, double volume) {
-    const double mass = volume * gxp_density(body, element);
-    if (volume <= 0 || gxp_rounds_inverted(body, element)) return GX_ERROR_FLAT;
-    return mass >= ldexp(1, -GXP_WEIGHT) && mass <= ldexp(1, GXP_WEIGHT) ? GX_OK : GX_ERROR_RANGE;
-}
-
-/* *bad: an element that is flat or out of range */
-static gx_result gxp_make_first_cells(gx_body *body, size_t *bad) {
-    gx_result result = GX_OK;
-    uint32_t e;
-    body->cell_count = body->leaf_count = body->element_count;
-    for (e = 0; e < body->element_count; e++) {
-        gxp_cell *cell = &body->cells[e];
-        memset(cell, 0, sizeof *cell);
-        cell->element = cell->first_leaf = e;
-        memcpy(cell->copies, body->complex->elements + 4 * (size_t)e, sizeof cell->copies);
-        cell->next = GXP_NONE;
-        cell->kept = 1;
-        cell->volume = gxp_element_volume(body, e);
-        result = gxp_check_volume(body, e, cell->volume);
-        if (result != GX_OK) {
-            *bad = e;
-            return result;
-        }
-        gxi_tet_mass(cell->volume, gxp_density(body, e), cell->mass);
-        memset(&body->leaves[e], 0, sizeof body->leaves[e]);
-        body->leaves[e].cell = e;
-        body->leaves[e].next = GXP_NONE;
-    }
-    return GX_OK;
-}
-
-/* A node that no element uses has no copy: copies are numbered over the used nodes. */
-static void gxp_make_first_copies(gx_body *body) {
-    uint32_t i, e;
-    int k;
-    body->copy_count = 0;
-    for (i = 0; i < body->node_count; i++) {
-        if (body->node_start[i] == body->node_start[i + 1]) continue;
-        for (e = body->node_start[i]; e < body->node_start[i + 1]; e++) {
-            k = gxp_local_node(body, body->node_elements[e], i);
-            body->cells[body->node_elements[e]].copies[k] = body->copy_count;
-        }
-        body->copy_node[body->copy_count++] = i;
-    }
-    memset(body->displacement, 0, 3 * (size_t)body->copy_count * sizeof(double));
-    memset(body->velocity, 0, 3 * (size_t)body->copy_count * sizeof(double));
-    memset(body->rest_time, 0, body->copy_count * sizeof(double));
-    memset(body->held, 0, body->copy_count);
-    memset(body->copy_label, 0, body->copy_count * sizeof *body->copy_label);
-    memset(body->copy_before, 0, body->copy_count * sizeof *body->copy_before);
-}
+/* >>copies: tables of copies, cells and leaves --------------------------------------------------------------------- */
+/* The columns of copies, cells and leaves, each listed once with what is done with it. In: a body. Out: room for more
+   rows, rows that are moved, the state as a hash. Touches these tables only. */
 
 static gx_result gxp_reserve_copies(gx_body *body, size_t extra) {
     const gx_allocator *a = &body->allocator;
@@ -1354,6 +1425,10 @@ static void gxp_copy_state(gx_body *body, uint32_t from, uint32_t to) {
     body->copy_before[to] = body->copy_before[from];
 }
 
+static uint32_t gxp_copy_of(const gx_body *body, uint32_t cell, uint32_t node) {
+    return body->cells[cell].copies[gxp_local_node(body, body->cells[cell].element, node)];
+}
+
 /* Room for a number beside each cell that there is room for; new ones are 0. */
 static gx_result gxp_reserve_beside_cells(gx_body *body, uint32_t **words, uint32_t *capacity) {
     const uint32_t before = *capacity;
@@ -1371,250 +1446,37 @@ static gx_result gxp_reserve_cells(gx_body *body, size_t extra) {
     return r == GX_OK ? gxp_reserve_beside_cells(body, &body->cell_fresh, &body->cell_fresh_capacity) : r;
 }
 
-static void *gxp_table(gx_body *body, size_t count, size_t item) {
-    void *memory = gxp_allocate(&body->allocator, (count + 1) * item);
-    if (memory != NULL) memset(memory, 0, (count + 1) * item);
-    return memory;
-}
-
-/* The tables of fixed size; gx_body_destroy releases what there is. */
-static gx_result gxp_allocate_tables(gx_body *body) {
-    const size_t n = body->node_count, e = body->element_count;
-    body->positions = (double *)gxp_table(body, 3 * n, sizeof(double));
-    body->node_start = (uint32_t *)gxp_table(body, n, sizeof(uint32_t));
-    body->node_elements = (uint32_t *)gxp_table(body, 4 * e, sizeof(uint32_t));
-    body->node_pinched = (uint8_t *)gxp_table(body, n, 1);
-    body->edge_pinched = (uint8_t *)gxp_table(body, body->complex->mesh_edge_count, 1);
-    body->boxes = (gxp_box *)gxp_table(body, e, sizeof(gxp_box));
-    body->box_elements = (uint32_t *)gxp_table(body, e, sizeof(uint32_t));
-    body->element_materials = (uint32_t *)gxp_table(body, e, sizeof(uint32_t));
-    body->materials = (gx_material *)gxp_table(body, body->material_count, sizeof *body->materials);
-    return body->element_materials && body->materials && body->positions && body->node_start && body->node_elements &&
-                   body->node_pinched && body->edge_pinched && body->boxes && body->box_elements
-             ? GX_OK
-             : GX_ERROR_MEMORY;
-}
-
-static gx_result gxp_create_solver(gx_body *body) {
-    gxs_solver_desc solver;
-    memset(&solver, 0, sizeof solver);
-    solver.allocator = body->allocator;
-    solver.jobs = body->jobs;
-    return gxs_solver_create(&solver, &body->solver);
-}
-
-static void gxp_fill_materials(gx_body *body, const gx_body_desc *desc) {
-    if (desc->materials != NULL)
-        memcpy(body->materials, desc->materials, body->material_count * sizeof *body->materials);
-    else {
-        body->materials->elastic.young = desc->young;
-        body->materials->elastic.poisson = desc->poisson;
-        body->materials->density = desc->density;
-    }
-    if (desc->materials != NULL && desc->element_materials != NULL)
-        memcpy(body->element_materials, desc->element_materials, body->element_count * sizeof(uint32_t));
-}
-
-static gx_result gxp_first_look(gx_body *body);     /* see >>fragments */
-static uint64_t gxp_hash_mesh(const gx_body *body); /* see >>bytes */
-static uint64_t gxp_hash_cut(uint64_t past, const gx_cut_desc *desc);
-
-/* index: of the node or element to blame */
-static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc, size_t *index) {
-    gx_result result = gxp_check_size(desc, index);
-    if (result == GX_OK) result = gxp_allocate_tables(body);
-    if (result == GX_OK && desc->texture != NULL) {
-        body->texture = (float *)gxp_table(body, 2 * (size_t)body->node_count, sizeof(float));
-        if (body->texture == NULL) result = GX_ERROR_MEMORY;
-    }
-    if (result == GX_OK) result = gxp_create_solver(body);
-    if (result == GX_OK) result = gxp_reserve_cells(body, body->element_count);
-    if (result == GX_OK)
-        result = gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, 0, &body->leaf_capacity,
-                             body->element_count);
-    if (result == GX_OK) result = gxp_reserve_copies(body, body->node_count);
+/* Room beside new leaves of the complex; new leaves start in their parent's cell, outside its list. */
+static gx_result gxp_follow_leaves(gx_body *body) {
+    const uint32_t count = body->complex->leaf_count;
+    const gx_result result = gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, body->leaf_count,
+                                         &body->leaf_capacity, count - body->leaf_count);
     if (result != GX_OK) return result;
-    memcpy(body->positions, desc->positions, 3 * (size_t)body->node_count * sizeof(double));
-    gxp_fill_materials(body, desc);
-    if (body->texture != NULL) memcpy(body->texture, desc->texture, 2 * (size_t)body->node_count * sizeof(float));
-    gxp_list_node_elements(body);
-    result = gxp_find_pinches(body);
-    if (result == GX_OK) result = gxp_make_first_cells(body, index);
-    if (result != GX_OK) return result;
-    gxp_make_first_copies(body);
-    gxp_build_boxes(body);
-    body->view_stale = 1;
-    body->model = GXP_MODEL_STALE;
-    body->past = gxp_hash_mesh(body);
-    return gxp_first_look(body);
-}
-
-static gx_result gxp_check_material(double young, double poisson, double density) {
-    if (!gxp_is_finite(young) || !gxp_is_finite(poisson) || !gxp_is_finite(density)) return GX_ERROR_NOT_FINITE;
-    return young > 0 && density > 0 && poisson >= 0 && poisson < 0.5 ? GX_OK : GX_ERROR_ARGUMENT;
-}
-
-/* index: of the material or element to blame */
-static gx_result gxp_check_body_desc(const gx_body_desc *desc, size_t *index) {
-    gx_result result = GX_OK;
-    size_t i;
-    *index = SIZE_MAX;
-    if (!gxbp_is_allocator(&desc->allocator)) return GX_ERROR_ARGUMENT;
-    if (!gxp_is_finite(desc->support_below)) return GX_ERROR_NOT_FINITE;
-    if (desc->support_below < 0 || desc->support_below >= 1) return GX_ERROR_ARGUMENT;
-    if (desc->materials == NULL) return gxp_check_material(desc->young, desc->poisson, desc->density);
-    if (desc->material_count == 0 || desc->material_count >= INT32_MAX)
-        return desc->material_count == 0 ? GX_ERROR_EMPTY : GX_ERROR_LIMIT;
-    for (i = 0; i < desc->material_count && result == GX_OK; i++) {
-        const gxs_material *m = &desc->materials[ *index = i].elastic;
-        result = gxp_check_material(m->young, m->poisson, desc->materials[i].density);
-        if (result == GX_OK && !gxp_is_finite(m->damping)) result = GX_ERROR_NOT_FINITE;
-        if (result == GX_OK && ((int)m->kind < 0 || m->kind > GXS_CUSTOM || m->damping < 0 ||
-                                (m->kind == GXS_CUSTOM && m->energy == NULL)))
-            result = GX_ERROR_ARGUMENT;
+    for (; body->leaf_count < count; body->leaf_count++) {
+        gxp_leaf *leaf = &body->leaves[body->leaf_count];
+        memset(leaf, 0, sizeof *leaf);
+        leaf->cell = body->leaves[body->complex->leaves[body->leaf_count].parent].cell;
+        leaf->next = GXP_NONE;
     }
-    for (i = 0; i < desc->element_count && result == GX_OK && desc->element_materials != NULL; i++)
-        if (desc->element_materials[ *index = i] >= desc->material_count) result = GX_ERROR_INDEX;
-    return result;
+    return GX_OK;
 }
 
-GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_failure *failure) {
-    gx_body *body;
-    gxb_mesh mesh;
-    gx_result result;
-    size_t index;
-    if (desc == NULL || out == NULL) return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
-    result = gxp_check_body_desc(desc, &index);
-    if (result != GX_OK) return gxp_fail(failure, result, index, SIZE_MAX);
-    body = (gx_body *)gxp_allocate(&desc->allocator, sizeof *body);
-    if (body == NULL) return gxp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX, SIZE_MAX);
-    memset(body, 0, sizeof *body);
-    body->allocator = desc->allocator;
-    body->clock = desc->clock;
-    body->clock_user = desc->clock_user;
-    body->jobs = desc->jobs;
-    body->material_count = desc->materials != NULL ? (uint32_t)desc->material_count : 1;
-    body->support_below = desc->support_below;
-    body->follow_below = desc->support_below > 0 ? desc->support_below : GXP_SUPPORT;
-    body->point_below = desc->support_below > 0 ? desc->support_below : GXP_SPECK;
-    body->crumb_reach = desc->support_below > 0 ? 0 : GXP_CRUMB;
-    mesh.positions = desc->positions;
-    mesh.node_count = desc->node_count;
-    mesh.elements = desc->elements;
-    mesh.element_count = desc->element_count;
-    result = gxb_complex_create(&mesh, &desc->allocator, &body->complex, failure);
-    if (result != GX_OK) {
-        gx_body_destroy(body);
-        return result;
-    }
-    body->node_count = body->complex->node_count;
-    body->element_count = body->complex->element_count;
-    index = SIZE_MAX;
-    result = gxp_fill_body(body, desc, &index);
-    if (result != GX_OK) {
-        gx_body_destroy(body);
-        return gxp_fail(failure, result, index, SIZE_MAX);
-    }
-    *out = body;
-    return gxp_fail(failure, GX_OK, SIZE_MAX, SIZE_MAX);
+static uint64_t gxp_hash_state(const gx_body *body, size_t copies) {
+    return gxp_hash_doubles(gxp_hash_doubles(1, body->displacement, 3 * copies), body->velocity, 3 * copies) | 1;
 }
 
-/* What the solver has copied */
-static void gxp_release_model(gx_body *body) {
-    const gx_allocator *a = &body->allocator;
-    gxp_release(a, body->parts, body->part_capacity * sizeof *body->parts);
-    gxp_release(a, body->rest, (size_t)body->rest_capacity * 3 * sizeof(double));
-    gxp_release(a, body->elastic, body->elastic_capacity * sizeof *body->elastic);
-    gxp_release(a, body->constraints, body->constraint_capacity * sizeof *body->constraints);
-    body->parts = NULL;
-    body->rest = NULL;
-    body->elastic = NULL;
-    body->constraints = NULL;
-    body->part_capacity = body->rest_capacity = body->elastic_capacity = body->constraint_capacity = 0;
+/* Since the body was saved, copied or read its solver knows of no step: if the state of its first copies has been
+   written, all wakes, in a copy as in the original. */
+static void gxp_wake_resumed(gx_body *body, size_t copies) {
+    uint32_t i;
+    if (body->resumed == 0 || body->resumed == gxp_hash_state(body, copies)) return;
+    for (i = 0; i < body->copy_count; i++) body->rest_time[i] = 0;
 }
 
-static void gxp_skin_free(gx_body *body); /* see >>boundary */
-
-GXFEM_API void gx_body_destroy(gx_body *body) {
-    gx_allocator a;
-    size_t n, e, i;
-    if (body == NULL) return;
-    a = body->allocator;
-    n = body->node_count;
-    e = body->element_count;
-    gxp_release(&a, body->positions, (3 * n + 1) * sizeof(double));
-    gxp_release(&a, body->node_start, (n + 1) * sizeof(uint32_t));
-    gxp_release(&a, body->node_elements, (4 * e + 1) * sizeof(uint32_t));
-    gxp_release(&a, body->node_pinched, n + 1);
-    if (body->complex) gxp_release(&a, body->edge_pinched, (size_t)body->complex->mesh_edge_count + 1);
-    gxp_release(&a, body->boxes, (e + 1) * sizeof(gxp_box));
-    gxp_release(&a, body->box_elements, (e + 1) * sizeof(uint32_t));
-    gxp_release(&a, body->cells, body->cell_capacity * sizeof *body->cells);
-    gxp_release(&a, body->cell_stamp, body->cell_stamp_capacity * sizeof *body->cell_stamp);
-    gxp_release(&a, body->cell_saved, body->cell_saved_capacity * sizeof *body->cell_saved);
-    gxp_release(&a, body->cell_fresh, body->cell_fresh_capacity * sizeof *body->cell_fresh);
-    gxp_release(&a, body->leaves, body->leaf_capacity * sizeof *body->leaves);
-    gxp_release(&a, body->copy_node, body->copy_capacity * sizeof *body->copy_node);
-    gxp_release(&a, body->displacement, (size_t)body->displacement_capacity * 3 * sizeof(double));
-    gxp_release(&a, body->velocity, (size_t)body->velocity_capacity * 3 * sizeof(double));
-    gxp_release(&a, body->held, body->held_capacity);
-    gxp_release(&a, body->rest_time, body->rest_time_capacity * sizeof(double));
-    for (i = 0; i < 4; i++) gxp_release(&a, body->history[i], (size_t)body->history_capacity[i] * 3 * sizeof(double));
-    gxp_release(&a, body->materials, ((size_t)body->material_count + 1) * sizeof *body->materials);
-    gxp_release(&a, body->element_materials, (e + 1) * sizeof(uint32_t));
-    gxp_release(&a, body->copy_label, body->copy_label_capacity * sizeof *body->copy_label);
-    gxp_release(&a, body->copy_before, body->copy_before_capacity * sizeof *body->copy_before);
-    gxp_words_free(body, &body->changed);
-    gxp_words_free(body, &body->thin);
-    gxp_words_free(body, &body->fragment_ids);
-    gxp_words_free(body, &body->fragment_origins);
-    gxp_words_free(body, &body->fragment_changes);
-    gxp_words_free(body, &body->removed_ids);
-    gxp_release_model(body);
-    gxp_release(&a, body->regions, body->region_capacity * sizeof *body->regions);
-    gxp_release(&a, body->saved_cells, body->saved_cell_capacity * sizeof *body->saved_cells);
-    gxp_release(&a, body->saved_leaves, body->saved_leaf_capacity * sizeof *body->saved_leaves);
-    gxp_release(&a, body->pairs.data, body->pairs.capacity * sizeof *body->pairs.data);
-    gxp_release(&a, body->links.data, body->links.capacity * sizeof *body->links.data);
-    gxp_words_free(body, &body->link_first);
-    gxp_release(&a, body->cell_volume, body->cell_volume_capacity * sizeof(double));
-    gxp_release(&a, body->fragments, (size_t)body->fragment_capacity * GXP_FRAGMENT_ARRAYS * sizeof(double));
-    gxp_release(&a, body->texture, (2 * n + 1) * sizeof(float));
-    gxp_release(&a, body->surfaces, body->surface_capacity * sizeof *body->surfaces);
-    gxp_release(&a, body->maps, (size_t)body->map_capacity * 8 * sizeof(double));
-    gxp_skin_free(body);
-    gxp_release(&a, body->lambdas, (size_t)body->lambda_capacity * 4 * sizeof(double));
-    {
-        gxp_words *words[20];
-        words[0] = &body->view_cells;
-        words[1] = &body->view_fragments;
-        words[2] = &body->copy_fragment;
-        words[3] = &body->cell_element;
-        words[4] = &body->cell_copies;
-        words[5] = &body->fragment_number;
-        words[6] = &body->point_slot;
-        words[7] = &body->triangles;
-        words[8] = &body->touched;
-        words[9] = &body->nodes;
-        words[10] = &body->queue;
-        words[11] = &body->seeds;
-        words[12] = &body->faces;
-        words[13] = &body->fresh;
-        words[14] = &body->list;
-        words[15] = &body->removed;
-        words[16] = &body->dead;
-        words[17] = &body->pinches;
-        words[18] = &body->splits;
-        words[19] = &body->pieces;
-        for (i = 0; i < 20; i++) gxp_words_free(body, words[i]);
-    }
-    gxs_solver_destroy(body->solver);
-    gxb_complex_destroy(body->complex);
-    gxp_release(&a, body, sizeof *body);
-}
-
-/* >>transaction: a cut changes cells and leaves in place; an undo log, the counts and the complex's own log take it
- * back --- */
+/* >>transaction: undoing a cut ------------------------------------------------------------------------------------- */
+/* A cut changes cells and leaves in place and appends to other tables. The undo log, the counts at the cut's begin and
+   the complex's own log take it back. Every change of a cell or leaf that the cut did not make goes through here first.
+ */
 
 /* What one cut works with. */
 typedef struct gxp_cut {
@@ -1687,7 +1549,213 @@ static void gxp_rollback(gxp_cut *cut) {
     gxb_complex_rollback(body->complex);
 }
 
-/* >>surfaces: what the caller gave --------------------------------------------------------------------------------- */
+/* >>complex: reading the complex ----------------------------------------------------------------------------------- */
+/* Lists that are read off the complex: points of leaves and facets, leaves below a tree, facets and edges by what they
+   were divided into. Resolving such lists may renew them within the complex; nothing else changes. */
+
+static int gxp_is_kept(const gx_body *body, uint32_t leaf) {
+    return leaf != GXB_NONE && !body->complex->leaves[leaf].removed;
+}
+
+/* Is the facet a link? */
+static int gxp_is_link(const gx_body *body, uint32_t facet) {
+    const gxb_facet *f = &body->complex->facets[facet];
+    return !f->wall && gxp_is_kept(body, f->leaf[0]) && gxp_is_kept(body, f->leaf[1]);
+}
+
+/* Collects the leaf's points in body->list. */
+static gx_result gxp_leaf_points(gx_body *body, uint32_t leaf) {
+    gxb_complex *cx = body->complex;
+    uint32_t first, count = 0, i, j, e0, en;
+    gx_result result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
+    body->list.count = 0;
+    if (result == GX_OK) result = gxb_leaf_facets(cx, leaf, &first, &count);
+    for (i = 0; i < count && result == GX_OK; i++) {
+        result = gxb_facet_edges(cx, cx->pool[first + i], &e0, &en);
+        for (j = 0; j < en && result == GX_OK; j++) {
+            const uint32_t e = cx->pool[e0 + j];
+            result = gxp_push(body, &body->list, cx->edges[e >> 1].v[e & 1]);
+        }
+    }
+    return result;
+}
+
+/* Collects the facet's corners in body->seeds. */
+static gx_result gxp_facet_points(gx_body *body, uint32_t facet) {
+    gxb_complex *cx = body->complex;
+    uint32_t e0, en, i;
+    gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
+    body->seeds.count = 0;
+    if (result == GX_OK) result = gxp_words_room(body, &body->seeds, en);
+    for (i = 0; i < en && result == GX_OK; i++)
+        body->seeds.data[body->seeds.count++] = cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1];
+    return result;
+}
+
+/* Appends the leaves below a reference of an element's tree. */
+static gx_result gxp_push_leaves(gx_body *body, uint32_t reference, gxp_words *out) {
+    const gxb_node *node = &body->complex->nodes[reference >> 1];
+    gx_result result;
+    if (!(reference & 1)) return gxp_push(body, out, reference >> 1);
+    result = gxp_push_leaves(body, node->child[0], out);
+    return result == GX_OK ? gxp_push_leaves(body, node->child[1], out) : result;
+}
+
+/* Appends the edges of the complex into which this one has been divided. */
+static gx_result gxp_push_edge_pieces(gx_body *body, uint32_t edge, gxp_words *out) {
+    const uint32_t child = body->complex->edges[edge].child;
+    gx_result result;
+    if (child == GXB_NONE) return gxp_push(body, out, edge);
+    result = gxp_push_edge_pieces(body, child, out);
+    return result == GX_OK ? gxp_push_edge_pieces(body, child + 1, out) : result;
+}
+
+/* Appends the facets into which this one has been divided. */
+static gx_result gxp_push_pieces(gx_body *body, uint32_t facet, gxp_words *out) {
+    const uint32_t child = body->complex->facets[facet].child;
+    gx_result result;
+    if (child == GXB_NONE) return gxp_push(body, out, facet);
+    result = gxp_push_pieces(body, child, out);
+    return result == GX_OK ? gxp_push_pieces(body, child + 1, out) : result;
+}
+
+/* Appends to seeds the leaves on both sides of the facets into which the labelled ones have been divided. */
+static gx_result gxp_wall_leaves(gx_body *body, uint32_t facet, gxp_words *seeds) {
+    const gxb_facet *f = &body->complex->facets[facet];
+    gx_result result = GX_OK;
+    if (f->child != GXB_NONE) {
+        const uint32_t child = f->child;
+        result = gxp_wall_leaves(body, child, seeds);
+        return result == GX_OK ? gxp_wall_leaves(body, child + 1, seeds) : result;
+    }
+    if (f->leaf[0] != GXB_NONE) result = gxp_push(body, seeds, f->leaf[0]);
+    if (f->leaf[1] != GXB_NONE && result == GX_OK) result = gxp_push(body, seeds, f->leaf[1]);
+    return result;
+}
+
+/* Is the mesh edge divided, or its piece of an outer face? */
+static int gxp_edge_is_divided(const gxb_complex *cx, uint32_t mesh_edge) {
+    const uint32_t edge = cx->mesh_edge[mesh_edge];
+    return edge != GXB_NONE && cx->edges[edge].child != GXB_NONE;
+}
+
+static gx_result gxp_visit_cell(gx_body *body, uint32_t cell) {
+    if (body->cell_stamp[cell] == body->stamp) return GX_OK;
+    body->cell_stamp[cell] = body->stamp;
+    return gxp_push(body, &body->queue, cell);
+}
+
+/* >>numbering: cells and fragments as the caller sees them; scope -------------------------------------------------- */
+/* In: cells and copies. Out: the kept cells by element, fragments numbered in the order of their first cells, valid
+   until the next cut; the cells that a cut may touch, by a stamp. Touches the view's lists and stamps of cells. */
+
+/* Lists the kept cells by element and joins copies that a cell moves by: cells of one fragment share copies from link
+ * to link. */
+static gx_result gxp_list_cells(gx_body *body) {
+    uint32_t e, cell, i;
+    gx_result result = gxp_set_words(body, &body->view_cells, body->cell_count);
+    if (result == GX_OK) result = gxp_set_words(body, &body->view_fragments, body->cell_count);
+    if (result == GX_OK) result = gxp_set_words(body, &body->cell_element, body->cell_count);
+    if (result == GX_OK) result = gxp_set_words(body, &body->cell_copies, 4 * (size_t)body->cell_count);
+    if (result == GX_OK) result = gxp_set_words(body, &body->copy_fragment, body->copy_count);
+    if (result == GX_OK)
+        result = gxp_reserve(&body->allocator, &body->cell_volume, sizeof(double), 0, &body->cell_volume_capacity,
+                             body->cell_count);
+    if (result != GX_OK) return result;
+    body->copy_fragment.count = body->copy_count;
+    for (i = 0; i < body->copy_count; i++) body->copy_fragment.data[i] = i;
+    for (e = 0; e < body->element_count; e++)
+        for (cell = e; cell != GXP_NONE; cell = body->cells[cell].next) {
+            const gxp_cell *c = &body->cells[cell];
+            if (!c->kept) continue;
+            body->cell_volume[body->view_cells.count] = c->volume;
+            body->view_cells.data[body->view_cells.count++] = cell;
+            body->cell_element.data[body->cell_element.count++] = e;
+            memcpy(body->cell_copies.data + body->cell_copies.count, c->copies, sizeof c->copies);
+            body->cell_copies.count += 4;
+            gxp_unite_all(body->copy_fragment.data, c->copies);
+        }
+    return GX_OK;
+}
+
+/* Numbers fragments in the order of their first cells. */
+static gx_result gxp_number_fragments(gx_body *body) {
+    uint32_t i;
+    gx_result result = gxp_set_words(body, &body->fragment_number, body->copy_count);
+    if (result != GX_OK) return result;
+    memset(body->fragment_number.data, 0xff, body->copy_count * sizeof *body->fragment_number.data);
+    body->fragment_count = 0;
+    for (i = 0; i < body->view_cells.count; i++) {
+        const uint32_t copy = gxp_find(body->copy_fragment.data, body->cell_copies.data[4 * i]);
+        if (body->fragment_number.data[copy] == GXP_NONE) body->fragment_number.data[copy] = body->fragment_count++;
+        body->view_fragments.data[body->view_fragments.count++] = body->fragment_number.data[copy];
+    }
+    return GX_OK;
+}
+
+/* Fragment of a cell slot, by the view. */
+static uint32_t gxp_cell_fragment(gx_body *body, uint32_t cell) {
+    return body->fragment_number.data[gxp_find(body->copy_fragment.data, body->cells[cell].copies[0])];
+}
+
+/* Cells and fragments. What they weigh is summed for gx_body_view only. */
+static gx_result gxp_update_view(gx_body *body) {
+    gx_result result;
+    if (!body->view_stale) return GX_OK;
+    body->labels_known = 0;
+    result = gxp_list_cells(body);
+    if (result == GX_OK) result = gxp_number_fragments(body);
+    if (result != GX_OK) return result;
+    body->view_stale = 0;
+    body->sums_stale = body->labels_known = 1;
+    body->splits.count = 0;
+    return GX_OK;
+}
+
+static uint32_t gxp_old_leaf(const gx_body *body, uint32_t leaf) {
+    while (leaf >= body->leaf_count) leaf = body->complex->leaves[leaf].parent;
+    return leaf;
+}
+
+/* May the cut touch this leaf? Its cell (before the cut) is in scope where it is stamped. */
+static int gxp_in_scope(void *user, uint32_t leaf) {
+    const gx_body *body = (const gx_body *)user;
+    return body->cell_stamp[body->leaves[gxp_old_leaf(body, leaf)].cell] == body->scope_stamp;
+}
+
+/* Stamps the cells that the cut may touch. */
+static gx_result gxp_stamp_scope(gxp_cut *cut, int *scoped) {
+    gx_body *body = cut->body;
+    const gx_cut_desc *desc = cut->desc;
+    gx_result result;
+    size_t i, j;
+    *scoped = desc->scope_fragment_count > 0 || desc->scope_cell_count > 0;
+    if (!*scoped) return GX_OK;
+    result = gxp_update_view(body);
+    if (result != GX_OK) return result;
+    body->scope_stamp = ++body->stamp;
+    for (i = 0; i < desc->scope_cell_count; i++) {
+        if (desc->scope_cells[i] >= body->view_cells.count) {
+            cut->failure.index = i;
+            return GX_ERROR_INDEX;
+        }
+        body->cell_stamp[body->view_cells.data[desc->scope_cells[i]]] = body->scope_stamp;
+    }
+    for (i = 0; i < desc->scope_fragment_count; i++) {
+        if (desc->scope_fragments[i] >= body->fragment_count) {
+            cut->failure.index = i;
+            return GX_ERROR_INDEX;
+        }
+        for (j = 0; j < body->view_cells.count; j++)
+            if (body->view_fragments.data[j] == desc->scope_fragments[i])
+                body->cell_stamp[body->view_cells.data[j]] = body->scope_stamp;
+    }
+    return GX_OK;
+}
+
+/* >>surfaces: what the caller cuts with ---------------------------------------------------------------------------- */
+/* In: a surface as the caller gave it. Out: the same, checked, with equal vertices merged, edges sorted and triangles
+   without area marked; a record of it for the skin. Touches the body's records of surfaces. */
 
 typedef struct gxp_half_edge {
     uint32_t from, to, triangle, corner;
@@ -1919,7 +1987,201 @@ static gx_result gxp_surface_open(gxp_cut *cut, gxp_surface *s, const gx_surface
     return given->kind == GX_SURFACE_SOLID ? gxp_check_closed(cut, s) : GX_OK;
 }
 
+/* >>pinches: elements that meet in a node or an edge only ---------------------------------------------------------- */
+/* Where elements do not hang together through faces around a node or edge, that node or edge joins the cells around it,
+   unless a wall touches it. In: the mesh, at creation; a triangle or a cell, at a cut. Out: which nodes and edges are
+   pinched; marks in the complex where a sheet separates what meets there only; the cells that a joint joins. */
+
+/* Walks from element to element through faces that contain the node, stamping; *reached: how many. */
+static gx_result gxp_walk_around(gx_body *body, uint32_t start, uint32_t node, uint32_t *reached) {
+    gx_result result = GX_OK;
+    body->queue.count = 0;
+    *reached = 0;
+    body->cell_stamp[start] = body->stamp;
+    result = gxp_push(body, &body->queue, start);
+    while (*reached < body->queue.count && result == GX_OK) {
+        const uint32_t e = body->queue.data[(*reached)++];
+        uint32_t k;
+        for (k = 0; k < 4 && result == GX_OK; k++) {
+            const uint32_t other = gxp_neighbour(body, e, k), opposite = body->complex->elements[4 * (size_t)e + k];
+            if (other == GXP_NONE || body->cell_stamp[other] == body->stamp || opposite == node) continue;
+            body->cell_stamp[other] = body->stamp;
+            result = gxp_push(body, &body->queue, other);
+        }
+    }
+    return result;
+}
+
+/* Marks nodes and edges whose elements do not hang together through faces around them: there, edges and nodes link too.
+   (An edge's elements come in as many fans as it has pairs of boundary faces.) */
+static gx_result gxp_find_pinches(gx_body *body) {
+    const gxb_complex *cx = body->complex;
+    uint32_t i, j, k, reached;
+    gx_result result = GX_OK;
+    for (i = 0; i < body->node_count && result == GX_OK; i++) {
+        const uint32_t first = body->node_start[i], count = body->node_start[i + 1] - first;
+        if (count == 0) continue;
+        body->stamp++;
+        result = gxp_walk_around(body, body->node_elements[first], i, &reached);
+        if (result != GX_OK || reached == count) continue;
+        body->node_pinched[i] = 1;
+    }
+    /* an edge with one fan of elements has no or two boundary faces */
+    for (i = 0; i < body->element_count; i++)
+        for (k = 0; k < 4; k++)
+            for (j = 0; j < 6; j++) {
+                const uint32_t edge = cx->element_edges[6 * i + j];
+                if (gxp_neighbour(body, i, k) != GXP_NONE || gxp_edge_nodes[j][0] == k || gxp_edge_nodes[j][1] == k)
+                    continue;
+                if (body->edge_pinched[edge] < 3) body->edge_pinched[edge]++;
+            }
+    for (i = 0; i < cx->mesh_edge_count; i++) body->edge_pinched[i] = body->edge_pinched[i] > 2;
+    for (i = 0; i < body->element_count; i++)
+        for (j = 0; j < 6; j++) {
+            if (!body->edge_pinched[cx->element_edges[6 * i + j]]) continue;
+            body->node_pinched[cx->elements[4 * i + gxp_edge_nodes[j][0]]] |= 2;
+            body->node_pinched[cx->elements[4 * i + gxp_edge_nodes[j][1]]] |= 2;
+        }
+    return result;
+}
+
+/* a point, or an edge of the complex */
+typedef struct gxp_joint {
+    uint32_t point, edge;
+    int found, walled;
+} gxp_joint;
+
+/* Does the leaf have the joint on its boundary, and does a wall touch it there? */
+static gx_result gxp_look_for_joint(gx_body *body, uint32_t leaf, gxp_joint *joint) {
+    gxb_complex *cx = body->complex;
+    uint32_t first, count = 0, i, j, e0, en;
+    gx_result result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
+    if (result == GX_OK) result = gxb_leaf_facets(cx, leaf, &first, &count);
+    joint->found = 0;
+    for (i = 0; i < count && result == GX_OK; i++) {
+        const uint32_t facet = cx->pool[first + i];
+        result = gxb_facet_edges(cx, facet, &e0, &en);
+        for (j = 0; j < en && result == GX_OK; j++) {
+            const uint32_t e = cx->pool[e0 + j];
+            if (joint->point != GXB_NONE ? cx->edges[e >> 1].v[e & 1] != joint->point : e >> 1 != joint->edge) continue;
+            joint->found = 1;
+            joint->walled |=
+                cx->facets[facet].wall != 0 || cx->leaves[leaf].removed != 0 ||
+                (joint->point != GXB_NONE ? cx->points[joint->point].wall : cx->edges[joint->edge].wall) != 0;
+        }
+    }
+    return result;
+}
+
+/* Has a leaf of the element that the cut may touch the node on its boundary, or any piece of the mesh edge? The other
+ * of the two is GXB_NONE. */
+static gx_result gxp_look_in_scope(gx_body *body, uint32_t element, uint32_t node, uint32_t edge, int *found) {
+    gx_result result = GX_OK;
+    uint32_t i, j;
+    *found = 0;
+    body->triangles.count = body->faces.count = 0;
+    if (edge == GXB_NONE)
+        result = gxp_push(body, &body->faces, GXB_NONE);
+    else
+        result = gxp_push_edge_pieces(body, body->complex->mesh_edge[edge], &body->faces);
+    if (result == GX_OK) result = gxp_push_leaves(body, body->complex->root[element], &body->triangles);
+    for (i = 0; i < body->triangles.count && result == GX_OK; i++) {
+        gxp_joint joint;
+        if (!gxp_in_scope(body, body->triangles.data[i])) continue;
+        for (j = 0; j < body->faces.count && result == GX_OK && !*found; j++) {
+            joint.point = node;
+            joint.edge = body->faces.data[j];
+            joint.walled = 0;
+            result = gxp_look_for_joint(body, body->triangles.data[i], &joint);
+            *found |= joint.found;
+        }
+    }
+    return result;
+}
+
+/* A sheet through an edge or node in which alone elements meet separates them there, even if it enters neither. */
+static gx_result gxp_cover_pinches(gx_body *body, gxb_triangle *t, uint32_t element, int scoped) {
+    const gxb_complex *cx = body->complex;
+    uint32_t k, pinched = 0;
+    gx_result result = GX_OK;
+    for (k = 0; k < 4; k++) pinched |= body->node_pinched[cx->elements[4 * element + k]];
+    if (!pinched) return GX_OK;
+    for (k = 0; k < 4 && result == GX_OK; k++) {
+        const uint32_t node = cx->elements[4 * element + k];
+        int covered = 0, allowed = 1;
+        if (!(body->node_pinched[node] & 1)) continue;
+        if (scoped) result = gxp_look_in_scope(body, element, node, GXB_NONE, &allowed);
+        if (result == GX_OK && allowed) result = gxb_complex_cover_node(body->complex, t, node, &covered);
+        if (covered && result == GX_OK) result = gxp_push(body, &body->pinches, node);
+    }
+    for (k = 0; k < 6 && result == GX_OK; k++) {
+        int covered = 0, allowed = 1;
+        if (!body->edge_pinched[cx->element_edges[6 * element + k]]) continue;
+        if (scoped) result = gxp_look_in_scope(body, element, GXB_NONE, cx->element_edges[6 * element + k], &allowed);
+        if (result == GX_OK && allowed) result = gxb_complex_cover_edge(body->complex, t, element, k, &covered);
+        if (covered && result == GX_OK)
+            result = gxp_push(body, &body->pinches, cx->elements[4 * element + gxp_edge_nodes[k][0]]);
+        if (covered && result == GX_OK)
+            result = gxp_push(body, &body->pinches, cx->elements[4 * element + gxp_edge_nodes[k][1]]);
+    }
+    return result;
+}
+
+/* Appends to found the cells around the node that have the joint on their boundary. Removed leaves count as walls. */
+static gx_result gxp_find_joint(gx_body *body, uint32_t node, gxp_joint *joint, gxp_words *found) {
+    uint32_t j, i;
+    gx_result result = GX_OK;
+    joint->walled = 0;
+    body->triangles.count = 0;
+    for (j = body->node_start[node]; j < body->node_start[node + 1] && result == GX_OK; j++)
+        result = gxp_push_leaves(body, body->complex->root[body->node_elements[j]], &body->triangles);
+    for (i = 0; i < body->triangles.count && result == GX_OK; i++) {
+        const uint32_t leaf = body->triangles.data[i];
+        result = gxp_look_for_joint(body, leaf, joint);
+        if (joint->found && !body->complex->leaves[leaf].removed && result == GX_OK)
+            result = gxp_push(body, found, body->leaves[leaf].cell);
+    }
+    return result;
+}
+
+/* Visits the cells that the joint joins to this cell. */
+static gx_result gxp_cross_joint(gx_body *body, uint32_t cell, uint32_t node, uint32_t point, uint32_t edge) {
+    gxp_joint joint;
+    uint32_t i, member = 0;
+    gx_result result;
+    joint.point = point;
+    joint.edge = edge;
+    joint.walled = joint.found = 0;
+    body->list.count = 0;
+    result = gxp_find_joint(body, node, &joint, &body->list);
+    for (i = 0; i < body->list.count; i++) member |= body->list.data[i] == cell;
+    for (i = 0; i < body->list.count && result == GX_OK && member && !joint.walled; i++)
+        result = gxp_visit_cell(body, body->list.data[i]);
+    return result;
+}
+
+static gx_result gxp_cross_pinches(gx_body *body, uint32_t cell, uint32_t node) {
+    const uint32_t element = body->cells[cell].element;
+    gxb_complex *cx = body->complex;
+    uint32_t k, i;
+    gx_result result = gxb_complex_open_element(cx, element);
+    if (result == GX_OK && (body->node_pinched[node] & 1)) result = gxp_cross_joint(body, cell, node, node, GXB_NONE);
+    for (k = 0; k < 6 && result == GX_OK; k++) {
+        const uint32_t edge = cx->element_edges[6 * element + k];
+        const uint32_t a = cx->elements[4 * element + gxp_edge_nodes[k][0]],
+                       b = cx->elements[4 * element + gxp_edge_nodes[k][1]];
+        if (!body->edge_pinched[edge] || (a != node && b != node)) continue;
+        body->faces.count = 0;
+        result = gxp_push_edge_pieces(body, cx->mesh_edge[edge], &body->faces);
+        for (i = 0; i < body->faces.count && result == GX_OK; i++)
+            result = gxp_cross_joint(body, cell, node, GXB_NONE, body->faces.data[i]);
+    }
+    return result;
+}
+
 /* >>arrange: the surfaces go into the complex ---------------------------------------------------------------------- */
+/* In: an opened surface. Out: its triangles in the complex, element by element, where they make walls or, of a solid,
+   leave their labels. Touches the complex, and the list of nodes at which a sheet covers a pinch. */
 
 /* A coplanar neighbour across an edge that already has a plane lends it. */
 static int gxp_borrow_plane(gx_body *body, gxp_surface *s, uint32_t t) {
@@ -1983,117 +2245,6 @@ static gx_result gxp_prepare_triangle(gxp_cut *cut, gxp_surface *s, uint32_t ind
         return GX_OK;
     }
     return gxb_complex_add_plane(body->complex, t);
-}
-
-static uint32_t gxp_old_leaf(const gx_body *body, uint32_t leaf) {
-    while (leaf >= body->leaf_count) leaf = body->complex->leaves[leaf].parent;
-    return leaf;
-}
-
-/* May the cut touch this leaf? Its cell (before the cut) is in scope where it is stamped. */
-static int gxp_in_scope(void *user, uint32_t leaf) {
-    const gx_body *body = (const gx_body *)user;
-    return body->cell_stamp[body->leaves[gxp_old_leaf(body, leaf)].cell] == body->scope_stamp;
-}
-
-/* a point, or an edge of the complex */
-typedef struct gxp_joint {
-    uint32_t point, edge;
-    int found, walled;
-} gxp_joint;
-
-/* Does the leaf have the joint on its boundary, and does a wall touch it there? */
-static gx_result gxp_look_for_joint(gx_body *body, uint32_t leaf, gxp_joint *joint) {
-    gxb_complex *cx = body->complex;
-    uint32_t first, count = 0, i, j, e0, en;
-    gx_result result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
-    if (result == GX_OK) result = gxb_leaf_facets(cx, leaf, &first, &count);
-    joint->found = 0;
-    for (i = 0; i < count && result == GX_OK; i++) {
-        const uint32_t facet = cx->pool[first + i];
-        result = gxb_facet_edges(cx, facet, &e0, &en);
-        for (j = 0; j < en && result == GX_OK; j++) {
-            const uint32_t e = cx->pool[e0 + j];
-            if (joint->point != GXB_NONE ? cx->edges[e >> 1].v[e & 1] != joint->point : e >> 1 != joint->edge) continue;
-            joint->found = 1;
-            joint->walled |=
-                cx->facets[facet].wall != 0 || cx->leaves[leaf].removed != 0 ||
-                (joint->point != GXB_NONE ? cx->points[joint->point].wall : cx->edges[joint->edge].wall) != 0;
-        }
-    }
-    return result;
-}
-
-/* Appends the leaves below a reference of an element's tree. */
-static gx_result gxp_push_leaves(gx_body *body, uint32_t reference, gxp_words *out) {
-    const gxb_node *node = &body->complex->nodes[reference >> 1];
-    gx_result result;
-    if (!(reference & 1)) return gxp_push(body, out, reference >> 1);
-    result = gxp_push_leaves(body, node->child[0], out);
-    return result == GX_OK ? gxp_push_leaves(body, node->child[1], out) : result;
-}
-
-/* Appends the edges of the complex into which this one has been divided. */
-static gx_result gxp_push_edge_pieces(gx_body *body, uint32_t edge, gxp_words *out) {
-    const uint32_t child = body->complex->edges[edge].child;
-    gx_result result;
-    if (child == GXB_NONE) return gxp_push(body, out, edge);
-    result = gxp_push_edge_pieces(body, child, out);
-    return result == GX_OK ? gxp_push_edge_pieces(body, child + 1, out) : result;
-}
-
-/* Has a leaf of the element that the cut may touch the node on its boundary, or any piece of the mesh edge? The other
- * of the two is GXB_NONE. */
-static gx_result gxp_look_in_scope(gx_body *body, uint32_t element, uint32_t node, uint32_t edge, int *found) {
-    gx_result result = GX_OK;
-    uint32_t i, j;
-    *found = 0;
-    body->triangles.count = body->faces.count = 0;
-    if (edge == GXB_NONE)
-        result = gxp_push(body, &body->faces, GXB_NONE);
-    else
-        result = gxp_push_edge_pieces(body, body->complex->mesh_edge[edge], &body->faces);
-    if (result == GX_OK) result = gxp_push_leaves(body, body->complex->root[element], &body->triangles);
-    for (i = 0; i < body->triangles.count && result == GX_OK; i++) {
-        gxp_joint joint;
-        if (!gxp_in_scope(body, body->triangles.data[i])) continue;
-        for (j = 0; j < body->faces.count && result == GX_OK && !*found; j++) {
-            joint.point = node;
-            joint.edge = body->faces.data[j];
-            joint.walled = 0;
-            result = gxp_look_for_joint(body, body->triangles.data[i], &joint);
-            *found |= joint.found;
-        }
-    }
-    return result;
-}
-
-/* A sheet through an edge or node in which alone elements meet separates them there, even if it enters neither. */
-static gx_result gxp_cover_pinches(gx_body *body, gxb_triangle *t, uint32_t element, int scoped) {
-    const gxb_complex *cx = body->complex;
-    uint32_t k, pinched = 0;
-    gx_result result = GX_OK;
-    for (k = 0; k < 4; k++) pinched |= body->node_pinched[cx->elements[4 * element + k]];
-    if (!pinched) return GX_OK;
-    for (k = 0; k < 4 && result == GX_OK; k++) {
-        const uint32_t node = cx->elements[4 * element + k];
-        int covered = 0, allowed = 1;
-        if (!(body->node_pinched[node] & 1)) continue;
-        if (scoped) result = gxp_look_in_scope(body, element, node, GXB_NONE, &allowed);
-        if (result == GX_OK && allowed) result = gxb_complex_cover_node(body->complex, t, node, &covered);
-        if (covered && result == GX_OK) result = gxp_push(body, &body->pinches, node);
-    }
-    for (k = 0; k < 6 && result == GX_OK; k++) {
-        int covered = 0, allowed = 1;
-        if (!body->edge_pinched[cx->element_edges[6 * element + k]]) continue;
-        if (scoped) result = gxp_look_in_scope(body, element, GXB_NONE, cx->element_edges[6 * element + k], &allowed);
-        if (result == GX_OK && allowed) result = gxb_complex_cover_edge(body->complex, t, element, k, &covered);
-        if (covered && result == GX_OK)
-            result = gxp_push(body, &body->pinches, cx->elements[4 * element + gxp_edge_nodes[k][0]]);
-        if (covered && result == GX_OK)
-            result = gxp_push(body, &body->pinches, cx->elements[4 * element + gxp_edge_nodes[k][1]]);
-    }
-    return result;
 }
 
 static gx_result gxp_insert_triangle(gxp_cut *cut, gxp_surface *s, uint32_t index, int scoped) {
@@ -2168,56 +2319,9 @@ static gx_result gxp_insert_surface(gxp_cut *cut, gxp_surface *s, int scoped) {
     return result;
 }
 
-/* see >>fragments */
-static gx_result gxp_update_view(gx_body *body);
-static uint32_t gxp_cell_fragment(gx_body *body, uint32_t cell);
-
-/* Stamps the cells that the cut may touch. */
-static gx_result gxp_stamp_scope(gxp_cut *cut, int *scoped) {
-    gx_body *body = cut->body;
-    const gx_cut_desc *desc = cut->desc;
-    gx_result result;
-    size_t i, j;
-    *scoped = desc->scope_fragment_count > 0 || desc->scope_cell_count > 0;
-    if (!*scoped) return GX_OK;
-    result = gxp_update_view(body);
-    if (result != GX_OK) return result;
-    body->scope_stamp = ++body->stamp;
-    for (i = 0; i < desc->scope_cell_count; i++) {
-        if (desc->scope_cells[i] >= body->view_cells.count) {
-            cut->failure.index = i;
-            return GX_ERROR_INDEX;
-        }
-        body->cell_stamp[body->view_cells.data[desc->scope_cells[i]]] = body->scope_stamp;
-    }
-    for (i = 0; i < desc->scope_fragment_count; i++) {
-        if (desc->scope_fragments[i] >= body->fragment_count) {
-            cut->failure.index = i;
-            return GX_ERROR_INDEX;
-        }
-        for (j = 0; j < body->view_cells.count; j++)
-            if (body->view_fragments.data[j] == desc->scope_fragments[i])
-                body->cell_stamp[body->view_cells.data[j]] = body->scope_stamp;
-    }
-    return GX_OK;
-}
-
 /* >>solids: winding numbers of leaves ------------------------------------------------------------------------------ */
-
-/* Room beside new leaves of the complex; new leaves start in their parent's cell, outside its list. */
-static gx_result gxp_follow_leaves(gx_body *body) {
-    const uint32_t count = body->complex->leaf_count;
-    const gx_result result = gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, body->leaf_count,
-                                         &body->leaf_capacity, count - body->leaf_count);
-    if (result != GX_OK) return result;
-    for (; body->leaf_count < count; body->leaf_count++) {
-        gxp_leaf *leaf = &body->leaves[body->leaf_count];
-        memset(leaf, 0, sizeof *leaf);
-        leaf->cell = body->leaves[body->complex->leaves[body->leaf_count].parent].cell;
-        leaf->next = GXP_NONE;
-    }
-    return GX_OK;
-}
+/* In: a closed surface that is in the complex. Out: the leaves around which it winds, which are to be removed. Touches
+   marks of leaves only. */
 
 /* By how much the solid's winding number is larger behind the facet than in front: triangles that face its front
  * count 1. */
@@ -2233,23 +2337,6 @@ static int32_t gxp_winding_step(const gx_body *body, const gxp_surface *s, uint3
         step += cx->labels[l].orientation;
     }
     return step;
-}
-
-/* Collects the leaf's points in body->list. */
-static gx_result gxp_leaf_points(gx_body *body, uint32_t leaf) {
-    gxb_complex *cx = body->complex;
-    uint32_t first, count = 0, i, j, e0, en;
-    gx_result result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
-    body->list.count = 0;
-    if (result == GX_OK) result = gxb_leaf_facets(cx, leaf, &first, &count);
-    for (i = 0; i < count && result == GX_OK; i++) {
-        result = gxb_facet_edges(cx, cx->pool[first + i], &e0, &en);
-        for (j = 0; j < en && result == GX_OK; j++) {
-            const uint32_t e = cx->pool[e0 + j];
-            result = gxp_push(body, &body->list, cx->edges[e >> 1].v[e & 1]);
-        }
-    }
-    return result;
 }
 
 /* The winding number around a node. 0: the node is on the surface, and has none. */
@@ -2278,10 +2365,6 @@ static gx_result gxp_ask_winding(gx_body *body, const gxp_surface *s, uint32_t l
         *winding = gxb_complex_winding(body->complex, body->list.data, body->list.count, g->vertices, g->triangles,
                                        g->triangle_count);
     return result;
-}
-
-static int gxp_is_kept(const gx_body *body, uint32_t leaf) {
-    return leaf != GXB_NONE && !body->complex->leaves[leaf].removed;
 }
 
 /* Was the leaf kept and, where the cut has a scope, in it? Others were not divided by the solid and can't pass on
@@ -2322,20 +2405,6 @@ static gx_result gxp_flood_winding(gx_body *body, const gxp_surface *s, uint32_t
     gx_result result = GX_OK;
     while (*done < body->queue.count && result == GX_OK)
         result = gxp_spread_winding(body, s, body->queue.data[(*done)++], scoped);
-    return result;
-}
-
-/* Appends to seeds the leaves on both sides of the facets into which the labelled ones have been divided. */
-static gx_result gxp_wall_leaves(gx_body *body, uint32_t facet, gxp_words *seeds) {
-    const gxb_facet *f = &body->complex->facets[facet];
-    gx_result result = GX_OK;
-    if (f->child != GXB_NONE) {
-        const uint32_t child = f->child;
-        result = gxp_wall_leaves(body, child, seeds);
-        return result == GX_OK ? gxp_wall_leaves(body, child + 1, seeds) : result;
-    }
-    if (f->leaf[0] != GXB_NONE) result = gxp_push(body, seeds, f->leaf[0]);
-    if (f->leaf[1] != GXB_NONE && result == GX_OK) result = gxp_push(body, seeds, f->leaf[1]);
     return result;
 }
 
@@ -2405,7 +2474,9 @@ static gx_result gxp_find_solid(gxp_cut *cut, const gxp_surface *s, int scoped) 
     return result;
 }
 
-/* --- exact sums for what doubles can't hold --- */
+/* >>links: shares of element faces that no wall covers ------------------------------------------------------------- */
+/* In: the links of new cells. Out: the smallest share of a face, and walls in the complex where a share is too small.
+   Shares are bounded in doubles first and computed from exact coordinates where that does not decide. */
 
 /* r += a b */
 static void gxp_num_add_product(gxb_num *r, const gxb_num *a, const gxb_num *b) {
@@ -2423,8 +2494,6 @@ typedef struct gxp_fine_point {
     gxb_num c[4];
     gxb_limb limbs[4][32];
 } gxp_fine_point;
-
-/* >>links: pieces of element faces that no wall covers ------------------------------------------------------------- */
 
 /* Twice the area of a facet as seen along the axis of its plane, from approximate positions; *error: a bound for its
  * error. */
@@ -2486,47 +2555,6 @@ static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
         gxp_num_add_product(&sum, &d, &one);
     }
     return fabs(gxb_num_to_double(&sum));
-}
-
-/* Collects the facet's corners in body->seeds. */
-static gx_result gxp_facet_points(gx_body *body, uint32_t facet) {
-    gxb_complex *cx = body->complex;
-    uint32_t e0, en, i;
-    gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
-    body->seeds.count = 0;
-    if (result == GX_OK) result = gxp_words_room(body, &body->seeds, en);
-    for (i = 0; i < en && result == GX_OK; i++)
-        body->seeds.data[body->seeds.count++] = cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1];
-    return result;
-}
-
-/* The local node of the element that the face does not have */
-static uint32_t gxp_local_face(const gxb_complex *cx, uint32_t element, uint32_t face) {
-    const uint32_t *faces = cx->element_faces + 4 * (size_t)element;
-    return 3 - 3 * (uint32_t)(faces[0] == face) - 2 * (uint32_t)(faces[1] == face) - (uint32_t)(faces[2] == face);
-}
-
-/* An element with the face, and the node of it that the face does not have. */
-static uint32_t gxp_face_element(const gxb_complex *cx, uint32_t face, uint32_t *k) {
-    const uint32_t element =
-        cx->face_elements[2 * face] != GXB_NONE ? cx->face_elements[2 * face] : cx->face_elements[2 * face + 1];
-    *k = gxp_local_face(cx, element, face);
-    return element;
-}
-
-/* Appends the facets into which this one has been divided. */
-static gx_result gxp_push_pieces(gx_body *body, uint32_t facet, gxp_words *out) {
-    const uint32_t child = body->complex->facets[facet].child;
-    gx_result result;
-    if (child == GXB_NONE) return gxp_push(body, out, facet);
-    result = gxp_push_pieces(body, child, out);
-    return result == GX_OK ? gxp_push_pieces(body, child + 1, out) : result;
-}
-
-/* Is the facet a link? */
-static int gxp_is_link(const gx_body *body, uint32_t facet) {
-    const gxb_facet *f = &body->complex->facets[facet];
-    return !f->wall && gxp_is_kept(body, f->leaf[0]) && gxp_is_kept(body, f->leaf[1]);
 }
 
 /* Puts cells in the place of leaves in the links of all fresh cells, those to one cell together. */
@@ -2660,7 +2688,9 @@ static gx_result gxp_sever_links(gxp_cut *cut) {
     return result == GX_OK ? gxp_judge_links(cut, bound) : result;
 }
 
-/* >>cells: the touched ones fall apart ----------------------------------------------------------------------------- */
+/* >>cells: touched cells fall apart -------------------------------------------------------------------------------- */
+/* In: walls that this cut made, leaves that it removed. Out: the touched cells divided into their connected parts, the
+   new cells, and the links of these. Touches cells and leaves, through the undo log. */
 
 /* Collects the cells on both sides of walls that this cut made. */
 static gx_result gxp_collect_touched(gxp_cut *cut) {
@@ -2854,13 +2884,10 @@ static gx_result gxp_divide_cells(gxp_cut *cut) {
     return result == GX_OK ? gxp_settle_links(body) : result;
 }
 
-/* >>components: nodal subdomains, and the copies that move them ---------------------------------------------------- */
-
-static gx_result gxp_visit_cell(gx_body *body, uint32_t cell) {
-    if (body->cell_stamp[cell] == body->stamp) return GX_OK;
-    body->cell_stamp[cell] = body->stamp;
-    return gxp_push(body, &body->queue, cell);
-}
+/* >>components: nodal subdomains and their copies ------------------------------------------------------------------ */
+/* A nodal subdomain is a connected set of cells around a node; each has a copy of its own (GXFEM Eq. 18). In: new cells
+   and their links. Out: copies for the subdomains into which old ones fell apart, the copies that lost all cells.
+   Touches cells, through the undo log, and appends copies. */
 
 /* Visits what lies across one piece of an element's face. */
 static gx_result gxp_cross_facet(gx_body *body, uint32_t facet, uint32_t leaf) {
@@ -2920,60 +2947,6 @@ static gx_result gxp_cross_faces(gx_body *body, uint32_t cell, uint32_t node) {
             const uint32_t facet = cx->pool[first + i], face = cx->facets[facet].face;
             if (face != GXB_NONE && face != opposite) result = gxp_cross_facet(body, facet, leaf);
         }
-    }
-    return result;
-}
-
-/* --- pinched nodes and edges: an edge piece or node that no wall touches joins the cells around it --- */
-
-/* Appends to found the cells around the node that have the joint on their boundary. Removed leaves count as walls. */
-static gx_result gxp_find_joint(gx_body *body, uint32_t node, gxp_joint *joint, gxp_words *found) {
-    uint32_t j, i;
-    gx_result result = GX_OK;
-    joint->walled = 0;
-    body->triangles.count = 0;
-    for (j = body->node_start[node]; j < body->node_start[node + 1] && result == GX_OK; j++)
-        result = gxp_push_leaves(body, body->complex->root[body->node_elements[j]], &body->triangles);
-    for (i = 0; i < body->triangles.count && result == GX_OK; i++) {
-        const uint32_t leaf = body->triangles.data[i];
-        result = gxp_look_for_joint(body, leaf, joint);
-        if (joint->found && !body->complex->leaves[leaf].removed && result == GX_OK)
-            result = gxp_push(body, found, body->leaves[leaf].cell);
-    }
-    return result;
-}
-
-/* Visits the cells that the joint joins to this cell. */
-static gx_result gxp_cross_joint(gx_body *body, uint32_t cell, uint32_t node, uint32_t point, uint32_t edge) {
-    gxp_joint joint;
-    uint32_t i, member = 0;
-    gx_result result;
-    joint.point = point;
-    joint.edge = edge;
-    joint.walled = joint.found = 0;
-    body->list.count = 0;
-    result = gxp_find_joint(body, node, &joint, &body->list);
-    for (i = 0; i < body->list.count; i++) member |= body->list.data[i] == cell;
-    for (i = 0; i < body->list.count && result == GX_OK && member && !joint.walled; i++)
-        result = gxp_visit_cell(body, body->list.data[i]);
-    return result;
-}
-
-static gx_result gxp_cross_pinches(gx_body *body, uint32_t cell, uint32_t node) {
-    const uint32_t element = body->cells[cell].element;
-    gxb_complex *cx = body->complex;
-    uint32_t k, i;
-    gx_result result = gxb_complex_open_element(cx, element);
-    if (result == GX_OK && (body->node_pinched[node] & 1)) result = gxp_cross_joint(body, cell, node, node, GXB_NONE);
-    for (k = 0; k < 6 && result == GX_OK; k++) {
-        const uint32_t edge = cx->element_edges[6 * element + k];
-        const uint32_t a = cx->elements[4 * element + gxp_edge_nodes[k][0]],
-                       b = cx->elements[4 * element + gxp_edge_nodes[k][1]];
-        if (!body->edge_pinched[edge] || (a != node && b != node)) continue;
-        body->faces.count = 0;
-        result = gxp_push_edge_pieces(body, cx->mesh_edge[edge], &body->faces);
-        for (i = 0; i < body->faces.count && result == GX_OK; i++)
-            result = gxp_cross_joint(body, cell, node, GXB_NONE, body->faces.data[i]);
     }
     return result;
 }
@@ -3058,17 +3031,6 @@ static gx_result gxp_collect_pairs(gx_body *body) {
     return result == GX_OK ? gxp_sort_keys(body, &body->pairs, 0, body->pairs.count) : result;
 }
 
-static int gxp_contains(const gxp_words *words, uint32_t value) {
-    uint32_t i;
-    for (i = 0; i < words->count; i++)
-        if (words->data[i] == value) return 1;
-    return 0;
-}
-
-static uint32_t gxp_copy_of(const gx_body *body, uint32_t cell, uint32_t node) {
-    return body->cells[cell].copies[gxp_local_node(body, body->cells[cell].element, node)];
-}
-
 /* Finds the pieces of the components around a node (pairs first ... end-1). Every piece of a component that fell apart
    contains a cell of a pair. Their cells go to body->queue, where each starts to body->pieces, times two, 1 more if it
    is open; body->seeds: the copies of components with an open piece. all 0: only fresh cells are looked at, which tells
@@ -3140,7 +3102,10 @@ static gx_result gxp_divide_nodes(gxp_cut *cut) {
     return result;
 }
 
-/* >>integrals: volume and mass of a part, by its boundary triangles in barycentric coordinates --------------------- */
+/* >>integrals: volume and mass of cells ---------------------------------------------------------------------------- */
+/* In: cells and leaves. Out: their volumes and mass matrices, by the triangles of their boundary in barycentric
+   coordinates of the element. Sums whose terms cancel are summed in exact numbers. Touches cells, through the undo log.
+ */
 
 /* The part's points and triangles: body->list has the points, body->lambdas 4 numbers for each, body->triangles the
    indices. Points of the parts before it are kept where they may be met again: parts of one element share those of its
@@ -3214,8 +3179,6 @@ static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, int all) {
     }
     return result;
 }
-
-/* --- parts so small that doubles can't hold their moments: the same sums in exact numbers --- */
 
 typedef struct gxp_fine_sums {
     gxb_num c[10];
@@ -3478,80 +3441,35 @@ static gx_result gxp_integrate_removed(gxp_cut *cut, const gxp_words *removed) {
     return result;
 }
 
-/* >>commit --------------------------------------------------------------------------------------------------------- */
+/* >>cut: the driver ------------------------------------------------------------------------------------------------ */
+/* gx_body_cut: check, begin, arrange, enrich, integrate, then commit, or roll back on any error. The commit can't fail.
+   It drops dead copies, wakes what was touched and marks what is to be made anew: model, skin, view, snapshot. */
 
-/* Puts the last copy in the place of a dead one. */
-static void gxp_drop_copy(gx_body *body, uint32_t copy) {
-    const uint32_t last = --body->copy_count, node = body->copy_node[last];
-    uint32_t j, cell;
-    if (copy == last) return;
-    for (j = body->node_start[node]; j < body->node_start[node + 1]; j++) {
-        const uint32_t element = body->node_elements[j];
-        const int k = gxp_local_node(body, element, node);
-        for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next)
-            if (body->cells[cell].copies[k] == last) body->cells[cell].copies[k] = copy;
+static uint64_t gxp_hash_cut(uint64_t past, const gx_cut_desc *desc) {
+    size_t i;
+    past = gxp_hash_words(past, desc->scope_fragments, desc->scope_fragment_count);
+    past = gxp_hash_doubles(gxp_hash_words(past, desc->scope_cells, desc->scope_cell_count), &desc->sever_below, 1);
+    for (i = 0; i < desc->surface_count; i++) {
+        const gx_surface *s = &desc->surfaces[i];
+        past = gxp_hash_doubles(gxp_mix(past ^ s->kind ^ (uint64_t)s->vertex_count << 8), s->vertices,
+                                3 * s->vertex_count);
+        past = gxp_hash_texture(gxp_hash_words(past, s->triangles, 3 * s->triangle_count), s->texture, s->vertex_count);
     }
-    body->copy_node[copy] = node;
-    gxp_copy_state(body, last, copy);
+    return past;
 }
 
-static uint64_t gxp_hash_doubles(uint64_t hash, const double *x, size_t count); /* see hashes */
-
-static uint64_t gxp_hash_state(const gx_body *body, size_t copies) {
-    return gxp_hash_doubles(gxp_hash_doubles(1, body->displacement, 3 * copies), body->velocity, 3 * copies) | 1;
-}
-
-/* Since the body was saved, copied or read its solver knows of no step: if the state of its first copies has been
-   written, all wakes, in a copy as in the original. */
-static void gxp_wake_resumed(gx_body *body, size_t copies) {
-    uint32_t i;
-    if (body->resumed == 0 || body->resumed == gxp_hash_state(body, copies)) return;
-    for (i = 0; i < body->copy_count; i++) body->rest_time[i] = 0;
-}
-
-/* What a cut touches wakes, and its fragment is no more as it was. */
-static void gxp_touch_copies(gx_body *body, const gxp_cell *cell) {
-    int k;
-    for (k = 0; k < 4; k++) {
-        body->rest_time[cell->copies[k]] = 0;
-        body->copy_label[cell->copies[k]] |= 1;
-    }
-}
-
-/* Notes the elements that the solver is to see anew; without memory for that, all are. */
-static void gxp_note_changed(gx_body *body) {
+static gx_result gxp_check_cut(gxp_cut *cut) {
+    const gx_cut_desc *desc = cut->desc;
+    size_t i;
     gx_result result = GX_OK;
-    uint32_t i;
-    if (body->model == GXP_MODEL_STALE) return;
-    for (i = 0; i < body->saved_cell_count && result == GX_OK; i++)
-        result = gxp_push(body, &body->changed, body->saved_cells[i].cell.element);
-    for (i = 0; i < body->fresh.count && result == GX_OK; i++)
-        result = gxp_push(body, &body->changed, body->cells[body->fresh.data[i]].element);
-    body->model = result == GX_OK ? GXP_MODEL_CHANGED : GXP_MODEL_STALE;
-}
-
-static void gxp_commit(gxp_cut *cut) {
-    gx_body *body = cut->body;
-    uint32_t i;
-    gxp_note_changed(body);
-    for (i = 0; i < body->fresh.count; i++) gxp_touch_copies(body, &body->cells[body->fresh.data[i]]);
-    for (i = 0; i < body->touched.count; i++) {
-        gxp_cell *cell = &body->cells[body->touched.data[i]];
-        if (cell->kept) continue;
-        gxp_touch_copies(body, cell); /* also what hung on it by an edge or node only */
-        memset(cell->copies, 0xff, sizeof cell->copies);
-    }
-    for (i = 0; i < body->removed.count; i++) body->leaves[body->removed.data[i]].next = GXP_NONE;
-    cut->report.removed_copies = body->dead.count;
-    gxp_sort_unique(&body->dead);
-    for (i = body->dead.count; i-- > 0;) gxp_drop_copy(body, body->dead.data[i]);
-    gxb_complex_commit(body->complex);
-    body->saved_cell_count = body->saved_leaf_count = 0;
-    body->past = gxp_hash_cut(body->past, cut->desc);
-    if (cut->report.created_copies + cut->report.removed_copies > 0) body->epoch = body->past != 0 ? body->past : 1;
-    body->held_stale = body->view_stale = body->look_stale = 1;
-    if (body->removed.count + body->dead.count > 0 || body->splits.count > body->copy_count) body->labels_known = 0;
-    if (!body->labels_known) body->splits.count = 0;
+    if (desc->surfaces == NULL || (desc->scope_fragment_count > 0 && desc->scope_fragments == NULL) ||
+        (desc->scope_cell_count > 0 && desc->scope_cells == NULL))
+        return GX_ERROR_ARGUMENT;
+    if (desc->surface_count == 0) return GX_ERROR_EMPTY;
+    if (!gxp_is_finite(desc->sever_below)) return GX_ERROR_NOT_FINITE;
+    for (i = 0; i < desc->surface_count && result == GX_OK; i++) result = gxp_check_surface(cut, &desc->surfaces[i], i);
+    if (result == GX_OK) cut->failure.surface = SIZE_MAX;
+    return result;
 }
 
 /* Removes what the solids have found. The cells of these leaves, and those beside them, are touched. */
@@ -3658,21 +3576,103 @@ static gx_result gxp_integrate(gxp_cut *cut) {
     return result == GX_OK ? gxp_judge_links(cut, bound) : result;
 }
 
-static gx_result gxp_check_cut(gxp_cut *cut) {
-    const gx_cut_desc *desc = cut->desc;
-    size_t i;
+static gx_result gxp_push_leaf_elements(gx_body *body, uint32_t facet) {
+    const gxb_complex *cx = body->complex;
+    uint32_t i;
     gx_result result = GX_OK;
-    if (desc->surfaces == NULL || (desc->scope_fragment_count > 0 && desc->scope_fragments == NULL) ||
-        (desc->scope_cell_count > 0 && desc->scope_cells == NULL))
-        return GX_ERROR_ARGUMENT;
-    if (desc->surface_count == 0) return GX_ERROR_EMPTY;
-    if (!gxp_is_finite(desc->sever_below)) return GX_ERROR_NOT_FINITE;
-    for (i = 0; i < desc->surface_count && result == GX_OK; i++) result = gxp_check_surface(cut, &desc->surfaces[i], i);
-    if (result == GX_OK) cut->failure.surface = SIZE_MAX;
+    for (i = 0; i < 2 && result == GX_OK; i++)
+        if (cx->facets[facet].leaf[i] != GXB_NONE)
+            result = gxp_push(body, &body->skin.dirty, cx->leaves[cx->facets[facet].leaf[i]].element);
     return result;
 }
 
-static gx_result gxp_note_touched(gxp_cut *cut, uint32_t first_facet); /* see >>boundary */
+/* Notes for the skin, if there is one, the elements in which the cut made facets or walls or changed a cell, and those
+   whose copies will be renumbered when dead ones are dropped. Elements noted in vain do no harm. */
+static gx_result gxp_note_touched(gxp_cut *cut, uint32_t first_facet) {
+    gx_body *body = cut->body;
+    const gxb_complex *cx = body->complex;
+    uint32_t i, j;
+    gx_result result = GX_OK;
+    if (!body->skin.made) return GX_OK;
+    if (body->skin.dirty.count / 8 > body->element_count) {
+        body->skin.made = 0;
+        return GX_OK;
+    }
+    for (i = first_facet; i < cx->facet_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, i);
+    for (i = 0; i < cx->wall_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, cx->walls[i] >> 1);
+    for (i = 0; i < body->saved_cell_count && result == GX_OK; i++)
+        result = gxp_push(body, &body->skin.dirty, body->saved_cells[i].cell.element);
+    for (i = 0; i < body->pinches.count; i++) /* edges that were divided there without a new facet */
+        for (j = body->node_start[body->pinches.data[i]];
+             j < body->node_start[body->pinches.data[i] + 1] && result == GX_OK; j++)
+            result = gxp_push(body, &body->skin.dirty, body->node_elements[j]);
+    for (i = body->copy_count - body->dead.count; i < body->copy_count; i++) {
+        const uint32_t node = body->copy_node[i];
+        for (j = body->node_start[node]; j < body->node_start[node + 1] && result == GX_OK; j++)
+            result = gxp_push(body, &body->skin.dirty, body->node_elements[j]);
+    }
+    return result;
+}
+
+/* Puts the last copy in the place of a dead one. */
+static void gxp_drop_copy(gx_body *body, uint32_t copy) {
+    const uint32_t last = --body->copy_count, node = body->copy_node[last];
+    uint32_t j, cell;
+    if (copy == last) return;
+    for (j = body->node_start[node]; j < body->node_start[node + 1]; j++) {
+        const uint32_t element = body->node_elements[j];
+        const int k = gxp_local_node(body, element, node);
+        for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next)
+            if (body->cells[cell].copies[k] == last) body->cells[cell].copies[k] = copy;
+    }
+    body->copy_node[copy] = node;
+    gxp_copy_state(body, last, copy);
+}
+
+/* What a cut touches wakes, and its fragment is no more as it was. */
+static void gxp_touch_copies(gx_body *body, const gxp_cell *cell) {
+    int k;
+    for (k = 0; k < 4; k++) {
+        body->rest_time[cell->copies[k]] = 0;
+        body->copy_label[cell->copies[k]] |= 1;
+    }
+}
+
+/* Notes the elements that the solver is to see anew; without memory for that, all are. */
+static void gxp_note_changed(gx_body *body) {
+    gx_result result = GX_OK;
+    uint32_t i;
+    if (body->model == GXP_MODEL_STALE) return;
+    for (i = 0; i < body->saved_cell_count && result == GX_OK; i++)
+        result = gxp_push(body, &body->changed, body->saved_cells[i].cell.element);
+    for (i = 0; i < body->fresh.count && result == GX_OK; i++)
+        result = gxp_push(body, &body->changed, body->cells[body->fresh.data[i]].element);
+    body->model = result == GX_OK ? GXP_MODEL_CHANGED : GXP_MODEL_STALE;
+}
+
+static void gxp_commit(gxp_cut *cut) {
+    gx_body *body = cut->body;
+    uint32_t i;
+    gxp_note_changed(body);
+    for (i = 0; i < body->fresh.count; i++) gxp_touch_copies(body, &body->cells[body->fresh.data[i]]);
+    for (i = 0; i < body->touched.count; i++) {
+        gxp_cell *cell = &body->cells[body->touched.data[i]];
+        if (cell->kept) continue;
+        gxp_touch_copies(body, cell); /* also what hung on it by an edge or node only */
+        memset(cell->copies, 0xff, sizeof cell->copies);
+    }
+    for (i = 0; i < body->removed.count; i++) body->leaves[body->removed.data[i]].next = GXP_NONE;
+    cut->report.removed_copies = body->dead.count;
+    gxp_sort_unique(&body->dead);
+    for (i = body->dead.count; i-- > 0;) gxp_drop_copy(body, body->dead.data[i]);
+    gxb_complex_commit(body->complex);
+    body->saved_cell_count = body->saved_leaf_count = 0;
+    body->past = gxp_hash_cut(body->past, cut->desc);
+    if (cut->report.created_copies + cut->report.removed_copies > 0) body->epoch = body->past != 0 ? body->past : 1;
+    body->held_stale = body->view_stale = body->look_stale = 1;
+    if (body->removed.count + body->dead.count > 0 || body->splits.count > body->copy_count) body->labels_known = 0;
+    if (!body->labels_known) body->splits.count = 0;
+}
 
 GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report, gx_failure *failure) {
     gxp_cut cut;
@@ -3709,25 +3709,8 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
     return gxp_fail(failure, GX_OK, SIZE_MAX, SIZE_MAX);
 }
 
-/* --- solidified sheets --- */
-
-static double gxp_dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-/* n made of length 1, however long it is. 0: it has no length, or is not finite, and unit is left alone. */
-static int gxp_unit(const double n[3], double unit[3]) {
-    double m[3] = {n[0], n[1], n[2]}, square = gxp_dot(n, n);
-    int exponent, k;
-    if (!gxp_is_finite(square) || square < 1e-280 || square > 1e280) {
-        const double a = fabs(n[0]), b = fabs(n[1]), c = fabs(n[2]), most = a > b ? (a > c ? a : c) : b > c ? b : c;
-        if (!gxp_is_finite(a) || !gxp_is_finite(b) || !gxp_is_finite(c) || !(most > 0)) return 0;
-        (void)frexp(most, &exponent);
-        for (k = 0; k < 3; k++) m[k] = ldexp(n[k], -exponent);
-        square = gxp_dot(m, m);
-    }
-    square = 1 / sqrt(square);
-    for (k = 0; k < 3; k++) unit[k] = square * m[k];
-    return 1;
-}
+/* >>solidify: a sheet made solid ----------------------------------------------------------------------------------- */
+/* In: a sheet and a thickness. Out: the closed surface between its two offsets (GXFEM section 4.1). Knows no body. */
 
 /* Sums of area normals at the vertices of the sheet go to normals, of edges in units of the longest one's power of two,
    so that areas are numbers; then each is scaled to half the thickness. */
@@ -3841,7 +3824,8 @@ GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thicknes
     return GX_OK;
 }
 
-/* >>regions: which copies are held --------------------------------------------------------------------------------- */
+/* >>regions: held copies ------------------------------------------------------------------------------------------- */
+/* In: regions that are to be held. Out: a flag for each copy, found anew after a cut or when regions change. */
 
 static int gxp_point_in_region(gx_body *body, uint32_t point, const gx_region *r) {
     if (point < body->node_count) {
@@ -3924,90 +3908,9 @@ GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t
     return GX_OK;
 }
 
-/* >>fragments: the view -------------------------------------------------------------------------------------------- */
-
-static uint32_t gxp_find(uint32_t *parent, uint32_t i) {
-    while (parent[i] != i) {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    return i;
-}
-
-static void gxp_unite(uint32_t *parent, uint32_t i, uint32_t j) {
-    i = gxp_find(parent, i);
-    j = gxp_find(parent, j);
-    if (i < j)
-        parent[j] = i;
-    else
-        parent[i] = j;
-}
-
-static void gxp_unite_all(uint32_t *parent, const uint32_t copies[4]) {
-    uint32_t root = gxp_find(parent, copies[0]), k;
-    for (k = 1; k < 4; k++) {
-        const uint32_t other = gxp_find(parent, copies[k]);
-        if (other < root) {
-            parent[root] = other;
-            root = other;
-        } else
-            parent[other] = root;
-    }
-}
-
-static gx_result gxp_set_words(gx_body *body, gxp_words *words, size_t count) {
-    words->count = 0;
-    return gxp_words_room(body, words, count);
-}
-
-/* Lists the kept cells by element and joins copies that a cell moves by: cells of one fragment share copies from link
- * to link. */
-static gx_result gxp_list_cells(gx_body *body) {
-    uint32_t e, cell, i;
-    gx_result result = gxp_set_words(body, &body->view_cells, body->cell_count);
-    if (result == GX_OK) result = gxp_set_words(body, &body->view_fragments, body->cell_count);
-    if (result == GX_OK) result = gxp_set_words(body, &body->cell_element, body->cell_count);
-    if (result == GX_OK) result = gxp_set_words(body, &body->cell_copies, 4 * (size_t)body->cell_count);
-    if (result == GX_OK) result = gxp_set_words(body, &body->copy_fragment, body->copy_count);
-    if (result == GX_OK)
-        result = gxp_reserve(&body->allocator, &body->cell_volume, sizeof(double), 0, &body->cell_volume_capacity,
-                             body->cell_count);
-    if (result != GX_OK) return result;
-    body->copy_fragment.count = body->copy_count;
-    for (i = 0; i < body->copy_count; i++) body->copy_fragment.data[i] = i;
-    for (e = 0; e < body->element_count; e++)
-        for (cell = e; cell != GXP_NONE; cell = body->cells[cell].next) {
-            const gxp_cell *c = &body->cells[cell];
-            if (!c->kept) continue;
-            body->cell_volume[body->view_cells.count] = c->volume;
-            body->view_cells.data[body->view_cells.count++] = cell;
-            body->cell_element.data[body->cell_element.count++] = e;
-            memcpy(body->cell_copies.data + body->cell_copies.count, c->copies, sizeof c->copies);
-            body->cell_copies.count += 4;
-            gxp_unite_all(body->copy_fragment.data, c->copies);
-        }
-    return GX_OK;
-}
-
-/* Numbers fragments in the order of their first cells. */
-static gx_result gxp_number_fragments(gx_body *body) {
-    uint32_t i;
-    gx_result result = gxp_set_words(body, &body->fragment_number, body->copy_count);
-    if (result != GX_OK) return result;
-    memset(body->fragment_number.data, 0xff, body->copy_count * sizeof *body->fragment_number.data);
-    body->fragment_count = 0;
-    for (i = 0; i < body->view_cells.count; i++) {
-        const uint32_t copy = gxp_find(body->copy_fragment.data, body->cell_copies.data[4 * i]);
-        if (body->fragment_number.data[copy] == GXP_NONE) body->fragment_number.data[copy] = body->fragment_count++;
-        body->view_fragments.data[body->view_fragments.count++] = body->fragment_number.data[copy];
-    }
-    return GX_OK;
-}
-
-/* Fragment of a cell slot, by the view. */
-static uint32_t gxp_cell_fragment(gx_body *body, uint32_t cell) {
-    return body->fragment_number.data[gxp_find(body->copy_fragment.data, body->cells[cell].copies[0])];
-}
+/* >>fragments: what is connected, and what cuts changed ------------------------------------------------------------ */
+/* In: the numbering of fragments. Out: their volumes, masses, centres and inertia; ids that stay, by comparison with
+   the last snapshot. Touches the view's sums, the snapshot and the copies' labels. */
 
 /* Where entry ij stands in a mass block */
 static const uint8_t gxp_mass_at[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
@@ -4114,20 +4017,6 @@ static gx_result gxp_sum_fragments(gx_body *body) {
     return GX_OK;
 }
 
-/* Cells and fragments. What they weigh is summed for gx_body_view only. */
-static gx_result gxp_update_view(gx_body *body) {
-    gx_result result;
-    if (!body->view_stale) return GX_OK;
-    body->labels_known = 0;
-    result = gxp_list_cells(body);
-    if (result == GX_OK) result = gxp_number_fragments(body);
-    if (result != GX_OK) return result;
-    body->view_stale = 0;
-    body->sums_stale = body->labels_known = 1;
-    body->splits.count = 0;
-    return GX_OK;
-}
-
 /* Joins copies by the cells around the nodes of new ones, and no others: in scratch->data. */
 static gx_result gxp_join_around_splits(gx_body *body, gxp_words *scratch) {
     uint32_t i, j, k, cell, *parent;
@@ -4173,9 +4062,6 @@ static gx_result gxp_update_labels(gx_body *body) {
     body->splits.count = 0;
     return GX_OK;
 }
-
-/* --- what cuts have changed: fragments now are pieces of those of the last look, which their copies are labelled with
- * --- */
 
 /* What a look finds on its way */
 typedef struct gxp_change {
@@ -4314,7 +4200,8 @@ GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view) {
     return GX_OK;
 }
 
-/* --- motion --- */
+/* >>motion: momentum and energy of fragments ----------------------------------------------------------------------- */
+/* In: displacement and velocity. Out: the motion of each fragment. Touches nothing but the view's lists. */
 
 #define GXP_NO_INERTIA                                                                                                 \
     1e-13 /* a principal moment below this share of the largest is rounding: nothing turns about its axis */
@@ -4464,49 +4351,7 @@ GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t cap
     return result;
 }
 
-/* >>parts: what the solver sees: the cells of an element whose four copies coincide are one ------------------------ */
-
-static void gxp_add_part(gx_body *body, const gxp_cell *cell, uint32_t first, const double gradients[12]) {
-    gxs_element *part;
-    uint32_t i;
-    int k;
-    for (i = first; i < body->part_count; i++)
-        if (memcmp(body->parts[i].copy, cell->copies, sizeof cell->copies) == 0) break;
-    part = &body->parts[i];
-    if (i == body->part_count) {
-        memset(part, 0, sizeof *part);
-        memcpy(part->copy, cell->copies, sizeof part->copy);
-        memcpy(part->gradient, gradients, 12 * sizeof *gradients);
-        part->material = body->element_materials[cell->element];
-        part->group = cell->element;
-        body->part_count++;
-    }
-    part->weight += cell->volume;
-    for (k = 0; k < 10; k++) part->mass[k] += cell->mass[k];
-}
-
-/* The parts of an element, for which there is room, at the end */
-static gx_result gxp_add_parts(gx_body *body, uint32_t element) {
-    const uint32_t first = body->part_count;
-    double x[12], gradients[12];
-    uint32_t cell;
-    gx_result result;
-    gxp_element_positions(body, element, x);
-    result = gxi_tet_gradients(x, gradients, NULL);
-    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next)
-        if (body->cells[cell].kept) gxp_add_part(body, &body->cells[cell], first, gradients);
-    return result;
-}
-
-static gx_result gxp_make_parts(gx_body *body) {
-    uint32_t e;
-    gx_result result =
-        gxp_reserve(&body->allocator, &body->parts, sizeof *body->parts, 0, &body->part_capacity, body->cell_count);
-    body->part_count = 0;
-    for (e = 0; e < body->element_count && result == GX_OK; e++) result = gxp_add_parts(body, e);
-    return result;
-}
-
+/* >>supports: copies that only slivers carry follow others (RXFEM Eq. 22) ------------------------------------------ */
 /* --- copies that only slivers carry follow others (RXFEM Eq. 22) ---
    The share of a part is its volume over that of its element. A copy is weak if no part around it has a share of
    follow_below or more: so little moves it that nothing else would keep it from running away. It takes the increment of
@@ -4758,6 +4603,52 @@ static gx_result gxp_make_constraints(gx_body *body) {
     return result;
 }
 
+/* >>model: what the solver sees ------------------------------------------------------------------------------------ */
+/* In: cells, copies, held flags. Out: the solver's model, made anew or changed where cuts have been. The cells of an
+   element that move by the same four copies are one element of the model, a part. Touches the solver and the model's
+   arrays, which are there only while it is made. */
+
+static void gxp_add_part(gx_body *body, const gxp_cell *cell, uint32_t first, const double gradients[12]) {
+    gxs_element *part;
+    uint32_t i;
+    int k;
+    for (i = first; i < body->part_count; i++)
+        if (memcmp(body->parts[i].copy, cell->copies, sizeof cell->copies) == 0) break;
+    part = &body->parts[i];
+    if (i == body->part_count) {
+        memset(part, 0, sizeof *part);
+        memcpy(part->copy, cell->copies, sizeof part->copy);
+        memcpy(part->gradient, gradients, 12 * sizeof *gradients);
+        part->material = body->element_materials[cell->element];
+        part->group = cell->element;
+        body->part_count++;
+    }
+    part->weight += cell->volume;
+    for (k = 0; k < 10; k++) part->mass[k] += cell->mass[k];
+}
+
+/* The parts of an element, for which there is room, at the end */
+static gx_result gxp_add_parts(gx_body *body, uint32_t element) {
+    const uint32_t first = body->part_count;
+    double x[12], gradients[12];
+    uint32_t cell;
+    gx_result result;
+    gxp_element_positions(body, element, x);
+    result = gxi_tet_gradients(x, gradients, NULL);
+    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next)
+        if (body->cells[cell].kept) gxp_add_part(body, &body->cells[cell], first, gradients);
+    return result;
+}
+
+static gx_result gxp_make_parts(gx_body *body) {
+    uint32_t e;
+    gx_result result =
+        gxp_reserve(&body->allocator, &body->parts, sizeof *body->parts, 0, &body->part_capacity, body->cell_count);
+    body->part_count = 0;
+    for (e = 0; e < body->element_count && result == GX_OK; e++) result = gxp_add_parts(body, e);
+    return result;
+}
+
 static gx_result gxp_make_model(gx_body *body, gxs_model *model) {
     const gx_allocator *a = &body->allocator;
     uint32_t i;
@@ -4832,6 +4723,20 @@ static gx_result gxp_set_model(gx_body *body) {
     return body->nothing_moves ? GX_OK : gxs_solver_set_model(body->solver, &model, NULL);
 }
 
+/* What the solver has copied */
+static void gxp_release_model(gx_body *body) {
+    const gx_allocator *a = &body->allocator;
+    gxp_release(a, body->parts, body->part_capacity * sizeof *body->parts);
+    gxp_release(a, body->rest, (size_t)body->rest_capacity * 3 * sizeof(double));
+    gxp_release(a, body->elastic, body->elastic_capacity * sizeof *body->elastic);
+    gxp_release(a, body->constraints, body->constraint_capacity * sizeof *body->constraints);
+    body->parts = NULL;
+    body->rest = NULL;
+    body->elastic = NULL;
+    body->constraints = NULL;
+    body->part_capacity = body->rest_capacity = body->elastic_capacity = body->constraint_capacity = 0;
+}
+
 /* The solver's model, after a cut or a hold only. The solver copies it, so that it need not be kept. */
 static gx_result gxp_update_model(gx_body *body) {
     gx_result result = gxp_update_held(body);
@@ -4865,6 +4770,10 @@ GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model) {
     result = gxp_update_held(body);
     return result == GX_OK ? gxp_make_model(body, model) : result;
 }
+
+/* >>step: time steps ----------------------------------------------------------------------------------------------- */
+/* In: a step's description. Out: displacement and velocity at its end, or the body as it was. Touches the state of
+   copies, the history that BDF2 needs, and the solver. */
 
 /* The step with what is the body's own */
 static gx_result gxp_complete_step(gx_body *body, const gx_step_desc *desc, gx_step_desc *step) {
@@ -4937,31 +4846,1161 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     return result;
 }
 
-/* >>bytes: save and load, clone and restore
- * ---------------------------------------------------------------------------------------
- *
- * One stream of bytes does all four. A clone is written to memory and read back, without the checks; what the same
- * functions write and read stands once, in gxp_pass_cells (topology, beside gxb_complex_save) and gxp_pass_state (all
- * else).
- */
+/* >>corners: the skin: normals and textures ------------------------------------------------------------------------ */
+/* The visual surface takes four sections. This one: which corners of the outer surface are shaded as one, and which
+   texture a cut face has. In: the mesh, the records of surfaces. Out: groups of corners. Touches the skin only. */
 
-static uint64_t gxp_hash_words(uint64_t hash, const uint32_t *words, size_t count) {
-    size_t i;
-    hash = gxp_mix(hash ^ count);
-    for (i = 0; i < count; i++) hash = gxp_mix(hash ^ words[i]);
-    return hash;
+/* Of length 1; left alone where it has none, or one that is not finite. */
+static void gxp_set_normal(float *normal, const double n[3]) {
+    double unit[3];
+    int k;
+    if (gxp_unit(n, unit))
+        for (k = 0; k < 3; k++) normal[k] = (float)unit[k];
 }
 
-/* count x 2, or NULL */
-static uint64_t gxp_hash_texture(uint64_t hash, const float *texture, size_t count) {
-    size_t i;
-    hash = gxp_mix(hash ^ (texture != NULL));
-    for (i = 0; i < 2 * count && texture != NULL; i++) {
-        uint32_t b;
-        memcpy(&b, &texture[i], sizeof b);
-        hash = gxp_mix(hash ^ b);
+/* Normal of the outer face opposite to the element's node k, of its area's length. */
+static void gxp_outer_normal(const gx_body *body, uint32_t element, uint32_t k, double n[3]) {
+    double x[12], a[3], b[3];
+    const uint8_t *f = gxp_outward[k];
+    int i;
+    gxp_element_positions(body, element, x);
+    for (i = 0; i < 3; i++) {
+        a[i] = x[3 * f[1] + i] - x[3 * f[0] + i];
+        b[i] = x[3 * f[2] + i] - x[3 * f[0] + i];
     }
-    return hash;
+    for (i = 0; i < 3; i++) n[i] = 0.5 * (a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]);
+}
+
+/* Lists the outer faces: s->boundary has the number of each mesh face among them, body->faces element * 4 + k of each.
+ */
+static gx_result gxp_list_outer_faces(gx_body *body) {
+    const gxb_complex *cx = body->complex;
+    gxp_skin *s = &body->skin;
+    uint32_t e, k;
+    gx_result result = gxp_set_words(body, &s->boundary, cx->face_count);
+    body->faces.count = 0;
+    for (e = 0; e < body->element_count && result == GX_OK; e++)
+        for (k = 0; k < 4 && result == GX_OK; k++) {
+            if (gxp_neighbour(body, e, k) != GXP_NONE) continue;
+            s->boundary.data[cx->element_faces[4 * e + k]] = body->faces.count;
+            result = gxp_push(body, &body->faces, 4 * e + k);
+        }
+    return result;
+}
+
+/* Two outer faces (by number) meet in the mesh edge from node a to b: where they bend little, their corners are one
+ * group. */
+static void gxp_join_corners(gx_body *body, uint32_t p, uint32_t q, uint32_t a, uint32_t b) {
+    const uint32_t ep = body->faces.data[p], eq = body->faces.data[q];
+    uint32_t *group = body->skin.groups.data;
+    double m[3], n[3];
+    gxp_outer_normal(body, ep / 4, ep % 4, m);
+    gxp_outer_normal(body, eq / 4, eq % 4, n);
+    if (gxp_unit(m, m) && gxp_unit(n, n) && gxp_dot(m, n) < cos(body->skin.desc.crease_angle)) return;
+    gxp_unite(group, 4 * p + (uint32_t)gxp_local_node(body, ep / 4, a),
+              4 * q + (uint32_t)gxp_local_node(body, eq / 4, a));
+    gxp_unite(group, 4 * p + (uint32_t)gxp_local_node(body, ep / 4, b),
+              4 * q + (uint32_t)gxp_local_node(body, eq / 4, b));
+}
+
+/* Finds for each mesh edge the two outer faces that meet there, and joins them. body->list: of each edge, the first
+ * face and how many. */
+static gx_result gxp_join_faces(gx_body *body) {
+    const gxb_complex *cx = body->complex;
+    uint32_t i, j, *first, *second;
+    gx_result result = gxp_set_words(body, &body->list, 2 * (size_t)cx->mesh_edge_count);
+    if (result != GX_OK) return result;
+    first = body->list.data;
+    second = first + cx->mesh_edge_count;
+    memset(first, 0xff, 2 * (size_t)cx->mesh_edge_count * sizeof *first);
+    for (i = 0; i < body->faces.count; i++)
+        for (j = 0; j < 6; j++) {
+            const uint32_t e = body->faces.data[i] / 4, k = body->faces.data[i] % 4,
+                           edge = cx->element_edges[6 * e + j];
+            const uint32_t a = gxp_edge_nodes[j][0], b = gxp_edge_nodes[j][1];
+            if (a == k || b == k || body->edge_pinched[edge]) continue;
+            if (first[edge] == GXP_NONE)
+                first[edge] = i;
+            else if (second[edge] == GXP_NONE) {
+                second[edge] = i;
+                gxp_join_corners(body, first[edge], i, cx->elements[4 * e + a], cx->elements[4 * e + b]);
+            }
+        }
+    return GX_OK;
+}
+
+/* Groups of corners of outer faces: s->groups has for each outer face's four nodes the number of its group (the fourth
+   is not used); s->group_normals their normals at rest, weighted by area, not of length 1. */
+static gx_result gxp_group_corners(gx_body *body) {
+    gxp_skin *s = &body->skin;
+    uint32_t i, k;
+    int j;
+    gx_result result = gxp_list_outer_faces(body);
+    const uint32_t count = 4 * body->faces.count;
+    if (result == GX_OK) result = gxp_set_words(body, &s->groups, count);
+    if (result == GX_OK)
+        result =
+            gxp_reserve(&body->allocator, &s->group_normals, 3 * sizeof(double), 0, &s->group_normal_capacity, count);
+    if (result != GX_OK) return result;
+    for (i = 0; i < count; i++) s->groups.data[i] = i;
+    if (s->desc.crease_angle > 0) result = gxp_join_faces(body);
+    if (result != GX_OK) return result;
+    for (i = 0; i < count; i++) s->groups.data[i] = gxp_find(s->groups.data, i);
+    memset(s->group_normals, 0, 3 * (size_t)count * sizeof(double));
+    for (i = 0; i < body->faces.count; i++) {
+        double n[3];
+        gxp_outer_normal(body, body->faces.data[i] / 4, body->faces.data[i] % 4, n);
+        for (k = 0; k < 4; k++)
+            for (j = 0; j < 3; j++) s->group_normals[3 * (size_t)s->groups.data[4 * i + k] + (size_t)j] += n[j];
+    }
+    return GX_OK;
+}
+
+static uint32_t gxp_label_surface(const gx_body *body, uint32_t label) {
+    uint32_t low = 0, high = body->surface_count;
+    while (high - low > 1) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (body->surfaces[middle].label <= label)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* The affine map to the texture of a cut triangle, NULL if its surface has none */
+static const double *gxp_label_map(const gx_body *body, uint32_t label) {
+    uint32_t surface;
+    if (label == GXP_NONE) return NULL;
+    surface = gxp_label_surface(body, label);
+    if (body->surfaces[surface].map == GXP_NONE) return NULL;
+    return body->maps + 8 * ((size_t)body->surfaces[surface].map + label - body->surfaces[surface].label);
+}
+
+/* >>vertices: the skin: slots and vertices ------------------------------------------------------------------------- */
+/* A slot sums the normals of the deformed surface: outer ones by copy and group, those of cut faces by vertex. Vertices
+   are found by a key that needs no arithmetic. They stand without gaps: the last one takes the place of one that goes.
+ */
+
+static gx_result gxp_rehash(gx_body *body, gxp_words *buckets, uint32_t items) {
+    uint32_t size = 64;
+    gx_result result;
+    while (size < items) size *= 2;
+    result = gxp_set_words(body, buckets, size);
+    if (result == GX_OK) {
+        buckets->count = size;
+        memset(buckets->data, 0xff, size * sizeof *buckets->data);
+    }
+    return result;
+}
+
+static uint32_t *gxp_slot_bucket(gxp_skin *s, uint32_t copy, uint32_t group) {
+    return &s->slot_buckets.data[gxp_mix((uint64_t)copy << 32 | group) & (s->slot_buckets.count - 1)];
+}
+
+/* Room for one slot more; the buckets grow with the slots. */
+static gx_result gxp_slot_room(gx_body *body) {
+    gxp_skin *s = &body->skin;
+    const uint32_t before = s->slot_capacity;
+    uint32_t i;
+    gx_result result = gxp_reserve(&body->allocator, &s->slots, sizeof *s->slots, s->slot_count, &s->slot_capacity, 1);
+    if (result != GX_OK || (s->slot_capacity == before && s->slot_buckets.count > 0)) return result;
+    result = gxp_rehash(body, &s->slot_buckets, s->slot_capacity);
+    for (i = 0; i < s->slot_count && result == GX_OK; i++) {
+        uint32_t *bucket = gxp_slot_bucket(s, s->slots[i].copy, s->slots[i].group);
+        if (s->slots[i].copy == GXP_NONE) continue;
+        s->slots[i].next = *bucket;
+        *bucket = i;
+    }
+    return result;
+}
+
+static gx_result gxp_outer_slot(gx_body *body, uint32_t copy, uint32_t group, uint32_t *slot) {
+    gxp_skin *s = &body->skin;
+    gx_result result = gxp_slot_room(body);
+    uint32_t i;
+    if (result != GX_OK) return result;
+    for (i = *gxp_slot_bucket(s, copy, group); i != GXP_NONE; i = s->slots[i].next)
+        if (s->slots[i].copy == copy && s->slots[i].group == group) {
+            *slot = i;
+            return GX_OK;
+        }
+    i = s->slot_count++;
+    s->slots[i].copy = copy;
+    s->slots[i].group = group;
+    s->slots[i].next = *gxp_slot_bucket(s, copy, group);
+    *gxp_slot_bucket(s, copy, group) = i;
+    *slot = i;
+    return GX_OK;
+}
+
+/* A slot that belongs to one vertex: a free one, or a new one */
+static gx_result gxp_own_slot(gx_body *body, uint32_t *slot) {
+    gxp_skin *s = &body->skin;
+    gx_result result = GX_OK;
+    if (s->free_slot != GXP_NONE) {
+        *slot = s->free_slot;
+        s->free_slot = s->slots[*slot].next;
+        return GX_OK;
+    }
+    result = gxp_slot_room(body);
+    if (result != GX_OK) return result;
+    *slot = s->slot_count++;
+    s->slots[*slot].copy = GXP_NONE;
+    return GX_OK;
+}
+
+/* A facet that is shown, or rather its part in a leaf's cell */
+typedef struct gxp_skin_face {
+    uint32_t element;
+    const uint32_t *copies; /* the cell's */
+    uint32_t slots[4];      /* outer: of the face's nodes, by local node */
+    uint8_t outer;
+    uint32_t surface;  /* gx_skin.triangle_surface */
+    uint32_t label;    /* the cut triangle, GXP_NONE: none */
+    uint32_t plane;    /* of the complex */
+    uint32_t group[2]; /* see gxp_skin_key */
+    double normal[3];  /* outward at rest, of any length */
+} gxp_skin_face;
+
+static uint32_t *gxp_vertex_bucket(gxp_skin *s, const gxp_skin_key *key) {
+    uint64_t h = gxp_mix((uint64_t)key->group[0] << 32 | key->group[1]) + key->point;
+    h = gxp_mix(h ^ ((uint64_t)key->name[0] << 32 | key->name[1]));
+    h = gxp_mix(h ^ ((uint64_t)key->name[2] << 32 | key->name[3]));
+    return &s->vertex_buckets.data[h & (s->vertex_buckets.count - 1)];
+}
+
+static gx_result gxp_vertex_room(gx_body *body) {
+    gxp_skin *s = &body->skin;
+    const uint32_t before = s->vertex_capacity;
+    void *arrays[8];
+    size_t items[8];
+    uint32_t i;
+    gx_result result;
+    gxp_vertex_columns(s, arrays, items);
+    result = gxp_reserve_columns(&body->allocator, arrays, items, GXP_VERTEX_COLUMNS, s->vertex_count,
+                                 &s->vertex_capacity, 1);
+    if (result != GX_OK || (s->vertex_capacity == before && s->vertex_buckets.count > 0)) return result;
+    result = gxp_rehash(body, &s->vertex_buckets, s->vertex_capacity);
+    for (i = 0; i < s->vertex_count && result == GX_OK; i++) {
+        uint32_t *bucket = gxp_vertex_bucket(s, &s->vertices[i].key);
+        s->vertices[i].next = *bucket;
+        *bucket = i;
+    }
+    return result;
+}
+
+/* What a point of the face is looked up by, known without arithmetic. */
+static void gxp_make_key(const gx_body *body, const gxp_skin_face *face, uint32_t point, gxp_skin_key *key) {
+    const unsigned support = gxb_complex_support(body->complex, point, face->element);
+    uint32_t i, j, n = 0;
+    memset(key->name, 0xff, sizeof key->name);
+    key->point = point;
+    key->group[0] = face->group[0];
+    key->group[1] = face->group[1];
+    for (i = 0; i < 4; i++) {
+        const uint32_t name = face->outer ? face->slots[i] : face->copies[i];
+        if (!(support >> i & 1) || name == GXP_NONE) continue;
+        for (j = n++; j > 0 && key->name[j - 1] > name; j--) key->name[j] = key->name[j - 1];
+        key->name[j] = name;
+    }
+}
+
+/* Copies, weights and slots of a point, those of weight 0 last. */
+static void gxp_weigh_point(const gxp_skin_face *face, const double lambda[4], uint32_t *copies, double *weights,
+                            uint32_t *slots) {
+    uint32_t k, n = 0;
+    for (k = 0; k < 4; k++) {
+        if (!(lambda[k] > 0) || (face->outer && face->slots[k] == GXP_NONE)) continue;
+        copies[n] = face->copies[k];
+        weights[n] = lambda[k];
+        slots[n++] = face->slots[k];
+    }
+    for (k = n; k < 4; k++) {
+        copies[k] = copies[0];
+        weights[k] = 0;
+        slots[k] = slots[0];
+    }
+}
+
+/* Outside by barycentric interpolation, on cut faces by the cut triangle's map. */
+static void gxp_set_texture(gx_body *body, uint32_t vertex, const gxp_skin_face *face, const double lambda[4]) {
+    const double *x = body->skin.rest + 3 * (size_t)vertex, *map = gxp_label_map(body, face->label);
+    const uint32_t *node = body->complex->elements + 4 * (size_t)face->element;
+    int i, k;
+    for (i = 0; i < 2; i++) {
+        double t = map != NULL ? map[4 * i + 3] : 0;
+        for (k = 0; k < 3 && map != NULL; k++) t += map[4 * i + k] * (x[k] - body->complex->origin[k]);
+        for (k = 0; k < 4 && face->outer && body->texture != NULL; k++)
+            t += lambda[k] * (double)body->texture[2 * (size_t)node[k] + (size_t)i];
+        body->skin.texture[2 * (size_t)vertex + (size_t)i] = (float)t;
+    }
+}
+
+/* A new vertex for a key */
+static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const gxp_skin_key *key, uint32_t *vertex) {
+    gxp_skin *s = &body->skin;
+    const uint32_t i = s->vertex_count;
+    gxp_skin_vertex *v = &s->vertices[i];
+    double *rest = s->rest + 3 * (size_t)i;
+    const double *lambda;
+    uint32_t n, slot, own = GXP_NONE;
+    int k;
+    gx_result result = face->outer ? GX_OK : gxp_own_slot(body, &own);
+    if (result == GX_OK) result = gxp_add_boundary_point(body, face->element, key->point, &slot);
+    if (result != GX_OK) return result;
+    lambda = body->lambdas + 4 * (size_t)slot;
+    gxp_weigh_point(face, lambda, s->copies + 4 * (size_t)i, s->weights + 4 * (size_t)i, v->slots);
+    for (n = 0; n < 4 && !face->outer; n++) v->slots[n] = own;
+    v->key = *key;
+    v->corner = GXP_NONE;
+    v->outer = face->outer;
+    v->fresh = 1;
+    v->noted = 0;
+    v->next = *gxp_vertex_bucket(s, key);
+    *gxp_vertex_bucket(s, key) = i;
+    s->point[i] = key->point;
+    for (k = 0; k < 3; k++) {
+        rest[k] = 0;
+        for (n = 0; n < 4; n++)
+            rest[k] += s->weights[4 * (size_t)i + n] *
+                       body->positions[3 * (size_t)body->copy_node[s->copies[4 * (size_t)i + n]] + (size_t)k];
+    }
+    memset(s->normal + 3 * (size_t)i, 0, 3 * sizeof *s->normal); /* should the next not find one */
+    gxp_set_normal(s->normal + 3 * (size_t)i, face->normal);
+    gxp_set_texture(body, i, face, lambda);
+    *vertex = s->vertex_count++;
+    return GX_OK;
+}
+
+static gx_result gxp_note_vertex(gx_body *body, uint32_t vertex) {
+    gxp_skin_vertex *v = &body->skin.vertices[vertex];
+    if (v->noted) return GX_OK;
+    v->noted = 1;
+    return gxp_push(body, &body->skin.changed[0], vertex);
+}
+
+static gx_result gxp_find_vertex(gx_body *body, const gxp_skin_face *face, uint32_t point, uint32_t *vertex) {
+    gxp_skin *s = &body->skin;
+    gx_result result = gxp_vertex_room(body);
+    gxp_skin_key key;
+    if (result != GX_OK) return result;
+    gxp_make_key(body, face, point, &key);
+    for (*vertex = *gxp_vertex_bucket(s, &key); *vertex != GXP_NONE; *vertex = s->vertices[*vertex].next)
+        if (memcmp(&s->vertices[*vertex].key, &key, sizeof key) == 0) return gxp_note_vertex(body, *vertex);
+    result = gxp_add_vertex(body, face, &key, vertex);
+    return result == GX_OK ? gxp_note_vertex(body, *vertex) : result;
+}
+
+/* Takes a vertex without triangles away. */
+static gx_result gxp_drop_vertex(gx_body *body, uint32_t vertex) {
+    gxp_skin *s = &body->skin;
+    const uint32_t last = --s->vertex_count;
+    uint32_t *link, corner;
+    gx_result result = GX_OK;
+    void *arrays[8];
+    size_t items[8];
+    for (link = gxp_vertex_bucket(s, &s->vertices[vertex].key); *link != vertex; link = &s->vertices[*link].next) {}
+    *link = s->vertices[vertex].next;
+    if (!s->vertices[vertex].outer) {
+        s->slots[s->vertices[vertex].slots[0]].next = s->free_slot;
+        s->free_slot = s->vertices[vertex].slots[0];
+    }
+    if (vertex == last) return GX_OK;
+    for (link = gxp_vertex_bucket(s, &s->vertices[last].key); *link != last; link = &s->vertices[*link].next) {}
+    *link = vertex;
+    for (corner = s->vertices[last].corner; corner != GXP_NONE; corner = s->links[corner / 3].corner_next[corner % 3]) {
+        s->triangles[corner] = vertex;
+        if (result == GX_OK) result = gxp_push(body, &s->changed[1], corner / 3);
+    }
+    gxp_vertex_columns(s, arrays, items);
+    gxp_move_column_item(arrays, items, GXP_VERTEX_COLUMNS, last, vertex);
+    s->vertices[vertex].fresh = 1;
+    return result;
+}
+
+/* >>faces: the skin: triangles ------------------------------------------------------------------------------------- */
+/* In: an element. Out: the triangles that it shows, of outer faces and of both sides of walls. Triangles are listed by
+   element and stand without gaps. Facets are divided into triangles with area, so that each has a normal. */
+
+static gx_result gxp_triangle_room(gx_body *body) {
+    gxp_skin *s = &body->skin;
+    void *arrays[8];
+    size_t items[8];
+    gxp_triangle_columns(s, arrays, items);
+    return gxp_reserve_columns(&body->allocator, arrays, items, GXP_TRIANGLE_COLUMNS, s->triangle_count,
+                               &s->triangle_capacity, 1);
+}
+
+/* Hooks the triangle's corners to its vertices and itself to its element. */
+static void gxp_link_triangle(gxp_skin *s, uint32_t t) {
+    gxp_skin_links *own = &s->links[t];
+    uint32_t k;
+    for (k = 0; k < 3; k++) {
+        uint32_t *first = &s->vertices[s->triangles[3 * t + k]].corner;
+        own->corner_next[k] = *first;
+        own->corner_previous[k] = GXP_NONE;
+        if (*first != GXP_NONE) s->links[*first / 3].corner_previous[*first % 3] = 3 * t + k;
+        *first = 3 * t + k;
+    }
+    own->next = s->first.data[s->element[t]];
+    own->previous = GXP_NONE;
+    if (own->next != GXP_NONE) s->links[own->next].previous = t;
+    s->first.data[s->element[t]] = t;
+}
+
+static void gxp_unlink_triangle(gxp_skin *s, uint32_t t) {
+    const gxp_skin_links *own = &s->links[t];
+    uint32_t k;
+    for (k = 0; k < 3; k++) {
+        const uint32_t next = own->corner_next[k], previous = own->corner_previous[k];
+        if (next != GXP_NONE) s->links[next / 3].corner_previous[next % 3] = previous;
+        if (previous != GXP_NONE)
+            s->links[previous / 3].corner_next[previous % 3] = next;
+        else
+            s->vertices[s->triangles[3 * t + k]].corner = next;
+    }
+    if (own->next != GXP_NONE) s->links[own->next].previous = own->previous;
+    if (own->previous != GXP_NONE)
+        s->links[own->previous].next = own->next;
+    else
+        s->first.data[s->element[t]] = own->next;
+}
+
+/* Takes a triangle away; the last one takes its place. */
+static gx_result gxp_drop_triangle(gx_body *body, uint32_t t) {
+    gxp_skin *s = &body->skin;
+    const uint32_t last = s->triangle_count - 1;
+    void *arrays[8];
+    size_t items[8];
+    uint32_t k;
+    gx_result result = gxp_push(body, &s->changed[1], t);
+    for (k = 0; k < 3 && result == GX_OK; k++) result = gxp_note_vertex(body, s->triangles[3 * t + k]);
+    if (result != GX_OK) return result;
+    gxp_unlink_triangle(s, t);
+    s->triangle_count--;
+    if (t == last) return GX_OK;
+    gxp_unlink_triangle(s, last);
+    gxp_triangle_columns(s, arrays, items);
+    gxp_move_column_item(arrays, items, GXP_TRIANGLE_COLUMNS, last, t);
+    gxp_link_triangle(s, t);
+    return GX_OK;
+}
+
+static gx_result gxp_add_skin_triangle(gx_body *body, const gxp_skin_face *face, const uint32_t vertex[3], int inward) {
+    gxp_skin *s = &body->skin;
+    const uint32_t t = s->triangle_count;
+    uint32_t k, j, *corner;
+    gx_result result = gxp_triangle_room(body);
+    if (result == GX_OK) result = gxp_push(body, &s->changed[1], t);
+    if (result != GX_OK) return result;
+    corner = s->triangles + 3 * (size_t)t;
+    for (k = 0; k < 3; k++) corner[k] = vertex[inward ? 2 - k : k];
+    s->triangle_count++;
+    s->element[t] = face->element;
+    s->material[t] = body->element_materials[face->element];
+    s->surface[t] = face->surface;
+    memset(s->links[t].normal, 0, sizeof s->links[t].normal);
+    gxp_set_normal(s->links[t].normal, face->normal);
+    for (k = 0, j = 0; k < 4 && face->outer; k++)
+        if (face->slots[k] != GXP_NONE) s->links[t].slots[j++] = face->slots[k];
+    for (k = 0; k < 3 && !face->outer; k++) s->links[t].slots[k] = s->vertices[corner[k]].slots[0];
+    gxp_link_triangle(s, t);
+    return GX_OK;
+}
+
+/* May corner i be cut off the polygon of complex points, which has area? So must its triangle have, and what remains.
+ */
+static int gxp_is_ear(gx_body *body, const uint32_t *p, uint32_t n, uint32_t i, uint32_t plane) {
+    const uint32_t before = p[(i + n - 1) % n], after = p[(i + 1) % n];
+    uint32_t j;
+    if (n == 3) return 1;
+    if (gxb_complex_turn(body->complex, before, p[i], after, plane) == 0) return 0;
+    for (j = 2; j < n - 1; j++)
+        if (gxb_complex_turn(body->complex, before, after, p[(i + j) % n], plane) != 0) return 1;
+    return 0;
+}
+
+/* Adds a facet as triangles, outward from the leaf: ears are cut off its convex polygon, whose points stand in
+   body->faces, their vertices in body->queue. */
+static gx_result gxp_add_skin_facet(gx_body *body, const gxp_skin_face *face, uint32_t facet, uint32_t leaf) {
+    gxb_complex *cx = body->complex;
+    const int inward = cx->facets[facet].leaf[0] == leaf;
+    uint32_t *p, *v, e0, en, i, n, vertex = GXP_NONE;
+    gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
+    body->faces.count = body->queue.count = 0;
+    for (i = 0; i < en && result == GX_OK; i++) {
+        const uint32_t point = cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1];
+        result = gxp_find_vertex(body, face, point, &vertex);
+        if (result == GX_OK) result = gxp_push(body, &body->faces, point);
+        if (result == GX_OK) result = gxp_push(body, &body->queue, vertex);
+    }
+    p = body->faces.data;
+    v = body->queue.data;
+    for (n = body->faces.count, i = 0; n >= 3 && result == GX_OK; n--) {
+        uint32_t triangle[3], tries = 0;
+        for (i %= n; tries < n && !gxp_is_ear(body, p, n, i, cx->facets[facet].plane); i = (i + 1) % n) tries++;
+        triangle[0] = v[(i + n - 1) % n];
+        triangle[1] = v[i];
+        triangle[2] = v[(i + 1) % n];
+        result = gxp_add_skin_triangle(body, face, triangle, inward);
+        memmove(p + i, p + i + 1, (n - 1 - i) * sizeof *p);
+        memmove(v + i, v + i + 1, (n - 1 - i) * sizeof *v);
+        i++;
+    }
+    return result;
+}
+
+/* Do two cells move apart at a common facet? In one element where any copy differs, else where a shared node's copies
+ * differ. */
+static int gxp_cells_part(const gx_body *body, uint32_t a, uint32_t b) {
+    const gxp_cell *p = &body->cells[a], *q = &body->cells[b];
+    uint32_t k;
+    if (p->element == q->element) return memcmp(p->copies, q->copies, sizeof p->copies) != 0;
+    for (k = 0; k < 4; k++) {
+        const int j = gxp_local_node(body, q->element, body->complex->elements[4 * p->element + k]);
+        if (j >= 0 && p->copies[k] != q->copies[j]) return 1;
+    }
+    return 0;
+}
+
+/* -1: the facet is not seen from the leaf; 0: outer surface; 1: face of a cut */
+static int gxp_visible(const gx_body *body, uint32_t facet, uint32_t leaf) {
+    const gxb_facet *f = &body->complex->facets[facet];
+    const uint32_t other = f->leaf[f->leaf[0] == leaf];
+    if (other == GXB_NONE) return 0;
+    if (body->complex->leaves[other].removed) return 1;
+    return f->wall && gxp_cells_part(body, body->leaves[leaf].cell, body->leaves[other].cell) ? 1 : -1;
+}
+
+/* The outer face opposite to the element's node k, as a cell has it */
+static gx_result gxp_outer_face(gx_body *body, uint32_t k, gxp_skin_face *face) {
+    const uint32_t number = body->skin.boundary.data[body->complex->element_faces[4 * face->element + k]];
+    uint32_t j;
+    gx_result result = GX_OK;
+    face->outer = 1;
+    face->surface = GX_SKIN_OUTER;
+    face->label = GXP_NONE;
+    face->group[0] = face->group[1] = 0;
+    gxp_outer_normal(body, face->element, k, face->normal);
+    for (j = 0; j < 4 && result == GX_OK; j++) {
+        face->slots[j] = GXP_NONE;
+        if (j != k)
+            result = gxp_outer_slot(body, face->copies[j], body->skin.groups.data[4 * number + j], &face->slots[j]);
+    }
+    return result;
+}
+
+/* The face of a cut that the leaf has at the facet. Of several triangles that cover it the first counts. */
+static void gxp_cut_face(const gx_body *body, uint32_t facet, uint32_t leaf, gxp_skin_face *face) {
+    const gxb_complex *cx = body->complex;
+    const gxb_facet *f = &cx->facets[facet];
+    const int front = f->leaf[0] == leaf;
+    uint32_t l, first = GXP_NONE;
+    int k;
+    for (l = f->labels; l != GXB_NONE; l = cx->labels[l].next)
+        if (first == GXP_NONE || cx->labels[l].triangle < cx->labels[first].triangle) first = l;
+    face->outer = 0;
+    face->label = first == GXP_NONE ? GXP_NONE : cx->labels[first].triangle;
+    face->surface = first == GXP_NONE ? GX_SKIN_SEVERED : 1 + gxp_label_surface(body, face->label);
+    memset(face->slots, 0xff, sizeof face->slots);
+    for (k = 0; k < 3; k++)
+        face->normal[k] = front ? -cx->planes[face->plane].filter.n[k] : cx->planes[face->plane].filter.n[k];
+    face->group[0] = face->surface;
+    if (body->skin.desc.smooth_cuts && first != GXP_NONE)
+        face->group[1] = (uint32_t)(front ^ (cx->labels[first].orientation < 0));
+    else
+        face->group[1] = 2 + 2 * face->plane + (uint32_t)front;
+}
+
+static gx_result gxp_skin_leaf(gx_body *body, uint32_t leaf, gxp_skin_face *face) {
+    gxb_complex *cx = body->complex;
+    uint32_t first, count, i, k;
+    gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
+    for (i = 0; i < count && result == GX_OK; i++) {
+        const uint32_t facet = cx->pool[first + i];
+        const int kind = gxp_visible(body, facet, leaf);
+        if (kind < 0) continue;
+        face->plane = cx->facets[facet].plane;
+        if (kind == 0) {
+            for (k = 0; cx->element_faces[4 * face->element + k] != cx->facets[facet].face;) k++;
+            result = gxp_outer_face(body, k, face);
+        } else
+            gxp_cut_face(body, facet, leaf, face);
+        if (result == GX_OK) result = gxp_add_skin_facet(body, face, facet, leaf);
+    }
+    return result;
+}
+
+/* An element that no cut has touched shows its outer faces. */
+static gx_result gxp_skin_whole(gx_body *body, gxp_skin_face *face) {
+    uint32_t k, j, vertex[3];
+    gx_result result = GX_OK;
+    face->plane = 0;
+    for (k = 0; k < 4 && result == GX_OK; k++) {
+        if (gxp_neighbour(body, face->element, k) != GXP_NONE) continue;
+        result = gxp_outer_face(body, k, face);
+        for (j = 0; j < 3 && result == GX_OK; j++)
+            result =
+                gxp_find_vertex(body, face, body->complex->elements[4 * face->element + gxp_outward[k][j]], &vertex[j]);
+        if (result == GX_OK) result = gxp_add_skin_triangle(body, face, vertex, 0);
+    }
+    return result;
+}
+
+/* Is the element's face k as the mesh has it: not divided, no wall, and the element behind it, if there is one, still
+ * there? */
+static int gxp_face_is_whole(const gx_body *body, uint32_t element, uint32_t k) {
+    const gxb_complex *cx = body->complex;
+    const uint32_t facet = cx->face_facet[cx->element_faces[4 * element + k]];
+    const gxb_facet *f;
+    uint32_t other;
+    if (facet == GXB_NONE) return 1;
+    f = &cx->facets[facet];
+    other = f->leaf[f->leaf[0] == element];
+    return f->child == GXB_NONE && !f->wall && (other == GXB_NONE || !cx->leaves[other].removed);
+}
+
+/* Does it show its outer faces as the mesh has them, and nothing else? */
+static int gxp_is_untouched(const gx_body *body, uint32_t element) {
+    const gxb_complex *cx = body->complex;
+    uint32_t k;
+    if (body->cells[element].next != GXP_NONE || body->leaves[element].next != GXP_NONE || cx->leaves[element].removed)
+        return 0;
+    for (k = 0; k < 4; k++)
+        if (!gxp_face_is_whole(body, element, k)) return 0;
+    for (k = 0; k < 6; k++)
+        if (gxp_edge_is_divided(cx, cx->element_edges[6 * element + k])) return 0;
+    return 1;
+}
+
+static int gxp_is_at_boundary(const gx_body *body, uint32_t element) {
+    uint32_t k;
+    for (k = 0; k < 4; k++)
+        if (gxp_neighbour(body, element, k) == GXP_NONE) return 1;
+    return 0;
+}
+
+static gx_result gxp_skin_element(gx_body *body, uint32_t element) {
+    const int untouched = gxp_is_untouched(body, element);
+    gxp_skin_face face;
+    uint32_t cell, leaf;
+    gx_result result = GX_OK;
+    if (untouched && !gxp_is_at_boundary(body, element)) return GX_OK;
+    gxp_clear_boundary(body, 1); /* each point's coordinates in the element are found once, for all faces it is in */
+    memset(&face, 0, sizeof face);
+    face.element = element;
+    if (!untouched) result = gxb_complex_open_element(body->complex, element);
+    for (cell = element; cell != GXP_NONE && result == GX_OK; cell = body->cells[cell].next) {
+        if (!body->cells[cell].kept) continue;
+        face.copies = body->cells[cell].copies;
+        if (untouched)
+            result = gxp_skin_whole(body, &face);
+        else
+            for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
+                 leaf = body->leaves[leaf].next)
+                result = gxp_skin_leaf(body, leaf, &face);
+    }
+    return result;
+}
+
+/* >>skinning: the skin: updating and moving it --------------------------------------------------------------------- */
+/* In: the elements that cuts have touched. Out: the skin with these made anew, and the ranges that differ; its deformed
+   positions and normals. Touches the skin only. */
+
+static gx_result gxp_spread_to(gx_body *body, uint32_t element) {
+    if (element == GXP_NONE || body->cell_stamp[element] == body->stamp) return GX_OK;
+    body->cell_stamp[element] = body->stamp;
+    return gxp_push(body, &body->skin.dirty, element);
+}
+
+/* Elements that share a divided edge with a touched one have a further corner there; those across its faces see other
+ * cells. */
+static gx_result gxp_spread_touched(gx_body *body) {
+    const gxb_complex *cx = body->complex;
+    gxp_words *dirty = &body->skin.dirty;
+    uint32_t i, j, k, count;
+    gx_result result = GX_OK;
+    body->stamp++;
+    for (i = 0, count = 0; i < dirty->count; i++) {
+        if (body->cell_stamp[dirty->data[i]] == body->stamp) continue;
+        body->cell_stamp[dirty->data[i]] = body->stamp;
+        dirty->data[count++] = dirty->data[i];
+    }
+    dirty->count = count;
+    for (i = 0; i < count && result == GX_OK; i++) {
+        const uint32_t e = dirty->data[i];
+        for (k = 0; k < 4 && result == GX_OK; k++) result = gxp_spread_to(body, gxp_neighbour(body, e, k));
+        for (k = 0; k < 6; k++) {
+            const uint32_t a = cx->elements[4 * e + gxp_edge_nodes[k][0]],
+                           b = cx->elements[4 * e + gxp_edge_nodes[k][1]];
+            if (!gxp_edge_is_divided(cx, cx->element_edges[6 * e + k])) continue;
+            for (j = body->node_start[a]; j < body->node_start[a + 1] && result == GX_OK; j++)
+                if (gxp_local_node(body, body->node_elements[j], b) >= 0)
+                    result = gxp_spread_to(body, body->node_elements[j]);
+        }
+    }
+    return result;
+}
+
+/* At rest: outer ones from the uncut mesh's, others from the facets around, weighted by area: their own normals, since
+   a triangle's corners may be rounded to a line. */
+static void gxp_rest_normal(const gxp_skin *s, uint32_t vertex, float *normal) {
+    double n[3] = {0, 0, 0}, a[3], unit[3];
+    uint32_t corner, i;
+    int k;
+    if (s->vertices[vertex].outer) {
+        for (i = 0; i < 4; i++)
+            for (k = 0; k < 3; k++)
+                n[k] += s->weights[4 * vertex + i] *
+                        s->group_normals[3 * (size_t)s->slots[s->vertices[vertex].slots[i]].group + (size_t)k];
+    } else
+        for (corner = s->vertices[vertex].corner; corner != GXP_NONE;
+             corner = s->links[corner / 3].corner_next[corner % 3]) {
+            gxp_triangle_normal(s->rest, s->triangles + 3 * (size_t)(corner / 3), a);
+            if (gxp_unit(a, unit))
+                for (k = 0; k < 3; k++) n[k] += gxp_dot(a, unit) * (double)s->links[corner / 3].normal[k];
+        }
+    gxp_set_normal(normal, n);
+}
+
+static gx_result gxp_drop_lonely_vertices(gx_body *body) {
+    gxp_skin *s = &body->skin;
+    uint32_t i;
+    gx_result result = GX_OK;
+    gxp_sort_unique(&s->changed[0]);
+    /* from the end, so that none of them takes another's place */
+    for (i = s->changed[0].count; i-- > 0 && result == GX_OK;) {
+        const uint32_t vertex = s->changed[0].data[i];
+        if (s->vertices[vertex].corner == GXP_NONE) result = gxp_drop_vertex(body, vertex);
+    }
+    return result;
+}
+
+/* Normals of the vertices around what was made anew; s->changed[0] keeps those that are other than they were. */
+static void gxp_renew_normals(gxp_skin *s) {
+    uint32_t i, n = 0;
+    for (i = 0; i < s->changed[0].count; i++) {
+        const uint32_t vertex = s->changed[0].data[i];
+        float normal[3];
+        if (vertex >= s->vertex_count) continue;
+        memcpy(normal, s->normal + 3 * (size_t)vertex, sizeof normal);
+        gxp_rest_normal(s, vertex, normal);
+        if (s->vertices[vertex].fresh || memcmp(normal, s->normal + 3 * (size_t)vertex, sizeof normal) != 0)
+            s->changed[0].data[n++] = vertex;
+        memcpy(s->normal + 3 * (size_t)vertex, normal, sizeof normal);
+        s->vertices[vertex].fresh = s->vertices[vertex].noted = 0;
+    }
+    s->changed[0].count = n;
+}
+
+/* The changed items as ranges */
+static gx_result gxp_make_ranges(gx_body *body, int kind, uint32_t count) {
+    gxp_skin *s = &body->skin;
+    gxp_words *changed = &s->changed[kind];
+    gx_result result = GX_OK;
+    uint32_t i, n = 0;
+    gxp_sort_unique(changed);
+    for (i = 0; i < changed->count && changed->data[i] < count && result == GX_OK; i++) {
+        if (n > 0 && s->ranges[kind][n - 1].first + s->ranges[kind][n - 1].count == changed->data[i]) {
+            s->ranges[kind][n - 1].count++;
+            continue;
+        }
+        result = gxp_reserve(&body->allocator, &s->ranges[kind], sizeof **s->ranges, n, &s->range_capacity[kind], 1);
+        if (result != GX_OK) break;
+        s->ranges[kind][n].first = changed->data[i];
+        s->ranges[kind][n++].count = 1;
+    }
+    s->range_count[kind] = n;
+    changed->count = 0;
+    return result;
+}
+
+/* An empty skin of another description, with every element to be made */
+static gx_result gxp_restart_skin(gx_body *body, const gx_skin_desc *desc) {
+    gxp_skin *s = &body->skin;
+    uint32_t e;
+    gx_result result;
+    s->desc = *desc;
+    s->vertex_count = s->triangle_count = s->slot_count = 0;
+    s->free_slot = GXP_NONE;
+    s->changed[0].count = s->changed[1].count = s->vertex_buckets.count = s->slot_buckets.count = 0;
+    result = gxp_group_corners(body);
+    if (result == GX_OK) result = gxp_set_words(body, &s->first, body->element_count);
+    if (result == GX_OK) result = gxp_set_words(body, &s->dirty, body->element_count);
+    if (result != GX_OK) return result;
+    memset(s->first.data, 0xff, body->element_count * sizeof *s->first.data);
+    for (e = 0; e < body->element_count; e++) s->dirty.data[s->dirty.count++] = e;
+    return GX_OK;
+}
+
+static gx_result gxp_remake_elements(gx_body *body) {
+    gxp_skin *s = &body->skin;
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (i = 0; i < s->dirty.count && result == GX_OK; i++)
+        while (s->first.data[s->dirty.data[i]] != GXP_NONE && result == GX_OK)
+            result = gxp_drop_triangle(body, s->first.data[s->dirty.data[i]]);
+    for (i = 0; i < s->dirty.count && result == GX_OK; i++) result = gxp_skin_element(body, s->dirty.data[i]);
+    s->dirty.count = 0;
+    if (result != GX_OK) return result;
+    result = gxp_drop_lonely_vertices(body);
+    if (result == GX_OK) gxp_renew_normals(s);
+    return result;
+}
+
+static gx_result gxp_mark_fragments(gx_body *body) {
+    gxp_skin *s = &body->skin;
+    uint32_t t;
+    const gx_result result = gxp_update_labels(body);
+    for (t = 0; t < s->triangle_count && result == GX_OK; t++)
+        s->fragment[t] =
+            body->fragment_number
+                .data[gxp_find(body->copy_fragment.data, s->copies[4 * (size_t)s->triangles[3 * (size_t)t]])];
+    return result;
+}
+
+/* The skin after all cuts. Without memory it is left unmade: the next call makes all of it. */
+static gx_result gxp_update_skin(gx_body *body, const gx_skin_desc *desc) {
+    gxp_skin *s = &body->skin;
+    const int all = !s->made || desc->crease_angle < s->desc.crease_angle ||
+                    desc->crease_angle > s->desc.crease_angle || desc->smooth_cuts != s->desc.smooth_cuts;
+    gx_result result;
+    s->made = 0;
+    s->range_count[0] = s->range_count[1] = 0;
+    result = all ? gxp_restart_skin(body, desc) : gxp_spread_touched(body);
+    if (result == GX_OK) result = gxp_remake_elements(body);
+    if (result == GX_OK) result = gxp_mark_fragments(body);
+    if (result == GX_OK) result = gxp_make_ranges(body, 0, s->vertex_count);
+    if (result == GX_OK) result = gxp_make_ranges(body, 1, s->triangle_count);
+    if (result == GX_OK)
+        result = gxp_reserve(&body->allocator, &s->normals, 3 * sizeof(double), 0, &s->normal_capacity, s->slot_count);
+    if (result == GX_OK)
+        result =
+            gxp_reserve(&body->allocator, &s->positions, 3 * sizeof(double), 0, &s->position_capacity, s->vertex_count);
+    if (result == GX_OK) s->made = 1;
+    return result;
+}
+
+static void gxp_show_skin(const gx_body *body, gx_skin *skin) {
+    const gxp_skin *s = &body->skin;
+    skin->vertex_count = s->vertex_count;
+    skin->vertex_copies = s->copies;
+    skin->vertex_weights = s->weights;
+    skin->vertex_point = s->point;
+    skin->vertex_rest = s->rest;
+    skin->vertex_normal = s->normal;
+    skin->vertex_texture = s->texture;
+    skin->triangle_count = s->triangle_count;
+    skin->triangles = s->triangles;
+    skin->triangle_fragment = s->fragment;
+    skin->triangle_element = s->element;
+    skin->triangle_material = s->material;
+    skin->triangle_surface = s->surface;
+    skin->vertex_ranges = s->ranges[0];
+    skin->vertex_range_count = s->range_count[0];
+    skin->triangle_ranges = s->ranges[1];
+    skin->triangle_range_count = s->range_count[1];
+    skin->epoch = body->epoch;
+}
+
+GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc, gx_skin *skin) {
+    gx_skin_desc none;
+    gx_result result;
+    memset(&none, 0, sizeof none);
+    if (desc == NULL) desc = &none;
+    if (body == NULL || skin == NULL) return GX_ERROR_ARGUMENT;
+    if (!gxp_is_finite(desc->crease_angle)) return GX_ERROR_NOT_FINITE;
+    if (desc->crease_angle < 0) return GX_ERROR_ARGUMENT;
+    result = gxp_update_skin(body, desc);
+    if (result == GX_OK) gxp_show_skin(body, skin);
+    return result;
+}
+
+/* x = X + sum of weight u, in doubles */
+static void gxp_move_vertices(const gx_body *body, double *positions) {
+    const gxp_skin *s = &body->skin;
+    size_t i;
+    int k, n;
+    for (i = 0; i < s->vertex_count; i++) {
+        const uint32_t *copies = s->copies + 4 * i;
+        const double *w = s->weights + 4 * i;
+        double x[3];
+        for (k = 0; k < 3; k++) x[k] = s->rest[3 * i + (size_t)k];
+        for (n = 0; n < 4 && w[n] > 0; n++)
+            for (k = 0; k < 3; k++) x[k] += w[n] * body->displacement[3 * (size_t)copies[n] + (size_t)k];
+        for (k = 0; k < 3; k++) positions[3 * i + (size_t)k] = x[k];
+    }
+}
+
+/* Sums triangles' normals in their slots, then takes each vertex's from its slots. */
+static void gxp_deformed_normals(gxp_skin *s, float *normals) {
+    size_t i;
+    int k, n;
+    if (s->slot_count > 0) memset(s->normals, 0, 3 * (size_t)s->slot_count * sizeof *s->normals);
+    for (i = 0; i < s->triangle_count; i++) {
+        double a[3];
+        gxp_triangle_normal(s->positions, s->triangles + 3 * i, a);
+        for (n = 0; n < 3; n++)
+            for (k = 0; k < 3; k++) s->normals[3 * (size_t)s->links[i].slots[n] + (size_t)k] += a[k];
+    }
+    for (i = 0; i < s->vertex_count; i++) {
+        double a[3] = {0, 0, 0};
+        for (n = 0; n < 4 && s->weights[4 * i + (size_t)n] > 0; n++)
+            for (k = 0; k < 3; k++)
+                a[k] += s->weights[4 * i + (size_t)n] * s->normals[3 * (size_t)s->vertices[i].slots[n] + (size_t)k];
+        memcpy(normals + 3 * i, s->normal + 3 * i, 3 * sizeof *normals);
+        gxp_set_normal(normals + 3 * i, a);
+    }
+}
+
+GXFEM_API gx_result gx_body_skin_positions(const gx_body *body, double *positions) {
+    if (body == NULL || positions == NULL || !body->skin.made || body->skin.dirty.count > 0) return GX_ERROR_ARGUMENT;
+    gxp_move_vertices(body, positions);
+    return GX_OK;
+}
+
+GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3], float *positions, float *normals) {
+    gxp_skin *s;
+    size_t i;
+    int k;
+    if (body == NULL || !body->skin.made || body->skin.dirty.count > 0) return GX_ERROR_ARGUMENT;
+    s = &body->skin;
+    gxp_move_vertices(body, s->positions);
+    for (i = 0; i < s->vertex_count && positions != NULL; i++)
+        for (k = 0; k < 3; k++)
+            positions[3 * i + (size_t)k] = (float)(s->positions[3 * i + (size_t)k] - (origin != NULL ? origin[k] : 0));
+    if (normals != NULL) gxp_deformed_normals(s, normals);
+    return GX_OK;
+}
+
+/* >>rays: picking -------------------------------------------------------------------------------------------------- */
+/* In: a ray. Out: where it first meets the deformed skin. Touches the skin's working positions. */
+
+/* The deformed vertices as the ray sees them: two coordinates across it (a shear along the axis it follows most), and
+   how far along it they lie, in lengths of direction. */
+static void gxp_look_along(const gx_body *body, const double origin[3], const double direction[3]) {
+    const gxp_skin *s = &body->skin;
+    int axis = 0, k;
+    size_t i;
+    for (k = 1; k < 3; k++)
+        if (fabs(direction[k]) > fabs(direction[axis])) axis = k;
+    gxp_move_vertices(body, s->positions);
+    for (i = 0; i < s->vertex_count; i++) {
+        double *x = s->positions + 3 * i;
+        const double along = (x[axis] - origin[axis]) / direction[axis];
+        const double p = x[(axis + 1) % 3] - origin[(axis + 1) % 3], q = x[(axis + 2) % 3] - origin[(axis + 2) % 3];
+        x[0] = p - along * direction[(axis + 1) % 3];
+        x[1] = q - along * direction[(axis + 2) % 3];
+        x[2] = along;
+    }
+}
+
+/* Does the ray pass through the triangle? Then share has the weights of its corners, and distance where. Signs are
+   exact, so that no ray slips through between triangles that share their corners. */
+static int gxp_meet_triangle(const gxp_skin *s, const uint32_t *t, double share[3], double *distance) {
+    static const double ray[2] = {0, 0};
+    const double *p[3];
+    double sum = 0;
+    int k, positive = 0, negative = 0;
+    for (k = 0; k < 3; k++) p[k] = s->positions + 3 * (size_t)t[k];
+    for (k = 0; k < 2; k++)
+        if (!(fmin(p[0][k], fmin(p[1][k], p[2][k])) <= 0 && fmax(p[0][k], fmax(p[1][k], p[2][k])) >= 0)) return 0;
+    for (k = 0; k < 3; k++) {
+        const double *a = p[(k + 1) % 3], *b = p[(k + 2) % 3];
+        const int side = gxb_orient2d(ray, a, b);
+        positive |= side > 0;
+        negative |= side < 0;
+        share[k] = fabs(a[0] * b[1] - a[1] * b[0]);
+        sum += share[k];
+    }
+    if (positive == negative || !(sum > 0)) return 0; /* beside it, or the triangle is seen from its edge */
+    *distance = 0;
+    for (k = 0; k < 3; k++) {
+        share[k] /= sum;
+        *distance += share[k] * p[k][2];
+    }
+    return *distance >= 0;
+}
+
+static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double share[3], gx_hit *hit) {
+    const gxp_skin *s = &body->skin;
+    uint32_t i, k, n, count = 0;
+    int j;
+    hit->triangle = triangle;
+    hit->epoch = body->epoch;
+    hit->fragment = s->fragment[triangle];
+    hit->element = s->element[triangle];
+    hit->surface = s->surface[triangle];
+    for (i = 0; i < 3; i++) {
+        const size_t v = s->triangles[3 * (size_t)triangle + i];
+        for (j = 0; j < 3; j++) hit->material[j] += share[i] * s->rest[3 * v + (size_t)j];
+        for (k = 0; k < 4 && s->weights[4 * v + k] > 0; k++) {
+            for (n = 0; n < count && hit->copies[n] != s->copies[4 * v + k]; n++) {}
+            if (n == count) hit->copies[count++] = s->copies[4 * v + k];
+            hit->weights[n] += share[i] * s->weights[4 * v + k];
+        }
+    }
+    for (n = count; n < 4; n++) hit->copies[n] = hit->copies[0];
+    for (j = 0; j < 3; j++) {
+        hit->position[j] = hit->material[j];
+        for (n = 0; n < 4; n++)
+            hit->position[j] += hit->weights[n] * body->displacement[3 * (size_t)hit->copies[n] + (size_t)j];
+    }
+}
+
+GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit) {
+    double share[3], best[3] = {0, 0, 0}, distance;
+    uint32_t t, found = UINT32_MAX;
+    const gxp_skin *s;
+    int k;
+    if (body == NULL || origin == NULL || direction == NULL || hit == NULL) return GX_ERROR_ARGUMENT;
+    if (!body->skin.made || body->skin.dirty.count > 0) return GX_ERROR_ARGUMENT;
+    for (k = 0; k < 3; k++)
+        if (!gxp_is_finite(origin[k]) || !gxp_is_finite(direction[k])) return GX_ERROR_NOT_FINITE;
+    if (!(gxp_dot(direction, direction) > 0)) return GX_ERROR_ARGUMENT;
+    s = &body->skin;
+    gxp_look_along(body, origin, direction);
+    memset(hit, 0, sizeof *hit);
+    for (t = 0; t < s->triangle_count; t++) {
+        if (!gxp_meet_triangle(s, s->triangles + 3 * (size_t)t, share, &distance)) continue;
+        if (found != UINT32_MAX && distance >= hit->distance) continue;
+        found = t;
+        hit->distance = distance;
+        memcpy(best, share, sizeof best);
+    }
+    if (found == UINT32_MAX)
+        hit->triangle = found;
+    else
+        gxp_fill_hit(body, found, best, hit);
+    return GX_OK;
+}
+
+/* >>create: create and destroy ------------------------------------------------------------------------------------- */
+/* In: a description. Out: a body with one cell for each element and one copy for each node that an element uses. After
+   an error what was made is destroyed again. */
+
+#define GXP_REACH  100 /* coordinates are at most 2^this, the longest side is at least 2^-this */
+#define GXP_WEIGHT 700 /* masses of elements are 2^-this ... 2^this: the inertia of 2^28 of them is below 2^940 */
+
+/* index: of a node that is too far out; none is where the body is too small */
+static gx_result gxp_check_size(const gx_body_desc *desc, size_t *index) {
+    const double most = ldexp(1, GXP_REACH);
+    double longest = 0;
+    size_t i;
+    int k;
+    for (k = 0; k < 3; k++) {
+        double low = desc->positions[k], high = low;
+        for (i = 0; i < desc->node_count; i++) {
+            const double x = desc->positions[3 * i + (size_t)k];
+            if (fabs(x) > most) {
+                *index = i;
+                return GX_ERROR_RANGE;
+            }
+            if (x < low) low = x;
+            if (x > high) high = x;
+        }
+        if (high - low > longest) longest = high - low;
+    }
+    return longest < 1 / most ? GX_ERROR_RANGE : GX_OK;
+}
+
+/* Exactly the volume is positive: in doubles it may be below. */
+static gx_result gxp_check_volume(const gx_body *body, uint32_t element, double volume) {
+    const double mass = volume * gxp_density(body, element);
+    if (volume <= 0 || gxp_rounds_inverted(body, element)) return GX_ERROR_FLAT;
+    return mass >= ldexp(1, -GXP_WEIGHT) && mass <= ldexp(1, GXP_WEIGHT) ? GX_OK : GX_ERROR_RANGE;
+}
+
+/* *bad: an element that is flat or out of range */
+static gx_result gxp_make_first_cells(gx_body *body, size_t *bad) {
+    gx_result result = GX_OK;
+    uint32_t e;
+    body->cell_count = body->leaf_count = body->element_count;
+    for (e = 0; e < body->element_count; e++) {
+        gxp_cell *cell = &body->cells[e];
+        memset(cell, 0, sizeof *cell);
+        cell->element = cell->first_leaf = e;
+        memcpy(cell->copies, body->complex->elements + 4 * (size_t)e, sizeof cell->copies);
+        cell->next = GXP_NONE;
+        cell->kept = 1;
+        cell->volume = gxp_element_volume(body, e);
+        result = gxp_check_volume(body, e, cell->volume);
+        if (result != GX_OK) {
+            *bad = e;
+            return result;
+        }
+        gxi_tet_mass(cell->volume, gxp_density(body, e), cell->mass);
+        memset(&body->leaves[e], 0, sizeof body->leaves[e]);
+        body->leaves[e].cell = e;
+        body->leaves[e].next = GXP_NONE;
+    }
+    return GX_OK;
+}
+
+/* A node that no element uses has no copy: copies are numbered over the used nodes. */
+static void gxp_make_first_copies(gx_body *body) {
+    uint32_t i, e;
+    int k;
+    body->copy_count = 0;
+    for (i = 0; i < body->node_count; i++) {
+        if (body->node_start[i] == body->node_start[i + 1]) continue;
+        for (e = body->node_start[i]; e < body->node_start[i + 1]; e++) {
+            k = gxp_local_node(body, body->node_elements[e], i);
+            body->cells[body->node_elements[e]].copies[k] = body->copy_count;
+        }
+        body->copy_node[body->copy_count++] = i;
+    }
+    memset(body->displacement, 0, 3 * (size_t)body->copy_count * sizeof(double));
+    memset(body->velocity, 0, 3 * (size_t)body->copy_count * sizeof(double));
+    memset(body->rest_time, 0, body->copy_count * sizeof(double));
+    memset(body->held, 0, body->copy_count);
+    memset(body->copy_label, 0, body->copy_count * sizeof *body->copy_label);
+    memset(body->copy_before, 0, body->copy_count * sizeof *body->copy_before);
+}
+
+static void *gxp_table(gx_body *body, size_t count, size_t item) {
+    void *memory = gxp_allocate(&body->allocator, (count + 1) * item);
+    if (memory != NULL) memset(memory, 0, (count + 1) * item);
+    return memory;
+}
+
+/* The tables of fixed size; gx_body_destroy releases what there is. */
+static gx_result gxp_allocate_tables(gx_body *body) {
+    const size_t n = body->node_count, e = body->element_count;
+    body->positions = (double *)gxp_table(body, 3 * n, sizeof(double));
+    body->node_start = (uint32_t *)gxp_table(body, n, sizeof(uint32_t));
+    body->node_elements = (uint32_t *)gxp_table(body, 4 * e, sizeof(uint32_t));
+    body->node_pinched = (uint8_t *)gxp_table(body, n, 1);
+    body->edge_pinched = (uint8_t *)gxp_table(body, body->complex->mesh_edge_count, 1);
+    body->boxes = (gxp_box *)gxp_table(body, e, sizeof(gxp_box));
+    body->box_elements = (uint32_t *)gxp_table(body, e, sizeof(uint32_t));
+    body->element_materials = (uint32_t *)gxp_table(body, e, sizeof(uint32_t));
+    body->materials = (gx_material *)gxp_table(body, body->material_count, sizeof *body->materials);
+    return body->element_materials && body->materials && body->positions && body->node_start && body->node_elements &&
+                   body->node_pinched && body->edge_pinched && body->boxes && body->box_elements
+             ? GX_OK
+             : GX_ERROR_MEMORY;
+}
+
+static gx_result gxp_create_solver(gx_body *body) {
+    gxs_solver_desc solver;
+    memset(&solver, 0, sizeof solver);
+    solver.allocator = body->allocator;
+    solver.jobs = body->jobs;
+    return gxs_solver_create(&solver, &body->solver);
+}
+
+static void gxp_fill_materials(gx_body *body, const gx_body_desc *desc) {
+    if (desc->materials != NULL)
+        memcpy(body->materials, desc->materials, body->material_count * sizeof *body->materials);
+    else {
+        body->materials->elastic.young = desc->young;
+        body->materials->elastic.poisson = desc->poisson;
+        body->materials->density = desc->density;
+    }
+    if (desc->materials != NULL && desc->element_materials != NULL)
+        memcpy(body->element_materials, desc->element_materials, body->element_count * sizeof(uint32_t));
 }
 
 static uint64_t gxp_hash_mesh(const gx_body *body) {
@@ -4974,18 +6013,373 @@ static uint64_t gxp_hash_mesh(const gx_body *body) {
         &body->support_below, 1);
 }
 
-static uint64_t gxp_hash_cut(uint64_t past, const gx_cut_desc *desc) {
-    size_t i;
-    past = gxp_hash_words(past, desc->scope_fragments, desc->scope_fragment_count);
-    past = gxp_hash_doubles(gxp_hash_words(past, desc->scope_cells, desc->scope_cell_count), &desc->sever_below, 1);
-    for (i = 0; i < desc->surface_count; i++) {
-        const gx_surface *s = &desc->surfaces[i];
-        past = gxp_hash_doubles(gxp_mix(past ^ s->kind ^ (uint64_t)s->vertex_count << 8), s->vertices,
-                                3 * s->vertex_count);
-        past = gxp_hash_texture(gxp_hash_words(past, s->triangles, 3 * s->triangle_count), s->texture, s->vertex_count);
+/* index: of the node or element to blame */
+static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc, size_t *index) {
+    gx_result result = gxp_check_size(desc, index);
+    if (result == GX_OK) result = gxp_allocate_tables(body);
+    if (result == GX_OK && desc->texture != NULL) {
+        body->texture = (float *)gxp_table(body, 2 * (size_t)body->node_count, sizeof(float));
+        if (body->texture == NULL) result = GX_ERROR_MEMORY;
     }
-    return past;
+    if (result == GX_OK) result = gxp_create_solver(body);
+    if (result == GX_OK) result = gxp_reserve_cells(body, body->element_count);
+    if (result == GX_OK)
+        result = gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, 0, &body->leaf_capacity,
+                             body->element_count);
+    if (result == GX_OK) result = gxp_reserve_copies(body, body->node_count);
+    if (result != GX_OK) return result;
+    memcpy(body->positions, desc->positions, 3 * (size_t)body->node_count * sizeof(double));
+    gxp_fill_materials(body, desc);
+    if (body->texture != NULL) memcpy(body->texture, desc->texture, 2 * (size_t)body->node_count * sizeof(float));
+    gxp_list_node_elements(body);
+    result = gxp_find_pinches(body);
+    if (result == GX_OK) result = gxp_make_first_cells(body, index);
+    if (result != GX_OK) return result;
+    gxp_make_first_copies(body);
+    gxp_build_boxes(body);
+    body->view_stale = 1;
+    body->model = GXP_MODEL_STALE;
+    body->past = gxp_hash_mesh(body);
+    return gxp_first_look(body);
 }
+
+static gx_result gxp_check_material(double young, double poisson, double density) {
+    if (!gxp_is_finite(young) || !gxp_is_finite(poisson) || !gxp_is_finite(density)) return GX_ERROR_NOT_FINITE;
+    return young > 0 && density > 0 && poisson >= 0 && poisson < 0.5 ? GX_OK : GX_ERROR_ARGUMENT;
+}
+
+/* index: of the material or element to blame */
+static gx_result gxp_check_body_desc(const gx_body_desc *desc, size_t *index) {
+    gx_result result = GX_OK;
+    size_t i;
+    *index = SIZE_MAX;
+    if (!gxbp_is_allocator(&desc->allocator)) return GX_ERROR_ARGUMENT;
+    if (!gxp_is_finite(desc->support_below)) return GX_ERROR_NOT_FINITE;
+    if (desc->support_below < 0 || desc->support_below >= 1) return GX_ERROR_ARGUMENT;
+    if (desc->materials == NULL) return gxp_check_material(desc->young, desc->poisson, desc->density);
+    if (desc->material_count == 0 || desc->material_count >= INT32_MAX)
+        return desc->material_count == 0 ? GX_ERROR_EMPTY : GX_ERROR_LIMIT;
+    for (i = 0; i < desc->material_count && result == GX_OK; i++) {
+        const gxs_material *m = &desc->materials[ *index = i].elastic;
+        result = gxp_check_material(m->young, m->poisson, desc->materials[i].density);
+        if (result == GX_OK && !gxp_is_finite(m->damping)) result = GX_ERROR_NOT_FINITE;
+        if (result == GX_OK && ((int)m->kind < 0 || m->kind > GXS_CUSTOM || m->damping < 0 ||
+                                (m->kind == GXS_CUSTOM && m->energy == NULL)))
+            result = GX_ERROR_ARGUMENT;
+    }
+    for (i = 0; i < desc->element_count && result == GX_OK && desc->element_materials != NULL; i++)
+        if (desc->element_materials[ *index = i] >= desc->material_count) result = GX_ERROR_INDEX;
+    return result;
+}
+
+static void gxp_skin_free(gx_body *body) {
+    gxp_skin *s = &body->skin;
+    void *arrays[8];
+    size_t items[8];
+    gxp_vertex_columns(s, arrays, items);
+    gxp_release_columns(&body->allocator, arrays, items, GXP_VERTEX_COLUMNS, s->vertex_capacity);
+    gxp_triangle_columns(s, arrays, items);
+    gxp_release_columns(&body->allocator, arrays, items, GXP_TRIANGLE_COLUMNS, s->triangle_capacity);
+    gxp_release(&body->allocator, s->slots, s->slot_capacity * sizeof *s->slots);
+    gxp_release(&body->allocator, s->normals, (size_t)s->normal_capacity * 3 * sizeof *s->normals);
+    gxp_release(&body->allocator, s->positions, (size_t)s->position_capacity * 3 * sizeof *s->positions);
+    gxp_release(&body->allocator, s->group_normals, (size_t)s->group_normal_capacity * 3 * sizeof *s->group_normals);
+    gxp_release(&body->allocator, s->ranges[0], s->range_capacity[0] * sizeof **s->ranges);
+    gxp_release(&body->allocator, s->ranges[1], s->range_capacity[1] * sizeof **s->ranges);
+    gxp_words_free(body, &s->dirty);
+    gxp_words_free(body, &s->vertex_buckets);
+    gxp_words_free(body, &s->slot_buckets);
+    gxp_words_free(body, &s->first);
+    gxp_words_free(body, &s->boundary);
+    gxp_words_free(body, &s->groups);
+    gxp_words_free(body, &s->changed[0]);
+    gxp_words_free(body, &s->changed[1]);
+}
+
+GXFEM_API void gx_body_destroy(gx_body *body) {
+    gx_allocator a;
+    size_t n, e, i;
+    if (body == NULL) return;
+    a = body->allocator;
+    n = body->node_count;
+    e = body->element_count;
+    gxp_release(&a, body->positions, (3 * n + 1) * sizeof(double));
+    gxp_release(&a, body->node_start, (n + 1) * sizeof(uint32_t));
+    gxp_release(&a, body->node_elements, (4 * e + 1) * sizeof(uint32_t));
+    gxp_release(&a, body->node_pinched, n + 1);
+    if (body->complex) gxp_release(&a, body->edge_pinched, (size_t)body->complex->mesh_edge_count + 1);
+    gxp_release(&a, body->boxes, (e + 1) * sizeof(gxp_box));
+    gxp_release(&a, body->box_elements, (e + 1) * sizeof(uint32_t));
+    gxp_release(&a, body->cells, body->cell_capacity * sizeof *body->cells);
+    gxp_release(&a, body->cell_stamp, body->cell_stamp_capacity * sizeof *body->cell_stamp);
+    gxp_release(&a, body->cell_saved, body->cell_saved_capacity * sizeof *body->cell_saved);
+    gxp_release(&a, body->cell_fresh, body->cell_fresh_capacity * sizeof *body->cell_fresh);
+    gxp_release(&a, body->leaves, body->leaf_capacity * sizeof *body->leaves);
+    gxp_release(&a, body->copy_node, body->copy_capacity * sizeof *body->copy_node);
+    gxp_release(&a, body->displacement, (size_t)body->displacement_capacity * 3 * sizeof(double));
+    gxp_release(&a, body->velocity, (size_t)body->velocity_capacity * 3 * sizeof(double));
+    gxp_release(&a, body->held, body->held_capacity);
+    gxp_release(&a, body->rest_time, body->rest_time_capacity * sizeof(double));
+    for (i = 0; i < 4; i++) gxp_release(&a, body->history[i], (size_t)body->history_capacity[i] * 3 * sizeof(double));
+    gxp_release(&a, body->materials, ((size_t)body->material_count + 1) * sizeof *body->materials);
+    gxp_release(&a, body->element_materials, (e + 1) * sizeof(uint32_t));
+    gxp_release(&a, body->copy_label, body->copy_label_capacity * sizeof *body->copy_label);
+    gxp_release(&a, body->copy_before, body->copy_before_capacity * sizeof *body->copy_before);
+    gxp_words_free(body, &body->changed);
+    gxp_words_free(body, &body->thin);
+    gxp_words_free(body, &body->fragment_ids);
+    gxp_words_free(body, &body->fragment_origins);
+    gxp_words_free(body, &body->fragment_changes);
+    gxp_words_free(body, &body->removed_ids);
+    gxp_release_model(body);
+    gxp_release(&a, body->regions, body->region_capacity * sizeof *body->regions);
+    gxp_release(&a, body->saved_cells, body->saved_cell_capacity * sizeof *body->saved_cells);
+    gxp_release(&a, body->saved_leaves, body->saved_leaf_capacity * sizeof *body->saved_leaves);
+    gxp_release(&a, body->pairs.data, body->pairs.capacity * sizeof *body->pairs.data);
+    gxp_release(&a, body->links.data, body->links.capacity * sizeof *body->links.data);
+    gxp_words_free(body, &body->link_first);
+    gxp_release(&a, body->cell_volume, body->cell_volume_capacity * sizeof(double));
+    gxp_release(&a, body->fragments, (size_t)body->fragment_capacity * GXP_FRAGMENT_ARRAYS * sizeof(double));
+    gxp_release(&a, body->texture, (2 * n + 1) * sizeof(float));
+    gxp_release(&a, body->surfaces, body->surface_capacity * sizeof *body->surfaces);
+    gxp_release(&a, body->maps, (size_t)body->map_capacity * 8 * sizeof(double));
+    gxp_skin_free(body);
+    gxp_release(&a, body->lambdas, (size_t)body->lambda_capacity * 4 * sizeof(double));
+    {
+        gxp_words *words[20];
+        words[0] = &body->view_cells;
+        words[1] = &body->view_fragments;
+        words[2] = &body->copy_fragment;
+        words[3] = &body->cell_element;
+        words[4] = &body->cell_copies;
+        words[5] = &body->fragment_number;
+        words[6] = &body->point_slot;
+        words[7] = &body->triangles;
+        words[8] = &body->touched;
+        words[9] = &body->nodes;
+        words[10] = &body->queue;
+        words[11] = &body->seeds;
+        words[12] = &body->faces;
+        words[13] = &body->fresh;
+        words[14] = &body->list;
+        words[15] = &body->removed;
+        words[16] = &body->dead;
+        words[17] = &body->pinches;
+        words[18] = &body->splits;
+        words[19] = &body->pieces;
+        for (i = 0; i < 20; i++) gxp_words_free(body, words[i]);
+    }
+    gxs_solver_destroy(body->solver);
+    gxb_complex_destroy(body->complex);
+    gxp_release(&a, body, sizeof *body);
+}
+
+GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_failure *failure) {
+    gx_body *body;
+    gxb_mesh mesh;
+    gx_result result;
+    size_t index;
+    if (desc == NULL || out == NULL) return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
+    result = gxp_check_body_desc(desc, &index);
+    if (result != GX_OK) return gxp_fail(failure, result, index, SIZE_MAX);
+    body = (gx_body *)gxp_allocate(&desc->allocator, sizeof *body);
+    if (body == NULL) return gxp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX, SIZE_MAX);
+    memset(body, 0, sizeof *body);
+    body->allocator = desc->allocator;
+    body->clock = desc->clock;
+    body->clock_user = desc->clock_user;
+    body->jobs = desc->jobs;
+    body->material_count = desc->materials != NULL ? (uint32_t)desc->material_count : 1;
+    body->support_below = desc->support_below;
+    body->follow_below = desc->support_below > 0 ? desc->support_below : GXP_SUPPORT;
+    body->point_below = desc->support_below > 0 ? desc->support_below : GXP_SPECK;
+    body->crumb_reach = desc->support_below > 0 ? 0 : GXP_CRUMB;
+    mesh.positions = desc->positions;
+    mesh.node_count = desc->node_count;
+    mesh.elements = desc->elements;
+    mesh.element_count = desc->element_count;
+    result = gxb_complex_create(&mesh, &desc->allocator, &body->complex, failure);
+    if (result != GX_OK) {
+        gx_body_destroy(body);
+        return result;
+    }
+    body->node_count = body->complex->node_count;
+    body->element_count = body->complex->element_count;
+    index = SIZE_MAX;
+    result = gxp_fill_body(body, desc, &index);
+    if (result != GX_OK) {
+        gx_body_destroy(body);
+        return gxp_fail(failure, result, index, SIZE_MAX);
+    }
+    *out = body;
+    return gxp_fail(failure, GX_OK, SIZE_MAX, SIZE_MAX);
+}
+
+/* >>hashes: of the topology, of the state -------------------------------------------------------------------------- */
+/* In: a body. Out: numbers that are equal where bodies are. The topology's does not depend on any order or rounding. */
+
+#define GXP_BESIDE_WALL 0xfffffff0u /* neighbour across a wall inside the element */
+#define GXP_ACROSS_WALL 0xfffffff1u /* neighbour across a wall on a face */
+
+/* Appends to pairs (face or kind, neighbour) for everything that a cell borders on. */
+static gx_result gxp_push_neighbours(gx_body *body, uint32_t cell) {
+    gxb_complex *cx = body->complex;
+    const uint32_t element = body->cells[cell].element;
+    uint32_t leaf, first, count, i;
+    gx_result result = gxb_complex_open_element(cx, element);
+    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next) {
+        result = gxb_leaf_facets(cx, leaf, &first, &count);
+        for (i = 0; i < count && result == GX_OK; i++) {
+            const gxb_facet *f = &cx->facets[cx->pool[first + i]];
+            const uint32_t other = f->leaf[f->leaf[0] == leaf];
+            if (!gxp_is_kept(body, other) || body->leaves[other].cell == cell) continue;
+            result = gxp_push_key(body, &body->pairs,
+                                  f->face == GXB_NONE ? GXP_BESIDE_WALL
+                                  : f->wall           ? GXP_ACROSS_WALL
+                                                      : f->face,
+                                  body->leaves[other].cell);
+        }
+    }
+    return result;
+}
+
+static uint64_t gxp_hash_neighbours(const gx_body *body, const uint64_t *name) {
+    uint64_t sum = 0;
+    uint32_t i;
+    for (i = 0; i < body->pairs.count; i++) {
+        const uint64_t pair = body->pairs.data[i];
+        if (i == 0 || pair != body->pairs.data[i - 1])
+            sum += gxp_mix(name[GXP_SECOND(pair)] ^ gxp_mix(GXP_FIRST(pair)));
+    }
+    return sum;
+}
+
+/* Which nodes of the element are in the cell: its first name. */
+static gx_result gxp_first_name(gx_body *body, uint32_t cell, uint64_t *name) {
+    uint32_t leaf, i, mask = 0;
+    gx_result result = GX_OK;
+    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next) {
+        result = gxp_leaf_points(body, leaf);
+        for (i = 0; i < body->list.count; i++) {
+            const int k = gxp_local_node(body, body->cells[cell].element, body->list.data[i]);
+            if (k >= 0) mask |= 1u << k;
+        }
+    }
+    *name = gxp_mix((uint64_t)body->cells[cell].element << 4 | mask);
+    return result;
+}
+
+/* Three rounds in which each cell's name takes in its neighbours' names (Weisfeiler-Lehman); sums do not depend on any
+ * order. */
+static gx_result gxp_name_cells(gx_body *body, uint64_t *name, uint64_t *next) {
+    uint32_t i, round;
+    gx_result result = GX_OK;
+    for (i = 0; i < body->view_cells.count && result == GX_OK; i++)
+        result = gxp_first_name(body, body->view_cells.data[i], &name[body->view_cells.data[i]]);
+    for (round = 0; round < 3 && result == GX_OK; round++) {
+        for (i = 0; i < body->view_cells.count && result == GX_OK; i++) {
+            const uint32_t cell = body->view_cells.data[i];
+            body->pairs.count = 0;
+            result = gxp_push_neighbours(body, cell);
+            if (result == GX_OK) result = gxp_sort_keys(body, &body->pairs, 0, body->pairs.count);
+            next[cell] = gxp_mix(name[cell] * 3 + gxp_hash_neighbours(body, name));
+        }
+        memcpy(name, next, body->cell_count * sizeof *name);
+    }
+    return result;
+}
+
+/* Cells with their names, the copies they share, the counts. */
+static uint64_t gxp_hash_names(const gx_body *body, const uint64_t *name, uint64_t *copies) {
+    uint64_t sum = gxp_mix(body->copy_count) + gxp_mix((uint64_t)body->fragment_count << 32);
+    uint32_t i, k;
+    memset(copies, 0, body->copy_count * sizeof *copies);
+    for (i = 0; i < body->view_cells.count; i++) {
+        const uint32_t cell = body->view_cells.data[i];
+        sum += gxp_mix(name[cell]);
+        for (k = 0; k < 4; k++) copies[body->cells[cell].copies[k]] += gxp_mix(name[cell] + k);
+    }
+    for (i = 0; i < body->copy_count; i++) sum += gxp_mix(copies[i] ^ gxp_mix(body->copy_node[i]));
+    return sum;
+}
+
+GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_result *result) {
+    gx_result r;
+    uint64_t *names, hash = 0;
+    size_t words;
+    if (body == NULL) {
+        if (result != NULL) *result = GX_ERROR_ARGUMENT;
+        return 0;
+    }
+    words = 2 * (size_t)body->cell_count + body->copy_count;
+    r = gxp_update_view(body);
+    names = (uint64_t *)gxp_allocate(&body->allocator, words * sizeof *names);
+    if (r == GX_OK && names == NULL) r = GX_ERROR_MEMORY;
+    if (r == GX_OK) {
+        memset(names, 0, words * sizeof *names);
+        r = gxp_name_cells(body, names, names + body->cell_count);
+        if (r == GX_OK) hash = gxp_hash_names(body, names, names + 2 * (size_t)body->cell_count);
+    }
+    gxp_release(&body->allocator, names, words * sizeof *names);
+    if (result != NULL) *result = r;
+    return r == GX_OK ? hash : 0;
+}
+
+GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
+    uint64_t hash = gxp_mix(body->cell_count);
+    uint32_t i, k;
+    for (i = 0; i < body->cell_count; i++) {
+        const gxp_cell *c = &body->cells[i];
+        hash = gxp_mix(hash ^ c->element ^ (uint64_t)c->kept << 32);
+        for (k = 0; k < 4 && c->kept; k++) hash = gxp_mix(hash ^ c->copies[k]);
+        if (c->kept) hash = gxp_hash_doubles(gxp_hash_doubles(hash, &c->volume, 1), c->mass, 10);
+    }
+    for (i = 0; i < body->complex->leaf_count; i++)
+        hash = gxp_mix(hash ^ body->leaves[i].cell ^ (uint64_t)body->complex->leaves[i].removed << 32);
+    hash = gxp_mix(gxp_mix(hash ^ body->copy_count) ^ body->epoch);
+    for (i = 0; i < body->copy_count; i++) hash = gxp_mix(hash ^ body->copy_node[i]);
+    hash = gxp_hash_doubles(hash, body->displacement, 3 * (size_t)body->copy_count);
+    hash = gxp_hash_doubles(hash, body->velocity, 3 * (size_t)body->copy_count);
+    hash = gxp_hash_doubles(hash, body->rest_time, body->copy_count);
+    for (i = 0; i < body->copy_count; i++) hash = gxp_mix(hash ^ body->copy_label[i]);
+    for (i = 0; i < body->fragment_ids.count; i++) hash = gxp_mix(hash ^ body->fragment_ids.data[i]);
+    hash = gxp_mix(hash ^ body->next_id);
+    for (i = 0; i < 2 && body->previous_dt > 0; i++)
+        hash = gxp_hash_doubles(hash, body->history[i], 3 * (size_t)body->copy_count);
+    for (i = 0; i < body->region_count; i++)
+        hash = gxp_hash_doubles(gxp_mix(hash ^ body->regions[i].axis ^ (uint64_t)(body->regions[i].side + 1) << 8),
+                                &body->regions[i].value, 1);
+    return hash;
+}
+
+GXFEM_API const char *gx_result_text(gx_result result) {
+    switch (result) {
+    case GX_OK: return "no error";
+    case GX_ERROR_ARGUMENT: return "a required argument is missing or senseless";
+    case GX_ERROR_MEMORY: return "out of memory";
+    case GX_ERROR_NOT_FINITE: return "a number is not finite";
+    case GX_ERROR_RANGE: return "a coordinate or a mass is too large or too small";
+    case GX_ERROR_INDEX: return "an index is out of range";
+    case GX_ERROR_EMPTY: return "empty: no elements, nodes or triangles";
+    case GX_ERROR_INVERTED: return "an element is inverted (negative volume)";
+    case GX_ERROR_FLAT: return "an element is flat (no volume)";
+    case GX_ERROR_OVERLAP: return "elements overlap: a face is shared by more than two elements, or by two on one side";
+    case GX_ERROR_NOT_CLOSED: return "a solid's surface is not closed or not consistently oriented";
+    case GX_ERROR_LIMIT: return "too many objects";
+    case GX_ERROR_DIVERGED: return "the time step diverged";
+    case GX_ERROR_FREE: return "a piece is held by nothing";
+    case GX_ERROR_FORMAT: return "not a saved body, or one of another version or kind of machine";
+    case GX_ERROR_DAMAGED: return "a saved body is damaged";
+    case GX_ERROR_STALE: return "copies are named as before a cut";
+    case GX_ERROR_CONFIGURATION: return "floating-point arithmetic is not what exact predicates need";
+    }
+    return "unknown result";
+}
+
+/* >>stream: a body as bytes: head, mesh, topology ------------------------------------------------------------------ */
+/* One stream of bytes does all four: save, load, clone, restore. A clone is written to memory and read back, without
+   the checks. What the same functions write and read stands once, in gxp_pass_cells (topology, beside gxb_complex_save)
+   and gxp_pass_state (all else). */
 
 static void gxp_require(gxb_stream *s, gx_result result) {
     if (s->result == GX_OK) s->result = result;
@@ -4994,8 +6388,6 @@ static void gxp_require_true(gxb_stream *s, int holds) {
     if (!holds) gxp_require(s, GX_ERROR_DAMAGED);
 }
 static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
-
-/* --- head --- */
 
 #define GXP_SAVE_VERSION 2u /* raised by every change of what follows */
 #define GXP_BYTE_ORDER   0x01020304u
@@ -5051,8 +6443,6 @@ static gx_result gxp_check_head(gxb_stream *s) {
     if (s->result != GX_OK || head.size != s->size) return GX_ERROR_DAMAGED;
     return head.checksum == gxp_checksum(s->in + s->at, s->size - s->at) ? GX_OK : GX_ERROR_DAMAGED;
 }
-
-/* --- mesh and materials: what gx_body_create takes --- */
 
 static void gxp_pass_material(gxb_stream *s, gx_material *m) {
     uint32_t kind = (uint32_t)m->elastic.kind;
@@ -5186,8 +6576,6 @@ static void gxp_load_mesh(gxb_stream *s, const gx_body_desc *desc, gx_body **bod
     gxp_release(a, mesh.element_materials, element_materials);
     gxp_release(a, mesh.materials, materials);
 }
-
-/* --- topology: what cuts have made --- */
 
 static void gxp_pass_cells(gxb_stream *s, gx_body *body) {
     uint32_t i;
@@ -5347,8 +6735,8 @@ static void gxp_load_topology(gxb_stream *s, gx_body *body, int trusted) {
     body->labels_known = 0;
 }
 
-/* --- state: all else. Whoever adds some to gx_body adds it to gxp_pass_state, and to gxp_state_room where it takes
- * room --- */
+/* >>save: state; save, load, clone, restore ------------------------------------------------------------------------ */
+/* In: a body, or bytes. Out: bytes, or a body that goes on as the other does. On an error the body is as it was. */
 
 typedef struct gxp_state_counts {
     uint32_t copies, regions, fragments, removed, history;
@@ -5469,8 +6857,6 @@ static void gxp_load_state(gxb_stream *s, gx_body *body, int trusted) {
     if (s->result == GX_OK) gxp_pass_state(s, body, &n);
     if (s->result == GX_OK && !trusted) gxp_check_state(s, body, &n);
 }
-
-/* --- the four functions --- */
 
 static void gxp_write(gxb_stream *s, gx_body *body) {
     gxp_head head = gxp_make_head(0, 0);
@@ -5658,1369 +7044,6 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from) {
     *copy = swap;
     gx_body_destroy(copy);
     return GX_OK;
-}
-
-/* >>boundary: the visual surface. Its triangles are listed by element; those of elements that a cut touched are made
-   anew. Triangles and vertices stand without gaps: the last one takes the place of one that goes.
-   ------------------------------------------------ */
-
-/* Makes room for extra further items in several arrays of the same length: in all of them, or in none. arrays: their
- * addresses. */
-static gx_result gxp_reserve_columns(const gx_allocator *a, void *const *arrays, const size_t *items, int columns,
-                                     size_t count, uint32_t *capacity, size_t extra) {
-    const size_t need = count + extra, room = need + need / 2 + 16;
-    void *memory[8], *old;
-    int i, n;
-    if (need <= *capacity) return GX_OK;
-    for (n = 0; n < columns; n++) {
-        if (room > INT32_MAX || room > SIZE_MAX / items[n]) break;
-        memory[n] = gxp_allocate(a, room * items[n]);
-        if (memory[n] == NULL) break;
-    }
-    for (i = 0; i < n && n < columns; i++) gxp_release(a, memory[i], room * items[i]);
-    if (n < columns) return room > INT32_MAX || room > SIZE_MAX / items[n] ? GX_ERROR_LIMIT : GX_ERROR_MEMORY;
-    for (i = 0; i < columns; i++) {
-        memcpy(&old, arrays[i], sizeof old);
-        if (count > 0) memcpy(memory[i], old, count * items[i]);
-        gxp_release(a, old, (size_t)*capacity * items[i]);
-        memcpy(arrays[i], &memory[i], sizeof old);
-    }
-    *capacity = (uint32_t)room;
-    return GX_OK;
-}
-
-enum { GXP_VERTEX_COLUMNS = 7, GXP_TRIANGLE_COLUMNS = 6 };
-
-static void gxp_vertex_columns(gxp_skin *s, void **arrays, size_t *items) {
-    arrays[0] = &s->vertices;
-    items[0] = sizeof *s->vertices;
-    arrays[1] = &s->copies;
-    items[1] = 4 * sizeof *s->copies;
-    arrays[2] = &s->weights;
-    items[2] = 4 * sizeof *s->weights;
-    arrays[3] = &s->point;
-    items[3] = sizeof *s->point;
-    arrays[4] = &s->rest;
-    items[4] = 3 * sizeof *s->rest;
-    arrays[5] = &s->normal;
-    items[5] = 3 * sizeof *s->normal;
-    arrays[6] = &s->texture;
-    items[6] = 2 * sizeof *s->texture;
-}
-
-static void gxp_triangle_columns(gxp_skin *s, void **arrays, size_t *items) {
-    arrays[0] = &s->links;
-    items[0] = sizeof *s->links;
-    arrays[1] = &s->triangles;
-    items[1] = 3 * sizeof *s->triangles;
-    arrays[2] = &s->fragment;
-    items[2] = sizeof *s->fragment;
-    arrays[3] = &s->element;
-    items[3] = sizeof *s->element;
-    arrays[4] = &s->material;
-    items[4] = sizeof *s->material;
-    arrays[5] = &s->surface;
-    items[5] = sizeof *s->surface;
-}
-
-static void gxp_move_column_item(void *const *arrays, const size_t *items, int columns, size_t from, size_t to) {
-    int i;
-    for (i = 0; i < columns; i++) {
-        char *data;
-        memcpy(&data, arrays[i], sizeof data);
-        memcpy(data + to * items[i], data + from * items[i], items[i]);
-    }
-}
-
-static void gxp_release_columns(const gx_allocator *a, void *const *arrays, const size_t *items, int columns,
-                                uint32_t capacity) {
-    int i;
-    for (i = 0; i < columns; i++) {
-        void *data;
-        memcpy(&data, arrays[i], sizeof data);
-        gxp_release(a, data, capacity * items[i]);
-    }
-}
-
-static void gxp_skin_free(gx_body *body) {
-    gxp_skin *s = &body->skin;
-    void *arrays[8];
-    size_t items[8];
-    gxp_vertex_columns(s, arrays, items);
-    gxp_release_columns(&body->allocator, arrays, items, GXP_VERTEX_COLUMNS, s->vertex_capacity);
-    gxp_triangle_columns(s, arrays, items);
-    gxp_release_columns(&body->allocator, arrays, items, GXP_TRIANGLE_COLUMNS, s->triangle_capacity);
-    gxp_release(&body->allocator, s->slots, s->slot_capacity * sizeof *s->slots);
-    gxp_release(&body->allocator, s->normals, (size_t)s->normal_capacity * 3 * sizeof *s->normals);
-    gxp_release(&body->allocator, s->positions, (size_t)s->position_capacity * 3 * sizeof *s->positions);
-    gxp_release(&body->allocator, s->group_normals, (size_t)s->group_normal_capacity * 3 * sizeof *s->group_normals);
-    gxp_release(&body->allocator, s->ranges[0], s->range_capacity[0] * sizeof **s->ranges);
-    gxp_release(&body->allocator, s->ranges[1], s->range_capacity[1] * sizeof **s->ranges);
-    gxp_words_free(body, &s->dirty);
-    gxp_words_free(body, &s->vertex_buckets);
-    gxp_words_free(body, &s->slot_buckets);
-    gxp_words_free(body, &s->first);
-    gxp_words_free(body, &s->boundary);
-    gxp_words_free(body, &s->groups);
-    gxp_words_free(body, &s->changed[0]);
-    gxp_words_free(body, &s->changed[1]);
-}
-
-/* --- what cuts touch --- */
-
-static gx_result gxp_push_leaf_elements(gx_body *body, uint32_t facet) {
-    const gxb_complex *cx = body->complex;
-    uint32_t i;
-    gx_result result = GX_OK;
-    for (i = 0; i < 2 && result == GX_OK; i++)
-        if (cx->facets[facet].leaf[i] != GXB_NONE)
-            result = gxp_push(body, &body->skin.dirty, cx->leaves[cx->facets[facet].leaf[i]].element);
-    return result;
-}
-
-/* Notes for the skin, if there is one, the elements in which the cut made facets or walls or changed a cell, and those
-   whose copies will be renumbered when dead ones are dropped. Elements noted in vain do no harm. */
-static gx_result gxp_note_touched(gxp_cut *cut, uint32_t first_facet) {
-    gx_body *body = cut->body;
-    const gxb_complex *cx = body->complex;
-    uint32_t i, j;
-    gx_result result = GX_OK;
-    if (!body->skin.made) return GX_OK;
-    if (body->skin.dirty.count / 8 > body->element_count) {
-        body->skin.made = 0;
-        return GX_OK;
-    }
-    for (i = first_facet; i < cx->facet_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, i);
-    for (i = 0; i < cx->wall_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, cx->walls[i] >> 1);
-    for (i = 0; i < body->saved_cell_count && result == GX_OK; i++)
-        result = gxp_push(body, &body->skin.dirty, body->saved_cells[i].cell.element);
-    for (i = 0; i < body->pinches.count; i++) /* edges that were divided there without a new facet */
-        for (j = body->node_start[body->pinches.data[i]];
-             j < body->node_start[body->pinches.data[i] + 1] && result == GX_OK; j++)
-            result = gxp_push(body, &body->skin.dirty, body->node_elements[j]);
-    for (i = body->copy_count - body->dead.count; i < body->copy_count; i++) {
-        const uint32_t node = body->copy_node[i];
-        for (j = body->node_start[node]; j < body->node_start[node + 1] && result == GX_OK; j++)
-            result = gxp_push(body, &body->skin.dirty, body->node_elements[j]);
-    }
-    return result;
-}
-
-/* Is the mesh edge divided, or its piece of an outer face? */
-static int gxp_edge_is_divided(const gxb_complex *cx, uint32_t mesh_edge) {
-    const uint32_t edge = cx->mesh_edge[mesh_edge];
-    return edge != GXB_NONE && cx->edges[edge].child != GXB_NONE;
-}
-
-static gx_result gxp_spread_to(gx_body *body, uint32_t element) {
-    if (element == GXP_NONE || body->cell_stamp[element] == body->stamp) return GX_OK;
-    body->cell_stamp[element] = body->stamp;
-    return gxp_push(body, &body->skin.dirty, element);
-}
-
-/* Elements that share a divided edge with a touched one have a further corner there; those across its faces see other
- * cells. */
-static gx_result gxp_spread_touched(gx_body *body) {
-    const gxb_complex *cx = body->complex;
-    gxp_words *dirty = &body->skin.dirty;
-    uint32_t i, j, k, count;
-    gx_result result = GX_OK;
-    body->stamp++;
-    for (i = 0, count = 0; i < dirty->count; i++) {
-        if (body->cell_stamp[dirty->data[i]] == body->stamp) continue;
-        body->cell_stamp[dirty->data[i]] = body->stamp;
-        dirty->data[count++] = dirty->data[i];
-    }
-    dirty->count = count;
-    for (i = 0; i < count && result == GX_OK; i++) {
-        const uint32_t e = dirty->data[i];
-        for (k = 0; k < 4 && result == GX_OK; k++) result = gxp_spread_to(body, gxp_neighbour(body, e, k));
-        for (k = 0; k < 6; k++) {
-            const uint32_t a = cx->elements[4 * e + gxp_edge_nodes[k][0]],
-                           b = cx->elements[4 * e + gxp_edge_nodes[k][1]];
-            if (!gxp_edge_is_divided(cx, cx->element_edges[6 * e + k])) continue;
-            for (j = body->node_start[a]; j < body->node_start[a + 1] && result == GX_OK; j++)
-                if (gxp_local_node(body, body->node_elements[j], b) >= 0)
-                    result = gxp_spread_to(body, body->node_elements[j]);
-        }
-    }
-    return result;
-}
-
-/* --- normals --- */
-
-/* (b - a) x (c - a) of a triangle's corners */
-static void gxp_triangle_normal(const double *x, const uint32_t *t, double n[3]) {
-    const double *a = x + 3 * (size_t)t[0], *b = x + 3 * (size_t)t[1], *c = x + 3 * (size_t)t[2];
-    const double p[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, q[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
-    n[0] = p[1] * q[2] - p[2] * q[1];
-    n[1] = p[2] * q[0] - p[0] * q[2];
-    n[2] = p[0] * q[1] - p[1] * q[0];
-}
-
-/* Of length 1; left alone where it has none, or one that is not finite. */
-static void gxp_set_normal(float *normal, const double n[3]) {
-    double unit[3];
-    int k;
-    if (gxp_unit(n, unit))
-        for (k = 0; k < 3; k++) normal[k] = (float)unit[k];
-}
-
-/* --- the outer surface before any cut: which of its corners are shaded as one --- */
-
-/* Normal of the outer face opposite to the element's node k, of its area's length. */
-static void gxp_outer_normal(const gx_body *body, uint32_t element, uint32_t k, double n[3]) {
-    double x[12], a[3], b[3];
-    const uint8_t *f = gxp_outward[k];
-    int i;
-    gxp_element_positions(body, element, x);
-    for (i = 0; i < 3; i++) {
-        a[i] = x[3 * f[1] + i] - x[3 * f[0] + i];
-        b[i] = x[3 * f[2] + i] - x[3 * f[0] + i];
-    }
-    for (i = 0; i < 3; i++) n[i] = 0.5 * (a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]);
-}
-
-/* Lists the outer faces: s->boundary has the number of each mesh face among them, body->faces element * 4 + k of each.
- */
-static gx_result gxp_list_outer_faces(gx_body *body) {
-    const gxb_complex *cx = body->complex;
-    gxp_skin *s = &body->skin;
-    uint32_t e, k;
-    gx_result result = gxp_set_words(body, &s->boundary, cx->face_count);
-    body->faces.count = 0;
-    for (e = 0; e < body->element_count && result == GX_OK; e++)
-        for (k = 0; k < 4 && result == GX_OK; k++) {
-            if (gxp_neighbour(body, e, k) != GXP_NONE) continue;
-            s->boundary.data[cx->element_faces[4 * e + k]] = body->faces.count;
-            result = gxp_push(body, &body->faces, 4 * e + k);
-        }
-    return result;
-}
-
-/* Two outer faces (by number) meet in the mesh edge from node a to b: where they bend little, their corners are one
- * group. */
-static void gxp_join_corners(gx_body *body, uint32_t p, uint32_t q, uint32_t a, uint32_t b) {
-    const uint32_t ep = body->faces.data[p], eq = body->faces.data[q];
-    uint32_t *group = body->skin.groups.data;
-    double m[3], n[3];
-    gxp_outer_normal(body, ep / 4, ep % 4, m);
-    gxp_outer_normal(body, eq / 4, eq % 4, n);
-    if (gxp_unit(m, m) && gxp_unit(n, n) && gxp_dot(m, n) < cos(body->skin.desc.crease_angle)) return;
-    gxp_unite(group, 4 * p + (uint32_t)gxp_local_node(body, ep / 4, a),
-              4 * q + (uint32_t)gxp_local_node(body, eq / 4, a));
-    gxp_unite(group, 4 * p + (uint32_t)gxp_local_node(body, ep / 4, b),
-              4 * q + (uint32_t)gxp_local_node(body, eq / 4, b));
-}
-
-/* Finds for each mesh edge the two outer faces that meet there, and joins them. body->list: of each edge, the first
- * face and how many. */
-static gx_result gxp_join_faces(gx_body *body) {
-    const gxb_complex *cx = body->complex;
-    uint32_t i, j, *first, *second;
-    gx_result result = gxp_set_words(body, &body->list, 2 * (size_t)cx->mesh_edge_count);
-    if (result != GX_OK) return result;
-    first = body->list.data;
-    second = first + cx->mesh_edge_count;
-    memset(first, 0xff, 2 * (size_t)cx->mesh_edge_count * sizeof *first);
-    for (i = 0; i < body->faces.count; i++)
-        for (j = 0; j < 6; j++) {
-            const uint32_t e = body->faces.data[i] / 4, k = body->faces.data[i] % 4,
-                           edge = cx->element_edges[6 * e + j];
-            const uint32_t a = gxp_edge_nodes[j][0], b = gxp_edge_nodes[j][1];
-            if (a == k || b == k || body->edge_pinched[edge]) continue;
-            if (first[edge] == GXP_NONE)
-                first[edge] = i;
-            else if (second[edge] == GXP_NONE) {
-                second[edge] = i;
-                gxp_join_corners(body, first[edge], i, cx->elements[4 * e + a], cx->elements[4 * e + b]);
-            }
-        }
-    return GX_OK;
-}
-
-/* Groups of corners of outer faces: s->groups has for each outer face's four nodes the number of its group (the fourth
-   is not used); s->group_normals their normals at rest, weighted by area, not of length 1. */
-static gx_result gxp_group_corners(gx_body *body) {
-    gxp_skin *s = &body->skin;
-    uint32_t i, k;
-    int j;
-    gx_result result = gxp_list_outer_faces(body);
-    const uint32_t count = 4 * body->faces.count;
-    if (result == GX_OK) result = gxp_set_words(body, &s->groups, count);
-    if (result == GX_OK)
-        result =
-            gxp_reserve(&body->allocator, &s->group_normals, 3 * sizeof(double), 0, &s->group_normal_capacity, count);
-    if (result != GX_OK) return result;
-    for (i = 0; i < count; i++) s->groups.data[i] = i;
-    if (s->desc.crease_angle > 0) result = gxp_join_faces(body);
-    if (result != GX_OK) return result;
-    for (i = 0; i < count; i++) s->groups.data[i] = gxp_find(s->groups.data, i);
-    memset(s->group_normals, 0, 3 * (size_t)count * sizeof(double));
-    for (i = 0; i < body->faces.count; i++) {
-        double n[3];
-        gxp_outer_normal(body, body->faces.data[i] / 4, body->faces.data[i] % 4, n);
-        for (k = 0; k < 4; k++)
-            for (j = 0; j < 3; j++) s->group_normals[3 * (size_t)s->groups.data[4 * i + k] + (size_t)j] += n[j];
-    }
-    return GX_OK;
-}
-
-/* --- the surfaces that cut the body, by the labels of their triangles --- */
-
-static uint32_t gxp_label_surface(const gx_body *body, uint32_t label) {
-    uint32_t low = 0, high = body->surface_count;
-    while (high - low > 1) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (body->surfaces[middle].label <= label)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
-}
-
-/* The affine map to the texture of a cut triangle, NULL if its surface has none */
-static const double *gxp_label_map(const gx_body *body, uint32_t label) {
-    uint32_t surface;
-    if (label == GXP_NONE) return NULL;
-    surface = gxp_label_surface(body, label);
-    if (body->surfaces[surface].map == GXP_NONE) return NULL;
-    return body->maps + 8 * ((size_t)body->surfaces[surface].map + label - body->surfaces[surface].label);
-}
-
-/* --- slots: where normals of the deformed surface are summed. Outer ones by copy and group, those of cut faces by
- * vertex --- */
-
-static gx_result gxp_rehash(gx_body *body, gxp_words *buckets, uint32_t items) {
-    uint32_t size = 64;
-    gx_result result;
-    while (size < items) size *= 2;
-    result = gxp_set_words(body, buckets, size);
-    if (result == GX_OK) {
-        buckets->count = size;
-        memset(buckets->data, 0xff, size * sizeof *buckets->data);
-    }
-    return result;
-}
-
-static uint32_t *gxp_slot_bucket(gxp_skin *s, uint32_t copy, uint32_t group) {
-    return &s->slot_buckets.data[gxp_mix((uint64_t)copy << 32 | group) & (s->slot_buckets.count - 1)];
-}
-
-/* Room for one slot more; the buckets grow with the slots. */
-static gx_result gxp_slot_room(gx_body *body) {
-    gxp_skin *s = &body->skin;
-    const uint32_t before = s->slot_capacity;
-    uint32_t i;
-    gx_result result = gxp_reserve(&body->allocator, &s->slots, sizeof *s->slots, s->slot_count, &s->slot_capacity, 1);
-    if (result != GX_OK || (s->slot_capacity == before && s->slot_buckets.count > 0)) return result;
-    result = gxp_rehash(body, &s->slot_buckets, s->slot_capacity);
-    for (i = 0; i < s->slot_count && result == GX_OK; i++) {
-        uint32_t *bucket = gxp_slot_bucket(s, s->slots[i].copy, s->slots[i].group);
-        if (s->slots[i].copy == GXP_NONE) continue;
-        s->slots[i].next = *bucket;
-        *bucket = i;
-    }
-    return result;
-}
-
-static gx_result gxp_outer_slot(gx_body *body, uint32_t copy, uint32_t group, uint32_t *slot) {
-    gxp_skin *s = &body->skin;
-    gx_result result = gxp_slot_room(body);
-    uint32_t i;
-    if (result != GX_OK) return result;
-    for (i = *gxp_slot_bucket(s, copy, group); i != GXP_NONE; i = s->slots[i].next)
-        if (s->slots[i].copy == copy && s->slots[i].group == group) {
-            *slot = i;
-            return GX_OK;
-        }
-    i = s->slot_count++;
-    s->slots[i].copy = copy;
-    s->slots[i].group = group;
-    s->slots[i].next = *gxp_slot_bucket(s, copy, group);
-    *gxp_slot_bucket(s, copy, group) = i;
-    *slot = i;
-    return GX_OK;
-}
-
-/* A slot that belongs to one vertex: a free one, or a new one */
-static gx_result gxp_own_slot(gx_body *body, uint32_t *slot) {
-    gxp_skin *s = &body->skin;
-    gx_result result = GX_OK;
-    if (s->free_slot != GXP_NONE) {
-        *slot = s->free_slot;
-        s->free_slot = s->slots[*slot].next;
-        return GX_OK;
-    }
-    result = gxp_slot_room(body);
-    if (result != GX_OK) return result;
-    *slot = s->slot_count++;
-    s->slots[*slot].copy = GXP_NONE;
-    return GX_OK;
-}
-
-/* --- vertices --- */
-
-/* A facet that is shown, or rather its part in a leaf's cell */
-typedef struct gxp_skin_face {
-    uint32_t element;
-    const uint32_t *copies; /* the cell's */
-    uint32_t slots[4];      /* outer: of the face's nodes, by local node */
-    uint8_t outer;
-    uint32_t surface;  /* gx_skin.triangle_surface */
-    uint32_t label;    /* the cut triangle, GXP_NONE: none */
-    uint32_t plane;    /* of the complex */
-    uint32_t group[2]; /* see gxp_skin_key */
-    double normal[3];  /* outward at rest, of any length */
-} gxp_skin_face;
-
-static uint32_t *gxp_vertex_bucket(gxp_skin *s, const gxp_skin_key *key) {
-    uint64_t h = gxp_mix((uint64_t)key->group[0] << 32 | key->group[1]) + key->point;
-    h = gxp_mix(h ^ ((uint64_t)key->name[0] << 32 | key->name[1]));
-    h = gxp_mix(h ^ ((uint64_t)key->name[2] << 32 | key->name[3]));
-    return &s->vertex_buckets.data[h & (s->vertex_buckets.count - 1)];
-}
-
-static gx_result gxp_vertex_room(gx_body *body) {
-    gxp_skin *s = &body->skin;
-    const uint32_t before = s->vertex_capacity;
-    void *arrays[8];
-    size_t items[8];
-    uint32_t i;
-    gx_result result;
-    gxp_vertex_columns(s, arrays, items);
-    result = gxp_reserve_columns(&body->allocator, arrays, items, GXP_VERTEX_COLUMNS, s->vertex_count,
-                                 &s->vertex_capacity, 1);
-    if (result != GX_OK || (s->vertex_capacity == before && s->vertex_buckets.count > 0)) return result;
-    result = gxp_rehash(body, &s->vertex_buckets, s->vertex_capacity);
-    for (i = 0; i < s->vertex_count && result == GX_OK; i++) {
-        uint32_t *bucket = gxp_vertex_bucket(s, &s->vertices[i].key);
-        s->vertices[i].next = *bucket;
-        *bucket = i;
-    }
-    return result;
-}
-
-/* What a point of the face is looked up by, known without arithmetic. */
-static void gxp_make_key(const gx_body *body, const gxp_skin_face *face, uint32_t point, gxp_skin_key *key) {
-    const unsigned support = gxb_complex_support(body->complex, point, face->element);
-    uint32_t i, j, n = 0;
-    memset(key->name, 0xff, sizeof key->name);
-    key->point = point;
-    key->group[0] = face->group[0];
-    key->group[1] = face->group[1];
-    for (i = 0; i < 4; i++) {
-        const uint32_t name = face->outer ? face->slots[i] : face->copies[i];
-        if (!(support >> i & 1) || name == GXP_NONE) continue;
-        for (j = n++; j > 0 && key->name[j - 1] > name; j--) key->name[j] = key->name[j - 1];
-        key->name[j] = name;
-    }
-}
-
-/* Copies, weights and slots of a point, those of weight 0 last. */
-static void gxp_weigh_point(const gxp_skin_face *face, const double lambda[4], uint32_t *copies, double *weights,
-                            uint32_t *slots) {
-    uint32_t k, n = 0;
-    for (k = 0; k < 4; k++) {
-        if (!(lambda[k] > 0) || (face->outer && face->slots[k] == GXP_NONE)) continue;
-        copies[n] = face->copies[k];
-        weights[n] = lambda[k];
-        slots[n++] = face->slots[k];
-    }
-    for (k = n; k < 4; k++) {
-        copies[k] = copies[0];
-        weights[k] = 0;
-        slots[k] = slots[0];
-    }
-}
-
-/* Outside by barycentric interpolation, on cut faces by the cut triangle's map. */
-static void gxp_set_texture(gx_body *body, uint32_t vertex, const gxp_skin_face *face, const double lambda[4]) {
-    const double *x = body->skin.rest + 3 * (size_t)vertex, *map = gxp_label_map(body, face->label);
-    const uint32_t *node = body->complex->elements + 4 * (size_t)face->element;
-    int i, k;
-    for (i = 0; i < 2; i++) {
-        double t = map != NULL ? map[4 * i + 3] : 0;
-        for (k = 0; k < 3 && map != NULL; k++) t += map[4 * i + k] * (x[k] - body->complex->origin[k]);
-        for (k = 0; k < 4 && face->outer && body->texture != NULL; k++)
-            t += lambda[k] * (double)body->texture[2 * (size_t)node[k] + (size_t)i];
-        body->skin.texture[2 * (size_t)vertex + (size_t)i] = (float)t;
-    }
-}
-
-/* A new vertex for a key */
-static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const gxp_skin_key *key, uint32_t *vertex) {
-    gxp_skin *s = &body->skin;
-    const uint32_t i = s->vertex_count;
-    gxp_skin_vertex *v = &s->vertices[i];
-    double *rest = s->rest + 3 * (size_t)i;
-    const double *lambda;
-    uint32_t n, slot, own = GXP_NONE;
-    int k;
-    gx_result result = face->outer ? GX_OK : gxp_own_slot(body, &own);
-    if (result == GX_OK) result = gxp_add_boundary_point(body, face->element, key->point, &slot);
-    if (result != GX_OK) return result;
-    lambda = body->lambdas + 4 * (size_t)slot;
-    gxp_weigh_point(face, lambda, s->copies + 4 * (size_t)i, s->weights + 4 * (size_t)i, v->slots);
-    for (n = 0; n < 4 && !face->outer; n++) v->slots[n] = own;
-    v->key = *key;
-    v->corner = GXP_NONE;
-    v->outer = face->outer;
-    v->fresh = 1;
-    v->noted = 0;
-    v->next = *gxp_vertex_bucket(s, key);
-    *gxp_vertex_bucket(s, key) = i;
-    s->point[i] = key->point;
-    for (k = 0; k < 3; k++) {
-        rest[k] = 0;
-        for (n = 0; n < 4; n++)
-            rest[k] += s->weights[4 * (size_t)i + n] *
-                       body->positions[3 * (size_t)body->copy_node[s->copies[4 * (size_t)i + n]] + (size_t)k];
-    }
-    memset(s->normal + 3 * (size_t)i, 0, 3 * sizeof *s->normal); /* should the next not find one */
-    gxp_set_normal(s->normal + 3 * (size_t)i, face->normal);
-    gxp_set_texture(body, i, face, lambda);
-    *vertex = s->vertex_count++;
-    return GX_OK;
-}
-
-static gx_result gxp_note_vertex(gx_body *body, uint32_t vertex) {
-    gxp_skin_vertex *v = &body->skin.vertices[vertex];
-    if (v->noted) return GX_OK;
-    v->noted = 1;
-    return gxp_push(body, &body->skin.changed[0], vertex);
-}
-
-static gx_result gxp_find_vertex(gx_body *body, const gxp_skin_face *face, uint32_t point, uint32_t *vertex) {
-    gxp_skin *s = &body->skin;
-    gx_result result = gxp_vertex_room(body);
-    gxp_skin_key key;
-    if (result != GX_OK) return result;
-    gxp_make_key(body, face, point, &key);
-    for (*vertex = *gxp_vertex_bucket(s, &key); *vertex != GXP_NONE; *vertex = s->vertices[*vertex].next)
-        if (memcmp(&s->vertices[*vertex].key, &key, sizeof key) == 0) return gxp_note_vertex(body, *vertex);
-    result = gxp_add_vertex(body, face, &key, vertex);
-    return result == GX_OK ? gxp_note_vertex(body, *vertex) : result;
-}
-
-/* Takes a vertex without triangles away. */
-static gx_result gxp_drop_vertex(gx_body *body, uint32_t vertex) {
-    gxp_skin *s = &body->skin;
-    const uint32_t last = --s->vertex_count;
-    uint32_t *link, corner;
-    gx_result result = GX_OK;
-    void *arrays[8];
-    size_t items[8];
-    for (link = gxp_vertex_bucket(s, &s->vertices[vertex].key); *link != vertex; link = &s->vertices[*link].next) {}
-    *link = s->vertices[vertex].next;
-    if (!s->vertices[vertex].outer) {
-        s->slots[s->vertices[vertex].slots[0]].next = s->free_slot;
-        s->free_slot = s->vertices[vertex].slots[0];
-    }
-    if (vertex == last) return GX_OK;
-    for (link = gxp_vertex_bucket(s, &s->vertices[last].key); *link != last; link = &s->vertices[*link].next) {}
-    *link = vertex;
-    for (corner = s->vertices[last].corner; corner != GXP_NONE; corner = s->links[corner / 3].corner_next[corner % 3]) {
-        s->triangles[corner] = vertex;
-        if (result == GX_OK) result = gxp_push(body, &s->changed[1], corner / 3);
-    }
-    gxp_vertex_columns(s, arrays, items);
-    gxp_move_column_item(arrays, items, GXP_VERTEX_COLUMNS, last, vertex);
-    s->vertices[vertex].fresh = 1;
-    return result;
-}
-
-/* --- triangles --- */
-
-static gx_result gxp_triangle_room(gx_body *body) {
-    gxp_skin *s = &body->skin;
-    void *arrays[8];
-    size_t items[8];
-    gxp_triangle_columns(s, arrays, items);
-    return gxp_reserve_columns(&body->allocator, arrays, items, GXP_TRIANGLE_COLUMNS, s->triangle_count,
-                               &s->triangle_capacity, 1);
-}
-
-/* Hooks the triangle's corners to its vertices and itself to its element. */
-static void gxp_link_triangle(gxp_skin *s, uint32_t t) {
-    gxp_skin_links *own = &s->links[t];
-    uint32_t k;
-    for (k = 0; k < 3; k++) {
-        uint32_t *first = &s->vertices[s->triangles[3 * t + k]].corner;
-        own->corner_next[k] = *first;
-        own->corner_previous[k] = GXP_NONE;
-        if (*first != GXP_NONE) s->links[*first / 3].corner_previous[*first % 3] = 3 * t + k;
-        *first = 3 * t + k;
-    }
-    own->next = s->first.data[s->element[t]];
-    own->previous = GXP_NONE;
-    if (own->next != GXP_NONE) s->links[own->next].previous = t;
-    s->first.data[s->element[t]] = t;
-}
-
-static void gxp_unlink_triangle(gxp_skin *s, uint32_t t) {
-    const gxp_skin_links *own = &s->links[t];
-    uint32_t k;
-    for (k = 0; k < 3; k++) {
-        const uint32_t next = own->corner_next[k], previous = own->corner_previous[k];
-        if (next != GXP_NONE) s->links[next / 3].corner_previous[next % 3] = previous;
-        if (previous != GXP_NONE)
-            s->links[previous / 3].corner_next[previous % 3] = next;
-        else
-            s->vertices[s->triangles[3 * t + k]].corner = next;
-    }
-    if (own->next != GXP_NONE) s->links[own->next].previous = own->previous;
-    if (own->previous != GXP_NONE)
-        s->links[own->previous].next = own->next;
-    else
-        s->first.data[s->element[t]] = own->next;
-}
-
-/* Takes a triangle away; the last one takes its place. */
-static gx_result gxp_drop_triangle(gx_body *body, uint32_t t) {
-    gxp_skin *s = &body->skin;
-    const uint32_t last = s->triangle_count - 1;
-    void *arrays[8];
-    size_t items[8];
-    uint32_t k;
-    gx_result result = gxp_push(body, &s->changed[1], t);
-    for (k = 0; k < 3 && result == GX_OK; k++) result = gxp_note_vertex(body, s->triangles[3 * t + k]);
-    if (result != GX_OK) return result;
-    gxp_unlink_triangle(s, t);
-    s->triangle_count--;
-    if (t == last) return GX_OK;
-    gxp_unlink_triangle(s, last);
-    gxp_triangle_columns(s, arrays, items);
-    gxp_move_column_item(arrays, items, GXP_TRIANGLE_COLUMNS, last, t);
-    gxp_link_triangle(s, t);
-    return GX_OK;
-}
-
-static gx_result gxp_add_skin_triangle(gx_body *body, const gxp_skin_face *face, const uint32_t vertex[3], int inward) {
-    gxp_skin *s = &body->skin;
-    const uint32_t t = s->triangle_count;
-    uint32_t k, j, *corner;
-    gx_result result = gxp_triangle_room(body);
-    if (result == GX_OK) result = gxp_push(body, &s->changed[1], t);
-    if (result != GX_OK) return result;
-    corner = s->triangles + 3 * (size_t)t;
-    for (k = 0; k < 3; k++) corner[k] = vertex[inward ? 2 - k : k];
-    s->triangle_count++;
-    s->element[t] = face->element;
-    s->material[t] = body->element_materials[face->element];
-    s->surface[t] = face->surface;
-    memset(s->links[t].normal, 0, sizeof s->links[t].normal);
-    gxp_set_normal(s->links[t].normal, face->normal);
-    for (k = 0, j = 0; k < 4 && face->outer; k++)
-        if (face->slots[k] != GXP_NONE) s->links[t].slots[j++] = face->slots[k];
-    for (k = 0; k < 3 && !face->outer; k++) s->links[t].slots[k] = s->vertices[corner[k]].slots[0];
-    gxp_link_triangle(s, t);
-    return GX_OK;
-}
-
-/* --- facets as triangles with area, so that they have normals: a facet's corners may stand in line with others --- */
-
-/* May corner i be cut off the polygon of complex points, which has area? So must its triangle have, and what remains.
- */
-static int gxp_is_ear(gx_body *body, const uint32_t *p, uint32_t n, uint32_t i, uint32_t plane) {
-    const uint32_t before = p[(i + n - 1) % n], after = p[(i + 1) % n];
-    uint32_t j;
-    if (n == 3) return 1;
-    if (gxb_complex_turn(body->complex, before, p[i], after, plane) == 0) return 0;
-    for (j = 2; j < n - 1; j++)
-        if (gxb_complex_turn(body->complex, before, after, p[(i + j) % n], plane) != 0) return 1;
-    return 0;
-}
-
-/* Adds a facet as triangles, outward from the leaf: ears are cut off its convex polygon, whose points stand in
-   body->faces, their vertices in body->queue. */
-static gx_result gxp_add_skin_facet(gx_body *body, const gxp_skin_face *face, uint32_t facet, uint32_t leaf) {
-    gxb_complex *cx = body->complex;
-    const int inward = cx->facets[facet].leaf[0] == leaf;
-    uint32_t *p, *v, e0, en, i, n, vertex = GXP_NONE;
-    gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
-    body->faces.count = body->queue.count = 0;
-    for (i = 0; i < en && result == GX_OK; i++) {
-        const uint32_t point = cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1];
-        result = gxp_find_vertex(body, face, point, &vertex);
-        if (result == GX_OK) result = gxp_push(body, &body->faces, point);
-        if (result == GX_OK) result = gxp_push(body, &body->queue, vertex);
-    }
-    p = body->faces.data;
-    v = body->queue.data;
-    for (n = body->faces.count, i = 0; n >= 3 && result == GX_OK; n--) {
-        uint32_t triangle[3], tries = 0;
-        for (i %= n; tries < n && !gxp_is_ear(body, p, n, i, cx->facets[facet].plane); i = (i + 1) % n) tries++;
-        triangle[0] = v[(i + n - 1) % n];
-        triangle[1] = v[i];
-        triangle[2] = v[(i + 1) % n];
-        result = gxp_add_skin_triangle(body, face, triangle, inward);
-        memmove(p + i, p + i + 1, (n - 1 - i) * sizeof *p);
-        memmove(v + i, v + i + 1, (n - 1 - i) * sizeof *v);
-        i++;
-    }
-    return result;
-}
-
-/* --- what an element shows --- */
-
-/* Do two cells move apart at a common facet? In one element where any copy differs, else where a shared node's copies
- * differ. */
-static int gxp_cells_part(const gx_body *body, uint32_t a, uint32_t b) {
-    const gxp_cell *p = &body->cells[a], *q = &body->cells[b];
-    uint32_t k;
-    if (p->element == q->element) return memcmp(p->copies, q->copies, sizeof p->copies) != 0;
-    for (k = 0; k < 4; k++) {
-        const int j = gxp_local_node(body, q->element, body->complex->elements[4 * p->element + k]);
-        if (j >= 0 && p->copies[k] != q->copies[j]) return 1;
-    }
-    return 0;
-}
-
-/* -1: the facet is not seen from the leaf; 0: outer surface; 1: face of a cut */
-static int gxp_visible(const gx_body *body, uint32_t facet, uint32_t leaf) {
-    const gxb_facet *f = &body->complex->facets[facet];
-    const uint32_t other = f->leaf[f->leaf[0] == leaf];
-    if (other == GXB_NONE) return 0;
-    if (body->complex->leaves[other].removed) return 1;
-    return f->wall && gxp_cells_part(body, body->leaves[leaf].cell, body->leaves[other].cell) ? 1 : -1;
-}
-
-/* The outer face opposite to the element's node k, as a cell has it */
-static gx_result gxp_outer_face(gx_body *body, uint32_t k, gxp_skin_face *face) {
-    const uint32_t number = body->skin.boundary.data[body->complex->element_faces[4 * face->element + k]];
-    uint32_t j;
-    gx_result result = GX_OK;
-    face->outer = 1;
-    face->surface = GX_SKIN_OUTER;
-    face->label = GXP_NONE;
-    face->group[0] = face->group[1] = 0;
-    gxp_outer_normal(body, face->element, k, face->normal);
-    for (j = 0; j < 4 && result == GX_OK; j++) {
-        face->slots[j] = GXP_NONE;
-        if (j != k)
-            result = gxp_outer_slot(body, face->copies[j], body->skin.groups.data[4 * number + j], &face->slots[j]);
-    }
-    return result;
-}
-
-/* The face of a cut that the leaf has at the facet. Of several triangles that cover it the first counts. */
-static void gxp_cut_face(const gx_body *body, uint32_t facet, uint32_t leaf, gxp_skin_face *face) {
-    const gxb_complex *cx = body->complex;
-    const gxb_facet *f = &cx->facets[facet];
-    const int front = f->leaf[0] == leaf;
-    uint32_t l, first = GXP_NONE;
-    int k;
-    for (l = f->labels; l != GXB_NONE; l = cx->labels[l].next)
-        if (first == GXP_NONE || cx->labels[l].triangle < cx->labels[first].triangle) first = l;
-    face->outer = 0;
-    face->label = first == GXP_NONE ? GXP_NONE : cx->labels[first].triangle;
-    face->surface = first == GXP_NONE ? GX_SKIN_SEVERED : 1 + gxp_label_surface(body, face->label);
-    memset(face->slots, 0xff, sizeof face->slots);
-    for (k = 0; k < 3; k++)
-        face->normal[k] = front ? -cx->planes[face->plane].filter.n[k] : cx->planes[face->plane].filter.n[k];
-    face->group[0] = face->surface;
-    if (body->skin.desc.smooth_cuts && first != GXP_NONE)
-        face->group[1] = (uint32_t)(front ^ (cx->labels[first].orientation < 0));
-    else
-        face->group[1] = 2 + 2 * face->plane + (uint32_t)front;
-}
-
-static gx_result gxp_skin_leaf(gx_body *body, uint32_t leaf, gxp_skin_face *face) {
-    gxb_complex *cx = body->complex;
-    uint32_t first, count, i, k;
-    gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
-    for (i = 0; i < count && result == GX_OK; i++) {
-        const uint32_t facet = cx->pool[first + i];
-        const int kind = gxp_visible(body, facet, leaf);
-        if (kind < 0) continue;
-        face->plane = cx->facets[facet].plane;
-        if (kind == 0) {
-            for (k = 0; cx->element_faces[4 * face->element + k] != cx->facets[facet].face;) k++;
-            result = gxp_outer_face(body, k, face);
-        } else
-            gxp_cut_face(body, facet, leaf, face);
-        if (result == GX_OK) result = gxp_add_skin_facet(body, face, facet, leaf);
-    }
-    return result;
-}
-
-/* An element that no cut has touched shows its outer faces. */
-static gx_result gxp_skin_whole(gx_body *body, gxp_skin_face *face) {
-    uint32_t k, j, vertex[3];
-    gx_result result = GX_OK;
-    face->plane = 0;
-    for (k = 0; k < 4 && result == GX_OK; k++) {
-        if (gxp_neighbour(body, face->element, k) != GXP_NONE) continue;
-        result = gxp_outer_face(body, k, face);
-        for (j = 0; j < 3 && result == GX_OK; j++)
-            result =
-                gxp_find_vertex(body, face, body->complex->elements[4 * face->element + gxp_outward[k][j]], &vertex[j]);
-        if (result == GX_OK) result = gxp_add_skin_triangle(body, face, vertex, 0);
-    }
-    return result;
-}
-
-/* Is the element's face k as the mesh has it: not divided, no wall, and the element behind it, if there is one, still
- * there? */
-static int gxp_face_is_whole(const gx_body *body, uint32_t element, uint32_t k) {
-    const gxb_complex *cx = body->complex;
-    const uint32_t facet = cx->face_facet[cx->element_faces[4 * element + k]];
-    const gxb_facet *f;
-    uint32_t other;
-    if (facet == GXB_NONE) return 1;
-    f = &cx->facets[facet];
-    other = f->leaf[f->leaf[0] == element];
-    return f->child == GXB_NONE && !f->wall && (other == GXB_NONE || !cx->leaves[other].removed);
-}
-
-/* Does it show its outer faces as the mesh has them, and nothing else? */
-static int gxp_is_untouched(const gx_body *body, uint32_t element) {
-    const gxb_complex *cx = body->complex;
-    uint32_t k;
-    if (body->cells[element].next != GXP_NONE || body->leaves[element].next != GXP_NONE || cx->leaves[element].removed)
-        return 0;
-    for (k = 0; k < 4; k++)
-        if (!gxp_face_is_whole(body, element, k)) return 0;
-    for (k = 0; k < 6; k++)
-        if (gxp_edge_is_divided(cx, cx->element_edges[6 * element + k])) return 0;
-    return 1;
-}
-
-static int gxp_is_at_boundary(const gx_body *body, uint32_t element) {
-    uint32_t k;
-    for (k = 0; k < 4; k++)
-        if (gxp_neighbour(body, element, k) == GXP_NONE) return 1;
-    return 0;
-}
-
-static gx_result gxp_skin_element(gx_body *body, uint32_t element) {
-    const int untouched = gxp_is_untouched(body, element);
-    gxp_skin_face face;
-    uint32_t cell, leaf;
-    gx_result result = GX_OK;
-    if (untouched && !gxp_is_at_boundary(body, element)) return GX_OK;
-    gxp_clear_boundary(body, 1); /* each point's coordinates in the element are found once, for all faces it is in */
-    memset(&face, 0, sizeof face);
-    face.element = element;
-    if (!untouched) result = gxb_complex_open_element(body->complex, element);
-    for (cell = element; cell != GXP_NONE && result == GX_OK; cell = body->cells[cell].next) {
-        if (!body->cells[cell].kept) continue;
-        face.copies = body->cells[cell].copies;
-        if (untouched)
-            result = gxp_skin_whole(body, &face);
-        else
-            for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
-                 leaf = body->leaves[leaf].next)
-                result = gxp_skin_leaf(body, leaf, &face);
-    }
-    return result;
-}
-
-/* --- what has changed --- */
-
-/* At rest: outer ones from the uncut mesh's, others from the facets around, weighted by area: their own normals, since
-   a triangle's corners may be rounded to a line. */
-static void gxp_rest_normal(const gxp_skin *s, uint32_t vertex, float *normal) {
-    double n[3] = {0, 0, 0}, a[3], unit[3];
-    uint32_t corner, i;
-    int k;
-    if (s->vertices[vertex].outer) {
-        for (i = 0; i < 4; i++)
-            for (k = 0; k < 3; k++)
-                n[k] += s->weights[4 * vertex + i] *
-                        s->group_normals[3 * (size_t)s->slots[s->vertices[vertex].slots[i]].group + (size_t)k];
-    } else
-        for (corner = s->vertices[vertex].corner; corner != GXP_NONE;
-             corner = s->links[corner / 3].corner_next[corner % 3]) {
-            gxp_triangle_normal(s->rest, s->triangles + 3 * (size_t)(corner / 3), a);
-            if (gxp_unit(a, unit))
-                for (k = 0; k < 3; k++) n[k] += gxp_dot(a, unit) * (double)s->links[corner / 3].normal[k];
-        }
-    gxp_set_normal(normal, n);
-}
-
-static gx_result gxp_drop_lonely_vertices(gx_body *body) {
-    gxp_skin *s = &body->skin;
-    uint32_t i;
-    gx_result result = GX_OK;
-    gxp_sort_unique(&s->changed[0]);
-    /* from the end, so that none of them takes another's place */
-    for (i = s->changed[0].count; i-- > 0 && result == GX_OK;) {
-        const uint32_t vertex = s->changed[0].data[i];
-        if (s->vertices[vertex].corner == GXP_NONE) result = gxp_drop_vertex(body, vertex);
-    }
-    return result;
-}
-
-/* Normals of the vertices around what was made anew; s->changed[0] keeps those that are other than they were. */
-static void gxp_renew_normals(gxp_skin *s) {
-    uint32_t i, n = 0;
-    for (i = 0; i < s->changed[0].count; i++) {
-        const uint32_t vertex = s->changed[0].data[i];
-        float normal[3];
-        if (vertex >= s->vertex_count) continue;
-        memcpy(normal, s->normal + 3 * (size_t)vertex, sizeof normal);
-        gxp_rest_normal(s, vertex, normal);
-        if (s->vertices[vertex].fresh || memcmp(normal, s->normal + 3 * (size_t)vertex, sizeof normal) != 0)
-            s->changed[0].data[n++] = vertex;
-        memcpy(s->normal + 3 * (size_t)vertex, normal, sizeof normal);
-        s->vertices[vertex].fresh = s->vertices[vertex].noted = 0;
-    }
-    s->changed[0].count = n;
-}
-
-/* The changed items as ranges */
-static gx_result gxp_make_ranges(gx_body *body, int kind, uint32_t count) {
-    gxp_skin *s = &body->skin;
-    gxp_words *changed = &s->changed[kind];
-    gx_result result = GX_OK;
-    uint32_t i, n = 0;
-    gxp_sort_unique(changed);
-    for (i = 0; i < changed->count && changed->data[i] < count && result == GX_OK; i++) {
-        if (n > 0 && s->ranges[kind][n - 1].first + s->ranges[kind][n - 1].count == changed->data[i]) {
-            s->ranges[kind][n - 1].count++;
-            continue;
-        }
-        result = gxp_reserve(&body->allocator, &s->ranges[kind], sizeof **s->ranges, n, &s->range_capacity[kind], 1);
-        if (result != GX_OK) break;
-        s->ranges[kind][n].first = changed->data[i];
-        s->ranges[kind][n++].count = 1;
-    }
-    s->range_count[kind] = n;
-    changed->count = 0;
-    return result;
-}
-
-/* An empty skin of another description, with every element to be made */
-static gx_result gxp_restart_skin(gx_body *body, const gx_skin_desc *desc) {
-    gxp_skin *s = &body->skin;
-    uint32_t e;
-    gx_result result;
-    s->desc = *desc;
-    s->vertex_count = s->triangle_count = s->slot_count = 0;
-    s->free_slot = GXP_NONE;
-    s->changed[0].count = s->changed[1].count = s->vertex_buckets.count = s->slot_buckets.count = 0;
-    result = gxp_group_corners(body);
-    if (result == GX_OK) result = gxp_set_words(body, &s->first, body->element_count);
-    if (result == GX_OK) result = gxp_set_words(body, &s->dirty, body->element_count);
-    if (result != GX_OK) return result;
-    memset(s->first.data, 0xff, body->element_count * sizeof *s->first.data);
-    for (e = 0; e < body->element_count; e++) s->dirty.data[s->dirty.count++] = e;
-    return GX_OK;
-}
-
-static gx_result gxp_remake_elements(gx_body *body) {
-    gxp_skin *s = &body->skin;
-    uint32_t i;
-    gx_result result = GX_OK;
-    for (i = 0; i < s->dirty.count && result == GX_OK; i++)
-        while (s->first.data[s->dirty.data[i]] != GXP_NONE && result == GX_OK)
-            result = gxp_drop_triangle(body, s->first.data[s->dirty.data[i]]);
-    for (i = 0; i < s->dirty.count && result == GX_OK; i++) result = gxp_skin_element(body, s->dirty.data[i]);
-    s->dirty.count = 0;
-    if (result != GX_OK) return result;
-    result = gxp_drop_lonely_vertices(body);
-    if (result == GX_OK) gxp_renew_normals(s);
-    return result;
-}
-
-static gx_result gxp_mark_fragments(gx_body *body) {
-    gxp_skin *s = &body->skin;
-    uint32_t t;
-    const gx_result result = gxp_update_labels(body);
-    for (t = 0; t < s->triangle_count && result == GX_OK; t++)
-        s->fragment[t] =
-            body->fragment_number
-                .data[gxp_find(body->copy_fragment.data, s->copies[4 * (size_t)s->triangles[3 * (size_t)t]])];
-    return result;
-}
-
-/* The skin after all cuts. Without memory it is left unmade: the next call makes all of it. */
-static gx_result gxp_update_skin(gx_body *body, const gx_skin_desc *desc) {
-    gxp_skin *s = &body->skin;
-    const int all = !s->made || desc->crease_angle < s->desc.crease_angle ||
-                    desc->crease_angle > s->desc.crease_angle || desc->smooth_cuts != s->desc.smooth_cuts;
-    gx_result result;
-    s->made = 0;
-    s->range_count[0] = s->range_count[1] = 0;
-    result = all ? gxp_restart_skin(body, desc) : gxp_spread_touched(body);
-    if (result == GX_OK) result = gxp_remake_elements(body);
-    if (result == GX_OK) result = gxp_mark_fragments(body);
-    if (result == GX_OK) result = gxp_make_ranges(body, 0, s->vertex_count);
-    if (result == GX_OK) result = gxp_make_ranges(body, 1, s->triangle_count);
-    if (result == GX_OK)
-        result = gxp_reserve(&body->allocator, &s->normals, 3 * sizeof(double), 0, &s->normal_capacity, s->slot_count);
-    if (result == GX_OK)
-        result =
-            gxp_reserve(&body->allocator, &s->positions, 3 * sizeof(double), 0, &s->position_capacity, s->vertex_count);
-    if (result == GX_OK) s->made = 1;
-    return result;
-}
-
-static void gxp_show_skin(const gx_body *body, gx_skin *skin) {
-    const gxp_skin *s = &body->skin;
-    skin->vertex_count = s->vertex_count;
-    skin->vertex_copies = s->copies;
-    skin->vertex_weights = s->weights;
-    skin->vertex_point = s->point;
-    skin->vertex_rest = s->rest;
-    skin->vertex_normal = s->normal;
-    skin->vertex_texture = s->texture;
-    skin->triangle_count = s->triangle_count;
-    skin->triangles = s->triangles;
-    skin->triangle_fragment = s->fragment;
-    skin->triangle_element = s->element;
-    skin->triangle_material = s->material;
-    skin->triangle_surface = s->surface;
-    skin->vertex_ranges = s->ranges[0];
-    skin->vertex_range_count = s->range_count[0];
-    skin->triangle_ranges = s->ranges[1];
-    skin->triangle_range_count = s->range_count[1];
-    skin->epoch = body->epoch;
-}
-
-GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc, gx_skin *skin) {
-    gx_skin_desc none;
-    gx_result result;
-    memset(&none, 0, sizeof none);
-    if (desc == NULL) desc = &none;
-    if (body == NULL || skin == NULL) return GX_ERROR_ARGUMENT;
-    if (!gxp_is_finite(desc->crease_angle)) return GX_ERROR_NOT_FINITE;
-    if (desc->crease_angle < 0) return GX_ERROR_ARGUMENT;
-    result = gxp_update_skin(body, desc);
-    if (result == GX_OK) gxp_show_skin(body, skin);
-    return result;
-}
-
-/* --- the deformed skin --- */
-
-/* x = X + sum of weight u, in doubles */
-static void gxp_move_vertices(const gx_body *body, double *positions) {
-    const gxp_skin *s = &body->skin;
-    size_t i;
-    int k, n;
-    for (i = 0; i < s->vertex_count; i++) {
-        const uint32_t *copies = s->copies + 4 * i;
-        const double *w = s->weights + 4 * i;
-        double x[3];
-        for (k = 0; k < 3; k++) x[k] = s->rest[3 * i + (size_t)k];
-        for (n = 0; n < 4 && w[n] > 0; n++)
-            for (k = 0; k < 3; k++) x[k] += w[n] * body->displacement[3 * (size_t)copies[n] + (size_t)k];
-        for (k = 0; k < 3; k++) positions[3 * i + (size_t)k] = x[k];
-    }
-}
-
-/* Sums triangles' normals in their slots, then takes each vertex's from its slots. */
-static void gxp_deformed_normals(gxp_skin *s, float *normals) {
-    size_t i;
-    int k, n;
-    if (s->slot_count > 0) memset(s->normals, 0, 3 * (size_t)s->slot_count * sizeof *s->normals);
-    for (i = 0; i < s->triangle_count; i++) {
-        double a[3];
-        gxp_triangle_normal(s->positions, s->triangles + 3 * i, a);
-        for (n = 0; n < 3; n++)
-            for (k = 0; k < 3; k++) s->normals[3 * (size_t)s->links[i].slots[n] + (size_t)k] += a[k];
-    }
-    for (i = 0; i < s->vertex_count; i++) {
-        double a[3] = {0, 0, 0};
-        for (n = 0; n < 4 && s->weights[4 * i + (size_t)n] > 0; n++)
-            for (k = 0; k < 3; k++)
-                a[k] += s->weights[4 * i + (size_t)n] * s->normals[3 * (size_t)s->vertices[i].slots[n] + (size_t)k];
-        memcpy(normals + 3 * i, s->normal + 3 * i, 3 * sizeof *normals);
-        gxp_set_normal(normals + 3 * i, a);
-    }
-}
-
-GXFEM_API gx_result gx_body_skin_positions(const gx_body *body, double *positions) {
-    if (body == NULL || positions == NULL || !body->skin.made || body->skin.dirty.count > 0) return GX_ERROR_ARGUMENT;
-    gxp_move_vertices(body, positions);
-    return GX_OK;
-}
-
-GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3], float *positions, float *normals) {
-    gxp_skin *s;
-    size_t i;
-    int k;
-    if (body == NULL || !body->skin.made || body->skin.dirty.count > 0) return GX_ERROR_ARGUMENT;
-    s = &body->skin;
-    gxp_move_vertices(body, s->positions);
-    for (i = 0; i < s->vertex_count && positions != NULL; i++)
-        for (k = 0; k < 3; k++)
-            positions[3 * i + (size_t)k] = (float)(s->positions[3 * i + (size_t)k] - (origin != NULL ? origin[k] : 0));
-    if (normals != NULL) gxp_deformed_normals(s, normals);
-    return GX_OK;
-}
-
-/* --- rays --- */
-
-/* The deformed vertices as the ray sees them: two coordinates across it (a shear along the axis it follows most), and
-   how far along it they lie, in lengths of direction. */
-static void gxp_look_along(const gx_body *body, const double origin[3], const double direction[3]) {
-    const gxp_skin *s = &body->skin;
-    int axis = 0, k;
-    size_t i;
-    for (k = 1; k < 3; k++)
-        if (fabs(direction[k]) > fabs(direction[axis])) axis = k;
-    gxp_move_vertices(body, s->positions);
-    for (i = 0; i < s->vertex_count; i++) {
-        double *x = s->positions + 3 * i;
-        const double along = (x[axis] - origin[axis]) / direction[axis];
-        const double p = x[(axis + 1) % 3] - origin[(axis + 1) % 3], q = x[(axis + 2) % 3] - origin[(axis + 2) % 3];
-        x[0] = p - along * direction[(axis + 1) % 3];
-        x[1] = q - along * direction[(axis + 2) % 3];
-        x[2] = along;
-    }
-}
-
-/* Does the ray pass through the triangle? Then share has the weights of its corners, and distance where. Signs are
-   exact, so that no ray slips through between triangles that share their corners. */
-static int gxp_meet_triangle(const gxp_skin *s, const uint32_t *t, double share[3], double *distance) {
-    static const double ray[2] = {0, 0};
-    const double *p[3];
-    double sum = 0;
-    int k, positive = 0, negative = 0;
-    for (k = 0; k < 3; k++) p[k] = s->positions + 3 * (size_t)t[k];
-    for (k = 0; k < 2; k++)
-        if (!(fmin(p[0][k], fmin(p[1][k], p[2][k])) <= 0 && fmax(p[0][k], fmax(p[1][k], p[2][k])) >= 0)) return 0;
-    for (k = 0; k < 3; k++) {
-        const double *a = p[(k + 1) % 3], *b = p[(k + 2) % 3];
-        const int side = gxb_orient2d(ray, a, b);
-        positive |= side > 0;
-        negative |= side < 0;
-        share[k] = fabs(a[0] * b[1] - a[1] * b[0]);
-        sum += share[k];
-    }
-    if (positive == negative || !(sum > 0)) return 0; /* beside it, or the triangle is seen from its edge */
-    *distance = 0;
-    for (k = 0; k < 3; k++) {
-        share[k] /= sum;
-        *distance += share[k] * p[k][2];
-    }
-    return *distance >= 0;
-}
-
-static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double share[3], gx_hit *hit) {
-    const gxp_skin *s = &body->skin;
-    uint32_t i, k, n, count = 0;
-    int j;
-    hit->triangle = triangle;
-    hit->epoch = body->epoch;
-    hit->fragment = s->fragment[triangle];
-    hit->element = s->element[triangle];
-    hit->surface = s->surface[triangle];
-    for (i = 0; i < 3; i++) {
-        const size_t v = s->triangles[3 * (size_t)triangle + i];
-        for (j = 0; j < 3; j++) hit->material[j] += share[i] * s->rest[3 * v + (size_t)j];
-        for (k = 0; k < 4 && s->weights[4 * v + k] > 0; k++) {
-            for (n = 0; n < count && hit->copies[n] != s->copies[4 * v + k]; n++) {}
-            if (n == count) hit->copies[count++] = s->copies[4 * v + k];
-            hit->weights[n] += share[i] * s->weights[4 * v + k];
-        }
-    }
-    for (n = count; n < 4; n++) hit->copies[n] = hit->copies[0];
-    for (j = 0; j < 3; j++) {
-        hit->position[j] = hit->material[j];
-        for (n = 0; n < 4; n++)
-            hit->position[j] += hit->weights[n] * body->displacement[3 * (size_t)hit->copies[n] + (size_t)j];
-    }
-}
-
-GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit) {
-    double share[3], best[3] = {0, 0, 0}, distance;
-    uint32_t t, found = UINT32_MAX;
-    const gxp_skin *s;
-    int k;
-    if (body == NULL || origin == NULL || direction == NULL || hit == NULL) return GX_ERROR_ARGUMENT;
-    if (!body->skin.made || body->skin.dirty.count > 0) return GX_ERROR_ARGUMENT;
-    for (k = 0; k < 3; k++)
-        if (!gxp_is_finite(origin[k]) || !gxp_is_finite(direction[k])) return GX_ERROR_NOT_FINITE;
-    if (!(gxp_dot(direction, direction) > 0)) return GX_ERROR_ARGUMENT;
-    s = &body->skin;
-    gxp_look_along(body, origin, direction);
-    memset(hit, 0, sizeof *hit);
-    for (t = 0; t < s->triangle_count; t++) {
-        if (!gxp_meet_triangle(s, s->triangles + 3 * (size_t)t, share, &distance)) continue;
-        if (found != UINT32_MAX && distance >= hit->distance) continue;
-        found = t;
-        hit->distance = distance;
-        memcpy(best, share, sizeof best);
-    }
-    if (found == UINT32_MAX)
-        hit->triangle = found;
-    else
-        gxp_fill_hit(body, found, best, hit);
-    return GX_OK;
-}
-
-/* >>hashes --------------------------------------------------------------------------------------------------------- */
-
-#define GXP_BESIDE_WALL 0xfffffff0u /* neighbour across a wall inside the element */
-#define GXP_ACROSS_WALL 0xfffffff1u /* neighbour across a wall on a face */
-
-/* Appends to pairs (face or kind, neighbour) for everything that a cell borders on. */
-static gx_result gxp_push_neighbours(gx_body *body, uint32_t cell) {
-    gxb_complex *cx = body->complex;
-    const uint32_t element = body->cells[cell].element;
-    uint32_t leaf, first, count, i;
-    gx_result result = gxb_complex_open_element(cx, element);
-    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next) {
-        result = gxb_leaf_facets(cx, leaf, &first, &count);
-        for (i = 0; i < count && result == GX_OK; i++) {
-            const gxb_facet *f = &cx->facets[cx->pool[first + i]];
-            const uint32_t other = f->leaf[f->leaf[0] == leaf];
-            if (!gxp_is_kept(body, other) || body->leaves[other].cell == cell) continue;
-            result = gxp_push_key(body, &body->pairs,
-                                  f->face == GXB_NONE ? GXP_BESIDE_WALL
-                                  : f->wall           ? GXP_ACROSS_WALL
-                                                      : f->face,
-                                  body->leaves[other].cell);
-        }
-    }
-    return result;
-}
-
-static uint64_t gxp_hash_neighbours(const gx_body *body, const uint64_t *name) {
-    uint64_t sum = 0;
-    uint32_t i;
-    for (i = 0; i < body->pairs.count; i++) {
-        const uint64_t pair = body->pairs.data[i];
-        if (i == 0 || pair != body->pairs.data[i - 1])
-            sum += gxp_mix(name[GXP_SECOND(pair)] ^ gxp_mix(GXP_FIRST(pair)));
-    }
-    return sum;
-}
-
-/* Which nodes of the element are in the cell: its first name. */
-static gx_result gxp_first_name(gx_body *body, uint32_t cell, uint64_t *name) {
-    uint32_t leaf, i, mask = 0;
-    gx_result result = GX_OK;
-    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next) {
-        result = gxp_leaf_points(body, leaf);
-        for (i = 0; i < body->list.count; i++) {
-            const int k = gxp_local_node(body, body->cells[cell].element, body->list.data[i]);
-            if (k >= 0) mask |= 1u << k;
-        }
-    }
-    *name = gxp_mix((uint64_t)body->cells[cell].element << 4 | mask);
-    return result;
-}
-
-/* Three rounds in which each cell's name takes in its neighbours' names (Weisfeiler-Lehman); sums do not depend on any
- * order. */
-static gx_result gxp_name_cells(gx_body *body, uint64_t *name, uint64_t *next) {
-    uint32_t i, round;
-    gx_result result = GX_OK;
-    for (i = 0; i < body->view_cells.count && result == GX_OK; i++)
-        result = gxp_first_name(body, body->view_cells.data[i], &name[body->view_cells.data[i]]);
-    for (round = 0; round < 3 && result == GX_OK; round++) {
-        for (i = 0; i < body->view_cells.count && result == GX_OK; i++) {
-            const uint32_t cell = body->view_cells.data[i];
-            body->pairs.count = 0;
-            result = gxp_push_neighbours(body, cell);
-            if (result == GX_OK) result = gxp_sort_keys(body, &body->pairs, 0, body->pairs.count);
-            next[cell] = gxp_mix(name[cell] * 3 + gxp_hash_neighbours(body, name));
-        }
-        memcpy(name, next, body->cell_count * sizeof *name);
-    }
-    return result;
-}
-
-/* Cells with their names, the copies they share, the counts. */
-static uint64_t gxp_hash_names(const gx_body *body, const uint64_t *name, uint64_t *copies) {
-    uint64_t sum = gxp_mix(body->copy_count) + gxp_mix((uint64_t)body->fragment_count << 32);
-    uint32_t i, k;
-    memset(copies, 0, body->copy_count * sizeof *copies);
-    for (i = 0; i < body->view_cells.count; i++) {
-        const uint32_t cell = body->view_cells.data[i];
-        sum += gxp_mix(name[cell]);
-        for (k = 0; k < 4; k++) copies[body->cells[cell].copies[k]] += gxp_mix(name[cell] + k);
-    }
-    for (i = 0; i < body->copy_count; i++) sum += gxp_mix(copies[i] ^ gxp_mix(body->copy_node[i]));
-    return sum;
-}
-
-GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_result *result) {
-    gx_result r;
-    uint64_t *names, hash = 0;
-    size_t words;
-    if (body == NULL) {
-        if (result != NULL) *result = GX_ERROR_ARGUMENT;
-        return 0;
-    }
-    words = 2 * (size_t)body->cell_count + body->copy_count;
-    r = gxp_update_view(body);
-    names = (uint64_t *)gxp_allocate(&body->allocator, words * sizeof *names);
-    if (r == GX_OK && names == NULL) r = GX_ERROR_MEMORY;
-    if (r == GX_OK) {
-        memset(names, 0, words * sizeof *names);
-        r = gxp_name_cells(body, names, names + body->cell_count);
-        if (r == GX_OK) hash = gxp_hash_names(body, names, names + 2 * (size_t)body->cell_count);
-    }
-    gxp_release(&body->allocator, names, words * sizeof *names);
-    if (result != NULL) *result = r;
-    return r == GX_OK ? hash : 0;
-}
-
-static uint64_t gxp_hash_doubles(uint64_t hash, const double *x, size_t count) {
-    for (; count > 0; count--, x++) {
-        uint64_t b;
-        memcpy(&b, x, sizeof b);
-        hash = gxp_mix(hash ^ b);
-    }
-    return hash;
-}
-
-GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
-    uint64_t hash = gxp_mix(body->cell_count);
-    uint32_t i, k;
-    for (i = 0; i < body->cell_count; i++) {
-        const gxp_cell *c = &body->cells[i];
-        hash = gxp_mix(hash ^ c->element ^ (uint64_t)c->kept << 32);
-        for (k = 0; k < 4 && c->kept; k++) hash = gxp_mix(hash ^ c->copies[k]);
-        if (c->kept) hash = gxp_hash_doubles(gxp_hash_doubles(hash, &c->volume, 1), c->mass, 10);
-    }
-    for (i = 0; i < body->complex->leaf_count; i++)
-        hash = gxp_mix(hash ^ body->leaves[i].cell ^ (uint64_t)body->complex->leaves[i].removed << 32);
-    hash = gxp_mix(gxp_mix(hash ^ body->copy_count) ^ body->epoch);
-    for (i = 0; i < body->copy_count; i++) hash = gxp_mix(hash ^ body->copy_node[i]);
-    hash = gxp_hash_doubles(hash, body->displacement, 3 * (size_t)body->copy_count);
-    hash = gxp_hash_doubles(hash, body->velocity, 3 * (size_t)body->copy_count);
-    hash = gxp_hash_doubles(hash, body->rest_time, body->copy_count);
-    for (i = 0; i < body->copy_count; i++) hash = gxp_mix(hash ^ body->copy_label[i]);
-    for (i = 0; i < body->fragment_ids.count; i++) hash = gxp_mix(hash ^ body->fragment_ids.data[i]);
-    hash = gxp_mix(hash ^ body->next_id);
-    for (i = 0; i < 2 && body->previous_dt > 0; i++)
-        hash = gxp_hash_doubles(hash, body->history[i], 3 * (size_t)body->copy_count);
-    for (i = 0; i < body->region_count; i++)
-        hash = gxp_hash_doubles(gxp_mix(hash ^ body->regions[i].axis ^ (uint64_t)(body->regions[i].side + 1) << 8),
-                                &body->regions[i].value, 1);
-    return hash;
-}
-
-GXFEM_API const char *gx_result_text(gx_result result) {
-    switch (result) {
-    case GX_OK: return "no error";
-    case GX_ERROR_ARGUMENT: return "a required argument is missing or senseless";
-    case GX_ERROR_MEMORY: return "out of memory";
-    case GX_ERROR_NOT_FINITE: return "a number is not finite";
-    case GX_ERROR_RANGE: return "a coordinate or a mass is too large or too small";
-    case GX_ERROR_INDEX: return "an index is out of range";
-    case GX_ERROR_EMPTY: return "empty: no elements, nodes or triangles";
-    case GX_ERROR_INVERTED: return "an element is inverted (negative volume)";
-    case GX_ERROR_FLAT: return "an element is flat (no volume)";
-    case GX_ERROR_OVERLAP: return "elements overlap: a face is shared by more than two elements, or by two on one side";
-    case GX_ERROR_NOT_CLOSED: return "a solid's surface is not closed or not consistently oriented";
-    case GX_ERROR_LIMIT: return "too many objects";
-    case GX_ERROR_DIVERGED: return "the time step diverged";
-    case GX_ERROR_FREE: return "a piece is held by nothing";
-    case GX_ERROR_FORMAT: return "not a saved body, or one of another version or kind of machine";
-    case GX_ERROR_DAMAGED: return "a saved body is damaged";
-    case GX_ERROR_STALE: return "copies are named as before a cut";
-    case GX_ERROR_CONFIGURATION: return "floating-point arithmetic is not what exact predicates need";
-    }
-    return "unknown result";
 }
 
 #undef GXP_FETCH
