@@ -457,16 +457,17 @@ extern "C" {
 #endif
 
 #if defined(__GNUC__)
-#define GXP_FETCH(address) __builtin_prefetch(address)
-#define GXP_FETCHES                                                                                                    \
+#define GXP_PREFETCH(address) __builtin_prefetch(address)
+#define GXP_PREFETCHES                                                                                                 \
     static inline __attribute__((always_inline)) /* nothing else: gcc takes such a function for one without effect,    \
                                                     and drops calls */
 #else
-#define GXP_FETCH(address) ((void)0)
-#define GXP_FETCHES        static inline
+#define GXP_PREFETCH(address) ((void)0)
+#define GXP_PREFETCHES        static inline
 #endif
 
-/* >>state: what a body is made of ---------------------------------------------------------------------------------- */
+/* >>state: the body, divided by how long its parts live --------------------------------------------------------------
+ */
 
 #define GXP_NONE UINT32_MAX
 /* Shares of an element, where gx_body_desc.support_below is 0: copies that nothing larger carries follow others;
@@ -474,13 +475,61 @@ extern "C" {
 #define GXP_SUPPORT 1e-3
 #define GXP_SPECK   1e-9
 
-/* So far a fragment reaches at least, beside an element, or it moves as a point: else its copies would go ten times as
- * far as what it is made of. */
-#define GXP_CRUMB 0.1
+/* Where support_below is 0, a fragment moves as a point unless it reaches this far beside an element: its copies would
+   go ten times as far as its material. */
+#define GXP_SPECK_REACH 0.1
 
-#define GXP_FRAGMENT_ARRAYS 11 /* 1 + 1 + 3 + 6 */
+typedef struct gxp_words { /* growing array of indices */
+    uint32_t *data, count, capacity;
+} gxp_words;
+typedef struct gxp_keys { /* growing array of pairs of indices, the first << 32 */
+    uint64_t *data;
+    uint32_t count, capacity;
+} gxp_keys;
 
-typedef struct gxp_cell { /* slot; slots 0 ... element_count-1 are the elements' first cells */
+/* --- what the caller gave: from creation to destruction --- */
+
+typedef struct gxp_config {
+    gx_allocator allocator;
+    gx_jobs jobs;
+    double (*clock)(void *user);
+    void *clock_user;
+    double support_below;                          /* as given */
+    double follow_below, speck_below, speck_reach; /* see >>supports */
+} gxp_config;
+
+typedef struct gxp_box { /* tree node; count 0: children first, first+1 */
+    double low[3], high[3];
+    uint32_t first, count;
+} gxp_box;
+
+/* Arrays are made at the creation and do not change. The complex has the elements' nodes, faces and edges. */
+typedef struct gxp_mesh {
+    uint32_t node_count, node_capacity[4];
+    double *positions;    /* node_count x 3 */
+    uint32_t *node_start; /* node_count + 1, into node_elements */
+    /* node_count: GXP_NODE_PINCHED, GXP_EDGE_PINCHED */
+    uint8_t *node_pinched;
+    float *texture; /* node_count x 2, or NULL */
+    uint32_t element_count, element_capacity[4];
+    uint32_t *node_elements; /* element_count x 4: elements around each node */
+    gxp_box *boxes;
+    uint32_t *box_elements;      /* element_count, in tree order */
+    uint32_t *element_materials; /* element_count */
+    uint32_t box_count;
+    uint32_t edge_count, edge_capacity[1];
+    uint8_t *edge_pinched; /* edge_count: elements around it meet in the edge only */
+    uint32_t material_count, material_capacity[1];
+    gx_material *materials;
+} gxp_mesh;
+enum {
+    GXP_NODE_PINCHED = 1, /* elements around the node are not joined by faces */
+    GXP_EDGE_PINCHED = 2  /* one of its edges is pinched */
+};
+
+/* --- what cuts make: cells, leaves, copies, in rows that are listed at >>columns --- */
+
+typedef struct gxp_cell { /* without gaps between its members: rows are saved as bytes */
     uint32_t element;
     uint32_t copies[4];
     uint32_t first_leaf; /* list through gxp_leaf.next; GXP_NONE: removed */
@@ -490,55 +539,167 @@ typedef struct gxp_cell { /* slot; slots 0 ... element_count-1 are the elements'
     double mass[10]; /* kg, order of gxs_element.mass */
 } gxp_cell;
 
-typedef struct gxp_leaf { /* beside each leaf of the complex */
-    uint32_t cell, next;
-    uint32_t stamp;
-    int32_t winding; /* where stamp is the current solid's */
+typedef struct gxp_cells { /* slots 0 ... element_count-1 are the elements' first cells */
+    uint32_t count, capacity[4];
+    gxp_cell *data;
+    uint32_t *stamp;     /* scratch.stamp of the last walk that met the cell */
+    uint32_t *saved_by;  /* undo.cut_number of the last cut that saved or made it */
+    uint32_t *new_index; /* its index in scratch.new_cells, if it is there */
+} gxp_cells;
+
+typedef struct gxp_leaf {
+    uint32_t cell, next; /* next of the cell, GXP_NONE: last, or removed */
 } gxp_leaf;
 
-/* tree node; count 0: children first, first+1 */
-typedef struct gxp_box {
-    double low[3], high[3];
-    uint32_t first, count;
-} gxp_box;
+typedef struct gxp_leaf_mark {
+    uint32_t stamp;  /* scratch.stamp of the last walk that met the leaf */
+    int32_t winding; /* in a walk of >>solids: the winding number around it */
+} gxp_leaf_mark;
 
-/* as they were when the cut began */
-typedef struct gxp_saved_cell {
-    uint32_t index;
-    gxp_cell cell;
-} gxp_saved_cell;
-typedef struct gxp_saved_leaf {
-    uint32_t index;
-    gxp_leaf leaf;
-} gxp_saved_leaf;
+typedef struct gxp_leaves { /* beside the leaves of the complex */
+    uint32_t count, capacity[2];
+    gxp_leaf *data;
+    gxp_leaf_mark *mark;
+} gxp_leaves;
 
-typedef struct gxp_words {
-    uint32_t *data, count, capacity;
-} gxp_words; /* growing array of indices */
-/* of pairs of indices, the first << 32 */
-typedef struct gxp_keys {
-    uint64_t *data;
-    uint32_t count, capacity;
-} gxp_keys;
+typedef struct gxp_copies {
+    uint32_t count, capacity[11];
+    uint32_t *node;
+    double *displacement, *velocity; /* x 3 */
+    double *rest_time;               /* s */
+    uint8_t *held;                   /* 1: by a region */
+    uint32_t *label;                 /* 2 x index of its fragment at the last snapshot, + 1: cut since */
+    uint32_t *before; /* 2 x index, when the solver's model was made, of the copy that it is, or, + 1, that it comes
+                         from */
+    /* displacement and velocity a step ago, x 3, and room for those of now; from the first BDF2 step on */
+    double *history[4];
+    double previous_dt; /* s, of the step that history[0] and [1] are from; 0: there is none */
+} gxp_copies;
 
-/* its first triangle's label; its first map, or GXP_NONE */
 typedef struct gxp_surface_record {
-    uint32_t label, map;
+    uint32_t label; /* of its first triangle */
+    uint32_t map;   /* its first, GXP_NONE: it has no texture */
 } gxp_surface_record;
 
+typedef struct gxp_cuts { /* the surfaces that have cut the body */
+    uint32_t label_count; /* triangles so far */
+    uint32_t surface_count, surface_capacity[1];
+    gxp_surface_record *surfaces;
+    uint32_t map_count, map_capacity[1];
+    /* x 8, for each triangle of surfaces with a texture: material coordinates less the complex's origin to texture
+       coordinates, 3 factors and a constant, twice */
+    double *maps;
+    uint64_t hash;  /* of the mesh and of all cuts: bodies with the same one have the same cells and copies */
+    uint64_t epoch; /* the hash when copies were created or removed last; 0: never */
+} gxp_cuts;
+
+typedef struct gxp_holds {
+    uint32_t count, capacity[1];
+    gx_region *regions;
+    int stale; /* copies.held is older than the regions or the last cut */
+} gxp_holds;
+
+/* --- a cut's way back --- */
+
+typedef struct gxp_log { /* rows of a table as they were, without gaps: the columns that are undone */
+    gxp_words rows;
+    unsigned char *bytes;
+    uint32_t byte_capacity;
+} gxp_log;
+
+enum { /* indices of gxp_tables */
+       GXP_NODES,
+       GXP_ELEMENTS,
+       GXP_EDGES,
+       GXP_MATERIALS,
+       GXP_CELLS,
+       GXP_LEAVES,
+       GXP_COPIES,
+       GXP_SURFACES,
+       GXP_MAPS,
+       GXP_REGIONS,
+       GXP_SNAPSHOT,
+       GXP_REMOVED_IDS,
+       GXP_VIEW,
+       GXP_SUMS,
+       GXP_SKIN_VERTICES,
+       GXP_SKIN_TRIANGLES,
+       GXP_TABLES
+};
+
+typedef struct gxp_undo {
+    gxp_log cells, leaves; /* cells.rows: each cell that the cut changed, once */
+    uint32_t cut_number;
+    uint32_t counts[GXP_TABLES], labels, dirty, splits; /* when the cut began */
+} gxp_undo;
+
+/* --- what can be made anew from the above --- */
+
+typedef struct gxp_view { /* the body as gx_view tells it */
+    int stale;            /* a cut has been since the lists were made */
+    uint32_t count, capacity[5];
+    uint32_t *slot, *fragment, *element, *copies; /* of each kept cell; copies x 4 */
+    double *volume;
+    gxp_words copy_fragment;   /* of each copy: a parent among copies, see gxp_find; the root stands for its fragment */
+    gxp_words fragment_number; /* of each root */
+    /* copy_fragment and fragment_number hold for copies older than splits, and nothing has been removed */
+    int labels_known;
+    gxp_words splits;        /* copies made since then, each with the one it comes from */
+    gxp_words split_cells;   /* of a call: cells around their nodes */
+    gxp_words split_parents; /* of a call: of copies, see gxp_find */
+    uint32_t fragment_count, sum_capacity[4];
+    double *fragment_volume, *fragment_mass, *fragment_center, *fragment_inertia; /* x 1, 1, 3, 6 */
+    double body_volume, body_mass;
+    int sums_stale; /* the lists are newer than the sums */
+} gxp_view;
+
+/* The fragments when gx_body_view was called last: what has changed is told against it. */
+typedef struct gxp_snapshot {
+    uint32_t count, capacity[3];
+    uint32_t *id, *origin, *change;
+    gxp_words removed; /* ids */
+    uint32_t next_id;
+    uint32_t stale; /* a cut has been since */
+} gxp_snapshot;
+
+/* The solver's model is as the body, but for the last cuts, or not at all. */
+typedef enum gxp_model_state { GXP_MODEL_KNOWN, GXP_MODEL_CHANGED, GXP_MODEL_STALE } gxp_model_state;
+
+typedef struct gxp_model {
+    gxp_model_state state;
+    int empty;   /* it has no elements: the solver has not been given it */
+    int updated; /* it has been changed since it was set */
+    /* hash of the state when the body was saved, copied or read; 0: it has stepped since then */
+    uint64_t resumed;
+    /* elements of which a cell or its copies have changed since the solver was told; some more than once */
+    gxp_words changed;
+    gxp_words thin; /* elements with a part of a share below follow_below, ascending; of use unless state is STALE */
+    /* there only while the solver is told; it copies them */
+    gxs_element *parts;
+    uint32_t part_count, part_capacity;
+    double *rest; /* copies, x 3: where they are at rest, m */
+    uint32_t rest_capacity;
+    gxs_material *elastic;
+    uint32_t elastic_capacity;
+    gxs_constraint *constraints;
+    uint32_t constraint_count, constraint_capacity;
+} gxp_model;
+
 /* What a vertex of the skin is looked up by: a point of the complex, four names in ascending order, a group. Of the
-   outer surface the names are slots and the group is 0; of a face of a cut they are copies, and the group is its
-   surface, and its side or plane and side. */
+   outer surface the names are slots and the group is 0. Of a face of a cut they are copies, and the group is its
+   surface and its side, or its surface, plane and side. */
 typedef struct gxp_skin_key {
     uint32_t point, name[4], group[2];
 } gxp_skin_key;
 
 typedef struct gxp_skin_vertex { /* beside the columns that users see */
     gxp_skin_key key;
-    uint32_t slots[4];           /* from which it has its normal, by its weights */
-    uint32_t next;               /* of its bucket */
-    uint32_t corner;             /* 3 x triangle + k: its first corner */
-    uint8_t outer, fresh, noted; /* of the outer surface; new in its place; among those that may have changed */
+    uint32_t slots[4]; /* whose sums make its normal, by its weights */
+    uint32_t next;     /* of its bucket */
+    uint32_t corner;   /* 3 x triangle + k: its first corner */
+    uint8_t outer;     /* 1: of the outer surface */
+    uint8_t placed;    /* 1: new in its place since the last update */
+    uint8_t noted;     /* 1: in changed[0] */
 } gxp_skin_vertex;
 
 typedef struct gxp_skin_links {
@@ -548,181 +709,281 @@ typedef struct gxp_skin_links {
     uint32_t corner_next[3], corner_previous[3]; /* of the same vertex */
 } gxp_skin_links;
 
-/* copy GXP_NONE: belongs to one vertex; next: in its bucket, or free */
 typedef struct gxp_skin_slot {
-    uint32_t copy, group, next;
+    uint32_t copy; /* GXP_NONE: belongs to one vertex */
+    uint32_t group;
+    uint32_t next; /* in its bucket, or free */
 } gxp_skin_slot;
 
 typedef struct gxp_skin {
     int made; /* 0: all of it is to be made */
     gx_skin_desc desc;
     gxp_words dirty; /* elements that cuts have touched since; some more than once */
-    /* columns: one entry for each vertex; see gx_skin */
+    uint32_t vertex_count, vertex_capacity[7];
     gxp_skin_vertex *vertices;
-    uint32_t *copies, *point;
+    uint32_t *copies, *point; /* from here on see gx_skin */
     double *weights, *rest;
     float *normal, *texture;
-    uint32_t vertex_count, vertex_capacity;
-    /* columns: one entry for each triangle */
+    uint32_t triangle_count, triangle_capacity[6];
     gxp_skin_links *links;
     uint32_t *triangles, *fragment, *element, *material, *surface;
-    uint32_t triangle_count, triangle_capacity;
     gxp_words first; /* element_count: the first of its triangles */
     gxp_skin_slot *slots;
     uint32_t slot_count, slot_capacity, free_slot;
     gxp_words vertex_buckets, slot_buckets;
-    gxp_words boundary; /* face_count: number among the outer faces */
-    gxp_words groups;   /* outer faces x 4: group of each node's corner */
-    /* x 3, by group */
-    double *group_normals;
+    gxp_words boundary;    /* face_count: number among the outer faces */
+    gxp_words groups;      /* outer faces x 4: group of each node's corner */
+    double *group_normals; /* x 3, by group */
     uint32_t group_normal_capacity;
     gxp_words changed[2]; /* vertices, triangles */
     gx_range *ranges[2];
     uint32_t range_count[2], range_capacity[2];
-    /* scratch: slots x 3, vertices x 3 */
-    double *normals, *positions;
+    /* of a call */
+    gxp_words outer_faces;                    /* element * 4 + k of each */
+    gxp_words edge_faces;                     /* mesh edges, twice: the first and the second outer face there */
+    gxp_words corner_points, corner_vertices; /* of a facet that is divided into triangles */
+    double *normals;                          /* slots x 3 */
+    double *positions;                        /* vertices x 3 */
     uint32_t normal_capacity, position_capacity;
 } gxp_skin;
 
-typedef struct gxp_counts {
-    uint32_t cells, leaves, copies, labels, surfaces, maps, dirty, splits;
-} gxp_counts;
+/* --- what a call works with. Nothing in it is of use to the next one; the memory stays, so that a cut as large as the
+   last allocates nothing. --- */
 
-/* The solver's model is as the body, but for the last cuts, or not at all. */
-typedef enum gxp_model { GXP_MODEL_KNOWN, GXP_MODEL_CHANGED, GXP_MODEL_STALE } gxp_model;
+/* The boundary of a cell or leaf, as triangles in barycentric coordinates of its element */
+typedef struct gxp_boundary {
+    gxp_words points; /* of the complex */
+    double *lambdas;  /* points x 4 */
+    uint32_t lambda_capacity;
+    gxp_words slots;     /* by point of the complex: its place in points, if it is there */
+    gxp_words triangles; /* x 3, places in points */
+    gxp_words facets;    /* in faces of the element: times two, 1 more if the material is in front */
+} gxp_boundary;
 
+typedef struct gxp_scratch {
+    uint32_t stamp;       /* of the last walk through cells or leaves */
+    uint32_t scope_stamp; /* of the cells that the cut may touch */
+    /* a cut, from step to step */
+    gxp_words removed;    /* leaves that solids remove */
+    gxp_words pinches;    /* nodes at which walls may break joints */
+    gxp_words touched;    /* cells beside new walls and removed leaves, ascending */
+    gxp_words new_cells;  /* into which these fell apart: their copies and integrals are to be found */
+    gxp_keys links;       /* of new cells in turn, sorted: see GXP_LINK_CELL */
+    gxp_words link_first; /* new_cells.count + 1, into links */
+    gxp_words narrow;     /* first and end in links of those that may be the smallest or are to be severed */
+    gxp_words dead;       /* copies without cells */
+    /* >>arrange */
+    gxp_keys order;          /* place in the order of insertion, triangle */
+    gxp_words near_elements; /* that a triangle may meet */
+    /* >>pinches */
+    gxp_words joint_leaves, joint_edges, joint_cells; /* around a node or edge */
+    /* >>solids */
+    gxp_words seed_leaves; /* where the flood starts */
+    gxp_words flooded;     /* leaves whose winding number is known */
+    gxp_words seeded;      /* by fragment: 1 if one of its leaves is a seed */
+    gxp_words leaf_points; /* of a leaf; also of >>regions */
+    /* >>cells, >>links */
+    gxp_words wall_leaves;  /* on both sides of new walls */
+    gxp_words cell_leaves;  /* of a cell that is divided */
+    gxp_words part_leaves;  /* of one of its connected parts */
+    gxp_words facet_points; /* of a piece of a link */
+    /* >>components */
+    gxp_keys pairs;            /* node, cell around it */
+    gxp_words subdomains;      /* of a node: start in subdomain_cells times two, 1 more if it is open */
+    gxp_words subdomain_cells; /* one subdomain after the other */
+    gxp_words taken;           /* copies that one of these keeps */
+    gxp_words face_facets;     /* of an element's face */
+    /* >>integrals, >>vertices */
+    gxp_boundary boundary;
+} gxp_scratch;
+
+/* Parts by how long they live. Each array stands in gxp_tables or gxp_lists, which see to its growth and its end. */
 struct gx_body {
-    gx_allocator allocator;
-    double (*clock)(void *user);
-    void *clock_user;
+    gxp_config config;
+    gxp_mesh mesh;
     gxb_complex *complex;
     gxs_solver *solver;
-    uint32_t node_count, element_count;
-    gx_material *materials;
-    uint32_t material_count;
-    uint32_t *element_materials;                   /* element_count */
-    double support_below;                          /* as given */
-    double follow_below, point_below, crumb_reach; /* see gxp_supports */
-    double *positions;                             /* node_count x 3 */
-    uint32_t *node_start;                          /* node_count + 1, into node_elements */
-    uint32_t *node_elements;                       /* element_count x 4: elements around each node */
-    /* node_count: bit 1: elements around it are not joined by faces; bit 2: one of its edges is pinched */
-    uint8_t *node_pinched;
-    uint8_t *edge_pinched; /* mesh_edge_count: elements around it meet in the edge only */
-    gxp_box *boxes;
-    uint32_t box_count;
-    uint32_t *box_elements; /* element_count, in tree order */
-    gxp_cell *cells;
-    uint32_t cell_count, cell_capacity;
-    gxp_leaf *leaves;
-    uint32_t leaf_count, leaf_capacity;
-    uint32_t *copy_node;
-    uint32_t copy_count, copy_capacity;
-    /* copies, x 3 doubles */
-    double *displacement, *velocity;
-    uint32_t displacement_capacity, velocity_capacity;
-    uint8_t *held;
-    uint32_t held_capacity;
-    double *rest_time;
-    uint32_t rest_time_capacity;
-    /* displacement and velocity a step ago, x 3, and room for those of now; from the first BDF2 step on */
-    double *history[4];
-    uint32_t history_capacity[4];
-    double previous_dt; /* s; 0: there was none */
-    gx_region *regions;
-    uint32_t region_count, region_capacity;
-    gx_jobs jobs;
-    /* hash of the mesh and of all cuts: bodies with the same one have the same cells and copies */
-    uint64_t past;
-    uint64_t epoch;       /* the past when copies were created or removed last; 0: never */
-    uint32_t label_count; /* cut triangles so far */
-    /* copies: 2 x index of its fragment at the last look, + 1 where it was cut since */
-    uint32_t *copy_label;
-    uint32_t copy_label_capacity;
-    gxp_words fragment_ids, fragment_origins, fragment_changes, removed_ids; /* as last looked at */
-    uint32_t next_id;                                                        /* of a fragment */
-    int look_stale; /* a cut has happened since the last look */
-    /* the undo log of a cut: each cell once */
-    gxp_saved_cell *saved_cells;
-    uint32_t saved_cell_count, saved_cell_capacity;
-    gxp_saved_leaf *saved_leaves;
-    uint32_t saved_leaf_count, saved_leaf_capacity;
-    uint32_t transaction; /* number of the cut */
-    gxp_counts before;    /* when it began */
-    /* cells: transaction that saved or made it last */
-    uint32_t *cell_saved;
-    uint32_t cell_saved_capacity;
-    uint32_t *cell_stamp;
-    uint32_t cell_stamp_capacity;
-    uint32_t stamp, scope_stamp;
-    int held_stale, view_stale, sums_stale;
+    gxp_cells cells;
+    gxp_leaves leaves;
+    gxp_copies copies;
+    gxp_cuts cuts;
+    gxp_holds holds;
+    gxp_undo undo;
+    gxp_view view;
+    gxp_snapshot snapshot;
     gxp_model model;
-    int nothing_moves; /* the model has no elements: the solver has not been given it */
-    int model_updated; /* it has been changed since it was set */
-    /* hash of the state when the body was saved, copied, read; 0: it has stepped since then */
-    uint64_t resumed;
-    /* elements of which a cell or its copies have changed since the solver's model was; some more than once */
-    gxp_words changed;
-    /* copies: 2 x index then of the copy that it is, or, + 1, that it comes from */
-    uint32_t *copy_before;
-    uint32_t copy_before_capacity;
-    /* copy_fragment and fragment_number hold for copies older than splits, and nothing has been removed */
-    int labels_known;
-    gxp_words splits; /* copies made since then, each with the one it comes from */
-    /* there only while the solver's model is made */
-    gxs_element *parts;
-    uint32_t part_count, part_capacity;
-    /* copies, x 3 doubles: where they are at rest, m; as long */
-    double *rest;
-    uint32_t rest_capacity;
-    /* materials for the solver; as long */
-    gxs_material *elastic;
-    uint32_t elastic_capacity;
-    /* as long */
-    gxs_constraint *constraints;
-    uint32_t constraint_count, constraint_capacity;
-    /* elements with a part of a share below follow_below, ascending; of use if model is not STALE */
-    gxp_words thin;
-    gxp_words view_cells, view_fragments; /* slot of each kept cell; fragment of each */
-    gxp_words copy_fragment, fragment_number, cell_element, cell_copies;
-    double *cell_volume;
-    uint32_t cell_volume_capacity;
-    /* volume, mass, centre, inertia: GXP_FRAGMENT_ARRAYS of fragment_capacity */
-    double *fragments;
-    uint32_t fragment_capacity, fragment_count;
-    double volume, mass;
-    float *texture; /* node_count x 2, or NULL */
-    /* that have cut the body */
-    gxp_surface_record *surfaces;
-    uint32_t surface_count, surface_capacity;
-    /* x 8: material coordinates less the complex's origin to texture coordinates, for each triangle of surfaces with a
-     * texture: 3 factors and a constant, twice */
-    double *maps;
-    uint32_t map_count, map_capacity;
     gxp_skin skin;
-    gxp_words point_slot; /* of the complex's points, while a cell is integrated or drawn */
-    /* x 4 */
-    double *lambdas;
-    uint32_t lambda_capacity;
-    gxp_words triangles;
-    /* scratch of a cut */
-    gxp_words touched, nodes, queue, pieces, seeds, faces;
-    gxp_words fresh;               /* pieces of touched cells: their copies and integrals are to be found */
-    gxp_words removed, dead, list; /* leaves that solids removed, copies without cells */
-    gxp_words pinches;             /* nodes at which sheets separated what meets there only */
-    /* cells: index in fresh, where it is there */
-    uint32_t *cell_fresh;
-    uint32_t cell_fresh_capacity;
-    gxp_keys pairs; /* node and fresh cell */
-    /* of fresh cells in turn: the cell behind a piece of a face, that facet, which of the element's faces; sorted */
-    gxp_keys links;
-    gxp_words link_first; /* fresh.count + 1, into links */
+    gxp_scratch scratch;
 };
 
+/* >>columns: every array of a body --------------------------------------------------------------------------------- */
+
+/* Each array of a body is listed here once, with the size of an entry. Columns of one table have an entry for each row.
+   Growth, undo, save, load, clone, hashes and destruction read these lists: an array that is added to a struct above is
+   added here, and nowhere else. */
+
+enum {
+    GXP_TOPOLOGY = 1, /* saved, and hashed as part of the state: what cuts have made */
+    GXP_STATE = 2,    /* saved and hashed: all else */
+    GXP_HISTORY = 4,  /* saved and hashed if there has been a BDF2 step */
+    GXP_UNDONE = 8,   /* rows are put back when a cut fails */
+    GXP_CLEARED = 16, /* new rows are 0 */
+    GXP_LATER = 32    /* NULL until something needs it */
+};
+
+/* Offsets in gx_body: of the pointer, of the number of entries that there is room for; bytes of an entry */
+typedef struct gxp_column {
+    size_t array, capacity, size;
+    uint32_t use;
+} gxp_column;
+
+typedef struct gxp_table {
+    size_t count; /* offset in gx_body of the number of rows */
+    const gxp_column *columns;
+    uint32_t column_count;
+} gxp_table;
+
+/* clang-format off */
+#define GXP_COLUMN(part, member, capacity, index, size, use) \
+    {offsetof(gx_body, part.member), offsetof(gx_body, part.capacity) + (index) * sizeof(uint32_t), size, use}
+
+static const gxp_column gxp_node_columns[] = {
+    GXP_COLUMN(mesh, positions,    node_capacity, 0, 3 * sizeof(double), 0),
+    GXP_COLUMN(mesh, node_start,   node_capacity, 1, sizeof(uint32_t), 0),
+    GXP_COLUMN(mesh, node_pinched, node_capacity, 2, sizeof(uint8_t), 0),
+    GXP_COLUMN(mesh, texture,      node_capacity, 3, 2 * sizeof(float), GXP_LATER)};
+static const gxp_column gxp_element_columns[] = {
+    GXP_COLUMN(mesh, node_elements,     element_capacity, 0, 4 * sizeof(uint32_t), 0),
+    GXP_COLUMN(mesh, boxes,             element_capacity, 1, sizeof(gxp_box), 0),
+    GXP_COLUMN(mesh, box_elements,      element_capacity, 2, sizeof(uint32_t), 0),
+    GXP_COLUMN(mesh, element_materials, element_capacity, 3, sizeof(uint32_t), 0)};
+static const gxp_column gxp_edge_columns[] = {
+    GXP_COLUMN(mesh, edge_pinched, edge_capacity, 0, sizeof(uint8_t), 0)};
+static const gxp_column gxp_material_columns[] = {
+    GXP_COLUMN(mesh, materials, material_capacity, 0, sizeof(gx_material), 0)};
+static const gxp_column gxp_cell_columns[] = {
+    GXP_COLUMN(cells, data,      capacity, 0, sizeof(gxp_cell), GXP_TOPOLOGY | GXP_UNDONE),
+    GXP_COLUMN(cells, stamp,     capacity, 1, sizeof(uint32_t), GXP_CLEARED),
+    GXP_COLUMN(cells, saved_by,  capacity, 2, sizeof(uint32_t), GXP_CLEARED),
+    GXP_COLUMN(cells, new_index, capacity, 3, sizeof(uint32_t), GXP_CLEARED)};
+static const gxp_column gxp_leaf_columns[] = {
+    GXP_COLUMN(leaves, data, capacity, 0, sizeof(gxp_leaf), GXP_TOPOLOGY | GXP_UNDONE),
+    GXP_COLUMN(leaves, mark, capacity, 1, sizeof(gxp_leaf_mark), GXP_CLEARED)};
+static const gxp_column gxp_copy_columns[] = {
+    GXP_COLUMN(copies, node,         capacity,  0, sizeof(uint32_t), GXP_TOPOLOGY),
+    GXP_COLUMN(copies, displacement, capacity,  1, 3 * sizeof(double), GXP_STATE),
+    GXP_COLUMN(copies, velocity,     capacity,  2, 3 * sizeof(double), GXP_STATE),
+    GXP_COLUMN(copies, rest_time,    capacity,  3, sizeof(double), GXP_STATE),
+    GXP_COLUMN(copies, label,        capacity,  4, sizeof(uint32_t), GXP_STATE),
+    GXP_COLUMN(copies, before,       capacity,  5, sizeof(uint32_t), 0),
+    GXP_COLUMN(copies, held,         capacity,  6, sizeof(uint8_t), 0),
+    GXP_COLUMN(copies, history[0],   capacity,  7, 3 * sizeof(double), GXP_HISTORY | GXP_LATER),
+    GXP_COLUMN(copies, history[1],   capacity,  8, 3 * sizeof(double), GXP_HISTORY | GXP_LATER),
+    GXP_COLUMN(copies, history[2],   capacity,  9, 3 * sizeof(double), GXP_LATER),
+    GXP_COLUMN(copies, history[3],   capacity, 10, 3 * sizeof(double), GXP_LATER)};
+enum { GXP_TEXTURE_COLUMN = 3, GXP_FIRST_HISTORY = 7 }; /* places in the lists above */
+static const gxp_column gxp_surface_columns[] = {
+    GXP_COLUMN(cuts, surfaces, surface_capacity, 0, sizeof(gxp_surface_record), GXP_TOPOLOGY)};
+static const gxp_column gxp_map_columns[] = {
+    GXP_COLUMN(cuts, maps, map_capacity, 0, 8 * sizeof(double), GXP_TOPOLOGY)};
+static const gxp_column gxp_region_columns[] = {
+    GXP_COLUMN(holds, regions, capacity, 0, sizeof(gx_region), GXP_STATE)};
+static const gxp_column gxp_snapshot_columns[] = {
+    GXP_COLUMN(snapshot, id,     capacity, 0, sizeof(uint32_t), GXP_STATE),
+    GXP_COLUMN(snapshot, origin, capacity, 1, sizeof(uint32_t), GXP_STATE),
+    GXP_COLUMN(snapshot, change, capacity, 2, sizeof(uint32_t), GXP_STATE)};
+static const gxp_column gxp_removed_id_columns[] = {
+    GXP_COLUMN(snapshot, removed.data, removed.capacity, 0, sizeof(uint32_t), GXP_STATE)};
+static const gxp_column gxp_view_columns[] = {
+    GXP_COLUMN(view, slot,     capacity, 0, sizeof(uint32_t), 0),
+    GXP_COLUMN(view, fragment, capacity, 1, sizeof(uint32_t), 0),
+    GXP_COLUMN(view, element,  capacity, 2, sizeof(uint32_t), 0),
+    GXP_COLUMN(view, copies,   capacity, 3, 4 * sizeof(uint32_t), 0),
+    GXP_COLUMN(view, volume,   capacity, 4, sizeof(double), 0)};
+static const gxp_column gxp_sum_columns[] = {
+    GXP_COLUMN(view, fragment_volume,  sum_capacity, 0, sizeof(double), 0),
+    GXP_COLUMN(view, fragment_mass,    sum_capacity, 1, sizeof(double), 0),
+    GXP_COLUMN(view, fragment_center,  sum_capacity, 2, 3 * sizeof(double), 0),
+    GXP_COLUMN(view, fragment_inertia, sum_capacity, 3, 6 * sizeof(double), 0)};
+static const gxp_column gxp_skin_vertex_columns[] = {
+    GXP_COLUMN(skin, vertices, vertex_capacity, 0, sizeof(gxp_skin_vertex), 0),
+    GXP_COLUMN(skin, copies,   vertex_capacity, 1, 4 * sizeof(uint32_t), 0),
+    GXP_COLUMN(skin, weights,  vertex_capacity, 2, 4 * sizeof(double), 0),
+    GXP_COLUMN(skin, point,    vertex_capacity, 3, sizeof(uint32_t), 0),
+    GXP_COLUMN(skin, rest,     vertex_capacity, 4, 3 * sizeof(double), 0),
+    GXP_COLUMN(skin, normal,   vertex_capacity, 5, 3 * sizeof(float), 0),
+    GXP_COLUMN(skin, texture,  vertex_capacity, 6, 2 * sizeof(float), 0)};
+static const gxp_column gxp_skin_triangle_columns[] = {
+    GXP_COLUMN(skin, links,     triangle_capacity, 0, sizeof(gxp_skin_links), 0),
+    GXP_COLUMN(skin, triangles, triangle_capacity, 1, 3 * sizeof(uint32_t), 0),
+    GXP_COLUMN(skin, fragment,  triangle_capacity, 2, sizeof(uint32_t), 0),
+    GXP_COLUMN(skin, element,   triangle_capacity, 3, sizeof(uint32_t), 0),
+    GXP_COLUMN(skin, material,  triangle_capacity, 4, sizeof(uint32_t), 0),
+    GXP_COLUMN(skin, surface,   triangle_capacity, 5, sizeof(uint32_t), 0)};
+
+#define GXP_TABLE(count, columns) {offsetof(gx_body, count), columns, sizeof columns / sizeof *columns}
+
+static const gxp_table gxp_tables[GXP_TABLES] = { /* in the order of GXP_NODES ... */
+    GXP_TABLE(mesh.node_count, gxp_node_columns),
+    GXP_TABLE(mesh.element_count, gxp_element_columns),
+    GXP_TABLE(mesh.edge_count, gxp_edge_columns),
+    GXP_TABLE(mesh.material_count, gxp_material_columns),
+    GXP_TABLE(cells.count, gxp_cell_columns),
+    GXP_TABLE(leaves.count, gxp_leaf_columns),
+    GXP_TABLE(copies.count, gxp_copy_columns),
+    GXP_TABLE(cuts.surface_count, gxp_surface_columns),
+    GXP_TABLE(cuts.map_count, gxp_map_columns),
+    GXP_TABLE(holds.count, gxp_region_columns),
+    GXP_TABLE(snapshot.count, gxp_snapshot_columns),
+    GXP_TABLE(snapshot.removed.count, gxp_removed_id_columns),
+    GXP_TABLE(view.count, gxp_view_columns),
+    GXP_TABLE(view.fragment_count, gxp_sum_columns),
+    GXP_TABLE(skin.vertex_count, gxp_skin_vertex_columns),
+    GXP_TABLE(skin.triangle_count, gxp_skin_triangle_columns)};
+
+#define GXP_LIST(member, room, size) {offsetof(gx_body, member), offsetof(gx_body, room), size, 0}
+#define GXP_WORDS(list) GXP_LIST(list.data, list.capacity, sizeof(uint32_t))
+#define GXP_KEYS(list)  GXP_LIST(list.data, list.capacity, sizeof(uint64_t))
+
+static const gxp_column gxp_model_lists[] = { /* released once the solver has copied them */
+    GXP_LIST(model.parts, model.part_capacity, sizeof(gxs_element)),
+    GXP_LIST(model.rest, model.rest_capacity, 3 * sizeof(double)),
+    GXP_LIST(model.elastic, model.elastic_capacity, sizeof(gxs_material)),
+    GXP_LIST(model.constraints, model.constraint_capacity, sizeof(gxs_constraint))};
+static const gxp_column gxp_lists[] = {
+    GXP_WORDS(undo.cells.rows), GXP_LIST(undo.cells.bytes, undo.cells.byte_capacity, 1),
+    GXP_WORDS(undo.leaves.rows), GXP_LIST(undo.leaves.bytes, undo.leaves.byte_capacity, 1),
+    GXP_WORDS(view.copy_fragment), GXP_WORDS(view.fragment_number),
+    GXP_WORDS(view.splits), GXP_WORDS(view.split_cells), GXP_WORDS(view.split_parents),
+    GXP_WORDS(model.changed), GXP_WORDS(model.thin),
+    GXP_WORDS(skin.dirty), GXP_WORDS(skin.first), GXP_LIST(skin.slots, skin.slot_capacity, sizeof(gxp_skin_slot)),
+    GXP_WORDS(skin.vertex_buckets), GXP_WORDS(skin.slot_buckets), GXP_WORDS(skin.boundary), GXP_WORDS(skin.groups),
+    GXP_LIST(skin.group_normals, skin.group_normal_capacity, 3 * sizeof(double)),
+    GXP_WORDS(skin.changed[0]), GXP_LIST(skin.ranges[0], skin.range_capacity[0], sizeof(gx_range)),
+    GXP_WORDS(skin.changed[1]), GXP_LIST(skin.ranges[1], skin.range_capacity[1], sizeof(gx_range)),
+    GXP_WORDS(skin.outer_faces), GXP_WORDS(skin.edge_faces),
+    GXP_WORDS(skin.corner_points), GXP_WORDS(skin.corner_vertices),
+    GXP_LIST(skin.normals, skin.normal_capacity, 3 * sizeof(double)),
+    GXP_LIST(skin.positions, skin.position_capacity, 3 * sizeof(double)),
+    GXP_WORDS(scratch.removed), GXP_WORDS(scratch.pinches), GXP_WORDS(scratch.touched), GXP_WORDS(scratch.new_cells),
+    GXP_KEYS(scratch.links), GXP_WORDS(scratch.link_first), GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
+    GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements),
+    GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_cells),
+    GXP_WORDS(scratch.seed_leaves), GXP_WORDS(scratch.flooded), GXP_WORDS(scratch.seeded),
+    GXP_WORDS(scratch.leaf_points), GXP_WORDS(scratch.wall_leaves), GXP_WORDS(scratch.cell_leaves),
+    GXP_WORDS(scratch.part_leaves), GXP_WORDS(scratch.facet_points),
+    GXP_KEYS(scratch.pairs), GXP_WORDS(scratch.subdomains), GXP_WORDS(scratch.subdomain_cells),
+    GXP_WORDS(scratch.taken), GXP_WORDS(scratch.face_facets),
+    GXP_WORDS(scratch.boundary.points), GXP_WORDS(scratch.boundary.slots), GXP_WORDS(scratch.boundary.triangles),
+    GXP_WORDS(scratch.boundary.facets),
+    GXP_LIST(scratch.boundary.lambdas, scratch.boundary.lambda_capacity, 4 * sizeof(double))};
+/* clang-format on */
+
 /* >>memory: allocation, growing arrays ----------------------------------------------------------------------------- */
+
 /* In: an allocator, arrays, the items that they are to hold. Out: room for them, or GX_ERROR_MEMORY or GX_ERROR_LIMIT
-   and everything as it was. gxp_reserve is the one way by which an array of this header grows; gxp_grow_rows does it
-   for all columns of a table. */
+   and everything as it was. gxp_reserve is the one way by which an array grows; gxp_grow_rows applies it to all columns
+   of a table. */
 
 static void *gxp_allocate(const gx_allocator *a, size_t size) {
     return a->allocate ? a->allocate(a->user, size) : malloc(size);
@@ -736,8 +997,8 @@ static void gxp_release(const gx_allocator *a, void *memory, size_t size) {
         free(memory);
 }
 
-/* A larger block with the first `used` bytes of the old one, which is then gone; NULL: there is none, and the old one
- * stays. */
+/* A larger block with the first `used` bytes of the old one, which is then gone. NULL: there is none, and the old one
+   stays. */
 static void *gxp_reallocate(const gx_allocator *a, void *old, size_t old_size, size_t used, size_t size) {
     void *memory;
     /* moves the pages of large blocks, not their bytes */
@@ -765,34 +1026,32 @@ static gx_result gxp_reserve(const gx_allocator *a, void *array, size_t item, si
     return GX_OK;
 }
 
+static gx_result gxp_words_room(gx_body *body, gxp_words *words, size_t extra) {
+    return gxp_reserve(&body->config.allocator, &words->data, sizeof *words->data, words->count, &words->capacity,
+                       extra);
+}
+
 static gx_result gxp_push(gx_body *body, gxp_words *words, uint32_t value) {
-    const gx_result result =
-        gxp_reserve(&body->allocator, &words->data, sizeof *words->data, words->count, &words->capacity, 1);
+    const gx_result result = gxp_words_room(body, words, 1);
     if (result == GX_OK) words->data[words->count++] = value;
     return result;
 }
 
-static gx_result gxp_words_room(gx_body *body, gxp_words *words, size_t extra) {
-    return gxp_reserve(&body->allocator, &words->data, sizeof *words->data, words->count, &words->capacity, extra);
-}
-
-static void gxp_words_free(gx_body *body, gxp_words *words) {
-    gxp_release(&body->allocator, words->data, (size_t)words->capacity * sizeof *words->data);
-}
-
-static gx_result gxp_set_words(gx_body *body, gxp_words *words, size_t count) {
+/* Empty, with room for count words */
+static gx_result gxp_start_words(gx_body *body, gxp_words *words, size_t count) {
     words->count = 0;
     return gxp_words_room(body, words, count);
 }
 
-#define GXP_FIRST(key)       ((uint32_t)((key) >> 32))
-#define GXP_SECOND(key)      ((uint32_t)(key))
-#define GXP_LINK_CELL(link)  ((uint32_t)((link) >> 33)) /* see gx_body.links: 31, 31 and 2 bits */
+#define GXP_FIRST(key)  ((uint32_t)((key) >> 32))
+#define GXP_SECOND(key) ((uint32_t)(key))
+/* A link of a cell: the cell behind a piece of a face, that facet, which of the element's faces; 31, 31 and 2 bits */
+#define GXP_LINK_CELL(link)  ((uint32_t)((link) >> 33))
 #define GXP_LINK_FACET(link) ((uint32_t)((link) >> 2) & 0x7fffffffu)
 #define GXP_LINK_FACE(link)  ((uint32_t)(link)&3)
 
 static gx_result gxp_keys_room(gx_body *body, gxp_keys *keys, size_t extra) {
-    return gxp_reserve(&body->allocator, &keys->data, sizeof *keys->data, keys->count, &keys->capacity, extra);
+    return gxp_reserve(&body->config.allocator, &keys->data, sizeof *keys->data, keys->count, &keys->capacity, extra);
 }
 
 static gx_result gxp_push_key(gx_body *body, gxp_keys *keys, uint32_t first, uint32_t second) {
@@ -801,82 +1060,119 @@ static gx_result gxp_push_key(gx_body *body, gxp_keys *keys, uint32_t first, uin
     return result;
 }
 
-/* Makes room for extra further items in several arrays of the same length: in all of them, or in none. arrays: their
- * addresses. */
-static gx_result gxp_reserve_columns(const gx_allocator *a, void *const *arrays, const size_t *items, int columns,
-                                     size_t count, uint32_t *capacity, size_t extra) {
-    const size_t need = count + extra, room = need + need / 2 + 16;
-    void *memory[8], *old;
-    int i, n;
-    if (need <= *capacity) return GX_OK;
-    for (n = 0; n < columns; n++) {
-        if (room > INT32_MAX || room > SIZE_MAX / items[n]) break;
-        memory[n] = gxp_allocate(a, room * items[n]);
-        if (memory[n] == NULL) break;
-    }
-    for (i = 0; i < n && n < columns; i++) gxp_release(a, memory[i], room * items[i]);
-    if (n < columns) return room > INT32_MAX || room > SIZE_MAX / items[n] ? GX_ERROR_LIMIT : GX_ERROR_MEMORY;
-    for (i = 0; i < columns; i++) {
-        memcpy(&old, arrays[i], sizeof old);
-        if (count > 0) memcpy(memory[i], old, count * items[i]);
-        gxp_release(a, old, (size_t)*capacity * items[i]);
-        memcpy(arrays[i], &memory[i], sizeof old);
-    }
-    *capacity = (uint32_t)room;
+static void *gxp_array_at(const gx_body *body, const gxp_column *column) {
+    void *array;
+    memcpy(&array, (const char *)body + column->array, sizeof array);
+    return array;
+}
+
+static uint32_t *gxp_capacity_at(gx_body *body, const gxp_column *column) {
+    return (uint32_t *)(void *)((char *)body + column->capacity);
+}
+
+static uint32_t gxp_count(const gx_body *body, uint32_t table) {
+    uint32_t count;
+    memcpy(&count, (const char *)body + gxp_tables[table].count, sizeof count);
+    return count;
+}
+
+static uint32_t *gxp_count_at(gx_body *body, uint32_t table) {
+    return (uint32_t *)(void *)((char *)body + gxp_tables[table].count);
+}
+
+/* Room for rows in a column; rows before `used` keep what they have. Of a column that is cleared, all do. */
+static gx_result gxp_grow_column(gx_body *body, const gxp_column *column, size_t used, size_t rows) {
+    uint32_t *capacity = gxp_capacity_at(body, column);
+    const uint32_t before = *capacity;
+    gx_result result;
+    if (rows <= before) return GX_OK;
+    if (used > before || (column->use & GXP_CLEARED)) used = before;
+    result =
+        gxp_reserve(&body->config.allocator, (char *)body + column->array, column->size, used, capacity, rows - used);
+    if (result == GX_OK && (column->use & GXP_CLEARED))
+        memset((char *)gxp_array_at(body, column) + before * column->size, 0, (*capacity - before) * column->size);
+    return result;
+}
+
+/* Room for extra further rows of a table. After an error some columns have it, which does no harm. */
+static gx_result gxp_grow_rows(gx_body *body, uint32_t table, size_t extra) {
+    const gxp_column *column = gxp_tables[table].columns, *end = column + gxp_tables[table].column_count;
+    const size_t count = *gxp_count_at(body, table);
+    gx_result result = GX_OK;
+    for (; column < end && result == GX_OK; column++)
+        if (count + extra > *gxp_capacity_at(body, column) &&
+            (!(column->use & GXP_LATER) || *gxp_capacity_at(body, column) > 0))
+            result = gxp_grow_column(body, column, count, count + extra);
+    return result;
+}
+
+/* Exactly that many rows, all 0, of a column that has none; at least one, so that there is memory. */
+static gx_result gxp_make_column(gx_body *body, const gxp_column *column, size_t rows) {
+    void *memory;
+    if (rows == 0) rows = 1;
+    if (rows > SIZE_MAX / column->size) return GX_ERROR_LIMIT;
+    memory = gxp_allocate(&body->config.allocator, rows * column->size);
+    if (memory == NULL) return GX_ERROR_MEMORY;
+    memset(memory, 0, rows * column->size);
+    memcpy((char *)body + column->array, &memory, sizeof memory);
+    *gxp_capacity_at(body, column) = (uint32_t)rows;
     return GX_OK;
 }
 
-enum { GXP_VERTEX_COLUMNS = 7, GXP_TRIANGLE_COLUMNS = 6 };
-
-static void gxp_vertex_columns(gxp_skin *s, void **arrays, size_t *items) {
-    arrays[0] = &s->vertices;
-    items[0] = sizeof *s->vertices;
-    arrays[1] = &s->copies;
-    items[1] = 4 * sizeof *s->copies;
-    arrays[2] = &s->weights;
-    items[2] = 4 * sizeof *s->weights;
-    arrays[3] = &s->point;
-    items[3] = sizeof *s->point;
-    arrays[4] = &s->rest;
-    items[4] = 3 * sizeof *s->rest;
-    arrays[5] = &s->normal;
-    items[5] = 3 * sizeof *s->normal;
-    arrays[6] = &s->texture;
-    items[6] = 2 * sizeof *s->texture;
+static gx_result gxp_make_rows(gx_body *body, uint32_t table, size_t rows) {
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (i = 0; i < gxp_tables[table].column_count && result == GX_OK; i++)
+        if (!(gxp_tables[table].columns[i].use & GXP_LATER))
+            result = gxp_make_column(body, &gxp_tables[table].columns[i], rows);
+    return result;
 }
 
-static void gxp_triangle_columns(gxp_skin *s, void **arrays, size_t *items) {
-    arrays[0] = &s->links;
-    items[0] = sizeof *s->links;
-    arrays[1] = &s->triangles;
-    items[1] = 3 * sizeof *s->triangles;
-    arrays[2] = &s->fragment;
-    items[2] = sizeof *s->fragment;
-    arrays[3] = &s->element;
-    items[3] = sizeof *s->element;
-    arrays[4] = &s->material;
-    items[4] = sizeof *s->material;
-    arrays[5] = &s->surface;
-    items[5] = sizeof *s->surface;
+/* Two columns of the same size change places. */
+static void gxp_swap_columns(gx_body *body, const gxp_column *a, const gxp_column *b) {
+    void *p = gxp_array_at(body, a), *q = gxp_array_at(body, b);
+    const uint32_t capacity = *gxp_capacity_at(body, a);
+    memcpy((char *)body + a->array, &q, sizeof q);
+    memcpy((char *)body + b->array, &p, sizeof p);
+    *gxp_capacity_at(body, a) = *gxp_capacity_at(body, b);
+    *gxp_capacity_at(body, b) = capacity;
 }
 
-static void gxp_move_column_item(void *const *arrays, const size_t *items, int columns, size_t from, size_t to) {
-    int i;
-    for (i = 0; i < columns; i++) {
-        char *data;
-        memcpy(&data, arrays[i], sizeof data);
-        memcpy(data + to * items[i], data + from * items[i], items[i]);
+static void gxp_release_columns(gx_body *body, const gxp_column *columns, size_t count) {
+    for (; count > 0; count--, columns++) {
+        uint32_t *capacity = gxp_capacity_at(body, columns);
+        gxp_release(&body->config.allocator, gxp_array_at(body, columns), *capacity * columns->size);
+        memset((char *)body + columns->array, 0, sizeof(void *));
+        *capacity = 0;
     }
 }
 
-static void gxp_release_columns(const gx_allocator *a, void *const *arrays, const size_t *items, int columns,
-                                uint32_t capacity) {
-    int i;
-    for (i = 0; i < columns; i++) {
-        void *data;
-        memcpy(&data, arrays[i], sizeof data);
-        gxp_release(a, data, capacity * items[i]);
+/* memcpy where most sizes are known: a call for each column of a row would cost more than the row. */
+static void gxp_move_item(char *to, const char *from, size_t size) {
+    switch (size) {
+    case 4: memcpy(to, from, 4); break;
+    case 8: memcpy(to, from, 8); break;
+    case 24: memcpy(to, from, 24); break;
+    default: memcpy(to, from, size);
     }
+}
+
+/* Row `to` of a table becomes a copy of row `from`. */
+static void gxp_copy_row(gx_body *body, uint32_t table, size_t from, size_t to) {
+    const gxp_column *column = gxp_tables[table].columns, *end = column + gxp_tables[table].column_count;
+    for (; column < end; column++) {
+        char *data = (char *)gxp_array_at(body, column);
+        if (data != NULL) gxp_move_item(data + to * column->size, data + from * column->size, column->size);
+    }
+}
+
+/* Bytes of a row in the columns of that use */
+static size_t gxp_row_size(uint32_t table, uint32_t use) {
+    size_t size = 0;
+    uint32_t i;
+    for (i = 0; i < gxp_tables[table].column_count; i++)
+        if (gxp_tables[table].columns[i].use & use) size += gxp_tables[table].columns[i].size;
+    return size;
 }
 
 /* >>basics: sorting, hashing, sets, vectors ------------------------------------------------------------------------ */
@@ -1010,6 +1306,19 @@ static uint64_t gxp_mix(uint64_t x) { /* splitmix64's finaliser */
     return x ^ (x >> 31);
 }
 
+/* By words of 8 bytes, the last one filled up with 0 */
+static uint64_t gxp_hash_bytes(uint64_t hash, const unsigned char *bytes, size_t count) {
+    uint64_t word;
+    hash = gxp_mix(hash ^ count);
+    for (; count >= sizeof word; count -= sizeof word, bytes += sizeof word) {
+        memcpy(&word, bytes, sizeof word);
+        hash = gxp_mix(hash ^ word);
+    }
+    word = 0;
+    if (count > 0) memcpy(&word, bytes, count);
+    return gxp_mix(hash ^ word);
+}
+
 static uint64_t gxp_hash_words(uint64_t hash, const uint32_t *words, size_t count) {
     size_t i;
     hash = gxp_mix(hash ^ count);
@@ -1065,7 +1374,9 @@ static void gxp_triangle_normal(const double *x, const uint32_t *t, double n[3])
     n[2] = p[0] * q[1] - p[1] * q[0];
 }
 
-static double gxp_seconds(const gx_body *body) { return body->clock ? body->clock(body->clock_user) : 0; }
+static double gxp_seconds(const gx_body *body) {
+    return body->config.clock ? body->config.clock(body->config.clock_user) : 0;
+}
 
 /* >>mesh: elements, faces, nodes, boxes ---------------------------------------------------------------------------- */
 /* Reads the mesh: which elements are around a node, what is behind a face, volumes, densities. In: the mesh that
@@ -1105,18 +1416,19 @@ static uint32_t gxp_face_element(const gxb_complex *cx, uint32_t face, uint32_t 
 static void gxp_list_node_elements(gx_body *body) {
     const uint32_t *elements = body->complex->elements;
     uint32_t i;
-    memset(body->node_start, 0, ((size_t)body->node_count + 1) * sizeof *body->node_start);
-    for (i = 0; i < 4 * body->element_count; i++) body->node_start[elements[i] + 1]++;
-    for (i = 0; i < body->node_count; i++) body->node_start[i + 1] += body->node_start[i];
-    for (i = 0; i < 4 * body->element_count; i++) body->node_elements[body->node_start[elements[i]]++] = i / 4;
-    for (i = body->node_count; i > 0; i--) body->node_start[i] = body->node_start[i - 1];
-    body->node_start[0] = 0;
+    memset(body->mesh.node_start, 0, ((size_t)body->mesh.node_count + 1) * sizeof *body->mesh.node_start);
+    for (i = 0; i < 4 * body->mesh.element_count; i++) body->mesh.node_start[elements[i] + 1]++;
+    for (i = 0; i < body->mesh.node_count; i++) body->mesh.node_start[i + 1] += body->mesh.node_start[i];
+    for (i = 0; i < 4 * body->mesh.element_count; i++)
+        body->mesh.node_elements[body->mesh.node_start[elements[i]]++] = i / 4;
+    for (i = body->mesh.node_count; i > 0; i--) body->mesh.node_start[i] = body->mesh.node_start[i - 1];
+    body->mesh.node_start[0] = 0;
 }
 
 static void gxp_element_positions(const gx_body *body, uint32_t element, double x[12]) {
     int k;
     for (k = 0; k < 4; k++)
-        memcpy(x + 3 * k, body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)element + (size_t)k],
+        memcpy(x + 3 * k, body->mesh.positions + 3 * (size_t)body->complex->elements[4 * (size_t)element + (size_t)k],
                3 * sizeof *x);
 }
 
@@ -1134,7 +1446,7 @@ static int gxp_rounds_inverted(const gx_body *body, uint32_t element) {
 }
 
 static double gxp_density(const gx_body *body, uint32_t element) {
-    return body->materials[body->element_materials[element]].density;
+    return body->mesh.materials[body->mesh.element_materials[element]].density;
 }
 
 static void gxp_box_of(const gx_body *body, gxp_box *box) {
@@ -1143,8 +1455,8 @@ static void gxp_box_of(const gx_body *body, gxp_box *box) {
     int k, n;
     for (i = box->first; i < box->first + box->count; i++)
         for (n = 0; n < 4; n++) {
-            const double *x =
-                body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)body->box_elements[i] + (size_t)n];
+            const double *x = body->mesh.positions +
+                              3 * (size_t)body->complex->elements[4 * (size_t)body->mesh.box_elements[i] + (size_t)n];
             for (k = 0; k < 3 && i == box->first && n == 0; k++) low[k] = high[k] = x[k];
             for (k = 0; k < 3; k++) {
                 low[k] = x[k] < low[k] ? x[k] : low[k];
@@ -1157,7 +1469,7 @@ static void gxp_box_of(const gx_body *body, gxp_box *box) {
 
 static double gxp_element_key(const gx_body *body, uint32_t element, int axis) {
     const uint32_t *n = body->complex->elements + 4 * (size_t)element;
-    const double *x = body->positions + axis;
+    const double *x = body->mesh.positions + axis;
     return x[3 * (size_t)n[0]] * 0.25 + x[3 * (size_t)n[1]] * 0.25 + x[3 * (size_t)n[2]] * 0.25 +
            x[3 * (size_t)n[3]] * 0.25;
 }
@@ -1184,26 +1496,26 @@ static void gxp_select(const gx_body *body, uint32_t *e, int64_t count, int64_t 
 
 static void gxp_build_boxes(gx_body *body) {
     uint32_t i, b;
-    for (i = 0; i < body->element_count; i++) body->box_elements[i] = i;
-    memset(&body->boxes[0], 0, sizeof body->boxes[0]);
-    body->boxes[0].count = body->element_count;
-    body->box_count = 1;
-    for (b = 0; b < body->box_count; b++) {
-        gxp_box *box = &body->boxes[b];
+    for (i = 0; i < body->mesh.element_count; i++) body->mesh.box_elements[i] = i;
+    memset(&body->mesh.boxes[0], 0, sizeof body->mesh.boxes[0]);
+    body->mesh.boxes[0].count = body->mesh.element_count;
+    body->mesh.box_count = 1;
+    for (b = 0; b < body->mesh.box_count; b++) {
+        gxp_box *box = &body->mesh.boxes[b];
         const uint32_t first = box->first, count = box->count, half = count / 2;
         int axis = 0, k;
         gxp_box_of(body, box);
         if (count <= 4) continue;
         for (k = 1; k < 3; k++)
             if (box->high[k] - box->low[k] > box->high[axis] - box->low[axis]) axis = k;
-        gxp_select(body, body->box_elements + first, count, half, axis);
-        box->first = body->box_count;
+        gxp_select(body, body->mesh.box_elements + first, count, half, axis);
+        box->first = body->mesh.box_count;
         box->count = 0;
-        memset(&body->boxes[body->box_count], 0, 2 * sizeof *body->boxes);
-        body->boxes[body->box_count].first = first;
-        body->boxes[body->box_count++].count = half;
-        body->boxes[body->box_count].first = first + half;
-        body->boxes[body->box_count++].count = count - half;
+        memset(&body->mesh.boxes[body->mesh.box_count], 0, 2 * sizeof *body->mesh.boxes);
+        body->mesh.boxes[body->mesh.box_count].first = first;
+        body->mesh.boxes[body->mesh.box_count++].count = half;
+        body->mesh.boxes[body->mesh.box_count].first = first + half;
+        body->mesh.boxes[body->mesh.box_count++].count = count - half;
     }
 }
 
@@ -1335,7 +1647,7 @@ static int gxp_triangle_near_element(const gx_body *body, const gxp_search *s, u
     gxp_heights over, along;
     int i, n, beyond = 0;
     for (n = 0; n < 4; n++)
-        for (i = 0; i < 3; i++) x[i][n] = body->positions[3 * (size_t)node[n] + (size_t)i];
+        for (i = 0; i < 3; i++) x[i][n] = body->mesh.positions[3 * (size_t)node[n] + (size_t)i];
     for (i = 0; i < 3; i++) {
         beyond |= gxp_greatest(x[i]) < s->low[i];
         beyond |= gxp_least(x[i]) > s->high[i];
@@ -1362,10 +1674,10 @@ static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_
     uint32_t stack[128], depth = 0, count = 0, i, k;
     gx_result result = GX_OK;
     found->count = 0;
-    gxp_search_init(&search, p, ldexp(1, body->complex->shift), &body->boxes[0]);
+    gxp_search_init(&search, p, ldexp(1, body->complex->shift), &body->mesh.boxes[0]);
     stack[depth++] = 0;
     while (depth > 0 && result == GX_OK) {
-        const gxp_box *box = &body->boxes[stack[--depth]];
+        const gxp_box *box = &body->mesh.boxes[stack[--depth]];
         if (!gxp_triangle_near_box(&search, box)) continue;
         if (box->count == 0) {
             stack[depth++] = box->first + 1;
@@ -1373,18 +1685,18 @@ static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_
         } else
             result = gxp_words_room(body, found, box->count);
         for (i = 0; i < box->count && result == GX_OK; i++) {
-            const uint32_t element = found->data[found->count++] = body->box_elements[box->first + i];
-            GXP_FETCH(elements + 4 * (size_t)element);
+            const uint32_t element = found->data[found->count++] = body->mesh.box_elements[box->first + i];
+            GXP_PREFETCH(elements + 4 * (size_t)element);
         }
     }
     for (i = 0; i < found->count && result == GX_OK; i++) {
         for (k = 0; k < 4 && i + 4 < found->count; k++)
-            GXP_FETCH(body->positions + 3 * (size_t)elements[4 * (size_t)found->data[i + 4] + k]);
+            GXP_PREFETCH(body->mesh.positions + 3 * (size_t)elements[4 * (size_t)found->data[i + 4] + k]);
         if (!gxp_triangle_near_element(body, &search, found->data[i])) continue;
-        GXP_FETCH(&body->complex->leaves[found->data[i]]);
-        GXP_FETCH(body->complex->element_faces + 4 * (size_t)found->data[i]);
-        GXP_FETCH(body->complex->element_edges + 6 * (size_t)found->data[i]);
-        GXP_FETCH(body->complex->root + found->data[i]);
+        GXP_PREFETCH(&body->complex->leaves[found->data[i]]);
+        GXP_PREFETCH(body->complex->element_faces + 4 * (size_t)found->data[i]);
+        GXP_PREFETCH(body->complex->element_edges + 6 * (size_t)found->data[i]);
+        GXP_PREFETCH(body->complex->root + found->data[i]);
         found->data[count++] = found->data[i];
     }
     found->count = count;
@@ -1395,82 +1707,35 @@ static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_
 /* The columns of copies, cells and leaves, each listed once with what is done with it. In: a body. Out: room for more
    rows, rows that are moved, the state as a hash. Touches these tables only. */
 
-static gx_result gxp_reserve_copies(gx_body *body, size_t extra) {
-    const gx_allocator *a = &body->allocator;
-    const size_t n = body->copy_count;
-    int i;
-    gx_result r = gxp_reserve(a, &body->copy_node, sizeof *body->copy_node, n, &body->copy_capacity, extra);
-    if (r == GX_OK) r = gxp_reserve(a, &body->displacement, 3 * sizeof(double), n, &body->displacement_capacity, extra);
-    if (r == GX_OK) r = gxp_reserve(a, &body->velocity, 3 * sizeof(double), n, &body->velocity_capacity, extra);
-    if (r == GX_OK) r = gxp_reserve(a, &body->rest_time, sizeof(double), n, &body->rest_time_capacity, extra);
-    if (r == GX_OK)
-        r = gxp_reserve(a, &body->copy_label, sizeof *body->copy_label, n, &body->copy_label_capacity, extra);
-    if (r == GX_OK)
-        r = gxp_reserve(a, &body->copy_before, sizeof *body->copy_before, n, &body->copy_before_capacity, extra);
-    for (i = 0; i < 4 && r == GX_OK && body->history[i] != NULL; i++)
-        r = gxp_reserve(a, &body->history[i], 3 * sizeof(double), n, &body->history_capacity[i], extra);
-    return r == GX_OK ? gxp_reserve(a, &body->held, 1, n, &body->held_capacity, extra) : r;
-}
-
-/* The state of one copy becomes that of another. */
-static void gxp_copy_state(gx_body *body, uint32_t from, uint32_t to) {
-    const size_t a = 3 * (size_t)from, b = 3 * (size_t)to, size = 3 * sizeof(double);
-    int i;
-    memcpy(body->displacement + b, body->displacement + a, size);
-    memcpy(body->velocity + b, body->velocity + a, size);
-    for (i = 0; i < 2 && body->previous_dt > 0; i++) memcpy(body->history[i] + b, body->history[i] + a, size);
-    body->rest_time[to] = body->rest_time[from];
-    body->held[to] = body->held[from];
-    body->copy_label[to] = body->copy_label[from];
-    body->copy_before[to] = body->copy_before[from];
-}
-
 static uint32_t gxp_copy_of(const gx_body *body, uint32_t cell, uint32_t node) {
-    return body->cells[cell].copies[gxp_local_node(body, body->cells[cell].element, node)];
-}
-
-/* Room for a number beside each cell that there is room for; new ones are 0. */
-static gx_result gxp_reserve_beside_cells(gx_body *body, uint32_t **words, uint32_t *capacity) {
-    const uint32_t before = *capacity;
-    const gx_result r = gxp_reserve(&body->allocator, words, sizeof **words, before, capacity,
-                                    body->cell_capacity > before ? body->cell_capacity - before : 0);
-    if (*capacity > before) memset(*words + before, 0, (size_t)(*capacity - before) * sizeof **words);
-    return r;
-}
-
-static gx_result gxp_reserve_cells(gx_body *body, size_t extra) {
-    gx_result r =
-        gxp_reserve(&body->allocator, &body->cells, sizeof *body->cells, body->cell_count, &body->cell_capacity, extra);
-    if (r == GX_OK) r = gxp_reserve_beside_cells(body, &body->cell_stamp, &body->cell_stamp_capacity);
-    if (r == GX_OK) r = gxp_reserve_beside_cells(body, &body->cell_saved, &body->cell_saved_capacity);
-    return r == GX_OK ? gxp_reserve_beside_cells(body, &body->cell_fresh, &body->cell_fresh_capacity) : r;
+    return body->cells.data[cell].copies[gxp_local_node(body, body->cells.data[cell].element, node)];
 }
 
 /* Room beside new leaves of the complex; new leaves start in their parent's cell, outside its list. */
 static gx_result gxp_follow_leaves(gx_body *body) {
     const uint32_t count = body->complex->leaf_count;
-    const gx_result result = gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, body->leaf_count,
-                                         &body->leaf_capacity, count - body->leaf_count);
+    const gx_result result = gxp_grow_rows(body, GXP_LEAVES, count - body->leaves.count);
     if (result != GX_OK) return result;
-    for (; body->leaf_count < count; body->leaf_count++) {
-        gxp_leaf *leaf = &body->leaves[body->leaf_count];
-        memset(leaf, 0, sizeof *leaf);
-        leaf->cell = body->leaves[body->complex->leaves[body->leaf_count].parent].cell;
+    for (; body->leaves.count < count; body->leaves.count++) {
+        gxp_leaf *leaf = &body->leaves.data[body->leaves.count];
+        leaf->cell = body->leaves.data[body->complex->leaves[body->leaves.count].parent].cell;
         leaf->next = GXP_NONE;
     }
     return GX_OK;
 }
 
 static uint64_t gxp_hash_state(const gx_body *body, size_t copies) {
-    return gxp_hash_doubles(gxp_hash_doubles(1, body->displacement, 3 * copies), body->velocity, 3 * copies) | 1;
+    return gxp_hash_doubles(gxp_hash_doubles(1, body->copies.displacement, 3 * copies), body->copies.velocity,
+                            3 * copies) |
+           1;
 }
 
 /* Since the body was saved, copied or read its solver knows of no step: if the state of its first copies has been
    written, all wakes, in a copy as in the original. */
 static void gxp_wake_resumed(gx_body *body, size_t copies) {
     uint32_t i;
-    if (body->resumed == 0 || body->resumed == gxp_hash_state(body, copies)) return;
-    for (i = 0; i < body->copy_count; i++) body->rest_time[i] = 0;
+    if (body->model.resumed == 0 || body->model.resumed == gxp_hash_state(body, copies)) return;
+    for (i = 0; i < body->copies.count; i++) body->copies.rest_time[i] = 0;
 }
 
 /* >>transaction: undoing a cut ------------------------------------------------------------------------------------- */
@@ -1486,66 +1751,87 @@ typedef struct gxp_cut {
     gx_failure failure;
 } gxp_cut;
 
-/* Saves a cell that is about to change, unless this cut has saved or made it. */
-static gx_result gxp_save_cell(gx_body *body, uint32_t cell) {
-    gx_result r;
-    if (body->cell_saved[cell] == body->transaction) return GX_OK;
-    r = gxp_reserve(&body->allocator, &body->saved_cells, sizeof *body->saved_cells, body->saved_cell_count,
-                    &body->saved_cell_capacity, 1);
-    if (r != GX_OK) return r;
-    body->saved_cells[body->saved_cell_count].index = cell;
-    body->saved_cells[body->saved_cell_count++].cell = body->cells[cell];
-    body->cell_saved[cell] = body->transaction;
+/* Room in a log for that many further rows of its table */
+static gx_result gxp_log_room(gx_body *body, gxp_log *log, uint32_t table, size_t rows) {
+    const size_t size = gxp_row_size(table, GXP_UNDONE);
+    const gx_result result = gxp_words_room(body, &log->rows, rows);
+    if (result != GX_OK) return result;
+    return gxp_reserve(&body->config.allocator, &log->bytes, 1, log->rows.count * size, &log->byte_capacity,
+                       rows * size);
+}
+
+/* Passes the columns of a row that are undone from the table to bytes, or back. */
+static void gxp_pass_undone(gx_body *body, uint32_t table, uint32_t row, unsigned char *bytes, int back) {
+    const gxp_column *column = gxp_tables[table].columns, *end = column + gxp_tables[table].column_count;
+    for (; column < end; column++) {
+        unsigned char *item = (unsigned char *)gxp_array_at(body, column) + row * column->size;
+        if (!(column->use & GXP_UNDONE)) continue;
+        memcpy(back ? item : bytes, back ? bytes : item, column->size);
+        bytes += column->size;
+    }
+}
+
+static gx_result gxp_log_row(gx_body *body, gxp_log *log, uint32_t table, uint32_t row) {
+    const gx_result result = gxp_log_room(body, log, table, 1);
+    if (result != GX_OK) return result;
+    gxp_pass_undone(body, table, row, log->bytes + log->rows.count * gxp_row_size(table, GXP_UNDONE), 0);
+    log->rows.data[log->rows.count++] = row;
     return GX_OK;
 }
 
-/* Gives a leaf to a cell. Leaves that this cut made need not be saved. */
-static gx_result gxp_set_leaf(gx_body *body, uint32_t leaf, uint32_t cell, uint32_t next) {
-    if (leaf < body->before.leaves) {
-        const gx_result r = gxp_reserve(&body->allocator, &body->saved_leaves, sizeof *body->saved_leaves,
-                                        body->saved_leaf_count, &body->saved_leaf_capacity, 1);
-        if (r != GX_OK) return r;
-        body->saved_leaves[body->saved_leaf_count].index = leaf;
-        body->saved_leaves[body->saved_leaf_count++].leaf = body->leaves[leaf];
+/* Puts rows back, the last one first. */
+static void gxp_undo_rows(gx_body *body, gxp_log *log, uint32_t table) {
+    const size_t size = gxp_row_size(table, GXP_UNDONE);
+    while (log->rows.count > 0) {
+        log->rows.count--;
+        gxp_pass_undone(body, table, log->rows.data[log->rows.count], log->bytes + log->rows.count * size, 1);
     }
-    body->leaves[leaf].cell = cell;
-    body->leaves[leaf].next = next;
+}
+
+/* Logs a cell that is about to change, unless this cut has logged or made it. */
+static gx_result gxp_save_cell(gx_body *body, uint32_t cell) {
+    gx_result result;
+    if (body->cells.saved_by[cell] == body->undo.cut_number) return GX_OK;
+    result = gxp_log_row(body, &body->undo.cells, GXP_CELLS, cell);
+    if (result == GX_OK) body->cells.saved_by[cell] = body->undo.cut_number;
+    return result;
+}
+
+/* Gives a leaf to a cell. Leaves that this cut made need no log. */
+static gx_result gxp_set_leaf(gx_body *body, uint32_t leaf, uint32_t cell, uint32_t next) {
+    if (leaf < body->undo.counts[GXP_LEAVES]) {
+        const gx_result result = gxp_log_row(body, &body->undo.leaves, GXP_LEAVES, leaf);
+        if (result != GX_OK) return result;
+    }
+    body->leaves.data[leaf].cell = cell;
+    body->leaves.data[leaf].next = next;
     return GX_OK;
 }
 
 static void gxp_begin(gxp_cut *cut) {
     gx_body *body = cut->body;
+    gxp_undo *undo = &body->undo;
+    uint32_t t;
     gxb_complex_begin(body->complex);
-    body->saved_cell_count = body->saved_leaf_count = 0;
-    body->transaction++;
-    body->before.cells = body->cell_count;
-    body->before.leaves = body->leaf_count;
-    body->before.copies = body->copy_count;
-    body->before.labels = body->label_count;
-    body->before.surfaces = body->surface_count;
-    body->before.maps = body->map_count;
-    body->before.dirty = body->skin.dirty.count;
-    body->before.splits = body->splits.count;
+    undo->cells.rows.count = undo->leaves.rows.count = 0;
+    undo->cut_number++;
+    for (t = 0; t < GXP_TABLES; t++) undo->counts[t] = *gxp_count_at(body, t);
+    undo->labels = body->cuts.label_count;
+    undo->dirty = body->skin.dirty.count;
+    undo->splits = body->view.splits.count;
 }
 
 static void gxp_rollback(gxp_cut *cut) {
     gx_body *body = cut->body;
-    while (body->saved_cell_count > 0) {
-        const gxp_saved_cell *saved = &body->saved_cells[--body->saved_cell_count];
-        body->cells[saved->index] = saved->cell;
-    }
-    while (body->saved_leaf_count > 0) {
-        const gxp_saved_leaf *saved = &body->saved_leaves[--body->saved_leaf_count];
-        body->leaves[saved->index] = saved->leaf;
-    }
-    body->cell_count = body->before.cells;
-    body->leaf_count = body->before.leaves;
-    body->copy_count = body->before.copies;
-    body->label_count = body->before.labels;
-    body->surface_count = body->before.surfaces;
-    body->map_count = body->before.maps;
-    body->skin.dirty.count = body->before.dirty;
-    body->splits.count = body->before.splits;
+    gxp_undo *undo = &body->undo;
+    uint32_t t;
+    gxp_undo_rows(body, &undo->cells, GXP_CELLS);
+    gxp_undo_rows(body, &undo->leaves, GXP_LEAVES);
+    for (t = 0; t < GXP_TABLES; t++) /* a cut appends to these, and makes others anew */
+        if (gxp_row_size(t, GXP_TOPOLOGY) > 0) *gxp_count_at(body, t) = undo->counts[t];
+    body->cuts.label_count = undo->labels;
+    body->skin.dirty.count = undo->dirty;
+    body->view.splits.count = undo->splits;
     gxb_complex_rollback(body->complex);
 }
 
@@ -1563,32 +1849,33 @@ static int gxp_is_link(const gx_body *body, uint32_t facet) {
     return !f->wall && gxp_is_kept(body, f->leaf[0]) && gxp_is_kept(body, f->leaf[1]);
 }
 
-/* Collects the leaf's points in body->list. */
-static gx_result gxp_leaf_points(gx_body *body, uint32_t leaf) {
+/* Collects the leaf's points in body->scratch.leaf_points. */
+static gx_result gxp_collect_leaf_points(gx_body *body, uint32_t leaf) {
     gxb_complex *cx = body->complex;
     uint32_t first, count = 0, i, j, e0, en;
     gx_result result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
-    body->list.count = 0;
+    body->scratch.leaf_points.count = 0;
     if (result == GX_OK) result = gxb_leaf_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
         result = gxb_facet_edges(cx, cx->pool[first + i], &e0, &en);
         for (j = 0; j < en && result == GX_OK; j++) {
             const uint32_t e = cx->pool[e0 + j];
-            result = gxp_push(body, &body->list, cx->edges[e >> 1].v[e & 1]);
+            result = gxp_push(body, &body->scratch.leaf_points, cx->edges[e >> 1].v[e & 1]);
         }
     }
     return result;
 }
 
-/* Collects the facet's corners in body->seeds. */
-static gx_result gxp_facet_points(gx_body *body, uint32_t facet) {
+/* Collects the facet's corners in body->scratch.facet_points. */
+static gx_result gxp_collect_facet_points(gx_body *body, uint32_t facet) {
     gxb_complex *cx = body->complex;
     uint32_t e0, en, i;
     gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
-    body->seeds.count = 0;
-    if (result == GX_OK) result = gxp_words_room(body, &body->seeds, en);
+    body->scratch.facet_points.count = 0;
+    if (result == GX_OK) result = gxp_words_room(body, &body->scratch.facet_points, en);
     for (i = 0; i < en && result == GX_OK; i++)
-        body->seeds.data[body->seeds.count++] = cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1];
+        body->scratch.facet_points.data[body->scratch.facet_points.count++] =
+            cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1];
     return result;
 }
 
@@ -1602,21 +1889,21 @@ static gx_result gxp_push_leaves(gx_body *body, uint32_t reference, gxp_words *o
 }
 
 /* Appends the edges of the complex into which this one has been divided. */
-static gx_result gxp_push_edge_pieces(gx_body *body, uint32_t edge, gxp_words *out) {
+static gx_result gxp_push_divided_edges(gx_body *body, uint32_t edge, gxp_words *out) {
     const uint32_t child = body->complex->edges[edge].child;
     gx_result result;
     if (child == GXB_NONE) return gxp_push(body, out, edge);
-    result = gxp_push_edge_pieces(body, child, out);
-    return result == GX_OK ? gxp_push_edge_pieces(body, child + 1, out) : result;
+    result = gxp_push_divided_edges(body, child, out);
+    return result == GX_OK ? gxp_push_divided_edges(body, child + 1, out) : result;
 }
 
 /* Appends the facets into which this one has been divided. */
-static gx_result gxp_push_pieces(gx_body *body, uint32_t facet, gxp_words *out) {
+static gx_result gxp_push_divided_facets(gx_body *body, uint32_t facet, gxp_words *out) {
     const uint32_t child = body->complex->facets[facet].child;
     gx_result result;
     if (child == GXB_NONE) return gxp_push(body, out, facet);
-    result = gxp_push_pieces(body, child, out);
-    return result == GX_OK ? gxp_push_pieces(body, child + 1, out) : result;
+    result = gxp_push_divided_facets(body, child, out);
+    return result == GX_OK ? gxp_push_divided_facets(body, child + 1, out) : result;
 }
 
 /* Appends to seeds the leaves on both sides of the facets into which the labelled ones have been divided. */
@@ -1639,88 +1926,86 @@ static int gxp_edge_is_divided(const gxb_complex *cx, uint32_t mesh_edge) {
     return edge != GXB_NONE && cx->edges[edge].child != GXB_NONE;
 }
 
-static gx_result gxp_visit_cell(gx_body *body, uint32_t cell) {
-    if (body->cell_stamp[cell] == body->stamp) return GX_OK;
-    body->cell_stamp[cell] = body->stamp;
-    return gxp_push(body, &body->queue, cell);
+/* Appends a cell that the walk has not met yet. */
+static gx_result gxp_visit_cell(gx_body *body, uint32_t cell, gxp_words *visited) {
+    if (body->cells.stamp[cell] == body->scratch.stamp) return GX_OK;
+    body->cells.stamp[cell] = body->scratch.stamp;
+    return gxp_push(body, visited, cell);
 }
 
 /* >>numbering: cells and fragments as the caller sees them; scope -------------------------------------------------- */
 /* In: cells and copies. Out: the kept cells by element, fragments numbered in the order of their first cells, valid
    until the next cut; the cells that a cut may touch, by a stamp. Touches the view's lists and stamps of cells. */
 
-/* Lists the kept cells by element and joins copies that a cell moves by: cells of one fragment share copies from link
- * to link. */
+/* Lists the kept cells by element and joins the copies of each: cells of one fragment share copies from link to link.
+ */
 static gx_result gxp_list_cells(gx_body *body) {
+    gxp_view *view = &body->view;
     uint32_t e, cell, i;
-    gx_result result = gxp_set_words(body, &body->view_cells, body->cell_count);
-    if (result == GX_OK) result = gxp_set_words(body, &body->view_fragments, body->cell_count);
-    if (result == GX_OK) result = gxp_set_words(body, &body->cell_element, body->cell_count);
-    if (result == GX_OK) result = gxp_set_words(body, &body->cell_copies, 4 * (size_t)body->cell_count);
-    if (result == GX_OK) result = gxp_set_words(body, &body->copy_fragment, body->copy_count);
-    if (result == GX_OK)
-        result = gxp_reserve(&body->allocator, &body->cell_volume, sizeof(double), 0, &body->cell_volume_capacity,
-                             body->cell_count);
+    gx_result result;
+    view->count = 0;
+    result = gxp_grow_rows(body, GXP_VIEW, body->cells.count);
+    if (result == GX_OK) result = gxp_start_words(body, &view->copy_fragment, body->copies.count);
     if (result != GX_OK) return result;
-    body->copy_fragment.count = body->copy_count;
-    for (i = 0; i < body->copy_count; i++) body->copy_fragment.data[i] = i;
-    for (e = 0; e < body->element_count; e++)
-        for (cell = e; cell != GXP_NONE; cell = body->cells[cell].next) {
-            const gxp_cell *c = &body->cells[cell];
+    view->copy_fragment.count = body->copies.count;
+    for (i = 0; i < body->copies.count; i++) view->copy_fragment.data[i] = i;
+    for (e = 0; e < body->mesh.element_count; e++)
+        for (cell = e; cell != GXP_NONE; cell = body->cells.data[cell].next) {
+            const gxp_cell *c = &body->cells.data[cell];
             if (!c->kept) continue;
-            body->cell_volume[body->view_cells.count] = c->volume;
-            body->view_cells.data[body->view_cells.count++] = cell;
-            body->cell_element.data[body->cell_element.count++] = e;
-            memcpy(body->cell_copies.data + body->cell_copies.count, c->copies, sizeof c->copies);
-            body->cell_copies.count += 4;
-            gxp_unite_all(body->copy_fragment.data, c->copies);
+            view->volume[view->count] = c->volume;
+            view->slot[view->count] = cell;
+            view->element[view->count] = e;
+            memcpy(view->copies + 4 * (size_t)view->count++, c->copies, sizeof c->copies);
+            gxp_unite_all(view->copy_fragment.data, c->copies);
         }
     return GX_OK;
 }
 
 /* Numbers fragments in the order of their first cells. */
 static gx_result gxp_number_fragments(gx_body *body) {
+    gxp_view *view = &body->view;
     uint32_t i;
-    gx_result result = gxp_set_words(body, &body->fragment_number, body->copy_count);
+    gx_result result = gxp_start_words(body, &view->fragment_number, body->copies.count);
     if (result != GX_OK) return result;
-    memset(body->fragment_number.data, 0xff, body->copy_count * sizeof *body->fragment_number.data);
-    body->fragment_count = 0;
-    for (i = 0; i < body->view_cells.count; i++) {
-        const uint32_t copy = gxp_find(body->copy_fragment.data, body->cell_copies.data[4 * i]);
-        if (body->fragment_number.data[copy] == GXP_NONE) body->fragment_number.data[copy] = body->fragment_count++;
-        body->view_fragments.data[body->view_fragments.count++] = body->fragment_number.data[copy];
+    memset(view->fragment_number.data, 0xff, body->copies.count * sizeof *view->fragment_number.data);
+    view->fragment_count = 0;
+    for (i = 0; i < view->count; i++) {
+        const uint32_t copy = gxp_find(view->copy_fragment.data, view->copies[4 * i]);
+        if (view->fragment_number.data[copy] == GXP_NONE) view->fragment_number.data[copy] = view->fragment_count++;
+        view->fragment[i] = view->fragment_number.data[copy];
     }
     return GX_OK;
 }
 
 /* Fragment of a cell slot, by the view. */
 static uint32_t gxp_cell_fragment(gx_body *body, uint32_t cell) {
-    return body->fragment_number.data[gxp_find(body->copy_fragment.data, body->cells[cell].copies[0])];
+    return body->view.fragment_number.data[gxp_find(body->view.copy_fragment.data, body->cells.data[cell].copies[0])];
 }
 
 /* Cells and fragments. What they weigh is summed for gx_body_view only. */
 static gx_result gxp_update_view(gx_body *body) {
     gx_result result;
-    if (!body->view_stale) return GX_OK;
-    body->labels_known = 0;
+    if (!body->view.stale) return GX_OK;
+    body->view.labels_known = 0;
     result = gxp_list_cells(body);
     if (result == GX_OK) result = gxp_number_fragments(body);
     if (result != GX_OK) return result;
-    body->view_stale = 0;
-    body->sums_stale = body->labels_known = 1;
-    body->splits.count = 0;
+    body->view.stale = 0;
+    body->view.sums_stale = body->view.labels_known = 1;
+    body->view.splits.count = 0;
     return GX_OK;
 }
 
 static uint32_t gxp_old_leaf(const gx_body *body, uint32_t leaf) {
-    while (leaf >= body->leaf_count) leaf = body->complex->leaves[leaf].parent;
+    while (leaf >= body->leaves.count) leaf = body->complex->leaves[leaf].parent;
     return leaf;
 }
 
 /* May the cut touch this leaf? Its cell (before the cut) is in scope where it is stamped. */
 static int gxp_in_scope(void *user, uint32_t leaf) {
     const gx_body *body = (const gx_body *)user;
-    return body->cell_stamp[body->leaves[gxp_old_leaf(body, leaf)].cell] == body->scope_stamp;
+    return body->cells.stamp[body->leaves.data[gxp_old_leaf(body, leaf)].cell] == body->scratch.scope_stamp;
 }
 
 /* Stamps the cells that the cut may touch. */
@@ -1733,22 +2018,22 @@ static gx_result gxp_stamp_scope(gxp_cut *cut, int *scoped) {
     if (!*scoped) return GX_OK;
     result = gxp_update_view(body);
     if (result != GX_OK) return result;
-    body->scope_stamp = ++body->stamp;
+    body->scratch.scope_stamp = ++body->scratch.stamp;
     for (i = 0; i < desc->scope_cell_count; i++) {
-        if (desc->scope_cells[i] >= body->view_cells.count) {
+        if (desc->scope_cells[i] >= body->view.count) {
             cut->failure.index = i;
             return GX_ERROR_INDEX;
         }
-        body->cell_stamp[body->view_cells.data[desc->scope_cells[i]]] = body->scope_stamp;
+        body->cells.stamp[body->view.slot[desc->scope_cells[i]]] = body->scratch.scope_stamp;
     }
     for (i = 0; i < desc->scope_fragment_count; i++) {
-        if (desc->scope_fragments[i] >= body->fragment_count) {
+        if (desc->scope_fragments[i] >= body->view.fragment_count) {
             cut->failure.index = i;
             return GX_ERROR_INDEX;
         }
-        for (j = 0; j < body->view_cells.count; j++)
-            if (body->view_fragments.data[j] == desc->scope_fragments[i])
-                body->cell_stamp[body->view_cells.data[j]] = body->scope_stamp;
+        for (j = 0; j < body->view.count; j++)
+            if (body->view.fragment[j] == desc->scope_fragments[i])
+                body->cells.stamp[body->view.slot[j]] = body->scratch.scope_stamp;
     }
     return GX_OK;
 }
@@ -1799,11 +2084,11 @@ typedef struct gxp_surface {
 
 static void gxp_surface_free(gx_body *body, gxp_surface *s) {
     const size_t v = s->given->vertex_count, t = s->given->triangle_count;
-    gxp_release(&body->allocator, s->point, v * sizeof *s->point);
-    gxp_release(&body->allocator, s->triangles, t * sizeof *s->triangles);
-    gxp_release(&body->allocator, s->flat, t);
-    gxp_release(&body->allocator, s->edges, 3 * t * sizeof *s->edges);
-    gxp_release(&body->allocator, s->merged, v * sizeof *s->merged);
+    gxp_release(&body->config.allocator, s->point, v * sizeof *s->point);
+    gxp_release(&body->config.allocator, s->triangles, t * sizeof *s->triangles);
+    gxp_release(&body->config.allocator, s->flat, t);
+    gxp_release(&body->config.allocator, s->edges, 3 * t * sizeof *s->edges);
+    gxp_release(&body->config.allocator, s->merged, v * sizeof *s->merged);
 }
 
 static gx_result gxp_check_surface(gxp_cut *cut, const gx_surface *s, size_t number) {
@@ -1850,7 +2135,7 @@ static int gxp_is_flat(const double *a, const double *b, const double *c) {
 
 static gx_result gxp_merge_vertices(gx_body *body, gxp_surface *s) {
     const size_t n = s->given->vertex_count;
-    gxp_named_point *named = (gxp_named_point *)gxp_allocate(&body->allocator, n * sizeof *named);
+    gxp_named_point *named = (gxp_named_point *)gxp_allocate(&body->config.allocator, n * sizeof *named);
     size_t i;
     if (named == NULL) return GX_ERROR_MEMORY;
     for (i = 0; i < n; i++) {
@@ -1863,7 +2148,7 @@ static gx_result gxp_merge_vertices(gx_body *body, gxp_surface *s) {
                          named[i].x[2] == named[i - 1].x[2];
         s->merged[named[i].index] = same ? s->merged[named[i - 1].index] : named[i].index;
     }
-    gxp_release(&body->allocator, named, n * sizeof *named);
+    gxp_release(&body->config.allocator, named, n * sizeof *named);
     return GX_OK;
 }
 
@@ -1934,16 +2219,14 @@ static void gxp_map_triangle(const gx_body *body, const gx_surface *s, size_t tr
 /* Notes a surface that begins to cut: where its labels start, and how material points map to its texture. */
 static gx_result gxp_note_surface(gx_body *body, const gx_surface *given) {
     const size_t maps = given->texture != NULL ? given->triangle_count : 0;
-    gx_result result = gxp_reserve(&body->allocator, &body->surfaces, sizeof *body->surfaces, body->surface_count,
-                                   &body->surface_capacity, 1);
+    gxp_cuts *cuts = &body->cuts;
+    gx_result result = gxp_grow_rows(body, GXP_SURFACES, 1);
     uint32_t i;
-    if (result == GX_OK)
-        result =
-            gxp_reserve(&body->allocator, &body->maps, 8 * sizeof(double), body->map_count, &body->map_capacity, maps);
+    if (result == GX_OK) result = gxp_grow_rows(body, GXP_MAPS, maps);
     if (result != GX_OK) return result;
-    body->surfaces[body->surface_count].label = body->label_count;
-    body->surfaces[body->surface_count++].map = maps > 0 ? body->map_count : GXP_NONE;
-    for (i = 0; i < maps; i++) gxp_map_triangle(body, given, i, body->maps + 8 * (size_t)body->map_count++);
+    cuts->surfaces[cuts->surface_count].label = cuts->label_count;
+    cuts->surfaces[cuts->surface_count++].map = maps > 0 ? cuts->map_count : GXP_NONE;
+    for (i = 0; i < maps; i++) gxp_map_triangle(body, given, i, cuts->maps + 8 * (size_t)cuts->map_count++);
     return GX_OK;
 }
 
@@ -1955,16 +2238,16 @@ static gx_result gxp_surface_open(gxp_cut *cut, gxp_surface *s, const gx_surface
     memset(s, 0, sizeof *s);
     s->given = given;
     s->number = number;
-    s->label = body->label_count;
-    if (t > INT32_MAX - (size_t)body->label_count) return GX_ERROR_LIMIT;
+    s->label = body->cuts.label_count;
+    if (t > INT32_MAX - (size_t)body->cuts.label_count) return GX_ERROR_LIMIT;
     result = gxp_note_surface(body, given);
     if (result != GX_OK) return result;
-    body->label_count += (uint32_t)t;
-    s->point = (uint32_t *)gxp_allocate(&body->allocator, v * sizeof *s->point);
-    s->triangles = (gxb_triangle *)gxp_allocate(&body->allocator, t * sizeof *s->triangles);
-    s->flat = (uint8_t *)gxp_allocate(&body->allocator, t);
-    s->edges = (gxp_half_edge *)gxp_allocate(&body->allocator, 3 * t * sizeof *s->edges);
-    s->merged = (uint32_t *)gxp_allocate(&body->allocator, v * sizeof *s->merged);
+    body->cuts.label_count += (uint32_t)t;
+    s->point = (uint32_t *)gxp_allocate(&body->config.allocator, v * sizeof *s->point);
+    s->triangles = (gxb_triangle *)gxp_allocate(&body->config.allocator, t * sizeof *s->triangles);
+    s->flat = (uint8_t *)gxp_allocate(&body->config.allocator, t);
+    s->edges = (gxp_half_edge *)gxp_allocate(&body->config.allocator, 3 * t * sizeof *s->edges);
+    s->merged = (uint32_t *)gxp_allocate(&body->config.allocator, v * sizeof *s->merged);
     if (!s->point || !s->triangles || !s->flat || !s->edges || !s->merged) return GX_ERROR_MEMORY;
     memset(s->point, 0xff, v * sizeof *s->point);
     memcpy(s->low, given->vertices, sizeof s->low);
@@ -1992,57 +2275,63 @@ static gx_result gxp_surface_open(gxp_cut *cut, gxp_surface *s, const gx_surface
    unless a wall touches it. In: the mesh, at creation; a triangle or a cell, at a cut. Out: which nodes and edges are
    pinched; marks in the complex where a sheet separates what meets there only; the cells that a joint joins. */
 
-/* Walks from element to element through faces that contain the node, stamping; *reached: how many. */
-static gx_result gxp_walk_around(gx_body *body, uint32_t start, uint32_t node, uint32_t *reached) {
+/* Is the node's or edge's joint open: walks from element to element through faces that contain the node and lists them.
+ */
+static gx_result gxp_walk_around(gx_body *body, uint32_t start, uint32_t node, gxp_words *elements) {
     gx_result result = GX_OK;
-    body->queue.count = 0;
-    *reached = 0;
-    body->cell_stamp[start] = body->stamp;
-    result = gxp_push(body, &body->queue, start);
-    while (*reached < body->queue.count && result == GX_OK) {
-        const uint32_t e = body->queue.data[(*reached)++];
+    uint32_t done = 0;
+    elements->count = 0;
+    body->cells.stamp[start] = body->scratch.stamp;
+    result = gxp_push(body, elements, start);
+    while (done < elements->count && result == GX_OK) {
+        const uint32_t e = elements->data[done++];
         uint32_t k;
         for (k = 0; k < 4 && result == GX_OK; k++) {
             const uint32_t other = gxp_neighbour(body, e, k), opposite = body->complex->elements[4 * (size_t)e + k];
-            if (other == GXP_NONE || body->cell_stamp[other] == body->stamp || opposite == node) continue;
-            body->cell_stamp[other] = body->stamp;
-            result = gxp_push(body, &body->queue, other);
+            if (other == GXP_NONE || body->cells.stamp[other] == body->scratch.stamp || opposite == node) continue;
+            body->cells.stamp[other] = body->scratch.stamp;
+            result = gxp_push(body, elements, other);
         }
     }
     return result;
 }
 
-/* Marks nodes and edges whose elements do not hang together through faces around them: there, edges and nodes link too.
-   (An edge's elements come in as many fans as it has pairs of boundary faces.) */
-static gx_result gxp_find_pinches(gx_body *body) {
-    const gxb_complex *cx = body->complex;
-    uint32_t i, j, k, reached;
+/* Marks the nodes whose elements faces do not join: around each of these the walk from one element leaves some out. */
+static gx_result gxp_find_pinched_nodes(gx_body *body) {
+    gxp_words reached = {NULL, 0, 0};
+    uint32_t i;
     gx_result result = GX_OK;
-    for (i = 0; i < body->node_count && result == GX_OK; i++) {
-        const uint32_t first = body->node_start[i], count = body->node_start[i + 1] - first;
+    for (i = 0; i < body->mesh.node_count && result == GX_OK; i++) {
+        const uint32_t first = body->mesh.node_start[i], count = body->mesh.node_start[i + 1] - first;
         if (count == 0) continue;
-        body->stamp++;
-        result = gxp_walk_around(body, body->node_elements[first], i, &reached);
-        if (result != GX_OK || reached == count) continue;
-        body->node_pinched[i] = 1;
+        body->scratch.stamp++;
+        result = gxp_walk_around(body, body->mesh.node_elements[first], i, &reached);
+        if (result == GX_OK && reached.count != count) body->mesh.node_pinched[i] = GXP_NODE_PINCHED;
     }
-    /* an edge with one fan of elements has no or two boundary faces */
-    for (i = 0; i < body->element_count; i++)
+    gxp_release(&body->config.allocator, reached.data, reached.capacity * sizeof *reached.data);
+    return result;
+}
+
+/* Marks the edges whose elements faces do not join, and their nodes. An edge's elements come in as many fans as it has
+   pairs of boundary faces; one fan has none or two such faces. */
+static void gxp_find_pinched_edges(gx_body *body) {
+    const gxb_complex *cx = body->complex;
+    uint32_t i, j, k;
+    for (i = 0; i < body->mesh.element_count; i++)
         for (k = 0; k < 4; k++)
             for (j = 0; j < 6; j++) {
                 const uint32_t edge = cx->element_edges[6 * i + j];
                 if (gxp_neighbour(body, i, k) != GXP_NONE || gxp_edge_nodes[j][0] == k || gxp_edge_nodes[j][1] == k)
                     continue;
-                if (body->edge_pinched[edge] < 3) body->edge_pinched[edge]++;
+                if (body->mesh.edge_pinched[edge] < 3) body->mesh.edge_pinched[edge]++;
             }
-    for (i = 0; i < cx->mesh_edge_count; i++) body->edge_pinched[i] = body->edge_pinched[i] > 2;
-    for (i = 0; i < body->element_count; i++)
+    for (i = 0; i < body->mesh.edge_count; i++) body->mesh.edge_pinched[i] = body->mesh.edge_pinched[i] > 2;
+    for (i = 0; i < body->mesh.element_count; i++)
         for (j = 0; j < 6; j++) {
-            if (!body->edge_pinched[cx->element_edges[6 * i + j]]) continue;
-            body->node_pinched[cx->elements[4 * i + gxp_edge_nodes[j][0]]] |= 2;
-            body->node_pinched[cx->elements[4 * i + gxp_edge_nodes[j][1]]] |= 2;
+            if (!body->mesh.edge_pinched[cx->element_edges[6 * i + j]]) continue;
+            body->mesh.node_pinched[cx->elements[4 * i + gxp_edge_nodes[j][0]]] |= GXP_EDGE_PINCHED;
+            body->mesh.node_pinched[cx->elements[4 * i + gxp_edge_nodes[j][1]]] |= GXP_EDGE_PINCHED;
         }
-    return result;
 }
 
 /* a point, or an edge of the complex */
@@ -2052,7 +2341,7 @@ typedef struct gxp_joint {
 } gxp_joint;
 
 /* Does the leaf have the joint on its boundary, and does a wall touch it there? */
-static gx_result gxp_look_for_joint(gx_body *body, uint32_t leaf, gxp_joint *joint) {
+static gx_result gxp_find_leaf_joint(gx_body *body, uint32_t leaf, gxp_joint *joint) {
     gxb_complex *cx = body->complex;
     uint32_t first, count = 0, i, j, e0, en;
     gx_result result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
@@ -2075,24 +2364,24 @@ static gx_result gxp_look_for_joint(gx_body *body, uint32_t leaf, gxp_joint *joi
 
 /* Has a leaf of the element that the cut may touch the node on its boundary, or any piece of the mesh edge? The other
  * of the two is GXB_NONE. */
-static gx_result gxp_look_in_scope(gx_body *body, uint32_t element, uint32_t node, uint32_t edge, int *found) {
+static gx_result gxp_is_joint_in_scope(gx_body *body, uint32_t element, uint32_t node, uint32_t edge, int *found) {
     gx_result result = GX_OK;
     uint32_t i, j;
     *found = 0;
-    body->triangles.count = body->faces.count = 0;
+    body->scratch.joint_leaves.count = body->scratch.joint_edges.count = 0;
     if (edge == GXB_NONE)
-        result = gxp_push(body, &body->faces, GXB_NONE);
+        result = gxp_push(body, &body->scratch.joint_edges, GXB_NONE);
     else
-        result = gxp_push_edge_pieces(body, body->complex->mesh_edge[edge], &body->faces);
-    if (result == GX_OK) result = gxp_push_leaves(body, body->complex->root[element], &body->triangles);
-    for (i = 0; i < body->triangles.count && result == GX_OK; i++) {
+        result = gxp_push_divided_edges(body, body->complex->mesh_edge[edge], &body->scratch.joint_edges);
+    if (result == GX_OK) result = gxp_push_leaves(body, body->complex->root[element], &body->scratch.joint_leaves);
+    for (i = 0; i < body->scratch.joint_leaves.count && result == GX_OK; i++) {
         gxp_joint joint;
-        if (!gxp_in_scope(body, body->triangles.data[i])) continue;
-        for (j = 0; j < body->faces.count && result == GX_OK && !*found; j++) {
+        if (!gxp_in_scope(body, body->scratch.joint_leaves.data[i])) continue;
+        for (j = 0; j < body->scratch.joint_edges.count && result == GX_OK && !*found; j++) {
             joint.point = node;
-            joint.edge = body->faces.data[j];
+            joint.edge = body->scratch.joint_edges.data[j];
             joint.walled = 0;
-            result = gxp_look_for_joint(body, body->triangles.data[i], &joint);
+            result = gxp_find_leaf_joint(body, body->scratch.joint_leaves.data[i], &joint);
             *found |= joint.found;
         }
     }
@@ -2104,42 +2393,43 @@ static gx_result gxp_cover_pinches(gx_body *body, gxb_triangle *t, uint32_t elem
     const gxb_complex *cx = body->complex;
     uint32_t k, pinched = 0;
     gx_result result = GX_OK;
-    for (k = 0; k < 4; k++) pinched |= body->node_pinched[cx->elements[4 * element + k]];
+    for (k = 0; k < 4; k++) pinched |= body->mesh.node_pinched[cx->elements[4 * element + k]];
     if (!pinched) return GX_OK;
     for (k = 0; k < 4 && result == GX_OK; k++) {
         const uint32_t node = cx->elements[4 * element + k];
         int covered = 0, allowed = 1;
-        if (!(body->node_pinched[node] & 1)) continue;
-        if (scoped) result = gxp_look_in_scope(body, element, node, GXB_NONE, &allowed);
+        if (!(body->mesh.node_pinched[node] & 1)) continue;
+        if (scoped) result = gxp_is_joint_in_scope(body, element, node, GXB_NONE, &allowed);
         if (result == GX_OK && allowed) result = gxb_complex_cover_node(body->complex, t, node, &covered);
-        if (covered && result == GX_OK) result = gxp_push(body, &body->pinches, node);
+        if (covered && result == GX_OK) result = gxp_push(body, &body->scratch.pinches, node);
     }
     for (k = 0; k < 6 && result == GX_OK; k++) {
         int covered = 0, allowed = 1;
-        if (!body->edge_pinched[cx->element_edges[6 * element + k]]) continue;
-        if (scoped) result = gxp_look_in_scope(body, element, GXB_NONE, cx->element_edges[6 * element + k], &allowed);
+        if (!body->mesh.edge_pinched[cx->element_edges[6 * element + k]]) continue;
+        if (scoped)
+            result = gxp_is_joint_in_scope(body, element, GXB_NONE, cx->element_edges[6 * element + k], &allowed);
         if (result == GX_OK && allowed) result = gxb_complex_cover_edge(body->complex, t, element, k, &covered);
         if (covered && result == GX_OK)
-            result = gxp_push(body, &body->pinches, cx->elements[4 * element + gxp_edge_nodes[k][0]]);
+            result = gxp_push(body, &body->scratch.pinches, cx->elements[4 * element + gxp_edge_nodes[k][0]]);
         if (covered && result == GX_OK)
-            result = gxp_push(body, &body->pinches, cx->elements[4 * element + gxp_edge_nodes[k][1]]);
+            result = gxp_push(body, &body->scratch.pinches, cx->elements[4 * element + gxp_edge_nodes[k][1]]);
     }
     return result;
 }
 
 /* Appends to found the cells around the node that have the joint on their boundary. Removed leaves count as walls. */
-static gx_result gxp_find_joint(gx_body *body, uint32_t node, gxp_joint *joint, gxp_words *found) {
+static gx_result gxp_find_joint_cells(gx_body *body, uint32_t node, gxp_joint *joint, gxp_words *found) {
     uint32_t j, i;
     gx_result result = GX_OK;
     joint->walled = 0;
-    body->triangles.count = 0;
-    for (j = body->node_start[node]; j < body->node_start[node + 1] && result == GX_OK; j++)
-        result = gxp_push_leaves(body, body->complex->root[body->node_elements[j]], &body->triangles);
-    for (i = 0; i < body->triangles.count && result == GX_OK; i++) {
-        const uint32_t leaf = body->triangles.data[i];
-        result = gxp_look_for_joint(body, leaf, joint);
+    body->scratch.joint_leaves.count = 0;
+    for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1] && result == GX_OK; j++)
+        result = gxp_push_leaves(body, body->complex->root[body->mesh.node_elements[j]], &body->scratch.joint_leaves);
+    for (i = 0; i < body->scratch.joint_leaves.count && result == GX_OK; i++) {
+        const uint32_t leaf = body->scratch.joint_leaves.data[i];
+        result = gxp_find_leaf_joint(body, leaf, joint);
         if (joint->found && !body->complex->leaves[leaf].removed && result == GX_OK)
-            result = gxp_push(body, found, body->leaves[leaf].cell);
+            result = gxp_push(body, found, body->leaves.data[leaf].cell);
     }
     return result;
 }
@@ -2152,29 +2442,30 @@ static gx_result gxp_cross_joint(gx_body *body, uint32_t cell, uint32_t node, ui
     joint.point = point;
     joint.edge = edge;
     joint.walled = joint.found = 0;
-    body->list.count = 0;
-    result = gxp_find_joint(body, node, &joint, &body->list);
-    for (i = 0; i < body->list.count; i++) member |= body->list.data[i] == cell;
-    for (i = 0; i < body->list.count && result == GX_OK && member && !joint.walled; i++)
-        result = gxp_visit_cell(body, body->list.data[i]);
+    body->scratch.joint_cells.count = 0;
+    result = gxp_find_joint_cells(body, node, &joint, &body->scratch.joint_cells);
+    for (i = 0; i < body->scratch.joint_cells.count; i++) member |= body->scratch.joint_cells.data[i] == cell;
+    for (i = 0; i < body->scratch.joint_cells.count && result == GX_OK && member && !joint.walled; i++)
+        result = gxp_visit_cell(body, body->scratch.joint_cells.data[i], &body->scratch.subdomain_cells);
     return result;
 }
 
 static gx_result gxp_cross_pinches(gx_body *body, uint32_t cell, uint32_t node) {
-    const uint32_t element = body->cells[cell].element;
+    const uint32_t element = body->cells.data[cell].element;
     gxb_complex *cx = body->complex;
     uint32_t k, i;
     gx_result result = gxb_complex_open_element(cx, element);
-    if (result == GX_OK && (body->node_pinched[node] & 1)) result = gxp_cross_joint(body, cell, node, node, GXB_NONE);
+    if (result == GX_OK && (body->mesh.node_pinched[node] & 1))
+        result = gxp_cross_joint(body, cell, node, node, GXB_NONE);
     for (k = 0; k < 6 && result == GX_OK; k++) {
         const uint32_t edge = cx->element_edges[6 * element + k];
         const uint32_t a = cx->elements[4 * element + gxp_edge_nodes[k][0]],
                        b = cx->elements[4 * element + gxp_edge_nodes[k][1]];
-        if (!body->edge_pinched[edge] || (a != node && b != node)) continue;
-        body->faces.count = 0;
-        result = gxp_push_edge_pieces(body, cx->mesh_edge[edge], &body->faces);
-        for (i = 0; i < body->faces.count && result == GX_OK; i++)
-            result = gxp_cross_joint(body, cell, node, GXB_NONE, body->faces.data[i]);
+        if (!body->mesh.edge_pinched[edge] || (a != node && b != node)) continue;
+        body->scratch.joint_edges.count = 0;
+        result = gxp_push_divided_edges(body, cx->mesh_edge[edge], &body->scratch.joint_edges);
+        for (i = 0; i < body->scratch.joint_edges.count && result == GX_OK; i++)
+            result = gxp_cross_joint(body, cell, node, GXB_NONE, body->scratch.joint_edges.data[i]);
     }
     return result;
 }
@@ -2253,10 +2544,10 @@ static gx_result gxp_insert_triangle(gxp_cut *cut, gxp_surface *s, uint32_t inde
     uint32_t k, i;
     gx_result result;
     for (k = 0; k < 3; k++) p[k] = s->given->vertices + 3 * (size_t)s->given->triangles[3 * index + k];
-    result = gxp_find_elements(body, p, &body->list);
-    if (result == GX_OK && body->list.count > 0) result = gxp_prepare_triangle(cut, s, index);
-    for (i = 0; i < body->list.count && result == GX_OK; i++) {
-        const uint32_t element = body->list.data[i];
+    result = gxp_find_elements(body, p, &body->scratch.near_elements);
+    if (result == GX_OK && body->scratch.near_elements.count > 0) result = gxp_prepare_triangle(cut, s, index);
+    for (i = 0; i < body->scratch.near_elements.count && result == GX_OK; i++) {
+        const uint32_t element = body->scratch.near_elements.data[i];
         result = gxb_complex_insert(body->complex, &s->triangles[index], element, scoped ? gxp_in_scope : NULL, body);
         if (result == GX_OK && s->triangles[index].wall)
             result = gxp_cover_pinches(body, &s->triangles[index], element, scoped);
@@ -2299,22 +2590,22 @@ static gx_result gxp_insert_surface(gxp_cut *cut, gxp_surface *s, int scoped) {
     gx_body *body = cut->body;
     uint32_t i, before = 0;
     gx_result result;
-    body->pairs.count = 0;
-    result = gxp_keys_room(body, &body->pairs, 2 * (size_t)count); /* sorting takes as much again */
+    body->scratch.order.count = 0;
+    result = gxp_keys_room(body, &body->scratch.order, 2 * (size_t)count); /* sorting takes as much again */
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint64_t random = gxp_mix(i);
         uint32_t round = GXP_LAST_ROUND;
         while (round > 16 && !(random >> 3 * (GXP_LAST_ROUND - round) & 7)) round--;
         before += round < GXP_LAST_ROUND && !s->flat[i];
-        if (!s->flat[i]) result = gxp_push_key(body, &body->pairs, round << 27 | gxp_curve_place(cut, s, i), i);
+        if (!s->flat[i]) result = gxp_push_key(body, &body->scratch.order, round << 27 | gxp_curve_place(cut, s, i), i);
     }
-    if (result == GX_OK) result = gxp_sort_keys(body, &body->pairs, 0, body->pairs.count);
-    for (i = 0; i < body->pairs.count && result == GX_OK; i++) {
+    if (result == GX_OK) result = gxp_sort_keys(body, &body->scratch.order, 0, body->scratch.order.count);
+    for (i = 0; i < body->scratch.order.count && result == GX_OK; i++) {
         if (i == before && before >= 4) {
-            const uint32_t times = (body->pairs.count - before) / before;
+            const uint32_t times = (body->scratch.order.count - before) / before;
             gxb_complex_reserve(body->complex, times < GXP_EXPECTED ? times : GXP_EXPECTED);
         }
-        result = gxp_insert_triangle(cut, s, GXP_SECOND(body->pairs.data[i]), scoped);
+        result = gxp_insert_triangle(cut, s, GXP_SECOND(body->scratch.order.data[i]), scoped);
     }
     return result;
 }
@@ -2340,8 +2631,8 @@ static int32_t gxp_winding_step(const gx_body *body, const gxp_surface *s, uint3
 }
 
 /* The winding number around a node. 0: the node is on the surface, and has none. */
-static int gxp_ask_node(const gx_body *body, const gxp_surface *s, uint32_t node, int32_t *winding) {
-    const double *x = body->positions + 3 * (size_t)node;
+static int gxp_node_winding(const gx_body *body, const gxp_surface *s, uint32_t node, int32_t *winding) {
+    const double *x = body->mesh.positions + 3 * (size_t)node;
     int on_surface, k;
     *winding = 0;
     for (k = 0; k < 3; k++)
@@ -2351,19 +2642,21 @@ static int gxp_ask_node(const gx_body *body, const gxp_surface *s, uint32_t node
 }
 
 /* The winding number around a leaf: around one of its nodes that is off the surface, else around a point inside it. */
-static gx_result gxp_ask_winding(gx_body *body, const gxp_surface *s, uint32_t leaf, int32_t *winding) {
+static gx_result gxp_leaf_winding(gx_body *body, const gxp_surface *s, uint32_t leaf, int32_t *winding) {
     const gx_surface *g = s->given;
     const gxb_leaf *l = &body->complex->leaves[leaf];
     uint32_t i;
     gx_result result;
     for (i = 0; i < 4 && l->facet_count == 0; i++)
-        if (gxp_ask_node(body, s, body->complex->elements[4 * (size_t)l->element + i], winding)) return GX_OK;
-    result = gxp_leaf_points(body, leaf);
-    for (i = 0; i < body->list.count && result == GX_OK; i++)
-        if (body->list.data[i] < body->node_count && gxp_ask_node(body, s, body->list.data[i], winding)) return GX_OK;
+        if (gxp_node_winding(body, s, body->complex->elements[4 * (size_t)l->element + i], winding)) return GX_OK;
+    result = gxp_collect_leaf_points(body, leaf);
+    for (i = 0; i < body->scratch.leaf_points.count && result == GX_OK; i++)
+        if (body->scratch.leaf_points.data[i] < body->mesh.node_count &&
+            gxp_node_winding(body, s, body->scratch.leaf_points.data[i], winding))
+            return GX_OK;
     if (result == GX_OK)
-        *winding = gxb_complex_winding(body->complex, body->list.data, body->list.count, g->vertices, g->triangles,
-                                       g->triangle_count);
+        *winding = gxb_complex_winding(body->complex, body->scratch.leaf_points.data, body->scratch.leaf_points.count,
+                                       g->vertices, g->triangles, g->triangle_count);
     return result;
 }
 
@@ -2374,17 +2667,17 @@ static int gxp_has_winding(gx_body *body, uint32_t leaf, int scoped) {
 }
 
 static gx_result gxp_visit_winding(gx_body *body, uint32_t leaf, int32_t winding) {
-    if (body->leaves[leaf].stamp == body->stamp) return GX_OK;
-    body->leaves[leaf].stamp = body->stamp;
-    body->leaves[leaf].winding = winding;
-    return gxp_push(body, &body->queue, leaf);
+    if (body->leaves.mark[leaf].stamp == body->scratch.stamp) return GX_OK;
+    body->leaves.mark[leaf].stamp = body->scratch.stamp;
+    body->leaves.mark[leaf].winding = winding;
+    return gxp_push(body, &body->scratch.flooded, leaf);
 }
 
 /* The neighbours of a leaf inside the solid know their winding numbers; of one outside, those across the solid's
  * surface. */
 static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_t leaf, int scoped) {
     gxb_complex *cx = body->complex;
-    const int32_t winding = body->leaves[leaf].winding;
+    const int32_t winding = body->leaves.mark[leaf].winding;
     uint32_t first, count = 0, i;
     gx_result result = GX_OK;
     if (winding != 0) result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
@@ -2403,19 +2696,19 @@ static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_
 /* Works the queue off from where it stands. */
 static gx_result gxp_flood_winding(gx_body *body, const gxp_surface *s, uint32_t *done, int scoped) {
     gx_result result = GX_OK;
-    while (*done < body->queue.count && result == GX_OK)
-        result = gxp_spread_winding(body, s, body->queue.data[(*done)++], scoped);
+    while (*done < body->scratch.flooded.count && result == GX_OK)
+        result = gxp_spread_winding(body, s, body->scratch.flooded.data[(*done)++], scoped);
     return result;
 }
 
 /* Does the flood, which goes across faces and stays in the scope, reach this cell from others of its fragment? Not for
    certain where elements meet in nodes or edges only, or where the caller lists the cells of a scope. */
 static int gxp_is_flooded(const gxp_cut *cut, uint32_t cell) {
-    const uint32_t *node = cut->body->complex->elements + 4 * (size_t)cut->body->cells[cell].element;
+    const uint32_t *node = cut->body->complex->elements + 4 * (size_t)cut->body->cells.data[cell].element;
     uint32_t k;
     if (cut->desc->scope_cell_count > 0) return 0;
     for (k = 0; k < 4; k++)
-        if (cut->body->node_pinched[node[k]]) return 0;
+        if (cut->body->mesh.node_pinched[node[k]]) return 0;
     return 1;
 }
 
@@ -2425,52 +2718,55 @@ static gx_result gxp_seed_untouched(gxp_cut *cut) {
     gx_body *body = cut->body;
     gx_result result = gxp_update_view(body);
     uint32_t i;
-    body->nodes.count = 0;
-    if (result == GX_OK) result = gxp_words_room(body, &body->nodes, body->fragment_count);
+    body->scratch.seeded.count = 0;
+    if (result == GX_OK) result = gxp_words_room(body, &body->scratch.seeded, body->view.fragment_count);
     if (result != GX_OK) return result;
-    if (body->fragment_count > 0) memset(body->nodes.data, 0, body->fragment_count * sizeof *body->nodes.data);
-    for (i = 0; i < body->seeds.count; i++)
-        if (gxp_is_kept(body, body->seeds.data[i]))
-            body->nodes.data[gxp_cell_fragment(body, body->leaves[body->seeds.data[i]].cell)] = 1;
-    for (i = 0; i < body->view_cells.count && result == GX_OK; i++) {
-        const uint32_t cell = body->view_cells.data[i];
-        if (body->nodes.data[body->view_fragments.data[i]] && gxp_is_flooded(cut, cell)) continue;
-        body->nodes.data[body->view_fragments.data[i]] = 1;
-        result = gxp_push(body, &body->seeds, body->cells[cell].first_leaf);
+    if (body->view.fragment_count > 0)
+        memset(body->scratch.seeded.data, 0, body->view.fragment_count * sizeof *body->scratch.seeded.data);
+    for (i = 0; i < body->scratch.seed_leaves.count; i++)
+        if (gxp_is_kept(body, body->scratch.seed_leaves.data[i]))
+            body->scratch.seeded
+                .data[gxp_cell_fragment(body, body->leaves.data[body->scratch.seed_leaves.data[i]].cell)] = 1;
+    for (i = 0; i < body->view.count && result == GX_OK; i++) {
+        const uint32_t cell = body->view.slot[i];
+        if (body->scratch.seeded.data[body->view.fragment[i]] && gxp_is_flooded(cut, cell)) continue;
+        body->scratch.seeded.data[body->view.fragment[i]] = 1;
+        result = gxp_push(body, &body->scratch.seed_leaves, body->cells.data[cell].first_leaf);
     }
     return result;
 }
 
-/* Finds the winding numbers of the seeds and of what they lead to: body->queue. */
+/* Finds the winding numbers of the seeds and of what they lead to: body->scratch.flooded. */
 static gx_result gxp_find_windings(gx_body *body, const gxp_surface *s, int scoped) {
     uint32_t i, done = 0;
     gx_result result = GX_OK;
-    body->queue.count = 0;
-    body->stamp++;
-    for (i = 0; i < body->seeds.count && result == GX_OK; i++) {
-        const uint32_t leaf = body->seeds.data[i];
+    body->scratch.flooded.count = 0;
+    body->scratch.stamp++;
+    for (i = 0; i < body->scratch.seed_leaves.count && result == GX_OK; i++) {
+        const uint32_t leaf = body->scratch.seed_leaves.data[i];
         int32_t winding = 0;
-        if (!gxp_has_winding(body, leaf, scoped) || body->leaves[leaf].stamp == body->stamp) continue;
-        result = gxp_ask_winding(body, s, leaf, &winding);
+        if (!gxp_has_winding(body, leaf, scoped) || body->leaves.mark[leaf].stamp == body->scratch.stamp) continue;
+        result = gxp_leaf_winding(body, s, leaf, &winding);
         if (result == GX_OK) result = gxp_visit_winding(body, leaf, winding);
         if (result == GX_OK) result = gxp_flood_winding(body, s, &done, scoped);
     }
     return result;
 }
 
-/* Appends to body->removed the leaves around which the solid winds. All surfaces of the cut are in the complex. */
+/* Appends to body->scratch.removed the leaves around which the solid winds. All surfaces of the cut are in the complex.
+ */
 static gx_result gxp_find_solid(gxp_cut *cut, const gxp_surface *s, int scoped) {
     gx_body *body = cut->body;
     uint32_t i;
     gx_result result = GX_OK;
-    body->seeds.count = 0;
+    body->scratch.seed_leaves.count = 0;
     for (i = 0; i < body->complex->wall_count && result == GX_OK; i++)
-        result = gxp_wall_leaves(body, body->complex->walls[i] >> 1, &body->seeds);
+        result = gxp_wall_leaves(body, body->complex->walls[i] >> 1, &body->scratch.seed_leaves);
     if (result == GX_OK) result = gxp_seed_untouched(cut);
     if (result == GX_OK) result = gxp_find_windings(body, s, scoped);
-    for (i = 0; i < body->queue.count && result == GX_OK; i++)
-        if (body->leaves[body->queue.data[i]].winding != 0)
-            result = gxp_push(body, &body->removed, body->queue.data[i]);
+    for (i = 0; i < body->scratch.flooded.count && result == GX_OK; i++)
+        if (body->leaves.mark[body->scratch.flooded.data[i]].winding != 0)
+            result = gxp_push(body, &body->scratch.removed, body->scratch.flooded.data[i]);
     return result;
 }
 
@@ -2520,8 +2816,8 @@ static gx_result gxp_rough_area(gxb_complex *cx, uint32_t facet, double *area, d
     return result;
 }
 
-/* The polygon of the points in body->seeds as a share of the face opposite to node k, in numbers that hold any size:
-   areas in the plane of two barycentric coordinates, where the face has 1. */
+/* The polygon of the points in body->scratch.facet_points as a share of the face opposite to node k, in numbers that
+   hold any size: areas in the plane of two barycentric coordinates, where the face has 1. */
 static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
     gxp_fine_point p[3];
     unsigned axes[3];
@@ -2533,7 +2829,7 @@ static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
     gxb_num_set(&one, 1.0, 0);
     for (i = 0; i < 3; i++)
         for (c = 0; c < 4; c++) p[i].c[c].d = p[i].limbs[c];
-    for (i = 0; i < body->seeds.count; i++) {
+    for (i = 0; i < body->scratch.facet_points.count; i++) {
         /* a: this point, b: the one before */
         gxp_fine_point *const a = &p[1 + i % 2], *const b = &p[1 + (i + 1) % 2];
         GXB_NUM(x);
@@ -2543,7 +2839,8 @@ static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
         GXB_NUM(s);
         GXB_NUM(t);
         GXB_NUM(d);
-        gxb_complex_barycentric_fine(body->complex, body->seeds.data[i], element, i == 0 ? p[0].c : a->c);
+        gxb_complex_barycentric_fine(body->complex, body->scratch.facet_points.data[i], element,
+                                     i == 0 ? p[0].c : a->c);
         if (i < 2) continue;
         gxb_num_sub(&x, &b->c[axes[1]], &p[0].c[axes[1]]);
         gxb_num_sub(&y, &b->c[axes[2]], &p[0].c[axes[2]]);
@@ -2560,22 +2857,22 @@ static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
 /* Puts cells in the place of leaves in the links of all fresh cells, those to one cell together. */
 static gx_result gxp_settle_links(gx_body *body) {
     uint32_t i, j;
-    gx_result result = gxp_push(body, &body->link_first, body->links.count);
-    for (i = 0; i < body->fresh.count && result == GX_OK; i++) {
-        const uint32_t from = body->link_first.data[i], to = body->link_first.data[i + 1];
-        uint64_t *link = body->links.data;
-        body->cell_fresh[body->fresh.data[i]] = i;
+    gx_result result = gxp_push(body, &body->scratch.link_first, body->scratch.links.count);
+    for (i = 0; i < body->scratch.new_cells.count && result == GX_OK; i++) {
+        const uint32_t from = body->scratch.link_first.data[i], to = body->scratch.link_first.data[i + 1];
+        uint64_t *link = body->scratch.links.data;
+        body->cells.new_index[body->scratch.new_cells.data[i]] = i;
         for (j = from; j < to; j++)
-            link[j] = (uint64_t)body->leaves[GXP_LINK_CELL(link[j])].cell << 33 | (link[j] & 0x1ffffffffu);
-        result = gxp_sort_keys(body, &body->links, from, to);
+            link[j] = (uint64_t)body->leaves.data[GXP_LINK_CELL(link[j])].cell << 33 | (link[j] & 0x1ffffffffu);
+        result = gxp_sort_keys(body, &body->scratch.links, from, to);
     }
     return result;
 }
 
 /* Index of a cell among the fresh ones, GXP_NONE: it is none of them. */
-static uint32_t gxp_fresh_index(const gx_body *body, uint32_t cell) {
-    const uint32_t i = body->cell_fresh[cell];
-    return i < body->fresh.count && body->fresh.data[i] == cell ? i : GXP_NONE;
+static uint32_t gxp_new_index(const gx_body *body, uint32_t cell) {
+    const uint32_t i = body->cells.new_index[cell];
+    return i < body->scratch.new_cells.count && body->scratch.new_cells.data[i] == cell ? i : GXP_NONE;
 }
 
 /* Share of the link first ... end-1 of its face, roughly, with a bound for its error; of its first facets, where those
@@ -2583,13 +2880,13 @@ static uint32_t gxp_fresh_index(const gx_body *body, uint32_t cell) {
 static gx_result gxp_rough_share(gx_body *body, uint32_t first, uint32_t end, double enough, double *share,
                                  double *error) {
     gxb_complex *cx = body->complex;
-    const gxb_cplane *plane = &cx->planes[cx->facets[GXP_LINK_FACET(body->links.data[first])].plane];
+    const gxb_cplane *plane = &cx->planes[cx->facets[GXP_LINK_FACET(body->scratch.links.data[first])].plane];
     const double whole = fabs(plane->filter.n[plane->axis]); /* the normal is a product of two of the face's edges */
     double part, part_error;
     gx_result result = GX_OK;
     *share = *error = 0;
     for (; first < end && !(*share - 4 * *error > enough * whole) && result == GX_OK; first++) {
-        result = gxp_rough_area(cx, GXP_LINK_FACET(body->links.data[first]), &part, &part_error);
+        result = gxp_rough_area(cx, GXP_LINK_FACET(body->scratch.links.data[first]), &part, &part_error);
         *share += part;
         *error += part_error + plane->filter.error;
     }
@@ -2618,12 +2915,12 @@ static gx_result gxp_is_wide(gxp_cut *cut, uint32_t first, uint32_t end, double 
 /* Share of the link first ... end-1 of its face */
 static gx_result gxp_weigh_link(gx_body *body, uint32_t first, uint32_t end, double *share) {
     uint32_t k;
-    const uint32_t element =
-        gxp_face_element(body->complex, body->complex->facets[GXP_LINK_FACET(body->links.data[first])].face, &k);
+    const uint32_t element = gxp_face_element(
+        body->complex, body->complex->facets[GXP_LINK_FACET(body->scratch.links.data[first])].face, &k);
     gx_result result = gxb_complex_open_element(body->complex, element);
     *share = 0;
     for (; first < end && result == GX_OK; first++) {
-        result = gxp_facet_points(body, GXP_LINK_FACET(body->links.data[first]));
+        result = gxp_collect_facet_points(body, GXP_LINK_FACET(body->scratch.links.data[first]));
         if (result == GX_OK) *share += gxp_fine_share(body, element, k);
     }
     return result;
@@ -2639,35 +2936,35 @@ static gx_result gxp_judge_link(gxp_cut *cut, uint32_t first, uint32_t end) {
     if (share >= cut->desc->sever_below) return GX_OK;
     cut->report.severed_links++;
     for (; first < end && result == GX_OK; first++)
-        result = gxb_complex_set_wall(body->complex, GXP_LINK_FACET(body->links.data[first]));
+        result = gxb_complex_set_wall(body->complex, GXP_LINK_FACET(body->scratch.links.data[first]));
     return result;
 }
 
 /* Weighs the links of a fresh cell roughly, but whole faces and those of fresh cells before it. All pieces of a face
-   between the same two cells count as one link. Those that may be the smallest or are to be severed go to body->nodes.
-   *bound: of the smallest so far. */
+   between the same two cells count as one link. Those that may be the smallest or are to be severed go to
+   body->scratch.narrow. *bound: of the smallest so far. */
 static gx_result gxp_weigh_links(gxp_cut *cut, uint32_t index, double *bound) {
     gx_body *body = cut->body;
-    const uint32_t last = body->link_first.data[index + 1];
+    const uint32_t last = body->scratch.link_first.data[index + 1];
     uint32_t first, end;
     int wide = 1;
     gx_result result = GX_OK;
-    for (first = body->link_first.data[index]; first < last && result == GX_OK; first = end) {
-        const uint32_t other = GXP_LINK_CELL(body->links.data[first]), facet = GXP_LINK_FACET(body->links.data[first]);
-        for (end = first + 1; end < last && GXP_LINK_CELL(body->links.data[end]) == other; end++) {}
-        if (gxp_fresh_index(body, other) < index ||
-            body->complex->face_facet[body->complex->facets[facet].face] == facet)
+    for (first = body->scratch.link_first.data[index]; first < last && result == GX_OK; first = end) {
+        const uint32_t other = GXP_LINK_CELL(body->scratch.links.data[first]),
+                       facet = GXP_LINK_FACET(body->scratch.links.data[first]);
+        for (end = first + 1; end < last && GXP_LINK_CELL(body->scratch.links.data[end]) == other; end++) {}
+        if (gxp_new_index(body, other) < index || body->complex->face_facet[body->complex->facets[facet].face] == facet)
             continue;
         result = gxp_is_wide(cut, first, end, bound, &wide);
-        if (result == GX_OK && !wide) result = gxp_push(body, &body->nodes, first);
-        if (result == GX_OK && !wide) result = gxp_push(body, &body->nodes, end);
+        if (result == GX_OK && !wide) result = gxp_push(body, &body->scratch.narrow, first);
+        if (result == GX_OK && !wide) result = gxp_push(body, &body->scratch.narrow, end);
     }
     return result;
 }
 
 /* Weighs exactly what is still among the smallest, or is to be severed. */
 static gx_result gxp_judge_links(gxp_cut *cut, double bound) {
-    const gxp_words *narrow = &cut->body->nodes;
+    const gxp_words *narrow = &cut->body->scratch.narrow;
     uint32_t i;
     int wide = 1;
     gx_result result = GX_OK;
@@ -2683,8 +2980,9 @@ static gx_result gxp_sever_links(gxp_cut *cut) {
     double bound = 1;
     uint32_t i;
     gx_result result = GX_OK;
-    cut->body->nodes.count = 0;
-    for (i = 0; i < cut->body->fresh.count && result == GX_OK; i++) result = gxp_weigh_links(cut, i, &bound);
+    cut->body->scratch.narrow.count = 0;
+    for (i = 0; i < cut->body->scratch.new_cells.count && result == GX_OK; i++)
+        result = gxp_weigh_links(cut, i, &bound);
     return result == GX_OK ? gxp_judge_links(cut, bound) : result;
 }
 
@@ -2697,17 +2995,20 @@ static gx_result gxp_collect_touched(gxp_cut *cut) {
     gx_body *body = cut->body;
     uint32_t i;
     gx_result result = GX_OK;
-    body->seeds.count = 0;
+    body->scratch.wall_leaves.count = 0;
     for (i = 0; i < body->complex->wall_count && result == GX_OK; i++)
-        if (body->complex->walls[i] & 1) result = gxp_wall_leaves(body, body->complex->walls[i] >> 1, &body->seeds);
-    body->stamp++;
-    for (i = 0; i < body->seeds.count && result == GX_OK; i++) {
-        const uint32_t cell = body->leaves[body->seeds.data[i]].cell;
-        if (body->complex->leaves[body->seeds.data[i]].removed || body->cell_stamp[cell] == body->stamp) continue;
-        body->cell_stamp[cell] = body->stamp;
-        result = gxp_push(body, &body->touched, cell);
+        if (body->complex->walls[i] & 1)
+            result = gxp_wall_leaves(body, body->complex->walls[i] >> 1, &body->scratch.wall_leaves);
+    body->scratch.stamp++;
+    for (i = 0; i < body->scratch.wall_leaves.count && result == GX_OK; i++) {
+        const uint32_t cell = body->leaves.data[body->scratch.wall_leaves.data[i]].cell;
+        if (body->complex->leaves[body->scratch.wall_leaves.data[i]].removed ||
+            body->cells.stamp[cell] == body->scratch.stamp)
+            continue;
+        body->cells.stamp[cell] = body->scratch.stamp;
+        result = gxp_push(body, &body->scratch.touched, cell);
     }
-    gxp_sort_unique(&body->touched);
+    gxp_sort_unique(&body->scratch.touched);
     return result;
 }
 
@@ -2716,24 +3017,24 @@ static gx_result gxp_list_new_leaves(gxp_cut *cut) {
     gx_body *body = cut->body;
     uint32_t leaf;
     gx_result result = GX_OK;
-    for (leaf = body->before.leaves; leaf < body->leaf_count && result == GX_OK; leaf++) {
-        const uint32_t parent = body->complex->leaves[leaf].parent, next = body->leaves[parent].next;
-        body->leaves[leaf].next = next;
-        result = gxp_set_leaf(body, parent, body->leaves[parent].cell, leaf);
+    for (leaf = body->undo.counts[GXP_LEAVES]; leaf < body->leaves.count && result == GX_OK; leaf++) {
+        const uint32_t parent = body->complex->leaves[leaf].parent, next = body->leaves.data[parent].next;
+        body->leaves.data[leaf].next = next;
+        result = gxp_set_leaf(body, parent, body->leaves.data[parent].cell, leaf);
     }
     return result;
 }
 
 static gx_result gxp_new_cell(gx_body *body, uint32_t like, uint32_t *slot) {
-    gx_result result = gxp_reserve_cells(body, 1);
+    gx_result result = gxp_grow_rows(body, GXP_CELLS, 1);
     if (result == GX_OK) result = gxp_save_cell(body, like);
     if (result != GX_OK) return result;
-    *slot = body->cell_count++;
-    body->cells[*slot] = body->cells[like];
-    body->cells[like].next = *slot;
-    body->cells[*slot].first_leaf = GXP_NONE;
-    body->cell_stamp[*slot] = 0;
-    body->cell_saved[*slot] = body->transaction;
+    *slot = body->cells.count++;
+    body->cells.data[*slot] = body->cells.data[like];
+    body->cells.data[like].next = *slot;
+    body->cells.data[*slot].first_leaf = GXP_NONE;
+    body->cells.stamp[*slot] = 0;
+    body->cells.saved_by[*slot] = body->undo.cut_number;
     return GX_OK;
 }
 
@@ -2743,25 +3044,26 @@ static gx_result gxp_walk_leaves(gx_body *body, uint32_t start) {
     gxb_complex *cx = body->complex;
     uint32_t done = 0, first, count, i;
     gx_result result = gxb_complex_open_element(cx, cx->leaves[start].element);
-    body->queue.count = 0;
-    body->leaves[start].stamp = body->stamp;
-    if (result == GX_OK) result = gxp_push(body, &body->queue, start);
-    if (result == GX_OK) result = gxp_push(body, &body->link_first, body->links.count);
-    while (done < body->queue.count && result == GX_OK) {
-        const uint32_t leaf = body->queue.data[done++];
+    body->scratch.part_leaves.count = 0;
+    body->leaves.mark[start].stamp = body->scratch.stamp;
+    if (result == GX_OK) result = gxp_push(body, &body->scratch.part_leaves, start);
+    if (result == GX_OK) result = gxp_push(body, &body->scratch.link_first, body->scratch.links.count);
+    while (done < body->scratch.part_leaves.count && result == GX_OK) {
+        const uint32_t leaf = body->scratch.part_leaves.data[done++];
         result = gxb_leaf_facets(cx, leaf, &first, &count);
-        if (result == GX_OK) result = gxp_keys_room(body, &body->links, count);
+        if (result == GX_OK) result = gxp_keys_room(body, &body->scratch.links, count);
         for (i = 0; i < count && result == GX_OK; i++) {
             const uint32_t facet = cx->pool[first + i];
             const gxb_facet *f = &cx->facets[facet];
             const uint32_t other = f->leaf[f->leaf[0] == leaf];
             if (!gxp_is_link(body, facet)) continue;
             if (f->face != GXB_NONE)
-                body->links.data[body->links.count++] = (uint64_t)other << 33 | (uint64_t)facet << 2 |
-                                                        gxp_local_face(cx, cx->leaves[leaf].element, f->face);
-            else if (body->leaves[other].stamp != body->stamp) {
-                body->leaves[other].stamp = body->stamp;
-                result = gxp_push(body, &body->queue, other);
+                body->scratch.links.data[body->scratch.links.count++] =
+                    (uint64_t)other << 33 | (uint64_t)facet << 2 |
+                    gxp_local_face(cx, cx->leaves[leaf].element, f->face);
+            else if (body->leaves.mark[other].stamp != body->scratch.stamp) {
+                body->leaves.mark[other].stamp = body->scratch.stamp;
+                result = gxp_push(body, &body->scratch.part_leaves, other);
             }
         }
     }
@@ -2772,10 +3074,11 @@ static gx_result gxp_walk_leaves(gx_body *body, uint32_t start) {
 static gx_result gxp_give_leaves(gx_body *body, uint32_t cell) {
     uint32_t i;
     gx_result result = gxp_save_cell(body, cell);
-    for (i = body->queue.count; i-- > 0 && result == GX_OK;)
-        result = gxp_set_leaf(body, body->queue.data[i], cell,
-                              i + 1 < body->queue.count ? body->queue.data[i + 1] : GXP_NONE);
-    if (result == GX_OK) body->cells[cell].first_leaf = body->queue.data[0];
+    for (i = body->scratch.part_leaves.count; i-- > 0 && result == GX_OK;)
+        result =
+            gxp_set_leaf(body, body->scratch.part_leaves.data[i], cell,
+                         i + 1 < body->scratch.part_leaves.count ? body->scratch.part_leaves.data[i + 1] : GXP_NONE);
+    if (result == GX_OK) body->cells.data[cell].first_leaf = body->scratch.part_leaves.data[0];
     return result;
 }
 
@@ -2784,27 +3087,28 @@ static gx_result gxp_divide_cell(gxp_cut *cut, uint32_t cell) {
     gx_body *body = cut->body;
     uint32_t leaf, pieces = 0, i;
     gx_result result = GX_OK;
-    body->seeds.count = 0;
-    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next)
-        result = gxp_push(body, &body->seeds, leaf);
-    body->stamp++;
-    for (i = 0; i < body->seeds.count && result == GX_OK; i++) {
+    body->scratch.cell_leaves.count = 0;
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
+         leaf = body->leaves.data[leaf].next)
+        result = gxp_push(body, &body->scratch.cell_leaves, leaf);
+    body->scratch.stamp++;
+    for (i = 0; i < body->scratch.cell_leaves.count && result == GX_OK; i++) {
         uint32_t slot = cell;
-        leaf = body->seeds.data[i];
-        if (body->complex->leaves[leaf].removed || body->leaves[leaf].stamp == body->stamp) continue;
+        leaf = body->scratch.cell_leaves.data[i];
+        if (body->complex->leaves[leaf].removed || body->leaves.mark[leaf].stamp == body->scratch.stamp) continue;
         result = gxp_walk_leaves(body, leaf);
         if (result == GX_OK && pieces++ > 0) {
             result = gxp_new_cell(body, cell, &slot);
             cut->report.created_cells++;
         }
         if (result == GX_OK) result = gxp_give_leaves(body, slot);
-        if (result == GX_OK) result = gxp_push(body, &body->fresh, slot);
+        if (result == GX_OK) result = gxp_push(body, &body->scratch.new_cells, slot);
     }
     if (result == GX_OK && pieces == 0) {
         result = gxp_save_cell(body, cell);
         if (result != GX_OK) return result;
-        body->cells[cell].kept = 0;
-        body->cells[cell].first_leaf = GXP_NONE;
+        body->cells.data[cell].kept = 0;
+        body->cells.data[cell].first_leaf = GXP_NONE;
         cut->report.removed_cells++;
     }
     return result;
@@ -2818,7 +3122,7 @@ static gx_result gxp_touch_around(gx_body *body, uint32_t leaf) {
     for (i = 0; i < count && result == GX_OK; i++) {
         const gxb_facet *f = &cx->facets[cx->pool[first + i]];
         const uint32_t other = f->leaf[f->leaf[0] == leaf];
-        if (gxp_is_kept(body, other)) result = gxp_push(body, &body->touched, body->leaves[other].cell);
+        if (gxp_is_kept(body, other)) result = gxp_push(body, &body->scratch.touched, body->leaves.data[other].cell);
     }
     return result;
 }
@@ -2828,58 +3132,61 @@ static gx_result gxp_touch_severed(gxp_cut *cut) {
     gx_body *body = cut->body;
     gx_result result = gxp_collect_touched(cut);
     uint32_t i;
-    for (i = 0; i < body->touched.count && result == GX_OK; i++) {
-        const uint32_t cell = body->touched.data[i];
-        if (body->cells[cell].kept && gxp_fresh_index(body, cell) == GXP_NONE)
-            result = gxp_push(body, &body->fresh, cell);
+    for (i = 0; i < body->scratch.touched.count && result == GX_OK; i++) {
+        const uint32_t cell = body->scratch.touched.data[i];
+        if (body->cells.data[cell].kept && gxp_new_index(body, cell) == GXP_NONE)
+            result = gxp_push(body, &body->scratch.new_cells, cell);
     }
-    body->links.count = body->link_first.count = 0;
-    body->stamp++;
-    for (i = 0; i < body->fresh.count && result == GX_OK; i++)
-        result = gxp_walk_leaves(body, body->cells[body->fresh.data[i]].first_leaf);
+    body->scratch.links.count = body->scratch.link_first.count = 0;
+    body->scratch.stamp++;
+    for (i = 0; i < body->scratch.new_cells.count && result == GX_OK; i++)
+        result = gxp_walk_leaves(body, body->cells.data[body->scratch.new_cells.data[i]].first_leaf);
     return result == GX_OK ? gxp_settle_links(body) : result;
 }
 
 /* Asks for what dividing the next touched cells reads: leaves four and three ahead, their lists of facets two ahead,
  * the facets of the next. */
-GXP_FETCHES void gxp_fetch_leaves(const gx_body *body, uint32_t index) {
+GXP_PREFETCHES void gxp_prefetch_leaves(const gx_body *body, uint32_t index) {
     const gxb_complex *cx = body->complex;
-    const uint32_t *touched = body->touched.data, count = body->touched.count;
+    const uint32_t *touched = body->scratch.touched.data, count = body->scratch.touched.count;
     uint32_t leaf, i;
-    if (index + 4 < count && (leaf = body->cells[touched[index + 4]].first_leaf) != GXP_NONE) {
-        GXP_FETCH(&body->leaves[leaf]);
-        GXP_FETCH(&cx->leaves[leaf]);
+    if (index + 4 < count && (leaf = body->cells.data[touched[index + 4]].first_leaf) != GXP_NONE) {
+        GXP_PREFETCH(&body->leaves.data[leaf]);
+        GXP_PREFETCH(&cx->leaves[leaf]);
     }
     if (index + 3 < count)
-        for (leaf = body->cells[touched[index + 3]].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next)
-            GXP_FETCH(&cx->leaves[leaf]);
+        for (leaf = body->cells.data[touched[index + 3]].first_leaf; leaf != GXP_NONE;
+             leaf = body->leaves.data[leaf].next)
+            GXP_PREFETCH(&cx->leaves[leaf]);
     if (index + 2 < count)
-        for (leaf = body->cells[touched[index + 2]].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next)
-            GXP_FETCH(cx->pool + cx->leaves[leaf].facets);
+        for (leaf = body->cells.data[touched[index + 2]].first_leaf; leaf != GXP_NONE;
+             leaf = body->leaves.data[leaf].next)
+            GXP_PREFETCH(cx->pool + cx->leaves[leaf].facets);
     if (index + 1 < count)
-        for (leaf = body->cells[touched[index + 1]].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next)
+        for (leaf = body->cells.data[touched[index + 1]].first_leaf; leaf != GXP_NONE;
+             leaf = body->leaves.data[leaf].next)
             for (i = 0; i < cx->leaves[leaf].facet_count; i++)
-                GXP_FETCH(&cx->facets[cx->pool[cx->leaves[leaf].facets + i]]);
+                GXP_PREFETCH(&cx->facets[cx->pool[cx->leaves[leaf].facets + i]]);
 }
 
-/* Divides all touched cells. Leaves body->touched as it was, makes body->fresh of the pieces and lists their links. */
+/* Divides all touched cells. Leaves the list of these as it was, makes the list of new cells and lists their links. */
 static gx_result gxp_divide_cells(gxp_cut *cut) {
     gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
     uint32_t i;
-    gx_result result = gxp_reserve(&body->allocator, &body->saved_cells, sizeof *body->saved_cells,
-                                   body->saved_cell_count, &body->saved_cell_capacity, 4 * (size_t)body->touched.count);
-    if (result == GX_OK) result = gxp_keys_room(body, &body->links, 16 * (size_t)body->touched.count);
-    if (result == GX_OK) result = gxp_reserve_cells(body, body->touched.count);
-    body->fresh.count = body->links.count = body->link_first.count = 0;
-    body->stamp++;
-    for (i = 0; i < body->touched.count && result == GX_OK; i++) {
-        uint32_t *stamp = &body->cell_stamp[body->cells[body->touched.data[i]].element];
-        cut->report.touched_elements += *stamp != body->stamp;
-        *stamp = body->stamp;
+    gx_result result = gxp_log_room(body, &body->undo.cells, GXP_CELLS, 4 * (size_t)scratch->touched.count);
+    if (result == GX_OK) result = gxp_keys_room(body, &scratch->links, 16 * (size_t)scratch->touched.count);
+    if (result == GX_OK) result = gxp_grow_rows(body, GXP_CELLS, scratch->touched.count);
+    scratch->new_cells.count = scratch->links.count = scratch->link_first.count = 0;
+    scratch->stamp++;
+    for (i = 0; i < scratch->touched.count && result == GX_OK; i++) {
+        uint32_t *stamp = &body->cells.stamp[body->cells.data[scratch->touched.data[i]].element];
+        cut->report.touched_elements += *stamp != scratch->stamp;
+        *stamp = scratch->stamp;
     }
-    for (i = 0; i < body->touched.count && result == GX_OK; i++) {
-        gxp_fetch_leaves(body, i);
-        result = gxp_divide_cell(cut, body->touched.data[i]);
+    for (i = 0; i < scratch->touched.count && result == GX_OK; i++) {
+        gxp_prefetch_leaves(body, i);
+        result = gxp_divide_cell(cut, scratch->touched.data[i]);
     }
     return result == GX_OK ? gxp_settle_links(body) : result;
 }
@@ -2893,9 +3200,10 @@ static gx_result gxp_divide_cells(gxp_cut *cut) {
 static gx_result gxp_cross_facet(gx_body *body, uint32_t facet, uint32_t leaf) {
     const gxb_facet *f = &body->complex->facets[facet];
     const uint32_t other = f->leaf[f->leaf[0] == leaf];
-    if (other == GXB_NONE || body->cell_stamp[body->leaves[other].cell] == body->stamp || !gxp_is_link(body, facet))
+    if (other == GXB_NONE || body->cells.stamp[body->leaves.data[other].cell] == body->scratch.stamp ||
+        !gxp_is_link(body, facet))
         return GX_OK;
-    return gxp_visit_cell(body, body->leaves[other].cell);
+    return gxp_visit_cell(body, body->leaves.data[other].cell, &body->scratch.subdomain_cells);
 }
 
 /* Visits the cells that links join to the cell of a whole element across the face opposite to local node k. */
@@ -2906,11 +3214,13 @@ static gx_result gxp_cross_whole_face(gx_body *body, uint32_t element, uint32_t 
     gx_result result;
     if (other == GXP_NONE) return GX_OK;
     if (cx->face_facet[face] == GXB_NONE)
-        return gxp_is_kept(body, other) ? gxp_visit_cell(body, body->leaves[other].cell) : GX_OK;
-    body->list.count = 0;
-    result = gxp_push_pieces(body, cx->face_facet[face], &body->list);
-    for (i = 0; i < body->list.count && result == GX_OK; i++)
-        result = gxp_cross_facet(body, body->list.data[i], element);
+        return gxp_is_kept(body, other)
+                 ? gxp_visit_cell(body, body->leaves.data[other].cell, &body->scratch.subdomain_cells)
+                 : GX_OK;
+    body->scratch.face_facets.count = 0;
+    result = gxp_push_divided_facets(body, cx->face_facet[face], &body->scratch.face_facets);
+    for (i = 0; i < body->scratch.face_facets.count && result == GX_OK; i++)
+        result = gxp_cross_facet(body, body->scratch.face_facets.data[i], element);
     return result;
 }
 
@@ -2919,11 +3229,14 @@ static gx_result gxp_cross_whole_face(gx_body *body, uint32_t element, uint32_t 
 static gx_result gxp_cross_links(gx_body *body, uint32_t index, uint32_t k, int all, uint32_t *open) {
     uint32_t i;
     gx_result result = GX_OK;
-    for (i = body->link_first.data[index]; i < body->link_first.data[index + 1] && result == GX_OK; i++) {
-        const uint32_t other = GXP_LINK_CELL(body->links.data[i]);
-        if (GXP_LINK_FACE(body->links.data[i]) == k || body->cell_stamp[other] == body->stamp) continue;
-        if (gxp_fresh_index(body, other) == GXP_NONE) *open = 1;
-        if (all || gxp_fresh_index(body, other) != GXP_NONE) result = gxp_visit_cell(body, other);
+    for (i = body->scratch.link_first.data[index]; i < body->scratch.link_first.data[index + 1] && result == GX_OK;
+         i++) {
+        const uint32_t other = GXP_LINK_CELL(body->scratch.links.data[i]);
+        if (GXP_LINK_FACE(body->scratch.links.data[i]) == k || body->cells.stamp[other] == body->scratch.stamp)
+            continue;
+        if (gxp_new_index(body, other) == GXP_NONE) *open = 1;
+        if (all || gxp_new_index(body, other) != GXP_NONE)
+            result = gxp_visit_cell(body, other, &body->scratch.subdomain_cells);
     }
     return result;
 }
@@ -2931,12 +3244,13 @@ static gx_result gxp_cross_links(gx_body *body, uint32_t index, uint32_t k, int 
 /* Visits the cells around the node that links join to one that is not fresh. */
 static gx_result gxp_cross_faces(gx_body *body, uint32_t cell, uint32_t node) {
     gxb_complex *cx = body->complex;
-    const uint32_t element = body->cells[cell].element;
+    const uint32_t element = body->cells.data[cell].element;
     const uint32_t local = (uint32_t)gxp_local_node(body, element, node),
                    opposite = cx->element_faces[4 * element + local];
     uint32_t leaf, first, count, i, k;
     gx_result result = GX_OK;
-    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next) {
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
+         leaf = body->leaves.data[leaf].next) {
         if (cx->leaves[leaf].facet_count == 0) {
             for (k = 0; k < 4 && result == GX_OK; k++)
                 if (k != local) result = gxp_cross_whole_face(body, element, k);
@@ -2951,55 +3265,55 @@ static gx_result gxp_cross_faces(gx_body *body, uint32_t cell, uint32_t node) {
     return result;
 }
 
-/* The piece of a nodal component that contains a fresh cell: appended to body->queue, every cell stamped. all 0: of its
-   fresh cells alone, from one to the next; *open: do links go on to others? */
-static gx_result gxp_walk_piece(gx_body *body, uint32_t cell, uint32_t node, int all, uint32_t *open) {
-    uint32_t done = body->queue.count;
-    gx_result result = gxp_visit_cell(body, cell);
+/* The piece of a nodal component that contains a fresh cell: appended to body->scratch.subdomain_cells, every cell
+   stamped. all 0: of its fresh cells alone, from one to the next; *open: do links go on to others? */
+static gx_result gxp_walk_subdomain(gx_body *body, uint32_t cell, uint32_t node, int all, uint32_t *open) {
+    uint32_t done = body->scratch.subdomain_cells.count;
+    gx_result result = gxp_visit_cell(body, cell, &body->scratch.subdomain_cells);
     *open = 0;
-    while (done < body->queue.count && result == GX_OK) {
-        const uint32_t c = body->queue.data[done++], fresh = gxp_fresh_index(body, c);
+    while (done < body->scratch.subdomain_cells.count && result == GX_OK) {
+        const uint32_t c = body->scratch.subdomain_cells.data[done++], fresh = gxp_new_index(body, c);
         if (fresh == GXP_NONE)
             result = gxp_cross_faces(body, c, node);
         else
-            result =
-                gxp_cross_links(body, fresh, (uint32_t)gxp_local_node(body, body->cells[c].element, node), all, open);
-        if (result == GX_OK && body->node_pinched[node]) result = gxp_cross_pinches(body, c, node);
+            result = gxp_cross_links(body, fresh, (uint32_t)gxp_local_node(body, body->cells.data[c].element, node),
+                                     all, open);
+        if (result == GX_OK && body->mesh.node_pinched[node]) result = gxp_cross_pinches(body, c, node);
     }
     return result;
 }
 
 /* A further copy of a node's displacement, with the values of the one it comes from (GXFEM Algorithm 1, line 7). */
 static gx_result gxp_new_copy(gx_body *body, uint32_t from, uint32_t *copy) {
-    gx_result result = gxp_reserve_copies(body, 1);
+    gx_result result = gxp_grow_rows(body, GXP_COPIES, 1);
     if (result != GX_OK) return result;
-    *copy = body->copy_count++;
-    body->copy_node[*copy] = body->copy_node[from];
-    gxp_copy_state(body, from, *copy);
-    body->copy_label[*copy] |= 1;
-    body->copy_before[*copy] |= 1;
-    if (!body->labels_known) return GX_OK;
-    result = gxp_push(body, &body->splits, *copy);
-    return result == GX_OK ? gxp_push(body, &body->splits, from) : result;
+    *copy = body->copies.count++;
+    gxp_copy_row(body, GXP_COPIES, from, *copy);
+    body->copies.label[*copy] |= 1;
+    body->copies.before[*copy] |= 1;
+    if (!body->view.labels_known) return GX_OK;
+    result = gxp_push(body, &body->view.splits, *copy);
+    return result == GX_OK ? gxp_push(body, &body->view.splits, from) : result;
 }
 
-/* Gives a copy to the cells first ... end-1 of body->queue. */
+/* Gives a copy to the cells first ... end-1 of body->scratch.subdomain_cells. */
 static gx_result gxp_set_copy(gx_body *body, uint32_t node, uint32_t copy, uint32_t first, uint32_t end) {
     uint32_t i;
     gx_result result = GX_OK;
     for (i = first; i < end && result == GX_OK; i++) {
-        const uint32_t cell = body->queue.data[i];
+        const uint32_t cell = body->scratch.subdomain_cells.data[i];
         result = gxp_save_cell(body, cell);
-        if (result == GX_OK) body->cells[cell].copies[gxp_local_node(body, body->cells[cell].element, node)] = copy;
+        if (result == GX_OK)
+            body->cells.data[cell].copies[gxp_local_node(body, body->cells.data[cell].element, node)] = copy;
     }
     return result;
 }
 
 static gx_result gxp_pair_cell(gx_body *body, uint32_t cell) {
-    const uint32_t *node = body->complex->elements + 4 * (size_t)body->cells[cell].element;
+    const uint32_t *node = body->complex->elements + 4 * (size_t)body->cells.data[cell].element;
     uint32_t k;
-    gx_result result = gxp_keys_room(body, &body->pairs, 4);
-    for (k = 0; k < 4 && result == GX_OK; k++) result = gxp_push_key(body, &body->pairs, node[k], cell);
+    gx_result result = gxp_keys_room(body, &body->scratch.pairs, 4);
+    for (k = 0; k < 4 && result == GX_OK; k++) result = gxp_push_key(body, &body->scratch.pairs, node[k], cell);
     return result;
 }
 
@@ -3007,9 +3321,10 @@ static gx_result gxp_pair_cell(gx_body *body, uint32_t cell) {
 static gx_result gxp_pair_node(gx_body *body, uint32_t node) {
     uint32_t j, cell;
     gx_result result = GX_OK;
-    for (j = body->node_start[node]; j < body->node_start[node + 1]; j++)
-        for (cell = body->node_elements[j]; cell != GXP_NONE && result == GX_OK; cell = body->cells[cell].next)
-            if (body->cells[cell].kept) result = gxp_push_key(body, &body->pairs, node, cell);
+    for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1]; j++)
+        for (cell = body->mesh.node_elements[j]; cell != GXP_NONE && result == GX_OK;
+             cell = body->cells.data[cell].next)
+            if (body->cells.data[cell].kept) result = gxp_push_key(body, &body->scratch.pairs, node, cell);
     return result;
 }
 
@@ -3018,62 +3333,68 @@ static gx_result gxp_pair_node(gx_body *body, uint32_t node) {
 static gx_result gxp_collect_pairs(gx_body *body) {
     uint32_t i, n;
     gx_result result = GX_OK;
-    body->pairs.count = 0;
-    result = gxp_keys_room(body, &body->pairs, 8 * (size_t)body->fresh.count); /* sorting takes as much again */
-    for (i = 0; i < body->fresh.count && result == GX_OK; i++) result = gxp_pair_cell(body, body->fresh.data[i]);
-    for (i = 0; i < body->touched.count && result == GX_OK; i++)
-        if (!body->cells[body->touched.data[i]].kept) result = gxp_pair_cell(body, body->touched.data[i]);
-    for (i = 0, n = body->pairs.count; i < n && result == GX_OK; i++)
-        if (body->node_pinched[GXP_FIRST(body->pairs.data[i])])
-            result = gxp_push(body, &body->pinches, GXP_FIRST(body->pairs.data[i]));
-    gxp_sort_unique(&body->pinches);
-    for (i = 0; i < body->pinches.count && result == GX_OK; i++) result = gxp_pair_node(body, body->pinches.data[i]);
-    return result == GX_OK ? gxp_sort_keys(body, &body->pairs, 0, body->pairs.count) : result;
+    body->scratch.pairs.count = 0;
+    result = gxp_keys_room(body, &body->scratch.pairs, 8 * (size_t)body->scratch.new_cells.count); /* sorting takes as
+                                                                                                      much again */
+    for (i = 0; i < body->scratch.new_cells.count && result == GX_OK; i++)
+        result = gxp_pair_cell(body, body->scratch.new_cells.data[i]);
+    for (i = 0; i < body->scratch.touched.count && result == GX_OK; i++)
+        if (!body->cells.data[body->scratch.touched.data[i]].kept)
+            result = gxp_pair_cell(body, body->scratch.touched.data[i]);
+    for (i = 0, n = body->scratch.pairs.count; i < n && result == GX_OK; i++)
+        if (body->mesh.node_pinched[GXP_FIRST(body->scratch.pairs.data[i])])
+            result = gxp_push(body, &body->scratch.pinches, GXP_FIRST(body->scratch.pairs.data[i]));
+    gxp_sort_unique(&body->scratch.pinches);
+    for (i = 0; i < body->scratch.pinches.count && result == GX_OK; i++)
+        result = gxp_pair_node(body, body->scratch.pinches.data[i]);
+    return result == GX_OK ? gxp_sort_keys(body, &body->scratch.pairs, 0, body->scratch.pairs.count) : result;
 }
 
 /* Finds the pieces of the components around a node (pairs first ... end-1). Every piece of a component that fell apart
-   contains a cell of a pair. Their cells go to body->queue, where each starts to body->pieces, times two, 1 more if it
-   is open; body->seeds: the copies of components with an open piece. all 0: only fresh cells are looked at, which tells
-   the pieces apart unless a component has two open ones: *sure. */
-static gx_result gxp_find_pieces(gx_body *body, uint32_t first, uint32_t end, int all, int *sure) {
-    const uint32_t node = GXP_FIRST(body->pairs.data[first]);
+   contains a cell of a pair. Their cells go to body->scratch.subdomain_cells, where each starts to
+   body->scratch.subdomains, times two, 1 more if it is open; body->scratch.taken: the copies of components with an open
+   piece. all 0: only fresh cells are looked at, which tells the pieces apart unless a component has two open ones:
+   *sure. */
+static gx_result gxp_find_subdomains(gx_body *body, uint32_t first, uint32_t end, int all, int *sure) {
+    const uint32_t node = GXP_FIRST(body->scratch.pairs.data[first]);
     uint32_t i, open;
     gx_result result = GX_OK;
-    body->queue.count = body->pieces.count = body->seeds.count = 0;
-    body->stamp++;
-    *sure = all || !body->node_pinched[node];
+    body->scratch.subdomain_cells.count = body->scratch.subdomains.count = body->scratch.taken.count = 0;
+    body->scratch.stamp++;
+    *sure = all || !body->mesh.node_pinched[node];
     for (i = first; i < end && result == GX_OK && *sure; i++) {
-        const uint32_t cell = GXP_SECOND(body->pairs.data[i]), start = body->queue.count,
+        const uint32_t cell = GXP_SECOND(body->scratch.pairs.data[i]), start = body->scratch.subdomain_cells.count,
                        copy = gxp_copy_of(body, cell, node);
-        if (!body->cells[cell].kept || body->cell_stamp[cell] == body->stamp) continue;
-        result = gxp_walk_piece(body, cell, node, all, &open);
-        if (open && gxp_contains(&body->seeds, copy)) {
+        if (!body->cells.data[cell].kept || body->cells.stamp[cell] == body->scratch.stamp) continue;
+        result = gxp_walk_subdomain(body, cell, node, all, &open);
+        if (open && gxp_contains(&body->scratch.taken, copy)) {
             *sure = all;
             open = 0;
         }
-        if (result == GX_OK && open) result = gxp_push(body, &body->seeds, copy);
-        if (result == GX_OK) result = gxp_push(body, &body->pieces, start << 1 | open);
+        if (result == GX_OK && open) result = gxp_push(body, &body->scratch.taken, copy);
+        if (result == GX_OK) result = gxp_push(body, &body->scratch.subdomains, start << 1 | open);
     }
     return result;
 }
 
 /* Around one node: the pieces of each old component get copies of their own; one keeps the old copy, the open one, else
-   the first. Old copies that lost all cells join body->dead. */
+   the first. Old copies that lost all cells join body->scratch.dead. */
 static gx_result gxp_divide_node(gxp_cut *cut, uint32_t first, uint32_t end) {
     gx_body *body = cut->body;
-    const uint32_t node = GXP_FIRST(body->pairs.data[first]);
+    const uint32_t node = GXP_FIRST(body->scratch.pairs.data[first]);
     uint32_t i;
     int sure = 0;
-    gx_result result = gxp_find_pieces(body, first, end, 0, &sure);
-    if (result == GX_OK && !sure) result = gxp_find_pieces(body, first, end, 1, &sure);
-    for (i = 0; i < body->pieces.count && result == GX_OK; i++) {
-        const uint32_t from = body->pieces.data[i] >> 1,
-                       to = i + 1 < body->pieces.count ? body->pieces.data[i + 1] >> 1 : body->queue.count;
-        const uint32_t old = gxp_copy_of(body, body->queue.data[from], node);
+    gx_result result = gxp_find_subdomains(body, first, end, 0, &sure);
+    if (result == GX_OK && !sure) result = gxp_find_subdomains(body, first, end, 1, &sure);
+    for (i = 0; i < body->scratch.subdomains.count && result == GX_OK; i++) {
+        const uint32_t from = body->scratch.subdomains.data[i] >> 1, to = i + 1 < body->scratch.subdomains.count
+                                                                            ? body->scratch.subdomains.data[i + 1] >> 1
+                                                                            : body->scratch.subdomain_cells.count;
+        const uint32_t old = gxp_copy_of(body, body->scratch.subdomain_cells.data[from], node);
         uint32_t copy;
-        if (body->pieces.data[i] & 1) continue;
-        if (!gxp_contains(&body->seeds, old)) {
-            result = gxp_push(body, &body->seeds, old);
+        if (body->scratch.subdomains.data[i] & 1) continue;
+        if (!gxp_contains(&body->scratch.taken, old)) {
+            result = gxp_push(body, &body->scratch.taken, old);
             continue;
         }
         result = gxp_new_copy(body, old, &copy);
@@ -3081,9 +3402,10 @@ static gx_result gxp_divide_node(gxp_cut *cut, uint32_t first, uint32_t end) {
         cut->report.created_copies++;
     }
     for (i = first; i < end && result == GX_OK; i++) {
-        const uint32_t cell = GXP_SECOND(body->pairs.data[i]), old = gxp_copy_of(body, cell, node);
-        if (!body->cells[cell].kept && !gxp_contains(&body->seeds, old) && !gxp_contains(&body->dead, old))
-            result = gxp_push(body, &body->dead, old);
+        const uint32_t cell = GXP_SECOND(body->scratch.pairs.data[i]), old = gxp_copy_of(body, cell, node);
+        if (!body->cells.data[cell].kept && !gxp_contains(&body->scratch.taken, old) &&
+            !gxp_contains(&body->scratch.dead, old))
+            result = gxp_push(body, &body->scratch.dead, old);
     }
     return result;
 }
@@ -3092,11 +3414,11 @@ static gx_result gxp_divide_nodes(gxp_cut *cut) {
     gx_body *body = cut->body;
     uint32_t first, end;
     gx_result result = gxp_collect_pairs(body);
-    body->dead.count = 0;
-    for (first = 0; first < body->pairs.count && result == GX_OK; first = end) {
-        for (end = first;
-             end < body->pairs.count && GXP_FIRST(body->pairs.data[end]) == GXP_FIRST(body->pairs.data[first]); end++) {
-        }
+    body->scratch.dead.count = 0;
+    for (first = 0; first < body->scratch.pairs.count && result == GX_OK; first = end) {
+        for (end = first; end < body->scratch.pairs.count &&
+                          GXP_FIRST(body->scratch.pairs.data[end]) == GXP_FIRST(body->scratch.pairs.data[first]);
+             end++) {}
         result = gxp_divide_node(cut, first, end);
     }
     return result;
@@ -3107,36 +3429,37 @@ static gx_result gxp_divide_nodes(gxp_cut *cut) {
    coordinates of the element. Sums whose terms cancel are summed in exact numbers. Touches cells, through the undo log.
  */
 
-/* The part's points and triangles: body->list has the points, body->lambdas 4 numbers for each, body->triangles the
-   indices. Points of the parts before it are kept where they may be met again: parts of one element share those of its
-   walls. */
+/* The part's points and triangles: body->scratch.boundary.points has the points, body->scratch.boundary.lambdas 4
+   numbers for each, body->scratch.boundary.triangles the indices. Points of the parts before it are kept where they may
+   be met again: parts of one element share those of its walls. */
 static void gxp_clear_boundary(gx_body *body, int other_element) {
-    if (other_element || body->list.count > 64) body->list.count = 0;
-    body->triangles.count = body->faces.count = 0;
+    if (other_element || body->scratch.boundary.points.count > 64) body->scratch.boundary.points.count = 0;
+    body->scratch.boundary.triangles.count = body->scratch.boundary.facets.count = 0;
 }
 
 static gx_result gxp_new_boundary_point(gx_body *body, uint32_t element, uint32_t point, uint32_t *index) {
     gx_result result = GX_OK;
-    if (point >= body->point_slot.count) {
-        result = gxp_words_room(body, &body->point_slot, body->complex->point_count - body->point_slot.count);
+    if (point >= body->scratch.boundary.slots.count) {
+        result = gxp_words_room(body, &body->scratch.boundary.slots,
+                                body->complex->point_count - body->scratch.boundary.slots.count);
         if (result != GX_OK) return result;
-        memset(body->point_slot.data + body->point_slot.count, 0xff,
-               (body->complex->point_count - body->point_slot.count) * sizeof(uint32_t));
-        body->point_slot.count = body->complex->point_count;
+        memset(body->scratch.boundary.slots.data + body->scratch.boundary.slots.count, 0xff,
+               (body->complex->point_count - body->scratch.boundary.slots.count) * sizeof(uint32_t));
+        body->scratch.boundary.slots.count = body->complex->point_count;
     }
-    result =
-        gxp_reserve(&body->allocator, &body->lambdas, 4 * sizeof(double), body->list.count, &body->lambda_capacity, 1);
-    *index = body->list.count;
-    if (result == GX_OK) result = gxp_push(body, &body->list, point);
+    result = gxp_reserve(&body->config.allocator, &body->scratch.boundary.lambdas, 4 * sizeof(double),
+                         body->scratch.boundary.points.count, &body->scratch.boundary.lambda_capacity, 1);
+    *index = body->scratch.boundary.points.count;
+    if (result == GX_OK) result = gxp_push(body, &body->scratch.boundary.points, point);
     if (result != GX_OK) return result;
-    body->point_slot.data[point] = *index;
-    gxb_complex_barycentric(body->complex, point, element, body->lambdas + 4 * (size_t)*index);
+    body->scratch.boundary.slots.data[point] = *index;
+    gxb_complex_barycentric(body->complex, point, element, body->scratch.boundary.lambdas + 4 * (size_t)*index);
     return GX_OK;
 }
 
 static gx_result gxp_add_boundary_point(gx_body *body, uint32_t element, uint32_t point, uint32_t *index) {
-    *index = point < body->point_slot.count ? body->point_slot.data[point] : GXP_NONE;
-    return *index < body->list.count && body->list.data[*index] == point
+    *index = point < body->scratch.boundary.slots.count ? body->scratch.boundary.slots.data[point] : GXP_NONE;
+    return *index < body->scratch.boundary.points.count && body->scratch.boundary.points.data[*index] == point
              ? GX_OK
              : gxp_new_boundary_point(body, element, point, index);
 }
@@ -3146,23 +3469,24 @@ static gx_result gxp_add_boundary_facet(gx_body *body, uint32_t element, uint32_
     gxb_complex *cx = body->complex;
     uint32_t e0, en, i, corner[3] = {0, 0, 0};
     gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
-    if (result == GX_OK) result = gxp_words_room(body, &body->triangles, 3 * (size_t)en);
+    if (result == GX_OK) result = gxp_words_room(body, &body->scratch.boundary.triangles, 3 * (size_t)en);
     for (i = 0; i < en && result == GX_OK; i++) {
         const uint32_t e = cx->pool[e0 + i];
-        uint32_t *triangle = body->triangles.data + body->triangles.count;
+        uint32_t *triangle = body->scratch.boundary.triangles.data + body->scratch.boundary.triangles.count;
         result = gxp_add_boundary_point(body, element, cx->edges[e >> 1].v[e & 1], &corner[i < 2 ? i : 2]);
         if (i < 2) continue;
         triangle[0] = corner[0];
         triangle[inward ? 2 : 1] = corner[1];
         triangle[inward ? 1 : 2] = corner[2];
-        body->triangles.count += 3;
+        body->scratch.boundary.triangles.count += 3;
         corner[1] = corner[2];
     }
     return result;
 }
 
 /* Adds the leaf's facets inside the element; those with the same cell on both sides cancel and are left out unless all
-   is set. Those in faces of the element are kept in body->faces, times two, 1 more if the part is in front. */
+   is set. Those in faces of the element are kept in body->scratch.boundary.facets, times two, 1 more if the part is in
+   front. */
 static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, int all) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i;
@@ -3173,8 +3497,8 @@ static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, int all) {
         const int inward = f->leaf[0] == leaf;
         const uint32_t other = f->leaf[inward];
         if (f->face != GXB_NONE)
-            result = gxp_push(body, &body->faces, facet << 1 | (uint32_t)inward);
-        else if (all || !gxp_is_kept(body, other) || body->leaves[other].cell != body->leaves[leaf].cell)
+            result = gxp_push(body, &body->scratch.boundary.facets, facet << 1 | (uint32_t)inward);
+        else if (all || !gxp_is_kept(body, other) || body->leaves.data[other].cell != body->leaves.data[leaf].cell)
             result = gxp_add_boundary_facet(body, cx->leaves[leaf].element, facet, inward);
     }
     return result;
@@ -3233,13 +3557,13 @@ static void gxp_fine_coordinates(gx_body *body, uint32_t element, uint32_t point
     int a;
     if (points[point].c[0].d != NULL) return;
     for (a = 0; a < 4; a++) points[point].c[a].d = points[point].limbs[a];
-    gxb_complex_barycentric_fine(body->complex, body->list.data[point], element, points[point].c);
+    gxb_complex_barycentric_fine(body->complex, body->scratch.boundary.points.data[point], element, points[point].c);
 }
 
 /* Moments of the collected boundary in the frame with origin k, from coordinates with 180 bits. */
 static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, gxi_moments2 *m) {
-    const size_t size = body->list.count * sizeof(gxp_fine_point);
-    gxp_fine_point *points = (gxp_fine_point *)gxp_allocate(&body->allocator, size);
+    const size_t size = body->scratch.boundary.points.count * sizeof(gxp_fine_point);
+    gxp_fine_point *points = (gxp_fine_point *)gxp_allocate(&body->config.allocator, size);
     gxp_fine_sums sums;
     unsigned axes[3];
     uint32_t i, t;
@@ -3250,19 +3574,21 @@ static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, g
         sums.c[i].n = 0;
         sums.c[i].d = sums.limbs[i];
     }
-    for (i = 0; i < body->list.count; i++) points[i].c[0].d = NULL;
+    for (i = 0; i < body->scratch.boundary.points.count; i++) points[i].c[0].d = NULL;
     gxi_part_axes(k, axes);
-    for (t = 0; t + 2 < body->triangles.count; t += 3) {
+    for (t = 0; t + 2 < body->scratch.boundary.triangles.count; t += 3) {
         gxb_num *p[3][3];
-        for (a = 0; a < 3; a++) gxp_fine_coordinates(body, element, body->triangles.data[t + (uint32_t)a], points);
         for (a = 0; a < 3; a++)
-            for (c = 0; c < 3; c++) p[a][c] = &points[body->triangles.data[t + (uint32_t)a]].c[axes[c]];
+            gxp_fine_coordinates(body, element, body->scratch.boundary.triangles.data[t + (uint32_t)a], points);
+        for (a = 0; a < 3; a++)
+            for (c = 0; c < 3; c++)
+                p[a][c] = &points[body->scratch.boundary.triangles.data[t + (uint32_t)a]].c[axes[c]];
         gxp_fine_add(&sums, p);
     }
     m->volume = gxb_num_to_double(&sums.c[0]) / 6;
     for (a = 0; a < 3; a++) m->first[a] = gxb_num_to_double(&sums.c[1 + a]) / 24;
     for (a = 0; a < 6; a++) m->second[a] = gxb_num_to_double(&sums.c[4 + a]) / 120;
-    gxp_release(&body->allocator, points, size);
+    gxp_release(&body->config.allocator, points, size);
     return GX_OK;
 }
 
@@ -3277,10 +3603,10 @@ static double gxp_cone_volumes(const gx_body *body, unsigned k) {
     double sum = 0;
     uint32_t t;
     gxi_part_axes(k, axes);
-    for (t = 0; t + 2 < body->triangles.count; t += 3) {
-        const double *a = body->lambdas + 4 * (size_t)body->triangles.data[t],
-                     *b = body->lambdas + 4 * (size_t)body->triangles.data[t + 1];
-        const double *c = body->lambdas + 4 * (size_t)body->triangles.data[t + 2];
+    for (t = 0; t + 2 < body->scratch.boundary.triangles.count; t += 3) {
+        const double *a = body->scratch.boundary.lambdas + 4 * (size_t)body->scratch.boundary.triangles.data[t],
+                     *b = body->scratch.boundary.lambdas + 4 * (size_t)body->scratch.boundary.triangles.data[t + 1];
+        const double *c = body->scratch.boundary.lambdas + 4 * (size_t)body->scratch.boundary.triangles.data[t + 2];
         for (d = 0; d < 3; d++) {
             const unsigned x = axes[d], y = axes[(d + 1) % 3], z = axes[(d + 2) % 3];
             sum += a[x] * (b[y] * c[z] + b[z] * c[y] + fabs(b[y] - a[y]) * fabs(c[z] - a[z]) +
@@ -3295,8 +3621,9 @@ static unsigned gxp_nearest_vertex(const gx_body *body) {
     double sum[4] = {0, 0, 0, 0};
     unsigned nearest = 0, k;
     uint32_t i;
-    for (i = 0; i < body->triangles.count; i++)
-        for (k = 0; k < 4; k++) sum[k] += body->lambdas[4 * (size_t)body->triangles.data[i] + k];
+    for (i = 0; i < body->scratch.boundary.triangles.count; i++)
+        for (k = 0; k < 4; k++)
+            sum[k] += body->scratch.boundary.lambdas[4 * (size_t)body->scratch.boundary.triangles.data[i] + k];
     for (k = 1; k < 4; k++)
         if (sum[k] > sum[nearest]) nearest = k;
     return nearest;
@@ -3309,13 +3636,14 @@ static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned 
     uint32_t i;
     gx_result result = GX_OK;
     *k = gxp_nearest_vertex(body);
-    for (i = 0; i < body->faces.count && result == GX_OK; i++) {
-        const uint32_t facet = body->faces.data[i] >> 1;
+    for (i = 0; i < body->scratch.boundary.facets.count && result == GX_OK; i++) {
+        const uint32_t facet = body->scratch.boundary.facets.data[i] >> 1;
         if (cx->facets[facet].face == cx->element_faces[4 * (size_t)element + *k])
-            result = gxp_add_boundary_facet(body, element, facet, (int)(body->faces.data[i] & 1));
+            result = gxp_add_boundary_facet(body, element, facet, (int)(body->scratch.boundary.facets.data[i] & 1));
     }
     if (result == GX_OK)
-        result = gxi_part_moments_at(body->lambdas, body->list.count, body->triangles.data, body->triangles.count / 3,
+        result = gxi_part_moments_at(body->scratch.boundary.lambdas, body->scratch.boundary.points.count,
+                                     body->scratch.boundary.triangles.data, body->scratch.boundary.triangles.count / 3,
                                      *k, m);
     if (result == GX_OK && m->volume < GXP_CANCELLATION * gxp_cone_volumes(body, *k))
         result = gxp_fine_moments(body, element, *k, m);
@@ -3324,24 +3652,25 @@ static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned 
 
 /* volume: of the element */
 static gx_result gxp_integrate_cell(gx_body *body, uint32_t cell, double volume) {
-    const uint32_t element = body->cells[cell].element;
+    const uint32_t element = body->cells.data[cell].element;
     gxi_moments2 m;
     unsigned k;
     uint32_t leaf;
     gx_result result = gxp_save_cell(body, cell);
     gxp_clear_boundary(body, 0);
-    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next)
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
+         leaf = body->leaves.data[leaf].next)
         result = gxp_add_boundary_leaf(body, leaf, 0);
     if (result == GX_OK) result = gxp_boundary_moments(body, element, &k, &m);
     if (result != GX_OK) return result;
-    body->cells[cell].volume = 6 * volume * m.volume;
-    gxi_part_mass(&m, k, volume, gxp_density(body, element), body->cells[cell].mass);
+    body->cells.data[cell].volume = 6 * volume * m.volume;
+    gxi_part_mass(&m, k, volume, gxp_density(body, element), body->cells.data[cell].mass);
     return GX_OK;
 }
 
 static uint32_t gxp_count_leaves(const gx_body *body, uint32_t cell) {
     uint32_t leaf, count = 0;
-    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next) count++;
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE; leaf = body->leaves.data[leaf].next) count++;
     return count;
 }
 
@@ -3367,14 +3696,15 @@ static uint32_t gxp_middle_leaf(const gxb_complex *cx, uint32_t element) {
    the fresh ones have. */
 static uint32_t gxp_rest_cell(const gx_body *body, uint32_t element) {
     const uint32_t root = body->complex->root[element], all = root & 1 ? body->complex->nodes[root >> 1].leaves : 1;
-    const uint32_t rest = body->leaves[gxp_middle_leaf(body->complex, element)].cell;
+    const uint32_t rest = body->leaves.data[gxp_middle_leaf(body->complex, element)].cell;
     uint32_t cell, leaf, sum = 0, others = 0;
-    if (gxp_fresh_index(body, rest) == GXP_NONE) return GXP_NONE;
-    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next)
-        if (gxp_fresh_index(body, cell) != GXP_NONE) sum += gxp_count_leaves(body, cell);
-    for (cell = element; cell != GXP_NONE && others <= sum; cell = body->cells[cell].next) {
-        if (gxp_fresh_index(body, cell) != GXP_NONE) continue;
-        for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && others <= sum; leaf = body->leaves[leaf].next)
+    if (gxp_new_index(body, rest) == GXP_NONE) return GXP_NONE;
+    for (cell = element; cell != GXP_NONE; cell = body->cells.data[cell].next)
+        if (gxp_new_index(body, cell) != GXP_NONE) sum += gxp_count_leaves(body, cell);
+    for (cell = element; cell != GXP_NONE && others <= sum; cell = body->cells.data[cell].next) {
+        if (gxp_new_index(body, cell) != GXP_NONE) continue;
+        for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && others <= sum;
+             leaf = body->leaves.data[leaf].next)
             others++;
     }
     return others <= sum && sum + others == all ? rest : GXP_NONE;
@@ -3387,25 +3717,25 @@ static uint32_t gxp_rest_cell(const gx_body *body, uint32_t element) {
 
 /* Makes the cell, which has been saved, what the element's other cells leave. 0: that is too little. */
 static int gxp_leave_rest(gx_body *body, uint32_t rest, double volume) {
-    const uint32_t element = body->cells[rest].element;
+    const uint32_t element = body->cells.data[rest].element;
     double mass[10], left = volume;
     uint32_t cell;
     int i;
     gxi_tet_mass(volume, gxp_density(body, element), mass);
-    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next) {
+    for (cell = element; cell != GXP_NONE; cell = body->cells.data[cell].next) {
         if (cell == rest) continue;
-        left -= body->cells[cell].volume;
-        for (i = 0; i < 10; i++) mass[i] -= body->cells[cell].mass[i];
+        left -= body->cells.data[cell].volume;
+        for (i = 0; i < 10; i++) mass[i] -= body->cells.data[cell].mass[i];
     }
     if (!(left >= GXP_REST * volume)) return 0;
-    body->cells[rest].volume = left;
-    memcpy(body->cells[rest].mass, mass, sizeof mass);
+    body->cells.data[rest].volume = left;
+    memcpy(body->cells.data[rest].mass, mass, sizeof mass);
     return 1;
 }
 
 static int gxp_has_few_cells(const gx_body *body, uint32_t element) {
     uint32_t cell = element, count = 0;
-    for (; cell != GXP_NONE && count <= GXP_REST_CELLS; cell = body->cells[cell].next) count++;
+    for (; cell != GXP_NONE && count <= GXP_REST_CELLS; cell = body->cells.data[cell].next) count++;
     return count <= GXP_REST_CELLS;
 }
 
@@ -3416,8 +3746,8 @@ static gx_result gxp_integrate_element(gx_body *body, uint32_t element) {
     uint32_t cell;
     int done = 0;
     gx_result result = gxb_complex_open_element(body->complex, element);
-    for (cell = element; cell != GXP_NONE && result == GX_OK; cell = body->cells[cell].next)
-        if (cell != rest && gxp_fresh_index(body, cell) != GXP_NONE) result = gxp_integrate_cell(body, cell, volume);
+    for (cell = element; cell != GXP_NONE && result == GX_OK; cell = body->cells.data[cell].next)
+        if (cell != rest && gxp_new_index(body, cell) != GXP_NONE) result = gxp_integrate_cell(body, cell, volume);
     if (rest == GXP_NONE || result != GX_OK) return result;
     result = gxp_save_cell(body, rest);
     if (result == GX_OK) done = gxp_leave_rest(body, rest, volume);
@@ -3476,12 +3806,14 @@ static gx_result gxp_check_cut(gxp_cut *cut) {
 static gx_result gxp_remove_leaves(gx_body *body) {
     uint32_t i;
     gx_result result = GX_OK;
-    gxp_sort_unique(&body->removed);
-    for (i = 0; i < body->removed.count && result == GX_OK; i++) {
-        result = gxb_complex_set_removed(body->complex, body->removed.data[i]);
-        if (result == GX_OK) result = gxp_push(body, &body->touched, body->leaves[body->removed.data[i]].cell);
+    gxp_sort_unique(&body->scratch.removed);
+    for (i = 0; i < body->scratch.removed.count && result == GX_OK; i++) {
+        result = gxb_complex_set_removed(body->complex, body->scratch.removed.data[i]);
+        if (result == GX_OK)
+            result = gxp_push(body, &body->scratch.touched, body->leaves.data[body->scratch.removed.data[i]].cell);
     }
-    for (i = 0; i < body->removed.count && result == GX_OK; i++) result = gxp_touch_around(body, body->removed.data[i]);
+    for (i = 0; i < body->scratch.removed.count && result == GX_OK; i++)
+        result = gxp_touch_around(body, body->scratch.removed.data[i]);
     return result;
 }
 
@@ -3503,16 +3835,16 @@ static gx_result gxp_arrange_surfaces(gxp_cut *cut, gxp_surface *surfaces) {
 static gx_result gxp_arrange(gxp_cut *cut) {
     gx_body *body = cut->body;
     const size_t count = cut->desc->surface_count;
-    gxp_surface *surfaces = (gxp_surface *)gxp_allocate(&body->allocator, count * sizeof *surfaces);
+    gxp_surface *surfaces = (gxp_surface *)gxp_allocate(&body->config.allocator, count * sizeof *surfaces);
     gx_result result;
     size_t i;
     if (surfaces == NULL) return GX_ERROR_MEMORY;
     memset(surfaces, 0, count * sizeof *surfaces);
-    body->touched.count = body->removed.count = body->pinches.count = 0;
+    body->scratch.touched.count = body->scratch.removed.count = body->scratch.pinches.count = 0;
     result = gxp_arrange_surfaces(cut, surfaces);
     for (i = 0; i < count; i++)
         if (surfaces[i].given != NULL) gxp_surface_free(body, &surfaces[i]);
-    gxp_release(&body->allocator, surfaces, count * sizeof *surfaces);
+    gxp_release(&body->config.allocator, surfaces, count * sizeof *surfaces);
     if (result == GX_OK) result = gxp_list_new_leaves(cut);
     return result == GX_OK ? gxp_remove_leaves(body) : result;
 }
@@ -3527,35 +3859,36 @@ static gx_result gxp_enrich(gxp_cut *cut) {
 
 /* The integrals of a fresh cell, and of all others of its element, unless they are many. *before: the element of the
  * fresh cell before it */
-static gx_result gxp_integrate_fresh(gx_body *body, uint32_t cell, uint32_t *before) {
-    const uint32_t element = body->cells[cell].element;
-    if (body->cell_stamp[element] == body->stamp) return GX_OK;
+static gx_result gxp_integrate_new(gx_body *body, uint32_t cell, uint32_t *before) {
+    const uint32_t element = body->cells.data[cell].element;
+    if (body->cells.stamp[element] == body->scratch.stamp) return GX_OK;
     gxp_clear_boundary(body, element != *before);
     *before = element;
     if (!gxp_has_few_cells(body, element)) return gxp_integrate_cell(body, cell, gxp_element_volume(body, element));
-    body->cell_stamp[element] = body->stamp;
+    body->cells.stamp[element] = body->scratch.stamp;
     return gxp_integrate_element(body, element);
 }
 
 /* Asks for what weighing the links of the next fresh cells reads: facets three ahead, their loops two ahead, the edges
  * of the next. */
-GXP_FETCHES void gxp_fetch_links(const gx_body *body, uint32_t index) {
+GXP_PREFETCHES void gxp_prefetch_links(const gx_body *body, uint32_t index) {
     const gxb_complex *cx = body->complex;
-    const uint32_t *at = body->link_first.data;
-    const uint32_t count = body->fresh.count;
+    const uint32_t *at = body->scratch.link_first.data;
+    const uint32_t count = body->scratch.new_cells.count;
     uint32_t j, i;
     if (index + 3 < count)
-        for (j = at[index + 3]; j < at[index + 4]; j++) GXP_FETCH(&cx->facets[GXP_LINK_FACET(body->links.data[j])]);
+        for (j = at[index + 3]; j < at[index + 4]; j++)
+            GXP_PREFETCH(&cx->facets[GXP_LINK_FACET(body->scratch.links.data[j])]);
     if (index + 2 < count)
         for (j = at[index + 2]; j < at[index + 3]; j++) {
-            const gxb_facet *f = &cx->facets[GXP_LINK_FACET(body->links.data[j])];
-            GXP_FETCH(cx->pool + f->loop);
-            GXP_FETCH(&cx->planes[f->plane].axis);
+            const gxb_facet *f = &cx->facets[GXP_LINK_FACET(body->scratch.links.data[j])];
+            GXP_PREFETCH(cx->pool + f->loop);
+            GXP_PREFETCH(&cx->planes[f->plane].axis);
         }
     if (index + 1 < count)
         for (j = at[index + 1]; j < at[index + 2]; j++) {
-            const gxb_facet *f = &cx->facets[GXP_LINK_FACET(body->links.data[j])];
-            for (i = 0; i < f->loop_count; i++) GXP_FETCH(&cx->edges[cx->pool[f->loop + i] >> 1]);
+            const gxb_facet *f = &cx->facets[GXP_LINK_FACET(body->scratch.links.data[j])];
+            for (i = 0; i < f->loop_count; i++) GXP_PREFETCH(&cx->edges[cx->pool[f->loop + i] >> 1]);
         }
 }
 
@@ -3565,13 +3898,13 @@ static gx_result gxp_integrate(gxp_cut *cut) {
     const int weighed = cut->desc->sever_below > 0;
     double bound = 1;
     uint32_t i, before = GXP_NONE;
-    gx_result result = gxp_integrate_removed(cut, &body->removed);
-    body->nodes.count = 0;
-    body->stamp++;
-    for (i = 0; i < body->fresh.count && result == GX_OK; i++) {
-        gxp_fetch_links(body, i);
+    gx_result result = gxp_integrate_removed(cut, &body->scratch.removed);
+    body->scratch.narrow.count = 0;
+    body->scratch.stamp++;
+    for (i = 0; i < body->scratch.new_cells.count && result == GX_OK; i++) {
+        gxp_prefetch_links(body, i);
         if (!weighed) result = gxp_weigh_links(cut, i, &bound);
-        if (result == GX_OK) result = gxp_integrate_fresh(body, body->fresh.data[i], &before);
+        if (result == GX_OK) result = gxp_integrate_new(body, body->scratch.new_cells.data[i], &before);
     }
     return result == GX_OK ? gxp_judge_links(cut, bound) : result;
 }
@@ -3588,90 +3921,93 @@ static gx_result gxp_push_leaf_elements(gx_body *body, uint32_t facet) {
 
 /* Notes for the skin, if there is one, the elements in which the cut made facets or walls or changed a cell, and those
    whose copies will be renumbered when dead ones are dropped. Elements noted in vain do no harm. */
-static gx_result gxp_note_touched(gxp_cut *cut, uint32_t first_facet) {
+static gx_result gxp_note_for_skin(gxp_cut *cut, uint32_t first_facet) {
     gx_body *body = cut->body;
     const gxb_complex *cx = body->complex;
     uint32_t i, j;
     gx_result result = GX_OK;
     if (!body->skin.made) return GX_OK;
-    if (body->skin.dirty.count / 8 > body->element_count) {
+    if (body->skin.dirty.count / 8 > body->mesh.element_count) {
         body->skin.made = 0;
         return GX_OK;
     }
     for (i = first_facet; i < cx->facet_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, i);
     for (i = 0; i < cx->wall_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, cx->walls[i] >> 1);
-    for (i = 0; i < body->saved_cell_count && result == GX_OK; i++)
-        result = gxp_push(body, &body->skin.dirty, body->saved_cells[i].cell.element);
-    for (i = 0; i < body->pinches.count; i++) /* edges that were divided there without a new facet */
-        for (j = body->node_start[body->pinches.data[i]];
-             j < body->node_start[body->pinches.data[i] + 1] && result == GX_OK; j++)
-            result = gxp_push(body, &body->skin.dirty, body->node_elements[j]);
-    for (i = body->copy_count - body->dead.count; i < body->copy_count; i++) {
-        const uint32_t node = body->copy_node[i];
-        for (j = body->node_start[node]; j < body->node_start[node + 1] && result == GX_OK; j++)
-            result = gxp_push(body, &body->skin.dirty, body->node_elements[j]);
+    for (i = 0; i < body->undo.cells.rows.count && result == GX_OK; i++)
+        result = gxp_push(body, &body->skin.dirty, body->cells.data[body->undo.cells.rows.data[i]].element);
+    for (i = 0; i < body->scratch.pinches.count; i++) /* edges that were divided there without a new facet */
+        for (j = body->mesh.node_start[body->scratch.pinches.data[i]];
+             j < body->mesh.node_start[body->scratch.pinches.data[i] + 1] && result == GX_OK; j++)
+            result = gxp_push(body, &body->skin.dirty, body->mesh.node_elements[j]);
+    for (i = body->copies.count - body->scratch.dead.count; i < body->copies.count; i++) {
+        const uint32_t node = body->copies.node[i];
+        for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1] && result == GX_OK; j++)
+            result = gxp_push(body, &body->skin.dirty, body->mesh.node_elements[j]);
     }
     return result;
 }
 
 /* Puts the last copy in the place of a dead one. */
 static void gxp_drop_copy(gx_body *body, uint32_t copy) {
-    const uint32_t last = --body->copy_count, node = body->copy_node[last];
+    const uint32_t last = --body->copies.count, node = body->copies.node[last];
     uint32_t j, cell;
     if (copy == last) return;
-    for (j = body->node_start[node]; j < body->node_start[node + 1]; j++) {
-        const uint32_t element = body->node_elements[j];
+    for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1]; j++) {
+        const uint32_t element = body->mesh.node_elements[j];
         const int k = gxp_local_node(body, element, node);
-        for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next)
-            if (body->cells[cell].copies[k] == last) body->cells[cell].copies[k] = copy;
+        for (cell = element; cell != GXP_NONE; cell = body->cells.data[cell].next)
+            if (body->cells.data[cell].copies[k] == last) body->cells.data[cell].copies[k] = copy;
     }
-    body->copy_node[copy] = node;
-    gxp_copy_state(body, last, copy);
+    gxp_copy_row(body, GXP_COPIES, last, copy);
 }
 
 /* What a cut touches wakes, and its fragment is no more as it was. */
 static void gxp_touch_copies(gx_body *body, const gxp_cell *cell) {
     int k;
     for (k = 0; k < 4; k++) {
-        body->rest_time[cell->copies[k]] = 0;
-        body->copy_label[cell->copies[k]] |= 1;
+        body->copies.rest_time[cell->copies[k]] = 0;
+        body->copies.label[cell->copies[k]] |= 1;
     }
 }
 
-/* Notes the elements that the solver is to see anew; without memory for that, all are. */
+/* Notes the elements that the solver is to be told of; without memory for that, all are. */
 static void gxp_note_changed(gx_body *body) {
+    const gxp_words *changed = &body->undo.cells.rows, *made = &body->scratch.new_cells;
     gx_result result = GX_OK;
     uint32_t i;
-    if (body->model == GXP_MODEL_STALE) return;
-    for (i = 0; i < body->saved_cell_count && result == GX_OK; i++)
-        result = gxp_push(body, &body->changed, body->saved_cells[i].cell.element);
-    for (i = 0; i < body->fresh.count && result == GX_OK; i++)
-        result = gxp_push(body, &body->changed, body->cells[body->fresh.data[i]].element);
-    body->model = result == GX_OK ? GXP_MODEL_CHANGED : GXP_MODEL_STALE;
+    if (body->model.state == GXP_MODEL_STALE) return;
+    for (i = 0; i < changed->count && result == GX_OK; i++)
+        result = gxp_push(body, &body->model.changed, body->cells.data[changed->data[i]].element);
+    for (i = 0; i < made->count && result == GX_OK; i++)
+        result = gxp_push(body, &body->model.changed, body->cells.data[made->data[i]].element);
+    body->model.state = result == GX_OK ? GXP_MODEL_CHANGED : GXP_MODEL_STALE;
 }
 
 static void gxp_commit(gxp_cut *cut) {
     gx_body *body = cut->body;
     uint32_t i;
     gxp_note_changed(body);
-    for (i = 0; i < body->fresh.count; i++) gxp_touch_copies(body, &body->cells[body->fresh.data[i]]);
-    for (i = 0; i < body->touched.count; i++) {
-        gxp_cell *cell = &body->cells[body->touched.data[i]];
+    for (i = 0; i < body->scratch.new_cells.count; i++)
+        gxp_touch_copies(body, &body->cells.data[body->scratch.new_cells.data[i]]);
+    for (i = 0; i < body->scratch.touched.count; i++) {
+        gxp_cell *cell = &body->cells.data[body->scratch.touched.data[i]];
         if (cell->kept) continue;
         gxp_touch_copies(body, cell); /* also what hung on it by an edge or node only */
         memset(cell->copies, 0xff, sizeof cell->copies);
     }
-    for (i = 0; i < body->removed.count; i++) body->leaves[body->removed.data[i]].next = GXP_NONE;
-    cut->report.removed_copies = body->dead.count;
-    gxp_sort_unique(&body->dead);
-    for (i = body->dead.count; i-- > 0;) gxp_drop_copy(body, body->dead.data[i]);
+    for (i = 0; i < body->scratch.removed.count; i++) body->leaves.data[body->scratch.removed.data[i]].next = GXP_NONE;
+    cut->report.removed_copies = body->scratch.dead.count;
+    gxp_sort_unique(&body->scratch.dead);
+    for (i = body->scratch.dead.count; i-- > 0;) gxp_drop_copy(body, body->scratch.dead.data[i]);
     gxb_complex_commit(body->complex);
-    body->saved_cell_count = body->saved_leaf_count = 0;
-    body->past = gxp_hash_cut(body->past, cut->desc);
-    if (cut->report.created_copies + cut->report.removed_copies > 0) body->epoch = body->past != 0 ? body->past : 1;
-    body->held_stale = body->view_stale = body->look_stale = 1;
-    if (body->removed.count + body->dead.count > 0 || body->splits.count > body->copy_count) body->labels_known = 0;
-    if (!body->labels_known) body->splits.count = 0;
+    body->undo.cells.rows.count = body->undo.leaves.rows.count = 0;
+    body->cuts.hash = gxp_hash_cut(body->cuts.hash, cut->desc);
+    if (cut->report.created_copies + cut->report.removed_copies > 0)
+        body->cuts.epoch = body->cuts.hash != 0 ? body->cuts.hash : 1;
+    body->holds.stale = body->view.stale = body->snapshot.stale = 1;
+    if (body->scratch.removed.count + body->scratch.dead.count > 0 || body->view.splits.count > body->copies.count)
+        body->view.labels_known = 0;
+    if (!body->view.labels_known) body->view.splits.count = 0;
 }
 
 GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report, gx_failure *failure) {
@@ -3697,14 +4033,14 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
     if (result == GX_OK) result = gxp_integrate(&cut);
     cut.report.seconds_integrals =
         gxp_seconds(body) - start - cut.report.seconds_arrangement - cut.report.seconds_enrichment;
-    if (result == GX_OK) result = gxp_note_touched(&cut, first_facet);
+    if (result == GX_OK) result = gxp_note_for_skin(&cut, first_facet);
     if (result != GX_OK) {
         gxp_rollback(&cut);
         return gxp_fail(failure, result, cut.failure.index, cut.failure.surface);
     }
-    gxp_wake_resumed(body, body->before.copies);
+    gxp_wake_resumed(body, body->undo.counts[GXP_COPIES]);
     gxp_commit(&cut);
-    if (body->resumed != 0) body->resumed = gxp_hash_state(body, body->copy_count);
+    if (body->model.resumed != 0) body->model.resumed = gxp_hash_state(body, body->copies.count);
     if (report != NULL) *report = cut.report;
     return gxp_fail(failure, GX_OK, SIZE_MAX, SIZE_MAX);
 }
@@ -3828,8 +4164,8 @@ GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thicknes
 /* In: regions that are to be held. Out: a flag for each copy, found anew after a cut or when regions change. */
 
 static int gxp_point_in_region(gx_body *body, uint32_t point, const gx_region *r) {
-    if (point < body->node_count) {
-        const double x = body->positions[3 * (size_t)point + r->axis];
+    if (point < body->mesh.node_count) {
+        const double x = body->mesh.positions[3 * (size_t)point + r->axis];
         return r->side < 0 ? x < r->value : x > r->value;
     }
     return gxb_complex_compare(body->complex, point, (int)r->axis, r->value) * r->side > 0;
@@ -3840,31 +4176,32 @@ static gx_result gxp_cell_in_region(gx_body *body, uint32_t cell, const gx_regio
     uint32_t leaf, i;
     gx_result result = GX_OK;
     *inside = 0;
-    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK && !*inside;
-         leaf = body->leaves[leaf].next) {
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK && !*inside;
+         leaf = body->leaves.data[leaf].next) {
         if (body->complex->leaves[leaf].facet_count == 0) {
             for (i = 0; i < 4; i++)
-                *inside |= gxp_point_in_region(body, body->complex->elements[4 * body->cells[cell].element + i], r);
+                *inside |=
+                    gxp_point_in_region(body, body->complex->elements[4 * body->cells.data[cell].element + i], r);
             continue;
         }
-        result = gxp_leaf_points(body, leaf);
-        for (i = 0; i < body->list.count && result == GX_OK && !*inside; i++)
-            *inside = gxp_point_in_region(body, body->list.data[i], r);
+        result = gxp_collect_leaf_points(body, leaf);
+        for (i = 0; i < body->scratch.leaf_points.count && result == GX_OK && !*inside; i++)
+            *inside = gxp_point_in_region(body, body->scratch.leaf_points.data[i], r);
     }
     return result;
 }
 
 static gx_result gxp_copy_in_region(gx_body *body, uint32_t copy, const gx_region *r, int *inside) {
-    const uint32_t node = body->copy_node[copy];
+    const uint32_t node = body->copies.node[copy];
     uint32_t j, cell;
     gx_result result = GX_OK;
     *inside = 0;
     if (!gxp_point_in_region(body, node, r)) return GX_OK;
-    for (j = body->node_start[node]; j < body->node_start[node + 1] && !*inside; j++) {
-        const int k = gxp_local_node(body, body->node_elements[j], node);
-        for (cell = body->node_elements[j]; cell != GXP_NONE && result == GX_OK && !*inside;
-             cell = body->cells[cell].next)
-            if (body->cells[cell].kept && body->cells[cell].copies[k] == copy)
+    for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1] && !*inside; j++) {
+        const int k = gxp_local_node(body, body->mesh.node_elements[j], node);
+        for (cell = body->mesh.node_elements[j]; cell != GXP_NONE && result == GX_OK && !*inside;
+             cell = body->cells.data[cell].next)
+            if (body->cells.data[cell].kept && body->cells.data[cell].copies[k] == copy)
                 result = gxp_cell_in_region(body, cell, r, inside);
     }
     return result;
@@ -3873,15 +4210,15 @@ static gx_result gxp_copy_in_region(gx_body *body, uint32_t copy, const gx_regio
 static gx_result gxp_update_held(gx_body *body) {
     uint32_t c, r;
     gx_result result = GX_OK;
-    if (!body->held_stale) return GX_OK;
-    for (c = 0; c < body->copy_count && result == GX_OK; c++) {
+    if (!body->holds.stale) return GX_OK;
+    for (c = 0; c < body->copies.count && result == GX_OK; c++) {
         int held = 0;
-        for (r = 0; r < body->region_count && result == GX_OK && !held; r++)
-            result = gxp_copy_in_region(body, c, &body->regions[r], &held);
-        if (body->held[c] && !held) body->rest_time[c] = 0; /* what is let go wakes */
-        body->held[c] = (uint8_t)held;
+        for (r = 0; r < body->holds.count && result == GX_OK && !held; r++)
+            result = gxp_copy_in_region(body, c, &body->holds.regions[r], &held);
+        if (body->copies.held[c] && !held) body->copies.rest_time[c] = 0; /* what is let go wakes */
+        body->copies.held[c] = (uint8_t)held;
     }
-    if (result == GX_OK) body->held_stale = 0;
+    if (result == GX_OK) body->holds.stale = 0;
     return result;
 }
 
@@ -3899,12 +4236,12 @@ GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t
         result = gxp_check_region(&regions[i]);
         if (result != GX_OK) return result;
     }
-    result = gxp_reserve(&body->allocator, &body->regions, sizeof *regions, 0, &body->region_capacity, region_count);
+    result = gxp_grow_rows(body, GXP_REGIONS, region_count);
     if (result != GX_OK) return result;
-    if (region_count > 0) memcpy(body->regions, regions, region_count * sizeof *regions);
-    body->region_count = (uint32_t)region_count;
-    body->held_stale = 1;
-    body->model = GXP_MODEL_STALE;
+    if (region_count > 0) memcpy(body->holds.regions, regions, region_count * sizeof *regions);
+    body->holds.count = (uint32_t)region_count;
+    body->holds.stale = 1;
+    body->model.state = GXP_MODEL_STALE;
     return GX_OK;
 }
 
@@ -3927,8 +4264,8 @@ static void gxp_cell_corners(const gx_body *body, const gxp_cell *cell, int move
     int n, k;
     for (n = 0; n < 4; n++) {
         const double *rest =
-            body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)cell->element + (size_t)n];
-        const double *u = body->displacement + 3 * (size_t)cell->copies[n];
+            body->mesh.positions + 3 * (size_t)body->complex->elements[4 * (size_t)cell->element + (size_t)n];
+        const double *u = body->copies.displacement + 3 * (size_t)cell->copies[n];
         for (k = 0; k < 3; k++) x[n][k] = rest[k] - center[k] + (moved ? u[k] : 0);
     }
 }
@@ -3965,238 +4302,233 @@ static void gxp_add_inertia(double x[4][3], double mx[4][3], double inertia[6]) 
     }
 }
 
-static gx_result gxp_reserve_fragments(gx_body *body) {
-    const size_t room = (size_t)body->fragment_count + body->fragment_count / 2 + 4;
-    double *memory;
-    if (body->fragment_count <= body->fragment_capacity) return GX_OK;
-    if (room > UINT32_MAX || room > SIZE_MAX / (GXP_FRAGMENT_ARRAYS * sizeof *memory)) return GX_ERROR_LIMIT;
-    memory = (double *)gxp_allocate(&body->allocator, room * GXP_FRAGMENT_ARRAYS * sizeof *memory);
-    if (memory == NULL) return GX_ERROR_MEMORY;
-    gxp_release(&body->allocator, body->fragments,
-                (size_t)body->fragment_capacity * GXP_FRAGMENT_ARRAYS * sizeof *memory);
-    body->fragments = memory;
-    body->fragment_capacity = (uint32_t)room;
-    return GX_OK;
-}
-
+/* Volumes, masses, centres and inertia of fragments */
 static gx_result gxp_sum_fragments(gx_body *body) {
     static const double zero[3] = {0, 0, 0};
-    double *volume, *mass, *center, *inertia, x[4][3], mx[4][3];
+    gxp_view *view = &body->view;
+    const size_t count = view->fragment_count;
+    double x[4][3], mx[4][3];
     uint32_t i, f;
     int n;
-    const gx_result result = gxp_reserve_fragments(body);
-    body->volume = body->mass = 0;
-    if (result == GX_OK) body->sums_stale = 0;
-    if (result != GX_OK || body->fragment_count == 0) return result;
-    memset(body->fragments, 0, (size_t)body->fragment_capacity * GXP_FRAGMENT_ARRAYS * sizeof(double));
-    volume = body->fragments;
-    mass = volume + body->fragment_capacity;
-    center = mass + body->fragment_capacity;
-    inertia = center + 3 * (size_t)body->fragment_capacity;
-    for (i = 0; i < body->view_cells.count; i++) {
-        const gxp_cell *cell = &body->cells[body->view_cells.data[i]];
-        f = body->view_fragments.data[i];
-        volume[f] += cell->volume;
-        for (n = 0; n < 4; n++) mass[f] += gxp_mass_row(cell->mass, n);
+    const gx_result result = gxp_grow_rows(body, GXP_SUMS, 0);
+    view->body_volume = view->body_mass = 0;
+    if (result == GX_OK) view->sums_stale = 0;
+    if (result != GX_OK || count == 0) return result;
+    memset(view->fragment_volume, 0, count * sizeof *view->fragment_volume);
+    memset(view->fragment_mass, 0, count * sizeof *view->fragment_mass);
+    memset(view->fragment_center, 0, 3 * count * sizeof *view->fragment_center);
+    memset(view->fragment_inertia, 0, 6 * count * sizeof *view->fragment_inertia);
+    for (i = 0; i < view->count; i++) {
+        const gxp_cell *cell = &body->cells.data[view->slot[i]];
+        f = view->fragment[i];
+        view->fragment_volume[f] += cell->volume;
+        for (n = 0; n < 4; n++) view->fragment_mass[f] += gxp_mass_row(cell->mass, n);
         gxp_cell_corners(body, cell, 0, zero, x);
-        gxp_add_first_moment(cell, x, center + 3 * (size_t)f);
+        gxp_add_first_moment(cell, x, view->fragment_center + 3 * (size_t)f);
     }
-    for (f = 0; f < body->fragment_count; f++) {
-        body->volume += volume[f];
-        body->mass += mass[f];
+    for (f = 0; f < count; f++) {
+        view->body_volume += view->fragment_volume[f];
+        view->body_mass += view->fragment_mass[f];
         for (n = 0; n < 3; n++)
-            if (mass[f] > 0) center[3 * (size_t)f + (size_t)n] /= mass[f];
+            if (view->fragment_mass[f] > 0) view->fragment_center[3 * (size_t)f + (size_t)n] /= view->fragment_mass[f];
     }
-    for (i = 0; i < body->view_cells.count; i++) {
-        const gxp_cell *cell = &body->cells[body->view_cells.data[i]];
-        f = body->view_fragments.data[i];
-        gxp_cell_corners(body, cell, 0, center + 3 * (size_t)f, x);
+    for (i = 0; i < view->count; i++) {
+        const gxp_cell *cell = &body->cells.data[view->slot[i]];
+        f = view->fragment[i];
+        gxp_cell_corners(body, cell, 0, view->fragment_center + 3 * (size_t)f, x);
         gxp_mass_times(cell, x, mx);
-        gxp_add_inertia(x, mx, inertia + 6 * (size_t)f);
+        gxp_add_inertia(x, mx, view->fragment_inertia + 6 * (size_t)f);
     }
     return GX_OK;
 }
 
-/* Joins copies by the cells around the nodes of new ones, and no others: in scratch->data. */
-static gx_result gxp_join_around_splits(gx_body *body, gxp_words *scratch) {
+/* Joins copies by the cells around the nodes of new ones, and no others: in view.split_parents. */
+static gx_result gxp_join_around_splits(gx_body *body) {
+    gxp_view *view = &body->view;
+    gxp_words *cells = &view->split_cells;
     uint32_t i, j, k, cell, *parent;
-    gx_result result = gxp_set_words(body, scratch, body->copy_count);
-    parent = scratch->data;
-    body->queue.count = 0;
-    body->stamp++;
-    for (i = 0; i < body->splits.count; i += 2) {
-        const uint32_t node = body->copy_node[body->splits.data[i]];
-        for (j = body->node_start[node]; j < body->node_start[node + 1]; j++)
-            for (cell = body->node_elements[j]; cell != GXP_NONE && result == GX_OK; cell = body->cells[cell].next)
-                if (body->cells[cell].kept) result = gxp_visit_cell(body, cell);
+    gx_result result = gxp_start_words(body, &view->split_parents, body->copies.count);
+    parent = view->split_parents.data;
+    cells->count = 0;
+    body->scratch.stamp++;
+    for (i = 0; i < view->splits.count; i += 2) {
+        const uint32_t node = body->copies.node[view->splits.data[i]];
+        for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1]; j++)
+            for (cell = body->mesh.node_elements[j]; cell != GXP_NONE && result == GX_OK;
+                 cell = body->cells.data[cell].next)
+                if (body->cells.data[cell].kept) result = gxp_visit_cell(body, cell, cells);
     }
     if (result != GX_OK) return result;
-    for (i = 0; i < body->queue.count; i++)
+    for (i = 0; i < cells->count; i++)
         for (k = 0; k < 4; k++) {
-            const uint32_t copy = body->cells[body->queue.data[i]].copies[k];
+            const uint32_t copy = body->cells.data[cells->data[i]].copies[k];
             parent[copy] = copy;
         }
-    for (i = 0; i < body->queue.count; i++) gxp_unite_all(parent, body->cells[body->queue.data[i]].copies);
+    for (i = 0; i < cells->count; i++) gxp_unite_all(parent, body->cells.data[cells->data[i]].copies);
     return GX_OK;
 }
 
-/* Which fragment each copy is in. Where all new copies still hang together with those they come from, around the nodes
-   they are at, no fragment has fallen apart: sheets take nothing away, so that whatever hung together by old copies
-   does so by their descendants. */
+/* Which fragment each copy is in. Sheets take nothing away, so whatever old copies connected their descendants connect.
+   If all new copies are still connected with those they come from, around their nodes, no fragment has fallen apart. */
 static gx_result gxp_update_labels(gx_body *body) {
-    const gxp_words *splits = &body->splits;
-    uint32_t i;
+    gxp_view *view = &body->view;
+    const gxp_words *splits = &view->splits;
+    uint32_t i, *parent;
     gx_result result;
-    if (!body->view_stale || (body->labels_known && splits->count == 0)) return GX_OK;
-    if (!body->labels_known) return gxp_update_view(body);
-    result = gxp_join_around_splits(body, &body->list);
+    if (!view->stale || (view->labels_known && splits->count == 0)) return GX_OK;
+    if (!view->labels_known) return gxp_update_view(body);
+    result = gxp_join_around_splits(body);
+    parent = view->split_parents.data;
     for (i = 0; i < splits->count && result == GX_OK; i += 2)
-        if (gxp_find(body->list.data, splits->data[i]) != gxp_find(body->list.data, splits->data[i + 1]))
-            return gxp_update_view(body);
+        if (gxp_find(parent, splits->data[i]) != gxp_find(parent, splits->data[i + 1])) return gxp_update_view(body);
     if (result == GX_OK)
-        result = gxp_words_room(body, &body->copy_fragment, body->copy_count - body->copy_fragment.count);
+        result = gxp_words_room(body, &view->copy_fragment, body->copies.count - view->copy_fragment.count);
     if (result != GX_OK) return result;
-    body->copy_fragment.count = body->copy_count;
+    view->copy_fragment.count = body->copies.count;
     for (i = 0; i < splits->count; i += 2)
-        body->copy_fragment.data[splits->data[i]] = gxp_find(body->copy_fragment.data, splits->data[i + 1]);
-    body->splits.count = 0;
+        view->copy_fragment.data[splits->data[i]] = gxp_find(view->copy_fragment.data, splits->data[i + 1]);
+    view->splits.count = 0;
     return GX_OK;
 }
 
-/* What a look finds on its way */
+/* Where fragments come from, by the labels of their copies */
 typedef struct gxp_change {
-    uint32_t *origin;   /* fragment_count: index at the last look */
-    uint32_t *touched;  /* fragment_count flags */
-    uint32_t *heaviest; /* at the last look: the piece that keeps the id; GXP_NONE: nothing is left */
-    uint32_t *pieces;   /* at the last look */
+    uint32_t *origin;   /* by fragment: its index in the snapshot */
+    uint32_t *touched;  /* by fragment: 1 if it was cut */
+    uint32_t *heaviest; /* by fragment of the snapshot: the one that keeps the id; GXP_NONE: nothing is left */
+    uint32_t *count;    /* by fragment of the snapshot: into how many it fell apart */
 } gxp_change;
 
 static void gxp_label_copies(gx_body *body) {
     uint32_t i, k;
-    for (i = 0; i < body->view_cells.count; i++)
-        for (k = 0; k < 4; k++) body->copy_label[body->cell_copies.data[4 * i + k]] = 2 * body->view_fragments.data[i];
+    for (i = 0; i < body->view.count; i++)
+        for (k = 0; k < 4; k++) body->copies.label[body->view.copies[4 * i + k]] = 2 * body->view.fragment[i];
 }
 
 static void gxp_find_origins(gx_body *body, gxp_change *change) {
-    const double *mass = body->fragments != NULL ? body->fragments + body->fragment_capacity : NULL;
+    const gxp_view *view = &body->view;
+    const double *mass = view->fragment_mass;
     uint32_t i, k, f;
-    for (i = 0; i < body->view_cells.count; i++)
+    for (i = 0; i < view->count; i++)
         for (k = 0; k < 4; k++) {
-            const uint32_t label = body->copy_label[body->cell_copies.data[4 * i + k]];
-            change->origin[body->view_fragments.data[i]] = label >> 1;
-            change->touched[body->view_fragments.data[i]] |= label & 1;
+            const uint32_t label = body->copies.label[view->copies[4 * i + k]];
+            change->origin[view->fragment[i]] = label >> 1;
+            change->touched[view->fragment[i]] |= label & 1;
         }
-    for (f = 0; f < body->fragment_count; f++) {
+    for (f = 0; f < view->fragment_count; f++) {
         uint32_t *heaviest = &change->heaviest[change->origin[f]];
         if (*heaviest == GXP_NONE || mass[f] > mass[*heaviest]) *heaviest = f;
-        change->pieces[change->origin[f]]++;
+        change->count[change->origin[f]]++;
     }
 }
 
 /* There is room in the lists. */
 static void gxp_give_ids(gx_body *body, const gxp_change *change) {
-    const uint32_t before = body->fragment_ids.count;
+    gxp_snapshot *snapshot = &body->snapshot;
+    const uint32_t count = body->view.fragment_count;
     uint32_t *ids = change->touched, i; /* a fragment's flag is read before its id is written */
-    body->removed_ids.count = 0;
-    for (i = 0; i < before; i++)
-        if (change->heaviest[i] == GXP_NONE)
-            body->removed_ids.data[body->removed_ids.count++] = body->fragment_ids.data[i];
-    for (i = 0; i < body->fragment_count; i++) {
+    snapshot->removed.count = 0;
+    for (i = 0; i < snapshot->count; i++)
+        if (change->heaviest[i] == GXP_NONE) snapshot->removed.data[snapshot->removed.count++] = snapshot->id[i];
+    for (i = 0; i < count; i++) {
         const uint32_t origin = change->origin[i];
         const int keeps = change->heaviest[origin] == i;
-        body->fragment_origins.data[i] = body->fragment_ids.data[origin];
-        body->fragment_changes.data[i] = !keeps                     ? GX_FRAGMENT_CREATED
-                                       : change->pieces[origin] > 1 ? GX_FRAGMENT_SPLIT
-                                       : change->touched[i]         ? GX_FRAGMENT_TOUCHED
-                                                                    : GX_FRAGMENT_UNCHANGED;
-        ids[i] = keeps ? body->fragment_ids.data[origin] : body->next_id++;
+        snapshot->origin[i] = snapshot->id[origin];
+        snapshot->change[i] = !keeps                    ? GX_FRAGMENT_CREATED
+                            : change->count[origin] > 1 ? GX_FRAGMENT_SPLIT
+                            : change->touched[i]        ? GX_FRAGMENT_TOUCHED
+                                                        : GX_FRAGMENT_UNCHANGED;
+        ids[i] = keeps ? snapshot->id[origin] : snapshot->next_id++;
     }
-    body->fragment_ids.count = body->fragment_origins.count = body->fragment_changes.count = body->fragment_count;
-    if (body->fragment_count > 0) memcpy(body->fragment_ids.data, ids, body->fragment_count * sizeof *ids);
+    snapshot->count = count;
+    if (count > 0) memcpy(snapshot->id, ids, count * sizeof *ids);
 }
 
-static gx_result gxp_look_room(gx_body *body) {
-    gx_result result = gxp_words_room(body, &body->fragment_ids, body->fragment_count);
-    if (result == GX_OK) result = gxp_words_room(body, &body->fragment_origins, body->fragment_count);
-    if (result == GX_OK) result = gxp_words_room(body, &body->fragment_changes, body->fragment_count);
-    if (result == GX_OK) result = gxp_words_room(body, &body->removed_ids, body->fragment_ids.count);
-    return result == GX_OK && body->next_id > UINT32_MAX - body->fragment_count ? GX_ERROR_LIMIT : result;
+static gx_result gxp_snapshot_room(gx_body *body) {
+    gxp_snapshot *snapshot = &body->snapshot;
+    gx_result result = gxp_grow_rows(body, GXP_SNAPSHOT, body->view.fragment_count);
+    if (result == GX_OK) result = gxp_words_room(body, &snapshot->removed, snapshot->count);
+    return result == GX_OK && snapshot->next_id > UINT32_MAX - body->view.fragment_count ? GX_ERROR_LIMIT : result;
 }
 
-/* The view is up to date. An error leaves labels and ids as they were: nothing of the change is lost. */
-static gx_result gxp_look(gx_body *body) {
-    const size_t now = body->fragment_count, before = body->fragment_ids.count,
+/* Brings the snapshot up to date; the view is. An error leaves labels and ids as they were: nothing of the change is
+   lost. */
+static gx_result gxp_take_snapshot(gx_body *body) {
+    const size_t now = body->view.fragment_count, before = body->snapshot.count,
                  bytes = (2 * now + 2 * before + 1) * sizeof(uint32_t);
     gxp_change change;
     gx_result result;
-    if (!body->look_stale) return GX_OK;
-    result = gxp_look_room(body);
+    if (!body->snapshot.stale) return GX_OK;
+    result = gxp_snapshot_room(body);
     if (result != GX_OK) return result;
-    change.origin = (uint32_t *)gxp_allocate(&body->allocator, bytes);
+    change.origin = (uint32_t *)gxp_allocate(&body->config.allocator, bytes);
     if (change.origin == NULL) return GX_ERROR_MEMORY;
     memset(change.origin, 0, bytes);
     change.touched = change.origin + now;
-    change.pieces = change.touched + now;
-    change.heaviest = change.pieces + before;
+    change.count = change.touched + now;
+    change.heaviest = change.count + before;
     memset(change.heaviest, 0xff, before * sizeof *change.heaviest);
     gxp_find_origins(body, &change);
     gxp_give_ids(body, &change);
-    gxp_release(&body->allocator, change.origin, bytes);
+    gxp_release(&body->config.allocator, change.origin, bytes);
     gxp_label_copies(body);
-    body->look_stale = 0;
+    body->snapshot.stale = 0;
     return GX_OK;
 }
 
 /* The fragments of the mesh: ids 1, 2 ... */
-static gx_result gxp_first_look(gx_body *body) {
+static gx_result gxp_first_snapshot(gx_body *body) {
+    gxp_snapshot *snapshot = &body->snapshot;
     uint32_t f;
     gx_result result = gxp_update_view(body);
-    body->next_id = 1;
-    if (result == GX_OK) result = gxp_look_room(body);
-    for (f = 0; f < body->fragment_count && result == GX_OK; f++) {
-        body->fragment_ids.data[f] = body->fragment_origins.data[f] = body->next_id++;
-        body->fragment_changes.data[f] = GX_FRAGMENT_UNCHANGED;
-    }
+    snapshot->next_id = 1;
+    if (result == GX_OK) result = gxp_snapshot_room(body);
     if (result != GX_OK) return result;
-    body->fragment_ids.count = body->fragment_origins.count = body->fragment_changes.count = body->fragment_count;
+    for (f = 0; f < body->view.fragment_count; f++) {
+        snapshot->id[f] = snapshot->origin[f] = snapshot->next_id++;
+        snapshot->change[f] = GX_FRAGMENT_UNCHANGED;
+    }
+    snapshot->count = body->view.fragment_count;
     gxp_label_copies(body);
     return GX_OK;
 }
 
 GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view) {
+    const gxp_view *own;
     gx_result result;
     if (body == NULL || view == NULL) return GX_ERROR_ARGUMENT;
     result = gxp_update_view(body);
-    if (result == GX_OK && body->sums_stale) result = gxp_sum_fragments(body);
-    if (result == GX_OK) result = gxp_look(body);
+    if (result == GX_OK && body->view.sums_stale) result = gxp_sum_fragments(body);
+    if (result == GX_OK) result = gxp_take_snapshot(body);
     if (result == GX_OK) result = gxp_update_held(body);
     if (result != GX_OK) return result;
-    view->node_count = body->node_count;
-    view->element_count = body->element_count;
-    view->cell_count = body->view_cells.count;
-    view->cell_element = body->cell_element.data;
-    view->cell_copies = body->cell_copies.data;
-    view->cell_volume = body->cell_volume;
-    view->cell_fragment = body->view_fragments.data;
-    view->copy_count = body->copy_count;
-    view->copy_node = body->copy_node;
-    view->copy_held = body->held;
-    view->epoch = body->epoch;
-    view->displacement = body->displacement;
-    view->velocity = body->velocity;
-    view->rest_time = body->rest_time;
-    view->fragment_count = body->fragment_count;
-    view->fragment_volume = body->fragments;
-    view->fragment_mass = body->fragments ? body->fragments + body->fragment_capacity : NULL;
-    view->fragment_center = body->fragments ? body->fragments + 2 * (size_t)body->fragment_capacity : NULL;
-    view->fragment_inertia = body->fragments ? body->fragments + 5 * (size_t)body->fragment_capacity : NULL;
-    view->fragment_id = body->fragment_ids.data;
-    view->fragment_origin = body->fragment_origins.data;
-    view->fragment_change = body->fragment_changes.data;
-    view->removed_count = body->removed_ids.count;
-    view->removed_ids = body->removed_ids.data;
-    view->volume = body->volume;
-    view->mass = body->mass;
+    own = &body->view;
+    view->node_count = body->mesh.node_count;
+    view->element_count = body->mesh.element_count;
+    view->cell_count = own->count;
+    view->cell_element = own->element;
+    view->cell_copies = own->copies;
+    view->cell_volume = own->volume;
+    view->cell_fragment = own->fragment;
+    view->copy_count = body->copies.count;
+    view->copy_node = body->copies.node;
+    view->copy_held = body->copies.held;
+    view->epoch = body->cuts.epoch;
+    view->displacement = body->copies.displacement;
+    view->velocity = body->copies.velocity;
+    view->rest_time = body->copies.rest_time;
+    view->fragment_count = own->fragment_count;
+    view->fragment_volume = own->fragment_volume;
+    view->fragment_mass = own->fragment_mass;
+    view->fragment_center = own->fragment_center;
+    view->fragment_inertia = own->fragment_inertia;
+    view->fragment_id = body->snapshot.id;
+    view->fragment_origin = body->snapshot.origin;
+    view->fragment_change = body->snapshot.change;
+    view->removed_count = body->snapshot.removed.count;
+    view->removed_ids = body->snapshot.removed.data;
+    view->volume = own->body_volume;
+    view->mass = own->body_mass;
     return GX_OK;
 }
 
@@ -4257,7 +4589,7 @@ static void gxp_spin(const double inertia[6], const double momentum[3], double s
 static void gxp_cell_velocities(const gx_body *body, const gxp_cell *cell, const double mean[3], double v[4][3]) {
     int n, k;
     for (n = 0; n < 4; n++)
-        for (k = 0; k < 3; k++) v[n][k] = body->velocity[3 * (size_t)cell->copies[n] + (size_t)k] - mean[k];
+        for (k = 0; k < 3; k++) v[n][k] = body->copies.velocity[3 * (size_t)cell->copies[n] + (size_t)k] - mean[k];
 }
 
 /* With x and v relative to the centre: inertia, angular momentum sum_ij m_ij x_i x v_j, energy of the relative motion
@@ -4282,10 +4614,10 @@ static void gxp_find_centers(const gx_body *body, gx_motion *motions) {
     static const double zero[3] = {0, 0, 0};
     uint32_t i;
     int k;
-    memset(motions, 0, body->fragment_count * sizeof *motions);
-    for (i = 0; i < body->view_cells.count; i++) {
-        const gxp_cell *cell = &body->cells[body->view_cells.data[i]];
-        gx_motion *motion = &motions[body->view_fragments.data[i]];
+    memset(motions, 0, body->view.fragment_count * sizeof *motions);
+    for (i = 0; i < body->view.count; i++) {
+        const gxp_cell *cell = &body->cells.data[body->view.slot[i]];
+        gx_motion *motion = &motions[body->view.fragment[i]];
         double x[4][3], v[4][3];
         gxp_cell_corners(body, cell, 1, zero, x);
         gxp_cell_velocities(body, cell, zero, v);
@@ -4293,7 +4625,7 @@ static void gxp_find_centers(const gx_body *body, gx_motion *motions) {
         gxp_add_first_moment(cell, x, motion->center);
         gxp_add_first_moment(cell, v, motion->velocity);
     }
-    for (i = 0; i < body->fragment_count; i++)
+    for (i = 0; i < body->view.fragment_count; i++)
         for (k = 0; k < 3 && motions[i].mass > 0; k++) {
             motions[i].center[k] /= motions[i].mass;
             motions[i].velocity[k] /= motions[i].mass;
@@ -4313,8 +4645,9 @@ static gx_result gxp_check_motion(const gx_body *body, const gx_motion *motion) 
     memcpy(number + 16, &motion->energy, sizeof *number);
     for (i = 0; i < 17; i++) finite = finite && gxp_is_finite(number[i]);
     if (finite) return GX_OK;
-    for (i = 0; i < 3 * (size_t)body->copy_count; i++)
-        if (!gxp_is_finite(body->displacement[i]) || !gxp_is_finite(body->velocity[i])) return GX_ERROR_NOT_FINITE;
+    for (i = 0; i < 3 * (size_t)body->copies.count; i++)
+        if (!gxp_is_finite(body->copies.displacement[i]) || !gxp_is_finite(body->copies.velocity[i]))
+            return GX_ERROR_NOT_FINITE;
     return GX_ERROR_RANGE;
 }
 
@@ -4326,28 +4659,28 @@ GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t cap
     gx_result result;
     if (body == NULL || (motions == NULL && capacity > 0)) return GX_ERROR_ARGUMENT;
     result = gxp_update_view(body);
-    if (result != GX_OK || body->fragment_count == 0) return result;
-    if (capacity < body->fragment_count) return GX_ERROR_LIMIT;
-    bytes = body->fragment_count * sizeof *momentum;
-    momentum = (double(*)[3])gxp_allocate(&body->allocator, bytes);
+    if (result != GX_OK || body->view.fragment_count == 0) return result;
+    if (capacity < body->view.fragment_count) return GX_ERROR_LIMIT;
+    bytes = body->view.fragment_count * sizeof *momentum;
+    momentum = (double(*)[3])gxp_allocate(&body->config.allocator, bytes);
     if (momentum == NULL) return GX_ERROR_MEMORY;
     memset(momentum, 0, bytes);
     gxp_find_centers(body, motions);
-    for (i = 0; i < body->view_cells.count; i++) {
-        const gxp_cell *cell = &body->cells[body->view_cells.data[i]];
-        const uint32_t f = body->view_fragments.data[i];
+    for (i = 0; i < body->view.count; i++) {
+        const gxp_cell *cell = &body->cells.data[body->view.slot[i]];
+        const uint32_t f = body->view.fragment[i];
         double x[4][3], v[4][3];
         gxp_cell_corners(body, cell, 1, motions[f].center, x);
         gxp_cell_velocities(body, cell, motions[f].velocity, v);
         gxp_add_rotation(cell, x, v, &motions[f], momentum[f]);
     }
-    for (i = 0; i < body->fragment_count; i++) {
+    for (i = 0; i < body->view.fragment_count; i++) {
         gxp_spin(motions[i].inertia, momentum[i], motions[i].angular_velocity);
         for (k = 0; k < 3; k++)
             motions[i].energy += 0.5 * motions[i].mass * motions[i].velocity[k] * motions[i].velocity[k];
         if (result == GX_OK) result = gxp_check_motion(body, &motions[i]);
     }
-    gxp_release(&body->allocator, momentum, bytes);
+    gxp_release(&body->config.allocator, momentum, bytes);
     return result;
 }
 
@@ -4378,20 +4711,20 @@ typedef struct gxp_around {
 static gxp_around gxp_around_copy(const gx_body *body, uint32_t copy) {
     gxp_around around;
     around.copy = copy;
-    around.at = body->node_start[body->copy_node[copy]];
+    around.at = body->mesh.node_start[body->copies.node[copy]];
     around.cell = GXP_NONE;
     return around;
 }
 
 /* 0: there are no more */
 static int gxp_next_around(const gx_body *body, gxp_around *around) {
-    const uint32_t copy = around->copy, end = body->node_start[body->copy_node[copy] + 1];
+    const uint32_t copy = around->copy, end = body->mesh.node_start[body->copies.node[copy] + 1];
     for (;;) {
         const gxp_cell *cell;
-        if (around->cell != GXP_NONE) around->cell = body->cells[around->cell].next;
+        if (around->cell != GXP_NONE) around->cell = body->cells.data[around->cell].next;
         if (around->cell == GXP_NONE && around->at == end) return 0;
-        if (around->cell == GXP_NONE) around->cell = body->node_elements[around->at++];
-        cell = &body->cells[around->cell];
+        if (around->cell == GXP_NONE) around->cell = body->mesh.node_elements[around->at++];
+        cell = &body->cells.data[around->cell];
         if (cell->kept &&
             (cell->copies[0] == copy || cell->copies[1] == copy || cell->copies[2] == copy || cell->copies[3] == copy))
             return 1;
@@ -4400,38 +4733,38 @@ static int gxp_next_around(const gx_body *body, gxp_around *around) {
 
 /* Share of the part that a cell belongs to */
 static double gxp_part_share(const gx_body *body, uint32_t cell) {
-    const gxp_cell *of = &body->cells[cell];
+    const gxp_cell *of = &body->cells.data[cell];
     double volume = 0;
-    for (cell = of->element; cell != GXP_NONE; cell = body->cells[cell].next)
-        if (body->cells[cell].kept && memcmp(body->cells[cell].copies, of->copies, sizeof of->copies) == 0)
-            volume += body->cells[cell].volume;
+    for (cell = of->element; cell != GXP_NONE; cell = body->cells.data[cell].next)
+        if (body->cells.data[cell].kept && memcmp(body->cells.data[cell].copies, of->copies, sizeof of->copies) == 0)
+            volume += body->cells.data[cell].volume;
     return volume / gxp_element_volume(body, of->element);
 }
 
 static int gxp_is_thin(const gx_body *body, uint32_t element) {
     uint32_t cell;
-    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next)
-        if (body->cells[cell].kept && gxp_part_share(body, cell) < body->follow_below) return 1;
+    for (cell = element; cell != GXP_NONE; cell = body->cells.data[cell].next)
+        if (body->cells.data[cell].kept && gxp_part_share(body, cell) < body->config.follow_below) return 1;
     return 0;
 }
 
 /* Brings the list of thin elements up to date: all anew, or those that have changed. */
 static gx_result gxp_list_thin(gx_body *body, int anew) {
-    const uint32_t looked_at = anew ? body->element_count : body->changed.count;
+    const uint32_t looked_at = anew ? body->mesh.element_count : body->model.changed.count;
     gx_result result = GX_OK;
     uint32_t i, k, count = 0;
-    for (i = k = 0; i < body->thin.count && !anew; i++) {
-        while (k < body->changed.count && body->changed.data[k] < body->thin.data[i]) k++;
-        if (k == body->changed.count || body->changed.data[k] != body->thin.data[i])
-            body->thin.data[count++] = body->thin.data[i];
+    for (i = k = 0; i < body->model.thin.count && !anew; i++) {
+        while (k < body->model.changed.count && body->model.changed.data[k] < body->model.thin.data[i]) k++;
+        if (k == body->model.changed.count || body->model.changed.data[k] != body->model.thin.data[i])
+            body->model.thin.data[count++] = body->model.thin.data[i];
     }
-    body->thin.count = count;
+    body->model.thin.count = count;
     for (i = 0; i < looked_at && result == GX_OK; i++) {
-        const uint32_t element = anew ? i : body->changed.data[i];
-        if (gxp_is_thin(body, element)) result = gxp_push(body, &body->thin, element);
+        const uint32_t element = anew ? i : body->model.changed.data[i];
+        if (gxp_is_thin(body, element)) result = gxp_push(body, &body->model.thin, element);
     }
-    gxp_sort_unique(&body->thin);
-    if (result != GX_OK) body->model = GXP_MODEL_STALE; /* the list is not whole */
+    gxp_sort_unique(&body->model.thin);
+    if (result != GX_OK) body->model.state = GXP_MODEL_STALE; /* the list is not whole */
     return result;
 }
 
@@ -4444,17 +4777,17 @@ static int gxp_is_weak(const gx_body *body, uint32_t copy, double share) {
 }
 
 static int gxp_is_strong(const gx_body *body, const gxp_supports *of, uint32_t cell) {
-    const uint32_t *copies = body->cells[cell].copies;
+    const uint32_t *copies = body->cells.data[cell].copies;
     return !(of->weak[copies[0]] | of->weak[copies[1]] | of->weak[copies[2]] | of->weak[copies[3]]);
 }
 
 /* Weights by which a copy follows the field of a cell at its node, 1 in sum. Returns the sum of their sizes: 1 within
  * the element, more outside. */
 static double gxp_follow_weights(const gx_body *body, uint32_t copy, uint32_t cell, double weight[4]) {
-    const double *at = body->positions + 3 * (size_t)body->copy_node[copy];
+    const double *at = body->mesh.positions + 3 * (size_t)body->copies.node[copy];
     double x[12], gradients[12];
     int k, c;
-    gxp_element_positions(body, body->cells[cell].element, x);
+    gxp_element_positions(body, body->cells.data[cell].element, x);
     (void)gxi_tet_gradients(x, gradients, NULL);
     for (k = 1; k < 4; k++)
         for (c = 0, weight[k] = 0; c < 3; c++) weight[k] += gradients[3 * k + c] * (at[c] - x[c]);
@@ -4484,7 +4817,7 @@ static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *of, uint32_t co
                     best = around.cell;
                 }
                 for (k = 0; k < 4; k++) {
-                    const uint32_t other = body->cells[around.cell].copies[k];
+                    const uint32_t other = body->cells.data[around.cell].copies[k];
                     if (of->seen[other] == of->search) continue;
                     of->seen[other] = of->search;
                     of->queue[count++] = other;
@@ -4527,14 +4860,14 @@ static void gxp_weigh_fragment(const gx_body *body, gxp_supports *of, uint32_t c
                 most = share;
                 fullest = around.cell;
             }
-            reach = fmax(reach, gxp_cell_reach(&body->cells[around.cell]));
+            reach = fmax(reach, gxp_cell_reach(&body->cells.data[around.cell]));
         }
     }
-    lead = body->cells[fullest].copies[0];
+    lead = body->cells.data[fullest].copies[0];
     for (i = 0; i < count; i++) {
         const uint32_t copy = of->queue[i];
-        if (most >= body->point_below && reach >= body->crumb_reach)
-            of->weak[copy] = gxp_is_weak(body, copy, body->follow_below * most) ? GXP_FOLLOWS : GXP_FREE;
+        if (most >= body->config.speck_below && reach >= body->config.speck_reach)
+            of->weak[copy] = gxp_is_weak(body, copy, body->config.follow_below * most) ? GXP_FOLLOWS : GXP_FREE;
         else {
             of->weak[copy] = copy == lead ? GXP_FREE : GXP_FOLLOWS_POINT;
             of->cell[copy] = fullest;
@@ -4547,15 +4880,15 @@ static uint32_t gxp_find_supports(const gx_body *body, gxp_supports *of) {
     uint32_t i, cell, count = 0;
     int k;
     of->search = 1;
-    for (i = 0; i < body->thin.count; i++)
-        for (cell = body->thin.data[i]; cell != GXP_NONE; cell = body->cells[cell].next)
-            for (k = 0; k < 4 && body->cells[cell].kept; k++) {
-                const uint32_t copy = body->cells[cell].copies[k];
+    for (i = 0; i < body->model.thin.count; i++)
+        for (cell = body->model.thin.data[i]; cell != GXP_NONE; cell = body->cells.data[cell].next)
+            for (k = 0; k < 4 && body->cells.data[cell].kept; k++) {
+                const uint32_t copy = body->cells.data[cell].copies[k];
                 if (of->seen[copy] == of->search) continue;
                 of->seen[copy] = of->search;
-                of->weak[copy] = gxp_is_weak(body, copy, body->follow_below) ? GXP_FOLLOWS : GXP_FREE;
+                of->weak[copy] = gxp_is_weak(body, copy, body->config.follow_below) ? GXP_FOLLOWS : GXP_FREE;
             }
-    for (i = 0; i < body->copy_count; i++) {
+    for (i = 0; i < body->copies.count; i++) {
         while (of->weak[i] && of->cell[i] == GXP_NONE) {
             const uint32_t met = gxp_find_cell(body, of, i);
             if (met > 0) gxp_weigh_fragment(body, of, met);
@@ -4566,9 +4899,9 @@ static uint32_t gxp_find_supports(const gx_body *body, gxp_supports *of) {
 }
 
 static void gxp_add_constraint(gx_body *body, const gxp_supports *of, uint32_t copy) {
-    gxs_constraint *constraint = &body->constraints[body->constraint_count++];
+    gxs_constraint *constraint = &body->model.constraints[body->model.constraint_count++];
     constraint->copy = copy;
-    memcpy(constraint->master, body->cells[of->cell[copy]].copies, sizeof constraint->master);
+    memcpy(constraint->master, body->cells.data[of->cell[copy]].copies, sizeof constraint->master);
     memset(constraint->weight, 0, sizeof constraint->weight);
     if (of->weak[copy] == GXP_FOLLOWS)
         (void)gxp_follow_weights(body, copy, of->cell[copy], constraint->weight);
@@ -4577,13 +4910,13 @@ static void gxp_add_constraint(gx_body *body, const gxp_supports *of, uint32_t c
 }
 
 static gx_result gxp_make_constraints(gx_body *body) {
-    const gx_allocator *a = &body->allocator;
-    const size_t n = body->copy_count;
+    const gx_allocator *a = &body->config.allocator;
+    const size_t n = body->copies.count;
     gxp_supports of;
     uint32_t i, count;
     gx_result result = GX_OK;
-    body->constraint_count = 0;
-    if (body->thin.count == 0) return GX_OK;
+    body->model.constraint_count = 0;
+    if (body->model.thin.count == 0) return GX_OK;
     of.weak = (uint8_t *)gxp_allocate(a, n);
     of.cell = (uint32_t *)gxp_allocate(a, 3 * n * sizeof(uint32_t));
     if (of.weak != NULL && of.cell != NULL) {
@@ -4593,7 +4926,8 @@ static gx_result gxp_make_constraints(gx_body *body) {
         memset(of.cell, 0xff, n * sizeof *of.cell);
         memset(of.seen, 0, n * sizeof *of.seen);
         count = gxp_find_supports(body, &of);
-        result = gxp_reserve(a, &body->constraints, sizeof *body->constraints, 0, &body->constraint_capacity, count);
+        result = gxp_reserve(a, &body->model.constraints, sizeof *body->model.constraints, 0,
+                             &body->model.constraint_capacity, count);
         for (i = 0; i < n && result == GX_OK; i++)
             if (of.weak[i]) gxp_add_constraint(body, &of, i);
     } else
@@ -4612,16 +4946,16 @@ static void gxp_add_part(gx_body *body, const gxp_cell *cell, uint32_t first, co
     gxs_element *part;
     uint32_t i;
     int k;
-    for (i = first; i < body->part_count; i++)
-        if (memcmp(body->parts[i].copy, cell->copies, sizeof cell->copies) == 0) break;
-    part = &body->parts[i];
-    if (i == body->part_count) {
+    for (i = first; i < body->model.part_count; i++)
+        if (memcmp(body->model.parts[i].copy, cell->copies, sizeof cell->copies) == 0) break;
+    part = &body->model.parts[i];
+    if (i == body->model.part_count) {
         memset(part, 0, sizeof *part);
         memcpy(part->copy, cell->copies, sizeof part->copy);
         memcpy(part->gradient, gradients, 12 * sizeof *gradients);
-        part->material = body->element_materials[cell->element];
+        part->material = body->mesh.element_materials[cell->element];
         part->group = cell->element;
-        body->part_count++;
+        body->model.part_count++;
     }
     part->weight += cell->volume;
     for (k = 0; k < 10; k++) part->mass[k] += cell->mass[k];
@@ -4629,52 +4963,54 @@ static void gxp_add_part(gx_body *body, const gxp_cell *cell, uint32_t first, co
 
 /* The parts of an element, for which there is room, at the end */
 static gx_result gxp_add_parts(gx_body *body, uint32_t element) {
-    const uint32_t first = body->part_count;
+    const uint32_t first = body->model.part_count;
     double x[12], gradients[12];
     uint32_t cell;
     gx_result result;
     gxp_element_positions(body, element, x);
     result = gxi_tet_gradients(x, gradients, NULL);
-    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next)
-        if (body->cells[cell].kept) gxp_add_part(body, &body->cells[cell], first, gradients);
+    for (cell = element; cell != GXP_NONE; cell = body->cells.data[cell].next)
+        if (body->cells.data[cell].kept) gxp_add_part(body, &body->cells.data[cell], first, gradients);
     return result;
 }
 
 static gx_result gxp_make_parts(gx_body *body) {
     uint32_t e;
-    gx_result result =
-        gxp_reserve(&body->allocator, &body->parts, sizeof *body->parts, 0, &body->part_capacity, body->cell_count);
-    body->part_count = 0;
-    for (e = 0; e < body->element_count && result == GX_OK; e++) result = gxp_add_parts(body, e);
+    gx_result result = gxp_reserve(&body->config.allocator, &body->model.parts, sizeof *body->model.parts, 0,
+                                   &body->model.part_capacity, body->cells.count);
+    body->model.part_count = 0;
+    for (e = 0; e < body->mesh.element_count && result == GX_OK; e++) result = gxp_add_parts(body, e);
     return result;
 }
 
 static gx_result gxp_make_model(gx_body *body, gxs_model *model) {
-    const gx_allocator *a = &body->allocator;
+    const gx_allocator *a = &body->config.allocator;
     uint32_t i;
     gx_result result = gxp_make_parts(body);
     if (result == GX_OK) result = gxp_list_thin(body, 1);
     if (result == GX_OK) result = gxp_make_constraints(body);
     if (result == GX_OK)
-        result = gxp_reserve(a, &body->rest, 3 * sizeof(double), 0, &body->rest_capacity, body->copy_count);
-    if (result == GX_OK)
         result =
-            gxp_reserve(a, &body->elastic, sizeof *body->elastic, 0, &body->elastic_capacity, body->material_count);
+            gxp_reserve(a, &body->model.rest, 3 * sizeof(double), 0, &body->model.rest_capacity, body->copies.count);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &body->model.elastic, sizeof *body->model.elastic, 0, &body->model.elastic_capacity,
+                             body->mesh.material_count);
     if (result != GX_OK) return result;
-    for (i = 0; i < body->copy_count; i++)
-        memcpy(body->rest + 3 * (size_t)i, body->positions + 3 * (size_t)body->copy_node[i], 3 * sizeof(double));
-    for (i = 0; i < body->material_count; i++) body->elastic[i] = body->materials[i].elastic;
+    for (i = 0; i < body->copies.count; i++)
+        memcpy(body->model.rest + 3 * (size_t)i, body->mesh.positions + 3 * (size_t)body->copies.node[i],
+               3 * sizeof(double));
+    for (i = 0; i < body->mesh.material_count; i++) body->model.elastic[i] = body->mesh.materials[i].elastic;
     memset(model, 0, sizeof *model);
-    model->copy_count = body->copy_count;
-    model->positions = body->rest;
-    model->elements = body->parts;
-    model->element_count = body->part_count;
-    model->materials = body->elastic;
-    model->material_count = body->material_count;
-    model->held = body->held;
-    model->constraints = body->constraints;
-    model->constraint_count = body->constraint_count;
-    model->epoch = body->epoch;
+    model->copy_count = body->copies.count;
+    model->positions = body->model.rest;
+    model->elements = body->model.parts;
+    model->element_count = body->model.part_count;
+    model->materials = body->model.elastic;
+    model->material_count = body->mesh.material_count;
+    model->held = body->copies.held;
+    model->constraints = body->model.constraints;
+    model->constraint_count = body->model.constraint_count;
+    model->epoch = body->cuts.epoch;
     return GX_OK;
 }
 
@@ -4685,33 +5021,35 @@ static gx_result gxp_change_model(gx_body *body) {
     uint32_t i, cell;
     gxs_change change;
     gx_result result;
-    gxp_sort_unique(&body->changed);
-    for (i = 0; i < body->changed.count; i++)
-        for (cell = body->changed.data[i]; cell != GXP_NONE; cell = body->cells[cell].next) room++;
-    result = gxp_reserve(&body->allocator, &body->parts, sizeof *body->parts, 0, &body->part_capacity, room);
-    body->part_count = 0;
-    for (i = 0; i < body->changed.count && result == GX_OK; i++) result = gxp_add_parts(body, body->changed.data[i]);
+    gxp_sort_unique(&body->model.changed);
+    for (i = 0; i < body->model.changed.count; i++)
+        for (cell = body->model.changed.data[i]; cell != GXP_NONE; cell = body->cells.data[cell].next) room++;
+    result = gxp_reserve(&body->config.allocator, &body->model.parts, sizeof *body->model.parts, 0,
+                         &body->model.part_capacity, room);
+    body->model.part_count = 0;
+    for (i = 0; i < body->model.changed.count && result == GX_OK; i++)
+        result = gxp_add_parts(body, body->model.changed.data[i]);
     if (result == GX_OK) result = gxp_list_thin(body, 0);
     if (result == GX_OK) result = gxp_make_constraints(body);
     memset(&change, 0, sizeof change);
-    change.copy_count = body->copy_count;
-    change.origins = body->copy_before;
-    change.held = body->held;
-    change.groups = body->changed.data;
-    change.group_count = body->changed.count;
-    change.elements = body->parts;
-    change.element_count = body->part_count;
-    change.constraints = body->constraints;
-    change.constraint_count = body->constraint_count;
-    change.epoch = body->epoch;
+    change.copy_count = body->copies.count;
+    change.origins = body->copies.before;
+    change.held = body->copies.held;
+    change.groups = body->model.changed.data;
+    change.group_count = body->model.changed.count;
+    change.elements = body->model.parts;
+    change.element_count = body->model.part_count;
+    change.constraints = body->model.constraints;
+    change.constraint_count = body->model.constraint_count;
+    change.epoch = body->cuts.epoch;
     return result == GX_OK ? gxs_solver_update(body->solver, &change, NULL) : result;
 }
 
 /* What has been written to the state since the last step still wakes in the next one. */
 static void gxp_note_written(gx_body *body) {
-    gxp_wake_resumed(body, body->copy_count);
-    gxs_solver_note_written(body->solver, body->copy_before, body->copy_count, body->displacement, body->velocity,
-                            body->rest_time);
+    gxp_wake_resumed(body, body->copies.count);
+    gxs_solver_note_written(body->solver, body->copies.before, body->copies.count, body->copies.displacement,
+                            body->copies.velocity, body->copies.rest_time);
 }
 
 static gx_result gxp_set_model(gx_body *body) {
@@ -4719,48 +5057,39 @@ static gx_result gxp_set_model(gx_body *body) {
     gx_result result = gxp_make_model(body, &model);
     gxp_note_written(body);
     if (result != GX_OK) return result;
-    body->nothing_moves = model.element_count == 0;
-    return body->nothing_moves ? GX_OK : gxs_solver_set_model(body->solver, &model, NULL);
+    body->model.empty = model.element_count == 0;
+    return body->model.empty ? GX_OK : gxs_solver_set_model(body->solver, &model, NULL);
 }
 
 /* What the solver has copied */
 static void gxp_release_model(gx_body *body) {
-    const gx_allocator *a = &body->allocator;
-    gxp_release(a, body->parts, body->part_capacity * sizeof *body->parts);
-    gxp_release(a, body->rest, (size_t)body->rest_capacity * 3 * sizeof(double));
-    gxp_release(a, body->elastic, body->elastic_capacity * sizeof *body->elastic);
-    gxp_release(a, body->constraints, body->constraint_capacity * sizeof *body->constraints);
-    body->parts = NULL;
-    body->rest = NULL;
-    body->elastic = NULL;
-    body->constraints = NULL;
-    body->part_capacity = body->rest_capacity = body->elastic_capacity = body->constraint_capacity = 0;
+    gxp_release_columns(body, gxp_model_lists, sizeof gxp_model_lists / sizeof *gxp_model_lists);
 }
 
 /* The solver's model, after a cut or a hold only. The solver copies it, so that it need not be kept. */
 static gx_result gxp_update_model(gx_body *body) {
     gx_result result = gxp_update_held(body);
     uint32_t i;
-    if (result != GX_OK || body->model == GXP_MODEL_KNOWN) {
+    if (result != GX_OK || body->model.state == GXP_MODEL_KNOWN) {
         gxp_release_model(body);
         return result;
     }
-    if (body->model == GXP_MODEL_CHANGED) {
+    if (body->model.state == GXP_MODEL_CHANGED) {
         result = gxp_change_model(body);
-        body->model = result == GX_OK ? GXP_MODEL_KNOWN : GXP_MODEL_STALE;
-        body->model_updated = 1;
+        body->model.state = result == GX_OK ? GXP_MODEL_KNOWN : GXP_MODEL_STALE;
+        body->model.updated = 1;
         if (result == GX_ERROR_LIMIT || result == GX_ERROR_EMPTY) result = GX_OK;
     }
-    if (result == GX_OK && body->model == GXP_MODEL_STALE) {
+    if (result == GX_OK && body->model.state == GXP_MODEL_STALE) {
         result = gxp_set_model(body);
         if (result == GX_OK) {
-            body->model = GXP_MODEL_KNOWN;
-            body->model_updated = 0;
+            body->model.state = GXP_MODEL_KNOWN;
+            body->model.updated = 0;
         }
     }
     gxp_release_model(body);
-    body->changed.count = 0;
-    for (i = 0; i < body->copy_count; i++) body->copy_before[i] = 2 * i;
+    body->model.changed.count = 0;
+    for (i = 0; i < body->copies.count; i++) body->copies.before[i] = 2 * i;
     return result;
 }
 
@@ -4775,48 +5104,49 @@ GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model) {
 /* In: a step's description. Out: displacement and velocity at its end, or the body as it was. Touches the state of
    copies, the history that BDF2 needs, and the solver. */
 
+/* The first `count` columns of BDF2's history, unless they are there. */
+static gx_result gxp_start_history(gx_body *body, uint32_t count) {
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (i = 0; i < count && result == GX_OK; i++)
+        if (body->copies.history[i] == NULL)
+            result = gxp_grow_column(body, &gxp_copy_columns[GXP_FIRST_HISTORY + i], 0, body->copies.count);
+    return result;
+}
+
 /* The step with what is the body's own */
 static gx_result gxp_complete_step(gx_body *body, const gx_step_desc *desc, gx_step_desc *step) {
     const int history = desc->integrator == GXS_BDF2;
     gx_result result = GX_OK;
-    int i;
     *step = *desc;
-    step->rest_times = body->rest_time;
+    step->rest_times = body->copies.rest_time;
     if (step->clock == NULL) {
-        step->clock = body->clock;
-        step->clock_user = body->clock_user;
+        step->clock = body->config.clock;
+        step->clock_user = body->config.clock_user;
     }
-    for (i = 0; i < 4 && history && result == GX_OK; i++)
-        if (body->history[i] == NULL)
-            result = gxp_reserve(&body->allocator, &body->history[i], 3 * sizeof(double), 0, &body->history_capacity[i],
-                                 body->copy_count);
-    step->previous_displacement = history && body->previous_dt > 0 ? body->history[0] : NULL;
-    step->previous_velocity = body->history[1];
-    step->previous_dt = body->previous_dt;
+    if (history) result = gxp_start_history(body, 4);
+    step->previous_displacement = history && body->copies.previous_dt > 0 ? body->copies.history[0] : NULL;
+    step->previous_velocity = body->copies.history[1];
+    step->previous_dt = body->copies.previous_dt;
     return result;
 }
 
 /* The solver's step, and what BDF2's next one needs of this one */
 static gx_result gxp_step(gx_body *body, const gx_step_desc *step, gx_step_report *report, gx_failure *failure) {
-    const size_t bytes = 3 * (size_t)body->copy_count * sizeof(double);
+    gxp_copies *copies = &body->copies;
+    const size_t bytes = 3 * (size_t)copies->count * sizeof(double);
     const int history = step->integrator == GXS_BDF2;
+    const gxp_column *columns = gxp_copy_columns + GXP_FIRST_HISTORY;
     gx_result result;
     int i;
     if (history) {
-        memcpy(body->history[2], body->displacement, bytes);
-        memcpy(body->history[3], body->velocity, bytes);
+        memcpy(copies->history[2], copies->displacement, bytes);
+        memcpy(copies->history[3], copies->velocity, bytes);
     }
-    result = gxs_solver_step(body->solver, step, body->displacement, body->velocity, report, failure);
+    result = gxs_solver_step(body->solver, step, copies->displacement, copies->velocity, report, failure);
     if (result != GX_OK) return result;
-    body->previous_dt = history ? step->dt : 0;
-    for (i = 0; i < 2 && history; i++) {
-        double *now = body->history[i + 2];
-        const uint32_t capacity = body->history_capacity[i + 2];
-        body->history[i + 2] = body->history[i];
-        body->history_capacity[i + 2] = body->history_capacity[i];
-        body->history[i] = now;
-        body->history_capacity[i] = capacity;
-    }
+    copies->previous_dt = history ? step->dt : 0;
+    for (i = 0; i < 2 && history; i++) gxp_swap_columns(body, &columns[i], &columns[i + 2]);
     return GX_OK;
 }
 
@@ -4826,14 +5156,14 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     gx_step_desc step;
     gx_result result;
     if (body == NULL || desc == NULL) return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
-    gxp_wake_resumed(body, body->copy_count);
+    gxp_wake_resumed(body, body->copies.count);
     result = gxp_update_model(body);
     if (result == GX_OK) result = gxp_complete_step(body, desc, &step);
     if (gxp_fail(failure, result, SIZE_MAX, SIZE_MAX) != GX_OK) return result;
-    if (body->nothing_moves) {
+    if (body->model.empty) {
         if (failure == NULL) failure = &ignored;
         result = gxsp_check_step(&step, failure);
-        if (result == GX_OK) result = gxsp_check_epochs(&step, body->epoch, failure);
+        if (result == GX_OK) result = gxsp_check_epochs(&step, body->cuts.epoch, failure);
         if (result == GX_OK && report != NULL) {
             memset(report, 0, sizeof *report);
             report->stop = GXS_STOP_ASLEEP;
@@ -4841,7 +5171,7 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
         return result;
     }
     result = gxp_step(body, &step, report, failure);
-    if (result == GX_OK) body->resumed = 0;
+    if (result == GX_OK) body->model.resumed = 0;
     if (result == GX_OK && report != NULL) report->seconds = gxp_seconds(body) - start;
     return result;
 }
@@ -4871,19 +5201,20 @@ static void gxp_outer_normal(const gx_body *body, uint32_t element, uint32_t k, 
     for (i = 0; i < 3; i++) n[i] = 0.5 * (a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]);
 }
 
-/* Lists the outer faces: s->boundary has the number of each mesh face among them, body->faces element * 4 + k of each.
+/* Lists the outer faces: s->boundary has the number of each mesh face among them, body->skin.outer_faces element * 4 +
+ * k of each.
  */
 static gx_result gxp_list_outer_faces(gx_body *body) {
     const gxb_complex *cx = body->complex;
     gxp_skin *s = &body->skin;
     uint32_t e, k;
-    gx_result result = gxp_set_words(body, &s->boundary, cx->face_count);
-    body->faces.count = 0;
-    for (e = 0; e < body->element_count && result == GX_OK; e++)
+    gx_result result = gxp_start_words(body, &s->boundary, cx->face_count);
+    body->skin.outer_faces.count = 0;
+    for (e = 0; e < body->mesh.element_count && result == GX_OK; e++)
         for (k = 0; k < 4 && result == GX_OK; k++) {
             if (gxp_neighbour(body, e, k) != GXP_NONE) continue;
-            s->boundary.data[cx->element_faces[4 * e + k]] = body->faces.count;
-            result = gxp_push(body, &body->faces, 4 * e + k);
+            s->boundary.data[cx->element_faces[4 * e + k]] = body->skin.outer_faces.count;
+            result = gxp_push(body, &body->skin.outer_faces, 4 * e + k);
         }
     return result;
 }
@@ -4891,7 +5222,7 @@ static gx_result gxp_list_outer_faces(gx_body *body) {
 /* Two outer faces (by number) meet in the mesh edge from node a to b: where they bend little, their corners are one
  * group. */
 static void gxp_join_corners(gx_body *body, uint32_t p, uint32_t q, uint32_t a, uint32_t b) {
-    const uint32_t ep = body->faces.data[p], eq = body->faces.data[q];
+    const uint32_t ep = body->skin.outer_faces.data[p], eq = body->skin.outer_faces.data[q];
     uint32_t *group = body->skin.groups.data;
     double m[3], n[3];
     gxp_outer_normal(body, ep / 4, ep % 4, m);
@@ -4903,22 +5234,22 @@ static void gxp_join_corners(gx_body *body, uint32_t p, uint32_t q, uint32_t a, 
               4 * q + (uint32_t)gxp_local_node(body, eq / 4, b));
 }
 
-/* Finds for each mesh edge the two outer faces that meet there, and joins them. body->list: of each edge, the first
- * face and how many. */
+/* Finds for each mesh edge the two outer faces that meet there, and joins them. body->skin.edge_faces: of each edge,
+ * the first face and how many. */
 static gx_result gxp_join_faces(gx_body *body) {
     const gxb_complex *cx = body->complex;
     uint32_t i, j, *first, *second;
-    gx_result result = gxp_set_words(body, &body->list, 2 * (size_t)cx->mesh_edge_count);
+    gx_result result = gxp_start_words(body, &body->skin.edge_faces, 2 * (size_t)cx->mesh_edge_count);
     if (result != GX_OK) return result;
-    first = body->list.data;
+    first = body->skin.edge_faces.data;
     second = first + cx->mesh_edge_count;
     memset(first, 0xff, 2 * (size_t)cx->mesh_edge_count * sizeof *first);
-    for (i = 0; i < body->faces.count; i++)
+    for (i = 0; i < body->skin.outer_faces.count; i++)
         for (j = 0; j < 6; j++) {
-            const uint32_t e = body->faces.data[i] / 4, k = body->faces.data[i] % 4,
+            const uint32_t e = body->skin.outer_faces.data[i] / 4, k = body->skin.outer_faces.data[i] % 4,
                            edge = cx->element_edges[6 * e + j];
             const uint32_t a = gxp_edge_nodes[j][0], b = gxp_edge_nodes[j][1];
-            if (a == k || b == k || body->edge_pinched[edge]) continue;
+            if (a == k || b == k || body->mesh.edge_pinched[edge]) continue;
             if (first[edge] == GXP_NONE)
                 first[edge] = i;
             else if (second[edge] == GXP_NONE) {
@@ -4936,20 +5267,20 @@ static gx_result gxp_group_corners(gx_body *body) {
     uint32_t i, k;
     int j;
     gx_result result = gxp_list_outer_faces(body);
-    const uint32_t count = 4 * body->faces.count;
-    if (result == GX_OK) result = gxp_set_words(body, &s->groups, count);
+    const uint32_t count = 4 * body->skin.outer_faces.count;
+    if (result == GX_OK) result = gxp_start_words(body, &s->groups, count);
     if (result == GX_OK)
-        result =
-            gxp_reserve(&body->allocator, &s->group_normals, 3 * sizeof(double), 0, &s->group_normal_capacity, count);
+        result = gxp_reserve(&body->config.allocator, &s->group_normals, 3 * sizeof(double), 0,
+                             &s->group_normal_capacity, count);
     if (result != GX_OK) return result;
     for (i = 0; i < count; i++) s->groups.data[i] = i;
     if (s->desc.crease_angle > 0) result = gxp_join_faces(body);
     if (result != GX_OK) return result;
     for (i = 0; i < count; i++) s->groups.data[i] = gxp_find(s->groups.data, i);
     memset(s->group_normals, 0, 3 * (size_t)count * sizeof(double));
-    for (i = 0; i < body->faces.count; i++) {
+    for (i = 0; i < body->skin.outer_faces.count; i++) {
         double n[3];
-        gxp_outer_normal(body, body->faces.data[i] / 4, body->faces.data[i] % 4, n);
+        gxp_outer_normal(body, body->skin.outer_faces.data[i] / 4, body->skin.outer_faces.data[i] % 4, n);
         for (k = 0; k < 4; k++)
             for (j = 0; j < 3; j++) s->group_normals[3 * (size_t)s->groups.data[4 * i + k] + (size_t)j] += n[j];
     }
@@ -4957,10 +5288,10 @@ static gx_result gxp_group_corners(gx_body *body) {
 }
 
 static uint32_t gxp_label_surface(const gx_body *body, uint32_t label) {
-    uint32_t low = 0, high = body->surface_count;
+    uint32_t low = 0, high = body->cuts.surface_count;
     while (high - low > 1) {
         const uint32_t middle = low + (high - low) / 2;
-        if (body->surfaces[middle].label <= label)
+        if (body->cuts.surfaces[middle].label <= label)
             low = middle;
         else
             high = middle;
@@ -4973,8 +5304,9 @@ static const double *gxp_label_map(const gx_body *body, uint32_t label) {
     uint32_t surface;
     if (label == GXP_NONE) return NULL;
     surface = gxp_label_surface(body, label);
-    if (body->surfaces[surface].map == GXP_NONE) return NULL;
-    return body->maps + 8 * ((size_t)body->surfaces[surface].map + label - body->surfaces[surface].label);
+    if (body->cuts.surfaces[surface].map == GXP_NONE) return NULL;
+    return body->cuts.maps +
+           8 * ((size_t)body->cuts.surfaces[surface].map + label - body->cuts.surfaces[surface].label);
 }
 
 /* >>vertices: the skin: slots and vertices ------------------------------------------------------------------------- */
@@ -4986,7 +5318,7 @@ static gx_result gxp_rehash(gx_body *body, gxp_words *buckets, uint32_t items) {
     uint32_t size = 64;
     gx_result result;
     while (size < items) size *= 2;
-    result = gxp_set_words(body, buckets, size);
+    result = gxp_start_words(body, buckets, size);
     if (result == GX_OK) {
         buckets->count = size;
         memset(buckets->data, 0xff, size * sizeof *buckets->data);
@@ -5003,7 +5335,8 @@ static gx_result gxp_slot_room(gx_body *body) {
     gxp_skin *s = &body->skin;
     const uint32_t before = s->slot_capacity;
     uint32_t i;
-    gx_result result = gxp_reserve(&body->allocator, &s->slots, sizeof *s->slots, s->slot_count, &s->slot_capacity, 1);
+    gx_result result =
+        gxp_reserve(&body->config.allocator, &s->slots, sizeof *s->slots, s->slot_count, &s->slot_capacity, 1);
     if (result != GX_OK || (s->slot_capacity == before && s->slot_buckets.count > 0)) return result;
     result = gxp_rehash(body, &s->slot_buckets, s->slot_capacity);
     for (i = 0; i < s->slot_count && result == GX_OK; i++) {
@@ -5072,16 +5405,11 @@ static uint32_t *gxp_vertex_bucket(gxp_skin *s, const gxp_skin_key *key) {
 
 static gx_result gxp_vertex_room(gx_body *body) {
     gxp_skin *s = &body->skin;
-    const uint32_t before = s->vertex_capacity;
-    void *arrays[8];
-    size_t items[8];
+    const uint32_t before = s->vertex_capacity[0];
     uint32_t i;
-    gx_result result;
-    gxp_vertex_columns(s, arrays, items);
-    result = gxp_reserve_columns(&body->allocator, arrays, items, GXP_VERTEX_COLUMNS, s->vertex_count,
-                                 &s->vertex_capacity, 1);
-    if (result != GX_OK || (s->vertex_capacity == before && s->vertex_buckets.count > 0)) return result;
-    result = gxp_rehash(body, &s->vertex_buckets, s->vertex_capacity);
+    gx_result result = gxp_grow_rows(body, GXP_SKIN_VERTICES, 1);
+    if (result != GX_OK || (s->vertex_capacity[0] == before && s->vertex_buckets.count > 0)) return result;
+    result = gxp_rehash(body, &s->vertex_buckets, s->vertex_capacity[0]);
     for (i = 0; i < s->vertex_count && result == GX_OK; i++) {
         uint32_t *bucket = gxp_vertex_bucket(s, &s->vertices[i].key);
         s->vertices[i].next = *bucket;
@@ -5131,8 +5459,8 @@ static void gxp_set_texture(gx_body *body, uint32_t vertex, const gxp_skin_face 
     for (i = 0; i < 2; i++) {
         double t = map != NULL ? map[4 * i + 3] : 0;
         for (k = 0; k < 3 && map != NULL; k++) t += map[4 * i + k] * (x[k] - body->complex->origin[k]);
-        for (k = 0; k < 4 && face->outer && body->texture != NULL; k++)
-            t += lambda[k] * (double)body->texture[2 * (size_t)node[k] + (size_t)i];
+        for (k = 0; k < 4 && face->outer && body->mesh.texture != NULL; k++)
+            t += lambda[k] * (double)body->mesh.texture[2 * (size_t)node[k] + (size_t)i];
         body->skin.texture[2 * (size_t)vertex + (size_t)i] = (float)t;
     }
 }
@@ -5149,13 +5477,13 @@ static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const 
     gx_result result = face->outer ? GX_OK : gxp_own_slot(body, &own);
     if (result == GX_OK) result = gxp_add_boundary_point(body, face->element, key->point, &slot);
     if (result != GX_OK) return result;
-    lambda = body->lambdas + 4 * (size_t)slot;
+    lambda = body->scratch.boundary.lambdas + 4 * (size_t)slot;
     gxp_weigh_point(face, lambda, s->copies + 4 * (size_t)i, s->weights + 4 * (size_t)i, v->slots);
     for (n = 0; n < 4 && !face->outer; n++) v->slots[n] = own;
     v->key = *key;
     v->corner = GXP_NONE;
     v->outer = face->outer;
-    v->fresh = 1;
+    v->placed = 1;
     v->noted = 0;
     v->next = *gxp_vertex_bucket(s, key);
     *gxp_vertex_bucket(s, key) = i;
@@ -5164,7 +5492,7 @@ static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const 
         rest[k] = 0;
         for (n = 0; n < 4; n++)
             rest[k] += s->weights[4 * (size_t)i + n] *
-                       body->positions[3 * (size_t)body->copy_node[s->copies[4 * (size_t)i + n]] + (size_t)k];
+                       body->mesh.positions[3 * (size_t)body->copies.node[s->copies[4 * (size_t)i + n]] + (size_t)k];
     }
     memset(s->normal + 3 * (size_t)i, 0, 3 * sizeof *s->normal); /* should the next not find one */
     gxp_set_normal(s->normal + 3 * (size_t)i, face->normal);
@@ -5198,8 +5526,6 @@ static gx_result gxp_drop_vertex(gx_body *body, uint32_t vertex) {
     const uint32_t last = --s->vertex_count;
     uint32_t *link, corner;
     gx_result result = GX_OK;
-    void *arrays[8];
-    size_t items[8];
     for (link = gxp_vertex_bucket(s, &s->vertices[vertex].key); *link != vertex; link = &s->vertices[*link].next) {}
     *link = s->vertices[vertex].next;
     if (!s->vertices[vertex].outer) {
@@ -5213,24 +5539,14 @@ static gx_result gxp_drop_vertex(gx_body *body, uint32_t vertex) {
         s->triangles[corner] = vertex;
         if (result == GX_OK) result = gxp_push(body, &s->changed[1], corner / 3);
     }
-    gxp_vertex_columns(s, arrays, items);
-    gxp_move_column_item(arrays, items, GXP_VERTEX_COLUMNS, last, vertex);
-    s->vertices[vertex].fresh = 1;
+    gxp_copy_row(body, GXP_SKIN_VERTICES, last, vertex);
+    s->vertices[vertex].placed = 1;
     return result;
 }
 
 /* >>faces: the skin: triangles ------------------------------------------------------------------------------------- */
 /* In: an element. Out: the triangles that it shows, of outer faces and of both sides of walls. Triangles are listed by
    element and stand without gaps. Facets are divided into triangles with area, so that each has a normal. */
-
-static gx_result gxp_triangle_room(gx_body *body) {
-    gxp_skin *s = &body->skin;
-    void *arrays[8];
-    size_t items[8];
-    gxp_triangle_columns(s, arrays, items);
-    return gxp_reserve_columns(&body->allocator, arrays, items, GXP_TRIANGLE_COLUMNS, s->triangle_count,
-                               &s->triangle_capacity, 1);
-}
 
 /* Hooks the triangle's corners to its vertices and itself to its element. */
 static void gxp_link_triangle(gxp_skin *s, uint32_t t) {
@@ -5271,8 +5587,6 @@ static void gxp_unlink_triangle(gxp_skin *s, uint32_t t) {
 static gx_result gxp_drop_triangle(gx_body *body, uint32_t t) {
     gxp_skin *s = &body->skin;
     const uint32_t last = s->triangle_count - 1;
-    void *arrays[8];
-    size_t items[8];
     uint32_t k;
     gx_result result = gxp_push(body, &s->changed[1], t);
     for (k = 0; k < 3 && result == GX_OK; k++) result = gxp_note_vertex(body, s->triangles[3 * t + k]);
@@ -5281,8 +5595,7 @@ static gx_result gxp_drop_triangle(gx_body *body, uint32_t t) {
     s->triangle_count--;
     if (t == last) return GX_OK;
     gxp_unlink_triangle(s, last);
-    gxp_triangle_columns(s, arrays, items);
-    gxp_move_column_item(arrays, items, GXP_TRIANGLE_COLUMNS, last, t);
+    gxp_copy_row(body, GXP_SKIN_TRIANGLES, last, t);
     gxp_link_triangle(s, t);
     return GX_OK;
 }
@@ -5291,14 +5604,14 @@ static gx_result gxp_add_skin_triangle(gx_body *body, const gxp_skin_face *face,
     gxp_skin *s = &body->skin;
     const uint32_t t = s->triangle_count;
     uint32_t k, j, *corner;
-    gx_result result = gxp_triangle_room(body);
+    gx_result result = gxp_grow_rows(body, GXP_SKIN_TRIANGLES, 1);
     if (result == GX_OK) result = gxp_push(body, &s->changed[1], t);
     if (result != GX_OK) return result;
     corner = s->triangles + 3 * (size_t)t;
     for (k = 0; k < 3; k++) corner[k] = vertex[inward ? 2 - k : k];
     s->triangle_count++;
     s->element[t] = face->element;
-    s->material[t] = body->element_materials[face->element];
+    s->material[t] = body->mesh.element_materials[face->element];
     s->surface[t] = face->surface;
     memset(s->links[t].normal, 0, sizeof s->links[t].normal);
     gxp_set_normal(s->links[t].normal, face->normal);
@@ -5321,23 +5634,23 @@ static int gxp_is_ear(gx_body *body, const uint32_t *p, uint32_t n, uint32_t i, 
     return 0;
 }
 
-/* Adds a facet as triangles, outward from the leaf: ears are cut off its convex polygon, whose points stand in
-   body->faces, their vertices in body->queue. */
+/* Adds a facet as triangles, outward from the leaf: ears are cut off its convex polygon. */
 static gx_result gxp_add_skin_facet(gx_body *body, const gxp_skin_face *face, uint32_t facet, uint32_t leaf) {
     gxb_complex *cx = body->complex;
+    gxp_words *points = &body->skin.corner_points, *vertices = &body->skin.corner_vertices;
     const int inward = cx->facets[facet].leaf[0] == leaf;
     uint32_t *p, *v, e0, en, i, n, vertex = GXP_NONE;
     gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
-    body->faces.count = body->queue.count = 0;
+    points->count = vertices->count = 0;
     for (i = 0; i < en && result == GX_OK; i++) {
         const uint32_t point = cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1];
         result = gxp_find_vertex(body, face, point, &vertex);
-        if (result == GX_OK) result = gxp_push(body, &body->faces, point);
-        if (result == GX_OK) result = gxp_push(body, &body->queue, vertex);
+        if (result == GX_OK) result = gxp_push(body, points, point);
+        if (result == GX_OK) result = gxp_push(body, vertices, vertex);
     }
-    p = body->faces.data;
-    v = body->queue.data;
-    for (n = body->faces.count, i = 0; n >= 3 && result == GX_OK; n--) {
+    p = points->data;
+    v = vertices->data;
+    for (n = points->count, i = 0; n >= 3 && result == GX_OK; n--) {
         uint32_t triangle[3], tries = 0;
         for (i %= n; tries < n && !gxp_is_ear(body, p, n, i, cx->facets[facet].plane); i = (i + 1) % n) tries++;
         triangle[0] = v[(i + n - 1) % n];
@@ -5354,7 +5667,7 @@ static gx_result gxp_add_skin_facet(gx_body *body, const gxp_skin_face *face, ui
 /* Do two cells move apart at a common facet? In one element where any copy differs, else where a shared node's copies
  * differ. */
 static int gxp_cells_part(const gx_body *body, uint32_t a, uint32_t b) {
-    const gxp_cell *p = &body->cells[a], *q = &body->cells[b];
+    const gxp_cell *p = &body->cells.data[a], *q = &body->cells.data[b];
     uint32_t k;
     if (p->element == q->element) return memcmp(p->copies, q->copies, sizeof p->copies) != 0;
     for (k = 0; k < 4; k++) {
@@ -5370,7 +5683,7 @@ static int gxp_visible(const gx_body *body, uint32_t facet, uint32_t leaf) {
     const uint32_t other = f->leaf[f->leaf[0] == leaf];
     if (other == GXB_NONE) return 0;
     if (body->complex->leaves[other].removed) return 1;
-    return f->wall && gxp_cells_part(body, body->leaves[leaf].cell, body->leaves[other].cell) ? 1 : -1;
+    return f->wall && gxp_cells_part(body, body->leaves.data[leaf].cell, body->leaves.data[other].cell) ? 1 : -1;
 }
 
 /* The outer face opposite to the element's node k, as a cell has it */
@@ -5465,7 +5778,8 @@ static int gxp_face_is_whole(const gx_body *body, uint32_t element, uint32_t k) 
 static int gxp_is_untouched(const gx_body *body, uint32_t element) {
     const gxb_complex *cx = body->complex;
     uint32_t k;
-    if (body->cells[element].next != GXP_NONE || body->leaves[element].next != GXP_NONE || cx->leaves[element].removed)
+    if (body->cells.data[element].next != GXP_NONE || body->leaves.data[element].next != GXP_NONE ||
+        cx->leaves[element].removed)
         return 0;
     for (k = 0; k < 4; k++)
         if (!gxp_face_is_whole(body, element, k)) return 0;
@@ -5491,14 +5805,14 @@ static gx_result gxp_skin_element(gx_body *body, uint32_t element) {
     memset(&face, 0, sizeof face);
     face.element = element;
     if (!untouched) result = gxb_complex_open_element(body->complex, element);
-    for (cell = element; cell != GXP_NONE && result == GX_OK; cell = body->cells[cell].next) {
-        if (!body->cells[cell].kept) continue;
-        face.copies = body->cells[cell].copies;
+    for (cell = element; cell != GXP_NONE && result == GX_OK; cell = body->cells.data[cell].next) {
+        if (!body->cells.data[cell].kept) continue;
+        face.copies = body->cells.data[cell].copies;
         if (untouched)
             result = gxp_skin_whole(body, &face);
         else
-            for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
-                 leaf = body->leaves[leaf].next)
+            for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
+                 leaf = body->leaves.data[leaf].next)
                 result = gxp_skin_leaf(body, leaf, &face);
     }
     return result;
@@ -5509,8 +5823,8 @@ static gx_result gxp_skin_element(gx_body *body, uint32_t element) {
    positions and normals. Touches the skin only. */
 
 static gx_result gxp_spread_to(gx_body *body, uint32_t element) {
-    if (element == GXP_NONE || body->cell_stamp[element] == body->stamp) return GX_OK;
-    body->cell_stamp[element] = body->stamp;
+    if (element == GXP_NONE || body->cells.stamp[element] == body->scratch.stamp) return GX_OK;
+    body->cells.stamp[element] = body->scratch.stamp;
     return gxp_push(body, &body->skin.dirty, element);
 }
 
@@ -5521,10 +5835,10 @@ static gx_result gxp_spread_touched(gx_body *body) {
     gxp_words *dirty = &body->skin.dirty;
     uint32_t i, j, k, count;
     gx_result result = GX_OK;
-    body->stamp++;
+    body->scratch.stamp++;
     for (i = 0, count = 0; i < dirty->count; i++) {
-        if (body->cell_stamp[dirty->data[i]] == body->stamp) continue;
-        body->cell_stamp[dirty->data[i]] = body->stamp;
+        if (body->cells.stamp[dirty->data[i]] == body->scratch.stamp) continue;
+        body->cells.stamp[dirty->data[i]] = body->scratch.stamp;
         dirty->data[count++] = dirty->data[i];
     }
     dirty->count = count;
@@ -5535,9 +5849,9 @@ static gx_result gxp_spread_touched(gx_body *body) {
             const uint32_t a = cx->elements[4 * e + gxp_edge_nodes[k][0]],
                            b = cx->elements[4 * e + gxp_edge_nodes[k][1]];
             if (!gxp_edge_is_divided(cx, cx->element_edges[6 * e + k])) continue;
-            for (j = body->node_start[a]; j < body->node_start[a + 1] && result == GX_OK; j++)
-                if (gxp_local_node(body, body->node_elements[j], b) >= 0)
-                    result = gxp_spread_to(body, body->node_elements[j]);
+            for (j = body->mesh.node_start[a]; j < body->mesh.node_start[a + 1] && result == GX_OK; j++)
+                if (gxp_local_node(body, body->mesh.node_elements[j], b) >= 0)
+                    result = gxp_spread_to(body, body->mesh.node_elements[j]);
         }
     }
     return result;
@@ -5586,10 +5900,10 @@ static void gxp_renew_normals(gxp_skin *s) {
         if (vertex >= s->vertex_count) continue;
         memcpy(normal, s->normal + 3 * (size_t)vertex, sizeof normal);
         gxp_rest_normal(s, vertex, normal);
-        if (s->vertices[vertex].fresh || memcmp(normal, s->normal + 3 * (size_t)vertex, sizeof normal) != 0)
+        if (s->vertices[vertex].placed || memcmp(normal, s->normal + 3 * (size_t)vertex, sizeof normal) != 0)
             s->changed[0].data[n++] = vertex;
         memcpy(s->normal + 3 * (size_t)vertex, normal, sizeof normal);
-        s->vertices[vertex].fresh = s->vertices[vertex].noted = 0;
+        s->vertices[vertex].placed = s->vertices[vertex].noted = 0;
     }
     s->changed[0].count = n;
 }
@@ -5606,7 +5920,8 @@ static gx_result gxp_make_ranges(gx_body *body, int kind, uint32_t count) {
             s->ranges[kind][n - 1].count++;
             continue;
         }
-        result = gxp_reserve(&body->allocator, &s->ranges[kind], sizeof **s->ranges, n, &s->range_capacity[kind], 1);
+        result =
+            gxp_reserve(&body->config.allocator, &s->ranges[kind], sizeof **s->ranges, n, &s->range_capacity[kind], 1);
         if (result != GX_OK) break;
         s->ranges[kind][n].first = changed->data[i];
         s->ranges[kind][n++].count = 1;
@@ -5626,11 +5941,11 @@ static gx_result gxp_restart_skin(gx_body *body, const gx_skin_desc *desc) {
     s->free_slot = GXP_NONE;
     s->changed[0].count = s->changed[1].count = s->vertex_buckets.count = s->slot_buckets.count = 0;
     result = gxp_group_corners(body);
-    if (result == GX_OK) result = gxp_set_words(body, &s->first, body->element_count);
-    if (result == GX_OK) result = gxp_set_words(body, &s->dirty, body->element_count);
+    if (result == GX_OK) result = gxp_start_words(body, &s->first, body->mesh.element_count);
+    if (result == GX_OK) result = gxp_start_words(body, &s->dirty, body->mesh.element_count);
     if (result != GX_OK) return result;
-    memset(s->first.data, 0xff, body->element_count * sizeof *s->first.data);
-    for (e = 0; e < body->element_count; e++) s->dirty.data[s->dirty.count++] = e;
+    memset(s->first.data, 0xff, body->mesh.element_count * sizeof *s->first.data);
+    for (e = 0; e < body->mesh.element_count; e++) s->dirty.data[s->dirty.count++] = e;
     return GX_OK;
 }
 
@@ -5655,8 +5970,8 @@ static gx_result gxp_mark_fragments(gx_body *body) {
     const gx_result result = gxp_update_labels(body);
     for (t = 0; t < s->triangle_count && result == GX_OK; t++)
         s->fragment[t] =
-            body->fragment_number
-                .data[gxp_find(body->copy_fragment.data, s->copies[4 * (size_t)s->triangles[3 * (size_t)t]])];
+            body->view.fragment_number
+                .data[gxp_find(body->view.copy_fragment.data, s->copies[4 * (size_t)s->triangles[3 * (size_t)t]])];
     return result;
 }
 
@@ -5674,10 +5989,11 @@ static gx_result gxp_update_skin(gx_body *body, const gx_skin_desc *desc) {
     if (result == GX_OK) result = gxp_make_ranges(body, 0, s->vertex_count);
     if (result == GX_OK) result = gxp_make_ranges(body, 1, s->triangle_count);
     if (result == GX_OK)
-        result = gxp_reserve(&body->allocator, &s->normals, 3 * sizeof(double), 0, &s->normal_capacity, s->slot_count);
+        result = gxp_reserve(&body->config.allocator, &s->normals, 3 * sizeof(double), 0, &s->normal_capacity,
+                             s->slot_count);
     if (result == GX_OK)
-        result =
-            gxp_reserve(&body->allocator, &s->positions, 3 * sizeof(double), 0, &s->position_capacity, s->vertex_count);
+        result = gxp_reserve(&body->config.allocator, &s->positions, 3 * sizeof(double), 0, &s->position_capacity,
+                             s->vertex_count);
     if (result == GX_OK) s->made = 1;
     return result;
 }
@@ -5701,7 +6017,7 @@ static void gxp_show_skin(const gx_body *body, gx_skin *skin) {
     skin->vertex_range_count = s->range_count[0];
     skin->triangle_ranges = s->ranges[1];
     skin->triangle_range_count = s->range_count[1];
-    skin->epoch = body->epoch;
+    skin->epoch = body->cuts.epoch;
 }
 
 GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc, gx_skin *skin) {
@@ -5728,7 +6044,7 @@ static void gxp_move_vertices(const gx_body *body, double *positions) {
         double x[3];
         for (k = 0; k < 3; k++) x[k] = s->rest[3 * i + (size_t)k];
         for (n = 0; n < 4 && w[n] > 0; n++)
-            for (k = 0; k < 3; k++) x[k] += w[n] * body->displacement[3 * (size_t)copies[n] + (size_t)k];
+            for (k = 0; k < 3; k++) x[k] += w[n] * body->copies.displacement[3 * (size_t)copies[n] + (size_t)k];
         for (k = 0; k < 3; k++) positions[3 * i + (size_t)k] = x[k];
     }
 }
@@ -5779,7 +6095,7 @@ GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3],
 
 /* The deformed vertices as the ray sees them: two coordinates across it (a shear along the axis it follows most), and
    how far along it they lie, in lengths of direction. */
-static void gxp_look_along(const gx_body *body, const double origin[3], const double direction[3]) {
+static void gxp_shear_along(const gx_body *body, const double origin[3], const double direction[3]) {
     const gxp_skin *s = &body->skin;
     int axis = 0, k;
     size_t i;
@@ -5828,7 +6144,7 @@ static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double sh
     uint32_t i, k, n, count = 0;
     int j;
     hit->triangle = triangle;
-    hit->epoch = body->epoch;
+    hit->epoch = body->cuts.epoch;
     hit->fragment = s->fragment[triangle];
     hit->element = s->element[triangle];
     hit->surface = s->surface[triangle];
@@ -5845,7 +6161,7 @@ static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double sh
     for (j = 0; j < 3; j++) {
         hit->position[j] = hit->material[j];
         for (n = 0; n < 4; n++)
-            hit->position[j] += hit->weights[n] * body->displacement[3 * (size_t)hit->copies[n] + (size_t)j];
+            hit->position[j] += hit->weights[n] * body->copies.displacement[3 * (size_t)hit->copies[n] + (size_t)j];
     }
 }
 
@@ -5860,7 +6176,7 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
         if (!gxp_is_finite(origin[k]) || !gxp_is_finite(direction[k])) return GX_ERROR_NOT_FINITE;
     if (!(gxp_dot(direction, direction) > 0)) return GX_ERROR_ARGUMENT;
     s = &body->skin;
-    gxp_look_along(body, origin, direction);
+    gxp_shear_along(body, origin, direction);
     memset(hit, 0, sizeof *hit);
     for (t = 0; t < s->triangle_count; t++) {
         if (!gxp_meet_triangle(s, s->triangles + 3 * (size_t)t, share, &distance)) continue;
@@ -5916,9 +6232,9 @@ static gx_result gxp_check_volume(const gx_body *body, uint32_t element, double 
 static gx_result gxp_make_first_cells(gx_body *body, size_t *bad) {
     gx_result result = GX_OK;
     uint32_t e;
-    body->cell_count = body->leaf_count = body->element_count;
-    for (e = 0; e < body->element_count; e++) {
-        gxp_cell *cell = &body->cells[e];
+    body->cells.count = body->leaves.count = body->mesh.element_count;
+    for (e = 0; e < body->mesh.element_count; e++) {
+        gxp_cell *cell = &body->cells.data[e];
         memset(cell, 0, sizeof *cell);
         cell->element = cell->first_leaf = e;
         memcpy(cell->copies, body->complex->elements + 4 * (size_t)e, sizeof cell->copies);
@@ -5931,116 +6247,100 @@ static gx_result gxp_make_first_cells(gx_body *body, size_t *bad) {
             return result;
         }
         gxi_tet_mass(cell->volume, gxp_density(body, e), cell->mass);
-        memset(&body->leaves[e], 0, sizeof body->leaves[e]);
-        body->leaves[e].cell = e;
-        body->leaves[e].next = GXP_NONE;
+        memset(&body->leaves.data[e], 0, sizeof body->leaves.data[e]);
+        body->leaves.data[e].cell = e;
+        body->leaves.data[e].next = GXP_NONE;
     }
     return GX_OK;
 }
 
 /* A node that no element uses has no copy: copies are numbered over the used nodes. */
 static void gxp_make_first_copies(gx_body *body) {
+    gxp_copies *copies = &body->copies;
     uint32_t i, e;
     int k;
-    body->copy_count = 0;
-    for (i = 0; i < body->node_count; i++) {
-        if (body->node_start[i] == body->node_start[i + 1]) continue;
-        for (e = body->node_start[i]; e < body->node_start[i + 1]; e++) {
-            k = gxp_local_node(body, body->node_elements[e], i);
-            body->cells[body->node_elements[e]].copies[k] = body->copy_count;
+    copies->count = 0;
+    for (i = 0; i < body->mesh.node_count; i++) {
+        if (body->mesh.node_start[i] == body->mesh.node_start[i + 1]) continue;
+        for (e = body->mesh.node_start[i]; e < body->mesh.node_start[i + 1]; e++) {
+            k = gxp_local_node(body, body->mesh.node_elements[e], i);
+            body->cells.data[body->mesh.node_elements[e]].copies[k] = copies->count;
         }
-        body->copy_node[body->copy_count++] = i;
+        copies->node[copies->count++] = i;
     }
-    memset(body->displacement, 0, 3 * (size_t)body->copy_count * sizeof(double));
-    memset(body->velocity, 0, 3 * (size_t)body->copy_count * sizeof(double));
-    memset(body->rest_time, 0, body->copy_count * sizeof(double));
-    memset(body->held, 0, body->copy_count);
-    memset(body->copy_label, 0, body->copy_count * sizeof *body->copy_label);
-    memset(body->copy_before, 0, body->copy_count * sizeof *body->copy_before);
+    memset(copies->displacement, 0, 3 * (size_t)copies->count * sizeof(double));
+    memset(copies->velocity, 0, 3 * (size_t)copies->count * sizeof(double));
+    memset(copies->rest_time, 0, copies->count * sizeof(double));
+    memset(copies->held, 0, copies->count);
+    memset(copies->label, 0, copies->count * sizeof *copies->label);
+    memset(copies->before, 0, copies->count * sizeof *copies->before);
 }
 
-static void *gxp_table(gx_body *body, size_t count, size_t item) {
-    void *memory = gxp_allocate(&body->allocator, (count + 1) * item);
-    if (memory != NULL) memset(memory, 0, (count + 1) * item);
-    return memory;
-}
-
-/* The tables of fixed size; gx_body_destroy releases what there is. */
-static gx_result gxp_allocate_tables(gx_body *body) {
-    const size_t n = body->node_count, e = body->element_count;
-    body->positions = (double *)gxp_table(body, 3 * n, sizeof(double));
-    body->node_start = (uint32_t *)gxp_table(body, n, sizeof(uint32_t));
-    body->node_elements = (uint32_t *)gxp_table(body, 4 * e, sizeof(uint32_t));
-    body->node_pinched = (uint8_t *)gxp_table(body, n, 1);
-    body->edge_pinched = (uint8_t *)gxp_table(body, body->complex->mesh_edge_count, 1);
-    body->boxes = (gxp_box *)gxp_table(body, e, sizeof(gxp_box));
-    body->box_elements = (uint32_t *)gxp_table(body, e, sizeof(uint32_t));
-    body->element_materials = (uint32_t *)gxp_table(body, e, sizeof(uint32_t));
-    body->materials = (gx_material *)gxp_table(body, body->material_count, sizeof *body->materials);
-    return body->element_materials && body->materials && body->positions && body->node_start && body->node_elements &&
-                   body->node_pinched && body->edge_pinched && body->boxes && body->box_elements
-             ? GX_OK
-             : GX_ERROR_MEMORY;
+/* The arrays of fixed size, and the first rows of those that grow */
+static gx_result gxp_make_tables(gx_body *body, const gx_body_desc *desc) {
+    const size_t nodes = body->mesh.node_count;
+    gx_result result = gxp_make_rows(body, GXP_NODES, nodes + 1);
+    if (result == GX_OK) result = gxp_make_rows(body, GXP_ELEMENTS, (size_t)body->mesh.element_count + 1);
+    if (result == GX_OK) result = gxp_make_rows(body, GXP_EDGES, body->mesh.edge_count);
+    if (result == GX_OK) result = gxp_make_rows(body, GXP_MATERIALS, body->mesh.material_count);
+    if (result == GX_OK && desc->texture != NULL)
+        result = gxp_make_column(body, &gxp_node_columns[GXP_TEXTURE_COLUMN], nodes);
+    if (result == GX_OK) result = gxp_grow_rows(body, GXP_CELLS, body->mesh.element_count);
+    if (result == GX_OK) result = gxp_grow_rows(body, GXP_LEAVES, body->mesh.element_count);
+    return result == GX_OK ? gxp_grow_rows(body, GXP_COPIES, nodes) : result;
 }
 
 static gx_result gxp_create_solver(gx_body *body) {
     gxs_solver_desc solver;
     memset(&solver, 0, sizeof solver);
-    solver.allocator = body->allocator;
-    solver.jobs = body->jobs;
+    solver.allocator = body->config.allocator;
+    solver.jobs = body->config.jobs;
     return gxs_solver_create(&solver, &body->solver);
 }
 
 static void gxp_fill_materials(gx_body *body, const gx_body_desc *desc) {
     if (desc->materials != NULL)
-        memcpy(body->materials, desc->materials, body->material_count * sizeof *body->materials);
+        memcpy(body->mesh.materials, desc->materials, body->mesh.material_count * sizeof *body->mesh.materials);
     else {
-        body->materials->elastic.young = desc->young;
-        body->materials->elastic.poisson = desc->poisson;
-        body->materials->density = desc->density;
+        body->mesh.materials->elastic.young = desc->young;
+        body->mesh.materials->elastic.poisson = desc->poisson;
+        body->mesh.materials->density = desc->density;
     }
     if (desc->materials != NULL && desc->element_materials != NULL)
-        memcpy(body->element_materials, desc->element_materials, body->element_count * sizeof(uint32_t));
+        memcpy(body->mesh.element_materials, desc->element_materials, body->mesh.element_count * sizeof(uint32_t));
 }
 
 static uint64_t gxp_hash_mesh(const gx_body *body) {
-    const uint64_t hash =
-        gxp_hash_texture(gxp_hash_doubles(gxp_mix(body->node_count), body->positions, 3 * (size_t)body->node_count),
-                         body->texture, body->node_count);
+    const uint64_t hash = gxp_hash_texture(
+        gxp_hash_doubles(gxp_mix(body->mesh.node_count), body->mesh.positions, 3 * (size_t)body->mesh.node_count),
+        body->mesh.texture, body->mesh.node_count);
     return gxp_hash_doubles(
-        gxp_hash_words(gxp_hash_words(hash, body->complex->elements, 4 * (size_t)body->element_count),
-                       body->element_materials, body->element_count),
-        &body->support_below, 1);
+        gxp_hash_words(gxp_hash_words(hash, body->complex->elements, 4 * (size_t)body->mesh.element_count),
+                       body->mesh.element_materials, body->mesh.element_count),
+        &body->config.support_below, 1);
 }
 
 /* index: of the node or element to blame */
 static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc, size_t *index) {
+    gxp_mesh *mesh = &body->mesh;
     gx_result result = gxp_check_size(desc, index);
-    if (result == GX_OK) result = gxp_allocate_tables(body);
-    if (result == GX_OK && desc->texture != NULL) {
-        body->texture = (float *)gxp_table(body, 2 * (size_t)body->node_count, sizeof(float));
-        if (body->texture == NULL) result = GX_ERROR_MEMORY;
-    }
+    if (result == GX_OK) result = gxp_make_tables(body, desc);
     if (result == GX_OK) result = gxp_create_solver(body);
-    if (result == GX_OK) result = gxp_reserve_cells(body, body->element_count);
-    if (result == GX_OK)
-        result = gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, 0, &body->leaf_capacity,
-                             body->element_count);
-    if (result == GX_OK) result = gxp_reserve_copies(body, body->node_count);
     if (result != GX_OK) return result;
-    memcpy(body->positions, desc->positions, 3 * (size_t)body->node_count * sizeof(double));
+    memcpy(mesh->positions, desc->positions, 3 * (size_t)mesh->node_count * sizeof(double));
     gxp_fill_materials(body, desc);
-    if (body->texture != NULL) memcpy(body->texture, desc->texture, 2 * (size_t)body->node_count * sizeof(float));
+    if (mesh->texture != NULL) memcpy(mesh->texture, desc->texture, 2 * (size_t)mesh->node_count * sizeof(float));
     gxp_list_node_elements(body);
-    result = gxp_find_pinches(body);
+    result = gxp_find_pinched_nodes(body);
+    gxp_find_pinched_edges(body);
     if (result == GX_OK) result = gxp_make_first_cells(body, index);
     if (result != GX_OK) return result;
     gxp_make_first_copies(body);
     gxp_build_boxes(body);
-    body->view_stale = 1;
-    body->model = GXP_MODEL_STALE;
-    body->past = gxp_hash_mesh(body);
-    return gxp_first_look(body);
+    body->view.stale = 1;
+    body->model.state = GXP_MODEL_STALE;
+    body->cuts.hash = gxp_hash_mesh(body);
+    return gxp_first_snapshot(body);
 }
 
 static gx_result gxp_check_material(double young, double poisson, double density) {
@@ -6072,103 +6372,26 @@ static gx_result gxp_check_body_desc(const gx_body_desc *desc, size_t *index) {
     return result;
 }
 
-static void gxp_skin_free(gx_body *body) {
-    gxp_skin *s = &body->skin;
-    void *arrays[8];
-    size_t items[8];
-    gxp_vertex_columns(s, arrays, items);
-    gxp_release_columns(&body->allocator, arrays, items, GXP_VERTEX_COLUMNS, s->vertex_capacity);
-    gxp_triangle_columns(s, arrays, items);
-    gxp_release_columns(&body->allocator, arrays, items, GXP_TRIANGLE_COLUMNS, s->triangle_capacity);
-    gxp_release(&body->allocator, s->slots, s->slot_capacity * sizeof *s->slots);
-    gxp_release(&body->allocator, s->normals, (size_t)s->normal_capacity * 3 * sizeof *s->normals);
-    gxp_release(&body->allocator, s->positions, (size_t)s->position_capacity * 3 * sizeof *s->positions);
-    gxp_release(&body->allocator, s->group_normals, (size_t)s->group_normal_capacity * 3 * sizeof *s->group_normals);
-    gxp_release(&body->allocator, s->ranges[0], s->range_capacity[0] * sizeof **s->ranges);
-    gxp_release(&body->allocator, s->ranges[1], s->range_capacity[1] * sizeof **s->ranges);
-    gxp_words_free(body, &s->dirty);
-    gxp_words_free(body, &s->vertex_buckets);
-    gxp_words_free(body, &s->slot_buckets);
-    gxp_words_free(body, &s->first);
-    gxp_words_free(body, &s->boundary);
-    gxp_words_free(body, &s->groups);
-    gxp_words_free(body, &s->changed[0]);
-    gxp_words_free(body, &s->changed[1]);
+/* The caller's part of a description, with defaults in the place of zeros */
+static void gxp_set_config(gxp_config *config, const gx_body_desc *desc) {
+    config->allocator = desc->allocator;
+    config->jobs = desc->jobs;
+    config->clock = desc->clock;
+    config->clock_user = desc->clock_user;
+    config->support_below = desc->support_below;
+    config->follow_below = desc->support_below > 0 ? desc->support_below : GXP_SUPPORT;
+    config->speck_below = desc->support_below > 0 ? desc->support_below : GXP_SPECK;
+    config->speck_reach = desc->support_below > 0 ? 0 : GXP_SPECK_REACH;
 }
 
 GXFEM_API void gx_body_destroy(gx_body *body) {
     gx_allocator a;
-    size_t n, e, i;
+    uint32_t t;
     if (body == NULL) return;
-    a = body->allocator;
-    n = body->node_count;
-    e = body->element_count;
-    gxp_release(&a, body->positions, (3 * n + 1) * sizeof(double));
-    gxp_release(&a, body->node_start, (n + 1) * sizeof(uint32_t));
-    gxp_release(&a, body->node_elements, (4 * e + 1) * sizeof(uint32_t));
-    gxp_release(&a, body->node_pinched, n + 1);
-    if (body->complex) gxp_release(&a, body->edge_pinched, (size_t)body->complex->mesh_edge_count + 1);
-    gxp_release(&a, body->boxes, (e + 1) * sizeof(gxp_box));
-    gxp_release(&a, body->box_elements, (e + 1) * sizeof(uint32_t));
-    gxp_release(&a, body->cells, body->cell_capacity * sizeof *body->cells);
-    gxp_release(&a, body->cell_stamp, body->cell_stamp_capacity * sizeof *body->cell_stamp);
-    gxp_release(&a, body->cell_saved, body->cell_saved_capacity * sizeof *body->cell_saved);
-    gxp_release(&a, body->cell_fresh, body->cell_fresh_capacity * sizeof *body->cell_fresh);
-    gxp_release(&a, body->leaves, body->leaf_capacity * sizeof *body->leaves);
-    gxp_release(&a, body->copy_node, body->copy_capacity * sizeof *body->copy_node);
-    gxp_release(&a, body->displacement, (size_t)body->displacement_capacity * 3 * sizeof(double));
-    gxp_release(&a, body->velocity, (size_t)body->velocity_capacity * 3 * sizeof(double));
-    gxp_release(&a, body->held, body->held_capacity);
-    gxp_release(&a, body->rest_time, body->rest_time_capacity * sizeof(double));
-    for (i = 0; i < 4; i++) gxp_release(&a, body->history[i], (size_t)body->history_capacity[i] * 3 * sizeof(double));
-    gxp_release(&a, body->materials, ((size_t)body->material_count + 1) * sizeof *body->materials);
-    gxp_release(&a, body->element_materials, (e + 1) * sizeof(uint32_t));
-    gxp_release(&a, body->copy_label, body->copy_label_capacity * sizeof *body->copy_label);
-    gxp_release(&a, body->copy_before, body->copy_before_capacity * sizeof *body->copy_before);
-    gxp_words_free(body, &body->changed);
-    gxp_words_free(body, &body->thin);
-    gxp_words_free(body, &body->fragment_ids);
-    gxp_words_free(body, &body->fragment_origins);
-    gxp_words_free(body, &body->fragment_changes);
-    gxp_words_free(body, &body->removed_ids);
+    a = body->config.allocator;
+    for (t = 0; t < GXP_TABLES; t++) gxp_release_columns(body, gxp_tables[t].columns, gxp_tables[t].column_count);
+    gxp_release_columns(body, gxp_lists, sizeof gxp_lists / sizeof *gxp_lists);
     gxp_release_model(body);
-    gxp_release(&a, body->regions, body->region_capacity * sizeof *body->regions);
-    gxp_release(&a, body->saved_cells, body->saved_cell_capacity * sizeof *body->saved_cells);
-    gxp_release(&a, body->saved_leaves, body->saved_leaf_capacity * sizeof *body->saved_leaves);
-    gxp_release(&a, body->pairs.data, body->pairs.capacity * sizeof *body->pairs.data);
-    gxp_release(&a, body->links.data, body->links.capacity * sizeof *body->links.data);
-    gxp_words_free(body, &body->link_first);
-    gxp_release(&a, body->cell_volume, body->cell_volume_capacity * sizeof(double));
-    gxp_release(&a, body->fragments, (size_t)body->fragment_capacity * GXP_FRAGMENT_ARRAYS * sizeof(double));
-    gxp_release(&a, body->texture, (2 * n + 1) * sizeof(float));
-    gxp_release(&a, body->surfaces, body->surface_capacity * sizeof *body->surfaces);
-    gxp_release(&a, body->maps, (size_t)body->map_capacity * 8 * sizeof(double));
-    gxp_skin_free(body);
-    gxp_release(&a, body->lambdas, (size_t)body->lambda_capacity * 4 * sizeof(double));
-    {
-        gxp_words *words[20];
-        words[0] = &body->view_cells;
-        words[1] = &body->view_fragments;
-        words[2] = &body->copy_fragment;
-        words[3] = &body->cell_element;
-        words[4] = &body->cell_copies;
-        words[5] = &body->fragment_number;
-        words[6] = &body->point_slot;
-        words[7] = &body->triangles;
-        words[8] = &body->touched;
-        words[9] = &body->nodes;
-        words[10] = &body->queue;
-        words[11] = &body->seeds;
-        words[12] = &body->faces;
-        words[13] = &body->fresh;
-        words[14] = &body->list;
-        words[15] = &body->removed;
-        words[16] = &body->dead;
-        words[17] = &body->pinches;
-        words[18] = &body->splits;
-        words[19] = &body->pieces;
-        for (i = 0; i < 20; i++) gxp_words_free(body, words[i]);
-    }
     gxs_solver_destroy(body->solver);
     gxb_complex_destroy(body->complex);
     gxp_release(&a, body, sizeof *body);
@@ -6185,15 +6408,7 @@ GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_f
     body = (gx_body *)gxp_allocate(&desc->allocator, sizeof *body);
     if (body == NULL) return gxp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX, SIZE_MAX);
     memset(body, 0, sizeof *body);
-    body->allocator = desc->allocator;
-    body->clock = desc->clock;
-    body->clock_user = desc->clock_user;
-    body->jobs = desc->jobs;
-    body->material_count = desc->materials != NULL ? (uint32_t)desc->material_count : 1;
-    body->support_below = desc->support_below;
-    body->follow_below = desc->support_below > 0 ? desc->support_below : GXP_SUPPORT;
-    body->point_below = desc->support_below > 0 ? desc->support_below : GXP_SPECK;
-    body->crumb_reach = desc->support_below > 0 ? 0 : GXP_CRUMB;
+    gxp_set_config(&body->config, desc);
     mesh.positions = desc->positions;
     mesh.node_count = desc->node_count;
     mesh.elements = desc->elements;
@@ -6203,8 +6418,10 @@ GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_f
         gx_body_destroy(body);
         return result;
     }
-    body->node_count = body->complex->node_count;
-    body->element_count = body->complex->element_count;
+    body->mesh.node_count = body->complex->node_count;
+    body->mesh.element_count = body->complex->element_count;
+    body->mesh.edge_count = body->complex->mesh_edge_count;
+    body->mesh.material_count = desc->materials != NULL ? (uint32_t)desc->material_count : 1;
     index = SIZE_MAX;
     result = gxp_fill_body(body, desc, &index);
     if (result != GX_OK) {
@@ -6222,34 +6439,34 @@ GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_f
 #define GXP_ACROSS_WALL 0xfffffff1u /* neighbour across a wall on a face */
 
 /* Appends to pairs (face or kind, neighbour) for everything that a cell borders on. */
-static gx_result gxp_push_neighbours(gx_body *body, uint32_t cell) {
+static gx_result gxp_push_neighbours(gx_body *body, uint32_t cell, gxp_keys *pairs) {
     gxb_complex *cx = body->complex;
-    const uint32_t element = body->cells[cell].element;
+    const uint32_t element = body->cells.data[cell].element;
     uint32_t leaf, first, count, i;
     gx_result result = gxb_complex_open_element(cx, element);
-    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next) {
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
+         leaf = body->leaves.data[leaf].next) {
         result = gxb_leaf_facets(cx, leaf, &first, &count);
         for (i = 0; i < count && result == GX_OK; i++) {
             const gxb_facet *f = &cx->facets[cx->pool[first + i]];
             const uint32_t other = f->leaf[f->leaf[0] == leaf];
-            if (!gxp_is_kept(body, other) || body->leaves[other].cell == cell) continue;
-            result = gxp_push_key(body, &body->pairs,
+            if (!gxp_is_kept(body, other) || body->leaves.data[other].cell == cell) continue;
+            result = gxp_push_key(body, pairs,
                                   f->face == GXB_NONE ? GXP_BESIDE_WALL
                                   : f->wall           ? GXP_ACROSS_WALL
                                                       : f->face,
-                                  body->leaves[other].cell);
+                                  body->leaves.data[other].cell);
         }
     }
     return result;
 }
 
-static uint64_t gxp_hash_neighbours(const gx_body *body, const uint64_t *name) {
+static uint64_t gxp_hash_neighbours(const gxp_keys *pairs, const uint64_t *name) {
     uint64_t sum = 0;
     uint32_t i;
-    for (i = 0; i < body->pairs.count; i++) {
-        const uint64_t pair = body->pairs.data[i];
-        if (i == 0 || pair != body->pairs.data[i - 1])
-            sum += gxp_mix(name[GXP_SECOND(pair)] ^ gxp_mix(GXP_FIRST(pair)));
+    for (i = 0; i < pairs->count; i++) {
+        const uint64_t pair = pairs->data[i];
+        if (i == 0 || pair != pairs->data[i - 1]) sum += gxp_mix(name[GXP_SECOND(pair)] ^ gxp_mix(GXP_FIRST(pair)));
     }
     return sum;
 }
@@ -6258,48 +6475,52 @@ static uint64_t gxp_hash_neighbours(const gx_body *body, const uint64_t *name) {
 static gx_result gxp_first_name(gx_body *body, uint32_t cell, uint64_t *name) {
     uint32_t leaf, i, mask = 0;
     gx_result result = GX_OK;
-    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next) {
-        result = gxp_leaf_points(body, leaf);
-        for (i = 0; i < body->list.count; i++) {
-            const int k = gxp_local_node(body, body->cells[cell].element, body->list.data[i]);
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
+         leaf = body->leaves.data[leaf].next) {
+        result = gxp_collect_leaf_points(body, leaf);
+        for (i = 0; i < body->scratch.leaf_points.count; i++) {
+            const int k = gxp_local_node(body, body->cells.data[cell].element, body->scratch.leaf_points.data[i]);
             if (k >= 0) mask |= 1u << k;
         }
     }
-    *name = gxp_mix((uint64_t)body->cells[cell].element << 4 | mask);
+    *name = gxp_mix((uint64_t)body->cells.data[cell].element << 4 | mask);
     return result;
 }
 
 /* Three rounds in which each cell's name takes in its neighbours' names (Weisfeiler-Lehman); sums do not depend on any
  * order. */
 static gx_result gxp_name_cells(gx_body *body, uint64_t *name, uint64_t *next) {
+    const gxp_view *view = &body->view;
+    gxp_keys pairs = {NULL, 0, 0};
     uint32_t i, round;
     gx_result result = GX_OK;
-    for (i = 0; i < body->view_cells.count && result == GX_OK; i++)
-        result = gxp_first_name(body, body->view_cells.data[i], &name[body->view_cells.data[i]]);
+    for (i = 0; i < view->count && result == GX_OK; i++)
+        result = gxp_first_name(body, view->slot[i], &name[view->slot[i]]);
     for (round = 0; round < 3 && result == GX_OK; round++) {
-        for (i = 0; i < body->view_cells.count && result == GX_OK; i++) {
-            const uint32_t cell = body->view_cells.data[i];
-            body->pairs.count = 0;
-            result = gxp_push_neighbours(body, cell);
-            if (result == GX_OK) result = gxp_sort_keys(body, &body->pairs, 0, body->pairs.count);
-            next[cell] = gxp_mix(name[cell] * 3 + gxp_hash_neighbours(body, name));
+        for (i = 0; i < view->count && result == GX_OK; i++) {
+            const uint32_t cell = view->slot[i];
+            pairs.count = 0;
+            result = gxp_push_neighbours(body, cell, &pairs);
+            if (result == GX_OK) result = gxp_sort_keys(body, &pairs, 0, pairs.count);
+            next[cell] = gxp_mix(name[cell] * 3 + gxp_hash_neighbours(&pairs, name));
         }
-        memcpy(name, next, body->cell_count * sizeof *name);
+        memcpy(name, next, body->cells.count * sizeof *name);
     }
+    gxp_release(&body->config.allocator, pairs.data, pairs.capacity * sizeof *pairs.data);
     return result;
 }
 
 /* Cells with their names, the copies they share, the counts. */
 static uint64_t gxp_hash_names(const gx_body *body, const uint64_t *name, uint64_t *copies) {
-    uint64_t sum = gxp_mix(body->copy_count) + gxp_mix((uint64_t)body->fragment_count << 32);
+    uint64_t sum = gxp_mix(body->copies.count) + gxp_mix((uint64_t)body->view.fragment_count << 32);
     uint32_t i, k;
-    memset(copies, 0, body->copy_count * sizeof *copies);
-    for (i = 0; i < body->view_cells.count; i++) {
-        const uint32_t cell = body->view_cells.data[i];
+    memset(copies, 0, body->copies.count * sizeof *copies);
+    for (i = 0; i < body->view.count; i++) {
+        const uint32_t cell = body->view.slot[i];
         sum += gxp_mix(name[cell]);
-        for (k = 0; k < 4; k++) copies[body->cells[cell].copies[k]] += gxp_mix(name[cell] + k);
+        for (k = 0; k < 4; k++) copies[body->cells.data[cell].copies[k]] += gxp_mix(name[cell] + k);
     }
-    for (i = 0; i < body->copy_count; i++) sum += gxp_mix(copies[i] ^ gxp_mix(body->copy_node[i]));
+    for (i = 0; i < body->copies.count; i++) sum += gxp_mix(copies[i] ^ gxp_mix(body->copies.node[i]));
     return sum;
 }
 
@@ -6311,44 +6532,33 @@ GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_result *result) {
         if (result != NULL) *result = GX_ERROR_ARGUMENT;
         return 0;
     }
-    words = 2 * (size_t)body->cell_count + body->copy_count;
+    words = 2 * (size_t)body->cells.count + body->copies.count;
     r = gxp_update_view(body);
-    names = (uint64_t *)gxp_allocate(&body->allocator, words * sizeof *names);
+    names = (uint64_t *)gxp_allocate(&body->config.allocator, words * sizeof *names);
     if (r == GX_OK && names == NULL) r = GX_ERROR_MEMORY;
     if (r == GX_OK) {
         memset(names, 0, words * sizeof *names);
-        r = gxp_name_cells(body, names, names + body->cell_count);
-        if (r == GX_OK) hash = gxp_hash_names(body, names, names + 2 * (size_t)body->cell_count);
+        r = gxp_name_cells(body, names, names + body->cells.count);
+        if (r == GX_OK) hash = gxp_hash_names(body, names, names + 2 * (size_t)body->cells.count);
     }
-    gxp_release(&body->allocator, names, words * sizeof *names);
+    gxp_release(&body->config.allocator, names, words * sizeof *names);
     if (result != NULL) *result = r;
     return r == GX_OK ? hash : 0;
 }
 
 GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
-    uint64_t hash = gxp_mix(body->cell_count);
-    uint32_t i, k;
-    for (i = 0; i < body->cell_count; i++) {
-        const gxp_cell *c = &body->cells[i];
-        hash = gxp_mix(hash ^ c->element ^ (uint64_t)c->kept << 32);
-        for (k = 0; k < 4 && c->kept; k++) hash = gxp_mix(hash ^ c->copies[k]);
-        if (c->kept) hash = gxp_hash_doubles(gxp_hash_doubles(hash, &c->volume, 1), c->mass, 10);
+    const uint32_t use = GXP_TOPOLOGY | GXP_STATE | (body->copies.previous_dt > 0 ? (uint32_t)GXP_HISTORY : 0);
+    uint64_t hash = gxp_mix(body->cuts.epoch ^ (uint64_t)body->snapshot.next_id << 32);
+    uint32_t t, i;
+    for (t = 0; t < GXP_TABLES; t++) {
+        const size_t rows = gxp_count(body, t);
+        for (i = 0; i < gxp_tables[t].column_count; i++) {
+            const gxp_column *column = &gxp_tables[t].columns[i];
+            if (column->use & use)
+                hash = gxp_hash_bytes(hash, (const unsigned char *)gxp_array_at(body, column), rows * column->size);
+        }
     }
-    for (i = 0; i < body->complex->leaf_count; i++)
-        hash = gxp_mix(hash ^ body->leaves[i].cell ^ (uint64_t)body->complex->leaves[i].removed << 32);
-    hash = gxp_mix(gxp_mix(hash ^ body->copy_count) ^ body->epoch);
-    for (i = 0; i < body->copy_count; i++) hash = gxp_mix(hash ^ body->copy_node[i]);
-    hash = gxp_hash_doubles(hash, body->displacement, 3 * (size_t)body->copy_count);
-    hash = gxp_hash_doubles(hash, body->velocity, 3 * (size_t)body->copy_count);
-    hash = gxp_hash_doubles(hash, body->rest_time, body->copy_count);
-    for (i = 0; i < body->copy_count; i++) hash = gxp_mix(hash ^ body->copy_label[i]);
-    for (i = 0; i < body->fragment_ids.count; i++) hash = gxp_mix(hash ^ body->fragment_ids.data[i]);
-    hash = gxp_mix(hash ^ body->next_id);
-    for (i = 0; i < 2 && body->previous_dt > 0; i++)
-        hash = gxp_hash_doubles(hash, body->history[i], 3 * (size_t)body->copy_count);
-    for (i = 0; i < body->region_count; i++)
-        hash = gxp_hash_doubles(gxp_mix(hash ^ body->regions[i].axis ^ (uint64_t)(body->regions[i].side + 1) << 8),
-                                &body->regions[i].value, 1);
+    for (i = 0; i < body->complex->leaf_count; i++) hash = gxp_mix(hash ^ body->complex->leaves[i].removed);
     return hash;
 }
 
@@ -6422,17 +6632,6 @@ static gxp_head gxp_make_head(uint64_t size, uint64_t checksum) {
     return head;
 }
 
-static uint64_t gxp_checksum(const unsigned char *bytes, size_t count) {
-    uint64_t hash = gxp_mix(count), word;
-    for (; count >= sizeof word; count -= sizeof word, bytes += sizeof word) {
-        memcpy(&word, bytes, sizeof word);
-        hash = gxp_mix(hash ^ word);
-    }
-    word = 0;
-    memcpy(&word, bytes, count);
-    return gxp_mix(hash ^ word);
-}
-
 static gx_result gxp_check_head(gxb_stream *s) {
     gxp_head head, own;
     gxp_pass_head(s, &head);
@@ -6441,7 +6640,7 @@ static gx_result gxp_check_head(gxb_stream *s) {
         head.order != own.order || memcmp(&head.width, &own.width, sizeof own.width) != 0)
         return GX_ERROR_FORMAT;
     if (s->result != GX_OK || head.size != s->size) return GX_ERROR_DAMAGED;
-    return head.checksum == gxp_checksum(s->in + s->at, s->size - s->at) ? GX_OK : GX_ERROR_DAMAGED;
+    return head.checksum == gxp_hash_bytes(0, s->in + s->at, s->size - s->at) ? GX_OK : GX_ERROR_DAMAGED;
 }
 
 static void gxp_pass_material(gxb_stream *s, gx_material *m) {
@@ -6455,7 +6654,7 @@ static void gxp_pass_material(gxb_stream *s, gx_material *m) {
     gxb_stream_pass(s, &m->density, 1, sizeof(double));
 }
 
-typedef struct gxp_mesh {
+typedef struct gxp_saved_mesh {
     uint32_t node_count, element_count, material_count;
     double support_below;
     uint32_t textured; /* 1: there is a texture */
@@ -6463,9 +6662,9 @@ typedef struct gxp_mesh {
     float *texture;
     uint32_t *elements, *element_materials;
     gx_material *materials;
-} gxp_mesh;
+} gxp_saved_mesh;
 
-static void gxp_pass_sizes(gxb_stream *s, gxp_mesh *mesh) {
+static void gxp_pass_sizes(gxb_stream *s, gxp_saved_mesh *mesh) {
     gxp_pass_word(s, &mesh->node_count);
     gxp_pass_word(s, &mesh->element_count);
     gxp_pass_word(s, &mesh->material_count);
@@ -6473,7 +6672,7 @@ static void gxp_pass_sizes(gxb_stream *s, gxp_mesh *mesh) {
     gxb_stream_pass(s, &mesh->support_below, 1, sizeof mesh->support_below);
 }
 
-static void gxp_pass_mesh(gxb_stream *s, gxp_mesh *mesh) {
+static void gxp_pass_mesh(gxb_stream *s, gxp_saved_mesh *mesh) {
     uint32_t i;
     gxb_stream_pass(s, mesh->positions, 3 * (size_t)mesh->node_count, sizeof(double));
     if (mesh->textured) gxb_stream_pass(s, mesh->texture, 2 * (size_t)mesh->node_count, sizeof(float));
@@ -6483,23 +6682,23 @@ static void gxp_pass_mesh(gxb_stream *s, gxp_mesh *mesh) {
 }
 
 static void gxp_save_mesh(gxb_stream *s, gx_body *body) {
-    gxp_mesh mesh;
-    mesh.node_count = body->node_count;
-    mesh.element_count = body->element_count;
-    mesh.material_count = body->material_count;
-    mesh.support_below = body->support_below;
-    mesh.positions = body->positions;
+    gxp_saved_mesh mesh;
+    mesh.node_count = body->mesh.node_count;
+    mesh.element_count = body->mesh.element_count;
+    mesh.material_count = body->mesh.material_count;
+    mesh.support_below = body->config.support_below;
+    mesh.positions = body->mesh.positions;
     mesh.elements = body->complex->elements;
-    mesh.texture = body->texture;
-    mesh.textured = body->texture != NULL;
-    mesh.element_materials = body->element_materials;
-    mesh.materials = body->materials;
+    mesh.texture = body->mesh.texture;
+    mesh.textured = body->mesh.texture != NULL;
+    mesh.element_materials = body->mesh.element_materials;
+    mesh.materials = body->mesh.materials;
     gxp_pass_sizes(s, &mesh);
     gxp_pass_mesh(s, &mesh);
 }
 
 /* Energies can't be saved: they are given again. *material: the one that lacks its own */
-static gx_result gxp_give_energies(gxp_mesh *mesh, const gx_body_desc *desc, size_t *material) {
+static gx_result gxp_give_energies(gxp_saved_mesh *mesh, const gx_body_desc *desc, size_t *material) {
     uint32_t i;
     for (i = 0; i < mesh->material_count; i++) {
         gxs_material *m = &mesh->materials[i].elastic;
@@ -6515,7 +6714,8 @@ static gx_result gxp_give_energies(gxp_mesh *mesh, const gx_body_desc *desc, siz
 }
 
 /* A body of the mesh, not cut yet. */
-static void gxp_create_again(gxb_stream *s, const gx_body_desc *given, gxp_mesh *mesh, gx_body **body, size_t *index) {
+static void gxp_create_again(gxb_stream *s, const gx_body_desc *given, gxp_saved_mesh *mesh, gx_body **body,
+                             size_t *index) {
     gx_body_desc desc;
     gx_result result;
     gxp_pass_mesh(s, mesh);
@@ -6546,7 +6746,7 @@ static void gxp_create_again(gxb_stream *s, const gx_body_desc *given, gxp_mesh 
 static void gxp_load_mesh(gxb_stream *s, const gx_body_desc *desc, gx_body **body, size_t *index) {
     const gx_allocator *a = &desc->allocator;
     size_t positions, texture, elements, element_materials, materials;
-    gxp_mesh mesh;
+    gxp_saved_mesh mesh;
     memset(&mesh, 0, sizeof mesh);
     gxp_pass_sizes(s, &mesh);
     gxb_stream_has(s, mesh.node_count, 3 * sizeof(double));
@@ -6577,40 +6777,64 @@ static void gxp_load_mesh(gxb_stream *s, const gx_body_desc *desc, gx_body **bod
     gxp_release(a, mesh.materials, materials);
 }
 
-static void gxp_pass_cells(gxb_stream *s, gx_body *body) {
-    uint32_t i;
-    for (i = 0; i < body->cell_count; i++) {
-        gxp_cell *c = &body->cells[i];
-        gxp_pass_word(s, &c->element);
-        gxb_stream_pass(s, c->copies, 4, sizeof *c->copies);
-        gxp_pass_word(s, &c->first_leaf);
-        gxp_pass_word(s, &c->next);
-        gxp_pass_word(s, &c->kept);
-        gxb_stream_pass(s, &c->volume, 1, sizeof c->volume);
-        gxb_stream_pass(s, c->mass, 10, sizeof *c->mass);
+/* Passes the number of rows of each table with columns of that use. */
+static void gxp_pass_counts(gxb_stream *s, uint32_t use, uint32_t counts[GXP_TABLES]) {
+    uint32_t t;
+    for (t = 0; t < GXP_TABLES; t++)
+        if (gxp_row_size(t, use) > 0) gxp_pass_word(s, &counts[t]);
+}
+
+static void gxp_count_rows(const gx_body *body, uint32_t counts[GXP_TABLES]) {
+    uint32_t t;
+    for (t = 0; t < GXP_TABLES; t++) counts[t] = gxp_count(body, t);
+}
+
+/* Reading: are there bytes for these rows, and may they be so many? */
+static void gxp_check_counts(gxb_stream *s, uint32_t use, const uint32_t counts[GXP_TABLES]) {
+    uint32_t t;
+    for (t = 0; t < GXP_TABLES; t++) {
+        if (gxp_row_size(t, use) == 0) continue;
+        gxb_stream_has(s, counts[t], gxp_row_size(t, use));
+        gxp_require_true(s, counts[t] <= INT32_MAX);
     }
-    for (i = 0; i < body->leaf_count; i++) {
-        gxp_pass_word(s, &body->leaves[i].cell);
-        gxp_pass_word(s, &body->leaves[i].next);
+}
+
+/* Room for these rows; the present ones stay. */
+static gx_result gxp_rows_room(gx_body *body, uint32_t use, const uint32_t counts[GXP_TABLES]) {
+    uint32_t t;
+    gx_result result = GX_OK;
+    for (t = 0; t < GXP_TABLES && result == GX_OK; t++)
+        if (gxp_row_size(t, use) > 0 && counts[t] > gxp_count(body, t))
+            result = gxp_grow_rows(body, t, counts[t] - gxp_count(body, t));
+    return result;
+}
+
+/* Passes the columns of that use. Where they are read there is room, and the tables get that many rows. */
+static void gxp_pass_rows(gxb_stream *s, gx_body *body, uint32_t use, const uint32_t counts[GXP_TABLES]) {
+    uint32_t t, i;
+    for (t = 0; t < GXP_TABLES; t++) {
+        if (gxp_row_size(t, use) == 0) continue;
+        if (s->in != NULL) *gxp_count_at(body, t) = counts[t];
+        for (i = 0; i < gxp_tables[t].column_count; i++) {
+            const gxp_column *column = &gxp_tables[t].columns[i];
+            if (column->use & use) gxb_stream_pass(s, gxp_array_at(body, column), counts[t], column->size);
+        }
     }
-    gxb_stream_pass(s, body->copy_node, body->copy_count, sizeof *body->copy_node);
-    gxp_pass_word(s, &body->label_count);
-    for (i = 0; i < body->surface_count; i++) {
-        gxp_pass_word(s, &body->surfaces[i].label);
-        gxp_pass_word(s, &body->surfaces[i].map);
-    }
-    gxb_stream_pass(s, body->maps, body->map_count, 8 * sizeof *body->maps);
-    gxb_stream_pass(s, &body->past, 1, sizeof body->past);
-    gxb_stream_pass(s, &body->epoch, 1, sizeof body->epoch);
+}
+
+static void gxp_pass_topology(gxb_stream *s, gx_body *body, const uint32_t counts[GXP_TABLES]) {
+    gxp_pass_rows(s, body, GXP_TOPOLOGY, counts);
+    gxp_pass_word(s, &body->cuts.label_count);
+    gxb_stream_pass(s, &body->cuts.hash, 1, sizeof body->cuts.hash);
+    gxb_stream_pass(s, &body->cuts.epoch, 1, sizeof body->cuts.epoch);
 }
 
 static void gxp_save_topology(gxb_stream *s, gx_body *body) {
+    uint32_t counts[GXP_TABLES];
+    gxp_count_rows(body, counts);
     gxb_complex_save(body->complex, s);
-    gxp_pass_word(s, &body->cell_count);
-    gxp_pass_word(s, &body->copy_count);
-    gxp_pass_word(s, &body->surface_count);
-    gxp_pass_word(s, &body->map_count);
-    gxp_pass_cells(s, body);
+    gxp_pass_counts(s, GXP_TOPOLOGY, counts);
+    gxp_pass_topology(s, body, counts);
 }
 
 /* Marks, one byte for each cell, leaf and copy: it has its place. */
@@ -6621,16 +6845,16 @@ typedef struct gxp_places {
 /* The cell's leaves are its own, kept, of its element and of no other cell; its copies are those of its element's
    nodes. It is no larger than the element; twice allows for rounding. */
 static void gxp_check_cell(gxb_stream *s, gx_body *body, uint32_t cell, const gxp_places *seen) {
-    gxp_cell *c = &body->cells[cell];
+    gxp_cell *c = &body->cells.data[cell];
     const uint32_t *node = body->complex->elements + 4 * (size_t)c->element;
     const double density = gxp_density(body, c->element), most = 2 * gxp_element_volume(body, c->element);
     uint32_t leaf, k;
     gxp_require_true(s, c->kept <= 1 && (c->first_leaf != GXP_NONE) == (c->kept != 0));
-    for (leaf = c->first_leaf; leaf != GXP_NONE && s->result == GX_OK; leaf = body->leaves[leaf].next) {
-        gxp_require_true(s, leaf < body->leaf_count && !seen->leaf[leaf < body->leaf_count ? leaf : 0]);
+    for (leaf = c->first_leaf; leaf != GXP_NONE && s->result == GX_OK; leaf = body->leaves.data[leaf].next) {
+        gxp_require_true(s, leaf < body->leaves.count && !seen->leaf[leaf < body->leaves.count ? leaf : 0]);
         if (s->result != GX_OK) return;
         seen->leaf[leaf] = 1;
-        gxp_require_true(s, body->leaves[leaf].cell == cell && gxp_is_kept(body, leaf) &&
+        gxp_require_true(s, body->leaves.data[leaf].cell == cell && gxp_is_kept(body, leaf) &&
                                 body->complex->leaves[leaf].element == c->element);
     }
     gxp_require_true(s, gxp_is_finite(c->volume) && c->volume >= 0 && c->volume <= most);
@@ -6640,8 +6864,8 @@ static void gxp_check_cell(gxb_stream *s, gx_body *body, uint32_t cell, const gx
             gxp_require_true(s, c->copies[k] == GXP_NONE);
             continue;
         }
-        gxp_require_true(s, c->copies[k] < body->copy_count &&
-                                body->copy_node[c->copies[k] < body->copy_count ? c->copies[k] : 0] == node[k]);
+        gxp_require_true(s, c->copies[k] < body->copies.count &&
+                                body->copies.node[c->copies[k] < body->copies.count ? c->copies[k] : 0] == node[k]);
         if (s->result == GX_OK) seen->copy[c->copies[k]] = 1;
     }
 }
@@ -6649,172 +6873,117 @@ static void gxp_check_cell(gxb_stream *s, gx_body *body, uint32_t cell, const gx
 /* Every cell is in its element's list once, every kept leaf in a kept cell, every copy in use. */
 static void gxp_check_lists(gxb_stream *s, gx_body *body, const gxp_places *seen) {
     uint32_t e, i, cell;
-    for (e = 0; e < body->element_count; e++)
-        for (cell = e; cell != GXP_NONE && s->result == GX_OK; cell = body->cells[cell].next) {
-            gxp_require_true(s, cell < body->cell_count && !seen->cell[cell < body->cell_count ? cell : 0]);
+    for (e = 0; e < body->mesh.element_count; e++)
+        for (cell = e; cell != GXP_NONE && s->result == GX_OK; cell = body->cells.data[cell].next) {
+            gxp_require_true(s, cell < body->cells.count && !seen->cell[cell < body->cells.count ? cell : 0]);
             if (s->result != GX_OK) return;
             seen->cell[cell] = 1;
-            gxp_require_true(s, body->cells[cell].element == e);
+            gxp_require_true(s, body->cells.data[cell].element == e);
             if (s->result == GX_OK) gxp_check_cell(s, body, cell, seen);
         }
-    for (i = 0; i < body->cell_count; i++) gxp_require_true(s, seen->cell[i]);
-    for (i = 0; i < body->copy_count; i++) gxp_require_true(s, seen->copy[i]);
-    for (i = 0; i < body->leaf_count; i++) {
-        gxp_require_true(s,
-                         body->leaves[i].cell < body->cell_count && seen->leaf[i] == !body->complex->leaves[i].removed);
-        gxp_require_true(s, seen->leaf[i] || body->leaves[i].next == GXP_NONE);
+    for (i = 0; i < body->cells.count; i++) gxp_require_true(s, seen->cell[i]);
+    for (i = 0; i < body->copies.count; i++) gxp_require_true(s, seen->copy[i]);
+    for (i = 0; i < body->leaves.count; i++) {
+        gxp_require_true(s, body->leaves.data[i].cell < body->cells.count &&
+                                seen->leaf[i] == !body->complex->leaves[i].removed);
+        gxp_require_true(s, seen->leaf[i] || body->leaves.data[i].next == GXP_NONE);
     }
     for (i = 0; i < body->complex->label_count; i++)
-        gxp_require_true(s, body->complex->labels[i].triangle < body->label_count);
+        gxp_require_true(s, body->complex->labels[i].triangle < body->cuts.label_count);
 }
 
 /* Surfaces in the order of their labels, each with maps for all of its triangles or for none. */
 static void gxp_check_surfaces(gxb_stream *s, const gx_body *body) {
     uint32_t i;
     size_t k;
-    for (i = 0; i < body->surface_count; i++) {
-        const gxp_surface_record *r = &body->surfaces[i];
-        const uint32_t end = i + 1 < body->surface_count ? r[1].label : body->label_count;
+    for (i = 0; i < body->cuts.surface_count; i++) {
+        const gxp_surface_record *r = &body->cuts.surfaces[i];
+        const uint32_t end = i + 1 < body->cuts.surface_count ? r[1].label : body->cuts.label_count;
         gxp_require_true(s, r->label < end && (i > 0 || r->label == 0));
         gxp_require_true(s, r->map == GXP_NONE ||
-                                (r->map <= body->map_count && end - r->label <= body->map_count - r->map));
+                                (r->map <= body->cuts.map_count && end - r->label <= body->cuts.map_count - r->map));
     }
-    gxp_require_true(s, body->surface_count > 0 || body->label_count == 0);
-    for (k = 0; k < 8 * (size_t)body->map_count; k++) gxp_require_true(s, gxp_is_finite(body->maps[k]));
+    gxp_require_true(s, body->cuts.surface_count > 0 || body->cuts.label_count == 0);
+    for (k = 0; k < 8 * (size_t)body->cuts.map_count; k++) gxp_require_true(s, gxp_is_finite(body->cuts.maps[k]));
 }
 
 static void gxp_check_topology(gxb_stream *s, gx_body *body) {
-    const size_t bytes = (size_t)body->cell_count + body->leaf_count + body->copy_count;
+    const size_t bytes = (size_t)body->cells.count + body->leaves.count + body->copies.count;
     gxp_places seen;
-    seen.cell = (unsigned char *)gxp_allocate(&body->allocator, bytes);
+    seen.cell = (unsigned char *)gxp_allocate(&body->config.allocator, bytes);
     if (seen.cell == NULL) {
         gxp_require(s, GX_ERROR_MEMORY);
         return;
     }
     memset(seen.cell, 0, bytes);
-    seen.leaf = seen.cell + body->cell_count;
-    seen.copy = seen.leaf + body->leaf_count;
+    seen.leaf = seen.cell + body->cells.count;
+    seen.copy = seen.leaf + body->leaves.count;
     gxp_check_lists(s, body, &seen);
     gxp_check_surfaces(s, body);
-    gxp_release(&body->allocator, seen.cell, bytes);
+    gxp_release(&body->config.allocator, seen.cell, bytes);
 }
 
 static void gxp_load_topology(gxb_stream *s, gx_body *body, int trusted) {
-    const uint32_t leaves = gxb_complex_load(body->complex, s, trusted) == GX_OK ? body->complex->leaf_count : 0;
-    uint32_t cells, copies, surfaces, maps;
-    gxp_pass_word(s, &cells);
-    gxp_pass_word(s, &copies);
-    gxp_pass_word(s, &surfaces);
-    gxp_pass_word(s, &maps);
-    gxb_stream_has(s, cells, sizeof(uint32_t) * 8 + sizeof(double) * 11);
-    gxb_stream_has(s, copies, sizeof(uint32_t));
-    gxb_stream_has(s, surfaces, 2 * sizeof(uint32_t));
-    gxb_stream_has(s, maps, 8 * sizeof(double));
-    gxp_require_true(s, cells >= body->element_count && cells <= INT32_MAX && copies <= INT32_MAX);
+    uint32_t counts[GXP_TABLES];
+    (void)gxb_complex_load(body->complex, s, trusted);
+    gxp_pass_counts(s, GXP_TOPOLOGY, counts);
+    gxp_check_counts(s, GXP_TOPOLOGY, counts);
+    gxp_require_true(s,
+                     counts[GXP_CELLS] >= body->mesh.element_count && counts[GXP_LEAVES] == body->complex->leaf_count);
+    if (s->result == GX_OK) gxp_require(s, gxp_rows_room(body, GXP_TOPOLOGY, counts));
     if (s->result != GX_OK) return;
-    gxp_require(s, gxp_reserve_cells(body, cells - body->cell_count));
-    gxp_require(s, gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, body->leaf_count,
-                               &body->leaf_capacity, leaves - body->leaf_count));
-    body->copy_count = 0;
-    gxp_require(s, gxp_reserve_copies(body, copies));
-    gxp_require(s, gxp_reserve(&body->allocator, &body->surfaces, sizeof *body->surfaces, 0, &body->surface_capacity,
-                               surfaces));
-    gxp_require(s, gxp_reserve(&body->allocator, &body->maps, 8 * sizeof *body->maps, 0, &body->map_capacity, maps));
-    if (s->result != GX_OK) return;
-    memset(body->leaves, 0, leaves * sizeof *body->leaves);
-    if (copies > 0) memset(body->held, 0, copies);
-    body->cell_count = cells;
-    body->leaf_count = leaves;
-    body->copy_count = copies;
-    body->surface_count = surfaces;
-    body->map_count = maps;
-    gxp_pass_cells(s, body);
+    gxp_pass_topology(s, body, counts);
+    if (body->copies.count > 0) memset(body->copies.held, 0, body->copies.count);
     if (s->result == GX_OK && !trusted) gxp_check_topology(s, body);
-    body->held_stale = body->view_stale = 1;
-    body->model = GXP_MODEL_STALE;
-    body->labels_known = 0;
+    body->holds.stale = body->view.stale = 1;
+    body->model.state = GXP_MODEL_STALE;
+    body->view.labels_known = 0;
 }
 
 /* >>save: state; save, load, clone, restore ------------------------------------------------------------------------ */
 /* In: a body, or bytes. Out: bytes, or a body that goes on as the other does. On an error the body is as it was. */
 
+/* What is passed beside the topology: the counts, and whether there is a history */
 typedef struct gxp_state_counts {
-    uint32_t copies, regions, fragments, removed, history;
+    uint32_t rows[GXP_TABLES], history;
 } gxp_state_counts;
 
+static uint32_t gxp_state_use(const gxp_state_counts *n) {
+    return GXP_STATE | (n->history ? (uint32_t)GXP_HISTORY : 0);
+}
+
 static void gxp_pass_state_counts(gxb_stream *s, gxp_state_counts *n) {
-    gxp_pass_word(s, &n->copies);
-    gxp_pass_word(s, &n->regions);
-    gxp_pass_word(s, &n->fragments);
-    gxp_pass_word(s, &n->removed);
+    gxp_pass_counts(s, GXP_STATE, n->rows);
     gxp_pass_word(s, &n->history);
 }
 
 static gxp_state_counts gxp_count_state(const gx_body *body) {
     gxp_state_counts n;
-    n.copies = body->copy_count;
-    n.regions = body->region_count;
-    n.fragments = body->fragment_ids.count;
-    n.removed = body->removed_ids.count;
-    n.history = body->previous_dt > 0;
+    gxp_count_rows(body, n.rows);
+    n.history = body->copies.previous_dt > 0;
     return n;
 }
 
 /* Room for a state with these counts; the present one stays. */
 static gx_result gxp_state_room(gx_body *body, const gxp_state_counts *n) {
-    const gx_allocator *a = &body->allocator;
-    int i;
-    gx_result r = gxp_words_room(body, &body->fragment_ids, n->fragments);
-    if (r == GX_OK) r = gxp_words_room(body, &body->fragment_origins, n->fragments);
-    if (r == GX_OK) r = gxp_words_room(body, &body->fragment_changes, n->fragments);
-    if (r == GX_OK) r = gxp_words_room(body, &body->removed_ids, n->removed);
-    if (r == GX_OK)
-        r = gxp_reserve(a, &body->regions, sizeof *body->regions, body->region_count, &body->region_capacity,
-                        n->regions);
-    for (i = 0; i < 2 && r == GX_OK && n->history; i++)
-        if (body->history[i] == NULL)
-            r = gxp_reserve(a, &body->history[i], 3 * sizeof(double), 0, &body->history_capacity[i], body->copy_count);
-    return r;
-}
-
-static void gxp_pass_region(gxb_stream *s, gx_region *r) {
-    gxp_pass_word(s, &r->axis);
-    gxb_stream_pass(s, &r->side, 1, sizeof r->side);
-    gxb_stream_pass(s, &r->value, 1, sizeof r->value);
-}
-
-static void gxp_pass_words(gxb_stream *s, gxp_words *words, uint32_t count) {
-    words->count = count;
-    gxb_stream_pass(s, words->data, count, sizeof *words->data);
+    const gx_result result = gxp_rows_room(body, gxp_state_use(n), n->rows);
+    return result == GX_OK && n->history ? gxp_start_history(body, 2) : result;
 }
 
 /* The solver forgets, so that it goes on as that of the other body will. */
 static void gxp_resume_in(gx_body *body, const gxs_scene *scene) {
     gxs_solver_resume(body->solver, scene);
-    if (body->model_updated) body->model = GXP_MODEL_STALE;
-    body->resumed = gxp_hash_state(body, body->copy_count);
+    if (body->model.updated) body->model.state = GXP_MODEL_STALE;
+    body->model.resumed = gxp_hash_state(body, body->copies.count);
 }
 
 /* n: of this body when it is written, of what is read else, and there is room. */
 static void gxp_pass_state(gxb_stream *s, gx_body *body, const gxp_state_counts *n) {
-    const size_t copies = n->copies;
-    uint32_t i, look_stale = (uint32_t)body->look_stale;
     gxs_scene scene;
-    gxb_stream_pass(s, body->displacement, copies, 3 * sizeof(double));
-    gxb_stream_pass(s, body->velocity, copies, 3 * sizeof(double));
-    gxb_stream_pass(s, body->rest_time, copies, sizeof(double));
-    gxb_stream_pass(s, body->copy_label, copies, sizeof *body->copy_label);
-    for (i = 0; i < 2 && n->history; i++) gxb_stream_pass(s, body->history[i], copies, 3 * sizeof(double));
-    gxb_stream_pass(s, &body->previous_dt, 1, sizeof body->previous_dt);
-    body->region_count = n->regions;
-    for (i = 0; i < n->regions; i++) gxp_pass_region(s, &body->regions[i]);
-    gxp_pass_words(s, &body->fragment_ids, n->fragments);
-    gxp_pass_words(s, &body->fragment_origins, n->fragments);
-    gxp_pass_words(s, &body->fragment_changes, n->fragments);
-    gxp_pass_words(s, &body->removed_ids, n->removed);
-    gxp_pass_word(s, &body->next_id);
-    gxp_pass_word(s, &look_stale);
-    body->look_stale = (int)(look_stale & 1);
+    gxp_pass_rows(s, body, gxp_state_use(n), n->rows);
+    gxb_stream_pass(s, &body->copies.previous_dt, 1, sizeof body->copies.previous_dt);
+    gxp_pass_word(s, &body->snapshot.next_id);
+    gxp_pass_word(s, &body->snapshot.stale);
     gxs_solver_scene(body->solver, &scene);
     gxb_stream_pass(s, scene.gravity, 3, sizeof *scene.gravity);
     gxb_stream_pass(s, &scene.planes, 1, sizeof scene.planes);
@@ -6830,29 +6999,28 @@ static void gxp_save_state(gxb_stream *s, gx_body *body) {
 }
 
 static void gxp_check_state(gxb_stream *s, gx_body *body, const gxp_state_counts *n) {
+    const gxp_snapshot *snapshot = &body->snapshot;
+    const double dt = body->copies.previous_dt;
     uint32_t i;
-    gxp_require_true(s, body->next_id >= 1);
-    gxp_require_true(s, gxp_is_finite(body->previous_dt) &&
-                            (n->history ? body->previous_dt > 0 : !(body->previous_dt > 0 || body->previous_dt < 0)));
-    for (i = 0; i < n->regions; i++) gxp_require_true(s, gxp_check_region(&body->regions[i]) == GX_OK);
-    for (i = 0; i < n->copies; i++) gxp_require_true(s, body->copy_label[i] >> 1 < n->fragments);
-    for (i = 0; i < n->fragments; i++)
-        gxp_require_true(s, body->fragment_ids.data[i] - 1 < body->next_id - 1 &&
-                                body->fragment_origins.data[i] - 1 < body->next_id - 1 &&
-                                body->fragment_changes.data[i] <= GX_FRAGMENT_CREATED);
-    for (i = 0; i < n->removed; i++) gxp_require_true(s, body->removed_ids.data[i] - 1 < body->next_id - 1);
+    gxp_require_true(s, snapshot->next_id >= 1 && snapshot->stale <= 1);
+    gxp_require_true(s, gxp_is_finite(dt) && (n->history ? dt > 0 : !(dt > 0 || dt < 0)));
+    for (i = 0; i < body->holds.count; i++) gxp_require_true(s, gxp_check_region(&body->holds.regions[i]) == GX_OK);
+    for (i = 0; i < body->copies.count; i++) gxp_require_true(s, body->copies.label[i] >> 1 < snapshot->count);
+    for (i = 0; i < snapshot->count; i++)
+        gxp_require_true(s, snapshot->id[i] - 1 < snapshot->next_id - 1 &&
+                                snapshot->origin[i] - 1 < snapshot->next_id - 1 &&
+                                snapshot->change[i] <= GX_FRAGMENT_CREATED);
+    for (i = 0; i < snapshot->removed.count; i++)
+        gxp_require_true(s, snapshot->removed.data[i] - 1 < snapshot->next_id - 1);
     if (s->result == GX_OK) gxp_require(s, gxp_update_view(body));
-    gxp_require_true(s, body->look_stale || body->fragment_count == n->fragments);
+    gxp_require_true(s, snapshot->stale || body->view.fragment_count == snapshot->count);
 }
 
 static void gxp_load_state(gxb_stream *s, gx_body *body, int trusted) {
     gxp_state_counts n;
     gxp_pass_state_counts(s, &n);
-    gxb_stream_has(s, n.copies, 2 * sizeof(double));
-    gxb_stream_has(s, n.regions, 2 * sizeof(uint32_t) + sizeof(double));
-    gxb_stream_has(s, n.fragments, 3 * sizeof(uint32_t));
-    gxb_stream_has(s, n.removed, sizeof(uint32_t));
-    gxp_require_true(s, n.copies == body->copy_count && n.history <= 1);
+    gxp_check_counts(s, GXP_STATE, n.rows);
+    gxp_require_true(s, n.rows[GXP_COPIES] == body->copies.count && n.history <= 1);
     if (s->result == GX_OK) gxp_require(s, gxp_state_room(body, &n));
     if (s->result == GX_OK) gxp_pass_state(s, body, &n);
     if (s->result == GX_OK && !trusted) gxp_check_state(s, body, &n);
@@ -6891,7 +7059,7 @@ GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, s
     s.at = 0;
     gxp_write(&s, body);
     s.at = 0;
-    head = gxp_make_head(s.size, gxp_checksum(s.out + start, s.size - start));
+    head = gxp_make_head(s.size, gxp_hash_bytes(0, s.out + start, s.size - start));
     gxp_pass_head(&s, &head);
     gxp_resume(body);
     return GX_OK;
@@ -6943,7 +7111,7 @@ static gx_result gxp_copy_body(gx_body *from, const gx_body *host, gx_body **cop
     size_t size, index;
     gx_result result = gx_body_save(from, NULL, 0, &size);
     if (result != GX_OK) return result;
-    bytes = (unsigned char *)gxp_allocate(&host->allocator, size);
+    bytes = (unsigned char *)gxp_allocate(&host->config.allocator, size);
     if (bytes == NULL) return GX_ERROR_MEMORY;
     memset(&s, 0, sizeof s);
     s.out = bytes;
@@ -6953,14 +7121,14 @@ static gx_result gxp_copy_body(gx_body *from, const gx_body *host, gx_body **cop
     s.in = bytes;
     s.size = size;
     memset(&desc, 0, sizeof desc);
-    desc.allocator = host->allocator;
-    desc.clock = host->clock;
-    desc.clock_user = host->clock_user;
-    desc.jobs = host->jobs;
-    desc.materials = from->materials;
-    desc.material_count = from->material_count;
+    desc.allocator = host->config.allocator;
+    desc.clock = host->config.clock;
+    desc.clock_user = host->config.clock_user;
+    desc.jobs = host->config.jobs;
+    desc.materials = from->mesh.materials;
+    desc.material_count = from->mesh.material_count;
     result = gxp_read(&s, &desc, 1, copy, &index);
-    gxp_release(&host->allocator, bytes, size);
+    gxp_release(&host->config.allocator, bytes, size);
     if (result == GX_OK) gxp_resume(from);
     return result;
 }
@@ -6975,12 +7143,12 @@ static int gxp_same_doubles(const double *a, const double *b, size_t count) {
 
 static int gxp_same_materials(const gx_body *a, const gx_body *b) {
     uint32_t i;
-    int same = a->material_count == b->material_count;
-    for (i = 0; i < a->material_count && same; i++) {
-        const gxs_material *p = &a->materials[i].elastic, *q = &b->materials[i].elastic;
+    int same = a->mesh.material_count == b->mesh.material_count;
+    for (i = 0; i < a->mesh.material_count && same; i++) {
+        const gxs_material *p = &a->mesh.materials[i].elastic, *q = &b->mesh.materials[i].elastic;
         same = p->kind == q->kind && gxp_same_doubles(&p->young, &q->young, 1) &&
                gxp_same_doubles(&p->poisson, &q->poisson, 1) && gxp_same_doubles(&p->damping, &q->damping, 1) &&
-               gxp_same_doubles(&a->materials[i].density, &b->materials[i].density, 1) &&
+               gxp_same_doubles(&a->mesh.materials[i].density, &b->mesh.materials[i].density, 1) &&
                (p->kind != GXS_CUSTOM || (p->energy == q->energy && p->user == q->user));
     }
     return same;
@@ -6988,9 +7156,9 @@ static int gxp_same_materials(const gx_body *a, const gx_body *b) {
 
 static int gxp_same_regions(const gx_body *a, const gx_body *b) {
     uint32_t i;
-    int same = a->region_count == b->region_count;
-    for (i = 0; i < a->region_count && same; i++) {
-        const gx_region *p = &a->regions[i], *q = &b->regions[i];
+    int same = a->holds.count == b->holds.count;
+    for (i = 0; i < a->holds.count && same; i++) {
+        const gx_region *p = &a->holds.regions[i], *q = &b->holds.regions[i];
         same = p->axis == q->axis && p->side == q->side && gxp_same_doubles(&p->value, &q->value, 1);
     }
     return same;
@@ -7009,7 +7177,7 @@ static gx_result gxp_restore_state(gx_body *body, gx_body *from) {
     memset(&s, 0, sizeof s);
     gxp_pass_state(&s, from, &n);
     size = s.at;
-    bytes = (unsigned char *)gxp_allocate(&body->allocator, size);
+    bytes = (unsigned char *)gxp_allocate(&body->config.allocator, size);
     if (bytes == NULL) return GX_ERROR_MEMORY;
     s.out = bytes;
     s.size = size;
@@ -7019,11 +7187,11 @@ static gx_result gxp_restore_state(gx_body *body, gx_body *from) {
     s.out = NULL;
     s.at = 0;
     gxp_pass_state(&s, body, &n);
-    gxp_release(&body->allocator, bytes, size);
+    gxp_release(&body->config.allocator, bytes, size);
     if (!same_held) {
-        memset(body->held, 0, body->copy_count);
-        body->held_stale = 1;
-        body->model = GXP_MODEL_STALE;
+        memset(body->copies.held, 0, body->copies.count);
+        body->holds.stale = 1;
+        body->model.state = GXP_MODEL_STALE;
     }
     gxp_resume(from);
     return GX_OK;
@@ -7034,8 +7202,9 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from) {
     gx_result result;
     if (body == NULL || from == NULL) return GX_ERROR_ARGUMENT;
     if (body == from) return GX_OK;
-    if (body->past == from->past && body->copy_count == from->copy_count && body->cell_count == from->cell_count &&
-        body->leaf_count == from->leaf_count && gxp_same_materials(body, from))
+    if (body->cuts.hash == from->cuts.hash && body->copies.count == from->copies.count &&
+        body->cells.count == from->cells.count && body->leaves.count == from->leaves.count &&
+        gxp_same_materials(body, from))
         return gxp_restore_state(body, from);
     result = gxp_copy_body(from, body, &copy);
     if (result != GX_OK) return result;
@@ -7046,13 +7215,17 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from) {
     return GX_OK;
 }
 
-#undef GXP_FETCH
-#undef GXP_FETCHES
+#undef GXP_PREFETCH
+#undef GXP_PREFETCHES
 #undef GXP_NONE
 #undef GXP_SUPPORT
 #undef GXP_SPECK
-#undef GXP_CRUMB
-#undef GXP_FRAGMENT_ARRAYS
+#undef GXP_SPECK_REACH
+#undef GXP_COLUMN
+#undef GXP_TABLE
+#undef GXP_LIST
+#undef GXP_WORDS
+#undef GXP_KEYS
 #undef GXP_FIRST
 #undef GXP_SECOND
 #undef GXP_LINK_CELL
