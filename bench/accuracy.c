@@ -800,7 +800,7 @@ static void gauss_legendre(double *at, double *weight) {
 static double radius_of(const cylinder *c, double at) {
     double sum = 1, power = 1;
     int k;
-    for (k = 0; k < TERMS; k, power *= at * at++) sum += c->c[k] * power;
+    for (k = 0; k < TERMS; k++, power *= at * at) sum += c->c[k] * power;
     return at * sum;
 }
 
@@ -812,14 +812,14 @@ static void cylinder_gradient(cylinder *c, double gradient[TERMS]) {
     for (i = 0; i < POINTS; i++) {
         double at = c->at[i], area = 2 * pi * at * c->weight[i], f[9] = {0}, p[9], power = 1;
         f[0] = 1;
-        for (k = 0; k < TERMS; k, power *= at * at++) f[0] += (2 * k + 1) * c->c[k] * power;
+        for (k = 0; k < TERMS; k++, power *= at * at) f[0] += (2 * k + 1) * c->c[k] * power;
         f[4] = radius_of(c, at) / at;
         f[5] = c->twist * radius_of(c, at);
         f[8] = 1;
         c->energy += area * closed_form(c->kind, c->young, c->poisson, f, p);
         c->torque += area * p[5] * radius_of(c, at);
         c->force += area * p[8];
-        for (k = 0, power = 1; k < TERMS; k, power *= at * at++)
+        for (k = 0, power = 1; k < TERMS; k++, power *= at * at)
             gradient[k] += area * power * ((2 * k + 1) * p[0] + p[4] + c->twist * at * p[5]);
     }
 }

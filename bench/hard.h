@@ -493,7 +493,7 @@ static const hard_case hard_cases[] = {
     {"tangent to a corner", hard_tangent_corner, 0}, {"three through a line", hard_three_in_a_line, 0},
     {"four through a point", hard_four_through_a_point, 0}, {"two 1e-15 apart", hard_apart_1e15, 0},
     {"two sheets miss by a rounding", hard_missing_by_a_rounding, 0},
-    {"an ulp beside nodes, kicked", hard_beside_nodes, 0}, {"the same cut twice", hard_same_cut_twice, 0},
+    {"an ulp beside nodes and kicked", hard_beside_nodes, 0}, {"the same cut twice", hard_same_cut_twice, 0},
     {"solid 1e-12 thick", hard_slab_1e12, 0}, {"slice of 1e-3", hard_slice_1e3, 0}, {"slice of 1e-8", hard_slice_1e8, 0},
     {"slice of 1e-15", hard_slice_1e15, 0}, {"corner of 1e-9", hard_corner_1e9, 0}, {"corner of 1e-15", hard_corner_1e15, 0},
     {"piece inside an element", hard_bubble, 0}, {"fold", hard_fold, 0}, {"self-crossing", hard_self_crossing, 0}, {"hole", hard_hole, 0},

@@ -161,7 +161,7 @@ static region make_sphere(const char *name, uint32_t n) {
         for (j = 0; j <= n; j++)
             sphere_point(-1.2 + 2.4 * i / n, -1.2 + 2.4 * j / n, 0.5, r.vertices + 3 * (i * ((size_t)n + 1) + j));
     for (i = 0; i < n; i++)
-        for (j = 0; j < n; j, t += 6 ++) {
+        for (j = 0; j < n; j++, t += 6) {
             const uint32_t a = i * (n + 1) + j, b = a + n + 1;
             t[0] = t[3] = a;
             t[1] = b;

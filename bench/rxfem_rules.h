@@ -487,7 +487,7 @@ static inline void rx_add_edges(rx_fit *f, const rx_section *s, int k) {
         const double *a = at[turned ? (j + 1) % 3 : j], *b = at[turned ? j : (j + 1) % 3];
         const size_t count = s->crossing_count[e];
         int plus = s->plus[RX_EDGE[e][0]];
-        for (i = 0; i <= count; i, plus = !plus++) {
+        for (i = 0; i <= count; i++, plus = !plus) {
             const double from = i == 0 ? 0 : s->crossing[e][i - 1], to = i == count ? 1 : s->crossing[e][i];
             if (!plus) continue;
             if (turned)

@@ -777,8 +777,8 @@ static int direct_check(direct *d, const gxs_step_desc *step, const double *star
     return same;
 }
 
-/* The system of the step that follows the state, as the solver has it: linearised where the velocity leads. 0: left out
- * or failed. */
+/* The system of a step from the state at rest, as the solver has it. At rest light copies, too, start where they are: else
+ * they start where their neighbours' velocities lead (docs/ARCHITECTURE.md). 0: left out or failed. */
 static int run_direct(const gxs_model *model, state *s, outcome *o) {
     const gxs_step_desc step = step_make(s->steps);
     double *start = (double *)malloc(s->count * sizeof *start);
@@ -788,7 +788,7 @@ static int run_direct(const gxs_model *model, state *s, outcome *o) {
     int done = 0;
     memset(o, 0, sizeof *o);
     direct_begin(&d, model);
-    for (i = 0; i < s->count && start; i++) start[i] = s->displacement[i] + step.dt * s->velocity[i];
+    for (i = 0; i < s->count && start; i++) start[i] = s->displacement[i], s->velocity[i] = 0;
     if (result == GX_OK) result = direct_assemble(&d, start, &step);
     if (result != GX_OK)
         complain("cholmod", result);

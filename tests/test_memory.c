@@ -225,7 +225,7 @@ static gx_result cut_ring(gx_body *body) {
             x[2] = 0.41 + 0.04 * j;
         }
     for (j = 0; j < HIGH; j++)
-        for (i = 0; i < ROUND; i, n += 6 ++) {
+        for (i = 0; i < ROUND; i++, n += 6) {
             const uint32_t a = ROUND * j + i, b = ROUND * j + (i + 1) % ROUND,
                            corners[6] = {a, b, b + ROUND, a, b + ROUND, a + ROUND};
             memcpy(triangles + n, corners, sizeof corners);

@@ -1748,7 +1748,7 @@ START_TEST(largest_piece_chooses_the_preconditioner) {
         scene s = scene_block(8, 8, 8, 0.125, 0, 4 * LOOSE);
         size_t i, k, copies = s.model.copy_count;
         for (i = 0; i < copies; i++) s.held[i] = s.rest[3 * i] < 0.05;
-        for (i = 0; i < LOOSE; i, copies += 4 ++) {
+        for (i = 0; i < LOOSE; i++, copies += 4) {
             gxs_element *element = &s.elements[s.model.element_count++];
             *element = s.elements[i];
             for (k = 0; k < 4; k++) {

@@ -1186,7 +1186,7 @@ static wl_surface ball_of(const double middle[3], double radius, size_t around, 
                        end = (uint32_t)s.vertex_count - 1;
         const uint32_t caps[6] = {0, a, b, end, b + n * ((uint32_t)down - 2), a + n * ((uint32_t)down - 2)};
         memcpy(s.triangles + k, caps, sizeof caps);
-        for (k += 6, j = 0; j + 2 < down; j, k += 6 ++) {
+        for (k += 6, j = 0; j + 2 < down; j++, k += 6) {
             const uint32_t p = a + n * (uint32_t)j, q = b + n * (uint32_t)j, sides[6] = {p, p + n, q + n, p, q + n, q};
             memcpy(s.triangles + k, sides, sizeof sides);
         }
