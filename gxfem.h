@@ -604,7 +604,7 @@ typedef struct gxp_holds {
 typedef struct gxp_log { /* rows of a table as they were, without gaps: the columns that are undone */
     gxp_words rows;
     unsigned char *bytes;
-    uint32_t byte_capacity;
+    uint32_t byte_capacity, row_size;
 } gxp_log;
 
 enum { /* indices of gxp_tables */
@@ -1011,12 +1011,11 @@ static void *gxp_reallocate(const gx_allocator *a, void *old, size_t old_size, s
     return memory;
 }
 
-/* Makes room for count + extra items; array is the address of the pointer. */
-static gx_result gxp_reserve(const gx_allocator *a, void *array, size_t item, size_t count, uint32_t *capacity,
-                             size_t extra) {
+/* Moves an array that is full to a larger block: half as much again as is needed. */
+static gx_result gxp_grow(const gx_allocator *a, void *array, size_t item, size_t count, uint32_t *capacity,
+                          size_t extra) {
     const size_t need = count + extra, room = need + need / 2 + 16;
     void *old, *memory;
-    if (need <= *capacity) return GX_OK;
     if (room > INT32_MAX || room > SIZE_MAX / item) return GX_ERROR_LIMIT;
     memcpy(&old, array, sizeof old);
     memory = gxp_reallocate(a, old, (size_t)*capacity * item, count * item, room * item);
@@ -1024,6 +1023,12 @@ static gx_result gxp_reserve(const gx_allocator *a, void *array, size_t item, si
     memcpy(array, &memory, sizeof memory);
     *capacity = (uint32_t)room;
     return GX_OK;
+}
+
+/* Makes room for count + extra items; array is the address of the pointer. */
+static inline gx_result gxp_reserve(const gx_allocator *a, void *array, size_t item, size_t count, uint32_t *capacity,
+                                    size_t extra) {
+    return count + extra <= *capacity ? GX_OK : gxp_grow(a, array, item, count, capacity, extra);
 }
 
 static gx_result gxp_words_room(gx_body *body, gxp_words *words, size_t extra) {
@@ -1751,13 +1756,13 @@ typedef struct gxp_cut {
     gx_failure failure;
 } gxp_cut;
 
-/* Room in a log for that many further rows of its table */
-static gx_result gxp_log_room(gx_body *body, gxp_log *log, uint32_t table, size_t rows) {
-    const size_t size = gxp_row_size(table, GXP_UNDONE);
+/* Room in a log for that many further rows */
+static gx_result gxp_log_room(gx_body *body, gxp_log *log, size_t rows) {
+    const size_t size = log->row_size;
     const gx_result result = gxp_words_room(body, &log->rows, rows);
-    if (result != GX_OK) return result;
-    return gxp_reserve(&body->config.allocator, &log->bytes, 1, log->rows.count * size, &log->byte_capacity,
-                       rows * size);
+    return result != GX_OK ? result
+                           : gxp_reserve(&body->config.allocator, &log->bytes, 1, log->rows.count * size,
+                                         &log->byte_capacity, rows * size);
 }
 
 /* Passes the columns of a row that are undone from the table to bytes, or back. */
@@ -1772,19 +1777,19 @@ static void gxp_pass_undone(gx_body *body, uint32_t table, uint32_t row, unsigne
 }
 
 static gx_result gxp_log_row(gx_body *body, gxp_log *log, uint32_t table, uint32_t row) {
-    const gx_result result = gxp_log_room(body, log, table, 1);
+    const gx_result result = gxp_log_room(body, log, 1);
     if (result != GX_OK) return result;
-    gxp_pass_undone(body, table, row, log->bytes + log->rows.count * gxp_row_size(table, GXP_UNDONE), 0);
+    gxp_pass_undone(body, table, row, log->bytes + log->rows.count * (size_t)log->row_size, 0);
     log->rows.data[log->rows.count++] = row;
     return GX_OK;
 }
 
 /* Puts rows back, the last one first. */
 static void gxp_undo_rows(gx_body *body, gxp_log *log, uint32_t table) {
-    const size_t size = gxp_row_size(table, GXP_UNDONE);
     while (log->rows.count > 0) {
         log->rows.count--;
-        gxp_pass_undone(body, table, log->rows.data[log->rows.count], log->bytes + log->rows.count * size, 1);
+        gxp_pass_undone(body, table, log->rows.data[log->rows.count],
+                        log->bytes + log->rows.count * (size_t)log->row_size, 1);
     }
 }
 
@@ -1814,6 +1819,8 @@ static void gxp_begin(gxp_cut *cut) {
     uint32_t t;
     gxb_complex_begin(body->complex);
     undo->cells.rows.count = undo->leaves.rows.count = 0;
+    undo->cells.row_size = (uint32_t)gxp_row_size(GXP_CELLS, GXP_UNDONE);
+    undo->leaves.row_size = (uint32_t)gxp_row_size(GXP_LEAVES, GXP_UNDONE);
     undo->cut_number++;
     for (t = 0; t < GXP_TABLES; t++) undo->counts[t] = *gxp_count_at(body, t);
     undo->labels = body->cuts.label_count;
@@ -3174,7 +3181,7 @@ static gx_result gxp_divide_cells(gxp_cut *cut) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
     uint32_t i;
-    gx_result result = gxp_log_room(body, &body->undo.cells, GXP_CELLS, 4 * (size_t)scratch->touched.count);
+    gx_result result = gxp_log_room(body, &body->undo.cells, 4 * (size_t)scratch->touched.count);
     if (result == GX_OK) result = gxp_keys_room(body, &scratch->links, 16 * (size_t)scratch->touched.count);
     if (result == GX_OK) result = gxp_grow_rows(body, GXP_CELLS, scratch->touched.count);
     scratch->new_cells.count = scratch->links.count = scratch->link_first.count = 0;
