@@ -1394,32 +1394,31 @@ static const uint8_t gxp_outward[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2
 static const uint8_t gxp_edge_nodes[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 
 static int gxp_local_node(const gx_body *body, uint32_t element, uint32_t node) {
-    const uint32_t *n = body->complex->elements + 4 * (size_t)element;
+    const uint32_t *n = gxb_complex_element_nodes(body->complex, element);
     return (n[0] == node) + 2 * (n[1] == node) + 3 * (n[2] == node) + 4 * (n[3] == node) - 1;
 }
 
 /* The local node of the element that the face does not have */
 static uint32_t gxp_local_face(const gxb_complex *cx, uint32_t element, uint32_t face) {
-    const uint32_t *faces = cx->element_faces + 4 * (size_t)element;
+    const uint32_t *faces = gxb_complex_element_faces(cx, element);
     return 3 - 3 * (uint32_t)(faces[0] == face) - 2 * (uint32_t)(faces[1] == face) - (uint32_t)(faces[2] == face);
 }
 
 static uint32_t gxp_neighbour(const gx_body *body, uint32_t element, uint32_t k) {
-    const uint32_t *pair =
-        body->complex->face_elements + 2 * (size_t)body->complex->element_faces[4 * (size_t)element + k];
+    const uint32_t face = gxb_complex_element_faces(body->complex, element)[k];
+    const uint32_t *pair = gxb_complex_face_elements(body->complex, face);
     return pair[0] == element ? pair[1] : pair[0];
 }
 
 /* An element with the face, and the node of it that the face does not have. */
 static uint32_t gxp_face_element(const gxb_complex *cx, uint32_t face, uint32_t *k) {
-    const uint32_t element =
-        cx->face_elements[2 * face] != GXB_NONE ? cx->face_elements[2 * face] : cx->face_elements[2 * face + 1];
+    const uint32_t *pair = gxb_complex_face_elements(cx, face), element = pair[pair[0] == GXB_NONE];
     *k = gxp_local_face(cx, element, face);
     return element;
 }
 
 static void gxp_list_node_elements(gx_body *body) {
-    const uint32_t *elements = body->complex->elements;
+    const uint32_t *elements = gxb_complex_element_nodes(body->complex, 0);
     uint32_t i;
     memset(body->mesh.node_start, 0, ((size_t)body->mesh.node_count + 1) * sizeof *body->mesh.node_start);
     for (i = 0; i < 4 * body->mesh.element_count; i++) body->mesh.node_start[elements[i] + 1]++;
@@ -1433,7 +1432,7 @@ static void gxp_list_node_elements(gx_body *body) {
 static void gxp_element_positions(const gx_body *body, uint32_t element, double x[12]) {
     int k;
     for (k = 0; k < 4; k++)
-        memcpy(x + 3 * k, body->mesh.positions + 3 * (size_t)body->complex->elements[4 * (size_t)element + (size_t)k],
+        memcpy(x + 3 * k, body->mesh.positions + 3 * (size_t)gxb_complex_element_nodes(body->complex, element)[k],
                3 * sizeof *x);
 }
 
@@ -1461,7 +1460,7 @@ static void gxp_box_of(const gx_body *body, gxp_box *box) {
     for (i = box->first; i < box->first + box->count; i++)
         for (n = 0; n < 4; n++) {
             const double *x = body->mesh.positions +
-                              3 * (size_t)body->complex->elements[4 * (size_t)body->mesh.box_elements[i] + (size_t)n];
+                              3 * (size_t)gxb_complex_element_nodes(body->complex, body->mesh.box_elements[i])[n];
             for (k = 0; k < 3 && i == box->first && n == 0; k++) low[k] = high[k] = x[k];
             for (k = 0; k < 3; k++) {
                 low[k] = x[k] < low[k] ? x[k] : low[k];
@@ -1473,7 +1472,7 @@ static void gxp_box_of(const gx_body *body, gxp_box *box) {
 }
 
 static double gxp_element_key(const gx_body *body, uint32_t element, int axis) {
-    const uint32_t *n = body->complex->elements + 4 * (size_t)element;
+    const uint32_t *n = gxb_complex_element_nodes(body->complex, element);
     const double *x = body->mesh.positions + axis;
     return x[3 * (size_t)n[0]] * 0.25 + x[3 * (size_t)n[1]] * 0.25 + x[3 * (size_t)n[2]] * 0.25 +
            x[3 * (size_t)n[3]] * 0.25;
@@ -1647,7 +1646,7 @@ static double gxp_greatest(const double x[4]) {
 /* May the triangle meet the element? Not if a plane along the axes or its own has the element beyond it, or one along
    an edge across it what of the element is in the triangle's plane. */
 static int gxp_triangle_near_element(const gx_body *body, const gxp_search *s, uint32_t element) {
-    const uint32_t *node = body->complex->elements + 4 * (size_t)element;
+    const uint32_t *node = gxb_complex_element_nodes(body->complex, element);
     double x[3][4];
     gxp_heights over, along;
     int i, n, beyond = 0;
@@ -1674,12 +1673,12 @@ static int gxp_triangle_near_element(const gx_body *body, const gxp_search *s, u
 /* Finds the elements that the triangle may meet: those in boxes that it may meet are listed first, so that what there
    is to read of them comes while others are looked at. */
 static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_words *found) {
-    const uint32_t *elements = body->complex->elements;
+    const uint32_t *elements = gxb_complex_element_nodes(body->complex, 0);
     gxp_search search;
     uint32_t stack[128], depth = 0, count = 0, i, k;
     gx_result result = GX_OK;
     found->count = 0;
-    gxp_search_init(&search, p, ldexp(1, body->complex->shift), &body->mesh.boxes[0]);
+    gxp_search_init(&search, p, ldexp(1, gxb_complex_shift(body->complex)), &body->mesh.boxes[0]);
     stack[depth++] = 0;
     while (depth > 0 && result == GX_OK) {
         const gxp_box *box = &body->mesh.boxes[stack[--depth]];
@@ -1698,10 +1697,7 @@ static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_
         for (k = 0; k < 4 && i + 4 < found->count; k++)
             GXP_PREFETCH(body->mesh.positions + 3 * (size_t)elements[4 * (size_t)found->data[i + 4] + k]);
         if (!gxp_triangle_near_element(body, &search, found->data[i])) continue;
-        GXP_PREFETCH(&body->complex->leaves[found->data[i]]);
-        GXP_PREFETCH(body->complex->element_faces + 4 * (size_t)found->data[i]);
-        GXP_PREFETCH(body->complex->element_edges + 6 * (size_t)found->data[i]);
-        GXP_PREFETCH(body->complex->root + found->data[i]);
+        gxb_complex_prefetch_element(body->complex, found->data[i]);
         found->data[count++] = found->data[i];
     }
     found->count = count;
@@ -1718,12 +1714,12 @@ static uint32_t gxp_copy_of(const gx_body *body, uint32_t cell, uint32_t node) {
 
 /* Room beside new leaves of the complex; new leaves start in their parent's cell, outside its list. */
 static gx_result gxp_follow_leaves(gx_body *body) {
-    const uint32_t count = body->complex->leaf_count;
+    const uint32_t count = gxb_complex_leaf_count(body->complex);
     const gx_result result = gxp_grow_rows(body, GXP_LEAVES, count - body->leaves.count);
     if (result != GX_OK) return result;
     for (; body->leaves.count < count; body->leaves.count++) {
         gxp_leaf *leaf = &body->leaves.data[body->leaves.count];
-        leaf->cell = body->leaves.data[body->complex->leaves[body->leaves.count].parent].cell;
+        leaf->cell = body->leaves.data[gxb_complex_leaf(body->complex, body->leaves.count)->parent].cell;
         leaf->next = GXP_NONE;
     }
     return GX_OK;
@@ -1846,13 +1842,16 @@ static void gxp_rollback(gxp_cut *cut) {
 /* Lists that are read off the complex: points of leaves and facets, leaves below a tree, facets and edges by what they
    were divided into. Resolving such lists may renew them within the complex; nothing else changes. */
 
+/* An entry of a list of the complex. Resolving a list moves others, so that no pointer into one is kept. */
+static uint32_t gxp_item(const gxb_complex *cx, uint32_t place) { return *gxb_complex_list(cx, place); }
+
 static int gxp_is_kept(const gx_body *body, uint32_t leaf) {
-    return leaf != GXB_NONE && !body->complex->leaves[leaf].removed;
+    return leaf != GXB_NONE && !gxb_complex_leaf(body->complex, leaf)->removed;
 }
 
 /* Is the facet a link? */
 static int gxp_is_link(const gx_body *body, uint32_t facet) {
-    const gxb_facet *f = &body->complex->facets[facet];
+    const gxb_facet *f = gxb_complex_facet(body->complex, facet);
     return !f->wall && gxp_is_kept(body, f->leaf[0]) && gxp_is_kept(body, f->leaf[1]);
 }
 
@@ -1860,14 +1859,14 @@ static int gxp_is_link(const gx_body *body, uint32_t facet) {
 static gx_result gxp_collect_leaf_points(gx_body *body, uint32_t leaf) {
     gxb_complex *cx = body->complex;
     uint32_t first, count = 0, i, j, e0, en;
-    gx_result result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
+    gx_result result = gxb_complex_open_element(cx, gxb_complex_leaf(cx, leaf)->element);
     body->scratch.leaf_points.count = 0;
-    if (result == GX_OK) result = gxb_leaf_facets(cx, leaf, &first, &count);
+    if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
-        result = gxb_facet_edges(cx, cx->pool[first + i], &e0, &en);
+        result = gxb_facet_resolve_edges(cx, gxp_item(cx, first + i), &e0, &en);
         for (j = 0; j < en && result == GX_OK; j++) {
-            const uint32_t e = cx->pool[e0 + j];
-            result = gxp_push(body, &body->scratch.leaf_points, cx->edges[e >> 1].v[e & 1]);
+            const uint32_t e = gxp_item(cx, e0 + j);
+            result = gxp_push(body, &body->scratch.leaf_points, gxb_complex_edge_start(cx, e));
         }
     }
     return result;
@@ -1877,18 +1876,18 @@ static gx_result gxp_collect_leaf_points(gx_body *body, uint32_t leaf) {
 static gx_result gxp_collect_facet_points(gx_body *body, uint32_t facet) {
     gxb_complex *cx = body->complex;
     uint32_t e0, en, i;
-    gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
+    gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
     body->scratch.facet_points.count = 0;
     if (result == GX_OK) result = gxp_words_room(body, &body->scratch.facet_points, en);
     for (i = 0; i < en && result == GX_OK; i++)
         body->scratch.facet_points.data[body->scratch.facet_points.count++] =
-            cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1];
+            gxb_complex_edge_start(cx, gxp_item(cx, e0 + i));
     return result;
 }
 
 /* Appends the leaves below a reference of an element's tree. */
 static gx_result gxp_push_leaves(gx_body *body, uint32_t reference, gxp_words *out) {
-    const gxb_node *node = &body->complex->nodes[reference >> 1];
+    const gxb_node *node = gxb_complex_tree_node(body->complex, reference >> 1);
     gx_result result;
     if (!(reference & 1)) return gxp_push(body, out, reference >> 1);
     result = gxp_push_leaves(body, node->child[0], out);
@@ -1897,7 +1896,7 @@ static gx_result gxp_push_leaves(gx_body *body, uint32_t reference, gxp_words *o
 
 /* Appends the edges of the complex into which this one has been divided. */
 static gx_result gxp_push_divided_edges(gx_body *body, uint32_t edge, gxp_words *out) {
-    const uint32_t child = body->complex->edges[edge].child;
+    const uint32_t child = gxb_complex_edge(body->complex, edge)->child;
     gx_result result;
     if (child == GXB_NONE) return gxp_push(body, out, edge);
     result = gxp_push_divided_edges(body, child, out);
@@ -1906,7 +1905,7 @@ static gx_result gxp_push_divided_edges(gx_body *body, uint32_t edge, gxp_words 
 
 /* Appends the facets into which this one has been divided. */
 static gx_result gxp_push_divided_facets(gx_body *body, uint32_t facet, gxp_words *out) {
-    const uint32_t child = body->complex->facets[facet].child;
+    const uint32_t child = gxb_complex_facet(body->complex, facet)->child;
     gx_result result;
     if (child == GXB_NONE) return gxp_push(body, out, facet);
     result = gxp_push_divided_facets(body, child, out);
@@ -1915,7 +1914,7 @@ static gx_result gxp_push_divided_facets(gx_body *body, uint32_t facet, gxp_word
 
 /* Appends to seeds the leaves on both sides of the facets into which the labelled ones have been divided. */
 static gx_result gxp_wall_leaves(gx_body *body, uint32_t facet, gxp_words *seeds) {
-    const gxb_facet *f = &body->complex->facets[facet];
+    const gxb_facet *f = gxb_complex_facet(body->complex, facet);
     gx_result result = GX_OK;
     if (f->child != GXB_NONE) {
         const uint32_t child = f->child;
@@ -1929,8 +1928,8 @@ static gx_result gxp_wall_leaves(gx_body *body, uint32_t facet, gxp_words *seeds
 
 /* Is the mesh edge divided, or its piece of an outer face? */
 static int gxp_edge_is_divided(const gxb_complex *cx, uint32_t mesh_edge) {
-    const uint32_t edge = cx->mesh_edge[mesh_edge];
-    return edge != GXB_NONE && cx->edges[edge].child != GXB_NONE;
+    const uint32_t edge = gxb_complex_mesh_edge(cx, mesh_edge);
+    return edge != GXB_NONE && gxb_complex_edge(cx, edge)->child != GXB_NONE;
 }
 
 /* Appends a cell that the walk has not met yet. */
@@ -2005,7 +2004,7 @@ static gx_result gxp_update_view(gx_body *body) {
 }
 
 static uint32_t gxp_old_leaf(const gx_body *body, uint32_t leaf) {
-    while (leaf >= body->leaves.count) leaf = body->complex->leaves[leaf].parent;
+    while (leaf >= body->leaves.count) leaf = gxb_complex_leaf(body->complex, leaf)->parent;
     return leaf;
 }
 
@@ -2218,7 +2217,7 @@ static void gxp_map_triangle(const gx_body *body, const gx_surface *s, size_t tr
             map[4 * i + k] = square > 0 ? (du * g + dv * h) / square : 0;
             /* of sizes whose fourth powers doubles do not have */
             if (!gxp_is_finite(map[4 * i + k])) map[4 * i + k] = 0;
-            map[4 * i + 3] -= map[4 * i + k] * (a[k] - body->complex->origin[k]);
+            map[4 * i + 3] -= map[4 * i + k] * (a[k] - gxb_complex_origin(body->complex)[k]);
         }
     }
 }
@@ -2294,7 +2293,7 @@ static gx_result gxp_walk_around(gx_body *body, uint32_t start, uint32_t node, g
         const uint32_t e = elements->data[done++];
         uint32_t k;
         for (k = 0; k < 4 && result == GX_OK; k++) {
-            const uint32_t other = gxp_neighbour(body, e, k), opposite = body->complex->elements[4 * (size_t)e + k];
+            const uint32_t other = gxp_neighbour(body, e, k), opposite = gxb_complex_element_nodes(body->complex, e)[k];
             if (other == GXP_NONE || body->cells.stamp[other] == body->scratch.stamp || opposite == node) continue;
             body->cells.stamp[other] = body->scratch.stamp;
             result = gxp_push(body, elements, other);
@@ -2327,7 +2326,7 @@ static void gxp_find_pinched_edges(gx_body *body) {
     for (i = 0; i < body->mesh.element_count; i++)
         for (k = 0; k < 4; k++)
             for (j = 0; j < 6; j++) {
-                const uint32_t edge = cx->element_edges[6 * i + j];
+                const uint32_t edge = gxb_complex_element_edges(cx, i)[j];
                 if (gxp_neighbour(body, i, k) != GXP_NONE || gxp_edge_nodes[j][0] == k || gxp_edge_nodes[j][1] == k)
                     continue;
                 if (body->mesh.edge_pinched[edge] < 3) body->mesh.edge_pinched[edge]++;
@@ -2335,9 +2334,9 @@ static void gxp_find_pinched_edges(gx_body *body) {
     for (i = 0; i < body->mesh.edge_count; i++) body->mesh.edge_pinched[i] = body->mesh.edge_pinched[i] > 2;
     for (i = 0; i < body->mesh.element_count; i++)
         for (j = 0; j < 6; j++) {
-            if (!body->mesh.edge_pinched[cx->element_edges[6 * i + j]]) continue;
-            body->mesh.node_pinched[cx->elements[4 * i + gxp_edge_nodes[j][0]]] |= GXP_EDGE_PINCHED;
-            body->mesh.node_pinched[cx->elements[4 * i + gxp_edge_nodes[j][1]]] |= GXP_EDGE_PINCHED;
+            if (!body->mesh.edge_pinched[gxb_complex_element_edges(cx, i)[j]]) continue;
+            body->mesh.node_pinched[gxb_complex_element_nodes(cx, i)[gxp_edge_nodes[j][0]]] |= GXP_EDGE_PINCHED;
+            body->mesh.node_pinched[gxb_complex_element_nodes(cx, i)[gxp_edge_nodes[j][1]]] |= GXP_EDGE_PINCHED;
         }
 }
 
@@ -2351,19 +2350,20 @@ typedef struct gxp_joint {
 static gx_result gxp_find_leaf_joint(gx_body *body, uint32_t leaf, gxp_joint *joint) {
     gxb_complex *cx = body->complex;
     uint32_t first, count = 0, i, j, e0, en;
-    gx_result result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
-    if (result == GX_OK) result = gxb_leaf_facets(cx, leaf, &first, &count);
+    gx_result result = gxb_complex_open_element(cx, gxb_complex_leaf(cx, leaf)->element);
+    if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     joint->found = 0;
     for (i = 0; i < count && result == GX_OK; i++) {
-        const uint32_t facet = cx->pool[first + i];
-        result = gxb_facet_edges(cx, facet, &e0, &en);
+        const uint32_t facet = gxp_item(cx, first + i);
+        result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
         for (j = 0; j < en && result == GX_OK; j++) {
-            const uint32_t e = cx->pool[e0 + j];
-            if (joint->point != GXB_NONE ? cx->edges[e >> 1].v[e & 1] != joint->point : e >> 1 != joint->edge) continue;
+            const uint32_t e = gxp_item(cx, e0 + j);
+            if (joint->point != GXB_NONE ? gxb_complex_edge_start(cx, e) != joint->point : e >> 1 != joint->edge)
+                continue;
             joint->found = 1;
-            joint->walled |=
-                cx->facets[facet].wall != 0 || cx->leaves[leaf].removed != 0 ||
-                (joint->point != GXB_NONE ? cx->points[joint->point].wall : cx->edges[joint->edge].wall) != 0;
+            joint->walled |= gxb_complex_facet(cx, facet)->wall != 0 || gxb_complex_leaf(cx, leaf)->removed != 0 ||
+                             (joint->point != GXB_NONE ? gxb_complex_point(cx, joint->point)->wall
+                                                       : gxb_complex_edge(cx, joint->edge)->wall) != 0;
         }
     }
     return result;
@@ -2379,8 +2379,9 @@ static gx_result gxp_is_joint_in_scope(gx_body *body, uint32_t element, uint32_t
     if (edge == GXB_NONE)
         result = gxp_push(body, &body->scratch.joint_edges, GXB_NONE);
     else
-        result = gxp_push_divided_edges(body, body->complex->mesh_edge[edge], &body->scratch.joint_edges);
-    if (result == GX_OK) result = gxp_push_leaves(body, body->complex->root[element], &body->scratch.joint_leaves);
+        result = gxp_push_divided_edges(body, gxb_complex_mesh_edge(body->complex, edge), &body->scratch.joint_edges);
+    if (result == GX_OK)
+        result = gxp_push_leaves(body, gxb_complex_root(body->complex, element), &body->scratch.joint_leaves);
     for (i = 0; i < body->scratch.joint_leaves.count && result == GX_OK; i++) {
         gxp_joint joint;
         if (!gxp_in_scope(body, body->scratch.joint_leaves.data[i])) continue;
@@ -2400,10 +2401,10 @@ static gx_result gxp_cover_pinches(gx_body *body, gxb_triangle *t, uint32_t elem
     const gxb_complex *cx = body->complex;
     uint32_t k, pinched = 0;
     gx_result result = GX_OK;
-    for (k = 0; k < 4; k++) pinched |= body->mesh.node_pinched[cx->elements[4 * element + k]];
+    for (k = 0; k < 4; k++) pinched |= body->mesh.node_pinched[gxb_complex_element_nodes(cx, element)[k]];
     if (!pinched) return GX_OK;
     for (k = 0; k < 4 && result == GX_OK; k++) {
-        const uint32_t node = cx->elements[4 * element + k];
+        const uint32_t node = gxb_complex_element_nodes(cx, element)[k];
         int covered = 0, allowed = 1;
         if (!(body->mesh.node_pinched[node] & 1)) continue;
         if (scoped) result = gxp_is_joint_in_scope(body, element, node, GXB_NONE, &allowed);
@@ -2412,14 +2413,17 @@ static gx_result gxp_cover_pinches(gx_body *body, gxb_triangle *t, uint32_t elem
     }
     for (k = 0; k < 6 && result == GX_OK; k++) {
         int covered = 0, allowed = 1;
-        if (!body->mesh.edge_pinched[cx->element_edges[6 * element + k]]) continue;
+        if (!body->mesh.edge_pinched[gxb_complex_element_edges(cx, element)[k]]) continue;
         if (scoped)
-            result = gxp_is_joint_in_scope(body, element, GXB_NONE, cx->element_edges[6 * element + k], &allowed);
+            result =
+                gxp_is_joint_in_scope(body, element, GXB_NONE, gxb_complex_element_edges(cx, element)[k], &allowed);
         if (result == GX_OK && allowed) result = gxb_complex_cover_edge(body->complex, t, element, k, &covered);
         if (covered && result == GX_OK)
-            result = gxp_push(body, &body->scratch.pinches, cx->elements[4 * element + gxp_edge_nodes[k][0]]);
+            result =
+                gxp_push(body, &body->scratch.pinches, gxb_complex_element_nodes(cx, element)[gxp_edge_nodes[k][0]]);
         if (covered && result == GX_OK)
-            result = gxp_push(body, &body->scratch.pinches, cx->elements[4 * element + gxp_edge_nodes[k][1]]);
+            result =
+                gxp_push(body, &body->scratch.pinches, gxb_complex_element_nodes(cx, element)[gxp_edge_nodes[k][1]]);
     }
     return result;
 }
@@ -2431,11 +2435,12 @@ static gx_result gxp_find_joint_cells(gx_body *body, uint32_t node, gxp_joint *j
     joint->walled = 0;
     body->scratch.joint_leaves.count = 0;
     for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1] && result == GX_OK; j++)
-        result = gxp_push_leaves(body, body->complex->root[body->mesh.node_elements[j]], &body->scratch.joint_leaves);
+        result = gxp_push_leaves(body, gxb_complex_root(body->complex, body->mesh.node_elements[j]),
+                                 &body->scratch.joint_leaves);
     for (i = 0; i < body->scratch.joint_leaves.count && result == GX_OK; i++) {
         const uint32_t leaf = body->scratch.joint_leaves.data[i];
         result = gxp_find_leaf_joint(body, leaf, joint);
-        if (joint->found && !body->complex->leaves[leaf].removed && result == GX_OK)
+        if (joint->found && !gxb_complex_leaf(body->complex, leaf)->removed && result == GX_OK)
             result = gxp_push(body, found, body->leaves.data[leaf].cell);
     }
     return result;
@@ -2465,12 +2470,12 @@ static gx_result gxp_cross_pinches(gx_body *body, uint32_t cell, uint32_t node) 
     if (result == GX_OK && (body->mesh.node_pinched[node] & 1))
         result = gxp_cross_joint(body, cell, node, node, GXB_NONE);
     for (k = 0; k < 6 && result == GX_OK; k++) {
-        const uint32_t edge = cx->element_edges[6 * element + k];
-        const uint32_t a = cx->elements[4 * element + gxp_edge_nodes[k][0]],
-                       b = cx->elements[4 * element + gxp_edge_nodes[k][1]];
+        const uint32_t edge = gxb_complex_element_edges(cx, element)[k];
+        const uint32_t a = gxb_complex_element_nodes(cx, element)[gxp_edge_nodes[k][0]],
+                       b = gxb_complex_element_nodes(cx, element)[gxp_edge_nodes[k][1]];
         if (!body->mesh.edge_pinched[edge] || (a != node && b != node)) continue;
         body->scratch.joint_edges.count = 0;
-        result = gxp_push_divided_edges(body, cx->mesh_edge[edge], &body->scratch.joint_edges);
+        result = gxp_push_divided_edges(body, gxb_complex_mesh_edge(cx, edge), &body->scratch.joint_edges);
         for (i = 0; i < body->scratch.joint_edges.count && result == GX_OK; i++)
             result = gxp_cross_joint(body, cell, node, GXB_NONE, body->scratch.joint_edges.data[i]);
     }
@@ -2510,7 +2515,7 @@ static int gxp_borrow_plane(gx_body *body, gxp_surface *s, uint32_t t) {
 
 /* Does the triangle turn as the plane's own normal says? Seen along the plane's axis. */
 static void gxp_settle_orientation(const gx_body *body, const gxp_surface *s, gxb_triangle *t, uint32_t index) {
-    const gxb_cplane *plane = &body->complex->planes[t->plane];
+    const gxb_cplane *plane = gxb_complex_plane(body->complex, t->plane);
     const int i = (int)(plane->axis + 1) % 3, j = (int)(plane->axis + 2) % 3;
     double p[3][2];
     int k;
@@ -2579,7 +2584,7 @@ static uint32_t gxp_curve_place(const gxp_cut *cut, const gxp_surface *s, uint32
     const double *x = s->given->vertices + 3 * (size_t)s->given->triangles[3 * (size_t)triangle];
     uint32_t place = 0, k, b;
     for (k = 0; k < 3; k++) {
-        const uint32_t along = gxp_grid_place(x[k], cut->body->complex->shift);
+        const uint32_t along = gxp_grid_place(x[k], gxb_complex_shift(cut->body->complex));
         for (b = 0; b < 9; b++) place |= (along >> b & 1) << (3 * b + k);
     }
     return place;
@@ -2628,11 +2633,12 @@ static int32_t gxp_winding_step(const gx_body *body, const gxp_surface *s, uint3
     int32_t step = 0;
     uint32_t l;
     *labelled = 0;
-    for (l = cx->facets[facet].labels; l != GXB_NONE; l = cx->labels[l].next) {
-        if (cx->labels[l].triangle < s->label || cx->labels[l].triangle - s->label >= s->given->triangle_count)
+    for (l = gxb_complex_facet(cx, facet)->labels; l != GXB_NONE; l = gxb_complex_label(cx, l)->next) {
+        if (gxb_complex_label(cx, l)->triangle < s->label ||
+            gxb_complex_label(cx, l)->triangle - s->label >= s->given->triangle_count)
             continue;
         *labelled = 1;
-        step += cx->labels[l].orientation;
+        step += gxb_complex_label(cx, l)->orientation;
     }
     return step;
 }
@@ -2651,11 +2657,11 @@ static int gxp_node_winding(const gx_body *body, const gxp_surface *s, uint32_t 
 /* The winding number around a leaf: around one of its nodes that is off the surface, else around a point inside it. */
 static gx_result gxp_leaf_winding(gx_body *body, const gxp_surface *s, uint32_t leaf, int32_t *winding) {
     const gx_surface *g = s->given;
-    const gxb_leaf *l = &body->complex->leaves[leaf];
+    const gxb_leaf *l = gxb_complex_leaf(body->complex, leaf);
     uint32_t i;
     gx_result result;
     for (i = 0; i < 4 && l->facet_count == 0; i++)
-        if (gxp_node_winding(body, s, body->complex->elements[4 * (size_t)l->element + i], winding)) return GX_OK;
+        if (gxp_node_winding(body, s, gxb_complex_element_nodes(body->complex, l->element)[i], winding)) return GX_OK;
     result = gxp_collect_leaf_points(body, leaf);
     for (i = 0; i < body->scratch.leaf_points.count && result == GX_OK; i++)
         if (body->scratch.leaf_points.data[i] < body->mesh.node_count &&
@@ -2687,13 +2693,13 @@ static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_
     const int32_t winding = body->leaves.mark[leaf].winding;
     uint32_t first, count = 0, i;
     gx_result result = GX_OK;
-    if (winding != 0) result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
-    if (result == GX_OK) result = gxb_leaf_facets(cx, leaf, &first, &count);
+    if (winding != 0) result = gxb_complex_open_element(cx, gxb_complex_leaf(cx, leaf)->element);
+    if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
-        const gxb_facet *f = &cx->facets[cx->pool[first + i]];
+        const gxb_facet *f = gxb_complex_facet(cx, gxp_item(cx, first + i));
         const int front = f->leaf[0] == leaf;
         int labelled;
-        const int32_t step = gxp_winding_step(body, s, cx->pool[first + i], &labelled);
+        const int32_t step = gxp_winding_step(body, s, gxp_item(cx, first + i), &labelled);
         if ((winding != 0 || labelled) && gxp_has_winding(body, f->leaf[front], scoped))
             result = gxp_visit_winding(body, f->leaf[front], winding + (front ? step : -step));
     }
@@ -2711,7 +2717,7 @@ static gx_result gxp_flood_winding(gx_body *body, const gxp_surface *s, uint32_t
 /* Does the flood, which goes across faces and stays in the scope, reach this cell from others of its fragment? Not for
    certain where elements meet in nodes or edges only, or where the caller lists the cells of a scope. */
 static int gxp_is_flooded(const gxp_cut *cut, uint32_t cell) {
-    const uint32_t *node = cut->body->complex->elements + 4 * (size_t)cut->body->cells.data[cell].element;
+    const uint32_t *node = gxb_complex_element_nodes(cut->body->complex, cut->body->cells.data[cell].element);
     uint32_t k;
     if (cut->desc->scope_cell_count > 0) return 0;
     for (k = 0; k < 4; k++)
@@ -2767,8 +2773,8 @@ static gx_result gxp_find_solid(gxp_cut *cut, const gxp_surface *s, int scoped) 
     uint32_t i;
     gx_result result = GX_OK;
     body->scratch.seed_leaves.count = 0;
-    for (i = 0; i < body->complex->wall_count && result == GX_OK; i++)
-        result = gxp_wall_leaves(body, body->complex->walls[i] >> 1, &body->scratch.seed_leaves);
+    for (i = 0; i < gxb_complex_marked_count(body->complex) && result == GX_OK; i++)
+        result = gxp_wall_leaves(body, gxb_complex_marked_facet(body->complex, i), &body->scratch.seed_leaves);
     if (result == GX_OK) result = gxp_seed_untouched(cut);
     if (result == GX_OK) result = gxp_find_windings(body, s, scoped);
     for (i = 0; i < body->scratch.flooded.count && result == GX_OK; i++)
@@ -2801,14 +2807,15 @@ typedef struct gxp_fine_point {
 /* Twice the area of a facet as seen along the axis of its plane, from approximate positions; *error: a bound for its
  * error. */
 static gx_result gxp_rough_area(gxb_complex *cx, uint32_t facet, double *area, double *error) {
-    const uint32_t axis = cx->planes[cx->facets[facet].plane].axis, x = (axis + 1) % 3, y = (axis + 2) % 3;
+    const uint32_t axis = gxb_complex_plane(cx, gxb_complex_facet(cx, facet)->plane)->axis, x = (axis + 1) % 3,
+                   y = (axis + 2) % 3;
     const gxb_ball *o = NULL;
     double a[2] = {0, 0}, b[2] = {0, 0}, sum = 0;
     uint32_t e0, en, i;
-    const gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
+    const gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
     *error = 0;
     for (i = 0; i < en && result == GX_OK; i++) {
-        const gxb_ball *p = &cx->points[cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1]].ball;
+        const gxb_ball *p = &gxb_complex_point(cx, gxb_complex_edge_start(cx, gxp_item(cx, e0 + i)))->ball;
         double size;
         if (i == 0) o = p;
         a[0] = b[0];
@@ -2887,7 +2894,8 @@ static uint32_t gxp_new_index(const gx_body *body, uint32_t cell) {
 static gx_result gxp_rough_share(gx_body *body, uint32_t first, uint32_t end, double enough, double *share,
                                  double *error) {
     gxb_complex *cx = body->complex;
-    const gxb_cplane *plane = &cx->planes[cx->facets[GXP_LINK_FACET(body->scratch.links.data[first])].plane];
+    const gxb_cplane *plane =
+        gxb_complex_plane(cx, gxb_complex_facet(cx, GXP_LINK_FACET(body->scratch.links.data[first]))->plane);
     const double whole = fabs(plane->filter.n[plane->axis]); /* the normal is a product of two of the face's edges */
     double part, part_error;
     gx_result result = GX_OK;
@@ -2923,7 +2931,7 @@ static gx_result gxp_is_wide(gxp_cut *cut, uint32_t first, uint32_t end, double 
 static gx_result gxp_weigh_link(gx_body *body, uint32_t first, uint32_t end, double *share) {
     uint32_t k;
     const uint32_t element = gxp_face_element(
-        body->complex, body->complex->facets[GXP_LINK_FACET(body->scratch.links.data[first])].face, &k);
+        body->complex, gxb_complex_facet(body->complex, GXP_LINK_FACET(body->scratch.links.data[first]))->face, &k);
     gx_result result = gxb_complex_open_element(body->complex, element);
     *share = 0;
     for (; first < end && result == GX_OK; first++) {
@@ -2960,7 +2968,8 @@ static gx_result gxp_weigh_links(gxp_cut *cut, uint32_t index, double *bound) {
         const uint32_t other = GXP_LINK_CELL(body->scratch.links.data[first]),
                        facet = GXP_LINK_FACET(body->scratch.links.data[first]);
         for (end = first + 1; end < last && GXP_LINK_CELL(body->scratch.links.data[end]) == other; end++) {}
-        if (gxp_new_index(body, other) < index || body->complex->face_facet[body->complex->facets[facet].face] == facet)
+        if (gxp_new_index(body, other) < index ||
+            gxb_complex_face_facet(body->complex, gxb_complex_facet(body->complex, facet)->face) == facet)
             continue;
         result = gxp_is_wide(cut, first, end, bound, &wide);
         if (result == GX_OK && !wide) result = gxp_push(body, &body->scratch.narrow, first);
@@ -3003,13 +3012,13 @@ static gx_result gxp_collect_touched(gxp_cut *cut) {
     uint32_t i;
     gx_result result = GX_OK;
     body->scratch.wall_leaves.count = 0;
-    for (i = 0; i < body->complex->wall_count && result == GX_OK; i++)
-        if (body->complex->walls[i] & 1)
-            result = gxp_wall_leaves(body, body->complex->walls[i] >> 1, &body->scratch.wall_leaves);
+    for (i = 0; i < gxb_complex_marked_count(body->complex) && result == GX_OK; i++)
+        if (gxb_complex_marked_wall(body->complex, i))
+            result = gxp_wall_leaves(body, gxb_complex_marked_facet(body->complex, i), &body->scratch.wall_leaves);
     body->scratch.stamp++;
     for (i = 0; i < body->scratch.wall_leaves.count && result == GX_OK; i++) {
         const uint32_t cell = body->leaves.data[body->scratch.wall_leaves.data[i]].cell;
-        if (body->complex->leaves[body->scratch.wall_leaves.data[i]].removed ||
+        if (gxb_complex_leaf(body->complex, body->scratch.wall_leaves.data[i])->removed ||
             body->cells.stamp[cell] == body->scratch.stamp)
             continue;
         body->cells.stamp[cell] = body->scratch.stamp;
@@ -3025,7 +3034,7 @@ static gx_result gxp_list_new_leaves(gxp_cut *cut) {
     uint32_t leaf;
     gx_result result = GX_OK;
     for (leaf = body->undo.counts[GXP_LEAVES]; leaf < body->leaves.count && result == GX_OK; leaf++) {
-        const uint32_t parent = body->complex->leaves[leaf].parent, next = body->leaves.data[parent].next;
+        const uint32_t parent = gxb_complex_leaf(body->complex, leaf)->parent, next = body->leaves.data[parent].next;
         body->leaves.data[leaf].next = next;
         result = gxp_set_leaf(body, parent, body->leaves.data[parent].cell, leaf);
     }
@@ -3050,24 +3059,24 @@ static gx_result gxp_new_cell(gx_body *body, uint32_t like, uint32_t *slot) {
 static gx_result gxp_walk_leaves(gx_body *body, uint32_t start) {
     gxb_complex *cx = body->complex;
     uint32_t done = 0, first, count, i;
-    gx_result result = gxb_complex_open_element(cx, cx->leaves[start].element);
+    gx_result result = gxb_complex_open_element(cx, gxb_complex_leaf(cx, start)->element);
     body->scratch.part_leaves.count = 0;
     body->leaves.mark[start].stamp = body->scratch.stamp;
     if (result == GX_OK) result = gxp_push(body, &body->scratch.part_leaves, start);
     if (result == GX_OK) result = gxp_push(body, &body->scratch.link_first, body->scratch.links.count);
     while (done < body->scratch.part_leaves.count && result == GX_OK) {
         const uint32_t leaf = body->scratch.part_leaves.data[done++];
-        result = gxb_leaf_facets(cx, leaf, &first, &count);
+        result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
         if (result == GX_OK) result = gxp_keys_room(body, &body->scratch.links, count);
         for (i = 0; i < count && result == GX_OK; i++) {
-            const uint32_t facet = cx->pool[first + i];
-            const gxb_facet *f = &cx->facets[facet];
+            const uint32_t facet = gxp_item(cx, first + i);
+            const gxb_facet *f = gxb_complex_facet(cx, facet);
             const uint32_t other = f->leaf[f->leaf[0] == leaf];
             if (!gxp_is_link(body, facet)) continue;
             if (f->face != GXB_NONE)
                 body->scratch.links.data[body->scratch.links.count++] =
                     (uint64_t)other << 33 | (uint64_t)facet << 2 |
-                    gxp_local_face(cx, cx->leaves[leaf].element, f->face);
+                    gxp_local_face(cx, gxb_complex_leaf(cx, leaf)->element, f->face);
             else if (body->leaves.mark[other].stamp != body->scratch.stamp) {
                 body->leaves.mark[other].stamp = body->scratch.stamp;
                 result = gxp_push(body, &body->scratch.part_leaves, other);
@@ -3102,7 +3111,8 @@ static gx_result gxp_divide_cell(gxp_cut *cut, uint32_t cell) {
     for (i = 0; i < body->scratch.cell_leaves.count && result == GX_OK; i++) {
         uint32_t slot = cell;
         leaf = body->scratch.cell_leaves.data[i];
-        if (body->complex->leaves[leaf].removed || body->leaves.mark[leaf].stamp == body->scratch.stamp) continue;
+        if (gxb_complex_leaf(body->complex, leaf)->removed || body->leaves.mark[leaf].stamp == body->scratch.stamp)
+            continue;
         result = gxp_walk_leaves(body, leaf);
         if (result == GX_OK && pieces++ > 0) {
             result = gxp_new_cell(body, cell, &slot);
@@ -3125,9 +3135,9 @@ static gx_result gxp_divide_cell(gxp_cut *cut, uint32_t cell) {
 static gx_result gxp_touch_around(gx_body *body, uint32_t leaf) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i;
-    gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
+    gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
-        const gxb_facet *f = &cx->facets[cx->pool[first + i]];
+        const gxb_facet *f = gxb_complex_facet(cx, gxp_item(cx, first + i));
         const uint32_t other = f->leaf[f->leaf[0] == leaf];
         if (gxp_is_kept(body, other)) result = gxp_push(body, &body->scratch.touched, body->leaves.data[other].cell);
     }
@@ -3159,21 +3169,21 @@ GXP_PREFETCHES void gxp_prefetch_leaves(const gx_body *body, uint32_t index) {
     uint32_t leaf, i;
     if (index + 4 < count && (leaf = body->cells.data[touched[index + 4]].first_leaf) != GXP_NONE) {
         GXP_PREFETCH(&body->leaves.data[leaf]);
-        GXP_PREFETCH(&cx->leaves[leaf]);
+        GXP_PREFETCH(gxb_complex_leaf(cx, leaf));
     }
     if (index + 3 < count)
         for (leaf = body->cells.data[touched[index + 3]].first_leaf; leaf != GXP_NONE;
              leaf = body->leaves.data[leaf].next)
-            GXP_PREFETCH(&cx->leaves[leaf]);
+            GXP_PREFETCH(gxb_complex_leaf(cx, leaf));
     if (index + 2 < count)
         for (leaf = body->cells.data[touched[index + 2]].first_leaf; leaf != GXP_NONE;
              leaf = body->leaves.data[leaf].next)
-            GXP_PREFETCH(cx->pool + cx->leaves[leaf].facets);
+            GXP_PREFETCH(gxb_complex_list(cx, gxb_complex_leaf(cx, leaf)->facets));
     if (index + 1 < count)
         for (leaf = body->cells.data[touched[index + 1]].first_leaf; leaf != GXP_NONE;
              leaf = body->leaves.data[leaf].next)
-            for (i = 0; i < cx->leaves[leaf].facet_count; i++)
-                GXP_PREFETCH(&cx->facets[cx->pool[cx->leaves[leaf].facets + i]]);
+            for (i = 0; i < gxb_complex_leaf(cx, leaf)->facet_count; i++)
+                GXP_PREFETCH(gxb_complex_facet(cx, gxp_item(cx, gxb_complex_leaf(cx, leaf)->facets + i)));
 }
 
 /* Divides all touched cells. Leaves the list of these as it was, makes the list of new cells and lists their links. */
@@ -3205,7 +3215,7 @@ static gx_result gxp_divide_cells(gxp_cut *cut) {
 
 /* Visits what lies across one piece of an element's face. */
 static gx_result gxp_cross_facet(gx_body *body, uint32_t facet, uint32_t leaf) {
-    const gxb_facet *f = &body->complex->facets[facet];
+    const gxb_facet *f = gxb_complex_facet(body->complex, facet);
     const uint32_t other = f->leaf[f->leaf[0] == leaf];
     if (other == GXB_NONE || body->cells.stamp[body->leaves.data[other].cell] == body->scratch.stamp ||
         !gxp_is_link(body, facet))
@@ -3216,16 +3226,16 @@ static gx_result gxp_cross_facet(gx_body *body, uint32_t facet, uint32_t leaf) {
 /* Visits the cells that links join to the cell of a whole element across the face opposite to local node k. */
 static gx_result gxp_cross_whole_face(gx_body *body, uint32_t element, uint32_t k) {
     gxb_complex *cx = body->complex;
-    const uint32_t face = cx->element_faces[4 * element + k], other = gxp_neighbour(body, element, k);
+    const uint32_t face = gxb_complex_element_faces(cx, element)[k], other = gxp_neighbour(body, element, k);
     uint32_t i;
     gx_result result;
     if (other == GXP_NONE) return GX_OK;
-    if (cx->face_facet[face] == GXB_NONE)
+    if (gxb_complex_face_facet(cx, face) == GXB_NONE)
         return gxp_is_kept(body, other)
                  ? gxp_visit_cell(body, body->leaves.data[other].cell, &body->scratch.subdomain_cells)
                  : GX_OK;
     body->scratch.face_facets.count = 0;
-    result = gxp_push_divided_facets(body, cx->face_facet[face], &body->scratch.face_facets);
+    result = gxp_push_divided_facets(body, gxb_complex_face_facet(cx, face), &body->scratch.face_facets);
     for (i = 0; i < body->scratch.face_facets.count && result == GX_OK; i++)
         result = gxp_cross_facet(body, body->scratch.face_facets.data[i], element);
     return result;
@@ -3253,19 +3263,19 @@ static gx_result gxp_cross_faces(gx_body *body, uint32_t cell, uint32_t node) {
     gxb_complex *cx = body->complex;
     const uint32_t element = body->cells.data[cell].element;
     const uint32_t local = (uint32_t)gxp_local_node(body, element, node),
-                   opposite = cx->element_faces[4 * element + local];
+                   opposite = gxb_complex_element_faces(cx, element)[local];
     uint32_t leaf, first, count, i, k;
     gx_result result = GX_OK;
     for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
          leaf = body->leaves.data[leaf].next) {
-        if (cx->leaves[leaf].facet_count == 0) {
+        if (gxb_complex_leaf(cx, leaf)->facet_count == 0) {
             for (k = 0; k < 4 && result == GX_OK; k++)
                 if (k != local) result = gxp_cross_whole_face(body, element, k);
             continue;
         }
-        result = gxb_leaf_facets(cx, leaf, &first, &count);
+        result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
         for (i = 0; i < count && result == GX_OK; i++) {
-            const uint32_t facet = cx->pool[first + i], face = cx->facets[facet].face;
+            const uint32_t facet = gxp_item(cx, first + i), face = gxb_complex_facet(cx, facet)->face;
             if (face != GXB_NONE && face != opposite) result = gxp_cross_facet(body, facet, leaf);
         }
     }
@@ -3317,7 +3327,7 @@ static gx_result gxp_set_copy(gx_body *body, uint32_t node, uint32_t copy, uint3
 }
 
 static gx_result gxp_pair_cell(gx_body *body, uint32_t cell) {
-    const uint32_t *node = body->complex->elements + 4 * (size_t)body->cells.data[cell].element;
+    const uint32_t *node = gxb_complex_element_nodes(body->complex, body->cells.data[cell].element);
     uint32_t k;
     gx_result result = gxp_keys_room(body, &body->scratch.pairs, 4);
     for (k = 0; k < 4 && result == GX_OK; k++) result = gxp_push_key(body, &body->scratch.pairs, node[k], cell);
@@ -3448,11 +3458,11 @@ static gx_result gxp_new_boundary_point(gx_body *body, uint32_t element, uint32_
     gx_result result = GX_OK;
     if (point >= body->scratch.boundary.slots.count) {
         result = gxp_words_room(body, &body->scratch.boundary.slots,
-                                body->complex->point_count - body->scratch.boundary.slots.count);
+                                gxb_complex_point_count(body->complex) - body->scratch.boundary.slots.count);
         if (result != GX_OK) return result;
         memset(body->scratch.boundary.slots.data + body->scratch.boundary.slots.count, 0xff,
-               (body->complex->point_count - body->scratch.boundary.slots.count) * sizeof(uint32_t));
-        body->scratch.boundary.slots.count = body->complex->point_count;
+               (gxb_complex_point_count(body->complex) - body->scratch.boundary.slots.count) * sizeof(uint32_t));
+        body->scratch.boundary.slots.count = gxb_complex_point_count(body->complex);
     }
     result = gxp_reserve(&body->config.allocator, &body->scratch.boundary.lambdas, 4 * sizeof(double),
                          body->scratch.boundary.points.count, &body->scratch.boundary.lambda_capacity, 1);
@@ -3475,12 +3485,12 @@ static gx_result gxp_add_boundary_point(gx_body *body, uint32_t element, uint32_
 static gx_result gxp_add_boundary_facet(gx_body *body, uint32_t element, uint32_t facet, int inward) {
     gxb_complex *cx = body->complex;
     uint32_t e0, en, i, corner[3] = {0, 0, 0};
-    gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
+    gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
     if (result == GX_OK) result = gxp_words_room(body, &body->scratch.boundary.triangles, 3 * (size_t)en);
     for (i = 0; i < en && result == GX_OK; i++) {
-        const uint32_t e = cx->pool[e0 + i];
+        const uint32_t e = gxp_item(cx, e0 + i);
         uint32_t *triangle = body->scratch.boundary.triangles.data + body->scratch.boundary.triangles.count;
-        result = gxp_add_boundary_point(body, element, cx->edges[e >> 1].v[e & 1], &corner[i < 2 ? i : 2]);
+        result = gxp_add_boundary_point(body, element, gxb_complex_edge_start(cx, e), &corner[i < 2 ? i : 2]);
         if (i < 2) continue;
         triangle[0] = corner[0];
         triangle[inward ? 2 : 1] = corner[1];
@@ -3497,16 +3507,16 @@ static gx_result gxp_add_boundary_facet(gx_body *body, uint32_t element, uint32_
 static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, int all) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i;
-    gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
+    gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
-        const uint32_t facet = cx->pool[first + i];
-        const gxb_facet *f = &cx->facets[facet];
+        const uint32_t facet = gxp_item(cx, first + i);
+        const gxb_facet *f = gxb_complex_facet(cx, facet);
         const int inward = f->leaf[0] == leaf;
         const uint32_t other = f->leaf[inward];
         if (f->face != GXB_NONE)
             result = gxp_push(body, &body->scratch.boundary.facets, facet << 1 | (uint32_t)inward);
         else if (all || !gxp_is_kept(body, other) || body->leaves.data[other].cell != body->leaves.data[leaf].cell)
-            result = gxp_add_boundary_facet(body, cx->leaves[leaf].element, facet, inward);
+            result = gxp_add_boundary_facet(body, gxb_complex_leaf(cx, leaf)->element, facet, inward);
     }
     return result;
 }
@@ -3645,7 +3655,7 @@ static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned 
     *k = gxp_nearest_vertex(body);
     for (i = 0; i < body->scratch.boundary.facets.count && result == GX_OK; i++) {
         const uint32_t facet = body->scratch.boundary.facets.data[i] >> 1;
-        if (cx->facets[facet].face == cx->element_faces[4 * (size_t)element + *k])
+        if (gxb_complex_facet(cx, facet)->face == gxb_complex_element_faces(cx, element)[*k])
             result = gxp_add_boundary_facet(body, element, facet, (int)(body->scratch.boundary.facets.data[i] & 1));
     }
     if (result == GX_OK)
@@ -3683,14 +3693,15 @@ static uint32_t gxp_count_leaves(const gx_body *body, uint32_t cell) {
 
 /* The leaf in which the middle of the element lies, roughly */
 static uint32_t gxp_middle_leaf(const gxb_complex *cx, uint32_t element) {
-    uint32_t reference = cx->root[element], n;
+    uint32_t reference = gxb_complex_root(cx, element), n;
     double middle[3] = {0, 0, 0};
     int k;
     for (n = 0; n < 4; n++)
-        for (k = 0; k < 3; k++) middle[k] += 0.25 * cx->points[cx->elements[4 * (size_t)element + n]].ball.x[k];
+        for (k = 0; k < 3; k++)
+            middle[k] += 0.25 * gxb_complex_point(cx, gxb_complex_element_nodes(cx, element)[n])->ball.x[k];
     while (reference & 1) {
-        const gxb_node *node = &cx->nodes[reference >> 1];
-        const gxb_plane_filter *f = &cx->planes[node->plane].filter;
+        const gxb_node *node = gxb_complex_tree_node(cx, reference >> 1);
+        const gxb_plane_filter *f = &gxb_complex_plane(cx, node->plane)->filter;
         double height = 0;
         for (k = 0; k < 3; k++) height += f->n[k] * (middle[k] - f->base[k]);
         reference = node->child[height > 0 ? 0 : 1];
@@ -3702,7 +3713,8 @@ static uint32_t gxp_middle_leaf(const gxb_complex *cx, uint32_t element) {
    removed from the element, so that its cells are not all of it, or its other cells have more leaves to look at than
    the fresh ones have. */
 static uint32_t gxp_rest_cell(const gx_body *body, uint32_t element) {
-    const uint32_t root = body->complex->root[element], all = root & 1 ? body->complex->nodes[root >> 1].leaves : 1;
+    const uint32_t root = gxb_complex_root(body->complex, element),
+                   all = root & 1 ? gxb_complex_tree_node(body->complex, root >> 1)->leaves : 1;
     const uint32_t rest = body->leaves.data[gxp_middle_leaf(body->complex, element)].cell;
     uint32_t cell, leaf, sum = 0, others = 0;
     if (gxp_new_index(body, rest) == GXP_NONE) return GXP_NONE;
@@ -3767,7 +3779,7 @@ static gx_result gxp_integrate_removed(gxp_cut *cut, const gxp_words *removed) {
     gx_result result = GX_OK;
     uint32_t i;
     for (i = 0; i < removed->count && result == GX_OK; i++) {
-        const uint32_t leaf = removed->data[i], element = body->complex->leaves[leaf].element;
+        const uint32_t leaf = removed->data[i], element = gxb_complex_leaf(body->complex, leaf)->element;
         gxi_moments2 m;
         unsigned k;
         gxp_clear_boundary(body, 1);
@@ -3885,17 +3897,17 @@ GXP_PREFETCHES void gxp_prefetch_links(const gx_body *body, uint32_t index) {
     uint32_t j, i;
     if (index + 3 < count)
         for (j = at[index + 3]; j < at[index + 4]; j++)
-            GXP_PREFETCH(&cx->facets[GXP_LINK_FACET(body->scratch.links.data[j])]);
+            GXP_PREFETCH(gxb_complex_facet(cx, GXP_LINK_FACET(body->scratch.links.data[j])));
     if (index + 2 < count)
         for (j = at[index + 2]; j < at[index + 3]; j++) {
-            const gxb_facet *f = &cx->facets[GXP_LINK_FACET(body->scratch.links.data[j])];
-            GXP_PREFETCH(cx->pool + f->loop);
-            GXP_PREFETCH(&cx->planes[f->plane].axis);
+            const gxb_facet *f = gxb_complex_facet(cx, GXP_LINK_FACET(body->scratch.links.data[j]));
+            GXP_PREFETCH(gxb_complex_list(cx, f->loop));
+            GXP_PREFETCH(&gxb_complex_plane(cx, f->plane)->axis);
         }
     if (index + 1 < count)
         for (j = at[index + 1]; j < at[index + 2]; j++) {
-            const gxb_facet *f = &cx->facets[GXP_LINK_FACET(body->scratch.links.data[j])];
-            for (i = 0; i < f->loop_count; i++) GXP_PREFETCH(&cx->edges[cx->pool[f->loop + i] >> 1]);
+            const gxb_facet *f = gxb_complex_facet(cx, GXP_LINK_FACET(body->scratch.links.data[j]));
+            for (i = 0; i < f->loop_count; i++) GXP_PREFETCH(gxb_complex_edge(cx, gxp_item(cx, f->loop + i) >> 1));
         }
 }
 
@@ -3921,8 +3933,9 @@ static gx_result gxp_push_leaf_elements(gx_body *body, uint32_t facet) {
     uint32_t i;
     gx_result result = GX_OK;
     for (i = 0; i < 2 && result == GX_OK; i++)
-        if (cx->facets[facet].leaf[i] != GXB_NONE)
-            result = gxp_push(body, &body->skin.dirty, cx->leaves[cx->facets[facet].leaf[i]].element);
+        if (gxb_complex_facet(cx, facet)->leaf[i] != GXB_NONE)
+            result =
+                gxp_push(body, &body->skin.dirty, gxb_complex_leaf(cx, gxb_complex_facet(cx, facet)->leaf[i])->element);
     return result;
 }
 
@@ -3938,8 +3951,10 @@ static gx_result gxp_note_for_skin(gxp_cut *cut, uint32_t first_facet) {
         body->skin.made = 0;
         return GX_OK;
     }
-    for (i = first_facet; i < cx->facet_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, i);
-    for (i = 0; i < cx->wall_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, cx->walls[i] >> 1);
+    for (i = first_facet; i < gxb_complex_facet_count(cx) && result == GX_OK; i++)
+        result = gxp_push_leaf_elements(body, i);
+    for (i = 0; i < gxb_complex_marked_count(cx) && result == GX_OK; i++)
+        result = gxp_push_leaf_elements(body, gxb_complex_marked_facet(cx, i));
     for (i = 0; i < body->undo.cells.rows.count && result == GX_OK; i++)
         result = gxp_push(body, &body->skin.dirty, body->cells.data[body->undo.cells.rows.data[i]].element);
     for (i = 0; i < body->scratch.pinches.count; i++) /* edges that were divided there without a new facet */
@@ -4031,7 +4046,7 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
     result = gxp_check_cut(&cut);
     if (result != GX_OK) return gxp_fail(failure, result, cut.failure.index, cut.failure.surface);
     gxp_begin(&cut);
-    first_facet = body->complex->facet_count;
+    first_facet = gxb_complex_facet_count(body->complex);
     start = gxp_seconds(body);
     result = gxp_arrange(&cut);
     cut.report.seconds_arrangement = gxp_seconds(body) - start;
@@ -4137,7 +4152,7 @@ GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thicknes
     double *normals;
     memset(&none, 0, sizeof none);
     if (allocator == NULL) allocator = &none;
-    if (!sheet || !vertices || !vertex_count || !triangles || !triangle_count || !gxbp_is_allocator(allocator))
+    if (!sheet || !vertices || !vertex_count || !triangles || !triangle_count || !gxb_is_allocator(allocator))
         return GX_ERROR_ARGUMENT;
     if (!gxp_is_finite(thickness)) return GX_ERROR_NOT_FINITE;
     if (!(thickness > 0)) return GX_ERROR_ARGUMENT;
@@ -4185,10 +4200,10 @@ static gx_result gxp_cell_in_region(gx_body *body, uint32_t cell, const gx_regio
     *inside = 0;
     for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK && !*inside;
          leaf = body->leaves.data[leaf].next) {
-        if (body->complex->leaves[leaf].facet_count == 0) {
+        if (gxb_complex_leaf(body->complex, leaf)->facet_count == 0) {
             for (i = 0; i < 4; i++)
-                *inside |=
-                    gxp_point_in_region(body, body->complex->elements[4 * body->cells.data[cell].element + i], r);
+                *inside |= gxp_point_in_region(
+                    body, gxb_complex_element_nodes(body->complex, body->cells.data[cell].element)[i], r);
             continue;
         }
         result = gxp_collect_leaf_points(body, leaf);
@@ -4271,7 +4286,7 @@ static void gxp_cell_corners(const gx_body *body, const gxp_cell *cell, int move
     int n, k;
     for (n = 0; n < 4; n++) {
         const double *rest =
-            body->mesh.positions + 3 * (size_t)body->complex->elements[4 * (size_t)cell->element + (size_t)n];
+            body->mesh.positions + 3 * (size_t)gxb_complex_element_nodes(body->complex, cell->element)[n];
         const double *u = body->copies.displacement + 3 * (size_t)cell->copies[n];
         for (k = 0; k < 3; k++) x[n][k] = rest[k] - center[k] + (moved ? u[k] : 0);
     }
@@ -5159,7 +5174,6 @@ static gx_result gxp_step(gx_body *body, const gx_step_desc *step, gx_step_repor
 
 GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report, gx_failure *failure) {
     const double start = body != NULL ? gxp_seconds(body) : 0;
-    gx_failure ignored;
     gx_step_desc step;
     gx_result result;
     if (body == NULL || desc == NULL) return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
@@ -5168,9 +5182,7 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     if (result == GX_OK) result = gxp_complete_step(body, desc, &step);
     if (gxp_fail(failure, result, SIZE_MAX, SIZE_MAX) != GX_OK) return result;
     if (body->model.empty) {
-        if (failure == NULL) failure = &ignored;
-        result = gxsp_check_step(&step, failure);
-        if (result == GX_OK) result = gxsp_check_epochs(&step, body->cuts.epoch, failure);
+        result = gxs_step_check(&step, body->cuts.epoch, failure);
         if (result == GX_OK && report != NULL) {
             memset(report, 0, sizeof *report);
             report->stop = GXS_STOP_ASLEEP;
@@ -5215,12 +5227,12 @@ static gx_result gxp_list_outer_faces(gx_body *body) {
     const gxb_complex *cx = body->complex;
     gxp_skin *s = &body->skin;
     uint32_t e, k;
-    gx_result result = gxp_start_words(body, &s->boundary, cx->face_count);
+    gx_result result = gxp_start_words(body, &s->boundary, gxb_complex_face_count(cx));
     body->skin.outer_faces.count = 0;
     for (e = 0; e < body->mesh.element_count && result == GX_OK; e++)
         for (k = 0; k < 4 && result == GX_OK; k++) {
             if (gxp_neighbour(body, e, k) != GXP_NONE) continue;
-            s->boundary.data[cx->element_faces[4 * e + k]] = body->skin.outer_faces.count;
+            s->boundary.data[gxb_complex_element_faces(cx, e)[k]] = body->skin.outer_faces.count;
             result = gxp_push(body, &body->skin.outer_faces, 4 * e + k);
         }
     return result;
@@ -5246,22 +5258,23 @@ static void gxp_join_corners(gx_body *body, uint32_t p, uint32_t q, uint32_t a, 
 static gx_result gxp_join_faces(gx_body *body) {
     const gxb_complex *cx = body->complex;
     uint32_t i, j, *first, *second;
-    gx_result result = gxp_start_words(body, &body->skin.edge_faces, 2 * (size_t)cx->mesh_edge_count);
+    gx_result result = gxp_start_words(body, &body->skin.edge_faces, 2 * (size_t)gxb_complex_mesh_edge_count(cx));
     if (result != GX_OK) return result;
     first = body->skin.edge_faces.data;
-    second = first + cx->mesh_edge_count;
-    memset(first, 0xff, 2 * (size_t)cx->mesh_edge_count * sizeof *first);
+    second = first + gxb_complex_mesh_edge_count(cx);
+    memset(first, 0xff, 2 * (size_t)gxb_complex_mesh_edge_count(cx) * sizeof *first);
     for (i = 0; i < body->skin.outer_faces.count; i++)
         for (j = 0; j < 6; j++) {
             const uint32_t e = body->skin.outer_faces.data[i] / 4, k = body->skin.outer_faces.data[i] % 4,
-                           edge = cx->element_edges[6 * e + j];
+                           edge = gxb_complex_element_edges(cx, e)[j];
             const uint32_t a = gxp_edge_nodes[j][0], b = gxp_edge_nodes[j][1];
             if (a == k || b == k || body->mesh.edge_pinched[edge]) continue;
             if (first[edge] == GXP_NONE)
                 first[edge] = i;
             else if (second[edge] == GXP_NONE) {
                 second[edge] = i;
-                gxp_join_corners(body, first[edge], i, cx->elements[4 * e + a], cx->elements[4 * e + b]);
+                gxp_join_corners(body, first[edge], i, gxb_complex_element_nodes(cx, e)[a],
+                                 gxb_complex_element_nodes(cx, e)[b]);
             }
         }
     return GX_OK;
@@ -5461,11 +5474,11 @@ static void gxp_weigh_point(const gxp_skin_face *face, const double lambda[4], u
 /* Outside by barycentric interpolation, on cut faces by the cut triangle's map. */
 static void gxp_set_texture(gx_body *body, uint32_t vertex, const gxp_skin_face *face, const double lambda[4]) {
     const double *x = body->skin.rest + 3 * (size_t)vertex, *map = gxp_label_map(body, face->label);
-    const uint32_t *node = body->complex->elements + 4 * (size_t)face->element;
+    const uint32_t *node = gxb_complex_element_nodes(body->complex, face->element);
     int i, k;
     for (i = 0; i < 2; i++) {
         double t = map != NULL ? map[4 * i + 3] : 0;
-        for (k = 0; k < 3 && map != NULL; k++) t += map[4 * i + k] * (x[k] - body->complex->origin[k]);
+        for (k = 0; k < 3 && map != NULL; k++) t += map[4 * i + k] * (x[k] - gxb_complex_origin(body->complex)[k]);
         for (k = 0; k < 4 && face->outer && body->mesh.texture != NULL; k++)
             t += lambda[k] * (double)body->mesh.texture[2 * (size_t)node[k] + (size_t)i];
         body->skin.texture[2 * (size_t)vertex + (size_t)i] = (float)t;
@@ -5645,12 +5658,12 @@ static int gxp_is_ear(gx_body *body, const uint32_t *p, uint32_t n, uint32_t i, 
 static gx_result gxp_add_skin_facet(gx_body *body, const gxp_skin_face *face, uint32_t facet, uint32_t leaf) {
     gxb_complex *cx = body->complex;
     gxp_words *points = &body->skin.corner_points, *vertices = &body->skin.corner_vertices;
-    const int inward = cx->facets[facet].leaf[0] == leaf;
+    const int inward = gxb_complex_facet(cx, facet)->leaf[0] == leaf;
     uint32_t *p, *v, e0, en, i, n, vertex = GXP_NONE;
-    gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
+    gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
     points->count = vertices->count = 0;
     for (i = 0; i < en && result == GX_OK; i++) {
-        const uint32_t point = cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1];
+        const uint32_t point = gxb_complex_edge_start(cx, gxp_item(cx, e0 + i));
         result = gxp_find_vertex(body, face, point, &vertex);
         if (result == GX_OK) result = gxp_push(body, points, point);
         if (result == GX_OK) result = gxp_push(body, vertices, vertex);
@@ -5659,7 +5672,8 @@ static gx_result gxp_add_skin_facet(gx_body *body, const gxp_skin_face *face, ui
     v = vertices->data;
     for (n = points->count, i = 0; n >= 3 && result == GX_OK; n--) {
         uint32_t triangle[3], tries = 0;
-        for (i %= n; tries < n && !gxp_is_ear(body, p, n, i, cx->facets[facet].plane); i = (i + 1) % n) tries++;
+        for (i %= n; tries < n && !gxp_is_ear(body, p, n, i, gxb_complex_facet(cx, facet)->plane); i = (i + 1) % n)
+            tries++;
         triangle[0] = v[(i + n - 1) % n];
         triangle[1] = v[i];
         triangle[2] = v[(i + 1) % n];
@@ -5678,7 +5692,7 @@ static int gxp_cells_part(const gx_body *body, uint32_t a, uint32_t b) {
     uint32_t k;
     if (p->element == q->element) return memcmp(p->copies, q->copies, sizeof p->copies) != 0;
     for (k = 0; k < 4; k++) {
-        const int j = gxp_local_node(body, q->element, body->complex->elements[4 * p->element + k]);
+        const int j = gxp_local_node(body, q->element, gxb_complex_element_nodes(body->complex, p->element)[k]);
         if (j >= 0 && p->copies[k] != q->copies[j]) return 1;
     }
     return 0;
@@ -5686,16 +5700,16 @@ static int gxp_cells_part(const gx_body *body, uint32_t a, uint32_t b) {
 
 /* -1: the facet is not seen from the leaf; 0: outer surface; 1: face of a cut */
 static int gxp_visible(const gx_body *body, uint32_t facet, uint32_t leaf) {
-    const gxb_facet *f = &body->complex->facets[facet];
+    const gxb_facet *f = gxb_complex_facet(body->complex, facet);
     const uint32_t other = f->leaf[f->leaf[0] == leaf];
     if (other == GXB_NONE) return 0;
-    if (body->complex->leaves[other].removed) return 1;
+    if (gxb_complex_leaf(body->complex, other)->removed) return 1;
     return f->wall && gxp_cells_part(body, body->leaves.data[leaf].cell, body->leaves.data[other].cell) ? 1 : -1;
 }
 
 /* The outer face opposite to the element's node k, as a cell has it */
 static gx_result gxp_outer_face(gx_body *body, uint32_t k, gxp_skin_face *face) {
-    const uint32_t number = body->skin.boundary.data[body->complex->element_faces[4 * face->element + k]];
+    const uint32_t number = body->skin.boundary.data[gxb_complex_element_faces(body->complex, face->element)[k]];
     uint32_t j;
     gx_result result = GX_OK;
     face->outer = 1;
@@ -5714,21 +5728,22 @@ static gx_result gxp_outer_face(gx_body *body, uint32_t k, gxp_skin_face *face) 
 /* The face of a cut that the leaf has at the facet. Of several triangles that cover it the first counts. */
 static void gxp_cut_face(const gx_body *body, uint32_t facet, uint32_t leaf, gxp_skin_face *face) {
     const gxb_complex *cx = body->complex;
-    const gxb_facet *f = &cx->facets[facet];
+    const gxb_facet *f = gxb_complex_facet(cx, facet);
     const int front = f->leaf[0] == leaf;
     uint32_t l, first = GXP_NONE;
     int k;
-    for (l = f->labels; l != GXB_NONE; l = cx->labels[l].next)
-        if (first == GXP_NONE || cx->labels[l].triangle < cx->labels[first].triangle) first = l;
+    for (l = f->labels; l != GXB_NONE; l = gxb_complex_label(cx, l)->next)
+        if (first == GXP_NONE || gxb_complex_label(cx, l)->triangle < gxb_complex_label(cx, first)->triangle) first = l;
     face->outer = 0;
-    face->label = first == GXP_NONE ? GXP_NONE : cx->labels[first].triangle;
+    face->label = first == GXP_NONE ? GXP_NONE : gxb_complex_label(cx, first)->triangle;
     face->surface = first == GXP_NONE ? GX_SKIN_SEVERED : 1 + gxp_label_surface(body, face->label);
     memset(face->slots, 0xff, sizeof face->slots);
     for (k = 0; k < 3; k++)
-        face->normal[k] = front ? -cx->planes[face->plane].filter.n[k] : cx->planes[face->plane].filter.n[k];
+        face->normal[k] =
+            front ? -gxb_complex_plane(cx, face->plane)->filter.n[k] : gxb_complex_plane(cx, face->plane)->filter.n[k];
     face->group[0] = face->surface;
     if (body->skin.desc.smooth_cuts && first != GXP_NONE)
-        face->group[1] = (uint32_t)(front ^ (cx->labels[first].orientation < 0));
+        face->group[1] = (uint32_t)(front ^ (gxb_complex_label(cx, first)->orientation < 0));
     else
         face->group[1] = 2 + 2 * face->plane + (uint32_t)front;
 }
@@ -5736,14 +5751,14 @@ static void gxp_cut_face(const gx_body *body, uint32_t facet, uint32_t leaf, gxp
 static gx_result gxp_skin_leaf(gx_body *body, uint32_t leaf, gxp_skin_face *face) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i, k;
-    gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
+    gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
-        const uint32_t facet = cx->pool[first + i];
+        const uint32_t facet = gxp_item(cx, first + i);
         const int kind = gxp_visible(body, facet, leaf);
         if (kind < 0) continue;
-        face->plane = cx->facets[facet].plane;
+        face->plane = gxb_complex_facet(cx, facet)->plane;
         if (kind == 0) {
-            for (k = 0; cx->element_faces[4 * face->element + k] != cx->facets[facet].face;) k++;
+            for (k = 0; gxb_complex_element_faces(cx, face->element)[k] != gxb_complex_facet(cx, facet)->face;) k++;
             result = gxp_outer_face(body, k, face);
         } else
             gxp_cut_face(body, facet, leaf, face);
@@ -5761,8 +5776,8 @@ static gx_result gxp_skin_whole(gx_body *body, gxp_skin_face *face) {
         if (gxp_neighbour(body, face->element, k) != GXP_NONE) continue;
         result = gxp_outer_face(body, k, face);
         for (j = 0; j < 3 && result == GX_OK; j++)
-            result =
-                gxp_find_vertex(body, face, body->complex->elements[4 * face->element + gxp_outward[k][j]], &vertex[j]);
+            result = gxp_find_vertex(
+                body, face, gxb_complex_element_nodes(body->complex, face->element)[gxp_outward[k][j]], &vertex[j]);
         if (result == GX_OK) result = gxp_add_skin_triangle(body, face, vertex, 0);
     }
     return result;
@@ -5772,13 +5787,13 @@ static gx_result gxp_skin_whole(gx_body *body, gxp_skin_face *face) {
  * there? */
 static int gxp_face_is_whole(const gx_body *body, uint32_t element, uint32_t k) {
     const gxb_complex *cx = body->complex;
-    const uint32_t facet = cx->face_facet[cx->element_faces[4 * element + k]];
+    const uint32_t facet = gxb_complex_face_facet(cx, gxb_complex_element_faces(cx, element)[k]);
     const gxb_facet *f;
     uint32_t other;
     if (facet == GXB_NONE) return 1;
-    f = &cx->facets[facet];
+    f = gxb_complex_facet(cx, facet);
     other = f->leaf[f->leaf[0] == element];
-    return f->child == GXB_NONE && !f->wall && (other == GXB_NONE || !cx->leaves[other].removed);
+    return f->child == GXB_NONE && !f->wall && (other == GXB_NONE || !gxb_complex_leaf(cx, other)->removed);
 }
 
 /* Does it show its outer faces as the mesh has them, and nothing else? */
@@ -5786,12 +5801,12 @@ static int gxp_is_untouched(const gx_body *body, uint32_t element) {
     const gxb_complex *cx = body->complex;
     uint32_t k;
     if (body->cells.data[element].next != GXP_NONE || body->leaves.data[element].next != GXP_NONE ||
-        cx->leaves[element].removed)
+        gxb_complex_leaf(cx, element)->removed)
         return 0;
     for (k = 0; k < 4; k++)
         if (!gxp_face_is_whole(body, element, k)) return 0;
     for (k = 0; k < 6; k++)
-        if (gxp_edge_is_divided(cx, cx->element_edges[6 * element + k])) return 0;
+        if (gxp_edge_is_divided(cx, gxb_complex_element_edges(cx, element)[k])) return 0;
     return 1;
 }
 
@@ -5853,9 +5868,9 @@ static gx_result gxp_spread_touched(gx_body *body) {
         const uint32_t e = dirty->data[i];
         for (k = 0; k < 4 && result == GX_OK; k++) result = gxp_spread_to(body, gxp_neighbour(body, e, k));
         for (k = 0; k < 6; k++) {
-            const uint32_t a = cx->elements[4 * e + gxp_edge_nodes[k][0]],
-                           b = cx->elements[4 * e + gxp_edge_nodes[k][1]];
-            if (!gxp_edge_is_divided(cx, cx->element_edges[6 * e + k])) continue;
+            const uint32_t a = gxb_complex_element_nodes(cx, e)[gxp_edge_nodes[k][0]],
+                           b = gxb_complex_element_nodes(cx, e)[gxp_edge_nodes[k][1]];
+            if (!gxp_edge_is_divided(cx, gxb_complex_element_edges(cx, e)[k])) continue;
             for (j = body->mesh.node_start[a]; j < body->mesh.node_start[a + 1] && result == GX_OK; j++)
                 if (gxp_local_node(body, body->mesh.node_elements[j], b) >= 0)
                     result = gxp_spread_to(body, body->mesh.node_elements[j]);
@@ -6244,7 +6259,7 @@ static gx_result gxp_make_first_cells(gx_body *body, size_t *bad) {
         gxp_cell *cell = &body->cells.data[e];
         memset(cell, 0, sizeof *cell);
         cell->element = cell->first_leaf = e;
-        memcpy(cell->copies, body->complex->elements + 4 * (size_t)e, sizeof cell->copies);
+        memcpy(cell->copies, gxb_complex_element_nodes(body->complex, e), sizeof cell->copies);
         cell->next = GXP_NONE;
         cell->kept = 1;
         cell->volume = gxp_element_volume(body, e);
@@ -6321,10 +6336,10 @@ static uint64_t gxp_hash_mesh(const gx_body *body) {
     const uint64_t hash = gxp_hash_texture(
         gxp_hash_doubles(gxp_mix(body->mesh.node_count), body->mesh.positions, 3 * (size_t)body->mesh.node_count),
         body->mesh.texture, body->mesh.node_count);
-    return gxp_hash_doubles(
-        gxp_hash_words(gxp_hash_words(hash, body->complex->elements, 4 * (size_t)body->mesh.element_count),
-                       body->mesh.element_materials, body->mesh.element_count),
-        &body->config.support_below, 1);
+    return gxp_hash_doubles(gxp_hash_words(gxp_hash_words(hash, gxb_complex_element_nodes(body->complex, 0),
+                                                          4 * (size_t)body->mesh.element_count),
+                                           body->mesh.element_materials, body->mesh.element_count),
+                            &body->config.support_below, 1);
 }
 
 /* index: of the node or element to blame */
@@ -6360,7 +6375,7 @@ static gx_result gxp_check_body_desc(const gx_body_desc *desc, size_t *index) {
     gx_result result = GX_OK;
     size_t i;
     *index = SIZE_MAX;
-    if (!gxbp_is_allocator(&desc->allocator)) return GX_ERROR_ARGUMENT;
+    if (!gxb_is_allocator(&desc->allocator)) return GX_ERROR_ARGUMENT;
     if (!gxp_is_finite(desc->support_below)) return GX_ERROR_NOT_FINITE;
     if (desc->support_below < 0 || desc->support_below >= 1) return GX_ERROR_ARGUMENT;
     if (desc->materials == NULL) return gxp_check_material(desc->young, desc->poisson, desc->density);
@@ -6425,9 +6440,9 @@ GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_f
         gx_body_destroy(body);
         return result;
     }
-    body->mesh.node_count = body->complex->node_count;
-    body->mesh.element_count = body->complex->element_count;
-    body->mesh.edge_count = body->complex->mesh_edge_count;
+    body->mesh.node_count = gxb_complex_node_count(body->complex);
+    body->mesh.element_count = gxb_complex_element_count(body->complex);
+    body->mesh.edge_count = gxb_complex_mesh_edge_count(body->complex);
     body->mesh.material_count = desc->materials != NULL ? (uint32_t)desc->material_count : 1;
     index = SIZE_MAX;
     result = gxp_fill_body(body, desc, &index);
@@ -6453,9 +6468,9 @@ static gx_result gxp_push_neighbours(gx_body *body, uint32_t cell, gxp_keys *pai
     gx_result result = gxb_complex_open_element(cx, element);
     for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
          leaf = body->leaves.data[leaf].next) {
-        result = gxb_leaf_facets(cx, leaf, &first, &count);
+        result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
         for (i = 0; i < count && result == GX_OK; i++) {
-            const gxb_facet *f = &cx->facets[cx->pool[first + i]];
+            const gxb_facet *f = gxb_complex_facet(cx, gxp_item(cx, first + i));
             const uint32_t other = f->leaf[f->leaf[0] == leaf];
             if (!gxp_is_kept(body, other) || body->leaves.data[other].cell == cell) continue;
             result = gxp_push_key(body, pairs,
@@ -6565,7 +6580,8 @@ GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
                 hash = gxp_hash_bytes(hash, (const unsigned char *)gxp_array_at(body, column), rows * column->size);
         }
     }
-    for (i = 0; i < body->complex->leaf_count; i++) hash = gxp_mix(hash ^ body->complex->leaves[i].removed);
+    for (i = 0; i < gxb_complex_leaf_count(body->complex); i++)
+        hash = gxp_mix(hash ^ gxb_complex_leaf(body->complex, i)->removed);
     return hash;
 }
 
@@ -6695,7 +6711,7 @@ static void gxp_save_mesh(gxb_stream *s, gx_body *body) {
     mesh.material_count = body->mesh.material_count;
     mesh.support_below = body->config.support_below;
     mesh.positions = body->mesh.positions;
-    mesh.elements = body->complex->elements;
+    mesh.elements = (uint32_t *)gxb_complex_element_nodes(body->complex, 0); /* only written from here */
     mesh.texture = body->mesh.texture;
     mesh.textured = body->mesh.texture != NULL;
     mesh.element_materials = body->mesh.element_materials;
@@ -6853,7 +6869,7 @@ typedef struct gxp_places {
    nodes. It is no larger than the element; twice allows for rounding. */
 static void gxp_check_cell(gxb_stream *s, gx_body *body, uint32_t cell, const gxp_places *seen) {
     gxp_cell *c = &body->cells.data[cell];
-    const uint32_t *node = body->complex->elements + 4 * (size_t)c->element;
+    const uint32_t *node = gxb_complex_element_nodes(body->complex, c->element);
     const double density = gxp_density(body, c->element), most = 2 * gxp_element_volume(body, c->element);
     uint32_t leaf, k;
     gxp_require_true(s, c->kept <= 1 && (c->first_leaf != GXP_NONE) == (c->kept != 0));
@@ -6862,7 +6878,7 @@ static void gxp_check_cell(gxb_stream *s, gx_body *body, uint32_t cell, const gx
         if (s->result != GX_OK) return;
         seen->leaf[leaf] = 1;
         gxp_require_true(s, body->leaves.data[leaf].cell == cell && gxp_is_kept(body, leaf) &&
-                                body->complex->leaves[leaf].element == c->element);
+                                gxb_complex_leaf(body->complex, leaf)->element == c->element);
     }
     gxp_require_true(s, gxp_is_finite(c->volume) && c->volume >= 0 && c->volume <= most);
     for (k = 0; k < 10; k++) gxp_require_true(s, gxp_is_finite(c->mass[k]) && fabs(c->mass[k]) <= most * density);
@@ -6892,11 +6908,11 @@ static void gxp_check_lists(gxb_stream *s, gx_body *body, const gxp_places *seen
     for (i = 0; i < body->copies.count; i++) gxp_require_true(s, seen->copy[i]);
     for (i = 0; i < body->leaves.count; i++) {
         gxp_require_true(s, body->leaves.data[i].cell < body->cells.count &&
-                                seen->leaf[i] == !body->complex->leaves[i].removed);
+                                seen->leaf[i] == !gxb_complex_leaf(body->complex, i)->removed);
         gxp_require_true(s, seen->leaf[i] || body->leaves.data[i].next == GXP_NONE);
     }
-    for (i = 0; i < body->complex->label_count; i++)
-        gxp_require_true(s, body->complex->labels[i].triangle < body->cuts.label_count);
+    for (i = 0; i < gxb_complex_label_count(body->complex); i++)
+        gxp_require_true(s, gxb_complex_label(body->complex, i)->triangle < body->cuts.label_count);
 }
 
 /* Surfaces in the order of their labels, each with maps for all of its triangles or for none. */
@@ -6935,8 +6951,8 @@ static void gxp_load_topology(gxb_stream *s, gx_body *body, int trusted) {
     (void)gxb_complex_load(body->complex, s, trusted);
     gxp_pass_counts(s, GXP_TOPOLOGY, counts);
     gxp_check_counts(s, GXP_TOPOLOGY, counts);
-    gxp_require_true(s,
-                     counts[GXP_CELLS] >= body->mesh.element_count && counts[GXP_LEAVES] == body->complex->leaf_count);
+    gxp_require_true(s, counts[GXP_CELLS] >= body->mesh.element_count &&
+                            counts[GXP_LEAVES] == gxb_complex_leaf_count(body->complex));
     if (s->result == GX_OK) gxp_require(s, gxp_rows_room(body, GXP_TOPOLOGY, counts));
     if (s->result != GX_OK) return;
     gxp_pass_topology(s, body, counts);
@@ -7101,7 +7117,7 @@ GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_
     gx_result result;
     memset(&none, 0, sizeof none);
     if (desc == NULL) desc = &none;
-    if (memory == NULL || body == NULL || !gxbp_is_allocator(&desc->allocator))
+    if (memory == NULL || body == NULL || !gxb_is_allocator(&desc->allocator))
         return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
     memset(&s, 0, sizeof s);
     s.in = (const unsigned char *)memory;

@@ -34,8 +34,8 @@
  * gxb_side, compare, orient_in_plane
  *     >>complex     the cell complex (points, planes, edges, facets, leaves): gxb_complex_create, destroy; begin,
  * commit, rollback, reserve; to divide: add_point, add_plane, insert, open_element, cover_edge, cover_node, set_wall,
- * set_removed; to read: gxb_leaf_facets, gxb_facet_edges; to ask: gxb_complex_side, turn, compare, winding,
- * barycentric, support, barycentric_fine
+ * set_removed; to bring lists up to date: gxb_leaf_resolve_facets, gxb_facet_resolve_edges; to read: gxb_complex_point
+ * and others; to ask: gxb_complex_side, turn, compare, winding, barycentric, support, barycentric_fine
  *     >>stream      a complex as bytes: gxb_stream_pass, has; gxb_complex_save, load
  *     >>boolean     Booleans of closed triangle surfaces, exact and chainable: gxb_boolean_create, add, evaluate,
  * destroy; how results are read off: set_triangulation, set_fine, set_mend; what else there is to know of one:
@@ -274,7 +274,7 @@ typedef struct gxb_cpoint { /* a point of the complex */
     uint8_t kind;           /* GXB_EXPLICIT ... */
     uint8_t wall;           /* 1: a triangle was made to separate here what meets in this node only */
     int8_t sign[2];
-    uint32_t stamp[2]; /* when sign[i] was decided (complex.stamp[i]) */
+    uint32_t stamp[2]; /* when sign[i] was decided (gxb_store.stamp[i]) */
     gxb_num *exact;    /* X Y Z W, or NULL until they were needed */
     /* barycentric coordinates on a mesh edge (of its two ends) or in a mesh face (of its plane's three nodes); the
      * first is negative until asked for */
@@ -361,13 +361,33 @@ typedef struct gxb_undo {
     uint32_t array, index;
 } gxb_undo;
 
-/* All arrays belong to the complex and may be read; [i] is valid for i < count. Points 0 ... node_count-1 are the
-   nodes, leaves 0 ... element_count-1 the elements' first leaves. */
-typedef struct gxb_complex { /* what is used most comes first: its addresses are short */
+/* Points and planes, the frame that their coordinates are in, exact numbers that were computed once, and a transaction:
+   what follows its begin is kept or undone. A complex has one, and so has a Boolean. */
+typedef struct gxb_store {
     gxb_cpoint *points;
     uint32_t point_count, point_capacity;
     gxb_cplane *planes;
     uint32_t plane_count, plane_capacity;
+    uint32_t stamp[2]; /* of the signs that points remember (gxb_cpoint.sign) */
+    int shift;         /* the frame: (x - origin) * 2^shift */
+    double origin[3];
+    gxb_block *blocks; /* exact coordinates, computed when first needed and kept */
+    /* the transaction: counts and the last block at its begin, items that changed since and their old contents */
+    uint32_t mark[2]; /* points, planes */
+    gxb_block *mark_block;
+    size_t mark_used;
+    gxb_undo *undo;
+    uint32_t undo_count, undo_capacity;
+    unsigned char *undo_bytes;
+    uint32_t undo_byte_count, undo_byte_capacity;
+    uint64_t filter_calls, exact_calls; /* signs asked of the filter, signs that it left to exact arithmetic */
+    gx_allocator allocator;
+} gxb_store;
+
+/* All arrays belong to the complex and may be read; [i] is valid for i < count. Points 0 ... node_count-1 are the
+   nodes, leaves 0 ... element_count-1 the elements' first leaves. */
+typedef struct gxb_complex { /* what is used most comes first: its addresses are short */
+    gxb_store store;
     gxb_edge *edges;
     uint32_t edge_count, edge_capacity;
     gxb_facet *facets;
@@ -387,19 +407,11 @@ typedef struct gxb_complex { /* what is used most comes first: its addresses are
     uint32_t *root;          /* element_count: tree reference */
     uint32_t node_count, element_count, face_count, mesh_edge_count;
     uint32_t pool_live, mark_live; /* words of lists in use, now and at begin */
-    int shift;
-    double origin[3];
     gxb_label *labels;
     uint32_t label_count, label_capacity;
-    gxb_block *blocks; /* exact coordinates, computed when first needed and kept */
     /* facets that were labelled, or made walls, since begin: 2 x facet, + 1 if none before */
     uint32_t *walls;
     uint32_t wall_count, wall_capacity;
-    /* what begin ... rollback restores, and the old contents */
-    gxb_undo *undo;
-    uint32_t undo_count, undo_capacity;
-    unsigned char *undo_bytes;
-    uint32_t undo_byte_count, undo_byte_capacity;
     /* stack of clipped polygons */
     struct gxbp_corner *corners;
     uint32_t corner_count, corner_capacity;
@@ -407,15 +419,14 @@ typedef struct gxb_complex { /* what is used most comes first: its addresses are
     uint32_t task_count, task_capacity;
     uint32_t *scratch;
     uint32_t scratch_count, scratch_capacity;
-    /* blocks at begin */
-    gxb_block *mark_block;
-    size_t mark_used;
-    uint32_t mark[8]; /* counts at begin: points planes edges facets leaves nodes labels pool */
-    uint32_t stamp[2], edge_stamp, sign_plane;
+    uint32_t mark[6]; /* counts at begin: edges facets leaves nodes labels pool */
+    uint32_t edge_stamp;
+    uint32_t sign_plane;      /* whose signs points remember in slot 0 */
     struct gxbp_pairs *pairs; /* see >>insert, barycentric coordinates */
-    uint64_t filter_calls, exact_calls;
-    gx_allocator allocator;
 } gxb_complex;
+
+/* Are allocate and release both there or both NULL, and reallocate only with them? */
+GXFEM_API int gxb_is_allocator(const gx_allocator *allocator);
 
 /* The complex of a mesh. Errors: ARGUMENT, EMPTY, INDEX (element), NOT_FINITE and RANGE (node), INVERTED and FLAT
    (element), OVERLAP (element: one of its faces is shared by more than two elements, or by two on the same side),
@@ -453,10 +464,55 @@ GXFEM_API gx_result gxb_complex_set_wall(gxb_complex *complex, uint32_t facet);
 GXFEM_API gx_result gxb_complex_set_removed(gxb_complex *complex, uint32_t leaf);
 /* Makes the four facets of an untouched element. */
 GXFEM_API gx_result gxb_complex_open_element(gxb_complex *complex, uint32_t element);
-/* The leaf's facets, as they are divided now (in complex.pool, until the next call that changes the complex). */
-GXFEM_API gx_result gxb_leaf_facets(gxb_complex *complex, uint32_t leaf, uint32_t *first, uint32_t *count);
-/* The facet's edges, as they are divided now. */
-GXFEM_API gx_result gxb_facet_edges(gxb_complex *complex, uint32_t facet, uint32_t *first, uint32_t *count);
+/* Brings a leaf's list of facets, or a facet's loop of edges, up to date: divided items are replaced by their parts.
+   The list is at gxb_complex_list(complex, *first), *count long. Calls for other leaves and facets leave it there. May
+   append to the lists and to the undo log. Errors: MEMORY, LIMIT. */
+GXFEM_API gx_result gxb_leaf_resolve_facets(gxb_complex *complex, uint32_t leaf, uint32_t *first, uint32_t *count);
+GXFEM_API gx_result gxb_facet_resolve_edges(gxb_complex *complex, uint32_t facet, uint32_t *first, uint32_t *count);
+
+/* Read access. Indices must be below the counts. Pointers are valid until the next call that changes or resolves. */
+GXFEM_API const gxb_cpoint *gxb_complex_point(const gxb_complex *complex, uint32_t point);
+GXFEM_API const gxb_cplane *gxb_complex_plane(const gxb_complex *complex, uint32_t plane);
+GXFEM_API const gxb_edge *gxb_complex_edge(const gxb_complex *complex, uint32_t edge);
+GXFEM_API const gxb_facet *gxb_complex_facet(const gxb_complex *complex, uint32_t facet);
+GXFEM_API const gxb_leaf *gxb_complex_leaf(const gxb_complex *complex, uint32_t leaf);
+GXFEM_API const gxb_node *gxb_complex_tree_node(const gxb_complex *complex, uint32_t node);
+GXFEM_API const gxb_label *gxb_complex_label(const gxb_complex *complex, uint32_t label);
+/* A list of facets, or a loop of signed edges (edge * 2, + 1 if walked backwards), from its first item on. */
+GXFEM_API const uint32_t *gxb_complex_list(const gxb_complex *complex, uint32_t first);
+/* The point from which a signed edge leaves. */
+GXFEM_API uint32_t gxb_complex_edge_start(const gxb_complex *complex, uint32_t signed_edge);
+GXFEM_API uint32_t gxb_complex_point_count(const gxb_complex *complex);
+GXFEM_API uint32_t gxb_complex_facet_count(const gxb_complex *complex);
+GXFEM_API uint32_t gxb_complex_leaf_count(const gxb_complex *complex);
+GXFEM_API uint32_t gxb_complex_label_count(const gxb_complex *complex);
+/* The facets that were labelled or made walls since begin, as often as that was done. */
+GXFEM_API uint32_t gxb_complex_marked_count(const gxb_complex *complex);
+GXFEM_API uint32_t gxb_complex_marked_facet(const gxb_complex *complex, uint32_t index);
+/* 1: this made a wall of a facet that was open. */
+GXFEM_API int gxb_complex_marked_wall(const gxb_complex *complex, uint32_t index);
+
+/* The mesh, which never changes. Rows of one array: what is behind element 0's row are the other elements' rows. */
+GXFEM_API uint32_t gxb_complex_node_count(const gxb_complex *complex);
+GXFEM_API uint32_t gxb_complex_element_count(const gxb_complex *complex);
+GXFEM_API uint32_t gxb_complex_face_count(const gxb_complex *complex);
+GXFEM_API uint32_t gxb_complex_mesh_edge_count(const gxb_complex *complex);
+/* 4 nodes; 4 faces, opposite to node k; 6 mesh edges between nodes 01 02 03 12 13 23 */
+GXFEM_API const uint32_t *gxb_complex_element_nodes(const gxb_complex *complex, uint32_t element);
+GXFEM_API const uint32_t *gxb_complex_element_faces(const gxb_complex *complex, uint32_t element);
+GXFEM_API const uint32_t *gxb_complex_element_edges(const gxb_complex *complex, uint32_t element);
+/* The 2 elements at a face: GXB_NONE outside the mesh */
+GXFEM_API const uint32_t *gxb_complex_face_elements(const gxb_complex *complex, uint32_t face);
+/* The facet (edge) that a face (mesh edge) became, undivided; GXB_NONE until something touched it */
+GXFEM_API uint32_t gxb_complex_face_facet(const gxb_complex *complex, uint32_t face);
+GXFEM_API uint32_t gxb_complex_mesh_edge(const gxb_complex *complex, uint32_t mesh_edge);
+/* The element's tree: leaf * 2, or node * 2 + 1 */
+GXFEM_API uint32_t gxb_complex_root(const gxb_complex *complex, uint32_t element);
+/* The frame of balls and plane filters: (x - origin) * 2^shift */
+GXFEM_API const double *gxb_complex_origin(const gxb_complex *complex);
+GXFEM_API int gxb_complex_shift(const gxb_complex *complex);
+/* Prefetches the element's rows, root and first leaf. */
+GXFEM_API void gxb_complex_prefetch_element(const gxb_complex *complex, uint32_t element);
 
 /* Sign of a point against a plane of the complex, exact. */
 GXFEM_API int gxb_complex_side(gxb_complex *complex, uint32_t point, uint32_t plane);
@@ -1912,7 +1968,7 @@ GXFEM_API int gxb_winding_number(const double *vertices, const uint32_t *triangl
     return winding;
 }
 
-/* >>memory: growing arrays, transactions --------------------------------------------------------------------------- */
+/* >>memory: growing arrays ----------------------------------------------------------------------------------------- */
 
 static GXBP_APART void *gxbp_allocate(const gx_allocator *a, size_t size) {
     return a->allocate ? a->allocate(a->user, size) : malloc(size);
@@ -1942,244 +1998,242 @@ static GXBP_RARE void *gxbp_reallocate(const gx_allocator *a, void *old, size_t 
 
 static size_t gxbp_room_for(size_t need) { return need + need / 2 + 16; }
 
-/* Where an array stands there are a pointer, the number of its items and the number of those that it has room for. */
-static uint32_t *gxbp_extent_of(void *array) { return (uint32_t *)(void *)((unsigned char *)array + sizeof(void *)); }
-
-/* Makes room for so many items more of the given size. */
-static GXBP_APART gx_result gxbp_reserve(gxb_complex *cx, void *array, size_t item, size_t extra) {
-    uint32_t *count = gxbp_extent_of(array);
-    const size_t need = (size_t)count[0] + extra, room = gxbp_room_for(need);
+/* Makes room for `extra` items more in an array. array: the address of its pointer. The one way by which arrays grow.
+ */
+static GXBP_APART gx_result gxbp_reserve(const gx_allocator *a, void *array, uint32_t count, uint32_t *capacity,
+                                         size_t item, size_t extra) {
+    const size_t need = (size_t)count + extra, room = gxbp_room_for(need);
     void *old, *memory;
-    if (need <= count[1]) return GX_OK;
+    if (need <= *capacity) return GX_OK;
     if (room > INT32_MAX || room > SIZE_MAX / item) return GX_ERROR_LIMIT;
     memcpy(&old, array, sizeof old);
-    memory = gxbp_reallocate(&cx->allocator, old, (size_t)count[1] * item, count[0] * item, room * item);
+    memory = gxbp_reallocate(a, old, (size_t)*capacity * item, count * item, room * item);
     if (memory == NULL) return GX_ERROR_MEMORY;
     memcpy(array, &memory, sizeof memory);
-    count[1] = (uint32_t)room;
+    *capacity = (uint32_t)room;
     return GX_OK;
 }
 
-#define GXBP_RESERVE(cx, array, counter, extra)                                                                        \
-    ((size_t)(extra) <= (cx)->counter##_capacity - (cx)->counter##_count                                               \
+/* The same for owner->array with owner->counter_count items. */
+#define GXBP_RESERVE(allocator, owner, array, counter, extra)                                                          \
+    ((size_t)(extra) <= (owner)->counter##_capacity - (owner)->counter##_count                                         \
          ? GX_OK                                                                                                       \
-         : gxbp_reserve(cx, &(cx)->array, sizeof *(cx)->array, extra))
+         : gxbp_reserve(allocator, &(owner)->array, (owner)->counter##_count, &(owner)->counter##_capacity,            \
+                        sizeof *(owner)->array, extra))
 
-/* Arrays of a structure: where they stand, size of an item */
+/* An array of a structure: where its pointer, its number of items and its room are; the size of an item */
 typedef struct gxbp_array {
-    uint16_t at, item;
+    uint16_t pointer, count, capacity, item;
 } gxbp_array;
-#define GXBP_ARRAY(type, array)                                                                                        \
-    { offsetof(type, array), sizeof *((type *)NULL)->array }
+#define GXBP_ARRAY(type, array, counter)                                                                               \
+    {                                                                                                                  \
+        offsetof(type, array), offsetof(type, counter##_count), offsetof(type, counter##_capacity),                    \
+            sizeof *((type *)NULL)->array                                                                              \
+    }
+
+static void *gxbp_field(void *owner, size_t offset) { return (unsigned char *)owner + offset; }
+
+static uint32_t *gxbp_word(void *owner, size_t offset) { return (uint32_t *)gxbp_field(owner, offset); }
 
 static GXBP_COLD void gxbp_drop_arrays(const gx_allocator *a, void *owner, const gxbp_array *array, size_t count) {
     for (; count > 0; count--, array++) {
-        unsigned char *at = (unsigned char *)owner + array->at;
         void *memory;
-        memcpy(&memory, at, sizeof memory);
-        gxbp_release(a, memory, (size_t)gxbp_extent_of(at)[1] * array->item);
+        memcpy(&memory, gxbp_field(owner, array->pointer), sizeof memory);
+        gxbp_release(a, memory, (size_t)*gxbp_word(owner, array->capacity) * array->item);
     }
 }
 
-enum { GXBP_EDGES, GXBP_FACETS, GXBP_LEAVES, GXBP_NODES, GXBP_POINTS, GXBP_ROOTS, GXBP_FACES, GXBP_MESH_EDGES };
-
-static void *gxbp_item(gxb_complex *cx, uint32_t array, uint32_t index, size_t *size) {
-    static const gxbp_array arrays[] = {GXBP_ARRAY(gxb_complex, edges),      GXBP_ARRAY(gxb_complex, facets),
-                                        GXBP_ARRAY(gxb_complex, leaves),     GXBP_ARRAY(gxb_complex, nodes),
-                                        GXBP_ARRAY(gxb_complex, points),     GXBP_ARRAY(gxb_complex, root),
-                                        GXBP_ARRAY(gxb_complex, face_facet), GXBP_ARRAY(gxb_complex, mesh_edge)};
-    unsigned char *items;
-    memcpy(&items, (unsigned char *)cx + arrays[array].at, sizeof items);
-    *size = arrays[array].item;
-    return items + index * *size;
+/* The counts at the begin of a transaction, of arrays that have one */
+static void gxbp_mark_arrays(void *owner, const gxbp_array *array, uint32_t *mark, uint32_t count) {
+    uint32_t k;
+    for (k = 0; k < count; k++) mark[k] = *gxbp_word(owner, array[k].count);
 }
 
-/* Items older than the transaction. */
-static uint32_t gxbp_item_mark(const gxb_complex *cx, uint32_t array) {
-    static const uint32_t which[5] = {2, 3, 4, 5, 0};
-    return array <= GXBP_POINTS ? cx->mark[which[array]] : UINT32_MAX;
+static void gxbp_cut_arrays(void *owner, const gxbp_array *array, const uint32_t *mark, uint32_t count) {
+    uint32_t k;
+    for (k = 0; k < count; k++) *gxbp_word(owner, array[k].count) = mark[k];
 }
 
-#define GXBP_UNDO_ITEM 128 /* no item that is saved is larger */
+/* An array grows to what is expected or by half, whichever is more: gxbp_reserve adds half of what it is asked for. */
+static GXBP_RARE void gxbp_expect_arrays(const gx_allocator *a, void *owner, const gxbp_array *array,
+                                         const uint32_t *mark, uint32_t arrays, uint32_t times) {
+    uint32_t k;
+    for (k = 0; k < arrays; k++) {
+        uint32_t *capacity = gxbp_word(owner, array[k].capacity);
+        const uint32_t count = *gxbp_word(owner, array[k].count);
+        const size_t need = count + ((size_t)count - mark[k]) * times;
+        const size_t ask = need / 3 * 2 > *capacity ? need / 3 * 2 : *capacity;
+        if (need > *capacity)
+            (void)gxbp_reserve(a, gxbp_field(owner, array[k].pointer), count, capacity, array[k].item, ask + 1 - count);
+    }
+}
 
-static gx_result gxbp_reserve_undo(gxb_complex *cx, size_t items) {
-    gx_result result = GXBP_RESERVE(cx, undo, undo, items);
-    if (result == GX_OK) result = GXBP_RESERVE(cx, undo_bytes, undo_byte, items * GXBP_UNDO_ITEM);
+/* >>store: points, planes, exact numbers, a transaction -------------------------------------------------------------
+ */
+
+/* In: coordinates, or the points and planes that define a point or plane. Out: indices; exact signs of one against
+   another. Touches the store alone: nothing here knows of edges, facets or triangles. Exact numbers are computed when a
+   filter leaves a sign open, and kept. The undo log holds the old contents of items of any array: its owner says which
+   and puts them back. */
+
+static const gxbp_array gxbp_store_arrays[] = {
+    GXBP_ARRAY(gxb_store, points, point), GXBP_ARRAY(gxb_store, planes, plane), /* these two have marks */
+    GXBP_ARRAY(gxb_store, undo, undo), GXBP_ARRAY(gxb_store, undo_bytes, undo_byte)};
+
+#define GXBP_UNDO_ITEM 128 /* no item that is logged is larger */
+
+static gx_result gxbp_reserve_undo(gxb_store *store, size_t items) {
+    gx_result result = GXBP_RESERVE(&store->allocator, store, undo, undo, items);
+    if (result == GX_OK) result = GXBP_RESERVE(&store->allocator, store, undo_bytes, undo_byte, items * GXBP_UNDO_ITEM);
     return result;
 }
 
-/* Saves an item that is about to change. Room was reserved. */
-static void gxbp_save(gxb_complex *cx, uint32_t array, uint32_t index) {
-    size_t size;
-    const void *item = gxbp_item(cx, array, index, &size);
-    if (index >= gxbp_item_mark(cx, array)) return;
-    memcpy(cx->undo_bytes + cx->undo_byte_count, item, size);
-    cx->undo_byte_count += (uint32_t)size;
-    cx->undo[cx->undo_count].array = array;
-    cx->undo[cx->undo_count++].index = index;
+/* Logs an item that is about to change. Room was reserved. */
+static void gxbp_log(gxb_store *store, uint32_t array, uint32_t index, const void *item, size_t size) {
+    memcpy(store->undo_bytes + store->undo_byte_count, item, size);
+    store->undo_byte_count += (uint32_t)size;
+    store->undo[store->undo_count].array = array;
+    store->undo[store->undo_count++].index = index;
 }
 
-/* Copies a list of the pool behind those already copied. */
-static void gxbp_move_list(const gxb_complex *cx, uint32_t *pool, uint32_t *used, uint32_t *list, uint32_t count) {
-    if (count > 0) memcpy(pool + *used, cx->pool + *list, count * sizeof *pool);
-    *list = *used;
-    *used += count;
+/* Puts the item that was logged last back, and forgets it. */
+static void gxbp_put_back(gxb_store *store, void *item, size_t size) {
+    store->undo_count--;
+    store->undo_byte_count -= (uint32_t)size;
+    memcpy(item, store->undo_bytes + store->undo_byte_count, size);
 }
 
-/* Lists that were replaced by longer ones stay in the pool; once they outweigh the others, the pool is renewed. Without
-   memory for that it stays as it is. */
-static GXBP_COLD void gxbp_compact_pool(gxb_complex *cx) {
-    uint32_t *pool, used = 0, i;
-    pool = (uint32_t *)gxbp_allocate(&cx->allocator, (size_t)cx->pool_capacity * sizeof *pool);
-    if (pool == NULL) return;
-    for (i = 0; i < cx->facet_count; i++) {
-        gxb_facet *f = &cx->facets[i];
-        gxbp_move_list(cx, pool, &used, &f->loop, f->loop_count);
-    }
-    for (i = 0; i < cx->leaf_count; i++)
-        gxbp_move_list(cx, pool, &used, &cx->leaves[i].facets, cx->leaves[i].facet_count);
-    gxbp_release(&cx->allocator, cx->pool, (size_t)cx->pool_capacity * sizeof *cx->pool);
-    cx->pool = pool;
-    cx->pool_count = cx->pool_live = used;
+static void gxbp_store_begin(gxb_store *store) {
+    gxbp_mark_arrays(store, gxbp_store_arrays, store->mark, 2);
+    store->mark_block = store->blocks;
+    store->mark_used = store->blocks != NULL ? store->blocks->used : 0;
+    store->undo_count = store->undo_byte_count = 0;
 }
-
-static GXBP_APART void gxbp_set_marks(gxb_complex *cx) {
-    cx->mark[0] = cx->point_count;
-    cx->mark[1] = cx->plane_count;
-    cx->mark[2] = cx->edge_count;
-    cx->mark[3] = cx->facet_count;
-    cx->mark[4] = cx->leaf_count;
-    cx->mark[5] = cx->tree_count;
-    cx->mark[6] = cx->label_count;
-    cx->mark[7] = cx->pool_count;
-    cx->mark_live = cx->pool_live;
-    cx->mark_block = cx->blocks;
-    cx->mark_used = cx->blocks != NULL ? cx->blocks->used : 0;
-    cx->undo_count = cx->undo_byte_count = cx->wall_count = cx->corner_count = cx->task_count = 0;
-}
-
-GXFEM_API void gxb_complex_begin(gxb_complex *cx) {
-    if (cx->pool_count / 2 >= cx->pool_live + 1024) gxbp_compact_pool(cx);
-    gxbp_set_marks(cx);
-}
-
-GXFEM_API void gxb_complex_commit(gxb_complex *cx) { gxbp_set_marks(cx); }
 
 /* Was this memory taken since begin? */
-static int gxbp_is_recent(const gxb_complex *cx, const void *memory) {
+static int gxbp_is_recent(const gxb_store *store, const void *memory) {
     const unsigned char *m = (const unsigned char *)memory;
     const gxb_block *block;
-    for (block = cx->blocks; block != cx->mark_block; block = block->next)
+    for (block = store->blocks; block != store->mark_block; block = block->next)
         if (m >= (const unsigned char *)block && m < (const unsigned char *)block + block->size) return 1;
-    return block != NULL && m >= (const unsigned char *)block + cx->mark_used &&
+    return block != NULL && m >= (const unsigned char *)block + store->mark_used &&
            m < (const unsigned char *)block + block->size;
 }
 
 /* Gives back the blocks of exact numbers that are newer than this one. */
-static GXBP_COLD void gxbp_drop_numbers(gxb_complex *cx, const gxb_block *last) {
-    while (cx->blocks != last) {
-        gxb_block *next = cx->blocks->next;
-        gxbp_release(&cx->allocator, cx->blocks, cx->blocks->size);
-        cx->blocks = next;
+static GXBP_COLD void gxbp_drop_numbers(gxb_store *store, const gxb_block *last) {
+    while (store->blocks != last) {
+        gxb_block *next = store->blocks->next;
+        gxbp_release(&store->allocator, store->blocks, store->blocks->size);
+        store->blocks = next;
     }
 }
 
 /* Gives back exact numbers kept since begin; those of older points and planes are computed again when needed. */
-static GXBP_COLD void gxbp_drop_recent_numbers(gxb_complex *cx) {
+static GXBP_COLD void gxbp_drop_recent_numbers(gxb_store *store) {
     uint32_t i;
-    for (i = 0; i < cx->mark[0]; i++)
-        if (cx->points[i].exact != NULL && gxbp_is_recent(cx, cx->points[i].exact)) cx->points[i].exact = NULL;
-    for (i = 0; i < cx->mark[1]; i++)
-        if (cx->planes[i].exact != NULL && gxbp_is_recent(cx, cx->planes[i].exact)) cx->planes[i].exact = NULL;
-    gxbp_drop_numbers(cx, cx->mark_block);
-    if (cx->blocks != NULL) cx->blocks->used = cx->mark_used;
+    for (i = 0; i < store->mark[0]; i++)
+        if (store->points[i].exact != NULL && gxbp_is_recent(store, store->points[i].exact))
+            store->points[i].exact = NULL;
+    for (i = 0; i < store->mark[1]; i++)
+        if (store->planes[i].exact != NULL && gxbp_is_recent(store, store->planes[i].exact))
+            store->planes[i].exact = NULL;
+    gxbp_drop_numbers(store, store->mark_block);
+    if (store->blocks != NULL) store->blocks->used = store->mark_used;
 }
-
-/* What is known of planes and points in pairs of doubles (see barycentric coordinates), by remainders of their numbers
- */
-enum { GXBP_PAIR_NORMALS = 32, GXBP_PAIR_SIDES = 256 };
-typedef struct gxbp_pair {
-    double high, low, error;
-} gxbp_pair; /* a number within error of high + low */
-typedef struct gxbp_pairs {
-    /* GXB_NONE: nothing */
-    uint32_t plane[GXBP_PAIR_NORMALS], side_plane[GXBP_PAIR_SIDES], side_point[GXBP_PAIR_SIDES];
-    gxbp_pair normal[GXBP_PAIR_NORMALS][3], side[GXBP_PAIR_SIDES];
-} gxbp_pairs;
-
-static void gxbp_forget_pairs(gxb_complex *cx) {
-    memset(cx->pairs->plane, 0xff, sizeof cx->pairs->plane);
-    memset(cx->pairs->side_plane, 0xff, sizeof cx->pairs->side_plane);
-}
-
-#define GXBP_LAST_STAMP 0x3fffffffu /* of an edge */
 
 /* Signs in the slot were of another plane; they are not looked at where their stamp is not the last. */
-static void gxbp_forget_signs(gxb_complex *cx, int slot) {
+static void gxbp_forget_signs(gxb_store *store, int slot) {
     uint32_t i;
-    if (cx->stamp[slot]++ < UINT32_MAX) return;
-    for (i = 0; i < cx->point_count; i++) cx->points[i].stamp[slot] = 0;
-    cx->stamp[slot] = 1;
+    if (store->stamp[slot]++ < UINT32_MAX) return;
+    for (i = 0; i < store->point_count; i++) store->points[i].stamp[slot] = 0;
+    store->stamp[slot] = 1;
 }
 
-/* No edge is in a rim. */
-static void gxbp_forget_rim(gxb_complex *cx) {
-    uint32_t i;
-    if (cx->edge_stamp++ < GXBP_LAST_STAMP) return;
-    for (i = 0; i < cx->edge_count; i++) cx->edges[i].stamp = 0;
-    cx->edge_stamp = 1;
+/* Forgets points and planes that were made since begin. The log must be empty. */
+static GXBP_RARE void gxbp_store_rollback(gxb_store *store) {
+    gxbp_drop_recent_numbers(store);
+    gxbp_cut_arrays(store, gxbp_store_arrays, store->mark, 2);
+    gxbp_forget_signs(store, 0);
+    gxbp_forget_signs(store, 1);
 }
 
-GXFEM_API GXBP_RARE void gxb_complex_rollback(gxb_complex *cx) {
-    while (cx->undo_count > 0) {
-        const gxb_undo *undo = &cx->undo[--cx->undo_count];
-        size_t size;
-        void *item = gxbp_item(cx, undo->array, undo->index, &size);
-        cx->undo_byte_count -= (uint32_t)size;
-        memcpy(item, cx->undo_bytes + cx->undo_byte_count, size);
-        if (undo->array == GXBP_EDGES) cx->edges[undo->index].stamp = 0; /* may be of before stamps began again */
-        if (undo->array == GXBP_POINTS) cx->points[undo->index].stamp[0] = cx->points[undo->index].stamp[1] = 0;
+static GXBP_COLD void gxbp_store_destroy(gxb_store *store) {
+    gxbp_drop_numbers(store, NULL);
+    gxbp_drop_arrays(&store->allocator, store, gxbp_store_arrays, sizeof gxbp_store_arrays / sizeof *gxbp_store_arrays);
+}
+
+/* floor(log2(high - low)), whatever the mode of the floating-point unit; -2000 where they are equal */
+static int gxbp_difference_exponent(double high, double low) {
+    GXB_NUM(a);
+    GXB_NUM(b);
+    GXB_NUM(d);
+    int power;
+    gxb_num_set(&a, high, 0);
+    gxb_num_set(&b, low, 0);
+    gxb_num_sub(&d, &a, &b);
+    if (d.sign == 0) return -2000;
+    gxbp_num_mantissa(&d, &power);
+    return power + 52;
+}
+
+/* Frame: the origin is the mesh's lower corner rounded to few bits where the mesh lies far from 0 (so that the shift
+   adds no bits to its coordinates), else 0; the scale brings the box to size 1. */
+static gx_result gxbp_choose_frame(gxb_store *store, const double *positions, size_t count, size_t *bad) {
+    int axis, largest = -2000;
+    for (axis = 0; axis < 3; axis++) {
+        double low = 0, high = 0;
+        int size;
+        size_t i;
+        for (i = 0; i < count; i++) {
+            const double x = positions[3 * i + (size_t)axis];
+            if (!gxbp_is_finite(x)) {
+                *bad = i;
+                return GX_ERROR_NOT_FINITE;
+            }
+            if (gxbp_exponent_bits(x) > 2000) {
+                *bad = i;
+                return GX_ERROR_RANGE;
+            }
+            if (i == 0 || gxbp_compare_doubles(x, low) < 0) low = x;
+            if (i == 0 || gxbp_compare_doubles(x, high) > 0) high = x;
+        }
+        size = gxbp_difference_exponent(high, low);
+        if (size == -2000) size = gxbp_is_zero(low) ? -2000 : gxbp_exponent(low);
+        if (size > largest) largest = size;
+        if (size > -2000 && !gxbp_is_zero(low) && gxbp_exponent(low) > size + 3) {
+            const int drop = gxbp_exponent(low) - size; /* keep so many leading bits */
+            if (drop < 52)
+                store->origin[axis] = gxbp_double(gxbp_bits(low) & ~((((uint64_t)1) << (52 - drop)) - 1));
+            else
+                store->origin[axis] = low;
+        }
     }
-    gxbp_drop_recent_numbers(cx);
-    cx->point_count = cx->mark[0];
-    cx->plane_count = cx->mark[1];
-    cx->edge_count = cx->mark[2];
-    cx->facet_count = cx->mark[3];
-    cx->leaf_count = cx->mark[4];
-    cx->tree_count = cx->mark[5];
-    cx->label_count = cx->mark[6];
-    cx->pool_count = cx->mark[7];
-    cx->pool_live = cx->mark_live;
-    gxbp_forget_signs(cx, 0);
-    gxbp_forget_signs(cx, 1);
-    gxbp_forget_rim(cx);
-    gxbp_forget_pairs(cx);
-    gxbp_set_marks(cx);
+    store->shift = largest == -2000 ? 0 : -largest - 1;
+    return GX_OK;
 }
 
-/* >>topology: the complex of a mesh -------------------------------------------------------------------------------- */
-
-static gx_result gxbp_new_point(gxb_complex *cx, uint32_t *id) {
-    const gx_result result = GXBP_RESERVE(cx, points, point, 1);
+static gx_result gxbp_new_point(gxb_store *store, uint32_t *id) {
+    const gx_result result = GXBP_RESERVE(&store->allocator, store, points, point, 1);
     if (result != GX_OK) return result;
-    *id = cx->point_count++;
-    memset(&cx->points[*id], 0, sizeof cx->points[*id]);
-    cx->points[*id].parameter[0] = -1;
+    *id = store->point_count++;
+    memset(&store->points[*id], 0, sizeof store->points[*id]);
+    store->points[*id].parameter[0] = -1;
     return GX_OK;
 }
 
 /* Memory for exact numbers, in blocks that stay where they are until the complex is destroyed. NULL: there is none. */
-static void *gxbp_block_take(gxb_complex *cx, size_t size) {
-    const size_t head = (sizeof(gxb_block) + 15) & ~(size_t)15, room = cx->blocks == NULL ? 16384 : 262144;
-    gxb_block *block = cx->blocks;
+static void *gxbp_block_take(gxb_store *store, size_t size) {
+    const size_t head = (sizeof(gxb_block) + 15) & ~(size_t)15, room = store->blocks == NULL ? 16384 : 262144;
+    gxb_block *block = store->blocks;
     size = (size + 15) & ~(size_t)15;
     if (block == NULL || block->size - block->used < size) {
-        block = (gxb_block *)gxbp_allocate(&cx->allocator, head + room);
+        block = (gxb_block *)gxbp_allocate(&store->allocator, head + room);
         if (block == NULL) return NULL;
-        block->next = cx->blocks;
+        block->next = store->blocks;
         block->size = head + room;
         block->used = head;
-        cx->blocks = block;
+        store->blocks = block;
     }
     block->used += size;
     return (unsigned char *)block + block->used - size;
@@ -2187,13 +2241,13 @@ static void *gxbp_block_take(gxb_complex *cx, size_t size) {
 
 /* A copy of four numbers that stays. NULL: no memory; the numbers are a cache, so that most callers may go on without.
  */
-static gxb_num *gxbp_keep_exact(gxb_complex *cx, const gxb_num c[4]) {
+static gxb_num *gxbp_keep_exact(gxb_store *store, const gxb_num c[4]) {
     size_t total = 0;
     gxb_num *copy;
     gxb_limb *d;
     int k;
     for (k = 0; k < 4; k++) total += c[k].n;
-    copy = (gxb_num *)gxbp_block_take(cx, 4 * sizeof *copy + total * sizeof *d);
+    copy = (gxb_num *)gxbp_block_take(store, 4 * sizeof *copy + total * sizeof *d);
     if (copy == NULL) return NULL;
     d = (gxb_limb *)(void *)(copy + 4);
     for (k = 0; k < 4; k++) {
@@ -2206,7 +2260,7 @@ static gxb_num *gxbp_keep_exact(gxb_complex *cx, const gxb_num c[4]) {
 }
 
 /* (x - origin) * 2^shift, exact; GX_ERROR_RANGE outside of 2^-128 ... 2^128 */
-static gx_result gxbp_frame_exact(const gxb_complex *cx, const double x[3], gxbp_vec *v) {
+static gx_result gxbp_frame_exact(const gxb_store *store, const double x[3], gxbp_vec *v) {
     int k;
     GXB_NUM(a);
     GXB_NUM(b);
@@ -2214,8 +2268,8 @@ static gx_result gxbp_frame_exact(const gxb_complex *cx, const double x[3], gxbp
     gxb_num_set(&v->c[3], 1.0, 0);
     for (k = 0; k < 3; k++) {
         int power;
-        gxb_num_set(&a, x[k], cx->shift);
-        gxb_num_set(&b, cx->origin[k], cx->shift);
+        gxb_num_set(&a, x[k], store->shift);
+        gxb_num_set(&b, store->origin[k], store->shift);
         if ((a.sign != 0 && (gxbp_num_mantissa(&a, &power), power + 52 < -128)) || (a.sign != 0 && power + 52 > 128))
             return GX_ERROR_RANGE;
         gxb_num_sub(&v->c[k], &a, &b);
@@ -2225,19 +2279,19 @@ static gx_result gxbp_frame_exact(const gxb_complex *cx, const double x[3], gxbp
 }
 
 /* Most points need no arithmetic. */
-GXFEM_API gx_result gxb_complex_check_point(const gxb_complex *cx, const double x[3]) {
+static gx_result gxbp_store_check_point(const gxb_store *store, const double x[3]) {
     gxbp_vec v;
     int k, plain = 1;
     for (k = 0; k < 3; k++) {
-        const int bits = gxbp_exponent_bits(x[k]), e = bits - 1023 + cx->shift;
-        const int origin = gxbp_exponent_bits(cx->origin[k]) - 1023 + cx->shift;
+        const int bits = gxbp_exponent_bits(x[k]), e = bits - 1023 + store->shift;
+        const int origin = gxbp_exponent_bits(store->origin[k]) - 1023 + store->shift;
         plain = plain && (gxbp_is_zero(x[k]) || (bits > 0 && e >= -128 && e < 127)) && origin < 127;
         if (!gxbp_is_finite(x[k])) return GX_ERROR_NOT_FINITE;
     }
-    return plain ? GX_OK : gxbp_frame_exact(cx, x, &v);
+    return plain ? GX_OK : gxbp_frame_exact(store, x, &v);
 }
 
-GXFEM_API gx_result gxb_complex_add_point(gxb_complex *cx, const double x[3], uint32_t *point) {
+static gx_result gxbp_store_add_point(gxb_store *store, const double x[3], uint32_t *point) {
     gxbp_vec v;
     gx_result result;
     gxb_num *exact = NULL;
@@ -2246,7 +2300,7 @@ GXFEM_API gx_result gxb_complex_add_point(gxb_complex *cx, const double x[3], ui
     int k;
     for (k = 0; k < 3; k++)
         if (!gxbp_is_finite(x[k])) return GX_ERROR_NOT_FINITE;
-    result = gxbp_frame_exact(cx, x, &v);
+    result = gxbp_frame_exact(store, x, &v);
     if (result != GX_OK) return result;
     for (k = 0; k < 3; k++) {
         GXB_NUM(back);
@@ -2256,38 +2310,38 @@ GXFEM_API gx_result gxb_complex_add_point(gxb_complex *cx, const double x[3], ui
         gxb_num_sub(&rest, &v.c[k], &back);
         if (rest.sign != 0) error = gxbp_max(error, 2 * GXBP_U * gxbp_abs(ball[k]));
     }
-    if (error > 0 && (exact = gxbp_keep_exact(cx, v.c)) == NULL) return GX_ERROR_MEMORY;
-    result = gxbp_new_point(cx, &id);
+    if (error > 0 && (exact = gxbp_keep_exact(store, v.c)) == NULL) return GX_ERROR_MEMORY;
+    result = gxbp_new_point(store, &id);
     if (result != GX_OK) return result;
-    memcpy(cx->points[id].ball.x, ball, sizeof ball);
-    cx->points[id].ball.error = error;
-    cx->points[id].kind = GXB_EXPLICIT;
-    cx->points[id].exact = exact;
+    memcpy(store->points[id].ball.x, ball, sizeof ball);
+    store->points[id].ball.error = error;
+    store->points[id].kind = GXB_EXPLICIT;
+    store->points[id].exact = exact;
     *point = id;
     return GX_OK;
 }
 
 /* Exact homogeneous coordinates of a point of the complex given by its definition. */
-static void gxbp_exact_definition(gxb_complex *cx, uint32_t kind, const uint32_t def[3], gxb_num out[4]);
+static void gxbp_exact_definition(gxb_store *store, uint32_t kind, const uint32_t def[3], gxb_num out[4]);
 
 /* The point's exact coordinates: kept, or in store where they need not or cannot be kept. */
-static const gxb_num *gxbp_exact_cpoint(gxb_complex *cx, uint32_t point, gxbp_vec *store) {
-    gxb_cpoint *p = &cx->points[point];
+static const gxb_num *gxbp_exact_cpoint(gxb_store *store, uint32_t point, gxbp_vec *own) {
+    gxb_cpoint *p = &store->points[point];
     if (p->exact != NULL) return p->exact;
     if (p->kind == GXB_EXPLICIT) {
-        gxbp_vec_set(store, p->ball.x);
-        return store->c;
+        gxbp_vec_set(own, p->ball.x);
+        return own->c;
     }
-    gxbp_vec_init(store);
-    gxbp_exact_definition(cx, p->kind, p->def, store->c);
-    p->exact = gxbp_keep_exact(cx, store->c);
-    return p->exact != NULL ? p->exact : store->c;
+    gxbp_vec_init(own);
+    gxbp_exact_definition(store, p->kind, p->def, own->c);
+    p->exact = gxbp_keep_exact(store, own->c);
+    return p->exact != NULL ? p->exact : own->c;
 }
 
 /* The given coordinates of an explicit point: what came into the frame by a shift and a scale, exactly, goes back. */
-static GXBP_COLD void gxbp_given(gxb_complex *cx, uint32_t point, double x[3]) {
-    gxbp_vec store;
-    const gxb_num *c = gxbp_exact_cpoint(cx, point, &store);
+static GXBP_COLD void gxbp_given(gxb_store *store, uint32_t point, double x[3]) {
+    gxbp_vec own;
+    const gxb_num *c = gxbp_exact_cpoint(store, point, &own);
     int k;
     for (k = 0; k < 3; k++) {
         GXB_NUM(scale);
@@ -2296,9 +2350,9 @@ static GXBP_COLD void gxbp_given(gxb_complex *cx, uint32_t point, double x[3]) {
         GXB_NUM(sum);
         uint64_t m;
         int power;
-        gxb_num_set(&scale, 1.0, -cx->shift);
+        gxb_num_set(&scale, 1.0, -store->shift);
         gxb_num_mul(&given, &c[k], &scale);
-        gxb_num_set(&origin, cx->origin[k], 0);
+        gxb_num_set(&origin, store->origin[k], 0);
         gxb_num_add(&sum, &given, &origin);
         x[k] = 0;
         if (sum.sign == 0) continue;
@@ -2324,50 +2378,51 @@ static GXBP_RARE void gxbp_exact_axis_plane(gxb_num plane[4], const gxb_num p[3]
     gxbp_num_dot(&plane[3], plane, p);
 }
 
-static GXBP_COLD const gxb_num *gxbp_exact_cplane(gxb_complex *cx, uint32_t plane, gxbp_vec *store) {
-    gxb_cplane *f = &cx->planes[plane];
+static GXBP_COLD const gxb_num *gxbp_exact_cplane(gxb_store *store, uint32_t plane, gxbp_vec *own) {
+    gxb_cplane *f = &store->planes[plane];
     gxbp_vec s[3];
     const gxb_num *p, *q;
     if (f->exact != NULL) return f->exact;
-    gxbp_vec_init(store);
-    p = gxbp_exact_cpoint(cx, f->def[0], &s[0]);
-    q = gxbp_exact_cpoint(cx, f->def[1], &s[1]);
+    gxbp_vec_init(own);
+    p = gxbp_exact_cpoint(store, f->def[0], &s[0]);
+    q = gxbp_exact_cpoint(store, f->def[1], &s[1]);
     if (f->along_axis)
-        gxbp_exact_axis_plane(store->c, p, q, f->def[2]);
+        gxbp_exact_axis_plane(own->c, p, q, f->def[2]);
     else
-        gxbp_exact_plane(store->c, p, q, gxbp_exact_cpoint(cx, f->def[2], &s[2]));
-    f->exact = gxbp_keep_exact(cx, store->c);
-    return f->exact != NULL ? f->exact : store->c;
+        gxbp_exact_plane(own->c, p, q, gxbp_exact_cpoint(store, f->def[2], &s[2]));
+    f->exact = gxbp_keep_exact(store, own->c);
+    return f->exact != NULL ? f->exact : own->c;
 }
 
-static void gxbp_exact_definition(gxb_complex *cx, uint32_t kind, const uint32_t def[3], gxb_num out[4]) {
+static void gxbp_exact_definition(gxb_store *store, uint32_t kind, const uint32_t def[3], gxb_num out[4]) {
     gxbp_vec s[3];
-    const gxb_num *c = gxbp_exact_cplane(cx, def[2], &s[2]);
+    const gxb_num *c = gxbp_exact_cplane(store, def[2], &s[2]);
     if (kind == GXB_LINE_PLANE) {
-        const gxb_num *p = gxbp_exact_cpoint(cx, def[0], &s[0]);
-        gxbp_exact_line_plane(out, p, gxbp_exact_cpoint(cx, def[1], &s[1]), c);
+        const gxb_num *p = gxbp_exact_cpoint(store, def[0], &s[0]);
+        gxbp_exact_line_plane(out, p, gxbp_exact_cpoint(store, def[1], &s[1]), c);
     } else {
-        const gxb_num *a = gxbp_exact_cplane(cx, def[0], &s[0]);
-        gxbp_exact_three_planes(out, a, gxbp_exact_cplane(cx, def[1], &s[1]), c);
+        const gxb_num *a = gxbp_exact_cplane(store, def[0], &s[0]);
+        gxbp_exact_three_planes(out, a, gxbp_exact_cplane(store, def[1], &s[1]), c);
     }
 }
 
 /* The ball of a point given by its definition. */
-static void gxbp_definition_ball(const gxb_complex *cx, uint32_t kind, const uint32_t def[3], gxb_ball *ball) {
+static void gxbp_definition_ball(const gxb_store *store, uint32_t kind, const uint32_t def[3], gxb_ball *ball) {
     if (kind == GXB_LINE_PLANE) {
-        gxbp_filter_line_plane(ball, &cx->points[def[0]].ball, &cx->points[def[1]].ball, &cx->planes[def[2]].filter);
+        gxbp_filter_line_plane(ball, &store->points[def[0]].ball, &store->points[def[1]].ball,
+                               &store->planes[def[2]].filter);
     } else {
         const gxb_plane_filter *f[3];
-        f[0] = &cx->planes[def[0]].filter;
-        f[1] = &cx->planes[def[1]].filter;
-        f[2] = &cx->planes[def[2]].filter;
+        f[0] = &store->planes[def[0]].filter;
+        f[1] = &store->planes[def[1]].filter;
+        f[2] = &store->planes[def[2]].filter;
         gxbp_filter_three_planes(ball, f);
     }
 }
 
 /* Is the point in the plane by the way in which either is defined? */
-static int gxbp_incident(const gxb_complex *cx, uint32_t kind, const uint32_t def[3], uint32_t point, uint32_t plane) {
-    const gxb_cplane *f = &cx->planes[plane];
+static int gxbp_incident(const gxb_store *store, uint32_t kind, const uint32_t def[3], uint32_t point, uint32_t plane) {
+    const gxb_cplane *f = &store->planes[plane];
     const uint32_t third = f->along_axis ? f->def[0] : f->def[2];
     if (kind == GXB_EXPLICIT) return point == f->def[0] || point == f->def[1] || point == third;
     if (def[2] == plane) return 1;
@@ -2384,23 +2439,23 @@ static int gxbp_plane_has_line(const gxb_cplane *f, uint32_t p, uint32_t q) {
 
 /* Is the point in the plane because two of its own planes meet in a line that the plane contains too? So it is where a
    sheet's triangles meet in their common edge: what a filter never settles, and exact arithmetic need not. */
-static GXBP_RARE int gxbp_incident_by_line(const gxb_complex *cx, const uint32_t def[3], uint32_t plane) {
-    const gxb_cplane *f = &cx->planes[plane];
+static GXBP_RARE int gxbp_incident_by_line(const gxb_store *store, const uint32_t def[3], uint32_t plane) {
+    const gxb_cplane *f = &store->planes[plane];
     const uint32_t line_count = f->along_axis ? 1u : 3u;
     uint32_t k, i;
     for (k = 0; k < line_count; k++) {
         int count = 0;
-        for (i = 0; i < 3; i++) count += gxbp_plane_has_line(&cx->planes[def[i]], f->def[k], f->def[(k + 1) % 3]);
+        for (i = 0; i < 3; i++) count += gxbp_plane_has_line(&store->planes[def[i]], f->def[k], f->def[(k + 1) % 3]);
         if (count >= 2) return 1;
     }
     return 0;
 }
 
 /* x: coordinates of the points (as many as count) where all are given by doubles. Else 0 */
-static GXBP_APART int gxbp_given_points(const gxb_complex *cx, const uint32_t *points, int count, const double **x) {
+static GXBP_APART int gxbp_given_points(const gxb_store *store, const uint32_t *points, int count, const double **x) {
     int k;
     for (k = 0; k < count; k++) {
-        const gxb_cpoint *p = &cx->points[points[k]];
+        const gxb_cpoint *p = &store->points[points[k]];
         if (p->kind != GXB_EXPLICIT || p->ball.error > 0) return 0;
         x[k] = p->ball.x;
     }
@@ -2408,103 +2463,103 @@ static GXBP_APART int gxbp_given_points(const gxb_complex *cx, const uint32_t *p
 }
 
 /* Of a point and a plane that are given by doubles, or a point of a line and a plane that are */
-static int gxbp_short_side(const gxb_complex *cx, uint32_t kind, const uint32_t def[3], uint32_t point,
+static int gxbp_short_side(const gxb_store *store, uint32_t kind, const uint32_t def[3], uint32_t point,
                            uint32_t plane) {
-    const gxb_cplane *f = &cx->planes[plane], *g;
+    const gxb_cplane *f = &store->planes[plane], *g;
     const double *x[8];
     int turn;
-    if (f->along_axis || !gxbp_given_points(cx, f->def, 3, x)) return GXBP_UNKNOWN;
+    if (f->along_axis || !gxbp_given_points(store, f->def, 3, x)) return GXBP_UNKNOWN;
     if (kind == GXB_EXPLICIT) {
-        if (!gxbp_given_points(cx, &point, 1, x + 3)) return GXBP_UNKNOWN;
+        if (!gxbp_given_points(store, &point, 1, x + 3)) return GXBP_UNKNOWN;
         turn = gxbp_orient3d_short(x);
         return turn == GXBP_UNKNOWN ? turn : -turn;
     }
-    g = &cx->planes[def[2]];
-    if (kind != GXB_LINE_PLANE || g->along_axis || !gxbp_given_points(cx, g->def, 3, x + 3) ||
-        !gxbp_given_points(cx, def, 2, x + 6))
+    g = &store->planes[def[2]];
+    if (kind != GXB_LINE_PLANE || g->along_axis || !gxbp_given_points(store, g->def, 3, x + 3) ||
+        !gxbp_given_points(store, def, 2, x + 6))
         return GXBP_UNKNOWN;
     return gxbp_line_side_short(x);
 }
 
 /* Sign of the exact value of n.X - d W for a point of the complex, or (point GXB_NONE) for one that only has a
  * definition. */
-static int gxbp_exact_sign(gxb_complex *cx, uint32_t kind, const uint32_t def[3], uint32_t point, uint32_t plane) {
+static int gxbp_exact_sign(gxb_store *store, uint32_t kind, const uint32_t def[3], uint32_t point, uint32_t plane) {
     GXB_NUM(r);
     gxbp_vec sx, sn;
     const gxb_num *n, *x = sx.c;
-    cx->exact_calls++;
-    if (point == GXB_NONE || cx->points[point].exact == NULL) {
-        const int known = gxbp_short_side(cx, kind, def, point, plane);
+    store->exact_calls++;
+    if (point == GXB_NONE || store->points[point].exact == NULL) {
+        const int known = gxbp_short_side(store, kind, def, point, plane);
         if (known != GXBP_UNKNOWN) return known;
     }
-    n = gxbp_exact_cplane(cx, plane, &sn);
+    n = gxbp_exact_cplane(store, plane, &sn);
     if (point != GXB_NONE)
-        x = gxbp_exact_cpoint(cx, point, &sx);
+        x = gxbp_exact_cpoint(store, point, &sx);
     else {
         gxbp_vec_init(&sx);
-        gxbp_exact_definition(cx, kind, def, sx.c);
+        gxbp_exact_definition(store, kind, def, sx.c);
     }
     gxbp_exact_side(&r, x, n);
     return r.sign;
 }
 
-static int gxbp_side_of(gxb_complex *cx, const gxb_ball *ball, uint32_t kind, const uint32_t def[3], uint32_t point,
+static int gxbp_side_of(gxb_store *store, const gxb_ball *ball, uint32_t kind, const uint32_t def[3], uint32_t point,
                         uint32_t plane) {
     double bound, value;
     int sign;
-    if (gxbp_incident(cx, kind, def, point, plane)) return 0;
-    cx->filter_calls++;
+    if (gxbp_incident(store, kind, def, point, plane)) return 0;
+    store->filter_calls++;
     if (ball->error < GXBP_NO_BALL) {
-        value = gxbp_filter_side(ball, &cx->planes[plane].filter, &bound);
+        value = gxbp_filter_side(ball, &store->planes[plane].filter, &bound);
         sign = gxbp_filter_sign(value, bound);
         if (sign != 0) return sign;
     }
-    if (kind == GXB_THREE_PLANES && gxbp_incident_by_line(cx, def, plane)) return 0;
-    return gxbp_exact_sign(cx, kind, def, point, plane);
+    if (kind == GXB_THREE_PLANES && gxbp_incident_by_line(store, def, plane)) return 0;
+    return gxbp_exact_sign(store, kind, def, point, plane);
 }
 
-GXFEM_API int gxb_complex_side(gxb_complex *cx, uint32_t point, uint32_t plane) {
-    const gxb_cpoint *p = &cx->points[point];
-    return gxbp_side_of(cx, &p->ball, p->kind, p->def, point, plane);
+static int gxbp_store_side(gxb_store *store, uint32_t point, uint32_t plane) {
+    const gxb_cpoint *p = &store->points[point];
+    return gxbp_side_of(store, &p->ball, p->kind, p->def, point, plane);
 }
 
-static GXBP_APART int gxbp_new_sign(gxb_complex *cx, uint32_t point, uint32_t plane, int slot) {
-    const int sign = gxb_complex_side(cx, point, plane);
-    cx->points[point].sign[slot] = (int8_t)sign;
-    cx->points[point].stamp[slot] = cx->stamp[slot];
+static GXBP_APART int gxbp_new_sign(gxb_store *store, uint32_t point, uint32_t plane, int slot) {
+    const int sign = gxbp_store_side(store, point, plane);
+    store->points[point].sign[slot] = (int8_t)sign;
+    store->points[point].stamp[slot] = store->stamp[slot];
     return sign;
 }
 
 /* The side with a memory: slot 0 for the triangle being inserted, slot 1 for its edges' planes. */
-static int gxbp_sign(gxb_complex *cx, uint32_t point, uint32_t plane, int slot) {
-    const gxb_cpoint *p = &cx->points[point];
-    return p->stamp[slot] == cx->stamp[slot] ? p->sign[slot] : gxbp_new_sign(cx, point, plane, slot);
+static int gxbp_sign(gxb_store *store, uint32_t point, uint32_t plane, int slot) {
+    const gxb_cpoint *p = &store->points[point];
+    return p->stamp[slot] == store->stamp[slot] ? p->sign[slot] : gxbp_new_sign(store, point, plane, slot);
 }
 
-GXFEM_API int gxb_complex_turn(gxb_complex *cx, uint32_t a, uint32_t b, uint32_t c, uint32_t plane) {
-    const gxb_cplane *f = &cx->planes[plane];
+static int gxbp_store_turn(gxb_store *store, uint32_t a, uint32_t b, uint32_t c, uint32_t plane) {
+    const gxb_cplane *f = &store->planes[plane];
     const int i = (int)(f->axis + 1) % 3, j = (int)(f->axis + 2) % 3;
     int turn = 0;
-    if (cx->points[a].ball.error < GXBP_NO_BALL && cx->points[b].ball.error < GXBP_NO_BALL &&
-        cx->points[c].ball.error < GXBP_NO_BALL)
-        turn = gxbp_filter_turn(&cx->points[a].ball, &cx->points[b].ball, &cx->points[c].ball, i, j);
+    if (store->points[a].ball.error < GXBP_NO_BALL && store->points[b].ball.error < GXBP_NO_BALL &&
+        store->points[c].ball.error < GXBP_NO_BALL)
+        turn = gxbp_filter_turn(&store->points[a].ball, &store->points[b].ball, &store->points[c].ball, i, j);
     if (turn == 0) {
         gxbp_vec s[3];
-        const gxb_num *x = gxbp_exact_cpoint(cx, a, &s[0]), *y = gxbp_exact_cpoint(cx, b, &s[1]),
-                      *z = gxbp_exact_cpoint(cx, c, &s[2]);
+        const gxb_num *x = gxbp_exact_cpoint(store, a, &s[0]), *y = gxbp_exact_cpoint(store, b, &s[1]),
+                      *z = gxbp_exact_cpoint(store, c, &s[2]);
         turn = gxbp_orient_exact(x, y, z, i, j);
     }
     return turn * f->axis_sign;
 }
 
-GXFEM_API int gxb_complex_compare(gxb_complex *cx, uint32_t point, int axis, double value) {
+static int gxbp_store_compare(gxb_store *store, uint32_t point, int axis, double value) {
     GXB_NUM(a);
     GXB_NUM(b);
     GXB_NUM(c);
-    gxbp_vec store;
-    const gxb_num *x = gxbp_exact_cpoint(cx, point, &store);
-    gxb_num_set(&a, value, cx->shift);
-    gxb_num_set(&b, cx->origin[axis], cx->shift);
+    gxbp_vec own;
+    const gxb_num *x = gxbp_exact_cpoint(store, point, &own);
+    gxb_num_set(&a, value, store->shift);
+    gxb_num_set(&b, store->origin[axis], store->shift);
     gxb_num_sub(&c, &a, &b);
     gxb_num_mul(&a, &c, &x[3]);
     gxb_num_sub(&b, &x[axis], &a);
@@ -2512,65 +2567,245 @@ GXFEM_API int gxb_complex_compare(gxb_complex *cx, uint32_t point, int axis, dou
 }
 
 /* A plane through three points, or (axis < 3) through two along a coordinate axis. */
-static gx_result gxbp_new_plane(gxb_complex *cx, uint32_t p, uint32_t q, uint32_t r, int along_axis, uint32_t *id) {
-    gx_result result = GXBP_RESERVE(cx, planes, plane, 1);
+static gx_result gxbp_new_plane(gxb_store *store, uint32_t p, uint32_t q, uint32_t r, int along_axis, uint32_t *id) {
+    gx_result result = GXBP_RESERVE(&store->allocator, store, planes, plane, 1);
     gxb_cplane *f;
     double a[3], b[3] = {0, 0, 0}, ea, eb = 0;
     if (result != GX_OK) return result;
-    *id = cx->plane_count++;
-    f = &cx->planes[*id];
+    *id = store->plane_count++;
+    f = &store->planes[*id];
     memset(f, 0, sizeof *f);
     f->def[0] = p;
     f->def[1] = q;
     f->def[2] = r;
     f->along_axis = (uint8_t)along_axis;
-    ea = gxbp_filter_difference(a, &cx->points[p].ball, &cx->points[q].ball);
+    ea = gxbp_filter_difference(a, &store->points[p].ball, &store->points[q].ball);
     if (along_axis)
         b[r] = 1;
     else
-        eb = gxbp_filter_difference(b, &cx->points[p].ball, &cx->points[r].ball);
-    gxbp_filter_plane(&f->filter, &cx->points[p].ball, a, ea, b, eb);
+        eb = gxbp_filter_difference(b, &store->points[p].ball, &store->points[r].ball);
+    gxbp_filter_plane(&f->filter, &store->points[p].ball, a, ea, b, eb);
     return GX_OK;
 }
 
-static GXBP_COLD int gxbp_exact_normal_sign(gxb_complex *cx, uint32_t plane, uint32_t axis) {
-    const gxb_cplane *f = &cx->planes[plane];
+static GXBP_COLD int gxbp_exact_normal_sign(gxb_store *store, uint32_t plane, uint32_t axis) {
+    const gxb_cplane *f = &store->planes[plane];
     const double *x[3];
-    gxbp_vec store;
+    gxbp_vec own;
     int sign[3];
-    if (!f->along_axis && gxbp_given_points(cx, f->def, 3, x) && gxbp_normal_short(x, sign)) return sign[axis];
-    return gxbp_exact_cplane(cx, plane, &store)[axis].sign;
+    if (!f->along_axis && gxbp_given_points(store, f->def, 3, x) && gxbp_normal_short(x, sign)) return sign[axis];
+    return gxbp_exact_cplane(store, plane, &own)[axis].sign;
 }
 
 /* Sign of one component of a plane's normal. */
-static GXBP_APART int gxbp_normal_sign(gxb_complex *cx, uint32_t plane, uint32_t axis) {
-    const gxb_plane_filter *f = &cx->planes[plane].filter;
+static GXBP_APART int gxbp_normal_sign(gxb_store *store, uint32_t plane, uint32_t axis) {
+    const gxb_plane_filter *f = &store->planes[plane].filter;
     const int sign = gxbp_filter_sign(f->n[axis], f->error);
-    return sign != 0 ? sign : gxbp_exact_normal_sign(cx, plane, axis);
+    return sign != 0 ? sign : gxbp_exact_normal_sign(store, plane, axis);
 }
 
 /* Finds a component of the normal that is not 0, the largest where the filter can tell. 0: there is none. */
-static int gxbp_plane_axis(gxb_complex *cx, uint32_t plane) {
-    const double *n = cx->planes[plane].filter.n;
+static int gxbp_plane_axis(gxb_store *store, uint32_t plane) {
+    const double *n = store->planes[plane].filter.n;
     uint32_t axis = gxbp_abs(n[0]) >= gxbp_abs(n[1]) ? 0u : 1u, k;
     int sign;
     if (gxbp_abs(n[2]) > gxbp_abs(n[axis])) axis = 2;
-    sign = gxbp_normal_sign(cx, plane, axis);
+    sign = gxbp_normal_sign(store, plane, axis);
     for (k = 0; k < 3 && sign == 0; k++) {
         axis = k;
-        sign = gxbp_normal_sign(cx, plane, axis);
+        sign = gxbp_normal_sign(store, plane, axis);
     }
-    cx->planes[plane].axis = (uint8_t)axis;
-    cx->planes[plane].axis_sign = (int8_t)sign;
+    store->planes[plane].axis = (uint8_t)axis;
+    store->planes[plane].axis_sign = (int8_t)sign;
     return sign != 0;
 }
 
+/* Do the planes meet in a line? */
+static GXBP_COLD int gxbp_planes_cross(gxb_store *store, uint32_t a, uint32_t b) {
+    const gxb_plane_filter *f = &store->planes[a].filter, *g = &store->planes[b].filter;
+    double r[3];
+    const double bound = gxbp_cross_error(f->norm, f->error, g->norm, g->error);
+    gxbp_vec sa, sb, cross;
+    gxbp_cross(r, f->n, g->n);
+    if (gxbp_max3(r) > bound) return 1;
+    gxbp_vec_init(&cross);
+    gxbp_num_cross(cross.c, gxbp_exact_cplane(store, a, &sa), gxbp_exact_cplane(store, b, &sb));
+    return cross.c[0].sign != 0 || cross.c[1].sign != 0 || cross.c[2].sign != 0;
+}
+
+/* >>transaction: what begin, commit and rollback of a complex do ----------------------------------------------------
+ */
+
+typedef struct gxbp_corner { /* of a clipped polygon: its point, and what carries the edge to the next corner */
+    gxb_ball ball;
+    uint32_t kind, def[3], point;
+    uint32_t carrier; /* a plane, or GXBP_TRIANGLE_EDGE + k */
+    int32_t sign;
+} gxbp_corner;
+
+typedef struct gxbp_task {
+    uint32_t parent, side, first, count, coplanar;
+} gxbp_task;
+
+#define GXBP_TRIANGLE_EDGE 0x80000000u
+#define GXBP_IN_ROOT       GXB_NONE /* task.parent: the reference is the element's root */
+
+/* The complex's arrays: those with marks come first, as in gxb_complex.mark. */
+static const gxbp_array gxbp_complex_arrays[] = {
+    GXBP_ARRAY(gxb_complex, edges, edge),   GXBP_ARRAY(gxb_complex, facets, facet),
+    GXBP_ARRAY(gxb_complex, leaves, leaf),  GXBP_ARRAY(gxb_complex, nodes, tree),
+    GXBP_ARRAY(gxb_complex, labels, label), GXBP_ARRAY(gxb_complex, pool, pool),
+    GXBP_ARRAY(gxb_complex, walls, wall),   GXBP_ARRAY(gxb_complex, corners, corner),
+    GXBP_ARRAY(gxb_complex, tasks, task),   GXBP_ARRAY(gxb_complex, scratch, scratch)};
+
+enum { GXBP_MARKS = 6 };
+
+/* Arrays whose items are logged before they change. The first four are those of gxbp_complex_arrays. */
+enum { GXBP_EDGES, GXBP_FACETS, GXBP_LEAVES, GXBP_NODES, GXBP_POINTS, GXBP_ROOTS, GXBP_FACES, GXBP_MESH_EDGES };
+
+static void *gxbp_item(gxb_complex *cx, uint32_t array, uint32_t index, size_t *size) {
+    static const uint16_t pointer[] = {offsetof(gxb_complex, edges),        offsetof(gxb_complex, facets),
+                                       offsetof(gxb_complex, leaves),       offsetof(gxb_complex, nodes),
+                                       offsetof(gxb_complex, store.points), offsetof(gxb_complex, root),
+                                       offsetof(gxb_complex, face_facet),   offsetof(gxb_complex, mesh_edge)};
+    static const uint16_t item[] = {sizeof(gxb_edge),   sizeof(gxb_facet), sizeof(gxb_leaf), sizeof(gxb_node),
+                                    sizeof(gxb_cpoint), sizeof(uint32_t),  sizeof(uint32_t), sizeof(uint32_t)};
+    unsigned char *items;
+    memcpy(&items, gxbp_field(cx, pointer[array]), sizeof items);
+    *size = item[array];
+    return items + index * *size;
+}
+
+/* Items older than the transaction. */
+static uint32_t gxbp_item_mark(const gxb_complex *cx, uint32_t array) {
+    return array < GXBP_POINTS ? cx->mark[array] : array == GXBP_POINTS ? cx->store.mark[0] : UINT32_MAX;
+}
+
+/* Logs an item that is about to change, unless it is newer than the transaction. Room was reserved. */
+static void gxbp_save(gxb_complex *cx, uint32_t array, uint32_t index) {
+    size_t size;
+    const void *item = gxbp_item(cx, array, index, &size);
+    if (index < gxbp_item_mark(cx, array)) gxbp_log(&cx->store, array, index, item, size);
+}
+
+/* Copies a list of the pool behind those already copied. */
+static void gxbp_move_list(const gxb_complex *cx, uint32_t *pool, uint32_t *used, uint32_t *list, uint32_t count) {
+    if (count > 0) memcpy(pool + *used, cx->pool + *list, count * sizeof *pool);
+    *list = *used;
+    *used += count;
+}
+
+/* Lists that were replaced by longer ones stay in the pool; once they outweigh the others, the pool is renewed. Without
+   memory for that it stays as it is. */
+static GXBP_COLD void gxbp_compact_pool(gxb_complex *cx) {
+    uint32_t *pool, used = 0, i;
+    pool = (uint32_t *)gxbp_allocate(&cx->store.allocator, (size_t)cx->pool_capacity * sizeof *pool);
+    if (pool == NULL) return;
+    for (i = 0; i < cx->facet_count; i++) {
+        gxb_facet *f = &cx->facets[i];
+        gxbp_move_list(cx, pool, &used, &f->loop, f->loop_count);
+    }
+    for (i = 0; i < cx->leaf_count; i++)
+        gxbp_move_list(cx, pool, &used, &cx->leaves[i].facets, cx->leaves[i].facet_count);
+    gxbp_release(&cx->store.allocator, cx->pool, (size_t)cx->pool_capacity * sizeof *cx->pool);
+    cx->pool = pool;
+    cx->pool_count = cx->pool_live = used;
+}
+
+static GXBP_APART void gxbp_set_marks(gxb_complex *cx) {
+    gxbp_store_begin(&cx->store);
+    gxbp_mark_arrays(cx, gxbp_complex_arrays, cx->mark, GXBP_MARKS);
+    cx->mark_live = cx->pool_live;
+    cx->wall_count = cx->corner_count = cx->task_count = 0;
+}
+
+GXFEM_API void gxb_complex_begin(gxb_complex *cx) {
+    if (cx->pool_count / 2 >= cx->pool_live + 1024) gxbp_compact_pool(cx);
+    gxbp_set_marks(cx);
+}
+
+GXFEM_API void gxb_complex_commit(gxb_complex *cx) { gxbp_set_marks(cx); }
+
+/* What is known of planes and points in pairs of doubles (see barycentric coordinates), by remainders of their numbers
+ */
+enum { GXBP_PAIR_NORMALS = 32, GXBP_PAIR_SIDES = 256 };
+typedef struct gxbp_pair {
+    double high, low, error;
+} gxbp_pair; /* a number within error of high + low */
+typedef struct gxbp_pairs {
+    /* GXB_NONE: nothing */
+    uint32_t plane[GXBP_PAIR_NORMALS], side_plane[GXBP_PAIR_SIDES], side_point[GXBP_PAIR_SIDES];
+    gxbp_pair normal[GXBP_PAIR_NORMALS][3], side[GXBP_PAIR_SIDES];
+} gxbp_pairs;
+
+static void gxbp_forget_pairs(gxb_complex *cx) {
+    memset(cx->pairs->plane, 0xff, sizeof cx->pairs->plane);
+    memset(cx->pairs->side_plane, 0xff, sizeof cx->pairs->side_plane);
+}
+
+#define GXBP_LAST_STAMP 0x3fffffffu /* of an edge */
+
+/* No edge is in a rim. */
+static void gxbp_forget_rim(gxb_complex *cx) {
+    uint32_t i;
+    if (cx->edge_stamp++ < GXBP_LAST_STAMP) return;
+    for (i = 0; i < cx->edge_count; i++) cx->edges[i].stamp = 0;
+    cx->edge_stamp = 1;
+}
+
+GXFEM_API GXBP_RARE void gxb_complex_rollback(gxb_complex *cx) {
+    while (cx->store.undo_count > 0) {
+        const gxb_undo undo = cx->store.undo[cx->store.undo_count - 1];
+        size_t size;
+        void *item = gxbp_item(cx, undo.array, undo.index, &size);
+        gxbp_put_back(&cx->store, item, size);
+        if (undo.array == GXBP_EDGES) cx->edges[undo.index].stamp = 0; /* may be of before stamps began again */
+        if (undo.array == GXBP_POINTS)
+            cx->store.points[undo.index].stamp[0] = cx->store.points[undo.index].stamp[1] = 0;
+    }
+    gxbp_store_rollback(&cx->store);
+    gxbp_cut_arrays(cx, gxbp_complex_arrays, cx->mark, GXBP_MARKS);
+    cx->pool_live = cx->mark_live;
+    gxbp_forget_rim(cx);
+    gxbp_forget_pairs(cx);
+    gxbp_set_marks(cx);
+}
+
+GXFEM_API GXBP_RARE void gxb_complex_reserve(gxb_complex *cx, uint32_t times) {
+    gxbp_expect_arrays(&cx->store.allocator, &cx->store, gxbp_store_arrays, cx->store.mark, 2, times);
+    gxbp_expect_arrays(&cx->store.allocator, cx, gxbp_complex_arrays, cx->mark, GXBP_MARKS, times);
+}
+
+/* --- the store's points and planes, asked through the complex --- */
+
+GXFEM_API gx_result gxb_complex_check_point(const gxb_complex *cx, const double x[3]) {
+    return gxbp_store_check_point(&cx->store, x);
+}
+
+GXFEM_API gx_result gxb_complex_add_point(gxb_complex *cx, const double x[3], uint32_t *point) {
+    return gxbp_store_add_point(&cx->store, x, point);
+}
+
+GXFEM_API int gxb_complex_side(gxb_complex *cx, uint32_t point, uint32_t plane) {
+    return gxbp_store_side(&cx->store, point, plane);
+}
+
+GXFEM_API int gxb_complex_turn(gxb_complex *cx, uint32_t a, uint32_t b, uint32_t c, uint32_t plane) {
+    return gxbp_store_turn(&cx->store, a, b, c, plane);
+}
+
+GXFEM_API int gxb_complex_compare(gxb_complex *cx, uint32_t point, int axis, double value) {
+    return gxbp_store_compare(&cx->store, point, axis, value);
+}
+
+/* >>topology: the complex of a mesh -------------------------------------------------------------------------------- */
+
 GXFEM_API gx_result gxb_complex_add_plane(gxb_complex *cx, gxb_triangle *t) {
-    const gx_result result = gxbp_new_plane(cx, t->point[0], t->point[1], t->point[2], 0, &t->plane);
+    const gx_result result = gxbp_new_plane(&cx->store, t->point[0], t->point[1], t->point[2], 0, &t->plane);
     if (result != GX_OK) return result;
     t->orientation = 1;
     t->edge_plane[0] = t->edge_plane[1] = t->edge_plane[2] = GXB_NONE;
-    return gxbp_plane_axis(cx, t->plane) ? GX_OK : GX_ERROR_FLAT;
+    return gxbp_plane_axis(&cx->store, t->plane) ? GX_OK : GX_ERROR_FLAT;
 }
 
 /* --- faces and edges of the mesh by sorting: an element's are 4 x element + k, opposite to node k, and 6 x element + k
@@ -2691,59 +2926,9 @@ static void gxbp_number_edges(gxb_complex *cx, uint32_t *place) {
     }
 }
 
-/* floor(log2(high - low)), whatever the mode of the floating-point unit; -2000 where they are equal */
-static int gxbp_difference_exponent(double high, double low) {
-    GXB_NUM(a);
-    GXB_NUM(b);
-    GXB_NUM(d);
-    int power;
-    gxb_num_set(&a, high, 0);
-    gxb_num_set(&b, low, 0);
-    gxb_num_sub(&d, &a, &b);
-    if (d.sign == 0) return -2000;
-    gxbp_num_mantissa(&d, &power);
-    return power + 52;
-}
-
-/* Frame: the origin is the mesh's lower corner rounded to few bits where the mesh lies far from 0 (so that the shift
-   adds no bits to its coordinates), else 0; the scale brings the box to size 1. */
-static gx_result gxbp_choose_frame(gxb_complex *cx, const gxb_mesh *mesh, size_t *bad) {
-    int axis, largest = -2000;
-    for (axis = 0; axis < 3; axis++) {
-        double low = 0, high = 0;
-        int size;
-        size_t i;
-        for (i = 0; i < mesh->node_count; i++) {
-            const double x = mesh->positions[3 * i + (size_t)axis];
-            if (!gxbp_is_finite(x)) {
-                *bad = i;
-                return GX_ERROR_NOT_FINITE;
-            }
-            if (gxbp_exponent_bits(x) > 2000) {
-                *bad = i;
-                return GX_ERROR_RANGE;
-            }
-            if (i == 0 || gxbp_compare_doubles(x, low) < 0) low = x;
-            if (i == 0 || gxbp_compare_doubles(x, high) > 0) high = x;
-        }
-        size = gxbp_difference_exponent(high, low);
-        if (size == -2000) size = gxbp_is_zero(low) ? -2000 : gxbp_exponent(low);
-        if (size > largest) largest = size;
-        if (size > -2000 && !gxbp_is_zero(low) && gxbp_exponent(low) > size + 3) {
-            const int drop = gxbp_exponent(low) - size; /* keep so many leading bits */
-            if (drop < 52)
-                cx->origin[axis] = gxbp_double(gxbp_bits(low) & ~((((uint64_t)1) << (52 - drop)) - 1));
-            else
-                cx->origin[axis] = low;
-        }
-    }
-    cx->shift = largest == -2000 ? 0 : -largest - 1;
-    return GX_OK;
-}
-
 static gx_result gxbp_add_nodes(gxb_complex *cx, const gxb_mesh *mesh, size_t *bad) {
     size_t i;
-    gx_result result = GXBP_RESERVE(cx, points, point, mesh->node_count);
+    gx_result result = GXBP_RESERVE(&cx->store.allocator, &cx->store, points, point, mesh->node_count);
     for (i = 0; i < mesh->node_count && result == GX_OK; i++) {
         uint32_t id;
         result = gxb_complex_add_point(cx, mesh->positions + 3 * i, &id);
@@ -2773,7 +2958,7 @@ static gx_result gxbp_check_elements(gxb_complex *cx, const gxb_mesh *mesh, size
 
 static gx_result gxbp_make_leaves(gxb_complex *cx) {
     uint32_t e;
-    const gx_result result = GXBP_RESERVE(cx, leaves, leaf, cx->element_count);
+    const gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, leaves, leaf, cx->element_count);
     if (result != GX_OK) return result;
     memset(cx->leaves, 0, cx->element_count * sizeof *cx->leaves);
     for (e = 0; e < cx->element_count; e++) {
@@ -2793,7 +2978,7 @@ static size_t gxbp_table_words(size_t elements) { return elements * (4 + 4 + 6 +
 static gx_result gxbp_fill_complex(gxb_complex *cx, const gxb_mesh *mesh, uint32_t *table, size_t *bad) {
     const size_t n = mesh->element_count;
     const size_t place_bytes = (mesh->node_count + 1) * sizeof(uint32_t);
-    gx_result result = gxbp_choose_frame(cx, mesh, bad);
+    gx_result result = gxbp_choose_frame(&cx->store, mesh->positions, mesh->node_count, bad);
     uint32_t *place;
     memcpy(table, mesh->elements, n * 4 * sizeof *table);
     cx->elements = table;
@@ -2806,11 +2991,11 @@ static gx_result gxbp_fill_complex(gxb_complex *cx, const gxb_mesh *mesh, uint32
     if (result == GX_OK) result = gxbp_check_elements(cx, mesh, bad);
     if (result == GX_OK) result = gxbp_add_nodes(cx, mesh, bad);
     if (result != GX_OK) return result;
-    place = (uint32_t *)gxbp_allocate(&cx->allocator, place_bytes);
+    place = (uint32_t *)gxbp_allocate(&cx->store.allocator, place_bytes);
     if (place == NULL) return GX_ERROR_MEMORY;
     result = gxbp_number_faces(cx, place, bad);
     if (result == GX_OK) gxbp_number_edges(cx, place);
-    gxbp_release(&cx->allocator, place, place_bytes);
+    gxbp_release(&cx->store.allocator, place, place_bytes);
     return result == GX_OK ? gxbp_make_leaves(cx) : result;
 }
 
@@ -2824,8 +3009,19 @@ static GXBP_COLD gx_result gxbp_fail(gx_failure *failure, gx_result result, size
 }
 
 /* allocate and release, or neither, and reallocate only with them */
-static int gxbp_is_allocator(const gx_allocator *a) {
+GXFEM_API int gxb_is_allocator(const gx_allocator *a) {
     return a->allocate == NULL ? a->release == NULL && a->reallocate == NULL : a->release != NULL;
+}
+
+GXFEM_API GXBP_RARE void gxb_complex_destroy(gxb_complex *cx) {
+    gx_allocator a;
+    if (cx == NULL) return;
+    a = cx->store.allocator;
+    gxbp_store_destroy(&cx->store);
+    gxbp_drop_arrays(&a, cx, gxbp_complex_arrays, sizeof gxbp_complex_arrays / sizeof *gxbp_complex_arrays);
+    gxbp_release(&a, cx->elements, gxbp_table_words(cx->element_count) * sizeof *cx->elements);
+    gxbp_release(&a, cx->pairs, sizeof *cx->pairs);
+    gxbp_release(&a, cx, sizeof *cx);
 }
 
 GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator *allocator, gxb_complex **complex,
@@ -2837,7 +3033,7 @@ GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator 
     gx_result result;
     memset(&none, 0, sizeof none);
     if (allocator == NULL) allocator = &none;
-    if (mesh == NULL || complex == NULL || !gxbp_is_allocator(allocator))
+    if (mesh == NULL || complex == NULL || !gxb_is_allocator(allocator))
         return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     if (mesh->node_count == 0 || mesh->element_count == 0) return gxbp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
     if (mesh->positions == NULL || mesh->elements == NULL) return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
@@ -2847,7 +3043,7 @@ GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator 
     cx = (gxb_complex *)gxbp_allocate(allocator, sizeof *cx);
     if (cx == NULL) return gxbp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
     memset(cx, 0, sizeof *cx);
-    cx->allocator = *allocator;
+    cx->store.allocator = *allocator;
     cx->node_count = (uint32_t)mesh->node_count;
     cx->element_count = (uint32_t)mesh->element_count;
     table = (uint32_t *)gxbp_allocate(allocator, gxbp_table_words(mesh->element_count) * sizeof *table);
@@ -2858,57 +3054,101 @@ GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator 
         gxb_complex_destroy(cx);
         return gxbp_fail(failure, result, bad);
     }
-    cx->stamp[0] = cx->stamp[1] = cx->edge_stamp = 1;
+    cx->store.stamp[0] = cx->store.stamp[1] = cx->edge_stamp = 1;
     gxbp_forget_pairs(cx);
     gxb_complex_begin(cx);
     *complex = cx;
     return gxbp_fail(failure, GX_OK, SIZE_MAX);
 }
 
-typedef struct gxbp_corner { /* of a clipped polygon: its point, and what carries the edge to the next corner */
-    gxb_ball ball;
-    uint32_t kind, def[3], point;
-    uint32_t carrier; /* a plane, or GXBP_TRIANGLE_EDGE + k */
-    int32_t sign;
-} gxbp_corner;
+/* >>access: reading a complex ------------------------------------------------------------------------------------- */
 
-typedef struct gxbp_task {
-    uint32_t parent, side, first, count, coplanar;
-} gxbp_task;
+/* In: a complex and an index. Out: the item. Nothing changes. These functions are what gxfem.h knows of the arrays.
+   They are small enough to be inlined. */
 
-#define GXBP_TRIANGLE_EDGE 0x80000000u
-#define GXBP_IN_ROOT       GXB_NONE /* task.parent: the reference is the element's root */
-
-static const gxbp_array gxbp_complex_arrays[] = {/* the first eight as in complex.mark */
-                                                 GXBP_ARRAY(gxb_complex, points),     GXBP_ARRAY(gxb_complex, planes),
-                                                 GXBP_ARRAY(gxb_complex, edges),      GXBP_ARRAY(gxb_complex, facets),
-                                                 GXBP_ARRAY(gxb_complex, leaves),     GXBP_ARRAY(gxb_complex, nodes),
-                                                 GXBP_ARRAY(gxb_complex, labels),     GXBP_ARRAY(gxb_complex, pool),
-                                                 GXBP_ARRAY(gxb_complex, walls),      GXBP_ARRAY(gxb_complex, undo),
-                                                 GXBP_ARRAY(gxb_complex, undo_bytes), GXBP_ARRAY(gxb_complex, corners),
-                                                 GXBP_ARRAY(gxb_complex, tasks),      GXBP_ARRAY(gxb_complex, scratch)};
-
-/* An array grows to what is expected or by half, whichever is more: gxbp_reserve adds half of what it is asked for. */
-GXFEM_API GXBP_RARE void gxb_complex_reserve(gxb_complex *cx, uint32_t times) {
-    uint32_t k;
-    for (k = 0; k < 8; k++) { /* those with marks, which stand first */
-        unsigned char *at = (unsigned char *)cx + gxbp_complex_arrays[k].at;
-        const size_t count = gxbp_extent_of(at)[0], capacity = gxbp_extent_of(at)[1],
-                     need = count + (count - cx->mark[k]) * times;
-        const size_t ask = need / 3 * 2 > capacity ? need / 3 * 2 : capacity;
-        if (need > capacity) (void)gxbp_reserve(cx, at, gxbp_complex_arrays[k].item, ask + 1 - count);
-    }
+static uint32_t gxbp_edge_start(const gxb_complex *cx, uint32_t signed_edge) {
+    return cx->edges[signed_edge >> 1].v[signed_edge & 1];
 }
 
-GXFEM_API GXBP_RARE void gxb_complex_destroy(gxb_complex *cx) {
-    gx_allocator a;
-    if (cx == NULL) return;
-    a = cx->allocator;
-    gxbp_drop_numbers(cx, NULL);
-    gxbp_drop_arrays(&a, cx, gxbp_complex_arrays, sizeof gxbp_complex_arrays / sizeof *gxbp_complex_arrays);
-    gxbp_release(&a, cx->elements, gxbp_table_words(cx->element_count) * sizeof *cx->elements);
-    gxbp_release(&a, cx->pairs, sizeof *cx->pairs);
-    gxbp_release(&a, cx, sizeof *cx);
+GXFEM_API const gxb_cpoint *gxb_complex_point(const gxb_complex *cx, uint32_t point) {
+    return &cx->store.points[point];
+}
+
+GXFEM_API const gxb_cplane *gxb_complex_plane(const gxb_complex *cx, uint32_t plane) {
+    return &cx->store.planes[plane];
+}
+
+GXFEM_API const gxb_edge *gxb_complex_edge(const gxb_complex *cx, uint32_t edge) { return &cx->edges[edge]; }
+
+GXFEM_API const gxb_facet *gxb_complex_facet(const gxb_complex *cx, uint32_t facet) { return &cx->facets[facet]; }
+
+GXFEM_API const gxb_leaf *gxb_complex_leaf(const gxb_complex *cx, uint32_t leaf) { return &cx->leaves[leaf]; }
+
+GXFEM_API const gxb_node *gxb_complex_tree_node(const gxb_complex *cx, uint32_t node) { return &cx->nodes[node]; }
+
+GXFEM_API const gxb_label *gxb_complex_label(const gxb_complex *cx, uint32_t label) { return &cx->labels[label]; }
+
+GXFEM_API const uint32_t *gxb_complex_list(const gxb_complex *cx, uint32_t first) { return cx->pool + first; }
+
+GXFEM_API uint32_t gxb_complex_edge_start(const gxb_complex *cx, uint32_t signed_edge) {
+    return gxbp_edge_start(cx, signed_edge);
+}
+
+GXFEM_API uint32_t gxb_complex_point_count(const gxb_complex *cx) { return cx->store.point_count; }
+
+GXFEM_API uint32_t gxb_complex_facet_count(const gxb_complex *cx) { return cx->facet_count; }
+
+GXFEM_API uint32_t gxb_complex_leaf_count(const gxb_complex *cx) { return cx->leaf_count; }
+
+GXFEM_API uint32_t gxb_complex_label_count(const gxb_complex *cx) { return cx->label_count; }
+
+GXFEM_API uint32_t gxb_complex_marked_count(const gxb_complex *cx) { return cx->wall_count; }
+
+GXFEM_API uint32_t gxb_complex_marked_facet(const gxb_complex *cx, uint32_t index) { return cx->walls[index] >> 1; }
+
+GXFEM_API int gxb_complex_marked_wall(const gxb_complex *cx, uint32_t index) { return (int)(cx->walls[index] & 1); }
+
+GXFEM_API uint32_t gxb_complex_node_count(const gxb_complex *cx) { return cx->node_count; }
+
+GXFEM_API uint32_t gxb_complex_element_count(const gxb_complex *cx) { return cx->element_count; }
+
+GXFEM_API uint32_t gxb_complex_face_count(const gxb_complex *cx) { return cx->face_count; }
+
+GXFEM_API uint32_t gxb_complex_mesh_edge_count(const gxb_complex *cx) { return cx->mesh_edge_count; }
+
+GXFEM_API const uint32_t *gxb_complex_element_nodes(const gxb_complex *cx, uint32_t element) {
+    return cx->elements + 4 * (size_t)element;
+}
+
+GXFEM_API const uint32_t *gxb_complex_element_faces(const gxb_complex *cx, uint32_t element) {
+    return cx->element_faces + 4 * (size_t)element;
+}
+
+GXFEM_API const uint32_t *gxb_complex_element_edges(const gxb_complex *cx, uint32_t element) {
+    return cx->element_edges + 6 * (size_t)element;
+}
+
+GXFEM_API const uint32_t *gxb_complex_face_elements(const gxb_complex *cx, uint32_t face) {
+    return cx->face_elements + 2 * (size_t)face;
+}
+
+GXFEM_API uint32_t gxb_complex_face_facet(const gxb_complex *cx, uint32_t face) { return cx->face_facet[face]; }
+
+GXFEM_API uint32_t gxb_complex_mesh_edge(const gxb_complex *cx, uint32_t mesh_edge) { return cx->mesh_edge[mesh_edge]; }
+
+GXFEM_API uint32_t gxb_complex_root(const gxb_complex *cx, uint32_t element) { return cx->root[element]; }
+
+GXFEM_API const double *gxb_complex_origin(const gxb_complex *cx) { return cx->store.origin; }
+
+GXFEM_API int gxb_complex_shift(const gxb_complex *cx) { return cx->store.shift; }
+
+GXFEM_API void gxb_complex_prefetch_element(const gxb_complex *cx, uint32_t element) {
+    GXBP_FETCH(&cx->leaves[element]);
+    GXBP_FETCH(cx->element_faces + 4 * (size_t)element);
+    GXBP_FETCH(cx->element_edges + 6 * (size_t)element);
+    GXBP_FETCH(cx->root + element);
+    (void)cx;
+    (void)element;
 }
 
 /* >>split: dividing edges, facets and leaves by a plane
@@ -2974,14 +3214,14 @@ static void gxbp_push_edges(gxb_complex *cx, uint32_t signed_edge) {
     }
 }
 
-GXFEM_API gx_result gxb_facet_edges(gxb_complex *cx, uint32_t facet, uint32_t *first, uint32_t *count) {
+GXFEM_API gx_result gxb_facet_resolve_edges(gxb_complex *cx, uint32_t facet, uint32_t *first, uint32_t *count) {
     gxb_facet *f = &cx->facets[facet];
     const uint32_t total = gxbp_count_loop(cx, facet);
     if (total != f->loop_count) {
         const uint32_t start = cx->pool_count;
         uint32_t i;
-        gx_result result = GXBP_RESERVE(cx, pool, pool, total);
-        if (result == GX_OK) result = gxbp_reserve_undo(cx, 1);
+        gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, pool, pool, total);
+        if (result == GX_OK) result = gxbp_reserve_undo(&cx->store, 1);
         if (result != GX_OK) return result;
         gxbp_save(cx, GXBP_FACETS, facet);
         for (i = 0; i < f->loop_count; i++) gxbp_push_edges(cx, cx->pool[f->loop + i]);
@@ -2993,13 +3233,13 @@ GXFEM_API gx_result gxb_facet_edges(gxb_complex *cx, uint32_t facet, uint32_t *f
     return GX_OK;
 }
 
-GXFEM_API gx_result gxb_leaf_facets(gxb_complex *cx, uint32_t leaf, uint32_t *first, uint32_t *count) {
+GXFEM_API gx_result gxb_leaf_resolve_facets(gxb_complex *cx, uint32_t leaf, uint32_t *first, uint32_t *count) {
     gxb_leaf *l = &cx->leaves[leaf];
     const uint32_t total = gxbp_count_list(cx, l);
     if (total != l->facet_count) {
         uint32_t i, *out;
-        gx_result result = GXBP_RESERVE(cx, pool, pool, total);
-        if (result == GX_OK) result = gxbp_reserve_undo(cx, 1);
+        gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, pool, pool, total);
+        if (result == GX_OK) result = gxbp_reserve_undo(&cx->store, 1);
         if (result != GX_OK) return result;
         gxbp_save(cx, GXBP_LEAVES, leaf);
         out = cx->pool + cx->pool_count;
@@ -3014,10 +3254,6 @@ GXFEM_API gx_result gxb_leaf_facets(gxb_complex *cx, uint32_t leaf, uint32_t *fi
     return GX_OK;
 }
 
-static uint32_t gxbp_edge_start(const gxb_complex *cx, uint32_t signed_edge) {
-    return cx->edges[signed_edge >> 1].v[signed_edge & 1];
-}
-
 /* The cutting plane, and (explicit_line) the line in which the facets to be divided meet it, where that is a triangle's
  * edge. */
 typedef struct gxbp_knife {
@@ -3027,14 +3263,14 @@ typedef struct gxbp_knife {
 
 /* Room for dividing facets with so many edges in all. */
 static gx_result gxbp_reserve_split(gxb_complex *cx, size_t facets, size_t edges) {
-    gx_result result = GXBP_RESERVE(cx, points, point, edges + 2);
-    if (result == GX_OK) result = GXBP_RESERVE(cx, edges, edge, 2 * edges + facets + 4);
-    if (result == GX_OK) result = GXBP_RESERVE(cx, facets, facet, 2 * facets + 2);
-    if (result == GX_OK) result = GXBP_RESERVE(cx, leaves, leaf, 1);
-    if (result == GX_OK) result = GXBP_RESERVE(cx, nodes, tree, 1);
-    if (result == GX_OK) result = GXBP_RESERVE(cx, pool, pool, 8 * (edges + facets) + 64);
-    if (result == GX_OK) result = GXBP_RESERVE(cx, scratch, scratch, 8 * (edges + facets) + 64);
-    return result == GX_OK ? gxbp_reserve_undo(cx, edges + 3 * facets + 8) : result;
+    gx_result result = GXBP_RESERVE(&cx->store.allocator, &cx->store, points, point, edges + 2);
+    if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, edges, edge, 2 * edges + facets + 4);
+    if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, facets, facet, 2 * facets + 2);
+    if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, leaves, leaf, 1);
+    if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, nodes, tree, 1);
+    if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, pool, pool, 8 * (edges + facets) + 64);
+    if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, scratch, scratch, 8 * (edges + facets) + 64);
+    return result == GX_OK ? gxbp_reserve_undo(&cx->store, edges + 3 * facets + 8) : result;
 }
 
 static uint32_t gxbp_new_edge(gxb_complex *cx, uint32_t a, uint32_t b, const uint32_t line[2], uint32_t explicit_line) {
@@ -3054,7 +3290,7 @@ static uint32_t gxbp_new_edge(gxb_complex *cx, uint32_t a, uint32_t b, const uin
 static uint32_t gxbp_given_crossing(const gxb_complex *cx, const gxb_edge *e, uint32_t plane) {
     uint32_t i;
     for (i = 0; i < 2 && e->explicit_line; i++)
-        if (gxbp_incident(cx, GXB_EXPLICIT, NULL, e->line[i], plane)) return e->line[i];
+        if (gxbp_incident(&cx->store, GXB_EXPLICIT, NULL, e->line[i], plane)) return e->line[i];
     return GXB_NONE;
 }
 
@@ -3063,15 +3299,15 @@ static uint32_t gxbp_cross_edge(gxb_complex *cx, const gxb_edge *e, uint32_t pla
     uint32_t id = gxbp_given_crossing(cx, e, plane);
     gxb_cpoint *p;
     if (id != GXB_NONE) return id;
-    id = cx->point_count++;
-    p = &cx->points[id];
+    id = cx->store.point_count++;
+    p = &cx->store.points[id];
     memset(p, 0, sizeof *p);
     p->parameter[0] = -1;
     p->kind = e->explicit_line ? GXB_LINE_PLANE : GXB_THREE_PLANES;
     p->def[0] = e->line[0];
     p->def[1] = e->line[1];
     p->def[2] = plane;
-    gxbp_definition_ball(cx, p->kind, p->def, &p->ball);
+    gxbp_definition_ball(&cx->store, p->kind, p->def, &p->ball);
     return id;
 }
 
@@ -3079,8 +3315,8 @@ static uint32_t gxbp_cross_edge(gxb_complex *cx, const gxb_edge *e, uint32_t pla
 static void gxbp_split_edge(gxb_complex *cx, uint32_t edge, const gxbp_knife *knife) {
     const gxb_edge e = cx->edges[edge];
     const uint32_t id = gxbp_cross_edge(cx, &e, knife->plane);
-    cx->points[id].stamp[knife->slot] = cx->stamp[knife->slot];
-    cx->points[id].sign[knife->slot] = 0;
+    cx->store.points[id].stamp[knife->slot] = cx->store.stamp[knife->slot];
+    cx->store.points[id].sign[knife->slot] = 0;
     gxbp_save(cx, GXBP_EDGES, edge);
     cx->edges[edge].child = cx->edge_count;
     gxbp_new_edge(cx, e.v[0], id, e.line, e.explicit_line);
@@ -3096,7 +3332,7 @@ static uint32_t gxbp_facet_signs(gxb_complex *cx, uint32_t facet, const gxbp_kni
     for (; loop < end; loop++) {
         static const uint8_t add[3] = {2, 4, 1};
         const gxb_edge *e = &cx->edges[*loop >> 1];
-        const uint32_t one = add[1 + gxbp_sign(cx, e->v[*loop & 1], knife->plane, knife->slot)];
+        const uint32_t one = add[1 + gxbp_sign(&cx->store, e->v[*loop & 1], knife->plane, knife->slot)];
         signs = one == 4 ? signs + 4 : signs | one;
         count += e->child == GXB_NONE ? 1 : gxbp_count_edges(cx, *loop >> 1);
     }
@@ -3128,7 +3364,7 @@ static void gxbp_part_edge(gxb_complex *cx, uint32_t signed_edge, const gxbp_kni
         gxbp_part_edge(cx, (child + 1 - back) << 1 | back, knife, parting);
         return;
     }
-    parting->sign = gxbp_sign(cx, e->v[1 - back], knife->plane, knife->slot);
+    parting->sign = gxbp_sign(&cx->store, e->v[1 - back], knife->plane, knife->slot);
     if (from == 0 && parting->zeros < 2) parting->zero[parting->zeros++] = parting->count;
     if (from * parting->sign >= 0) {
         parting->loop[parting->count++] = signed_edge;
@@ -3149,7 +3385,7 @@ typedef struct gxbp_gap {
 static gxbp_gap gxbp_list_gap(const gxb_complex *cx, uint32_t first, uint32_t count) {
     gxbp_gap gap;
     gap.first = first;
-    gap.count = first >= cx->mark[7] ? count : 0;
+    gap.count = first >= cx->mark[5] ? count : 0;
     return gap;
 }
 
@@ -3185,13 +3421,14 @@ static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_kni
     memset(&parting, 0, sizeof parting);
     parting.loop = cx->scratch + cx->scratch_capacity / 4;
     zero = parting.zero;
-    parting.sign = gxbp_sign(cx, gxbp_edge_start(cx, cx->pool[f.loop]), knife->plane, knife->slot);
+    parting.sign = gxbp_sign(&cx->store, gxbp_edge_start(cx, cx->pool[f.loop]), knife->plane, knife->slot);
     for (i = 0; i < f.loop_count; i++) gxbp_part_edge(cx, cx->pool[f.loop + i], knife, &parting);
     line[0] = knife->explicit_line ? knife->line[0] : f.plane;
     line[1] = knife->explicit_line ? knife->line[1] : knife->plane;
     edge = gxbp_new_edge(cx, gxbp_edge_start(cx, parting.loop[zero[0]]), gxbp_edge_start(cx, parting.loop[zero[1]]),
                          line, (uint32_t)knife->explicit_line);
-    front = gxbp_sign(cx, gxbp_edge_start(cx, parting.loop[zero[0] + 1]), knife->plane, knife->slot) > 0 ? 0u : 1u;
+    front =
+        gxbp_sign(&cx->store, gxbp_edge_start(cx, parting.loop[zero[0] + 1]), knife->plane, knife->slot) > 0 ? 0u : 1u;
     gxbp_save(cx, GXBP_FACETS, facet);
     cx->facets[facet].child = child;
     cx->facets[facet].loop_count = 0;
@@ -3232,8 +3469,8 @@ static void gxbp_add_flat_edges(gxb_complex *cx, gxbp_rim *rim, uint32_t facet, 
     uint32_t i;
     for (i = 0; i < f->loop_count; i++) {
         const uint32_t e = cx->pool[f->loop + i];
-        if (gxbp_sign(cx, cx->edges[e >> 1].v[0], knife->plane, knife->slot) == 0 &&
-            gxbp_sign(cx, cx->edges[e >> 1].v[1], knife->plane, knife->slot) == 0)
+        if (gxbp_sign(&cx->store, cx->edges[e >> 1].v[0], knife->plane, knife->slot) == 0 &&
+            gxbp_sign(&cx->store, cx->edges[e >> 1].v[1], knife->plane, knife->slot) == 0)
             gxbp_add_rim(cx, rim, e ^ flip);
     }
 }
@@ -3244,7 +3481,7 @@ static uint32_t gxbp_close_rim(gxb_complex *cx, const gxbp_rim *rim, const gxbp_
     uint32_t i, e = cx->scratch[rim->first];
     for (i = 0; i < rim->count; i++) {
         const uint32_t signed_edge = cx->scratch[rim->first + i];
-        cx->points[gxbp_edge_start(cx, signed_edge)].scratch = signed_edge;
+        cx->store.points[gxbp_edge_start(cx, signed_edge)].scratch = signed_edge;
     }
     memset(f, 0, sizeof *f);
     f->plane = knife->plane;
@@ -3252,7 +3489,7 @@ static uint32_t gxbp_close_rim(gxb_complex *cx, const gxbp_rim *rim, const gxbp_
     f->child = f->labels = f->face = GXB_NONE;
     for (i = 0; i < rim->count; i++) {
         cx->pool[cx->pool_count++] = e;
-        e = cx->points[cx->edges[e >> 1].v[1 - (e & 1)]].scratch;
+        e = cx->store.points[cx->edges[e >> 1].v[1 - (e & 1)]].scratch;
     }
     cx->pool_live += rim->count;
     return cx->facet_count++;
@@ -3354,10 +3591,10 @@ static GXBP_APART gx_result gxbp_open_face(gxb_complex *cx, uint32_t element, ui
             local[i + 1] = t;
         }
     }
-    result = gxbp_new_plane(cx, node[local[0]], node[local[1]], node[local[2]], 0, &plane);
+    result = gxbp_new_plane(&cx->store, node[local[0]], node[local[1]], node[local[2]], 0, &plane);
     if (result == GX_OK) result = gxbp_reserve_split(cx, 1, 3);
     if (result != GX_OK) return result;
-    gxbp_plane_axis(cx, plane);
+    gxbp_plane_axis(&cx->store, plane);
     f = &cx->facets[cx->facet_count];
     memset(f, 0, sizeof *f);
     f->plane = plane;
@@ -3385,8 +3622,8 @@ GXFEM_API gx_result gxb_complex_open_element(gxb_complex *cx, uint32_t element) 
         result = gxbp_open_face(cx, element, k);
         if (result != GX_OK) return result;
     }
-    result = GXBP_RESERVE(cx, pool, pool, 4);
-    if (result == GX_OK) result = gxbp_reserve_undo(cx, 1);
+    result = GXBP_RESERVE(&cx->store.allocator, cx, pool, pool, 4);
+    if (result == GX_OK) result = gxbp_reserve_undo(&cx->store, 1);
     if (result != GX_OK) return result;
     list = cx->pool_count;
     for (k = 0; k < 4; k++) cx->pool[cx->pool_count++] = cx->face_facet[cx->element_faces[4 * element + k]];
@@ -3404,7 +3641,7 @@ static uint32_t gxbp_face_plane(const gxb_complex *cx, uint32_t element, uint32_
 }
 
 static int gxbp_corner_sign(gxb_complex *cx, const gxbp_corner *c, uint32_t plane) {
-    return gxbp_side_of(cx, &c->ball, c->kind, c->def, c->point, plane);
+    return gxbp_side_of(&cx->store, &c->ball, c->kind, c->def, c->point, plane);
 }
 
 /* The point in which two carriers meet in the triangle's plane. */
@@ -3417,7 +3654,7 @@ static void gxbp_clip_corner(gxb_complex *cx, const gxb_triangle *t, uint32_t a,
     if (other >= GXBP_TRIANGLE_EDGE) {
         r->kind = GXB_EXPLICIT;
         r->point = t->point[other - GXBP_TRIANGLE_EDGE == (k + 1) % 3 ? (k + 1) % 3 : k];
-        r->ball = cx->points[r->point].ball;
+        r->ball = cx->store.points[r->point].ball;
         return;
     }
     if (edge >= GXBP_TRIANGLE_EDGE) {
@@ -3429,7 +3666,7 @@ static void gxbp_clip_corner(gxb_complex *cx, const gxb_triangle *t, uint32_t a,
         r->def[0] = t->plane;
         r->def[1] = edge;
     }
-    gxbp_definition_ball(cx, r->kind, r->def, &r->ball);
+    gxbp_definition_ball(&cx->store, r->kind, r->def, &r->ball);
 }
 
 /* Appends to the corner stack what of corners first ... first+count-1 (signs known) lies on one side of a carrier.
@@ -3476,30 +3713,30 @@ static int gxbp_corner_sides(gxb_complex *cx, uint32_t first, uint32_t count, ui
 /* The plane through edge k of the triangle, along the axis that is closest to its normal: the triangle lies in front of
  *it where front is 1, behind it where it is -1. */
 static gx_result gxbp_edge_plane(gxb_complex *cx, gxb_triangle *t, uint32_t k, int *front) {
-    const uint32_t axis = cx->planes[t->plane].axis;
+    const uint32_t axis = cx->store.planes[t->plane].axis;
     gx_result result = GX_OK;
     if (t->edge_plane[k] == GXB_NONE)
-        result = gxbp_new_plane(cx, t->point[k], t->point[(k + 1) % 3], axis, 1, &t->edge_plane[k]);
+        result = gxbp_new_plane(&cx->store, t->point[k], t->point[(k + 1) % 3], axis, 1, &t->edge_plane[k]);
     if (result != GX_OK) return result;
     /* ((q - p) x e).(r - p) = -e.((q - p) x (r - p)): opposite to the sign of the triangle's normal along the axis */
-    *front = -cx->planes[t->plane].axis_sign * t->orientation;
+    *front = -cx->store.planes[t->plane].axis_sign * t->orientation;
     return GX_OK;
 }
 
 /* Does the facet's normal point to the triangle's own front? They lie in one plane. */
 static int32_t gxbp_relative_orientation(gxb_complex *cx, const gxb_triangle *t, uint32_t plane) {
-    const gxb_cplane *f = &cx->planes[t->plane];
+    const gxb_cplane *f = &cx->store.planes[t->plane];
     const int own = f->axis_sign * t->orientation;
-    return plane == t->plane ? t->orientation : own * gxbp_normal_sign(cx, plane, f->axis);
+    return plane == t->plane ? t->orientation : own * gxbp_normal_sign(&cx->store, plane, f->axis);
 }
 
 static gx_result gxbp_add_label(gxb_complex *cx, const gxb_triangle *t, uint32_t facet) {
     uint32_t l;
-    gx_result result = GXBP_RESERVE(cx, labels, label, 1);
+    gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, labels, label, 1);
     for (l = cx->facets[facet].labels; l != GXB_NONE; l = cx->labels[l].next)
         if (cx->labels[l].triangle == t->label) return GX_OK;
-    if (result == GX_OK) result = GXBP_RESERVE(cx, walls, wall, 1);
-    if (result == GX_OK) result = gxbp_reserve_undo(cx, 1);
+    if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, walls, wall, 1);
+    if (result == GX_OK) result = gxbp_reserve_undo(&cx->store, 1);
     if (result != GX_OK) return result;
     gxbp_save(cx, GXBP_FACETS, facet);
     cx->labels[cx->label_count].triangle = t->label;
@@ -3512,8 +3749,8 @@ static gx_result gxbp_add_label(gxb_complex *cx, const gxb_triangle *t, uint32_t
 }
 
 GXFEM_API gx_result gxb_complex_set_wall(gxb_complex *cx, uint32_t facet) {
-    gx_result result = GXBP_RESERVE(cx, walls, wall, 1);
-    if (result == GX_OK) result = gxbp_reserve_undo(cx, 1);
+    gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, walls, wall, 1);
+    if (result == GX_OK) result = gxbp_reserve_undo(&cx->store, 1);
     if (result != GX_OK) return result;
     gxbp_save(cx, GXBP_FACETS, facet);
     cx->walls[cx->wall_count++] = facet << 1 | !cx->facets[facet].wall;
@@ -3522,7 +3759,7 @@ GXFEM_API gx_result gxb_complex_set_wall(gxb_complex *cx, uint32_t facet) {
 }
 
 GXFEM_API gx_result gxb_complex_set_removed(gxb_complex *cx, uint32_t leaf) {
-    const gx_result result = gxbp_reserve_undo(cx, 1);
+    const gx_result result = gxbp_reserve_undo(&cx->store, 1);
     if (result != GX_OK) return result;
     gxbp_save(cx, GXBP_LEAVES, leaf);
     cx->leaves[leaf].removed = 1;
@@ -3551,7 +3788,7 @@ static gx_result gxbp_cover_facet(gxb_complex *cx, gxb_triangle *t, uint32_t fac
         result = gxbp_edge_plane(cx, t, k, &front);
         if (result != GX_OK) return result;
         gxbp_set_knife(t, k, &knife);
-        gxbp_forget_signs(cx, 1);
+        gxbp_forget_signs(&cx->store, 1);
         sides = (int)(gxbp_facet_signs(cx, facet, &knife, &count) & 3);
         if (sides == 3) {
             result = gxbp_reserve_split(cx, 1, count);
@@ -3613,15 +3850,15 @@ GXFEM_API GXBP_RARE gx_result gxb_complex_cover_edge(gxb_complex *cx, gxb_triang
 GXFEM_API GXBP_RARE gx_result gxb_complex_cover_node(gxb_complex *cx, gxb_triangle *t, uint32_t node, int *covered) {
     uint32_t k;
     int front;
-    gx_result result = gxbp_reserve_undo(cx, 1);
-    if (cx->points[node].wall || gxb_complex_side(cx, node, t->plane) != 0) return result;
+    gx_result result = gxbp_reserve_undo(&cx->store, 1);
+    if (cx->store.points[node].wall || gxb_complex_side(cx, node, t->plane) != 0) return result;
     for (k = 0; k < 3 && result == GX_OK; k++) {
         result = gxbp_edge_plane(cx, t, k, &front);
         if (result == GX_OK && gxb_complex_side(cx, node, t->edge_plane[k]) * front < 0) return GX_OK;
     }
     if (result != GX_OK) return result;
     gxbp_save(cx, GXBP_POINTS, node);
-    cx->points[node].wall = 1;
+    cx->store.points[node].wall = 1;
     *covered = 1;
     return GX_OK;
 }
@@ -3629,11 +3866,12 @@ GXFEM_API GXBP_RARE gx_result gxb_complex_cover_node(gxb_complex *cx, gxb_triang
 /* The triangle lies in the plane of some of the leaf's facets. */
 static gx_result gxbp_cover_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t leaf) {
     uint32_t first, count, i, j;
-    gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
+    gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
         uint32_t facet = cx->pool[first + i];
         for (j = 0; j < cx->facets[facet].loop_count; j++) {
-            if (gxbp_sign(cx, gxbp_edge_start(cx, cx->pool[cx->facets[facet].loop + j]), t->plane, 0) != 0) break;
+            if (gxbp_sign(&cx->store, gxbp_edge_start(cx, cx->pool[cx->facets[facet].loop + j]), t->plane, 0) != 0)
+                break;
         }
         if (j == cx->facets[facet].loop_count) result = gxbp_cover_facet(cx, t, facet, 7);
     }
@@ -3723,7 +3961,7 @@ static int gxbp_part_chain(gxb_complex *cx, gxbp_rung *rung, uint32_t middle, gx
     memset(&knife, 0, sizeof knife);
     knife.plane = cx->nodes[rung[middle].node].plane;
     knife.slot = 1;
-    gxbp_forget_signs(cx, 1);
+    gxbp_forget_signs(&cx->store, 1);
     *own = 0;
     for (i = 0; i < middle; i++) {
         const int sides = gxbp_sides_below(cx, rung[i].off, &knife);
@@ -3759,7 +3997,7 @@ static gx_result gxbp_follow_plan(gxb_complex *cx, const gxbp_plan *plan, uint32
                                   uint32_t element) {
     const uint32_t above = cx->nodes[top].parent;
     uint32_t i, k;
-    gx_result result = gxbp_reserve_undo(cx, 3 * (size_t)plan->count + 1);
+    gx_result result = gxbp_reserve_undo(&cx->store, 3 * (size_t)plan->count + 1);
     if (result != GX_OK) return result;
     for (i = 0; i < plan->count; i++) {
         gxb_node *n = &cx->nodes[plan->step[i].node];
@@ -3789,7 +4027,7 @@ static gx_result gxbp_follow_plan(gxb_complex *cx, const gxbp_plan *plan, uint32
 static GXBP_COLD gx_result gxbp_balance(gxb_complex *cx, uint32_t top, uint32_t node, uint32_t element) {
     const uint32_t count = gxbp_depth(cx, node) - gxbp_depth(cx, cx->nodes[top].parent);
     const size_t size = count * (2 * sizeof(gxbp_rung) + sizeof(gxbp_step));
-    gxbp_rung *rung = (gxbp_rung *)gxbp_allocate(&cx->allocator, size);
+    gxbp_rung *rung = (gxbp_rung *)gxbp_allocate(&cx->store.allocator, size);
     gxbp_plan plan;
     uint32_t i, n, tree, below = cx->nodes[node].child[0];
     gx_result result;
@@ -3805,14 +4043,14 @@ static GXBP_COLD gx_result gxbp_balance(gxb_complex *cx, uint32_t top, uint32_t 
     plan.count = 0;
     tree = gxbp_balance_chain(cx, &plan, rung, count, cx->nodes[node].child[0]);
     result = gxbp_follow_plan(cx, &plan, tree, top, element);
-    gxbp_release(&cx->allocator, rung, size);
+    gxbp_release(&cx->store.allocator, rung, size);
     return result;
 }
 
 /* A leaf has become a node with two. Balances the lowest tree around it that has become too high. */
 static gx_result gxbp_grow_tree(gxb_complex *cx, uint32_t node, uint32_t element) {
     uint32_t n, height = 0, slack = GXB_NONE;
-    gx_result result = gxbp_reserve_undo(cx, gxbp_depth(cx, node));
+    gx_result result = gxbp_reserve_undo(&cx->store, gxbp_depth(cx, node));
     for (n = node; n != GXB_NONE && result == GX_OK; n = cx->nodes[n].parent) {
         gxbp_save(cx, GXBP_NODES, n);
         cx->nodes[n].leaves++;
@@ -3831,7 +4069,7 @@ static gx_result gxbp_ready_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knif
     const uint32_t count = gxbp_count_list(cx, l);
     uint32_t *out, i;
     size_t edges = 0;
-    gx_result result = GXBP_RESERVE(cx, scratch, scratch, 2 * count);
+    gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, scratch, scratch, 2 * count);
     if (result != GX_OK) return result;
     out = cx->scratch;
     for (i = 0; i < l->facet_count; i++) out = gxbp_list_facets(cx, cx->pool[l->facets + i], out);
@@ -3908,7 +4146,7 @@ static GXBP_COLD int gxbp_medians(gxb_complex *cx, const uint32_t *facets, uint3
     int spread[3], k, j, ranks = 0;
     uint32_t i, n = 0;
     for (i = 0; i < count; i += step, n++) {
-        gxbp_given(cx, cx->planes[cx->facets[facets[i]].plane].def[0], given);
+        gxbp_given(&cx->store, cx->store.planes[cx->facets[facets[i]].plane].def[0], given);
         for (k = 0; k < 3; k++) x[k][n] = given[k];
     }
     for (k = 0; k < 3; k++) {
@@ -3928,7 +4166,7 @@ static GXBP_COLD gx_result gxbp_new_free_plane(gxb_complex *cx, uint32_t element
     int k;
     gx_result result = GX_OK;
     for (i = 0; i < 4; i++) {
-        gxbp_given(cx, cx->elements[4 * element + i], x);
+        gxbp_given(&cx->store, cx->elements[4 * element + i], x);
         for (k = 0; k < 3; k++) {
             if (i == 0 || gxbp_compare_doubles(x[k], low[k]) < 0) low[k] = x[k];
             if (i == 0 || gxbp_compare_doubles(x[k], high[k]) > 0) high[k] = x[k];
@@ -3940,15 +4178,15 @@ static GXBP_COLD gx_result gxbp_new_free_plane(gxb_complex *cx, uint32_t element
         if (i > 0) x[(axis + (int)i) % 3] = high[(axis + (int)i) % 3];
         result = gxb_complex_add_point(cx, x, &point[i]);
     }
-    if (result == GX_OK) result = gxbp_new_plane(cx, point[0], point[1], point[2], 0, plane);
-    if (result == GX_OK) gxbp_plane_axis(cx, *plane);
+    if (result == GX_OK) result = gxbp_new_plane(&cx->store, point[0], point[1], point[2], 0, plane);
+    if (result == GX_OK) gxbp_plane_axis(&cx->store, *plane);
     return result;
 }
 
 /* Does a quarter of the facets at least lie in front of the plane, and a quarter behind it? */
 static int gxbp_plane_parts(gxb_complex *cx, const uint32_t *facets, uint32_t count, const gxbp_knife *knife) {
     uint32_t front = 0, behind = 0, i;
-    gxbp_forget_signs(cx, 1);
+    gxbp_forget_signs(&cx->store, 1);
     for (i = 0; i < count; i++) {
         const int sides = gxbp_facet_sides(cx, facets[i], knife);
         front += sides == 1;
@@ -3960,14 +4198,14 @@ static int gxbp_plane_parts(gxb_complex *cx, const uint32_t *facets, uint32_t co
 /* Divides the leaf at the task's place, which a triangle has just made, by a free plane if it has many facets and one
    parts them well; *node: GXB_NONE, or what has taken its place. Looked at whenever their number is one of eight. */
 static GXBP_COLD gx_result gxbp_relieve_leaf(gxb_complex *cx, const gxbp_task *task, uint32_t *node) {
-    const uint32_t leaf = cx->nodes[task->parent].child[task->side] >> 1, points = cx->point_count,
-                   planes = cx->plane_count;
+    const uint32_t leaf = cx->nodes[task->parent].child[task->side] >> 1, points = cx->store.point_count,
+                   planes = cx->store.plane_count;
     const gxb_leaf l = cx->leaves[leaf];
     uint32_t i, n = 0, *inner;
     double median[3];
     int rank[3], ranks, k;
     gxbp_knife knife;
-    gx_result result = GXBP_RESERVE(cx, scratch, scratch, l.facet_count);
+    gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, scratch, scratch, l.facet_count);
     if (result != GX_OK) return result;
     inner = cx->scratch;
     for (i = 0; i < l.facet_count; i++)
@@ -3980,8 +4218,8 @@ static GXBP_COLD gx_result gxbp_relieve_leaf(gxb_complex *cx, const gxbp_task *t
         result = gxbp_new_free_plane(cx, l.element, rank[k], median[rank[k]], &knife.plane);
         if (result != GX_OK) return result;
         if (gxbp_plane_parts(cx, inner, n, &knife)) break;
-        cx->point_count = points;
-        cx->plane_count = planes;
+        cx->store.point_count = points;
+        cx->store.plane_count = planes;
     }
     if (k == ranks) return GX_OK;
     result = gxbp_ready_leaf(cx, leaf, &knife);
@@ -4030,9 +4268,9 @@ static GXBP_APART void gxbp_push_task(gxb_complex *cx, uint32_t parent, uint32_t
 /* Sends the polygon of the task down the tree by one node. */
 static gx_result gxbp_descend(gxb_complex *cx, gxb_triangle *t, const gxbp_task *task, uint32_t node) {
     const uint32_t plane = cx->nodes[node].plane;
-    gx_result result = GXBP_RESERVE(cx, corners, corner, 2 * (size_t)task->count + 8);
+    gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, corners, corner, 2 * (size_t)task->count + 8);
     int sides;
-    if (result == GX_OK) result = GXBP_RESERVE(cx, tasks, task, 2);
+    if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, tasks, task, 2);
     if (result != GX_OK) return result;
     sides = plane == t->plane ? 0 : gxbp_corner_sides(cx, task->first, task->count, plane);
     if (sides == 0 || sides == 1) gxbp_push_task(cx, node, 0, task->first, task->count, task->coplanar | (sides == 0));
@@ -4080,7 +4318,8 @@ static uint32_t gxbp_choose_section(const int sign[4], uint8_t corners[4][3]) {
 static uint32_t gxbp_made_crossing(const gxb_complex *cx, uint32_t mesh_edge, uint32_t plane) {
     const uint32_t child = cx->edges[cx->mesh_edge[mesh_edge]].child;
     const uint32_t point = child != GXB_NONE ? cx->edges[child].v[1] : GXB_NONE;
-    return point != GXB_NONE && cx->points[point].kind == GXB_LINE_PLANE && cx->points[point].def[2] == plane
+    return point != GXB_NONE && cx->store.points[point].kind == GXB_LINE_PLANE &&
+                   cx->store.points[point].def[2] == plane
              ? point
              : GXB_NONE;
 }
@@ -4096,7 +4335,7 @@ static void gxbp_push_section_corner(gxb_complex *cx, const gxb_triangle *t, uin
     if (sign == 0) {
         c->kind = GXB_EXPLICIT;
         c->point = q;
-        c->ball = cx->points[q].ball;
+        c->ball = cx->store.points[q].ball;
         return;
     }
     c->kind = GXB_LINE_PLANE;
@@ -4105,17 +4344,17 @@ static void gxbp_push_section_corner(gxb_complex *cx, const gxb_triangle *t, uin
     c->def[2] = t->plane;
     c->point = gxbp_made_crossing(cx, cx->element_edges[6 * element + gxbp_local_edge(i, j)], t->plane);
     if (c->point != GXB_NONE)
-        c->ball = cx->points[c->point].ball;
+        c->ball = cx->store.points[c->point].ball;
     else
-        gxbp_definition_ball(cx, c->kind, c->def, &c->ball);
+        gxbp_definition_ball(&cx->store, c->kind, c->def, &c->ball);
 }
 
 /* Signs of corners: 1 on the triangle's side of its edge k, -1 beyond. Bit 1 of *sides: some are on its side, bit 2:
  * some beyond. */
 static gx_result gxbp_edge_sides(gxb_complex *cx, gxb_triangle *t, uint32_t k, uint32_t first, uint32_t count,
                                  int *sides) {
-    const gxb_cplane *f = &cx->planes[t->plane];
-    const gxb_ball *p = &cx->points[t->point[k]].ball, *q = &cx->points[t->point[(k + 1) % 3]].ball;
+    const gxb_cplane *f = &cx->store.planes[t->plane];
+    const gxb_ball *p = &cx->store.points[t->point[k]].ball, *q = &cx->store.points[t->point[(k + 1) % 3]].ball;
     const int x = (int)(f->axis + 1) % 3, y = (int)(f->axis + 2) % 3, turn = f->axis_sign * t->orientation;
     uint32_t i;
     *sides = 0;
@@ -4140,7 +4379,7 @@ static int gxbp_triangle_is_inside(gxb_complex *cx, const gxb_triangle *t, uint3
         const uint32_t face = cx->element_faces[4 * element + k], plane = cx->facets[cx->face_facet[face]].plane;
         const int inside = cx->face_elements[2 * face] == element ? 1 : -1;
         for (i = 0; i < 3; i++)
-            if (inside * gxb_complex_side(cx, t->point[i], plane) < 0) return 0;
+            if (inside * gxbp_store_side(&cx->store, t->point[i], plane) < 0) return 0;
     }
     return 1;
 }
@@ -4151,7 +4390,7 @@ static void gxbp_push_triangle(gxb_complex *cx, const gxb_triangle *t) {
     for (k = 0; k < 3; k++) {
         gxbp_corner *c = &cx->corners[cx->corner_count++];
         memset(c, 0, sizeof *c);
-        c->ball = cx->points[t->point[k]].ball;
+        c->ball = cx->store.points[t->point[k]].ball;
         c->kind = GXB_EXPLICIT;
         c->point = t->point[k];
         c->carrier = GXBP_TRIANGLE_EDGE + k;
@@ -4165,7 +4404,7 @@ static gx_result gxbp_clip_to_element(gxb_complex *cx, gxb_triangle *t, uint32_t
     uint8_t corners[4][3];
     uint32_t k, first;
     int sides;
-    gx_result result = GXBP_RESERVE(cx, corners, corner, 40);
+    gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, corners, corner, 40);
     if (result != GX_OK) return result;
     cx->corner_count = cx->task_count = 0;
     task->parent = GXBP_IN_ROOT;
@@ -4197,7 +4436,7 @@ static gx_result gxbp_clip_to_element(gxb_complex *cx, gxb_triangle *t, uint32_t
 static int gxbp_misses_plane(gxb_complex *cx, const gxb_triangle *t, uint32_t element, int sign[4]) {
     int sides = 0, zeros = 0, k;
     for (k = 0; k < 4; k++) {
-        sign[k] = gxbp_sign(cx, cx->elements[4 * element + (uint32_t)k], t->plane, 0);
+        sign[k] = gxbp_sign(&cx->store, cx->elements[4 * element + (uint32_t)k], t->plane, 0);
         sides |= sign[k] > 0 ? 1 : sign[k] < 0 ? 2 : 0;
         zeros += sign[k] == 0;
     }
@@ -4211,12 +4450,12 @@ GXFEM_API gx_result gxb_complex_insert(gxb_complex *cx, gxb_triangle *t, uint32_
     int sign[4];
     if (cx->sign_plane != t->plane) {
         cx->sign_plane = t->plane;
-        gxbp_forget_signs(cx, 0);
+        gxbp_forget_signs(&cx->store, 0);
     }
     if (gxbp_misses_plane(cx, t, element, sign)) return GX_OK;
     result = gxb_complex_open_element(cx, element);
     if (result == GX_OK) result = gxbp_clip_to_element(cx, t, element, sign, &task);
-    if (result == GX_OK) result = GXBP_RESERVE(cx, tasks, task, 1);
+    if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, tasks, task, 1);
     if (result != GX_OK || task.count == 0) return result;
     cx->tasks[cx->task_count++] = task;
     while (cx->task_count > 0 && result == GX_OK) {
@@ -4244,20 +4483,20 @@ typedef struct gxbp_probe {
     int shift;
 } gxbp_probe;
 
-static GXBP_COLD void gxbp_probe_init(gxb_complex *cx, const uint32_t *points, size_t count, gxbp_probe *probe) {
+static GXBP_COLD void gxbp_probe_init(gxb_store *store, const uint32_t *points, size_t count, gxbp_probe *probe) {
     size_t i;
     int k;
     gxbp_vec_init(&probe->exact);
-    probe->shift = cx->shift;
+    probe->shift = store->shift;
     for (i = 0; i < count; i++) {
-        gxbp_vec store;
-        const gxb_num *x = gxbp_exact_cpoint(cx, points[i], &store);
+        gxbp_vec own;
+        const gxb_num *x = gxbp_exact_cpoint(store, points[i], &own);
         for (k = 0; k < 4; k++) gxbp_num_increase(&probe->exact.c[k], &x[k], 1);
     }
     for (k = 0; k < 3; k++) {
         GXB_NUM(origin);
         GXB_NUM(t);
-        gxb_num_set(&origin, cx->origin[k], cx->shift);
+        gxb_num_set(&origin, store->origin[k], store->shift);
         gxb_num_mul(&t, &origin, &probe->exact.c[3]);
         gxbp_num_increase(&probe->exact.c[k], &t, 1);
         probe->rough[k] = gxb_num_ratio(&probe->exact.c[k], &probe->exact.c[3]);
@@ -4325,7 +4564,7 @@ GXFEM_API int gxb_complex_winding(gxb_complex *cx, const uint32_t *points, size_
     gxbp_probe probe;
     int winding = 0, c;
     size_t t;
-    gxbp_probe_init(cx, points, point_count, &probe);
+    gxbp_probe_init(&cx->store, points, point_count, &probe);
     for (t = 0; t < triangle_count; t++) {
         const double *x[3];
         int side;
@@ -4418,13 +4657,13 @@ static void gxbp_pair_difference(gxbp_pair r[3], const gxb_ball *p, const gxb_ba
 }
 
 static const gxbp_pair *gxbp_pair_normal(gxb_complex *cx, uint32_t plane) {
-    const gxb_cplane *f = &cx->planes[plane];
+    const gxb_cplane *f = &cx->store.planes[plane];
     const uint32_t slot = plane % GXBP_PAIR_NORMALS;
     gxbp_pair *n = cx->pairs->normal[slot], a[3], b[3];
     int i;
     if (cx->pairs->plane[slot] == plane) return n;
     cx->pairs->plane[slot] = plane;
-    gxbp_pair_difference(a, &cx->points[f->def[0]].ball, &cx->points[f->def[1]].ball);
+    gxbp_pair_difference(a, &cx->store.points[f->def[0]].ball, &cx->store.points[f->def[1]].ball);
     if (f->along_axis) { /* a x e */
         const uint32_t j = (f->def[2] + 1) % 3, k = (f->def[2] + 2) % 3;
         n[j] = a[k];
@@ -4433,7 +4672,7 @@ static const gxbp_pair *gxbp_pair_normal(gxb_complex *cx, uint32_t plane) {
         n[k].error = a[j].error;
         return n;
     }
-    gxbp_pair_difference(b, &cx->points[f->def[0]].ball, &cx->points[f->def[2]].ball);
+    gxbp_pair_difference(b, &cx->store.points[f->def[0]].ball, &cx->store.points[f->def[2]].ball);
     for (i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         n[i] = gxbp_pair_det2(&a[j], &b[k], &a[k], &b[j]);
@@ -4447,9 +4686,9 @@ static gxbp_pair gxbp_pair_side(gxb_complex *cx, uint32_t point, uint32_t plane)
     gxbp_pairs *pairs = cx->pairs;
     if (pairs->side_plane[slot] != plane || pairs->side_point[slot] != point) {
         const gxbp_pair *n = gxbp_pair_normal(cx, plane);
-        const gxb_cplane *f = &cx->planes[plane];
+        const gxb_cplane *f = &cx->store.planes[plane];
         gxbp_pair d[3];
-        gxbp_pair_difference(d, &cx->points[f->def[0]].ball, &cx->points[point].ball);
+        gxbp_pair_difference(d, &cx->store.points[f->def[0]].ball, &cx->store.points[point].ball);
         if (f->along_axis) { /* its normal has no component along the axis */
             const uint32_t j = (f->def[2] + 1) % 3, k = (f->def[2] + 2) % 3;
             const gxbp_pair s = gxbp_pair_mul(&n[j], &d[j]), t = gxbp_pair_mul(&n[k], &d[k]);
@@ -4467,7 +4706,7 @@ static gxbp_pair gxbp_pair_side(gxb_complex *cx, uint32_t point, uint32_t plane)
 /* Exact distance of a point from a plane, times |n| and the point's weight W, which goes to *weight (may be NULL). */
 static void gxbp_distance(gxb_complex *cx, uint32_t point, uint32_t plane, gxb_num *distance, gxb_num *weight) {
     gxbp_vec sn, sx;
-    const gxb_num *n = gxbp_exact_cplane(cx, plane, &sn), *x = gxbp_exact_cpoint(cx, point, &sx);
+    const gxb_num *n = gxbp_exact_cplane(&cx->store, plane, &sn), *x = gxbp_exact_cpoint(&cx->store, point, &sx);
     gxbp_exact_side(distance, x, n);
     if (weight != NULL) gxbp_num_copy(weight, &x[3], 1);
 }
@@ -4486,7 +4725,7 @@ static GXBP_COLD void gxbp_exact_edge_parameter(gxb_complex *cx, gxb_cpoint *p) 
 /* Where on the mesh edge from node def[0] to node def[1] the point lies: 0 ... 1. Asked for by every element around the
  * edge, so kept. */
 static double gxbp_edge_parameter(gxb_complex *cx, uint32_t point, int from_end) {
-    gxb_cpoint *p = &cx->points[point];
+    gxb_cpoint *p = &cx->store.points[point];
     if (p->parameter[0] < 0) {
         const gxbp_pair a = gxbp_pair_side(cx, p->def[0], p->def[2]), b = gxbp_pair_side(cx, p->def[1], p->def[2]);
         const gxbp_pair d = gxbp_pair_add(&b, &a, -1), e = gxbp_pair_add(&a, &b, -1);
@@ -4498,10 +4737,10 @@ static double gxbp_edge_parameter(gxb_complex *cx, uint32_t point, int from_end)
 
 /* What is known of lambda[k] without arithmetic: 1 or 0 at nodes, 0 on a face by definition; -1: nothing. */
 static int gxbp_known_lambda(const gxb_complex *cx, uint32_t point, uint32_t element, uint32_t k) {
-    const gxb_cpoint *p = &cx->points[point];
+    const gxb_cpoint *p = &cx->store.points[point];
     const uint32_t face = cx->element_faces[4 * element + k];
     if (point < cx->node_count) return point == cx->elements[4 * element + k];
-    return gxbp_incident(cx, p->kind, p->def, point, cx->facets[cx->face_facet[face]].plane) ? 0 : -1;
+    return gxbp_incident(&cx->store, p->kind, p->def, point, cx->facets[cx->face_facet[face]].plane) ? 0 : -1;
 }
 
 static int gxbp_has_node(const gxb_complex *cx, uint32_t element, uint32_t node) {
@@ -4511,12 +4750,12 @@ static int gxbp_has_node(const gxb_complex *cx, uint32_t element, uint32_t node)
 
 /* Does the point divide an edge of the element? */
 static int gxbp_divides_edge(const gxb_complex *cx, uint32_t point, uint32_t element) {
-    const gxb_cpoint *p = &cx->points[point];
+    const gxb_cpoint *p = &cx->store.points[point];
     return p->kind == GXB_LINE_PLANE && gxbp_has_node(cx, element, p->def[0]) && gxbp_has_node(cx, element, p->def[1]);
 }
 
 GXFEM_API unsigned gxb_complex_support(const gxb_complex *cx, uint32_t point, uint32_t element) {
-    const gxb_cpoint *p = &cx->points[point];
+    const gxb_cpoint *p = &cx->store.points[point];
     const int on_edge = gxbp_divides_edge(cx, point, element);
     unsigned support = 0;
     uint32_t k;
@@ -4580,15 +4819,15 @@ static void gxbp_pair_plane_shares(gxb_complex *cx, const uint32_t def[3], uint3
 
 /* Is this the plane of a mesh face? Such are defined by nodes. */
 static int gxbp_is_face_plane(const gxb_complex *cx, uint32_t plane) {
-    const gxb_cplane *f = &cx->planes[plane];
+    const gxb_cplane *f = &cx->store.planes[plane];
     return f->def[0] < cx->node_count && f->def[1] < cx->node_count && f->def[2] < cx->node_count && !f->along_axis;
 }
 
 /* Of a point in a mesh face, by the sides on which its two other planes have the face's nodes: the minors of these. 0:
    pairs do not tell, or it is in two of such planes. */
 static int gxbp_pair_in_face(gxb_complex *cx, uint32_t point, uint32_t face) {
-    gxb_cpoint *p = &cx->points[point];
-    const uint32_t *node = cx->planes[p->def[face]].def;
+    gxb_cpoint *p = &cx->store.points[point];
+    const uint32_t *node = cx->store.planes[p->def[face]].def;
     gxbp_pair side[2][3], share[3], sum;
     double parameter[3];
     uint32_t i, k;
@@ -4612,12 +4851,12 @@ static int gxbp_pair_in_face(gxb_complex *cx, uint32_t point, uint32_t face) {
 /* Coordinates of a point of three planes one of which is that of a mesh face of the element: those in the face, which
    are asked for by both elements beside it, so kept. 0: there is no such plane, or pairs do not tell. */
 static int gxbp_face_barycentric(gxb_complex *cx, uint32_t point, uint32_t element, double lambda[4]) {
-    const gxb_cpoint *p = &cx->points[point];
+    const gxb_cpoint *p = &cx->store.points[point];
     const uint32_t *n = cx->elements + 4 * (size_t)element, *node;
     uint32_t face = 0, found = 0, i, k;
     while (face < 3 && !gxbp_is_face_plane(cx, p->def[face])) face++;
     if (face == 3) return 0;
-    node = cx->planes[p->def[face]].def;
+    node = cx->store.planes[p->def[face]].def;
     for (k = 0; k < 4; k++) found += n[k] == node[0] || n[k] == node[1] || n[k] == node[2];
     if (found < 3 || (p->parameter[0] < 0 && !gxbp_pair_in_face(cx, point, face))) return 0;
     for (k = 0; k < 4; k++) {
@@ -4631,7 +4870,7 @@ static int gxbp_face_barycentric(gxb_complex *cx, uint32_t point, uint32_t eleme
 /* By pairs, those that they settle; -1 stands for the others. On entry what is known without arithmetic stands there.
  */
 static void gxbp_pair_barycentric(gxb_complex *cx, uint32_t point, uint32_t element, double lambda[4]) {
-    const gxb_cpoint p = cx->points[point];
+    const gxb_cpoint p = cx->store.points[point];
     gxbp_pair share[4], sum = gxbp_pair_sum(0, 0);
     uint32_t k;
     if (p.kind == GXB_EXPLICIT)
@@ -4659,7 +4898,7 @@ static GXBP_COLD double gxbp_exact_lambda(gxb_complex *cx, uint32_t point, uint3
 }
 
 GXFEM_API void gxb_complex_barycentric(gxb_complex *cx, uint32_t point, uint32_t element, double lambda[4]) {
-    const gxb_cpoint *p = &cx->points[point];
+    const gxb_cpoint *p = &cx->store.points[point];
     const int on_edge = gxbp_divides_edge(cx, point, element);
     uint32_t k;
     if (p->kind == GXB_THREE_PLANES && gxbp_face_barycentric(cx, point, element, lambda)) return;
@@ -4736,8 +4975,8 @@ static uint32_t gxbp_pass_bit(gxb_stream *s, uint32_t bit) {
 
 static GXBP_COLD void gxbp_save_points(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
-    for (i = 0; i < cx->point_count; i++) {
-        gxb_cpoint *p = &cx->points[i];
+    for (i = 0; i < cx->store.point_count; i++) {
+        gxb_cpoint *p = &cx->store.points[i];
         uint32_t head = (uint32_t)p->kind | (uint32_t)p->wall << 2;
         double x[3];
         gxbp_pass_word(s, &head);
@@ -4746,7 +4985,7 @@ static GXBP_COLD void gxbp_save_points(gxb_complex *cx, gxb_stream *s) {
             gxb_stream_pass(s, p->def, 3, sizeof *p->def);
             continue;
         }
-        if (s->out != NULL) gxbp_given(cx, i, x);
+        if (s->out != NULL) gxbp_given(&cx->store, i, x);
         gxb_stream_pass(s, x, 3, sizeof *x);
     }
 }
@@ -4760,7 +4999,7 @@ static GXBP_COLD void gxbp_load_points(gxb_complex *cx, gxb_stream *s, uint32_t 
         gxbp_pass_word(s, &head);
         gxbp_require_true(s, head < 8 && (head & 3) <= (i < cx->node_count ? 0u : 2u));
         if (i < cx->node_count) {
-            cx->points[i].wall = (uint8_t)(head >> 2);
+            cx->store.points[i].wall = (uint8_t)(head >> 2);
             continue;
         }
         if ((head & 3) == GXB_EXPLICIT)
@@ -4773,24 +5012,24 @@ static GXBP_COLD void gxbp_load_points(gxb_complex *cx, gxb_stream *s, uint32_t 
             if (result != GX_OK)
                 gxbp_require(s, result == GX_ERROR_MEMORY || result == GX_ERROR_LIMIT ? result : GX_ERROR_DAMAGED);
         } else {
-            gxbp_require(s, gxbp_new_point(cx, &id));
-            if (s->result == GX_OK) memcpy(cx->points[id].def, def, sizeof def);
+            gxbp_require(s, gxbp_new_point(&cx->store, &id));
+            if (s->result == GX_OK) memcpy(cx->store.points[id].def, def, sizeof def);
         }
         if (s->result != GX_OK) return;
-        cx->points[id].kind = (uint8_t)(head & 3);
-        cx->points[id].wall = (uint8_t)(head >> 2);
+        cx->store.points[id].kind = (uint8_t)(head & 3);
+        cx->store.points[id].wall = (uint8_t)(head >> 2);
     }
 }
 
-static int gxbp_is_explicit(const gxb_complex *cx, uint32_t point) {
-    return point < cx->point_count && cx->points[point].kind == GXB_EXPLICIT;
+static int gxbp_is_explicit(const gxb_store *store, uint32_t point) {
+    return point < store->point_count && store->points[point].kind == GXB_EXPLICIT;
 }
 
 static GXBP_COLD void gxbp_save_planes(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
-    for (i = 0; i < cx->plane_count; i++) {
-        gxb_stream_pass(s, cx->planes[i].def, 3, sizeof *cx->planes[i].def);
-        gxbp_pass_bit(s, cx->planes[i].along_axis);
+    for (i = 0; i < cx->store.plane_count; i++) {
+        gxb_stream_pass(s, cx->store.planes[i].def, 3, sizeof *cx->store.planes[i].def);
+        gxbp_pass_bit(s, cx->store.planes[i].along_axis);
     }
 }
 
@@ -4802,14 +5041,15 @@ static GXBP_COLD void gxbp_load_planes(gxb_complex *cx, gxb_stream *s, uint32_t 
         int normal = 0;
         gxb_stream_pass(s, def, 3, sizeof *def);
         along_axis = gxbp_pass_bit(s, 0);
-        gxbp_require_true(s, gxbp_is_explicit(cx, def[0]) && gxbp_is_explicit(cx, def[1]) &&
-                                 (along_axis ? def[2] < 3 : gxbp_is_explicit(cx, def[2])));
-        if (s->result == GX_OK) gxbp_require(s, gxbp_new_plane(cx, def[0], def[1], def[2], (int)along_axis, &id));
+        gxbp_require_true(s, gxbp_is_explicit(&cx->store, def[0]) && gxbp_is_explicit(&cx->store, def[1]) &&
+                                 (along_axis ? def[2] < 3 : gxbp_is_explicit(&cx->store, def[2])));
+        if (s->result == GX_OK)
+            gxbp_require(s, gxbp_new_plane(&cx->store, def[0], def[1], def[2], (int)along_axis, &id));
         if (s->result != GX_OK) return;
         if (along_axis)
-            for (k = 0; k < 3 && !normal; k++) normal = gxbp_normal_sign(cx, id, k) != 0;
+            for (k = 0; k < 3 && !normal; k++) normal = gxbp_normal_sign(&cx->store, id, k) != 0;
         else
-            normal = gxbp_plane_axis(cx, id);
+            normal = gxbp_plane_axis(&cx->store, id);
         gxbp_require_true(s, normal);
     }
 }
@@ -4817,17 +5057,17 @@ static GXBP_COLD void gxbp_load_planes(gxb_complex *cx, gxb_stream *s, uint32_t 
 /* Points by definition must be points: a filter that is certain of their place proves it, else their exact weight. */
 static GXBP_COLD void gxbp_place_points(gxb_complex *cx, gxb_stream *s) {
     uint32_t i, k;
-    for (i = cx->node_count; i < cx->point_count && s->result == GX_OK; i++) {
-        gxb_cpoint *p = &cx->points[i];
+    for (i = cx->node_count; i < cx->store.point_count && s->result == GX_OK; i++) {
+        gxb_cpoint *p = &cx->store.points[i];
         if (p->kind == GXB_EXPLICIT) continue;
         for (k = 0; k < 3; k++)
-            gxbp_require_true(s, k < 2 && p->kind == GXB_LINE_PLANE ? gxbp_is_explicit(cx, p->def[k])
-                                                                    : p->def[k] < cx->plane_count);
+            gxbp_require_true(s, k < 2 && p->kind == GXB_LINE_PLANE ? gxbp_is_explicit(&cx->store, p->def[k])
+                                                                    : p->def[k] < cx->store.plane_count);
         if (s->result != GX_OK) return;
-        gxbp_definition_ball(cx, p->kind, p->def, &p->ball);
+        gxbp_definition_ball(&cx->store, p->kind, p->def, &p->ball);
         if (p->ball.error >= GXBP_NO_BALL) {
             gxbp_vec store;
-            gxbp_require_true(s, gxbp_exact_cpoint(cx, i, &store)[3].sign != 0);
+            gxbp_require_true(s, gxbp_exact_cpoint(&cx->store, i, &store)[3].sign != 0);
         }
     }
 }
@@ -4840,7 +5080,7 @@ static void gxbp_pass_list(gxb_complex *cx, gxb_stream *s, uint32_t *first, uint
             *count = 0;
             return;
         }
-        gxbp_require(s, GXBP_RESERVE(cx, pool, pool, *count));
+        gxbp_require(s, GXBP_RESERVE(&cx->store.allocator, cx, pool, pool, *count));
         if (s->result != GX_OK) {
             *count = 0;
             return;
@@ -4910,8 +5150,8 @@ enum { GXBP_COUNTS = 7 };
 
 GXFEM_API GXBP_RARE void gxb_complex_save(gxb_complex *cx, gxb_stream *stream) {
     uint32_t counts[GXBP_COUNTS];
-    counts[0] = cx->point_count;
-    counts[1] = cx->plane_count;
+    counts[0] = cx->store.point_count;
+    counts[1] = cx->store.plane_count;
     counts[2] = cx->edge_count;
     counts[3] = cx->facet_count;
     counts[4] = cx->leaf_count;
@@ -4936,11 +5176,11 @@ static void gxbp_load_room(gxb_stream *s, gxb_complex *cx, const uint32_t counts
     }
     gxbp_require_true(s, counts[0] >= cx->node_count && counts[4] >= cx->element_count);
     if (s->result != GX_OK) return;
-    gxbp_require(s, GXBP_RESERVE(cx, edges, edge, counts[2]));
-    gxbp_require(s, GXBP_RESERVE(cx, facets, facet, counts[3]));
-    gxbp_require(s, GXBP_RESERVE(cx, leaves, leaf, counts[4] - cx->leaf_count));
-    gxbp_require(s, GXBP_RESERVE(cx, nodes, tree, counts[5]));
-    gxbp_require(s, GXBP_RESERVE(cx, labels, label, counts[6]));
+    gxbp_require(s, GXBP_RESERVE(&cx->store.allocator, cx, edges, edge, counts[2]));
+    gxbp_require(s, GXBP_RESERVE(&cx->store.allocator, cx, facets, facet, counts[3]));
+    gxbp_require(s, GXBP_RESERVE(&cx->store.allocator, cx, leaves, leaf, counts[4] - cx->leaf_count));
+    gxbp_require(s, GXBP_RESERVE(&cx->store.allocator, cx, nodes, tree, counts[5]));
+    gxbp_require(s, GXBP_RESERVE(&cx->store.allocator, cx, labels, label, counts[6]));
     if (s->result != GX_OK) return;
     cx->edge_count = counts[2];
     cx->facet_count = counts[3];
@@ -5022,13 +5262,15 @@ static void gxbp_check_indices(gxb_complex *cx, gxb_stream *s) {
     int good = 1;
     for (i = 0; i < cx->edge_count; i++) {
         const gxb_edge *e = &cx->edges[i];
-        good &= e->v[0] < cx->point_count && e->v[1] < cx->point_count && e->v[0] != e->v[1];
+        good &= e->v[0] < cx->store.point_count && e->v[1] < cx->store.point_count && e->v[0] != e->v[1];
         for (j = 0; j < 2; j++)
-            good &= e->explicit_line == 1 ? gxbp_is_explicit(cx, e->line[j]) : e->line[j] < cx->plane_count;
+            good &=
+                e->explicit_line == 1 ? gxbp_is_explicit(&cx->store, e->line[j]) : e->line[j] < cx->store.plane_count;
     }
     for (i = 0; i < cx->facet_count; i++) {
         const gxb_facet *f = &cx->facets[i];
-        good &= f->plane < cx->plane_count && !cx->planes[f->plane < cx->plane_count ? f->plane : 0].along_axis &&
+        good &= f->plane < cx->store.plane_count &&
+                !cx->store.planes[f->plane < cx->store.plane_count ? f->plane : 0].along_axis &&
                 gxbp_below(f->leaf[0], cx->leaf_count) && gxbp_below(f->leaf[1], cx->leaf_count) &&
                 f->leaf[0] != f->leaf[1] && gxbp_below(f->labels, cx->label_count) &&
                 gxbp_below(f->face, cx->face_count);
@@ -5053,9 +5295,9 @@ static void gxbp_check_indices(gxb_complex *cx, gxb_stream *s) {
 
 /* --- edges: on their lines, divided between their ends --- */
 
-static int gxbp_same_place(gxb_complex *cx, uint32_t a, uint32_t b) {
+static int gxbp_same_place(gxb_store *store, uint32_t a, uint32_t b) {
     gxbp_vec sa, sb;
-    const gxb_num *p = gxbp_exact_cpoint(cx, a, &sa), *q = gxbp_exact_cpoint(cx, b, &sb);
+    const gxb_num *p = gxbp_exact_cpoint(store, a, &sa), *q = gxbp_exact_cpoint(store, b, &sb);
     int k;
     for (k = 0; k < 3; k++) {
         GXB_NUM(d);
@@ -5065,37 +5307,24 @@ static int gxbp_same_place(gxb_complex *cx, uint32_t a, uint32_t b) {
     return 1;
 }
 
-/* Do the planes meet in a line? */
-static GXBP_COLD int gxbp_planes_cross(gxb_complex *cx, uint32_t a, uint32_t b) {
-    const gxb_plane_filter *f = &cx->planes[a].filter, *g = &cx->planes[b].filter;
-    double r[3];
-    const double bound = gxbp_cross_error(f->norm, f->error, g->norm, g->error);
-    gxbp_vec sa, sb, cross;
-    gxbp_cross(r, f->n, g->n);
-    if (gxbp_max3(r) > bound) return 1;
-    gxbp_vec_init(&cross);
-    gxbp_num_cross(cross.c, gxbp_exact_cplane(cx, a, &sa), gxbp_exact_cplane(cx, b, &sb));
-    return cross.c[0].sign != 0 || cross.c[1].sign != 0 || cross.c[2].sign != 0;
-}
-
-static int gxbp_collinear(gxb_complex *cx, uint32_t a, uint32_t b, uint32_t c) {
+static int gxbp_collinear(gxb_store *store, uint32_t a, uint32_t b, uint32_t c) {
     gxbp_vec sa, sb, sc;
-    const gxb_num *p = gxbp_exact_cpoint(cx, a, &sa), *q = gxbp_exact_cpoint(cx, b, &sb),
-                  *r = gxbp_exact_cpoint(cx, c, &sc);
+    const gxb_num *p = gxbp_exact_cpoint(store, a, &sa), *q = gxbp_exact_cpoint(store, b, &sb),
+                  *r = gxbp_exact_cpoint(store, c, &sc);
     return gxbp_orient_exact(p, q, r, 0, 1) == 0 && gxbp_orient_exact(p, q, r, 1, 2) == 0 &&
            gxbp_orient_exact(p, q, r, 2, 0) == 0;
 }
 
 static int gxbp_on_line(gxb_complex *cx, uint32_t point, const gxb_edge *e) {
-    const gxb_cpoint *p = &cx->points[point];
+    const gxb_cpoint *p = &cx->store.points[point];
     int i, planes = 0;
     if (!e->explicit_line)
         return gxb_complex_side(cx, point, e->line[0]) == 0 && gxb_complex_side(cx, point, e->line[1]) == 0;
     if (point == e->line[0] || point == e->line[1]) return 1;
     if (p->kind == GXB_LINE_PLANE && p->def[0] == e->line[0] && p->def[1] == e->line[1]) return 1;
     for (i = 0; i < 3 && p->kind == GXB_THREE_PLANES; i++)
-        planes += gxbp_plane_has_line(&cx->planes[p->def[i]], e->line[0], e->line[1]);
-    return planes >= 2 || gxbp_collinear(cx, point, e->line[0], e->line[1]);
+        planes += gxbp_plane_has_line(&cx->store.planes[p->def[i]], e->line[0], e->line[1]);
+    return planes >= 2 || gxbp_collinear(&cx->store, point, e->line[0], e->line[1]);
 }
 
 /* Does a given point lie between the ends of an edge whose line it defines? */
@@ -5103,7 +5332,7 @@ static int gxbp_given_divides(gxb_complex *cx, const gxb_edge *e, uint32_t point
     double x[3];
     int k, divides = 0;
     if (!e->explicit_line || (point != e->line[0] && point != e->line[1])) return 0;
-    gxbp_given(cx, point, x);
+    gxbp_given(&cx->store, point, x);
     for (k = 0; k < 3; k++)
         divides |= gxb_complex_compare(cx, e->v[0], k, x[k]) * gxb_complex_compare(cx, e->v[1], k, x[k]) < 0;
     return divides;
@@ -5113,7 +5342,7 @@ static int gxbp_given_divides(gxb_complex *cx, const gxb_edge *e, uint32_t point
  * it. */
 static int gxbp_edge_is_divided(gxb_complex *cx, const gxb_edge *e) {
     const gxb_edge *a = &cx->edges[e->child], *b = a + 1;
-    const gxb_cpoint *p = &cx->points[a->v[1]];
+    const gxb_cpoint *p = &cx->store.points[a->v[1]];
     if (a->v[0] != e->v[0] || b->v[1] != e->v[1] || a->v[1] != b->v[0]) return 0;
     if (a->explicit_line != e->explicit_line || b->explicit_line != e->explicit_line) return 0;
     if (memcmp(a->line, e->line, sizeof e->line) != 0 || memcmp(b->line, e->line, sizeof e->line) != 0) return 0;
@@ -5130,8 +5359,8 @@ static void gxbp_check_edges(gxb_complex *cx, gxb_stream *s, const uint32_t *dep
     for (i = 0; i < cx->edge_count && s->result == GX_OK; i++) {
         const gxb_edge *e = &cx->edges[i];
         if (depth[i] == 0) {
-            gxbp_require_true(s, e->explicit_line ? !gxbp_same_place(cx, e->line[0], e->line[1])
-                                                  : gxbp_planes_cross(cx, e->line[0], e->line[1]));
+            gxbp_require_true(s, e->explicit_line ? !gxbp_same_place(&cx->store, e->line[0], e->line[1])
+                                                  : gxbp_planes_cross(&cx->store, e->line[0], e->line[1]));
             gxbp_require_true(s, gxbp_on_line(cx, e->v[0], e) && gxbp_on_line(cx, e->v[1], e));
         }
         if (e->child != GXB_NONE && s->result == GX_OK) gxbp_require_true(s, gxbp_edge_is_divided(cx, e));
@@ -5226,8 +5455,9 @@ static void gxbp_check_polygon(gxbp_checker *c, uint32_t facet) {
     for (i = 0; i < c->count; i++) {
         const uint32_t e = c->edge[i], next = c->edge[(i + 1) % c->count], start = gxbp_edge_start(cx, e);
         gxbp_require_true(c->s, cx->edges[e >> 1].v[1 - (e & 1)] == gxbp_edge_start(cx, next) &&
-                                    cx->points[start].scratch != c->round && gxb_complex_side(cx, start, plane) == 0);
-        cx->points[start].scratch = c->round;
+                                    cx->store.points[start].scratch != c->round &&
+                                    gxb_complex_side(cx, start, plane) == 0);
+        cx->store.points[start].scratch = c->round;
         if (!gxbp_same_carrier(cx, c->edge[(i + c->count - 1) % c->count], e)) c->corner[c->corners++] = i;
     }
     gxbp_require_true(c->s, c->corners >= 3);
@@ -5315,7 +5545,7 @@ static void gxbp_check_face(gxbp_checker *c, uint32_t element, uint32_t k) {
     uint32_t local[3], n[3], i, j, pieces = 0, round;
     const gxb_cplane *plane;
     if (root == GXB_NONE) return;
-    plane = &cx->planes[cx->facets[root].plane];
+    plane = &cx->store.planes[cx->facets[root].plane];
     for (j = 0; j < 3; j++) n[j] = node[gxbp_face_nodes[k][j]];
     gxbp_sort3(n);
     for (j = 0; j < 3; j++)
@@ -5368,7 +5598,7 @@ static void gxbp_check_tree(gxbp_checker *c) {
     for (i = 0; i < c->hung && c->s->result == GX_OK; i++) {
         const uint32_t node = c->queue[i];
         const gxb_node *n = &cx->nodes[node];
-        gxbp_require_true(c->s, n->plane < cx->plane_count && !cx->planes[n->plane].along_axis);
+        gxbp_require_true(c->s, n->plane < cx->store.plane_count && !cx->store.planes[n->plane].along_axis);
         for (k = 0; k < 2 && c->s->result == GX_OK; k++)
             gxbp_hang(c, n->child[k], 2 * node + k, c->node_element[node], c->node_depth[node] + 1);
     }
@@ -5382,9 +5612,9 @@ static void gxbp_check_tree(gxbp_checker *c) {
 static int gxbp_lies_beside(gxbp_checker *c, uint32_t plane, int side, int *off) {
     uint32_t i;
     *off = 0;
-    gxbp_forget_signs(c->cx, 0);
+    gxbp_forget_signs(&c->cx->store, 0);
     for (i = 0; i < c->points; i++) {
-        const int sign = gxbp_sign(c->cx, c->point[i], plane, 0) * side;
+        const int sign = gxbp_sign(&c->cx->store, c->point[i], plane, 0) * side;
         if (sign < 0) return 0;
         *off |= sign;
     }
@@ -5404,8 +5634,8 @@ static void gxbp_collect_points(gxbp_checker *c, uint32_t round) {
     uint32_t i;
     for (i = 0; i < c->count; i++) {
         const uint32_t point = gxbp_edge_start(c->cx, c->edge[i]);
-        if (c->cx->points[point].scratch == round) continue;
-        c->cx->points[point].scratch = round;
+        if (c->cx->store.points[point].scratch == round) continue;
+        c->cx->store.points[point].scratch = round;
         c->point[c->points++] = point;
     }
 }
@@ -5476,7 +5706,7 @@ static void gxbp_run_checks(gxbp_checker *c) {
 
 static GXBP_COLD void gxbp_check(gxb_complex *cx, gxb_stream *s) {
     const size_t e = cx->edge_count, f = cx->facet_count, n = cx->tree_count, l = cx->leaf_count;
-    const size_t words = 7 * e + 4 * f + cx->point_count + 4 * n + l + 1;
+    const size_t words = 7 * e + 4 * f + cx->store.point_count + 4 * n + l + 1;
     gxbp_checker c;
     uint32_t *block;
     memset(&c, 0, sizeof c);
@@ -5484,7 +5714,7 @@ static GXBP_COLD void gxbp_check(gxb_complex *cx, gxb_stream *s) {
         gxbp_require(s, GX_ERROR_LIMIT);
         return;
     }
-    block = (uint32_t *)gxbp_allocate(&cx->allocator, words * sizeof *block);
+    block = (uint32_t *)gxbp_allocate(&cx->store.allocator, words * sizeof *block);
     if (block == NULL) {
         gxbp_require(s, GX_ERROR_MEMORY);
         return;
@@ -5505,9 +5735,9 @@ static GXBP_COLD void gxbp_check(gxb_complex *cx, gxb_stream *s) {
     c.node_element = c.node_up + n;
     c.leaf_up = c.node_element + n;
     c.point = c.leaf_up + l;
-    c.queue = c.point + cx->point_count;
+    c.queue = c.point + cx->store.point_count;
     gxbp_run_checks(&c);
-    gxbp_release(&cx->allocator, block, words * sizeof *block);
+    gxbp_release(&cx->store.allocator, block, words * sizeof *block);
 }
 
 /* >>arrangement: triangles of closed surfaces, divided where they meet (docs/KERNEL.md) ---------------------------- */
@@ -5623,7 +5853,7 @@ struct gxb_boolean { /* what is used most comes first: its addresses are short *
     gxbp_link *links;
     uint32_t link_count, link_capacity;
     gx_result result; /* of the evaluation at work */
-    gxb_complex cx;   /* points, planes and exact numbers; the complex has no elements */
+    gxb_store store;  /* points, planes and exact numbers */
     gx_allocator outer;
     size_t limit, used, peak;
     unsigned char *arena; /* behind the struct: what small cases need comes from here */
@@ -5795,8 +6025,8 @@ static GXBP_COLD int gxbp_stop(gxb_boolean *b, gx_result result) {
 }
 
 /* Small cases should not pay for growing: an array's first items come from the arena at once. */
-static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, size_t item, size_t extra) {
-    uint32_t *capacity = gxbp_extent_of(array) + 1;
+static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, uint32_t count, uint32_t *capacity, size_t item,
+                                size_t extra) {
     const size_t least = *capacity == 0 && extra < 16 ? 16 : extra, room = gxbp_room_for(least);
     void *memory = *capacity == 0 && least < GXBP_ARENA ? gxbp_take(b, room * item) : NULL;
     gx_result result;
@@ -5805,13 +6035,13 @@ static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, size_t item, size_t
         *capacity = (uint32_t)room;
         return 1;
     }
-    result = gxbp_reserve(&b->cx, array, item, least);
+    result = gxbp_reserve(&b->store.allocator, array, count, capacity, item, least);
     return result == GX_OK ? 1 : gxbp_stop(b, result);
 }
 
 #define GXBP_ROOM(b, array, counter, extra)                                                                            \
     ((b)->counter##_count + (size_t)(extra) <= (b)->counter##_capacity ||                                              \
-     gxbp_room(b, &(b)->array, sizeof *(b)->array, extra))
+     gxbp_room(b, &(b)->array, (b)->counter##_count, &(b)->counter##_capacity, sizeof *(b)->array, extra))
 
 /* Memory for as long as nobody else takes scratch; NULL: there is none. It is kept: what needs some next finds pages
  * that have been touched. */
@@ -5844,14 +6074,14 @@ static GXBP_APART uint32_t gxbp_hash_place(const double x[3]) {
 
 static uint32_t gxbp_hash_point(const gxb_boolean *b, uint32_t point) {
     const uint32_t *key = b->vertices[point].key;
-    return key[0] == GXB_FROM_VERTEX ? gxbp_hash_place(b->cx.points[point].ball.x) : gxbp_hash_key(key);
+    return key[0] == GXB_FROM_VERTEX ? gxbp_hash_place(b->store.points[point].ball.x) : gxbp_hash_key(key);
 }
 
 /* Another table, and all that is in it is to be listed again. */
 static GXBP_COLD int gxbp_renew_table(gxb_boolean *b, uint32_t **table, uint32_t *size, uint32_t larger) {
-    uint32_t *fresh = (uint32_t *)gxbp_allocate(&b->cx.allocator, (size_t)larger * sizeof **table);
+    uint32_t *fresh = (uint32_t *)gxbp_allocate(&b->store.allocator, (size_t)larger * sizeof **table);
     if (fresh == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
-    gxbp_release(&b->cx.allocator, *table, (size_t)*size * sizeof **table);
+    gxbp_release(&b->store.allocator, *table, (size_t)*size * sizeof **table);
     *table = fresh;
     *size = larger;
     return 1;
@@ -5889,7 +6119,7 @@ static inline uint32_t gxbp_new_vertex(gxb_boolean *b, uint32_t kind, uint32_t p
     gx_result result;
     gxbp_vertex *v;
     if (!GXBP_ROOM(b, vertices, vertex, 1)) return GXB_NONE;
-    result = gxbp_new_point(&b->cx, &id);
+    result = gxbp_new_point(&b->store, &id);
     if (result != GX_OK) {
         gxbp_stop(b, result);
         return GXB_NONE;
@@ -5919,8 +6149,8 @@ static uint32_t gxbp_same(gxb_boolean *b, uint32_t point) {
 
 /* Two names of one point: the first stays, by the second's definition where that is an input vertex. */
 static GXBP_RARE void gxbp_unite(gxb_boolean *b, uint32_t keep, uint32_t drop) {
-    gxb_cpoint *p = &b->cx.points[keep];
-    const gxb_cpoint *q = &b->cx.points[drop];
+    gxb_cpoint *p = &b->store.points[keep];
+    const gxb_cpoint *q = &b->store.points[drop];
     if (keep == drop) return;
     b->vertices[drop].same = keep;
     b->united = 1;
@@ -5935,18 +6165,18 @@ static GXBP_RARE void gxbp_unite(gxb_boolean *b, uint32_t keep, uint32_t drop) {
 /* The point of a plane where a line meets it, or of three planes. Where the ball is too large to filter by it comes
    from exact coordinates: the ratio's relative error is below 2^-50. */
 static void gxbp_place_point(gxb_boolean *b, uint32_t point, uint32_t kind, uint32_t p, uint32_t q, uint32_t r) {
-    gxb_cpoint *c = &b->cx.points[point];
+    gxb_cpoint *c = &b->store.points[point];
     c->kind = (uint8_t)kind;
     c->def[0] = p;
     c->def[1] = q;
     c->def[2] = r;
-    gxbp_definition_ball(&b->cx, kind, c->def, &c->ball);
+    gxbp_definition_ball(&b->store, kind, c->def, &c->ball);
     if (c->ball.error > gxbp_power(-30) * gxbp_max3(c->ball.x)) {
         gxbp_vec store;
-        const gxb_num *x = gxbp_exact_cpoint(&b->cx, point, &store);
+        const gxb_num *x = gxbp_exact_cpoint(&b->store, point, &store);
         double error = 0;
         int k;
-        b->cx.exact_calls++;
+        b->store.exact_calls++;
         for (k = 0; k < 3; k++) {
             c->ball.x[k] = gxb_num_ratio(&x[k], &x[3]);
             error = gxbp_max(error, gxbp_abs(c->ball.x[k]));
@@ -5984,8 +6214,8 @@ static gx_result gxbp_scale(const gxb_boolean *b, const double x[3], double y[3]
         if (e == 0x7ff) return GX_ERROR_NOT_FINITE;
         y[k] = 0;
         if (gxbp_is_zero(x[k])) continue;
-        if (e == 0 || e - 1023 + b->cx.shift < -128 || e - 1023 + b->cx.shift > 127) return GX_ERROR_RANGE;
-        y[k] = gxbp_double(gxbp_bits(x[k]) + ((uint64_t)(int64_t)b->cx.shift << 52));
+        if (e == 0 || e - 1023 + b->store.shift < -128 || e - 1023 + b->store.shift > 127) return GX_ERROR_RANGE;
+        y[k] = gxbp_double(gxbp_bits(x[k]) + ((uint64_t)(int64_t)b->store.shift << 52));
     }
     return GX_OK;
 }
@@ -6003,7 +6233,7 @@ static gx_result gxbp_choose_scale(gxb_boolean *b, const gxb_operand *operand, s
             at = i / 3;
         }
     }
-    b->cx.shift = largest == -2000 || (largest >= -60 && largest <= 60) ? 0 : -largest;
+    b->store.shift = largest == -2000 || (largest >= -60 && largest <= 60) ? 0 : -largest;
     if (largest == -2000 || (largest >= -GXBP_LARGEST && largest <= GXBP_LARGEST)) return GX_OK;
     *bad = at;
     return GX_ERROR_RANGE;
@@ -6013,12 +6243,13 @@ static uint32_t gxbp_input_point(gxb_boolean *b, const double y[3], uint32_t ope
     uint32_t k, id;
     for (k = gxbp_hash_place(y) & (b->table_size - 1); b->table[k] != GXB_NONE; k = (k + 1) & (b->table_size - 1)) {
         const uint32_t p = b->table[k];
-        if (b->vertices[p].key[0] == GXB_FROM_VERTEX && memcmp(b->cx.points[p].ball.x, y, 3 * sizeof *y) == 0) return p;
+        if (b->vertices[p].key[0] == GXB_FROM_VERTEX && memcmp(b->store.points[p].ball.x, y, 3 * sizeof *y) == 0)
+            return p;
     }
     id = gxbp_new_vertex(b, GXB_FROM_VERTEX, operand, index, 0);
     if (id == GXB_NONE) return GXB_NONE;
-    gxbp_ball_explicit(&b->cx.points[id].ball, y);
-    b->cx.points[id].def[0] = id;
+    gxbp_ball_explicit(&b->store.points[id].ball, y);
+    b->store.points[id].def[0] = id;
     b->table[k] = id;
     b->table_used++;
     return id;
@@ -6137,7 +6368,7 @@ static GXBP_COLD int gxbp_make_fan(gxb_boolean *b, const uint32_t *triangles, si
                                    gxbp_fan *fan) {
     uint32_t h;
     fan->bytes = 3 * count * sizeof *fan->list + ((size_t)vertex_count + 1) * sizeof *fan->first;
-    fan->list = (gxbp_exit *)gxbp_allocate(&b->cx.allocator, fan->bytes);
+    fan->list = (gxbp_exit *)gxbp_allocate(&b->store.allocator, fan->bytes);
     if (fan->list == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
     fan->first = (uint32_t *)(void *)(fan->list + 3 * count);
     memset(fan->first, 0, ((size_t)vertex_count + 1) * sizeof *fan->first);
@@ -6151,7 +6382,7 @@ static GXBP_COLD int gxbp_make_fan(gxb_boolean *b, const uint32_t *triangles, si
     return 1;
 }
 
-static void gxbp_drop_fan(gxb_boolean *b, gxbp_fan *fan) { gxbp_release(&b->cx.allocator, fan->list, fan->bytes); }
+static void gxbp_drop_fan(gxb_boolean *b, gxbp_fan *fan) { gxbp_release(&b->store.allocator, fan->list, fan->bytes); }
 
 /* Component k of a x c, and the size of its products. A product of three fenced differences suffers three roundings in
    them, two in itself and at most five in the sum that makes an orientation of it: within 32u of the products' sizes.
@@ -6215,7 +6446,7 @@ static inline void gxbp_reset_source(gxb_boolean *b, uint32_t s) {
 
 static void gxbp_fill_source(gxb_boolean *b, uint32_t s, uint32_t operand, const uint32_t *twin, uint32_t first) {
     gxbp_source *t = &b->sources[s];
-    const gxb_cpoint *x = b->cx.points;
+    const gxb_cpoint *x = b->store.points;
     int k;
     for (k = 0; k < 3; k++) t->twin[k] = twin[k] == GXB_NONE ? GXB_NONE : twin[k] + 3 * first;
     t->plane = GXB_NONE;
@@ -6292,7 +6523,7 @@ static GXBP_APART gx_result gxbp_read_triangles(gxb_boolean *b, const gxb_operan
 }
 
 static const double *gxbp_corner_of(const gxb_boolean *b, uint32_t s, int k) {
-    return b->cx.points[b->sources[s].point[k]].ball.x;
+    return b->store.points[b->sources[s].point[k]].ball.x;
 }
 
 /* --- box trees --- */
@@ -6429,7 +6660,7 @@ static GXBP_APART gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
     gxbp_tree *t = &o->tree;
     uint32_t size = (o->source_count + GXBP_LEAF - 1) / GXBP_LEAF, total = 0, i;
     const size_t words = o->source_count;
-    o->order = (uint32_t *)gxbp_allocate(&b->cx.allocator, words * sizeof *o->order);
+    o->order = (uint32_t *)gxbp_allocate(&b->store.allocator, words * sizeof *o->order);
     if (o->order == NULL) return GX_ERROR_MEMORY;
     if (o->source_count > 4 * GXBP_LEAF) {
         uint64_t *work = (uint64_t *)gxbp_borrow(b, 2 * words * sizeof *work);
@@ -6470,7 +6701,7 @@ static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operan
         !GXBP_ROOM(b, bounds, bound, leaves) || !GXBP_ROOM(b, pieces, piece, pieces) ||
         !GXBP_ROOM(b, vertices, vertex, points) || !gxbp_table_room(b, (uint32_t)o->vertex_count))
         return b->result;
-    result = GXBP_RESERVE(&b->cx, points, point, points);
+    result = GXBP_RESERVE(&b->store.allocator, &b->store, points, point, points);
     if (result != GX_OK) return result;
     work = (uint32_t *)gxbp_borrow(b, words * sizeof *work);
     if (work == NULL) return b->result;
@@ -6484,7 +6715,7 @@ static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operan
     result = gxbp_read_triangles(b, o, work, bad);
     if (result == GX_OK) result = gxbp_make_tree(b, mine);
     if (result != GX_OK) {
-        gxbp_release(&b->cx.allocator, mine->order, o->triangle_count * sizeof *mine->order);
+        gxbp_release(&b->store.allocator, mine->order, o->triangle_count * sizeof *mine->order);
         return result;
     }
     b->operand_count++;
@@ -6496,28 +6727,28 @@ static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operan
 
 /* What the filter leaves open: what is known by definition, then exact arithmetic. */
 static GXBP_APART int gxbp_point_side_beyond_filter(gxb_boolean *b, uint32_t point, uint32_t plane) {
-    gxb_complex *cx = &b->cx;
-    const gxb_cpoint *p = &cx->points[point];
+    gxb_store *store = &b->store;
+    const gxb_cpoint *p = &store->points[point];
     uint32_t def[3];
     memcpy(def, p->def, sizeof def);
     if (p->kind == GXB_EXPLICIT) point = def[0];
-    if (gxbp_incident(cx, p->kind, def, point, plane)) return 0;
-    if (p->kind == GXB_THREE_PLANES && gxbp_incident_by_line(cx, def, plane)) return 0;
-    return gxbp_exact_sign(cx, p->kind, def, point, plane);
+    if (gxbp_incident(store, p->kind, def, point, plane)) return 0;
+    if (p->kind == GXB_THREE_PLANES && gxbp_incident_by_line(store, def, plane)) return 0;
+    return gxbp_exact_sign(store, p->kind, def, point, plane);
 }
 
 /* The side of a plane */
 static int gxbp_point_side(gxb_boolean *b, uint32_t point, uint32_t plane) {
     double bound;
-    const double value = gxbp_filter_side(&b->cx.points[point].ball, &b->cx.planes[plane].filter, &bound);
-    b->cx.filter_calls++;
+    const double value = gxbp_filter_side(&b->store.points[point].ball, &b->store.planes[plane].filter, &bound);
+    b->store.filter_calls++;
     if (value > bound) return 1;
     return value < -bound ? -1 : gxbp_point_side_beyond_filter(b, point, plane);
 }
 
 /* Orientation of three input points in a triangle's plane. */
 static int gxbp_flat_turn(const gxb_boolean *b, uint32_t plane, const double *p, const double *q, const double *r) {
-    const gxb_cplane *f = &b->cx.planes[plane];
+    const gxb_cplane *f = &b->store.planes[plane];
     const uint32_t i = (f->axis + 1u) % 3, j = (f->axis + 2u) % 3;
     double a[2], c[2], d[2];
     a[0] = p[i];
@@ -6548,8 +6779,8 @@ static inline int gxbp_fold(gxb_boolean *b, uint32_t half_edge, uint32_t s, uint
     const uint32_t plane = b->sources[half_edge / 3].plane, corner = b->sources[s].point[k == 0 ? 2 : k - 1];
     double bound, value;
     if (b->sources[s].plane == plane) return 0;
-    value = gxbp_filter_side(&b->cx.points[corner].ball, &b->cx.planes[plane].filter, &bound);
-    b->cx.filter_calls++;
+    value = gxbp_filter_side(&b->store.points[corner].ball, &b->store.planes[plane].filter, &bound);
+    b->store.filter_calls++;
     if (value > bound) return 1;
     return value < -bound ? -1 : gxbp_fold_beyond_filter(b, half_edge, 3 * s + k);
 }
@@ -6573,12 +6804,12 @@ static GXBP_APART int gxbp_find_plane(gxb_boolean *b, uint32_t s) {
     gxbp_source *t = &b->sources[s];
     gx_result result;
     if (gxbp_share_plane(b, s)) return 1;
-    result = gxbp_new_plane(&b->cx, t->point[0], t->point[1], t->point[2], 0, &t->plane);
+    result = gxbp_new_plane(&b->store, t->point[0], t->point[1], t->point[2], 0, &t->plane);
     if (result != GX_OK) {
         t->plane = GXB_NONE;
         return gxbp_stop(b, result);
     }
-    gxbp_plane_axis(&b->cx, t->plane);
+    gxbp_plane_axis(&b->store, t->plane);
     return 1;
 }
 
@@ -6690,9 +6921,9 @@ static GXBP_COLD gxbp_spot gxbp_spot_of_line(gxb_boolean *b, const double *p, co
         const double bound =
             32 * GXBP_U * (gxbp_abs(a[0]) * z[0] + gxbp_abs(a[1]) * z[1] + gxbp_abs(a[2]) * z[2]) + GXBP_TINY;
         sign[k] = side * gxbp_filter_sign(a[0] * n[0] + a[1] * n[1] + a[2] * n[2], bound);
-        b->cx.filter_calls++;
+        b->store.filter_calls++;
         if (sign[k] == 0) {
-            b->cx.exact_calls++;
+            b->store.exact_calls++;
             x[0] = gxbp_corner_of(b, s, k);
             x[1] = gxbp_corner_of(b, s, (k + 1) % 3);
             x[2] = p;
@@ -6736,7 +6967,7 @@ static uint32_t gxbp_edge_triangle_point(gxb_boolean *b, uint32_t s, int k, uint
 static GXBP_COLD uint32_t gxbp_edge_edge_point(gxb_boolean *b, uint32_t s, int k, uint32_t t, int j, uint32_t plane) {
     const uint32_t e = gxbp_edge_name(b, s, k), f = gxbp_edge_name(b, t, j);
     /* first, so that a point without a place never stays */
-    const gx_result room = GXBP_RESERVE(&b->cx, planes, plane, 1);
+    const gx_result room = GXBP_RESERVE(&b->store.allocator, &b->store, planes, plane, 1);
     int fresh;
     uint32_t point;
     if (room != GX_OK) {
@@ -6746,9 +6977,9 @@ static GXBP_COLD uint32_t gxbp_edge_edge_point(gxb_boolean *b, uint32_t s, int k
     point = gxbp_keyed_point(b, GXB_FROM_EDGE_EDGE, e < f ? e : f, e < f ? f : e, 0, &fresh);
     if (!fresh) return point;
     if (plane == GXB_NONE) {
-        gxbp_new_plane(&b->cx, b->sources[t].point[j], b->sources[t].point[(j + 1) % 3],
-                       b->cx.planes[b->sources[t].plane].axis, 1, &plane);
-        gxbp_plane_axis(&b->cx, plane);
+        gxbp_new_plane(&b->store, b->sources[t].point[j], b->sources[t].point[(j + 1) % 3],
+                       b->store.planes[b->sources[t].plane].axis, 1, &plane);
+        gxbp_plane_axis(&b->store, plane);
     }
     gxbp_place_point(b, point, GXB_LINE_PLANE, b->sources[s].point[k], b->sources[s].point[(k + 1) % 3], plane);
     return point;
@@ -6818,9 +7049,9 @@ static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const do
                 32 * GXBP_U * (gxbp_abs(a[0]) * size[0] + gxbp_abs(a[1]) * size[1] + gxbp_abs(a[2]) * size[2]) +
                 GXBP_TINY;
             sign[x][y] = gxbp_filter_sign(a[0] * m[0] + a[1] * m[1] + a[2] * m[2], bound);
-            b->cx.filter_calls++;
+            b->store.filter_calls++;
             if (sign[x][y] != 0) continue;
-            b->cx.exact_calls++;
+            b->store.exact_calls++;
             at[0] = p[0];
             at[1] = p[y + 1];
             at[2] = q[x + 1];
@@ -6965,7 +7196,7 @@ static GXBP_COLD void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t)
 /* The side of a source's corner; each point remembers two answers, of which slot says the one to replace. */
 static int gxbp_corner_side(gxb_boolean *b, uint32_t s, int k, uint32_t plane, int slot) {
     const uint32_t point = b->sources[s].point[k];
-    gxb_cpoint *p = &b->cx.points[point];
+    gxb_cpoint *p = &b->store.points[point];
     if (p->stamp[slot] != plane + 1) {
         p->sign[slot] = (int8_t)(b->sources[s].plane == plane ? 0 : gxbp_point_side(b, point, plane));
         p->stamp[slot] = plane + 1;
@@ -7111,7 +7342,7 @@ static void gxbp_meet_operands(gxb_boolean *b, uint32_t i, uint32_t j) {
    which the end is that it is nearer to. Signs of points that are given by doubles, and of points of their lines, take
    no exact numbers. */
 static GXBP_COLD int gxbp_compare_on_line(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t axis) {
-    const gxb_cpoint *x = b->cx.points, *u = &x[p], *v = &x[q];
+    const gxb_cpoint *x = b->store.points, *u = &x[p], *v = &x[q];
     int of_end, along, side;
     if (u->kind != GXB_LINE_PLANE || v->kind != GXB_LINE_PLANE || u->exact != NULL || v->exact != NULL ||
         !((u->def[0] == v->def[0] && u->def[1] == v->def[1]) || (u->def[0] == v->def[1] && u->def[1] == v->def[0])))
@@ -7119,13 +7350,13 @@ static GXBP_COLD int gxbp_compare_on_line(gxb_boolean *b, uint32_t p, uint32_t q
     of_end = gxbp_point_side(b, u->def[0], v->def[2]);
     if (of_end == 0 || gxbp_point_side(b, u->def[1], v->def[2]) != -of_end) return GXBP_UNKNOWN;
     along = gxbp_compare_doubles(x[u->def[1]].ball.x[axis], x[u->def[0]].ball.x[axis]);
-    side = gxbp_exact_sign(&b->cx, u->kind, u->def, p, v->def[2]);
+    side = gxbp_exact_sign(&b->store, u->kind, u->def, p, v->def[2]);
     return side == of_end ? -along : side == 0 ? 0 : along;
 }
 
 /* Sign of p[axis] - q[axis] */
 static int gxbp_compare_points(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t axis) {
-    const gxb_ball *a = &b->cx.points[p].ball, *c = &b->cx.points[q].ball;
+    const gxb_ball *a = &b->store.points[p].ball, *c = &b->store.points[q].ball;
     const double difference = gxbp_fence(a->x[axis] - c->x[axis]);
     const double bound = 2 * (a->error + c->error) + 2 * GXBP_U * gxbp_abs(difference) + GXBP_TINY;
     const int sign = gxbp_filter_sign(difference, bound);
@@ -7133,13 +7364,13 @@ static int gxbp_compare_points(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t 
     const gxb_num *x, *y;
     GXB_NUM(r);
     int known;
-    b->cx.filter_calls++;
+    b->store.filter_calls++;
     if (sign != 0 || p == q) return sign;
     known = gxbp_compare_on_line(b, p, q, axis);
     if (known != GXBP_UNKNOWN) return known;
-    b->cx.exact_calls++;
-    x = gxbp_exact_cpoint(&b->cx, p, &s);
-    y = gxbp_exact_cpoint(&b->cx, q, &t);
+    b->store.exact_calls++;
+    x = gxbp_exact_cpoint(&b->store, p, &s);
+    y = gxbp_exact_cpoint(&b->store, q, &t);
     gxbp_num_det2(&r, &x[axis], &y[3], &y[axis], &x[3]);
     return r.sign;
 }
@@ -7223,7 +7454,7 @@ static GXBP_APART void gxbp_order_cuts(gxb_boolean *b) {
     const size_t words = (size_t)b->cut_count + 1 + b->hit_count;
     uint32_t *first, *points, i;
     if (b->result != GX_OK || b->hit_count == 0) return;
-    first = (uint32_t *)gxbp_allocate(&b->cx.allocator, words * sizeof *first);
+    first = (uint32_t *)gxbp_allocate(&b->store.allocator, words * sizeof *first);
     if (first == NULL) {
         gxbp_stop(b, GX_ERROR_MEMORY);
         return;
@@ -7241,7 +7472,7 @@ static GXBP_APART void gxbp_order_cuts(gxb_boolean *b) {
         b->scratch_count = count;
         gxbp_order_cut(b, i);
     }
-    gxbp_release(&b->cx.allocator, first, words * sizeof *first);
+    gxbp_release(&b->store.allocator, first, words * sizeof *first);
     b->hit_count = 0;
 }
 
@@ -7261,7 +7492,7 @@ static uint32_t gxbp_plane_beside(const gxb_boolean *b, uint32_t half_edge) {
 /* Planes that a point is in by its definition: its own, and those of the input triangles at the edge that it is named
  * by */
 static uint32_t gxbp_planes_of(const gxb_boolean *b, uint32_t v, uint32_t plane[3]) {
-    const gxb_cpoint *p = &b->cx.points[v];
+    const gxb_cpoint *p = &b->store.points[v];
     const uint32_t *key = b->vertices[v].key;
     if (p->kind == GXB_EXPLICIT) return 0;
     memcpy(plane, p->def, sizeof p->def);
@@ -7274,48 +7505,48 @@ static uint32_t gxbp_planes_of(const gxb_boolean *b, uint32_t v, uint32_t plane[
 }
 
 static int gxbp_is_in_plane(const gxb_boolean *b, uint32_t v, uint32_t plane) {
-    const gxb_cpoint *p = &b->cx.points[v];
+    const gxb_cpoint *p = &b->store.points[v];
     uint32_t of[3], count = gxbp_planes_of(b, v, of), k;
     for (k = 0; k < count; k++)
         if (of[k] == plane) return 1;
-    return gxbp_incident(&b->cx, p->kind, p->def, p->kind == GXB_EXPLICIT ? p->def[0] : v, plane);
+    return gxbp_incident(&b->store, p->kind, p->def, p->kind == GXB_EXPLICIT ? p->def[0] : v, plane);
 }
 
 /* Do three points of a plane lie on one line by their definitions: in a second common plane (one plane may have several
    names), or on one edge? */
 static int gxbp_on_definition_line(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t r, uint32_t plane) {
-    const gxb_cpoint *x = b->cx.points, *a = &x[p];
+    const gxb_cpoint *x = b->store.points, *a = &x[p];
     uint32_t of[3], count = gxbp_planes_of(b, p, of), k;
     if (a->kind == GXB_LINE_PLANE && gxbp_on_input_line(&x[q], a->def[0], a->def[1]) &&
         gxbp_on_input_line(&x[r], a->def[0], a->def[1]))
         return 1;
     for (k = 0; k < count; k++)
         if (of[k] != plane && of[k] != GXB_NONE && gxbp_is_in_plane(b, q, of[k]) && gxbp_is_in_plane(b, r, of[k]) &&
-            gxbp_planes_cross(&b->cx, of[k], plane))
+            gxbp_planes_cross(&b->store, of[k], plane))
             return 1;
     return 0;
 }
 
 /* Orientation in the plane of the triangulation at work, where the filter knows it; else 0 */
 static int gxbp_turn_by_filter(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t r) {
-    const gxb_cplane *f = &b->cx.planes[b->plane];
-    const gxb_cpoint *x = b->cx.points;
-    b->cx.filter_calls++;
+    const gxb_cplane *f = &b->store.planes[b->plane];
+    const gxb_cpoint *x = b->store.points;
+    b->store.filter_calls++;
     return f->axis_sign *
            gxbp_filter_turn(&x[p].ball, &x[q].ball, &x[r].ball, (int)(f->axis + 1) % 3, (int)(f->axis + 2) % 3);
 }
 
 /* Orientation in the plane of the triangulation at work. */
 static int gxbp_turn(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t r) {
-    gxb_complex *cx = &b->cx;
+    gxb_store *store = &b->store;
     const int turn = gxbp_turn_by_filter(b, p, q, r);
     if (turn != 0) return turn;
     if (p == q || q == r || r == p) return 0;
     if (gxbp_on_definition_line(b, p, q, r, b->plane) || gxbp_on_definition_line(b, q, r, p, b->plane) ||
         gxbp_on_definition_line(b, r, p, q, b->plane))
         return 0;
-    cx->exact_calls++;
-    return gxb_complex_turn(cx, p, q, r, b->plane);
+    store->exact_calls++;
+    return gxbp_store_turn(store, p, q, r, b->plane);
 }
 
 static uint32_t gxbp_new_piece(gxb_boolean *b, uint32_t source) {
@@ -7490,11 +7721,11 @@ static int gxbp_side_of_source(gxb_boolean *b, uint32_t v, uint32_t s) {
     const uint32_t plane = b->sources[s].plane;
     double bound, value;
     int k;
-    if (b->cx.points[v].kind != GXB_LINE_PLANE || b->vertices[v].key[0] != GXB_FROM_EDGE_TRIANGLE)
+    if (b->store.points[v].kind != GXB_LINE_PLANE || b->vertices[v].key[0] != GXB_FROM_EDGE_TRIANGLE)
         return gxbp_point_side(b, v, plane);
-    value = gxbp_filter_side(&b->cx.points[v].ball, &b->cx.planes[plane].filter, &bound);
+    value = gxbp_filter_side(&b->store.points[v].ball, &b->store.planes[plane].filter, &bound);
     if (value > bound || value < -bound) {
-        b->cx.filter_calls++;
+        b->store.filter_calls++;
         return value > 0 ? 1 : -1;
     }
     for (k = 0; k < 3; k++) {
@@ -7507,7 +7738,7 @@ static int gxbp_side_of_source(gxb_boolean *b, uint32_t v, uint32_t s) {
 
 /* 1: v lies to the left */
 static int gxbp_left(gxb_boolean *b, const gxbp_line *line, uint32_t v) {
-    const gxb_cpoint *p = &b->cx.points[v];
+    const gxb_cpoint *p = &b->store.points[v];
     if (v == line->p || v == line->x || (p->kind == GXB_LINE_PLANE && p->def[2] == line->plane)) return 0;
     if (line->plane != GXB_NONE) return line->sigma * gxbp_side_of_source(b, v, line->source);
     return gxbp_turn(b, line->p, line->x, v);
@@ -7515,10 +7746,10 @@ static int gxbp_left(gxb_boolean *b, const gxbp_line *line, uint32_t v) {
 
 /* gxbp_left where the filter knows, else 0 */
 static int gxbp_left_by_filter(gxb_boolean *b, const gxbp_line *line, uint32_t v) {
-    const gxb_complex *cx = &b->cx;
+    const gxb_store *store = &b->store;
     double value, bound;
     if (line->plane == GXB_NONE) return gxbp_turn_by_filter(b, line->p, line->x, v);
-    value = gxbp_filter_side(&cx->points[v].ball, &cx->planes[line->plane].filter, &bound);
+    value = gxbp_filter_side(&store->points[v].ball, &store->planes[line->plane].filter, &bound);
     return line->sigma * gxbp_filter_sign(value, bound);
 }
 
@@ -7689,7 +7920,7 @@ static GXBP_RARE int gxbp_leaves_plane(gxb_boolean *b, uint32_t p, uint32_t q) {
 }
 
 static int gxbp_points_equal(gxb_boolean *b, uint32_t p, uint32_t q) {
-    const gxb_ball *x = &b->cx.points[p].ball, *y = &b->cx.points[q].ball;
+    const gxb_ball *x = &b->store.points[p].ball, *y = &b->store.points[q].ball;
     const double reach = 2 * (x->error + y->error) + GXBP_TINY;
     uint32_t k;
     for (k = 0; k < 3; k++)
@@ -7730,11 +7961,11 @@ static uint32_t gxbp_insert_point(gxb_boolean *b, uint32_t s, uint32_t x, uint32
 /* --- edges that must be there --- */
 
 /* Appends to b->rims or b->lefts a vertex, with what lies beyond edge k of f. */
-static void gxbp_push_margin(gxb_boolean *b, gxbp_margin **list, uint32_t vertex, uint32_t f, int k) {
-    uint32_t *count = gxbp_extent_of(list);
+static void gxbp_push_margin(gxb_boolean *b, gxbp_margin **list, uint32_t *count, uint32_t *capacity, uint32_t vertex,
+                             uint32_t f, int k) {
     gxbp_margin *r;
-    if (count[0] == count[1] && !gxbp_room(b, list, sizeof **list, 1)) return;
-    r = *list + count[0]++;
+    if (*count == *capacity && !gxbp_room(b, list, *count, capacity, sizeof **list, 1)) return;
+    r = *list + (*count)++;
     r->vertex = vertex;
     r->made = GXB_NONE;
     r->dangling = 0;
@@ -7830,8 +8061,8 @@ static int gxbp_collect_crossed(gxb_boolean *b, uint32_t s, const gxbp_line *lin
     uint32_t f = way.f, u = b->pieces[f].v[(way.k + 1) % 3], w = b->pieces[f].v[(way.k + 2) % 3];
     int k = (way.k + 1) % 3;
     b->scratch_count = b->rim_count = b->left_count = 0;
-    gxbp_push_margin(b, &b->rims, b->pieces[f].v[way.k], f, way.k);
-    gxbp_push_margin(b, &b->lefts, w, f, (way.k + 2) % 3);
+    gxbp_push_margin(b, &b->rims, &b->rim_count, &b->rim_capacity, b->pieces[f].v[way.k], f, way.k);
+    gxbp_push_margin(b, &b->lefts, &b->left_count, &b->left_capacity, w, f, (way.k + 2) % 3);
     gxbp_push(b, f);
     while (b->result == GX_OK) {
         uint32_t c;
@@ -7855,10 +8086,10 @@ static int gxbp_collect_crossed(gxb_boolean *b, uint32_t s, const gxbp_line *lin
         j = gxbp_corner_index(&b->pieces[f], w);
         c = b->pieces[f].v[(j + 2) % 3];
         of_c = gxbp_left(b, line, c);
-        if (of_c <= 0) gxbp_push_margin(b, &b->rims, u, f, (j + 1) % 3);
-        if (of_c >= 0) gxbp_push_margin(b, &b->lefts, c, f, (j + 2) % 3);
+        if (of_c <= 0) gxbp_push_margin(b, &b->rims, &b->rim_count, &b->rim_capacity, u, f, (j + 1) % 3);
+        if (of_c >= 0) gxbp_push_margin(b, &b->lefts, &b->left_count, &b->left_capacity, c, f, (j + 2) % 3);
         if (of_c == 0) {
-            gxbp_push_margin(b, &b->rims, c, GXB_NONE, 0);
+            gxbp_push_margin(b, &b->rims, &b->rim_count, &b->rim_capacity, c, GXB_NONE, 0);
             return b->result == GX_OK;
         }
         if (of_c < 0) {
@@ -7885,7 +8116,7 @@ static void gxbp_refill(gxb_boolean *b, uint32_t start) {
     const uint32_t state = b->pieces[b->scratch[0]].state; /* of all: no label is between them */
     uint32_t i, n, f, g;
     for (i = 0; i < b->scratch_count; i++) b->pieces[b->scratch[i]].state = GXBP_REMOVED;
-    gxbp_push_margin(b, &b->lefts, start, GXB_NONE, 0);
+    gxbp_push_margin(b, &b->lefts, &b->left_count, &b->left_capacity, start, GXB_NONE, 0);
     if (b->result != GX_OK) return;
     /* the left rim goes backwards: turn it round, all but the start */
     n = b->left_count - 1;
@@ -8450,14 +8681,14 @@ static void gxbp_divide_source(gxb_boolean *b, uint32_t s) {
 
 /* A corner of the frame: where a line along the plane's axis meets it. */
 static GXBP_COLD uint32_t gxbp_frame_corner(gxb_boolean *b, uint32_t plane, double x, double y) {
-    const uint32_t axis = b->cx.planes[plane].axis;
+    const uint32_t axis = b->store.planes[plane].axis;
     uint32_t id[3], k;
     for (k = 0; k < 3; k++) {
         id[k] = gxbp_new_vertex(b, GXB_FROM_VERTEX, GXB_NONE, GXB_NONE, 0);
         if (id[k] == GXB_NONE) return GXB_NONE;
     }
     for (k = 0; k < 2; k++) {
-        gxb_cpoint *p = &b->cx.points[id[k]];
+        gxb_cpoint *p = &b->store.points[id[k]];
         p->ball.x[axis] = k;
         p->ball.x[(axis + 1) % 3] = x;
         p->ball.x[(axis + 2) % 3] = y;
@@ -8469,8 +8700,8 @@ static GXBP_COLD uint32_t gxbp_frame_corner(gxb_boolean *b, uint32_t plane, doub
 }
 
 static GXBP_COLD void gxbp_make_frame(gxb_boolean *b, uint32_t r) {
-    const uint32_t plane = b->sources[r].plane, i = (b->cx.planes[plane].axis + 1u) % 3,
-                   j = (b->cx.planes[plane].axis + 2u) % 3;
+    const uint32_t plane = b->sources[r].plane, i = (b->store.planes[plane].axis + 1u) % 3,
+                   j = (b->store.planes[plane].axis + 2u) % 3;
     uint32_t t, k, corner[4], f, g;
     double low[3], high[3], dx, dy;
     gxbp_extent(b, r, low, high);
@@ -8491,7 +8722,7 @@ static GXBP_COLD void gxbp_make_frame(gxb_boolean *b, uint32_t r) {
     f = gxbp_new_piece(b, r);
     g = gxbp_new_piece(b, r);
     if (b->result != GX_OK) return;
-    if (b->cx.planes[plane].axis_sign < 0) {
+    if (b->store.planes[plane].axis_sign < 0) {
         t = corner[1];
         corner[1] = corner[3];
         corner[3] = t;
@@ -8661,14 +8892,14 @@ static GXBP_APART void gxbp_merge_points(gxb_boolean *b) {
     gxbp_projected *p, *work;
     uint32_t i, j;
     if (b->result != GX_OK || fresh == 0 || !GXBP_ROOM(b, projected, projected, fresh)) return;
-    work = (gxbp_projected *)gxbp_allocate(&b->cx.allocator, size);
+    work = (gxbp_projected *)gxbp_allocate(&b->store.allocator, size);
     if (work == NULL) {
         gxbp_stop(b, GX_ERROR_MEMORY);
         return;
     }
     p = b->projected;
     for (i = b->merged_points; i < b->vertex_count; i++) {
-        const gxb_ball *x = &b->cx.points[i].ball;
+        const gxb_ball *x = &b->store.points[i].ball;
         if (b->vertices[i].key[0] == GXB_FROM_VERTEX || b->vertices[i].same != i) continue;
         p[b->projected_count].t = direction[0] * x->x[0] + direction[1] * x->x[1] + direction[2] * x->x[2];
         p[b->projected_count++].point = i;
@@ -8682,7 +8913,7 @@ static GXBP_APART void gxbp_merge_points(gxb_boolean *b) {
             if (q != r && (q >= b->merged_points || r >= b->merged_points) && gxbp_points_equal(b, q, r))
                 gxbp_unite(b, q < r ? q : r, q < r ? r : q);
         }
-    gxbp_release(&b->cx.allocator, work, size);
+    gxbp_release(&b->store.allocator, work, size);
     b->merged_points = b->vertex_count;
 }
 
@@ -8800,12 +9031,12 @@ static uint32_t gxbp_root_plane(const gxb_boolean *b, uint32_t f) { return b->so
    the source tells: side times orientation with the edge is the same for all points. */
 static int gxbp_side_of_piece(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
     const gxbp_piece *piece = &b->pieces[f];
-    const gxb_plane_filter *filter = &b->cx.planes[b->sources[t].plane].filter;
-    const gxb_cplane *plane = &b->cx.planes[gxbp_root_plane(b, f)];
-    const gxb_cpoint *x = b->cx.points;
+    const gxb_plane_filter *filter = &b->store.planes[b->sources[t].plane].filter;
+    const gxb_cplane *plane = &b->store.planes[gxbp_root_plane(b, f)];
+    const gxb_cpoint *x = b->store.points;
     double bound, value = gxbp_filter_side(&x[piece->v[(k + 2) % 3]].ball, filter, &bound);
     int side = gxbp_filter_sign(value, bound), i;
-    b->cx.filter_calls++;
+    b->store.filter_calls++;
     for (i = 0; i < 3 && side == 0; i++) {
         const uint32_t corner = b->sources[piece->source].point[i];
         value = gxbp_filter_side(&x[corner].ball, filter, &bound);
@@ -8884,11 +9115,11 @@ typedef struct gxbp_ray {
 
 static const gxbp_probe *gxbp_exact_probe(gxb_boolean *b, gxbp_ray *ray) {
     if (!ray->exact) {
-        gxbp_probe_init(&b->cx, b->pieces[ray->f].v, 3, &ray->probe);
+        gxbp_probe_init(&b->store, b->pieces[ray->f].v, 3, &ray->probe);
         ray->probe.shift = 0; /* triangles are given in the frame */
         ray->exact = 1;
     }
-    b->cx.exact_calls++;
+    b->store.exact_calls++;
     return &ray->probe;
 }
 
@@ -8899,7 +9130,7 @@ static void gxbp_set_ray(gxb_boolean *b, gxbp_ray *ray, uint32_t f) {
     ray->f = f;
     ray->exact = 0;
     for (k = 0; k < 3; k++) {
-        p[k] = &b->cx.points[b->pieces[f].v[k]];
+        p[k] = &b->store.points[b->pieces[f].v[k]];
         given = given && p[k]->kind == GXB_EXPLICIT;
     }
     if (!given) gxbp_exact_probe(b, ray);
@@ -8920,8 +9151,9 @@ static int gxbp_ray_left(gxb_boolean *b, gxbp_ray *ray, const gxb_ball *p, const
 }
 
 static void gxbp_cross_ray(gxb_boolean *b, gxbp_ray *ray, uint32_t s) {
-    const gxb_ball *p = &b->cx.points[b->sources[s].point[0]].ball, *q = &b->cx.points[b->sources[s].point[1]].ball;
-    const gxb_ball *r = &b->cx.points[b->sources[s].point[2]].ball;
+    const gxb_ball *p = &b->store.points[b->sources[s].point[0]].ball,
+                   *q = &b->store.points[b->sources[s].point[1]].ball;
+    const gxb_ball *r = &b->store.points[b->sources[s].point[2]].ball;
     const uint32_t own = b->pieces[ray->f].source;
     const double *x[3];
     double value, bound;
@@ -8931,7 +9163,7 @@ static void gxbp_cross_ray(gxb_boolean *b, gxbp_ray *ray, uint32_t s) {
     if (left == 0 || gxbp_ray_left(b, ray, q, r) != left || gxbp_ray_left(b, ray, r, p) != left ||
         !gxbp_need_plane(b, s))
         return;
-    value = gxbp_filter_side(&ray->ball, &b->cx.planes[b->sources[s].plane].filter, &bound);
+    value = gxbp_filter_side(&ray->ball, &b->store.planes[b->sources[s].plane].filter, &bound);
     behind = -gxbp_filter_sign(value, bound);
     x[0] = p->x;
     x[1] = q->x;
@@ -8954,15 +9186,15 @@ static GXBP_APART void gxbp_shoot(gxb_boolean *b, gxbp_ray *ray, const gxbp_oper
 
 /* The side of a plane to which a point of it is moved: 0 for planes across x. */
 static int gxbp_moved_side(gxb_boolean *b, uint32_t plane) {
-    const int side = gxbp_normal_sign(&b->cx, plane, 1);
-    return side != 0 ? side : gxbp_normal_sign(&b->cx, plane, 2);
+    const int side = gxbp_normal_sign(&b->store, plane, 1);
+    return side != 0 ? side : gxbp_normal_sign(&b->store, plane, 2);
 }
 
 /* The start lies on the side of the facet's plane that the first of n_y, n_z, n_x which is not 0 says; from behind (n_x
    > 0) or from in front (n_x < 0) the ray passes the facet itself. */
 static GXBP_RARE void gxbp_cross_own(gxb_boolean *b, const gxbp_ray *ray) {
     const uint32_t plane = gxbp_root_plane(b, ray->f);
-    const int nx = gxbp_normal_sign(&b->cx, plane, 0);
+    const int nx = gxbp_normal_sign(&b->store, plane, 0);
     int side = gxbp_moved_side(b, plane);
     if (side == 0) side = nx;
     if (nx * side < 0) gxbp_add_covers(b, ray->f, nx, ray->winding);
@@ -9168,7 +9400,7 @@ static int gxbp_is_open(const gxb_boolean *b, uint32_t f) {
 static int gxbp_piece_misses(const gxb_boolean *b, uint32_t f, const gxbp_box *box, int axis) {
     int i, side = 0;
     for (i = 0; i < 3; i++) {
-        const gxb_ball *x = &b->cx.points[b->pieces[f].v[i]].ball;
+        const gxb_ball *x = &b->store.points[b->pieces[f].v[i]].ball;
         const int mine = x->x[axis] + 2 * x->error < 16 * (double)box->low[axis]
                            ? -1
                            : x->x[axis] - 2 * x->error > 16 * (double)box->high[axis];
@@ -9291,8 +9523,8 @@ static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
 /* The input's coordinates again. */
 static double gxbp_unscale(const gxb_boolean *b, double y) {
     const int e = gxbp_exponent_bits(y);
-    if (e - b->cx.shift <= 0 || e == 0) return 0;
-    return gxbp_double(gxbp_bits(y) - ((uint64_t)(int64_t)b->cx.shift << 52));
+    if (e - b->store.shift <= 0 || e == 0) return 0;
+    return gxbp_double(gxbp_bits(y) - ((uint64_t)(int64_t)b->store.shift << 52));
 }
 
 #define GXBP_VERTEX_ERROR 1e-10 /* relative to the largest coordinate: a larger ball gives way to exact coordinates */
@@ -9324,7 +9556,7 @@ static GXBP_RARE double gxbp_nearest(const gxb_num *num, const gxb_num *den) {
 
 static GXBP_COLD void gxbp_round_exactly(gxb_boolean *b, uint32_t point, double out[3]) {
     gxbp_vec store;
-    const gxb_num *x = gxbp_exact_cpoint(&b->cx, point, &store);
+    const gxb_num *x = gxbp_exact_cpoint(&b->store, point, &store);
     int k;
     for (k = 0; k < 3; k++) out[k] = gxbp_unscale(b, gxbp_nearest(&x[k], &x[3]));
 }
@@ -9333,7 +9565,7 @@ static int gxbp_is_fine(const gxb_boolean *b) { return b->fine || b->mend != NUL
 
 /* An input vertex as it was given; else the ball's middle where the ball is small, else from exact coordinates. */
 static void gxbp_round_point(gxb_boolean *b, uint32_t point, double out[3]) {
-    const gxb_cpoint *p = &b->cx.points[point];
+    const gxb_cpoint *p = &b->store.points[point];
     int k;
     if (p->kind != GXB_EXPLICIT && (gxbp_is_fine(b) || p->ball.error > GXBP_VERTEX_ERROR * gxbp_max3(p->ball.x)))
         gxbp_round_exactly(b, point, out);
@@ -9352,7 +9584,7 @@ static GXBP_COLD int gxbp_holds_point(gxb_boolean *b, uint32_t s, uint32_t plane
     int k, left = 0, right = 0;
     for (k = 0; k < 3; k++) {
         const int turn =
-            gxb_complex_turn(&b->cx, b->sources[s].point[k], b->sources[s].point[(k + 1) % 3], point, plane);
+            gxbp_store_turn(&b->store, b->sources[s].point[k], b->sources[s].point[(k + 1) % 3], point, plane);
         left |= turn > 0;
         right |= turn < 0;
     }
@@ -9370,7 +9602,7 @@ static GXBP_RARE uint32_t gxbp_member_at(gxb_boolean *b, uint32_t s, uint32_t po
 }
 
 static GXBP_APART void gxbp_describe_point(gxb_boolean *b, uint32_t point, gxb_origin *o) {
-    const gxb_cpoint *p = &b->cx.points[point];
+    const gxb_cpoint *p = &b->store.points[point];
     const uint32_t *key = b->vertices[p->kind == GXB_EXPLICIT ? p->def[0] : point].key;
     int k;
     memset(o, 0, sizeof *o);
@@ -9734,7 +9966,7 @@ static GXBP_COLD void gxbp_coarsen(gxb_boolean *b) {
     uint32_t v;
     if (!gxbp_make_fan(b, b->out_triangles, b->out_source_count, b->out_point_count, &fan)) return;
     c.umbrella_count = 0;
-    c.near = (uint32_t *)gxbp_allocate(&b->cx.allocator, bytes);
+    c.near = (uint32_t *)gxbp_allocate(&b->store.allocator, bytes);
     if (c.near != NULL) {
         memset(c.near, 0xff, (2 * halves + points) * sizeof *c.near);
         c.corner = c.near + halves;
@@ -9747,7 +9979,7 @@ static GXBP_COLD void gxbp_coarsen(gxb_boolean *b) {
         for (v = 0; v < points && b->result == GX_OK; v++)
             if (gxbp_is_needless(b, &c, v)) gxbp_take_vertex(b, &c, v);
         if (b->result == GX_OK) gxbp_close_coarse(b, &c);
-        gxbp_release(&b->cx.allocator, c.near, bytes);
+        gxbp_release(&b->store.allocator, c.near, bytes);
     } else
         gxbp_stop(b, GX_ERROR_MEMORY);
     gxbp_drop_fan(b, &fan);
@@ -9775,18 +10007,18 @@ static GXBP_COLD int gxbp_faces_exactly(gxb_boolean *b, uint32_t plane, const do
     gxbp_vec_set(&given[2], r);
     gxbp_vec_init(&n);
     gxbp_exact_plane(n.c, given[0].c, given[1].c, given[2].c);
-    gxbp_num_dot(&value, n.c, gxbp_exact_cplane(&b->cx, plane, &store));
+    gxbp_num_dot(&value, n.c, gxbp_exact_cplane(&b->store, plane, &store));
     return value.sign;
 }
 
 /* Sign of n.((q - p) x (r - p)) for a plane's normal n and rounded points, exact. The filter's bound is that of
    gxbp_rough_volume, with n for d0. */
 static int gxbp_faces(gxb_boolean *b, uint32_t plane, const double *p, const double *q, const double *r) {
-    const gxb_plane_filter *f = &b->cx.planes[plane].filter;
+    const gxb_plane_filter *f = &b->store.planes[plane].filter;
     double u[3], v[3], m[3], E, N;
     int k, sign = 0;
     /* else coordinates are not the frame's, and may be too large or too small to filter */
-    if (b->cx.shift == 0) {
+    if (b->store.shift == 0) {
         for (k = 0; k < 3; k++) {
             u[k] = gxbp_fence(q[k] - p[k]);
             v[k] = gxbp_fence(r[k] - p[k]);
@@ -9808,7 +10040,7 @@ static GXBP_APART void gxbp_find_defects(gxb_boolean *b) {
         const double *x[3];
         int given = b->mend == NULL;
         for (k = 0; k < 3; k++) {
-            given = given && b->cx.points[gxbp_out_corner(b, t, k)].kind == GXB_EXPLICIT;
+            given = given && b->store.points[gxbp_out_corner(b, t, k)].kind == GXB_EXPLICIT;
             x[k] = b->out_vertices + 3 * (size_t)b->out_triangles[3 * t + k];
         }
         if (given || gxbp_faces(b, gxbp_out_plane(b, t), x[0], x[1], x[2]) == (b->out_planes[t] & 1 ? -1 : 1)) continue;
@@ -9892,7 +10124,7 @@ static GXBP_COLD void gxbp_join_wedges(gxb_boolean *b, const gxbp_fan *fan, uint
         for (k = fan->first[from]; k < fan->first[from + 1]; k++) {
             gxbp_blade mine, *blade;
             if (fan->list[k].to != to) continue;
-            if (!gxbp_room(b, &blades, sizeof *blades.list, 1) ||
+            if (!gxbp_room(b, &blades.list, blades.count, &blades.capacity, sizeof *blades.list, 1) ||
                 gxbp_out_plane(b, fan->list[k].half_edge / 3) == GXB_NONE)
                 break;
             blade = blades.list;
@@ -9909,7 +10141,7 @@ static GXBP_COLD void gxbp_join_wedges(gxb_boolean *b, const gxbp_fan *fan, uint
         twin[h] = g;
         twin[g] = h;
     }
-    gxbp_release(&b->cx.allocator, blades.list, (size_t)blades.capacity * sizeof *blades.list);
+    gxbp_release(&b->store.allocator, blades.list, (size_t)blades.capacity * sizeof *blades.list);
 }
 
 /* Of each triangle: how many corners of the solid are counted there. A corner is what triangles around a vertex make
@@ -9961,7 +10193,7 @@ static GXBP_APART void gxbp_join_shells(gxb_boolean *b, uint32_t *parent, int32_
 
 static GXBP_RARE void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *fine) {
     gxbp_vec store, rest;
-    const gxb_num *x = gxbp_exact_cpoint(&b->cx, point, b->cx.points[point].kind == GXB_EXPLICIT ? fine : &store);
+    const gxb_num *x = gxbp_exact_cpoint(&b->store, point, b->store.points[point].kind == GXB_EXPLICIT ? fine : &store);
     int k;
     if (x == fine->c) return;
     gxbp_vec_init(fine);
@@ -9991,7 +10223,9 @@ static GXBP_RARE void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t
     uint32_t k;
     if (b->vertices[point].head_stamp == b->head_stamp) return;
     gxbp_fine_point(b, point, &x);
-    if (!gxbp_room(b, &fines->limbs, sizeof *fines->limbs, (size_t)x.c[0].n + x.c[1].n + x.c[2].n)) return;
+    if (!gxbp_room(b, &fines->limbs, fines->limb_count, &fines->limb_capacity, sizeof *fines->limbs,
+                   (size_t)x.c[0].n + x.c[1].n + x.c[2].n))
+        return;
     v->first = fines->limb_count;
     b->vertices[point].head_stamp = b->head_stamp;
     for (k = 0; k < 3; k++) {
@@ -10033,22 +10267,22 @@ static double gxbp_volume_error(double D, double e, double N, double E) {
 
 /* Six times the volume of the tetrahedron from o to a triangle of the result, d0 . n */
 static double gxbp_rough_volume(const gxb_boolean *b, uint32_t t, const gxb_ball *o) {
-    const gxb_ball *x = &b->cx.points[gxbp_out_corner(b, t, 0)].ball;
+    const gxb_ball *x = &b->store.points[gxbp_out_corner(b, t, 0)].ball;
     double d0[3], d1[3], d2[3], n[3];
     gxbp_difference(d0, o, x);
-    gxbp_difference(d1, x, &b->cx.points[gxbp_out_corner(b, t, 1)].ball);
-    gxbp_difference(d2, x, &b->cx.points[gxbp_out_corner(b, t, 2)].ball);
+    gxbp_difference(d1, x, &b->store.points[gxbp_out_corner(b, t, 1)].ball);
+    gxbp_difference(d2, x, &b->store.points[gxbp_out_corner(b, t, 2)].ball);
     gxbp_cross(n, d1, d2);
     return d0[0] * n[0] + d0[1] * n[1] + d0[2] * n[2];
 }
 
 /* A bound of its error */
 static double gxbp_rough_error(const gxb_boolean *b, uint32_t t, const gxb_ball *o) {
-    const gxb_ball *x = &b->cx.points[gxbp_out_corner(b, t, 0)].ball;
+    const gxb_ball *x = &b->store.points[gxbp_out_corner(b, t, 0)].ball;
     double d0[3], d1[3], d2[3], n[3];
     const double e = gxbp_filter_difference(d0, o, x),
-                 e1 = gxbp_filter_difference(d1, x, &b->cx.points[gxbp_out_corner(b, t, 1)].ball);
-    const double e2 = gxbp_filter_difference(d2, x, &b->cx.points[gxbp_out_corner(b, t, 2)].ball),
+                 e1 = gxbp_filter_difference(d1, x, &b->store.points[gxbp_out_corner(b, t, 1)].ball);
+    const double e2 = gxbp_filter_difference(d2, x, &b->store.points[gxbp_out_corner(b, t, 2)].ball),
                  E = gxbp_filter_cross(n, d1, e1, d2, e2);
     return gxbp_volume_error(gxbp_max3(d0), e, gxbp_max3(n), E);
 }
@@ -10056,13 +10290,13 @@ static double gxbp_rough_error(const gxb_boolean *b, uint32_t t, const gxb_ball 
 /* A bound of them all: from the size S of the box around all vertices, 8u larger for what rounding takes from it, and
  * the largest of their errors */
 static double gxbp_largest_rough_error(const gxb_boolean *b) {
-    const gxb_ball *first = &b->cx.points[b->out_points[0]].ball;
+    const gxb_ball *first = &b->store.points[b->out_points[0]].ball;
     double low[3], high[3], error = first->error, S = 0, e;
     uint32_t i, k;
     memcpy(low, first->x, sizeof low);
     memcpy(high, first->x, sizeof high);
     for (i = 1; i < b->out_point_count; i++) {
-        const gxb_ball *ball = &b->cx.points[b->out_points[i]].ball;
+        const gxb_ball *ball = &b->store.points[b->out_points[i]].ball;
         for (k = 0; k < 3; k++) {
             low[k] = gxbp_min(ball->x[k], low[k]);
             high[k] = gxbp_max(ball->x[k], high[k]);
@@ -10087,7 +10321,7 @@ static void gxbp_sum_volumes(const gxb_boolean *b, const uint32_t *parent, doubl
     for (t = 0; t < b->out_source_count; t++) volume[t] = error[t] = 0;
     for (t = 0; t < b->out_source_count; t++) {
         const uint32_t root = parent[t];
-        const gxb_ball *o = &b->cx.points[gxbp_out_corner(b, root, 0)].ball;
+        const gxb_ball *o = &b->store.points[gxbp_out_corner(b, root, 0)].ball;
         volume[root] += gxbp_rough_volume(b, t, o);
         error[root] += 2 * (largest > 0 ? largest : gxbp_rough_error(b, t, o));
     }
@@ -10107,7 +10341,7 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent
     const size_t vertices = b->out_point_count * sizeof(gxbp_fine), bytes = vertices + 2 * count * sizeof(uint32_t);
     gxbp_fines fines = {NULL, NULL, 0, 0};
     uint32_t t, *first, *next;
-    fines.vertices = (gxbp_fine *)gxbp_allocate(&b->cx.allocator, bytes);
+    fines.vertices = (gxbp_fine *)gxbp_allocate(&b->store.allocator, bytes);
     if (fines.vertices == NULL) {
         gxbp_stop(b, GX_ERROR_MEMORY);
         return;
@@ -10125,8 +10359,8 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent
             volume[t] = gxbp_fine_volume(b, first[t], next, &fines);
             error[t] = 2 * GXBP_U * gxbp_abs(volume[t]);
         }
-    gxbp_release(&b->cx.allocator, fines.limbs, fines.limb_capacity * sizeof *fines.limbs);
-    gxbp_release(&b->cx.allocator, fines.vertices, bytes);
+    gxbp_release(&b->store.allocator, fines.limbs, fines.limb_capacity * sizeof *fines.limbs);
+    gxbp_release(&b->store.allocator, fines.vertices, bytes);
 }
 
 /* Six times the volumes of the sets in volume[root], in the frame's units. One bound for all triangles costs less; it
@@ -10143,10 +10377,10 @@ static GXBP_APART void gxbp_measure_shells(gxb_boolean *b, const uint32_t *paren
 static GXBP_COLD int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p, uint32_t q, int way) {
     gxbp_vec s, t;
     const gxb_num *x, *y;
-    int turn = gxbp_filter_turn(&b->cx.points[p].ball, &b->cx.points[q].ball, &ray->ball, 1, 2);
+    int turn = gxbp_filter_turn(&b->store.points[p].ball, &b->store.points[q].ball, &ray->ball, 1, 2);
     if (turn != 0) return turn;
-    x = gxbp_exact_cpoint(&b->cx, p, &s);
-    y = gxbp_exact_cpoint(&b->cx, q, &t);
+    x = gxbp_exact_cpoint(&b->store, p, &s);
+    y = gxbp_exact_cpoint(&b->store, q, &t);
     turn = gxbp_orient_exact(x, y, gxbp_exact_probe(b, ray)->exact.c, 1, 2);
     if (turn == 0) turn = way * gxbp_compare_points(b, p, q, 2);
     return turn != 0 ? turn : way * gxbp_compare_points(b, q, p, 1);
@@ -10173,12 +10407,12 @@ static GXBP_COLD int gxbp_ray_passes(gxb_boolean *b, gxbp_ray *ray, int way, uin
     if (left == 0 || gxbp_ray_left_of(b, ray, c[1], c[2], way) != left ||
         gxbp_ray_left_of(b, ray, c[2], c[0], way) != left)
         return 0;
-    value = gxbp_filter_side(&ray->ball, &b->cx.planes[plane].filter, &bound);
+    value = gxbp_filter_side(&ray->ball, &b->store.planes[plane].filter, &bound);
     behind = -gxbp_filter_sign(value, bound);
     if (behind == 0) {
         GXB_NUM(side);
         gxbp_vec store;
-        gxbp_exact_side(&side, gxbp_exact_probe(b, ray)->exact.c, gxbp_exact_cplane(&b->cx, plane, &store));
+        gxbp_exact_side(&side, gxbp_exact_probe(b, ray)->exact.c, gxbp_exact_cplane(&b->store, plane, &store));
         behind = -side.sign;
     }
     if (behind == 0) behind = -way * gxbp_moved_side(b, plane);
@@ -10208,9 +10442,9 @@ static uint32_t gxbp_columns_of(const gxb_boolean *b, const gxbp_columns *c, uin
                                 uint32_t upto[2]) {
     uint32_t i, k;
     for (k = 0; k < 2; k++) {
-        double low = b->cx.points[gxbp_out_corner(b, t, 0)].ball.x[k + 1], high = low;
+        double low = b->store.points[gxbp_out_corner(b, t, 0)].ball.x[k + 1], high = low;
         for (i = 1; i < 3; i++) {
-            const double x = b->cx.points[gxbp_out_corner(b, t, i)].ball.x[k + 1];
+            const double x = b->store.points[gxbp_out_corner(b, t, i)].ball.x[k + 1];
             low = gxbp_min(x, low);
             high = gxbp_max(x, high);
         }
@@ -10222,13 +10456,13 @@ static uint32_t gxbp_columns_of(const gxb_boolean *b, const gxbp_columns *c, uin
 
 /* The margin is more than points and rays may be away from where their balls are. */
 static void gxbp_bound_columns(const gxb_boolean *b, gxbp_columns *c) {
-    const gxb_ball *first = &b->cx.points[b->out_points[0]].ball;
+    const gxb_ball *first = &b->store.points[b->out_points[0]].ball;
     double high[2], error = 0, largest = 0;
     uint32_t i, k;
     memcpy(c->low, first->x + 1, sizeof c->low);
     memcpy(high, first->x + 1, sizeof high);
     for (i = 0; i < b->out_point_count; i++) {
-        const gxb_ball *ball = &b->cx.points[b->out_points[i]].ball;
+        const gxb_ball *ball = &b->store.points[b->out_points[i]].ball;
         for (k = 0; k < 2; k++) {
             c->low[k] = gxbp_min(ball->x[k + 1], c->low[k]);
             high[k] = gxbp_max(ball->x[k + 1], high[k]);
@@ -10254,7 +10488,7 @@ static GXBP_COLD int gxbp_make_columns(gxb_boolean *b, gxbp_columns *c) {
         if (side == 1 || total <= 8 * (size_t)count) break;
     }
     c->words = count + (size_t)side * side + 1 + total;
-    c->hit = (uint32_t *)gxbp_allocate(&b->cx.allocator, c->words * sizeof *c->hit);
+    c->hit = (uint32_t *)gxbp_allocate(&b->store.allocator, c->words * sizeof *c->hit);
     if (c->hit == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
     c->first = c->hit + count;
     c->list = c->first + (size_t)side * side + 1;
@@ -10331,7 +10565,7 @@ static GXBP_APART uint32_t gxbp_place_cavities(gxb_boolean *b, uint32_t *parent,
         container = gxbp_find_container(b, t, parent, volume, winding, &columns);
         if (container != GXB_NONE) parent[t] = container;
     }
-    gxbp_release(&b->cx.allocator, columns.hit, columns.words * sizeof *columns.hit);
+    gxbp_release(&b->store.allocator, columns.hit, columns.words * sizeof *columns.hit);
     return cavities;
 }
 
@@ -10402,7 +10636,7 @@ static GXBP_RARE void gxbp_find_sides(gxb_boolean *b) {
 /* From the frame's units */
 static void gxbp_scale_volumes(gxb_boolean *b) {
     uint32_t i;
-    for (i = 0; i < b->out_volume_count; i++) b->out_volumes[i] *= gxbp_power(-3 * b->cx.shift);
+    for (i = 0; i < b->out_volume_count; i++) b->out_volumes[i] *= gxbp_power(-3 * b->store.shift);
 }
 
 /* parent: sets of triangles; work: room for a word per triangle; corners: see gxbp_count_corners */
@@ -10425,7 +10659,7 @@ static GXBP_APART void gxbp_find_components(gxb_boolean *b) {
     int32_t *corners;
     b->out_component_count = b->out_volume_count = 0;
     if (b->result != GX_OK || count == 0 || !GXBP_ROOM(b, out_components, out_component, count)) return;
-    parent = (uint32_t *)gxbp_allocate(&b->cx.allocator, bytes);
+    parent = (uint32_t *)gxbp_allocate(&b->store.allocator, bytes);
     if (parent == NULL) {
         gxbp_stop(b, GX_ERROR_MEMORY);
         return;
@@ -10434,7 +10668,7 @@ static GXBP_APART void gxbp_find_components(gxb_boolean *b) {
     for (t = 0; t < count; t++) parent[t] = t;
     gxbp_join_shells(b, parent, corners);
     if (b->result == GX_OK) gxbp_measure_components(b, parent, parent + count, corners);
-    gxbp_release(&b->cx.allocator, parent, bytes);
+    gxbp_release(&b->store.allocator, parent, bytes);
     gxbp_find_sides(b);
     b->measured = b->result == GX_OK;
 }
@@ -10496,7 +10730,7 @@ static int gxbp_is_between(const gxb_boolean *b, uint32_t vertex, uint32_t p, ui
 }
 
 static int gxbp_is_given(const gxb_boolean *b, uint32_t vertex) {
-    return b->cx.points[b->out_points[vertex]].kind == GXB_EXPLICIT;
+    return b->store.points[b->out_points[vertex]].kind == GXB_EXPLICIT;
 }
 
 /* How many edges leave the corner from which h does; *to: how many of them lead to a vertex */
@@ -10673,7 +10907,7 @@ static GXBP_COLD void gxbp_mend_defects(gxb_boolean *b) {
     const size_t places = 3 * (size_t)b->out_point_count * sizeof(double), bytes = places + words * sizeof(uint32_t);
     double *home;
     uint32_t *map, found = b->out_defect_count, done = 1;
-    home = (double *)gxbp_allocate(&b->cx.allocator, bytes);
+    home = (double *)gxbp_allocate(&b->store.allocator, bytes);
     if (home == NULL) {
         gxbp_stop(b, GX_ERROR_MEMORY);
         return;
@@ -10689,7 +10923,7 @@ static GXBP_COLD void gxbp_mend_defects(gxb_boolean *b) {
     }
     gxbp_drop_lonely(b, map);
     b->mended = found - b->out_defect_count;
-    gxbp_release(&b->cx.allocator, home, bytes);
+    gxbp_release(&b->store.allocator, home, bytes);
 }
 
 /* Components and twins are the exact surface's: they are found before it is changed. */
@@ -10701,36 +10935,51 @@ static GXBP_COLD void gxbp_mend(gxb_boolean *b) {
 
 /* --- the public functions --- */
 
-static const gxbp_array gxbp_boolean_arrays[] = {
-    GXBP_ARRAY(gxb_boolean, operands),       GXBP_ARRAY(gxb_boolean, sources),
-    GXBP_ARRAY(gxb_boolean, bounds),         GXBP_ARRAY(gxb_boolean, boxes),
-    GXBP_ARRAY(gxb_boolean, vertices),       GXBP_ARRAY(gxb_boolean, pieces),
-    GXBP_ARRAY(gxb_boolean, links),          GXBP_ARRAY(gxb_boolean, segments),
-    GXBP_ARRAY(gxb_boolean, cuts),           GXBP_ARRAY(gxb_boolean, cut_points),
-    GXBP_ARRAY(gxb_boolean, hits),           GXBP_ARRAY(gxb_boolean, dirty),
-    GXBP_ARRAY(gxb_boolean, divided),        GXBP_ARRAY(gxb_boolean, projected),
-    GXBP_ARRAY(gxb_boolean, rims),           GXBP_ARRAY(gxb_boolean, lefts),
-    GXBP_ARRAY(gxb_boolean, scratch),        GXBP_ARRAY(gxb_boolean, chain),
-    GXBP_ARRAY(gxb_boolean, windings),       GXBP_ARRAY(gxb_boolean, states),
-    GXBP_ARRAY(gxb_boolean, out_vertices),   GXBP_ARRAY(gxb_boolean, out_origins),
-    GXBP_ARRAY(gxb_boolean, out_points),     GXBP_ARRAY(gxb_boolean, out_triangles),
-    GXBP_ARRAY(gxb_boolean, out_operands),   GXBP_ARRAY(gxb_boolean, out_sources),
-    GXBP_ARRAY(gxb_boolean, out_components), GXBP_ARRAY(gxb_boolean, out_planes),
-    GXBP_ARRAY(gxb_boolean, out_volumes),    GXBP_ARRAY(gxb_boolean, out_defects),
-    GXBP_ARRAY(gxb_boolean, out_reversed),   GXBP_ARRAY(gxb_boolean, out_sides),
-    GXBP_ARRAY(gxb_boolean, out_eulers),     GXBP_ARRAY(gxb_boolean, out_twins)};
+static const gxbp_array gxbp_boolean_arrays[] = {/* all that grow */
+                                                 GXBP_ARRAY(gxb_boolean, operands, operand),
+                                                 GXBP_ARRAY(gxb_boolean, sources, source),
+                                                 GXBP_ARRAY(gxb_boolean, bounds, bound),
+                                                 GXBP_ARRAY(gxb_boolean, boxes, box),
+                                                 GXBP_ARRAY(gxb_boolean, vertices, vertex),
+                                                 GXBP_ARRAY(gxb_boolean, pieces, piece),
+                                                 GXBP_ARRAY(gxb_boolean, links, link),
+                                                 GXBP_ARRAY(gxb_boolean, segments, segment),
+                                                 GXBP_ARRAY(gxb_boolean, cuts, cut),
+                                                 GXBP_ARRAY(gxb_boolean, cut_points, cut_point),
+                                                 GXBP_ARRAY(gxb_boolean, hits, hit),
+                                                 GXBP_ARRAY(gxb_boolean, dirty, dirty),
+                                                 GXBP_ARRAY(gxb_boolean, divided, divided),
+                                                 GXBP_ARRAY(gxb_boolean, projected, projected),
+                                                 GXBP_ARRAY(gxb_boolean, rims, rim),
+                                                 GXBP_ARRAY(gxb_boolean, lefts, left),
+                                                 GXBP_ARRAY(gxb_boolean, scratch, scratch),
+                                                 GXBP_ARRAY(gxb_boolean, chain, chain),
+                                                 GXBP_ARRAY(gxb_boolean, windings, winding),
+                                                 GXBP_ARRAY(gxb_boolean, states, state),
+                                                 GXBP_ARRAY(gxb_boolean, out_vertices, out_vertex),
+                                                 GXBP_ARRAY(gxb_boolean, out_origins, out_origin),
+                                                 GXBP_ARRAY(gxb_boolean, out_points, out_point),
+                                                 GXBP_ARRAY(gxb_boolean, out_triangles, out_triangle),
+                                                 GXBP_ARRAY(gxb_boolean, out_operands, out_operand),
+                                                 GXBP_ARRAY(gxb_boolean, out_sources, out_source),
+                                                 GXBP_ARRAY(gxb_boolean, out_components, out_component),
+                                                 GXBP_ARRAY(gxb_boolean, out_planes, out_plane),
+                                                 GXBP_ARRAY(gxb_boolean, out_volumes, out_volume),
+                                                 GXBP_ARRAY(gxb_boolean, out_defects, out_defect),
+                                                 GXBP_ARRAY(gxb_boolean, out_reversed, out_reversed),
+                                                 GXBP_ARRAY(gxb_boolean, out_sides, out_side),
+                                                 GXBP_ARRAY(gxb_boolean, out_eulers, out_euler),
+                                                 GXBP_ARRAY(gxb_boolean, out_twins, out_twin)};
 
 static GXBP_COLD void gxbp_drop_boolean(gxb_boolean *b) {
     uint32_t i;
     for (i = 0; i < b->operand_count; i++)
-        gxbp_release(&b->cx.allocator, b->operands[i].order, (size_t)b->operands[i].source_count * sizeof(uint32_t));
-    gxbp_drop_numbers(&b->cx, NULL);
-    /* points and planes: there are no others */
-    gxbp_drop_arrays(&b->cx.allocator, &b->cx, gxbp_complex_arrays, 2);
-    gxbp_drop_arrays(&b->cx.allocator, b, gxbp_boolean_arrays,
+        gxbp_release(&b->store.allocator, b->operands[i].order, (size_t)b->operands[i].source_count * sizeof(uint32_t));
+    gxbp_store_destroy(&b->store);
+    gxbp_drop_arrays(&b->store.allocator, b, gxbp_boolean_arrays,
                      sizeof gxbp_boolean_arrays / sizeof *gxbp_boolean_arrays);
-    gxbp_release(&b->cx.allocator, b->table, (size_t)b->table_size * sizeof *b->table);
-    gxbp_release(&b->cx.allocator, b->state_table, (size_t)b->state_table_size * sizeof *b->state_table);
+    gxbp_release(&b->store.allocator, b->table, (size_t)b->table_size * sizeof *b->table);
+    gxbp_release(&b->store.allocator, b->state_table, (size_t)b->state_table_size * sizeof *b->state_table);
 }
 
 GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean) {
@@ -10740,7 +10989,7 @@ GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean
     memset(&none, 0, sizeof none);
     if (boolean == NULL) return GX_ERROR_ARGUMENT;
     if (desc == NULL) desc = &none;
-    if (!gxbp_is_allocator(&desc->allocator)) return GX_ERROR_ARGUMENT;
+    if (!gxb_is_allocator(&desc->allocator)) return GX_ERROR_ARGUMENT;
     if (desc->memory_limit > 0 && desc->memory_limit < sizeof *b) return GX_ERROR_LIMIT;
     if (!gxbp_arithmetic_holds(0)) return GX_ERROR_CONFIGURATION;
     arena = desc->memory_limit == 0 || desc->memory_limit >= 16 * GXBP_ARENA ? GXBP_ARENA : 0;
@@ -10755,11 +11004,11 @@ GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean
     b->limit = desc->memory_limit;
     b->inside = desc->inside;
     b->user = desc->user;
-    b->cx.allocator.allocate = gxbp_count_allocate;
-    b->cx.allocator.release = gxbp_count_release;
+    b->store.allocator.allocate = gxbp_count_allocate;
+    b->store.allocator.release = gxbp_count_release;
     if (desc->allocator.allocate == NULL || desc->allocator.reallocate != NULL)
-        b->cx.allocator.reallocate = gxbp_count_reallocate;
-    b->cx.allocator.user = b;
+        b->store.allocator.reallocate = gxbp_count_reallocate;
+    b->store.allocator.user = b;
     *boolean = b;
     return GX_OK;
 }
@@ -10810,7 +11059,7 @@ static gx_result gxbp_check_operand(const gxb_boolean *b, const gxb_operand *o, 
 /* Forgets the points from count on. */
 static GXBP_COLD void gxbp_cut_points_back(gxb_boolean *b, uint32_t count) {
     if (b->table_size > 0) gxbp_list_points(b, count);
-    b->vertex_count = b->cx.point_count = count;
+    b->vertex_count = b->store.point_count = count;
 }
 
 GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, gx_failure *failure) {
@@ -10856,7 +11105,7 @@ static GXBP_COLD void gxbp_forget_arrangement(gxb_boolean *b) {
 /* Room for the planes of a sixth of the new triangles: what is not used is not touched, and little is copied. */
 static void gxbp_foresee_planes(gxb_boolean *b) {
     const uint32_t fresh = b->arranged < b->operand_count ? b->source_count - b->operands[b->arranged].source : 0;
-    const gx_result result = GXBP_RESERVE(&b->cx, planes, plane, fresh / 6);
+    const gx_result result = GXBP_RESERVE(&b->store.allocator, &b->store, planes, plane, fresh / 6);
     if (result != GX_OK) gxbp_stop(b, result);
 }
 
@@ -10942,8 +11191,8 @@ GXFEM_API gx_result gxb_boolean_defects(gxb_boolean *b, gxb_defects *defects) {
 
 GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics *statistics) {
     if (b == NULL || statistics == NULL) return GX_ERROR_ARGUMENT;
-    statistics->filter_calls = b->cx.filter_calls;
-    statistics->exact_calls = b->cx.exact_calls;
+    statistics->filter_calls = b->store.filter_calls;
+    statistics->exact_calls = b->store.exact_calls;
     statistics->allocations = b->allocations;
     statistics->peak_bytes = b->peak;
     return GX_OK;

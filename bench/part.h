@@ -33,9 +33,9 @@ static inline uint32_t part_corner(const gxb_complex *cx, uint32_t first, uint32
 
 static inline int part_has_point(gxb_complex *cx, uint32_t leaf, uint32_t point) {
     uint32_t first, count, edges, n, i, v;
-    part_expect(gxb_leaf_facets(cx, leaf, &first, &count));
+    part_expect(gxb_leaf_resolve_facets(cx, leaf, &first, &count));
     for (i = 0; i < count; i++) {
-        part_expect(gxb_facet_edges(cx, cx->pool[first + i], &edges, &n));
+        part_expect(gxb_facet_resolve_edges(cx, cx->pool[first + i], &edges, &n));
         for (v = 0; v < n; v++)
             if (part_corner(cx, edges, v) == point) return 1;
     }
@@ -53,7 +53,7 @@ static inline void part_flood(part *p, uint32_t node) {
     while (!part_has_point(cx, leaf, node)) ++leaf;
     seen[p->leaves[p->leaf_count++] = leaf] = 1;
     for (done = 0; done < p->leaf_count; done++) {
-        part_expect(gxb_leaf_facets(cx, p->leaves[done], &first, &count));
+        part_expect(gxb_leaf_resolve_facets(cx, p->leaves[done], &first, &count));
         for (i = 0; i < count; i++) {
             const gxb_facet *f = &cx->facets[cx->pool[first + i]];
             const uint32_t other = f->leaf[f->leaf[0] == p->leaves[done]];
@@ -157,13 +157,13 @@ typedef void (*part_visit)(void *user, long double x[3][3]);
 static inline void part_walk_leaf(part *p, uint32_t leaf, const unsigned char *own, part_visit visit, void *user) {
     gxb_complex *cx = p->complex;
     uint32_t first, count, edges, n, i, v;
-    part_expect(gxb_leaf_facets(cx, leaf, &first, &count));
+    part_expect(gxb_leaf_resolve_facets(cx, leaf, &first, &count));
     for (i = 0; i < count; i++) {
         const gxb_facet f = cx->facets[cx->pool[first + i]];
         const uint32_t other = f.leaf[f.leaf[0] == leaf];
         long double x[3][3], kept[3];
         if (own && other != GXB_NONE && own[other] && !f.wall) continue;
-        part_expect(gxb_facet_edges(cx, cx->pool[first + i], &edges, &n));
+        part_expect(gxb_facet_resolve_edges(cx, cx->pool[first + i], &edges, &n));
         part_point(p, part_corner(cx, edges, 0), x[0]);
         part_point(p, part_corner(cx, edges, 1), kept);
         for (v = 2; v < n; v++) {

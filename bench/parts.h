@@ -86,10 +86,10 @@ static inline uint32_t parts_find(const parts_body *p, uint32_t element, const d
     uint32_t at = cx->root[element];
     double in[3];
     int k;
-    for (k = 0; k < 3; k++) in[k] = ldexp(x[k] - cx->origin[k], cx->shift);
+    for (k = 0; k < 3; k++) in[k] = ldexp(x[k] - cx->store.origin[k], cx->store.shift);
     while (at & 1) {
         const gxb_node *node = &cx->nodes[at >> 1];
-        const gxb_plane_filter *f = &cx->planes[node->plane].filter;
+        const gxb_plane_filter *f = &cx->store.planes[node->plane].filter;
         double side = 0;
         for (k = 0; k < 3; k++) side += f->n[k] * (in[k] - f->base[k]);
         at = node->child[side < 0];

@@ -182,7 +182,7 @@ static inline void add_cap(workload *w, uint32_t n, int axis) {
 /* Nodes whose planes are no triangle's: no facet of such a plane has a label */
 static inline size_t free_planes(const gx_body *body) {
     const gxb_complex *cx = body->complex;
-    uint8_t *labelled = (uint8_t *)calloc(cx->plane_count, 1);
+    uint8_t *labelled = (uint8_t *)calloc(cx->store.plane_count, 1);
     size_t count = 0;
     uint32_t i;
     for (i = 0; i < cx->facet_count; i++)

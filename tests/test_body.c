@@ -167,7 +167,7 @@ static void expect_same(gx_body *a, gx_body *b, double scale, double relative, d
 static int is_inside(gxb_complex *cx, uint32_t leaf, const double x[3]) {
     uint32_t point, first, count, i;
     ck_assert_int_eq(gxb_complex_add_point(cx, x, &point), GX_OK);
-    ck_assert_int_eq(gxb_leaf_facets(cx, leaf, &first, &count), GX_OK);
+    ck_assert_int_eq(gxb_leaf_resolve_facets(cx, leaf, &first, &count), GX_OK);
     for (i = 0; i < count; i++) {
         const gxb_facet *f = &cx->facets[cx->pool[first + i]];
         if (gxb_complex_side(cx, point, f->plane) != (f->leaf[0] == leaf ? 1 : -1)) return 0;
@@ -1699,9 +1699,9 @@ static int cell_reaches(gx_body *body, uint32_t cell, const gx_region *r) {
     uint32_t leaf, i, j, first, count, e0, en;
     ck_assert_int_eq(gxb_complex_open_element(cx, body->cells.data[cell].element), GX_OK);
     for (leaf = body->cells.data[cell].first_leaf; leaf != UINT32_MAX; leaf = body->leaves.data[leaf].next) {
-        ck_assert_int_eq(gxb_leaf_facets(cx, leaf, &first, &count), GX_OK);
+        ck_assert_int_eq(gxb_leaf_resolve_facets(cx, leaf, &first, &count), GX_OK);
         for (i = 0; i < count; i++) {
-            ck_assert_int_eq(gxb_facet_edges(cx, cx->pool[first + i], &e0, &en), GX_OK);
+            ck_assert_int_eq(gxb_facet_resolve_edges(cx, cx->pool[first + i], &e0, &en), GX_OK);
             for (j = 0; j < en; j++) {
                 const uint32_t e = cx->pool[e0 + j];
                 double lambda[4], x = 0;
@@ -2451,7 +2451,7 @@ START_TEST(cost_of_many_triangles) {
         gx_body *body;
         add_cap(&w, i == 0 ? 20 : 40, 2);
         body = cut_at_once(&w);
-        calls[i] = body->complex->filter_calls;
+        calls[i] = body->complex->store.filter_calls;
         gx_body_destroy(body);
         wl_free(&w);
     }

@@ -626,7 +626,7 @@ static const double *explicit_position(const model *m, uint32_t point) {
 }
 
 static pc_plane exact_cplane(const model *m, uint32_t plane) {
-    const gxb_cplane *f = &m->cx->planes[plane];
+    const gxb_cplane *f = &m->cx->store.planes[plane];
     const double *o = m->s->nodes[0];
     double p[3][3];
     pc_plane e;
@@ -648,7 +648,7 @@ static pc_plane exact_cplane(const model *m, uint32_t plane) {
 }
 
 static pc_point exact_cpoint(const model *m, uint32_t point) {
-    const gxb_cpoint *p = &m->cx->points[point];
+    const gxb_cpoint *p = &m->cx->store.points[point];
     const double *o = m->s->nodes[0];
     double line[2][3];
     if (p->kind == GXB_EXPLICIT) return pc_exact_explicit(explicit_position(m, point), o);
@@ -666,11 +666,11 @@ static model open_model(gxb_complex *cx, const scene *s, const inserted *in) {
     m.s = s;
     m.in = in;
     m.cx = cx;
-    m.planes = (pc_plane *)malloc((cx->plane_count + 1) * sizeof *m.planes);
-    m.points = (pc_point *)malloc((cx->point_count + 1) * sizeof *m.points);
-    m.position = (double(*)[3])malloc((cx->point_count + 1) * sizeof *m.position);
-    for (i = 0; i < cx->plane_count; i++) m.planes[i] = exact_cplane(&m, i);
-    for (i = 0; i < cx->point_count; i++) {
+    m.planes = (pc_plane *)malloc((cx->store.plane_count + 1) * sizeof *m.planes);
+    m.points = (pc_point *)malloc((cx->store.point_count + 1) * sizeof *m.points);
+    m.position = (double(*)[3])malloc((cx->store.point_count + 1) * sizeof *m.position);
+    for (i = 0; i < cx->store.plane_count; i++) m.planes[i] = exact_cplane(&m, i);
+    for (i = 0; i < cx->store.point_count; i++) {
         m.points[i] = exact_cpoint(&m, i);
         assert_that(m.points[i].w.sign != 0, "point %u is none", i);
         for (k = 0; k < 3; k++) m.position[i][k] = rat_to_double(rat_ratio(m.points[i].x[k], m.points[i].w));
@@ -742,7 +742,7 @@ static int compare_uses(const void *a, const void *b) {
 
 /* Each edge walked once each way, V - E + F = 2. */
 static void check_closed(const model *m, uint32_t leaf, use *uses, uint32_t count, uint32_t facets) {
-    unsigned char *seen = (unsigned char *)calloc(m->cx->point_count, 1);
+    unsigned char *seen = (unsigned char *)calloc(m->cx->store.point_count, 1);
     uint32_t i, vertices = 0;
     qsort(uses, count, sizeof *uses, compare_uses);
     assert_that(count % 2 == 0, "leaf %u: %u edge uses", leaf, count);
@@ -792,7 +792,7 @@ static double check_leaf(const model *m, uint32_t leaf) {
     uint32_t first, count, i, j, uses_count = 0, edge_first, edge_count, *facets;
     use *uses = (use *)malloc(sizeof *uses);
     double six_volumes = 0;
-    ck_assert_int_eq(gxb_leaf_facets(cx, leaf, &first, &count), GX_OK);
+    ck_assert_int_eq(gxb_leaf_resolve_facets(cx, leaf, &first, &count), GX_OK);
     facets = copy_list(cx, first, count);
     for (i = 0; i < count; i++) {
         const gxb_facet *f = &cx->facets[facets[i]];
@@ -801,7 +801,7 @@ static double check_leaf(const model *m, uint32_t leaf) {
         double area[3], volume = 0;
         assert_that(f->child == GXB_NONE && (f->leaf[0] == leaf) != (f->leaf[1] == leaf), "facet %u of leaf %u",
                     facets[i], leaf);
-        ck_assert_int_eq(gxb_facet_edges(cx, facets[i], &edge_first, &edge_count), GX_OK);
+        ck_assert_int_eq(gxb_facet_resolve_edges(cx, facets[i], &edge_first, &edge_count), GX_OK);
         loop = copy_list(cx, edge_first, edge_count);
         check_loop(m, facets[i], loop, edge_count);
         uses = (use *)realloc(uses, (uses_count + edge_count + 1) * sizeof *uses);
@@ -826,7 +826,7 @@ static void check_neighbours(const model *m) {
     uint32_t *listed = (uint32_t *)calloc(cx->facet_count + 1, sizeof *listed), leaf, i, first, count;
     for (leaf = 0; leaf < cx->leaf_count; leaf++) {
         if (cx->leaves[leaf].facet_count == 0) continue;
-        ck_assert_int_eq(gxb_leaf_facets(cx, leaf, &first, &count), GX_OK);
+        ck_assert_int_eq(gxb_leaf_resolve_facets(cx, leaf, &first, &count), GX_OK);
         for (i = 0; i < count; i++) listed[cx->pool[first + i]]++;
     }
     for (i = 0; i < cx->facet_count; i++) {
@@ -956,7 +956,7 @@ static void check_walls(const model *m, uint32_t cut) {
         assert_that(cx->facets[i].wall == 1, "facet %u is no wall", i);
         assert_that(big_sign(big_dot(own.n, m->planes[cx->facets[i].plane].n)) == label->orientation,
                     "facet %u, cut %u: orientation", i, cut);
-        ck_assert_int_eq(gxb_facet_edges(cx, i, &first, &count), GX_OK);
+        ck_assert_int_eq(gxb_facet_resolve_edges(cx, i, &first, &count), GX_OK);
         loop = copy_list(cx, first, count);
         for (k = 0; k < count; k++)
             assert_that(pc_exact_side(&m->points[edge_start(cx, loop[k])], &own) == 0, "facet %u off cut %u", i, cut);
@@ -979,7 +979,7 @@ static void check_walls(const model *m, uint32_t cut) {
 static void check_signs(const model *m, pc_random *r, int count) {
     int i;
     for (i = 0; i < count; i++) {
-        const uint32_t point = pc_below(r, m->cx->point_count), plane = pc_below(r, m->cx->plane_count),
+        const uint32_t point = pc_below(r, m->cx->store.point_count), plane = pc_below(r, m->cx->store.plane_count),
                        axis = pc_below(r, 3);
         const uint32_t node = pc_below(r, (uint32_t)m->s->node_count);
         const pc_point x = pc_exact_explicit(m->s->nodes[node], m->s->nodes[0]);
@@ -998,7 +998,7 @@ static void check_barycentric(const model *m, uint32_t element) {
     uint32_t leaf, first, count, i, k, j;
     for (leaf = 0; leaf < cx->leaf_count; leaf++) {
         if (cx->leaves[leaf].element != element || cx->leaves[leaf].facet_count == 0) continue;
-        ck_assert_int_eq(gxb_leaf_facets(cx, leaf, &first, &count), GX_OK);
+        ck_assert_int_eq(gxb_leaf_resolve_facets(cx, leaf, &first, &count), GX_OK);
         for (i = 0; i < count; i++) {
             const uint32_t point = edge_start(cx, cx->pool[cx->facets[cx->pool[first + i]].loop]);
             double lambda[4];
@@ -1158,8 +1158,8 @@ START_TEST(rests_below_the_last_bit_count) {
     cx = open_scene(&s, NULL);
     ck_assert_int_eq(insert_all(cx, &s, &in), GX_OK);
     m = open_model(cx, &s, &in);
-    for (i = 0; i < cx->point_count; i++)
-        for (j = 0; j < cx->plane_count; j++) {
+    for (i = 0; i < cx->store.point_count; i++)
+        for (j = 0; j < cx->store.plane_count; j++) {
             const int want = pc_exact_side(&m.points[i], &m.planes[j]);
             assert_that(gxb_complex_side(cx, i, j) == want, "point %u plane %u: not %d", i, j, want);
             undecided += want == 0;
@@ -1186,15 +1186,15 @@ static uint64_t mix(uint64_t hash, uint64_t value) { return (hash ^ value) * UIN
 static uint64_t hash_complex(const gxb_complex *cx, int geometry) {
     uint64_t h = 7;
     uint32_t i, j;
-    h = mix(h, cx->point_count);
-    h = mix(h, cx->plane_count);
+    h = mix(h, cx->store.point_count);
+    h = mix(h, cx->store.plane_count);
     h = mix(h, cx->edge_count);
     h = mix(h, cx->facet_count);
     h = mix(h, cx->leaf_count);
     h = mix(h, cx->tree_count);
     h = mix(h, cx->label_count);
-    for (i = 0; i < cx->point_count; i++) {
-        const gxb_cpoint *p = &cx->points[i];
+    for (i = 0; i < cx->store.point_count; i++) {
+        const gxb_cpoint *p = &cx->store.points[i];
         h = mix(mix(h, p->kind), p->wall);
         for (j = 0; j < 3; j++) {
             h = mix(h, p->def[j]);
@@ -1202,8 +1202,8 @@ static uint64_t hash_complex(const gxb_complex *cx, int geometry) {
         }
         if (geometry) h = mix(h, pc_bits(p->ball.error));
     }
-    for (i = 0; i < cx->plane_count; i++) {
-        const gxb_cplane *p = &cx->planes[i];
+    for (i = 0; i < cx->store.plane_count; i++) {
+        const gxb_cplane *p = &cx->store.planes[i];
         h = mix(mix(mix(h, p->along_axis), p->axis), (uint32_t)p->axis_sign);
         for (j = 0; j < 3; j++) {
             h = mix(h, p->def[j]);
@@ -1284,11 +1284,12 @@ START_TEST(stamps_begin_again) {
     gxb_complex_commit(cx);
     for (before = 0; before < 2; before++) {
         for (turn = 0; turn < 2; turn++) { /* what is undone stamped what is there again the next time */
-            cx->stamp[0] = cx->stamp[1] = UINT32_MAX - before;
+            cx->store.stamp[0] = cx->store.stamp[1] = UINT32_MAX - before;
             cx->edge_stamp = 0x3fffffffu - before;
             gxb_complex_begin(cx);
             for (c = s.cut_count / 2; c < s.cut_count; c++) ck_assert_int_eq(insert_cut(cx, &s, &in, c), GX_OK);
-            assert_that(cx->stamp[0] < 100 && cx->stamp[1] < 100000 && cx->edge_stamp < 100000, "no stamp began again");
+            assert_that(cx->store.stamp[0] < 100 && cx->store.stamp[1] < 100000 && cx->edge_stamp < 100000,
+                        "no stamp began again");
             assert_that(hash_complex(cx, 0) == topology_of(&s), "another topology, %lu before, turn %lu",
                         (unsigned long)before, (unsigned long)turn);
             gxb_complex_rollback(cx);
@@ -1398,7 +1399,7 @@ END_TEST
 
 static int refuse(void *user, uint32_t leaf) {
     (void)leaf;
-    *(int *)user++;
+    (*(int *)user)++;
     return 0;
 }
 
@@ -1549,9 +1550,9 @@ END_TEST
 static void read_lists(gxb_complex *cx) {
     uint32_t leaf, first, count, edge_first, edge_count, i;
     for (leaf = 0; leaf < cx->leaf_count; leaf++) {
-        ck_assert_int_eq(gxb_leaf_facets(cx, leaf, &first, &count), GX_OK);
+        ck_assert_int_eq(gxb_leaf_resolve_facets(cx, leaf, &first, &count), GX_OK);
         for (i = 0; i < count; i++)
-            ck_assert_int_eq(gxb_facet_edges(cx, cx->pool[first + i], &edge_first, &edge_count), GX_OK);
+            ck_assert_int_eq(gxb_facet_resolve_edges(cx, cx->pool[first + i], &edge_first, &edge_count), GX_OK);
     }
 }
 
