@@ -1874,14 +1874,14 @@ static gx_result gxp_collect_leaf_points(gx_body *body, uint32_t leaf) {
 
 /* Collects the facet's corners in body->scratch.facet_points. */
 static gx_result gxp_collect_facet_points(gx_body *body, uint32_t facet) {
+    gxp_scratch *scratch = &body->scratch;
     gxb_complex *cx = body->complex;
     uint32_t e0, en, i;
     gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
-    body->scratch.facet_points.count = 0;
-    if (result == GX_OK) result = gxp_words_room(body, &body->scratch.facet_points, en);
+    scratch->facet_points.count = 0;
+    if (result == GX_OK) result = gxp_words_room(body, &scratch->facet_points, en);
     for (i = 0; i < en && result == GX_OK; i++)
-        body->scratch.facet_points.data[body->scratch.facet_points.count++] =
-            gxb_complex_edge_start(cx, gxp_item(cx, e0 + i));
+        scratch->facet_points.data[scratch->facet_points.count++] = gxb_complex_edge_start(cx, gxp_item(cx, e0 + i));
     return result;
 }
 
@@ -1991,15 +1991,16 @@ static uint32_t gxp_cell_fragment(gx_body *body, uint32_t cell) {
 
 /* Cells and fragments. What they weigh is summed for gx_body_view only. */
 static gx_result gxp_update_view(gx_body *body) {
+    gxp_view *view = &body->view;
     gx_result result;
-    if (!body->view.stale) return GX_OK;
-    body->view.labels_known = 0;
+    if (!view->stale) return GX_OK;
+    view->labels_known = 0;
     result = gxp_list_cells(body);
     if (result == GX_OK) result = gxp_number_fragments(body);
     if (result != GX_OK) return result;
-    body->view.stale = 0;
-    body->view.sums_stale = body->view.labels_known = 1;
-    body->view.splits.count = 0;
+    view->stale = 0;
+    view->sums_stale = view->labels_known = 1;
+    view->splits.count = 0;
     return GX_OK;
 }
 
@@ -2017,6 +2018,8 @@ static int gxp_in_scope(void *user, uint32_t leaf) {
 /* Stamps the cells that the cut may touch. */
 static gx_result gxp_stamp_scope(gxp_cut *cut, int *scoped) {
     gx_body *body = cut->body;
+    gxp_view *view = &body->view;
+    gxp_scratch *scratch = &body->scratch;
     const gx_cut_desc *desc = cut->desc;
     gx_result result;
     size_t i, j;
@@ -2024,22 +2027,21 @@ static gx_result gxp_stamp_scope(gxp_cut *cut, int *scoped) {
     if (!*scoped) return GX_OK;
     result = gxp_update_view(body);
     if (result != GX_OK) return result;
-    body->scratch.scope_stamp = ++body->scratch.stamp;
+    scratch->scope_stamp = ++scratch->stamp;
     for (i = 0; i < desc->scope_cell_count; i++) {
-        if (desc->scope_cells[i] >= body->view.count) {
+        if (desc->scope_cells[i] >= view->count) {
             cut->failure.index = i;
             return GX_ERROR_INDEX;
         }
-        body->cells.stamp[body->view.slot[desc->scope_cells[i]]] = body->scratch.scope_stamp;
+        body->cells.stamp[view->slot[desc->scope_cells[i]]] = scratch->scope_stamp;
     }
     for (i = 0; i < desc->scope_fragment_count; i++) {
-        if (desc->scope_fragments[i] >= body->view.fragment_count) {
+        if (desc->scope_fragments[i] >= view->fragment_count) {
             cut->failure.index = i;
             return GX_ERROR_INDEX;
         }
-        for (j = 0; j < body->view.count; j++)
-            if (body->view.fragment[j] == desc->scope_fragments[i])
-                body->cells.stamp[body->view.slot[j]] = body->scratch.scope_stamp;
+        for (j = 0; j < view->count; j++)
+            if (view->fragment[j] == desc->scope_fragments[i]) body->cells.stamp[view->slot[j]] = scratch->scope_stamp;
     }
     return GX_OK;
 }
@@ -2372,24 +2374,25 @@ static gx_result gxp_find_leaf_joint(gx_body *body, uint32_t leaf, gxp_joint *jo
 /* Has a leaf of the element that the cut may touch the node on its boundary, or any piece of the mesh edge? The other
  * of the two is GXB_NONE. */
 static gx_result gxp_is_joint_in_scope(gx_body *body, uint32_t element, uint32_t node, uint32_t edge, int *found) {
+    gxp_scratch *scratch = &body->scratch;
     gx_result result = GX_OK;
     uint32_t i, j;
     *found = 0;
-    body->scratch.joint_leaves.count = body->scratch.joint_edges.count = 0;
+    scratch->joint_leaves.count = scratch->joint_edges.count = 0;
     if (edge == GXB_NONE)
-        result = gxp_push(body, &body->scratch.joint_edges, GXB_NONE);
+        result = gxp_push(body, &scratch->joint_edges, GXB_NONE);
     else
-        result = gxp_push_divided_edges(body, gxb_complex_mesh_edge(body->complex, edge), &body->scratch.joint_edges);
+        result = gxp_push_divided_edges(body, gxb_complex_mesh_edge(body->complex, edge), &scratch->joint_edges);
     if (result == GX_OK)
-        result = gxp_push_leaves(body, gxb_complex_root(body->complex, element), &body->scratch.joint_leaves);
-    for (i = 0; i < body->scratch.joint_leaves.count && result == GX_OK; i++) {
+        result = gxp_push_leaves(body, gxb_complex_root(body->complex, element), &scratch->joint_leaves);
+    for (i = 0; i < scratch->joint_leaves.count && result == GX_OK; i++) {
         gxp_joint joint;
-        if (!gxp_in_scope(body, body->scratch.joint_leaves.data[i])) continue;
-        for (j = 0; j < body->scratch.joint_edges.count && result == GX_OK && !*found; j++) {
+        if (!gxp_in_scope(body, scratch->joint_leaves.data[i])) continue;
+        for (j = 0; j < scratch->joint_edges.count && result == GX_OK && !*found; j++) {
             joint.point = node;
-            joint.edge = body->scratch.joint_edges.data[j];
+            joint.edge = scratch->joint_edges.data[j];
             joint.walled = 0;
-            result = gxp_find_leaf_joint(body, body->scratch.joint_leaves.data[i], &joint);
+            result = gxp_find_leaf_joint(body, scratch->joint_leaves.data[i], &joint);
             *found |= joint.found;
         }
     }
@@ -2430,15 +2433,16 @@ static gx_result gxp_cover_pinches(gx_body *body, gxb_triangle *t, uint32_t elem
 
 /* Appends to found the cells around the node that have the joint on their boundary. Removed leaves count as walls. */
 static gx_result gxp_find_joint_cells(gx_body *body, uint32_t node, gxp_joint *joint, gxp_words *found) {
+    gxp_scratch *scratch = &body->scratch;
     uint32_t j, i;
     gx_result result = GX_OK;
     joint->walled = 0;
-    body->scratch.joint_leaves.count = 0;
+    scratch->joint_leaves.count = 0;
     for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1] && result == GX_OK; j++)
-        result = gxp_push_leaves(body, gxb_complex_root(body->complex, body->mesh.node_elements[j]),
-                                 &body->scratch.joint_leaves);
-    for (i = 0; i < body->scratch.joint_leaves.count && result == GX_OK; i++) {
-        const uint32_t leaf = body->scratch.joint_leaves.data[i];
+        result =
+            gxp_push_leaves(body, gxb_complex_root(body->complex, body->mesh.node_elements[j]), &scratch->joint_leaves);
+    for (i = 0; i < scratch->joint_leaves.count && result == GX_OK; i++) {
+        const uint32_t leaf = scratch->joint_leaves.data[i];
         result = gxp_find_leaf_joint(body, leaf, joint);
         if (joint->found && !gxb_complex_leaf(body->complex, leaf)->removed && result == GX_OK)
             result = gxp_push(body, found, body->leaves.data[leaf].cell);
@@ -2448,21 +2452,23 @@ static gx_result gxp_find_joint_cells(gx_body *body, uint32_t node, gxp_joint *j
 
 /* Visits the cells that the joint joins to this cell. */
 static gx_result gxp_cross_joint(gx_body *body, uint32_t cell, uint32_t node, uint32_t point, uint32_t edge) {
+    gxp_scratch *scratch = &body->scratch;
     gxp_joint joint;
     uint32_t i, member = 0;
     gx_result result;
     joint.point = point;
     joint.edge = edge;
     joint.walled = joint.found = 0;
-    body->scratch.joint_cells.count = 0;
-    result = gxp_find_joint_cells(body, node, &joint, &body->scratch.joint_cells);
-    for (i = 0; i < body->scratch.joint_cells.count; i++) member |= body->scratch.joint_cells.data[i] == cell;
-    for (i = 0; i < body->scratch.joint_cells.count && result == GX_OK && member && !joint.walled; i++)
-        result = gxp_visit_cell(body, body->scratch.joint_cells.data[i], &body->scratch.subdomain_cells);
+    scratch->joint_cells.count = 0;
+    result = gxp_find_joint_cells(body, node, &joint, &scratch->joint_cells);
+    for (i = 0; i < scratch->joint_cells.count; i++) member |= scratch->joint_cells.data[i] == cell;
+    for (i = 0; i < scratch->joint_cells.count && result == GX_OK && member && !joint.walled; i++)
+        result = gxp_visit_cell(body, scratch->joint_cells.data[i], &scratch->subdomain_cells);
     return result;
 }
 
 static gx_result gxp_cross_pinches(gx_body *body, uint32_t cell, uint32_t node) {
+    gxp_scratch *scratch = &body->scratch;
     const uint32_t element = body->cells.data[cell].element;
     gxb_complex *cx = body->complex;
     uint32_t k, i;
@@ -2474,11 +2480,22 @@ static gx_result gxp_cross_pinches(gx_body *body, uint32_t cell, uint32_t node) 
         const uint32_t a = gxb_complex_element_nodes(cx, element)[gxp_edge_nodes[k][0]],
                        b = gxb_complex_element_nodes(cx, element)[gxp_edge_nodes[k][1]];
         if (!body->mesh.edge_pinched[edge] || (a != node && b != node)) continue;
-        body->scratch.joint_edges.count = 0;
-        result = gxp_push_divided_edges(body, gxb_complex_mesh_edge(cx, edge), &body->scratch.joint_edges);
-        for (i = 0; i < body->scratch.joint_edges.count && result == GX_OK; i++)
-            result = gxp_cross_joint(body, cell, node, GXB_NONE, body->scratch.joint_edges.data[i]);
+        scratch->joint_edges.count = 0;
+        result = gxp_push_divided_edges(body, gxb_complex_mesh_edge(cx, edge), &scratch->joint_edges);
+        for (i = 0; i < scratch->joint_edges.count && result == GX_OK; i++)
+            result = gxp_cross_joint(body, cell, node, GXB_NONE, scratch->joint_edges.data[i]);
     }
+    return result;
+}
+
+/* Adds the pinched nodes among those of the pairs to the nodes at which walls may break joints, and sorts these. */
+static gx_result gxp_add_pinches(gx_body *body, const gxp_keys *pairs) {
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (i = 0; i < pairs->count && result == GX_OK; i++)
+        if (body->mesh.node_pinched[GXP_FIRST(pairs->data[i])])
+            result = gxp_push(body, &body->scratch.pinches, GXP_FIRST(pairs->data[i]));
+    gxp_sort_unique(&body->scratch.pinches);
     return result;
 }
 
@@ -2552,14 +2569,15 @@ static gx_result gxp_prepare_triangle(gxp_cut *cut, gxp_surface *s, uint32_t ind
 
 static gx_result gxp_insert_triangle(gxp_cut *cut, gxp_surface *s, uint32_t index, int scoped) {
     gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
     const double *p[3];
     uint32_t k, i;
     gx_result result;
     for (k = 0; k < 3; k++) p[k] = s->given->vertices + 3 * (size_t)s->given->triangles[3 * index + k];
-    result = gxp_find_elements(body, p, &body->scratch.near_elements);
-    if (result == GX_OK && body->scratch.near_elements.count > 0) result = gxp_prepare_triangle(cut, s, index);
-    for (i = 0; i < body->scratch.near_elements.count && result == GX_OK; i++) {
-        const uint32_t element = body->scratch.near_elements.data[i];
+    result = gxp_find_elements(body, p, &scratch->near_elements);
+    if (result == GX_OK && scratch->near_elements.count > 0) result = gxp_prepare_triangle(cut, s, index);
+    for (i = 0; i < scratch->near_elements.count && result == GX_OK; i++) {
+        const uint32_t element = scratch->near_elements.data[i];
         result = gxb_complex_insert(body->complex, &s->triangles[index], element, scoped ? gxp_in_scope : NULL, body);
         if (result == GX_OK && s->triangles[index].wall)
             result = gxp_cover_pinches(body, &s->triangles[index], element, scoped);
@@ -2600,24 +2618,25 @@ static uint32_t gxp_curve_place(const gxp_cut *cut, const gxp_surface *s, uint32
 static gx_result gxp_insert_surface(gxp_cut *cut, gxp_surface *s, int scoped) {
     const uint32_t count = (uint32_t)s->given->triangle_count;
     gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
     uint32_t i, before = 0;
     gx_result result;
-    body->scratch.order.count = 0;
-    result = gxp_keys_room(body, &body->scratch.order, 2 * (size_t)count); /* sorting takes as much again */
+    scratch->order.count = 0;
+    result = gxp_keys_room(body, &scratch->order, 2 * (size_t)count); /* sorting takes as much again */
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint64_t random = gxp_mix(i);
         uint32_t round = GXP_LAST_ROUND;
         while (round > 16 && !(random >> 3 * (GXP_LAST_ROUND - round) & 7)) round--;
         before += round < GXP_LAST_ROUND && !s->flat[i];
-        if (!s->flat[i]) result = gxp_push_key(body, &body->scratch.order, round << 27 | gxp_curve_place(cut, s, i), i);
+        if (!s->flat[i]) result = gxp_push_key(body, &scratch->order, round << 27 | gxp_curve_place(cut, s, i), i);
     }
-    if (result == GX_OK) result = gxp_sort_keys(body, &body->scratch.order, 0, body->scratch.order.count);
-    for (i = 0; i < body->scratch.order.count && result == GX_OK; i++) {
+    if (result == GX_OK) result = gxp_sort_keys(body, &scratch->order, 0, scratch->order.count);
+    for (i = 0; i < scratch->order.count && result == GX_OK; i++) {
         if (i == before && before >= 4) {
-            const uint32_t times = (body->scratch.order.count - before) / before;
+            const uint32_t times = (scratch->order.count - before) / before;
             gxb_complex_reserve(body->complex, times < GXP_EXPECTED ? times : GXP_EXPECTED);
         }
-        result = gxp_insert_triangle(cut, s, GXP_SECOND(body->scratch.order.data[i]), scoped);
+        result = gxp_insert_triangle(cut, s, GXP_SECOND(scratch->order.data[i]), scoped);
     }
     return result;
 }
@@ -2656,6 +2675,7 @@ static int gxp_node_winding(const gx_body *body, const gxp_surface *s, uint32_t 
 
 /* The winding number around a leaf: around one of its nodes that is off the surface, else around a point inside it. */
 static gx_result gxp_leaf_winding(gx_body *body, const gxp_surface *s, uint32_t leaf, int32_t *winding) {
+    gxp_scratch *scratch = &body->scratch;
     const gx_surface *g = s->given;
     const gxb_leaf *l = gxb_complex_leaf(body->complex, leaf);
     uint32_t i;
@@ -2663,12 +2683,12 @@ static gx_result gxp_leaf_winding(gx_body *body, const gxp_surface *s, uint32_t 
     for (i = 0; i < 4 && l->facet_count == 0; i++)
         if (gxp_node_winding(body, s, gxb_complex_element_nodes(body->complex, l->element)[i], winding)) return GX_OK;
     result = gxp_collect_leaf_points(body, leaf);
-    for (i = 0; i < body->scratch.leaf_points.count && result == GX_OK; i++)
-        if (body->scratch.leaf_points.data[i] < body->mesh.node_count &&
-            gxp_node_winding(body, s, body->scratch.leaf_points.data[i], winding))
+    for (i = 0; i < scratch->leaf_points.count && result == GX_OK; i++)
+        if (scratch->leaf_points.data[i] < body->mesh.node_count &&
+            gxp_node_winding(body, s, scratch->leaf_points.data[i], winding))
             return GX_OK;
     if (result == GX_OK)
-        *winding = gxb_complex_winding(body->complex, body->scratch.leaf_points.data, body->scratch.leaf_points.count,
+        *winding = gxb_complex_winding(body->complex, scratch->leaf_points.data, scratch->leaf_points.count,
                                        g->vertices, g->triangles, g->triangle_count);
     return result;
 }
@@ -2729,36 +2749,37 @@ static int gxp_is_flooded(const gxp_cut *cut, uint32_t cell) {
    the seeds, and one of each cell that the flood may not reach. */
 static gx_result gxp_seed_untouched(gxp_cut *cut) {
     gx_body *body = cut->body;
+    gxp_view *view = &body->view;
+    gxp_scratch *scratch = &body->scratch;
     gx_result result = gxp_update_view(body);
     uint32_t i;
-    body->scratch.seeded.count = 0;
-    if (result == GX_OK) result = gxp_words_room(body, &body->scratch.seeded, body->view.fragment_count);
+    scratch->seeded.count = 0;
+    if (result == GX_OK) result = gxp_words_room(body, &scratch->seeded, view->fragment_count);
     if (result != GX_OK) return result;
-    if (body->view.fragment_count > 0)
-        memset(body->scratch.seeded.data, 0, body->view.fragment_count * sizeof *body->scratch.seeded.data);
-    for (i = 0; i < body->scratch.seed_leaves.count; i++)
-        if (gxp_is_kept(body, body->scratch.seed_leaves.data[i]))
-            body->scratch.seeded
-                .data[gxp_cell_fragment(body, body->leaves.data[body->scratch.seed_leaves.data[i]].cell)] = 1;
-    for (i = 0; i < body->view.count && result == GX_OK; i++) {
-        const uint32_t cell = body->view.slot[i];
-        if (body->scratch.seeded.data[body->view.fragment[i]] && gxp_is_flooded(cut, cell)) continue;
-        body->scratch.seeded.data[body->view.fragment[i]] = 1;
-        result = gxp_push(body, &body->scratch.seed_leaves, body->cells.data[cell].first_leaf);
+    if (view->fragment_count > 0) memset(scratch->seeded.data, 0, view->fragment_count * sizeof *scratch->seeded.data);
+    for (i = 0; i < scratch->seed_leaves.count; i++)
+        if (gxp_is_kept(body, scratch->seed_leaves.data[i]))
+            scratch->seeded.data[gxp_cell_fragment(body, body->leaves.data[scratch->seed_leaves.data[i]].cell)] = 1;
+    for (i = 0; i < view->count && result == GX_OK; i++) {
+        const uint32_t cell = view->slot[i];
+        if (scratch->seeded.data[view->fragment[i]] && gxp_is_flooded(cut, cell)) continue;
+        scratch->seeded.data[view->fragment[i]] = 1;
+        result = gxp_push(body, &scratch->seed_leaves, body->cells.data[cell].first_leaf);
     }
     return result;
 }
 
 /* Finds the winding numbers of the seeds and of what they lead to: body->scratch.flooded. */
 static gx_result gxp_find_windings(gx_body *body, const gxp_surface *s, int scoped) {
+    gxp_scratch *scratch = &body->scratch;
     uint32_t i, done = 0;
     gx_result result = GX_OK;
-    body->scratch.flooded.count = 0;
-    body->scratch.stamp++;
-    for (i = 0; i < body->scratch.seed_leaves.count && result == GX_OK; i++) {
-        const uint32_t leaf = body->scratch.seed_leaves.data[i];
+    scratch->flooded.count = 0;
+    scratch->stamp++;
+    for (i = 0; i < scratch->seed_leaves.count && result == GX_OK; i++) {
+        const uint32_t leaf = scratch->seed_leaves.data[i];
         int32_t winding = 0;
-        if (!gxp_has_winding(body, leaf, scoped) || body->leaves.mark[leaf].stamp == body->scratch.stamp) continue;
+        if (!gxp_has_winding(body, leaf, scoped) || body->leaves.mark[leaf].stamp == scratch->stamp) continue;
         result = gxp_leaf_winding(body, s, leaf, &winding);
         if (result == GX_OK) result = gxp_visit_winding(body, leaf, winding);
         if (result == GX_OK) result = gxp_flood_winding(body, s, &done, scoped);
@@ -2770,16 +2791,17 @@ static gx_result gxp_find_windings(gx_body *body, const gxp_surface *s, int scop
  */
 static gx_result gxp_find_solid(gxp_cut *cut, const gxp_surface *s, int scoped) {
     gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
     uint32_t i;
     gx_result result = GX_OK;
-    body->scratch.seed_leaves.count = 0;
+    scratch->seed_leaves.count = 0;
     for (i = 0; i < gxb_complex_marked_count(body->complex) && result == GX_OK; i++)
-        result = gxp_wall_leaves(body, gxb_complex_marked_facet(body->complex, i), &body->scratch.seed_leaves);
+        result = gxp_wall_leaves(body, gxb_complex_marked_facet(body->complex, i), &scratch->seed_leaves);
     if (result == GX_OK) result = gxp_seed_untouched(cut);
     if (result == GX_OK) result = gxp_find_windings(body, s, scoped);
-    for (i = 0; i < body->scratch.flooded.count && result == GX_OK; i++)
-        if (body->leaves.mark[body->scratch.flooded.data[i]].winding != 0)
-            result = gxp_push(body, &body->scratch.removed, body->scratch.flooded.data[i]);
+    for (i = 0; i < scratch->flooded.count && result == GX_OK; i++)
+        if (body->leaves.mark[scratch->flooded.data[i]].winding != 0)
+            result = gxp_push(body, &scratch->removed, scratch->flooded.data[i]);
     return result;
 }
 
@@ -2870,15 +2892,16 @@ static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
 
 /* Puts cells in the place of leaves in the links of all fresh cells, those to one cell together. */
 static gx_result gxp_settle_links(gx_body *body) {
+    gxp_scratch *scratch = &body->scratch;
     uint32_t i, j;
-    gx_result result = gxp_push(body, &body->scratch.link_first, body->scratch.links.count);
-    for (i = 0; i < body->scratch.new_cells.count && result == GX_OK; i++) {
-        const uint32_t from = body->scratch.link_first.data[i], to = body->scratch.link_first.data[i + 1];
-        uint64_t *link = body->scratch.links.data;
-        body->cells.new_index[body->scratch.new_cells.data[i]] = i;
+    gx_result result = gxp_push(body, &scratch->link_first, scratch->links.count);
+    for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++) {
+        const uint32_t from = scratch->link_first.data[i], to = scratch->link_first.data[i + 1];
+        uint64_t *link = scratch->links.data;
+        body->cells.new_index[scratch->new_cells.data[i]] = i;
         for (j = from; j < to; j++)
             link[j] = (uint64_t)body->leaves.data[GXP_LINK_CELL(link[j])].cell << 33 | (link[j] & 0x1ffffffffu);
-        result = gxp_sort_keys(body, &body->scratch.links, from, to);
+        result = gxp_sort_keys(body, &scratch->links, from, to);
     }
     return result;
 }
@@ -2960,20 +2983,21 @@ static gx_result gxp_judge_link(gxp_cut *cut, uint32_t first, uint32_t end) {
    body->scratch.narrow. *bound: of the smallest so far. */
 static gx_result gxp_weigh_links(gxp_cut *cut, uint32_t index, double *bound) {
     gx_body *body = cut->body;
-    const uint32_t last = body->scratch.link_first.data[index + 1];
+    gxp_scratch *scratch = &body->scratch;
+    const uint32_t last = scratch->link_first.data[index + 1];
     uint32_t first, end;
     int wide = 1;
     gx_result result = GX_OK;
-    for (first = body->scratch.link_first.data[index]; first < last && result == GX_OK; first = end) {
-        const uint32_t other = GXP_LINK_CELL(body->scratch.links.data[first]),
-                       facet = GXP_LINK_FACET(body->scratch.links.data[first]);
-        for (end = first + 1; end < last && GXP_LINK_CELL(body->scratch.links.data[end]) == other; end++) {}
+    for (first = scratch->link_first.data[index]; first < last && result == GX_OK; first = end) {
+        const uint32_t other = GXP_LINK_CELL(scratch->links.data[first]),
+                       facet = GXP_LINK_FACET(scratch->links.data[first]);
+        for (end = first + 1; end < last && GXP_LINK_CELL(scratch->links.data[end]) == other; end++) {}
         if (gxp_new_index(body, other) < index ||
             gxb_complex_face_facet(body->complex, gxb_complex_facet(body->complex, facet)->face) == facet)
             continue;
         result = gxp_is_wide(cut, first, end, bound, &wide);
-        if (result == GX_OK && !wide) result = gxp_push(body, &body->scratch.narrow, first);
-        if (result == GX_OK && !wide) result = gxp_push(body, &body->scratch.narrow, end);
+        if (result == GX_OK && !wide) result = gxp_push(body, &scratch->narrow, first);
+        if (result == GX_OK && !wide) result = gxp_push(body, &scratch->narrow, end);
     }
     return result;
 }
@@ -3009,22 +3033,23 @@ static gx_result gxp_sever_links(gxp_cut *cut) {
 /* Collects the cells on both sides of walls that this cut made. */
 static gx_result gxp_collect_touched(gxp_cut *cut) {
     gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
     uint32_t i;
     gx_result result = GX_OK;
-    body->scratch.wall_leaves.count = 0;
+    scratch->wall_leaves.count = 0;
     for (i = 0; i < gxb_complex_marked_count(body->complex) && result == GX_OK; i++)
         if (gxb_complex_marked_wall(body->complex, i))
-            result = gxp_wall_leaves(body, gxb_complex_marked_facet(body->complex, i), &body->scratch.wall_leaves);
-    body->scratch.stamp++;
-    for (i = 0; i < body->scratch.wall_leaves.count && result == GX_OK; i++) {
-        const uint32_t cell = body->leaves.data[body->scratch.wall_leaves.data[i]].cell;
-        if (gxb_complex_leaf(body->complex, body->scratch.wall_leaves.data[i])->removed ||
-            body->cells.stamp[cell] == body->scratch.stamp)
+            result = gxp_wall_leaves(body, gxb_complex_marked_facet(body->complex, i), &scratch->wall_leaves);
+    scratch->stamp++;
+    for (i = 0; i < scratch->wall_leaves.count && result == GX_OK; i++) {
+        const uint32_t cell = body->leaves.data[scratch->wall_leaves.data[i]].cell;
+        if (gxb_complex_leaf(body->complex, scratch->wall_leaves.data[i])->removed ||
+            body->cells.stamp[cell] == scratch->stamp)
             continue;
-        body->cells.stamp[cell] = body->scratch.stamp;
-        result = gxp_push(body, &body->scratch.touched, cell);
+        body->cells.stamp[cell] = scratch->stamp;
+        result = gxp_push(body, &scratch->touched, cell);
     }
-    gxp_sort_unique(&body->scratch.touched);
+    gxp_sort_unique(&scratch->touched);
     return result;
 }
 
@@ -3057,29 +3082,30 @@ static gx_result gxp_new_cell(gx_body *body, uint32_t like, uint32_t *slot) {
 /* Walks the leaves that open facets inside the element join to the first in the queue, and lists their links, for now
  * with the leaf behind each. */
 static gx_result gxp_walk_leaves(gx_body *body, uint32_t start) {
+    gxp_scratch *scratch = &body->scratch;
     gxb_complex *cx = body->complex;
     uint32_t done = 0, first, count, i;
     gx_result result = gxb_complex_open_element(cx, gxb_complex_leaf(cx, start)->element);
-    body->scratch.part_leaves.count = 0;
-    body->leaves.mark[start].stamp = body->scratch.stamp;
-    if (result == GX_OK) result = gxp_push(body, &body->scratch.part_leaves, start);
-    if (result == GX_OK) result = gxp_push(body, &body->scratch.link_first, body->scratch.links.count);
-    while (done < body->scratch.part_leaves.count && result == GX_OK) {
-        const uint32_t leaf = body->scratch.part_leaves.data[done++];
+    scratch->part_leaves.count = 0;
+    body->leaves.mark[start].stamp = scratch->stamp;
+    if (result == GX_OK) result = gxp_push(body, &scratch->part_leaves, start);
+    if (result == GX_OK) result = gxp_push(body, &scratch->link_first, scratch->links.count);
+    while (done < scratch->part_leaves.count && result == GX_OK) {
+        const uint32_t leaf = scratch->part_leaves.data[done++];
         result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
-        if (result == GX_OK) result = gxp_keys_room(body, &body->scratch.links, count);
+        if (result == GX_OK) result = gxp_keys_room(body, &scratch->links, count);
         for (i = 0; i < count && result == GX_OK; i++) {
             const uint32_t facet = gxp_item(cx, first + i);
             const gxb_facet *f = gxb_complex_facet(cx, facet);
             const uint32_t other = f->leaf[f->leaf[0] == leaf];
             if (!gxp_is_link(body, facet)) continue;
             if (f->face != GXB_NONE)
-                body->scratch.links.data[body->scratch.links.count++] =
+                scratch->links.data[scratch->links.count++] =
                     (uint64_t)other << 33 | (uint64_t)facet << 2 |
                     gxp_local_face(cx, gxb_complex_leaf(cx, leaf)->element, f->face);
-            else if (body->leaves.mark[other].stamp != body->scratch.stamp) {
-                body->leaves.mark[other].stamp = body->scratch.stamp;
-                result = gxp_push(body, &body->scratch.part_leaves, other);
+            else if (body->leaves.mark[other].stamp != scratch->stamp) {
+                body->leaves.mark[other].stamp = scratch->stamp;
+                result = gxp_push(body, &scratch->part_leaves, other);
             }
         }
     }
@@ -3088,38 +3114,38 @@ static gx_result gxp_walk_leaves(gx_body *body, uint32_t start) {
 
 /* Gives the leaves in the queue to a cell, as its list. */
 static gx_result gxp_give_leaves(gx_body *body, uint32_t cell) {
+    gxp_scratch *scratch = &body->scratch;
     uint32_t i;
     gx_result result = gxp_save_cell(body, cell);
-    for (i = body->scratch.part_leaves.count; i-- > 0 && result == GX_OK;)
-        result =
-            gxp_set_leaf(body, body->scratch.part_leaves.data[i], cell,
-                         i + 1 < body->scratch.part_leaves.count ? body->scratch.part_leaves.data[i + 1] : GXP_NONE);
-    if (result == GX_OK) body->cells.data[cell].first_leaf = body->scratch.part_leaves.data[0];
+    for (i = scratch->part_leaves.count; i-- > 0 && result == GX_OK;)
+        result = gxp_set_leaf(body, scratch->part_leaves.data[i], cell,
+                              i + 1 < scratch->part_leaves.count ? scratch->part_leaves.data[i + 1] : GXP_NONE);
+    if (result == GX_OK) body->cells.data[cell].first_leaf = scratch->part_leaves.data[0];
     return result;
 }
 
 /* Divides one touched cell into its connected pieces; the first keeps the slot. */
 static gx_result gxp_divide_cell(gxp_cut *cut, uint32_t cell) {
     gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
     uint32_t leaf, pieces = 0, i;
     gx_result result = GX_OK;
-    body->scratch.cell_leaves.count = 0;
+    scratch->cell_leaves.count = 0;
     for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
          leaf = body->leaves.data[leaf].next)
-        result = gxp_push(body, &body->scratch.cell_leaves, leaf);
-    body->scratch.stamp++;
-    for (i = 0; i < body->scratch.cell_leaves.count && result == GX_OK; i++) {
+        result = gxp_push(body, &scratch->cell_leaves, leaf);
+    scratch->stamp++;
+    for (i = 0; i < scratch->cell_leaves.count && result == GX_OK; i++) {
         uint32_t slot = cell;
-        leaf = body->scratch.cell_leaves.data[i];
-        if (gxb_complex_leaf(body->complex, leaf)->removed || body->leaves.mark[leaf].stamp == body->scratch.stamp)
-            continue;
+        leaf = scratch->cell_leaves.data[i];
+        if (gxb_complex_leaf(body->complex, leaf)->removed || body->leaves.mark[leaf].stamp == scratch->stamp) continue;
         result = gxp_walk_leaves(body, leaf);
         if (result == GX_OK && pieces++ > 0) {
             result = gxp_new_cell(body, cell, &slot);
             cut->report.created_cells++;
         }
         if (result == GX_OK) result = gxp_give_leaves(body, slot);
-        if (result == GX_OK) result = gxp_push(body, &body->scratch.new_cells, slot);
+        if (result == GX_OK) result = gxp_push(body, &scratch->new_cells, slot);
     }
     if (result == GX_OK && pieces == 0) {
         result = gxp_save_cell(body, cell);
@@ -3147,17 +3173,18 @@ static gx_result gxp_touch_around(gx_body *body, uint32_t leaf) {
 /* Severed links separate cells that may not have been touched before. */
 static gx_result gxp_touch_severed(gxp_cut *cut) {
     gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
     gx_result result = gxp_collect_touched(cut);
     uint32_t i;
-    for (i = 0; i < body->scratch.touched.count && result == GX_OK; i++) {
-        const uint32_t cell = body->scratch.touched.data[i];
+    for (i = 0; i < scratch->touched.count && result == GX_OK; i++) {
+        const uint32_t cell = scratch->touched.data[i];
         if (body->cells.data[cell].kept && gxp_new_index(body, cell) == GXP_NONE)
-            result = gxp_push(body, &body->scratch.new_cells, cell);
+            result = gxp_push(body, &scratch->new_cells, cell);
     }
-    body->scratch.links.count = body->scratch.link_first.count = 0;
-    body->scratch.stamp++;
-    for (i = 0; i < body->scratch.new_cells.count && result == GX_OK; i++)
-        result = gxp_walk_leaves(body, body->cells.data[body->scratch.new_cells.data[i]].first_leaf);
+    scratch->links.count = scratch->link_first.count = 0;
+    scratch->stamp++;
+    for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++)
+        result = gxp_walk_leaves(body, body->cells.data[scratch->new_cells.data[i]].first_leaf);
     return result == GX_OK ? gxp_settle_links(body) : result;
 }
 
@@ -3225,35 +3252,34 @@ static gx_result gxp_cross_facet(gx_body *body, uint32_t facet, uint32_t leaf) {
 
 /* Visits the cells that links join to the cell of a whole element across the face opposite to local node k. */
 static gx_result gxp_cross_whole_face(gx_body *body, uint32_t element, uint32_t k) {
+    gxp_scratch *scratch = &body->scratch;
     gxb_complex *cx = body->complex;
     const uint32_t face = gxb_complex_element_faces(cx, element)[k], other = gxp_neighbour(body, element, k);
     uint32_t i;
     gx_result result;
     if (other == GXP_NONE) return GX_OK;
     if (gxb_complex_face_facet(cx, face) == GXB_NONE)
-        return gxp_is_kept(body, other)
-                 ? gxp_visit_cell(body, body->leaves.data[other].cell, &body->scratch.subdomain_cells)
-                 : GX_OK;
-    body->scratch.face_facets.count = 0;
-    result = gxp_push_divided_facets(body, gxb_complex_face_facet(cx, face), &body->scratch.face_facets);
-    for (i = 0; i < body->scratch.face_facets.count && result == GX_OK; i++)
-        result = gxp_cross_facet(body, body->scratch.face_facets.data[i], element);
+        return gxp_is_kept(body, other) ? gxp_visit_cell(body, body->leaves.data[other].cell, &scratch->subdomain_cells)
+                                        : GX_OK;
+    scratch->face_facets.count = 0;
+    result = gxp_push_divided_facets(body, gxb_complex_face_facet(cx, face), &scratch->face_facets);
+    for (i = 0; i < scratch->face_facets.count && result == GX_OK; i++)
+        result = gxp_cross_facet(body, scratch->face_facets.data[i], element);
     return result;
 }
 
 /* Visits the cells that links of a fresh cell join to it, but across the face opposite to local node k; unless all is
    set only fresh ones. *open is set to 1 where there are others. */
 static gx_result gxp_cross_links(gx_body *body, uint32_t index, uint32_t k, int all, uint32_t *open) {
+    gxp_scratch *scratch = &body->scratch;
     uint32_t i;
     gx_result result = GX_OK;
-    for (i = body->scratch.link_first.data[index]; i < body->scratch.link_first.data[index + 1] && result == GX_OK;
-         i++) {
-        const uint32_t other = GXP_LINK_CELL(body->scratch.links.data[i]);
-        if (GXP_LINK_FACE(body->scratch.links.data[i]) == k || body->cells.stamp[other] == body->scratch.stamp)
-            continue;
+    for (i = scratch->link_first.data[index]; i < scratch->link_first.data[index + 1] && result == GX_OK; i++) {
+        const uint32_t other = GXP_LINK_CELL(scratch->links.data[i]);
+        if (GXP_LINK_FACE(scratch->links.data[i]) == k || body->cells.stamp[other] == scratch->stamp) continue;
         if (gxp_new_index(body, other) == GXP_NONE) *open = 1;
         if (all || gxp_new_index(body, other) != GXP_NONE)
-            result = gxp_visit_cell(body, other, &body->scratch.subdomain_cells);
+            result = gxp_visit_cell(body, other, &scratch->subdomain_cells);
     }
     return result;
 }
@@ -3285,11 +3311,12 @@ static gx_result gxp_cross_faces(gx_body *body, uint32_t cell, uint32_t node) {
 /* The piece of a nodal component that contains a fresh cell: appended to body->scratch.subdomain_cells, every cell
    stamped. all 0: of its fresh cells alone, from one to the next; *open: do links go on to others? */
 static gx_result gxp_walk_subdomain(gx_body *body, uint32_t cell, uint32_t node, int all, uint32_t *open) {
-    uint32_t done = body->scratch.subdomain_cells.count;
-    gx_result result = gxp_visit_cell(body, cell, &body->scratch.subdomain_cells);
+    gxp_scratch *scratch = &body->scratch;
+    uint32_t done = scratch->subdomain_cells.count;
+    gx_result result = gxp_visit_cell(body, cell, &scratch->subdomain_cells);
     *open = 0;
-    while (done < body->scratch.subdomain_cells.count && result == GX_OK) {
-        const uint32_t c = body->scratch.subdomain_cells.data[done++], fresh = gxp_new_index(body, c);
+    while (done < scratch->subdomain_cells.count && result == GX_OK) {
+        const uint32_t c = scratch->subdomain_cells.data[done++], fresh = gxp_new_index(body, c);
         if (fresh == GXP_NONE)
             result = gxp_cross_faces(body, c, node);
         else
@@ -3348,23 +3375,19 @@ static gx_result gxp_pair_node(gx_body *body, uint32_t node) {
 /* Where to start walks: each touched cell around its nodes; around pinched nodes, where walls break joints that they
    only touch in a point, every cell. */
 static gx_result gxp_collect_pairs(gx_body *body) {
-    uint32_t i, n;
+    gxp_scratch *scratch = &body->scratch;
+    uint32_t i;
     gx_result result = GX_OK;
-    body->scratch.pairs.count = 0;
-    result = gxp_keys_room(body, &body->scratch.pairs, 8 * (size_t)body->scratch.new_cells.count); /* sorting takes as
-                                                                                                      much again */
-    for (i = 0; i < body->scratch.new_cells.count && result == GX_OK; i++)
-        result = gxp_pair_cell(body, body->scratch.new_cells.data[i]);
-    for (i = 0; i < body->scratch.touched.count && result == GX_OK; i++)
-        if (!body->cells.data[body->scratch.touched.data[i]].kept)
-            result = gxp_pair_cell(body, body->scratch.touched.data[i]);
-    for (i = 0, n = body->scratch.pairs.count; i < n && result == GX_OK; i++)
-        if (body->mesh.node_pinched[GXP_FIRST(body->scratch.pairs.data[i])])
-            result = gxp_push(body, &body->scratch.pinches, GXP_FIRST(body->scratch.pairs.data[i]));
-    gxp_sort_unique(&body->scratch.pinches);
-    for (i = 0; i < body->scratch.pinches.count && result == GX_OK; i++)
-        result = gxp_pair_node(body, body->scratch.pinches.data[i]);
-    return result == GX_OK ? gxp_sort_keys(body, &body->scratch.pairs, 0, body->scratch.pairs.count) : result;
+    scratch->pairs.count = 0; /* room for twice as many: sorting takes as much again */
+    result = gxp_keys_room(body, &scratch->pairs, 8 * (size_t)scratch->new_cells.count);
+    for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++)
+        result = gxp_pair_cell(body, scratch->new_cells.data[i]);
+    for (i = 0; i < scratch->touched.count && result == GX_OK; i++)
+        if (!body->cells.data[scratch->touched.data[i]].kept) result = gxp_pair_cell(body, scratch->touched.data[i]);
+    if (result == GX_OK) result = gxp_add_pinches(body, &scratch->pairs);
+    for (i = 0; i < scratch->pinches.count && result == GX_OK; i++)
+        result = gxp_pair_node(body, scratch->pinches.data[i]);
+    return result == GX_OK ? gxp_sort_keys(body, &scratch->pairs, 0, scratch->pairs.count) : result;
 }
 
 /* Finds the pieces of the components around a node (pairs first ... end-1). Every piece of a component that fell apart
@@ -3373,23 +3396,24 @@ static gx_result gxp_collect_pairs(gx_body *body) {
    piece. all 0: only fresh cells are looked at, which tells the pieces apart unless a component has two open ones:
    *sure. */
 static gx_result gxp_find_subdomains(gx_body *body, uint32_t first, uint32_t end, int all, int *sure) {
-    const uint32_t node = GXP_FIRST(body->scratch.pairs.data[first]);
+    gxp_scratch *scratch = &body->scratch;
+    const uint32_t node = GXP_FIRST(scratch->pairs.data[first]);
     uint32_t i, open;
     gx_result result = GX_OK;
-    body->scratch.subdomain_cells.count = body->scratch.subdomains.count = body->scratch.taken.count = 0;
-    body->scratch.stamp++;
+    scratch->subdomain_cells.count = scratch->subdomains.count = scratch->taken.count = 0;
+    scratch->stamp++;
     *sure = all || !body->mesh.node_pinched[node];
     for (i = first; i < end && result == GX_OK && *sure; i++) {
-        const uint32_t cell = GXP_SECOND(body->scratch.pairs.data[i]), start = body->scratch.subdomain_cells.count,
+        const uint32_t cell = GXP_SECOND(scratch->pairs.data[i]), start = scratch->subdomain_cells.count,
                        copy = gxp_copy_of(body, cell, node);
-        if (!body->cells.data[cell].kept || body->cells.stamp[cell] == body->scratch.stamp) continue;
+        if (!body->cells.data[cell].kept || body->cells.stamp[cell] == scratch->stamp) continue;
         result = gxp_walk_subdomain(body, cell, node, all, &open);
-        if (open && gxp_contains(&body->scratch.taken, copy)) {
+        if (open && gxp_contains(&scratch->taken, copy)) {
             *sure = all;
             open = 0;
         }
-        if (result == GX_OK && open) result = gxp_push(body, &body->scratch.taken, copy);
-        if (result == GX_OK) result = gxp_push(body, &body->scratch.subdomains, start << 1 | open);
+        if (result == GX_OK && open) result = gxp_push(body, &scratch->taken, copy);
+        if (result == GX_OK) result = gxp_push(body, &scratch->subdomains, start << 1 | open);
     }
     return result;
 }
@@ -3398,20 +3422,21 @@ static gx_result gxp_find_subdomains(gx_body *body, uint32_t first, uint32_t end
    the first. Old copies that lost all cells join body->scratch.dead. */
 static gx_result gxp_divide_node(gxp_cut *cut, uint32_t first, uint32_t end) {
     gx_body *body = cut->body;
-    const uint32_t node = GXP_FIRST(body->scratch.pairs.data[first]);
+    gxp_scratch *scratch = &body->scratch;
+    const uint32_t node = GXP_FIRST(scratch->pairs.data[first]);
     uint32_t i;
     int sure = 0;
     gx_result result = gxp_find_subdomains(body, first, end, 0, &sure);
     if (result == GX_OK && !sure) result = gxp_find_subdomains(body, first, end, 1, &sure);
-    for (i = 0; i < body->scratch.subdomains.count && result == GX_OK; i++) {
-        const uint32_t from = body->scratch.subdomains.data[i] >> 1, to = i + 1 < body->scratch.subdomains.count
-                                                                            ? body->scratch.subdomains.data[i + 1] >> 1
-                                                                            : body->scratch.subdomain_cells.count;
-        const uint32_t old = gxp_copy_of(body, body->scratch.subdomain_cells.data[from], node);
+    for (i = 0; i < scratch->subdomains.count && result == GX_OK; i++) {
+        const uint32_t from = scratch->subdomains.data[i] >> 1, to = i + 1 < scratch->subdomains.count
+                                                                       ? scratch->subdomains.data[i + 1] >> 1
+                                                                       : scratch->subdomain_cells.count;
+        const uint32_t old = gxp_copy_of(body, scratch->subdomain_cells.data[from], node);
         uint32_t copy;
-        if (body->scratch.subdomains.data[i] & 1) continue;
-        if (!gxp_contains(&body->scratch.taken, old)) {
-            result = gxp_push(body, &body->scratch.taken, old);
+        if (scratch->subdomains.data[i] & 1) continue;
+        if (!gxp_contains(&scratch->taken, old)) {
+            result = gxp_push(body, &scratch->taken, old);
             continue;
         }
         result = gxp_new_copy(body, old, &copy);
@@ -3419,22 +3444,22 @@ static gx_result gxp_divide_node(gxp_cut *cut, uint32_t first, uint32_t end) {
         cut->report.created_copies++;
     }
     for (i = first; i < end && result == GX_OK; i++) {
-        const uint32_t cell = GXP_SECOND(body->scratch.pairs.data[i]), old = gxp_copy_of(body, cell, node);
-        if (!body->cells.data[cell].kept && !gxp_contains(&body->scratch.taken, old) &&
-            !gxp_contains(&body->scratch.dead, old))
-            result = gxp_push(body, &body->scratch.dead, old);
+        const uint32_t cell = GXP_SECOND(scratch->pairs.data[i]), old = gxp_copy_of(body, cell, node);
+        if (!body->cells.data[cell].kept && !gxp_contains(&scratch->taken, old) && !gxp_contains(&scratch->dead, old))
+            result = gxp_push(body, &scratch->dead, old);
     }
     return result;
 }
 
 static gx_result gxp_divide_nodes(gxp_cut *cut) {
     gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
     uint32_t first, end;
     gx_result result = gxp_collect_pairs(body);
-    body->scratch.dead.count = 0;
-    for (first = 0; first < body->scratch.pairs.count && result == GX_OK; first = end) {
-        for (end = first; end < body->scratch.pairs.count &&
-                          GXP_FIRST(body->scratch.pairs.data[end]) == GXP_FIRST(body->scratch.pairs.data[first]);
+    scratch->dead.count = 0;
+    for (first = 0; first < scratch->pairs.count && result == GX_OK; first = end) {
+        for (end = first;
+             end < scratch->pairs.count && GXP_FIRST(scratch->pairs.data[end]) == GXP_FIRST(scratch->pairs.data[first]);
              end++) {}
         result = gxp_divide_node(cut, first, end);
     }
@@ -3450,52 +3475,56 @@ static gx_result gxp_divide_nodes(gxp_cut *cut) {
    numbers for each, body->scratch.boundary.triangles the indices. Points of the parts before it are kept where they may
    be met again: parts of one element share those of its walls. */
 static void gxp_clear_boundary(gx_body *body, int other_element) {
-    if (other_element || body->scratch.boundary.points.count > 64) body->scratch.boundary.points.count = 0;
-    body->scratch.boundary.triangles.count = body->scratch.boundary.facets.count = 0;
+    gxp_scratch *scratch = &body->scratch;
+    gxp_boundary *boundary = &scratch->boundary;
+    if (other_element || boundary->points.count > 64) boundary->points.count = 0;
+    boundary->triangles.count = boundary->facets.count = 0;
 }
 
 static gx_result gxp_new_boundary_point(gx_body *body, uint32_t element, uint32_t point, uint32_t *index) {
+    gxp_boundary *boundary = &body->scratch.boundary;
     gx_result result = GX_OK;
-    if (point >= body->scratch.boundary.slots.count) {
-        result = gxp_words_room(body, &body->scratch.boundary.slots,
-                                gxb_complex_point_count(body->complex) - body->scratch.boundary.slots.count);
+    if (point >= boundary->slots.count) {
+        result = gxp_words_room(body, &boundary->slots, gxb_complex_point_count(body->complex) - boundary->slots.count);
         if (result != GX_OK) return result;
-        memset(body->scratch.boundary.slots.data + body->scratch.boundary.slots.count, 0xff,
-               (gxb_complex_point_count(body->complex) - body->scratch.boundary.slots.count) * sizeof(uint32_t));
-        body->scratch.boundary.slots.count = gxb_complex_point_count(body->complex);
+        memset(boundary->slots.data + boundary->slots.count, 0xff,
+               (gxb_complex_point_count(body->complex) - boundary->slots.count) * sizeof(uint32_t));
+        boundary->slots.count = gxb_complex_point_count(body->complex);
     }
-    result = gxp_reserve(&body->config.allocator, &body->scratch.boundary.lambdas, 4 * sizeof(double),
-                         body->scratch.boundary.points.count, &body->scratch.boundary.lambda_capacity, 1);
-    *index = body->scratch.boundary.points.count;
-    if (result == GX_OK) result = gxp_push(body, &body->scratch.boundary.points, point);
+    result = gxp_reserve(&body->config.allocator, &boundary->lambdas, 4 * sizeof(double), boundary->points.count,
+                         &boundary->lambda_capacity, 1);
+    *index = boundary->points.count;
+    if (result == GX_OK) result = gxp_push(body, &boundary->points, point);
     if (result != GX_OK) return result;
-    body->scratch.boundary.slots.data[point] = *index;
-    gxb_complex_barycentric(body->complex, point, element, body->scratch.boundary.lambdas + 4 * (size_t)*index);
+    boundary->slots.data[point] = *index;
+    gxb_complex_barycentric(body->complex, point, element, boundary->lambdas + 4 * (size_t)*index);
     return GX_OK;
 }
 
 static gx_result gxp_add_boundary_point(gx_body *body, uint32_t element, uint32_t point, uint32_t *index) {
-    *index = point < body->scratch.boundary.slots.count ? body->scratch.boundary.slots.data[point] : GXP_NONE;
-    return *index < body->scratch.boundary.points.count && body->scratch.boundary.points.data[*index] == point
+    gxp_boundary *boundary = &body->scratch.boundary;
+    *index = point < boundary->slots.count ? boundary->slots.data[point] : GXP_NONE;
+    return *index < boundary->points.count && boundary->points.data[*index] == point
              ? GX_OK
              : gxp_new_boundary_point(body, element, point, index);
 }
 
 /* Adds a facet as a fan of triangles; inward: the part is in front of it. */
 static gx_result gxp_add_boundary_facet(gx_body *body, uint32_t element, uint32_t facet, int inward) {
+    gxp_boundary *boundary = &body->scratch.boundary;
     gxb_complex *cx = body->complex;
     uint32_t e0, en, i, corner[3] = {0, 0, 0};
     gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
-    if (result == GX_OK) result = gxp_words_room(body, &body->scratch.boundary.triangles, 3 * (size_t)en);
+    if (result == GX_OK) result = gxp_words_room(body, &boundary->triangles, 3 * (size_t)en);
     for (i = 0; i < en && result == GX_OK; i++) {
         const uint32_t e = gxp_item(cx, e0 + i);
-        uint32_t *triangle = body->scratch.boundary.triangles.data + body->scratch.boundary.triangles.count;
+        uint32_t *triangle = boundary->triangles.data + boundary->triangles.count;
         result = gxp_add_boundary_point(body, element, gxb_complex_edge_start(cx, e), &corner[i < 2 ? i : 2]);
         if (i < 2) continue;
         triangle[0] = corner[0];
         triangle[inward ? 2 : 1] = corner[1];
         triangle[inward ? 1 : 2] = corner[2];
-        body->scratch.boundary.triangles.count += 3;
+        boundary->triangles.count += 3;
         corner[1] = corner[2];
     }
     return result;
@@ -3579,7 +3608,8 @@ static void gxp_fine_coordinates(gx_body *body, uint32_t element, uint32_t point
 
 /* Moments of the collected boundary in the frame with origin k, from coordinates with 180 bits. */
 static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, gxi_moments2 *m) {
-    const size_t size = body->scratch.boundary.points.count * sizeof(gxp_fine_point);
+    gxp_boundary *boundary = &body->scratch.boundary;
+    const size_t size = boundary->points.count * sizeof(gxp_fine_point);
     gxp_fine_point *points = (gxp_fine_point *)gxp_allocate(&body->config.allocator, size);
     gxp_fine_sums sums;
     unsigned axes[3];
@@ -3591,15 +3621,13 @@ static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, g
         sums.c[i].n = 0;
         sums.c[i].d = sums.limbs[i];
     }
-    for (i = 0; i < body->scratch.boundary.points.count; i++) points[i].c[0].d = NULL;
+    for (i = 0; i < boundary->points.count; i++) points[i].c[0].d = NULL;
     gxi_part_axes(k, axes);
-    for (t = 0; t + 2 < body->scratch.boundary.triangles.count; t += 3) {
+    for (t = 0; t + 2 < boundary->triangles.count; t += 3) {
         gxb_num *p[3][3];
+        for (a = 0; a < 3; a++) gxp_fine_coordinates(body, element, boundary->triangles.data[t + (uint32_t)a], points);
         for (a = 0; a < 3; a++)
-            gxp_fine_coordinates(body, element, body->scratch.boundary.triangles.data[t + (uint32_t)a], points);
-        for (a = 0; a < 3; a++)
-            for (c = 0; c < 3; c++)
-                p[a][c] = &points[body->scratch.boundary.triangles.data[t + (uint32_t)a]].c[axes[c]];
+            for (c = 0; c < 3; c++) p[a][c] = &points[boundary->triangles.data[t + (uint32_t)a]].c[axes[c]];
         gxp_fine_add(&sums, p);
     }
     m->volume = gxb_num_to_double(&sums.c[0]) / 6;
@@ -3616,14 +3644,15 @@ static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, g
 /* Over the cones from vertex k to the collected triangles, the sizes of what makes up their volumes: of a x b . c,
    whose terms take on the errors of the corners, and of a . (b - a) x (c - a), by which they are computed. */
 static double gxp_cone_volumes(const gx_body *body, unsigned k) {
+    const gxp_boundary *boundary = &body->scratch.boundary;
     unsigned axes[3], d;
     double sum = 0;
     uint32_t t;
     gxi_part_axes(k, axes);
-    for (t = 0; t + 2 < body->scratch.boundary.triangles.count; t += 3) {
-        const double *a = body->scratch.boundary.lambdas + 4 * (size_t)body->scratch.boundary.triangles.data[t],
-                     *b = body->scratch.boundary.lambdas + 4 * (size_t)body->scratch.boundary.triangles.data[t + 1];
-        const double *c = body->scratch.boundary.lambdas + 4 * (size_t)body->scratch.boundary.triangles.data[t + 2];
+    for (t = 0; t + 2 < boundary->triangles.count; t += 3) {
+        const double *a = boundary->lambdas + 4 * (size_t)boundary->triangles.data[t],
+                     *b = boundary->lambdas + 4 * (size_t)boundary->triangles.data[t + 1];
+        const double *c = boundary->lambdas + 4 * (size_t)boundary->triangles.data[t + 2];
         for (d = 0; d < 3; d++) {
             const unsigned x = axes[d], y = axes[(d + 1) % 3], z = axes[(d + 2) % 3];
             sum += a[x] * (b[y] * c[z] + b[z] * c[y] + fabs(b[y] - a[y]) * fabs(c[z] - a[z]) +
@@ -3635,12 +3664,12 @@ static double gxp_cone_volumes(const gx_body *body, unsigned k) {
 
 /* The vertex of the element that the collected triangles lie at */
 static unsigned gxp_nearest_vertex(const gx_body *body) {
+    const gxp_boundary *boundary = &body->scratch.boundary;
     double sum[4] = {0, 0, 0, 0};
     unsigned nearest = 0, k;
     uint32_t i;
-    for (i = 0; i < body->scratch.boundary.triangles.count; i++)
-        for (k = 0; k < 4; k++)
-            sum[k] += body->scratch.boundary.lambdas[4 * (size_t)body->scratch.boundary.triangles.data[i] + k];
+    for (i = 0; i < boundary->triangles.count; i++)
+        for (k = 0; k < 4; k++) sum[k] += boundary->lambdas[4 * (size_t)boundary->triangles.data[i] + k];
     for (k = 1; k < 4; k++)
         if (sum[k] > sum[nearest]) nearest = k;
     return nearest;
@@ -3649,19 +3678,19 @@ static unsigned gxp_nearest_vertex(const gx_body *body) {
 /* Moments of the collected boundary; *k: the vertex of the element that is their frame's origin. Seen from there, of
    the facets in faces of the element only those in the opposite one span cones. */
 static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned *k, gxi_moments2 *m) {
+    gxp_boundary *boundary = &body->scratch.boundary;
     const gxb_complex *cx = body->complex;
     uint32_t i;
     gx_result result = GX_OK;
     *k = gxp_nearest_vertex(body);
-    for (i = 0; i < body->scratch.boundary.facets.count && result == GX_OK; i++) {
-        const uint32_t facet = body->scratch.boundary.facets.data[i] >> 1;
+    for (i = 0; i < boundary->facets.count && result == GX_OK; i++) {
+        const uint32_t facet = boundary->facets.data[i] >> 1;
         if (gxb_complex_facet(cx, facet)->face == gxb_complex_element_faces(cx, element)[*k])
-            result = gxp_add_boundary_facet(body, element, facet, (int)(body->scratch.boundary.facets.data[i] & 1));
+            result = gxp_add_boundary_facet(body, element, facet, (int)(boundary->facets.data[i] & 1));
     }
     if (result == GX_OK)
-        result = gxi_part_moments_at(body->scratch.boundary.lambdas, body->scratch.boundary.points.count,
-                                     body->scratch.boundary.triangles.data, body->scratch.boundary.triangles.count / 3,
-                                     *k, m);
+        result = gxi_part_moments_at(boundary->lambdas, boundary->points.count, boundary->triangles.data,
+                                     boundary->triangles.count / 3, *k, m);
     if (result == GX_OK && m->volume < GXP_CANCELLATION * gxp_cone_volumes(body, *k))
         result = gxp_fine_moments(body, element, *k, m);
     return result;
@@ -3823,16 +3852,17 @@ static gx_result gxp_check_cut(gxp_cut *cut) {
 
 /* Removes what the solids have found. The cells of these leaves, and those beside them, are touched. */
 static gx_result gxp_remove_leaves(gx_body *body) {
+    gxp_scratch *scratch = &body->scratch;
     uint32_t i;
     gx_result result = GX_OK;
-    gxp_sort_unique(&body->scratch.removed);
-    for (i = 0; i < body->scratch.removed.count && result == GX_OK; i++) {
-        result = gxb_complex_set_removed(body->complex, body->scratch.removed.data[i]);
+    gxp_sort_unique(&scratch->removed);
+    for (i = 0; i < scratch->removed.count && result == GX_OK; i++) {
+        result = gxb_complex_set_removed(body->complex, scratch->removed.data[i]);
         if (result == GX_OK)
-            result = gxp_push(body, &body->scratch.touched, body->leaves.data[body->scratch.removed.data[i]].cell);
+            result = gxp_push(body, &scratch->touched, body->leaves.data[scratch->removed.data[i]].cell);
     }
-    for (i = 0; i < body->scratch.removed.count && result == GX_OK; i++)
-        result = gxp_touch_around(body, body->scratch.removed.data[i]);
+    for (i = 0; i < scratch->removed.count && result == GX_OK; i++)
+        result = gxp_touch_around(body, scratch->removed.data[i]);
     return result;
 }
 
@@ -3891,22 +3921,23 @@ static gx_result gxp_integrate_new(gx_body *body, uint32_t cell, uint32_t *befor
 /* Asks for what weighing the links of the next fresh cells reads: facets three ahead, their loops two ahead, the edges
  * of the next. */
 GXP_PREFETCHES void gxp_prefetch_links(const gx_body *body, uint32_t index) {
+    const gxp_scratch *scratch = &body->scratch;
     const gxb_complex *cx = body->complex;
-    const uint32_t *at = body->scratch.link_first.data;
-    const uint32_t count = body->scratch.new_cells.count;
+    const uint32_t *at = scratch->link_first.data;
+    const uint32_t count = scratch->new_cells.count;
     uint32_t j, i;
     if (index + 3 < count)
         for (j = at[index + 3]; j < at[index + 4]; j++)
-            GXP_PREFETCH(gxb_complex_facet(cx, GXP_LINK_FACET(body->scratch.links.data[j])));
+            GXP_PREFETCH(gxb_complex_facet(cx, GXP_LINK_FACET(scratch->links.data[j])));
     if (index + 2 < count)
         for (j = at[index + 2]; j < at[index + 3]; j++) {
-            const gxb_facet *f = gxb_complex_facet(cx, GXP_LINK_FACET(body->scratch.links.data[j]));
+            const gxb_facet *f = gxb_complex_facet(cx, GXP_LINK_FACET(scratch->links.data[j]));
             GXP_PREFETCH(gxb_complex_list(cx, f->loop));
             GXP_PREFETCH(&gxb_complex_plane(cx, f->plane)->axis);
         }
     if (index + 1 < count)
         for (j = at[index + 1]; j < at[index + 2]; j++) {
-            const gxb_facet *f = gxb_complex_facet(cx, GXP_LINK_FACET(body->scratch.links.data[j]));
+            const gxb_facet *f = gxb_complex_facet(cx, GXP_LINK_FACET(scratch->links.data[j]));
             for (i = 0; i < f->loop_count; i++) GXP_PREFETCH(gxb_complex_edge(cx, gxp_item(cx, f->loop + i) >> 1));
         }
 }
@@ -3914,16 +3945,17 @@ GXP_PREFETCHES void gxp_prefetch_links(const gx_body *body, uint32_t index) {
 /* Links are weighed here, where their facets are looked at anyway, unless they were before, to be severed. */
 static gx_result gxp_integrate(gxp_cut *cut) {
     gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
     const int weighed = cut->desc->sever_below > 0;
     double bound = 1;
     uint32_t i, before = GXP_NONE;
-    gx_result result = gxp_integrate_removed(cut, &body->scratch.removed);
-    body->scratch.narrow.count = 0;
-    body->scratch.stamp++;
-    for (i = 0; i < body->scratch.new_cells.count && result == GX_OK; i++) {
+    gx_result result = gxp_integrate_removed(cut, &scratch->removed);
+    scratch->narrow.count = 0;
+    scratch->stamp++;
+    for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++) {
         gxp_prefetch_links(body, i);
         if (!weighed) result = gxp_weigh_links(cut, i, &bound);
-        if (result == GX_OK) result = gxp_integrate_new(body, body->scratch.new_cells.data[i], &before);
+        if (result == GX_OK) result = gxp_integrate_new(body, scratch->new_cells.data[i], &before);
     }
     return result == GX_OK ? gxp_judge_links(cut, bound) : result;
 }
@@ -3943,6 +3975,7 @@ static gx_result gxp_push_leaf_elements(gx_body *body, uint32_t facet) {
    whose copies will be renumbered when dead ones are dropped. Elements noted in vain do no harm. */
 static gx_result gxp_note_for_skin(gxp_cut *cut, uint32_t first_facet) {
     gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
     const gxb_complex *cx = body->complex;
     uint32_t i, j;
     gx_result result = GX_OK;
@@ -3957,11 +3990,11 @@ static gx_result gxp_note_for_skin(gxp_cut *cut, uint32_t first_facet) {
         result = gxp_push_leaf_elements(body, gxb_complex_marked_facet(cx, i));
     for (i = 0; i < body->undo.cells.rows.count && result == GX_OK; i++)
         result = gxp_push(body, &body->skin.dirty, body->cells.data[body->undo.cells.rows.data[i]].element);
-    for (i = 0; i < body->scratch.pinches.count; i++) /* edges that were divided there without a new facet */
-        for (j = body->mesh.node_start[body->scratch.pinches.data[i]];
-             j < body->mesh.node_start[body->scratch.pinches.data[i] + 1] && result == GX_OK; j++)
+    for (i = 0; i < scratch->pinches.count; i++) /* edges that were divided there without a new facet */
+        for (j = body->mesh.node_start[scratch->pinches.data[i]];
+             j < body->mesh.node_start[scratch->pinches.data[i] + 1] && result == GX_OK; j++)
             result = gxp_push(body, &body->skin.dirty, body->mesh.node_elements[j]);
-    for (i = body->copies.count - body->scratch.dead.count; i < body->copies.count; i++) {
+    for (i = body->copies.count - scratch->dead.count; i < body->copies.count; i++) {
         const uint32_t node = body->copies.node[i];
         for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1] && result == GX_OK; j++)
             result = gxp_push(body, &body->skin.dirty, body->mesh.node_elements[j]);
@@ -4007,29 +4040,31 @@ static void gxp_note_changed(gx_body *body) {
 
 static void gxp_commit(gxp_cut *cut) {
     gx_body *body = cut->body;
+    gxp_view *view = &body->view;
+    gxp_scratch *scratch = &body->scratch;
     uint32_t i;
     gxp_note_changed(body);
-    for (i = 0; i < body->scratch.new_cells.count; i++)
-        gxp_touch_copies(body, &body->cells.data[body->scratch.new_cells.data[i]]);
-    for (i = 0; i < body->scratch.touched.count; i++) {
-        gxp_cell *cell = &body->cells.data[body->scratch.touched.data[i]];
+    for (i = 0; i < scratch->new_cells.count; i++)
+        gxp_touch_copies(body, &body->cells.data[scratch->new_cells.data[i]]);
+    for (i = 0; i < scratch->touched.count; i++) {
+        gxp_cell *cell = &body->cells.data[scratch->touched.data[i]];
         if (cell->kept) continue;
         gxp_touch_copies(body, cell); /* also what hung on it by an edge or node only */
         memset(cell->copies, 0xff, sizeof cell->copies);
     }
-    for (i = 0; i < body->scratch.removed.count; i++) body->leaves.data[body->scratch.removed.data[i]].next = GXP_NONE;
-    cut->report.removed_copies = body->scratch.dead.count;
-    gxp_sort_unique(&body->scratch.dead);
-    for (i = body->scratch.dead.count; i-- > 0;) gxp_drop_copy(body, body->scratch.dead.data[i]);
+    for (i = 0; i < scratch->removed.count; i++) body->leaves.data[scratch->removed.data[i]].next = GXP_NONE;
+    cut->report.removed_copies = scratch->dead.count;
+    gxp_sort_unique(&scratch->dead);
+    for (i = scratch->dead.count; i-- > 0;) gxp_drop_copy(body, scratch->dead.data[i]);
     gxb_complex_commit(body->complex);
     body->undo.cells.rows.count = body->undo.leaves.rows.count = 0;
     body->cuts.hash = gxp_hash_cut(body->cuts.hash, cut->desc);
     if (cut->report.created_copies + cut->report.removed_copies > 0)
         body->cuts.epoch = body->cuts.hash != 0 ? body->cuts.hash : 1;
-    body->holds.stale = body->view.stale = body->snapshot.stale = 1;
-    if (body->scratch.removed.count + body->scratch.dead.count > 0 || body->view.splits.count > body->copies.count)
-        body->view.labels_known = 0;
-    if (!body->view.labels_known) body->view.splits.count = 0;
+    body->holds.stale = view->stale = body->snapshot.stale = 1;
+    if (scratch->removed.count + scratch->dead.count > 0 || view->splits.count > body->copies.count)
+        view->labels_known = 0;
+    if (!view->labels_known) view->splits.count = 0;
 }
 
 GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report, gx_failure *failure) {
@@ -4633,13 +4668,14 @@ static void gxp_add_rotation(const gxp_cell *cell, double x[4][3], double v[4][3
 
 /* Mass, centre and velocity of all fragments */
 static void gxp_find_centers(const gx_body *body, gx_motion *motions) {
+    const gxp_view *view = &body->view;
     static const double zero[3] = {0, 0, 0};
     uint32_t i;
     int k;
-    memset(motions, 0, body->view.fragment_count * sizeof *motions);
-    for (i = 0; i < body->view.count; i++) {
-        const gxp_cell *cell = &body->cells.data[body->view.slot[i]];
-        gx_motion *motion = &motions[body->view.fragment[i]];
+    memset(motions, 0, view->fragment_count * sizeof *motions);
+    for (i = 0; i < view->count; i++) {
+        const gxp_cell *cell = &body->cells.data[view->slot[i]];
+        gx_motion *motion = &motions[view->fragment[i]];
         double x[4][3], v[4][3];
         gxp_cell_corners(body, cell, 1, zero, x);
         gxp_cell_velocities(body, cell, zero, v);
@@ -4647,7 +4683,7 @@ static void gxp_find_centers(const gx_body *body, gx_motion *motions) {
         gxp_add_first_moment(cell, x, motion->center);
         gxp_add_first_moment(cell, v, motion->velocity);
     }
-    for (i = 0; i < body->view.fragment_count; i++)
+    for (i = 0; i < view->fragment_count; i++)
         for (k = 0; k < 3 && motions[i].mass > 0; k++) {
             motions[i].center[k] /= motions[i].mass;
             motions[i].velocity[k] /= motions[i].mass;
@@ -4772,21 +4808,22 @@ static int gxp_is_thin(const gx_body *body, uint32_t element) {
 
 /* Brings the list of thin elements up to date: all anew, or those that have changed. */
 static gx_result gxp_list_thin(gx_body *body, int anew) {
-    const uint32_t looked_at = anew ? body->mesh.element_count : body->model.changed.count;
+    gxp_model *model = &body->model;
+    const uint32_t looked_at = anew ? body->mesh.element_count : model->changed.count;
     gx_result result = GX_OK;
     uint32_t i, k, count = 0;
-    for (i = k = 0; i < body->model.thin.count && !anew; i++) {
-        while (k < body->model.changed.count && body->model.changed.data[k] < body->model.thin.data[i]) k++;
-        if (k == body->model.changed.count || body->model.changed.data[k] != body->model.thin.data[i])
-            body->model.thin.data[count++] = body->model.thin.data[i];
+    for (i = k = 0; i < model->thin.count && !anew; i++) {
+        while (k < model->changed.count && model->changed.data[k] < model->thin.data[i]) k++;
+        if (k == model->changed.count || model->changed.data[k] != model->thin.data[i])
+            model->thin.data[count++] = model->thin.data[i];
     }
-    body->model.thin.count = count;
+    model->thin.count = count;
     for (i = 0; i < looked_at && result == GX_OK; i++) {
-        const uint32_t element = anew ? i : body->model.changed.data[i];
-        if (gxp_is_thin(body, element)) result = gxp_push(body, &body->model.thin, element);
+        const uint32_t element = anew ? i : model->changed.data[i];
+        if (gxp_is_thin(body, element)) result = gxp_push(body, &model->thin, element);
     }
-    gxp_sort_unique(&body->model.thin);
-    if (result != GX_OK) body->model.state = GXP_MODEL_STALE; /* the list is not whole */
+    gxp_sort_unique(&model->thin);
+    if (result != GX_OK) model->state = GXP_MODEL_STALE; /* the list is not whole */
     return result;
 }
 
@@ -4857,14 +4894,13 @@ static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *of, uint32_t co
    that of the element, which is 4 (1/10 - 1/16). A crumb of an element's corner reaches as far as it is large, a layer
    of any thickness about as far as the element. */
 static double gxp_cell_reach(const gxp_cell *cell) {
-    static const int rows[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
-    double mass = 0, trace = 0, row;
+    double mass = 0, trace = 0;
     int i, k;
     for (i = 0; i < 4; i++)
-        for (k = 0; k < 4; k++) mass += cell->mass[rows[i][k]];
+        for (k = 0; k < 4; k++) mass += cell->mass[gxp_mass_at[i][k]];
     for (i = 0; i < 4 && mass > 0; i++) {
-        for (k = 0, row = 0; k < 4; k++) row += cell->mass[rows[i][k]];
-        trace += cell->mass[rows[i][i]] / mass - row / mass * (row / mass);
+        const double mean = gxp_mass_row(cell->mass, i) / mass;
+        trace += cell->mass[gxp_mass_at[i][i]] / mass - mean * mean;
     }
     return trace > 0 ? sqrt(trace / 0.15) : 0;
 }
@@ -5039,30 +5075,29 @@ static gx_result gxp_make_model(gx_body *body, gxs_model *model) {
 /* The solver's model changed as the body was. Errors: besides MEMORY LIMIT and, if nothing is left, EMPTY: it is to be
  * set anew. */
 static gx_result gxp_change_model(gx_body *body) {
+    gxp_model *model = &body->model;
     size_t room = 0;
     uint32_t i, cell;
     gxs_change change;
     gx_result result;
-    gxp_sort_unique(&body->model.changed);
-    for (i = 0; i < body->model.changed.count; i++)
-        for (cell = body->model.changed.data[i]; cell != GXP_NONE; cell = body->cells.data[cell].next) room++;
-    result = gxp_reserve(&body->config.allocator, &body->model.parts, sizeof *body->model.parts, 0,
-                         &body->model.part_capacity, room);
-    body->model.part_count = 0;
-    for (i = 0; i < body->model.changed.count && result == GX_OK; i++)
-        result = gxp_add_parts(body, body->model.changed.data[i]);
+    gxp_sort_unique(&model->changed);
+    for (i = 0; i < model->changed.count; i++)
+        for (cell = model->changed.data[i]; cell != GXP_NONE; cell = body->cells.data[cell].next) room++;
+    result = gxp_reserve(&body->config.allocator, &model->parts, sizeof *model->parts, 0, &model->part_capacity, room);
+    model->part_count = 0;
+    for (i = 0; i < model->changed.count && result == GX_OK; i++) result = gxp_add_parts(body, model->changed.data[i]);
     if (result == GX_OK) result = gxp_list_thin(body, 0);
     if (result == GX_OK) result = gxp_make_constraints(body);
     memset(&change, 0, sizeof change);
     change.copy_count = body->copies.count;
     change.origins = body->copies.before;
     change.held = body->copies.held;
-    change.groups = body->model.changed.data;
-    change.group_count = body->model.changed.count;
-    change.elements = body->model.parts;
-    change.element_count = body->model.part_count;
-    change.constraints = body->model.constraints;
-    change.constraint_count = body->model.constraint_count;
+    change.groups = model->changed.data;
+    change.group_count = model->changed.count;
+    change.elements = model->parts;
+    change.element_count = model->part_count;
+    change.constraints = model->constraints;
+    change.constraint_count = model->constraint_count;
     change.epoch = body->cuts.epoch;
     return result == GX_OK ? gxs_solver_update(body->solver, &change, NULL) : result;
 }
@@ -5090,27 +5125,28 @@ static void gxp_release_model(gx_body *body) {
 
 /* The solver's model, after a cut or a hold only. The solver copies it, so that it need not be kept. */
 static gx_result gxp_update_model(gx_body *body) {
+    gxp_model *model = &body->model;
     gx_result result = gxp_update_held(body);
     uint32_t i;
-    if (result != GX_OK || body->model.state == GXP_MODEL_KNOWN) {
+    if (result != GX_OK || model->state == GXP_MODEL_KNOWN) {
         gxp_release_model(body);
         return result;
     }
-    if (body->model.state == GXP_MODEL_CHANGED) {
+    if (model->state == GXP_MODEL_CHANGED) {
         result = gxp_change_model(body);
-        body->model.state = result == GX_OK ? GXP_MODEL_KNOWN : GXP_MODEL_STALE;
-        body->model.updated = 1;
+        model->state = result == GX_OK ? GXP_MODEL_KNOWN : GXP_MODEL_STALE;
+        model->updated = 1;
         if (result == GX_ERROR_LIMIT || result == GX_ERROR_EMPTY) result = GX_OK;
     }
-    if (result == GX_OK && body->model.state == GXP_MODEL_STALE) {
+    if (result == GX_OK && model->state == GXP_MODEL_STALE) {
         result = gxp_set_model(body);
         if (result == GX_OK) {
-            body->model.state = GXP_MODEL_KNOWN;
-            body->model.updated = 0;
+            model->state = GXP_MODEL_KNOWN;
+            model->updated = 0;
         }
     }
     gxp_release_model(body);
-    body->model.changed.count = 0;
+    model->changed.count = 0;
     for (i = 0; i < body->copies.count; i++) body->copies.before[i] = 2 * i;
     return result;
 }
@@ -5530,13 +5566,14 @@ static gx_result gxp_note_vertex(gx_body *body, uint32_t vertex) {
 
 static gx_result gxp_find_vertex(gx_body *body, const gxp_skin_face *face, uint32_t point, uint32_t *vertex) {
     gxp_skin *s = &body->skin;
-    gx_result result = gxp_vertex_room(body);
     gxp_skin_key key;
-    if (result != GX_OK) return result;
+    gx_result result;
     gxp_make_key(body, face, point, &key);
-    for (*vertex = *gxp_vertex_bucket(s, &key); *vertex != GXP_NONE; *vertex = s->vertices[*vertex].next)
+    *vertex = s->vertex_buckets.count > 0 ? *gxp_vertex_bucket(s, &key) : GXP_NONE;
+    for (; *vertex != GXP_NONE; *vertex = s->vertices[*vertex].next)
         if (memcmp(&s->vertices[*vertex].key, &key, sizeof key) == 0) return gxp_note_vertex(body, *vertex);
-    result = gxp_add_vertex(body, face, &key, vertex);
+    result = gxp_vertex_room(body);
+    if (result == GX_OK) result = gxp_add_vertex(body, face, &key, vertex);
     return result == GX_OK ? gxp_note_vertex(body, *vertex) : result;
 }
 
