@@ -459,8 +459,7 @@ extern "C" {
 #if defined(__GNUC__)
 #define GXP_PREFETCH(address) __builtin_prefetch(address)
 #define GXP_PREFETCHES                                                                                                 \
-    static inline __attribute__((always_inline)) /* nothing else: gcc takes such a function for one without effect,    \
-                                                    and drops calls */
+    static inline __attribute__((always_inline)) /* without it gcc takes such a function for pure and drops calls */
 #else
 #define GXP_PREFETCH(address) ((void)0)
 #define GXP_PREFETCHES        static inline
@@ -1183,7 +1182,8 @@ static size_t gxp_row_size(uint32_t table, uint32_t use) {
 /* >>basics: sorting, hashing, sets, vectors ------------------------------------------------------------------------ */
 /* Small functions that know nothing of a body. They change nothing but what they are given. */
 
-/* Ascending, by the bits from `bit` down: those without it first [radix exchange, Hildebrandt and Isbitz 1959] */
+/* Sorts ascending by the bits from `bit` down; words without the bit come first [radix exchange, Hildebrandt and Isbitz
+   1959]. */
 static void gxp_sort_by_bits(uint32_t *w, uint32_t count, uint32_t bit) {
     while (count > 1 && bit != 0) {
         uint32_t i = 0, j = count;
@@ -1224,8 +1224,8 @@ static void gxp_sort_few_keys(uint64_t *key, uint32_t count) {
     }
 }
 
-/* Sorts keys from ... to-1, ascending: few by insertion, many by digits of 8 bits from the lowest on, but those in
-   which all agree [radix sort, Knuth vol. 3, 5.2.5]. */
+/* Sorts keys from ... to-1, ascending. Few keys are sorted by insertion, many by digits of 8 bits from the lowest on;
+   digits in which all keys agree are skipped [radix sort, Knuth vol. 3, 5.2.5]. */
 static gx_result gxp_sort_keys(gx_body *body, gxp_keys *keys, uint32_t from, uint32_t to) {
     const uint32_t n = to - from;
     const gx_result result = n > 64 ? gxp_keys_room(body, keys, n) : GX_OK;
@@ -1311,7 +1311,7 @@ static uint64_t gxp_mix(uint64_t x) { /* splitmix64's finaliser */
     return x ^ (x >> 31);
 }
 
-/* By words of 8 bytes, the last one filled up with 0 */
+/* Hashes words of 8 bytes; the last one is filled up with zeros. */
 static uint64_t gxp_hash_bytes(uint64_t hash, const unsigned char *bytes, size_t count) {
     uint64_t word;
     hash = gxp_mix(hash ^ count);
@@ -1340,7 +1340,7 @@ static uint64_t gxp_hash_doubles(uint64_t hash, const double *x, size_t count) {
     return hash;
 }
 
-/* count x 2, or NULL */
+/* texture: count x 2, or NULL */
 static uint64_t gxp_hash_texture(uint64_t hash, const float *texture, size_t count) {
     size_t i;
     hash = gxp_mix(hash ^ (texture != NULL));
@@ -1354,7 +1354,7 @@ static uint64_t gxp_hash_texture(uint64_t hash, const float *texture, size_t cou
 
 static double gxp_dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/* n made of length 1, however long it is. 0: it has no length, or is not finite, and unit is left alone. */
+/* Scales n, of any length, to length 1. Returns 0 and leaves unit alone if n is zero or not finite. */
 static int gxp_unit(const double n[3], double unit[3]) {
     double m[3] = {n[0], n[1], n[2]}, square = gxp_dot(n, n);
     int exponent, k;
@@ -1370,7 +1370,7 @@ static int gxp_unit(const double n[3], double unit[3]) {
     return 1;
 }
 
-/* (b - a) x (c - a) of a triangle's corners */
+/* n = (b - a) x (c - a) of the triangle's corners */
 static void gxp_triangle_normal(const double *x, const uint32_t *t, double n[3]) {
     const double *a = x + 3 * (size_t)t[0], *b = x + 3 * (size_t)t[1], *c = x + 3 * (size_t)t[2];
     const double p[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, q[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
@@ -1388,7 +1388,7 @@ static double gxp_seconds(const gx_body *body) {
    gx_body_create copied. Out: numbers, and at creation the tree of boxes over the elements (median split). Nothing here
    changes after the creation. */
 
-/* nodes of the face opposite to each */
+/* Nodes of the face opposite to each node, counter-clockwise from outside */
 static const uint8_t gxp_outward[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
 static const uint8_t gxp_edge_nodes[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
@@ -1398,7 +1398,7 @@ static int gxp_local_node(const gx_body *body, uint32_t element, uint32_t node) 
     return (n[0] == node) + 2 * (n[1] == node) + 3 * (n[2] == node) + 4 * (n[3] == node) - 1;
 }
 
-/* The local node of the element that the face does not have */
+/* The local number of the element's node that is not on the face */
 static uint32_t gxp_local_face(const gxb_complex *cx, uint32_t element, uint32_t face) {
     const uint32_t *faces = gxb_complex_element_faces(cx, element);
     return 3 - 3 * (uint32_t)(faces[0] == face) - 2 * (uint32_t)(faces[1] == face) - (uint32_t)(faces[2] == face);
@@ -1410,7 +1410,7 @@ static uint32_t gxp_neighbour(const gx_body *body, uint32_t element, uint32_t k)
     return pair[0] == element ? pair[1] : pair[0];
 }
 
-/* An element with the face, and the node of it that the face does not have. */
+/* Returns an element with the face; *k: its node that is not on the face. */
 static uint32_t gxp_face_element(const gxb_complex *cx, uint32_t face, uint32_t *k) {
     const uint32_t *pair = gxb_complex_face_elements(cx, face), element = pair[pair[0] == GXB_NONE];
     *k = gxp_local_face(cx, element, face);
@@ -1442,7 +1442,7 @@ static double gxp_element_volume(const gx_body *body, uint32_t element) {
     return gxi_tet_volume(x);
 }
 
-/* Doubles may see an element as inverted that is not, as the solver would. */
+/* Is the element inverted in doubles, as the solver would see it, though it is not exactly? */
 static int gxp_rounds_inverted(const gx_body *body, uint32_t element) {
     double x[12], gradients[12];
     gxp_element_positions(body, element, x);
@@ -1478,7 +1478,7 @@ static double gxp_element_key(const gx_body *body, uint32_t element, int axis) {
            x[3 * (size_t)n[3]] * 0.25;
 }
 
-/* Partial order: the element of rank middle stands at middle, smaller keys before it (Hoare's FIND). */
+/* Partial order: puts the element of rank middle at middle and smaller keys before it (Hoare's FIND). */
 static void gxp_select(const gx_body *body, uint32_t *e, int64_t count, int64_t middle, int axis) {
     int64_t low = 0, high = count - 1;
     while (low < high) {
@@ -1527,26 +1527,25 @@ static void gxp_build_boxes(gx_body *body) {
 /* In: a triangle. Out: a list of elements, all that the triangle meets and few others. Rounding adds candidates and
    never loses one: what is exact is decided by the complex. */
 
-/* A triangle whose elements are looked for. Differences are multiplied by a power of two, the frame's, so that no
- * product leaves the range. */
+/* A triangle whose elements are searched. Differences are multiplied by the frame's power of two, so that all products
+   stay in range. */
 typedef struct gxp_search {
     const double *base; /* its first corner */
     double unit, low[3], high[3];
     double axis[4][3]; /* the normal; of each edge the normal in the triangle's plane, outward */
-    double scale[4];   /* size of the products of which they are made */
-    double offset[4];  /* along them, of the triangle's plane and edges from the base */
+    double scale[4];   /* size of the products that make up the axis */
+    double offset[4];  /* of the triangle's plane and edges along the axes, from the base */
     /* size of the coordinates of this triangle and of any element: below 2^135, and heights are products of 7 such
      * numbers at most */
     double far;
 } gxp_search;
 
-#define GXP_SEARCH_MARGIN                                                                                              \
-    1e-12 /* of the terms' size: far above the rounding, so that rounding only adds candidates                         \
-           */
+/* Share of the terms' size, far above their rounding, so that rounding only adds candidates */
+#define GXP_SEARCH_MARGIN 1e-12
 
 static double gxp_size(const double a[3]) { return fabs(a[0]) + fabs(a[1]) + fabs(a[2]); }
 
-/* a x b; returns the size of its terms. */
+/* axis = a x b. Returns the size of its terms. */
 static double gxp_search_axis(const double a[3], const double b[3], double axis[3]) {
     axis[0] = a[1] * b[2] - a[2] * b[1];
     axis[1] = a[2] * b[0] - a[0] * b[2];
@@ -1554,13 +1553,13 @@ static double gxp_search_axis(const double a[3], const double b[3], double axis[
     return gxp_size(a) * gxp_size(b);
 }
 
-/* (x - base) unit */
+/* d = (x - base) unit */
 static void gxp_search_vector(const gxp_search *s, const double *x, double d[3]) {
     int k;
     for (k = 0; k < 3; k++) d[k] = (x[k] - s->base[k]) * s->unit;
 }
 
-/* all: the box of all elements */
+/* all: the box around all elements */
 static void gxp_search_init(gxp_search *s, const double *const p[3], double unit, const gxp_box *all) {
     double d[3][3], e[3];
     int i, k;
@@ -1584,7 +1583,7 @@ static void gxp_search_init(gxp_search *s, const double *const p[3], double unit
     }
 }
 
-/* May the triangle meet the box? One branch for all axes, since which of them tells can't be predicted. */
+/* May the triangle meet the box? The axes share one branch, since no one can predict which of them decides. */
 static int gxp_triangle_near_box(const gxp_search *s, const gxp_box *box) {
     double sum = 0, r = 0;
     int k, beyond = 0;
@@ -1601,12 +1600,12 @@ static int gxp_triangle_near_box(const gxp_search *s, const gxp_box *box) {
     return fabs(sum) <= r + GXP_SEARCH_MARGIN * s->scale[0] * s->far;
 }
 
-/* Heights of the element's nodes along an axis, and how far they may be off */
+/* Heights of the element's nodes along an axis, and their largest error */
 typedef struct gxp_heights {
     double at[4], margin;
 } gxp_heights;
 
-/* x: the nodes' coordinates from the base, by axis */
+/* x: coordinates of the nodes from the base, by axis */
 static void gxp_set_heights(const gxp_search *s, int i, double x[3][4], gxp_heights *h) {
     int n;
     for (n = 0; n < 4; n++)
@@ -1614,9 +1613,9 @@ static void gxp_set_heights(const gxp_search *s, int i, double x[3][4], gxp_heig
     h->margin = GXP_SEARCH_MARGIN * s->scale[i] * s->far;
 }
 
-/* Does the element meet the triangle's plane (over: heights of its nodes) beyond one of its edges (along) only? Where
-   an edge of the element crosses the plane, the height along is (along_i |over_j| + along_j |over_i|) / (|over_i| +
-   |over_j|). */
+/* Is the element's section with the triangle's plane beyond one of its edges? over: heights of the nodes above the
+   plane; along: heights across the edge. Where an edge of the element crosses the plane, the height along is (along_i
+   |over_j| + along_j |over_i|) / (|over_i| + |over_j|). */
 static int gxp_section_is_beyond(const gxp_heights *over, const gxp_heights *along) {
     int i, j;
     for (i = 0; i < 4; i++) {
@@ -1632,19 +1631,20 @@ static int gxp_section_is_beyond(const gxp_heights *over, const gxp_heights *alo
     return 1;
 }
 
-/* Least and greatest of four */
+/* Least of four */
 static double gxp_least(const double x[4]) {
     const double a = x[0] < x[1] ? x[0] : x[1], b = x[2] < x[3] ? x[2] : x[3];
     return a < b ? a : b;
 }
 
+/* Greatest of four */
 static double gxp_greatest(const double x[4]) {
     const double a = x[0] > x[1] ? x[0] : x[1], b = x[2] > x[3] ? x[2] : x[3];
     return a > b ? a : b;
 }
 
-/* May the triangle meet the element? Not if a plane along the axes or its own has the element beyond it, or one along
-   an edge across it what of the element is in the triangle's plane. */
+/* May the triangle meet the element? It does not if a plane separates them: one across a coordinate axis, the
+   triangle's own, or one through an edge of the triangle beyond which the element's section lies. */
 static int gxp_triangle_near_element(const gx_body *body, const gxp_search *s, uint32_t element) {
     const uint32_t *node = gxb_complex_element_nodes(body->complex, element);
     double x[3][4];
@@ -1670,8 +1670,8 @@ static int gxp_triangle_near_element(const gx_body *body, const gxp_search *s, u
     return 1;
 }
 
-/* Finds the elements that the triangle may meet: those in boxes that it may meet are listed first, so that what there
-   is to read of them comes while others are looked at. */
+/* Finds the elements that the triangle may meet. Elements in boxes that it may meet are listed first, so that their
+   data can be prefetched before each is examined. */
 static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_words *found) {
     const uint32_t *elements = gxb_complex_element_nodes(body->complex, 0);
     gxp_search search;
@@ -1708,11 +1708,12 @@ static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_
 /* The columns of copies, cells and leaves, each listed once with what is done with it. In: a body. Out: room for more
    rows, rows that are moved, the state as a hash. Touches these tables only. */
 
+/* The copy of a node that moves the cell */
 static uint32_t gxp_copy_of(const gx_body *body, uint32_t cell, uint32_t node) {
     return body->cells.data[cell].copies[gxp_local_node(body, body->cells.data[cell].element, node)];
 }
 
-/* Room beside new leaves of the complex; new leaves start in their parent's cell, outside its list. */
+/* Adds a row for each new leaf of the complex. It starts in its parent's cell, outside the cell's list. */
 static gx_result gxp_follow_leaves(gx_body *body) {
     const uint32_t count = gxb_complex_leaf_count(body->complex);
     const gx_result result = gxp_grow_rows(body, GXP_LEAVES, count - body->leaves.count);
@@ -1731,8 +1732,8 @@ static uint64_t gxp_hash_state(const gx_body *body, size_t copies) {
            1;
 }
 
-/* Since the body was saved, copied or read its solver knows of no step: if the state of its first copies has been
-   written, all wakes, in a copy as in the original. */
+/* After saving, copying or reading, the solver has no previous step. If the state of the copies was written since then,
+   wakes all of them, in a copy as in the original. */
 static void gxp_wake_resumed(gx_body *body, size_t copies) {
     uint32_t i;
     if (body->model.resumed == 0 || body->model.resumed == gxp_hash_state(body, copies)) return;
@@ -1744,7 +1745,7 @@ static void gxp_wake_resumed(gx_body *body, size_t copies) {
    the complex's own log take it back. Every change of a cell or leaf that the cut did not make goes through here first.
  */
 
-/* What one cut works with. */
+/* What the steps of one cut pass on */
 typedef struct gxp_cut {
     gx_body *body;
     const gx_cut_desc *desc;
@@ -1761,7 +1762,7 @@ static gx_result gxp_log_room(gx_body *body, gxp_log *log, size_t rows) {
                                          &log->byte_capacity, rows * size);
 }
 
-/* Passes the columns of a row that are undone from the table to bytes, or back. */
+/* Copies the undone columns of a row to bytes, or back from them. */
 static void gxp_pass_undone(gx_body *body, uint32_t table, uint32_t row, unsigned char *bytes, int back) {
     const gxp_column *column = gxp_tables[table].columns, *end = column + gxp_tables[table].column_count;
     for (; column < end; column++) {
@@ -1780,7 +1781,7 @@ static gx_result gxp_log_row(gx_body *body, gxp_log *log, uint32_t table, uint32
     return GX_OK;
 }
 
-/* Puts rows back, the last one first. */
+/* Puts logged rows back, the last one first. */
 static void gxp_undo_rows(gx_body *body, gxp_log *log, uint32_t table) {
     while (log->rows.count > 0) {
         log->rows.count--;
@@ -1789,7 +1790,7 @@ static void gxp_undo_rows(gx_body *body, gxp_log *log, uint32_t table) {
     }
 }
 
-/* Logs a cell that is about to change, unless this cut has logged or made it. */
+/* Logs a cell before it changes, unless this cut has logged or made it. */
 static gx_result gxp_save_cell(gx_body *body, uint32_t cell) {
     gx_result result;
     if (body->cells.saved_by[cell] == body->undo.cut_number) return GX_OK;
@@ -1798,7 +1799,7 @@ static gx_result gxp_save_cell(gx_body *body, uint32_t cell) {
     return result;
 }
 
-/* Gives a leaf to a cell. Leaves that this cut made need no log. */
+/* Gives a leaf to a cell. Leaves that this cut made are not logged. */
 static gx_result gxp_set_leaf(gx_body *body, uint32_t leaf, uint32_t cell, uint32_t next) {
     if (leaf < body->undo.counts[GXP_LEAVES]) {
         const gx_result result = gxp_log_row(body, &body->undo.leaves, GXP_LEAVES, leaf);
@@ -1842,20 +1843,20 @@ static void gxp_rollback(gxp_cut *cut) {
 /* Lists that are read off the complex: points of leaves and facets, leaves below a tree, facets and edges by what they
    were divided into. Resolving such lists may renew them within the complex; nothing else changes. */
 
-/* An entry of a list of the complex. Resolving a list moves others, so that no pointer into one is kept. */
+/* An entry of a list of the complex. Resolving a list may move the others, so no pointer into a list is kept. */
 static uint32_t gxp_item(const gxb_complex *cx, uint32_t place) { return *gxb_complex_list(cx, place); }
 
 static int gxp_is_kept(const gx_body *body, uint32_t leaf) {
     return leaf != GXB_NONE && !gxb_complex_leaf(body->complex, leaf)->removed;
 }
 
-/* Is the facet a link? */
+/* Is the facet a link, or open inside an element? */
 static int gxp_is_link(const gx_body *body, uint32_t facet) {
     const gxb_facet *f = gxb_complex_facet(body->complex, facet);
     return !f->wall && gxp_is_kept(body, f->leaf[0]) && gxp_is_kept(body, f->leaf[1]);
 }
 
-/* Collects the leaf's points in body->scratch.leaf_points. */
+/* Collects the points of a leaf in scratch.leaf_points; points of several facets appear several times. */
 static gx_result gxp_collect_leaf_points(gx_body *body, uint32_t leaf) {
     gxb_complex *cx = body->complex;
     uint32_t first, count = 0, i, j, e0, en;
@@ -1872,7 +1873,7 @@ static gx_result gxp_collect_leaf_points(gx_body *body, uint32_t leaf) {
     return result;
 }
 
-/* Collects the facet's corners in body->scratch.facet_points. */
+/* Collects the corners of a facet in scratch.facet_points. */
 static gx_result gxp_collect_facet_points(gx_body *body, uint32_t facet) {
     gxp_scratch *scratch = &body->scratch;
     gxb_complex *cx = body->complex;
@@ -1885,7 +1886,7 @@ static gx_result gxp_collect_facet_points(gx_body *body, uint32_t facet) {
     return result;
 }
 
-/* Appends the leaves below a reference of an element's tree. */
+/* Appends the leaves below a reference to an element's tree. */
 static gx_result gxp_push_leaves(gx_body *body, uint32_t reference, gxp_words *out) {
     const gxb_node *node = gxb_complex_tree_node(body->complex, reference >> 1);
     gx_result result;
@@ -1894,7 +1895,7 @@ static gx_result gxp_push_leaves(gx_body *body, uint32_t reference, gxp_words *o
     return result == GX_OK ? gxp_push_leaves(body, node->child[1], out) : result;
 }
 
-/* Appends the edges of the complex into which this one has been divided. */
+/* Appends the undivided edges that make up an edge of the complex. */
 static gx_result gxp_push_divided_edges(gx_body *body, uint32_t edge, gxp_words *out) {
     const uint32_t child = gxb_complex_edge(body->complex, edge)->child;
     gx_result result;
@@ -1903,7 +1904,7 @@ static gx_result gxp_push_divided_edges(gx_body *body, uint32_t edge, gxp_words 
     return result == GX_OK ? gxp_push_divided_edges(body, child + 1, out) : result;
 }
 
-/* Appends the facets into which this one has been divided. */
+/* Appends the undivided facets that make up a facet. */
 static gx_result gxp_push_divided_facets(gx_body *body, uint32_t facet, gxp_words *out) {
     const uint32_t child = gxb_complex_facet(body->complex, facet)->child;
     gx_result result;
@@ -1912,7 +1913,7 @@ static gx_result gxp_push_divided_facets(gx_body *body, uint32_t facet, gxp_word
     return result == GX_OK ? gxp_push_divided_facets(body, child + 1, out) : result;
 }
 
-/* Appends to seeds the leaves on both sides of the facets into which the labelled ones have been divided. */
+/* Appends the leaves on both sides of the undivided facets that make up a facet. */
 static gx_result gxp_wall_leaves(gx_body *body, uint32_t facet, gxp_words *seeds) {
     const gxb_facet *f = gxb_complex_facet(body->complex, facet);
     gx_result result = GX_OK;
@@ -1926,13 +1927,13 @@ static gx_result gxp_wall_leaves(gx_body *body, uint32_t facet, gxp_words *seeds
     return result;
 }
 
-/* Is the mesh edge divided, or its piece of an outer face? */
+/* Is the mesh edge divided? */
 static int gxp_edge_is_divided(const gxb_complex *cx, uint32_t mesh_edge) {
     const uint32_t edge = gxb_complex_mesh_edge(cx, mesh_edge);
     return edge != GXB_NONE && gxb_complex_edge(cx, edge)->child != GXB_NONE;
 }
 
-/* Appends a cell that the walk has not met yet. */
+/* Appends a cell unless this walk has met it. */
 static gx_result gxp_visit_cell(gx_body *body, uint32_t cell, gxp_words *visited) {
     if (body->cells.stamp[cell] == body->scratch.stamp) return GX_OK;
     body->cells.stamp[cell] = body->scratch.stamp;
@@ -1943,8 +1944,7 @@ static gx_result gxp_visit_cell(gx_body *body, uint32_t cell, gxp_words *visited
 /* In: cells and copies. Out: the kept cells by element, fragments numbered in the order of their first cells, valid
    until the next cut; the cells that a cut may touch, by a stamp. Touches the view's lists and stamps of cells. */
 
-/* Lists the kept cells by element and joins the copies of each: cells of one fragment share copies from link to link.
- */
+/* Lists the kept cells by element and unites the copies of each cell: cells that are linked share copies. */
 static gx_result gxp_list_cells(gx_body *body) {
     gxp_view *view = &body->view;
     uint32_t e, cell, i;
@@ -1984,12 +1984,12 @@ static gx_result gxp_number_fragments(gx_body *body) {
     return GX_OK;
 }
 
-/* Fragment of a cell slot, by the view. */
+/* The fragment of a cell slot; the view is up to date. */
 static uint32_t gxp_cell_fragment(gx_body *body, uint32_t cell) {
     return body->view.fragment_number.data[gxp_find(body->view.copy_fragment.data, body->cells.data[cell].copies[0])];
 }
 
-/* Cells and fragments. What they weigh is summed for gx_body_view only. */
+/* Lists cells and fragments, if a cut has been. Volumes and masses are summed in gx_body_view only. */
 static gx_result gxp_update_view(gx_body *body) {
     gxp_view *view = &body->view;
     gx_result result;
@@ -2004,18 +2004,19 @@ static gx_result gxp_update_view(gx_body *body) {
     return GX_OK;
 }
 
+/* The leaf of before the cut that this one is part of */
 static uint32_t gxp_old_leaf(const gx_body *body, uint32_t leaf) {
     while (leaf >= body->leaves.count) leaf = gxb_complex_leaf(body->complex, leaf)->parent;
     return leaf;
 }
 
-/* May the cut touch this leaf? Its cell (before the cut) is in scope where it is stamped. */
+/* May the cut touch this leaf? It may if the cell that had it before the cut bears the scope's stamp. */
 static int gxp_in_scope(void *user, uint32_t leaf) {
     const gx_body *body = (const gx_body *)user;
     return body->cells.stamp[body->leaves.data[gxp_old_leaf(body, leaf)].cell] == body->scratch.scope_stamp;
 }
 
-/* Stamps the cells that the cut may touch. */
+/* Stamps the cells that the cut may touch. *scoped: 0 if these are all. */
 static gx_result gxp_stamp_scope(gxp_cut *cut, int *scoped) {
     gx_body *body = cut->body;
     gxp_view *view = &body->view;
@@ -2076,8 +2077,7 @@ static int gxp_compare_points(const void *a, const void *b) {
     return p->index != q->index ? p->index < q->index ? -1 : 1 : 0;
 }
 
-/* One surface while it cuts: its triangles, the vertices and planes already in the complex, and which triangles meet at
- * edges. */
+/* A surface during the cut: its triangles, its vertices and planes in the complex, its edges */
 typedef struct gxp_surface {
     const gx_surface *given;
     size_t number;           /* among the cut's surfaces */
@@ -2124,7 +2124,7 @@ static gx_result gxp_check_surface(gxp_cut *cut, const gx_surface *s, size_t num
     return GX_OK;
 }
 
-/* A triangle has no area where all its projections to coordinate planes have none. */
+/* A triangle has no area if all its projections to coordinate planes have none. */
 static int gxp_is_flat(const double *a, const double *b, const double *c) {
     int k;
     for (k = 0; k < 3; k++) {
@@ -2141,6 +2141,7 @@ static int gxp_is_flat(const double *a, const double *b, const double *c) {
     return 1;
 }
 
+/* Finds for each vertex the first one with the same coordinates. */
 static gx_result gxp_merge_vertices(gx_body *body, gxp_surface *s) {
     const size_t n = s->given->vertex_count;
     gxp_named_point *named = (gxp_named_point *)gxp_allocate(&body->config.allocator, n * sizeof *named);
@@ -2160,6 +2161,7 @@ static gx_result gxp_merge_vertices(gx_body *body, gxp_surface *s) {
     return GX_OK;
 }
 
+/* Sorts the half-edges, so that those with the same ends stand together. */
 static void gxp_sort_edges(gxp_surface *s) {
     uint32_t t, k;
     for (t = 0; t < s->given->triangle_count; t++)
@@ -2177,7 +2179,7 @@ static int gxp_same_ends(const gxp_half_edge *a, const gxp_half_edge *b) {
     return (a->from == b->from && a->to == b->to) || (a->from == b->to && a->to == b->from);
 }
 
-/* A surface has no boundary where at each edge as many triangles go one way as the other. */
+/* A surface has no boundary if at each edge equally many triangles run one way and the other. */
 static gx_result gxp_check_closed(gxp_cut *cut, const gxp_surface *s) {
     const size_t n = 3 * s->given->triangle_count;
     size_t i, j;
@@ -2194,8 +2196,8 @@ static gx_result gxp_check_closed(gxp_cut *cut, const gxp_surface *s) {
     return GX_OK;
 }
 
-/* The affine map from material coordinates (less the complex's origin) to the texture of one triangle: with edges p and
-   q and n = p x q, a vector has the share g . (x - a) of p, with g = (q x n) / |n|^2, and of q with (n x p) / |n|^2. */
+/* The affine map from material coordinates (less the complex's origin) to the texture of one triangle. With edges p and
+   q and n = p x q, the share of p in x - a is g . (x - a), g = (q x n) / |n|^2; that of q has (n x p) / |n|^2. */
 static void gxp_map_triangle(const gx_body *body, const gx_surface *s, size_t triangle, double map[8]) {
     const uint32_t *t = s->triangles + 3 * triangle;
     const double *a = s->vertices + 3 * (size_t)t[0], *b = s->vertices + 3 * (size_t)t[1],
@@ -2217,14 +2219,14 @@ static void gxp_map_triangle(const gx_body *body, const gx_surface *s, size_t tr
             const int x = (k + 1) % 3, y = (k + 2) % 3;
             const double g = q[x] * n[y] - q[y] * n[x], h = n[x] * p[y] - n[y] * p[x];
             map[4 * i + k] = square > 0 ? (du * g + dv * h) / square : 0;
-            /* of sizes whose fourth powers doubles do not have */
+            /* fourth powers of its sizes are beyond doubles */
             if (!gxp_is_finite(map[4 * i + k])) map[4 * i + k] = 0;
             map[4 * i + 3] -= map[4 * i + k] * (a[k] - gxb_complex_origin(body->complex)[k]);
         }
     }
 }
 
-/* Notes a surface that begins to cut: where its labels start, and how material points map to its texture. */
+/* Records a surface that begins to cut: where its labels start, and the maps to its texture. */
 static gx_result gxp_note_surface(gx_body *body, const gx_surface *given) {
     const size_t maps = given->texture != NULL ? given->triangle_count : 0;
     gxp_cuts *cuts = &body->cuts;
@@ -2238,6 +2240,8 @@ static gx_result gxp_note_surface(gx_body *body, const gx_surface *given) {
     return GX_OK;
 }
 
+/* Prepares a surface for the cut and checks what makes it closed. It is freed by gxp_surface_free, also after an
+   error. */
 static gx_result gxp_surface_open(gxp_cut *cut, gxp_surface *s, const gx_surface *given, size_t number) {
     gx_body *body = cut->body;
     const size_t v = given->vertex_count, t = given->triangle_count;
@@ -2283,8 +2287,7 @@ static gx_result gxp_surface_open(gxp_cut *cut, gxp_surface *s, const gx_surface
    unless a wall touches it. In: the mesh, at creation; a triangle or a cell, at a cut. Out: which nodes and edges are
    pinched; marks in the complex where a sheet separates what meets there only; the cells that a joint joins. */
 
-/* Is the node's or edge's joint open: walks from element to element through faces that contain the node and lists them.
- */
+/* Lists the elements that faces through the node connect to the first one. */
 static gx_result gxp_walk_around(gx_body *body, uint32_t start, uint32_t node, gxp_words *elements) {
     gx_result result = GX_OK;
     uint32_t done = 0;
@@ -2304,7 +2307,7 @@ static gx_result gxp_walk_around(gx_body *body, uint32_t start, uint32_t node, g
     return result;
 }
 
-/* Marks the nodes whose elements faces do not join: around each of these the walk from one element leaves some out. */
+/* Marks the nodes whose elements are not all connected by faces through the node. */
 static gx_result gxp_find_pinched_nodes(gx_body *body) {
     gxp_words reached = {NULL, 0, 0};
     uint32_t i;
@@ -2320,8 +2323,8 @@ static gx_result gxp_find_pinched_nodes(gx_body *body) {
     return result;
 }
 
-/* Marks the edges whose elements faces do not join, and their nodes. An edge's elements come in as many fans as it has
-   pairs of boundary faces; one fan has none or two such faces. */
+/* Marks the edges whose elements are not all connected by faces through the edge, and their nodes. The elements around
+   an edge form as many fans as the edge has pairs of boundary faces; one fan has none or two of these faces. */
 static void gxp_find_pinched_edges(gx_body *body) {
     const gxb_complex *cx = body->complex;
     uint32_t i, j, k;
@@ -2342,13 +2345,13 @@ static void gxp_find_pinched_edges(gx_body *body) {
         }
 }
 
-/* a point, or an edge of the complex */
+/* A point or an edge of the complex in which elements meet; the other of the two is GXB_NONE */
 typedef struct gxp_joint {
     uint32_t point, edge;
     int found, walled;
 } gxp_joint;
 
-/* Does the leaf have the joint on its boundary, and does a wall touch it there? */
+/* Is the joint on the leaf's boundary (found), and does a wall touch it there (walled)? */
 static gx_result gxp_find_leaf_joint(gx_body *body, uint32_t leaf, gxp_joint *joint) {
     gxb_complex *cx = body->complex;
     uint32_t first, count = 0, i, j, e0, en;
@@ -2371,8 +2374,8 @@ static gx_result gxp_find_leaf_joint(gx_body *body, uint32_t leaf, gxp_joint *jo
     return result;
 }
 
-/* Has a leaf of the element that the cut may touch the node on its boundary, or any piece of the mesh edge? The other
- * of the two is GXB_NONE. */
+/* Is the node, or any piece of the mesh edge, on the boundary of a leaf of the element that the cut may touch? The
+   other of the two is GXB_NONE. */
 static gx_result gxp_is_joint_in_scope(gx_body *body, uint32_t element, uint32_t node, uint32_t edge, int *found) {
     gxp_scratch *scratch = &body->scratch;
     gx_result result = GX_OK;
@@ -2399,7 +2402,7 @@ static gx_result gxp_is_joint_in_scope(gx_body *body, uint32_t element, uint32_t
     return result;
 }
 
-/* A sheet through an edge or node in which alone elements meet separates them there, even if it enters neither. */
+/* A sheet through a pinched node or edge separates the elements that meet there, even if it enters none of them. */
 static gx_result gxp_cover_pinches(gx_body *body, gxb_triangle *t, uint32_t element, int scoped) {
     const gxb_complex *cx = body->complex;
     uint32_t k, pinched = 0;
@@ -2431,7 +2434,7 @@ static gx_result gxp_cover_pinches(gx_body *body, gxb_triangle *t, uint32_t elem
     return result;
 }
 
-/* Appends to found the cells around the node that have the joint on their boundary. Removed leaves count as walls. */
+/* Appends the cells around the node that have the joint on their boundary. Removed leaves count as walls. */
 static gx_result gxp_find_joint_cells(gx_body *body, uint32_t node, gxp_joint *joint, gxp_words *found) {
     gxp_scratch *scratch = &body->scratch;
     uint32_t j, i;
@@ -2450,7 +2453,7 @@ static gx_result gxp_find_joint_cells(gx_body *body, uint32_t node, gxp_joint *j
     return result;
 }
 
-/* Visits the cells that the joint joins to this cell. */
+/* Visits the cells that the joint connects to this cell. */
 static gx_result gxp_cross_joint(gx_body *body, uint32_t cell, uint32_t node, uint32_t point, uint32_t edge) {
     gxp_scratch *scratch = &body->scratch;
     gxp_joint joint;
@@ -2467,6 +2470,7 @@ static gx_result gxp_cross_joint(gx_body *body, uint32_t cell, uint32_t node, ui
     return result;
 }
 
+/* Visits the cells that the node, if it is pinched, and its pinched edges connect to this cell. */
 static gx_result gxp_cross_pinches(gx_body *body, uint32_t cell, uint32_t node) {
     gxp_scratch *scratch = &body->scratch;
     const uint32_t element = body->cells.data[cell].element;
@@ -2488,7 +2492,7 @@ static gx_result gxp_cross_pinches(gx_body *body, uint32_t cell, uint32_t node) 
     return result;
 }
 
-/* Adds the pinched nodes among those of the pairs to the nodes at which walls may break joints, and sorts these. */
+/* Adds the pinched nodes of the pairs to the nodes at which walls may break joints, and sorts these. */
 static gx_result gxp_add_pinches(gx_body *body, const gxp_keys *pairs) {
     uint32_t i;
     gx_result result = GX_OK;
@@ -2503,7 +2507,7 @@ static gx_result gxp_add_pinches(gx_body *body, const gxp_keys *pairs) {
 /* In: an opened surface. Out: its triangles in the complex, element by element, where they make walls or, of a solid,
    leave their labels. Touches the complex, and the list of nodes at which a sheet covers a pinch. */
 
-/* A coplanar neighbour across an edge that already has a plane lends it. */
+/* Takes over the plane of a coplanar neighbour across an edge. Returns 0 if there is none. */
 static int gxp_borrow_plane(gx_body *body, gxp_surface *s, uint32_t t) {
     gxb_triangle *own = &s->triangles[t];
     const size_t n = 3 * s->given->triangle_count;
@@ -2522,7 +2526,7 @@ static int gxp_borrow_plane(gx_body *body, gxp_surface *s, uint32_t t) {
             if (e->triangle == t || other->plane == GXP_NONE || s->flat[e->triangle]) continue;
             if (gxb_complex_side(body->complex, own->point[(k + 2) % 3], other->plane) != 0) continue;
             own->plane = other->plane;
-            own->orientation = 0; /* settled by gxp_settle_orientation */
+            own->orientation = 0; /* set by gxp_settle_orientation */
             own->edge_plane[0] = own->edge_plane[1] = own->edge_plane[2] = GXB_NONE;
             return 1;
         }
@@ -2530,7 +2534,7 @@ static int gxp_borrow_plane(gx_body *body, gxp_surface *s, uint32_t t) {
     return 0;
 }
 
-/* Does the triangle turn as the plane's own normal says? Seen along the plane's axis. */
+/* Does the triangle turn counter-clockwise about the plane's normal? Decided in projection along the plane's axis. */
 static void gxp_settle_orientation(const gx_body *body, const gxp_surface *s, gxb_triangle *t, uint32_t index) {
     const gxb_cplane *plane = gxb_complex_plane(body->complex, t->plane);
     const int i = (int)(plane->axis + 1) % 3, j = (int)(plane->axis + 2) % 3;
@@ -2544,7 +2548,7 @@ static void gxp_settle_orientation(const gx_body *body, const gxp_surface *s, gx
     t->orientation = gxb_orient2d(p[0], p[1], p[2]) * plane->axis_sign;
 }
 
-/* Gives the triangle its points and its plane in the complex, once. */
+/* Gives the triangle its points and its plane in the complex. */
 static gx_result gxp_prepare_triangle(gxp_cut *cut, gxp_surface *s, uint32_t index) {
     gx_body *body = cut->body;
     gxb_triangle *t = &s->triangles[index];
@@ -2567,6 +2571,7 @@ static gx_result gxp_prepare_triangle(gxp_cut *cut, gxp_surface *s, uint32_t ind
     return gxb_complex_add_plane(body->complex, t);
 }
 
+/* Inserts the triangle into every element that it meets. */
 static gx_result gxp_insert_triangle(gxp_cut *cut, gxp_surface *s, uint32_t index, int scoped) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
@@ -2585,8 +2590,8 @@ static gx_result gxp_insert_triangle(gxp_cut *cut, gxp_surface *s, uint32_t inde
     return result;
 }
 
-/* Which of 512 intervals a coordinate lies in, in the frame of the body, which is there at most 1 long (further out it
-   begins again): bits of x 2^(shift + 9), rounded down. No arithmetic of doubles: the same under every flag. */
+/* The place of a coordinate on a grid of 512 intervals: bits of x 2^(shift + 9), rounded down. In the frame the body is
+   at most 1 long; further out the grid repeats. No arithmetic of doubles, so that it is the same under every flag. */
 static uint32_t gxp_grid_place(double x, int shift) {
     uint64_t bits, m;
     int power;
@@ -2597,7 +2602,7 @@ static uint32_t gxp_grid_place(double x, int shift) {
     return (uint32_t)(bits >> 63 ? ~m : m) & 511;
 }
 
-/* Number of a triangle's first corner on a Z-curve through the body: bits of its three places in turn */
+/* The place of a triangle's first corner on a Z-curve through the body: the bits of its three grid places in turn */
 static uint32_t gxp_curve_place(const gxp_cut *cut, const gxp_surface *s, uint32_t triangle) {
     const double *x = s->given->vertices + 3 * (size_t)s->given->triangles[3 * (size_t)triangle];
     uint32_t place = 0, k, b;
@@ -2609,12 +2614,13 @@ static uint32_t gxp_curve_place(const gxp_cut *cut, const gxp_surface *s, uint32
 }
 
 #define GXP_LAST_ROUND 31u
-#define GXP_EXPECTED   7u /* room for at most so many times more than rounds before the last have made */
+/* Room is made for at most this many times what the rounds before the last have made. */
+#define GXP_EXPECTED 7u
 
-/* Inserts the triangles in rounds, each eight times as large as the one before it: planes in random order make shallow
-   trees. Within a round they come along a curve, so that an element's triangles find its data in the cache [Amenta,
-   Choi, Rote, Incremental constructions con BRIO (2003)]. Always the same order. The rounds before the last one, which
-   is most of all, tell how much room that will take. */
+/* Inserts the triangles in rounds, each eight times as large as the one before: planes in random order make shallow
+   trees. Within a round the triangles follow a curve, so that the data of an element is in the cache for all its
+   triangles [Amenta, Choi, Rote, Incremental constructions con BRIO (2003)]. The order is always the same. The last
+   round has most triangles; the rounds before it tell how much room it needs. */
 static gx_result gxp_insert_surface(gxp_cut *cut, gxp_surface *s, int scoped) {
     const uint32_t count = (uint32_t)s->given->triangle_count;
     gx_body *body = cut->body;
@@ -2645,8 +2651,8 @@ static gx_result gxp_insert_surface(gxp_cut *cut, gxp_surface *s, int scoped) {
 /* In: a closed surface that is in the complex. Out: the leaves around which it winds, which are to be removed. Touches
    marks of leaves only. */
 
-/* By how much the solid's winding number is larger behind the facet than in front: triangles that face its front
- * count 1. */
+/* The solid's winding number behind the facet less that in front of it; triangles that face its front count 1.
+ *labelled: the solid covers the facet. */
 static int32_t gxp_winding_step(const gx_body *body, const gxp_surface *s, uint32_t facet, int *labelled) {
     const gxb_complex *cx = body->complex;
     int32_t step = 0;
@@ -2662,7 +2668,7 @@ static int32_t gxp_winding_step(const gx_body *body, const gxp_surface *s, uint3
     return step;
 }
 
-/* The winding number around a node. 0: the node is on the surface, and has none. */
+/* The winding number around a node. Returns 0 if the node is on the surface and has none. */
 static int gxp_node_winding(const gx_body *body, const gxp_surface *s, uint32_t node, int32_t *winding) {
     const double *x = body->mesh.positions + 3 * (size_t)node;
     int on_surface, k;
@@ -2673,7 +2679,7 @@ static int gxp_node_winding(const gx_body *body, const gxp_surface *s, uint32_t 
     return !on_surface;
 }
 
-/* The winding number around a leaf: around one of its nodes that is off the surface, else around a point inside it. */
+/* The winding number around a leaf: around one of its nodes off the surface, else around a point inside it. */
 static gx_result gxp_leaf_winding(gx_body *body, const gxp_surface *s, uint32_t leaf, int32_t *winding) {
     gxp_scratch *scratch = &body->scratch;
     const gx_surface *g = s->given;
@@ -2693,12 +2699,13 @@ static gx_result gxp_leaf_winding(gx_body *body, const gxp_surface *s, uint32_t 
     return result;
 }
 
-/* Was the leaf kept and, where the cut has a scope, in it? Others were not divided by the solid and can't pass on
- * anything. */
+/* Is the leaf kept and, if the cut has a scope, in it? The solid did not divide other leaves, so that they have no
+   single winding number to pass on. */
 static int gxp_has_winding(gx_body *body, uint32_t leaf, int scoped) {
     return gxp_is_kept(body, leaf) && (!scoped || gxp_in_scope(body, leaf));
 }
 
+/* Notes the winding number of a leaf and lists it, unless this flood has met it. */
 static gx_result gxp_visit_winding(gx_body *body, uint32_t leaf, int32_t winding) {
     if (body->leaves.mark[leaf].stamp == body->scratch.stamp) return GX_OK;
     body->leaves.mark[leaf].stamp = body->scratch.stamp;
@@ -2706,8 +2713,8 @@ static gx_result gxp_visit_winding(gx_body *body, uint32_t leaf, int32_t winding
     return gxp_push(body, &body->scratch.flooded, leaf);
 }
 
-/* The neighbours of a leaf inside the solid know their winding numbers; of one outside, those across the solid's
- * surface. */
+/* Passes the winding number on to the neighbours of a leaf: to all of a leaf inside the solid, across the solid's
+   surface only from a leaf outside. */
 static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_t leaf, int scoped) {
     gxb_complex *cx = body->complex;
     const int32_t winding = body->leaves.mark[leaf].winding;
@@ -2726,7 +2733,7 @@ static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_
     return result;
 }
 
-/* Works the queue off from where it stands. */
+/* Spreads from the listed leaves on, from *done to the end of the list, which grows. */
 static gx_result gxp_flood_winding(gx_body *body, const gxp_surface *s, uint32_t *done, int scoped) {
     gx_result result = GX_OK;
     while (*done < body->scratch.flooded.count && result == GX_OK)
@@ -2734,8 +2741,8 @@ static gx_result gxp_flood_winding(gx_body *body, const gxp_surface *s, uint32_t
     return result;
 }
 
-/* Does the flood, which goes across faces and stays in the scope, reach this cell from others of its fragment? Not for
-   certain where elements meet in nodes or edges only, or where the caller lists the cells of a scope. */
+/* Does the flood reach this cell from others of its fragment? It crosses faces and stays in the scope. The answer is
+   uncertain, 0, if elements meet in nodes or edges only, or if the caller lists the cells of a scope. */
 static int gxp_is_flooded(const gxp_cut *cut, uint32_t cell) {
     const uint32_t *node = gxb_complex_element_nodes(cut->body->complex, cut->body->cells.data[cell].element);
     uint32_t k;
@@ -2745,8 +2752,8 @@ static int gxp_is_flooded(const gxp_cut *cut, uint32_t cell) {
     return 1;
 }
 
-/* Fragments (of before the cut) that the surface does not touch may lie in the solid as a whole: one leaf of each joins
-   the seeds, and one of each cell that the flood may not reach. */
+/* A fragment that the surface does not touch may lie inside the solid as a whole. Adds one leaf of each such fragment
+   to the seeds, and one of each cell that the flood may miss. The fragments are those of before the cut. */
 static gx_result gxp_seed_untouched(gxp_cut *cut) {
     gx_body *body = cut->body;
     gxp_view *view = &body->view;
@@ -2769,7 +2776,7 @@ static gx_result gxp_seed_untouched(gxp_cut *cut) {
     return result;
 }
 
-/* Finds the winding numbers of the seeds and of what they lead to: body->scratch.flooded. */
+/* Finds the winding numbers of the seeds and of all leaves that they lead to: scratch.flooded. */
 static gx_result gxp_find_windings(gx_body *body, const gxp_surface *s, int scoped) {
     gxp_scratch *scratch = &body->scratch;
     uint32_t i, done = 0;
@@ -2787,8 +2794,7 @@ static gx_result gxp_find_windings(gx_body *body, const gxp_surface *s, int scop
     return result;
 }
 
-/* Appends to body->scratch.removed the leaves around which the solid winds. All surfaces of the cut are in the complex.
- */
+/* Appends to scratch.removed the leaves around which the solid winds. All surfaces of the cut are in the complex. */
 static gx_result gxp_find_solid(gxp_cut *cut, const gxp_surface *s, int scoped) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
@@ -2826,8 +2832,8 @@ typedef struct gxp_fine_point {
     gxb_limb limbs[4][32];
 } gxp_fine_point;
 
-/* Twice the area of a facet as seen along the axis of its plane, from approximate positions; *error: a bound for its
- * error. */
+/* Twice the area of a facet, projected along the axis of its plane, from approximate positions; *error bounds its
+   error. */
 static gx_result gxp_rough_area(gxb_complex *cx, uint32_t facet, double *area, double *error) {
     const uint32_t axis = gxb_complex_plane(cx, gxb_complex_facet(cx, facet)->plane)->axis, x = (axis + 1) % 3,
                    y = (axis + 2) % 3;
@@ -2852,8 +2858,8 @@ static gx_result gxp_rough_area(gxb_complex *cx, uint32_t facet, double *area, d
     return result;
 }
 
-/* The polygon of the points in body->scratch.facet_points as a share of the face opposite to node k, in numbers that
-   hold any size: areas in the plane of two barycentric coordinates, where the face has 1. */
+/* The polygon of scratch.facet_points as a share of the face opposite to node k, in numbers of any size: its area in
+   the plane of two barycentric coordinates, where the face has area 1. */
 static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
     gxp_fine_point p[3];
     unsigned axes[3];
@@ -2890,7 +2896,8 @@ static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
     return fabs(gxb_num_to_double(&sum));
 }
 
-/* Puts cells in the place of leaves in the links of all fresh cells, those to one cell together. */
+/* Replaces the leaf behind each link of new cells by its cell, and sorts the links of each cell: those to one cell
+   stand together. */
 static gx_result gxp_settle_links(gx_body *body) {
     gxp_scratch *scratch = &body->scratch;
     uint32_t i, j;
@@ -2906,20 +2913,20 @@ static gx_result gxp_settle_links(gx_body *body) {
     return result;
 }
 
-/* Index of a cell among the fresh ones, GXP_NONE: it is none of them. */
+/* The index of a cell among the new ones, or GXP_NONE */
 static uint32_t gxp_new_index(const gx_body *body, uint32_t cell) {
     const uint32_t i = body->cells.new_index[cell];
     return i < body->scratch.new_cells.count && body->scratch.new_cells.data[i] == cell ? i : GXP_NONE;
 }
 
-/* Share of the link first ... end-1 of its face, roughly, with a bound for its error; of its first facets, where those
- * have certainly more than enough. */
+/* The rough share of the link first ... end-1 in its face, and a bound for the error. It stops once the share is
+   certainly more than enough. */
 static gx_result gxp_rough_share(gx_body *body, uint32_t first, uint32_t end, double enough, double *share,
                                  double *error) {
     gxb_complex *cx = body->complex;
     const gxb_cplane *plane =
         gxb_complex_plane(cx, gxb_complex_facet(cx, GXP_LINK_FACET(body->scratch.links.data[first]))->plane);
-    const double whole = fabs(plane->filter.n[plane->axis]); /* the normal is a product of two of the face's edges */
+    const double whole = fabs(plane->filter.n[plane->axis]); /* the normal is the product of two edges of the face */
     double part, part_error;
     gx_result result = GX_OK;
     *share = *error = 0;
@@ -2939,8 +2946,8 @@ static gx_result gxp_rough_share(gx_body *body, uint32_t first, uint32_t end, do
     return result;
 }
 
-/* Is the link first ... end-1 certainly neither the smallest, which has a share of at most *bound (made smaller), nor
- * to be severed? */
+/* Is the link first ... end-1 certainly too large to be severed or to be the smallest? *bound: the smallest share is at
+   most this; it is lowered. */
 static gx_result gxp_is_wide(gxp_cut *cut, uint32_t first, uint32_t end, double *bound, int *wide) {
     const double enough = fmax(*bound, cut->desc->sever_below);
     double share, error;
@@ -2950,7 +2957,7 @@ static gx_result gxp_is_wide(gxp_cut *cut, uint32_t first, uint32_t end, double 
     return result;
 }
 
-/* Share of the link first ... end-1 of its face */
+/* The share of the link first ... end-1 in its face, from exact coordinates */
 static gx_result gxp_weigh_link(gx_body *body, uint32_t first, uint32_t end, double *share) {
     uint32_t k;
     const uint32_t element = gxp_face_element(
@@ -2964,7 +2971,7 @@ static gx_result gxp_weigh_link(gx_body *body, uint32_t first, uint32_t end, dou
     return result;
 }
 
-/* Weighs the link of pieces first ... end-1 and severs it where its share is below the ratio. */
+/* Weighs the link first ... end-1 and severs it if its share is below the ratio. */
 static gx_result gxp_judge_link(gxp_cut *cut, uint32_t first, uint32_t end) {
     gx_body *body = cut->body;
     double share;
@@ -2978,9 +2985,9 @@ static gx_result gxp_judge_link(gxp_cut *cut, uint32_t first, uint32_t end) {
     return result;
 }
 
-/* Weighs the links of a fresh cell roughly, but whole faces and those of fresh cells before it. All pieces of a face
-   between the same two cells count as one link. Those that may be the smallest or are to be severed go to
-   body->scratch.narrow. *bound: of the smallest so far. */
+/* Weighs the links of a new cell roughly. All pieces of a face between the same two cells are one link. Whole faces are
+   skipped, and links to new cells before this one. Links that may be the smallest or may have to be severed are noted
+   in scratch.narrow. *bound: the smallest share so far. */
 static gx_result gxp_weigh_links(gxp_cut *cut, uint32_t index, double *bound) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
@@ -3002,7 +3009,7 @@ static gx_result gxp_weigh_links(gxp_cut *cut, uint32_t index, double *bound) {
     return result;
 }
 
-/* Weighs exactly what is still among the smallest, or is to be severed. */
+/* Weighs the noted links exactly that may still be the smallest or have to be severed. */
 static gx_result gxp_judge_links(gxp_cut *cut, double bound) {
     const gxp_words *narrow = &cut->body->scratch.narrow;
     uint32_t i;
@@ -3015,7 +3022,7 @@ static gx_result gxp_judge_links(gxp_cut *cut, double bound) {
     return result;
 }
 
-/* Severs the links that are small enough. */
+/* Severs the links below the ratio. */
 static gx_result gxp_sever_links(gxp_cut *cut) {
     double bound = 1;
     uint32_t i;
@@ -3030,7 +3037,7 @@ static gx_result gxp_sever_links(gxp_cut *cut) {
 /* In: walls that this cut made, leaves that it removed. Out: the touched cells divided into their connected parts, the
    new cells, and the links of these. Touches cells and leaves, through the undo log. */
 
-/* Collects the cells on both sides of walls that this cut made. */
+/* Collects the cells on both sides of the walls that this cut made. */
 static gx_result gxp_collect_touched(gxp_cut *cut) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
@@ -3053,7 +3060,7 @@ static gx_result gxp_collect_touched(gxp_cut *cut) {
     return result;
 }
 
-/* New leaves join the list of the cell from which they were split. */
+/* Adds each new leaf to the list of the cell from which it was split. */
 static gx_result gxp_list_new_leaves(gxp_cut *cut) {
     gx_body *body = cut->body;
     uint32_t leaf;
@@ -3066,6 +3073,7 @@ static gx_result gxp_list_new_leaves(gxp_cut *cut) {
     return result;
 }
 
+/* Appends a cell to the element of another one, with that one's copies and without leaves. */
 static gx_result gxp_new_cell(gx_body *body, uint32_t like, uint32_t *slot) {
     gx_result result = gxp_grow_rows(body, GXP_CELLS, 1);
     if (result == GX_OK) result = gxp_save_cell(body, like);
@@ -3079,8 +3087,8 @@ static gx_result gxp_new_cell(gx_body *body, uint32_t like, uint32_t *slot) {
     return GX_OK;
 }
 
-/* Walks the leaves that open facets inside the element join to the first in the queue, and lists their links, for now
- * with the leaf behind each. */
+/* Lists in scratch.part_leaves the leaves that open facets inside the element connect to the first one. Appends their
+   links to scratch.links, for now with the leaf behind each. */
 static gx_result gxp_walk_leaves(gx_body *body, uint32_t start) {
     gxp_scratch *scratch = &body->scratch;
     gxb_complex *cx = body->complex;
@@ -3112,7 +3120,7 @@ static gx_result gxp_walk_leaves(gx_body *body, uint32_t start) {
     return result;
 }
 
-/* Gives the leaves in the queue to a cell, as its list. */
+/* Gives scratch.part_leaves to a cell, as its list. */
 static gx_result gxp_give_leaves(gx_body *body, uint32_t cell) {
     gxp_scratch *scratch = &body->scratch;
     uint32_t i;
@@ -3124,7 +3132,7 @@ static gx_result gxp_give_leaves(gx_body *body, uint32_t cell) {
     return result;
 }
 
-/* Divides one touched cell into its connected pieces; the first keeps the slot. */
+/* Divides a touched cell into its connected parts; the first one keeps the slot. */
 static gx_result gxp_divide_cell(gxp_cut *cut, uint32_t cell) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
@@ -3157,7 +3165,7 @@ static gx_result gxp_divide_cell(gxp_cut *cut, uint32_t cell) {
     return result;
 }
 
-/* Cells beside a removed leaf lost links. */
+/* Touches the cells around a removed leaf, which have lost links. */
 static gx_result gxp_touch_around(gx_body *body, uint32_t leaf) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i;
@@ -3170,7 +3178,7 @@ static gx_result gxp_touch_around(gx_body *body, uint32_t leaf) {
     return result;
 }
 
-/* Severed links separate cells that may not have been touched before. */
+/* Lists the links again after some were severed. Cells beside these join the new ones. */
 static gx_result gxp_touch_severed(gxp_cut *cut) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
@@ -3188,8 +3196,8 @@ static gx_result gxp_touch_severed(gxp_cut *cut) {
     return result == GX_OK ? gxp_settle_links(body) : result;
 }
 
-/* Asks for what dividing the next touched cells reads: leaves four and three ahead, their lists of facets two ahead,
- * the facets of the next. */
+/* Prefetches the data that dividing the next touched cells will read: leaves four and three cells ahead, their lists of
+   facets two ahead, the facets of the next. */
 GXP_PREFETCHES void gxp_prefetch_leaves(const gx_body *body, uint32_t index) {
     const gxb_complex *cx = body->complex;
     const uint32_t *touched = body->scratch.touched.data, count = body->scratch.touched.count;
@@ -3213,7 +3221,7 @@ GXP_PREFETCHES void gxp_prefetch_leaves(const gx_body *body, uint32_t index) {
                 GXP_PREFETCH(gxb_complex_facet(cx, gxp_item(cx, gxb_complex_leaf(cx, leaf)->facets + i)));
 }
 
-/* Divides all touched cells. Leaves the list of these as it was, makes the list of new cells and lists their links. */
+/* Divides all touched cells, lists the new cells and their links. The list of touched cells stays. */
 static gx_result gxp_divide_cells(gxp_cut *cut) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
@@ -3240,7 +3248,7 @@ static gx_result gxp_divide_cells(gxp_cut *cut) {
    and their links. Out: copies for the subdomains into which old ones fell apart, the copies that lost all cells.
    Touches cells, through the undo log, and appends copies. */
 
-/* Visits what lies across one piece of an element's face. */
+/* Visits the cell across one piece of an element's face. */
 static gx_result gxp_cross_facet(gx_body *body, uint32_t facet, uint32_t leaf) {
     const gxb_facet *f = gxb_complex_facet(body->complex, facet);
     const uint32_t other = f->leaf[f->leaf[0] == leaf];
@@ -3250,7 +3258,7 @@ static gx_result gxp_cross_facet(gx_body *body, uint32_t facet, uint32_t leaf) {
     return gxp_visit_cell(body, body->leaves.data[other].cell, &body->scratch.subdomain_cells);
 }
 
-/* Visits the cells that links join to the cell of a whole element across the face opposite to local node k. */
+/* Visits the cells that are linked to the cell of a whole element across the face opposite to local node k. */
 static gx_result gxp_cross_whole_face(gx_body *body, uint32_t element, uint32_t k) {
     gxp_scratch *scratch = &body->scratch;
     gxb_complex *cx = body->complex;
@@ -3268,8 +3276,8 @@ static gx_result gxp_cross_whole_face(gx_body *body, uint32_t element, uint32_t 
     return result;
 }
 
-/* Visits the cells that links of a fresh cell join to it, but across the face opposite to local node k; unless all is
-   set only fresh ones. *open is set to 1 where there are others. */
+/* Visits the cells that are linked to a new cell across its element's faces around a node: all but the one opposite to
+   local node k. Unless all is set it visits new cells only, and sets *open if there are others. */
 static gx_result gxp_cross_links(gx_body *body, uint32_t index, uint32_t k, int all, uint32_t *open) {
     gxp_scratch *scratch = &body->scratch;
     uint32_t i;
@@ -3284,7 +3292,7 @@ static gx_result gxp_cross_links(gx_body *body, uint32_t index, uint32_t k, int 
     return result;
 }
 
-/* Visits the cells around the node that links join to one that is not fresh. */
+/* Visits the cells that are linked to a cell that is not new, across the faces around the node. */
 static gx_result gxp_cross_faces(gx_body *body, uint32_t cell, uint32_t node) {
     gxb_complex *cx = body->complex;
     const uint32_t element = body->cells.data[cell].element;
@@ -3308,8 +3316,8 @@ static gx_result gxp_cross_faces(gx_body *body, uint32_t cell, uint32_t node) {
     return result;
 }
 
-/* The piece of a nodal component that contains a fresh cell: appended to body->scratch.subdomain_cells, every cell
-   stamped. all 0: of its fresh cells alone, from one to the next; *open: do links go on to others? */
+/* Appends the cells of the nodal subdomain that contains the cell to scratch.subdomain_cells and stamps them. all 0:
+   only those that new cells alone connect; *open: links lead on to others. */
 static gx_result gxp_walk_subdomain(gx_body *body, uint32_t cell, uint32_t node, int all, uint32_t *open) {
     gxp_scratch *scratch = &body->scratch;
     uint32_t done = scratch->subdomain_cells.count;
@@ -3327,7 +3335,7 @@ static gx_result gxp_walk_subdomain(gx_body *body, uint32_t cell, uint32_t node,
     return result;
 }
 
-/* A further copy of a node's displacement, with the values of the one it comes from (GXFEM Algorithm 1, line 7). */
+/* Appends a copy of a node's displacement with the values of the one it comes from (GXFEM Algorithm 1, line 7). */
 static gx_result gxp_new_copy(gx_body *body, uint32_t from, uint32_t *copy) {
     gx_result result = gxp_grow_rows(body, GXP_COPIES, 1);
     if (result != GX_OK) return result;
@@ -3340,7 +3348,7 @@ static gx_result gxp_new_copy(gx_body *body, uint32_t from, uint32_t *copy) {
     return result == GX_OK ? gxp_push(body, &body->view.splits, from) : result;
 }
 
-/* Gives a copy to the cells first ... end-1 of body->scratch.subdomain_cells. */
+/* Gives a copy to the cells first ... end-1 of scratch.subdomain_cells. */
 static gx_result gxp_set_copy(gx_body *body, uint32_t node, uint32_t copy, uint32_t first, uint32_t end) {
     uint32_t i;
     gx_result result = GX_OK;
@@ -3353,6 +3361,7 @@ static gx_result gxp_set_copy(gx_body *body, uint32_t node, uint32_t copy, uint3
     return result;
 }
 
+/* Pairs a cell with its nodes. */
 static gx_result gxp_pair_cell(gx_body *body, uint32_t cell) {
     const uint32_t *node = gxb_complex_element_nodes(body->complex, body->cells.data[cell].element);
     uint32_t k;
@@ -3361,7 +3370,7 @@ static gx_result gxp_pair_cell(gx_body *body, uint32_t cell) {
     return result;
 }
 
-/* Every cell around a node. */
+/* Pairs a node with all cells around it. */
 static gx_result gxp_pair_node(gx_body *body, uint32_t node) {
     uint32_t j, cell;
     gx_result result = GX_OK;
@@ -3372,8 +3381,8 @@ static gx_result gxp_pair_node(gx_body *body, uint32_t node) {
     return result;
 }
 
-/* Where to start walks: each touched cell around its nodes; around pinched nodes, where walls break joints that they
-   only touch in a point, every cell. */
+/* Collects where the walks start: each new or removed cell, around each of its nodes. Around pinched nodes, where a
+   wall may break a joint by a touch in one point, every cell. */
 static gx_result gxp_collect_pairs(gx_body *body) {
     gxp_scratch *scratch = &body->scratch;
     uint32_t i;
@@ -3390,11 +3399,10 @@ static gx_result gxp_collect_pairs(gx_body *body) {
     return result == GX_OK ? gxp_sort_keys(body, &scratch->pairs, 0, scratch->pairs.count) : result;
 }
 
-/* Finds the pieces of the components around a node (pairs first ... end-1). Every piece of a component that fell apart
-   contains a cell of a pair. Their cells go to body->scratch.subdomain_cells, where each starts to
-   body->scratch.subdomains, times two, 1 more if it is open; body->scratch.taken: the copies of components with an open
-   piece. all 0: only fresh cells are looked at, which tells the pieces apart unless a component has two open ones:
-   *sure. */
+/* Finds the subdomains around the node of pairs first ... end-1. Every part of a subdomain that fell apart contains a
+   cell of a pair. Lists their cells in scratch.subdomain_cells, the start of each in scratch.subdomains, and in
+   scratch.taken the copies that an open one keeps. all 0: walks through new cells only. That tells the subdomains
+   apart, *sure, unless two open ones have the same copy. */
 static gx_result gxp_find_subdomains(gx_body *body, uint32_t first, uint32_t end, int all, int *sure) {
     gxp_scratch *scratch = &body->scratch;
     const uint32_t node = GXP_FIRST(scratch->pairs.data[first]);
@@ -3418,8 +3426,8 @@ static gx_result gxp_find_subdomains(gx_body *body, uint32_t first, uint32_t end
     return result;
 }
 
-/* Around one node: the pieces of each old component get copies of their own; one keeps the old copy, the open one, else
-   the first. Old copies that lost all cells join body->scratch.dead. */
+/* Gives each subdomain around a node a copy of its own. Of those that came from one, the open one keeps the old copy,
+   or else the first. Old copies without cells are listed in scratch.dead. */
 static gx_result gxp_divide_node(gxp_cut *cut, uint32_t first, uint32_t end) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
@@ -3451,6 +3459,7 @@ static gx_result gxp_divide_node(gxp_cut *cut, uint32_t first, uint32_t end) {
     return result;
 }
 
+/* Gives copies to the subdomains around all nodes of new and removed cells. */
 static gx_result gxp_divide_nodes(gxp_cut *cut) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
@@ -3471,9 +3480,7 @@ static gx_result gxp_divide_nodes(gxp_cut *cut) {
    coordinates of the element. Sums whose terms cancel are summed in exact numbers. Touches cells, through the undo log.
  */
 
-/* The part's points and triangles: body->scratch.boundary.points has the points, body->scratch.boundary.lambdas 4
-   numbers for each, body->scratch.boundary.triangles the indices. Points of the parts before it are kept where they may
-   be met again: parts of one element share those of its walls. */
+/* Empties the boundary. Points are kept while the element stays the same: its cells share those of its walls. */
 static void gxp_clear_boundary(gx_body *body, int other_element) {
     gxp_scratch *scratch = &body->scratch;
     gxp_boundary *boundary = &scratch->boundary;
@@ -3481,6 +3488,7 @@ static void gxp_clear_boundary(gx_body *body, int other_element) {
     boundary->triangles.count = boundary->facets.count = 0;
 }
 
+/* Adds a point of the complex with its barycentric coordinates in the element. */
 static gx_result gxp_new_boundary_point(gx_body *body, uint32_t element, uint32_t point, uint32_t *index) {
     gxp_boundary *boundary = &body->scratch.boundary;
     gx_result result = GX_OK;
@@ -3501,6 +3509,7 @@ static gx_result gxp_new_boundary_point(gx_body *body, uint32_t element, uint32_
     return GX_OK;
 }
 
+/* *index: the place of a point of the complex in the boundary's points; it is added if it is new. */
 static gx_result gxp_add_boundary_point(gx_body *body, uint32_t element, uint32_t point, uint32_t *index) {
     gxp_boundary *boundary = &body->scratch.boundary;
     *index = point < boundary->slots.count ? boundary->slots.data[point] : GXP_NONE;
@@ -3509,7 +3518,7 @@ static gx_result gxp_add_boundary_point(gx_body *body, uint32_t element, uint32_
              : gxp_new_boundary_point(body, element, point, index);
 }
 
-/* Adds a facet as a fan of triangles; inward: the part is in front of it. */
+/* Adds a facet as a fan of triangles; inward: the material is in front of it. */
 static gx_result gxp_add_boundary_facet(gx_body *body, uint32_t element, uint32_t facet, int inward) {
     gxp_boundary *boundary = &body->scratch.boundary;
     gxb_complex *cx = body->complex;
@@ -3530,9 +3539,8 @@ static gx_result gxp_add_boundary_facet(gx_body *body, uint32_t element, uint32_
     return result;
 }
 
-/* Adds the leaf's facets inside the element; those with the same cell on both sides cancel and are left out unless all
-   is set. Those in faces of the element are kept in body->scratch.boundary.facets, times two, 1 more if the part is in
-   front. */
+/* Adds the facets of a leaf inside the element. Facets with the same cell on both sides cancel and are left out, unless
+   all is set. Facets in faces of the element are only listed, in facets. */
 static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, int all) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i;
@@ -3571,8 +3579,8 @@ static void gxp_fine_determinant(gxb_num *det, gxb_num *p[3][3]) {
     }
 }
 
-/* Adds the cone of a triangle to the origin: with D = det(a,b,c), s = a+b+c: D, D s_i, D (s_i s_j + a_i a_j + b_i b_j +
- * c_i c_j) */
+/* Adds the cone from the origin to a triangle. With D = det(a,b,c), s = a+b+c: D, D s_i, D (s_i s_j + a_i a_j + b_i b_j
+   + c_i c_j). */
 static void gxp_fine_add(gxp_fine_sums *sums, gxb_num *p[3][3]) {
     gxb_limb limbs[3][GXB_NUM_LIMBS];
     gxb_num s[3];
@@ -3598,7 +3606,7 @@ static void gxp_fine_add(gxp_fine_sums *sums, gxb_num *p[3][3]) {
         }
 }
 
-/* Those of one of the collected points, unless they are there already */
+/* The exact coordinates of one of the boundary's points, computed once */
 static void gxp_fine_coordinates(gx_body *body, uint32_t element, uint32_t point, gxp_fine_point *points) {
     int a;
     if (points[point].c[0].d != NULL) return;
@@ -3606,7 +3614,7 @@ static void gxp_fine_coordinates(gx_body *body, uint32_t element, uint32_t point
     gxb_complex_barycentric_fine(body->complex, body->scratch.boundary.points.data[point], element, points[point].c);
 }
 
-/* Moments of the collected boundary in the frame with origin k, from coordinates with 180 bits. */
+/* Moments of the boundary in the frame with origin k, from coordinates with 180 bits. */
 static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, gxi_moments2 *m) {
     gxp_boundary *boundary = &body->scratch.boundary;
     const size_t size = boundary->points.count * sizeof(gxp_fine_point);
@@ -3637,12 +3645,11 @@ static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, g
     return GX_OK;
 }
 
-#define GXP_CANCELLATION                                                                                               \
-    1e-3 /* moments whose terms cancel to less than this share are summed in exact numbers: doubles lose 3 digits      \
-            there */
+/* Moments whose terms cancel to less than this share are summed in exact numbers: doubles lose 3 digits there. */
+#define GXP_CANCELLATION 1e-3
 
-/* Over the cones from vertex k to the collected triangles, the sizes of what makes up their volumes: of a x b . c,
-   whose terms take on the errors of the corners, and of a . (b - a) x (c - a), by which they are computed. */
+/* The size of the terms in the volumes of the cones from vertex k to the triangles: of a x b . c, which takes on the
+   errors of the corners, and of a . (b - a) x (c - a), by which the volumes are computed. */
 static double gxp_cone_volumes(const gx_body *body, unsigned k) {
     const gxp_boundary *boundary = &body->scratch.boundary;
     unsigned axes[3], d;
@@ -3662,7 +3669,7 @@ static double gxp_cone_volumes(const gx_body *body, unsigned k) {
     return sum / 6;
 }
 
-/* The vertex of the element that the collected triangles lie at */
+/* The vertex of the element with the largest barycentric coordinates over the triangles */
 static unsigned gxp_nearest_vertex(const gx_body *body) {
     const gxp_boundary *boundary = &body->scratch.boundary;
     double sum[4] = {0, 0, 0, 0};
@@ -3675,8 +3682,8 @@ static unsigned gxp_nearest_vertex(const gx_body *body) {
     return nearest;
 }
 
-/* Moments of the collected boundary; *k: the vertex of the element that is their frame's origin. Seen from there, of
-   the facets in faces of the element only those in the opposite one span cones. */
+/* Moments of the boundary; *k: the vertex of the element that is their origin. Of the facets in the element's faces,
+   only those in the face opposite to k span cones. */
 static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned *k, gxi_moments2 *m) {
     gxp_boundary *boundary = &body->scratch.boundary;
     const gxb_complex *cx = body->complex;
@@ -3696,7 +3703,7 @@ static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned 
     return result;
 }
 
-/* volume: of the element */
+/* The volume and mass of a cell; volume: of its element */
 static gx_result gxp_integrate_cell(gx_body *body, uint32_t cell, double volume) {
     const uint32_t element = body->cells.data[cell].element;
     gxi_moments2 m;
@@ -3720,7 +3727,7 @@ static uint32_t gxp_count_leaves(const gx_body *body, uint32_t cell) {
     return count;
 }
 
-/* The leaf in which the middle of the element lies, roughly */
+/* The leaf that contains the middle of the element, roughly */
 static uint32_t gxp_middle_leaf(const gxb_complex *cx, uint32_t element) {
     uint32_t reference = gxb_complex_root(cx, element), n;
     double middle[3] = {0, 0, 0};
@@ -3738,9 +3745,8 @@ static uint32_t gxp_middle_leaf(const gxb_complex *cx, uint32_t element) {
     return reference >> 1;
 }
 
-/* The cell in the middle of the element, which is seldom small. GXP_NONE: it is not fresh, or something has been
-   removed from the element, so that its cells are not all of it, or its other cells have more leaves to look at than
-   the fresh ones have. */
+/* The cell in the middle of the element, which is seldom small. GXP_NONE if it is not new, if something was removed
+   from the element, so that its cells do not fill it, or if its other cells have more leaves than its new ones. */
 static uint32_t gxp_rest_cell(const gx_body *body, uint32_t element) {
     const uint32_t root = gxb_complex_root(body->complex, element),
                    all = root & 1 ? gxb_complex_tree_node(body->complex, root >> 1)->leaves : 1;
@@ -3758,12 +3764,12 @@ static uint32_t gxp_rest_cell(const gx_body *body, uint32_t element) {
     return others <= sum && sum + others == all ? rest : GXP_NONE;
 }
 
-#define GXP_REST_CELLS 4 /* an element with more cells is not looked at as a whole: a cut may touch few of them */
-#define GXP_REST                                                                                                       \
-    0.25 /* a cell with at least this share of its element may be what the others leave: its smallest moments lose two \
-            digits by that */
+/* An element with more cells is not integrated as a whole: a cut may touch few of them. */
+#define GXP_REST_CELLS 4
+/* A cell with at least this share of its element may be what the others leave; its smallest moments lose two digits. */
+#define GXP_REST 0.25
 
-/* Makes the cell, which has been saved, what the element's other cells leave. 0: that is too little. */
+/* Sets a cell, which was logged, to the element less its other cells. Returns 0 if too little remains. */
 static int gxp_leave_rest(gx_body *body, uint32_t rest, double volume) {
     const uint32_t element = body->cells.data[rest].element;
     double mass[10], left = volume;
@@ -3787,7 +3793,7 @@ static int gxp_has_few_cells(const gx_body *body, uint32_t element) {
     return count <= GXP_REST_CELLS;
 }
 
-/* The fresh cells of the element. Most often the one in the middle is what the others leave. */
+/* Integrates the new cells of an element. The one in the middle is most often what the others leave. */
 static gx_result gxp_integrate_element(gx_body *body, uint32_t element) {
     const double volume = gxp_element_volume(body, element);
     const uint32_t rest = gxp_rest_cell(body, element);
@@ -3802,7 +3808,7 @@ static gx_result gxp_integrate_element(gx_body *body, uint32_t element) {
     return result != GX_OK || done ? result : gxp_integrate_cell(body, rest, volume);
 }
 
-/* Volume of what the cut removed, leaf by leaf, so that a thin slab keeps its digits. */
+/* The volume that the cut removed, leaf by leaf, so that a thin slab keeps its digits. */
 static gx_result gxp_integrate_removed(gxp_cut *cut, const gxp_words *removed) {
     gx_body *body = cut->body;
     gx_result result = GX_OK;
@@ -3850,7 +3856,7 @@ static gx_result gxp_check_cut(gxp_cut *cut) {
     return result;
 }
 
-/* Removes what the solids have found. The cells of these leaves, and those beside them, are touched. */
+/* Removes the leaves that the solids contain. Touches their cells and those around. */
 static gx_result gxp_remove_leaves(gx_body *body) {
     gxp_scratch *scratch = &body->scratch;
     uint32_t i;
@@ -3866,6 +3872,7 @@ static gx_result gxp_remove_leaves(gx_body *body) {
     return result;
 }
 
+/* Inserts all surfaces, then finds the leaves inside the solids. */
 static gx_result gxp_arrange_surfaces(gxp_cut *cut, gxp_surface *surfaces) {
     const size_t count = cut->desc->surface_count;
     size_t i;
@@ -3881,6 +3888,7 @@ static gx_result gxp_arrange_surfaces(gxp_cut *cut, gxp_surface *surfaces) {
     return result;
 }
 
+/* From surfaces to leaves: the complex has all walls, removed leaves are marked, cells beside them touched. */
 static gx_result gxp_arrange(gxp_cut *cut) {
     gx_body *body = cut->body;
     const size_t count = cut->desc->surface_count;
@@ -3898,6 +3906,7 @@ static gx_result gxp_arrange(gxp_cut *cut) {
     return result == GX_OK ? gxp_remove_leaves(body) : result;
 }
 
+/* From leaves to copies: touched cells fall apart, small links are severed, nodes get copies. */
 static gx_result gxp_enrich(gxp_cut *cut) {
     gx_result result = gxp_collect_touched(cut);
     if (result == GX_OK) result = gxp_divide_cells(cut);
@@ -3906,8 +3915,8 @@ static gx_result gxp_enrich(gxp_cut *cut) {
     return result == GX_OK ? gxp_divide_nodes(cut) : result;
 }
 
-/* The integrals of a fresh cell, and of all others of its element, unless they are many. *before: the element of the
- * fresh cell before it */
+/* Integrates a new cell and all other new cells of its element; only the cell if the element has many. *before: the
+   element of the new cell before it. */
 static gx_result gxp_integrate_new(gx_body *body, uint32_t cell, uint32_t *before) {
     const uint32_t element = body->cells.data[cell].element;
     if (body->cells.stamp[element] == body->scratch.stamp) return GX_OK;
@@ -3918,8 +3927,8 @@ static gx_result gxp_integrate_new(gx_body *body, uint32_t cell, uint32_t *befor
     return gxp_integrate_element(body, element);
 }
 
-/* Asks for what weighing the links of the next fresh cells reads: facets three ahead, their loops two ahead, the edges
- * of the next. */
+/* Prefetches the data that weighing the links of the next new cells will read: facets three cells ahead, their loops
+   two ahead, the edges of the next. */
 GXP_PREFETCHES void gxp_prefetch_links(const gx_body *body, uint32_t index) {
     const gxp_scratch *scratch = &body->scratch;
     const gxb_complex *cx = body->complex;
@@ -3942,7 +3951,8 @@ GXP_PREFETCHES void gxp_prefetch_links(const gx_body *body, uint32_t index) {
         }
 }
 
-/* Links are weighed here, where their facets are looked at anyway, unless they were before, to be severed. */
+/* Integrates the new cells. Unless links were weighed before to be severed, weighs them here, while their facets are in
+   the cache. */
 static gx_result gxp_integrate(gxp_cut *cut) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
@@ -3971,8 +3981,8 @@ static gx_result gxp_push_leaf_elements(gx_body *body, uint32_t facet) {
     return result;
 }
 
-/* Notes for the skin, if there is one, the elements in which the cut made facets or walls or changed a cell, and those
-   whose copies will be renumbered when dead ones are dropped. Elements noted in vain do no harm. */
+/* Notes for the skin the elements in which the cut made facets or walls or changed a cell, and those whose copies get
+   new numbers when dead ones are dropped. An element noted in vain does no harm. */
 static gx_result gxp_note_for_skin(gxp_cut *cut, uint32_t first_facet) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
@@ -3990,7 +4000,7 @@ static gx_result gxp_note_for_skin(gxp_cut *cut, uint32_t first_facet) {
         result = gxp_push_leaf_elements(body, gxb_complex_marked_facet(cx, i));
     for (i = 0; i < body->undo.cells.rows.count && result == GX_OK; i++)
         result = gxp_push(body, &body->skin.dirty, body->cells.data[body->undo.cells.rows.data[i]].element);
-    for (i = 0; i < scratch->pinches.count; i++) /* edges that were divided there without a new facet */
+    for (i = 0; i < scratch->pinches.count; i++) /* edges may be divided there without a new facet */
         for (j = body->mesh.node_start[scratch->pinches.data[i]];
              j < body->mesh.node_start[scratch->pinches.data[i] + 1] && result == GX_OK; j++)
             result = gxp_push(body, &body->skin.dirty, body->mesh.node_elements[j]);
@@ -4016,7 +4026,7 @@ static void gxp_drop_copy(gx_body *body, uint32_t copy) {
     gxp_copy_row(body, GXP_COPIES, last, copy);
 }
 
-/* What a cut touches wakes, and its fragment is no more as it was. */
+/* Wakes the copies of a touched cell and marks their fragment as touched. */
 static void gxp_touch_copies(gx_body *body, const gxp_cell *cell) {
     int k;
     for (k = 0; k < 4; k++) {
@@ -4025,7 +4035,7 @@ static void gxp_touch_copies(gx_body *body, const gxp_cell *cell) {
     }
 }
 
-/* Notes the elements that the solver is to be told of; without memory for that, all are. */
+/* Notes the elements of which the solver must be told. If there is no memory for that, it is told of all. */
 static void gxp_note_changed(gx_body *body) {
     const gxp_words *changed = &body->undo.cells.rows, *made = &body->scratch.new_cells;
     gx_result result = GX_OK;
@@ -4049,7 +4059,7 @@ static void gxp_commit(gxp_cut *cut) {
     for (i = 0; i < scratch->touched.count; i++) {
         gxp_cell *cell = &body->cells.data[scratch->touched.data[i]];
         if (cell->kept) continue;
-        gxp_touch_copies(body, cell); /* also what hung on it by an edge or node only */
+        gxp_touch_copies(body, cell); /* also what it held by an edge or node only */
         memset(cell->copies, 0xff, sizeof cell->copies);
     }
     for (i = 0; i < scratch->removed.count; i++) body->leaves.data[scratch->removed.data[i]].next = GXP_NONE;
@@ -4105,8 +4115,8 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
 /* >>solidify: a sheet made solid ----------------------------------------------------------------------------------- */
 /* In: a sheet and a thickness. Out: the closed surface between its two offsets (GXFEM section 4.1). Knows no body. */
 
-/* Sums of area normals at the vertices of the sheet go to normals, of edges in units of the longest one's power of two,
-   so that areas are numbers; then each is scaled to half the thickness. */
+/* Sums the area normals around each vertex of the sheet and scales each sum to half the thickness. Edges are measured
+   in units of the longest one's power of two, so that areas stay in range. */
 static gx_result gxp_offset_vectors(const gx_surface *s, double half, double *normals) {
     double longest = 0;
     size_t i;
@@ -4141,8 +4151,7 @@ static gx_result gxp_offset_vectors(const gx_surface *s, double half, double *no
     return GX_OK;
 }
 
-/* Closes the rim: a quad for each half-edge whose edge has more triangles one way than the other. Appends to triangles.
- */
+/* Closes the rim: appends a quad for each half-edge whose edge has more triangles one way than the other. */
 static gx_result gxp_close_solid(const gx_surface *s, const gx_allocator *a, uint32_t *triangles, size_t *count) {
     const size_t n = 3 * s->triangle_count, size = n * sizeof(gxp_half_edge);
     const uint32_t v = (uint32_t)s->vertex_count;
@@ -4220,6 +4229,7 @@ GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thicknes
 /* >>regions: held copies ------------------------------------------------------------------------------------------- */
 /* In: regions that are to be held. Out: a flag for each copy, found anew after a cut or when regions change. */
 
+/* points below node_count are nodes */
 static int gxp_point_in_region(gx_body *body, uint32_t point, const gx_region *r) {
     if (point < body->mesh.node_count) {
         const double x = body->mesh.positions[3 * (size_t)point + r->axis];
@@ -4228,7 +4238,7 @@ static int gxp_point_in_region(gx_body *body, uint32_t point, const gx_region *r
     return gxb_complex_compare(body->complex, point, (int)r->axis, r->value) * r->side > 0;
 }
 
-/* Has the cell material in the region? Leaves are convex: their points tell. */
+/* Does the cell have material in the region? Its leaves are convex, so their points decide. */
 static gx_result gxp_cell_in_region(gx_body *body, uint32_t cell, const gx_region *r, int *inside) {
     uint32_t leaf, i;
     gx_result result = GX_OK;
@@ -4248,6 +4258,7 @@ static gx_result gxp_cell_in_region(gx_body *body, uint32_t cell, const gx_regio
     return result;
 }
 
+/* Does a cell of the copy, whose node is in the region, have material in the region? */
 static gx_result gxp_copy_in_region(gx_body *body, uint32_t copy, const gx_region *r, int *inside) {
     const uint32_t node = body->copies.node[copy];
     uint32_t j, cell;
@@ -4264,6 +4275,7 @@ static gx_result gxp_copy_in_region(gx_body *body, uint32_t copy, const gx_regio
     return result;
 }
 
+/* Finds out anew which copies are held, if a cut or other regions make that necessary. */
 static gx_result gxp_update_held(gx_body *body) {
     uint32_t c, r;
     gx_result result = GX_OK;
@@ -4272,7 +4284,7 @@ static gx_result gxp_update_held(gx_body *body) {
         int held = 0;
         for (r = 0; r < body->holds.count && result == GX_OK && !held; r++)
             result = gxp_copy_in_region(body, c, &body->holds.regions[r], &held);
-        if (body->copies.held[c] && !held) body->copies.rest_time[c] = 0; /* what is let go wakes */
+        if (body->copies.held[c] && !held) body->copies.rest_time[c] = 0; /* released copies wake */
         body->copies.held[c] = (uint8_t)held;
     }
     if (result == GX_OK) body->holds.stale = 0;
@@ -4306,16 +4318,16 @@ GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t
 /* In: the numbering of fragments. Out: their volumes, masses, centres and inertia; ids that stay, by comparison with
    the last snapshot. Touches the view's sums, the snapshot and the copies' labels. */
 
-/* Where entry ij stands in a mass block */
+/* The place of entry ij in a mass block */
 static const uint8_t gxp_mass_at[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
 
-/* Sum of a mass block's row: density * integral of lambda_i */
+/* The sum of a row of a mass block: density * integral of lambda_i */
 static double gxp_mass_row(const double mass[10], int i) {
     const uint8_t *at = gxp_mass_at[i];
     return mass[at[0]] + mass[at[1]] + mass[at[2]] + mass[at[3]];
 }
 
-/* x of the cell's nodes as seen from a centre: at rest, or where the cell's copies have moved */
+/* x of the cell's nodes from a centre, at rest or, moved, with the displacement of its copies */
 static void gxp_cell_corners(const gx_body *body, const gxp_cell *cell, int moved, const double center[3],
                              double x[4][3]) {
     int n, k;
@@ -4399,7 +4411,7 @@ static gx_result gxp_sum_fragments(gx_body *body) {
     return GX_OK;
 }
 
-/* Joins copies by the cells around the nodes of new ones, and no others: in view.split_parents. */
+/* Unites copies by the cells around the nodes of new copies, and by no others: view.split_parents. */
 static gx_result gxp_join_around_splits(gx_body *body) {
     gxp_view *view = &body->view;
     gxp_words *cells = &view->split_cells;
@@ -4425,8 +4437,8 @@ static gx_result gxp_join_around_splits(gx_body *body) {
     return GX_OK;
 }
 
-/* Which fragment each copy is in. Sheets take nothing away, so whatever old copies connected their descendants connect.
-   If all new copies are still connected with those they come from, around their nodes, no fragment has fallen apart. */
+/* Finds the fragment of each copy. Sheets remove nothing: if two old copies were connected, so are their descendants.
+   If each new copy is still connected with the one it comes from, around its node, no fragment has fallen apart. */
 static gx_result gxp_update_labels(gx_body *body) {
     gxp_view *view = &body->view;
     const gxp_words *splits = &view->splits;
@@ -4448,7 +4460,7 @@ static gx_result gxp_update_labels(gx_body *body) {
     return GX_OK;
 }
 
-/* Where fragments come from, by the labels of their copies */
+/* Where the fragments come from, by the labels of their copies */
 typedef struct gxp_change {
     uint32_t *origin;   /* by fragment: its index in the snapshot */
     uint32_t *touched;  /* by fragment: 1 if it was cut */
@@ -4456,6 +4468,7 @@ typedef struct gxp_change {
     uint32_t *count;    /* by fragment of the snapshot: into how many it fell apart */
 } gxp_change;
 
+/* Labels the copies with their fragments, which are the snapshot's now. */
 static void gxp_label_copies(gx_body *body) {
     uint32_t i, k;
     for (i = 0; i < body->view.count; i++)
@@ -4479,7 +4492,7 @@ static void gxp_find_origins(gx_body *body, gxp_change *change) {
     }
 }
 
-/* There is room in the lists. */
+/* Writes the ids and changes to the snapshot, which has room. */
 static void gxp_give_ids(gx_body *body, const gxp_change *change) {
     gxp_snapshot *snapshot = &body->snapshot;
     const uint32_t count = body->view.fragment_count;
@@ -4508,7 +4521,7 @@ static gx_result gxp_snapshot_room(gx_body *body) {
     return result == GX_OK && snapshot->next_id > UINT32_MAX - body->view.fragment_count ? GX_ERROR_LIMIT : result;
 }
 
-/* Brings the snapshot up to date; the view is. An error leaves labels and ids as they were: nothing of the change is
+/* Brings the snapshot up to date with the view. After an error labels and ids are as they were, so that no change is
    lost. */
 static gx_result gxp_take_snapshot(gx_body *body) {
     const size_t now = body->view.fragment_count, before = body->snapshot.count,
@@ -4533,7 +4546,7 @@ static gx_result gxp_take_snapshot(gx_body *body) {
     return GX_OK;
 }
 
-/* The fragments of the mesh: ids 1, 2 ... */
+/* Takes the snapshot of the mesh: ids 1, 2 ... */
 static gx_result gxp_first_snapshot(gx_body *body) {
     gxp_snapshot *snapshot = &body->snapshot;
     uint32_t f;
@@ -4592,10 +4605,10 @@ GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view) {
 /* >>motion: momentum and energy of fragments ----------------------------------------------------------------------- */
 /* In: displacement and velocity. Out: the motion of each fragment. Touches nothing but the view's lists. */
 
-#define GXP_NO_INERTIA                                                                                                 \
-    1e-13 /* a principal moment below this share of the largest is rounding: nothing turns about its axis */
+/* A principal moment below this share of the largest is rounding: nothing turns about its axis. */
+#define GXP_NO_INERTIA 1e-13
 
-/* One rotation of Jacobi's method: makes entry pq of the symmetric a zero; columns of v are the axes. */
+/* One rotation of Jacobi's method: makes entry pq of the symmetric matrix a zero; the columns of v are its axes. */
 static void gxp_rotate(double a[3][3], double v[3][3], int p, int q) {
     double t, c, s;
     int k;
@@ -4619,7 +4632,7 @@ static void gxp_rotate(double a[3][3], double v[3][3], int p, int q) {
     a[p][q] = a[q][p] = 0;
 }
 
-/* Pseudo-inverse of the inertia times the angular momentum */
+/* spin = pseudo-inverse of the inertia times the angular momentum */
 static void gxp_spin(const double inertia[6], const double momentum[3], double spin[3]) {
     double a[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, largest = 0;
     int i, k, sweep;
@@ -4649,8 +4662,7 @@ static void gxp_cell_velocities(const gx_body *body, const gxp_cell *cell, const
         for (k = 0; k < 3; k++) v[n][k] = body->copies.velocity[3 * (size_t)cell->copies[n] + (size_t)k] - mean[k];
 }
 
-/* With x and v relative to the centre: inertia, angular momentum sum_ij m_ij x_i x v_j, energy of the relative motion
- */
+/* Adds to inertia, angular momentum (sum_ij m_ij x_i x v_j) and energy; x and v are relative to the centre. */
 static void gxp_add_rotation(const gxp_cell *cell, double x[4][3], double v[4][3], gx_motion *motion,
                              double momentum[3]) {
     double mx[4][3], mv[4][3];
@@ -4690,7 +4702,7 @@ static void gxp_find_centers(const gx_body *body, gx_motion *motions) {
         }
 }
 
-/* Where a motion is not finite: is it the state, or only what doubles can hold of it? */
+/* If a motion is not finite, is it the state (NOT_FINITE), or only beyond doubles (RANGE)? */
 static gx_result gxp_check_motion(const gx_body *body, const gx_motion *motion) {
     double number[17];
     size_t i;
@@ -4753,15 +4765,16 @@ GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t cap
 enum { GXP_FREE, GXP_FOLLOWS, GXP_FOLLOWS_POINT };
 
 typedef struct gxp_supports {
-    uint8_t *weak; /* copy_count: GXP_FREE ... */
-    /* copy_count: whose field the copy follows, or, of a point, whose first copy; GXP_NONE: not known, or none */
+    uint8_t *weak; /* copy_count: GXP_FREE or how it follows */
+    /* copy_count: the cell whose field the copy follows, or whose first copy if it is part of a point; GXP_NONE: not
+     * known, or none */
     uint32_t *cell;
-    uint32_t *queue; /* copy_count: copies found by a search */
-    uint32_t *seen;  /* copy_count: the search that has met it last */
+    uint32_t *queue; /* copy_count: copies that the search has met, in order */
+    uint32_t *seen;  /* copy_count: the last search that has met the copy */
     uint32_t search;
 } gxp_supports;
 
-/* Cells around a copy, one after the other */
+/* Walks through the cells that a copy moves. */
 typedef struct gxp_around {
     uint32_t copy, at, cell;
 } gxp_around;
@@ -4774,7 +4787,7 @@ static gxp_around gxp_around_copy(const gx_body *body, uint32_t copy) {
     return around;
 }
 
-/* 0: there are no more */
+/* The next cell. Returns 0 if there are no more. */
 static int gxp_next_around(const gx_body *body, gxp_around *around) {
     const uint32_t copy = around->copy, end = body->mesh.node_start[body->copies.node[copy] + 1];
     for (;;) {
@@ -4789,7 +4802,7 @@ static int gxp_next_around(const gx_body *body, gxp_around *around) {
     }
 }
 
-/* Share of the part that a cell belongs to */
+/* The share of the part that the cell belongs to */
 static double gxp_part_share(const gx_body *body, uint32_t cell) {
     const gxp_cell *of = &body->cells.data[cell];
     double volume = 0;
@@ -4799,6 +4812,7 @@ static double gxp_part_share(const gx_body *body, uint32_t cell) {
     return volume / gxp_element_volume(body, of->element);
 }
 
+/* Has the element a part with a share below follow_below? */
 static int gxp_is_thin(const gx_body *body, uint32_t element) {
     uint32_t cell;
     for (cell = element; cell != GXP_NONE; cell = body->cells.data[cell].next)
@@ -4806,7 +4820,7 @@ static int gxp_is_thin(const gx_body *body, uint32_t element) {
     return 0;
 }
 
-/* Brings the list of thin elements up to date: all anew, or those that have changed. */
+/* Brings the list of thin elements up to date, over all elements or over those that have changed. */
 static gx_result gxp_list_thin(gx_body *body, int anew) {
     gxp_model *model = &body->model;
     const uint32_t looked_at = anew ? body->mesh.element_count : model->changed.count;
@@ -4823,7 +4837,7 @@ static gx_result gxp_list_thin(gx_body *body, int anew) {
         if (gxp_is_thin(body, element)) result = gxp_push(body, &model->thin, element);
     }
     gxp_sort_unique(&model->thin);
-    if (result != GX_OK) model->state = GXP_MODEL_STALE; /* the list is not whole */
+    if (result != GX_OK) model->state = GXP_MODEL_STALE; /* the list is incomplete */
     return result;
 }
 
@@ -4840,8 +4854,8 @@ static int gxp_is_strong(const gx_body *body, const gxp_supports *of, uint32_t c
     return !(of->weak[copies[0]] | of->weak[copies[1]] | of->weak[copies[2]] | of->weak[copies[3]]);
 }
 
-/* Weights by which a copy follows the field of a cell at its node, 1 in sum. Returns the sum of their sizes: 1 within
- * the element, more outside. */
+/* The weights by which a copy follows the field of a cell at its node; their sum is 1. Returns the sum of their
+   absolute values: 1 within the element, more outside. */
 static double gxp_follow_weights(const gx_body *body, uint32_t copy, uint32_t cell, double weight[4]) {
     const double *at = body->mesh.positions + 3 * (size_t)body->copies.node[copy];
     double x[12], gradients[12];
@@ -4854,9 +4868,10 @@ static double gxp_follow_weights(const gx_body *body, uint32_t copy, uint32_t ce
     return fabs(weight[0]) + fabs(weight[1]) + fabs(weight[2]) + fabs(weight[3]);
 }
 
-/* What a weak copy follows: of the strong cells nearest to it, by cells between, the one whose field is extended least,
-   or, where a copy that already follows is as near, what that follows. So do weak copies on the way that are further
-   than one cell from it. Returns how many copies the search has met if there is no strong cell: all of the fragment. */
+/* Finds the strong cell that a weak copy follows. It searches from cell to cell. Among the nearest strong cells it
+   takes the one whose field is extended least; if a copy as near already follows one, it takes that. Weak copies that
+   the search passed earlier than in its last round follow the same cell. Returns 0, or, if the fragment has no strong
+   cell, the number of its copies, all of which the search has met. */
 static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *of, uint32_t copy) {
     uint32_t begin, end, i, count = 1, best = GXP_NONE;
     int k;
@@ -4890,9 +4905,9 @@ static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *of, uint32_t co
     return best == GXP_NONE ? count : 0;
 }
 
-/* How far a cell reaches beside its element: square root of the trace of its covariance in barycentric coordinates over
-   that of the element, which is 4 (1/10 - 1/16). A crumb of an element's corner reaches as far as it is large, a layer
-   of any thickness about as far as the element. */
+/* How far a cell reaches within its element: the square root of the trace of its covariance in barycentric coordinates
+   over that of the element, which is 4 (1/10 - 1/16). The reach of a speck in a corner is about its size; the reach of
+   a layer, however thin, is about 1. */
 static double gxp_cell_reach(const gxp_cell *cell) {
     double mass = 0, trace = 0;
     int i, k;
@@ -4905,8 +4920,8 @@ static double gxp_cell_reach(const gxp_cell *cell) {
     return trace > 0 ? sqrt(trace / 0.15) : 0;
 }
 
-/* A fragment without a strong cell, the first `count` copies of the queue: weak is what is so beside its fullest part,
- * or it is a point. */
+/* A fragment without a strong cell: the first `count` copies of the queue. Either its copies are weak by comparison
+   with its fullest part, or it is a speck and moves as a point. */
 static void gxp_weigh_fragment(const gx_body *body, gxp_supports *of, uint32_t count) {
     uint32_t i, fullest = GXP_NONE, lead;
     double most = 0, reach = 0;
@@ -4933,7 +4948,7 @@ static void gxp_weigh_fragment(const gx_body *body, gxp_supports *of, uint32_t c
     }
 }
 
-/* Weak copies of the body, and what each follows. Returns how many there are. */
+/* Finds the weak copies of the body and what each follows. Returns their number. */
 static uint32_t gxp_find_supports(const gx_body *body, gxp_supports *of) {
     uint32_t i, cell, count = 0;
     int k;
@@ -4967,6 +4982,7 @@ static void gxp_add_constraint(gx_body *body, const gxp_supports *of, uint32_t c
         constraint->weight[0] = 1;
 }
 
+/* One constraint for each weak copy */
 static gx_result gxp_make_constraints(gx_body *body) {
     const gx_allocator *a = &body->config.allocator;
     const size_t n = body->copies.count;
@@ -5000,6 +5016,7 @@ static gx_result gxp_make_constraints(gx_body *body) {
    element that move by the same four copies are one element of the model, a part. Touches the solver and the model's
    arrays, which are there only while it is made. */
 
+/* Adds a cell to the part with its copies, or begins a new part. first: the element's first part. */
 static void gxp_add_part(gx_body *body, const gxp_cell *cell, uint32_t first, const double gradients[12]) {
     gxs_element *part;
     uint32_t i;
@@ -5019,7 +5036,7 @@ static void gxp_add_part(gx_body *body, const gxp_cell *cell, uint32_t first, co
     for (k = 0; k < 10; k++) part->mass[k] += cell->mass[k];
 }
 
-/* The parts of an element, for which there is room, at the end */
+/* Appends the parts of an element; there is room. */
 static gx_result gxp_add_parts(gx_body *body, uint32_t element) {
     const uint32_t first = body->model.part_count;
     double x[12], gradients[12];
@@ -5032,6 +5049,7 @@ static gx_result gxp_add_parts(gx_body *body, uint32_t element) {
     return result;
 }
 
+/* The parts of all elements */
 static gx_result gxp_make_parts(gx_body *body) {
     uint32_t e;
     gx_result result = gxp_reserve(&body->config.allocator, &body->model.parts, sizeof *body->model.parts, 0,
@@ -5041,6 +5059,7 @@ static gx_result gxp_make_parts(gx_body *body) {
     return result;
 }
 
+/* The whole model. Its arrays are the body's. */
 static gx_result gxp_make_model(gx_body *body, gxs_model *model) {
     const gx_allocator *a = &body->config.allocator;
     uint32_t i;
@@ -5072,8 +5091,8 @@ static gx_result gxp_make_model(gx_body *body, gxs_model *model) {
     return GX_OK;
 }
 
-/* The solver's model changed as the body was. Errors: besides MEMORY LIMIT and, if nothing is left, EMPTY: it is to be
- * set anew. */
+/* Tells the solver what has changed. After an error its model must be set anew: LIMIT and, if nothing is left, EMPTY
+   say just that; MEMORY is a failure. */
 static gx_result gxp_change_model(gx_body *body) {
     gxp_model *model = &body->model;
     size_t room = 0;
@@ -5102,13 +5121,14 @@ static gx_result gxp_change_model(gx_body *body) {
     return result == GX_OK ? gxs_solver_update(body->solver, &change, NULL) : result;
 }
 
-/* What has been written to the state since the last step still wakes in the next one. */
+/* Makes sure that what was written to the state since the last step wakes in the next one. */
 static void gxp_note_written(gx_body *body) {
     gxp_wake_resumed(body, body->copies.count);
     gxs_solver_note_written(body->solver, body->copies.before, body->copies.count, body->copies.displacement,
                             body->copies.velocity, body->copies.rest_time);
 }
 
+/* Gives the solver the whole model. */
 static gx_result gxp_set_model(gx_body *body) {
     gxs_model model;
     gx_result result = gxp_make_model(body, &model);
@@ -5118,12 +5138,12 @@ static gx_result gxp_set_model(gx_body *body) {
     return body->model.empty ? GX_OK : gxs_solver_set_model(body->solver, &model, NULL);
 }
 
-/* What the solver has copied */
+/* Releases what the solver has copied. */
 static void gxp_release_model(gx_body *body) {
     gxp_release_columns(body, gxp_model_lists, sizeof gxp_model_lists / sizeof *gxp_model_lists);
 }
 
-/* The solver's model, after a cut or a hold only. The solver copies it, so that it need not be kept. */
+/* Brings the solver's model up to date after cuts and holds. The solver copies it, so that the arrays are released. */
 static gx_result gxp_update_model(gx_body *body) {
     gxp_model *model = &body->model;
     gx_result result = gxp_update_held(body);
@@ -5162,7 +5182,7 @@ GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model) {
 /* In: a step's description. Out: displacement and velocity at its end, or the body as it was. Touches the state of
    copies, the history that BDF2 needs, and the solver. */
 
-/* The first `count` columns of BDF2's history, unless they are there. */
+/* Makes the first `count` columns of BDF2's history, unless they are there. */
 static gx_result gxp_start_history(gx_body *body, uint32_t count) {
     uint32_t i;
     gx_result result = GX_OK;
@@ -5172,7 +5192,7 @@ static gx_result gxp_start_history(gx_body *body, uint32_t count) {
     return result;
 }
 
-/* The step with what is the body's own */
+/* The step as the solver takes it: with the body's own rest times, history and clock */
 static gx_result gxp_complete_step(gx_body *body, const gx_step_desc *desc, gx_step_desc *step) {
     const int history = desc->integrator == GXS_BDF2;
     gx_result result = GX_OK;
@@ -5189,7 +5209,7 @@ static gx_result gxp_complete_step(gx_body *body, const gx_step_desc *desc, gx_s
     return result;
 }
 
-/* The solver's step, and what BDF2's next one needs of this one */
+/* Takes the step and keeps what the next step of BDF2 needs. */
 static gx_result gxp_step(gx_body *body, const gx_step_desc *step, gx_step_report *report, gx_failure *failure) {
     gxp_copies *copies = &body->copies;
     const size_t bytes = 3 * (size_t)copies->count * sizeof(double);
@@ -5235,7 +5255,7 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
 /* The visual surface takes four sections. This one: which corners of the outer surface are shaded as one, and which
    texture a cut face has. In: the mesh, the records of surfaces. Out: groups of corners. Touches the skin only. */
 
-/* Of length 1; left alone where it has none, or one that is not finite. */
+/* Sets a normal of length 1. It is left alone if n is zero or not finite. */
 static void gxp_set_normal(float *normal, const double n[3]) {
     double unit[3];
     int k;
@@ -5243,7 +5263,7 @@ static void gxp_set_normal(float *normal, const double n[3]) {
         for (k = 0; k < 3; k++) normal[k] = (float)unit[k];
 }
 
-/* Normal of the outer face opposite to the element's node k, of its area's length. */
+/* The normal of the outer face opposite to the element's node k; its length is the area. */
 static void gxp_outer_normal(const gx_body *body, uint32_t element, uint32_t k, double n[3]) {
     double x[12], a[3], b[3];
     const uint8_t *f = gxp_outward[k];
@@ -5256,9 +5276,7 @@ static void gxp_outer_normal(const gx_body *body, uint32_t element, uint32_t k, 
     for (i = 0; i < 3; i++) n[i] = 0.5 * (a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]);
 }
 
-/* Lists the outer faces: s->boundary has the number of each mesh face among them, body->skin.outer_faces element * 4 +
- * k of each.
- */
+/* Lists the outer faces as element * 4 + k; skin.boundary has the number of each mesh face among them. */
 static gx_result gxp_list_outer_faces(gx_body *body) {
     const gxb_complex *cx = body->complex;
     gxp_skin *s = &body->skin;
@@ -5274,8 +5292,8 @@ static gx_result gxp_list_outer_faces(gx_body *body) {
     return result;
 }
 
-/* Two outer faces (by number) meet in the mesh edge from node a to b: where they bend little, their corners are one
- * group. */
+/* Outer faces p and q meet in the mesh edge from node a to b. If they bend little there, their corners are one
+   group. */
 static void gxp_join_corners(gx_body *body, uint32_t p, uint32_t q, uint32_t a, uint32_t b) {
     const uint32_t ep = body->skin.outer_faces.data[p], eq = body->skin.outer_faces.data[q];
     uint32_t *group = body->skin.groups.data;
@@ -5289,8 +5307,7 @@ static void gxp_join_corners(gx_body *body, uint32_t p, uint32_t q, uint32_t a, 
               4 * q + (uint32_t)gxp_local_node(body, eq / 4, b));
 }
 
-/* Finds for each mesh edge the two outer faces that meet there, and joins them. body->skin.edge_faces: of each edge,
- * the first face and how many. */
+/* Finds the two outer faces at each mesh edge and joins their corners. */
 static gx_result gxp_join_faces(gx_body *body) {
     const gxb_complex *cx = body->complex;
     uint32_t i, j, *first, *second;
@@ -5316,8 +5333,8 @@ static gx_result gxp_join_faces(gx_body *body) {
     return GX_OK;
 }
 
-/* Groups of corners of outer faces: s->groups has for each outer face's four nodes the number of its group (the fourth
-   is not used); s->group_normals their normals at rest, weighted by area, not of length 1. */
+/* Groups the corners of outer faces. skin.groups: the group of each of the four nodes of an outer face (that of node k
+   is not used); skin.group_normals: the normal of each at rest, weighted by area, not of length 1. */
 static gx_result gxp_group_corners(gx_body *body) {
     gxp_skin *s = &body->skin;
     uint32_t i, k;
@@ -5343,6 +5360,7 @@ static gx_result gxp_group_corners(gx_body *body) {
     return GX_OK;
 }
 
+/* The surface of a cut triangle */
 static uint32_t gxp_label_surface(const gx_body *body, uint32_t label) {
     uint32_t low = 0, high = body->cuts.surface_count;
     while (high - low > 1) {
@@ -5355,7 +5373,7 @@ static uint32_t gxp_label_surface(const gx_body *body, uint32_t label) {
     return low;
 }
 
-/* The affine map to the texture of a cut triangle, NULL if its surface has none */
+/* The affine map to the texture of a cut triangle, or NULL if its surface has none */
 static const double *gxp_label_map(const gx_body *body, uint32_t label) {
     uint32_t surface;
     if (label == GXP_NONE) return NULL;
@@ -5370,6 +5388,7 @@ static const double *gxp_label_map(const gx_body *body, uint32_t label) {
    are found by a key that needs no arithmetic. They stand without gaps: the last one takes the place of one that goes.
  */
 
+/* Empties the buckets; there are at least as many as items. */
 static gx_result gxp_rehash(gx_body *body, gxp_words *buckets, uint32_t items) {
     uint32_t size = 64;
     gx_result result;
@@ -5386,7 +5405,7 @@ static uint32_t *gxp_slot_bucket(gxp_skin *s, uint32_t copy, uint32_t group) {
     return &s->slot_buckets.data[gxp_mix((uint64_t)copy << 32 | group) & (s->slot_buckets.count - 1)];
 }
 
-/* Room for one slot more; the buckets grow with the slots. */
+/* Room for one more slot; the buckets grow with the slots. */
 static gx_result gxp_slot_room(gx_body *body) {
     gxp_skin *s = &body->skin;
     const uint32_t before = s->slot_capacity;
@@ -5404,6 +5423,7 @@ static gx_result gxp_slot_room(gx_body *body) {
     return result;
 }
 
+/* The slot of a copy and a group */
 static gx_result gxp_outer_slot(gx_body *body, uint32_t copy, uint32_t group, uint32_t *slot) {
     gxp_skin *s = &body->skin;
     gx_result result = gxp_slot_room(body);
@@ -5423,7 +5443,7 @@ static gx_result gxp_outer_slot(gx_body *body, uint32_t copy, uint32_t group, ui
     return GX_OK;
 }
 
-/* A slot that belongs to one vertex: a free one, or a new one */
+/* A slot for one vertex: a free one or a new one */
 static gx_result gxp_own_slot(gx_body *body, uint32_t *slot) {
     gxp_skin *s = &body->skin;
     gx_result result = GX_OK;
@@ -5439,7 +5459,7 @@ static gx_result gxp_own_slot(gx_body *body, uint32_t *slot) {
     return GX_OK;
 }
 
-/* A facet that is shown, or rather its part in a leaf's cell */
+/* A facet that is shown, as seen from one cell */
 typedef struct gxp_skin_face {
     uint32_t element;
     const uint32_t *copies; /* the cell's */
@@ -5459,6 +5479,7 @@ static uint32_t *gxp_vertex_bucket(gxp_skin *s, const gxp_skin_key *key) {
     return &s->vertex_buckets.data[h & (s->vertex_buckets.count - 1)];
 }
 
+/* Room for one more vertex; the buckets grow with the vertices. */
 static gx_result gxp_vertex_room(gx_body *body) {
     gxp_skin *s = &body->skin;
     const uint32_t before = s->vertex_capacity[0];
@@ -5474,7 +5495,7 @@ static gx_result gxp_vertex_room(gx_body *body) {
     return result;
 }
 
-/* What a point of the face is looked up by, known without arithmetic. */
+/* The key of a point of the face; it takes no arithmetic. */
 static void gxp_make_key(const gx_body *body, const gxp_skin_face *face, uint32_t point, gxp_skin_key *key) {
     const unsigned support = gxb_complex_support(body->complex, point, face->element);
     uint32_t i, j, n = 0;
@@ -5490,7 +5511,7 @@ static void gxp_make_key(const gx_body *body, const gxp_skin_face *face, uint32_
     }
 }
 
-/* Copies, weights and slots of a point, those of weight 0 last. */
+/* Copies, weights and slots of a point, those of weight 0 last */
 static void gxp_weigh_point(const gxp_skin_face *face, const double lambda[4], uint32_t *copies, double *weights,
                             uint32_t *slots) {
     uint32_t k, n = 0;
@@ -5507,7 +5528,7 @@ static void gxp_weigh_point(const gxp_skin_face *face, const double lambda[4], u
     }
 }
 
-/* Outside by barycentric interpolation, on cut faces by the cut triangle's map. */
+/* The texture of a vertex: interpolated on the outer surface, by the map of the cut triangle on faces of a cut */
 static void gxp_set_texture(gx_body *body, uint32_t vertex, const gxp_skin_face *face, const double lambda[4]) {
     const double *x = body->skin.rest + 3 * (size_t)vertex, *map = gxp_label_map(body, face->label);
     const uint32_t *node = gxb_complex_element_nodes(body->complex, face->element);
@@ -5521,7 +5542,7 @@ static void gxp_set_texture(gx_body *body, uint32_t vertex, const gxp_skin_face 
     }
 }
 
-/* A new vertex for a key */
+/* Appends a vertex with this key; there is room. */
 static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const gxp_skin_key *key, uint32_t *vertex) {
     gxp_skin *s = &body->skin;
     const uint32_t i = s->vertex_count;
@@ -5550,13 +5571,14 @@ static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const 
             rest[k] += s->weights[4 * (size_t)i + n] *
                        body->mesh.positions[3 * (size_t)body->copies.node[s->copies[4 * (size_t)i + n]] + (size_t)k];
     }
-    memset(s->normal + 3 * (size_t)i, 0, 3 * sizeof *s->normal); /* should the next not find one */
+    memset(s->normal + 3 * (size_t)i, 0, 3 * sizeof *s->normal); /* in case none is found next */
     gxp_set_normal(s->normal + 3 * (size_t)i, face->normal);
     gxp_set_texture(body, i, face, lambda);
     *vertex = s->vertex_count++;
     return GX_OK;
 }
 
+/* Notes a vertex that may have changed. */
 static gx_result gxp_note_vertex(gx_body *body, uint32_t vertex) {
     gxp_skin_vertex *v = &body->skin.vertices[vertex];
     if (v->noted) return GX_OK;
@@ -5564,6 +5586,7 @@ static gx_result gxp_note_vertex(gx_body *body, uint32_t vertex) {
     return gxp_push(body, &body->skin.changed[0], vertex);
 }
 
+/* Finds or appends the vertex of a point. */
 static gx_result gxp_find_vertex(gx_body *body, const gxp_skin_face *face, uint32_t point, uint32_t *vertex) {
     gxp_skin *s = &body->skin;
     gxp_skin_key key;
@@ -5577,7 +5600,7 @@ static gx_result gxp_find_vertex(gx_body *body, const gxp_skin_face *face, uint3
     return result == GX_OK ? gxp_note_vertex(body, *vertex) : result;
 }
 
-/* Takes a vertex without triangles away. */
+/* Removes a vertex without triangles. The last one takes its place. */
 static gx_result gxp_drop_vertex(gx_body *body, uint32_t vertex) {
     gxp_skin *s = &body->skin;
     const uint32_t last = --s->vertex_count;
@@ -5605,7 +5628,7 @@ static gx_result gxp_drop_vertex(gx_body *body, uint32_t vertex) {
 /* In: an element. Out: the triangles that it shows, of outer faces and of both sides of walls. Triangles are listed by
    element and stand without gaps. Facets are divided into triangles with area, so that each has a normal. */
 
-/* Hooks the triangle's corners to its vertices and itself to its element. */
+/* Adds the triangle to the lists of its vertices and of its element. */
 static void gxp_link_triangle(gxp_skin *s, uint32_t t) {
     gxp_skin_links *own = &s->links[t];
     uint32_t k;
@@ -5640,7 +5663,7 @@ static void gxp_unlink_triangle(gxp_skin *s, uint32_t t) {
         s->first.data[s->element[t]] = own->next;
 }
 
-/* Takes a triangle away; the last one takes its place. */
+/* Removes a triangle. The last one takes its place. */
 static gx_result gxp_drop_triangle(gx_body *body, uint32_t t) {
     gxp_skin *s = &body->skin;
     const uint32_t last = s->triangle_count - 1;
@@ -5679,8 +5702,7 @@ static gx_result gxp_add_skin_triangle(gx_body *body, const gxp_skin_face *face,
     return GX_OK;
 }
 
-/* May corner i be cut off the polygon of complex points, which has area? So must its triangle have, and what remains.
- */
+/* May corner i be cut off the polygon, which has area? Then its triangle has area, and so has the rest. */
 static int gxp_is_ear(gx_body *body, const uint32_t *p, uint32_t n, uint32_t i, uint32_t plane) {
     const uint32_t before = p[(i + n - 1) % n], after = p[(i + 1) % n];
     uint32_t j;
@@ -5691,7 +5713,8 @@ static int gxp_is_ear(gx_body *body, const uint32_t *p, uint32_t n, uint32_t i, 
     return 0;
 }
 
-/* Adds a facet as triangles, outward from the leaf: ears are cut off its convex polygon. */
+/* Adds a facet as triangles, outward from the leaf, by cutting ears off its convex polygon. Its corners may stand in
+   line: only triangles with area have normals. */
 static gx_result gxp_add_skin_facet(gx_body *body, const gxp_skin_face *face, uint32_t facet, uint32_t leaf) {
     gxb_complex *cx = body->complex;
     gxp_words *points = &body->skin.corner_points, *vertices = &body->skin.corner_vertices;
@@ -5722,8 +5745,8 @@ static gx_result gxp_add_skin_facet(gx_body *body, const gxp_skin_face *face, ui
     return result;
 }
 
-/* Do two cells move apart at a common facet? In one element where any copy differs, else where a shared node's copies
- * differ. */
+/* Do two cells move apart at a common facet? They do if any copy differs within one element, or if a shared node's
+   copies differ. */
 static int gxp_cells_part(const gx_body *body, uint32_t a, uint32_t b) {
     const gxp_cell *p = &body->cells.data[a], *q = &body->cells.data[b];
     uint32_t k;
@@ -5744,7 +5767,7 @@ static int gxp_visible(const gx_body *body, uint32_t facet, uint32_t leaf) {
     return f->wall && gxp_cells_part(body, body->leaves.data[leaf].cell, body->leaves.data[other].cell) ? 1 : -1;
 }
 
-/* The outer face opposite to the element's node k, as a cell has it */
+/* The outer face opposite to the element's node k, as the cell shows it */
 static gx_result gxp_outer_face(gx_body *body, uint32_t k, gxp_skin_face *face) {
     const uint32_t number = body->skin.boundary.data[gxb_complex_element_faces(body->complex, face->element)[k]];
     uint32_t j;
@@ -5762,7 +5785,7 @@ static gx_result gxp_outer_face(gx_body *body, uint32_t k, gxp_skin_face *face) 
     return result;
 }
 
-/* The face of a cut that the leaf has at the facet. Of several triangles that cover it the first counts. */
+/* The face of a cut that the leaf shows at the facet. Of several triangles that cover it the first one counts. */
 static void gxp_cut_face(const gx_body *body, uint32_t facet, uint32_t leaf, gxp_skin_face *face) {
     const gxb_complex *cx = body->complex;
     const gxb_facet *f = gxb_complex_facet(cx, facet);
@@ -5785,6 +5808,7 @@ static void gxp_cut_face(const gx_body *body, uint32_t facet, uint32_t leaf, gxp
         face->group[1] = 2 + 2 * face->plane + (uint32_t)front;
 }
 
+/* Adds all that a leaf shows. */
 static gx_result gxp_skin_leaf(gx_body *body, uint32_t leaf, gxp_skin_face *face) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i, k;
@@ -5804,7 +5828,7 @@ static gx_result gxp_skin_leaf(gx_body *body, uint32_t leaf, gxp_skin_face *face
     return result;
 }
 
-/* An element that no cut has touched shows its outer faces. */
+/* Adds the outer faces of an element that no cut has touched. */
 static gx_result gxp_skin_whole(gx_body *body, gxp_skin_face *face) {
     uint32_t k, j, vertex[3];
     gx_result result = GX_OK;
@@ -5820,8 +5844,7 @@ static gx_result gxp_skin_whole(gx_body *body, gxp_skin_face *face) {
     return result;
 }
 
-/* Is the element's face k as the mesh has it: not divided, no wall, and the element behind it, if there is one, still
- * there? */
+/* Is the element's face k as in the mesh: undivided, no wall, and the element behind it kept? */
 static int gxp_face_is_whole(const gx_body *body, uint32_t element, uint32_t k) {
     const gxb_complex *cx = body->complex;
     const uint32_t facet = gxb_complex_face_facet(cx, gxb_complex_element_faces(cx, element)[k]);
@@ -5833,7 +5856,7 @@ static int gxp_face_is_whole(const gx_body *body, uint32_t element, uint32_t k) 
     return f->child == GXB_NONE && !f->wall && (other == GXB_NONE || !gxb_complex_leaf(cx, other)->removed);
 }
 
-/* Does it show its outer faces as the mesh has them, and nothing else? */
+/* Does the element show its outer faces as in the mesh, and nothing else? */
 static int gxp_is_untouched(const gx_body *body, uint32_t element) {
     const gxb_complex *cx = body->complex;
     uint32_t k;
@@ -5854,13 +5877,14 @@ static int gxp_is_at_boundary(const gx_body *body, uint32_t element) {
     return 0;
 }
 
+/* Adds all that an element shows. */
 static gx_result gxp_skin_element(gx_body *body, uint32_t element) {
     const int untouched = gxp_is_untouched(body, element);
     gxp_skin_face face;
     uint32_t cell, leaf;
     gx_result result = GX_OK;
     if (untouched && !gxp_is_at_boundary(body, element)) return GX_OK;
-    gxp_clear_boundary(body, 1); /* each point's coordinates in the element are found once, for all faces it is in */
+    gxp_clear_boundary(body, 1); /* each point's coordinates are found once for all faces of the element */
     memset(&face, 0, sizeof face);
     face.element = element;
     if (!untouched) result = gxb_complex_open_element(body->complex, element);
@@ -5887,8 +5911,8 @@ static gx_result gxp_spread_to(gx_body *body, uint32_t element) {
     return gxp_push(body, &body->skin.dirty, element);
 }
 
-/* Elements that share a divided edge with a touched one have a further corner there; those across its faces see other
- * cells. */
+/* Adds the elements that see a touched one: those across its faces, and those around its divided edges, which have a
+   further corner there. */
 static gx_result gxp_spread_touched(gx_body *body) {
     const gxb_complex *cx = body->complex;
     gxp_words *dirty = &body->skin.dirty;
@@ -5916,8 +5940,9 @@ static gx_result gxp_spread_touched(gx_body *body) {
     return result;
 }
 
-/* At rest: outer ones from the uncut mesh's, others from the facets around, weighted by area: their own normals, since
-   a triangle's corners may be rounded to a line. */
+/* The normal of a vertex at rest. On the outer surface it is interpolated from the groups of the uncut mesh. On faces
+   of a cut it is the mean over the facets around, weighted by area; the facets' own normals are used, since the corners
+   of a triangle may be rounded to a line. */
 static void gxp_rest_normal(const gxp_skin *s, uint32_t vertex, float *normal) {
     double n[3] = {0, 0, 0}, a[3], unit[3];
     uint32_t corner, i;
@@ -5942,7 +5967,7 @@ static gx_result gxp_drop_lonely_vertices(gx_body *body) {
     uint32_t i;
     gx_result result = GX_OK;
     gxp_sort_unique(&s->changed[0]);
-    /* from the end, so that none of them takes another's place */
+    /* from the end, so that none takes the place of another */
     for (i = s->changed[0].count; i-- > 0 && result == GX_OK;) {
         const uint32_t vertex = s->changed[0].data[i];
         if (s->vertices[vertex].corner == GXP_NONE) result = gxp_drop_vertex(body, vertex);
@@ -5950,7 +5975,7 @@ static gx_result gxp_drop_lonely_vertices(gx_body *body) {
     return result;
 }
 
-/* Normals of the vertices around what was made anew; s->changed[0] keeps those that are other than they were. */
+/* Renews the normals of the noted vertices; skin.changed[0] keeps the vertices that differ from before. */
 static void gxp_renew_normals(gxp_skin *s) {
     uint32_t i, n = 0;
     for (i = 0; i < s->changed[0].count; i++) {
@@ -5967,7 +5992,7 @@ static void gxp_renew_normals(gxp_skin *s) {
     s->changed[0].count = n;
 }
 
-/* The changed items as ranges */
+/* Turns the list of changed items into ranges. */
 static gx_result gxp_make_ranges(gx_body *body, int kind, uint32_t count) {
     gxp_skin *s = &body->skin;
     gxp_words *changed = &s->changed[kind];
@@ -5990,7 +6015,7 @@ static gx_result gxp_make_ranges(gx_body *body, int kind, uint32_t count) {
     return result;
 }
 
-/* An empty skin of another description, with every element to be made */
+/* Empties the skin and marks every element to be made. */
 static gx_result gxp_restart_skin(gx_body *body, const gx_skin_desc *desc) {
     gxp_skin *s = &body->skin;
     uint32_t e;
@@ -6008,6 +6033,7 @@ static gx_result gxp_restart_skin(gx_body *body, const gx_skin_desc *desc) {
     return GX_OK;
 }
 
+/* Makes the dirty elements anew. */
 static gx_result gxp_remake_elements(gx_body *body) {
     gxp_skin *s = &body->skin;
     uint32_t i;
@@ -6023,6 +6049,7 @@ static gx_result gxp_remake_elements(gx_body *body) {
     return result;
 }
 
+/* Writes the fragment of each triangle. */
 static gx_result gxp_mark_fragments(gx_body *body) {
     gxp_skin *s = &body->skin;
     uint32_t t;
@@ -6034,7 +6061,7 @@ static gx_result gxp_mark_fragments(gx_body *body) {
     return result;
 }
 
-/* The skin after all cuts. Without memory it is left unmade: the next call makes all of it. */
+/* Brings the skin up to date. After an error it counts as unmade, so that the next call makes all of it. */
 static gx_result gxp_update_skin(gx_body *body, const gx_skin_desc *desc) {
     gxp_skin *s = &body->skin;
     const int all = !s->made || desc->crease_angle < s->desc.crease_angle ||
@@ -6108,7 +6135,7 @@ static void gxp_move_vertices(const gx_body *body, double *positions) {
     }
 }
 
-/* Sums triangles' normals in their slots, then takes each vertex's from its slots. */
+/* Sums the normals of triangles in their slots, then interpolates those of vertices from their slots. */
 static void gxp_deformed_normals(gxp_skin *s, float *normals) {
     size_t i;
     int k, n;
@@ -6152,8 +6179,8 @@ GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3],
 /* >>rays: picking -------------------------------------------------------------------------------------------------- */
 /* In: a ray. Out: where it first meets the deformed skin. Touches the skin's working positions. */
 
-/* The deformed vertices as the ray sees them: two coordinates across it (a shear along the axis it follows most), and
-   how far along it they lie, in lengths of direction. */
+/* Transforms the deformed vertices to the ray's coordinates: two across it, sheared along its largest component, and
+   the distance along it in lengths of direction. */
 static void gxp_shear_along(const gx_body *body, const double origin[3], const double direction[3]) {
     const gxp_skin *s = &body->skin;
     int axis = 0, k;
@@ -6171,8 +6198,8 @@ static void gxp_shear_along(const gx_body *body, const double origin[3], const d
     }
 }
 
-/* Does the ray pass through the triangle? Then share has the weights of its corners, and distance where. Signs are
-   exact, so that no ray slips through between triangles that share their corners. */
+/* Does the ray pass through the triangle? share: the weights of its corners at the point; distance: of the point. The
+   signs are exact, so that no ray slips through between triangles that share corners. */
 static int gxp_meet_triangle(const gxp_skin *s, const uint32_t *t, double share[3], double *distance) {
     static const double ray[2] = {0, 0};
     const double *p[3];
@@ -6189,7 +6216,7 @@ static int gxp_meet_triangle(const gxp_skin *s, const uint32_t *t, double share[
         share[k] = fabs(a[0] * b[1] - a[1] * b[0]);
         sum += share[k];
     }
-    if (positive == negative || !(sum > 0)) return 0; /* beside it, or the triangle is seen from its edge */
+    if (positive == negative || !(sum > 0)) return 0; /* the ray passes beside it or sees its edge */
     *distance = 0;
     for (k = 0; k < 3; k++) {
         share[k] /= sum;
@@ -6198,6 +6225,7 @@ static int gxp_meet_triangle(const gxp_skin *s, const uint32_t *t, double share[
     return *distance >= 0;
 }
 
+/* The copies of the triangle's corners with their weights, at most four in all: a triangle lies in one element. */
 static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double share[3], gx_hit *hit) {
     const gxp_skin *s = &body->skin;
     uint32_t i, k, n, count = 0;
@@ -6255,10 +6283,12 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
 /* In: a description. Out: a body with one cell for each element and one copy for each node that an element uses. After
    an error what was made is destroyed again. */
 
-#define GXP_REACH  100 /* coordinates are at most 2^this, the longest side is at least 2^-this */
-#define GXP_WEIGHT 700 /* masses of elements are 2^-this ... 2^this: the inertia of 2^28 of them is below 2^940 */
+/* Coordinates are at most 2^GXP_REACH, the longest side is at least 2^-GXP_REACH. Masses of elements are 2^-GXP_WEIGHT
+   ... 2^GXP_WEIGHT: the inertia of 2^28 of them is below 2^940. */
+#define GXP_REACH  100
+#define GXP_WEIGHT 700
 
-/* index: of a node that is too far out; none is where the body is too small */
+/* *index: a node that is too far out. It stays SIZE_MAX if the body is too small. */
 static gx_result gxp_check_size(const gx_body_desc *desc, size_t *index) {
     const double most = ldexp(1, GXP_REACH);
     double longest = 0;
@@ -6280,7 +6310,7 @@ static gx_result gxp_check_size(const gx_body_desc *desc, size_t *index) {
     return longest < 1 / most ? GX_ERROR_RANGE : GX_OK;
 }
 
-/* Exactly the volume is positive: in doubles it may be below. */
+/* An element of positive volume may have none in doubles. */
 static gx_result gxp_check_volume(const gx_body *body, uint32_t element, double volume) {
     const double mass = volume * gxp_density(body, element);
     if (volume <= 0 || gxp_rounds_inverted(body, element)) return GX_ERROR_FLAT;
@@ -6313,7 +6343,7 @@ static gx_result gxp_make_first_cells(gx_body *body, size_t *bad) {
     return GX_OK;
 }
 
-/* A node that no element uses has no copy: copies are numbered over the used nodes. */
+/* Copies are numbered over the nodes that elements use; others have none. */
 static void gxp_make_first_copies(gx_body *body) {
     gxp_copies *copies = &body->copies;
     uint32_t i, e;
@@ -6335,7 +6365,7 @@ static void gxp_make_first_copies(gx_body *body) {
     memset(copies->before, 0, copies->count * sizeof *copies->before);
 }
 
-/* The arrays of fixed size, and the first rows of those that grow */
+/* Makes the arrays of fixed size and the first rows of those that grow. */
 static gx_result gxp_make_tables(gx_body *body, const gx_body_desc *desc) {
     const size_t nodes = body->mesh.node_count;
     gx_result result = gxp_make_rows(body, GXP_NODES, nodes + 1);
@@ -6379,7 +6409,7 @@ static uint64_t gxp_hash_mesh(const gx_body *body) {
                             &body->config.support_below, 1);
 }
 
-/* index: of the node or element to blame */
+/* *index: the node or element to blame */
 static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc, size_t *index) {
     gxp_mesh *mesh = &body->mesh;
     gx_result result = gxp_check_size(desc, index);
@@ -6407,7 +6437,7 @@ static gx_result gxp_check_material(double young, double poisson, double density
     return young > 0 && density > 0 && poisson >= 0 && poisson < 0.5 ? GX_OK : GX_ERROR_ARGUMENT;
 }
 
-/* index: of the material or element to blame */
+/* *index: the material or element to blame */
 static gx_result gxp_check_body_desc(const gx_body_desc *desc, size_t *index) {
     gx_result result = GX_OK;
     size_t i;
@@ -6431,7 +6461,7 @@ static gx_result gxp_check_body_desc(const gx_body_desc *desc, size_t *index) {
     return result;
 }
 
-/* The caller's part of a description, with defaults in the place of zeros */
+/* Copies the caller's settings and puts defaults in the place of zeros. */
 static void gxp_set_config(gxp_config *config, const gx_body_desc *desc) {
     config->allocator = desc->allocator;
     config->jobs = desc->jobs;
@@ -6497,7 +6527,7 @@ GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_f
 #define GXP_BESIDE_WALL 0xfffffff0u /* neighbour across a wall inside the element */
 #define GXP_ACROSS_WALL 0xfffffff1u /* neighbour across a wall on a face */
 
-/* Appends to pairs (face or kind, neighbour) for everything that a cell borders on. */
+/* Appends to pairs (face or kind, neighbour) for everything around a cell. */
 static gx_result gxp_push_neighbours(gx_body *body, uint32_t cell, gxp_keys *pairs) {
     gxb_complex *cx = body->complex;
     const uint32_t element = body->cells.data[cell].element;
@@ -6530,7 +6560,7 @@ static uint64_t gxp_hash_neighbours(const gxp_keys *pairs, const uint64_t *name)
     return sum;
 }
 
-/* Which nodes of the element are in the cell: its first name. */
+/* The first name of a cell: which nodes of the element it contains */
 static gx_result gxp_first_name(gx_body *body, uint32_t cell, uint64_t *name) {
     uint32_t leaf, i, mask = 0;
     gx_result result = GX_OK;
@@ -6546,8 +6576,8 @@ static gx_result gxp_first_name(gx_body *body, uint32_t cell, uint64_t *name) {
     return result;
 }
 
-/* Three rounds in which each cell's name takes in its neighbours' names (Weisfeiler-Lehman); sums do not depend on any
- * order. */
+/* Three rounds in which each cell's name takes in its neighbours' names (Weisfeiler-Lehman). Sums do not depend on any
+   order. */
 static gx_result gxp_name_cells(gx_body *body, uint64_t *name, uint64_t *next) {
     const gxp_view *view = &body->view;
     gxp_keys pairs = {NULL, 0, 0};
@@ -6569,7 +6599,7 @@ static gx_result gxp_name_cells(gx_body *body, uint64_t *name, uint64_t *next) {
     return result;
 }
 
-/* Cells with their names, the copies they share, the counts. */
+/* The cells with their names, the copies that they share, the counts */
 static uint64_t gxp_hash_names(const gx_body *body, const uint64_t *name, uint64_t *copies) {
     uint64_t sum = gxp_mix(body->copies.count) + gxp_mix((uint64_t)body->view.fragment_count << 32);
     uint32_t i, k;
@@ -6659,17 +6689,17 @@ static void gxp_require_true(gxb_stream *s, int holds) {
 }
 static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
 
-#define GXP_SAVE_VERSION 2u /* raised by every change of what follows */
+#define GXP_SAVE_VERSION 3u /* raised by every change of the format */
 #define GXP_BYTE_ORDER   0x01020304u
 
 typedef struct gxp_head {
     unsigned char magic[8];
     uint32_t version, order;
     double width;            /* -2.5: doubles are IEEE 754's */
-    uint64_t size, checksum; /* of all; of what follows the head */
+    uint64_t size, checksum; /* of all bytes; of those after the head */
 } gxp_head;
 
-/* transfers that treat it as text show */
+/* shows if a transfer treated it as text */
 static const unsigned char gxp_magic[8] = {'g', 'x', 'f', 'e', 'm', '\r', '\n', 0x1a};
 
 static void gxp_pass_head(gxb_stream *s, gxp_head *head) {
@@ -6757,7 +6787,7 @@ static void gxp_save_mesh(gxb_stream *s, gx_body *body) {
     gxp_pass_mesh(s, &mesh);
 }
 
-/* Energies can't be saved: they are given again. *material: the one that lacks its own */
+/* Energies are not saved: the caller gives them again. *material: one without its energy. */
 static gx_result gxp_give_energies(gxp_saved_mesh *mesh, const gx_body_desc *desc, size_t *material) {
     uint32_t i;
     for (i = 0; i < mesh->material_count; i++) {
@@ -6773,7 +6803,7 @@ static gx_result gxp_give_energies(gxp_saved_mesh *mesh, const gx_body_desc *des
     return GX_OK;
 }
 
-/* A body of the mesh, not cut yet. */
+/* Creates the uncut body of the mesh. */
 static void gxp_create_again(gxb_stream *s, const gx_body_desc *given, gxp_saved_mesh *mesh, gx_body **body,
                              size_t *index) {
     gx_body_desc desc;
@@ -6803,6 +6833,7 @@ static void gxp_create_again(gxb_stream *s, const gx_body_desc *given, gxp_saved
                        : GX_ERROR_DAMAGED);
 }
 
+/* Reads the mesh and creates the body from it. */
 static void gxp_load_mesh(gxb_stream *s, const gx_body_desc *desc, gx_body **body, size_t *index) {
     const gx_allocator *a = &desc->allocator;
     size_t positions, texture, elements, element_materials, materials;
@@ -6837,7 +6868,7 @@ static void gxp_load_mesh(gxb_stream *s, const gx_body_desc *desc, gx_body **bod
     gxp_release(a, mesh.materials, materials);
 }
 
-/* Passes the number of rows of each table with columns of that use. */
+/* Passes the row counts of the tables that have columns of that use. */
 static void gxp_pass_counts(gxb_stream *s, uint32_t use, uint32_t counts[GXP_TABLES]) {
     uint32_t t;
     for (t = 0; t < GXP_TABLES; t++)
@@ -6849,7 +6880,7 @@ static void gxp_count_rows(const gx_body *body, uint32_t counts[GXP_TABLES]) {
     for (t = 0; t < GXP_TABLES; t++) counts[t] = gxp_count(body, t);
 }
 
-/* Reading: are there bytes for these rows, and may they be so many? */
+/* Reading: checks that there are bytes for these rows, and that indices can name them. */
 static void gxp_check_counts(gxb_stream *s, uint32_t use, const uint32_t counts[GXP_TABLES]) {
     uint32_t t;
     for (t = 0; t < GXP_TABLES; t++) {
@@ -6869,7 +6900,7 @@ static gx_result gxp_rows_room(gx_body *body, uint32_t use, const uint32_t count
     return result;
 }
 
-/* Passes the columns of that use. Where they are read there is room, and the tables get that many rows. */
+/* Passes the columns of that use. When reading there is room, and the tables get that many rows. */
 static void gxp_pass_rows(gxb_stream *s, gx_body *body, uint32_t use, const uint32_t counts[GXP_TABLES]) {
     uint32_t t, i;
     for (t = 0; t < GXP_TABLES; t++) {
@@ -6897,13 +6928,13 @@ static void gxp_save_topology(gxb_stream *s, gx_body *body) {
     gxp_pass_topology(s, body, counts);
 }
 
-/* Marks, one byte for each cell, leaf and copy: it has its place. */
+/* One byte for each cell, leaf and copy: 1 if it has been met */
 typedef struct gxp_places {
     unsigned char *cell, *leaf, *copy;
 } gxp_places;
 
-/* The cell's leaves are its own, kept, of its element and of no other cell; its copies are those of its element's
-   nodes. It is no larger than the element; twice allows for rounding. */
+/* The cell's leaves are kept, in its element and in no other cell; its copies are those of its element's nodes. It is
+   no larger than the element; a factor of 2 allows for rounding. */
 static void gxp_check_cell(gxb_stream *s, gx_body *body, uint32_t cell, const gxp_places *seen) {
     gxp_cell *c = &body->cells.data[cell];
     const uint32_t *node = gxb_complex_element_nodes(body->complex, c->element);
@@ -6930,7 +6961,7 @@ static void gxp_check_cell(gxb_stream *s, gx_body *body, uint32_t cell, const gx
     }
 }
 
-/* Every cell is in its element's list once, every kept leaf in a kept cell, every copy in use. */
+/* Every cell is in its element's list once, every kept leaf in one kept cell, and every copy moves a cell. */
 static void gxp_check_lists(gxb_stream *s, gx_body *body, const gxp_places *seen) {
     uint32_t e, i, cell;
     for (e = 0; e < body->mesh.element_count; e++)
@@ -6952,7 +6983,7 @@ static void gxp_check_lists(gxb_stream *s, gx_body *body, const gxp_places *seen
         gxp_require_true(s, gxb_complex_label(body->complex, i)->triangle < body->cuts.label_count);
 }
 
-/* Surfaces in the order of their labels, each with maps for all of its triangles or for none. */
+/* Surfaces are in the order of their labels; each has maps for all of its triangles or for none. */
 static void gxp_check_surfaces(gxb_stream *s, const gx_body *body) {
     uint32_t i;
     size_t k;
@@ -7003,7 +7034,7 @@ static void gxp_load_topology(gxb_stream *s, gx_body *body, int trusted) {
 /* >>save: state; save, load, clone, restore ------------------------------------------------------------------------ */
 /* In: a body, or bytes. Out: bytes, or a body that goes on as the other does. On an error the body is as it was. */
 
-/* What is passed beside the topology: the counts, and whether there is a history */
+/* The row counts of the state, and whether there is a history */
 typedef struct gxp_state_counts {
     uint32_t rows[GXP_TABLES], history;
 } gxp_state_counts;
@@ -7030,14 +7061,14 @@ static gx_result gxp_state_room(gx_body *body, const gxp_state_counts *n) {
     return result == GX_OK && n->history ? gxp_start_history(body, 2) : result;
 }
 
-/* The solver forgets, so that it goes on as that of the other body will. */
+/* Makes the solver forget its last step, as that of the other body has. */
 static void gxp_resume_in(gx_body *body, const gxs_scene *scene) {
     gxs_solver_resume(body->solver, scene);
     if (body->model.updated) body->model.state = GXP_MODEL_STALE;
     body->model.resumed = gxp_hash_state(body, body->copies.count);
 }
 
-/* n: of this body when it is written, of what is read else, and there is room. */
+/* Writes the state, or reads it if there is room. n: the counts of the body that is written. */
 static void gxp_pass_state(gxb_stream *s, gx_body *body, const gxp_state_counts *n) {
     gxs_scene scene;
     gxp_pass_rows(s, body, gxp_state_use(n), n->rows);
@@ -7125,7 +7156,7 @@ GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, s
     return GX_OK;
 }
 
-/* index: as gx_failure's */
+/* *index: as gx_failure's */
 static gx_result gxp_read(gxb_stream *s, const gx_body_desc *desc, int trusted, gx_body **body, size_t *index) {
     gx_body *made = NULL;
     gxp_head head;
@@ -7163,7 +7194,7 @@ GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_
     return gxp_fail(failure, result, index, SIZE_MAX);
 }
 
-/* A body like from, with the allocator, clock and jobs of another. */
+/* Makes a body like `from` with the allocator, clock and jobs of host. */
 static gx_result gxp_copy_body(gx_body *from, const gx_body *host, gx_body **copy) {
     gx_body_desc desc;
     gxb_stream s;
@@ -7224,7 +7255,7 @@ static int gxp_same_regions(const gx_body *a, const gx_body *b) {
     return same;
 }
 
-/* The state of a body with the same cells and copies */
+/* Copies the state of a body with the same cells and copies. */
 static gx_result gxp_restore_state(gx_body *body, gx_body *from) {
     gxp_state_counts n = gxp_count_state(from);
     const int same_held = gxp_same_regions(body, from);
