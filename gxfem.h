@@ -34,35 +34,39 @@
  *
  * Contents (search for >>name):
  *     >>shared     result codes, allocator
- *     >>body       create, destroy
- *     >>cut        surfaces, cuts, solidified sheets
- *     >>view       cells, copies, fragments
- *     >>step       held regions, time step
- *     >>skin       the visual surface, rays
- *     >>hash       of the topology, of the state
- *     >>save       save and load, clone and restore
- *     then, under GXFEM_IMPLEMENTATION: >>memory >>tree >>create >>transaction >>surfaces >>arrange >>solids >>links
- * >>cells
- *     >>components >>integrals >>commit >>regions >>fragments >>parts >>bytes >>boundary >>hashes
+ *     >>creating   bodies
+ *     >>cutting    surfaces, cuts, solidified sheets
+ *     >>viewing    cells, copies, fragments, motion
+ *     >>stepping   held regions, time steps
+ *     >>drawing    the visual surface, rays
+ *     >>hashing    of the topology, of the state
+ *     >>saving     save and load, clone and restore
+ *     then, under GXFEM_IMPLEMENTATION, in the order of a cut; functions call their own and earlier sections only:
+ *     what a body is made of:    >>state >>columns
+ *     tools:                     >>memory >>basics >>mesh >>search >>copies >>transaction >>complex >>numbering
+ *     a cut:                     >>surfaces >>pinches >>arrange >>solids >>links >>cells >>components >>integrals >>cut
+ *     a sheet's thickness:       >>solidify
+ *     what is held and whole:    >>regions >>fragments >>motion
+ *     a step:                    >>supports >>model >>step
+ *     the skin:                  >>corners >>vertices >>faces >>skinning >>rays
+ *     beginning, end, bytes:     >>create >>hashes >>stream >>save
  *
- * Words. Wall: a piece of a sheet inside the body or on an element face. Cell: a connected piece of one element after
- * cutting (GXFEM Eq. 20). Link: a piece of the face between two elements that no wall covers. Copy: a node's
- * displacement for one connected set of cells around the node (GXFEM Eq. 18). Fragment: a connected set of cells of the
- * body.
+ * Words. Wall: a piece of a sheet inside the body or on an element face. Cell: a connected part of one element after
+ * cutting (GXFEM Eq. 20). Link: the pieces of the face between two elements that no wall covers and that connect the
+ * same two cells. Copy: a node's displacement for one connected set of cells around the node (GXFEM Eq. 18). Fragment:
+ * a connected set of cells of the body.
  *
- * What is exact: which cells there are, what they are linked to, hence copies and fragments; decisions are signs of
- * polynomials in the given coordinates (gxfem_boolean.h). What is rounded, once: volumes, masses and vertices, as
- * doubles.
+ * Exact: which cells there are and which are linked, hence copies and fragments. Decisions are signs of polynomials in
+ * the given coordinates (gxfem_boolean.h). Rounded, once: volumes, masses and vertices, as doubles.
  *
- * What it does not do (yet): contact between pieces, cuts given in the deformed state,
- * unknowns within a partly cut element (a sheet that ends inside an element separates nothing there until another
- * completes it).
+ * Not there yet: contact between fragments; cuts given in the deformed state; unknowns within a partly cut element (a
+ * sheet that ends inside an element separates nothing there until another sheet completes it).
  *
- * Limits: 2^31 - 1 of each kind of object; one body is for one thread at a time; no global state, no output, no clock
- * of its own. A body's coordinates are at most 2^100 (1.3e30), its longest side is at least 2^-100 (7.9e-31), each
- * element has a mass of 2^-700 ... 2^700. So all volumes, masses, centres and inertia are finite, those of whole
- * bodies are normal numbers, and floats hold the skin. Beside the body's size, coordinates of bodies and cuts are 0
- * or 2^-128 ... 2^128. What is not within these limits is refused (GX_ERROR_RANGE).
+ * Limits: 2^31 - 1 of each kind of object. One thread at a time may use a body. There is no global state, no output, no
+ * clock. A body's coordinates are at most 2^100 (1.3e30), its longest side is at least 2^-100 (7.9e-31), each element
+ * has a mass of 2^-700 ... 2^700. So all volumes, masses, centres and inertia are finite, those of whole bodies are
+ * normal numbers, and floats hold the skin. Divided by the body's size, coordinates of bodies and cuts are 0 or
+ * 2^-128 ... 2^128 in absolute value. Everything beyond these limits is refused (GX_ERROR_RANGE).
  *
  * References: GXFEM = Ton-That, Kry, Andrews: Generalized eXtended Finite Element Method for Deformable Cutting via
  * Boolean Operations (2024). RXFEM = Koschier, Bender, Thuerey: Robust eXtended Finite Elements for Complex Cutting of
@@ -147,7 +151,7 @@ typedef struct gx_jobs {
 extern "C" {
 #endif
 
-/* >>body: units are the caller's, here SI -------------------------------------------------------------------------- */
+/* >>creating: units are the caller's, here SI ---------------------------------------------------------------------- */
 
 typedef struct gx_body gx_body; /* opaque */
 
@@ -161,34 +165,35 @@ typedef struct gx_body_desc {
     size_t node_count;
     const uint32_t *elements; /* element_count x 4 node indices, positive volume: det(x1-x0, x2-x0, x3-x0) > 0 */
     size_t element_count;
-    double young;   /* Pa, > 0: of one stable neo-Hookean material, if materials is NULL */
-    double poisson; /* 0 <= poisson < 0.5 */
-    double density; /* kg/m3, > 0 */
-    const gx_material *materials;
+    double young;                 /* Pa, > 0: of one stable neo-Hookean material; used if materials is NULL */
+    double poisson;               /* 0 <= poisson < 0.5; likewise */
+    double density;               /* kg/m3, > 0; likewise */
+    const gx_material *materials; /* material_count, or NULL */
     size_t material_count;
     const uint32_t *element_materials; /* element_count, below material_count; NULL: all of materials[0] */
     const float *texture;              /* node_count x 2: texture coordinates of the outer surface; NULL: all 0 */
-    /* below 1: copies around which no part of an element is as large a share of it follow others, see gx_body_step; 0:
-     * 1e-3. 1e-300: none does, and slivers may be flung about */
+    /* Share of an element, below 1. Copies around which every part of an element is smaller follow other copies, see
+       gx_body_step. 0: 1e-3. 1e-300: none follow, and slivers may be flung away. */
     double support_below;
     gx_allocator allocator;      /* zero: malloc, free, realloc */
     double (*clock)(void *user); /* seconds, for the reports' timings and the steps' budgets; NULL: timings are 0 */
     void *clock_user;
     gx_jobs jobs; /* the host's threads, for the steps; zero: none */
 } gx_body_desc;
-/* Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (index: the node that is too far out, the element that is too
-   heavy or too light, SIZE_MAX where the body is too small), INVERTED, FLAT (exactly, or in doubles), OVERLAP (index:
-   the node, element or material), LIMIT, MEMORY, CONFIGURATION. The arrays of the description are copied. */
+/* Creates a body. The arrays of the description are copied. failure.index is a node, element or material.
+   Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (a node is too far out, an element too heavy or too light, or,
+   index SIZE_MAX, the body is too small), INVERTED, FLAT (exactly, or in doubles), OVERLAP, LIMIT, MEMORY,
+   CONFIGURATION. */
 GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **body, gx_failure *failure /* or NULL */);
-GXFEM_API void gx_body_destroy(gx_body *body); /* NULL is fine */
+GXFEM_API void gx_body_destroy(gx_body *body); /* or NULL */
 
-/* >>cut ------------------------------------------------------------------------------------------------------------ */
+/* >>cutting -------------------------------------------------------------------------------------------------------- */
 
-/* A sheet separates what lies on its two sides; it may be open, closed, curved, cross itself, be non-manifold. A solid
-   is closed and consistently oriented; it removes the material around which it winds. */
+/* A sheet separates the material on its two sides. It may be open, closed or curved, cross itself, be non-manifold. A
+   solid is closed and consistently oriented; it removes the material around which it winds. */
 enum { GX_SURFACE_SHEET = 0, GX_SURFACE_SOLID = 1 };
 typedef struct gx_surface {
-    const double *vertices; /* vertex_count x 3, material coordinates */
+    const double *vertices; /* vertex_count x 3, material coordinates, m */
     size_t vertex_count;
     const uint32_t *triangles; /* triangle_count x 3 */
     size_t triangle_count;
@@ -198,51 +203,52 @@ typedef struct gx_surface {
 typedef struct gx_cut_desc {
     const gx_surface *surfaces;
     size_t surface_count;
-    /* 0: the whole body; places in gx_view: of cell_fragment, not fragment_id */
+    /* The cut affects only these fragments: indices below gx_view.fragment_count, not ids. Count 0 of both scopes: the
+       whole body. */
     const uint32_t *scope_fragments;
     size_t scope_fragment_count;
-    /* 0: the whole body; places in gx_view */
-    const uint32_t *scope_cells;
+    const uint32_t *scope_cells; /* and these cells: indices below gx_view.cell_count */
     size_t scope_cell_count;
-    double sever_below; /* links of touched cells with a smaller share of their face are severed; 0: never */
+    double sever_below; /* links of touched cells with a smaller share of their face are severed; 0: none */
 } gx_cut_desc;
 typedef struct gx_cut_report {
     size_t touched_elements, created_cells, removed_cells, created_copies, removed_copies;
     size_t ignored_triangles; /* of zero area */
     size_t severed_links;
-    /* smallest link area / face area among the links of cells that this cut touched; 1 if none is smaller */
+    /* smallest link area / face area among the links of the cells that this cut touched; 1 if none is smaller */
     double min_link_ratio;
-    double removed_volume;
+    double removed_volume; /* m3 */
     double seconds_arrangement, seconds_enrichment, seconds_integrals;
 } gx_cut_report;
-/* Cuts by all surfaces at once. The displacement and velocity fields are the same functions of material points before
-   and after. Errors: ARGUMENT, EMPTY, INDEX (triangle, or place in the scope), NOT_FINITE and RANGE (vertex),
-   NOT_CLOSED (triangle), LIMIT, MEMORY; the body is then exactly as it was. */
+/* Cuts by all surfaces at once. Displacement and velocity are the same functions of material points before and after.
+   On an error the body is exactly as it was; failure.surface is the surface, failure.index as named here.
+   Errors: ARGUMENT, EMPTY, INDEX (triangle, or place in the scope), NOT_FINITE (vertex), RANGE (vertex), NOT_CLOSED
+   (triangle), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report /* or NULL */,
                                 gx_failure *failure /* or NULL */);
 
-/* A sheet made solid (GXFEM section 4.1): offset by thickness/2 to both sides along its vertex normals, rim closed.
-   vertices: room for 2 x vertex_count x 3; triangles: room for 8 x triangle_count x 3. Vertices where normals cancel
-   stay. Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (a sum or difference of coordinates is beyond doubles),
-   LIMIT, MEMORY; what has been written then means nothing. */
+/* Makes a sheet solid (GXFEM section 4.1): offsets it by thickness/2 (m) to both sides along its vertex normals and
+   closes the rim. Vertices where normals cancel are not offset. After an error the output means nothing.
+   vertices: room for 2 x vertex_count x 3; triangles: room for 8 x triangle_count x 3; the counts are written.
+   Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (a sum or difference of coordinates is beyond doubles), LIMIT,
+   MEMORY. */
 GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thickness, double *vertices,
                                         size_t *vertex_count, uint32_t *triangles, size_t *triangle_count,
                                         const gx_allocator *allocator /* or NULL */);
 
-/* >>view ----------------------------------------------------------------------------------------------------------- */
+/* >>viewing -------------------------------------------------------------------------------------------------------- */
 
 /* What cuts have done to a fragment */
 enum {
     GX_FRAGMENT_UNCHANGED = 0,
-    GX_FRAGMENT_TOUCHED, /* cut but whole, or less than it was: partial cuts, material removed */
-    /* lost pieces that are fragments now, and kept its id as the heaviest piece (the first of equals) */
-    GX_FRAGMENT_SPLIT,
-    GX_FRAGMENT_CREATED /* a piece that fell off: its id is new, fragment_origin says from what */
+    GX_FRAGMENT_TOUCHED, /* cut but whole, or smaller: by partial cuts or removed material */
+    GX_FRAGMENT_SPLIT,   /* fell apart; this is the heaviest fragment of it (the first of equals) and keeps the id */
+    GX_FRAGMENT_CREATED  /* fell off another one; its id is new, fragment_origin is the other's */
 };
 
-/* Everything one reads off a body: arrays owned by the body, valid until the next cut, restore or its destruction.
+/* The state of a body. The arrays are the body's, valid until the next cut, restore or its destruction.
    Changes of fragments are those between the last view before a cut (the creation counts as one) and the first view
-   after it; cuts without a view between them are one change. Views without a cut between them tell the same. */
+   after it; cuts without a view between them are one change. Views without a cut between them are equal. */
 typedef struct gx_view {
     size_t node_count, element_count;
     size_t cell_count;             /* kept cells, sorted by element */
@@ -253,89 +259,89 @@ typedef struct gx_view {
     size_t copy_count;
     const uint32_t *copy_node; /* copy_count */
     const uint8_t *copy_held;  /* copy_count, 1: held by a Dirichlet region */
-    /* names this numbering of copies. A cut that creates or removes copies begins another one, any other cut leaves it.
-     * 0: no cut has begun one yet. Bodies cut alike have the same epoch, bodies cut otherwise have others */
+    /* Names this numbering of copies. A cut that creates or removes copies begins a new one; other cuts keep it. 0: no
+       cut has begun one yet. Bodies that were cut alike have the same epoch, others have different ones. */
     uint64_t epoch;
-    /* copy_count x 3, m; the caller may write, and then takes a step of GXS_BDF1 before one of GXS_BDF2 */
+    /* copy_count x 3, m. The caller may write it; then a step of GXS_BDF1 must come before the next of GXS_BDF2. */
     double *displacement;
     double *velocity; /* copy_count x 3, m/s; likewise */
-    /* copy_count: for how long it has been slower than sleep_speed, s; the caller may write 0 to wake it; calls that
-     * find its state written since the last step do, whether they succeed or not */
+    /* copy_count, s: for how long the copy has been slower than sleep_speed. The caller may write 0 to wake it. A copy
+       whose state was written since the last step wakes at the next call that notices, whether that succeeds or not. */
     double *rest_time;
     size_t fragment_count;
     const double *fragment_volume; /* fragment_count, m3 */
-    const double *fragment_mass;   /* kg */
-    const double *fragment_center; /* fragment_count x 3, centre of mass, material coordinates */
+    const double *fragment_mass;   /* fragment_count, kg */
+    const double *fragment_center; /* fragment_count x 3, centre of mass, material coordinates, m */
     /* fragment_count x 6, about the centre, material coordinates: 00 01 02 11 12 22, kg m2 */
     const double *fragment_inertia;
-    /* fragment_count; 1, 2 ...: of this fragment as long as it is there, of no other ever after */
-    const uint32_t *fragment_id;
+    const uint32_t *fragment_id;     /* fragment_count: 1, 2 ...; never used again for another fragment */
     const uint32_t *fragment_origin; /* fragment_count: id of the fragment that it was part of before the change */
     const uint32_t *fragment_change; /* fragment_count: GX_FRAGMENT_ */
     size_t removed_count;
-    const uint32_t *removed_ids; /* removed_count: ids of the fragments of which the change left nothing */
-    double volume, mass;         /* of the body */
+    const uint32_t *removed_ids; /* removed_count: ids of fragments that the change removed entirely */
+    double volume, mass;         /* of the body, m3 and kg */
 } gx_view;
-/* Errors: ARGUMENT, MEMORY, LIMIT (no ids left). */
+/* Brings the view up to date. Errors: ARGUMENT, MEMORY, LIMIT (no ids left). */
 GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view);
 
-/* How a fragment moves: integrals over its deformed shape by the consistent mass. */
+/* How a fragment moves: integrals over its deformed shape with the consistent mass */
 typedef struct gx_motion {
     double mass;        /* kg */
     double center[3];   /* centre of mass, m, in space */
-    double inertia[6];  /* about it: 00 01 02 11 12 22, kg m2 */
+    double inertia[6];  /* about the centre: 00 01 02 11 12 22, kg m2 */
     double velocity[3]; /* of the centre: momentum / mass, m/s */
-    /* inverse of inertia times angular momentum about the centre, 1/s; no part around an axis about which there is no
-     * inertia to speak of (a point, a line) */
+    /* inverse of inertia times angular momentum about the centre, 1/s; 0 about axes with hardly any inertia (of a point
+       or a line) */
     double angular_velocity[3];
     double energy; /* kinetic, J */
 } gx_motion;
-/* Motions of all fragments from the present displacement and velocity, in the order of gx_view; capacity: how many
-   there is room for. Errors: ARGUMENT, NOT_FINITE (a displacement or velocity), RANGE (these are so large that a motion
-   is beyond doubles), MEMORY, LIMIT (as well where capacity is below gx_view.fragment_count); what has been written
-   then means nothing. */
+/* Computes the motions of all fragments from the present displacement and velocity, in the order of gx_view.
+   motions: room for capacity, at least gx_view.fragment_count. After an error the output means nothing.
+   Errors: ARGUMENT, NOT_FINITE (a displacement or velocity), RANGE (a motion is beyond doubles), MEMORY, LIMIT (also:
+   capacity is too small). */
 GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t capacity);
 
-/* >>step ----------------------------------------------------------------------------------------------------------- */
+/* >>stepping ------------------------------------------------------------------------------------------------------- */
 
-/* Half-space of material coordinates: X[axis] < value (side -1) or > value (side +1), strictly. */
+/* Half-space of material coordinates: X[axis] < value (side -1) or > value (side +1), strictly */
 typedef struct gx_region {
     uint32_t axis;
     int32_t side;
     double value;
 } gx_region;
-/* Holds (Dirichlet) the copies of nodes in one of the regions whose own component has material there, at their present
-   displacement, now and after later cuts. Replaces what was held before. Errors: ARGUMENT, NOT_FINITE, LIMIT, MEMORY;
-   what was held is then as it was. */
+/* Holds copies at their present displacement (Dirichlet), now and after later cuts: those whose node is in a region and
+   whose own cells have material there. Replaces the regions held before. On an error these stay.
+   Errors: ARGUMENT, NOT_FINITE, LIMIT, MEMORY. */
 GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t region_count);
 
 /* A step as the solver takes it; arrays are by copy, as in gx_view. A point of the skin is a gxs_point by its copies
-   and weights. A gxs_point has the epoch of the view, skin or hit that it is from; so has the step, where it has
-   forces or targets. After a cut that has begun another epoch they are refused (GX_ERROR_STALE) until they are made
-   anew. previous_displacement, previous_velocity, previous_dt and rest_times are the body's own and not read. clock:
-   where it is NULL, that of the body. */
+   and weights. A gxs_point has the epoch of the view, skin or hit that it comes from; a step with forces or targets has
+   one too. After a cut that began another epoch they are refused (GX_ERROR_STALE) until they are made anew. The body
+   supplies previous_displacement, previous_velocity, previous_dt and rest_times itself and ignores those of the
+   description. clock: if NULL, the body's. */
 typedef gxs_step_desc gx_step_desc;
 typedef gxs_step_report gx_step_report;
-/* One time step (GXFEM Eq. 10). A cut wakes the fragments that it touches. Errors: those of gxs_solver_step, MEMORY;
-   the body is then as it was. Copies that only slivers carry (RXFEM Eq. 22; gx_body_desc.support_below) take the
-   increment of the displacement field of the nearest element without such copies: else next to nothing would hold them
-   where they are. A fragment without such an element is thin everywhere. It goes by what is thin beside its fullest
-   part. It moves as a point if that part is smaller than support_below of its element; where support_below is 0,
-   smaller than 1e-9, or if no part reaches a tenth as far as its element does. */
+/* Takes one time step (GXFEM Eq. 10). On an error the body is as it was.
+   A cut wakes the fragments that it touches. Copies that only slivers carry would be held by next to nothing, so they
+   follow others (RXFEM Eq. 22; gx_body_desc.support_below): each takes the increment of the displacement field of the
+   nearest element without such copies. A fragment without such an element is thin everywhere; its parts are then
+   compared with its fullest part. It moves as a point if that part is smaller than support_below of its element.
+   Where support_below is 0, it moves as a point if that part is smaller than 1e-9 or if no part reaches a tenth as far
+   as its element. Errors: those of gxs_solver_step, MEMORY. */
 GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report /* or NULL */,
                                  gx_failure *failure /* or NULL */);
 
-/* What the solver sees of the body as it is cut now: for solvers of one's own. Arrays are the body's, valid until its
-   next cut, hold, step or restore. Errors: ARGUMENT, LIMIT, MEMORY; RANGE, FLAT: an element's gradients are not numbers
-   in doubles. */
+/* Gives the solver's model of the body as it is cut now, for other solvers. Arrays are the body's, valid until its next
+   cut, hold, step or restore. Errors: ARGUMENT, LIMIT, MEMORY; RANGE, FLAT: an element's gradients are beyond doubles.
+ */
 GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model);
 
-/* >>skin ----------------------------------------------------------------------------------------------------------- */
+/* >>drawing -------------------------------------------------------------------------------------------------------- */
 
 typedef struct gx_skin_desc {
-    /* the outer surface is shaded smooth across mesh edges that bend by less, rad; 0: each face is flat */
+    /* The outer surface is shaded smooth across mesh edges that bend by less, rad. 0: each face is flat. */
     double crease_angle;
-    /* 1: faces of a cut are shaded smooth across the edges of its triangles; 0: each of its planes is flat */
+    /* 1: faces of a cut are shaded smooth across the edges of its triangles. 0: each of its planes is flat. */
     int smooth_cuts;
 } gx_skin_desc;
 
@@ -346,15 +352,15 @@ typedef struct gx_range {
     uint32_t first, count;
 } gx_range;
 
-/* The visual surface: the outer surface and both faces of every cut that has separated material. Arrays are the body's,
-   valid until the next cut, restore or gx_body_skin. A vertex is a point of one piece with one normal: at creases and
-   along cuts there are several. */
+/* The visual surface: the outer surface and both faces of every cut that has separated material. The arrays are the
+   body's, valid until the next cut, restore or gx_body_skin. A vertex is a point of one fragment with one normal: at
+   creases and along cuts there are several at one point. */
 typedef struct gx_skin {
     size_t vertex_count;
     const uint32_t *vertex_copies; /* vertex_count x 4: the copies that move it; those of weight 0 stand last */
     const double *vertex_weights;  /* vertex_count x 4, barycentric: x = sum of weight (X + u) over the copies */
-    /* vertex_count; equal: the same material point, exactly. Where the copies of weight not 0 are equal too, it is one
-     * corner of the surface: with corners so merged it is watertight */
+    /* vertex_count: equal for vertices at the same material point, exactly. Vertices whose copies of weight not 0 are
+       equal too are one corner of the surface: with corners merged like this it is watertight. */
     const uint32_t *vertex_point;
     const double *vertex_rest;   /* vertex_count x 3, material coordinates, m */
     const float *vertex_normal;  /* vertex_count x 3, outward, of length 1, at rest */
@@ -364,75 +370,76 @@ typedef struct gx_skin {
     const uint32_t *triangle_fragment; /* triangle_count */
     const uint32_t *triangle_element;  /* triangle_count */
     const uint32_t *triangle_material; /* triangle_count, that of the element (gx_body_desc.element_materials) */
-    /* triangle_count; GX_SKIN_OUTER; 1 + n: face of the n-th surface that the body was cut by, counted over all its
-     * cuts (where several coincide, the first); GX_SKIN_SEVERED: where a link was severed */
+    /* triangle_count: GX_SKIN_OUTER; 1 + n: face of the n-th surface that cut the body, counted over all its cuts (the
+       first, if several coincide); GX_SKIN_SEVERED: a severed link */
     const uint32_t *triangle_surface;
-    /* What differs from the arrays of the call before, ascending; counts may differ too. Fragment ids may differ
-     * anywhere. */
+    /* Vertices and triangles that differ from those of the call before, ascending. Counts may differ too, and fragments
+       anywhere. */
     const gx_range *vertex_ranges;
     size_t vertex_range_count;
     const gx_range *triangle_ranges;
     size_t triangle_range_count;
     uint64_t epoch; /* of the numbering of copies, as in gx_view: for gxs_point */
 } gx_skin;
-/* Rebuilds what cuts have touched since the last call; all of it if desc is another. Errors: ARGUMENT, NOT_FINITE,
- * MEMORY, LIMIT. */
+/* Makes the skin, or brings it up to date where cuts have been since the last call. Another description makes all of it
+   anew. Errors: ARGUMENT, NOT_FINITE, MEMORY, LIMIT. */
 GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc /* or NULL: zero */, gx_skin *skin);
-/* The deformed skin as the last gx_body_skin gave it. Errors: ARGUMENT (also where there is none, or a cut has been
- * since). */
+/* Gives the deformed vertices of the last gx_body_skin, m. Errors: ARGUMENT (also: there is no skin, or a cut has been
+   since). */
 GXFEM_API gx_result gx_body_skin_positions(const gx_body *body, double *positions /* vertex_count x 3 */);
-/* The same less an origin, and normals, for drawing. Normals of the outer surface are interpolated from those at nodes,
-   each the mean over the faces of its piece around it, weighted by area. */
+/* Gives the same less an origin, and normals, for drawing. Normals of the outer surface are interpolated from those at
+   nodes; these are means over the faces of the fragment around the node, weighted by area. Errors: as above. */
 GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3] /* or NULL: 0 */,
                                           float *positions /* vertex_count x 3, or NULL */,
                                           float *normals /* vertex_count x 3, of length 1, or NULL */);
 
-/* Where a ray first meets the deformed skin. With copies and weights it can be held on to: see gxs_spring. */
+/* Where a ray first meets the deformed skin. Its copies and weights can attach a spring: see gxs_spring. */
 typedef struct gx_hit {
     uint32_t triangle;                   /* of the skin; UINT32_MAX: the ray meets nothing, and the rest is 0 */
-    uint32_t fragment, element, surface; /* as of the triangle */
+    uint32_t fragment, element, surface; /* of the triangle */
     double distance;                     /* in lengths of direction */
     double position[3], material[3];     /* deformed, m; material coordinates, m */
     uint32_t copies[4];
     double weights[4];
     uint64_t epoch; /* of the numbering of copies, as in gx_view: for gxs_point */
 } gx_hit;
-/* Errors: as of gx_body_skin_positions; ARGUMENT (direction 0), NOT_FINITE. */
+/* Finds the nearest triangle on a ray. Errors: ARGUMENT (also: direction is 0, there is no skin, or a cut has been
+   since), NOT_FINITE. */
 GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit);
 
-/* >>hash ----------------------------------------------------------------------------------------------------------- */
+/* >>hashing -------------------------------------------------------------------------------------------------------- */
 
-/* of the cell complex: same on every compiler */
-GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_result *result);
-/* of all that a failed call must leave alone, and of the ids that views have told */
+/* Hash of the cells and copies, the same on every compiler. *result: ARGUMENT, MEMORY, LIMIT. */
+GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_result *result /* or NULL */);
+/* Hash of all that a failed call must leave as it was, and of the fragments' ids */
 GXFEM_API uint64_t gx_body_state_hash(const gx_body *body);
 GXFEM_API const char *gx_result_text(gx_result result);
 
-/* >>save ----------------------------------------------------------------------------------------------------------- */
+/* >>saving --------------------------------------------------------------------------------------------------------- */
 
 /* A body as bytes or as another body, with all that it is: mesh, materials, cuts, displacement, velocity, rest times,
-   the history of BDF2, what is held, ids of fragments and what has changed. Further cuts then give the same cells, and
-   further steps the same bits in the same program; for that, saving, cloning and restoring let the solvers of all
-   bodies concerned start anew (the next step makes its preconditioner and takes no guess from the last), but what
-   sleeps goes on sleeping. Pointers are not saved. */
+   the history of BDF2, held regions, ids of fragments and their changes. Further cuts give the same cells, and further
+   steps the same bits in the same program. For that, saving, cloning and restoring make the solvers of all bodies
+   concerned start anew: the next step makes its preconditioner and takes no guess from the last. Sleeping copies go on
+   sleeping. Pointers are not saved. */
 
-/* *size: how many bytes it takes. memory NULL: nothing is written. Fields have fixed widths, in the machine's byte
-   order, which the bytes tell. Errors: ARGUMENT, LIMIT (capacity is below *size). */
+/* Writes the body to memory of at least *size bytes; memory NULL: only computes *size. Fields have fixed widths, in the
+   machine's byte order, which the bytes tell. Errors: ARGUMENT, LIMIT (capacity is below *size). */
 GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, size_t *size);
-/* Whatever the bytes are, they do no harm: a checksum tells damage by accident, and all that a body relies on is
-   checked. Of desc (NULL: all zero) allocator, clock and jobs are read, and, for each saved material of kind
-   GXS_CUSTOM, energy and user of the material with its number. Errors: ARGUMENT (index: a material without its energy),
-   MEMORY, LIMIT (also: one edge, face or element divided 10,000 times in a row), FORMAT, DAMAGED (index: bytes read
-   until then), CONFIGURATION. */
+/* Reads a body. Bytes from anywhere do no harm: a checksum detects accidental damage, and everything that a body relies
+   on is checked. Of desc (NULL: all zero) it takes allocator, clock and jobs, and, for each saved material of kind
+   GXS_CUSTOM, energy and user of the material with its number.
+   Errors: ARGUMENT (index: a material without its energy), MEMORY, LIMIT (also: one edge, face or element divided
+   10,000 times in a row), FORMAT, DAMAGED (index: bytes read until then), CONFIGURATION. */
 GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_desc *desc, gx_body **body,
                                  gx_failure *failure /* or NULL */);
-/* Another body of the same state, with the same allocator, clock, jobs and energies. Errors: ARGUMENT, MEMORY, LIMIT,
-   CONFIGURATION. */
+/* Makes another body of the same state, with the same allocator, clock, jobs and energies. Errors: ARGUMENT, MEMORY,
+   LIMIT, CONFIGURATION. */
 GXFEM_API gx_result gx_body_clone(gx_body *body, gx_body **clone);
-/* The body becomes what from is now: to go back to a clone, or to bring a clone up to date. Where neither has been cut
-   since they were the same, only the state is copied, and neither cells nor the solver's model are made anew; else
-   arrays of the view end, as by a cut. Allocator, clock and jobs stay the body's own. Errors: ARGUMENT, MEMORY, LIMIT,
-   CONFIGURATION; the body is then as it was. */
+/* The body becomes what `from` is: to go back to a clone, or to bring a clone up to date. If both have been cut alike,
+   only the state is copied, and neither cells nor the solver's model are made anew. Otherwise arrays of the view end,
+   as at a cut. Allocator, clock and jobs stay the body's own. On an error the body is as it was.
+   Errors: ARGUMENT, MEMORY, LIMIT, CONFIGURATION. */
 GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from);
 
 #ifdef __cplusplus
@@ -465,8 +472,10 @@ extern "C" {
 #define GXP_PREFETCHES        static inline
 #endif
 
-/* >>state: the body, divided by how long its parts live --------------------------------------------------------------
- */
+/* >>state: the body, divided by how long its parts live ------------------------------------------------------------ */
+
+/* The types of all that a body owns: settings and mesh from creation to destruction; cells, copies and what else cuts
+   make; the log that takes a cut back; lists that can be made anew; working memory of a call. Nothing runs here. */
 
 #define GXP_NONE UINT32_MAX
 /* Shares of an element, where gx_body_desc.support_below is 0: copies that nothing larger carries follow others;
@@ -1705,8 +1714,8 @@ static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_
 }
 
 /* >>copies: tables of copies, cells and leaves --------------------------------------------------------------------- */
-/* The columns of copies, cells and leaves, each listed once with what is done with it. In: a body. Out: room for more
-   rows, rows that are moved, the state as a hash. Touches these tables only. */
+/* In: the tables of copies and leaves. Out: a row for each new leaf, the state as a hash, copies that wake. Touches
+   these tables only. */
 
 /* The copy of a node that moves the cell */
 static uint32_t gxp_copy_of(const gx_body *body, uint32_t cell, uint32_t node) {
@@ -4755,12 +4764,14 @@ GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t cap
 }
 
 /* >>supports: copies that only slivers carry follow others (RXFEM Eq. 22) ------------------------------------------ */
-/* --- copies that only slivers carry follow others (RXFEM Eq. 22) ---
-   The share of a part is its volume over that of its element. A copy is weak if no part around it has a share of
-   follow_below or more: so little moves it that nothing else would keep it from running away. It takes the increment of
-   the field of a strong cell near it, one without weak copies. A fragment without a strong cell is thin everywhere:
-   weak are then the copies that are so beside its fullest part; but if that has a share below point_below, the fragment
-   moves as a point. All work is around thin elements, those with a part of so small a share. */
+/* In: the elements with a small part. Out: constraints by which copies that next to nothing holds follow others.
+   Touches the list of thin elements and the model's constraints.
+   A part is the cells of an element that the same four copies move; its share is its volume over the element's. A copy
+   is weak if every part around it has a share below follow_below: so little moves it that nothing else would keep it
+   from running away. It takes the increment of the field of a strong cell near it, that is, one without weak copies. A
+   fragment without a strong cell is thin everywhere. Its copies are then weak by comparison with its fullest part; if
+   that part has a share below speck_below, or no cell reaches speck_reach, the fragment is a speck and moves as a
+   point. All work is around thin elements, which are those with a part of so small a share. */
 
 enum { GXP_FREE, GXP_FOLLOWS, GXP_FOLLOWS_POINT };
 
@@ -6677,9 +6688,9 @@ GXFEM_API const char *gx_result_text(gx_result result) {
 }
 
 /* >>stream: a body as bytes: head, mesh, topology ------------------------------------------------------------------ */
-/* One stream of bytes does all four: save, load, clone, restore. A clone is written to memory and read back, without
-   the checks. What the same functions write and read stands once, in gxp_pass_cells (topology, beside gxb_complex_save)
-   and gxp_pass_state (all else). */
+/* One stream of bytes serves save, load, clone and restore; a clone is written to memory and read back without the
+   checks. In: a body, or bytes. Out: bytes, or a body. What is written and read follows from the lists at >>columns:
+   topology (beside gxb_complex_save) here, all else in the next section. */
 
 static void gxp_require(gxb_stream *s, gx_result result) {
     if (s->result == GX_OK) s->result = result;
