@@ -1923,16 +1923,27 @@ static gx_result gxp_push_divided_facets(gx_body *body, uint32_t facet, gxp_word
 }
 
 /* Appends the leaves on both sides of the undivided facets that make up a facet. */
-static gx_result gxp_wall_leaves(gx_body *body, uint32_t facet, gxp_words *seeds) {
+static gx_result gxp_push_leaves_beside(gx_body *body, uint32_t facet, gxp_words *leaves) {
     const gxb_facet *f = gxb_complex_facet(body->complex, facet);
     gx_result result = GX_OK;
     if (f->child != GXB_NONE) {
         const uint32_t child = f->child;
-        result = gxp_wall_leaves(body, child, seeds);
-        return result == GX_OK ? gxp_wall_leaves(body, child + 1, seeds) : result;
+        result = gxp_push_leaves_beside(body, child, leaves);
+        return result == GX_OK ? gxp_push_leaves_beside(body, child + 1, leaves) : result;
     }
-    if (f->leaf[0] != GXB_NONE) result = gxp_push(body, seeds, f->leaf[0]);
-    if (f->leaf[1] != GXB_NONE && result == GX_OK) result = gxp_push(body, seeds, f->leaf[1]);
+    if (f->leaf[0] != GXB_NONE) result = gxp_push(body, leaves, f->leaf[0]);
+    if (f->leaf[1] != GXB_NONE && result == GX_OK) result = gxp_push(body, leaves, f->leaf[1]);
+    return result;
+}
+
+/* Lists the leaves on both sides of the facets that this cut marked, or only of those that it made walls. */
+static gx_result gxp_list_marked_leaves(gx_body *body, int walls, gxp_words *leaves) {
+    const uint32_t count = gxb_complex_marked_count(body->complex);
+    uint32_t i;
+    gx_result result = gxp_start_words(body, leaves, 2 * (size_t)count);
+    for (i = 0; i < count && result == GX_OK; i++)
+        if (!walls || gxb_complex_marked_wall(body->complex, i))
+            result = gxp_push_leaves_beside(body, gxb_complex_marked_facet(body->complex, i), leaves);
     return result;
 }
 
@@ -2789,8 +2800,7 @@ static gx_result gxp_seed_untouched(gxp_cut *cut) {
 static gx_result gxp_find_windings(gx_body *body, const gxp_surface *s, int scoped) {
     gxp_scratch *scratch = &body->scratch;
     uint32_t i, done = 0;
-    gx_result result = GX_OK;
-    scratch->flooded.count = 0;
+    gx_result result = gxp_start_words(body, &scratch->flooded, scratch->seed_leaves.count);
     scratch->stamp++;
     for (i = 0; i < scratch->seed_leaves.count && result == GX_OK; i++) {
         const uint32_t leaf = scratch->seed_leaves.data[i];
@@ -2808,12 +2818,10 @@ static gx_result gxp_find_solid(gxp_cut *cut, const gxp_surface *s, int scoped) 
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
     uint32_t i;
-    gx_result result = GX_OK;
-    scratch->seed_leaves.count = 0;
-    for (i = 0; i < gxb_complex_marked_count(body->complex) && result == GX_OK; i++)
-        result = gxp_wall_leaves(body, gxb_complex_marked_facet(body->complex, i), &scratch->seed_leaves);
+    gx_result result = gxp_list_marked_leaves(body, 0, &scratch->seed_leaves);
     if (result == GX_OK) result = gxp_seed_untouched(cut);
     if (result == GX_OK) result = gxp_find_windings(body, s, scoped);
+    if (result == GX_OK) result = gxp_words_room(body, &scratch->removed, scratch->flooded.count);
     for (i = 0; i < scratch->flooded.count && result == GX_OK; i++)
         if (body->leaves.mark[scratch->flooded.data[i]].winding != 0)
             result = gxp_push(body, &scratch->removed, scratch->flooded.data[i]);
@@ -3051,11 +3059,8 @@ static gx_result gxp_collect_touched(gxp_cut *cut) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
     uint32_t i;
-    gx_result result = GX_OK;
-    scratch->wall_leaves.count = 0;
-    for (i = 0; i < gxb_complex_marked_count(body->complex) && result == GX_OK; i++)
-        if (gxb_complex_marked_wall(body->complex, i))
-            result = gxp_wall_leaves(body, gxb_complex_marked_facet(body->complex, i), &scratch->wall_leaves);
+    gx_result result = gxp_list_marked_leaves(body, 1, &scratch->wall_leaves);
+    if (result == GX_OK) result = gxp_words_room(body, &scratch->touched, scratch->wall_leaves.count / 2);
     scratch->stamp++;
     for (i = 0; i < scratch->wall_leaves.count && result == GX_OK; i++) {
         const uint32_t cell = body->leaves.data[scratch->wall_leaves.data[i]].cell;
@@ -3238,6 +3243,8 @@ static gx_result gxp_divide_cells(gxp_cut *cut) {
     gx_result result = gxp_log_room(body, &body->undo.cells, 4 * (size_t)scratch->touched.count);
     if (result == GX_OK) result = gxp_keys_room(body, &scratch->links, 16 * (size_t)scratch->touched.count);
     if (result == GX_OK) result = gxp_grow_rows(body, GXP_CELLS, scratch->touched.count);
+    if (result == GX_OK) result = gxp_start_words(body, &scratch->new_cells, 2 * (size_t)scratch->touched.count);
+    if (result == GX_OK) result = gxp_start_words(body, &scratch->link_first, 2 * (size_t)scratch->touched.count);
     scratch->new_cells.count = scratch->links.count = scratch->link_first.count = 0;
     scratch->stamp++;
     for (i = 0; i < scratch->touched.count && result == GX_OK; i++) {
@@ -3869,7 +3876,7 @@ static gx_result gxp_check_cut(gxp_cut *cut) {
 static gx_result gxp_remove_leaves(gx_body *body) {
     gxp_scratch *scratch = &body->scratch;
     uint32_t i;
-    gx_result result = GX_OK;
+    gx_result result = gxp_words_room(body, &scratch->touched, scratch->removed.count);
     gxp_sort_unique(&scratch->removed);
     for (i = 0; i < scratch->removed.count && result == GX_OK; i++) {
         result = gxb_complex_set_removed(body->complex, scratch->removed.data[i]);
