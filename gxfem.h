@@ -35,35 +35,39 @@
  *
  * Contents (search for >>name):
  *     >>shared     result codes, allocator
- *     >>body       create, destroy
- *     >>cut        surfaces, cuts, solidified sheets
- *     >>view       cells, copies, fragments
- *     >>step       held regions, time step
- *     >>skin       the visual surface, rays
- *     >>hash       of the topology, of the state
- *     >>save       save and load, clone and restore
- *     then, under GXFEM_IMPLEMENTATION: >>memory >>tree >>create >>transaction >>surfaces >>arrange >>solids >>links
- * >>cells
- *     >>components >>integrals >>commit >>regions >>fragments >>parts >>bytes >>boundary >>hashes
+ *     >>creating   bodies
+ *     >>cutting    surfaces, cuts, solidified sheets
+ *     >>viewing    cells, copies, fragments, motion
+ *     >>stepping   held regions, time steps
+ *     >>drawing    the visual surface, rays
+ *     >>hashing    of the topology, of the state
+ *     >>saving     save and load, clone and restore
+ *     then, under GXFEM_IMPLEMENTATION, in the order of a cut; functions call their own and earlier sections only:
+ *     what a body is made of:    >>state >>columns
+ *     tools:                     >>memory >>basics >>mesh >>search >>copies >>transaction >>complex >>numbering
+ *     a cut:                     >>surfaces >>pinches >>arrange >>solids >>links >>cells >>components >>integrals >>cut
+ *     a sheet's thickness:       >>solidify
+ *     what is held and whole:    >>regions >>fragments >>motion
+ *     a step:                    >>supports >>model >>step
+ *     the skin:                  >>corners >>vertices >>faces >>skinning >>rays
+ *     beginning, end, bytes:     >>create >>hashes >>stream >>save
  *
- * Words. Wall: a piece of a sheet inside the body or on an element face. Cell: a connected piece of one element after
- * cutting (GXFEM Eq. 20). Link: a piece of the face between two elements that no wall covers. Copy: a node's
- * displacement for one connected set of cells around the node (GXFEM Eq. 18). Fragment: a connected set of cells of the
- * body.
+ * Words. Wall: a piece of a sheet inside the body or on an element face. Cell: a connected part of one element after
+ * cutting (GXFEM Eq. 20). Link: the pieces of the face between two elements that no wall covers and that connect the
+ * same two cells. Copy: a node's displacement for one connected set of cells around the node (GXFEM Eq. 18). Fragment:
+ * a connected set of cells of the body.
  *
- * What is exact: which cells there are, what they are linked to, hence copies and fragments; decisions are signs of
- * polynomials in the given coordinates (gxfem_boolean.h). What is rounded, once: volumes, masses and vertices, as
- * doubles.
+ * Exact: which cells there are and which are linked, hence copies and fragments. Decisions are signs of polynomials in
+ * the given coordinates (gxfem_boolean.h). Rounded, once: volumes, masses and vertices, as doubles.
  *
- * What it does not do (yet): contact between pieces, cuts given in the deformed state,
- * unknowns within a partly cut element (a sheet that ends inside an element separates nothing there until another
- * completes it).
+ * Not there yet: contact between fragments; cuts given in the deformed state; unknowns within a partly cut element (a
+ * sheet that ends inside an element separates nothing there until another sheet completes it).
  *
- * Limits: 2^31 - 1 of each kind of object; one body is for one thread at a time; no global state, no output, no clock
- * of its own. A body's coordinates are at most 2^100 (1.3e30), its longest side is at least 2^-100 (7.9e-31), each
- * element has a mass of 2^-700 ... 2^700. So all volumes, masses, centres and inertia are finite, those of whole
- * bodies are normal numbers, and floats hold the skin. Beside the body's size, coordinates of bodies and cuts are 0
- * or 2^-128 ... 2^128. What is not within these limits is refused (GX_ERROR_RANGE).
+ * Limits: 2^31 - 1 of each kind of object. One thread at a time may use a body. There is no global state, no output, no
+ * clock. A body's coordinates are at most 2^100 (1.3e30), its longest side is at least 2^-100 (7.9e-31), each element
+ * has a mass of 2^-700 ... 2^700. So all volumes, masses, centres and inertia are finite, those of whole bodies are
+ * normal numbers, and floats hold the skin. Divided by the body's size, coordinates of bodies and cuts are 0 or
+ * 2^-128 ... 2^128 in absolute value. Everything beyond these limits is refused (GX_ERROR_RANGE).
  *
  * References: GXFEM = Ton-That, Kry, Andrews: Generalized eXtended Finite Element Method for Deformable Cutting via
  * Boolean Operations (2024). RXFEM = Koschier, Bender, Thuerey: Robust eXtended Finite Elements for Complex Cutting of
@@ -159,7 +163,7 @@ typedef struct gx_jobs {
 extern "C" {
 #endif
 
-/* >>body: units are the caller's, here SI -------------------------------------------------------------------------- */
+/* >>creating: units are the caller's, here SI ---------------------------------------------------------------------- */
 
 typedef struct gx_body gx_body; /* opaque */
 
@@ -173,34 +177,35 @@ typedef struct gx_body_desc {
     size_t node_count;
     const uint32_t *elements; /* element_count x 4 node indices, positive volume: det(x1-x0, x2-x0, x3-x0) > 0 */
     size_t element_count;
-    double young;   /* Pa, > 0: of one stable neo-Hookean material, if materials is NULL */
-    double poisson; /* 0 <= poisson < 0.5 */
-    double density; /* kg/m3, > 0 */
-    const gx_material *materials;
+    double young;                 /* Pa, > 0: of one stable neo-Hookean material; used if materials is NULL */
+    double poisson;               /* 0 <= poisson < 0.5; likewise */
+    double density;               /* kg/m3, > 0; likewise */
+    const gx_material *materials; /* material_count, or NULL */
     size_t material_count;
     const uint32_t *element_materials; /* element_count, below material_count; NULL: all of materials[0] */
     const float *texture;              /* node_count x 2: texture coordinates of the outer surface; NULL: all 0 */
-    /* below 1: copies around which no part of an element is as large a share of it follow others, see gx_body_step; 0:
-     * 1e-3. 1e-300: none does, and slivers may be flung about */
+    /* Share of an element, below 1. Copies around which every part of an element is smaller follow other copies, see
+       gx_body_step. 0: 1e-3. 1e-300: none follow, and slivers may be flung away. */
     double support_below;
     gx_allocator allocator;      /* zero: malloc, free, realloc */
     double (*clock)(void *user); /* seconds, for the reports' timings and the steps' budgets; NULL: timings are 0 */
     void *clock_user;
     gx_jobs jobs; /* the host's threads, for the steps; zero: none */
 } gx_body_desc;
-/* Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (index: the node that is too far out, the element that is too
-   heavy or too light, SIZE_MAX where the body is too small), INVERTED, FLAT (exactly, or in doubles), OVERLAP (index:
-   the node, element or material), LIMIT, MEMORY, CONFIGURATION. The arrays of the description are copied. */
+/* Creates a body. The arrays of the description are copied. failure.index is a node, element or material.
+   Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (a node is too far out, an element too heavy or too light, or,
+   index SIZE_MAX, the body is too small), INVERTED, FLAT (exactly, or in doubles), OVERLAP, LIMIT, MEMORY,
+   CONFIGURATION. */
 GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **body, gx_failure *failure /* or NULL */);
-GXFEM_API void gx_body_destroy(gx_body *body); /* NULL is fine */
+GXFEM_API void gx_body_destroy(gx_body *body); /* or NULL */
 
-/* >>cut ------------------------------------------------------------------------------------------------------------ */
+/* >>cutting -------------------------------------------------------------------------------------------------------- */
 
-/* A sheet separates what lies on its two sides; it may be open, closed, curved, cross itself, be non-manifold. A solid
-   is closed and consistently oriented; it removes the material around which it winds. */
+/* A sheet separates the material on its two sides. It may be open, closed or curved, cross itself, be non-manifold. A
+   solid is closed and consistently oriented; it removes the material around which it winds. */
 enum { GX_SURFACE_SHEET = 0, GX_SURFACE_SOLID = 1 };
 typedef struct gx_surface {
-    const double *vertices; /* vertex_count x 3, material coordinates */
+    const double *vertices; /* vertex_count x 3, material coordinates, m */
     size_t vertex_count;
     const uint32_t *triangles; /* triangle_count x 3 */
     size_t triangle_count;
@@ -210,51 +215,52 @@ typedef struct gx_surface {
 typedef struct gx_cut_desc {
     const gx_surface *surfaces;
     size_t surface_count;
-    /* 0: the whole body; places in gx_view: of cell_fragment, not fragment_id */
+    /* The cut affects only these fragments: indices below gx_view.fragment_count, not ids. Count 0 of both scopes: the
+       whole body. */
     const uint32_t *scope_fragments;
     size_t scope_fragment_count;
-    /* 0: the whole body; places in gx_view */
-    const uint32_t *scope_cells;
+    const uint32_t *scope_cells; /* and these cells: indices below gx_view.cell_count */
     size_t scope_cell_count;
-    double sever_below; /* links of touched cells with a smaller share of their face are severed; 0: never */
+    double sever_below; /* links of touched cells with a smaller share of their face are severed; 0: none */
 } gx_cut_desc;
 typedef struct gx_cut_report {
     size_t touched_elements, created_cells, removed_cells, created_copies, removed_copies;
     size_t ignored_triangles; /* of zero area */
     size_t severed_links;
-    /* smallest link area / face area among the links of cells that this cut touched; 1 if none is smaller */
+    /* smallest link area / face area among the links of the cells that this cut touched; 1 if none is smaller */
     double min_link_ratio;
-    double removed_volume;
+    double removed_volume; /* m3 */
     double seconds_arrangement, seconds_enrichment, seconds_integrals;
 } gx_cut_report;
-/* Cuts by all surfaces at once. The displacement and velocity fields are the same functions of material points before
-   and after. Errors: ARGUMENT, EMPTY, INDEX (triangle, or place in the scope), NOT_FINITE and RANGE (vertex),
-   NOT_CLOSED (triangle), LIMIT, MEMORY; the body is then exactly as it was. */
+/* Cuts by all surfaces at once. Displacement and velocity are the same functions of material points before and after.
+   On an error the body is exactly as it was; failure.surface is the surface, failure.index as named here.
+   Errors: ARGUMENT, EMPTY, INDEX (triangle, or place in the scope), NOT_FINITE (vertex), RANGE (vertex), NOT_CLOSED
+   (triangle), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report /* or NULL */,
                                 gx_failure *failure /* or NULL */);
 
-/* A sheet made solid (GXFEM section 4.1): offset by thickness/2 to both sides along its vertex normals, rim closed.
-   vertices: room for 2 x vertex_count x 3; triangles: room for 8 x triangle_count x 3. Vertices where normals cancel
-   stay. Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (a sum or difference of coordinates is beyond doubles),
-   LIMIT, MEMORY; what has been written then means nothing. */
+/* Makes a sheet solid (GXFEM section 4.1): offsets it by thickness/2 (m) to both sides along its vertex normals and
+   closes the rim. Vertices where normals cancel are not offset. After an error the output means nothing.
+   vertices: room for 2 x vertex_count x 3; triangles: room for 8 x triangle_count x 3; the counts are written.
+   Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (a sum or difference of coordinates is beyond doubles), LIMIT,
+   MEMORY. */
 GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thickness, double *vertices,
                                         size_t *vertex_count, uint32_t *triangles, size_t *triangle_count,
                                         const gx_allocator *allocator /* or NULL */);
 
-/* >>view ----------------------------------------------------------------------------------------------------------- */
+/* >>viewing -------------------------------------------------------------------------------------------------------- */
 
 /* What cuts have done to a fragment */
 enum {
     GX_FRAGMENT_UNCHANGED = 0,
-    GX_FRAGMENT_TOUCHED, /* cut but whole, or less than it was: partial cuts, material removed */
-    /* lost pieces that are fragments now, and kept its id as the heaviest piece (the first of equals) */
-    GX_FRAGMENT_SPLIT,
-    GX_FRAGMENT_CREATED /* a piece that fell off: its id is new, fragment_origin says from what */
+    GX_FRAGMENT_TOUCHED, /* cut but whole, or smaller: by partial cuts or removed material */
+    GX_FRAGMENT_SPLIT,   /* fell apart; this is the heaviest fragment of it (the first of equals) and keeps the id */
+    GX_FRAGMENT_CREATED  /* fell off another one; its id is new, fragment_origin is the other's */
 };
 
-/* Everything one reads off a body: arrays owned by the body, valid until the next cut, restore or its destruction.
+/* The state of a body. The arrays are the body's, valid until the next cut, restore or its destruction.
    Changes of fragments are those between the last view before a cut (the creation counts as one) and the first view
-   after it; cuts without a view between them are one change. Views without a cut between them tell the same. */
+   after it; cuts without a view between them are one change. Views without a cut between them are equal. */
 typedef struct gx_view {
     size_t node_count, element_count;
     size_t cell_count;             /* kept cells, sorted by element */
@@ -265,89 +271,89 @@ typedef struct gx_view {
     size_t copy_count;
     const uint32_t *copy_node; /* copy_count */
     const uint8_t *copy_held;  /* copy_count, 1: held by a Dirichlet region */
-    /* names this numbering of copies. A cut that creates or removes copies begins another one, any other cut leaves it.
-     * 0: no cut has begun one yet. Bodies cut alike have the same epoch, bodies cut otherwise have others */
+    /* Names this numbering of copies. A cut that creates or removes copies begins a new one; other cuts keep it. 0: no
+       cut has begun one yet. Bodies that were cut alike have the same epoch, others have different ones. */
     uint64_t epoch;
-    /* copy_count x 3, m; the caller may write, and then takes a step of GXS_BDF1 before one of GXS_BDF2 */
+    /* copy_count x 3, m. The caller may write it; then a step of GXS_BDF1 must come before the next of GXS_BDF2. */
     double *displacement;
     double *velocity; /* copy_count x 3, m/s; likewise */
-    /* copy_count: for how long it has been slower than sleep_speed, s; the caller may write 0 to wake it; calls that
-     * find its state written since the last step do, whether they succeed or not */
+    /* copy_count, s: for how long the copy has been slower than sleep_speed. The caller may write 0 to wake it. A copy
+       whose state was written since the last step wakes at the next call that notices, whether that succeeds or not. */
     double *rest_time;
     size_t fragment_count;
     const double *fragment_volume; /* fragment_count, m3 */
-    const double *fragment_mass;   /* kg */
-    const double *fragment_center; /* fragment_count x 3, centre of mass, material coordinates */
+    const double *fragment_mass;   /* fragment_count, kg */
+    const double *fragment_center; /* fragment_count x 3, centre of mass, material coordinates, m */
     /* fragment_count x 6, about the centre, material coordinates: 00 01 02 11 12 22, kg m2 */
     const double *fragment_inertia;
-    /* fragment_count; 1, 2 ...: of this fragment as long as it is there, of no other ever after */
-    const uint32_t *fragment_id;
+    const uint32_t *fragment_id;     /* fragment_count: 1, 2 ...; never used again for another fragment */
     const uint32_t *fragment_origin; /* fragment_count: id of the fragment that it was part of before the change */
     const uint32_t *fragment_change; /* fragment_count: GX_FRAGMENT_ */
     size_t removed_count;
-    const uint32_t *removed_ids; /* removed_count: ids of the fragments of which the change left nothing */
-    double volume, mass;         /* of the body */
+    const uint32_t *removed_ids; /* removed_count: ids of fragments that the change removed entirely */
+    double volume, mass;         /* of the body, m3 and kg */
 } gx_view;
-/* Errors: ARGUMENT, MEMORY, LIMIT (no ids left). */
+/* Brings the view up to date. Errors: ARGUMENT, MEMORY, LIMIT (no ids left). */
 GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view);
 
-/* How a fragment moves: integrals over its deformed shape by the consistent mass. */
+/* How a fragment moves: integrals over its deformed shape with the consistent mass */
 typedef struct gx_motion {
     double mass;        /* kg */
     double center[3];   /* centre of mass, m, in space */
-    double inertia[6];  /* about it: 00 01 02 11 12 22, kg m2 */
+    double inertia[6];  /* about the centre: 00 01 02 11 12 22, kg m2 */
     double velocity[3]; /* of the centre: momentum / mass, m/s */
-    /* inverse of inertia times angular momentum about the centre, 1/s; no part around an axis about which there is no
-     * inertia to speak of (a point, a line) */
+    /* inverse of inertia times angular momentum about the centre, 1/s; 0 about axes with hardly any inertia (of a point
+       or a line) */
     double angular_velocity[3];
     double energy; /* kinetic, J */
 } gx_motion;
-/* Motions of all fragments from the present displacement and velocity, in the order of gx_view; capacity: how many
-   there is room for. Errors: ARGUMENT, NOT_FINITE (a displacement or velocity), RANGE (these are so large that a motion
-   is beyond doubles), MEMORY, LIMIT (as well where capacity is below gx_view.fragment_count); what has been written
-   then means nothing. */
+/* Computes the motions of all fragments from the present displacement and velocity, in the order of gx_view.
+   motions: room for capacity, at least gx_view.fragment_count. After an error the output means nothing.
+   Errors: ARGUMENT, NOT_FINITE (a displacement or velocity), RANGE (a motion is beyond doubles), MEMORY, LIMIT (also:
+   capacity is too small). */
 GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t capacity);
 
-/* >>step ----------------------------------------------------------------------------------------------------------- */
+/* >>stepping ------------------------------------------------------------------------------------------------------- */
 
-/* Half-space of material coordinates: X[axis] < value (side -1) or > value (side +1), strictly. */
+/* Half-space of material coordinates: X[axis] < value (side -1) or > value (side +1), strictly */
 typedef struct gx_region {
     uint32_t axis;
     int32_t side;
     double value;
 } gx_region;
-/* Holds (Dirichlet) the copies of nodes in one of the regions whose own component has material there, at their present
-   displacement, now and after later cuts. Replaces what was held before. Errors: ARGUMENT, NOT_FINITE, LIMIT, MEMORY;
-   what was held is then as it was. */
+/* Holds copies at their present displacement (Dirichlet), now and after later cuts: those whose node is in a region and
+   whose own cells have material there. Replaces the regions held before. On an error these stay.
+   Errors: ARGUMENT, NOT_FINITE, LIMIT, MEMORY. */
 GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t region_count);
 
 /* A step as the solver takes it; arrays are by copy, as in gx_view. A point of the skin is a gxs_point by its copies
-   and weights. A gxs_point has the epoch of the view, skin or hit that it is from; so has the step, where it has
-   forces or targets. After a cut that has begun another epoch they are refused (GX_ERROR_STALE) until they are made
-   anew. previous_displacement, previous_velocity, previous_dt and rest_times are the body's own and not read. clock:
-   where it is NULL, that of the body. */
+   and weights. A gxs_point has the epoch of the view, skin or hit that it comes from; a step with forces or targets has
+   one too. After a cut that began another epoch they are refused (GX_ERROR_STALE) until they are made anew. The body
+   supplies previous_displacement, previous_velocity, previous_dt and rest_times itself and ignores those of the
+   description. clock: if NULL, the body's. */
 typedef gxs_step_desc gx_step_desc;
 typedef gxs_step_report gx_step_report;
-/* One time step (GXFEM Eq. 10). A cut wakes the fragments that it touches. Errors: those of gxs_solver_step, MEMORY;
-   the body is then as it was. Copies that only slivers carry (RXFEM Eq. 22; gx_body_desc.support_below) take the
-   increment of the displacement field of the nearest element without such copies: else next to nothing would hold them
-   where they are. A fragment without such an element is thin everywhere. It goes by what is thin beside its fullest
-   part. It moves as a point if that part is smaller than support_below of its element; where support_below is 0,
-   smaller than 1e-9, or if no part reaches a tenth as far as its element does. */
+/* Takes one time step (GXFEM Eq. 10). On an error the body is as it was.
+   A cut wakes the fragments that it touches. Copies that only slivers carry would be held by next to nothing, so they
+   follow others (RXFEM Eq. 22; gx_body_desc.support_below): each takes the increment of the displacement field of the
+   nearest element without such copies. A fragment without such an element is thin everywhere; its parts are then
+   compared with its fullest part. It moves as a point if that part is smaller than support_below of its element.
+   Where support_below is 0, it moves as a point if that part is smaller than 1e-9 or if no part reaches a tenth as far
+   as its element. Errors: those of gxs_solver_step, MEMORY. */
 GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report /* or NULL */,
                                  gx_failure *failure /* or NULL */);
 
-/* What the solver sees of the body as it is cut now: for solvers of one's own. Arrays are the body's, valid until its
-   next cut, hold, step or restore. Errors: ARGUMENT, LIMIT, MEMORY; RANGE, FLAT: an element's gradients are not numbers
-   in doubles. */
+/* Gives the solver's model of the body as it is cut now, for other solvers. Arrays are the body's, valid until its next
+   cut, hold, step or restore. Errors: ARGUMENT, LIMIT, MEMORY; RANGE, FLAT: an element's gradients are beyond doubles.
+ */
 GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model);
 
-/* >>skin ----------------------------------------------------------------------------------------------------------- */
+/* >>drawing -------------------------------------------------------------------------------------------------------- */
 
 typedef struct gx_skin_desc {
-    /* the outer surface is shaded smooth across mesh edges that bend by less, rad; 0: each face is flat */
+    /* The outer surface is shaded smooth across mesh edges that bend by less, rad. 0: each face is flat. */
     double crease_angle;
-    /* 1: faces of a cut are shaded smooth across the edges of its triangles; 0: each of its planes is flat */
+    /* 1: faces of a cut are shaded smooth across the edges of its triangles. 0: each of its planes is flat. */
     int smooth_cuts;
 } gx_skin_desc;
 
@@ -358,15 +364,15 @@ typedef struct gx_range {
     uint32_t first, count;
 } gx_range;
 
-/* The visual surface: the outer surface and both faces of every cut that has separated material. Arrays are the body's,
-   valid until the next cut, restore or gx_body_skin. A vertex is a point of one piece with one normal: at creases and
-   along cuts there are several. */
+/* The visual surface: the outer surface and both faces of every cut that has separated material. The arrays are the
+   body's, valid until the next cut, restore or gx_body_skin. A vertex is a point of one fragment with one normal: at
+   creases and along cuts there are several at one point. */
 typedef struct gx_skin {
     size_t vertex_count;
     const uint32_t *vertex_copies; /* vertex_count x 4: the copies that move it; those of weight 0 stand last */
     const double *vertex_weights;  /* vertex_count x 4, barycentric: x = sum of weight (X + u) over the copies */
-    /* vertex_count; equal: the same material point, exactly. Where the copies of weight not 0 are equal too, it is one
-     * corner of the surface: with corners so merged it is watertight */
+    /* vertex_count: equal for vertices at the same material point, exactly. Vertices whose copies of weight not 0 are
+       equal too are one corner of the surface: with corners merged like this it is watertight. */
     const uint32_t *vertex_point;
     const double *vertex_rest;   /* vertex_count x 3, material coordinates, m */
     const float *vertex_normal;  /* vertex_count x 3, outward, of length 1, at rest */
@@ -376,75 +382,76 @@ typedef struct gx_skin {
     const uint32_t *triangle_fragment; /* triangle_count */
     const uint32_t *triangle_element;  /* triangle_count */
     const uint32_t *triangle_material; /* triangle_count, that of the element (gx_body_desc.element_materials) */
-    /* triangle_count; GX_SKIN_OUTER; 1 + n: face of the n-th surface that the body was cut by, counted over all its
-     * cuts (where several coincide, the first); GX_SKIN_SEVERED: where a link was severed */
+    /* triangle_count: GX_SKIN_OUTER; 1 + n: face of the n-th surface that cut the body, counted over all its cuts (the
+       first, if several coincide); GX_SKIN_SEVERED: a severed link */
     const uint32_t *triangle_surface;
-    /* What differs from the arrays of the call before, ascending; counts may differ too. Fragment ids may differ
-     * anywhere. */
+    /* Vertices and triangles that differ from those of the call before, ascending. Counts may differ too, and fragments
+       anywhere. */
     const gx_range *vertex_ranges;
     size_t vertex_range_count;
     const gx_range *triangle_ranges;
     size_t triangle_range_count;
     uint64_t epoch; /* of the numbering of copies, as in gx_view: for gxs_point */
 } gx_skin;
-/* Rebuilds what cuts have touched since the last call; all of it if desc is another. Errors: ARGUMENT, NOT_FINITE,
- * MEMORY, LIMIT. */
+/* Makes the skin, or brings it up to date where cuts have been since the last call. Another description makes all of it
+   anew. Errors: ARGUMENT, NOT_FINITE, MEMORY, LIMIT. */
 GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc /* or NULL: zero */, gx_skin *skin);
-/* The deformed skin as the last gx_body_skin gave it. Errors: ARGUMENT (also where there is none, or a cut has been
- * since). */
+/* Gives the deformed vertices of the last gx_body_skin, m. Errors: ARGUMENT (also: there is no skin, or a cut has been
+   since). */
 GXFEM_API gx_result gx_body_skin_positions(const gx_body *body, double *positions /* vertex_count x 3 */);
-/* The same less an origin, and normals, for drawing. Normals of the outer surface are interpolated from those at nodes,
-   each the mean over the faces of its piece around it, weighted by area. */
+/* Gives the same less an origin, and normals, for drawing. Normals of the outer surface are interpolated from those at
+   nodes; these are means over the faces of the fragment around the node, weighted by area. Errors: as above. */
 GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3] /* or NULL: 0 */,
                                           float *positions /* vertex_count x 3, or NULL */,
                                           float *normals /* vertex_count x 3, of length 1, or NULL */);
 
-/* Where a ray first meets the deformed skin. With copies and weights it can be held on to: see gxs_spring. */
+/* Where a ray first meets the deformed skin. Its copies and weights can attach a spring: see gxs_spring. */
 typedef struct gx_hit {
     uint32_t triangle;                   /* of the skin; UINT32_MAX: the ray meets nothing, and the rest is 0 */
-    uint32_t fragment, element, surface; /* as of the triangle */
+    uint32_t fragment, element, surface; /* of the triangle */
     double distance;                     /* in lengths of direction */
     double position[3], material[3];     /* deformed, m; material coordinates, m */
     uint32_t copies[4];
     double weights[4];
     uint64_t epoch; /* of the numbering of copies, as in gx_view: for gxs_point */
 } gx_hit;
-/* Errors: as of gx_body_skin_positions; ARGUMENT (direction 0), NOT_FINITE. */
+/* Finds the nearest triangle on a ray. Errors: ARGUMENT (also: direction is 0, there is no skin, or a cut has been
+   since), NOT_FINITE. */
 GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit);
 
-/* >>hash ----------------------------------------------------------------------------------------------------------- */
+/* >>hashing -------------------------------------------------------------------------------------------------------- */
 
-/* of the cell complex: same on every compiler */
-GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_result *result);
-/* of all that a failed call must leave alone, and of the ids that views have told */
+/* Hash of the cells and copies, the same on every compiler. *result: ARGUMENT, MEMORY, LIMIT. */
+GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_result *result /* or NULL */);
+/* Hash of all that a failed call must leave as it was, and of the fragments' ids */
 GXFEM_API uint64_t gx_body_state_hash(const gx_body *body);
 GXFEM_API const char *gx_result_text(gx_result result);
 
-/* >>save ----------------------------------------------------------------------------------------------------------- */
+/* >>saving --------------------------------------------------------------------------------------------------------- */
 
 /* A body as bytes or as another body, with all that it is: mesh, materials, cuts, displacement, velocity, rest times,
-   the history of BDF2, what is held, ids of fragments and what has changed. Further cuts then give the same cells, and
-   further steps the same bits in the same program; for that, saving, cloning and restoring let the solvers of all
-   bodies concerned start anew (the next step makes its preconditioner and takes no guess from the last), but what
-   sleeps goes on sleeping. Pointers are not saved. */
+   the history of BDF2, held regions, ids of fragments and their changes. Further cuts give the same cells, and further
+   steps the same bits in the same program. For that, saving, cloning and restoring make the solvers of all bodies
+   concerned start anew: the next step makes its preconditioner and takes no guess from the last. Sleeping copies go on
+   sleeping. Pointers are not saved. */
 
-/* *size: how many bytes it takes. memory NULL: nothing is written. Fields have fixed widths, in the machine's byte
-   order, which the bytes tell. Errors: ARGUMENT, LIMIT (capacity is below *size). */
+/* Writes the body to memory of at least *size bytes; memory NULL: only computes *size. Fields have fixed widths, in the
+   machine's byte order, which the bytes tell. Errors: ARGUMENT, LIMIT (capacity is below *size). */
 GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, size_t *size);
-/* Whatever the bytes are, they do no harm: a checksum tells damage by accident, and all that a body relies on is
-   checked. Of desc (NULL: all zero) allocator, clock and jobs are read, and, for each saved material of kind
-   GXS_CUSTOM, energy and user of the material with its number. Errors: ARGUMENT (index: a material without its energy),
-   MEMORY, LIMIT (also: one edge, face or element divided 10,000 times in a row), FORMAT, DAMAGED (index: bytes read
-   until then), CONFIGURATION. */
+/* Reads a body. Bytes from anywhere do no harm: a checksum detects accidental damage, and everything that a body relies
+   on is checked. Of desc (NULL: all zero) it takes allocator, clock and jobs, and, for each saved material of kind
+   GXS_CUSTOM, energy and user of the material with its number.
+   Errors: ARGUMENT (index: a material without its energy), MEMORY, LIMIT (also: one edge, face or element divided
+   10,000 times in a row), FORMAT, DAMAGED (index: bytes read until then), CONFIGURATION. */
 GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_desc *desc, gx_body **body,
                                  gx_failure *failure /* or NULL */);
-/* Another body of the same state, with the same allocator, clock, jobs and energies. Errors: ARGUMENT, MEMORY, LIMIT,
-   CONFIGURATION. */
+/* Makes another body of the same state, with the same allocator, clock, jobs and energies. Errors: ARGUMENT, MEMORY,
+   LIMIT, CONFIGURATION. */
 GXFEM_API gx_result gx_body_clone(gx_body *body, gx_body **clone);
-/* The body becomes what from is now: to go back to a clone, or to bring a clone up to date. Where neither has been cut
-   since they were the same, only the state is copied, and neither cells nor the solver's model are made anew; else
-   arrays of the view end, as by a cut. Allocator, clock and jobs stay the body's own. Errors: ARGUMENT, MEMORY, LIMIT,
-   CONFIGURATION; the body is then as it was. */
+/* The body becomes what `from` is: to go back to a clone, or to bring a clone up to date. If both have been cut alike,
+   only the state is copied, and neither cells nor the solver's model are made anew. Otherwise arrays of the view end,
+   as at a cut. Allocator, clock and jobs stay the body's own. On an error the body is as it was.
+   Errors: ARGUMENT, MEMORY, LIMIT, CONFIGURATION. */
 GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from);
 
 #ifdef __cplusplus
@@ -469,16 +476,18 @@ extern "C" {
 #endif
 
 #if defined(__GNUC__)
-#define GXP_FETCH(address) __builtin_prefetch(address)
-#define GXP_FETCHES                                                                                                    \
-    static inline __attribute__((always_inline)) /* nothing else: gcc takes such a function for one without effect,    \
-                                                    and drops calls */
+#define GXP_PREFETCH(address) __builtin_prefetch(address)
+#define GXP_PREFETCHES                                                                                                 \
+    static inline __attribute__((always_inline)) /* without it gcc takes such a function for pure and drops calls */
 #else
-#define GXP_FETCH(address) ((void)0)
-#define GXP_FETCHES        static inline
+#define GXP_PREFETCH(address) ((void)0)
+#define GXP_PREFETCHES        static inline
 #endif
 
-/* --- types --- */
+/* >>state: the body, divided by how long its parts live ------------------------------------------------------------ */
+
+/* The types of all that a body owns: settings and mesh from creation to destruction; cells, copies and what else cuts
+   make; the log that takes a cut back; lists that can be made anew; working memory of a call. Nothing runs here. */
 
 #define GXP_NONE UINT32_MAX
 /* Shares of an element, where gx_body_desc.support_below is 0: copies that nothing larger carries follow others;
@@ -486,13 +495,61 @@ extern "C" {
 #define GXP_SUPPORT 1e-3
 #define GXP_SPECK   1e-9
 
-/* So far a fragment reaches at least, beside an element, or it moves as a point: else its copies would go ten times as
- * far as what it is made of. */
-#define GXP_CRUMB 0.1
+/* Where support_below is 0, a fragment moves as a point unless it reaches this far beside an element: its copies would
+   go ten times as far as its material. */
+#define GXP_SPECK_REACH 0.1
 
-#define GXP_FRAGMENT_ARRAYS 11 /* 1 + 1 + 3 + 6 */
+typedef struct gxp_words { /* growing array of indices */
+    uint32_t *data, count, capacity;
+} gxp_words;
+typedef struct gxp_keys { /* growing array of pairs of indices, the first << 32 */
+    uint64_t *data;
+    uint32_t count, capacity;
+} gxp_keys;
 
-typedef struct gxp_cell { /* slot; slots 0 ... element_count-1 are the elements' first cells */
+/* --- what the caller gave: from creation to destruction --- */
+
+typedef struct gxp_config {
+    gx_allocator allocator;
+    gx_jobs jobs;
+    double (*clock)(void *user);
+    void *clock_user;
+    double support_below;                          /* as given */
+    double follow_below, speck_below, speck_reach; /* see >>supports */
+} gxp_config;
+
+typedef struct gxp_box { /* tree node; count 0: children first, first+1 */
+    double low[3], high[3];
+    uint32_t first, count;
+} gxp_box;
+
+/* Arrays are made at the creation and do not change. The complex has the elements' nodes, faces and edges. */
+typedef struct gxp_mesh {
+    uint32_t node_count, node_capacity[4];
+    double *positions;    /* node_count x 3 */
+    uint32_t *node_start; /* node_count + 1, into node_elements */
+    /* node_count: GXP_NODE_PINCHED, GXP_EDGE_PINCHED */
+    uint8_t *node_pinched;
+    float *texture; /* node_count x 2, or NULL */
+    uint32_t element_count, element_capacity[4];
+    uint32_t *node_elements; /* element_count x 4: elements around each node */
+    gxp_box *boxes;
+    uint32_t *box_elements;      /* element_count, in tree order */
+    uint32_t *element_materials; /* element_count */
+    uint32_t box_count;
+    uint32_t edge_count, edge_capacity[1];
+    uint8_t *edge_pinched; /* edge_count: elements around it meet in the edge only */
+    uint32_t material_count, material_capacity[1];
+    gx_material *materials;
+} gxp_mesh;
+enum {
+    GXP_NODE_PINCHED = 1, /* elements around the node are not joined by faces */
+    GXP_EDGE_PINCHED = 2  /* one of its edges is pinched */
+};
+
+/* --- what cuts make: cells, leaves, copies, in rows that are listed at >>columns --- */
+
+typedef struct gxp_cell { /* without gaps between its members: rows are saved as bytes */
     uint32_t element;
     uint32_t copies[4];
     uint32_t first_leaf; /* list through gxp_leaf.next; GXP_NONE: removed */
@@ -502,55 +559,167 @@ typedef struct gxp_cell { /* slot; slots 0 ... element_count-1 are the elements'
     double mass[10]; /* kg, order of gxs_element.mass */
 } gxp_cell;
 
-typedef struct gxp_leaf { /* beside each leaf of the complex */
-    uint32_t cell, next;
-    uint32_t stamp;
-    int32_t winding; /* where stamp is the current solid's */
+typedef struct gxp_cells { /* slots 0 ... element_count-1 are the elements' first cells */
+    uint32_t count, capacity[4];
+    gxp_cell *data;
+    uint32_t *stamp;     /* scratch.stamp of the last walk that met the cell */
+    uint32_t *saved_by;  /* undo.cut_number of the last cut that saved or made it */
+    uint32_t *new_index; /* its index in scratch.new_cells, if it is there */
+} gxp_cells;
+
+typedef struct gxp_leaf {
+    uint32_t cell, next; /* next of the cell, GXP_NONE: last, or removed */
 } gxp_leaf;
 
-/* tree node; count 0: children first, first+1 */
-typedef struct gxp_box {
-    double low[3], high[3];
-    uint32_t first, count;
-} gxp_box;
+typedef struct gxp_leaf_mark {
+    uint32_t stamp;  /* scratch.stamp of the last walk that met the leaf */
+    int32_t winding; /* in a walk of >>solids: the winding number around it */
+} gxp_leaf_mark;
 
-/* as they were when the cut began */
-typedef struct gxp_saved_cell {
-    uint32_t index;
-    gxp_cell cell;
-} gxp_saved_cell;
-typedef struct gxp_saved_leaf {
-    uint32_t index;
-    gxp_leaf leaf;
-} gxp_saved_leaf;
+typedef struct gxp_leaves { /* beside the leaves of the complex */
+    uint32_t count, capacity[2];
+    gxp_leaf *data;
+    gxp_leaf_mark *mark;
+} gxp_leaves;
 
-typedef struct gxp_words {
-    uint32_t *data, count, capacity;
-} gxp_words; /* growing array of indices */
-/* of pairs of indices, the first << 32 */
-typedef struct gxp_keys {
-    uint64_t *data;
-    uint32_t count, capacity;
-} gxp_keys;
+typedef struct gxp_copies {
+    uint32_t count, capacity[11];
+    uint32_t *node;
+    double *displacement, *velocity; /* x 3 */
+    double *rest_time;               /* s */
+    uint8_t *held;                   /* 1: by a region */
+    uint32_t *label;                 /* 2 x index of its fragment at the last snapshot, + 1: cut since */
+    uint32_t *before; /* 2 x index, when the solver's model was made, of the copy that it is, or, + 1, that it comes
+                         from */
+    /* displacement and velocity a step ago, x 3, and room for those of now; from the first BDF2 step on */
+    double *history[4];
+    double previous_dt; /* s, of the step that history[0] and [1] are from; 0: there is none */
+} gxp_copies;
 
-/* its first triangle's label; its first map, or GXP_NONE */
 typedef struct gxp_surface_record {
-    uint32_t label, map;
+    uint32_t label; /* of its first triangle */
+    uint32_t map;   /* its first, GXP_NONE: it has no texture */
 } gxp_surface_record;
 
+typedef struct gxp_cuts { /* the surfaces that have cut the body */
+    uint32_t label_count; /* triangles so far */
+    uint32_t surface_count, surface_capacity[1];
+    gxp_surface_record *surfaces;
+    uint32_t map_count, map_capacity[1];
+    /* x 8, for each triangle of surfaces with a texture: material coordinates less the complex's origin to texture
+       coordinates, 3 factors and a constant, twice */
+    double *maps;
+    uint64_t hash;  /* of the mesh and of all cuts: bodies with the same one have the same cells and copies */
+    uint64_t epoch; /* the hash when copies were created or removed last; 0: never */
+} gxp_cuts;
+
+typedef struct gxp_holds {
+    uint32_t count, capacity[1];
+    gx_region *regions;
+    int stale; /* copies.held is older than the regions or the last cut */
+} gxp_holds;
+
+/* --- a cut's way back --- */
+
+typedef struct gxp_log { /* rows of a table as they were, without gaps: the columns that are undone */
+    gxp_words rows;
+    unsigned char *bytes;
+    uint32_t byte_capacity, row_size;
+} gxp_log;
+
+enum { /* indices of gxp_tables */
+       GXP_NODES,
+       GXP_ELEMENTS,
+       GXP_EDGES,
+       GXP_MATERIALS,
+       GXP_CELLS,
+       GXP_LEAVES,
+       GXP_COPIES,
+       GXP_SURFACES,
+       GXP_MAPS,
+       GXP_REGIONS,
+       GXP_SNAPSHOT,
+       GXP_REMOVED_IDS,
+       GXP_VIEW,
+       GXP_SUMS,
+       GXP_SKIN_VERTICES,
+       GXP_SKIN_TRIANGLES,
+       GXP_TABLES
+};
+
+typedef struct gxp_undo {
+    gxp_log cells, leaves; /* cells.rows: each cell that the cut changed, once */
+    uint32_t cut_number;
+    uint32_t counts[GXP_TABLES], labels, dirty, splits; /* when the cut began */
+} gxp_undo;
+
+/* --- what can be made anew from the above --- */
+
+typedef struct gxp_view { /* the body as gx_view tells it */
+    int stale;            /* a cut has been since the lists were made */
+    uint32_t count, capacity[5];
+    uint32_t *slot, *fragment, *element, *copies; /* of each kept cell; copies x 4 */
+    double *volume;
+    gxp_words copy_fragment;   /* of each copy: a parent among copies, see gxp_find; the root stands for its fragment */
+    gxp_words fragment_number; /* of each root */
+    /* copy_fragment and fragment_number hold for copies older than splits, and nothing has been removed */
+    int labels_known;
+    gxp_words splits;        /* copies made since then, each with the one it comes from */
+    gxp_words split_cells;   /* of a call: cells around their nodes */
+    gxp_words split_parents; /* of a call: of copies, see gxp_find */
+    uint32_t fragment_count, sum_capacity[4];
+    double *fragment_volume, *fragment_mass, *fragment_center, *fragment_inertia; /* x 1, 1, 3, 6 */
+    double body_volume, body_mass;
+    int sums_stale; /* the lists are newer than the sums */
+} gxp_view;
+
+/* The fragments when gx_body_view was called last: what has changed is told against it. */
+typedef struct gxp_snapshot {
+    uint32_t count, capacity[3];
+    uint32_t *id, *origin, *change;
+    gxp_words removed; /* ids */
+    uint32_t next_id;
+    uint32_t stale; /* a cut has been since */
+} gxp_snapshot;
+
+/* The solver's model is as the body, but for the last cuts, or not at all. */
+typedef enum gxp_model_state { GXP_MODEL_KNOWN, GXP_MODEL_CHANGED, GXP_MODEL_STALE } gxp_model_state;
+
+typedef struct gxp_model {
+    gxp_model_state state;
+    int empty;   /* it has no elements: the solver has not been given it */
+    int updated; /* it has been changed since it was set */
+    /* hash of the state when the body was saved, copied or read; 0: it has stepped since then */
+    uint64_t resumed;
+    /* elements of which a cell or its copies have changed since the solver was told; some more than once */
+    gxp_words changed;
+    gxp_words thin; /* elements with a part of a share below follow_below, ascending; of use unless state is STALE */
+    /* there only while the solver is told; it copies them */
+    gxs_element *parts;
+    uint32_t part_count, part_capacity;
+    double *rest; /* copies, x 3: where they are at rest, m */
+    uint32_t rest_capacity;
+    gxs_material *elastic;
+    uint32_t elastic_capacity;
+    gxs_constraint *constraints;
+    uint32_t constraint_count, constraint_capacity;
+} gxp_model;
+
 /* What a vertex of the skin is looked up by: a point of the complex, four names in ascending order, a group. Of the
-   outer surface the names are slots and the group is 0; of a face of a cut they are copies, and the group is its
-   surface, and its side or plane and side. */
+   outer surface the names are slots and the group is 0. Of a face of a cut they are copies, and the group is its
+   surface and its side, or its surface, plane and side. */
 typedef struct gxp_skin_key {
     uint32_t point, name[4], group[2];
 } gxp_skin_key;
 
 typedef struct gxp_skin_vertex { /* beside the columns that users see */
     gxp_skin_key key;
-    uint32_t slots[4];           /* from which it has its normal, by its weights */
-    uint32_t next;               /* of its bucket */
-    uint32_t corner;             /* 3 x triangle + k: its first corner */
-    uint8_t outer, fresh, noted; /* of the outer surface; new in its place; among those that may have changed */
+    uint32_t slots[4]; /* whose sums make its normal, by its weights */
+    uint32_t next;     /* of its bucket */
+    uint32_t corner;   /* 3 x triangle + k: its first corner */
+    uint8_t outer;     /* 1: of the outer surface */
+    uint8_t placed;    /* 1: new in its place since the last update */
+    uint8_t noted;     /* 1: in changed[0] */
 } gxp_skin_vertex;
 
 typedef struct gxp_skin_links {
@@ -560,178 +729,281 @@ typedef struct gxp_skin_links {
     uint32_t corner_next[3], corner_previous[3]; /* of the same vertex */
 } gxp_skin_links;
 
-/* copy GXP_NONE: belongs to one vertex; next: in its bucket, or free */
 typedef struct gxp_skin_slot {
-    uint32_t copy, group, next;
+    uint32_t copy; /* GXP_NONE: belongs to one vertex */
+    uint32_t group;
+    uint32_t next; /* in its bucket, or free */
 } gxp_skin_slot;
 
 typedef struct gxp_skin {
     int made; /* 0: all of it is to be made */
     gx_skin_desc desc;
     gxp_words dirty; /* elements that cuts have touched since; some more than once */
-    /* columns: one entry for each vertex; see gx_skin */
+    uint32_t vertex_count, vertex_capacity[7];
     gxp_skin_vertex *vertices;
-    uint32_t *copies, *point;
+    uint32_t *copies, *point; /* from here on see gx_skin */
     double *weights, *rest;
     float *normal, *texture;
-    uint32_t vertex_count, vertex_capacity;
-    /* columns: one entry for each triangle */
+    uint32_t triangle_count, triangle_capacity[6];
     gxp_skin_links *links;
     uint32_t *triangles, *fragment, *element, *material, *surface;
-    uint32_t triangle_count, triangle_capacity;
     gxp_words first; /* element_count: the first of its triangles */
     gxp_skin_slot *slots;
     uint32_t slot_count, slot_capacity, free_slot;
     gxp_words vertex_buckets, slot_buckets;
-    gxp_words boundary; /* face_count: number among the outer faces */
-    gxp_words groups;   /* outer faces x 4: group of each node's corner */
-    /* x 3, by group */
-    double *group_normals;
+    gxp_words boundary;    /* face_count: number among the outer faces */
+    gxp_words groups;      /* outer faces x 4: group of each node's corner */
+    double *group_normals; /* x 3, by group */
     uint32_t group_normal_capacity;
     gxp_words changed[2]; /* vertices, triangles */
     gx_range *ranges[2];
     uint32_t range_count[2], range_capacity[2];
-    /* scratch: slots x 3, vertices x 3 */
-    double *normals, *positions;
+    /* of a call */
+    gxp_words outer_faces;                    /* element * 4 + k of each */
+    gxp_words edge_faces;                     /* mesh edges, twice: the first and the second outer face there */
+    gxp_words corner_points, corner_vertices; /* of a facet that is divided into triangles */
+    double *normals;                          /* slots x 3 */
+    double *positions;                        /* vertices x 3 */
     uint32_t normal_capacity, position_capacity;
 } gxp_skin;
 
-typedef struct gxp_counts {
-    uint32_t cells, leaves, copies, labels, surfaces, maps, dirty, splits;
-} gxp_counts;
+/* --- what a call works with. Nothing in it is of use to the next one; the memory stays, so that a cut as large as the
+   last allocates nothing. --- */
 
-/* The solver's model is as the body, but for the last cuts, or not at all. */
-typedef enum gxp_model { GXP_MODEL_KNOWN, GXP_MODEL_CHANGED, GXP_MODEL_STALE } gxp_model;
+/* The boundary of a cell or leaf, as triangles in barycentric coordinates of its element */
+typedef struct gxp_boundary {
+    gxp_words points; /* of the complex */
+    double *lambdas;  /* points x 4 */
+    uint32_t lambda_capacity;
+    gxp_words slots;     /* by point of the complex: its place in points, if it is there */
+    gxp_words triangles; /* x 3, places in points */
+    gxp_words facets;    /* in faces of the element: times two, 1 more if the material is in front */
+} gxp_boundary;
 
+typedef struct gxp_scratch {
+    uint32_t stamp;       /* of the last walk through cells or leaves */
+    uint32_t scope_stamp; /* of the cells that the cut may touch */
+    /* a cut, from step to step */
+    gxp_words removed;    /* leaves that solids remove */
+    gxp_words pinches;    /* nodes at which walls may break joints */
+    gxp_words touched;    /* cells beside new walls and removed leaves, ascending */
+    gxp_words new_cells;  /* into which these fell apart: their copies and integrals are to be found */
+    gxp_keys links;       /* of new cells in turn, sorted: see GXP_LINK_CELL */
+    gxp_words link_first; /* new_cells.count + 1, into links */
+    gxp_words narrow;     /* first and end in links of those that may be the smallest or are to be severed */
+    gxp_words dead;       /* copies without cells */
+    /* >>arrange */
+    gxp_keys order;          /* place in the order of insertion, triangle */
+    gxp_words near_elements; /* that a triangle may meet */
+    /* >>pinches */
+    gxp_words joint_leaves, joint_edges, joint_cells; /* around a node or edge */
+    /* >>solids */
+    gxp_words seed_leaves; /* where the flood starts */
+    gxp_words flooded;     /* leaves whose winding number is known */
+    gxp_words seeded;      /* by fragment: 1 if one of its leaves is a seed */
+    gxp_words leaf_points; /* of a leaf; also of >>regions */
+    /* >>cells, >>links */
+    gxp_words wall_leaves;  /* on both sides of new walls */
+    gxp_words cell_leaves;  /* of a cell that is divided */
+    gxp_words part_leaves;  /* of one of its connected parts */
+    gxp_words facet_points; /* of a piece of a link */
+    /* >>components */
+    gxp_keys pairs;            /* node, cell around it */
+    gxp_words subdomains;      /* of a node: start in subdomain_cells times two, 1 more if it is open */
+    gxp_words subdomain_cells; /* one subdomain after the other */
+    gxp_words taken;           /* copies that one of these keeps */
+    gxp_words face_facets;     /* of an element's face */
+    /* >>integrals, >>vertices */
+    gxp_boundary boundary;
+} gxp_scratch;
+
+/* Parts by how long they live. Each array stands in gxp_tables or gxp_lists, which see to its growth and its end. */
 struct gx_body {
-    gx_allocator allocator;
-    double (*clock)(void *user);
-    void *clock_user;
+    gxp_config config;
+    gxp_mesh mesh;
     gxb_complex *complex;
     gxs_solver *solver;
-    uint32_t node_count, element_count;
-    gx_material *materials;
-    uint32_t material_count;
-    uint32_t *element_materials;                   /* element_count */
-    double support_below;                          /* as given */
-    double follow_below, point_below, crumb_reach; /* see gxp_supports */
-    double *positions;                             /* node_count x 3 */
-    uint32_t *node_start;                          /* node_count + 1, into node_elements */
-    uint32_t *node_elements;                       /* element_count x 4: elements around each node */
-    /* node_count: bit 1: elements around it are not joined by faces; bit 2: one of its edges is pinched */
-    uint8_t *node_pinched;
-    uint8_t *edge_pinched; /* mesh_edge_count: elements around it meet in the edge only */
-    gxp_box *boxes;
-    uint32_t box_count;
-    uint32_t *box_elements; /* element_count, in tree order */
-    gxp_cell *cells;
-    uint32_t cell_count, cell_capacity;
-    gxp_leaf *leaves;
-    uint32_t leaf_count, leaf_capacity;
-    uint32_t *copy_node;
-    uint32_t copy_count, copy_capacity;
-    /* copies, x 3 doubles */
-    double *displacement, *velocity;
-    uint32_t displacement_capacity, velocity_capacity;
-    uint8_t *held;
-    uint32_t held_capacity;
-    double *rest_time;
-    uint32_t rest_time_capacity;
-    /* displacement and velocity a step ago, x 3, and room for those of now; from the first BDF2 step on */
-    double *history[4];
-    uint32_t history_capacity[4];
-    double previous_dt; /* s; 0: there was none */
-    gx_region *regions;
-    uint32_t region_count, region_capacity;
-    gx_jobs jobs;
-    /* hash of the mesh and of all cuts: bodies with the same one have the same cells and copies */
-    uint64_t past;
-    uint64_t epoch;       /* the past when copies were created or removed last; 0: never */
-    uint32_t label_count; /* cut triangles so far */
-    /* copies: 2 x index of its fragment at the last look, + 1 where it was cut since */
-    uint32_t *copy_label;
-    uint32_t copy_label_capacity;
-    gxp_words fragment_ids, fragment_origins, fragment_changes, removed_ids; /* as last looked at */
-    uint32_t next_id;                                                        /* of a fragment */
-    int look_stale; /* a cut has happened since the last look */
-    /* the undo log of a cut: each cell once */
-    gxp_saved_cell *saved_cells;
-    uint32_t saved_cell_count, saved_cell_capacity;
-    gxp_saved_leaf *saved_leaves;
-    uint32_t saved_leaf_count, saved_leaf_capacity;
-    uint32_t transaction; /* number of the cut */
-    gxp_counts before;    /* when it began */
-    /* cells: transaction that saved or made it last */
-    uint32_t *cell_saved;
-    uint32_t cell_saved_capacity;
-    uint32_t *cell_stamp;
-    uint32_t cell_stamp_capacity;
-    uint32_t stamp, scope_stamp;
-    int held_stale, view_stale, sums_stale;
+    gxp_cells cells;
+    gxp_leaves leaves;
+    gxp_copies copies;
+    gxp_cuts cuts;
+    gxp_holds holds;
+    gxp_undo undo;
+    gxp_view view;
+    gxp_snapshot snapshot;
     gxp_model model;
-    int nothing_moves; /* the model has no elements: the solver has not been given it */
-    int model_updated; /* it has been changed since it was set */
-    /* hash of the state when the body was saved, copied, read; 0: it has stepped since then */
-    uint64_t resumed;
-    /* elements of which a cell or its copies have changed since the solver's model was; some more than once */
-    gxp_words changed;
-    /* copies: 2 x index then of the copy that it is, or, + 1, that it comes from */
-    uint32_t *copy_before;
-    uint32_t copy_before_capacity;
-    /* copy_fragment and fragment_number hold for copies older than splits, and nothing has been removed */
-    int labels_known;
-    gxp_words splits; /* copies made since then, each with the one it comes from */
-    /* there only while the solver's model is made */
-    gxs_element *parts;
-    uint32_t part_count, part_capacity;
-    /* copies, x 3 doubles: where they are at rest, m; as long */
-    double *rest;
-    uint32_t rest_capacity;
-    /* materials for the solver; as long */
-    gxs_material *elastic;
-    uint32_t elastic_capacity;
-    /* as long */
-    gxs_constraint *constraints;
-    uint32_t constraint_count, constraint_capacity;
-    /* elements with a part of a share below follow_below, ascending; of use if model is not STALE */
-    gxp_words thin;
-    gxp_words view_cells, view_fragments; /* slot of each kept cell; fragment of each */
-    gxp_words copy_fragment, fragment_number, cell_element, cell_copies;
-    double *cell_volume;
-    uint32_t cell_volume_capacity;
-    /* volume, mass, centre, inertia: GXP_FRAGMENT_ARRAYS of fragment_capacity */
-    double *fragments;
-    uint32_t fragment_capacity, fragment_count;
-    double volume, mass;
-    float *texture; /* node_count x 2, or NULL */
-    /* that have cut the body */
-    gxp_surface_record *surfaces;
-    uint32_t surface_count, surface_capacity;
-    /* x 8: material coordinates less the complex's origin to texture coordinates, for each triangle of surfaces with a
-     * texture: 3 factors and a constant, twice */
-    double *maps;
-    uint32_t map_count, map_capacity;
     gxp_skin skin;
-    gxp_words point_slot; /* of the complex's points, while a cell is integrated or drawn */
-    /* x 4 */
-    double *lambdas;
-    uint32_t lambda_capacity;
-    gxp_words triangles;
-    /* scratch of a cut */
-    gxp_words touched, nodes, queue, pieces, seeds, faces;
-    gxp_words fresh;               /* pieces of touched cells: their copies and integrals are to be found */
-    gxp_words removed, dead, list; /* leaves that solids removed, copies without cells */
-    gxp_words pinches;             /* nodes at which sheets separated what meets there only */
-    /* cells: index in fresh, where it is there */
-    uint32_t *cell_fresh;
-    uint32_t cell_fresh_capacity;
-    gxp_keys pairs; /* node and fresh cell */
-    /* of fresh cells in turn: the cell behind a piece of a face, that facet, which of the element's faces; sorted */
-    gxp_keys links;
-    gxp_words link_first; /* fresh.count + 1, into links */
+    gxp_scratch scratch;
 };
 
-/* >>memory --------------------------------------------------------------------------------------------------------- */
+/* >>columns: every array of a body --------------------------------------------------------------------------------- */
+
+/* Each array of a body is listed here once, with the size of an entry. Columns of one table have an entry for each row.
+   Growth, undo, save, load, clone, hashes and destruction read these lists: an array that is added to a struct above is
+   added here, and nowhere else. */
+
+enum {
+    GXP_TOPOLOGY = 1, /* saved, and hashed as part of the state: what cuts have made */
+    GXP_STATE = 2,    /* saved and hashed: all else */
+    GXP_HISTORY = 4,  /* saved and hashed if there has been a BDF2 step */
+    GXP_UNDONE = 8,   /* rows are put back when a cut fails */
+    GXP_CLEARED = 16, /* new rows are 0 */
+    GXP_LATER = 32    /* NULL until something needs it */
+};
+
+/* Offsets in gx_body: of the pointer, of the number of entries that there is room for; bytes of an entry */
+typedef struct gxp_column {
+    size_t array, capacity, size;
+    uint32_t use;
+} gxp_column;
+
+typedef struct gxp_table {
+    size_t count; /* offset in gx_body of the number of rows */
+    const gxp_column *columns;
+    uint32_t column_count;
+} gxp_table;
+
+/* clang-format off */
+#define GXP_COLUMN(part, member, capacity, index, size, use) \
+    {offsetof(gx_body, part.member), offsetof(gx_body, part.capacity) + (index) * sizeof(uint32_t), size, use}
+
+static const gxp_column gxp_node_columns[] = {
+    GXP_COLUMN(mesh, positions,    node_capacity, 0, 3 * sizeof(double), 0),
+    GXP_COLUMN(mesh, node_start,   node_capacity, 1, sizeof(uint32_t), 0),
+    GXP_COLUMN(mesh, node_pinched, node_capacity, 2, sizeof(uint8_t), 0),
+    GXP_COLUMN(mesh, texture,      node_capacity, 3, 2 * sizeof(float), GXP_LATER)};
+static const gxp_column gxp_element_columns[] = {
+    GXP_COLUMN(mesh, node_elements,     element_capacity, 0, 4 * sizeof(uint32_t), 0),
+    GXP_COLUMN(mesh, boxes,             element_capacity, 1, sizeof(gxp_box), 0),
+    GXP_COLUMN(mesh, box_elements,      element_capacity, 2, sizeof(uint32_t), 0),
+    GXP_COLUMN(mesh, element_materials, element_capacity, 3, sizeof(uint32_t), 0)};
+static const gxp_column gxp_edge_columns[] = {
+    GXP_COLUMN(mesh, edge_pinched, edge_capacity, 0, sizeof(uint8_t), 0)};
+static const gxp_column gxp_material_columns[] = {
+    GXP_COLUMN(mesh, materials, material_capacity, 0, sizeof(gx_material), 0)};
+static const gxp_column gxp_cell_columns[] = {
+    GXP_COLUMN(cells, data,      capacity, 0, sizeof(gxp_cell), GXP_TOPOLOGY | GXP_UNDONE),
+    GXP_COLUMN(cells, stamp,     capacity, 1, sizeof(uint32_t), GXP_CLEARED),
+    GXP_COLUMN(cells, saved_by,  capacity, 2, sizeof(uint32_t), GXP_CLEARED),
+    GXP_COLUMN(cells, new_index, capacity, 3, sizeof(uint32_t), GXP_CLEARED)};
+static const gxp_column gxp_leaf_columns[] = {
+    GXP_COLUMN(leaves, data, capacity, 0, sizeof(gxp_leaf), GXP_TOPOLOGY | GXP_UNDONE),
+    GXP_COLUMN(leaves, mark, capacity, 1, sizeof(gxp_leaf_mark), GXP_CLEARED)};
+static const gxp_column gxp_copy_columns[] = {
+    GXP_COLUMN(copies, node,         capacity,  0, sizeof(uint32_t), GXP_TOPOLOGY),
+    GXP_COLUMN(copies, displacement, capacity,  1, 3 * sizeof(double), GXP_STATE),
+    GXP_COLUMN(copies, velocity,     capacity,  2, 3 * sizeof(double), GXP_STATE),
+    GXP_COLUMN(copies, rest_time,    capacity,  3, sizeof(double), GXP_STATE),
+    GXP_COLUMN(copies, label,        capacity,  4, sizeof(uint32_t), GXP_STATE),
+    GXP_COLUMN(copies, before,       capacity,  5, sizeof(uint32_t), 0),
+    GXP_COLUMN(copies, held,         capacity,  6, sizeof(uint8_t), 0),
+    GXP_COLUMN(copies, history[0],   capacity,  7, 3 * sizeof(double), GXP_HISTORY | GXP_LATER),
+    GXP_COLUMN(copies, history[1],   capacity,  8, 3 * sizeof(double), GXP_HISTORY | GXP_LATER),
+    GXP_COLUMN(copies, history[2],   capacity,  9, 3 * sizeof(double), GXP_LATER),
+    GXP_COLUMN(copies, history[3],   capacity, 10, 3 * sizeof(double), GXP_LATER)};
+enum { GXP_TEXTURE_COLUMN = 3, GXP_FIRST_HISTORY = 7 }; /* places in the lists above */
+static const gxp_column gxp_surface_columns[] = {
+    GXP_COLUMN(cuts, surfaces, surface_capacity, 0, sizeof(gxp_surface_record), GXP_TOPOLOGY)};
+static const gxp_column gxp_map_columns[] = {
+    GXP_COLUMN(cuts, maps, map_capacity, 0, 8 * sizeof(double), GXP_TOPOLOGY)};
+static const gxp_column gxp_region_columns[] = {
+    GXP_COLUMN(holds, regions, capacity, 0, sizeof(gx_region), GXP_STATE)};
+static const gxp_column gxp_snapshot_columns[] = {
+    GXP_COLUMN(snapshot, id,     capacity, 0, sizeof(uint32_t), GXP_STATE),
+    GXP_COLUMN(snapshot, origin, capacity, 1, sizeof(uint32_t), GXP_STATE),
+    GXP_COLUMN(snapshot, change, capacity, 2, sizeof(uint32_t), GXP_STATE)};
+static const gxp_column gxp_removed_id_columns[] = {
+    GXP_COLUMN(snapshot, removed.data, removed.capacity, 0, sizeof(uint32_t), GXP_STATE)};
+static const gxp_column gxp_view_columns[] = {
+    GXP_COLUMN(view, slot,     capacity, 0, sizeof(uint32_t), 0),
+    GXP_COLUMN(view, fragment, capacity, 1, sizeof(uint32_t), 0),
+    GXP_COLUMN(view, element,  capacity, 2, sizeof(uint32_t), 0),
+    GXP_COLUMN(view, copies,   capacity, 3, 4 * sizeof(uint32_t), 0),
+    GXP_COLUMN(view, volume,   capacity, 4, sizeof(double), 0)};
+static const gxp_column gxp_sum_columns[] = {
+    GXP_COLUMN(view, fragment_volume,  sum_capacity, 0, sizeof(double), 0),
+    GXP_COLUMN(view, fragment_mass,    sum_capacity, 1, sizeof(double), 0),
+    GXP_COLUMN(view, fragment_center,  sum_capacity, 2, 3 * sizeof(double), 0),
+    GXP_COLUMN(view, fragment_inertia, sum_capacity, 3, 6 * sizeof(double), 0)};
+static const gxp_column gxp_skin_vertex_columns[] = {
+    GXP_COLUMN(skin, vertices, vertex_capacity, 0, sizeof(gxp_skin_vertex), 0),
+    GXP_COLUMN(skin, copies,   vertex_capacity, 1, 4 * sizeof(uint32_t), 0),
+    GXP_COLUMN(skin, weights,  vertex_capacity, 2, 4 * sizeof(double), 0),
+    GXP_COLUMN(skin, point,    vertex_capacity, 3, sizeof(uint32_t), 0),
+    GXP_COLUMN(skin, rest,     vertex_capacity, 4, 3 * sizeof(double), 0),
+    GXP_COLUMN(skin, normal,   vertex_capacity, 5, 3 * sizeof(float), 0),
+    GXP_COLUMN(skin, texture,  vertex_capacity, 6, 2 * sizeof(float), 0)};
+static const gxp_column gxp_skin_triangle_columns[] = {
+    GXP_COLUMN(skin, links,     triangle_capacity, 0, sizeof(gxp_skin_links), 0),
+    GXP_COLUMN(skin, triangles, triangle_capacity, 1, 3 * sizeof(uint32_t), 0),
+    GXP_COLUMN(skin, fragment,  triangle_capacity, 2, sizeof(uint32_t), 0),
+    GXP_COLUMN(skin, element,   triangle_capacity, 3, sizeof(uint32_t), 0),
+    GXP_COLUMN(skin, material,  triangle_capacity, 4, sizeof(uint32_t), 0),
+    GXP_COLUMN(skin, surface,   triangle_capacity, 5, sizeof(uint32_t), 0)};
+
+#define GXP_TABLE(count, columns) {offsetof(gx_body, count), columns, sizeof columns / sizeof *columns}
+
+static const gxp_table gxp_tables[GXP_TABLES] = { /* in the order of GXP_NODES ... */
+    GXP_TABLE(mesh.node_count, gxp_node_columns),
+    GXP_TABLE(mesh.element_count, gxp_element_columns),
+    GXP_TABLE(mesh.edge_count, gxp_edge_columns),
+    GXP_TABLE(mesh.material_count, gxp_material_columns),
+    GXP_TABLE(cells.count, gxp_cell_columns),
+    GXP_TABLE(leaves.count, gxp_leaf_columns),
+    GXP_TABLE(copies.count, gxp_copy_columns),
+    GXP_TABLE(cuts.surface_count, gxp_surface_columns),
+    GXP_TABLE(cuts.map_count, gxp_map_columns),
+    GXP_TABLE(holds.count, gxp_region_columns),
+    GXP_TABLE(snapshot.count, gxp_snapshot_columns),
+    GXP_TABLE(snapshot.removed.count, gxp_removed_id_columns),
+    GXP_TABLE(view.count, gxp_view_columns),
+    GXP_TABLE(view.fragment_count, gxp_sum_columns),
+    GXP_TABLE(skin.vertex_count, gxp_skin_vertex_columns),
+    GXP_TABLE(skin.triangle_count, gxp_skin_triangle_columns)};
+
+#define GXP_LIST(member, room, size) {offsetof(gx_body, member), offsetof(gx_body, room), size, 0}
+#define GXP_WORDS(list) GXP_LIST(list.data, list.capacity, sizeof(uint32_t))
+#define GXP_KEYS(list)  GXP_LIST(list.data, list.capacity, sizeof(uint64_t))
+
+static const gxp_column gxp_model_lists[] = { /* released once the solver has copied them */
+    GXP_LIST(model.parts, model.part_capacity, sizeof(gxs_element)),
+    GXP_LIST(model.rest, model.rest_capacity, 3 * sizeof(double)),
+    GXP_LIST(model.elastic, model.elastic_capacity, sizeof(gxs_material)),
+    GXP_LIST(model.constraints, model.constraint_capacity, sizeof(gxs_constraint))};
+static const gxp_column gxp_lists[] = {
+    GXP_WORDS(undo.cells.rows), GXP_LIST(undo.cells.bytes, undo.cells.byte_capacity, 1),
+    GXP_WORDS(undo.leaves.rows), GXP_LIST(undo.leaves.bytes, undo.leaves.byte_capacity, 1),
+    GXP_WORDS(view.copy_fragment), GXP_WORDS(view.fragment_number),
+    GXP_WORDS(view.splits), GXP_WORDS(view.split_cells), GXP_WORDS(view.split_parents),
+    GXP_WORDS(model.changed), GXP_WORDS(model.thin),
+    GXP_WORDS(skin.dirty), GXP_WORDS(skin.first), GXP_LIST(skin.slots, skin.slot_capacity, sizeof(gxp_skin_slot)),
+    GXP_WORDS(skin.vertex_buckets), GXP_WORDS(skin.slot_buckets), GXP_WORDS(skin.boundary), GXP_WORDS(skin.groups),
+    GXP_LIST(skin.group_normals, skin.group_normal_capacity, 3 * sizeof(double)),
+    GXP_WORDS(skin.changed[0]), GXP_LIST(skin.ranges[0], skin.range_capacity[0], sizeof(gx_range)),
+    GXP_WORDS(skin.changed[1]), GXP_LIST(skin.ranges[1], skin.range_capacity[1], sizeof(gx_range)),
+    GXP_WORDS(skin.outer_faces), GXP_WORDS(skin.edge_faces),
+    GXP_WORDS(skin.corner_points), GXP_WORDS(skin.corner_vertices),
+    GXP_LIST(skin.normals, skin.normal_capacity, 3 * sizeof(double)),
+    GXP_LIST(skin.positions, skin.position_capacity, 3 * sizeof(double)),
+    GXP_WORDS(scratch.removed), GXP_WORDS(scratch.pinches), GXP_WORDS(scratch.touched), GXP_WORDS(scratch.new_cells),
+    GXP_KEYS(scratch.links), GXP_WORDS(scratch.link_first), GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
+    GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements),
+    GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_cells),
+    GXP_WORDS(scratch.seed_leaves), GXP_WORDS(scratch.flooded), GXP_WORDS(scratch.seeded),
+    GXP_WORDS(scratch.leaf_points), GXP_WORDS(scratch.wall_leaves), GXP_WORDS(scratch.cell_leaves),
+    GXP_WORDS(scratch.part_leaves), GXP_WORDS(scratch.facet_points),
+    GXP_KEYS(scratch.pairs), GXP_WORDS(scratch.subdomains), GXP_WORDS(scratch.subdomain_cells),
+    GXP_WORDS(scratch.taken), GXP_WORDS(scratch.face_facets),
+    GXP_WORDS(scratch.boundary.points), GXP_WORDS(scratch.boundary.slots), GXP_WORDS(scratch.boundary.triangles),
+    GXP_WORDS(scratch.boundary.facets),
+    GXP_LIST(scratch.boundary.lambdas, scratch.boundary.lambda_capacity, 4 * sizeof(double))};
+/* clang-format on */
+
+/* >>memory: allocation, growing arrays ----------------------------------------------------------------------------- */
+
+/* In: an allocator, arrays, the items that they are to hold. Out: room for them, or GX_ERROR_MEMORY or GX_ERROR_LIMIT
+   and everything as it was. gxp_reserve is the one way by which an array grows; gxp_grow_rows applies it to all columns
+   of a table. */
 
 static void *gxp_allocate(const gx_allocator *a, size_t size) {
     return a->allocate ? a->allocate(a->user, size) : malloc(size);
@@ -745,8 +1017,8 @@ static void gxp_release(const gx_allocator *a, void *memory, size_t size) {
         free(memory);
 }
 
-/* A larger block with the first `used` bytes of the old one, which is then gone; NULL: there is none, and the old one
- * stays. */
+/* A larger block with the first `used` bytes of the old one, which is then gone. NULL: there is none, and the old one
+   stays. */
 static void *gxp_reallocate(const gx_allocator *a, void *old, size_t old_size, size_t used, size_t size) {
     void *memory;
     /* moves the pages of large blocks, not their bytes */
@@ -759,12 +1031,11 @@ static void *gxp_reallocate(const gx_allocator *a, void *old, size_t old_size, s
     return memory;
 }
 
-/* Makes room for count + extra items; array is the address of the pointer. */
-static gx_result gxp_reserve(const gx_allocator *a, void *array, size_t item, size_t count, uint32_t *capacity,
-                             size_t extra) {
+/* Moves an array that is full to a larger block: half as much again as is needed. */
+static gx_result gxp_grow(const gx_allocator *a, void *array, size_t item, size_t count, uint32_t *capacity,
+                          size_t extra) {
     const size_t need = count + extra, room = need + need / 2 + 16;
     void *old, *memory;
-    if (need <= *capacity) return GX_OK;
     if (room > INT32_MAX || room > SIZE_MAX / item) return GX_ERROR_LIMIT;
     memcpy(&old, array, sizeof old);
     memory = gxp_reallocate(a, old, (size_t)*capacity * item, count * item, room * item);
@@ -774,22 +1045,166 @@ static gx_result gxp_reserve(const gx_allocator *a, void *array, size_t item, si
     return GX_OK;
 }
 
+/* Makes room for count + extra items; array is the address of the pointer. */
+static inline gx_result gxp_reserve(const gx_allocator *a, void *array, size_t item, size_t count, uint32_t *capacity,
+                                    size_t extra) {
+    return count + extra <= *capacity ? GX_OK : gxp_grow(a, array, item, count, capacity, extra);
+}
+
+static gx_result gxp_words_room(gx_body *body, gxp_words *words, size_t extra) {
+    return gxp_reserve(&body->config.allocator, &words->data, sizeof *words->data, words->count, &words->capacity,
+                       extra);
+}
+
 static gx_result gxp_push(gx_body *body, gxp_words *words, uint32_t value) {
-    const gx_result result =
-        gxp_reserve(&body->allocator, &words->data, sizeof *words->data, words->count, &words->capacity, 1);
+    const gx_result result = gxp_words_room(body, words, 1);
     if (result == GX_OK) words->data[words->count++] = value;
     return result;
 }
 
-static gx_result gxp_words_room(gx_body *body, gxp_words *words, size_t extra) {
-    return gxp_reserve(&body->allocator, &words->data, sizeof *words->data, words->count, &words->capacity, extra);
+/* Empty, with room for count words */
+static gx_result gxp_start_words(gx_body *body, gxp_words *words, size_t count) {
+    words->count = 0;
+    return gxp_words_room(body, words, count);
 }
 
-static void gxp_words_free(gx_body *body, gxp_words *words) {
-    gxp_release(&body->allocator, words->data, (size_t)words->capacity * sizeof *words->data);
+#define GXP_FIRST(key)  ((uint32_t)((key) >> 32))
+#define GXP_SECOND(key) ((uint32_t)(key))
+/* A link of a cell: the cell behind a piece of a face, that facet, which of the element's faces; 31, 31 and 2 bits */
+#define GXP_LINK_CELL(link)  ((uint32_t)((link) >> 33))
+#define GXP_LINK_FACET(link) ((uint32_t)((link) >> 2) & 0x7fffffffu)
+#define GXP_LINK_FACE(link)  ((uint32_t)(link)&3)
+
+static gx_result gxp_keys_room(gx_body *body, gxp_keys *keys, size_t extra) {
+    return gxp_reserve(&body->config.allocator, &keys->data, sizeof *keys->data, keys->count, &keys->capacity, extra);
 }
 
-/* Ascending, by the bits from `bit` down: those without it first [radix exchange, Hildebrandt and Isbitz 1959] */
+static gx_result gxp_push_key(gx_body *body, gxp_keys *keys, uint32_t first, uint32_t second) {
+    const gx_result result = gxp_keys_room(body, keys, 1);
+    if (result == GX_OK) keys->data[keys->count++] = (uint64_t)first << 32 | second;
+    return result;
+}
+
+static void *gxp_array_at(const gx_body *body, const gxp_column *column) {
+    void *array;
+    memcpy(&array, (const char *)body + column->array, sizeof array);
+    return array;
+}
+
+static uint32_t *gxp_capacity_at(gx_body *body, const gxp_column *column) {
+    return (uint32_t *)(void *)((char *)body + column->capacity);
+}
+
+static uint32_t gxp_count(const gx_body *body, uint32_t table) {
+    uint32_t count;
+    memcpy(&count, (const char *)body + gxp_tables[table].count, sizeof count);
+    return count;
+}
+
+static uint32_t *gxp_count_at(gx_body *body, uint32_t table) {
+    return (uint32_t *)(void *)((char *)body + gxp_tables[table].count);
+}
+
+/* Room for rows in a column; rows before `used` keep what they have. Of a column that is cleared, all do. */
+static gx_result gxp_grow_column(gx_body *body, const gxp_column *column, size_t used, size_t rows) {
+    uint32_t *capacity = gxp_capacity_at(body, column);
+    const uint32_t before = *capacity;
+    gx_result result;
+    if (rows <= before) return GX_OK;
+    if (used > before || (column->use & GXP_CLEARED)) used = before;
+    result =
+        gxp_reserve(&body->config.allocator, (char *)body + column->array, column->size, used, capacity, rows - used);
+    if (result == GX_OK && (column->use & GXP_CLEARED))
+        memset((char *)gxp_array_at(body, column) + before * column->size, 0, (*capacity - before) * column->size);
+    return result;
+}
+
+/* Room for extra further rows of a table. After an error some columns have it, which does no harm. */
+static gx_result gxp_grow_rows(gx_body *body, uint32_t table, size_t extra) {
+    const gxp_column *column = gxp_tables[table].columns, *end = column + gxp_tables[table].column_count;
+    const size_t count = *gxp_count_at(body, table);
+    gx_result result = GX_OK;
+    for (; column < end && result == GX_OK; column++)
+        if (count + extra > *gxp_capacity_at(body, column) &&
+            (!(column->use & GXP_LATER) || *gxp_capacity_at(body, column) > 0))
+            result = gxp_grow_column(body, column, count, count + extra);
+    return result;
+}
+
+/* Exactly that many rows, all 0, of a column that has none; at least one, so that there is memory. */
+static gx_result gxp_make_column(gx_body *body, const gxp_column *column, size_t rows) {
+    void *memory;
+    if (rows == 0) rows = 1;
+    if (rows > SIZE_MAX / column->size) return GX_ERROR_LIMIT;
+    memory = gxp_allocate(&body->config.allocator, rows * column->size);
+    if (memory == NULL) return GX_ERROR_MEMORY;
+    memset(memory, 0, rows * column->size);
+    memcpy((char *)body + column->array, &memory, sizeof memory);
+    *gxp_capacity_at(body, column) = (uint32_t)rows;
+    return GX_OK;
+}
+
+static gx_result gxp_make_rows(gx_body *body, uint32_t table, size_t rows) {
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (i = 0; i < gxp_tables[table].column_count && result == GX_OK; i++)
+        if (!(gxp_tables[table].columns[i].use & GXP_LATER))
+            result = gxp_make_column(body, &gxp_tables[table].columns[i], rows);
+    return result;
+}
+
+/* Two columns of the same size change places. */
+static void gxp_swap_columns(gx_body *body, const gxp_column *a, const gxp_column *b) {
+    void *p = gxp_array_at(body, a), *q = gxp_array_at(body, b);
+    const uint32_t capacity = *gxp_capacity_at(body, a);
+    memcpy((char *)body + a->array, &q, sizeof q);
+    memcpy((char *)body + b->array, &p, sizeof p);
+    *gxp_capacity_at(body, a) = *gxp_capacity_at(body, b);
+    *gxp_capacity_at(body, b) = capacity;
+}
+
+static void gxp_release_columns(gx_body *body, const gxp_column *columns, size_t count) {
+    for (; count > 0; count--, columns++) {
+        uint32_t *capacity = gxp_capacity_at(body, columns);
+        gxp_release(&body->config.allocator, gxp_array_at(body, columns), *capacity * columns->size);
+        memset((char *)body + columns->array, 0, sizeof(void *));
+        *capacity = 0;
+    }
+}
+
+/* memcpy where most sizes are known: a call for each column of a row would cost more than the row. */
+static void gxp_move_item(char *to, const char *from, size_t size) {
+    switch (size) {
+    case 4: memcpy(to, from, 4); break;
+    case 8: memcpy(to, from, 8); break;
+    case 24: memcpy(to, from, 24); break;
+    default: memcpy(to, from, size);
+    }
+}
+
+/* Row `to` of a table becomes a copy of row `from`. */
+static void gxp_copy_row(gx_body *body, uint32_t table, size_t from, size_t to) {
+    const gxp_column *column = gxp_tables[table].columns, *end = column + gxp_tables[table].column_count;
+    for (; column < end; column++) {
+        char *data = (char *)gxp_array_at(body, column);
+        if (data != NULL) gxp_move_item(data + to * column->size, data + from * column->size, column->size);
+    }
+}
+
+/* Bytes of a row in the columns of that use */
+static size_t gxp_row_size(uint32_t table, uint32_t use) {
+    size_t size = 0;
+    uint32_t i;
+    for (i = 0; i < gxp_tables[table].column_count; i++)
+        if (gxp_tables[table].columns[i].use & use) size += gxp_tables[table].columns[i].size;
+    return size;
+}
+
+/* >>basics: sorting, hashing, sets, vectors ------------------------------------------------------------------------ */
+/* Small functions that know nothing of a body. They change nothing but what they are given. */
+
+/* Sorts ascending by the bits from `bit` down; words without the bit come first [radix exchange, Hildebrandt and Isbitz
+   1959]. */
 static void gxp_sort_by_bits(uint32_t *w, uint32_t count, uint32_t bit) {
     while (count > 1 && bit != 0) {
         uint32_t i = 0, j = count;
@@ -821,22 +1236,6 @@ static void gxp_sort_unique(gxp_words *w) {
     w->count = n;
 }
 
-#define GXP_FIRST(key)       ((uint32_t)((key) >> 32))
-#define GXP_SECOND(key)      ((uint32_t)(key))
-#define GXP_LINK_CELL(link)  ((uint32_t)((link) >> 33)) /* see gx_body.links: 31, 31 and 2 bits */
-#define GXP_LINK_FACET(link) ((uint32_t)((link) >> 2) & 0x7fffffffu)
-#define GXP_LINK_FACE(link)  ((uint32_t)(link)&3)
-
-static gx_result gxp_keys_room(gx_body *body, gxp_keys *keys, size_t extra) {
-    return gxp_reserve(&body->allocator, &keys->data, sizeof *keys->data, keys->count, &keys->capacity, extra);
-}
-
-static gx_result gxp_push_key(gx_body *body, gxp_keys *keys, uint32_t first, uint32_t second) {
-    const gx_result result = gxp_keys_room(body, keys, 1);
-    if (result == GX_OK) keys->data[keys->count++] = (uint64_t)first << 32 | second;
-    return result;
-}
-
 static void gxp_sort_few_keys(uint64_t *key, uint32_t count) {
     uint32_t i, j;
     for (i = 1; i < count; i++) {
@@ -846,8 +1245,8 @@ static void gxp_sort_few_keys(uint64_t *key, uint32_t count) {
     }
 }
 
-/* Sorts keys from ... to-1, ascending: few by insertion, many by digits of 8 bits from the lowest on, but those in
-   which all agree [radix sort, Knuth vol. 3, 5.2.5]. */
+/* Sorts keys from ... to-1, ascending. Few keys are sorted by insertion, many by digits of 8 bits from the lowest on;
+   digits in which all keys agree are skipped [radix sort, Knuth vol. 3, 5.2.5]. */
 static gx_result gxp_sort_keys(gx_body *body, gxp_keys *keys, uint32_t from, uint32_t to) {
     const uint32_t n = to - from;
     const gx_result result = n > 64 ? gxp_keys_room(body, keys, n) : GX_OK;
@@ -875,6 +1274,42 @@ static gx_result gxp_sort_keys(gx_body *body, gxp_keys *keys, uint32_t from, uin
     return GX_OK;
 }
 
+static int gxp_contains(const gxp_words *words, uint32_t value) {
+    uint32_t i;
+    for (i = 0; i < words->count; i++)
+        if (words->data[i] == value) return 1;
+    return 0;
+}
+
+static uint32_t gxp_find(uint32_t *parent, uint32_t i) {
+    while (parent[i] != i) {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    return i;
+}
+
+static void gxp_unite(uint32_t *parent, uint32_t i, uint32_t j) {
+    i = gxp_find(parent, i);
+    j = gxp_find(parent, j);
+    if (i < j)
+        parent[j] = i;
+    else
+        parent[i] = j;
+}
+
+static void gxp_unite_all(uint32_t *parent, const uint32_t copies[4]) {
+    uint32_t root = gxp_find(parent, copies[0]), k;
+    for (k = 1; k < 4; k++) {
+        const uint32_t other = gxp_find(parent, copies[k]);
+        if (other < root) {
+            parent[root] = other;
+            root = other;
+        } else
+            parent[other] = root;
+    }
+}
+
 static gx_result gxp_fail(gx_failure *failure, gx_result result, size_t index, size_t surface) {
     if (failure != NULL) {
         failure->result = result;
@@ -897,9 +1332,147 @@ static uint64_t gxp_mix(uint64_t x) { /* splitmix64's finaliser */
     return x ^ (x >> 31);
 }
 
-static double gxp_seconds(const gx_body *body) { return body->clock ? body->clock(body->clock_user) : 0; }
+/* Hashes words of 8 bytes; the last one is filled up with zeros. */
+static uint64_t gxp_hash_bytes(uint64_t hash, const unsigned char *bytes, size_t count) {
+    uint64_t word;
+    hash = gxp_mix(hash ^ count);
+    for (; count >= sizeof word; count -= sizeof word, bytes += sizeof word) {
+        memcpy(&word, bytes, sizeof word);
+        hash = gxp_mix(hash ^ word);
+    }
+    word = 0;
+    if (count > 0) memcpy(&word, bytes, count);
+    return gxp_mix(hash ^ word);
+}
 
-/* >>tree: axis-aligned boxes over the elements, median split ------------------------------------------------------- */
+static uint64_t gxp_hash_words(uint64_t hash, const uint32_t *words, size_t count) {
+    size_t i;
+    hash = gxp_mix(hash ^ count);
+    for (i = 0; i < count; i++) hash = gxp_mix(hash ^ words[i]);
+    return hash;
+}
+
+static uint64_t gxp_hash_doubles(uint64_t hash, const double *x, size_t count) {
+    for (; count > 0; count--, x++) {
+        uint64_t b;
+        memcpy(&b, x, sizeof b);
+        hash = gxp_mix(hash ^ b);
+    }
+    return hash;
+}
+
+/* texture: count x 2, or NULL */
+static uint64_t gxp_hash_texture(uint64_t hash, const float *texture, size_t count) {
+    size_t i;
+    hash = gxp_mix(hash ^ (texture != NULL));
+    for (i = 0; i < 2 * count && texture != NULL; i++) {
+        uint32_t b;
+        memcpy(&b, &texture[i], sizeof b);
+        hash = gxp_mix(hash ^ b);
+    }
+    return hash;
+}
+
+static double gxp_dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* Scales n, of any length, to length 1. Returns 0 and leaves unit alone if n is zero or not finite. */
+static int gxp_unit(const double n[3], double unit[3]) {
+    double m[3] = {n[0], n[1], n[2]}, square = gxp_dot(n, n);
+    int exponent, k;
+    if (!gxp_is_finite(square) || square < 1e-280 || square > 1e280) {
+        const double a = fabs(n[0]), b = fabs(n[1]), c = fabs(n[2]), most = a > b ? (a > c ? a : c) : b > c ? b : c;
+        if (!gxp_is_finite(a) || !gxp_is_finite(b) || !gxp_is_finite(c) || !(most > 0)) return 0;
+        (void)frexp(most, &exponent);
+        for (k = 0; k < 3; k++) m[k] = ldexp(n[k], -exponent);
+        square = gxp_dot(m, m);
+    }
+    square = 1 / sqrt(square);
+    for (k = 0; k < 3; k++) unit[k] = square * m[k];
+    return 1;
+}
+
+/* n = (b - a) x (c - a) of the triangle's corners */
+static void gxp_triangle_normal(const double *x, const uint32_t *t, double n[3]) {
+    const double *a = x + 3 * (size_t)t[0], *b = x + 3 * (size_t)t[1], *c = x + 3 * (size_t)t[2];
+    const double p[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, q[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+    n[0] = p[1] * q[2] - p[2] * q[1];
+    n[1] = p[2] * q[0] - p[0] * q[2];
+    n[2] = p[0] * q[1] - p[1] * q[0];
+}
+
+static double gxp_seconds(const gx_body *body) {
+    return body->config.clock ? body->config.clock(body->config.clock_user) : 0;
+}
+
+/* >>mesh: elements, faces, nodes, boxes ---------------------------------------------------------------------------- */
+/* Reads the mesh: which elements are around a node, what is behind a face, volumes, densities. In: the mesh that
+   gx_body_create copied. Out: numbers, and at creation the tree of boxes over the elements (median split). Nothing here
+   changes after the creation. */
+
+/* Nodes of the face opposite to each node, counter-clockwise from outside */
+static const uint8_t gxp_outward[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+
+static const uint8_t gxp_edge_nodes[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+
+static int gxp_local_node(const gx_body *body, uint32_t element, uint32_t node) {
+    const uint32_t *n = gxb_complex_element_nodes(body->complex, element);
+    return (n[0] == node) + 2 * (n[1] == node) + 3 * (n[2] == node) + 4 * (n[3] == node) - 1;
+}
+
+/* The local number of the element's node that is not on the face */
+static uint32_t gxp_local_face(const gxb_complex *cx, uint32_t element, uint32_t face) {
+    const uint32_t *faces = gxb_complex_element_faces(cx, element);
+    return 3 - 3 * (uint32_t)(faces[0] == face) - 2 * (uint32_t)(faces[1] == face) - (uint32_t)(faces[2] == face);
+}
+
+static uint32_t gxp_neighbour(const gx_body *body, uint32_t element, uint32_t k) {
+    const uint32_t face = gxb_complex_element_faces(body->complex, element)[k];
+    const uint32_t *pair = gxb_complex_face_elements(body->complex, face);
+    return pair[0] == element ? pair[1] : pair[0];
+}
+
+/* Returns an element with the face; *k: its node that is not on the face. */
+static uint32_t gxp_face_element(const gxb_complex *cx, uint32_t face, uint32_t *k) {
+    const uint32_t *pair = gxb_complex_face_elements(cx, face), element = pair[pair[0] == GXB_NONE];
+    *k = gxp_local_face(cx, element, face);
+    return element;
+}
+
+static void gxp_list_node_elements(gx_body *body) {
+    const uint32_t *elements = gxb_complex_element_nodes(body->complex, 0);
+    uint32_t i;
+    memset(body->mesh.node_start, 0, ((size_t)body->mesh.node_count + 1) * sizeof *body->mesh.node_start);
+    for (i = 0; i < 4 * body->mesh.element_count; i++) body->mesh.node_start[elements[i] + 1]++;
+    for (i = 0; i < body->mesh.node_count; i++) body->mesh.node_start[i + 1] += body->mesh.node_start[i];
+    for (i = 0; i < 4 * body->mesh.element_count; i++)
+        body->mesh.node_elements[body->mesh.node_start[elements[i]]++] = i / 4;
+    for (i = body->mesh.node_count; i > 0; i--) body->mesh.node_start[i] = body->mesh.node_start[i - 1];
+    body->mesh.node_start[0] = 0;
+}
+
+static void gxp_element_positions(const gx_body *body, uint32_t element, double x[12]) {
+    int k;
+    for (k = 0; k < 4; k++)
+        memcpy(x + 3 * k, body->mesh.positions + 3 * (size_t)gxb_complex_element_nodes(body->complex, element)[k],
+               3 * sizeof *x);
+}
+
+static double gxp_element_volume(const gx_body *body, uint32_t element) {
+    double x[12];
+    gxp_element_positions(body, element, x);
+    return gxi_tet_volume(x);
+}
+
+/* Is the element inverted in doubles, as the solver would see it, though it is not exactly? */
+static int gxp_rounds_inverted(const gx_body *body, uint32_t element) {
+    double x[12], gradients[12];
+    gxp_element_positions(body, element, x);
+    return gxi_tet_gradients(x, gradients, NULL) == GX_ERROR_INVERTED;
+}
+
+static double gxp_density(const gx_body *body, uint32_t element) {
+    return body->mesh.materials[body->mesh.element_materials[element]].density;
+}
 
 static void gxp_box_of(const gx_body *body, gxp_box *box) {
     double low[3], high[3];
@@ -907,8 +1480,8 @@ static void gxp_box_of(const gx_body *body, gxp_box *box) {
     int k, n;
     for (i = box->first; i < box->first + box->count; i++)
         for (n = 0; n < 4; n++) {
-            const double *x =
-                body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)body->box_elements[i] + (size_t)n];
+            const double *x = body->mesh.positions +
+                              3 * (size_t)gxb_complex_element_nodes(body->complex, body->mesh.box_elements[i])[n];
             for (k = 0; k < 3 && i == box->first && n == 0; k++) low[k] = high[k] = x[k];
             for (k = 0; k < 3; k++) {
                 low[k] = x[k] < low[k] ? x[k] : low[k];
@@ -920,13 +1493,13 @@ static void gxp_box_of(const gx_body *body, gxp_box *box) {
 }
 
 static double gxp_element_key(const gx_body *body, uint32_t element, int axis) {
-    const uint32_t *n = body->complex->elements + 4 * (size_t)element;
-    const double *x = body->positions + axis;
+    const uint32_t *n = gxb_complex_element_nodes(body->complex, element);
+    const double *x = body->mesh.positions + axis;
     return x[3 * (size_t)n[0]] * 0.25 + x[3 * (size_t)n[1]] * 0.25 + x[3 * (size_t)n[2]] * 0.25 +
            x[3 * (size_t)n[3]] * 0.25;
 }
 
-/* Partial order: the element of rank middle stands at middle, smaller keys before it (Hoare's FIND). */
+/* Partial order: puts the element of rank middle at middle and smaller keys before it (Hoare's FIND). */
 static void gxp_select(const gx_body *body, uint32_t *e, int64_t count, int64_t middle, int axis) {
     int64_t low = 0, high = count - 1;
     while (low < high) {
@@ -948,52 +1521,52 @@ static void gxp_select(const gx_body *body, uint32_t *e, int64_t count, int64_t 
 
 static void gxp_build_boxes(gx_body *body) {
     uint32_t i, b;
-    for (i = 0; i < body->element_count; i++) body->box_elements[i] = i;
-    memset(&body->boxes[0], 0, sizeof body->boxes[0]);
-    body->boxes[0].count = body->element_count;
-    body->box_count = 1;
-    for (b = 0; b < body->box_count; b++) {
-        gxp_box *box = &body->boxes[b];
+    for (i = 0; i < body->mesh.element_count; i++) body->mesh.box_elements[i] = i;
+    memset(&body->mesh.boxes[0], 0, sizeof body->mesh.boxes[0]);
+    body->mesh.boxes[0].count = body->mesh.element_count;
+    body->mesh.box_count = 1;
+    for (b = 0; b < body->mesh.box_count; b++) {
+        gxp_box *box = &body->mesh.boxes[b];
         const uint32_t first = box->first, count = box->count, half = count / 2;
         int axis = 0, k;
         gxp_box_of(body, box);
         if (count <= 4) continue;
         for (k = 1; k < 3; k++)
             if (box->high[k] - box->low[k] > box->high[axis] - box->low[axis]) axis = k;
-        gxp_select(body, body->box_elements + first, count, half, axis);
-        box->first = body->box_count;
+        gxp_select(body, body->mesh.box_elements + first, count, half, axis);
+        box->first = body->mesh.box_count;
         box->count = 0;
-        memset(&body->boxes[body->box_count], 0, 2 * sizeof *body->boxes);
-        body->boxes[body->box_count].first = first;
-        body->boxes[body->box_count++].count = half;
-        body->boxes[body->box_count].first = first + half;
-        body->boxes[body->box_count++].count = count - half;
+        memset(&body->mesh.boxes[body->mesh.box_count], 0, 2 * sizeof *body->mesh.boxes);
+        body->mesh.boxes[body->mesh.box_count].first = first;
+        body->mesh.boxes[body->mesh.box_count++].count = half;
+        body->mesh.boxes[body->mesh.box_count].first = first + half;
+        body->mesh.boxes[body->mesh.box_count++].count = count - half;
     }
 }
 
-/* nodes of the face opposite to each */
-static const uint8_t gxp_outward[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+/* >>search: the elements that a triangle may meet ------------------------------------------------------------------ */
+/* In: a triangle. Out: a list of elements, all that the triangle meets and few others. Rounding adds candidates and
+   never loses one: what is exact is decided by the complex. */
 
-/* A triangle whose elements are looked for. Differences are multiplied by a power of two, the frame's, so that no
- * product leaves the range. */
+/* A triangle whose elements are searched. Differences are multiplied by the frame's power of two, so that all products
+   stay in range. */
 typedef struct gxp_search {
     const double *base; /* its first corner */
     double unit, low[3], high[3];
     double axis[4][3]; /* the normal; of each edge the normal in the triangle's plane, outward */
-    double scale[4];   /* size of the products of which they are made */
-    double offset[4];  /* along them, of the triangle's plane and edges from the base */
+    double scale[4];   /* size of the products that make up the axis */
+    double offset[4];  /* of the triangle's plane and edges along the axes, from the base */
     /* size of the coordinates of this triangle and of any element: below 2^135, and heights are products of 7 such
      * numbers at most */
     double far;
 } gxp_search;
 
-#define GXP_SEARCH_MARGIN                                                                                              \
-    1e-12 /* of the terms' size: far above the rounding, so that rounding only adds candidates                         \
-           */
+/* Share of the terms' size, far above their rounding, so that rounding only adds candidates */
+#define GXP_SEARCH_MARGIN 1e-12
 
 static double gxp_size(const double a[3]) { return fabs(a[0]) + fabs(a[1]) + fabs(a[2]); }
 
-/* a x b; returns the size of its terms. */
+/* axis = a x b. Returns the size of its terms. */
 static double gxp_search_axis(const double a[3], const double b[3], double axis[3]) {
     axis[0] = a[1] * b[2] - a[2] * b[1];
     axis[1] = a[2] * b[0] - a[0] * b[2];
@@ -1001,13 +1574,13 @@ static double gxp_search_axis(const double a[3], const double b[3], double axis[
     return gxp_size(a) * gxp_size(b);
 }
 
-/* (x - base) unit */
+/* d = (x - base) unit */
 static void gxp_search_vector(const gxp_search *s, const double *x, double d[3]) {
     int k;
     for (k = 0; k < 3; k++) d[k] = (x[k] - s->base[k]) * s->unit;
 }
 
-/* all: the box of all elements */
+/* all: the box around all elements */
 static void gxp_search_init(gxp_search *s, const double *const p[3], double unit, const gxp_box *all) {
     double d[3][3], e[3];
     int i, k;
@@ -1031,7 +1604,7 @@ static void gxp_search_init(gxp_search *s, const double *const p[3], double unit
     }
 }
 
-/* May the triangle meet the box? One branch for all axes, since which of them tells can't be predicted. */
+/* May the triangle meet the box? The axes share one branch, since no one can predict which of them decides. */
 static int gxp_triangle_near_box(const gxp_search *s, const gxp_box *box) {
     double sum = 0, r = 0;
     int k, beyond = 0;
@@ -1048,12 +1621,12 @@ static int gxp_triangle_near_box(const gxp_search *s, const gxp_box *box) {
     return fabs(sum) <= r + GXP_SEARCH_MARGIN * s->scale[0] * s->far;
 }
 
-/* Heights of the element's nodes along an axis, and how far they may be off */
+/* Heights of the element's nodes along an axis, and their largest error */
 typedef struct gxp_heights {
     double at[4], margin;
 } gxp_heights;
 
-/* x: the nodes' coordinates from the base, by axis */
+/* x: coordinates of the nodes from the base, by axis */
 static void gxp_set_heights(const gxp_search *s, int i, double x[3][4], gxp_heights *h) {
     int n;
     for (n = 0; n < 4; n++)
@@ -1061,9 +1634,9 @@ static void gxp_set_heights(const gxp_search *s, int i, double x[3][4], gxp_heig
     h->margin = GXP_SEARCH_MARGIN * s->scale[i] * s->far;
 }
 
-/* Does the element meet the triangle's plane (over: heights of its nodes) beyond one of its edges (along) only? Where
-   an edge of the element crosses the plane, the height along is (along_i |over_j| + along_j |over_i|) / (|over_i| +
-   |over_j|). */
+/* Is the element's section with the triangle's plane beyond one of its edges? over: heights of the nodes above the
+   plane; along: heights across the edge. Where an edge of the element crosses the plane, the height along is (along_i
+   |over_j| + along_j |over_i|) / (|over_i| + |over_j|). */
 static int gxp_section_is_beyond(const gxp_heights *over, const gxp_heights *along) {
     int i, j;
     for (i = 0; i < 4; i++) {
@@ -1079,26 +1652,27 @@ static int gxp_section_is_beyond(const gxp_heights *over, const gxp_heights *alo
     return 1;
 }
 
-/* Least and greatest of four */
+/* Least of four */
 static double gxp_least(const double x[4]) {
     const double a = x[0] < x[1] ? x[0] : x[1], b = x[2] < x[3] ? x[2] : x[3];
     return a < b ? a : b;
 }
 
+/* Greatest of four */
 static double gxp_greatest(const double x[4]) {
     const double a = x[0] > x[1] ? x[0] : x[1], b = x[2] > x[3] ? x[2] : x[3];
     return a > b ? a : b;
 }
 
-/* May the triangle meet the element? Not if a plane along the axes or its own has the element beyond it, or one along
-   an edge across it what of the element is in the triangle's plane. */
+/* May the triangle meet the element? It does not if a plane separates them: one across a coordinate axis, the
+   triangle's own, or one through an edge of the triangle beyond which the element's section lies. */
 static int gxp_triangle_near_element(const gx_body *body, const gxp_search *s, uint32_t element) {
-    const uint32_t *node = body->complex->elements + 4 * (size_t)element;
+    const uint32_t *node = gxb_complex_element_nodes(body->complex, element);
     double x[3][4];
     gxp_heights over, along;
     int i, n, beyond = 0;
     for (n = 0; n < 4; n++)
-        for (i = 0; i < 3; i++) x[i][n] = body->positions[3 * (size_t)node[n] + (size_t)i];
+        for (i = 0; i < 3; i++) x[i][n] = body->mesh.positions[3 * (size_t)node[n] + (size_t)i];
     for (i = 0; i < 3; i++) {
         beyond |= gxp_greatest(x[i]) < s->low[i];
         beyond |= gxp_least(x[i]) > s->high[i];
@@ -1117,18 +1691,18 @@ static int gxp_triangle_near_element(const gx_body *body, const gxp_search *s, u
     return 1;
 }
 
-/* Finds the elements that the triangle may meet: those in boxes that it may meet are listed first, so that what there
-   is to read of them comes while others are looked at. */
+/* Finds the elements that the triangle may meet. Elements in boxes that it may meet are listed first, so that their
+   data can be prefetched before each is examined. */
 static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_words *found) {
-    const uint32_t *elements = body->complex->elements;
+    const uint32_t *elements = gxb_complex_element_nodes(body->complex, 0);
     gxp_search search;
     uint32_t stack[128], depth = 0, count = 0, i, k;
     gx_result result = GX_OK;
     found->count = 0;
-    gxp_search_init(&search, p, ldexp(1, gxb_complex_shift(body->complex)), &body->boxes[0]);
+    gxp_search_init(&search, p, ldexp(1, gxb_complex_shift(body->complex)), &body->mesh.boxes[0]);
     stack[depth++] = 0;
     while (depth > 0 && result == GX_OK) {
-        const gxp_box *box = &body->boxes[stack[--depth]];
+        const gxp_box *box = &body->mesh.boxes[stack[--depth]];
         if (!gxp_triangle_near_box(&search, box)) continue;
         if (box->count == 0) {
             stack[depth++] = box->first + 1;
@@ -1136,499 +1710,63 @@ static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_
         } else
             result = gxp_words_room(body, found, box->count);
         for (i = 0; i < box->count && result == GX_OK; i++) {
-            const uint32_t element = found->data[found->count++] = body->box_elements[box->first + i];
-            GXP_FETCH(elements + 4 * (size_t)element);
+            const uint32_t element = found->data[found->count++] = body->mesh.box_elements[box->first + i];
+            GXP_PREFETCH(elements + 4 * (size_t)element);
         }
     }
     for (i = 0; i < found->count && result == GX_OK; i++) {
         for (k = 0; k < 4 && i + 4 < found->count; k++)
-            GXP_FETCH(body->positions + 3 * (size_t)elements[4 * (size_t)found->data[i + 4] + k]);
+            GXP_PREFETCH(body->mesh.positions + 3 * (size_t)elements[4 * (size_t)found->data[i + 4] + k]);
         if (!gxp_triangle_near_element(body, &search, found->data[i])) continue;
-        GXP_FETCH(&body->complex->leaves[found->data[i]]);
-        GXP_FETCH(body->complex->element_faces + 4 * (size_t)found->data[i]);
-        GXP_FETCH(body->complex->element_edges + 6 * (size_t)found->data[i]);
-        GXP_FETCH(body->complex->root + found->data[i]);
+        gxb_complex_prefetch_element(body->complex, found->data[i]);
         found->data[count++] = found->data[i];
     }
     found->count = count;
     return result;
 }
 
-/* >>create --------------------------------------------------------------------------------------------------------- */
+/* >>copies: tables of copies, cells and leaves --------------------------------------------------------------------- */
+/* In: the tables of copies and leaves. Out: a row for each new leaf, the state as a hash, copies that wake. Touches
+   these tables only. */
 
-static const uint8_t gxp_edge_nodes[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
-
-static int gxp_local_node(const gx_body *body, uint32_t element, uint32_t node) {
-    const uint32_t *n = body->complex->elements + 4 * (size_t)element;
-    return (n[0] == node) + 2 * (n[1] == node) + 3 * (n[2] == node) + 4 * (n[3] == node) - 1;
+/* The copy of a node that moves the cell */
+static uint32_t gxp_copy_of(const gx_body *body, uint32_t cell, uint32_t node) {
+    return body->cells.data[cell].copies[gxp_local_node(body, body->cells.data[cell].element, node)];
 }
 
-static uint32_t gxp_neighbour(const gx_body *body, uint32_t element, uint32_t k) {
-    const uint32_t *pair =
-        body->complex->face_elements + 2 * (size_t)body->complex->element_faces[4 * (size_t)element + k];
-    return pair[0] == element ? pair[1] : pair[0];
-}
-
-static void gxp_list_node_elements(gx_body *body) {
-    const uint32_t *elements = body->complex->elements;
-    uint32_t i;
-    memset(body->node_start, 0, ((size_t)body->node_count + 1) * sizeof *body->node_start);
-    for (i = 0; i < 4 * body->element_count; i++) body->node_start[elements[i] + 1]++;
-    for (i = 0; i < body->node_count; i++) body->node_start[i + 1] += body->node_start[i];
-    for (i = 0; i < 4 * body->element_count; i++) body->node_elements[body->node_start[elements[i]]++] = i / 4;
-    for (i = body->node_count; i > 0; i--) body->node_start[i] = body->node_start[i - 1];
-    body->node_start[0] = 0;
-}
-
-/* Walks from element to element through faces that contain the node, stamping; *reached: how many. */
-static gx_result gxp_walk_around(gx_body *body, uint32_t start, uint32_t node, uint32_t *reached) {
-    gx_result result = GX_OK;
-    body->queue.count = 0;
-    *reached = 0;
-    body->cell_stamp[start] = body->stamp;
-    result = gxp_push(body, &body->queue, start);
-    while (*reached < body->queue.count && result == GX_OK) {
-        const uint32_t e = body->queue.data[(*reached)++];
-        uint32_t k;
-        for (k = 0; k < 4 && result == GX_OK; k++) {
-            const uint32_t other = gxp_neighbour(body, e, k), opposite = body->complex->elements[4 * (size_t)e + k];
-            if (other == GXP_NONE || body->cell_stamp[other] == body->stamp || opposite == node) continue;
-            body->cell_stamp[other] = body->stamp;
-            result = gxp_push(body, &body->queue, other);
-        }
-    }
-    return result;
-}
-
-/* Marks nodes and edges whose elements do not hang together through faces around them: there, edges and nodes link too.
-   (An edge's elements come in as many fans as it has pairs of boundary faces.) */
-static gx_result gxp_find_pinches(gx_body *body) {
-    const gxb_complex *cx = body->complex;
-    uint32_t i, j, k, reached;
-    gx_result result = GX_OK;
-    for (i = 0; i < body->node_count && result == GX_OK; i++) {
-        const uint32_t first = body->node_start[i], count = body->node_start[i + 1] - first;
-        if (count == 0) continue;
-        body->stamp++;
-        result = gxp_walk_around(body, body->node_elements[first], i, &reached);
-        if (result != GX_OK || reached == count) continue;
-        body->node_pinched[i] = 1;
-    }
-    /* an edge with one fan of elements has no or two boundary faces */
-    for (i = 0; i < body->element_count; i++)
-        for (k = 0; k < 4; k++)
-            for (j = 0; j < 6; j++) {
-                const uint32_t edge = cx->element_edges[6 * i + j];
-                if (gxp_neighbour(body, i, k) != GXP_NONE || gxp_edge_nodes[j][0] == k || gxp_edge_nodes[j][1] == k)
-                    continue;
-                if (body->edge_pinched[edge] < 3) body->edge_pinched[edge]++;
-            }
-    for (i = 0; i < cx->mesh_edge_count; i++) body->edge_pinched[i] = body->edge_pinched[i] > 2;
-    for (i = 0; i < body->element_count; i++)
-        for (j = 0; j < 6; j++) {
-            if (!body->edge_pinched[cx->element_edges[6 * i + j]]) continue;
-            body->node_pinched[cx->elements[4 * i + gxp_edge_nodes[j][0]]] |= 2;
-            body->node_pinched[cx->elements[4 * i + gxp_edge_nodes[j][1]]] |= 2;
-        }
-    return result;
-}
-
-static void gxp_element_positions(const gx_body *body, uint32_t element, double x[12]) {
-    int k;
-    for (k = 0; k < 4; k++)
-        memcpy(x + 3 * k, body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)element + (size_t)k],
-               3 * sizeof *x);
-}
-
-static double gxp_element_volume(const gx_body *body, uint32_t element) {
-    double x[12];
-    gxp_element_positions(body, element, x);
-    return gxi_tet_volume(x);
-}
-
-/* Doubles may see an element as inverted that is not, as the solver would. */
-static int gxp_rounds_inverted(const gx_body *body, uint32_t element) {
-    double x[12], gradients[12];
-    gxp_element_positions(body, element, x);
-    return gxi_tet_gradients(x, gradients, NULL) == GX_ERROR_INVERTED;
-}
-
-static double gxp_density(const gx_body *body, uint32_t element) {
-    return body->materials[body->element_materials[element]].density;
-}
-
-#define GXP_REACH  100 /* coordinates are at most 2^this, the longest side is at least 2^-this */
-#define GXP_WEIGHT 700 /* masses of elements are 2^-this ... 2^this: the inertia of 2^28 of them is below 2^940 */
-
-/* index: of a node that is too far out; none is where the body is too small */
-static gx_result gxp_check_size(const gx_body_desc *desc, size_t *index) {
-    const double most = ldexp(1, GXP_REACH);
-    double longest = 0;
-    size_t i;
-    int k;
-    for (k = 0; k < 3; k++) {
-        double low = desc->positions[k], high = low;
-        for (i = 0; i < desc->node_count; i++) {
-            const double x = desc->positions[3 * i + (size_t)k];
-            if (fabs(x) > most) {
-                *index = i;
-                return GX_ERROR_RANGE;
-            }
-            if (x < low) low = x;
-            if (x > high) high = x;
-        }
-        if (high - low > longest) longest = high - low;
-    }
-    return longest < 1 / most ? GX_ERROR_RANGE : GX_OK;
-}
-
-/* Exactly the volume is positive: in doubles it may be below. */
-static gx_result gxp_check_volume(const gx_body *body, uint32_t element, double volume) {
-    const double mass = volume * gxp_density(body, element);
-    if (volume <= 0 || gxp_rounds_inverted(body, element)) return GX_ERROR_FLAT;
-    return mass >= ldexp(1, -GXP_WEIGHT) && mass <= ldexp(1, GXP_WEIGHT) ? GX_OK : GX_ERROR_RANGE;
-}
-
-/* *bad: an element that is flat or out of range */
-static gx_result gxp_make_first_cells(gx_body *body, size_t *bad) {
-    gx_result result = GX_OK;
-    uint32_t e;
-    body->cell_count = body->leaf_count = body->element_count;
-    for (e = 0; e < body->element_count; e++) {
-        gxp_cell *cell = &body->cells[e];
-        memset(cell, 0, sizeof *cell);
-        cell->element = cell->first_leaf = e;
-        memcpy(cell->copies, body->complex->elements + 4 * (size_t)e, sizeof cell->copies);
-        cell->next = GXP_NONE;
-        cell->kept = 1;
-        cell->volume = gxp_element_volume(body, e);
-        result = gxp_check_volume(body, e, cell->volume);
-        if (result != GX_OK) {
-            *bad = e;
-            return result;
-        }
-        gxi_tet_mass(cell->volume, gxp_density(body, e), cell->mass);
-        memset(&body->leaves[e], 0, sizeof body->leaves[e]);
-        body->leaves[e].cell = e;
-        body->leaves[e].next = GXP_NONE;
+/* Adds a row for each new leaf of the complex. It starts in its parent's cell, outside the cell's list. */
+static gx_result gxp_follow_leaves(gx_body *body) {
+    const uint32_t count = gxb_complex_leaf_count(body->complex);
+    const gx_result result = gxp_grow_rows(body, GXP_LEAVES, count - body->leaves.count);
+    if (result != GX_OK) return result;
+    for (; body->leaves.count < count; body->leaves.count++) {
+        gxp_leaf *leaf = &body->leaves.data[body->leaves.count];
+        leaf->cell = body->leaves.data[gxb_complex_leaf(body->complex, body->leaves.count)->parent].cell;
+        leaf->next = GXP_NONE;
     }
     return GX_OK;
 }
 
-/* A node that no element uses has no copy: copies are numbered over the used nodes. */
-static void gxp_make_first_copies(gx_body *body) {
-    uint32_t i, e;
-    int k;
-    body->copy_count = 0;
-    for (i = 0; i < body->node_count; i++) {
-        if (body->node_start[i] == body->node_start[i + 1]) continue;
-        for (e = body->node_start[i]; e < body->node_start[i + 1]; e++) {
-            k = gxp_local_node(body, body->node_elements[e], i);
-            body->cells[body->node_elements[e]].copies[k] = body->copy_count;
-        }
-        body->copy_node[body->copy_count++] = i;
-    }
-    memset(body->displacement, 0, 3 * (size_t)body->copy_count * sizeof(double));
-    memset(body->velocity, 0, 3 * (size_t)body->copy_count * sizeof(double));
-    memset(body->rest_time, 0, body->copy_count * sizeof(double));
-    memset(body->held, 0, body->copy_count);
-    memset(body->copy_label, 0, body->copy_count * sizeof *body->copy_label);
-    memset(body->copy_before, 0, body->copy_count * sizeof *body->copy_before);
+static uint64_t gxp_hash_state(const gx_body *body, size_t copies) {
+    return gxp_hash_doubles(gxp_hash_doubles(1, body->copies.displacement, 3 * copies), body->copies.velocity,
+                            3 * copies) |
+           1;
 }
 
-static gx_result gxp_reserve_copies(gx_body *body, size_t extra) {
-    const gx_allocator *a = &body->allocator;
-    const size_t n = body->copy_count;
-    int i;
-    gx_result r = gxp_reserve(a, &body->copy_node, sizeof *body->copy_node, n, &body->copy_capacity, extra);
-    if (r == GX_OK) r = gxp_reserve(a, &body->displacement, 3 * sizeof(double), n, &body->displacement_capacity, extra);
-    if (r == GX_OK) r = gxp_reserve(a, &body->velocity, 3 * sizeof(double), n, &body->velocity_capacity, extra);
-    if (r == GX_OK) r = gxp_reserve(a, &body->rest_time, sizeof(double), n, &body->rest_time_capacity, extra);
-    if (r == GX_OK)
-        r = gxp_reserve(a, &body->copy_label, sizeof *body->copy_label, n, &body->copy_label_capacity, extra);
-    if (r == GX_OK)
-        r = gxp_reserve(a, &body->copy_before, sizeof *body->copy_before, n, &body->copy_before_capacity, extra);
-    for (i = 0; i < 4 && r == GX_OK && body->history[i] != NULL; i++)
-        r = gxp_reserve(a, &body->history[i], 3 * sizeof(double), n, &body->history_capacity[i], extra);
-    return r == GX_OK ? gxp_reserve(a, &body->held, 1, n, &body->held_capacity, extra) : r;
+/* After saving, copying or reading, the solver has no previous step. If the state of the copies was written since then,
+   wakes all of them, in a copy as in the original. */
+static void gxp_wake_resumed(gx_body *body, size_t copies) {
+    uint32_t i;
+    if (body->model.resumed == 0 || body->model.resumed == gxp_hash_state(body, copies)) return;
+    for (i = 0; i < body->copies.count; i++) body->copies.rest_time[i] = 0;
 }
 
-/* The state of one copy becomes that of another. */
-static void gxp_copy_state(gx_body *body, uint32_t from, uint32_t to) {
-    const size_t a = 3 * (size_t)from, b = 3 * (size_t)to, size = 3 * sizeof(double);
-    int i;
-    memcpy(body->displacement + b, body->displacement + a, size);
-    memcpy(body->velocity + b, body->velocity + a, size);
-    for (i = 0; i < 2 && body->previous_dt > 0; i++) memcpy(body->history[i] + b, body->history[i] + a, size);
-    body->rest_time[to] = body->rest_time[from];
-    body->held[to] = body->held[from];
-    body->copy_label[to] = body->copy_label[from];
-    body->copy_before[to] = body->copy_before[from];
-}
+/* >>transaction: undoing a cut ------------------------------------------------------------------------------------- */
+/* A cut changes cells and leaves in place and appends to other tables. The undo log, the counts at the cut's begin and
+   the complex's own log take it back. Every change of a cell or leaf that the cut did not make goes through here first.
+ */
 
-/* Room for a number beside each cell that there is room for; new ones are 0. */
-static gx_result gxp_reserve_beside_cells(gx_body *body, uint32_t **words, uint32_t *capacity) {
-    const uint32_t before = *capacity;
-    const gx_result r = gxp_reserve(&body->allocator, words, sizeof **words, before, capacity,
-                                    body->cell_capacity > before ? body->cell_capacity - before : 0);
-    if (*capacity > before) memset(*words + before, 0, (size_t)(*capacity - before) * sizeof **words);
-    return r;
-}
-
-static gx_result gxp_reserve_cells(gx_body *body, size_t extra) {
-    gx_result r =
-        gxp_reserve(&body->allocator, &body->cells, sizeof *body->cells, body->cell_count, &body->cell_capacity, extra);
-    if (r == GX_OK) r = gxp_reserve_beside_cells(body, &body->cell_stamp, &body->cell_stamp_capacity);
-    if (r == GX_OK) r = gxp_reserve_beside_cells(body, &body->cell_saved, &body->cell_saved_capacity);
-    return r == GX_OK ? gxp_reserve_beside_cells(body, &body->cell_fresh, &body->cell_fresh_capacity) : r;
-}
-
-static void *gxp_table(gx_body *body, size_t count, size_t item) {
-    void *memory = gxp_allocate(&body->allocator, (count + 1) * item);
-    if (memory != NULL) memset(memory, 0, (count + 1) * item);
-    return memory;
-}
-
-/* The tables of fixed size; gx_body_destroy releases what there is. */
-static gx_result gxp_allocate_tables(gx_body *body) {
-    const size_t n = body->node_count, e = body->element_count;
-    body->positions = (double *)gxp_table(body, 3 * n, sizeof(double));
-    body->node_start = (uint32_t *)gxp_table(body, n, sizeof(uint32_t));
-    body->node_elements = (uint32_t *)gxp_table(body, 4 * e, sizeof(uint32_t));
-    body->node_pinched = (uint8_t *)gxp_table(body, n, 1);
-    body->edge_pinched = (uint8_t *)gxp_table(body, body->complex->mesh_edge_count, 1);
-    body->boxes = (gxp_box *)gxp_table(body, e, sizeof(gxp_box));
-    body->box_elements = (uint32_t *)gxp_table(body, e, sizeof(uint32_t));
-    body->element_materials = (uint32_t *)gxp_table(body, e, sizeof(uint32_t));
-    body->materials = (gx_material *)gxp_table(body, body->material_count, sizeof *body->materials);
-    return body->element_materials && body->materials && body->positions && body->node_start && body->node_elements &&
-                   body->node_pinched && body->edge_pinched && body->boxes && body->box_elements
-             ? GX_OK
-             : GX_ERROR_MEMORY;
-}
-
-static gx_result gxp_create_solver(gx_body *body) {
-    gxs_solver_desc solver;
-    memset(&solver, 0, sizeof solver);
-    solver.allocator = body->allocator;
-    solver.jobs = body->jobs;
-    return gxs_solver_create(&solver, &body->solver);
-}
-
-static void gxp_fill_materials(gx_body *body, const gx_body_desc *desc) {
-    if (desc->materials != NULL)
-        memcpy(body->materials, desc->materials, body->material_count * sizeof *body->materials);
-    else {
-        body->materials->elastic.young = desc->young;
-        body->materials->elastic.poisson = desc->poisson;
-        body->materials->density = desc->density;
-    }
-    if (desc->materials != NULL && desc->element_materials != NULL)
-        memcpy(body->element_materials, desc->element_materials, body->element_count * sizeof(uint32_t));
-}
-
-static gx_result gxp_first_look(gx_body *body);     /* see >>fragments */
-static uint64_t gxp_hash_mesh(const gx_body *body); /* see >>bytes */
-static uint64_t gxp_hash_cut(uint64_t past, const gx_cut_desc *desc);
-
-/* index: of the node or element to blame */
-static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc, size_t *index) {
-    gx_result result = gxp_check_size(desc, index);
-    if (result == GX_OK) result = gxp_allocate_tables(body);
-    if (result == GX_OK && desc->texture != NULL) {
-        body->texture = (float *)gxp_table(body, 2 * (size_t)body->node_count, sizeof(float));
-        if (body->texture == NULL) result = GX_ERROR_MEMORY;
-    }
-    if (result == GX_OK) result = gxp_create_solver(body);
-    if (result == GX_OK) result = gxp_reserve_cells(body, body->element_count);
-    if (result == GX_OK)
-        result = gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, 0, &body->leaf_capacity,
-                             body->element_count);
-    if (result == GX_OK) result = gxp_reserve_copies(body, body->node_count);
-    if (result != GX_OK) return result;
-    memcpy(body->positions, desc->positions, 3 * (size_t)body->node_count * sizeof(double));
-    gxp_fill_materials(body, desc);
-    if (body->texture != NULL) memcpy(body->texture, desc->texture, 2 * (size_t)body->node_count * sizeof(float));
-    gxp_list_node_elements(body);
-    result = gxp_find_pinches(body);
-    if (result == GX_OK) result = gxp_make_first_cells(body, index);
-    if (result != GX_OK) return result;
-    gxp_make_first_copies(body);
-    gxp_build_boxes(body);
-    body->view_stale = 1;
-    body->model = GXP_MODEL_STALE;
-    body->past = gxp_hash_mesh(body);
-    return gxp_first_look(body);
-}
-
-static gx_result gxp_check_material(double young, double poisson, double density) {
-    if (!gxp_is_finite(young) || !gxp_is_finite(poisson) || !gxp_is_finite(density)) return GX_ERROR_NOT_FINITE;
-    return young > 0 && density > 0 && poisson >= 0 && poisson < 0.5 ? GX_OK : GX_ERROR_ARGUMENT;
-}
-
-/* index: of the material or element to blame */
-static gx_result gxp_check_body_desc(const gx_body_desc *desc, size_t *index) {
-    gx_result result = GX_OK;
-    size_t i;
-    *index = SIZE_MAX;
-    if (!gxbp_is_allocator(&desc->allocator)) return GX_ERROR_ARGUMENT;
-    if (!gxp_is_finite(desc->support_below)) return GX_ERROR_NOT_FINITE;
-    if (desc->support_below < 0 || desc->support_below >= 1) return GX_ERROR_ARGUMENT;
-    if (desc->materials == NULL) return gxp_check_material(desc->young, desc->poisson, desc->density);
-    if (desc->material_count == 0 || desc->material_count >= INT32_MAX)
-        return desc->material_count == 0 ? GX_ERROR_EMPTY : GX_ERROR_LIMIT;
-    for (i = 0; i < desc->material_count && result == GX_OK; i++) {
-        const gxs_material *m = &desc->materials[ *index = i].elastic;
-        result = gxp_check_material(m->young, m->poisson, desc->materials[i].density);
-        if (result == GX_OK && !gxp_is_finite(m->damping)) result = GX_ERROR_NOT_FINITE;
-        if (result == GX_OK && ((int)m->kind < 0 || m->kind > GXS_CUSTOM || m->damping < 0 ||
-                                (m->kind == GXS_CUSTOM && m->energy == NULL)))
-            result = GX_ERROR_ARGUMENT;
-    }
-    for (i = 0; i < desc->element_count && result == GX_OK && desc->element_materials != NULL; i++)
-        if (desc->element_materials[ *index = i] >= desc->material_count) result = GX_ERROR_INDEX;
-    return result;
-}
-
-GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_failure *failure) {
-    gx_body *body;
-    gxb_mesh mesh;
-    gx_result result;
-    size_t index;
-    if (desc == NULL || out == NULL) return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
-    result = gxp_check_body_desc(desc, &index);
-    if (result != GX_OK) return gxp_fail(failure, result, index, SIZE_MAX);
-    body = (gx_body *)gxp_allocate(&desc->allocator, sizeof *body);
-    if (body == NULL) return gxp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX, SIZE_MAX);
-    memset(body, 0, sizeof *body);
-    body->allocator = desc->allocator;
-    body->clock = desc->clock;
-    body->clock_user = desc->clock_user;
-    body->jobs = desc->jobs;
-    body->material_count = desc->materials != NULL ? (uint32_t)desc->material_count : 1;
-    body->support_below = desc->support_below;
-    body->follow_below = desc->support_below > 0 ? desc->support_below : GXP_SUPPORT;
-    body->point_below = desc->support_below > 0 ? desc->support_below : GXP_SPECK;
-    body->crumb_reach = desc->support_below > 0 ? 0 : GXP_CRUMB;
-    mesh.positions = desc->positions;
-    mesh.node_count = desc->node_count;
-    mesh.elements = desc->elements;
-    mesh.element_count = desc->element_count;
-    result = gxb_complex_create(&mesh, &desc->allocator, &body->complex, failure);
-    if (result != GX_OK) {
-        gx_body_destroy(body);
-        return result;
-    }
-    body->node_count = body->complex->node_count;
-    body->element_count = body->complex->element_count;
-    index = SIZE_MAX;
-    result = gxp_fill_body(body, desc, &index);
-    if (result != GX_OK) {
-        gx_body_destroy(body);
-        return gxp_fail(failure, result, index, SIZE_MAX);
-    }
-    *out = body;
-    return gxp_fail(failure, GX_OK, SIZE_MAX, SIZE_MAX);
-}
-
-/* What the solver has copied */
-static void gxp_release_model(gx_body *body) {
-    const gx_allocator *a = &body->allocator;
-    gxp_release(a, body->parts, body->part_capacity * sizeof *body->parts);
-    gxp_release(a, body->rest, (size_t)body->rest_capacity * 3 * sizeof(double));
-    gxp_release(a, body->elastic, body->elastic_capacity * sizeof *body->elastic);
-    gxp_release(a, body->constraints, body->constraint_capacity * sizeof *body->constraints);
-    body->parts = NULL;
-    body->rest = NULL;
-    body->elastic = NULL;
-    body->constraints = NULL;
-    body->part_capacity = body->rest_capacity = body->elastic_capacity = body->constraint_capacity = 0;
-}
-
-static void gxp_skin_free(gx_body *body); /* see >>boundary */
-
-GXFEM_API void gx_body_destroy(gx_body *body) {
-    gx_allocator a;
-    size_t n, e, i;
-    if (body == NULL) return;
-    a = body->allocator;
-    n = body->node_count;
-    e = body->element_count;
-    gxp_release(&a, body->positions, (3 * n + 1) * sizeof(double));
-    gxp_release(&a, body->node_start, (n + 1) * sizeof(uint32_t));
-    gxp_release(&a, body->node_elements, (4 * e + 1) * sizeof(uint32_t));
-    gxp_release(&a, body->node_pinched, n + 1);
-    if (body->complex) gxp_release(&a, body->edge_pinched, (size_t)body->complex->mesh_edge_count + 1);
-    gxp_release(&a, body->boxes, (e + 1) * sizeof(gxp_box));
-    gxp_release(&a, body->box_elements, (e + 1) * sizeof(uint32_t));
-    gxp_release(&a, body->cells, body->cell_capacity * sizeof *body->cells);
-    gxp_release(&a, body->cell_stamp, body->cell_stamp_capacity * sizeof *body->cell_stamp);
-    gxp_release(&a, body->cell_saved, body->cell_saved_capacity * sizeof *body->cell_saved);
-    gxp_release(&a, body->cell_fresh, body->cell_fresh_capacity * sizeof *body->cell_fresh);
-    gxp_release(&a, body->leaves, body->leaf_capacity * sizeof *body->leaves);
-    gxp_release(&a, body->copy_node, body->copy_capacity * sizeof *body->copy_node);
-    gxp_release(&a, body->displacement, (size_t)body->displacement_capacity * 3 * sizeof(double));
-    gxp_release(&a, body->velocity, (size_t)body->velocity_capacity * 3 * sizeof(double));
-    gxp_release(&a, body->held, body->held_capacity);
-    gxp_release(&a, body->rest_time, body->rest_time_capacity * sizeof(double));
-    for (i = 0; i < 4; i++) gxp_release(&a, body->history[i], (size_t)body->history_capacity[i] * 3 * sizeof(double));
-    gxp_release(&a, body->materials, ((size_t)body->material_count + 1) * sizeof *body->materials);
-    gxp_release(&a, body->element_materials, (e + 1) * sizeof(uint32_t));
-    gxp_release(&a, body->copy_label, body->copy_label_capacity * sizeof *body->copy_label);
-    gxp_release(&a, body->copy_before, body->copy_before_capacity * sizeof *body->copy_before);
-    gxp_words_free(body, &body->changed);
-    gxp_words_free(body, &body->thin);
-    gxp_words_free(body, &body->fragment_ids);
-    gxp_words_free(body, &body->fragment_origins);
-    gxp_words_free(body, &body->fragment_changes);
-    gxp_words_free(body, &body->removed_ids);
-    gxp_release_model(body);
-    gxp_release(&a, body->regions, body->region_capacity * sizeof *body->regions);
-    gxp_release(&a, body->saved_cells, body->saved_cell_capacity * sizeof *body->saved_cells);
-    gxp_release(&a, body->saved_leaves, body->saved_leaf_capacity * sizeof *body->saved_leaves);
-    gxp_release(&a, body->pairs.data, body->pairs.capacity * sizeof *body->pairs.data);
-    gxp_release(&a, body->links.data, body->links.capacity * sizeof *body->links.data);
-    gxp_words_free(body, &body->link_first);
-    gxp_release(&a, body->cell_volume, body->cell_volume_capacity * sizeof(double));
-    gxp_release(&a, body->fragments, (size_t)body->fragment_capacity * GXP_FRAGMENT_ARRAYS * sizeof(double));
-    gxp_release(&a, body->texture, (2 * n + 1) * sizeof(float));
-    gxp_release(&a, body->surfaces, body->surface_capacity * sizeof *body->surfaces);
-    gxp_release(&a, body->maps, (size_t)body->map_capacity * 8 * sizeof(double));
-    gxp_skin_free(body);
-    gxp_release(&a, body->lambdas, (size_t)body->lambda_capacity * 4 * sizeof(double));
-    {
-        gxp_words *words[20];
-        words[0] = &body->view_cells;
-        words[1] = &body->view_fragments;
-        words[2] = &body->copy_fragment;
-        words[3] = &body->cell_element;
-        words[4] = &body->cell_copies;
-        words[5] = &body->fragment_number;
-        words[6] = &body->point_slot;
-        words[7] = &body->triangles;
-        words[8] = &body->touched;
-        words[9] = &body->nodes;
-        words[10] = &body->queue;
-        words[11] = &body->seeds;
-        words[12] = &body->faces;
-        words[13] = &body->fresh;
-        words[14] = &body->list;
-        words[15] = &body->removed;
-        words[16] = &body->dead;
-        words[17] = &body->pinches;
-        words[18] = &body->splits;
-        words[19] = &body->pieces;
-        for (i = 0; i < 20; i++) gxp_words_free(body, words[i]);
-    }
-    gxs_solver_destroy(body->solver);
-    gxb_complex_destroy(body->complex);
-    gxp_release(&a, body, sizeof *body);
-}
-
-/* >>transaction: a cut changes cells and leaves in place; an undo log, the counts and the complex's own log take it
- * back --- */
-
-/* What one cut works with. */
+/* What the steps of one cut pass on */
 typedef struct gxp_cut {
     gx_body *body;
     const gx_cut_desc *desc;
@@ -1636,70 +1774,314 @@ typedef struct gxp_cut {
     gx_failure failure;
 } gxp_cut;
 
-/* Saves a cell that is about to change, unless this cut has saved or made it. */
-static gx_result gxp_save_cell(gx_body *body, uint32_t cell) {
-    gx_result r;
-    if (body->cell_saved[cell] == body->transaction) return GX_OK;
-    r = gxp_reserve(&body->allocator, &body->saved_cells, sizeof *body->saved_cells, body->saved_cell_count,
-                    &body->saved_cell_capacity, 1);
-    if (r != GX_OK) return r;
-    body->saved_cells[body->saved_cell_count].index = cell;
-    body->saved_cells[body->saved_cell_count++].cell = body->cells[cell];
-    body->cell_saved[cell] = body->transaction;
+/* Room in a log for that many further rows */
+static gx_result gxp_log_room(gx_body *body, gxp_log *log, size_t rows) {
+    const size_t size = log->row_size;
+    const gx_result result = gxp_words_room(body, &log->rows, rows);
+    return result != GX_OK ? result
+                           : gxp_reserve(&body->config.allocator, &log->bytes, 1, log->rows.count * size,
+                                         &log->byte_capacity, rows * size);
+}
+
+/* Copies the undone columns of a row to bytes, or back from them. */
+static void gxp_pass_undone(gx_body *body, uint32_t table, uint32_t row, unsigned char *bytes, int back) {
+    const gxp_column *column = gxp_tables[table].columns, *end = column + gxp_tables[table].column_count;
+    for (; column < end; column++) {
+        unsigned char *item = (unsigned char *)gxp_array_at(body, column) + row * column->size;
+        if (!(column->use & GXP_UNDONE)) continue;
+        memcpy(back ? item : bytes, back ? bytes : item, column->size);
+        bytes += column->size;
+    }
+}
+
+static gx_result gxp_log_row(gx_body *body, gxp_log *log, uint32_t table, uint32_t row) {
+    const gx_result result = gxp_log_room(body, log, 1);
+    if (result != GX_OK) return result;
+    gxp_pass_undone(body, table, row, log->bytes + log->rows.count * (size_t)log->row_size, 0);
+    log->rows.data[log->rows.count++] = row;
     return GX_OK;
 }
 
-/* Gives a leaf to a cell. Leaves that this cut made need not be saved. */
-static gx_result gxp_set_leaf(gx_body *body, uint32_t leaf, uint32_t cell, uint32_t next) {
-    if (leaf < body->before.leaves) {
-        const gx_result r = gxp_reserve(&body->allocator, &body->saved_leaves, sizeof *body->saved_leaves,
-                                        body->saved_leaf_count, &body->saved_leaf_capacity, 1);
-        if (r != GX_OK) return r;
-        body->saved_leaves[body->saved_leaf_count].index = leaf;
-        body->saved_leaves[body->saved_leaf_count++].leaf = body->leaves[leaf];
+/* Puts logged rows back, the last one first. */
+static void gxp_undo_rows(gx_body *body, gxp_log *log, uint32_t table) {
+    while (log->rows.count > 0) {
+        log->rows.count--;
+        gxp_pass_undone(body, table, log->rows.data[log->rows.count],
+                        log->bytes + log->rows.count * (size_t)log->row_size, 1);
     }
-    body->leaves[leaf].cell = cell;
-    body->leaves[leaf].next = next;
+}
+
+/* Logs a cell before it changes, unless this cut has logged or made it. */
+static gx_result gxp_save_cell(gx_body *body, uint32_t cell) {
+    gx_result result;
+    if (body->cells.saved_by[cell] == body->undo.cut_number) return GX_OK;
+    result = gxp_log_row(body, &body->undo.cells, GXP_CELLS, cell);
+    if (result == GX_OK) body->cells.saved_by[cell] = body->undo.cut_number;
+    return result;
+}
+
+/* Gives a leaf to a cell. Leaves that this cut made are not logged. */
+static gx_result gxp_set_leaf(gx_body *body, uint32_t leaf, uint32_t cell, uint32_t next) {
+    if (leaf < body->undo.counts[GXP_LEAVES]) {
+        const gx_result result = gxp_log_row(body, &body->undo.leaves, GXP_LEAVES, leaf);
+        if (result != GX_OK) return result;
+    }
+    body->leaves.data[leaf].cell = cell;
+    body->leaves.data[leaf].next = next;
     return GX_OK;
 }
 
 static void gxp_begin(gxp_cut *cut) {
     gx_body *body = cut->body;
+    gxp_undo *undo = &body->undo;
+    uint32_t t;
     gxb_complex_begin(body->complex);
-    body->saved_cell_count = body->saved_leaf_count = 0;
-    body->transaction++;
-    body->before.cells = body->cell_count;
-    body->before.leaves = body->leaf_count;
-    body->before.copies = body->copy_count;
-    body->before.labels = body->label_count;
-    body->before.surfaces = body->surface_count;
-    body->before.maps = body->map_count;
-    body->before.dirty = body->skin.dirty.count;
-    body->before.splits = body->splits.count;
+    undo->cells.rows.count = undo->leaves.rows.count = 0;
+    undo->cells.row_size = (uint32_t)gxp_row_size(GXP_CELLS, GXP_UNDONE);
+    undo->leaves.row_size = (uint32_t)gxp_row_size(GXP_LEAVES, GXP_UNDONE);
+    undo->cut_number++;
+    for (t = 0; t < GXP_TABLES; t++) undo->counts[t] = *gxp_count_at(body, t);
+    undo->labels = body->cuts.label_count;
+    undo->dirty = body->skin.dirty.count;
+    undo->splits = body->view.splits.count;
 }
 
 static void gxp_rollback(gxp_cut *cut) {
     gx_body *body = cut->body;
-    while (body->saved_cell_count > 0) {
-        const gxp_saved_cell *saved = &body->saved_cells[--body->saved_cell_count];
-        body->cells[saved->index] = saved->cell;
-    }
-    while (body->saved_leaf_count > 0) {
-        const gxp_saved_leaf *saved = &body->saved_leaves[--body->saved_leaf_count];
-        body->leaves[saved->index] = saved->leaf;
-    }
-    body->cell_count = body->before.cells;
-    body->leaf_count = body->before.leaves;
-    body->copy_count = body->before.copies;
-    body->label_count = body->before.labels;
-    body->surface_count = body->before.surfaces;
-    body->map_count = body->before.maps;
-    body->skin.dirty.count = body->before.dirty;
-    body->splits.count = body->before.splits;
+    gxp_undo *undo = &body->undo;
+    uint32_t t;
+    gxp_undo_rows(body, &undo->cells, GXP_CELLS);
+    gxp_undo_rows(body, &undo->leaves, GXP_LEAVES);
+    for (t = 0; t < GXP_TABLES; t++) /* a cut appends to these, and makes others anew */
+        if (gxp_row_size(t, GXP_TOPOLOGY) > 0) *gxp_count_at(body, t) = undo->counts[t];
+    body->cuts.label_count = undo->labels;
+    body->skin.dirty.count = undo->dirty;
+    body->view.splits.count = undo->splits;
     gxb_complex_rollback(body->complex);
 }
 
-/* >>surfaces: what the caller gave --------------------------------------------------------------------------------- */
+/* >>complex: reading the complex ----------------------------------------------------------------------------------- */
+/* Lists that are read off the complex: points of leaves and facets, leaves below a tree, facets and edges by what they
+   were divided into. Resolving such lists may renew them within the complex; nothing else changes. */
+
+/* An entry of a list of the complex. Resolving a list may move the others, so no pointer into a list is kept. */
+static uint32_t gxp_item(const gxb_complex *cx, uint32_t place) { return *gxb_complex_list(cx, place); }
+
+static int gxp_is_kept(const gx_body *body, uint32_t leaf) {
+    return leaf != GXB_NONE && !gxb_complex_leaf(body->complex, leaf)->removed;
+}
+
+/* Is the facet a link, or open inside an element? */
+static int gxp_is_link(const gx_body *body, uint32_t facet) {
+    const gxb_facet *f = gxb_complex_facet(body->complex, facet);
+    return !f->wall && gxp_is_kept(body, f->leaf[0]) && gxp_is_kept(body, f->leaf[1]);
+}
+
+/* Collects the points of a leaf in scratch.leaf_points; points of several facets appear several times. */
+static gx_result gxp_collect_leaf_points(gx_body *body, uint32_t leaf) {
+    gxb_complex *cx = body->complex;
+    uint32_t first, count = 0, i, j, e0, en;
+    gx_result result = gxb_complex_open_element(cx, gxb_complex_leaf(cx, leaf)->element);
+    body->scratch.leaf_points.count = 0;
+    if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
+    for (i = 0; i < count && result == GX_OK; i++) {
+        result = gxb_facet_resolve_edges(cx, gxp_item(cx, first + i), &e0, &en);
+        for (j = 0; j < en && result == GX_OK; j++) {
+            const uint32_t e = gxp_item(cx, e0 + j);
+            result = gxp_push(body, &body->scratch.leaf_points, gxb_complex_edge_start(cx, e));
+        }
+    }
+    return result;
+}
+
+/* Collects the corners of a facet in scratch.facet_points. */
+static gx_result gxp_collect_facet_points(gx_body *body, uint32_t facet) {
+    gxp_scratch *scratch = &body->scratch;
+    gxb_complex *cx = body->complex;
+    uint32_t e0, en, i;
+    gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
+    scratch->facet_points.count = 0;
+    if (result == GX_OK) result = gxp_words_room(body, &scratch->facet_points, en);
+    for (i = 0; i < en && result == GX_OK; i++)
+        scratch->facet_points.data[scratch->facet_points.count++] = gxb_complex_edge_start(cx, gxp_item(cx, e0 + i));
+    return result;
+}
+
+/* Appends the leaves below a reference to an element's tree. */
+static gx_result gxp_push_leaves(gx_body *body, uint32_t reference, gxp_words *out) {
+    const gxb_node *node = gxb_complex_tree_node(body->complex, reference >> 1);
+    gx_result result;
+    if (!(reference & 1)) return gxp_push(body, out, reference >> 1);
+    result = gxp_push_leaves(body, node->child[0], out);
+    return result == GX_OK ? gxp_push_leaves(body, node->child[1], out) : result;
+}
+
+/* Appends the undivided edges that make up an edge of the complex. */
+static gx_result gxp_push_divided_edges(gx_body *body, uint32_t edge, gxp_words *out) {
+    const uint32_t child = gxb_complex_edge(body->complex, edge)->child;
+    gx_result result;
+    if (child == GXB_NONE) return gxp_push(body, out, edge);
+    result = gxp_push_divided_edges(body, child, out);
+    return result == GX_OK ? gxp_push_divided_edges(body, child + 1, out) : result;
+}
+
+/* Appends the undivided facets that make up a facet. */
+static gx_result gxp_push_divided_facets(gx_body *body, uint32_t facet, gxp_words *out) {
+    const uint32_t child = gxb_complex_facet(body->complex, facet)->child;
+    gx_result result;
+    if (child == GXB_NONE) return gxp_push(body, out, facet);
+    result = gxp_push_divided_facets(body, child, out);
+    return result == GX_OK ? gxp_push_divided_facets(body, child + 1, out) : result;
+}
+
+/* Appends the leaves on both sides of the undivided facets that make up a facet. */
+static gx_result gxp_push_leaves_beside(gx_body *body, uint32_t facet, gxp_words *leaves) {
+    const gxb_facet *f = gxb_complex_facet(body->complex, facet);
+    gx_result result = GX_OK;
+    if (f->child != GXB_NONE) {
+        const uint32_t child = f->child;
+        result = gxp_push_leaves_beside(body, child, leaves);
+        return result == GX_OK ? gxp_push_leaves_beside(body, child + 1, leaves) : result;
+    }
+    if (f->leaf[0] != GXB_NONE) result = gxp_push(body, leaves, f->leaf[0]);
+    if (f->leaf[1] != GXB_NONE && result == GX_OK) result = gxp_push(body, leaves, f->leaf[1]);
+    return result;
+}
+
+/* Lists the leaves on both sides of the facets that this cut marked, or only of those that it made walls. */
+static gx_result gxp_list_marked_leaves(gx_body *body, int walls, gxp_words *leaves) {
+    const uint32_t count = gxb_complex_marked_count(body->complex);
+    uint32_t i;
+    gx_result result = gxp_start_words(body, leaves, 2 * (size_t)count);
+    for (i = 0; i < count && result == GX_OK; i++)
+        if (!walls || gxb_complex_marked_wall(body->complex, i))
+            result = gxp_push_leaves_beside(body, gxb_complex_marked_facet(body->complex, i), leaves);
+    return result;
+}
+
+/* Is the mesh edge divided? */
+static int gxp_edge_is_divided(const gxb_complex *cx, uint32_t mesh_edge) {
+    const uint32_t edge = gxb_complex_mesh_edge(cx, mesh_edge);
+    return edge != GXB_NONE && gxb_complex_edge(cx, edge)->child != GXB_NONE;
+}
+
+/* Appends a cell unless this walk has met it. */
+static gx_result gxp_visit_cell(gx_body *body, uint32_t cell, gxp_words *visited) {
+    if (body->cells.stamp[cell] == body->scratch.stamp) return GX_OK;
+    body->cells.stamp[cell] = body->scratch.stamp;
+    return gxp_push(body, visited, cell);
+}
+
+/* >>numbering: cells and fragments as the caller sees them; scope -------------------------------------------------- */
+/* In: cells and copies. Out: the kept cells by element, fragments numbered in the order of their first cells, valid
+   until the next cut; the cells that a cut may touch, by a stamp. Touches the view's lists and stamps of cells. */
+
+/* Lists the kept cells by element and unites the copies of each cell: cells that are linked share copies. */
+static gx_result gxp_list_cells(gx_body *body) {
+    gxp_view *view = &body->view;
+    uint32_t e, cell, i;
+    gx_result result;
+    view->count = 0;
+    result = gxp_grow_rows(body, GXP_VIEW, body->cells.count);
+    if (result == GX_OK) result = gxp_start_words(body, &view->copy_fragment, body->copies.count);
+    if (result != GX_OK) return result;
+    view->copy_fragment.count = body->copies.count;
+    for (i = 0; i < body->copies.count; i++) view->copy_fragment.data[i] = i;
+    for (e = 0; e < body->mesh.element_count; e++)
+        for (cell = e; cell != GXP_NONE; cell = body->cells.data[cell].next) {
+            const gxp_cell *c = &body->cells.data[cell];
+            if (!c->kept) continue;
+            view->volume[view->count] = c->volume;
+            view->slot[view->count] = cell;
+            view->element[view->count] = e;
+            memcpy(view->copies + 4 * (size_t)view->count++, c->copies, sizeof c->copies);
+            gxp_unite_all(view->copy_fragment.data, c->copies);
+        }
+    return GX_OK;
+}
+
+/* Numbers fragments in the order of their first cells. */
+static gx_result gxp_number_fragments(gx_body *body) {
+    gxp_view *view = &body->view;
+    uint32_t i;
+    gx_result result = gxp_start_words(body, &view->fragment_number, body->copies.count);
+    if (result != GX_OK) return result;
+    memset(view->fragment_number.data, 0xff, body->copies.count * sizeof *view->fragment_number.data);
+    view->fragment_count = 0;
+    for (i = 0; i < view->count; i++) {
+        const uint32_t copy = gxp_find(view->copy_fragment.data, view->copies[4 * i]);
+        if (view->fragment_number.data[copy] == GXP_NONE) view->fragment_number.data[copy] = view->fragment_count++;
+        view->fragment[i] = view->fragment_number.data[copy];
+    }
+    return GX_OK;
+}
+
+/* The fragment of a cell slot; the view is up to date. */
+static uint32_t gxp_cell_fragment(gx_body *body, uint32_t cell) {
+    return body->view.fragment_number.data[gxp_find(body->view.copy_fragment.data, body->cells.data[cell].copies[0])];
+}
+
+/* Lists cells and fragments, if a cut has been. Volumes and masses are summed in gx_body_view only. */
+static gx_result gxp_update_view(gx_body *body) {
+    gxp_view *view = &body->view;
+    gx_result result;
+    if (!view->stale) return GX_OK;
+    view->labels_known = 0;
+    result = gxp_list_cells(body);
+    if (result == GX_OK) result = gxp_number_fragments(body);
+    if (result != GX_OK) return result;
+    view->stale = 0;
+    view->sums_stale = view->labels_known = 1;
+    view->splits.count = 0;
+    return GX_OK;
+}
+
+/* The leaf of before the cut that this one is part of */
+static uint32_t gxp_old_leaf(const gx_body *body, uint32_t leaf) {
+    while (leaf >= body->leaves.count) leaf = gxb_complex_leaf(body->complex, leaf)->parent;
+    return leaf;
+}
+
+/* May the cut touch this leaf? It may if the cell that had it before the cut bears the scope's stamp. */
+static int gxp_in_scope(void *user, uint32_t leaf) {
+    const gx_body *body = (const gx_body *)user;
+    return body->cells.stamp[body->leaves.data[gxp_old_leaf(body, leaf)].cell] == body->scratch.scope_stamp;
+}
+
+/* Stamps the cells that the cut may touch. *scoped: 0 if these are all. */
+static gx_result gxp_stamp_scope(gxp_cut *cut, int *scoped) {
+    gx_body *body = cut->body;
+    gxp_view *view = &body->view;
+    gxp_scratch *scratch = &body->scratch;
+    const gx_cut_desc *desc = cut->desc;
+    gx_result result;
+    size_t i, j;
+    *scoped = desc->scope_fragment_count > 0 || desc->scope_cell_count > 0;
+    if (!*scoped) return GX_OK;
+    result = gxp_update_view(body);
+    if (result != GX_OK) return result;
+    scratch->scope_stamp = ++scratch->stamp;
+    for (i = 0; i < desc->scope_cell_count; i++) {
+        if (desc->scope_cells[i] >= view->count) {
+            cut->failure.index = i;
+            return GX_ERROR_INDEX;
+        }
+        body->cells.stamp[view->slot[desc->scope_cells[i]]] = scratch->scope_stamp;
+    }
+    for (i = 0; i < desc->scope_fragment_count; i++) {
+        if (desc->scope_fragments[i] >= view->fragment_count) {
+            cut->failure.index = i;
+            return GX_ERROR_INDEX;
+        }
+        for (j = 0; j < view->count; j++)
+            if (view->fragment[j] == desc->scope_fragments[i]) body->cells.stamp[view->slot[j]] = scratch->scope_stamp;
+    }
+    return GX_OK;
+}
+
+/* >>surfaces: what the caller cuts with ---------------------------------------------------------------------------- */
+/* In: a surface as the caller gave it. Out: the same, checked, with equal vertices merged, edges sorted and triangles
+   without area marked; a record of it for the skin. Touches the body's records of surfaces. */
 
 typedef struct gxp_half_edge {
     uint32_t from, to, triangle, corner;
@@ -1727,8 +2109,7 @@ static int gxp_compare_points(const void *a, const void *b) {
     return p->index != q->index ? p->index < q->index ? -1 : 1 : 0;
 }
 
-/* One surface while it cuts: its triangles, the vertices and planes already in the complex, and which triangles meet at
- * edges. */
+/* A surface during the cut: its triangles, its vertices and planes in the complex, its edges */
 typedef struct gxp_surface {
     const gx_surface *given;
     size_t number;           /* among the cut's surfaces */
@@ -1743,11 +2124,11 @@ typedef struct gxp_surface {
 
 static void gxp_surface_free(gx_body *body, gxp_surface *s) {
     const size_t v = s->given->vertex_count, t = s->given->triangle_count;
-    gxp_release(&body->allocator, s->point, v * sizeof *s->point);
-    gxp_release(&body->allocator, s->triangles, t * sizeof *s->triangles);
-    gxp_release(&body->allocator, s->flat, t);
-    gxp_release(&body->allocator, s->edges, 3 * t * sizeof *s->edges);
-    gxp_release(&body->allocator, s->merged, v * sizeof *s->merged);
+    gxp_release(&body->config.allocator, s->point, v * sizeof *s->point);
+    gxp_release(&body->config.allocator, s->triangles, t * sizeof *s->triangles);
+    gxp_release(&body->config.allocator, s->flat, t);
+    gxp_release(&body->config.allocator, s->edges, 3 * t * sizeof *s->edges);
+    gxp_release(&body->config.allocator, s->merged, v * sizeof *s->merged);
 }
 
 static gx_result gxp_check_surface(gxp_cut *cut, const gx_surface *s, size_t number) {
@@ -1775,7 +2156,7 @@ static gx_result gxp_check_surface(gxp_cut *cut, const gx_surface *s, size_t num
     return GX_OK;
 }
 
-/* A triangle has no area where all its projections to coordinate planes have none. */
+/* A triangle has no area if all its projections to coordinate planes have none. */
 static int gxp_is_flat(const double *a, const double *b, const double *c) {
     int k;
     for (k = 0; k < 3; k++) {
@@ -1792,9 +2173,10 @@ static int gxp_is_flat(const double *a, const double *b, const double *c) {
     return 1;
 }
 
+/* Finds for each vertex the first one with the same coordinates. */
 static gx_result gxp_merge_vertices(gx_body *body, gxp_surface *s) {
     const size_t n = s->given->vertex_count;
-    gxp_named_point *named = (gxp_named_point *)gxp_allocate(&body->allocator, n * sizeof *named);
+    gxp_named_point *named = (gxp_named_point *)gxp_allocate(&body->config.allocator, n * sizeof *named);
     size_t i;
     if (named == NULL) return GX_ERROR_MEMORY;
     for (i = 0; i < n; i++) {
@@ -1807,10 +2189,11 @@ static gx_result gxp_merge_vertices(gx_body *body, gxp_surface *s) {
                          named[i].x[2] == named[i - 1].x[2];
         s->merged[named[i].index] = same ? s->merged[named[i - 1].index] : named[i].index;
     }
-    gxp_release(&body->allocator, named, n * sizeof *named);
+    gxp_release(&body->config.allocator, named, n * sizeof *named);
     return GX_OK;
 }
 
+/* Sorts the half-edges, so that those with the same ends stand together. */
 static void gxp_sort_edges(gxp_surface *s) {
     uint32_t t, k;
     for (t = 0; t < s->given->triangle_count; t++)
@@ -1828,7 +2211,7 @@ static int gxp_same_ends(const gxp_half_edge *a, const gxp_half_edge *b) {
     return (a->from == b->from && a->to == b->to) || (a->from == b->to && a->to == b->from);
 }
 
-/* A surface has no boundary where at each edge as many triangles go one way as the other. */
+/* A surface has no boundary if at each edge equally many triangles run one way and the other. */
 static gx_result gxp_check_closed(gxp_cut *cut, const gxp_surface *s) {
     const size_t n = 3 * s->given->triangle_count;
     size_t i, j;
@@ -1845,8 +2228,8 @@ static gx_result gxp_check_closed(gxp_cut *cut, const gxp_surface *s) {
     return GX_OK;
 }
 
-/* The affine map from material coordinates (less the complex's origin) to the texture of one triangle: with edges p and
-   q and n = p x q, a vector has the share g . (x - a) of p, with g = (q x n) / |n|^2, and of q with (n x p) / |n|^2. */
+/* The affine map from material coordinates (less the complex's origin) to the texture of one triangle. With edges p and
+   q and n = p x q, the share of p in x - a is g . (x - a), g = (q x n) / |n|^2; that of q has (n x p) / |n|^2. */
 static void gxp_map_triangle(const gx_body *body, const gx_surface *s, size_t triangle, double map[8]) {
     const uint32_t *t = s->triangles + 3 * triangle;
     const double *a = s->vertices + 3 * (size_t)t[0], *b = s->vertices + 3 * (size_t)t[1],
@@ -1868,29 +2251,29 @@ static void gxp_map_triangle(const gx_body *body, const gx_surface *s, size_t tr
             const int x = (k + 1) % 3, y = (k + 2) % 3;
             const double g = q[x] * n[y] - q[y] * n[x], h = n[x] * p[y] - n[y] * p[x];
             map[4 * i + k] = square > 0 ? (du * g + dv * h) / square : 0;
-            /* of sizes whose fourth powers doubles do not have */
+            /* fourth powers of its sizes are beyond doubles */
             if (!gxp_is_finite(map[4 * i + k])) map[4 * i + k] = 0;
             map[4 * i + 3] -= map[4 * i + k] * (a[k] - gxb_complex_origin(body->complex)[k]);
         }
     }
 }
 
-/* Notes a surface that begins to cut: where its labels start, and how material points map to its texture. */
+/* Records a surface that begins to cut: where its labels start, and the maps to its texture. */
 static gx_result gxp_note_surface(gx_body *body, const gx_surface *given) {
     const size_t maps = given->texture != NULL ? given->triangle_count : 0;
-    gx_result result = gxp_reserve(&body->allocator, &body->surfaces, sizeof *body->surfaces, body->surface_count,
-                                   &body->surface_capacity, 1);
+    gxp_cuts *cuts = &body->cuts;
+    gx_result result = gxp_grow_rows(body, GXP_SURFACES, 1);
     uint32_t i;
-    if (result == GX_OK)
-        result =
-            gxp_reserve(&body->allocator, &body->maps, 8 * sizeof(double), body->map_count, &body->map_capacity, maps);
+    if (result == GX_OK) result = gxp_grow_rows(body, GXP_MAPS, maps);
     if (result != GX_OK) return result;
-    body->surfaces[body->surface_count].label = body->label_count;
-    body->surfaces[body->surface_count++].map = maps > 0 ? body->map_count : GXP_NONE;
-    for (i = 0; i < maps; i++) gxp_map_triangle(body, given, i, body->maps + 8 * (size_t)body->map_count++);
+    cuts->surfaces[cuts->surface_count].label = cuts->label_count;
+    cuts->surfaces[cuts->surface_count++].map = maps > 0 ? cuts->map_count : GXP_NONE;
+    for (i = 0; i < maps; i++) gxp_map_triangle(body, given, i, cuts->maps + 8 * (size_t)cuts->map_count++);
     return GX_OK;
 }
 
+/* Prepares a surface for the cut and checks what makes it closed. It is freed by gxp_surface_free, also after an
+   error. */
 static gx_result gxp_surface_open(gxp_cut *cut, gxp_surface *s, const gx_surface *given, size_t number) {
     gx_body *body = cut->body;
     const size_t v = given->vertex_count, t = given->triangle_count;
@@ -1899,16 +2282,16 @@ static gx_result gxp_surface_open(gxp_cut *cut, gxp_surface *s, const gx_surface
     memset(s, 0, sizeof *s);
     s->given = given;
     s->number = number;
-    s->label = body->label_count;
-    if (t > INT32_MAX - (size_t)body->label_count) return GX_ERROR_LIMIT;
+    s->label = body->cuts.label_count;
+    if (t > INT32_MAX - (size_t)body->cuts.label_count) return GX_ERROR_LIMIT;
     result = gxp_note_surface(body, given);
     if (result != GX_OK) return result;
-    body->label_count += (uint32_t)t;
-    s->point = (uint32_t *)gxp_allocate(&body->allocator, v * sizeof *s->point);
-    s->triangles = (gxb_triangle *)gxp_allocate(&body->allocator, t * sizeof *s->triangles);
-    s->flat = (uint8_t *)gxp_allocate(&body->allocator, t);
-    s->edges = (gxp_half_edge *)gxp_allocate(&body->allocator, 3 * t * sizeof *s->edges);
-    s->merged = (uint32_t *)gxp_allocate(&body->allocator, v * sizeof *s->merged);
+    body->cuts.label_count += (uint32_t)t;
+    s->point = (uint32_t *)gxp_allocate(&body->config.allocator, v * sizeof *s->point);
+    s->triangles = (gxb_triangle *)gxp_allocate(&body->config.allocator, t * sizeof *s->triangles);
+    s->flat = (uint8_t *)gxp_allocate(&body->config.allocator, t);
+    s->edges = (gxp_half_edge *)gxp_allocate(&body->config.allocator, 3 * t * sizeof *s->edges);
+    s->merged = (uint32_t *)gxp_allocate(&body->config.allocator, v * sizeof *s->merged);
     if (!s->point || !s->triangles || !s->flat || !s->edges || !s->merged) return GX_ERROR_MEMORY;
     memset(s->point, 0xff, v * sizeof *s->point);
     memcpy(s->low, given->vertices, sizeof s->low);
@@ -1931,9 +2314,232 @@ static gx_result gxp_surface_open(gxp_cut *cut, gxp_surface *s, const gx_surface
     return given->kind == GX_SURFACE_SOLID ? gxp_check_closed(cut, s) : GX_OK;
 }
 
-/* >>arrange: the surfaces go into the complex ---------------------------------------------------------------------- */
+/* >>pinches: elements that meet in a node or an edge only ---------------------------------------------------------- */
+/* Where elements do not hang together through faces around a node or edge, that node or edge joins the cells around it,
+   unless a wall touches it. In: the mesh, at creation; a triangle or a cell, at a cut. Out: which nodes and edges are
+   pinched; marks in the complex where a sheet separates what meets there only; the cells that a joint joins. */
 
-/* A coplanar neighbour across an edge that already has a plane lends it. */
+/* Lists the elements that faces through the node connect to the first one. */
+static gx_result gxp_walk_around(gx_body *body, uint32_t start, uint32_t node, gxp_words *elements) {
+    gx_result result = GX_OK;
+    uint32_t done = 0;
+    elements->count = 0;
+    body->cells.stamp[start] = body->scratch.stamp;
+    result = gxp_push(body, elements, start);
+    while (done < elements->count && result == GX_OK) {
+        const uint32_t e = elements->data[done++];
+        uint32_t k;
+        for (k = 0; k < 4 && result == GX_OK; k++) {
+            const uint32_t other = gxp_neighbour(body, e, k), opposite = gxb_complex_element_nodes(body->complex, e)[k];
+            if (other == GXP_NONE || body->cells.stamp[other] == body->scratch.stamp || opposite == node) continue;
+            body->cells.stamp[other] = body->scratch.stamp;
+            result = gxp_push(body, elements, other);
+        }
+    }
+    return result;
+}
+
+/* Marks the nodes whose elements are not all connected by faces through the node. */
+static gx_result gxp_find_pinched_nodes(gx_body *body) {
+    gxp_words reached = {NULL, 0, 0};
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (i = 0; i < body->mesh.node_count && result == GX_OK; i++) {
+        const uint32_t first = body->mesh.node_start[i], count = body->mesh.node_start[i + 1] - first;
+        if (count == 0) continue;
+        body->scratch.stamp++;
+        result = gxp_walk_around(body, body->mesh.node_elements[first], i, &reached);
+        if (result == GX_OK && reached.count != count) body->mesh.node_pinched[i] = GXP_NODE_PINCHED;
+    }
+    gxp_release(&body->config.allocator, reached.data, reached.capacity * sizeof *reached.data);
+    return result;
+}
+
+/* Marks the edges whose elements are not all connected by faces through the edge, and their nodes. The elements around
+   an edge form as many fans as the edge has pairs of boundary faces; one fan has none or two of these faces. */
+static void gxp_find_pinched_edges(gx_body *body) {
+    const gxb_complex *cx = body->complex;
+    uint32_t i, j, k;
+    for (i = 0; i < body->mesh.element_count; i++)
+        for (k = 0; k < 4; k++)
+            for (j = 0; j < 6; j++) {
+                const uint32_t edge = gxb_complex_element_edges(cx, i)[j];
+                if (gxp_neighbour(body, i, k) != GXP_NONE || gxp_edge_nodes[j][0] == k || gxp_edge_nodes[j][1] == k)
+                    continue;
+                if (body->mesh.edge_pinched[edge] < 3) body->mesh.edge_pinched[edge]++;
+            }
+    for (i = 0; i < body->mesh.edge_count; i++) body->mesh.edge_pinched[i] = body->mesh.edge_pinched[i] > 2;
+    for (i = 0; i < body->mesh.element_count; i++)
+        for (j = 0; j < 6; j++) {
+            if (!body->mesh.edge_pinched[gxb_complex_element_edges(cx, i)[j]]) continue;
+            body->mesh.node_pinched[gxb_complex_element_nodes(cx, i)[gxp_edge_nodes[j][0]]] |= GXP_EDGE_PINCHED;
+            body->mesh.node_pinched[gxb_complex_element_nodes(cx, i)[gxp_edge_nodes[j][1]]] |= GXP_EDGE_PINCHED;
+        }
+}
+
+/* A point or an edge of the complex in which elements meet; the other of the two is GXB_NONE */
+typedef struct gxp_joint {
+    uint32_t point, edge;
+    int found, walled;
+} gxp_joint;
+
+/* Is the joint on the leaf's boundary (found), and does a wall touch it there (walled)? */
+static gx_result gxp_find_leaf_joint(gx_body *body, uint32_t leaf, gxp_joint *joint) {
+    gxb_complex *cx = body->complex;
+    uint32_t first, count = 0, i, j, e0, en;
+    gx_result result = gxb_complex_open_element(cx, gxb_complex_leaf(cx, leaf)->element);
+    if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
+    joint->found = 0;
+    for (i = 0; i < count && result == GX_OK; i++) {
+        const uint32_t facet = gxp_item(cx, first + i);
+        result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
+        for (j = 0; j < en && result == GX_OK; j++) {
+            const uint32_t e = gxp_item(cx, e0 + j);
+            if (joint->point != GXB_NONE ? gxb_complex_edge_start(cx, e) != joint->point : e >> 1 != joint->edge)
+                continue;
+            joint->found = 1;
+            joint->walled |= gxb_complex_facet(cx, facet)->wall != 0 || gxb_complex_leaf(cx, leaf)->removed != 0 ||
+                             (joint->point != GXB_NONE ? gxb_complex_point(cx, joint->point)->wall
+                                                       : gxb_complex_edge(cx, joint->edge)->wall) != 0;
+        }
+    }
+    return result;
+}
+
+/* Is the node, or any piece of the mesh edge, on the boundary of a leaf of the element that the cut may touch? The
+   other of the two is GXB_NONE. */
+static gx_result gxp_is_joint_in_scope(gx_body *body, uint32_t element, uint32_t node, uint32_t edge, int *found) {
+    gxp_scratch *scratch = &body->scratch;
+    gx_result result = GX_OK;
+    uint32_t i, j;
+    *found = 0;
+    scratch->joint_leaves.count = scratch->joint_edges.count = 0;
+    if (edge == GXB_NONE)
+        result = gxp_push(body, &scratch->joint_edges, GXB_NONE);
+    else
+        result = gxp_push_divided_edges(body, gxb_complex_mesh_edge(body->complex, edge), &scratch->joint_edges);
+    if (result == GX_OK)
+        result = gxp_push_leaves(body, gxb_complex_root(body->complex, element), &scratch->joint_leaves);
+    for (i = 0; i < scratch->joint_leaves.count && result == GX_OK; i++) {
+        gxp_joint joint;
+        if (!gxp_in_scope(body, scratch->joint_leaves.data[i])) continue;
+        for (j = 0; j < scratch->joint_edges.count && result == GX_OK && !*found; j++) {
+            joint.point = node;
+            joint.edge = scratch->joint_edges.data[j];
+            joint.walled = 0;
+            result = gxp_find_leaf_joint(body, scratch->joint_leaves.data[i], &joint);
+            *found |= joint.found;
+        }
+    }
+    return result;
+}
+
+/* A sheet through a pinched node or edge separates the elements that meet there, even if it enters none of them. */
+static gx_result gxp_cover_pinches(gx_body *body, gxb_triangle *t, uint32_t element, int scoped) {
+    const gxb_complex *cx = body->complex;
+    uint32_t k, pinched = 0;
+    gx_result result = GX_OK;
+    for (k = 0; k < 4; k++) pinched |= body->mesh.node_pinched[gxb_complex_element_nodes(cx, element)[k]];
+    if (!pinched) return GX_OK;
+    for (k = 0; k < 4 && result == GX_OK; k++) {
+        const uint32_t node = gxb_complex_element_nodes(cx, element)[k];
+        int covered = 0, allowed = 1;
+        if (!(body->mesh.node_pinched[node] & 1)) continue;
+        if (scoped) result = gxp_is_joint_in_scope(body, element, node, GXB_NONE, &allowed);
+        if (result == GX_OK && allowed) result = gxb_complex_cover_node(body->complex, t, node, &covered);
+        if (covered && result == GX_OK) result = gxp_push(body, &body->scratch.pinches, node);
+    }
+    for (k = 0; k < 6 && result == GX_OK; k++) {
+        int covered = 0, allowed = 1;
+        if (!body->mesh.edge_pinched[gxb_complex_element_edges(cx, element)[k]]) continue;
+        if (scoped)
+            result =
+                gxp_is_joint_in_scope(body, element, GXB_NONE, gxb_complex_element_edges(cx, element)[k], &allowed);
+        if (result == GX_OK && allowed) result = gxb_complex_cover_edge(body->complex, t, element, k, &covered);
+        if (covered && result == GX_OK)
+            result =
+                gxp_push(body, &body->scratch.pinches, gxb_complex_element_nodes(cx, element)[gxp_edge_nodes[k][0]]);
+        if (covered && result == GX_OK)
+            result =
+                gxp_push(body, &body->scratch.pinches, gxb_complex_element_nodes(cx, element)[gxp_edge_nodes[k][1]]);
+    }
+    return result;
+}
+
+/* Appends the cells around the node that have the joint on their boundary. Removed leaves count as walls. */
+static gx_result gxp_find_joint_cells(gx_body *body, uint32_t node, gxp_joint *joint, gxp_words *found) {
+    gxp_scratch *scratch = &body->scratch;
+    uint32_t j, i;
+    gx_result result = GX_OK;
+    joint->walled = 0;
+    scratch->joint_leaves.count = 0;
+    for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1] && result == GX_OK; j++)
+        result =
+            gxp_push_leaves(body, gxb_complex_root(body->complex, body->mesh.node_elements[j]), &scratch->joint_leaves);
+    for (i = 0; i < scratch->joint_leaves.count && result == GX_OK; i++) {
+        const uint32_t leaf = scratch->joint_leaves.data[i];
+        result = gxp_find_leaf_joint(body, leaf, joint);
+        if (joint->found && !gxb_complex_leaf(body->complex, leaf)->removed && result == GX_OK)
+            result = gxp_push(body, found, body->leaves.data[leaf].cell);
+    }
+    return result;
+}
+
+/* Visits the cells that the joint connects to this cell. */
+static gx_result gxp_cross_joint(gx_body *body, uint32_t cell, uint32_t node, uint32_t point, uint32_t edge) {
+    gxp_scratch *scratch = &body->scratch;
+    gxp_joint joint;
+    uint32_t i, member = 0;
+    gx_result result;
+    joint.point = point;
+    joint.edge = edge;
+    joint.walled = joint.found = 0;
+    scratch->joint_cells.count = 0;
+    result = gxp_find_joint_cells(body, node, &joint, &scratch->joint_cells);
+    for (i = 0; i < scratch->joint_cells.count; i++) member |= scratch->joint_cells.data[i] == cell;
+    for (i = 0; i < scratch->joint_cells.count && result == GX_OK && member && !joint.walled; i++)
+        result = gxp_visit_cell(body, scratch->joint_cells.data[i], &scratch->subdomain_cells);
+    return result;
+}
+
+/* Visits the cells that the node, if it is pinched, and its pinched edges connect to this cell. */
+static gx_result gxp_cross_pinches(gx_body *body, uint32_t cell, uint32_t node) {
+    gxp_scratch *scratch = &body->scratch;
+    const uint32_t element = body->cells.data[cell].element;
+    gxb_complex *cx = body->complex;
+    uint32_t k, i;
+    gx_result result = gxb_complex_open_element(cx, element);
+    if (result == GX_OK && (body->mesh.node_pinched[node] & 1))
+        result = gxp_cross_joint(body, cell, node, node, GXB_NONE);
+    for (k = 0; k < 6 && result == GX_OK; k++) {
+        const uint32_t edge = gxb_complex_element_edges(cx, element)[k];
+        const uint32_t a = gxb_complex_element_nodes(cx, element)[gxp_edge_nodes[k][0]],
+                       b = gxb_complex_element_nodes(cx, element)[gxp_edge_nodes[k][1]];
+        if (!body->mesh.edge_pinched[edge] || (a != node && b != node)) continue;
+        scratch->joint_edges.count = 0;
+        result = gxp_push_divided_edges(body, gxb_complex_mesh_edge(cx, edge), &scratch->joint_edges);
+        for (i = 0; i < scratch->joint_edges.count && result == GX_OK; i++)
+            result = gxp_cross_joint(body, cell, node, GXB_NONE, scratch->joint_edges.data[i]);
+    }
+    return result;
+}
+
+/* Adds the pinched nodes of the pairs to the nodes at which walls may break joints, and sorts these. */
+static gx_result gxp_add_pinches(gx_body *body, const gxp_keys *pairs) {
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (i = 0; i < pairs->count && result == GX_OK; i++)
+        if (body->mesh.node_pinched[GXP_FIRST(pairs->data[i])])
+            result = gxp_push(body, &body->scratch.pinches, GXP_FIRST(pairs->data[i]));
+    gxp_sort_unique(&body->scratch.pinches);
+    return result;
+}
+
+/* >>arrange: the surfaces go into the complex ---------------------------------------------------------------------- */
+/* In: an opened surface. Out: its triangles in the complex, element by element, where they make walls or, of a solid,
+   leave their labels. Touches the complex, and the list of nodes at which a sheet covers a pinch. */
+
+/* Takes over the plane of a coplanar neighbour across an edge. Returns 0 if there is none. */
 static int gxp_borrow_plane(gx_body *body, gxp_surface *s, uint32_t t) {
     gxb_triangle *own = &s->triangles[t];
     const size_t n = 3 * s->given->triangle_count;
@@ -1952,7 +2558,7 @@ static int gxp_borrow_plane(gx_body *body, gxp_surface *s, uint32_t t) {
             if (e->triangle == t || other->plane == GXP_NONE || s->flat[e->triangle]) continue;
             if (gxb_complex_side(body->complex, own->point[(k + 2) % 3], other->plane) != 0) continue;
             own->plane = other->plane;
-            own->orientation = 0; /* settled by gxp_settle_orientation */
+            own->orientation = 0; /* set by gxp_settle_orientation */
             own->edge_plane[0] = own->edge_plane[1] = own->edge_plane[2] = GXB_NONE;
             return 1;
         }
@@ -1960,7 +2566,7 @@ static int gxp_borrow_plane(gx_body *body, gxp_surface *s, uint32_t t) {
     return 0;
 }
 
-/* Does the triangle turn as the plane's own normal says? Seen along the plane's axis. */
+/* Does the triangle turn counter-clockwise about the plane's normal? Decided in projection along the plane's axis. */
 static void gxp_settle_orientation(const gx_body *body, const gxp_surface *s, gxb_triangle *t, uint32_t index) {
     const gxb_cplane *plane = gxb_complex_plane(body->complex, t->plane);
     const int i = (int)(plane->axis + 1) % 3, j = (int)(plane->axis + 2) % 3;
@@ -1974,7 +2580,7 @@ static void gxp_settle_orientation(const gx_body *body, const gxp_surface *s, gx
     t->orientation = gxb_orient2d(p[0], p[1], p[2]) * plane->axis_sign;
 }
 
-/* Gives the triangle its points and its plane in the complex, once. */
+/* Gives the triangle its points and its plane in the complex. */
 static gx_result gxp_prepare_triangle(gxp_cut *cut, gxp_surface *s, uint32_t index) {
     gx_body *body = cut->body;
     gxb_triangle *t = &s->triangles[index];
@@ -1997,127 +2603,18 @@ static gx_result gxp_prepare_triangle(gxp_cut *cut, gxp_surface *s, uint32_t ind
     return gxb_complex_add_plane(body->complex, t);
 }
 
-static uint32_t gxp_old_leaf(const gx_body *body, uint32_t leaf) {
-    while (leaf >= body->leaf_count) leaf = body->complex->leaves[leaf].parent;
-    return leaf;
-}
-
-/* May the cut touch this leaf? Its cell (before the cut) is in scope where it is stamped. */
-static int gxp_in_scope(void *user, uint32_t leaf) {
-    const gx_body *body = (const gx_body *)user;
-    return body->cell_stamp[body->leaves[gxp_old_leaf(body, leaf)].cell] == body->scope_stamp;
-}
-
-/* a point, or an edge of the complex */
-typedef struct gxp_joint {
-    uint32_t point, edge;
-    int found, walled;
-} gxp_joint;
-
-/* Does the leaf have the joint on its boundary, and does a wall touch it there? */
-static gx_result gxp_look_for_joint(gx_body *body, uint32_t leaf, gxp_joint *joint) {
-    gxb_complex *cx = body->complex;
-    uint32_t first, count = 0, i, j, e0, en;
-    gx_result result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
-    if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
-    joint->found = 0;
-    for (i = 0; i < count && result == GX_OK; i++) {
-        const uint32_t facet = cx->pool[first + i];
-        result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
-        for (j = 0; j < en && result == GX_OK; j++) {
-            const uint32_t e = cx->pool[e0 + j];
-            if (joint->point != GXB_NONE ? cx->edges[e >> 1].v[e & 1] != joint->point : e >> 1 != joint->edge) continue;
-            joint->found = 1;
-            joint->walled |= cx->facets[facet].wall != 0 || cx->leaves[leaf].removed != 0 ||
-                             (joint->point != GXB_NONE ? gxb_complex_point(cx, joint->point)->wall
-                                                       : cx->edges[joint->edge].wall) != 0;
-        }
-    }
-    return result;
-}
-
-/* Appends the leaves below a reference of an element's tree. */
-static gx_result gxp_push_leaves(gx_body *body, uint32_t reference, gxp_words *out) {
-    const gxb_node *node = &body->complex->nodes[reference >> 1];
-    gx_result result;
-    if (!(reference & 1)) return gxp_push(body, out, reference >> 1);
-    result = gxp_push_leaves(body, node->child[0], out);
-    return result == GX_OK ? gxp_push_leaves(body, node->child[1], out) : result;
-}
-
-/* Appends the edges of the complex into which this one has been divided. */
-static gx_result gxp_push_edge_pieces(gx_body *body, uint32_t edge, gxp_words *out) {
-    const uint32_t child = body->complex->edges[edge].child;
-    gx_result result;
-    if (child == GXB_NONE) return gxp_push(body, out, edge);
-    result = gxp_push_edge_pieces(body, child, out);
-    return result == GX_OK ? gxp_push_edge_pieces(body, child + 1, out) : result;
-}
-
-/* Has a leaf of the element that the cut may touch the node on its boundary, or any piece of the mesh edge? The other
- * of the two is GXB_NONE. */
-static gx_result gxp_look_in_scope(gx_body *body, uint32_t element, uint32_t node, uint32_t edge, int *found) {
-    gx_result result = GX_OK;
-    uint32_t i, j;
-    *found = 0;
-    body->triangles.count = body->faces.count = 0;
-    if (edge == GXB_NONE)
-        result = gxp_push(body, &body->faces, GXB_NONE);
-    else
-        result = gxp_push_edge_pieces(body, body->complex->mesh_edge[edge], &body->faces);
-    if (result == GX_OK) result = gxp_push_leaves(body, body->complex->root[element], &body->triangles);
-    for (i = 0; i < body->triangles.count && result == GX_OK; i++) {
-        gxp_joint joint;
-        if (!gxp_in_scope(body, body->triangles.data[i])) continue;
-        for (j = 0; j < body->faces.count && result == GX_OK && !*found; j++) {
-            joint.point = node;
-            joint.edge = body->faces.data[j];
-            joint.walled = 0;
-            result = gxp_look_for_joint(body, body->triangles.data[i], &joint);
-            *found |= joint.found;
-        }
-    }
-    return result;
-}
-
-/* A sheet through an edge or node in which alone elements meet separates them there, even if it enters neither. */
-static gx_result gxp_cover_pinches(gx_body *body, gxb_triangle *t, uint32_t element, int scoped) {
-    const gxb_complex *cx = body->complex;
-    uint32_t k, pinched = 0;
-    gx_result result = GX_OK;
-    for (k = 0; k < 4; k++) pinched |= body->node_pinched[cx->elements[4 * element + k]];
-    if (!pinched) return GX_OK;
-    for (k = 0; k < 4 && result == GX_OK; k++) {
-        const uint32_t node = cx->elements[4 * element + k];
-        int covered = 0, allowed = 1;
-        if (!(body->node_pinched[node] & 1)) continue;
-        if (scoped) result = gxp_look_in_scope(body, element, node, GXB_NONE, &allowed);
-        if (result == GX_OK && allowed) result = gxb_complex_cover_node(body->complex, t, node, &covered);
-        if (covered && result == GX_OK) result = gxp_push(body, &body->pinches, node);
-    }
-    for (k = 0; k < 6 && result == GX_OK; k++) {
-        int covered = 0, allowed = 1;
-        if (!body->edge_pinched[cx->element_edges[6 * element + k]]) continue;
-        if (scoped) result = gxp_look_in_scope(body, element, GXB_NONE, cx->element_edges[6 * element + k], &allowed);
-        if (result == GX_OK && allowed) result = gxb_complex_cover_edge(body->complex, t, element, k, &covered);
-        if (covered && result == GX_OK)
-            result = gxp_push(body, &body->pinches, cx->elements[4 * element + gxp_edge_nodes[k][0]]);
-        if (covered && result == GX_OK)
-            result = gxp_push(body, &body->pinches, cx->elements[4 * element + gxp_edge_nodes[k][1]]);
-    }
-    return result;
-}
-
+/* Inserts the triangle into every element that it meets. */
 static gx_result gxp_insert_triangle(gxp_cut *cut, gxp_surface *s, uint32_t index, int scoped) {
     gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
     const double *p[3];
     uint32_t k, i;
     gx_result result;
     for (k = 0; k < 3; k++) p[k] = s->given->vertices + 3 * (size_t)s->given->triangles[3 * index + k];
-    result = gxp_find_elements(body, p, &body->list);
-    if (result == GX_OK && body->list.count > 0) result = gxp_prepare_triangle(cut, s, index);
-    for (i = 0; i < body->list.count && result == GX_OK; i++) {
-        const uint32_t element = body->list.data[i];
+    result = gxp_find_elements(body, p, &scratch->near_elements);
+    if (result == GX_OK && scratch->near_elements.count > 0) result = gxp_prepare_triangle(cut, s, index);
+    for (i = 0; i < scratch->near_elements.count && result == GX_OK; i++) {
+        const uint32_t element = scratch->near_elements.data[i];
         result = gxb_complex_insert(body->complex, &s->triangles[index], element, scoped ? gxp_in_scope : NULL, body);
         if (result == GX_OK && s->triangles[index].wall)
             result = gxp_cover_pinches(body, &s->triangles[index], element, scoped);
@@ -2125,8 +2622,8 @@ static gx_result gxp_insert_triangle(gxp_cut *cut, gxp_surface *s, uint32_t inde
     return result;
 }
 
-/* Which of 512 intervals a coordinate lies in, in the frame of the body, which is there at most 1 long (further out it
-   begins again): bits of x 2^(shift + 9), rounded down. No arithmetic of doubles: the same under every flag. */
+/* The place of a coordinate on a grid of 512 intervals: bits of x 2^(shift + 9), rounded down. In the frame the body is
+   at most 1 long; further out the grid repeats. No arithmetic of doubles, so that it is the same under every flag. */
 static uint32_t gxp_grid_place(double x, int shift) {
     uint64_t bits, m;
     int power;
@@ -2137,7 +2634,7 @@ static uint32_t gxp_grid_place(double x, int shift) {
     return (uint32_t)(bits >> 63 ? ~m : m) & 511;
 }
 
-/* Number of a triangle's first corner on a Z-curve through the body: bits of its three places in turn */
+/* The place of a triangle's first corner on a Z-curve through the body: the bits of its three grid places in turn */
 static uint32_t gxp_curve_place(const gxp_cut *cut, const gxp_surface *s, uint32_t triangle) {
     const double *x = s->given->vertices + 3 * (size_t)s->given->triangles[3 * (size_t)triangle];
     uint32_t place = 0, k, b;
@@ -2149,124 +2646,63 @@ static uint32_t gxp_curve_place(const gxp_cut *cut, const gxp_surface *s, uint32
 }
 
 #define GXP_LAST_ROUND 31u
-#define GXP_EXPECTED   7u /* room for at most so many times more than rounds before the last have made */
+/* Room is made for at most this many times what the rounds before the last have made. */
+#define GXP_EXPECTED 7u
 
-/* Inserts the triangles in rounds, each eight times as large as the one before it: planes in random order make shallow
-   trees. Within a round they come along a curve, so that an element's triangles find its data in the cache [Amenta,
-   Choi, Rote, Incremental constructions con BRIO (2003)]. Always the same order. The rounds before the last one, which
-   is most of all, tell how much room that will take. */
+/* Inserts the triangles in rounds, each eight times as large as the one before: planes in random order make shallow
+   trees. Within a round the triangles follow a curve, so that the data of an element is in the cache for all its
+   triangles [Amenta, Choi, Rote, Incremental constructions con BRIO (2003)]. The order is always the same. The last
+   round has most triangles; the rounds before it tell how much room it needs. */
 static gx_result gxp_insert_surface(gxp_cut *cut, gxp_surface *s, int scoped) {
     const uint32_t count = (uint32_t)s->given->triangle_count;
     gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
     uint32_t i, before = 0;
     gx_result result;
-    body->pairs.count = 0;
-    result = gxp_keys_room(body, &body->pairs, 2 * (size_t)count); /* sorting takes as much again */
+    scratch->order.count = 0;
+    result = gxp_keys_room(body, &scratch->order, 2 * (size_t)count); /* sorting takes as much again */
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint64_t random = gxp_mix(i);
         uint32_t round = GXP_LAST_ROUND;
         while (round > 16 && !(random >> 3 * (GXP_LAST_ROUND - round) & 7)) round--;
         before += round < GXP_LAST_ROUND && !s->flat[i];
-        if (!s->flat[i]) result = gxp_push_key(body, &body->pairs, round << 27 | gxp_curve_place(cut, s, i), i);
+        if (!s->flat[i]) result = gxp_push_key(body, &scratch->order, round << 27 | gxp_curve_place(cut, s, i), i);
     }
-    if (result == GX_OK) result = gxp_sort_keys(body, &body->pairs, 0, body->pairs.count);
-    for (i = 0; i < body->pairs.count && result == GX_OK; i++) {
+    if (result == GX_OK) result = gxp_sort_keys(body, &scratch->order, 0, scratch->order.count);
+    for (i = 0; i < scratch->order.count && result == GX_OK; i++) {
         if (i == before && before >= 4) {
-            const uint32_t times = (body->pairs.count - before) / before;
+            const uint32_t times = (scratch->order.count - before) / before;
             gxb_complex_reserve(body->complex, times < GXP_EXPECTED ? times : GXP_EXPECTED);
         }
-        result = gxp_insert_triangle(cut, s, GXP_SECOND(body->pairs.data[i]), scoped);
+        result = gxp_insert_triangle(cut, s, GXP_SECOND(scratch->order.data[i]), scoped);
     }
     return result;
 }
 
-/* see >>fragments */
-static gx_result gxp_update_view(gx_body *body);
-static uint32_t gxp_cell_fragment(gx_body *body, uint32_t cell);
-
-/* Stamps the cells that the cut may touch. */
-static gx_result gxp_stamp_scope(gxp_cut *cut, int *scoped) {
-    gx_body *body = cut->body;
-    const gx_cut_desc *desc = cut->desc;
-    gx_result result;
-    size_t i, j;
-    *scoped = desc->scope_fragment_count > 0 || desc->scope_cell_count > 0;
-    if (!*scoped) return GX_OK;
-    result = gxp_update_view(body);
-    if (result != GX_OK) return result;
-    body->scope_stamp = ++body->stamp;
-    for (i = 0; i < desc->scope_cell_count; i++) {
-        if (desc->scope_cells[i] >= body->view_cells.count) {
-            cut->failure.index = i;
-            return GX_ERROR_INDEX;
-        }
-        body->cell_stamp[body->view_cells.data[desc->scope_cells[i]]] = body->scope_stamp;
-    }
-    for (i = 0; i < desc->scope_fragment_count; i++) {
-        if (desc->scope_fragments[i] >= body->fragment_count) {
-            cut->failure.index = i;
-            return GX_ERROR_INDEX;
-        }
-        for (j = 0; j < body->view_cells.count; j++)
-            if (body->view_fragments.data[j] == desc->scope_fragments[i])
-                body->cell_stamp[body->view_cells.data[j]] = body->scope_stamp;
-    }
-    return GX_OK;
-}
-
 /* >>solids: winding numbers of leaves ------------------------------------------------------------------------------ */
+/* In: a closed surface that is in the complex. Out: the leaves around which it winds, which are to be removed. Touches
+   marks of leaves only. */
 
-/* Room beside new leaves of the complex; new leaves start in their parent's cell, outside its list. */
-static gx_result gxp_follow_leaves(gx_body *body) {
-    const uint32_t count = body->complex->leaf_count;
-    const gx_result result = gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, body->leaf_count,
-                                         &body->leaf_capacity, count - body->leaf_count);
-    if (result != GX_OK) return result;
-    for (; body->leaf_count < count; body->leaf_count++) {
-        gxp_leaf *leaf = &body->leaves[body->leaf_count];
-        memset(leaf, 0, sizeof *leaf);
-        leaf->cell = body->leaves[body->complex->leaves[body->leaf_count].parent].cell;
-        leaf->next = GXP_NONE;
-    }
-    return GX_OK;
-}
-
-/* By how much the solid's winding number is larger behind the facet than in front: triangles that face its front
- * count 1. */
+/* The solid's winding number behind the facet less that in front of it; triangles that face its front count 1.
+ *labelled: the solid covers the facet. */
 static int32_t gxp_winding_step(const gx_body *body, const gxp_surface *s, uint32_t facet, int *labelled) {
     const gxb_complex *cx = body->complex;
     int32_t step = 0;
     uint32_t l;
     *labelled = 0;
-    for (l = cx->facets[facet].labels; l != GXB_NONE; l = cx->labels[l].next) {
-        if (cx->labels[l].triangle < s->label || cx->labels[l].triangle - s->label >= s->given->triangle_count)
+    for (l = gxb_complex_facet(cx, facet)->labels; l != GXB_NONE; l = gxb_complex_label(cx, l)->next) {
+        if (gxb_complex_label(cx, l)->triangle < s->label ||
+            gxb_complex_label(cx, l)->triangle - s->label >= s->given->triangle_count)
             continue;
         *labelled = 1;
-        step += cx->labels[l].orientation;
+        step += gxb_complex_label(cx, l)->orientation;
     }
     return step;
 }
 
-/* Collects the leaf's points in body->list. */
-static gx_result gxp_leaf_points(gx_body *body, uint32_t leaf) {
-    gxb_complex *cx = body->complex;
-    uint32_t first, count = 0, i, j, e0, en;
-    gx_result result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
-    body->list.count = 0;
-    if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
-    for (i = 0; i < count && result == GX_OK; i++) {
-        result = gxb_facet_resolve_edges(cx, cx->pool[first + i], &e0, &en);
-        for (j = 0; j < en && result == GX_OK; j++) {
-            const uint32_t e = cx->pool[e0 + j];
-            result = gxp_push(body, &body->list, cx->edges[e >> 1].v[e & 1]);
-        }
-    }
-    return result;
-}
-
-/* The winding number around a node. 0: the node is on the surface, and has none. */
-static int gxp_ask_node(const gx_body *body, const gxp_surface *s, uint32_t node, int32_t *winding) {
-    const double *x = body->positions + 3 * (size_t)node;
+/* The winding number around a node. Returns 0 if the node is on the surface and has none. */
+static int gxp_node_winding(const gx_body *body, const gxp_surface *s, uint32_t node, int32_t *winding) {
+    const double *x = body->mesh.positions + 3 * (size_t)node;
     int on_surface, k;
     *winding = 0;
     for (k = 0; k < 3; k++)
@@ -2275,149 +2711,138 @@ static int gxp_ask_node(const gx_body *body, const gxp_surface *s, uint32_t node
     return !on_surface;
 }
 
-/* The winding number around a leaf: around one of its nodes that is off the surface, else around a point inside it. */
-static gx_result gxp_ask_winding(gx_body *body, const gxp_surface *s, uint32_t leaf, int32_t *winding) {
+/* The winding number around a leaf: around one of its nodes off the surface, else around a point inside it. */
+static gx_result gxp_leaf_winding(gx_body *body, const gxp_surface *s, uint32_t leaf, int32_t *winding) {
+    gxp_scratch *scratch = &body->scratch;
     const gx_surface *g = s->given;
-    const gxb_leaf *l = &body->complex->leaves[leaf];
+    const gxb_leaf *l = gxb_complex_leaf(body->complex, leaf);
     uint32_t i;
     gx_result result;
     for (i = 0; i < 4 && l->facet_count == 0; i++)
-        if (gxp_ask_node(body, s, body->complex->elements[4 * (size_t)l->element + i], winding)) return GX_OK;
-    result = gxp_leaf_points(body, leaf);
-    for (i = 0; i < body->list.count && result == GX_OK; i++)
-        if (body->list.data[i] < body->node_count && gxp_ask_node(body, s, body->list.data[i], winding)) return GX_OK;
+        if (gxp_node_winding(body, s, gxb_complex_element_nodes(body->complex, l->element)[i], winding)) return GX_OK;
+    result = gxp_collect_leaf_points(body, leaf);
+    for (i = 0; i < scratch->leaf_points.count && result == GX_OK; i++)
+        if (scratch->leaf_points.data[i] < body->mesh.node_count &&
+            gxp_node_winding(body, s, scratch->leaf_points.data[i], winding))
+            return GX_OK;
     if (result == GX_OK)
-        *winding = gxb_complex_winding(body->complex, body->list.data, body->list.count, g->vertices, g->triangles,
-                                       g->triangle_count);
+        *winding = gxb_complex_winding(body->complex, scratch->leaf_points.data, scratch->leaf_points.count,
+                                       g->vertices, g->triangles, g->triangle_count);
     return result;
 }
 
-static int gxp_is_kept(const gx_body *body, uint32_t leaf) {
-    return leaf != GXB_NONE && !body->complex->leaves[leaf].removed;
-}
-
-/* Was the leaf kept and, where the cut has a scope, in it? Others were not divided by the solid and can't pass on
- * anything. */
+/* Is the leaf kept and, if the cut has a scope, in it? The solid did not divide other leaves, so that they have no
+   single winding number to pass on. */
 static int gxp_has_winding(gx_body *body, uint32_t leaf, int scoped) {
     return gxp_is_kept(body, leaf) && (!scoped || gxp_in_scope(body, leaf));
 }
 
+/* Notes the winding number of a leaf and lists it, unless this flood has met it. */
 static gx_result gxp_visit_winding(gx_body *body, uint32_t leaf, int32_t winding) {
-    if (body->leaves[leaf].stamp == body->stamp) return GX_OK;
-    body->leaves[leaf].stamp = body->stamp;
-    body->leaves[leaf].winding = winding;
-    return gxp_push(body, &body->queue, leaf);
+    if (body->leaves.mark[leaf].stamp == body->scratch.stamp) return GX_OK;
+    body->leaves.mark[leaf].stamp = body->scratch.stamp;
+    body->leaves.mark[leaf].winding = winding;
+    return gxp_push(body, &body->scratch.flooded, leaf);
 }
 
-/* The neighbours of a leaf inside the solid know their winding numbers; of one outside, those across the solid's
- * surface. */
+/* Passes the winding number on to the neighbours of a leaf: to all of a leaf inside the solid, across the solid's
+   surface only from a leaf outside. */
 static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_t leaf, int scoped) {
     gxb_complex *cx = body->complex;
-    const int32_t winding = body->leaves[leaf].winding;
+    const int32_t winding = body->leaves.mark[leaf].winding;
     uint32_t first, count = 0, i;
     gx_result result = GX_OK;
-    if (winding != 0) result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
+    if (winding != 0) result = gxb_complex_open_element(cx, gxb_complex_leaf(cx, leaf)->element);
     if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
-        const gxb_facet *f = &cx->facets[cx->pool[first + i]];
+        const gxb_facet *f = gxb_complex_facet(cx, gxp_item(cx, first + i));
         const int front = f->leaf[0] == leaf;
         int labelled;
-        const int32_t step = gxp_winding_step(body, s, cx->pool[first + i], &labelled);
+        const int32_t step = gxp_winding_step(body, s, gxp_item(cx, first + i), &labelled);
         if ((winding != 0 || labelled) && gxp_has_winding(body, f->leaf[front], scoped))
             result = gxp_visit_winding(body, f->leaf[front], winding + (front ? step : -step));
     }
     return result;
 }
 
-/* Works the queue off from where it stands. */
+/* Spreads from the listed leaves on, from *done to the end of the list, which grows. */
 static gx_result gxp_flood_winding(gx_body *body, const gxp_surface *s, uint32_t *done, int scoped) {
     gx_result result = GX_OK;
-    while (*done < body->queue.count && result == GX_OK)
-        result = gxp_spread_winding(body, s, body->queue.data[(*done)++], scoped);
+    while (*done < body->scratch.flooded.count && result == GX_OK)
+        result = gxp_spread_winding(body, s, body->scratch.flooded.data[(*done)++], scoped);
     return result;
 }
 
-/* Appends to seeds the leaves on both sides of the facets into which the labelled ones have been divided. */
-static gx_result gxp_wall_leaves(gx_body *body, uint32_t facet, gxp_words *seeds) {
-    const gxb_facet *f = &body->complex->facets[facet];
-    gx_result result = GX_OK;
-    if (f->child != GXB_NONE) {
-        const uint32_t child = f->child;
-        result = gxp_wall_leaves(body, child, seeds);
-        return result == GX_OK ? gxp_wall_leaves(body, child + 1, seeds) : result;
-    }
-    if (f->leaf[0] != GXB_NONE) result = gxp_push(body, seeds, f->leaf[0]);
-    if (f->leaf[1] != GXB_NONE && result == GX_OK) result = gxp_push(body, seeds, f->leaf[1]);
-    return result;
-}
-
-/* Does the flood, which goes across faces and stays in the scope, reach this cell from others of its fragment? Not for
-   certain where elements meet in nodes or edges only, or where the caller lists the cells of a scope. */
+/* Does the flood reach this cell from others of its fragment? It crosses faces and stays in the scope. The answer is
+   uncertain, 0, if elements meet in nodes or edges only, or if the caller lists the cells of a scope. */
 static int gxp_is_flooded(const gxp_cut *cut, uint32_t cell) {
-    const uint32_t *node = cut->body->complex->elements + 4 * (size_t)cut->body->cells[cell].element;
+    const uint32_t *node = gxb_complex_element_nodes(cut->body->complex, cut->body->cells.data[cell].element);
     uint32_t k;
     if (cut->desc->scope_cell_count > 0) return 0;
     for (k = 0; k < 4; k++)
-        if (cut->body->node_pinched[node[k]]) return 0;
+        if (cut->body->mesh.node_pinched[node[k]]) return 0;
     return 1;
 }
 
-/* Fragments (of before the cut) that the surface does not touch may lie in the solid as a whole: one leaf of each joins
-   the seeds, and one of each cell that the flood may not reach. */
+/* A fragment that the surface does not touch may lie inside the solid as a whole. Adds one leaf of each such fragment
+   to the seeds, and one of each cell that the flood may miss. The fragments are those of before the cut. */
 static gx_result gxp_seed_untouched(gxp_cut *cut) {
     gx_body *body = cut->body;
+    gxp_view *view = &body->view;
+    gxp_scratch *scratch = &body->scratch;
     gx_result result = gxp_update_view(body);
     uint32_t i;
-    body->nodes.count = 0;
-    if (result == GX_OK) result = gxp_words_room(body, &body->nodes, body->fragment_count);
+    scratch->seeded.count = 0;
+    if (result == GX_OK) result = gxp_words_room(body, &scratch->seeded, view->fragment_count);
     if (result != GX_OK) return result;
-    if (body->fragment_count > 0) memset(body->nodes.data, 0, body->fragment_count * sizeof *body->nodes.data);
-    for (i = 0; i < body->seeds.count; i++)
-        if (gxp_is_kept(body, body->seeds.data[i]))
-            body->nodes.data[gxp_cell_fragment(body, body->leaves[body->seeds.data[i]].cell)] = 1;
-    for (i = 0; i < body->view_cells.count && result == GX_OK; i++) {
-        const uint32_t cell = body->view_cells.data[i];
-        if (body->nodes.data[body->view_fragments.data[i]] && gxp_is_flooded(cut, cell)) continue;
-        body->nodes.data[body->view_fragments.data[i]] = 1;
-        result = gxp_push(body, &body->seeds, body->cells[cell].first_leaf);
+    if (view->fragment_count > 0) memset(scratch->seeded.data, 0, view->fragment_count * sizeof *scratch->seeded.data);
+    for (i = 0; i < scratch->seed_leaves.count; i++)
+        if (gxp_is_kept(body, scratch->seed_leaves.data[i]))
+            scratch->seeded.data[gxp_cell_fragment(body, body->leaves.data[scratch->seed_leaves.data[i]].cell)] = 1;
+    for (i = 0; i < view->count && result == GX_OK; i++) {
+        const uint32_t cell = view->slot[i];
+        if (scratch->seeded.data[view->fragment[i]] && gxp_is_flooded(cut, cell)) continue;
+        scratch->seeded.data[view->fragment[i]] = 1;
+        result = gxp_push(body, &scratch->seed_leaves, body->cells.data[cell].first_leaf);
     }
     return result;
 }
 
-/* Finds the winding numbers of the seeds and of what they lead to: body->queue. */
+/* Finds the winding numbers of the seeds and of all leaves that they lead to: scratch.flooded. */
 static gx_result gxp_find_windings(gx_body *body, const gxp_surface *s, int scoped) {
+    gxp_scratch *scratch = &body->scratch;
     uint32_t i, done = 0;
-    gx_result result = GX_OK;
-    body->queue.count = 0;
-    body->stamp++;
-    for (i = 0; i < body->seeds.count && result == GX_OK; i++) {
-        const uint32_t leaf = body->seeds.data[i];
+    gx_result result = gxp_start_words(body, &scratch->flooded, scratch->seed_leaves.count);
+    scratch->stamp++;
+    for (i = 0; i < scratch->seed_leaves.count && result == GX_OK; i++) {
+        const uint32_t leaf = scratch->seed_leaves.data[i];
         int32_t winding = 0;
-        if (!gxp_has_winding(body, leaf, scoped) || body->leaves[leaf].stamp == body->stamp) continue;
-        result = gxp_ask_winding(body, s, leaf, &winding);
+        if (!gxp_has_winding(body, leaf, scoped) || body->leaves.mark[leaf].stamp == scratch->stamp) continue;
+        result = gxp_leaf_winding(body, s, leaf, &winding);
         if (result == GX_OK) result = gxp_visit_winding(body, leaf, winding);
         if (result == GX_OK) result = gxp_flood_winding(body, s, &done, scoped);
     }
     return result;
 }
 
-/* Appends to body->removed the leaves around which the solid winds. All surfaces of the cut are in the complex. */
+/* Appends to scratch.removed the leaves around which the solid winds. All surfaces of the cut are in the complex. */
 static gx_result gxp_find_solid(gxp_cut *cut, const gxp_surface *s, int scoped) {
     gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
     uint32_t i;
-    gx_result result = GX_OK;
-    body->seeds.count = 0;
-    for (i = 0; i < body->complex->wall_count && result == GX_OK; i++)
-        result = gxp_wall_leaves(body, body->complex->walls[i] >> 1, &body->seeds);
+    gx_result result = gxp_list_marked_leaves(body, 0, &scratch->seed_leaves);
     if (result == GX_OK) result = gxp_seed_untouched(cut);
     if (result == GX_OK) result = gxp_find_windings(body, s, scoped);
-    for (i = 0; i < body->queue.count && result == GX_OK; i++)
-        if (body->leaves[body->queue.data[i]].winding != 0)
-            result = gxp_push(body, &body->removed, body->queue.data[i]);
+    if (result == GX_OK) result = gxp_words_room(body, &scratch->removed, scratch->flooded.count);
+    for (i = 0; i < scratch->flooded.count && result == GX_OK; i++)
+        if (body->leaves.mark[scratch->flooded.data[i]].winding != 0)
+            result = gxp_push(body, &scratch->removed, scratch->flooded.data[i]);
     return result;
 }
 
-/* --- exact sums for what doubles can't hold --- */
+/* >>links: shares of element faces that no wall covers ------------------------------------------------------------- */
+/* In: the links of new cells. Out: the smallest share of a face, and walls in the complex where a share is too small.
+   Shares are bounded in doubles first and computed from exact coordinates where that does not decide. */
 
 /* r += a b */
 static void gxp_num_add_product(gxb_num *r, const gxb_num *a, const gxb_num *b) {
@@ -2436,19 +2861,18 @@ typedef struct gxp_fine_point {
     gxb_limb limbs[4][32];
 } gxp_fine_point;
 
-/* >>links: pieces of element faces that no wall covers ------------------------------------------------------------- */
-
-/* Twice the area of a facet as seen along the axis of its plane, from approximate positions; *error: a bound for its
- * error. */
+/* Twice the area of a facet, projected along the axis of its plane, from approximate positions; *error bounds its
+   error. */
 static gx_result gxp_rough_area(gxb_complex *cx, uint32_t facet, double *area, double *error) {
-    const uint32_t axis = gxb_complex_plane(cx, cx->facets[facet].plane)->axis, x = (axis + 1) % 3, y = (axis + 2) % 3;
+    const uint32_t axis = gxb_complex_plane(cx, gxb_complex_facet(cx, facet)->plane)->axis, x = (axis + 1) % 3,
+                   y = (axis + 2) % 3;
     const gxb_ball *o = NULL;
     double a[2] = {0, 0}, b[2] = {0, 0}, sum = 0;
     uint32_t e0, en, i;
     const gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
     *error = 0;
     for (i = 0; i < en && result == GX_OK; i++) {
-        const gxb_ball *p = &gxb_complex_point(cx, gxb_complex_edge_start(cx, cx->pool[e0 + i]))->ball;
+        const gxb_ball *p = &gxb_complex_point(cx, gxb_complex_edge_start(cx, gxp_item(cx, e0 + i)))->ball;
         double size;
         if (i == 0) o = p;
         a[0] = b[0];
@@ -2463,8 +2887,8 @@ static gx_result gxp_rough_area(gxb_complex *cx, uint32_t facet, double *area, d
     return result;
 }
 
-/* The polygon of the points in body->seeds as a share of the face opposite to node k, in numbers that hold any size:
-   areas in the plane of two barycentric coordinates, where the face has 1. */
+/* The polygon of scratch.facet_points as a share of the face opposite to node k, in numbers of any size: its area in
+   the plane of two barycentric coordinates, where the face has area 1. */
 static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
     gxp_fine_point p[3];
     unsigned axes[3];
@@ -2476,7 +2900,7 @@ static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
     gxb_num_set(&one, 1.0, 0);
     for (i = 0; i < 3; i++)
         for (c = 0; c < 4; c++) p[i].c[c].d = p[i].limbs[c];
-    for (i = 0; i < body->seeds.count; i++) {
+    for (i = 0; i < body->scratch.facet_points.count; i++) {
         /* a: this point, b: the one before */
         gxp_fine_point *const a = &p[1 + i % 2], *const b = &p[1 + (i + 1) % 2];
         GXB_NUM(x);
@@ -2486,7 +2910,8 @@ static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
         GXB_NUM(s);
         GXB_NUM(t);
         GXB_NUM(d);
-        gxb_complex_barycentric_fine(body->complex, body->seeds.data[i], element, i == 0 ? p[0].c : a->c);
+        gxb_complex_barycentric_fine(body->complex, body->scratch.facet_points.data[i], element,
+                                     i == 0 ? p[0].c : a->c);
         if (i < 2) continue;
         gxb_num_sub(&x, &b->c[axes[1]], &p[0].c[axes[1]]);
         gxb_num_sub(&y, &b->c[axes[2]], &p[0].c[axes[2]]);
@@ -2500,80 +2925,42 @@ static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
     return fabs(gxb_num_to_double(&sum));
 }
 
-/* Collects the facet's corners in body->seeds. */
-static gx_result gxp_facet_points(gx_body *body, uint32_t facet) {
-    gxb_complex *cx = body->complex;
-    uint32_t e0, en, i;
-    gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
-    body->seeds.count = 0;
-    if (result == GX_OK) result = gxp_words_room(body, &body->seeds, en);
-    for (i = 0; i < en && result == GX_OK; i++)
-        body->seeds.data[body->seeds.count++] = cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1];
-    return result;
-}
-
-/* The local node of the element that the face does not have */
-static uint32_t gxp_local_face(const gxb_complex *cx, uint32_t element, uint32_t face) {
-    const uint32_t *faces = cx->element_faces + 4 * (size_t)element;
-    return 3 - 3 * (uint32_t)(faces[0] == face) - 2 * (uint32_t)(faces[1] == face) - (uint32_t)(faces[2] == face);
-}
-
-/* An element with the face, and the node of it that the face does not have. */
-static uint32_t gxp_face_element(const gxb_complex *cx, uint32_t face, uint32_t *k) {
-    const uint32_t element =
-        cx->face_elements[2 * face] != GXB_NONE ? cx->face_elements[2 * face] : cx->face_elements[2 * face + 1];
-    *k = gxp_local_face(cx, element, face);
-    return element;
-}
-
-/* Appends the facets into which this one has been divided. */
-static gx_result gxp_push_pieces(gx_body *body, uint32_t facet, gxp_words *out) {
-    const uint32_t child = body->complex->facets[facet].child;
-    gx_result result;
-    if (child == GXB_NONE) return gxp_push(body, out, facet);
-    result = gxp_push_pieces(body, child, out);
-    return result == GX_OK ? gxp_push_pieces(body, child + 1, out) : result;
-}
-
-/* Is the facet a link? */
-static int gxp_is_link(const gx_body *body, uint32_t facet) {
-    const gxb_facet *f = &body->complex->facets[facet];
-    return !f->wall && gxp_is_kept(body, f->leaf[0]) && gxp_is_kept(body, f->leaf[1]);
-}
-
-/* Puts cells in the place of leaves in the links of all fresh cells, those to one cell together. */
+/* Replaces the leaf behind each link of new cells by its cell, and sorts the links of each cell: those to one cell
+   stand together. */
 static gx_result gxp_settle_links(gx_body *body) {
+    gxp_scratch *scratch = &body->scratch;
     uint32_t i, j;
-    gx_result result = gxp_push(body, &body->link_first, body->links.count);
-    for (i = 0; i < body->fresh.count && result == GX_OK; i++) {
-        const uint32_t from = body->link_first.data[i], to = body->link_first.data[i + 1];
-        uint64_t *link = body->links.data;
-        body->cell_fresh[body->fresh.data[i]] = i;
+    gx_result result = gxp_push(body, &scratch->link_first, scratch->links.count);
+    for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++) {
+        const uint32_t from = scratch->link_first.data[i], to = scratch->link_first.data[i + 1];
+        uint64_t *link = scratch->links.data;
+        body->cells.new_index[scratch->new_cells.data[i]] = i;
         for (j = from; j < to; j++)
-            link[j] = (uint64_t)body->leaves[GXP_LINK_CELL(link[j])].cell << 33 | (link[j] & 0x1ffffffffu);
-        result = gxp_sort_keys(body, &body->links, from, to);
+            link[j] = (uint64_t)body->leaves.data[GXP_LINK_CELL(link[j])].cell << 33 | (link[j] & 0x1ffffffffu);
+        result = gxp_sort_keys(body, &scratch->links, from, to);
     }
     return result;
 }
 
-/* Index of a cell among the fresh ones, GXP_NONE: it is none of them. */
-static uint32_t gxp_fresh_index(const gx_body *body, uint32_t cell) {
-    const uint32_t i = body->cell_fresh[cell];
-    return i < body->fresh.count && body->fresh.data[i] == cell ? i : GXP_NONE;
+/* The index of a cell among the new ones, or GXP_NONE */
+static uint32_t gxp_new_index(const gx_body *body, uint32_t cell) {
+    const uint32_t i = body->cells.new_index[cell];
+    return i < body->scratch.new_cells.count && body->scratch.new_cells.data[i] == cell ? i : GXP_NONE;
 }
 
-/* Share of the link first ... end-1 of its face, roughly, with a bound for its error; of its first facets, where those
- * have certainly more than enough. */
+/* The rough share of the link first ... end-1 in its face, and a bound for the error. It stops once the share is
+   certainly more than enough. */
 static gx_result gxp_rough_share(gx_body *body, uint32_t first, uint32_t end, double enough, double *share,
                                  double *error) {
     gxb_complex *cx = body->complex;
-    const gxb_cplane *plane = gxb_complex_plane(cx, cx->facets[GXP_LINK_FACET(body->links.data[first])].plane);
-    const double whole = fabs(plane->filter.n[plane->axis]); /* the normal is a product of two of the face's edges */
+    const gxb_cplane *plane =
+        gxb_complex_plane(cx, gxb_complex_facet(cx, GXP_LINK_FACET(body->scratch.links.data[first]))->plane);
+    const double whole = fabs(plane->filter.n[plane->axis]); /* the normal is the product of two edges of the face */
     double part, part_error;
     gx_result result = GX_OK;
     *share = *error = 0;
     for (; first < end && !(*share - 4 * *error > enough * whole) && result == GX_OK; first++) {
-        result = gxp_rough_area(cx, GXP_LINK_FACET(body->links.data[first]), &part, &part_error);
+        result = gxp_rough_area(cx, GXP_LINK_FACET(body->scratch.links.data[first]), &part, &part_error);
         *share += part;
         *error += part_error + plane->filter.error;
     }
@@ -2588,8 +2975,8 @@ static gx_result gxp_rough_share(gx_body *body, uint32_t first, uint32_t end, do
     return result;
 }
 
-/* Is the link first ... end-1 certainly neither the smallest, which has a share of at most *bound (made smaller), nor
- * to be severed? */
+/* Is the link first ... end-1 certainly too large to be severed or to be the smallest? *bound: the smallest share is at
+   most this; it is lowered. */
 static gx_result gxp_is_wide(gxp_cut *cut, uint32_t first, uint32_t end, double *bound, int *wide) {
     const double enough = fmax(*bound, cut->desc->sever_below);
     double share, error;
@@ -2599,21 +2986,21 @@ static gx_result gxp_is_wide(gxp_cut *cut, uint32_t first, uint32_t end, double 
     return result;
 }
 
-/* Share of the link first ... end-1 of its face */
+/* The share of the link first ... end-1 in its face, from exact coordinates */
 static gx_result gxp_weigh_link(gx_body *body, uint32_t first, uint32_t end, double *share) {
     uint32_t k;
-    const uint32_t element =
-        gxp_face_element(body->complex, body->complex->facets[GXP_LINK_FACET(body->links.data[first])].face, &k);
+    const uint32_t element = gxp_face_element(
+        body->complex, gxb_complex_facet(body->complex, GXP_LINK_FACET(body->scratch.links.data[first]))->face, &k);
     gx_result result = gxb_complex_open_element(body->complex, element);
     *share = 0;
     for (; first < end && result == GX_OK; first++) {
-        result = gxp_facet_points(body, GXP_LINK_FACET(body->links.data[first]));
+        result = gxp_collect_facet_points(body, GXP_LINK_FACET(body->scratch.links.data[first]));
         if (result == GX_OK) *share += gxp_fine_share(body, element, k);
     }
     return result;
 }
 
-/* Weighs the link of pieces first ... end-1 and severs it where its share is below the ratio. */
+/* Weighs the link first ... end-1 and severs it if its share is below the ratio. */
 static gx_result gxp_judge_link(gxp_cut *cut, uint32_t first, uint32_t end) {
     gx_body *body = cut->body;
     double share;
@@ -2623,35 +3010,37 @@ static gx_result gxp_judge_link(gxp_cut *cut, uint32_t first, uint32_t end) {
     if (share >= cut->desc->sever_below) return GX_OK;
     cut->report.severed_links++;
     for (; first < end && result == GX_OK; first++)
-        result = gxb_complex_set_wall(body->complex, GXP_LINK_FACET(body->links.data[first]));
+        result = gxb_complex_set_wall(body->complex, GXP_LINK_FACET(body->scratch.links.data[first]));
     return result;
 }
 
-/* Weighs the links of a fresh cell roughly, but whole faces and those of fresh cells before it. All pieces of a face
-   between the same two cells count as one link. Those that may be the smallest or are to be severed go to body->nodes.
-   *bound: of the smallest so far. */
+/* Weighs the links of a new cell roughly. All pieces of a face between the same two cells are one link. Whole faces are
+   skipped, and links to new cells before this one. Links that may be the smallest or may have to be severed are noted
+   in scratch.narrow. *bound: the smallest share so far. */
 static gx_result gxp_weigh_links(gxp_cut *cut, uint32_t index, double *bound) {
     gx_body *body = cut->body;
-    const uint32_t last = body->link_first.data[index + 1];
+    gxp_scratch *scratch = &body->scratch;
+    const uint32_t last = scratch->link_first.data[index + 1];
     uint32_t first, end;
     int wide = 1;
     gx_result result = GX_OK;
-    for (first = body->link_first.data[index]; first < last && result == GX_OK; first = end) {
-        const uint32_t other = GXP_LINK_CELL(body->links.data[first]), facet = GXP_LINK_FACET(body->links.data[first]);
-        for (end = first + 1; end < last && GXP_LINK_CELL(body->links.data[end]) == other; end++) {}
-        if (gxp_fresh_index(body, other) < index ||
-            body->complex->face_facet[body->complex->facets[facet].face] == facet)
+    for (first = scratch->link_first.data[index]; first < last && result == GX_OK; first = end) {
+        const uint32_t other = GXP_LINK_CELL(scratch->links.data[first]),
+                       facet = GXP_LINK_FACET(scratch->links.data[first]);
+        for (end = first + 1; end < last && GXP_LINK_CELL(scratch->links.data[end]) == other; end++) {}
+        if (gxp_new_index(body, other) < index ||
+            gxb_complex_face_facet(body->complex, gxb_complex_facet(body->complex, facet)->face) == facet)
             continue;
         result = gxp_is_wide(cut, first, end, bound, &wide);
-        if (result == GX_OK && !wide) result = gxp_push(body, &body->nodes, first);
-        if (result == GX_OK && !wide) result = gxp_push(body, &body->nodes, end);
+        if (result == GX_OK && !wide) result = gxp_push(body, &scratch->narrow, first);
+        if (result == GX_OK && !wide) result = gxp_push(body, &scratch->narrow, end);
     }
     return result;
 }
 
-/* Weighs exactly what is still among the smallest, or is to be severed. */
+/* Weighs the noted links exactly that may still be the smallest or have to be severed. */
 static gx_result gxp_judge_links(gxp_cut *cut, double bound) {
-    const gxp_words *narrow = &cut->body->nodes;
+    const gxp_words *narrow = &cut->body->scratch.narrow;
     uint32_t i;
     int wide = 1;
     gx_result result = GX_OK;
@@ -2662,468 +3051,428 @@ static gx_result gxp_judge_links(gxp_cut *cut, double bound) {
     return result;
 }
 
-/* Severs the links that are small enough. */
+/* Severs the links below the ratio. */
 static gx_result gxp_sever_links(gxp_cut *cut) {
     double bound = 1;
     uint32_t i;
     gx_result result = GX_OK;
-    cut->body->nodes.count = 0;
-    for (i = 0; i < cut->body->fresh.count && result == GX_OK; i++) result = gxp_weigh_links(cut, i, &bound);
+    cut->body->scratch.narrow.count = 0;
+    for (i = 0; i < cut->body->scratch.new_cells.count && result == GX_OK; i++)
+        result = gxp_weigh_links(cut, i, &bound);
     return result == GX_OK ? gxp_judge_links(cut, bound) : result;
 }
 
-/* >>cells: the touched ones fall apart ----------------------------------------------------------------------------- */
+/* >>cells: touched cells fall apart -------------------------------------------------------------------------------- */
+/* In: walls that this cut made, leaves that it removed. Out: the touched cells divided into their connected parts, the
+   new cells, and the links of these. Touches cells and leaves, through the undo log. */
 
-/* Collects the cells on both sides of walls that this cut made. */
+/* Collects the cells on both sides of the walls that this cut made. */
 static gx_result gxp_collect_touched(gxp_cut *cut) {
     gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
     uint32_t i;
-    gx_result result = GX_OK;
-    body->seeds.count = 0;
-    for (i = 0; i < body->complex->wall_count && result == GX_OK; i++)
-        if (body->complex->walls[i] & 1) result = gxp_wall_leaves(body, body->complex->walls[i] >> 1, &body->seeds);
-    body->stamp++;
-    for (i = 0; i < body->seeds.count && result == GX_OK; i++) {
-        const uint32_t cell = body->leaves[body->seeds.data[i]].cell;
-        if (body->complex->leaves[body->seeds.data[i]].removed || body->cell_stamp[cell] == body->stamp) continue;
-        body->cell_stamp[cell] = body->stamp;
-        result = gxp_push(body, &body->touched, cell);
+    gx_result result = gxp_list_marked_leaves(body, 1, &scratch->wall_leaves);
+    if (result == GX_OK) result = gxp_words_room(body, &scratch->touched, scratch->wall_leaves.count / 2);
+    scratch->stamp++;
+    for (i = 0; i < scratch->wall_leaves.count && result == GX_OK; i++) {
+        const uint32_t cell = body->leaves.data[scratch->wall_leaves.data[i]].cell;
+        if (gxb_complex_leaf(body->complex, scratch->wall_leaves.data[i])->removed ||
+            body->cells.stamp[cell] == scratch->stamp)
+            continue;
+        body->cells.stamp[cell] = scratch->stamp;
+        result = gxp_push(body, &scratch->touched, cell);
     }
-    gxp_sort_unique(&body->touched);
+    gxp_sort_unique(&scratch->touched);
     return result;
 }
 
-/* New leaves join the list of the cell from which they were split. */
+/* Adds each new leaf to the list of the cell from which it was split. */
 static gx_result gxp_list_new_leaves(gxp_cut *cut) {
     gx_body *body = cut->body;
     uint32_t leaf;
     gx_result result = GX_OK;
-    for (leaf = body->before.leaves; leaf < body->leaf_count && result == GX_OK; leaf++) {
-        const uint32_t parent = body->complex->leaves[leaf].parent, next = body->leaves[parent].next;
-        body->leaves[leaf].next = next;
-        result = gxp_set_leaf(body, parent, body->leaves[parent].cell, leaf);
+    for (leaf = body->undo.counts[GXP_LEAVES]; leaf < body->leaves.count && result == GX_OK; leaf++) {
+        const uint32_t parent = gxb_complex_leaf(body->complex, leaf)->parent, next = body->leaves.data[parent].next;
+        body->leaves.data[leaf].next = next;
+        result = gxp_set_leaf(body, parent, body->leaves.data[parent].cell, leaf);
     }
     return result;
 }
 
+/* Appends a cell to the element of another one, with that one's copies and without leaves. */
 static gx_result gxp_new_cell(gx_body *body, uint32_t like, uint32_t *slot) {
-    gx_result result = gxp_reserve_cells(body, 1);
+    gx_result result = gxp_grow_rows(body, GXP_CELLS, 1);
     if (result == GX_OK) result = gxp_save_cell(body, like);
     if (result != GX_OK) return result;
-    *slot = body->cell_count++;
-    body->cells[*slot] = body->cells[like];
-    body->cells[like].next = *slot;
-    body->cells[*slot].first_leaf = GXP_NONE;
-    body->cell_stamp[*slot] = 0;
-    body->cell_saved[*slot] = body->transaction;
+    *slot = body->cells.count++;
+    body->cells.data[*slot] = body->cells.data[like];
+    body->cells.data[like].next = *slot;
+    body->cells.data[*slot].first_leaf = GXP_NONE;
+    body->cells.stamp[*slot] = 0;
+    body->cells.saved_by[*slot] = body->undo.cut_number;
     return GX_OK;
 }
 
-/* Walks the leaves that open facets inside the element join to the first in the queue, and lists their links, for now
- * with the leaf behind each. */
+/* Lists in scratch.part_leaves the leaves that open facets inside the element connect to the first one. Appends their
+   links to scratch.links, for now with the leaf behind each. */
 static gx_result gxp_walk_leaves(gx_body *body, uint32_t start) {
+    gxp_scratch *scratch = &body->scratch;
     gxb_complex *cx = body->complex;
     uint32_t done = 0, first, count, i;
-    gx_result result = gxb_complex_open_element(cx, cx->leaves[start].element);
-    body->queue.count = 0;
-    body->leaves[start].stamp = body->stamp;
-    if (result == GX_OK) result = gxp_push(body, &body->queue, start);
-    if (result == GX_OK) result = gxp_push(body, &body->link_first, body->links.count);
-    while (done < body->queue.count && result == GX_OK) {
-        const uint32_t leaf = body->queue.data[done++];
+    gx_result result = gxb_complex_open_element(cx, gxb_complex_leaf(cx, start)->element);
+    scratch->part_leaves.count = 0;
+    body->leaves.mark[start].stamp = scratch->stamp;
+    if (result == GX_OK) result = gxp_push(body, &scratch->part_leaves, start);
+    if (result == GX_OK) result = gxp_push(body, &scratch->link_first, scratch->links.count);
+    while (done < scratch->part_leaves.count && result == GX_OK) {
+        const uint32_t leaf = scratch->part_leaves.data[done++];
         result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
-        if (result == GX_OK) result = gxp_keys_room(body, &body->links, count);
+        if (result == GX_OK) result = gxp_keys_room(body, &scratch->links, count);
         for (i = 0; i < count && result == GX_OK; i++) {
-            const uint32_t facet = cx->pool[first + i];
-            const gxb_facet *f = &cx->facets[facet];
+            const uint32_t facet = gxp_item(cx, first + i);
+            const gxb_facet *f = gxb_complex_facet(cx, facet);
             const uint32_t other = f->leaf[f->leaf[0] == leaf];
             if (!gxp_is_link(body, facet)) continue;
             if (f->face != GXB_NONE)
-                body->links.data[body->links.count++] = (uint64_t)other << 33 | (uint64_t)facet << 2 |
-                                                        gxp_local_face(cx, cx->leaves[leaf].element, f->face);
-            else if (body->leaves[other].stamp != body->stamp) {
-                body->leaves[other].stamp = body->stamp;
-                result = gxp_push(body, &body->queue, other);
+                scratch->links.data[scratch->links.count++] =
+                    (uint64_t)other << 33 | (uint64_t)facet << 2 |
+                    gxp_local_face(cx, gxb_complex_leaf(cx, leaf)->element, f->face);
+            else if (body->leaves.mark[other].stamp != scratch->stamp) {
+                body->leaves.mark[other].stamp = scratch->stamp;
+                result = gxp_push(body, &scratch->part_leaves, other);
             }
         }
     }
     return result;
 }
 
-/* Gives the leaves in the queue to a cell, as its list. */
+/* Gives scratch.part_leaves to a cell, as its list. */
 static gx_result gxp_give_leaves(gx_body *body, uint32_t cell) {
+    gxp_scratch *scratch = &body->scratch;
     uint32_t i;
     gx_result result = gxp_save_cell(body, cell);
-    for (i = body->queue.count; i-- > 0 && result == GX_OK;)
-        result = gxp_set_leaf(body, body->queue.data[i], cell,
-                              i + 1 < body->queue.count ? body->queue.data[i + 1] : GXP_NONE);
-    if (result == GX_OK) body->cells[cell].first_leaf = body->queue.data[0];
+    for (i = scratch->part_leaves.count; i-- > 0 && result == GX_OK;)
+        result = gxp_set_leaf(body, scratch->part_leaves.data[i], cell,
+                              i + 1 < scratch->part_leaves.count ? scratch->part_leaves.data[i + 1] : GXP_NONE);
+    if (result == GX_OK) body->cells.data[cell].first_leaf = scratch->part_leaves.data[0];
     return result;
 }
 
-/* Divides one touched cell into its connected pieces; the first keeps the slot. */
+/* Divides a touched cell into its connected parts; the first one keeps the slot. */
 static gx_result gxp_divide_cell(gxp_cut *cut, uint32_t cell) {
     gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
     uint32_t leaf, pieces = 0, i;
     gx_result result = GX_OK;
-    body->seeds.count = 0;
-    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next)
-        result = gxp_push(body, &body->seeds, leaf);
-    body->stamp++;
-    for (i = 0; i < body->seeds.count && result == GX_OK; i++) {
+    scratch->cell_leaves.count = 0;
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
+         leaf = body->leaves.data[leaf].next)
+        result = gxp_push(body, &scratch->cell_leaves, leaf);
+    scratch->stamp++;
+    for (i = 0; i < scratch->cell_leaves.count && result == GX_OK; i++) {
         uint32_t slot = cell;
-        leaf = body->seeds.data[i];
-        if (body->complex->leaves[leaf].removed || body->leaves[leaf].stamp == body->stamp) continue;
+        leaf = scratch->cell_leaves.data[i];
+        if (gxb_complex_leaf(body->complex, leaf)->removed || body->leaves.mark[leaf].stamp == scratch->stamp) continue;
         result = gxp_walk_leaves(body, leaf);
         if (result == GX_OK && pieces++ > 0) {
             result = gxp_new_cell(body, cell, &slot);
             cut->report.created_cells++;
         }
         if (result == GX_OK) result = gxp_give_leaves(body, slot);
-        if (result == GX_OK) result = gxp_push(body, &body->fresh, slot);
+        if (result == GX_OK) result = gxp_push(body, &scratch->new_cells, slot);
     }
     if (result == GX_OK && pieces == 0) {
         result = gxp_save_cell(body, cell);
         if (result != GX_OK) return result;
-        body->cells[cell].kept = 0;
-        body->cells[cell].first_leaf = GXP_NONE;
+        body->cells.data[cell].kept = 0;
+        body->cells.data[cell].first_leaf = GXP_NONE;
         cut->report.removed_cells++;
     }
     return result;
 }
 
-/* Cells beside a removed leaf lost links. */
+/* Touches the cells around a removed leaf, which have lost links. */
 static gx_result gxp_touch_around(gx_body *body, uint32_t leaf) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i;
     gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
-        const gxb_facet *f = &cx->facets[cx->pool[first + i]];
+        const gxb_facet *f = gxb_complex_facet(cx, gxp_item(cx, first + i));
         const uint32_t other = f->leaf[f->leaf[0] == leaf];
-        if (gxp_is_kept(body, other)) result = gxp_push(body, &body->touched, body->leaves[other].cell);
+        if (gxp_is_kept(body, other)) result = gxp_push(body, &body->scratch.touched, body->leaves.data[other].cell);
     }
     return result;
 }
 
-/* Severed links separate cells that may not have been touched before. */
+/* Lists the links again after some were severed. Cells beside these join the new ones. */
 static gx_result gxp_touch_severed(gxp_cut *cut) {
     gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
     gx_result result = gxp_collect_touched(cut);
     uint32_t i;
-    for (i = 0; i < body->touched.count && result == GX_OK; i++) {
-        const uint32_t cell = body->touched.data[i];
-        if (body->cells[cell].kept && gxp_fresh_index(body, cell) == GXP_NONE)
-            result = gxp_push(body, &body->fresh, cell);
+    for (i = 0; i < scratch->touched.count && result == GX_OK; i++) {
+        const uint32_t cell = scratch->touched.data[i];
+        if (body->cells.data[cell].kept && gxp_new_index(body, cell) == GXP_NONE)
+            result = gxp_push(body, &scratch->new_cells, cell);
     }
-    body->links.count = body->link_first.count = 0;
-    body->stamp++;
-    for (i = 0; i < body->fresh.count && result == GX_OK; i++)
-        result = gxp_walk_leaves(body, body->cells[body->fresh.data[i]].first_leaf);
+    scratch->links.count = scratch->link_first.count = 0;
+    scratch->stamp++;
+    for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++)
+        result = gxp_walk_leaves(body, body->cells.data[scratch->new_cells.data[i]].first_leaf);
     return result == GX_OK ? gxp_settle_links(body) : result;
 }
 
-/* Asks for what dividing the next touched cells reads: leaves four and three ahead, their lists of facets two ahead,
- * the facets of the next. */
-GXP_FETCHES void gxp_fetch_leaves(const gx_body *body, uint32_t index) {
+/* Prefetches the data that dividing the next touched cells will read: leaves four and three cells ahead, their lists of
+   facets two ahead, the facets of the next. */
+GXP_PREFETCHES void gxp_prefetch_leaves(const gx_body *body, uint32_t index) {
     const gxb_complex *cx = body->complex;
-    const uint32_t *touched = body->touched.data, count = body->touched.count;
+    const uint32_t *touched = body->scratch.touched.data, count = body->scratch.touched.count;
     uint32_t leaf, i;
-    if (index + 4 < count && (leaf = body->cells[touched[index + 4]].first_leaf) != GXP_NONE) {
-        GXP_FETCH(&body->leaves[leaf]);
-        GXP_FETCH(&cx->leaves[leaf]);
+    if (index + 4 < count && (leaf = body->cells.data[touched[index + 4]].first_leaf) != GXP_NONE) {
+        GXP_PREFETCH(&body->leaves.data[leaf]);
+        GXP_PREFETCH(gxb_complex_leaf(cx, leaf));
     }
     if (index + 3 < count)
-        for (leaf = body->cells[touched[index + 3]].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next)
-            GXP_FETCH(&cx->leaves[leaf]);
+        for (leaf = body->cells.data[touched[index + 3]].first_leaf; leaf != GXP_NONE;
+             leaf = body->leaves.data[leaf].next)
+            GXP_PREFETCH(gxb_complex_leaf(cx, leaf));
     if (index + 2 < count)
-        for (leaf = body->cells[touched[index + 2]].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next)
-            GXP_FETCH(cx->pool + cx->leaves[leaf].facets);
+        for (leaf = body->cells.data[touched[index + 2]].first_leaf; leaf != GXP_NONE;
+             leaf = body->leaves.data[leaf].next)
+            GXP_PREFETCH(gxb_complex_list(cx, gxb_complex_leaf(cx, leaf)->facets));
     if (index + 1 < count)
-        for (leaf = body->cells[touched[index + 1]].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next)
-            for (i = 0; i < cx->leaves[leaf].facet_count; i++)
-                GXP_FETCH(&cx->facets[cx->pool[cx->leaves[leaf].facets + i]]);
+        for (leaf = body->cells.data[touched[index + 1]].first_leaf; leaf != GXP_NONE;
+             leaf = body->leaves.data[leaf].next)
+            for (i = 0; i < gxb_complex_leaf(cx, leaf)->facet_count; i++)
+                GXP_PREFETCH(gxb_complex_facet(cx, gxp_item(cx, gxb_complex_leaf(cx, leaf)->facets + i)));
 }
 
-/* Divides all touched cells. Leaves body->touched as it was, makes body->fresh of the pieces and lists their links. */
+/* Divides all touched cells, lists the new cells and their links. The list of touched cells stays. */
 static gx_result gxp_divide_cells(gxp_cut *cut) {
     gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
     uint32_t i;
-    gx_result result = gxp_reserve(&body->allocator, &body->saved_cells, sizeof *body->saved_cells,
-                                   body->saved_cell_count, &body->saved_cell_capacity, 4 * (size_t)body->touched.count);
-    if (result == GX_OK) result = gxp_keys_room(body, &body->links, 16 * (size_t)body->touched.count);
-    if (result == GX_OK) result = gxp_reserve_cells(body, body->touched.count);
-    body->fresh.count = body->links.count = body->link_first.count = 0;
-    body->stamp++;
-    for (i = 0; i < body->touched.count && result == GX_OK; i++) {
-        uint32_t *stamp = &body->cell_stamp[body->cells[body->touched.data[i]].element];
-        cut->report.touched_elements += *stamp != body->stamp;
-        *stamp = body->stamp;
+    gx_result result = gxp_log_room(body, &body->undo.cells, 4 * (size_t)scratch->touched.count);
+    if (result == GX_OK) result = gxp_keys_room(body, &scratch->links, 16 * (size_t)scratch->touched.count);
+    if (result == GX_OK) result = gxp_grow_rows(body, GXP_CELLS, scratch->touched.count);
+    if (result == GX_OK) result = gxp_start_words(body, &scratch->new_cells, 2 * (size_t)scratch->touched.count);
+    if (result == GX_OK) result = gxp_start_words(body, &scratch->link_first, 2 * (size_t)scratch->touched.count);
+    scratch->new_cells.count = scratch->links.count = scratch->link_first.count = 0;
+    scratch->stamp++;
+    for (i = 0; i < scratch->touched.count && result == GX_OK; i++) {
+        uint32_t *stamp = &body->cells.stamp[body->cells.data[scratch->touched.data[i]].element];
+        cut->report.touched_elements += *stamp != scratch->stamp;
+        *stamp = scratch->stamp;
     }
-    for (i = 0; i < body->touched.count && result == GX_OK; i++) {
-        gxp_fetch_leaves(body, i);
-        result = gxp_divide_cell(cut, body->touched.data[i]);
+    for (i = 0; i < scratch->touched.count && result == GX_OK; i++) {
+        gxp_prefetch_leaves(body, i);
+        result = gxp_divide_cell(cut, scratch->touched.data[i]);
     }
     return result == GX_OK ? gxp_settle_links(body) : result;
 }
 
-/* >>components: nodal subdomains, and the copies that move them ---------------------------------------------------- */
+/* >>components: nodal subdomains and their copies ------------------------------------------------------------------ */
+/* A nodal subdomain is a connected set of cells around a node; each has a copy of its own (GXFEM Eq. 18). In: new cells
+   and their links. Out: copies for the subdomains into which old ones fell apart, the copies that lost all cells.
+   Touches cells, through the undo log, and appends copies. */
 
-static gx_result gxp_visit_cell(gx_body *body, uint32_t cell) {
-    if (body->cell_stamp[cell] == body->stamp) return GX_OK;
-    body->cell_stamp[cell] = body->stamp;
-    return gxp_push(body, &body->queue, cell);
-}
-
-/* Visits what lies across one piece of an element's face. */
+/* Visits the cell across one piece of an element's face. */
 static gx_result gxp_cross_facet(gx_body *body, uint32_t facet, uint32_t leaf) {
-    const gxb_facet *f = &body->complex->facets[facet];
+    const gxb_facet *f = gxb_complex_facet(body->complex, facet);
     const uint32_t other = f->leaf[f->leaf[0] == leaf];
-    if (other == GXB_NONE || body->cell_stamp[body->leaves[other].cell] == body->stamp || !gxp_is_link(body, facet))
+    if (other == GXB_NONE || body->cells.stamp[body->leaves.data[other].cell] == body->scratch.stamp ||
+        !gxp_is_link(body, facet))
         return GX_OK;
-    return gxp_visit_cell(body, body->leaves[other].cell);
+    return gxp_visit_cell(body, body->leaves.data[other].cell, &body->scratch.subdomain_cells);
 }
 
-/* Visits the cells that links join to the cell of a whole element across the face opposite to local node k. */
+/* Visits the cells that are linked to the cell of a whole element across the face opposite to local node k. */
 static gx_result gxp_cross_whole_face(gx_body *body, uint32_t element, uint32_t k) {
+    gxp_scratch *scratch = &body->scratch;
     gxb_complex *cx = body->complex;
-    const uint32_t face = cx->element_faces[4 * element + k], other = gxp_neighbour(body, element, k);
+    const uint32_t face = gxb_complex_element_faces(cx, element)[k], other = gxp_neighbour(body, element, k);
     uint32_t i;
     gx_result result;
     if (other == GXP_NONE) return GX_OK;
-    if (cx->face_facet[face] == GXB_NONE)
-        return gxp_is_kept(body, other) ? gxp_visit_cell(body, body->leaves[other].cell) : GX_OK;
-    body->list.count = 0;
-    result = gxp_push_pieces(body, cx->face_facet[face], &body->list);
-    for (i = 0; i < body->list.count && result == GX_OK; i++)
-        result = gxp_cross_facet(body, body->list.data[i], element);
+    if (gxb_complex_face_facet(cx, face) == GXB_NONE)
+        return gxp_is_kept(body, other) ? gxp_visit_cell(body, body->leaves.data[other].cell, &scratch->subdomain_cells)
+                                        : GX_OK;
+    scratch->face_facets.count = 0;
+    result = gxp_push_divided_facets(body, gxb_complex_face_facet(cx, face), &scratch->face_facets);
+    for (i = 0; i < scratch->face_facets.count && result == GX_OK; i++)
+        result = gxp_cross_facet(body, scratch->face_facets.data[i], element);
     return result;
 }
 
-/* Visits the cells that links of a fresh cell join to it, but across the face opposite to local node k; unless all is
-   set only fresh ones. *open is set to 1 where there are others. */
+/* Visits the cells that are linked to a new cell across its element's faces around a node: all but the one opposite to
+   local node k. Unless all is set it visits new cells only, and sets *open if there are others. */
 static gx_result gxp_cross_links(gx_body *body, uint32_t index, uint32_t k, int all, uint32_t *open) {
+    gxp_scratch *scratch = &body->scratch;
     uint32_t i;
     gx_result result = GX_OK;
-    for (i = body->link_first.data[index]; i < body->link_first.data[index + 1] && result == GX_OK; i++) {
-        const uint32_t other = GXP_LINK_CELL(body->links.data[i]);
-        if (GXP_LINK_FACE(body->links.data[i]) == k || body->cell_stamp[other] == body->stamp) continue;
-        if (gxp_fresh_index(body, other) == GXP_NONE) *open = 1;
-        if (all || gxp_fresh_index(body, other) != GXP_NONE) result = gxp_visit_cell(body, other);
+    for (i = scratch->link_first.data[index]; i < scratch->link_first.data[index + 1] && result == GX_OK; i++) {
+        const uint32_t other = GXP_LINK_CELL(scratch->links.data[i]);
+        if (GXP_LINK_FACE(scratch->links.data[i]) == k || body->cells.stamp[other] == scratch->stamp) continue;
+        if (gxp_new_index(body, other) == GXP_NONE) *open = 1;
+        if (all || gxp_new_index(body, other) != GXP_NONE)
+            result = gxp_visit_cell(body, other, &scratch->subdomain_cells);
     }
     return result;
 }
 
-/* Visits the cells around the node that links join to one that is not fresh. */
+/* Visits the cells that are linked to a cell that is not new, across the faces around the node. */
 static gx_result gxp_cross_faces(gx_body *body, uint32_t cell, uint32_t node) {
     gxb_complex *cx = body->complex;
-    const uint32_t element = body->cells[cell].element;
+    const uint32_t element = body->cells.data[cell].element;
     const uint32_t local = (uint32_t)gxp_local_node(body, element, node),
-                   opposite = cx->element_faces[4 * element + local];
+                   opposite = gxb_complex_element_faces(cx, element)[local];
     uint32_t leaf, first, count, i, k;
     gx_result result = GX_OK;
-    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next) {
-        if (cx->leaves[leaf].facet_count == 0) {
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
+         leaf = body->leaves.data[leaf].next) {
+        if (gxb_complex_leaf(cx, leaf)->facet_count == 0) {
             for (k = 0; k < 4 && result == GX_OK; k++)
                 if (k != local) result = gxp_cross_whole_face(body, element, k);
             continue;
         }
         result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
         for (i = 0; i < count && result == GX_OK; i++) {
-            const uint32_t facet = cx->pool[first + i], face = cx->facets[facet].face;
+            const uint32_t facet = gxp_item(cx, first + i), face = gxb_complex_facet(cx, facet)->face;
             if (face != GXB_NONE && face != opposite) result = gxp_cross_facet(body, facet, leaf);
         }
     }
     return result;
 }
 
-/* --- pinched nodes and edges: an edge piece or node that no wall touches joins the cells around it --- */
-
-/* Appends to found the cells around the node that have the joint on their boundary. Removed leaves count as walls. */
-static gx_result gxp_find_joint(gx_body *body, uint32_t node, gxp_joint *joint, gxp_words *found) {
-    uint32_t j, i;
-    gx_result result = GX_OK;
-    joint->walled = 0;
-    body->triangles.count = 0;
-    for (j = body->node_start[node]; j < body->node_start[node + 1] && result == GX_OK; j++)
-        result = gxp_push_leaves(body, body->complex->root[body->node_elements[j]], &body->triangles);
-    for (i = 0; i < body->triangles.count && result == GX_OK; i++) {
-        const uint32_t leaf = body->triangles.data[i];
-        result = gxp_look_for_joint(body, leaf, joint);
-        if (joint->found && !body->complex->leaves[leaf].removed && result == GX_OK)
-            result = gxp_push(body, found, body->leaves[leaf].cell);
-    }
-    return result;
-}
-
-/* Visits the cells that the joint joins to this cell. */
-static gx_result gxp_cross_joint(gx_body *body, uint32_t cell, uint32_t node, uint32_t point, uint32_t edge) {
-    gxp_joint joint;
-    uint32_t i, member = 0;
-    gx_result result;
-    joint.point = point;
-    joint.edge = edge;
-    joint.walled = joint.found = 0;
-    body->list.count = 0;
-    result = gxp_find_joint(body, node, &joint, &body->list);
-    for (i = 0; i < body->list.count; i++) member |= body->list.data[i] == cell;
-    for (i = 0; i < body->list.count && result == GX_OK && member && !joint.walled; i++)
-        result = gxp_visit_cell(body, body->list.data[i]);
-    return result;
-}
-
-static gx_result gxp_cross_pinches(gx_body *body, uint32_t cell, uint32_t node) {
-    const uint32_t element = body->cells[cell].element;
-    gxb_complex *cx = body->complex;
-    uint32_t k, i;
-    gx_result result = gxb_complex_open_element(cx, element);
-    if (result == GX_OK && (body->node_pinched[node] & 1)) result = gxp_cross_joint(body, cell, node, node, GXB_NONE);
-    for (k = 0; k < 6 && result == GX_OK; k++) {
-        const uint32_t edge = cx->element_edges[6 * element + k];
-        const uint32_t a = cx->elements[4 * element + gxp_edge_nodes[k][0]],
-                       b = cx->elements[4 * element + gxp_edge_nodes[k][1]];
-        if (!body->edge_pinched[edge] || (a != node && b != node)) continue;
-        body->faces.count = 0;
-        result = gxp_push_edge_pieces(body, cx->mesh_edge[edge], &body->faces);
-        for (i = 0; i < body->faces.count && result == GX_OK; i++)
-            result = gxp_cross_joint(body, cell, node, GXB_NONE, body->faces.data[i]);
-    }
-    return result;
-}
-
-/* The piece of a nodal component that contains a fresh cell: appended to body->queue, every cell stamped. all 0: of its
-   fresh cells alone, from one to the next; *open: do links go on to others? */
-static gx_result gxp_walk_piece(gx_body *body, uint32_t cell, uint32_t node, int all, uint32_t *open) {
-    uint32_t done = body->queue.count;
-    gx_result result = gxp_visit_cell(body, cell);
+/* Appends the cells of the nodal subdomain that contains the cell to scratch.subdomain_cells and stamps them. all 0:
+   only those that new cells alone connect; *open: links lead on to others. */
+static gx_result gxp_walk_subdomain(gx_body *body, uint32_t cell, uint32_t node, int all, uint32_t *open) {
+    gxp_scratch *scratch = &body->scratch;
+    uint32_t done = scratch->subdomain_cells.count;
+    gx_result result = gxp_visit_cell(body, cell, &scratch->subdomain_cells);
     *open = 0;
-    while (done < body->queue.count && result == GX_OK) {
-        const uint32_t c = body->queue.data[done++], fresh = gxp_fresh_index(body, c);
+    while (done < scratch->subdomain_cells.count && result == GX_OK) {
+        const uint32_t c = scratch->subdomain_cells.data[done++], fresh = gxp_new_index(body, c);
         if (fresh == GXP_NONE)
             result = gxp_cross_faces(body, c, node);
         else
-            result =
-                gxp_cross_links(body, fresh, (uint32_t)gxp_local_node(body, body->cells[c].element, node), all, open);
-        if (result == GX_OK && body->node_pinched[node]) result = gxp_cross_pinches(body, c, node);
+            result = gxp_cross_links(body, fresh, (uint32_t)gxp_local_node(body, body->cells.data[c].element, node),
+                                     all, open);
+        if (result == GX_OK && body->mesh.node_pinched[node]) result = gxp_cross_pinches(body, c, node);
     }
     return result;
 }
 
-/* A further copy of a node's displacement, with the values of the one it comes from (GXFEM Algorithm 1, line 7). */
+/* Appends a copy of a node's displacement with the values of the one it comes from (GXFEM Algorithm 1, line 7). */
 static gx_result gxp_new_copy(gx_body *body, uint32_t from, uint32_t *copy) {
-    gx_result result = gxp_reserve_copies(body, 1);
+    gx_result result = gxp_grow_rows(body, GXP_COPIES, 1);
     if (result != GX_OK) return result;
-    *copy = body->copy_count++;
-    body->copy_node[*copy] = body->copy_node[from];
-    gxp_copy_state(body, from, *copy);
-    body->copy_label[*copy] |= 1;
-    body->copy_before[*copy] |= 1;
-    if (!body->labels_known) return GX_OK;
-    result = gxp_push(body, &body->splits, *copy);
-    return result == GX_OK ? gxp_push(body, &body->splits, from) : result;
+    *copy = body->copies.count++;
+    gxp_copy_row(body, GXP_COPIES, from, *copy);
+    body->copies.label[*copy] |= 1;
+    body->copies.before[*copy] |= 1;
+    if (!body->view.labels_known) return GX_OK;
+    result = gxp_push(body, &body->view.splits, *copy);
+    return result == GX_OK ? gxp_push(body, &body->view.splits, from) : result;
 }
 
-/* Gives a copy to the cells first ... end-1 of body->queue. */
+/* Gives a copy to the cells first ... end-1 of scratch.subdomain_cells. */
 static gx_result gxp_set_copy(gx_body *body, uint32_t node, uint32_t copy, uint32_t first, uint32_t end) {
     uint32_t i;
     gx_result result = GX_OK;
     for (i = first; i < end && result == GX_OK; i++) {
-        const uint32_t cell = body->queue.data[i];
+        const uint32_t cell = body->scratch.subdomain_cells.data[i];
         result = gxp_save_cell(body, cell);
-        if (result == GX_OK) body->cells[cell].copies[gxp_local_node(body, body->cells[cell].element, node)] = copy;
+        if (result == GX_OK)
+            body->cells.data[cell].copies[gxp_local_node(body, body->cells.data[cell].element, node)] = copy;
     }
     return result;
 }
 
+/* Pairs a cell with its nodes. */
 static gx_result gxp_pair_cell(gx_body *body, uint32_t cell) {
-    const uint32_t *node = body->complex->elements + 4 * (size_t)body->cells[cell].element;
+    const uint32_t *node = gxb_complex_element_nodes(body->complex, body->cells.data[cell].element);
     uint32_t k;
-    gx_result result = gxp_keys_room(body, &body->pairs, 4);
-    for (k = 0; k < 4 && result == GX_OK; k++) result = gxp_push_key(body, &body->pairs, node[k], cell);
+    gx_result result = gxp_keys_room(body, &body->scratch.pairs, 4);
+    for (k = 0; k < 4 && result == GX_OK; k++) result = gxp_push_key(body, &body->scratch.pairs, node[k], cell);
     return result;
 }
 
-/* Every cell around a node. */
+/* Pairs a node with all cells around it. */
 static gx_result gxp_pair_node(gx_body *body, uint32_t node) {
     uint32_t j, cell;
     gx_result result = GX_OK;
-    for (j = body->node_start[node]; j < body->node_start[node + 1]; j++)
-        for (cell = body->node_elements[j]; cell != GXP_NONE && result == GX_OK; cell = body->cells[cell].next)
-            if (body->cells[cell].kept) result = gxp_push_key(body, &body->pairs, node, cell);
+    for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1]; j++)
+        for (cell = body->mesh.node_elements[j]; cell != GXP_NONE && result == GX_OK;
+             cell = body->cells.data[cell].next)
+            if (body->cells.data[cell].kept) result = gxp_push_key(body, &body->scratch.pairs, node, cell);
     return result;
 }
 
-/* Where to start walks: each touched cell around its nodes; around pinched nodes, where walls break joints that they
-   only touch in a point, every cell. */
+/* Collects where the walks start: each new or removed cell, around each of its nodes. Around pinched nodes, where a
+   wall may break a joint by a touch in one point, every cell. */
 static gx_result gxp_collect_pairs(gx_body *body) {
-    uint32_t i, n;
-    gx_result result = GX_OK;
-    body->pairs.count = 0;
-    result = gxp_keys_room(body, &body->pairs, 8 * (size_t)body->fresh.count); /* sorting takes as much again */
-    for (i = 0; i < body->fresh.count && result == GX_OK; i++) result = gxp_pair_cell(body, body->fresh.data[i]);
-    for (i = 0; i < body->touched.count && result == GX_OK; i++)
-        if (!body->cells[body->touched.data[i]].kept) result = gxp_pair_cell(body, body->touched.data[i]);
-    for (i = 0, n = body->pairs.count; i < n && result == GX_OK; i++)
-        if (body->node_pinched[GXP_FIRST(body->pairs.data[i])])
-            result = gxp_push(body, &body->pinches, GXP_FIRST(body->pairs.data[i]));
-    gxp_sort_unique(&body->pinches);
-    for (i = 0; i < body->pinches.count && result == GX_OK; i++) result = gxp_pair_node(body, body->pinches.data[i]);
-    return result == GX_OK ? gxp_sort_keys(body, &body->pairs, 0, body->pairs.count) : result;
-}
-
-static int gxp_contains(const gxp_words *words, uint32_t value) {
+    gxp_scratch *scratch = &body->scratch;
     uint32_t i;
-    for (i = 0; i < words->count; i++)
-        if (words->data[i] == value) return 1;
-    return 0;
+    gx_result result = GX_OK;
+    scratch->pairs.count = 0; /* room for twice as many: sorting takes as much again */
+    result = gxp_keys_room(body, &scratch->pairs, 8 * (size_t)scratch->new_cells.count);
+    for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++)
+        result = gxp_pair_cell(body, scratch->new_cells.data[i]);
+    for (i = 0; i < scratch->touched.count && result == GX_OK; i++)
+        if (!body->cells.data[scratch->touched.data[i]].kept) result = gxp_pair_cell(body, scratch->touched.data[i]);
+    if (result == GX_OK) result = gxp_add_pinches(body, &scratch->pairs);
+    for (i = 0; i < scratch->pinches.count && result == GX_OK; i++)
+        result = gxp_pair_node(body, scratch->pinches.data[i]);
+    return result == GX_OK ? gxp_sort_keys(body, &scratch->pairs, 0, scratch->pairs.count) : result;
 }
 
-static uint32_t gxp_copy_of(const gx_body *body, uint32_t cell, uint32_t node) {
-    return body->cells[cell].copies[gxp_local_node(body, body->cells[cell].element, node)];
-}
-
-/* Finds the pieces of the components around a node (pairs first ... end-1). Every piece of a component that fell apart
-   contains a cell of a pair. Their cells go to body->queue, where each starts to body->pieces, times two, 1 more if it
-   is open; body->seeds: the copies of components with an open piece. all 0: only fresh cells are looked at, which tells
-   the pieces apart unless a component has two open ones: *sure. */
-static gx_result gxp_find_pieces(gx_body *body, uint32_t first, uint32_t end, int all, int *sure) {
-    const uint32_t node = GXP_FIRST(body->pairs.data[first]);
+/* Finds the subdomains around the node of pairs first ... end-1. Every part of a subdomain that fell apart contains a
+   cell of a pair. Lists their cells in scratch.subdomain_cells, the start of each in scratch.subdomains, and in
+   scratch.taken the copies that an open one keeps. all 0: walks through new cells only. That tells the subdomains
+   apart, *sure, unless two open ones have the same copy. */
+static gx_result gxp_find_subdomains(gx_body *body, uint32_t first, uint32_t end, int all, int *sure) {
+    gxp_scratch *scratch = &body->scratch;
+    const uint32_t node = GXP_FIRST(scratch->pairs.data[first]);
     uint32_t i, open;
     gx_result result = GX_OK;
-    body->queue.count = body->pieces.count = body->seeds.count = 0;
-    body->stamp++;
-    *sure = all || !body->node_pinched[node];
+    scratch->subdomain_cells.count = scratch->subdomains.count = scratch->taken.count = 0;
+    scratch->stamp++;
+    *sure = all || !body->mesh.node_pinched[node];
     for (i = first; i < end && result == GX_OK && *sure; i++) {
-        const uint32_t cell = GXP_SECOND(body->pairs.data[i]), start = body->queue.count,
+        const uint32_t cell = GXP_SECOND(scratch->pairs.data[i]), start = scratch->subdomain_cells.count,
                        copy = gxp_copy_of(body, cell, node);
-        if (!body->cells[cell].kept || body->cell_stamp[cell] == body->stamp) continue;
-        result = gxp_walk_piece(body, cell, node, all, &open);
-        if (open && gxp_contains(&body->seeds, copy)) {
+        if (!body->cells.data[cell].kept || body->cells.stamp[cell] == scratch->stamp) continue;
+        result = gxp_walk_subdomain(body, cell, node, all, &open);
+        if (open && gxp_contains(&scratch->taken, copy)) {
             *sure = all;
             open = 0;
         }
-        if (result == GX_OK && open) result = gxp_push(body, &body->seeds, copy);
-        if (result == GX_OK) result = gxp_push(body, &body->pieces, start << 1 | open);
+        if (result == GX_OK && open) result = gxp_push(body, &scratch->taken, copy);
+        if (result == GX_OK) result = gxp_push(body, &scratch->subdomains, start << 1 | open);
     }
     return result;
 }
 
-/* Around one node: the pieces of each old component get copies of their own; one keeps the old copy, the open one, else
-   the first. Old copies that lost all cells join body->dead. */
+/* Gives each subdomain around a node a copy of its own. Of those that came from one, the open one keeps the old copy,
+   or else the first. Old copies without cells are listed in scratch.dead. */
 static gx_result gxp_divide_node(gxp_cut *cut, uint32_t first, uint32_t end) {
     gx_body *body = cut->body;
-    const uint32_t node = GXP_FIRST(body->pairs.data[first]);
+    gxp_scratch *scratch = &body->scratch;
+    const uint32_t node = GXP_FIRST(scratch->pairs.data[first]);
     uint32_t i;
     int sure = 0;
-    gx_result result = gxp_find_pieces(body, first, end, 0, &sure);
-    if (result == GX_OK && !sure) result = gxp_find_pieces(body, first, end, 1, &sure);
-    for (i = 0; i < body->pieces.count && result == GX_OK; i++) {
-        const uint32_t from = body->pieces.data[i] >> 1,
-                       to = i + 1 < body->pieces.count ? body->pieces.data[i + 1] >> 1 : body->queue.count;
-        const uint32_t old = gxp_copy_of(body, body->queue.data[from], node);
+    gx_result result = gxp_find_subdomains(body, first, end, 0, &sure);
+    if (result == GX_OK && !sure) result = gxp_find_subdomains(body, first, end, 1, &sure);
+    for (i = 0; i < scratch->subdomains.count && result == GX_OK; i++) {
+        const uint32_t from = scratch->subdomains.data[i] >> 1, to = i + 1 < scratch->subdomains.count
+                                                                       ? scratch->subdomains.data[i + 1] >> 1
+                                                                       : scratch->subdomain_cells.count;
+        const uint32_t old = gxp_copy_of(body, scratch->subdomain_cells.data[from], node);
         uint32_t copy;
-        if (body->pieces.data[i] & 1) continue;
-        if (!gxp_contains(&body->seeds, old)) {
-            result = gxp_push(body, &body->seeds, old);
+        if (scratch->subdomains.data[i] & 1) continue;
+        if (!gxp_contains(&scratch->taken, old)) {
+            result = gxp_push(body, &scratch->taken, old);
             continue;
         }
         result = gxp_new_copy(body, old, &copy);
@@ -3131,104 +3480,111 @@ static gx_result gxp_divide_node(gxp_cut *cut, uint32_t first, uint32_t end) {
         cut->report.created_copies++;
     }
     for (i = first; i < end && result == GX_OK; i++) {
-        const uint32_t cell = GXP_SECOND(body->pairs.data[i]), old = gxp_copy_of(body, cell, node);
-        if (!body->cells[cell].kept && !gxp_contains(&body->seeds, old) && !gxp_contains(&body->dead, old))
-            result = gxp_push(body, &body->dead, old);
+        const uint32_t cell = GXP_SECOND(scratch->pairs.data[i]), old = gxp_copy_of(body, cell, node);
+        if (!body->cells.data[cell].kept && !gxp_contains(&scratch->taken, old) && !gxp_contains(&scratch->dead, old))
+            result = gxp_push(body, &scratch->dead, old);
     }
     return result;
 }
 
+/* Gives copies to the subdomains around all nodes of new and removed cells. */
 static gx_result gxp_divide_nodes(gxp_cut *cut) {
     gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
     uint32_t first, end;
     gx_result result = gxp_collect_pairs(body);
-    body->dead.count = 0;
-    for (first = 0; first < body->pairs.count && result == GX_OK; first = end) {
+    scratch->dead.count = 0;
+    for (first = 0; first < scratch->pairs.count && result == GX_OK; first = end) {
         for (end = first;
-             end < body->pairs.count && GXP_FIRST(body->pairs.data[end]) == GXP_FIRST(body->pairs.data[first]); end++) {
-        }
+             end < scratch->pairs.count && GXP_FIRST(scratch->pairs.data[end]) == GXP_FIRST(scratch->pairs.data[first]);
+             end++) {}
         result = gxp_divide_node(cut, first, end);
     }
     return result;
 }
 
-/* >>integrals: volume and mass of a part, by its boundary triangles in barycentric coordinates --------------------- */
+/* >>integrals: volume and mass of cells ---------------------------------------------------------------------------- */
+/* In: cells and leaves. Out: their volumes and mass matrices, by the triangles of their boundary in barycentric
+   coordinates of the element. Sums whose terms cancel are summed in exact numbers. Touches cells, through the undo log.
+ */
 
-/* The part's points and triangles: body->list has the points, body->lambdas 4 numbers for each, body->triangles the
-   indices. Points of the parts before it are kept where they may be met again: parts of one element share those of its
-   walls. */
+/* Empties the boundary. Points are kept while the element stays the same: its cells share those of its walls. */
 static void gxp_clear_boundary(gx_body *body, int other_element) {
-    if (other_element || body->list.count > 64) body->list.count = 0;
-    body->triangles.count = body->faces.count = 0;
+    gxp_scratch *scratch = &body->scratch;
+    gxp_boundary *boundary = &scratch->boundary;
+    if (other_element || boundary->points.count > 64) boundary->points.count = 0;
+    boundary->triangles.count = boundary->facets.count = 0;
 }
 
+/* Adds a point of the complex with its barycentric coordinates in the element. */
 static gx_result gxp_new_boundary_point(gx_body *body, uint32_t element, uint32_t point, uint32_t *index) {
+    gxp_boundary *boundary = &body->scratch.boundary;
     gx_result result = GX_OK;
-    if (point >= body->point_slot.count) {
-        result =
-            gxp_words_room(body, &body->point_slot, gxb_complex_point_count(body->complex) - body->point_slot.count);
+    if (point >= boundary->slots.count) {
+        result = gxp_words_room(body, &boundary->slots, gxb_complex_point_count(body->complex) - boundary->slots.count);
         if (result != GX_OK) return result;
-        memset(body->point_slot.data + body->point_slot.count, 0xff,
-               (gxb_complex_point_count(body->complex) - body->point_slot.count) * sizeof(uint32_t));
-        body->point_slot.count = gxb_complex_point_count(body->complex);
+        memset(boundary->slots.data + boundary->slots.count, 0xff,
+               (gxb_complex_point_count(body->complex) - boundary->slots.count) * sizeof(uint32_t));
+        boundary->slots.count = gxb_complex_point_count(body->complex);
     }
-    result =
-        gxp_reserve(&body->allocator, &body->lambdas, 4 * sizeof(double), body->list.count, &body->lambda_capacity, 1);
-    *index = body->list.count;
-    if (result == GX_OK) result = gxp_push(body, &body->list, point);
+    result = gxp_reserve(&body->config.allocator, &boundary->lambdas, 4 * sizeof(double), boundary->points.count,
+                         &boundary->lambda_capacity, 1);
+    *index = boundary->points.count;
+    if (result == GX_OK) result = gxp_push(body, &boundary->points, point);
     if (result != GX_OK) return result;
-    body->point_slot.data[point] = *index;
-    gxb_complex_barycentric(body->complex, point, element, body->lambdas + 4 * (size_t)*index);
+    boundary->slots.data[point] = *index;
+    gxb_complex_barycentric(body->complex, point, element, boundary->lambdas + 4 * (size_t)*index);
     return GX_OK;
 }
 
+/* *index: the place of a point of the complex in the boundary's points; it is added if it is new. */
 static gx_result gxp_add_boundary_point(gx_body *body, uint32_t element, uint32_t point, uint32_t *index) {
-    *index = point < body->point_slot.count ? body->point_slot.data[point] : GXP_NONE;
-    return *index < body->list.count && body->list.data[*index] == point
+    gxp_boundary *boundary = &body->scratch.boundary;
+    *index = point < boundary->slots.count ? boundary->slots.data[point] : GXP_NONE;
+    return *index < boundary->points.count && boundary->points.data[*index] == point
              ? GX_OK
              : gxp_new_boundary_point(body, element, point, index);
 }
 
-/* Adds a facet as a fan of triangles; inward: the part is in front of it. */
+/* Adds a facet as a fan of triangles; inward: the material is in front of it. */
 static gx_result gxp_add_boundary_facet(gx_body *body, uint32_t element, uint32_t facet, int inward) {
+    gxp_boundary *boundary = &body->scratch.boundary;
     gxb_complex *cx = body->complex;
     uint32_t e0, en, i, corner[3] = {0, 0, 0};
     gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
-    if (result == GX_OK) result = gxp_words_room(body, &body->triangles, 3 * (size_t)en);
+    if (result == GX_OK) result = gxp_words_room(body, &boundary->triangles, 3 * (size_t)en);
     for (i = 0; i < en && result == GX_OK; i++) {
-        const uint32_t e = cx->pool[e0 + i];
-        uint32_t *triangle = body->triangles.data + body->triangles.count;
-        result = gxp_add_boundary_point(body, element, cx->edges[e >> 1].v[e & 1], &corner[i < 2 ? i : 2]);
+        const uint32_t e = gxp_item(cx, e0 + i);
+        uint32_t *triangle = boundary->triangles.data + boundary->triangles.count;
+        result = gxp_add_boundary_point(body, element, gxb_complex_edge_start(cx, e), &corner[i < 2 ? i : 2]);
         if (i < 2) continue;
         triangle[0] = corner[0];
         triangle[inward ? 2 : 1] = corner[1];
         triangle[inward ? 1 : 2] = corner[2];
-        body->triangles.count += 3;
+        boundary->triangles.count += 3;
         corner[1] = corner[2];
     }
     return result;
 }
 
-/* Adds the leaf's facets inside the element; those with the same cell on both sides cancel and are left out unless all
-   is set. Those in faces of the element are kept in body->faces, times two, 1 more if the part is in front. */
+/* Adds the facets of a leaf inside the element. Facets with the same cell on both sides cancel and are left out, unless
+   all is set. Facets in faces of the element are only listed, in facets. */
 static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, int all) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i;
     gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
-        const uint32_t facet = cx->pool[first + i];
-        const gxb_facet *f = &cx->facets[facet];
+        const uint32_t facet = gxp_item(cx, first + i);
+        const gxb_facet *f = gxb_complex_facet(cx, facet);
         const int inward = f->leaf[0] == leaf;
         const uint32_t other = f->leaf[inward];
         if (f->face != GXB_NONE)
-            result = gxp_push(body, &body->faces, facet << 1 | (uint32_t)inward);
-        else if (all || !gxp_is_kept(body, other) || body->leaves[other].cell != body->leaves[leaf].cell)
-            result = gxp_add_boundary_facet(body, cx->leaves[leaf].element, facet, inward);
+            result = gxp_push(body, &body->scratch.boundary.facets, facet << 1 | (uint32_t)inward);
+        else if (all || !gxp_is_kept(body, other) || body->leaves.data[other].cell != body->leaves.data[leaf].cell)
+            result = gxp_add_boundary_facet(body, gxb_complex_leaf(cx, leaf)->element, facet, inward);
     }
     return result;
 }
-
-/* --- parts so small that doubles can't hold their moments: the same sums in exact numbers --- */
 
 typedef struct gxp_fine_sums {
     gxb_num c[10];
@@ -3251,8 +3607,8 @@ static void gxp_fine_determinant(gxb_num *det, gxb_num *p[3][3]) {
     }
 }
 
-/* Adds the cone of a triangle to the origin: with D = det(a,b,c), s = a+b+c: D, D s_i, D (s_i s_j + a_i a_j + b_i b_j +
- * c_i c_j) */
+/* Adds the cone from the origin to a triangle. With D = det(a,b,c), s = a+b+c: D, D s_i, D (s_i s_j + a_i a_j + b_i b_j
+   + c_i c_j). */
 static void gxp_fine_add(gxp_fine_sums *sums, gxb_num *p[3][3]) {
     gxb_limb limbs[3][GXB_NUM_LIMBS];
     gxb_num s[3];
@@ -3278,18 +3634,19 @@ static void gxp_fine_add(gxp_fine_sums *sums, gxb_num *p[3][3]) {
         }
 }
 
-/* Those of one of the collected points, unless they are there already */
+/* The exact coordinates of one of the boundary's points, computed once */
 static void gxp_fine_coordinates(gx_body *body, uint32_t element, uint32_t point, gxp_fine_point *points) {
     int a;
     if (points[point].c[0].d != NULL) return;
     for (a = 0; a < 4; a++) points[point].c[a].d = points[point].limbs[a];
-    gxb_complex_barycentric_fine(body->complex, body->list.data[point], element, points[point].c);
+    gxb_complex_barycentric_fine(body->complex, body->scratch.boundary.points.data[point], element, points[point].c);
 }
 
-/* Moments of the collected boundary in the frame with origin k, from coordinates with 180 bits. */
+/* Moments of the boundary in the frame with origin k, from coordinates with 180 bits. */
 static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, gxi_moments2 *m) {
-    const size_t size = body->list.count * sizeof(gxp_fine_point);
-    gxp_fine_point *points = (gxp_fine_point *)gxp_allocate(&body->allocator, size);
+    gxp_boundary *boundary = &body->scratch.boundary;
+    const size_t size = boundary->points.count * sizeof(gxp_fine_point);
+    gxp_fine_point *points = (gxp_fine_point *)gxp_allocate(&body->config.allocator, size);
     gxp_fine_sums sums;
     unsigned axes[3];
     uint32_t i, t;
@@ -3300,37 +3657,37 @@ static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, g
         sums.c[i].n = 0;
         sums.c[i].d = sums.limbs[i];
     }
-    for (i = 0; i < body->list.count; i++) points[i].c[0].d = NULL;
+    for (i = 0; i < boundary->points.count; i++) points[i].c[0].d = NULL;
     gxi_part_axes(k, axes);
-    for (t = 0; t + 2 < body->triangles.count; t += 3) {
+    for (t = 0; t + 2 < boundary->triangles.count; t += 3) {
         gxb_num *p[3][3];
-        for (a = 0; a < 3; a++) gxp_fine_coordinates(body, element, body->triangles.data[t + (uint32_t)a], points);
+        for (a = 0; a < 3; a++) gxp_fine_coordinates(body, element, boundary->triangles.data[t + (uint32_t)a], points);
         for (a = 0; a < 3; a++)
-            for (c = 0; c < 3; c++) p[a][c] = &points[body->triangles.data[t + (uint32_t)a]].c[axes[c]];
+            for (c = 0; c < 3; c++) p[a][c] = &points[boundary->triangles.data[t + (uint32_t)a]].c[axes[c]];
         gxp_fine_add(&sums, p);
     }
     m->volume = gxb_num_to_double(&sums.c[0]) / 6;
     for (a = 0; a < 3; a++) m->first[a] = gxb_num_to_double(&sums.c[1 + a]) / 24;
     for (a = 0; a < 6; a++) m->second[a] = gxb_num_to_double(&sums.c[4 + a]) / 120;
-    gxp_release(&body->allocator, points, size);
+    gxp_release(&body->config.allocator, points, size);
     return GX_OK;
 }
 
-#define GXP_CANCELLATION                                                                                               \
-    1e-3 /* moments whose terms cancel to less than this share are summed in exact numbers: doubles lose 3 digits      \
-            there */
+/* Moments whose terms cancel to less than this share are summed in exact numbers: doubles lose 3 digits there. */
+#define GXP_CANCELLATION 1e-3
 
-/* Over the cones from vertex k to the collected triangles, the sizes of what makes up their volumes: of a x b . c,
-   whose terms take on the errors of the corners, and of a . (b - a) x (c - a), by which they are computed. */
+/* The size of the terms in the volumes of the cones from vertex k to the triangles: of a x b . c, which takes on the
+   errors of the corners, and of a . (b - a) x (c - a), by which the volumes are computed. */
 static double gxp_cone_volumes(const gx_body *body, unsigned k) {
+    const gxp_boundary *boundary = &body->scratch.boundary;
     unsigned axes[3], d;
     double sum = 0;
     uint32_t t;
     gxi_part_axes(k, axes);
-    for (t = 0; t + 2 < body->triangles.count; t += 3) {
-        const double *a = body->lambdas + 4 * (size_t)body->triangles.data[t],
-                     *b = body->lambdas + 4 * (size_t)body->triangles.data[t + 1];
-        const double *c = body->lambdas + 4 * (size_t)body->triangles.data[t + 2];
+    for (t = 0; t + 2 < boundary->triangles.count; t += 3) {
+        const double *a = boundary->lambdas + 4 * (size_t)boundary->triangles.data[t],
+                     *b = boundary->lambdas + 4 * (size_t)boundary->triangles.data[t + 1];
+        const double *c = boundary->lambdas + 4 * (size_t)boundary->triangles.data[t + 2];
         for (d = 0; d < 3; d++) {
             const unsigned x = axes[d], y = axes[(d + 1) % 3], z = axes[(d + 2) % 3];
             sum += a[x] * (b[y] * c[z] + b[z] * c[y] + fabs(b[y] - a[y]) * fabs(c[z] - a[z]) +
@@ -3340,71 +3697,74 @@ static double gxp_cone_volumes(const gx_body *body, unsigned k) {
     return sum / 6;
 }
 
-/* The vertex of the element that the collected triangles lie at */
+/* The vertex of the element with the largest barycentric coordinates over the triangles */
 static unsigned gxp_nearest_vertex(const gx_body *body) {
+    const gxp_boundary *boundary = &body->scratch.boundary;
     double sum[4] = {0, 0, 0, 0};
     unsigned nearest = 0, k;
     uint32_t i;
-    for (i = 0; i < body->triangles.count; i++)
-        for (k = 0; k < 4; k++) sum[k] += body->lambdas[4 * (size_t)body->triangles.data[i] + k];
+    for (i = 0; i < boundary->triangles.count; i++)
+        for (k = 0; k < 4; k++) sum[k] += boundary->lambdas[4 * (size_t)boundary->triangles.data[i] + k];
     for (k = 1; k < 4; k++)
         if (sum[k] > sum[nearest]) nearest = k;
     return nearest;
 }
 
-/* Moments of the collected boundary; *k: the vertex of the element that is their frame's origin. Seen from there, of
-   the facets in faces of the element only those in the opposite one span cones. */
+/* Moments of the boundary; *k: the vertex of the element that is their origin. Of the facets in the element's faces,
+   only those in the face opposite to k span cones. */
 static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned *k, gxi_moments2 *m) {
+    gxp_boundary *boundary = &body->scratch.boundary;
     const gxb_complex *cx = body->complex;
     uint32_t i;
     gx_result result = GX_OK;
     *k = gxp_nearest_vertex(body);
-    for (i = 0; i < body->faces.count && result == GX_OK; i++) {
-        const uint32_t facet = body->faces.data[i] >> 1;
-        if (cx->facets[facet].face == cx->element_faces[4 * (size_t)element + *k])
-            result = gxp_add_boundary_facet(body, element, facet, (int)(body->faces.data[i] & 1));
+    for (i = 0; i < boundary->facets.count && result == GX_OK; i++) {
+        const uint32_t facet = boundary->facets.data[i] >> 1;
+        if (gxb_complex_facet(cx, facet)->face == gxb_complex_element_faces(cx, element)[*k])
+            result = gxp_add_boundary_facet(body, element, facet, (int)(boundary->facets.data[i] & 1));
     }
     if (result == GX_OK)
-        result = gxi_part_moments_at(body->lambdas, body->list.count, body->triangles.data, body->triangles.count / 3,
-                                     *k, m);
+        result = gxi_part_moments_at(boundary->lambdas, boundary->points.count, boundary->triangles.data,
+                                     boundary->triangles.count / 3, *k, m);
     if (result == GX_OK && m->volume < GXP_CANCELLATION * gxp_cone_volumes(body, *k))
         result = gxp_fine_moments(body, element, *k, m);
     return result;
 }
 
-/* volume: of the element */
+/* The volume and mass of a cell; volume: of its element */
 static gx_result gxp_integrate_cell(gx_body *body, uint32_t cell, double volume) {
-    const uint32_t element = body->cells[cell].element;
+    const uint32_t element = body->cells.data[cell].element;
     gxi_moments2 m;
     unsigned k;
     uint32_t leaf;
     gx_result result = gxp_save_cell(body, cell);
     gxp_clear_boundary(body, 0);
-    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next)
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
+         leaf = body->leaves.data[leaf].next)
         result = gxp_add_boundary_leaf(body, leaf, 0);
     if (result == GX_OK) result = gxp_boundary_moments(body, element, &k, &m);
     if (result != GX_OK) return result;
-    body->cells[cell].volume = 6 * volume * m.volume;
-    gxi_part_mass(&m, k, volume, gxp_density(body, element), body->cells[cell].mass);
+    body->cells.data[cell].volume = 6 * volume * m.volume;
+    gxi_part_mass(&m, k, volume, gxp_density(body, element), body->cells.data[cell].mass);
     return GX_OK;
 }
 
 static uint32_t gxp_count_leaves(const gx_body *body, uint32_t cell) {
     uint32_t leaf, count = 0;
-    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next) count++;
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE; leaf = body->leaves.data[leaf].next) count++;
     return count;
 }
 
-/* The leaf in which the middle of the element lies, roughly */
+/* The leaf that contains the middle of the element, roughly */
 static uint32_t gxp_middle_leaf(const gxb_complex *cx, uint32_t element) {
-    uint32_t reference = cx->root[element], n;
+    uint32_t reference = gxb_complex_root(cx, element), n;
     double middle[3] = {0, 0, 0};
     int k;
     for (n = 0; n < 4; n++)
         for (k = 0; k < 3; k++)
-            middle[k] += 0.25 * gxb_complex_point(cx, cx->elements[4 * (size_t)element + n])->ball.x[k];
+            middle[k] += 0.25 * gxb_complex_point(cx, gxb_complex_element_nodes(cx, element)[n])->ball.x[k];
     while (reference & 1) {
-        const gxb_node *node = &cx->nodes[reference >> 1];
+        const gxb_node *node = gxb_complex_tree_node(cx, reference >> 1);
         const gxb_plane_filter *f = &gxb_complex_plane(cx, node->plane)->filter;
         double height = 0;
         for (k = 0; k < 3; k++) height += f->n[k] * (middle[k] - f->base[k]);
@@ -3413,75 +3773,76 @@ static uint32_t gxp_middle_leaf(const gxb_complex *cx, uint32_t element) {
     return reference >> 1;
 }
 
-/* The cell in the middle of the element, which is seldom small. GXP_NONE: it is not fresh, or something has been
-   removed from the element, so that its cells are not all of it, or its other cells have more leaves to look at than
-   the fresh ones have. */
+/* The cell in the middle of the element, which is seldom small. GXP_NONE if it is not new, if something was removed
+   from the element, so that its cells do not fill it, or if its other cells have more leaves than its new ones. */
 static uint32_t gxp_rest_cell(const gx_body *body, uint32_t element) {
-    const uint32_t root = body->complex->root[element], all = root & 1 ? body->complex->nodes[root >> 1].leaves : 1;
-    const uint32_t rest = body->leaves[gxp_middle_leaf(body->complex, element)].cell;
+    const uint32_t root = gxb_complex_root(body->complex, element),
+                   all = root & 1 ? gxb_complex_tree_node(body->complex, root >> 1)->leaves : 1;
+    const uint32_t rest = body->leaves.data[gxp_middle_leaf(body->complex, element)].cell;
     uint32_t cell, leaf, sum = 0, others = 0;
-    if (gxp_fresh_index(body, rest) == GXP_NONE) return GXP_NONE;
-    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next)
-        if (gxp_fresh_index(body, cell) != GXP_NONE) sum += gxp_count_leaves(body, cell);
-    for (cell = element; cell != GXP_NONE && others <= sum; cell = body->cells[cell].next) {
-        if (gxp_fresh_index(body, cell) != GXP_NONE) continue;
-        for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && others <= sum; leaf = body->leaves[leaf].next)
+    if (gxp_new_index(body, rest) == GXP_NONE) return GXP_NONE;
+    for (cell = element; cell != GXP_NONE; cell = body->cells.data[cell].next)
+        if (gxp_new_index(body, cell) != GXP_NONE) sum += gxp_count_leaves(body, cell);
+    for (cell = element; cell != GXP_NONE && others <= sum; cell = body->cells.data[cell].next) {
+        if (gxp_new_index(body, cell) != GXP_NONE) continue;
+        for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && others <= sum;
+             leaf = body->leaves.data[leaf].next)
             others++;
     }
     return others <= sum && sum + others == all ? rest : GXP_NONE;
 }
 
-#define GXP_REST_CELLS 4 /* an element with more cells is not looked at as a whole: a cut may touch few of them */
-#define GXP_REST                                                                                                       \
-    0.25 /* a cell with at least this share of its element may be what the others leave: its smallest moments lose two \
-            digits by that */
+/* An element with more cells is not integrated as a whole: a cut may touch few of them. */
+#define GXP_REST_CELLS 4
+/* A cell with at least this share of its element may be what the others leave; its smallest moments lose two digits. */
+#define GXP_REST 0.25
 
-/* Makes the cell, which has been saved, what the element's other cells leave. 0: that is too little. */
+/* Sets a cell, which was logged, to the element less its other cells. Returns 0 if too little remains. */
 static int gxp_leave_rest(gx_body *body, uint32_t rest, double volume) {
-    const uint32_t element = body->cells[rest].element;
+    const uint32_t element = body->cells.data[rest].element;
     double mass[10], left = volume;
     uint32_t cell;
     int i;
     gxi_tet_mass(volume, gxp_density(body, element), mass);
-    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next) {
+    for (cell = element; cell != GXP_NONE; cell = body->cells.data[cell].next) {
         if (cell == rest) continue;
-        left -= body->cells[cell].volume;
-        for (i = 0; i < 10; i++) mass[i] -= body->cells[cell].mass[i];
+        left -= body->cells.data[cell].volume;
+        for (i = 0; i < 10; i++) mass[i] -= body->cells.data[cell].mass[i];
     }
     if (!(left >= GXP_REST * volume)) return 0;
-    body->cells[rest].volume = left;
-    memcpy(body->cells[rest].mass, mass, sizeof mass);
+    body->cells.data[rest].volume = left;
+    memcpy(body->cells.data[rest].mass, mass, sizeof mass);
     return 1;
 }
 
 static int gxp_has_few_cells(const gx_body *body, uint32_t element) {
     uint32_t cell = element, count = 0;
-    for (; cell != GXP_NONE && count <= GXP_REST_CELLS; cell = body->cells[cell].next) count++;
+    for (; cell != GXP_NONE && count <= GXP_REST_CELLS; cell = body->cells.data[cell].next) count++;
     return count <= GXP_REST_CELLS;
 }
 
-/* The fresh cells of the element. Most often the one in the middle is what the others leave. */
+/* Integrates the new cells of an element. The one in the middle is most often what the others leave. */
 static gx_result gxp_integrate_element(gx_body *body, uint32_t element) {
     const double volume = gxp_element_volume(body, element);
     const uint32_t rest = gxp_rest_cell(body, element);
     uint32_t cell;
     int done = 0;
     gx_result result = gxb_complex_open_element(body->complex, element);
-    for (cell = element; cell != GXP_NONE && result == GX_OK; cell = body->cells[cell].next)
-        if (cell != rest && gxp_fresh_index(body, cell) != GXP_NONE) result = gxp_integrate_cell(body, cell, volume);
+    for (cell = element; cell != GXP_NONE && result == GX_OK; cell = body->cells.data[cell].next)
+        if (cell != rest && gxp_new_index(body, cell) != GXP_NONE) result = gxp_integrate_cell(body, cell, volume);
     if (rest == GXP_NONE || result != GX_OK) return result;
     result = gxp_save_cell(body, rest);
     if (result == GX_OK) done = gxp_leave_rest(body, rest, volume);
     return result != GX_OK || done ? result : gxp_integrate_cell(body, rest, volume);
 }
 
-/* Volume of what the cut removed, leaf by leaf, so that a thin slab keeps its digits. */
+/* The volume that the cut removed, leaf by leaf, so that a thin slab keeps its digits. */
 static gx_result gxp_integrate_removed(gxp_cut *cut, const gxp_words *removed) {
     gx_body *body = cut->body;
     gx_result result = GX_OK;
     uint32_t i;
     for (i = 0; i < removed->count && result == GX_OK; i++) {
-        const uint32_t leaf = removed->data[i], element = body->complex->leaves[leaf].element;
+        const uint32_t leaf = removed->data[i], element = gxb_complex_leaf(body->complex, leaf)->element;
         gxi_moments2 m;
         unsigned k;
         gxp_clear_boundary(body, 1);
@@ -3492,184 +3853,21 @@ static gx_result gxp_integrate_removed(gxp_cut *cut, const gxp_words *removed) {
     return result;
 }
 
-/* >>commit --------------------------------------------------------------------------------------------------------- */
+/* >>cut: the driver ------------------------------------------------------------------------------------------------ */
+/* gx_body_cut: check, begin, arrange, enrich, integrate, then commit, or roll back on any error. The commit can't fail.
+   It drops dead copies, wakes what was touched and marks what is to be made anew: model, skin, view, snapshot. */
 
-/* Puts the last copy in the place of a dead one. */
-static void gxp_drop_copy(gx_body *body, uint32_t copy) {
-    const uint32_t last = --body->copy_count, node = body->copy_node[last];
-    uint32_t j, cell;
-    if (copy == last) return;
-    for (j = body->node_start[node]; j < body->node_start[node + 1]; j++) {
-        const uint32_t element = body->node_elements[j];
-        const int k = gxp_local_node(body, element, node);
-        for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next)
-            if (body->cells[cell].copies[k] == last) body->cells[cell].copies[k] = copy;
-    }
-    body->copy_node[copy] = node;
-    gxp_copy_state(body, last, copy);
-}
-
-static uint64_t gxp_hash_doubles(uint64_t hash, const double *x, size_t count); /* see hashes */
-
-static uint64_t gxp_hash_state(const gx_body *body, size_t copies) {
-    return gxp_hash_doubles(gxp_hash_doubles(1, body->displacement, 3 * copies), body->velocity, 3 * copies) | 1;
-}
-
-/* Since the body was saved, copied or read its solver knows of no step: if the state of its first copies has been
-   written, all wakes, in a copy as in the original. */
-static void gxp_wake_resumed(gx_body *body, size_t copies) {
-    uint32_t i;
-    if (body->resumed == 0 || body->resumed == gxp_hash_state(body, copies)) return;
-    for (i = 0; i < body->copy_count; i++) body->rest_time[i] = 0;
-}
-
-/* What a cut touches wakes, and its fragment is no more as it was. */
-static void gxp_touch_copies(gx_body *body, const gxp_cell *cell) {
-    int k;
-    for (k = 0; k < 4; k++) {
-        body->rest_time[cell->copies[k]] = 0;
-        body->copy_label[cell->copies[k]] |= 1;
-    }
-}
-
-/* Notes the elements that the solver is to see anew; without memory for that, all are. */
-static void gxp_note_changed(gx_body *body) {
-    gx_result result = GX_OK;
-    uint32_t i;
-    if (body->model == GXP_MODEL_STALE) return;
-    for (i = 0; i < body->saved_cell_count && result == GX_OK; i++)
-        result = gxp_push(body, &body->changed, body->saved_cells[i].cell.element);
-    for (i = 0; i < body->fresh.count && result == GX_OK; i++)
-        result = gxp_push(body, &body->changed, body->cells[body->fresh.data[i]].element);
-    body->model = result == GX_OK ? GXP_MODEL_CHANGED : GXP_MODEL_STALE;
-}
-
-static void gxp_commit(gxp_cut *cut) {
-    gx_body *body = cut->body;
-    uint32_t i;
-    gxp_note_changed(body);
-    for (i = 0; i < body->fresh.count; i++) gxp_touch_copies(body, &body->cells[body->fresh.data[i]]);
-    for (i = 0; i < body->touched.count; i++) {
-        gxp_cell *cell = &body->cells[body->touched.data[i]];
-        if (cell->kept) continue;
-        gxp_touch_copies(body, cell); /* also what hung on it by an edge or node only */
-        memset(cell->copies, 0xff, sizeof cell->copies);
-    }
-    for (i = 0; i < body->removed.count; i++) body->leaves[body->removed.data[i]].next = GXP_NONE;
-    cut->report.removed_copies = body->dead.count;
-    gxp_sort_unique(&body->dead);
-    for (i = body->dead.count; i-- > 0;) gxp_drop_copy(body, body->dead.data[i]);
-    gxb_complex_commit(body->complex);
-    body->saved_cell_count = body->saved_leaf_count = 0;
-    body->past = gxp_hash_cut(body->past, cut->desc);
-    if (cut->report.created_copies + cut->report.removed_copies > 0) body->epoch = body->past != 0 ? body->past : 1;
-    body->held_stale = body->view_stale = body->look_stale = 1;
-    if (body->removed.count + body->dead.count > 0 || body->splits.count > body->copy_count) body->labels_known = 0;
-    if (!body->labels_known) body->splits.count = 0;
-}
-
-/* Removes what the solids have found. The cells of these leaves, and those beside them, are touched. */
-static gx_result gxp_remove_leaves(gx_body *body) {
-    uint32_t i;
-    gx_result result = GX_OK;
-    gxp_sort_unique(&body->removed);
-    for (i = 0; i < body->removed.count && result == GX_OK; i++) {
-        result = gxb_complex_set_removed(body->complex, body->removed.data[i]);
-        if (result == GX_OK) result = gxp_push(body, &body->touched, body->leaves[body->removed.data[i]].cell);
-    }
-    for (i = 0; i < body->removed.count && result == GX_OK; i++) result = gxp_touch_around(body, body->removed.data[i]);
-    return result;
-}
-
-static gx_result gxp_arrange_surfaces(gxp_cut *cut, gxp_surface *surfaces) {
-    const size_t count = cut->desc->surface_count;
+static uint64_t gxp_hash_cut(uint64_t past, const gx_cut_desc *desc) {
     size_t i;
-    int scoped;
-    gx_result result = gxp_stamp_scope(cut, &scoped);
-    for (i = 0; i < count && result == GX_OK; i++) {
-        result = gxp_surface_open(cut, &surfaces[i], &cut->desc->surfaces[i], i);
-        if (result == GX_OK) result = gxp_insert_surface(cut, &surfaces[i], scoped);
+    past = gxp_hash_words(past, desc->scope_fragments, desc->scope_fragment_count);
+    past = gxp_hash_doubles(gxp_hash_words(past, desc->scope_cells, desc->scope_cell_count), &desc->sever_below, 1);
+    for (i = 0; i < desc->surface_count; i++) {
+        const gx_surface *s = &desc->surfaces[i];
+        past = gxp_hash_doubles(gxp_mix(past ^ s->kind ^ (uint64_t)s->vertex_count << 8), s->vertices,
+                                3 * s->vertex_count);
+        past = gxp_hash_texture(gxp_hash_words(past, s->triangles, 3 * s->triangle_count), s->texture, s->vertex_count);
     }
-    if (result == GX_OK) result = gxp_follow_leaves(cut->body);
-    for (i = 0; i < count && result == GX_OK; i++)
-        if (surfaces[i].given->kind == GX_SURFACE_SOLID) result = gxp_find_solid(cut, &surfaces[i], scoped);
-    return result;
-}
-
-static gx_result gxp_arrange(gxp_cut *cut) {
-    gx_body *body = cut->body;
-    const size_t count = cut->desc->surface_count;
-    gxp_surface *surfaces = (gxp_surface *)gxp_allocate(&body->allocator, count * sizeof *surfaces);
-    gx_result result;
-    size_t i;
-    if (surfaces == NULL) return GX_ERROR_MEMORY;
-    memset(surfaces, 0, count * sizeof *surfaces);
-    body->touched.count = body->removed.count = body->pinches.count = 0;
-    result = gxp_arrange_surfaces(cut, surfaces);
-    for (i = 0; i < count; i++)
-        if (surfaces[i].given != NULL) gxp_surface_free(body, &surfaces[i]);
-    gxp_release(&body->allocator, surfaces, count * sizeof *surfaces);
-    if (result == GX_OK) result = gxp_list_new_leaves(cut);
-    return result == GX_OK ? gxp_remove_leaves(body) : result;
-}
-
-static gx_result gxp_enrich(gxp_cut *cut) {
-    gx_result result = gxp_collect_touched(cut);
-    if (result == GX_OK) result = gxp_divide_cells(cut);
-    if (result == GX_OK && cut->desc->sever_below > 0) result = gxp_sever_links(cut);
-    if (result == GX_OK && cut->report.severed_links > 0) result = gxp_touch_severed(cut);
-    return result == GX_OK ? gxp_divide_nodes(cut) : result;
-}
-
-/* The integrals of a fresh cell, and of all others of its element, unless they are many. *before: the element of the
- * fresh cell before it */
-static gx_result gxp_integrate_fresh(gx_body *body, uint32_t cell, uint32_t *before) {
-    const uint32_t element = body->cells[cell].element;
-    if (body->cell_stamp[element] == body->stamp) return GX_OK;
-    gxp_clear_boundary(body, element != *before);
-    *before = element;
-    if (!gxp_has_few_cells(body, element)) return gxp_integrate_cell(body, cell, gxp_element_volume(body, element));
-    body->cell_stamp[element] = body->stamp;
-    return gxp_integrate_element(body, element);
-}
-
-/* Asks for what weighing the links of the next fresh cells reads: facets three ahead, their loops two ahead, the edges
- * of the next. */
-GXP_FETCHES void gxp_fetch_links(const gx_body *body, uint32_t index) {
-    const gxb_complex *cx = body->complex;
-    const uint32_t *at = body->link_first.data;
-    const uint32_t count = body->fresh.count;
-    uint32_t j, i;
-    if (index + 3 < count)
-        for (j = at[index + 3]; j < at[index + 4]; j++) GXP_FETCH(&cx->facets[GXP_LINK_FACET(body->links.data[j])]);
-    if (index + 2 < count)
-        for (j = at[index + 2]; j < at[index + 3]; j++) {
-            const gxb_facet *f = &cx->facets[GXP_LINK_FACET(body->links.data[j])];
-            GXP_FETCH(cx->pool + f->loop);
-            GXP_FETCH(&gxb_complex_plane(cx, f->plane)->axis);
-        }
-    if (index + 1 < count)
-        for (j = at[index + 1]; j < at[index + 2]; j++) {
-            const gxb_facet *f = &cx->facets[GXP_LINK_FACET(body->links.data[j])];
-            for (i = 0; i < f->loop_count; i++) GXP_FETCH(&cx->edges[cx->pool[f->loop + i] >> 1]);
-        }
-}
-
-/* Links are weighed here, where their facets are looked at anyway, unless they were before, to be severed. */
-static gx_result gxp_integrate(gxp_cut *cut) {
-    gx_body *body = cut->body;
-    const int weighed = cut->desc->sever_below > 0;
-    double bound = 1;
-    uint32_t i, before = GXP_NONE;
-    gx_result result = gxp_integrate_removed(cut, &body->removed);
-    body->nodes.count = 0;
-    body->stamp++;
-    for (i = 0; i < body->fresh.count && result == GX_OK; i++) {
-        gxp_fetch_links(body, i);
-        if (!weighed) result = gxp_weigh_links(cut, i, &bound);
-        if (result == GX_OK) result = gxp_integrate_fresh(body, body->fresh.data[i], &before);
-    }
-    return result == GX_OK ? gxp_judge_links(cut, bound) : result;
+    return past;
 }
 
 static gx_result gxp_check_cut(gxp_cut *cut) {
@@ -3686,7 +3884,226 @@ static gx_result gxp_check_cut(gxp_cut *cut) {
     return result;
 }
 
-static gx_result gxp_note_touched(gxp_cut *cut, uint32_t first_facet); /* see >>boundary */
+/* Removes the leaves that the solids contain. Touches their cells and those around. */
+static gx_result gxp_remove_leaves(gx_body *body) {
+    gxp_scratch *scratch = &body->scratch;
+    uint32_t i;
+    gx_result result = gxp_words_room(body, &scratch->touched, scratch->removed.count);
+    gxp_sort_unique(&scratch->removed);
+    for (i = 0; i < scratch->removed.count && result == GX_OK; i++) {
+        result = gxb_complex_set_removed(body->complex, scratch->removed.data[i]);
+        if (result == GX_OK)
+            result = gxp_push(body, &scratch->touched, body->leaves.data[scratch->removed.data[i]].cell);
+    }
+    for (i = 0; i < scratch->removed.count && result == GX_OK; i++)
+        result = gxp_touch_around(body, scratch->removed.data[i]);
+    return result;
+}
+
+/* Inserts all surfaces, then finds the leaves inside the solids. */
+static gx_result gxp_arrange_surfaces(gxp_cut *cut, gxp_surface *surfaces) {
+    const size_t count = cut->desc->surface_count;
+    size_t i;
+    int scoped;
+    gx_result result = gxp_stamp_scope(cut, &scoped);
+    for (i = 0; i < count && result == GX_OK; i++) {
+        result = gxp_surface_open(cut, &surfaces[i], &cut->desc->surfaces[i], i);
+        if (result == GX_OK) result = gxp_insert_surface(cut, &surfaces[i], scoped);
+    }
+    if (result == GX_OK) result = gxp_follow_leaves(cut->body);
+    for (i = 0; i < count && result == GX_OK; i++)
+        if (surfaces[i].given->kind == GX_SURFACE_SOLID) result = gxp_find_solid(cut, &surfaces[i], scoped);
+    return result;
+}
+
+/* From surfaces to leaves: the complex has all walls, removed leaves are marked, cells beside them touched. */
+static gx_result gxp_arrange(gxp_cut *cut) {
+    gx_body *body = cut->body;
+    const size_t count = cut->desc->surface_count;
+    gxp_surface *surfaces = (gxp_surface *)gxp_allocate(&body->config.allocator, count * sizeof *surfaces);
+    gx_result result;
+    size_t i;
+    if (surfaces == NULL) return GX_ERROR_MEMORY;
+    memset(surfaces, 0, count * sizeof *surfaces);
+    body->scratch.touched.count = body->scratch.removed.count = body->scratch.pinches.count = 0;
+    result = gxp_arrange_surfaces(cut, surfaces);
+    for (i = 0; i < count; i++)
+        if (surfaces[i].given != NULL) gxp_surface_free(body, &surfaces[i]);
+    gxp_release(&body->config.allocator, surfaces, count * sizeof *surfaces);
+    if (result == GX_OK) result = gxp_list_new_leaves(cut);
+    return result == GX_OK ? gxp_remove_leaves(body) : result;
+}
+
+/* From leaves to copies: touched cells fall apart, small links are severed, nodes get copies. */
+static gx_result gxp_enrich(gxp_cut *cut) {
+    gx_result result = gxp_collect_touched(cut);
+    if (result == GX_OK) result = gxp_divide_cells(cut);
+    if (result == GX_OK && cut->desc->sever_below > 0) result = gxp_sever_links(cut);
+    if (result == GX_OK && cut->report.severed_links > 0) result = gxp_touch_severed(cut);
+    return result == GX_OK ? gxp_divide_nodes(cut) : result;
+}
+
+/* Integrates a new cell and all other new cells of its element; only the cell if the element has many. *before: the
+   element of the new cell before it. */
+static gx_result gxp_integrate_new(gx_body *body, uint32_t cell, uint32_t *before) {
+    const uint32_t element = body->cells.data[cell].element;
+    if (body->cells.stamp[element] == body->scratch.stamp) return GX_OK;
+    gxp_clear_boundary(body, element != *before);
+    *before = element;
+    if (!gxp_has_few_cells(body, element)) return gxp_integrate_cell(body, cell, gxp_element_volume(body, element));
+    body->cells.stamp[element] = body->scratch.stamp;
+    return gxp_integrate_element(body, element);
+}
+
+/* Prefetches the data that weighing the links of the next new cells will read: facets three cells ahead, their loops
+   two ahead, the edges of the next. */
+GXP_PREFETCHES void gxp_prefetch_links(const gx_body *body, uint32_t index) {
+    const gxp_scratch *scratch = &body->scratch;
+    const gxb_complex *cx = body->complex;
+    const uint32_t *at = scratch->link_first.data;
+    const uint32_t count = scratch->new_cells.count;
+    uint32_t j, i;
+    if (index + 3 < count)
+        for (j = at[index + 3]; j < at[index + 4]; j++)
+            GXP_PREFETCH(gxb_complex_facet(cx, GXP_LINK_FACET(scratch->links.data[j])));
+    if (index + 2 < count)
+        for (j = at[index + 2]; j < at[index + 3]; j++) {
+            const gxb_facet *f = gxb_complex_facet(cx, GXP_LINK_FACET(scratch->links.data[j]));
+            GXP_PREFETCH(gxb_complex_list(cx, f->loop));
+            GXP_PREFETCH(&gxb_complex_plane(cx, f->plane)->axis);
+        }
+    if (index + 1 < count)
+        for (j = at[index + 1]; j < at[index + 2]; j++) {
+            const gxb_facet *f = gxb_complex_facet(cx, GXP_LINK_FACET(scratch->links.data[j]));
+            for (i = 0; i < f->loop_count; i++) GXP_PREFETCH(gxb_complex_edge(cx, gxp_item(cx, f->loop + i) >> 1));
+        }
+}
+
+/* Integrates the new cells. Unless links were weighed before to be severed, weighs them here, while their facets are in
+   the cache. */
+static gx_result gxp_integrate(gxp_cut *cut) {
+    gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
+    const int weighed = cut->desc->sever_below > 0;
+    double bound = 1;
+    uint32_t i, before = GXP_NONE;
+    gx_result result = gxp_integrate_removed(cut, &scratch->removed);
+    scratch->narrow.count = 0;
+    scratch->stamp++;
+    for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++) {
+        gxp_prefetch_links(body, i);
+        if (!weighed) result = gxp_weigh_links(cut, i, &bound);
+        if (result == GX_OK) result = gxp_integrate_new(body, scratch->new_cells.data[i], &before);
+    }
+    return result == GX_OK ? gxp_judge_links(cut, bound) : result;
+}
+
+static gx_result gxp_push_leaf_elements(gx_body *body, uint32_t facet) {
+    const gxb_complex *cx = body->complex;
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (i = 0; i < 2 && result == GX_OK; i++)
+        if (gxb_complex_facet(cx, facet)->leaf[i] != GXB_NONE)
+            result =
+                gxp_push(body, &body->skin.dirty, gxb_complex_leaf(cx, gxb_complex_facet(cx, facet)->leaf[i])->element);
+    return result;
+}
+
+/* Notes for the skin the elements in which the cut made facets or walls or changed a cell, and those whose copies get
+   new numbers when dead ones are dropped. An element noted in vain does no harm. */
+static gx_result gxp_note_for_skin(gxp_cut *cut, uint32_t first_facet) {
+    gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
+    const gxb_complex *cx = body->complex;
+    uint32_t i, j;
+    gx_result result = GX_OK;
+    if (!body->skin.made) return GX_OK;
+    if (body->skin.dirty.count / 8 > body->mesh.element_count) {
+        body->skin.made = 0;
+        return GX_OK;
+    }
+    for (i = first_facet; i < gxb_complex_facet_count(cx) && result == GX_OK; i++)
+        result = gxp_push_leaf_elements(body, i);
+    for (i = 0; i < gxb_complex_marked_count(cx) && result == GX_OK; i++)
+        result = gxp_push_leaf_elements(body, gxb_complex_marked_facet(cx, i));
+    for (i = 0; i < body->undo.cells.rows.count && result == GX_OK; i++)
+        result = gxp_push(body, &body->skin.dirty, body->cells.data[body->undo.cells.rows.data[i]].element);
+    for (i = 0; i < scratch->pinches.count; i++) /* edges may be divided there without a new facet */
+        for (j = body->mesh.node_start[scratch->pinches.data[i]];
+             j < body->mesh.node_start[scratch->pinches.data[i] + 1] && result == GX_OK; j++)
+            result = gxp_push(body, &body->skin.dirty, body->mesh.node_elements[j]);
+    for (i = body->copies.count - scratch->dead.count; i < body->copies.count; i++) {
+        const uint32_t node = body->copies.node[i];
+        for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1] && result == GX_OK; j++)
+            result = gxp_push(body, &body->skin.dirty, body->mesh.node_elements[j]);
+    }
+    return result;
+}
+
+/* Puts the last copy in the place of a dead one. */
+static void gxp_drop_copy(gx_body *body, uint32_t copy) {
+    const uint32_t last = --body->copies.count, node = body->copies.node[last];
+    uint32_t j, cell;
+    if (copy == last) return;
+    for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1]; j++) {
+        const uint32_t element = body->mesh.node_elements[j];
+        const int k = gxp_local_node(body, element, node);
+        for (cell = element; cell != GXP_NONE; cell = body->cells.data[cell].next)
+            if (body->cells.data[cell].copies[k] == last) body->cells.data[cell].copies[k] = copy;
+    }
+    gxp_copy_row(body, GXP_COPIES, last, copy);
+}
+
+/* Wakes the copies of a touched cell and marks their fragment as touched. */
+static void gxp_touch_copies(gx_body *body, const gxp_cell *cell) {
+    int k;
+    for (k = 0; k < 4; k++) {
+        body->copies.rest_time[cell->copies[k]] = 0;
+        body->copies.label[cell->copies[k]] |= 1;
+    }
+}
+
+/* Notes the elements of which the solver must be told. If there is no memory for that, it is told of all. */
+static void gxp_note_changed(gx_body *body) {
+    const gxp_words *changed = &body->undo.cells.rows, *made = &body->scratch.new_cells;
+    gx_result result = GX_OK;
+    uint32_t i;
+    if (body->model.state == GXP_MODEL_STALE) return;
+    for (i = 0; i < changed->count && result == GX_OK; i++)
+        result = gxp_push(body, &body->model.changed, body->cells.data[changed->data[i]].element);
+    for (i = 0; i < made->count && result == GX_OK; i++)
+        result = gxp_push(body, &body->model.changed, body->cells.data[made->data[i]].element);
+    body->model.state = result == GX_OK ? GXP_MODEL_CHANGED : GXP_MODEL_STALE;
+}
+
+static void gxp_commit(gxp_cut *cut) {
+    gx_body *body = cut->body;
+    gxp_view *view = &body->view;
+    gxp_scratch *scratch = &body->scratch;
+    uint32_t i;
+    gxp_note_changed(body);
+    for (i = 0; i < scratch->new_cells.count; i++)
+        gxp_touch_copies(body, &body->cells.data[scratch->new_cells.data[i]]);
+    for (i = 0; i < scratch->touched.count; i++) {
+        gxp_cell *cell = &body->cells.data[scratch->touched.data[i]];
+        if (cell->kept) continue;
+        gxp_touch_copies(body, cell); /* also what it held by an edge or node only */
+        memset(cell->copies, 0xff, sizeof cell->copies);
+    }
+    for (i = 0; i < scratch->removed.count; i++) body->leaves.data[scratch->removed.data[i]].next = GXP_NONE;
+    cut->report.removed_copies = scratch->dead.count;
+    gxp_sort_unique(&scratch->dead);
+    for (i = scratch->dead.count; i-- > 0;) gxp_drop_copy(body, scratch->dead.data[i]);
+    gxb_complex_commit(body->complex);
+    body->undo.cells.rows.count = body->undo.leaves.rows.count = 0;
+    body->cuts.hash = gxp_hash_cut(body->cuts.hash, cut->desc);
+    if (cut->report.created_copies + cut->report.removed_copies > 0)
+        body->cuts.epoch = body->cuts.hash != 0 ? body->cuts.hash : 1;
+    body->holds.stale = view->stale = body->snapshot.stale = 1;
+    if (scratch->removed.count + scratch->dead.count > 0 || view->splits.count > body->copies.count)
+        view->labels_known = 0;
+    if (!view->labels_known) view->splits.count = 0;
+}
 
 GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report, gx_failure *failure) {
     gxp_cut cut;
@@ -3702,7 +4119,7 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
     result = gxp_check_cut(&cut);
     if (result != GX_OK) return gxp_fail(failure, result, cut.failure.index, cut.failure.surface);
     gxp_begin(&cut);
-    first_facet = body->complex->facet_count;
+    first_facet = gxb_complex_facet_count(body->complex);
     start = gxp_seconds(body);
     result = gxp_arrange(&cut);
     cut.report.seconds_arrangement = gxp_seconds(body) - start;
@@ -3711,40 +4128,23 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
     if (result == GX_OK) result = gxp_integrate(&cut);
     cut.report.seconds_integrals =
         gxp_seconds(body) - start - cut.report.seconds_arrangement - cut.report.seconds_enrichment;
-    if (result == GX_OK) result = gxp_note_touched(&cut, first_facet);
+    if (result == GX_OK) result = gxp_note_for_skin(&cut, first_facet);
     if (result != GX_OK) {
         gxp_rollback(&cut);
         return gxp_fail(failure, result, cut.failure.index, cut.failure.surface);
     }
-    gxp_wake_resumed(body, body->before.copies);
+    gxp_wake_resumed(body, body->undo.counts[GXP_COPIES]);
     gxp_commit(&cut);
-    if (body->resumed != 0) body->resumed = gxp_hash_state(body, body->copy_count);
+    if (body->model.resumed != 0) body->model.resumed = gxp_hash_state(body, body->copies.count);
     if (report != NULL) *report = cut.report;
     return gxp_fail(failure, GX_OK, SIZE_MAX, SIZE_MAX);
 }
 
-/* --- solidified sheets --- */
+/* >>solidify: a sheet made solid ----------------------------------------------------------------------------------- */
+/* In: a sheet and a thickness. Out: the closed surface between its two offsets (GXFEM section 4.1). Knows no body. */
 
-static double gxp_dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-/* n made of length 1, however long it is. 0: it has no length, or is not finite, and unit is left alone. */
-static int gxp_unit(const double n[3], double unit[3]) {
-    double m[3] = {n[0], n[1], n[2]}, square = gxp_dot(n, n);
-    int exponent, k;
-    if (!gxp_is_finite(square) || square < 1e-280 || square > 1e280) {
-        const double a = fabs(n[0]), b = fabs(n[1]), c = fabs(n[2]), most = a > b ? (a > c ? a : c) : b > c ? b : c;
-        if (!gxp_is_finite(a) || !gxp_is_finite(b) || !gxp_is_finite(c) || !(most > 0)) return 0;
-        (void)frexp(most, &exponent);
-        for (k = 0; k < 3; k++) m[k] = ldexp(n[k], -exponent);
-        square = gxp_dot(m, m);
-    }
-    square = 1 / sqrt(square);
-    for (k = 0; k < 3; k++) unit[k] = square * m[k];
-    return 1;
-}
-
-/* Sums of area normals at the vertices of the sheet go to normals, of edges in units of the longest one's power of two,
-   so that areas are numbers; then each is scaled to half the thickness. */
+/* Sums the area normals around each vertex of the sheet and scales each sum to half the thickness. Edges are measured
+   in units of the longest one's power of two, so that areas stay in range. */
 static gx_result gxp_offset_vectors(const gx_surface *s, double half, double *normals) {
     double longest = 0;
     size_t i;
@@ -3779,8 +4179,7 @@ static gx_result gxp_offset_vectors(const gx_surface *s, double half, double *no
     return GX_OK;
 }
 
-/* Closes the rim: a quad for each half-edge whose edge has more triangles one way than the other. Appends to triangles.
- */
+/* Closes the rim: appends a quad for each half-edge whose edge has more triangles one way than the other. */
 static gx_result gxp_close_solid(const gx_surface *s, const gx_allocator *a, uint32_t *triangles, size_t *count) {
     const size_t n = 3 * s->triangle_count, size = n * sizeof(gxp_half_edge);
     const uint32_t v = (uint32_t)s->vertex_count;
@@ -3825,7 +4224,7 @@ GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thicknes
     double *normals;
     memset(&none, 0, sizeof none);
     if (allocator == NULL) allocator = &none;
-    if (!sheet || !vertices || !vertex_count || !triangles || !triangle_count || !gxbp_is_allocator(allocator))
+    if (!sheet || !vertices || !vertex_count || !triangles || !triangle_count || !gxb_is_allocator(allocator))
         return GX_ERROR_ARGUMENT;
     if (!gxp_is_finite(thickness)) return GX_ERROR_NOT_FINITE;
     if (!(thickness > 0)) return GX_ERROR_ARGUMENT;
@@ -3855,63 +4254,68 @@ GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thicknes
     return GX_OK;
 }
 
-/* >>regions: which copies are held --------------------------------------------------------------------------------- */
+/* >>regions: held copies ------------------------------------------------------------------------------------------- */
+/* In: regions that are to be held. Out: a flag for each copy, found anew after a cut or when regions change. */
 
+/* points below node_count are nodes */
 static int gxp_point_in_region(gx_body *body, uint32_t point, const gx_region *r) {
-    if (point < body->node_count) {
-        const double x = body->positions[3 * (size_t)point + r->axis];
+    if (point < body->mesh.node_count) {
+        const double x = body->mesh.positions[3 * (size_t)point + r->axis];
         return r->side < 0 ? x < r->value : x > r->value;
     }
     return gxb_complex_compare(body->complex, point, (int)r->axis, r->value) * r->side > 0;
 }
 
-/* Has the cell material in the region? Leaves are convex: their points tell. */
+/* Does the cell have material in the region? Its leaves are convex, so their points decide. */
 static gx_result gxp_cell_in_region(gx_body *body, uint32_t cell, const gx_region *r, int *inside) {
     uint32_t leaf, i;
     gx_result result = GX_OK;
     *inside = 0;
-    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK && !*inside;
-         leaf = body->leaves[leaf].next) {
-        if (body->complex->leaves[leaf].facet_count == 0) {
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK && !*inside;
+         leaf = body->leaves.data[leaf].next) {
+        if (gxb_complex_leaf(body->complex, leaf)->facet_count == 0) {
             for (i = 0; i < 4; i++)
-                *inside |= gxp_point_in_region(body, body->complex->elements[4 * body->cells[cell].element + i], r);
+                *inside |= gxp_point_in_region(
+                    body, gxb_complex_element_nodes(body->complex, body->cells.data[cell].element)[i], r);
             continue;
         }
-        result = gxp_leaf_points(body, leaf);
-        for (i = 0; i < body->list.count && result == GX_OK && !*inside; i++)
-            *inside = gxp_point_in_region(body, body->list.data[i], r);
+        result = gxp_collect_leaf_points(body, leaf);
+        for (i = 0; i < body->scratch.leaf_points.count && result == GX_OK && !*inside; i++)
+            *inside = gxp_point_in_region(body, body->scratch.leaf_points.data[i], r);
     }
     return result;
 }
 
+/* Does a cell of the copy, whose node is in the region, have material in the region? */
 static gx_result gxp_copy_in_region(gx_body *body, uint32_t copy, const gx_region *r, int *inside) {
-    const uint32_t node = body->copy_node[copy];
+    const uint32_t node = body->copies.node[copy];
     uint32_t j, cell;
     gx_result result = GX_OK;
     *inside = 0;
     if (!gxp_point_in_region(body, node, r)) return GX_OK;
-    for (j = body->node_start[node]; j < body->node_start[node + 1] && !*inside; j++) {
-        const int k = gxp_local_node(body, body->node_elements[j], node);
-        for (cell = body->node_elements[j]; cell != GXP_NONE && result == GX_OK && !*inside;
-             cell = body->cells[cell].next)
-            if (body->cells[cell].kept && body->cells[cell].copies[k] == copy)
+    for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1] && !*inside; j++) {
+        const int k = gxp_local_node(body, body->mesh.node_elements[j], node);
+        for (cell = body->mesh.node_elements[j]; cell != GXP_NONE && result == GX_OK && !*inside;
+             cell = body->cells.data[cell].next)
+            if (body->cells.data[cell].kept && body->cells.data[cell].copies[k] == copy)
                 result = gxp_cell_in_region(body, cell, r, inside);
     }
     return result;
 }
 
+/* Finds out anew which copies are held, if a cut or other regions make that necessary. */
 static gx_result gxp_update_held(gx_body *body) {
     uint32_t c, r;
     gx_result result = GX_OK;
-    if (!body->held_stale) return GX_OK;
-    for (c = 0; c < body->copy_count && result == GX_OK; c++) {
+    if (!body->holds.stale) return GX_OK;
+    for (c = 0; c < body->copies.count && result == GX_OK; c++) {
         int held = 0;
-        for (r = 0; r < body->region_count && result == GX_OK && !held; r++)
-            result = gxp_copy_in_region(body, c, &body->regions[r], &held);
-        if (body->held[c] && !held) body->rest_time[c] = 0; /* what is let go wakes */
-        body->held[c] = (uint8_t)held;
+        for (r = 0; r < body->holds.count && result == GX_OK && !held; r++)
+            result = gxp_copy_in_region(body, c, &body->holds.regions[r], &held);
+        if (body->copies.held[c] && !held) body->copies.rest_time[c] = 0; /* released copies wake */
+        body->copies.held[c] = (uint8_t)held;
     }
-    if (result == GX_OK) body->held_stale = 0;
+    if (result == GX_OK) body->holds.stale = 0;
     return result;
 }
 
@@ -3929,117 +4333,36 @@ GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t
         result = gxp_check_region(&regions[i]);
         if (result != GX_OK) return result;
     }
-    result = gxp_reserve(&body->allocator, &body->regions, sizeof *regions, 0, &body->region_capacity, region_count);
+    result = gxp_grow_rows(body, GXP_REGIONS, region_count);
     if (result != GX_OK) return result;
-    if (region_count > 0) memcpy(body->regions, regions, region_count * sizeof *regions);
-    body->region_count = (uint32_t)region_count;
-    body->held_stale = 1;
-    body->model = GXP_MODEL_STALE;
+    if (region_count > 0) memcpy(body->holds.regions, regions, region_count * sizeof *regions);
+    body->holds.count = (uint32_t)region_count;
+    body->holds.stale = 1;
+    body->model.state = GXP_MODEL_STALE;
     return GX_OK;
 }
 
-/* >>fragments: the view -------------------------------------------------------------------------------------------- */
+/* >>fragments: what is connected, and what cuts changed ------------------------------------------------------------ */
+/* In: the numbering of fragments. Out: their volumes, masses, centres and inertia; ids that stay, by comparison with
+   the last snapshot. Touches the view's sums, the snapshot and the copies' labels. */
 
-static uint32_t gxp_find(uint32_t *parent, uint32_t i) {
-    while (parent[i] != i) {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    return i;
-}
-
-static void gxp_unite(uint32_t *parent, uint32_t i, uint32_t j) {
-    i = gxp_find(parent, i);
-    j = gxp_find(parent, j);
-    if (i < j)
-        parent[j] = i;
-    else
-        parent[i] = j;
-}
-
-static void gxp_unite_all(uint32_t *parent, const uint32_t copies[4]) {
-    uint32_t root = gxp_find(parent, copies[0]), k;
-    for (k = 1; k < 4; k++) {
-        const uint32_t other = gxp_find(parent, copies[k]);
-        if (other < root) {
-            parent[root] = other;
-            root = other;
-        } else
-            parent[other] = root;
-    }
-}
-
-static gx_result gxp_set_words(gx_body *body, gxp_words *words, size_t count) {
-    words->count = 0;
-    return gxp_words_room(body, words, count);
-}
-
-/* Lists the kept cells by element and joins copies that a cell moves by: cells of one fragment share copies from link
- * to link. */
-static gx_result gxp_list_cells(gx_body *body) {
-    uint32_t e, cell, i;
-    gx_result result = gxp_set_words(body, &body->view_cells, body->cell_count);
-    if (result == GX_OK) result = gxp_set_words(body, &body->view_fragments, body->cell_count);
-    if (result == GX_OK) result = gxp_set_words(body, &body->cell_element, body->cell_count);
-    if (result == GX_OK) result = gxp_set_words(body, &body->cell_copies, 4 * (size_t)body->cell_count);
-    if (result == GX_OK) result = gxp_set_words(body, &body->copy_fragment, body->copy_count);
-    if (result == GX_OK)
-        result = gxp_reserve(&body->allocator, &body->cell_volume, sizeof(double), 0, &body->cell_volume_capacity,
-                             body->cell_count);
-    if (result != GX_OK) return result;
-    body->copy_fragment.count = body->copy_count;
-    for (i = 0; i < body->copy_count; i++) body->copy_fragment.data[i] = i;
-    for (e = 0; e < body->element_count; e++)
-        for (cell = e; cell != GXP_NONE; cell = body->cells[cell].next) {
-            const gxp_cell *c = &body->cells[cell];
-            if (!c->kept) continue;
-            body->cell_volume[body->view_cells.count] = c->volume;
-            body->view_cells.data[body->view_cells.count++] = cell;
-            body->cell_element.data[body->cell_element.count++] = e;
-            memcpy(body->cell_copies.data + body->cell_copies.count, c->copies, sizeof c->copies);
-            body->cell_copies.count += 4;
-            gxp_unite_all(body->copy_fragment.data, c->copies);
-        }
-    return GX_OK;
-}
-
-/* Numbers fragments in the order of their first cells. */
-static gx_result gxp_number_fragments(gx_body *body) {
-    uint32_t i;
-    gx_result result = gxp_set_words(body, &body->fragment_number, body->copy_count);
-    if (result != GX_OK) return result;
-    memset(body->fragment_number.data, 0xff, body->copy_count * sizeof *body->fragment_number.data);
-    body->fragment_count = 0;
-    for (i = 0; i < body->view_cells.count; i++) {
-        const uint32_t copy = gxp_find(body->copy_fragment.data, body->cell_copies.data[4 * i]);
-        if (body->fragment_number.data[copy] == GXP_NONE) body->fragment_number.data[copy] = body->fragment_count++;
-        body->view_fragments.data[body->view_fragments.count++] = body->fragment_number.data[copy];
-    }
-    return GX_OK;
-}
-
-/* Fragment of a cell slot, by the view. */
-static uint32_t gxp_cell_fragment(gx_body *body, uint32_t cell) {
-    return body->fragment_number.data[gxp_find(body->copy_fragment.data, body->cells[cell].copies[0])];
-}
-
-/* Where entry ij stands in a mass block */
+/* The place of entry ij in a mass block */
 static const uint8_t gxp_mass_at[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
 
-/* Sum of a mass block's row: density * integral of lambda_i */
+/* The sum of a row of a mass block: density * integral of lambda_i */
 static double gxp_mass_row(const double mass[10], int i) {
     const uint8_t *at = gxp_mass_at[i];
     return mass[at[0]] + mass[at[1]] + mass[at[2]] + mass[at[3]];
 }
 
-/* x of the cell's nodes as seen from a centre: at rest, or where the cell's copies have moved */
+/* x of the cell's nodes from a centre, at rest or, moved, with the displacement of its copies */
 static void gxp_cell_corners(const gx_body *body, const gxp_cell *cell, int moved, const double center[3],
                              double x[4][3]) {
     int n, k;
     for (n = 0; n < 4; n++) {
         const double *rest =
-            body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)cell->element + (size_t)n];
-        const double *u = body->displacement + 3 * (size_t)cell->copies[n];
+            body->mesh.positions + 3 * (size_t)gxb_complex_element_nodes(body->complex, cell->element)[n];
+        const double *u = body->copies.displacement + 3 * (size_t)cell->copies[n];
         for (k = 0; k < 3; k++) x[n][k] = rest[k] - center[k] + (moved ? u[k] : 0);
     }
 }
@@ -4076,264 +4399,244 @@ static void gxp_add_inertia(double x[4][3], double mx[4][3], double inertia[6]) 
     }
 }
 
-static gx_result gxp_reserve_fragments(gx_body *body) {
-    const size_t room = (size_t)body->fragment_count + body->fragment_count / 2 + 4;
-    double *memory;
-    if (body->fragment_count <= body->fragment_capacity) return GX_OK;
-    if (room > UINT32_MAX || room > SIZE_MAX / (GXP_FRAGMENT_ARRAYS * sizeof *memory)) return GX_ERROR_LIMIT;
-    memory = (double *)gxp_allocate(&body->allocator, room * GXP_FRAGMENT_ARRAYS * sizeof *memory);
-    if (memory == NULL) return GX_ERROR_MEMORY;
-    gxp_release(&body->allocator, body->fragments,
-                (size_t)body->fragment_capacity * GXP_FRAGMENT_ARRAYS * sizeof *memory);
-    body->fragments = memory;
-    body->fragment_capacity = (uint32_t)room;
-    return GX_OK;
-}
-
+/* Volumes, masses, centres and inertia of fragments */
 static gx_result gxp_sum_fragments(gx_body *body) {
     static const double zero[3] = {0, 0, 0};
-    double *volume, *mass, *center, *inertia, x[4][3], mx[4][3];
+    gxp_view *view = &body->view;
+    const size_t count = view->fragment_count;
+    double x[4][3], mx[4][3];
     uint32_t i, f;
     int n;
-    const gx_result result = gxp_reserve_fragments(body);
-    body->volume = body->mass = 0;
-    if (result == GX_OK) body->sums_stale = 0;
-    if (result != GX_OK || body->fragment_count == 0) return result;
-    memset(body->fragments, 0, (size_t)body->fragment_capacity * GXP_FRAGMENT_ARRAYS * sizeof(double));
-    volume = body->fragments;
-    mass = volume + body->fragment_capacity;
-    center = mass + body->fragment_capacity;
-    inertia = center + 3 * (size_t)body->fragment_capacity;
-    for (i = 0; i < body->view_cells.count; i++) {
-        const gxp_cell *cell = &body->cells[body->view_cells.data[i]];
-        f = body->view_fragments.data[i];
-        volume[f] += cell->volume;
-        for (n = 0; n < 4; n++) mass[f] += gxp_mass_row(cell->mass, n);
+    const gx_result result = gxp_grow_rows(body, GXP_SUMS, 0);
+    view->body_volume = view->body_mass = 0;
+    if (result == GX_OK) view->sums_stale = 0;
+    if (result != GX_OK || count == 0) return result;
+    memset(view->fragment_volume, 0, count * sizeof *view->fragment_volume);
+    memset(view->fragment_mass, 0, count * sizeof *view->fragment_mass);
+    memset(view->fragment_center, 0, 3 * count * sizeof *view->fragment_center);
+    memset(view->fragment_inertia, 0, 6 * count * sizeof *view->fragment_inertia);
+    for (i = 0; i < view->count; i++) {
+        const gxp_cell *cell = &body->cells.data[view->slot[i]];
+        f = view->fragment[i];
+        view->fragment_volume[f] += cell->volume;
+        for (n = 0; n < 4; n++) view->fragment_mass[f] += gxp_mass_row(cell->mass, n);
         gxp_cell_corners(body, cell, 0, zero, x);
-        gxp_add_first_moment(cell, x, center + 3 * (size_t)f);
+        gxp_add_first_moment(cell, x, view->fragment_center + 3 * (size_t)f);
     }
-    for (f = 0; f < body->fragment_count; f++) {
-        body->volume += volume[f];
-        body->mass += mass[f];
+    for (f = 0; f < count; f++) {
+        view->body_volume += view->fragment_volume[f];
+        view->body_mass += view->fragment_mass[f];
         for (n = 0; n < 3; n++)
-            if (mass[f] > 0) center[3 * (size_t)f + (size_t)n] /= mass[f];
+            if (view->fragment_mass[f] > 0) view->fragment_center[3 * (size_t)f + (size_t)n] /= view->fragment_mass[f];
     }
-    for (i = 0; i < body->view_cells.count; i++) {
-        const gxp_cell *cell = &body->cells[body->view_cells.data[i]];
-        f = body->view_fragments.data[i];
-        gxp_cell_corners(body, cell, 0, center + 3 * (size_t)f, x);
+    for (i = 0; i < view->count; i++) {
+        const gxp_cell *cell = &body->cells.data[view->slot[i]];
+        f = view->fragment[i];
+        gxp_cell_corners(body, cell, 0, view->fragment_center + 3 * (size_t)f, x);
         gxp_mass_times(cell, x, mx);
-        gxp_add_inertia(x, mx, inertia + 6 * (size_t)f);
+        gxp_add_inertia(x, mx, view->fragment_inertia + 6 * (size_t)f);
     }
     return GX_OK;
 }
 
-/* Cells and fragments. What they weigh is summed for gx_body_view only. */
-static gx_result gxp_update_view(gx_body *body) {
-    gx_result result;
-    if (!body->view_stale) return GX_OK;
-    body->labels_known = 0;
-    result = gxp_list_cells(body);
-    if (result == GX_OK) result = gxp_number_fragments(body);
-    if (result != GX_OK) return result;
-    body->view_stale = 0;
-    body->sums_stale = body->labels_known = 1;
-    body->splits.count = 0;
-    return GX_OK;
-}
-
-/* Joins copies by the cells around the nodes of new ones, and no others: in scratch->data. */
-static gx_result gxp_join_around_splits(gx_body *body, gxp_words *scratch) {
+/* Unites copies by the cells around the nodes of new copies, and by no others: view.split_parents. */
+static gx_result gxp_join_around_splits(gx_body *body) {
+    gxp_view *view = &body->view;
+    gxp_words *cells = &view->split_cells;
     uint32_t i, j, k, cell, *parent;
-    gx_result result = gxp_set_words(body, scratch, body->copy_count);
-    parent = scratch->data;
-    body->queue.count = 0;
-    body->stamp++;
-    for (i = 0; i < body->splits.count; i += 2) {
-        const uint32_t node = body->copy_node[body->splits.data[i]];
-        for (j = body->node_start[node]; j < body->node_start[node + 1]; j++)
-            for (cell = body->node_elements[j]; cell != GXP_NONE && result == GX_OK; cell = body->cells[cell].next)
-                if (body->cells[cell].kept) result = gxp_visit_cell(body, cell);
+    gx_result result = gxp_start_words(body, &view->split_parents, body->copies.count);
+    parent = view->split_parents.data;
+    cells->count = 0;
+    body->scratch.stamp++;
+    for (i = 0; i < view->splits.count; i += 2) {
+        const uint32_t node = body->copies.node[view->splits.data[i]];
+        for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1]; j++)
+            for (cell = body->mesh.node_elements[j]; cell != GXP_NONE && result == GX_OK;
+                 cell = body->cells.data[cell].next)
+                if (body->cells.data[cell].kept) result = gxp_visit_cell(body, cell, cells);
     }
     if (result != GX_OK) return result;
-    for (i = 0; i < body->queue.count; i++)
+    for (i = 0; i < cells->count; i++)
         for (k = 0; k < 4; k++) {
-            const uint32_t copy = body->cells[body->queue.data[i]].copies[k];
+            const uint32_t copy = body->cells.data[cells->data[i]].copies[k];
             parent[copy] = copy;
         }
-    for (i = 0; i < body->queue.count; i++) gxp_unite_all(parent, body->cells[body->queue.data[i]].copies);
+    for (i = 0; i < cells->count; i++) gxp_unite_all(parent, body->cells.data[cells->data[i]].copies);
     return GX_OK;
 }
 
-/* Which fragment each copy is in. Where all new copies still hang together with those they come from, around the nodes
-   they are at, no fragment has fallen apart: sheets take nothing away, so that whatever hung together by old copies
-   does so by their descendants. */
+/* Finds the fragment of each copy. Sheets remove nothing: if two old copies were connected, so are their descendants.
+   If each new copy is still connected with the one it comes from, around its node, no fragment has fallen apart. */
 static gx_result gxp_update_labels(gx_body *body) {
-    const gxp_words *splits = &body->splits;
-    uint32_t i;
+    gxp_view *view = &body->view;
+    const gxp_words *splits = &view->splits;
+    uint32_t i, *parent;
     gx_result result;
-    if (!body->view_stale || (body->labels_known && splits->count == 0)) return GX_OK;
-    if (!body->labels_known) return gxp_update_view(body);
-    result = gxp_join_around_splits(body, &body->list);
+    if (!view->stale || (view->labels_known && splits->count == 0)) return GX_OK;
+    if (!view->labels_known) return gxp_update_view(body);
+    result = gxp_join_around_splits(body);
+    parent = view->split_parents.data;
     for (i = 0; i < splits->count && result == GX_OK; i += 2)
-        if (gxp_find(body->list.data, splits->data[i]) != gxp_find(body->list.data, splits->data[i + 1]))
-            return gxp_update_view(body);
+        if (gxp_find(parent, splits->data[i]) != gxp_find(parent, splits->data[i + 1])) return gxp_update_view(body);
     if (result == GX_OK)
-        result = gxp_words_room(body, &body->copy_fragment, body->copy_count - body->copy_fragment.count);
+        result = gxp_words_room(body, &view->copy_fragment, body->copies.count - view->copy_fragment.count);
     if (result != GX_OK) return result;
-    body->copy_fragment.count = body->copy_count;
+    view->copy_fragment.count = body->copies.count;
     for (i = 0; i < splits->count; i += 2)
-        body->copy_fragment.data[splits->data[i]] = gxp_find(body->copy_fragment.data, splits->data[i + 1]);
-    body->splits.count = 0;
+        view->copy_fragment.data[splits->data[i]] = gxp_find(view->copy_fragment.data, splits->data[i + 1]);
+    view->splits.count = 0;
     return GX_OK;
 }
 
-/* --- what cuts have changed: fragments now are pieces of those of the last look, which their copies are labelled with
- * --- */
-
-/* What a look finds on its way */
+/* Where the fragments come from, by the labels of their copies */
 typedef struct gxp_change {
-    uint32_t *origin;   /* fragment_count: index at the last look */
-    uint32_t *touched;  /* fragment_count flags */
-    uint32_t *heaviest; /* at the last look: the piece that keeps the id; GXP_NONE: nothing is left */
-    uint32_t *pieces;   /* at the last look */
+    uint32_t *origin;   /* by fragment: its index in the snapshot */
+    uint32_t *touched;  /* by fragment: 1 if it was cut */
+    uint32_t *heaviest; /* by fragment of the snapshot: the one that keeps the id; GXP_NONE: nothing is left */
+    uint32_t *count;    /* by fragment of the snapshot: into how many it fell apart */
 } gxp_change;
 
+/* Labels the copies with their fragments, which are the snapshot's now. */
 static void gxp_label_copies(gx_body *body) {
     uint32_t i, k;
-    for (i = 0; i < body->view_cells.count; i++)
-        for (k = 0; k < 4; k++) body->copy_label[body->cell_copies.data[4 * i + k]] = 2 * body->view_fragments.data[i];
+    for (i = 0; i < body->view.count; i++)
+        for (k = 0; k < 4; k++) body->copies.label[body->view.copies[4 * i + k]] = 2 * body->view.fragment[i];
 }
 
 static void gxp_find_origins(gx_body *body, gxp_change *change) {
-    const double *mass = body->fragments != NULL ? body->fragments + body->fragment_capacity : NULL;
+    const gxp_view *view = &body->view;
+    const double *mass = view->fragment_mass;
     uint32_t i, k, f;
-    for (i = 0; i < body->view_cells.count; i++)
+    for (i = 0; i < view->count; i++)
         for (k = 0; k < 4; k++) {
-            const uint32_t label = body->copy_label[body->cell_copies.data[4 * i + k]];
-            change->origin[body->view_fragments.data[i]] = label >> 1;
-            change->touched[body->view_fragments.data[i]] |= label & 1;
+            const uint32_t label = body->copies.label[view->copies[4 * i + k]];
+            change->origin[view->fragment[i]] = label >> 1;
+            change->touched[view->fragment[i]] |= label & 1;
         }
-    for (f = 0; f < body->fragment_count; f++) {
+    for (f = 0; f < view->fragment_count; f++) {
         uint32_t *heaviest = &change->heaviest[change->origin[f]];
         if (*heaviest == GXP_NONE || mass[f] > mass[*heaviest]) *heaviest = f;
-        change->pieces[change->origin[f]]++;
+        change->count[change->origin[f]]++;
     }
 }
 
-/* There is room in the lists. */
+/* Writes the ids and changes to the snapshot, which has room. */
 static void gxp_give_ids(gx_body *body, const gxp_change *change) {
-    const uint32_t before = body->fragment_ids.count;
+    gxp_snapshot *snapshot = &body->snapshot;
+    const uint32_t count = body->view.fragment_count;
     uint32_t *ids = change->touched, i; /* a fragment's flag is read before its id is written */
-    body->removed_ids.count = 0;
-    for (i = 0; i < before; i++)
-        if (change->heaviest[i] == GXP_NONE)
-            body->removed_ids.data[body->removed_ids.count++] = body->fragment_ids.data[i];
-    for (i = 0; i < body->fragment_count; i++) {
+    snapshot->removed.count = 0;
+    for (i = 0; i < snapshot->count; i++)
+        if (change->heaviest[i] == GXP_NONE) snapshot->removed.data[snapshot->removed.count++] = snapshot->id[i];
+    for (i = 0; i < count; i++) {
         const uint32_t origin = change->origin[i];
         const int keeps = change->heaviest[origin] == i;
-        body->fragment_origins.data[i] = body->fragment_ids.data[origin];
-        body->fragment_changes.data[i] = !keeps                     ? GX_FRAGMENT_CREATED
-                                       : change->pieces[origin] > 1 ? GX_FRAGMENT_SPLIT
-                                       : change->touched[i]         ? GX_FRAGMENT_TOUCHED
-                                                                    : GX_FRAGMENT_UNCHANGED;
-        ids[i] = keeps ? body->fragment_ids.data[origin] : body->next_id++;
+        snapshot->origin[i] = snapshot->id[origin];
+        snapshot->change[i] = !keeps                    ? GX_FRAGMENT_CREATED
+                            : change->count[origin] > 1 ? GX_FRAGMENT_SPLIT
+                            : change->touched[i]        ? GX_FRAGMENT_TOUCHED
+                                                        : GX_FRAGMENT_UNCHANGED;
+        ids[i] = keeps ? snapshot->id[origin] : snapshot->next_id++;
     }
-    body->fragment_ids.count = body->fragment_origins.count = body->fragment_changes.count = body->fragment_count;
-    if (body->fragment_count > 0) memcpy(body->fragment_ids.data, ids, body->fragment_count * sizeof *ids);
+    snapshot->count = count;
+    if (count > 0) memcpy(snapshot->id, ids, count * sizeof *ids);
 }
 
-static gx_result gxp_look_room(gx_body *body) {
-    gx_result result = gxp_words_room(body, &body->fragment_ids, body->fragment_count);
-    if (result == GX_OK) result = gxp_words_room(body, &body->fragment_origins, body->fragment_count);
-    if (result == GX_OK) result = gxp_words_room(body, &body->fragment_changes, body->fragment_count);
-    if (result == GX_OK) result = gxp_words_room(body, &body->removed_ids, body->fragment_ids.count);
-    return result == GX_OK && body->next_id > UINT32_MAX - body->fragment_count ? GX_ERROR_LIMIT : result;
+static gx_result gxp_snapshot_room(gx_body *body) {
+    gxp_snapshot *snapshot = &body->snapshot;
+    gx_result result = gxp_grow_rows(body, GXP_SNAPSHOT, body->view.fragment_count);
+    if (result == GX_OK) result = gxp_words_room(body, &snapshot->removed, snapshot->count);
+    return result == GX_OK && snapshot->next_id > UINT32_MAX - body->view.fragment_count ? GX_ERROR_LIMIT : result;
 }
 
-/* The view is up to date. An error leaves labels and ids as they were: nothing of the change is lost. */
-static gx_result gxp_look(gx_body *body) {
-    const size_t now = body->fragment_count, before = body->fragment_ids.count,
+/* Brings the snapshot up to date with the view. After an error labels and ids are as they were, so that no change is
+   lost. */
+static gx_result gxp_take_snapshot(gx_body *body) {
+    const size_t now = body->view.fragment_count, before = body->snapshot.count,
                  bytes = (2 * now + 2 * before + 1) * sizeof(uint32_t);
     gxp_change change;
     gx_result result;
-    if (!body->look_stale) return GX_OK;
-    result = gxp_look_room(body);
+    if (!body->snapshot.stale) return GX_OK;
+    result = gxp_snapshot_room(body);
     if (result != GX_OK) return result;
-    change.origin = (uint32_t *)gxp_allocate(&body->allocator, bytes);
+    change.origin = (uint32_t *)gxp_allocate(&body->config.allocator, bytes);
     if (change.origin == NULL) return GX_ERROR_MEMORY;
     memset(change.origin, 0, bytes);
     change.touched = change.origin + now;
-    change.pieces = change.touched + now;
-    change.heaviest = change.pieces + before;
+    change.count = change.touched + now;
+    change.heaviest = change.count + before;
     memset(change.heaviest, 0xff, before * sizeof *change.heaviest);
     gxp_find_origins(body, &change);
     gxp_give_ids(body, &change);
-    gxp_release(&body->allocator, change.origin, bytes);
+    gxp_release(&body->config.allocator, change.origin, bytes);
     gxp_label_copies(body);
-    body->look_stale = 0;
+    body->snapshot.stale = 0;
     return GX_OK;
 }
 
-/* The fragments of the mesh: ids 1, 2 ... */
-static gx_result gxp_first_look(gx_body *body) {
+/* Takes the snapshot of the mesh: ids 1, 2 ... */
+static gx_result gxp_first_snapshot(gx_body *body) {
+    gxp_snapshot *snapshot = &body->snapshot;
     uint32_t f;
     gx_result result = gxp_update_view(body);
-    body->next_id = 1;
-    if (result == GX_OK) result = gxp_look_room(body);
-    for (f = 0; f < body->fragment_count && result == GX_OK; f++) {
-        body->fragment_ids.data[f] = body->fragment_origins.data[f] = body->next_id++;
-        body->fragment_changes.data[f] = GX_FRAGMENT_UNCHANGED;
-    }
+    snapshot->next_id = 1;
+    if (result == GX_OK) result = gxp_snapshot_room(body);
     if (result != GX_OK) return result;
-    body->fragment_ids.count = body->fragment_origins.count = body->fragment_changes.count = body->fragment_count;
+    for (f = 0; f < body->view.fragment_count; f++) {
+        snapshot->id[f] = snapshot->origin[f] = snapshot->next_id++;
+        snapshot->change[f] = GX_FRAGMENT_UNCHANGED;
+    }
+    snapshot->count = body->view.fragment_count;
     gxp_label_copies(body);
     return GX_OK;
 }
 
 GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view) {
+    const gxp_view *own;
     gx_result result;
     if (body == NULL || view == NULL) return GX_ERROR_ARGUMENT;
     result = gxp_update_view(body);
-    if (result == GX_OK && body->sums_stale) result = gxp_sum_fragments(body);
-    if (result == GX_OK) result = gxp_look(body);
+    if (result == GX_OK && body->view.sums_stale) result = gxp_sum_fragments(body);
+    if (result == GX_OK) result = gxp_take_snapshot(body);
     if (result == GX_OK) result = gxp_update_held(body);
     if (result != GX_OK) return result;
-    view->node_count = body->node_count;
-    view->element_count = body->element_count;
-    view->cell_count = body->view_cells.count;
-    view->cell_element = body->cell_element.data;
-    view->cell_copies = body->cell_copies.data;
-    view->cell_volume = body->cell_volume;
-    view->cell_fragment = body->view_fragments.data;
-    view->copy_count = body->copy_count;
-    view->copy_node = body->copy_node;
-    view->copy_held = body->held;
-    view->epoch = body->epoch;
-    view->displacement = body->displacement;
-    view->velocity = body->velocity;
-    view->rest_time = body->rest_time;
-    view->fragment_count = body->fragment_count;
-    view->fragment_volume = body->fragments;
-    view->fragment_mass = body->fragments ? body->fragments + body->fragment_capacity : NULL;
-    view->fragment_center = body->fragments ? body->fragments + 2 * (size_t)body->fragment_capacity : NULL;
-    view->fragment_inertia = body->fragments ? body->fragments + 5 * (size_t)body->fragment_capacity : NULL;
-    view->fragment_id = body->fragment_ids.data;
-    view->fragment_origin = body->fragment_origins.data;
-    view->fragment_change = body->fragment_changes.data;
-    view->removed_count = body->removed_ids.count;
-    view->removed_ids = body->removed_ids.data;
-    view->volume = body->volume;
-    view->mass = body->mass;
+    own = &body->view;
+    view->node_count = body->mesh.node_count;
+    view->element_count = body->mesh.element_count;
+    view->cell_count = own->count;
+    view->cell_element = own->element;
+    view->cell_copies = own->copies;
+    view->cell_volume = own->volume;
+    view->cell_fragment = own->fragment;
+    view->copy_count = body->copies.count;
+    view->copy_node = body->copies.node;
+    view->copy_held = body->copies.held;
+    view->epoch = body->cuts.epoch;
+    view->displacement = body->copies.displacement;
+    view->velocity = body->copies.velocity;
+    view->rest_time = body->copies.rest_time;
+    view->fragment_count = own->fragment_count;
+    view->fragment_volume = own->fragment_volume;
+    view->fragment_mass = own->fragment_mass;
+    view->fragment_center = own->fragment_center;
+    view->fragment_inertia = own->fragment_inertia;
+    view->fragment_id = body->snapshot.id;
+    view->fragment_origin = body->snapshot.origin;
+    view->fragment_change = body->snapshot.change;
+    view->removed_count = body->snapshot.removed.count;
+    view->removed_ids = body->snapshot.removed.data;
+    view->volume = own->body_volume;
+    view->mass = own->body_mass;
     return GX_OK;
 }
 
-/* --- motion --- */
+/* >>motion: momentum and energy of fragments ----------------------------------------------------------------------- */
+/* In: displacement and velocity. Out: the motion of each fragment. Touches nothing but the view's lists. */
 
-#define GXP_NO_INERTIA                                                                                                 \
-    1e-13 /* a principal moment below this share of the largest is rounding: nothing turns about its axis */
+/* A principal moment below this share of the largest is rounding: nothing turns about its axis. */
+#define GXP_NO_INERTIA 1e-13
 
-/* One rotation of Jacobi's method: makes entry pq of the symmetric a zero; columns of v are the axes. */
+/* One rotation of Jacobi's method: makes entry pq of the symmetric matrix a zero; the columns of v are its axes. */
 static void gxp_rotate(double a[3][3], double v[3][3], int p, int q) {
     double t, c, s;
     int k;
@@ -4357,7 +4660,7 @@ static void gxp_rotate(double a[3][3], double v[3][3], int p, int q) {
     a[p][q] = a[q][p] = 0;
 }
 
-/* Pseudo-inverse of the inertia times the angular momentum */
+/* spin = pseudo-inverse of the inertia times the angular momentum */
 static void gxp_spin(const double inertia[6], const double momentum[3], double spin[3]) {
     double a[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, largest = 0;
     int i, k, sweep;
@@ -4384,11 +4687,10 @@ static void gxp_spin(const double inertia[6], const double momentum[3], double s
 static void gxp_cell_velocities(const gx_body *body, const gxp_cell *cell, const double mean[3], double v[4][3]) {
     int n, k;
     for (n = 0; n < 4; n++)
-        for (k = 0; k < 3; k++) v[n][k] = body->velocity[3 * (size_t)cell->copies[n] + (size_t)k] - mean[k];
+        for (k = 0; k < 3; k++) v[n][k] = body->copies.velocity[3 * (size_t)cell->copies[n] + (size_t)k] - mean[k];
 }
 
-/* With x and v relative to the centre: inertia, angular momentum sum_ij m_ij x_i x v_j, energy of the relative motion
- */
+/* Adds to inertia, angular momentum (sum_ij m_ij x_i x v_j) and energy; x and v are relative to the centre. */
 static void gxp_add_rotation(const gxp_cell *cell, double x[4][3], double v[4][3], gx_motion *motion,
                              double momentum[3]) {
     double mx[4][3], mv[4][3];
@@ -4406,13 +4708,14 @@ static void gxp_add_rotation(const gxp_cell *cell, double x[4][3], double v[4][3
 
 /* Mass, centre and velocity of all fragments */
 static void gxp_find_centers(const gx_body *body, gx_motion *motions) {
+    const gxp_view *view = &body->view;
     static const double zero[3] = {0, 0, 0};
     uint32_t i;
     int k;
-    memset(motions, 0, body->fragment_count * sizeof *motions);
-    for (i = 0; i < body->view_cells.count; i++) {
-        const gxp_cell *cell = &body->cells[body->view_cells.data[i]];
-        gx_motion *motion = &motions[body->view_fragments.data[i]];
+    memset(motions, 0, view->fragment_count * sizeof *motions);
+    for (i = 0; i < view->count; i++) {
+        const gxp_cell *cell = &body->cells.data[view->slot[i]];
+        gx_motion *motion = &motions[view->fragment[i]];
         double x[4][3], v[4][3];
         gxp_cell_corners(body, cell, 1, zero, x);
         gxp_cell_velocities(body, cell, zero, v);
@@ -4420,14 +4723,14 @@ static void gxp_find_centers(const gx_body *body, gx_motion *motions) {
         gxp_add_first_moment(cell, x, motion->center);
         gxp_add_first_moment(cell, v, motion->velocity);
     }
-    for (i = 0; i < body->fragment_count; i++)
+    for (i = 0; i < view->fragment_count; i++)
         for (k = 0; k < 3 && motions[i].mass > 0; k++) {
             motions[i].center[k] /= motions[i].mass;
             motions[i].velocity[k] /= motions[i].mass;
         }
 }
 
-/* Where a motion is not finite: is it the state, or only what doubles can hold of it? */
+/* If a motion is not finite, is it the state (NOT_FINITE), or only beyond doubles (RANGE)? */
 static gx_result gxp_check_motion(const gx_body *body, const gx_motion *motion) {
     double number[17];
     size_t i;
@@ -4440,8 +4743,9 @@ static gx_result gxp_check_motion(const gx_body *body, const gx_motion *motion) 
     memcpy(number + 16, &motion->energy, sizeof *number);
     for (i = 0; i < 17; i++) finite = finite && gxp_is_finite(number[i]);
     if (finite) return GX_OK;
-    for (i = 0; i < 3 * (size_t)body->copy_count; i++)
-        if (!gxp_is_finite(body->displacement[i]) || !gxp_is_finite(body->velocity[i])) return GX_ERROR_NOT_FINITE;
+    for (i = 0; i < 3 * (size_t)body->copies.count; i++)
+        if (!gxp_is_finite(body->copies.displacement[i]) || !gxp_is_finite(body->copies.velocity[i]))
+            return GX_ERROR_NOT_FINITE;
     return GX_ERROR_RANGE;
 }
 
@@ -4453,93 +4757,54 @@ GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t cap
     gx_result result;
     if (body == NULL || (motions == NULL && capacity > 0)) return GX_ERROR_ARGUMENT;
     result = gxp_update_view(body);
-    if (result != GX_OK || body->fragment_count == 0) return result;
-    if (capacity < body->fragment_count) return GX_ERROR_LIMIT;
-    bytes = body->fragment_count * sizeof *momentum;
-    momentum = (double(*)[3])gxp_allocate(&body->allocator, bytes);
+    if (result != GX_OK || body->view.fragment_count == 0) return result;
+    if (capacity < body->view.fragment_count) return GX_ERROR_LIMIT;
+    bytes = body->view.fragment_count * sizeof *momentum;
+    momentum = (double(*)[3])gxp_allocate(&body->config.allocator, bytes);
     if (momentum == NULL) return GX_ERROR_MEMORY;
     memset(momentum, 0, bytes);
     gxp_find_centers(body, motions);
-    for (i = 0; i < body->view_cells.count; i++) {
-        const gxp_cell *cell = &body->cells[body->view_cells.data[i]];
-        const uint32_t f = body->view_fragments.data[i];
+    for (i = 0; i < body->view.count; i++) {
+        const gxp_cell *cell = &body->cells.data[body->view.slot[i]];
+        const uint32_t f = body->view.fragment[i];
         double x[4][3], v[4][3];
         gxp_cell_corners(body, cell, 1, motions[f].center, x);
         gxp_cell_velocities(body, cell, motions[f].velocity, v);
         gxp_add_rotation(cell, x, v, &motions[f], momentum[f]);
     }
-    for (i = 0; i < body->fragment_count; i++) {
+    for (i = 0; i < body->view.fragment_count; i++) {
         gxp_spin(motions[i].inertia, momentum[i], motions[i].angular_velocity);
         for (k = 0; k < 3; k++)
             motions[i].energy += 0.5 * motions[i].mass * motions[i].velocity[k] * motions[i].velocity[k];
         if (result == GX_OK) result = gxp_check_motion(body, &motions[i]);
     }
-    gxp_release(&body->allocator, momentum, bytes);
+    gxp_release(&body->config.allocator, momentum, bytes);
     return result;
 }
 
-/* >>parts: what the solver sees: the cells of an element whose four copies coincide are one ------------------------ */
-
-static void gxp_add_part(gx_body *body, const gxp_cell *cell, uint32_t first, const double gradients[12]) {
-    gxs_element *part;
-    uint32_t i;
-    int k;
-    for (i = first; i < body->part_count; i++)
-        if (memcmp(body->parts[i].copy, cell->copies, sizeof cell->copies) == 0) break;
-    part = &body->parts[i];
-    if (i == body->part_count) {
-        memset(part, 0, sizeof *part);
-        memcpy(part->copy, cell->copies, sizeof part->copy);
-        memcpy(part->gradient, gradients, 12 * sizeof *gradients);
-        part->material = body->element_materials[cell->element];
-        part->group = cell->element;
-        body->part_count++;
-    }
-    part->weight += cell->volume;
-    for (k = 0; k < 10; k++) part->mass[k] += cell->mass[k];
-}
-
-/* The parts of an element, for which there is room, at the end */
-static gx_result gxp_add_parts(gx_body *body, uint32_t element) {
-    const uint32_t first = body->part_count;
-    double x[12], gradients[12];
-    uint32_t cell;
-    gx_result result;
-    gxp_element_positions(body, element, x);
-    result = gxi_tet_gradients(x, gradients, NULL);
-    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next)
-        if (body->cells[cell].kept) gxp_add_part(body, &body->cells[cell], first, gradients);
-    return result;
-}
-
-static gx_result gxp_make_parts(gx_body *body) {
-    uint32_t e;
-    gx_result result =
-        gxp_reserve(&body->allocator, &body->parts, sizeof *body->parts, 0, &body->part_capacity, body->cell_count);
-    body->part_count = 0;
-    for (e = 0; e < body->element_count && result == GX_OK; e++) result = gxp_add_parts(body, e);
-    return result;
-}
-
-/* --- copies that only slivers carry follow others (RXFEM Eq. 22) ---
-   The share of a part is its volume over that of its element. A copy is weak if no part around it has a share of
-   follow_below or more: so little moves it that nothing else would keep it from running away. It takes the increment of
-   the field of a strong cell near it, one without weak copies. A fragment without a strong cell is thin everywhere:
-   weak are then the copies that are so beside its fullest part; but if that has a share below point_below, the fragment
-   moves as a point. All work is around thin elements, those with a part of so small a share. */
+/* >>supports: copies that only slivers carry follow others (RXFEM Eq. 22) ------------------------------------------ */
+/* In: the elements with a small part. Out: constraints by which copies that next to nothing holds follow others.
+   Touches the list of thin elements and the model's constraints.
+   A part is the cells of an element that the same four copies move; its share is its volume over the element's. A copy
+   is weak if every part around it has a share below follow_below: so little moves it that nothing else would keep it
+   from running away. It takes the increment of the field of a strong cell near it, that is, one without weak copies. A
+   fragment without a strong cell is thin everywhere. Its copies are then weak by comparison with its fullest part; if
+   that part has a share below speck_below, or no cell reaches speck_reach, the fragment is a speck and moves as a
+   point. All work is around thin elements, which are those with a part of so small a share. */
 
 enum { GXP_FREE, GXP_FOLLOWS, GXP_FOLLOWS_POINT };
 
 typedef struct gxp_supports {
-    uint8_t *weak; /* copy_count: GXP_FREE ... */
-    /* copy_count: whose field the copy follows, or, of a point, whose first copy; GXP_NONE: not known, or none */
+    uint8_t *weak; /* copy_count: GXP_FREE or how it follows */
+    /* copy_count: the cell whose field the copy follows, or whose first copy if it is part of a point; GXP_NONE: not
+     * known, or none */
     uint32_t *cell;
-    uint32_t *queue; /* copy_count: copies found by a search */
-    uint32_t *seen;  /* copy_count: the search that has met it last */
+    uint32_t *queue; /* copy_count: copies that the search has met, in order */
+    uint32_t *seen;  /* copy_count: the last search that has met the copy */
     uint32_t search;
 } gxp_supports;
 
-/* Cells around a copy, one after the other */
+/* Walks through the cells that a copy moves. */
 typedef struct gxp_around {
     uint32_t copy, at, cell;
 } gxp_around;
@@ -4547,60 +4812,62 @@ typedef struct gxp_around {
 static gxp_around gxp_around_copy(const gx_body *body, uint32_t copy) {
     gxp_around around;
     around.copy = copy;
-    around.at = body->node_start[body->copy_node[copy]];
+    around.at = body->mesh.node_start[body->copies.node[copy]];
     around.cell = GXP_NONE;
     return around;
 }
 
-/* 0: there are no more */
+/* The next cell. Returns 0 if there are no more. */
 static int gxp_next_around(const gx_body *body, gxp_around *around) {
-    const uint32_t copy = around->copy, end = body->node_start[body->copy_node[copy] + 1];
+    const uint32_t copy = around->copy, end = body->mesh.node_start[body->copies.node[copy] + 1];
     for (;;) {
         const gxp_cell *cell;
-        if (around->cell != GXP_NONE) around->cell = body->cells[around->cell].next;
+        if (around->cell != GXP_NONE) around->cell = body->cells.data[around->cell].next;
         if (around->cell == GXP_NONE && around->at == end) return 0;
-        if (around->cell == GXP_NONE) around->cell = body->node_elements[around->at++];
-        cell = &body->cells[around->cell];
+        if (around->cell == GXP_NONE) around->cell = body->mesh.node_elements[around->at++];
+        cell = &body->cells.data[around->cell];
         if (cell->kept &&
             (cell->copies[0] == copy || cell->copies[1] == copy || cell->copies[2] == copy || cell->copies[3] == copy))
             return 1;
     }
 }
 
-/* Share of the part that a cell belongs to */
+/* The share of the part that the cell belongs to */
 static double gxp_part_share(const gx_body *body, uint32_t cell) {
-    const gxp_cell *of = &body->cells[cell];
+    const gxp_cell *of = &body->cells.data[cell];
     double volume = 0;
-    for (cell = of->element; cell != GXP_NONE; cell = body->cells[cell].next)
-        if (body->cells[cell].kept && memcmp(body->cells[cell].copies, of->copies, sizeof of->copies) == 0)
-            volume += body->cells[cell].volume;
+    for (cell = of->element; cell != GXP_NONE; cell = body->cells.data[cell].next)
+        if (body->cells.data[cell].kept && memcmp(body->cells.data[cell].copies, of->copies, sizeof of->copies) == 0)
+            volume += body->cells.data[cell].volume;
     return volume / gxp_element_volume(body, of->element);
 }
 
+/* Has the element a part with a share below follow_below? */
 static int gxp_is_thin(const gx_body *body, uint32_t element) {
     uint32_t cell;
-    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next)
-        if (body->cells[cell].kept && gxp_part_share(body, cell) < body->follow_below) return 1;
+    for (cell = element; cell != GXP_NONE; cell = body->cells.data[cell].next)
+        if (body->cells.data[cell].kept && gxp_part_share(body, cell) < body->config.follow_below) return 1;
     return 0;
 }
 
-/* Brings the list of thin elements up to date: all anew, or those that have changed. */
+/* Brings the list of thin elements up to date, over all elements or over those that have changed. */
 static gx_result gxp_list_thin(gx_body *body, int anew) {
-    const uint32_t looked_at = anew ? body->element_count : body->changed.count;
+    gxp_model *model = &body->model;
+    const uint32_t looked_at = anew ? body->mesh.element_count : model->changed.count;
     gx_result result = GX_OK;
     uint32_t i, k, count = 0;
-    for (i = k = 0; i < body->thin.count && !anew; i++) {
-        while (k < body->changed.count && body->changed.data[k] < body->thin.data[i]) k++;
-        if (k == body->changed.count || body->changed.data[k] != body->thin.data[i])
-            body->thin.data[count++] = body->thin.data[i];
+    for (i = k = 0; i < model->thin.count && !anew; i++) {
+        while (k < model->changed.count && model->changed.data[k] < model->thin.data[i]) k++;
+        if (k == model->changed.count || model->changed.data[k] != model->thin.data[i])
+            model->thin.data[count++] = model->thin.data[i];
     }
-    body->thin.count = count;
+    model->thin.count = count;
     for (i = 0; i < looked_at && result == GX_OK; i++) {
-        const uint32_t element = anew ? i : body->changed.data[i];
-        if (gxp_is_thin(body, element)) result = gxp_push(body, &body->thin, element);
+        const uint32_t element = anew ? i : model->changed.data[i];
+        if (gxp_is_thin(body, element)) result = gxp_push(body, &model->thin, element);
     }
-    gxp_sort_unique(&body->thin);
-    if (result != GX_OK) body->model = GXP_MODEL_STALE; /* the list is not whole */
+    gxp_sort_unique(&model->thin);
+    if (result != GX_OK) model->state = GXP_MODEL_STALE; /* the list is incomplete */
     return result;
 }
 
@@ -4613,17 +4880,17 @@ static int gxp_is_weak(const gx_body *body, uint32_t copy, double share) {
 }
 
 static int gxp_is_strong(const gx_body *body, const gxp_supports *of, uint32_t cell) {
-    const uint32_t *copies = body->cells[cell].copies;
+    const uint32_t *copies = body->cells.data[cell].copies;
     return !(of->weak[copies[0]] | of->weak[copies[1]] | of->weak[copies[2]] | of->weak[copies[3]]);
 }
 
-/* Weights by which a copy follows the field of a cell at its node, 1 in sum. Returns the sum of their sizes: 1 within
- * the element, more outside. */
+/* The weights by which a copy follows the field of a cell at its node; their sum is 1. Returns the sum of their
+   absolute values: 1 within the element, more outside. */
 static double gxp_follow_weights(const gx_body *body, uint32_t copy, uint32_t cell, double weight[4]) {
-    const double *at = body->positions + 3 * (size_t)body->copy_node[copy];
+    const double *at = body->mesh.positions + 3 * (size_t)body->copies.node[copy];
     double x[12], gradients[12];
     int k, c;
-    gxp_element_positions(body, body->cells[cell].element, x);
+    gxp_element_positions(body, body->cells.data[cell].element, x);
     (void)gxi_tet_gradients(x, gradients, NULL);
     for (k = 1; k < 4; k++)
         for (c = 0, weight[k] = 0; c < 3; c++) weight[k] += gradients[3 * k + c] * (at[c] - x[c]);
@@ -4631,9 +4898,10 @@ static double gxp_follow_weights(const gx_body *body, uint32_t copy, uint32_t ce
     return fabs(weight[0]) + fabs(weight[1]) + fabs(weight[2]) + fabs(weight[3]);
 }
 
-/* What a weak copy follows: of the strong cells nearest to it, by cells between, the one whose field is extended least,
-   or, where a copy that already follows is as near, what that follows. So do weak copies on the way that are further
-   than one cell from it. Returns how many copies the search has met if there is no strong cell: all of the fragment. */
+/* Finds the strong cell that a weak copy follows. It searches from cell to cell. Among the nearest strong cells it
+   takes the one whose field is extended least; if a copy as near already follows one, it takes that. Weak copies that
+   the search passed earlier than in its last round follow the same cell. Returns 0, or, if the fragment has no strong
+   cell, the number of its copies, all of which the search has met. */
 static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *of, uint32_t copy) {
     uint32_t begin, end, i, count = 1, best = GXP_NONE;
     int k;
@@ -4653,7 +4921,7 @@ static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *of, uint32_t co
                     best = around.cell;
                 }
                 for (k = 0; k < 4; k++) {
-                    const uint32_t other = body->cells[around.cell].copies[k];
+                    const uint32_t other = body->cells.data[around.cell].copies[k];
                     if (of->seen[other] == of->search) continue;
                     of->seen[other] = of->search;
                     of->queue[count++] = other;
@@ -4667,24 +4935,23 @@ static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *of, uint32_t co
     return best == GXP_NONE ? count : 0;
 }
 
-/* How far a cell reaches beside its element: square root of the trace of its covariance in barycentric coordinates over
-   that of the element, which is 4 (1/10 - 1/16). A crumb of an element's corner reaches as far as it is large, a layer
-   of any thickness about as far as the element. */
+/* How far a cell reaches within its element: the square root of the trace of its covariance in barycentric coordinates
+   over that of the element, which is 4 (1/10 - 1/16). The reach of a speck in a corner is about its size; the reach of
+   a layer, however thin, is about 1. */
 static double gxp_cell_reach(const gxp_cell *cell) {
-    static const int rows[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
-    double mass = 0, trace = 0, row;
+    double mass = 0, trace = 0;
     int i, k;
     for (i = 0; i < 4; i++)
-        for (k = 0; k < 4; k++) mass += cell->mass[rows[i][k]];
+        for (k = 0; k < 4; k++) mass += cell->mass[gxp_mass_at[i][k]];
     for (i = 0; i < 4 && mass > 0; i++) {
-        for (k = 0, row = 0; k < 4; k++) row += cell->mass[rows[i][k]];
-        trace += cell->mass[rows[i][i]] / mass - row / mass * (row / mass);
+        const double mean = gxp_mass_row(cell->mass, i) / mass;
+        trace += cell->mass[gxp_mass_at[i][i]] / mass - mean * mean;
     }
     return trace > 0 ? sqrt(trace / 0.15) : 0;
 }
 
-/* A fragment without a strong cell, the first `count` copies of the queue: weak is what is so beside its fullest part,
- * or it is a point. */
+/* A fragment without a strong cell: the first `count` copies of the queue. Either its copies are weak by comparison
+   with its fullest part, or it is a speck and moves as a point. */
 static void gxp_weigh_fragment(const gx_body *body, gxp_supports *of, uint32_t count) {
     uint32_t i, fullest = GXP_NONE, lead;
     double most = 0, reach = 0;
@@ -4696,14 +4963,14 @@ static void gxp_weigh_fragment(const gx_body *body, gxp_supports *of, uint32_t c
                 most = share;
                 fullest = around.cell;
             }
-            reach = fmax(reach, gxp_cell_reach(&body->cells[around.cell]));
+            reach = fmax(reach, gxp_cell_reach(&body->cells.data[around.cell]));
         }
     }
-    lead = body->cells[fullest].copies[0];
+    lead = body->cells.data[fullest].copies[0];
     for (i = 0; i < count; i++) {
         const uint32_t copy = of->queue[i];
-        if (most >= body->point_below && reach >= body->crumb_reach)
-            of->weak[copy] = gxp_is_weak(body, copy, body->follow_below * most) ? GXP_FOLLOWS : GXP_FREE;
+        if (most >= body->config.speck_below && reach >= body->config.speck_reach)
+            of->weak[copy] = gxp_is_weak(body, copy, body->config.follow_below * most) ? GXP_FOLLOWS : GXP_FREE;
         else {
             of->weak[copy] = copy == lead ? GXP_FREE : GXP_FOLLOWS_POINT;
             of->cell[copy] = fullest;
@@ -4711,20 +4978,20 @@ static void gxp_weigh_fragment(const gx_body *body, gxp_supports *of, uint32_t c
     }
 }
 
-/* Weak copies of the body, and what each follows. Returns how many there are. */
+/* Finds the weak copies of the body and what each follows. Returns their number. */
 static uint32_t gxp_find_supports(const gx_body *body, gxp_supports *of) {
     uint32_t i, cell, count = 0;
     int k;
     of->search = 1;
-    for (i = 0; i < body->thin.count; i++)
-        for (cell = body->thin.data[i]; cell != GXP_NONE; cell = body->cells[cell].next)
-            for (k = 0; k < 4 && body->cells[cell].kept; k++) {
-                const uint32_t copy = body->cells[cell].copies[k];
+    for (i = 0; i < body->model.thin.count; i++)
+        for (cell = body->model.thin.data[i]; cell != GXP_NONE; cell = body->cells.data[cell].next)
+            for (k = 0; k < 4 && body->cells.data[cell].kept; k++) {
+                const uint32_t copy = body->cells.data[cell].copies[k];
                 if (of->seen[copy] == of->search) continue;
                 of->seen[copy] = of->search;
-                of->weak[copy] = gxp_is_weak(body, copy, body->follow_below) ? GXP_FOLLOWS : GXP_FREE;
+                of->weak[copy] = gxp_is_weak(body, copy, body->config.follow_below) ? GXP_FOLLOWS : GXP_FREE;
             }
-    for (i = 0; i < body->copy_count; i++) {
+    for (i = 0; i < body->copies.count; i++) {
         while (of->weak[i] && of->cell[i] == GXP_NONE) {
             const uint32_t met = gxp_find_cell(body, of, i);
             if (met > 0) gxp_weigh_fragment(body, of, met);
@@ -4735,9 +5002,9 @@ static uint32_t gxp_find_supports(const gx_body *body, gxp_supports *of) {
 }
 
 static void gxp_add_constraint(gx_body *body, const gxp_supports *of, uint32_t copy) {
-    gxs_constraint *constraint = &body->constraints[body->constraint_count++];
+    gxs_constraint *constraint = &body->model.constraints[body->model.constraint_count++];
     constraint->copy = copy;
-    memcpy(constraint->master, body->cells[of->cell[copy]].copies, sizeof constraint->master);
+    memcpy(constraint->master, body->cells.data[of->cell[copy]].copies, sizeof constraint->master);
     memset(constraint->weight, 0, sizeof constraint->weight);
     if (of->weak[copy] == GXP_FOLLOWS)
         (void)gxp_follow_weights(body, copy, of->cell[copy], constraint->weight);
@@ -4745,14 +5012,15 @@ static void gxp_add_constraint(gx_body *body, const gxp_supports *of, uint32_t c
         constraint->weight[0] = 1;
 }
 
+/* One constraint for each weak copy */
 static gx_result gxp_make_constraints(gx_body *body) {
-    const gx_allocator *a = &body->allocator;
-    const size_t n = body->copy_count;
+    const gx_allocator *a = &body->config.allocator;
+    const size_t n = body->copies.count;
     gxp_supports of;
     uint32_t i, count;
     gx_result result = GX_OK;
-    body->constraint_count = 0;
-    if (body->thin.count == 0) return GX_OK;
+    body->model.constraint_count = 0;
+    if (body->model.thin.count == 0) return GX_OK;
     of.weak = (uint8_t *)gxp_allocate(a, n);
     of.cell = (uint32_t *)gxp_allocate(a, 3 * n * sizeof(uint32_t));
     if (of.weak != NULL && of.cell != NULL) {
@@ -4762,7 +5030,8 @@ static gx_result gxp_make_constraints(gx_body *body) {
         memset(of.cell, 0xff, n * sizeof *of.cell);
         memset(of.seen, 0, n * sizeof *of.seen);
         count = gxp_find_supports(body, &of);
-        result = gxp_reserve(a, &body->constraints, sizeof *body->constraints, 0, &body->constraint_capacity, count);
+        result = gxp_reserve(a, &body->model.constraints, sizeof *body->model.constraints, 0,
+                             &body->model.constraint_capacity, count);
         for (i = 0; i < n && result == GX_OK; i++)
             if (of.weak[i]) gxp_add_constraint(body, &of, i);
     } else
@@ -4772,104 +5041,163 @@ static gx_result gxp_make_constraints(gx_body *body) {
     return result;
 }
 
+/* >>model: what the solver sees ------------------------------------------------------------------------------------ */
+/* In: cells, copies, held flags. Out: the solver's model, made anew or changed where cuts have been. The cells of an
+   element that move by the same four copies are one element of the model, a part. Touches the solver and the model's
+   arrays, which are there only while it is made. */
+
+/* Adds a cell to the part with its copies, or begins a new part. first: the element's first part. */
+static void gxp_add_part(gx_body *body, const gxp_cell *cell, uint32_t first, const double gradients[12]) {
+    gxs_element *part;
+    uint32_t i;
+    int k;
+    for (i = first; i < body->model.part_count; i++)
+        if (memcmp(body->model.parts[i].copy, cell->copies, sizeof cell->copies) == 0) break;
+    part = &body->model.parts[i];
+    if (i == body->model.part_count) {
+        memset(part, 0, sizeof *part);
+        memcpy(part->copy, cell->copies, sizeof part->copy);
+        memcpy(part->gradient, gradients, 12 * sizeof *gradients);
+        part->material = body->mesh.element_materials[cell->element];
+        part->group = cell->element;
+        body->model.part_count++;
+    }
+    part->weight += cell->volume;
+    for (k = 0; k < 10; k++) part->mass[k] += cell->mass[k];
+}
+
+/* Appends the parts of an element; there is room. */
+static gx_result gxp_add_parts(gx_body *body, uint32_t element) {
+    const uint32_t first = body->model.part_count;
+    double x[12], gradients[12];
+    uint32_t cell;
+    gx_result result;
+    gxp_element_positions(body, element, x);
+    result = gxi_tet_gradients(x, gradients, NULL);
+    for (cell = element; cell != GXP_NONE; cell = body->cells.data[cell].next)
+        if (body->cells.data[cell].kept) gxp_add_part(body, &body->cells.data[cell], first, gradients);
+    return result;
+}
+
+/* The parts of all elements */
+static gx_result gxp_make_parts(gx_body *body) {
+    uint32_t e;
+    gx_result result = gxp_reserve(&body->config.allocator, &body->model.parts, sizeof *body->model.parts, 0,
+                                   &body->model.part_capacity, body->cells.count);
+    body->model.part_count = 0;
+    for (e = 0; e < body->mesh.element_count && result == GX_OK; e++) result = gxp_add_parts(body, e);
+    return result;
+}
+
+/* The whole model. Its arrays are the body's. */
 static gx_result gxp_make_model(gx_body *body, gxs_model *model) {
-    const gx_allocator *a = &body->allocator;
+    const gx_allocator *a = &body->config.allocator;
     uint32_t i;
     gx_result result = gxp_make_parts(body);
     if (result == GX_OK) result = gxp_list_thin(body, 1);
     if (result == GX_OK) result = gxp_make_constraints(body);
     if (result == GX_OK)
-        result = gxp_reserve(a, &body->rest, 3 * sizeof(double), 0, &body->rest_capacity, body->copy_count);
-    if (result == GX_OK)
         result =
-            gxp_reserve(a, &body->elastic, sizeof *body->elastic, 0, &body->elastic_capacity, body->material_count);
+            gxp_reserve(a, &body->model.rest, 3 * sizeof(double), 0, &body->model.rest_capacity, body->copies.count);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &body->model.elastic, sizeof *body->model.elastic, 0, &body->model.elastic_capacity,
+                             body->mesh.material_count);
     if (result != GX_OK) return result;
-    for (i = 0; i < body->copy_count; i++)
-        memcpy(body->rest + 3 * (size_t)i, body->positions + 3 * (size_t)body->copy_node[i], 3 * sizeof(double));
-    for (i = 0; i < body->material_count; i++) body->elastic[i] = body->materials[i].elastic;
+    for (i = 0; i < body->copies.count; i++)
+        memcpy(body->model.rest + 3 * (size_t)i, body->mesh.positions + 3 * (size_t)body->copies.node[i],
+               3 * sizeof(double));
+    for (i = 0; i < body->mesh.material_count; i++) body->model.elastic[i] = body->mesh.materials[i].elastic;
     memset(model, 0, sizeof *model);
-    model->copy_count = body->copy_count;
-    model->positions = body->rest;
-    model->elements = body->parts;
-    model->element_count = body->part_count;
-    model->materials = body->elastic;
-    model->material_count = body->material_count;
-    model->held = body->held;
-    model->constraints = body->constraints;
-    model->constraint_count = body->constraint_count;
-    model->epoch = body->epoch;
+    model->copy_count = body->copies.count;
+    model->positions = body->model.rest;
+    model->elements = body->model.parts;
+    model->element_count = body->model.part_count;
+    model->materials = body->model.elastic;
+    model->material_count = body->mesh.material_count;
+    model->held = body->copies.held;
+    model->constraints = body->model.constraints;
+    model->constraint_count = body->model.constraint_count;
+    model->epoch = body->cuts.epoch;
     return GX_OK;
 }
 
-/* The solver's model changed as the body was. Errors: besides MEMORY LIMIT and, if nothing is left, EMPTY: it is to be
- * set anew. */
+/* Tells the solver what has changed. After an error its model must be set anew: LIMIT and, if nothing is left, EMPTY
+   say just that; MEMORY is a failure. */
 static gx_result gxp_change_model(gx_body *body) {
+    gxp_model *model = &body->model;
     size_t room = 0;
     uint32_t i, cell;
     gxs_change change;
     gx_result result;
-    gxp_sort_unique(&body->changed);
-    for (i = 0; i < body->changed.count; i++)
-        for (cell = body->changed.data[i]; cell != GXP_NONE; cell = body->cells[cell].next) room++;
-    result = gxp_reserve(&body->allocator, &body->parts, sizeof *body->parts, 0, &body->part_capacity, room);
-    body->part_count = 0;
-    for (i = 0; i < body->changed.count && result == GX_OK; i++) result = gxp_add_parts(body, body->changed.data[i]);
+    gxp_sort_unique(&model->changed);
+    for (i = 0; i < model->changed.count; i++)
+        for (cell = model->changed.data[i]; cell != GXP_NONE; cell = body->cells.data[cell].next) room++;
+    result = gxp_reserve(&body->config.allocator, &model->parts, sizeof *model->parts, 0, &model->part_capacity, room);
+    model->part_count = 0;
+    for (i = 0; i < model->changed.count && result == GX_OK; i++) result = gxp_add_parts(body, model->changed.data[i]);
     if (result == GX_OK) result = gxp_list_thin(body, 0);
     if (result == GX_OK) result = gxp_make_constraints(body);
     memset(&change, 0, sizeof change);
-    change.copy_count = body->copy_count;
-    change.origins = body->copy_before;
-    change.held = body->held;
-    change.groups = body->changed.data;
-    change.group_count = body->changed.count;
-    change.elements = body->parts;
-    change.element_count = body->part_count;
-    change.constraints = body->constraints;
-    change.constraint_count = body->constraint_count;
-    change.epoch = body->epoch;
+    change.copy_count = body->copies.count;
+    change.origins = body->copies.before;
+    change.held = body->copies.held;
+    change.groups = model->changed.data;
+    change.group_count = model->changed.count;
+    change.elements = model->parts;
+    change.element_count = model->part_count;
+    change.constraints = model->constraints;
+    change.constraint_count = model->constraint_count;
+    change.epoch = body->cuts.epoch;
     return result == GX_OK ? gxs_solver_update(body->solver, &change, NULL) : result;
 }
 
-/* What has been written to the state since the last step still wakes in the next one. */
+/* Makes sure that what was written to the state since the last step wakes in the next one. */
 static void gxp_note_written(gx_body *body) {
-    gxp_wake_resumed(body, body->copy_count);
-    gxs_solver_note_written(body->solver, body->copy_before, body->copy_count, body->displacement, body->velocity,
-                            body->rest_time);
+    gxp_wake_resumed(body, body->copies.count);
+    gxs_solver_note_written(body->solver, body->copies.before, body->copies.count, body->copies.displacement,
+                            body->copies.velocity, body->copies.rest_time);
 }
 
+/* Gives the solver the whole model. */
 static gx_result gxp_set_model(gx_body *body) {
     gxs_model model;
     gx_result result = gxp_make_model(body, &model);
     gxp_note_written(body);
     if (result != GX_OK) return result;
-    body->nothing_moves = model.element_count == 0;
-    return body->nothing_moves ? GX_OK : gxs_solver_set_model(body->solver, &model, NULL);
+    body->model.empty = model.element_count == 0;
+    return body->model.empty ? GX_OK : gxs_solver_set_model(body->solver, &model, NULL);
 }
 
-/* The solver's model, after a cut or a hold only. The solver copies it, so that it need not be kept. */
+/* Releases what the solver has copied. */
+static void gxp_release_model(gx_body *body) {
+    gxp_release_columns(body, gxp_model_lists, sizeof gxp_model_lists / sizeof *gxp_model_lists);
+}
+
+/* Brings the solver's model up to date after cuts and holds. The solver copies it, so that the arrays are released. */
 static gx_result gxp_update_model(gx_body *body) {
+    gxp_model *model = &body->model;
     gx_result result = gxp_update_held(body);
     uint32_t i;
-    if (result != GX_OK || body->model == GXP_MODEL_KNOWN) {
+    if (result != GX_OK || model->state == GXP_MODEL_KNOWN) {
         gxp_release_model(body);
         return result;
     }
-    if (body->model == GXP_MODEL_CHANGED) {
+    if (model->state == GXP_MODEL_CHANGED) {
         result = gxp_change_model(body);
-        body->model = result == GX_OK ? GXP_MODEL_KNOWN : GXP_MODEL_STALE;
-        body->model_updated = 1;
+        model->state = result == GX_OK ? GXP_MODEL_KNOWN : GXP_MODEL_STALE;
+        model->updated = 1;
         if (result == GX_ERROR_LIMIT || result == GX_ERROR_EMPTY) result = GX_OK;
     }
-    if (result == GX_OK && body->model == GXP_MODEL_STALE) {
+    if (result == GX_OK && model->state == GXP_MODEL_STALE) {
         result = gxp_set_model(body);
         if (result == GX_OK) {
-            body->model = GXP_MODEL_KNOWN;
-            body->model_updated = 0;
+            model->state = GXP_MODEL_KNOWN;
+            model->updated = 0;
         }
     }
     gxp_release_model(body);
-    body->changed.count = 0;
-    for (i = 0; i < body->copy_count; i++) body->copy_before[i] = 2 * i;
+    model->changed.count = 0;
+    for (i = 0; i < body->copies.count; i++) body->copies.before[i] = 2 * i;
     return result;
 }
 
@@ -4880,65 +5208,67 @@ GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model) {
     return result == GX_OK ? gxp_make_model(body, model) : result;
 }
 
-/* The step with what is the body's own */
-static gx_result gxp_complete_step(gx_body *body, const gx_step_desc *desc, gx_step_desc *step) {
-    const int history = desc->integrator == GXS_BDF2;
+/* >>step: time steps ----------------------------------------------------------------------------------------------- */
+/* In: a step's description. Out: displacement and velocity at its end, or the body as it was. Touches the state of
+   copies, the history that BDF2 needs, and the solver. */
+
+/* Makes the first `count` columns of BDF2's history, unless they are there. */
+static gx_result gxp_start_history(gx_body *body, uint32_t count) {
+    uint32_t i;
     gx_result result = GX_OK;
-    int i;
-    *step = *desc;
-    step->rest_times = body->rest_time;
-    if (step->clock == NULL) {
-        step->clock = body->clock;
-        step->clock_user = body->clock_user;
-    }
-    for (i = 0; i < 4 && history && result == GX_OK; i++)
-        if (body->history[i] == NULL)
-            result = gxp_reserve(&body->allocator, &body->history[i], 3 * sizeof(double), 0, &body->history_capacity[i],
-                                 body->copy_count);
-    step->previous_displacement = history && body->previous_dt > 0 ? body->history[0] : NULL;
-    step->previous_velocity = body->history[1];
-    step->previous_dt = body->previous_dt;
+    for (i = 0; i < count && result == GX_OK; i++)
+        if (body->copies.history[i] == NULL)
+            result = gxp_grow_column(body, &gxp_copy_columns[GXP_FIRST_HISTORY + i], 0, body->copies.count);
     return result;
 }
 
-/* The solver's step, and what BDF2's next one needs of this one */
+/* The step as the solver takes it: with the body's own rest times, history and clock */
+static gx_result gxp_complete_step(gx_body *body, const gx_step_desc *desc, gx_step_desc *step) {
+    const int history = desc->integrator == GXS_BDF2;
+    gx_result result = GX_OK;
+    *step = *desc;
+    step->rest_times = body->copies.rest_time;
+    if (step->clock == NULL) {
+        step->clock = body->config.clock;
+        step->clock_user = body->config.clock_user;
+    }
+    if (history) result = gxp_start_history(body, 4);
+    step->previous_displacement = history && body->copies.previous_dt > 0 ? body->copies.history[0] : NULL;
+    step->previous_velocity = body->copies.history[1];
+    step->previous_dt = body->copies.previous_dt;
+    return result;
+}
+
+/* Takes the step and keeps what the next step of BDF2 needs. */
 static gx_result gxp_step(gx_body *body, const gx_step_desc *step, gx_step_report *report, gx_failure *failure) {
-    const size_t bytes = 3 * (size_t)body->copy_count * sizeof(double);
+    gxp_copies *copies = &body->copies;
+    const size_t bytes = 3 * (size_t)copies->count * sizeof(double);
     const int history = step->integrator == GXS_BDF2;
+    const gxp_column *columns = gxp_copy_columns + GXP_FIRST_HISTORY;
     gx_result result;
     int i;
     if (history) {
-        memcpy(body->history[2], body->displacement, bytes);
-        memcpy(body->history[3], body->velocity, bytes);
+        memcpy(copies->history[2], copies->displacement, bytes);
+        memcpy(copies->history[3], copies->velocity, bytes);
     }
-    result = gxs_solver_step(body->solver, step, body->displacement, body->velocity, report, failure);
+    result = gxs_solver_step(body->solver, step, copies->displacement, copies->velocity, report, failure);
     if (result != GX_OK) return result;
-    body->previous_dt = history ? step->dt : 0;
-    for (i = 0; i < 2 && history; i++) {
-        double *now = body->history[i + 2];
-        const uint32_t capacity = body->history_capacity[i + 2];
-        body->history[i + 2] = body->history[i];
-        body->history_capacity[i + 2] = body->history_capacity[i];
-        body->history[i] = now;
-        body->history_capacity[i] = capacity;
-    }
+    copies->previous_dt = history ? step->dt : 0;
+    for (i = 0; i < 2 && history; i++) gxp_swap_columns(body, &columns[i], &columns[i + 2]);
     return GX_OK;
 }
 
 GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report, gx_failure *failure) {
     const double start = body != NULL ? gxp_seconds(body) : 0;
-    gx_failure ignored;
     gx_step_desc step;
     gx_result result;
     if (body == NULL || desc == NULL) return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
-    gxp_wake_resumed(body, body->copy_count);
+    gxp_wake_resumed(body, body->copies.count);
     result = gxp_update_model(body);
     if (result == GX_OK) result = gxp_complete_step(body, desc, &step);
     if (gxp_fail(failure, result, SIZE_MAX, SIZE_MAX) != GX_OK) return result;
-    if (body->nothing_moves) {
-        if (failure == NULL) failure = &ignored;
-        result = gxsp_check_step(&step, failure);
-        if (result == GX_OK) result = gxsp_check_epochs(&step, body->epoch, failure);
+    if (body->model.empty) {
+        result = gxs_step_check(&step, body->cuts.epoch, failure);
         if (result == GX_OK && report != NULL) {
             memset(report, 0, sizeof *report);
             report->stop = GXS_STOP_ASLEEP;
@@ -4946,933 +5276,16 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
         return result;
     }
     result = gxp_step(body, &step, report, failure);
-    if (result == GX_OK) body->resumed = 0;
+    if (result == GX_OK) body->model.resumed = 0;
     if (result == GX_OK && report != NULL) report->seconds = gxp_seconds(body) - start;
     return result;
 }
 
-/* >>bytes: save and load, clone and restore
- * ---------------------------------------------------------------------------------------
- *
- * One stream of bytes does all four. A clone is written to memory and read back, without the checks; what the same
- * functions write and read stands once, in gxp_pass_cells (topology, beside gxb_complex_save) and gxp_pass_state (all
- * else).
- */
-
-static uint64_t gxp_hash_words(uint64_t hash, const uint32_t *words, size_t count) {
-    size_t i;
-    hash = gxp_mix(hash ^ count);
-    for (i = 0; i < count; i++) hash = gxp_mix(hash ^ words[i]);
-    return hash;
-}
-
-/* count x 2, or NULL */
-static uint64_t gxp_hash_texture(uint64_t hash, const float *texture, size_t count) {
-    size_t i;
-    hash = gxp_mix(hash ^ (texture != NULL));
-    for (i = 0; i < 2 * count && texture != NULL; i++) {
-        uint32_t b;
-        memcpy(&b, &texture[i], sizeof b);
-        hash = gxp_mix(hash ^ b);
-    }
-    return hash;
-}
-
-static uint64_t gxp_hash_mesh(const gx_body *body) {
-    const uint64_t hash =
-        gxp_hash_texture(gxp_hash_doubles(gxp_mix(body->node_count), body->positions, 3 * (size_t)body->node_count),
-                         body->texture, body->node_count);
-    return gxp_hash_doubles(
-        gxp_hash_words(gxp_hash_words(hash, body->complex->elements, 4 * (size_t)body->element_count),
-                       body->element_materials, body->element_count),
-        &body->support_below, 1);
-}
-
-static uint64_t gxp_hash_cut(uint64_t past, const gx_cut_desc *desc) {
-    size_t i;
-    past = gxp_hash_words(past, desc->scope_fragments, desc->scope_fragment_count);
-    past = gxp_hash_doubles(gxp_hash_words(past, desc->scope_cells, desc->scope_cell_count), &desc->sever_below, 1);
-    for (i = 0; i < desc->surface_count; i++) {
-        const gx_surface *s = &desc->surfaces[i];
-        past = gxp_hash_doubles(gxp_mix(past ^ s->kind ^ (uint64_t)s->vertex_count << 8), s->vertices,
-                                3 * s->vertex_count);
-        past = gxp_hash_texture(gxp_hash_words(past, s->triangles, 3 * s->triangle_count), s->texture, s->vertex_count);
-    }
-    return past;
-}
-
-static void gxp_require(gxb_stream *s, gx_result result) {
-    if (s->result == GX_OK) s->result = result;
-}
-static void gxp_require_true(gxb_stream *s, int holds) {
-    if (!holds) gxp_require(s, GX_ERROR_DAMAGED);
-}
-static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
-
-/* --- head --- */
-
-#define GXP_SAVE_VERSION 2u /* raised by every change of what follows */
-#define GXP_BYTE_ORDER   0x01020304u
-
-typedef struct gxp_head {
-    unsigned char magic[8];
-    uint32_t version, order;
-    double width;            /* -2.5: doubles are IEEE 754's */
-    uint64_t size, checksum; /* of all; of what follows the head */
-} gxp_head;
-
-/* transfers that treat it as text show */
-static const unsigned char gxp_magic[8] = {'g', 'x', 'f', 'e', 'm', '\r', '\n', 0x1a};
-
-static void gxp_pass_head(gxb_stream *s, gxp_head *head) {
-    gxb_stream_pass(s, head->magic, 8, 1);
-    gxp_pass_word(s, &head->version);
-    gxp_pass_word(s, &head->order);
-    gxb_stream_pass(s, &head->width, 1, sizeof head->width);
-    gxb_stream_pass(s, &head->size, 1, sizeof head->size);
-    gxb_stream_pass(s, &head->checksum, 1, sizeof head->checksum);
-}
-
-static gxp_head gxp_make_head(uint64_t size, uint64_t checksum) {
-    gxp_head head;
-    memcpy(head.magic, gxp_magic, sizeof head.magic);
-    head.version = GXP_SAVE_VERSION;
-    head.order = GXP_BYTE_ORDER;
-    head.width = -2.5;
-    head.size = size;
-    head.checksum = checksum;
-    return head;
-}
-
-static uint64_t gxp_checksum(const unsigned char *bytes, size_t count) {
-    uint64_t hash = gxp_mix(count), word;
-    for (; count >= sizeof word; count -= sizeof word, bytes += sizeof word) {
-        memcpy(&word, bytes, sizeof word);
-        hash = gxp_mix(hash ^ word);
-    }
-    word = 0;
-    memcpy(&word, bytes, count);
-    return gxp_mix(hash ^ word);
-}
-
-static gx_result gxp_check_head(gxb_stream *s) {
-    gxp_head head, own;
-    gxp_pass_head(s, &head);
-    own = gxp_make_head(head.size, head.checksum);
-    if (memcmp(head.magic, own.magic, sizeof own.magic) != 0 || head.version != own.version ||
-        head.order != own.order || memcmp(&head.width, &own.width, sizeof own.width) != 0)
-        return GX_ERROR_FORMAT;
-    if (s->result != GX_OK || head.size != s->size) return GX_ERROR_DAMAGED;
-    return head.checksum == gxp_checksum(s->in + s->at, s->size - s->at) ? GX_OK : GX_ERROR_DAMAGED;
-}
-
-/* --- mesh and materials: what gx_body_create takes --- */
-
-static void gxp_pass_material(gxb_stream *s, gx_material *m) {
-    uint32_t kind = (uint32_t)m->elastic.kind;
-    gxp_pass_word(s, &kind);
-    gxp_require_true(s, kind <= (uint32_t)GXS_CUSTOM);
-    if (s->result == GX_OK) m->elastic.kind = (gxs_material_kind)kind;
-    gxb_stream_pass(s, &m->elastic.young, 1, sizeof(double));
-    gxb_stream_pass(s, &m->elastic.poisson, 1, sizeof(double));
-    gxb_stream_pass(s, &m->elastic.damping, 1, sizeof(double));
-    gxb_stream_pass(s, &m->density, 1, sizeof(double));
-}
-
-typedef struct gxp_mesh {
-    uint32_t node_count, element_count, material_count;
-    double support_below;
-    uint32_t textured; /* 1: there is a texture */
-    double *positions;
-    float *texture;
-    uint32_t *elements, *element_materials;
-    gx_material *materials;
-} gxp_mesh;
-
-static void gxp_pass_sizes(gxb_stream *s, gxp_mesh *mesh) {
-    gxp_pass_word(s, &mesh->node_count);
-    gxp_pass_word(s, &mesh->element_count);
-    gxp_pass_word(s, &mesh->material_count);
-    gxp_pass_word(s, &mesh->textured);
-    gxb_stream_pass(s, &mesh->support_below, 1, sizeof mesh->support_below);
-}
-
-static void gxp_pass_mesh(gxb_stream *s, gxp_mesh *mesh) {
-    uint32_t i;
-    gxb_stream_pass(s, mesh->positions, 3 * (size_t)mesh->node_count, sizeof(double));
-    if (mesh->textured) gxb_stream_pass(s, mesh->texture, 2 * (size_t)mesh->node_count, sizeof(float));
-    gxb_stream_pass(s, mesh->elements, 4 * (size_t)mesh->element_count, sizeof(uint32_t));
-    gxb_stream_pass(s, mesh->element_materials, mesh->element_count, sizeof(uint32_t));
-    for (i = 0; i < mesh->material_count; i++) gxp_pass_material(s, &mesh->materials[i]);
-}
-
-static void gxp_save_mesh(gxb_stream *s, gx_body *body) {
-    gxp_mesh mesh;
-    mesh.node_count = body->node_count;
-    mesh.element_count = body->element_count;
-    mesh.material_count = body->material_count;
-    mesh.support_below = body->support_below;
-    mesh.positions = body->positions;
-    mesh.elements = body->complex->elements;
-    mesh.texture = body->texture;
-    mesh.textured = body->texture != NULL;
-    mesh.element_materials = body->element_materials;
-    mesh.materials = body->materials;
-    gxp_pass_sizes(s, &mesh);
-    gxp_pass_mesh(s, &mesh);
-}
-
-/* Energies can't be saved: they are given again. *material: the one that lacks its own */
-static gx_result gxp_give_energies(gxp_mesh *mesh, const gx_body_desc *desc, size_t *material) {
-    uint32_t i;
-    for (i = 0; i < mesh->material_count; i++) {
-        gxs_material *m = &mesh->materials[i].elastic;
-        if (m->kind != GXS_CUSTOM) continue;
-        if (desc->materials == NULL || i >= desc->material_count || desc->materials[i].elastic.energy == NULL) {
-            *material = i;
-            return GX_ERROR_ARGUMENT;
-        }
-        m->energy = desc->materials[i].elastic.energy;
-        m->user = desc->materials[i].elastic.user;
-    }
-    return GX_OK;
-}
-
-/* A body of the mesh, not cut yet. */
-static void gxp_create_again(gxb_stream *s, const gx_body_desc *given, gxp_mesh *mesh, gx_body **body, size_t *index) {
-    gx_body_desc desc;
-    gx_result result;
-    gxp_pass_mesh(s, mesh);
-    if (s->result != GX_OK) return;
-    gxp_require(s, gxp_give_energies(mesh, given, index));
-    if (s->result != GX_OK) return;
-    memset(&desc, 0, sizeof desc);
-    desc.allocator = given->allocator;
-    desc.clock = given->clock;
-    desc.clock_user = given->clock_user;
-    desc.jobs = given->jobs;
-    desc.positions = mesh->positions;
-    desc.node_count = mesh->node_count;
-    desc.elements = mesh->elements;
-    desc.element_count = mesh->element_count;
-    desc.materials = mesh->materials;
-    desc.material_count = mesh->material_count;
-    desc.element_materials = mesh->element_materials;
-    desc.texture = mesh->textured ? mesh->texture : NULL;
-    desc.support_below = mesh->support_below;
-    result = gx_body_create(&desc, body, NULL);
-    gxp_require(s, result == GX_OK || result == GX_ERROR_MEMORY || result == GX_ERROR_LIMIT ||
-                           result == GX_ERROR_CONFIGURATION
-                       ? result
-                       : GX_ERROR_DAMAGED);
-}
-
-static void gxp_load_mesh(gxb_stream *s, const gx_body_desc *desc, gx_body **body, size_t *index) {
-    const gx_allocator *a = &desc->allocator;
-    size_t positions, texture, elements, element_materials, materials;
-    gxp_mesh mesh;
-    memset(&mesh, 0, sizeof mesh);
-    gxp_pass_sizes(s, &mesh);
-    gxb_stream_has(s, mesh.node_count, 3 * sizeof(double));
-    gxb_stream_has(s, mesh.element_count, 5 * sizeof(uint32_t));
-    gxb_stream_has(s, mesh.material_count, sizeof(uint32_t) + 4 * sizeof(double));
-    gxp_require_true(s, mesh.node_count > 0 && mesh.element_count > 0 && mesh.material_count > 0 &&
-                            mesh.material_count <= INT32_MAX / sizeof(gx_material) && mesh.textured <= 1);
-    if (s->result != GX_OK) return;
-    positions = 3 * (size_t)mesh.node_count * sizeof(double);
-    elements = 4 * (size_t)mesh.element_count * sizeof(uint32_t);
-    texture = 2 * (size_t)mesh.node_count * sizeof(float);
-    element_materials = elements / 4;
-    materials = mesh.material_count * sizeof(gx_material);
-    mesh.positions = (double *)gxp_allocate(a, positions);
-    mesh.texture = (float *)gxp_allocate(a, texture);
-    mesh.elements = (uint32_t *)gxp_allocate(a, elements);
-    mesh.element_materials = (uint32_t *)gxp_allocate(a, element_materials);
-    mesh.materials = (gx_material *)gxp_allocate(a, materials);
-    if (mesh.positions && mesh.texture && mesh.elements && mesh.element_materials && mesh.materials) {
-        memset(mesh.materials, 0, materials);
-        gxp_create_again(s, desc, &mesh, body, index);
-    } else
-        gxp_require(s, GX_ERROR_MEMORY);
-    gxp_release(a, mesh.positions, positions);
-    gxp_release(a, mesh.texture, texture);
-    gxp_release(a, mesh.elements, elements);
-    gxp_release(a, mesh.element_materials, element_materials);
-    gxp_release(a, mesh.materials, materials);
-}
-
-/* --- topology: what cuts have made --- */
-
-static void gxp_pass_cells(gxb_stream *s, gx_body *body) {
-    uint32_t i;
-    for (i = 0; i < body->cell_count; i++) {
-        gxp_cell *c = &body->cells[i];
-        gxp_pass_word(s, &c->element);
-        gxb_stream_pass(s, c->copies, 4, sizeof *c->copies);
-        gxp_pass_word(s, &c->first_leaf);
-        gxp_pass_word(s, &c->next);
-        gxp_pass_word(s, &c->kept);
-        gxb_stream_pass(s, &c->volume, 1, sizeof c->volume);
-        gxb_stream_pass(s, c->mass, 10, sizeof *c->mass);
-    }
-    for (i = 0; i < body->leaf_count; i++) {
-        gxp_pass_word(s, &body->leaves[i].cell);
-        gxp_pass_word(s, &body->leaves[i].next);
-    }
-    gxb_stream_pass(s, body->copy_node, body->copy_count, sizeof *body->copy_node);
-    gxp_pass_word(s, &body->label_count);
-    for (i = 0; i < body->surface_count; i++) {
-        gxp_pass_word(s, &body->surfaces[i].label);
-        gxp_pass_word(s, &body->surfaces[i].map);
-    }
-    gxb_stream_pass(s, body->maps, body->map_count, 8 * sizeof *body->maps);
-    gxb_stream_pass(s, &body->past, 1, sizeof body->past);
-    gxb_stream_pass(s, &body->epoch, 1, sizeof body->epoch);
-}
-
-static void gxp_save_topology(gxb_stream *s, gx_body *body) {
-    gxb_complex_save(body->complex, s);
-    gxp_pass_word(s, &body->cell_count);
-    gxp_pass_word(s, &body->copy_count);
-    gxp_pass_word(s, &body->surface_count);
-    gxp_pass_word(s, &body->map_count);
-    gxp_pass_cells(s, body);
-}
-
-/* Marks, one byte for each cell, leaf and copy: it has its place. */
-typedef struct gxp_places {
-    unsigned char *cell, *leaf, *copy;
-} gxp_places;
-
-/* The cell's leaves are its own, kept, of its element and of no other cell; its copies are those of its element's
-   nodes. It is no larger than the element; twice allows for rounding. */
-static void gxp_check_cell(gxb_stream *s, gx_body *body, uint32_t cell, const gxp_places *seen) {
-    gxp_cell *c = &body->cells[cell];
-    const uint32_t *node = body->complex->elements + 4 * (size_t)c->element;
-    const double density = gxp_density(body, c->element), most = 2 * gxp_element_volume(body, c->element);
-    uint32_t leaf, k;
-    gxp_require_true(s, c->kept <= 1 && (c->first_leaf != GXP_NONE) == (c->kept != 0));
-    for (leaf = c->first_leaf; leaf != GXP_NONE && s->result == GX_OK; leaf = body->leaves[leaf].next) {
-        gxp_require_true(s, leaf < body->leaf_count && !seen->leaf[leaf < body->leaf_count ? leaf : 0]);
-        if (s->result != GX_OK) return;
-        seen->leaf[leaf] = 1;
-        gxp_require_true(s, body->leaves[leaf].cell == cell && gxp_is_kept(body, leaf) &&
-                                body->complex->leaves[leaf].element == c->element);
-    }
-    gxp_require_true(s, gxp_is_finite(c->volume) && c->volume >= 0 && c->volume <= most);
-    for (k = 0; k < 10; k++) gxp_require_true(s, gxp_is_finite(c->mass[k]) && fabs(c->mass[k]) <= most * density);
-    for (k = 0; k < 4 && s->result == GX_OK; k++) {
-        if (!c->kept) {
-            gxp_require_true(s, c->copies[k] == GXP_NONE);
-            continue;
-        }
-        gxp_require_true(s, c->copies[k] < body->copy_count &&
-                                body->copy_node[c->copies[k] < body->copy_count ? c->copies[k] : 0] == node[k]);
-        if (s->result == GX_OK) seen->copy[c->copies[k]] = 1;
-    }
-}
-
-/* Every cell is in its element's list once, every kept leaf in a kept cell, every copy in use. */
-static void gxp_check_lists(gxb_stream *s, gx_body *body, const gxp_places *seen) {
-    uint32_t e, i, cell;
-    for (e = 0; e < body->element_count; e++)
-        for (cell = e; cell != GXP_NONE && s->result == GX_OK; cell = body->cells[cell].next) {
-            gxp_require_true(s, cell < body->cell_count && !seen->cell[cell < body->cell_count ? cell : 0]);
-            if (s->result != GX_OK) return;
-            seen->cell[cell] = 1;
-            gxp_require_true(s, body->cells[cell].element == e);
-            if (s->result == GX_OK) gxp_check_cell(s, body, cell, seen);
-        }
-    for (i = 0; i < body->cell_count; i++) gxp_require_true(s, seen->cell[i]);
-    for (i = 0; i < body->copy_count; i++) gxp_require_true(s, seen->copy[i]);
-    for (i = 0; i < body->leaf_count; i++) {
-        gxp_require_true(s,
-                         body->leaves[i].cell < body->cell_count && seen->leaf[i] == !body->complex->leaves[i].removed);
-        gxp_require_true(s, seen->leaf[i] || body->leaves[i].next == GXP_NONE);
-    }
-    for (i = 0; i < body->complex->label_count; i++)
-        gxp_require_true(s, body->complex->labels[i].triangle < body->label_count);
-}
-
-/* Surfaces in the order of their labels, each with maps for all of its triangles or for none. */
-static void gxp_check_surfaces(gxb_stream *s, const gx_body *body) {
-    uint32_t i;
-    size_t k;
-    for (i = 0; i < body->surface_count; i++) {
-        const gxp_surface_record *r = &body->surfaces[i];
-        const uint32_t end = i + 1 < body->surface_count ? r[1].label : body->label_count;
-        gxp_require_true(s, r->label < end && (i > 0 || r->label == 0));
-        gxp_require_true(s, r->map == GXP_NONE ||
-                                (r->map <= body->map_count && end - r->label <= body->map_count - r->map));
-    }
-    gxp_require_true(s, body->surface_count > 0 || body->label_count == 0);
-    for (k = 0; k < 8 * (size_t)body->map_count; k++) gxp_require_true(s, gxp_is_finite(body->maps[k]));
-}
-
-static void gxp_check_topology(gxb_stream *s, gx_body *body) {
-    const size_t bytes = (size_t)body->cell_count + body->leaf_count + body->copy_count;
-    gxp_places seen;
-    seen.cell = (unsigned char *)gxp_allocate(&body->allocator, bytes);
-    if (seen.cell == NULL) {
-        gxp_require(s, GX_ERROR_MEMORY);
-        return;
-    }
-    memset(seen.cell, 0, bytes);
-    seen.leaf = seen.cell + body->cell_count;
-    seen.copy = seen.leaf + body->leaf_count;
-    gxp_check_lists(s, body, &seen);
-    gxp_check_surfaces(s, body);
-    gxp_release(&body->allocator, seen.cell, bytes);
-}
-
-static void gxp_load_topology(gxb_stream *s, gx_body *body, int trusted) {
-    const uint32_t leaves = gxb_complex_load(body->complex, s, trusted) == GX_OK ? body->complex->leaf_count : 0;
-    uint32_t cells, copies, surfaces, maps;
-    gxp_pass_word(s, &cells);
-    gxp_pass_word(s, &copies);
-    gxp_pass_word(s, &surfaces);
-    gxp_pass_word(s, &maps);
-    gxb_stream_has(s, cells, sizeof(uint32_t) * 8 + sizeof(double) * 11);
-    gxb_stream_has(s, copies, sizeof(uint32_t));
-    gxb_stream_has(s, surfaces, 2 * sizeof(uint32_t));
-    gxb_stream_has(s, maps, 8 * sizeof(double));
-    gxp_require_true(s, cells >= body->element_count && cells <= INT32_MAX && copies <= INT32_MAX);
-    if (s->result != GX_OK) return;
-    gxp_require(s, gxp_reserve_cells(body, cells - body->cell_count));
-    gxp_require(s, gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, body->leaf_count,
-                               &body->leaf_capacity, leaves - body->leaf_count));
-    body->copy_count = 0;
-    gxp_require(s, gxp_reserve_copies(body, copies));
-    gxp_require(s, gxp_reserve(&body->allocator, &body->surfaces, sizeof *body->surfaces, 0, &body->surface_capacity,
-                               surfaces));
-    gxp_require(s, gxp_reserve(&body->allocator, &body->maps, 8 * sizeof *body->maps, 0, &body->map_capacity, maps));
-    if (s->result != GX_OK) return;
-    memset(body->leaves, 0, leaves * sizeof *body->leaves);
-    if (copies > 0) memset(body->held, 0, copies);
-    body->cell_count = cells;
-    body->leaf_count = leaves;
-    body->copy_count = copies;
-    body->surface_count = surfaces;
-    body->map_count = maps;
-    gxp_pass_cells(s, body);
-    if (s->result == GX_OK && !trusted) gxp_check_topology(s, body);
-    body->held_stale = body->view_stale = 1;
-    body->model = GXP_MODEL_STALE;
-    body->labels_known = 0;
-}
-
-/* --- state: all else. Whoever adds some to gx_body adds it to gxp_pass_state, and to gxp_state_room where it takes
- * room --- */
-
-typedef struct gxp_state_counts {
-    uint32_t copies, regions, fragments, removed, history;
-} gxp_state_counts;
-
-static void gxp_pass_state_counts(gxb_stream *s, gxp_state_counts *n) {
-    gxp_pass_word(s, &n->copies);
-    gxp_pass_word(s, &n->regions);
-    gxp_pass_word(s, &n->fragments);
-    gxp_pass_word(s, &n->removed);
-    gxp_pass_word(s, &n->history);
-}
-
-static gxp_state_counts gxp_count_state(const gx_body *body) {
-    gxp_state_counts n;
-    n.copies = body->copy_count;
-    n.regions = body->region_count;
-    n.fragments = body->fragment_ids.count;
-    n.removed = body->removed_ids.count;
-    n.history = body->previous_dt > 0;
-    return n;
-}
-
-/* Room for a state with these counts; the present one stays. */
-static gx_result gxp_state_room(gx_body *body, const gxp_state_counts *n) {
-    const gx_allocator *a = &body->allocator;
-    int i;
-    gx_result r = gxp_words_room(body, &body->fragment_ids, n->fragments);
-    if (r == GX_OK) r = gxp_words_room(body, &body->fragment_origins, n->fragments);
-    if (r == GX_OK) r = gxp_words_room(body, &body->fragment_changes, n->fragments);
-    if (r == GX_OK) r = gxp_words_room(body, &body->removed_ids, n->removed);
-    if (r == GX_OK)
-        r = gxp_reserve(a, &body->regions, sizeof *body->regions, body->region_count, &body->region_capacity,
-                        n->regions);
-    for (i = 0; i < 2 && r == GX_OK && n->history; i++)
-        if (body->history[i] == NULL)
-            r = gxp_reserve(a, &body->history[i], 3 * sizeof(double), 0, &body->history_capacity[i], body->copy_count);
-    return r;
-}
-
-static void gxp_pass_region(gxb_stream *s, gx_region *r) {
-    gxp_pass_word(s, &r->axis);
-    gxb_stream_pass(s, &r->side, 1, sizeof r->side);
-    gxb_stream_pass(s, &r->value, 1, sizeof r->value);
-}
-
-static void gxp_pass_words(gxb_stream *s, gxp_words *words, uint32_t count) {
-    words->count = count;
-    gxb_stream_pass(s, words->data, count, sizeof *words->data);
-}
-
-/* The solver forgets, so that it goes on as that of the other body will. */
-static void gxp_resume_in(gx_body *body, const gxs_scene *scene) {
-    gxs_solver_resume(body->solver, scene);
-    if (body->model_updated) body->model = GXP_MODEL_STALE;
-    body->resumed = gxp_hash_state(body, body->copy_count);
-}
-
-/* n: of this body when it is written, of what is read else, and there is room. */
-static void gxp_pass_state(gxb_stream *s, gx_body *body, const gxp_state_counts *n) {
-    const size_t copies = n->copies;
-    uint32_t i, look_stale = (uint32_t)body->look_stale;
-    gxs_scene scene;
-    gxb_stream_pass(s, body->displacement, copies, 3 * sizeof(double));
-    gxb_stream_pass(s, body->velocity, copies, 3 * sizeof(double));
-    gxb_stream_pass(s, body->rest_time, copies, sizeof(double));
-    gxb_stream_pass(s, body->copy_label, copies, sizeof *body->copy_label);
-    for (i = 0; i < 2 && n->history; i++) gxb_stream_pass(s, body->history[i], copies, 3 * sizeof(double));
-    gxb_stream_pass(s, &body->previous_dt, 1, sizeof body->previous_dt);
-    body->region_count = n->regions;
-    for (i = 0; i < n->regions; i++) gxp_pass_region(s, &body->regions[i]);
-    gxp_pass_words(s, &body->fragment_ids, n->fragments);
-    gxp_pass_words(s, &body->fragment_origins, n->fragments);
-    gxp_pass_words(s, &body->fragment_changes, n->fragments);
-    gxp_pass_words(s, &body->removed_ids, n->removed);
-    gxp_pass_word(s, &body->next_id);
-    gxp_pass_word(s, &look_stale);
-    body->look_stale = (int)(look_stale & 1);
-    gxs_solver_scene(body->solver, &scene);
-    gxb_stream_pass(s, scene.gravity, 3, sizeof *scene.gravity);
-    gxb_stream_pass(s, &scene.planes, 1, sizeof scene.planes);
-    gxb_stream_pass(s, &scene.forces, 1, sizeof scene.forces);
-    gxb_stream_pass(s, &scene.springs, 1, sizeof scene.springs);
-    if (s->in != NULL) gxp_resume_in(body, &scene);
-}
-
-static void gxp_save_state(gxb_stream *s, gx_body *body) {
-    gxp_state_counts n = gxp_count_state(body);
-    gxp_pass_state_counts(s, &n);
-    gxp_pass_state(s, body, &n);
-}
-
-static void gxp_check_state(gxb_stream *s, gx_body *body, const gxp_state_counts *n) {
-    uint32_t i;
-    gxp_require_true(s, body->next_id >= 1);
-    gxp_require_true(s, gxp_is_finite(body->previous_dt) &&
-                            (n->history ? body->previous_dt > 0 : !(body->previous_dt > 0 || body->previous_dt < 0)));
-    for (i = 0; i < n->regions; i++) gxp_require_true(s, gxp_check_region(&body->regions[i]) == GX_OK);
-    for (i = 0; i < n->copies; i++) gxp_require_true(s, body->copy_label[i] >> 1 < n->fragments);
-    for (i = 0; i < n->fragments; i++)
-        gxp_require_true(s, body->fragment_ids.data[i] - 1 < body->next_id - 1 &&
-                                body->fragment_origins.data[i] - 1 < body->next_id - 1 &&
-                                body->fragment_changes.data[i] <= GX_FRAGMENT_CREATED);
-    for (i = 0; i < n->removed; i++) gxp_require_true(s, body->removed_ids.data[i] - 1 < body->next_id - 1);
-    if (s->result == GX_OK) gxp_require(s, gxp_update_view(body));
-    gxp_require_true(s, body->look_stale || body->fragment_count == n->fragments);
-}
-
-static void gxp_load_state(gxb_stream *s, gx_body *body, int trusted) {
-    gxp_state_counts n;
-    gxp_pass_state_counts(s, &n);
-    gxb_stream_has(s, n.copies, 2 * sizeof(double));
-    gxb_stream_has(s, n.regions, 2 * sizeof(uint32_t) + sizeof(double));
-    gxb_stream_has(s, n.fragments, 3 * sizeof(uint32_t));
-    gxb_stream_has(s, n.removed, sizeof(uint32_t));
-    gxp_require_true(s, n.copies == body->copy_count && n.history <= 1);
-    if (s->result == GX_OK) gxp_require(s, gxp_state_room(body, &n));
-    if (s->result == GX_OK) gxp_pass_state(s, body, &n);
-    if (s->result == GX_OK && !trusted) gxp_check_state(s, body, &n);
-}
-
-/* --- the four functions --- */
-
-static void gxp_write(gxb_stream *s, gx_body *body) {
-    gxp_head head = gxp_make_head(0, 0);
-    gxp_pass_head(s, &head);
-    gxp_save_mesh(s, body);
-    gxp_save_topology(s, body);
-    gxp_save_state(s, body);
-}
-
-static void gxp_resume(gx_body *body) {
-    gxs_scene scene;
-    gxs_solver_scene(body->solver, &scene);
-    gxp_resume_in(body, &scene);
-}
-
-GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, size_t *size) {
-    gxb_stream s;
-    size_t start;
-    gxp_head head;
-    if (body == NULL || size == NULL) return GX_ERROR_ARGUMENT;
-    gxp_note_written(body);
-    memset(&s, 0, sizeof s);
-    gxp_pass_head(&s, &head);
-    start = s.at;
-    s.at = 0;
-    gxp_write(&s, body);
-    *size = s.at;
-    if (memory == NULL) return GX_OK;
-    if (capacity < s.at) return GX_ERROR_LIMIT;
-    s.out = (unsigned char *)memory;
-    s.size = s.at;
-    s.at = 0;
-    gxp_write(&s, body);
-    s.at = 0;
-    head = gxp_make_head(s.size, gxp_checksum(s.out + start, s.size - start));
-    gxp_pass_head(&s, &head);
-    gxp_resume(body);
-    return GX_OK;
-}
-
-/* index: as gx_failure's */
-static gx_result gxp_read(gxb_stream *s, const gx_body_desc *desc, int trusted, gx_body **body, size_t *index) {
-    gx_body *made = NULL;
-    gxp_head head;
-    if (trusted)
-        gxp_pass_head(s, &head);
-    else
-        s->result = gxp_check_head(s);
-    *index = SIZE_MAX;
-    if (s->result == GX_OK) gxp_load_mesh(s, desc, &made, index);
-    if (s->result == GX_OK) gxp_load_topology(s, made, trusted);
-    if (s->result == GX_OK) gxp_load_state(s, made, trusted);
-    gxp_require_true(s, s->at == s->size);
-    if (s->result == GX_OK)
-        *body = made;
-    else
-        gx_body_destroy(made);
-    if (s->result == GX_ERROR_FORMAT || s->result == GX_ERROR_DAMAGED) *index = s->at;
-    return s->result;
-}
-
-GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_desc *desc, gx_body **body,
-                                 gx_failure *failure) {
-    gx_body_desc none;
-    gxb_stream s;
-    size_t index;
-    gx_result result;
-    memset(&none, 0, sizeof none);
-    if (desc == NULL) desc = &none;
-    if (memory == NULL || body == NULL || !gxbp_is_allocator(&desc->allocator))
-        return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
-    memset(&s, 0, sizeof s);
-    s.in = (const unsigned char *)memory;
-    s.size = size;
-    result = gxp_read(&s, desc, 0, body, &index);
-    return gxp_fail(failure, result, index, SIZE_MAX);
-}
-
-/* A body like from, with the allocator, clock and jobs of another. */
-static gx_result gxp_copy_body(gx_body *from, const gx_body *host, gx_body **copy) {
-    gx_body_desc desc;
-    gxb_stream s;
-    unsigned char *bytes;
-    size_t size, index;
-    gx_result result = gx_body_save(from, NULL, 0, &size);
-    if (result != GX_OK) return result;
-    bytes = (unsigned char *)gxp_allocate(&host->allocator, size);
-    if (bytes == NULL) return GX_ERROR_MEMORY;
-    memset(&s, 0, sizeof s);
-    s.out = bytes;
-    s.size = size;
-    gxp_write(&s, from);
-    memset(&s, 0, sizeof s);
-    s.in = bytes;
-    s.size = size;
-    memset(&desc, 0, sizeof desc);
-    desc.allocator = host->allocator;
-    desc.clock = host->clock;
-    desc.clock_user = host->clock_user;
-    desc.jobs = host->jobs;
-    desc.materials = from->materials;
-    desc.material_count = from->material_count;
-    result = gxp_read(&s, &desc, 1, copy, &index);
-    gxp_release(&host->allocator, bytes, size);
-    if (result == GX_OK) gxp_resume(from);
-    return result;
-}
-
-GXFEM_API gx_result gx_body_clone(gx_body *body, gx_body **clone) {
-    return body == NULL || clone == NULL ? GX_ERROR_ARGUMENT : gxp_copy_body(body, body, clone);
-}
-
-static int gxp_same_doubles(const double *a, const double *b, size_t count) {
-    return memcmp(a, b, count * sizeof *a) == 0;
-}
-
-static int gxp_same_materials(const gx_body *a, const gx_body *b) {
-    uint32_t i;
-    int same = a->material_count == b->material_count;
-    for (i = 0; i < a->material_count && same; i++) {
-        const gxs_material *p = &a->materials[i].elastic, *q = &b->materials[i].elastic;
-        same = p->kind == q->kind && gxp_same_doubles(&p->young, &q->young, 1) &&
-               gxp_same_doubles(&p->poisson, &q->poisson, 1) && gxp_same_doubles(&p->damping, &q->damping, 1) &&
-               gxp_same_doubles(&a->materials[i].density, &b->materials[i].density, 1) &&
-               (p->kind != GXS_CUSTOM || (p->energy == q->energy && p->user == q->user));
-    }
-    return same;
-}
-
-static int gxp_same_regions(const gx_body *a, const gx_body *b) {
-    uint32_t i;
-    int same = a->region_count == b->region_count;
-    for (i = 0; i < a->region_count && same; i++) {
-        const gx_region *p = &a->regions[i], *q = &b->regions[i];
-        same = p->axis == q->axis && p->side == q->side && gxp_same_doubles(&p->value, &q->value, 1);
-    }
-    return same;
-}
-
-/* The state of a body with the same cells and copies */
-static gx_result gxp_restore_state(gx_body *body, gx_body *from) {
-    gxp_state_counts n = gxp_count_state(from);
-    const int same_held = gxp_same_regions(body, from);
-    gxb_stream s;
-    unsigned char *bytes;
-    size_t size;
-    gx_result result = gxp_state_room(body, &n);
-    if (result != GX_OK) return result;
-    gxp_note_written(from);
-    memset(&s, 0, sizeof s);
-    gxp_pass_state(&s, from, &n);
-    size = s.at;
-    bytes = (unsigned char *)gxp_allocate(&body->allocator, size);
-    if (bytes == NULL) return GX_ERROR_MEMORY;
-    s.out = bytes;
-    s.size = size;
-    s.at = 0;
-    gxp_pass_state(&s, from, &n);
-    s.in = bytes;
-    s.out = NULL;
-    s.at = 0;
-    gxp_pass_state(&s, body, &n);
-    gxp_release(&body->allocator, bytes, size);
-    if (!same_held) {
-        memset(body->held, 0, body->copy_count);
-        body->held_stale = 1;
-        body->model = GXP_MODEL_STALE;
-    }
-    gxp_resume(from);
-    return GX_OK;
-}
-
-GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from) {
-    gx_body *copy, swap;
-    gx_result result;
-    if (body == NULL || from == NULL) return GX_ERROR_ARGUMENT;
-    if (body == from) return GX_OK;
-    if (body->past == from->past && body->copy_count == from->copy_count && body->cell_count == from->cell_count &&
-        body->leaf_count == from->leaf_count && gxp_same_materials(body, from))
-        return gxp_restore_state(body, from);
-    result = gxp_copy_body(from, body, &copy);
-    if (result != GX_OK) return result;
-    swap = *body;
-    *body = *copy;
-    *copy = swap;
-    gx_body_destroy(copy);
-    return GX_OK;
-}
-
-/* >>boundary: the visual surface. Its triangles are listed by element; those of elements that a cut touched are made
-   anew. Triangles and vertices stand without gaps: the last one takes the place of one that goes.
-   ------------------------------------------------ */
-
-/* Makes room for extra further items in several arrays of the same length: in all of them, or in none. arrays: their
- * addresses. */
-static gx_result gxp_reserve_columns(const gx_allocator *a, void *const *arrays, const size_t *items, int columns,
-                                     size_t count, uint32_t *capacity, size_t extra) {
-    const size_t need = count + extra, room = need + need / 2 + 16;
-    void *memory[8], *old;
-    int i, n;
-    if (need <= *capacity) return GX_OK;
-    for (n = 0; n < columns; n++) {
-        if (room > INT32_MAX || room > SIZE_MAX / items[n]) break;
-        memory[n] = gxp_allocate(a, room * items[n]);
-        if (memory[n] == NULL) break;
-    }
-    for (i = 0; i < n && n < columns; i++) gxp_release(a, memory[i], room * items[i]);
-    if (n < columns) return room > INT32_MAX || room > SIZE_MAX / items[n] ? GX_ERROR_LIMIT : GX_ERROR_MEMORY;
-    for (i = 0; i < columns; i++) {
-        memcpy(&old, arrays[i], sizeof old);
-        if (count > 0) memcpy(memory[i], old, count * items[i]);
-        gxp_release(a, old, (size_t)*capacity * items[i]);
-        memcpy(arrays[i], &memory[i], sizeof old);
-    }
-    *capacity = (uint32_t)room;
-    return GX_OK;
-}
-
-enum { GXP_VERTEX_COLUMNS = 7, GXP_TRIANGLE_COLUMNS = 6 };
-
-static void gxp_vertex_columns(gxp_skin *s, void **arrays, size_t *items) {
-    arrays[0] = &s->vertices;
-    items[0] = sizeof *s->vertices;
-    arrays[1] = &s->copies;
-    items[1] = 4 * sizeof *s->copies;
-    arrays[2] = &s->weights;
-    items[2] = 4 * sizeof *s->weights;
-    arrays[3] = &s->point;
-    items[3] = sizeof *s->point;
-    arrays[4] = &s->rest;
-    items[4] = 3 * sizeof *s->rest;
-    arrays[5] = &s->normal;
-    items[5] = 3 * sizeof *s->normal;
-    arrays[6] = &s->texture;
-    items[6] = 2 * sizeof *s->texture;
-}
-
-static void gxp_triangle_columns(gxp_skin *s, void **arrays, size_t *items) {
-    arrays[0] = &s->links;
-    items[0] = sizeof *s->links;
-    arrays[1] = &s->triangles;
-    items[1] = 3 * sizeof *s->triangles;
-    arrays[2] = &s->fragment;
-    items[2] = sizeof *s->fragment;
-    arrays[3] = &s->element;
-    items[3] = sizeof *s->element;
-    arrays[4] = &s->material;
-    items[4] = sizeof *s->material;
-    arrays[5] = &s->surface;
-    items[5] = sizeof *s->surface;
-}
-
-static void gxp_move_column_item(void *const *arrays, const size_t *items, int columns, size_t from, size_t to) {
-    int i;
-    for (i = 0; i < columns; i++) {
-        char *data;
-        memcpy(&data, arrays[i], sizeof data);
-        memcpy(data + to * items[i], data + from * items[i], items[i]);
-    }
-}
-
-static void gxp_release_columns(const gx_allocator *a, void *const *arrays, const size_t *items, int columns,
-                                uint32_t capacity) {
-    int i;
-    for (i = 0; i < columns; i++) {
-        void *data;
-        memcpy(&data, arrays[i], sizeof data);
-        gxp_release(a, data, capacity * items[i]);
-    }
-}
-
-static void gxp_skin_free(gx_body *body) {
-    gxp_skin *s = &body->skin;
-    void *arrays[8];
-    size_t items[8];
-    gxp_vertex_columns(s, arrays, items);
-    gxp_release_columns(&body->allocator, arrays, items, GXP_VERTEX_COLUMNS, s->vertex_capacity);
-    gxp_triangle_columns(s, arrays, items);
-    gxp_release_columns(&body->allocator, arrays, items, GXP_TRIANGLE_COLUMNS, s->triangle_capacity);
-    gxp_release(&body->allocator, s->slots, s->slot_capacity * sizeof *s->slots);
-    gxp_release(&body->allocator, s->normals, (size_t)s->normal_capacity * 3 * sizeof *s->normals);
-    gxp_release(&body->allocator, s->positions, (size_t)s->position_capacity * 3 * sizeof *s->positions);
-    gxp_release(&body->allocator, s->group_normals, (size_t)s->group_normal_capacity * 3 * sizeof *s->group_normals);
-    gxp_release(&body->allocator, s->ranges[0], s->range_capacity[0] * sizeof **s->ranges);
-    gxp_release(&body->allocator, s->ranges[1], s->range_capacity[1] * sizeof **s->ranges);
-    gxp_words_free(body, &s->dirty);
-    gxp_words_free(body, &s->vertex_buckets);
-    gxp_words_free(body, &s->slot_buckets);
-    gxp_words_free(body, &s->first);
-    gxp_words_free(body, &s->boundary);
-    gxp_words_free(body, &s->groups);
-    gxp_words_free(body, &s->changed[0]);
-    gxp_words_free(body, &s->changed[1]);
-}
-
-/* --- what cuts touch --- */
-
-static gx_result gxp_push_leaf_elements(gx_body *body, uint32_t facet) {
-    const gxb_complex *cx = body->complex;
-    uint32_t i;
-    gx_result result = GX_OK;
-    for (i = 0; i < 2 && result == GX_OK; i++)
-        if (cx->facets[facet].leaf[i] != GXB_NONE)
-            result = gxp_push(body, &body->skin.dirty, cx->leaves[cx->facets[facet].leaf[i]].element);
-    return result;
-}
-
-/* Notes for the skin, if there is one, the elements in which the cut made facets or walls or changed a cell, and those
-   whose copies will be renumbered when dead ones are dropped. Elements noted in vain do no harm. */
-static gx_result gxp_note_touched(gxp_cut *cut, uint32_t first_facet) {
-    gx_body *body = cut->body;
-    const gxb_complex *cx = body->complex;
-    uint32_t i, j;
-    gx_result result = GX_OK;
-    if (!body->skin.made) return GX_OK;
-    if (body->skin.dirty.count / 8 > body->element_count) {
-        body->skin.made = 0;
-        return GX_OK;
-    }
-    for (i = first_facet; i < cx->facet_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, i);
-    for (i = 0; i < cx->wall_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, cx->walls[i] >> 1);
-    for (i = 0; i < body->saved_cell_count && result == GX_OK; i++)
-        result = gxp_push(body, &body->skin.dirty, body->saved_cells[i].cell.element);
-    for (i = 0; i < body->pinches.count; i++) /* edges that were divided there without a new facet */
-        for (j = body->node_start[body->pinches.data[i]];
-             j < body->node_start[body->pinches.data[i] + 1] && result == GX_OK; j++)
-            result = gxp_push(body, &body->skin.dirty, body->node_elements[j]);
-    for (i = body->copy_count - body->dead.count; i < body->copy_count; i++) {
-        const uint32_t node = body->copy_node[i];
-        for (j = body->node_start[node]; j < body->node_start[node + 1] && result == GX_OK; j++)
-            result = gxp_push(body, &body->skin.dirty, body->node_elements[j]);
-    }
-    return result;
-}
-
-/* Is the mesh edge divided, or its piece of an outer face? */
-static int gxp_edge_is_divided(const gxb_complex *cx, uint32_t mesh_edge) {
-    const uint32_t edge = cx->mesh_edge[mesh_edge];
-    return edge != GXB_NONE && cx->edges[edge].child != GXB_NONE;
-}
-
-static gx_result gxp_spread_to(gx_body *body, uint32_t element) {
-    if (element == GXP_NONE || body->cell_stamp[element] == body->stamp) return GX_OK;
-    body->cell_stamp[element] = body->stamp;
-    return gxp_push(body, &body->skin.dirty, element);
-}
-
-/* Elements that share a divided edge with a touched one have a further corner there; those across its faces see other
- * cells. */
-static gx_result gxp_spread_touched(gx_body *body) {
-    const gxb_complex *cx = body->complex;
-    gxp_words *dirty = &body->skin.dirty;
-    uint32_t i, j, k, count;
-    gx_result result = GX_OK;
-    body->stamp++;
-    for (i = 0, count = 0; i < dirty->count; i++) {
-        if (body->cell_stamp[dirty->data[i]] == body->stamp) continue;
-        body->cell_stamp[dirty->data[i]] = body->stamp;
-        dirty->data[count++] = dirty->data[i];
-    }
-    dirty->count = count;
-    for (i = 0; i < count && result == GX_OK; i++) {
-        const uint32_t e = dirty->data[i];
-        for (k = 0; k < 4 && result == GX_OK; k++) result = gxp_spread_to(body, gxp_neighbour(body, e, k));
-        for (k = 0; k < 6; k++) {
-            const uint32_t a = cx->elements[4 * e + gxp_edge_nodes[k][0]],
-                           b = cx->elements[4 * e + gxp_edge_nodes[k][1]];
-            if (!gxp_edge_is_divided(cx, cx->element_edges[6 * e + k])) continue;
-            for (j = body->node_start[a]; j < body->node_start[a + 1] && result == GX_OK; j++)
-                if (gxp_local_node(body, body->node_elements[j], b) >= 0)
-                    result = gxp_spread_to(body, body->node_elements[j]);
-        }
-    }
-    return result;
-}
-
-/* --- normals --- */
-
-/* (b - a) x (c - a) of a triangle's corners */
-static void gxp_triangle_normal(const double *x, const uint32_t *t, double n[3]) {
-    const double *a = x + 3 * (size_t)t[0], *b = x + 3 * (size_t)t[1], *c = x + 3 * (size_t)t[2];
-    const double p[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, q[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
-    n[0] = p[1] * q[2] - p[2] * q[1];
-    n[1] = p[2] * q[0] - p[0] * q[2];
-    n[2] = p[0] * q[1] - p[1] * q[0];
-}
-
-/* Of length 1; left alone where it has none, or one that is not finite. */
+/* >>corners: the skin: normals and textures ------------------------------------------------------------------------ */
+/* The visual surface takes four sections. This one: which corners of the outer surface are shaded as one, and which
+   texture a cut face has. In: the mesh, the records of surfaces. Out: groups of corners. Touches the skin only. */
+
+/* Sets a normal of length 1. It is left alone if n is zero or not finite. */
 static void gxp_set_normal(float *normal, const double n[3]) {
     double unit[3];
     int k;
@@ -5880,9 +5293,7 @@ static void gxp_set_normal(float *normal, const double n[3]) {
         for (k = 0; k < 3; k++) normal[k] = (float)unit[k];
 }
 
-/* --- the outer surface before any cut: which of its corners are shaded as one --- */
-
-/* Normal of the outer face opposite to the element's node k, of its area's length. */
+/* The normal of the outer face opposite to the element's node k; its length is the area. */
 static void gxp_outer_normal(const gx_body *body, uint32_t element, uint32_t k, double n[3]) {
     double x[12], a[3], b[3];
     const uint8_t *f = gxp_outward[k];
@@ -5895,27 +5306,26 @@ static void gxp_outer_normal(const gx_body *body, uint32_t element, uint32_t k, 
     for (i = 0; i < 3; i++) n[i] = 0.5 * (a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]);
 }
 
-/* Lists the outer faces: s->boundary has the number of each mesh face among them, body->faces element * 4 + k of each.
- */
+/* Lists the outer faces as element * 4 + k; skin.boundary has the number of each mesh face among them. */
 static gx_result gxp_list_outer_faces(gx_body *body) {
     const gxb_complex *cx = body->complex;
     gxp_skin *s = &body->skin;
     uint32_t e, k;
-    gx_result result = gxp_set_words(body, &s->boundary, cx->face_count);
-    body->faces.count = 0;
-    for (e = 0; e < body->element_count && result == GX_OK; e++)
+    gx_result result = gxp_start_words(body, &s->boundary, gxb_complex_face_count(cx));
+    body->skin.outer_faces.count = 0;
+    for (e = 0; e < body->mesh.element_count && result == GX_OK; e++)
         for (k = 0; k < 4 && result == GX_OK; k++) {
             if (gxp_neighbour(body, e, k) != GXP_NONE) continue;
-            s->boundary.data[cx->element_faces[4 * e + k]] = body->faces.count;
-            result = gxp_push(body, &body->faces, 4 * e + k);
+            s->boundary.data[gxb_complex_element_faces(cx, e)[k]] = body->skin.outer_faces.count;
+            result = gxp_push(body, &body->skin.outer_faces, 4 * e + k);
         }
     return result;
 }
 
-/* Two outer faces (by number) meet in the mesh edge from node a to b: where they bend little, their corners are one
- * group. */
+/* Outer faces p and q meet in the mesh edge from node a to b. If they bend little there, their corners are one
+   group. */
 static void gxp_join_corners(gx_body *body, uint32_t p, uint32_t q, uint32_t a, uint32_t b) {
-    const uint32_t ep = body->faces.data[p], eq = body->faces.data[q];
+    const uint32_t ep = body->skin.outer_faces.data[p], eq = body->skin.outer_faces.data[q];
     uint32_t *group = body->skin.groups.data;
     double m[3], n[3];
     gxp_outer_normal(body, ep / 4, ep % 4, m);
@@ -5927,66 +5337,65 @@ static void gxp_join_corners(gx_body *body, uint32_t p, uint32_t q, uint32_t a, 
               4 * q + (uint32_t)gxp_local_node(body, eq / 4, b));
 }
 
-/* Finds for each mesh edge the two outer faces that meet there, and joins them. body->list: of each edge, the first
- * face and how many. */
+/* Finds the two outer faces at each mesh edge and joins their corners. */
 static gx_result gxp_join_faces(gx_body *body) {
     const gxb_complex *cx = body->complex;
     uint32_t i, j, *first, *second;
-    gx_result result = gxp_set_words(body, &body->list, 2 * (size_t)cx->mesh_edge_count);
+    gx_result result = gxp_start_words(body, &body->skin.edge_faces, 2 * (size_t)gxb_complex_mesh_edge_count(cx));
     if (result != GX_OK) return result;
-    first = body->list.data;
-    second = first + cx->mesh_edge_count;
-    memset(first, 0xff, 2 * (size_t)cx->mesh_edge_count * sizeof *first);
-    for (i = 0; i < body->faces.count; i++)
+    first = body->skin.edge_faces.data;
+    second = first + gxb_complex_mesh_edge_count(cx);
+    memset(first, 0xff, 2 * (size_t)gxb_complex_mesh_edge_count(cx) * sizeof *first);
+    for (i = 0; i < body->skin.outer_faces.count; i++)
         for (j = 0; j < 6; j++) {
-            const uint32_t e = body->faces.data[i] / 4, k = body->faces.data[i] % 4,
-                           edge = cx->element_edges[6 * e + j];
+            const uint32_t e = body->skin.outer_faces.data[i] / 4, k = body->skin.outer_faces.data[i] % 4,
+                           edge = gxb_complex_element_edges(cx, e)[j];
             const uint32_t a = gxp_edge_nodes[j][0], b = gxp_edge_nodes[j][1];
-            if (a == k || b == k || body->edge_pinched[edge]) continue;
+            if (a == k || b == k || body->mesh.edge_pinched[edge]) continue;
             if (first[edge] == GXP_NONE)
                 first[edge] = i;
             else if (second[edge] == GXP_NONE) {
                 second[edge] = i;
-                gxp_join_corners(body, first[edge], i, cx->elements[4 * e + a], cx->elements[4 * e + b]);
+                gxp_join_corners(body, first[edge], i, gxb_complex_element_nodes(cx, e)[a],
+                                 gxb_complex_element_nodes(cx, e)[b]);
             }
         }
     return GX_OK;
 }
 
-/* Groups of corners of outer faces: s->groups has for each outer face's four nodes the number of its group (the fourth
-   is not used); s->group_normals their normals at rest, weighted by area, not of length 1. */
+/* Groups the corners of outer faces. skin.groups: the group of each of the four nodes of an outer face (that of node k
+   is not used); skin.group_normals: the normal of each at rest, weighted by area, not of length 1. */
 static gx_result gxp_group_corners(gx_body *body) {
     gxp_skin *s = &body->skin;
     uint32_t i, k;
     int j;
     gx_result result = gxp_list_outer_faces(body);
-    const uint32_t count = 4 * body->faces.count;
-    if (result == GX_OK) result = gxp_set_words(body, &s->groups, count);
+    const uint32_t count = 4 * body->skin.outer_faces.count;
+    if (result == GX_OK) result = gxp_start_words(body, &s->groups, count);
     if (result == GX_OK)
-        result =
-            gxp_reserve(&body->allocator, &s->group_normals, 3 * sizeof(double), 0, &s->group_normal_capacity, count);
+        result = gxp_reserve(&body->config.allocator, &s->group_normals, 3 * sizeof(double), 0,
+                             &s->group_normal_capacity, count);
     if (result != GX_OK) return result;
     for (i = 0; i < count; i++) s->groups.data[i] = i;
     if (s->desc.crease_angle > 0) result = gxp_join_faces(body);
     if (result != GX_OK) return result;
     for (i = 0; i < count; i++) s->groups.data[i] = gxp_find(s->groups.data, i);
     memset(s->group_normals, 0, 3 * (size_t)count * sizeof(double));
-    for (i = 0; i < body->faces.count; i++) {
+    for (i = 0; i < body->skin.outer_faces.count; i++) {
         double n[3];
-        gxp_outer_normal(body, body->faces.data[i] / 4, body->faces.data[i] % 4, n);
+        gxp_outer_normal(body, body->skin.outer_faces.data[i] / 4, body->skin.outer_faces.data[i] % 4, n);
         for (k = 0; k < 4; k++)
             for (j = 0; j < 3; j++) s->group_normals[3 * (size_t)s->groups.data[4 * i + k] + (size_t)j] += n[j];
     }
     return GX_OK;
 }
 
-/* --- the surfaces that cut the body, by the labels of their triangles --- */
-
+/* The surface of a cut triangle */
 static uint32_t gxp_label_surface(const gx_body *body, uint32_t label) {
-    uint32_t low = 0, high = body->surface_count;
+    uint32_t low = 0, high = body->cuts.surface_count;
     while (high - low > 1) {
         const uint32_t middle = low + (high - low) / 2;
-        if (body->surfaces[middle].label <= label)
+        if (body->cuts.surfaces[middle].label <= label)
             low = middle;
         else
             high = middle;
@@ -5994,23 +5403,27 @@ static uint32_t gxp_label_surface(const gx_body *body, uint32_t label) {
     return low;
 }
 
-/* The affine map to the texture of a cut triangle, NULL if its surface has none */
+/* The affine map to the texture of a cut triangle, or NULL if its surface has none */
 static const double *gxp_label_map(const gx_body *body, uint32_t label) {
     uint32_t surface;
     if (label == GXP_NONE) return NULL;
     surface = gxp_label_surface(body, label);
-    if (body->surfaces[surface].map == GXP_NONE) return NULL;
-    return body->maps + 8 * ((size_t)body->surfaces[surface].map + label - body->surfaces[surface].label);
+    if (body->cuts.surfaces[surface].map == GXP_NONE) return NULL;
+    return body->cuts.maps +
+           8 * ((size_t)body->cuts.surfaces[surface].map + label - body->cuts.surfaces[surface].label);
 }
 
-/* --- slots: where normals of the deformed surface are summed. Outer ones by copy and group, those of cut faces by
- * vertex --- */
+/* >>vertices: the skin: slots and vertices ------------------------------------------------------------------------- */
+/* A slot sums the normals of the deformed surface: outer ones by copy and group, those of cut faces by vertex. Vertices
+   are found by a key that needs no arithmetic. They stand without gaps: the last one takes the place of one that goes.
+ */
 
+/* Empties the buckets; there are at least as many as items. */
 static gx_result gxp_rehash(gx_body *body, gxp_words *buckets, uint32_t items) {
     uint32_t size = 64;
     gx_result result;
     while (size < items) size *= 2;
-    result = gxp_set_words(body, buckets, size);
+    result = gxp_start_words(body, buckets, size);
     if (result == GX_OK) {
         buckets->count = size;
         memset(buckets->data, 0xff, size * sizeof *buckets->data);
@@ -6022,12 +5435,13 @@ static uint32_t *gxp_slot_bucket(gxp_skin *s, uint32_t copy, uint32_t group) {
     return &s->slot_buckets.data[gxp_mix((uint64_t)copy << 32 | group) & (s->slot_buckets.count - 1)];
 }
 
-/* Room for one slot more; the buckets grow with the slots. */
+/* Room for one more slot; the buckets grow with the slots. */
 static gx_result gxp_slot_room(gx_body *body) {
     gxp_skin *s = &body->skin;
     const uint32_t before = s->slot_capacity;
     uint32_t i;
-    gx_result result = gxp_reserve(&body->allocator, &s->slots, sizeof *s->slots, s->slot_count, &s->slot_capacity, 1);
+    gx_result result =
+        gxp_reserve(&body->config.allocator, &s->slots, sizeof *s->slots, s->slot_count, &s->slot_capacity, 1);
     if (result != GX_OK || (s->slot_capacity == before && s->slot_buckets.count > 0)) return result;
     result = gxp_rehash(body, &s->slot_buckets, s->slot_capacity);
     for (i = 0; i < s->slot_count && result == GX_OK; i++) {
@@ -6039,6 +5453,7 @@ static gx_result gxp_slot_room(gx_body *body) {
     return result;
 }
 
+/* The slot of a copy and a group */
 static gx_result gxp_outer_slot(gx_body *body, uint32_t copy, uint32_t group, uint32_t *slot) {
     gxp_skin *s = &body->skin;
     gx_result result = gxp_slot_room(body);
@@ -6058,7 +5473,7 @@ static gx_result gxp_outer_slot(gx_body *body, uint32_t copy, uint32_t group, ui
     return GX_OK;
 }
 
-/* A slot that belongs to one vertex: a free one, or a new one */
+/* A slot for one vertex: a free one or a new one */
 static gx_result gxp_own_slot(gx_body *body, uint32_t *slot) {
     gxp_skin *s = &body->skin;
     gx_result result = GX_OK;
@@ -6074,9 +5489,7 @@ static gx_result gxp_own_slot(gx_body *body, uint32_t *slot) {
     return GX_OK;
 }
 
-/* --- vertices --- */
-
-/* A facet that is shown, or rather its part in a leaf's cell */
+/* A facet that is shown, as seen from one cell */
 typedef struct gxp_skin_face {
     uint32_t element;
     const uint32_t *copies; /* the cell's */
@@ -6096,18 +5509,14 @@ static uint32_t *gxp_vertex_bucket(gxp_skin *s, const gxp_skin_key *key) {
     return &s->vertex_buckets.data[h & (s->vertex_buckets.count - 1)];
 }
 
+/* Room for one more vertex; the buckets grow with the vertices. */
 static gx_result gxp_vertex_room(gx_body *body) {
     gxp_skin *s = &body->skin;
-    const uint32_t before = s->vertex_capacity;
-    void *arrays[8];
-    size_t items[8];
+    const uint32_t before = s->vertex_capacity[0];
     uint32_t i;
-    gx_result result;
-    gxp_vertex_columns(s, arrays, items);
-    result = gxp_reserve_columns(&body->allocator, arrays, items, GXP_VERTEX_COLUMNS, s->vertex_count,
-                                 &s->vertex_capacity, 1);
-    if (result != GX_OK || (s->vertex_capacity == before && s->vertex_buckets.count > 0)) return result;
-    result = gxp_rehash(body, &s->vertex_buckets, s->vertex_capacity);
+    gx_result result = gxp_grow_rows(body, GXP_SKIN_VERTICES, 1);
+    if (result != GX_OK || (s->vertex_capacity[0] == before && s->vertex_buckets.count > 0)) return result;
+    result = gxp_rehash(body, &s->vertex_buckets, s->vertex_capacity[0]);
     for (i = 0; i < s->vertex_count && result == GX_OK; i++) {
         uint32_t *bucket = gxp_vertex_bucket(s, &s->vertices[i].key);
         s->vertices[i].next = *bucket;
@@ -6116,7 +5525,7 @@ static gx_result gxp_vertex_room(gx_body *body) {
     return result;
 }
 
-/* What a point of the face is looked up by, known without arithmetic. */
+/* The key of a point of the face; it takes no arithmetic. */
 static void gxp_make_key(const gx_body *body, const gxp_skin_face *face, uint32_t point, gxp_skin_key *key) {
     const unsigned support = gxb_complex_support(body->complex, point, face->element);
     uint32_t i, j, n = 0;
@@ -6132,7 +5541,7 @@ static void gxp_make_key(const gx_body *body, const gxp_skin_face *face, uint32_
     }
 }
 
-/* Copies, weights and slots of a point, those of weight 0 last. */
+/* Copies, weights and slots of a point, those of weight 0 last */
 static void gxp_weigh_point(const gxp_skin_face *face, const double lambda[4], uint32_t *copies, double *weights,
                             uint32_t *slots) {
     uint32_t k, n = 0;
@@ -6149,21 +5558,21 @@ static void gxp_weigh_point(const gxp_skin_face *face, const double lambda[4], u
     }
 }
 
-/* Outside by barycentric interpolation, on cut faces by the cut triangle's map. */
+/* The texture of a vertex: interpolated on the outer surface, by the map of the cut triangle on faces of a cut */
 static void gxp_set_texture(gx_body *body, uint32_t vertex, const gxp_skin_face *face, const double lambda[4]) {
     const double *x = body->skin.rest + 3 * (size_t)vertex, *map = gxp_label_map(body, face->label);
-    const uint32_t *node = body->complex->elements + 4 * (size_t)face->element;
+    const uint32_t *node = gxb_complex_element_nodes(body->complex, face->element);
     int i, k;
     for (i = 0; i < 2; i++) {
         double t = map != NULL ? map[4 * i + 3] : 0;
         for (k = 0; k < 3 && map != NULL; k++) t += map[4 * i + k] * (x[k] - gxb_complex_origin(body->complex)[k]);
-        for (k = 0; k < 4 && face->outer && body->texture != NULL; k++)
-            t += lambda[k] * (double)body->texture[2 * (size_t)node[k] + (size_t)i];
+        for (k = 0; k < 4 && face->outer && body->mesh.texture != NULL; k++)
+            t += lambda[k] * (double)body->mesh.texture[2 * (size_t)node[k] + (size_t)i];
         body->skin.texture[2 * (size_t)vertex + (size_t)i] = (float)t;
     }
 }
 
-/* A new vertex for a key */
+/* Appends a vertex with this key; there is room. */
 static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const gxp_skin_key *key, uint32_t *vertex) {
     gxp_skin *s = &body->skin;
     const uint32_t i = s->vertex_count;
@@ -6175,13 +5584,13 @@ static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const 
     gx_result result = face->outer ? GX_OK : gxp_own_slot(body, &own);
     if (result == GX_OK) result = gxp_add_boundary_point(body, face->element, key->point, &slot);
     if (result != GX_OK) return result;
-    lambda = body->lambdas + 4 * (size_t)slot;
+    lambda = body->scratch.boundary.lambdas + 4 * (size_t)slot;
     gxp_weigh_point(face, lambda, s->copies + 4 * (size_t)i, s->weights + 4 * (size_t)i, v->slots);
     for (n = 0; n < 4 && !face->outer; n++) v->slots[n] = own;
     v->key = *key;
     v->corner = GXP_NONE;
     v->outer = face->outer;
-    v->fresh = 1;
+    v->placed = 1;
     v->noted = 0;
     v->next = *gxp_vertex_bucket(s, key);
     *gxp_vertex_bucket(s, key) = i;
@@ -6190,15 +5599,16 @@ static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const 
         rest[k] = 0;
         for (n = 0; n < 4; n++)
             rest[k] += s->weights[4 * (size_t)i + n] *
-                       body->positions[3 * (size_t)body->copy_node[s->copies[4 * (size_t)i + n]] + (size_t)k];
+                       body->mesh.positions[3 * (size_t)body->copies.node[s->copies[4 * (size_t)i + n]] + (size_t)k];
     }
-    memset(s->normal + 3 * (size_t)i, 0, 3 * sizeof *s->normal); /* should the next not find one */
+    memset(s->normal + 3 * (size_t)i, 0, 3 * sizeof *s->normal); /* in case none is found next */
     gxp_set_normal(s->normal + 3 * (size_t)i, face->normal);
     gxp_set_texture(body, i, face, lambda);
     *vertex = s->vertex_count++;
     return GX_OK;
 }
 
+/* Notes a vertex that may have changed. */
 static gx_result gxp_note_vertex(gx_body *body, uint32_t vertex) {
     gxp_skin_vertex *v = &body->skin.vertices[vertex];
     if (v->noted) return GX_OK;
@@ -6206,26 +5616,26 @@ static gx_result gxp_note_vertex(gx_body *body, uint32_t vertex) {
     return gxp_push(body, &body->skin.changed[0], vertex);
 }
 
+/* Finds or appends the vertex of a point. */
 static gx_result gxp_find_vertex(gx_body *body, const gxp_skin_face *face, uint32_t point, uint32_t *vertex) {
     gxp_skin *s = &body->skin;
-    gx_result result = gxp_vertex_room(body);
     gxp_skin_key key;
-    if (result != GX_OK) return result;
+    gx_result result;
     gxp_make_key(body, face, point, &key);
-    for (*vertex = *gxp_vertex_bucket(s, &key); *vertex != GXP_NONE; *vertex = s->vertices[*vertex].next)
+    *vertex = s->vertex_buckets.count > 0 ? *gxp_vertex_bucket(s, &key) : GXP_NONE;
+    for (; *vertex != GXP_NONE; *vertex = s->vertices[*vertex].next)
         if (memcmp(&s->vertices[*vertex].key, &key, sizeof key) == 0) return gxp_note_vertex(body, *vertex);
-    result = gxp_add_vertex(body, face, &key, vertex);
+    result = gxp_vertex_room(body);
+    if (result == GX_OK) result = gxp_add_vertex(body, face, &key, vertex);
     return result == GX_OK ? gxp_note_vertex(body, *vertex) : result;
 }
 
-/* Takes a vertex without triangles away. */
+/* Removes a vertex without triangles. The last one takes its place. */
 static gx_result gxp_drop_vertex(gx_body *body, uint32_t vertex) {
     gxp_skin *s = &body->skin;
     const uint32_t last = --s->vertex_count;
     uint32_t *link, corner;
     gx_result result = GX_OK;
-    void *arrays[8];
-    size_t items[8];
     for (link = gxp_vertex_bucket(s, &s->vertices[vertex].key); *link != vertex; link = &s->vertices[*link].next) {}
     *link = s->vertices[vertex].next;
     if (!s->vertices[vertex].outer) {
@@ -6239,24 +5649,16 @@ static gx_result gxp_drop_vertex(gx_body *body, uint32_t vertex) {
         s->triangles[corner] = vertex;
         if (result == GX_OK) result = gxp_push(body, &s->changed[1], corner / 3);
     }
-    gxp_vertex_columns(s, arrays, items);
-    gxp_move_column_item(arrays, items, GXP_VERTEX_COLUMNS, last, vertex);
-    s->vertices[vertex].fresh = 1;
+    gxp_copy_row(body, GXP_SKIN_VERTICES, last, vertex);
+    s->vertices[vertex].placed = 1;
     return result;
 }
 
-/* --- triangles --- */
+/* >>faces: the skin: triangles ------------------------------------------------------------------------------------- */
+/* In: an element. Out: the triangles that it shows, of outer faces and of both sides of walls. Triangles are listed by
+   element and stand without gaps. Facets are divided into triangles with area, so that each has a normal. */
 
-static gx_result gxp_triangle_room(gx_body *body) {
-    gxp_skin *s = &body->skin;
-    void *arrays[8];
-    size_t items[8];
-    gxp_triangle_columns(s, arrays, items);
-    return gxp_reserve_columns(&body->allocator, arrays, items, GXP_TRIANGLE_COLUMNS, s->triangle_count,
-                               &s->triangle_capacity, 1);
-}
-
-/* Hooks the triangle's corners to its vertices and itself to its element. */
+/* Adds the triangle to the lists of its vertices and of its element. */
 static void gxp_link_triangle(gxp_skin *s, uint32_t t) {
     gxp_skin_links *own = &s->links[t];
     uint32_t k;
@@ -6291,12 +5693,10 @@ static void gxp_unlink_triangle(gxp_skin *s, uint32_t t) {
         s->first.data[s->element[t]] = own->next;
 }
 
-/* Takes a triangle away; the last one takes its place. */
+/* Removes a triangle. The last one takes its place. */
 static gx_result gxp_drop_triangle(gx_body *body, uint32_t t) {
     gxp_skin *s = &body->skin;
     const uint32_t last = s->triangle_count - 1;
-    void *arrays[8];
-    size_t items[8];
     uint32_t k;
     gx_result result = gxp_push(body, &s->changed[1], t);
     for (k = 0; k < 3 && result == GX_OK; k++) result = gxp_note_vertex(body, s->triangles[3 * t + k]);
@@ -6305,8 +5705,7 @@ static gx_result gxp_drop_triangle(gx_body *body, uint32_t t) {
     s->triangle_count--;
     if (t == last) return GX_OK;
     gxp_unlink_triangle(s, last);
-    gxp_triangle_columns(s, arrays, items);
-    gxp_move_column_item(arrays, items, GXP_TRIANGLE_COLUMNS, last, t);
+    gxp_copy_row(body, GXP_SKIN_TRIANGLES, last, t);
     gxp_link_triangle(s, t);
     return GX_OK;
 }
@@ -6315,14 +5714,14 @@ static gx_result gxp_add_skin_triangle(gx_body *body, const gxp_skin_face *face,
     gxp_skin *s = &body->skin;
     const uint32_t t = s->triangle_count;
     uint32_t k, j, *corner;
-    gx_result result = gxp_triangle_room(body);
+    gx_result result = gxp_grow_rows(body, GXP_SKIN_TRIANGLES, 1);
     if (result == GX_OK) result = gxp_push(body, &s->changed[1], t);
     if (result != GX_OK) return result;
     corner = s->triangles + 3 * (size_t)t;
     for (k = 0; k < 3; k++) corner[k] = vertex[inward ? 2 - k : k];
     s->triangle_count++;
     s->element[t] = face->element;
-    s->material[t] = body->element_materials[face->element];
+    s->material[t] = body->mesh.element_materials[face->element];
     s->surface[t] = face->surface;
     memset(s->links[t].normal, 0, sizeof s->links[t].normal);
     gxp_set_normal(s->links[t].normal, face->normal);
@@ -6333,10 +5732,7 @@ static gx_result gxp_add_skin_triangle(gx_body *body, const gxp_skin_face *face,
     return GX_OK;
 }
 
-/* --- facets as triangles with area, so that they have normals: a facet's corners may stand in line with others --- */
-
-/* May corner i be cut off the polygon of complex points, which has area? So must its triangle have, and what remains.
- */
+/* May corner i be cut off the polygon, which has area? Then its triangle has area, and so has the rest. */
 static int gxp_is_ear(gx_body *body, const uint32_t *p, uint32_t n, uint32_t i, uint32_t plane) {
     const uint32_t before = p[(i + n - 1) % n], after = p[(i + 1) % n];
     uint32_t j;
@@ -6347,25 +5743,27 @@ static int gxp_is_ear(gx_body *body, const uint32_t *p, uint32_t n, uint32_t i, 
     return 0;
 }
 
-/* Adds a facet as triangles, outward from the leaf: ears are cut off its convex polygon, whose points stand in
-   body->faces, their vertices in body->queue. */
+/* Adds a facet as triangles, outward from the leaf, by cutting ears off its convex polygon. Its corners may stand in
+   line: only triangles with area have normals. */
 static gx_result gxp_add_skin_facet(gx_body *body, const gxp_skin_face *face, uint32_t facet, uint32_t leaf) {
     gxb_complex *cx = body->complex;
-    const int inward = cx->facets[facet].leaf[0] == leaf;
+    gxp_words *points = &body->skin.corner_points, *vertices = &body->skin.corner_vertices;
+    const int inward = gxb_complex_facet(cx, facet)->leaf[0] == leaf;
     uint32_t *p, *v, e0, en, i, n, vertex = GXP_NONE;
     gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
-    body->faces.count = body->queue.count = 0;
+    points->count = vertices->count = 0;
     for (i = 0; i < en && result == GX_OK; i++) {
-        const uint32_t point = cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1];
+        const uint32_t point = gxb_complex_edge_start(cx, gxp_item(cx, e0 + i));
         result = gxp_find_vertex(body, face, point, &vertex);
-        if (result == GX_OK) result = gxp_push(body, &body->faces, point);
-        if (result == GX_OK) result = gxp_push(body, &body->queue, vertex);
+        if (result == GX_OK) result = gxp_push(body, points, point);
+        if (result == GX_OK) result = gxp_push(body, vertices, vertex);
     }
-    p = body->faces.data;
-    v = body->queue.data;
-    for (n = body->faces.count, i = 0; n >= 3 && result == GX_OK; n--) {
+    p = points->data;
+    v = vertices->data;
+    for (n = points->count, i = 0; n >= 3 && result == GX_OK; n--) {
         uint32_t triangle[3], tries = 0;
-        for (i %= n; tries < n && !gxp_is_ear(body, p, n, i, cx->facets[facet].plane); i = (i + 1) % n) tries++;
+        for (i %= n; tries < n && !gxp_is_ear(body, p, n, i, gxb_complex_facet(cx, facet)->plane); i = (i + 1) % n)
+            tries++;
         triangle[0] = v[(i + n - 1) % n];
         triangle[1] = v[i];
         triangle[2] = v[(i + 1) % n];
@@ -6377,16 +5775,14 @@ static gx_result gxp_add_skin_facet(gx_body *body, const gxp_skin_face *face, ui
     return result;
 }
 
-/* --- what an element shows --- */
-
-/* Do two cells move apart at a common facet? In one element where any copy differs, else where a shared node's copies
- * differ. */
+/* Do two cells move apart at a common facet? They do if any copy differs within one element, or if a shared node's
+   copies differ. */
 static int gxp_cells_part(const gx_body *body, uint32_t a, uint32_t b) {
-    const gxp_cell *p = &body->cells[a], *q = &body->cells[b];
+    const gxp_cell *p = &body->cells.data[a], *q = &body->cells.data[b];
     uint32_t k;
     if (p->element == q->element) return memcmp(p->copies, q->copies, sizeof p->copies) != 0;
     for (k = 0; k < 4; k++) {
-        const int j = gxp_local_node(body, q->element, body->complex->elements[4 * p->element + k]);
+        const int j = gxp_local_node(body, q->element, gxb_complex_element_nodes(body->complex, p->element)[k]);
         if (j >= 0 && p->copies[k] != q->copies[j]) return 1;
     }
     return 0;
@@ -6394,16 +5790,16 @@ static int gxp_cells_part(const gx_body *body, uint32_t a, uint32_t b) {
 
 /* -1: the facet is not seen from the leaf; 0: outer surface; 1: face of a cut */
 static int gxp_visible(const gx_body *body, uint32_t facet, uint32_t leaf) {
-    const gxb_facet *f = &body->complex->facets[facet];
+    const gxb_facet *f = gxb_complex_facet(body->complex, facet);
     const uint32_t other = f->leaf[f->leaf[0] == leaf];
     if (other == GXB_NONE) return 0;
-    if (body->complex->leaves[other].removed) return 1;
-    return f->wall && gxp_cells_part(body, body->leaves[leaf].cell, body->leaves[other].cell) ? 1 : -1;
+    if (gxb_complex_leaf(body->complex, other)->removed) return 1;
+    return f->wall && gxp_cells_part(body, body->leaves.data[leaf].cell, body->leaves.data[other].cell) ? 1 : -1;
 }
 
-/* The outer face opposite to the element's node k, as a cell has it */
+/* The outer face opposite to the element's node k, as the cell shows it */
 static gx_result gxp_outer_face(gx_body *body, uint32_t k, gxp_skin_face *face) {
-    const uint32_t number = body->skin.boundary.data[body->complex->element_faces[4 * face->element + k]];
+    const uint32_t number = body->skin.boundary.data[gxb_complex_element_faces(body->complex, face->element)[k]];
     uint32_t j;
     gx_result result = GX_OK;
     face->outer = 1;
@@ -6419,17 +5815,17 @@ static gx_result gxp_outer_face(gx_body *body, uint32_t k, gxp_skin_face *face) 
     return result;
 }
 
-/* The face of a cut that the leaf has at the facet. Of several triangles that cover it the first counts. */
+/* The face of a cut that the leaf shows at the facet. Of several triangles that cover it the first one counts. */
 static void gxp_cut_face(const gx_body *body, uint32_t facet, uint32_t leaf, gxp_skin_face *face) {
     const gxb_complex *cx = body->complex;
-    const gxb_facet *f = &cx->facets[facet];
+    const gxb_facet *f = gxb_complex_facet(cx, facet);
     const int front = f->leaf[0] == leaf;
     uint32_t l, first = GXP_NONE;
     int k;
-    for (l = f->labels; l != GXB_NONE; l = cx->labels[l].next)
-        if (first == GXP_NONE || cx->labels[l].triangle < cx->labels[first].triangle) first = l;
+    for (l = f->labels; l != GXB_NONE; l = gxb_complex_label(cx, l)->next)
+        if (first == GXP_NONE || gxb_complex_label(cx, l)->triangle < gxb_complex_label(cx, first)->triangle) first = l;
     face->outer = 0;
-    face->label = first == GXP_NONE ? GXP_NONE : cx->labels[first].triangle;
+    face->label = first == GXP_NONE ? GXP_NONE : gxb_complex_label(cx, first)->triangle;
     face->surface = first == GXP_NONE ? GX_SKIN_SEVERED : 1 + gxp_label_surface(body, face->label);
     memset(face->slots, 0xff, sizeof face->slots);
     for (k = 0; k < 3; k++)
@@ -6437,22 +5833,23 @@ static void gxp_cut_face(const gx_body *body, uint32_t facet, uint32_t leaf, gxp
             front ? -gxb_complex_plane(cx, face->plane)->filter.n[k] : gxb_complex_plane(cx, face->plane)->filter.n[k];
     face->group[0] = face->surface;
     if (body->skin.desc.smooth_cuts && first != GXP_NONE)
-        face->group[1] = (uint32_t)(front ^ (cx->labels[first].orientation < 0));
+        face->group[1] = (uint32_t)(front ^ (gxb_complex_label(cx, first)->orientation < 0));
     else
         face->group[1] = 2 + 2 * face->plane + (uint32_t)front;
 }
 
+/* Adds all that a leaf shows. */
 static gx_result gxp_skin_leaf(gx_body *body, uint32_t leaf, gxp_skin_face *face) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i, k;
     gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
-        const uint32_t facet = cx->pool[first + i];
+        const uint32_t facet = gxp_item(cx, first + i);
         const int kind = gxp_visible(body, facet, leaf);
         if (kind < 0) continue;
-        face->plane = cx->facets[facet].plane;
+        face->plane = gxb_complex_facet(cx, facet)->plane;
         if (kind == 0) {
-            for (k = 0; cx->element_faces[4 * face->element + k] != cx->facets[facet].face;) k++;
+            for (k = 0; gxb_complex_element_faces(cx, face->element)[k] != gxb_complex_facet(cx, facet)->face;) k++;
             result = gxp_outer_face(body, k, face);
         } else
             gxp_cut_face(body, facet, leaf, face);
@@ -6461,7 +5858,7 @@ static gx_result gxp_skin_leaf(gx_body *body, uint32_t leaf, gxp_skin_face *face
     return result;
 }
 
-/* An element that no cut has touched shows its outer faces. */
+/* Adds the outer faces of an element that no cut has touched. */
 static gx_result gxp_skin_whole(gx_body *body, gxp_skin_face *face) {
     uint32_t k, j, vertex[3];
     gx_result result = GX_OK;
@@ -6470,36 +5867,36 @@ static gx_result gxp_skin_whole(gx_body *body, gxp_skin_face *face) {
         if (gxp_neighbour(body, face->element, k) != GXP_NONE) continue;
         result = gxp_outer_face(body, k, face);
         for (j = 0; j < 3 && result == GX_OK; j++)
-            result =
-                gxp_find_vertex(body, face, body->complex->elements[4 * face->element + gxp_outward[k][j]], &vertex[j]);
+            result = gxp_find_vertex(
+                body, face, gxb_complex_element_nodes(body->complex, face->element)[gxp_outward[k][j]], &vertex[j]);
         if (result == GX_OK) result = gxp_add_skin_triangle(body, face, vertex, 0);
     }
     return result;
 }
 
-/* Is the element's face k as the mesh has it: not divided, no wall, and the element behind it, if there is one, still
- * there? */
+/* Is the element's face k as in the mesh: undivided, no wall, and the element behind it kept? */
 static int gxp_face_is_whole(const gx_body *body, uint32_t element, uint32_t k) {
     const gxb_complex *cx = body->complex;
-    const uint32_t facet = cx->face_facet[cx->element_faces[4 * element + k]];
+    const uint32_t facet = gxb_complex_face_facet(cx, gxb_complex_element_faces(cx, element)[k]);
     const gxb_facet *f;
     uint32_t other;
     if (facet == GXB_NONE) return 1;
-    f = &cx->facets[facet];
+    f = gxb_complex_facet(cx, facet);
     other = f->leaf[f->leaf[0] == element];
-    return f->child == GXB_NONE && !f->wall && (other == GXB_NONE || !cx->leaves[other].removed);
+    return f->child == GXB_NONE && !f->wall && (other == GXB_NONE || !gxb_complex_leaf(cx, other)->removed);
 }
 
-/* Does it show its outer faces as the mesh has them, and nothing else? */
+/* Does the element show its outer faces as in the mesh, and nothing else? */
 static int gxp_is_untouched(const gx_body *body, uint32_t element) {
     const gxb_complex *cx = body->complex;
     uint32_t k;
-    if (body->cells[element].next != GXP_NONE || body->leaves[element].next != GXP_NONE || cx->leaves[element].removed)
+    if (body->cells.data[element].next != GXP_NONE || body->leaves.data[element].next != GXP_NONE ||
+        gxb_complex_leaf(cx, element)->removed)
         return 0;
     for (k = 0; k < 4; k++)
         if (!gxp_face_is_whole(body, element, k)) return 0;
     for (k = 0; k < 6; k++)
-        if (gxp_edge_is_divided(cx, cx->element_edges[6 * element + k])) return 0;
+        if (gxp_edge_is_divided(cx, gxb_complex_element_edges(cx, element)[k])) return 0;
     return 1;
 }
 
@@ -6510,33 +5907,72 @@ static int gxp_is_at_boundary(const gx_body *body, uint32_t element) {
     return 0;
 }
 
+/* Adds all that an element shows. */
 static gx_result gxp_skin_element(gx_body *body, uint32_t element) {
     const int untouched = gxp_is_untouched(body, element);
     gxp_skin_face face;
     uint32_t cell, leaf;
     gx_result result = GX_OK;
     if (untouched && !gxp_is_at_boundary(body, element)) return GX_OK;
-    gxp_clear_boundary(body, 1); /* each point's coordinates in the element are found once, for all faces it is in */
+    gxp_clear_boundary(body, 1); /* each point's coordinates are found once for all faces of the element */
     memset(&face, 0, sizeof face);
     face.element = element;
     if (!untouched) result = gxb_complex_open_element(body->complex, element);
-    for (cell = element; cell != GXP_NONE && result == GX_OK; cell = body->cells[cell].next) {
-        if (!body->cells[cell].kept) continue;
-        face.copies = body->cells[cell].copies;
+    for (cell = element; cell != GXP_NONE && result == GX_OK; cell = body->cells.data[cell].next) {
+        if (!body->cells.data[cell].kept) continue;
+        face.copies = body->cells.data[cell].copies;
         if (untouched)
             result = gxp_skin_whole(body, &face);
         else
-            for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
-                 leaf = body->leaves[leaf].next)
+            for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
+                 leaf = body->leaves.data[leaf].next)
                 result = gxp_skin_leaf(body, leaf, &face);
     }
     return result;
 }
 
-/* --- what has changed --- */
+/* >>skinning: the skin: updating and moving it --------------------------------------------------------------------- */
+/* In: the elements that cuts have touched. Out: the skin with these made anew, and the ranges that differ; its deformed
+   positions and normals. Touches the skin only. */
 
-/* At rest: outer ones from the uncut mesh's, others from the facets around, weighted by area: their own normals, since
-   a triangle's corners may be rounded to a line. */
+static gx_result gxp_spread_to(gx_body *body, uint32_t element) {
+    if (element == GXP_NONE || body->cells.stamp[element] == body->scratch.stamp) return GX_OK;
+    body->cells.stamp[element] = body->scratch.stamp;
+    return gxp_push(body, &body->skin.dirty, element);
+}
+
+/* Adds the elements that see a touched one: those across its faces, and those around its divided edges, which have a
+   further corner there. */
+static gx_result gxp_spread_touched(gx_body *body) {
+    const gxb_complex *cx = body->complex;
+    gxp_words *dirty = &body->skin.dirty;
+    uint32_t i, j, k, count;
+    gx_result result = GX_OK;
+    body->scratch.stamp++;
+    for (i = 0, count = 0; i < dirty->count; i++) {
+        if (body->cells.stamp[dirty->data[i]] == body->scratch.stamp) continue;
+        body->cells.stamp[dirty->data[i]] = body->scratch.stamp;
+        dirty->data[count++] = dirty->data[i];
+    }
+    dirty->count = count;
+    for (i = 0; i < count && result == GX_OK; i++) {
+        const uint32_t e = dirty->data[i];
+        for (k = 0; k < 4 && result == GX_OK; k++) result = gxp_spread_to(body, gxp_neighbour(body, e, k));
+        for (k = 0; k < 6; k++) {
+            const uint32_t a = gxb_complex_element_nodes(cx, e)[gxp_edge_nodes[k][0]],
+                           b = gxb_complex_element_nodes(cx, e)[gxp_edge_nodes[k][1]];
+            if (!gxp_edge_is_divided(cx, gxb_complex_element_edges(cx, e)[k])) continue;
+            for (j = body->mesh.node_start[a]; j < body->mesh.node_start[a + 1] && result == GX_OK; j++)
+                if (gxp_local_node(body, body->mesh.node_elements[j], b) >= 0)
+                    result = gxp_spread_to(body, body->mesh.node_elements[j]);
+        }
+    }
+    return result;
+}
+
+/* The normal of a vertex at rest. On the outer surface it is interpolated from the groups of the uncut mesh. On faces
+   of a cut it is the mean over the facets around, weighted by area; the facets' own normals are used, since the corners
+   of a triangle may be rounded to a line. */
 static void gxp_rest_normal(const gxp_skin *s, uint32_t vertex, float *normal) {
     double n[3] = {0, 0, 0}, a[3], unit[3];
     uint32_t corner, i;
@@ -6561,7 +5997,7 @@ static gx_result gxp_drop_lonely_vertices(gx_body *body) {
     uint32_t i;
     gx_result result = GX_OK;
     gxp_sort_unique(&s->changed[0]);
-    /* from the end, so that none of them takes another's place */
+    /* from the end, so that none takes the place of another */
     for (i = s->changed[0].count; i-- > 0 && result == GX_OK;) {
         const uint32_t vertex = s->changed[0].data[i];
         if (s->vertices[vertex].corner == GXP_NONE) result = gxp_drop_vertex(body, vertex);
@@ -6569,7 +6005,7 @@ static gx_result gxp_drop_lonely_vertices(gx_body *body) {
     return result;
 }
 
-/* Normals of the vertices around what was made anew; s->changed[0] keeps those that are other than they were. */
+/* Renews the normals of the noted vertices; skin.changed[0] keeps the vertices that differ from before. */
 static void gxp_renew_normals(gxp_skin *s) {
     uint32_t i, n = 0;
     for (i = 0; i < s->changed[0].count; i++) {
@@ -6578,15 +6014,15 @@ static void gxp_renew_normals(gxp_skin *s) {
         if (vertex >= s->vertex_count) continue;
         memcpy(normal, s->normal + 3 * (size_t)vertex, sizeof normal);
         gxp_rest_normal(s, vertex, normal);
-        if (s->vertices[vertex].fresh || memcmp(normal, s->normal + 3 * (size_t)vertex, sizeof normal) != 0)
+        if (s->vertices[vertex].placed || memcmp(normal, s->normal + 3 * (size_t)vertex, sizeof normal) != 0)
             s->changed[0].data[n++] = vertex;
         memcpy(s->normal + 3 * (size_t)vertex, normal, sizeof normal);
-        s->vertices[vertex].fresh = s->vertices[vertex].noted = 0;
+        s->vertices[vertex].placed = s->vertices[vertex].noted = 0;
     }
     s->changed[0].count = n;
 }
 
-/* The changed items as ranges */
+/* Turns the list of changed items into ranges. */
 static gx_result gxp_make_ranges(gx_body *body, int kind, uint32_t count) {
     gxp_skin *s = &body->skin;
     gxp_words *changed = &s->changed[kind];
@@ -6598,7 +6034,8 @@ static gx_result gxp_make_ranges(gx_body *body, int kind, uint32_t count) {
             s->ranges[kind][n - 1].count++;
             continue;
         }
-        result = gxp_reserve(&body->allocator, &s->ranges[kind], sizeof **s->ranges, n, &s->range_capacity[kind], 1);
+        result =
+            gxp_reserve(&body->config.allocator, &s->ranges[kind], sizeof **s->ranges, n, &s->range_capacity[kind], 1);
         if (result != GX_OK) break;
         s->ranges[kind][n].first = changed->data[i];
         s->ranges[kind][n++].count = 1;
@@ -6608,7 +6045,7 @@ static gx_result gxp_make_ranges(gx_body *body, int kind, uint32_t count) {
     return result;
 }
 
-/* An empty skin of another description, with every element to be made */
+/* Empties the skin and marks every element to be made. */
 static gx_result gxp_restart_skin(gx_body *body, const gx_skin_desc *desc) {
     gxp_skin *s = &body->skin;
     uint32_t e;
@@ -6618,14 +6055,15 @@ static gx_result gxp_restart_skin(gx_body *body, const gx_skin_desc *desc) {
     s->free_slot = GXP_NONE;
     s->changed[0].count = s->changed[1].count = s->vertex_buckets.count = s->slot_buckets.count = 0;
     result = gxp_group_corners(body);
-    if (result == GX_OK) result = gxp_set_words(body, &s->first, body->element_count);
-    if (result == GX_OK) result = gxp_set_words(body, &s->dirty, body->element_count);
+    if (result == GX_OK) result = gxp_start_words(body, &s->first, body->mesh.element_count);
+    if (result == GX_OK) result = gxp_start_words(body, &s->dirty, body->mesh.element_count);
     if (result != GX_OK) return result;
-    memset(s->first.data, 0xff, body->element_count * sizeof *s->first.data);
-    for (e = 0; e < body->element_count; e++) s->dirty.data[s->dirty.count++] = e;
+    memset(s->first.data, 0xff, body->mesh.element_count * sizeof *s->first.data);
+    for (e = 0; e < body->mesh.element_count; e++) s->dirty.data[s->dirty.count++] = e;
     return GX_OK;
 }
 
+/* Makes the dirty elements anew. */
 static gx_result gxp_remake_elements(gx_body *body) {
     gxp_skin *s = &body->skin;
     uint32_t i;
@@ -6641,18 +6079,19 @@ static gx_result gxp_remake_elements(gx_body *body) {
     return result;
 }
 
+/* Writes the fragment of each triangle. */
 static gx_result gxp_mark_fragments(gx_body *body) {
     gxp_skin *s = &body->skin;
     uint32_t t;
     const gx_result result = gxp_update_labels(body);
     for (t = 0; t < s->triangle_count && result == GX_OK; t++)
         s->fragment[t] =
-            body->fragment_number
-                .data[gxp_find(body->copy_fragment.data, s->copies[4 * (size_t)s->triangles[3 * (size_t)t]])];
+            body->view.fragment_number
+                .data[gxp_find(body->view.copy_fragment.data, s->copies[4 * (size_t)s->triangles[3 * (size_t)t]])];
     return result;
 }
 
-/* The skin after all cuts. Without memory it is left unmade: the next call makes all of it. */
+/* Brings the skin up to date. After an error it counts as unmade, so that the next call makes all of it. */
 static gx_result gxp_update_skin(gx_body *body, const gx_skin_desc *desc) {
     gxp_skin *s = &body->skin;
     const int all = !s->made || desc->crease_angle < s->desc.crease_angle ||
@@ -6666,10 +6105,11 @@ static gx_result gxp_update_skin(gx_body *body, const gx_skin_desc *desc) {
     if (result == GX_OK) result = gxp_make_ranges(body, 0, s->vertex_count);
     if (result == GX_OK) result = gxp_make_ranges(body, 1, s->triangle_count);
     if (result == GX_OK)
-        result = gxp_reserve(&body->allocator, &s->normals, 3 * sizeof(double), 0, &s->normal_capacity, s->slot_count);
+        result = gxp_reserve(&body->config.allocator, &s->normals, 3 * sizeof(double), 0, &s->normal_capacity,
+                             s->slot_count);
     if (result == GX_OK)
-        result =
-            gxp_reserve(&body->allocator, &s->positions, 3 * sizeof(double), 0, &s->position_capacity, s->vertex_count);
+        result = gxp_reserve(&body->config.allocator, &s->positions, 3 * sizeof(double), 0, &s->position_capacity,
+                             s->vertex_count);
     if (result == GX_OK) s->made = 1;
     return result;
 }
@@ -6693,7 +6133,7 @@ static void gxp_show_skin(const gx_body *body, gx_skin *skin) {
     skin->vertex_range_count = s->range_count[0];
     skin->triangle_ranges = s->ranges[1];
     skin->triangle_range_count = s->range_count[1];
-    skin->epoch = body->epoch;
+    skin->epoch = body->cuts.epoch;
 }
 
 GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc, gx_skin *skin) {
@@ -6709,8 +6149,6 @@ GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc, gx_ski
     return result;
 }
 
-/* --- the deformed skin --- */
-
 /* x = X + sum of weight u, in doubles */
 static void gxp_move_vertices(const gx_body *body, double *positions) {
     const gxp_skin *s = &body->skin;
@@ -6722,12 +6160,12 @@ static void gxp_move_vertices(const gx_body *body, double *positions) {
         double x[3];
         for (k = 0; k < 3; k++) x[k] = s->rest[3 * i + (size_t)k];
         for (n = 0; n < 4 && w[n] > 0; n++)
-            for (k = 0; k < 3; k++) x[k] += w[n] * body->displacement[3 * (size_t)copies[n] + (size_t)k];
+            for (k = 0; k < 3; k++) x[k] += w[n] * body->copies.displacement[3 * (size_t)copies[n] + (size_t)k];
         for (k = 0; k < 3; k++) positions[3 * i + (size_t)k] = x[k];
     }
 }
 
-/* Sums triangles' normals in their slots, then takes each vertex's from its slots. */
+/* Sums the normals of triangles in their slots, then interpolates those of vertices from their slots. */
 static void gxp_deformed_normals(gxp_skin *s, float *normals) {
     size_t i;
     int k, n;
@@ -6768,11 +6206,12 @@ GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3],
     return GX_OK;
 }
 
-/* --- rays --- */
+/* >>rays: picking -------------------------------------------------------------------------------------------------- */
+/* In: a ray. Out: where it first meets the deformed skin. Touches the skin's working positions. */
 
-/* The deformed vertices as the ray sees them: two coordinates across it (a shear along the axis it follows most), and
-   how far along it they lie, in lengths of direction. */
-static void gxp_look_along(const gx_body *body, const double origin[3], const double direction[3]) {
+/* Transforms the deformed vertices to the ray's coordinates: two across it, sheared along its largest component, and
+   the distance along it in lengths of direction. */
+static void gxp_shear_along(const gx_body *body, const double origin[3], const double direction[3]) {
     const gxp_skin *s = &body->skin;
     int axis = 0, k;
     size_t i;
@@ -6789,8 +6228,8 @@ static void gxp_look_along(const gx_body *body, const double origin[3], const do
     }
 }
 
-/* Does the ray pass through the triangle? Then share has the weights of its corners, and distance where. Signs are
-   exact, so that no ray slips through between triangles that share their corners. */
+/* Does the ray pass through the triangle? share: the weights of its corners at the point; distance: of the point. The
+   signs are exact, so that no ray slips through between triangles that share corners. */
 static int gxp_meet_triangle(const gxp_skin *s, const uint32_t *t, double share[3], double *distance) {
     static const double ray[2] = {0, 0};
     const double *p[3];
@@ -6807,7 +6246,7 @@ static int gxp_meet_triangle(const gxp_skin *s, const uint32_t *t, double share[
         share[k] = fabs(a[0] * b[1] - a[1] * b[0]);
         sum += share[k];
     }
-    if (positive == negative || !(sum > 0)) return 0; /* beside it, or the triangle is seen from its edge */
+    if (positive == negative || !(sum > 0)) return 0; /* the ray passes beside it or sees its edge */
     *distance = 0;
     for (k = 0; k < 3; k++) {
         share[k] /= sum;
@@ -6816,12 +6255,13 @@ static int gxp_meet_triangle(const gxp_skin *s, const uint32_t *t, double share[
     return *distance >= 0;
 }
 
+/* The copies of the triangle's corners with their weights, at most four in all: a triangle lies in one element. */
 static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double share[3], gx_hit *hit) {
     const gxp_skin *s = &body->skin;
     uint32_t i, k, n, count = 0;
     int j;
     hit->triangle = triangle;
-    hit->epoch = body->epoch;
+    hit->epoch = body->cuts.epoch;
     hit->fragment = s->fragment[triangle];
     hit->element = s->element[triangle];
     hit->surface = s->surface[triangle];
@@ -6838,7 +6278,7 @@ static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double sh
     for (j = 0; j < 3; j++) {
         hit->position[j] = hit->material[j];
         for (n = 0; n < 4; n++)
-            hit->position[j] += hit->weights[n] * body->displacement[3 * (size_t)hit->copies[n] + (size_t)j];
+            hit->position[j] += hit->weights[n] * body->copies.displacement[3 * (size_t)hit->copies[n] + (size_t)j];
     }
 }
 
@@ -6853,7 +6293,7 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
         if (!gxp_is_finite(origin[k]) || !gxp_is_finite(direction[k])) return GX_ERROR_NOT_FINITE;
     if (!(gxp_dot(direction, direction) > 0)) return GX_ERROR_ARGUMENT;
     s = &body->skin;
-    gxp_look_along(body, origin, direction);
+    gxp_shear_along(body, origin, direction);
     memset(hit, 0, sizeof *hit);
     for (t = 0; t < s->triangle_count; t++) {
         if (!gxp_meet_triangle(s, s->triangles + 3 * (size_t)t, share, &distance)) continue;
@@ -6869,90 +6309,337 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
     return GX_OK;
 }
 
-/* >>hashes --------------------------------------------------------------------------------------------------------- */
+/* >>create: create and destroy ------------------------------------------------------------------------------------- */
+/* In: a description. Out: a body with one cell for each element and one copy for each node that an element uses. After
+   an error what was made is destroyed again. */
+
+/* Coordinates are at most 2^GXP_REACH, the longest side is at least 2^-GXP_REACH. Masses of elements are 2^-GXP_WEIGHT
+   ... 2^GXP_WEIGHT: the inertia of 2^28 of them is below 2^940. */
+#define GXP_REACH  100
+#define GXP_WEIGHT 700
+
+/* *index: a node that is too far out. It stays SIZE_MAX if the body is too small. */
+static gx_result gxp_check_size(const gx_body_desc *desc, size_t *index) {
+    const double most = ldexp(1, GXP_REACH);
+    double longest = 0;
+    size_t i;
+    int k;
+    for (k = 0; k < 3; k++) {
+        double low = desc->positions[k], high = low;
+        for (i = 0; i < desc->node_count; i++) {
+            const double x = desc->positions[3 * i + (size_t)k];
+            if (fabs(x) > most) {
+                *index = i;
+                return GX_ERROR_RANGE;
+            }
+            if (x < low) low = x;
+            if (x > high) high = x;
+        }
+        if (high - low > longest) longest = high - low;
+    }
+    return longest < 1 / most ? GX_ERROR_RANGE : GX_OK;
+}
+
+/* An element of positive volume may have none in doubles. */
+static gx_result gxp_check_volume(const gx_body *body, uint32_t element, double volume) {
+    const double mass = volume * gxp_density(body, element);
+    if (volume <= 0 || gxp_rounds_inverted(body, element)) return GX_ERROR_FLAT;
+    return mass >= ldexp(1, -GXP_WEIGHT) && mass <= ldexp(1, GXP_WEIGHT) ? GX_OK : GX_ERROR_RANGE;
+}
+
+/* *bad: an element that is flat or out of range */
+static gx_result gxp_make_first_cells(gx_body *body, size_t *bad) {
+    gx_result result = GX_OK;
+    uint32_t e;
+    body->cells.count = body->leaves.count = body->mesh.element_count;
+    for (e = 0; e < body->mesh.element_count; e++) {
+        gxp_cell *cell = &body->cells.data[e];
+        memset(cell, 0, sizeof *cell);
+        cell->element = cell->first_leaf = e;
+        memcpy(cell->copies, gxb_complex_element_nodes(body->complex, e), sizeof cell->copies);
+        cell->next = GXP_NONE;
+        cell->kept = 1;
+        cell->volume = gxp_element_volume(body, e);
+        result = gxp_check_volume(body, e, cell->volume);
+        if (result != GX_OK) {
+            *bad = e;
+            return result;
+        }
+        gxi_tet_mass(cell->volume, gxp_density(body, e), cell->mass);
+        memset(&body->leaves.data[e], 0, sizeof body->leaves.data[e]);
+        body->leaves.data[e].cell = e;
+        body->leaves.data[e].next = GXP_NONE;
+    }
+    return GX_OK;
+}
+
+/* Copies are numbered over the nodes that elements use; others have none. */
+static void gxp_make_first_copies(gx_body *body) {
+    gxp_copies *copies = &body->copies;
+    uint32_t i, e;
+    int k;
+    copies->count = 0;
+    for (i = 0; i < body->mesh.node_count; i++) {
+        if (body->mesh.node_start[i] == body->mesh.node_start[i + 1]) continue;
+        for (e = body->mesh.node_start[i]; e < body->mesh.node_start[i + 1]; e++) {
+            k = gxp_local_node(body, body->mesh.node_elements[e], i);
+            body->cells.data[body->mesh.node_elements[e]].copies[k] = copies->count;
+        }
+        copies->node[copies->count++] = i;
+    }
+    memset(copies->displacement, 0, 3 * (size_t)copies->count * sizeof(double));
+    memset(copies->velocity, 0, 3 * (size_t)copies->count * sizeof(double));
+    memset(copies->rest_time, 0, copies->count * sizeof(double));
+    memset(copies->held, 0, copies->count);
+    memset(copies->label, 0, copies->count * sizeof *copies->label);
+    memset(copies->before, 0, copies->count * sizeof *copies->before);
+}
+
+/* Makes the arrays of fixed size and the first rows of those that grow. */
+static gx_result gxp_make_tables(gx_body *body, const gx_body_desc *desc) {
+    const size_t nodes = body->mesh.node_count;
+    gx_result result = gxp_make_rows(body, GXP_NODES, nodes + 1);
+    if (result == GX_OK) result = gxp_make_rows(body, GXP_ELEMENTS, (size_t)body->mesh.element_count + 1);
+    if (result == GX_OK) result = gxp_make_rows(body, GXP_EDGES, body->mesh.edge_count);
+    if (result == GX_OK) result = gxp_make_rows(body, GXP_MATERIALS, body->mesh.material_count);
+    if (result == GX_OK && desc->texture != NULL)
+        result = gxp_make_column(body, &gxp_node_columns[GXP_TEXTURE_COLUMN], nodes);
+    if (result == GX_OK) result = gxp_grow_rows(body, GXP_CELLS, body->mesh.element_count);
+    if (result == GX_OK) result = gxp_grow_rows(body, GXP_LEAVES, body->mesh.element_count);
+    return result == GX_OK ? gxp_grow_rows(body, GXP_COPIES, nodes) : result;
+}
+
+static gx_result gxp_create_solver(gx_body *body) {
+    gxs_solver_desc solver;
+    memset(&solver, 0, sizeof solver);
+    solver.allocator = body->config.allocator;
+    solver.jobs = body->config.jobs;
+    return gxs_solver_create(&solver, &body->solver);
+}
+
+static void gxp_fill_materials(gx_body *body, const gx_body_desc *desc) {
+    if (desc->materials != NULL)
+        memcpy(body->mesh.materials, desc->materials, body->mesh.material_count * sizeof *body->mesh.materials);
+    else {
+        body->mesh.materials->elastic.young = desc->young;
+        body->mesh.materials->elastic.poisson = desc->poisson;
+        body->mesh.materials->density = desc->density;
+    }
+    if (desc->materials != NULL && desc->element_materials != NULL)
+        memcpy(body->mesh.element_materials, desc->element_materials, body->mesh.element_count * sizeof(uint32_t));
+}
+
+static uint64_t gxp_hash_mesh(const gx_body *body) {
+    const uint64_t hash = gxp_hash_texture(
+        gxp_hash_doubles(gxp_mix(body->mesh.node_count), body->mesh.positions, 3 * (size_t)body->mesh.node_count),
+        body->mesh.texture, body->mesh.node_count);
+    return gxp_hash_doubles(gxp_hash_words(gxp_hash_words(hash, gxb_complex_element_nodes(body->complex, 0),
+                                                          4 * (size_t)body->mesh.element_count),
+                                           body->mesh.element_materials, body->mesh.element_count),
+                            &body->config.support_below, 1);
+}
+
+/* *index: the node or element to blame */
+static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc, size_t *index) {
+    gxp_mesh *mesh = &body->mesh;
+    gx_result result = gxp_check_size(desc, index);
+    if (result == GX_OK) result = gxp_make_tables(body, desc);
+    if (result == GX_OK) result = gxp_create_solver(body);
+    if (result != GX_OK) return result;
+    memcpy(mesh->positions, desc->positions, 3 * (size_t)mesh->node_count * sizeof(double));
+    gxp_fill_materials(body, desc);
+    if (mesh->texture != NULL) memcpy(mesh->texture, desc->texture, 2 * (size_t)mesh->node_count * sizeof(float));
+    gxp_list_node_elements(body);
+    result = gxp_find_pinched_nodes(body);
+    gxp_find_pinched_edges(body);
+    if (result == GX_OK) result = gxp_make_first_cells(body, index);
+    if (result != GX_OK) return result;
+    gxp_make_first_copies(body);
+    gxp_build_boxes(body);
+    body->view.stale = 1;
+    body->model.state = GXP_MODEL_STALE;
+    body->cuts.hash = gxp_hash_mesh(body);
+    return gxp_first_snapshot(body);
+}
+
+static gx_result gxp_check_material(double young, double poisson, double density) {
+    if (!gxp_is_finite(young) || !gxp_is_finite(poisson) || !gxp_is_finite(density)) return GX_ERROR_NOT_FINITE;
+    return young > 0 && density > 0 && poisson >= 0 && poisson < 0.5 ? GX_OK : GX_ERROR_ARGUMENT;
+}
+
+/* *index: the material or element to blame */
+static gx_result gxp_check_body_desc(const gx_body_desc *desc, size_t *index) {
+    gx_result result = GX_OK;
+    size_t i;
+    *index = SIZE_MAX;
+    if (!gxb_is_allocator(&desc->allocator)) return GX_ERROR_ARGUMENT;
+    if (!gxp_is_finite(desc->support_below)) return GX_ERROR_NOT_FINITE;
+    if (desc->support_below < 0 || desc->support_below >= 1) return GX_ERROR_ARGUMENT;
+    if (desc->materials == NULL) return gxp_check_material(desc->young, desc->poisson, desc->density);
+    if (desc->material_count == 0 || desc->material_count >= INT32_MAX)
+        return desc->material_count == 0 ? GX_ERROR_EMPTY : GX_ERROR_LIMIT;
+    for (i = 0; i < desc->material_count && result == GX_OK; i++) {
+        const gxs_material *m = &desc->materials[ *index = i].elastic;
+        result = gxp_check_material(m->young, m->poisson, desc->materials[i].density);
+        if (result == GX_OK && !gxp_is_finite(m->damping)) result = GX_ERROR_NOT_FINITE;
+        if (result == GX_OK && ((int)m->kind < 0 || m->kind > GXS_CUSTOM || m->damping < 0 ||
+                                (m->kind == GXS_CUSTOM && m->energy == NULL)))
+            result = GX_ERROR_ARGUMENT;
+    }
+    for (i = 0; i < desc->element_count && result == GX_OK && desc->element_materials != NULL; i++)
+        if (desc->element_materials[ *index = i] >= desc->material_count) result = GX_ERROR_INDEX;
+    return result;
+}
+
+/* Copies the caller's settings and puts defaults in the place of zeros. */
+static void gxp_set_config(gxp_config *config, const gx_body_desc *desc) {
+    config->allocator = desc->allocator;
+    config->jobs = desc->jobs;
+    config->clock = desc->clock;
+    config->clock_user = desc->clock_user;
+    config->support_below = desc->support_below;
+    config->follow_below = desc->support_below > 0 ? desc->support_below : GXP_SUPPORT;
+    config->speck_below = desc->support_below > 0 ? desc->support_below : GXP_SPECK;
+    config->speck_reach = desc->support_below > 0 ? 0 : GXP_SPECK_REACH;
+}
+
+GXFEM_API void gx_body_destroy(gx_body *body) {
+    gx_allocator a;
+    uint32_t t;
+    if (body == NULL) return;
+    a = body->config.allocator;
+    for (t = 0; t < GXP_TABLES; t++) gxp_release_columns(body, gxp_tables[t].columns, gxp_tables[t].column_count);
+    gxp_release_columns(body, gxp_lists, sizeof gxp_lists / sizeof *gxp_lists);
+    gxp_release_model(body);
+    gxs_solver_destroy(body->solver);
+    gxb_complex_destroy(body->complex);
+    gxp_release(&a, body, sizeof *body);
+}
+
+GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_failure *failure) {
+    gx_body *body;
+    gxb_mesh mesh;
+    gx_result result;
+    size_t index;
+    if (desc == NULL || out == NULL) return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
+    result = gxp_check_body_desc(desc, &index);
+    if (result != GX_OK) return gxp_fail(failure, result, index, SIZE_MAX);
+    body = (gx_body *)gxp_allocate(&desc->allocator, sizeof *body);
+    if (body == NULL) return gxp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX, SIZE_MAX);
+    memset(body, 0, sizeof *body);
+    gxp_set_config(&body->config, desc);
+    mesh.positions = desc->positions;
+    mesh.node_count = desc->node_count;
+    mesh.elements = desc->elements;
+    mesh.element_count = desc->element_count;
+    result = gxb_complex_create(&mesh, &desc->allocator, &body->complex, failure);
+    if (result != GX_OK) {
+        gx_body_destroy(body);
+        return result;
+    }
+    body->mesh.node_count = gxb_complex_node_count(body->complex);
+    body->mesh.element_count = gxb_complex_element_count(body->complex);
+    body->mesh.edge_count = gxb_complex_mesh_edge_count(body->complex);
+    body->mesh.material_count = desc->materials != NULL ? (uint32_t)desc->material_count : 1;
+    index = SIZE_MAX;
+    result = gxp_fill_body(body, desc, &index);
+    if (result != GX_OK) {
+        gx_body_destroy(body);
+        return gxp_fail(failure, result, index, SIZE_MAX);
+    }
+    *out = body;
+    return gxp_fail(failure, GX_OK, SIZE_MAX, SIZE_MAX);
+}
+
+/* >>hashes: of the topology, of the state -------------------------------------------------------------------------- */
+/* In: a body. Out: numbers that are equal where bodies are. The topology's does not depend on any order or rounding. */
 
 #define GXP_BESIDE_WALL 0xfffffff0u /* neighbour across a wall inside the element */
 #define GXP_ACROSS_WALL 0xfffffff1u /* neighbour across a wall on a face */
 
-/* Appends to pairs (face or kind, neighbour) for everything that a cell borders on. */
-static gx_result gxp_push_neighbours(gx_body *body, uint32_t cell) {
+/* Appends to pairs (face or kind, neighbour) for everything around a cell. */
+static gx_result gxp_push_neighbours(gx_body *body, uint32_t cell, gxp_keys *pairs) {
     gxb_complex *cx = body->complex;
-    const uint32_t element = body->cells[cell].element;
+    const uint32_t element = body->cells.data[cell].element;
     uint32_t leaf, first, count, i;
     gx_result result = gxb_complex_open_element(cx, element);
-    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next) {
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
+         leaf = body->leaves.data[leaf].next) {
         result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
         for (i = 0; i < count && result == GX_OK; i++) {
-            const gxb_facet *f = &cx->facets[cx->pool[first + i]];
+            const gxb_facet *f = gxb_complex_facet(cx, gxp_item(cx, first + i));
             const uint32_t other = f->leaf[f->leaf[0] == leaf];
-            if (!gxp_is_kept(body, other) || body->leaves[other].cell == cell) continue;
-            result = gxp_push_key(body, &body->pairs,
+            if (!gxp_is_kept(body, other) || body->leaves.data[other].cell == cell) continue;
+            result = gxp_push_key(body, pairs,
                                   f->face == GXB_NONE ? GXP_BESIDE_WALL
                                   : f->wall           ? GXP_ACROSS_WALL
                                                       : f->face,
-                                  body->leaves[other].cell);
+                                  body->leaves.data[other].cell);
         }
     }
     return result;
 }
 
-static uint64_t gxp_hash_neighbours(const gx_body *body, const uint64_t *name) {
+static uint64_t gxp_hash_neighbours(const gxp_keys *pairs, const uint64_t *name) {
     uint64_t sum = 0;
     uint32_t i;
-    for (i = 0; i < body->pairs.count; i++) {
-        const uint64_t pair = body->pairs.data[i];
-        if (i == 0 || pair != body->pairs.data[i - 1])
-            sum += gxp_mix(name[GXP_SECOND(pair)] ^ gxp_mix(GXP_FIRST(pair)));
+    for (i = 0; i < pairs->count; i++) {
+        const uint64_t pair = pairs->data[i];
+        if (i == 0 || pair != pairs->data[i - 1]) sum += gxp_mix(name[GXP_SECOND(pair)] ^ gxp_mix(GXP_FIRST(pair)));
     }
     return sum;
 }
 
-/* Which nodes of the element are in the cell: its first name. */
+/* The first name of a cell: which nodes of the element it contains */
 static gx_result gxp_first_name(gx_body *body, uint32_t cell, uint64_t *name) {
     uint32_t leaf, i, mask = 0;
     gx_result result = GX_OK;
-    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next) {
-        result = gxp_leaf_points(body, leaf);
-        for (i = 0; i < body->list.count; i++) {
-            const int k = gxp_local_node(body, body->cells[cell].element, body->list.data[i]);
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
+         leaf = body->leaves.data[leaf].next) {
+        result = gxp_collect_leaf_points(body, leaf);
+        for (i = 0; i < body->scratch.leaf_points.count; i++) {
+            const int k = gxp_local_node(body, body->cells.data[cell].element, body->scratch.leaf_points.data[i]);
             if (k >= 0) mask |= 1u << k;
         }
     }
-    *name = gxp_mix((uint64_t)body->cells[cell].element << 4 | mask);
+    *name = gxp_mix((uint64_t)body->cells.data[cell].element << 4 | mask);
     return result;
 }
 
-/* Three rounds in which each cell's name takes in its neighbours' names (Weisfeiler-Lehman); sums do not depend on any
- * order. */
+/* Three rounds in which each cell's name takes in its neighbours' names (Weisfeiler-Lehman). Sums do not depend on any
+   order. */
 static gx_result gxp_name_cells(gx_body *body, uint64_t *name, uint64_t *next) {
+    const gxp_view *view = &body->view;
+    gxp_keys pairs = {NULL, 0, 0};
     uint32_t i, round;
     gx_result result = GX_OK;
-    for (i = 0; i < body->view_cells.count && result == GX_OK; i++)
-        result = gxp_first_name(body, body->view_cells.data[i], &name[body->view_cells.data[i]]);
+    for (i = 0; i < view->count && result == GX_OK; i++)
+        result = gxp_first_name(body, view->slot[i], &name[view->slot[i]]);
     for (round = 0; round < 3 && result == GX_OK; round++) {
-        for (i = 0; i < body->view_cells.count && result == GX_OK; i++) {
-            const uint32_t cell = body->view_cells.data[i];
-            body->pairs.count = 0;
-            result = gxp_push_neighbours(body, cell);
-            if (result == GX_OK) result = gxp_sort_keys(body, &body->pairs, 0, body->pairs.count);
-            next[cell] = gxp_mix(name[cell] * 3 + gxp_hash_neighbours(body, name));
+        for (i = 0; i < view->count && result == GX_OK; i++) {
+            const uint32_t cell = view->slot[i];
+            pairs.count = 0;
+            result = gxp_push_neighbours(body, cell, &pairs);
+            if (result == GX_OK) result = gxp_sort_keys(body, &pairs, 0, pairs.count);
+            next[cell] = gxp_mix(name[cell] * 3 + gxp_hash_neighbours(&pairs, name));
         }
-        memcpy(name, next, body->cell_count * sizeof *name);
+        memcpy(name, next, body->cells.count * sizeof *name);
     }
+    gxp_release(&body->config.allocator, pairs.data, pairs.capacity * sizeof *pairs.data);
     return result;
 }
 
-/* Cells with their names, the copies they share, the counts. */
+/* The cells with their names, the copies that they share, the counts */
 static uint64_t gxp_hash_names(const gx_body *body, const uint64_t *name, uint64_t *copies) {
-    uint64_t sum = gxp_mix(body->copy_count) + gxp_mix((uint64_t)body->fragment_count << 32);
+    uint64_t sum = gxp_mix(body->copies.count) + gxp_mix((uint64_t)body->view.fragment_count << 32);
     uint32_t i, k;
-    memset(copies, 0, body->copy_count * sizeof *copies);
-    for (i = 0; i < body->view_cells.count; i++) {
-        const uint32_t cell = body->view_cells.data[i];
+    memset(copies, 0, body->copies.count * sizeof *copies);
+    for (i = 0; i < body->view.count; i++) {
+        const uint32_t cell = body->view.slot[i];
         sum += gxp_mix(name[cell]);
-        for (k = 0; k < 4; k++) copies[body->cells[cell].copies[k]] += gxp_mix(name[cell] + k);
+        for (k = 0; k < 4; k++) copies[body->cells.data[cell].copies[k]] += gxp_mix(name[cell] + k);
     }
-    for (i = 0; i < body->copy_count; i++) sum += gxp_mix(copies[i] ^ gxp_mix(body->copy_node[i]));
+    for (i = 0; i < body->copies.count; i++) sum += gxp_mix(copies[i] ^ gxp_mix(body->copies.node[i]));
     return sum;
 }
 
@@ -6964,53 +6651,34 @@ GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_result *result) {
         if (result != NULL) *result = GX_ERROR_ARGUMENT;
         return 0;
     }
-    words = 2 * (size_t)body->cell_count + body->copy_count;
+    words = 2 * (size_t)body->cells.count + body->copies.count;
     r = gxp_update_view(body);
-    names = (uint64_t *)gxp_allocate(&body->allocator, words * sizeof *names);
+    names = (uint64_t *)gxp_allocate(&body->config.allocator, words * sizeof *names);
     if (r == GX_OK && names == NULL) r = GX_ERROR_MEMORY;
     if (r == GX_OK) {
         memset(names, 0, words * sizeof *names);
-        r = gxp_name_cells(body, names, names + body->cell_count);
-        if (r == GX_OK) hash = gxp_hash_names(body, names, names + 2 * (size_t)body->cell_count);
+        r = gxp_name_cells(body, names, names + body->cells.count);
+        if (r == GX_OK) hash = gxp_hash_names(body, names, names + 2 * (size_t)body->cells.count);
     }
-    gxp_release(&body->allocator, names, words * sizeof *names);
+    gxp_release(&body->config.allocator, names, words * sizeof *names);
     if (result != NULL) *result = r;
     return r == GX_OK ? hash : 0;
 }
 
-static uint64_t gxp_hash_doubles(uint64_t hash, const double *x, size_t count) {
-    for (; count > 0; count--, x++) {
-        uint64_t b;
-        memcpy(&b, x, sizeof b);
-        hash = gxp_mix(hash ^ b);
-    }
-    return hash;
-}
-
 GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
-    uint64_t hash = gxp_mix(body->cell_count);
-    uint32_t i, k;
-    for (i = 0; i < body->cell_count; i++) {
-        const gxp_cell *c = &body->cells[i];
-        hash = gxp_mix(hash ^ c->element ^ (uint64_t)c->kept << 32);
-        for (k = 0; k < 4 && c->kept; k++) hash = gxp_mix(hash ^ c->copies[k]);
-        if (c->kept) hash = gxp_hash_doubles(gxp_hash_doubles(hash, &c->volume, 1), c->mass, 10);
+    const uint32_t use = GXP_TOPOLOGY | GXP_STATE | (body->copies.previous_dt > 0 ? (uint32_t)GXP_HISTORY : 0);
+    uint64_t hash = gxp_mix(body->cuts.epoch ^ (uint64_t)body->snapshot.next_id << 32);
+    uint32_t t, i;
+    for (t = 0; t < GXP_TABLES; t++) {
+        const size_t rows = gxp_count(body, t);
+        for (i = 0; i < gxp_tables[t].column_count; i++) {
+            const gxp_column *column = &gxp_tables[t].columns[i];
+            if (column->use & use)
+                hash = gxp_hash_bytes(hash, (const unsigned char *)gxp_array_at(body, column), rows * column->size);
+        }
     }
-    for (i = 0; i < body->complex->leaf_count; i++)
-        hash = gxp_mix(hash ^ body->leaves[i].cell ^ (uint64_t)body->complex->leaves[i].removed << 32);
-    hash = gxp_mix(gxp_mix(hash ^ body->copy_count) ^ body->epoch);
-    for (i = 0; i < body->copy_count; i++) hash = gxp_mix(hash ^ body->copy_node[i]);
-    hash = gxp_hash_doubles(hash, body->displacement, 3 * (size_t)body->copy_count);
-    hash = gxp_hash_doubles(hash, body->velocity, 3 * (size_t)body->copy_count);
-    hash = gxp_hash_doubles(hash, body->rest_time, body->copy_count);
-    for (i = 0; i < body->copy_count; i++) hash = gxp_mix(hash ^ body->copy_label[i]);
-    for (i = 0; i < body->fragment_ids.count; i++) hash = gxp_mix(hash ^ body->fragment_ids.data[i]);
-    hash = gxp_mix(hash ^ body->next_id);
-    for (i = 0; i < 2 && body->previous_dt > 0; i++)
-        hash = gxp_hash_doubles(hash, body->history[i], 3 * (size_t)body->copy_count);
-    for (i = 0; i < body->region_count; i++)
-        hash = gxp_hash_doubles(gxp_mix(hash ^ body->regions[i].axis ^ (uint64_t)(body->regions[i].side + 1) << 8),
-                                &body->regions[i].value, 1);
+    for (i = 0; i < gxb_complex_leaf_count(body->complex); i++)
+        hash = gxp_mix(hash ^ gxb_complex_leaf(body->complex, i)->removed);
     return hash;
 }
 
@@ -7038,13 +6706,647 @@ GXFEM_API const char *gx_result_text(gx_result result) {
     return "unknown result";
 }
 
-#undef GXP_FETCH
-#undef GXP_FETCHES
+/* >>stream: a body as bytes: head, mesh, topology ------------------------------------------------------------------ */
+/* One stream of bytes serves save, load, clone and restore; a clone is written to memory and read back without the
+   checks. In: a body, or bytes. Out: bytes, or a body. What is written and read follows from the lists at >>columns:
+   topology (beside gxb_complex_save) here, all else in the next section. */
+
+static void gxp_require(gxb_stream *s, gx_result result) {
+    if (s->result == GX_OK) s->result = result;
+}
+static void gxp_require_true(gxb_stream *s, int holds) {
+    if (!holds) gxp_require(s, GX_ERROR_DAMAGED);
+}
+static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
+
+#define GXP_SAVE_VERSION 3u /* raised by every change of the format */
+#define GXP_BYTE_ORDER   0x01020304u
+
+typedef struct gxp_head {
+    unsigned char magic[8];
+    uint32_t version, order;
+    double width;            /* -2.5: doubles are IEEE 754's */
+    uint64_t size, checksum; /* of all bytes; of those after the head */
+} gxp_head;
+
+/* shows if a transfer treated it as text */
+static const unsigned char gxp_magic[8] = {'g', 'x', 'f', 'e', 'm', '\r', '\n', 0x1a};
+
+static void gxp_pass_head(gxb_stream *s, gxp_head *head) {
+    gxb_stream_pass(s, head->magic, 8, 1);
+    gxp_pass_word(s, &head->version);
+    gxp_pass_word(s, &head->order);
+    gxb_stream_pass(s, &head->width, 1, sizeof head->width);
+    gxb_stream_pass(s, &head->size, 1, sizeof head->size);
+    gxb_stream_pass(s, &head->checksum, 1, sizeof head->checksum);
+}
+
+static gxp_head gxp_make_head(uint64_t size, uint64_t checksum) {
+    gxp_head head;
+    memcpy(head.magic, gxp_magic, sizeof head.magic);
+    head.version = GXP_SAVE_VERSION;
+    head.order = GXP_BYTE_ORDER;
+    head.width = -2.5;
+    head.size = size;
+    head.checksum = checksum;
+    return head;
+}
+
+static gx_result gxp_check_head(gxb_stream *s) {
+    gxp_head head, own;
+    gxp_pass_head(s, &head);
+    own = gxp_make_head(head.size, head.checksum);
+    if (memcmp(head.magic, own.magic, sizeof own.magic) != 0 || head.version != own.version ||
+        head.order != own.order || memcmp(&head.width, &own.width, sizeof own.width) != 0)
+        return GX_ERROR_FORMAT;
+    if (s->result != GX_OK || head.size != s->size) return GX_ERROR_DAMAGED;
+    return head.checksum == gxp_hash_bytes(0, s->in + s->at, s->size - s->at) ? GX_OK : GX_ERROR_DAMAGED;
+}
+
+static void gxp_pass_material(gxb_stream *s, gx_material *m) {
+    uint32_t kind = (uint32_t)m->elastic.kind;
+    gxp_pass_word(s, &kind);
+    gxp_require_true(s, kind <= (uint32_t)GXS_CUSTOM);
+    if (s->result == GX_OK) m->elastic.kind = (gxs_material_kind)kind;
+    gxb_stream_pass(s, &m->elastic.young, 1, sizeof(double));
+    gxb_stream_pass(s, &m->elastic.poisson, 1, sizeof(double));
+    gxb_stream_pass(s, &m->elastic.damping, 1, sizeof(double));
+    gxb_stream_pass(s, &m->density, 1, sizeof(double));
+}
+
+typedef struct gxp_saved_mesh {
+    uint32_t node_count, element_count, material_count;
+    double support_below;
+    uint32_t textured; /* 1: there is a texture */
+    double *positions;
+    float *texture;
+    uint32_t *elements, *element_materials;
+    gx_material *materials;
+} gxp_saved_mesh;
+
+static void gxp_pass_sizes(gxb_stream *s, gxp_saved_mesh *mesh) {
+    gxp_pass_word(s, &mesh->node_count);
+    gxp_pass_word(s, &mesh->element_count);
+    gxp_pass_word(s, &mesh->material_count);
+    gxp_pass_word(s, &mesh->textured);
+    gxb_stream_pass(s, &mesh->support_below, 1, sizeof mesh->support_below);
+}
+
+static void gxp_pass_mesh(gxb_stream *s, gxp_saved_mesh *mesh) {
+    uint32_t i;
+    gxb_stream_pass(s, mesh->positions, 3 * (size_t)mesh->node_count, sizeof(double));
+    if (mesh->textured) gxb_stream_pass(s, mesh->texture, 2 * (size_t)mesh->node_count, sizeof(float));
+    gxb_stream_pass(s, mesh->elements, 4 * (size_t)mesh->element_count, sizeof(uint32_t));
+    gxb_stream_pass(s, mesh->element_materials, mesh->element_count, sizeof(uint32_t));
+    for (i = 0; i < mesh->material_count; i++) gxp_pass_material(s, &mesh->materials[i]);
+}
+
+static void gxp_save_mesh(gxb_stream *s, gx_body *body) {
+    gxp_saved_mesh mesh;
+    mesh.node_count = body->mesh.node_count;
+    mesh.element_count = body->mesh.element_count;
+    mesh.material_count = body->mesh.material_count;
+    mesh.support_below = body->config.support_below;
+    mesh.positions = body->mesh.positions;
+    mesh.elements = (uint32_t *)gxb_complex_element_nodes(body->complex, 0); /* only written from here */
+    mesh.texture = body->mesh.texture;
+    mesh.textured = body->mesh.texture != NULL;
+    mesh.element_materials = body->mesh.element_materials;
+    mesh.materials = body->mesh.materials;
+    gxp_pass_sizes(s, &mesh);
+    gxp_pass_mesh(s, &mesh);
+}
+
+/* Energies are not saved: the caller gives them again. *material: one without its energy. */
+static gx_result gxp_give_energies(gxp_saved_mesh *mesh, const gx_body_desc *desc, size_t *material) {
+    uint32_t i;
+    for (i = 0; i < mesh->material_count; i++) {
+        gxs_material *m = &mesh->materials[i].elastic;
+        if (m->kind != GXS_CUSTOM) continue;
+        if (desc->materials == NULL || i >= desc->material_count || desc->materials[i].elastic.energy == NULL) {
+            *material = i;
+            return GX_ERROR_ARGUMENT;
+        }
+        m->energy = desc->materials[i].elastic.energy;
+        m->user = desc->materials[i].elastic.user;
+    }
+    return GX_OK;
+}
+
+/* Creates the uncut body of the mesh. */
+static void gxp_create_again(gxb_stream *s, const gx_body_desc *given, gxp_saved_mesh *mesh, gx_body **body,
+                             size_t *index) {
+    gx_body_desc desc;
+    gx_result result;
+    gxp_pass_mesh(s, mesh);
+    if (s->result != GX_OK) return;
+    gxp_require(s, gxp_give_energies(mesh, given, index));
+    if (s->result != GX_OK) return;
+    memset(&desc, 0, sizeof desc);
+    desc.allocator = given->allocator;
+    desc.clock = given->clock;
+    desc.clock_user = given->clock_user;
+    desc.jobs = given->jobs;
+    desc.positions = mesh->positions;
+    desc.node_count = mesh->node_count;
+    desc.elements = mesh->elements;
+    desc.element_count = mesh->element_count;
+    desc.materials = mesh->materials;
+    desc.material_count = mesh->material_count;
+    desc.element_materials = mesh->element_materials;
+    desc.texture = mesh->textured ? mesh->texture : NULL;
+    desc.support_below = mesh->support_below;
+    result = gx_body_create(&desc, body, NULL);
+    gxp_require(s, result == GX_OK || result == GX_ERROR_MEMORY || result == GX_ERROR_LIMIT ||
+                           result == GX_ERROR_CONFIGURATION
+                       ? result
+                       : GX_ERROR_DAMAGED);
+}
+
+/* Reads the mesh and creates the body from it. */
+static void gxp_load_mesh(gxb_stream *s, const gx_body_desc *desc, gx_body **body, size_t *index) {
+    const gx_allocator *a = &desc->allocator;
+    size_t positions, texture, elements, element_materials, materials;
+    gxp_saved_mesh mesh;
+    memset(&mesh, 0, sizeof mesh);
+    gxp_pass_sizes(s, &mesh);
+    gxb_stream_has(s, mesh.node_count, 3 * sizeof(double));
+    gxb_stream_has(s, mesh.element_count, 5 * sizeof(uint32_t));
+    gxb_stream_has(s, mesh.material_count, sizeof(uint32_t) + 4 * sizeof(double));
+    gxp_require_true(s, mesh.node_count > 0 && mesh.element_count > 0 && mesh.material_count > 0 &&
+                            mesh.material_count <= INT32_MAX / sizeof(gx_material) && mesh.textured <= 1);
+    if (s->result != GX_OK) return;
+    positions = 3 * (size_t)mesh.node_count * sizeof(double);
+    elements = 4 * (size_t)mesh.element_count * sizeof(uint32_t);
+    texture = 2 * (size_t)mesh.node_count * sizeof(float);
+    element_materials = elements / 4;
+    materials = mesh.material_count * sizeof(gx_material);
+    mesh.positions = (double *)gxp_allocate(a, positions);
+    mesh.texture = (float *)gxp_allocate(a, texture);
+    mesh.elements = (uint32_t *)gxp_allocate(a, elements);
+    mesh.element_materials = (uint32_t *)gxp_allocate(a, element_materials);
+    mesh.materials = (gx_material *)gxp_allocate(a, materials);
+    if (mesh.positions && mesh.texture && mesh.elements && mesh.element_materials && mesh.materials) {
+        memset(mesh.materials, 0, materials);
+        gxp_create_again(s, desc, &mesh, body, index);
+    } else
+        gxp_require(s, GX_ERROR_MEMORY);
+    gxp_release(a, mesh.positions, positions);
+    gxp_release(a, mesh.texture, texture);
+    gxp_release(a, mesh.elements, elements);
+    gxp_release(a, mesh.element_materials, element_materials);
+    gxp_release(a, mesh.materials, materials);
+}
+
+/* Passes the row counts of the tables that have columns of that use. */
+static void gxp_pass_counts(gxb_stream *s, uint32_t use, uint32_t counts[GXP_TABLES]) {
+    uint32_t t;
+    for (t = 0; t < GXP_TABLES; t++)
+        if (gxp_row_size(t, use) > 0) gxp_pass_word(s, &counts[t]);
+}
+
+static void gxp_count_rows(const gx_body *body, uint32_t counts[GXP_TABLES]) {
+    uint32_t t;
+    for (t = 0; t < GXP_TABLES; t++) counts[t] = gxp_count(body, t);
+}
+
+/* Reading: checks that there are bytes for these rows, and that indices can name them. */
+static void gxp_check_counts(gxb_stream *s, uint32_t use, const uint32_t counts[GXP_TABLES]) {
+    uint32_t t;
+    for (t = 0; t < GXP_TABLES; t++) {
+        if (gxp_row_size(t, use) == 0) continue;
+        gxb_stream_has(s, counts[t], gxp_row_size(t, use));
+        gxp_require_true(s, counts[t] <= INT32_MAX);
+    }
+}
+
+/* Room for these rows; the present ones stay. */
+static gx_result gxp_rows_room(gx_body *body, uint32_t use, const uint32_t counts[GXP_TABLES]) {
+    uint32_t t;
+    gx_result result = GX_OK;
+    for (t = 0; t < GXP_TABLES && result == GX_OK; t++)
+        if (gxp_row_size(t, use) > 0 && counts[t] > gxp_count(body, t))
+            result = gxp_grow_rows(body, t, counts[t] - gxp_count(body, t));
+    return result;
+}
+
+/* Passes the columns of that use. When reading there is room, and the tables get that many rows. */
+static void gxp_pass_rows(gxb_stream *s, gx_body *body, uint32_t use, const uint32_t counts[GXP_TABLES]) {
+    uint32_t t, i;
+    for (t = 0; t < GXP_TABLES; t++) {
+        if (gxp_row_size(t, use) == 0) continue;
+        if (s->in != NULL) *gxp_count_at(body, t) = counts[t];
+        for (i = 0; i < gxp_tables[t].column_count; i++) {
+            const gxp_column *column = &gxp_tables[t].columns[i];
+            if (column->use & use) gxb_stream_pass(s, gxp_array_at(body, column), counts[t], column->size);
+        }
+    }
+}
+
+static void gxp_pass_topology(gxb_stream *s, gx_body *body, const uint32_t counts[GXP_TABLES]) {
+    gxp_pass_rows(s, body, GXP_TOPOLOGY, counts);
+    gxp_pass_word(s, &body->cuts.label_count);
+    gxb_stream_pass(s, &body->cuts.hash, 1, sizeof body->cuts.hash);
+    gxb_stream_pass(s, &body->cuts.epoch, 1, sizeof body->cuts.epoch);
+}
+
+static void gxp_save_topology(gxb_stream *s, gx_body *body) {
+    uint32_t counts[GXP_TABLES];
+    gxp_count_rows(body, counts);
+    gxb_complex_save(body->complex, s);
+    gxp_pass_counts(s, GXP_TOPOLOGY, counts);
+    gxp_pass_topology(s, body, counts);
+}
+
+/* One byte for each cell, leaf and copy: 1 if it has been met */
+typedef struct gxp_places {
+    unsigned char *cell, *leaf, *copy;
+} gxp_places;
+
+/* The cell's leaves are kept, in its element and in no other cell; its copies are those of its element's nodes. It is
+   no larger than the element; a factor of 2 allows for rounding. */
+static void gxp_check_cell(gxb_stream *s, gx_body *body, uint32_t cell, const gxp_places *seen) {
+    gxp_cell *c = &body->cells.data[cell];
+    const uint32_t *node = gxb_complex_element_nodes(body->complex, c->element);
+    const double density = gxp_density(body, c->element), most = 2 * gxp_element_volume(body, c->element);
+    uint32_t leaf, k;
+    gxp_require_true(s, c->kept <= 1 && (c->first_leaf != GXP_NONE) == (c->kept != 0));
+    for (leaf = c->first_leaf; leaf != GXP_NONE && s->result == GX_OK; leaf = body->leaves.data[leaf].next) {
+        gxp_require_true(s, leaf < body->leaves.count && !seen->leaf[leaf < body->leaves.count ? leaf : 0]);
+        if (s->result != GX_OK) return;
+        seen->leaf[leaf] = 1;
+        gxp_require_true(s, body->leaves.data[leaf].cell == cell && gxp_is_kept(body, leaf) &&
+                                gxb_complex_leaf(body->complex, leaf)->element == c->element);
+    }
+    gxp_require_true(s, gxp_is_finite(c->volume) && c->volume >= 0 && c->volume <= most);
+    for (k = 0; k < 10; k++) gxp_require_true(s, gxp_is_finite(c->mass[k]) && fabs(c->mass[k]) <= most * density);
+    for (k = 0; k < 4 && s->result == GX_OK; k++) {
+        if (!c->kept) {
+            gxp_require_true(s, c->copies[k] == GXP_NONE);
+            continue;
+        }
+        gxp_require_true(s, c->copies[k] < body->copies.count &&
+                                body->copies.node[c->copies[k] < body->copies.count ? c->copies[k] : 0] == node[k]);
+        if (s->result == GX_OK) seen->copy[c->copies[k]] = 1;
+    }
+}
+
+/* Every cell is in its element's list once, every kept leaf in one kept cell, and every copy moves a cell. */
+static void gxp_check_lists(gxb_stream *s, gx_body *body, const gxp_places *seen) {
+    uint32_t e, i, cell;
+    for (e = 0; e < body->mesh.element_count; e++)
+        for (cell = e; cell != GXP_NONE && s->result == GX_OK; cell = body->cells.data[cell].next) {
+            gxp_require_true(s, cell < body->cells.count && !seen->cell[cell < body->cells.count ? cell : 0]);
+            if (s->result != GX_OK) return;
+            seen->cell[cell] = 1;
+            gxp_require_true(s, body->cells.data[cell].element == e);
+            if (s->result == GX_OK) gxp_check_cell(s, body, cell, seen);
+        }
+    for (i = 0; i < body->cells.count; i++) gxp_require_true(s, seen->cell[i]);
+    for (i = 0; i < body->copies.count; i++) gxp_require_true(s, seen->copy[i]);
+    for (i = 0; i < body->leaves.count; i++) {
+        gxp_require_true(s, body->leaves.data[i].cell < body->cells.count &&
+                                seen->leaf[i] == !gxb_complex_leaf(body->complex, i)->removed);
+        gxp_require_true(s, seen->leaf[i] || body->leaves.data[i].next == GXP_NONE);
+    }
+    for (i = 0; i < gxb_complex_label_count(body->complex); i++)
+        gxp_require_true(s, gxb_complex_label(body->complex, i)->triangle < body->cuts.label_count);
+}
+
+/* Surfaces are in the order of their labels; each has maps for all of its triangles or for none. */
+static void gxp_check_surfaces(gxb_stream *s, const gx_body *body) {
+    uint32_t i;
+    size_t k;
+    for (i = 0; i < body->cuts.surface_count; i++) {
+        const gxp_surface_record *r = &body->cuts.surfaces[i];
+        const uint32_t end = i + 1 < body->cuts.surface_count ? r[1].label : body->cuts.label_count;
+        gxp_require_true(s, r->label < end && (i > 0 || r->label == 0));
+        gxp_require_true(s, r->map == GXP_NONE ||
+                                (r->map <= body->cuts.map_count && end - r->label <= body->cuts.map_count - r->map));
+    }
+    gxp_require_true(s, body->cuts.surface_count > 0 || body->cuts.label_count == 0);
+    for (k = 0; k < 8 * (size_t)body->cuts.map_count; k++) gxp_require_true(s, gxp_is_finite(body->cuts.maps[k]));
+}
+
+static void gxp_check_topology(gxb_stream *s, gx_body *body) {
+    const size_t bytes = (size_t)body->cells.count + body->leaves.count + body->copies.count;
+    gxp_places seen;
+    seen.cell = (unsigned char *)gxp_allocate(&body->config.allocator, bytes);
+    if (seen.cell == NULL) {
+        gxp_require(s, GX_ERROR_MEMORY);
+        return;
+    }
+    memset(seen.cell, 0, bytes);
+    seen.leaf = seen.cell + body->cells.count;
+    seen.copy = seen.leaf + body->leaves.count;
+    gxp_check_lists(s, body, &seen);
+    gxp_check_surfaces(s, body);
+    gxp_release(&body->config.allocator, seen.cell, bytes);
+}
+
+static void gxp_load_topology(gxb_stream *s, gx_body *body, int trusted) {
+    uint32_t counts[GXP_TABLES];
+    (void)gxb_complex_load(body->complex, s, trusted);
+    gxp_pass_counts(s, GXP_TOPOLOGY, counts);
+    gxp_check_counts(s, GXP_TOPOLOGY, counts);
+    gxp_require_true(s, counts[GXP_CELLS] >= body->mesh.element_count &&
+                            counts[GXP_LEAVES] == gxb_complex_leaf_count(body->complex));
+    if (s->result == GX_OK) gxp_require(s, gxp_rows_room(body, GXP_TOPOLOGY, counts));
+    if (s->result != GX_OK) return;
+    gxp_pass_topology(s, body, counts);
+    if (body->copies.count > 0) memset(body->copies.held, 0, body->copies.count);
+    if (s->result == GX_OK && !trusted) gxp_check_topology(s, body);
+    body->holds.stale = body->view.stale = 1;
+    body->model.state = GXP_MODEL_STALE;
+    body->view.labels_known = 0;
+}
+
+/* >>save: state; save, load, clone, restore ------------------------------------------------------------------------ */
+/* In: a body, or bytes. Out: bytes, or a body that goes on as the other does. On an error the body is as it was. */
+
+/* The row counts of the state, and whether there is a history */
+typedef struct gxp_state_counts {
+    uint32_t rows[GXP_TABLES], history;
+} gxp_state_counts;
+
+static uint32_t gxp_state_use(const gxp_state_counts *n) {
+    return GXP_STATE | (n->history ? (uint32_t)GXP_HISTORY : 0);
+}
+
+static void gxp_pass_state_counts(gxb_stream *s, gxp_state_counts *n) {
+    gxp_pass_counts(s, GXP_STATE, n->rows);
+    gxp_pass_word(s, &n->history);
+}
+
+static gxp_state_counts gxp_count_state(const gx_body *body) {
+    gxp_state_counts n;
+    gxp_count_rows(body, n.rows);
+    n.history = body->copies.previous_dt > 0;
+    return n;
+}
+
+/* Room for a state with these counts; the present one stays. */
+static gx_result gxp_state_room(gx_body *body, const gxp_state_counts *n) {
+    const gx_result result = gxp_rows_room(body, gxp_state_use(n), n->rows);
+    return result == GX_OK && n->history ? gxp_start_history(body, 2) : result;
+}
+
+/* Makes the solver forget its last step, as that of the other body has. */
+static void gxp_resume_in(gx_body *body, const gxs_scene *scene) {
+    gxs_solver_resume(body->solver, scene);
+    if (body->model.updated) body->model.state = GXP_MODEL_STALE;
+    body->model.resumed = gxp_hash_state(body, body->copies.count);
+}
+
+/* Writes the state, or reads it if there is room. n: the counts of the body that is written. */
+static void gxp_pass_state(gxb_stream *s, gx_body *body, const gxp_state_counts *n) {
+    gxs_scene scene;
+    gxp_pass_rows(s, body, gxp_state_use(n), n->rows);
+    gxb_stream_pass(s, &body->copies.previous_dt, 1, sizeof body->copies.previous_dt);
+    gxp_pass_word(s, &body->snapshot.next_id);
+    gxp_pass_word(s, &body->snapshot.stale);
+    gxs_solver_scene(body->solver, &scene);
+    gxb_stream_pass(s, scene.gravity, 3, sizeof *scene.gravity);
+    gxb_stream_pass(s, &scene.planes, 1, sizeof scene.planes);
+    gxb_stream_pass(s, &scene.forces, 1, sizeof scene.forces);
+    gxb_stream_pass(s, &scene.springs, 1, sizeof scene.springs);
+    if (s->in != NULL) gxp_resume_in(body, &scene);
+}
+
+static void gxp_save_state(gxb_stream *s, gx_body *body) {
+    gxp_state_counts n = gxp_count_state(body);
+    gxp_pass_state_counts(s, &n);
+    gxp_pass_state(s, body, &n);
+}
+
+static void gxp_check_state(gxb_stream *s, gx_body *body, const gxp_state_counts *n) {
+    const gxp_snapshot *snapshot = &body->snapshot;
+    const double dt = body->copies.previous_dt;
+    uint32_t i;
+    gxp_require_true(s, snapshot->next_id >= 1 && snapshot->stale <= 1);
+    gxp_require_true(s, gxp_is_finite(dt) && (n->history ? dt > 0 : !(dt > 0 || dt < 0)));
+    for (i = 0; i < body->holds.count; i++) gxp_require_true(s, gxp_check_region(&body->holds.regions[i]) == GX_OK);
+    for (i = 0; i < body->copies.count; i++) gxp_require_true(s, body->copies.label[i] >> 1 < snapshot->count);
+    for (i = 0; i < snapshot->count; i++)
+        gxp_require_true(s, snapshot->id[i] - 1 < snapshot->next_id - 1 &&
+                                snapshot->origin[i] - 1 < snapshot->next_id - 1 &&
+                                snapshot->change[i] <= GX_FRAGMENT_CREATED);
+    for (i = 0; i < snapshot->removed.count; i++)
+        gxp_require_true(s, snapshot->removed.data[i] - 1 < snapshot->next_id - 1);
+    if (s->result == GX_OK) gxp_require(s, gxp_update_view(body));
+    gxp_require_true(s, snapshot->stale || body->view.fragment_count == snapshot->count);
+}
+
+static void gxp_load_state(gxb_stream *s, gx_body *body, int trusted) {
+    gxp_state_counts n;
+    gxp_pass_state_counts(s, &n);
+    gxp_check_counts(s, GXP_STATE, n.rows);
+    gxp_require_true(s, n.rows[GXP_COPIES] == body->copies.count && n.history <= 1);
+    if (s->result == GX_OK) gxp_require(s, gxp_state_room(body, &n));
+    if (s->result == GX_OK) gxp_pass_state(s, body, &n);
+    if (s->result == GX_OK && !trusted) gxp_check_state(s, body, &n);
+}
+
+static void gxp_write(gxb_stream *s, gx_body *body) {
+    gxp_head head = gxp_make_head(0, 0);
+    gxp_pass_head(s, &head);
+    gxp_save_mesh(s, body);
+    gxp_save_topology(s, body);
+    gxp_save_state(s, body);
+}
+
+static void gxp_resume(gx_body *body) {
+    gxs_scene scene;
+    gxs_solver_scene(body->solver, &scene);
+    gxp_resume_in(body, &scene);
+}
+
+GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, size_t *size) {
+    gxb_stream s;
+    size_t start;
+    gxp_head head;
+    if (body == NULL || size == NULL) return GX_ERROR_ARGUMENT;
+    gxp_note_written(body);
+    memset(&s, 0, sizeof s);
+    gxp_pass_head(&s, &head);
+    start = s.at;
+    s.at = 0;
+    gxp_write(&s, body);
+    *size = s.at;
+    if (memory == NULL) return GX_OK;
+    if (capacity < s.at) return GX_ERROR_LIMIT;
+    s.out = (unsigned char *)memory;
+    s.size = s.at;
+    s.at = 0;
+    gxp_write(&s, body);
+    s.at = 0;
+    head = gxp_make_head(s.size, gxp_hash_bytes(0, s.out + start, s.size - start));
+    gxp_pass_head(&s, &head);
+    gxp_resume(body);
+    return GX_OK;
+}
+
+/* *index: as gx_failure's */
+static gx_result gxp_read(gxb_stream *s, const gx_body_desc *desc, int trusted, gx_body **body, size_t *index) {
+    gx_body *made = NULL;
+    gxp_head head;
+    if (trusted)
+        gxp_pass_head(s, &head);
+    else
+        s->result = gxp_check_head(s);
+    *index = SIZE_MAX;
+    if (s->result == GX_OK) gxp_load_mesh(s, desc, &made, index);
+    if (s->result == GX_OK) gxp_load_topology(s, made, trusted);
+    if (s->result == GX_OK) gxp_load_state(s, made, trusted);
+    gxp_require_true(s, s->at == s->size);
+    if (s->result == GX_OK)
+        *body = made;
+    else
+        gx_body_destroy(made);
+    if (s->result == GX_ERROR_FORMAT || s->result == GX_ERROR_DAMAGED) *index = s->at;
+    return s->result;
+}
+
+GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_desc *desc, gx_body **body,
+                                 gx_failure *failure) {
+    gx_body_desc none;
+    gxb_stream s;
+    size_t index;
+    gx_result result;
+    memset(&none, 0, sizeof none);
+    if (desc == NULL) desc = &none;
+    if (memory == NULL || body == NULL || !gxb_is_allocator(&desc->allocator))
+        return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
+    memset(&s, 0, sizeof s);
+    s.in = (const unsigned char *)memory;
+    s.size = size;
+    result = gxp_read(&s, desc, 0, body, &index);
+    return gxp_fail(failure, result, index, SIZE_MAX);
+}
+
+/* Makes a body like `from` with the allocator, clock and jobs of host. */
+static gx_result gxp_copy_body(gx_body *from, const gx_body *host, gx_body **copy) {
+    gx_body_desc desc;
+    gxb_stream s;
+    unsigned char *bytes;
+    size_t size, index;
+    gx_result result = gx_body_save(from, NULL, 0, &size);
+    if (result != GX_OK) return result;
+    bytes = (unsigned char *)gxp_allocate(&host->config.allocator, size);
+    if (bytes == NULL) return GX_ERROR_MEMORY;
+    memset(&s, 0, sizeof s);
+    s.out = bytes;
+    s.size = size;
+    gxp_write(&s, from);
+    memset(&s, 0, sizeof s);
+    s.in = bytes;
+    s.size = size;
+    memset(&desc, 0, sizeof desc);
+    desc.allocator = host->config.allocator;
+    desc.clock = host->config.clock;
+    desc.clock_user = host->config.clock_user;
+    desc.jobs = host->config.jobs;
+    desc.materials = from->mesh.materials;
+    desc.material_count = from->mesh.material_count;
+    result = gxp_read(&s, &desc, 1, copy, &index);
+    gxp_release(&host->config.allocator, bytes, size);
+    if (result == GX_OK) gxp_resume(from);
+    return result;
+}
+
+GXFEM_API gx_result gx_body_clone(gx_body *body, gx_body **clone) {
+    return body == NULL || clone == NULL ? GX_ERROR_ARGUMENT : gxp_copy_body(body, body, clone);
+}
+
+static int gxp_same_doubles(const double *a, const double *b, size_t count) {
+    return memcmp(a, b, count * sizeof *a) == 0;
+}
+
+static int gxp_same_materials(const gx_body *a, const gx_body *b) {
+    uint32_t i;
+    int same = a->mesh.material_count == b->mesh.material_count;
+    for (i = 0; i < a->mesh.material_count && same; i++) {
+        const gxs_material *p = &a->mesh.materials[i].elastic, *q = &b->mesh.materials[i].elastic;
+        same = p->kind == q->kind && gxp_same_doubles(&p->young, &q->young, 1) &&
+               gxp_same_doubles(&p->poisson, &q->poisson, 1) && gxp_same_doubles(&p->damping, &q->damping, 1) &&
+               gxp_same_doubles(&a->mesh.materials[i].density, &b->mesh.materials[i].density, 1) &&
+               (p->kind != GXS_CUSTOM || (p->energy == q->energy && p->user == q->user));
+    }
+    return same;
+}
+
+static int gxp_same_regions(const gx_body *a, const gx_body *b) {
+    uint32_t i;
+    int same = a->holds.count == b->holds.count;
+    for (i = 0; i < a->holds.count && same; i++) {
+        const gx_region *p = &a->holds.regions[i], *q = &b->holds.regions[i];
+        same = p->axis == q->axis && p->side == q->side && gxp_same_doubles(&p->value, &q->value, 1);
+    }
+    return same;
+}
+
+/* Copies the state of a body with the same cells and copies. */
+static gx_result gxp_restore_state(gx_body *body, gx_body *from) {
+    gxp_state_counts n = gxp_count_state(from);
+    const int same_held = gxp_same_regions(body, from);
+    gxb_stream s;
+    unsigned char *bytes;
+    size_t size;
+    gx_result result = gxp_state_room(body, &n);
+    if (result != GX_OK) return result;
+    gxp_note_written(from);
+    memset(&s, 0, sizeof s);
+    gxp_pass_state(&s, from, &n);
+    size = s.at;
+    bytes = (unsigned char *)gxp_allocate(&body->config.allocator, size);
+    if (bytes == NULL) return GX_ERROR_MEMORY;
+    s.out = bytes;
+    s.size = size;
+    s.at = 0;
+    gxp_pass_state(&s, from, &n);
+    s.in = bytes;
+    s.out = NULL;
+    s.at = 0;
+    gxp_pass_state(&s, body, &n);
+    gxp_release(&body->config.allocator, bytes, size);
+    if (!same_held) {
+        memset(body->copies.held, 0, body->copies.count);
+        body->holds.stale = 1;
+        body->model.state = GXP_MODEL_STALE;
+    }
+    gxp_resume(from);
+    return GX_OK;
+}
+
+GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from) {
+    gx_body *copy, swap;
+    gx_result result;
+    if (body == NULL || from == NULL) return GX_ERROR_ARGUMENT;
+    if (body == from) return GX_OK;
+    if (body->cuts.hash == from->cuts.hash && body->copies.count == from->copies.count &&
+        body->cells.count == from->cells.count && body->leaves.count == from->leaves.count &&
+        gxp_same_materials(body, from))
+        return gxp_restore_state(body, from);
+    result = gxp_copy_body(from, body, &copy);
+    if (result != GX_OK) return result;
+    swap = *body;
+    *body = *copy;
+    *copy = swap;
+    gx_body_destroy(copy);
+    return GX_OK;
+}
+
+#undef GXP_PREFETCH
+#undef GXP_PREFETCHES
 #undef GXP_NONE
 #undef GXP_SUPPORT
 #undef GXP_SPECK
-#undef GXP_CRUMB
-#undef GXP_FRAGMENT_ARRAYS
+#undef GXP_SPECK_REACH
+#undef GXP_COLUMN
+#undef GXP_TABLE
+#undef GXP_LIST
+#undef GXP_WORDS
+#undef GXP_KEYS
 #undef GXP_FIRST
 #undef GXP_SECOND
 #undef GXP_LINK_CELL

@@ -448,6 +448,9 @@ typedef struct gxb_complex { /* what is used most comes first: its addresses are
     struct gxbp_pairs *pairs; /* see >>insert, barycentric coordinates */
 } gxb_complex;
 
+/* Are allocate and release both there or both NULL, and reallocate only with them? */
+GXFEM_API int gxb_is_allocator(const gx_allocator *allocator);
+
 /* The complex of a mesh. Errors: ARGUMENT, EMPTY, INDEX (element), NOT_FINITE and RANGE (node), INVERTED and FLAT
    (element), OVERLAP (element: one of its faces is shared by more than two elements, or by two on the same side),
    LIMIT, MEMORY, CONFIGURATION. */
@@ -3031,7 +3034,7 @@ static GXBP_COLD gx_result gxbp_fail(gx_failure *failure, gx_result result, size
 }
 
 /* allocate and release, or neither, and reallocate only with them */
-static int gxbp_is_allocator(const gx_allocator *a) {
+GXFEM_API int gxb_is_allocator(const gx_allocator *a) {
     return a->allocate == NULL ? a->release == NULL && a->reallocate == NULL : a->release != NULL;
 }
 
@@ -3055,7 +3058,7 @@ GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator 
     gx_result result;
     memset(&none, 0, sizeof none);
     if (allocator == NULL) allocator = &none;
-    if (mesh == NULL || complex == NULL || !gxbp_is_allocator(allocator))
+    if (mesh == NULL || complex == NULL || !gxb_is_allocator(allocator))
         return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     if (mesh->node_count == 0 || mesh->element_count == 0) return gxbp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
     if (mesh->positions == NULL || mesh->elements == NULL) return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
@@ -11169,7 +11172,7 @@ GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean
     memset(&none, 0, sizeof none);
     if (boolean == NULL) return GX_ERROR_ARGUMENT;
     if (desc == NULL) desc = &none;
-    if (!gxbp_is_allocator(&desc->allocator)) return GX_ERROR_ARGUMENT;
+    if (!gxb_is_allocator(&desc->allocator)) return GX_ERROR_ARGUMENT;
     if (desc->memory_limit > 0 && desc->memory_limit < sizeof *b) return GX_ERROR_LIMIT;
     if (!gxbp_arithmetic_holds(0)) return GX_ERROR_CONFIGURATION;
     arena = desc->memory_limit == 0 || desc->memory_limit >= 16 * GXBP_ARENA ? GXBP_ARENA : 0;

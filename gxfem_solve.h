@@ -441,6 +441,9 @@ typedef struct gxs_solver gxs_solver;
  * contact points than ever before. */
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
                                     double *velocity, gxs_step_report *report, gx_failure *failure);
+/* Checks of a step's description what needs no solver: its numbers, and that it names copies by the numbering `epoch`.
+   Errors: ARGUMENT, NOT_FINITE, RANGE, LIMIT, STALE. */
+GXFEM_API gx_result gxs_step_check(const gxs_step_desc *step, uint64_t epoch, gx_failure *failure /* or NULL */);
 
 /* Sets the model that the next steps move; again after each cut and each change of materials or held copies. All is
  * copied into the solver's own form. GX_ERROR_MEMORY is possible. On any error the model before stays. */
@@ -8818,6 +8821,14 @@ static gx_result gxsp_check_epochs(const gxs_step_desc *step, uint64_t epoch, gx
     for (i = 0; i < step->point_count; i++)
         if (step->points[i].epoch != epoch) return gxsp_fail(failure, GX_ERROR_STALE, i);
     return GX_OK;
+}
+
+GXFEM_API gx_result gxs_step_check(const gxs_step_desc *step, uint64_t epoch, gx_failure *failure) {
+    gx_failure ignored;
+    gx_result result;
+    if (failure == NULL) failure = &ignored;
+    result = gxsp_check_step(step, failure);
+    return result == GX_OK ? gxsp_check_epochs(step, epoch, failure) : result;
 }
 
 static gx_result gxsp_check_point(const gxs_point *point, size_t n, size_t index, gx_failure *failure) {

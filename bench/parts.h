@@ -37,11 +37,11 @@ static inline uint32_t parts_of_copies(const parts_body *p, uint32_t element, co
 static inline void parts_label_leaves(parts_body *p) {
     const gx_body *body = p->body;
     uint32_t cell, leaf;
-    memset(p->leaf_part, 255, body->leaf_count * sizeof *p->leaf_part);
-    for (cell = 0; cell < body->cell_count; cell++) {
-        const gxp_cell *c = &body->cells[cell];
+    memset(p->leaf_part, 255, body->leaves.count * sizeof *p->leaf_part);
+    for (cell = 0; cell < body->cells.count; cell++) {
+        const gxp_cell *c = &body->cells.data[cell];
         if (!c->kept) continue;
-        for (leaf = c->first_leaf; leaf != UINT32_MAX; leaf = body->leaves[leaf].next)
+        for (leaf = c->first_leaf; leaf != UINT32_MAX; leaf = body->leaves.data[leaf].next)
             p->leaf_part[leaf] = parts_of_copies(p, c->element, c->copies);
     }
 }
@@ -52,12 +52,12 @@ static inline parts_body parts_create(gx_body *body) {
     memset(&p, 0, sizeof p);
     p.body = body;
     part_expect(gx_body_model(body, &p.model));
-    p.first = (uint32_t *)dense_memory(NULL, (size_t)body->element_count + 1, sizeof *p.first);
-    p.leaf_part = (uint32_t *)dense_memory(NULL, body->leaf_count, sizeof *p.leaf_part);
-    p.leaves = (uint32_t *)dense_memory(NULL, body->leaf_count, sizeof *p.leaves);
-    memset(p.first, 0, ((size_t)body->element_count + 1) * sizeof *p.first);
+    p.first = (uint32_t *)dense_memory(NULL, (size_t)body->mesh.element_count + 1, sizeof *p.first);
+    p.leaf_part = (uint32_t *)dense_memory(NULL, body->leaves.count, sizeof *p.leaf_part);
+    p.leaves = (uint32_t *)dense_memory(NULL, body->leaves.count, sizeof *p.leaves);
+    memset(p.first, 0, ((size_t)body->mesh.element_count + 1) * sizeof *p.first);
     for (i = 0; i < p.model.element_count; i++) p.first[p.model.elements[i].group + 1]++;
-    for (i = 0; i < body->element_count; i++) p.first[i + 1] += p.first[i];
+    for (i = 0; i < body->mesh.element_count; i++) p.first[i + 1] += p.first[i];
     parts_label_leaves(&p);
     return p;
 }
@@ -70,7 +70,7 @@ static inline void parts_free(parts_body *p) {
 }
 
 static inline const double *parts_corner(const parts_body *p, uint32_t element, int k) {
-    return p->body->positions + 3 * (size_t)p->body->complex->elements[4 * (size_t)element + (size_t)k];
+    return p->body->mesh.positions + 3 * (size_t)p->body->complex->elements[4 * (size_t)element + (size_t)k];
 }
 
 /* Volume of the uncut element, m3 */
@@ -200,9 +200,10 @@ static inline part parts_shape(const parts_body *p, uint32_t element, uint32_t i
     shape.complex = body->complex;
     shape.element = element;
     shape.leaves = p->leaves;
-    for (cell = element; cell != UINT32_MAX; cell = body->cells[cell].next) {
-        if (!body->cells[cell].kept || parts_of_copies(p, element, body->cells[cell].copies) != index) continue;
-        for (leaf = body->cells[cell].first_leaf; leaf != UINT32_MAX; leaf = body->leaves[leaf].next)
+    for (cell = element; cell != UINT32_MAX; cell = body->cells.data[cell].next) {
+        if (!body->cells.data[cell].kept || parts_of_copies(p, element, body->cells.data[cell].copies) != index)
+            continue;
+        for (leaf = body->cells.data[cell].first_leaf; leaf != UINT32_MAX; leaf = body->leaves.data[leaf].next)
             shape.leaves[shape.leaf_count++] = leaf;
     }
     return shape;
@@ -239,7 +240,7 @@ static inline void parts_integrate(const parts_body *p, parts_rule_fn make, int 
     size_t k;
     memset(&rule, 0, sizeof rule);
     memcpy(elements, p->model.elements, p->model.element_count * sizeof *elements);
-    for (e = 0; e < p->body->element_count; e++) {
+    for (e = 0; e < p->body->mesh.element_count; e++) {
         const uint32_t first = p->first[e], count = p->first[e + 1] - first;
         gxi_moments2 *moments;
         for (i = 0; i < count; i++) counts[first + i] = count == 1;

@@ -314,7 +314,7 @@ static double size_of(const double *a, const double *b) {
 static void place_of(const life *l, const gx_view *view, size_t copy, double x[3]) {
     int k;
     for (k = 0; k < 3; k++)
-        x[k] = l->body->positions[3 * (size_t)view->copy_node[copy] + (size_t)k] +
+        x[k] = l->body->mesh.positions[3 * (size_t)view->copy_node[copy] + (size_t)k] +
                view->displacement[3 * copy + (size_t)k];
 }
 
@@ -372,7 +372,7 @@ static double *copied(const double *values, size_t count) {
 static int live_a_step(life *l, row *r) {
     gx_view view;
     gx_step_report report;
-    double *before[2], *past[2] = {NULL, NULL}, previous_dt = l->body->previous_dt, gain;
+    double *before[2], *past[2] = {NULL, NULL}, previous_dt = l->body->copies.previous_dt, gain;
     size_t i, n;
     int k;
     if (l->done % 3 == 1) cut_now(l, r);
@@ -386,7 +386,7 @@ static int live_a_step(life *l, row *r) {
     l->step.plane_count = 1;
     before[0] = copied(view.displacement, n);
     before[1] = copied(view.velocity, n);
-    for (k = 0; k < 2 && previous_dt > 0; k++) past[k] = copied(l->body->history[k], n);
+    for (k = 0; k < 2 && previous_dt > 0; k++) past[k] = copied(l->body->copies.history[k], n);
     if (gx_body_step(l->body, &l->step, &report, NULL) != GX_OK || gx_body_view(l->body, &view) != GX_OK) {
         r->errors++;
         l->done = LIFE_STEPS;

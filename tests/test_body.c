@@ -178,10 +178,10 @@ static int is_inside(gxb_complex *cx, uint32_t leaf, const double x[3]) {
 static uint32_t slot_at(gx_body *body, uint32_t element, const double x[3]) {
     uint32_t cell, leaf, found = UINT32_MAX;
     gxb_complex_begin(body->complex);
-    for (cell = element; cell != UINT32_MAX && found == UINT32_MAX; cell = body->cells[cell].next) {
-        if (!body->cells[cell].kept) continue;
-        for (leaf = body->cells[cell].first_leaf; leaf != UINT32_MAX && found == UINT32_MAX;
-             leaf = body->leaves[leaf].next) {
+    for (cell = element; cell != UINT32_MAX && found == UINT32_MAX; cell = body->cells.data[cell].next) {
+        if (!body->cells.data[cell].kept) continue;
+        for (leaf = body->cells.data[cell].first_leaf; leaf != UINT32_MAX && found == UINT32_MAX;
+             leaf = body->leaves.data[leaf].next) {
             if (body->complex->leaves[leaf].facet_count == 0 || is_inside(body->complex, leaf, x)) found = cell;
         }
     }
@@ -196,14 +196,15 @@ static int field_at(gx_body *body, uint32_t element, const double lambda[4], dou
     int i, k;
     for (i = 0; i < 4; i++)
         for (k = 0; k < 3; k++)
-            x[k] += lambda[i] * body->positions[3 * body->complex->elements[4 * element + (uint32_t)i] + (uint32_t)k];
+            x[k] +=
+                lambda[i] * body->mesh.positions[3 * body->complex->elements[4 * element + (uint32_t)i] + (uint32_t)k];
     cell = slot_at(body, element, x);
     if (cell == UINT32_MAX) return 0;
     for (k = 0; k < 3; k++) {
         u[k] = v[k] = 0;
         for (i = 0; i < 4; i++) {
-            u[k] += lambda[i] * body->displacement[3 * body->cells[cell].copies[i] + (uint32_t)k];
-            v[k] += lambda[i] * body->velocity[3 * body->cells[cell].copies[i] + (uint32_t)k];
+            u[k] += lambda[i] * body->copies.displacement[3 * body->cells.data[cell].copies[i] + (uint32_t)k];
+            v[k] += lambda[i] * body->copies.velocity[3 * body->cells.data[cell].copies[i] + (uint32_t)k];
         }
     }
     return 1;
@@ -941,8 +942,8 @@ static double smallest_eigenvalue(double a[4][4]) {
 static void check_cells(gx_body *body, const char *what, uint64_t seed) {
     static const int at[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
     uint32_t i;
-    for (i = 0; i < body->cell_count; i++) {
-        const gxp_cell *cell = &body->cells[i];
+    for (i = 0; i < body->cells.count; i++) {
+        const gxp_cell *cell = &body->cells.data[i];
         double a[4][4], sum = 0, low;
         int p, q;
         if (!cell->kept) continue;
@@ -1696,8 +1697,8 @@ static int cell_reaches(gx_body *body, uint32_t cell, const gx_region *r) {
     gxb_complex *cx = body->complex;
     double reach = -1e300;
     uint32_t leaf, i, j, first, count, e0, en;
-    ck_assert_int_eq(gxb_complex_open_element(cx, body->cells[cell].element), GX_OK);
-    for (leaf = body->cells[cell].first_leaf; leaf != UINT32_MAX; leaf = body->leaves[leaf].next) {
+    ck_assert_int_eq(gxb_complex_open_element(cx, body->cells.data[cell].element), GX_OK);
+    for (leaf = body->cells.data[cell].first_leaf; leaf != UINT32_MAX; leaf = body->leaves.data[leaf].next) {
         ck_assert_int_eq(gxb_leaf_resolve_facets(cx, leaf, &first, &count), GX_OK);
         for (i = 0; i < count; i++) {
             ck_assert_int_eq(gxb_facet_resolve_edges(cx, cx->pool[first + i], &e0, &en), GX_OK);
@@ -1705,10 +1706,11 @@ static int cell_reaches(gx_body *body, uint32_t cell, const gx_region *r) {
                 const uint32_t e = cx->pool[e0 + j];
                 double lambda[4], x = 0;
                 int k;
-                gxb_complex_barycentric(cx, cx->edges[e >> 1].v[e & 1], body->cells[cell].element, lambda);
+                gxb_complex_barycentric(cx, cx->edges[e >> 1].v[e & 1], body->cells.data[cell].element, lambda);
                 for (k = 0; k < 4; k++)
                     x += lambda[k] *
-                         body->positions[3 * cx->elements[4 * body->cells[cell].element + (uint32_t)k] + r->axis];
+                         body->mesh
+                             .positions[3 * cx->elements[4 * body->cells.data[cell].element + (uint32_t)k] + r->axis];
                 reach = fmax(reach, (x - r->value) * r->side);
             }
         }
@@ -1722,12 +1724,12 @@ static void check_held(gx_body *body, const gx_region *regions, size_t count, ui
     for (c = 0; c < view.copy_count; c++) {
         int expected = -1;
         for (r = 0; r < count; r++) {
-            double x = body->positions[3 * view.copy_node[c] + regions[r].axis];
+            double x = body->mesh.positions[3 * view.copy_node[c] + regions[r].axis];
             if (!((x - regions[r].value) * regions[r].side > 0)) continue;
             for (i = 0; i < view.cell_count; i++)
                 for (k = 0; k < 4; k++)
                     if (view.cell_copies[4 * i + k] == c)
-                        expected = (int)fmax(expected, cell_reaches(body, body->view_cells.data[i], &regions[r]));
+                        expected = (int)fmax(expected, cell_reaches(body, body->view.slot[i], &regions[r]));
         }
         if (expected != 0)
             ck_assert_msg((expected > 0) == (view.copy_held[c] == 1), "seed %llu: copy %zu of node %u: held %u",
@@ -1782,7 +1784,7 @@ START_TEST(pieces_outside_the_region_are_free) {
         view = view_of(body);
         for (j = held = 0; j < view.copy_count; j++) {
             held += view.copy_held[j];
-            ck_assert(!view.copy_held[j] || body->positions[3 * view.copy_node[j] + 2] == 1);
+            ck_assert(!view.copy_held[j] || body->mesh.positions[3 * view.copy_node[j] + 2] == 1);
         }
         ck_assert_uint_eq(held, 4);
     }
@@ -1811,12 +1813,12 @@ static double momentum(gx_body *body, double p[3]) {
     uint32_t i;
     int a, b, k;
     p[0] = p[1] = p[2] = 0;
-    for (i = 0; i < body->cell_count; i++)
-        for (a = 0; a < 4 && body->cells[i].kept; a++)
+    for (i = 0; i < body->cells.count; i++)
+        for (a = 0; a < 4 && body->cells.data[i].kept; a++)
             for (b = 0; b < 4; b++)
                 for (k = 0; k < 3; k++) {
-                    double x =
-                        body->cells[i].mass[at[a][b]] * body->velocity[3 * body->cells[i].copies[b] + (uint32_t)k];
+                    double x = body->cells.data[i].mass[at[a][b]] *
+                               body->copies.velocity[3 * body->cells.data[i].copies[b] + (uint32_t)k];
                     p[k] += x;
                     size += fabs(x);
                 }
@@ -1971,13 +1973,13 @@ static void deformed_center(gx_body *body, uint32_t fragment, double center[3]) 
     int a, k;
     center[0] = center[1] = center[2] = 0;
     for (i = 0; i < view.cell_count; i++) {
-        const gxp_cell *cell = &body->cells[body->view_cells.data[i]];
+        const gxp_cell *cell = &body->cells.data[body->view.slot[i]];
         if (view.cell_fragment[i] != fragment) continue;
         for (a = 0; a < 4; a++) {
             const double m = gxp_mass_row(cell->mass, a);
             mass += m;
             for (k = 0; k < 3; k++)
-                center[k] += m * (body->positions[3 * view.copy_node[cell->copies[a]] + (uint32_t)k] +
+                center[k] += m * (body->mesh.positions[3 * view.copy_node[cell->copies[a]] + (uint32_t)k] +
                                   view.displacement[3 * cell->copies[a] + (uint32_t)k]);
         }
     }
@@ -2004,7 +2006,7 @@ START_TEST(sticks_drift_apart) {
     memcpy(rest, view.fragment_center, view.fragment_count * sizeof *rest);
     for (i = 0; i < view.copy_count; i++)
         for (k = 0; k < 2; k++)
-            view.velocity[3 * i + (size_t)k] = 2 * (body->positions[3 * view.copy_node[i] + (uint32_t)k] - 0.5);
+            view.velocity[3 * i + (size_t)k] = 2 * (body->mesh.positions[3 * view.copy_node[i] + (uint32_t)k] - 0.5);
     for (n = 0; n < 10; n++) {
         ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
         view = view_of(body);
@@ -2255,7 +2257,7 @@ static void check_skin(gx_body *body, uint64_t seed) {
     for (pass = 0; pass < 2; pass++) {
         for (i = 0; i < view.copy_count; i++)
             for (k = 0; k < 3; k++) {
-                const double *x = body->positions + 3 * (size_t)view.copy_node[i];
+                const double *x = body->mesh.positions + 3 * (size_t)view.copy_node[i];
                 view.displacement[3 * i + (size_t)k] = 0;
                 for (j = 0; j < 3 && pass == 1; j++)
                     view.displacement[3 * i + (size_t)k] += (map[k][j] - (k == j)) * x[j];
@@ -2264,7 +2266,7 @@ static void check_skin(gx_body *body, uint64_t seed) {
         for (f = 0; f < view.fragment_count; f++) volume[f] = 0;
         for (i = 0; i < skin.triangle_count; i++) {
             CHECK_SEED(skin.triangle_fragment[i] < view.fragment_count &&
-                           skin.triangle_surface[i] <= body->surface_count,
+                           skin.triangle_surface[i] <= body->cuts.surface_count,
                        seed);
             volume[skin.triangle_fragment[i]] += signed_volume(positions, skin.triangles + 3 * i, 1);
         }

@@ -161,11 +161,11 @@ START_TEST(cuts_change_the_model) {
         if (c % 3 == 1) continue; /* two cuts before a step */
         advance(changed, &step, 2);
         advance(whole, &step, 2);
-        updates += changed->model_updated != 0;
-        ck_assert(!whole->model_updated);
+        updates += changed->model.updated != 0;
+        ck_assert(!whole->model.updated);
         ck_assert_uint_eq(changed->solver->system->model.follower_count, whole->solver->system->model.follower_count);
         ck_assert_uint_eq(changed->solver->system->model.light_count, whole->solver->system->model.light_count);
-        followers += changed->model_updated ? changed->solver->system->model.follower_count : 0;
+        followers += changed->model.updated ? changed->solver->system->model.follower_count : 0;
         ck_assert_msg(apart(changed, whole) < 1e-6, "after cut %zu: %g", c, apart(changed, whole));
         check_operator(changed, whole);
         check_lanes(changed);
@@ -216,7 +216,7 @@ START_TEST(changed_models_are_of_any_kind) {
         hold_top(whole);
         advance(changed, &step, 1);
         advance(whole, &step, 1);
-        ck_assert(changed->model_updated);
+        ck_assert(changed->model.updated);
         ck_assert_msg(apart(changed, whole) < 1e-6, "after cut %zu: %g", c, apart(changed, whole));
     }
     gx_body_destroy(changed);
@@ -271,7 +271,7 @@ START_TEST(small_cuts_keep_coarse_numbers) {
         ck_assert_uint_gt(system->multigrid.level_count, 1);
         cut_by(body, &w, c, 1);
         advance(body, &step, 1);
-        ck_assert(body->model_updated);
+        ck_assert(body->model.updated);
         ck_assert(memcmp(before, system->coarse.displacement + 3, sizeof before) == 0); /* no step has made them */
         ck_assert(system->coarse.rate > 0);
         bytes = 9 * (size_t)level->start[level->n] * sizeof *block;
@@ -312,7 +312,7 @@ START_TEST(changed_models_take_no_more_iterations) {
         ck_assert_int_eq(gx_body_hold(whole, &top, 1), GX_OK);
         by_change += advance(changed, &step, 2);
         by_whole += advance(whole, &step, 2);
-        ck_assert(changed->model_updated);
+        ck_assert(changed->model.updated);
     }
     ck_assert_msg(by_change <= by_whole + by_whole / 10, "%u iterations, %u with models set whole", by_change,
                   by_whole);
@@ -364,7 +364,7 @@ START_TEST(saved_bodies_go_on_alike) {
     advance(body, &step, 2);
     cut_by(body, &w, 0, 2);
     advance(body, &step, 2);
-    ck_assert(body->model_updated);
+    ck_assert(body->model.updated);
     if (_i % 2) cut_by(body, &w, 2, 1);
     ck_assert_int_eq(gx_body_clone(body, &copy), GX_OK);
     ck_assert_int_eq(gx_body_clone(body, &before), GX_OK);
@@ -375,7 +375,7 @@ START_TEST(saved_bodies_go_on_alike) {
     cut_by(copy, &w, 3, 2);
     advance(body, &step, 2);
     advance(copy, &step, 2);
-    ck_assert(body->model_updated && same_bits(body, copy));
+    ck_assert(body->model.updated && same_bits(body, copy));
     ck_assert_int_eq(gx_body_restore(body, before), GX_OK);
     advance(body, &step, 2);
     advance(before, &step, 2);
@@ -396,7 +396,7 @@ START_TEST(restored_states_go_on_alike) {
     advance(body, &step, 2);
     cut_by(body, &w, 0, 2);
     advance(body, &step, 1);
-    ck_assert(body->model_updated);
+    ck_assert(body->model.updated);
     ck_assert_int_eq(gx_body_clone(body, &mark), GX_OK);
     advance(body, &step, 3);
     /* the same cuts, so that restoring copies the state alone */
@@ -440,11 +440,11 @@ START_TEST(what_is_written_between_cut_and_step_wakes) {
     for (i = 0; i < view.copy_count; i++) all += view.copy_held[i] ? 0 : 3;
     for (i = 0; i < view.copy_count && _i; i++)
         if (!view.copy_held[i] && w.positions[3 * view.copy_node[i]] > 3.5) {
-            body->displacement[3 * i + _i - 1] += 1e-3;
+            body->copies.displacement[3 * i + _i - 1] += 1e-3;
             break;
         }
     ck_assert_int_eq(gx_body_step(body, &step, &report, NULL), GX_OK);
-    ck_assert(body->model_updated);
+    ck_assert(body->model.updated);
     if (_i)
         ck_assert_uint_eq(report.active_unknowns, all);
     else
@@ -487,7 +487,7 @@ START_TEST(own_materials_are_cut) {
     add_axis_plane(&w, 0, 0.4);
     cut_by(body, &w, 0, 1);
     advance(body, &step, 2);
-    ck_assert(body->model_updated);
+    ck_assert(body->model.updated);
     gx_body_destroy(body);
     wl_free(&w);
 }
