@@ -42,9 +42,14 @@
  * options of a result: set_triangulation, set_fine, set_mend; more about a result: components, defects, statistics
  *
  * then, under GXFEM_BOOLEAN_IMPLEMENTATION, in this order, from the bottom up: of all
- * >>bits and >>exact (arithmetic), >>filter (doubles with bounds), >>points (predicates), >>memory (arrays,
- * transactions) of complexes  >>topology (of the mesh; signs), >>split (by a plane), >>clip and >>insert (a triangle),
- * >>save, >>check (what was read)
+ *     arithmetic      >>bits, >>exact (integers times powers of two), >>filter (doubles with bounds)
+ *     predicates      >>points, >>trial (does arithmetic keep the rules?)
+ * of complexes:
+ *     storage         >>memory (arrays), >>store (points, planes, exact numbers), >>transaction
+ *     structure       >>topology (of the mesh), >>access (reading), >>split (by a plane)
+ *     a triangle      >>clip, >>walls, >>cover (what is there already), >>rebalance and >>crowds (trees), >>insert
+ *     questions       >>inside (winding numbers), >>pairs (of doubles), >>barycentric
+ *     bytes           >>save, >>check (what was read), >>load
  *
  * of Booleans, in the order of the work:
  *     the object      >>arrangement (its types and struct), >>arena (memory), >>keys (points by definition)
@@ -445,7 +450,7 @@ typedef struct gxb_complex { /* what is used most comes first: its addresses are
     uint32_t mark[6]; /* counts at begin: edges facets leaves nodes labels pool */
     uint32_t edge_stamp;
     uint32_t sign_plane;      /* whose signs points remember in slot 0 */
-    struct gxbp_pairs *pairs; /* see >>insert, barycentric coordinates */
+    struct gxbp_pairs *pairs; /* see >>pairs, >>barycentric */
 } gxb_complex;
 
 /* Are allocate and release both there or both NULL, and reallocate only with them? */
@@ -749,6 +754,8 @@ extern "C" {
 #endif
 
 /* >>bits: doubles taken apart and put together without floating-point arithmetic ----------------------------------- */
+/* In: doubles. Out: their bits, integer parts and powers of two, and doubles made of these. Nothing here depends
+   on rounding modes or flags. */
 
 static uint64_t gxbp_bits(double x) {
     uint64_t b;
@@ -788,6 +795,8 @@ static int gxbp_exponent(double x) {
 }
 
 /* >>exact: sums and products of doubles as integers times powers of two -------------------------------------------- */
+/* In: doubles and exact numbers. Out: exact numbers, their signs and roundings. Their limbs are in the caller's
+   memory: nothing is allocated. */
 
 #if GXB_LIMB_BITS == 64
 __extension__ typedef unsigned __int128 gxbp_wide;
@@ -1306,6 +1315,8 @@ static void gxbp_filter_three_planes(gxb_ball *out, const gxb_plane_filter *cons
 }
 
 /* >>points: the predicates on their own ---------------------------------------------------------------------------- */
+/* In: coordinates, planes and points by definition. Out: signs. A filter in doubles decides most; exact numbers
+   decide the rest. Touches nothing but its own stack. */
 
 static void gxbp_ball_explicit(gxb_ball *ball, const double p[3]) {
     memcpy(ball->x, p, sizeof ball->x);
@@ -1807,7 +1818,8 @@ GXFEM_API int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const 
     }
 }
 
-/* --- what all this rests on, tried out ---
+/* >>trial: what all this rests on, tried out ----------------------------------------------------------------------- */
+/* In: nothing. Out: does arithmetic keep the rules that filters and exact numbers assume?
  *
  * A processor's mode or a compiler that breaks it makes GX_ERROR_CONFIGURATION of every creation. The compiler knows
  * none of the numbers. Results are exact, and so the same under every flag and in every mode that is allowed; where one
@@ -1994,6 +2006,7 @@ GXFEM_API int gxb_winding_number(const double *vertices, const uint32_t *triangl
 }
 
 /* >>memory: growing arrays ----------------------------------------------------------------------------------------- */
+/* In: an allocator. Out: arrays that grow by one rule, gxbp_reserve. All sizes are checked for overflow. */
 
 static GXBP_APART void *gxbp_allocate(const gx_allocator *a, size_t size) {
     return a->allocate ? a->allocate(a->user, size) : malloc(size);
@@ -2093,8 +2106,9 @@ static GXBP_RARE void gxbp_expect_arrays(const gx_allocator *a, void *owner, con
     }
 }
 
-/* >>store: points, planes, exact numbers, a transaction -------------------------------------------------------------
- */
+/* >>store: points, planes, exact numbers, a transaction ------------------------------------------------------------ */
+/* What a complex and a Boolean share. In: definitions of points and planes. Out: their numbers, their balls, exact
+   coordinates on request, signs. An undo log takes back what a transaction has added. */
 
 /* In: coordinates, or the points and planes that define a point or plane. Out: indices; exact signs of one against
    another. Touches the store alone: nothing here knows of edges, facets or triangles. Exact numbers are computed when a
@@ -2658,8 +2672,9 @@ static GXBP_COLD int gxbp_planes_cross(gxb_store *store, uint32_t a, uint32_t b)
     return cross.c[0].sign != 0 || cross.c[1].sign != 0 || cross.c[2].sign != 0;
 }
 
-/* >>transaction: what begin, commit and rollback of a complex do ----------------------------------------------------
- */
+/* >>transaction: what begin, commit and rollback of a complex do --------------------------------------------------- */
+/* In: a complex. Out: the complex as it was at the beginning, if the transaction is taken back. Logs each record
+   once, before its first change. */
 
 typedef struct gxbp_corner { /* of a clipped polygon: its point, and what carries the edge to the next corner */
     gxb_ball ball;
@@ -2824,6 +2839,8 @@ GXFEM_API int gxb_complex_compare(gxb_complex *cx, uint32_t point, int axis, dou
 }
 
 /* >>topology: the complex of a mesh -------------------------------------------------------------------------------- */
+/* In: nodes and elements. Out: a complex with one leaf for each element, four facets each, shared with its
+   neighbours. */
 
 GXFEM_API gx_result gxb_complex_add_plane(gxb_complex *cx, gxb_triangle *t) {
     const gx_result result = gxbp_new_plane(&cx->store, t->point[0], t->point[1], t->point[2], 0, &t->plane);
@@ -3281,10 +3298,10 @@ GXFEM_API gx_result gxb_leaf_resolve_facets(gxb_complex *cx, uint32_t leaf, uint
 
 /* The cutting plane, and (explicit_line) the line in which the facets to be divided meet it, where that is a triangle's
  * edge. */
-typedef struct gxbp_knife {
+typedef struct gxbp_splitter {
     uint32_t plane, line[2];
     int explicit_line, slot;
-} gxbp_knife;
+} gxbp_splitter;
 
 /* Room for dividing facets with so many edges in all. */
 static gx_result gxbp_reserve_split(gxb_complex *cx, size_t facets, size_t edges) {
@@ -3337,11 +3354,11 @@ static uint32_t gxbp_cross_edge(gxb_complex *cx, const gxb_edge *e, uint32_t pla
 }
 
 /* Divides the edge where the plane crosses it; its ends lie strictly on either side. */
-static void gxbp_split_edge(gxb_complex *cx, uint32_t edge, const gxbp_knife *knife) {
+static void gxbp_split_edge(gxb_complex *cx, uint32_t edge, const gxbp_splitter *splitter) {
     const gxb_edge e = cx->edges[edge];
-    const uint32_t id = gxbp_cross_edge(cx, &e, knife->plane);
-    cx->store.points[id].stamp[knife->slot] = cx->store.stamp[knife->slot];
-    cx->store.points[id].sign[knife->slot] = 0;
+    const uint32_t id = gxbp_cross_edge(cx, &e, splitter->plane);
+    cx->store.points[id].stamp[splitter->slot] = cx->store.stamp[splitter->slot];
+    cx->store.points[id].sign[splitter->slot] = 0;
     gxbp_save(cx, GXBP_EDGES, edge);
     cx->edges[edge].child = cx->edge_count;
     gxbp_new_edge(cx, e.v[0], id, e.line, e.explicit_line);
@@ -3351,13 +3368,13 @@ static void gxbp_split_edge(gxb_complex *cx, uint32_t edge, const gxbp_knife *kn
 
 /* Of a facet: bit 1, it has points in front of the plane; bit 2, behind it; the rest, how many are in it. *edges: how
    many its loop has when it is resolved */
-static uint32_t gxbp_facet_signs(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife, uint32_t *edges) {
+static uint32_t gxbp_facet_signs(gxb_complex *cx, uint32_t facet, const gxbp_splitter *splitter, uint32_t *edges) {
     const uint32_t *loop = cx->pool + cx->facets[facet].loop, *end = loop + cx->facets[facet].loop_count;
     uint32_t signs = 0, count = 0;
     for (; loop < end; loop++) {
         static const uint8_t add[3] = {2, 4, 1};
         const gxb_edge *e = &cx->edges[*loop >> 1];
-        const uint32_t one = add[1 + gxbp_sign(&cx->store, e->v[*loop & 1], knife->plane, knife->slot)];
+        const uint32_t one = add[1 + gxbp_sign(&cx->store, e->v[*loop & 1], splitter->plane, splitter->slot)];
         signs = one == 4 ? signs + 4 : signs | one;
         count += e->child == GXB_NONE ? 1 : gxbp_count_edges(cx, *loop >> 1);
     }
@@ -3365,9 +3382,9 @@ static uint32_t gxbp_facet_signs(gxb_complex *cx, uint32_t facet, const gxbp_kni
     return signs;
 }
 
-static int gxbp_facet_sides(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) {
+static int gxbp_facet_sides(gxb_complex *cx, uint32_t facet, const gxbp_splitter *splitter) {
     uint32_t edges;
-    return (int)(gxbp_facet_signs(cx, facet, knife, &edges) & 3);
+    return (int)(gxbp_facet_signs(cx, facet, splitter, &edges) & 3);
 }
 
 /* A facet's loop while it is divided: in the middle of complex.scratch. zero: where the two points in the plane start
@@ -3379,24 +3396,25 @@ typedef struct gxbp_parting {
 
 /* Appends an edge that starts on the side parting->sign, or what it has been divided into; divides what the plane
  * crosses. */
-static void gxbp_part_edge(gxb_complex *cx, uint32_t signed_edge, const gxbp_knife *knife, gxbp_parting *parting) {
+static void gxbp_part_edge(gxb_complex *cx, uint32_t signed_edge, const gxbp_splitter *splitter,
+                           gxbp_parting *parting) {
     const uint32_t back = signed_edge & 1;
     const gxb_edge *e = &cx->edges[signed_edge >> 1];
     uint32_t child = e->child;
     const int from = parting->sign;
     if (child != GXB_NONE) {
-        gxbp_part_edge(cx, (child + back) << 1 | back, knife, parting);
-        gxbp_part_edge(cx, (child + 1 - back) << 1 | back, knife, parting);
+        gxbp_part_edge(cx, (child + back) << 1 | back, splitter, parting);
+        gxbp_part_edge(cx, (child + 1 - back) << 1 | back, splitter, parting);
         return;
     }
-    parting->sign = gxbp_sign(&cx->store, e->v[1 - back], knife->plane, knife->slot);
+    parting->sign = gxbp_sign(&cx->store, e->v[1 - back], splitter->plane, splitter->slot);
     if (from == 0 && parting->zeros < 2) parting->zero[parting->zeros++] = parting->count;
     if (from * parting->sign >= 0) {
         parting->loop[parting->count++] = signed_edge;
         return;
     }
     child = cx->edge_count;
-    gxbp_split_edge(cx, signed_edge >> 1, knife);
+    gxbp_split_edge(cx, signed_edge >> 1, splitter);
     parting->loop[parting->count++] = (child + back) << 1 | back;
     if (parting->zeros < 2) parting->zero[parting->zeros++] = parting->count;
     parting->loop[parting->count++] = (child + 1 - back) << 1 | back;
@@ -3437,7 +3455,7 @@ static void gxbp_copy_arc(gxb_complex *cx, const gxbp_parting *parting, uint32_t
 
 /* Divides a facet that has points on both sides of the plane. Its children are child (in front) and child + 1. Returns
    the new edge, signed as the front child walks it. */
-static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) {
+static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_splitter *splitter) {
     const gxb_facet f = cx->facets[facet];
     const uint32_t child = cx->facet_count, *zero;
     uint32_t line[2], edge, front, i;
@@ -3446,14 +3464,15 @@ static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_kni
     memset(&parting, 0, sizeof parting);
     parting.loop = cx->scratch + cx->scratch_capacity / 4;
     zero = parting.zero;
-    parting.sign = gxbp_sign(&cx->store, gxbp_edge_start(cx, cx->pool[f.loop]), knife->plane, knife->slot);
-    for (i = 0; i < f.loop_count; i++) gxbp_part_edge(cx, cx->pool[f.loop + i], knife, &parting);
-    line[0] = knife->explicit_line ? knife->line[0] : f.plane;
-    line[1] = knife->explicit_line ? knife->line[1] : knife->plane;
+    parting.sign = gxbp_sign(&cx->store, gxbp_edge_start(cx, cx->pool[f.loop]), splitter->plane, splitter->slot);
+    for (i = 0; i < f.loop_count; i++) gxbp_part_edge(cx, cx->pool[f.loop + i], splitter, &parting);
+    line[0] = splitter->explicit_line ? splitter->line[0] : f.plane;
+    line[1] = splitter->explicit_line ? splitter->line[1] : splitter->plane;
     edge = gxbp_new_edge(cx, gxbp_edge_start(cx, parting.loop[zero[0]]), gxbp_edge_start(cx, parting.loop[zero[1]]),
-                         line, (uint32_t)knife->explicit_line);
-    front =
-        gxbp_sign(&cx->store, gxbp_edge_start(cx, parting.loop[zero[0] + 1]), knife->plane, knife->slot) > 0 ? 0u : 1u;
+                         line, (uint32_t)splitter->explicit_line);
+    front = gxbp_sign(&cx->store, gxbp_edge_start(cx, parting.loop[zero[0] + 1]), splitter->plane, splitter->slot) > 0
+              ? 0u
+              : 1u;
     gxbp_save(cx, GXBP_FACETS, facet);
     cx->facets[facet].child = child;
     cx->facets[facet].loop_count = 0;
@@ -3489,19 +3508,19 @@ static void gxbp_add_rim(gxb_complex *cx, gxbp_rim *rim, uint32_t signed_edge) {
 /* Edges of an undivided facet that lie in the plane belong to the rim: walked against the outside's view of the half in
  * front. */
 static void gxbp_add_flat_edges(gxb_complex *cx, gxbp_rim *rim, uint32_t facet, uint32_t flip,
-                                const gxbp_knife *knife) {
+                                const gxbp_splitter *splitter) {
     const gxb_facet *f = &cx->facets[facet];
     uint32_t i;
     for (i = 0; i < f->loop_count; i++) {
         const uint32_t e = cx->pool[f->loop + i];
-        if (gxbp_sign(&cx->store, cx->edges[e >> 1].v[0], knife->plane, knife->slot) == 0 &&
-            gxbp_sign(&cx->store, cx->edges[e >> 1].v[1], knife->plane, knife->slot) == 0)
+        if (gxbp_sign(&cx->store, cx->edges[e >> 1].v[0], splitter->plane, splitter->slot) == 0 &&
+            gxbp_sign(&cx->store, cx->edges[e >> 1].v[1], splitter->plane, splitter->slot) == 0)
             gxbp_add_rim(cx, rim, e ^ flip);
     }
 }
 
 /* Chains the rim's edges into the loop of a new facet of the plane. */
-static uint32_t gxbp_close_rim(gxb_complex *cx, const gxbp_rim *rim, const gxbp_knife *knife) {
+static uint32_t gxbp_close_rim(gxb_complex *cx, const gxbp_rim *rim, const gxbp_splitter *splitter) {
     gxb_facet *f = &cx->facets[cx->facet_count];
     uint32_t i, e = cx->scratch[rim->first];
     for (i = 0; i < rim->count; i++) {
@@ -3509,7 +3528,7 @@ static uint32_t gxbp_close_rim(gxb_complex *cx, const gxbp_rim *rim, const gxbp_
         cx->store.points[gxbp_edge_start(cx, signed_edge)].scratch = signed_edge;
     }
     memset(f, 0, sizeof *f);
-    f->plane = knife->plane;
+    f->plane = splitter->plane;
     gxbp_set_loop(f, cx->pool_count, rim->count);
     f->child = f->labels = f->face = GXB_NONE;
     for (i = 0; i < rim->count; i++) {
@@ -3535,7 +3554,7 @@ static void gxbp_set_list(gxb_complex *cx, uint32_t leaf, const uint32_t *facets
 
 /* Divides a leaf whose inside the plane meets and which is ready: its facets and their signs are in complex.scratch. It
    becomes the half in front, the new one lies behind. Returns the facet between them. */
-static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife *knife) {
+static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_splitter *splitter) {
     const uint32_t behind = cx->leaf_count++, listed = cx->leaves[leaf].facet_count, count = cx->scratch_count / 2;
     gxbp_rim rim;
     gxbp_gap gap;
@@ -3549,13 +3568,13 @@ static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife
         const uint32_t facet = cx->scratch[i], signs = cx->scratch[count + i], sides = signs & 3;
         const uint32_t inward = cx->facets[facet].leaf[0] == leaf ? 1u : 0u; /* its normal points into the leaf */
         if (sides == 3) {
-            const uint32_t edge = gxbp_split_facet(cx, facet, knife), child = cx->facets[facet].child;
+            const uint32_t edge = gxbp_split_facet(cx, facet, splitter), child = cx->facets[facet].child;
             gxbp_add_rim(cx, &rim, edge ^ inward);
             gxbp_move_facet(cx, child + 1, leaf, behind);
             front_list[fronts++] = child;
             behind_list[behinds++] = child + 1;
         } else {
-            if (signs >= 8) gxbp_add_flat_edges(cx, &rim, facet, inward ^ (sides == 1 ? 0u : 1u), knife);
+            if (signs >= 8) gxbp_add_flat_edges(cx, &rim, facet, inward ^ (sides == 1 ? 0u : 1u), splitter);
             if (sides == 1)
                 front_list[fronts++] = facet;
             else {
@@ -3564,7 +3583,7 @@ static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife
             }
         }
     }
-    middle = gxbp_close_rim(cx, &rim, knife);
+    middle = gxbp_close_rim(cx, &rim, splitter);
     cx->facets[middle].leaf[0] = leaf;
     cx->facets[middle].leaf[1] = behind;
     front_list[fronts++] = middle;
@@ -3660,6 +3679,8 @@ GXFEM_API gx_result gxb_complex_open_element(gxb_complex *cx, uint32_t element) 
 }
 
 /* >>clip: a triangle against the tree of an element ---------------------------------------------------------------- */
+/* In: a triangle and an element. Out: the polygon of the triangle that reaches each leaf. Touches only scratch of
+   the complex. */
 
 static uint32_t gxbp_face_plane(const gxb_complex *cx, uint32_t element, uint32_t k) {
     return cx->facets[cx->face_facet[cx->element_faces[4 * element + k]]].plane;
@@ -3733,7 +3754,9 @@ static int gxbp_corner_sides(gxb_complex *cx, uint32_t first, uint32_t count, ui
     return sides;
 }
 
-/* >>insert --------------------------------------------------------------------------------------------------------- */
+/* >>walls: what a triangle marks: walls, labels, removed leaves ---------------------------------------------------- */
+/* In: a triangle and a facet in its plane. Out: a wall or a label on what the triangle covers of the facet. A
+   transaction is open. */
 
 /* The plane through edge k of the triangle, along the axis that is closest to its normal: the triangle lies in front of
  *it where front is 1, behind it where it is -1. */
@@ -3791,13 +3814,13 @@ GXFEM_API gx_result gxb_complex_set_removed(gxb_complex *cx, uint32_t leaf) {
     return GX_OK;
 }
 
-/* The knife along edge k of the triangle, whose plane has been made. */
-static void gxbp_set_knife(const gxb_triangle *t, uint32_t k, gxbp_knife *knife) {
-    knife->plane = t->edge_plane[k];
-    knife->line[0] = t->point[k];
-    knife->line[1] = t->point[(k + 1) % 3];
-    knife->explicit_line = 1;
-    knife->slot = 1;
+/* The splitter along edge k of the triangle, whose plane has been made. */
+static void gxbp_set_splitter(const gxb_triangle *t, uint32_t k, gxbp_splitter *splitter) {
+    splitter->plane = t->edge_plane[k];
+    splitter->line[0] = t->point[k];
+    splitter->line[1] = t->point[(k + 1) % 3];
+    splitter->explicit_line = 1;
+    splitter->slot = 1;
 }
 
 /* Labels the part of a facet, in the triangle's plane, that the triangle covers; edges: bit k where edge k may bound
@@ -3805,20 +3828,20 @@ static void gxbp_set_knife(const gxb_triangle *t, uint32_t k, gxbp_knife *knife)
 static gx_result gxbp_cover_facet(gxb_complex *cx, gxb_triangle *t, uint32_t facet, uint32_t edges) {
     uint32_t k;
     for (k = 0; k < 3; k++) {
-        gxbp_knife knife;
+        gxbp_splitter splitter;
         gx_result result;
         int front, sides;
         uint32_t count;
         if (!(edges >> k & 1)) continue;
         result = gxbp_edge_plane(cx, t, k, &front);
         if (result != GX_OK) return result;
-        gxbp_set_knife(t, k, &knife);
+        gxbp_set_splitter(t, k, &splitter);
         gxbp_forget_signs(&cx->store, 1);
-        sides = (int)(gxbp_facet_signs(cx, facet, &knife, &count) & 3);
+        sides = (int)(gxbp_facet_signs(cx, facet, &splitter, &count) & 3);
         if (sides == 3) {
             result = gxbp_reserve_split(cx, 1, count);
             if (result != GX_OK) return result;
-            gxbp_split_facet(cx, facet, &knife);
+            gxbp_split_facet(cx, facet, &splitter);
             facet = cx->facets[facet].child + (front > 0 ? 0u : 1u);
         } else if (sides != (front > 0 ? 1 : 2))
             return GX_OK; /* outside of the triangle */
@@ -3826,22 +3849,24 @@ static gx_result gxbp_cover_facet(gxb_complex *cx, gxb_triangle *t, uint32_t fac
     return gxbp_add_label(cx, t, facet);
 }
 
-/* --- pinched edges and nodes --- */
+/* >>cover: pinched edges and nodes, facets in the plane of a triangle ---------------------------------------------- */
+/* In: a triangle through an edge, a node or a facet that is there already. Out: marks on what it covers. No leaf
+   is divided. */
 
 /* Divides the piece of an edge in the triangle's plane by the planes of the triangle's edges k, k+1 ... and marks what
  * is inside. */
 static gx_result gxbp_cover_edge(gxb_complex *cx, gxb_triangle *t, uint32_t edge, uint32_t k, int *covered) {
     gx_result result = gxbp_reserve_split(cx, 0, 1);
     for (; k < 3 && result == GX_OK; k++) {
-        gxbp_knife knife;
+        gxbp_splitter splitter;
         int front, a, b;
         result = gxbp_edge_plane(cx, t, k, &front);
         if (result != GX_OK) return result;
-        gxbp_set_knife(t, k, &knife);
-        a = front * gxb_complex_side(cx, cx->edges[edge].v[0], knife.plane);
-        b = front * gxb_complex_side(cx, cx->edges[edge].v[1], knife.plane);
+        gxbp_set_splitter(t, k, &splitter);
+        a = front * gxb_complex_side(cx, cx->edges[edge].v[0], splitter.plane);
+        b = front * gxb_complex_side(cx, cx->edges[edge].v[1], splitter.plane);
         if (a * b < 0) {
-            gxbp_split_edge(cx, edge, &knife);
+            gxbp_split_edge(cx, edge, &splitter);
             return gxbp_cover_edge(cx, t, cx->edges[edge].child + (a > 0 ? 0u : 1u), k + 1, covered);
         }
         if (a < 0 || b < 0) return GX_OK;
@@ -3903,14 +3928,16 @@ static gx_result gxbp_cover_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t leaf
     return result;
 }
 
-/* --- balance: planes that come in order, as in parallel cuts, would make chains of nodes. A chain is a list of nodes,
-   each with what hangs off it; where one node's plane has all that hangs off those above it on one side or the other,
-   that node can stand above them, and nodes with nothing on a side are not needed there. No leaf changes. --- */
+/* >>rebalance: trees that have become spines ----------------------------------------------------------------------- */
+/* Planes in order, as of parallel cuts, make a spine: a path of nodes along which each plane leaves almost
+   everything on one side. In: the tree of an element. Out: a shallower tree of the same leaves. A node can stand
+   above others of its spine if its plane has all of their leaves on one side or the other. A node with nothing on
+   one side is dropped. No leaf changes. */
 
 /* the chain goes on at child[side]; off: what hangs at the other one */
-typedef struct gxbp_rung {
+typedef struct gxbp_spine_node {
     uint32_t node, side, off;
-} gxbp_rung;
+} gxbp_spine_node;
 typedef struct gxbp_step {
     uint32_t node, child[2];
 } gxbp_step;
@@ -3918,16 +3945,16 @@ typedef struct gxbp_step {
 typedef struct gxbp_plan {
     gxbp_step *step;
     uint32_t count;
-    gxbp_rung *spare;
+    gxbp_spine_node *spare;
 } gxbp_plan;
 
 /* Is the tree far from what a balanced one of so many leaves has? Looked at eight times while it doubles where it is a
    chain for the most part, else once: what is not a chain is seldom balanced by turning it round. */
 static int gxbp_is_slack(uint32_t height, uint32_t leaves) {
-    uint32_t bits = 0, looks;
+    uint32_t bits = 0, checks;
     while (leaves >> bits > 1) bits++;
-    looks = height > 2 * bits + leaves / 8 + 4 ? 3 : 0;
-    return height > 2 * bits + 4 && (leaves & ((1u << bits >> looks) - 1)) == 0;
+    checks = height > 2 * bits + leaves / 8 + 4 ? 3 : 0;
+    return height > 2 * bits + 4 && (leaves & ((1u << bits >> checks) - 1)) == 0;
 }
 
 static uint32_t gxbp_depth(const gxb_complex *cx, uint32_t node) {
@@ -3941,27 +3968,28 @@ static uint32_t gxbp_leaves_below(const gxb_complex *cx, uint32_t reference) {
 }
 
 /* Those of the facets into which one was divided */
-static GXBP_APART int gxbp_pieces_sides(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) {
+static GXBP_APART int gxbp_pieces_sides(gxb_complex *cx, uint32_t facet, const gxbp_splitter *splitter) {
     const uint32_t child = cx->facets[facet].child;
-    if (child == GXB_NONE) return gxbp_facet_sides(cx, facet, knife);
-    return gxbp_pieces_sides(cx, child, knife) | gxbp_pieces_sides(cx, child + 1, knife);
+    if (child == GXB_NONE) return gxbp_facet_sides(cx, facet, splitter);
+    return gxbp_pieces_sides(cx, child, splitter) | gxbp_pieces_sides(cx, child + 1, splitter);
 }
 
 /* On which sides of the plane (slot 1's, for its present stamp) the leaf has points: bit 1 in front, bit 2 behind.
    Edges need not be resolved: what divides them lies between their ends. */
-static int gxbp_leaf_sides(gxb_complex *cx, uint32_t leaf, const gxbp_knife *knife) {
+static int gxbp_leaf_sides(gxb_complex *cx, uint32_t leaf, const gxbp_splitter *splitter) {
     const gxb_leaf *l = &cx->leaves[leaf];
     uint32_t i;
     int sides = 0;
-    for (i = 0; i < l->facet_count && sides != 3; i++) sides |= gxbp_pieces_sides(cx, cx->pool[l->facets + i], knife);
+    for (i = 0; i < l->facet_count && sides != 3; i++)
+        sides |= gxbp_pieces_sides(cx, cx->pool[l->facets + i], splitter);
     return sides;
 }
 
-static GXBP_COLD int gxbp_sides_below(gxb_complex *cx, uint32_t reference, const gxbp_knife *knife) {
+static GXBP_COLD int gxbp_sides_below(gxb_complex *cx, uint32_t reference, const gxbp_splitter *splitter) {
     int sides;
-    if (!(reference & 1)) return gxbp_leaf_sides(cx, reference >> 1, knife);
-    sides = gxbp_sides_below(cx, cx->nodes[reference >> 1].child[0], knife);
-    return sides == 3 ? 3 : sides | gxbp_sides_below(cx, cx->nodes[reference >> 1].child[1], knife);
+    if (!(reference & 1)) return gxbp_leaf_sides(cx, reference >> 1, splitter);
+    sides = gxbp_sides_below(cx, cx->nodes[reference >> 1].child[0], splitter);
+    return sides == 3 ? 3 : sides | gxbp_sides_below(cx, cx->nodes[reference >> 1].child[1], splitter);
 }
 
 static uint32_t gxbp_plan_node(gxbp_plan *plan, uint32_t node, uint32_t side, uint32_t on, uint32_t off) {
@@ -3972,48 +4000,49 @@ static uint32_t gxbp_plan_node(gxbp_plan *plan, uint32_t node, uint32_t side, ui
 }
 
 /* The chain as it is, above end */
-static uint32_t gxbp_plan_chain(gxbp_plan *plan, const gxbp_rung *rung, uint32_t count, uint32_t end) {
-    while (count-- > 0) end = gxbp_plan_node(plan, rung[count].node, rung[count].side, end, rung[count].off);
+static uint32_t gxbp_plan_spine(gxbp_plan *plan, const gxbp_spine_node *spine, uint32_t count, uint32_t end) {
+    while (count-- > 0) end = gxbp_plan_node(plan, spine[count].node, spine[count].side, end, spine[count].off);
     return end;
 }
 
-/* Sorts what hangs above rung middle by its side of that plane: those on the chain's own side last. Their number is
- *own. 0: the plane passes through one of them. spare: middle rungs */
-static int gxbp_part_chain(gxb_complex *cx, gxbp_rung *rung, uint32_t middle, gxbp_rung *spare, uint32_t *own) {
-    const uint32_t side = rung[middle].side;
+/* Sorts what hangs above spine[middle] by its side of that plane: those on the spine's own side last. Their number is
+ *own. 0: the plane passes through one of them. spare: middle spine nodes */
+static int gxbp_part_spine(gxb_complex *cx, gxbp_spine_node *spine, uint32_t middle, gxbp_spine_node *spare,
+                           uint32_t *own) {
+    const uint32_t side = spine[middle].side;
     uint32_t i, n = 0;
-    gxbp_knife knife;
-    memset(&knife, 0, sizeof knife);
-    knife.plane = cx->nodes[rung[middle].node].plane;
-    knife.slot = 1;
+    gxbp_splitter splitter;
+    memset(&splitter, 0, sizeof splitter);
+    splitter.plane = cx->nodes[spine[middle].node].plane;
+    splitter.slot = 1;
     gxbp_forget_signs(&cx->store, 1);
     *own = 0;
     for (i = 0; i < middle; i++) {
-        const int sides = gxbp_sides_below(cx, rung[i].off, &knife);
+        const int sides = gxbp_sides_below(cx, spine[i].off, &splitter);
         if (sides == 3) return 0;
         if ((sides == 1) == (side == 0))
-            spare[(*own)++] = rung[i];
+            spare[(*own)++] = spine[i];
         else
-            spare[middle - ++n] = rung[i];
+            spare[middle - ++n] = spine[i];
     }
-    for (i = 0; i < n; i++) rung[i] = spare[middle - 1 - i];
-    memcpy(rung + n, spare, *own * sizeof *rung);
+    for (i = 0; i < n; i++) spine[i] = spare[middle - 1 - i];
+    memcpy(spine + n, spare, *own * sizeof *spine);
     return 1;
 }
 
-/* A balanced tree of the chain above end: the rung in the middle, by leaves, is made its root. */
-static GXBP_COLD uint32_t gxbp_balance_chain(gxb_complex *cx, gxbp_plan *plan, gxbp_rung *rung, uint32_t count,
-                                             uint32_t end) {
+/* A balanced tree of the spine above end: the spine's node in the middle, by leaves, is made its root. */
+static GXBP_COLD uint32_t gxbp_rebalance_spine(gxb_complex *cx, gxbp_plan *plan, gxbp_spine_node *spine, uint32_t count,
+                                               uint32_t end) {
     uint32_t total = gxbp_leaves_below(cx, end), sum = 0, middle = 0, own, i, on, off;
-    gxbp_rung root;
-    if (count < 4) return gxbp_plan_chain(plan, rung, count, end);
-    for (i = 0; i < count; i++) total += gxbp_leaves_below(cx, rung[i].off);
-    for (; middle + 1 < count && 2 * sum < total; middle++) sum += gxbp_leaves_below(cx, rung[middle].off);
-    if (!gxbp_part_chain(cx, rung, middle, plan->spare, &own)) return gxbp_plan_chain(plan, rung, count, end);
-    root = rung[middle];
-    memmove(rung + middle, rung + middle + 1, (count - middle - 1) * sizeof *rung);
-    off = gxbp_balance_chain(cx, plan, rung, middle - own, root.off);
-    on = gxbp_balance_chain(cx, plan, rung + middle - own, own + count - middle - 1, end);
+    gxbp_spine_node root;
+    if (count < 4) return gxbp_plan_spine(plan, spine, count, end);
+    for (i = 0; i < count; i++) total += gxbp_leaves_below(cx, spine[i].off);
+    for (; middle + 1 < count && 2 * sum < total; middle++) sum += gxbp_leaves_below(cx, spine[middle].off);
+    if (!gxbp_part_spine(cx, spine, middle, plan->spare, &own)) return gxbp_plan_spine(plan, spine, count, end);
+    root = spine[middle];
+    memmove(spine + middle, spine + middle + 1, (count - middle - 1) * sizeof *spine);
+    off = gxbp_rebalance_spine(cx, plan, spine, middle - own, root.off);
+    on = gxbp_rebalance_spine(cx, plan, spine + middle - own, own + count - middle - 1, end);
     return gxbp_plan_node(plan, root.node, root.side, on, off);
 }
 
@@ -4051,24 +4080,24 @@ static gx_result gxbp_follow_plan(gxb_complex *cx, const gxbp_plan *plan, uint32
 /* Balances the tree below top along the path to a node. */
 static GXBP_COLD gx_result gxbp_balance(gxb_complex *cx, uint32_t top, uint32_t node, uint32_t element) {
     const uint32_t count = gxbp_depth(cx, node) - gxbp_depth(cx, cx->nodes[top].parent);
-    const size_t size = count * (2 * sizeof(gxbp_rung) + sizeof(gxbp_step));
-    gxbp_rung *rung = (gxbp_rung *)gxbp_allocate(&cx->store.allocator, size);
+    const size_t size = count * (2 * sizeof(gxbp_spine_node) + sizeof(gxbp_step));
+    gxbp_spine_node *spine = (gxbp_spine_node *)gxbp_allocate(&cx->store.allocator, size);
     gxbp_plan plan;
     uint32_t i, n, tree, below = cx->nodes[node].child[0];
     gx_result result;
-    if (rung == NULL) return GX_ERROR_MEMORY;
+    if (spine == NULL) return GX_ERROR_MEMORY;
     for (i = count, n = node; i-- > 0; n = cx->nodes[n].parent) {
-        rung[i].node = n;
-        rung[i].side = cx->nodes[n].child[1] == below;
-        rung[i].off = cx->nodes[n].child[1 - rung[i].side];
+        spine[i].node = n;
+        spine[i].side = cx->nodes[n].child[1] == below;
+        spine[i].off = cx->nodes[n].child[1 - spine[i].side];
         below = 2 * n + 1;
     }
-    plan.spare = rung + count;
-    plan.step = (gxbp_step *)(void *)(rung + 2 * (size_t)count);
+    plan.spare = spine + count;
+    plan.step = (gxbp_step *)(void *)(spine + 2 * (size_t)count);
     plan.count = 0;
-    tree = gxbp_balance_chain(cx, &plan, rung, count, cx->nodes[node].child[0]);
+    tree = gxbp_rebalance_spine(cx, &plan, spine, count, cx->nodes[node].child[0]);
     result = gxbp_follow_plan(cx, &plan, tree, top, element);
-    gxbp_release(&cx->store.allocator, rung, size);
+    gxbp_release(&cx->store.allocator, spine, size);
     return result;
 }
 
@@ -4089,7 +4118,7 @@ static uint32_t *gxbp_reference(gxb_complex *cx, const gxbp_task *task, uint32_t
 }
 
 /* Lists the leaf's facets and then their signs in complex.scratch, and reserves room to divide it. */
-static gx_result gxbp_ready_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife *knife) {
+static gx_result gxbp_ready_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_splitter *splitter) {
     const gxb_leaf *l = &cx->leaves[leaf];
     const uint32_t count = gxbp_count_list(cx, l);
     uint32_t *out, i;
@@ -4100,7 +4129,7 @@ static gx_result gxbp_ready_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knif
     for (i = 0; i < l->facet_count; i++) out = gxbp_list_facets(cx, cx->pool[l->facets + i], out);
     for (i = 0; i < count; i++) {
         uint32_t own;
-        const uint32_t signs = cx->scratch[count + i] = gxbp_facet_signs(cx, cx->scratch[i], knife, &own);
+        const uint32_t signs = cx->scratch[count + i] = gxbp_facet_signs(cx, cx->scratch[i], splitter, &own);
         if ((signs & 3) == 3 || signs >= 8) edges += own;
     }
     cx->scratch_count = 2 * count; /* these stay where scratch moves */
@@ -4111,11 +4140,11 @@ static gx_result gxbp_ready_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knif
 
 /* Divides a leaf that is ready and hangs at the task's place; *node takes that place. Returns the facet between the
  * halves. */
-static uint32_t gxbp_part_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife *knife, const gxbp_task *task,
+static uint32_t gxbp_part_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_splitter *splitter, const gxbp_task *task,
                                uint32_t *node) {
-    const uint32_t middle = gxbp_split_leaf(cx, leaf, knife);
+    const uint32_t middle = gxbp_split_leaf(cx, leaf, splitter);
     gxb_node *n = &cx->nodes[ *node = cx->tree_count++];
-    n->plane = knife->plane;
+    n->plane = splitter->plane;
     n->child[0] = 2 * leaf;
     n->child[1] = 2 * (cx->leaf_count - 1);
     n->parent = task->parent;
@@ -4128,10 +4157,11 @@ static uint32_t gxbp_part_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife 
     return middle;
 }
 
-/* --- free planes: the triangles of a convex surface would all divide one and the same leaf, in a time that grows with
-   their number and its facets. A leaf with many facets inside its element is divided by a plane across them that is no
-   triangle's and makes no wall: the facet between the halves stays open, and they stay one cell. What is chosen depends
-   on given coordinates and exact signs alone. --- */
+/* >>crowds: leaves with many facets -------------------------------------------------------------------------------- */
+/* The triangles of a convex surface all divide the same leaf, in a time that grows with their number and its
+   facets. In: a leaf with many facets inside its element. Out: the leaf divided by a free plane across them. A
+   free plane belongs to no triangle and makes no wall: the facet between the halves is open, and they stay one
+   cell. Given coordinates and exact signs alone decide which plane it is. */
 
 /* looked at from so many on; of so many at most the median is taken */
 enum { GXBP_MANY_FACETS = 24, GXBP_SAMPLE = 32 };
@@ -4209,11 +4239,11 @@ static GXBP_COLD gx_result gxbp_new_free_plane(gxb_complex *cx, uint32_t element
 }
 
 /* Does a quarter of the facets at least lie in front of the plane, and a quarter behind it? */
-static int gxbp_plane_parts(gxb_complex *cx, const uint32_t *facets, uint32_t count, const gxbp_knife *knife) {
+static int gxbp_plane_parts(gxb_complex *cx, const uint32_t *facets, uint32_t count, const gxbp_splitter *splitter) {
     uint32_t front = 0, behind = 0, i;
     gxbp_forget_signs(&cx->store, 1);
     for (i = 0; i < count; i++) {
-        const int sides = gxbp_facet_sides(cx, facets[i], knife);
+        const int sides = gxbp_facet_sides(cx, facets[i], splitter);
         front += sides == 1;
         behind += sides == 2;
     }
@@ -4222,58 +4252,62 @@ static int gxbp_plane_parts(gxb_complex *cx, const uint32_t *facets, uint32_t co
 
 /* Divides the leaf at the task's place, which a triangle has just made, by a free plane if it has many facets and one
    parts them well; *node: GXB_NONE, or what has taken its place. Looked at whenever their number is one of eight. */
-static GXBP_COLD gx_result gxbp_relieve_leaf(gxb_complex *cx, const gxbp_task *task, uint32_t *node) {
+static GXBP_COLD gx_result gxbp_divide_crowded(gxb_complex *cx, const gxbp_task *task, uint32_t *node) {
     const uint32_t leaf = cx->nodes[task->parent].child[task->side] >> 1, points = cx->store.point_count,
                    planes = cx->store.plane_count;
     const gxb_leaf l = cx->leaves[leaf];
     uint32_t i, n = 0, *inner;
     double median[3];
     int rank[3], ranks, k;
-    gxbp_knife knife;
+    gxbp_splitter splitter;
     gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, scratch, scratch, l.facet_count);
     if (result != GX_OK) return result;
     inner = cx->scratch;
     for (i = 0; i < l.facet_count; i++)
         if (cx->facets[cx->pool[l.facets + i]].face == GXB_NONE) inner[n++] = cx->pool[l.facets + i];
     if (n < GXBP_MANY_FACETS || n % 8 != 0) return GX_OK;
-    memset(&knife, 0, sizeof knife);
-    knife.slot = 1;
+    memset(&splitter, 0, sizeof splitter);
+    splitter.slot = 1;
     ranks = gxbp_medians(cx, inner, n, median, rank);
     for (k = 0; k < ranks; k++) {
-        result = gxbp_new_free_plane(cx, l.element, rank[k], median[rank[k]], &knife.plane);
+        result = gxbp_new_free_plane(cx, l.element, rank[k], median[rank[k]], &splitter.plane);
         if (result != GX_OK) return result;
-        if (gxbp_plane_parts(cx, inner, n, &knife)) break;
+        if (gxbp_plane_parts(cx, inner, n, &splitter)) break;
         cx->store.point_count = points;
         cx->store.plane_count = planes;
     }
     if (k == ranks) return GX_OK;
-    result = gxbp_ready_leaf(cx, leaf, &knife);
-    if (result == GX_OK) gxbp_part_leaf(cx, leaf, &knife, task, node);
+    result = gxbp_ready_leaf(cx, leaf, &splitter);
+    if (result == GX_OK) gxbp_part_leaf(cx, leaf, &splitter, task, node);
     return result;
 }
+
+/* >>insert: a triangle into the leaves that it meets --------------------------------------------------------------- */
+/* In: a triangle with its plane. Out: leaves divided by its plane, walls and labels on what it covers. A
+   transaction is open; what runs out of memory leaves the complex to be rolled back. */
 
 /* The triangle's part in the leaf is the polygon: divide the leaf and label what the triangle covers of the facet
  * between. */
 static gx_result gxbp_divide_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t leaf, const gxbp_task *task) {
     const uint32_t element = cx->leaves[leaf].element;
-    gxbp_knife knife;
+    gxbp_splitter splitter;
     gxbp_task half;
     uint32_t i, edges = 0, middle, node, freed[2] = {GXB_NONE, GXB_NONE};
     gx_result result;
-    memset(&knife, 0, sizeof knife);
-    knife.plane = t->plane;
-    result = gxbp_ready_leaf(cx, leaf, &knife);
+    memset(&splitter, 0, sizeof splitter);
+    splitter.plane = t->plane;
+    result = gxbp_ready_leaf(cx, leaf, &splitter);
     if (result != GX_OK) return result;
     for (i = 0; i < task->count; i++) {
         const uint32_t carrier = cx->corners[task->first + i].carrier;
         if (carrier >= GXBP_TRIANGLE_EDGE) edges |= 1u << (carrier - GXBP_TRIANGLE_EDGE);
     }
-    middle = gxbp_part_leaf(cx, leaf, &knife, task, &node);
+    middle = gxbp_part_leaf(cx, leaf, &splitter, task, &node);
     result = gxbp_cover_facet(cx, t, middle, edges);
     half.parent = node;
     for (half.side = 0; half.side < 2 && result == GX_OK; half.side++)
         if (cx->leaves[cx->nodes[node].child[half.side] >> 1].facet_count >= GXBP_MANY_FACETS)
-            result = gxbp_relieve_leaf(cx, &half, &freed[half.side]);
+            result = gxbp_divide_crowded(cx, &half, &freed[half.side]);
     if (result == GX_OK) result = gxbp_grow_tree(cx, node, element);
     for (i = 0; i < 2 && result == GX_OK; i++)
         if (freed[i] != GXB_NONE) result = gxbp_grow_tree(cx, freed[i], element);
@@ -4499,7 +4533,8 @@ GXFEM_API gx_result gxb_complex_insert(gxb_complex *cx, gxb_triangle *t, uint32_
     return result;
 }
 
-/* --- winding number around a point that is not a double --- */
+/* >>inside: winding numbers around points that are no doubles ------------------------------------------------------ */
+/* In: a leaf and a closed surface. Out: the exact winding number around a point inside the leaf. Changes nothing. */
 
 /* A point in the given coordinates times 2^shift: homogeneous, and roughly. */
 typedef struct gxbp_probe {
@@ -4603,7 +4638,8 @@ GXFEM_API int gxb_complex_winding(gxb_complex *cx, const uint32_t *points, size_
     return winding;
 }
 
-/* --- numbers as sums of two doubles: about 100 bits, with bounds that hold as those of >>filter do ---
+/* >>pairs: numbers as sums of two doubles: about 100 bits, with bounds --------------------------------------------- */
+/* In: doubles. Out: sums and products as pairs of doubles, with bounds that hold as those of >>filter do.
  *
  * The sum of two doubles is their rounded sum and its error, which the six operations of gxbp_pair_sum find but for
  * 2^-103 of the terms' sizes also where roundings are not to nearest [Boldo, Graillat, Muller, On the robustness of the
@@ -4726,7 +4762,9 @@ static gxbp_pair gxbp_pair_side(gxb_complex *cx, uint32_t point, uint32_t plane)
     return pairs->side[slot];
 }
 
-/* --- barycentric coordinates --- */
+/* >>barycentric: barycentric coordinates of points in their elements ----------------------------------------------- */
+/* In: a point of the complex and an element. Out: its barycentric coordinates, rounded once, or as pairs, or
+   exactly. Changes nothing but the cache of exact numbers. */
 
 /* Exact distance of a point from a plane, times |n| and the point's weight W, which goes to *weight (may be NULL). */
 static void gxbp_distance(gxb_complex *cx, uint32_t point, uint32_t plane, gxb_num *distance, gxb_num *weight) {
@@ -4961,6 +4999,7 @@ GXFEM_API GXBP_RARE void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t 
 }
 
 /* >>save: points by their definitions, the rest by indices --------------------------------------------------------- */
+/* In: a complex, or bytes. Out: bytes, or a complex that has been checked. Reading trusts nothing. */
 
 GXFEM_API int gxb_stream_has(gxb_stream *stream, size_t count, size_t width) {
     if (stream->result == GX_OK && count > (stream->size - stream->at) / width) stream->result = GX_ERROR_DAMAGED;
@@ -5215,43 +5254,6 @@ static void gxbp_load_room(gxb_stream *s, gxb_complex *cx, const uint32_t counts
     if (counts[2] > 0) memset(cx->edges, 0, counts[2] * sizeof *cx->edges);
     if (counts[3] > 0) memset(cx->facets, 0, counts[3] * sizeof *cx->facets);
     memset(cx->leaves, 0, counts[4] * sizeof *cx->leaves);
-}
-
-static void gxbp_check(gxb_complex *cx, gxb_stream *s); /* see >>check */
-
-/* Parents of nodes and numbers of leaves, which are not saved */
-static void gxbp_link_trees(gxb_complex *cx) {
-    uint32_t i, k, n;
-    for (i = 0; i < cx->tree_count; i++) {
-        cx->nodes[i].parent = GXB_NONE;
-        cx->nodes[i].leaves = 0;
-    }
-    for (i = 0; i < cx->tree_count; i++)
-        for (k = 0; k < 2; k++)
-            if (cx->nodes[i].child[k] & 1) cx->nodes[cx->nodes[i].child[k] >> 1].parent = i;
-    for (i = 0; i < cx->tree_count; i++)
-        for (k = 0; k < 2; k++)
-            for (n = cx->nodes[i].child[k] & 1 ? GXB_NONE : i; n != GXB_NONE; n = cx->nodes[n].parent)
-                cx->nodes[n].leaves++;
-}
-
-GXFEM_API GXBP_RARE gx_result gxb_complex_load(gxb_complex *cx, gxb_stream *s, int trusted) {
-    uint32_t counts[GXBP_COUNTS];
-    gxb_stream_pass(s, counts, GXBP_COUNTS, sizeof *counts);
-    gxbp_load_room(s, cx, counts);
-    if (s->result == GX_OK) gxbp_load_points(cx, s, counts[0]);
-    if (s->result == GX_OK) gxbp_load_planes(cx, s, counts[1]);
-    if (s->result == GX_OK) gxbp_place_points(cx, s);
-    if (s->result == GX_OK) gxbp_pass_edges(cx, s);
-    if (s->result == GX_OK) gxbp_pass_facets(cx, s);
-    if (s->result == GX_OK) gxbp_pass_leaves(cx, s);
-    if (s->result == GX_OK) gxbp_pass_rest(cx, s);
-    if (s->result == GX_OK && !trusted) gxbp_check(cx, s);
-    if (s->result != GX_OK) return s->result;
-    gxbp_link_trees(cx);
-    cx->pool_live = cx->pool_count;
-    gxb_complex_begin(cx);
-    return GX_OK;
 }
 
 /* >>check: is what was read a complex?
@@ -5763,6 +5765,44 @@ static GXBP_COLD void gxbp_check(gxb_complex *cx, gxb_stream *s) {
     c.queue = c.point + cx->store.point_count;
     gxbp_run_checks(&c);
     gxbp_release(&cx->store.allocator, block, words * sizeof *block);
+}
+
+/* >>load: a complex from bytes ------------------------------------------------------------------------------------- */
+/* In: bytes. Out: a complex, checked unless the caller vouches for the bytes, in a transaction of its own. */
+
+/* Parents of nodes and numbers of leaves, which are not saved */
+static void gxbp_link_trees(gxb_complex *cx) {
+    uint32_t i, k, n;
+    for (i = 0; i < cx->tree_count; i++) {
+        cx->nodes[i].parent = GXB_NONE;
+        cx->nodes[i].leaves = 0;
+    }
+    for (i = 0; i < cx->tree_count; i++)
+        for (k = 0; k < 2; k++)
+            if (cx->nodes[i].child[k] & 1) cx->nodes[cx->nodes[i].child[k] >> 1].parent = i;
+    for (i = 0; i < cx->tree_count; i++)
+        for (k = 0; k < 2; k++)
+            for (n = cx->nodes[i].child[k] & 1 ? GXB_NONE : i; n != GXB_NONE; n = cx->nodes[n].parent)
+                cx->nodes[n].leaves++;
+}
+
+GXFEM_API GXBP_RARE gx_result gxb_complex_load(gxb_complex *cx, gxb_stream *s, int trusted) {
+    uint32_t counts[GXBP_COUNTS];
+    gxb_stream_pass(s, counts, GXBP_COUNTS, sizeof *counts);
+    gxbp_load_room(s, cx, counts);
+    if (s->result == GX_OK) gxbp_load_points(cx, s, counts[0]);
+    if (s->result == GX_OK) gxbp_load_planes(cx, s, counts[1]);
+    if (s->result == GX_OK) gxbp_place_points(cx, s);
+    if (s->result == GX_OK) gxbp_pass_edges(cx, s);
+    if (s->result == GX_OK) gxbp_pass_facets(cx, s);
+    if (s->result == GX_OK) gxbp_pass_leaves(cx, s);
+    if (s->result == GX_OK) gxbp_pass_rest(cx, s);
+    if (s->result == GX_OK && !trusted) gxbp_check(cx, s);
+    if (s->result != GX_OK) return s->result;
+    gxbp_link_trees(cx);
+    cx->pool_live = cx->pool_count;
+    gxb_complex_begin(cx);
+    return GX_OK;
 }
 
 /* >>arrangement: what a Boolean holds ------------------------------------------------------------------------------ */
