@@ -484,8 +484,8 @@ extern "C" {
 #define GXP_SUPPORT 1e-3
 #define GXP_SPECK   1e-9
 
-/* Where support_below is 0, a fragment moves as a point unless it reaches this far beside an element: its copies would
-   go ten times as far as its material. */
+/* Where support_below is 0, a fragment that reaches less far within every element moves as a point: its copies would
+   move ten times as far as its material. */
 #define GXP_SPECK_REACH 0.1
 
 typedef struct gxp_words { /* growing array of indices */
@@ -834,7 +834,7 @@ struct gx_body {
 enum {
     GXP_TOPOLOGY = 1, /* saved, and hashed in the state: made by cuts */
     GXP_STATE = 2,    /* saved and hashed: all else */
-    GXP_HISTORY = 4,  /* saved and hashed if there has been a BDF2 step */
+    GXP_HISTORY = 4,  /* saved and hashed if the last step was one of BDF2 */
     GXP_UNDONE = 8,   /* rows are put back when a cut fails */
     GXP_CLEARED = 16, /* new rows are 0 */
     GXP_LATER = 32    /* NULL until something needs it */
