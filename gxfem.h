@@ -486,8 +486,9 @@ extern "C" {
 
 /* >>state: the body, divided by how long its parts live ------------------------------------------------------------ */
 
-/* The types of all that a body owns: settings and mesh from creation to destruction; cells, copies and what else cuts
-   make; the log that takes a cut back; lists that can be made anew; working memory of a call. Nothing runs here. */
+/* The types of all that a body owns: settings and mesh from creation to destruction; cells, leaves, copies and
+   records that cuts make; the log that takes a cut back; lists that can be made anew; working memory of a call. Nothing
+   runs here. */
 
 #define GXP_NONE UINT32_MAX
 /* Shares of an element, where gx_body_desc.support_below is 0: copies that nothing larger carries follow others;
@@ -495,8 +496,8 @@ extern "C" {
 #define GXP_SUPPORT 1e-3
 #define GXP_SPECK   1e-9
 
-/* Where support_below is 0, a fragment moves as a point unless it reaches this far beside an element: its copies would
-   go ten times as far as its material. */
+/* Where support_below is 0, a fragment that reaches less far within every element moves as a point: its copies would
+   move ten times as far as its material. */
 #define GXP_SPECK_REACH 0.1
 
 typedef struct gxp_words { /* growing array of indices */
@@ -507,7 +508,7 @@ typedef struct gxp_keys { /* growing array of pairs of indices, the first << 32 
     uint32_t count, capacity;
 } gxp_keys;
 
-/* --- what the caller gave: from creation to destruction --- */
+/* --- from creation to destruction: the caller's settings, the mesh --- */
 
 typedef struct gxp_config {
     gx_allocator allocator;
@@ -547,7 +548,7 @@ enum {
     GXP_EDGE_PINCHED = 2  /* one of its edges is pinched */
 };
 
-/* --- what cuts make: cells, leaves, copies, in rows that are listed at >>columns --- */
+/* --- made by cuts: cells, leaves, copies, records of surfaces; held regions --- */
 
 typedef struct gxp_cell { /* without gaps between its members: rows are saved as bytes */
     uint32_t element;
@@ -619,7 +620,7 @@ typedef struct gxp_holds {
     int stale; /* copies.held is older than the regions or the last cut */
 } gxp_holds;
 
-/* --- a cut's way back --- */
+/* --- the undo log of a cut --- */
 
 typedef struct gxp_log { /* rows of a table as they were, without gaps: the columns that are undone */
     gxp_words rows;
@@ -653,7 +654,7 @@ typedef struct gxp_undo {
     uint32_t counts[GXP_TABLES], labels, dirty, splits; /* when the cut began */
 } gxp_undo;
 
-/* --- what can be made anew from the above --- */
+/* --- caches: made anew from the above when they are stale --- */
 
 typedef struct gxp_view { /* the body as gx_view tells it */
     int stale;            /* a cut has been since the lists were made */
@@ -673,7 +674,7 @@ typedef struct gxp_view { /* the body as gx_view tells it */
     int sums_stale; /* the lists are newer than the sums */
 } gxp_view;
 
-/* The fragments when gx_body_view was called last: what has changed is told against it. */
+/* The fragments when gx_body_view was called last. Changes of fragments are told by comparison with it. */
 typedef struct gxp_snapshot {
     uint32_t count, capacity[3];
     uint32_t *id, *origin, *change;
@@ -691,7 +692,7 @@ typedef struct gxp_model {
     int updated; /* it has been changed since it was set */
     /* hash of the state when the body was saved, copied or read; 0: it has stepped since then */
     uint64_t resumed;
-    /* elements of which a cell or its copies have changed since the solver was told; some more than once */
+    /* elements of which a cell or its copies have changed since the solver was last told; some more than once */
     gxp_words changed;
     gxp_words thin; /* elements with a part of a share below follow_below, ascending; of use unless state is STALE */
     /* there only while the solver is told; it copies them */
@@ -705,9 +706,9 @@ typedef struct gxp_model {
     uint32_t constraint_count, constraint_capacity;
 } gxp_model;
 
-/* What a vertex of the skin is looked up by: a point of the complex, four names in ascending order, a group. Of the
-   outer surface the names are slots and the group is 0. Of a face of a cut they are copies, and the group is its
-   surface and its side, or its surface, plane and side. */
+/* The key of a vertex of the skin: a point of the complex, four names in ascending order, a group. On the
+   outer surface the names are slots and the group is 0. On a face of a cut they are copies; the group is the surface
+   and the side, or the surface, the plane and the side. */
 typedef struct gxp_skin_key {
     uint32_t point, name[4], group[2];
 } gxp_skin_key;
@@ -767,7 +768,7 @@ typedef struct gxp_skin {
     uint32_t normal_capacity, position_capacity;
 } gxp_skin;
 
-/* --- what a call works with. Nothing in it is of use to the next one; the memory stays, so that a cut as large as the
+/* --- working memory of one call. The next call finds nothing in it; the memory stays, so that a cut as large as the
    last allocates nothing. --- */
 
 /* The boundary of a cell or leaf, as triangles in barycentric coordinates of its element */
@@ -843,9 +844,9 @@ struct gx_body {
    added here, and nowhere else. */
 
 enum {
-    GXP_TOPOLOGY = 1, /* saved, and hashed as part of the state: what cuts have made */
+    GXP_TOPOLOGY = 1, /* saved, and hashed in the state: made by cuts */
     GXP_STATE = 2,    /* saved and hashed: all else */
-    GXP_HISTORY = 4,  /* saved and hashed if there has been a BDF2 step */
+    GXP_HISTORY = 4,  /* saved and hashed if the last step was one of BDF2 */
     GXP_UNDONE = 8,   /* rows are put back when a cut fails */
     GXP_CLEARED = 16, /* new rows are 0 */
     GXP_LATER = 32    /* NULL until something needs it */
@@ -1105,7 +1106,7 @@ static uint32_t *gxp_count_at(gx_body *body, uint32_t table) {
     return (uint32_t *)(void *)((char *)body + gxp_tables[table].count);
 }
 
-/* Room for rows in a column; rows before `used` keep what they have. Of a column that is cleared, all do. */
+/* Room for rows in a column; rows before `used` keep what they have. In a column that is cleared, all rows do. */
 static gx_result gxp_grow_column(gx_body *body, const gxp_column *column, size_t used, size_t rows) {
     uint32_t *capacity = gxp_capacity_at(body, column);
     const uint32_t before = *capacity;
@@ -1546,7 +1547,7 @@ static void gxp_build_boxes(gx_body *body) {
 
 /* >>search: the elements that a triangle may meet ------------------------------------------------------------------ */
 /* In: a triangle. Out: a list of elements, all that the triangle meets and few others. Rounding adds candidates and
-   never loses one: what is exact is decided by the complex. */
+   never loses one. The complex decides exactly. */
 
 /* A triangle whose elements are searched. Differences are multiplied by the frame's power of two, so that all products
    stay in range. */
@@ -1861,8 +1862,9 @@ static void gxp_rollback(gxp_cut *cut) {
 }
 
 /* >>complex: reading the complex ----------------------------------------------------------------------------------- */
-/* Lists that are read off the complex: points of leaves and facets, leaves below a tree, facets and edges by what they
-   were divided into. Resolving such lists may renew them within the complex; nothing else changes. */
+/* In: leaves, facets, edges and trees of the complex. Out: lists: points of leaves and facets, leaves below a tree, the
+   undivided facets and edges that make up a divided one. Resolving such lists may renew them within the complex;
+   nothing else changes. */
 
 /* An entry of a list of the complex. Resolving a list may move the others, so no pointer into a list is kept. */
 static uint32_t gxp_item(const gxb_complex *cx, uint32_t place) { return *gxb_complex_list(cx, place); }
@@ -2079,7 +2081,7 @@ static gx_result gxp_stamp_scope(gxp_cut *cut, int *scoped) {
     return GX_OK;
 }
 
-/* >>surfaces: what the caller cuts with ---------------------------------------------------------------------------- */
+/* >>surfaces: the surfaces of a cut -------------------------------------------------------------------------------- */
 /* In: a surface as the caller gave it. Out: the same, checked, with equal vertices merged, edges sorted and triangles
    without area marked; a record of it for the skin. Touches the body's records of surfaces. */
 
@@ -2272,7 +2274,7 @@ static gx_result gxp_note_surface(gx_body *body, const gx_surface *given) {
     return GX_OK;
 }
 
-/* Prepares a surface for the cut and checks what makes it closed. It is freed by gxp_surface_free, also after an
+/* Prepares a surface for the cut; checks that a solid is closed. gxp_surface_free frees it, also after an
    error. */
 static gx_result gxp_surface_open(gxp_cut *cut, gxp_surface *s, const gx_surface *given, size_t number) {
     gx_body *body = cut->body;
@@ -3162,7 +3164,7 @@ static gx_result gxp_give_leaves(gx_body *body, uint32_t cell) {
 static gx_result gxp_divide_cell(gxp_cut *cut, uint32_t cell) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
-    uint32_t leaf, pieces = 0, i;
+    uint32_t leaf, parts = 0, i;
     gx_result result = GX_OK;
     scratch->cell_leaves.count = 0;
     for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
@@ -3174,14 +3176,14 @@ static gx_result gxp_divide_cell(gxp_cut *cut, uint32_t cell) {
         leaf = scratch->cell_leaves.data[i];
         if (gxb_complex_leaf(body->complex, leaf)->removed || body->leaves.mark[leaf].stamp == scratch->stamp) continue;
         result = gxp_walk_leaves(body, leaf);
-        if (result == GX_OK && pieces++ > 0) {
+        if (result == GX_OK && parts++ > 0) {
             result = gxp_new_cell(body, cell, &slot);
             cut->report.created_cells++;
         }
         if (result == GX_OK) result = gxp_give_leaves(body, slot);
         if (result == GX_OK) result = gxp_push(body, &scratch->new_cells, slot);
     }
-    if (result == GX_OK && pieces == 0) {
+    if (result == GX_OK && parts == 0) {
         result = gxp_save_cell(body, cell);
         if (result != GX_OK) return result;
         body->cells.data[cell].kept = 0;
@@ -3352,11 +3354,11 @@ static gx_result gxp_walk_subdomain(gx_body *body, uint32_t cell, uint32_t node,
     gx_result result = gxp_visit_cell(body, cell, &scratch->subdomain_cells);
     *open = 0;
     while (done < scratch->subdomain_cells.count && result == GX_OK) {
-        const uint32_t c = scratch->subdomain_cells.data[done++], fresh = gxp_new_index(body, c);
-        if (fresh == GXP_NONE)
+        const uint32_t c = scratch->subdomain_cells.data[done++], index = gxp_new_index(body, c);
+        if (index == GXP_NONE)
             result = gxp_cross_faces(body, c, node);
         else
-            result = gxp_cross_links(body, fresh, (uint32_t)gxp_local_node(body, body->cells.data[c].element, node),
+            result = gxp_cross_links(body, index, (uint32_t)gxp_local_node(body, body->cells.data[c].element, node),
                                      all, open);
         if (result == GX_OK && body->mesh.node_pinched[node]) result = gxp_cross_pinches(body, c, node);
     }
@@ -3794,7 +3796,7 @@ static uint32_t gxp_rest_cell(const gx_body *body, uint32_t element) {
 
 /* An element with more cells is not integrated as a whole: a cut may touch few of them. */
 #define GXP_REST_CELLS 4
-/* A cell with at least this share of its element may be what the others leave; its smallest moments lose two digits. */
+/* A cell with at least this share of its element may be computed as the rest; its smallest moments lose two digits. */
 #define GXP_REST 0.25
 
 /* Sets a cell, which was logged, to the element less its other cells. Returns 0 if too little remains. */
@@ -3821,7 +3823,7 @@ static int gxp_has_few_cells(const gx_body *body, uint32_t element) {
     return count <= GXP_REST_CELLS;
 }
 
-/* Integrates the new cells of an element. The one in the middle is most often what the others leave. */
+/* Integrates the new cells of an element. The one in the middle is most often computed as the rest. */
 static gx_result gxp_integrate_element(gx_body *body, uint32_t element) {
     const double volume = gxp_element_volume(body, element);
     const uint32_t rest = gxp_rest_cell(body, element);
@@ -3855,7 +3857,7 @@ static gx_result gxp_integrate_removed(gxp_cut *cut, const gxp_words *removed) {
 
 /* >>cut: the driver ------------------------------------------------------------------------------------------------ */
 /* gx_body_cut: check, begin, arrange, enrich, integrate, then commit, or roll back on any error. The commit can't fail.
-   It drops dead copies, wakes what was touched and marks what is to be made anew: model, skin, view, snapshot. */
+   It drops dead copies, wakes the touched copies and marks model, skin, view and snapshot as stale. */
 
 static uint64_t gxp_hash_cut(uint64_t past, const gx_cut_desc *desc) {
     size_t i;
@@ -4099,7 +4101,8 @@ static void gxp_commit(gxp_cut *cut) {
     body->cuts.hash = gxp_hash_cut(body->cuts.hash, cut->desc);
     if (cut->report.created_copies + cut->report.removed_copies > 0)
         body->cuts.epoch = body->cuts.hash != 0 ? body->cuts.hash : 1;
-    body->holds.stale = view->stale = body->snapshot.stale = 1;
+    body->holds.stale = view->stale = 1;
+    body->snapshot.stale = 1;
     if (scratch->removed.count + scratch->dead.count > 0 || view->splits.count > body->copies.count)
         view->labels_known = 0;
     if (!view->labels_known) view->splits.count = 0;
@@ -4342,7 +4345,7 @@ GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t
     return GX_OK;
 }
 
-/* >>fragments: what is connected, and what cuts changed ------------------------------------------------------------ */
+/* >>fragments: sums, ids, changes, the view ------------------------------------------------------------------------ */
 /* In: the numbering of fragments. Out: their volumes, masses, centres and inertia; ids that stay, by comparison with
    the last snapshot. Touches the view's sums, the snapshot and the copies' labels. */
 
@@ -5041,7 +5044,7 @@ static gx_result gxp_make_constraints(gx_body *body) {
     return result;
 }
 
-/* >>model: what the solver sees ------------------------------------------------------------------------------------ */
+/* >>model: the model that the solver takes ------------------------------------------------------------------------- */
 /* In: cells, copies, held flags. Out: the solver's model, made anew or changed where cuts have been. The cells of an
    element that move by the same four copies are one element of the model, a part. Touches the solver and the model's
    arrays, which are there only while it is made. */
@@ -5151,7 +5154,7 @@ static gx_result gxp_change_model(gx_body *body) {
     return result == GX_OK ? gxs_solver_update(body->solver, &change, NULL) : result;
 }
 
-/* Makes sure that what was written to the state since the last step wakes in the next one. */
+/* Makes sure that copies whose state was written since the last step wake in the next one. */
 static void gxp_note_written(gx_body *body) {
     gxp_wake_resumed(body, body->copies.count);
     gxs_solver_note_written(body->solver, body->copies.before, body->copies.count, body->copies.displacement,
@@ -5168,7 +5171,7 @@ static gx_result gxp_set_model(gx_body *body) {
     return body->model.empty ? GX_OK : gxs_solver_set_model(body->solver, &model, NULL);
 }
 
-/* Releases what the solver has copied. */
+/* Releases the arrays that the solver has copied. */
 static void gxp_release_model(gx_body *body) {
     gxp_release_columns(body, gxp_model_lists, sizeof gxp_model_lists / sizeof *gxp_model_lists);
 }
@@ -5239,7 +5242,7 @@ static gx_result gxp_complete_step(gx_body *body, const gx_step_desc *desc, gx_s
     return result;
 }
 
-/* Takes the step and keeps what the next step of BDF2 needs. */
+/* Takes the step and keeps the state that the next step of BDF2 needs. */
 static gx_result gxp_step(gx_body *body, const gx_step_desc *step, gx_step_report *report, gx_failure *failure) {
     gxp_copies *copies = &body->copies;
     const size_t bytes = 3 * (size_t)copies->count * sizeof(double);
@@ -6311,7 +6314,7 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
 
 /* >>create: create and destroy ------------------------------------------------------------------------------------- */
 /* In: a description. Out: a body with one cell for each element and one copy for each node that an element uses. After
-   an error what was made is destroyed again. */
+   an error everything made so far is destroyed. */
 
 /* Coordinates are at most 2^GXP_REACH, the longest side is at least 2^-GXP_REACH. Masses of elements are 2^-GXP_WEIGHT
    ... 2^GXP_WEIGHT: the inertia of 2^28 of them is below 2^940. */
