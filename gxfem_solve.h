@@ -582,6 +582,11 @@ extern "C" {
 #define GXSP_LIGHT   0.1
 #define GXSP_LIGHTER 0.02
 
+/* Light copies start, and go through the midpoint rule's second half, by themselves as far as GXSP_FREE of their
+ * distance from the copies that guide them. Slices of a fifth of an element have such copies: where steps resolve
+ * their motion, it is theirs. */
+#define GXSP_FREE 0.1
+
 /* Directions of light copies are bounded in the first GXSP_BOUNDED iterations of a step, where that costs at most
  * GXSP_BOUND_COST of the slope of their component. */
 #define GXSP_BOUNDED    8
@@ -4384,26 +4389,33 @@ static void gxsp_list_lights(gxsp_system *system, gxsp_pool *scratch, const uint
         if (gxsp_is_light(system, i, &weighed[i])) system->model.lights[system->model.light_count++] = weighed[i].light;
 }
 
-/* Mean of a vector x, minus another one (or NULL), over the corners that guide a light copy, weighted by their
- * masses; n x 3. Returns the heaviest of these copies. */
-static uint32_t gxsp_guide(const gxsp_system *system, const gxsp_light *light, const double *x, const double *less,
-                           double *mean) {
-    double sum = 0, most = 0;
-    uint32_t copies[4], heaviest = light->copy;
-    int k, c;
+/* How far a light copy departs, in a vector x minus another one (or NULL), from the mean over the corners that guide
+ * it, weighted by their masses; n x 3. Returns that as a share of its distance from the heaviest of these corners, at
+ * rest or displaced by u, whichever is longer; without rest positions the distance counts as 0. back: leads to the
+ * mean. */
+static double gxsp_departure(const gxsp_system *system, const gxsp_light *light, const double *x, const double *minus,
+                             const double *u, double back[3]) {
+    const size_t copy = 3 * (size_t)light->copy;
+    double sum = 0, most = 0, gap[3] = {0, 0, 0}, now[3] = {0, 0, 0};
+    uint32_t copies[4];
+    size_t heaviest = copy, c;
+    int k;
     gxsp_lane_copies(system, &system->mesh.chunks[light->chunk], light->lane / GXSP_LANES, light->lane % GXSP_LANES,
                      copies);
-    mean[0] = mean[1] = mean[2] = 0;
+    back[0] = back[1] = back[2] = 0;
     for (k = 0; k < 4; k++) {
+        const size_t corner = 3 * (size_t)copies[k];
         const double mass = k == light->corner ? 0 : system->model.lumped[copies[k]];
         sum += mass;
-        for (c = 0; c < 3; c++)
-            mean[c] +=
-                mass * (x[3 * (size_t)copies[k] + (size_t)c] - (less ? less[3 * (size_t)copies[k] + (size_t)c] : 0));
-        if (mass > most) most = mass, heaviest = copies[k];
+        for (c = 0; c < 3; c++) back[c] += mass * (x[corner + c] - (minus ? minus[corner + c] : 0));
+        if (mass > most) most = mass, heaviest = corner;
     }
-    for (c = 0; c < 3; c++) mean[c] /= sum;
-    return heaviest;
+    for (c = 0; c < 3; c++) back[c] = back[c] / sum - (x[copy + c] - (minus ? minus[copy + c] : 0));
+    for (c = 0; c < 3 && system->model.positions; c++) {
+        gap[c] = system->model.positions[copy + c] - system->model.positions[heaviest + c];
+        now[c] = gap[c] + u[copy + c] - u[heaviest + c];
+    }
+    return sqrt(gxsp_dot(back, back, 1) / fmax(gxsp_dot(gap, gap, 1), gxsp_dot(now, now, 1)));
 }
 
 /* >>sharing: memory that passes and coarse numbers have in turn ---------------------------------------------------- */
@@ -8039,20 +8051,18 @@ static void gxsp_find_base(const gxsp_problem *problem, double *to) {
     gxsp_follow(system, problem->given, to);
 }
 
-/* Light copies start where inertia leads the copies that guide them. They have next to no inertia of their own;
+/* Light copies start near where inertia leads the copies that guide them. They have next to no inertia of their own;
  * started where they fly, the linearisation would be that of an element torn apart. */
 static void gxsp_lead_lights(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     uint32_t i;
-    int c;
+    size_t c;
     for (i = 0; i < system->model.light_count; i++) {
-        const uint32_t copy = system->model.lights[i].copy;
-        double mean[3];
-        if (system->state.still[copy]) continue;
-        (void)gxsp_guide(system, &system->model.lights[i], system->vectors.target, problem->given, mean);
-        for (c = 0; c < 3; c++)
-            system->vectors.current[3 * (size_t)copy + (size_t)c] =
-                problem->given[3 * (size_t)copy + (size_t)c] + mean[c];
+        const gxsp_light *light = &system->model.lights[i];
+        double *start = system->vectors.current + 3 * (size_t)light->copy, back[3];
+        const double far = gxsp_departure(system, light, system->vectors.target, problem->given, problem->given, back);
+        if (!system->state.still[light->copy] && far > GXSP_FREE)
+            for (c = 0; c < 3; c++) start[c] += (1 - GXSP_FREE / far) * back[c];
     }
 }
 
@@ -8085,35 +8095,30 @@ static int gxsp_start(gxsp_problem *problem, int led) {
  * by themselves. */
 static void gxsp_bound_lights(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
-    const double *rest = system->model.positions, *moved = system->vectors.current;
+    double *direction = system->vectors.direction;
     uint32_t i;
     size_t c;
     int any = 0;
-    for (i = 0; i < system->model.light_count && rest && problem->report.newton_iterations < GXSP_BOUNDED; i++) {
-        const size_t copy = 3 * (size_t)system->model.lights[i].copy;
-        gxsp_component *component = gxsp_lead_of(system, copy / 3);
-        double *way = system->vectors.direction + copy, mean[3], less[3], gap[3], now[3], load[3], size, most, work;
-        const size_t guide =
-            3 * (size_t)gxsp_guide(system, &system->model.lights[i], system->vectors.direction, NULL, mean);
-        for (c = 0; c < 3; c++) {
-            less[c] = mean[c] - way[c];
-            gap[c] = rest[copy + c] - rest[guide + c];
-            now[c] = gap[c] + moved[copy + c] - moved[guide + c];
-        }
-        size = gxsp_dot(less, less, 1);
-        most = fmax(gxsp_dot(gap, gap, 1), gxsp_dot(now, now, 1));
-        if (system->state.still[copy / 3] || gxsp_follows(system, copy / 3) || size <= most) continue;
-        for (c = 0; c < 3; c++) less[c] *= 1 - sqrt(most / size);
-        gxsp_load(problem, copy / 3, load);
-        work = gxsp_dot(load, less, 1);
-        if (gxsp_dot(system->vectors.force + copy, less, 1) - work > GXSP_BOUND_COST * -component->slope) continue;
-        component->slope += gxsp_dot(system->vectors.force + copy, less, 1) - work;
+    if (!system->model.positions || problem->report.newton_iterations >= GXSP_BOUNDED) return;
+    for (i = 0; i < system->model.light_count; i++) {
+        const gxsp_light *light = &system->model.lights[i];
+        const size_t copy = light->copy;
+        const double *force = system->vectors.force + 3 * copy;
+        gxsp_component *component = gxsp_lead_of(system, copy);
+        double back[3], load[3], work;
+        const double far = gxsp_departure(system, light, direction, NULL, system->vectors.current, back);
+        if (system->state.still[copy] || gxsp_follows(system, copy) || !(far > 1)) continue;
+        for (c = 0; c < 3; c++) back[c] *= 1 - 1 / far;
+        gxsp_load(problem, copy, load);
+        work = gxsp_dot(load, back, 1);
+        if (gxsp_dot(force, back, 1) - work > GXSP_BOUND_COST * -component->slope) continue;
+        component->slope += gxsp_dot(force, back, 1) - work;
         component->work += work;
-        for (c = 0; c < 3; c++) way[c] += less[c];
+        for (c = 0; c < 3; c++) direction[3 * copy + c] += back[c];
         any = 1;
     }
     if (any) {
-        gxsp_follow(system, NULL, system->vectors.direction);
+        gxsp_follow(system, NULL, direction);
         gxsp_balance_direction(problem);
     }
 }
@@ -8559,16 +8564,17 @@ static void gxsp_judge_gain(gxsp_component *component, int last) {
     component->length = last ? 0 : next < 0.1 * component->length ? 0.1 * component->length : next;
 }
 
-/* Light copies keep their place beside the copies that guide them: in x, n x 3, they move by the mean of these. */
+/* Light copies keep their place beside the copies that guide them: in x, n x 3, they move by nearly the mean of these.
+ */
 static void gxsp_guide_lights(const gxsp_system *system, double *x) {
     uint32_t i;
+    size_t c;
     for (i = 0; i < system->model.light_count; i++) {
-        const uint32_t copy = system->model.lights[i].copy;
-        if (!system->state.still[copy] && !gxsp_follows(system, copy)) {
-            double mean[3];
-            (void)gxsp_guide(system, &system->model.lights[i], x, NULL, mean);
-            memcpy(x + 3 * (size_t)copy, mean, sizeof mean);
-        }
+        const gxsp_light *light = &system->model.lights[i];
+        double back[3];
+        const double far = gxsp_departure(system, light, x, NULL, system->vectors.current, back);
+        if (!system->state.still[light->copy] && !gxsp_follows(system, light->copy) && far > GXSP_FREE)
+            for (c = 0; c < 3; c++) x[3 * (size_t)light->copy + c] += (1 - GXSP_FREE / far) * back[c];
     }
 }
 
@@ -9312,6 +9318,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_GAIN
 #undef GXSP_LIGHT
 #undef GXSP_LIGHTER
+#undef GXSP_FREE
 #undef GXSP_BOUND_COST
 #undef GXSP_BOUNDED
 #undef GXSP_TOO_LONG
