@@ -3962,20 +3962,20 @@ static gx_result gxp_integrate_new(gx_body *body, uint32_t cell, uint32_t *befor
 GXP_PREFETCHES void gxp_prefetch_links(const gx_body *body, uint32_t index) {
     const gxp_scratch *scratch = &body->scratch;
     const gxb_complex *cx = body->complex;
-    const uint32_t *at = scratch->link_first.data;
+    const uint32_t *first = scratch->link_first.data;
     const uint32_t count = scratch->new_cells.count;
     uint32_t j, i;
     if (index + 3 < count)
-        for (j = at[index + 3]; j < at[index + 4]; j++)
+        for (j = first[index + 3]; j < first[index + 4]; j++)
             GXP_PREFETCH(gxb_complex_facet(cx, GXP_LINK_FACET(scratch->links.data[j])));
     if (index + 2 < count)
-        for (j = at[index + 2]; j < at[index + 3]; j++) {
+        for (j = first[index + 2]; j < first[index + 3]; j++) {
             const gxb_facet *f = gxb_complex_facet(cx, GXP_LINK_FACET(scratch->links.data[j]));
             GXP_PREFETCH(gxb_complex_list(cx, f->loop));
             GXP_PREFETCH(&gxb_complex_plane(cx, f->plane)->axis);
         }
     if (index + 1 < count)
-        for (j = at[index + 1]; j < at[index + 2]; j++) {
+        for (j = first[index + 1]; j < first[index + 2]; j++) {
             const gxb_facet *f = gxb_complex_facet(cx, GXP_LINK_FACET(scratch->links.data[j]));
             for (i = 0; i < f->loop_count; i++) GXP_PREFETCH(gxb_complex_edge(cx, gxp_item(cx, f->loop + i) >> 1));
         }
@@ -4354,8 +4354,8 @@ static const uint8_t gxp_mass_at[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 
 
 /* The sum of a row of a mass block: density * integral of lambda_i */
 static double gxp_mass_row(const double mass[10], int i) {
-    const uint8_t *at = gxp_mass_at[i];
-    return mass[at[0]] + mass[at[1]] + mass[at[2]] + mass[at[3]];
+    const uint8_t *row = gxp_mass_at[i];
+    return mass[row[0]] + mass[row[1]] + mass[row[2]] + mass[row[3]];
 }
 
 /* x of the cell's nodes from a centre, at rest or, moved, with the displacement of its copies */
@@ -4382,9 +4382,9 @@ static void gxp_mass_times(const gxp_cell *cell, double x[4][3], double mx[4][3]
     int i, k;
     for (i = 0; i < 4; i++)
         for (k = 0; k < 3; k++) {
-            const uint8_t *at = gxp_mass_at[i];
-            mx[i][k] = cell->mass[at[0]] * x[0][k] + cell->mass[at[1]] * x[1][k] + cell->mass[at[2]] * x[2][k] +
-                       cell->mass[at[3]] * x[3][k];
+            const uint8_t *row = gxp_mass_at[i];
+            mx[i][k] = cell->mass[row[0]] * x[0][k] + cell->mass[row[1]] * x[1][k] + cell->mass[row[2]] * x[2][k] +
+                       cell->mass[row[3]] * x[3][k];
         }
 }
 
@@ -4837,12 +4837,13 @@ static int gxp_next_around(const gx_body *body, gxp_around *around) {
 
 /* The share of the part that the cell belongs to */
 static double gxp_part_share(const gx_body *body, uint32_t cell) {
-    const gxp_cell *of = &body->cells.data[cell];
+    const gxp_cell *part = &body->cells.data[cell];
     double volume = 0;
-    for (cell = of->element; cell != GXP_NONE; cell = body->cells.data[cell].next)
-        if (body->cells.data[cell].kept && memcmp(body->cells.data[cell].copies, of->copies, sizeof of->copies) == 0)
+    for (cell = part->element; cell != GXP_NONE; cell = body->cells.data[cell].next)
+        if (body->cells.data[cell].kept &&
+            memcmp(body->cells.data[cell].copies, part->copies, sizeof part->copies) == 0)
             volume += body->cells.data[cell].volume;
-    return volume / gxp_element_volume(body, of->element);
+    return volume / gxp_element_volume(body, part->element);
 }
 
 /* Has the element a part with a share below follow_below? */
@@ -4882,21 +4883,22 @@ static int gxp_is_weak(const gx_body *body, uint32_t copy, double share) {
     return 1;
 }
 
-static int gxp_is_strong(const gx_body *body, const gxp_supports *of, uint32_t cell) {
+static int gxp_is_strong(const gx_body *body, const gxp_supports *supports, uint32_t cell) {
     const uint32_t *copies = body->cells.data[cell].copies;
-    return !(of->weak[copies[0]] | of->weak[copies[1]] | of->weak[copies[2]] | of->weak[copies[3]]);
+    return !(supports->weak[copies[0]] | supports->weak[copies[1]] | supports->weak[copies[2]] |
+             supports->weak[copies[3]]);
 }
 
 /* The weights by which a copy follows the field of a cell at its node; their sum is 1. Returns the sum of their
    absolute values: 1 within the element, more outside. */
 static double gxp_follow_weights(const gx_body *body, uint32_t copy, uint32_t cell, double weight[4]) {
-    const double *at = body->mesh.positions + 3 * (size_t)body->copies.node[copy];
+    const double *position = body->mesh.positions + 3 * (size_t)body->copies.node[copy];
     double x[12], gradients[12];
     int k, c;
     gxp_element_positions(body, body->cells.data[cell].element, x);
     (void)gxi_tet_gradients(x, gradients, NULL);
     for (k = 1; k < 4; k++)
-        for (c = 0, weight[k] = 0; c < 3; c++) weight[k] += gradients[3 * k + c] * (at[c] - x[c]);
+        for (c = 0, weight[k] = 0; c < 3; c++) weight[k] += gradients[3 * k + c] * (position[c] - x[c]);
     weight[0] = 1 - weight[1] - weight[2] - weight[3];
     return fabs(weight[0]) + fabs(weight[1]) + fabs(weight[2]) + fabs(weight[3]);
 }
@@ -4905,35 +4907,36 @@ static double gxp_follow_weights(const gx_body *body, uint32_t copy, uint32_t ce
    takes the one whose field is extended least; if a copy as near already follows one, it takes that. Weak copies that
    the search passed earlier than in its last round follow the same cell. Returns 0, or, if the fragment has no strong
    cell, the number of its copies, all of which the search has met. */
-static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *of, uint32_t copy) {
+static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *supports, uint32_t copy) {
     uint32_t begin, end, i, count = 1, best = GXP_NONE;
     int k;
-    of->search++;
-    of->queue[0] = copy;
-    of->seen[copy] = of->search;
+    supports->search++;
+    supports->queue[0] = copy;
+    supports->seen[copy] = supports->search;
     for (begin = 0; begin < count && best == GXP_NONE; begin = end) {
         double least = HUGE_VAL, weight[4], sum;
         uint32_t known = GXP_NONE;
         for (i = begin, end = count; i < end; i++) {
-            gxp_around around = gxp_around_copy(body, of->queue[i]);
-            if (known == GXP_NONE) known = of->cell[of->queue[i]];
+            gxp_around around = gxp_around_copy(body, supports->queue[i]);
+            if (known == GXP_NONE) known = supports->cell[supports->queue[i]];
             while (gxp_next_around(body, &around)) {
-                if (gxp_is_strong(body, of, around.cell) &&
+                if (gxp_is_strong(body, supports, around.cell) &&
                     (sum = gxp_follow_weights(body, copy, around.cell, weight)) < least) {
                     least = sum;
                     best = around.cell;
                 }
                 for (k = 0; k < 4; k++) {
                     const uint32_t other = body->cells.data[around.cell].copies[k];
-                    if (of->seen[other] == of->search) continue;
-                    of->seen[other] = of->search;
-                    of->queue[count++] = other;
+                    if (supports->seen[other] == supports->search) continue;
+                    supports->seen[other] = supports->search;
+                    supports->queue[count++] = other;
                 }
             }
         }
         if (best == GXP_NONE) best = known;
         for (i = 0; i < begin && best != GXP_NONE; i++)
-            if (of->weak[of->queue[i]] && of->cell[of->queue[i]] == GXP_NONE) of->cell[of->queue[i]] = best;
+            if (supports->weak[supports->queue[i]] && supports->cell[supports->queue[i]] == GXP_NONE)
+                supports->cell[supports->queue[i]] = best;
     }
     return best == GXP_NONE ? count : 0;
 }
@@ -4955,11 +4958,11 @@ static double gxp_cell_reach(const gxp_cell *cell) {
 
 /* A fragment without a strong cell: the first `count` copies of the queue. Either its copies are weak by comparison
    with its fullest part, or it is a speck and moves as a point. */
-static void gxp_weigh_fragment(const gx_body *body, gxp_supports *of, uint32_t count) {
+static void gxp_weigh_fragment(const gx_body *body, gxp_supports *supports, uint32_t count) {
     uint32_t i, fullest = GXP_NONE, lead;
     double most = 0, reach = 0;
     for (i = 0; i < count; i++) {
-        gxp_around around = gxp_around_copy(body, of->queue[i]);
+        gxp_around around = gxp_around_copy(body, supports->queue[i]);
         while (gxp_next_around(body, &around)) {
             const double share = gxp_part_share(body, around.cell);
             if (fullest == GXP_NONE || share > most) {
@@ -4971,46 +4974,46 @@ static void gxp_weigh_fragment(const gx_body *body, gxp_supports *of, uint32_t c
     }
     lead = body->cells.data[fullest].copies[0];
     for (i = 0; i < count; i++) {
-        const uint32_t copy = of->queue[i];
+        const uint32_t copy = supports->queue[i];
         if (most >= body->config.speck_below && reach >= body->config.speck_reach)
-            of->weak[copy] = gxp_is_weak(body, copy, body->config.follow_below * most) ? GXP_FOLLOWS : GXP_FREE;
+            supports->weak[copy] = gxp_is_weak(body, copy, body->config.follow_below * most) ? GXP_FOLLOWS : GXP_FREE;
         else {
-            of->weak[copy] = copy == lead ? GXP_FREE : GXP_FOLLOWS_POINT;
-            of->cell[copy] = fullest;
+            supports->weak[copy] = copy == lead ? GXP_FREE : GXP_FOLLOWS_POINT;
+            supports->cell[copy] = fullest;
         }
     }
 }
 
 /* Finds the weak copies of the body and what each follows. Returns their number. */
-static uint32_t gxp_find_supports(const gx_body *body, gxp_supports *of) {
+static uint32_t gxp_find_supports(const gx_body *body, gxp_supports *supports) {
     uint32_t i, cell, count = 0;
     int k;
-    of->search = 1;
+    supports->search = 1;
     for (i = 0; i < body->model.thin.count; i++)
         for (cell = body->model.thin.data[i]; cell != GXP_NONE; cell = body->cells.data[cell].next)
             for (k = 0; k < 4 && body->cells.data[cell].kept; k++) {
                 const uint32_t copy = body->cells.data[cell].copies[k];
-                if (of->seen[copy] == of->search) continue;
-                of->seen[copy] = of->search;
-                of->weak[copy] = gxp_is_weak(body, copy, body->config.follow_below) ? GXP_FOLLOWS : GXP_FREE;
+                if (supports->seen[copy] == supports->search) continue;
+                supports->seen[copy] = supports->search;
+                supports->weak[copy] = gxp_is_weak(body, copy, body->config.follow_below) ? GXP_FOLLOWS : GXP_FREE;
             }
     for (i = 0; i < body->copies.count; i++) {
-        while (of->weak[i] && of->cell[i] == GXP_NONE) {
-            const uint32_t met = gxp_find_cell(body, of, i);
-            if (met > 0) gxp_weigh_fragment(body, of, met);
+        while (supports->weak[i] && supports->cell[i] == GXP_NONE) {
+            const uint32_t met = gxp_find_cell(body, supports, i);
+            if (met > 0) gxp_weigh_fragment(body, supports, met);
         }
-        count += of->weak[i] != GXP_FREE;
+        count += supports->weak[i] != GXP_FREE;
     }
     return count;
 }
 
-static void gxp_add_constraint(gx_body *body, const gxp_supports *of, uint32_t copy) {
+static void gxp_add_constraint(gx_body *body, const gxp_supports *supports, uint32_t copy) {
     gxs_constraint *constraint = &body->model.constraints[body->model.constraint_count++];
     constraint->copy = copy;
-    memcpy(constraint->master, body->cells.data[of->cell[copy]].copies, sizeof constraint->master);
+    memcpy(constraint->master, body->cells.data[supports->cell[copy]].copies, sizeof constraint->master);
     memset(constraint->weight, 0, sizeof constraint->weight);
-    if (of->weak[copy] == GXP_FOLLOWS)
-        (void)gxp_follow_weights(body, copy, of->cell[copy], constraint->weight);
+    if (supports->weak[copy] == GXP_FOLLOWS)
+        (void)gxp_follow_weights(body, copy, supports->cell[copy], constraint->weight);
     else
         constraint->weight[0] = 1;
 }
@@ -5019,28 +5022,28 @@ static void gxp_add_constraint(gx_body *body, const gxp_supports *of, uint32_t c
 static gx_result gxp_make_constraints(gx_body *body) {
     const gx_allocator *a = &body->config.allocator;
     const size_t n = body->copies.count;
-    gxp_supports of;
+    gxp_supports supports;
     uint32_t i, count;
     gx_result result = GX_OK;
     body->model.constraint_count = 0;
     if (body->model.thin.count == 0) return GX_OK;
-    of.weak = (uint8_t *)gxp_allocate(a, n);
-    of.cell = (uint32_t *)gxp_allocate(a, 3 * n * sizeof(uint32_t));
-    if (of.weak != NULL && of.cell != NULL) {
-        of.queue = of.cell + n;
-        of.seen = of.queue + n;
-        memset(of.weak, 0, n);
-        memset(of.cell, 0xff, n * sizeof *of.cell);
-        memset(of.seen, 0, n * sizeof *of.seen);
-        count = gxp_find_supports(body, &of);
+    supports.weak = (uint8_t *)gxp_allocate(a, n);
+    supports.cell = (uint32_t *)gxp_allocate(a, 3 * n * sizeof(uint32_t));
+    if (supports.weak != NULL && supports.cell != NULL) {
+        supports.queue = supports.cell + n;
+        supports.seen = supports.queue + n;
+        memset(supports.weak, 0, n);
+        memset(supports.cell, 0xff, n * sizeof *supports.cell);
+        memset(supports.seen, 0, n * sizeof *supports.seen);
+        count = gxp_find_supports(body, &supports);
         result = gxp_reserve(a, &body->model.constraints, sizeof *body->model.constraints, 0,
                              &body->model.constraint_capacity, count);
         for (i = 0; i < n && result == GX_OK; i++)
-            if (of.weak[i]) gxp_add_constraint(body, &of, i);
+            if (supports.weak[i]) gxp_add_constraint(body, &supports, i);
     } else
         result = GX_ERROR_MEMORY;
-    gxp_release(a, of.weak, n);
-    gxp_release(a, of.cell, 3 * n * sizeof(uint32_t));
+    gxp_release(a, supports.weak, n);
+    gxp_release(a, supports.cell, 3 * n * sizeof(uint32_t));
     return result;
 }
 

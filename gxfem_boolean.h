@@ -6544,17 +6544,17 @@ static gx_result gxbp_scale(const gxb_boolean *b, const double x[3], double y[3]
 /* Scenes of ordinary size keep their scale. *bad: the vertex with the largest coordinate if that is out of range. */
 static gx_result gxbp_choose_scale(gxb_boolean *b, const gxb_operand *operand, size_t *bad) {
     int largest = -2000;
-    size_t i, at = 0;
+    size_t i, vertex = 0;
     for (i = 0; i < 3 * operand->vertex_count; i++) {
         const int e = gxbp_exponent_bits(operand->vertices[i]) - 1023;
         if (e > largest && e < 1024 && !gxbp_is_zero(operand->vertices[i])) {
             largest = e;
-            at = i / 3;
+            vertex = i / 3;
         }
     }
     b->store.shift = largest == -2000 || (largest >= -60 && largest <= 60) ? 0 : -largest;
     if (largest == -2000 || (largest >= -GXBP_LARGEST && largest <= GXBP_LARGEST)) return GX_OK;
-    *bad = at;
+    *bad = vertex;
     return GX_ERROR_RANGE;
 }
 
@@ -6592,9 +6592,9 @@ static void gxbp_list_half_edges(const uint32_t *triangles, uint32_t count, gxbp
         h -= 3;
         for (k = 0, i = 2; k < 3; i = k++) {
             const uint32_t p = triangles[h + i], q = triangles[h + k];
-            gxbp_passage *at = &passages[p < q ? p : q];
-            next[h + i] = p == q ? GXB_NONE : at->first;
-            if (p != q) at->first = h + i;
+            gxbp_passage *list = &passages[p < q ? p : q];
+            next[h + i] = p == q ? GXB_NONE : list->first;
+            if (p != q) list->first = h + i;
         }
     }
 }
@@ -6629,14 +6629,14 @@ enum { GXBP_FEW = 32, GXBP_FEW_TRIANGLES = 80 };
 
 /* Twins for few vertices. 0: some edge has not exactly one half-edge in each direction. */
 static int gxbp_find_few_twins(const uint32_t *triangles, uint32_t count, uint32_t vertex_count, uint32_t *twin) {
-    uint8_t at[GXBP_FEW * GXBP_FEW];
+    uint8_t half_edge[GXBP_FEW * GXBP_FEW];
     uint32_t h, k, i, alone = 3 * count;
-    memset(at, 0xff, (size_t)vertex_count * vertex_count);
+    memset(half_edge, 0xff, (size_t)vertex_count * vertex_count);
     for (h = 0; h < 3 * count; h += 3)
         for (k = 0, i = 2; k < 3; i = k++) {
-            const uint32_t p = triangles[h + i], q = triangles[h + k], back = at[q * vertex_count + p];
-            if (p == q || at[p * vertex_count + q] != 0xff) return 0;
-            at[p * vertex_count + q] = (uint8_t)(h + i);
+            const uint32_t p = triangles[h + i], q = triangles[h + k], back = half_edge[q * vertex_count + p];
+            if (p == q || half_edge[p * vertex_count + q] != 0xff) return 0;
+            half_edge[p * vertex_count + q] = (uint8_t)(h + i);
             if (back == 0xff) continue;
             twin[h + i] = back;
             twin[back] = h + i;
@@ -10658,8 +10658,8 @@ typedef struct gxbp_columns {
 } gxbp_columns;
 
 static uint32_t gxbp_column_at(const gxbp_columns *c, uint32_t k, double x) {
-    const double at = (x - c->low[k]) / c->size[k] * c->side;
-    return !(at > 0) ? 0 : at >= c->side ? c->side - 1 : (uint32_t)at;
+    const double position = (x - c->low[k]) / c->size[k] * c->side;
+    return !(position > 0) ? 0 : position >= c->side ? c->side - 1 : (uint32_t)position;
 }
 
 /* The columns of a triangle: from[0] to upto[0] along y, from[1] to upto[1] along z; how many they are */

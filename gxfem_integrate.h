@@ -462,10 +462,10 @@ GXFEM_API void gxi_moments2_add(gxi_moments2 *m, const gxi_moments2 *other) {
 
 /* (x + t)(x + t)^T = x x^T + x t^T + t x^T + t t^T */
 GXFEM_API void gxi_moments2_translate(gxi_moments2 *m, const double shift[3]) {
-    size_t i, j, at = 0;
+    size_t i, j, entry = 0;
     for (i = 0; i < 3; i++)
         for (j = i; j < 3; j++)
-            m->second[at++] += m->first[i] * shift[j] + shift[i] * m->first[j] + m->volume * shift[i] * shift[j];
+            m->second[entry++] += m->first[i] * shift[j] + shift[i] * m->first[j] + m->volume * shift[i] * shift[j];
     for (i = 0; i < 3; i++) m->first[i] += m->volume * shift[i];
 }
 
@@ -473,7 +473,7 @@ GXFEM_API void gxi_moments2_translate(gxi_moments2 *m, const double shift[3]) {
 GXFEM_API void gxi_moments2_map(gxi_moments2 *m, const double matrix[9], const double translation[3]) {
     gxi_moments2 r;
     double normal[3], det, half[3][3]; /* half = A S */
-    size_t i, j, p, at = 0;
+    size_t i, j, p, entry = 0;
     gxip_cross(matrix + 3, matrix + 6, normal);
     det = gxip_dot(matrix, normal);
     r.volume = det * m->volume;
@@ -485,7 +485,7 @@ GXFEM_API void gxi_moments2_map(gxi_moments2 *m, const double matrix[9], const d
         }
     }
     for (i = 0; i < 3; i++)
-        for (j = i; j < 3; j++) r.second[at++] = det * gxip_dot(half[i], matrix + 3 * j);
+        for (j = i; j < 3; j++) r.second[entry++] = det * gxip_dot(half[i], matrix + 3 * j);
     gxi_moments2_translate(&r, translation);
     *m = r;
 }
@@ -876,9 +876,9 @@ GXFEM_API gx_result gxi_tet_gradients(const double positions[12], double gradien
 }
 
 GXFEM_API void gxi_tet_mass(double volume, double density, double mass[10]) {
-    size_t i, j, at = 0;
+    size_t i, j, entry = 0;
     for (i = 0; i < 4; i++)
-        for (j = i; j < 4; j++) mass[at++] = density * volume / (i == j ? 10 : 20);
+        for (j = i; j < 4; j++) mass[entry++] = density * volume / (i == j ? 10 : 20);
 }
 
 /* Row k: the three others such that (k, others) is an even permutation, which keeps the orientation. */
@@ -1065,10 +1065,10 @@ GXFEM_API void gxi_face_load_add(const double a[4], const double b[4], const dou
 GXFEM_API void gxi_face_mass_add(const double a[4], const double b[4], const double c[4], double area,
                                  double mass[10]) {
     double s[4];
-    size_t i, j, at = 0;
+    size_t i, j, entry = 0;
     for (i = 0; i < 4; i++) s[i] = a[i] + b[i] + c[i];
     for (i = 0; i < 4; i++)
-        for (j = i; j < 4; j++) mass[at++] += area / 12 * (a[i] * a[j] + b[i] * b[j] + c[i] * c[j] + s[i] * s[j]);
+        for (j = i; j < 4; j++) mass[entry++] += area / 12 * (a[i] * a[j] + b[i] * b[j] + c[i] * c[j] + s[i] * s[j]);
 }
 
 #undef GXIP_ROUNDING

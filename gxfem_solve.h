@@ -974,9 +974,9 @@ typedef struct gxsp_space {
 
 /* The next array of a space: count x size bytes; NULL if the space has no memory and only counts. */
 static void *gxsp_carve(gxsp_space *space, size_t count, size_t size) {
-    const size_t at = space->used;
-    space->used = at + (count * size + GXSP_ALIGNMENT - 1) / GXSP_ALIGNMENT * GXSP_ALIGNMENT;
-    return space->memory ? space->memory + at : NULL;
+    const size_t start = space->used;
+    space->used = start + (count * size + GXSP_ALIGNMENT - 1) / GXSP_ALIGNMENT * GXSP_ALIGNMENT;
+    return space->memory ? space->memory + start : NULL;
 }
 
 /* >>structs: the solver's own form of a model ---------------------------------------------------------------------- */
@@ -1603,17 +1603,18 @@ static inline void gxsp_turn(float c, float s, float *x, float *y) {
 }
 
 /* Rotates columns i and j of b and of v in lane l. */
-static inline void gxsp_turn_columns(gxsp_jacobi *of, int i, int j, int l, float c, float s) {
-    gxsp_turn(c, s, &of->b[i][l], &of->b[j][l]);
-    gxsp_turn(c, s, &of->b[3 + i][l], &of->b[3 + j][l]);
-    gxsp_turn(c, s, &of->b[6 + i][l], &of->b[6 + j][l]);
-    gxsp_turn(c, s, &of->v[i][l], &of->v[j][l]);
-    gxsp_turn(c, s, &of->v[3 + i][l], &of->v[3 + j][l]);
-    gxsp_turn(c, s, &of->v[6 + i][l], &of->v[6 + j][l]);
+static inline void gxsp_turn_columns(gxsp_jacobi *jacobi, int i, int j, int l, float c, float s) {
+    gxsp_turn(c, s, &jacobi->b[i][l], &jacobi->b[j][l]);
+    gxsp_turn(c, s, &jacobi->b[3 + i][l], &jacobi->b[3 + j][l]);
+    gxsp_turn(c, s, &jacobi->b[6 + i][l], &jacobi->b[6 + j][l]);
+    gxsp_turn(c, s, &jacobi->v[i][l], &jacobi->v[j][l]);
+    gxsp_turn(c, s, &jacobi->v[3 + i][l], &jacobi->v[3 + j][l]);
+    gxsp_turn(c, s, &jacobi->v[6 + i][l], &jacobi->v[6 + j][l]);
 }
 
-static inline float gxsp_jacobi_product(const gxsp_jacobi *of, int i, int j, int l) {
-    return of->b[i][l] * of->b[j][l] + of->b[3 + i][l] * of->b[3 + j][l] + of->b[6 + i][l] * of->b[6 + j][l];
+static inline float gxsp_jacobi_product(const gxsp_jacobi *jacobi, int i, int j, int l) {
+    return jacobi->b[i][l] * jacobi->b[j][l] + jacobi->b[3 + i][l] * jacobi->b[3 + j][l] +
+           jacobi->b[6 + i][l] * jacobi->b[6 + j][l];
 }
 
 /* Makes columns i and j of b orthogonal. U and V stay rotations whatever the rounding: a Hessian built on them is a
@@ -1712,23 +1713,23 @@ static void gxsp_jacobi_begin(gxsp_lanes *GXSP_RESTRICT g, int first_lane, gxsp_
 }
 
 /* F = 1 + G = U diag(s) V^T of two blocks, or of one if last is NULL, by one-sided Jacobi with the same number of
- * sweeps in every lane. of: one entry per block. */
-static void gxsp_decompose(gxsp_lanes *first, gxsp_lanes *last, gxsp_svd *of) {
-    gxsp_jacobi at;
+ * sweeps in every lane. svd: one entry per block. */
+static void gxsp_decompose(gxsp_lanes *first, gxsp_lanes *last, gxsp_svd *svd) {
+    gxsp_jacobi jacobi;
     int sweep;
-    gxsp_jacobi_begin(first, 0, &at);
-    gxsp_jacobi_begin(last ? last : first, GXSP_LANES, &at);
+    gxsp_jacobi_begin(first, 0, &jacobi);
+    gxsp_jacobi_begin(last ? last : first, GXSP_LANES, &jacobi);
     /* convergence is quadratic: 4 sweeps reach single precision even for extreme F */
-    for (sweep = 0; sweep < 4 && !gxsp_orthogonal(&at); sweep++) {
-        gxsp_orthogonalise(&at, 0, 1);
-        gxsp_orthogonalise(&at, 0, 2);
-        gxsp_orthogonalise(&at, 1, 2);
+    for (sweep = 0; sweep < 4 && !gxsp_orthogonal(&jacobi); sweep++) {
+        gxsp_orthogonalise(&jacobi, 0, 1);
+        gxsp_orthogonalise(&jacobi, 0, 2);
+        gxsp_orthogonalise(&jacobi, 1, 2);
     }
-    gxsp_order_columns(&at, 0, 1);
-    gxsp_order_columns(&at, 0, 2);
-    gxsp_order_columns(&at, 1, 2);
-    gxsp_frame(&at, 0, &of[0]);
-    if (last) gxsp_frame(&at, GXSP_LANES, &of[1]);
+    gxsp_order_columns(&jacobi, 0, 1);
+    gxsp_order_columns(&jacobi, 0, 2);
+    gxsp_order_columns(&jacobi, 1, 2);
+    gxsp_frame(&jacobi, 0, &svd[0]);
+    if (last) gxsp_frame(&jacobi, GXSP_LANES, &svd[1]);
 }
 
 /* Cofactors of a 3x3: the derivative of its determinant */
@@ -1882,17 +1883,17 @@ static void gxsp_kirchhoff(gxsp_state *GXSP_RESTRICT s, double bend) {
  * the rotation of F's polar decomposition. R = U V^T is known to single precision; each Newton step for the rotation
  * that makes R^T F symmetric squares the error. */
 static void gxsp_corotated(gxsp_state *GXSP_RESTRICT s) {
-    gxsp_svd of;
+    gxsp_svd svd;
     int l, r, c, k, round;
-    gxsp_decompose(s->g, NULL, &of);
+    gxsp_decompose(s->g, NULL, &svd);
     for (l = 0; l < GXSP_LANES; l++) {
         double f[9], rotation[9], cofactor[9], j, strain = 0;
         for (k = 0; k < 9; k++) f[k] = s->g[k][l] + (k % 4 == 0 ? 1 : 0);
         for (r = 0; r < 3; r++)
             for (c = 0; c < 3; c++)
-                rotation[3 * r + c] = (double)of.u[3 * r][l] * of.v[3 * c][l] +
-                                      (double)of.u[3 * r + 1][l] * of.v[3 * c + 1][l] +
-                                      (double)of.u[3 * r + 2][l] * of.v[3 * c + 2][l];
+                rotation[3 * r + c] = (double)svd.u[3 * r][l] * svd.v[3 * c][l] +
+                                      (double)svd.u[3 * r + 1][l] * svd.v[3 * c + 1][l] +
+                                      (double)svd.u[3 * r + 2][l] * svd.v[3 * c + 2][l];
         for (round = 0; round < 2; round++) gxsp_polish_rotation(f, rotation);
         gxsp_cofactors(f, cofactor);
         j = f[0] * cofactor[0] + f[1] * cofactor[1] + f[2] * cofactor[2] - 1;
@@ -2132,12 +2133,12 @@ static void gxsp_pack_rotation(gxsp_singles *GXSP_RESTRICT u, gxsp_singles *GXSP
 
 /* The SVD that Hessians of one or two blocks of a kind need; last: NULL if there is one block. Returns whether an
  * element was collapsed. */
-static int gxsp_tangent_begin(gxs_material_kind kind, gxsp_state *first, gxsp_state *last, gxsp_svd *of) {
+static int gxsp_tangent_begin(gxs_material_kind kind, gxsp_state *first, gxsp_state *last, gxsp_svd *svd) {
     int collapsed;
     if (kind == GXS_CUSTOM || kind == GXS_LINEAR) return 0;
     collapsed = gxsp_nudge(first->g);
     collapsed |= last && gxsp_nudge(last->g);
-    gxsp_decompose(first->g, last ? last->g : NULL, of);
+    gxsp_decompose(first->g, last ? last->g : NULL, svd);
     return collapsed;
 }
 
@@ -2167,11 +2168,11 @@ static void gxsp_scale_principal(gxs_material_kind kind, const gxsp_rest *GXSP_R
     GXSP_EACH_LANE(l) to->weight[l] = (float)weight[l];
 }
 
-/* The Hessian of a block at s->g, times scale; exact or projected. of: by gxsp_tangent_begin. general: GXS_CUSTOM
+/* The Hessian of a block at s->g, times scale; exact or projected. svd: by gxsp_tangent_begin. general: GXS_CUSTOM
  * only, else NULL. */
 static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest,
                               gxsp_lanes *GXSP_RESTRICT gradients, double scale, int exact, gxsp_state *s,
-                              gxsp_svd *GXSP_RESTRICT of, gxsp_tangent *GXSP_RESTRICT tangent, gxsp_general *general) {
+                              gxsp_svd *GXSP_RESTRICT svd, gxsp_tangent *GXSP_RESTRICT tangent, gxsp_general *general) {
     const float least = exact ? -FLT_MAX : 0;
     gxsp_principal principal;
     int k, l, r, c;
@@ -2179,12 +2180,12 @@ static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_REST
         gxsp_general_make(rest, gradients, scale, exact, s, tangent, general);
         return;
     }
-    gxsp_scale_principal(kind, rest, scale, s, of, &principal);
+    gxsp_scale_principal(kind, rest, scale, s, svd, &principal);
     switch (kind) {
-    case GXS_ST_VENANT_KIRCHHOFF: gxsp_kirchhoff_principal(of, &principal); break;
-    case GXS_FIXED_COROTATED: gxsp_corotated_principal(of, &principal); break;
-    case GXS_LINEAR: gxsp_linear_principal(of, &principal); break;
-    default: gxsp_neo_hookean_principal(of, &principal); break;
+    case GXS_ST_VENANT_KIRCHHOFF: gxsp_kirchhoff_principal(svd, &principal); break;
+    case GXS_FIXED_COROTATED: gxsp_corotated_principal(svd, &principal); break;
+    case GXS_LINEAR: gxsp_linear_principal(svd, &principal); break;
+    default: gxsp_neo_hookean_principal(svd, &principal); break;
     }
     if (!exact) gxsp_project(&principal);
     for (k = 0; k < 6; k++) GXSP_EACH_LANE(l) tangent->stretch[k][l] = principal.weight[l] * principal.stretch[k][l];
@@ -2194,12 +2195,12 @@ static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_REST
             tangent->even[k][l] = 0.5f * principal.weight[l] * (flip + twist);
             tangent->odd[k][l] = 0.5f * principal.weight[l] * (flip - twist);
         }
-    gxsp_pack_rotation(of->u, tangent->frame);
+    gxsp_pack_rotation(svd->u, tangent->frame);
     for (r = 0; r < 3; r++)
         for (c = 0; c < 3; c++) GXSP_EACH_LANE(l)
-    tangent->gradient[3 * r + c][l] = (float)gradients[3 * r][l] * of->v[c][l] +
-                                      (float)gradients[3 * r + 1][l] * of->v[3 + c][l] +
-                                      (float)gradients[3 * r + 2][l] * of->v[6 + c][l];
+    tangent->gradient[3 * r + c][l] = (float)gradients[3 * r][l] * svd->v[c][l] +
+                                      (float)gradients[3 * r + 1][l] * svd->v[3 + c][l] +
+                                      (float)gradients[3 * r + 2][l] * svd->v[6 + c][l];
 }
 
 /* >>element: passes over one block --------------------------------------------------------------------------------- */
@@ -2278,12 +2279,12 @@ static void gxsp_block_inertia(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_m
             const double raa = (double)moments->root[0][l], rba = (double)moments->root[1][l],
                          rbb = (double)moments->root[2][l], rca = (double)moments->root[3][l],
                          rcb = (double)moments->root[4][l], rcc = (double)moments->root[5][l];
-            const double at = o + (ca * a + cb * b + cc * c), u = raa * a + rba * b + rca * c, v = rbb * b + rcb * c,
+            const double mean = o + (ca * a + cb * b + cc * c), u = raa * a + rba * b + rca * c, v = rbb * b + rcb * c,
                          w = rcc * c;
-            const double fa = m * (ca * at + raa * u), fb = m * (cb * at + rba * u + rbb * v),
-                         fc = m * (cc * at + rca * u + rcb * v + rcc * w);
-            y[r][l] += m * at - (fa + fb + fc), y[3 + r][l] += fa, y[6 + r][l] += fb, y[9 + r][l] += fc;
-            energy[l] += 0.5 * m * (at * at + u * u + v * v + w * w);
+            const double fa = m * (ca * mean + raa * u), fb = m * (cb * mean + rba * u + rbb * v),
+                         fc = m * (cc * mean + rca * u + rcb * v + rcc * w);
+            y[r][l] += m * mean - (fa + fb + fc), y[3 + r][l] += fa, y[6 + r][l] += fb, y[9 + r][l] += fc;
+            energy[l] += 0.5 * m * (mean * mean + u * u + v * v + w * w);
         }
 }
 
@@ -2401,14 +2402,14 @@ static void gxsp_corner_moments(const gxsp_moments *moments, int corner, gxsp_si
 
 /* M_pq x rate */
 static void gxsp_block_mass(const gxsp_tangent *tangent, const gxsp_moments *moments, int p, int q, float *mass) {
-    gxsp_singles of[8];
+    gxsp_singles corners[8];
     int l;
     if (moments) {
-        gxsp_corner_moments(moments, p, of);
-        gxsp_corner_moments(moments, q, of + 4);
+        gxsp_corner_moments(moments, p, corners);
+        gxsp_corner_moments(moments, q, corners + 4);
         GXSP_EACH_LANE(l)
-        mass[l] =
-            tangent->mass[l] * (of[0][l] * of[4][l] + of[1][l] * of[5][l] + of[2][l] * of[6][l] + of[3][l] * of[7][l]);
+        mass[l] = tangent->mass[l] * (corners[0][l] * corners[4][l] + corners[1][l] * corners[5][l] +
+                                      corners[2][l] * corners[6][l] + corners[3][l] * corners[7][l]);
     } else
         GXSP_EACH_LANE(l) mass[l] = tangent->mass[l] * (p == q ? 2.0f : 1.0f);
 }
@@ -2646,21 +2647,21 @@ static double gxsp_place_moments(const double *mass, const uint8_t *order, gxsp_
 }
 
 /* Puts an element into lane `at` of a chunk. order: corner of the element for each corner of the lane */
-static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *element, const uint8_t *order, uint32_t at,
-                               uint32_t lumped) {
-    gxsp_rest *rest = &chunk->rest[at / GXSP_LANES];
-    size_t lane = at % GXSP_LANES;
+static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *element, const uint8_t *order,
+                               uint32_t place, uint32_t lumped) {
+    gxsp_rest *rest = &chunk->rest[place / GXSP_LANES];
+    size_t lane = place % GXSP_LANES;
     int i, k;
     for (i = 0; i < 3 && chunk->gradients; i++)
         for (k = 0; k < 3; k++)
-            chunk->gradients[at / GXSP_LANES].entry[3 * i + k][lane] =
+            chunk->gradients[place / GXSP_LANES].entry[3 * i + k][lane] =
                 order[1 + i] > 0 ? element->gradient[order[1 + i]][k]
                                  : -(element->gradient[1][k] + element->gradient[2][k] + element->gradient[3][k]);
     rest->weight[lane] = element->weight;
     rest->material[lane] = element->material;
-    chunk->groups[at] = element->group % GXSP_GROUPS; /* a caller who does not update may leave it unset */
+    chunk->groups[place] = element->group % GXSP_GROUPS; /* a caller who does not update may leave it unset */
     if (chunk->moments)
-        rest->mass[lane] = gxsp_place_moments(element->mass, order, &chunk->moments[at / GXSP_LANES], lane);
+        rest->mass[lane] = gxsp_place_moments(element->mass, order, &chunk->moments[place / GXSP_LANES], lane);
     else
         rest->mass[lane] = lumped ? 0 : 0.5 * element->mass[0];
 }
@@ -2698,11 +2699,11 @@ static uint32_t gxsp_spread(uint32_t x) {
 }
 
 /* Position of a point along the Z-order curve through 1024^3 cells */
-static uint32_t gxsp_curve(const double *at, const double *low, double per_cell) {
+static uint32_t gxsp_curve(const double *point, const double *low, double per_cell) {
     uint32_t code = 0;
     int k;
     for (k = 0; k < 3; k++) {
-        double cell = (at[k] - low[k]) * per_cell;
+        double cell = (point[k] - low[k]) * per_cell;
         code |= gxsp_spread(cell < 0 ? 0 : cell > 1023 ? 1023 : (uint32_t)cell) << k;
     }
     return code;
@@ -2715,10 +2716,10 @@ typedef struct gxsp_sorted {
     uint32_t index; /* of the element or, while components are sorted, of the component */
 } gxsp_sorted;
 
-static uint32_t gxsp_sorted_digit(const gxsp_sorted *of, int pass) {
-    return pass < 3 ? of->place >> (10 * pass) & 1023u
-         : pass < 6 ? of->component >> (10 * (pass - 3)) & 1023u
-                    : of->class_index;
+static uint32_t gxsp_sorted_digit(const gxsp_sorted *item, int pass) {
+    return pass < 3 ? item->place >> (10 * pass) & 1023u
+         : pass < 6 ? item->component >> (10 * (pass - 3)) & 1023u
+                    : item->class_index;
 }
 
 /* Stable radix sort, least digit first. A digit that is the same everywhere is skipped. other: room for as many */
@@ -2750,11 +2751,11 @@ static void gxsp_place_elements(const gxs_model *model, gxsp_sorted *sorted) {
         }
     for (k = 0; k < 3; k++) extent = high[k] - low[k] > extent ? high[k] - low[k] : extent;
     for (i = 0; i < model->element_count && extent > 0; i++) {
-        double at[3] = {0, 0, 0};
+        double centre[3] = {0, 0, 0};
         for (k = 0; k < 4; k++)
             for (r = 0; r < 3; r++)
-                at[r] += 0.25 * model->positions[3 * (size_t)model->elements[i].copy[k] + (size_t)r];
-        sorted[i].place = gxsp_curve(at, low, 1024 / extent);
+                centre[r] += 0.25 * model->positions[3 * (size_t)model->elements[i].copy[k] + (size_t)r];
+        sorted[i].place = gxsp_curve(centre, low, 1024 / extent);
     }
 }
 
@@ -2931,22 +2932,22 @@ static void gxsp_face_of(const uint32_t *element, int corner, uint32_t *face) {
 /* Fills across, with a hash table of the faces met so far. */
 static void gxsp_find_across(gxsp_layout *layout) {
     uint16_t table[GXSP_FACES]; /* 4 x element + corner, from 1 */
-    uint32_t f, at, face[3];
+    uint32_t f, place, face[3];
     uint8_t corners[3];
     memset(table, 0, sizeof table);
     for (f = 0; f < 4 * layout->count; f++) {
         layout->across[f / 4][f % 4] = (uint16_t)layout->count;
         gxsp_face_of(layout->nodes[f / 4], (int)(f % 4), face);
-        for (at = (face[0] * face[0] + face[1] * face[1] + face[2] * face[2]) * 40503u / 16 % GXSP_FACES; table[at];
-             at = (at + 1) % GXSP_FACES) {
-            const uint32_t other = (table[at] - 1u) / 4;
+        for (place = (face[0] * face[0] + face[1] * face[1] + face[2] * face[2]) * 40503u / 16 % GXSP_FACES;
+             table[place]; place = (place + 1) % GXSP_FACES) {
+            const uint32_t other = (table[place] - 1u) / 4;
             const int corner = gxsp_find_face(layout->nodes[other], face, corners);
-            if (corner != (int)((table[at] - 1u) % 4)) continue;
+            if (corner != (int)((table[place] - 1u) % 4)) continue;
             layout->across[f / 4][f % 4] = (uint16_t)other;
             layout->across[other][corner] = (uint16_t)(f / 4);
             break;
         }
-        if (!table[at]) table[at] = (uint16_t)(f + 1);
+        if (!table[place]) table[place] = (uint16_t)(f + 1);
     }
 }
 
@@ -3008,12 +3009,12 @@ static uint32_t gxsp_place_strips(gxsp_layout *layout, uint32_t blocks, uint32_t
     uint32_t c, i;
     for (c = 0; c < strips; c++)
         for (i = 0; i < length; i++) {
-            const uint32_t at = c * length + i, e = layout->strip[at];
+            const uint32_t index = c * length + i, e = layout->strip[index];
             const uint32_t lane = c < rows * GXSP_LANES ? (first + c % rows * length + i) * GXSP_LANES + c / rows : 0;
             layout->placed[e] = c < rows * GXSP_LANES;
             if (!layout->placed[e]) continue;
             layout->element[lane] = (uint16_t)e;
-            memcpy(layout->order[lane], layout->turn[at], 4);
+            memcpy(layout->order[lane], layout->turn[index], 4);
         }
     return first + rows * length;
 }
@@ -3052,11 +3053,11 @@ static void gxsp_lane_copies(const gxsp_system *system, const gxsp_chunk *chunk,
 /* Row sum of the mass of a lane's element at corner k */
 static double gxsp_lane_mass(const gxsp_chunk *chunk, uint32_t lane, int k) {
     const size_t b = lane / GXSP_LANES, l = lane % GXSP_LANES;
-    const gxsp_moments *of = gxsp_block_moments(chunk, (uint32_t)b);
+    const gxsp_moments *moments = gxsp_block_moments(chunk, (uint32_t)b);
     return chunk->rest[b].mass[l] *
-           (!of ? 5
-                : (double)(k > 0 ? of->centre[k - 1][l]
-                                 : 1 - (of->centre[0][l] + of->centre[1][l] + of->centre[2][l])));
+           (!moments ? 5
+                     : (double)(k > 0 ? moments->centre[k - 1][l]
+                                      : 1 - (moments->centre[0][l] + moments->centre[1][l] + moments->centre[2][l])));
 }
 
 /* Does the element of a lane give corner k stiffness or mass? */
@@ -3373,12 +3374,12 @@ static uint32_t gxsp_list_partials(gxsp_system *system, gxsp_partial *partials) 
         chunk->first_partial = count;
         for (k = 0; k < chunk->node_count; k++) {
             const uint32_t component = system->model.component[system->mesh.nodes[chunk->first_node + k]];
-            uint32_t at = count;
+            uint32_t place = count;
             if (system->model.components[component].lead == c) continue;
             system->model.components[component].lead = c;
-            for (; partials && at > chunk->first_partial && partials[at - 1].component > component; at--)
-                partials[at].component = partials[at - 1].component;
-            if (partials) partials[at].component = component;
+            for (; partials && place > chunk->first_partial && partials[place - 1].component > component; place--)
+                partials[place].component = partials[place - 1].component;
+            if (partials) partials[place].component = component;
             count++;
         }
         chunk->partial_count = count - chunk->first_partial;
@@ -3746,8 +3747,8 @@ static void gxsp_coarse_rows(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *le
 
 /* Adds the level after levels[at], at > 0, with twice its spacing. 0: it would not be much smaller. What it takes
  * of scratch stays there. */
-static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at) {
-    gxsp_level *level = &system->multigrid.levels[at], *next = level + 1;
+static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t depth) {
+    gxsp_level *level = &system->multigrid.levels[depth], *next = level + 1;
     gxsp_pool *pool = &system->multigrid.pool;
     gxsp_owned *mark = pool->last;
     gxsp_transfer transfer;
@@ -3902,8 +3903,9 @@ static void gxsp_edges_carve(gxsp_system *system, gxsp_space *space, int numbers
     size_t c, lanes = 0, nodes = 1, most = 0;
     for (c = 0; c < system->mesh.chunk_count; c++) {
         const gxsp_chunk *chunk = &system->mesh.chunks[c];
-        const size_t of = chunk->block_count * GXSP_LANES, count = numbers ? chunk->edge_count : 1 + 6 * of;
-        lanes = of > lanes ? of : lanes;
+        const size_t lanes_here = chunk->block_count * GXSP_LANES,
+                     count = numbers ? chunk->edge_count : 1 + 6 * lanes_here;
+        lanes = lanes_here > lanes ? lanes_here : lanes;
         nodes = chunk->node_count > nodes ? chunk->node_count : nodes;
         most = count > most ? count : most;
     }
@@ -3939,14 +3941,14 @@ static void gxsp_edges_begin(gxsp_edges *edges, const gxsp_chunk *chunk) {
  * processors could not predict it. count: edges so far */
 static inline uint16_t gxsp_find_edge(const gxsp_edges *edges, uint32_t i, uint32_t j, uint32_t *count) {
     const uint32_t low = i < j ? i : j, high = i < j ? j : i, ends = low << 16 | high;
-    uint16_t *at = &edges->table[high * (high - 1) / 2 + low];
+    uint16_t *entry = &edges->table[high * (high - 1) / 2 + low];
     int made;
     if (low == high) return 0;
-    made = (*at >= *count) | (edges->ends[*at] != ends);
+    made = (*entry >= *count) | (edges->ends[*entry] != ends);
     edges->ends[*count] = ends;
-    *at = made ? (uint16_t)*count : *at;
+    *entry = made ? (uint16_t)*count : *entry;
     *count += (uint32_t)made;
-    return *at;
+    return *entry;
 }
 
 /* The six edges of each element of a block; 0 where the element has no weight */
@@ -4202,7 +4204,7 @@ static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch) {
 
 /* The rows of level 1 and all levels after it. before, dirty: see gxsp_first_pattern */
 static void gxsp_levels_make(gxsp_system *system, gxsp_pool *scratch, const gxsp_level *before, const uint8_t *dirty) {
-    uint32_t at;
+    uint32_t depth;
     gxsp_pairs_make(system, scratch);
     if (scratch->failed) return;
     if (system->multigrid.fine)
@@ -4211,18 +4213,18 @@ static void gxsp_levels_make(gxsp_system *system, gxsp_pool *scratch, const gxsp
         gxsp_first_pattern(system, scratch, before, dirty);
     gxsp_count_edges(system);
     if (scratch->failed || system->multigrid.pool.failed) return;
-    for (at = 1;
-         at + 1 < GXSP_LEVELS &&
-         !gxsp_factors(scratch, &system->multigrid.levels[at], at == 1 ? system->model.n / 2 : system->model.n) &&
-         gxsp_add_level(system, scratch, at);
-         at++)
+    for (depth = 1;
+         depth + 1 < GXSP_LEVELS &&
+         !gxsp_factors(scratch, &system->multigrid.levels[depth], depth == 1 ? system->model.n / 2 : system->model.n) &&
+         gxsp_add_level(system, scratch, depth);
+         depth++)
         ;
-    system->multigrid.level_count = at + 1;
-    for (at = 1;
-         !scratch->failed && !system->multigrid.pool.failed && (at == 1 || at + 1 < system->multigrid.level_count);
-         at++)
-        system->multigrid.levels[at].block = (float *)gxsp_take(
-            &system->multigrid.pool, gxsp_block_numbers(&system->multigrid.levels[at]), sizeof(float));
+    system->multigrid.level_count = depth + 1;
+    for (depth = 1; !scratch->failed && !system->multigrid.pool.failed &&
+                    (depth == 1 || depth + 1 < system->multigrid.level_count);
+         depth++)
+        system->multigrid.levels[depth].block = (float *)gxsp_take(
+            &system->multigrid.pool, gxsp_block_numbers(&system->multigrid.levels[depth]), sizeof(float));
     gxsp_factor_make(system, scratch);
 }
 
@@ -4687,8 +4689,8 @@ static void gxsp_block_load_copies(const gxsp_system *system, const gxsp_chunk *
     int i, l;
     for (i = 0; i < 4; i++)
         for (l = 0; l < GXSP_LANES && chunk->changed[b] >> i & 1; l++) {
-            const double *of = x + 3 * (size_t)copies[chunk->corners[b].node[i][l]];
-            corners[3 * i][l] = of[0], corners[3 * i + 1][l] = of[1], corners[3 * i + 2][l] = of[2];
+            const double *copy = x + 3 * (size_t)copies[chunk->corners[b].node[i][l]];
+            corners[3 * i][l] = copy[0], corners[3 * i + 1][l] = copy[1], corners[3 * i + 2][l] = copy[2];
         }
 }
 
@@ -4734,17 +4736,17 @@ static void gxsp_block_store(const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *GX
 /* Rotates P of elements by the rotation from their orientation at displacement gradients `from` to that at `to`. P
  * stays where that is more than a right angle: such an element is tangled. */
 static void gxsp_rotate_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p) {
-    gxsp_svd of[2];
+    gxsp_svd svd[2];
     int r, c, k, l;
-    gxsp_decompose(from, to, of);
+    gxsp_decompose(from, to, svd);
     for (l = 0; l < GXSP_LANES; l++) {
         double a[9], b[9], turn[9], stress[9], f[9], h[9];
         for (r = 0; r < 3; r++)
             for (c = 0; c < 3; c++) {
                 a[3 * r + c] = b[3 * r + c] = 0;
                 for (k = 0; k < 3; k++) {
-                    a[3 * r + c] += (double)(of[0].u[3 * r + k][l] * of[0].v[3 * c + k][l]);
-                    b[3 * r + c] += (double)(of[1].u[3 * r + k][l] * of[1].v[3 * c + k][l]);
+                    a[3 * r + c] += (double)(svd[0].u[3 * r + k][l] * svd[0].v[3 * c + k][l]);
+                    b[3 * r + c] += (double)(svd[1].u[3 * r + k][l] * svd[1].v[3 * c + k][l]);
                 }
             }
         for (k = 0; k < 9; k++) {
@@ -4825,7 +4827,7 @@ static void gxsp_task_state(void *context, size_t index) {
     double *slots = &system->vectors.slots[chunk->first_node][0];
     uint32_t b;
     int k, l, inertia;
-    double rest_at[3 * 4 * GXSP_CHUNK + 1], at[3 * 4 * GXSP_CHUNK + 1];
+    double positions[3 * 4 * GXSP_CHUNK + 1], state[3 * 4 * GXSP_CHUNK + 1];
     gxsp_lanes corners[12], x[12], other[12], forces[12], made[9];
     if (gxsp_chunk_settled(system, chunk)) return;
     for (b = 0; b < chunk->partial_count; b++)
@@ -4833,16 +4835,16 @@ static void gxsp_task_state(void *context, size_t index) {
     memset(slots, 0, 3 * (size_t)chunk->node_count * sizeof *slots);
     if (system->state.chunk_still[index]) return;
     inertia = pass->inertia && gxsp_accelerates(system, chunk, pass->from);
-    gxsp_chunk_load(system, chunk, pass->from, at);
-    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, rest_at);
+    gxsp_chunk_load(system, chunk, pass->from, state);
+    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, positions);
     memset(forces, 0, sizeof forces);
     for (b = 0; b < chunk->block_count; b++) {
         const gxsp_rest *rest = &chunk->rest[b];
         gxsp_lanes ahead[9], led[12], energies[3], *gradients;
         gxsp_state s;
         gxsp_prefetch_block(system, index, b, GXSP_RESTS_AHEAD, 0);
-        gxsp_block_load(chunk, b, at, x);
-        gradients = gxsp_block_gradients(chunk, b, rest_at, corners, made);
+        gxsp_block_load(chunk, b, state, x);
+        gradients = gxsp_block_gradients(chunk, b, positions, corners, made);
         if (inertia || pass->rotated) /* never both: rotated stresses come without inertia */
             gxsp_block_load_copies(system, chunk, b, inertia ? system->vectors.target : pass->rotated, other);
         gxsp_block_parameters(pass->materials, rest, &s);
@@ -5078,10 +5080,10 @@ static inline void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, fl
         gxsp_transpose_four(block[0] + l, block[1] + l, block[2] + l, block[3] + l, first);
         gxsp_transpose_four(block[4] + l, block[5] + l, block[6] + l, block[7] + l, second);
         for (k = 0; k < 4; k++) {
-            float *at = to[entry[l + k]];
-            *(gxsp_four *)at += first[k];
-            *(gxsp_four *)(at + 4) += second[k];
-            at[8] += block[8][l + k];
+            float *sum = to[entry[l + k]];
+            *(gxsp_four *)sum += first[k];
+            *(gxsp_four *)(sum + 4) += second[k];
+            sum[8] += block[8][l + k];
         }
     }
 }
@@ -5171,9 +5173,10 @@ static void gxsp_task_product_sum(void *context, size_t index) {
     size_t i, end = gxsp_range(system, index, &i);
     double work = 0;
     for (; i < end; i++) {
-        const float *at = pass->x[i], m = system->model.lumped_mass ? (float)(pass->rate * system->model.lumped[i]) : 0;
+        const float *direction = pass->x[i],
+                    m = system->model.lumped_mass ? (float)(pass->rate * system->model.lumped[i]) : 0;
         const double *right = pass->right ? pass->right + 3 * i : NULL;
-        float x = m * at[0], y = m * at[1], z = m * at[2], *to = pass->y[i];
+        float x = m * direction[0], y = m * direction[1], z = m * direction[2], *to = pass->y[i];
         uint32_t s;
         for (s = system->mesh.copy_start[i]; s < system->mesh.copy_start[i + 1] && !system->state.still[i]; s++) {
             const float *from = slots[system->mesh.copy_slot[s]];
@@ -5184,7 +5187,7 @@ static void gxsp_task_product_sum(void *context, size_t index) {
             to[0] = (float)right[0] - x, to[1] = (float)right[1] - y, to[2] = (float)right[2] - z;
         else
             to[0] = x, to[1] = y, to[2] = z;
-        work += (double)at[0] * (double)x + (double)at[1] * (double)y + (double)at[2] * (double)z;
+        work += (double)direction[0] * (double)x + (double)direction[1] * (double)y + (double)direction[2] * (double)z;
     }
     system->vectors.range_sum[index][0] = work;
 }
@@ -5219,11 +5222,11 @@ static double gxsp_add_terms(const gxsp_lasting *lasting, float sign, gxsp_vecto
     int k, c;
     for (t = 0; t < lasting->count; t++) {
         const gxsp_term *term = &lasting->term[t];
-        float at[3] = {0, 0, 0}, force[3];
+        float u[3] = {0, 0, 0}, force[3];
         for (k = 0; k < 4 && !term->assembled; k++)
-            for (c = 0; c < 3; c++) at[c] += term->weight[k] * x[term->copy[k]][c];
-        gxsp_apply_packed(term->hessian, at, force);
-        for (c = 0; c < 3; c++) work += (double)at[c] * (double)force[c];
+            for (c = 0; c < 3; c++) u[c] += term->weight[k] * x[term->copy[k]][c];
+        gxsp_apply_packed(term->hessian, u, force);
+        for (c = 0; c < 3; c++) work += (double)u[c] * (double)force[c];
         for (k = 0; k < 4 && !term->assembled; k++)
             for (c = 0; c < 3; c++) y[term->copy[k]][c] += sign * term->weight[k] * force[c];
     }
@@ -5345,10 +5348,11 @@ static void gxsp_task_apply_sum(void *context, size_t index) {
     const double unit = 1 / system->model.scale, back = 1 / pass->factor;
     size_t i, end = gxsp_range(system, index, &i);
     for (; i < end; i++) {
-        double at[3] = {0, 0, 0}, mass = system->model.lumped_mass ? pass->rate * system->model.lumped[i] : 0, x, y, z;
+        double direction[3] = {0, 0, 0}, mass = system->model.lumped_mass ? pass->rate * system->model.lumped[i] : 0, x,
+               y, z;
         uint32_t s;
-        if (mass > 0) gxsp_copy_direction(pass, (uint32_t)i, at);
-        x = mass * at[0], y = mass * at[1], z = mass * at[2];
+        if (mass > 0) gxsp_copy_direction(pass, (uint32_t)i, direction);
+        x = mass * direction[0], y = mass * direction[1], z = mass * direction[2];
         for (s = system->mesh.copy_start[i]; s < system->mesh.copy_start[i + 1] && !system->model.fixed[i]; s++) {
             const float *from = slots[system->mesh.copy_slot[s]];
             gxsp_prefetch(slots[system->mesh.copy_slot[s + GXSP_AHEAD]], sizeof *slots);
@@ -5415,7 +5419,7 @@ static void gxsp_task_linearise(void *context, size_t index) {
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     float *slots = (float *)(void *)system->vectors.slots[chunk->first_node];
-    double rest_at[3 * 4 * GXSP_CHUNK + 1], at[3 * 4 * GXSP_CHUNK + 1];
+    double positions[3 * 4 * GXSP_CHUNK + 1], state[3 * 4 * GXSP_CHUNK + 1];
     gxsp_lanes corners[12], x[12], made[2][9], *gradients[2];
     gxsp_singles own[24];
     uint32_t b, k, blocks;
@@ -5424,26 +5428,26 @@ static void gxsp_task_linearise(void *context, size_t index) {
     if (system->state.chunk_still[index]) return;
     memset(slots, 0, 6 * (size_t)chunk->node_count * sizeof *slots);
     memset(own, 0, sizeof own);
-    gxsp_chunk_load(system, chunk, pass->from, at);
-    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, rest_at);
+    gxsp_chunk_load(system, chunk, pass->from, state);
+    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, positions);
     for (b = 0; b < chunk->block_count; b += blocks) { /* two at a time */
         gxsp_state s[2];
-        gxsp_svd of[2];
+        gxsp_svd svd[2];
         blocks = b + 1 < chunk->block_count ? 2 : 1;
         for (k = 0; k < blocks; k++) {
             gxsp_prefetch_block(system, index, b + k, GXSP_RESTS_AHEAD, 0);
-            gxsp_block_load(chunk, b + k, at, x);
+            gxsp_block_load(chunk, b + k, state, x);
             gxsp_block_parameters(pass->materials, &chunk->rest[b + k], &s[k]);
-            gradients[k] = gxsp_block_gradients(chunk, b + k, rest_at, corners, made[k]);
+            gradients[k] = gxsp_block_gradients(chunk, b + k, positions, corners, made[k]);
             gxsp_block_gradient(gradients[k], x, s[k].g);
         }
         system->state.chunk_collapsed[index] |=
-            (uint8_t)gxsp_tangent_begin(chunk->kind, &s[0], blocks > 1 ? &s[1] : NULL, of);
+            (uint8_t)gxsp_tangent_begin(chunk->kind, &s[0], blocks > 1 ? &s[1] : NULL, svd);
         for (k = 0; k < blocks; k++) {
             const gxsp_rest *rest = &chunk->rest[b + k];
             gxsp_tangent *tangent = &chunk->tangents[b + k];
-            gxsp_tangent_make(chunk->kind, rest, gradients[k], system->model.scale, pass->exact, &s[k], &of[k], tangent,
-                              gxsp_block_general(chunk, b + k));
+            gxsp_tangent_make(chunk->kind, rest, gradients[k], system->model.scale, pass->exact, &s[k], &svd[k],
+                              tangent, gxsp_block_general(chunk, b + k));
             GXSP_EACH_LANE(l) tangent->mass[l] = (float)(pass->rate * rest->mass[l]);
             gxsp_block_diagonal(chunk, b + k, own);
             gxsp_diagonal_scatter(chunk, b + k, own, slots);
@@ -5583,12 +5587,13 @@ static void gxsp_order_block(const uint16_t *GXSP_RESTRICT p, const uint16_t *GX
 /* Adds half the row sums of a block's masses to its nodes. */
 static void gxsp_own_mass(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b) {
     const gxsp_moments *moments = gxsp_block_moments(chunk, b);
-    gxsp_singles of[4], half;
+    gxsp_singles corner[4], half;
     int k, l;
     for (k = 0; k < 4; k++) {
-        if (moments) gxsp_corner_moments(moments, k, of);
+        if (moments) gxsp_corner_moments(moments, k, corner);
         GXSP_EACH_LANE(l)
-        half[l] = chunk->rest[b].weight[l] > 0 ? (moments ? 0.5f * of[0][l] : 2.5f) * chunk->tangents[b].mass[l] : 0;
+        half[l] =
+            chunk->rest[b].weight[l] > 0 ? (moments ? 0.5f * corner[0][l] : 2.5f) * chunk->tangents[b].mass[l] : 0;
         for (l = 0; l < GXSP_LANES; l++) edges->mass[chunk->corners[b].node[k][l]] += half[l];
     }
 }
@@ -5616,21 +5621,21 @@ static void gxsp_edges_clear(gxsp_edges *edges, const gxsp_chunk *chunk) {
 static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk) {
     gxsp_edges *edges = &system->multigrid.edges;
     uint32_t b;
-    int pair, k, at;
+    int pair, k, edge;
     gxsp_edges_clear(edges, chunk);
     for (b = 0; b < chunk->block_count; b++) {
         const gxsp_corners *corner = &chunk->corners[b];
         const gxsp_tangent *tangent = &chunk->tangents[b];
         gxsp_singles gamma[4][3];
         for (k = 0; k < 4; k++) gxsp_block_corner(tangent, k, gamma[k]);
-        for (pair = at = 0; pair < 10; pair++) {
+        for (pair = edge = 0; pair < 10; pair++) {
             const int p = gxsp_pair_corners[pair][0], q = gxsp_pair_corners[pair][1];
             gxsp_singles block[9], mass;
             if (p == q) continue;
             gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma[p], gamma[q], block);
             gxsp_block_mass(tangent, gxsp_block_moments(chunk, b), p, q, mass);
             gxsp_order_block(corner->node[p], corner->node[q], mass, block);
-            gxsp_add_lanes(edges->element[b][at++], block, edges->block);
+            gxsp_add_lanes(edges->element[b][edge++], block, edges->block);
         }
         gxsp_own_mass(edges, chunk, b);
     }
@@ -5964,11 +5969,11 @@ static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t
 /* All numbers that follow from level 1's matrix. dirty: nodes of level 1 whose numbers are new; NULL: all are. 0: a
  * number overflowed. */
 static int gxsp_lower_numbers(gxsp_system *system, const uint8_t *dirty) {
-    uint32_t at;
-    for (at = 1; at < system->multigrid.level_count; at++) {
-        gxsp_level *level = &system->multigrid.levels[at];
-        if (!gxsp_invert_diagonal(level, at == 1 ? dirty : NULL)) return 0;
-        if (at + 1 < system->multigrid.level_count) gxsp_coarsen(level, level + 1, &system->multigrid.pairs);
+    uint32_t depth;
+    for (depth = 1; depth < system->multigrid.level_count; depth++) {
+        gxsp_level *level = &system->multigrid.levels[depth];
+        if (!gxsp_invert_diagonal(level, depth == 1 ? dirty : NULL)) return 0;
+        if (depth + 1 < system->multigrid.level_count) gxsp_coarsen(level, level + 1, &system->multigrid.pairs);
     }
     return gxsp_factorise(&system->multigrid.factor, &system->multigrid.levels[system->multigrid.level_count - 1],
                           system->multigrid.pairs.local);
@@ -6003,11 +6008,11 @@ static void gxsp_assemble_following(gxsp_system *system, uint32_t p, uint32_t q,
     gxsp_level *fine = &system->multigrid.levels[0];
     uint32_t a[4], b[4];
     float wa[4], wb[4], transposed[9];
-    const int as = gxsp_corner_masters(system, p, a, wa), bs = gxsp_corner_masters(system, q, b, wb);
+    const int a_count = gxsp_corner_masters(system, p, a, wa), b_count = gxsp_corner_masters(system, q, b, wb);
     int i, j;
     gxsp_transpose_block(block, transposed);
-    for (i = 0; i < as; i++)
-        for (j = 0; j < bs; j++) {
+    for (i = 0; i < a_count; i++)
+        for (j = 0; j < b_count; j++) {
             const uint32_t low = a[i] < b[j] ? a[i] : b[j], high = a[i] < b[j] ? b[j] : a[i];
             float *to = fine->block + 9 * (size_t)gxsp_find_entry(fine, low, high);
             if (same && a[i] > b[j]) /* its mirror is added in its own turn */
@@ -6295,15 +6300,15 @@ static void gxsp_factor_solve(const gxsp_factor *factor, gxsp_level *level) {
 }
 
 /* x = the multigrid's answer to b on levels[at] and below, at > 0 */
-static void gxsp_cycle(gxsp_system *system, uint32_t at) {
-    gxsp_level *level = &system->multigrid.levels[at];
-    if (at + 1 == system->multigrid.level_count) {
+static void gxsp_cycle(gxsp_system *system, uint32_t depth) {
+    gxsp_level *level = &system->multigrid.levels[depth];
+    if (depth + 1 == system->multigrid.level_count) {
         gxsp_factor_solve(&system->multigrid.factor, level);
         return;
     }
     gxsp_sweep_forward(level);
     gxsp_restrict(level, level + 1);
-    gxsp_cycle(system, at + 1);
+    gxsp_cycle(system, depth + 1);
     gxsp_prolong(level, level + 1);
     gxsp_sweep_backward(level);
 }
@@ -6676,14 +6681,14 @@ static int gxsp_find_successors(gxsp_renewal *update) {
     uint32_t i;
     memset(update->successor, 0xff, update->before * sizeof *update->successor);
     for (i = 0; i < change->copy_count; i++) {
-        uint32_t *of = &update->successor[change->origins[i] >> 1];
+        uint32_t *successor = &update->successor[change->origins[i] >> 1];
         if ((change->held && change->held[i]) != (update->system->model.held[change->origins[i] >> 1] != 0)) return 0;
         if (change->origins[i] & 1)
             update->touched[i] = 1;
-        else if (*of != GXSP_NONE)
+        else if (*successor != GXSP_NONE)
             return 0;
         else
-            *of = i;
+            *successor = i;
     }
     return 1;
 }
@@ -6804,9 +6809,9 @@ static void gxsp_renew_components(gxsp_renewal *update) {
     }
     for (c = 0; c < system->mesh.chunk_count; c++)
         for (i = 0; i < system->mesh.chunks[c].node_count; i++) {
-            const uint32_t at = system->mesh.chunks[c].first_node + i;
-            gxsp_join(forest, system->mesh.nodes[at],
-                      system->mesh.nodes[system->mesh.chunks[c].first_node + system->mesh.slot_root[at]]);
+            const uint32_t slot = system->mesh.chunks[c].first_node + i;
+            gxsp_join(forest, system->mesh.nodes[slot],
+                      system->mesh.nodes[system->mesh.chunks[c].first_node + system->mesh.slot_root[slot]]);
         }
     gxsp_join_followers(system, forest);
     gxsp_number_components(system, forest);
@@ -6896,13 +6901,13 @@ static void gxsp_drop_fixed(const gxsp_renewal *update) {
 
 /* Copies blocks of level 1's entries between nodes that are not dirty, from the level before. */
 static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const uint8_t *dirty) {
-    uint32_t i, k, at;
+    uint32_t i, k, entry;
     for (i = 0; i < before->n; i++) {
         if (dirty[i]) continue;
-        for (k = before->start[i], at = level->start[i]; k < before->start[i + 1]; k++) {
+        for (k = before->start[i], entry = level->start[i]; k < before->start[i + 1]; k++) {
             if (dirty[before->column[k]]) continue;
-            while (level->column[at] < before->column[k]) at++;
-            memcpy(level->block + 9 * (size_t)at, before->block + 9 * (size_t)k, 9 * sizeof(float));
+            while (level->column[entry] < before->column[k]) entry++;
+            memcpy(level->block + 9 * (size_t)entry, before->block + 9 * (size_t)k, 9 * sizeof(float));
         }
     }
 }
@@ -7275,11 +7280,11 @@ static void gxsp_contact_pull(const gxsp_problem *problem, size_t i, const doubl
 
 /* The next point of a step: springs first, then contact points. NULL at the end. Points that do not move are
  * skipped. */
-static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *at, const double *displacement,
+static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *next, const double *displacement,
                                        gxsp_pull *pull) {
     const gxs_step_desc *step = problem->step;
-    for (; *at < step->spring_count + step->point_count; (*at)++) {
-        const size_t i = *at;
+    for (; *next < step->spring_count + step->point_count; (*next)++) {
+        const size_t i = *next;
         const gxs_point *point =
             i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
         if (!gxsp_point_moves(problem->system, point)) continue;
@@ -7287,7 +7292,7 @@ static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *at, 
             gxsp_spring_pull(&step->springs[i], displacement, pull);
         else
             gxsp_contact_pull(problem, i - step->spring_count, displacement, pull);
-        (*at)++;
+        (*next)++;
         return point;
     }
     return NULL;
@@ -7341,10 +7346,10 @@ static void gxsp_sum_energies(const gxsp_system *system, double *energies) {
 static void gxsp_evaluate(const gxsp_problem *problem, const double *from, int nudge, double *force) {
     const gxs_point *point;
     gxsp_pull pull;
-    size_t at = 0;
+    size_t next = 0;
     int k, c;
     gxsp_evaluate_elements(problem->system, problem->rate, from, NULL, nudge, force);
-    while ((point = gxsp_next_pull(problem, &at, from, &pull)) != NULL) {
+    while ((point = gxsp_next_pull(problem, &next, from, &pull)) != NULL) {
         double *energies = gxsp_lead_of(problem->system, gxsp_point_copy(point))->energies;
         energies[0] += pull.energy;
         energies[2] += fabs(pull.energy);
@@ -7374,10 +7379,10 @@ static void gxsp_terms_make(const gxsp_problem *problem, const double *displacem
     gxsp_lasting *lasting = problem->system->lasting;
     const gxs_point *point;
     gxsp_pull pull;
-    size_t at = 0;
+    size_t next = 0;
     int k;
     lasting->count = 0;
-    while ((point = gxsp_next_pull(problem, &at, displacement, &pull)) != NULL) {
+    while ((point = gxsp_next_pull(problem, &next, displacement, &pull)) != NULL) {
         gxsp_term *term = &lasting->term[lasting->count];
         if (!(pull.hessian[0] + pull.hessian[3] + pull.hessian[5] > 0) && !(gxsp_dot(pull.force, pull.force, 1) > 0))
             continue;
@@ -8537,9 +8542,9 @@ static void gxsp_touch_components_at(const gxsp_problem *problem, const double *
     gxsp_system *system = problem->system;
     const gxs_point *point;
     gxsp_pull pull;
-    size_t at = 0;
+    size_t next = 0;
     int k;
-    while ((point = gxsp_next_pull(problem, &at, displacement, &pull)) != NULL)
+    while ((point = gxsp_next_pull(problem, &next, displacement, &pull)) != NULL)
         for (k = 0; k < 4 && (fabs(pull.energy) > 0 || gxsp_dot(pull.force, pull.force, 1) > 0); k++)
             if (fabs(point->weight[k]) > 0)
                 system->model.components[system->model.component[point->copy[k]]].state |= GXSP_TOUCHED;
@@ -9232,7 +9237,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
     gxsp_lanes gradients[9];
     gxsp_tangent tangent;
     gxsp_general general;
-    gxsp_svd of;
+    gxsp_svd svd;
     gxsp_singles from[12], to[12];
     int k, c;
     memset(&rest, 0, sizeof rest);
@@ -9243,8 +9248,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
     memset(gradients, 0, sizeof gradients);
     gradients[0][0] = gradients[4][0] = gradients[8][0] = 1; /* u_i - u_0 are the columns of dF, the forces those of dP
                                                               */
-    (void)gxsp_tangent_begin(material->kind, &state, NULL, &of);
-    gxsp_tangent_make(material->kind, &rest, gradients, 1, 0, &state, &of, &tangent, &general);
+    (void)gxsp_tangent_begin(material->kind, &state, NULL, &svd);
+    gxsp_tangent_make(material->kind, &rest, gradients, 1, 0, &state, &svd, &tangent, &general);
     for (k = 0; k < 3; k++)
         for (c = 0; c < 3; c++) from[3 + 3 * c + k][0] = (float)direction[3 * k + c];
     gxsp_kind_product(material->kind, &tangent, NULL, &general, 1, from, to);
