@@ -1878,14 +1878,15 @@ typedef struct gxbp_trial {
 /* Tests the side of a point in the plane, and of points one unit in the last place below and above it. Multiplied out
    (n.x - n.b), the sums would not tell them apart. */
 static int gxbp_sides_hold(gxbp_trial *t, int zero) {
-    static const signed char at[6][3] = {{0, 0, 0}, {3, 1, -2}, {-1, 4, 1}, {9, -10, -7}, {18, -11, 6}, {-18, -7, -46}};
+    static const signed char offset[6][3] = {{0, 0, 0},    {3, 1, -2},   {-1, 4, 1},
+                                             {9, -10, -7}, {18, -11, 6}, {-18, -7, -46}};
     const double one = gxbp_hidden_power(0, zero);
     gxb_ball ball;
     int i, k;
     t->step = gxbp_hidden_power(-20, zero);
     t->unit = gxbp_hidden_power(-52, zero);
     for (i = 0; i < 6; i++)
-        for (k = 0; k < 3; k++) t->x[i][k] = gxbp_fence(one + t->step * at[i][k]);
+        for (k = 0; k < 3; k++) t->x[i][k] = gxbp_fence(one + t->step * offset[i][k]);
     gxb_plane_init(&t->plane, t->x[0], t->x[1], t->x[2]);
     for (i = -1; i <= 1; i++) {
         double value, bound;
@@ -6855,7 +6856,7 @@ static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operan
     const size_t sources = gxbp_presize(b, o->triangle_count, 1), subtriangles = gxbp_presize(b, o->triangle_count, 3),
                  points = gxbp_presize(b, o->vertex_count, 3);
     const size_t leaves = gxbp_presize(b, (o->triangle_count + GXBP_LEAF - 1) / GXBP_LEAF, 1);
-    gxbp_operand *mine;
+    gxbp_operand *added;
     gx_result result;
     uint32_t *work;
     if (!GXBP_ROOM(b, in.operands, in.operand, 1) || !GXBP_ROOM(b, in.sources, in.source, sources) ||
@@ -6867,21 +6868,21 @@ static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operan
     if (result != GX_OK) return result;
     work = (uint32_t *)gxbp_borrow(b, words * sizeof *work);
     if (work == NULL) return b->error;
-    mine = &b->in.operands[b->in.operand_count];
-    memset(mine, 0, sizeof *mine);
-    mine->operation = o->operation;
-    mine->rule = o->rule;
-    mine->simple = o->simple;
-    mine->source = b->in.source_count;
-    mine->source_count = (uint32_t)o->triangle_count;
+    added = &b->in.operands[b->in.operand_count];
+    memset(added, 0, sizeof *added);
+    added->operation = o->operation;
+    added->rule = o->rule;
+    added->simple = o->simple;
+    added->source = b->in.source_count;
+    added->source_count = (uint32_t)o->triangle_count;
     result = gxbp_read_triangles(b, o, work, bad);
-    if (result == GX_OK) result = gxbp_make_tree(b, mine);
+    if (result == GX_OK) result = gxbp_make_tree(b, added);
     if (result != GX_OK) {
-        gxbp_release(&b->store.allocator, mine->order, o->triangle_count * sizeof *mine->order);
+        gxbp_release(&b->store.allocator, added->order, o->triangle_count * sizeof *added->order);
         return result;
     }
     b->in.operand_count++;
-    gxbp_forget_degenerate(b, mine->source);
+    gxbp_forget_degenerate(b, added->source);
     return GX_OK;
 }
 

@@ -1619,38 +1619,38 @@ static inline float gxsp_jacobi_product(const gxsp_jacobi *jacobi, int i, int j,
 
 /* Makes columns i and j of b orthogonal. U and V stay rotations whatever the rounding: a Hessian built on them is a
  * congruence of a semi-definite one. */
-GXSP_INLINE void gxsp_orthogonalise(gxsp_jacobi *GXSP_RESTRICT of, int i, int j) {
+GXSP_INLINE void gxsp_orthogonalise(gxsp_jacobi *GXSP_RESTRICT jacobi, int i, int j) {
     int l;
     GXSP_EACH_OF_TWO(l) {
-        const float gamma = 2 * gxsp_jacobi_product(of, i, j, l);
-        const float gap = gxsp_jacobi_product(of, j, j, l) - gxsp_jacobi_product(of, i, i, l);
+        const float gamma = 2 * gxsp_jacobi_product(jacobi, i, j, l);
+        const float gap = gxsp_jacobi_product(jacobi, j, j, l) - gxsp_jacobi_product(jacobi, i, i, l);
         const float size = gap < 0 ? -gap : gap, square = gap * gap + gamma * gamma + 1e-35f;
         const float tangent = (gap < 0 ? -gamma : gamma) / (size + square * gxsp_rsqrt(square));
         const float c = gxsp_rsqrt(1 + tangent * tangent);
-        gxsp_turn_columns(of, i, j, l, c, c * tangent);
+        gxsp_turn_columns(jacobi, i, j, l, c, c * tangent);
     }
 }
 
 /* Makes column i the longer one of i and j, by a quarter turn, so that det V stays 1. */
-GXSP_INLINE void gxsp_order_columns(gxsp_jacobi *GXSP_RESTRICT of, int i, int j) {
+GXSP_INLINE void gxsp_order_columns(gxsp_jacobi *GXSP_RESTRICT jacobi, int i, int j) {
     int l;
     GXSP_EACH_OF_TWO(l) {
-        const float s = gxsp_jacobi_product(of, j, j, l) > gxsp_jacobi_product(of, i, i, l) ? -1.0f : 0.0f;
-        gxsp_turn_columns(of, i, j, l, 1 + s, s);
+        const float s = gxsp_jacobi_product(jacobi, j, j, l) > gxsp_jacobi_product(jacobi, i, i, l) ? -1.0f : 0.0f;
+        gxsp_turn_columns(jacobi, i, j, l, 1 + s, s);
     }
 }
 
 /* U, V and s of the block that begins at first_lane, from the columns of b, which are orthogonal and sorted by
  * falling length. Where columns vanish, U is completed to a rotation. */
-static void gxsp_frame(const gxsp_jacobi *GXSP_RESTRICT from, int first_lane, gxsp_svd *GXSP_RESTRICT of) {
-    const float *scale = from->scale + first_lane;
+static void gxsp_frame(const gxsp_jacobi *GXSP_RESTRICT jacobi, int first_lane, gxsp_svd *GXSP_RESTRICT svd) {
+    const float *scale = jacobi->scale + first_lane;
     int k, l;
-    for (k = 0; k < 9; k++) memcpy(of->v[k], from->v[k] + first_lane, sizeof of->v[k]);
+    for (k = 0; k < 9; k++) memcpy(svd->v[k], jacobi->v[k] + first_lane, sizeof svd->v[k]);
     GXSP_EACH_LANE(l) {
         const int m = first_lane + l;
-        const float a0 = from->b[0][m], a1 = from->b[3][m], a2 = from->b[6][m], b0 = from->b[1][m], b1 = from->b[4][m],
-                    b2 = from->b[7][m];
-        const float c0 = from->b[2][m], c1 = from->b[5][m], c2 = from->b[8][m];
+        const float a0 = jacobi->b[0][m], a1 = jacobi->b[3][m], a2 = jacobi->b[6][m], b0 = jacobi->b[1][m],
+                    b1 = jacobi->b[4][m], b2 = jacobi->b[7][m];
+        const float c0 = jacobi->b[2][m], c1 = jacobi->b[5][m], c2 = jacobi->b[8][m];
         const float first = a0 * a0 + a1 * a1 + a2 * a2, some = first > 1e-30f ? 1.0f : 0.0f;
         const float reach = gxsp_rsqrt(first + 1e-30f) * some;
         const float u0 = a0 * reach + (1 - some), u1 = a1 * reach, u2 = a2 * reach;
@@ -1667,22 +1667,22 @@ static void gxsp_frame(const gxsp_jacobi *GXSP_RESTRICT from, int first_lane, gx
         const float unit = gxsp_rsqrt(q0 * q0 + q1 * q1 + q2 * q2);
         const float w0 = q0 * unit, w1 = q1 * unit, w2 = q2 * unit;
         const float t0 = u1 * w2 - u2 * w1, t1 = u2 * w0 - u0 * w2, t2 = u0 * w1 - u1 * w0;
-        of->u[0][l] = u0, of->u[3][l] = u1, of->u[6][l] = u2;
-        of->u[1][l] = w0, of->u[4][l] = w1, of->u[7][l] = w2;
-        of->u[2][l] = t0, of->u[5][l] = t1, of->u[8][l] = t2;
-        of->s[0][l] = scale[l] * (u0 * a0 + u1 * a1 + u2 * a2);
-        of->s[1][l] = scale[l] * (w0 * b0 + w1 * b1 + w2 * b2);
-        of->s[2][l] = scale[l] * (t0 * c0 + t1 * c1 + t2 * c2);
+        svd->u[0][l] = u0, svd->u[3][l] = u1, svd->u[6][l] = u2;
+        svd->u[1][l] = w0, svd->u[4][l] = w1, svd->u[7][l] = w2;
+        svd->u[2][l] = t0, svd->u[5][l] = t1, svd->u[8][l] = t2;
+        svd->s[0][l] = scale[l] * (u0 * a0 + u1 * a1 + u2 * a2);
+        svd->s[1][l] = scale[l] * (w0 * b0 + w1 * b1 + w2 * b2);
+        svd->s[2][l] = scale[l] * (t0 * c0 + t1 * c1 + t2 * c2);
     }
 }
 
 /* Are the columns of b orthogonal to single precision in every lane? The largest entry of b is 1. */
-static int gxsp_orthogonal(const gxsp_jacobi *GXSP_RESTRICT of) {
+static int gxsp_orthogonal(const gxsp_jacobi *GXSP_RESTRICT jacobi) {
     float square[2 * GXSP_LANES], most = 0;
     int l;
     GXSP_EACH_OF_TWO(l) {
-        const float x = gxsp_jacobi_product(of, 0, 1, l), y = gxsp_jacobi_product(of, 0, 2, l),
-                    z = gxsp_jacobi_product(of, 1, 2, l);
+        const float x = gxsp_jacobi_product(jacobi, 0, 1, l), y = gxsp_jacobi_product(jacobi, 0, 2, l),
+                    z = gxsp_jacobi_product(jacobi, 1, 2, l);
         square[l] = x * x + y * y + z * z;
     }
     for (l = 0; l < 2 * GXSP_LANES; l++) most = square[l] > most ? square[l] : most;
@@ -1690,7 +1690,7 @@ static int gxsp_orthogonal(const gxsp_jacobi *GXSP_RESTRICT of) {
 }
 
 /* F = 1 + G of a block, divided by its largest entry, as columns at first_lane, and V = 1 */
-static void gxsp_jacobi_begin(gxsp_lanes *GXSP_RESTRICT g, int first_lane, gxsp_jacobi *GXSP_RESTRICT of) {
+static void gxsp_jacobi_begin(gxsp_lanes *GXSP_RESTRICT g, int first_lane, gxsp_jacobi *GXSP_RESTRICT jacobi) {
     int k, l;
     GXSP_EACH_LANE(l) {
         const int m = first_lane + l;
@@ -1701,15 +1701,15 @@ static void gxsp_jacobi_begin(gxsp_lanes *GXSP_RESTRICT g, int first_lane, gxsp_
                     b = gxsp_larger(gxsp_larger(f4, f5), gxsp_larger(f6, f7));
         const float largest = gxsp_larger(gxsp_larger(a, b), f8), scale = largest > 1e-30f ? largest : 1.0f,
                     inverse = 1 / scale;
-        of->scale[m] = scale;
-        of->b[0][m] = gxsp_clean(inverse * f0), of->b[1][m] = gxsp_clean(inverse * f1),
-        of->b[2][m] = gxsp_clean(inverse * f2);
-        of->b[3][m] = gxsp_clean(inverse * f3), of->b[4][m] = gxsp_clean(inverse * f4),
-        of->b[5][m] = gxsp_clean(inverse * f5);
-        of->b[6][m] = gxsp_clean(inverse * f6), of->b[7][m] = gxsp_clean(inverse * f7),
-        of->b[8][m] = gxsp_clean(inverse * f8);
+        jacobi->scale[m] = scale;
+        jacobi->b[0][m] = gxsp_clean(inverse * f0), jacobi->b[1][m] = gxsp_clean(inverse * f1),
+        jacobi->b[2][m] = gxsp_clean(inverse * f2);
+        jacobi->b[3][m] = gxsp_clean(inverse * f3), jacobi->b[4][m] = gxsp_clean(inverse * f4),
+        jacobi->b[5][m] = gxsp_clean(inverse * f5);
+        jacobi->b[6][m] = gxsp_clean(inverse * f6), jacobi->b[7][m] = gxsp_clean(inverse * f7),
+        jacobi->b[8][m] = gxsp_clean(inverse * f8);
     }
-    for (k = 0; k < 9; k++) GXSP_EACH_LANE(l) of->v[k][first_lane + l] = k % 4 == 0 ? 1.0f : 0.0f;
+    for (k = 0; k < 9; k++) GXSP_EACH_LANE(l) jacobi->v[k][first_lane + l] = k % 4 == 0 ? 1.0f : 0.0f;
 }
 
 /* F = 1 + G = U diag(s) V^T of two blocks, or of one if last is NULL, by one-sided Jacobi with the same number of
@@ -1943,10 +1943,10 @@ typedef struct gxsp_principal {
     gxsp_singles stretch[6], flip[3], twist[3];
 } gxsp_principal;
 
-static void gxsp_neo_hookean_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to) {
+static void gxsp_neo_hookean_principal(const gxsp_svd *GXSP_RESTRICT svd, gxsp_principal *GXSP_RESTRICT to) {
     int l;
     GXSP_EACH_LANE(l) { /* eigensystem of [Smith 2018] */
-        const float a = of->s[0][l], b = of->s[1][l], c = of->s[2][l], mu = to->mu[l], lambda = to->lambda[l];
+        const float a = svd->s[0][l], b = svd->s[1][l], c = svd->s[2][l], mu = to->mu[l], lambda = to->lambda[l];
         const float square = a * a + b * b + c * c, whole = 1 / (square + 1), direct = mu * square * whole;
         const float along = 2 * mu * whole * whole, x = b * c, y = c * a, z = a * b;
         const float pressure = lambda * (a * x - 1) - 0.75f * mu; /* lambda (J - alpha) */
@@ -1962,10 +1962,10 @@ static void gxsp_neo_hookean_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_pr
     }
 }
 
-static void gxsp_kirchhoff_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to) {
+static void gxsp_kirchhoff_principal(const gxsp_svd *GXSP_RESTRICT svd, gxsp_principal *GXSP_RESTRICT to) {
     int l;
     GXSP_EACH_LANE(l) { /* psi_i = s_i (mu (s_i^2 - 1) + lambda/2 sum (s^2 - 1)) */
-        const float a = of->s[0][l], b = of->s[1][l], c = of->s[2][l], mu = to->mu[l], lambda = to->lambda[l];
+        const float a = svd->s[0][l], b = svd->s[1][l], c = svd->s[2][l], mu = to->mu[l], lambda = to->lambda[l];
         const float x = a * a, y = b * b, z = c * c, common = 0.5f * lambda * (x + y + z - 3) - mu;
         to->stretch[0][l] = (3 * mu + lambda) * x + common;
         to->stretch[1][l] = lambda * a * b;
@@ -1979,10 +1979,10 @@ static void gxsp_kirchhoff_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_prin
     }
 }
 
-static void gxsp_corotated_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to) {
+static void gxsp_corotated_principal(const gxsp_svd *GXSP_RESTRICT svd, gxsp_principal *GXSP_RESTRICT to) {
     int l;
     GXSP_EACH_LANE(l) { /* psi_i = 2 mu (s_i - 1) + lambda (J - 1) s_j s_k */
-        const float a = of->s[0][l], b = of->s[1][l], c = of->s[2][l], mu = to->mu[l], lambda = to->lambda[l];
+        const float a = svd->s[0][l], b = svd->s[1][l], c = svd->s[2][l], mu = to->mu[l], lambda = to->lambda[l];
         const float x = b * c, y = c * a, z = a * b, pressure = lambda * (a * x - 1), least = 1e-6f;
         const float bc = b + c > least ? b + c : least, ca = c + a > least ? c + a : least,
                     ab = a + b > least ? a + b : least;
@@ -1999,9 +1999,9 @@ static void gxsp_corotated_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_prin
 }
 
 /* The Hessian is the same at every F: U and V are 1. */
-static void gxsp_linear_principal(gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to) {
+static void gxsp_linear_principal(gxsp_svd *GXSP_RESTRICT svd, gxsp_principal *GXSP_RESTRICT to) {
     int k, l;
-    for (k = 0; k < 9; k++) GXSP_EACH_LANE(l) of->u[k][l] = of->v[k][l] = k % 4 == 0 ? 1.0f : 0.0f;
+    for (k = 0; k < 9; k++) GXSP_EACH_LANE(l) svd->u[k][l] = svd->v[k][l] = k % 4 == 0 ? 1.0f : 0.0f;
     GXSP_EACH_LANE(l) {
         const float mu = to->mu[l], lambda = to->lambda[l];
         to->stretch[0][l] = to->stretch[3][l] = to->stretch[5][l] = 2 * mu + lambda;
@@ -2059,20 +2059,20 @@ static void gxsp_project_lane(gxsp_singles *stretch, int lane) {
 
 /* Projects the 3x3 of the stretches in lanes where it is not positive definite, which leading minors by elimination
  * decide. */
-static void gxsp_project(gxsp_principal *GXSP_RESTRICT of) {
+static void gxsp_project(gxsp_principal *GXSP_RESTRICT principal) {
     gxsp_singles least;
     int l;
     GXSP_EACH_LANE(l) {
-        const float a = of->stretch[0][l], tiny = 1e-30f, p = a > tiny ? a : tiny;
-        const float b = of->stretch[1][l] / p, c = of->stretch[2][l] / p;
-        const float d = of->stretch[3][l] - b * of->stretch[1][l], q = d > tiny ? d : tiny;
-        const float e = of->stretch[4][l] - b * of->stretch[2][l];
-        const float f = of->stretch[5][l] - c * of->stretch[2][l] - e * e / q;
+        const float a = principal->stretch[0][l], tiny = 1e-30f, p = a > tiny ? a : tiny;
+        const float b = principal->stretch[1][l] / p, c = principal->stretch[2][l] / p;
+        const float d = principal->stretch[3][l] - b * principal->stretch[1][l], q = d > tiny ? d : tiny;
+        const float e = principal->stretch[4][l] - b * principal->stretch[2][l];
+        const float f = principal->stretch[5][l] - c * principal->stretch[2][l] - e * e / q;
         const float low = a < d ? a : d;
         least[l] = low < f ? low : f;
     }
     for (l = 0; l < GXSP_LANES; l++)
-        if (!(least[l] > 0)) gxsp_project_lane(of->stretch, l);
+        if (!(least[l] > 0)) gxsp_project_lane(principal->stretch, l);
 }
 
 /* The Hessian of a block of the caller's energy at s->g, times scale; exact or projected */
@@ -2145,7 +2145,7 @@ static int gxsp_tangent_begin(gxs_material_kind kind, gxsp_state *first, gxsp_st
 /* Arguments of principal Hessians, scaled so that single precision holds them: moduli relative to their sum, by
  * which weights grow, and clamped stretches */
 static void gxsp_scale_principal(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, double scale,
-                                 gxsp_state *GXSP_RESTRICT s, gxsp_svd *GXSP_RESTRICT of,
+                                 gxsp_state *GXSP_RESTRICT s, gxsp_svd *GXSP_RESTRICT svd,
                                  gxsp_principal *GXSP_RESTRICT to) {
     gxsp_lanes weight;
     int k, l;
@@ -2156,12 +2156,12 @@ static void gxsp_scale_principal(gxs_material_kind kind, const gxsp_rest *GXSP_R
         weight[l] = scale * rest->weight[l] * modulus;
     }
     for (l = 0; l < GXSP_LANES && kind != GXS_LINEAR; l++) { /* its Hessians have no stretches */
-        const double a = (double)of->s[0][l] * (double)of->s[0][l], b = (double)of->s[1][l] * (double)of->s[1][l],
+        const double a = (double)svd->s[0][l] * (double)svd->s[0][l], b = (double)svd->s[1][l] * (double)svd->s[1][l],
                      size = a * (b > 1 ? b : 1);
         if (size > GXSP_STRETCHED) {
             const double most = weight[l] > GXSP_HEAVIEST ? weight[l] : GXSP_HEAVIEST,
                          grown = weight[l] * (size / GXSP_STRETCHED);
-            for (k = 0; k < 3; k++) of->s[k][l] = (float)((double)of->s[k][l] / sqrt(sqrt(size / GXSP_STRETCHED)));
+            for (k = 0; k < 3; k++) svd->s[k][l] = (float)((double)svd->s[k][l] / sqrt(sqrt(size / GXSP_STRETCHED)));
             weight[l] = grown < most ? grown : most;
         }
     }
