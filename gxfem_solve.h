@@ -29,11 +29,11 @@
  *         return (int)result;
  *     }
  *
- * CONTENTS (search for the anchors; in the order of the file. Functions call functions of their own section and of
- * earlier ones only)
+ * CONTENTS. Search for the anchors, which are in the order of the file. Functions call functions of their own section
+ * and of earlier ones only.
  *   interface:    >>shared result codes, allocator, jobs | >>types materials, elements, step | >>functions the API
- *   foundations:  >>constants sizes, limits | >>scalars bits, sums | >>memory pools | >>structs the solver's own form |
- *                 >>columns arrays over copies, slots, chunks | >>jobs loops
+ *   foundations:  >>constants sizes, limits | >>scalars bits, sums | >>memory pools | >>structs the solver's own
+ *                 form | >>columns arrays over copies, slots, chunks | >>jobs loops
  *   kernels:      >>svd stretches and rotations of F | >>material energies, stresses | >>tangent Hessian of one block |
  *                 >>element passes over one block
  *   chunks:       >>masses of parts of elements | >>order of elements | >>lanes of a chunk | >>chunks blocks, slots |
@@ -46,9 +46,8 @@
  *                 >>smoother its step length | >>cycle the V-cycle
  *   changes:      >>edits lanes that a cut changes | >>renewal copies and components | >>update levels, all of it
  *   steps:        >>components momentum | >>points springs, contact | >>cg conjugate gradients | >>ageing of coarse
- *                 matrices | >>sleep rest | >>balance residual, start | >>search lengths | >>integrators BDF, midpoint
- * |
- *                 >>newton iterations, bound on E | >>midpoint second half, end of a step
+ *                 matrices | >>sleep rest | >>balance residual, start | >>search lengths | >>integrators BDF,
+ *                 midpoint | >>newton iterations, bound on E | >>midpoint second half, end of a step
  *   entrance:     >>check what is given | >>api the public functions | >>single a material at one F
  *
  * WORDS. Copy: a node's displacement for one connected set of cells. Component: copies joined by elements and
@@ -60,31 +59,33 @@
  *
  *     E(u) = |u - u_n - h v_n|_M^2 / (2 h^2) + U(u) + C(u) - f . u        GXFEM Eq. 10 divided by h^2; joule
  *
- * M: mass, U: elastic energy, C: springs and contact, f = M g + nodal forces. f is a linear term, so that M is never
- * inverted. Then v = (u - u_n) / h. That is backward Euler. BDF2 and the implicit midpoint rule replace h and
- * u_n + h v_n by others; statics have no mass. Rayleigh damping is in the first term (mass) and in U (stiffness).
+ * M: mass, U: elastic energy, C: springs and contact, f = M g + nodal forces. f is a linear term, so M is never
+ * inverted. Then v = (u - u_n) / h. This is backward Euler. BDF2 and the implicit midpoint rule have other values in
+ * place of h and u_n + h v_n; statics have no mass. Mass damping (Rayleigh) is in the first term, stiffness damping in
+ * U.
  *
  * Newton's method with a line search minimises E. The Hessian of every element is projected to the nearest positive
  * semi-definite one in closed form (analytic eigensystem). Near the end, where steps are whole, the exact one is tried.
- * Products are matrix-free: eight elements side by side in a block, 48 blocks in a chunk. Each chunk is summed by
- * itself and the chunks in their order, so that results are the same for any number of threads.
+ * Products are matrix-free: eight elements side by side in a block, 48 blocks in a chunk. Each chunk has sums of its
+ * own, which are added in the order of chunks. So results are the same for any number of threads.
  *
  * Conjugate gradients with multigrid solve the linear systems. The finest level is the model itself, smoothed by
  * block-Jacobi. Coarse levels live on lattices whose points are doubled where a cut separates the copies around them;
  * the first level for which that is cheap is factorised. Coarse matrices serve until iterations rise. The last two
  * steps' directions are the guess for the next.
  *
- * E is a sum over components, and each has a step length of its own in the line search, so that none of them is flung
- * about for the gain of another. Every loose component first moves as a whole so that its momentum balances, and later
- * iterates leave its momentum alone: it is right to rounding whatever the tolerances are, and free fall takes no
- * iteration. Newton's method starts at u_n + h v_n. A component that ends above E at u_n, translated so, is brought
- * down on the way from there. So E(u) <= E(u_n) always, component by component and however fast it falls: a step cannot
- * blow up. The midpoint rule continues from there as far again, or less far where it would gain energy.
+ * E is a sum over components. The line search finds a step length for each, so that none is flung about for the gain of
+ * another. Every loose component first moves as a whole so that its momentum balances. Later iterations leave its
+ * momentum alone: it is right to rounding whatever the tolerances are, and free fall takes no iteration. Newton's
+ * method starts at u_n + h v_n. Each component's E at the end is compared with its E at u_n, to which a loose component
+ * is first translated by its momentum. One that ended higher goes back towards u_n as far as E falls. So
+ * E(u) <= E(u_n) in each component, however fast it falls: a step cannot blow up. The midpoint rule continues from
+ * there as far again, or less far where it would gain energy.
  *
- * Residuals are measured twice, both times scaled by the block diagonal D of the Hessian: in energy, sqrt(sum r_i .
- * D_i^-1 r_i), and in displacement, sqrt(sum |D_i^-1 r_i|^2). The second measure sees a component of 1e-12 of its
- * neighbour's volume as well as the neighbour. A component that has been slow for long sleeps if
- * gxs_step_desc.sleep_speed says so; steps leave it out until something touches it.
+ * Residuals have two measures, both scaled by the block diagonal D of the Hessian: energy, sqrt(sum r_i . D_i^-1 r_i),
+ * and displacement, sqrt(sum |D_i^-1 r_i|^2). The second one sees a component of 1e-12 of its neighbour's volume as
+ * well as the neighbour. A component that has been slower than gxs_step_desc.sleep_speed for long sleeps; steps leave
+ * it out until something touches it.
  *
  * WHAT IT DOES NOT DO. No cutting and no meshes: it sees elements of four copies. No search for contacts between
  * components: give points, planes and your own forces. No threads of its own: see gx_jobs; a task takes up to 90 kB of
@@ -92,14 +93,13 @@
  *
  * LIMITS. poisson in [0, 0.5); beyond 0.49999 the Hessian's single precision shows. Copies and elements below 2^30.
  * Energies, forces and states are doubles. The Hessian, its products and the preconditioner are single precision, which
- * does not limit what Newton's method reaches, only what one linear solve does (about 1e-6 of the residual; a free
- * body's slowest modes are solved as well while inertia is above some 1e-6 of stiffness, rho h^2 / (E dt^2) for
- * elements of size h). The centre of the mass of a part of an element is rounded once, by at most 1e-7 of the element;
- * all is right for the mass so placed. Memory: 240 to 270 bytes per element in all, of a mesh with four elements per
- * copy; 290 to 350 where cuts leave two or three. The material can invert without a failure and recovers by itself. An
- * element collapsed to a point, where its energy is stationary, is opened as if it were not quite collapsed. Same
- * input, same binary: same bits. Nothing here needs isnan or infinities: it is right under -ffast-math, where sums
- * round otherwise.
+ * limits one linear solve (to about 1e-6 of the residual), not the state that Newton's method reaches. A free body's
+ * slowest modes are solved as well while inertia is above about 1e-6 of stiffness, rho h^2 / (E dt^2) for elements of
+ * size h. The centre of the mass of a part of an element is rounded once, by at most 1e-7 of the element. Memory: 240
+ * to 270 bytes per element in all for a mesh with four elements per copy; 290 to 350 where cuts leave two or three. The
+ * material can invert without a failure and recovers by itself. An element collapsed to a point, where its energy is
+ * stationary, is opened as if it were not quite collapsed. The same input gives the same bits with the same binary.
+ * Nothing here needs isnan or infinities, so results are right under -ffast-math, though sums round differently.
  *
  * REFERENCES. GXFEM: Generalized eXtended Finite Element Method for Deformable Cutting via Boolean Operations, 2024.
  * RXFEM: Koschier, Bender, Thuerey, Robust eXtended Finite Elements for Complex Cutting of Deformables, ACM Trans.
@@ -203,8 +203,8 @@ extern "C" {
  * Poisson's ratio. */
 typedef enum gxs_material_kind {
     GXS_STABLE_NEO_HOOKEAN = 0, /* for large strain, inversion and nearly incompressible bodies [Smith 2018] */
-    GXS_ST_VENANT_KIRCHHOFF,    /* RXFEM's; softens under compression to nothing */
-    GXS_FIXED_COROTATED,        /* [Stomakhin 2012]; linear but for rotations and volume */
+    GXS_ST_VENANT_KIRCHHOFF,    /* RXFEM's; under compression it softens until nothing resists */
+    GXS_FIXED_COROTATED,        /* [Stomakhin 2012]; linear except for rotations and volume */
     GXS_LINEAR,                 /* for small rotations only */
     GXS_CUSTOM                  /* the caller's own, by energy below */
 } gxs_material_kind;
@@ -445,17 +445,17 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
    Errors: ARGUMENT, NOT_FINITE, RANGE, LIMIT, STALE. */
 GXFEM_API gx_result gxs_step_check(const gxs_step_desc *step, uint64_t epoch, gx_failure *failure /* or NULL */);
 
-/* Sets the model that the next steps move; again after each cut and each change of materials or held copies. All is
- * copied into the solver's own form. GX_ERROR_MEMORY is possible. On any error the model before stays. */
+/* Sets the model that the next steps move. Call it again after each cut and each change of materials or held copies.
+ * The model is copied into the solver's own form. GX_ERROR_MEMORY is possible. On any error the old model stays. */
 GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *model, gx_failure *failure);
 
-/* Changes the model. The time is proportional to the size of the change, but for small work proportional to the number
- * of copies. Preconditioner and guesses are kept. Results are those of the whole model set anew, but for rounding and
- * the tolerances of steps. GX_ERROR_ARGUMENT: no model is set, groups or elements are not in order (index: of the group
- * or element), or a constraint is not allowed (its index). GX_ERROR_LIMIT: the change does not fit. Either the matrix
- * is assembled, mass is lumped, GXS_VOLUME_RATIO is used, empty lanes are a quarter of all, a copy is held that was not
- * or the other way round, no element is left, or an element that stays has lost a copy. After this and GX_ERROR_MEMORY
- * no model is set any more: set it. On other errors the model before stays. */
+/* Changes the model. The time is proportional to the size of the change, plus a little for each copy of the model.
+ * Preconditioner and guesses are kept. Results are those of the whole model set anew, up to rounding and the tolerances
+ * of steps. GX_ERROR_ARGUMENT: no model is set, groups or elements are not in order (index: of the group or element),
+ * or a constraint is not allowed (its index). GX_ERROR_LIMIT: the change does not fit. Either the matrix is assembled,
+ * mass is lumped, GXS_VOLUME_RATIO is used, empty lanes are a quarter of all, a copy is held that was not or the other
+ * way round, no element is left, or an element that stays has lost a copy. After this and GX_ERROR_MEMORY no model is
+ * set: set one. On other errors the old model stays. */
 GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure);
 /* Sets the rest times of copies to 0 whose state has been written since the last step. Their components then wake even
  * if another model is set before the next step, or another solver takes it. Vectors use the present numbering; origins
@@ -522,7 +522,7 @@ extern "C" {
 
 /* >>constants: sizes, limits and measured choices ------------------------------------------------------------------ */
 
-/* In and out: nothing but macros and the types of vectors. Numbers that were measured say on what. */
+/* In and out: nothing but macros and the types of vectors. For measured numbers, the comment names the models. */
 
 /* Elements side by side in a block: whole vectors on every instruction set up to 512 bits of doubles */
 #define GXSP_LANES 8
@@ -534,8 +534,8 @@ extern "C" {
 /* A residual below this (about 50 units in the last place) is rounding: no iteration can lower it. */
 #define GXSP_ROUNDING 1e-14
 
-/* Sufficient decrease in the line search, share of what the slope promises [Nocedal and Wright, Numerical
- * Optimization]. */
+/* Sufficient decrease in the line search, as a share of the decrease that the slope predicts [Nocedal and Wright,
+ * Numerical Optimization]. */
 #define GXSP_ARMIJO 1e-4
 
 /* Newton's method ends after this many iterations in a row whose gain doubles cannot tell. */
@@ -544,7 +544,7 @@ extern "C" {
 /* The line search starts at the linear model's minimum along a direction that goes at least twice as far as that. */
 #define GXSP_TOO_LONG 0.5
 
-/* Trials of the line search. Each at least halves the step; after 60 nothing of it is left. */
+/* Trials of the line search. Each at least halves the step; after 60 it is below rounding. */
 #define GXSP_TRIALS 60
 
 /* No component, node, chunk or copy */
@@ -636,23 +636,24 @@ extern "C" {
  * 0.8 to 1 times as long above, 1.1 to 2.7 times at 0.005 and below. */
 #define GXSP_INERTIA 0.03
 
-/* Multigrid's diagonal grows by this share, so that its matrices stay positive definite in single precision. */
+/* The diagonals of the multigrid's matrices grow by this share, so that they stay positive definite in single
+ * precision. */
 #define GXSP_SHIFT 1e-5f
 
 /* Binary exponent of a whole element's stiffness in the linear systems: leaves room for components down to 1e-40 of
  * it, and for masses above. */
 #define GXSP_STIFFNESS 40
 
-/* Making coarse matrices costs as much as GXSP_REMAKE iterations. The first of a model serve for GXSP_LIFE
- * iterations. New ones then show what age has cost. If that is less than GXSP_AGEING of the pace, the next ones
- * serve GXSP_PATIENCE times as long. */
+/* Making coarse matrices costs as much as GXSP_REMAKE iterations. The first ones of a model serve for GXSP_LIFE
+ * iterations. Comparison with new ones then shows the cost of their age. If it is less than GXSP_AGEING of the pace,
+ * the next ones serve GXSP_PATIENCE times as long. */
 #define GXSP_REMAKE   5
 #define GXSP_LIFE     40
 #define GXSP_AGEING   0.2
 #define GXSP_PATIENCE 2
 
-/* After a cut, coarse numbers are made for entries of dirty nodes only, unless a larger share of chunks follows
- * such nodes: these need a Hessian of their own, at the state of the other numbers. */
+/* After a cut, coarse numbers are made for entries of dirty nodes only, unless a larger share of chunks than this
+ * follows dirty nodes: those chunks' Hessians are computed at the state of the other numbers, for this purpose only. */
 #define GXSP_DIRTY 0.6
 
 /* Iterations, of several solves if need be, over which the pace of conjugate gradients is measured. */
@@ -955,7 +956,7 @@ static void gxsp_release_to(gxsp_pool *pool, gxsp_owned *mark) {
     }
 }
 
-/* Entries for which an array that grows is given room, so that it seldom grows */
+/* The room that an array of count entries gets when it grows, so that it seldom grows */
 static size_t gxsp_room(size_t count) { return count + count / 8; }
 
 static gxsp_pool gxsp_pool_make(const gx_allocator *allocator) {
@@ -1565,8 +1566,8 @@ static void gxsp_over_ranges(gxsp_system *system, void (*task)(void *, size_t), 
         for (i = 0, sums[k] = 0; i < system->model.range_count; i++) sums[k] += system->vectors.range_sum[i][k];
 }
 
-/* Prefetches memory that is read soon: a block is too long for processors to see the next one in time. Always
- * inline: gcc takes functions that do nothing else for functions without effect and drops their calls. */
+/* Prefetches memory that is read soon. A block is too long for processors to prefetch the next one in time. Always
+ * inline: gcc takes a function that only prefetches for one without effect, and drops its calls. */
 GXSP_INLINE void gxsp_prefetch(const void *memory, size_t size) {
 #if defined(__GNUC__)
     const char *line = (const char *)memory;
@@ -1656,7 +1657,7 @@ static void gxsp_frame(const gxsp_jacobi *GXSP_RESTRICT jacobi, int first_lane, 
         const float u0 = a0 * reach + (1 - some), u1 = a1 * reach, u2 = a2 * reach;
         const float along = u0 * b0 + u1 * b1 + u2 * b2;
         const float p0 = b0 - along * u0, p1 = b1 - along * u1, p2 = b2 - along * u2;
-        /* F maps to a line: any direction across it will do; take that of the axis least along it */
+        /* where F maps to a line, any direction across it serves: that of the axis least along it is taken */
         const float s0 = u0 * u0, s1 = u1 * u1, s2 = u2 * u2;
         const float x = s0 <= s1 && s0 <= s2 ? 1.0f : 0.0f, y = (1 - x) * (s1 <= s2 ? 1.0f : 0.0f), z = 1 - x - y;
         const float part = x * u0 + y * u1 + z * u2;
@@ -2580,7 +2581,7 @@ static double gxsp_find_centre(const double *mass, double *centre, double *round
     return sum > 0 ? sum : 0;
 }
 
-/* Mass of each corner: row sums as the solver has them */
+/* Mass of each corner: row sums, rounded as in the solver's moments */
 static void gxsp_row_masses(const gxs_element *element, double *rows) {
     const int whole = gxsp_whole(element->mass);
     double centre[4], mass = whole ? 2.5 * element->mass[0] : gxsp_find_centre(element->mass, centre, rows);
@@ -2596,9 +2597,9 @@ static int gxsp_supports(const gxs_element *element, int i) {
     return rows[i] > 0;
 }
 
-/* Cholesky factor of a symmetric 3x3, which is used up. The largest pivot goes first, so that rounding stays small
- * where the matrix is singular or worse. Rotating columns, which leaves factor factor^T as it is, then makes it
- * lower triangular. */
+/* Cholesky factor of a symmetric 3x3, which is overwritten. The largest pivot goes first, so that rounding stays small
+ * where the matrix is singular or indefinite. Then columns are rotated, which does not change factor factor^T, until
+ * it is lower triangular. */
 static void gxsp_factor3(double c[3][3], double factor[3][3]) {
     int done[3] = {0, 0, 0}, step, i, j, k;
     memset(factor, 0, 9 * sizeof(double));
@@ -2837,7 +2838,7 @@ static gxsp_sorted *gxsp_order_elements(const gxsp_system *system, const gxs_mod
 /* >>lanes: which element of a chunk goes to which lane ------------------------------------------------------------- */
 
 /* In: nodes of a chunk's elements. Out: a lane for each element. Neighbours go to successive blocks, so that
- * elements of one block seldom share nodes: where they do, sums into slots wait for the ones before. A pass over
+ * elements of one block seldom share nodes: where they do, each sum into a slot waits for the one before. A pass over
  * blocks neither loads nor stores a corner that is the same as in the block before in every lane. Hence lanes are
  * filled with strips around an edge: four elements, each with all but one corner of the one before. */
 
@@ -2908,8 +2909,8 @@ typedef struct gxsp_layout {
     uint8_t order[GXSP_CHUNK][4]; /* by lane */
 } gxsp_layout;
 
-/* Finds three nodes in an element: their corners, and returns the fourth corner; 4: not each is there once. Without
- * branches, which processors could not predict */
+/* Finds the corners of three nodes in an element. Returns the fourth corner; 4: not all three are there once. Has no
+ * branches, which processors could not predict. */
 static int gxsp_find_face(const uint32_t *element, const uint32_t *face, uint8_t *corners) {
     static const uint8_t corner_of[16] = {4, 0, 1, 4, 2, 4, 4, 4, 3, 4, 4, 4, 4, 4, 4, 4}; /* by its bit */
     unsigned met[3];
@@ -4510,7 +4511,7 @@ static uint32_t gxsp_large(const gxsp_system *system) {
     return system->model.stiff ? GXSP_MULTIGRID_FROM_STIFF : GXSP_MULTIGRID_FROM;
 }
 
-/* Does multigrid pay for a component? All components take as many iterations as the slowest one. count:
+/* Is a component large enough for multigrid? All components take as many iterations as the slowest one. count:
  * component_count, scratch */
 static int gxsp_large_component(const gxsp_system *system, uint32_t *count) {
     const uint32_t from = gxsp_large(system);
@@ -4586,7 +4587,7 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     return SIZE_MAX;
 }
 
-/* Memory that only steps need. Taken last, when temporary memory has been given back */
+/* Takes the memory that only steps need: last, when temporary memory has been given back */
 static void gxsp_steps_make(gxsp_system *system) {
     const size_t n = system->model.n;
     gxsp_vectors *vectors = &system->vectors;
@@ -4964,8 +4965,8 @@ static void gxsp_add_scaled(float a, const float *GXSP_RESTRICT x, float *GXSP_R
 /* y += a x for four numbers */
 static inline void gxsp_add_four(float a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y) {
 #if defined(GXSP_SHUFFLES)
-    const gxsp_four all = {a, a, a, a}; /* x87 would make a long double of a alone, by which no vector can be multiplied
-                                         */
+    /* with x87, a alone would become a long double, by which no vector can be multiplied */
+    const gxsp_four all = {a, a, a, a};
     *(gxsp_four *)y += all * *(const gxsp_four *)x;
 #else
     int k;
@@ -5455,10 +5456,10 @@ static void gxsp_task_linearise(void *context, size_t index) {
     }
 }
 
-/* Inverse of a positive semi-definite 3x3, packed, in place, as W^T W with W the inverse Cholesky factor:
+/* Inverse of a positive semi-definite 3x3, packed, in place, as W^T W with W the inverse Cholesky factor. So it is
  * semi-definite in spite of rounding. 1e-7 of the trace is added, since the entries are sums in single precision: a
- * direction without stiffness gives a large number, not an infinite one. Zero stays zero: such a copy is left
- * alone. What is not finite stays so. */
+ * direction without stiffness gives a large number, not an infinite one. Zero stays zero; such a copy is left alone.
+ * Numbers that are not finite stay so. */
 static void gxsp_invert3(double *a) {
     const double shift = 1e-7;
     double trace = a[0] + a[3] + a[5], scale, l00, l10, l20, l11, l21, l22, w10, w20, w21;
@@ -5678,9 +5679,9 @@ static inline uint32_t gxsp_add_half(const gxsp_system *system, uint32_t i, uint
     return count;
 }
 
-/* Node i's row of S, where the Hessian is S + S^T, times the transfer, in edges->half by number. S has the edges to
- * higher nodes and half the diagonal. Rows of stiffness add up to 0: hence half the diagonal is half the mass minus
- * half the sum of the node's edges, transposed or not. Returns how many numbers are touched. */
+/* Node i's row of S times the transfer, in edges->half by number. The Hessian is S + S^T: S has the edges to higher
+ * nodes and half the diagonal. Rows of stiffness add up to 0, so half the diagonal is half the mass minus half the sum
+ * of the node's edges, transposed or not. Returns how many numbers are touched. */
 static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint32_t i) {
     const gxsp_level *fine = &system->multigrid.levels[0];
     gxsp_edges *edges = &system->multigrid.edges;
@@ -5950,11 +5951,11 @@ static int gxsp_factor_own(gxsp_factor *factor, uint32_t i, uint32_t r) {
     return gxsp_finite_single(row[j]);
 }
 
-/* Cholesky of the last level, node by node. Without rounding no pivot is below GXSP_SHIFT of its diagonal. One
- * below half of that is rounding, as in components that are small beside the lattice, whose coarse functions are
- * nearly alike: its unknown is left out, for any other pivot would let later entries grow without bound. Entries
- * are single precision, which leaves the product of the factors positive semi-definite; the rows at work are
- * double. 0: a number overflowed. */
+/* Cholesky of the last level, node by node. Without rounding no pivot is below GXSP_SHIFT of its diagonal. A pivot
+ * below half of that is rounding: coarse functions of components that are small beside the lattice are nearly alike.
+ * Its unknown is left out, since any other pivot would let later entries grow without bound. Entries are single
+ * precision, which leaves the product of the factors positive semi-definite; the rows at work are double. 0: a number
+ * overflowed. */
 static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t *place) {
     uint32_t i, r;
     gxsp_fill_factor(factor, level, place);
@@ -6203,9 +6204,9 @@ static void gxsp_choose_omega(gxsp_system *system, double rate) {
     if (system->smoother.cautious == 0) system->smoother.omega = system->smoother.found;
 }
 
-/* Sets the step length that keeps the cycle definite at any state: no element's own D^-1 K exceeds 4, and so no sum
- * of them does; with followers it may, and the quotient met counts. quotient: x . A x / x . D x of an x for which
- * the length was too large; 0: not known */
+/* Sets the step length that keeps the cycle definite at any state: no element's own D^-1 K exceeds 4, so no sum of
+ * elements does. With followers it may; then the quotient counts. quotient: x . A x / x . D x of an x for which the
+ * length was too large; 0: not known */
 static void gxsp_shorten_omega(gxsp_system *system, double quotient) {
     const double largest = system->model.follower_count > 0 && 1.25 * quotient > 4 ? 1.25 * quotient : 4;
     system->smoother.omega = (float)(1.5 / largest);
@@ -6326,9 +6327,9 @@ static void gxsp_task_smooth(void *context, size_t index) {
     }
 }
 
-/* scaled = V-cycle of the residual. Level 0 is smoothed by omega D^-1, once on entry (see gxsp_scale), or by block
- * Gauss-Seidel if it is assembled. In violent motion the largest eigenvalue may exceed the one for which omega was
- * found: the residual grows in it and shows it. energy: residual . D^-1 residual; product: scratch */
+/* scaled = V-cycle of the residual. Level 0 is smoothed by omega D^-1, already done once on entry (see gxsp_scale), or
+ * by block Gauss-Seidel if it is assembled. In violent motion the largest eigenvalue may exceed the one for which omega
+ * was found; a residual that grows in the cycle shows it. energy: residual . D^-1 residual; product: scratch */
 static void gxsp_v_cycle(gxsp_system *system, double rate, double energy) {
     gxsp_level *fine = &system->multigrid.levels[0];
     gxsp_pass pass;
@@ -7131,9 +7132,9 @@ static void gxsp_balance_momentum(const gxsp_problem *problem, uint32_t ignored,
             x[3 * i + r] += system->model.components[system->model.component[i]].sum[r] / problem->rate;
 }
 
-/* Translates the direction on every component that nothing acts on now so that its momentum balances. Linear solves
- * are single precision: the momentum of a component of next to no mass, which contact has pushed before, is lost in
- * their rounding. */
+/* Translates the direction of every component on which nothing acts now, so that its momentum balances. Linear solves
+ * are single precision: their rounding loses the momentum of a component of next to no mass that contact has pushed
+ * before. */
 static void gxsp_balance_direction(const gxsp_problem *problem) {
     gxsp_balance_momentum(problem, GXSP_TOUCHED, problem->system->vectors.current, problem->system->vectors.direction);
 }
@@ -7218,10 +7219,10 @@ static void gxsp_add_dyad(double a, double b, const double *n, double *hessian) 
         for (j = i; j < 3; j++) hessian[gxsp_packed3(i, j)] += (i == j ? a : 0) + b * n[i] * n[j];
 }
 
-/* Friction: energy load phi(|y|), y the way across the plane since the step's start, phi(s) = s^2 / (2 reach) up to
- * reach and s - reach/2 beyond. It is convex, so its Hessian is semi-definite. cautious: phi'(s) / s in every
- * direction takes the Hessian's place, which it bounds. Exact ones overshoot the kink at the end of sticking to and
- * fro. */
+/* Friction: energy load phi(|y|), y the way along the plane since the step's start, phi(s) = s^2 / (2 reach) up to
+ * reach and s - reach/2 beyond. It is convex, so its Hessian is semi-definite. cautious: the Hessian is replaced by a
+ * bound, phi'(s) / s in every direction. With the exact one, iterations jump back and forth over the kink at the end of
+ * sticking. */
 static void gxsp_friction_pull(const gxs_plane *plane, double load, double reach, const double *way, int cautious,
                                gxsp_pull *pull) {
     const double *n = plane->normal, along = n[0] * way[0] + n[1] * way[1] + n[2] * way[2];
@@ -7516,8 +7517,9 @@ static int gxsp_is_definite(double rho, double energy) {
     return gxsp_finite(rho) && rho > 0 && rho <= GXSP_ABSURD * energy;
 }
 
-/* As gxsp_precondition, but definite: if the cycle proves not to be, it is smoothed more carefully, and at worst
- * left out of this solve. now: measures of the residual; changed: the preconditioner differs from the one before */
+/* As gxsp_precondition, but definite: if the cycle proves indefinite, the smoother's step length is shortened, and at
+ * worst the cycle is left out of this solve. now: measures of the residual; changed: the preconditioner differs from
+ * the one before */
 static double gxsp_precondition_definite(gxsp_system *system, double rate, const gxsp_norms *now, int *changed) {
     const float omega = system->smoother.omega;
     double rho = gxsp_precondition(system, rate, now->energy);
@@ -7679,9 +7681,9 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem) {
 /* In: the linearisation, counts of iterations. Out: matrices and preconditioner ready for a solve, and the solve
  * itself. Writes gxsp_coarse. */
 
-/* Does multigrid pay at this rate? It does where it was asked for, and if a large component has a small mean share
- * of inertia in the linearisation's diagonal blocks. Each copy counts up to 4/3 of the bound, so that a quarter of
- * stiff ones is enough. */
+/* Is multigrid faster at this rate? It is used where the caller asked for it, and where inertia has a small mean share
+ * of the diagonal blocks of some large component. Each copy's share counts as 4/3 of the bound at most, so that a
+ * quarter of stiff copies is enough. */
 static int gxsp_coarse_pays(gxsp_system *system, double rate) {
     const double bound = 3 * GXSP_INERTIA / (system->model.scale * rate);
     size_t i;
@@ -7705,8 +7707,8 @@ static int gxsp_coarse_pays(gxsp_system *system, double rate) {
 }
 
 /* Updates matrix and preconditioner to the linearisation. Coarse matrices are made anew if there are none, if the
- * rate has changed, if iterations have doubled since they were made, or before they rise by more than new ones
- * cost. */
+ * rate has changed, if iterations have doubled since they were made, or at the end of their life: before the further
+ * iterations cost more than new matrices. */
 static int gxsp_prepare(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     int other; /* the rate differs from that of the coarse matrices */
@@ -7731,7 +7733,8 @@ static int gxsp_prepare(gxsp_problem *problem) {
 }
 
 /* Chooses how long the coarse matrices are to serve. Their first reading tells how much slower the ones before were
- * in the end. If the share lost grows to that evenly, cost / life + share / lived x life / 2 is least. */
+ * in the end. If the share lost has grown evenly to that, the life that minimises cost / life + share / lived x life /
+ * 2 is best. */
 static void gxsp_learn_life(gxsp_system *system) {
     const double share = system->coarse.pace_old / system->coarse.pace - 1, lived = system->coarse.lived;
     const double best = share > GXSP_AGEING ? sqrt(2 * GXSP_REMAKE * lived / share) : GXSP_PATIENCE * lived;
@@ -7939,8 +7942,8 @@ static void gxsp_count_rest(const gxsp_problem *problem, const double *velocity)
 
 /* In: a displacement. Out: energies of components, forces, the residual and its measure. */
 
-/* Adds the forces on held copies, which have no D of their own, scaled by the mean of the others'. A body that only
- * its held copies deform has no other force when it is in balance. */
+/* Adds the forces on held copies, scaled by the mean of the other copies' D, since held ones have no D. A body that
+ * only its held copies deform has no other force when it is in balance. */
 static void gxsp_add_reactions(const gxsp_system *system, gxsp_norms *norms) {
     double stiffness = 0, square = 0, compliance;
     size_t i, counted = 0;
@@ -8044,8 +8047,8 @@ static void gxsp_find_base(const gxsp_problem *problem, double *to) {
     gxsp_follow(system, problem->given, to);
 }
 
-/* Light copies start where inertia leads the copies that guide them. They have next to no inertia of their own;
- * started where they fly, the linearisation would be that of an element torn apart. */
+/* Light copies start where inertia leads the copies that guide them. They have next to no inertia of their own. If they
+ * started where they would fly, the linearisation would be that of an element torn apart. */
 static void gxsp_lead_lights(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     uint32_t i;
@@ -8278,10 +8281,10 @@ static void gxsp_add_damping(gxsp_problem *problem, double factor, const double 
     for (i = 0; i < 3 * system->model.n; i++) system->vectors.damping[i] += system->vectors.force[i];
 }
 
-/* Rayleigh's stiffness damping: stress P(F) + beta dP/dt, with the integrator's rate speed (P(F) - P of the mean
- * before). Energies are linear in their moduli, so that is the energy (1 + beta speed) U(u) and a load of the
- * forces before. Those forces are rotated with the elements' motion by inertia alone: rotations under stress are
- * not damped, to first order in the step. */
+/* Rayleigh's stiffness damping: stress P(F) + beta dP/dt, where dP/dt is speed times (P(F) - P at the integrator's
+ * mean). Energies are linear in their moduli, so this is the energy (1 + beta speed) U(u) and a load of the earlier
+ * forces. These forces are rotated with the motion by inertia alone, so that rotations under stress are not damped, to
+ * first order in the step. */
 static void gxsp_begin_damping(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     size_t i;
@@ -8488,10 +8491,10 @@ static size_t gxsp_bring_down(gxsp_problem *problem) {
     return count;
 }
 
-/* Newton's method from target, which is close to the answer except in violent motion. A component that ends higher
- * in E than at base (translated by its momentum if it is loose) is brought down on the way from there, and Newton's
- * method continues with the iterations that are left. So E(u) <= E(base) always, component by component, which
- * bounds the energy that a step can add. */
+/* Newton's method from target, which is close to the answer except in violent motion. A component whose E ends higher
+ * than at base (translated by its momentum if it is loose) goes from base towards its end as far as E falls. Newton's
+ * method then continues with the iterations that are left. So E(u) <= E(base) in each component, which bounds the
+ * energy that a step can add. */
 static gx_result gxsp_minimise(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     gx_result result = GX_ERROR_DIVERGED;
@@ -8612,13 +8615,13 @@ static void gxsp_find_second_half(const gxsp_problem *problem) {
     }
 }
 
-/* The midpoint rule continues from current by as much as from base to current; E there is the end's energy, as
- * E(base) is the start's. The two are equal but for terms of third order in the way, for what Newton's method and
- * conjugate gradients have left, which would add up from step to step without bound, and for springs and contact
- * that first act beyond current. If a component would gain more than a share of its kinetic energy, its second half
- * is shortened, except the translation of a component that nothing acts on at either place. At worst the step ends
- * at current, where E is not above E(base). Light copies move with the copies that guide them: nothing would damp
- * them. direction becomes the end. */
+/* The midpoint rule continues from current by the way from base to current. E there is the energy at the end, as
+ * E(base) is that at the start. The two differ by terms of third order in the way, by springs and contact that first
+ * act beyond current, and by the errors of Newton's method and conjugate gradients, which would add up from step to
+ * step without bound. If a component would gain more than a share of its kinetic energy, its second half is shortened,
+ * except the translation of a component on which nothing acts at either place. At worst the step ends at current, where
+ * E is not above E(base). Light copies move with the copies that guide them, since nothing would damp them. direction
+ * becomes the end. */
 static void gxsp_bound_gain(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     const size_t count = 3 * system->model.n;
@@ -9246,8 +9249,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
     memset(to, 0, sizeof to);
     rest.weight[0] = 1;
     memset(gradients, 0, sizeof gradients);
-    gradients[0][0] = gradients[4][0] = gradients[8][0] = 1; /* u_i - u_0 are the columns of dF, the forces those of dP
-                                                              */
+    /* u_i - u_0 are the columns of dF, the forces those of dP */
+    gradients[0][0] = gradients[4][0] = gradients[8][0] = 1;
     (void)gxsp_tangent_begin(material->kind, &state, NULL, &svd);
     gxsp_tangent_make(material->kind, &rest, gradients, 1, 0, &state, &svd, &tangent, &general);
     for (k = 0; k < 3; k++)
