@@ -3965,10 +3965,10 @@ static uint32_t gxbp_leaves_below(const gxb_complex *cx, uint32_t reference) {
 }
 
 /* gxbp_facet_sides of all parts of a divided facet */
-static GXBP_APART int gxbp_pieces_sides(gxb_complex *cx, uint32_t facet, const gxbp_splitter *splitter) {
+static GXBP_APART int gxbp_all_facet_sides(gxb_complex *cx, uint32_t facet, const gxbp_splitter *splitter) {
     const uint32_t child = cx->facets[facet].child;
     if (child == GXB_NONE) return gxbp_facet_sides(cx, facet, splitter);
-    return gxbp_pieces_sides(cx, child, splitter) | gxbp_pieces_sides(cx, child + 1, splitter);
+    return gxbp_all_facet_sides(cx, child, splitter) | gxbp_all_facet_sides(cx, child + 1, splitter);
 }
 
 /* On which sides of the plane (slot 1's, for its present stamp) the leaf has points: bit 1 in front, bit 2 behind.
@@ -3978,7 +3978,7 @@ static int gxbp_leaf_sides(gxb_complex *cx, uint32_t leaf, const gxbp_splitter *
     uint32_t i;
     int sides = 0;
     for (i = 0; i < l->facet_count && sides != 3; i++)
-        sides |= gxbp_pieces_sides(cx, cx->pool[l->facets + i], splitter);
+        sides |= gxbp_all_facet_sides(cx, cx->pool[l->facets + i], splitter);
     return sides;
 }
 
@@ -5550,10 +5550,10 @@ static void gxbp_add_border(gxbp_checker *c, uint32_t facet, uint32_t flip, uint
 /* --- mesh faces: their facets cover them once, up to the parts of their mesh edges --- */
 
 /* Are all parts of the signed edge on the border? Returns how many there are. */
-static GXBP_COLD uint32_t gxbp_border_pieces(gxbp_checker *c, uint32_t signed_edge, uint32_t round) {
+static GXBP_COLD uint32_t gxbp_count_border(gxbp_checker *c, uint32_t signed_edge, uint32_t round) {
     const uint32_t child = c->cx->edges[signed_edge >> 1].child, back = signed_edge & 1;
     if (child != GXB_NONE)
-        return gxbp_border_pieces(c, child << 1 | back, round) + gxbp_border_pieces(c, (child + 1) << 1 | back, round);
+        return gxbp_count_border(c, child << 1 | back, round) + gxbp_count_border(c, (child + 1) << 1 | back, round);
     gxbp_require_true(c->s, c->border[signed_edge] == round && c->border[signed_edge ^ 1] != round);
     return 1;
 }
@@ -5563,7 +5563,7 @@ static void gxbp_check_face(gxbp_checker *c, uint32_t element, uint32_t k) {
     gxb_complex *cx = c->cx;
     const uint32_t *node = cx->elements + 4 * (size_t)element,
                    root = cx->face_facet[cx->element_faces[4 * (size_t)element + k]];
-    uint32_t local[3], n[3], i, j, pieces = 0, round;
+    uint32_t local[3], n[3], i, j, parts = 0, round;
     const gxb_cplane *plane;
     if (root == GXB_NONE) return;
     plane = &cx->store.planes[cx->facets[root].plane];
@@ -5583,9 +5583,9 @@ static void gxbp_check_face(gxbp_checker *c, uint32_t element, uint32_t k) {
         const uint32_t edge =
             cx->mesh_edge[cx->element_edges[6 * (size_t)element + gxbp_local_edge(local[j], local[(j + 1) % 3])]];
         gxbp_require_true(c->s, edge != GXB_NONE);
-        if (c->s->result == GX_OK) pieces += gxbp_border_pieces(c, edge << 1 | (j == 2 ? 1u : 0u), round);
+        if (c->s->result == GX_OK) parts += gxbp_count_border(c, edge << 1 | (j == 2 ? 1u : 0u), round);
     }
-    gxbp_require_true(c->s, pieces == c->loose);
+    gxbp_require_true(c->s, parts == c->loose);
 }
 
 /* --- the trees of the elements --- */
