@@ -5985,17 +5985,17 @@ typedef struct gxbp_output {
     uint32_t origin_count, origin_capacity;
     uint32_t *points; /* of each vertex: its point */
     uint32_t point_count, point_capacity;
-    uint32_t *triangles; /* x 3; triangle_count counts corners, source_count triangles */
-    uint32_t triangle_count, triangle_capacity;
+    uint32_t *triangles; /* x 3: vertices */
+    uint32_t corner_count, corner_capacity;
     /* of each triangle */
     uint32_t *operands;
     uint32_t operand_count, operand_capacity;
     uint32_t *sources;
-    uint32_t source_count, source_capacity;
+    uint32_t triangle_count, triangle_capacity;
     uint32_t *components;
     uint32_t component_count, component_capacity;
-    uint32_t *planes; /* 2 x subtriangle, + 1 where the triangle faces against its plane */
-    uint32_t plane_count, plane_capacity;
+    uint32_t *subtriangles; /* 2 x subtriangle, + 1 where the triangle faces against its plane */
+    uint32_t subtriangle_count, subtriangle_capacity;
     uint8_t *reversed;
     uint32_t reversed_count, reversed_capacity;
     /* of each component; sides: x operand */
@@ -6035,9 +6035,12 @@ typedef struct gxbp_budget {
 
 /* Scratch. No array keeps anything from one step to the next; each has one meaning. */
 typedef struct gxbp_work {
-    /* subtriangles, or triangles of the output: a stack to visit, or a list of those to replace */
-    uint32_t *stack;
-    uint32_t stack_count, stack_capacity;
+    /* subtriangles to visit, in a flat or while states spread */
+    uint32_t *visits;
+    uint32_t visit_count, visit_capacity;
+    /* subtriangles that a constrained edge crosses, to be replaced */
+    uint32_t *crossed;
+    uint32_t crossed_count, crossed_capacity;
     /* subtriangles that got a state, or lost one: neighbours are still to come */
     uint32_t *pending;
     uint32_t pending_count, pending_capacity;
@@ -6050,12 +6053,17 @@ typedef struct gxbp_work {
     /* new segments of the source at work, x 3, see gxbp_chain_segments */
     uint32_t *segment_ends;
     uint32_t segment_end_count, segment_end_capacity;
-    /* outlines to the right and the left of an edge that is being made */
-    gxbp_rim_vertex *rims;
-    uint32_t rim_count, rim_capacity;
+    /* rims of the crossed subtriangles, to the right and to the left of the edge */
+    gxbp_rim_vertex *rights;
+    uint32_t right_count, right_capacity;
     gxbp_rim_vertex *lefts;
     uint32_t left_count, left_capacity;
-    uint32_t plane;             /* in which gxbp_turn decides */
+    /* >>coarse: the polygon of a fan, and the fan's triangles, to be replaced */
+    struct gxbp_fan_vertex *fan_vertices;
+    uint32_t fan_vertex_count, fan_vertex_capacity;
+    uint32_t *fan_triangles;
+    uint32_t fan_triangle_count, fan_triangle_capacity;
+    uint32_t plane;             /* of the triangulation at work */
     uint32_t stamp, head_stamp; /* of vertices in the triangulation at work, of those with heads */
 } gxbp_work;
 
@@ -6172,6 +6180,10 @@ static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, uint32_t count, uin
 static GXBP_APART void *gxbp_borrow(gxb_boolean *b, size_t bytes) {
     b->work.room_count = 0;
     return GXBP_ROOM(b, work.room, work.room, bytes / sizeof *b->work.room + 1) ? b->work.room : NULL;
+}
+
+static void gxbp_push_visit(gxb_boolean *b, uint32_t f) {
+    if (GXBP_ROOM(b, work.visits, work.visit, 1)) b->work.visits[b->work.visit_count++] = f;
 }
 
 static uint32_t gxbp_new_link(gxb_boolean *b, uint32_t value, uint32_t next) {
@@ -7683,26 +7695,34 @@ static int gxbp_on_definition_line(gxb_boolean *b, uint32_t p, uint32_t q, uint3
     return 0;
 }
 
-/* Orientation in the plane of the triangulation at work; 0: the filter does not settle it */
-static int gxbp_turn_by_filter(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t r) {
-    const gxb_cplane *f = &b->store.planes[b->work.plane];
+/* Orientation in a plane; 0: the filter does not settle it */
+static inline int gxbp_plane_turn_by_filter(gxb_boolean *b, uint32_t plane, uint32_t p, uint32_t q, uint32_t r) {
+    const gxb_cplane *f = &b->store.planes[plane];
     const gxb_cpoint *x = b->store.points;
     b->store.filter_calls++;
     return f->axis_sign *
            gxbp_filter_turn(&x[p].ball, &x[q].ball, &x[r].ball, (int)(f->axis + 1) % 3, (int)(f->axis + 2) % 3);
 }
 
-/* Orientation in the plane of the triangulation at work. */
-static int gxbp_turn(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t r) {
-    gxb_store *store = &b->store;
-    const int turn = gxbp_turn_by_filter(b, p, q, r);
+/* Orientation in a plane. */
+static GXBP_APART int gxbp_plane_turn(gxb_boolean *b, uint32_t plane, uint32_t p, uint32_t q, uint32_t r) {
+    const int turn = gxbp_plane_turn_by_filter(b, plane, p, q, r);
     if (turn != 0) return turn;
     if (p == q || q == r || r == p) return 0;
-    if (gxbp_on_definition_line(b, p, q, r, b->work.plane) || gxbp_on_definition_line(b, q, r, p, b->work.plane) ||
-        gxbp_on_definition_line(b, r, p, q, b->work.plane))
+    if (gxbp_on_definition_line(b, p, q, r, plane) || gxbp_on_definition_line(b, q, r, p, plane) ||
+        gxbp_on_definition_line(b, r, p, q, plane))
         return 0;
-    store->exact_calls++;
-    return gxbp_store_turn(store, p, q, r, b->work.plane);
+    b->store.exact_calls++;
+    return gxbp_store_turn(&b->store, p, q, r, plane);
+}
+
+/* The same in the plane of the triangulation at work. */
+static int gxbp_turn_by_filter(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t r) {
+    return gxbp_plane_turn_by_filter(b, b->work.plane, p, q, r);
+}
+
+static int gxbp_turn(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t r) {
+    return gxbp_plane_turn(b, b->work.plane, p, q, r);
 }
 
 static uint32_t gxbp_new_subtriangle(gxb_boolean *b, uint32_t source) {
@@ -8172,7 +8192,7 @@ static void gxbp_attach_rim(gxb_boolean *b, gxbp_rim_vertex *rim, uint32_t count
  * the one at the base from rim[high] to rim[low]. */
 static GXBP_APART uint32_t gxbp_fill_rim(gxb_boolean *b, gxbp_rim_vertex *rim, uint32_t count, uint32_t low,
                                          uint32_t high) {
-    const uint32_t apex = gxbp_choose_apex(b, rim, low, high), f = b->work.stack[--b->work.stack_count];
+    const uint32_t apex = gxbp_choose_apex(b, rim, low, high), f = b->work.crossed[--b->work.crossed_count];
     uint32_t g;
     gxbp_set_subtriangle(b, f, rim[high].vertex, rim[low].vertex, rim[apex].vertex);
     gxbp_set_edge(b, f, 0, GXB_NONE, GXBP_LOOSE);
@@ -8214,8 +8234,8 @@ static GXBP_RARE uint32_t gxbp_crossing_point(gxb_boolean *b, uint32_t s, uint32
     return other;
 }
 
-static void gxbp_push(gxb_boolean *b, uint32_t value) {
-    if (GXBP_ROOM(b, work.stack, work.stack, 1)) b->work.stack[b->work.stack_count++] = value;
+static void gxbp_push_crossed(gxb_boolean *b, uint32_t f) {
+    if (GXBP_ROOM(b, work.crossed, work.crossed, 1)) b->work.crossed[b->work.crossed_count++] = f;
 }
 
 /* Lists the subtriangles that the line crosses from way on, up to the first vertex on it, and their rims: on its right,
@@ -8223,11 +8243,11 @@ static void gxbp_push(gxb_boolean *b, uint32_t value) {
 static int gxbp_collect_crossed(gxb_boolean *b, uint32_t s, const gxbp_line *line, gxbp_way way, uint32_t label) {
     uint32_t f = way.f, u = b->mesh.subtriangles[f].v[(way.k + 1) % 3], w = b->mesh.subtriangles[f].v[(way.k + 2) % 3];
     int k = (way.k + 1) % 3;
-    b->work.stack_count = b->work.rim_count = b->work.left_count = 0;
-    gxbp_push_rim_vertex(b, &b->work.rims, &b->work.rim_count, &b->work.rim_capacity, b->mesh.subtriangles[f].v[way.k],
-                         f, way.k);
+    b->work.crossed_count = b->work.right_count = b->work.left_count = 0;
+    gxbp_push_rim_vertex(b, &b->work.rights, &b->work.right_count, &b->work.right_capacity,
+                         b->mesh.subtriangles[f].v[way.k], f, way.k);
     gxbp_push_rim_vertex(b, &b->work.lefts, &b->work.left_count, &b->work.left_capacity, w, f, (way.k + 2) % 3);
-    gxbp_push(b, f);
+    gxbp_push_crossed(b, f);
     while (b->error == GX_OK) {
         uint32_t c;
         int j, side_c;
@@ -8246,16 +8266,16 @@ static int gxbp_collect_crossed(gxb_boolean *b, uint32_t s, const gxbp_line *lin
             gxbp_stop(b, GX_ERROR_OVERLAP);
             return 0;
         }
-        gxbp_push(b, f);
+        gxbp_push_crossed(b, f);
         j = gxbp_corner_index(&b->mesh.subtriangles[f], w);
         c = b->mesh.subtriangles[f].v[(j + 2) % 3];
         side_c = gxbp_left(b, line, c);
         if (side_c <= 0)
-            gxbp_push_rim_vertex(b, &b->work.rims, &b->work.rim_count, &b->work.rim_capacity, u, f, (j + 1) % 3);
+            gxbp_push_rim_vertex(b, &b->work.rights, &b->work.right_count, &b->work.right_capacity, u, f, (j + 1) % 3);
         if (side_c >= 0)
             gxbp_push_rim_vertex(b, &b->work.lefts, &b->work.left_count, &b->work.left_capacity, c, f, (j + 2) % 3);
         if (side_c == 0) {
-            gxbp_push_rim_vertex(b, &b->work.rims, &b->work.rim_count, &b->work.rim_capacity, c, GXB_NONE, 0);
+            gxbp_push_rim_vertex(b, &b->work.rights, &b->work.right_count, &b->work.right_capacity, c, GXB_NONE, 0);
             return b->error == GX_OK;
         }
         if (side_c < 0) {
@@ -8280,9 +8300,9 @@ static void gxbp_find_dangling(const gxb_boolean *b, gxbp_rim_vertex *rim, uint3
 /* Replaces the crossed subtriangles by others, with an edge from the start to the vertex in which the right rim ends.
  */
 static void gxbp_refill(gxb_boolean *b, uint32_t start) {
-    const uint32_t state = b->mesh.subtriangles[b->work.stack[0]].state; /* that of all: no label is between them */
+    const uint32_t state = b->mesh.subtriangles[b->work.crossed[0]].state; /* that of all: no label is between them */
     uint32_t i, n, f, g;
-    for (i = 0; i < b->work.stack_count; i++) b->mesh.subtriangles[b->work.stack[i]].state = GXBP_REMOVED;
+    for (i = 0; i < b->work.crossed_count; i++) b->mesh.subtriangles[b->work.crossed[i]].state = GXBP_REMOVED;
     gxbp_push_rim_vertex(b, &b->work.lefts, &b->work.left_count, &b->work.left_capacity, start, GXB_NONE, 0);
     if (b->error != GX_OK) return;
     /* the left rim runs backwards: reverse all of it but the start */
@@ -8292,10 +8312,10 @@ static void gxbp_refill(gxb_boolean *b, uint32_t start) {
         b->work.lefts[i] = b->work.lefts[n - 1 - i];
         b->work.lefts[n - 1 - i] = swap;
     }
-    gxbp_find_dangling(b, b->work.rims, b->work.rim_count);
+    gxbp_find_dangling(b, b->work.rights, b->work.right_count);
     gxbp_find_dangling(b, b->work.lefts, b->work.left_count);
-    for (i = 0; i < b->work.stack_count; i++) b->mesh.subtriangles[b->work.stack[i]].state = state;
-    f = gxbp_fill_rim(b, b->work.rims, b->work.rim_count, 0, b->work.rim_count - 1);
+    for (i = 0; i < b->work.crossed_count; i++) b->mesh.subtriangles[b->work.crossed[i]].state = state;
+    f = gxbp_fill_rim(b, b->work.rights, b->work.right_count, 0, b->work.right_count - 1);
     g = gxbp_fill_rim(b, b->work.lefts, b->work.left_count, 0, b->work.left_count - 1);
     b->mesh.subtriangles[f].near[0] = g;
     b->mesh.subtriangles[g].near[0] = f;
@@ -8990,18 +9010,18 @@ static int gxbp_is_edge_of(const gxb_boolean *b, uint32_t labels, uint32_t t) {
 static GXBP_RARE void gxbp_cover_subtriangles(gxb_boolean *b, uint32_t r, uint32_t t) {
     const uint32_t first = gxbp_first_covered(b, r, t);
     int k;
-    b->work.stack_count = 0;
+    b->work.visit_count = 0;
     if (first == GXB_NONE) return;
     b->mesh.subtriangles[first].covers = gxbp_new_link(b, t, b->mesh.subtriangles[first].covers);
-    gxbp_push(b, first);
-    while (b->work.stack_count > 0 && b->error == GX_OK) {
-        const uint32_t f = b->work.stack[--b->work.stack_count];
+    gxbp_push_visit(b, first);
+    while (b->work.visit_count > 0 && b->error == GX_OK) {
+        const uint32_t f = b->work.visits[--b->work.visit_count];
         for (k = 0; k < 3; k++) {
             const uint32_t g = b->mesh.subtriangles[f].near[k];
             if (g == GXB_NONE || gxbp_is_edge_of(b, b->mesh.subtriangles[f].labels[k], t) || gxbp_covers(b, g, t))
                 continue;
             b->mesh.subtriangles[g].covers = gxbp_new_link(b, t, b->mesh.subtriangles[g].covers);
-            gxbp_push(b, g);
+            gxbp_push_visit(b, g);
         }
     }
 }
@@ -9525,15 +9545,15 @@ static void gxbp_reach_operand(gxb_boolean *b, uint32_t f, int k) {
 }
 
 /* gxbp_find_states has reserved the room. */
-static void gxbp_stack(gxb_boolean *b, uint32_t value) { b->work.stack[b->work.stack_count++] = value; }
+static void gxbp_add_visit(gxb_boolean *b, uint32_t f) { b->work.visits[b->work.visit_count++] = f; }
 
 /* Spreads the state to all subtriangles of f's triangulation that can be reached. */
 static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
-    const uint32_t base = b->work.stack_count, flat = b->in.sources[b->mesh.subtriangles[f].source].flags & GXBP_FLAT;
-    gxbp_stack(b, f);
-    while (b->work.stack_count > base && b->error == GX_OK) {
+    const uint32_t base = b->work.visit_count, flat = b->in.sources[b->mesh.subtriangles[f].source].flags & GXBP_FLAT;
+    gxbp_add_visit(b, f);
+    while (b->work.visit_count > base && b->error == GX_OK) {
         int k;
-        f = b->work.stack[--b->work.stack_count];
+        f = b->work.visits[--b->work.visit_count];
         for (k = 0; k < 3; k++) {
             const uint32_t near = b->mesh.subtriangles[f].near[k];
             if (near == GXB_NONE || b->mesh.subtriangles[near].state != GXB_NONE ||
@@ -9541,7 +9561,7 @@ static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
                 continue;
             b->mesh.subtriangles[near].state = gxbp_state_beyond(b, f, k);
             if (b->winding.unreached > 0 && !flat) gxbp_reach_operand(b, f, k);
-            gxbp_stack(b, near);
+            gxbp_add_visit(b, near);
         }
     }
 }
@@ -9550,10 +9570,10 @@ static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
  * many cache misses overlap. */
 static void gxbp_spread_state(gxb_boolean *b, uint32_t first) {
     uint32_t i;
-    b->work.stack_count = 0;
-    gxbp_stack(b, first);
-    for (i = 0; i < b->work.stack_count && b->error == GX_OK; i++) {
-        const uint32_t f = b->work.stack[i], s = b->mesh.subtriangles[f].source;
+    b->work.visit_count = 0;
+    gxbp_add_visit(b, first);
+    for (i = 0; i < b->work.visit_count && b->error == GX_OK; i++) {
+        const uint32_t f = b->work.visits[i], s = b->mesh.subtriangles[f].source;
         uint32_t k;
         b->in.sources[s].flags |= GXBP_REACHED;
         if (b->in.sources[s].flags & (GXBP_DIVIDED | GXBP_FLAT)) gxbp_spread_within(b, f);
@@ -9566,7 +9586,7 @@ static void gxbp_spread_state(gxb_boolean *b, uint32_t first) {
             if (g == GXB_NONE) continue;
             b->mesh.subtriangles[g].state = b->mesh.subtriangles[gxbp_rim_subtriangle(b, s, k)].state;
             b->in.sources[twin / 3].flags |= GXBP_REACHED;
-            gxbp_stack(b, g);
+            gxbp_add_visit(b, g);
         }
     }
 }
@@ -9658,16 +9678,16 @@ static uint32_t gxbp_close_state(gxb_boolean *b, uint32_t g, int k, uint32_t f) 
 
 /* Closes the states of open subtriangles, from neighbour to neighbour */
 static void gxbp_spread_closed(gxb_boolean *b, uint32_t first) {
-    b->work.stack_count = 0;
-    gxbp_push(b, first);
-    while (b->work.stack_count > 0 && b->error == GX_OK) {
-        const uint32_t f = b->work.stack[--b->work.stack_count];
+    b->work.visit_count = 0;
+    gxbp_push_visit(b, first);
+    while (b->work.visit_count > 0 && b->error == GX_OK) {
+        const uint32_t f = b->work.visits[--b->work.visit_count];
         int k;
         for (k = 0; k < 3; k++) {
             const uint32_t g = gxbp_neighbour(b, f, k);
             if (g == GXB_NONE || !gxbp_is_open(b, g)) continue;
             b->mesh.subtriangles[g].state = gxbp_close_state(b, f, k, g);
-            gxbp_push(b, g);
+            gxbp_push_visit(b, g);
         }
     }
 }
@@ -9713,9 +9733,9 @@ static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
     for (s = 0; s < b->in.operand_count; s++) b->in.operands[s].reached = s < b->winding.stated;
     b->winding.unreached = b->in.operand_count - b->winding.stated;
     if (b->winding.stated > 0) gxbp_close_states(b);
-    b->work.pending_count = b->work.stack_count = 0;
+    b->work.pending_count = b->work.visit_count = 0;
     /* each source and each subtriangle is pushed at most once */
-    if (!GXBP_ROOM(b, work.stack, work.stack, (size_t)b->in.source_count + b->mesh.subtriangle_count)) return;
+    if (!GXBP_ROOM(b, work.visits, work.visit, (size_t)b->in.source_count + b->mesh.subtriangle_count)) return;
     /* undivided sources first: their rays are cheap */
     for (s = 0; s < b->in.source_count && b->error == GX_OK; s++) {
         f = b->in.sources[s].subtriangle;
@@ -9862,31 +9882,31 @@ static uint32_t gxbp_cover_of(const gxb_boolean *b, uint32_t f, int sheets) {
 
 /* The arrays with one item for each triangle grow together. */
 static GXBP_APART int gxbp_more_triangles(gxb_boolean *b, size_t extra) {
-    return GXBP_ROOM(b, out.operands, out.operand, extra) && GXBP_ROOM(b, out.planes, out.plane, extra) &&
-           GXBP_ROOM(b, out.reversed, out.reversed, extra) && GXBP_ROOM(b, out.sources, out.source, extra);
+    return GXBP_ROOM(b, out.operands, out.operand, extra) && GXBP_ROOM(b, out.subtriangles, out.subtriangle, extra) &&
+           GXBP_ROOM(b, out.reversed, out.reversed, extra) && GXBP_ROOM(b, out.sources, out.triangle, extra);
 }
 
 /* reversed: the outside is behind the subtriangle's plane. */
 static void gxbp_emit(gxb_boolean *b, uint32_t f, int reversed, uint32_t source) {
-    const uint32_t n = b->out.triangle_count, *v = b->mesh.subtriangles[f].v;
+    const uint32_t n = b->out.corner_count, *v = b->mesh.subtriangles[f].v;
     uint32_t i;
-    if (!GXBP_ROOM(b, out.triangles, out.triangle, 3) ||
-        (b->out.source_count == b->out.source_capacity && !gxbp_more_triangles(b, 1)))
+    if (!GXBP_ROOM(b, out.triangles, out.corner, 3) ||
+        (b->out.triangle_count == b->out.triangle_capacity && !gxbp_more_triangles(b, 1)))
         return;
     b->out.triangles[n] = gxbp_out_vertex(b, v[0]);
     b->out.triangles[n + 1] = gxbp_out_vertex(b, v[reversed ? 2 : 1]);
     b->out.triangles[n + 2] = gxbp_out_vertex(b, v[reversed ? 1 : 2]);
-    b->out.triangle_count += 3;
-    i = b->out.source_count++;
+    b->out.corner_count += 3;
+    i = b->out.triangle_count++;
     b->out.operand_count++;
     gxbp_name_source(b, source, 3, &b->out.operands[i], &b->out.sources[i]);
-    b->out.planes[b->out.plane_count++] = 2 * f + (uint32_t)reversed;
+    b->out.subtriangles[b->out.subtriangle_count++] = 2 * f + (uint32_t)reversed;
     b->out.reversed[b->out.reversed_count++] = reversed != (gxbp_facing(b, b->mesh.subtriangles[f].source, source) < 0);
 }
 
 static GXBP_APART void gxbp_set_triangle_count(gxb_boolean *b, uint32_t n) {
-    b->out.triangle_count = 3 * n;
-    b->out.source_count = b->out.operand_count = b->out.plane_count = b->out.reversed_count = n;
+    b->out.corner_count = 3 * n;
+    b->out.triangle_count = b->out.operand_count = b->out.subtriangle_count = b->out.reversed_count = n;
 }
 
 static GXBP_APART void gxbp_extract(gxb_boolean *b) {
@@ -9896,7 +9916,7 @@ static GXBP_APART void gxbp_extract(gxb_boolean *b) {
     gxbp_set_triangle_count(b, 0);
     b->out.point_count = b->out.vertex_count = b->out.origin_count = 0;
     if (!gxbp_more_triangles(b, b->mesh.subtriangle_count / 2) ||
-        !GXBP_ROOM(b, out.triangles, out.triangle, 3 * (size_t)(b->mesh.subtriangle_count / 2)))
+        !GXBP_ROOM(b, out.triangles, out.corner, 3 * (size_t)(b->mesh.subtriangle_count / 2)))
         return;
     for (f = 0; f < b->mesh.subtriangle_count && b->error == GX_OK; f++) {
         const gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
@@ -9925,7 +9945,7 @@ static uint32_t gxbp_out_corner(const gxb_boolean *b, uint32_t t, uint32_t k) {
 
 /* A source that met nothing may have had no plane yet. GXB_NONE: no memory. */
 static uint32_t gxbp_out_plane(gxb_boolean *b, uint32_t t) {
-    const uint32_t s = b->mesh.subtriangles[b->out.planes[t] / 2].source;
+    const uint32_t s = b->mesh.subtriangles[b->out.subtriangles[t] / 2].source;
     return gxbp_need_plane(b, s) ? b->in.sources[s].plane : GXB_NONE;
 }
 
@@ -9933,7 +9953,7 @@ static uint32_t gxbp_out_plane(gxb_boolean *b, uint32_t t) {
 static GXBP_COLD void gxbp_copy_origin(gxb_boolean *b, uint32_t to, uint32_t from) {
     b->out.operands[to] = b->out.operands[from];
     b->out.sources[to] = b->out.sources[from];
-    b->out.planes[to] = b->out.planes[from];
+    b->out.subtriangles[to] = b->out.subtriangles[from];
     b->out.reversed[to] = b->out.reversed[from];
 }
 
@@ -9942,7 +9962,7 @@ static GXBP_COLD void gxbp_drop_lonely(gxb_boolean *b, uint32_t *map) {
     const int rounded = b->out.vertex_count > 0;
     uint32_t i, n = 0;
     memset(map, 0xff, b->out.point_count * sizeof *map);
-    for (i = 0; i < b->out.triangle_count; i++) map[b->out.triangles[i]] = 0;
+    for (i = 0; i < b->out.corner_count; i++) map[b->out.triangles[i]] = 0;
     for (i = 0; i < b->out.point_count; i++) {
         if (map[i] == GXB_NONE) continue;
         if (rounded) {
@@ -9952,7 +9972,7 @@ static GXBP_COLD void gxbp_drop_lonely(gxb_boolean *b, uint32_t *map) {
         b->out.points[n] = b->out.points[i];
         map[i] = n++;
     }
-    for (i = 0; i < b->out.triangle_count; i++) b->out.triangles[i] = map[b->out.triangles[i]];
+    for (i = 0; i < b->out.corner_count; i++) b->out.triangles[i] = map[b->out.triangles[i]];
     b->out.point_count = n;
     if (rounded) {
         b->out.origin_count = n;
@@ -10011,14 +10031,15 @@ static int gxbp_faces(gxb_boolean *b, uint32_t plane, const double *p, const dou
 static GXBP_APART void gxbp_find_defects(gxb_boolean *b) {
     uint32_t t, k;
     b->out.defect_count = 0;
-    for (t = 0; t < b->out.source_count && b->error == GX_OK; t++) {
+    for (t = 0; t < b->out.triangle_count && b->error == GX_OK; t++) {
         const double *x[3];
         int given = b->options.mend == NULL;
         for (k = 0; k < 3; k++) {
             given = given && b->store.points[gxbp_out_corner(b, t, k)].kind == GXB_EXPLICIT;
             x[k] = b->out.vertices + 3 * (size_t)b->out.triangles[3 * t + k];
         }
-        if (given || gxbp_faces(b, gxbp_out_plane(b, t), x[0], x[1], x[2]) == (b->out.planes[t] & 1 ? -1 : 1)) continue;
+        if (given || gxbp_faces(b, gxbp_out_plane(b, t), x[0], x[1], x[2]) == (b->out.subtriangles[t] & 1 ? -1 : 1))
+            continue;
         if (GXBP_ROOM(b, out.defects, out.defect, 1)) b->out.defects[b->out.defect_count++] = t;
     }
     b->out.examined = b->error == GX_OK;
@@ -10033,6 +10054,13 @@ static GXBP_APART void gxbp_find_defects(gxb_boolean *b) {
 typedef struct gxbp_fan {
     uint32_t vertex, hint, next;
 } gxbp_fan;
+
+/* A vertex of the polygon that the triangles of a fan fill */
+typedef struct gxbp_fan_vertex {
+    uint32_t fan;           /* that it is in the middle of, in the same face */
+    uint32_t near;          /* the half-edge beyond the edge to the next vertex; GXB_NONE: none in the face */
+    uint32_t before, after; /* in the polygon */
+} gxbp_fan_vertex;
 
 /* Half-edges are 3 t + k. */
 typedef struct gxbp_coarse {
@@ -10049,16 +10077,17 @@ typedef struct gxbp_coarse {
 /* 1: triangle u is of t's face and faces as it does, -1: the other way (a sheet's other side), 0: it is of another
  * face. */
 static int gxbp_same_face(gxb_boolean *b, uint32_t t, uint32_t u) {
-    const int facing = b->out.planes[t] & 1 ? -1 : 1;
-    uint32_t k;
+    const int facing = b->out.subtriangles[t] & 1 ? -1 : 1;
+    uint32_t plane, k;
     if (b->out.operands[t] == b->out.operands[u] && b->out.sources[t] == b->out.sources[u])
-        return b->out.planes[u] & 1 ? -facing : facing;
+        return b->out.subtriangles[u] & 1 ? -facing : facing;
     if (b->options.triangulation != GXB_MERGED) return 0;
-    b->work.plane = gxbp_out_plane(b, t);
-    if (b->work.plane == GXB_NONE) return 0;
-    for (k = 0; k < 3 && gxbp_out_plane(b, u) != b->work.plane; k++)
-        if (gxbp_point_side(b, gxbp_out_corner(b, u, k), b->work.plane) != 0) return 0;
-    return facing * gxbp_turn(b, gxbp_out_corner(b, u, 0), gxbp_out_corner(b, u, 1), gxbp_out_corner(b, u, 2));
+    plane = gxbp_out_plane(b, t);
+    if (plane == GXB_NONE) return 0;
+    for (k = 0; k < 3 && gxbp_out_plane(b, u) != plane; k++)
+        if (gxbp_point_side(b, gxbp_out_corner(b, u, k), plane) != 0) return 0;
+    return facing *
+           gxbp_plane_turn(b, plane, gxbp_out_corner(b, u, 0), gxbp_out_corner(b, u, 1), gxbp_out_corner(b, u, 2));
 }
 
 /* Joins the half-edges between p and q that face alike, if all are of one face. 0: the edge belongs to an outline. */
@@ -10102,7 +10131,7 @@ static void gxbp_find_outlines(gxb_boolean *b, const gxbp_exits *exits, gxbp_coa
 
 static void gxbp_make_fans(const gxb_boolean *b, gxbp_coarse *c) {
     uint32_t h, e;
-    for (h = 0; h < b->out.triangle_count; h++) {
+    for (h = 0; h < b->out.corner_count; h++) {
         const uint32_t u = c->fan_count, v = b->out.triangles[h];
         if (c->corner[h] != GXB_NONE) continue;
         c->fans[u].vertex = v;
@@ -10115,25 +10144,27 @@ static void gxbp_make_fans(const gxb_boolean *b, gxbp_coarse *c) {
     }
 }
 
-/* The polygon that an fan's triangles fill goes to rims (fans of its vertices, what lies beyond the edge to
-   the next), the triangles to scratch. 1: it is open, the vertex lies on the edge from the last to the first. */
+/* Lists a fan's triangles, and the vertices of the polygon that they fill. 1: the fan is open; its vertex lies on the
+   edge from the last vertex to the first. */
 static int gxbp_open_fan(gxb_boolean *b, const gxbp_coarse *c, uint32_t u) {
     uint32_t start = c->fans[u].hint, e = start, n;
     while (c->near[e] != GXB_NONE && (e = gxbp_next_edge(c->near[e])) != start) {}
     start = e;
-    b->work.rim_count = b->work.stack_count = 0;
+    b->work.fan_vertex_count = b->work.fan_triangle_count = 0;
     do {
         n = gxbp_next_edge(e);
-        if (!GXBP_ROOM(b, work.rims, work.rim, 2)) return 0;
-        b->work.rims[b->work.rim_count].vertex = c->corner[n];
-        b->work.rims[b->work.rim_count++].near = c->near[n];
-        gxbp_push(b, e / 3);
+        if (!GXBP_ROOM(b, work.fan_vertices, work.fan_vertex, 2) ||
+            !GXBP_ROOM(b, work.fan_triangles, work.fan_triangle, 1))
+            return 0;
+        b->work.fan_vertices[b->work.fan_vertex_count].fan = c->corner[n];
+        b->work.fan_vertices[b->work.fan_vertex_count++].near = c->near[n];
+        b->work.fan_triangles[b->work.fan_triangle_count++] = e / 3;
         n = gxbp_next_edge(n);
         e = c->near[n];
     } while (e != GXB_NONE && e != start);
     if (e == start) return 0;
-    b->work.rims[b->work.rim_count].vertex = c->corner[n];
-    b->work.rims[b->work.rim_count++].near = GXB_NONE;
+    b->work.fan_vertices[b->work.fan_vertex_count].fan = c->corner[n];
+    b->work.fan_vertices[b->work.fan_vertex_count++].near = GXB_NONE;
     return 1;
 }
 
@@ -10148,38 +10179,38 @@ static void gxbp_link_half_edges(uint32_t *near, uint32_t h, uint32_t other) {
 
 /* A triangle of the polygon's vertices p, q and r, one after the other; what is left has an edge from p to r. */
 static void gxbp_fill_corner(gxb_boolean *b, gxbp_coarse *c, uint32_t p, uint32_t q, uint32_t r) {
-    const uint32_t h = 3 * b->work.stack[--b->work.stack_count];
+    const uint32_t h = 3 * b->work.fan_triangles[--b->work.fan_triangle_count];
     uint32_t k;
-    c->corner[h] = b->work.rims[p].vertex;
-    c->corner[h + 1] = b->work.rims[q].vertex;
-    c->corner[h + 2] = b->work.rims[r].vertex;
+    c->corner[h] = b->work.fan_vertices[p].fan;
+    c->corner[h + 1] = b->work.fan_vertices[q].fan;
+    c->corner[h + 2] = b->work.fan_vertices[r].fan;
     for (k = 0; k < 3; k++) c->fans[c->corner[h + k]].hint = h + k;
-    gxbp_link_half_edges(c->near, h, b->work.rims[p].near);
-    gxbp_link_half_edges(c->near, h + 1, b->work.rims[q].near);
+    gxbp_link_half_edges(c->near, h, b->work.fan_vertices[p].near);
+    gxbp_link_half_edges(c->near, h + 1, b->work.fan_vertices[q].near);
     c->near[h + 2] = GXB_NONE;
-    b->work.rims[p].near = h + 2;
+    b->work.fan_vertices[p].near = h + 2;
 }
 
 /* Fills the polygon of a fan around v. It is seen from v, and stays so if a convex corner is cut off whose ends
    are seen from v under no more than a straight angle: then v is left of the new edge or on it. Of at most two corners,
    neighbours, the ends are seen under more, and a polygon has three that are convex; where v lies on an edge, the
    corners of that edge are the two. */
-static void gxbp_fill_fan(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
-    gxbp_rim_vertex *rim = b->work.rims;
-    const int facing = b->out.planes[b->work.stack[0]] & 1 ? -1 : 1;
-    uint32_t n = b->work.rim_count, i, q = 0, tried = 0;
+static void gxbp_fill_fan(gxb_boolean *b, gxbp_coarse *c, uint32_t plane, uint32_t v) {
+    gxbp_fan_vertex *polygon = b->work.fan_vertices;
+    const int facing = b->out.subtriangles[b->work.fan_triangles[0]] & 1 ? -1 : 1;
+    uint32_t n = b->work.fan_vertex_count, i, q = 0, tried = 0;
     for (i = 0; i < n; i++) {
-        rim[i].labels = (i + 1) % n;
-        rim[i].made = (i + n - 1) % n;
+        polygon[i].after = (i + 1) % n;
+        polygon[i].before = (i + n - 1) % n;
     }
     while (n > 3 && b->error == GX_OK) {
-        const uint32_t p = rim[q].made, r = rim[q].labels, end = gxbp_coarse_point(b, c, rim[r].vertex),
-                       start = gxbp_coarse_point(b, c, rim[p].vertex);
-        if (facing * gxbp_turn(b, start, gxbp_coarse_point(b, c, rim[q].vertex), end) > 0 &&
-            facing * gxbp_turn(b, start, end, v) >= 0) {
+        const uint32_t p = polygon[q].before, r = polygon[q].after, end = gxbp_coarse_point(b, c, polygon[r].fan),
+                       start = gxbp_coarse_point(b, c, polygon[p].fan);
+        if (facing * gxbp_plane_turn(b, plane, start, gxbp_coarse_point(b, c, polygon[q].fan), end) > 0 &&
+            facing * gxbp_plane_turn(b, plane, start, end, v) >= 0) {
             gxbp_fill_corner(b, c, p, q, r);
-            rim[p].labels = r;
-            rim[r].made = p;
+            polygon[p].after = r;
+            polygon[r].before = p;
             q = p;
             n--;
             tried = 0;
@@ -10189,47 +10220,48 @@ static void gxbp_fill_fan(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
             gxbp_stop(b, GX_ERROR_OVERLAP);
     }
     if (b->error != GX_OK) return;
-    gxbp_fill_corner(b, c, rim[q].made, q, rim[q].labels);
-    gxbp_link_half_edges(c->near, rim[rim[q].made].near, rim[rim[q].labels].near);
-    for (i = 0; i < b->work.stack_count; i++) c->corner[3 * b->work.stack[i]] = GXB_NONE;
+    gxbp_fill_corner(b, c, polygon[q].before, q, polygon[q].after);
+    gxbp_link_half_edges(c->near, polygon[polygon[q].before].near, polygon[polygon[q].after].near);
+    for (i = 0; i < b->work.fan_triangle_count; i++) c->corner[3 * b->work.fan_triangles[i]] = GXB_NONE;
 }
 
 /* May the vertex be removed? Not where an outline bends, ends or branches. */
 static int gxbp_is_needless(gxb_boolean *b, const gxbp_coarse *c, uint32_t v) {
-    uint32_t u, ends[2] = {GXB_NONE, GXB_NONE};
+    uint32_t u, plane, ends[2] = {GXB_NONE, GXB_NONE};
     if (c->degree[v] == 0) return 1;
     if (c->degree[v] != 2) return 0;
     for (u = c->first[v]; u != GXB_NONE; u = c->fans[u].next) {
         uint32_t p, q;
         if (!gxbp_open_fan(b, c, u)) continue;
-        p = c->fans[b->work.rims[0].vertex].vertex;
-        q = c->fans[b->work.rims[b->work.rim_count - 1].vertex].vertex;
+        p = c->fans[b->work.fan_vertices[0].fan].vertex;
+        q = c->fans[b->work.fan_vertices[b->work.fan_vertex_count - 1].fan].vertex;
         if (p == q || (ends[0] != GXB_NONE && (p < q ? p : q) != ends[0]) ||
             (ends[0] != GXB_NONE && (p < q ? q : p) != ends[1]))
             return 0;
         if (ends[0] != GXB_NONE) continue;
         ends[0] = p < q ? p : q;
         ends[1] = p < q ? q : p;
-        b->work.plane = gxbp_out_plane(b, b->work.stack[0]);
-        if (b->work.plane == GXB_NONE || gxbp_turn(b, b->out.points[p], b->out.points[v], b->out.points[q]) != 0)
+        plane = gxbp_out_plane(b, b->work.fan_triangles[0]);
+        if (plane == GXB_NONE || gxbp_plane_turn(b, plane, b->out.points[p], b->out.points[v], b->out.points[q]) != 0)
             return 0;
     }
     return b->error == GX_OK;
 }
 
 static void gxbp_take_vertex(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
-    uint32_t u;
+    uint32_t u, plane;
     for (u = c->first[v]; u != GXB_NONE && b->error == GX_OK; u = c->fans[u].next) {
         gxbp_open_fan(b, c, u);
-        b->work.plane = gxbp_out_plane(b, b->work.stack[0]);
-        if (b->error == GX_OK) gxbp_fill_fan(b, c, b->out.points[v]);
+        if (b->error != GX_OK) return;
+        plane = gxbp_out_plane(b, b->work.fan_triangles[0]);
+        if (b->error == GX_OK) gxbp_fill_fan(b, c, plane, b->out.points[v]);
     }
 }
 
 /* Writes the remaining triangles to the output. */
 static void gxbp_close_coarse(gxb_boolean *b, const gxbp_coarse *c) {
     uint32_t t, k, n = 0;
-    for (t = 0; t < b->out.source_count; t++) {
+    for (t = 0; t < b->out.triangle_count; t++) {
         if (c->corner[3 * t] == GXB_NONE) continue;
         for (k = 0; k < 3; k++) b->out.triangles[3 * n + k] = c->fans[c->corner[3 * t + k]].vertex;
         gxbp_copy_origin(b, n++, t);
@@ -10239,12 +10271,12 @@ static void gxbp_close_coarse(gxb_boolean *b, const gxbp_coarse *c) {
 }
 
 static GXBP_COLD void gxbp_coarsen(gxb_boolean *b) {
-    const size_t halves = b->out.triangle_count, points = b->out.point_count;
+    const size_t halves = b->out.corner_count, points = b->out.point_count;
     const size_t bytes = halves * (2 * sizeof(uint32_t) + sizeof(gxbp_fan)) + 2 * points * sizeof(uint32_t);
     gxbp_coarse c;
     gxbp_exits exits;
     uint32_t v;
-    if (!gxbp_list_exits(b, b->out.triangles, b->out.source_count, b->out.point_count, &exits)) return;
+    if (!gxbp_list_exits(b, b->out.triangles, b->out.triangle_count, b->out.point_count, &exits)) return;
     c.fan_count = 0;
     c.near = (uint32_t *)gxbp_allocate(&b->store.allocator, bytes);
     if (c.near != NULL) {
@@ -10321,13 +10353,13 @@ static GXBP_RARE void gxbp_make_radial(gxb_boolean *b, uint32_t h, uint32_t p, c
     radial->apex = gxbp_out_corner(b, h / 3, h % 3 + 2);
     radial->plane = gxbp_out_plane(b, h / 3);
     radial->forward = gxbp_out_corner(b, h / 3, h % 3) == p;
-    radial->toward = (b->out.planes[h / 3] & 1 ? -1 : 1) * (radial->forward ? 1 : -1);
+    radial->toward = (b->out.subtriangles[h / 3] & 1 ? -1 : 1) * (radial->forward ? 1 : -1);
     radial->group = 0;
     if (first == NULL) return;
     radial->group = 2 - gxbp_radial_side(b, first, radial); /* 1: first half, 3: second half */
     if (radial->group != 2) return;
-    b->work.plane = first->plane;
-    if (gxbp_turn(b, p, q, radial->apex) == gxbp_turn(b, p, q, first->apex)) radial->group = 0;
+    if (gxbp_plane_turn(b, first->plane, p, q, radial->apex) == gxbp_plane_turn(b, first->plane, p, q, first->apex))
+        radial->group = 0;
 }
 
 /* Joins the triangles at the two sides of each wedge of the solid around an edge that more than two triangles share:
@@ -10383,15 +10415,15 @@ static GXBP_COLD void gxbp_join_all_wedges(gxb_boolean *b, uint32_t *parent, uin
     const uint32_t *v = b->out.triangles;
     uint32_t h;
     gxbp_exits exits;
-    if (!gxbp_list_exits(b, v, b->out.source_count, b->out.point_count, &exits)) return;
-    for (h = 0; h < 3 * b->out.source_count; h++)
+    if (!gxbp_list_exits(b, v, b->out.triangle_count, b->out.point_count, &exits)) return;
+    for (h = 0; h < 3 * b->out.triangle_count; h++)
         if (twin[h] == GXB_NONE && v[h] < v[gxbp_next_edge(h)])
             gxbp_join_wedges(b, &exits, v[h], v[gxbp_next_edge(h)], parent, twin);
     gxbp_drop_exits(b, &exits);
 }
 
 static GXBP_APART void gxbp_join_shells(gxb_boolean *b, uint32_t *parent, int32_t *corners) {
-    const uint32_t count = b->out.source_count;
+    const uint32_t count = b->out.triangle_count;
     const size_t words = 3 * (size_t)count;
     uint32_t *twin = (uint32_t *)gxbp_borrow(b, (words + gxbp_twin_room(b->out.point_count)) * sizeof *twin), h, open,
              shared = 0;
@@ -10540,8 +10572,8 @@ static int gxbp_is_rough(double volume, double error) { return error > GXBP_VOLU
 static void gxbp_sum_volumes(const gxb_boolean *b, const uint32_t *parent, double *volume, double *error,
                              double largest) {
     uint32_t t;
-    for (t = 0; t < b->out.source_count; t++) volume[t] = error[t] = 0;
-    for (t = 0; t < b->out.source_count; t++) {
+    for (t = 0; t < b->out.triangle_count; t++) volume[t] = error[t] = 0;
+    for (t = 0; t < b->out.triangle_count; t++) {
         const uint32_t root = parent[t];
         const gxb_ball *o = &b->store.points[gxbp_out_corner(b, root, 0)].ball;
         volume[root] += gxbp_rough_volume(b, t, o);
@@ -10551,7 +10583,7 @@ static void gxbp_sum_volumes(const gxb_boolean *b, const uint32_t *parent, doubl
 
 static int gxbp_any_is_rough(const gxb_boolean *b, const uint32_t *parent, const double *volume, const double *error) {
     uint32_t t;
-    for (t = 0; t < b->out.source_count; t++)
+    for (t = 0; t < b->out.triangle_count; t++)
         if (parent[t] == t && gxbp_is_rough(volume[t], error[t])) return 1;
     return 0;
 }
@@ -10559,7 +10591,7 @@ static int gxbp_any_is_rough(const gxb_boolean *b, const uint32_t *parent, const
 /* Exact sums where those of doubles are too rough, or of all */
 static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent, double *volume, double *error,
                                           int all) {
-    const uint32_t count = b->out.source_count;
+    const uint32_t count = b->out.triangle_count;
     const size_t vertices = b->out.point_count * sizeof(gxbp_fine), bytes = vertices + 2 * count * sizeof(uint32_t);
     gxbp_fines fines = {NULL, NULL, 0, 0};
     uint32_t t, *first, *next;
@@ -10588,7 +10620,7 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent
 /* Six times the volumes of the sets in volume[root], in the frame's units. One bound for all triangles costs less; it
  * is too large for many. */
 static GXBP_APART void gxbp_measure_shells(gxb_boolean *b, const uint32_t *parent, double *volume, double *error) {
-    const int few = b->out.source_count <= GXBP_FEW_TRIANGLES;
+    const int few = b->out.triangle_count <= GXBP_FEW_TRIANGLES;
     gxbp_sum_volumes(b, parent, volume, error, few ? gxbp_largest_rough_error(b) : 0);
     if (!gxbp_any_is_rough(b, parent, volume, error)) return;
     if (few) gxbp_sum_volumes(b, parent, volume, error, 0);
@@ -10615,15 +10647,15 @@ static GXBP_COLD int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p,
 /* A ray from a triangle. It begins on the side on which that one's solid lies: on the other one, of a sheet, begins
  * another's. */
 static GXBP_COLD int gxbp_ray_from(gxb_boolean *b, gxbp_ray *ray, uint32_t t) {
-    const int turned = b->out.planes[t] & 1 ? 1 : -1, moved = gxbp_moved_side(b, gxbp_out_plane(b, t));
-    gxbp_set_ray(b, ray, b->out.planes[t] / 2);
+    const int turned = b->out.subtriangles[t] & 1 ? 1 : -1, moved = gxbp_moved_side(b, gxbp_out_plane(b, t));
+    gxbp_set_ray(b, ray, b->out.subtriangles[t] / 2);
     return moved == 0 ? 1 : moved * turned;
 }
 
 /* The change of its shell's winding number where a ray moved by way (h, h^2) passes a triangle */
 static GXBP_COLD int gxbp_ray_passes(gxb_boolean *b, gxbp_ray *ray, int way, uint32_t t) {
     const uint32_t plane = gxbp_out_plane(b, t);
-    const int facing = b->out.planes[t] & 1 ? -1 : 1;
+    const int facing = b->out.subtriangles[t] & 1 ? -1 : 1;
     double value, bound;
     int left, behind;
     uint32_t c[3], k;
@@ -10702,7 +10734,7 @@ static void gxbp_bound_columns(const gxb_boolean *b, gxbp_columns *c) {
 
 /* As many columns as triangles; fewer if a triangle would be in more than eight columns on average */
 static GXBP_COLD int gxbp_make_columns(gxb_boolean *b, gxbp_columns *c) {
-    const uint32_t count = b->out.source_count;
+    const uint32_t count = b->out.triangle_count;
     uint32_t side = 1, t, i, j, from[2], upto[2];
     size_t total;
     gxbp_bound_columns(b, c);
@@ -10777,7 +10809,7 @@ static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, c
 /* Assigns cavities and sheets to their containers. Returns their number. */
 static GXBP_APART uint32_t gxbp_place_cavities(gxb_boolean *b, uint32_t *parent, const double *volume,
                                                int32_t *winding) {
-    const uint32_t count = b->out.source_count;
+    const uint32_t count = b->out.triangle_count;
     gxbp_columns columns;
     uint32_t t, container, cavities = 0;
     columns.hit = NULL;
@@ -10800,8 +10832,8 @@ static void gxbp_join_cavities(gxb_boolean *b, uint32_t *parent, double *volume,
     int rough = 0;
     uint32_t t;
     if (gxbp_place_cavities(b, parent, volume, winding) > 0) {
-        gxbp_flatten_sets(parent, b->out.source_count);
-        for (t = 0; t < b->out.source_count; t++) {
+        gxbp_flatten_sets(parent, b->out.triangle_count);
+        for (t = 0; t < b->out.triangle_count; t++) {
             if (parent[t] == t) continue;
             volume[parent[t]] += volume[t];
             error[parent[t]] += error[t];
@@ -10814,7 +10846,7 @@ static void gxbp_join_cavities(gxb_boolean *b, uint32_t *parent, double *volume,
 /* number: room for a word per triangle */
 static GXBP_APART void gxbp_number_components(gxb_boolean *b, const uint32_t *parent, const double *volume,
                                               uint32_t *number) {
-    const uint32_t count = b->out.source_count;
+    const uint32_t count = b->out.triangle_count;
     uint32_t t;
     memset(number, 0, count * sizeof *number); /* of a set, + 1 */
     for (t = 0; t < count && b->error == GX_OK; t++) {
@@ -10836,7 +10868,7 @@ static void gxbp_find_eulers(gxb_boolean *b, const int32_t *corners) {
     if (b->error != GX_OK || !GXBP_ROOM(b, out.eulers, out.euler, b->out.volume_count)) return;
     b->out.euler_count = b->out.volume_count;
     for (t = 0; t < b->out.euler_count; t++) b->out.eulers[t] = 0;
-    for (t = 0; t < b->out.source_count; t++) b->out.eulers[b->out.components[t]] += 2 * corners[t] - 1;
+    for (t = 0; t < b->out.triangle_count; t++) b->out.eulers[b->out.components[t]] += 2 * corners[t] - 1;
     for (t = 0; t < b->out.euler_count; t++) b->out.eulers[t] /= 2;
 }
 
@@ -10849,7 +10881,7 @@ static GXBP_RARE void gxbp_find_sides(gxb_boolean *b) {
     if (b->error != GX_OK || !GXBP_ROOM(b, out.sides, out.side, size)) return;
     memset(b->out.sides, 0, size);
     for (i = 0; i < n; i++) sheets += b->in.operands[i].operation == GXB_SPLIT;
-    for (t = 0; t < b->out.source_count && sheets > 0; t++) {
+    for (t = 0; t < b->out.triangle_count && sheets > 0; t++) {
         int8_t *side = &b->out.sides[b->out.components[t] * n + b->out.operands[t]];
         const int8_t mine = b->out.reversed[t] ? 1 : -1;
         if (b->in.operands[b->out.operands[t]].operation == GXB_SPLIT) *side = *side == 0 || *side == mine ? mine : 2;
@@ -10867,10 +10899,10 @@ static void gxbp_scale_volumes(gxb_boolean *b) {
 
 /* parent: sets of triangles; work: room for a word per triangle; corners: see gxbp_count_corners */
 static void gxbp_measure_components(gxb_boolean *b, uint32_t *parent, uint32_t *work, const int32_t *corners) {
-    const size_t count = b->out.source_count;
+    const size_t count = b->out.triangle_count;
     double *volume = (double *)gxbp_borrow(b, 2 * count * sizeof *volume);
     if (volume == NULL) return;
-    gxbp_flatten_sets(parent, b->out.source_count);
+    gxbp_flatten_sets(parent, b->out.triangle_count);
     gxbp_measure_shells(b, parent, volume, volume + count);
     gxbp_join_cavities(b, parent, volume, volume + count, (int32_t *)work);
     gxbp_number_components(b, parent, volume, work);
@@ -10879,7 +10911,7 @@ static void gxbp_measure_components(gxb_boolean *b, uint32_t *parent, uint32_t *
 }
 
 static GXBP_APART void gxbp_find_components(gxb_boolean *b) {
-    const uint32_t count = b->out.source_count;
+    const uint32_t count = b->out.triangle_count;
     const size_t bytes = 3 * (size_t)count * sizeof(uint32_t);
     uint32_t *parent, t;
     int32_t *corners;
@@ -10916,7 +10948,7 @@ static const double *gxbp_out_place(const gxb_boolean *b, uint32_t vertex) {
 
 /* 1 where a triangle of three vertices would be a defect on the side of triangle t's plane */
 static int gxbp_is_defect(gxb_boolean *b, uint32_t t, uint32_t p, uint32_t q, uint32_t r) {
-    const int facing = b->out.planes[t] & 1 ? -1 : 1;
+    const int facing = b->out.subtriangles[t] & 1 ? -1 : 1;
     return gxbp_faces(b, gxbp_out_plane(b, t), gxbp_out_place(b, p), gxbp_out_place(b, q), gxbp_out_place(b, r)) !=
            facing;
 }
@@ -11061,7 +11093,7 @@ static uint32_t gxbp_mend_edges(gxb_boolean *b) {
 
 /* Removes collapsed triangles from all lists. map: a word per triangle. */
 static void gxbp_drop_collapsed(gxb_boolean *b, uint32_t *map) {
-    const uint32_t count = b->out.source_count;
+    const uint32_t count = b->out.triangle_count;
     uint32_t t, k, left = 0;
     for (t = 0; t < count; t++) map[t] = b->out.triangles[3 * t] == GXB_NONE ? GXB_NONE : left++;
     for (t = 0; t < count; t++) {
@@ -11116,7 +11148,7 @@ static int gxbp_move_vertex(gxb_boolean *b, const gxbp_exits *exits, uint32_t v,
 static uint32_t gxbp_mend_places(gxb_boolean *b, const double *home) {
     gxbp_exits exits;
     uint32_t i, k, done = 0;
-    if (!gxbp_list_exits(b, b->out.triangles, b->out.source_count, b->out.point_count, &exits)) return 0;
+    if (!gxbp_list_exits(b, b->out.triangles, b->out.triangle_count, b->out.point_count, &exits)) return 0;
     for (i = 0; i < b->out.defect_count; i++)
         for (k = 0; k < 3 && gxbp_is_defective(b, b->out.defects[i]); k++) {
             const uint32_t v = b->out.triangles[3 * b->out.defects[i] + k];
@@ -11128,7 +11160,7 @@ static uint32_t gxbp_mend_places(gxb_boolean *b, const double *home) {
 
 /* Each step leaves fewer defects than there were. */
 static GXBP_COLD void gxbp_mend_defects(gxb_boolean *b) {
-    const uint32_t words = b->out.source_count > b->out.point_count ? b->out.source_count : b->out.point_count;
+    const uint32_t words = b->out.triangle_count > b->out.point_count ? b->out.triangle_count : b->out.point_count;
     const size_t places = 3 * (size_t)b->out.point_count * sizeof(double), bytes = places + words * sizeof(uint32_t);
     double *home;
     uint32_t *map, found = b->out.defect_count, done = 1;
@@ -11177,9 +11209,12 @@ static const gxbp_array gxbp_boolean_arrays[] = {/* all that grow */
                                                  GXBP_ARRAY(gxb_boolean, crossings.dirty, crossings.dirty),
                                                  GXBP_ARRAY(gxb_boolean, mesh.divided, mesh.divided),
                                                  GXBP_ARRAY(gxb_boolean, points.projected, points.projected),
-                                                 GXBP_ARRAY(gxb_boolean, work.rims, work.rim),
+                                                 GXBP_ARRAY(gxb_boolean, work.rights, work.right),
                                                  GXBP_ARRAY(gxb_boolean, work.lefts, work.left),
-                                                 GXBP_ARRAY(gxb_boolean, work.stack, work.stack),
+                                                 GXBP_ARRAY(gxb_boolean, work.visits, work.visit),
+                                                 GXBP_ARRAY(gxb_boolean, work.crossed, work.crossed),
+                                                 GXBP_ARRAY(gxb_boolean, work.fan_vertices, work.fan_vertex),
+                                                 GXBP_ARRAY(gxb_boolean, work.fan_triangles, work.fan_triangle),
                                                  GXBP_ARRAY(gxb_boolean, work.segment_ends, work.segment_end),
                                                  GXBP_ARRAY(gxb_boolean, work.pending, work.pending),
                                                  GXBP_ARRAY(gxb_boolean, work.room, work.room),
@@ -11189,11 +11224,11 @@ static const gxbp_array gxbp_boolean_arrays[] = {/* all that grow */
                                                  GXBP_ARRAY(gxb_boolean, out.vertices, out.vertex),
                                                  GXBP_ARRAY(gxb_boolean, out.origins, out.origin),
                                                  GXBP_ARRAY(gxb_boolean, out.points, out.point),
-                                                 GXBP_ARRAY(gxb_boolean, out.triangles, out.triangle),
+                                                 GXBP_ARRAY(gxb_boolean, out.triangles, out.corner),
                                                  GXBP_ARRAY(gxb_boolean, out.operands, out.operand),
-                                                 GXBP_ARRAY(gxb_boolean, out.sources, out.source),
+                                                 GXBP_ARRAY(gxb_boolean, out.sources, out.triangle),
                                                  GXBP_ARRAY(gxb_boolean, out.components, out.component),
-                                                 GXBP_ARRAY(gxb_boolean, out.planes, out.plane),
+                                                 GXBP_ARRAY(gxb_boolean, out.subtriangles, out.subtriangle),
                                                  GXBP_ARRAY(gxb_boolean, out.volumes, out.volume),
                                                  GXBP_ARRAY(gxb_boolean, out.defects, out.defect),
                                                  GXBP_ARRAY(gxb_boolean, out.reversed, out.reversed),
@@ -11359,7 +11394,7 @@ static GXBP_APART void gxbp_show_result(const gxb_boolean *b, gxb_boolean_result
     result->vertices = b->out.vertices;
     result->vertex_count = b->out.point_count;
     result->triangles = b->out.triangles;
-    result->triangle_count = b->out.source_count;
+    result->triangle_count = b->out.triangle_count;
     result->vertex_origin = b->out.origins;
     result->triangle_operand = b->out.operands;
     result->triangle_source = b->out.sources;
@@ -11375,7 +11410,7 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *res
     gxbp_arrange(b);
     gxbp_find_states(b);
     if (b->error == GX_OK) gxbp_extract(b);
-    if (b->error == GX_OK && b->options.coarsen != NULL && b->out.source_count > 0) b->options.coarsen(b);
+    if (b->error == GX_OK && b->options.coarsen != NULL && b->out.triangle_count > 0) b->options.coarsen(b);
     gxbp_round_vertices(b);
     if (b->error == GX_OK && b->options.mend != NULL) b->options.mend(b);
     b->out.evaluated = b->error == GX_OK;
