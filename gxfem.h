@@ -63,11 +63,12 @@
  * Not there yet: contact between fragments; cuts given in the deformed state; unknowns within a partly cut element (a
  * sheet that ends inside an element separates nothing there until another sheet completes it).
  *
- * Limits: 2^31 - 1 of each kind of object. One thread at a time may use a body. There is no global state, no output, no
- * clock. A body's coordinates are at most 2^100 (1.3e30), its longest side is at least 2^-100 (7.9e-31), each element
- * has a mass of 2^-700 ... 2^700. So all volumes, masses, centres and inertia are finite, those of whole bodies are
- * normal numbers, and floats hold the skin. Divided by the body's size, coordinates of bodies and cuts are 0 or
- * 2^-128 ... 2^128 in absolute value. Everything beyond these limits is refused (GX_ERROR_RANGE).
+ * Limits: 2^28 - 1 elements, 2^31 - 1 of each other kind of object. One thread at a time may use a body. There is no
+ * global state, no output, no clock. A body's coordinates are at most 2^100 (1.3e30), its longest side is at least
+ * 2^-100 (7.9e-31), each element has a mass of 2^-700 ... 2^700. So all volumes, masses, centres and inertia are
+ * finite, those of whole bodies are normal numbers, and floats hold the skin. Divided by the body's size, coordinates
+ * of bodies and cuts are 0 or 2^-128 ... 2^128 in absolute value. Everything beyond these limits is refused
+ * (GX_ERROR_RANGE).
  *
  * References: GXFEM = Ton-That, Kry, Andrews: Generalized eXtended Finite Element Method for Deformable Cutting via
  * Boolean Operations (2024). RXFEM = Koschier, Bender, Thuerey: Robust eXtended Finite Elements for Complex Cutting of

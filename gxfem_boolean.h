@@ -312,7 +312,7 @@ typedef struct gxb_cpoint { /* a point of the complex */
     /* barycentric coordinates on a mesh edge (of its two ends) or in a mesh face (of its plane's three nodes); the
      * first is negative until they are computed */
     double parameter[3];
-    uint32_t scratch;
+    uint32_t rim_edge; /* while the rim of a new facet is closed: the rim's edge that leaves the point */
 } gxb_cpoint;
 
 typedef struct gxb_cplane { /* a plane: of three points, or through points 0 and 1 along coordinate axis def[2] */
@@ -450,8 +450,23 @@ typedef struct gxb_complex { /* what is used most comes first: its addresses are
     uint32_t corner_count, corner_capacity;
     struct gxbp_task *tasks;
     uint32_t task_count, task_capacity;
-    uint32_t *scratch;
-    uint32_t scratch_count, scratch_capacity;
+    /* work arrays: the leaf to divide as resolved facets and their signs, in this order; the rim of the facet between
+     * its halves, as signed edges; the facets of its halves; the loop of a facet to divide; the facets of a crowded
+     * leaf inside its element */
+    uint32_t *leaf_facets;
+    uint32_t leaf_facet_count, leaf_facet_capacity;
+    uint32_t *leaf_signs;
+    uint32_t leaf_sign_count, leaf_sign_capacity;
+    uint32_t *rim;
+    uint32_t rim_count, rim_capacity;
+    uint32_t *front_facets;
+    uint32_t front_facet_count, front_facet_capacity;
+    uint32_t *behind_facets;
+    uint32_t behind_facet_count, behind_facet_capacity;
+    uint32_t *loop;
+    uint32_t loop_count, loop_capacity;
+    uint32_t *inner_facets;
+    uint32_t inner_facet_count, inner_facet_capacity;
     uint32_t mark[6]; /* counts at begin: edges facets leaves nodes labels pool */
     uint32_t edge_stamp;
     uint32_t sign_plane;      /* the plane whose signs points remember in slot 0 */
@@ -2694,13 +2709,23 @@ typedef struct gxbp_task {
 #define GXBP_TRIANGLE_EDGE 0x80000000u
 #define GXBP_IN_ROOT       GXB_NONE /* task.parent: the reference is the element's root */
 
-/* The complex's arrays: those with marks come first, as in gxb_complex.mark. */
-static const gxbp_array gxbp_complex_arrays[] = {
-    GXBP_ARRAY(gxb_complex, edges, edge),   GXBP_ARRAY(gxb_complex, facets, facet),
-    GXBP_ARRAY(gxb_complex, leaves, leaf),  GXBP_ARRAY(gxb_complex, nodes, tree),
-    GXBP_ARRAY(gxb_complex, labels, label), GXBP_ARRAY(gxb_complex, pool, pool),
-    GXBP_ARRAY(gxb_complex, walls, wall),   GXBP_ARRAY(gxb_complex, corners, corner),
-    GXBP_ARRAY(gxb_complex, tasks, task),   GXBP_ARRAY(gxb_complex, scratch, scratch)};
+static const gxbp_array gxbp_complex_arrays[] = {/* those with marks come first, as in gxb_complex.mark */
+                                                 GXBP_ARRAY(gxb_complex, edges, edge),
+                                                 GXBP_ARRAY(gxb_complex, facets, facet),
+                                                 GXBP_ARRAY(gxb_complex, leaves, leaf),
+                                                 GXBP_ARRAY(gxb_complex, nodes, tree),
+                                                 GXBP_ARRAY(gxb_complex, labels, label),
+                                                 GXBP_ARRAY(gxb_complex, pool, pool),
+                                                 GXBP_ARRAY(gxb_complex, walls, wall),
+                                                 GXBP_ARRAY(gxb_complex, corners, corner),
+                                                 GXBP_ARRAY(gxb_complex, tasks, task),
+                                                 GXBP_ARRAY(gxb_complex, leaf_facets, leaf_facet),
+                                                 GXBP_ARRAY(gxb_complex, leaf_signs, leaf_sign),
+                                                 GXBP_ARRAY(gxb_complex, rim, rim),
+                                                 GXBP_ARRAY(gxb_complex, front_facets, front_facet),
+                                                 GXBP_ARRAY(gxb_complex, behind_facets, behind_facet),
+                                                 GXBP_ARRAY(gxb_complex, loop, loop),
+                                                 GXBP_ARRAY(gxb_complex, inner_facets, inner_facet)};
 
 enum { GXBP_MARKS = 6 };
 
@@ -3310,7 +3335,7 @@ static gx_result gxbp_reserve_split(gxb_complex *cx, size_t facets, size_t edges
     if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, leaves, leaf, 1);
     if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, nodes, tree, 1);
     if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, pool, pool, 8 * (edges + facets) + 64);
-    if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, scratch, scratch, 8 * (edges + facets) + 64);
+    if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, loop, loop, edges + 2); /* two are divided */
     return result == GX_OK ? gxbp_reserve_undo(&cx->store, edges + 3 * facets + 8) : result;
 }
 
@@ -3386,8 +3411,8 @@ static int gxbp_facet_sides(gxb_complex *cx, uint32_t facet, const gxbp_splitter
     return (int)(gxbp_facet_signs(cx, facet, splitter, &edges) & 3);
 }
 
-/* A facet's loop while it is divided: in the middle of complex.scratch. zero: where the two points in the plane start
-   edges. sign: the side that the next edge starts on */
+/* A facet's loop while it is divided, in complex.loop. zero: where the two points in the plane start edges. sign: the
+   side that the next edge starts on */
 typedef struct gxbp_parting {
     uint32_t *loop, count, zero[2], zeros;
     int sign;
@@ -3460,7 +3485,7 @@ static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_spl
     gxbp_gap gap = gxbp_list_gap(cx, f.loop, f.loop_count);
     gxbp_parting parting;
     memset(&parting, 0, sizeof parting);
-    parting.loop = cx->scratch + cx->scratch_capacity / 4;
+    parting.loop = cx->loop;
     zero = parting.zero;
     parting.sign = gxbp_sign(&cx->store, gxbp_edge_start(cx, cx->pool[f.loop]), splitter->plane, splitter->slot);
     for (i = 0; i < f.loop_count; i++) gxbp_part_edge(cx, cx->pool[f.loop + i], splitter, &parting);
@@ -3486,53 +3511,50 @@ static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_spl
 
 /* --- dividing a leaf: its facets, then the facet between the two halves, then the tree --- */
 
-typedef struct gxbp_rim {
-    uint32_t first, count;
-} gxbp_rim; /* signed edges in complex.scratch */
-
-/* Adds an edge, or its parts. */
-static void gxbp_add_rim(gxb_complex *cx, gxbp_rim *rim, uint32_t signed_edge) {
+/* Adds an edge to the rim, or its parts. */
+static void gxbp_add_rim(gxb_complex *cx, uint32_t signed_edge) {
     gxb_edge *e = &cx->edges[signed_edge >> 1];
     if (e->child != GXB_NONE) {
-        gxbp_add_rim(cx, rim, e->child << 1 | (signed_edge & 1));
-        gxbp_add_rim(cx, rim, (e->child + 1) << 1 | (signed_edge & 1));
+        gxbp_add_rim(cx, e->child << 1 | (signed_edge & 1));
+        gxbp_add_rim(cx, (e->child + 1) << 1 | (signed_edge & 1));
         return;
     }
     if (e->stamp == cx->edge_stamp) return;
     e->stamp = cx->edge_stamp & GXBP_LAST_STAMP;
-    cx->scratch[rim->first + rim->count++] = signed_edge;
+    cx->rim[cx->rim_count++] = signed_edge;
 }
 
 /* Adds the edges of an undivided facet that lie in the plane. flip 1: the rim passes them against the facet's loop. */
-static void gxbp_add_flat_edges(gxb_complex *cx, gxbp_rim *rim, uint32_t facet, uint32_t flip,
-                                const gxbp_splitter *splitter) {
+static void gxbp_add_flat_edges(gxb_complex *cx, uint32_t facet, uint32_t flip, const gxbp_splitter *splitter) {
     const gxb_facet *f = &cx->facets[facet];
     uint32_t i;
     for (i = 0; i < f->loop_count; i++) {
         const uint32_t e = cx->pool[f->loop + i];
         if (gxbp_sign(&cx->store, cx->edges[e >> 1].v[0], splitter->plane, splitter->slot) == 0 &&
             gxbp_sign(&cx->store, cx->edges[e >> 1].v[1], splitter->plane, splitter->slot) == 0)
-            gxbp_add_rim(cx, rim, e ^ flip);
+            gxbp_add_rim(cx, e ^ flip);
     }
 }
 
 /* Chains the rim's edges into the loop of a new facet of the plane. */
-static uint32_t gxbp_close_rim(gxb_complex *cx, const gxbp_rim *rim, const gxbp_splitter *splitter) {
+static uint32_t gxbp_close_rim(gxb_complex *cx, const gxbp_splitter *splitter) {
     gxb_facet *f = &cx->facets[cx->facet_count];
-    uint32_t i, e = cx->scratch[rim->first];
-    for (i = 0; i < rim->count; i++) {
-        const uint32_t signed_edge = cx->scratch[rim->first + i];
-        cx->store.points[gxbp_edge_start(cx, signed_edge)].scratch = signed_edge;
+    const uint32_t count = cx->rim_count;
+    uint32_t i, e = cx->rim[0];
+    for (i = 0; i < count; i++) {
+        const uint32_t signed_edge = cx->rim[i];
+        cx->store.points[gxbp_edge_start(cx, signed_edge)].rim_edge = signed_edge;
     }
     memset(f, 0, sizeof *f);
     f->plane = splitter->plane;
-    gxbp_set_loop(f, cx->pool_count, rim->count);
+    gxbp_set_loop(f, cx->pool_count, count);
     f->child = f->labels = f->face = GXB_NONE;
-    for (i = 0; i < rim->count; i++) {
+    for (i = 0; i < count; i++) {
         cx->pool[cx->pool_count++] = e;
-        e = cx->store.points[cx->edges[e >> 1].v[1 - (e & 1)]].scratch;
+        e = cx->store.points[cx->edges[e >> 1].v[1 - (e & 1)]].rim_edge;
     }
-    cx->pool_live += rim->count;
+    cx->pool_live += count;
+    cx->rim_count = 0;
     return cx->facet_count++;
 }
 
@@ -3552,26 +3574,21 @@ static void gxbp_set_list(gxb_complex *cx, uint32_t leaf, const uint32_t *facets
 /* Divides a leaf whose inside the plane meets. gxbp_ready_leaf has listed its facets and their signs. The leaf becomes
    the half in front; a new leaf is the half behind. Returns the facet between them. */
 static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_splitter *splitter) {
-    const uint32_t behind = cx->leaf_count++, listed = cx->leaves[leaf].facet_count, count = cx->scratch_count / 2;
-    gxbp_rim rim;
+    const uint32_t behind = cx->leaf_count++, listed = cx->leaves[leaf].facet_count, count = cx->leaf_facet_count;
+    uint32_t *front_list = cx->front_facets, *behind_list = cx->behind_facets, fronts = 0, behinds = 0, i, middle;
     gxbp_gap gap;
-    uint32_t *front_list, *behind_list, fronts = 0, behinds = 0, i, middle;
-    rim.first = 2 * count;
-    rim.count = 0;
     gxbp_forget_rim(cx);
-    front_list = cx->scratch + cx->scratch_capacity - 2 * count - 2;
-    behind_list = cx->scratch + cx->scratch_capacity - count - 1;
     for (i = 0; i < count; i++) {
-        const uint32_t facet = cx->scratch[i], signs = cx->scratch[count + i], sides = signs & 3;
+        const uint32_t facet = cx->leaf_facets[i], signs = cx->leaf_signs[i], sides = signs & 3;
         const uint32_t inward = cx->facets[facet].leaf[0] == leaf ? 1u : 0u; /* its normal points into the leaf */
         if (sides == 3) {
             const uint32_t edge = gxbp_split_facet(cx, facet, splitter), child = cx->facets[facet].child;
-            gxbp_add_rim(cx, &rim, edge ^ inward);
+            gxbp_add_rim(cx, edge ^ inward);
             gxbp_move_facet(cx, child + 1, leaf, behind);
             front_list[fronts++] = child;
             behind_list[behinds++] = child + 1;
         } else {
-            if (signs >= 8) gxbp_add_flat_edges(cx, &rim, facet, inward ^ (sides == 1 ? 0u : 1u), splitter);
+            if (signs >= 8) gxbp_add_flat_edges(cx, facet, inward ^ (sides == 1 ? 0u : 1u), splitter);
             if (sides == 1)
                 front_list[fronts++] = facet;
             else {
@@ -3580,7 +3597,7 @@ static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_split
             }
         }
     }
-    middle = gxbp_close_rim(cx, &rim, splitter);
+    middle = gxbp_close_rim(cx, splitter);
     cx->facets[middle].leaf[0] = leaf;
     cx->facets[middle].leaf[1] = behind;
     front_list[fronts++] = middle;
@@ -3592,7 +3609,7 @@ static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_split
     gxbp_set_list(cx, leaf, front_list, fronts, &gap);
     gxbp_set_list(cx, behind, behind_list, behinds, &gap);
     cx->pool_live += fronts + behinds - listed;
-    cx->scratch_count = 0;
+    cx->leaf_facet_count = 0;
     return middle;
 }
 
@@ -4114,24 +4131,28 @@ static uint32_t *gxbp_reference(gxb_complex *cx, const gxbp_task *task, uint32_t
     return task->parent == GXBP_IN_ROOT ? &cx->root[element] : &cx->nodes[task->parent].child[task->side];
 }
 
-/* Lists the leaf's facets and then their signs in complex.scratch, and reserves room to divide it. */
+/* Lists the leaf's facets and their signs, and reserves room to divide it. */
 static gx_result gxbp_ready_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_splitter *splitter) {
+    const gx_allocator *a = &cx->store.allocator;
     const gxb_leaf *l = &cx->leaves[leaf];
     const uint32_t count = gxbp_count_list(cx, l);
     uint32_t *out, i;
     size_t edges = 0;
-    gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, scratch, scratch, 2 * count);
+    gx_result result = GXBP_RESERVE(a, cx, leaf_facets, leaf_facet, count);
+    if (result == GX_OK) result = GXBP_RESERVE(a, cx, leaf_signs, leaf_sign, count);
+    if (result == GX_OK) result = GXBP_RESERVE(a, cx, front_facets, front_facet, count + 1); /* with the one between */
+    if (result == GX_OK) result = GXBP_RESERVE(a, cx, behind_facets, behind_facet, count + 1);
     if (result != GX_OK) return result;
-    out = cx->scratch;
+    out = cx->leaf_facets;
     for (i = 0; i < l->facet_count; i++) out = gxbp_list_facets(cx, cx->pool[l->facets + i], out);
     for (i = 0; i < count; i++) {
         uint32_t own;
-        const uint32_t signs = cx->scratch[count + i] = gxbp_facet_signs(cx, cx->scratch[i], splitter, &own);
+        const uint32_t signs = cx->leaf_signs[i] = gxbp_facet_signs(cx, cx->leaf_facets[i], splitter, &own);
         if ((signs & 3) == 3 || signs >= 8) edges += own;
     }
-    cx->scratch_count = 2 * count; /* these stay where scratch moves */
-    result = gxbp_reserve_split(cx, count, edges);
-    if (result != GX_OK) cx->scratch_count = 0;
+    result = GXBP_RESERVE(a, cx, rim, rim, count + edges);
+    if (result == GX_OK) result = gxbp_reserve_split(cx, count, edges);
+    cx->leaf_facet_count = result == GX_OK ? count : 0;
     return result;
 }
 
@@ -4258,9 +4279,9 @@ static GXBP_COLD gx_result gxbp_divide_crowded(gxb_complex *cx, const gxbp_task 
     double median[3];
     int rank[3], ranks, k;
     gxbp_splitter splitter;
-    gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, scratch, scratch, l.facet_count);
+    gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, inner_facets, inner_facet, l.facet_count);
     if (result != GX_OK) return result;
-    inner = cx->scratch;
+    inner = cx->inner_facets;
     for (i = 0; i < l.facet_count; i++)
         if (cx->facets[cx->pool[l.facets + i]].face == GXB_NONE) inner[n++] = cx->pool[l.facets + i];
     if (n < GXBP_MANY_FACETS || n % 8 != 0) return GX_OK;
@@ -5207,50 +5228,64 @@ static GXBP_COLD void gxbp_pass_rest(gxb_complex *cx, gxb_stream *s) {
     }
 }
 
-enum { GXBP_COUNTS = 7 };
+/* The arrays that are saved, in this order; the fewest bytes that an item takes. Points and planes are appended as they
+   are read; the items of the others are zero until they are read. */
+typedef struct gxbp_saved {
+    gxbp_array array;
+    uint16_t least;
+    uint8_t appended;
+} gxbp_saved;
+static const gxbp_saved gxbp_saved_arrays[] = {/* the first begins with the nodes, the fifth with the first leaves */
+                                               {GXBP_ARRAY(gxb_complex, store.points, store.point), 4, 1},
+                                               {GXBP_ARRAY(gxb_complex, store.planes, store.plane), 16, 1},
+                                               {GXBP_ARRAY(gxb_complex, edges, edge), 28, 0},
+                                               {GXBP_ARRAY(gxb_complex, facets, facet), 32, 0},
+                                               {GXBP_ARRAY(gxb_complex, leaves, leaf), 16, 0},
+                                               {GXBP_ARRAY(gxb_complex, nodes, tree), 12, 0},
+                                               {GXBP_ARRAY(gxb_complex, labels, label), 12, 0}};
+enum { GXBP_COUNTS = sizeof gxbp_saved_arrays / sizeof *gxbp_saved_arrays };
 
-GXFEM_API GXBP_RARE void gxb_complex_save(gxb_complex *cx, gxb_stream *stream) {
-    uint32_t counts[GXBP_COUNTS];
-    counts[0] = cx->store.point_count;
-    counts[1] = cx->store.plane_count;
-    counts[2] = cx->edge_count;
-    counts[3] = cx->facet_count;
-    counts[4] = cx->leaf_count;
-    counts[5] = cx->tree_count;
-    counts[6] = cx->label_count;
-    gxb_stream_pass(stream, counts, GXBP_COUNTS, sizeof *counts);
-    gxbp_save_points(cx, stream);
-    gxbp_save_planes(cx, stream);
-    gxbp_pass_edges(cx, stream);
-    gxbp_pass_facets(cx, stream);
-    gxbp_pass_leaves(cx, stream);
-    gxbp_pass_rest(cx, stream);
+/* Reading: gives an array so many items, all zero. */
+static void gxbp_load_items(gxb_stream *s, gxb_complex *cx, const gxbp_array *array, uint32_t count) {
+    uint32_t *present = gxbp_word(cx, array->count);
+    void *items;
+    gxbp_require(s, gxbp_reserve(&cx->store.allocator, gxbp_field(cx, array->pointer), 0,
+                                 gxbp_word(cx, array->capacity), array->item, count));
+    if (s->result != GX_OK) return;
+    *present = count;
+    memcpy(&items, gxbp_field(cx, array->pointer), sizeof items);
+    if (count > 0) memset(items, 0, (size_t)count * array->item);
 }
 
-/* Items of 4 bytes at least each; all of them zero until they are read. */
-static void gxbp_load_room(gxb_stream *s, gxb_complex *cx, const uint32_t counts[GXBP_COUNTS]) {
-    static const size_t least[GXBP_COUNTS] = {4, 16, 28, 32, 16, 12, 12};
-    int i;
+/* Passes the counts of all arrays. Reading: checks them, and makes room. */
+static void gxbp_pass_counts(gxb_complex *cx, gxb_stream *s, uint32_t counts[GXBP_COUNTS]) {
+    uint32_t i;
+    for (i = 0; i < GXBP_COUNTS; i++) counts[i] = *gxbp_word(cx, gxbp_saved_arrays[i].array.count);
+    gxb_stream_pass(s, counts, GXBP_COUNTS, sizeof *counts);
+    if (s->in == NULL) return;
     for (i = 0; i < GXBP_COUNTS; i++) {
-        gxb_stream_has(s, counts[i], least[i]);
+        gxb_stream_has(s, counts[i], gxbp_saved_arrays[i].least);
         gxbp_require_true(s, counts[i] <= INT32_MAX);
     }
     gxbp_require_true(s, counts[0] >= cx->node_count && counts[4] >= cx->element_count);
-    if (s->result != GX_OK) return;
-    gxbp_require(s, GXBP_RESERVE(&cx->store.allocator, cx, edges, edge, counts[2]));
-    gxbp_require(s, GXBP_RESERVE(&cx->store.allocator, cx, facets, facet, counts[3]));
-    gxbp_require(s, GXBP_RESERVE(&cx->store.allocator, cx, leaves, leaf, counts[4] - cx->leaf_count));
-    gxbp_require(s, GXBP_RESERVE(&cx->store.allocator, cx, nodes, tree, counts[5]));
-    gxbp_require(s, GXBP_RESERVE(&cx->store.allocator, cx, labels, label, counts[6]));
-    if (s->result != GX_OK) return;
-    cx->edge_count = counts[2];
-    cx->facet_count = counts[3];
-    cx->leaf_count = counts[4];
-    cx->tree_count = counts[5];
-    cx->label_count = counts[6];
-    if (counts[2] > 0) memset(cx->edges, 0, counts[2] * sizeof *cx->edges);
-    if (counts[3] > 0) memset(cx->facets, 0, counts[3] * sizeof *cx->facets);
-    memset(cx->leaves, 0, counts[4] * sizeof *cx->leaves);
+    for (i = 0; i < GXBP_COUNTS && s->result == GX_OK; i++)
+        if (!gxbp_saved_arrays[i].appended) gxbp_load_items(s, cx, &gxbp_saved_arrays[i].array, counts[i]);
+}
+
+/* Passes the arrays behind points and planes. */
+static void gxbp_pass_arrays(gxb_complex *cx, gxb_stream *s) {
+    if (s->result == GX_OK) gxbp_pass_edges(cx, s);
+    if (s->result == GX_OK) gxbp_pass_facets(cx, s);
+    if (s->result == GX_OK) gxbp_pass_leaves(cx, s);
+    if (s->result == GX_OK) gxbp_pass_rest(cx, s);
+}
+
+GXFEM_API GXBP_RARE void gxb_complex_save(gxb_complex *cx, gxb_stream *stream) {
+    uint32_t counts[GXBP_COUNTS];
+    gxbp_pass_counts(cx, stream, counts);
+    gxbp_save_points(cx, stream);
+    gxbp_save_planes(cx, stream);
+    gxbp_pass_arrays(cx, stream);
 }
 
 /* >>check: is what was read a complex? ----------------------------------------------------------------------------- */
@@ -5410,6 +5445,7 @@ typedef struct gxbp_checker {
     uint32_t *corner;     /* edge_count: indices of those at which its line changes */
     uint32_t *facet;      /* facet_count: undivided ones of the leaf or face at work */
     uint32_t *point;      /* point_count: of the leaf at work */
+    uint32_t *point_mark; /* point_count: round in which the point was met */
     uint32_t *edge_depth, *facet_depth, *node_depth;
     uint32_t *queue, hung;       /* nodes that hang in a tree, each behind the one above it */
     uint32_t *node_up, *leaf_up; /* 2 x node above + side; GXB_NONE: it is a root */
@@ -5476,9 +5512,8 @@ static void gxbp_check_polygon(gxbp_checker *c, uint32_t facet) {
     for (i = 0; i < c->count; i++) {
         const uint32_t e = c->edge[i], next = c->edge[(i + 1) % c->count], start = gxbp_edge_start(cx, e);
         gxbp_require_true(c->s, cx->edges[e >> 1].v[1 - (e & 1)] == gxbp_edge_start(cx, next) &&
-                                    cx->store.points[start].scratch != c->round &&
-                                    gxb_complex_side(cx, start, plane) == 0);
-        cx->store.points[start].scratch = c->round;
+                                    c->point_mark[start] != c->round && gxb_complex_side(cx, start, plane) == 0);
+        c->point_mark[start] = c->round;
         if (!gxbp_same_carrier(cx, c->edge[(i + c->count - 1) % c->count], e)) c->corner[c->corners++] = i;
     }
     gxbp_require_true(c->s, c->corners >= 3);
@@ -5655,8 +5690,8 @@ static void gxbp_collect_points(gxbp_checker *c, uint32_t round) {
     uint32_t i;
     for (i = 0; i < c->count; i++) {
         const uint32_t point = gxbp_edge_start(c->cx, c->edge[i]);
-        if (c->cx->store.points[point].scratch == round) continue;
-        c->cx->store.points[point].scratch = round;
+        if (c->point_mark[point] == round) continue;
+        c->point_mark[point] = round;
         c->point[c->points++] = point;
     }
 }
@@ -5727,7 +5762,7 @@ static void gxbp_run_checks(gxbp_checker *c) {
 
 static GXBP_COLD void gxbp_check(gxb_complex *cx, gxb_stream *s) {
     const size_t e = cx->edge_count, f = cx->facet_count, n = cx->tree_count, l = cx->leaf_count;
-    const size_t words = 7 * e + 4 * f + cx->store.point_count + 4 * n + l + 1;
+    const size_t words = 7 * e + 4 * f + 2 * (size_t)cx->store.point_count + 4 * n + l + 1;
     gxbp_checker c;
     uint32_t *block;
     memset(&c, 0, sizeof c);
@@ -5756,7 +5791,8 @@ static GXBP_COLD void gxbp_check(gxb_complex *cx, gxb_stream *s) {
     c.node_element = c.node_up + n;
     c.leaf_up = c.node_element + n;
     c.point = c.leaf_up + l;
-    c.queue = c.point + cx->store.point_count;
+    c.point_mark = c.point + cx->store.point_count;
+    c.queue = c.point_mark + cx->store.point_count;
     gxbp_run_checks(&c);
     gxbp_release(&cx->store.allocator, block, words * sizeof *block);
 }
@@ -5782,15 +5818,11 @@ static void gxbp_link_trees(gxb_complex *cx) {
 
 GXFEM_API GXBP_RARE gx_result gxb_complex_load(gxb_complex *cx, gxb_stream *s, int trusted) {
     uint32_t counts[GXBP_COUNTS];
-    gxb_stream_pass(s, counts, GXBP_COUNTS, sizeof *counts);
-    gxbp_load_room(s, cx, counts);
+    gxbp_pass_counts(cx, s, counts);
     if (s->result == GX_OK) gxbp_load_points(cx, s, counts[0]);
     if (s->result == GX_OK) gxbp_load_planes(cx, s, counts[1]);
     if (s->result == GX_OK) gxbp_place_points(cx, s);
-    if (s->result == GX_OK) gxbp_pass_edges(cx, s);
-    if (s->result == GX_OK) gxbp_pass_facets(cx, s);
-    if (s->result == GX_OK) gxbp_pass_leaves(cx, s);
-    if (s->result == GX_OK) gxbp_pass_rest(cx, s);
+    gxbp_pass_arrays(cx, s);
     if (s->result == GX_OK && !trusted) gxbp_check(cx, s);
     if (s->result != GX_OK) return s->result;
     gxbp_link_trees(cx);
@@ -5845,8 +5877,8 @@ typedef struct gxbp_vertex {   /* beside each point of the complex */
     uint32_t key[4];           /* kind and what defines it, see gxb_origin; half-edges and sources */
     uint32_t same;             /* union-find: points found to be equal */
     uint32_t stamp, hint;      /* a subtriangle around it in the triangulation at work */
-    uint32_t head, head_stamp; /* scratch */
-    uint32_t slot;             /* scratch: place on the rim of the source at work; number in the output */
+    uint32_t head, head_stamp; /* see gxbp_chain_segments */
+    uint32_t rim_place;        /* 3 i + k: point i of edge k of the source at work; GXB_NONE: it is none */
 } gxbp_vertex;
 
 typedef struct gxbp_link {
@@ -8392,26 +8424,26 @@ static void gxbp_divide_rim(gxb_boolean *b, uint32_t s, uint32_t k) {
         gxbp_split_rim(b, gxbp_edge_point(b, s, k, i - 1), gxbp_edge_point(b, s, k, i));
 }
 
-/* Records in slot which inner point of which edge of the source an end of a segment is; GXB_NONE: it is none. */
+/* Records in rim_place which inner point of which edge of the source an end of a segment is; GXB_NONE: it is none. */
 static void gxbp_find_rim_ends(gxb_boolean *b, uint32_t s, uint32_t n) {
     uint32_t i, k;
     for (i = 0; i < n; i++) {
         const gxbp_segment *segment = &b->crossings.segments[b->work.segment_ends[3 * i]];
-        b->points.vertices[gxbp_same(b, segment->p)].slot = b->points.vertices[gxbp_same(b, segment->q)].slot =
-            GXB_NONE;
+        b->points.vertices[gxbp_same(b, segment->p)].rim_place =
+            b->points.vertices[gxbp_same(b, segment->q)].rim_place = GXB_NONE;
     }
     for (k = 0; k < 3; k++)
         for (i = 1; i + 1 < gxbp_edge_points(b, s, k); i++)
-            b->points.vertices[gxbp_edge_point(b, s, k, i)].slot = 3 * i + k;
+            b->points.vertices[gxbp_edge_point(b, s, k, i)].rim_place = 3 * i + k;
 }
 
 /* Is the end of a segment in the triangulation? One on the rim is inserted here, when a segment needs it: earlier it
    would only add subtriangles for segments to cross. */
 static int gxbp_enter(gxb_boolean *b, uint32_t s, uint32_t v) {
-    const uint32_t k = b->points.vertices[v].slot % 3;
-    uint32_t i = b->points.vertices[v].slot / 3, u;
+    const uint32_t k = b->points.vertices[v].rim_place % 3;
+    uint32_t i = b->points.vertices[v].rim_place / 3, u;
     if (gxbp_is_placed(b, v)) return 1;
-    if (b->points.vertices[v].slot == GXB_NONE) return 0;
+    if (b->points.vertices[v].rim_place == GXB_NONE) return 0;
     do u = gxbp_edge_point(b, s, k, --i);
     while (!gxbp_is_placed(b, u));
     gxbp_split_rim(b, u, v);
@@ -8507,9 +8539,10 @@ typedef struct gxbp_division {
     uint32_t chain_at[GXBP_SMALL]; /* for each rim point: the chain that ends there, or GXB_NONE */
     gxbp_chain chains[GXBP_SMALL];
     uint32_t chain_count;
-    gxbp_polygon_vertex step[GXBP_SMALL]; /* of each segment: the point that it leaves; slot: its place in
-                                             b->work.segment_ends */
-    uint32_t step_count, labels;          /* the segments' links, one after the other */
+    /* of each step along a chain: the point that it leaves; its segment, by the place in b->work.segment_ends */
+    gxbp_polygon_vertex step[GXBP_SMALL];
+    uint32_t segment[GXBP_SMALL];
+    uint32_t step_count, labels; /* the segments' links, one after the other */
     gxbp_polygon_vertex polygon[GXBP_SMALL];
     /* for each step, then for each diagonal: the edge 3 f + k of the first subtriangle there */
     uint32_t half[4 * GXBP_SMALL];
@@ -8585,7 +8618,7 @@ static GXBP_APART int gxbp_follow_chain(gxb_boolean *b, gxbp_division *d, uint32
     while (end != GXB_NONE && d->step_count < n) {
         const gxbp_segment *segment = &b->crossings.segments[b->work.segment_ends[3 * (end / 2)]];
         d->step[d->step_count].vertex = v;
-        d->step[d->step_count++].slot = end / 2;
+        d->segment[d->step_count++] = end / 2;
         end ^= 1;
         v = gxbp_same(b, end % 2 == 0 ? segment->p : segment->q);
         if (gxbp_is_placed(b, v)) {
@@ -8615,18 +8648,18 @@ static int gxbp_left_of_segment(gxb_boolean *b, uint32_t i, uint32_t p, uint32_t
     return gxbp_left(b, &line, v);
 }
 
-/* The bend of a chain at its inner point middle, between from and next. Where the chain crosses an edge of the other
- * surface, it bends as the surface is folded there. */
-static int gxbp_bend_of_chain(gxb_boolean *b, const gxbp_polygon_vertex *from, const gxbp_polygon_vertex *middle,
-                              uint32_t next) {
-    const gxbp_segment *segment = &b->crossings.segments[b->work.segment_ends[3 * from->slot]];
-    const uint32_t *key = b->points.vertices[middle->vertex].key, t = segment->label,
-                   u = b->crossings.segments[b->work.segment_ends[3 * middle->slot]].label;
+/* The bend of a chain at the start of its step m, between the step before and the point next. Where the chain crosses
+ * an edge of the other surface, it bends as the surface is folded there. */
+static int gxbp_bend_of_chain(gxb_boolean *b, const gxbp_division *d, uint32_t m, uint32_t next) {
+    const uint32_t from = d->step[m - 1].vertex, middle = d->step[m].vertex;
+    const gxbp_segment *segment = &b->crossings.segments[b->work.segment_ends[3 * d->segment[m - 1]]];
+    const uint32_t *key = b->points.vertices[middle].key, t = segment->label,
+                   u = b->crossings.segments[b->work.segment_ends[3 * d->segment[m]]].label;
     const uint32_t twin = key[0] == GXB_FROM_EDGE_TRIANGLE ? b->in.sources[key[1] / 3].twin[key[1] % 3] : GXB_NONE;
     if (twin == GXB_NONE || !((key[1] / 3 == t && twin / 3 == u) || (key[1] / 3 == u && twin / 3 == t)))
-        return gxbp_left_of_segment(b, from->slot, from->vertex, middle->vertex, next);
+        return gxbp_left_of_segment(b, d->segment[m - 1], from, middle, next);
     return gxbp_fold(b, key[1], twin / 3, twin % 3) *
-           (gxbp_same(b, segment->p) == from->vertex ? segment->left : -segment->left);
+           (gxbp_same(b, segment->p) == from ? segment->left : -segment->left);
 }
 
 static GXBP_APART int gxbp_collect_chains(gxb_boolean *b, gxbp_division *d, uint32_t n) {
@@ -8643,8 +8676,8 @@ static GXBP_APART int gxbp_collect_chains(gxb_boolean *b, gxbp_division *d, uint
         for (m = d->chains[i].first + 1; m < d->chains[i].first + d->chains[i].count; m++) {
             const int last = m + 1 == d->chains[i].first + d->chains[i].count;
             d->step[m].on = 0;
-            d->step[m].bend = gxbp_bend_of_chain(b, &d->step[m - 1], &d->step[m],
-                                                 last ? d->rim[d->chains[i].to].vertex : d->step[m + 1].vertex);
+            d->step[m].bend =
+                gxbp_bend_of_chain(b, d, m, last ? d->rim[d->chains[i].to].vertex : d->step[m + 1].vertex);
         }
     return 1;
 }
@@ -8661,7 +8694,7 @@ static int gxbp_along_rim(const gxb_boolean *b, const gxbp_division *d, const gx
 static int gxbp_turn_by_segment(gxb_boolean *b, const gxbp_division *d, const gxbp_polygon_vertex *p,
                                 const gxbp_polygon_vertex *q, const gxbp_polygon_vertex *r) {
     if (p->slot >= d->step_count || &d->polygon[p->after] != q) return GXBP_UNKNOWN;
-    return gxbp_left_of_segment(b, d->step[p->slot].slot, p->vertex, q->vertex, r->vertex);
+    return gxbp_left_of_segment(b, d->segment[p->slot], p->vertex, q->vertex, r->vertex);
 }
 
 static GXBP_COLD int gxbp_turn_by_segments(gxb_boolean *b, const gxbp_division *d, const gxbp_polygon_vertex *p,
@@ -8690,7 +8723,7 @@ static GXBP_RARE int gxbp_polygon_turn(gxb_boolean *b, const gxbp_division *d, c
 static int gxbp_is_beyond(gxb_boolean *b, const gxbp_division *d, const gxbp_polygon_vertex *p,
                           const gxbp_polygon_vertex *q, const gxbp_polygon_vertex *w) {
     if (p->slot >= d->step_count) return gxbp_polygon_turn(b, d, p, q, w) < 0;
-    return gxbp_left_of_segment(b, d->step[p->slot].slot, p->vertex, q->vertex, w->vertex) < 0;
+    return gxbp_left_of_segment(b, d->segment[p->slot], p->vertex, q->vertex, w->vertex) < 0;
 }
 
 /* Is no other vertex in the triangle of a convex vertex? If others are, one of them is not convex. The fourth one of a
@@ -8821,7 +8854,7 @@ static GXBP_APART int gxbp_divide_by_chains(gxb_boolean *b, uint32_t s, uint32_t
     if (!gxbp_collect_rim(b, &d, n) || !gxbp_collect_chains(b, &d, n)) return 0;
     if (!GXBP_ROOM(b, mesh.links, mesh.link, n) || !gxbp_mark_starts(b, &d)) return 1;
     for (i = 0; i < n; i++) {
-        gxbp_new_link(b, b->crossings.segments[b->work.segment_ends[3 * d.step[i].slot]].label, GXBP_BARE);
+        gxbp_new_link(b, b->crossings.segments[b->work.segment_ends[3 * d.segment[i]]].label, GXBP_BARE);
         d.half[i] = GXB_NONE;
     }
     d.slot_count = n;
@@ -9754,7 +9787,7 @@ static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
 /* In: states. Out: the output's triangles with their sources, its vertices rounded and with their origins, and the
    triangles that rounding turned over. Touches the output only, and the planes of sources that had none. */
 
-/* The input's coordinates again. */
+/* A coordinate in the input's units, from the frame's */
 static double gxbp_unscale(const gxb_boolean *b, double y) {
     const int e = gxbp_exponent_bits(y);
     if (e - b->store.shift <= 0 || e == 0) return 0;
@@ -9763,7 +9796,7 @@ static double gxbp_unscale(const gxb_boolean *b, double y) {
 
 #define GXBP_VERTEX_ERROR 1e-10 /* relative to the largest coordinate: a larger ball gives way to exact coordinates */
 
-/* Sign of |num / den| less the middle of two doubles, given by their bits */
+/* Sign of |num / den| minus the middle of two doubles, which are given by their bits */
 static GXBP_RARE int gxbp_beyond_middle(const gxb_num *num, const gxb_num *den, uint64_t low, uint64_t high) {
     GXB_NUM(p);
     GXB_NUM(q);
@@ -9778,7 +9811,7 @@ static GXBP_RARE int gxbp_beyond_middle(const gxb_num *num, const gxb_num *den, 
     return gxbp_num_compare_magnitude(&twice, &middle);
 }
 
-/* The double nearest to num / den, of two the even one: from one a few units of the last place away, step by step. */
+/* The double nearest to num / den; of two equally near, the even one. Starts a few units of the last place away. */
 static GXBP_RARE double gxbp_nearest(const gxb_num *num, const gxb_num *den) {
     uint64_t bits = gxbp_bits(gxbp_abs(gxb_num_ratio(num, den)));
     int side;
@@ -9825,7 +9858,7 @@ static GXBP_COLD int gxbp_holds_point(gxb_boolean *b, uint32_t s, uint32_t plane
     return !(left && right);
 }
 
-/* The source of a point that was found in s: in a flat, whose members share their triangulation, it may lie in another
+/* The source that contains a point which was found in s. Members of a flat share a triangulation, so it may be another
  * of them. */
 static GXBP_RARE uint32_t gxbp_member_at(gxb_boolean *b, uint32_t s, uint32_t point) {
     const uint32_t root = gxbp_root(b, s), plane = b->in.sources[root].plane;
@@ -9858,17 +9891,15 @@ static GXBP_APART void gxbp_describe_point(gxb_boolean *b, uint32_t point, gxb_o
         gxbp_name_source(b, key[2], 3, &o->operand[1], &o->index[1]);
 }
 
-static uint32_t gxbp_out_vertex(gxb_boolean *b, uint32_t point) {
-    gxbp_vertex *v = &b->points.vertices[point];
-    if (v->slot != GXB_NONE) return v->slot;
+/* The vertex of a point. vertex: of each point; GXB_NONE: it has none yet */
+static uint32_t gxbp_out_vertex(gxb_boolean *b, uint32_t *vertex, uint32_t point) {
+    if (vertex[point] != GXB_NONE) return vertex[point];
     if (!GXBP_ROOM(b, out.points, out.point, 1)) return 0;
-    v->slot = b->out.point_count;
-    b->out.points[b->out.point_count++] = point;
-    return v->slot;
+    b->out.points[b->out.point_count] = point;
+    return vertex[point] = b->out.point_count++;
 }
 
-/* The source of a subtriangle's surface: of those that cover it one of a sheet (sheets 1) or a closed surface;
- * GXB_NONE: there is none. */
+/* A source that covers a subtriangle: one of a sheet (sheets 1) or of a closed surface. GXB_NONE: there is none. */
 static uint32_t gxbp_cover_of(const gxb_boolean *b, uint32_t f, int sheets) {
     const uint32_t r = b->mesh.subtriangles[f].source;
     uint32_t c;
@@ -9887,15 +9918,15 @@ static GXBP_APART int gxbp_more_triangles(gxb_boolean *b, size_t extra) {
 }
 
 /* reversed: the outside is behind the subtriangle's plane. */
-static void gxbp_emit(gxb_boolean *b, uint32_t f, int reversed, uint32_t source) {
+static void gxbp_emit(gxb_boolean *b, uint32_t *vertex, uint32_t f, int reversed, uint32_t source) {
     const uint32_t n = b->out.corner_count, *v = b->mesh.subtriangles[f].v;
     uint32_t i;
     if (!GXBP_ROOM(b, out.triangles, out.corner, 3) ||
         (b->out.triangle_count == b->out.triangle_capacity && !gxbp_more_triangles(b, 1)))
         return;
-    b->out.triangles[n] = gxbp_out_vertex(b, v[0]);
-    b->out.triangles[n + 1] = gxbp_out_vertex(b, v[reversed ? 2 : 1]);
-    b->out.triangles[n + 2] = gxbp_out_vertex(b, v[reversed ? 1 : 2]);
+    b->out.triangles[n] = gxbp_out_vertex(b, vertex, v[0]);
+    b->out.triangles[n + 1] = gxbp_out_vertex(b, vertex, v[reversed ? 2 : 1]);
+    b->out.triangles[n + 2] = gxbp_out_vertex(b, vertex, v[reversed ? 1 : 2]);
     b->out.corner_count += 3;
     i = b->out.triangle_count++;
     b->out.operand_count++;
@@ -9910,9 +9941,12 @@ static GXBP_APART void gxbp_set_triangle_count(gxb_boolean *b, uint32_t n) {
 }
 
 static GXBP_APART void gxbp_extract(gxb_boolean *b) {
-    uint32_t f, state = GXB_NONE, operand = GXB_NONE; /* of the last subtriangle that only its own source covers */
+    uint32_t *vertex, f, state = GXB_NONE, operand = GXB_NONE; /* of the last subtriangle that only its own source
+                                                                  covers */
     int front_in = 0, back_in = 0;
-    for (f = 0; f < b->points.vertex_count; f++) b->points.vertices[f].slot = GXB_NONE;
+    vertex = (uint32_t *)gxbp_borrow(b, b->points.vertex_count * sizeof *vertex);
+    if (vertex == NULL) return;
+    memset(vertex, 0xff, b->points.vertex_count * sizeof *vertex);
     gxbp_set_triangle_count(b, 0);
     b->out.point_count = b->out.vertex_count = b->out.origin_count = 0;
     if (!gxbp_more_triangles(b, b->mesh.subtriangle_count / 2) ||
@@ -9931,10 +9965,10 @@ static GXBP_APART void gxbp_extract(gxb_boolean *b) {
         }
         if (front_in != back_in) {
             source = gxbp_cover_of(b, f, 0);
-            gxbp_emit(b, f, front_in, source);
+            gxbp_emit(b, vertex, f, front_in, source);
         } else if (front_in && (source = gxbp_cover_of(b, f, 1)) != GXB_NONE) {
-            gxbp_emit(b, f, 0, source);
-            gxbp_emit(b, f, 1, source);
+            gxbp_emit(b, vertex, f, 0, source);
+            gxbp_emit(b, vertex, f, 1, source);
         }
     }
 }
@@ -10026,8 +10060,8 @@ static int gxbp_faces(gxb_boolean *b, uint32_t plane, const double *p, const dou
     return sign != 0 ? sign : gxbp_faces_exactly(b, plane, p, q, r);
 }
 
-/* Triangles that rounding has turned over or left without area. Those of input vertices are as they were, unless they
- * were mended. */
+/* Finds triangles that rounding has turned over or left without area. A triangle of input vertices is no defect unless
+ * mending has changed it. */
 static GXBP_APART void gxbp_find_defects(gxb_boolean *b) {
     uint32_t t, k;
     b->out.defect_count = 0;
@@ -10057,7 +10091,7 @@ typedef struct gxbp_fan {
 
 /* A vertex of the polygon that the triangles of a fan fill */
 typedef struct gxbp_fan_vertex {
-    uint32_t fan;           /* that it is in the middle of, in the same face */
+    uint32_t fan;           /* the fan around it in the same face */
     uint32_t near;          /* the half-edge beyond the edge to the next vertex; GXB_NONE: none in the face */
     uint32_t before, after; /* in the polygon */
 } gxbp_fan_vertex;
@@ -10191,10 +10225,10 @@ static void gxbp_fill_corner(gxb_boolean *b, gxbp_coarse *c, uint32_t p, uint32_
     b->work.fan_vertices[p].near = h + 2;
 }
 
-/* Fills the polygon of a fan around v. It is seen from v, and stays so if a convex corner is cut off whose ends
-   are seen from v under no more than a straight angle: then v is left of the new edge or on it. Of at most two corners,
-   neighbours, the ends are seen under more, and a polygon has three that are convex; where v lies on an edge, the
-   corners of that edge are the two. */
+/* Fills the polygon of a fan around v. All of it is visible from v. It stays so if a convex corner is cut off whose two
+   neighbours are seen from v under no more than a straight angle: then v is left of the new edge or on it. At most two
+   corners, adjacent ones, have neighbours seen under more. A polygon has three convex corners, so one of these serves.
+   If v lies on an edge, the two are the ends of that edge. */
 static void gxbp_fill_fan(gxb_boolean *b, gxbp_coarse *c, uint32_t plane, uint32_t v) {
     gxbp_fan_vertex *polygon = b->work.fan_vertices;
     const int facing = b->out.subtriangles[b->work.fan_triangles[0]] & 1 ? -1 : 1;
@@ -10318,7 +10352,7 @@ static void gxbp_join_sets(uint32_t *parent, uint32_t i, uint32_t j) {
         parent[i] = j;
 }
 
-/* Afterwards parent[i] is the set of i: parents come before their children. */
+/* Makes parent[i] the set of i. Parents come before their children. */
 static void gxbp_flatten_sets(uint32_t *parent, uint32_t count) {
     uint32_t i;
     for (i = 0; i < count; i++) parent[i] = parent[parent[i]];
@@ -10362,8 +10396,8 @@ static GXBP_RARE void gxbp_make_radial(gxb_boolean *b, uint32_t h, uint32_t p, c
         radial->group = 0;
 }
 
-/* Joins the triangles at the two sides of each wedge of the solid around an edge that more than two triangles share:
- * there they are twins. */
+/* Around an edge that more than two triangles share: joins the triangles at the two sides of each wedge of the solid,
+ * and makes them twins there. */
 static GXBP_COLD void gxbp_join_wedges(gxb_boolean *b, const gxbp_exits *exits, uint32_t i, uint32_t j,
                                        uint32_t *parent, uint32_t *twin) {
     const uint32_t p = b->out.points[i], q = b->out.points[j];
@@ -10394,15 +10428,15 @@ static GXBP_COLD void gxbp_join_wedges(gxb_boolean *b, const gxbp_exits *exits, 
     gxbp_release(&b->store.allocator, radials.list, (size_t)radials.capacity * sizeof *radials.list);
 }
 
-/* Of each triangle: how many corners of the solid are counted there. A corner is what triangles around a vertex make
-   that are joined by twins; each is counted once. Uses up the twins. */
+/* Counts corners of the solid. The triangles around a vertex that twins join make one corner, which is counted at one
+   of them. corners: of each triangle, the number counted there. Uses up the twins. */
 static void gxbp_count_corners(uint32_t *twin, uint32_t count, int32_t *corners) {
     uint32_t h, g;
     for (h = 0; h < count; h++) corners[h] = 0;
     for (h = 0; h < 3 * count; h++) {
         if (twin[h] == GXB_NONE) continue;
         corners[h / 3]++;
-        for (g = h; twin[g] != GXB_NONE;) { /* on to the half-edge that ends there too */
+        for (g = h; twin[g] != GXB_NONE;) { /* from one half-edge that leaves the corner to the next */
             const uint32_t next = twin[g];
             twin[g] = GXB_NONE;
             g = gxbp_last_edge(next);
@@ -10459,8 +10493,8 @@ static GXBP_RARE void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *
     }
 }
 
-/* Coordinates of 180 bits of the result's vertices, each made once (then it has the stamp of b->work.head_stamp).
- * first: of a vertex' limbs */
+/* Coordinates of 180 bits of the result's vertices, each computed once. first: the first of a vertex's limbs, GXB_NONE
+ * until they are computed */
 typedef struct gxbp_fine {
     uint32_t first;
     gxb_num c[3];
@@ -10476,13 +10510,12 @@ static GXBP_RARE void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t
     gxbp_fine *v = &fines->vertices[vertex];
     gxbp_vec x;
     uint32_t k;
-    if (b->points.vertices[point].head_stamp == b->work.head_stamp) return;
+    if (v->first != GXB_NONE) return;
     gxbp_fine_point(b, point, &x);
     if (!gxbp_room(b, &fines->limbs, fines->limb_count, &fines->limb_capacity, sizeof *fines->limbs,
                    (size_t)x.c[0].n + x.c[1].n + x.c[2].n))
         return;
     v->first = fines->limb_count;
-    b->points.vertices[point].head_stamp = b->work.head_stamp;
     for (k = 0; k < 3; k++) {
         v->c[k] = x.c[k];
         memcpy(fines->limbs + fines->limb_count, x.c[k].d, x.c[k].n * sizeof *fines->limbs);
@@ -10490,7 +10523,7 @@ static GXBP_RARE void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t
     }
 }
 
-/* Of a vertex that has been made; valid until the next one is. */
+/* The coordinates of a vertex that has them; valid until the next vertex gets its own */
 static const gxb_num *gxbp_use_fine(gxbp_fines *fines, uint32_t vertex) {
     gxbp_fine *v = &fines->vertices[vertex];
     v->c[0].d = fines->limbs + v->first;
@@ -10514,8 +10547,8 @@ static GXBP_RARE double gxbp_fine_volume(gxb_boolean *b, uint32_t t, const uint3
     return gxb_num_to_double(&total);
 }
 
-/* What d0 . n loses: bounds as in >>filter, for n's error and size E and N, the error e of d0 and its size D: 3 (D E +
-   e (N + E)) and 8u of three products */
+/* The error bound of d0 . n, as in >>filter. E and N are error and size of n, e and D those of d0. The errors add
+   3 (D E + e (N + E)), rounding adds 8u of three products. */
 static double gxbp_volume_error(double D, double e, double N, double E) {
     return 6 * (D * E + e * (N + E)) + 48 * GXBP_U * D * N + GXBP_TINY;
 }
@@ -10542,8 +10575,8 @@ static double gxbp_rough_error(const gxb_boolean *b, uint32_t t, const gxb_ball 
     return gxbp_volume_error(gxbp_max3(d0), e, gxbp_max3(n), E);
 }
 
-/* A bound for all triangles, from the size S of the box around all vertices (8u larger, to cover its rounding) and the
- * largest error of a vertex */
+/* A bound for all triangles, from the largest error of a vertex and the size S of the box around all vertices, which is
+ * enlarged by 8u to cover its rounding */
 static double gxbp_largest_rough_error(const gxb_boolean *b) {
     const gxb_ball *first = &b->store.points[b->out.points[0]].ball;
     double low[3], high[3], error = first->error, S = 0, e;
@@ -10607,7 +10640,7 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent
         next[t] = first[parent[t]];
         first[parent[t]] = t;
     }
-    b->work.head_stamp++;
+    for (t = 0; t < b->out.point_count; t++) fines.vertices[t].first = GXB_NONE;
     for (t = 0; t < count && b->error == GX_OK; t++)
         if (parent[t] == t && (all || gxbp_is_rough(volume[t], error[t]))) {
             volume[t] = gxbp_fine_volume(b, first[t], next, &fines);
@@ -10644,8 +10677,8 @@ static GXBP_COLD int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p,
     return turn != 0 ? turn : way * gxbp_compare_points(b, q, p, 1);
 }
 
-/* A ray from a triangle. It begins on the side on which that one's solid lies: on the other one, of a sheet, begins
- * another's. */
+/* A ray from a triangle. It begins on the side on which the triangle's solid lies. On the other side of a sheet another
+ * solid may begin. */
 static GXBP_COLD int gxbp_ray_from(gxb_boolean *b, gxbp_ray *ray, uint32_t t) {
     const int turned = b->out.subtriangles[t] & 1 ? 1 : -1, moved = gxbp_moved_side(b, gxbp_out_plane(b, t));
     gxbp_set_ray(b, ray, b->out.subtriangles[t] / 2);
@@ -10678,7 +10711,7 @@ static GXBP_COLD int gxbp_ray_passes(gxb_boolean *b, gxbp_ray *ray, int way, uin
     return behind * facing == left ? left : 0;
 }
 
-/* Of triangle t: the shell that it belongs to, of a cavity whose container is known that one */
+/* The shell of triangle t. For a cavity whose container is known: the container */
 static uint32_t gxbp_shell_of(const uint32_t *parent, uint32_t t) { return parent[parent[t]]; }
 
 /* A grid of side x side columns along x, and the triangles that rays in each column may pass */
@@ -10783,8 +10816,8 @@ static GXBP_COLD int gxbp_lies_in(gxb_boolean *b, uint32_t t, uint32_t u, const 
     return winding != 0;
 }
 
-/* The innermost shell with volume around a cavity's (or a sheet's) shell. winding: 0 for each triangle, and so again
- * afterwards */
+/* The innermost shell with volume around a cavity's (or a sheet's) shell. winding: of each triangle; all 0 before and
+ * after */
 static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, const uint32_t *parent,
                                               const double *volume, int32_t *winding, const gxbp_columns *c) {
     gxbp_ray ray;
@@ -10861,7 +10894,7 @@ static GXBP_APART void gxbp_number_components(gxb_boolean *b, const uint32_t *pa
     b->out.component_count = count;
 }
 
-/* Each triangle is 1 and 3 / 2 edges. */
+/* Euler characteristics: each triangle counts as 1 face and 3 / 2 edges. */
 static void gxbp_find_eulers(gxb_boolean *b, const int32_t *corners) {
     uint32_t t;
     b->out.euler_count = 0;
@@ -10872,7 +10905,7 @@ static void gxbp_find_eulers(gxb_boolean *b, const int32_t *corners) {
     for (t = 0; t < b->out.euler_count; t++) b->out.eulers[t] /= 2;
 }
 
-/* On which sides of sheets the components lie, by the triangles that they have of them. */
+/* Finds the sides of sheets on which components lie, by the triangles of sheets in their boundaries. */
 static GXBP_RARE void gxbp_find_sides(gxb_boolean *b) {
     const size_t n = b->in.operand_count, size = (size_t)b->out.volume_count * n;
     size_t i;
@@ -10935,9 +10968,10 @@ static GXBP_APART void gxbp_find_components(gxb_boolean *b) {
 /* In: the rounded output with its defects, components and twins. Out: fewer defects, or the same. The surface, taken
    apart where it only touches itself, stays closed and keeps its Euler characteristic. Touches the output only. */
 
-#define GXBP_MEND_REACH                                                                                                \
-    4 /* units in the last place of the largest coordinate: how near are two vertices that may become one */
-#define GXBP_MEND_STEPS 2 /* such units by which a coordinate may be moved */
+/* In units in the last place of the largest coordinate: how near two vertices are that may be merged; how far a
+   coordinate may be moved */
+#define GXBP_MEND_REACH 4
+#define GXBP_MEND_STEPS 2
 
 /* The next half-edge that leaves the same corner of the surface */
 static uint32_t gxbp_around(const gxb_boolean *b, uint32_t h) { return b->out.twins[gxbp_last_edge(h)]; }
@@ -10989,7 +11023,7 @@ static int gxbp_is_given(const gxb_boolean *b, uint32_t vertex) {
     return b->store.points[b->out.points[vertex]].kind == GXB_EXPLICIT;
 }
 
-/* How many edges leave the corner from which h does; *to: how many of them lead to a vertex */
+/* How many edges leave the corner that h leaves. *to: how many of them lead to `vertex` */
 static uint32_t gxbp_count_around(const gxb_boolean *b, uint32_t h, uint32_t vertex, uint32_t *to) {
     uint32_t g = h, n = 0;
     *to = 0;
@@ -11012,9 +11046,9 @@ static void gxbp_join_out(gxb_boolean *b, uint32_t h, uint32_t g) {
     b->out.twins[g] = h;
 }
 
-/* The edge of h, from p to q, between triangles (p, q, r) and (q, p, o), becomes one from r to o. The triangle of h,
-   which has no area to speak of, becomes a part of the other's source; r lies between p and q, or what is made would
-   lie beyond the old ones. */
+/* Flips the edge of h, from p to q, between triangles (p, q, r) and (q, p, o): it becomes one from r to o. The triangle
+   of h has next to no area; the two new ones are of the other's source. r must lie between p and q, else they would
+   reach beyond the old ones. */
 static int gxbp_flip(gxb_boolean *b, uint32_t h) {
     const uint32_t g = b->out.twins[h], t = h / 3, s = g / 3, h1 = gxbp_next_edge(h), g1 = gxbp_next_edge(g);
     const uint32_t p = b->out.triangles[h], q = b->out.triangles[h1], r = b->out.triangles[gxbp_last_edge(h)],
@@ -11037,7 +11071,8 @@ static int gxbp_flip(gxb_boolean *b, uint32_t h) {
     return 1;
 }
 
-/* May the edge of h vanish? Its ends have but two neighbours in common, which keep three edges at least. */
+/* May the edge of h be collapsed? It may if its ends have just two neighbours in common, each of which keeps three
+   edges or more. */
 static int gxbp_links_meet(gxb_boolean *b, uint32_t h) {
     const uint32_t g = b->out.twins[h], v = b->out.triangles[h], w = b->out.triangles[g];
     const uint32_t r = gxbp_last_edge(h), o = gxbp_last_edge(g);
@@ -11054,7 +11089,7 @@ static int gxbp_links_meet(gxb_boolean *b, uint32_t h) {
     return common == 2;
 }
 
-/* The vertex from which h leaves becomes the one to which it leads, if that leaves fewer defects. */
+/* Collapses the edge of h: its start becomes its end, if fewer defects are left then. */
 static int gxbp_collapse(gxb_boolean *b, uint32_t h) {
     const uint32_t g = b->out.twins[h], v = b->out.triangles[h], w = b->out.triangles[g];
     const uint32_t h1 = gxbp_next_edge(h), h2 = gxbp_next_edge(h1), g1 = gxbp_next_edge(g), g2 = gxbp_next_edge(g1);
@@ -11111,7 +11146,7 @@ static void gxbp_drop_collapsed(gxb_boolean *b, uint32_t *map) {
     b->out.twin_count = 3 * left;
 }
 
-/* How many triangles around a vertex are defects, all corners there together */
+/* How many triangles around a vertex are defects, at all of its corners */
 static uint32_t gxbp_defects_at(gxb_boolean *b, const gxbp_exits *exits, uint32_t v) {
     uint32_t i, n = 0;
     for (i = exits->first[v]; i < exits->first[v + 1]; i++)
@@ -11119,7 +11154,7 @@ static uint32_t gxbp_defects_at(gxb_boolean *b, const gxbp_exits *exits, uint32_
     return n;
 }
 
-/* Tries the places around the vertex's own (home): the first of those with the fewest defects. 1: it moved. */
+/* Moves a vertex to a place around its own (home): the first of those with the fewest defects. 1: it moved. */
 static int gxbp_move_vertex(gxb_boolean *b, const gxbp_exits *exits, uint32_t v, const double home[3]) {
     enum { WIDTH = 2 * GXBP_MEND_STEPS + 1 };
     double *x = b->out.vertices + 3 * (size_t)v, best[3], old[3];
@@ -11158,7 +11193,7 @@ static uint32_t gxbp_mend_places(gxb_boolean *b, const double *home) {
     return done;
 }
 
-/* Each step leaves fewer defects than there were. */
+/* Mends as long as a step leaves fewer defects. */
 static GXBP_COLD void gxbp_mend_defects(gxb_boolean *b) {
     const uint32_t words = b->out.triangle_count > b->out.point_count ? b->out.triangle_count : b->out.point_count;
     const size_t places = 3 * (size_t)b->out.point_count * sizeof(double), bytes = places + words * sizeof(uint32_t);
