@@ -443,8 +443,8 @@ typedef struct gxb_complex { /* what is used most comes first: its addresses are
     gxb_label *labels;
     uint32_t label_count, label_capacity;
     /* marked facets, which were labelled or made walls since begin: 2 x facet, + 1 if this made it a wall */
-    uint32_t *walls;
-    uint32_t wall_count, wall_capacity;
+    uint32_t *marked;
+    uint32_t marked_count, marked_capacity;
     /* stack of clipped polygons */
     struct gxbp_corner *corners;
     uint32_t corner_count, corner_capacity;
@@ -2716,7 +2716,7 @@ static const gxbp_array gxbp_complex_arrays[] = {/* those with marks come first,
                                                  GXBP_ARRAY(gxb_complex, nodes, tree),
                                                  GXBP_ARRAY(gxb_complex, labels, label),
                                                  GXBP_ARRAY(gxb_complex, pool, pool),
-                                                 GXBP_ARRAY(gxb_complex, walls, wall),
+                                                 GXBP_ARRAY(gxb_complex, marked, marked),
                                                  GXBP_ARRAY(gxb_complex, corners, corner),
                                                  GXBP_ARRAY(gxb_complex, tasks, task),
                                                  GXBP_ARRAY(gxb_complex, leaf_facets, leaf_facet),
@@ -2785,7 +2785,7 @@ static GXBP_APART void gxbp_set_marks(gxb_complex *cx) {
     gxbp_store_begin(&cx->store);
     gxbp_mark_arrays(cx, gxbp_complex_arrays, cx->mark, GXBP_MARKS);
     cx->mark_live = cx->pool_live;
-    cx->wall_count = cx->corner_count = cx->task_count = 0;
+    cx->marked_count = cx->corner_count = cx->task_count = 0;
 }
 
 GXFEM_API void gxb_complex_begin(gxb_complex *cx) {
@@ -3171,11 +3171,11 @@ GXFEM_API uint32_t gxb_complex_leaf_count(const gxb_complex *cx) { return cx->le
 
 GXFEM_API uint32_t gxb_complex_label_count(const gxb_complex *cx) { return cx->label_count; }
 
-GXFEM_API uint32_t gxb_complex_marked_count(const gxb_complex *cx) { return cx->wall_count; }
+GXFEM_API uint32_t gxb_complex_marked_count(const gxb_complex *cx) { return cx->marked_count; }
 
-GXFEM_API uint32_t gxb_complex_marked_facet(const gxb_complex *cx, uint32_t index) { return cx->walls[index] >> 1; }
+GXFEM_API uint32_t gxb_complex_marked_facet(const gxb_complex *cx, uint32_t index) { return cx->marked[index] >> 1; }
 
-GXFEM_API int gxb_complex_marked_wall(const gxb_complex *cx, uint32_t index) { return (int)(cx->walls[index] & 1); }
+GXFEM_API int gxb_complex_marked_wall(const gxb_complex *cx, uint32_t index) { return (int)(cx->marked[index] & 1); }
 
 GXFEM_API uint32_t gxb_complex_node_count(const gxb_complex *cx) { return cx->node_count; }
 
@@ -3797,7 +3797,7 @@ static gx_result gxbp_add_label(gxb_complex *cx, const gxb_triangle *t, uint32_t
     gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, labels, label, 1);
     for (l = cx->facets[facet].labels; l != GXB_NONE; l = cx->labels[l].next)
         if (cx->labels[l].triangle == t->label) return GX_OK;
-    if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, walls, wall, 1);
+    if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, marked, marked, 1);
     if (result == GX_OK) result = gxbp_reserve_undo(&cx->store, 1);
     if (result != GX_OK) return result;
     gxbp_save(cx, GXBP_FACETS, facet);
@@ -3805,17 +3805,17 @@ static gx_result gxbp_add_label(gxb_complex *cx, const gxb_triangle *t, uint32_t
     cx->labels[cx->label_count].orientation = gxbp_relative_orientation(cx, t, cx->facets[facet].plane);
     cx->labels[cx->label_count].next = cx->facets[facet].labels;
     cx->facets[facet].labels = cx->label_count++;
-    cx->walls[cx->wall_count++] = facet << 1 | (t->wall && !cx->facets[facet].wall);
+    cx->marked[cx->marked_count++] = facet << 1 | (t->wall && !cx->facets[facet].wall);
     if (t->wall) cx->facets[facet].wall = 1;
     return GX_OK;
 }
 
 GXFEM_API gx_result gxb_complex_set_wall(gxb_complex *cx, uint32_t facet) {
-    gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, walls, wall, 1);
+    gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, marked, marked, 1);
     if (result == GX_OK) result = gxbp_reserve_undo(&cx->store, 1);
     if (result != GX_OK) return result;
     gxbp_save(cx, GXBP_FACETS, facet);
-    cx->walls[cx->wall_count++] = facet << 1 | !cx->facets[facet].wall;
+    cx->marked[cx->marked_count++] = facet << 1 | !cx->facets[facet].wall;
     cx->facets[facet].wall = 1;
     return GX_OK;
 }
