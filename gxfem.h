@@ -52,22 +52,23 @@
  *     the skin:                  >>corners >>vertices >>faces >>skinning >>rays
  *     beginning, end, bytes:     >>create >>hashes >>stream >>save
  *
- * Words. Wall: a piece of a sheet inside the body or on an element face. Cell: a connected part of one element after
- * cutting (GXFEM Eq. 20). Link: the pieces of the face between two elements that no wall covers and that connect the
- * same two cells. Copy: a node's displacement for one connected set of cells around the node (GXFEM Eq. 18). Fragment:
- * a connected set of cells of the body.
+ * Words. Facet: a polygon inside an element or in an element face, made by cuts. Wall: a facet that a sheet covers.
+ * Cell: a connected part of one element after cutting (GXFEM Eq. 20). Link: all facets of the face between two elements
+ * that no wall covers and that connect the same two cells. Copy: a node's displacement for one connected set of cells
+ * around the node (GXFEM Eq. 18). Fragment: a connected set of cells of the body.
  *
- * Exact: which cells there are and which are linked, hence copies and fragments. Decisions are signs of polynomials in
- * the given coordinates (gxfem_boolean.h). Rounded, once: volumes, masses and vertices, as doubles.
+ * Exact: the set of cells and their links, hence copies and fragments. Decisions are signs of polynomials in the given
+ * coordinates (gxfem_boolean.h). Rounded once, to doubles: volumes, masses and vertices.
  *
  * Not there yet: contact between fragments; cuts given in the deformed state; unknowns within a partly cut element (a
  * sheet that ends inside an element separates nothing there until another sheet completes it).
  *
- * Limits: 2^31 - 1 of each kind of object. One thread at a time may use a body. There is no global state, no output, no
- * clock. A body's coordinates are at most 2^100 (1.3e30), its longest side is at least 2^-100 (7.9e-31), each element
- * has a mass of 2^-700 ... 2^700. So all volumes, masses, centres and inertia are finite, those of whole bodies are
- * normal numbers, and floats hold the skin. Divided by the body's size, coordinates of bodies and cuts are 0 or
- * 2^-128 ... 2^128 in absolute value. Everything beyond these limits is refused (GX_ERROR_RANGE).
+ * Limits: 2^28 - 1 elements, 2^31 - 1 of each other kind of object. One thread at a time may use a body. There is no
+ * global state, no output, no clock. A body's coordinates are at most 2^100 (1.3e30), its longest side is at least
+ * 2^-100 (7.9e-31), each element has a mass of 2^-700 ... 2^700. So all volumes, masses, centres and inertia are
+ * finite, those of whole bodies are normal numbers, and floats hold the skin. Divided by the body's size, coordinates
+ * of bodies and cuts are 0 or 2^-128 ... 2^128 in absolute value. Everything beyond these limits is refused
+ * (GX_ERROR_RANGE).
  *
  * References: GXFEM = Ton-That, Kry, Andrews: Generalized eXtended Finite Element Method for Deformable Cutting via
  * Boolean Operations (2024). RXFEM = Koschier, Bender, Thuerey: Robust eXtended Finite Elements for Complex Cutting of
@@ -486,9 +487,8 @@ extern "C" {
 
 /* >>state: the body, divided by how long its parts live ------------------------------------------------------------ */
 
-/* The types of all that a body owns: settings and mesh from creation to destruction; cells, leaves, copies and
-   records that cuts make; the log that takes a cut back; lists that can be made anew; working memory of a call. Nothing
-   runs here. */
+/* The types of everything that a body owns: settings and mesh, from creation to destruction; cells, leaves, copies and
+   records of surfaces, made by cuts; the undo log of a cut; caches; working memory of a call. No function is here. */
 
 #define GXP_NONE UINT32_MAX
 /* Shares of an element, where gx_body_desc.support_below is 0: copies that nothing larger carries follow others;
@@ -590,8 +590,7 @@ typedef struct gxp_copies {
     double *rest_time;               /* s */
     uint8_t *held;                   /* 1: by a region */
     uint32_t *label;                 /* 2 x index of its fragment at the last snapshot, + 1: cut since */
-    uint32_t *before; /* 2 x index, when the solver's model was made, of the copy that it is, or, + 1, that it comes
-                         from */
+    uint32_t *before; /* 2 x its index when the solver's model was made; of a newer copy: 2 x that of its origin, + 1 */
     /* displacement and velocity a step ago, x 3, and room for those of now; from the first BDF2 step on */
     double *history[4];
     double previous_dt; /* s, of the step that history[0] and [1] are from; 0: there is none */
@@ -683,16 +682,16 @@ typedef struct gxp_snapshot {
     uint32_t stale; /* a cut has been since */
 } gxp_snapshot;
 
-/* The solver's model is as the body, but for the last cuts, or not at all. */
+/* The solver's model agrees with the body, or did before the last cuts, or must be made whole. */
 typedef enum gxp_model_state { GXP_MODEL_KNOWN, GXP_MODEL_CHANGED, GXP_MODEL_STALE } gxp_model_state;
 
 typedef struct gxp_model {
     gxp_model_state state;
     int empty;   /* it has no elements: the solver has not been given it */
-    int updated; /* it has been changed since it was set */
+    int updated; /* 1: it has been changed since it was set whole */
     /* hash of the state when the body was saved, copied or read; 0: it has stepped since then */
     uint64_t resumed;
-    /* elements of which a cell or its copies have changed since the solver was last told; some more than once */
+    /* elements of which a cell or its copies have changed since the solver's model was made; some more than once */
     gxp_words changed;
     gxp_words thin; /* elements with a part of a share below follow_below, ascending; of use unless state is STALE */
     /* there only while the solver is told; it copies them */
@@ -768,8 +767,8 @@ typedef struct gxp_skin {
     uint32_t normal_capacity, position_capacity;
 } gxp_skin;
 
-/* --- working memory of one call. The next call finds nothing in it; the memory stays, so that a cut as large as the
-   last allocates nothing. --- */
+/* --- working memory of one call. No contents last to the next call; the memory stays, so that a cut as large as the
+   last one allocates nothing. --- */
 
 /* The boundary of a cell or leaf, as triangles in barycentric coordinates of its element */
 typedef struct gxp_boundary {
@@ -778,7 +777,7 @@ typedef struct gxp_boundary {
     uint32_t lambda_capacity;
     gxp_words slots;     /* by point of the complex: its place in points, if it is there */
     gxp_words triangles; /* x 3, places in points */
-    gxp_words facets;    /* in faces of the element: times two, 1 more if the material is in front */
+    gxp_words facets;    /* in faces of the element: 2 x facet, + 1 if the material is in front */
 } gxp_boundary;
 
 typedef struct gxp_scratch {
@@ -807,10 +806,10 @@ typedef struct gxp_scratch {
     gxp_words wall_leaves;  /* on both sides of new walls */
     gxp_words cell_leaves;  /* of a cell that is divided */
     gxp_words part_leaves;  /* of one of its connected parts */
-    gxp_words facet_points; /* of a piece of a link */
+    gxp_words facet_points; /* of a facet of a link */
     /* >>components */
     gxp_keys pairs;            /* node, cell around it */
-    gxp_words subdomains;      /* of a node: start in subdomain_cells times two, 1 more if it is open */
+    gxp_words subdomains;      /* of a node: 2 x start in subdomain_cells, + 1 if it is open */
     gxp_words subdomain_cells; /* one subdomain after the other */
     gxp_words taken;           /* copies that one of these keeps */
     gxp_words face_facets;     /* of an element's face */
@@ -818,7 +817,7 @@ typedef struct gxp_scratch {
     gxp_boundary boundary;
 } gxp_scratch;
 
-/* Parts by how long they live. Each array stands in gxp_tables or gxp_lists, which see to its growth and its end. */
+/* Divided by lifetime. Each array is listed in gxp_tables or gxp_lists, by which it grows and is released. */
 struct gx_body {
     gxp_config config;
     gxp_mesh mesh;
@@ -849,7 +848,7 @@ enum {
     GXP_HISTORY = 4,  /* saved and hashed if the last step was one of BDF2 */
     GXP_UNDONE = 8,   /* rows are put back when a cut fails */
     GXP_CLEARED = 16, /* new rows are 0 */
-    GXP_LATER = 32    /* NULL until something needs it */
+    GXP_LATER = 32    /* NULL until it is needed */
 };
 
 /* Offsets in gx_body: of the pointer, of the number of entries that there is room for; bytes of an entry */
@@ -1018,8 +1017,8 @@ static void gxp_release(const gx_allocator *a, void *memory, size_t size) {
         free(memory);
 }
 
-/* A larger block with the first `used` bytes of the old one, which is then gone. NULL: there is none, and the old one
-   stays. */
+/* Returns a larger block with the first `used` bytes of the old one, and releases that. NULL: there is no memory, and
+   the old block stays. */
 static void *gxp_reallocate(const gx_allocator *a, void *old, size_t old_size, size_t used, size_t size) {
     void *memory;
     /* moves the pages of large blocks, not their bytes */
@@ -1071,7 +1070,7 @@ static gx_result gxp_start_words(gx_body *body, gxp_words *words, size_t count) 
 
 #define GXP_FIRST(key)  ((uint32_t)((key) >> 32))
 #define GXP_SECOND(key) ((uint32_t)(key))
-/* A link of a cell: the cell behind a piece of a face, that facet, which of the element's faces; 31, 31 and 2 bits */
+/* A facet of a link, as a cell has it: the cell behind it, the facet, its face of the element; 31, 31 and 2 bits */
 #define GXP_LINK_CELL(link)  ((uint32_t)((link) >> 33))
 #define GXP_LINK_FACET(link) ((uint32_t)((link) >> 2) & 0x7fffffffu)
 #define GXP_LINK_FACE(link)  ((uint32_t)(link)&3)
@@ -1767,7 +1766,7 @@ static void gxp_wake_resumed(gx_body *body, size_t copies) {
    the complex's own log take it back. Every change of a cell or leaf that the cut did not make goes through here first.
  */
 
-/* What the steps of one cut pass on */
+/* A cut at work: the steps of gx_body_cut pass this on */
 typedef struct gxp_cut {
     gx_body *body;
     const gx_cut_desc *desc;
@@ -2038,7 +2037,7 @@ static gx_result gxp_update_view(gx_body *body) {
     return GX_OK;
 }
 
-/* The leaf of before the cut that this one is part of */
+/* The leaf that contained this one before the cut */
 static uint32_t gxp_old_leaf(const gx_body *body, uint32_t leaf) {
     while (leaf >= body->leaves.count) leaf = gxb_complex_leaf(body->complex, leaf)->parent;
     return leaf;
@@ -2408,8 +2407,8 @@ static gx_result gxp_find_leaf_joint(gx_body *body, uint32_t leaf, gxp_joint *jo
     return result;
 }
 
-/* Is the node, or any piece of the mesh edge, on the boundary of a leaf of the element that the cut may touch? The
-   other of the two is GXB_NONE. */
+/* Is the node, or any part of the mesh edge, on the boundary of a leaf of the element that the cut may touch? The other
+   of the two is GXB_NONE. */
 static gx_result gxp_is_joint_in_scope(gx_body *body, uint32_t element, uint32_t node, uint32_t edge, int *found) {
     gxp_scratch *scratch = &body->scratch;
     gx_result result = GX_OK;
@@ -2648,7 +2647,7 @@ static uint32_t gxp_curve_place(const gxp_cut *cut, const gxp_surface *s, uint32
 }
 
 #define GXP_LAST_ROUND 31u
-/* Room is made for at most this many times what the rounds before the last have made. */
+/* Room is made for at most this many times the items that the rounds before the last one have made. */
 #define GXP_EXPECTED 7u
 
 /* Inserts the triangles in rounds, each eight times as large as the one before: planes in random order make shallow
@@ -2685,8 +2684,8 @@ static gx_result gxp_insert_surface(gxp_cut *cut, gxp_surface *s, int scoped) {
 /* In: a closed surface that is in the complex. Out: the leaves around which it winds, which are to be removed. Touches
    marks of leaves only. */
 
-/* The solid's winding number behind the facet less that in front of it; triangles that face its front count 1.
- *labelled: the solid covers the facet. */
+/* The solid's winding number behind the facet minus that in front of it: triangles that face the facet's front count 1.
+   Sets labelled to 1 if the solid covers the facet, else to 0. */
 static int32_t gxp_winding_step(const gx_body *body, const gxp_surface *s, uint32_t facet, int *labelled) {
     const gxb_complex *cx = body->complex;
     int32_t step = 0;
@@ -3016,7 +3015,7 @@ static gx_result gxp_judge_link(gxp_cut *cut, uint32_t first, uint32_t end) {
     return result;
 }
 
-/* Weighs the links of a new cell roughly. All pieces of a face between the same two cells are one link. Whole faces are
+/* Weighs the links of a new cell roughly. All facets of a face between the same two cells are one link. Whole faces are
    skipped, and links to new cells before this one. Links that may be the smallest or may have to be severed are noted
    in scratch.narrow. *bound: the smallest share so far. */
 static gx_result gxp_weigh_links(gxp_cut *cut, uint32_t index, double *bound) {
@@ -3278,7 +3277,7 @@ static gx_result gxp_divide_cells(gxp_cut *cut) {
    and their links. Out: copies for the subdomains into which old ones fell apart, the copies that lost all cells.
    Touches cells, through the undo log, and appends copies. */
 
-/* Visits the cell across one piece of an element's face. */
+/* Visits the cell across one facet of an element's face. */
 static gx_result gxp_cross_facet(gx_body *body, uint32_t facet, uint32_t leaf) {
     const gxb_facet *f = gxb_complex_facet(body->complex, facet);
     const uint32_t other = f->leaf[f->leaf[0] == leaf];
@@ -3962,20 +3961,20 @@ static gx_result gxp_integrate_new(gx_body *body, uint32_t cell, uint32_t *befor
 GXP_PREFETCHES void gxp_prefetch_links(const gx_body *body, uint32_t index) {
     const gxp_scratch *scratch = &body->scratch;
     const gxb_complex *cx = body->complex;
-    const uint32_t *at = scratch->link_first.data;
+    const uint32_t *first = scratch->link_first.data;
     const uint32_t count = scratch->new_cells.count;
     uint32_t j, i;
     if (index + 3 < count)
-        for (j = at[index + 3]; j < at[index + 4]; j++)
+        for (j = first[index + 3]; j < first[index + 4]; j++)
             GXP_PREFETCH(gxb_complex_facet(cx, GXP_LINK_FACET(scratch->links.data[j])));
     if (index + 2 < count)
-        for (j = at[index + 2]; j < at[index + 3]; j++) {
+        for (j = first[index + 2]; j < first[index + 3]; j++) {
             const gxb_facet *f = gxb_complex_facet(cx, GXP_LINK_FACET(scratch->links.data[j]));
             GXP_PREFETCH(gxb_complex_list(cx, f->loop));
             GXP_PREFETCH(&gxb_complex_plane(cx, f->plane)->axis);
         }
     if (index + 1 < count)
-        for (j = at[index + 1]; j < at[index + 2]; j++) {
+        for (j = first[index + 1]; j < first[index + 2]; j++) {
             const gxb_facet *f = gxb_complex_facet(cx, GXP_LINK_FACET(scratch->links.data[j]));
             for (i = 0; i < f->loop_count; i++) GXP_PREFETCH(gxb_complex_edge(cx, gxp_item(cx, f->loop + i) >> 1));
         }
@@ -4065,7 +4064,7 @@ static void gxp_touch_copies(gx_body *body, const gxp_cell *cell) {
     }
 }
 
-/* Notes the elements of which the solver must be told. If there is no memory for that, it is told of all. */
+/* Notes the elements of the model that have changed. Without memory for that, the model is made whole. */
 static void gxp_note_changed(gx_body *body) {
     const gxp_words *changed = &body->undo.cells.rows, *made = &body->scratch.new_cells;
     gx_result result = GX_OK;
@@ -4089,7 +4088,7 @@ static void gxp_commit(gxp_cut *cut) {
     for (i = 0; i < scratch->touched.count; i++) {
         gxp_cell *cell = &body->cells.data[scratch->touched.data[i]];
         if (cell->kept) continue;
-        gxp_touch_copies(body, cell); /* also what it held by an edge or node only */
+        gxp_touch_copies(body, cell); /* also cells that it held by an edge or node only */
         memset(cell->copies, 0xff, sizeof cell->copies);
     }
     for (i = 0; i < scratch->removed.count; i++) body->leaves.data[scratch->removed.data[i]].next = GXP_NONE;
@@ -4306,7 +4305,7 @@ static gx_result gxp_copy_in_region(gx_body *body, uint32_t copy, const gx_regio
     return result;
 }
 
-/* Finds out anew which copies are held, if a cut or other regions make that necessary. */
+/* Finds the held copies anew if there has been a cut, or regions have changed. */
 static gx_result gxp_update_held(gx_body *body) {
     uint32_t c, r;
     gx_result result = GX_OK;
@@ -4354,8 +4353,8 @@ static const uint8_t gxp_mass_at[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 
 
 /* The sum of a row of a mass block: density * integral of lambda_i */
 static double gxp_mass_row(const double mass[10], int i) {
-    const uint8_t *at = gxp_mass_at[i];
-    return mass[at[0]] + mass[at[1]] + mass[at[2]] + mass[at[3]];
+    const uint8_t *row = gxp_mass_at[i];
+    return mass[row[0]] + mass[row[1]] + mass[row[2]] + mass[row[3]];
 }
 
 /* x of the cell's nodes from a centre, at rest or, moved, with the displacement of its copies */
@@ -4382,9 +4381,9 @@ static void gxp_mass_times(const gxp_cell *cell, double x[4][3], double mx[4][3]
     int i, k;
     for (i = 0; i < 4; i++)
         for (k = 0; k < 3; k++) {
-            const uint8_t *at = gxp_mass_at[i];
-            mx[i][k] = cell->mass[at[0]] * x[0][k] + cell->mass[at[1]] * x[1][k] + cell->mass[at[2]] * x[2][k] +
-                       cell->mass[at[3]] * x[3][k];
+            const uint8_t *row = gxp_mass_at[i];
+            mx[i][k] = cell->mass[row[0]] * x[0][k] + cell->mass[row[1]] * x[1][k] + cell->mass[row[2]] * x[2][k] +
+                       cell->mass[row[3]] * x[3][k];
         }
 }
 
@@ -4837,12 +4836,13 @@ static int gxp_next_around(const gx_body *body, gxp_around *around) {
 
 /* The share of the part that the cell belongs to */
 static double gxp_part_share(const gx_body *body, uint32_t cell) {
-    const gxp_cell *of = &body->cells.data[cell];
+    const gxp_cell *part = &body->cells.data[cell];
     double volume = 0;
-    for (cell = of->element; cell != GXP_NONE; cell = body->cells.data[cell].next)
-        if (body->cells.data[cell].kept && memcmp(body->cells.data[cell].copies, of->copies, sizeof of->copies) == 0)
+    for (cell = part->element; cell != GXP_NONE; cell = body->cells.data[cell].next)
+        if (body->cells.data[cell].kept &&
+            memcmp(body->cells.data[cell].copies, part->copies, sizeof part->copies) == 0)
             volume += body->cells.data[cell].volume;
-    return volume / gxp_element_volume(body, of->element);
+    return volume / gxp_element_volume(body, part->element);
 }
 
 /* Has the element a part with a share below follow_below? */
@@ -4882,21 +4882,22 @@ static int gxp_is_weak(const gx_body *body, uint32_t copy, double share) {
     return 1;
 }
 
-static int gxp_is_strong(const gx_body *body, const gxp_supports *of, uint32_t cell) {
+static int gxp_is_strong(const gx_body *body, const gxp_supports *supports, uint32_t cell) {
     const uint32_t *copies = body->cells.data[cell].copies;
-    return !(of->weak[copies[0]] | of->weak[copies[1]] | of->weak[copies[2]] | of->weak[copies[3]]);
+    return !(supports->weak[copies[0]] | supports->weak[copies[1]] | supports->weak[copies[2]] |
+             supports->weak[copies[3]]);
 }
 
 /* The weights by which a copy follows the field of a cell at its node; their sum is 1. Returns the sum of their
    absolute values: 1 within the element, more outside. */
 static double gxp_follow_weights(const gx_body *body, uint32_t copy, uint32_t cell, double weight[4]) {
-    const double *at = body->mesh.positions + 3 * (size_t)body->copies.node[copy];
+    const double *position = body->mesh.positions + 3 * (size_t)body->copies.node[copy];
     double x[12], gradients[12];
     int k, c;
     gxp_element_positions(body, body->cells.data[cell].element, x);
     (void)gxi_tet_gradients(x, gradients, NULL);
     for (k = 1; k < 4; k++)
-        for (c = 0, weight[k] = 0; c < 3; c++) weight[k] += gradients[3 * k + c] * (at[c] - x[c]);
+        for (c = 0, weight[k] = 0; c < 3; c++) weight[k] += gradients[3 * k + c] * (position[c] - x[c]);
     weight[0] = 1 - weight[1] - weight[2] - weight[3];
     return fabs(weight[0]) + fabs(weight[1]) + fabs(weight[2]) + fabs(weight[3]);
 }
@@ -4905,35 +4906,36 @@ static double gxp_follow_weights(const gx_body *body, uint32_t copy, uint32_t ce
    takes the one whose field is extended least; if a copy as near already follows one, it takes that. Weak copies that
    the search passed earlier than in its last round follow the same cell. Returns 0, or, if the fragment has no strong
    cell, the number of its copies, all of which the search has met. */
-static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *of, uint32_t copy) {
+static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *supports, uint32_t copy) {
     uint32_t begin, end, i, count = 1, best = GXP_NONE;
     int k;
-    of->search++;
-    of->queue[0] = copy;
-    of->seen[copy] = of->search;
+    supports->search++;
+    supports->queue[0] = copy;
+    supports->seen[copy] = supports->search;
     for (begin = 0; begin < count && best == GXP_NONE; begin = end) {
         double least = HUGE_VAL, weight[4], sum;
         uint32_t known = GXP_NONE;
         for (i = begin, end = count; i < end; i++) {
-            gxp_around around = gxp_around_copy(body, of->queue[i]);
-            if (known == GXP_NONE) known = of->cell[of->queue[i]];
+            gxp_around around = gxp_around_copy(body, supports->queue[i]);
+            if (known == GXP_NONE) known = supports->cell[supports->queue[i]];
             while (gxp_next_around(body, &around)) {
-                if (gxp_is_strong(body, of, around.cell) &&
+                if (gxp_is_strong(body, supports, around.cell) &&
                     (sum = gxp_follow_weights(body, copy, around.cell, weight)) < least) {
                     least = sum;
                     best = around.cell;
                 }
                 for (k = 0; k < 4; k++) {
                     const uint32_t other = body->cells.data[around.cell].copies[k];
-                    if (of->seen[other] == of->search) continue;
-                    of->seen[other] = of->search;
-                    of->queue[count++] = other;
+                    if (supports->seen[other] == supports->search) continue;
+                    supports->seen[other] = supports->search;
+                    supports->queue[count++] = other;
                 }
             }
         }
         if (best == GXP_NONE) best = known;
         for (i = 0; i < begin && best != GXP_NONE; i++)
-            if (of->weak[of->queue[i]] && of->cell[of->queue[i]] == GXP_NONE) of->cell[of->queue[i]] = best;
+            if (supports->weak[supports->queue[i]] && supports->cell[supports->queue[i]] == GXP_NONE)
+                supports->cell[supports->queue[i]] = best;
     }
     return best == GXP_NONE ? count : 0;
 }
@@ -4955,11 +4957,11 @@ static double gxp_cell_reach(const gxp_cell *cell) {
 
 /* A fragment without a strong cell: the first `count` copies of the queue. Either its copies are weak by comparison
    with its fullest part, or it is a speck and moves as a point. */
-static void gxp_weigh_fragment(const gx_body *body, gxp_supports *of, uint32_t count) {
+static void gxp_weigh_fragment(const gx_body *body, gxp_supports *supports, uint32_t count) {
     uint32_t i, fullest = GXP_NONE, lead;
     double most = 0, reach = 0;
     for (i = 0; i < count; i++) {
-        gxp_around around = gxp_around_copy(body, of->queue[i]);
+        gxp_around around = gxp_around_copy(body, supports->queue[i]);
         while (gxp_next_around(body, &around)) {
             const double share = gxp_part_share(body, around.cell);
             if (fullest == GXP_NONE || share > most) {
@@ -4971,46 +4973,46 @@ static void gxp_weigh_fragment(const gx_body *body, gxp_supports *of, uint32_t c
     }
     lead = body->cells.data[fullest].copies[0];
     for (i = 0; i < count; i++) {
-        const uint32_t copy = of->queue[i];
+        const uint32_t copy = supports->queue[i];
         if (most >= body->config.speck_below && reach >= body->config.speck_reach)
-            of->weak[copy] = gxp_is_weak(body, copy, body->config.follow_below * most) ? GXP_FOLLOWS : GXP_FREE;
+            supports->weak[copy] = gxp_is_weak(body, copy, body->config.follow_below * most) ? GXP_FOLLOWS : GXP_FREE;
         else {
-            of->weak[copy] = copy == lead ? GXP_FREE : GXP_FOLLOWS_POINT;
-            of->cell[copy] = fullest;
+            supports->weak[copy] = copy == lead ? GXP_FREE : GXP_FOLLOWS_POINT;
+            supports->cell[copy] = fullest;
         }
     }
 }
 
 /* Finds the weak copies of the body and what each follows. Returns their number. */
-static uint32_t gxp_find_supports(const gx_body *body, gxp_supports *of) {
+static uint32_t gxp_find_supports(const gx_body *body, gxp_supports *supports) {
     uint32_t i, cell, count = 0;
     int k;
-    of->search = 1;
+    supports->search = 1;
     for (i = 0; i < body->model.thin.count; i++)
         for (cell = body->model.thin.data[i]; cell != GXP_NONE; cell = body->cells.data[cell].next)
             for (k = 0; k < 4 && body->cells.data[cell].kept; k++) {
                 const uint32_t copy = body->cells.data[cell].copies[k];
-                if (of->seen[copy] == of->search) continue;
-                of->seen[copy] = of->search;
-                of->weak[copy] = gxp_is_weak(body, copy, body->config.follow_below) ? GXP_FOLLOWS : GXP_FREE;
+                if (supports->seen[copy] == supports->search) continue;
+                supports->seen[copy] = supports->search;
+                supports->weak[copy] = gxp_is_weak(body, copy, body->config.follow_below) ? GXP_FOLLOWS : GXP_FREE;
             }
     for (i = 0; i < body->copies.count; i++) {
-        while (of->weak[i] && of->cell[i] == GXP_NONE) {
-            const uint32_t met = gxp_find_cell(body, of, i);
-            if (met > 0) gxp_weigh_fragment(body, of, met);
+        while (supports->weak[i] && supports->cell[i] == GXP_NONE) {
+            const uint32_t met = gxp_find_cell(body, supports, i);
+            if (met > 0) gxp_weigh_fragment(body, supports, met);
         }
-        count += of->weak[i] != GXP_FREE;
+        count += supports->weak[i] != GXP_FREE;
     }
     return count;
 }
 
-static void gxp_add_constraint(gx_body *body, const gxp_supports *of, uint32_t copy) {
+static void gxp_add_constraint(gx_body *body, const gxp_supports *supports, uint32_t copy) {
     gxs_constraint *constraint = &body->model.constraints[body->model.constraint_count++];
     constraint->copy = copy;
-    memcpy(constraint->master, body->cells.data[of->cell[copy]].copies, sizeof constraint->master);
+    memcpy(constraint->master, body->cells.data[supports->cell[copy]].copies, sizeof constraint->master);
     memset(constraint->weight, 0, sizeof constraint->weight);
-    if (of->weak[copy] == GXP_FOLLOWS)
-        (void)gxp_follow_weights(body, copy, of->cell[copy], constraint->weight);
+    if (supports->weak[copy] == GXP_FOLLOWS)
+        (void)gxp_follow_weights(body, copy, supports->cell[copy], constraint->weight);
     else
         constraint->weight[0] = 1;
 }
@@ -5019,28 +5021,28 @@ static void gxp_add_constraint(gx_body *body, const gxp_supports *of, uint32_t c
 static gx_result gxp_make_constraints(gx_body *body) {
     const gx_allocator *a = &body->config.allocator;
     const size_t n = body->copies.count;
-    gxp_supports of;
+    gxp_supports supports;
     uint32_t i, count;
     gx_result result = GX_OK;
     body->model.constraint_count = 0;
     if (body->model.thin.count == 0) return GX_OK;
-    of.weak = (uint8_t *)gxp_allocate(a, n);
-    of.cell = (uint32_t *)gxp_allocate(a, 3 * n * sizeof(uint32_t));
-    if (of.weak != NULL && of.cell != NULL) {
-        of.queue = of.cell + n;
-        of.seen = of.queue + n;
-        memset(of.weak, 0, n);
-        memset(of.cell, 0xff, n * sizeof *of.cell);
-        memset(of.seen, 0, n * sizeof *of.seen);
-        count = gxp_find_supports(body, &of);
+    supports.weak = (uint8_t *)gxp_allocate(a, n);
+    supports.cell = (uint32_t *)gxp_allocate(a, 3 * n * sizeof(uint32_t));
+    if (supports.weak != NULL && supports.cell != NULL) {
+        supports.queue = supports.cell + n;
+        supports.seen = supports.queue + n;
+        memset(supports.weak, 0, n);
+        memset(supports.cell, 0xff, n * sizeof *supports.cell);
+        memset(supports.seen, 0, n * sizeof *supports.seen);
+        count = gxp_find_supports(body, &supports);
         result = gxp_reserve(a, &body->model.constraints, sizeof *body->model.constraints, 0,
                              &body->model.constraint_capacity, count);
         for (i = 0; i < n && result == GX_OK; i++)
-            if (of.weak[i]) gxp_add_constraint(body, &of, i);
+            if (supports.weak[i]) gxp_add_constraint(body, &supports, i);
     } else
         result = GX_ERROR_MEMORY;
-    gxp_release(a, of.weak, n);
-    gxp_release(a, of.cell, 3 * n * sizeof(uint32_t));
+    gxp_release(a, supports.weak, n);
+    gxp_release(a, supports.cell, 3 * n * sizeof(uint32_t));
     return result;
 }
 
@@ -5124,8 +5126,8 @@ static gx_result gxp_make_model(gx_body *body, gxs_model *model) {
     return GX_OK;
 }
 
-/* Tells the solver what has changed. After an error its model must be set anew: LIMIT and, if nothing is left, EMPTY
-   say just that; MEMORY is a failure. */
+/* Applies the changes to the solver's model. After an error the model must be set whole: LIMIT and, if nothing is left,
+   EMPTY mean no more than that; MEMORY is a failure. */
 static gx_result gxp_change_model(gx_body *body) {
     gxp_model *model = &body->model;
     size_t room = 0;
@@ -5604,7 +5606,7 @@ static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const 
             rest[k] += s->weights[4 * (size_t)i + n] *
                        body->mesh.positions[3 * (size_t)body->copies.node[s->copies[4 * (size_t)i + n]] + (size_t)k];
     }
-    memset(s->normal + 3 * (size_t)i, 0, 3 * sizeof *s->normal); /* in case none is found next */
+    memset(s->normal + 3 * (size_t)i, 0, 3 * sizeof *s->normal); /* gxp_set_normal may leave it alone */
     gxp_set_normal(s->normal + 3 * (size_t)i, face->normal);
     gxp_set_texture(body, i, face, lambda);
     *vertex = s->vertex_count++;
@@ -6000,7 +6002,7 @@ static gx_result gxp_drop_lonely_vertices(gx_body *body) {
     uint32_t i;
     gx_result result = GX_OK;
     gxp_sort_unique(&s->changed[0]);
-    /* from the end, so that none takes the place of another */
+    /* from the end, so that the last vertex, which takes the place of a dropped one, is not dropped itself */
     for (i = s->changed[0].count; i-- > 0 && result == GX_OK;) {
         const uint32_t vertex = s->changed[0].data[i];
         if (s->vertices[vertex].corner == GXP_NONE) result = gxp_drop_vertex(body, vertex);
@@ -6249,7 +6251,7 @@ static int gxp_meet_triangle(const gxp_skin *s, const uint32_t *t, double share[
         share[k] = fabs(a[0] * b[1] - a[1] * b[0]);
         sum += share[k];
     }
-    if (positive == negative || !(sum > 0)) return 0; /* the ray passes beside it or sees its edge */
+    if (positive == negative || !(sum > 0)) return 0; /* the ray passes beside the triangle or lies in its plane */
     *distance = 0;
     for (k = 0; k < 3; k++) {
         share[k] /= sum;
@@ -6350,7 +6352,7 @@ static gx_result gxp_check_volume(const gx_body *body, uint32_t element, double 
     return mass >= ldexp(1, -GXP_WEIGHT) && mass <= ldexp(1, GXP_WEIGHT) ? GX_OK : GX_ERROR_RANGE;
 }
 
-/* *bad: an element that is flat or out of range */
+/* On an error *bad is the element that is flat or out of range. */
 static gx_result gxp_make_first_cells(gx_body *body, size_t *bad) {
     gx_result result = GX_OK;
     uint32_t e;
@@ -6442,7 +6444,7 @@ static uint64_t gxp_hash_mesh(const gx_body *body) {
                             &body->config.support_below, 1);
 }
 
-/* *index: the node or element to blame */
+/* On an error *index is the node or element to blame. */
 static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc, size_t *index) {
     gxp_mesh *mesh = &body->mesh;
     gx_result result = gxp_check_size(desc, index);
@@ -6470,7 +6472,7 @@ static gx_result gxp_check_material(double young, double poisson, double density
     return young > 0 && density > 0 && poisson >= 0 && poisson < 0.5 ? GX_OK : GX_ERROR_ARGUMENT;
 }
 
-/* *index: the material or element to blame */
+/* On an error *index is the material or element to blame. */
 static gx_result gxp_check_body_desc(const gx_body_desc *desc, size_t *index) {
     gx_result result = GX_OK;
     size_t i;
@@ -6555,7 +6557,7 @@ GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_f
 }
 
 /* >>hashes: of the topology, of the state -------------------------------------------------------------------------- */
-/* In: a body. Out: numbers that are equal where bodies are. The topology's does not depend on any order or rounding. */
+/* In: a body. Out: hashes, equal for equal bodies. The topology's does not depend on any order or rounding. */
 
 #define GXP_BESIDE_WALL 0xfffffff0u /* neighbour across a wall inside the element */
 #define GXP_ACROSS_WALL 0xfffffff1u /* neighbour across a wall on a face */
@@ -6593,7 +6595,7 @@ static uint64_t gxp_hash_neighbours(const gxp_keys *pairs, const uint64_t *name)
     return sum;
 }
 
-/* The first name of a cell: which nodes of the element it contains */
+/* The first name of a cell: the nodes of the element that it contains */
 static gx_result gxp_first_name(gx_body *body, uint32_t cell, uint64_t *name) {
     uint32_t leaf, i, mask = 0;
     gx_result result = GX_OK;

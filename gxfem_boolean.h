@@ -26,32 +26,35 @@
  *         gxb_complex_destroy(cx);
  *     }
  *
- * Contents (search for >>name; all functions are here, each after the first without what is in common):
- *     >>shared      result codes, allocator
- *     >>numbers     exact numbers, a double is an integer times a power of two: gxb_num_set, add, sub, mul, to_double,
- * ratio
- *     >>predicates  of coordinates: gxb_orient2d, orient3d, incircle, insphere, winding_number; gxb_plane_init; points
- * that are given, on a line and a plane, on three planes: gxb_point_explicit, line_plane, three_planes; of these:
- * gxb_side, compare, orient_in_plane
- *     >>complex     the cell complex (points, planes, edges, facets, leaves): gxb_complex_create, destroy; begin,
- * commit, rollback, reserve; to divide: add_point, add_plane, insert, open_element, cover_edge, cover_node, set_wall,
- * set_removed; to bring lists up to date: gxb_leaf_resolve_facets, gxb_facet_resolve_edges; to read: gxb_complex_point
- * and others; to ask: gxb_complex_side, turn, compare, winding, barycentric, support, barycentric_fine
+ * Contents. Search for >>name. Only the first function of a family is listed with its prefix.
+ *     >>shared      result codes, allocator, job hook
+ *     >>numbers     exact numbers, integers times powers of two: gxb_num_set, add, sub, mul, to_double, ratio
+ *     >>predicates  of coordinates: gxb_orient2d, orient3d, incircle, insphere, winding_number
+ *                   a plane: gxb_plane_init
+ *                   points given, on a line and a plane, on three planes: gxb_point_explicit, line_plane, three_planes
+ *                   predicates of these: gxb_side, compare, orient_in_plane
+ *     >>complex     the cell complex (points, planes, edges, facets, leaves): gxb_complex_create, destroy
+ *                   transactions: begin, commit, rollback, reserve
+ *                   division: add_point, add_plane, insert, open_element, cover_edge, cover_node, set_wall, set_removed
+ *                   lists: gxb_leaf_resolve_facets, gxb_facet_resolve_edges
+ *                   reading: gxb_complex_point and others
+ *                   questions: gxb_complex_side, turn, compare, winding, barycentric, support, barycentric_fine
  *     >>stream      a complex as bytes: gxb_stream_pass, has; gxb_complex_save, load
- *     >>boolean     exact, chainable Booleans of closed triangle surfaces: gxb_boolean_create, add, evaluate, destroy;
- * options of a result: set_triangulation, set_fine, set_mend; more about a result: components, defects, statistics
+ *     >>boolean     exact, chainable Booleans of closed triangle surfaces: gxb_boolean_create, add, evaluate, destroy
+ *                   options of a result: set_triangulation, set_fine, set_mend
+ *                   more about a result: components, defects, statistics
  *
- * then, under GXFEM_BOOLEAN_IMPLEMENTATION, in this order, from the bottom up: of all
+ * The implementation, under GXFEM_BOOLEAN_IMPLEMENTATION, from the bottom up. Of all:
  *     arithmetic      >>bits, >>exact (integers times powers of two), >>filter (doubles with bounds)
- *     predicates      >>points, >>trial (does arithmetic keep the rules?)
- * of complexes:
+ *     predicates      >>points, >>trial (tests of the machine's arithmetic)
+ * Of complexes:
  *     storage         >>memory (arrays), >>store (points, planes, exact numbers), >>transaction
  *     structure       >>topology (of the mesh), >>access (reading), >>split (by a plane)
  *     a triangle      >>clip, >>walls, >>cover (what is there already), >>rebalance and >>crowds (trees), >>insert
  *     questions       >>inside (winding numbers), >>pairs (of doubles), >>barycentric
  *     bytes           >>save, >>check (what was read), >>load
  *
- * of Booleans, in the order of the work:
+ * Of Booleans, in the order of the work:
  *     the object      >>arrangement (its types and struct), >>arena (memory), >>keys (points by definition)
  *     an operand      >>boxes (a tree of boxes), >>operands (reading one), >>sides (planes of its triangles)
  *     intersection    >>meet (two triangles), >>edges (points on edges in order)
@@ -64,35 +67,37 @@
  *
  * How the complex works. Each element of the mesh starts as one convex leaf, bounded by four facets, which it shares
  * with its neighbours. A triangle is clipped down the element's tree of planes (a binary space partition); each leaf
- * whose inside it meets is divided by the triangle's plane. The part of the dividing facet that the triangle covers is
- * a wall, the rest is open. So every leaf stays convex, and all that is ever asked is on which side of a plane a point
- * lies. Points, edges and facets are shared by all leaves around them: they are divided once, their neighbours see the
- * pieces, and the complex conforms at all times. Holes, dangling walls, detached walls and nested shells need no
- * treatment of their own: what is connected is what open facets join. A leaf with many facets is divided by a plane of
- * no triangle too, without a wall. See docs/ARCHITECTURE.md for the reasons.
+ * whose inside it meets is divided by the triangle's plane. The part of the dividing facet that the triangle covers
+ * becomes a wall; the rest stays open. So every leaf stays convex, and every decision is one predicate: on which side
+ * of a plane does a point lie? All leaves around a point, edge or facet share it. It is divided once, its neighbours
+ * see the parts, and the complex conforms at all times. What open facets join is connected. So holes, dangling walls,
+ * detached walls and nested shells need no treatment of their own. A leaf with many facets is also divided by a plane
+ * that belongs to no triangle; that plane makes no wall. docs/ARCHITECTURE.md gives the reasons.
  *
- * How Booleans work. Where triangles of the operands meet is found by predicates of input points; each touched triangle
- * is divided along those segments; winding numbers spread from facet to facet; the result is the facets between inside
- * and outside. Vertices are rounded at the output only, and more operands may follow. See docs/KERNEL.md.
+ * How Booleans work. Predicates of input points find where triangles of the operands meet. Each such triangle is
+ * divided along the segments in which it meets others. Winding numbers spread from one of these subtriangles to the
+ * next. The result is the subtriangles between inside and outside. Vertices are rounded at the output only, and more
+ * operands may follow. See docs/KERNEL.md.
  *
- * What it does not do: round a result so that no triangle ever remains turned over (gxb_boolean_set_mend does what can
- * be done).
+ * What it does not do: guarantee that rounding turns no triangle of a result over. gxb_boolean_set_mend repairs what a
+ * change within the rounding can repair.
  *
  * Guarantees and limits
- *     - Signs are exact for finite coordinates under every flag, rounding mode and flush-to-zero. What they ask of
- *       doubles (>>numbers) is tried out wherever a complex or a Boolean is created: GX_ERROR_CONFIGURATION where it
- *       does not hold, as on x87 set to 24 bits.
- *     - Coordinates in a complex: scaled by a power of two to the mesh's box they are 0 or of magnitude 2^-128 to
- * 2^128, and after subtraction of its origin at most 2^128, else GX_ERROR_RANGE. orient2d, orient3d, incircle and
- * insphere take any finite double. Coordinates of a Boolean are 0 or of magnitude 2^-128 to 2^128, beside its first
- * operand's largest if that is outside 2^+-60. That one is 2^-200 to 2^200 (GX_ERROR_RANGE), so that volumes are
- * numbers.
- *     - At most 2^28 elements and some 1.4e9 points, planes, edges, facets and leaves; an operand of a Boolean: about
- * 130 million triangles.
- *     - No global state, no input or output, no heap traffic but the growth of the complex's own arrays.
+ *     - Signs are exact for finite coordinates under every flag, rounding mode and flush-to-zero. What they require of
+ *       doubles (>>numbers) is tested at the creation of every complex and Boolean. If it does not hold, as on x87 set
+ *       to 24 bits, creation fails with GX_ERROR_CONFIGURATION.
+ *     - Coordinates of a complex, scaled by a power of two to the size of the mesh's box, are 0 or of magnitude 2^-128
+ *       to 2^128, and at most 2^128 after the origin is subtracted. Others give GX_ERROR_RANGE.
+ *     - Coordinates of a Boolean are 0 or of magnitude 2^-128 to 2^128. If the largest of the first operand is outside
+ *       2^-60 to 2^60, this range is relative to it. That largest one is 2^-200 to 2^200, so that volumes are finite.
+ *       Others give GX_ERROR_RANGE.
+ *     - orient2d, orient3d, incircle and insphere take any finite double.
+ *     - A complex has at most 2^28 elements and about 1.4e9 points, planes, edges, facets or leaves. An operand of a
+ *       Boolean has at most about 130 million triangles.
+ *     - No global state, no input or output. Only the growth of its own arrays uses the heap.
  *
- * Configuration: GXB_LIMB32 uses 32-bit limbs also where 128-bit products exist (same results, slower). GXFEM_STATIC
- * leaves out of a program what it does not call.
+ * Configuration: GXB_LIMB32 uses 32-bit limbs also where 128-bit products exist (same results, slower). With
+ * GXFEM_STATIC, the compiler leaves out functions that the program does not call.
  *
  * References: J. R. Shewchuk, Adaptive precision floating-point arithmetic and fast robust geometric predicates (1997);
  *     M. Attene, Indirect predicates for geometric constructions (2020), for the term implicit point;
@@ -187,10 +192,10 @@ extern "C" {
 
 /* >>numbers -------------------------------------------------------------------------------------------------------- */
 
-/* Exact predicates ask of a double that it is one of IEEE 754: 53 digits, 11 bits of exponent. They ask of an operation
-   that its relative error is at most 2^-52. They ask of the compiler that it does not see through gxbp_fence, and does
-   not read a number after it is overwritten. GX_ERROR_CONFIGURATION: a trial at creation (15 to 120 ns) found that this
-   does not hold. Predicates of coordinates need no object, and do not try. */
+/* Exact predicates require three things. Doubles are those of IEEE 754: 53 digits, 11 bits of exponent. The relative
+   error of an operation is at most 2^-52. The compiler does not see through gxbp_fence, and does not read a number
+   after it is overwritten. A trial at creation (15 to 120 ns) tests this; GX_ERROR_CONFIGURATION says that it failed.
+   Predicates of coordinates need no object and run without a trial. */
 
 #if defined(__SIZEOF_INT128__) && !defined(GXB_LIMB32)
 typedef uint64_t gxb_limb;
@@ -225,7 +230,7 @@ GXFEM_API void gxb_num_add(gxb_num *r, const gxb_num *a, const gxb_num *b);
 GXFEM_API void gxb_num_sub(gxb_num *r, const gxb_num *a, const gxb_num *b);
 /* r = a * b; r is neither */
 GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b);
-/* within one unit in the last place */
+/* a as a double, within one unit in the last place */
 GXFEM_API double gxb_num_to_double(const gxb_num *a);
 /* a / b, relative error below 2^-50 within 2^-1000 ... 2^1000 */
 GXFEM_API double gxb_num_ratio(const gxb_num *a, const gxb_num *b);
@@ -284,9 +289,9 @@ GXFEM_API int gxb_compare(const gxb_point *a, const gxb_point *b, int axis);
 /* Orientation of three points of the plane, seen from the side to which its normal points. */
 GXFEM_API int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const gxb_point *c, const gxb_plane *plane);
 
-/* How often a closed surface (vertices x 3, triangles x 3) winds around p, counted by exact ray crossings: 1 inside of
-   a surface whose triangles are counter-clockwise from outside. *on_surface: p lies on a triangle, the number then
-   means nothing. */
+/* How often a closed surface (vertices x 3, triangles x 3) winds around p, counted by exact ray crossings: 1 inside a
+   surface whose triangles are counter-clockwise from outside. *on_surface becomes 1 if p lies on a triangle; the number
+   then has no meaning. */
 GXFEM_API int gxb_winding_number(const double *vertices, const uint32_t *triangles, size_t triangle_count,
                                  const double p[3], int *on_surface);
 
@@ -300,14 +305,14 @@ typedef struct gxb_cpoint { /* a point of the complex */
     gxb_ball ball;          /* in the complex's frame: (x - origin) * 2^shift */
     uint32_t def[3];        /* two points and a plane, or three planes */
     uint8_t kind;           /* GXB_EXPLICIT ... */
-    uint8_t wall;           /* 1: a triangle was made to separate here what meets in this node only */
+    uint8_t wall;           /* 1: a triangle separates elements that meet in this node only */
     int8_t sign[2];
     uint32_t stamp[2]; /* when sign[i] was decided (gxb_store.stamp[i]) */
     gxb_num *exact;    /* X Y Z W, or NULL until they were needed */
     /* barycentric coordinates on a mesh edge (of its two ends) or in a mesh face (of its plane's three nodes); the
-     * first is negative until asked for */
+     * first is negative until they are computed */
     double parameter[3];
-    uint32_t scratch;
+    uint32_t rim_edge; /* while the rim of a new facet is closed: the rim's edge that leaves the point */
 } gxb_cpoint;
 
 typedef struct gxb_cplane { /* a plane: of three points, or through points 0 and 1 along coordinate axis def[2] */
@@ -325,14 +330,14 @@ typedef struct gxb_edge {
     /* GXB_NONE, or the first of the two edges (child, child + 1) into which it was divided */
     uint32_t child;
     uint32_t explicit_line : 1;
-    uint32_t wall : 1;   /* 1: a triangle was made to separate here what meets in this edge only */
-    uint32_t stamp : 30; /* when it was added to a rim last (complex.edge_stamp) */
+    uint32_t wall : 1;   /* 1: a triangle separates elements that meet in this edge only */
+    uint32_t stamp : 30; /* the complex.edge_stamp of the last rim to which it was added */
 } gxb_edge;
 
 typedef struct gxb_facet { /* a convex polygon */
     uint32_t plane;
-    /* in complex.pool: edge * 2 + (1 if walked backwards), counter-clockwise about the normal; count 0 of what was
-     * divided */
+    /* in complex.pool: edge * 2 + (1 if walked backwards), counter-clockwise about the normal; the count of a divided
+     * facet is 0 */
     uint32_t loop, loop_count : 31;
     uint32_t wall : 1; /* 1: material on its two sides is separated */
     uint32_t leaf[2];  /* in front (where the normal points), behind; GXB_NONE outside the mesh */
@@ -348,9 +353,9 @@ typedef struct gxb_label {
     uint32_t next;
 } gxb_label;
 
-typedef struct gxb_leaf { /* a convex piece of an element */
+typedef struct gxb_leaf { /* a convex subdomain of an element */
     uint32_t element;
-    uint32_t facets, facet_count; /* in complex.pool; count 0: an element that nothing has touched */
+    uint32_t facets, facet_count; /* in complex.pool; count 0: no triangle has touched the element */
     uint32_t parent;              /* leaf from which it was split, GXB_NONE for an element's first */
     uint32_t removed;             /* set by the user of the complex */
 } gxb_leaf;
@@ -361,7 +366,7 @@ typedef struct gxb_node {     /* of an element's tree of planes */
     uint32_t leaves;          /* below it */
 } gxb_node;
 
-/* of exact numbers; never moves */
+/* Memory for exact numbers. A block never moves. */
 typedef struct gxb_block {
     struct gxb_block *next;
     size_t size, used;
@@ -389,8 +394,8 @@ typedef struct gxb_undo {
     uint32_t array, index;
 } gxb_undo;
 
-/* Points and planes, the frame that their coordinates are in, exact numbers that were computed once, and a transaction:
-   what follows its begin is kept or undone. A complex has one, and so has a Boolean. */
+/* Points and planes, the frame of their coordinates, a cache of exact numbers, and a transaction. A complex and a
+   Boolean have one each. */
 typedef struct gxb_store {
     gxb_cpoint *points;
     uint32_t point_count, point_capacity;
@@ -437,23 +442,38 @@ typedef struct gxb_complex { /* what is used most comes first: its addresses are
     uint32_t pool_live, mark_live; /* words of lists in use, now and at begin */
     gxb_label *labels;
     uint32_t label_count, label_capacity;
-    /* facets that were labelled, or made walls, since begin: 2 x facet, + 1 if none before */
-    uint32_t *walls;
-    uint32_t wall_count, wall_capacity;
+    /* marked facets, which were labelled or made walls since begin: 2 x facet, + 1 if this made it a wall */
+    uint32_t *marked;
+    uint32_t marked_count, marked_capacity;
     /* stack of clipped polygons */
     struct gxbp_corner *corners;
     uint32_t corner_count, corner_capacity;
     struct gxbp_task *tasks;
     uint32_t task_count, task_capacity;
-    uint32_t *scratch;
-    uint32_t scratch_count, scratch_capacity;
+    /* work arrays: the leaf to divide as resolved facets and their signs, in this order; the rim of the facet between
+     * its halves, as signed edges; the facets of its halves; the loop of a facet to divide; the facets of a crowded
+     * leaf inside its element */
+    uint32_t *leaf_facets;
+    uint32_t leaf_facet_count, leaf_facet_capacity;
+    uint32_t *leaf_signs;
+    uint32_t leaf_sign_count, leaf_sign_capacity;
+    uint32_t *rim;
+    uint32_t rim_count, rim_capacity;
+    uint32_t *front_facets;
+    uint32_t front_facet_count, front_facet_capacity;
+    uint32_t *behind_facets;
+    uint32_t behind_facet_count, behind_facet_capacity;
+    uint32_t *loop;
+    uint32_t loop_count, loop_capacity;
+    uint32_t *inner_facets;
+    uint32_t inner_facet_count, inner_facet_capacity;
     uint32_t mark[6]; /* counts at begin: edges facets leaves nodes labels pool */
     uint32_t edge_stamp;
-    uint32_t sign_plane;      /* whose signs points remember in slot 0 */
+    uint32_t sign_plane;      /* the plane whose signs points remember in slot 0 */
     struct gxbp_pairs *pairs; /* see >>pairs, >>barycentric */
 } gxb_complex;
 
-/* Are allocate and release both there or both NULL, and reallocate only with them? */
+/* Are allocate and release both set or both NULL, and reallocate set only with them? */
 GXFEM_API int gxb_is_allocator(const gx_allocator *allocator);
 
 /* The complex of a mesh. Errors: ARGUMENT, EMPTY, INDEX (element), NOT_FINITE and RANGE (node), INVERTED and FLAT
@@ -468,11 +488,11 @@ GXFEM_API void gxb_complex_begin(gxb_complex *complex);
 GXFEM_API void gxb_complex_commit(gxb_complex *complex);
 GXFEM_API void gxb_complex_rollback(gxb_complex *complex);
 
-/* Makes room for so many times more of everything as has been made since begin, where there is memory for that: early
-   in a large transaction it saves arrays from being moved many times. Nothing else depends on it. */
+/* Reserves room for `times` as many items of each kind as were made since begin. Early in a large transaction this
+   saves arrays from moving many times. It has no other effect, and ignores a lack of memory. */
 GXFEM_API void gxb_complex_reserve(gxb_complex *complex, uint32_t times);
 
-/* What gxb_complex_add_point would refuse a point with. Errors: NOT_FINITE, RANGE. */
+/* Returns the error with which gxb_complex_add_point would refuse the point: NOT_FINITE or RANGE. */
 GXFEM_API gx_result gxb_complex_check_point(const gxb_complex *complex, const double x[3]);
 /* Errors: NOT_FINITE, RANGE, MEMORY, LIMIT. */
 GXFEM_API gx_result gxb_complex_add_point(gxb_complex *complex, const double x[3], uint32_t *point);
@@ -482,8 +502,8 @@ GXFEM_API gx_result gxb_complex_add_plane(gxb_complex *complex, gxb_triangle *tr
  * which allowed(user, leaf) is 0 are left alone (NULL: none). */
 GXFEM_API gx_result gxb_complex_insert(gxb_complex *complex, gxb_triangle *triangle, uint32_t element,
                                        int (*allowed)(void *user, uint32_t leaf), void *user);
-/* Where elements meet in nothing but a mesh edge or a node: marks what the triangle covers of that edge (pieces of it
-   get wall 1) or whether it covers the node. *covered is set to 1 if there is something, else left alone. */
+/* For elements that meet in a mesh edge or a node only. Marks the parts of that edge that the triangle covers (their
+   wall becomes 1), or the node. *covered becomes 1 if anything is covered, and is left alone otherwise. */
 GXFEM_API gx_result gxb_complex_cover_edge(gxb_complex *complex, gxb_triangle *triangle, uint32_t element,
                                            uint32_t local_edge, int *covered);
 GXFEM_API gx_result gxb_complex_cover_node(gxb_complex *complex, gxb_triangle *triangle, uint32_t node, int *covered);
@@ -514,13 +534,13 @@ GXFEM_API uint32_t gxb_complex_point_count(const gxb_complex *complex);
 GXFEM_API uint32_t gxb_complex_facet_count(const gxb_complex *complex);
 GXFEM_API uint32_t gxb_complex_leaf_count(const gxb_complex *complex);
 GXFEM_API uint32_t gxb_complex_label_count(const gxb_complex *complex);
-/* The facets that were labelled or made walls since begin, as often as that was done. */
+/* The marked facets: those that were labelled or made walls since begin, once for each time. */
 GXFEM_API uint32_t gxb_complex_marked_count(const gxb_complex *complex);
 GXFEM_API uint32_t gxb_complex_marked_facet(const gxb_complex *complex, uint32_t index);
-/* 1: this made a wall of a facet that was open. */
+/* 1: this mark made a wall of an open facet. */
 GXFEM_API int gxb_complex_marked_wall(const gxb_complex *complex, uint32_t index);
 
-/* The mesh, which never changes. Rows of one array: what is behind element 0's row are the other elements' rows. */
+/* The mesh, which never changes. Rows of one kind lie in one array: the other elements' rows follow element 0's. */
 GXFEM_API uint32_t gxb_complex_node_count(const gxb_complex *complex);
 GXFEM_API uint32_t gxb_complex_element_count(const gxb_complex *complex);
 GXFEM_API uint32_t gxb_complex_face_count(const gxb_complex *complex);
@@ -550,41 +570,42 @@ GXFEM_API int gxb_complex_turn(gxb_complex *complex, uint32_t a, uint32_t b, uin
 /* Sign of point[axis] - value, exact. */
 GXFEM_API int gxb_complex_compare(gxb_complex *complex, uint32_t point, int axis, double value);
 /* gxb_winding_number around a point inside the convex hull of points of the complex: the sum of their homogeneous
-   coordinates. Exact for hulls that no double lies in. The surface is in the given coordinates and must not pass
+   coordinates. Exact also for hulls that contain no double. The surface is in the given coordinates and must not pass
    through the hull's inside. */
 GXFEM_API int gxb_complex_winding(gxb_complex *complex, const uint32_t *points, size_t point_count,
                                   const double *vertices, const uint32_t *triangles, size_t triangle_count);
 /* Barycentric coordinates of a point in an element, each with a relative error below 2^-49 of its own (0 where it is
  * 0). */
 GXFEM_API void gxb_complex_barycentric(gxb_complex *complex, uint32_t point, uint32_t element, double lambda[4]);
-/* Bit k: its coordinate k is not 0 by the point's definition. Needs no arithmetic. */
+/* Bit k is set unless barycentric coordinate k is 0 by the point's definition. Needs no arithmetic. */
 GXFEM_API unsigned gxb_complex_support(const gxb_complex *complex, uint32_t point, uint32_t element);
 /* The coordinates with a relative error below 2^-180. */
 GXFEM_API void gxb_complex_barycentric_fine(gxb_complex *complex, uint32_t point, uint32_t element, gxb_num lambda[4]);
 
 /* >>stream --------------------------------------------------------------------------------------------------------- */
 
-/* Bytes that are written, counted (out NULL) or read (in not NULL), in the machine's own order. The first error stays,
-   and what is passed after it is not written, and read as 0. */
+/* Writes bytes, counts them (out NULL) or reads them (in not NULL), in the machine's own order. The first error stays.
+   After it nothing is written, and everything is read as 0. */
 typedef struct gxb_stream {
     unsigned char *out;
     const unsigned char *in;
-    size_t size, at; /* room, or bytes there are; bytes passed */
-    /* GX_ERROR_LIMIT: no room; GX_ERROR_DAMAGED: no more bytes, or what they say cannot be */
+    size_t size, at; /* size: room, or bytes to read; at: bytes passed */
+    /* GX_ERROR_LIMIT: no room; GX_ERROR_DAMAGED: no more bytes, or impossible contents */
     gx_result result;
 } gxb_stream;
 /* count items of width bytes */
 GXFEM_API void gxb_stream_pass(gxb_stream *stream, void *data, size_t count, size_t width);
-/* Reading: are there bytes for so many items? Else GX_ERROR_DAMAGED and 0, so that a count never asks for more memory
-   than the bytes that it counts. */
+/* Reading: are there bytes for `count` items? If not, returns 0 and sets GX_ERROR_DAMAGED. So no count that is read can
+   request more memory than the stream has bytes for. */
 GXFEM_API int gxb_stream_has(gxb_stream *stream, size_t count, size_t width);
 
-/* What defines the complex, but for its mesh: no exact numbers, no signs, no lists that were replaced. Not within a
- * transaction. */
+/* Writes the definition of the complex without its mesh: no exact numbers, signs or replaced lists. No transaction may
+ * be open. */
 GXFEM_API void gxb_complex_save(gxb_complex *complex, gxb_stream *stream);
-/* Reads it into a complex just created of the same mesh. trusted 0: everything is checked that other functions rely on,
-   exactly: in range, every tree a tree, facets convex polygons in their planes, leaves convex, closed and within their
-   element's tree. After an error (that of the stream: DAMAGED, MEMORY, LIMIT) the complex can only be destroyed. */
+/* Reads it into a complex that was just created from the same mesh. trusted 0: checks everything that other functions
+   rely on, by exact predicates. Indices are in range, trees are trees, facets are convex polygons in their planes,
+   leaves are convex, closed and within their element's tree. After an error (that of the stream: DAMAGED, MEMORY,
+   LIMIT) the complex can only be destroyed. */
 GXFEM_API gx_result gxb_complex_load(gxb_complex *complex, gxb_stream *stream, int trusted);
 
 /* >>boolean -------------------------------------------------------------------------------------------------------- */
@@ -737,15 +758,14 @@ extern "C" {
 #pragma clang attribute push(__attribute__((target("no-simd128"))), apply_to = function)
 #endif
 
-/* What is called rarely is small rather than fast; what is called from many places, and each stage, is there once and
-   by itself: compilers take longer for a large function than for its parts. */
+/* COLD and RARE functions are seldom called, and compiled for size. A RARE one may be inlined: where it has one caller,
+   or where it is public and GXFEM_STATIC makes it inline. APART functions stay out of line: those with many callers,
+   and each stage of the work, since one large function compiles slower than its parts. */
 #if defined(__GNUC__)
 #define GXBP_FETCH(address) __builtin_prefetch(address)
 #define GXBP_COLD           __attribute__((cold, noinline))
-#define GXBP_RARE                                                                                                      \
-    __attribute__((cold)) /* may be inlined where there is one call; of public functions, which GXFEM_STATIC makes     \
-                             inline */
-#define GXBP_APART __attribute__((noinline))
+#define GXBP_RARE           __attribute__((cold))
+#define GXBP_APART          __attribute__((noinline))
 #else
 #define GXBP_FETCH(address) ((void)0)
 #define GXBP_COLD
@@ -1022,8 +1042,8 @@ static GXBP_COLD void gxbp_num_increase(gxb_num *r, const gxb_num *a, int factor
     gxbp_num_copy(r, &sum, 1);
 }
 
-/* r = num / den, relative error below 2^-180: each of four steps adds the quotient of what is left (it uses num up), 50
- * bits. */
+/* r = num / den with a relative error below 2^-180. Each of four steps adds the quotient of the remainder, 50 bits.
+   num is overwritten. */
 static GXBP_COLD void gxbp_num_divide(gxb_num *r, gxb_num *num, const gxb_num *den) {
     GXB_NUM(q);
     GXB_NUM(t);
@@ -1161,23 +1181,25 @@ static GXBP_COLD void gxbp_exact_three_planes(gxb_num point[4], const gxb_num a[
     gxbp_make_weight_positive(point);
 }
 
-/* >>filter: doubles with error bounds that hold for any order of operations, contraction, excess precision, rounding
- * mode ----
+/* >>filter: signs and points in doubles, with proven error bounds -------------------------------------------------- */
+/* In: doubles with errors. Out: values with bounds, and the signs that these leave certain. The bounds hold for any
+ * order and contraction of the operations, with excess precision, in any rounding mode. The proof:
  *
  * u = 2^-52 bounds the relative error of one operation in every rounding mode. Underflow, flushed or not, adds at most
  * 2^-1022 to a result; GXBP_TINY, far above every such error in the ranges of the complex, stands for it in every
- * bound. Differences of coordinates, normals and distances pass through gxbp_fence, so that a compiler that may
- * reassociate can't multiply them out: bounds rest on their size after cancellation. Everything after the fence is a
- * sum of products; whatever its order, each elementary product suffers fewer than eight roundings, so |error| <= 8u *
- * (sum of |products|). Each bound below is at least that plus the inherited errors to first order, times a factor of 2
- * or more that covers second-order terms and the rounding of the bound itself.
+ * bound. Differences of coordinates, normals and distances pass through gxbp_fence. So a compiler that may reassociate
+ * can't multiply them out, and bounds rest on their size after cancellation. Everything after the fence is a sum of
+ * products. Whatever its order, each elementary product suffers fewer than eight roundings, so |error| <= 8u * (sum of
+ * |products|). Each bound below is at least that plus the inherited errors to first order, times a factor of 2 or more
+ * that covers second-order terms and the rounding of the bound itself.
  */
 #define GXBP_NO_BALL_EXPONENT 200
 #define GXBP_U                gxbp_power(-52)
 #define GXBP_TINY             gxbp_power(-600)
 #define GXBP_NO_BALL          gxbp_power(GXBP_NO_BALL_EXPONENT)
 
-/* The constraint of a register that holds a double and no more bits. x87 has no such registers, cl no such assembly. */
+/* The assembler's constraint for a register that holds exactly a double. x87 has no such register, cl no such
+   assembly. */
 #if !defined(__GNUC__) && !defined(__clang__)
 #elif defined(__SSE2_MATH__)
 #define GXBP_REGISTER "+x"
@@ -1189,7 +1211,7 @@ static GXBP_COLD void gxbp_exact_three_planes(gxb_num point[4], const gxb_num a[
 #define GXBP_REGISTER "+f"
 #endif
 
-/* x, in a way that the compiler can not see through: no code where there is such a register. */
+/* x, hidden from the compiler. Costs no instruction where such a register exists. */
 static double gxbp_fence(double x) {
 #ifdef GXBP_REGISTER
     __asm__("" : GXBP_REGISTER(x));
@@ -1212,13 +1234,13 @@ static void gxbp_cross(double r[3], const double a[3], const double b[3]) {
     r[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* The bound for each component of a x b, for sizes A and B and errors ea and eb of the components of a and b: two
-   products of sizes A B, inherited A eb + B ea + ea eb each, and 8u of 2 A B */
+/* The error bound of each component of a x b. A and B are sizes, ea and eb errors of the components of a and b. Two
+   products of size A B inherit A eb + B ea + ea eb each; rounding adds 8u of 2 A B. */
 static double gxbp_cross_error(double A, double ea, double B, double eb) {
     return 4 * (A * eb + B * ea + ea * eb) + 32 * GXBP_U * A * B + GXBP_TINY;
 }
 
-/* r = a x b, with errors ea and eb of the components of a and b. Returns the bound of r's. */
+/* r = a x b, with errors ea and eb of the components of a and b. Returns the error bound of r's components. */
 static inline double gxbp_filter_cross(double r[3], const double a[3], double ea, const double b[3], double eb) {
     gxbp_cross(r, a, b);
     return gxbp_cross_error(gxbp_max3(a), ea, gxbp_max3(b), eb);
@@ -1229,7 +1251,7 @@ static inline void gxbp_difference(double c[3], const gxb_ball *a, const gxb_bal
     for (k = 0; k < 3; k++) c[k] = gxbp_fence(b->x[k] - a->x[k]);
 }
 
-/* c = b - a with the bound for each component */
+/* c = b - a. Returns the error bound of each component. */
 static double gxbp_filter_difference(double c[3], const gxb_ball *a, const gxb_ball *b) {
     gxbp_difference(c, a, b);
     return 2 * (a->error + b->error) + 2 * GXBP_U * gxbp_max3(c) + GXBP_TINY;
@@ -1323,7 +1345,7 @@ static void gxbp_ball_explicit(gxb_ball *ball, const double p[3]) {
     ball->error = 0;
 }
 
-/* Do all differences and products of these points' coordinates keep away from overflow? (underflow: see GXBP_TINY) */
+/* Are these points' coordinates so small that no difference and no product overflows? (underflow: see GXBP_TINY) */
 static GXBP_APART int gxbp_filter_range(const double *const *x, int count, int dimension) {
     int i, k;
     for (i = 0; i < count; i++)
@@ -1332,14 +1354,14 @@ static GXBP_APART int gxbp_filter_range(const double *const *x, int count, int d
     return 1;
 }
 
-/* What a short exact stage returns where coordinates are too far apart for it. */
+/* A short exact stage returns this where coordinates are too far apart for it. */
 #define GXBP_UNKNOWN 2
 
 #if GXB_LIMB_BITS == 64
 __extension__ typedef __int128 gxbp_signed_wide;
 
-/* count doubles as integers below 2^61 of one unit. 0: the smallest needs a finer one, or is a denormal. A product by a
-   power of two is exact unless it underflows: then it is no integer, or has become 0. */
+/* Writes the coordinates of count points as integers below 2^61 of one unit. 0: the smallest coordinate needs a finer
+   unit, or is a denormal. A product by a power of two is exact unless it underflows; then it is no integer, or 0. */
 static int gxbp_short_integers(const double *const *x, int count, int dimension, int64_t *out) {
     int top = 0, i, k;
     double scale;
@@ -1448,9 +1470,9 @@ static int gxbp_short_det2(const gxbp_short *a, const gxbp_short *b, const gxbp_
     return ab * gxbp_compare_limbs(x, y, 6);
 }
 
-/* Side of the plane through x[0..2] on which the point lies in which the plane through x[3..5] cuts the line from x[6]
-   to x[7]: for sides s and t of these two against x[3..5], u and v against x[0..2], the sign of (t u - s v) / (t - s).
-   Determinants are the negatives of sides. */
+/* The plane through x[3..5] cuts the line from x[6] to x[7] in a point. Returns this point's side of the plane through
+   x[0..2]: the sign of (t u - s v) / (t - s), where s and t are the sides of x[6] and x[7] against x[3..5], u and v
+   those against x[0..2]. Determinants are the negatives of sides. */
 static int gxbp_line_side_short(const double *const x[8]) {
     gxbp_short s, t, u, v;
     int64_t i[24];
@@ -1563,10 +1585,10 @@ GXFEM_API int gxb_orient3d(const double a[3], const double b[3], const double c[
     return gxbp_orient3d_exact(p);
 }
 
-/* Rows are the points less the last, with their squared lengths; the determinant along the column of squares. An
-   elementary product of the filter has four fenced differences, three products and is one of twelve: at most 4 + 3 + 11
-   roundings whatever the order; in 3D five, four, one of 72: 80. Ranges as for gxb_orient3d keep all products from
-   overflow and errors of underflow below GXBP_TINY. */
+/* Rows are the points minus the last one, with their squared lengths. The determinant is expanded along the column of
+   squares. An elementary product has four fenced differences and three products, and is one of twelve: at most
+   4 + 3 + 11 roundings in any order. In 3D it has five and four, and is one of 72: 80 roundings. In the ranges of
+   gxb_orient3d no product overflows, and errors of underflow are below GXBP_TINY. */
 static int gxbp_filter_incircle(const double *const p[4]) {
     double x[3], y[3], value = 0, size = 0;
     int i;
@@ -1818,12 +1840,12 @@ GXFEM_API int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const 
     }
 }
 
-/* >>trial: what all this rests on, tried out ----------------------------------------------------------------------- */
+/* >>trial: tests of the machine's arithmetic ----------------------------------------------------------------------- */
 /* In: nothing. Out: does arithmetic keep the rules that filters and exact numbers assume?
  *
- * A processor's mode or a compiler that breaks it makes GX_ERROR_CONFIGURATION of every creation. The compiler knows
- * none of the numbers. Results are exact, and so the same under every flag and in every mode that is allowed; where one
- * is not, each rounding of it passes.
+ * If a processor's mode or a compiler breaks them, every creation fails with GX_ERROR_CONFIGURATION. The compiler knows
+ * none of the numbers. Results are exact, so they are the same under every flag and in every mode that is allowed.
+ * Where a result is rounded, each rounding of it passes.
  */
 
 /* Distance of two numbers of one sign in units of the last place */
@@ -1832,10 +1854,10 @@ static uint64_t gxbp_units_between(double a, double b) {
     return x > y ? x - y : y - x;
 }
 
-/* 2^e where the compiler knows nothing of it; zero is 0 */
+/* 2^e, hidden from the compiler; zero is 0 */
 static double gxbp_hidden_power(int e, int zero) { return gxbp_power(e + zero); }
 
-/* 53 bits, the range that bounds take, and sums whose errors are computed as written */
+/* Tests for 53 bits, for the range that bounds need, and for errors of sums that are computed as written */
 static int gxbp_operations_hold(int zero) {
     const uint64_t one_bits = (uint64_t)1023 << 52;
     const double one = gxbp_hidden_power(0, zero), unit = gxbp_hidden_power(-52, zero);
@@ -1847,13 +1869,13 @@ static int gxbp_operations_hold(int zero) {
     const double lost = gxbp_fence(low - small);
     if (sizeof(double) != 8 || gxbp_bits(gxbp_fence(1)) != one_bits || gxbp_bits(one) != one_bits) return 0;
     if (gxbp_bits(gxbp_fence(one + unit)) != one_bits + 1 || gxbp_bits(product) != one_bits - 2) return 0;
-    if (gxbp_units_between(gxbp_fence(product / above), below) > 4) return 0; /* may be by a reciprocal */
+    if (gxbp_units_between(gxbp_fence(product / above), below) > 4) return 0; /* it may multiply by a reciprocal */
     if (gxbp_exponent(gxbp_fence(tiny * large)) != -100 || gxbp_exponent(gxbp_fence(large * large)) != 1000) return 0;
     if (gxbp_is_zero(lost)) return gxbp_bits(sum) == one_bits;
     return gxbp_bits(sum) == one_bits + 1 && gxbp_bits(lost) == gxbp_bits(-unit); /* rounded up */
 }
 
-/* Reads a number, then overwrites it: what clang 14 and 15 get wrong in vectors for WebAssembly (GXFEM_SCALAR) */
+/* Reads a number, then overwrites it. clang 14 and 15 get this wrong in vectors for WebAssembly (GXFEM_SCALAR). */
 static GXBP_APART void gxbp_in_place(double x[3]) {
     const double a = 2 * x[2] + 1, b = 3 * x[2] + 5;
     x[2] = 7 * x[2];
@@ -1868,17 +1890,18 @@ typedef struct gxbp_trial {
     gxb_plane plane;
 } gxbp_trial;
 
-/* Sides of a point of the plane, and of those a unit in the last place below and above. Multiplied out (n.x - n.b) the
-   sums would not tell them apart. */
+/* Tests the side of a point in the plane, and of points one unit in the last place below and above it. Multiplied out
+   (n.x - n.b), the sums would not tell them apart. */
 static int gxbp_sides_hold(gxbp_trial *t, int zero) {
-    static const signed char at[6][3] = {{0, 0, 0}, {3, 1, -2}, {-1, 4, 1}, {9, -10, -7}, {18, -11, 6}, {-18, -7, -46}};
+    static const signed char offset[6][3] = {{0, 0, 0},    {3, 1, -2},   {-1, 4, 1},
+                                             {9, -10, -7}, {18, -11, 6}, {-18, -7, -46}};
     const double one = gxbp_hidden_power(0, zero);
     gxb_ball ball;
     int i, k;
     t->step = gxbp_hidden_power(-20, zero);
     t->unit = gxbp_hidden_power(-52, zero);
     for (i = 0; i < 6; i++)
-        for (k = 0; k < 3; k++) t->x[i][k] = gxbp_fence(one + t->step * at[i][k]);
+        for (k = 0; k < 3; k++) t->x[i][k] = gxbp_fence(one + t->step * offset[i][k]);
     gxb_plane_init(&t->plane, t->x[0], t->x[1], t->x[2]);
     for (i = -1; i <= 1; i++) {
         double value, bound;
@@ -1890,7 +1913,7 @@ static int gxbp_sides_hold(gxbp_trial *t, int zero) {
     return 1;
 }
 
-/* Is the point where the plane meets the line, and the planes of x and y, near x[3] and within its error? */
+/* Tests the points in which the plane meets the line, and the planes of x and y: near x[3], and within their errors. */
 static int gxbp_meetings_hold(const gxbp_trial *t) {
     const gxb_plane_filter *planes[3];
     gxb_plane upright[2];
@@ -1915,7 +1938,7 @@ static int gxbp_meetings_hold(const gxbp_trial *t) {
     return 1;
 }
 
-/* meetings: those too, which take twice as long as all else */
+/* meetings: tests these points too, which takes twice as long as all the rest */
 static GXBP_APART int gxbp_arithmetic_holds(int meetings) {
     const volatile int hidden = 0;
     const int zero = hidden;
@@ -1948,9 +1971,9 @@ static int gxbp_ray_reaches(const double a[3], const double b[3], const double c
     return 1;
 }
 
-/* A point of a triangle's plane, for which this is asked, lies in the triangle where no projection to a coordinate
-   plane sees it on both sides of edges. A triangle without area, all of whose projections are flat, contains what of
-   its line is in its box. p is in the box prolonged to -x. */
+/* p lies in the triangle's plane, and in its box prolonged to -x. It lies in the triangle if no projection to a
+   coordinate plane has it on both sides of edges. All projections of a triangle without area are flat; it contains the
+   part of its line that is in its box. */
 static GXBP_COLD int gxbp_point_in_triangle(const double a[3], const double b[3], const double c[3],
                                             const double p[3]) {
     int k, flat = 1;
@@ -1977,8 +2000,7 @@ static GXBP_COLD int gxbp_point_in_triangle(const double a[3], const double b[3]
 }
 
 /* Does the ray from p along +x cross the triangle? In the projection to y, z the ray is moved by (h, h^2), h -> 0, so
-   that it meets no edge; the sign of its side of edge a b is then that of the first term of the expansion in h which is
-   not 0. */
+   that it meets no edge. Its side of edge a b is the sign of the first nonzero term of the expansion in h. */
 static int gxbp_ray_side(const double a[3], const double b[3], const double p[3]) {
     int sign = gxb_orient2d(a + 1, b + 1, p + 1);
     if (sign != 0) return sign;
@@ -2020,8 +2042,8 @@ static GXBP_APART void gxbp_release(const gx_allocator *a, void *memory, size_t 
         free(memory);
 }
 
-/* A larger block with the first `used` bytes of the old one, which is then gone; NULL: there is none, and the old one
- * stays. */
+/* Returns a larger block with the first `used` bytes of the old one, and releases that. NULL: there is no memory, and
+ * the old block stays. */
 static GXBP_RARE void *gxbp_reallocate(const gx_allocator *a, void *old, size_t old_size, size_t used, size_t size) {
     void *memory;
     /* moves the pages of large blocks, not their bytes */
@@ -2059,7 +2081,7 @@ static GXBP_APART gx_result gxbp_reserve(const gx_allocator *a, void *array, uin
          : gxbp_reserve(allocator, &(owner)->array, (owner)->counter##_count, &(owner)->counter##_capacity,            \
                         sizeof *(owner)->array, extra))
 
-/* An array of a structure: where its pointer, its number of items and its room are; the size of an item */
+/* An array of a structure: the offsets of its pointer, count and capacity; the size of an item */
 typedef struct gxbp_array {
     uint16_t pointer, count, capacity, item;
 } gxbp_array;
@@ -2081,7 +2103,7 @@ static GXBP_COLD void gxbp_drop_arrays(const gx_allocator *a, void *owner, const
     }
 }
 
-/* The counts at the begin of a transaction, of arrays that have one */
+/* Records the counts of arrays at the begin of a transaction */
 static void gxbp_mark_arrays(void *owner, const gxbp_array *array, uint32_t *mark, uint32_t count) {
     uint32_t k;
     for (k = 0; k < count; k++) mark[k] = *gxbp_word(owner, array[k].count);
@@ -2092,7 +2114,7 @@ static void gxbp_cut_arrays(void *owner, const gxbp_array *array, const uint32_t
     for (k = 0; k < count; k++) *gxbp_word(owner, array[k].count) = mark[k];
 }
 
-/* An array grows to what is expected or by half, whichever is more: gxbp_reserve adds half of what it is asked for. */
+/* An array grows to the expected size or by half, whichever is more: gxbp_reserve adds half of the request. */
 static GXBP_RARE void gxbp_expect_arrays(const gx_allocator *a, void *owner, const gxbp_array *array,
                                          const uint32_t *mark, uint32_t arrays, uint32_t times) {
     uint32_t k;
@@ -2107,13 +2129,10 @@ static GXBP_RARE void gxbp_expect_arrays(const gx_allocator *a, void *owner, con
 }
 
 /* >>store: points, planes, exact numbers, a transaction ------------------------------------------------------------ */
-/* What a complex and a Boolean share. In: definitions of points and planes. Out: their numbers, their balls, exact
-   coordinates on request, signs. An undo log takes back what a transaction has added. */
-
-/* In: coordinates, or the points and planes that define a point or plane. Out: indices; exact signs of one against
-   another. Touches the store alone: nothing here knows of edges, facets or triangles. Exact numbers are computed when a
-   filter leaves a sign open, and kept. The undo log holds the old contents of items of any array: its owner says which
-   and puts them back. */
+/* A complex and a Boolean share this. In: coordinates, or the points and planes that define a point or plane. Out:
+   indices, balls, exact coordinates on request, exact signs of points against planes. Touches the store alone: nothing
+   here knows edges, facets or triangles. Exact numbers are computed when a filter leaves a sign open, and kept. The
+   undo log holds the old contents of items of any array. The array's owner names it and puts them back. */
 
 static const gxbp_array gxbp_store_arrays[] = {
     GXBP_ARRAY(gxb_store, points, point), GXBP_ARRAY(gxb_store, planes, plane), /* these two have marks */
@@ -2159,7 +2178,7 @@ static int gxbp_is_recent(const gxb_store *store, const void *memory) {
            m < (const unsigned char *)block + block->size;
 }
 
-/* Gives back the blocks of exact numbers that are newer than this one. */
+/* Releases the blocks of exact numbers that are newer than this one. */
 static GXBP_COLD void gxbp_drop_numbers(gxb_store *store, const gxb_block *last) {
     while (store->blocks != last) {
         gxb_block *next = store->blocks->next;
@@ -2168,7 +2187,7 @@ static GXBP_COLD void gxbp_drop_numbers(gxb_store *store, const gxb_block *last)
     }
 }
 
-/* Gives back exact numbers kept since begin; those of older points and planes are computed again when needed. */
+/* Releases exact numbers kept since begin. Those of older points and planes are computed again when needed. */
 static GXBP_COLD void gxbp_drop_recent_numbers(gxb_store *store) {
     uint32_t i;
     for (i = 0; i < store->mark[0]; i++)
@@ -2181,7 +2200,7 @@ static GXBP_COLD void gxbp_drop_recent_numbers(gxb_store *store) {
     if (store->blocks != NULL) store->blocks->used = store->mark_used;
 }
 
-/* Signs in the slot were of another plane; they are not looked at where their stamp is not the last. */
+/* The slot is for another plane from now on: signs with an older stamp are not read. */
 static void gxbp_forget_signs(gxb_store *store, int slot) {
     uint32_t i;
     if (store->stamp[slot]++ < UINT32_MAX) return;
@@ -2189,7 +2208,7 @@ static void gxbp_forget_signs(gxb_store *store, int slot) {
     store->stamp[slot] = 1;
 }
 
-/* Forgets points and planes that were made since begin. The log must be empty. */
+/* Drops points and planes that were made since begin. The log must be empty. */
 static GXBP_RARE void gxbp_store_rollback(gxb_store *store) {
     gxbp_drop_recent_numbers(store);
     gxbp_cut_arrays(store, gxbp_store_arrays, store->mark, 2);
@@ -2216,8 +2235,8 @@ static int gxbp_difference_exponent(double high, double low) {
     return power + 52;
 }
 
-/* Frame: the origin is the mesh's lower corner rounded to few bits where the mesh lies far from 0 (so that the shift
-   adds no bits to its coordinates), else 0; the scale brings the box to size 1. */
+/* Chooses the frame. The scale brings the box to size 1. The origin is 0, or, where the mesh lies far from 0, its lower
+   corner rounded to few bits, so that subtracting it adds no bits to coordinates. */
 static gx_result gxbp_choose_frame(gxb_store *store, const double *positions, size_t count, size_t *bad) {
     int axis, largest = -2000;
     for (axis = 0; axis < 3; axis++) {
@@ -2241,9 +2260,9 @@ static gx_result gxbp_choose_frame(gxb_store *store, const double *positions, si
         if (size == -2000) size = gxbp_is_zero(low) ? -2000 : gxbp_exponent(low);
         if (size > largest) largest = size;
         if (size > -2000 && !gxbp_is_zero(low) && gxbp_exponent(low) > size + 3) {
-            const int drop = gxbp_exponent(low) - size; /* keep so many leading bits */
-            if (drop < 52)
-                store->origin[axis] = gxbp_double(gxbp_bits(low) & ~((((uint64_t)1) << (52 - drop)) - 1));
+            const int kept = gxbp_exponent(low) - size; /* fraction bits of the lower corner */
+            if (kept < 52)
+                store->origin[axis] = gxbp_double(gxbp_bits(low) & ~((((uint64_t)1) << (52 - kept)) - 1));
             else
                 store->origin[axis] = low;
         }
@@ -2278,8 +2297,7 @@ static void *gxbp_block_take(gxb_store *store, size_t size) {
     return (unsigned char *)block + block->used - size;
 }
 
-/* A copy of four numbers that stays. NULL: no memory; the numbers are a cache, so that most callers may go on without.
- */
+/* Keeps a copy of four numbers. NULL: no memory. The numbers are a cache, so most callers can go on without them. */
 static gxb_num *gxbp_keep_exact(gxb_store *store, const gxb_num c[4]) {
     size_t total = 0;
     gxb_num *copy;
@@ -2363,7 +2381,7 @@ static gx_result gxbp_store_add_point(gxb_store *store, const double x[3], uint3
 /* Exact homogeneous coordinates of a point of the complex given by its definition. */
 static void gxbp_exact_definition(gxb_store *store, uint32_t kind, const uint32_t def[3], gxb_num out[4]);
 
-/* The point's exact coordinates: kept, or in store where they need not or cannot be kept. */
+/* The point's exact coordinates: the kept ones, or those in *own where they need not or cannot be kept. */
 static const gxb_num *gxbp_exact_cpoint(gxb_store *store, uint32_t point, gxbp_vec *own) {
     gxb_cpoint *p = &store->points[point];
     if (p->exact != NULL) return p->exact;
@@ -2377,7 +2395,7 @@ static const gxb_num *gxbp_exact_cpoint(gxb_store *store, uint32_t point, gxbp_v
     return p->exact != NULL ? p->exact : own->c;
 }
 
-/* The given coordinates of an explicit point: what came into the frame by a shift and a scale, exactly, goes back. */
+/* The given coordinates of an explicit point. The shift and scale into the frame were exact, so they can be undone. */
 static GXBP_COLD void gxbp_given(gxb_store *store, uint32_t point, double x[3]) {
     gxbp_vec own;
     const gxb_num *c = gxbp_exact_cpoint(store, point, &own);
@@ -2459,7 +2477,7 @@ static void gxbp_definition_ball(const gxb_store *store, uint32_t kind, const ui
     }
 }
 
-/* Is the point in the plane by the way in which either is defined? */
+/* Is the point in the plane by the definition of either? */
 static int gxbp_incident(const gxb_store *store, uint32_t kind, const uint32_t def[3], uint32_t point, uint32_t plane) {
     const gxb_cplane *f = &store->planes[plane];
     const uint32_t third = f->along_axis ? f->def[0] : f->def[2];
@@ -2476,8 +2494,8 @@ static int gxbp_plane_has_line(const gxb_cplane *f, uint32_t p, uint32_t q) {
     return (p == f->def[0] || p == f->def[1] || p == third) && (q == f->def[0] || q == f->def[1] || q == third);
 }
 
-/* Is the point in the plane because two of its own planes meet in a line that the plane contains too? So it is where a
-   sheet's triangles meet in their common edge: what a filter never settles, and exact arithmetic need not. */
+/* Is the point in the plane because two of its own planes meet in a line that the plane contains too? This is the case
+   where triangles of a sheet meet in their common edge. No filter settles it, and it needs no exact arithmetic. */
 static GXBP_RARE int gxbp_incident_by_line(const gxb_store *store, const uint32_t def[3], uint32_t plane) {
     const gxb_cplane *f = &store->planes[plane];
     const uint32_t line_count = f->along_axis ? 1u : 3u;
@@ -2490,7 +2508,7 @@ static GXBP_RARE int gxbp_incident_by_line(const gxb_store *store, const uint32_
     return 0;
 }
 
-/* x: coordinates of the points (as many as count) where all are given by doubles. Else 0 */
+/* Writes the coordinates of count points to x if all are given by doubles. Returns 0 otherwise. */
 static GXBP_APART int gxbp_given_points(const gxb_store *store, const uint32_t *points, int count, const double **x) {
     int k;
     for (k = 0; k < count; k++) {
@@ -2501,7 +2519,8 @@ static GXBP_APART int gxbp_given_points(const gxb_store *store, const uint32_t *
     return 1;
 }
 
-/* Of a point and a plane that are given by doubles, or a point of a line and a plane that are */
+/* The side of a point given by doubles, or of one on a line and a plane given by doubles; the plane is given by
+   doubles too. GXBP_UNKNOWN: it is another case */
 static int gxbp_short_side(const gxb_store *store, uint32_t kind, const uint32_t def[3], uint32_t point,
                            uint32_t plane) {
     const gxb_cplane *f = &store->planes[plane], *g;
@@ -2569,7 +2588,7 @@ static GXBP_APART int gxbp_new_sign(gxb_store *store, uint32_t point, uint32_t p
     return sign;
 }
 
-/* The side with a memory: slot 0 for the triangle being inserted, slot 1 for its edges' planes. */
+/* The side, remembered with the point: slot 0 for the triangle being inserted, slot 1 for its edges' planes. */
 static int gxbp_sign(gxb_store *store, uint32_t point, uint32_t plane, int slot) {
     const gxb_cpoint *p = &store->points[point];
     return p->stamp[slot] == store->stamp[slot] ? p->sign[slot] : gxbp_new_sign(store, point, plane, slot);
@@ -2673,8 +2692,8 @@ static GXBP_COLD int gxbp_planes_cross(gxb_store *store, uint32_t a, uint32_t b)
 }
 
 /* >>transaction: what begin, commit and rollback of a complex do --------------------------------------------------- */
-/* In: a complex. Out: the complex as it was at the beginning, if the transaction is taken back. Logs each record
-   once, before its first change. */
+/* In: a complex. Out: after a rollback, the complex as it was at begin. Each item is logged once, before its first
+   change. */
 
 typedef struct gxbp_corner { /* of a clipped polygon: its point, and what carries the edge to the next corner */
     gxb_ball ball;
@@ -2690,13 +2709,23 @@ typedef struct gxbp_task {
 #define GXBP_TRIANGLE_EDGE 0x80000000u
 #define GXBP_IN_ROOT       GXB_NONE /* task.parent: the reference is the element's root */
 
-/* The complex's arrays: those with marks come first, as in gxb_complex.mark. */
-static const gxbp_array gxbp_complex_arrays[] = {
-    GXBP_ARRAY(gxb_complex, edges, edge),   GXBP_ARRAY(gxb_complex, facets, facet),
-    GXBP_ARRAY(gxb_complex, leaves, leaf),  GXBP_ARRAY(gxb_complex, nodes, tree),
-    GXBP_ARRAY(gxb_complex, labels, label), GXBP_ARRAY(gxb_complex, pool, pool),
-    GXBP_ARRAY(gxb_complex, walls, wall),   GXBP_ARRAY(gxb_complex, corners, corner),
-    GXBP_ARRAY(gxb_complex, tasks, task),   GXBP_ARRAY(gxb_complex, scratch, scratch)};
+static const gxbp_array gxbp_complex_arrays[] = {/* those with marks come first, as in gxb_complex.mark */
+                                                 GXBP_ARRAY(gxb_complex, edges, edge),
+                                                 GXBP_ARRAY(gxb_complex, facets, facet),
+                                                 GXBP_ARRAY(gxb_complex, leaves, leaf),
+                                                 GXBP_ARRAY(gxb_complex, nodes, tree),
+                                                 GXBP_ARRAY(gxb_complex, labels, label),
+                                                 GXBP_ARRAY(gxb_complex, pool, pool),
+                                                 GXBP_ARRAY(gxb_complex, marked, marked),
+                                                 GXBP_ARRAY(gxb_complex, corners, corner),
+                                                 GXBP_ARRAY(gxb_complex, tasks, task),
+                                                 GXBP_ARRAY(gxb_complex, leaf_facets, leaf_facet),
+                                                 GXBP_ARRAY(gxb_complex, leaf_signs, leaf_sign),
+                                                 GXBP_ARRAY(gxb_complex, rim, rim),
+                                                 GXBP_ARRAY(gxb_complex, front_facets, front_facet),
+                                                 GXBP_ARRAY(gxb_complex, behind_facets, behind_facet),
+                                                 GXBP_ARRAY(gxb_complex, loop, loop),
+                                                 GXBP_ARRAY(gxb_complex, inner_facets, inner_facet)};
 
 enum { GXBP_MARKS = 6 };
 
@@ -2756,7 +2785,7 @@ static GXBP_APART void gxbp_set_marks(gxb_complex *cx) {
     gxbp_store_begin(&cx->store);
     gxbp_mark_arrays(cx, gxbp_complex_arrays, cx->mark, GXBP_MARKS);
     cx->mark_live = cx->pool_live;
-    cx->wall_count = cx->corner_count = cx->task_count = 0;
+    cx->marked_count = cx->corner_count = cx->task_count = 0;
 }
 
 GXFEM_API void gxb_complex_begin(gxb_complex *cx) {
@@ -2766,14 +2795,13 @@ GXFEM_API void gxb_complex_begin(gxb_complex *cx) {
 
 GXFEM_API void gxb_complex_commit(gxb_complex *cx) { gxbp_set_marks(cx); }
 
-/* What is known of planes and points in pairs of doubles (see barycentric coordinates), by remainders of their numbers
- */
+/* A cache of planes and sides in pairs of doubles (see >>barycentric). The remainder of an index is its place. */
 enum { GXBP_PAIR_NORMALS = 32, GXBP_PAIR_SIDES = 256 };
 typedef struct gxbp_pair {
     double high, low, error;
 } gxbp_pair; /* a number within error of high + low */
 typedef struct gxbp_pairs {
-    /* GXB_NONE: nothing */
+    /* GXB_NONE: empty */
     uint32_t plane[GXBP_PAIR_NORMALS], side_plane[GXBP_PAIR_SIDES], side_point[GXBP_PAIR_SIDES];
     gxbp_pair normal[GXBP_PAIR_NORMALS][3], side[GXBP_PAIR_SIDES];
 } gxbp_pairs;
@@ -2785,7 +2813,7 @@ static void gxbp_forget_pairs(gxb_complex *cx) {
 
 #define GXBP_LAST_STAMP 0x3fffffffu /* of an edge */
 
-/* No edge is in a rim. */
+/* Begins a rim: no edge is in it. */
 static void gxbp_forget_rim(gxb_complex *cx) {
     uint32_t i;
     if (cx->edge_stamp++ < GXBP_LAST_STAMP) return;
@@ -2799,7 +2827,7 @@ GXFEM_API GXBP_RARE void gxb_complex_rollback(gxb_complex *cx) {
         size_t size;
         void *item = gxbp_item(cx, undo.array, undo.index, &size);
         gxbp_put_back(&cx->store, item, size);
-        if (undo.array == GXBP_EDGES) cx->edges[undo.index].stamp = 0; /* may be of before stamps began again */
+        if (undo.array == GXBP_EDGES) cx->edges[undo.index].stamp = 0; /* it may be from before stamps were restarted */
         if (undo.array == GXBP_POINTS)
             cx->store.points[undo.index].stamp[0] = cx->store.points[undo.index].stamp[1] = 0;
     }
@@ -2850,8 +2878,7 @@ GXFEM_API gx_result gxb_complex_add_plane(gxb_complex *cx, gxb_triangle *t) {
     return gxbp_plane_axis(&cx->store, t->plane) ? GX_OK : GX_ERROR_FLAT;
 }
 
-/* --- faces and edges of the mesh by sorting: an element's are 4 x element + k, opposite to node k, and 6 x element + k
- * --- */
+/* --- faces and edges of the mesh, by sorting. Face 4 x element + k is opposite to node k; edge k is 6 x element + k */
 
 /* outward, opposite to node k */
 static const uint8_t gxbp_face_nodes[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
@@ -2883,9 +2910,9 @@ static int gxbp_face_is_even(const uint32_t *element, uint32_t face) {
     return (a < b) == ((b < c) == (a < c));
 }
 
-/* Ascending nodes of an element's face (of 3) or edge (of 2) */
-static void gxbp_nodes_of(const gxb_complex *cx, uint32_t which, int of, uint32_t node[3]) {
-    if (of == 3) {
+/* Ascending nodes of an element's face (size 3) or edge (size 2) */
+static void gxbp_nodes_of(const gxb_complex *cx, uint32_t which, int size, uint32_t node[3]) {
+    if (size == 3) {
         const uint32_t *n = cx->elements + 4 * (which / 4);
         const uint8_t *face = gxbp_face_nodes[which % 4];
         const uint32_t a = n[face[0]], b = n[face[1]], c = n[face[2]], low = a < b ? a : b, high = a < b ? b : a;
@@ -2901,23 +2928,23 @@ static void gxbp_nodes_of(const gxb_complex *cx, uint32_t which, int of, uint32_
     }
 }
 
-/* Sorts the faces (of 3) or edges (of 2) of all elements by their nodes, by each node in turn, the last first, so that
-   what is equal keeps its order [radix sort, Knuth vol. 3, 5.2.5]. to, other: room for all of them each; place: for
-   node_count + 1. Returns where they are. */
-static uint32_t *gxbp_sort_parts(const gxb_complex *cx, int of, uint32_t *to, uint32_t *other, uint32_t *place) {
-    const uint32_t count = cx->element_count * (of == 3 ? 4 : 6);
+/* Sorts the faces (size 3) or edges (size 2) of all elements by their nodes: a stable sort by each node, the last one
+   first [radix sort, Knuth vol. 3, 5.2.5]. to, other: room for all of them each; place: room for node_count + 1.
+   Returns the one with the result. */
+static uint32_t *gxbp_sort_parts(const gxb_complex *cx, int size, uint32_t *to, uint32_t *other, uint32_t *place) {
+    const uint32_t count = cx->element_count * (size == 3 ? 4 : 6);
     uint32_t *from = NULL, node[3], i;
-    int digit = of;
+    int digit = size;
     while (digit-- > 0) {
         memset(place, 0, ((size_t)cx->node_count + 1) * sizeof *place);
         for (i = 0; i < count; i++) {
-            gxbp_nodes_of(cx, i, of, node);
+            gxbp_nodes_of(cx, i, size, node);
             place[node[digit] + 1]++;
         }
         for (i = 0; i < cx->node_count; i++) place[i + 1] += place[i];
         for (i = 0; i < count; i++) {
             const uint32_t which = from == NULL ? i : from[i];
-            gxbp_nodes_of(cx, which, of, node);
+            gxbp_nodes_of(cx, which, size, node);
             to[place[node[digit]]++] = which;
         }
         from = to;
@@ -2927,14 +2954,14 @@ static uint32_t *gxbp_sort_parts(const gxb_complex *cx, int of, uint32_t *to, ui
     return from;
 }
 
-/* Numbers the faces in the order of their sorted nodes. Tables that are filled later are scratch. */
+/* Numbers the faces in the order of their sorted nodes. Sorts in tables that are filled later. */
 static gx_result gxbp_number_faces(gxb_complex *cx, uint32_t *place, size_t *bad) {
     const uint32_t count = cx->element_count * 4,
                    *sorted = gxbp_sort_parts(cx, 3, cx->element_edges, cx->mesh_edge, place);
     uint32_t before[3] = {0, 0, 0}, node[3], i;
     cx->face_count = 0;
     for (i = 0; i < count; i++) {
-        /* behind the sorted normal */
+        /* side 1: the element lies behind the face, whose normal is that of the sorted nodes */
         const uint32_t e = sorted[i] / 4, k = sorted[i] % 4,
                        side = (uint32_t)gxbp_face_is_even(cx->elements + 4 * e, k);
         uint32_t *sides;
@@ -3105,8 +3132,8 @@ GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator 
 
 /* >>access: reading a complex ------------------------------------------------------------------------------------- */
 
-/* In: a complex and an index. Out: the item. Nothing changes. These functions are what gxfem.h knows of the arrays.
-   They are small enough to be inlined. */
+/* In: a complex and an index. Out: the item. Nothing changes. gxfem.h reads the arrays by these functions only. They
+   are small enough to be inlined. */
 
 static uint32_t gxbp_edge_start(const gxb_complex *cx, uint32_t signed_edge) {
     return cx->edges[signed_edge >> 1].v[signed_edge & 1];
@@ -3144,11 +3171,11 @@ GXFEM_API uint32_t gxb_complex_leaf_count(const gxb_complex *cx) { return cx->le
 
 GXFEM_API uint32_t gxb_complex_label_count(const gxb_complex *cx) { return cx->label_count; }
 
-GXFEM_API uint32_t gxb_complex_marked_count(const gxb_complex *cx) { return cx->wall_count; }
+GXFEM_API uint32_t gxb_complex_marked_count(const gxb_complex *cx) { return cx->marked_count; }
 
-GXFEM_API uint32_t gxb_complex_marked_facet(const gxb_complex *cx, uint32_t index) { return cx->walls[index] >> 1; }
+GXFEM_API uint32_t gxb_complex_marked_facet(const gxb_complex *cx, uint32_t index) { return cx->marked[index] >> 1; }
 
-GXFEM_API int gxb_complex_marked_wall(const gxb_complex *cx, uint32_t index) { return (int)(cx->walls[index] & 1); }
+GXFEM_API int gxb_complex_marked_wall(const gxb_complex *cx, uint32_t index) { return (int)(cx->marked[index] & 1); }
 
 GXFEM_API uint32_t gxb_complex_node_count(const gxb_complex *cx) { return cx->node_count; }
 
@@ -3193,25 +3220,22 @@ GXFEM_API void gxb_complex_prefetch_element(const gxb_complex *cx, uint32_t elem
     (void)element;
 }
 
-/* >>split: dividing edges, facets and leaves by a plane
- * --------------------------------------------------------------------
- *
- * Every function here that can run out of memory reserves room first and then changes the complex without a way to
- * fail.
- */
+/* >>split: dividing edges, facets and leaves by a plane ------------------------------------------------------------ */
+/* In: a leaf and a splitting plane. Out: two leaves with the facet between them, and divided facets and edges. Every
+   function here that can run out of memory reserves room first. It then changes the complex without a way to fail. */
 
 static void gxbp_set_loop(gxb_facet *f, uint32_t first, uint32_t count) {
     f->loop = first;
     f->loop_count = count & INT32_MAX;
 }
 
-/* The facets (edges) into which one was divided stand behind it as a binary tree; walks its leaves in order. */
+/* A divided facet (edge) is the root of a binary tree. These functions visit its undivided parts, in order. */
 static GXBP_APART uint32_t gxbp_count_facets(const gxb_complex *cx, uint32_t facet) {
     const uint32_t child = cx->facets[facet].child;
     return child == GXB_NONE ? 1 : gxbp_count_facets(cx, child) + gxbp_count_facets(cx, child + 1);
 }
 
-/* Writes them; returns where the list ends. */
+/* Lists them. Returns the end of the list. */
 static GXBP_APART uint32_t *gxbp_list_facets(const gxb_complex *cx, uint32_t facet, uint32_t *out) {
     const uint32_t child = cx->facets[facet].child;
     if (child != GXB_NONE) return gxbp_list_facets(cx, child + 1, gxbp_list_facets(cx, child, out));
@@ -3296,14 +3320,14 @@ GXFEM_API gx_result gxb_leaf_resolve_facets(gxb_complex *cx, uint32_t leaf, uint
     return GX_OK;
 }
 
-/* The cutting plane, and (explicit_line) the line in which the facets to be divided meet it, where that is a triangle's
- * edge. */
+/* The splitting plane. explicit_line: the facets to be divided meet it in a triangle's edge, the line through two
+ * points. */
 typedef struct gxbp_splitter {
     uint32_t plane, line[2];
     int explicit_line, slot;
 } gxbp_splitter;
 
-/* Room for dividing facets with so many edges in all. */
+/* Reserves room to divide these numbers of facets and of their edges. */
 static gx_result gxbp_reserve_split(gxb_complex *cx, size_t facets, size_t edges) {
     gx_result result = GXBP_RESERVE(&cx->store.allocator, &cx->store, points, point, edges + 2);
     if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, edges, edge, 2 * edges + facets + 4);
@@ -3311,7 +3335,7 @@ static gx_result gxbp_reserve_split(gxb_complex *cx, size_t facets, size_t edges
     if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, leaves, leaf, 1);
     if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, nodes, tree, 1);
     if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, pool, pool, 8 * (edges + facets) + 64);
-    if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, scratch, scratch, 8 * (edges + facets) + 64);
+    if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, loop, loop, edges + 2); /* two are divided */
     return result == GX_OK ? gxbp_reserve_undo(&cx->store, edges + 3 * facets + 8) : result;
 }
 
@@ -3366,8 +3390,8 @@ static void gxbp_split_edge(gxb_complex *cx, uint32_t edge, const gxbp_splitter 
     cx->edges[cx->edge_count - 2].wall = cx->edges[cx->edge_count - 1].wall = e.wall;
 }
 
-/* Of a facet: bit 1, it has points in front of the plane; bit 2, behind it; the rest, how many are in it. *edges: how
-   many its loop has when it is resolved */
+/* Signs of a facet's points. Bit 1: some lie in front of the plane. Bit 2: some lie behind it. The higher bits: how
+   many lie in it. *edges: the length of its resolved loop */
 static uint32_t gxbp_facet_signs(gxb_complex *cx, uint32_t facet, const gxbp_splitter *splitter, uint32_t *edges) {
     const uint32_t *loop = cx->pool + cx->facets[facet].loop, *end = loop + cx->facets[facet].loop_count;
     uint32_t signs = 0, count = 0;
@@ -3387,15 +3411,14 @@ static int gxbp_facet_sides(gxb_complex *cx, uint32_t facet, const gxbp_splitter
     return (int)(gxbp_facet_signs(cx, facet, splitter, &edges) & 3);
 }
 
-/* A facet's loop while it is divided: in the middle of complex.scratch. zero: where the two points in the plane start
-   edges. sign: the side that the next edge starts on */
+/* A facet's loop while it is divided, in complex.loop. zero: where the two points in the plane start edges. sign: the
+   side that the next edge starts on */
 typedef struct gxbp_parting {
     uint32_t *loop, count, zero[2], zeros;
     int sign;
 } gxbp_parting;
 
-/* Appends an edge that starts on the side parting->sign, or what it has been divided into; divides what the plane
- * crosses. */
+/* Appends an edge that starts on the side parting->sign, or its parts. Divides it where the plane crosses it. */
 static void gxbp_part_edge(gxb_complex *cx, uint32_t signed_edge, const gxbp_splitter *splitter,
                            gxbp_parting *parting) {
     const uint32_t back = signed_edge & 1;
@@ -3420,7 +3443,7 @@ static void gxbp_part_edge(gxb_complex *cx, uint32_t signed_edge, const gxbp_spl
     parting->loop[parting->count++] = (child + 1 - back) << 1 | back;
 }
 
-/* A list that has been replaced and that no rollback needs: room for one of those that replace it */
+/* The room of a replaced list that no rollback needs. One of its replacements may take it. */
 typedef struct gxbp_gap {
     uint32_t first, count;
 } gxbp_gap;
@@ -3432,7 +3455,7 @@ static gxbp_gap gxbp_list_gap(const gxb_complex *cx, uint32_t first, uint32_t co
     return gap;
 }
 
-/* Where a new list of the pool stands: in the gap if it fits, and else behind all others. */
+/* The place of a new list in the pool: in the gap if it fits, else behind all others */
 static uint32_t gxbp_place_list(gxb_complex *cx, uint32_t count, gxbp_gap *gap) {
     const uint32_t end = cx->pool_count;
     if (count <= gap->count) {
@@ -3462,7 +3485,7 @@ static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_spl
     gxbp_gap gap = gxbp_list_gap(cx, f.loop, f.loop_count);
     gxbp_parting parting;
     memset(&parting, 0, sizeof parting);
-    parting.loop = cx->scratch + cx->scratch_capacity / 4;
+    parting.loop = cx->loop;
     zero = parting.zero;
     parting.sign = gxbp_sign(&cx->store, gxbp_edge_start(cx, cx->pool[f.loop]), splitter->plane, splitter->slot);
     for (i = 0; i < f.loop_count; i++) gxbp_part_edge(cx, cx->pool[f.loop + i], splitter, &parting);
@@ -3488,54 +3511,50 @@ static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_spl
 
 /* --- dividing a leaf: its facets, then the facet between the two halves, then the tree --- */
 
-typedef struct gxbp_rim {
-    uint32_t first, count;
-} gxbp_rim; /* signed edges in complex.scratch */
-
-/* Adds an edge, or what it has been divided into. */
-static void gxbp_add_rim(gxb_complex *cx, gxbp_rim *rim, uint32_t signed_edge) {
+/* Adds an edge to the rim, or its parts. */
+static void gxbp_add_rim(gxb_complex *cx, uint32_t signed_edge) {
     gxb_edge *e = &cx->edges[signed_edge >> 1];
     if (e->child != GXB_NONE) {
-        gxbp_add_rim(cx, rim, e->child << 1 | (signed_edge & 1));
-        gxbp_add_rim(cx, rim, (e->child + 1) << 1 | (signed_edge & 1));
+        gxbp_add_rim(cx, e->child << 1 | (signed_edge & 1));
+        gxbp_add_rim(cx, (e->child + 1) << 1 | (signed_edge & 1));
         return;
     }
     if (e->stamp == cx->edge_stamp) return;
     e->stamp = cx->edge_stamp & GXBP_LAST_STAMP;
-    cx->scratch[rim->first + rim->count++] = signed_edge;
+    cx->rim[cx->rim_count++] = signed_edge;
 }
 
-/* Edges of an undivided facet that lie in the plane belong to the rim: walked against the outside's view of the half in
- * front. */
-static void gxbp_add_flat_edges(gxb_complex *cx, gxbp_rim *rim, uint32_t facet, uint32_t flip,
-                                const gxbp_splitter *splitter) {
+/* Adds the edges of an undivided facet that lie in the plane. flip 1: the rim passes them against the facet's loop. */
+static void gxbp_add_flat_edges(gxb_complex *cx, uint32_t facet, uint32_t flip, const gxbp_splitter *splitter) {
     const gxb_facet *f = &cx->facets[facet];
     uint32_t i;
     for (i = 0; i < f->loop_count; i++) {
         const uint32_t e = cx->pool[f->loop + i];
         if (gxbp_sign(&cx->store, cx->edges[e >> 1].v[0], splitter->plane, splitter->slot) == 0 &&
             gxbp_sign(&cx->store, cx->edges[e >> 1].v[1], splitter->plane, splitter->slot) == 0)
-            gxbp_add_rim(cx, rim, e ^ flip);
+            gxbp_add_rim(cx, e ^ flip);
     }
 }
 
 /* Chains the rim's edges into the loop of a new facet of the plane. */
-static uint32_t gxbp_close_rim(gxb_complex *cx, const gxbp_rim *rim, const gxbp_splitter *splitter) {
+static uint32_t gxbp_close_rim(gxb_complex *cx, const gxbp_splitter *splitter) {
     gxb_facet *f = &cx->facets[cx->facet_count];
-    uint32_t i, e = cx->scratch[rim->first];
-    for (i = 0; i < rim->count; i++) {
-        const uint32_t signed_edge = cx->scratch[rim->first + i];
-        cx->store.points[gxbp_edge_start(cx, signed_edge)].scratch = signed_edge;
+    const uint32_t count = cx->rim_count;
+    uint32_t i, e = cx->rim[0];
+    for (i = 0; i < count; i++) {
+        const uint32_t signed_edge = cx->rim[i];
+        cx->store.points[gxbp_edge_start(cx, signed_edge)].rim_edge = signed_edge;
     }
     memset(f, 0, sizeof *f);
     f->plane = splitter->plane;
-    gxbp_set_loop(f, cx->pool_count, rim->count);
+    gxbp_set_loop(f, cx->pool_count, count);
     f->child = f->labels = f->face = GXB_NONE;
-    for (i = 0; i < rim->count; i++) {
+    for (i = 0; i < count; i++) {
         cx->pool[cx->pool_count++] = e;
-        e = cx->store.points[cx->edges[e >> 1].v[1 - (e & 1)]].scratch;
+        e = cx->store.points[cx->edges[e >> 1].v[1 - (e & 1)]].rim_edge;
     }
-    cx->pool_live += rim->count;
+    cx->pool_live += count;
+    cx->rim_count = 0;
     return cx->facet_count++;
 }
 
@@ -3552,29 +3571,24 @@ static void gxbp_set_list(gxb_complex *cx, uint32_t leaf, const uint32_t *facets
     for (i = 0; i < count; i++) cx->pool[l->facets + i] = facets[i];
 }
 
-/* Divides a leaf whose inside the plane meets and which is ready: its facets and their signs are in complex.scratch. It
-   becomes the half in front, the new one lies behind. Returns the facet between them. */
+/* Divides a leaf whose inside the plane meets. gxbp_ready_leaf has listed its facets and their signs. The leaf becomes
+   the half in front; a new leaf is the half behind. Returns the facet between them. */
 static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_splitter *splitter) {
-    const uint32_t behind = cx->leaf_count++, listed = cx->leaves[leaf].facet_count, count = cx->scratch_count / 2;
-    gxbp_rim rim;
+    const uint32_t behind = cx->leaf_count++, listed = cx->leaves[leaf].facet_count, count = cx->leaf_facet_count;
+    uint32_t *front_list = cx->front_facets, *behind_list = cx->behind_facets, fronts = 0, behinds = 0, i, middle;
     gxbp_gap gap;
-    uint32_t *front_list, *behind_list, fronts = 0, behinds = 0, i, middle;
-    rim.first = 2 * count;
-    rim.count = 0;
     gxbp_forget_rim(cx);
-    front_list = cx->scratch + cx->scratch_capacity - 2 * count - 2;
-    behind_list = cx->scratch + cx->scratch_capacity - count - 1;
     for (i = 0; i < count; i++) {
-        const uint32_t facet = cx->scratch[i], signs = cx->scratch[count + i], sides = signs & 3;
+        const uint32_t facet = cx->leaf_facets[i], signs = cx->leaf_signs[i], sides = signs & 3;
         const uint32_t inward = cx->facets[facet].leaf[0] == leaf ? 1u : 0u; /* its normal points into the leaf */
         if (sides == 3) {
             const uint32_t edge = gxbp_split_facet(cx, facet, splitter), child = cx->facets[facet].child;
-            gxbp_add_rim(cx, &rim, edge ^ inward);
+            gxbp_add_rim(cx, edge ^ inward);
             gxbp_move_facet(cx, child + 1, leaf, behind);
             front_list[fronts++] = child;
             behind_list[behinds++] = child + 1;
         } else {
-            if (signs >= 8) gxbp_add_flat_edges(cx, &rim, facet, inward ^ (sides == 1 ? 0u : 1u), splitter);
+            if (signs >= 8) gxbp_add_flat_edges(cx, facet, inward ^ (sides == 1 ? 0u : 1u), splitter);
             if (sides == 1)
                 front_list[fronts++] = facet;
             else {
@@ -3583,7 +3597,7 @@ static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_split
             }
         }
     }
-    middle = gxbp_close_rim(cx, &rim, splitter);
+    middle = gxbp_close_rim(cx, splitter);
     cx->facets[middle].leaf[0] = leaf;
     cx->facets[middle].leaf[1] = behind;
     front_list[fronts++] = middle;
@@ -3595,7 +3609,7 @@ static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_split
     gxbp_set_list(cx, leaf, front_list, fronts, &gap);
     gxbp_set_list(cx, behind, behind_list, behinds, &gap);
     cx->pool_live += fronts + behinds - listed;
-    cx->scratch_count = 0;
+    cx->leaf_facet_count = 0;
     return middle;
 }
 
@@ -3627,7 +3641,7 @@ static GXBP_APART gx_result gxbp_open_face(gxb_complex *cx, uint32_t element, ui
     gx_result result;
     if (cx->face_facet[face] != GXB_NONE) return GX_OK;
     for (j = 0; j < 3; j++) local[j] = gxbp_face_nodes[k][j];
-    for (j = 0; j < 3; j++) { /* sort by node: three steps of a bubble */
+    for (j = 0; j < 3; j++) { /* three steps of a bubble sort by node */
         const uint32_t i = j % 2;
         if (node[local[i]] > node[local[i + 1]]) {
             t = local[i];
@@ -3679,8 +3693,8 @@ GXFEM_API gx_result gxb_complex_open_element(gxb_complex *cx, uint32_t element) 
 }
 
 /* >>clip: a triangle against the tree of an element ---------------------------------------------------------------- */
-/* In: a triangle and an element. Out: the polygon of the triangle that reaches each leaf. Touches only scratch of
-   the complex. */
+/* In: a triangle and an element. Out: the polygon of the triangle that reaches each leaf. Touches the stack of
+   polygons only. */
 
 static uint32_t gxbp_face_plane(const gxb_complex *cx, uint32_t element, uint32_t k) {
     return cx->facets[cx->face_facet[cx->element_faces[4 * element + k]]].plane;
@@ -3715,8 +3729,8 @@ static void gxbp_clip_corner(gxb_complex *cx, const gxb_triangle *t, uint32_t a,
     gxbp_definition_ball(&cx->store, r->kind, r->def, &r->ball);
 }
 
-/* Appends to the corner stack what of corners first ... first+count-1 (signs known) lies on one side of a carrier.
-   Returns the number of corners, 0 where that part has no area. */
+/* Clips the polygon of corners first ... first+count-1, whose signs are known, to one side of a carrier. Pushes the
+   result on the corner stack. Returns the number of its corners, 0 if it has no area. */
 static uint32_t gxbp_clip(gxb_complex *cx, const gxb_triangle *t, uint32_t first, uint32_t count, uint32_t carrier,
                           int side) {
     const uint32_t start = cx->corner_count;
@@ -3758,8 +3772,8 @@ static int gxbp_corner_sides(gxb_complex *cx, uint32_t first, uint32_t count, ui
 /* In: a triangle and a facet in its plane. Out: a wall or a label on what the triangle covers of the facet. A
    transaction is open. */
 
-/* The plane through edge k of the triangle, along the axis that is closest to its normal: the triangle lies in front of
- *it where front is 1, behind it where it is -1. */
+/* The plane through edge k of the triangle, along the axis that is closest to its normal. *front: 1 if the triangle
+   lies in front of that plane, -1 if behind. */
 static gx_result gxbp_edge_plane(gxb_complex *cx, gxb_triangle *t, uint32_t k, int *front) {
     const uint32_t axis = cx->store.planes[t->plane].axis;
     gx_result result = GX_OK;
@@ -3771,7 +3785,7 @@ static gx_result gxbp_edge_plane(gxb_complex *cx, gxb_triangle *t, uint32_t k, i
     return GX_OK;
 }
 
-/* Does the facet's normal point to the triangle's own front? They lie in one plane. */
+/* 1: the facet's normal points to the triangle's own front; -1: to its back. They lie in one plane. */
 static int32_t gxbp_relative_orientation(gxb_complex *cx, const gxb_triangle *t, uint32_t plane) {
     const gxb_cplane *f = &cx->store.planes[t->plane];
     const int own = f->axis_sign * t->orientation;
@@ -3783,7 +3797,7 @@ static gx_result gxbp_add_label(gxb_complex *cx, const gxb_triangle *t, uint32_t
     gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, labels, label, 1);
     for (l = cx->facets[facet].labels; l != GXB_NONE; l = cx->labels[l].next)
         if (cx->labels[l].triangle == t->label) return GX_OK;
-    if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, walls, wall, 1);
+    if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, marked, marked, 1);
     if (result == GX_OK) result = gxbp_reserve_undo(&cx->store, 1);
     if (result != GX_OK) return result;
     gxbp_save(cx, GXBP_FACETS, facet);
@@ -3791,17 +3805,17 @@ static gx_result gxbp_add_label(gxb_complex *cx, const gxb_triangle *t, uint32_t
     cx->labels[cx->label_count].orientation = gxbp_relative_orientation(cx, t, cx->facets[facet].plane);
     cx->labels[cx->label_count].next = cx->facets[facet].labels;
     cx->facets[facet].labels = cx->label_count++;
-    cx->walls[cx->wall_count++] = facet << 1 | (t->wall && !cx->facets[facet].wall);
+    cx->marked[cx->marked_count++] = facet << 1 | (t->wall && !cx->facets[facet].wall);
     if (t->wall) cx->facets[facet].wall = 1;
     return GX_OK;
 }
 
 GXFEM_API gx_result gxb_complex_set_wall(gxb_complex *cx, uint32_t facet) {
-    gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, walls, wall, 1);
+    gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, marked, marked, 1);
     if (result == GX_OK) result = gxbp_reserve_undo(&cx->store, 1);
     if (result != GX_OK) return result;
     gxbp_save(cx, GXBP_FACETS, facet);
-    cx->walls[cx->wall_count++] = facet << 1 | !cx->facets[facet].wall;
+    cx->marked[cx->marked_count++] = facet << 1 | !cx->facets[facet].wall;
     cx->facets[facet].wall = 1;
     return GX_OK;
 }
@@ -3853,8 +3867,8 @@ static gx_result gxbp_cover_facet(gxb_complex *cx, gxb_triangle *t, uint32_t fac
 /* In: a triangle through an edge, a node or a facet that is there already. Out: marks on what it covers. No leaf
    is divided. */
 
-/* Divides the piece of an edge in the triangle's plane by the planes of the triangle's edges k, k+1 ... and marks what
- * is inside. */
+/* Divides an edge in the triangle's plane by the planes of the triangle's edges k, k+1 ... and marks the parts inside.
+ */
 static gx_result gxbp_cover_edge(gxb_complex *cx, gxb_triangle *t, uint32_t edge, uint32_t k, int *covered) {
     gx_result result = gxbp_reserve_split(cx, 0, 1);
     for (; k < 3 && result == GX_OK; k++) {
@@ -3934,22 +3948,22 @@ static gx_result gxbp_cover_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t leaf
    above others of its spine if its plane has all of their leaves on one side or the other. A node with nothing on
    one side is dropped. No leaf changes. */
 
-/* the chain goes on at child[side]; off: what hangs at the other one */
+/* The spine goes on at child[side]; off: the reference at the other child */
 typedef struct gxbp_spine_node {
     uint32_t node, side, off;
 } gxbp_spine_node;
 typedef struct gxbp_step {
     uint32_t node, child[2];
 } gxbp_step;
-/* what shall hang where, from below */
+/* The tree to be made: each node with its children, bottom up */
 typedef struct gxbp_plan {
     gxbp_step *step;
     uint32_t count;
     gxbp_spine_node *spare;
 } gxbp_plan;
 
-/* Is the tree far from what a balanced one of so many leaves has? Looked at eight times while it doubles where it is a
-   chain for the most part, else once: what is not a chain is seldom balanced by turning it round. */
+/* Is the tree far higher than a balanced one with as many leaves? While a tree doubles, this is checked eight times if
+   most of it is a spine, else once: rebalancing seldom helps what is no spine. */
 static int gxbp_is_slack(uint32_t height, uint32_t leaves) {
     uint32_t bits = 0, checks;
     while (leaves >> bits > 1) bits++;
@@ -3967,21 +3981,21 @@ static uint32_t gxbp_leaves_below(const gxb_complex *cx, uint32_t reference) {
     return reference & 1 ? cx->nodes[reference >> 1].leaves : 1;
 }
 
-/* Those of the facets into which one was divided */
-static GXBP_APART int gxbp_pieces_sides(gxb_complex *cx, uint32_t facet, const gxbp_splitter *splitter) {
+/* gxbp_facet_sides of all parts of a divided facet */
+static GXBP_APART int gxbp_all_facet_sides(gxb_complex *cx, uint32_t facet, const gxbp_splitter *splitter) {
     const uint32_t child = cx->facets[facet].child;
     if (child == GXB_NONE) return gxbp_facet_sides(cx, facet, splitter);
-    return gxbp_pieces_sides(cx, child, splitter) | gxbp_pieces_sides(cx, child + 1, splitter);
+    return gxbp_all_facet_sides(cx, child, splitter) | gxbp_all_facet_sides(cx, child + 1, splitter);
 }
 
 /* On which sides of the plane (slot 1's, for its present stamp) the leaf has points: bit 1 in front, bit 2 behind.
-   Edges need not be resolved: what divides them lies between their ends. */
+   Edges need not be resolved: the points that divide them lie between their ends. */
 static int gxbp_leaf_sides(gxb_complex *cx, uint32_t leaf, const gxbp_splitter *splitter) {
     const gxb_leaf *l = &cx->leaves[leaf];
     uint32_t i;
     int sides = 0;
     for (i = 0; i < l->facet_count && sides != 3; i++)
-        sides |= gxbp_pieces_sides(cx, cx->pool[l->facets + i], splitter);
+        sides |= gxbp_all_facet_sides(cx, cx->pool[l->facets + i], splitter);
     return sides;
 }
 
@@ -3999,14 +4013,14 @@ static uint32_t gxbp_plan_node(gxbp_plan *plan, uint32_t node, uint32_t side, ui
     return 2 * node + 1;
 }
 
-/* The chain as it is, above end */
+/* The spine as it is, above end */
 static uint32_t gxbp_plan_spine(gxbp_plan *plan, const gxbp_spine_node *spine, uint32_t count, uint32_t end) {
     while (count-- > 0) end = gxbp_plan_node(plan, spine[count].node, spine[count].side, end, spine[count].off);
     return end;
 }
 
-/* Sorts what hangs above spine[middle] by its side of that plane: those on the spine's own side last. Their number is
- *own. 0: the plane passes through one of them. spare: middle spine nodes */
+/* Sorts the nodes above spine[middle] by the side of its plane on which their leaves lie. Those on the spine's own side
+   come last; *own is their number. 0: the plane passes through one of them. spare: room for middle nodes */
 static int gxbp_part_spine(gxb_complex *cx, gxbp_spine_node *spine, uint32_t middle, gxbp_spine_node *spare,
                            uint32_t *own) {
     const uint32_t side = spine[middle].side;
@@ -4030,7 +4044,7 @@ static int gxbp_part_spine(gxb_complex *cx, gxbp_spine_node *spine, uint32_t mid
     return 1;
 }
 
-/* A balanced tree of the spine above end: the spine's node in the middle, by leaves, is made its root. */
+/* A balanced tree of the spine above end. Its root is the spine's middle node, by leaves. */
 static GXBP_COLD uint32_t gxbp_rebalance_spine(gxb_complex *cx, gxbp_plan *plan, gxbp_spine_node *spine, uint32_t count,
                                                uint32_t end) {
     uint32_t total = gxbp_leaves_below(cx, end), sum = 0, middle = 0, own, i, on, off;
@@ -4046,7 +4060,7 @@ static GXBP_COLD uint32_t gxbp_rebalance_spine(gxb_complex *cx, gxbp_plan *plan,
     return gxbp_plan_node(plan, root.node, root.side, on, off);
 }
 
-/* Hangs everything where the plan says, from below, and the whole where top was. */
+/* Builds the planned tree bottom up, and puts it in the place of top. */
 static gx_result gxbp_follow_plan(gxb_complex *cx, const gxbp_plan *plan, uint32_t tree, uint32_t top,
                                   uint32_t element) {
     const uint32_t above = cx->nodes[top].parent;
@@ -4101,7 +4115,7 @@ static GXBP_COLD gx_result gxbp_balance(gxb_complex *cx, uint32_t top, uint32_t 
     return result;
 }
 
-/* A leaf has become a node with two. Balances the lowest tree around it that has become too high. */
+/* A leaf has become a node with two leaves. Balances the lowest tree around it that has become too high. */
 static gx_result gxbp_grow_tree(gxb_complex *cx, uint32_t node, uint32_t element) {
     uint32_t n, height = 0, slack = GXB_NONE;
     gx_result result = gxbp_reserve_undo(&cx->store, gxbp_depth(cx, node));
@@ -4117,24 +4131,28 @@ static uint32_t *gxbp_reference(gxb_complex *cx, const gxbp_task *task, uint32_t
     return task->parent == GXBP_IN_ROOT ? &cx->root[element] : &cx->nodes[task->parent].child[task->side];
 }
 
-/* Lists the leaf's facets and then their signs in complex.scratch, and reserves room to divide it. */
+/* Lists the leaf's facets and their signs, and reserves room to divide it. */
 static gx_result gxbp_ready_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_splitter *splitter) {
+    const gx_allocator *a = &cx->store.allocator;
     const gxb_leaf *l = &cx->leaves[leaf];
     const uint32_t count = gxbp_count_list(cx, l);
     uint32_t *out, i;
     size_t edges = 0;
-    gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, scratch, scratch, 2 * count);
+    gx_result result = GXBP_RESERVE(a, cx, leaf_facets, leaf_facet, count);
+    if (result == GX_OK) result = GXBP_RESERVE(a, cx, leaf_signs, leaf_sign, count);
+    if (result == GX_OK) result = GXBP_RESERVE(a, cx, front_facets, front_facet, count + 1); /* with the one between */
+    if (result == GX_OK) result = GXBP_RESERVE(a, cx, behind_facets, behind_facet, count + 1);
     if (result != GX_OK) return result;
-    out = cx->scratch;
+    out = cx->leaf_facets;
     for (i = 0; i < l->facet_count; i++) out = gxbp_list_facets(cx, cx->pool[l->facets + i], out);
     for (i = 0; i < count; i++) {
         uint32_t own;
-        const uint32_t signs = cx->scratch[count + i] = gxbp_facet_signs(cx, cx->scratch[i], splitter, &own);
+        const uint32_t signs = cx->leaf_signs[i] = gxbp_facet_signs(cx, cx->leaf_facets[i], splitter, &own);
         if ((signs & 3) == 3 || signs >= 8) edges += own;
     }
-    cx->scratch_count = 2 * count; /* these stay where scratch moves */
-    result = gxbp_reserve_split(cx, count, edges);
-    if (result != GX_OK) cx->scratch_count = 0;
+    result = GXBP_RESERVE(a, cx, rim, rim, count + edges);
+    if (result == GX_OK) result = gxbp_reserve_split(cx, count, edges);
+    cx->leaf_facet_count = result == GX_OK ? count : 0;
     return result;
 }
 
@@ -4163,7 +4181,7 @@ static uint32_t gxbp_part_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_splitt
    free plane belongs to no triangle and makes no wall: the facet between the halves is open, and they stay one
    cell. Given coordinates and exact signs alone decide which plane it is. */
 
-/* looked at from so many on; of so many at most the median is taken */
+/* from so many facets on, a leaf is crowded; from so many facets at most, medians are taken */
 enum { GXBP_MANY_FACETS = 24, GXBP_SAMPLE = 32 };
 
 /* A number from a to b > a with few bits */
@@ -4191,9 +4209,9 @@ static int gxbp_median(double *x, uint32_t count, double *median) {
     return gxbp_difference_exponent(x[count - 1], x[0]);
 }
 
-/* Where a plane along each axis would leave about as many of the facets on either side: by the first point of each
-   facet's plane. rank: the axes, the one along which these points are furthest apart first. Returns the number of axes
-   along which they are apart at all. */
+/* median: for each axis, where a plane across it leaves about as many facets on either side, by the first point of each
+   facet's plane. rank: the axes, beginning with the one along which these points are furthest apart. Returns the number
+   of axes along which they are apart at all. */
 static GXBP_COLD int gxbp_medians(gxb_complex *cx, const uint32_t *facets, uint32_t count, double median[3],
                                   int rank[3]) {
     const uint32_t step = (count + GXBP_SAMPLE - 1) / GXBP_SAMPLE;
@@ -4214,7 +4232,7 @@ static GXBP_COLD int gxbp_medians(gxb_complex *cx, const uint32_t *facets, uint3
 }
 
 /* A plane across an axis: through points at the corners of the element's box. */
-static GXBP_COLD gx_result gxbp_new_free_plane(gxb_complex *cx, uint32_t element, int axis, double at,
+static GXBP_COLD gx_result gxbp_new_free_plane(gxb_complex *cx, uint32_t element, int axis, double position,
                                                uint32_t *plane) {
     double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, x[3];
     uint32_t point[3], i;
@@ -4229,7 +4247,7 @@ static GXBP_COLD gx_result gxbp_new_free_plane(gxb_complex *cx, uint32_t element
     }
     for (i = 0; i < 3 && result == GX_OK; i++) {
         memcpy(x, low, sizeof x);
-        x[axis] = at;
+        x[axis] = position;
         if (i > 0) x[(axis + (int)i) % 3] = high[(axis + (int)i) % 3];
         result = gxb_complex_add_point(cx, x, &point[i]);
     }
@@ -4250,8 +4268,9 @@ static int gxbp_plane_parts(gxb_complex *cx, const uint32_t *facets, uint32_t co
     return front >= count / 4 && behind >= count / 4;
 }
 
-/* Divides the leaf at the task's place, which a triangle has just made, by a free plane if it has many facets and one
-   parts them well; *node: GXB_NONE, or what has taken its place. Looked at whenever their number is one of eight. */
+/* Divides the leaf at the task's place, which a triangle has just made, by a free plane, if it has many facets and one
+   parts them well. *node: the node that has taken its place, or left alone. Tried when the number of facets is a
+   multiple of eight. */
 static GXBP_COLD gx_result gxbp_divide_crowded(gxb_complex *cx, const gxbp_task *task, uint32_t *node) {
     const uint32_t leaf = cx->nodes[task->parent].child[task->side] >> 1, points = cx->store.point_count,
                    planes = cx->store.plane_count;
@@ -4260,9 +4279,9 @@ static GXBP_COLD gx_result gxbp_divide_crowded(gxb_complex *cx, const gxbp_task 
     double median[3];
     int rank[3], ranks, k;
     gxbp_splitter splitter;
-    gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, scratch, scratch, l.facet_count);
+    gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, inner_facets, inner_facet, l.facet_count);
     if (result != GX_OK) return result;
-    inner = cx->scratch;
+    inner = cx->inner_facets;
     for (i = 0; i < l.facet_count; i++)
         if (cx->facets[cx->pool[l.facets + i]].face == GXB_NONE) inner[n++] = cx->pool[l.facets + i];
     if (n < GXBP_MANY_FACETS || n % 8 != 0) return GX_OK;
@@ -4284,10 +4303,10 @@ static GXBP_COLD gx_result gxbp_divide_crowded(gxb_complex *cx, const gxbp_task 
 
 /* >>insert: a triangle into the leaves that it meets --------------------------------------------------------------- */
 /* In: a triangle with its plane. Out: leaves divided by its plane, walls and labels on what it covers. A
-   transaction is open; what runs out of memory leaves the complex to be rolled back. */
+   transaction is open; after an error the complex must be rolled back. */
 
-/* The triangle's part in the leaf is the polygon: divide the leaf and label what the triangle covers of the facet
- * between. */
+/* The polygon is the triangle's part in the leaf. Divides the leaf, and labels the part of the facet between the halves
+ * that the triangle covers. */
 static gx_result gxbp_divide_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t leaf, const gxbp_task *task) {
     const uint32_t element = cx->leaves[leaf].element;
     gxbp_splitter splitter;
@@ -4344,9 +4363,9 @@ static gx_result gxbp_descend(gxb_complex *cx, gxb_triangle *t, const gxbp_task 
     return GX_OK;
 }
 
-/* What the triangle's plane, in front and behind of which there are nodes (or three in it), has of an element: a
-   polygon of three corners where one node is alone on its side, else of four. Each is a node, or a point of the edge
-   between two, and starts a side in the face opposite to a third. */
+/* The section of an element with the triangle's plane, which has nodes on both sides or contains three. It is a polygon
+   of three corners where one node is alone on its side, else of four. A corner is a node or a point of the edge between
+   two nodes. It starts a side that lies in the face opposite to a third node. */
 static uint32_t gxbp_choose_section(const int sign[4], uint8_t corners[4][3]) {
     uint8_t node[2][4];
     uint32_t count[2] = {0, 0}, k, side;
@@ -4372,8 +4391,8 @@ static uint32_t gxbp_choose_section(const int sign[4], uint8_t corners[4][3]) {
     return 3;
 }
 
-/* The point that has divided a mesh edge first, if the plane has done that, as for another element around the edge;
- * GXB_NONE: it has not. */
+/* The point that divided a mesh edge first, if this plane divided it there, for another element around the edge.
+ * GXB_NONE: another plane did, or none. */
 static uint32_t gxbp_made_crossing(const gxb_complex *cx, uint32_t mesh_edge, uint32_t plane) {
     const uint32_t child = cx->edges[cx->mesh_edge[mesh_edge]].child;
     const uint32_t point = child != GXB_NONE ? cx->edges[child].v[1] : GXB_NONE;
@@ -4456,8 +4475,8 @@ static void gxbp_push_triangle(gxb_complex *cx, const gxb_triangle *t) {
     }
 }
 
-/* What of the triangle lies in an element, on both sides of whose plane it has nodes, or three in the plane: the
-   triangle itself, or the plane's section clipped by the triangle's edges. task->count 0: nothing. */
+/* The part of the triangle in an element that has nodes on both sides of its plane, or three in it: the triangle
+   itself, or the plane's section clipped by the triangle's edges. task->count 0: nothing. */
 static gx_result gxbp_clip_to_element(gxb_complex *cx, gxb_triangle *t, uint32_t element, const int sign[4],
                                       gxbp_task *task) {
     uint8_t corners[4][3];
@@ -4490,8 +4509,8 @@ static gx_result gxbp_clip_to_element(gxb_complex *cx, gxb_triangle *t, uint32_t
     return GX_OK;
 }
 
-/* Signs of the element's nodes against the triangle's plane. Has that plane nothing of the element but a node or an
- * edge, or nothing at all? */
+/* Does the triangle's plane miss the element, or meet it in a node or an edge only? sign: the nodes against the plane
+ */
 static int gxbp_misses_plane(gxb_complex *cx, const gxb_triangle *t, uint32_t element, int sign[4]) {
     int sides = 0, zeros = 0, k;
     for (k = 0; k < 4; k++) {
@@ -4706,7 +4725,7 @@ static int gxbp_pair_ratio(const gxbp_pair *a, const gxbp_pair *b, double *ratio
     return 1;
 }
 
-/* q - p; where a coordinate is no double, or large, 0 with an error that no ratio outlives */
+/* q - p. Where a coordinate is no double, or large: 0, with an error that makes every ratio fail */
 static void gxbp_pair_difference(gxbp_pair r[3], const gxb_ball *p, const gxb_ball *q) {
     const int good =
         p->error == 0 && q->error == 0 && gxbp_max(gxbp_max3(p->x), gxbp_max3(q->x)) < gxbp_power(GXBP_PAIR_RANGE);
@@ -4785,8 +4804,8 @@ static GXBP_COLD void gxbp_exact_edge_parameter(gxb_complex *cx, gxb_cpoint *p) 
     p->parameter[1] = -gxb_num_ratio(&a, &d);
 }
 
-/* Where on the mesh edge from node def[0] to node def[1] the point lies: 0 ... 1. Asked for by every element around the
- * edge, so kept. */
+/* Where on the mesh edge from node def[0] to node def[1] the point lies: 0 ... 1. Kept, since every element around the
+ * edge needs it. */
 static double gxbp_edge_parameter(gxb_complex *cx, uint32_t point, int from_end) {
     gxb_cpoint *p = &cx->store.points[point];
     if (p->parameter[0] < 0) {
@@ -4798,7 +4817,7 @@ static double gxbp_edge_parameter(gxb_complex *cx, uint32_t point, int from_end)
     return p->parameter[from_end];
 }
 
-/* What is known of lambda[k] without arithmetic: 1 or 0 at nodes, 0 on a face by definition; -1: nothing. */
+/* lambda[k] where no arithmetic is needed: 1 or 0 at nodes, 0 on a face by definition. Else -1 */
 static int gxbp_known_lambda(const gxb_complex *cx, uint32_t point, uint32_t element, uint32_t k) {
     const gxb_cpoint *p = &cx->store.points[point];
     const uint32_t face = cx->element_faces[4 * element + k];
@@ -4830,7 +4849,7 @@ GXFEM_API unsigned gxb_complex_support(const gxb_complex *cx, uint32_t point, ui
     return support;
 }
 
-/* Of a given point: by its sides of the faces */
+/* Shares of a given point: its sides of the faces */
 static void gxbp_pair_point_shares(gxb_complex *cx, uint32_t point, uint32_t element, gxbp_pair share[4]) {
     uint32_t k;
     for (k = 0; k < 4; k++) {
@@ -4842,7 +4861,7 @@ static void gxbp_pair_point_shares(gxb_complex *cx, uint32_t point, uint32_t ele
     }
 }
 
-/* Of a line through two points and a plane: with their sides a, b of the plane, the point is b p - a q. */
+/* Shares of a point on a line and a plane. The line's two points have sides a and b of the plane; it is b p - a q. */
 static void gxbp_pair_line_shares(gxb_complex *cx, const uint32_t def[3], uint32_t element, const double lambda[4],
                                   gxbp_pair share[4]) {
     const gxbp_pair a = gxbp_pair_side(cx, def[0], def[2]), b = gxbp_pair_side(cx, def[1], def[2]);
@@ -4858,8 +4877,8 @@ static void gxbp_pair_line_shares(gxb_complex *cx, const uint32_t def[3], uint32
         }
 }
 
-/* Of three planes, by the sides on which they have the nodes: a plane's sum of sides x coordinates is 0, so these are
-   the minors of the sides. */
+/* Shares of a point of three planes, by the nodes' sides of these. For each plane, the sum of sides x coordinates is 0,
+   so the coordinates are the minors of the sides. */
 static void gxbp_pair_plane_shares(gxb_complex *cx, const uint32_t def[3], uint32_t element, const double lambda[4],
                                    gxbp_pair share[4]) {
     const uint32_t *node = cx->elements + 4 * (size_t)element;
@@ -4886,8 +4905,8 @@ static int gxbp_is_face_plane(const gxb_complex *cx, uint32_t plane) {
     return f->def[0] < cx->node_count && f->def[1] < cx->node_count && f->def[2] < cx->node_count && !f->along_axis;
 }
 
-/* Of a point in a mesh face, by the sides on which its two other planes have the face's nodes: the minors of these. 0:
-   pairs do not tell, or it is in two of such planes. */
+/* Coordinates of a point in a mesh face: the minors of the face's nodes' sides of its two other planes. 0: pairs do not
+   settle them, or the point is in planes of two faces. */
 static int gxbp_pair_in_face(gxb_complex *cx, uint32_t point, uint32_t face) {
     gxb_cpoint *p = &cx->store.points[point];
     const uint32_t *node = cx->store.planes[p->def[face]].def;
@@ -4911,8 +4930,8 @@ static int gxbp_pair_in_face(gxb_complex *cx, uint32_t point, uint32_t face) {
     return 1;
 }
 
-/* Coordinates of a point of three planes one of which is that of a mesh face of the element: those in the face, which
-   are asked for by both elements beside it, so kept. 0: there is no such plane, or pairs do not tell. */
+/* Coordinates of a point of three planes, one of which is that of a mesh face of the element. They are kept, since both
+   elements beside the face need them. 0: there is no such plane, or pairs do not settle them. */
 static int gxbp_face_barycentric(gxb_complex *cx, uint32_t point, uint32_t element, double lambda[4]) {
     const gxb_cpoint *p = &cx->store.points[point];
     const uint32_t *n = cx->elements + 4 * (size_t)element, *node;
@@ -4930,8 +4949,7 @@ static int gxbp_face_barycentric(gxb_complex *cx, uint32_t point, uint32_t eleme
     return 1;
 }
 
-/* By pairs, those that they settle; -1 stands for the others. On entry what is known without arithmetic stands there.
- */
+/* Computes by pairs the coordinates that are not known yet (-1). Those that pairs do not settle stay -1. */
 static void gxbp_pair_barycentric(gxb_complex *cx, uint32_t point, uint32_t element, double lambda[4]) {
     const gxb_cpoint p = cx->store.points[point];
     gxbp_pair share[4], sum = gxbp_pair_sum(0, 0);
@@ -5054,7 +5072,7 @@ static GXBP_COLD void gxbp_save_points(gxb_complex *cx, gxb_stream *s) {
     }
 }
 
-/* Points by definition have no ball yet: it needs the planes. */
+/* Points by definition get no ball yet: it needs the planes. */
 static GXBP_COLD void gxbp_load_points(gxb_complex *cx, gxb_stream *s, uint32_t count) {
     uint32_t i;
     for (i = 0; i < count && s->result == GX_OK; i++) {
@@ -5210,60 +5228,71 @@ static GXBP_COLD void gxbp_pass_rest(gxb_complex *cx, gxb_stream *s) {
     }
 }
 
-enum { GXBP_COUNTS = 7 };
+/* The arrays that are saved, in this order; the fewest bytes that an item takes. Points and planes are appended as they
+   are read; the items of the others are zero until they are read. */
+typedef struct gxbp_saved {
+    gxbp_array array;
+    uint16_t least;
+    uint8_t appended;
+} gxbp_saved;
+static const gxbp_saved gxbp_saved_arrays[] = {/* the first begins with the nodes, the fifth with the first leaves */
+                                               {GXBP_ARRAY(gxb_complex, store.points, store.point), 4, 1},
+                                               {GXBP_ARRAY(gxb_complex, store.planes, store.plane), 16, 1},
+                                               {GXBP_ARRAY(gxb_complex, edges, edge), 28, 0},
+                                               {GXBP_ARRAY(gxb_complex, facets, facet), 32, 0},
+                                               {GXBP_ARRAY(gxb_complex, leaves, leaf), 16, 0},
+                                               {GXBP_ARRAY(gxb_complex, nodes, tree), 12, 0},
+                                               {GXBP_ARRAY(gxb_complex, labels, label), 12, 0}};
+enum { GXBP_COUNTS = sizeof gxbp_saved_arrays / sizeof *gxbp_saved_arrays };
 
-GXFEM_API GXBP_RARE void gxb_complex_save(gxb_complex *cx, gxb_stream *stream) {
-    uint32_t counts[GXBP_COUNTS];
-    counts[0] = cx->store.point_count;
-    counts[1] = cx->store.plane_count;
-    counts[2] = cx->edge_count;
-    counts[3] = cx->facet_count;
-    counts[4] = cx->leaf_count;
-    counts[5] = cx->tree_count;
-    counts[6] = cx->label_count;
-    gxb_stream_pass(stream, counts, GXBP_COUNTS, sizeof *counts);
-    gxbp_save_points(cx, stream);
-    gxbp_save_planes(cx, stream);
-    gxbp_pass_edges(cx, stream);
-    gxbp_pass_facets(cx, stream);
-    gxbp_pass_leaves(cx, stream);
-    gxbp_pass_rest(cx, stream);
+/* Reading: gives an array so many items, all zero. */
+static void gxbp_load_items(gxb_stream *s, gxb_complex *cx, const gxbp_array *array, uint32_t count) {
+    uint32_t *present = gxbp_word(cx, array->count);
+    void *items;
+    gxbp_require(s, gxbp_reserve(&cx->store.allocator, gxbp_field(cx, array->pointer), 0,
+                                 gxbp_word(cx, array->capacity), array->item, count));
+    if (s->result != GX_OK) return;
+    *present = count;
+    memcpy(&items, gxbp_field(cx, array->pointer), sizeof items);
+    if (count > 0) memset(items, 0, (size_t)count * array->item);
 }
 
-/* Items of 4 bytes at least each; all of them zero until they are read. */
-static void gxbp_load_room(gxb_stream *s, gxb_complex *cx, const uint32_t counts[GXBP_COUNTS]) {
-    static const size_t least[GXBP_COUNTS] = {4, 16, 28, 32, 16, 12, 12};
-    int i;
+/* Passes the counts of all arrays. Reading: checks them, and makes room. */
+static void gxbp_pass_counts(gxb_complex *cx, gxb_stream *s, uint32_t counts[GXBP_COUNTS]) {
+    uint32_t i;
+    for (i = 0; i < GXBP_COUNTS; i++) counts[i] = *gxbp_word(cx, gxbp_saved_arrays[i].array.count);
+    gxb_stream_pass(s, counts, GXBP_COUNTS, sizeof *counts);
+    if (s->in == NULL) return;
     for (i = 0; i < GXBP_COUNTS; i++) {
-        gxb_stream_has(s, counts[i], least[i]);
+        gxb_stream_has(s, counts[i], gxbp_saved_arrays[i].least);
         gxbp_require_true(s, counts[i] <= INT32_MAX);
     }
     gxbp_require_true(s, counts[0] >= cx->node_count && counts[4] >= cx->element_count);
-    if (s->result != GX_OK) return;
-    gxbp_require(s, GXBP_RESERVE(&cx->store.allocator, cx, edges, edge, counts[2]));
-    gxbp_require(s, GXBP_RESERVE(&cx->store.allocator, cx, facets, facet, counts[3]));
-    gxbp_require(s, GXBP_RESERVE(&cx->store.allocator, cx, leaves, leaf, counts[4] - cx->leaf_count));
-    gxbp_require(s, GXBP_RESERVE(&cx->store.allocator, cx, nodes, tree, counts[5]));
-    gxbp_require(s, GXBP_RESERVE(&cx->store.allocator, cx, labels, label, counts[6]));
-    if (s->result != GX_OK) return;
-    cx->edge_count = counts[2];
-    cx->facet_count = counts[3];
-    cx->leaf_count = counts[4];
-    cx->tree_count = counts[5];
-    cx->label_count = counts[6];
-    if (counts[2] > 0) memset(cx->edges, 0, counts[2] * sizeof *cx->edges);
-    if (counts[3] > 0) memset(cx->facets, 0, counts[3] * sizeof *cx->facets);
-    memset(cx->leaves, 0, counts[4] * sizeof *cx->leaves);
+    for (i = 0; i < GXBP_COUNTS && s->result == GX_OK; i++)
+        if (!gxbp_saved_arrays[i].appended) gxbp_load_items(s, cx, &gxbp_saved_arrays[i].array, counts[i]);
 }
 
-/* >>check: is what was read a complex?
- * ---------------------------------------------------------------------------------------
- *
- * First every index, then that trees are trees, then geometry, by the exact predicates: each facet is a convex polygon
- * in its plane; each leaf is closed and lies on one side of its facets' planes, which are those of its element's faces
- * and of the nodes above it in the tree. So each leaf is all of its part of the tree, and a triangle that the tree
- * sends to a leaf divides it.
- */
+/* Passes the arrays behind points and planes. */
+static void gxbp_pass_arrays(gxb_complex *cx, gxb_stream *s) {
+    if (s->result == GX_OK) gxbp_pass_edges(cx, s);
+    if (s->result == GX_OK) gxbp_pass_facets(cx, s);
+    if (s->result == GX_OK) gxbp_pass_leaves(cx, s);
+    if (s->result == GX_OK) gxbp_pass_rest(cx, s);
+}
+
+GXFEM_API GXBP_RARE void gxb_complex_save(gxb_complex *cx, gxb_stream *stream) {
+    uint32_t counts[GXBP_COUNTS];
+    gxbp_pass_counts(cx, stream, counts);
+    gxbp_save_points(cx, stream);
+    gxbp_save_planes(cx, stream);
+    gxbp_pass_arrays(cx, stream);
+}
+
+/* >>check: is what was read a complex? ----------------------------------------------------------------------------- */
+/* In: what was read. Out: the stream's error if it is no complex. First every index is checked, then that trees are
+   trees, then geometry, by the exact predicates. Each facet is a convex polygon in its plane. Each leaf is closed and
+   lies on one side of its facets' planes, which are those of its element's faces and of the nodes above it in the tree.
+   So each leaf is all of its part of the tree, and a triangle that the tree sends to a leaf divides it. */
 
 #define GXBP_DEPTH 10000 /* of a tree of edges, facets or leaves: functions that walk them call themselves */
 
@@ -5416,6 +5445,7 @@ typedef struct gxbp_checker {
     uint32_t *corner;     /* edge_count: indices of those at which its line changes */
     uint32_t *facet;      /* facet_count: undivided ones of the leaf or face at work */
     uint32_t *point;      /* point_count: of the leaf at work */
+    uint32_t *point_mark; /* point_count: round in which the point was met */
     uint32_t *edge_depth, *facet_depth, *node_depth;
     uint32_t *queue, hung;       /* nodes that hang in a tree, each behind the one above it */
     uint32_t *node_up, *leaf_up; /* 2 x node above + side; GXB_NONE: it is a root */
@@ -5423,7 +5453,7 @@ typedef struct gxbp_checker {
     uint32_t count, corners, facets, points, round, loose; /* loose: edges in border without their opposite */
 } gxbp_checker;
 
-/* Appends the pieces of a signed edge; none may come twice in a facet. */
+/* Appends the parts of a signed edge; none may come twice in a facet. */
 static GXBP_COLD void gxbp_collect_edges(gxbp_checker *c, uint32_t signed_edge) {
     const uint32_t child = c->cx->edges[signed_edge >> 1].child, back = signed_edge & 1;
     if (c->s->result != GX_OK) return;
@@ -5450,8 +5480,8 @@ static int gxbp_same_carrier(const gxb_complex *cx, uint32_t a, uint32_t b) {
     return e->explicit_line == f->explicit_line && memcmp(e->line, f->line, sizeof e->line) == 0;
 }
 
-/* Edges first ... end-1 (cyclic) have one line: the corners lie to its left or on it, one does not lie on it, and every
-   edge goes the same way along it. */
+/* Edges first ... end-1 (cyclic) have one line. Do all corners lie to its left or on it, one of them not on it, and do
+   all these edges go the same way along it? */
 static int gxbp_side_is_convex(gxbp_checker *c, uint32_t plane, uint32_t first, uint32_t end) {
     gxb_complex *cx = c->cx;
     uint32_t i, apex = GXB_NONE, a = gxbp_edge_start(cx, c->edge[first]), b = gxbp_edge_start(cx, c->edge[end]);
@@ -5482,9 +5512,8 @@ static void gxbp_check_polygon(gxbp_checker *c, uint32_t facet) {
     for (i = 0; i < c->count; i++) {
         const uint32_t e = c->edge[i], next = c->edge[(i + 1) % c->count], start = gxbp_edge_start(cx, e);
         gxbp_require_true(c->s, cx->edges[e >> 1].v[1 - (e & 1)] == gxbp_edge_start(cx, next) &&
-                                    cx->store.points[start].scratch != c->round &&
-                                    gxb_complex_side(cx, start, plane) == 0);
-        cx->store.points[start].scratch = c->round;
+                                    c->point_mark[start] != c->round && gxb_complex_side(cx, start, plane) == 0);
+        c->point_mark[start] = c->round;
         if (!gxbp_same_carrier(cx, c->edge[(i + c->count - 1) % c->count], e)) c->corner[c->corners++] = i;
     }
     gxbp_require_true(c->s, c->corners >= 3);
@@ -5553,13 +5582,13 @@ static void gxbp_add_border(gxbp_checker *c, uint32_t facet, uint32_t flip, uint
     }
 }
 
-/* --- mesh faces: their facets cover them once, up to the pieces of their mesh edges --- */
+/* --- mesh faces: their facets cover them once, up to the parts of their mesh edges --- */
 
-/* Are all pieces of the signed edge on the border? Returns how many there are. */
-static GXBP_COLD uint32_t gxbp_border_pieces(gxbp_checker *c, uint32_t signed_edge, uint32_t round) {
+/* Are all parts of the signed edge on the border? Returns how many there are. */
+static GXBP_COLD uint32_t gxbp_count_border(gxbp_checker *c, uint32_t signed_edge, uint32_t round) {
     const uint32_t child = c->cx->edges[signed_edge >> 1].child, back = signed_edge & 1;
     if (child != GXB_NONE)
-        return gxbp_border_pieces(c, child << 1 | back, round) + gxbp_border_pieces(c, (child + 1) << 1 | back, round);
+        return gxbp_count_border(c, child << 1 | back, round) + gxbp_count_border(c, (child + 1) << 1 | back, round);
     gxbp_require_true(c->s, c->border[signed_edge] == round && c->border[signed_edge ^ 1] != round);
     return 1;
 }
@@ -5569,7 +5598,7 @@ static void gxbp_check_face(gxbp_checker *c, uint32_t element, uint32_t k) {
     gxb_complex *cx = c->cx;
     const uint32_t *node = cx->elements + 4 * (size_t)element,
                    root = cx->face_facet[cx->element_faces[4 * (size_t)element + k]];
-    uint32_t local[3], n[3], i, j, pieces = 0, round;
+    uint32_t local[3], n[3], i, j, parts = 0, round;
     const gxb_cplane *plane;
     if (root == GXB_NONE) return;
     plane = &cx->store.planes[cx->facets[root].plane];
@@ -5589,9 +5618,9 @@ static void gxbp_check_face(gxbp_checker *c, uint32_t element, uint32_t k) {
         const uint32_t edge =
             cx->mesh_edge[cx->element_edges[6 * (size_t)element + gxbp_local_edge(local[j], local[(j + 1) % 3])]];
         gxbp_require_true(c->s, edge != GXB_NONE);
-        if (c->s->result == GX_OK) pieces += gxbp_border_pieces(c, edge << 1 | (j == 2 ? 1u : 0u), round);
+        if (c->s->result == GX_OK) parts += gxbp_count_border(c, edge << 1 | (j == 2 ? 1u : 0u), round);
     }
-    gxbp_require_true(c->s, pieces == c->loose);
+    gxbp_require_true(c->s, parts == c->loose);
 }
 
 /* --- the trees of the elements --- */
@@ -5661,8 +5690,8 @@ static void gxbp_collect_points(gxbp_checker *c, uint32_t round) {
     uint32_t i;
     for (i = 0; i < c->count; i++) {
         const uint32_t point = gxbp_edge_start(c->cx, c->edge[i]);
-        if (c->cx->store.points[point].scratch == round) continue;
-        c->cx->store.points[point].scratch = round;
+        if (c->point_mark[point] == round) continue;
+        c->point_mark[point] = round;
         c->point[c->points++] = point;
     }
 }
@@ -5733,7 +5762,7 @@ static void gxbp_run_checks(gxbp_checker *c) {
 
 static GXBP_COLD void gxbp_check(gxb_complex *cx, gxb_stream *s) {
     const size_t e = cx->edge_count, f = cx->facet_count, n = cx->tree_count, l = cx->leaf_count;
-    const size_t words = 7 * e + 4 * f + cx->store.point_count + 4 * n + l + 1;
+    const size_t words = 7 * e + 4 * f + 2 * (size_t)cx->store.point_count + 4 * n + l + 1;
     gxbp_checker c;
     uint32_t *block;
     memset(&c, 0, sizeof c);
@@ -5762,7 +5791,8 @@ static GXBP_COLD void gxbp_check(gxb_complex *cx, gxb_stream *s) {
     c.node_element = c.node_up + n;
     c.leaf_up = c.node_element + n;
     c.point = c.leaf_up + l;
-    c.queue = c.point + cx->store.point_count;
+    c.point_mark = c.point + cx->store.point_count;
+    c.queue = c.point_mark + cx->store.point_count;
     gxbp_run_checks(&c);
     gxbp_release(&cx->store.allocator, block, words * sizeof *block);
 }
@@ -5788,15 +5818,11 @@ static void gxbp_link_trees(gxb_complex *cx) {
 
 GXFEM_API GXBP_RARE gx_result gxb_complex_load(gxb_complex *cx, gxb_stream *s, int trusted) {
     uint32_t counts[GXBP_COUNTS];
-    gxb_stream_pass(s, counts, GXBP_COUNTS, sizeof *counts);
-    gxbp_load_room(s, cx, counts);
+    gxbp_pass_counts(cx, s, counts);
     if (s->result == GX_OK) gxbp_load_points(cx, s, counts[0]);
     if (s->result == GX_OK) gxbp_load_planes(cx, s, counts[1]);
     if (s->result == GX_OK) gxbp_place_points(cx, s);
-    if (s->result == GX_OK) gxbp_pass_edges(cx, s);
-    if (s->result == GX_OK) gxbp_pass_facets(cx, s);
-    if (s->result == GX_OK) gxbp_pass_leaves(cx, s);
-    if (s->result == GX_OK) gxbp_pass_rest(cx, s);
+    gxbp_pass_arrays(cx, s);
     if (s->result == GX_OK && !trusted) gxbp_check(cx, s);
     if (s->result != GX_OK) return s->result;
     gxbp_link_trees(cx);
@@ -5812,8 +5838,8 @@ GXFEM_API GXBP_RARE gx_result gxb_complex_load(gxb_complex *cx, gxb_stream *s, i
 /* Labels of a subtriangle's edge form a list: the sources that meet the subtriangle's plane along it, and in flats also
  * edges of sources (half-edge | GXBP_EDGE_LABEL). */
 #define GXBP_EDGE_LABEL ((uint32_t)1 << 31)
-#define GXBP_LOOSE      UINT32_MAX       /* an edge that only triangulates */
-#define GXBP_BARE       (UINT32_MAX - 1) /* the end of a list: an edge that must stay */
+#define GXBP_LOOSE      UINT32_MAX       /* not constrained: no labels, may be replaced */
+#define GXBP_BARE       (UINT32_MAX - 1) /* the end of a list of labels: a constrained edge */
 
 enum { GXBP_LEAF = 8 }; /* triangles in a leaf of a box tree */
 
@@ -5821,7 +5847,7 @@ typedef struct gxbp_source { /* an input triangle */
     uint32_t point[3];
     /* the half-edge 3 s + k on the other side of edge k, GXB_NONE where there is not exactly one */
     uint32_t twin[3];
-    uint32_t edge[3]; /* in cuts; GXB_NONE: nothing is known of the edge, and it has no inner points */
+    uint32_t edge[3]; /* in crossings.edges; GXB_NONE: the edge has no record, so no inner points */
     uint32_t plane;   /* GXB_NONE until needed */
     uint32_t operand;
     uint32_t subtriangle; /* first of its subtriangles; of a flat: its root has them all */
@@ -5835,7 +5861,7 @@ enum {
     GXBP_DIVIDED = 4,
     GXBP_FLAT = 8,
     GXBP_REACHED = 16
-};                       /* one of its subtriangles has got a state: all have, or will soon */
+};                       /* one of its subtriangles has a state: all have, or will soon */
 enum { GXBP_FOLDS = 8 }; /* two bits of the flags for each edge from this one on, see gxbp_fold_beyond_filter */
 
 typedef struct gxbp_subtriangle { /* a triangle of a source's triangulation; edge k from v[k] to v[k + 1] */
@@ -5851,8 +5877,8 @@ typedef struct gxbp_vertex {   /* beside each point of the complex */
     uint32_t key[4];           /* kind and what defines it, see gxb_origin; half-edges and sources */
     uint32_t same;             /* union-find: points found to be equal */
     uint32_t stamp, hint;      /* a subtriangle around it in the triangulation at work */
-    uint32_t head, head_stamp; /* scratch */
-    uint32_t slot;             /* scratch: place on the rim of the source at work; number in the output */
+    uint32_t head, head_stamp; /* see gxbp_chain_segments */
+    uint32_t rim_place;        /* 3 i + k: point i of edge k of the source at work; GXB_NONE: it is none */
 } gxbp_vertex;
 
 typedef struct gxbp_link {
@@ -5864,18 +5890,19 @@ typedef struct gxbp_segment {
     uint32_t p, q, label, next;
     int32_t left;
 } gxbp_segment;
-/* An edge of a surface. Its inner points: in cut_points, in the half-edge's direction. rim: of the subtriangles of
-   divided sources on its two sides (that of the half-edge first) those at its start, as 3 f + k. */
-typedef struct gxbp_cut {
+/* The record of a surface's edge that something crosses or that borders on a divided source. first, count: its inner
+   points in edge_points, in the half-edge's direction. rim: if the sources on its two sides are divided, the edges
+   3 f + k of their subtriangles at its start, that on the half-edge's side first. */
+typedef struct gxbp_surface_edge {
     uint32_t half_edge, first, count, rim[2];
-} gxbp_cut;
+} gxbp_surface_edge;
 typedef struct gxbp_hit {
-    uint32_t cut, point;
+    uint32_t edge, point;
 } gxbp_hit;
 typedef struct gxbp_rim_vertex {
     uint32_t vertex, near, labels, made, dangling;
 } gxbp_rim_vertex;
-/* coordinates / 16, rounded outward: see gxbp_float_below */
+/* Coordinates / 16, rounded outward: see gxbp_float_below */
 typedef struct gxbp_box {
     float low[3], high[3];
 } gxbp_box;
@@ -5901,7 +5928,7 @@ typedef struct gxbp_operand {
     gxbp_tree tree;
 } gxbp_operand;
 
-/* From a state one up or down in an operand's winding number */
+/* The state that differs from another by one in an operand's winding number */
 typedef struct gxbp_state_step {
     uint32_t from, operand, to;
     int32_t change;
@@ -5934,7 +5961,7 @@ typedef struct gxbp_points {
     struct gxbp_projected *projected;
     uint32_t projected_count, projected_capacity;
     double reach; /* the largest of their errors */
-    /* 1: since the last evaluation a point has got another name; an input vertex has ever */
+    /* united 1: points were united since the last evaluation; renamed 1: an input vertex ever got another name */
     uint32_t united, renamed;
 } gxbp_points;
 
@@ -5942,10 +5969,10 @@ typedef struct gxbp_points {
 typedef struct gxbp_crossings {
     gxbp_segment *segments;
     uint32_t segment_count, segment_capacity;
-    gxbp_cut *cuts;
-    uint32_t cut_count, cut_capacity;
-    uint32_t *cut_points;
-    uint32_t cut_point_count, cut_point_capacity;
+    gxbp_surface_edge *edges;
+    uint32_t edge_count, edge_capacity;
+    uint32_t *edge_points;
+    uint32_t edge_point_count, edge_point_capacity;
     gxbp_hit *hits;
     uint32_t hit_count, hit_capacity;
     uint32_t *dirty;
@@ -5990,17 +6017,17 @@ typedef struct gxbp_output {
     uint32_t origin_count, origin_capacity;
     uint32_t *points; /* of each vertex: its point */
     uint32_t point_count, point_capacity;
-    uint32_t *triangles; /* x 3; triangle_count counts corners, source_count triangles */
-    uint32_t triangle_count, triangle_capacity;
+    uint32_t *triangles; /* x 3: vertices */
+    uint32_t corner_count, corner_capacity;
     /* of each triangle */
     uint32_t *operands;
     uint32_t operand_count, operand_capacity;
     uint32_t *sources;
-    uint32_t source_count, source_capacity;
+    uint32_t triangle_count, triangle_capacity;
     uint32_t *components;
     uint32_t component_count, component_capacity;
-    uint32_t *planes; /* 2 x subtriangle, + 1 where the triangle faces against its plane */
-    uint32_t plane_count, plane_capacity;
+    uint32_t *subtriangles; /* 2 x subtriangle, + 1 where the triangle faces against its plane */
+    uint32_t subtriangle_count, subtriangle_capacity;
     uint8_t *reversed;
     uint32_t reversed_count, reversed_capacity;
     /* of each component; sides: x operand */
@@ -6040,9 +6067,12 @@ typedef struct gxbp_budget {
 
 /* Scratch. No array keeps anything from one step to the next; each has one meaning. */
 typedef struct gxbp_work {
-    /* subtriangles, or triangles of the output: a stack to visit, or a list of those to replace */
-    uint32_t *stack;
-    uint32_t stack_count, stack_capacity;
+    /* subtriangles to visit, in a flat or while states spread */
+    uint32_t *visits;
+    uint32_t visit_count, visit_capacity;
+    /* subtriangles that a constrained edge crosses, to be replaced */
+    uint32_t *crossed;
+    uint32_t crossed_count, crossed_capacity;
     /* subtriangles that got a state, or lost one: neighbours are still to come */
     uint32_t *pending;
     uint32_t pending_count, pending_capacity;
@@ -6055,12 +6085,17 @@ typedef struct gxbp_work {
     /* new segments of the source at work, x 3, see gxbp_chain_segments */
     uint32_t *segment_ends;
     uint32_t segment_end_count, segment_end_capacity;
-    /* outlines to the right and the left of an edge that is being made */
-    gxbp_rim_vertex *rims;
-    uint32_t rim_count, rim_capacity;
+    /* rims of the crossed subtriangles, to the right and to the left of the edge */
+    gxbp_rim_vertex *rights;
+    uint32_t right_count, right_capacity;
     gxbp_rim_vertex *lefts;
     uint32_t left_count, left_capacity;
-    uint32_t plane;             /* in which gxbp_turn decides */
+    /* >>coarse: the polygon of a fan, and the fan's triangles, to be replaced */
+    struct gxbp_fan_vertex *fan_vertices;
+    uint32_t fan_vertex_count, fan_vertex_capacity;
+    uint32_t *fan_triangles;
+    uint32_t fan_triangle_count, fan_triangle_capacity;
+    uint32_t plane;             /* of the triangulation at work */
     uint32_t stamp, head_stamp; /* of vertices in the triangulation at work, of those with heads */
 } gxbp_work;
 
@@ -6177,6 +6212,10 @@ static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, uint32_t count, uin
 static GXBP_APART void *gxbp_borrow(gxb_boolean *b, size_t bytes) {
     b->work.room_count = 0;
     return GXBP_ROOM(b, work.room, work.room, bytes / sizeof *b->work.room + 1) ? b->work.room : NULL;
+}
+
+static void gxbp_push_visit(gxb_boolean *b, uint32_t f) {
+    if (GXBP_ROOM(b, work.visits, work.visit, 1)) b->work.visits[b->work.visit_count++] = f;
 }
 
 static uint32_t gxbp_new_link(gxb_boolean *b, uint32_t value, uint32_t next) {
@@ -6550,17 +6589,17 @@ static gx_result gxbp_scale(const gxb_boolean *b, const double x[3], double y[3]
 /* Scenes of ordinary size keep their scale. *bad: the vertex with the largest coordinate if that is out of range. */
 static gx_result gxbp_choose_scale(gxb_boolean *b, const gxb_operand *operand, size_t *bad) {
     int largest = -2000;
-    size_t i, at = 0;
+    size_t i, vertex = 0;
     for (i = 0; i < 3 * operand->vertex_count; i++) {
         const int e = gxbp_exponent_bits(operand->vertices[i]) - 1023;
         if (e > largest && e < 1024 && !gxbp_is_zero(operand->vertices[i])) {
             largest = e;
-            at = i / 3;
+            vertex = i / 3;
         }
     }
     b->store.shift = largest == -2000 || (largest >= -60 && largest <= 60) ? 0 : -largest;
     if (largest == -2000 || (largest >= -GXBP_LARGEST && largest <= GXBP_LARGEST)) return GX_OK;
-    *bad = at;
+    *bad = vertex;
     return GX_ERROR_RANGE;
 }
 
@@ -6598,9 +6637,9 @@ static void gxbp_list_half_edges(const uint32_t *triangles, uint32_t count, gxbp
         h -= 3;
         for (k = 0, i = 2; k < 3; i = k++) {
             const uint32_t p = triangles[h + i], q = triangles[h + k];
-            gxbp_passage *at = &passages[p < q ? p : q];
-            next[h + i] = p == q ? GXB_NONE : at->first;
-            if (p != q) at->first = h + i;
+            gxbp_passage *list = &passages[p < q ? p : q];
+            next[h + i] = p == q ? GXB_NONE : list->first;
+            if (p != q) list->first = h + i;
         }
     }
 }
@@ -6635,14 +6674,14 @@ enum { GXBP_FEW = 32, GXBP_FEW_TRIANGLES = 80 };
 
 /* Twins for few vertices. 0: some edge has not exactly one half-edge in each direction. */
 static int gxbp_find_few_twins(const uint32_t *triangles, uint32_t count, uint32_t vertex_count, uint32_t *twin) {
-    uint8_t at[GXBP_FEW * GXBP_FEW];
+    uint8_t half_edge[GXBP_FEW * GXBP_FEW];
     uint32_t h, k, i, alone = 3 * count;
-    memset(at, 0xff, (size_t)vertex_count * vertex_count);
+    memset(half_edge, 0xff, (size_t)vertex_count * vertex_count);
     for (h = 0; h < 3 * count; h += 3)
         for (k = 0, i = 2; k < 3; i = k++) {
-            const uint32_t p = triangles[h + i], q = triangles[h + k], back = at[q * vertex_count + p];
-            if (p == q || at[p * vertex_count + q] != 0xff) return 0;
-            at[p * vertex_count + q] = (uint8_t)(h + i);
+            const uint32_t p = triangles[h + i], q = triangles[h + k], back = half_edge[q * vertex_count + p];
+            if (p == q || half_edge[p * vertex_count + q] != 0xff) return 0;
+            half_edge[p * vertex_count + q] = (uint8_t)(h + i);
             if (back == 0xff) continue;
             twin[h + i] = back;
             twin[back] = h + i;
@@ -6850,8 +6889,8 @@ static GXBP_APART gx_result gxbp_read_triangles(gxb_boolean *b, const gxb_operan
     return GX_OK;
 }
 
-/* The first operand allocates room for a second one of its size too (gxbp_reserve adds half of the request), and for
- * the given thirds of it that the two divide. Unused room is never touched, and nothing large is copied. */
+/* The first operand also reserves room for a second one of its size: with some thirds more requested, gxbp_reserve adds
+ * half of the request. The second one then moves no large array. Unused room is never touched. */
 static size_t gxbp_presize(const gxb_boolean *b, size_t count, size_t thirds) {
     return b->in.operand_count > 0 ? count : count + thirds * count / 3;
 }
@@ -6861,7 +6900,7 @@ static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operan
     const size_t sources = gxbp_presize(b, o->triangle_count, 1), subtriangles = gxbp_presize(b, o->triangle_count, 3),
                  points = gxbp_presize(b, o->vertex_count, 3);
     const size_t leaves = gxbp_presize(b, (o->triangle_count + GXBP_LEAF - 1) / GXBP_LEAF, 1);
-    gxbp_operand *mine;
+    gxbp_operand *added;
     gx_result result;
     uint32_t *work;
     if (!GXBP_ROOM(b, in.operands, in.operand, 1) || !GXBP_ROOM(b, in.sources, in.source, sources) ||
@@ -6873,27 +6912,27 @@ static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operan
     if (result != GX_OK) return result;
     work = (uint32_t *)gxbp_borrow(b, words * sizeof *work);
     if (work == NULL) return b->error;
-    mine = &b->in.operands[b->in.operand_count];
-    memset(mine, 0, sizeof *mine);
-    mine->operation = o->operation;
-    mine->rule = o->rule;
-    mine->simple = o->simple;
-    mine->source = b->in.source_count;
-    mine->source_count = (uint32_t)o->triangle_count;
+    added = &b->in.operands[b->in.operand_count];
+    memset(added, 0, sizeof *added);
+    added->operation = o->operation;
+    added->rule = o->rule;
+    added->simple = o->simple;
+    added->source = b->in.source_count;
+    added->source_count = (uint32_t)o->triangle_count;
     result = gxbp_read_triangles(b, o, work, bad);
-    if (result == GX_OK) result = gxbp_make_tree(b, mine);
+    if (result == GX_OK) result = gxbp_make_tree(b, added);
     if (result != GX_OK) {
-        gxbp_release(&b->store.allocator, mine->order, o->triangle_count * sizeof *mine->order);
+        gxbp_release(&b->store.allocator, added->order, o->triangle_count * sizeof *added->order);
         return result;
     }
     b->in.operand_count++;
-    gxbp_forget_degenerate(b, mine->source);
+    gxbp_forget_degenerate(b, added->source);
     return GX_OK;
 }
 
 /* >>sides: planes of sources; records of where they meet ----------------------------------------------------------- */
 /* In: sources and points. Out: sides of planes and folds, decided by the filter, by definition or exactly; planes, made
-   when needed; segments, and points on edges. Touches planes, segments, cuts, hits and the list of dirty sources. */
+   when needed; segments, and points on edges. Touches planes, segments, edges, hits and the list of dirty sources. */
 
 /* Decides what the filter leaves open: first by definition, then by exact arithmetic. */
 static GXBP_APART int gxbp_point_side_beyond_filter(gxb_boolean *b, uint32_t point, uint32_t plane) {
@@ -6930,7 +6969,7 @@ static int gxbp_flat_turn(const gxb_boolean *b, uint32_t plane, const double *p,
     return gxb_orient2d(a, c, d) * f->axis_sign;
 }
 
-/* A fold that the filter leaves open is stored with both triangles at the edge, since both request it. */
+/* A fold that the filter leaves open is stored with both triangles at the edge, since both need it. */
 static GXBP_APART int gxbp_fold_beyond_filter(gxb_boolean *b, uint32_t half_edge, uint32_t twin) {
     gxbp_source *s = &b->in.sources[half_edge / 3], *t = &b->in.sources[twin / 3];
     const uint32_t mine = GXBP_FOLDS + 2 * (half_edge % 3), other = GXBP_FOLDS + 2 * (twin % 3);
@@ -6943,8 +6982,8 @@ static GXBP_APART int gxbp_fold_beyond_filter(gxb_boolean *b, uint32_t half_edge
     return (int)fold - 2;
 }
 
-/* How the surface is folded between a triangle that has a plane, at a half-edge, and its twin, edge k of s: 1 towards
-   its front, as the corner beyond the edge lies in front of each, -1 to its back. */
+/* The fold of the surface at a half-edge, whose triangle has a plane, and its twin, edge k of s. 1: towards the front;
+   each triangle's far corner lies in front of the other. -1: towards the back. */
 static inline int gxbp_fold(gxb_boolean *b, uint32_t half_edge, uint32_t s, uint32_t k) {
     const uint32_t plane = b->in.sources[half_edge / 3].plane, corner = b->in.sources[s].point[k == 0 ? 2 : k - 1];
     double bound, value;
@@ -7019,29 +7058,29 @@ static uint32_t gxbp_edge_name(const gxb_boolean *b, uint32_t s, int k) {
     return twin < h ? twin : h;
 }
 
-static GXBP_APART uint32_t gxbp_new_cut(gxb_boolean *b, uint32_t s, int k) {
+static GXBP_APART uint32_t gxbp_new_surface_edge(gxb_boolean *b, uint32_t s, int k) {
     const uint32_t twin = b->in.sources[s].twin[k];
-    gxbp_cut *c;
-    if (!GXBP_ROOM(b, crossings.cuts, crossings.cut, 1)) return GXB_NONE;
-    c = &b->crossings.cuts[b->crossings.cut_count];
-    c->half_edge = gxbp_edge_name(b, s, k);
-    c->first = c->count = 0;
-    c->rim[0] = c->rim[1] = GXB_NONE;
-    b->in.sources[s].edge[k] = b->crossings.cut_count;
-    if (twin != GXB_NONE) b->in.sources[twin / 3].edge[twin % 3] = b->crossings.cut_count;
-    return b->crossings.cut_count++;
+    gxbp_surface_edge *e;
+    if (!GXBP_ROOM(b, crossings.edges, crossings.edge, 1)) return GXB_NONE;
+    e = &b->crossings.edges[b->crossings.edge_count];
+    e->half_edge = gxbp_edge_name(b, s, k);
+    e->first = e->count = 0;
+    e->rim[0] = e->rim[1] = GXB_NONE;
+    b->in.sources[s].edge[k] = b->crossings.edge_count;
+    if (twin != GXB_NONE) b->in.sources[twin / 3].edge[twin % 3] = b->crossings.edge_count;
+    return b->crossings.edge_count++;
 }
 
-/* The cut of an edge; GXB_NONE: no memory */
-static inline uint32_t gxbp_need_cut(gxb_boolean *b, uint32_t s, int k) {
-    return b->in.sources[s].edge[k] != GXB_NONE ? b->in.sources[s].edge[k] : gxbp_new_cut(b, s, k);
+/* The record of an edge; GXB_NONE: no memory */
+static inline uint32_t gxbp_need_surface_edge(gxb_boolean *b, uint32_t s, int k) {
+    return b->in.sources[s].edge[k] != GXB_NONE ? b->in.sources[s].edge[k] : gxbp_new_surface_edge(b, s, k);
 }
 
 /* A point inside an edge. */
 static void gxbp_hit_edge(gxb_boolean *b, uint32_t s, int k, uint32_t point) {
-    const uint32_t twin = b->in.sources[s].twin[k], cut = gxbp_need_cut(b, s, k);
-    if (cut == GXB_NONE || !GXBP_ROOM(b, crossings.hits, crossings.hit, 1)) return;
-    b->crossings.hits[b->crossings.hit_count].cut = cut;
+    const uint32_t twin = b->in.sources[s].twin[k], edge = gxbp_need_surface_edge(b, s, k);
+    if (edge == GXB_NONE || !GXBP_ROOM(b, crossings.hits, crossings.hit, 1)) return;
+    b->crossings.hits[b->crossings.hit_count].edge = edge;
     b->crossings.hits[b->crossings.hit_count++].point = point;
     gxbp_mark_dirty(b, s);
     if (twin != GXB_NONE) gxbp_mark_dirty(b, twin / 3);
@@ -7069,38 +7108,40 @@ static int gxbp_all_on_one_side(const int side[3]) { return side[0] != 0 && side
 /* In: pairs of sources whose boxes overlap. Out: the points, segments and flats in which they meet. Every decision is a
    predicate of input points. Touches what >>keys and >>sides offer, and the lists of flats. */
 
-/* Where a point of a triangle's plane lies: corner or edge -1: not there; both -1: inside. */
-typedef struct gxbp_spot {
+/* Where a point of a triangle's plane lies against the triangle: outside, at a corner, inside an edge (the other of the
+   two is -1), or inside (both are -1). */
+typedef struct gxbp_placement {
     int outside, edge, corner;
-} gxbp_spot;
+} gxbp_placement;
 
-/* By the signs of the three edges, positive inside. */
-static gxbp_spot gxbp_spot_of(const int sign[3]) {
-    gxbp_spot spot = {0, -1, -1};
+/* By the point's sides of the three edges, positive inside. */
+static gxbp_placement gxbp_locate_by_signs(const int sign[3]) {
+    gxbp_placement place = {0, -1, -1};
     int k;
     for (k = 0; k < 3; k++)
-        if (sign[k] < 0) spot.outside = 1;
-    for (k = 0; k < 3 && !spot.outside; k++) {
+        if (sign[k] < 0) place.outside = 1;
+    for (k = 0; k < 3 && !place.outside; k++) {
         if (sign[k] != 0) continue;
         if (sign[(k + 1) % 3] == 0)
-            spot.corner = (k + 1) % 3;
+            place.corner = (k + 1) % 3;
         else if (sign[(k + 2) % 3] != 0)
-            spot.edge = k;
+            place.edge = k;
     }
-    return spot;
+    return place;
 }
 
-static gxbp_spot gxbp_spot_of_point(const gxb_boolean *b, const double *x, uint32_t s) {
+static gxbp_placement gxbp_locate_corner(const gxb_boolean *b, const double *x, uint32_t s) {
     int sign[3], k;
     for (k = 0; k < 3; k++)
         sign[k] =
             gxbp_flat_turn(b, b->in.sources[s].plane, gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, (k + 1) % 3), x);
-    return gxbp_spot_of(sign);
+    return gxbp_locate_by_signs(sign);
 }
 
-/* Where the line from p (in front of the plane: side 1) to q (behind) passes: signs of gxbp_orient of the triangle's
-   edges with p and q, with the same bounds, from differences and products that they share. */
-static GXBP_COLD gxbp_spot gxbp_spot_of_line(gxb_boolean *b, const double *p, const double *q, int side, uint32_t s) {
+/* Where the line from p to q crosses the triangle's plane. side: p's side of it; q is on the other. The signs are those
+   of gxb_orient3d of an edge with p and q, with the same bounds. Edges share differences and products. */
+static GXBP_COLD gxbp_placement gxbp_locate_crossing(gxb_boolean *b, const double *p, const double *q, int side,
+                                                     uint32_t s) {
     const double *x[4];
     double d[3], c[3][3], m[3][3], size[3][3];
     int sign[3], k, i;
@@ -7127,11 +7168,11 @@ static GXBP_COLD gxbp_spot gxbp_spot_of_line(gxb_boolean *b, const double *p, co
         if (sign[k] < 0) break;
     }
     for (k++; k < 3; k++) sign[k] = 1;
-    return gxbp_spot_of(sign);
+    return gxbp_locate_by_signs(sign);
 }
 
-/* The points in which two triangles meet: at most two. left: gxbp_segment.left of the first triangle, from point 0
- * to 1. */
+/* The points in which two triangles meet, as they are found; at most two are different. left: gxbp_segment.left of the
+ * first triangle, from point 0 to 1. */
 typedef struct gxbp_meeting {
     uint32_t point[8];
     int count, left;
@@ -7156,8 +7197,8 @@ static uint32_t gxbp_edge_triangle_point(gxb_boolean *b, uint32_t s, int k, uint
     return point;
 }
 
-/* Edge k of s crosses edge j of t, and t's plane if plane is that; else (both lie in one plane) plane passes through
- * edge j. */
+/* Edge k of s crosses edge j of t in plane: that of t, or GXB_NONE if both triangles lie in one plane. In that case a
+ * plane through edge j is made. */
 static GXBP_COLD uint32_t gxbp_edge_edge_point(gxb_boolean *b, uint32_t s, int k, uint32_t t, int j, uint32_t plane) {
     const uint32_t e = gxbp_edge_name(b, s, k), f = gxbp_edge_name(b, t, j);
     /* first, so that a point without a place never stays */
@@ -7179,7 +7220,7 @@ static GXBP_COLD uint32_t gxbp_edge_edge_point(gxb_boolean *b, uint32_t s, int k
     return point;
 }
 
-/* Corners of s that lie in t, and points in which edges of s cross t. side: sides of the corners of s against t's
+/* Finds corners of s that lie in t, and points in which edges of s cross t. side: of the corners of s against t's
  * plane. */
 static GXBP_COLD void gxbp_meet_one_way(gxb_boolean *b, uint32_t s, uint32_t t, const int side[3], gxbp_meeting *m) {
     int k;
@@ -7187,30 +7228,31 @@ static GXBP_COLD void gxbp_meet_one_way(gxb_boolean *b, uint32_t s, uint32_t t, 
         const int j = (k + 1) % 3;
         if (side[k] == 0) {
             const uint32_t point = b->in.sources[s].point[k];
-            const gxbp_spot spot = gxbp_spot_of_point(b, gxbp_corner_of(b, s, k), t);
-            if (spot.outside) continue;
-            if (spot.edge >= 0) gxbp_hit_edge(b, t, spot.edge, point);
+            const gxbp_placement place = gxbp_locate_corner(b, gxbp_corner_of(b, s, k), t);
+            if (place.outside) continue;
+            if (place.edge >= 0) gxbp_hit_edge(b, t, place.edge, point);
             gxbp_found(b, m, point);
         } else if (side[k] * side[j] < 0) {
-            const gxbp_spot spot = gxbp_spot_of_line(b, gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, j), side[k], t);
+            const gxbp_placement place =
+                gxbp_locate_crossing(b, gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, j), side[k], t);
             uint32_t point;
-            if (spot.outside) continue;
-            if (spot.corner >= 0)
-                point = b->in.sources[t].point[spot.corner];
-            else if (spot.edge >= 0)
-                point = gxbp_edge_edge_point(b, s, k, t, spot.edge, b->in.sources[t].plane);
+            if (place.outside) continue;
+            if (place.corner >= 0)
+                point = b->in.sources[t].point[place.corner];
+            else if (place.edge >= 0)
+                point = gxbp_edge_edge_point(b, s, k, t, place.edge, b->in.sources[t].plane);
             else
                 point = gxbp_edge_triangle_point(b, s, k, t);
             if (point == GXB_NONE) return;
             gxbp_hit_edge(b, s, k, point);
-            if (spot.edge >= 0) gxbp_hit_edge(b, t, spot.edge, point);
+            if (place.edge >= 0) gxbp_hit_edge(b, t, place.edge, point);
             gxbp_found(b, m, point);
         }
     }
 }
 
-/* Edge k of s crosses t where the signs against the two edges of t that cross s's plane say: y[0] against edge j, y[1]
-   against j + 2; neither is negative. */
+/* Edge k of s crosses t. y: its sides of the two edges of t that cross s's plane, y[0] of edge j, y[1] of edge j + 2.
+   Neither is negative; 0: it crosses that edge. */
 static inline void gxbp_record_crossing(gxb_boolean *b, uint32_t s, int k, uint32_t t, int j, const int y[2],
                                         gxbp_meeting *m) {
     const int edge = y[0] == 0 ? j : (j + 2) % 3;
@@ -7228,7 +7270,7 @@ static inline void gxbp_record_crossing(gxb_boolean *b, uint32_t s, int k, uint3
 /* sign[x][y]: orientation of (p[0], p[y + 1], q[x + 1], q[0]). The differences and products are shared: see
  * gxbp_cross_size for the bound. */
 static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const double *const p[3], int sign[2][2]) {
-    const double *at[4];
+    const double *corner[4];
     double w[3], u[2][3], v[3], m[3], size[3];
     int x, y, k;
     for (k = 0; k < 3; k++) {
@@ -7247,26 +7289,27 @@ static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const do
             b->store.filter_calls++;
             if (sign[x][y] != 0) continue;
             b->store.exact_calls++;
-            at[0] = p[0];
-            at[1] = p[y + 1];
-            at[2] = q[x + 1];
-            at[3] = q[0];
-            sign[x][y] = gxbp_orient3d_exact(at);
+            corner[0] = p[0];
+            corner[1] = p[y + 1];
+            corner[2] = q[x + 1];
+            corner[3] = q[0];
+            sign[x][y] = gxbp_orient3d_exact(corner);
         }
     }
 }
 
-/* The corner that is alone on its side */
+/* The lone corner: the one that is alone on its side */
 static int gxbp_lone_corner(const int side[3]) { return side[1] == side[2] ? 0 : side[0] == side[2] ? 1 : 2; }
 
-/* No corner lies in the other's plane. Two edges of each triangle cross it, those of the corner that is alone on its
-   side; where one passes is known from its orientations with the two of the other, and these are the same for both
-   triangles. In s, walking from the edge that leaves the lone corner to the one that comes back, that corner is to the
-   left; so of_s there is the sign of |n_t n_s u| for the way's direction u. In t likewise, with |n_s n_t w|: the two
-   ways agree where the lone corners' signs differ. Of the two ends of what is common, one begins both ways. */
-static void gxbp_meet_across(gxb_boolean *b, uint32_t s, uint32_t t, const int of_s[3], const int of_t[3],
+/* No corner lies in the other's plane. Two edges of each triangle cross that plane, those at its lone corner. Where one
+   crosses follows from its orientations with the two edges of the other triangle. Four orientations serve both
+   triangles. The common segment's direction u in s leads from the edge that leaves the lone corner to the one that
+   comes back. The lone corner is to its left, so the corner's side_s is the sign of |n_t n_s u|. For t's direction w
+   its side_t is the sign of |n_s n_t w|. So u and w agree where the lone corners' sides differ. One end of the common
+   segment is the start of both. */
+static void gxbp_meet_across(gxb_boolean *b, uint32_t s, uint32_t t, const int side_s[3], const int side_t[3],
                              gxbp_meeting *m) {
-    const int i = gxbp_lone_corner(of_s), j = gxbp_lone_corner(of_t);
+    const int i = gxbp_lone_corner(side_s), j = gxbp_lone_corner(side_t);
     const double *p[3], *q[3];
     int sign[2][2], y[2], k, x;
     for (k = 0; k < 3; k++) {
@@ -7277,20 +7320,20 @@ static void gxbp_meet_across(gxb_boolean *b, uint32_t s, uint32_t t, const int o
     for (k = 0; k < 3; k++) {
         if (k == (i + 1) % 3) continue;
         x = k != i;
-        y[0] = -of_s[i] * sign[x][0];
-        y[1] = of_s[i] * sign[x][1];
+        y[0] = -side_s[i] * sign[x][0];
+        y[1] = side_s[i] * sign[x][1];
         if (y[0] < 0 || y[1] < 0) continue;
         gxbp_record_crossing(b, s, k, t, j, y, m);
-        if (m->count == 1 && m->left == 0) m->left = x == 0 ? of_s[i] : -of_s[i];
+        if (m->count == 1 && m->left == 0) m->left = x == 0 ? side_s[i] : -side_s[i];
     }
     for (k = 0; k < 3; k++) {
         if (k == (j + 1) % 3) continue;
         x = k != j;
-        y[0] = -of_t[j] * sign[0][x];
-        y[1] = of_t[j] * sign[1][x];
+        y[0] = -side_t[j] * sign[0][x];
+        y[1] = side_t[j] * sign[1][x];
         if (y[0] < 0 || y[1] < 0) continue;
         gxbp_record_crossing(b, t, k, s, i, y, m);
-        if (m->count == 1 && m->left == 0) m->left = x == 0 ? -of_t[j] : of_t[j];
+        if (m->count == 1 && m->left == 0) m->left = x == 0 ? -side_t[j] : side_t[j];
     }
 }
 
@@ -7318,7 +7361,7 @@ static uint32_t gxbp_root(gxb_boolean *b, uint32_t s) {
     return s;
 }
 
-/* The two overlap in their plane: they are divided together. */
+/* Two triangles that overlap in one plane are divided together. */
 static GXBP_RARE void gxbp_join_flats(gxb_boolean *b, uint32_t s, uint32_t t) {
     uint32_t r = gxbp_root(b, s), q = gxbp_root(b, t), last;
     gxbp_mark_dirty(b, s);
@@ -7336,7 +7379,7 @@ static GXBP_RARE void gxbp_join_flats(gxb_boolean *b, uint32_t s, uint32_t t) {
     b->in.sources[r].flags |= GXBP_FLAT;
 }
 
-/* No edge of s has all of t on its outer side (turn[k][j]: corner j of t against edge k of s). */
+/* 1: no edge of s has all of t on its outer side. turn[k][j]: corner j of t against edge k of s */
 static int gxbp_no_edge_separates(int turn[3][3], int orientation) {
     int k;
     for (k = 0; k < 3; k++)
@@ -7344,51 +7387,51 @@ static int gxbp_no_edge_separates(int turn[3][3], int orientation) {
     return 1;
 }
 
-/* Corner k of s in t; turn[j][k]: against t's edge j */
+/* Finds corner k of s if it lies in t. turn[j][k]: the corner against t's edge j */
 static GXBP_COLD void gxbp_meet_corner(gxb_boolean *b, uint32_t s, int k, uint32_t t, int turn[3][3], int orientation,
                                        gxbp_meeting *m) {
     int sign[3], j;
-    gxbp_spot spot;
+    gxbp_placement place;
     for (j = 0; j < 3; j++) sign[j] = turn[j][k] * orientation;
-    spot = gxbp_spot_of(sign);
-    if (spot.outside) return;
+    place = gxbp_locate_by_signs(sign);
+    if (place.outside) return;
     gxbp_found(b, m, b->in.sources[s].point[k]);
-    if (spot.edge >= 0) gxbp_hit_edge(b, t, spot.edge, b->in.sources[s].point[k]);
+    if (place.edge >= 0) gxbp_hit_edge(b, t, place.edge, b->in.sources[s].point[k]);
 }
 
 static GXBP_COLD void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t) {
     const uint32_t plane = b->in.sources[s].plane;
-    int of_s[3][3], of_t[3][3], k, j, facing;
+    int turn_s[3][3], turn_t[3][3], k, j, facing;
     gxbp_meeting m;
     m.count = m.left = 0;
     for (k = 0; k < 3; k++)
         for (j = 0; j < 3; j++) {
-            of_s[k][j] = gxbp_flat_turn(b, plane, gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, (k + 1) % 3),
-                                        gxbp_corner_of(b, t, j));
-            of_t[k][j] = gxbp_flat_turn(b, plane, gxbp_corner_of(b, t, k), gxbp_corner_of(b, t, (k + 1) % 3),
-                                        gxbp_corner_of(b, s, j));
+            turn_s[k][j] = gxbp_flat_turn(b, plane, gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, (k + 1) % 3),
+                                          gxbp_corner_of(b, t, j));
+            turn_t[k][j] = gxbp_flat_turn(b, plane, gxbp_corner_of(b, t, k), gxbp_corner_of(b, t, (k + 1) % 3),
+                                          gxbp_corner_of(b, s, j));
         }
     facing = gxbp_flat_turn(b, plane, gxbp_corner_of(b, t, 0), gxbp_corner_of(b, t, 1), gxbp_corner_of(b, t, 2));
     for (k = 0; k < 3; k++) {
-        gxbp_meet_corner(b, s, k, t, of_t, facing, &m);
-        gxbp_meet_corner(b, t, k, s, of_s, 1, &m);
+        gxbp_meet_corner(b, s, k, t, turn_t, facing, &m);
+        gxbp_meet_corner(b, t, k, s, turn_s, 1, &m);
     }
     for (k = 0; k < 3; k++)
         for (j = 0; j < 3; j++) {
             uint32_t point;
-            if (of_s[k][j] * of_s[k][(j + 1) % 3] >= 0 || of_t[j][k] * of_t[j][(k + 1) % 3] >= 0) continue;
+            if (turn_s[k][j] * turn_s[k][(j + 1) % 3] >= 0 || turn_t[j][k] * turn_t[j][(k + 1) % 3] >= 0) continue;
             point = gxbp_edge_edge_point(b, s, k, t, j, GXB_NONE);
             if (point == GXB_NONE) return;
             gxbp_hit_edge(b, s, k, point);
             gxbp_hit_edge(b, t, j, point);
         }
-    if (gxbp_no_edge_separates(of_s, 1) && gxbp_no_edge_separates(of_t, facing))
+    if (gxbp_no_edge_separates(turn_s, 1) && gxbp_no_edge_separates(turn_t, facing))
         gxbp_join_flats(b, s, t);
     else
         gxbp_record_meeting(b, s, t, &m);
 }
 
-/* Do they share an edge of their surface? Then they share nothing else unless they lie in one plane. */
+/* Do they share an edge of their surface? Then they share nothing else, unless they lie in one plane. */
 static int gxbp_are_neighbours(const gxb_boolean *b, uint32_t s, uint32_t t) {
     const uint32_t *twin = b->in.sources[s].twin;
     int k;
@@ -7397,7 +7440,7 @@ static int gxbp_are_neighbours(const gxb_boolean *b, uint32_t s, uint32_t t) {
     return 0;
 }
 
-/* Neighbours in one plane: do they lie on the two sides of their edge? */
+/* Do two neighbours in one plane lie on different sides of their common edge? */
 static GXBP_RARE int gxbp_flat_apart(const gxb_boolean *b, uint32_t s, uint32_t t) {
     int k, j;
     for (k = 0; k < 3; k++) {
@@ -7415,29 +7458,29 @@ static int gxbp_touches_by_corner(const int side[3]) {
 }
 
 static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
-    int of_t[3], of_s[3];
+    int side_t[3], side_s[3];
     gxbp_meeting m;
     int neighbours, flat, k, common = 0;
     if (b->error != GX_OK || !gxbp_need_plane(b, s)) return;
-    gxbp_sides(b, t, b->in.sources[s].plane, 0, of_t);
-    if (gxbp_all_on_one_side(of_t) || !gxbp_need_plane(b, t)) return;
-    flat = of_t[0] == 0 && of_t[1] == 0 && of_t[2] == 0;
+    gxbp_sides(b, t, b->in.sources[s].plane, 0, side_t);
+    if (gxbp_all_on_one_side(side_t) || !gxbp_need_plane(b, t)) return;
+    flat = side_t[0] == 0 && side_t[1] == 0 && side_t[2] == 0;
     neighbours = b->in.sources[s].operand == b->in.sources[t].operand && gxbp_are_neighbours(b, s, t);
     if (neighbours && !flat) return;
     if (flat) {
         if (!neighbours || !gxbp_flat_apart(b, s, t)) gxbp_meet_in_plane(b, s, t);
         return;
     }
-    gxbp_sides(b, s, b->in.sources[t].plane, 1, of_s);
-    if (gxbp_all_on_one_side(of_s)) return;
+    gxbp_sides(b, s, b->in.sources[t].plane, 1, side_s);
+    if (gxbp_all_on_one_side(side_s)) return;
     m.count = m.left = 0;
-    if (of_s[0] * of_s[1] * of_s[2] != 0 && of_t[0] * of_t[1] * of_t[2] != 0)
-        gxbp_meet_across(b, s, t, of_s, of_t, &m);
+    if (side_s[0] * side_s[1] * side_s[2] != 0 && side_t[0] * side_t[1] * side_t[2] != 0)
+        gxbp_meet_across(b, s, t, side_s, side_t, &m);
     else {
         for (k = 0; k < 3; k++) common += gxbp_is_corner(b, t, b->in.sources[s].point[k]);
-        if (common == 1 && (gxbp_touches_by_corner(of_s) || gxbp_touches_by_corner(of_t))) return;
-        gxbp_meet_one_way(b, s, t, of_s, &m);
-        gxbp_meet_one_way(b, t, s, of_t, &m);
+        if (common == 1 && (gxbp_touches_by_corner(side_s) || gxbp_touches_by_corner(side_t))) return;
+        gxbp_meet_one_way(b, s, t, side_s, &m);
+        gxbp_meet_one_way(b, t, s, side_t, &m);
     }
     gxbp_record_meeting(b, s, t, &m);
 }
@@ -7458,24 +7501,25 @@ static GXBP_APART void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, u
     }
 }
 
-/* Box i of level l of one tree and box j of level m of the other, which meet: of the larger, or of both, those in it.
- * Depth: the larger level. */
+/* Box i of level l of one tree meets box j of level m of the other. Goes down to the boxes within the one of the higher
+ * level, or within both. The depth of the recursion is the higher level. */
 static GXBP_APART void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, uint32_t l, uint32_t i,
                                        const gxbp_operand *q, uint32_t m, uint32_t j) {
     const gxbp_tree *s = &o->tree, *t = &q->tree;
-    const uint32_t of_s = l >= m, of_t = m >= l;
+    const uint32_t down_s = l >= m, down_t = m >= l;
     uint32_t c, d;
     if (b->error != GX_OK) return;
     if (l == 0 && m == 0) {
         gxbp_meet_leaves(b, o, i, q, j);
         return;
     }
-    for (c = i << of_s; c < (i + 1) << of_s && c < s->size[l - of_s]; c++)
-        for (d = o == q && c > j << of_t ? c : j << of_t; d < (j + 1) << of_t && d < t->size[m - of_t]; d++)
-            if (gxbp_boxes_meet(b, s, l - of_s, c, t, m - of_t, d)) gxbp_meet_boxes(b, o, l - of_s, c, q, m - of_t, d);
+    for (c = i << down_s; c < (i + 1) << down_s && c < s->size[l - down_s]; c++)
+        for (d = o == q && c > j << down_t ? c : j << down_t; d < (j + 1) << down_t && d < t->size[m - down_t]; d++)
+            if (gxbp_boxes_meet(b, s, l - down_s, c, t, m - down_t, d))
+                gxbp_meet_boxes(b, o, l - down_s, c, q, m - down_t, d);
 }
 
-/* A surface that does not meet itself is known to be simple. */
+/* A surface that is found not to meet itself is simple. */
 static void gxbp_meet_operands(gxb_boolean *b, uint32_t i, uint32_t j) {
     gxbp_operand *o = &b->in.operands[i], *q = &b->in.operands[j];
     const uint32_t l = o->tree.levels - 1, m = q->tree.levels - 1, marks = b->crossings.marks;
@@ -7486,22 +7530,22 @@ static void gxbp_meet_operands(gxb_boolean *b, uint32_t i, uint32_t j) {
 
 /* >>edges: points on edges in order -------------------------------------------------------------------------------- */
 /* In: hits, that is points on edges of surfaces. Out: the points of each edge in order; equal points become one.
-   Touches cuts and their points. */
+   Touches the edges and their points. */
 
-/* gxbp_compare_points for points in which two planes cut one line of input points: p lies on the side of q's plane on
-   which the end is that it is nearer to. Signs of points that are given by doubles, and of points of their lines, take
+/* gxbp_compare_points for points in which two planes cut one line through two input points. p's side of q's plane says
+   to which end of the line p lies nearer than q. Sides of points given by doubles, and of points on their lines, take
    no exact numbers. */
 static GXBP_COLD int gxbp_compare_on_line(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t axis) {
     const gxb_cpoint *x = b->store.points, *u = &x[p], *v = &x[q];
-    int of_end, along, side;
+    int end_side, along, side;
     if (u->kind != GXB_LINE_PLANE || v->kind != GXB_LINE_PLANE || u->exact != NULL || v->exact != NULL ||
         !((u->def[0] == v->def[0] && u->def[1] == v->def[1]) || (u->def[0] == v->def[1] && u->def[1] == v->def[0])))
         return GXBP_UNKNOWN;
-    of_end = gxbp_point_side(b, u->def[0], v->def[2]);
-    if (of_end == 0 || gxbp_point_side(b, u->def[1], v->def[2]) != -of_end) return GXBP_UNKNOWN;
+    end_side = gxbp_point_side(b, u->def[0], v->def[2]);
+    if (end_side == 0 || gxbp_point_side(b, u->def[1], v->def[2]) != -end_side) return GXBP_UNKNOWN;
     along = gxbp_compare_doubles(x[u->def[1]].ball.x[axis], x[u->def[0]].ball.x[axis]);
     side = gxbp_exact_sign(&b->store, u->kind, u->def, p, v->def[2]);
-    return side == of_end ? -along : side == 0 ? 0 : along;
+    return side == end_side ? -along : side == 0 ? 0 : along;
 }
 
 /* Sign of p[axis] - q[axis] */
@@ -7525,7 +7569,7 @@ static int gxbp_compare_points(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t 
     return r.sign;
 }
 
-/* Points by insertion into those before them; equal ones become the first. Returns how many remain. */
+/* Insertion sort of points along an axis; equal ones become the first of them. Returns how many remain. */
 static uint32_t gxbp_insert_points(gxb_boolean *b, uint32_t *p, uint32_t count, uint32_t axis, int direction) {
     uint32_t i, j, n = 0;
     for (i = 0; i < count; i++) {
@@ -7556,7 +7600,7 @@ static uint32_t gxbp_sort_points(gxb_boolean *b, uint32_t *p, uint32_t count, ui
     end = half + gxbp_sort_points(b, p + half, count - half, axis, direction, work);
     memcpy(work, p, left * sizeof *p);
     for (i = 0, j = half, k = 0; i < left && j < end; k++) {
-        /* the right half may have named what is in the left */
+        /* sorting the right half may have given another name to a point of the left one */
         const uint32_t x = gxbp_same(b, work[i]), y = gxbp_same(b, p[j]);
         const int sign = gxbp_compare_points(b, y, x, axis) * direction;
         p[k] = sign < 0 ? y : x;
@@ -7569,8 +7613,8 @@ static uint32_t gxbp_sort_points(gxb_boolean *b, uint32_t *p, uint32_t count, ui
     return k;
 }
 
-/* The longest axis of an edge, and its direction along it: an edge has a length, and the longest difference is never
- * lost. */
+/* The axis along which an edge is longest, and the edge's direction along it. An edge has a length, so that difference
+ * never underflows. */
 static uint32_t gxbp_edge_axis(const double *p, const double *q, int *direction) {
     uint32_t axis = 0, k;
     for (k = 1; k < 3; k++)
@@ -7579,33 +7623,33 @@ static uint32_t gxbp_edge_axis(const double *p, const double *q, int *direction)
     return axis;
 }
 
-/* Puts the new points of a cut, which are in b->work.ordered, in order with the old ones. */
-static void gxbp_order_cut(gxb_boolean *b, uint32_t cut) {
-    gxbp_cut *c = &b->crossings.cuts[cut];
-    const uint32_t s = c->half_edge / 3, k = c->half_edge % 3;
+/* Puts the new points of an edge, which are in b->work.ordered, in order with its old ones. */
+static void gxbp_order_edge(gxb_boolean *b, uint32_t edge) {
+    gxbp_surface_edge *e = &b->crossings.edges[edge];
+    const uint32_t s = e->half_edge / 3, k = e->half_edge % 3;
     const double *p = gxbp_corner_of(b, s, (int)k), *q = gxbp_corner_of(b, s, (int)(k + 1) % 3);
     uint32_t count, axis;
     int direction;
-    if (!GXBP_ROOM(b, work.ordered, work.ordered, c->count)) return;
-    if (c->count > 0)
-        memcpy(b->work.ordered + b->work.ordered_count, b->crossings.cut_points + c->first,
-               c->count * sizeof *b->work.ordered);
-    b->work.ordered_count += c->count;
+    if (!GXBP_ROOM(b, work.ordered, work.ordered, e->count)) return;
+    if (e->count > 0)
+        memcpy(b->work.ordered + b->work.ordered_count, b->crossings.edge_points + e->first,
+               e->count * sizeof *b->work.ordered);
+    b->work.ordered_count += e->count;
     count = b->work.ordered_count;
     if (!GXBP_ROOM(b, work.ordered, work.ordered, count) ||
-        !GXBP_ROOM(b, crossings.cut_points, crossings.cut_point, count))
+        !GXBP_ROOM(b, crossings.edge_points, crossings.edge_point, count))
         return;
     axis = gxbp_edge_axis(p, q, &direction);
     count = gxbp_sort_points(b, b->work.ordered, count, axis, direction, b->work.ordered + b->work.ordered_count);
-    c->first = b->crossings.cut_point_count;
-    c->count = count;
-    memcpy(b->crossings.cut_points + c->first, b->work.ordered, count * sizeof *b->crossings.cut_points);
-    b->crossings.cut_point_count += count;
+    e->first = b->crossings.edge_point_count;
+    e->count = count;
+    memcpy(b->crossings.edge_points + e->first, b->work.ordered, count * sizeof *b->crossings.edge_points);
+    b->crossings.edge_point_count += count;
 }
 
-/* Sorts the hits by cut (counting), then each cut's points. */
-static GXBP_APART void gxbp_order_cuts(gxb_boolean *b) {
-    const size_t words = (size_t)b->crossings.cut_count + 1 + b->crossings.hit_count;
+/* A counting sort of the hits by edge, then each edge's points. */
+static GXBP_APART void gxbp_order_edges(gxb_boolean *b) {
+    const size_t words = (size_t)b->crossings.edge_count + 1 + b->crossings.hit_count;
     uint32_t *first, *points, i;
     if (b->error != GX_OK || b->crossings.hit_count == 0) return;
     first = (uint32_t *)gxbp_allocate(&b->store.allocator, words * sizeof *first);
@@ -7613,26 +7657,26 @@ static GXBP_APART void gxbp_order_cuts(gxb_boolean *b) {
         gxbp_stop(b, GX_ERROR_MEMORY);
         return;
     }
-    points = first + b->crossings.cut_count + 1;
-    memset(first, 0, ((size_t)b->crossings.cut_count + 1) * sizeof *first);
-    for (i = 0; i < b->crossings.hit_count; i++) first[b->crossings.hits[i].cut]++;
-    for (i = 1; i <= b->crossings.cut_count; i++) first[i] += first[i - 1];
-    for (i = b->crossings.hit_count; i-- > 0;) points[--first[b->crossings.hits[i].cut]] = b->crossings.hits[i].point;
-    for (i = 0; i < b->crossings.cut_count && b->error == GX_OK; i++) {
+    points = first + b->crossings.edge_count + 1;
+    memset(first, 0, ((size_t)b->crossings.edge_count + 1) * sizeof *first);
+    for (i = 0; i < b->crossings.hit_count; i++) first[b->crossings.hits[i].edge]++;
+    for (i = 1; i <= b->crossings.edge_count; i++) first[i] += first[i - 1];
+    for (i = b->crossings.hit_count; i-- > 0;) points[--first[b->crossings.hits[i].edge]] = b->crossings.hits[i].point;
+    for (i = 0; i < b->crossings.edge_count && b->error == GX_OK; i++) {
         const uint32_t count = first[i + 1] - first[i];
         b->work.ordered_count = 0;
         if (count == 0 || !GXBP_ROOM(b, work.ordered, work.ordered, count)) continue;
         memcpy(b->work.ordered, points + first[i], count * sizeof *points);
         b->work.ordered_count = count;
-        gxbp_order_cut(b, i);
+        gxbp_order_edge(b, i);
     }
     gxbp_release(&b->store.allocator, first, words * sizeof *first);
     b->crossings.hit_count = 0;
 }
 
 /* >>triangulate: points into a triangulation ----------------------------------------------------------------------- */
-/* In: a source, or the root of a flat, with a triangulation, and a point of its plane. Out: the point as a vertex. The
-   point is found along a straight line from a vertex. Touches the subtriangles of this source and the hints of
+/* In: a source, or the root of a flat, with a triangulation, and a point of its plane. Out: the point as a vertex. A
+   walk along a straight line from a vertex finds the point. Touches the subtriangles of this source and the hints of
    vertices. */
 
 /* Is the point an end of this line of two input points, or defined as a point of it? */
@@ -7646,8 +7690,7 @@ static uint32_t gxbp_plane_beside(const gxb_boolean *b, uint32_t half_edge) {
     return half_edge == GXB_NONE ? GXB_NONE : b->in.sources[half_edge / 3].plane;
 }
 
-/* Planes that a point is in by its definition: its own, and those of the input triangles at the edge that it is named
- * by */
+/* Planes that contain a point by its definition: its own, and those of the input triangles at the edge in its key */
 static uint32_t gxbp_planes_of(const gxb_boolean *b, uint32_t v, uint32_t plane[3]) {
     const gxb_cpoint *p = &b->store.points[v];
     const uint32_t *key = b->points.vertices[v].key;
@@ -7663,47 +7706,55 @@ static uint32_t gxbp_planes_of(const gxb_boolean *b, uint32_t v, uint32_t plane[
 
 static int gxbp_is_in_plane(const gxb_boolean *b, uint32_t v, uint32_t plane) {
     const gxb_cpoint *p = &b->store.points[v];
-    uint32_t of[3], count = gxbp_planes_of(b, v, of), k;
+    uint32_t planes[3], count = gxbp_planes_of(b, v, planes), k;
     for (k = 0; k < count; k++)
-        if (of[k] == plane) return 1;
+        if (planes[k] == plane) return 1;
     return gxbp_incident(&b->store, p->kind, p->def, p->kind == GXB_EXPLICIT ? p->def[0] : v, plane);
 }
 
-/* Do three points of a plane lie on one line by their definitions: in a second common plane (one plane may have several
-   names), or on one edge? */
+/* Do three points of a plane lie on one line by their definitions? They do in a second common plane (one plane may have
+   several names), or on one edge. */
 static int gxbp_on_definition_line(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t r, uint32_t plane) {
     const gxb_cpoint *x = b->store.points, *a = &x[p];
-    uint32_t of[3], count = gxbp_planes_of(b, p, of), k;
+    uint32_t planes[3], count = gxbp_planes_of(b, p, planes), k;
     if (a->kind == GXB_LINE_PLANE && gxbp_on_input_line(&x[q], a->def[0], a->def[1]) &&
         gxbp_on_input_line(&x[r], a->def[0], a->def[1]))
         return 1;
     for (k = 0; k < count; k++)
-        if (of[k] != plane && of[k] != GXB_NONE && gxbp_is_in_plane(b, q, of[k]) && gxbp_is_in_plane(b, r, of[k]) &&
-            gxbp_planes_cross(&b->store, of[k], plane))
+        if (planes[k] != plane && planes[k] != GXB_NONE && gxbp_is_in_plane(b, q, planes[k]) &&
+            gxbp_is_in_plane(b, r, planes[k]) && gxbp_planes_cross(&b->store, planes[k], plane))
             return 1;
     return 0;
 }
 
-/* Orientation in the plane of the triangulation at work, where the filter knows it; else 0 */
-static int gxbp_turn_by_filter(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t r) {
-    const gxb_cplane *f = &b->store.planes[b->work.plane];
+/* Orientation in a plane; 0: the filter does not settle it */
+static inline int gxbp_plane_turn_by_filter(gxb_boolean *b, uint32_t plane, uint32_t p, uint32_t q, uint32_t r) {
+    const gxb_cplane *f = &b->store.planes[plane];
     const gxb_cpoint *x = b->store.points;
     b->store.filter_calls++;
     return f->axis_sign *
            gxbp_filter_turn(&x[p].ball, &x[q].ball, &x[r].ball, (int)(f->axis + 1) % 3, (int)(f->axis + 2) % 3);
 }
 
-/* Orientation in the plane of the triangulation at work. */
-static int gxbp_turn(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t r) {
-    gxb_store *store = &b->store;
-    const int turn = gxbp_turn_by_filter(b, p, q, r);
+/* Orientation in a plane. */
+static GXBP_APART int gxbp_plane_turn(gxb_boolean *b, uint32_t plane, uint32_t p, uint32_t q, uint32_t r) {
+    const int turn = gxbp_plane_turn_by_filter(b, plane, p, q, r);
     if (turn != 0) return turn;
     if (p == q || q == r || r == p) return 0;
-    if (gxbp_on_definition_line(b, p, q, r, b->work.plane) || gxbp_on_definition_line(b, q, r, p, b->work.plane) ||
-        gxbp_on_definition_line(b, r, p, q, b->work.plane))
+    if (gxbp_on_definition_line(b, p, q, r, plane) || gxbp_on_definition_line(b, q, r, p, plane) ||
+        gxbp_on_definition_line(b, r, p, q, plane))
         return 0;
-    store->exact_calls++;
-    return gxbp_store_turn(store, p, q, r, b->work.plane);
+    b->store.exact_calls++;
+    return gxbp_store_turn(&b->store, p, q, r, plane);
+}
+
+/* The same in the plane of the triangulation at work. */
+static int gxbp_turn_by_filter(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t r) {
+    return gxbp_plane_turn_by_filter(b, b->work.plane, p, q, r);
+}
+
+static int gxbp_turn(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t r) {
+    return gxbp_plane_turn(b, b->work.plane, p, q, r);
 }
 
 static uint32_t gxbp_new_subtriangle(gxb_boolean *b, uint32_t source) {
@@ -7746,7 +7797,7 @@ static void gxbp_link_neighbour(gxb_boolean *b, uint32_t near, uint32_t p, uint3
         if (n->v[k] == q && n->v[(k + 1) % 3] == p) n->near[k] = f;
 }
 
-/* Begins work on a source's (root's) triangulation: vertices by their names of now, hints. */
+/* Begins work on a source's (root's) triangulation: its vertices get their present names and hints. */
 static void gxbp_open_triangulation(gxb_boolean *b, uint32_t s) {
     uint32_t f;
     int k;
@@ -7836,8 +7887,8 @@ static void gxbp_label_edge(gxb_boolean *b, uint32_t f, int k, uint32_t label) {
 
 /* --- along a straight line through a triangulation --- */
 
-/* The line from p to x. In a triangle's plane (label) its sides are those of the plane, times sigma (gxbp_segment.left
- * where that is known). */
+/* The line from p to x. If a triangle (source) meets the plane at work along it, a point's side of the line is its side
+   of the triangle's plane, times sigma. Else plane is GXB_NONE. */
 typedef struct gxbp_line {
     uint32_t p, x, plane, source;
     int sigma;
@@ -7867,15 +7918,14 @@ static GXBP_RARE void gxbp_set_line(gxb_boolean *b, gxbp_line *line, uint32_t s,
     line->plane = GXB_NONE;
 }
 
-/* Is a point, named by an edge and a triangle, in triangle t and not on its edge j? */
+/* The key of v is an edge and a triangle. Does it put v in triangle t, and not on t's edge j? */
 static int gxbp_is_named_in(const gxb_boolean *b, uint32_t v, uint32_t t, uint32_t j) {
     const uint32_t *key = b->points.vertices[v].key, twin = b->in.sources[key[1] / 3].twin[key[1] % 3];
     return key[2] == t || (key[1] / 3 == t && key[1] % 3 != j) || (twin != GXB_NONE && twin / 3 == t && twin % 3 != j);
 }
 
-/* The side of a source's plane. In a neighbour, all points that are not on the common edge lie on the side on which its
-   other corner is: so the two halves of a face that is flat but for rounding need no exact numbers of points computed
-   in them. */
+/* The side of a source's plane. All points of a neighbour that are not on the common edge lie on the side of its far
+   corner. So the halves of a face that is flat up to rounding need no exact numbers of points computed in them. */
 static int gxbp_side_of_source(gxb_boolean *b, uint32_t v, uint32_t s) {
     const uint32_t plane = b->in.sources[s].plane;
     double bound, value;
@@ -7903,7 +7953,7 @@ static int gxbp_left(gxb_boolean *b, const gxbp_line *line, uint32_t v) {
     return gxbp_turn(b, line->p, line->x, v);
 }
 
-/* gxbp_left where the filter knows, else 0 */
+/* gxbp_left by the filter; 0: it is on the line, or the filter does not settle it */
 static int gxbp_left_by_filter(gxb_boolean *b, const gxbp_line *line, uint32_t v) {
     const gxb_store *store = &b->store;
     double value, bound;
@@ -7912,29 +7962,29 @@ static int gxbp_left_by_filter(gxb_boolean *b, const gxbp_line *line, uint32_t v
     return line->sigma * gxbp_filter_sign(value, bound);
 }
 
-/* Where the line leaves the star of a vertex: through the edge opposite to corner k of subtriangle f (u right of it, w
-   left), or along edge k (ahead 1) or k + 2 (ahead 2). of_w: what the filter says of w, which is the next subtriangle's
-   u; 2: it was not asked. back: the walk around the vertex has come to the rim and goes the other way from the start.
- */
+/* Where a line leaves the star of a vertex, which is corner k of subtriangle f. ahead 0: through the opposite edge,
+   from u on its right to w on its left. ahead 1: along edge k, to u. ahead 2: along edge k + 2, to w. The rest is for
+   the walk around the vertex. side_w: w's side by the filter, 2 if not computed; w is u of the next subtriangle. back
+   1: the walk has met the rim, and goes the other way round from its start. */
 typedef struct gxbp_way {
     uint32_t f;
-    int k, ahead, of_w, back;
+    int k, ahead, side_w, back;
 } gxbp_way;
 
 static void gxbp_begin_star(const gxb_boolean *b, uint32_t v, gxbp_way *way) {
     way->f = b->points.vertices[v].hint;
     way->k = gxbp_corner_index(&b->mesh.subtriangles[way->f], v);
-    way->of_w = 2;
+    way->side_w = 2;
     way->back = 0;
 }
 
-/* The next subtriangle around v. 0: that was all. */
+/* The next subtriangle around v. 0: there are no more. */
 static int gxbp_next_in_star(const gxb_boolean *b, uint32_t v, gxbp_way *way) {
     uint32_t next = way->back ? GXB_NONE : b->mesh.subtriangles[way->f].near[(way->k + 2) % 3];
     if (next == GXB_NONE) {
         if (!way->back) gxbp_begin_star(b, v, way);
         way->back = 1;
-        way->of_w = 2;
+        way->side_w = 2;
         next = b->mesh.subtriangles[way->f].near[way->k];
     }
     if (next == GXB_NONE || next == b->points.vertices[v].hint) return 0;
@@ -7946,27 +7996,27 @@ static int gxbp_next_in_star(const gxb_boolean *b, uint32_t v, gxbp_way *way) {
 static int gxbp_try_way(gxb_boolean *b, const gxbp_line *line, gxbp_way *way) {
     const gxbp_subtriangle *f = &b->mesh.subtriangles[way->f];
     const uint32_t u = f->v[(way->k + 1) % 3], w = f->v[(way->k + 2) % 3];
-    int of_u = way->of_w == 2 ? gxbp_left_by_filter(b, line, u) : way->of_w, of_w;
-    way->of_w = 2;
-    if (of_u > 0) return 0;
-    of_w = way->of_w = gxbp_left_by_filter(b, line, w);
-    if (of_w < 0) return 0;
-    if (of_u == 0) of_u = gxbp_left(b, line, u);
-    if (of_u > 0) return 0;
-    if (of_w == 0) of_w = gxbp_left(b, line, w);
-    if (of_u == 0 && of_w > 0) {
+    int side_u = way->side_w == 2 ? gxbp_left_by_filter(b, line, u) : way->side_w, side_w;
+    way->side_w = 2;
+    if (side_u > 0) return 0;
+    side_w = way->side_w = gxbp_left_by_filter(b, line, w);
+    if (side_w < 0) return 0;
+    if (side_u == 0) side_u = gxbp_left(b, line, u);
+    if (side_u > 0) return 0;
+    if (side_w == 0) side_w = gxbp_left(b, line, w);
+    if (side_u == 0 && side_w > 0) {
         way->ahead = 1;
         return 1;
     }
-    if (of_w == 0 && of_u < 0) {
+    if (side_w == 0 && side_u < 0) {
         way->ahead = 2;
         return 1;
     }
     way->ahead = 0;
-    return of_u < 0 && of_w > 0;
+    return side_u < 0 && side_w > 0;
 }
 
-/* Is there an edge from v to goal? It is the way, whatever the line says. */
+/* Is there an edge from v to goal? It is the way, whatever the signs of the line are. */
 static int gxbp_find_edge(const gxb_boolean *b, uint32_t v, uint32_t goal, gxbp_way *way) {
     gxbp_begin_star(b, v, way);
     do {
@@ -7985,7 +8035,8 @@ static int gxbp_find_way(gxb_boolean *b, const gxbp_line *line, uint32_t v, gxbp
     return 0;
 }
 
-/* Where a point of the source lies in its triangulation: at a vertex, on edge k of subtriangle f, inside f (k -1). */
+/* Where a point of the source lies in its triangulation: at a vertex, on edge k of subtriangle f, or inside f (k -1).
+ */
 typedef struct gxbp_location {
     uint32_t vertex, f;
     int k;
@@ -7993,17 +8044,17 @@ typedef struct gxbp_location {
 
 /* Crosses subtriangles from way's edge on. 1: found. 0: *v is a vertex on the line before the point. */
 static int gxbp_cross_subtriangles(gxb_boolean *b, const gxbp_line *line, gxbp_way way, uint32_t *v,
-                                   gxbp_location *spot) {
+                                   gxbp_location *location) {
     uint32_t f = way.f;
     int k = (way.k + 1) % 3; /* the edge to cross, from u to w */
     uint32_t u = b->mesh.subtriangles[f].v[k], w = b->mesh.subtriangles[f].v[(k + 1) % 3];
     int t = gxbp_turn(b, u, w, line->x);
     for (;;) {
         uint32_t c;
-        int of_c, j;
-        spot->vertex = GXB_NONE;
-        spot->f = f;
-        spot->k = t == 0 ? k : -1;
+        int side_c, j;
+        location->vertex = GXB_NONE;
+        location->f = f;
+        location->k = t == 0 ? k : -1;
         if (t >= 0) return 1;
         f = b->mesh.subtriangles[f].near[k];
         if (f == GXB_NONE) {
@@ -8012,32 +8063,32 @@ static int gxbp_cross_subtriangles(gxb_boolean *b, const gxbp_line *line, gxbp_w
         }
         j = gxbp_corner_index(&b->mesh.subtriangles[f], w); /* (w, u, c) */
         c = b->mesh.subtriangles[f].v[(j + 2) % 3];
-        spot->f = f;
-        spot->k = -1;
+        location->f = f;
+        location->k = -1;
         if (gxbp_turn_by_filter(b, u, c, line->x) > 0 && gxbp_turn_by_filter(b, c, w, line->x) > 0) return 1;
-        of_c = gxbp_left(b, line, c);
-        if (of_c < 0) {
+        side_c = gxbp_left(b, line, c);
+        if (side_c < 0) {
             u = c;
             k = (j + 2) % 3;
             t = gxbp_turn(b, c, w, line->x);
         } else {
             k = (j + 1) % 3;
             t = gxbp_turn(b, u, c, line->x);
-            if (of_c > 0) w = c;
+            if (side_c > 0) w = c;
         }
-        if (of_c != 0) continue;
-        spot->vertex = t == 0 ? c : GXB_NONE;
-        spot->f = f;
-        spot->k = -1;
+        if (side_c != 0) continue;
+        location->vertex = t == 0 ? c : GXB_NONE;
+        location->f = f;
+        location->k = -1;
         *v = c;
         return t >= 0;
     }
 }
 
 static GXBP_RARE gxbp_location gxbp_locate(gxb_boolean *b, const gxbp_line *line) {
-    gxbp_location spot;
+    gxbp_location location;
     uint32_t v = line->p;
-    memset(&spot, 0, sizeof spot);
+    memset(&location, 0, sizeof location);
     while (b->error == GX_OK) {
         gxbp_way way;
         uint32_t ahead;
@@ -8047,23 +8098,23 @@ static GXBP_RARE gxbp_location gxbp_locate(gxb_boolean *b, const gxbp_line *line
             break;
         }
         if (way.ahead == 0) {
-            if (gxbp_cross_subtriangles(b, line, way, &v, &spot)) return spot;
+            if (gxbp_cross_subtriangles(b, line, way, &v, &location)) return location;
             continue;
         }
         ahead = b->mesh.subtriangles[way.f].v[(way.k + way.ahead) % 3];
         t = gxbp_turn(b, b->mesh.subtriangles[way.f].v[(way.k + 1) % 3], b->mesh.subtriangles[way.f].v[(way.k + 2) % 3],
                       line->x);
-        spot.vertex = t == 0 ? ahead : GXB_NONE;
-        spot.f = way.f;
-        spot.k = way.ahead == 1 ? way.k : (way.k + 2) % 3;
-        if (t >= 0) return spot;
+        location.vertex = t == 0 ? ahead : GXB_NONE;
+        location.f = way.f;
+        location.k = way.ahead == 1 ? way.k : (way.k + 2) % 3;
+        if (t >= 0) return location;
         v = ahead;
     }
-    return spot;
+    return location;
 }
 
-/* Are two points named by one edge? Then they are not equal, or it would have been found when its points were put in
- * order. */
+/* Have the keys of two points an edge in common? Then the points are not equal: equal ones were united when the points
+ * of the edge were sorted. */
 static GXBP_RARE int gxbp_share_edge(const gxb_boolean *b, uint32_t p, uint32_t q) {
     const uint32_t *k = b->points.vertices[p].key, *m = b->points.vertices[q].key;
     if ((k[0] != GXB_FROM_EDGE_TRIANGLE && k[0] != GXB_FROM_EDGE_EDGE) ||
@@ -8073,11 +8124,12 @@ static GXBP_RARE int gxbp_share_edge(const gxb_boolean *b, uint32_t p, uint32_t 
            (m[0] == GXB_FROM_EDGE_EDGE && (k[1] == m[2] || (k[0] == m[0] && k[2] == m[2])));
 }
 
-/* Does q lie off a plane that p is in by its definition? */
+/* Does q lie off a plane that contains p by its definition? */
 static GXBP_RARE int gxbp_leaves_plane(gxb_boolean *b, uint32_t p, uint32_t q) {
-    uint32_t of[3], count = gxbp_planes_of(b, p, of), k;
+    uint32_t planes[3], count = gxbp_planes_of(b, p, planes), k;
     for (k = 0; k < count; k++)
-        if (of[k] != GXB_NONE && !gxbp_is_in_plane(b, q, of[k]) && gxbp_point_side(b, q, of[k]) != 0) return 1;
+        if (planes[k] != GXB_NONE && !gxbp_is_in_plane(b, q, planes[k]) && gxbp_point_side(b, q, planes[k]) != 0)
+            return 1;
     return 0;
 }
 
@@ -8096,10 +8148,10 @@ static int gxbp_points_equal(gxb_boolean *b, uint32_t p, uint32_t q) {
 
 static int gxbp_is_placed(gxb_boolean *b, uint32_t v) { return b->points.vertices[v].stamp == b->work.stamp; }
 
-/* Makes a point a vertex of source s's triangulation, found from vertex p on; returns its name there. */
+/* Makes point x a vertex of the triangulation of source s. The search starts at vertex p. Returns the vertex. */
 static uint32_t gxbp_insert_point(gxb_boolean *b, uint32_t s, uint32_t x, uint32_t p, uint32_t label, int left) {
     gxbp_line line;
-    gxbp_location spot;
+    gxbp_location location;
     x = gxbp_same(b, x);
     if (gxbp_is_placed(b, x)) return x;
     if (gxbp_points_equal(b, p, x)) {
@@ -8107,24 +8159,24 @@ static uint32_t gxbp_insert_point(gxb_boolean *b, uint32_t s, uint32_t x, uint32
         return p;
     }
     gxbp_set_line(b, &line, s, p, x, label, left);
-    spot = gxbp_locate(b, &line);
+    location = gxbp_locate(b, &line);
     if (b->error != GX_OK) return x;
-    if (spot.vertex != GXB_NONE) {
-        gxbp_unite(b, spot.vertex, x);
-        return spot.vertex;
+    if (location.vertex != GXB_NONE) {
+        gxbp_unite(b, location.vertex, x);
+        return location.vertex;
     }
-    if (spot.k >= 0)
-        gxbp_split_side(b, spot.f, spot.k, x);
+    if (location.k >= 0)
+        gxbp_split_side(b, location.f, location.k, x);
     else
-        gxbp_split_inside(b, spot.f, x);
+        gxbp_split_inside(b, location.f, x);
     return x;
 }
 
-/* >>constrain: edges that must be there ---------------------------------------------------------------------------- */
+/* >>constrain: constrained edges ----------------------------------------------------------------------------------- */
 /* In: two vertices of a triangulation and a label. Out: a path of labelled edges between them. The crossed subtriangles
-   are removed and both sides filled again. Touches the subtriangles of this source, links and the two rims. */
+   are replaced by a triangulation of each side. Touches the subtriangles of this source, links and the two rims. */
 
-/* Appends to b->work.rims or b->work.lefts a vertex, with what lies beyond edge k of f. */
+/* Appends a vertex to a rim, with the neighbour beyond edge k of f and that edge's labels. */
 static void gxbp_push_rim_vertex(gxb_boolean *b, gxbp_rim_vertex **list, uint32_t *count, uint32_t *capacity,
                                  uint32_t vertex, uint32_t f, int k) {
     gxbp_rim_vertex *r;
@@ -8137,7 +8189,7 @@ static void gxbp_push_rim_vertex(gxb_boolean *b, gxbp_rim_vertex **list, uint32_
     r->labels = f == GXB_NONE ? GXBP_LOOSE : b->mesh.subtriangles[f].labels[k];
 }
 
-/* The apex over the base from rim[high] to rim[low]: no other vertex between lies in its triangle. */
+/* The apex over the base from rim[high] to rim[low]: no other vertex between them lies in this triangle. */
 static uint32_t gxbp_choose_apex(gxb_boolean *b, const gxbp_rim_vertex *rim, uint32_t low, uint32_t high) {
     uint32_t best = low + 1, i;
     for (i = low + 2; i < high; i++) {
@@ -8150,7 +8202,7 @@ static uint32_t gxbp_choose_apex(gxb_boolean *b, const gxbp_rim_vertex *rim, uin
     return best;
 }
 
-/* Joins edge k of f to what lies outside of the rim's edge i. A dangling edge has its other side in the rim too. */
+/* Joins edge k of f to the neighbour beyond the rim's edge i. Both sides of a dangling edge are in the rim. */
 static void gxbp_attach_rim(gxb_boolean *b, gxbp_rim_vertex *rim, uint32_t count, uint32_t i, uint32_t f, int k) {
     uint32_t j;
     gxbp_set_edge(b, f, k, rim[i].near, rim[i].labels);
@@ -8168,11 +8220,11 @@ static void gxbp_attach_rim(gxb_boolean *b, gxbp_rim_vertex *rim, uint32_t count
     }
 }
 
-/* Triangulates what lies between rim[low] ... rim[high] and the base; subtriangles are taken from the scratch list's
- * end. Returns the base's. */
+/* Triangulates the polygon of rim[low] ... rim[high]. Its subtriangles are the last ones of the crossed list. Returns
+ * the one at the base from rim[high] to rim[low]. */
 static GXBP_APART uint32_t gxbp_fill_rim(gxb_boolean *b, gxbp_rim_vertex *rim, uint32_t count, uint32_t low,
                                          uint32_t high) {
-    const uint32_t apex = gxbp_choose_apex(b, rim, low, high), f = b->work.stack[--b->work.stack_count];
+    const uint32_t apex = gxbp_choose_apex(b, rim, low, high), f = b->work.crossed[--b->work.crossed_count];
     uint32_t g;
     gxbp_set_subtriangle(b, f, rim[high].vertex, rim[low].vertex, rim[apex].vertex);
     gxbp_set_edge(b, f, 0, GXB_NONE, GXBP_LOOSE);
@@ -8193,7 +8245,7 @@ static GXBP_APART uint32_t gxbp_fill_rim(gxb_boolean *b, gxbp_rim_vertex *rim, u
     return f;
 }
 
-/* The point where the line of a triangle (label) crosses an edge that must stay. */
+/* The point where the line of a triangle (label) crosses a constrained edge. */
 static GXBP_RARE uint32_t gxbp_crossing_point(gxb_boolean *b, uint32_t s, uint32_t labels, uint32_t label) {
     uint32_t other = GXB_NONE, id[3];
     int is_new;
@@ -8214,24 +8266,23 @@ static GXBP_RARE uint32_t gxbp_crossing_point(gxb_boolean *b, uint32_t s, uint32
     return other;
 }
 
-static void gxbp_push(gxb_boolean *b, uint32_t value) {
-    if (GXBP_ROOM(b, work.stack, work.stack, 1)) b->work.stack[b->work.stack_count++] = value;
+static void gxbp_push_crossed(gxb_boolean *b, uint32_t f) {
+    if (GXBP_ROOM(b, work.crossed, work.crossed, 1)) b->work.crossed[b->work.crossed_count++] = f;
 }
 
-/* Subtriangles that the line crosses from way on, up to the first vertex on it: into scratch; their rims on its right
-   (from the start) and its left (from the start, without it). 0: an edge that must stay is in the way; it has been
-   divided there. */
+/* Lists the subtriangles that the line crosses from way on, up to the first vertex on it, and their rims: on its right,
+   with the start vertex, and on its left, without it. 0: the line crosses a constrained edge, which is now divided. */
 static int gxbp_collect_crossed(gxb_boolean *b, uint32_t s, const gxbp_line *line, gxbp_way way, uint32_t label) {
     uint32_t f = way.f, u = b->mesh.subtriangles[f].v[(way.k + 1) % 3], w = b->mesh.subtriangles[f].v[(way.k + 2) % 3];
     int k = (way.k + 1) % 3;
-    b->work.stack_count = b->work.rim_count = b->work.left_count = 0;
-    gxbp_push_rim_vertex(b, &b->work.rims, &b->work.rim_count, &b->work.rim_capacity, b->mesh.subtriangles[f].v[way.k],
-                         f, way.k);
+    b->work.crossed_count = b->work.right_count = b->work.left_count = 0;
+    gxbp_push_rim_vertex(b, &b->work.rights, &b->work.right_count, &b->work.right_capacity,
+                         b->mesh.subtriangles[f].v[way.k], f, way.k);
     gxbp_push_rim_vertex(b, &b->work.lefts, &b->work.left_count, &b->work.left_capacity, w, f, (way.k + 2) % 3);
-    gxbp_push(b, f);
+    gxbp_push_crossed(b, f);
     while (b->error == GX_OK) {
         uint32_t c;
-        int j, of_c;
+        int j, side_c;
         if (b->mesh.subtriangles[f].labels[k] != GXBP_LOOSE) {
             const uint32_t x = gxbp_crossing_point(b, s, b->mesh.subtriangles[f].labels[k], label);
             if (x == GXB_NONE) return 0;
@@ -8247,19 +8298,19 @@ static int gxbp_collect_crossed(gxb_boolean *b, uint32_t s, const gxbp_line *lin
             gxbp_stop(b, GX_ERROR_OVERLAP);
             return 0;
         }
-        gxbp_push(b, f);
+        gxbp_push_crossed(b, f);
         j = gxbp_corner_index(&b->mesh.subtriangles[f], w);
         c = b->mesh.subtriangles[f].v[(j + 2) % 3];
-        of_c = gxbp_left(b, line, c);
-        if (of_c <= 0)
-            gxbp_push_rim_vertex(b, &b->work.rims, &b->work.rim_count, &b->work.rim_capacity, u, f, (j + 1) % 3);
-        if (of_c >= 0)
+        side_c = gxbp_left(b, line, c);
+        if (side_c <= 0)
+            gxbp_push_rim_vertex(b, &b->work.rights, &b->work.right_count, &b->work.right_capacity, u, f, (j + 1) % 3);
+        if (side_c >= 0)
             gxbp_push_rim_vertex(b, &b->work.lefts, &b->work.left_count, &b->work.left_capacity, c, f, (j + 2) % 3);
-        if (of_c == 0) {
-            gxbp_push_rim_vertex(b, &b->work.rims, &b->work.rim_count, &b->work.rim_capacity, c, GXB_NONE, 0);
+        if (side_c == 0) {
+            gxbp_push_rim_vertex(b, &b->work.rights, &b->work.right_count, &b->work.right_capacity, c, GXB_NONE, 0);
             return b->error == GX_OK;
         }
-        if (of_c < 0) {
+        if (side_c < 0) {
             u = c;
             k = (j + 2) % 3;
         } else {
@@ -8278,24 +8329,25 @@ static void gxbp_find_dangling(const gxb_boolean *b, gxbp_rim_vertex *rim, uint3
         rim[i].dangling = rim[i].near != GXB_NONE && b->mesh.subtriangles[rim[i].near].state == GXBP_REMOVED;
 }
 
-/* Retriangulates the crossed subtriangles with an edge from the start to the vertex in which the right rim ends. */
+/* Replaces the crossed subtriangles by others, with an edge from the start to the vertex in which the right rim ends.
+ */
 static void gxbp_refill(gxb_boolean *b, uint32_t start) {
-    const uint32_t state = b->mesh.subtriangles[b->work.stack[0]].state; /* of all: no label is between them */
+    const uint32_t state = b->mesh.subtriangles[b->work.crossed[0]].state; /* that of all: no label is between them */
     uint32_t i, n, f, g;
-    for (i = 0; i < b->work.stack_count; i++) b->mesh.subtriangles[b->work.stack[i]].state = GXBP_REMOVED;
+    for (i = 0; i < b->work.crossed_count; i++) b->mesh.subtriangles[b->work.crossed[i]].state = GXBP_REMOVED;
     gxbp_push_rim_vertex(b, &b->work.lefts, &b->work.left_count, &b->work.left_capacity, start, GXB_NONE, 0);
     if (b->error != GX_OK) return;
-    /* the left rim goes backwards: turn it round, all but the start */
+    /* the left rim runs backwards: reverse all of it but the start */
     n = b->work.left_count - 1;
     for (i = 0; i < n / 2; i++) {
         const gxbp_rim_vertex swap = b->work.lefts[i];
         b->work.lefts[i] = b->work.lefts[n - 1 - i];
         b->work.lefts[n - 1 - i] = swap;
     }
-    gxbp_find_dangling(b, b->work.rims, b->work.rim_count);
+    gxbp_find_dangling(b, b->work.rights, b->work.right_count);
     gxbp_find_dangling(b, b->work.lefts, b->work.left_count);
-    for (i = 0; i < b->work.stack_count; i++) b->mesh.subtriangles[b->work.stack[i]].state = state;
-    f = gxbp_fill_rim(b, b->work.rims, b->work.rim_count, 0, b->work.rim_count - 1);
+    for (i = 0; i < b->work.crossed_count; i++) b->mesh.subtriangles[b->work.crossed[i]].state = state;
+    f = gxbp_fill_rim(b, b->work.rights, b->work.right_count, 0, b->work.right_count - 1);
     g = gxbp_fill_rim(b, b->work.lefts, b->work.left_count, 0, b->work.left_count - 1);
     b->mesh.subtriangles[f].near[0] = g;
     b->mesh.subtriangles[g].near[0] = f;
@@ -8307,11 +8359,11 @@ static uint32_t gxbp_take_way(gxb_boolean *b, const gxbp_way *way, uint32_t labe
     return ahead;
 }
 
-/* Makes p q an edge, or a row of them where vertices lie on it, with a label. */
+/* Makes p q a labelled edge, or a path of labelled edges where vertices lie on it. */
 static void gxbp_force_edge(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q, uint32_t label, int left) {
     gxbp_line line;
     gxbp_way way;
-    /* that there is no edge from p to q: it has been looked for, and nothing was refilled since */
+    /* 1: there is no edge from p to q, by a search since which nothing was refilled */
     int known = 1;
     if (p == q) return;
     if (gxbp_find_edge(b, p, q, &way)) {
@@ -8336,22 +8388,24 @@ static void gxbp_force_edge(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q, 
 
 /* >>divide: a source that is alone in its plane -------------------------------------------------------------------- */
 /* In: a dirty source with its new segments and the points on its edges. Out: its triangulation, with all segments as
-   edges. Chains of a simple surface divide an undivided source into polygons; all else goes in segment by segment. */
+   edges. Chains of a simple surface divide an undivided source into polygons. In all other cases segments are inserted
+   one by one. */
 
 /* Point i of an edge: its start, its inner points in order, its end. */
 static uint32_t gxbp_edge_point(gxb_boolean *b, uint32_t s, uint32_t k, uint32_t i) {
-    const uint32_t cut = b->in.sources[s].edge[k], count = cut == GXB_NONE ? 0 : b->crossings.cuts[cut].count;
+    const uint32_t edge = b->in.sources[s].edge[k], count = edge == GXB_NONE ? 0 : b->crossings.edges[edge].count;
     if (i == 0) return gxbp_same(b, b->in.sources[s].point[k]);
     if (i > count) return gxbp_same(b, b->in.sources[s].point[(k + 1) % 3]);
-    return gxbp_same(b, b->crossings.cut_points[b->crossings.cuts[cut].first +
-                                                (b->crossings.cuts[cut].half_edge == 3 * s + k ? i - 1 : count - i)]);
+    return gxbp_same(b,
+                     b->crossings.edge_points[b->crossings.edges[edge].first +
+                                              (b->crossings.edges[edge].half_edge == 3 * s + k ? i - 1 : count - i)]);
 }
 
 static uint32_t gxbp_edge_points(const gxb_boolean *b, uint32_t s, uint32_t k) {
-    return 2 + (b->in.sources[s].edge[k] == GXB_NONE ? 0 : b->crossings.cuts[b->in.sources[s].edge[k]].count);
+    return 2 + (b->in.sources[s].edge[k] == GXB_NONE ? 0 : b->crossings.edges[b->in.sources[s].edge[k]].count);
 }
 
-/* Makes inner point x of an edge a vertex; u: a vertex before it on that edge, with none between */
+/* Makes inner point x of an edge a vertex. u: the vertex before it on that edge */
 static void gxbp_split_rim(gxb_boolean *b, uint32_t u, uint32_t x) {
     uint32_t f = b->points.vertices[u].hint;
     int j = gxbp_corner_index(&b->mesh.subtriangles[f], u);
@@ -8362,7 +8416,7 @@ static void gxbp_split_rim(gxb_boolean *b, uint32_t u, uint32_t x) {
     if (b->mesh.subtriangles[f].v[(j + 1) % 3] != x) gxbp_split_side(b, f, j, x);
 }
 
-/* All inner points of edge k that are no vertices yet */
+/* Makes all inner points of edge k vertices */
 static void gxbp_divide_rim(gxb_boolean *b, uint32_t s, uint32_t k) {
     const uint32_t points = gxbp_edge_points(b, s, k);
     uint32_t i;
@@ -8370,33 +8424,33 @@ static void gxbp_divide_rim(gxb_boolean *b, uint32_t s, uint32_t k) {
         gxbp_split_rim(b, gxbp_edge_point(b, s, k, i - 1), gxbp_edge_point(b, s, k, i));
 }
 
-/* Ends of segments that are inner points of the source's edges learn where. */
+/* Records in rim_place which inner point of which edge of the source an end of a segment is; GXB_NONE: it is none. */
 static void gxbp_find_rim_ends(gxb_boolean *b, uint32_t s, uint32_t n) {
     uint32_t i, k;
     for (i = 0; i < n; i++) {
         const gxbp_segment *segment = &b->crossings.segments[b->work.segment_ends[3 * i]];
-        b->points.vertices[gxbp_same(b, segment->p)].slot = b->points.vertices[gxbp_same(b, segment->q)].slot =
-            GXB_NONE;
+        b->points.vertices[gxbp_same(b, segment->p)].rim_place =
+            b->points.vertices[gxbp_same(b, segment->q)].rim_place = GXB_NONE;
     }
     for (k = 0; k < 3; k++)
         for (i = 1; i + 1 < gxbp_edge_points(b, s, k); i++)
-            b->points.vertices[gxbp_edge_point(b, s, k, i)].slot = 3 * i + k;
+            b->points.vertices[gxbp_edge_point(b, s, k, i)].rim_place = 3 * i + k;
 }
 
-/* Is the end of a segment in the triangulation? One on the rim is put there now: what nobody needs yet would only be in
-   the way, as subtriangles that a segment must cross. */
+/* Is the end of a segment in the triangulation? One on the rim is inserted here, when a segment needs it: earlier it
+   would only add subtriangles for segments to cross. */
 static int gxbp_enter(gxb_boolean *b, uint32_t s, uint32_t v) {
-    const uint32_t k = b->points.vertices[v].slot % 3;
-    uint32_t i = b->points.vertices[v].slot / 3, u;
+    const uint32_t k = b->points.vertices[v].rim_place % 3;
+    uint32_t i = b->points.vertices[v].rim_place / 3, u;
     if (gxbp_is_placed(b, v)) return 1;
-    if (b->points.vertices[v].slot == GXB_NONE) return 0;
+    if (b->points.vertices[v].rim_place == GXB_NONE) return 0;
     do u = gxbp_edge_point(b, s, k, --i);
     while (!gxbp_is_placed(b, u));
     gxbp_split_rim(b, u, v);
     return b->error == GX_OK;
 }
 
-/* A segment that is not done yet and ends in v, by the lists that gxbp_chain_segments made. */
+/* A segment that ends in v and is not inserted yet, from the lists of gxbp_chain_segments. */
 static uint32_t gxbp_next_segment(const gxb_boolean *b, uint32_t v) {
     uint32_t e = b->points.vertices[v].head_stamp == b->work.head_stamp ? b->points.vertices[v].head : GXB_NONE;
     while (e != GXB_NONE && b->work.segment_ends[3 * (e / 2)] == GXB_NONE)
@@ -8404,7 +8458,8 @@ static uint32_t gxbp_next_segment(const gxb_boolean *b, uint32_t v) {
     return e == GXB_NONE ? GXB_NONE : e / 2;
 }
 
-/* chain: segment, next of the lists of its two ends */
+/* Lists the source's new segments by their ends. A record of b->work.segment_ends is a segment and, for each of its
+   ends, the next end 2 i + e in the list of that vertex. Vertices hold the heads. Returns the number of segments. */
 static uint32_t gxbp_chain_segments(gxb_boolean *b, uint32_t s) {
     uint32_t i, n = 0;
     b->work.segment_end_count = 0;
@@ -8427,7 +8482,7 @@ static uint32_t gxbp_chain_segments(gxb_boolean *b, uint32_t s) {
     return n;
 }
 
-/* Follows segments from one that has an end in the triangulation, so that each begins where the last one ended. */
+/* Inserts segments from segment i on, so that each begins where the last one ended. */
 static void gxbp_trace_segments(gxb_boolean *b, uint32_t s, uint32_t i) {
     const gxbp_segment *first = &b->crossings.segments[b->work.segment_ends[3 * i]];
     uint32_t v = gxbp_same(b, first->p);
@@ -8455,39 +8510,41 @@ static void gxbp_note_divided(gxb_boolean *b, uint32_t s) {
 
 /* --- dividing a source by chains: the generic small case --- */
 
-/* A source that nothing has divided yet, and segments of one simple surface, of which each chain leads from rim to rim
-   and none touches another: its parts are polygons, which are triangulated by cutting off corners. What bends where is
-   known but for the chains' inner points. */
-enum { GXBP_SMALL = 24 }; /* rim points and segments; more are divided in the general way */
+/* The source is undivided. All segments are of one simple surface. Each chain leads from rim to rim, and none touches
+   another. So chains divide the source into polygons, which are triangulated by cutting off ears. Bends are known
+   without predicates except at the chains' inner points. */
+enum { GXBP_SMALL = 24 }; /* the most rim points and segments; with more, the general way is taken */
 
-/* A vertex of a polygon that is walked with its inside on the left. on: the edges of the source that it lies on, as
-   bits; slot: of the edge to the next vertex, GXB_NONE on the rim, but at the starts of the source's edges GXBP_RIM and
-   the edge; bend: 1 convex, 0 straight, -1 reflex. */
+/* A vertex of a polygon, whose inside is to the left. on: the edges of the source that contain it, as bits. slot: of
+   the edge to the next vertex. On the rim it is GXB_NONE; at the start of the source's edge k it is GXBP_RIM + k. bend:
+   1 convex, 0 straight, -1 reflex. before, after: in gxbp_division.polygon */
 #define GXBP_RIM (UINT32_MAX - 3)
-typedef struct gxbp_knot {
+typedef struct gxbp_polygon_vertex {
     uint32_t vertex, on, slot;
     int bend;
     uint32_t before, after;
-} gxbp_knot;
-/* segments in gxbp_division.step, rim points at the ends */
+} gxbp_polygon_vertex;
+/* A chain: its segments in gxbp_division.step, and the rim points at its two ends */
 typedef struct gxbp_chain {
     uint32_t first, count, from, to;
 } gxbp_chain;
 
 typedef struct gxbp_division {
     uint32_t source, spare, state; /* spare: the source's only subtriangle, until it is used */
-    gxbp_knot rim[GXBP_SMALL];
+    gxbp_polygon_vertex rim[GXBP_SMALL];
     uint32_t rim_count;
     uint32_t corner[3]; /* places of the source's corners in the rim */
-    /* of the source's edges; 1: the cut has its half-edge from the other triangle */
-    uint32_t cut[3], other[3];
-    uint32_t chain_at[GXBP_SMALL]; /* of each rim point: the chain that ends there, or GXB_NONE */
+    /* records of the source's edges; other 1: the record's half-edge is that of the neighbour */
+    uint32_t edge[3], other[3];
+    uint32_t chain_at[GXBP_SMALL]; /* for each rim point: the chain that ends there, or GXB_NONE */
     gxbp_chain chains[GXBP_SMALL];
     uint32_t chain_count;
-    gxbp_knot step[GXBP_SMALL]; /* of each segment: the point that it leaves; slot: its place in b->work.segment_ends */
+    /* of each step along a chain: the point that it leaves; its segment, by the place in b->work.segment_ends */
+    gxbp_polygon_vertex step[GXBP_SMALL];
+    uint32_t segment[GXBP_SMALL];
     uint32_t step_count, labels; /* the segments' links, one after the other */
-    gxbp_knot polygon[GXBP_SMALL];
-    /* of steps, then of diagonals: the subtriangle's edge on the side that is there */
+    gxbp_polygon_vertex polygon[GXBP_SMALL];
+    /* for each step, then for each diagonal: the edge 3 f + k of the first subtriangle there */
     uint32_t half[4 * GXBP_SMALL];
     uint32_t slot_count;
 } gxbp_division;
@@ -8505,7 +8562,8 @@ static int gxbp_is_generic(const gxb_boolean *b, uint32_t s, uint32_t n) {
     return 1;
 }
 
-/* Rim points are marked by stamps, with their place in hints. */
+/* Lists the rim points. Stamps mark them, and hints are their places in the list. 0: there are too many, or two are
+   equal. */
 static int gxbp_collect_rim(gxb_boolean *b, gxbp_division *d, uint32_t n) {
     const uint32_t s = d->source;
     uint32_t k, i, on;
@@ -8517,41 +8575,41 @@ static int gxbp_collect_rim(gxb_boolean *b, gxbp_division *d, uint32_t n) {
         d->corner[k] = d->rim_count;
         on = 1u << k | 1u << (k == 0 ? 2 : k - 1);
         for (i = 0; i < count; i++, on = 1u << k) {
-            gxbp_knot *knot = &d->rim[d->rim_count];
-            knot->vertex = gxbp_edge_point(b, s, k, i);
-            if (gxbp_is_placed(b, knot->vertex)) return 0;
-            b->points.vertices[knot->vertex].stamp = b->work.stamp;
-            b->points.vertices[knot->vertex].hint = d->rim_count;
-            knot->on = on;
-            knot->bend = i == 0;
-            knot->slot = GXB_NONE;
+            gxbp_polygon_vertex *added = &d->rim[d->rim_count];
+            added->vertex = gxbp_edge_point(b, s, k, i);
+            if (gxbp_is_placed(b, added->vertex)) return 0;
+            b->points.vertices[added->vertex].stamp = b->work.stamp;
+            b->points.vertices[added->vertex].hint = d->rim_count;
+            added->on = on;
+            added->bend = i == 0;
+            added->slot = GXB_NONE;
             d->chain_at[d->rim_count++] = GXB_NONE;
         }
     }
     return 1;
 }
 
-/* Where the source's edges start, on their first side or their other one. 0: no memory */
+/* Marks the rim points from which the edges at the starts of the records' half-edges leave. 0: no memory */
 static int gxbp_mark_starts(gxb_boolean *b, gxbp_division *d) {
     uint32_t k;
     for (k = 0; k < 3; k++) {
-        const uint32_t cut = d->cut[k] = gxbp_need_cut(b, d->source, (int)k), end = d->corner[k == 2 ? 0 : k + 1];
-        if (cut == GXB_NONE) return 0;
-        d->other[k] = b->crossings.cuts[cut].half_edge != 3 * d->source + k;
+        const uint32_t edge = d->edge[k] = gxbp_need_surface_edge(b, d->source, (int)k),
+                       end = d->corner[k == 2 ? 0 : k + 1];
+        if (edge == GXB_NONE) return 0;
+        d->other[k] = b->crossings.edges[edge].half_edge != 3 * d->source + k;
         d->rim[!d->other[k] ? d->corner[k] : (end == 0 ? d->rim_count : end) - 1].slot = GXBP_RIM + k;
     }
     return 1;
 }
 
-/* Ends of segments in lists of vertices, see gxbp_chain_segments: 2 i + e. The other end at an inner point of a chain;
- * GXB_NONE: there are not two */
+/* The other end 2 i + e at an inner point of a chain (see gxbp_chain_segments). GXB_NONE: there are not two ends */
 static uint32_t gxbp_other_end(const gxb_boolean *b, uint32_t v, uint32_t end) {
     const uint32_t first = b->points.vertices[v].head, second = b->work.segment_ends[3 * (first / 2) + 1 + first % 2];
     if (second == GXB_NONE || b->work.segment_ends[3 * (second / 2) + 1 + second % 2] != GXB_NONE) return GXB_NONE;
     return first == end ? second : first;
 }
 
-/* Follows the chain that leaves a rim point by an end of a segment. 0: it is not one that leads to the rim. */
+/* Follows the chain that leaves a rim point by an end of a segment. 0: it does not lead to another part of the rim. */
 static GXBP_APART int gxbp_follow_chain(gxb_boolean *b, gxbp_division *d, uint32_t from, uint32_t end, uint32_t n) {
     gxbp_chain *chain = &d->chains[d->chain_count];
     uint32_t v = d->rim[from].vertex;
@@ -8560,7 +8618,7 @@ static GXBP_APART int gxbp_follow_chain(gxb_boolean *b, gxbp_division *d, uint32
     while (end != GXB_NONE && d->step_count < n) {
         const gxbp_segment *segment = &b->crossings.segments[b->work.segment_ends[3 * (end / 2)]];
         d->step[d->step_count].vertex = v;
-        d->step[d->step_count++].slot = end / 2;
+        d->segment[d->step_count++] = end / 2;
         end ^= 1;
         v = gxbp_same(b, end % 2 == 0 ? segment->p : segment->q);
         if (gxbp_is_placed(b, v)) {
@@ -8578,7 +8636,7 @@ static GXBP_APART int gxbp_follow_chain(gxb_boolean *b, gxbp_division *d, uint32
     return 0;
 }
 
-/* 1: v lies left of the way from p to q, by a segment (see gxbp_chain_segments) between them; v is not one of them. */
+/* 1: v lies left of segment i (see gxbp_chain_segments), walked from p to q. v is neither of these. */
 static int gxbp_left_of_segment(gxb_boolean *b, uint32_t i, uint32_t p, uint32_t q, uint32_t v) {
     const gxbp_segment *segment = &b->crossings.segments[b->work.segment_ends[3 * i]];
     gxbp_line line;
@@ -8590,17 +8648,18 @@ static int gxbp_left_of_segment(gxb_boolean *b, uint32_t i, uint32_t p, uint32_t
     return gxbp_left(b, &line, v);
 }
 
-/* How a chain goes on at an inner point, from one segment to the next: where it passes an edge of the other surface, as
- * that is folded there. */
-static int gxbp_bend_of_chain(gxb_boolean *b, const gxbp_knot *from, const gxbp_knot *at, uint32_t next) {
-    const gxbp_segment *segment = &b->crossings.segments[b->work.segment_ends[3 * from->slot]];
-    const uint32_t *key = b->points.vertices[at->vertex].key, t = segment->label,
-                   u = b->crossings.segments[b->work.segment_ends[3 * at->slot]].label;
+/* The bend of a chain at the start of its step m, between the step before and the point next. Where the chain crosses
+ * an edge of the other surface, it bends as the surface is folded there. */
+static int gxbp_bend_of_chain(gxb_boolean *b, const gxbp_division *d, uint32_t m, uint32_t next) {
+    const uint32_t from = d->step[m - 1].vertex, middle = d->step[m].vertex;
+    const gxbp_segment *segment = &b->crossings.segments[b->work.segment_ends[3 * d->segment[m - 1]]];
+    const uint32_t *key = b->points.vertices[middle].key, t = segment->label,
+                   u = b->crossings.segments[b->work.segment_ends[3 * d->segment[m]]].label;
     const uint32_t twin = key[0] == GXB_FROM_EDGE_TRIANGLE ? b->in.sources[key[1] / 3].twin[key[1] % 3] : GXB_NONE;
     if (twin == GXB_NONE || !((key[1] / 3 == t && twin / 3 == u) || (key[1] / 3 == u && twin / 3 == t)))
-        return gxbp_left_of_segment(b, from->slot, from->vertex, at->vertex, next);
+        return gxbp_left_of_segment(b, d->segment[m - 1], from, middle, next);
     return gxbp_fold(b, key[1], twin / 3, twin % 3) *
-           (gxbp_same(b, segment->p) == from->vertex ? segment->left : -segment->left);
+           (gxbp_same(b, segment->p) == from ? segment->left : -segment->left);
 }
 
 static GXBP_APART int gxbp_collect_chains(gxb_boolean *b, gxbp_division *d, uint32_t n) {
@@ -8617,38 +8676,39 @@ static GXBP_APART int gxbp_collect_chains(gxb_boolean *b, gxbp_division *d, uint
         for (m = d->chains[i].first + 1; m < d->chains[i].first + d->chains[i].count; m++) {
             const int last = m + 1 == d->chains[i].first + d->chains[i].count;
             d->step[m].on = 0;
-            d->step[m].bend = gxbp_bend_of_chain(b, &d->step[m - 1], &d->step[m],
-                                                 last ? d->rim[d->chains[i].to].vertex : d->step[m + 1].vertex);
+            d->step[m].bend =
+                gxbp_bend_of_chain(b, d, m, last ? d->rim[d->chains[i].to].vertex : d->step[m + 1].vertex);
         }
     return 1;
 }
 
-/* 1: p comes before q along an edge (bit) of the source, the inside of which is to the left; -1: after it */
-static int gxbp_along_rim(const gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q,
-                          uint32_t edge) {
+/* 1: p comes before q along an edge (bit) of the source; -1: after it */
+static int gxbp_along_rim(const gxb_boolean *b, const gxbp_division *d, const gxbp_polygon_vertex *p,
+                          const gxbp_polygon_vertex *q, uint32_t edge) {
     const uint32_t first = d->corner[edge >> 1], i = b->points.vertices[p->vertex].hint,
                    j = b->points.vertices[q->vertex].hint;
     return (i < first ? i + d->rim_count : i) < (j < first ? j + d->rim_count : j) ? 1 : -1;
 }
 
-/* gxbp_knot_turn where the way from p to q is a segment: side of its plane; else GXBP_UNKNOWN */
-static int gxbp_turn_by_segment(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q,
-                                const gxbp_knot *r) {
+/* gxbp_polygon_turn by the segment from p to q, as the side of its plane; GXBP_UNKNOWN: there is no segment */
+static int gxbp_turn_by_segment(gxb_boolean *b, const gxbp_division *d, const gxbp_polygon_vertex *p,
+                                const gxbp_polygon_vertex *q, const gxbp_polygon_vertex *r) {
     if (p->slot >= d->step_count || &d->polygon[p->after] != q) return GXBP_UNKNOWN;
-    return gxbp_left_of_segment(b, d->step[p->slot].slot, p->vertex, q->vertex, r->vertex);
+    return gxbp_left_of_segment(b, d->segment[p->slot], p->vertex, q->vertex, r->vertex);
 }
 
-static GXBP_COLD int gxbp_turn_by_segments(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p,
-                                           const gxbp_knot *q, const gxbp_knot *r) {
+static GXBP_COLD int gxbp_turn_by_segments(gxb_boolean *b, const gxbp_division *d, const gxbp_polygon_vertex *p,
+                                           const gxbp_polygon_vertex *q, const gxbp_polygon_vertex *r) {
     int turn = gxbp_turn_by_segment(b, d, p, q, r);
     if (turn == GXBP_UNKNOWN) turn = gxbp_turn_by_segment(b, d, q, r, p);
     if (turn == GXBP_UNKNOWN) turn = gxbp_turn_by_segment(b, d, r, p, q);
     return turn == GXBP_UNKNOWN ? gxbp_turn(b, p->vertex, q->vertex, r->vertex) : turn;
 }
 
-/* Two on one edge of the source say where a third one lies: it is not right of that edge. */
-static GXBP_RARE int gxbp_knot_turn(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q,
-                                    const gxbp_knot *r) {
+/* Orientation of three vertices. Two on one edge of the source determine it: the third one is not right of that edge.
+ */
+static GXBP_RARE int gxbp_polygon_turn(gxb_boolean *b, const gxbp_division *d, const gxbp_polygon_vertex *p,
+                                       const gxbp_polygon_vertex *q, const gxbp_polygon_vertex *r) {
     const uint32_t pq = p->on & q->on, qr = q->on & r->on, rp = r->on & p->on;
     int turn;
     if (pq & r->on) return 0;
@@ -8660,32 +8720,32 @@ static GXBP_RARE int gxbp_knot_turn(gxb_boolean *b, const gxbp_division *d, cons
 }
 
 /* Does w lie right of the edge from p to q? */
-static int gxbp_is_beyond(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q,
-                          const gxbp_knot *w) {
-    if (p->slot >= d->step_count) return gxbp_knot_turn(b, d, p, q, w) < 0;
-    return gxbp_left_of_segment(b, d->step[p->slot].slot, p->vertex, q->vertex, w->vertex) < 0;
+static int gxbp_is_beyond(gxb_boolean *b, const gxbp_division *d, const gxbp_polygon_vertex *p,
+                          const gxbp_polygon_vertex *q, const gxbp_polygon_vertex *w) {
+    if (p->slot >= d->step_count) return gxbp_polygon_turn(b, d, p, q, w) < 0;
+    return gxbp_left_of_segment(b, d->segment[p->slot], p->vertex, q->vertex, w->vertex) < 0;
 }
 
-/* Is no other vertex in the triangle of a convex corner? One of those in it would not be convex; a quadrilateral's
- * fourth one, if not convex, is. */
-static int gxbp_is_ear(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *q) {
-    const gxbp_knot *p = &d->polygon[q->before], *r = &d->polygon[q->after], *w;
+/* Is no other vertex in the triangle of a convex vertex? If others are, one of them is not convex. The fourth one of a
+ * quadrilateral is in it if it is not convex. */
+static int gxbp_is_ear(gxb_boolean *b, const gxbp_division *d, const gxbp_polygon_vertex *q) {
+    const gxbp_polygon_vertex *p = &d->polygon[q->before], *r = &d->polygon[q->after], *w;
     if (r->after == p->before) return d->polygon[r->after].bend > 0;
     for (w = &d->polygon[r->after]; w != p; w = &d->polygon[w->after])
         if (w->bend <= 0 && !(w->before == q->after && r->bend < 0) && !(w->after == q->before && p->bend < 0) &&
-            !gxbp_is_beyond(b, d, p, q, w) && !gxbp_is_beyond(b, d, q, r, w) && gxbp_knot_turn(b, d, r, p, w) >= 0)
+            !gxbp_is_beyond(b, d, p, q, w) && !gxbp_is_beyond(b, d, q, r, w) && gxbp_polygon_turn(b, d, r, p, w) >= 0)
             return 0;
     return 1;
 }
 
-/* Edge k of a subtriangle is the one in a slot: the second subtriangle there meets the first. */
+/* Enters edge k of a subtriangle in a slot. The second subtriangle of a slot becomes the first one's neighbour. */
 static inline void gxbp_use_slot(gxb_boolean *b, gxbp_division *d, uint32_t f, uint32_t k, uint32_t slot) {
     gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
     uint32_t other;
     sub->near[k] = GXB_NONE;
     sub->labels[k] = GXBP_BARE;
     if (slot >= GXBP_RIM) {
-        if (slot != GXB_NONE) b->crossings.cuts[d->cut[slot - GXBP_RIM]].rim[d->other[slot - GXBP_RIM]] = 3 * f + k;
+        if (slot != GXB_NONE) b->crossings.edges[d->edge[slot - GXBP_RIM]].rim[d->other[slot - GXBP_RIM]] = 3 * f + k;
         return;
     }
     sub->labels[k] = slot < d->step_count ? d->labels + slot : GXBP_LOOSE;
@@ -8696,8 +8756,8 @@ static inline void gxbp_use_slot(gxb_boolean *b, gxbp_division *d, uint32_t f, u
     b->mesh.subtriangles[other / 3].near[other % 3] = f;
 }
 
-static void gxbp_cut_ear(gxb_boolean *b, gxbp_division *d, gxbp_knot *p, const gxbp_knot *q, const gxbp_knot *r,
-                         uint32_t slot) {
+static void gxbp_cut_ear(gxb_boolean *b, gxbp_division *d, gxbp_polygon_vertex *p, const gxbp_polygon_vertex *q,
+                         const gxbp_polygon_vertex *r, uint32_t slot) {
     const uint32_t f = d->spare != GXB_NONE ? d->spare : gxbp_new_subtriangle(b, d->source);
     gxbp_subtriangle *sub;
     if (f == GXB_NONE) return;
@@ -8712,16 +8772,18 @@ static void gxbp_cut_ear(gxb_boolean *b, gxbp_division *d, gxbp_knot *p, const g
     gxbp_use_slot(b, d, f, 2, slot);
 }
 
-/* Only a reflex vertex may stay one where a neighbour is cut off. Returns 1 if it became convex. */
-static uint32_t gxbp_bend_again(gxb_boolean *b, gxbp_division *d, gxbp_knot *v) {
+/* Renews a vertex's bend after a neighbour was cut off: only a reflex one may stay reflex. Returns 1 if it became
+   convex. */
+static uint32_t gxbp_bend_again(gxb_boolean *b, gxbp_division *d, gxbp_polygon_vertex *v) {
     const int old = v->bend;
-    v->bend = old >= 0 ? 1 : gxbp_knot_turn(b, d, &d->polygon[v->before], v, &d->polygon[v->after]);
+    v->bend = old >= 0 ? 1 : gxbp_polygon_turn(b, d, &d->polygon[v->before], v, &d->polygon[v->after]);
     return old <= 0 && v->bend > 0;
 }
 
-/* First corners beside vertices that are not convex: that a chain is all but straight matters to others. */
+/* Triangulates the polygon by cutting off ears. Those beside vertices that are not convex come first, since a chain
+   that is almost straight makes other ears thin. */
 static GXBP_APART void gxbp_fill_polygon(gxb_boolean *b, gxbp_division *d, uint32_t n) {
-    gxbp_knot *polygon = d->polygon, *q = polygon, *p, *r;
+    gxbp_polygon_vertex *polygon = d->polygon, *q = polygon, *p, *r;
     uint32_t i, tried = 0, concave = 0;
     for (i = 0; i < n; i++) {
         polygon[i].before = i == 0 ? n - 1 : i - 1;
@@ -8748,8 +8810,7 @@ static GXBP_APART void gxbp_fill_polygon(gxb_boolean *b, gxbp_division *d, uint3
     }
 }
 
-/* Along a chain from rim point i: what it passes becomes a part of the polygon. Returns the rim point in which it ends.
- */
+/* Appends a chain, from rim point i on, to the polygon. Returns the rim point in which it ends. */
 static uint32_t gxbp_walk_chain(gxbp_division *d, uint32_t i, uint32_t *n) {
     const gxbp_chain *chain = &d->chains[d->chain_at[i]];
     const int forward = chain->from == i;
@@ -8758,15 +8819,15 @@ static uint32_t gxbp_walk_chain(gxbp_division *d, uint32_t i, uint32_t *n) {
     d->polygon[(*n)++].slot = forward ? chain->first : chain->first + chain->count - 1;
     for (m = 1; m < chain->count; m++) {
         const uint32_t step = chain->first + (forward ? m : chain->count - m);
-        gxbp_knot *knot = &d->polygon[(*n)++];
-        *knot = d->step[step];
-        knot->slot = forward ? step : step - 1;
-        if (!forward) knot->bend = -knot->bend;
+        gxbp_polygon_vertex *added = &d->polygon[(*n)++];
+        *added = d->step[step];
+        added->slot = forward ? step : step - 1;
+        if (!forward) added->bend = -added->bend;
     }
     return forward ? chain->to : chain->from;
 }
 
-/* The polygons, each from one of its rim's edges on. */
+/* Each polygon has an edge on the rim. Walks the rim for those that are not done yet. */
 static GXBP_APART void gxbp_fill_polygons(gxb_boolean *b, gxbp_division *d) {
     uint32_t done = 0, start, i, n;
     for (start = 0; start < d->rim_count; start++) {
@@ -8783,7 +8844,7 @@ static GXBP_APART void gxbp_fill_polygons(gxb_boolean *b, gxbp_division *d) {
     }
 }
 
-/* 0: it is another case, and nothing is divided. */
+/* Returns 0 if this is not the generic case; nothing is divided then. */
 static GXBP_APART int gxbp_divide_by_chains(gxb_boolean *b, uint32_t s, uint32_t n) {
     gxbp_division d;
     uint32_t i;
@@ -8793,7 +8854,7 @@ static GXBP_APART int gxbp_divide_by_chains(gxb_boolean *b, uint32_t s, uint32_t
     if (!gxbp_collect_rim(b, &d, n) || !gxbp_collect_chains(b, &d, n)) return 0;
     if (!GXBP_ROOM(b, mesh.links, mesh.link, n) || !gxbp_mark_starts(b, &d)) return 1;
     for (i = 0; i < n; i++) {
-        gxbp_new_link(b, b->crossings.segments[b->work.segment_ends[3 * d.step[i].slot]].label, GXBP_BARE);
+        gxbp_new_link(b, b->crossings.segments[b->work.segment_ends[3 * d.segment[i]]].label, GXBP_BARE);
         d.half[i] = GXB_NONE;
     }
     d.slot_count = n;
@@ -8804,17 +8865,17 @@ static GXBP_APART int gxbp_divide_by_chains(gxb_boolean *b, uint32_t s, uint32_t
     return 1;
 }
 
-/* Subtriangles at the starts of a source's edges: half-edges that leave the corner, or come to it where the edge starts
- * at its other end. */
+/* Records the subtriangles at the starts of a source's edges. If the record's half-edge is the neighbour's, the start
+ * is the edge's second corner. */
 static void gxbp_note_rims(gxb_boolean *b, uint32_t s) {
-    uint32_t leaves[3], comes[3], *rim[3], cut[3], f, k, j;
+    uint32_t leaves[3], comes[3], *rim[3], edge[3], f, k, j;
     for (k = 0; k < 3; k++)
-        if ((cut[k] = gxbp_need_cut(b, s, (int)k)) == GXB_NONE) return;
+        if ((edge[k] = gxbp_need_surface_edge(b, s, (int)k)) == GXB_NONE) return;
     for (k = 0; k < 3; k++) {
-        const int other = b->crossings.cuts[cut[k]].half_edge != 3 * s + k;
+        const int other = b->crossings.edges[edge[k]].half_edge != 3 * s + k;
         leaves[k] = other ? GXB_NONE : gxbp_same(b, b->in.sources[s].point[k]);
         comes[k] = other ? gxbp_same(b, b->in.sources[s].point[(k + 1) % 3]) : GXB_NONE;
-        rim[k] = &b->crossings.cuts[cut[k]].rim[other];
+        rim[k] = &b->crossings.edges[edge[k]].rim[other];
     }
     for (f = b->in.sources[s].subtriangle; f != GXB_NONE; f = b->mesh.subtriangles[f].next) {
         const gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
@@ -8827,7 +8888,7 @@ static void gxbp_note_rims(gxb_boolean *b, uint32_t s) {
     }
 }
 
-/* By one segment after the other: first those that begin where there are vertices */
+/* Inserts segments one by one, first those with an end in the triangulation or on the rim */
 static GXBP_APART void gxbp_divide_by_segments(gxb_boolean *b, uint32_t s, uint32_t n) {
     uint32_t i, k, pass;
     gxbp_open_triangulation(b, s);
@@ -8916,8 +8977,7 @@ static GXBP_COLD void gxbp_make_frame(gxb_boolean *b, uint32_t r) {
     gxbp_set_edge(b, g, 0, f, GXBP_LOOSE);
 }
 
-/* Each edge is there before points of the next one come: what they have to cross stays short. Returns the last vertex.
- */
+/* Inserts each edge before the points of the next one, so that searches stay short. Returns the last vertex. */
 static GXBP_RARE uint32_t gxbp_place_flat_edges(gxb_boolean *b, uint32_t r) {
     uint32_t last = b->mesh.subtriangles[b->in.sources[r].subtriangle].v[0], t, k, i;
     for (t = r; t != GXB_NONE; t = b->in.sources[t].next)
@@ -8979,22 +9039,22 @@ static int gxbp_is_edge_of(const gxb_boolean *b, uint32_t labels, uint32_t t) {
     return 0;
 }
 
-/* Gives its name to all subtriangles within a member's edges. */
+/* Lists a member as a cover of all subtriangles within its edges. */
 static GXBP_RARE void gxbp_cover_subtriangles(gxb_boolean *b, uint32_t r, uint32_t t) {
     const uint32_t first = gxbp_first_covered(b, r, t);
     int k;
-    b->work.stack_count = 0;
+    b->work.visit_count = 0;
     if (first == GXB_NONE) return;
     b->mesh.subtriangles[first].covers = gxbp_new_link(b, t, b->mesh.subtriangles[first].covers);
-    gxbp_push(b, first);
-    while (b->work.stack_count > 0 && b->error == GX_OK) {
-        const uint32_t f = b->work.stack[--b->work.stack_count];
+    gxbp_push_visit(b, first);
+    while (b->work.visit_count > 0 && b->error == GX_OK) {
+        const uint32_t f = b->work.visits[--b->work.visit_count];
         for (k = 0; k < 3; k++) {
             const uint32_t g = b->mesh.subtriangles[f].near[k];
             if (g == GXB_NONE || gxbp_is_edge_of(b, b->mesh.subtriangles[f].labels[k], t) || gxbp_covers(b, g, t))
                 continue;
             b->mesh.subtriangles[g].covers = gxbp_new_link(b, t, b->mesh.subtriangles[g].covers);
-            gxbp_push(b, g);
+            gxbp_push_visit(b, g);
         }
     }
 }
@@ -9137,7 +9197,7 @@ static uint32_t gxbp_hash_winding(const int32_t *winding, uint32_t count) {
     return hash;
 }
 
-enum { GXBP_FEW_STATES = 8 }; /* among which a state is looked for without a table */
+enum { GXBP_FEW_STATES = 8 }; /* fewer are searched without a table */
 
 /* A table of all states, with room for one more */
 static GXBP_COLD int gxbp_list_states(gxb_boolean *b) {
@@ -9155,7 +9215,7 @@ static GXBP_COLD int gxbp_list_states(gxb_boolean *b) {
     return 1;
 }
 
-/* The state whose numbers stand behind those of all states. */
+/* The state with the numbers that stand behind those of all states: a known one, or a new one. */
 static uint32_t gxbp_find_state(gxb_boolean *b) {
     const uint32_t n = b->in.operand_count;
     const int32_t *winding = b->winding.numbers + (size_t)b->winding.inside_count * n;
@@ -9180,7 +9240,7 @@ static uint32_t gxbp_find_state(gxb_boolean *b) {
     return b->winding.inside_count++;
 }
 
-/* Room for one more vector behind the states', a copy of a state's or (GXB_NONE) zeros. NULL: no memory. */
+/* Writes one more vector behind those of the states: a copy of a state's, or zeros (GXB_NONE). NULL: no memory. */
 static int32_t *gxbp_copy_winding(gxb_boolean *b, uint32_t state) {
     const uint32_t n = b->in.operand_count;
     int32_t *winding;
@@ -9213,16 +9273,16 @@ static uint32_t gxbp_step_state(gxb_boolean *b, uint32_t from, uint32_t operand,
 }
 
 /* >>winding: a state for each subtriangle -------------------------------------------------------------------------- */
-/* In: a finished arrangement. Out: the state in front of each subtriangle. One ray gives the first state; labels of
-   edges give those of neighbours. New operands count 0 in older states wherever their boxes are not. Touches the states
-   of subtriangles and their vertices' names. */
+/* In: a finished arrangement. Out: the state in front of each subtriangle. A ray gives the first state of a connected
+   surface. Labels of edges give those of neighbours. In older states a new operand has the number 0 wherever its box
+   does not reach. Touches the states of subtriangles and their vertices' names. */
 
 static uint32_t gxbp_root_plane(const gxb_boolean *b, uint32_t f) {
     return b->in.sources[b->mesh.subtriangles[f].source].plane;
 }
 
-/* The side of t's plane on which subtriangle f lies, which has edge k in it. If its apex is too near to tell, any
-   corner of the source tells: side times orientation with the edge is the same for all points. */
+/* The side of t's plane on which subtriangle f lies, whose edge k is in that plane. If the filter does not settle the
+   apex, any corner of the source serves: its side times its orientation with the edge is the same for all points. */
 static int gxbp_side_of_subtriangle(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
     const gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
     const gxb_plane_filter *filter = &b->store.planes[b->in.sources[t].plane].filter;
@@ -9241,8 +9301,8 @@ static int gxbp_side_of_subtriangle(gxb_boolean *b, uint32_t f, int k, uint32_t 
     return side != 0 ? side : gxbp_side_of_source(b, sub->v[(k + 2) % 3], t);
 }
 
-/* How a label of edge k changes the winding number of its operand: a triangle with a part in front of f's plane is
-   passed, from the side on which f lies. */
+/* How a label of edge k changes the winding number of its operand: if the labelling triangle t has a part in front of
+   f's plane, the way across the edge crosses it, from the side on which f lies. */
 static int gxbp_label_step(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
     int i;
     if (t & GXBP_EDGE_LABEL || b->in.operands[b->in.sources[t].operand].operation == GXB_SPLIT) return 0;
@@ -9267,8 +9327,8 @@ static uint32_t gxbp_state_beyond(gxb_boolean *b, uint32_t f, int k) {
     return winding == NULL ? b->mesh.subtriangles[f].state : gxbp_find_state(b);
 }
 
-/* Adds sign times the subtriangle's own surfaces: behind it the winding number is larger by one for each that faces as
- * its plane does. */
+/* Adds sign times the subtriangle's own surfaces. Behind it, the winding number is larger by one for each surface that
+ * faces as its plane does. */
 static GXBP_COLD void gxbp_add_covers(const gxb_boolean *b, uint32_t f, int sign, int32_t *winding) {
     const uint32_t r = b->mesh.subtriangles[f].source;
     uint32_t c;
@@ -9296,15 +9356,15 @@ static uint32_t gxbp_state_behind(gxb_boolean *b, uint32_t f) {
     return gxbp_find_state(b);
 }
 
-/* --- a first state by a ray along x from a point inside the subtriangle, moved by (h, h^2) in y, z with h -> 0 (see
- * gxbp_ray_side) --- */
+/* --- a first state, by a ray along x from a point inside the subtriangle. In y, z it is moved by (h, h^2), h -> 0 (see
+   gxbp_ray_side) */
 
 typedef struct gxbp_ray {
     gxb_ball ball;
     gxbp_box box; /* around the whole ray */
     uint32_t f;
     int32_t *winding;
-    int exact;        /* is probe made yet? */
+    int exact;        /* 1: probe has been computed */
     gxbp_probe probe; /* the sum of the corners' homogeneous coordinates */
 } gxbp_ray;
 
@@ -9318,7 +9378,7 @@ static const gxbp_probe *gxbp_exact_probe(gxb_boolean *b, gxbp_ray *ray) {
     return &ray->probe;
 }
 
-/* A ball around the sum of the corners' homogeneous coordinates: their middle where all have weight 1. */
+/* Starts the ray at a ball around the sum of the corners' homogeneous coordinates: their mean if all weights are 1. */
 static void gxbp_set_ray(gxb_boolean *b, gxbp_ray *ray, uint32_t f) {
     const gxb_cpoint *p[3];
     int k, given = 1;
@@ -9379,14 +9439,14 @@ static GXBP_APART void gxbp_shoot(gxb_boolean *b, gxbp_ray *ray, const gxbp_oper
         if (meets[c]) gxbp_cross_ray(b, ray, o->order[i * GXBP_LEAF + c]);
 }
 
-/* The side of a plane to which a point of it is moved: 0 for planes across x. */
+/* The side of a plane to which moving by (h, h^2) takes a point of it; 0: the plane is normal to x. */
 static int gxbp_moved_side(gxb_boolean *b, uint32_t plane) {
     const int side = gxbp_normal_sign(&b->store, plane, 1);
     return side != 0 ? side : gxbp_normal_sign(&b->store, plane, 2);
 }
 
-/* The start lies on the side of the subtriangle's plane that the first of n_y, n_z, n_x which is not 0 says; from
-   behind (n_x > 0) or from in front (n_x < 0) the ray passes the subtriangle itself. */
+/* The moved start lies on one side of the subtriangle's plane: the sign of the first nonzero one of n_y, n_z, n_x. From
+   behind (n_x > 0) or from in front (n_x < 0) the ray crosses the subtriangle itself. */
 static GXBP_RARE void gxbp_cross_own(gxb_boolean *b, const gxbp_ray *ray) {
     const uint32_t plane = gxbp_root_plane(b, ray->f);
     const int nx = gxbp_normal_sign(&b->store, plane, 0);
@@ -9396,7 +9456,7 @@ static GXBP_RARE void gxbp_cross_own(gxb_boolean *b, const gxbp_ray *ray) {
     if (side < 0) gxbp_add_covers(b, ray->f, -1, ray->winding); /* from the state behind to the one in front */
 }
 
-/* The state in front of a subtriangle, from one (GXB_NONE: zeros) that does not count operands from the first on. */
+/* The state in front of a subtriangle. state is right for the operands before first; GXB_NONE: all numbers are 0. */
 static GXBP_APART uint32_t gxbp_state_by_ray(gxb_boolean *b, uint32_t f, uint32_t state, uint32_t first) {
     gxbp_ray ray;
     uint32_t i;
@@ -9407,15 +9467,15 @@ static GXBP_APART uint32_t gxbp_state_by_ray(gxb_boolean *b, uint32_t f, uint32_
     for (i = first; i < b->in.operand_count && b->error == GX_OK; i++)
         if (b->in.operands[i].operation != GXB_SPLIT)
             gxbp_shoot(b, &ray, &b->in.operands[i], b->in.operands[i].tree.levels - 1, 0);
-    /* else the subtriangle is of an older operand, and its own surfaces are counted */
+    /* else the subtriangle is of an older operand, and state contains its own surfaces */
     if (first == 0) gxbp_cross_own(b, &ray);
     return gxbp_find_state(b);
 }
 
 /* --- states spread from subtriangle to subtriangle --- */
 
-/* Where points were united, vertices get their last names: those of divided sources, and of all where that changes any.
- */
+/* Gives vertices their final names after points were united: those of divided sources, or all if an input vertex was
+ * renamed. */
 static GXBP_RARE void gxbp_rename_vertices(gxb_boolean *b) {
     uint32_t f, i, k;
     for (i = 0; i < b->mesh.divided_count && b->points.united && !b->points.renamed; i++)
@@ -9426,20 +9486,20 @@ static GXBP_RARE void gxbp_rename_vertices(gxb_boolean *b) {
     b->points.united = 0;
 }
 
-/* The subtriangle at the start of edge k of a source that is not in a flat; GXB_NONE where something else meets it
- * there. */
+/* The subtriangle at the start of edge k of a source that is not in a flat. GXB_NONE: another surface meets it there.
+ */
 static uint32_t gxbp_rim_subtriangle(const gxb_boolean *b, uint32_t s, uint32_t k) {
     const gxbp_source *source = &b->in.sources[s];
-    const gxbp_cut *cut;
+    const gxbp_surface_edge *edge;
     uint32_t h;
     if (!(source->flags & GXBP_DIVIDED)) return source->subtriangle;
-    cut = &b->crossings.cuts[source->edge[k]];
-    h = cut->rim[cut->half_edge != 3 * s + k];
+    edge = &b->crossings.edges[source->edge[k]];
+    h = edge->rim[edge->half_edge != 3 * s + k];
     return b->mesh.subtriangles[h / 3].labels[h % 3] == GXBP_BARE ? h / 3 : GXB_NONE;
 }
 
-/* The subtriangle with which that at the start of edge k of a source shares its rim, across the surface's edge;
-   GXB_NONE unless only the two meet there. */
+/* The neighbour, across the surface's edge, of the subtriangle at the start of edge k of a source. GXB_NONE unless only
+   these two meet there. */
 static uint32_t gxbp_across_rim(const gxb_boolean *b, uint32_t s, uint32_t k) {
     const uint32_t twin = b->in.sources[s].twin[k];
     if (twin == GXB_NONE || b->in.sources[twin / 3].flags & GXBP_FLAT || gxbp_rim_subtriangle(b, s, k) == GXB_NONE)
@@ -9447,7 +9507,8 @@ static uint32_t gxbp_across_rim(const gxb_boolean *b, uint32_t s, uint32_t k) {
     return gxbp_rim_subtriangle(b, twin / 3, twin % 3);
 }
 
-/* The subtriangle beyond edge k of f. Beyond the rim of a divided source: of each of its edges only at the start. */
+/* The subtriangle beyond edge k of f. Across the rim of a divided source, only those at the starts of its edges have
+   one; GXB_NONE: there is none. */
 static uint32_t gxbp_neighbour(const gxb_boolean *b, uint32_t f, int k) {
     const gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
     const gxbp_source *s = &b->in.sources[sub->source];
@@ -9458,14 +9519,14 @@ static uint32_t gxbp_neighbour(const gxb_boolean *b, uint32_t f, int k) {
     if (sub->near[k] != GXB_NONE) return sub->near[k];
     if (!(s->flags & GXBP_DIVIDED)) return gxbp_across_rim(b, sub->source, (uint32_t)k);
     for (i = 0; i < 3; i++) {
-        const gxbp_cut *cut = &b->crossings.cuts[s->edge[i]];
-        if (cut->rim[cut->half_edge != 3 * sub->source + i] == 3 * f + (uint32_t)k)
+        const gxbp_surface_edge *edge = &b->crossings.edges[s->edge[i]];
+        if (edge->rim[edge->half_edge != 3 * sub->source + i] == 3 * f + (uint32_t)k)
             return gxbp_across_rim(b, sub->source, i);
     }
     return GXB_NONE;
 }
 
-/* The source that alone crosses the edge of a subtriangle; GXB_NONE: none or several do, or one has an edge there. */
+/* The only source that crosses edge k of a subtriangle. GXB_NONE: none or several do, or one has an edge there. */
 static uint32_t gxbp_crossing_source(const gxb_boolean *b, uint32_t f, int k) {
     const uint32_t list = b->mesh.subtriangles[f].labels[k];
     if (b->mesh.subtriangles[f].near[k] == GXB_NONE || list == GXBP_LOOSE || list == GXBP_BARE ||
@@ -9474,7 +9535,7 @@ static uint32_t gxbp_crossing_source(const gxb_boolean *b, uint32_t f, int k) {
     return b->mesh.links[list].value & GXBP_EDGE_LABEL ? GXB_NONE : b->mesh.links[list].value;
 }
 
-/* The subtriangle of a source on the left of the edge from u to w, which is its edge *k; GXB_NONE: there is none. */
+/* The subtriangle of a source whose edge *k leads from u to w; GXB_NONE: there is none. */
 static uint32_t gxbp_subtriangle_at(const gxb_boolean *b, uint32_t s, uint32_t u, uint32_t w, int *k) {
     uint32_t f;
     for (f = b->in.sources[s].subtriangle; f != GXB_NONE; f = b->mesh.subtriangles[f].next)
@@ -9493,9 +9554,9 @@ static int gxbp_winds(const gxb_boolean *b, uint32_t s) {
     return b->in.operands[b->in.sources[s].operand].operation != GXB_SPLIT;
 }
 
-/* From a subtriangle to an operand of which no subtriangle has a state yet, whose triangle crosses it in its edge k,
-   where nothing else is: four subtriangles meet there, with the plane of each between two of the winding numbers. The
-   subtriangle that gets a state goes to b->work.pending. */
+/* Takes the state to an operand that has none yet. A triangle t of it crosses f in its edge k, and nothing else is
+   there: four subtriangles meet in the edge, two of each source. The plane of one source separates the numbers of its
+   own operand only. The subtriangle of t that gets a state goes to b->work.pending. */
 static void gxbp_reach_operand(gxb_boolean *b, uint32_t f, int k) {
     const uint32_t s = b->mesh.subtriangles[f].source, t = gxbp_crossing_source(b, f, k);
     int32_t *winding;
@@ -9516,16 +9577,16 @@ static void gxbp_reach_operand(gxb_boolean *b, uint32_t f, int k) {
     b->work.pending[b->work.pending_count++] = g;
 }
 
-/* Checks no capacity: see gxbp_find_states. */
-static void gxbp_stack(gxb_boolean *b, uint32_t value) { b->work.stack[b->work.stack_count++] = value; }
+/* gxbp_find_states has reserved the room. */
+static void gxbp_add_visit(gxb_boolean *b, uint32_t f) { b->work.visits[b->work.visit_count++] = f; }
 
 /* Spreads the state to all subtriangles of f's triangulation that can be reached. */
 static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
-    const uint32_t base = b->work.stack_count, flat = b->in.sources[b->mesh.subtriangles[f].source].flags & GXBP_FLAT;
-    gxbp_stack(b, f);
-    while (b->work.stack_count > base && b->error == GX_OK) {
+    const uint32_t base = b->work.visit_count, flat = b->in.sources[b->mesh.subtriangles[f].source].flags & GXBP_FLAT;
+    gxbp_add_visit(b, f);
+    while (b->work.visit_count > base && b->error == GX_OK) {
         int k;
-        f = b->work.stack[--b->work.stack_count];
+        f = b->work.visits[--b->work.visit_count];
         for (k = 0; k < 3; k++) {
             const uint32_t near = b->mesh.subtriangles[f].near[k];
             if (near == GXB_NONE || b->mesh.subtriangles[near].state != GXB_NONE ||
@@ -9533,19 +9594,19 @@ static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
                 continue;
             b->mesh.subtriangles[near].state = gxbp_state_beyond(b, f, k);
             if (b->winding.unreached > 0 && !flat) gxbp_reach_operand(b, f, k);
-            gxbp_stack(b, near);
+            gxbp_add_visit(b, near);
         }
     }
 }
 
-/* Spreads a state through a source's subtriangles, then across its edges to sources without states. The order is
- * breadth-first, so that many cache misses overlap. */
+/* Spreads a state within a source, then across its edges to sources without states. The order is breadth-first, so that
+ * many cache misses overlap. */
 static void gxbp_spread_state(gxb_boolean *b, uint32_t first) {
     uint32_t i;
-    b->work.stack_count = 0;
-    gxbp_stack(b, first);
-    for (i = 0; i < b->work.stack_count && b->error == GX_OK; i++) {
-        const uint32_t f = b->work.stack[i], s = b->mesh.subtriangles[f].source;
+    b->work.visit_count = 0;
+    gxbp_add_visit(b, first);
+    for (i = 0; i < b->work.visit_count && b->error == GX_OK; i++) {
+        const uint32_t f = b->work.visits[i], s = b->mesh.subtriangles[f].source;
         uint32_t k;
         b->in.sources[s].flags |= GXBP_REACHED;
         if (b->in.sources[s].flags & (GXBP_DIVIDED | GXBP_FLAT)) gxbp_spread_within(b, f);
@@ -9558,7 +9619,7 @@ static void gxbp_spread_state(gxb_boolean *b, uint32_t first) {
             if (g == GXB_NONE) continue;
             b->mesh.subtriangles[g].state = b->mesh.subtriangles[gxbp_rim_subtriangle(b, s, k)].state;
             b->in.sources[twin / 3].flags |= GXBP_REACHED;
-            gxbp_stack(b, g);
+            gxbp_add_visit(b, g);
         }
     }
 }
@@ -9568,10 +9629,9 @@ static int gxbp_is_surface(const gxb_boolean *b, uint32_t f) {
     return s != GXB_NONE && (!(b->in.sources[s].flags & GXBP_FLAT) || b->mesh.subtriangles[f].covers != GXB_NONE);
 }
 
-/* --- states that are there already: new operands have the number 0 in them, which is right wherever their boxes are
- * not --- */
+/* --- states of earlier evaluations: new operands get the number 0, which is right outside of their boxes --- */
 
-/* Lengthens the states by the numbers of new operands, all 0: each state keeps its place. */
+/* Appends a 0 for each new operand to all states. States keep their places. */
 static GXBP_APART int gxbp_lengthen_states(gxb_boolean *b) {
     const uint32_t n = b->in.operand_count, m = b->winding.stated;
     uint32_t i;
@@ -9589,14 +9649,14 @@ static GXBP_APART int gxbp_lengthen_states(gxb_boolean *b) {
     return 1;
 }
 
-/* A state with this bit counts no new operand yet. */
+/* An open state has this bit: it does not count the new operands yet. */
 #define GXBP_OPEN ((uint32_t)1 << 31)
 
 static int gxbp_is_open(const gxb_boolean *b, uint32_t f) {
     return b->mesh.subtriangles[f].state != GXB_NONE && b->mesh.subtriangles[f].state & GXBP_OPEN;
 }
 
-/* Is the subtriangle certainly beside the box along this axis? */
+/* Is the subtriangle certainly on one side of the box along this axis? */
 static int gxbp_subtriangle_misses(const gxb_boolean *b, uint32_t f, const gxbp_box *box, int axis) {
     int i, side = 0;
     for (i = 0; i < 3; i++) {
@@ -9610,7 +9670,8 @@ static int gxbp_subtriangle_misses(const gxb_boolean *b, uint32_t f, const gxbp_
     return 1;
 }
 
-/* Along the box's shortest side first. The subtriangles go to b->work.pending. */
+/* Opens the states of all subtriangles that may meet the box, and lists them in b->work.pending. The axis along which
+   the box is shortest is tested first. */
 static GXBP_RARE void gxbp_open_states(gxb_boolean *b, const gxbp_box *box) {
     uint32_t f;
     int axis = 0, k;
@@ -9629,8 +9690,8 @@ static GXBP_RARE void gxbp_open_states(gxb_boolean *b, const gxbp_box *box) {
     }
 }
 
-/* The state of an open subtriangle beyond edge k of g, which is not open: its own with g's numbers of new operands and
- * those of the labels between. */
+/* The state of open subtriangle f beyond edge k of g, which is not open: f's own numbers; for new operands those of g,
+ * changed by the labels of the edge. */
 static uint32_t gxbp_close_state(gxb_boolean *b, uint32_t g, int k, uint32_t f) {
     const uint32_t n = b->in.operand_count, m = b->winding.stated, own = b->mesh.subtriangles[f].state & ~GXBP_OPEN,
                    from = b->mesh.subtriangles[g].state;
@@ -9648,23 +9709,23 @@ static uint32_t gxbp_close_state(gxb_boolean *b, uint32_t g, int k, uint32_t f) 
     return differs ? gxbp_find_state(b) : own;
 }
 
-/* From a subtriangle that is not open any more to open ones */
+/* Closes the states of open subtriangles, from neighbour to neighbour */
 static void gxbp_spread_closed(gxb_boolean *b, uint32_t first) {
-    b->work.stack_count = 0;
-    gxbp_push(b, first);
-    while (b->work.stack_count > 0 && b->error == GX_OK) {
-        const uint32_t f = b->work.stack[--b->work.stack_count];
+    b->work.visit_count = 0;
+    gxbp_push_visit(b, first);
+    while (b->work.visit_count > 0 && b->error == GX_OK) {
+        const uint32_t f = b->work.visits[--b->work.visit_count];
         int k;
         for (k = 0; k < 3; k++) {
             const uint32_t g = gxbp_neighbour(b, f, k);
             if (g == GXB_NONE || !gxbp_is_open(b, g)) continue;
             b->mesh.subtriangles[g].state = gxbp_close_state(b, f, k, g);
-            gxbp_push(b, g);
+            gxbp_push_visit(b, g);
         }
     }
 }
 
-/* Subtriangles that are not open lend to their open neighbours; where there are none, a ray helps. */
+/* Open states are closed from neighbours that are not open. Where there are none, a ray closes the first one. */
 static GXBP_COLD void gxbp_close_states(gxb_boolean *b) {
     uint32_t f, i, pass;
     int k;
@@ -9705,10 +9766,10 @@ static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
     for (s = 0; s < b->in.operand_count; s++) b->in.operands[s].reached = s < b->winding.stated;
     b->winding.unreached = b->in.operand_count - b->winding.stated;
     if (b->winding.stated > 0) gxbp_close_states(b);
-    b->work.pending_count = b->work.stack_count = 0;
+    b->work.pending_count = b->work.visit_count = 0;
     /* each source and each subtriangle is pushed at most once */
-    if (!GXBP_ROOM(b, work.stack, work.stack, (size_t)b->in.source_count + b->mesh.subtriangle_count)) return;
-    /* first from input triangles, whose rays are cheap */
+    if (!GXBP_ROOM(b, work.visits, work.visit, (size_t)b->in.source_count + b->mesh.subtriangle_count)) return;
+    /* undivided sources first: their rays are cheap */
     for (s = 0; s < b->in.source_count && b->error == GX_OK; s++) {
         f = b->in.sources[s].subtriangle;
         if (b->in.sources[s].flags & GXBP_DIVIDED || f == GXB_NONE || b->mesh.subtriangles[f].state != GXB_NONE ||
@@ -9726,7 +9787,7 @@ static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
 /* In: states. Out: the output's triangles with their sources, its vertices rounded and with their origins, and the
    triangles that rounding turned over. Touches the output only, and the planes of sources that had none. */
 
-/* The input's coordinates again. */
+/* A coordinate in the input's units, from the frame's */
 static double gxbp_unscale(const gxb_boolean *b, double y) {
     const int e = gxbp_exponent_bits(y);
     if (e - b->store.shift <= 0 || e == 0) return 0;
@@ -9735,7 +9796,7 @@ static double gxbp_unscale(const gxb_boolean *b, double y) {
 
 #define GXBP_VERTEX_ERROR 1e-10 /* relative to the largest coordinate: a larger ball gives way to exact coordinates */
 
-/* Sign of |num / den| less the middle of two doubles, given by their bits */
+/* Sign of |num / den| minus the middle of two doubles, which are given by their bits */
 static GXBP_RARE int gxbp_beyond_middle(const gxb_num *num, const gxb_num *den, uint64_t low, uint64_t high) {
     GXB_NUM(p);
     GXB_NUM(q);
@@ -9750,7 +9811,7 @@ static GXBP_RARE int gxbp_beyond_middle(const gxb_num *num, const gxb_num *den, 
     return gxbp_num_compare_magnitude(&twice, &middle);
 }
 
-/* The double nearest to num / den, of two the even one: from one a few units of the last place away, step by step. */
+/* The double nearest to num / den; of two equally near, the even one. Starts a few units of the last place away. */
 static GXBP_RARE double gxbp_nearest(const gxb_num *num, const gxb_num *den) {
     uint64_t bits = gxbp_bits(gxbp_abs(gxb_num_ratio(num, den)));
     int side;
@@ -9797,7 +9858,7 @@ static GXBP_COLD int gxbp_holds_point(gxb_boolean *b, uint32_t s, uint32_t plane
     return !(left && right);
 }
 
-/* The source of a point that was found in s: in a flat, whose members share their triangulation, it may lie in another
+/* The source that contains a point which was found in s. Members of a flat share a triangulation, so it may be another
  * of them. */
 static GXBP_RARE uint32_t gxbp_member_at(gxb_boolean *b, uint32_t s, uint32_t point) {
     const uint32_t root = gxbp_root(b, s), plane = b->in.sources[root].plane;
@@ -9830,17 +9891,15 @@ static GXBP_APART void gxbp_describe_point(gxb_boolean *b, uint32_t point, gxb_o
         gxbp_name_source(b, key[2], 3, &o->operand[1], &o->index[1]);
 }
 
-static uint32_t gxbp_out_vertex(gxb_boolean *b, uint32_t point) {
-    gxbp_vertex *v = &b->points.vertices[point];
-    if (v->slot != GXB_NONE) return v->slot;
+/* The vertex of a point. vertex: of each point; GXB_NONE: it has none yet */
+static uint32_t gxbp_out_vertex(gxb_boolean *b, uint32_t *vertex, uint32_t point) {
+    if (vertex[point] != GXB_NONE) return vertex[point];
     if (!GXBP_ROOM(b, out.points, out.point, 1)) return 0;
-    v->slot = b->out.point_count;
-    b->out.points[b->out.point_count++] = point;
-    return v->slot;
+    b->out.points[b->out.point_count] = point;
+    return vertex[point] = b->out.point_count++;
 }
 
-/* The source of a subtriangle's surface: of those that cover it one of a sheet (sheets 1) or a closed surface;
- * GXB_NONE: there is none. */
+/* A source that covers a subtriangle: one of a sheet (sheets 1) or of a closed surface. GXB_NONE: there is none. */
 static uint32_t gxbp_cover_of(const gxb_boolean *b, uint32_t f, int sheets) {
     const uint32_t r = b->mesh.subtriangles[f].source;
     uint32_t c;
@@ -9854,41 +9913,44 @@ static uint32_t gxbp_cover_of(const gxb_boolean *b, uint32_t f, int sheets) {
 
 /* The arrays with one item for each triangle grow together. */
 static GXBP_APART int gxbp_more_triangles(gxb_boolean *b, size_t extra) {
-    return GXBP_ROOM(b, out.operands, out.operand, extra) && GXBP_ROOM(b, out.planes, out.plane, extra) &&
-           GXBP_ROOM(b, out.reversed, out.reversed, extra) && GXBP_ROOM(b, out.sources, out.source, extra);
+    return GXBP_ROOM(b, out.operands, out.operand, extra) && GXBP_ROOM(b, out.subtriangles, out.subtriangle, extra) &&
+           GXBP_ROOM(b, out.reversed, out.reversed, extra) && GXBP_ROOM(b, out.sources, out.triangle, extra);
 }
 
 /* reversed: the outside is behind the subtriangle's plane. */
-static void gxbp_emit(gxb_boolean *b, uint32_t f, int reversed, uint32_t source) {
-    const uint32_t n = b->out.triangle_count, *v = b->mesh.subtriangles[f].v;
+static void gxbp_emit(gxb_boolean *b, uint32_t *vertex, uint32_t f, int reversed, uint32_t source) {
+    const uint32_t n = b->out.corner_count, *v = b->mesh.subtriangles[f].v;
     uint32_t i;
-    if (!GXBP_ROOM(b, out.triangles, out.triangle, 3) ||
-        (b->out.source_count == b->out.source_capacity && !gxbp_more_triangles(b, 1)))
+    if (!GXBP_ROOM(b, out.triangles, out.corner, 3) ||
+        (b->out.triangle_count == b->out.triangle_capacity && !gxbp_more_triangles(b, 1)))
         return;
-    b->out.triangles[n] = gxbp_out_vertex(b, v[0]);
-    b->out.triangles[n + 1] = gxbp_out_vertex(b, v[reversed ? 2 : 1]);
-    b->out.triangles[n + 2] = gxbp_out_vertex(b, v[reversed ? 1 : 2]);
-    b->out.triangle_count += 3;
-    i = b->out.source_count++;
+    b->out.triangles[n] = gxbp_out_vertex(b, vertex, v[0]);
+    b->out.triangles[n + 1] = gxbp_out_vertex(b, vertex, v[reversed ? 2 : 1]);
+    b->out.triangles[n + 2] = gxbp_out_vertex(b, vertex, v[reversed ? 1 : 2]);
+    b->out.corner_count += 3;
+    i = b->out.triangle_count++;
     b->out.operand_count++;
     gxbp_name_source(b, source, 3, &b->out.operands[i], &b->out.sources[i]);
-    b->out.planes[b->out.plane_count++] = 2 * f + (uint32_t)reversed;
+    b->out.subtriangles[b->out.subtriangle_count++] = 2 * f + (uint32_t)reversed;
     b->out.reversed[b->out.reversed_count++] = reversed != (gxbp_facing(b, b->mesh.subtriangles[f].source, source) < 0);
 }
 
 static GXBP_APART void gxbp_set_triangle_count(gxb_boolean *b, uint32_t n) {
-    b->out.triangle_count = 3 * n;
-    b->out.source_count = b->out.operand_count = b->out.plane_count = b->out.reversed_count = n;
+    b->out.corner_count = 3 * n;
+    b->out.triangle_count = b->out.operand_count = b->out.subtriangle_count = b->out.reversed_count = n;
 }
 
 static GXBP_APART void gxbp_extract(gxb_boolean *b) {
-    uint32_t f, state = GXB_NONE, operand = GXB_NONE; /* of the last subtriangle that only its own source covers */
+    uint32_t *vertex, f, state = GXB_NONE, operand = GXB_NONE; /* of the last subtriangle that only its own source
+                                                                  covers */
     int front_in = 0, back_in = 0;
-    for (f = 0; f < b->points.vertex_count; f++) b->points.vertices[f].slot = GXB_NONE;
+    vertex = (uint32_t *)gxbp_borrow(b, b->points.vertex_count * sizeof *vertex);
+    if (vertex == NULL) return;
+    memset(vertex, 0xff, b->points.vertex_count * sizeof *vertex);
     gxbp_set_triangle_count(b, 0);
     b->out.point_count = b->out.vertex_count = b->out.origin_count = 0;
     if (!gxbp_more_triangles(b, b->mesh.subtriangle_count / 2) ||
-        !GXBP_ROOM(b, out.triangles, out.triangle, 3 * (size_t)(b->mesh.subtriangle_count / 2)))
+        !GXBP_ROOM(b, out.triangles, out.corner, 3 * (size_t)(b->mesh.subtriangle_count / 2)))
         return;
     for (f = 0; f < b->mesh.subtriangle_count && b->error == GX_OK; f++) {
         const gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
@@ -9903,10 +9965,10 @@ static GXBP_APART void gxbp_extract(gxb_boolean *b) {
         }
         if (front_in != back_in) {
             source = gxbp_cover_of(b, f, 0);
-            gxbp_emit(b, f, front_in, source);
+            gxbp_emit(b, vertex, f, front_in, source);
         } else if (front_in && (source = gxbp_cover_of(b, f, 1)) != GXB_NONE) {
-            gxbp_emit(b, f, 0, source);
-            gxbp_emit(b, f, 1, source);
+            gxbp_emit(b, vertex, f, 0, source);
+            gxbp_emit(b, vertex, f, 1, source);
         }
     }
 }
@@ -9917,7 +9979,7 @@ static uint32_t gxbp_out_corner(const gxb_boolean *b, uint32_t t, uint32_t k) {
 
 /* A source that met nothing may have had no plane yet. GXB_NONE: no memory. */
 static uint32_t gxbp_out_plane(gxb_boolean *b, uint32_t t) {
-    const uint32_t s = b->mesh.subtriangles[b->out.planes[t] / 2].source;
+    const uint32_t s = b->mesh.subtriangles[b->out.subtriangles[t] / 2].source;
     return gxbp_need_plane(b, s) ? b->in.sources[s].plane : GXB_NONE;
 }
 
@@ -9925,7 +9987,7 @@ static uint32_t gxbp_out_plane(gxb_boolean *b, uint32_t t) {
 static GXBP_COLD void gxbp_copy_origin(gxb_boolean *b, uint32_t to, uint32_t from) {
     b->out.operands[to] = b->out.operands[from];
     b->out.sources[to] = b->out.sources[from];
-    b->out.planes[to] = b->out.planes[from];
+    b->out.subtriangles[to] = b->out.subtriangles[from];
     b->out.reversed[to] = b->out.reversed[from];
 }
 
@@ -9934,7 +9996,7 @@ static GXBP_COLD void gxbp_drop_lonely(gxb_boolean *b, uint32_t *map) {
     const int rounded = b->out.vertex_count > 0;
     uint32_t i, n = 0;
     memset(map, 0xff, b->out.point_count * sizeof *map);
-    for (i = 0; i < b->out.triangle_count; i++) map[b->out.triangles[i]] = 0;
+    for (i = 0; i < b->out.corner_count; i++) map[b->out.triangles[i]] = 0;
     for (i = 0; i < b->out.point_count; i++) {
         if (map[i] == GXB_NONE) continue;
         if (rounded) {
@@ -9944,7 +10006,7 @@ static GXBP_COLD void gxbp_drop_lonely(gxb_boolean *b, uint32_t *map) {
         b->out.points[n] = b->out.points[i];
         map[i] = n++;
     }
-    for (i = 0; i < b->out.triangle_count; i++) b->out.triangles[i] = map[b->out.triangles[i]];
+    for (i = 0; i < b->out.corner_count; i++) b->out.triangles[i] = map[b->out.triangles[i]];
     b->out.point_count = n;
     if (rounded) {
         b->out.origin_count = n;
@@ -9998,19 +10060,20 @@ static int gxbp_faces(gxb_boolean *b, uint32_t plane, const double *p, const dou
     return sign != 0 ? sign : gxbp_faces_exactly(b, plane, p, q, r);
 }
 
-/* Triangles that rounding has turned over or left without area. Those of input vertices are as they were, unless they
- * were mended. */
+/* Finds triangles that rounding has turned over or left without area. A triangle of input vertices is no defect unless
+ * mending has changed it. */
 static GXBP_APART void gxbp_find_defects(gxb_boolean *b) {
     uint32_t t, k;
     b->out.defect_count = 0;
-    for (t = 0; t < b->out.source_count && b->error == GX_OK; t++) {
+    for (t = 0; t < b->out.triangle_count && b->error == GX_OK; t++) {
         const double *x[3];
         int given = b->options.mend == NULL;
         for (k = 0; k < 3; k++) {
             given = given && b->store.points[gxbp_out_corner(b, t, k)].kind == GXB_EXPLICIT;
             x[k] = b->out.vertices + 3 * (size_t)b->out.triangles[3 * t + k];
         }
-        if (given || gxbp_faces(b, gxbp_out_plane(b, t), x[0], x[1], x[2]) == (b->out.planes[t] & 1 ? -1 : 1)) continue;
+        if (given || gxbp_faces(b, gxbp_out_plane(b, t), x[0], x[1], x[2]) == (b->out.subtriangles[t] & 1 ? -1 : 1))
+            continue;
         if (GXBP_ROOM(b, out.defects, out.defect, 1)) b->out.defects[b->out.defect_count++] = t;
     }
     b->out.examined = b->error == GX_OK;
@@ -10025,6 +10088,13 @@ static GXBP_APART void gxbp_find_defects(gxb_boolean *b) {
 typedef struct gxbp_fan {
     uint32_t vertex, hint, next;
 } gxbp_fan;
+
+/* A vertex of the polygon that the triangles of a fan fill */
+typedef struct gxbp_fan_vertex {
+    uint32_t fan;           /* the fan around it in the same face */
+    uint32_t near;          /* the half-edge beyond the edge to the next vertex; GXB_NONE: none in the face */
+    uint32_t before, after; /* in the polygon */
+} gxbp_fan_vertex;
 
 /* Half-edges are 3 t + k. */
 typedef struct gxbp_coarse {
@@ -10041,16 +10111,17 @@ typedef struct gxbp_coarse {
 /* 1: triangle u is of t's face and faces as it does, -1: the other way (a sheet's other side), 0: it is of another
  * face. */
 static int gxbp_same_face(gxb_boolean *b, uint32_t t, uint32_t u) {
-    const int facing = b->out.planes[t] & 1 ? -1 : 1;
-    uint32_t k;
+    const int facing = b->out.subtriangles[t] & 1 ? -1 : 1;
+    uint32_t plane, k;
     if (b->out.operands[t] == b->out.operands[u] && b->out.sources[t] == b->out.sources[u])
-        return b->out.planes[u] & 1 ? -facing : facing;
+        return b->out.subtriangles[u] & 1 ? -facing : facing;
     if (b->options.triangulation != GXB_MERGED) return 0;
-    b->work.plane = gxbp_out_plane(b, t);
-    if (b->work.plane == GXB_NONE) return 0;
-    for (k = 0; k < 3 && gxbp_out_plane(b, u) != b->work.plane; k++)
-        if (gxbp_point_side(b, gxbp_out_corner(b, u, k), b->work.plane) != 0) return 0;
-    return facing * gxbp_turn(b, gxbp_out_corner(b, u, 0), gxbp_out_corner(b, u, 1), gxbp_out_corner(b, u, 2));
+    plane = gxbp_out_plane(b, t);
+    if (plane == GXB_NONE) return 0;
+    for (k = 0; k < 3 && gxbp_out_plane(b, u) != plane; k++)
+        if (gxbp_point_side(b, gxbp_out_corner(b, u, k), plane) != 0) return 0;
+    return facing *
+           gxbp_plane_turn(b, plane, gxbp_out_corner(b, u, 0), gxbp_out_corner(b, u, 1), gxbp_out_corner(b, u, 2));
 }
 
 /* Joins the half-edges between p and q that face alike, if all are of one face. 0: the edge belongs to an outline. */
@@ -10094,7 +10165,7 @@ static void gxbp_find_outlines(gxb_boolean *b, const gxbp_exits *exits, gxbp_coa
 
 static void gxbp_make_fans(const gxb_boolean *b, gxbp_coarse *c) {
     uint32_t h, e;
-    for (h = 0; h < b->out.triangle_count; h++) {
+    for (h = 0; h < b->out.corner_count; h++) {
         const uint32_t u = c->fan_count, v = b->out.triangles[h];
         if (c->corner[h] != GXB_NONE) continue;
         c->fans[u].vertex = v;
@@ -10107,25 +10178,27 @@ static void gxbp_make_fans(const gxb_boolean *b, gxbp_coarse *c) {
     }
 }
 
-/* The polygon that an fan's triangles fill goes to rims (fans of its vertices, what lies beyond the edge to
-   the next), the triangles to scratch. 1: it is open, the vertex lies on the edge from the last to the first. */
+/* Lists a fan's triangles, and the vertices of the polygon that they fill. 1: the fan is open; its vertex lies on the
+   edge from the last vertex to the first. */
 static int gxbp_open_fan(gxb_boolean *b, const gxbp_coarse *c, uint32_t u) {
     uint32_t start = c->fans[u].hint, e = start, n;
     while (c->near[e] != GXB_NONE && (e = gxbp_next_edge(c->near[e])) != start) {}
     start = e;
-    b->work.rim_count = b->work.stack_count = 0;
+    b->work.fan_vertex_count = b->work.fan_triangle_count = 0;
     do {
         n = gxbp_next_edge(e);
-        if (!GXBP_ROOM(b, work.rims, work.rim, 2)) return 0;
-        b->work.rims[b->work.rim_count].vertex = c->corner[n];
-        b->work.rims[b->work.rim_count++].near = c->near[n];
-        gxbp_push(b, e / 3);
+        if (!GXBP_ROOM(b, work.fan_vertices, work.fan_vertex, 2) ||
+            !GXBP_ROOM(b, work.fan_triangles, work.fan_triangle, 1))
+            return 0;
+        b->work.fan_vertices[b->work.fan_vertex_count].fan = c->corner[n];
+        b->work.fan_vertices[b->work.fan_vertex_count++].near = c->near[n];
+        b->work.fan_triangles[b->work.fan_triangle_count++] = e / 3;
         n = gxbp_next_edge(n);
         e = c->near[n];
     } while (e != GXB_NONE && e != start);
     if (e == start) return 0;
-    b->work.rims[b->work.rim_count].vertex = c->corner[n];
-    b->work.rims[b->work.rim_count++].near = GXB_NONE;
+    b->work.fan_vertices[b->work.fan_vertex_count].fan = c->corner[n];
+    b->work.fan_vertices[b->work.fan_vertex_count++].near = GXB_NONE;
     return 1;
 }
 
@@ -10140,38 +10213,38 @@ static void gxbp_link_half_edges(uint32_t *near, uint32_t h, uint32_t other) {
 
 /* A triangle of the polygon's vertices p, q and r, one after the other; what is left has an edge from p to r. */
 static void gxbp_fill_corner(gxb_boolean *b, gxbp_coarse *c, uint32_t p, uint32_t q, uint32_t r) {
-    const uint32_t h = 3 * b->work.stack[--b->work.stack_count];
+    const uint32_t h = 3 * b->work.fan_triangles[--b->work.fan_triangle_count];
     uint32_t k;
-    c->corner[h] = b->work.rims[p].vertex;
-    c->corner[h + 1] = b->work.rims[q].vertex;
-    c->corner[h + 2] = b->work.rims[r].vertex;
+    c->corner[h] = b->work.fan_vertices[p].fan;
+    c->corner[h + 1] = b->work.fan_vertices[q].fan;
+    c->corner[h + 2] = b->work.fan_vertices[r].fan;
     for (k = 0; k < 3; k++) c->fans[c->corner[h + k]].hint = h + k;
-    gxbp_link_half_edges(c->near, h, b->work.rims[p].near);
-    gxbp_link_half_edges(c->near, h + 1, b->work.rims[q].near);
+    gxbp_link_half_edges(c->near, h, b->work.fan_vertices[p].near);
+    gxbp_link_half_edges(c->near, h + 1, b->work.fan_vertices[q].near);
     c->near[h + 2] = GXB_NONE;
-    b->work.rims[p].near = h + 2;
+    b->work.fan_vertices[p].near = h + 2;
 }
 
-/* Fills the polygon of an fan around v. It is seen from v, and stays so if a convex corner is cut off whose ends
-   are seen from v under no more than a straight angle: then v is left of the new edge or on it. Of at most two corners,
-   neighbours, the ends are seen under more, and a polygon has three that are convex; where v lies on an edge, the
-   corners of that edge are the two. */
-static void gxbp_fill_fan(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
-    gxbp_rim_vertex *rim = b->work.rims;
-    const int facing = b->out.planes[b->work.stack[0]] & 1 ? -1 : 1;
-    uint32_t n = b->work.rim_count, i, q = 0, tried = 0;
+/* Fills the polygon of a fan around v. All of it is visible from v. It stays so if a convex corner is cut off whose two
+   neighbours are seen from v under no more than a straight angle: then v is left of the new edge or on it. At most two
+   corners, adjacent ones, have neighbours seen under more. A polygon has three convex corners, so one of these serves.
+   If v lies on an edge, the two are the ends of that edge. */
+static void gxbp_fill_fan(gxb_boolean *b, gxbp_coarse *c, uint32_t plane, uint32_t v) {
+    gxbp_fan_vertex *polygon = b->work.fan_vertices;
+    const int facing = b->out.subtriangles[b->work.fan_triangles[0]] & 1 ? -1 : 1;
+    uint32_t n = b->work.fan_vertex_count, i, q = 0, tried = 0;
     for (i = 0; i < n; i++) {
-        rim[i].labels = (i + 1) % n;
-        rim[i].made = (i + n - 1) % n;
+        polygon[i].after = (i + 1) % n;
+        polygon[i].before = (i + n - 1) % n;
     }
     while (n > 3 && b->error == GX_OK) {
-        const uint32_t p = rim[q].made, r = rim[q].labels, end = gxbp_coarse_point(b, c, rim[r].vertex),
-                       start = gxbp_coarse_point(b, c, rim[p].vertex);
-        if (facing * gxbp_turn(b, start, gxbp_coarse_point(b, c, rim[q].vertex), end) > 0 &&
-            facing * gxbp_turn(b, start, end, v) >= 0) {
+        const uint32_t p = polygon[q].before, r = polygon[q].after, end = gxbp_coarse_point(b, c, polygon[r].fan),
+                       start = gxbp_coarse_point(b, c, polygon[p].fan);
+        if (facing * gxbp_plane_turn(b, plane, start, gxbp_coarse_point(b, c, polygon[q].fan), end) > 0 &&
+            facing * gxbp_plane_turn(b, plane, start, end, v) >= 0) {
             gxbp_fill_corner(b, c, p, q, r);
-            rim[p].labels = r;
-            rim[r].made = p;
+            polygon[p].after = r;
+            polygon[r].before = p;
             q = p;
             n--;
             tried = 0;
@@ -10181,47 +10254,48 @@ static void gxbp_fill_fan(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
             gxbp_stop(b, GX_ERROR_OVERLAP);
     }
     if (b->error != GX_OK) return;
-    gxbp_fill_corner(b, c, rim[q].made, q, rim[q].labels);
-    gxbp_link_half_edges(c->near, rim[rim[q].made].near, rim[rim[q].labels].near);
-    for (i = 0; i < b->work.stack_count; i++) c->corner[3 * b->work.stack[i]] = GXB_NONE;
+    gxbp_fill_corner(b, c, polygon[q].before, q, polygon[q].after);
+    gxbp_link_half_edges(c->near, polygon[polygon[q].before].near, polygon[polygon[q].after].near);
+    for (i = 0; i < b->work.fan_triangle_count; i++) c->corner[3 * b->work.fan_triangles[i]] = GXB_NONE;
 }
 
 /* May the vertex be removed? Not where an outline bends, ends or branches. */
 static int gxbp_is_needless(gxb_boolean *b, const gxbp_coarse *c, uint32_t v) {
-    uint32_t u, ends[2] = {GXB_NONE, GXB_NONE};
+    uint32_t u, plane, ends[2] = {GXB_NONE, GXB_NONE};
     if (c->degree[v] == 0) return 1;
     if (c->degree[v] != 2) return 0;
     for (u = c->first[v]; u != GXB_NONE; u = c->fans[u].next) {
         uint32_t p, q;
         if (!gxbp_open_fan(b, c, u)) continue;
-        p = c->fans[b->work.rims[0].vertex].vertex;
-        q = c->fans[b->work.rims[b->work.rim_count - 1].vertex].vertex;
+        p = c->fans[b->work.fan_vertices[0].fan].vertex;
+        q = c->fans[b->work.fan_vertices[b->work.fan_vertex_count - 1].fan].vertex;
         if (p == q || (ends[0] != GXB_NONE && (p < q ? p : q) != ends[0]) ||
             (ends[0] != GXB_NONE && (p < q ? q : p) != ends[1]))
             return 0;
         if (ends[0] != GXB_NONE) continue;
         ends[0] = p < q ? p : q;
         ends[1] = p < q ? q : p;
-        b->work.plane = gxbp_out_plane(b, b->work.stack[0]);
-        if (b->work.plane == GXB_NONE || gxbp_turn(b, b->out.points[p], b->out.points[v], b->out.points[q]) != 0)
+        plane = gxbp_out_plane(b, b->work.fan_triangles[0]);
+        if (plane == GXB_NONE || gxbp_plane_turn(b, plane, b->out.points[p], b->out.points[v], b->out.points[q]) != 0)
             return 0;
     }
     return b->error == GX_OK;
 }
 
 static void gxbp_take_vertex(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
-    uint32_t u;
+    uint32_t u, plane;
     for (u = c->first[v]; u != GXB_NONE && b->error == GX_OK; u = c->fans[u].next) {
         gxbp_open_fan(b, c, u);
-        b->work.plane = gxbp_out_plane(b, b->work.stack[0]);
-        if (b->error == GX_OK) gxbp_fill_fan(b, c, b->out.points[v]);
+        if (b->error != GX_OK) return;
+        plane = gxbp_out_plane(b, b->work.fan_triangles[0]);
+        if (b->error == GX_OK) gxbp_fill_fan(b, c, plane, b->out.points[v]);
     }
 }
 
 /* Writes the remaining triangles to the output. */
 static void gxbp_close_coarse(gxb_boolean *b, const gxbp_coarse *c) {
     uint32_t t, k, n = 0;
-    for (t = 0; t < b->out.source_count; t++) {
+    for (t = 0; t < b->out.triangle_count; t++) {
         if (c->corner[3 * t] == GXB_NONE) continue;
         for (k = 0; k < 3; k++) b->out.triangles[3 * n + k] = c->fans[c->corner[3 * t + k]].vertex;
         gxbp_copy_origin(b, n++, t);
@@ -10231,12 +10305,12 @@ static void gxbp_close_coarse(gxb_boolean *b, const gxbp_coarse *c) {
 }
 
 static GXBP_COLD void gxbp_coarsen(gxb_boolean *b) {
-    const size_t halves = b->out.triangle_count, points = b->out.point_count;
+    const size_t halves = b->out.corner_count, points = b->out.point_count;
     const size_t bytes = halves * (2 * sizeof(uint32_t) + sizeof(gxbp_fan)) + 2 * points * sizeof(uint32_t);
     gxbp_coarse c;
     gxbp_exits exits;
     uint32_t v;
-    if (!gxbp_list_exits(b, b->out.triangles, b->out.source_count, b->out.point_count, &exits)) return;
+    if (!gxbp_list_exits(b, b->out.triangles, b->out.triangle_count, b->out.point_count, &exits)) return;
     c.fan_count = 0;
     c.near = (uint32_t *)gxbp_allocate(&b->store.allocator, bytes);
     if (c.near != NULL) {
@@ -10278,7 +10352,7 @@ static void gxbp_join_sets(uint32_t *parent, uint32_t i, uint32_t j) {
         parent[i] = j;
 }
 
-/* Afterwards parent[i] is the set of i: parents come before their children. */
+/* Makes parent[i] the set of i. Parents come before their children. */
 static void gxbp_flatten_sets(uint32_t *parent, uint32_t count) {
     uint32_t i;
     for (i = 0; i < count; i++) parent[i] = parent[parent[i]];
@@ -10313,17 +10387,17 @@ static GXBP_RARE void gxbp_make_radial(gxb_boolean *b, uint32_t h, uint32_t p, c
     radial->apex = gxbp_out_corner(b, h / 3, h % 3 + 2);
     radial->plane = gxbp_out_plane(b, h / 3);
     radial->forward = gxbp_out_corner(b, h / 3, h % 3) == p;
-    radial->toward = (b->out.planes[h / 3] & 1 ? -1 : 1) * (radial->forward ? 1 : -1);
+    radial->toward = (b->out.subtriangles[h / 3] & 1 ? -1 : 1) * (radial->forward ? 1 : -1);
     radial->group = 0;
     if (first == NULL) return;
     radial->group = 2 - gxbp_radial_side(b, first, radial); /* 1: first half, 3: second half */
     if (radial->group != 2) return;
-    b->work.plane = first->plane;
-    if (gxbp_turn(b, p, q, radial->apex) == gxbp_turn(b, p, q, first->apex)) radial->group = 0;
+    if (gxbp_plane_turn(b, first->plane, p, q, radial->apex) == gxbp_plane_turn(b, first->plane, p, q, first->apex))
+        radial->group = 0;
 }
 
-/* Joins the triangles at the two sides of each wedge of the solid around an edge that more than two triangles share:
- * there they are twins. */
+/* Around an edge that more than two triangles share: joins the triangles at the two sides of each wedge of the solid,
+ * and makes them twins there. */
 static GXBP_COLD void gxbp_join_wedges(gxb_boolean *b, const gxbp_exits *exits, uint32_t i, uint32_t j,
                                        uint32_t *parent, uint32_t *twin) {
     const uint32_t p = b->out.points[i], q = b->out.points[j];
@@ -10354,15 +10428,15 @@ static GXBP_COLD void gxbp_join_wedges(gxb_boolean *b, const gxbp_exits *exits, 
     gxbp_release(&b->store.allocator, radials.list, (size_t)radials.capacity * sizeof *radials.list);
 }
 
-/* Of each triangle: how many corners of the solid are counted there. A corner is what triangles around a vertex make
-   that are joined by twins; each is counted once. Uses up the twins. */
+/* Counts corners of the solid. The triangles around a vertex that twins join make one corner, which is counted at one
+   of them. corners: of each triangle, the number counted there. Uses up the twins. */
 static void gxbp_count_corners(uint32_t *twin, uint32_t count, int32_t *corners) {
     uint32_t h, g;
     for (h = 0; h < count; h++) corners[h] = 0;
     for (h = 0; h < 3 * count; h++) {
         if (twin[h] == GXB_NONE) continue;
         corners[h / 3]++;
-        for (g = h; twin[g] != GXB_NONE;) { /* on to the half-edge that ends there too */
+        for (g = h; twin[g] != GXB_NONE;) { /* from one half-edge that leaves the corner to the next */
             const uint32_t next = twin[g];
             twin[g] = GXB_NONE;
             g = gxbp_last_edge(next);
@@ -10375,15 +10449,15 @@ static GXBP_COLD void gxbp_join_all_wedges(gxb_boolean *b, uint32_t *parent, uin
     const uint32_t *v = b->out.triangles;
     uint32_t h;
     gxbp_exits exits;
-    if (!gxbp_list_exits(b, v, b->out.source_count, b->out.point_count, &exits)) return;
-    for (h = 0; h < 3 * b->out.source_count; h++)
+    if (!gxbp_list_exits(b, v, b->out.triangle_count, b->out.point_count, &exits)) return;
+    for (h = 0; h < 3 * b->out.triangle_count; h++)
         if (twin[h] == GXB_NONE && v[h] < v[gxbp_next_edge(h)])
             gxbp_join_wedges(b, &exits, v[h], v[gxbp_next_edge(h)], parent, twin);
     gxbp_drop_exits(b, &exits);
 }
 
 static GXBP_APART void gxbp_join_shells(gxb_boolean *b, uint32_t *parent, int32_t *corners) {
-    const uint32_t count = b->out.source_count;
+    const uint32_t count = b->out.triangle_count;
     const size_t words = 3 * (size_t)count;
     uint32_t *twin = (uint32_t *)gxbp_borrow(b, (words + gxbp_twin_room(b->out.point_count)) * sizeof *twin), h, open,
              shared = 0;
@@ -10419,8 +10493,8 @@ static GXBP_RARE void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *
     }
 }
 
-/* Coordinates of 180 bits of the result's vertices, each made once (then it has the stamp of b->work.head_stamp).
- * first: of a vertex' limbs */
+/* Coordinates of 180 bits of the result's vertices, each computed once. first: the first of a vertex's limbs, GXB_NONE
+ * until they are computed */
 typedef struct gxbp_fine {
     uint32_t first;
     gxb_num c[3];
@@ -10436,13 +10510,12 @@ static GXBP_RARE void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t
     gxbp_fine *v = &fines->vertices[vertex];
     gxbp_vec x;
     uint32_t k;
-    if (b->points.vertices[point].head_stamp == b->work.head_stamp) return;
+    if (v->first != GXB_NONE) return;
     gxbp_fine_point(b, point, &x);
     if (!gxbp_room(b, &fines->limbs, fines->limb_count, &fines->limb_capacity, sizeof *fines->limbs,
                    (size_t)x.c[0].n + x.c[1].n + x.c[2].n))
         return;
     v->first = fines->limb_count;
-    b->points.vertices[point].head_stamp = b->work.head_stamp;
     for (k = 0; k < 3; k++) {
         v->c[k] = x.c[k];
         memcpy(fines->limbs + fines->limb_count, x.c[k].d, x.c[k].n * sizeof *fines->limbs);
@@ -10450,7 +10523,7 @@ static GXBP_RARE void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t
     }
 }
 
-/* Of a vertex that has been made; valid until the next one is. */
+/* The coordinates of a vertex that has them; valid until the next vertex gets its own */
 static const gxb_num *gxbp_use_fine(gxbp_fines *fines, uint32_t vertex) {
     gxbp_fine *v = &fines->vertices[vertex];
     v->c[0].d = fines->limbs + v->first;
@@ -10474,8 +10547,8 @@ static GXBP_RARE double gxbp_fine_volume(gxb_boolean *b, uint32_t t, const uint3
     return gxb_num_to_double(&total);
 }
 
-/* What d0 . n loses: bounds as in >>filter, for n's error and size E and N, the error e of d0 and its size D: 3 (D E +
-   e (N + E)) and 8u of three products */
+/* The error bound of d0 . n, as in >>filter. E and N are error and size of n, e and D those of d0. The errors add
+   3 (D E + e (N + E)), rounding adds 8u of three products. */
 static double gxbp_volume_error(double D, double e, double N, double E) {
     return 6 * (D * E + e * (N + E)) + 48 * GXBP_U * D * N + GXBP_TINY;
 }
@@ -10502,8 +10575,8 @@ static double gxbp_rough_error(const gxb_boolean *b, uint32_t t, const gxb_ball 
     return gxbp_volume_error(gxbp_max3(d0), e, gxbp_max3(n), E);
 }
 
-/* A bound for all triangles, from the size S of the box around all vertices (8u larger, to cover its rounding) and the
- * largest error of a vertex */
+/* A bound for all triangles, from the largest error of a vertex and the size S of the box around all vertices, which is
+ * enlarged by 8u to cover its rounding */
 static double gxbp_largest_rough_error(const gxb_boolean *b) {
     const gxb_ball *first = &b->store.points[b->out.points[0]].ball;
     double low[3], high[3], error = first->error, S = 0, e;
@@ -10532,8 +10605,8 @@ static int gxbp_is_rough(double volume, double error) { return error > GXBP_VOLU
 static void gxbp_sum_volumes(const gxb_boolean *b, const uint32_t *parent, double *volume, double *error,
                              double largest) {
     uint32_t t;
-    for (t = 0; t < b->out.source_count; t++) volume[t] = error[t] = 0;
-    for (t = 0; t < b->out.source_count; t++) {
+    for (t = 0; t < b->out.triangle_count; t++) volume[t] = error[t] = 0;
+    for (t = 0; t < b->out.triangle_count; t++) {
         const uint32_t root = parent[t];
         const gxb_ball *o = &b->store.points[gxbp_out_corner(b, root, 0)].ball;
         volume[root] += gxbp_rough_volume(b, t, o);
@@ -10543,7 +10616,7 @@ static void gxbp_sum_volumes(const gxb_boolean *b, const uint32_t *parent, doubl
 
 static int gxbp_any_is_rough(const gxb_boolean *b, const uint32_t *parent, const double *volume, const double *error) {
     uint32_t t;
-    for (t = 0; t < b->out.source_count; t++)
+    for (t = 0; t < b->out.triangle_count; t++)
         if (parent[t] == t && gxbp_is_rough(volume[t], error[t])) return 1;
     return 0;
 }
@@ -10551,7 +10624,7 @@ static int gxbp_any_is_rough(const gxb_boolean *b, const uint32_t *parent, const
 /* Exact sums where those of doubles are too rough, or of all */
 static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent, double *volume, double *error,
                                           int all) {
-    const uint32_t count = b->out.source_count;
+    const uint32_t count = b->out.triangle_count;
     const size_t vertices = b->out.point_count * sizeof(gxbp_fine), bytes = vertices + 2 * count * sizeof(uint32_t);
     gxbp_fines fines = {NULL, NULL, 0, 0};
     uint32_t t, *first, *next;
@@ -10567,7 +10640,7 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent
         next[t] = first[parent[t]];
         first[parent[t]] = t;
     }
-    b->work.head_stamp++;
+    for (t = 0; t < b->out.point_count; t++) fines.vertices[t].first = GXB_NONE;
     for (t = 0; t < count && b->error == GX_OK; t++)
         if (parent[t] == t && (all || gxbp_is_rough(volume[t], error[t]))) {
             volume[t] = gxbp_fine_volume(b, first[t], next, &fines);
@@ -10580,7 +10653,7 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent
 /* Six times the volumes of the sets in volume[root], in the frame's units. One bound for all triangles costs less; it
  * is too large for many. */
 static GXBP_APART void gxbp_measure_shells(gxb_boolean *b, const uint32_t *parent, double *volume, double *error) {
-    const int few = b->out.source_count <= GXBP_FEW_TRIANGLES;
+    const int few = b->out.triangle_count <= GXBP_FEW_TRIANGLES;
     gxbp_sum_volumes(b, parent, volume, error, few ? gxbp_largest_rough_error(b) : 0);
     if (!gxbp_any_is_rough(b, parent, volume, error)) return;
     if (few) gxbp_sum_volumes(b, parent, volume, error, 0);
@@ -10604,18 +10677,18 @@ static GXBP_COLD int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p,
     return turn != 0 ? turn : way * gxbp_compare_points(b, q, p, 1);
 }
 
-/* A ray from a triangle. It begins on the side on which that one's solid lies: on the other one, of a sheet, begins
- * another's. */
+/* A ray from a triangle. It begins on the side on which the triangle's solid lies. On the other side of a sheet another
+ * solid may begin. */
 static GXBP_COLD int gxbp_ray_from(gxb_boolean *b, gxbp_ray *ray, uint32_t t) {
-    const int turned = b->out.planes[t] & 1 ? 1 : -1, moved = gxbp_moved_side(b, gxbp_out_plane(b, t));
-    gxbp_set_ray(b, ray, b->out.planes[t] / 2);
+    const int turned = b->out.subtriangles[t] & 1 ? 1 : -1, moved = gxbp_moved_side(b, gxbp_out_plane(b, t));
+    gxbp_set_ray(b, ray, b->out.subtriangles[t] / 2);
     return moved == 0 ? 1 : moved * turned;
 }
 
 /* The change of its shell's winding number where a ray moved by way (h, h^2) passes a triangle */
 static GXBP_COLD int gxbp_ray_passes(gxb_boolean *b, gxbp_ray *ray, int way, uint32_t t) {
     const uint32_t plane = gxbp_out_plane(b, t);
-    const int facing = b->out.planes[t] & 1 ? -1 : 1;
+    const int facing = b->out.subtriangles[t] & 1 ? -1 : 1;
     double value, bound;
     int left, behind;
     uint32_t c[3], k;
@@ -10638,7 +10711,7 @@ static GXBP_COLD int gxbp_ray_passes(gxb_boolean *b, gxbp_ray *ray, int way, uin
     return behind * facing == left ? left : 0;
 }
 
-/* Of triangle t: the shell that it belongs to, of a cavity whose container is known that one */
+/* The shell of triangle t. For a cavity whose container is known: the container */
 static uint32_t gxbp_shell_of(const uint32_t *parent, uint32_t t) { return parent[parent[t]]; }
 
 /* A grid of side x side columns along x, and the triangles that rays in each column may pass */
@@ -10651,8 +10724,8 @@ typedef struct gxbp_columns {
 } gxbp_columns;
 
 static uint32_t gxbp_column_at(const gxbp_columns *c, uint32_t k, double x) {
-    const double at = (x - c->low[k]) / c->size[k] * c->side;
-    return !(at > 0) ? 0 : at >= c->side ? c->side - 1 : (uint32_t)at;
+    const double position = (x - c->low[k]) / c->size[k] * c->side;
+    return !(position > 0) ? 0 : position >= c->side ? c->side - 1 : (uint32_t)position;
 }
 
 /* The columns of a triangle: from[0] to upto[0] along y, from[1] to upto[1] along z; how many they are */
@@ -10694,7 +10767,7 @@ static void gxbp_bound_columns(const gxb_boolean *b, gxbp_columns *c) {
 
 /* As many columns as triangles; fewer if a triangle would be in more than eight columns on average */
 static GXBP_COLD int gxbp_make_columns(gxb_boolean *b, gxbp_columns *c) {
-    const uint32_t count = b->out.source_count;
+    const uint32_t count = b->out.triangle_count;
     uint32_t side = 1, t, i, j, from[2], upto[2];
     size_t total;
     gxbp_bound_columns(b, c);
@@ -10743,8 +10816,8 @@ static GXBP_COLD int gxbp_lies_in(gxb_boolean *b, uint32_t t, uint32_t u, const 
     return winding != 0;
 }
 
-/* The innermost shell with volume around a cavity's (or a sheet's) shell. winding: 0 for each triangle, and so again
- * afterwards */
+/* The innermost shell with volume around a cavity's (or a sheet's) shell. winding: of each triangle; all 0 before and
+ * after */
 static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, const uint32_t *parent,
                                               const double *volume, int32_t *winding, const gxbp_columns *c) {
     gxbp_ray ray;
@@ -10769,7 +10842,7 @@ static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, c
 /* Assigns cavities and sheets to their containers. Returns their number. */
 static GXBP_APART uint32_t gxbp_place_cavities(gxb_boolean *b, uint32_t *parent, const double *volume,
                                                int32_t *winding) {
-    const uint32_t count = b->out.source_count;
+    const uint32_t count = b->out.triangle_count;
     gxbp_columns columns;
     uint32_t t, container, cavities = 0;
     columns.hit = NULL;
@@ -10792,8 +10865,8 @@ static void gxbp_join_cavities(gxb_boolean *b, uint32_t *parent, double *volume,
     int rough = 0;
     uint32_t t;
     if (gxbp_place_cavities(b, parent, volume, winding) > 0) {
-        gxbp_flatten_sets(parent, b->out.source_count);
-        for (t = 0; t < b->out.source_count; t++) {
+        gxbp_flatten_sets(parent, b->out.triangle_count);
+        for (t = 0; t < b->out.triangle_count; t++) {
             if (parent[t] == t) continue;
             volume[parent[t]] += volume[t];
             error[parent[t]] += error[t];
@@ -10806,7 +10879,7 @@ static void gxbp_join_cavities(gxb_boolean *b, uint32_t *parent, double *volume,
 /* number: room for a word per triangle */
 static GXBP_APART void gxbp_number_components(gxb_boolean *b, const uint32_t *parent, const double *volume,
                                               uint32_t *number) {
-    const uint32_t count = b->out.source_count;
+    const uint32_t count = b->out.triangle_count;
     uint32_t t;
     memset(number, 0, count * sizeof *number); /* of a set, + 1 */
     for (t = 0; t < count && b->error == GX_OK; t++) {
@@ -10821,18 +10894,18 @@ static GXBP_APART void gxbp_number_components(gxb_boolean *b, const uint32_t *pa
     b->out.component_count = count;
 }
 
-/* Each triangle is 1 and 3 / 2 edges. */
+/* Euler characteristics: each triangle counts as 1 face and 3 / 2 edges. */
 static void gxbp_find_eulers(gxb_boolean *b, const int32_t *corners) {
     uint32_t t;
     b->out.euler_count = 0;
     if (b->error != GX_OK || !GXBP_ROOM(b, out.eulers, out.euler, b->out.volume_count)) return;
     b->out.euler_count = b->out.volume_count;
     for (t = 0; t < b->out.euler_count; t++) b->out.eulers[t] = 0;
-    for (t = 0; t < b->out.source_count; t++) b->out.eulers[b->out.components[t]] += 2 * corners[t] - 1;
+    for (t = 0; t < b->out.triangle_count; t++) b->out.eulers[b->out.components[t]] += 2 * corners[t] - 1;
     for (t = 0; t < b->out.euler_count; t++) b->out.eulers[t] /= 2;
 }
 
-/* On which sides of sheets the components lie, by the triangles that they have of them. */
+/* Finds the sides of sheets on which components lie, by the triangles of sheets in their boundaries. */
 static GXBP_RARE void gxbp_find_sides(gxb_boolean *b) {
     const size_t n = b->in.operand_count, size = (size_t)b->out.volume_count * n;
     size_t i;
@@ -10841,7 +10914,7 @@ static GXBP_RARE void gxbp_find_sides(gxb_boolean *b) {
     if (b->error != GX_OK || !GXBP_ROOM(b, out.sides, out.side, size)) return;
     memset(b->out.sides, 0, size);
     for (i = 0; i < n; i++) sheets += b->in.operands[i].operation == GXB_SPLIT;
-    for (t = 0; t < b->out.source_count && sheets > 0; t++) {
+    for (t = 0; t < b->out.triangle_count && sheets > 0; t++) {
         int8_t *side = &b->out.sides[b->out.components[t] * n + b->out.operands[t]];
         const int8_t mine = b->out.reversed[t] ? 1 : -1;
         if (b->in.operands[b->out.operands[t]].operation == GXB_SPLIT) *side = *side == 0 || *side == mine ? mine : 2;
@@ -10859,10 +10932,10 @@ static void gxbp_scale_volumes(gxb_boolean *b) {
 
 /* parent: sets of triangles; work: room for a word per triangle; corners: see gxbp_count_corners */
 static void gxbp_measure_components(gxb_boolean *b, uint32_t *parent, uint32_t *work, const int32_t *corners) {
-    const size_t count = b->out.source_count;
+    const size_t count = b->out.triangle_count;
     double *volume = (double *)gxbp_borrow(b, 2 * count * sizeof *volume);
     if (volume == NULL) return;
-    gxbp_flatten_sets(parent, b->out.source_count);
+    gxbp_flatten_sets(parent, b->out.triangle_count);
     gxbp_measure_shells(b, parent, volume, volume + count);
     gxbp_join_cavities(b, parent, volume, volume + count, (int32_t *)work);
     gxbp_number_components(b, parent, volume, work);
@@ -10871,7 +10944,7 @@ static void gxbp_measure_components(gxb_boolean *b, uint32_t *parent, uint32_t *
 }
 
 static GXBP_APART void gxbp_find_components(gxb_boolean *b) {
-    const uint32_t count = b->out.source_count;
+    const uint32_t count = b->out.triangle_count;
     const size_t bytes = 3 * (size_t)count * sizeof(uint32_t);
     uint32_t *parent, t;
     int32_t *corners;
@@ -10895,9 +10968,10 @@ static GXBP_APART void gxbp_find_components(gxb_boolean *b) {
 /* In: the rounded output with its defects, components and twins. Out: fewer defects, or the same. The surface, taken
    apart where it only touches itself, stays closed and keeps its Euler characteristic. Touches the output only. */
 
-#define GXBP_MEND_REACH                                                                                                \
-    4 /* units in the last place of the largest coordinate: how near are two vertices that may become one */
-#define GXBP_MEND_STEPS 2 /* such units by which a coordinate may be moved */
+/* In units in the last place of the largest coordinate: how near two vertices are that may be merged; how far a
+   coordinate may be moved */
+#define GXBP_MEND_REACH 4
+#define GXBP_MEND_STEPS 2
 
 /* The next half-edge that leaves the same corner of the surface */
 static uint32_t gxbp_around(const gxb_boolean *b, uint32_t h) { return b->out.twins[gxbp_last_edge(h)]; }
@@ -10908,7 +10982,7 @@ static const double *gxbp_out_place(const gxb_boolean *b, uint32_t vertex) {
 
 /* 1 where a triangle of three vertices would be a defect on the side of triangle t's plane */
 static int gxbp_is_defect(gxb_boolean *b, uint32_t t, uint32_t p, uint32_t q, uint32_t r) {
-    const int facing = b->out.planes[t] & 1 ? -1 : 1;
+    const int facing = b->out.subtriangles[t] & 1 ? -1 : 1;
     return gxbp_faces(b, gxbp_out_plane(b, t), gxbp_out_place(b, p), gxbp_out_place(b, q), gxbp_out_place(b, r)) !=
            facing;
 }
@@ -10949,7 +11023,7 @@ static int gxbp_is_given(const gxb_boolean *b, uint32_t vertex) {
     return b->store.points[b->out.points[vertex]].kind == GXB_EXPLICIT;
 }
 
-/* How many edges leave the corner from which h does; *to: how many of them lead to a vertex */
+/* How many edges leave the corner that h leaves. *to: how many of them lead to `vertex` */
 static uint32_t gxbp_count_around(const gxb_boolean *b, uint32_t h, uint32_t vertex, uint32_t *to) {
     uint32_t g = h, n = 0;
     *to = 0;
@@ -10972,9 +11046,9 @@ static void gxbp_join_out(gxb_boolean *b, uint32_t h, uint32_t g) {
     b->out.twins[g] = h;
 }
 
-/* The edge of h, from p to q, between triangles (p, q, r) and (q, p, o), becomes one from r to o. The triangle of h,
-   which has no area to speak of, becomes a part of the other's source; r lies between p and q, or what is made would
-   lie beyond the old ones. */
+/* Flips the edge of h, from p to q, between triangles (p, q, r) and (q, p, o): it becomes one from r to o. The triangle
+   of h has next to no area; the two new ones are of the other's source. r must lie between p and q, else they would
+   reach beyond the old ones. */
 static int gxbp_flip(gxb_boolean *b, uint32_t h) {
     const uint32_t g = b->out.twins[h], t = h / 3, s = g / 3, h1 = gxbp_next_edge(h), g1 = gxbp_next_edge(g);
     const uint32_t p = b->out.triangles[h], q = b->out.triangles[h1], r = b->out.triangles[gxbp_last_edge(h)],
@@ -10997,7 +11071,8 @@ static int gxbp_flip(gxb_boolean *b, uint32_t h) {
     return 1;
 }
 
-/* May the edge of h vanish? Its ends have but two neighbours in common, which keep three edges at least. */
+/* May the edge of h be collapsed? It may if its ends have just two neighbours in common, each of which keeps three
+   edges or more. */
 static int gxbp_links_meet(gxb_boolean *b, uint32_t h) {
     const uint32_t g = b->out.twins[h], v = b->out.triangles[h], w = b->out.triangles[g];
     const uint32_t r = gxbp_last_edge(h), o = gxbp_last_edge(g);
@@ -11014,7 +11089,7 @@ static int gxbp_links_meet(gxb_boolean *b, uint32_t h) {
     return common == 2;
 }
 
-/* The vertex from which h leaves becomes the one to which it leads, if that leaves fewer defects. */
+/* Collapses the edge of h: its start becomes its end, if fewer defects are left then. */
 static int gxbp_collapse(gxb_boolean *b, uint32_t h) {
     const uint32_t g = b->out.twins[h], v = b->out.triangles[h], w = b->out.triangles[g];
     const uint32_t h1 = gxbp_next_edge(h), h2 = gxbp_next_edge(h1), g1 = gxbp_next_edge(g), g2 = gxbp_next_edge(g1);
@@ -11053,7 +11128,7 @@ static uint32_t gxbp_mend_edges(gxb_boolean *b) {
 
 /* Removes collapsed triangles from all lists. map: a word per triangle. */
 static void gxbp_drop_collapsed(gxb_boolean *b, uint32_t *map) {
-    const uint32_t count = b->out.source_count;
+    const uint32_t count = b->out.triangle_count;
     uint32_t t, k, left = 0;
     for (t = 0; t < count; t++) map[t] = b->out.triangles[3 * t] == GXB_NONE ? GXB_NONE : left++;
     for (t = 0; t < count; t++) {
@@ -11071,7 +11146,7 @@ static void gxbp_drop_collapsed(gxb_boolean *b, uint32_t *map) {
     b->out.twin_count = 3 * left;
 }
 
-/* How many triangles around a vertex are defects, all corners there together */
+/* How many triangles around a vertex are defects, at all of its corners */
 static uint32_t gxbp_defects_at(gxb_boolean *b, const gxbp_exits *exits, uint32_t v) {
     uint32_t i, n = 0;
     for (i = exits->first[v]; i < exits->first[v + 1]; i++)
@@ -11079,7 +11154,7 @@ static uint32_t gxbp_defects_at(gxb_boolean *b, const gxbp_exits *exits, uint32_
     return n;
 }
 
-/* Tries the places around the vertex's own (home): the first of those with the fewest defects. 1: it moved. */
+/* Moves a vertex to a place around its own (home): the first of those with the fewest defects. 1: it moved. */
 static int gxbp_move_vertex(gxb_boolean *b, const gxbp_exits *exits, uint32_t v, const double home[3]) {
     enum { WIDTH = 2 * GXBP_MEND_STEPS + 1 };
     double *x = b->out.vertices + 3 * (size_t)v, best[3], old[3];
@@ -11108,7 +11183,7 @@ static int gxbp_move_vertex(gxb_boolean *b, const gxbp_exits *exits, uint32_t v,
 static uint32_t gxbp_mend_places(gxb_boolean *b, const double *home) {
     gxbp_exits exits;
     uint32_t i, k, done = 0;
-    if (!gxbp_list_exits(b, b->out.triangles, b->out.source_count, b->out.point_count, &exits)) return 0;
+    if (!gxbp_list_exits(b, b->out.triangles, b->out.triangle_count, b->out.point_count, &exits)) return 0;
     for (i = 0; i < b->out.defect_count; i++)
         for (k = 0; k < 3 && gxbp_is_defective(b, b->out.defects[i]); k++) {
             const uint32_t v = b->out.triangles[3 * b->out.defects[i] + k];
@@ -11118,9 +11193,9 @@ static uint32_t gxbp_mend_places(gxb_boolean *b, const double *home) {
     return done;
 }
 
-/* Each step leaves fewer defects than there were. */
+/* Mends as long as a step leaves fewer defects. */
 static GXBP_COLD void gxbp_mend_defects(gxb_boolean *b) {
-    const uint32_t words = b->out.source_count > b->out.point_count ? b->out.source_count : b->out.point_count;
+    const uint32_t words = b->out.triangle_count > b->out.point_count ? b->out.triangle_count : b->out.point_count;
     const size_t places = 3 * (size_t)b->out.point_count * sizeof(double), bytes = places + words * sizeof(uint32_t);
     double *home;
     uint32_t *map, found = b->out.defect_count, done = 1;
@@ -11163,15 +11238,18 @@ static const gxbp_array gxbp_boolean_arrays[] = {/* all that grow */
                                                  GXBP_ARRAY(gxb_boolean, mesh.subtriangles, mesh.subtriangle),
                                                  GXBP_ARRAY(gxb_boolean, mesh.links, mesh.link),
                                                  GXBP_ARRAY(gxb_boolean, crossings.segments, crossings.segment),
-                                                 GXBP_ARRAY(gxb_boolean, crossings.cuts, crossings.cut),
-                                                 GXBP_ARRAY(gxb_boolean, crossings.cut_points, crossings.cut_point),
+                                                 GXBP_ARRAY(gxb_boolean, crossings.edges, crossings.edge),
+                                                 GXBP_ARRAY(gxb_boolean, crossings.edge_points, crossings.edge_point),
                                                  GXBP_ARRAY(gxb_boolean, crossings.hits, crossings.hit),
                                                  GXBP_ARRAY(gxb_boolean, crossings.dirty, crossings.dirty),
                                                  GXBP_ARRAY(gxb_boolean, mesh.divided, mesh.divided),
                                                  GXBP_ARRAY(gxb_boolean, points.projected, points.projected),
-                                                 GXBP_ARRAY(gxb_boolean, work.rims, work.rim),
+                                                 GXBP_ARRAY(gxb_boolean, work.rights, work.right),
                                                  GXBP_ARRAY(gxb_boolean, work.lefts, work.left),
-                                                 GXBP_ARRAY(gxb_boolean, work.stack, work.stack),
+                                                 GXBP_ARRAY(gxb_boolean, work.visits, work.visit),
+                                                 GXBP_ARRAY(gxb_boolean, work.crossed, work.crossed),
+                                                 GXBP_ARRAY(gxb_boolean, work.fan_vertices, work.fan_vertex),
+                                                 GXBP_ARRAY(gxb_boolean, work.fan_triangles, work.fan_triangle),
                                                  GXBP_ARRAY(gxb_boolean, work.segment_ends, work.segment_end),
                                                  GXBP_ARRAY(gxb_boolean, work.pending, work.pending),
                                                  GXBP_ARRAY(gxb_boolean, work.room, work.room),
@@ -11181,11 +11259,11 @@ static const gxbp_array gxbp_boolean_arrays[] = {/* all that grow */
                                                  GXBP_ARRAY(gxb_boolean, out.vertices, out.vertex),
                                                  GXBP_ARRAY(gxb_boolean, out.origins, out.origin),
                                                  GXBP_ARRAY(gxb_boolean, out.points, out.point),
-                                                 GXBP_ARRAY(gxb_boolean, out.triangles, out.triangle),
+                                                 GXBP_ARRAY(gxb_boolean, out.triangles, out.corner),
                                                  GXBP_ARRAY(gxb_boolean, out.operands, out.operand),
-                                                 GXBP_ARRAY(gxb_boolean, out.sources, out.source),
+                                                 GXBP_ARRAY(gxb_boolean, out.sources, out.triangle),
                                                  GXBP_ARRAY(gxb_boolean, out.components, out.component),
-                                                 GXBP_ARRAY(gxb_boolean, out.planes, out.plane),
+                                                 GXBP_ARRAY(gxb_boolean, out.subtriangles, out.subtriangle),
                                                  GXBP_ARRAY(gxb_boolean, out.volumes, out.volume),
                                                  GXBP_ARRAY(gxb_boolean, out.defects, out.defect),
                                                  GXBP_ARRAY(gxb_boolean, out.reversed, out.reversed),
@@ -11280,7 +11358,7 @@ static gx_result gxbp_check_operand(const gxb_boolean *b, const gxb_operand *o, 
 }
 
 /* Forgets the points from count on. */
-static GXBP_COLD void gxbp_cut_points_back(gxb_boolean *b, uint32_t count) {
+static GXBP_COLD void gxbp_drop_points(gxb_boolean *b, uint32_t count) {
     if (b->points.table_size > 0) gxbp_list_points(b, count);
     b->points.vertex_count = b->store.point_count = count;
 }
@@ -11307,7 +11385,7 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
         b->in.bound_count = bounds;
         b->mesh.subtriangle_count = subtriangles;
         b->in.box_count = boxes;
-        gxbp_cut_points_back(b, points);
+        gxbp_drop_points(b, points);
     } else
         b->out.evaluated = 0;
     return gxbp_fail(failure, result, bad);
@@ -11316,8 +11394,8 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
 /* After an error: operands are as they were added, and nothing is arranged. Computed points stay known. */
 static GXBP_COLD void gxbp_forget_arrangement(gxb_boolean *b) {
     uint32_t s;
-    b->mesh.subtriangle_count = b->mesh.link_count = b->crossings.segment_count = b->crossings.cut_count =
-        b->crossings.cut_point_count = b->crossings.hit_count = b->crossings.dirty_count = b->mesh.divided_count = 0;
+    b->mesh.subtriangle_count = b->mesh.link_count = b->crossings.segment_count = b->crossings.edge_count =
+        b->crossings.edge_point_count = b->crossings.hit_count = b->crossings.dirty_count = b->mesh.divided_count = 0;
     b->crossings.arranged = b->crossings.segment_mark = b->winding.stated = 0;
     for (s = 0; s < b->in.source_count; s++) {
         b->in.sources[s].flags &= (uint32_t)GXBP_DEGENERATE;
@@ -11339,7 +11417,7 @@ static GXBP_APART void gxbp_arrange(gxb_boolean *b) {
     gxbp_presize_planes(b);
     for (i = b->crossings.arranged; i < b->in.operand_count; i++)
         for (j = 0; j <= i && b->error == GX_OK; j++) gxbp_meet_operands(b, i, j);
-    gxbp_order_cuts(b);
+    gxbp_order_edges(b);
     if (b->error == GX_OK) gxbp_divide_dirty(b);
     gxbp_merge_points(b);
     b->crossings.segment_mark = b->crossings.segment_count;
@@ -11351,7 +11429,7 @@ static GXBP_APART void gxbp_show_result(const gxb_boolean *b, gxb_boolean_result
     result->vertices = b->out.vertices;
     result->vertex_count = b->out.point_count;
     result->triangles = b->out.triangles;
-    result->triangle_count = b->out.source_count;
+    result->triangle_count = b->out.triangle_count;
     result->vertex_origin = b->out.origins;
     result->triangle_operand = b->out.operands;
     result->triangle_source = b->out.sources;
@@ -11367,7 +11445,7 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *res
     gxbp_arrange(b);
     gxbp_find_states(b);
     if (b->error == GX_OK) gxbp_extract(b);
-    if (b->error == GX_OK && b->options.coarsen != NULL && b->out.source_count > 0) b->options.coarsen(b);
+    if (b->error == GX_OK && b->options.coarsen != NULL && b->out.triangle_count > 0) b->options.coarsen(b);
     gxbp_round_vertices(b);
     if (b->error == GX_OK && b->options.mend != NULL) b->options.mend(b);
     b->out.evaluated = b->error == GX_OK;

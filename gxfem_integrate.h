@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* gxfem_integrate.h - exact integrals of polynomials over polyhedra and cut finite elements. Part of gxfem 0.2.0.
 
-   A polyhedron is given by its boundary triangles, nothing else: no tetrahedralisation, no quadrature points. The
+   The boundary triangles alone define a polyhedron: no tetrahedralisation, no quadrature points. The
    divergence theorem (GXFEM Eq. 21) turns an integral over the inside into a sum over the triangles, in closed form, to
    any degree; the shape may be non-convex, have tunnels and cavities, or be disconnected. Closed forms for linear
    tetrahedra (gradients, mass, load) and for parts of them (GXFEM Eq. 13, 14) build on it.
@@ -38,28 +38,25 @@
    Moments are integrals of powers of x - origin. A triangle contributes the signed integral over its cone to the
    origin, with an error of a few roundings (2^-53) of e f r^(d + 1): e, f its edges, r the distance of its farthest
    point, d the degree. So:
-   - put the origin into or beside the polyhedron (a vertex of it, the centre of its box), never far away, and translate
-   the result if you want it about another point; a body at 1e8 then loses nothing but what its coordinates lost
-   already;
-   - triangles in a plane through the origin contribute exactly 0 if the plane is a coordinate plane. That is why the
-   parts of an element are integrated in its barycentric frame: a corner of size 1e-12 has all its moments to 1e-15 of
-   themselves if the origin is the vertex it lies at, and a layer upon a face likewise if the origin is a vertex of that
-   face.
+   - Put the origin into or beside the polyhedron (a vertex of it, the centre of its box), never far away. Translate the
+   result if you want it about another point. A body at 1e8 then loses no more digits than its coordinates had lost.
+   - Triangles in a coordinate plane through the origin contribute exactly 0. Hence the parts of an element are
+   integrated in its barycentric frame. A corner of size 1e-12 has all its moments to a relative error of 1e-15 if the
+   origin is the vertex that it lies at, and a layer on a face likewise if the origin is a vertex of that face.
 
    WHAT IT DOES NOT DO
    - It does not check that a surface is closed: moments of an open surface are those of its cone to the origin. The
    triangles of a closed surface have area vectors that add up to 0 (gxi_surface_flux_monomials of degree 0 shows it).
    - It does not decide signs exactly: whether an element is flat is decided on the rounded determinant (gxfem_boolean.h
    has exact predicates).
-   - It does not integrate other functions than polynomials. The moments here are all that rules for such functions
-   need.
+   - It integrates polynomials only. Quadrature rules for other functions can be made from the moments.
    - It allocates nothing, calls nothing but sqrt, keeps no state. Different threads may use it at the same time.
 
    LIMITS
    - degree <= GXI_DEGREE_MAX. From degree 20 on, monomials are nearly dependent functions: keep |x - origin| about 1.
-   - Overflow is refused (GX_ERROR_RANGE) by a bound on |x - origin|^(degree + 3). Underflow is not an error: what is
-   below 1e-308 is 0.
-   - No result depends on infinities or NaN being honoured by the compiler; under -ffast-math the last digits differ.
+   - Overflow is refused (GX_ERROR_RANGE) by a bound on |x - origin|^(degree + 3). Underflow is not an error: numbers
+   below 1e-308 become 0.
+   - No result depends on how the compiler treats infinities and NaN; under -ffast-math the last digits differ.
 
    CONFIGURATION (before inclusion)
        GXFEM_IMPLEMENTATION             implementation of every gxfem header included
@@ -207,10 +204,10 @@ GXFEM_API void gxi_moments2_map(gxi_moments2 *m, const double matrix[9], const d
    uniform density. Precondition: m->volume > 0. */
 GXFEM_API void gxi_moments2_inertia(const gxi_moments2 *m, double density, double centre[3], double inertia[6]);
 
-/* Repairs moments that are rounding errors themselves, as those of a part thinner than the spacing of doubles: makes
-   them moments that a mass within the box lower..upper can have (volume >= 0, centre in the box, covariance
-   semi-definite and no wider than the box), so that every matrix made from them is semi-definite. Nothing changes if
-   they are right within rounding. Returns 1 if it changed something, else 0. Precondition: lower <= upper, about the
+/* Repairs moments that are rounding errors themselves, as those of a part thinner than the spacing of doubles. They
+   become moments that a mass within the box lower..upper can have: volume >= 0, centre in the box, covariance
+   semi-definite and no wider than the box. So every matrix made from them is semi-definite. Moments that are right
+   within rounding do not change. Returns 1 if it changed something, else 0. Precondition: lower <= upper, about the
    origin of m. */
 GXFEM_API int gxi_moments2_repair(gxi_moments2 *m, const double lower[3], const double upper[3]);
 
@@ -276,23 +273,23 @@ GXFEM_API void gxi_tet_mass(double volume, double density, double mass[10]);
 /* A part of an element (a cell Omega^{e,s}, GXFEM Eq. 20) is bounded by triangles whose corners have barycentric
    coordinates lambda_0 ... lambda_3 in the element. It is integrated in a frame that has vertex k of the element as its
    origin and the lambdas of the other three as coordinates, where the element has volume 1/6. Choose as k the vertex
-   that the part lies at. The lambdas that should be 0 or 1 (corners on faces and at vertices of the element) must be so
-   exactly, and the small ones must be relatively accurate, for a small part to be. */
+   that the part lies at. The moments of a small part are accurate if lambdas that should be 0 or 1 (corners on faces
+   and at vertices of the element) are so exactly, and small ones have small relative errors. */
 
 /* Which lambdas are the coordinates of the frame with origin k, in the order that keeps the orientation of the element:
    1 2 3, 0 3 2, 0 1 3, 0 2 1 for k = 0, 1, 2, 3. Precondition: k <= 3. */
 GXFEM_API void gxi_part_axes(unsigned k, unsigned axes[3]);
 
-/* Chooses k (the vertex with the largest sum of lambdas over the triangles' corners), adds up the part's moments in its
-   frame and repairs them against the corners if they are below rounding: the centre stays among the corners' lambdas,
-   the load is not negative (volume 0: the part has no mass). lambdas: [lambda_count][4]; triangles:
+/* Chooses k, the vertex with the largest sum of lambdas over the triangles' corners. Adds up the part's moments in its
+   frame. Moments below rounding are repaired: the centre stays within the range of the corners' lambdas, and the load
+   is not negative (volume 0: the part has no mass). lambdas: [lambda_count][4]; triangles:
    [triangle_count][3], outward as seen in an element of positive volume. Fails, and leaves the outputs as they were:
    ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (a lambda beyond 65536). */
 GXFEM_API gx_result gxi_part_moments(const double *lambdas, size_t lambda_count, const uint32_t *triangles,
                                      size_t triangle_count, unsigned *k, gxi_moments2 *reference);
 
-/* The same in the frame of a given k <= 3, where triangles in the element's faces through vertex k add nothing and may
-   be left out: the others do not have to close the surface. The vertex counts as a corner. */
+/* The same in the frame of a given k <= 3. Triangles in the element's faces through vertex k add nothing there. They
+   may be left out, so the others need not close the surface. The vertex counts as a corner. */
 GXFEM_API gx_result gxi_part_moments_at(const double *lambdas, size_t lambda_count, const uint32_t *triangles,
                                         size_t triangle_count, unsigned k, gxi_moments2 *reference);
 
@@ -303,17 +300,17 @@ GXFEM_API gx_result gxi_part_moments_at(const double *lambdas, size_t lambda_cou
 GXFEM_API void gxi_part_mass(const gxi_moments2 *reference, unsigned k, double element_volume, double density,
                              double mass[10]);
 
-/* Load of the part, density * integral of lambda_i (GXFEM Eq. 14): times an acceleration: forces. Precondition: k <= 3.
- */
+/* Load of the part, density * integral of lambda_i (GXFEM Eq. 14). Times an acceleration, it is the nodal forces.
+   Precondition: k <= 3. */
 GXFEM_API void gxi_part_load(const gxi_moments2 *reference, unsigned k, double element_volume, double density,
                              double load[4]);
 
 /* Area vector of a triangle in space: its normal times its area. Returns the area. */
 GXFEM_API double gxi_triangle_area(const double a[3], const double b[3], const double c[3], double area_vector[3]);
 
-/* Adds, for a piece of a cut face whose corners have barycentric coordinates a, b, c and whose area in space is `area`,
-   the integrals of lambda_i by area: times a traction, the nodal forces (RXFEM section 5). For a pressure, pass a
-   component of the area vector instead. */
+/* Adds the integrals of lambda_i by area over a triangle of a cut face, whose corners have barycentric coordinates a,
+   b, c and whose area in space is `area`. Times a traction, they are the nodal forces (RXFEM section 5). For a
+   pressure, pass a component of the area vector instead. */
 GXFEM_API void gxi_face_load_add(const double a[4], const double b[4], const double c[4], double area, double load[4]);
 
 /* Likewise the integrals of lambda_i lambda_j: tractions that vary linearly, springs and dampers on the face. */
@@ -440,7 +437,7 @@ static inline size_t gxip_packed4(size_t a, size_t b) { return a < b ? a * (7 - 
 GXFEM_API void gxi_moments2_add_triangle(gxi_moments2 *m, const double a[3], const double b[3], const double c[3]) {
     const double det = gxip_determinant(a, b, c), sixth = det / 6, quarter = 0.25 * sixth, part = det / 120;
     const double s[3] = {a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2]};
-    if (fabs(det) <= 0) return; /* a part of an element: its facets on the faces around the origin, which are most */
+    if (fabs(det) <= 0) return; /* most triangles of a part of an element: those in the faces around the origin */
     m->volume += sixth;
     m->first[0] += quarter * s[0];
     m->first[1] += quarter * s[1];
@@ -462,10 +459,10 @@ GXFEM_API void gxi_moments2_add(gxi_moments2 *m, const gxi_moments2 *other) {
 
 /* (x + t)(x + t)^T = x x^T + x t^T + t x^T + t t^T */
 GXFEM_API void gxi_moments2_translate(gxi_moments2 *m, const double shift[3]) {
-    size_t i, j, at = 0;
+    size_t i, j, entry = 0;
     for (i = 0; i < 3; i++)
         for (j = i; j < 3; j++)
-            m->second[at++] += m->first[i] * shift[j] + shift[i] * m->first[j] + m->volume * shift[i] * shift[j];
+            m->second[entry++] += m->first[i] * shift[j] + shift[i] * m->first[j] + m->volume * shift[i] * shift[j];
     for (i = 0; i < 3; i++) m->first[i] += m->volume * shift[i];
 }
 
@@ -473,7 +470,7 @@ GXFEM_API void gxi_moments2_translate(gxi_moments2 *m, const double shift[3]) {
 GXFEM_API void gxi_moments2_map(gxi_moments2 *m, const double matrix[9], const double translation[3]) {
     gxi_moments2 r;
     double normal[3], det, half[3][3]; /* half = A S */
-    size_t i, j, p, at = 0;
+    size_t i, j, p, entry = 0;
     gxip_cross(matrix + 3, matrix + 6, normal);
     det = gxip_dot(matrix, normal);
     r.volume = det * m->volume;
@@ -485,7 +482,7 @@ GXFEM_API void gxi_moments2_map(gxi_moments2 *m, const double matrix[9], const d
         }
     }
     for (i = 0; i < 3; i++)
-        for (j = i; j < 3; j++) r.second[at++] = det * gxip_dot(half[i], matrix + 3 * j);
+        for (j = i; j < 3; j++) r.second[entry++] = det * gxip_dot(half[i], matrix + 3 * j);
     gxi_moments2_translate(&r, translation);
     *m = r;
 }
@@ -543,8 +540,8 @@ static int gxip_clamp_covariance(double c[6], const double mean[3], const double
     return 1;
 }
 
-/* Mean and covariance of m within the box, *changed = 1 if they had to be moved there by more than `slack`. Sizes are
-   compared before the division by a volume that may be next to nothing. */
+/* Mean and covariance of m, moved into the box; *changed = 1 if they moved by more than `slack`. Sizes are compared
+   before the division by a volume that may be next to nothing. */
 static void gxip_clamp_mean(const gxi_moments2 *m, const double lower[3], const double upper[3], double slack,
                             double mean[3], double c[6], int *changed) {
     double v = m->volume, reach[3];
@@ -758,7 +755,7 @@ GXFEM_API size_t gxi_monomial_index(unsigned i, unsigned j, unsigned k) {
     return gxip_layers_below(i + m) + m * (m + 1) / 2 + k;
 }
 
-/* What gxip_integrate sums over the triangles. */
+/* The integrals that gxip_integrate sums over the triangles */
 enum gxip_measure { GXIP_VOLUME, GXIP_AREA, GXIP_FLUX };
 
 /* moments[count][stride] = integrals; stride 3 for GXIP_FLUX, else 1. With n = (b - a) x (c - a): |T| s! is a . n =
@@ -876,9 +873,9 @@ GXFEM_API gx_result gxi_tet_gradients(const double positions[12], double gradien
 }
 
 GXFEM_API void gxi_tet_mass(double volume, double density, double mass[10]) {
-    size_t i, j, at = 0;
+    size_t i, j, entry = 0;
     for (i = 0; i < 4; i++)
-        for (j = i; j < 4; j++) mass[at++] = density * volume / (i == j ? 10 : 20);
+        for (j = i; j < 4; j++) mass[entry++] = density * volume / (i == j ? 10 : 20);
 }
 
 /* Row k: the three others such that (k, others) is an even permutation, which keeps the orientation. */
@@ -1065,10 +1062,10 @@ GXFEM_API void gxi_face_load_add(const double a[4], const double b[4], const dou
 GXFEM_API void gxi_face_mass_add(const double a[4], const double b[4], const double c[4], double area,
                                  double mass[10]) {
     double s[4];
-    size_t i, j, at = 0;
+    size_t i, j, entry = 0;
     for (i = 0; i < 4; i++) s[i] = a[i] + b[i] + c[i];
     for (i = 0; i < 4; i++)
-        for (j = i; j < 4; j++) mass[at++] += area / 12 * (a[i] * a[j] + b[i] * b[j] + c[i] * c[j] + s[i] * s[j]);
+        for (j = i; j < 4; j++) mass[entry++] += area / 12 * (a[i] * a[j] + b[i] * b[j] + c[i] * c[j] + s[i] * s[j]);
 }
 
 #undef GXIP_ROUNDING

@@ -29,11 +29,11 @@
  *         return (int)result;
  *     }
  *
- * CONTENTS (search for the anchors; in the order of the file. Functions call functions of their own section and of
- * earlier ones only)
+ * CONTENTS. Search for the anchors, which are in the order of the file. Functions call functions of their own section
+ * and of earlier ones only.
  *   interface:    >>shared result codes, allocator, jobs | >>types materials, elements, step | >>functions the API
- *   foundations:  >>constants sizes, limits | >>scalars bits, sums | >>memory pools | >>structs the solver's own form |
- *                 >>columns arrays over copies, slots, chunks | >>jobs loops
+ *   foundations:  >>constants sizes, limits | >>scalars bits, sums | >>memory pools | >>structs the solver's own
+ *                 form | >>columns arrays over copies, slots, chunks | >>jobs loops
  *   kernels:      >>svd stretches and rotations of F | >>material energies, stresses | >>tangent Hessian of one block |
  *                 >>element passes over one block
  *   chunks:       >>masses of parts of elements | >>order of elements | >>lanes of a chunk | >>chunks blocks, slots |
@@ -46,9 +46,8 @@
  *                 >>smoother its step length | >>cycle the V-cycle
  *   changes:      >>edits lanes that a cut changes | >>renewal copies and components | >>update levels, all of it
  *   steps:        >>components momentum | >>points springs, contact | >>cg conjugate gradients | >>ageing of coarse
- *                 matrices | >>sleep rest | >>balance residual, start | >>search lengths | >>integrators BDF, midpoint
- * |
- *                 >>newton iterations, bound on E | >>midpoint second half, end of a step
+ *                 matrices | >>sleep rest | >>balance residual, start | >>search lengths | >>integrators BDF,
+ *                 midpoint | >>newton iterations, bound on E | >>midpoint second half, end of a step
  *   entrance:     >>check what is given | >>api the public functions | >>single a material at one F
  *
  * WORDS. Copy: a node's displacement for one connected set of cells. Component: copies joined by elements and
@@ -60,31 +59,33 @@
  *
  *     E(u) = |u - u_n - h v_n|_M^2 / (2 h^2) + U(u) + C(u) - f . u        GXFEM Eq. 10 divided by h^2; joule
  *
- * M: mass, U: elastic energy, C: springs and contact, f = M g + nodal forces. f is a linear term, so that M is never
- * inverted. Then v = (u - u_n) / h. That is backward Euler. BDF2 and the implicit midpoint rule replace h and
- * u_n + h v_n by others; statics have no mass. Rayleigh damping is in the first term (mass) and in U (stiffness).
+ * M: mass, U: elastic energy, C: springs and contact, f = M g + nodal forces. f is a linear term, so M is never
+ * inverted. Then v = (u - u_n) / h. This is backward Euler. BDF2 and the implicit midpoint rule have other values in
+ * place of h and u_n + h v_n; statics have no mass. Mass damping (Rayleigh) is in the first term, stiffness damping in
+ * U.
  *
  * Newton's method with a line search minimises E. The Hessian of every element is projected to the nearest positive
  * semi-definite one in closed form (analytic eigensystem). Near the end, where steps are whole, the exact one is tried.
- * Products are matrix-free: eight elements side by side in a block, 48 blocks in a chunk. Each chunk is summed by
- * itself and the chunks in their order, so that results are the same for any number of threads.
+ * Products are matrix-free: eight elements side by side in a block, 48 blocks in a chunk. Each chunk has sums of its
+ * own, which are added in the order of chunks. So results are the same for any number of threads.
  *
  * Conjugate gradients with multigrid solve the linear systems. The finest level is the model itself, smoothed by
  * block-Jacobi. Coarse levels live on lattices whose points are doubled where a cut separates the copies around them;
  * the first level for which that is cheap is factorised. Coarse matrices serve until iterations rise. The last two
  * steps' directions are the guess for the next.
  *
- * E is a sum over components, and each has a step length of its own in the line search, so that none of them is flung
- * about for the gain of another. Every loose component first moves as a whole so that its momentum balances, and later
- * iterates leave its momentum alone: it is right to rounding whatever the tolerances are, and free fall takes no
- * iteration. Newton's method starts at u_n + h v_n. A component that ends above E at u_n, translated so, is brought
- * down on the way from there. So E(u) <= E(u_n) always, component by component and however fast it falls: a step cannot
- * blow up. The midpoint rule continues from there as far again, or less far where it would gain energy.
+ * E is a sum over components. The line search finds a step length for each, so that none is flung about for the gain of
+ * another. Every loose component first moves as a whole so that its momentum balances. Later iterations leave its
+ * momentum alone: it is right to rounding whatever the tolerances are, and free fall takes no iteration. Newton's
+ * method starts at u_n + h v_n. Each component's E at the end is compared with its E at u_n, to which a loose component
+ * is first translated by its momentum. One that ended higher goes back towards u_n as far as E falls. So
+ * E(u) <= E(u_n) in each component, however fast it falls: a step cannot blow up. The midpoint rule continues from
+ * there as far again, or less far where it would gain energy.
  *
- * Residuals are measured twice, both times scaled by the block diagonal D of the Hessian: in energy, sqrt(sum r_i .
- * D_i^-1 r_i), and in displacement, sqrt(sum |D_i^-1 r_i|^2). The second measure sees a component of 1e-12 of its
- * neighbour's volume as well as the neighbour. A component that has been slow for long sleeps if
- * gxs_step_desc.sleep_speed says so; steps leave it out until something touches it.
+ * Residuals have two measures, both scaled by the block diagonal D of the Hessian: energy, sqrt(sum r_i . D_i^-1 r_i),
+ * and displacement, sqrt(sum |D_i^-1 r_i|^2). The second one sees a component of 1e-12 of its neighbour's volume as
+ * well as the neighbour. A component that has been slower than gxs_step_desc.sleep_speed for long sleeps; steps leave
+ * it out until something touches it.
  *
  * WHAT IT DOES NOT DO. No cutting and no meshes: it sees elements of four copies. No search for contacts between
  * components: give points, planes and your own forces. No threads of its own: see gx_jobs; a task takes up to 90 kB of
@@ -92,14 +93,13 @@
  *
  * LIMITS. poisson in [0, 0.5); beyond 0.49999 the Hessian's single precision shows. Copies and elements below 2^30.
  * Energies, forces and states are doubles. The Hessian, its products and the preconditioner are single precision, which
- * does not limit what Newton's method reaches, only what one linear solve does (about 1e-6 of the residual; a free
- * body's slowest modes are solved as well while inertia is above some 1e-6 of stiffness, rho h^2 / (E dt^2) for
- * elements of size h). The centre of the mass of a part of an element is rounded once, by at most 1e-7 of the element;
- * all is right for the mass so placed. Memory: 240 to 270 bytes per element in all, of a mesh with four elements per
- * copy; 290 to 350 where cuts leave two or three. The material can invert without a failure and recovers by itself. An
- * element collapsed to a point, where its energy is stationary, is opened as if it were not quite collapsed. Same
- * input, same binary: same bits. Nothing here needs isnan or infinities: it is right under -ffast-math, where sums
- * round otherwise.
+ * limits one linear solve (to about 1e-6 of the residual), not the state that Newton's method reaches. A free body's
+ * slowest modes are solved as well while inertia is above about 1e-6 of stiffness, rho h^2 / (E dt^2) for elements of
+ * size h. The centre of the mass of a part of an element is rounded once, by at most 1e-7 of the element. Memory: 240
+ * to 270 bytes per element in all for a mesh with four elements per copy; 290 to 350 where cuts leave two or three. The
+ * material can invert without a failure and recovers by itself. An element collapsed to a point, where its energy is
+ * stationary, is opened as if it were not quite collapsed. The same input gives the same bits with the same binary.
+ * Nothing here needs isnan or infinities, so results are right under -ffast-math, though sums round differently.
  *
  * REFERENCES. GXFEM: Generalized eXtended Finite Element Method for Deformable Cutting via Boolean Operations, 2024.
  * RXFEM: Koschier, Bender, Thuerey, Robust eXtended Finite Elements for Complex Cutting of Deformables, ACM Trans.
@@ -203,8 +203,8 @@ extern "C" {
  * Poisson's ratio. */
 typedef enum gxs_material_kind {
     GXS_STABLE_NEO_HOOKEAN = 0, /* for large strain, inversion and nearly incompressible bodies [Smith 2018] */
-    GXS_ST_VENANT_KIRCHHOFF,    /* RXFEM's; softens under compression to nothing */
-    GXS_FIXED_COROTATED,        /* [Stomakhin 2012]; linear but for rotations and volume */
+    GXS_ST_VENANT_KIRCHHOFF,    /* RXFEM's; under compression it softens until nothing resists */
+    GXS_FIXED_COROTATED,        /* [Stomakhin 2012]; linear except for rotations and volume */
     GXS_LINEAR,                 /* for small rotations only */
     GXS_CUSTOM                  /* the caller's own, by energy below */
 } gxs_material_kind;
@@ -445,17 +445,17 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
    Errors: ARGUMENT, NOT_FINITE, RANGE, LIMIT, STALE. */
 GXFEM_API gx_result gxs_step_check(const gxs_step_desc *step, uint64_t epoch, gx_failure *failure /* or NULL */);
 
-/* Sets the model that the next steps move; again after each cut and each change of materials or held copies. All is
- * copied into the solver's own form. GX_ERROR_MEMORY is possible. On any error the model before stays. */
+/* Sets the model that the next steps move. Call it again after each cut and each change of materials or held copies.
+ * The model is copied into the solver's own form. GX_ERROR_MEMORY is possible. On any error the old model stays. */
 GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *model, gx_failure *failure);
 
-/* Changes the model. The time is proportional to the size of the change, but for small work proportional to the number
- * of copies. Preconditioner and guesses are kept. Results are those of the whole model set anew, but for rounding and
- * the tolerances of steps. GX_ERROR_ARGUMENT: no model is set, groups or elements are not in order (index: of the group
- * or element), or a constraint is not allowed (its index). GX_ERROR_LIMIT: the change does not fit. Either the matrix
- * is assembled, mass is lumped, GXS_VOLUME_RATIO is used, empty lanes are a quarter of all, a copy is held that was not
- * or the other way round, no element is left, or an element that stays has lost a copy. After this and GX_ERROR_MEMORY
- * no model is set any more: set it. On other errors the model before stays. */
+/* Changes the model. The time is proportional to the size of the change, plus a little for each copy of the model.
+ * Preconditioner and guesses are kept. Results are those of the whole model set anew, up to rounding and the tolerances
+ * of steps. GX_ERROR_ARGUMENT: no model is set, groups or elements are not in order (index: of the group or element),
+ * or a constraint is not allowed (its index). GX_ERROR_LIMIT: the change does not fit. Either the matrix is assembled,
+ * mass is lumped, GXS_VOLUME_RATIO is used, empty lanes are a quarter of all, a copy is held that was not or the other
+ * way round, no element is left, or an element that stays has lost a copy. After this and GX_ERROR_MEMORY no model is
+ * set: set one. On other errors the old model stays. */
 GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure);
 /* Sets the rest times of copies to 0 whose state has been written since the last step. Their components then wake even
  * if another model is set before the next step, or another solver takes it. Vectors use the present numbering; origins
@@ -522,7 +522,7 @@ extern "C" {
 
 /* >>constants: sizes, limits and measured choices ------------------------------------------------------------------ */
 
-/* In and out: nothing but macros and the types of vectors. Numbers that were measured say on what. */
+/* In and out: nothing but macros and the types of vectors. For measured numbers, the comment names the models. */
 
 /* Elements side by side in a block: whole vectors on every instruction set up to 512 bits of doubles */
 #define GXSP_LANES 8
@@ -534,8 +534,8 @@ extern "C" {
 /* A residual below this (about 50 units in the last place) is rounding: no iteration can lower it. */
 #define GXSP_ROUNDING 1e-14
 
-/* Sufficient decrease in the line search, share of what the slope promises [Nocedal and Wright, Numerical
- * Optimization]. */
+/* Sufficient decrease in the line search, as a share of the decrease that the slope predicts [Nocedal and Wright,
+ * Numerical Optimization]. */
 #define GXSP_ARMIJO 1e-4
 
 /* Newton's method ends after this many iterations in a row whose gain doubles cannot tell. */
@@ -544,7 +544,7 @@ extern "C" {
 /* The line search starts at the linear model's minimum along a direction that goes at least twice as far as that. */
 #define GXSP_TOO_LONG 0.5
 
-/* Trials of the line search. Each at least halves the step; after 60 nothing of it is left. */
+/* Trials of the line search. Each at least halves the step; after 60 it is below rounding. */
 #define GXSP_TRIALS 60
 
 /* No component, node, chunk or copy */
@@ -641,23 +641,24 @@ extern "C" {
  * 0.8 to 1 times as long above, 1.1 to 2.7 times at 0.005 and below. */
 #define GXSP_INERTIA 0.03
 
-/* Multigrid's diagonal grows by this share, so that its matrices stay positive definite in single precision. */
+/* The diagonals of the multigrid's matrices grow by this share, so that they stay positive definite in single
+ * precision. */
 #define GXSP_SHIFT 1e-5f
 
 /* Binary exponent of a whole element's stiffness in the linear systems: leaves room for components down to 1e-40 of
  * it, and for masses above. */
 #define GXSP_STIFFNESS 40
 
-/* Making coarse matrices costs as much as GXSP_REMAKE iterations. The first of a model serve for GXSP_LIFE
- * iterations. New ones then show what age has cost. If that is less than GXSP_AGEING of the pace, the next ones
- * serve GXSP_PATIENCE times as long. */
+/* Making coarse matrices costs as much as GXSP_REMAKE iterations. The first ones of a model serve for GXSP_LIFE
+ * iterations. Comparison with new ones then shows the cost of their age. If it is less than GXSP_AGEING of the pace,
+ * the next ones serve GXSP_PATIENCE times as long. */
 #define GXSP_REMAKE   5
 #define GXSP_LIFE     40
 #define GXSP_AGEING   0.2
 #define GXSP_PATIENCE 2
 
-/* After a cut, coarse numbers are made for entries of dirty nodes only, unless a larger share of chunks follows
- * such nodes: these need a Hessian of their own, at the state of the other numbers. */
+/* After a cut, coarse numbers are made for entries of dirty nodes only, unless a larger share of chunks than this
+ * follows dirty nodes: those chunks' Hessians are computed at the state of the other numbers, for this purpose only. */
 #define GXSP_DIRTY 0.6
 
 /* Iterations, of several solves if need be, over which the pace of conjugate gradients is measured. */
@@ -960,7 +961,7 @@ static void gxsp_release_to(gxsp_pool *pool, gxsp_owned *mark) {
     }
 }
 
-/* Entries for which an array that grows is given room, so that it seldom grows */
+/* The room that an array of count entries gets when it grows, so that it seldom grows */
 static size_t gxsp_room(size_t count) { return count + count / 8; }
 
 static gxsp_pool gxsp_pool_make(const gx_allocator *allocator) {
@@ -979,9 +980,9 @@ typedef struct gxsp_space {
 
 /* The next array of a space: count x size bytes; NULL if the space has no memory and only counts. */
 static void *gxsp_carve(gxsp_space *space, size_t count, size_t size) {
-    const size_t at = space->used;
-    space->used = at + (count * size + GXSP_ALIGNMENT - 1) / GXSP_ALIGNMENT * GXSP_ALIGNMENT;
-    return space->memory ? space->memory + at : NULL;
+    const size_t start = space->used;
+    space->used = start + (count * size + GXSP_ALIGNMENT - 1) / GXSP_ALIGNMENT * GXSP_ALIGNMENT;
+    return space->memory ? space->memory + start : NULL;
 }
 
 /* >>structs: the solver's own form of a model ---------------------------------------------------------------------- */
@@ -1570,8 +1571,8 @@ static void gxsp_over_ranges(gxsp_system *system, void (*task)(void *, size_t), 
         for (i = 0, sums[k] = 0; i < system->model.range_count; i++) sums[k] += system->vectors.range_sum[i][k];
 }
 
-/* Prefetches memory that is read soon: a block is too long for processors to see the next one in time. Always
- * inline: gcc takes functions that do nothing else for functions without effect and drops their calls. */
+/* Prefetches memory that is read soon. A block is too long for processors to prefetch the next one in time. Always
+ * inline: gcc takes a function that only prefetches for one without effect, and drops its calls. */
 GXSP_INLINE void gxsp_prefetch(const void *memory, size_t size) {
 #if defined(__GNUC__)
     const char *line = (const char *)memory;
@@ -1608,59 +1609,60 @@ static inline void gxsp_turn(float c, float s, float *x, float *y) {
 }
 
 /* Rotates columns i and j of b and of v in lane l. */
-static inline void gxsp_turn_columns(gxsp_jacobi *of, int i, int j, int l, float c, float s) {
-    gxsp_turn(c, s, &of->b[i][l], &of->b[j][l]);
-    gxsp_turn(c, s, &of->b[3 + i][l], &of->b[3 + j][l]);
-    gxsp_turn(c, s, &of->b[6 + i][l], &of->b[6 + j][l]);
-    gxsp_turn(c, s, &of->v[i][l], &of->v[j][l]);
-    gxsp_turn(c, s, &of->v[3 + i][l], &of->v[3 + j][l]);
-    gxsp_turn(c, s, &of->v[6 + i][l], &of->v[6 + j][l]);
+static inline void gxsp_turn_columns(gxsp_jacobi *jacobi, int i, int j, int l, float c, float s) {
+    gxsp_turn(c, s, &jacobi->b[i][l], &jacobi->b[j][l]);
+    gxsp_turn(c, s, &jacobi->b[3 + i][l], &jacobi->b[3 + j][l]);
+    gxsp_turn(c, s, &jacobi->b[6 + i][l], &jacobi->b[6 + j][l]);
+    gxsp_turn(c, s, &jacobi->v[i][l], &jacobi->v[j][l]);
+    gxsp_turn(c, s, &jacobi->v[3 + i][l], &jacobi->v[3 + j][l]);
+    gxsp_turn(c, s, &jacobi->v[6 + i][l], &jacobi->v[6 + j][l]);
 }
 
-static inline float gxsp_jacobi_product(const gxsp_jacobi *of, int i, int j, int l) {
-    return of->b[i][l] * of->b[j][l] + of->b[3 + i][l] * of->b[3 + j][l] + of->b[6 + i][l] * of->b[6 + j][l];
+static inline float gxsp_jacobi_product(const gxsp_jacobi *jacobi, int i, int j, int l) {
+    return jacobi->b[i][l] * jacobi->b[j][l] + jacobi->b[3 + i][l] * jacobi->b[3 + j][l] +
+           jacobi->b[6 + i][l] * jacobi->b[6 + j][l];
 }
 
 /* Makes columns i and j of b orthogonal. U and V stay rotations whatever the rounding: a Hessian built on them is a
  * congruence of a semi-definite one. */
-GXSP_INLINE void gxsp_orthogonalise(gxsp_jacobi *GXSP_RESTRICT of, int i, int j) {
+GXSP_INLINE void gxsp_orthogonalise(gxsp_jacobi *GXSP_RESTRICT jacobi, int i, int j) {
     int l;
     GXSP_EACH_OF_TWO(l) {
-        const float gamma = 2 * gxsp_jacobi_product(of, i, j, l);
-        const float gap = gxsp_jacobi_product(of, j, j, l) - gxsp_jacobi_product(of, i, i, l);
+        const float gamma = 2 * gxsp_jacobi_product(jacobi, i, j, l);
+        const float gap = gxsp_jacobi_product(jacobi, j, j, l) - gxsp_jacobi_product(jacobi, i, i, l);
         const float size = gap < 0 ? -gap : gap, square = gap * gap + gamma * gamma + 1e-35f;
         const float tangent = (gap < 0 ? -gamma : gamma) / (size + square * gxsp_rsqrt(square));
         const float c = gxsp_rsqrt(1 + tangent * tangent);
-        gxsp_turn_columns(of, i, j, l, c, c * tangent);
+        gxsp_turn_columns(jacobi, i, j, l, c, c * tangent);
     }
 }
 
 /* Makes column i the longer one of i and j, by a quarter turn, so that det V stays 1. */
-GXSP_INLINE void gxsp_order_columns(gxsp_jacobi *GXSP_RESTRICT of, int i, int j) {
+GXSP_INLINE void gxsp_order_columns(gxsp_jacobi *GXSP_RESTRICT jacobi, int i, int j) {
     int l;
     GXSP_EACH_OF_TWO(l) {
-        const float s = gxsp_jacobi_product(of, j, j, l) > gxsp_jacobi_product(of, i, i, l) ? -1.0f : 0.0f;
-        gxsp_turn_columns(of, i, j, l, 1 + s, s);
+        const float s = gxsp_jacobi_product(jacobi, j, j, l) > gxsp_jacobi_product(jacobi, i, i, l) ? -1.0f : 0.0f;
+        gxsp_turn_columns(jacobi, i, j, l, 1 + s, s);
     }
 }
 
 /* U, V and s of the block that begins at first_lane, from the columns of b, which are orthogonal and sorted by
  * falling length. Where columns vanish, U is completed to a rotation. */
-static void gxsp_frame(const gxsp_jacobi *GXSP_RESTRICT from, int first_lane, gxsp_svd *GXSP_RESTRICT of) {
-    const float *scale = from->scale + first_lane;
+static void gxsp_frame(const gxsp_jacobi *GXSP_RESTRICT jacobi, int first_lane, gxsp_svd *GXSP_RESTRICT svd) {
+    const float *scale = jacobi->scale + first_lane;
     int k, l;
-    for (k = 0; k < 9; k++) memcpy(of->v[k], from->v[k] + first_lane, sizeof of->v[k]);
+    for (k = 0; k < 9; k++) memcpy(svd->v[k], jacobi->v[k] + first_lane, sizeof svd->v[k]);
     GXSP_EACH_LANE(l) {
         const int m = first_lane + l;
-        const float a0 = from->b[0][m], a1 = from->b[3][m], a2 = from->b[6][m], b0 = from->b[1][m], b1 = from->b[4][m],
-                    b2 = from->b[7][m];
-        const float c0 = from->b[2][m], c1 = from->b[5][m], c2 = from->b[8][m];
+        const float a0 = jacobi->b[0][m], a1 = jacobi->b[3][m], a2 = jacobi->b[6][m], b0 = jacobi->b[1][m],
+                    b1 = jacobi->b[4][m], b2 = jacobi->b[7][m];
+        const float c0 = jacobi->b[2][m], c1 = jacobi->b[5][m], c2 = jacobi->b[8][m];
         const float first = a0 * a0 + a1 * a1 + a2 * a2, some = first > 1e-30f ? 1.0f : 0.0f;
         const float reach = gxsp_rsqrt(first + 1e-30f) * some;
         const float u0 = a0 * reach + (1 - some), u1 = a1 * reach, u2 = a2 * reach;
         const float along = u0 * b0 + u1 * b1 + u2 * b2;
         const float p0 = b0 - along * u0, p1 = b1 - along * u1, p2 = b2 - along * u2;
-        /* F maps to a line: any direction across it will do; take that of the axis least along it */
+        /* where F maps to a line, any direction across it serves: that of the axis least along it is taken */
         const float s0 = u0 * u0, s1 = u1 * u1, s2 = u2 * u2;
         const float x = s0 <= s1 && s0 <= s2 ? 1.0f : 0.0f, y = (1 - x) * (s1 <= s2 ? 1.0f : 0.0f), z = 1 - x - y;
         const float part = x * u0 + y * u1 + z * u2;
@@ -1671,22 +1673,22 @@ static void gxsp_frame(const gxsp_jacobi *GXSP_RESTRICT from, int first_lane, gx
         const float unit = gxsp_rsqrt(q0 * q0 + q1 * q1 + q2 * q2);
         const float w0 = q0 * unit, w1 = q1 * unit, w2 = q2 * unit;
         const float t0 = u1 * w2 - u2 * w1, t1 = u2 * w0 - u0 * w2, t2 = u0 * w1 - u1 * w0;
-        of->u[0][l] = u0, of->u[3][l] = u1, of->u[6][l] = u2;
-        of->u[1][l] = w0, of->u[4][l] = w1, of->u[7][l] = w2;
-        of->u[2][l] = t0, of->u[5][l] = t1, of->u[8][l] = t2;
-        of->s[0][l] = scale[l] * (u0 * a0 + u1 * a1 + u2 * a2);
-        of->s[1][l] = scale[l] * (w0 * b0 + w1 * b1 + w2 * b2);
-        of->s[2][l] = scale[l] * (t0 * c0 + t1 * c1 + t2 * c2);
+        svd->u[0][l] = u0, svd->u[3][l] = u1, svd->u[6][l] = u2;
+        svd->u[1][l] = w0, svd->u[4][l] = w1, svd->u[7][l] = w2;
+        svd->u[2][l] = t0, svd->u[5][l] = t1, svd->u[8][l] = t2;
+        svd->s[0][l] = scale[l] * (u0 * a0 + u1 * a1 + u2 * a2);
+        svd->s[1][l] = scale[l] * (w0 * b0 + w1 * b1 + w2 * b2);
+        svd->s[2][l] = scale[l] * (t0 * c0 + t1 * c1 + t2 * c2);
     }
 }
 
 /* Are the columns of b orthogonal to single precision in every lane? The largest entry of b is 1. */
-static int gxsp_orthogonal(const gxsp_jacobi *GXSP_RESTRICT of) {
+static int gxsp_orthogonal(const gxsp_jacobi *GXSP_RESTRICT jacobi) {
     float square[2 * GXSP_LANES], most = 0;
     int l;
     GXSP_EACH_OF_TWO(l) {
-        const float x = gxsp_jacobi_product(of, 0, 1, l), y = gxsp_jacobi_product(of, 0, 2, l),
-                    z = gxsp_jacobi_product(of, 1, 2, l);
+        const float x = gxsp_jacobi_product(jacobi, 0, 1, l), y = gxsp_jacobi_product(jacobi, 0, 2, l),
+                    z = gxsp_jacobi_product(jacobi, 1, 2, l);
         square[l] = x * x + y * y + z * z;
     }
     for (l = 0; l < 2 * GXSP_LANES; l++) most = square[l] > most ? square[l] : most;
@@ -1694,7 +1696,7 @@ static int gxsp_orthogonal(const gxsp_jacobi *GXSP_RESTRICT of) {
 }
 
 /* F = 1 + G of a block, divided by its largest entry, as columns at first_lane, and V = 1 */
-static void gxsp_jacobi_begin(gxsp_lanes *GXSP_RESTRICT g, int first_lane, gxsp_jacobi *GXSP_RESTRICT of) {
+static void gxsp_jacobi_begin(gxsp_lanes *GXSP_RESTRICT g, int first_lane, gxsp_jacobi *GXSP_RESTRICT jacobi) {
     int k, l;
     GXSP_EACH_LANE(l) {
         const int m = first_lane + l;
@@ -1705,35 +1707,35 @@ static void gxsp_jacobi_begin(gxsp_lanes *GXSP_RESTRICT g, int first_lane, gxsp_
                     b = gxsp_larger(gxsp_larger(f4, f5), gxsp_larger(f6, f7));
         const float largest = gxsp_larger(gxsp_larger(a, b), f8), scale = largest > 1e-30f ? largest : 1.0f,
                     inverse = 1 / scale;
-        of->scale[m] = scale;
-        of->b[0][m] = gxsp_clean(inverse * f0), of->b[1][m] = gxsp_clean(inverse * f1),
-        of->b[2][m] = gxsp_clean(inverse * f2);
-        of->b[3][m] = gxsp_clean(inverse * f3), of->b[4][m] = gxsp_clean(inverse * f4),
-        of->b[5][m] = gxsp_clean(inverse * f5);
-        of->b[6][m] = gxsp_clean(inverse * f6), of->b[7][m] = gxsp_clean(inverse * f7),
-        of->b[8][m] = gxsp_clean(inverse * f8);
+        jacobi->scale[m] = scale;
+        jacobi->b[0][m] = gxsp_clean(inverse * f0), jacobi->b[1][m] = gxsp_clean(inverse * f1),
+        jacobi->b[2][m] = gxsp_clean(inverse * f2);
+        jacobi->b[3][m] = gxsp_clean(inverse * f3), jacobi->b[4][m] = gxsp_clean(inverse * f4),
+        jacobi->b[5][m] = gxsp_clean(inverse * f5);
+        jacobi->b[6][m] = gxsp_clean(inverse * f6), jacobi->b[7][m] = gxsp_clean(inverse * f7),
+        jacobi->b[8][m] = gxsp_clean(inverse * f8);
     }
-    for (k = 0; k < 9; k++) GXSP_EACH_LANE(l) of->v[k][first_lane + l] = k % 4 == 0 ? 1.0f : 0.0f;
+    for (k = 0; k < 9; k++) GXSP_EACH_LANE(l) jacobi->v[k][first_lane + l] = k % 4 == 0 ? 1.0f : 0.0f;
 }
 
 /* F = 1 + G = U diag(s) V^T of two blocks, or of one if last is NULL, by one-sided Jacobi with the same number of
- * sweeps in every lane. of: one entry per block. */
-static void gxsp_decompose(gxsp_lanes *first, gxsp_lanes *last, gxsp_svd *of) {
-    gxsp_jacobi at;
+ * sweeps in every lane. svd: one entry per block. */
+static void gxsp_decompose(gxsp_lanes *first, gxsp_lanes *last, gxsp_svd *svd) {
+    gxsp_jacobi jacobi;
     int sweep;
-    gxsp_jacobi_begin(first, 0, &at);
-    gxsp_jacobi_begin(last ? last : first, GXSP_LANES, &at);
+    gxsp_jacobi_begin(first, 0, &jacobi);
+    gxsp_jacobi_begin(last ? last : first, GXSP_LANES, &jacobi);
     /* convergence is quadratic: 4 sweeps reach single precision even for extreme F */
-    for (sweep = 0; sweep < 4 && !gxsp_orthogonal(&at); sweep++) {
-        gxsp_orthogonalise(&at, 0, 1);
-        gxsp_orthogonalise(&at, 0, 2);
-        gxsp_orthogonalise(&at, 1, 2);
+    for (sweep = 0; sweep < 4 && !gxsp_orthogonal(&jacobi); sweep++) {
+        gxsp_orthogonalise(&jacobi, 0, 1);
+        gxsp_orthogonalise(&jacobi, 0, 2);
+        gxsp_orthogonalise(&jacobi, 1, 2);
     }
-    gxsp_order_columns(&at, 0, 1);
-    gxsp_order_columns(&at, 0, 2);
-    gxsp_order_columns(&at, 1, 2);
-    gxsp_frame(&at, 0, &of[0]);
-    if (last) gxsp_frame(&at, GXSP_LANES, &of[1]);
+    gxsp_order_columns(&jacobi, 0, 1);
+    gxsp_order_columns(&jacobi, 0, 2);
+    gxsp_order_columns(&jacobi, 1, 2);
+    gxsp_frame(&jacobi, 0, &svd[0]);
+    if (last) gxsp_frame(&jacobi, GXSP_LANES, &svd[1]);
 }
 
 /* Cofactors of a 3x3: the derivative of its determinant */
@@ -1887,17 +1889,17 @@ static void gxsp_kirchhoff(gxsp_state *GXSP_RESTRICT s, double bend) {
  * the rotation of F's polar decomposition. R = U V^T is known to single precision; each Newton step for the rotation
  * that makes R^T F symmetric squares the error. */
 static void gxsp_corotated(gxsp_state *GXSP_RESTRICT s) {
-    gxsp_svd of;
+    gxsp_svd svd;
     int l, r, c, k, round;
-    gxsp_decompose(s->g, NULL, &of);
+    gxsp_decompose(s->g, NULL, &svd);
     for (l = 0; l < GXSP_LANES; l++) {
         double f[9], rotation[9], cofactor[9], j, strain = 0;
         for (k = 0; k < 9; k++) f[k] = s->g[k][l] + (k % 4 == 0 ? 1 : 0);
         for (r = 0; r < 3; r++)
             for (c = 0; c < 3; c++)
-                rotation[3 * r + c] = (double)of.u[3 * r][l] * of.v[3 * c][l] +
-                                      (double)of.u[3 * r + 1][l] * of.v[3 * c + 1][l] +
-                                      (double)of.u[3 * r + 2][l] * of.v[3 * c + 2][l];
+                rotation[3 * r + c] = (double)svd.u[3 * r][l] * svd.v[3 * c][l] +
+                                      (double)svd.u[3 * r + 1][l] * svd.v[3 * c + 1][l] +
+                                      (double)svd.u[3 * r + 2][l] * svd.v[3 * c + 2][l];
         for (round = 0; round < 2; round++) gxsp_polish_rotation(f, rotation);
         gxsp_cofactors(f, cofactor);
         j = f[0] * cofactor[0] + f[1] * cofactor[1] + f[2] * cofactor[2] - 1;
@@ -1947,10 +1949,10 @@ typedef struct gxsp_principal {
     gxsp_singles stretch[6], flip[3], twist[3];
 } gxsp_principal;
 
-static void gxsp_neo_hookean_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to) {
+static void gxsp_neo_hookean_principal(const gxsp_svd *GXSP_RESTRICT svd, gxsp_principal *GXSP_RESTRICT to) {
     int l;
     GXSP_EACH_LANE(l) { /* eigensystem of [Smith 2018] */
-        const float a = of->s[0][l], b = of->s[1][l], c = of->s[2][l], mu = to->mu[l], lambda = to->lambda[l];
+        const float a = svd->s[0][l], b = svd->s[1][l], c = svd->s[2][l], mu = to->mu[l], lambda = to->lambda[l];
         const float square = a * a + b * b + c * c, whole = 1 / (square + 1), direct = mu * square * whole;
         const float along = 2 * mu * whole * whole, x = b * c, y = c * a, z = a * b;
         const float pressure = lambda * (a * x - 1) - 0.75f * mu; /* lambda (J - alpha) */
@@ -1966,10 +1968,10 @@ static void gxsp_neo_hookean_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_pr
     }
 }
 
-static void gxsp_kirchhoff_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to) {
+static void gxsp_kirchhoff_principal(const gxsp_svd *GXSP_RESTRICT svd, gxsp_principal *GXSP_RESTRICT to) {
     int l;
     GXSP_EACH_LANE(l) { /* psi_i = s_i (mu (s_i^2 - 1) + lambda/2 sum (s^2 - 1)) */
-        const float a = of->s[0][l], b = of->s[1][l], c = of->s[2][l], mu = to->mu[l], lambda = to->lambda[l];
+        const float a = svd->s[0][l], b = svd->s[1][l], c = svd->s[2][l], mu = to->mu[l], lambda = to->lambda[l];
         const float x = a * a, y = b * b, z = c * c, common = 0.5f * lambda * (x + y + z - 3) - mu;
         to->stretch[0][l] = (3 * mu + lambda) * x + common;
         to->stretch[1][l] = lambda * a * b;
@@ -1983,10 +1985,10 @@ static void gxsp_kirchhoff_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_prin
     }
 }
 
-static void gxsp_corotated_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to) {
+static void gxsp_corotated_principal(const gxsp_svd *GXSP_RESTRICT svd, gxsp_principal *GXSP_RESTRICT to) {
     int l;
     GXSP_EACH_LANE(l) { /* psi_i = 2 mu (s_i - 1) + lambda (J - 1) s_j s_k */
-        const float a = of->s[0][l], b = of->s[1][l], c = of->s[2][l], mu = to->mu[l], lambda = to->lambda[l];
+        const float a = svd->s[0][l], b = svd->s[1][l], c = svd->s[2][l], mu = to->mu[l], lambda = to->lambda[l];
         const float x = b * c, y = c * a, z = a * b, pressure = lambda * (a * x - 1), least = 1e-6f;
         const float bc = b + c > least ? b + c : least, ca = c + a > least ? c + a : least,
                     ab = a + b > least ? a + b : least;
@@ -2003,9 +2005,9 @@ static void gxsp_corotated_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_prin
 }
 
 /* The Hessian is the same at every F: U and V are 1. */
-static void gxsp_linear_principal(gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to) {
+static void gxsp_linear_principal(gxsp_svd *GXSP_RESTRICT svd, gxsp_principal *GXSP_RESTRICT to) {
     int k, l;
-    for (k = 0; k < 9; k++) GXSP_EACH_LANE(l) of->u[k][l] = of->v[k][l] = k % 4 == 0 ? 1.0f : 0.0f;
+    for (k = 0; k < 9; k++) GXSP_EACH_LANE(l) svd->u[k][l] = svd->v[k][l] = k % 4 == 0 ? 1.0f : 0.0f;
     GXSP_EACH_LANE(l) {
         const float mu = to->mu[l], lambda = to->lambda[l];
         to->stretch[0][l] = to->stretch[3][l] = to->stretch[5][l] = 2 * mu + lambda;
@@ -2063,20 +2065,20 @@ static void gxsp_project_lane(gxsp_singles *stretch, int lane) {
 
 /* Projects the 3x3 of the stretches in lanes where it is not positive definite, which leading minors by elimination
  * decide. */
-static void gxsp_project(gxsp_principal *GXSP_RESTRICT of) {
+static void gxsp_project(gxsp_principal *GXSP_RESTRICT principal) {
     gxsp_singles least;
     int l;
     GXSP_EACH_LANE(l) {
-        const float a = of->stretch[0][l], tiny = 1e-30f, p = a > tiny ? a : tiny;
-        const float b = of->stretch[1][l] / p, c = of->stretch[2][l] / p;
-        const float d = of->stretch[3][l] - b * of->stretch[1][l], q = d > tiny ? d : tiny;
-        const float e = of->stretch[4][l] - b * of->stretch[2][l];
-        const float f = of->stretch[5][l] - c * of->stretch[2][l] - e * e / q;
+        const float a = principal->stretch[0][l], tiny = 1e-30f, p = a > tiny ? a : tiny;
+        const float b = principal->stretch[1][l] / p, c = principal->stretch[2][l] / p;
+        const float d = principal->stretch[3][l] - b * principal->stretch[1][l], q = d > tiny ? d : tiny;
+        const float e = principal->stretch[4][l] - b * principal->stretch[2][l];
+        const float f = principal->stretch[5][l] - c * principal->stretch[2][l] - e * e / q;
         const float low = a < d ? a : d;
         least[l] = low < f ? low : f;
     }
     for (l = 0; l < GXSP_LANES; l++)
-        if (!(least[l] > 0)) gxsp_project_lane(of->stretch, l);
+        if (!(least[l] > 0)) gxsp_project_lane(principal->stretch, l);
 }
 
 /* The Hessian of a block of the caller's energy at s->g, times scale; exact or projected */
@@ -2137,19 +2139,19 @@ static void gxsp_pack_rotation(gxsp_singles *GXSP_RESTRICT u, gxsp_singles *GXSP
 
 /* The SVD that Hessians of one or two blocks of a kind need; last: NULL if there is one block. Returns whether an
  * element was collapsed. */
-static int gxsp_tangent_begin(gxs_material_kind kind, gxsp_state *first, gxsp_state *last, gxsp_svd *of) {
+static int gxsp_tangent_begin(gxs_material_kind kind, gxsp_state *first, gxsp_state *last, gxsp_svd *svd) {
     int collapsed;
     if (kind == GXS_CUSTOM || kind == GXS_LINEAR) return 0;
     collapsed = gxsp_nudge(first->g);
     collapsed |= last && gxsp_nudge(last->g);
-    gxsp_decompose(first->g, last ? last->g : NULL, of);
+    gxsp_decompose(first->g, last ? last->g : NULL, svd);
     return collapsed;
 }
 
 /* Arguments of principal Hessians, scaled so that single precision holds them: moduli relative to their sum, by
  * which weights grow, and clamped stretches */
 static void gxsp_scale_principal(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, double scale,
-                                 gxsp_state *GXSP_RESTRICT s, gxsp_svd *GXSP_RESTRICT of,
+                                 gxsp_state *GXSP_RESTRICT s, gxsp_svd *GXSP_RESTRICT svd,
                                  gxsp_principal *GXSP_RESTRICT to) {
     gxsp_lanes weight;
     int k, l;
@@ -2160,23 +2162,23 @@ static void gxsp_scale_principal(gxs_material_kind kind, const gxsp_rest *GXSP_R
         weight[l] = scale * rest->weight[l] * modulus;
     }
     for (l = 0; l < GXSP_LANES && kind != GXS_LINEAR; l++) { /* its Hessians have no stretches */
-        const double a = (double)of->s[0][l] * (double)of->s[0][l], b = (double)of->s[1][l] * (double)of->s[1][l],
+        const double a = (double)svd->s[0][l] * (double)svd->s[0][l], b = (double)svd->s[1][l] * (double)svd->s[1][l],
                      size = a * (b > 1 ? b : 1);
         if (size > GXSP_STRETCHED) {
             const double most = weight[l] > GXSP_HEAVIEST ? weight[l] : GXSP_HEAVIEST,
                          grown = weight[l] * (size / GXSP_STRETCHED);
-            for (k = 0; k < 3; k++) of->s[k][l] = (float)((double)of->s[k][l] / sqrt(sqrt(size / GXSP_STRETCHED)));
+            for (k = 0; k < 3; k++) svd->s[k][l] = (float)((double)svd->s[k][l] / sqrt(sqrt(size / GXSP_STRETCHED)));
             weight[l] = grown < most ? grown : most;
         }
     }
     GXSP_EACH_LANE(l) to->weight[l] = (float)weight[l];
 }
 
-/* The Hessian of a block at s->g, times scale; exact or projected. of: by gxsp_tangent_begin. general: GXS_CUSTOM
+/* The Hessian of a block at s->g, times scale; exact or projected. svd: by gxsp_tangent_begin. general: GXS_CUSTOM
  * only, else NULL. */
 static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest,
                               gxsp_lanes *GXSP_RESTRICT gradients, double scale, int exact, gxsp_state *s,
-                              gxsp_svd *GXSP_RESTRICT of, gxsp_tangent *GXSP_RESTRICT tangent, gxsp_general *general) {
+                              gxsp_svd *GXSP_RESTRICT svd, gxsp_tangent *GXSP_RESTRICT tangent, gxsp_general *general) {
     const float least = exact ? -FLT_MAX : 0;
     gxsp_principal principal;
     int k, l, r, c;
@@ -2184,12 +2186,12 @@ static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_REST
         gxsp_general_make(rest, gradients, scale, exact, s, tangent, general);
         return;
     }
-    gxsp_scale_principal(kind, rest, scale, s, of, &principal);
+    gxsp_scale_principal(kind, rest, scale, s, svd, &principal);
     switch (kind) {
-    case GXS_ST_VENANT_KIRCHHOFF: gxsp_kirchhoff_principal(of, &principal); break;
-    case GXS_FIXED_COROTATED: gxsp_corotated_principal(of, &principal); break;
-    case GXS_LINEAR: gxsp_linear_principal(of, &principal); break;
-    default: gxsp_neo_hookean_principal(of, &principal); break;
+    case GXS_ST_VENANT_KIRCHHOFF: gxsp_kirchhoff_principal(svd, &principal); break;
+    case GXS_FIXED_COROTATED: gxsp_corotated_principal(svd, &principal); break;
+    case GXS_LINEAR: gxsp_linear_principal(svd, &principal); break;
+    default: gxsp_neo_hookean_principal(svd, &principal); break;
     }
     if (!exact) gxsp_project(&principal);
     for (k = 0; k < 6; k++) GXSP_EACH_LANE(l) tangent->stretch[k][l] = principal.weight[l] * principal.stretch[k][l];
@@ -2199,12 +2201,12 @@ static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_REST
             tangent->even[k][l] = 0.5f * principal.weight[l] * (flip + twist);
             tangent->odd[k][l] = 0.5f * principal.weight[l] * (flip - twist);
         }
-    gxsp_pack_rotation(of->u, tangent->frame);
+    gxsp_pack_rotation(svd->u, tangent->frame);
     for (r = 0; r < 3; r++)
         for (c = 0; c < 3; c++) GXSP_EACH_LANE(l)
-    tangent->gradient[3 * r + c][l] = (float)gradients[3 * r][l] * of->v[c][l] +
-                                      (float)gradients[3 * r + 1][l] * of->v[3 + c][l] +
-                                      (float)gradients[3 * r + 2][l] * of->v[6 + c][l];
+    tangent->gradient[3 * r + c][l] = (float)gradients[3 * r][l] * svd->v[c][l] +
+                                      (float)gradients[3 * r + 1][l] * svd->v[3 + c][l] +
+                                      (float)gradients[3 * r + 2][l] * svd->v[6 + c][l];
 }
 
 /* >>element: passes over one block --------------------------------------------------------------------------------- */
@@ -2283,12 +2285,12 @@ static void gxsp_block_inertia(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_m
             const double raa = (double)moments->root[0][l], rba = (double)moments->root[1][l],
                          rbb = (double)moments->root[2][l], rca = (double)moments->root[3][l],
                          rcb = (double)moments->root[4][l], rcc = (double)moments->root[5][l];
-            const double at = o + (ca * a + cb * b + cc * c), u = raa * a + rba * b + rca * c, v = rbb * b + rcb * c,
+            const double mean = o + (ca * a + cb * b + cc * c), u = raa * a + rba * b + rca * c, v = rbb * b + rcb * c,
                          w = rcc * c;
-            const double fa = m * (ca * at + raa * u), fb = m * (cb * at + rba * u + rbb * v),
-                         fc = m * (cc * at + rca * u + rcb * v + rcc * w);
-            y[r][l] += m * at - (fa + fb + fc), y[3 + r][l] += fa, y[6 + r][l] += fb, y[9 + r][l] += fc;
-            energy[l] += 0.5 * m * (at * at + u * u + v * v + w * w);
+            const double fa = m * (ca * mean + raa * u), fb = m * (cb * mean + rba * u + rbb * v),
+                         fc = m * (cc * mean + rca * u + rcb * v + rcc * w);
+            y[r][l] += m * mean - (fa + fb + fc), y[3 + r][l] += fa, y[6 + r][l] += fb, y[9 + r][l] += fc;
+            energy[l] += 0.5 * m * (mean * mean + u * u + v * v + w * w);
         }
 }
 
@@ -2406,14 +2408,14 @@ static void gxsp_corner_moments(const gxsp_moments *moments, int corner, gxsp_si
 
 /* M_pq x rate */
 static void gxsp_block_mass(const gxsp_tangent *tangent, const gxsp_moments *moments, int p, int q, float *mass) {
-    gxsp_singles of[8];
+    gxsp_singles corners[8];
     int l;
     if (moments) {
-        gxsp_corner_moments(moments, p, of);
-        gxsp_corner_moments(moments, q, of + 4);
+        gxsp_corner_moments(moments, p, corners);
+        gxsp_corner_moments(moments, q, corners + 4);
         GXSP_EACH_LANE(l)
-        mass[l] =
-            tangent->mass[l] * (of[0][l] * of[4][l] + of[1][l] * of[5][l] + of[2][l] * of[6][l] + of[3][l] * of[7][l]);
+        mass[l] = tangent->mass[l] * (corners[0][l] * corners[4][l] + corners[1][l] * corners[5][l] +
+                                      corners[2][l] * corners[6][l] + corners[3][l] * corners[7][l]);
     } else
         GXSP_EACH_LANE(l) mass[l] = tangent->mass[l] * (p == q ? 2.0f : 1.0f);
 }
@@ -2584,7 +2586,7 @@ static double gxsp_find_centre(const double *mass, double *centre, double *round
     return sum > 0 ? sum : 0;
 }
 
-/* Mass of each corner: row sums as the solver has them */
+/* Mass of each corner: row sums, rounded as in the solver's moments */
 static void gxsp_row_masses(const gxs_element *element, double *rows) {
     const int whole = gxsp_whole(element->mass);
     double centre[4], mass = whole ? 2.5 * element->mass[0] : gxsp_find_centre(element->mass, centre, rows);
@@ -2600,9 +2602,9 @@ static int gxsp_supports(const gxs_element *element, int i) {
     return rows[i] > 0;
 }
 
-/* Cholesky factor of a symmetric 3x3, which is used up. The largest pivot goes first, so that rounding stays small
- * where the matrix is singular or worse. Rotating columns, which leaves factor factor^T as it is, then makes it
- * lower triangular. */
+/* Cholesky factor of a symmetric 3x3, which is overwritten. The largest pivot goes first, so that rounding stays small
+ * where the matrix is singular or indefinite. Then columns are rotated, which does not change factor factor^T, until
+ * it is lower triangular. */
 static void gxsp_factor3(double c[3][3], double factor[3][3]) {
     int done[3] = {0, 0, 0}, step, i, j, k;
     memset(factor, 0, 9 * sizeof(double));
@@ -2651,21 +2653,21 @@ static double gxsp_place_moments(const double *mass, const uint8_t *order, gxsp_
 }
 
 /* Puts an element into lane `at` of a chunk. order: corner of the element for each corner of the lane */
-static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *element, const uint8_t *order, uint32_t at,
-                               uint32_t lumped) {
-    gxsp_rest *rest = &chunk->rest[at / GXSP_LANES];
-    size_t lane = at % GXSP_LANES;
+static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *element, const uint8_t *order,
+                               uint32_t place, uint32_t lumped) {
+    gxsp_rest *rest = &chunk->rest[place / GXSP_LANES];
+    size_t lane = place % GXSP_LANES;
     int i, k;
     for (i = 0; i < 3 && chunk->gradients; i++)
         for (k = 0; k < 3; k++)
-            chunk->gradients[at / GXSP_LANES].entry[3 * i + k][lane] =
+            chunk->gradients[place / GXSP_LANES].entry[3 * i + k][lane] =
                 order[1 + i] > 0 ? element->gradient[order[1 + i]][k]
                                  : -(element->gradient[1][k] + element->gradient[2][k] + element->gradient[3][k]);
     rest->weight[lane] = element->weight;
     rest->material[lane] = element->material;
-    chunk->groups[at] = element->group % GXSP_GROUPS; /* a caller who does not update may leave it unset */
+    chunk->groups[place] = element->group % GXSP_GROUPS; /* a caller who does not update may leave it unset */
     if (chunk->moments)
-        rest->mass[lane] = gxsp_place_moments(element->mass, order, &chunk->moments[at / GXSP_LANES], lane);
+        rest->mass[lane] = gxsp_place_moments(element->mass, order, &chunk->moments[place / GXSP_LANES], lane);
     else
         rest->mass[lane] = lumped ? 0 : 0.5 * element->mass[0];
 }
@@ -2703,11 +2705,11 @@ static uint32_t gxsp_spread(uint32_t x) {
 }
 
 /* Position of a point along the Z-order curve through 1024^3 cells */
-static uint32_t gxsp_curve(const double *at, const double *low, double per_cell) {
+static uint32_t gxsp_curve(const double *point, const double *low, double per_cell) {
     uint32_t code = 0;
     int k;
     for (k = 0; k < 3; k++) {
-        double cell = (at[k] - low[k]) * per_cell;
+        double cell = (point[k] - low[k]) * per_cell;
         code |= gxsp_spread(cell < 0 ? 0 : cell > 1023 ? 1023 : (uint32_t)cell) << k;
     }
     return code;
@@ -2720,10 +2722,10 @@ typedef struct gxsp_sorted {
     uint32_t index; /* of the element or, while components are sorted, of the component */
 } gxsp_sorted;
 
-static uint32_t gxsp_sorted_digit(const gxsp_sorted *of, int pass) {
-    return pass < 3 ? of->place >> (10 * pass) & 1023u
-         : pass < 6 ? of->component >> (10 * (pass - 3)) & 1023u
-                    : of->class_index;
+static uint32_t gxsp_sorted_digit(const gxsp_sorted *item, int pass) {
+    return pass < 3 ? item->place >> (10 * pass) & 1023u
+         : pass < 6 ? item->component >> (10 * (pass - 3)) & 1023u
+                    : item->class_index;
 }
 
 /* Stable radix sort, least digit first. A digit that is the same everywhere is skipped. other: room for as many */
@@ -2755,11 +2757,11 @@ static void gxsp_place_elements(const gxs_model *model, gxsp_sorted *sorted) {
         }
     for (k = 0; k < 3; k++) extent = high[k] - low[k] > extent ? high[k] - low[k] : extent;
     for (i = 0; i < model->element_count && extent > 0; i++) {
-        double at[3] = {0, 0, 0};
+        double centre[3] = {0, 0, 0};
         for (k = 0; k < 4; k++)
             for (r = 0; r < 3; r++)
-                at[r] += 0.25 * model->positions[3 * (size_t)model->elements[i].copy[k] + (size_t)r];
-        sorted[i].place = gxsp_curve(at, low, 1024 / extent);
+                centre[r] += 0.25 * model->positions[3 * (size_t)model->elements[i].copy[k] + (size_t)r];
+        sorted[i].place = gxsp_curve(centre, low, 1024 / extent);
     }
 }
 
@@ -2841,7 +2843,7 @@ static gxsp_sorted *gxsp_order_elements(const gxsp_system *system, const gxs_mod
 /* >>lanes: which element of a chunk goes to which lane ------------------------------------------------------------- */
 
 /* In: nodes of a chunk's elements. Out: a lane for each element. Neighbours go to successive blocks, so that
- * elements of one block seldom share nodes: where they do, sums into slots wait for the ones before. A pass over
+ * elements of one block seldom share nodes: where they do, each sum into a slot waits for the one before. A pass over
  * blocks neither loads nor stores a corner that is the same as in the block before in every lane. Hence lanes are
  * filled with strips around an edge: four elements, each with all but one corner of the one before. */
 
@@ -2912,8 +2914,8 @@ typedef struct gxsp_layout {
     uint8_t order[GXSP_CHUNK][4]; /* by lane */
 } gxsp_layout;
 
-/* Finds three nodes in an element: their corners, and returns the fourth corner; 4: not each is there once. Without
- * branches, which processors could not predict */
+/* Finds the corners of three nodes in an element. Returns the fourth corner; 4: not all three are there once. Has no
+ * branches, which processors could not predict. */
 static int gxsp_find_face(const uint32_t *element, const uint32_t *face, uint8_t *corners) {
     static const uint8_t corner_of[16] = {4, 0, 1, 4, 2, 4, 4, 4, 3, 4, 4, 4, 4, 4, 4, 4}; /* by its bit */
     unsigned met[3];
@@ -2936,22 +2938,22 @@ static void gxsp_face_of(const uint32_t *element, int corner, uint32_t *face) {
 /* Fills across, with a hash table of the faces met so far. */
 static void gxsp_find_across(gxsp_layout *layout) {
     uint16_t table[GXSP_FACES]; /* 4 x element + corner, from 1 */
-    uint32_t f, at, face[3];
+    uint32_t f, place, face[3];
     uint8_t corners[3];
     memset(table, 0, sizeof table);
     for (f = 0; f < 4 * layout->count; f++) {
         layout->across[f / 4][f % 4] = (uint16_t)layout->count;
         gxsp_face_of(layout->nodes[f / 4], (int)(f % 4), face);
-        for (at = (face[0] * face[0] + face[1] * face[1] + face[2] * face[2]) * 40503u / 16 % GXSP_FACES; table[at];
-             at = (at + 1) % GXSP_FACES) {
-            const uint32_t other = (table[at] - 1u) / 4;
+        for (place = (face[0] * face[0] + face[1] * face[1] + face[2] * face[2]) * 40503u / 16 % GXSP_FACES;
+             table[place]; place = (place + 1) % GXSP_FACES) {
+            const uint32_t other = (table[place] - 1u) / 4;
             const int corner = gxsp_find_face(layout->nodes[other], face, corners);
-            if (corner != (int)((table[at] - 1u) % 4)) continue;
+            if (corner != (int)((table[place] - 1u) % 4)) continue;
             layout->across[f / 4][f % 4] = (uint16_t)other;
             layout->across[other][corner] = (uint16_t)(f / 4);
             break;
         }
-        if (!table[at]) table[at] = (uint16_t)(f + 1);
+        if (!table[place]) table[place] = (uint16_t)(f + 1);
     }
 }
 
@@ -3013,12 +3015,12 @@ static uint32_t gxsp_place_strips(gxsp_layout *layout, uint32_t blocks, uint32_t
     uint32_t c, i;
     for (c = 0; c < strips; c++)
         for (i = 0; i < length; i++) {
-            const uint32_t at = c * length + i, e = layout->strip[at];
+            const uint32_t index = c * length + i, e = layout->strip[index];
             const uint32_t lane = c < rows * GXSP_LANES ? (first + c % rows * length + i) * GXSP_LANES + c / rows : 0;
             layout->placed[e] = c < rows * GXSP_LANES;
             if (!layout->placed[e]) continue;
             layout->element[lane] = (uint16_t)e;
-            memcpy(layout->order[lane], layout->turn[at], 4);
+            memcpy(layout->order[lane], layout->turn[index], 4);
         }
     return first + rows * length;
 }
@@ -3057,11 +3059,11 @@ static void gxsp_lane_copies(const gxsp_system *system, const gxsp_chunk *chunk,
 /* Row sum of the mass of a lane's element at corner k */
 static double gxsp_lane_mass(const gxsp_chunk *chunk, uint32_t lane, int k) {
     const size_t b = lane / GXSP_LANES, l = lane % GXSP_LANES;
-    const gxsp_moments *of = gxsp_block_moments(chunk, (uint32_t)b);
+    const gxsp_moments *moments = gxsp_block_moments(chunk, (uint32_t)b);
     return chunk->rest[b].mass[l] *
-           (!of ? 5
-                : (double)(k > 0 ? of->centre[k - 1][l]
-                                 : 1 - (of->centre[0][l] + of->centre[1][l] + of->centre[2][l])));
+           (!moments ? 5
+                     : (double)(k > 0 ? moments->centre[k - 1][l]
+                                      : 1 - (moments->centre[0][l] + moments->centre[1][l] + moments->centre[2][l])));
 }
 
 /* Does the element of a lane give corner k stiffness or mass? */
@@ -3378,12 +3380,12 @@ static uint32_t gxsp_list_partials(gxsp_system *system, gxsp_partial *partials) 
         chunk->first_partial = count;
         for (k = 0; k < chunk->node_count; k++) {
             const uint32_t component = system->model.component[system->mesh.nodes[chunk->first_node + k]];
-            uint32_t at = count;
+            uint32_t place = count;
             if (system->model.components[component].lead == c) continue;
             system->model.components[component].lead = c;
-            for (; partials && at > chunk->first_partial && partials[at - 1].component > component; at--)
-                partials[at].component = partials[at - 1].component;
-            if (partials) partials[at].component = component;
+            for (; partials && place > chunk->first_partial && partials[place - 1].component > component; place--)
+                partials[place].component = partials[place - 1].component;
+            if (partials) partials[place].component = component;
             count++;
         }
         chunk->partial_count = count - chunk->first_partial;
@@ -3751,8 +3753,8 @@ static void gxsp_coarse_rows(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *le
 
 /* Adds the level after levels[at], at > 0, with twice its spacing. 0: it would not be much smaller. What it takes
  * of scratch stays there. */
-static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at) {
-    gxsp_level *level = &system->multigrid.levels[at], *next = level + 1;
+static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t depth) {
+    gxsp_level *level = &system->multigrid.levels[depth], *next = level + 1;
     gxsp_pool *pool = &system->multigrid.pool;
     gxsp_owned *mark = pool->last;
     gxsp_transfer transfer;
@@ -3907,8 +3909,9 @@ static void gxsp_edges_carve(gxsp_system *system, gxsp_space *space, int numbers
     size_t c, lanes = 0, nodes = 1, most = 0;
     for (c = 0; c < system->mesh.chunk_count; c++) {
         const gxsp_chunk *chunk = &system->mesh.chunks[c];
-        const size_t of = chunk->block_count * GXSP_LANES, count = numbers ? chunk->edge_count : 1 + 6 * of;
-        lanes = of > lanes ? of : lanes;
+        const size_t lanes_here = chunk->block_count * GXSP_LANES,
+                     count = numbers ? chunk->edge_count : 1 + 6 * lanes_here;
+        lanes = lanes_here > lanes ? lanes_here : lanes;
         nodes = chunk->node_count > nodes ? chunk->node_count : nodes;
         most = count > most ? count : most;
     }
@@ -3944,14 +3947,14 @@ static void gxsp_edges_begin(gxsp_edges *edges, const gxsp_chunk *chunk) {
  * processors could not predict it. count: edges so far */
 static inline uint16_t gxsp_find_edge(const gxsp_edges *edges, uint32_t i, uint32_t j, uint32_t *count) {
     const uint32_t low = i < j ? i : j, high = i < j ? j : i, ends = low << 16 | high;
-    uint16_t *at = &edges->table[high * (high - 1) / 2 + low];
+    uint16_t *entry = &edges->table[high * (high - 1) / 2 + low];
     int made;
     if (low == high) return 0;
-    made = (*at >= *count) | (edges->ends[*at] != ends);
+    made = (*entry >= *count) | (edges->ends[*entry] != ends);
     edges->ends[*count] = ends;
-    *at = made ? (uint16_t)*count : *at;
+    *entry = made ? (uint16_t)*count : *entry;
     *count += (uint32_t)made;
-    return *at;
+    return *entry;
 }
 
 /* The six edges of each element of a block; 0 where the element has no weight */
@@ -4207,7 +4210,7 @@ static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch) {
 
 /* The rows of level 1 and all levels after it. before, dirty: see gxsp_first_pattern */
 static void gxsp_levels_make(gxsp_system *system, gxsp_pool *scratch, const gxsp_level *before, const uint8_t *dirty) {
-    uint32_t at;
+    uint32_t depth;
     gxsp_pairs_make(system, scratch);
     if (scratch->failed) return;
     if (system->multigrid.fine)
@@ -4216,18 +4219,18 @@ static void gxsp_levels_make(gxsp_system *system, gxsp_pool *scratch, const gxsp
         gxsp_first_pattern(system, scratch, before, dirty);
     gxsp_count_edges(system);
     if (scratch->failed || system->multigrid.pool.failed) return;
-    for (at = 1;
-         at + 1 < GXSP_LEVELS &&
-         !gxsp_factors(scratch, &system->multigrid.levels[at], at == 1 ? system->model.n / 2 : system->model.n) &&
-         gxsp_add_level(system, scratch, at);
-         at++)
+    for (depth = 1;
+         depth + 1 < GXSP_LEVELS &&
+         !gxsp_factors(scratch, &system->multigrid.levels[depth], depth == 1 ? system->model.n / 2 : system->model.n) &&
+         gxsp_add_level(system, scratch, depth);
+         depth++)
         ;
-    system->multigrid.level_count = at + 1;
-    for (at = 1;
-         !scratch->failed && !system->multigrid.pool.failed && (at == 1 || at + 1 < system->multigrid.level_count);
-         at++)
-        system->multigrid.levels[at].block = (float *)gxsp_take(
-            &system->multigrid.pool, gxsp_block_numbers(&system->multigrid.levels[at]), sizeof(float));
+    system->multigrid.level_count = depth + 1;
+    for (depth = 1; !scratch->failed && !system->multigrid.pool.failed &&
+                    (depth == 1 || depth + 1 < system->multigrid.level_count);
+         depth++)
+        system->multigrid.levels[depth].block = (float *)gxsp_take(
+            &system->multigrid.pool, gxsp_block_numbers(&system->multigrid.levels[depth]), sizeof(float));
     gxsp_factor_make(system, scratch);
 }
 
@@ -4520,7 +4523,7 @@ static uint32_t gxsp_large(const gxsp_system *system) {
     return system->model.stiff ? GXSP_MULTIGRID_FROM_STIFF : GXSP_MULTIGRID_FROM;
 }
 
-/* Does multigrid pay for a component? All components take as many iterations as the slowest one. count:
+/* Is a component large enough for multigrid? All components take as many iterations as the slowest one. count:
  * component_count, scratch */
 static int gxsp_large_component(const gxsp_system *system, uint32_t *count) {
     const uint32_t from = gxsp_large(system);
@@ -4596,7 +4599,7 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     return SIZE_MAX;
 }
 
-/* Memory that only steps need. Taken last, when temporary memory has been given back */
+/* Takes the memory that only steps need: last, when temporary memory has been given back */
 static void gxsp_steps_make(gxsp_system *system) {
     const size_t n = system->model.n;
     gxsp_vectors *vectors = &system->vectors;
@@ -4699,8 +4702,8 @@ static void gxsp_block_load_copies(const gxsp_system *system, const gxsp_chunk *
     int i, l;
     for (i = 0; i < 4; i++)
         for (l = 0; l < GXSP_LANES && chunk->changed[b] >> i & 1; l++) {
-            const double *of = x + 3 * (size_t)copies[chunk->corners[b].node[i][l]];
-            corners[3 * i][l] = of[0], corners[3 * i + 1][l] = of[1], corners[3 * i + 2][l] = of[2];
+            const double *copy = x + 3 * (size_t)copies[chunk->corners[b].node[i][l]];
+            corners[3 * i][l] = copy[0], corners[3 * i + 1][l] = copy[1], corners[3 * i + 2][l] = copy[2];
         }
 }
 
@@ -4746,17 +4749,17 @@ static void gxsp_block_store(const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *GX
 /* Rotates P of elements by the rotation from their orientation at displacement gradients `from` to that at `to`. P
  * stays where that is more than a right angle: such an element is tangled. */
 static void gxsp_rotate_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p) {
-    gxsp_svd of[2];
+    gxsp_svd svd[2];
     int r, c, k, l;
-    gxsp_decompose(from, to, of);
+    gxsp_decompose(from, to, svd);
     for (l = 0; l < GXSP_LANES; l++) {
         double a[9], b[9], turn[9], stress[9], f[9], h[9];
         for (r = 0; r < 3; r++)
             for (c = 0; c < 3; c++) {
                 a[3 * r + c] = b[3 * r + c] = 0;
                 for (k = 0; k < 3; k++) {
-                    a[3 * r + c] += (double)(of[0].u[3 * r + k][l] * of[0].v[3 * c + k][l]);
-                    b[3 * r + c] += (double)(of[1].u[3 * r + k][l] * of[1].v[3 * c + k][l]);
+                    a[3 * r + c] += (double)(svd[0].u[3 * r + k][l] * svd[0].v[3 * c + k][l]);
+                    b[3 * r + c] += (double)(svd[1].u[3 * r + k][l] * svd[1].v[3 * c + k][l]);
                 }
             }
         for (k = 0; k < 9; k++) {
@@ -4837,7 +4840,7 @@ static void gxsp_task_state(void *context, size_t index) {
     double *slots = &system->vectors.slots[chunk->first_node][0];
     uint32_t b;
     int k, l, inertia;
-    double rest_at[3 * 4 * GXSP_CHUNK + 1], at[3 * 4 * GXSP_CHUNK + 1];
+    double positions[3 * 4 * GXSP_CHUNK + 1], state[3 * 4 * GXSP_CHUNK + 1];
     gxsp_lanes corners[12], x[12], other[12], forces[12], made[9];
     if (gxsp_chunk_settled(system, chunk)) return;
     for (b = 0; b < chunk->partial_count; b++)
@@ -4845,16 +4848,16 @@ static void gxsp_task_state(void *context, size_t index) {
     memset(slots, 0, 3 * (size_t)chunk->node_count * sizeof *slots);
     if (system->state.chunk_still[index]) return;
     inertia = pass->inertia && gxsp_accelerates(system, chunk, pass->from);
-    gxsp_chunk_load(system, chunk, pass->from, at);
-    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, rest_at);
+    gxsp_chunk_load(system, chunk, pass->from, state);
+    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, positions);
     memset(forces, 0, sizeof forces);
     for (b = 0; b < chunk->block_count; b++) {
         const gxsp_rest *rest = &chunk->rest[b];
         gxsp_lanes ahead[9], led[12], energies[3], *gradients;
         gxsp_state s;
         gxsp_prefetch_block(system, index, b, GXSP_RESTS_AHEAD, 0);
-        gxsp_block_load(chunk, b, at, x);
-        gradients = gxsp_block_gradients(chunk, b, rest_at, corners, made);
+        gxsp_block_load(chunk, b, state, x);
+        gradients = gxsp_block_gradients(chunk, b, positions, corners, made);
         if (inertia || pass->rotated) /* never both: rotated stresses come without inertia */
             gxsp_block_load_copies(system, chunk, b, inertia ? system->vectors.target : pass->rotated, other);
         gxsp_block_parameters(pass->materials, rest, &s);
@@ -4974,8 +4977,8 @@ static void gxsp_add_scaled(float a, const float *GXSP_RESTRICT x, float *GXSP_R
 /* y += a x for four numbers */
 static inline void gxsp_add_four(float a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y) {
 #if defined(GXSP_SHUFFLES)
-    const gxsp_four all = {a, a, a, a}; /* x87 would make a long double of a alone, by which no vector can be multiplied
-                                         */
+    /* with x87, a alone would become a long double, by which no vector can be multiplied */
+    const gxsp_four all = {a, a, a, a};
     *(gxsp_four *)y += all * *(const gxsp_four *)x;
 #else
     int k;
@@ -5090,10 +5093,10 @@ static inline void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, fl
         gxsp_transpose_four(block[0] + l, block[1] + l, block[2] + l, block[3] + l, first);
         gxsp_transpose_four(block[4] + l, block[5] + l, block[6] + l, block[7] + l, second);
         for (k = 0; k < 4; k++) {
-            float *at = to[entry[l + k]];
-            *(gxsp_four *)at += first[k];
-            *(gxsp_four *)(at + 4) += second[k];
-            at[8] += block[8][l + k];
+            float *sum = to[entry[l + k]];
+            *(gxsp_four *)sum += first[k];
+            *(gxsp_four *)(sum + 4) += second[k];
+            sum[8] += block[8][l + k];
         }
     }
 }
@@ -5183,9 +5186,10 @@ static void gxsp_task_product_sum(void *context, size_t index) {
     size_t i, end = gxsp_range(system, index, &i);
     double work = 0;
     for (; i < end; i++) {
-        const float *at = pass->x[i], m = system->model.lumped_mass ? (float)(pass->rate * system->model.lumped[i]) : 0;
+        const float *direction = pass->x[i],
+                    m = system->model.lumped_mass ? (float)(pass->rate * system->model.lumped[i]) : 0;
         const double *right = pass->right ? pass->right + 3 * i : NULL;
-        float x = m * at[0], y = m * at[1], z = m * at[2], *to = pass->y[i];
+        float x = m * direction[0], y = m * direction[1], z = m * direction[2], *to = pass->y[i];
         uint32_t s;
         for (s = system->mesh.copy_start[i]; s < system->mesh.copy_start[i + 1] && !system->state.still[i]; s++) {
             const float *from = slots[system->mesh.copy_slot[s]];
@@ -5196,7 +5200,7 @@ static void gxsp_task_product_sum(void *context, size_t index) {
             to[0] = (float)right[0] - x, to[1] = (float)right[1] - y, to[2] = (float)right[2] - z;
         else
             to[0] = x, to[1] = y, to[2] = z;
-        work += (double)at[0] * (double)x + (double)at[1] * (double)y + (double)at[2] * (double)z;
+        work += (double)direction[0] * (double)x + (double)direction[1] * (double)y + (double)direction[2] * (double)z;
     }
     system->vectors.range_sum[index][0] = work;
 }
@@ -5231,11 +5235,11 @@ static double gxsp_add_terms(const gxsp_lasting *lasting, float sign, gxsp_vecto
     int k, c;
     for (t = 0; t < lasting->count; t++) {
         const gxsp_term *term = &lasting->term[t];
-        float at[3] = {0, 0, 0}, force[3];
+        float u[3] = {0, 0, 0}, force[3];
         for (k = 0; k < 4 && !term->assembled; k++)
-            for (c = 0; c < 3; c++) at[c] += term->weight[k] * x[term->copy[k]][c];
-        gxsp_apply_packed(term->hessian, at, force);
-        for (c = 0; c < 3; c++) work += (double)at[c] * (double)force[c];
+            for (c = 0; c < 3; c++) u[c] += term->weight[k] * x[term->copy[k]][c];
+        gxsp_apply_packed(term->hessian, u, force);
+        for (c = 0; c < 3; c++) work += (double)u[c] * (double)force[c];
         for (k = 0; k < 4 && !term->assembled; k++)
             for (c = 0; c < 3; c++) y[term->copy[k]][c] += sign * term->weight[k] * force[c];
     }
@@ -5357,10 +5361,11 @@ static void gxsp_task_apply_sum(void *context, size_t index) {
     const double unit = 1 / system->model.scale, back = 1 / pass->factor;
     size_t i, end = gxsp_range(system, index, &i);
     for (; i < end; i++) {
-        double at[3] = {0, 0, 0}, mass = system->model.lumped_mass ? pass->rate * system->model.lumped[i] : 0, x, y, z;
+        double direction[3] = {0, 0, 0}, mass = system->model.lumped_mass ? pass->rate * system->model.lumped[i] : 0, x,
+               y, z;
         uint32_t s;
-        if (mass > 0) gxsp_copy_direction(pass, (uint32_t)i, at);
-        x = mass * at[0], y = mass * at[1], z = mass * at[2];
+        if (mass > 0) gxsp_copy_direction(pass, (uint32_t)i, direction);
+        x = mass * direction[0], y = mass * direction[1], z = mass * direction[2];
         for (s = system->mesh.copy_start[i]; s < system->mesh.copy_start[i + 1] && !system->model.fixed[i]; s++) {
             const float *from = slots[system->mesh.copy_slot[s]];
             gxsp_prefetch(slots[system->mesh.copy_slot[s + GXSP_AHEAD]], sizeof *slots);
@@ -5427,7 +5432,7 @@ static void gxsp_task_linearise(void *context, size_t index) {
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     float *slots = (float *)(void *)system->vectors.slots[chunk->first_node];
-    double rest_at[3 * 4 * GXSP_CHUNK + 1], at[3 * 4 * GXSP_CHUNK + 1];
+    double positions[3 * 4 * GXSP_CHUNK + 1], state[3 * 4 * GXSP_CHUNK + 1];
     gxsp_lanes corners[12], x[12], made[2][9], *gradients[2];
     gxsp_singles own[24];
     uint32_t b, k, blocks;
@@ -5436,26 +5441,26 @@ static void gxsp_task_linearise(void *context, size_t index) {
     if (system->state.chunk_still[index]) return;
     memset(slots, 0, 6 * (size_t)chunk->node_count * sizeof *slots);
     memset(own, 0, sizeof own);
-    gxsp_chunk_load(system, chunk, pass->from, at);
-    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, rest_at);
+    gxsp_chunk_load(system, chunk, pass->from, state);
+    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, positions);
     for (b = 0; b < chunk->block_count; b += blocks) { /* two at a time */
         gxsp_state s[2];
-        gxsp_svd of[2];
+        gxsp_svd svd[2];
         blocks = b + 1 < chunk->block_count ? 2 : 1;
         for (k = 0; k < blocks; k++) {
             gxsp_prefetch_block(system, index, b + k, GXSP_RESTS_AHEAD, 0);
-            gxsp_block_load(chunk, b + k, at, x);
+            gxsp_block_load(chunk, b + k, state, x);
             gxsp_block_parameters(pass->materials, &chunk->rest[b + k], &s[k]);
-            gradients[k] = gxsp_block_gradients(chunk, b + k, rest_at, corners, made[k]);
+            gradients[k] = gxsp_block_gradients(chunk, b + k, positions, corners, made[k]);
             gxsp_block_gradient(gradients[k], x, s[k].g);
         }
         system->state.chunk_collapsed[index] |=
-            (uint8_t)gxsp_tangent_begin(chunk->kind, &s[0], blocks > 1 ? &s[1] : NULL, of);
+            (uint8_t)gxsp_tangent_begin(chunk->kind, &s[0], blocks > 1 ? &s[1] : NULL, svd);
         for (k = 0; k < blocks; k++) {
             const gxsp_rest *rest = &chunk->rest[b + k];
             gxsp_tangent *tangent = &chunk->tangents[b + k];
-            gxsp_tangent_make(chunk->kind, rest, gradients[k], system->model.scale, pass->exact, &s[k], &of[k], tangent,
-                              gxsp_block_general(chunk, b + k));
+            gxsp_tangent_make(chunk->kind, rest, gradients[k], system->model.scale, pass->exact, &s[k], &svd[k],
+                              tangent, gxsp_block_general(chunk, b + k));
             GXSP_EACH_LANE(l) tangent->mass[l] = (float)(pass->rate * rest->mass[l]);
             gxsp_block_diagonal(chunk, b + k, own);
             gxsp_diagonal_scatter(chunk, b + k, own, slots);
@@ -5463,10 +5468,10 @@ static void gxsp_task_linearise(void *context, size_t index) {
     }
 }
 
-/* Inverse of a positive semi-definite 3x3, packed, in place, as W^T W with W the inverse Cholesky factor:
+/* Inverse of a positive semi-definite 3x3, packed, in place, as W^T W with W the inverse Cholesky factor. So it is
  * semi-definite in spite of rounding. 1e-7 of the trace is added, since the entries are sums in single precision: a
- * direction without stiffness gives a large number, not an infinite one. Zero stays zero: such a copy is left
- * alone. What is not finite stays so. */
+ * direction without stiffness gives a large number, not an infinite one. Zero stays zero; such a copy is left alone.
+ * Numbers that are not finite stay so. */
 static void gxsp_invert3(double *a) {
     const double shift = 1e-7;
     double trace = a[0] + a[3] + a[5], scale, l00, l10, l20, l11, l21, l22, w10, w20, w21;
@@ -5595,12 +5600,13 @@ static void gxsp_order_block(const uint16_t *GXSP_RESTRICT p, const uint16_t *GX
 /* Adds half the row sums of a block's masses to its nodes. */
 static void gxsp_own_mass(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b) {
     const gxsp_moments *moments = gxsp_block_moments(chunk, b);
-    gxsp_singles of[4], half;
+    gxsp_singles corner[4], half;
     int k, l;
     for (k = 0; k < 4; k++) {
-        if (moments) gxsp_corner_moments(moments, k, of);
+        if (moments) gxsp_corner_moments(moments, k, corner);
         GXSP_EACH_LANE(l)
-        half[l] = chunk->rest[b].weight[l] > 0 ? (moments ? 0.5f * of[0][l] : 2.5f) * chunk->tangents[b].mass[l] : 0;
+        half[l] =
+            chunk->rest[b].weight[l] > 0 ? (moments ? 0.5f * corner[0][l] : 2.5f) * chunk->tangents[b].mass[l] : 0;
         for (l = 0; l < GXSP_LANES; l++) edges->mass[chunk->corners[b].node[k][l]] += half[l];
     }
 }
@@ -5628,21 +5634,21 @@ static void gxsp_edges_clear(gxsp_edges *edges, const gxsp_chunk *chunk) {
 static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk) {
     gxsp_edges *edges = &system->multigrid.edges;
     uint32_t b;
-    int pair, k, at;
+    int pair, k, edge;
     gxsp_edges_clear(edges, chunk);
     for (b = 0; b < chunk->block_count; b++) {
         const gxsp_corners *corner = &chunk->corners[b];
         const gxsp_tangent *tangent = &chunk->tangents[b];
         gxsp_singles gamma[4][3];
         for (k = 0; k < 4; k++) gxsp_block_corner(tangent, k, gamma[k]);
-        for (pair = at = 0; pair < 10; pair++) {
+        for (pair = edge = 0; pair < 10; pair++) {
             const int p = gxsp_pair_corners[pair][0], q = gxsp_pair_corners[pair][1];
             gxsp_singles block[9], mass;
             if (p == q) continue;
             gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma[p], gamma[q], block);
             gxsp_block_mass(tangent, gxsp_block_moments(chunk, b), p, q, mass);
             gxsp_order_block(corner->node[p], corner->node[q], mass, block);
-            gxsp_add_lanes(edges->element[b][at++], block, edges->block);
+            gxsp_add_lanes(edges->element[b][edge++], block, edges->block);
         }
         gxsp_own_mass(edges, chunk, b);
     }
@@ -5685,9 +5691,9 @@ static inline uint32_t gxsp_add_half(const gxsp_system *system, uint32_t i, uint
     return count;
 }
 
-/* Node i's row of S, where the Hessian is S + S^T, times the transfer, in edges->half by number. S has the edges to
- * higher nodes and half the diagonal. Rows of stiffness add up to 0: hence half the diagonal is half the mass minus
- * half the sum of the node's edges, transposed or not. Returns how many numbers are touched. */
+/* Node i's row of S times the transfer, in edges->half by number. The Hessian is S + S^T: S has the edges to higher
+ * nodes and half the diagonal. Rows of stiffness add up to 0, so half the diagonal is half the mass minus half the sum
+ * of the node's edges, transposed or not. Returns how many numbers are touched. */
 static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint32_t i) {
     const gxsp_level *fine = &system->multigrid.levels[0];
     gxsp_edges *edges = &system->multigrid.edges;
@@ -5957,11 +5963,11 @@ static int gxsp_factor_own(gxsp_factor *factor, uint32_t i, uint32_t r) {
     return gxsp_finite_single(row[j]);
 }
 
-/* Cholesky of the last level, node by node. Without rounding no pivot is below GXSP_SHIFT of its diagonal. One
- * below half of that is rounding, as in components that are small beside the lattice, whose coarse functions are
- * nearly alike: its unknown is left out, for any other pivot would let later entries grow without bound. Entries
- * are single precision, which leaves the product of the factors positive semi-definite; the rows at work are
- * double. 0: a number overflowed. */
+/* Cholesky of the last level, node by node. Without rounding no pivot is below GXSP_SHIFT of its diagonal. A pivot
+ * below half of that is rounding: coarse functions of components that are small beside the lattice are nearly alike.
+ * Its unknown is left out, since any other pivot would let later entries grow without bound. Entries are single
+ * precision, which leaves the product of the factors positive semi-definite; the rows at work are double. 0: a number
+ * overflowed. */
 static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t *place) {
     uint32_t i, r;
     gxsp_fill_factor(factor, level, place);
@@ -5976,11 +5982,11 @@ static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t
 /* All numbers that follow from level 1's matrix. dirty: nodes of level 1 whose numbers are new; NULL: all are. 0: a
  * number overflowed. */
 static int gxsp_lower_numbers(gxsp_system *system, const uint8_t *dirty) {
-    uint32_t at;
-    for (at = 1; at < system->multigrid.level_count; at++) {
-        gxsp_level *level = &system->multigrid.levels[at];
-        if (!gxsp_invert_diagonal(level, at == 1 ? dirty : NULL)) return 0;
-        if (at + 1 < system->multigrid.level_count) gxsp_coarsen(level, level + 1, &system->multigrid.pairs);
+    uint32_t depth;
+    for (depth = 1; depth < system->multigrid.level_count; depth++) {
+        gxsp_level *level = &system->multigrid.levels[depth];
+        if (!gxsp_invert_diagonal(level, depth == 1 ? dirty : NULL)) return 0;
+        if (depth + 1 < system->multigrid.level_count) gxsp_coarsen(level, level + 1, &system->multigrid.pairs);
     }
     return gxsp_factorise(&system->multigrid.factor, &system->multigrid.levels[system->multigrid.level_count - 1],
                           system->multigrid.pairs.local);
@@ -6015,11 +6021,11 @@ static void gxsp_assemble_following(gxsp_system *system, uint32_t p, uint32_t q,
     gxsp_level *fine = &system->multigrid.levels[0];
     uint32_t a[4], b[4];
     float wa[4], wb[4], transposed[9];
-    const int as = gxsp_corner_masters(system, p, a, wa), bs = gxsp_corner_masters(system, q, b, wb);
+    const int a_count = gxsp_corner_masters(system, p, a, wa), b_count = gxsp_corner_masters(system, q, b, wb);
     int i, j;
     gxsp_transpose_block(block, transposed);
-    for (i = 0; i < as; i++)
-        for (j = 0; j < bs; j++) {
+    for (i = 0; i < a_count; i++)
+        for (j = 0; j < b_count; j++) {
             const uint32_t low = a[i] < b[j] ? a[i] : b[j], high = a[i] < b[j] ? b[j] : a[i];
             float *to = fine->block + 9 * (size_t)gxsp_find_entry(fine, low, high);
             if (same && a[i] > b[j]) /* its mirror is added in its own turn */
@@ -6210,9 +6216,9 @@ static void gxsp_choose_omega(gxsp_system *system, double rate) {
     if (system->smoother.cautious == 0) system->smoother.omega = system->smoother.found;
 }
 
-/* Sets the step length that keeps the cycle definite at any state: no element's own D^-1 K exceeds 4, and so no sum
- * of them does; with followers it may, and the quotient met counts. quotient: x . A x / x . D x of an x for which
- * the length was too large; 0: not known */
+/* Sets the step length that keeps the cycle definite at any state: no element's own D^-1 K exceeds 4, so no sum of
+ * elements does. With followers it may; then the quotient counts. quotient: x . A x / x . D x of an x for which the
+ * length was too large; 0: not known */
 static void gxsp_shorten_omega(gxsp_system *system, double quotient) {
     const double largest = system->model.follower_count > 0 && 1.25 * quotient > 4 ? 1.25 * quotient : 4;
     system->smoother.omega = (float)(1.5 / largest);
@@ -6307,15 +6313,15 @@ static void gxsp_factor_solve(const gxsp_factor *factor, gxsp_level *level) {
 }
 
 /* x = the multigrid's answer to b on levels[at] and below, at > 0 */
-static void gxsp_cycle(gxsp_system *system, uint32_t at) {
-    gxsp_level *level = &system->multigrid.levels[at];
-    if (at + 1 == system->multigrid.level_count) {
+static void gxsp_cycle(gxsp_system *system, uint32_t depth) {
+    gxsp_level *level = &system->multigrid.levels[depth];
+    if (depth + 1 == system->multigrid.level_count) {
         gxsp_factor_solve(&system->multigrid.factor, level);
         return;
     }
     gxsp_sweep_forward(level);
     gxsp_restrict(level, level + 1);
-    gxsp_cycle(system, at + 1);
+    gxsp_cycle(system, depth + 1);
     gxsp_prolong(level, level + 1);
     gxsp_sweep_backward(level);
 }
@@ -6333,9 +6339,9 @@ static void gxsp_task_smooth(void *context, size_t index) {
     }
 }
 
-/* scaled = V-cycle of the residual. Level 0 is smoothed by omega D^-1, once on entry (see gxsp_scale), or by block
- * Gauss-Seidel if it is assembled. In violent motion the largest eigenvalue may exceed the one for which omega was
- * found: the residual grows in it and shows it. energy: residual . D^-1 residual; product: scratch */
+/* scaled = V-cycle of the residual. Level 0 is smoothed by omega D^-1, already done once on entry (see gxsp_scale), or
+ * by block Gauss-Seidel if it is assembled. In violent motion the largest eigenvalue may exceed the one for which omega
+ * was found; a residual that grows in the cycle shows it. energy: residual . D^-1 residual; product: scratch */
 static void gxsp_v_cycle(gxsp_system *system, double rate, double energy) {
     gxsp_level *fine = &system->multigrid.levels[0];
     gxsp_pass pass;
@@ -6688,14 +6694,14 @@ static int gxsp_find_successors(gxsp_renewal *update) {
     uint32_t i;
     memset(update->successor, 0xff, update->before * sizeof *update->successor);
     for (i = 0; i < change->copy_count; i++) {
-        uint32_t *of = &update->successor[change->origins[i] >> 1];
+        uint32_t *successor = &update->successor[change->origins[i] >> 1];
         if ((change->held && change->held[i]) != (update->system->model.held[change->origins[i] >> 1] != 0)) return 0;
         if (change->origins[i] & 1)
             update->touched[i] = 1;
-        else if (*of != GXSP_NONE)
+        else if (*successor != GXSP_NONE)
             return 0;
         else
-            *of = i;
+            *successor = i;
     }
     return 1;
 }
@@ -6816,9 +6822,9 @@ static void gxsp_renew_components(gxsp_renewal *update) {
     }
     for (c = 0; c < system->mesh.chunk_count; c++)
         for (i = 0; i < system->mesh.chunks[c].node_count; i++) {
-            const uint32_t at = system->mesh.chunks[c].first_node + i;
-            gxsp_join(forest, system->mesh.nodes[at],
-                      system->mesh.nodes[system->mesh.chunks[c].first_node + system->mesh.slot_root[at]]);
+            const uint32_t slot = system->mesh.chunks[c].first_node + i;
+            gxsp_join(forest, system->mesh.nodes[slot],
+                      system->mesh.nodes[system->mesh.chunks[c].first_node + system->mesh.slot_root[slot]]);
         }
     gxsp_join_followers(system, forest);
     gxsp_number_components(system, forest);
@@ -6908,13 +6914,13 @@ static void gxsp_drop_fixed(const gxsp_renewal *update) {
 
 /* Copies blocks of level 1's entries between nodes that are not dirty, from the level before. */
 static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const uint8_t *dirty) {
-    uint32_t i, k, at;
+    uint32_t i, k, entry;
     for (i = 0; i < before->n; i++) {
         if (dirty[i]) continue;
-        for (k = before->start[i], at = level->start[i]; k < before->start[i + 1]; k++) {
+        for (k = before->start[i], entry = level->start[i]; k < before->start[i + 1]; k++) {
             if (dirty[before->column[k]]) continue;
-            while (level->column[at] < before->column[k]) at++;
-            memcpy(level->block + 9 * (size_t)at, before->block + 9 * (size_t)k, 9 * sizeof(float));
+            while (level->column[entry] < before->column[k]) entry++;
+            memcpy(level->block + 9 * (size_t)entry, before->block + 9 * (size_t)k, 9 * sizeof(float));
         }
     }
 }
@@ -7138,9 +7144,9 @@ static void gxsp_balance_momentum(const gxsp_problem *problem, uint32_t ignored,
             x[3 * i + r] += system->model.components[system->model.component[i]].sum[r] / problem->rate;
 }
 
-/* Translates the direction on every component that nothing acts on now so that its momentum balances. Linear solves
- * are single precision: the momentum of a component of next to no mass, which contact has pushed before, is lost in
- * their rounding. */
+/* Translates the direction of every component on which nothing acts now, so that its momentum balances. Linear solves
+ * are single precision: their rounding loses the momentum of a component of next to no mass that contact has pushed
+ * before. */
 static void gxsp_balance_direction(const gxsp_problem *problem) {
     gxsp_balance_momentum(problem, GXSP_TOUCHED, problem->system->vectors.current, problem->system->vectors.direction);
 }
@@ -7225,10 +7231,10 @@ static void gxsp_add_dyad(double a, double b, const double *n, double *hessian) 
         for (j = i; j < 3; j++) hessian[gxsp_packed3(i, j)] += (i == j ? a : 0) + b * n[i] * n[j];
 }
 
-/* Friction: energy load phi(|y|), y the way across the plane since the step's start, phi(s) = s^2 / (2 reach) up to
- * reach and s - reach/2 beyond. It is convex, so its Hessian is semi-definite. cautious: phi'(s) / s in every
- * direction takes the Hessian's place, which it bounds. Exact ones overshoot the kink at the end of sticking to and
- * fro. */
+/* Friction: energy load phi(|y|), y the way along the plane since the step's start, phi(s) = s^2 / (2 reach) up to
+ * reach and s - reach/2 beyond. It is convex, so its Hessian is semi-definite. cautious: the Hessian is replaced by a
+ * bound, phi'(s) / s in every direction. With the exact one, iterations jump back and forth over the kink at the end of
+ * sticking. */
 static void gxsp_friction_pull(const gxs_plane *plane, double load, double reach, const double *way, int cautious,
                                gxsp_pull *pull) {
     const double *n = plane->normal, along = n[0] * way[0] + n[1] * way[1] + n[2] * way[2];
@@ -7287,11 +7293,11 @@ static void gxsp_contact_pull(const gxsp_problem *problem, size_t i, const doubl
 
 /* The next point of a step: springs first, then contact points. NULL at the end. Points that do not move are
  * skipped. */
-static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *at, const double *displacement,
+static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *next, const double *displacement,
                                        gxsp_pull *pull) {
     const gxs_step_desc *step = problem->step;
-    for (; *at < step->spring_count + step->point_count; (*at)++) {
-        const size_t i = *at;
+    for (; *next < step->spring_count + step->point_count; (*next)++) {
+        const size_t i = *next;
         const gxs_point *point =
             i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
         if (!gxsp_point_moves(problem->system, point)) continue;
@@ -7299,7 +7305,7 @@ static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *at, 
             gxsp_spring_pull(&step->springs[i], displacement, pull);
         else
             gxsp_contact_pull(problem, i - step->spring_count, displacement, pull);
-        (*at)++;
+        (*next)++;
         return point;
     }
     return NULL;
@@ -7353,10 +7359,10 @@ static void gxsp_sum_energies(const gxsp_system *system, double *energies) {
 static void gxsp_evaluate(const gxsp_problem *problem, const double *from, int nudge, double *force) {
     const gxs_point *point;
     gxsp_pull pull;
-    size_t at = 0;
+    size_t next = 0;
     int k, c;
     gxsp_evaluate_elements(problem->system, problem->rate, from, NULL, nudge, force);
-    while ((point = gxsp_next_pull(problem, &at, from, &pull)) != NULL) {
+    while ((point = gxsp_next_pull(problem, &next, from, &pull)) != NULL) {
         double *energies = gxsp_lead_of(problem->system, gxsp_point_copy(point))->energies;
         energies[0] += pull.energy;
         energies[2] += fabs(pull.energy);
@@ -7386,10 +7392,10 @@ static void gxsp_terms_make(const gxsp_problem *problem, const double *displacem
     gxsp_lasting *lasting = problem->system->lasting;
     const gxs_point *point;
     gxsp_pull pull;
-    size_t at = 0;
+    size_t next = 0;
     int k;
     lasting->count = 0;
-    while ((point = gxsp_next_pull(problem, &at, displacement, &pull)) != NULL) {
+    while ((point = gxsp_next_pull(problem, &next, displacement, &pull)) != NULL) {
         gxsp_term *term = &lasting->term[lasting->count];
         if (!(pull.hessian[0] + pull.hessian[3] + pull.hessian[5] > 0) && !(gxsp_dot(pull.force, pull.force, 1) > 0))
             continue;
@@ -7523,8 +7529,9 @@ static int gxsp_is_definite(double rho, double energy) {
     return gxsp_finite(rho) && rho > 0 && rho <= GXSP_ABSURD * energy;
 }
 
-/* As gxsp_precondition, but definite: if the cycle proves not to be, it is smoothed more carefully, and at worst
- * left out of this solve. now: measures of the residual; changed: the preconditioner differs from the one before */
+/* As gxsp_precondition, but definite: if the cycle proves indefinite, the smoother's step length is shortened, and at
+ * worst the cycle is left out of this solve. now: measures of the residual; changed: the preconditioner differs from
+ * the one before */
 static double gxsp_precondition_definite(gxsp_system *system, double rate, const gxsp_norms *now, int *changed) {
     const float omega = system->smoother.omega;
     double rho = gxsp_precondition(system, rate, now->energy);
@@ -7686,9 +7693,9 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem) {
 /* In: the linearisation, counts of iterations. Out: matrices and preconditioner ready for a solve, and the solve
  * itself. Writes gxsp_coarse. */
 
-/* Does multigrid pay at this rate? It does where it was asked for, and if a large component has a small mean share
- * of inertia in the linearisation's diagonal blocks. Each copy counts up to 4/3 of the bound, so that a quarter of
- * stiff ones is enough. */
+/* Is multigrid faster at this rate? It is used where the caller asked for it, and where inertia has a small mean share
+ * of the diagonal blocks of some large component. Each copy's share counts as 4/3 of the bound at most, so that a
+ * quarter of stiff copies is enough. */
 static int gxsp_coarse_pays(gxsp_system *system, double rate) {
     const double bound = 3 * GXSP_INERTIA / (system->model.scale * rate);
     size_t i;
@@ -7712,8 +7719,8 @@ static int gxsp_coarse_pays(gxsp_system *system, double rate) {
 }
 
 /* Updates matrix and preconditioner to the linearisation. Coarse matrices are made anew if there are none, if the
- * rate has changed, if iterations have doubled since they were made, or before they rise by more than new ones
- * cost. */
+ * rate has changed, if iterations have doubled since they were made, or at the end of their life: before the further
+ * iterations cost more than new matrices. */
 static int gxsp_prepare(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     int other; /* the rate differs from that of the coarse matrices */
@@ -7738,7 +7745,8 @@ static int gxsp_prepare(gxsp_problem *problem) {
 }
 
 /* Chooses how long the coarse matrices are to serve. Their first reading tells how much slower the ones before were
- * in the end. If the share lost grows to that evenly, cost / life + share / lived x life / 2 is least. */
+ * in the end. If the share lost has grown evenly to that, the life that minimises cost / life + share / lived x life /
+ * 2 is best. */
 static void gxsp_learn_life(gxsp_system *system) {
     const double share = system->coarse.pace_old / system->coarse.pace - 1, lived = system->coarse.lived;
     const double best = share > GXSP_AGEING ? sqrt(2 * GXSP_REMAKE * lived / share) : GXSP_PATIENCE * lived;
@@ -7946,8 +7954,8 @@ static void gxsp_count_rest(const gxsp_problem *problem, const double *velocity)
 
 /* In: a displacement. Out: energies of components, forces, the residual and its measure. */
 
-/* Adds the forces on held copies, which have no D of their own, scaled by the mean of the others'. A body that only
- * its held copies deform has no other force when it is in balance. */
+/* Adds the forces on held copies, scaled by the mean of the other copies' D, since held ones have no D. A body that
+ * only its held copies deform has no other force when it is in balance. */
 static void gxsp_add_reactions(const gxsp_system *system, gxsp_norms *norms) {
     double stiffness = 0, square = 0, compliance;
     size_t i, counted = 0;
@@ -8051,8 +8059,8 @@ static void gxsp_find_base(const gxsp_problem *problem, double *to) {
     gxsp_follow(system, problem->given, to);
 }
 
-/* Light copies start near where inertia leads the copies that guide them. They have next to no inertia of their own;
- * started where they fly, the linearisation would be that of an element torn apart. */
+/* Light copies start near where inertia leads the copies that guide them. They have next to no inertia of their own.
+ * If they started where they would fly, the linearisation would be that of an element torn apart. */
 static void gxsp_lead_lights(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     uint32_t i;
@@ -8278,10 +8286,10 @@ static void gxsp_add_damping(gxsp_problem *problem, double factor, const double 
     for (i = 0; i < 3 * system->model.n; i++) system->vectors.damping[i] += system->vectors.force[i];
 }
 
-/* Rayleigh's stiffness damping: stress P(F) + beta dP/dt, with the integrator's rate speed (P(F) - P of the mean
- * before). Energies are linear in their moduli, so that is the energy (1 + beta speed) U(u) and a load of the
- * forces before. Those forces are rotated with the elements' motion by inertia alone: rotations under stress are
- * not damped, to first order in the step. */
+/* Rayleigh's stiffness damping: stress P(F) + beta dP/dt, where dP/dt is speed times (P(F) - P at the integrator's
+ * mean). Energies are linear in their moduli, so this is the energy (1 + beta speed) U(u) and a load of the earlier
+ * forces. These forces are rotated with the motion by inertia alone, so that rotations under stress are not damped, to
+ * first order in the step. */
 static void gxsp_begin_damping(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     size_t i;
@@ -8488,10 +8496,10 @@ static size_t gxsp_bring_down(gxsp_problem *problem) {
     return count;
 }
 
-/* Newton's method from target, which is close to the answer except in violent motion. A component that ends higher
- * in E than at base (translated by its momentum if it is loose) is brought down on the way from there, and Newton's
- * method continues with the iterations that are left. So E(u) <= E(base) always, component by component, which
- * bounds the energy that a step can add. */
+/* Newton's method from target, which is close to the answer except in violent motion. A component whose E ends higher
+ * than at base (translated by its momentum if it is loose) goes from base towards its end as far as E falls. Newton's
+ * method then continues with the iterations that are left. So E(u) <= E(base) in each component, which bounds the
+ * energy that a step can add. */
 static gx_result gxsp_minimise(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     gx_result result = GX_ERROR_DIVERGED;
@@ -8542,9 +8550,9 @@ static void gxsp_touch_components_at(const gxsp_problem *problem, const double *
     gxsp_system *system = problem->system;
     const gxs_point *point;
     gxsp_pull pull;
-    size_t at = 0;
+    size_t next = 0;
     int k;
-    while ((point = gxsp_next_pull(problem, &at, displacement, &pull)) != NULL)
+    while ((point = gxsp_next_pull(problem, &next, displacement, &pull)) != NULL)
         for (k = 0; k < 4 && (fabs(pull.energy) > 0 || gxsp_dot(pull.force, pull.force, 1) > 0); k++)
             if (fabs(point->weight[k]) > 0)
                 system->model.components[system->model.component[point->copy[k]]].state |= GXSP_TOUCHED;
@@ -8613,13 +8621,13 @@ static void gxsp_find_second_half(const gxsp_problem *problem) {
     }
 }
 
-/* The midpoint rule continues from current by as much as from base to current; E there is the end's energy, as
- * E(base) is the start's. The two are equal but for terms of third order in the way, for what Newton's method and
- * conjugate gradients have left, which would add up from step to step without bound, and for springs and contact
- * that first act beyond current. If a component would gain more than a share of its kinetic energy, its second half
- * is shortened, except the translation of a component that nothing acts on at either place. At worst the step ends
- * at current, where E is not above E(base). Light copies move with the copies that guide them: nothing would damp
- * them. direction becomes the end. */
+/* The midpoint rule continues from current by the way from base to current. E there is the energy at the end, as
+ * E(base) is that at the start. The two differ by terms of third order in the way, by springs and contact that first
+ * act beyond current, and by the errors of Newton's method and conjugate gradients, which would add up from step to
+ * step without bound. If a component would gain more than a share of its kinetic energy, its second half is shortened,
+ * except the translation of a component on which nothing acts at either place. At worst the step ends at current, where
+ * E is not above E(base). Light copies move with the copies that guide them, since nothing would damp them. direction
+ * becomes the end. */
 static void gxsp_bound_gain(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     const size_t count = 3 * system->model.n;
@@ -9238,7 +9246,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
     gxsp_lanes gradients[9];
     gxsp_tangent tangent;
     gxsp_general general;
-    gxsp_svd of;
+    gxsp_svd svd;
     gxsp_singles from[12], to[12];
     int k, c;
     memset(&rest, 0, sizeof rest);
@@ -9247,10 +9255,10 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
     memset(to, 0, sizeof to);
     rest.weight[0] = 1;
     memset(gradients, 0, sizeof gradients);
-    gradients[0][0] = gradients[4][0] = gradients[8][0] = 1; /* u_i - u_0 are the columns of dF, the forces those of dP
-                                                              */
-    (void)gxsp_tangent_begin(material->kind, &state, NULL, &of);
-    gxsp_tangent_make(material->kind, &rest, gradients, 1, 0, &state, &of, &tangent, &general);
+    /* u_i - u_0 are the columns of dF, the forces those of dP */
+    gradients[0][0] = gradients[4][0] = gradients[8][0] = 1;
+    (void)gxsp_tangent_begin(material->kind, &state, NULL, &svd);
+    gxsp_tangent_make(material->kind, &rest, gradients, 1, 0, &state, &svd, &tangent, &general);
     for (k = 0; k < 3; k++)
         for (c = 0; c < 3; c++) from[3 + 3 * c + k][0] = (float)direction[3 * k + c];
     gxsp_kind_product(material->kind, &tangent, NULL, &general, 1, from, to);

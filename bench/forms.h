@@ -1,12 +1,12 @@
-/* forms.h - what a model's elements add up to, for tests and benches: no held copies, no constraints, no time. By the
-   public functions of one deformation gradient, element by element. Vectors are copy_count x 3; an output may not
-   overlap an input. Include after gxfem_solve.h. */
+/* forms.h - energy, forces and Hessian of a model, element by element, for tests and benches: no held copies, no
+   constraints, no time. By the public functions of one deformation gradient. Vectors are copy_count x 3; an output may
+   not overlap an input. Include after gxfem_solve.h. */
 #ifndef BENCH_FORMS_H
 #define BENCH_FORMS_H
 
 #include <string.h>
 
-/* sum of x_i (grad N_i)^T over the corners, without the first one's share in translations: 0 for these exactly */
+/* sum of (x_i - x_0) (grad N_i)^T over the corners: exactly 0 for translations */
 static inline void form_element_gradient(const gxs_element *element, const double *x, double gradient[9]) {
     int i, r, c;
     memset(gradient, 0, 9 * sizeof *gradient);

@@ -61,8 +61,8 @@ item() { echo "- $*" | fold -s -w 117 | sed -e 's/ *$//' -e '2,$s/^/  /'; }
 why() {
     item "**Never refuses a cut.** Surfaces may be open, cross each other, run through nodes, miss each other by one rounding: right \
 in $(score gxfem) [hard cases](docs/BENCH.md#hard-cases); the method RXFEM (2017) in $(score RXFEM)."
-    item "**Never remeshes.** Where material separates, nodes get further displacements, never more than the least possible, which is \
-counted by another path [from 1k to 1M elements, up to 1000 cuts](docs/BENCH.md#scaling)."
+    item "**Never remeshes.** Where material separates, nodes get further displacements, never more than the least possible, \
+which another program counts [from 1k to 1M elements, up to 1000 cuts](docs/BENCH.md#scaling)."
     item "**Exact.** Signs of polynomials decide which fragments there are. Nothing is snapped or perturbed. Integrals over cut \
 elements [are off by $(integral_error) of an element at most](docs/BENCH.md#integrals-over-parts-of-cut-elements)."
     item "**Deterministic.** The same fragments from gcc and clang, 64 and 32 bits, \`-ffast-math\`, x87 and WebAssembly; the same \
@@ -242,8 +242,8 @@ scenes and take the library's time step: only what is compared differs."
     echo
     text "Parts of one cut tetrahedron, beside RXFEM's rules, adaptive and regular sampling. Errors: the largest of the four \
 integrals, beside those over the whole element. Ours are at rounding level whatever the cut is. Up to about a hundred triangles \
-in an element the whole cut takes less time than RXFEM's rule alone. With more, RXFEM's rule is the better choice if its error \
-will do: it fits the same few functions however many triangles there are."
+in an element the whole cut takes less time than RXFEM's rule alone. With more, RXFEM's rule is faster, where its error is \
+acceptable: it fits the same few functions for any number of triangles."
     echo
     quadrature
     echo
@@ -258,13 +258,14 @@ derivatives are evaluated once per side. Virtual nodes are as good on thick slic
 at $(stalls slab_in_five 'VNA; BDF2') however small the step is. Element deletion leaves nothing of the slab; on the accordion its \
 error is $(stalls accordion 'deletion; BDF2')."
     echo
-    text "Not beaten by anything cheaper, of integrators, steps, Newton, CG, lumping, preconditioners, virtual nodes and deletion:"
+    text "Runs that no cheaper run beats, over integrators, step lengths, iterations of Newton and CG, lumping, \
+preconditioners, virtual nodes and deletion:"
     echo
     front
     echo
-    text "The error of the space is another matter: linear elements lock where a slice is thin beside them, cut or conforming. A \
-slice of a quarter of an element bends 3 to 5 % of what it should, of one element 38 %, of four 90 %; a conforming mesh of one \
-layer 35 %, of four 90 %."
+    text "The error of the space comes on top: linear elements lock in slices that are thin beside them, cut or conforming. A \
+slice as thick as a quarter of an element bends 3 to 5 % as far as it should, as one element 38 %, as four elements 90 %; a \
+conforming mesh of one layer 35 %, of four layers 90 %."
     echo
     echo "![drops of slices and folds under refinement](charts/space.svg)"
     echo
@@ -272,12 +273,12 @@ layer 35 %, of four 90 %."
     echo
     text "EI: integrals, MB: finding the fragments, both per subdomain that a cut visited; dpsi: Hessians, CG: linear solve, \
 per step; dt: a frame; C: all frames with a cut, C+U: all frames. Rows (paper): published, Intel i9-13900K. The \
-paper's sticks are six, ours 36. RXFEM divides but 21 elements of the octopus before its cuts cross: what is compared there is \
-nearly all whole elements, which it too evaluates once. Virtual nodes have the wrong mass."
+paper's sticks are six, ours 36. RXFEM divides only 21 elements of the octopus before its cuts cross. So nearly all elements \
+compared there are whole ones, which RXFEM evaluates once too. Virtual nodes have the wrong mass."
     echo
     table table2 "| scene | method | frames | unknowns | subdomains | EI, ms | MB, ms | dpsi, ms | CG, s | dt max, s | dt avg, s | C, s | C+U, s | ended |"
     echo
-    text "How many times as long as ours the others take; aim: what gxfem was designed for."
+    text "Times of the other methods as multiples of ours; aim: the multiple for which gxfem was designed."
     echo
     ratios
     echo
@@ -295,7 +296,7 @@ moves as a point, and it stays at $(corner block on) ($(corner multigrid on))."
     text "Right: as many fragments as the cuts leave, their volume, and a motion that stays finite and falls as a body falls \
 (\`bench/hard.h\`). \"But for volume\": cuts of some thickness take material away. The literal Algorithm 1 has cuts 1e-4 of an edge \
 thick; \"Algorithm 1 mended\": 1e-10, and a Boolean that mends what rounding inverts. Crossing cuts are beyond RXFEM. Virtual nodes \
-find all fragments, with the mass of whole elements. Empty: not asked."
+find all fragments, with the mass of whole elements. Empty: not run."
     echo
     failure
     echo
@@ -319,8 +320,8 @@ mesh whose elements end at the cuts, at least."
     text "A block of tetrahedra hangs by its top and sways; E = 1e6 Pa, one Newton iteration to 1e-2. Iterations of conjugate \
 gradients / milliseconds of a whole step; two threads: milliseconds; CHOLMOD (with OpenBLAS): milliseconds of its factorisation \
 and solution alone. Product: the matrix-free operator alone, of single vectors as conjugate gradients have them and of double \
-ones (\`gxs_solver_product\`); bytes: the most that the solver had. The fragments have multigrid forced upon them: by itself the \
-solver takes block-Jacobi there. With \`-O2\` a product takes 2.1 times as long, of double vectors 2.3 times."
+ones (\`gxs_solver_product\`); bytes: the most that the solver had. For the loose fragments multigrid is forced; the solver's \
+own choice is block-Jacobi there. With \`-O2\` a product takes 2.1 times as long, of double vectors 2.3 times."
     echo
     steps
     echo
@@ -349,8 +350,8 @@ solver's model and multigrid where it has touched them, $(range frames 8 1) time
     echo
     echo "## Booleans of closed surfaces"
     echo
-    text "\"+\": evaluated after each operand, \"?\": surfaces that nobody vouches for. With components and their volumes; surface: \
-without."
+    text "\"+\": evaluated after each operand, \"?\": surfaces that are not vouched for as simple. Times include components and \
+their volumes; surface: the time without them."
     echo
     table kernel "| workload | median, us | least, us | triangles | components | volume | signs by filter | exact | allocations | peak, bytes | surface, us |"
     echo
@@ -375,7 +376,8 @@ they lock."
     echo
     echo "## Programs"
     echo
-    text "\`make bench-NAME\` builds and runs one and writes CSV. What each does and how it judges stands in its first lines."
+    text "\`make bench-NAME\` builds and runs one and writes CSV. The first lines of each file say what it measures and how it \
+judges."
     echo
     echo "| file in \`bench/\` | what it is |"
     echo "| --- | --- |"

@@ -1,4 +1,4 @@
-/* Made of player.html and player.js by player.sh: do not change it here. */
+/* Made from player.html and player.js by player.sh: change those instead. */
 #ifndef GXIO_PLAYER_H
 #define GXIO_PLAYER_H
 
@@ -117,7 +117,7 @@ static const char *const gxio_player_top[] = {
     "    return new DataView(bytes.buffer);\n",
     "}\n",
     "\n",
-    "/* Frames are decoded when they are asked for: a page holds them as text. Positions are relative to the middle of the\n",
+    "/* Frames are decoded when they are needed: a page holds them as text. Positions are relative to the middle of the\n",
     "   first frame, so that floats hold them well. */\n",
     "class GxFrames {\n",
     "    constructor(text) {\n",

@@ -35,7 +35,7 @@ function gxBytes(base64) {
     return new DataView(bytes.buffer);
 }
 
-/* Frames are decoded when they are asked for: a page holds them as text. Positions are relative to the middle of the
+/* Frames are decoded when they are needed: a page holds them as text. Positions are relative to the middle of the
    first frame, so that floats hold them well. */
 class GxFrames {
     constructor(text) {

@@ -1,12 +1,12 @@
 #!/bin/sh
-# Makes player.h of player.html and player.js: the page as C strings, in two arrays, around the place of the frames.
+# Makes player.h from player.html and player.js: the page as C strings, in two arrays, around the place of the frames.
 # usage: sh examples/player.sh HTML JS >HEADER
 set -u
 [ $# -eq 2 ] || { echo "usage: $0 HTML JS" >&2; exit 2; }
 awk -v script="$2" '
     function put(line) { gsub(/\\/, "&&", line); gsub(/"/, "\\\\&", line); print "    \"" line "\\n\"," }
     BEGIN {
-        print "/* Made of player.html and player.js by player.sh: do not change it here. */"
+        print "/* Made from player.html and player.js by player.sh: change those instead. */"
         print "#ifndef GXIO_PLAYER_H\n#define GXIO_PLAYER_H\n\n/* clang-format off */"
         print "/* Lines of the page above its frames, then those below; NULL ends each. */"
         print "static const char *const gxio_player_top[] = {"

@@ -78,8 +78,8 @@ gallery() {
     echo "    make pictures                           # the pictures above (f3d)"
     echo
     echo "Each prints the numbers that show whether it is right, and ends with exit code 1 if one is not: no copy more than the least"
-    echo "possible, found by another path; volume and mass kept to 1e-12; a watertight surface; deflections equal to brute-force"
-    echo "integration in the same space; and what is its own. \`scene.h\` has what they share, for scenes of your own too: sheets that"
+    echo "possible, which another program counts; volume and mass kept to 1e-12; a watertight surface; deflections equal to brute-force"
+    echo "integration in the same space; and checks of its own. \`scene.h\` has what they share, for scenes of your own too: sheets that"
     echo "advance strip by strip, times, files, checks; \`slab.h\`: brute-force integration, locking; \`cheese.h\`: surfaces."
     echo "\`gxcut.c\` and \`gxboolean.c\` are the command-line programs, \`gxio.h\` their readers and writers, \`gxshape.h\` their shapes."
     echo
@@ -99,7 +99,7 @@ gallery() {
         echo "![how far slices bend, beside beam theory, by their thickness in elements](charts/locking.svg)"
         echo
         echo "Locking of linear elements: cut slices (the slab's own mesh, refined) and slices meshed on their own bend alike far too little"
-        echo "while they are thin beside an element. Integration has no part in it: the checks below hold the same"
+        echo "while they are thin beside an element. Integration is not the cause: the checks below compare the same"
         echo "slices against integrals by brute force."
     fi
     echo

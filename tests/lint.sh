@@ -23,6 +23,7 @@ undefined   every private macro is undefined at the end of its header
 pragmas     every pragma pushed is popped
 sections    a section of an implementation has at most 620 lines and starts with a paragraph
 contents    the contents on top list every section, and every section that a comment names is there
+guide       docs/ARCHITECTURE.md lists every section of each implementation in the table of its header, and no other
 calls       a function calls functions of its own section and of earlier ones
 borders     no header uses a private name of another
 layout      every C file is laid out by .clang-format (clang-format 14; left out where it is missing)
@@ -51,6 +52,8 @@ umbrellas?         fan
 seat|seats|seated  slot
 relieve[sd]?       rebalance
 looks?             snapshot
+knots?             polygon_vertex
+spots?             placement
 '
 
 fail_usage() { sed -n '3,6s/^# \{0,1\}//p' "$0" >&2; exit 2; }
@@ -306,6 +309,26 @@ rule_contents() {
                 a = substr($0, RSTART + 2, RLENGTH - 2); $0 = substr($0, RSTART + RLENGTH)
                 if (!(a in there) && a != "name") print header ":" FNR ": a comment names >>" a ", which is in no header" } }' \
             "$work/anchors" "$work/$header.comments"
+    done
+}
+
+# A table of sections begins with a row "| `HEADER` | ..." and ends at the next blank line.
+rule_guide() {
+    guide=docs/ARCHITECTURE.md
+    for header in $headers; do
+        sections "$header" | awk -v header=$header -v guide=$guide '
+            FNR == NR { line[$2] = $1; next }
+            index($0, "| `" header "` |") == 1 { inside = found = 1; next }
+            /^ *$/ { inside = 0 }
+            !inside { next }
+            { while (match($0, />>[a-z][a-z0-9_-]*/)) {
+                a = substr($0, RSTART + 2, RLENGTH - 2); $0 = substr($0, RSTART + RLENGTH)
+                if (a in listed) print guide ":" FNR ": >>" a " of " header " a second time"
+                listed[a] = 1
+                if (!(a in line)) print guide ":" FNR ": >>" a " is no section of " header } }
+            END {
+                if (!found) print guide ": no table of the sections of " header
+                for (a in line) if (!(a in listed)) print header ":" line[a] ": >>" a " is not in " guide }' - "$guide"
     done
 }
 

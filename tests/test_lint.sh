@@ -77,6 +77,9 @@ build_house() {
     } >"$house/README.md"
     echo 'Sums are taken in the order of the array (`gx_number.value`). Look at a knob.' >"$house/docs/HOUSE.md"
     printf '# Changes\n\n## 0.2.0\n' >"$house/CHANGELOG.md"
+    for name in gxfem.h gxfem_boolean.h gxfem_integrate.h gxfem_solve.h; do
+        printf '| `%s` | |\n| --- | --- |\n| `>>first` `>>second` | sums |\n\n' $name
+    done >"$house/docs/ARCHITECTURE.md"
     echo 'MIT License' >"$house/LICENSE"
     echo 'file(STRINGS gxfem.h version)' >"$house/CMakeLists.txt"
     echo 'Version: @VERSION@' >"$house/gxfem.pc.in"
@@ -178,6 +181,15 @@ expect "a comment names a section that is not there" "a comment names >>third" c
 edit gxfem.h 's/>>second ---/>>first ---/'
 expect "two sections of one name" ">>first a second time" contents
 
+edit docs/ARCHITECTURE.md '7s/ `>>second`//'
+expect "the guide lacks a section" "gxfem_boolean.h:35: >>second is not in docs/ARCHITECTURE.md" guide
+edit docs/ARCHITECTURE.md '7s/>>second/>>third/'
+expect "the guide lists a section that is not there" "docs/ARCHITECTURE.md:7: >>third is no section of gxfem_boolean.h" guide
+edit docs/ARCHITECTURE.md '7s/>>second/>>first/'
+expect "the guide lists a section twice" ">>first of gxfem_boolean.h a second time" guide
+edit docs/ARCHITECTURE.md '5,7d'
+expect "the guide has no table for a header" "no table of the sections of gxfem_boolean.h" guide
+
 edit gxfem.h 's/{ return a + b; }/{ return gx_sum(\&a, 1) + b; }/'
 expect "a call to a later section" "gxp_add (>>first) calls gx_sum (>>second)" calls
 
@@ -228,6 +240,8 @@ expect "a name in backticks over two lines" "docs/HOUSE.md:3: name gx_total" nam
 
 edit gxfem.h 's/gxp_add/gxp_add_crumb/'
 expect "a word given up in a name" "gxp_add_crumb: say speck" words
+edit gxfem.h 's/gxp_add/gxp_add_knot/'
+expect "another word given up" "gxp_add_knot: say polygon_vertex" words
 edit gxfem.h 's/Arrays of numbers\./& They are relieved./'
 expect "a word given up in a comment" "relieved: say rebalance" words
 echo 'Take a last look.' >>"$house/docs/HOUSE.md"

@@ -1015,11 +1015,10 @@ static int is_needed(const gxb_boolean_result *r, uint32_t v) {
 /* Exactly: no triangle of a result without area or turned over */
 static void check_triangles(gxb_boolean *b) {
     uint32_t t;
-    for (t = 0; t < b->out.source_count; t++) {
-        b->work.plane = gxbp_out_plane(b, t);
-        ck_assert_int_eq(gxbp_turn(b, gxbp_out_corner(b, t, 0), gxbp_out_corner(b, t, 1), gxbp_out_corner(b, t, 2)),
-                         b->out.planes[t] & 1 ? -1 : 1);
-    }
+    for (t = 0; t < b->out.triangle_count; t++)
+        ck_assert_int_eq(gxbp_plane_turn(b, gxbp_out_plane(b, t), gxbp_out_corner(b, t, 0), gxbp_out_corner(b, t, 1),
+                                         gxbp_out_corner(b, t, 2)),
+                         b->out.subtriangles[t] & 1 ? -1 : 1);
 }
 
 /* Does each edge belong to two triangles? */
