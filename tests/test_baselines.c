@@ -812,7 +812,7 @@ static swing swing_begin(const workload *w, gxs_material *material) {
     s.b = rx_body_of(w);
     for (i = 0; i < w->surface_count; i++) ck_assert_int_eq(rx_cut_by(s.b, w, i), RX_OK);
     s.m = rx_model_create(s.b, 1000);
-    ck_assert_int_eq(gx_body_hold(s.body, &root, 1), GX_OK);
+    ck_assert_int_eq(gx_body_hold(s.body, &root, 1, NULL), GX_OK);
     s.displacement = (double *)dense_memory(NULL, 3 * s.m->value_count, sizeof(double));
     s.velocity = (double *)dense_memory(NULL, 3 * s.m->value_count, sizeof(double));
     s.held = (uint8_t *)dense_memory(NULL, s.m->value_count, 1);
@@ -820,7 +820,7 @@ static swing swing_begin(const workload *w, gxs_material *material) {
     s.m->model.materials = material;
     s.m->model.material_count = 1;
     s.m->model.held = s.held;
-    ck_assert_int_eq(gxs_solver_create(NULL, &s.solver), GX_OK);
+    ck_assert_int_eq(gxs_solver_create(NULL, &s.solver, NULL), GX_OK);
     ck_assert_int_eq(gxs_solver_set_model(s.solver, &s.m->model, NULL), GX_OK);
     return s;
 }
@@ -1068,7 +1068,7 @@ static void boundary_moments(part *p, unsigned degree, double *moments) {
     surface.position_count = 3 * boundary.count;
     surface.triangles = index;
     surface.triangle_count = boundary.count;
-    ck_assert_int_eq(gxi_polyhedron_monomials(&surface, NULL, degree, moments, work), GX_OK);
+    ck_assert_int_eq(gxi_polyhedron_monomials(&surface, NULL, degree, moments, work, NULL), GX_OK);
     free(index);
     free(boundary.corners);
 }
@@ -1279,7 +1279,7 @@ START_TEST(deleted_elements) {
         }
         body = cut_in_sequence(&w);
         p = parts_create(body);
-        ck_assert_int_eq(gx_body_model(uncut, &model), GX_OK);
+        ck_assert_int_eq(gx_body_model(uncut, &model, NULL), GX_OK);
         left = (gxs_element *)dense_memory(NULL, model.element_count, sizeof *left);
         count = parts_delete(&p, &model, left);
         for (i = 0; i < w.element_count; i++) {

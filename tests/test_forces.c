@@ -34,7 +34,7 @@ static const char *solver_name(int which) {
 static gxs_solver *solver_of(int which) {
     gxs_solver_desc desc = solver_desc(which);
     gxs_solver *solver = NULL;
-    ck_assert_int_eq(gxs_solver_create(&desc, &solver), GX_OK);
+    ck_assert_int_eq(gxs_solver_create(&desc, &solver, NULL), GX_OK);
     return solver;
 }
 
@@ -643,7 +643,8 @@ END_TEST
 
 /* Two ties of a free block, one of them wrong: the error is named, and the solver steps the model that it had, bit
    for bit. */
-static void expect_constraints(const gxs_constraint *ties, size_t count, gx_result expected, size_t index) {
+static void expect_constraints(const gxs_constraint *ties, size_t count, gx_result expected, const char *field,
+                               size_t index) {
     gxs_step_desc step = step_make(0.033, -9.81);
     double first[3 * 12];
     int run;
@@ -660,6 +661,7 @@ static void expect_constraints(const gxs_constraint *ties, size_t count, gx_resu
             s.held[0] = 0;
             ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, &failure), expected);
             ck_assert_int_eq(failure.result, expected);
+            ck_assert_pstr_eq(failure.field, field);
             ck_assert_uint_eq(failure.index, index);
         }
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
@@ -670,7 +672,7 @@ static void expect_constraints(const gxs_constraint *ties, size_t count, gx_resu
     }
 }
 
-#define constraints_with(change, result, index)                                                                        \
+#define constraints_with(change, result, field, index)                                                                 \
     do {                                                                                                               \
         gxs_constraint ties[2];                                                                                        \
         memset(ties, 0, sizeof ties);                                                                                  \
@@ -678,22 +680,22 @@ static void expect_constraints(const gxs_constraint *ties, size_t count, gx_resu
         ties[0].master[0] = ties[1].master[0] = 2;                                                                     \
         ties[0].weight[0] = ties[1].weight[0] = 1;                                                                     \
         change;                                                                                                        \
-        expect_constraints(ties, 2, result, index);                                                                    \
+        expect_constraints(ties, 2, result, field, index);                                                             \
     } while (0)
 
 START_TEST(bad_constraints_are_named) {
-    constraints_with(ties[0].copy = 12, GX_ERROR_INDEX, 0);
-    constraints_with(ties[1].copy = UINT32_MAX, GX_ERROR_INDEX, 1);
-    constraints_with(ties[1].master[0] = 12, GX_ERROR_INDEX, 1);
-    constraints_with(ties[1].master[3] = 12, GX_ERROR_INDEX, 1); /* of weight 0 */
-    constraints_with(ties[1].weight[2] = not_a_number(0), GX_ERROR_NOT_FINITE, 1);
-    constraints_with(ties[0].weight[0] = not_a_number(1), GX_ERROR_NOT_FINITE, 0);
-    constraints_with(ties[1].copy = 4, GX_ERROR_ARGUMENT, 1);      /* the same copy twice */
-    constraints_with(ties[1].master[0] = 4, GX_ERROR_ARGUMENT, 1); /* a chain */
-    constraints_with(ties[0].master[0] = 5, GX_ERROR_ARGUMENT, 0); /* a chain backwards */
-    constraints_with(ties[1].master[0] = 5, GX_ERROR_ARGUMENT, 1); /* of itself */
-    constraints_with(ties[0].master[0] = 5; ties[1].master[0] = 4, GX_ERROR_ARGUMENT, 0);
-    expect_constraints(NULL, 1, GX_ERROR_ARGUMENT, SIZE_MAX);
+    constraints_with(ties[0].copy = 12, GX_ERROR_INDEX, "constraints.copy", 0);
+    constraints_with(ties[1].copy = UINT32_MAX, GX_ERROR_INDEX, "constraints.copy", 1);
+    constraints_with(ties[1].master[0] = 12, GX_ERROR_INDEX, "constraints.master", 1);
+    constraints_with(ties[1].master[3] = 12, GX_ERROR_INDEX, "constraints.master", 1); /* of weight 0 */
+    constraints_with(ties[1].weight[2] = not_a_number(0), GX_ERROR_NOT_FINITE, "constraints.weight", 1);
+    constraints_with(ties[0].weight[0] = not_a_number(1), GX_ERROR_NOT_FINITE, "constraints.weight", 0);
+    constraints_with(ties[1].copy = 4, GX_ERROR_ARGUMENT, "constraints", 1);      /* the same copy twice */
+    constraints_with(ties[1].master[0] = 4, GX_ERROR_ARGUMENT, "constraints", 1); /* a chain */
+    constraints_with(ties[0].master[0] = 5, GX_ERROR_ARGUMENT, "constraints", 0); /* a chain backwards */
+    constraints_with(ties[1].master[0] = 5, GX_ERROR_ARGUMENT, "constraints", 1); /* of itself */
+    constraints_with(ties[0].master[0] = 5; ties[1].master[0] = 4, GX_ERROR_ARGUMENT, "constraints", 0);
+    expect_constraints(NULL, 1, GX_ERROR_ARGUMENT, "constraints", SIZE_MAX);
 }
 END_TEST
 
@@ -985,74 +987,75 @@ static void attempt_make(attempt *a) {
     a->step.contact = no_contact;
 }
 
-static void expect(attempt *a, gx_result result, size_t index) {
+static void expect(attempt *a, gx_result result, const char *field, size_t index) {
     const size_t count = 3 * a->s.model.copy_count;
     gx_failure failure;
     size_t i;
     ck_assert_int_eq(advance(a->solver, &a->s.model, &a->step, a->s.displacement, a->s.velocity, NULL, &failure),
                      result);
     ck_assert_int_eq(failure.result, result);
+    ck_assert_pstr_eq(failure.field, field);
     ck_assert_uint_eq(failure.index, index);
     for (i = 0; i < count && result != GX_OK; i++) ck_assert(a->s.displacement[i] == 0 && a->s.velocity[i] == 0);
     gxs_solver_destroy(a->solver);
     scene_free(&a->s);
 }
 
-#define attempt_with(change, result, index)                                                                            \
+#define attempt_with(change, result, field, index)                                                                     \
     do {                                                                                                               \
         attempt a;                                                                                                     \
         attempt_make(&a);                                                                                              \
         change;                                                                                                        \
-        expect(&a, result, index);                                                                                     \
+        expect(&a, result, field, index);                                                                              \
     } while (0)
 
 START_TEST(bad_input_is_named) {
     const double nan = not_a_number(0), infinity = not_a_number(1);
-    attempt_with((void)a, GX_OK, SIZE_MAX);
-    attempt_with(a.springs[1].point.copy[0] = 12, GX_ERROR_INDEX, 1);
-    attempt_with(a.springs[2].point.copy[3] = UINT32_MAX, GX_ERROR_INDEX, 2); /* of weight 0 */
-    attempt_with(a.springs[1].point.weight[3] = nan, GX_ERROR_NOT_FINITE, 1);
-    attempt_with(a.springs[1].point.position[0] = infinity, GX_ERROR_NOT_FINITE, 1);
-    attempt_with(a.springs[2].target[1] = nan, GX_ERROR_NOT_FINITE, 2);
-    attempt_with(a.springs[2].stiffness = nan, GX_ERROR_NOT_FINITE, 2);
-    attempt_with(a.springs[2].stiffness = infinity, GX_ERROR_NOT_FINITE, 2);
-    attempt_with(a.springs[2].stiffness = -1, GX_ERROR_ARGUMENT, 2);
-    attempt_with(a.step.springs = NULL, GX_ERROR_ARGUMENT, SIZE_MAX);
-    attempt_with(a.points[2].copy[1] = 12, GX_ERROR_INDEX, 2);
-    attempt_with(a.springs[1].point.epoch = 1, GX_ERROR_STALE, 1);
-    attempt_with(a.points[2].epoch = 1; a.points[2].copy[1] = 12, GX_ERROR_STALE, 2);
-    attempt_with(a.s.model.epoch = 1; a.springs[0].point.epoch = 1, GX_ERROR_STALE, 1);
-    attempt_with(a.s.model.epoch = 1; a.step.spring_count = 0, GX_ERROR_STALE, 0);
-    attempt_with(a.step.epoch = 1, GX_OK, SIZE_MAX);
-    attempt_with(a.step.epoch = 1; a.step.forces = a.s.forces, GX_ERROR_STALE, SIZE_MAX);
-    attempt_with(a.step.epoch = 1; a.step.targets = a.s.forces, GX_ERROR_STALE, SIZE_MAX);
-    attempt_with(a.step.forces = a.step.targets = a.s.forces, GX_OK, SIZE_MAX);
-    attempt_with(a.points[2].weight[0] = nan, GX_ERROR_NOT_FINITE, 2);
-    attempt_with(a.points[0].position[2] = nan, GX_ERROR_NOT_FINITE, 0);
-    attempt_with(a.step.points = NULL, GX_ERROR_ARGUMENT, SIZE_MAX);
-    attempt_with(a.planes[1].normal[0] = nan, GX_ERROR_NOT_FINITE, 1);
-    attempt_with(a.planes[1].offset = infinity, GX_ERROR_NOT_FINITE, 1);
-    attempt_with(a.planes[0].stiffness = nan, GX_ERROR_NOT_FINITE, 0);
-    attempt_with(a.planes[0].friction = nan, GX_ERROR_NOT_FINITE, 0);
-    attempt_with(a.planes[0].sticking_speed = nan, GX_ERROR_NOT_FINITE, 0);
-    attempt_with(a.planes[1].normal[2] = 1.01, GX_ERROR_ARGUMENT, 1);
-    attempt_with(a.planes[1].normal[2] = 0, GX_ERROR_ARGUMENT, 1);
-    attempt_with(a.planes[1].stiffness = -1, GX_ERROR_ARGUMENT, 1);
-    attempt_with(a.planes[1].friction = -1, GX_ERROR_ARGUMENT, 1);
-    attempt_with(a.planes[1].sticking_speed = -1, GX_ERROR_ARGUMENT, 1);
-    attempt_with(a.step.planes = NULL, GX_ERROR_ARGUMENT, SIZE_MAX);
-    attempt_with(a.step.sleep_speed = 1, GX_OK, SIZE_MAX);
-    attempt_with(a.step.sleep_speed = 1; a.step.rest_times = NULL, GX_ERROR_ARGUMENT, SIZE_MAX);
-    attempt_with(a.step.sleep_speed = -1, GX_ERROR_ARGUMENT, SIZE_MAX);
-    attempt_with(a.step.sleep_speed = nan, GX_ERROR_NOT_FINITE, SIZE_MAX);
-    attempt_with(a.step.sleep_time = -1, GX_ERROR_ARGUMENT, SIZE_MAX);
-    attempt_with(a.step.sleep_time = nan, GX_ERROR_NOT_FINITE, SIZE_MAX);
-    attempt_with(a.step.sleep_speed = 1; a.rest_times[7] = nan, GX_ERROR_NOT_FINITE, 7);
-    attempt_with(a.step.budget_seconds = 1, GX_OK, SIZE_MAX);
-    attempt_with(a.step.budget_seconds = 1; a.step.clock = NULL, GX_ERROR_ARGUMENT, SIZE_MAX);
-    attempt_with(a.step.budget_seconds = -1, GX_ERROR_ARGUMENT, SIZE_MAX);
-    attempt_with(a.step.budget_seconds = infinity, GX_ERROR_NOT_FINITE, SIZE_MAX);
-    attempt_with(a.step.integrator = GXS_STATIC; a.step.dt = -1, GX_ERROR_ARGUMENT, SIZE_MAX);
+    attempt_with((void)a, GX_OK, NULL, SIZE_MAX);
+    attempt_with(a.springs[1].point.copy[0] = 12, GX_ERROR_INDEX, "springs.point.copy", 1);
+    attempt_with(a.springs[2].point.copy[3] = UINT32_MAX, GX_ERROR_INDEX, "springs.point.copy", 2); /* of weight 0 */
+    attempt_with(a.springs[1].point.weight[3] = nan, GX_ERROR_NOT_FINITE, "springs.point.weight", 1);
+    attempt_with(a.springs[1].point.position[0] = infinity, GX_ERROR_NOT_FINITE, "springs.point.position", 1);
+    attempt_with(a.springs[2].target[1] = nan, GX_ERROR_NOT_FINITE, "springs.target", 2);
+    attempt_with(a.springs[2].stiffness = nan, GX_ERROR_NOT_FINITE, "springs.stiffness", 2);
+    attempt_with(a.springs[2].stiffness = infinity, GX_ERROR_NOT_FINITE, "springs.stiffness", 2);
+    attempt_with(a.springs[2].stiffness = -1, GX_ERROR_ARGUMENT, "springs.stiffness", 2);
+    attempt_with(a.step.springs = NULL, GX_ERROR_ARGUMENT, "springs", SIZE_MAX);
+    attempt_with(a.points[2].copy[1] = 12, GX_ERROR_INDEX, "points.copy", 2);
+    attempt_with(a.springs[1].point.epoch = 1, GX_ERROR_STALE, "springs.point.epoch", 1);
+    attempt_with(a.points[2].epoch = 1; a.points[2].copy[1] = 12, GX_ERROR_STALE, "points.epoch", 2);
+    attempt_with(a.s.model.epoch = 1; a.springs[0].point.epoch = 1, GX_ERROR_STALE, "springs.point.epoch", 1);
+    attempt_with(a.s.model.epoch = 1; a.step.spring_count = 0, GX_ERROR_STALE, "points.epoch", 0);
+    attempt_with(a.step.epoch = 1, GX_OK, NULL, SIZE_MAX);
+    attempt_with(a.step.epoch = 1; a.step.forces = a.s.forces, GX_ERROR_STALE, "epoch", SIZE_MAX);
+    attempt_with(a.step.epoch = 1; a.step.targets = a.s.forces, GX_ERROR_STALE, "epoch", SIZE_MAX);
+    attempt_with(a.step.forces = a.step.targets = a.s.forces, GX_OK, NULL, SIZE_MAX);
+    attempt_with(a.points[2].weight[0] = nan, GX_ERROR_NOT_FINITE, "points.weight", 2);
+    attempt_with(a.points[0].position[2] = nan, GX_ERROR_NOT_FINITE, "points.position", 0);
+    attempt_with(a.step.points = NULL, GX_ERROR_ARGUMENT, "points", SIZE_MAX);
+    attempt_with(a.planes[1].normal[0] = nan, GX_ERROR_NOT_FINITE, "planes.normal", 1);
+    attempt_with(a.planes[1].offset = infinity, GX_ERROR_NOT_FINITE, "planes.offset", 1);
+    attempt_with(a.planes[0].stiffness = nan, GX_ERROR_NOT_FINITE, "planes.stiffness", 0);
+    attempt_with(a.planes[0].friction = nan, GX_ERROR_NOT_FINITE, "planes.friction", 0);
+    attempt_with(a.planes[0].sticking_speed = nan, GX_ERROR_NOT_FINITE, "planes.sticking_speed", 0);
+    attempt_with(a.planes[1].normal[2] = 1.01, GX_ERROR_ARGUMENT, "planes.normal", 1);
+    attempt_with(a.planes[1].normal[2] = 0, GX_ERROR_ARGUMENT, "planes.normal", 1);
+    attempt_with(a.planes[1].stiffness = -1, GX_ERROR_ARGUMENT, "planes.stiffness", 1);
+    attempt_with(a.planes[1].friction = -1, GX_ERROR_ARGUMENT, "planes.friction", 1);
+    attempt_with(a.planes[1].sticking_speed = -1, GX_ERROR_ARGUMENT, "planes.sticking_speed", 1);
+    attempt_with(a.step.planes = NULL, GX_ERROR_ARGUMENT, "planes", SIZE_MAX);
+    attempt_with(a.step.sleep_speed = 1, GX_OK, NULL, SIZE_MAX);
+    attempt_with(a.step.sleep_speed = 1; a.step.rest_times = NULL, GX_ERROR_ARGUMENT, "rest_times", SIZE_MAX);
+    attempt_with(a.step.sleep_speed = -1, GX_ERROR_ARGUMENT, "sleep_speed", SIZE_MAX);
+    attempt_with(a.step.sleep_speed = nan, GX_ERROR_NOT_FINITE, "sleep_speed", SIZE_MAX);
+    attempt_with(a.step.sleep_time = -1, GX_ERROR_ARGUMENT, "sleep_time", SIZE_MAX);
+    attempt_with(a.step.sleep_time = nan, GX_ERROR_NOT_FINITE, "sleep_time", SIZE_MAX);
+    attempt_with(a.step.sleep_speed = 1; a.rest_times[7] = nan, GX_ERROR_NOT_FINITE, "rest_times", 7);
+    attempt_with(a.step.budget_seconds = 1, GX_OK, NULL, SIZE_MAX);
+    attempt_with(a.step.budget_seconds = 1; a.step.clock = NULL, GX_ERROR_ARGUMENT, "clock", SIZE_MAX);
+    attempt_with(a.step.budget_seconds = -1, GX_ERROR_ARGUMENT, "budget_seconds", SIZE_MAX);
+    attempt_with(a.step.budget_seconds = infinity, GX_ERROR_NOT_FINITE, "budget_seconds", SIZE_MAX);
+    attempt_with(a.step.integrator = GXS_STATIC; a.step.dt = -1, GX_ERROR_ARGUMENT, "dt", SIZE_MAX);
 }
 END_TEST
 
@@ -2760,7 +2763,7 @@ static int run_with(failing *f, int which) {
     gxs_solver *solver = NULL;
     int size, failed = 0;
     desc.allocator.allocate = failing_allocate, desc.allocator.release = failing_release, desc.allocator.user = f;
-    if (gxs_solver_create(&desc, &solver) != GX_OK) {
+    if (gxs_solver_create(&desc, &solver, NULL) != GX_OK) {
         ck_assert_ptr_null(solver);
         return 1;
     }
@@ -2827,7 +2830,7 @@ START_TEST(steps_allocate_for_more_points_only) {
     scene s = scene_block(4, 4, 4, 0.5, 0, 0);
     points = points_of(&s, 0, s.model.copy_count);
     desc.allocator.allocate = failing_allocate, desc.allocator.release = failing_release, desc.allocator.user = &f;
-    ck_assert_int_eq(gxs_solver_create(&desc, &solver), GX_OK);
+    ck_assert_int_eq(gxs_solver_create(&desc, &solver, NULL), GX_OK);
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
     step.points = points;
     step.planes = &plane;
