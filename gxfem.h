@@ -337,12 +337,38 @@ typedef struct gx_region {
 GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t region_count,
                                  gx_failure *failure /* or NULL */);
 
-/* A step as the solver takes it; arrays are by copy, as in gx_view. A point of the skin is a gxs_point by its copies
-   and weights. A gxs_point has the epoch of the view, skin or hit that it comes from; a step with forces or targets has
-   one too. After a cut that began another epoch they are refused (GX_ERROR_STALE) until they are made anew. The body
-   supplies previous_displacement, previous_velocity, previous_dt and rest_times itself and ignores those of the
-   description. clock: if NULL, the body's. */
-typedef gxs_step_desc gx_step_desc;
+/* A time step. Zero but for dt: implicit Euler, one Newton iteration, nothing but inertia and elasticity. Arrays are by
+   copy, as in gx_view. Points, forces and targets name copies: they have the epoch of the view, skin or hit that they
+   come from, and are refused (GX_ERROR_STALE) after a cut that began another one. */
+typedef struct gx_step_desc {
+    double dt;         /* s, above 0; GXS_STATIC: 0 or more */
+    double gravity[3]; /* m/s2 */
+    /* GXS_BDF1 damps what swings: at dt = 1/60 s half of a free swing is gone after 5 s. GXS_BDF2 keeps it. */
+    gxs_integrator integrator;
+    uint32_t newton_iterations; /* at most; 0: 1 */
+    double newton_tolerance;    /* stop at this residual (see gxs_step_report); 0: 1e-8 */
+    uint32_t cg_iterations;     /* per Newton iteration, at most; 0: 1000 */
+    double cg_tolerance;        /* reduction by each linear solve, below 1; 0: 1e-2; 1e-3 with GXS_MIDPOINT */
+    double mass_damping;        /* Rayleigh's alpha, 1/s, 0 or more */
+    const double *forces;       /* copy_count x 3, N; NULL: none */
+    /* copy_count x 3: displacement of held copies at the step's end; others are not read. NULL: held copies stay */
+    const double *targets;
+    uint64_t epoch;            /* of forces and targets; read if one of them is given */
+    const gxs_spring *springs; /* spring_count */
+    size_t spring_count;
+    double *spring_forces;   /* spring_count x 3: receives the force of each spring on the body, N; or NULL */
+    const gxs_point *points; /* point_count: of contact with planes and contact() */
+    size_t point_count;
+    const gxs_plane *planes; /* plane_count */
+    size_t plane_count;
+    gxs_contact_fn contact; /* energy of a contact point; NULL: none */
+    void *contact_user;
+    double sleep_speed;          /* m/s: slower fragments fall asleep (see gxs_step_desc); 0: none */
+    double sleep_time;           /* s, for how long they must be slower; 0: 0.5 */
+    double (*clock)(void *user); /* s; NULL: the body's */
+    void *clock_user;
+    double budget_seconds; /* no iteration begins after this time; 0: no limit. Needs a clock */
+} gx_step_desc;
 typedef gxs_step_report gx_step_report;
 /* Takes one time step (GXFEM Eq. 10). On an error the body is as it was.
    A cut wakes the fragments that it touches. Copies that only slivers carry would be held by next to nothing, so they
@@ -5303,25 +5329,54 @@ static gx_result gxp_start_history(gx_body *body, uint32_t count) {
     return result;
 }
 
-/* The step as the solver takes it: with the body's own rest times, history and clock */
-static gx_result gxp_complete_step(gx_body *body, const gx_step_desc *desc, gx_step_desc *step) {
-    const int history = desc->integrator == GXS_BDF2;
-    gx_result result = GX_OK;
-    *step = *desc;
+/* What acts on the body, as the solver takes it */
+static void gxp_translate_loads(const gx_step_desc *desc, gxs_step_desc *step) {
+    memcpy(step->gravity, desc->gravity, sizeof step->gravity);
+    step->mass_damping = desc->mass_damping;
+    step->forces = desc->forces;
+    step->targets = desc->targets;
+    step->epoch = desc->epoch;
+    step->springs = desc->springs;
+    step->spring_count = desc->spring_count;
+    step->spring_forces = desc->spring_forces;
+    step->points = desc->points;
+    step->point_count = desc->point_count;
+    step->planes = desc->planes;
+    step->plane_count = desc->plane_count;
+    step->contact = desc->contact;
+    step->contact_user = desc->contact_user;
+}
+
+/* The step as the solver takes it: the only place where one description becomes the other. The body adds its rest
+   times, its history and, where the description has none, its clock. */
+static gx_result gxp_translate_step(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step) {
+    const int history = desc->integrator == GXS_BDF2, own_clock = desc->clock == NULL;
+    memset(step, 0, sizeof *step);
+    gxp_translate_loads(desc, step);
+    step->dt = desc->dt;
+    step->integrator = desc->integrator;
+    step->newton_iterations = desc->newton_iterations;
+    step->newton_tolerance = desc->newton_tolerance;
+    step->cg_iterations = desc->cg_iterations;
+    step->cg_tolerance = desc->cg_tolerance;
+    step->sleep_speed = desc->sleep_speed;
+    step->sleep_time = desc->sleep_time;
+    step->budget_seconds = desc->budget_seconds;
+    step->clock = own_clock ? body->config.clock : desc->clock;
+    step->clock_user = own_clock ? body->config.clock_user : desc->clock_user;
     step->rest_times = body->copies.rest_time;
-    if (step->clock == NULL) {
-        step->clock = body->config.clock;
-        step->clock_user = body->config.clock_user;
+    if (history) {
+        const gx_result result = gxp_start_history(body, 4);
+        if (result != GX_OK) return result;
     }
-    if (history) result = gxp_start_history(body, 4);
     step->previous_displacement = history && body->copies.previous_dt > 0 ? body->copies.history[0] : NULL;
     step->previous_velocity = body->copies.history[1];
     step->previous_dt = body->copies.previous_dt;
-    return result;
+    return GX_OK;
 }
 
 /* Takes the step and keeps the state that the next step of BDF2 needs. */
-static gx_result gxp_step(gx_body *body, const gx_step_desc *step, gx_step_report *report, gx_failure *failure) {
+static gx_result gxp_step(gx_body *body, const gxs_step_desc *step, gx_step_report *report, gx_failure *failure) {
     gxp_copies *copies = &body->copies;
     const size_t bytes = 3 * (size_t)copies->count * sizeof(double);
     const int history = step->integrator == GXS_BDF2;
@@ -5341,7 +5396,7 @@ static gx_result gxp_step(gx_body *body, const gx_step_desc *step, gx_step_repor
 
 GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report, gx_failure *failure) {
     const double start = body != NULL ? gxp_seconds(body) : 0;
-    gx_step_desc step;
+    gxs_step_desc step;
     gx_failure refused;
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
@@ -5350,7 +5405,7 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     gxp_end(&refused, GX_OK);
     result = gxp_update_model(body, &refused);
     if (result != GX_OK) return gxp_fail(failure, result, NULL, refused.index);
-    result = gxp_complete_step(body, desc, &step);
+    result = gxp_translate_step(body, desc, &step);
     if (gxp_end(failure, result) != GX_OK) return result;
     if (body->model.empty) {
         result = gxs_step_check(&step, body->cuts.epoch, failure);

@@ -59,10 +59,22 @@ static inline void method_take_report(const gx_step_report *report, method_times
     times->solve += report->seconds_prepare + report->seconds_solve;
 }
 
+/* The same for a solver without a body */
+static inline gxs_step_desc method_solver_desc(const replay *scene) {
+    const gx_step_desc like = method_step_desc(scene);
+    gxs_step_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.dt = like.dt;
+    memcpy(desc.gravity, like.gravity, sizeof desc.gravity);
+    desc.newton_iterations = like.newton_iterations;
+    desc.clock = like.clock;
+    return desc;
+}
+
 /* A solver's step of copies, begun at `start` */
 static inline const char *method_solve(gxs_solver *solver, const replay *scene, double *displacement, double *velocity,
                                        double start, method_times *times) {
-    const gx_step_desc desc = method_step_desc(scene);
+    const gxs_step_desc desc = method_solver_desc(scene);
     gx_step_report report;
     const gx_result result = gxs_solver_step(solver, &desc, displacement, velocity, &report, NULL);
     if (result != GX_OK) return gx_result_text(result);

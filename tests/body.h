@@ -87,6 +87,20 @@ static inline gx_body *cut_in_sequence(const workload *w) {
     return body;
 }
 
+/* A step without loads but gravity, for a solver without a body */
+static inline gxs_step_desc solver_step(const gx_step_desc *like) {
+    gxs_step_desc step;
+    memset(&step, 0, sizeof step);
+    step.dt = like->dt;
+    memcpy(step.gravity, like->gravity, sizeof step.gravity);
+    step.integrator = like->integrator;
+    step.newton_iterations = like->newton_iterations;
+    step.newton_tolerance = like->newton_tolerance;
+    step.cg_iterations = like->cg_iterations;
+    step.cg_tolerance = like->cg_tolerance;
+    return step;
+}
+
 static inline gx_view view_of(gx_body *body) {
     gx_view view;
     gx_result result = gx_body_view(body, &view, NULL);

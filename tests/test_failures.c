@@ -316,6 +316,7 @@ START_TEST(steps_and_solvers) {
     gxs_solver *solver = NULL;
     gxs_change change;
     gx_step_desc step;
+    gxs_step_desc own;
     double u[24], v[24];
     memset(&desc, 0, sizeof desc);
     memset(&step, 0, sizeof step);
@@ -341,6 +342,7 @@ START_TEST(steps_and_solvers) {
     step.integrator = GXS_BDF1;
     step.dt = 0.01;
     DONE(gx_body_step(body, &step, NULL, &failure));
+    own = solver_step(&step);
     REFUSED(gxs_solver_create(NULL, NULL, &failure), GX_ERROR_ARGUMENT, "solver", SIZE_MAX);
     desc.allocator.allocate = (void *(*)(void *, size_t))1;
     REFUSED(gxs_solver_create(&desc, &solver, &failure), GX_ERROR_ARGUMENT, "allocator", SIZE_MAX);
@@ -353,8 +355,8 @@ START_TEST(steps_and_solvers) {
     desc.matrix = GXS_MATRIX_FREE;
     DONE(gxs_solver_create(&desc, &solver, &failure));
     REFUSED(gxs_solver_set_model(solver, NULL, &failure), GX_ERROR_ARGUMENT, "model", SIZE_MAX);
-    REFUSED(gxs_solver_step(NULL, &step, u, v, NULL, &failure), GX_ERROR_ARGUMENT, "solver", SIZE_MAX);
-    REFUSED(gxs_solver_step(solver, &step, u, v, NULL, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
+    REFUSED(gxs_solver_step(NULL, &own, u, v, NULL, &failure), GX_ERROR_ARGUMENT, "solver", SIZE_MAX);
+    REFUSED(gxs_solver_step(solver, &own, u, v, NULL, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
     REFUSED(gxs_solver_update(solver, &change, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
     REFUSED(gxs_solver_linearise(solver, u, 0, 0, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
     REFUSED(gxs_solver_product(solver, u, v, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
@@ -366,13 +368,13 @@ START_TEST(steps_and_solvers) {
         DONE(gxs_solver_set_model(solver, &model, &failure));
     }
     REFUSED(gxs_solver_step(solver, NULL, u, v, NULL, &failure), GX_ERROR_ARGUMENT, "step", SIZE_MAX);
-    REFUSED(gxs_solver_step(solver, &step, NULL, v, NULL, &failure), GX_ERROR_ARGUMENT, "displacement", SIZE_MAX);
-    REFUSED(gxs_solver_step(solver, &step, u, NULL, NULL, &failure), GX_ERROR_ARGUMENT, "velocity", SIZE_MAX);
+    REFUSED(gxs_solver_step(solver, &own, NULL, v, NULL, &failure), GX_ERROR_ARGUMENT, "displacement", SIZE_MAX);
+    REFUSED(gxs_solver_step(solver, &own, u, NULL, NULL, &failure), GX_ERROR_ARGUMENT, "velocity", SIZE_MAX);
     REFUSED(gxs_solver_product(solver, u, v, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
     REFUSED(gxs_solver_linearise(solver, u, -1, 0, &failure), GX_ERROR_ARGUMENT, "rate", SIZE_MAX);
     DONE(gxs_solver_linearise(solver, u, 1, 0, &failure));
     DONE(gxs_solver_product(solver, u, v, &failure));
-    DONE(gxs_solver_step(solver, &step, u, v, NULL, &failure));
+    DONE(gxs_solver_step(solver, &own, u, v, NULL, &failure));
     gxs_solver_destroy(solver);
     gx_body_destroy(body);
     wl_free(&w);
