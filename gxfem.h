@@ -47,7 +47,7 @@
  *     tools:                     >>memory >>basics >>mesh >>search >>copies >>transaction >>complex >>numbering
  *     a cut:                     >>surfaces >>pinches >>arrange >>solids >>links >>cells >>components >>integrals >>cut
  *     a sheet's thickness:       >>solidify
- *     what is held and whole:    >>regions >>fragments >>motion
+ *     what is held and whole:    >>regions >>map >>fragments >>motion
  *     a step:                    >>supports >>model >>step
  *     the skin:                  >>corners >>vertices >>faces >>skinning >>rays
  *     beginning, end, bytes:     >>create >>hashes >>stream >>save
@@ -4440,17 +4440,26 @@ GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t
     return GX_OK;
 }
 
-/* >>fragments: sums, ids, changes, the view ------------------------------------------------------------------------ */
-/* In: the numbering of fragments. Out: their volumes, masses, centres and inertia; ids that stay, by comparison with
-   the last snapshot. Touches the view's sums, the snapshot and the copies' labels. */
+/* >>map: from rest to space ---------------------------------------------------------------------------------------- */
+/* In: a material point, or a cell. Out: where it is, how fast its corners are. Nothing else in this file turns
+   displacements of copies into positions: copies that do more than move a cell's corners change this section, and the
+   integrals at >>motion, which rest on the map being affine within a cell. Touches nothing. */
 
-/* The place of entry ij in a mass block */
-static const uint8_t gxp_mass_at[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
-
-/* The sum of a row of a mass block: density * integral of lambda_i */
-static double gxp_mass_row(const double mass[10], int i) {
-    const uint8_t *at = gxp_mass_at[i];
-    return mass[at[0]] + mass[at[1]] + mass[at[2]] + mass[at[3]];
+/* Where a point is: rest + sum of weight u over the copies of weight not 0, which stand first */
+static inline void gxp_map_point(const gx_body *body, const double rest[3], const uint32_t *copies,
+                                 const double *weights, uint32_t count, double position[3]) {
+    const double *displacement = body->copies.displacement;
+    double x = rest[0], y = rest[1], z = rest[2];
+    uint32_t n;
+    for (n = 0; n < count && weights[n] > 0; n++) {
+        const double *u = displacement + 3 * (size_t)copies[n];
+        x += weights[n] * u[0];
+        y += weights[n] * u[1];
+        z += weights[n] * u[2];
+    }
+    position[0] = x;
+    position[1] = y;
+    position[2] = z;
 }
 
 /* x of the cell's nodes from a centre, at rest or, moved, with the displacement of its copies */
@@ -4463,6 +4472,26 @@ static void gxp_cell_corners(const gx_body *body, const gxp_cell *cell, int move
         const double *u = body->copies.displacement + 3 * (size_t)cell->copies[n];
         for (k = 0; k < 3; k++) x[n][k] = rest[k] - center[k] + (moved ? u[k] : 0);
     }
+}
+
+/* The velocities of the cell's copies, less a mean */
+static void gxp_cell_velocities(const gx_body *body, const gxp_cell *cell, const double mean[3], double v[4][3]) {
+    int n, k;
+    for (n = 0; n < 4; n++)
+        for (k = 0; k < 3; k++) v[n][k] = body->copies.velocity[3 * (size_t)cell->copies[n] + (size_t)k] - mean[k];
+}
+
+/* >>fragments: sums, ids, changes, the view ------------------------------------------------------------------------ */
+/* In: the numbering of fragments. Out: their volumes, masses, centres and inertia; ids that stay, by comparison with
+   the last snapshot. Touches the view's sums, the snapshot and the copies' labels. */
+
+/* The place of entry ij in a mass block */
+static const uint8_t gxp_mass_at[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+
+/* The sum of a row of a mass block: density * integral of lambda_i */
+static double gxp_mass_row(const double mass[10], int i) {
+    const uint8_t *at = gxp_mass_at[i];
+    return mass[at[0]] + mass[at[1]] + mass[at[2]] + mass[at[3]];
 }
 
 /* sum += density * integral of x over the cell */
@@ -4781,12 +4810,6 @@ static void gxp_spin(const double inertia[6], const double momentum[3], double s
         const double along = v[0][i] * momentum[0] + v[1][i] * momentum[1] + v[2][i] * momentum[2];
         for (k = 0; k < 3 && a[i][i] > GXP_NO_INERTIA * largest; k++) spin[k] += along / a[i][i] * v[k][i];
     }
-}
-
-static void gxp_cell_velocities(const gx_body *body, const gxp_cell *cell, const double mean[3], double v[4][3]) {
-    int n, k;
-    for (n = 0; n < 4; n++)
-        for (k = 0; k < 3; k++) v[n][k] = body->copies.velocity[3 * (size_t)cell->copies[n] + (size_t)k] - mean[k];
 }
 
 /* Adds to inertia, angular momentum (sum_ij m_ij x_i x v_j) and energy; x and v are relative to the centre. */
@@ -6294,16 +6317,8 @@ GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc, gx_ski
 static void gxp_move_vertices(const gx_body *body, double *positions) {
     const gxp_skin *s = &body->skin;
     size_t i;
-    int k, n;
-    for (i = 0; i < s->vertex_count; i++) {
-        const uint32_t *copies = s->copies + 4 * i;
-        const double *w = s->weights + 4 * i;
-        double x[3];
-        for (k = 0; k < 3; k++) x[k] = s->rest[3 * i + (size_t)k];
-        for (n = 0; n < 4 && w[n] > 0; n++)
-            for (k = 0; k < 3; k++) x[k] += w[n] * body->copies.displacement[3 * (size_t)copies[n] + (size_t)k];
-        for (k = 0; k < 3; k++) positions[3 * i + (size_t)k] = x[k];
-    }
+    for (i = 0; i < s->vertex_count; i++)
+        gxp_map_point(body, s->rest + 3 * i, s->copies + 4 * i, s->weights + 4 * i, 4, positions + 3 * i);
 }
 
 /* Sums the normals of triangles in their slots, then interpolates those of vertices from their slots. */
@@ -6430,11 +6445,7 @@ static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double sh
         }
     }
     for (n = count; n < 4; n++) hit->copies[n] = hit->copies[0];
-    for (j = 0; j < 3; j++) {
-        hit->position[j] = hit->material[j];
-        for (n = 0; n < 4; n++)
-            hit->position[j] += hit->weights[n] * body->copies.displacement[3 * (size_t)hit->copies[n] + (size_t)j];
-    }
+    gxp_map_point(body, hit->material, hit->copies, hit->weights, count, hit->position);
 }
 
 static gx_result gxp_check_ray(const gx_body *body, const double origin[3], const double direction[3],
