@@ -406,8 +406,9 @@ typedef struct gx_range {
    creases and along cuts there are several at one point. */
 typedef struct gx_skin {
     size_t vertex_count;
-    const uint32_t *vertex_copies; /* vertex_count x 4: the copies that move it; those of weight 0 stand last */
-    const double *vertex_weights;  /* vertex_count x 4, barycentric: x = sum of weight (X + u) over the copies */
+    uint32_t vertex_width;         /* copies for which a vertex has room */
+    const uint32_t *vertex_copies; /* vertex_count x vertex_width: copies that move it; those of weight 0 stand last */
+    const double *vertex_weights;  /* vertex_count x vertex_width: x = X + sum of weight u over the copies */
     /* vertex_count: equal for vertices at the same material point, exactly. Vertices whose copies of weight not 0 are
        equal too are one corner of the surface: with corners merged like this it is watertight. */
     const uint32_t *vertex_point;
@@ -430,6 +431,9 @@ typedef struct gx_skin {
     size_t triangle_range_count;
     uint64_t epoch; /* of the numbering of copies, as in gx_view: for gxs_point */
 } gx_skin;
+/* A vertex of the skin as a point, for springs and contact. Keep the skin as long: the point may refer to it. vertex:
+   below vertex_count */
+GXFEM_API gxs_point gx_skin_point(const gx_skin *skin, uint32_t vertex);
 /* Makes the skin, or brings it up to date where cuts have been since the last call. Another description makes all of it
    anew. Errors: ARGUMENT, NOT_FINITE, MEMORY, LIMIT. */
 GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc /* or NULL: zero */, gx_skin *skin,
@@ -446,16 +450,21 @@ GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3] 
                                           float *normals /* vertex_count x 3, of length 1, or NULL */,
                                           gx_failure *failure /* or NULL */);
 
-/* Where a ray first meets the deformed skin. Its copies and weights can attach a spring: see gxs_spring. */
+#define GX_HIT_COPIES 16 /* room for the copies of a hit */
+
+/* Where a ray first meets the deformed skin. gx_hit_point makes a point of it, to which a spring can be attached. */
 typedef struct gx_hit {
     uint32_t triangle;                   /* of the skin; UINT32_MAX: the ray meets nothing, and the rest is 0 */
     uint32_t fragment, element, surface; /* of the triangle */
     double distance;                     /* in lengths of direction */
     double position[3], material[3];     /* deformed, m; material coordinates, m */
-    uint32_t copies[4];
-    double weights[4];
-    uint64_t epoch; /* of the numbering of copies, as in gx_view: for gxs_point */
+    uint32_t copy_count;                 /* of the copies that move the point */
+    uint32_t copies[GX_HIT_COPIES];      /* copy_count */
+    double weights[GX_HIT_COPIES];       /* copy_count, above 0, 1 in sum */
+    uint64_t epoch;                      /* of the numbering of copies, as in gx_view: for gxs_point */
 } gx_hit;
+/* The point of a hit, for springs and contact. Keep the hit as long: the point may refer to it. */
+GXFEM_API gxs_point gx_hit_point(const gx_hit *hit);
 /* Finds the nearest triangle on a ray. Errors: ARGUMENT (also: direction is 0), NOT_FINITE, SEQUENCE (there is no skin,
    or a cut has been since). */
 GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit,
@@ -6280,6 +6289,7 @@ static gx_result gxp_update_skin(gx_body *body, const gx_skin_desc *desc) {
 static void gxp_show_skin(const gx_body *body, gx_skin *skin) {
     const gxp_skin *s = &body->skin;
     skin->vertex_count = s->vertex_count;
+    skin->vertex_width = 4;
     skin->vertex_copies = s->copies;
     skin->vertex_weights = s->weights;
     skin->vertex_point = s->point;
@@ -6425,6 +6435,34 @@ static int gxp_meet_triangle(const gxp_skin *s, const uint32_t *t, double share[
     return *distance >= 0;
 }
 
+/* A point of up to GXS_POINT_OWN copies holds them itself, others refer to the arrays. */
+static gxs_point gxp_make_point(const uint32_t *copies, const double *weights, uint32_t count, const double rest[3],
+                                uint64_t epoch) {
+    gxs_point point;
+    memset(&point, 0, sizeof point);
+    point.count = count;
+    if (count <= GXS_POINT_OWN) {
+        memcpy(point.copy, copies, count * sizeof *copies);
+        memcpy(point.weight, weights, count * sizeof *weights);
+    } else {
+        point.copies = copies;
+        point.weights = weights;
+    }
+    memcpy(point.position, rest, sizeof point.position);
+    point.epoch = epoch;
+    return point;
+}
+
+GXFEM_API gxs_point gx_skin_point(const gx_skin *skin, uint32_t vertex) {
+    const size_t first = (size_t)vertex * skin->vertex_width;
+    return gxp_make_point(skin->vertex_copies + first, skin->vertex_weights + first, skin->vertex_width,
+                          skin->vertex_rest + 3 * (size_t)vertex, skin->epoch);
+}
+
+GXFEM_API gxs_point gx_hit_point(const gx_hit *hit) {
+    return gxp_make_point(hit->copies, hit->weights, hit->copy_count, hit->material, hit->epoch);
+}
+
 /* The copies of the triangle's corners with their weights, at most four in all: a triangle lies in one element. */
 static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double share[3], gx_hit *hit) {
     const gxp_skin *s = &body->skin;
@@ -6439,12 +6477,14 @@ static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double sh
         const size_t v = s->triangles[3 * (size_t)triangle + i];
         for (j = 0; j < 3; j++) hit->material[j] += share[i] * s->rest[3 * v + (size_t)j];
         for (k = 0; k < 4 && s->weights[4 * v + k] > 0; k++) {
+            const double weight = share[i] * s->weights[4 * v + k];
+            if (!(weight > 0)) continue; /* the ray meets an edge or a corner */
             for (n = 0; n < count && hit->copies[n] != s->copies[4 * v + k]; n++) {}
             if (n == count) hit->copies[count++] = s->copies[4 * v + k];
-            hit->weights[n] += share[i] * s->weights[4 * v + k];
+            hit->weights[n] += weight;
         }
     }
-    for (n = count; n < 4; n++) hit->copies[n] = hit->copies[0];
+    hit->copy_count = count;
     gxp_map_point(body, hit->material, hit->copies, hit->weights, count, hit->position);
 }
 
@@ -6918,7 +6958,7 @@ static void gxp_require_true(gxb_stream *s, int holds) {
 }
 static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
 
-#define GXP_SAVE_VERSION 3u /* raised by every change of the format */
+#define GXP_SAVE_VERSION 4u /* raised by every change of the format */
 #define GXP_BYTE_ORDER   0x01020304u
 
 typedef struct gxp_head {

@@ -320,13 +320,20 @@ typedef enum gxs_integrator {
     GXS_STATIC
 } gxs_integrator;
 
+#define GXS_POINT_OWN  4  /* copies for which a point has room itself */
+#define GXS_POINT_MOST 32 /* copies of a point at most */
+
 /* A material point: a node, a point of an element, a vertex of a skin. Its displacement is the sum of weight x that of
- * copy. */
+ * copy, over a span of count copies. Up to GXS_POINT_OWN stand in the point, which may then be kept and copied. More
+ * stand in the caller's arrays, which last as long as the point is used. */
 typedef struct gxs_point {
-    uint32_t copy[4];   /* below copy_count, also where the weight is 0 */
-    double weight[4];   /* of the shape functions there, 1 in sum */
-    double position[3]; /* at rest, m */
-    uint64_t epoch;     /* names the numbering of copy: the model's, else GX_ERROR_STALE */
+    uint32_t count;               /* above 0 */
+    uint32_t copy[GXS_POINT_OWN]; /* count, if copies is NULL; below copy_count, also where the weight is 0 */
+    double weight[GXS_POINT_OWN]; /* of the shape functions there, 1 in sum */
+    const uint32_t *copies;       /* count; NULL: copy and weight */
+    const double *weights;        /* count; NULL with copies */
+    double position[3];           /* at rest, m */
+    uint64_t epoch;               /* names the numbering of copies: the model's, else GX_ERROR_STALE */
 } gxs_point;
 
 /* Pulls a point to a target: a hand, a haptic tool, an elastic tether. Energy stiffness/2 |x - target|^2 */
@@ -443,7 +450,7 @@ typedef struct gxs_solver gxs_solver;
  * where they are. Both get the velocity of that motion. GX_ERROR_SEQUENCE: no model is set. GX_ERROR_DIVERGED and, with
  * GXS_STATIC, GX_ERROR_FREE leave displacement and velocity unchanged. A residual above newton_tolerance when the
  * iterations are used up is no error: see the report. Allocates (GX_ERROR_MEMORY) only if there are more springs and
- * contact points than ever before. */
+ * contact points, or copies of them, than ever before. */
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
                                     double *velocity, gxs_step_report *report, gx_failure *failure);
 /* Checks of a step's description what needs no solver: its numbers, and that it names copies by the numbering `epoch`.
@@ -1192,18 +1199,26 @@ typedef struct gxsp_light {
     uint16_t lane, corner;
 } gxsp_light;
 
+/* A copy's share in a point */
+typedef struct gxsp_share {
+    uint32_t copy;
+    float weight;
+} gxsp_share;
+
 /* Hessian of the springs and contact at one point, times scale */
 typedef struct gxsp_term {
-    uint32_t copy[4];
-    float weight[4], hessian[6];
+    size_t first; /* of gxsp_lasting.share */
+    uint32_t count;
     int assembled; /* the assembled matrix has it */
+    float hessian[6];
 } gxsp_term;
 
 /* What the solver keeps from model to model */
 typedef struct gxsp_lasting {
-    gxsp_pool pool;  /* of term */
-    gxsp_term *term; /* of the present linearisation */
-    size_t count, room;
+    gxsp_pool pool;    /* of term and share */
+    gxsp_term *term;   /* of the present linearisation */
+    gxsp_share *share; /* of all terms, one after the other */
+    size_t count, room, share_count, share_room;
     gxs_scene scene; /* of the step before */
 } gxsp_lasting;
 
@@ -5220,20 +5235,32 @@ static double gxsp_rows_product(const gxsp_system *system, gxsp_vector4 *x, gxsp
     return work;
 }
 
+/* y += sign H x of one point; *work += x . H x */
+static inline void gxsp_add_term(const gxsp_share *share, uint32_t count, const float *hessian, float sign,
+                                 gxsp_vector4 *x, gxsp_vector4 *y, double *work) {
+    float at[3] = {0, 0, 0}, force[3];
+    uint32_t k;
+    int c;
+    for (k = 0; k < count; k++)
+        for (c = 0; c < 3; c++) at[c] += share[k].weight * x[share[k].copy][c];
+    gxsp_apply_packed(hessian, at, force);
+    for (c = 0; c < 3; c++) *work += (double)at[c] * (double)force[c];
+    for (k = 0; k < count; k++)
+        for (c = 0; c < 3; c++) y[share[k].copy][c] += sign * share[k].weight * force[c];
+}
+
 /* y += sign H x of springs and contact. Returns x . H x. */
 static double gxsp_add_terms(const gxsp_lasting *lasting, float sign, gxsp_vector4 *x, gxsp_vector4 *y) {
     double work = 0;
     size_t t;
-    int k, c;
     for (t = 0; t < lasting->count; t++) {
         const gxsp_term *term = &lasting->term[t];
-        float at[3] = {0, 0, 0}, force[3];
-        for (k = 0; k < 4 && !term->assembled; k++)
-            for (c = 0; c < 3; c++) at[c] += term->weight[k] * x[term->copy[k]][c];
-        gxsp_apply_packed(term->hessian, at, force);
-        for (c = 0; c < 3; c++) work += (double)at[c] * (double)force[c];
-        for (k = 0; k < 4 && !term->assembled; k++)
-            for (c = 0; c < 3; c++) y[term->copy[k]][c] += sign * term->weight[k] * force[c];
+        const gxsp_share *share = lasting->share + term->first;
+        if (term->assembled) continue;
+        if (term->count == 4) /* as a constant it is unrolled */
+            gxsp_add_term(share, 4, term->hessian, sign, x, y, &work);
+        else
+            gxsp_add_term(share, term->count, term->hessian, sign, x, y, &work);
     }
     return work;
 }
@@ -5519,15 +5546,16 @@ static void gxsp_task_diagonal(void *context, size_t index) {
 static void gxsp_extra_diagonal(gxsp_system *system) {
     float *slots = (float *)(void *)system->vectors.slots;
     size_t t;
-    uint32_t i, s;
+    uint32_t i, s, n;
     int k, m;
     for (t = 0; t < system->lasting->count; t++)
-        for (k = 0; k < 4; k++) {
+        for (n = 0; n < system->lasting->term[t].count; n++) {
             const gxsp_term *term = &system->lasting->term[t];
-            const uint32_t copy = term->copy[k];
+            const gxsp_share *share = &system->lasting->share[term->first + n];
+            const uint32_t copy = share->copy;
             for (m = 0; m < 6 && system->mesh.copy_start[copy] < system->mesh.copy_start[copy + 1]; m++)
                 slots[6 * (size_t)system->mesh.copy_slot[system->mesh.copy_start[copy]] + (size_t)m] +=
-                    term->weight[k] * term->weight[k] * term->hessian[m];
+                    share->weight * share->weight * term->hessian[m];
         }
     for (i = 0; i < system->model.follower_count; i++)
         for (s = system->mesh.copy_start[system->model.followers[i].copy];
@@ -5809,11 +5837,13 @@ static void gxsp_coarse_lumped(gxsp_system *system, double rate) {
 static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
     static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
     const gxsp_level *fine = &system->multigrid.levels[0];
+    const gxsp_share *share = system->lasting->share + term->first;
     gxsp_level *next = &system->multigrid.levels[1];
-    int i, j, p, q, k;
-    for (i = 0; i < 16; i++)
-        for (j = 0; j < 16; j++) {
-            const uint32_t a = term->copy[i / 4], b = term->copy[j / 4], row = fine->parent[a][i % 4],
+    uint32_t i, j, p, q;
+    int k;
+    for (i = 0; i < 4 * term->count; i++)
+        for (j = 0; j < 4 * term->count; j++) {
+            const uint32_t a = share[i / 4].copy, b = share[j / 4].copy, row = fine->parent[a][i % 4],
                            column = fine->parent[b][j % 4];
             uint32_t entry;
             p = i % 4, q = j % 4;
@@ -5821,7 +5851,7 @@ static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
             entry = gxsp_find_entry(next, row, column);
             if (next->column[entry] != column) continue;
             for (k = 0; k < 9; k++)
-                next->block[9 * (size_t)entry + (size_t)k] += term->weight[i / 4] * term->weight[j / 4] *
+                next->block[9 * (size_t)entry + (size_t)k] += share[i / 4].weight * share[j / 4].weight *
                                                               fine->weight[a][p] * fine->weight[b][q] *
                                                               term->hessian[full[k]];
         }
@@ -6057,16 +6087,17 @@ static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, ui
  * it has. */
 static int gxsp_assemble_term(gxsp_system *system, const gxsp_term *term) {
     static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    const gxsp_share *share = system->lasting->share + term->first, *end = share + term->count;
     gxsp_level *fine = &system->multigrid.levels[0];
-    uint32_t a[16], i, j, count = 0, entry;
-    float w[16];
+    uint32_t a[4 * GXS_POINT_MOST], i, j, count = 0, entry;
+    float w[4 * GXS_POINT_MOST];
     int k, adds;
-    for (k = 0; k < 4; k++)
-        if (term->weight[k] * term->weight[k] > 0) {
+    for (; share < end; share++)
+        if (share->weight * share->weight > 0) {
             const uint32_t first = count;
-            for (count += (uint32_t)gxsp_corner_masters(system, term->copy[k], a + count, w + count), i = first;
+            for (count += (uint32_t)gxsp_corner_masters(system, share->copy, a + count, w + count), i = first;
                  i < count; i++)
-                w[i] *= term->weight[k];
+                w[i] *= share->weight;
         }
     for (adds = 0; adds < 2; adds++)
         for (i = 0; i < count; i++)
@@ -6115,11 +6146,11 @@ static int gxsp_invert_fine(gxsp_system *system) {
         for (m = 0; m < 6; m++)
             fine->inverse[6 * (size_t)i + (size_t)m] = fine->block[9 * (size_t)fine->start[i] + (size_t)packed[m]];
     for (t = 0; t < system->lasting->count; t++)
-        for (k = 0; k < 4 && !system->lasting->term[t].assembled; k++) {
+        for (k = 0; k < system->lasting->term[t].count && !system->lasting->term[t].assembled; k++) {
             const gxsp_term *term = &system->lasting->term[t];
+            const gxsp_share *share = &system->lasting->share[term->first + k];
             for (m = 0; m < 6; m++)
-                fine->inverse[6 * (size_t)term->copy[k] + (size_t)m] +=
-                    term->weight[k] * term->weight[k] * term->hessian[m];
+                fine->inverse[6 * (size_t)share->copy + (size_t)m] += share->weight * share->weight * term->hessian[m];
         }
     for (i = 0; i < fine->n; i++) {
         float *inverse = fine->inverse + 6 * (size_t)i, block[9];
@@ -7151,15 +7182,12 @@ static void gxsp_untouch_components(gxsp_system *system) {
 /* Components on which springs and contact act, by their terms, are not loose for the rest of this run of Newton's
  * method: their momentum is no longer that of the start. */
 static void gxsp_touch_components(gxsp_system *system) {
-    size_t t;
+    const gxsp_share *share = system->lasting->share, *end = share + system->lasting->share_count;
     uint32_t p;
-    int k;
     for (p = 0; p < system->model.component_count; p++) system->model.components[p].state &= ~GXSP_TOUCHES;
-    for (t = 0; t < system->lasting->count; t++)
-        for (k = 0; k < 4; k++)
-            if (system->lasting->term[t].weight[k] * system->lasting->term[t].weight[k] > 0)
-                system->model.components[system->model.component[system->lasting->term[t].copy[k]]].state |=
-                    GXSP_TOUCHED | GXSP_TOUCHES;
+    for (; share < end; share++)
+        if (share->weight * share->weight > 0)
+            system->model.components[system->model.component[share->copy]].state |= GXSP_TOUCHED | GXSP_TOUCHES;
     system->state.loose_count = system->state.free_count = 0;
     for (p = 0; p < system->model.component_count; p++) {
         system->state.loose_count += system->model.components[p].state == 0;
@@ -7180,25 +7208,49 @@ typedef struct gxsp_pull {
     double hessian[6];  /* of the energy, N/m, packed */
 } gxsp_pull;
 
-static void gxsp_point_position(const gxs_point *point, const double *displacement, double *x) {
-    int k, c;
-    memcpy(x, point->position, 3 * sizeof *x);
-    for (k = 0; k < 4; k++)
-        for (c = 0; c < 3; c++) x[c] += point->weight[k] * displacement[3 * (size_t)point->copy[k] + (size_t)c];
+/* The span of a point: its own arrays, or the caller's */
+static inline const uint32_t *gxsp_copies(const gxs_point *point) {
+    return point->copies ? point->copies : point->copy;
+}
+static inline const double *gxsp_weights(const gxs_point *point) {
+    return point->copies ? point->weights : point->weight;
+}
+
+/* A point of a step: springs' come first, then those of contact. */
+static inline const gxs_point *gxsp_point_of(const gxs_step_desc *step, size_t i) {
+    return i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
+}
+
+static void gxsp_point_position(const gxs_point *point, const double *displacement, double *position) {
+    const uint32_t *copies = gxsp_copies(point), *end = copies + point->count;
+    const double *weight = gxsp_weights(point);
+    double x = point->position[0], y = point->position[1], z = point->position[2];
+    for (; copies < end; copies++, weight++) {
+        const double *u = displacement + 3 * (size_t)*copies;
+        x += *weight * u[0];
+        y += *weight * u[1];
+        z += *weight * u[2];
+    }
+    position[0] = x;
+    position[1] = y;
+    position[2] = z;
 }
 
 /* A copy of the component that the point belongs to */
 static size_t gxsp_point_copy(const gxs_point *point) {
-    int k = 0;
-    while (k < 3 && !(fabs(point->weight[k]) > 0)) k++;
-    return point->copy[k];
+    const double *weights = gxsp_weights(point);
+    uint32_t k = 0;
+    while (k + 1 < point->count && !(fabs(weights[k]) > 0)) k++;
+    return gxsp_copies(point)[k];
 }
 
 /* Can the step move the point? */
 static int gxsp_point_moves(const gxsp_system *system, const gxs_point *point) {
-    int k;
-    for (k = 0; k < 4; k++)
-        if (fabs(point->weight[k]) > 0 && !system->state.still[point->copy[k]]) return 1;
+    const uint32_t *copies = gxsp_copies(point);
+    const double *weights = gxsp_weights(point);
+    uint32_t k;
+    for (k = 0; k < point->count; k++)
+        if (fabs(weights[k]) > 0 && !system->state.still[copies[k]]) return 1;
     return 0;
 }
 
@@ -7288,8 +7340,7 @@ static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *at, 
     const gxs_step_desc *step = problem->step;
     for (; *at < step->spring_count + step->point_count; (*at)++) {
         const size_t i = *at;
-        const gxs_point *point =
-            i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
+        const gxs_point *point = gxsp_point_of(step, i);
         if (!gxsp_point_moves(problem->system, point)) continue;
         if (i < step->spring_count)
             gxsp_spring_pull(&step->springs[i], displacement, pull);
@@ -7315,17 +7366,17 @@ static void gxsp_choose_leads(const gxsp_problem *problem) {
     const gxs_step_desc *step = problem->step;
     gxsp_component *components = problem->system->model.components;
     size_t i;
-    uint32_t p;
-    int k;
+    uint32_t p, k;
     for (p = 0; p < problem->system->model.component_count; p++) components[p].lead = p;
     for (i = 0; i < step->spring_count + step->point_count; i++) {
-        const gxs_point *point =
-            i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
+        const gxs_point *point = gxsp_point_of(step, i);
+        const uint32_t *copies = gxsp_copies(point);
+        const double *weights = gxsp_weights(point);
         uint32_t joined = GXSP_NONE;
-        for (k = 0; k < 4; k++) {
+        for (k = 0; k < point->count; k++) {
             uint32_t first;
-            if (!(fabs(point->weight[k]) > 0)) continue;
-            p = gxsp_lead_root(components, problem->system->model.component[point->copy[k]]);
+            if (!(fabs(weights[k]) > 0)) continue;
+            p = gxsp_lead_root(components, problem->system->model.component[copies[k]]);
             joined = joined == GXSP_NONE ? p : joined;
             first = p < joined ? p : joined;
             components[p].lead = components[joined].lead = first;
@@ -7350,17 +7401,20 @@ static void gxsp_evaluate(const gxsp_problem *problem, const double *from, int n
     const gxs_point *point;
     gxsp_pull pull;
     size_t at = 0;
-    int k, c;
+    uint32_t k;
+    int c;
     gxsp_evaluate_elements(problem->system, problem->rate, from, NULL, nudge, force);
     while ((point = gxsp_next_pull(problem, &at, from, &pull)) != NULL) {
+        const uint32_t *copies = gxsp_copies(point), count = point->count;
+        const double *weights = gxsp_weights(point);
         double *energies = gxsp_lead_of(problem->system, gxsp_point_copy(point))->energies;
         energies[0] += pull.energy;
         energies[2] += fabs(pull.energy);
         for (c = 0; c < 3; c++) /* the gap of a spring is a small difference of large positions */
             energies[2] += fabs(pull.force[c]) * (fabs(point->position[c]) + fabs(pull.position[c]));
-        for (k = 0; k < 4; k++)
-            for (c = 0; c < 3 && !problem->system->state.still[point->copy[k]]; c++)
-                force[3 * (size_t)point->copy[k] + (size_t)c] -= point->weight[k] * pull.force[c];
+        for (k = 0; k < count; k++)
+            for (c = 0; c < 3 && !problem->system->state.still[copies[k]]; c++)
+                force[3 * (size_t)copies[k] + (size_t)c] -= weights[k] * pull.force[c];
     }
 }
 
@@ -7383,16 +7437,22 @@ static void gxsp_terms_make(const gxsp_problem *problem, const double *displacem
     const gxs_point *point;
     gxsp_pull pull;
     size_t at = 0;
+    uint32_t n;
     int k;
-    lasting->count = 0;
+    lasting->count = lasting->share_count = 0;
     while ((point = gxsp_next_pull(problem, &at, displacement, &pull)) != NULL) {
         gxsp_term *term = &lasting->term[lasting->count];
         if (!(pull.hessian[0] + pull.hessian[3] + pull.hessian[5] > 0) && !(gxsp_dot(pull.force, pull.force, 1) > 0))
             continue;
         lasting->count++;
-        memcpy(term->copy, point->copy, sizeof term->copy);
+        term->first = lasting->share_count;
+        term->count = point->count;
         term->assembled = 0;
-        for (k = 0; k < 4; k++) term->weight[k] = (float)point->weight[k];
+        for (n = 0; n < point->count; n++) {
+            gxsp_share *share = &lasting->share[lasting->share_count++];
+            share->copy = gxsp_copies(point)[n];
+            share->weight = (float)gxsp_weights(point)[n];
+        }
         for (k = 0; k < 6; k++) term->hessian[k] = (float)(problem->system->model.scale * pull.hessian[k]);
     }
     gxsp_touch_components(problem->system);
@@ -7785,7 +7845,7 @@ static int gxsp_solve(gxsp_problem *problem) {
 static uint64_t gxsp_hash_forces(gxsp_system *system, const gxs_step_desc *step) {
     static const double zero[3] = {0, 0, 0};
     uint64_t all = 1;
-    uint32_t p;
+    uint32_t p, k;
     size_t i;
     for (p = 0; p < system->model.component_count; p++) system->model.components[p].forces[1] = 1;
     for (i = 0; step->forces && i < system->model.n; i++)
@@ -7795,11 +7855,13 @@ static uint64_t gxsp_hash_forces(gxsp_system *system, const gxs_step_desc *step)
             *hash = gxsp_hash(gxsp_hash(*hash, &index, 1), step->forces + 3 * i, 3);
             all = gxsp_hash(gxsp_hash(all, &index, 1), step->forces + 3 * i, 3);
         }
-    for (i = 0; i < 4 * step->point_count && step->sleep_speed > 0; i++) {
-        const gxs_point *point = &step->points[i / 4];
-        const double values[2] = {(double)point->copy[i % 4], point->weight[i % 4]};
-        uint64_t *hash = &system->model.components[system->model.component[point->copy[i % 4]]].forces[1];
-        if (fabs(values[1]) > 0) {
+    for (i = 0; i < step->point_count && step->sleep_speed > 0; i++) {
+        const gxs_point *point = &step->points[i];
+        for (k = 0; k < point->count; k++) {
+            const uint32_t copy = gxsp_copies(point)[k];
+            const double values[2] = {(double)copy, gxsp_weights(point)[k]};
+            uint64_t *hash = &system->model.components[system->model.component[copy]].forces[1];
+            if (!(fabs(values[1]) > 0)) continue;
             *hash = gxsp_hash(gxsp_hash(*hash, values, 2), point->position, 3);
             all = gxsp_hash(gxsp_hash(all, values, 2), point->position, 3);
         }
@@ -7810,6 +7872,7 @@ static uint64_t gxsp_hash_forces(gxsp_system *system, const gxs_step_desc *step)
 static gxs_scene gxsp_scene_make(gxsp_system *system, const gxs_step_desc *step) {
     gxs_scene scene;
     size_t i;
+    uint32_t k;
     memcpy(scene.gravity, step->gravity, sizeof scene.gravity);
     scene.planes = 1;
     for (i = 0; i < step->plane_count; i++) {
@@ -7820,13 +7883,15 @@ static gxs_scene gxsp_scene_make(gxsp_system *system, const gxs_step_desc *step)
     scene.forces = gxsp_hash_forces(system, step);
     scene.springs = 1;
     for (i = 0; i < system->model.component_count; i++) system->model.components[i].has_spring[1] = 0;
-    for (i = 0; i < 4 * step->spring_count; i++) {
-        const gxs_spring *spring = &step->springs[i / 4];
-        const double values[3] = {(double)spring->point.copy[i % 4], spring->point.weight[i % 4], spring->stiffness};
-        scene.springs =
-            gxsp_hash(gxsp_hash(gxsp_hash(scene.springs, spring->target, 3), spring->point.position, 3), values, 3);
-        if (fabs(spring->point.weight[i % 4]) > 0)
-            system->model.components[system->model.component[spring->point.copy[i % 4]]].has_spring[1] = 1;
+    for (i = 0; i < step->spring_count; i++) {
+        const gxs_spring *spring = &step->springs[i];
+        for (k = 0; k < spring->point.count; k++) {
+            const uint32_t copy = gxsp_copies(&spring->point)[k];
+            const double values[3] = {(double)copy, gxsp_weights(&spring->point)[k], spring->stiffness};
+            scene.springs =
+                gxsp_hash(gxsp_hash(gxsp_hash(scene.springs, spring->target, 3), spring->point.position, 3), values, 3);
+            if (fabs(values[1]) > 0) system->model.components[system->model.component[copy]].has_spring[1] = 1;
+        }
     }
     return scene;
 }
@@ -7874,19 +7939,21 @@ static int gxsp_too_fast(const gxs_step_desc *step, const double *velocity) {
 
 /* Wakes the components that springs and contact points join to awake ones. Returns whether there were any. */
 static int gxsp_wake_joined(gxsp_system *system, const gxs_step_desc *step) {
-    int any = 0, k;
+    int any = 0;
+    uint32_t k;
     size_t i;
     for (i = 0; i < step->spring_count + step->point_count; i++) {
-        const gxs_point *point =
-            i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
+        const gxs_point *point = gxsp_point_of(step, i);
+        const uint32_t *copies = gxsp_copies(point);
+        const double *weights = gxsp_weights(point);
         int awake = 0;
-        for (k = 0; k < 4; k++)
-            awake |= fabs(point->weight[k]) > 0 && !system->model.fixed[point->copy[k]] &&
-                     !system->model.components[system->model.component[point->copy[k]]].resting;
-        for (k = 0; k < 4 && awake; k++) {
-            gxsp_component *component = &system->model.components[system->model.component[point->copy[k]]];
-            any |= fabs(point->weight[k]) > 0 && component->resting;
-            component->resting &= !(fabs(point->weight[k]) > 0);
+        for (k = 0; k < point->count; k++)
+            awake |= fabs(weights[k]) > 0 && !system->model.fixed[copies[k]] &&
+                     !system->model.components[system->model.component[copies[k]]].resting;
+        for (k = 0; k < point->count && awake; k++) {
+            gxsp_component *component = &system->model.components[system->model.component[copies[k]]];
+            any |= fabs(weights[k]) > 0 && component->resting;
+            component->resting &= !(fabs(weights[k]) > 0);
         }
     }
     return any;
@@ -8546,11 +8613,11 @@ static void gxsp_touch_components_at(const gxsp_problem *problem, const double *
     const gxs_point *point;
     gxsp_pull pull;
     size_t at = 0;
-    int k;
+    uint32_t k;
     while ((point = gxsp_next_pull(problem, &at, displacement, &pull)) != NULL)
-        for (k = 0; k < 4 && (fabs(pull.energy) > 0 || gxsp_dot(pull.force, pull.force, 1) > 0); k++)
-            if (fabs(point->weight[k]) > 0)
-                system->model.components[system->model.component[point->copy[k]]].state |= GXSP_TOUCHED;
+        for (k = 0; k < point->count && (fabs(pull.energy) > 0 || gxsp_dot(pull.force, pull.force, 1) > 0); k++)
+            if (fabs(gxsp_weights(point)[k]) > 0)
+                system->model.components[system->model.component[gxsp_copies(point)[k]]].state |= GXSP_TOUCHED;
 }
 
 /* Is the second half short enough for the component? If not, it will try a shorter one, in the end none: E is about
@@ -8904,14 +8971,21 @@ GXFEM_API gx_result gxs_step_check(const gxs_step_desc *step, uint64_t epoch, gx
     return result == GX_OK ? gxsp_check_epochs(step, epoch, failure) : result;
 }
 
-/* names: of the point's copy, weight and position */
-static gx_result gxsp_check_point(const gxs_point *point, size_t n, const char *const names[3], size_t index,
+/* names: of the point's count, copy, weight, copies, weights, position */
+static gx_result gxsp_check_point(const gxs_point *point, size_t n, const char *const names[6], size_t index,
                                   gx_failure *failure) {
-    int k;
-    for (k = 0; k < 4; k++)
-        if (point->copy[k] >= n) return gxsp_fail(failure, GX_ERROR_INDEX, names[0], index);
-    if (gxsp_first_not_finite(point->weight, 4) < 4) return gxsp_fail(failure, GX_ERROR_NOT_FINITE, names[1], index);
-    return gxsp_check_finite(point->position, 3, names[2], index, failure);
+    const char *const *own = names + (point->copies ? 3 : 1);
+    uint32_t k;
+    if (point->count == 0) return gxsp_fail(failure, GX_ERROR_ARGUMENT, names[0], index);
+    if (point->count > GXS_POINT_MOST) return gxsp_fail(failure, GX_ERROR_LIMIT, names[0], index);
+    if (!point->copies && (point->count > GXS_POINT_OWN || point->weights))
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, names[3], index);
+    if (point->copies && !point->weights) return gxsp_fail(failure, GX_ERROR_ARGUMENT, names[4], index);
+    for (k = 0; k < point->count; k++)
+        if (gxsp_copies(point)[k] >= n) return gxsp_fail(failure, GX_ERROR_INDEX, own[0], index);
+    if (gxsp_first_not_finite(gxsp_weights(point), point->count) < point->count)
+        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, own[1], index);
+    return gxsp_check_finite(point->position, 3, names[5], index, failure);
 }
 
 static gx_result gxsp_check_plane(const gxs_plane *plane, size_t index, gx_failure *failure) {
@@ -8929,8 +9003,11 @@ static gx_result gxsp_check_plane(const gxs_plane *plane, size_t index, gx_failu
 
 /* Springs, contact points and planes of a step */
 static gx_result gxsp_check_points(const gxs_step_desc *step, size_t n, gx_failure *failure) {
-    static const char *const of_springs[3] = {"springs.point.copy", "springs.point.weight", "springs.point.position"},
-                             *const of_points[3] = {"points.copy", "points.weight", "points.position"};
+    static const char *const of_springs[6] = {"springs.point.count",   "springs.point.copy",
+                                              "springs.point.weight",  "springs.point.copies",
+                                              "springs.point.weights", "springs.point.position"};
+    static const char *const of_points[6] = {"points.count",  "points.copy",    "points.weight",
+                                             "points.copies", "points.weights", "points.position"};
     gx_result result = GX_OK;
     size_t i;
     for (i = 0; i < step->spring_count && result == GX_OK; i++) {
@@ -9003,10 +9080,12 @@ static gx_result gxsp_check_free(const gxsp_problem *problem, gx_failure *failur
     const gxs_step_desc *step = problem->step;
     size_t i, k;
     gxsp_untouch_components(problem->system);
-    for (k = 0; k < step->spring_count; k++)
-        for (i = 0; i < 4 && step->springs[k].stiffness > 0; i++)
-            if (fabs(step->springs[k].point.weight[i]) > 0)
-                system->model.components[system->model.component[step->springs[k].point.copy[i]]].state |= GXSP_TOUCHED;
+    for (k = 0; k < step->spring_count; k++) {
+        const gxs_point *point = &step->springs[k].point;
+        for (i = 0; i < point->count && step->springs[k].stiffness > 0; i++)
+            if (fabs(gxsp_weights(point)[i]) > 0)
+                system->model.components[system->model.component[gxsp_copies(point)[i]]].state |= GXSP_TOUCHED;
+    }
     for (i = 0; i < system->model.n && !(problem->rate > 0); i++)
         if (!(system->model.components[system->model.component[i]].state & (GXSP_HELD | GXSP_TOUCHED | GXSP_ASLEEP)))
             return gxsp_fail(failure, GX_ERROR_FREE, NULL, i);
@@ -9190,14 +9269,23 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene) {
 }
 
 /* Memory for the terms of a step */
-static int gxsp_reserve_terms(gxsp_lasting *lasting, size_t count) {
-    gxsp_term *larger;
-    if (count <= lasting->room) return 1;
+static int gxsp_reserve_terms(gxsp_lasting *lasting, const gxs_step_desc *step) {
+    const size_t count = step->spring_count + step->point_count;
+    size_t shares = 0, i;
+    for (i = 0; i < count; i++) shares += gxsp_point_of(step, i)->count;
     lasting->pool.failed = 0;
-    larger = (gxsp_term *)gxsp_grow(&lasting->pool, lasting->term, 0, count, sizeof *larger);
-    if (!larger) return 0;
-    lasting->term = larger;
-    lasting->room = count;
+    if (count > lasting->room) {
+        gxsp_term *larger = (gxsp_term *)gxsp_grow(&lasting->pool, lasting->term, 0, count, sizeof *larger);
+        if (!larger) return 0;
+        lasting->term = larger;
+        lasting->room = count;
+    }
+    if (shares > lasting->share_room) {
+        gxsp_share *larger = (gxsp_share *)gxsp_grow(&lasting->pool, lasting->share, 0, shares, sizeof *larger);
+        if (!larger) return 0;
+        lasting->share = larger;
+        lasting->share_room = shares;
+    }
     return 1;
 }
 
@@ -9217,8 +9305,7 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
         (result = gxsp_check_points(step, n, failure)) != GX_OK ||
         (result = gxsp_check_vectors(step, n, displacement, velocity, solver->system->model.held, failure)) != GX_OK)
         return result;
-    if (!gxsp_reserve_terms(&solver->lasting, step->spring_count + step->point_count))
-        return gxsp_end(failure, GX_ERROR_MEMORY);
+    if (!gxsp_reserve_terms(&solver->lasting, step)) return gxsp_end(failure, GX_ERROR_MEMORY);
     memset(&problem, 0, sizeof problem);
     problem.system = solver->system;
     problem.system->state.product_rate = -1;

@@ -213,13 +213,7 @@ static gx_result find_points(life *l) {
         l->point_room = 2 * skin.vertex_count;
         l->points = (gxs_point *)room(l->point_room, sizeof *l->points);
     }
-    for (i = 0; i < skin.vertex_count; i += 3) {
-        gxs_point *point = &l->points[l->point_count++];
-        memcpy(point->copy, skin.vertex_copies + 4 * i, sizeof point->copy);
-        memcpy(point->weight, skin.vertex_weights + 4 * i, sizeof point->weight);
-        memcpy(point->position, skin.vertex_rest + 3 * i, sizeof point->position);
-        point->epoch = skin.epoch;
-    }
+    for (i = 0; i < skin.vertex_count; i += 3) l->points[l->point_count++] = gx_skin_point(&skin, (uint32_t)i);
     return GX_OK;
 }
 

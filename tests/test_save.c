@@ -375,6 +375,7 @@ START_TEST(steps_go_on) {
     step.gravity[2] = -9.81;
     step.integrator = integrators[variant];
     if (variant == 3) step.dt = 0;
+    spring.point.count = point.count = 4;
     for (k = 0; k < 4; k++) {
         spring.point.copy[k] = point.copy[k] = (uint32_t)(200 + k);
         spring.point.weight[k] = point.weight[k] = 0.25;
@@ -651,6 +652,16 @@ START_TEST(foreign_bytes) {
         b.data[i] ^= 0x55;
         ck_assert_int_eq(gx_body_load(b.data, b.size, NULL, &other, NULL), GX_ERROR_FORMAT);
         b.data[i] ^= 0x55;
+    }
+    { /* older versions, and one yet to come */
+        uint32_t version, now;
+        memcpy(&now, b.data + 8, sizeof now);
+        ck_assert_uint_eq(now, 4);
+        for (version = 0; version <= now; version++) {
+            const uint32_t wrong = version < now ? version : now + 1;
+            memcpy(b.data + 8, &wrong, sizeof wrong);
+            ck_assert_int_eq(gx_body_load(b.data, b.size, NULL, &other, NULL), GX_ERROR_FORMAT);
+        }
     }
     memset(b.data, 0, b.size);
     ck_assert_int_eq(gx_body_load(b.data, b.size, NULL, &other, NULL), GX_ERROR_FORMAT);

@@ -651,7 +651,7 @@ START_TEST(picks_what_a_ray_meets) {
         for (k = 0; k < 3; k++) { /* on the ray, and where copies and weights say */
             double y = 0, material = 0;
             int n;
-            for (n = 0; n < 4; n++) {
+            for (n = 0; n < (int)hit.copy_count; n++) {
                 const double rest = w.positions[3 * view_of(body).copy_node[hit.copies[n]] + (uint32_t)k];
                 material += hit.weights[n] * rest;
                 y += hit.weights[n] * (rest + view_of(body).displacement[3 * hit.copies[n] + (uint32_t)k]);

@@ -206,6 +206,135 @@ START_TEST(model_is_what_the_body_moves) {
 }
 END_TEST
 
+static double pushes(void *user, size_t point, const double *position, double *force, double *hessian) {
+    (void)point, (void)position;
+    if (hessian) memset(hessian, 0, 6 * sizeof *hessian);
+    force[0] = *(double *)user;
+    return -force[0] * position[0];
+}
+
+/* All that a body's step says reaches the solver: the same step of the body's model ends in the same bits. */
+START_TEST(every_field_of_a_step_counts) {
+    workload w = grid(2, 2, 2, 5);
+    gx_body *body = body_of(&w);
+    gx_view view;
+    gxs_model model;
+    gx_skin skin;
+    gxs_solver *solver = NULL;
+    gx_step_desc step = step_of(0.02, -9.81);
+    gxs_step_desc own;
+    gxs_spring spring;
+    gxs_plane plane;
+    gxs_point points[2];
+    double *state, *vector, *rest, push = 30, forces[2][3];
+    size_t n, i;
+    hold_above(body, 2 - 1e-9);
+    view = view_of(body);
+    n = 3 * view.copy_count;
+    state = (double *)calloc(4 * n, sizeof *state);
+    vector = state + 2 * n;
+    rest = state + 3 * n;
+    random_seed(5);
+    for (i = 0; i < n; i++) view.velocity[i] = state[n + i] = random_real(-1, 1);
+    for (i = 0; i < n; i++) vector[i] = random_real(-0.02, 0.02);
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
+    memset(&spring, 0, sizeof spring);
+    spring.point = gx_skin_point(&skin, 7);
+    spring.stiffness = 1e4;
+    points[0] = gx_skin_point(&skin, 0);
+    points[1] = gx_skin_point(&skin, 5);
+    memset(&plane, 0, sizeof plane);
+    plane.normal[2] = 1;
+    plane.offset = 0.5;
+    plane.stiffness = 1e4;
+    step.gravity[0] = 2;
+    step.integrator = GXS_BDF1;
+    step.newton_iterations = 3;
+    step.newton_tolerance = 1e-3;
+    step.cg_iterations = 7;
+    step.cg_tolerance = 1e-3;
+    step.mass_damping = 3;
+    step.forces = step.targets = vector;
+    step.epoch = view.epoch;
+    step.springs = &spring;
+    step.spring_count = 1;
+    step.spring_forces = forces[0];
+    step.points = points;
+    step.point_count = 2;
+    step.planes = &plane;
+    step.plane_count = 1;
+    step.contact = pushes;
+    step.contact_user = &push;
+    step.sleep_speed = 0.01;
+    step.sleep_time = 0.1;
+    own = solver_step(&step);
+    own.mass_damping = 3;
+    own.forces = own.targets = vector;
+    own.epoch = view.epoch;
+    own.springs = &spring;
+    own.spring_count = 1;
+    own.spring_forces = forces[1];
+    own.points = points;
+    own.point_count = 2;
+    own.planes = &plane;
+    own.plane_count = 1;
+    own.contact = pushes;
+    own.contact_user = &push;
+    own.sleep_speed = 0.01;
+    own.sleep_time = 0.1;
+    own.rest_times = rest;
+    ck_assert_int_eq(gx_body_model(body, &model, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_create(NULL, &solver, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
+    for (i = 0; i < 3; i++) {
+        ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
+        ck_assert_int_eq(gxs_solver_step(solver, &own, state, state + n, NULL, NULL), GX_OK);
+    }
+    ck_assert_int_eq(memcmp(state, view.displacement, n * sizeof *state), 0);
+    ck_assert_int_eq(memcmp(state + n, view.velocity, n * sizeof *state), 0);
+    ck_assert_int_eq(memcmp(rest, view.rest_time, view.copy_count * sizeof *rest), 0);
+    ck_assert_int_eq(memcmp(forces[0], forces[1], sizeof forces[0]), 0);
+    step.budget_seconds = 1; /* and nothing to tell the time */
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_ERROR_ARGUMENT);
+    free(state);
+    gxs_solver_destroy(solver);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A hit or a skin of more copies than a point holds is referred to. */
+START_TEST(points_hold_few_copies_or_refer) {
+    uint32_t copies[12] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}, k;
+    double weights[12] = {0.125, 0.25}, rest[6] = {1, 2, 3, 4, 5, 6};
+    gx_skin skin;
+    gx_hit hit;
+    gxs_point p;
+    memset(&skin, 0, sizeof skin);
+    memset(&hit, 0, sizeof hit);
+    skin.vertex_width = 4;
+    skin.vertex_copies = copies;
+    skin.vertex_weights = weights;
+    skin.vertex_rest = rest;
+    skin.epoch = hit.epoch = 77;
+    p = gx_skin_point(&skin, 1);
+    ck_assert(p.count == 4 && p.copies == NULL && p.weights == NULL && p.epoch == 77 && p.position[2] == 6);
+    for (k = 0; k < 4; k++) ck_assert(p.copy[k] == 4 + k);
+    skin.vertex_width = 6;
+    p = gx_skin_point(&skin, 1);
+    ck_assert(p.count == 6 && p.copies == copies + 6 && p.weights == weights + 6 && p.position[0] == 4);
+    hit.copy_count = 3;
+    memcpy(hit.copies, copies, sizeof copies);
+    hit.weights[1] = 1;
+    hit.material[1] = 8;
+    p = gx_hit_point(&hit);
+    ck_assert(p.count == 3 && p.copies == NULL && p.weight[1] == 1 && p.position[1] == 8 && p.epoch == 77);
+    hit.copy_count = 12;
+    p = gx_hit_point(&hit);
+    ck_assert(p.count == 12 && p.copies == hit.copies && p.weights == hit.weights);
+}
+END_TEST
+
 /* ---- violent starts of cut bodies ---- */
 
 enum { INVERTED, FLATTENED, COLLAPSED, STRETCHED, TANGLED, START_COUNT };
@@ -734,10 +863,8 @@ START_TEST(springs_pull_points_of_the_skin) {
     x = (double *)malloc(3 * skin.vertex_count * sizeof *x);
     ck_assert_int_eq(gx_body_skin_positions(body, x, NULL), GX_OK);
     memset(&spring, 0, sizeof spring);
-    memcpy(spring.point.copy, skin.vertex_copies, sizeof spring.point.copy);
-    memcpy(spring.point.weight, skin.vertex_weights, sizeof spring.point.weight);
-    memcpy(spring.point.position, x, sizeof spring.point.position);
-    spring.point.epoch = skin.epoch;
+    spring.point = gx_skin_point(&skin, 0);
+    ck_assert(memcmp(spring.point.position, x, sizeof spring.point.position) == 0);
     memcpy(spring.target, x, sizeof spring.target);
     spring.target[1] += 1;
     spring.stiffness = 1000;
@@ -793,8 +920,7 @@ static void name_copies(naming *n, gx_body *body, int kind) {
     for (i = 0; i < 3; i++) {
         n->points[i].epoch = skin.epoch;
         if (skin.vertex_count == 0) continue;
-        memcpy(n->points[i].copy, skin.vertex_copies + 4 * i, sizeof n->points[i].copy);
-        memcpy(n->points[i].weight, skin.vertex_weights + 4 * i, sizeof n->points[i].weight);
+        n->points[i] = gx_skin_point(&skin, (uint32_t)i);
     }
     for (i = 0; i < 2; i++) {
         n->springs[i].point = n->points[i];
@@ -871,6 +997,38 @@ START_TEST(names_of_copies_go_stale) {
 }
 END_TEST
 
+/* A ray along mesh edges and faces meets corners and edges of triangles: what has no share is not in the hit. */
+START_TEST(hits_at_corners_and_edges) {
+    static const double up[3] = {0, 0, 1}, at[4][2] = {{1, 1}, {0.5, 1}, {1, 0.25}, {0.5, 0.5}};
+    workload w = grid(2, 2, 2, 5);
+    gx_body *body = body_of(&w);
+    gx_view view = view_of(body);
+    gx_skin skin;
+    size_t c;
+    int i;
+    for (c = 0; c < view.copy_count; c++) view.displacement[3 * c + 2] = 0.125; /* as a whole, upwards */
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
+    for (i = 0; i < 4; i++) {
+        const double origin[3] = {at[i][0], at[i][1], -5};
+        double sum = 0;
+        gx_hit hit;
+        uint32_t n;
+        ck_assert_int_eq(gx_body_pick(body, origin, up, &hit, NULL), GX_OK);
+        ck_assert_uint_ne(hit.triangle, UINT32_MAX);
+        ck_assert(hit.position[0] == at[i][0] && hit.position[1] == at[i][1] && hit.position[2] == 0.125);
+        ck_assert(hit.material[2] == 0);
+        for (n = 0; n < hit.copy_count; n++) {
+            ck_assert_double_gt(hit.weights[n], 0);
+            sum += hit.weights[n];
+        }
+        ck_assert(sum == 1 && hit.copy_count <= 3);
+        if (i == 0) ck_assert_uint_eq(hit.copy_count, 1);
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* View, skin, hit and model of a cut body; a spring at the hit is fine. */
 START_TEST(whoever_tells_copies_tells_the_epoch) {
     static const double origin[3] = {0.3, 0.4, -5}, up[3] = {0, 0, 1};
@@ -891,9 +1049,7 @@ START_TEST(whoever_tells_copies_tells_the_epoch) {
     ck_assert_int_eq(gx_body_model(body, &model, NULL), GX_OK);
     ck_assert(skin.epoch == view.epoch && hit.epoch == view.epoch && model.epoch == view.epoch);
     memset(&spring, 0, sizeof spring);
-    memcpy(spring.point.copy, hit.copies, sizeof hit.copies);
-    memcpy(spring.point.weight, hit.weights, sizeof hit.weights);
-    spring.point.epoch = hit.epoch;
+    spring.point = gx_hit_point(&hit);
     spring.stiffness = 1;
     step.springs = &spring;
     step.spring_count = 1;
@@ -910,6 +1066,9 @@ int main(void) {
     tcase_add_test(tests, materials_by_element);
     tcase_add_test(tests, bad_materials_are_named);
     tcase_add_loop_test(tests, model_is_what_the_body_moves, 0, 4);
+    tcase_add_test(tests, every_field_of_a_step_counts);
+    tcase_add_test(tests, points_hold_few_copies_or_refer);
+    tcase_add_test(tests, hits_at_corners_and_edges);
     ADD_SOME(tests, energy_of_cut_bodies_falls_from_violent_starts, 4 * START_COUNT);
     tcase_add_test(tests, bdf2_goes_on_after_a_cut);
     tcase_add_test(tests, cuts_wake_what_they_touch);
