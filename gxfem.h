@@ -27,7 +27,7 @@
  *         cut.surfaces = &sheet; cut.surface_count = 1;
  *         if (gx_body_cut(body, &cut, NULL, NULL) != GX_OK) return 1;
  *         step.dt = 0.033; step.gravity[2] = -9.81;
- *         if (gx_body_step(body, &step, NULL, NULL) != GX_OK || gx_body_view(body, &view) != GX_OK) return 1;
+ *         if (gx_body_step(body, &step, NULL, NULL) != GX_OK || gx_body_view(body, &view, NULL) != GX_OK) return 1;
  *         printf("%u fragments, %u unknowns\n", (unsigned)view.fragment_count, (unsigned)(3 * view.copy_count));
  *         gx_body_destroy(body);
  *         return 0;
@@ -47,7 +47,7 @@
  *     tools:                     >>memory >>basics >>mesh >>search >>copies >>transaction >>complex >>numbering
  *     a cut:                     >>surfaces >>pinches >>arrange >>solids >>links >>cells >>components >>integrals >>cut
  *     a sheet's thickness:       >>solidify
- *     what is held and whole:    >>regions >>fragments >>motion
+ *     what is held and whole:    >>regions >>map >>fragments >>motion
  *     a step:                    >>supports >>model >>step
  *     the skin:                  >>corners >>vertices >>faces >>skinning >>rays
  *     beginning, end, bytes:     >>create >>hashes >>stream >>save
@@ -63,12 +63,12 @@
  * Not there yet: contact between fragments; cuts given in the deformed state; unknowns within a partly cut element (a
  * sheet that ends inside an element separates nothing there until another sheet completes it).
  *
- * Limits: 2^28 - 1 elements, 2^31 - 1 of each other kind of object. One thread at a time may use a body. There is no
- * global state, no output, no clock. A body's coordinates are at most 2^100 (1.3e30), its longest side is at least
- * 2^-100 (7.9e-31), each element has a mass of 2^-700 ... 2^700. So all volumes, masses, centres and inertia are
- * finite, those of whole bodies are normal numbers, and floats hold the skin. Divided by the body's size, coordinates
- * of bodies and cuts are 0 or 2^-128 ... 2^128 in absolute value. Everything beyond these limits is refused
- * (GX_ERROR_RANGE).
+ * Limits: fewer than 2^28 elements a body (2^24 where pointers have 32 bits), fewer than 2^30 cells and 2^30 copies
+ * for steps, some 1.4e9 of each other kind of object, 5e8 vertices and triangles a surface (GX_ERROR_LIMIT). A body's
+ * coordinates are at most 2^100 (1.3e30), its longest side is at least 2^-100 (7.9e-31), each element has a mass of
+ * 2^-700 ... 2^700. So all volumes, masses, centres and inertia are finite, those of whole bodies are normal numbers,
+ * and floats hold the skin. Divided by the body's size, coordinates of bodies and cuts are 0 or 2^-128 ... 2^128 in
+ * absolute value (GX_ERROR_RANGE). One thread at a time may use a body. There is no global state, no output, no clock.
  *
  * References: GXFEM = Ton-That, Kry, Andrews: Generalized eXtended Finite Element Method for Deformable Cutting via
  * Boolean Operations (2024). RXFEM = Koschier, Bender, Thuerey: Robust eXtended Finite Elements for Complex Cutting of
@@ -113,29 +113,34 @@
 /* What a function that can fail returns. On anything but GX_OK its inputs are as they were. */
 typedef enum gx_result {
     GX_OK = 0,
-    GX_ERROR_ARGUMENT,     /* a required pointer is NULL, a required field is zero or senseless */
-    GX_ERROR_MEMORY,       /* the allocator returned NULL */
-    GX_ERROR_NOT_FINITE,   /* a coordinate or parameter is NaN or infinite */
-    GX_ERROR_RANGE,        /* a coordinate or a mass is too large or too small (see "limits") */
-    GX_ERROR_INDEX,        /* an index points outside its array */
-    GX_ERROR_EMPTY,        /* no elements, no nodes or no triangles */
-    GX_ERROR_INVERTED,     /* an element has negative volume */
-    GX_ERROR_FLAT,         /* an element has no volume */
-    GX_ERROR_OVERLAP,      /* an element face is shared by more than two elements, or by two on one side */
-    GX_ERROR_NOT_CLOSED,   /* a solid's surface has a boundary, or its triangles are not oriented alike */
-    GX_ERROR_LIMIT,        /* more objects than 32-bit indices can name, or a caller's limit is reached */
-    GX_ERROR_DIVERGED,     /* a time step found no finite state of lower energy */
-    GX_ERROR_FREE,         /* a static balance is asked of a piece that nothing holds */
-    GX_ERROR_FORMAT,       /* not a saved body, or one of another version or another kind of machine */
-    GX_ERROR_DAMAGED,      /* a saved body is cut short, or what it says cannot be */
-    GX_ERROR_STALE,        /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
-    GX_ERROR_CONFIGURATION /* arithmetic is not what exact predicates need: see >>numbers in gxfem_boolean.h */
+    GX_ERROR_ARGUMENT,   /* a required pointer is NULL, a required field is zero or senseless */
+    GX_ERROR_MEMORY,     /* the allocator returned NULL */
+    GX_ERROR_NOT_FINITE, /* a coordinate or parameter is NaN or infinite */
+    GX_ERROR_RANGE,      /* a coordinate or a mass is too large or too small (see "limits") */
+    GX_ERROR_INDEX,      /* an index points outside its array */
+    GX_ERROR_EMPTY,      /* no elements, no nodes or no triangles; a region that holds no copy */
+    GX_ERROR_INVERTED,   /* an element has negative volume */
+    GX_ERROR_FLAT,       /* an element has no volume */
+    GX_ERROR_OVERLAP,    /* an element face is shared by more than two elements, or by two on one side */
+    GX_ERROR_NOT_CLOSED, /* a solid's surface has a boundary, or its triangles are not oriented alike */
+    GX_ERROR_LIMIT,      /* more objects than 32-bit indices can name, or the caller's memory limit is reached */
+    GX_ERROR_DIVERGED,   /* a time step found no finite state of lower energy */
+    GX_ERROR_FREE,       /* a static balance is asked of a component, copies joined by elements, that nothing holds */
+    GX_ERROR_FORMAT,     /* not a saved body, or one of another version or another kind of machine */
+    GX_ERROR_DAMAGED,    /* a saved body is cut short, or what it says cannot be */
+    GX_ERROR_STALE,      /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
+    GX_ERROR_CONFIGURATION, /* arithmetic is not what exact predicates need: see >>numbers in gxfem_boolean.h */
+    GX_ERROR_SEQUENCE,      /* called too early, or too late: another call must come before */
+    GX_ERROR_CAPACITY       /* the caller's array or memory is too small */
 } gx_result;
 
-/* What went wrong, and where: index of the node, element, triangle or copy concerned. */
+/* What was refused, and where. A call that succeeds sets it too, to GX_OK. */
 typedef struct gx_failure {
     gx_result result;
-    size_t index;   /* SIZE_MAX: no single object is to blame */
+    /* The name of an argument, or of a member of the struct that an argument points to, with the members on the way:
+       "positions", "dt", "surfaces.vertices", "springs.point.copy". Static. NULL: nothing given is to blame */
+    const char *field;
+    size_t index;   /* of the node, element, triangle, copy ... concerned; SIZE_MAX: no single one is */
     size_t surface; /* of a cut: which of its surfaces; else SIZE_MAX */
 } gx_failure;
 
@@ -222,7 +227,7 @@ typedef struct gx_cut_desc {
     size_t scope_fragment_count;
     const uint32_t *scope_cells; /* and these cells: indices below gx_view.cell_count */
     size_t scope_cell_count;
-    double sever_below; /* links of touched cells with a smaller share of their face are severed; 0: none */
+    double sever_below; /* 0 ... 1: links of touched cells with a smaller share of their face are severed; 0: none */
 } gx_cut_desc;
 typedef struct gx_cut_report {
     size_t touched_elements, created_cells, removed_cells, created_copies, removed_copies;
@@ -234,7 +239,8 @@ typedef struct gx_cut_report {
     double seconds_arrangement, seconds_enrichment, seconds_integrals;
 } gx_cut_report;
 /* Cuts by all surfaces at once. Displacement and velocity are the same functions of material points before and after.
-   On an error the body is exactly as it was; failure.surface is the surface, failure.index as named here.
+   On an error the body is exactly as it was; failure.surface is the surface, failure.index as named here. A field of a
+   surface reads "surfaces.vertices".
    Errors: ARGUMENT, EMPTY, INDEX (triangle, or place in the scope), NOT_FINITE (vertex), RANGE (vertex), NOT_CLOSED
    (triangle), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report /* or NULL */,
@@ -242,12 +248,13 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
 
 /* Makes a sheet solid (GXFEM section 4.1): offsets it by thickness/2 (m) to both sides along its vertex normals and
    closes the rim. Vertices where normals cancel are not offset. After an error the output means nothing.
-   vertices: room for 2 x vertex_count x 3; triangles: room for 8 x triangle_count x 3; the counts are written.
-   Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (a sum or difference of coordinates is beyond doubles), LIMIT,
-   MEMORY. */
-GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thickness, double *vertices,
-                                        size_t *vertex_count, uint32_t *triangles, size_t *triangle_count,
-                                        const gx_allocator *allocator /* or NULL */);
+   solid_vertices: room for 2 x vertex_count x 3; solid_triangles: room for 8 x triangle_count x 3; the counts are
+   written. Errors: ARGUMENT, EMPTY, INDEX (triangle), NOT_FINITE (vertex), RANGE (a vertex: a sum or difference of
+   coordinates is beyond doubles), LIMIT, MEMORY. */
+GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thickness, double *solid_vertices,
+                                        size_t *solid_vertex_count, uint32_t *solid_triangles,
+                                        size_t *solid_triangle_count, const gx_allocator *allocator /* or NULL */,
+                                        gx_failure *failure /* or NULL */);
 
 /* >>viewing -------------------------------------------------------------------------------------------------------- */
 
@@ -295,7 +302,7 @@ typedef struct gx_view {
     double volume, mass;         /* of the body, m3 and kg */
 } gx_view;
 /* Brings the view up to date. Errors: ARGUMENT, MEMORY, LIMIT (no ids left). */
-GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view);
+GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view, gx_failure *failure /* or NULL */);
 
 /* How a fragment moves: integrals over its deformed shape with the consistent mass */
 typedef struct gx_motion {
@@ -310,9 +317,10 @@ typedef struct gx_motion {
 } gx_motion;
 /* Computes the motions of all fragments from the present displacement and velocity, in the order of gx_view.
    motions: room for capacity, at least gx_view.fragment_count. After an error the output means nothing.
-   Errors: ARGUMENT, NOT_FINITE (a displacement or velocity), RANGE (a motion is beyond doubles), MEMORY, LIMIT (also:
-   capacity is too small). */
-GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t capacity);
+   Errors: ARGUMENT, CAPACITY, NOT_FINITE (a copy's displacement or velocity), RANGE (a motion is beyond doubles),
+   MEMORY, LIMIT. */
+GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t capacity,
+                                   gx_failure *failure /* or NULL */);
 
 /* >>stepping ------------------------------------------------------------------------------------------------------- */
 
@@ -323,16 +331,44 @@ typedef struct gx_region {
     double value;
 } gx_region;
 /* Holds copies at their present displacement (Dirichlet), now and after later cuts: those whose node is in a region and
-   whose own cells have material there. Replaces the regions held before. On an error these stay.
-   Errors: ARGUMENT, NOT_FINITE, LIMIT, MEMORY. */
-GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t region_count);
+   whose own cells have material there. Replaces the regions held before; none release all. On an error these stay.
+   Errors: ARGUMENT, NOT_FINITE, EMPTY (a region holds no copy; later cuts may leave it none), LIMIT, MEMORY;
+   failure.index: region. */
+GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t region_count,
+                                 gx_failure *failure /* or NULL */);
 
-/* A step as the solver takes it; arrays are by copy, as in gx_view. A point of the skin is a gxs_point by its copies
-   and weights. A gxs_point has the epoch of the view, skin or hit that it comes from; a step with forces or targets has
-   one too. After a cut that began another epoch they are refused (GX_ERROR_STALE) until they are made anew. The body
-   supplies previous_displacement, previous_velocity, previous_dt and rest_times itself and ignores those of the
-   description. clock: if NULL, the body's. */
-typedef gxs_step_desc gx_step_desc;
+/* A time step. Zero but for dt: implicit Euler, one Newton iteration, nothing but inertia and elasticity. Arrays are by
+   copy, as in gx_view. Points, forces and targets name copies: they have the epoch of the view, skin or hit that they
+   come from, and are refused (GX_ERROR_STALE) after a cut that began another one. */
+typedef struct gx_step_desc {
+    double dt;         /* s, above 0; GXS_STATIC: 0 or more */
+    double gravity[3]; /* m/s2 */
+    /* GXS_BDF1 damps what swings: at dt = 1/60 s half of a free swing is gone after 5 s. GXS_BDF2 keeps it. */
+    gxs_integrator integrator;
+    uint32_t newton_iterations; /* at most; 0: 1 */
+    double newton_tolerance;    /* stop at this residual (see gxs_step_report); 0: 1e-8 */
+    uint32_t cg_iterations;     /* per Newton iteration, at most; 0: 1000 */
+    double cg_tolerance;        /* reduction by each linear solve, below 1; 0: 1e-2; 1e-3 with GXS_MIDPOINT */
+    double mass_damping;        /* Rayleigh's alpha, 1/s, 0 or more */
+    const double *forces;       /* copy_count x 3, N; NULL: none */
+    /* copy_count x 3: displacement of held copies at the step's end; others are not read. NULL: held copies stay */
+    const double *targets;
+    uint64_t epoch;            /* of forces and targets; read if one of them is given */
+    const gxs_spring *springs; /* spring_count */
+    size_t spring_count;
+    double *spring_forces;   /* spring_count x 3: receives the force of each spring on the body, N; or NULL */
+    const gxs_point *points; /* point_count: of contact with planes and contact() */
+    size_t point_count;
+    const gxs_plane *planes; /* plane_count */
+    size_t plane_count;
+    gxs_contact_fn contact; /* energy of a contact point; NULL: none */
+    void *contact_user;
+    double sleep_speed;          /* m/s: slower fragments fall asleep (see gxs_step_desc); 0: none */
+    double sleep_time;           /* s, for how long they must be slower; 0: 0.5 */
+    double (*clock)(void *user); /* s; NULL: the body's */
+    void *clock_user;
+    double budget_seconds; /* no iteration begins after this time; 0: no limit. Needs a clock */
+} gx_step_desc;
 typedef gxs_step_report gx_step_report;
 /* Takes one time step (GXFEM Eq. 10). On an error the body is as it was.
    A cut wakes the fragments that it touches. Copies that only slivers carry would be held by next to nothing, so they
@@ -345,9 +381,9 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
                                  gx_failure *failure /* or NULL */);
 
 /* Gives the solver's model of the body as it is cut now, for other solvers. Arrays are the body's, valid until its next
-   cut, hold, step or restore. Errors: ARGUMENT, LIMIT, MEMORY; RANGE, FLAT: an element's gradients are beyond doubles.
- */
-GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model);
+   cut, hold, step or restore. Errors: ARGUMENT, LIMIT, MEMORY; RANGE, FLAT: an element's gradients are beyond doubles
+   (index: element). */
+GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model, gx_failure *failure /* or NULL */);
 
 /* >>drawing -------------------------------------------------------------------------------------------------------- */
 
@@ -370,8 +406,9 @@ typedef struct gx_range {
    creases and along cuts there are several at one point. */
 typedef struct gx_skin {
     size_t vertex_count;
-    const uint32_t *vertex_copies; /* vertex_count x 4: the copies that move it; those of weight 0 stand last */
-    const double *vertex_weights;  /* vertex_count x 4, barycentric: x = sum of weight (X + u) over the copies */
+    uint32_t vertex_width;         /* copies for which a vertex has room */
+    const uint32_t *vertex_copies; /* vertex_count x vertex_width: copies that move it; those of weight 0 stand last */
+    const double *vertex_weights;  /* vertex_count x vertex_width: x = X + sum of weight u over the copies */
     /* vertex_count: equal for vertices at the same material point, exactly. Vertices whose copies of weight not 0 are
        equal too are one corner of the surface: with corners merged like this it is watertight. */
     const uint32_t *vertex_point;
@@ -394,36 +431,49 @@ typedef struct gx_skin {
     size_t triangle_range_count;
     uint64_t epoch; /* of the numbering of copies, as in gx_view: for gxs_point */
 } gx_skin;
+/* A vertex of the skin as a point, for springs and contact. Keep the skin as long: the point may refer to it. vertex:
+   below vertex_count */
+GXFEM_API gxs_point gx_skin_point(const gx_skin *skin, uint32_t vertex);
 /* Makes the skin, or brings it up to date where cuts have been since the last call. Another description makes all of it
    anew. Errors: ARGUMENT, NOT_FINITE, MEMORY, LIMIT. */
-GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc /* or NULL: zero */, gx_skin *skin);
-/* Gives the deformed vertices of the last gx_body_skin, m. Errors: ARGUMENT (also: there is no skin, or a cut has been
-   since). */
-GXFEM_API gx_result gx_body_skin_positions(const gx_body *body, double *positions /* vertex_count x 3 */);
+GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc /* or NULL: zero */, gx_skin *skin,
+                                 gx_failure *failure /* or NULL */);
+/* Gives the deformed vertices of the last gx_body_skin, m. Errors: ARGUMENT, SEQUENCE (there is no skin, or a cut has
+   been since). */
+GXFEM_API gx_result gx_body_skin_positions(const gx_body *body, double *positions /* vertex_count x 3 */,
+                                           gx_failure *failure /* or NULL */);
 /* Gives the same less an origin, and normals, for drawing. Normals of the outer surface are interpolated from those at
-   nodes; these are means over the faces of the fragment around the node, weighted by area. Errors: as above. */
+   nodes; these are means over the faces of the fragment around the node, weighted by area. Errors: as above, NOT_FINITE
+   (origin). */
 GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3] /* or NULL: 0 */,
                                           float *positions /* vertex_count x 3, or NULL */,
-                                          float *normals /* vertex_count x 3, of length 1, or NULL */);
+                                          float *normals /* vertex_count x 3, of length 1, or NULL */,
+                                          gx_failure *failure /* or NULL */);
 
-/* Where a ray first meets the deformed skin. Its copies and weights can attach a spring: see gxs_spring. */
+#define GX_HIT_COPIES 16 /* room for the copies of a hit */
+
+/* Where a ray first meets the deformed skin. gx_hit_point makes a point of it, to which a spring can be attached. */
 typedef struct gx_hit {
     uint32_t triangle;                   /* of the skin; UINT32_MAX: the ray meets nothing, and the rest is 0 */
     uint32_t fragment, element, surface; /* of the triangle */
     double distance;                     /* in lengths of direction */
     double position[3], material[3];     /* deformed, m; material coordinates, m */
-    uint32_t copies[4];
-    double weights[4];
-    uint64_t epoch; /* of the numbering of copies, as in gx_view: for gxs_point */
+    uint32_t copy_count;                 /* of the copies that move the point */
+    uint32_t copies[GX_HIT_COPIES];      /* copy_count */
+    double weights[GX_HIT_COPIES];       /* copy_count, above 0, 1 in sum */
+    uint64_t epoch;                      /* of the numbering of copies, as in gx_view: for gxs_point */
 } gx_hit;
-/* Finds the nearest triangle on a ray. Errors: ARGUMENT (also: direction is 0, there is no skin, or a cut has been
-   since), NOT_FINITE. */
-GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit);
+/* The point of a hit, for springs and contact. Keep the hit as long: the point may refer to it. */
+GXFEM_API gxs_point gx_hit_point(const gx_hit *hit);
+/* Finds the nearest triangle on a ray. Errors: ARGUMENT (also: direction is 0), NOT_FINITE, SEQUENCE (there is no skin,
+   or a cut has been since). */
+GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit,
+                                 gx_failure *failure /* or NULL */);
 
 /* >>hashing -------------------------------------------------------------------------------------------------------- */
 
-/* Hash of the cells and copies, the same on every compiler. *result: ARGUMENT, MEMORY, LIMIT. */
-GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_result *result /* or NULL */);
+/* Hash of the cells and copies, the same on every compiler. 0 after an error: ARGUMENT, MEMORY, LIMIT. */
+GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_failure *failure /* or NULL */);
 /* Hash of all that a failed call must leave as it was, and of the fragments' ids */
 GXFEM_API uint64_t gx_body_state_hash(const gx_body *body);
 GXFEM_API const char *gx_result_text(gx_result result);
@@ -437,8 +487,9 @@ GXFEM_API const char *gx_result_text(gx_result result);
    sleeping. Pointers are not saved. */
 
 /* Writes the body to memory of at least *size bytes; memory NULL: only computes *size. Fields have fixed widths, in the
-   machine's byte order, which the bytes tell. Errors: ARGUMENT, LIMIT (capacity is below *size). */
-GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, size_t *size);
+   machine's byte order, which the bytes tell. Errors: ARGUMENT, CAPACITY (it is below *size). */
+GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, size_t *size,
+                                 gx_failure *failure /* or NULL */);
 /* Reads a body. Bytes from anywhere do no harm: a checksum detects accidental damage, and everything that a body relies
    on is checked. Of desc (NULL: all zero) it takes allocator, clock and jobs, and, for each saved material of kind
    GXS_CUSTOM, energy and user of the material with its number.
@@ -448,12 +499,12 @@ GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_
                                  gx_failure *failure /* or NULL */);
 /* Makes another body of the same state, with the same allocator, clock, jobs and energies. Errors: ARGUMENT, MEMORY,
    LIMIT, CONFIGURATION. */
-GXFEM_API gx_result gx_body_clone(gx_body *body, gx_body **clone);
+GXFEM_API gx_result gx_body_clone(gx_body *body, gx_body **clone, gx_failure *failure /* or NULL */);
 /* The body becomes what `from` is: to go back to a clone, or to bring a clone up to date. If both have been cut alike,
    only the state is copied, and neither cells nor the solver's model are made anew. Otherwise arrays of the view end,
    as at a cut. Allocator, clock and jobs stay the body's own. On an error the body is as it was.
    Errors: ARGUMENT, MEMORY, LIMIT, CONFIGURATION. */
-GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from);
+GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *failure /* or NULL */);
 
 #ifdef __cplusplus
 }
@@ -1310,12 +1361,26 @@ static void gxp_unite_all(uint32_t *parent, const uint32_t copies[4]) {
     }
 }
 
-static gx_result gxp_fail(gx_failure *failure, gx_result result, size_t index, size_t surface) {
+static gx_result gxp_fail(gx_failure *failure, gx_result result, const char *field, size_t index) {
     if (failure != NULL) {
         failure->result = result;
+        failure->field = field;
         failure->index = index;
-        failure->surface = surface;
+        failure->surface = SIZE_MAX;
     }
+    return result;
+}
+
+/* A result that blames nothing that was given: success, or a lack of memory */
+static gx_result gxp_end(gx_failure *failure, gx_result result) { return gxp_fail(failure, result, NULL, SIZE_MAX); }
+
+static gx_result gxp_refuse(gx_failure *failure, const char *field) {
+    return gxp_fail(failure, GX_ERROR_ARGUMENT, field, SIZE_MAX);
+}
+
+/* Puts a result beside the field and index that were set when it came up, if any were since gxp_end. */
+static gx_result gxp_close(gx_failure *failure, gx_result result) {
+    if (failure != NULL) failure->result = result;
     return result;
 }
 
@@ -2063,17 +2128,12 @@ static gx_result gxp_stamp_scope(gxp_cut *cut, int *scoped) {
     if (result != GX_OK) return result;
     scratch->scope_stamp = ++scratch->stamp;
     for (i = 0; i < desc->scope_cell_count; i++) {
-        if (desc->scope_cells[i] >= view->count) {
-            cut->failure.index = i;
-            return GX_ERROR_INDEX;
-        }
+        if (desc->scope_cells[i] >= view->count) return gxp_fail(&cut->failure, GX_ERROR_INDEX, "scope_cells", i);
         body->cells.stamp[view->slot[desc->scope_cells[i]]] = scratch->scope_stamp;
     }
     for (i = 0; i < desc->scope_fragment_count; i++) {
-        if (desc->scope_fragments[i] >= view->fragment_count) {
-            cut->failure.index = i;
-            return GX_ERROR_INDEX;
-        }
+        if (desc->scope_fragments[i] >= view->fragment_count)
+            return gxp_fail(&cut->failure, GX_ERROR_INDEX, "scope_fragments", i);
         for (j = 0; j < view->count; j++)
             if (view->fragment[j] == desc->scope_fragments[i]) body->cells.stamp[view->slot[j]] = scratch->scope_stamp;
     }
@@ -2132,29 +2192,31 @@ static void gxp_surface_free(gx_body *body, gxp_surface *s) {
     gxp_release(&body->config.allocator, s->merged, v * sizeof *s->merged);
 }
 
-static gx_result gxp_check_surface(gxp_cut *cut, const gx_surface *s, size_t number) {
+static gx_result gxp_check_surface_arrays(const gx_surface *s, gx_failure *failure) {
+    if (s->kind > GX_SURFACE_SOLID) return gxp_refuse(failure, "surfaces.kind");
+    if (s->vertex_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "surfaces.vertex_count", SIZE_MAX);
+    if (s->triangle_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "surfaces.triangle_count", SIZE_MAX);
+    if (s->vertices == NULL) return gxp_refuse(failure, "surfaces.vertices");
+    if (s->triangles == NULL) return gxp_refuse(failure, "surfaces.triangles");
+    if (s->vertex_count > INT32_MAX / 4) return gxp_fail(failure, GX_ERROR_LIMIT, "surfaces.vertex_count", SIZE_MAX);
+    if (s->triangle_count > INT32_MAX / 4)
+        return gxp_fail(failure, GX_ERROR_LIMIT, "surfaces.triangle_count", SIZE_MAX);
+    return GX_OK;
+}
+
+static gx_result gxp_check_surface(const gx_body *body, const gx_surface *s, gx_failure *failure) {
+    gx_result result = gxp_check_surface_arrays(s, failure);
     size_t i;
-    cut->failure.surface = number;
-    if (s->kind > GX_SURFACE_SOLID) return GX_ERROR_ARGUMENT;
-    if (s->vertex_count == 0 || s->triangle_count == 0) return GX_ERROR_EMPTY;
-    if (s->vertices == NULL || s->triangles == NULL) return GX_ERROR_ARGUMENT;
-    if (s->vertex_count > INT32_MAX / 4 || s->triangle_count > INT32_MAX / 4) return GX_ERROR_LIMIT;
-    for (i = 0; i < s->vertex_count; i++) {
-        const gx_result result = gxb_complex_check_point(cut->body->complex, s->vertices + 3 * i);
-        cut->failure.index = i;
-        if (result != GX_OK) return result;
+    for (i = 0; i < s->vertex_count && result == GX_OK; i++) {
+        result = gxb_complex_check_point(body->complex, s->vertices + 3 * i);
+        if (result != GX_OK) return gxp_fail(failure, result, "surfaces.vertices", i);
         if (s->texture != NULL &&
             (!gxp_is_finite((double)s->texture[2 * i]) || !gxp_is_finite((double)s->texture[2 * i + 1])))
-            return GX_ERROR_NOT_FINITE;
+            return gxp_fail(failure, GX_ERROR_NOT_FINITE, "surfaces.texture", i);
     }
-    for (i = 0; i < s->triangle_count; i++) {
-        cut->failure.index = i;
-        if (s->triangles[3 * i] >= s->vertex_count || s->triangles[3 * i + 1] >= s->vertex_count ||
-            s->triangles[3 * i + 2] >= s->vertex_count)
-            return GX_ERROR_INDEX;
-    }
-    cut->failure.index = SIZE_MAX;
-    return GX_OK;
+    for (i = 0; i < 3 * s->triangle_count && result == GX_OK; i++)
+        if (s->triangles[i] >= s->vertex_count) result = gxp_fail(failure, GX_ERROR_INDEX, "surfaces.triangles", i / 3);
+    return result;
 }
 
 /* A triangle has no area if all its projections to coordinate planes have none. */
@@ -2221,7 +2283,7 @@ static gx_result gxp_check_closed(gxp_cut *cut, const gxp_surface *s) {
         for (j = i; j < n && gxp_same_ends(&s->edges[i], &s->edges[j]); j++)
             balance += s->edges[j].from < s->edges[j].to ? 1 : s->edges[j].from > s->edges[j].to ? -1 : 0;
         if (balance != 0) {
-            cut->failure.index = s->edges[i].triangle;
+            gxp_fail(&cut->failure, GX_ERROR_NOT_CLOSED, "surfaces.triangles", s->edges[i].triangle);
             cut->failure.surface = s->number;
             return GX_ERROR_NOT_CLOSED;
         }
@@ -3873,15 +3935,19 @@ static uint64_t gxp_hash_cut(uint64_t past, const gx_cut_desc *desc) {
 
 static gx_result gxp_check_cut(gxp_cut *cut) {
     const gx_cut_desc *desc = cut->desc;
+    gx_failure *failure = &cut->failure;
     size_t i;
     gx_result result = GX_OK;
-    if (desc->surfaces == NULL || (desc->scope_fragment_count > 0 && desc->scope_fragments == NULL) ||
-        (desc->scope_cell_count > 0 && desc->scope_cells == NULL))
-        return GX_ERROR_ARGUMENT;
-    if (desc->surface_count == 0) return GX_ERROR_EMPTY;
-    if (!gxp_is_finite(desc->sever_below)) return GX_ERROR_NOT_FINITE;
-    for (i = 0; i < desc->surface_count && result == GX_OK; i++) result = gxp_check_surface(cut, &desc->surfaces[i], i);
-    if (result == GX_OK) cut->failure.surface = SIZE_MAX;
+    if (desc->surfaces == NULL) return gxp_refuse(failure, "surfaces");
+    if (desc->scope_fragment_count > 0 && desc->scope_fragments == NULL) return gxp_refuse(failure, "scope_fragments");
+    if (desc->scope_cell_count > 0 && desc->scope_cells == NULL) return gxp_refuse(failure, "scope_cells");
+    if (desc->surface_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "surface_count", SIZE_MAX);
+    if (!gxp_is_finite(desc->sever_below)) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "sever_below", SIZE_MAX);
+    if (desc->sever_below < 0 || desc->sever_below > 1) return gxp_refuse(failure, "sever_below");
+    for (i = 0; i < desc->surface_count && result == GX_OK; i++) {
+        result = gxp_check_surface(cut->body, &desc->surfaces[i], failure);
+        if (result != GX_OK) failure->surface = i;
+    }
     return result;
 }
 
@@ -4107,19 +4173,26 @@ static void gxp_commit(gxp_cut *cut) {
     if (!view->labels_known) view->splits.count = 0;
 }
 
+static gx_result gxp_tell_failure(gxp_cut *cut, gx_result result, gx_failure *failure) {
+    gxp_close(&cut->failure, result);
+    if (failure != NULL) *failure = cut->failure;
+    return result;
+}
+
 GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report, gx_failure *failure) {
     gxp_cut cut;
     uint32_t first_facet;
     double start;
     gx_result result;
-    if (body == NULL || desc == NULL) return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (desc == NULL) return gxp_refuse(failure, "desc");
     memset(&cut, 0, sizeof cut);
     cut.body = body;
     cut.desc = desc;
     cut.report.min_link_ratio = 1;
-    cut.failure.index = cut.failure.surface = SIZE_MAX;
+    gxp_end(&cut.failure, GX_OK);
     result = gxp_check_cut(&cut);
-    if (result != GX_OK) return gxp_fail(failure, result, cut.failure.index, cut.failure.surface);
+    if (result != GX_OK) return gxp_tell_failure(&cut, result, failure);
     gxp_begin(&cut);
     first_facet = gxb_complex_facet_count(body->complex);
     start = gxp_seconds(body);
@@ -4133,13 +4206,13 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
     if (result == GX_OK) result = gxp_note_for_skin(&cut, first_facet);
     if (result != GX_OK) {
         gxp_rollback(&cut);
-        return gxp_fail(failure, result, cut.failure.index, cut.failure.surface);
+        return gxp_tell_failure(&cut, result, failure);
     }
     gxp_wake_resumed(body, body->undo.counts[GXP_COPIES]);
     gxp_commit(&cut);
     if (body->model.resumed != 0) body->model.resumed = gxp_hash_state(body, body->copies.count);
     if (report != NULL) *report = cut.report;
-    return gxp_fail(failure, GX_OK, SIZE_MAX, SIZE_MAX);
+    return gxp_end(failure, GX_OK);
 }
 
 /* >>solidify: a sheet made solid ----------------------------------------------------------------------------------- */
@@ -4147,15 +4220,11 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
 
 /* Sums the area normals around each vertex of the sheet and scales each sum to half the thickness. Edges are measured
    in units of the longest one's power of two, so that areas stay in range. */
-static gx_result gxp_offset_vectors(const gx_surface *s, double half, double *normals) {
+static void gxp_offset_vectors(const gx_surface *s, double half, double *normals) {
     double longest = 0;
     size_t i;
     int k, c, pass, exponent = 0;
     memset(normals, 0, 3 * s->vertex_count * sizeof *normals);
-    for (i = 0; i < 3 * s->vertex_count; i++)
-        if (!gxp_is_finite(s->vertices[i])) return GX_ERROR_NOT_FINITE;
-    for (i = 0; i < 3 * s->triangle_count; i++)
-        if (s->triangles[i] >= s->vertex_count) return GX_ERROR_INDEX;
     for (pass = 0; pass < 2; pass++) {
         for (i = 0; i < s->triangle_count; i++) {
             const uint32_t *t = s->triangles + 3 * i;
@@ -4178,7 +4247,6 @@ static gx_result gxp_offset_vectors(const gx_surface *s, double half, double *no
         if (gxp_unit(n, n))
             for (k = 0; k < 3; k++) n[k] *= half;
     }
-    return GX_OK;
 }
 
 /* Closes the rim: appends a quad for each half-edge whose edge has more triangles one way than the other. */
@@ -4217,42 +4285,63 @@ static gx_result gxp_close_solid(const gx_surface *s, const gx_allocator *a, uin
     return GX_OK;
 }
 
-GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thickness, double *vertices,
-                                        size_t *vertex_count, uint32_t *triangles, size_t *triangle_count,
-                                        const gx_allocator *allocator) {
+static gx_result gxp_check_sheet(const gx_surface *s, gx_failure *failure) {
+    size_t i;
+    if (s->vertex_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "vertex_count", SIZE_MAX);
+    if (s->triangle_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "triangle_count", SIZE_MAX);
+    if (s->vertices == NULL) return gxp_refuse(failure, "vertices");
+    if (s->triangles == NULL) return gxp_refuse(failure, "triangles");
+    if (s->vertex_count > INT32_MAX / 2) return gxp_fail(failure, GX_ERROR_LIMIT, "vertex_count", SIZE_MAX);
+    if (s->triangle_count > INT32_MAX / 8) return gxp_fail(failure, GX_ERROR_LIMIT, "triangle_count", SIZE_MAX);
+    for (i = 0; i < 3 * s->vertex_count; i++)
+        if (!gxp_is_finite(s->vertices[i])) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "vertices", i / 3);
+    for (i = 0; i < 3 * s->triangle_count; i++)
+        if (s->triangles[i] >= s->vertex_count) return gxp_fail(failure, GX_ERROR_INDEX, "triangles", i / 3);
+    return GX_OK;
+}
+
+GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thickness, double *solid_vertices,
+                                        size_t *solid_vertex_count, uint32_t *solid_triangles,
+                                        size_t *solid_triangle_count, const gx_allocator *allocator,
+                                        gx_failure *failure) {
     gx_allocator none;
     size_t i, count;
     gx_result result;
     double *normals;
     memset(&none, 0, sizeof none);
     if (allocator == NULL) allocator = &none;
-    if (!sheet || !vertices || !vertex_count || !triangles || !triangle_count || !gxb_is_allocator(allocator))
-        return GX_ERROR_ARGUMENT;
-    if (!gxp_is_finite(thickness)) return GX_ERROR_NOT_FINITE;
-    if (!(thickness > 0)) return GX_ERROR_ARGUMENT;
-    if (sheet->vertex_count == 0 || sheet->triangle_count == 0) return GX_ERROR_EMPTY;
-    if (sheet->vertices == NULL || sheet->triangles == NULL) return GX_ERROR_ARGUMENT;
-    if (sheet->vertex_count > INT32_MAX / 2 || sheet->triangle_count > INT32_MAX / 8) return GX_ERROR_LIMIT;
+    if (sheet == NULL) return gxp_refuse(failure, "sheet");
+    if (solid_vertices == NULL) return gxp_refuse(failure, "solid_vertices");
+    if (solid_vertex_count == NULL) return gxp_refuse(failure, "solid_vertex_count");
+    if (solid_triangles == NULL) return gxp_refuse(failure, "solid_triangles");
+    if (solid_triangle_count == NULL) return gxp_refuse(failure, "solid_triangle_count");
+    if (!gxb_is_allocator(allocator)) return gxp_refuse(failure, "allocator");
+    if (!gxp_is_finite(thickness)) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "thickness", SIZE_MAX);
+    if (!(thickness > 0)) return gxp_refuse(failure, "thickness");
+    result = gxp_check_sheet(sheet, failure);
+    if (result != GX_OK) return result;
     normals = (double *)gxp_allocate(allocator, 3 * sheet->vertex_count * sizeof *normals);
-    if (normals == NULL) return GX_ERROR_MEMORY;
-    result = gxp_offset_vectors(sheet, 0.5 * thickness, normals);
+    if (normals == NULL) return gxp_end(failure, GX_ERROR_MEMORY);
+    gxp_end(failure, GX_OK);
+    gxp_offset_vectors(sheet, 0.5 * thickness, normals);
     count = 2 * sheet->triangle_count;
-    if (result == GX_OK) result = gxp_close_solid(sheet, allocator, triangles, &count);
+    result = gxp_close_solid(sheet, allocator, solid_triangles, &count);
     for (i = 0; i < 3 * sheet->vertex_count && result == GX_OK; i++) {
-        vertices[i] = sheet->vertices[i] + normals[i];
-        vertices[3 * sheet->vertex_count + i] = sheet->vertices[i] - normals[i];
-        if (!gxp_is_finite(vertices[i]) || !gxp_is_finite(vertices[3 * sheet->vertex_count + i]))
-            result = GX_ERROR_RANGE;
+        double *above = &solid_vertices[i], *below = &solid_vertices[3 * sheet->vertex_count + i];
+        *above = sheet->vertices[i] + normals[i];
+        *below = sheet->vertices[i] - normals[i];
+        if (!gxp_is_finite(*above) || !gxp_is_finite(*below))
+            result = gxp_fail(failure, GX_ERROR_RANGE, "vertices", i / 3);
     }
     for (i = 0; i < 3 * sheet->triangle_count && result == GX_OK; i++) {
-        triangles[i] = sheet->triangles[i];
-        triangles[3 * sheet->triangle_count + i] =
+        solid_triangles[i] = sheet->triangles[i];
+        solid_triangles[3 * sheet->triangle_count + i] =
             sheet->triangles[i - i % 3 + (3 - i % 3) % 3] + (uint32_t)sheet->vertex_count;
     }
     gxp_release(allocator, normals, 3 * sheet->vertex_count * sizeof *normals);
-    if (result != GX_OK) return result;
-    *vertex_count = 2 * sheet->vertex_count;
-    *triangle_count = count;
+    if (result != GX_OK) return gxp_close(failure, result);
+    *solid_vertex_count = 2 * sheet->vertex_count;
+    *solid_triangle_count = count;
     return GX_OK;
 }
 
@@ -4321,27 +4410,82 @@ static gx_result gxp_update_held(gx_body *body) {
     return result;
 }
 
-static gx_result gxp_check_region(const gx_region *r) {
-    if (!gxp_is_finite(r->value)) return GX_ERROR_NOT_FINITE;
-    return r->axis > 2 || (r->side != 1 && r->side != -1) ? GX_ERROR_ARGUMENT : GX_OK;
+/* Refuses a region that holds no copy. */
+static gx_result gxp_check_grip(gx_body *body, const gx_region *r, size_t index, gx_failure *failure) {
+    uint32_t c;
+    int holds = 0;
+    gx_result result = GX_OK;
+    for (c = 0; c < body->copies.count && result == GX_OK && !holds; c++)
+        result = gxp_copy_in_region(body, c, r, &holds);
+    if (result != GX_OK) return gxp_end(failure, result);
+    return holds ? GX_OK : gxp_fail(failure, GX_ERROR_EMPTY, "regions", index);
 }
 
-GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t region_count) {
+static gx_result gxp_check_region(const gx_region *r, size_t index, gx_failure *failure) {
+    if (r->axis > 2) return gxp_fail(failure, GX_ERROR_ARGUMENT, "regions.axis", index);
+    if (r->side != 1 && r->side != -1) return gxp_fail(failure, GX_ERROR_ARGUMENT, "regions.side", index);
+    return gxp_is_finite(r->value) ? GX_OK : gxp_fail(failure, GX_ERROR_NOT_FINITE, "regions.value", index);
+}
+
+GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t region_count, gx_failure *failure) {
     gx_result result;
     size_t i;
-    if (body == NULL || (region_count > 0 && regions == NULL)) return GX_ERROR_ARGUMENT;
-    if (region_count > INT32_MAX) return GX_ERROR_LIMIT;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (region_count > 0 && regions == NULL) return gxp_refuse(failure, "regions");
+    if (region_count > INT32_MAX) return gxp_fail(failure, GX_ERROR_LIMIT, "region_count", SIZE_MAX);
     for (i = 0; i < region_count; i++) {
-        result = gxp_check_region(&regions[i]);
+        result = gxp_check_region(&regions[i], i, failure);
+        if (result == GX_OK) result = gxp_check_grip(body, &regions[i], i, failure);
         if (result != GX_OK) return result;
     }
     result = gxp_grow_rows(body, GXP_REGIONS, region_count);
-    if (result != GX_OK) return result;
+    if (gxp_end(failure, result) != GX_OK) return result;
     if (region_count > 0) memcpy(body->holds.regions, regions, region_count * sizeof *regions);
     body->holds.count = (uint32_t)region_count;
     body->holds.stale = 1;
     body->model.state = GXP_MODEL_STALE;
     return GX_OK;
+}
+
+/* >>map: from rest to space ---------------------------------------------------------------------------------------- */
+/* In: a material point, or a cell. Out: where it is, how fast its corners are. Nothing else in this file turns
+   displacements of copies into positions: copies that do more than move a cell's corners change this section, and the
+   integrals at >>motion, which rest on the map being affine within a cell. Touches nothing. */
+
+/* Where a point is: rest + sum of weight u over the copies of weight not 0, which stand first */
+static inline void gxp_map_point(const gx_body *body, const double rest[3], const uint32_t *copies,
+                                 const double *weights, uint32_t count, double position[3]) {
+    const double *displacement = body->copies.displacement;
+    double x = rest[0], y = rest[1], z = rest[2];
+    uint32_t n;
+    for (n = 0; n < count && weights[n] > 0; n++) {
+        const double *u = displacement + 3 * (size_t)copies[n];
+        x += weights[n] * u[0];
+        y += weights[n] * u[1];
+        z += weights[n] * u[2];
+    }
+    position[0] = x;
+    position[1] = y;
+    position[2] = z;
+}
+
+/* x of the cell's nodes from a centre, at rest or, moved, with the displacement of its copies */
+static void gxp_cell_corners(const gx_body *body, const gxp_cell *cell, int moved, const double center[3],
+                             double x[4][3]) {
+    int n, k;
+    for (n = 0; n < 4; n++) {
+        const double *rest =
+            body->mesh.positions + 3 * (size_t)gxb_complex_element_nodes(body->complex, cell->element)[n];
+        const double *u = body->copies.displacement + 3 * (size_t)cell->copies[n];
+        for (k = 0; k < 3; k++) x[n][k] = rest[k] - center[k] + (moved ? u[k] : 0);
+    }
+}
+
+/* The velocities of the cell's copies, less a mean */
+static void gxp_cell_velocities(const gx_body *body, const gxp_cell *cell, const double mean[3], double v[4][3]) {
+    int n, k;
+    for (n = 0; n < 4; n++)
+        for (k = 0; k < 3; k++) v[n][k] = body->copies.velocity[3 * (size_t)cell->copies[n] + (size_t)k] - mean[k];
 }
 
 /* >>fragments: sums, ids, changes, the view ------------------------------------------------------------------------ */
@@ -4355,18 +4499,6 @@ static const uint8_t gxp_mass_at[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 
 static double gxp_mass_row(const double mass[10], int i) {
     const uint8_t *row = gxp_mass_at[i];
     return mass[row[0]] + mass[row[1]] + mass[row[2]] + mass[row[3]];
-}
-
-/* x of the cell's nodes from a centre, at rest or, moved, with the displacement of its copies */
-static void gxp_cell_corners(const gx_body *body, const gxp_cell *cell, int moved, const double center[3],
-                             double x[4][3]) {
-    int n, k;
-    for (n = 0; n < 4; n++) {
-        const double *rest =
-            body->mesh.positions + 3 * (size_t)gxb_complex_element_nodes(body->complex, cell->element)[n];
-        const double *u = body->copies.displacement + 3 * (size_t)cell->copies[n];
-        for (k = 0; k < 3; k++) x[n][k] = rest[k] - center[k] + (moved ? u[k] : 0);
-    }
 }
 
 /* sum += density * integral of x over the cell */
@@ -4593,15 +4725,16 @@ static gx_result gxp_first_snapshot(gx_body *body) {
     return GX_OK;
 }
 
-GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view) {
+GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view, gx_failure *failure) {
     const gxp_view *own;
     gx_result result;
-    if (body == NULL || view == NULL) return GX_ERROR_ARGUMENT;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (view == NULL) return gxp_refuse(failure, "view");
     result = gxp_update_view(body);
     if (result == GX_OK && body->view.sums_stale) result = gxp_sum_fragments(body);
     if (result == GX_OK) result = gxp_take_snapshot(body);
     if (result == GX_OK) result = gxp_update_held(body);
-    if (result != GX_OK) return result;
+    if (gxp_end(failure, result) != GX_OK) return result;
     own = &body->view;
     view->node_count = body->mesh.node_count;
     view->element_count = body->mesh.element_count;
@@ -4686,12 +4819,6 @@ static void gxp_spin(const double inertia[6], const double momentum[3], double s
     }
 }
 
-static void gxp_cell_velocities(const gx_body *body, const gxp_cell *cell, const double mean[3], double v[4][3]) {
-    int n, k;
-    for (n = 0; n < 4; n++)
-        for (k = 0; k < 3; k++) v[n][k] = body->copies.velocity[3 * (size_t)cell->copies[n] + (size_t)k] - mean[k];
-}
-
 /* Adds to inertia, angular momentum (sum_ij m_ij x_i x v_j) and energy; x and v are relative to the centre. */
 static void gxp_add_rotation(const gxp_cell *cell, double x[4][3], double v[4][3], gx_motion *motion,
                              double momentum[3]) {
@@ -4733,7 +4860,7 @@ static void gxp_find_centers(const gx_body *body, gx_motion *motions) {
 }
 
 /* If a motion is not finite, is it the state (NOT_FINITE), or only beyond doubles (RANGE)? */
-static gx_result gxp_check_motion(const gx_body *body, const gx_motion *motion) {
+static gx_result gxp_check_motion(const gx_body *body, const gx_motion *motion, gx_failure *failure) {
     double number[17];
     size_t i;
     int finite = 1;
@@ -4745,25 +4872,28 @@ static gx_result gxp_check_motion(const gx_body *body, const gx_motion *motion) 
     memcpy(number + 16, &motion->energy, sizeof *number);
     for (i = 0; i < 17; i++) finite = finite && gxp_is_finite(number[i]);
     if (finite) return GX_OK;
-    for (i = 0; i < 3 * (size_t)body->copies.count; i++)
-        if (!gxp_is_finite(body->copies.displacement[i]) || !gxp_is_finite(body->copies.velocity[i]))
-            return GX_ERROR_NOT_FINITE;
-    return GX_ERROR_RANGE;
+    for (i = 0; i < 3 * (size_t)body->copies.count; i++) {
+        if (!gxp_is_finite(body->copies.displacement[i]))
+            return gxp_fail(failure, GX_ERROR_NOT_FINITE, "displacement", i / 3);
+        if (!gxp_is_finite(body->copies.velocity[i])) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "velocity", i / 3);
+    }
+    return gxp_end(failure, GX_ERROR_RANGE);
 }
 
-GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t capacity) {
+GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t capacity, gx_failure *failure) {
     double(*momentum)[3];
     size_t bytes;
     uint32_t i;
     int k;
     gx_result result;
-    if (body == NULL || (motions == NULL && capacity > 0)) return GX_ERROR_ARGUMENT;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (motions == NULL && capacity > 0) return gxp_refuse(failure, "motions");
     result = gxp_update_view(body);
-    if (result != GX_OK || body->view.fragment_count == 0) return result;
-    if (capacity < body->view.fragment_count) return GX_ERROR_LIMIT;
+    if (gxp_end(failure, result) != GX_OK || body->view.fragment_count == 0) return result;
+    if (capacity < body->view.fragment_count) return gxp_fail(failure, GX_ERROR_CAPACITY, "capacity", SIZE_MAX);
     bytes = body->view.fragment_count * sizeof *momentum;
     momentum = (double(*)[3])gxp_allocate(&body->config.allocator, bytes);
-    if (momentum == NULL) return GX_ERROR_MEMORY;
+    if (momentum == NULL) return gxp_end(failure, GX_ERROR_MEMORY);
     memset(momentum, 0, bytes);
     gxp_find_centers(body, motions);
     for (i = 0; i < body->view.count; i++) {
@@ -4778,7 +4908,7 @@ GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t cap
         gxp_spin(motions[i].inertia, momentum[i], motions[i].angular_velocity);
         for (k = 0; k < 3; k++)
             motions[i].energy += 0.5 * motions[i].mass * motions[i].velocity[k] * motions[i].velocity[k];
-        if (result == GX_OK) result = gxp_check_motion(body, &motions[i]);
+        if (result == GX_OK) result = gxp_check_motion(body, &motions[i], failure);
     }
     gxp_release(&body->config.allocator, momentum, bytes);
     return result;
@@ -5072,33 +5202,34 @@ static void gxp_add_part(gx_body *body, const gxp_cell *cell, uint32_t first, co
 }
 
 /* Appends the parts of an element; there is room. */
-static gx_result gxp_add_parts(gx_body *body, uint32_t element) {
+static gx_result gxp_add_parts(gx_body *body, uint32_t element, gx_failure *failure) {
     const uint32_t first = body->model.part_count;
     double x[12], gradients[12];
     uint32_t cell;
     gx_result result;
     gxp_element_positions(body, element, x);
     result = gxi_tet_gradients(x, gradients, NULL);
+    if (result != GX_OK) return gxp_fail(failure, result, NULL, element);
     for (cell = element; cell != GXP_NONE; cell = body->cells.data[cell].next)
         if (body->cells.data[cell].kept) gxp_add_part(body, &body->cells.data[cell], first, gradients);
     return result;
 }
 
 /* The parts of all elements */
-static gx_result gxp_make_parts(gx_body *body) {
+static gx_result gxp_make_parts(gx_body *body, gx_failure *failure) {
     uint32_t e;
     gx_result result = gxp_reserve(&body->config.allocator, &body->model.parts, sizeof *body->model.parts, 0,
                                    &body->model.part_capacity, body->cells.count);
     body->model.part_count = 0;
-    for (e = 0; e < body->mesh.element_count && result == GX_OK; e++) result = gxp_add_parts(body, e);
+    for (e = 0; e < body->mesh.element_count && result == GX_OK; e++) result = gxp_add_parts(body, e, failure);
     return result;
 }
 
 /* The whole model. Its arrays are the body's. */
-static gx_result gxp_make_model(gx_body *body, gxs_model *model) {
+static gx_result gxp_make_model(gx_body *body, gxs_model *model, gx_failure *failure) {
     const gx_allocator *a = &body->config.allocator;
     uint32_t i;
-    gx_result result = gxp_make_parts(body);
+    gx_result result = gxp_make_parts(body, failure);
     if (result == GX_OK) result = gxp_list_thin(body, 1);
     if (result == GX_OK) result = gxp_make_constraints(body);
     if (result == GX_OK)
@@ -5128,7 +5259,7 @@ static gx_result gxp_make_model(gx_body *body, gxs_model *model) {
 
 /* Applies the changes to the solver's model. After an error the model must be set whole: LIMIT and, if nothing is left,
    EMPTY mean no more than that; MEMORY is a failure. */
-static gx_result gxp_change_model(gx_body *body) {
+static gx_result gxp_change_model(gx_body *body, gx_failure *failure) {
     gxp_model *model = &body->model;
     size_t room = 0;
     uint32_t i, cell;
@@ -5139,7 +5270,8 @@ static gx_result gxp_change_model(gx_body *body) {
         for (cell = model->changed.data[i]; cell != GXP_NONE; cell = body->cells.data[cell].next) room++;
     result = gxp_reserve(&body->config.allocator, &model->parts, sizeof *model->parts, 0, &model->part_capacity, room);
     model->part_count = 0;
-    for (i = 0; i < model->changed.count && result == GX_OK; i++) result = gxp_add_parts(body, model->changed.data[i]);
+    for (i = 0; i < model->changed.count && result == GX_OK; i++)
+        result = gxp_add_parts(body, model->changed.data[i], failure);
     if (result == GX_OK) result = gxp_list_thin(body, 0);
     if (result == GX_OK) result = gxp_make_constraints(body);
     memset(&change, 0, sizeof change);
@@ -5153,7 +5285,7 @@ static gx_result gxp_change_model(gx_body *body) {
     change.constraints = model->constraints;
     change.constraint_count = model->constraint_count;
     change.epoch = body->cuts.epoch;
-    return result == GX_OK ? gxs_solver_update(body->solver, &change, NULL) : result;
+    return result == GX_OK ? gxs_solver_update(body->solver, &change, failure) : result;
 }
 
 /* Makes sure that copies whose state was written since the last step wake in the next one. */
@@ -5164,13 +5296,13 @@ static void gxp_note_written(gx_body *body) {
 }
 
 /* Gives the solver the whole model. */
-static gx_result gxp_set_model(gx_body *body) {
+static gx_result gxp_set_model(gx_body *body, gx_failure *failure) {
     gxs_model model;
-    gx_result result = gxp_make_model(body, &model);
+    gx_result result = gxp_make_model(body, &model, failure);
     gxp_note_written(body);
     if (result != GX_OK) return result;
     body->model.empty = model.element_count == 0;
-    return body->model.empty ? GX_OK : gxs_solver_set_model(body->solver, &model, NULL);
+    return body->model.empty ? GX_OK : gxs_solver_set_model(body->solver, &model, failure);
 }
 
 /* Releases the arrays that the solver has copied. */
@@ -5179,7 +5311,7 @@ static void gxp_release_model(gx_body *body) {
 }
 
 /* Brings the solver's model up to date after cuts and holds. The solver copies it, so that the arrays are released. */
-static gx_result gxp_update_model(gx_body *body) {
+static gx_result gxp_update_model(gx_body *body, gx_failure *failure) {
     gxp_model *model = &body->model;
     gx_result result = gxp_update_held(body);
     uint32_t i;
@@ -5188,13 +5320,13 @@ static gx_result gxp_update_model(gx_body *body) {
         return result;
     }
     if (model->state == GXP_MODEL_CHANGED) {
-        result = gxp_change_model(body);
+        result = gxp_change_model(body, failure);
         model->state = result == GX_OK ? GXP_MODEL_KNOWN : GXP_MODEL_STALE;
         model->updated = 1;
         if (result == GX_ERROR_LIMIT || result == GX_ERROR_EMPTY) result = GX_OK;
     }
     if (result == GX_OK && model->state == GXP_MODEL_STALE) {
-        result = gxp_set_model(body);
+        result = gxp_set_model(body, failure);
         if (result == GX_OK) {
             model->state = GXP_MODEL_KNOWN;
             model->updated = 0;
@@ -5206,11 +5338,14 @@ static gx_result gxp_update_model(gx_body *body) {
     return result;
 }
 
-GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model) {
+GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model, gx_failure *failure) {
     gx_result result;
-    if (body == NULL || model == NULL) return GX_ERROR_ARGUMENT;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (model == NULL) return gxp_refuse(failure, "model");
+    gxp_end(failure, GX_OK);
     result = gxp_update_held(body);
-    return result == GX_OK ? gxp_make_model(body, model) : result;
+    if (result == GX_OK) result = gxp_make_model(body, model, failure);
+    return gxp_close(failure, result);
 }
 
 /* >>step: time steps ----------------------------------------------------------------------------------------------- */
@@ -5227,25 +5362,54 @@ static gx_result gxp_start_history(gx_body *body, uint32_t count) {
     return result;
 }
 
-/* The step as the solver takes it: with the body's own rest times, history and clock */
-static gx_result gxp_complete_step(gx_body *body, const gx_step_desc *desc, gx_step_desc *step) {
-    const int history = desc->integrator == GXS_BDF2;
-    gx_result result = GX_OK;
-    *step = *desc;
+/* What acts on the body, as the solver takes it */
+static void gxp_translate_loads(const gx_step_desc *desc, gxs_step_desc *step) {
+    memcpy(step->gravity, desc->gravity, sizeof step->gravity);
+    step->mass_damping = desc->mass_damping;
+    step->forces = desc->forces;
+    step->targets = desc->targets;
+    step->epoch = desc->epoch;
+    step->springs = desc->springs;
+    step->spring_count = desc->spring_count;
+    step->spring_forces = desc->spring_forces;
+    step->points = desc->points;
+    step->point_count = desc->point_count;
+    step->planes = desc->planes;
+    step->plane_count = desc->plane_count;
+    step->contact = desc->contact;
+    step->contact_user = desc->contact_user;
+}
+
+/* The step as the solver takes it: the only place where one description becomes the other. The body adds its rest
+   times, its history and, where the description has none, its clock. */
+static gx_result gxp_translate_step(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step) {
+    const int history = desc->integrator == GXS_BDF2, own_clock = desc->clock == NULL;
+    memset(step, 0, sizeof *step);
+    gxp_translate_loads(desc, step);
+    step->dt = desc->dt;
+    step->integrator = desc->integrator;
+    step->newton_iterations = desc->newton_iterations;
+    step->newton_tolerance = desc->newton_tolerance;
+    step->cg_iterations = desc->cg_iterations;
+    step->cg_tolerance = desc->cg_tolerance;
+    step->sleep_speed = desc->sleep_speed;
+    step->sleep_time = desc->sleep_time;
+    step->budget_seconds = desc->budget_seconds;
+    step->clock = own_clock ? body->config.clock : desc->clock;
+    step->clock_user = own_clock ? body->config.clock_user : desc->clock_user;
     step->rest_times = body->copies.rest_time;
-    if (step->clock == NULL) {
-        step->clock = body->config.clock;
-        step->clock_user = body->config.clock_user;
+    if (history) {
+        const gx_result result = gxp_start_history(body, 4);
+        if (result != GX_OK) return result;
     }
-    if (history) result = gxp_start_history(body, 4);
     step->previous_displacement = history && body->copies.previous_dt > 0 ? body->copies.history[0] : NULL;
     step->previous_velocity = body->copies.history[1];
     step->previous_dt = body->copies.previous_dt;
-    return result;
+    return GX_OK;
 }
 
 /* Takes the step and keeps the state that the next step of BDF2 needs. */
-static gx_result gxp_step(gx_body *body, const gx_step_desc *step, gx_step_report *report, gx_failure *failure) {
+static gx_result gxp_step(gx_body *body, const gxs_step_desc *step, gx_step_report *report, gx_failure *failure) {
     gxp_copies *copies = &body->copies;
     const size_t bytes = 3 * (size_t)copies->count * sizeof(double);
     const int history = step->integrator == GXS_BDF2;
@@ -5265,13 +5429,17 @@ static gx_result gxp_step(gx_body *body, const gx_step_desc *step, gx_step_repor
 
 GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report, gx_failure *failure) {
     const double start = body != NULL ? gxp_seconds(body) : 0;
-    gx_step_desc step;
+    gxs_step_desc step;
+    gx_failure refused;
     gx_result result;
-    if (body == NULL || desc == NULL) return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (desc == NULL) return gxp_refuse(failure, "desc");
     gxp_wake_resumed(body, body->copies.count);
-    result = gxp_update_model(body);
-    if (result == GX_OK) result = gxp_complete_step(body, desc, &step);
-    if (gxp_fail(failure, result, SIZE_MAX, SIZE_MAX) != GX_OK) return result;
+    gxp_end(&refused, GX_OK);
+    result = gxp_update_model(body, &refused);
+    if (result != GX_OK) return gxp_fail(failure, result, NULL, refused.index);
+    result = gxp_translate_step(body, desc, &step);
+    if (gxp_end(failure, result) != GX_OK) return result;
     if (body->model.empty) {
         result = gxs_step_check(&step, body->cuts.epoch, failure);
         if (result == GX_OK && report != NULL) {
@@ -6122,6 +6290,7 @@ static gx_result gxp_update_skin(gx_body *body, const gx_skin_desc *desc) {
 static void gxp_show_skin(const gx_body *body, gx_skin *skin) {
     const gxp_skin *s = &body->skin;
     skin->vertex_count = s->vertex_count;
+    skin->vertex_width = 4;
     skin->vertex_copies = s->copies;
     skin->vertex_weights = s->weights;
     skin->vertex_point = s->point;
@@ -6141,33 +6310,26 @@ static void gxp_show_skin(const gx_body *body, gx_skin *skin) {
     skin->epoch = body->cuts.epoch;
 }
 
-GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc, gx_skin *skin) {
+GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc, gx_skin *skin, gx_failure *failure) {
     gx_skin_desc none;
     gx_result result;
     memset(&none, 0, sizeof none);
     if (desc == NULL) desc = &none;
-    if (body == NULL || skin == NULL) return GX_ERROR_ARGUMENT;
-    if (!gxp_is_finite(desc->crease_angle)) return GX_ERROR_NOT_FINITE;
-    if (desc->crease_angle < 0) return GX_ERROR_ARGUMENT;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (skin == NULL) return gxp_refuse(failure, "skin");
+    if (!gxp_is_finite(desc->crease_angle)) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "crease_angle", SIZE_MAX);
+    if (desc->crease_angle < 0) return gxp_refuse(failure, "crease_angle");
     result = gxp_update_skin(body, desc);
     if (result == GX_OK) gxp_show_skin(body, skin);
-    return result;
+    return gxp_end(failure, result);
 }
 
 /* x = X + sum of weight u, in doubles */
 static void gxp_move_vertices(const gx_body *body, double *positions) {
     const gxp_skin *s = &body->skin;
     size_t i;
-    int k, n;
-    for (i = 0; i < s->vertex_count; i++) {
-        const uint32_t *copies = s->copies + 4 * i;
-        const double *w = s->weights + 4 * i;
-        double x[3];
-        for (k = 0; k < 3; k++) x[k] = s->rest[3 * i + (size_t)k];
-        for (n = 0; n < 4 && w[n] > 0; n++)
-            for (k = 0; k < 3; k++) x[k] += w[n] * body->copies.displacement[3 * (size_t)copies[n] + (size_t)k];
-        for (k = 0; k < 3; k++) positions[3 * i + (size_t)k] = x[k];
-    }
+    for (i = 0; i < s->vertex_count; i++)
+        gxp_map_point(body, s->rest + 3 * i, s->copies + 4 * i, s->weights + 4 * i, 4, positions + 3 * i);
 }
 
 /* Sums the normals of triangles in their slots, then interpolates those of vertices from their slots. */
@@ -6191,24 +6353,38 @@ static void gxp_deformed_normals(gxp_skin *s, float *normals) {
     }
 }
 
-GXFEM_API gx_result gx_body_skin_positions(const gx_body *body, double *positions) {
-    if (body == NULL || positions == NULL || !body->skin.made || body->skin.dirty.count > 0) return GX_ERROR_ARGUMENT;
+/* Is there a skin, and has no cut been since it was made? */
+static int gxp_has_skin(const gx_body *body) { return body->skin.made && body->skin.dirty.count == 0; }
+
+GXFEM_API gx_result gx_body_skin_positions(const gx_body *body, double *positions, gx_failure *failure) {
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (positions == NULL) return gxp_refuse(failure, "positions");
+    if (!gxp_has_skin(body)) return gxp_end(failure, GX_ERROR_SEQUENCE);
     gxp_move_vertices(body, positions);
-    return GX_OK;
+    return gxp_end(failure, GX_OK);
 }
 
-GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3], float *positions, float *normals) {
+static gx_result gxp_check_vector(const double x[3], const char *field, gx_failure *failure) {
+    return gxp_is_finite(x[0]) && gxp_is_finite(x[1]) && gxp_is_finite(x[2])
+             ? GX_OK
+             : gxp_fail(failure, GX_ERROR_NOT_FINITE, field, SIZE_MAX);
+}
+
+GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3], float *positions, float *normals,
+                                          gx_failure *failure) {
     gxp_skin *s;
     size_t i;
     int k;
-    if (body == NULL || !body->skin.made || body->skin.dirty.count > 0) return GX_ERROR_ARGUMENT;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (origin != NULL && gxp_check_vector(origin, "origin", failure) != GX_OK) return GX_ERROR_NOT_FINITE;
+    if (!gxp_has_skin(body)) return gxp_end(failure, GX_ERROR_SEQUENCE);
     s = &body->skin;
     gxp_move_vertices(body, s->positions);
     for (i = 0; i < s->vertex_count && positions != NULL; i++)
         for (k = 0; k < 3; k++)
             positions[3 * i + (size_t)k] = (float)(s->positions[3 * i + (size_t)k] - (origin != NULL ? origin[k] : 0));
     if (normals != NULL) gxp_deformed_normals(s, normals);
-    return GX_OK;
+    return gxp_end(failure, GX_OK);
 }
 
 /* >>rays: picking -------------------------------------------------------------------------------------------------- */
@@ -6260,6 +6436,34 @@ static int gxp_meet_triangle(const gxp_skin *s, const uint32_t *t, double share[
     return *distance >= 0;
 }
 
+/* A point of up to GXS_POINT_OWN copies holds them itself, others refer to the arrays. */
+static gxs_point gxp_make_point(const uint32_t *copies, const double *weights, uint32_t count, const double rest[3],
+                                uint64_t epoch) {
+    gxs_point point;
+    memset(&point, 0, sizeof point);
+    point.count = count;
+    if (count <= GXS_POINT_OWN) {
+        memcpy(point.copy, copies, count * sizeof *copies);
+        memcpy(point.weight, weights, count * sizeof *weights);
+    } else {
+        point.copies = copies;
+        point.weights = weights;
+    }
+    memcpy(point.position, rest, sizeof point.position);
+    point.epoch = epoch;
+    return point;
+}
+
+GXFEM_API gxs_point gx_skin_point(const gx_skin *skin, uint32_t vertex) {
+    const size_t first = (size_t)vertex * skin->vertex_width;
+    return gxp_make_point(skin->vertex_copies + first, skin->vertex_weights + first, skin->vertex_width,
+                          skin->vertex_rest + 3 * (size_t)vertex, skin->epoch);
+}
+
+GXFEM_API gxs_point gx_hit_point(const gx_hit *hit) {
+    return gxp_make_point(hit->copies, hit->weights, hit->copy_count, hit->material, hit->epoch);
+}
+
 /* The copies of the triangle's corners with their weights, at most four in all: a triangle lies in one element. */
 static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double share[3], gx_hit *hit) {
     const gxp_skin *s = &body->skin;
@@ -6274,29 +6478,37 @@ static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double sh
         const size_t v = s->triangles[3 * (size_t)triangle + i];
         for (j = 0; j < 3; j++) hit->material[j] += share[i] * s->rest[3 * v + (size_t)j];
         for (k = 0; k < 4 && s->weights[4 * v + k] > 0; k++) {
+            const double weight = share[i] * s->weights[4 * v + k];
+            if (!(weight > 0)) continue; /* the ray meets an edge or a corner */
             for (n = 0; n < count && hit->copies[n] != s->copies[4 * v + k]; n++) {}
             if (n == count) hit->copies[count++] = s->copies[4 * v + k];
-            hit->weights[n] += share[i] * s->weights[4 * v + k];
+            hit->weights[n] += weight;
         }
     }
-    for (n = count; n < 4; n++) hit->copies[n] = hit->copies[0];
-    for (j = 0; j < 3; j++) {
-        hit->position[j] = hit->material[j];
-        for (n = 0; n < 4; n++)
-            hit->position[j] += hit->weights[n] * body->copies.displacement[3 * (size_t)hit->copies[n] + (size_t)j];
-    }
+    hit->copy_count = count;
+    gxp_map_point(body, hit->material, hit->copies, hit->weights, count, hit->position);
 }
 
-GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit) {
+static gx_result gxp_check_ray(const gx_body *body, const double origin[3], const double direction[3],
+                               gx_failure *failure) {
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (origin == NULL) return gxp_refuse(failure, "origin");
+    if (direction == NULL) return gxp_refuse(failure, "direction");
+    if (gxp_check_vector(origin, "origin", failure) != GX_OK ||
+        gxp_check_vector(direction, "direction", failure) != GX_OK)
+        return GX_ERROR_NOT_FINITE;
+    if (!(gxp_dot(direction, direction) > 0)) return gxp_refuse(failure, "direction");
+    return gxp_end(failure, gxp_has_skin(body) ? GX_OK : GX_ERROR_SEQUENCE);
+}
+
+GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit,
+                                 gx_failure *failure) {
     double share[3], best[3] = {0, 0, 0}, distance;
     uint32_t t, found = UINT32_MAX;
     const gxp_skin *s;
-    int k;
-    if (body == NULL || origin == NULL || direction == NULL || hit == NULL) return GX_ERROR_ARGUMENT;
-    if (!body->skin.made || body->skin.dirty.count > 0) return GX_ERROR_ARGUMENT;
-    for (k = 0; k < 3; k++)
-        if (!gxp_is_finite(origin[k]) || !gxp_is_finite(direction[k])) return GX_ERROR_NOT_FINITE;
-    if (!(gxp_dot(direction, direction) > 0)) return GX_ERROR_ARGUMENT;
+    gx_result result = gxp_check_ray(body, origin, direction, failure);
+    if (result != GX_OK) return result;
+    if (hit == NULL) return gxp_refuse(failure, "hit");
     s = &body->skin;
     gxp_shear_along(body, origin, direction);
     memset(hit, 0, sizeof *hit);
@@ -6323,8 +6535,8 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
 #define GXP_REACH  100
 #define GXP_WEIGHT 700
 
-/* *index: a node that is too far out. It stays SIZE_MAX if the body is too small. */
-static gx_result gxp_check_size(const gx_body_desc *desc, size_t *index) {
+/* Blames a node that is too far out, or all if the body is too small. */
+static gx_result gxp_check_size(const gx_body_desc *desc, gx_failure *failure) {
     const double most = ldexp(1, GXP_REACH);
     double longest = 0;
     size_t i;
@@ -6333,16 +6545,13 @@ static gx_result gxp_check_size(const gx_body_desc *desc, size_t *index) {
         double low = desc->positions[k], high = low;
         for (i = 0; i < desc->node_count; i++) {
             const double x = desc->positions[3 * i + (size_t)k];
-            if (fabs(x) > most) {
-                *index = i;
-                return GX_ERROR_RANGE;
-            }
+            if (fabs(x) > most) return gxp_fail(failure, GX_ERROR_RANGE, "positions", i);
             if (x < low) low = x;
             if (x > high) high = x;
         }
         if (high - low > longest) longest = high - low;
     }
-    return longest < 1 / most ? GX_ERROR_RANGE : GX_OK;
+    return longest < 1 / most ? gxp_fail(failure, GX_ERROR_RANGE, "positions", SIZE_MAX) : GX_OK;
 }
 
 /* An element of positive volume may have none in doubles. */
@@ -6352,8 +6561,8 @@ static gx_result gxp_check_volume(const gx_body *body, uint32_t element, double 
     return mass >= ldexp(1, -GXP_WEIGHT) && mass <= ldexp(1, GXP_WEIGHT) ? GX_OK : GX_ERROR_RANGE;
 }
 
-/* On an error *bad is the element that is flat or out of range. */
-static gx_result gxp_make_first_cells(gx_body *body, size_t *bad) {
+/* Blames an element that is flat, too heavy or too light. */
+static gx_result gxp_make_first_cells(gx_body *body, gx_failure *failure) {
     gx_result result = GX_OK;
     uint32_t e;
     body->cells.count = body->leaves.count = body->mesh.element_count;
@@ -6366,10 +6575,7 @@ static gx_result gxp_make_first_cells(gx_body *body, size_t *bad) {
         cell->kept = 1;
         cell->volume = gxp_element_volume(body, e);
         result = gxp_check_volume(body, e, cell->volume);
-        if (result != GX_OK) {
-            *bad = e;
-            return result;
-        }
+        if (result != GX_OK) return gxp_fail(failure, result, "elements", e);
         gxi_tet_mass(cell->volume, gxp_density(body, e), cell->mass);
         memset(&body->leaves.data[e], 0, sizeof body->leaves.data[e]);
         body->leaves.data[e].cell = e;
@@ -6419,7 +6625,7 @@ static gx_result gxp_create_solver(gx_body *body) {
     memset(&solver, 0, sizeof solver);
     solver.allocator = body->config.allocator;
     solver.jobs = body->config.jobs;
-    return gxs_solver_create(&solver, &body->solver);
+    return gxs_solver_create(&solver, &body->solver, NULL);
 }
 
 static void gxp_fill_materials(gx_body *body, const gx_body_desc *desc) {
@@ -6444,10 +6650,9 @@ static uint64_t gxp_hash_mesh(const gx_body *body) {
                             &body->config.support_below, 1);
 }
 
-/* On an error *index is the node or element to blame. */
-static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc, size_t *index) {
+static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc, gx_failure *failure) {
     gxp_mesh *mesh = &body->mesh;
-    gx_result result = gxp_check_size(desc, index);
+    gx_result result = gxp_check_size(desc, failure);
     if (result == GX_OK) result = gxp_make_tables(body, desc);
     if (result == GX_OK) result = gxp_create_solver(body);
     if (result != GX_OK) return result;
@@ -6457,7 +6662,7 @@ static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc, size_t *
     gxp_list_node_elements(body);
     result = gxp_find_pinched_nodes(body);
     gxp_find_pinched_edges(body);
-    if (result == GX_OK) result = gxp_make_first_cells(body, index);
+    if (result == GX_OK) result = gxp_make_first_cells(body, failure);
     if (result != GX_OK) return result;
     gxp_make_first_copies(body);
     gxp_build_boxes(body);
@@ -6467,33 +6672,63 @@ static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc, size_t *
     return gxp_first_snapshot(body);
 }
 
-static gx_result gxp_check_material(double young, double poisson, double density) {
-    if (!gxp_is_finite(young) || !gxp_is_finite(poisson) || !gxp_is_finite(density)) return GX_ERROR_NOT_FINITE;
-    return young > 0 && density > 0 && poisson >= 0 && poisson < 0.5 ? GX_OK : GX_ERROR_ARGUMENT;
+/* names: of young, poisson, density */
+static gx_result gxp_check_material(double young, double poisson, double density, const char *const names[3],
+                                    size_t index, gx_failure *failure) {
+    const double numbers[3] = {young, poisson, density};
+    int k;
+    for (k = 0; k < 3; k++) {
+        if (!gxp_is_finite(numbers[k])) return gxp_fail(failure, GX_ERROR_NOT_FINITE, names[k], index);
+        if (k == 1 ? poisson < 0 || poisson >= 0.5 : numbers[k] <= 0)
+            return gxp_fail(failure, GX_ERROR_ARGUMENT, names[k], index);
+    }
+    return GX_OK;
 }
 
-/* On an error *index is the material or element to blame. */
-static gx_result gxp_check_body_desc(const gx_body_desc *desc, size_t *index) {
+/* One of the materials; of the elastic constants what gxp_check_material does not know */
+static gx_result gxp_check_elastic(const gxs_material *m, size_t index, gx_failure *failure) {
+    if ((int)m->kind < 0 || m->kind > GXS_CUSTOM)
+        return gxp_fail(failure, GX_ERROR_ARGUMENT, "materials.elastic.kind", index);
+    if (!gxp_is_finite(m->damping)) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "materials.elastic.damping", index);
+    if (m->damping < 0) return gxp_fail(failure, GX_ERROR_ARGUMENT, "materials.elastic.damping", index);
+    if (m->kind == GXS_CUSTOM && m->energy == NULL)
+        return gxp_fail(failure, GX_ERROR_ARGUMENT, "materials.elastic.energy", index);
+    return GX_OK;
+}
+
+static gx_result gxp_check_materials(const gx_body_desc *desc, gx_failure *failure) {
+    static const char *const names[3] = {"young", "poisson", "density"}, *const elastic[3] = {
+                                                                             "materials.elastic.young",
+                                                                             "materials.elastic.poisson",
+                                                                             "materials.density"};
     gx_result result = GX_OK;
     size_t i;
-    *index = SIZE_MAX;
-    if (!gxb_is_allocator(&desc->allocator)) return GX_ERROR_ARGUMENT;
-    if (!gxp_is_finite(desc->support_below)) return GX_ERROR_NOT_FINITE;
-    if (desc->support_below < 0 || desc->support_below >= 1) return GX_ERROR_ARGUMENT;
-    if (desc->materials == NULL) return gxp_check_material(desc->young, desc->poisson, desc->density);
-    if (desc->material_count == 0 || desc->material_count >= INT32_MAX)
-        return desc->material_count == 0 ? GX_ERROR_EMPTY : GX_ERROR_LIMIT;
+    if (desc->materials == NULL) {
+        if (desc->material_count > 0 || desc->element_materials != NULL) return gxp_refuse(failure, "materials");
+        return gxp_check_material(desc->young, desc->poisson, desc->density, names, SIZE_MAX, failure);
+    }
+    if (desc->material_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "material_count", SIZE_MAX);
+    if (desc->material_count >= INT32_MAX) return gxp_fail(failure, GX_ERROR_LIMIT, "material_count", SIZE_MAX);
     for (i = 0; i < desc->material_count && result == GX_OK; i++) {
-        const gxs_material *m = &desc->materials[ *index = i].elastic;
-        result = gxp_check_material(m->young, m->poisson, desc->materials[i].density);
-        if (result == GX_OK && !gxp_is_finite(m->damping)) result = GX_ERROR_NOT_FINITE;
-        if (result == GX_OK && ((int)m->kind < 0 || m->kind > GXS_CUSTOM || m->damping < 0 ||
-                                (m->kind == GXS_CUSTOM && m->energy == NULL)))
-            result = GX_ERROR_ARGUMENT;
+        const gxs_material *m = &desc->materials[i].elastic;
+        result = gxp_check_material(m->young, m->poisson, desc->materials[i].density, elastic, i, failure);
+        if (result == GX_OK) result = gxp_check_elastic(m, i, failure);
     }
     for (i = 0; i < desc->element_count && result == GX_OK && desc->element_materials != NULL; i++)
-        if (desc->element_materials[ *index = i] >= desc->material_count) result = GX_ERROR_INDEX;
+        if (desc->element_materials[i] >= desc->material_count)
+            result = gxp_fail(failure, GX_ERROR_INDEX, "element_materials", i);
     return result;
+}
+
+/* All but the mesh, which the complex checks */
+static gx_result gxp_check_body_desc(const gx_body_desc *desc, gx_failure *failure) {
+    size_t i;
+    if (!gxb_is_allocator(&desc->allocator)) return gxp_refuse(failure, "allocator");
+    if (!gxp_is_finite(desc->support_below)) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "support_below", SIZE_MAX);
+    if (desc->support_below < 0 || desc->support_below >= 1) return gxp_refuse(failure, "support_below");
+    for (i = 0; i < 2 * desc->node_count && desc->texture != NULL; i++)
+        if (!gxp_is_finite((double)desc->texture[i])) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "texture", i / 2);
+    return gxp_check_materials(desc, failure);
 }
 
 /* Copies the caller's settings and puts defaults in the place of zeros. */
@@ -6525,12 +6760,12 @@ GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_f
     gx_body *body;
     gxb_mesh mesh;
     gx_result result;
-    size_t index;
-    if (desc == NULL || out == NULL) return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
-    result = gxp_check_body_desc(desc, &index);
-    if (result != GX_OK) return gxp_fail(failure, result, index, SIZE_MAX);
+    if (desc == NULL) return gxp_refuse(failure, "desc");
+    if (out == NULL) return gxp_refuse(failure, "body");
+    result = gxp_check_body_desc(desc, failure);
+    if (result != GX_OK) return result;
     body = (gx_body *)gxp_allocate(&desc->allocator, sizeof *body);
-    if (body == NULL) return gxp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX, SIZE_MAX);
+    if (body == NULL) return gxp_end(failure, GX_ERROR_MEMORY);
     memset(body, 0, sizeof *body);
     gxp_set_config(&body->config, desc);
     mesh.positions = desc->positions;
@@ -6546,14 +6781,13 @@ GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_f
     body->mesh.element_count = gxb_complex_element_count(body->complex);
     body->mesh.edge_count = gxb_complex_mesh_edge_count(body->complex);
     body->mesh.material_count = desc->materials != NULL ? (uint32_t)desc->material_count : 1;
-    index = SIZE_MAX;
-    result = gxp_fill_body(body, desc, &index);
-    if (result != GX_OK) {
+    result = gxp_fill_body(body, desc, failure);
+    if (gxp_close(failure, result) != GX_OK) {
         gx_body_destroy(body);
-        return gxp_fail(failure, result, index, SIZE_MAX);
+        return result;
     }
     *out = body;
-    return gxp_fail(failure, GX_OK, SIZE_MAX, SIZE_MAX);
+    return GX_OK;
 }
 
 /* >>hashes: of the topology, of the state -------------------------------------------------------------------------- */
@@ -6648,12 +6882,12 @@ static uint64_t gxp_hash_names(const gx_body *body, const uint64_t *name, uint64
     return sum;
 }
 
-GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_result *result) {
+GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_failure *failure) {
     gx_result r;
     uint64_t *names, hash = 0;
     size_t words;
     if (body == NULL) {
-        if (result != NULL) *result = GX_ERROR_ARGUMENT;
+        gxp_refuse(failure, "body");
         return 0;
     }
     words = 2 * (size_t)body->cells.count + body->copies.count;
@@ -6666,8 +6900,7 @@ GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_result *result) {
         if (r == GX_OK) hash = gxp_hash_names(body, names, names + 2 * (size_t)body->cells.count);
     }
     gxp_release(&body->config.allocator, names, words * sizeof *names);
-    if (result != NULL) *result = r;
-    return r == GX_OK ? hash : 0;
+    return gxp_end(failure, r) == GX_OK ? hash : 0;
 }
 
 GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
@@ -6695,18 +6928,20 @@ GXFEM_API const char *gx_result_text(gx_result result) {
     case GX_ERROR_NOT_FINITE: return "a number is not finite";
     case GX_ERROR_RANGE: return "a coordinate or a mass is too large or too small";
     case GX_ERROR_INDEX: return "an index is out of range";
-    case GX_ERROR_EMPTY: return "empty: no elements, nodes or triangles";
+    case GX_ERROR_EMPTY: return "nothing is there: no elements, nodes, triangles, or no copy in a region";
     case GX_ERROR_INVERTED: return "an element is inverted (negative volume)";
     case GX_ERROR_FLAT: return "an element is flat (no volume)";
     case GX_ERROR_OVERLAP: return "elements overlap: a face is shared by more than two elements, or by two on one side";
     case GX_ERROR_NOT_CLOSED: return "a solid's surface is not closed or not consistently oriented";
-    case GX_ERROR_LIMIT: return "too many objects";
+    case GX_ERROR_LIMIT: return "too many objects, or a memory limit is reached";
     case GX_ERROR_DIVERGED: return "the time step diverged";
-    case GX_ERROR_FREE: return "a piece is held by nothing";
+    case GX_ERROR_FREE: return "nothing holds a component in a static balance";
     case GX_ERROR_FORMAT: return "not a saved body, or one of another version or kind of machine";
     case GX_ERROR_DAMAGED: return "a saved body is damaged";
     case GX_ERROR_STALE: return "copies are named as before a cut";
     case GX_ERROR_CONFIGURATION: return "floating-point arithmetic is not what exact predicates need";
+    case GX_ERROR_SEQUENCE: return "called too early or too late: another call must come before";
+    case GX_ERROR_CAPACITY: return "the array or memory for the answer is too small";
     }
     return "unknown result";
 }
@@ -6724,7 +6959,7 @@ static void gxp_require_true(gxb_stream *s, int holds) {
 }
 static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
 
-#define GXP_SAVE_VERSION 3u /* raised by every change of the format */
+#define GXP_SAVE_VERSION 4u /* raised by every change of the format */
 #define GXP_BYTE_ORDER   0x01020304u
 
 typedef struct gxp_head {
@@ -6822,16 +7057,14 @@ static void gxp_save_mesh(gxb_stream *s, gx_body *body) {
     gxp_pass_mesh(s, &mesh);
 }
 
-/* Energies are not saved: the caller gives them again. *material: one without its energy. */
-static gx_result gxp_give_energies(gxp_saved_mesh *mesh, const gx_body_desc *desc, size_t *material) {
+/* Energies are not saved: the caller gives them again. */
+static gx_result gxp_give_energies(gxp_saved_mesh *mesh, const gx_body_desc *desc, gx_failure *failure) {
     uint32_t i;
     for (i = 0; i < mesh->material_count; i++) {
         gxs_material *m = &mesh->materials[i].elastic;
         if (m->kind != GXS_CUSTOM) continue;
-        if (desc->materials == NULL || i >= desc->material_count || desc->materials[i].elastic.energy == NULL) {
-            *material = i;
-            return GX_ERROR_ARGUMENT;
-        }
+        if (desc->materials == NULL || i >= desc->material_count || desc->materials[i].elastic.energy == NULL)
+            return gxp_fail(failure, GX_ERROR_ARGUMENT, "materials.elastic.energy", i);
         m->energy = desc->materials[i].elastic.energy;
         m->user = desc->materials[i].elastic.user;
     }
@@ -6840,12 +7073,12 @@ static gx_result gxp_give_energies(gxp_saved_mesh *mesh, const gx_body_desc *des
 
 /* Creates the uncut body of the mesh. */
 static void gxp_create_again(gxb_stream *s, const gx_body_desc *given, gxp_saved_mesh *mesh, gx_body **body,
-                             size_t *index) {
+                             gx_failure *failure) {
     gx_body_desc desc;
     gx_result result;
     gxp_pass_mesh(s, mesh);
     if (s->result != GX_OK) return;
-    gxp_require(s, gxp_give_energies(mesh, given, index));
+    gxp_require(s, gxp_give_energies(mesh, given, failure));
     if (s->result != GX_OK) return;
     memset(&desc, 0, sizeof desc);
     desc.allocator = given->allocator;
@@ -6869,7 +7102,7 @@ static void gxp_create_again(gxb_stream *s, const gx_body_desc *given, gxp_saved
 }
 
 /* Reads the mesh and creates the body from it. */
-static void gxp_load_mesh(gxb_stream *s, const gx_body_desc *desc, gx_body **body, size_t *index) {
+static void gxp_load_mesh(gxb_stream *s, const gx_body_desc *desc, gx_body **body, gx_failure *failure) {
     const gx_allocator *a = &desc->allocator;
     size_t positions, texture, elements, element_materials, materials;
     gxp_saved_mesh mesh;
@@ -6893,7 +7126,7 @@ static void gxp_load_mesh(gxb_stream *s, const gx_body_desc *desc, gx_body **bod
     mesh.materials = (gx_material *)gxp_allocate(a, materials);
     if (mesh.positions && mesh.texture && mesh.elements && mesh.element_materials && mesh.materials) {
         memset(mesh.materials, 0, materials);
-        gxp_create_again(s, desc, &mesh, body, index);
+        gxp_create_again(s, desc, &mesh, body, failure);
     } else
         gxp_require(s, GX_ERROR_MEMORY);
     gxp_release(a, mesh.positions, positions);
@@ -7130,7 +7363,8 @@ static void gxp_check_state(gxb_stream *s, gx_body *body, const gxp_state_counts
     uint32_t i;
     gxp_require_true(s, snapshot->next_id >= 1 && snapshot->stale <= 1);
     gxp_require_true(s, gxp_is_finite(dt) && (n->history ? dt > 0 : !(dt > 0 || dt < 0)));
-    for (i = 0; i < body->holds.count; i++) gxp_require_true(s, gxp_check_region(&body->holds.regions[i]) == GX_OK);
+    for (i = 0; i < body->holds.count; i++)
+        gxp_require_true(s, gxp_check_region(&body->holds.regions[i], i, NULL) == GX_OK);
     for (i = 0; i < body->copies.count; i++) gxp_require_true(s, body->copies.label[i] >> 1 < snapshot->count);
     for (i = 0; i < snapshot->count; i++)
         gxp_require_true(s, snapshot->id[i] - 1 < snapshot->next_id - 1 &&
@@ -7166,11 +7400,13 @@ static void gxp_resume(gx_body *body) {
     gxp_resume_in(body, &scene);
 }
 
-GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, size_t *size) {
+GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, size_t *size, gx_failure *failure) {
     gxb_stream s;
     size_t start;
     gxp_head head;
-    if (body == NULL || size == NULL) return GX_ERROR_ARGUMENT;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (size == NULL) return gxp_refuse(failure, "size");
+    gxp_end(failure, GX_OK);
     gxp_note_written(body);
     memset(&s, 0, sizeof s);
     gxp_pass_head(&s, &head);
@@ -7179,7 +7415,7 @@ GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, s
     gxp_write(&s, body);
     *size = s.at;
     if (memory == NULL) return GX_OK;
-    if (capacity < s.at) return GX_ERROR_LIMIT;
+    if (capacity < s.at) return gxp_fail(failure, GX_ERROR_CAPACITY, "capacity", SIZE_MAX);
     s.out = (unsigned char *)memory;
     s.size = s.at;
     s.at = 0;
@@ -7191,16 +7427,15 @@ GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, s
     return GX_OK;
 }
 
-/* *index: as gx_failure's */
-static gx_result gxp_read(gxb_stream *s, const gx_body_desc *desc, int trusted, gx_body **body, size_t *index) {
+static gx_result gxp_read(gxb_stream *s, const gx_body_desc *desc, int trusted, gx_body **body, gx_failure *failure) {
     gx_body *made = NULL;
     gxp_head head;
     if (trusted)
         gxp_pass_head(s, &head);
     else
         s->result = gxp_check_head(s);
-    *index = SIZE_MAX;
-    if (s->result == GX_OK) gxp_load_mesh(s, desc, &made, index);
+    gxp_end(failure, GX_OK);
+    if (s->result == GX_OK) gxp_load_mesh(s, desc, &made, failure);
     if (s->result == GX_OK) gxp_load_topology(s, made, trusted);
     if (s->result == GX_OK) gxp_load_state(s, made, trusted);
     gxp_require_true(s, s->at == s->size);
@@ -7208,25 +7443,23 @@ static gx_result gxp_read(gxb_stream *s, const gx_body_desc *desc, int trusted, 
         *body = made;
     else
         gx_body_destroy(made);
-    if (s->result == GX_ERROR_FORMAT || s->result == GX_ERROR_DAMAGED) *index = s->at;
-    return s->result;
+    return s->result == GX_ERROR_FORMAT || s->result == GX_ERROR_DAMAGED ? gxp_fail(failure, s->result, "memory", s->at)
+                                                                         : gxp_close(failure, s->result);
 }
 
 GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_desc *desc, gx_body **body,
                                  gx_failure *failure) {
     gx_body_desc none;
     gxb_stream s;
-    size_t index;
-    gx_result result;
     memset(&none, 0, sizeof none);
     if (desc == NULL) desc = &none;
-    if (memory == NULL || body == NULL || !gxb_is_allocator(&desc->allocator))
-        return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
+    if (memory == NULL) return gxp_refuse(failure, "memory");
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (!gxb_is_allocator(&desc->allocator)) return gxp_refuse(failure, "allocator");
     memset(&s, 0, sizeof s);
     s.in = (const unsigned char *)memory;
     s.size = size;
-    result = gxp_read(&s, desc, 0, body, &index);
-    return gxp_fail(failure, result, index, SIZE_MAX);
+    return gxp_read(&s, desc, 0, body, failure);
 }
 
 /* Makes a body like `from` with the allocator, clock and jobs of host. */
@@ -7234,8 +7467,8 @@ static gx_result gxp_copy_body(gx_body *from, const gx_body *host, gx_body **cop
     gx_body_desc desc;
     gxb_stream s;
     unsigned char *bytes;
-    size_t size, index;
-    gx_result result = gx_body_save(from, NULL, 0, &size);
+    size_t size;
+    gx_result result = gx_body_save(from, NULL, 0, &size, NULL);
     if (result != GX_OK) return result;
     bytes = (unsigned char *)gxp_allocate(&host->config.allocator, size);
     if (bytes == NULL) return GX_ERROR_MEMORY;
@@ -7253,14 +7486,16 @@ static gx_result gxp_copy_body(gx_body *from, const gx_body *host, gx_body **cop
     desc.jobs = host->config.jobs;
     desc.materials = from->mesh.materials;
     desc.material_count = from->mesh.material_count;
-    result = gxp_read(&s, &desc, 1, copy, &index);
+    result = gxp_read(&s, &desc, 1, copy, NULL);
     gxp_release(&host->config.allocator, bytes, size);
     if (result == GX_OK) gxp_resume(from);
     return result;
 }
 
-GXFEM_API gx_result gx_body_clone(gx_body *body, gx_body **clone) {
-    return body == NULL || clone == NULL ? GX_ERROR_ARGUMENT : gxp_copy_body(body, body, clone);
+GXFEM_API gx_result gx_body_clone(gx_body *body, gx_body **clone, gx_failure *failure) {
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (clone == NULL) return gxp_refuse(failure, "clone");
+    return gxp_end(failure, gxp_copy_body(body, body, clone));
 }
 
 static int gxp_same_doubles(const double *a, const double *b, size_t count) {
@@ -7323,17 +7558,18 @@ static gx_result gxp_restore_state(gx_body *body, gx_body *from) {
     return GX_OK;
 }
 
-GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from) {
+GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *failure) {
     gx_body *copy, swap;
     gx_result result;
-    if (body == NULL || from == NULL) return GX_ERROR_ARGUMENT;
-    if (body == from) return GX_OK;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (from == NULL) return gxp_refuse(failure, "from");
+    if (body == from) return gxp_end(failure, GX_OK);
     if (body->cuts.hash == from->cuts.hash && body->copies.count == from->copies.count &&
         body->cells.count == from->cells.count && body->leaves.count == from->leaves.count &&
         gxp_same_materials(body, from))
-        return gxp_restore_state(body, from);
+        return gxp_end(failure, gxp_restore_state(body, from));
     result = gxp_copy_body(from, body, &copy);
-    if (result != GX_OK) return result;
+    if (gxp_end(failure, result) != GX_OK) return result;
     swap = *body;
     *body = *copy;
     *copy = swap;

@@ -92,8 +92,8 @@
  *       2^-60 to 2^60, this range is relative to it. That largest one is 2^-200 to 2^200, so that volumes are finite.
  *       Others give GX_ERROR_RANGE.
  *     - orient2d, orient3d, incircle and insphere take any finite double.
- *     - A complex has at most 2^28 elements and about 1.4e9 points, planes, edges, facets or leaves. An operand of a
- *       Boolean has at most about 130 million triangles.
+ *     - A complex has fewer than 2^28 elements (2^24 where pointers have 32 bits) and about 1.4e9 points, planes,
+ *       edges, facets or leaves. An operand of a Boolean has at most about 130 million triangles.
  *     - No global state, no input or output. Only the growth of its own arrays uses the heap.
  *
  * Configuration: GXB_LIMB32 uses 32-bit limbs also where 128-bit products exist (same results, slower). With
@@ -142,29 +142,34 @@
 /* What a function that can fail returns. On anything but GX_OK its inputs are as they were. */
 typedef enum gx_result {
     GX_OK = 0,
-    GX_ERROR_ARGUMENT,     /* a required pointer is NULL, a required field is zero or senseless */
-    GX_ERROR_MEMORY,       /* the allocator returned NULL */
-    GX_ERROR_NOT_FINITE,   /* a coordinate or parameter is NaN or infinite */
-    GX_ERROR_RANGE,        /* a coordinate or a mass is too large or too small (see "limits") */
-    GX_ERROR_INDEX,        /* an index points outside its array */
-    GX_ERROR_EMPTY,        /* no elements, no nodes or no triangles */
-    GX_ERROR_INVERTED,     /* an element has negative volume */
-    GX_ERROR_FLAT,         /* an element has no volume */
-    GX_ERROR_OVERLAP,      /* an element face is shared by more than two elements, or by two on one side */
-    GX_ERROR_NOT_CLOSED,   /* a solid's surface has a boundary, or its triangles are not oriented alike */
-    GX_ERROR_LIMIT,        /* more objects than 32-bit indices can name, or a caller's limit is reached */
-    GX_ERROR_DIVERGED,     /* a time step found no finite state of lower energy */
-    GX_ERROR_FREE,         /* a static balance is asked of a piece that nothing holds */
-    GX_ERROR_FORMAT,       /* not a saved body, or one of another version or another kind of machine */
-    GX_ERROR_DAMAGED,      /* a saved body is cut short, or what it says cannot be */
-    GX_ERROR_STALE,        /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
-    GX_ERROR_CONFIGURATION /* arithmetic is not what exact predicates need: see >>numbers in gxfem_boolean.h */
+    GX_ERROR_ARGUMENT,   /* a required pointer is NULL, a required field is zero or senseless */
+    GX_ERROR_MEMORY,     /* the allocator returned NULL */
+    GX_ERROR_NOT_FINITE, /* a coordinate or parameter is NaN or infinite */
+    GX_ERROR_RANGE,      /* a coordinate or a mass is too large or too small (see "limits") */
+    GX_ERROR_INDEX,      /* an index points outside its array */
+    GX_ERROR_EMPTY,      /* no elements, no nodes or no triangles; a region that holds no copy */
+    GX_ERROR_INVERTED,   /* an element has negative volume */
+    GX_ERROR_FLAT,       /* an element has no volume */
+    GX_ERROR_OVERLAP,    /* an element face is shared by more than two elements, or by two on one side */
+    GX_ERROR_NOT_CLOSED, /* a solid's surface has a boundary, or its triangles are not oriented alike */
+    GX_ERROR_LIMIT,      /* more objects than 32-bit indices can name, or the caller's memory limit is reached */
+    GX_ERROR_DIVERGED,   /* a time step found no finite state of lower energy */
+    GX_ERROR_FREE,       /* a static balance is asked of a component, copies joined by elements, that nothing holds */
+    GX_ERROR_FORMAT,     /* not a saved body, or one of another version or another kind of machine */
+    GX_ERROR_DAMAGED,    /* a saved body is cut short, or what it says cannot be */
+    GX_ERROR_STALE,      /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
+    GX_ERROR_CONFIGURATION, /* arithmetic is not what exact predicates need: see >>numbers in gxfem_boolean.h */
+    GX_ERROR_SEQUENCE,      /* called too early, or too late: another call must come before */
+    GX_ERROR_CAPACITY       /* the caller's array or memory is too small */
 } gx_result;
 
-/* What went wrong, and where: index of the node, element, triangle or copy concerned. */
+/* What was refused, and where. A call that succeeds sets it too, to GX_OK. */
 typedef struct gx_failure {
     gx_result result;
-    size_t index;   /* SIZE_MAX: no single object is to blame */
+    /* The name of an argument, or of a member of the struct that an argument points to, with the members on the way:
+       "positions", "dt", "surfaces.vertices", "springs.point.copy". Static. NULL: nothing given is to blame */
+    const char *field;
+    size_t index;   /* of the node, element, triangle, copy ... concerned; SIZE_MAX: no single one is */
     size_t surface; /* of a cut: which of its surfaces; else SIZE_MAX */
 } gx_failure;
 
@@ -590,7 +595,7 @@ typedef struct gxb_stream {
     unsigned char *out;
     const unsigned char *in;
     size_t size, at; /* size: room, or bytes to read; at: bytes passed */
-    /* GX_ERROR_LIMIT: no room; GX_ERROR_DAMAGED: no more bytes, or impossible contents */
+    /* GX_ERROR_CAPACITY: no room; GX_ERROR_DAMAGED: no more bytes, or impossible contents */
     gx_result result;
 } gxb_stream;
 /* count items of width bytes */
@@ -711,32 +716,32 @@ typedef struct gxb_statistics {
     size_t peak_bytes;
 } gxb_statistics;
 
-/* desc may be NULL. Errors: ARGUMENT, LIMIT, MEMORY, CONFIGURATION. */
-GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean);
+/* failure may be NULL in all of them. desc may be NULL. Errors: ARGUMENT, LIMIT, MEMORY, CONFIGURATION. */
+GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean, gx_failure *failure);
 GXFEM_API void gxb_boolean_destroy(gxb_boolean *boolean);
 /* Options of the following evaluations. The exact surface is the same for all of them. Errors: ARGUMENT. */
 /* GXB_DIVIDED (the default), GXB_COARSE or GXB_MERGED */
-GXFEM_API gx_result gxb_boolean_set_triangulation(gxb_boolean *boolean, uint32_t triangulation);
+GXFEM_API gx_result gxb_boolean_set_triangulation(gxb_boolean *boolean, uint32_t triangulation, gx_failure *failure);
 /* 1: vertices are the doubles nearest to the exact points, and volumes are right to their last digits. 0 (the default):
  * vertices are proven within 1e-10 of the largest coordinate, and volumes within 1e-7 of their size. Most errors are
  * far smaller. */
-GXFEM_API gx_result gxb_boolean_set_fine(gxb_boolean *boolean, int fine);
+GXFEM_API gx_result gxb_boolean_set_fine(gxb_boolean *boolean, int fine, gx_failure *failure);
 /* 1: vertices and volumes as with gxb_boolean_set_fine. Then defects are removed where a change within the rounding
  * does it: an edge is flipped, a vertex is merged with a neighbour at most 4 units in the last place away, or a vertex
  * moves by at most 2 such units. The surface stays closed, input vertices stay, and so do components and their Euler
  * characteristics. */
-GXFEM_API gx_result gxb_boolean_set_mend(gxb_boolean *boolean, int mend);
+GXFEM_API gx_result gxb_boolean_set_mend(gxb_boolean *boolean, int mend, gx_failure *failure);
 /* Copies an operand. Errors: ARGUMENT, EMPTY, INDEX (triangle), NOT_FINITE and RANGE (vertex), NOT_CLOSED (triangle),
  * LIMIT, MEMORY. */
 GXFEM_API gx_result gxb_boolean_add(gxb_boolean *boolean, const gxb_operand *operand, gx_failure *failure);
-/* The result of all operands so far. Errors: EMPTY (no operand), MEMORY, LIMIT, OVERLAP (a surface vouched for as
- * simple is not). After an error the Boolean keeps its operands and can be evaluated again. */
-GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *boolean, gxb_boolean_result *result);
-/* Components and defects of the latest result, computed on the first call. Errors: EMPTY (no result, or an operand was
- * added since), MEMORY, LIMIT. After an error the result is unchanged. */
-GXFEM_API gx_result gxb_boolean_components(gxb_boolean *boolean, gxb_components *components);
-GXFEM_API gx_result gxb_boolean_defects(gxb_boolean *boolean, gxb_defects *defects);
-GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *boolean, gxb_statistics *statistics);
+/* The result of all operands so far. Errors: ARGUMENT, SEQUENCE (no operand), MEMORY, LIMIT, OVERLAP (a surface vouched
+ * for as simple is not). After an error the Boolean keeps its operands and can be evaluated again. */
+GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *boolean, gxb_boolean_result *result, gx_failure *failure);
+/* Components and defects of the latest result, computed on the first call. Errors: ARGUMENT, SEQUENCE (no result, or an
+ * operand was added since), MEMORY, LIMIT. After an error the result is unchanged. */
+GXFEM_API gx_result gxb_boolean_components(gxb_boolean *boolean, gxb_components *components, gx_failure *failure);
+GXFEM_API gx_result gxb_boolean_defects(gxb_boolean *boolean, gxb_defects *defects, gx_failure *failure);
+GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *boolean, gxb_statistics *statistics, gx_failure *failure);
 
 #ifdef __cplusplus
 }
@@ -3068,13 +3073,35 @@ static gx_result gxbp_fill_complex(gxb_complex *cx, const gxb_mesh *mesh, uint32
     return result == GX_OK ? gxbp_make_leaves(cx) : result;
 }
 
-static GXBP_COLD gx_result gxbp_fail(gx_failure *failure, gx_result result, size_t index) {
+static GXBP_COLD gx_result gxbp_fail(gx_failure *failure, gx_result result, const char *field, size_t index) {
     if (failure != NULL) {
         failure->result = result;
+        failure->field = field;
         failure->index = index;
         failure->surface = SIZE_MAX;
     }
     return result;
+}
+
+/* A result that blames nothing that was given: success, or a lack of memory */
+static gx_result gxbp_end(gx_failure *failure, gx_result result) { return gxbp_fail(failure, result, NULL, SIZE_MAX); }
+
+static gx_result gxbp_refuse(gx_failure *failure, const char *field) {
+    return gxbp_fail(failure, GX_ERROR_ARGUMENT, field, SIZE_MAX);
+}
+
+/* The field to blame for what reading points, and elements or triangles of them, came to */
+static const char *gxbp_blamed(gx_result result, const char *points, const char *polygons) {
+    switch (result) {
+    case GX_ERROR_NOT_FINITE:
+    case GX_ERROR_RANGE: return points;
+    case GX_ERROR_INDEX:
+    case GX_ERROR_INVERTED:
+    case GX_ERROR_FLAT:
+    case GX_ERROR_OVERLAP:
+    case GX_ERROR_NOT_CLOSED: return polygons;
+    default: return NULL;
+    }
 }
 
 /* allocate and release, or neither, and reallocate only with them */
@@ -3093,6 +3120,17 @@ GXFEM_API GXBP_RARE void gxb_complex_destroy(gxb_complex *cx) {
     gxbp_release(&a, cx, sizeof *cx);
 }
 
+static gx_result gxbp_check_mesh(const gxb_mesh *mesh, gx_failure *failure) {
+    if (mesh->node_count == 0) return gxbp_fail(failure, GX_ERROR_EMPTY, "node_count", SIZE_MAX);
+    if (mesh->element_count == 0) return gxbp_fail(failure, GX_ERROR_EMPTY, "element_count", SIZE_MAX);
+    if (mesh->positions == NULL) return gxbp_refuse(failure, "positions");
+    if (mesh->elements == NULL) return gxbp_refuse(failure, "elements");
+    if (mesh->element_count > INT32_MAX / 8 || mesh->element_count > SIZE_MAX / 256)
+        return gxbp_fail(failure, GX_ERROR_LIMIT, "element_count", SIZE_MAX);
+    if (mesh->node_count > INT32_MAX) return gxbp_fail(failure, GX_ERROR_LIMIT, "node_count", SIZE_MAX);
+    return GX_OK;
+}
+
 GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator *allocator, gxb_complex **complex,
                                        gx_failure *failure) {
     gx_allocator none;
@@ -3102,15 +3140,14 @@ GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator 
     gx_result result;
     memset(&none, 0, sizeof none);
     if (allocator == NULL) allocator = &none;
-    if (mesh == NULL || complex == NULL || !gxb_is_allocator(allocator))
-        return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    if (mesh->node_count == 0 || mesh->element_count == 0) return gxbp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
-    if (mesh->positions == NULL || mesh->elements == NULL) return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    if (mesh->element_count > INT32_MAX / 8 || mesh->element_count > SIZE_MAX / 256 || mesh->node_count > INT32_MAX)
-        return gxbp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
-    if (!gxbp_arithmetic_holds(1)) return gxbp_fail(failure, GX_ERROR_CONFIGURATION, SIZE_MAX);
+    if (mesh == NULL) return gxbp_refuse(failure, "mesh");
+    if (complex == NULL) return gxbp_refuse(failure, "complex");
+    if (!gxb_is_allocator(allocator)) return gxbp_refuse(failure, "allocator");
+    result = gxbp_check_mesh(mesh, failure);
+    if (result != GX_OK) return result;
+    if (!gxbp_arithmetic_holds(1)) return gxbp_end(failure, GX_ERROR_CONFIGURATION);
     cx = (gxb_complex *)gxbp_allocate(allocator, sizeof *cx);
-    if (cx == NULL) return gxbp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
+    if (cx == NULL) return gxbp_end(failure, GX_ERROR_MEMORY);
     memset(cx, 0, sizeof *cx);
     cx->store.allocator = *allocator;
     cx->node_count = (uint32_t)mesh->node_count;
@@ -3121,13 +3158,13 @@ GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator 
     result = table == NULL || cx->pairs == NULL ? GX_ERROR_MEMORY : gxbp_fill_complex(cx, mesh, table, &bad);
     if (result != GX_OK) {
         gxb_complex_destroy(cx);
-        return gxbp_fail(failure, result, bad);
+        return gxbp_fail(failure, result, gxbp_blamed(result, "positions", "elements"), bad);
     }
     cx->store.stamp[0] = cx->store.stamp[1] = cx->edge_stamp = 1;
     gxbp_forget_pairs(cx);
     gxb_complex_begin(cx);
     *complex = cx;
-    return gxbp_fail(failure, GX_OK, SIZE_MAX);
+    return gxbp_end(failure, GX_OK);
 }
 
 /* >>access: reading a complex ------------------------------------------------------------------------------------- */
@@ -5030,7 +5067,8 @@ GXFEM_API void gxb_stream_pass(gxb_stream *stream, void *data, size_t count, siz
         if (bytes > 0) memset(data, 0, bytes);
         return;
     }
-    if (stream->in == NULL && stream->out != NULL && bytes > stream->size - stream->at) stream->result = GX_ERROR_LIMIT;
+    if (stream->in == NULL && stream->out != NULL && bytes > stream->size - stream->at)
+        stream->result = GX_ERROR_CAPACITY;
     if (stream->result != GX_OK || bytes == 0) return;
     if (stream->in != NULL)
         memcpy(data, stream->in + stream->at, bytes);
@@ -11283,19 +11321,20 @@ static GXBP_COLD void gxbp_drop_boolean(gxb_boolean *b) {
     gxbp_release(&b->store.allocator, b->winding.table, (size_t)b->winding.table_size * sizeof *b->winding.table);
 }
 
-GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean) {
+GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean, gx_failure *failure) {
     gxb_boolean_desc none;
     gxb_boolean *b;
     size_t arena;
     memset(&none, 0, sizeof none);
-    if (boolean == NULL) return GX_ERROR_ARGUMENT;
+    if (boolean == NULL) return gxbp_refuse(failure, "boolean");
     if (desc == NULL) desc = &none;
-    if (!gxb_is_allocator(&desc->allocator)) return GX_ERROR_ARGUMENT;
-    if (desc->memory_limit > 0 && desc->memory_limit < sizeof *b) return GX_ERROR_LIMIT;
-    if (!gxbp_arithmetic_holds(0)) return GX_ERROR_CONFIGURATION;
+    if (!gxb_is_allocator(&desc->allocator)) return gxbp_refuse(failure, "allocator");
+    if (desc->memory_limit > 0 && desc->memory_limit < sizeof *b)
+        return gxbp_fail(failure, GX_ERROR_LIMIT, "memory_limit", SIZE_MAX);
+    if (!gxbp_arithmetic_holds(0)) return gxbp_end(failure, GX_ERROR_CONFIGURATION);
     arena = desc->memory_limit == 0 || desc->memory_limit >= 16 * GXBP_ARENA ? GXBP_ARENA : 0;
     b = (gxb_boolean *)gxbp_allocate(&desc->allocator, gxbp_whole_words(sizeof *b) + arena);
-    if (b == NULL) return GX_ERROR_MEMORY;
+    if (b == NULL) return gxbp_end(failure, GX_ERROR_MEMORY);
     memset(b, 0, sizeof *b);
     b->budget.arena = (unsigned char *)b + gxbp_whole_words(sizeof *b);
     b->budget.arena_size = arena;
@@ -11311,7 +11350,7 @@ GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean
         b->store.allocator.reallocate = gxbp_count_reallocate;
     b->store.allocator.user = b;
     *boolean = b;
-    return GX_OK;
+    return gxbp_end(failure, GX_OK);
 }
 
 GXFEM_API void gxb_boolean_destroy(gxb_boolean *boolean) {
@@ -11322,38 +11361,40 @@ GXFEM_API void gxb_boolean_destroy(gxb_boolean *boolean) {
     gxbp_release(&outer, boolean, gxbp_whole_words(sizeof *boolean) + boolean->budget.arena_size);
 }
 
-GXFEM_API gx_result gxb_boolean_set_triangulation(gxb_boolean *boolean, uint32_t triangulation) {
-    if (boolean == NULL || triangulation > GXB_MERGED) return GX_ERROR_ARGUMENT;
+GXFEM_API gx_result gxb_boolean_set_triangulation(gxb_boolean *boolean, uint32_t triangulation, gx_failure *failure) {
+    if (boolean == NULL) return gxbp_refuse(failure, "boolean");
+    if (triangulation > GXB_MERGED) return gxbp_refuse(failure, "triangulation");
     boolean->options.triangulation = triangulation;
     boolean->options.coarsen = triangulation == GXB_DIVIDED ? NULL : gxbp_coarsen;
-    return GX_OK;
+    return gxbp_end(failure, GX_OK);
 }
 
-GXFEM_API gx_result gxb_boolean_set_fine(gxb_boolean *boolean, int fine) {
-    if (boolean == NULL) return GX_ERROR_ARGUMENT;
+GXFEM_API gx_result gxb_boolean_set_fine(gxb_boolean *boolean, int fine, gx_failure *failure) {
+    if (boolean == NULL) return gxbp_refuse(failure, "boolean");
     boolean->options.fine = fine != 0;
-    return GX_OK;
+    return gxbp_end(failure, GX_OK);
 }
 
-GXFEM_API gx_result gxb_boolean_set_mend(gxb_boolean *boolean, int mend) {
-    if (boolean == NULL) return GX_ERROR_ARGUMENT;
+GXFEM_API gx_result gxb_boolean_set_mend(gxb_boolean *boolean, int mend, gx_failure *failure) {
+    if (boolean == NULL) return gxbp_refuse(failure, "boolean");
     boolean->options.mend = mend != 0 ? gxbp_mend : NULL;
-    return GX_OK;
+    return gxbp_end(failure, GX_OK);
 }
 
-static gx_result gxbp_check_operand(const gxb_boolean *b, const gxb_operand *o, size_t *bad) {
+static gx_result gxbp_check_operand(const gxb_boolean *b, const gxb_operand *o, gx_failure *failure) {
     size_t i;
-    if (o->operation > GXB_SPLIT || o->rule > GXB_ODD) return GX_ERROR_ARGUMENT;
-    if (o->triangle_count == 0 || o->vertex_count == 0) return GX_ERROR_EMPTY;
-    if (o->vertices == NULL || o->triangles == NULL) return GX_ERROR_ARGUMENT;
-    if (o->triangle_count > INT32_MAX / 12 || o->triangle_count + b->in.source_count > INT32_MAX / 12 ||
-        o->vertex_count > INT32_MAX / 4 || b->in.operand_count > INT32_MAX / 64)
-        return GX_ERROR_LIMIT;
+    if (o->operation > GXB_SPLIT) return gxbp_refuse(failure, "operation");
+    if (o->rule > GXB_ODD) return gxbp_refuse(failure, "rule");
+    if (o->triangle_count == 0) return gxbp_fail(failure, GX_ERROR_EMPTY, "triangle_count", SIZE_MAX);
+    if (o->vertex_count == 0) return gxbp_fail(failure, GX_ERROR_EMPTY, "vertex_count", SIZE_MAX);
+    if (o->vertices == NULL) return gxbp_refuse(failure, "vertices");
+    if (o->triangles == NULL) return gxbp_refuse(failure, "triangles");
+    if (o->triangle_count > INT32_MAX / 12 || o->triangle_count + b->in.source_count > INT32_MAX / 12)
+        return gxbp_fail(failure, GX_ERROR_LIMIT, "triangle_count", SIZE_MAX);
+    if (o->vertex_count > INT32_MAX / 4) return gxbp_fail(failure, GX_ERROR_LIMIT, "vertex_count", SIZE_MAX);
+    if (b->in.operand_count > INT32_MAX / 64) return gxbp_end(failure, GX_ERROR_LIMIT);
     for (i = 0; i < 3 * o->triangle_count; i++)
-        if (o->triangles[i] >= o->vertex_count) {
-            *bad = i / 3;
-            return GX_ERROR_INDEX;
-        }
+        if (o->triangles[i] >= o->vertex_count) return gxbp_fail(failure, GX_ERROR_INDEX, "triangles", i / 3);
     return GX_OK;
 }
 
@@ -11367,9 +11408,10 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
     uint32_t sources, subtriangles, points, boxes, bounds;
     size_t bad = SIZE_MAX;
     gx_result result;
-    if (b == NULL || operand == NULL) return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    result = gxbp_check_operand(b, operand, &bad);
-    if (result != GX_OK) return gxbp_fail(failure, result, bad);
+    if (b == NULL) return gxbp_refuse(failure, "boolean");
+    if (operand == NULL) return gxbp_refuse(failure, "operand");
+    result = gxbp_check_operand(b, operand, failure);
+    if (result != GX_OK) return result;
     sources = b->in.source_count;
     subtriangles = b->mesh.subtriangle_count;
     points = b->points.vertex_count;
@@ -11388,7 +11430,7 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
         gxbp_drop_points(b, points);
     } else
         b->out.evaluated = 0;
-    return gxbp_fail(failure, result, bad);
+    return gxbp_fail(failure, result, gxbp_blamed(result, "vertices", "triangles"), bad);
 }
 
 /* After an error: operands are as they were added, and nothing is arranged. Computed points stay known. */
@@ -11436,9 +11478,10 @@ static GXBP_APART void gxbp_show_result(const gxb_boolean *b, gxb_boolean_result
     result->triangle_reversed = b->out.reversed;
 }
 
-GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *result) {
-    if (b == NULL || result == NULL) return GX_ERROR_ARGUMENT;
-    if (b->in.operand_count == 0) return GX_ERROR_EMPTY;
+GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *result, gx_failure *failure) {
+    if (b == NULL) return gxbp_refuse(failure, "boolean");
+    if (result == NULL) return gxbp_refuse(failure, "result");
+    if (b->in.operand_count == 0) return gxbp_end(failure, GX_ERROR_SEQUENCE);
     b->error = GX_OK;
     b->budget.over_limit = b->out.measured = b->out.examined = 0;
     b->out.mended_count = 0;
@@ -11453,24 +11496,25 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *res
         gxbp_show_result(b, result);
     else
         gxbp_forget_arrangement(b);
-    return b->error;
+    return gxbp_fail(failure, b->error, b->error == GX_ERROR_OVERLAP ? "simple" : NULL, SIZE_MAX);
 }
 
-/* Checks that there is a result, and an address for the answer. */
-static gx_result gxbp_begin_query(gxb_boolean *b, const void *answer) {
-    if (b == NULL || answer == NULL) return GX_ERROR_ARGUMENT;
-    if (!b->out.evaluated) return GX_ERROR_EMPTY;
+/* Checks that there is a result, and an address for the answer, an argument of that name. */
+static gx_result gxbp_begin_query(gxb_boolean *b, const void *answer, const char *name, gx_failure *failure) {
+    if (b == NULL) return gxbp_refuse(failure, "boolean");
+    if (answer == NULL) return gxbp_refuse(failure, name);
+    if (!b->out.evaluated) return gxbp_end(failure, GX_ERROR_SEQUENCE);
     b->error = GX_OK;
     b->budget.over_limit = 0;
     return GX_OK;
 }
 
-GXFEM_API gx_result gxb_boolean_components(gxb_boolean *b, gxb_components *components) {
-    const gx_result asked = gxbp_begin_query(b, components);
+GXFEM_API gx_result gxb_boolean_components(gxb_boolean *b, gxb_components *components, gx_failure *failure) {
+    const gx_result asked = gxbp_begin_query(b, components, "components", failure);
     uint32_t i;
     if (asked != GX_OK) return asked;
     if (!b->out.measured) gxbp_find_components(b);
-    if (b->error != GX_OK) return b->error;
+    if (gxbp_end(failure, b->error) != GX_OK) return b->error;
     memset(components, 0, sizeof *components);
     components->count = b->out.volume_count;
     components->volume = b->out.volumes;
@@ -11481,24 +11525,25 @@ GXFEM_API gx_result gxb_boolean_components(gxb_boolean *b, gxb_components *compo
     return GX_OK;
 }
 
-GXFEM_API gx_result gxb_boolean_defects(gxb_boolean *b, gxb_defects *defects) {
-    const gx_result asked = gxbp_begin_query(b, defects);
+GXFEM_API gx_result gxb_boolean_defects(gxb_boolean *b, gxb_defects *defects, gx_failure *failure) {
+    const gx_result asked = gxbp_begin_query(b, defects, "defects", failure);
     if (asked != GX_OK) return asked;
     if (!b->out.examined) gxbp_find_defects(b);
-    if (b->error != GX_OK) return b->error;
+    if (gxbp_end(failure, b->error) != GX_OK) return b->error;
     defects->triangles = b->out.defects;
     defects->count = b->out.defect_count;
     defects->mended_count = b->out.mended_count;
     return GX_OK;
 }
 
-GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics *statistics) {
-    if (b == NULL || statistics == NULL) return GX_ERROR_ARGUMENT;
+GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics *statistics, gx_failure *failure) {
+    if (b == NULL) return gxbp_refuse(failure, "boolean");
+    if (statistics == NULL) return gxbp_refuse(failure, "statistics");
     statistics->filter_calls = b->store.filter_calls;
     statistics->exact_calls = b->store.exact_calls;
     statistics->allocations = b->budget.allocations;
     statistics->peak_bytes = b->budget.peak;
-    return GX_OK;
+    return gxbp_end(failure, GX_OK);
 }
 
 #undef GXBP_FETCH

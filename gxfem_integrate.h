@@ -18,7 +18,7 @@
            uint32_t t[] = { 0,2,1,  0,1,3,  0,3,2,  1,2,3 };               // outward: counter-clockwise from outside
            gxi_surface surface = { p, 4, t, 4 };
            double moments[20], work[20];                                   // gxi_monomial_count(3) = 20
-           if (gxi_polyhedron_monomials(&surface, p, 3, moments, work) != GX_OK) return 1;
+           if (gxi_polyhedron_monomials(&surface, p, 3, moments, work, NULL) != GX_OK) return 1;
            printf("volume %g, integral of x %g, ", moments[0], moments[1]);                        // 10, 12.5
            printf("of x y z %g\n", moments[gxi_monomial_index(1, 1, 1)]);                          // 5
            return 0;
@@ -109,29 +109,34 @@
 /* What a function that can fail returns. On anything but GX_OK its inputs are as they were. */
 typedef enum gx_result {
     GX_OK = 0,
-    GX_ERROR_ARGUMENT,     /* a required pointer is NULL, a required field is zero or senseless */
-    GX_ERROR_MEMORY,       /* the allocator returned NULL */
-    GX_ERROR_NOT_FINITE,   /* a coordinate or parameter is NaN or infinite */
-    GX_ERROR_RANGE,        /* a coordinate or a mass is too large or too small (see "limits") */
-    GX_ERROR_INDEX,        /* an index points outside its array */
-    GX_ERROR_EMPTY,        /* no elements, no nodes or no triangles */
-    GX_ERROR_INVERTED,     /* an element has negative volume */
-    GX_ERROR_FLAT,         /* an element has no volume */
-    GX_ERROR_OVERLAP,      /* an element face is shared by more than two elements, or by two on one side */
-    GX_ERROR_NOT_CLOSED,   /* a solid's surface has a boundary, or its triangles are not oriented alike */
-    GX_ERROR_LIMIT,        /* more objects than 32-bit indices can name, or a caller's limit is reached */
-    GX_ERROR_DIVERGED,     /* a time step found no finite state of lower energy */
-    GX_ERROR_FREE,         /* a static balance is asked of a piece that nothing holds */
-    GX_ERROR_FORMAT,       /* not a saved body, or one of another version or another kind of machine */
-    GX_ERROR_DAMAGED,      /* a saved body is cut short, or what it says cannot be */
-    GX_ERROR_STALE,        /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
-    GX_ERROR_CONFIGURATION /* arithmetic is not what exact predicates need: see >>numbers in gxfem_boolean.h */
+    GX_ERROR_ARGUMENT,   /* a required pointer is NULL, a required field is zero or senseless */
+    GX_ERROR_MEMORY,     /* the allocator returned NULL */
+    GX_ERROR_NOT_FINITE, /* a coordinate or parameter is NaN or infinite */
+    GX_ERROR_RANGE,      /* a coordinate or a mass is too large or too small (see "limits") */
+    GX_ERROR_INDEX,      /* an index points outside its array */
+    GX_ERROR_EMPTY,      /* no elements, no nodes or no triangles; a region that holds no copy */
+    GX_ERROR_INVERTED,   /* an element has negative volume */
+    GX_ERROR_FLAT,       /* an element has no volume */
+    GX_ERROR_OVERLAP,    /* an element face is shared by more than two elements, or by two on one side */
+    GX_ERROR_NOT_CLOSED, /* a solid's surface has a boundary, or its triangles are not oriented alike */
+    GX_ERROR_LIMIT,      /* more objects than 32-bit indices can name, or the caller's memory limit is reached */
+    GX_ERROR_DIVERGED,   /* a time step found no finite state of lower energy */
+    GX_ERROR_FREE,       /* a static balance is asked of a component, copies joined by elements, that nothing holds */
+    GX_ERROR_FORMAT,     /* not a saved body, or one of another version or another kind of machine */
+    GX_ERROR_DAMAGED,    /* a saved body is cut short, or what it says cannot be */
+    GX_ERROR_STALE,      /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
+    GX_ERROR_CONFIGURATION, /* arithmetic is not what exact predicates need: see >>numbers in gxfem_boolean.h */
+    GX_ERROR_SEQUENCE,      /* called too early, or too late: another call must come before */
+    GX_ERROR_CAPACITY       /* the caller's array or memory is too small */
 } gx_result;
 
-/* What went wrong, and where: index of the node, element, triangle or copy concerned. */
+/* What was refused, and where. A call that succeeds sets it too, to GX_OK. */
 typedef struct gx_failure {
     gx_result result;
-    size_t index;   /* SIZE_MAX: no single object is to blame */
+    /* The name of an argument, or of a member of the struct that an argument points to, with the members on the way:
+       "positions", "dt", "surfaces.vertices", "springs.point.copy". Static. NULL: nothing given is to blame */
+    const char *field;
+    size_t index;   /* of the node, element, triangle, copy ... concerned; SIZE_MAX: no single one is */
     size_t surface; /* of a cut: which of its surfaces; else SIZE_MAX */
 } gx_failure;
 
@@ -213,13 +218,14 @@ GXFEM_API int gxi_moments2_repair(gxi_moments2 *m, const double lower[3], const 
 
 /* Moments of a polyhedron about `origin`. On failure *m is as it was. NULL origin: (0, 0, 0).
    Fails: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE. */
-GXFEM_API gx_result gxi_polyhedron_moments2(const gxi_surface *surface, const double origin[3], gxi_moments2 *m);
+GXFEM_API gx_result gxi_polyhedron_moments2(const gxi_surface *surface, const double origin[3], gxi_moments2 *m,
+                                            gx_failure *failure /* or NULL */);
 
 /* >>monomials ------------------------------------------------------------------------------------------------------ */
 
 /* Results are ordered by degree, then by falling power of x, then of y: 1  x y z  xx xy xz yy yz zz  xxx xxy ...
    NULL origin: (0, 0, 0). On failure all buffers are as they were. All fail with: ARGUMENT, EMPTY, INDEX, NOT_FINITE,
-   RANGE. */
+   RANGE; failure may be NULL. */
 
 /* Number of monomials x^i y^j z^k of degree <= `degree`: (degree + 1)(degree + 2)(degree + 3)/6. 0 above
  * GXI_DEGREE_MAX. */
@@ -232,26 +238,27 @@ GXFEM_API size_t gxi_monomial_index(unsigned i, unsigned j, unsigned k);
    moments, work: [gxi_monomial_count(degree)] each, not overlapping; what they held does not matter.
    Time: about 20 gxi_monomial_count(degree) floating-point operations per triangle. */
 GXFEM_API gx_result gxi_polyhedron_monomials(const gxi_surface *surface, const double origin[3], unsigned degree,
-                                             double *moments, double *work);
+                                             double *moments, double *work, gx_failure *failure /* or NULL */);
 
 /* The integral of one monomial, without a buffer: the sum over all ways to deal i, j, k out to three corners, which is
    ((i+1)(i+2)(j+1)(j+2)(k+1)(k+2))/8 terms per triangle. For more than a few of low degree use the function above. */
 GXFEM_API gx_result gxi_polyhedron_monomial(const gxi_surface *surface, const double origin[3], unsigned i, unsigned j,
-                                            unsigned k, double *moment);
+                                            unsigned k, double *moment, gx_failure *failure /* or NULL */);
 
 /* Integrals over the triangles by area (dA) of all monomials of x - origin up to `degree`. Buffers as above.
    The surface may be open, and its orientation does not matter. Together with a traction: the load on a cut face. */
 GXFEM_API gx_result gxi_surface_monomials(const gxi_surface *surface, const double origin[3], unsigned degree,
-                                          double *moments, double *work);
+                                          double *moments, double *work, gx_failure *failure /* or NULL */);
 
 /* The same by area vector (n dA, n the unit normal from which the triangle looks counter-clockwise): pressures and
    fluxes. moments: [gxi_monomial_count(degree)][3]; work: [gxi_monomial_count(degree)]. */
 GXFEM_API gx_result gxi_surface_flux_monomials(const gxi_surface *surface, const double origin[3], unsigned degree,
-                                               double *moments, double *work);
+                                               double *moments, double *work, gx_failure *failure /* or NULL */);
 
 /* Integrals by volume or area about one origin to those about another, in place: of x + shift instead of x.
    moments: [gxi_monomial_count(degree)]. Fails: ARGUMENT, NOT_FINITE, RANGE (degree). */
-GXFEM_API gx_result gxi_monomials_translate(unsigned degree, const double shift[3], double *moments);
+GXFEM_API gx_result gxi_monomials_translate(unsigned degree, const double shift[3], double *moments,
+                                            gx_failure *failure /* or NULL */);
 
 /* >>element -------------------------------------------------------------------------------------------------------- */
 
@@ -284,7 +291,8 @@ GXFEM_API void gxi_part_axes(unsigned k, unsigned axes[3]);
    frame. Moments below rounding are repaired: the centre stays within the range of the corners' lambdas, and the load
    is not negative (volume 0: the part has no mass). lambdas: [lambda_count][4]; triangles:
    [triangle_count][3], outward as seen in an element of positive volume. Fails, and leaves the outputs as they were:
-   ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (a lambda beyond 65536). */
+   ARGUMENT, EMPTY, INDEX (of a lambda), NOT_FINITE (a lambda), RANGE (a lambda beyond 65536). Functions that run once
+   for each cell or element take no gx_failure: the result says what is wrong. */
 GXFEM_API gx_result gxi_part_moments(const double *lambdas, size_t lambda_count, const uint32_t *triangles,
                                      size_t triangle_count, unsigned *k, gxi_moments2 *reference);
 
@@ -698,24 +706,39 @@ static gx_result gxip_check_reach(int e, unsigned degree) {
     return power + 8 * (int)degree / 5 + 63 > GXIP_EXPONENT_MAX ? GX_ERROR_RANGE : GX_OK;
 }
 
-static gx_result gxip_check_surface(const gxi_surface *surface, const double *origin, unsigned degree) {
+static gx_result gxip_fail(gx_failure *failure, gx_result result, const char *field, size_t index) {
+    if (failure) {
+        failure->result = result;
+        failure->field = field;
+        failure->index = index;
+        failure->surface = SIZE_MAX;
+    }
+    return result;
+}
+
+static gx_result gxip_check_surface(const gxi_surface *surface, const double *origin, unsigned degree,
+                                    gx_failure *failure) {
     size_t t, i;
     int e, largest = -1022;
-    if (!surface || !surface->positions || !surface->triangles) return GX_ERROR_ARGUMENT;
-    if (surface->triangle_count == 0 || surface->position_count == 0) return GX_ERROR_EMPTY;
-    if (degree > GXI_DEGREE_MAX) return GX_ERROR_RANGE;
-    if (origin && !gxip_all_finite(origin, 3)) return GX_ERROR_NOT_FINITE;
+    if (!surface) return gxip_fail(failure, GX_ERROR_ARGUMENT, "surface", SIZE_MAX);
+    if (!surface->positions) return gxip_fail(failure, GX_ERROR_ARGUMENT, "positions", SIZE_MAX);
+    if (!surface->triangles) return gxip_fail(failure, GX_ERROR_ARGUMENT, "triangles", SIZE_MAX);
+    if (surface->position_count == 0) return gxip_fail(failure, GX_ERROR_EMPTY, "position_count", SIZE_MAX);
+    if (surface->triangle_count == 0) return gxip_fail(failure, GX_ERROR_EMPTY, "triangle_count", SIZE_MAX);
+    if (degree > GXI_DEGREE_MAX) return gxip_fail(failure, GX_ERROR_RANGE, "degree", SIZE_MAX);
+    if (origin && !gxip_all_finite(origin, 3)) return gxip_fail(failure, GX_ERROR_NOT_FINITE, "origin", SIZE_MAX);
     for (t = 0; t < surface->triangle_count; t++)
         for (i = 0; i < 9; i++) {
             uint32_t vertex = surface->triangles[3 * t + i / 3];
             double x;
-            if (vertex >= surface->position_count) return GX_ERROR_INDEX;
+            if (vertex >= surface->position_count) return gxip_fail(failure, GX_ERROR_INDEX, "triangles", t);
             x = surface->positions[3 * (size_t)vertex + i % 3];
-            if (!gxip_is_finite(x)) return GX_ERROR_NOT_FINITE;
+            if (!gxip_is_finite(x)) return gxip_fail(failure, GX_ERROR_NOT_FINITE, "positions", vertex);
             e = gxip_exponent_above(origin ? x - origin[i % 3] : x);
             if (e > largest) largest = e;
         }
-    return gxip_check_reach(largest, degree);
+    return gxip_check_reach(largest, degree) == GX_OK ? gxip_fail(failure, GX_OK, NULL, SIZE_MAX)
+                                                      : gxip_fail(failure, GX_ERROR_RANGE, "positions", SIZE_MAX);
 }
 
 /* Corners of triangle t about the origin. */
@@ -733,8 +756,10 @@ static void gxip_corners(const gxi_surface *surface, const double *origin, size_
 /* Each checks what it is given and then adds up over triangles. Outputs are written only after all checks have passed.
  */
 
-GXFEM_API gx_result gxi_polyhedron_moments2(const gxi_surface *surface, const double origin[3], gxi_moments2 *m) {
-    gx_result result = m ? gxip_check_surface(surface, origin, 2) : GX_ERROR_ARGUMENT;
+GXFEM_API gx_result gxi_polyhedron_moments2(const gxi_surface *surface, const double origin[3], gxi_moments2 *m,
+                                            gx_failure *failure) {
+    gx_result result =
+        m ? gxip_check_surface(surface, origin, 2, failure) : gxip_fail(failure, GX_ERROR_ARGUMENT, "m", SIZE_MAX);
     double p[3][3];
     size_t t;
     if (result != GX_OK) return result;
@@ -761,8 +786,10 @@ enum gxip_measure { GXIP_VOLUME, GXIP_AREA, GXIP_FLUX };
 /* moments[count][stride] = integrals; stride 3 for GXIP_FLUX, else 1. With n = (b - a) x (c - a): |T| s! is a . n =
    det(a, b, c) for the cone (s = 3), |n| for the triangle (s = 2), and n instead of |n| makes it a flux. */
 static gx_result gxip_integrate(const gxi_surface *surface, const double *origin, unsigned degree,
-                                enum gxip_measure measure, double *moments, double *work) {
-    gx_result result = moments && work ? gxip_check_surface(surface, origin, degree) : GX_ERROR_ARGUMENT;
+                                enum gxip_measure measure, double *moments, double *work, gx_failure *failure) {
+    gx_result result = !moments ? gxip_fail(failure, GX_ERROR_ARGUMENT, "moments", SIZE_MAX)
+                     : !work    ? gxip_fail(failure, GX_ERROR_ARGUMENT, "work", SIZE_MAX)
+                                : gxip_check_surface(surface, origin, degree, failure);
     size_t count = gxi_monomial_count(degree), stride = measure == GXIP_FLUX ? 3 : 1, t, i, d;
     double p[3][3], n[3], factor;
     if (result != GX_OK) return result;
@@ -783,29 +810,30 @@ static gx_result gxip_integrate(const gxi_surface *surface, const double *origin
 }
 
 GXFEM_API gx_result gxi_polyhedron_monomials(const gxi_surface *surface, const double origin[3], unsigned degree,
-                                             double *moments, double *work) {
-    return gxip_integrate(surface, origin, degree, GXIP_VOLUME, moments, work);
+                                             double *moments, double *work, gx_failure *failure) {
+    return gxip_integrate(surface, origin, degree, GXIP_VOLUME, moments, work, failure);
 }
 
 GXFEM_API gx_result gxi_surface_monomials(const gxi_surface *surface, const double origin[3], unsigned degree,
-                                          double *moments, double *work) {
-    return gxip_integrate(surface, origin, degree, GXIP_AREA, moments, work);
+                                          double *moments, double *work, gx_failure *failure) {
+    return gxip_integrate(surface, origin, degree, GXIP_AREA, moments, work, failure);
 }
 
 GXFEM_API gx_result gxi_surface_flux_monomials(const gxi_surface *surface, const double origin[3], unsigned degree,
-                                               double *moments, double *work) {
-    return gxip_integrate(surface, origin, degree, GXIP_FLUX, moments, work);
+                                               double *moments, double *work, gx_failure *failure) {
+    return gxip_integrate(surface, origin, degree, GXIP_FLUX, moments, work, failure);
 }
 
 GXFEM_API gx_result gxi_polyhedron_monomial(const gxi_surface *surface, const double origin[3], unsigned i, unsigned j,
-                                            unsigned k, double *moment) {
+                                            unsigned k, double *moment, gx_failure *failure) {
     gx_result result;
     const double ones[3] = {1, 1, 1};
     double p[3][3], sum = 0, n = (double)i + (double)j + (double)k;
     size_t t;
-    if (!moment) return GX_ERROR_ARGUMENT;
-    if (i > GXI_DEGREE_MAX || j > GXI_DEGREE_MAX || k > GXI_DEGREE_MAX) return GX_ERROR_RANGE;
-    result = gxip_check_surface(surface, origin, i + j + k);
+    if (!moment) return gxip_fail(failure, GX_ERROR_ARGUMENT, "moment", SIZE_MAX);
+    if (i > GXI_DEGREE_MAX || j > GXI_DEGREE_MAX || k > GXI_DEGREE_MAX || i + j + k > GXI_DEGREE_MAX)
+        return gxip_fail(failure, GX_ERROR_RANGE, i >= j && i >= k ? "i" : j >= k ? "j" : "k", SIZE_MAX);
+    result = gxip_check_surface(surface, origin, i + j + k, failure);
     if (result != GX_OK) return result;
     for (t = 0; t < surface->triangle_count; t++) {
         gxip_corners(surface, origin, t, p);
@@ -832,13 +860,15 @@ static void gxip_translate_axis(double *moments, unsigned degree, int axis, doub
         }
 }
 
-GXFEM_API gx_result gxi_monomials_translate(unsigned degree, const double shift[3], double *moments) {
+GXFEM_API gx_result gxi_monomials_translate(unsigned degree, const double shift[3], double *moments,
+                                            gx_failure *failure) {
     int axis;
-    if (!shift || !moments) return GX_ERROR_ARGUMENT;
-    if (degree > GXI_DEGREE_MAX) return GX_ERROR_RANGE;
-    if (!gxip_all_finite(shift, 3)) return GX_ERROR_NOT_FINITE;
+    if (!shift) return gxip_fail(failure, GX_ERROR_ARGUMENT, "shift", SIZE_MAX);
+    if (!moments) return gxip_fail(failure, GX_ERROR_ARGUMENT, "moments", SIZE_MAX);
+    if (degree > GXI_DEGREE_MAX) return gxip_fail(failure, GX_ERROR_RANGE, "degree", SIZE_MAX);
+    if (!gxip_all_finite(shift, 3)) return gxip_fail(failure, GX_ERROR_NOT_FINITE, "shift", SIZE_MAX);
     for (axis = 0; axis < 3; axis++) gxip_translate_axis(moments, degree, axis, shift[axis]);
-    return GX_OK;
+    return gxip_fail(failure, GX_OK, NULL, SIZE_MAX);
 }
 
 GXFEM_API double gxi_tet_volume(const double positions[12]) {

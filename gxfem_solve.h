@@ -18,7 +18,7 @@
  *         gxs_model model = {4, NULL, &element, 1, &material, 1, NULL, 0, NULL, 0, 0};
  *         gxs_step_desc step = {0};
  *         gxs_solver *solver = NULL;
- *         gx_result result = gxs_solver_create(NULL, &solver);
+ *         gx_result result = gxs_solver_create(NULL, &solver, NULL);
  *         step.dt = 1.0 / 30;
  *         step.gravity[2] = -9.81;
  *         if (result == GX_OK)
@@ -148,29 +148,34 @@
 /* What a function that can fail returns. On anything but GX_OK its inputs are as they were. */
 typedef enum gx_result {
     GX_OK = 0,
-    GX_ERROR_ARGUMENT,     /* a required pointer is NULL, a required field is zero or senseless */
-    GX_ERROR_MEMORY,       /* the allocator returned NULL */
-    GX_ERROR_NOT_FINITE,   /* a coordinate or parameter is NaN or infinite */
-    GX_ERROR_RANGE,        /* a coordinate or a mass is too large or too small (see "limits") */
-    GX_ERROR_INDEX,        /* an index points outside its array */
-    GX_ERROR_EMPTY,        /* no elements, no nodes or no triangles */
-    GX_ERROR_INVERTED,     /* an element has negative volume */
-    GX_ERROR_FLAT,         /* an element has no volume */
-    GX_ERROR_OVERLAP,      /* an element face is shared by more than two elements, or by two on one side */
-    GX_ERROR_NOT_CLOSED,   /* a solid's surface has a boundary, or its triangles are not oriented alike */
-    GX_ERROR_LIMIT,        /* more objects than 32-bit indices can name, or a caller's limit is reached */
-    GX_ERROR_DIVERGED,     /* a time step found no finite state of lower energy */
-    GX_ERROR_FREE,         /* a static balance is asked of a piece that nothing holds */
-    GX_ERROR_FORMAT,       /* not a saved body, or one of another version or another kind of machine */
-    GX_ERROR_DAMAGED,      /* a saved body is cut short, or what it says cannot be */
-    GX_ERROR_STALE,        /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
-    GX_ERROR_CONFIGURATION /* arithmetic is not what exact predicates need: see >>numbers in gxfem_boolean.h */
+    GX_ERROR_ARGUMENT,   /* a required pointer is NULL, a required field is zero or senseless */
+    GX_ERROR_MEMORY,     /* the allocator returned NULL */
+    GX_ERROR_NOT_FINITE, /* a coordinate or parameter is NaN or infinite */
+    GX_ERROR_RANGE,      /* a coordinate or a mass is too large or too small (see "limits") */
+    GX_ERROR_INDEX,      /* an index points outside its array */
+    GX_ERROR_EMPTY,      /* no elements, no nodes or no triangles; a region that holds no copy */
+    GX_ERROR_INVERTED,   /* an element has negative volume */
+    GX_ERROR_FLAT,       /* an element has no volume */
+    GX_ERROR_OVERLAP,    /* an element face is shared by more than two elements, or by two on one side */
+    GX_ERROR_NOT_CLOSED, /* a solid's surface has a boundary, or its triangles are not oriented alike */
+    GX_ERROR_LIMIT,      /* more objects than 32-bit indices can name, or the caller's memory limit is reached */
+    GX_ERROR_DIVERGED,   /* a time step found no finite state of lower energy */
+    GX_ERROR_FREE,       /* a static balance is asked of a component, copies joined by elements, that nothing holds */
+    GX_ERROR_FORMAT,     /* not a saved body, or one of another version or another kind of machine */
+    GX_ERROR_DAMAGED,    /* a saved body is cut short, or what it says cannot be */
+    GX_ERROR_STALE,      /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
+    GX_ERROR_CONFIGURATION, /* arithmetic is not what exact predicates need: see >>numbers in gxfem_boolean.h */
+    GX_ERROR_SEQUENCE,      /* called too early, or too late: another call must come before */
+    GX_ERROR_CAPACITY       /* the caller's array or memory is too small */
 } gx_result;
 
-/* What went wrong, and where: index of the node, element, triangle or copy concerned. */
+/* What was refused, and where. A call that succeeds sets it too, to GX_OK. */
 typedef struct gx_failure {
     gx_result result;
-    size_t index;   /* SIZE_MAX: no single object is to blame */
+    /* The name of an argument, or of a member of the struct that an argument points to, with the members on the way:
+       "positions", "dt", "surfaces.vertices", "springs.point.copy". Static. NULL: nothing given is to blame */
+    const char *field;
+    size_t index;   /* of the node, element, triangle, copy ... concerned; SIZE_MAX: no single one is */
     size_t surface; /* of a cut: which of its surfaces; else SIZE_MAX */
 } gx_failure;
 
@@ -315,13 +320,20 @@ typedef enum gxs_integrator {
     GXS_STATIC
 } gxs_integrator;
 
+#define GXS_POINT_OWN  4  /* copies for which a point has room itself */
+#define GXS_POINT_MOST 32 /* copies of a point at most */
+
 /* A material point: a node, a point of an element, a vertex of a skin. Its displacement is the sum of weight x that of
- * copy. */
+ * copy, over a span of count copies. Up to GXS_POINT_OWN stand in the point, which may then be kept and copied. More
+ * stand in the caller's arrays, which last as long as the point is used. */
 typedef struct gxs_point {
-    uint32_t copy[4];   /* below copy_count, also where the weight is 0 */
-    double weight[4];   /* of the shape functions there, 1 in sum */
-    double position[3]; /* at rest, m */
-    uint64_t epoch;     /* names the numbering of copy: the model's, else GX_ERROR_STALE */
+    uint32_t count;               /* above 0 */
+    uint32_t copy[GXS_POINT_OWN]; /* count, if copies is NULL; below copy_count, also where the weight is 0 */
+    double weight[GXS_POINT_OWN]; /* of the shape functions there, 1 in sum */
+    const uint32_t *copies;       /* count; NULL: copy and weight */
+    const double *weights;        /* count; NULL with copies */
+    double position[3];           /* at rest, m */
+    uint64_t epoch;               /* names the numbering of copies: the model's, else GX_ERROR_STALE */
 } gxs_point;
 
 /* Pulls a point to a target: a hand, a haptic tool, an elastic tether. Energy stiffness/2 |x - target|^2 */
@@ -430,15 +442,15 @@ typedef struct gxs_solver gxs_solver;
 /* >>functions
  * Functions that return a gx_result check all that they read: GX_ERROR_ARGUMENT, _EMPTY, _LIMIT, _RANGE, _INDEX,
  * _NOT_FINITE (index: of the element, material, constraint, copy, spring, point or plane), _INVERTED (weight below 0;
- * index: element). Steps also GX_ERROR_STALE (copies of another epoch than the model's; index: spring or point,
- * SIZE_MAX: forces or targets). Outputs are written on GX_OK only. failure and report may be NULL. */
+ * index: element), _SEQUENCE. Steps also GX_ERROR_STALE (copies of another epoch than the model's; index: spring or
+ * point). Outputs are written on GX_OK only. failure and report may be NULL. */
 
 /* Advances displacement (m) and velocity (m/s), both copy_count x 3 of the model set last and not overlapping, by one
  * step. Held copies keep their displacement or go to their target. Copies that no element gives weight or mass stay
- * where they are. Both get the velocity of that motion. GX_ERROR_ARGUMENT: no model is set. GX_ERROR_DIVERGED and, with
+ * where they are. Both get the velocity of that motion. GX_ERROR_SEQUENCE: no model is set. GX_ERROR_DIVERGED and, with
  * GXS_STATIC, GX_ERROR_FREE leave displacement and velocity unchanged. A residual above newton_tolerance when the
  * iterations are used up is no error: see the report. Allocates (GX_ERROR_MEMORY) only if there are more springs and
- * contact points than ever before. */
+ * contact points, or copies of them, than ever before. */
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
                                     double *velocity, gxs_step_report *report, gx_failure *failure);
 /* Checks of a step's description what needs no solver: its numbers, and that it names copies by the numbering `epoch`.
@@ -451,11 +463,11 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
 
 /* Changes the model. The time is proportional to the size of the change, plus a little for each copy of the model.
  * Preconditioner and guesses are kept. Results are those of the whole model set anew, up to rounding and the tolerances
- * of steps. GX_ERROR_ARGUMENT: no model is set, groups or elements are not in order (index: of the group or element),
- * or a constraint is not allowed (its index). GX_ERROR_LIMIT: the change does not fit. Either the matrix is assembled,
- * mass is lumped, GXS_VOLUME_RATIO is used, empty lanes are a quarter of all, a copy is held that was not or the other
- * way round, no element is left, or an element that stays has lost a copy. After this and GX_ERROR_MEMORY no model is
- * set: set one. On other errors the old model stays. */
+ * of steps. GX_ERROR_SEQUENCE: no model is set. GX_ERROR_ARGUMENT: groups or elements are not in order (index: of the
+ * group or element), or a constraint is not allowed (its index). GX_ERROR_LIMIT: the change does not fit. Either the
+ * matrix is assembled, mass is lumped, GXS_VOLUME_RATIO is used, empty lanes are a quarter of all, a copy is held that
+ * was not or the other way round, no element is left, or an element that stays has lost a copy. After this and
+ * GX_ERROR_MEMORY no model is set: set one. On other errors the old model stays. */
 GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure);
 /* Sets the rest times of copies to 0 whose state has been written since the last step. Their components then wake even
  * if another model is set before the next step, or another solver takes it. Vectors use the present numbering; origins
@@ -478,7 +490,7 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene);
  * motion of an element's copies relative to its first one, and its forces are single precision; the differences are
  * taken in double precision, so that translations meet no stiffness at all. Sums over elements are single precision
  * within chunks, double between them. A direction times a power of two gives exactly its product times that power. The
- * operator lasts until the next step, update or model; without one, product is GX_ERROR_ARGUMENT. GX_ERROR_RANGE: the
+ * operator lasts until the next step, update or model; without one, product is GX_ERROR_SEQUENCE. GX_ERROR_RANGE: the
  * Hessian is beyond single precision. Neither function allocates or changes what steps do. product may not overlap
  * direction. */
 GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displacement, double rate, uint32_t exact,
@@ -486,7 +498,9 @@ GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displ
 GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *direction, double *product,
                                        gx_failure *failure);
 
-GXFEM_API gx_result gxs_solver_create(const gxs_solver_desc *desc /* or NULL */, gxs_solver **solver);
+/* Errors: ARGUMENT, MEMORY. */
+GXFEM_API gx_result gxs_solver_create(const gxs_solver_desc *desc /* or NULL */, gxs_solver **solver,
+                                      gx_failure *failure);
 GXFEM_API void gxs_solver_destroy(gxs_solver *solver); /* NULL is allowed */
 
 /* The material at one deformation gradient F (3x3 by rows; nothing is checked): energy density, J/m3, 0 at rest; first
@@ -769,8 +783,9 @@ static int gxsp_all_finite_single(const void *numbers, size_t bytes) {
     return 1;
 }
 
-static gx_result gxsp_fail(gx_failure *failure, gx_result result, size_t index) {
+static gx_result gxsp_fail(gx_failure *failure, gx_result result, const char *field, size_t index) {
     failure->result = result;
+    failure->field = field;
     failure->index = index;
     failure->surface = SIZE_MAX;
     return result;
@@ -1190,18 +1205,26 @@ typedef struct gxsp_light {
     uint16_t lane, corner;
 } gxsp_light;
 
+/* A copy's share in a point */
+typedef struct gxsp_share {
+    uint32_t copy;
+    float weight;
+} gxsp_share;
+
 /* Hessian of the springs and contact at one point, times scale */
 typedef struct gxsp_term {
-    uint32_t copy[4];
-    float weight[4], hessian[6];
+    size_t first; /* of gxsp_lasting.share */
+    uint32_t count;
     int assembled; /* the assembled matrix has it */
+    float hessian[6];
 } gxsp_term;
 
 /* What the solver keeps from model to model */
 typedef struct gxsp_lasting {
-    gxsp_pool pool;  /* of term */
-    gxsp_term *term; /* of the present linearisation */
-    size_t count, room;
+    gxsp_pool pool;    /* of term and share */
+    gxsp_term *term;   /* of the present linearisation */
+    gxsp_share *share; /* of all terms, one after the other */
+    size_t count, room, share_count, share_room;
     gxs_scene scene; /* of the step before */
 } gxsp_lasting;
 
@@ -5228,20 +5251,32 @@ static double gxsp_rows_product(const gxsp_system *system, gxsp_vector4 *x, gxsp
     return work;
 }
 
+/* y += sign H x of one point; *work += x . H x */
+static inline void gxsp_add_term(const gxsp_share *share, uint32_t count, const float *hessian, float sign,
+                                 gxsp_vector4 *x, gxsp_vector4 *y, double *work) {
+    float at[3] = {0, 0, 0}, force[3];
+    uint32_t k;
+    int c;
+    for (k = 0; k < count; k++)
+        for (c = 0; c < 3; c++) at[c] += share[k].weight * x[share[k].copy][c];
+    gxsp_apply_packed(hessian, at, force);
+    for (c = 0; c < 3; c++) *work += (double)at[c] * (double)force[c];
+    for (k = 0; k < count; k++)
+        for (c = 0; c < 3; c++) y[share[k].copy][c] += sign * share[k].weight * force[c];
+}
+
 /* y += sign H x of springs and contact. Returns x . H x. */
 static double gxsp_add_terms(const gxsp_lasting *lasting, float sign, gxsp_vector4 *x, gxsp_vector4 *y) {
     double work = 0;
     size_t t;
-    int k, c;
     for (t = 0; t < lasting->count; t++) {
         const gxsp_term *term = &lasting->term[t];
-        float u[3] = {0, 0, 0}, force[3];
-        for (k = 0; k < 4 && !term->assembled; k++)
-            for (c = 0; c < 3; c++) u[c] += term->weight[k] * x[term->copy[k]][c];
-        gxsp_apply_packed(term->hessian, u, force);
-        for (c = 0; c < 3; c++) work += (double)u[c] * (double)force[c];
-        for (k = 0; k < 4 && !term->assembled; k++)
-            for (c = 0; c < 3; c++) y[term->copy[k]][c] += sign * term->weight[k] * force[c];
+        const gxsp_share *share = lasting->share + term->first;
+        if (term->assembled) continue;
+        if (term->count == 4) /* as a constant it is unrolled */
+            gxsp_add_term(share, 4, term->hessian, sign, x, y, &work);
+        else
+            gxsp_add_term(share, term->count, term->hessian, sign, x, y, &work);
     }
     return work;
 }
@@ -5528,15 +5563,16 @@ static void gxsp_task_diagonal(void *context, size_t index) {
 static void gxsp_extra_diagonal(gxsp_system *system) {
     float *slots = (float *)(void *)system->vectors.slots;
     size_t t;
-    uint32_t i, s;
+    uint32_t i, s, n;
     int k, m;
     for (t = 0; t < system->lasting->count; t++)
-        for (k = 0; k < 4; k++) {
+        for (n = 0; n < system->lasting->term[t].count; n++) {
             const gxsp_term *term = &system->lasting->term[t];
-            const uint32_t copy = term->copy[k];
+            const gxsp_share *share = &system->lasting->share[term->first + n];
+            const uint32_t copy = share->copy;
             for (m = 0; m < 6 && system->mesh.copy_start[copy] < system->mesh.copy_start[copy + 1]; m++)
                 slots[6 * (size_t)system->mesh.copy_slot[system->mesh.copy_start[copy]] + (size_t)m] +=
-                    term->weight[k] * term->weight[k] * term->hessian[m];
+                    share->weight * share->weight * term->hessian[m];
         }
     for (i = 0; i < system->model.follower_count; i++)
         for (s = system->mesh.copy_start[system->model.followers[i].copy];
@@ -5819,11 +5855,13 @@ static void gxsp_coarse_lumped(gxsp_system *system, double rate) {
 static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
     static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
     const gxsp_level *fine = &system->multigrid.levels[0];
+    const gxsp_share *share = system->lasting->share + term->first;
     gxsp_level *next = &system->multigrid.levels[1];
-    int i, j, p, q, k;
-    for (i = 0; i < 16; i++)
-        for (j = 0; j < 16; j++) {
-            const uint32_t a = term->copy[i / 4], b = term->copy[j / 4], row = fine->parent[a][i % 4],
+    uint32_t i, j, p, q;
+    int k;
+    for (i = 0; i < 4 * term->count; i++)
+        for (j = 0; j < 4 * term->count; j++) {
+            const uint32_t a = share[i / 4].copy, b = share[j / 4].copy, row = fine->parent[a][i % 4],
                            column = fine->parent[b][j % 4];
             uint32_t entry;
             p = i % 4, q = j % 4;
@@ -5831,7 +5869,7 @@ static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
             entry = gxsp_find_entry(next, row, column);
             if (next->column[entry] != column) continue;
             for (k = 0; k < 9; k++)
-                next->block[9 * (size_t)entry + (size_t)k] += term->weight[i / 4] * term->weight[j / 4] *
+                next->block[9 * (size_t)entry + (size_t)k] += share[i / 4].weight * share[j / 4].weight *
                                                               fine->weight[a][p] * fine->weight[b][q] *
                                                               term->hessian[full[k]];
         }
@@ -6067,16 +6105,17 @@ static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, ui
  * it has. */
 static int gxsp_assemble_term(gxsp_system *system, const gxsp_term *term) {
     static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    const gxsp_share *share = system->lasting->share + term->first, *end = share + term->count;
     gxsp_level *fine = &system->multigrid.levels[0];
-    uint32_t a[16], i, j, count = 0, entry;
-    float w[16];
+    uint32_t a[4 * GXS_POINT_MOST], i, j, count = 0, entry;
+    float w[4 * GXS_POINT_MOST];
     int k, adds;
-    for (k = 0; k < 4; k++)
-        if (term->weight[k] * term->weight[k] > 0) {
+    for (; share < end; share++)
+        if (share->weight * share->weight > 0) {
             const uint32_t first = count;
-            for (count += (uint32_t)gxsp_corner_masters(system, term->copy[k], a + count, w + count), i = first;
+            for (count += (uint32_t)gxsp_corner_masters(system, share->copy, a + count, w + count), i = first;
                  i < count; i++)
-                w[i] *= term->weight[k];
+                w[i] *= share->weight;
         }
     for (adds = 0; adds < 2; adds++)
         for (i = 0; i < count; i++)
@@ -6125,11 +6164,11 @@ static int gxsp_invert_fine(gxsp_system *system) {
         for (m = 0; m < 6; m++)
             fine->inverse[6 * (size_t)i + (size_t)m] = fine->block[9 * (size_t)fine->start[i] + (size_t)packed[m]];
     for (t = 0; t < system->lasting->count; t++)
-        for (k = 0; k < 4 && !system->lasting->term[t].assembled; k++) {
+        for (k = 0; k < system->lasting->term[t].count && !system->lasting->term[t].assembled; k++) {
             const gxsp_term *term = &system->lasting->term[t];
+            const gxsp_share *share = &system->lasting->share[term->first + k];
             for (m = 0; m < 6; m++)
-                fine->inverse[6 * (size_t)term->copy[k] + (size_t)m] +=
-                    term->weight[k] * term->weight[k] * term->hessian[m];
+                fine->inverse[6 * (size_t)share->copy + (size_t)m] += share->weight * share->weight * term->hessian[m];
         }
     for (i = 0; i < fine->n; i++) {
         float *inverse = fine->inverse + 6 * (size_t)i, block[9];
@@ -7161,15 +7200,12 @@ static void gxsp_untouch_components(gxsp_system *system) {
 /* Components on which springs and contact act, by their terms, are not loose for the rest of this run of Newton's
  * method: their momentum is no longer that of the start. */
 static void gxsp_touch_components(gxsp_system *system) {
-    size_t t;
+    const gxsp_share *share = system->lasting->share, *end = share + system->lasting->share_count;
     uint32_t p;
-    int k;
     for (p = 0; p < system->model.component_count; p++) system->model.components[p].state &= ~GXSP_TOUCHES;
-    for (t = 0; t < system->lasting->count; t++)
-        for (k = 0; k < 4; k++)
-            if (system->lasting->term[t].weight[k] * system->lasting->term[t].weight[k] > 0)
-                system->model.components[system->model.component[system->lasting->term[t].copy[k]]].state |=
-                    GXSP_TOUCHED | GXSP_TOUCHES;
+    for (; share < end; share++)
+        if (share->weight * share->weight > 0)
+            system->model.components[system->model.component[share->copy]].state |= GXSP_TOUCHED | GXSP_TOUCHES;
     system->state.loose_count = system->state.free_count = 0;
     for (p = 0; p < system->model.component_count; p++) {
         system->state.loose_count += system->model.components[p].state == 0;
@@ -7190,25 +7226,49 @@ typedef struct gxsp_pull {
     double hessian[6];  /* of the energy, N/m, packed */
 } gxsp_pull;
 
-static void gxsp_point_position(const gxs_point *point, const double *displacement, double *x) {
-    int k, c;
-    memcpy(x, point->position, 3 * sizeof *x);
-    for (k = 0; k < 4; k++)
-        for (c = 0; c < 3; c++) x[c] += point->weight[k] * displacement[3 * (size_t)point->copy[k] + (size_t)c];
+/* The span of a point: its own arrays, or the caller's */
+static inline const uint32_t *gxsp_copies(const gxs_point *point) {
+    return point->copies ? point->copies : point->copy;
+}
+static inline const double *gxsp_weights(const gxs_point *point) {
+    return point->copies ? point->weights : point->weight;
+}
+
+/* A point of a step: springs' come first, then those of contact. */
+static inline const gxs_point *gxsp_point_of(const gxs_step_desc *step, size_t i) {
+    return i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
+}
+
+static void gxsp_point_position(const gxs_point *point, const double *displacement, double *position) {
+    const uint32_t *copies = gxsp_copies(point), *end = copies + point->count;
+    const double *weight = gxsp_weights(point);
+    double x = point->position[0], y = point->position[1], z = point->position[2];
+    for (; copies < end; copies++, weight++) {
+        const double *u = displacement + 3 * (size_t)*copies;
+        x += *weight * u[0];
+        y += *weight * u[1];
+        z += *weight * u[2];
+    }
+    position[0] = x;
+    position[1] = y;
+    position[2] = z;
 }
 
 /* A copy of the component that the point belongs to */
 static size_t gxsp_point_copy(const gxs_point *point) {
-    int k = 0;
-    while (k < 3 && !(fabs(point->weight[k]) > 0)) k++;
-    return point->copy[k];
+    const double *weights = gxsp_weights(point);
+    uint32_t k = 0;
+    while (k + 1 < point->count && !(fabs(weights[k]) > 0)) k++;
+    return gxsp_copies(point)[k];
 }
 
 /* Can the step move the point? */
 static int gxsp_point_moves(const gxsp_system *system, const gxs_point *point) {
-    int k;
-    for (k = 0; k < 4; k++)
-        if (fabs(point->weight[k]) > 0 && !system->state.still[point->copy[k]]) return 1;
+    const uint32_t *copies = gxsp_copies(point);
+    const double *weights = gxsp_weights(point);
+    uint32_t k;
+    for (k = 0; k < point->count; k++)
+        if (fabs(weights[k]) > 0 && !system->state.still[copies[k]]) return 1;
     return 0;
 }
 
@@ -7298,8 +7358,7 @@ static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *next
     const gxs_step_desc *step = problem->step;
     for (; *next < step->spring_count + step->point_count; (*next)++) {
         const size_t i = *next;
-        const gxs_point *point =
-            i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
+        const gxs_point *point = gxsp_point_of(step, i);
         if (!gxsp_point_moves(problem->system, point)) continue;
         if (i < step->spring_count)
             gxsp_spring_pull(&step->springs[i], displacement, pull);
@@ -7325,17 +7384,17 @@ static void gxsp_choose_leads(const gxsp_problem *problem) {
     const gxs_step_desc *step = problem->step;
     gxsp_component *components = problem->system->model.components;
     size_t i;
-    uint32_t p;
-    int k;
+    uint32_t p, k;
     for (p = 0; p < problem->system->model.component_count; p++) components[p].lead = p;
     for (i = 0; i < step->spring_count + step->point_count; i++) {
-        const gxs_point *point =
-            i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
+        const gxs_point *point = gxsp_point_of(step, i);
+        const uint32_t *copies = gxsp_copies(point);
+        const double *weights = gxsp_weights(point);
         uint32_t joined = GXSP_NONE;
-        for (k = 0; k < 4; k++) {
+        for (k = 0; k < point->count; k++) {
             uint32_t first;
-            if (!(fabs(point->weight[k]) > 0)) continue;
-            p = gxsp_lead_root(components, problem->system->model.component[point->copy[k]]);
+            if (!(fabs(weights[k]) > 0)) continue;
+            p = gxsp_lead_root(components, problem->system->model.component[copies[k]]);
             joined = joined == GXSP_NONE ? p : joined;
             first = p < joined ? p : joined;
             components[p].lead = components[joined].lead = first;
@@ -7360,17 +7419,20 @@ static void gxsp_evaluate(const gxsp_problem *problem, const double *from, int n
     const gxs_point *point;
     gxsp_pull pull;
     size_t next = 0;
-    int k, c;
+    uint32_t k;
+    int c;
     gxsp_evaluate_elements(problem->system, problem->rate, from, NULL, nudge, force);
     while ((point = gxsp_next_pull(problem, &next, from, &pull)) != NULL) {
+        const uint32_t *copies = gxsp_copies(point), count = point->count;
+        const double *weights = gxsp_weights(point);
         double *energies = gxsp_lead_of(problem->system, gxsp_point_copy(point))->energies;
         energies[0] += pull.energy;
         energies[2] += fabs(pull.energy);
         for (c = 0; c < 3; c++) /* the gap of a spring is a small difference of large positions */
             energies[2] += fabs(pull.force[c]) * (fabs(point->position[c]) + fabs(pull.position[c]));
-        for (k = 0; k < 4; k++)
-            for (c = 0; c < 3 && !problem->system->state.still[point->copy[k]]; c++)
-                force[3 * (size_t)point->copy[k] + (size_t)c] -= point->weight[k] * pull.force[c];
+        for (k = 0; k < count; k++)
+            for (c = 0; c < 3 && !problem->system->state.still[copies[k]]; c++)
+                force[3 * (size_t)copies[k] + (size_t)c] -= weights[k] * pull.force[c];
     }
 }
 
@@ -7393,16 +7455,22 @@ static void gxsp_terms_make(const gxsp_problem *problem, const double *displacem
     const gxs_point *point;
     gxsp_pull pull;
     size_t next = 0;
+    uint32_t n;
     int k;
-    lasting->count = 0;
+    lasting->count = lasting->share_count = 0;
     while ((point = gxsp_next_pull(problem, &next, displacement, &pull)) != NULL) {
         gxsp_term *term = &lasting->term[lasting->count];
         if (!(pull.hessian[0] + pull.hessian[3] + pull.hessian[5] > 0) && !(gxsp_dot(pull.force, pull.force, 1) > 0))
             continue;
         lasting->count++;
-        memcpy(term->copy, point->copy, sizeof term->copy);
+        term->first = lasting->share_count;
+        term->count = point->count;
         term->assembled = 0;
-        for (k = 0; k < 4; k++) term->weight[k] = (float)point->weight[k];
+        for (n = 0; n < point->count; n++) {
+            gxsp_share *share = &lasting->share[lasting->share_count++];
+            share->copy = gxsp_copies(point)[n];
+            share->weight = (float)gxsp_weights(point)[n];
+        }
         for (k = 0; k < 6; k++) term->hessian[k] = (float)(problem->system->model.scale * pull.hessian[k]);
     }
     gxsp_touch_components(problem->system);
@@ -7797,7 +7865,7 @@ static int gxsp_solve(gxsp_problem *problem) {
 static uint64_t gxsp_hash_forces(gxsp_system *system, const gxs_step_desc *step) {
     static const double zero[3] = {0, 0, 0};
     uint64_t all = 1;
-    uint32_t p;
+    uint32_t p, k;
     size_t i;
     for (p = 0; p < system->model.component_count; p++) system->model.components[p].forces[1] = 1;
     for (i = 0; step->forces && i < system->model.n; i++)
@@ -7807,11 +7875,13 @@ static uint64_t gxsp_hash_forces(gxsp_system *system, const gxs_step_desc *step)
             *hash = gxsp_hash(gxsp_hash(*hash, &index, 1), step->forces + 3 * i, 3);
             all = gxsp_hash(gxsp_hash(all, &index, 1), step->forces + 3 * i, 3);
         }
-    for (i = 0; i < 4 * step->point_count && step->sleep_speed > 0; i++) {
-        const gxs_point *point = &step->points[i / 4];
-        const double values[2] = {(double)point->copy[i % 4], point->weight[i % 4]};
-        uint64_t *hash = &system->model.components[system->model.component[point->copy[i % 4]]].forces[1];
-        if (fabs(values[1]) > 0) {
+    for (i = 0; i < step->point_count && step->sleep_speed > 0; i++) {
+        const gxs_point *point = &step->points[i];
+        for (k = 0; k < point->count; k++) {
+            const uint32_t copy = gxsp_copies(point)[k];
+            const double values[2] = {(double)copy, gxsp_weights(point)[k]};
+            uint64_t *hash = &system->model.components[system->model.component[copy]].forces[1];
+            if (!(fabs(values[1]) > 0)) continue;
             *hash = gxsp_hash(gxsp_hash(*hash, values, 2), point->position, 3);
             all = gxsp_hash(gxsp_hash(all, values, 2), point->position, 3);
         }
@@ -7822,6 +7892,7 @@ static uint64_t gxsp_hash_forces(gxsp_system *system, const gxs_step_desc *step)
 static gxs_scene gxsp_scene_make(gxsp_system *system, const gxs_step_desc *step) {
     gxs_scene scene;
     size_t i;
+    uint32_t k;
     memcpy(scene.gravity, step->gravity, sizeof scene.gravity);
     scene.planes = 1;
     for (i = 0; i < step->plane_count; i++) {
@@ -7832,13 +7903,15 @@ static gxs_scene gxsp_scene_make(gxsp_system *system, const gxs_step_desc *step)
     scene.forces = gxsp_hash_forces(system, step);
     scene.springs = 1;
     for (i = 0; i < system->model.component_count; i++) system->model.components[i].has_spring[1] = 0;
-    for (i = 0; i < 4 * step->spring_count; i++) {
-        const gxs_spring *spring = &step->springs[i / 4];
-        const double values[3] = {(double)spring->point.copy[i % 4], spring->point.weight[i % 4], spring->stiffness};
-        scene.springs =
-            gxsp_hash(gxsp_hash(gxsp_hash(scene.springs, spring->target, 3), spring->point.position, 3), values, 3);
-        if (fabs(spring->point.weight[i % 4]) > 0)
-            system->model.components[system->model.component[spring->point.copy[i % 4]]].has_spring[1] = 1;
+    for (i = 0; i < step->spring_count; i++) {
+        const gxs_spring *spring = &step->springs[i];
+        for (k = 0; k < spring->point.count; k++) {
+            const uint32_t copy = gxsp_copies(&spring->point)[k];
+            const double values[3] = {(double)copy, gxsp_weights(&spring->point)[k], spring->stiffness};
+            scene.springs =
+                gxsp_hash(gxsp_hash(gxsp_hash(scene.springs, spring->target, 3), spring->point.position, 3), values, 3);
+            if (fabs(values[1]) > 0) system->model.components[system->model.component[copy]].has_spring[1] = 1;
+        }
     }
     return scene;
 }
@@ -7886,19 +7959,21 @@ static int gxsp_too_fast(const gxs_step_desc *step, const double *velocity) {
 
 /* Wakes the components that springs and contact points join to awake ones. Returns whether there were any. */
 static int gxsp_wake_joined(gxsp_system *system, const gxs_step_desc *step) {
-    int any = 0, k;
+    int any = 0;
+    uint32_t k;
     size_t i;
     for (i = 0; i < step->spring_count + step->point_count; i++) {
-        const gxs_point *point =
-            i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
+        const gxs_point *point = gxsp_point_of(step, i);
+        const uint32_t *copies = gxsp_copies(point);
+        const double *weights = gxsp_weights(point);
         int awake = 0;
-        for (k = 0; k < 4; k++)
-            awake |= fabs(point->weight[k]) > 0 && !system->model.fixed[point->copy[k]] &&
-                     !system->model.components[system->model.component[point->copy[k]]].resting;
-        for (k = 0; k < 4 && awake; k++) {
-            gxsp_component *component = &system->model.components[system->model.component[point->copy[k]]];
-            any |= fabs(point->weight[k]) > 0 && component->resting;
-            component->resting &= !(fabs(point->weight[k]) > 0);
+        for (k = 0; k < point->count; k++)
+            awake |= fabs(weights[k]) > 0 && !system->model.fixed[copies[k]] &&
+                     !system->model.components[system->model.component[copies[k]]].resting;
+        for (k = 0; k < point->count && awake; k++) {
+            gxsp_component *component = &system->model.components[system->model.component[copies[k]]];
+            any |= fabs(weights[k]) > 0 && component->resting;
+            component->resting &= !(fabs(weights[k]) > 0);
         }
     }
     return any;
@@ -8551,11 +8626,11 @@ static void gxsp_touch_components_at(const gxsp_problem *problem, const double *
     const gxs_point *point;
     gxsp_pull pull;
     size_t next = 0;
-    int k;
+    uint32_t k;
     while ((point = gxsp_next_pull(problem, &next, displacement, &pull)) != NULL)
-        for (k = 0; k < 4 && (fabs(pull.energy) > 0 || gxsp_dot(pull.force, pull.force, 1) > 0); k++)
-            if (fabs(point->weight[k]) > 0)
-                system->model.components[system->model.component[point->copy[k]]].state |= GXSP_TOUCHED;
+        for (k = 0; k < point->count && (fabs(pull.energy) > 0 || gxsp_dot(pull.force, pull.force, 1) > 0); k++)
+            if (fabs(gxsp_weights(point)[k]) > 0)
+                system->model.components[system->model.component[gxsp_copies(point)[k]]].state |= GXSP_TOUCHED;
 }
 
 /* Is the second half short enough for the component? If not, it will try a shorter one, in the end none: E is about
@@ -8734,106 +8809,170 @@ static void gxsp_report_springs(const gxsp_problem *problem) {
 /* In: what the caller gives. Out: a result code, and the index of what is wrong. Nothing is written but the
  * failure and, by gxsp_check_free, marks of touched components. */
 
+/* A result that blames nothing that was given: success, or a lack of memory */
+static gx_result gxsp_end(gx_failure *failure, gx_result result) { return gxsp_fail(failure, result, NULL, SIZE_MAX); }
+
+static gx_result gxsp_refuse(gx_failure *failure, const char *field) {
+    return gxsp_fail(failure, GX_ERROR_ARGUMENT, field, SIZE_MAX);
+}
+
+/* A number that must be finite and 0 or more */
+static gx_result gxsp_check_size(double number, const char *field, size_t index, gx_failure *failure) {
+    if (!gxsp_finite(number)) return gxsp_fail(failure, GX_ERROR_NOT_FINITE, field, index);
+    return number < 0 ? gxsp_fail(failure, GX_ERROR_ARGUMENT, field, index) : GX_OK;
+}
+
+static gx_result gxsp_check_finite(const double *numbers, size_t count, const char *field, size_t index,
+                                   gx_failure *failure) {
+    return gxsp_first_not_finite(numbers, count) < count ? gxsp_fail(failure, GX_ERROR_NOT_FINITE, field, index)
+                                                         : GX_OK;
+}
+
 static gx_result gxsp_check_element(const gxs_element *element, const gxs_model *model, size_t index,
                                     gx_failure *failure) {
     int i;
     for (i = 0; i < 4; i++)
-        if (element->copy[i] >= model->copy_count) return gxsp_fail(failure, GX_ERROR_INDEX, index);
-    if (element->material >= model->material_count) return gxsp_fail(failure, GX_ERROR_INDEX, index);
-    if (gxsp_first_not_finite(&element->gradient[1][0], 9) < 9 || !gxsp_finite(element->weight) ||
-        gxsp_first_not_finite(element->mass, 10) < 10)
-        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, index);
-    if (element->weight < 0) return gxsp_fail(failure, GX_ERROR_INVERTED, index);
+        if (element->copy[i] >= model->copy_count) return gxsp_fail(failure, GX_ERROR_INDEX, "elements.copy", index);
+    if (element->material >= model->material_count)
+        return gxsp_fail(failure, GX_ERROR_INDEX, "elements.material", index);
+    if (gxsp_first_not_finite(&element->gradient[1][0], 9) < 9)
+        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, "elements.gradient", index);
+    if (!gxsp_finite(element->weight)) return gxsp_fail(failure, GX_ERROR_NOT_FINITE, "elements.weight", index);
+    if (gxsp_first_not_finite(element->mass, 10) < 10)
+        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, "elements.mass", index);
+    if (element->weight < 0) return gxsp_fail(failure, GX_ERROR_INVERTED, "elements.weight", index);
     if (element->mass[0] < 0 || element->mass[4] < 0 || element->mass[7] < 0 || element->mass[9] < 0)
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, index);
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, "elements.mass", index);
     return GX_OK;
 }
 
 static gx_result gxsp_check_material(const gxs_material *material, size_t index, gx_failure *failure) {
-    if (!gxsp_finite(material->young) || !gxsp_finite(material->poisson) || !gxsp_finite(material->damping))
-        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, index);
-    if (material->young <= 0 || material->poisson < 0 || material->poisson >= 0.5 || (int)material->kind < 0 ||
-        material->kind > GXS_CUSTOM || material->damping < 0 || (material->kind == GXS_CUSTOM && !material->energy))
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, index);
+    gx_result result;
+    if ((int)material->kind < 0 || material->kind > GXS_CUSTOM)
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, "materials.kind", index);
+    if ((result = gxsp_check_size(material->young, "materials.young", index, failure)) != GX_OK ||
+        (result = gxsp_check_size(material->poisson, "materials.poisson", index, failure)) != GX_OK ||
+        (result = gxsp_check_size(material->damping, "materials.damping", index, failure)) != GX_OK)
+        return result;
+    if (!(material->young > 0)) return gxsp_fail(failure, GX_ERROR_ARGUMENT, "materials.young", index);
+    if (material->poisson >= 0.5) return gxsp_fail(failure, GX_ERROR_ARGUMENT, "materials.poisson", index);
+    if (material->kind == GXS_CUSTOM && !material->energy)
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, "materials.energy", index);
     return GX_OK;
 }
 
-static gx_result gxsp_check_vector(const double *vector, size_t copy_count, gx_failure *failure) {
+static gx_result gxsp_check_vector(const double *vector, size_t copy_count, const char *field, gx_failure *failure) {
     size_t i;
-    if (!vector) return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    if (!vector) return gxsp_refuse(failure, field);
     i = gxsp_first_not_finite(vector, 3 * copy_count);
-    return i < 3 * copy_count ? gxsp_fail(failure, GX_ERROR_NOT_FINITE, i / 3) : GX_OK;
+    return i < 3 * copy_count ? gxsp_fail(failure, GX_ERROR_NOT_FINITE, field, i / 3) : GX_OK;
 }
 
 static gx_result gxsp_check_constraint(const gxs_constraint *constraint, size_t n, size_t index, gx_failure *failure) {
     int k;
-    if (constraint->copy >= n) return gxsp_fail(failure, GX_ERROR_INDEX, index);
+    if (constraint->copy >= n) return gxsp_fail(failure, GX_ERROR_INDEX, "constraints.copy", index);
     for (k = 0; k < 4; k++) {
-        if (constraint->master[k] >= n) return gxsp_fail(failure, GX_ERROR_INDEX, index);
-        if (!gxsp_finite(constraint->weight[k])) return gxsp_fail(failure, GX_ERROR_NOT_FINITE, index);
+        if (constraint->master[k] >= n) return gxsp_fail(failure, GX_ERROR_INDEX, "constraints.master", index);
+        if (!gxsp_finite(constraint->weight[k]))
+            return gxsp_fail(failure, GX_ERROR_NOT_FINITE, "constraints.weight", index);
     }
     return GX_OK;
 }
 
+/* An array that is there, unless it has no items */
+static gx_result gxsp_check_array(const void *array, size_t count, const char *field, gx_failure *failure) {
+    return array || count == 0 ? GX_OK : gxsp_refuse(failure, field);
+}
+
+/* The size of an array that may not be empty. No array takes more than 1024 bytes per object, so that sizes cannot
+ * overflow. */
+static gx_result gxsp_check_count(size_t count, size_t limit, const char *field, gx_failure *failure) {
+    if (count == 0) return gxsp_fail(failure, GX_ERROR_EMPTY, field, SIZE_MAX);
+    return count >= limit || count >= SIZE_MAX / 1024 ? gxsp_fail(failure, GX_ERROR_LIMIT, field, SIZE_MAX) : GX_OK;
+}
+
 static gx_result gxsp_check_model(const gxs_model *model, gx_failure *failure) {
     size_t e;
-    gx_result result = GX_OK;
-    if (!model || (!model->elements && model->element_count > 0) ||
-        (!model->constraints && model->constraint_count > 0) || (!model->materials && model->material_count > 0))
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    if (model->copy_count == 0 || model->element_count == 0 || model->material_count == 0)
-        return gxsp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
-    /* no array takes more than 1024 bytes per object, so that sizes cannot overflow; an element has at most four slots
-     */
-    if (model->copy_count >= UINT32_MAX / 4 || model->element_count >= UINT32_MAX / 4 ||
-        model->material_count >= UINT32_MAX || model->copy_count >= SIZE_MAX / 1024 ||
-        model->element_count >= SIZE_MAX / 1024 || model->material_count >= SIZE_MAX / 1024 ||
-        model->constraint_count > model->copy_count)
-        return gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
+    gx_result result;
+    if (!model) return gxsp_refuse(failure, "model");
+    /* an element has at most four slots */
+    if ((result = gxsp_check_array(model->elements, model->element_count, "elements", failure)) != GX_OK ||
+        (result = gxsp_check_array(model->constraints, model->constraint_count, "constraints", failure)) != GX_OK ||
+        (result = gxsp_check_array(model->materials, model->material_count, "materials", failure)) != GX_OK ||
+        (result = gxsp_check_count(model->copy_count, UINT32_MAX / 4, "copy_count", failure)) != GX_OK ||
+        (result = gxsp_check_count(model->element_count, UINT32_MAX / 4, "element_count", failure)) != GX_OK ||
+        (result = gxsp_check_count(model->material_count, UINT32_MAX, "material_count", failure)) != GX_OK)
+        return result;
+    if (model->constraint_count > model->copy_count)
+        return gxsp_fail(failure, GX_ERROR_LIMIT, "constraint_count", SIZE_MAX);
     for (e = 0; e < model->material_count && result == GX_OK; e++)
         result = gxsp_check_material(&model->materials[e], e, failure);
     for (e = 0; e < model->element_count && result == GX_OK; e++)
         result = gxsp_check_element(&model->elements[e], model, e, failure);
     for (e = 0; e < model->constraint_count && result == GX_OK; e++)
         result = gxsp_check_constraint(&model->constraints[e], model->copy_count, e, failure);
-    return result == GX_OK && model->positions ? gxsp_check_vector(model->positions, model->copy_count, failure)
-                                               : result;
+    return result == GX_OK && model->positions
+             ? gxsp_check_vector(model->positions, model->copy_count, "positions", failure)
+             : result;
 }
 
 /* dt within the range where its square and the inverse of that are finite */
 static int gxsp_dt_fits(double dt) { return dt >= 1e-100 && dt <= 1e100; }
 
+/* The time step, and with BDF2 the one before */
+static gx_result gxsp_check_times(const gxs_step_desc *step, gx_failure *failure) {
+    const int history = step->integrator == GXS_BDF2 && step->previous_displacement;
+    gx_result result;
+    if ((int)step->integrator < 0 || step->integrator > GXS_STATIC) return gxsp_refuse(failure, "integrator");
+    if ((result = gxsp_check_size(step->dt, "dt", SIZE_MAX, failure)) != GX_OK ||
+        (result = gxsp_check_finite(&step->previous_dt, 1, "previous_dt", SIZE_MAX, failure)) != GX_OK)
+        return result;
+    if (step->dt <= 0 && step->integrator != GXS_STATIC) return gxsp_refuse(failure, "dt");
+    if (history && !step->previous_velocity) return gxsp_refuse(failure, "previous_velocity");
+    if (history && step->previous_dt <= 0) return gxsp_refuse(failure, "previous_dt");
+    if (step->dt > 0 && !gxsp_dt_fits(step->dt)) return gxsp_fail(failure, GX_ERROR_RANGE, "dt", SIZE_MAX);
+    if (history && !gxsp_dt_fits(step->previous_dt)) return gxsp_fail(failure, GX_ERROR_RANGE, "previous_dt", SIZE_MAX);
+    return GX_OK;
+}
+
+/* The numbers of a step that are 0 or more */
+static gx_result gxsp_check_sizes(const gxs_step_desc *step, gx_failure *failure) {
+    gx_result result;
+    if ((result = gxsp_check_size(step->newton_tolerance, "newton_tolerance", SIZE_MAX, failure)) != GX_OK ||
+        (result = gxsp_check_size(step->cg_tolerance, "cg_tolerance", SIZE_MAX, failure)) != GX_OK ||
+        (result = gxsp_check_size(step->mass_damping, "mass_damping", SIZE_MAX, failure)) != GX_OK ||
+        (result = gxsp_check_size(step->sleep_speed, "sleep_speed", SIZE_MAX, failure)) != GX_OK ||
+        (result = gxsp_check_size(step->sleep_time, "sleep_time", SIZE_MAX, failure)) != GX_OK ||
+        (result = gxsp_check_size(step->budget_seconds, "budget_seconds", SIZE_MAX, failure)) != GX_OK)
+        return result;
+    return step->cg_tolerance >= 1 ? gxsp_refuse(failure, "cg_tolerance") : GX_OK;
+}
+
 static gx_result gxsp_check_step(const gxs_step_desc *step, gx_failure *failure) {
-    const int still = step && step->integrator == GXS_STATIC,
-              history = step && step->integrator == GXS_BDF2 && step->previous_displacement;
-    if (!step) return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    if (!gxsp_finite(step->dt) || gxsp_first_not_finite(step->gravity, 3) < 3 || !gxsp_finite(step->newton_tolerance) ||
-        !gxsp_finite(step->cg_tolerance) || !gxsp_finite(step->previous_dt) || !gxsp_finite(step->mass_damping) ||
-        !gxsp_finite(step->sleep_speed) || !gxsp_finite(step->sleep_time) || !gxsp_finite(step->budget_seconds))
-        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, SIZE_MAX);
-    if (step->dt < 0 || (step->dt <= 0 && !still) || step->newton_tolerance < 0 || step->cg_tolerance < 0 ||
-        step->cg_tolerance >= 1 || step->mass_damping < 0 || (int)step->integrator < 0 ||
-        step->integrator > GXS_STATIC || step->sleep_speed < 0 || step->sleep_time < 0 || step->budget_seconds < 0 ||
-        (history && (!step->previous_velocity || step->previous_dt <= 0)) ||
-        (step->budget_seconds > 0 && !step->clock) || (step->sleep_speed > 0 && !step->rest_times) ||
-        (step->spring_count > 0 && !step->springs) || (step->point_count > 0 && !step->points) ||
-        (step->plane_count > 0 && !step->planes))
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    if ((step->dt > 0 && !gxsp_dt_fits(step->dt)) || (history && !gxsp_dt_fits(step->previous_dt)))
-        return gxsp_fail(failure, GX_ERROR_RANGE, SIZE_MAX);
-    if (step->spring_count >= SIZE_MAX / 1024 || step->point_count >= SIZE_MAX / 1024)
-        return gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
+    gx_result result;
+    if (!step) return gxsp_refuse(failure, "step");
+    if ((result = gxsp_check_times(step, failure)) != GX_OK || (result = gxsp_check_sizes(step, failure)) != GX_OK ||
+        (result = gxsp_check_finite(step->gravity, 3, "gravity", SIZE_MAX, failure)) != GX_OK ||
+        (result = gxsp_check_array(step->springs, step->spring_count, "springs", failure)) != GX_OK ||
+        (result = gxsp_check_array(step->points, step->point_count, "points", failure)) != GX_OK ||
+        (result = gxsp_check_array(step->planes, step->plane_count, "planes", failure)) != GX_OK)
+        return result;
+    if (step->budget_seconds > 0 && !step->clock) return gxsp_refuse(failure, "clock");
+    if (step->sleep_speed > 0 && !step->rest_times) return gxsp_refuse(failure, "rest_times");
+    if (step->spring_count >= SIZE_MAX / 1024) return gxsp_fail(failure, GX_ERROR_LIMIT, "spring_count", SIZE_MAX);
+    if (step->point_count >= SIZE_MAX / 1024) return gxsp_fail(failure, GX_ERROR_LIMIT, "point_count", SIZE_MAX);
     return GX_OK;
 }
 
 /* Does everything that names copies use the model's numbering? */
 static gx_result gxsp_check_epochs(const gxs_step_desc *step, uint64_t epoch, gx_failure *failure) {
     size_t i;
-    if ((step->forces || step->targets) && step->epoch != epoch) return gxsp_fail(failure, GX_ERROR_STALE, SIZE_MAX);
+    if ((step->forces || step->targets) && step->epoch != epoch)
+        return gxsp_fail(failure, GX_ERROR_STALE, "epoch", SIZE_MAX);
     for (i = 0; i < step->spring_count; i++)
-        if (step->springs[i].point.epoch != epoch) return gxsp_fail(failure, GX_ERROR_STALE, i);
+        if (step->springs[i].point.epoch != epoch) return gxsp_fail(failure, GX_ERROR_STALE, "springs.point.epoch", i);
     for (i = 0; i < step->point_count; i++)
-        if (step->points[i].epoch != epoch) return gxsp_fail(failure, GX_ERROR_STALE, i);
+        if (step->points[i].epoch != epoch) return gxsp_fail(failure, GX_ERROR_STALE, "points.epoch", i);
     return GX_OK;
 }
 
@@ -8841,42 +8980,58 @@ GXFEM_API gx_result gxs_step_check(const gxs_step_desc *step, uint64_t epoch, gx
     gx_failure ignored;
     gx_result result;
     if (failure == NULL) failure = &ignored;
+    gxsp_end(failure, GX_OK);
     result = gxsp_check_step(step, failure);
     return result == GX_OK ? gxsp_check_epochs(step, epoch, failure) : result;
 }
 
-static gx_result gxsp_check_point(const gxs_point *point, size_t n, size_t index, gx_failure *failure) {
-    int k;
-    for (k = 0; k < 4; k++)
-        if (point->copy[k] >= n) return gxsp_fail(failure, GX_ERROR_INDEX, index);
-    if (gxsp_first_not_finite(point->weight, 4) < 4 || gxsp_first_not_finite(point->position, 3) < 3)
-        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, index);
-    return GX_OK;
+/* names: of the point's count, copy, weight, copies, weights, position */
+static gx_result gxsp_check_point(const gxs_point *point, size_t n, const char *const names[6], size_t index,
+                                  gx_failure *failure) {
+    const char *const *own = names + (point->copies ? 3 : 1);
+    uint32_t k;
+    if (point->count == 0) return gxsp_fail(failure, GX_ERROR_ARGUMENT, names[0], index);
+    if (point->count > GXS_POINT_MOST) return gxsp_fail(failure, GX_ERROR_LIMIT, names[0], index);
+    if (!point->copies && (point->count > GXS_POINT_OWN || point->weights))
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, names[3], index);
+    if (point->copies && !point->weights) return gxsp_fail(failure, GX_ERROR_ARGUMENT, names[4], index);
+    for (k = 0; k < point->count; k++)
+        if (gxsp_copies(point)[k] >= n) return gxsp_fail(failure, GX_ERROR_INDEX, own[0], index);
+    if (gxsp_first_not_finite(gxsp_weights(point), point->count) < point->count)
+        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, own[1], index);
+    return gxsp_check_finite(point->position, 3, names[5], index, failure);
 }
 
 static gx_result gxsp_check_plane(const gxs_plane *plane, size_t index, gx_failure *failure) {
-    if (gxsp_first_not_finite(plane->normal, 3) < 3 || !gxsp_finite(plane->offset) || !gxsp_finite(plane->stiffness) ||
-        !gxsp_finite(plane->friction) || !gxsp_finite(plane->sticking_speed))
-        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, index);
-    if (fabs(gxsp_dot(plane->normal, plane->normal, 1) - 1) > 1e-6 || plane->stiffness < 0 || plane->friction < 0 ||
-        plane->sticking_speed < 0)
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, index);
-    return GX_OK;
+    gx_result result;
+    if ((result = gxsp_check_finite(plane->normal, 3, "planes.normal", index, failure)) != GX_OK ||
+        (result = gxsp_check_finite(&plane->offset, 1, "planes.offset", index, failure)) != GX_OK ||
+        (result = gxsp_check_size(plane->stiffness, "planes.stiffness", index, failure)) != GX_OK ||
+        (result = gxsp_check_size(plane->friction, "planes.friction", index, failure)) != GX_OK ||
+        (result = gxsp_check_size(plane->sticking_speed, "planes.sticking_speed", index, failure)) != GX_OK)
+        return result;
+    return fabs(gxsp_dot(plane->normal, plane->normal, 1) - 1) > 1e-6
+             ? gxsp_fail(failure, GX_ERROR_ARGUMENT, "planes.normal", index)
+             : GX_OK;
 }
 
 /* Springs, contact points and planes of a step */
 static gx_result gxsp_check_points(const gxs_step_desc *step, size_t n, gx_failure *failure) {
+    static const char *const of_springs[6] = {"springs.point.count",   "springs.point.copy",
+                                              "springs.point.weight",  "springs.point.copies",
+                                              "springs.point.weights", "springs.point.position"};
+    static const char *const of_points[6] = {"points.count",  "points.copy",    "points.weight",
+                                             "points.copies", "points.weights", "points.position"};
     gx_result result = GX_OK;
     size_t i;
     for (i = 0; i < step->spring_count && result == GX_OK; i++) {
-        result = gxsp_check_point(&step->springs[i].point, n, i, failure);
-        if (result == GX_OK &&
-            (gxsp_first_not_finite(step->springs[i].target, 3) < 3 || !gxsp_finite(step->springs[i].stiffness)))
-            result = gxsp_fail(failure, GX_ERROR_NOT_FINITE, i);
-        if (result == GX_OK && step->springs[i].stiffness < 0) result = gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
+        const gxs_spring *spring = &step->springs[i];
+        if ((result = gxsp_check_point(&spring->point, n, of_springs, i, failure)) == GX_OK &&
+            (result = gxsp_check_finite(spring->target, 3, "springs.target", i, failure)) == GX_OK)
+            result = gxsp_check_size(spring->stiffness, "springs.stiffness", i, failure);
     }
     for (i = 0; i < step->point_count && result == GX_OK; i++)
-        result = gxsp_check_point(&step->points[i], n, i, failure);
+        result = gxsp_check_point(&step->points[i], n, of_points, i, failure);
     for (i = 0; i < step->plane_count && result == GX_OK; i++) result = gxsp_check_plane(&step->planes[i], i, failure);
     return result;
 }
@@ -8884,46 +9039,50 @@ static gx_result gxsp_check_points(const gxs_step_desc *step, size_t n, gx_failu
 /* Every array that a step reads */
 static gx_result gxsp_check_vectors(const gxs_step_desc *step, size_t n, const double *displacement,
                                     const double *velocity, const uint8_t *held, gx_failure *failure) {
-    gx_result result = gxsp_check_vector(displacement, n, failure);
+    gx_result result = gxsp_check_vector(displacement, n, "displacement", failure);
     size_t i;
-    if (result == GX_OK) result = gxsp_check_vector(velocity, n, failure);
-    if (result == GX_OK && step->forces) result = gxsp_check_vector(step->forces, n, failure);
+    if (result == GX_OK) result = gxsp_check_vector(velocity, n, "velocity", failure);
+    if (result == GX_OK && step->forces) result = gxsp_check_vector(step->forces, n, "forces", failure);
     if (result == GX_OK && step->integrator == GXS_BDF2 && step->previous_displacement) {
-        result = gxsp_check_vector(step->previous_displacement, n, failure);
-        if (result == GX_OK) result = gxsp_check_vector(step->previous_velocity, n, failure);
+        result = gxsp_check_vector(step->previous_displacement, n, "previous_displacement", failure);
+        if (result == GX_OK) result = gxsp_check_vector(step->previous_velocity, n, "previous_velocity", failure);
     }
     if (result == GX_OK && step->sleep_speed > 0 && (i = gxsp_first_not_finite(step->rest_times, n)) < n)
-        result = gxsp_fail(failure, GX_ERROR_NOT_FINITE, i);
+        result = gxsp_fail(failure, GX_ERROR_NOT_FINITE, "rest_times", i);
     for (i = 0; step->targets && result == GX_OK && i < n; i++)
-        if (held[i] && gxsp_first_not_finite(step->targets + 3 * i, 3) < 3)
-            result = gxsp_fail(failure, GX_ERROR_NOT_FINITE, i);
+        if (held[i]) result = gxsp_check_finite(step->targets + 3 * i, 3, "targets", i, failure);
     return result;
 }
 
 /* Is the change one of this model? */
 static gx_result gxsp_check_change(const gxsp_system *system, const gxs_change *change, gx_failure *failure) {
     gxs_model model;
-    gx_result result = GX_OK;
+    gx_result result;
     size_t i;
-    if (!change || !change->origins || (!change->groups && change->group_count > 0) ||
-        (!change->elements && change->element_count > 0) || (!change->constraints && change->constraint_count > 0))
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    if (change->copy_count == 0) return gxsp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
-    if (change->copy_count >= UINT32_MAX / 4 || change->element_count >= UINT32_MAX / 4 - system->model.element_count ||
-        change->constraint_count > change->copy_count)
-        return gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
+    if (!change) return gxsp_refuse(failure, "change");
+    if (!change->origins) return gxsp_refuse(failure, "origins");
+    if ((result = gxsp_check_array(change->groups, change->group_count, "groups", failure)) != GX_OK ||
+        (result = gxsp_check_array(change->elements, change->element_count, "elements", failure)) != GX_OK ||
+        (result = gxsp_check_array(change->constraints, change->constraint_count, "constraints", failure)) != GX_OK ||
+        (result = gxsp_check_count(change->copy_count, UINT32_MAX / 4, "copy_count", failure)) != GX_OK)
+        return result;
+    if (change->element_count >= UINT32_MAX / 4 - system->model.element_count)
+        return gxsp_fail(failure, GX_ERROR_LIMIT, "element_count", SIZE_MAX);
+    if (change->constraint_count > change->copy_count)
+        return gxsp_fail(failure, GX_ERROR_LIMIT, "constraint_count", SIZE_MAX);
     for (i = 0; i < change->copy_count; i++)
-        if (change->origins[i] >> 1 >= system->model.n) return gxsp_fail(failure, GX_ERROR_INDEX, i);
+        if (change->origins[i] >> 1 >= system->model.n) return gxsp_fail(failure, GX_ERROR_INDEX, "origins", i);
     for (i = 1; i < change->group_count; i++)
-        if (change->groups[i - 1] >= change->groups[i]) return gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
+        if (change->groups[i - 1] >= change->groups[i]) return gxsp_fail(failure, GX_ERROR_ARGUMENT, "groups", i);
     for (i = 1; i < change->element_count; i++)
-        if (change->elements[i - 1].group > change->elements[i].group) return gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
+        if (change->elements[i - 1].group > change->elements[i].group)
+            return gxsp_fail(failure, GX_ERROR_ARGUMENT, "elements.group", i);
     memset(&model, 0, sizeof model);
     model.copy_count = change->copy_count;
     model.material_count = system->model.material_count;
     for (i = 0; i < change->element_count && result == GX_OK; i++)
         result = change->elements[i].group < GXSP_GROUPS ? gxsp_check_element(&change->elements[i], &model, i, failure)
-                                                         : gxsp_fail(failure, GX_ERROR_LIMIT, i);
+                                                         : gxsp_fail(failure, GX_ERROR_LIMIT, "elements.group", i);
     for (i = 0; i < change->constraint_count && result == GX_OK; i++)
         result = gxsp_check_constraint(&change->constraints[i], change->copy_count, i, failure);
     return result;
@@ -8935,13 +9094,15 @@ static gx_result gxsp_check_free(const gxsp_problem *problem, gx_failure *failur
     const gxs_step_desc *step = problem->step;
     size_t i, k;
     gxsp_untouch_components(problem->system);
-    for (k = 0; k < step->spring_count; k++)
-        for (i = 0; i < 4 && step->springs[k].stiffness > 0; i++)
-            if (fabs(step->springs[k].point.weight[i]) > 0)
-                system->model.components[system->model.component[step->springs[k].point.copy[i]]].state |= GXSP_TOUCHED;
+    for (k = 0; k < step->spring_count; k++) {
+        const gxs_point *point = &step->springs[k].point;
+        for (i = 0; i < point->count && step->springs[k].stiffness > 0; i++)
+            if (fabs(gxsp_weights(point)[i]) > 0)
+                system->model.components[system->model.component[gxsp_copies(point)[i]]].state |= GXSP_TOUCHED;
+    }
     for (i = 0; i < system->model.n && !(problem->rate > 0); i++)
         if (!(system->model.components[system->model.component[i]].state & (GXSP_HELD | GXSP_TOUCHED | GXSP_ASLEEP)))
-            return gxsp_fail(failure, GX_ERROR_FREE, i);
+            return gxsp_fail(failure, GX_ERROR_FREE, NULL, i);
     return GX_OK;
 }
 
@@ -8957,14 +9118,14 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
     gxsp_system *system;
     size_t bad;
     failure = failure ? failure : &ignored;
-    gxsp_fail(failure, GX_OK, SIZE_MAX);
-    if (!solver) return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    gxsp_end(failure, GX_OK);
+    if (!solver) return gxsp_refuse(failure, "solver");
     result = gxsp_check_model(model, failure);
     if (result != GX_OK) return result;
     pool = gxsp_pool_make(&solver->allocator);
     scratch = gxsp_pool_make(&solver->allocator);
     system = (gxsp_system *)gxsp_take(&pool, 1, sizeof *system);
-    if (!system) return gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
+    if (!system) return gxsp_end(failure, GX_ERROR_MEMORY);
     system->pool = pool;
     system->multigrid.pool = gxsp_pool_make(&solver->allocator);
     system->jobs = &solver->jobs;
@@ -8974,9 +9135,9 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
     if (bad == SIZE_MAX && !scratch.failed && !system->pool.failed && !system->multigrid.pool.failed)
         gxsp_steps_make(system);
     if (bad != SIZE_MAX)
-        gxsp_fail(failure, GX_ERROR_ARGUMENT, bad);
+        gxsp_fail(failure, GX_ERROR_ARGUMENT, "constraints", bad);
     else if (scratch.failed || system->pool.failed || system->multigrid.pool.failed)
-        gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
+        gxsp_end(failure, GX_ERROR_MEMORY);
     if (failure->result != GX_OK) {
         gxsp_system_destroy(system);
         return failure->result;
@@ -8995,8 +9156,9 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
     size_t bad;
     int fits;
     failure = failure ? failure : &ignored;
-    gxsp_fail(failure, GX_OK, SIZE_MAX);
-    if (!solver || !solver->system) return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    gxsp_end(failure, GX_OK);
+    if (!solver) return gxsp_refuse(failure, "solver");
+    if (!solver->system) return gxsp_end(failure, GX_ERROR_SEQUENCE);
     system = solver->system;
     if (gxsp_check_change(system, change, failure) != GX_OK) {
         if (failure->result == GX_ERROR_LIMIT) gxsp_drop_system(solver);
@@ -9018,14 +9180,14 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
                          : gxsp_bad_constraint(change->constraints, change->constraint_count, change->held, follows);
     if (bad != SIZE_MAX) {
         gxsp_release_to(&scratch, NULL);
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, bad);
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, "constraints", bad);
     }
     fits = scratch.failed || (gxsp_is_flexible(system) && gxsp_find_successors(&update) && gxsp_update_system(&update));
     gxsp_release_to(&scratch, NULL);
     if (scratch.failed || system->pool.failed || system->multigrid.pool.failed)
-        gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
+        gxsp_end(failure, GX_ERROR_MEMORY);
     else if (!fits)
-        gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
+        gxsp_end(failure, GX_ERROR_LIMIT);
     if (failure->result != GX_OK) gxsp_drop_system(solver);
     return failure->result;
 }
@@ -9036,12 +9198,13 @@ GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displ
     gxsp_system *system;
     gxsp_pass pass;
     failure = failure ? failure : &ignored;
-    gxsp_fail(failure, GX_OK, SIZE_MAX);
-    if (!solver || !solver->system) return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    gxsp_end(failure, GX_OK);
+    if (!solver) return gxsp_refuse(failure, "solver");
+    if (!solver->system) return gxsp_end(failure, GX_ERROR_SEQUENCE);
     system = solver->system;
-    if (gxsp_check_vector(displacement, system->model.n, failure) != GX_OK) return failure->result;
-    if (!gxsp_finite(rate)) return gxsp_fail(failure, GX_ERROR_NOT_FINITE, SIZE_MAX);
-    if (rate < 0) return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    if (gxsp_check_vector(displacement, system->model.n, "displacement", failure) != GX_OK ||
+        gxsp_check_size(rate, "rate", SIZE_MAX, failure) != GX_OK)
+        return failure->result;
     memset(&pass, 0, sizeof pass);
     pass.system = system;
     pass.materials = system->model.materials;
@@ -9052,7 +9215,7 @@ GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displ
     gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_linearise, &pass);
     gxsp_mark_still(system);
     system->state.product_rate = gxsp_tangents_finite(system) ? rate : -1;
-    return system->state.product_rate < 0 ? gxsp_fail(failure, GX_ERROR_RANGE, SIZE_MAX) : GX_OK;
+    return system->state.product_rate < 0 ? gxsp_fail(failure, GX_ERROR_RANGE, "displacement", SIZE_MAX) : GX_OK;
 }
 
 GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *direction, double *product,
@@ -9061,9 +9224,11 @@ GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *directi
     gxsp_system *system;
     gxsp_pass pass;
     failure = failure ? failure : &ignored;
-    gxsp_fail(failure, GX_OK, SIZE_MAX);
-    if (!solver || !solver->system || solver->system->state.product_rate < 0 || !direction || !product)
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    gxsp_end(failure, GX_OK);
+    if (!solver) return gxsp_refuse(failure, "solver");
+    if (!direction) return gxsp_refuse(failure, "direction");
+    if (!product) return gxsp_refuse(failure, "product");
+    if (!solver->system || solver->system->state.product_rate < 0) return gxsp_end(failure, GX_ERROR_SEQUENCE);
     system = solver->system;
     memset(&pass, 0, sizeof pass);
     pass.system = system;
@@ -9071,7 +9236,7 @@ GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *directi
     pass.from = direction;
     pass.sum = product;
     pass.factor = gxsp_unit_factor(direction, 3 * system->model.n);
-    if (!(pass.factor > 0)) return gxsp_check_vector(direction, system->model.n, failure);
+    if (!(pass.factor > 0)) return gxsp_check_vector(direction, system->model.n, "direction", failure);
     gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_apply, &pass);
     gxsp_over_ranges(system, gxsp_task_apply_sum, &pass, NULL, 0);
     gxsp_reduce_residual(system, system->model.fixed, product);
@@ -9118,14 +9283,23 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene) {
 }
 
 /* Memory for the terms of a step */
-static int gxsp_reserve_terms(gxsp_lasting *lasting, size_t count) {
-    gxsp_term *larger;
-    if (count <= lasting->room) return 1;
+static int gxsp_reserve_terms(gxsp_lasting *lasting, const gxs_step_desc *step) {
+    const size_t count = step->spring_count + step->point_count;
+    size_t shares = 0, i;
+    for (i = 0; i < count; i++) shares += gxsp_point_of(step, i)->count;
     lasting->pool.failed = 0;
-    larger = (gxsp_term *)gxsp_grow(&lasting->pool, lasting->term, 0, count, sizeof *larger);
-    if (!larger) return 0;
-    lasting->term = larger;
-    lasting->room = count;
+    if (count > lasting->room) {
+        gxsp_term *larger = (gxsp_term *)gxsp_grow(&lasting->pool, lasting->term, 0, count, sizeof *larger);
+        if (!larger) return 0;
+        lasting->term = larger;
+        lasting->room = count;
+    }
+    if (shares > lasting->share_room) {
+        gxsp_share *larger = (gxsp_share *)gxsp_grow(&lasting->pool, lasting->share, 0, shares, sizeof *larger);
+        if (!larger) return 0;
+        lasting->share = larger;
+        lasting->share_room = shares;
+    }
     return 1;
 }
 
@@ -9136,16 +9310,16 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     gx_result result;
     size_t n;
     failure = failure ? failure : &ignored;
-    gxsp_fail(failure, GX_OK, SIZE_MAX);
-    if (!solver || !solver->system) return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    gxsp_end(failure, GX_OK);
+    if (!solver) return gxsp_refuse(failure, "solver");
+    if (!solver->system) return gxsp_end(failure, GX_ERROR_SEQUENCE);
     n = solver->system->model.n;
     if ((result = gxsp_check_step(step, failure)) != GX_OK ||
         (result = gxsp_check_epochs(step, solver->system->model.epoch, failure)) != GX_OK ||
         (result = gxsp_check_points(step, n, failure)) != GX_OK ||
         (result = gxsp_check_vectors(step, n, displacement, velocity, solver->system->model.held, failure)) != GX_OK)
         return result;
-    if (!gxsp_reserve_terms(&solver->lasting, step->spring_count + step->point_count))
-        return gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
+    if (!gxsp_reserve_terms(&solver->lasting, step)) return gxsp_end(failure, GX_ERROR_MEMORY);
     memset(&problem, 0, sizeof problem);
     problem.system = solver->system;
     problem.system->state.product_rate = -1;
@@ -9162,7 +9336,7 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     problem.report.active_unknowns = problem.system->state.active;
     result = gxsp_minimise(&problem);
     if (result == GX_OK) result = gxsp_finish(&problem, displacement, velocity);
-    if (result != GX_OK) return gxsp_fail(failure, result, SIZE_MAX);
+    if (result != GX_OK) return gxsp_end(failure, result);
     problem.system->state.failed = 0;
     gxsp_report_springs(&problem);
     problem.report.seconds = gxsp_now(&problem) - problem.start;
@@ -9170,22 +9344,33 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     return GX_OK;
 }
 
-GXFEM_API gx_result gxs_solver_create(const gxs_solver_desc *desc, gxs_solver **solver) {
+/* NULL: all zero, which is right */
+static gx_result gxsp_check_solver(const gxs_solver_desc *desc, gx_failure *failure) {
+    if (!desc) return GX_OK;
+    if (!desc->allocator.allocate != !desc->allocator.release ||
+        (desc->allocator.reallocate && !desc->allocator.allocate))
+        return gxsp_refuse(failure, "allocator");
+    if ((int)desc->preconditioner < 0 || desc->preconditioner > GXS_VOLUME_RATIO)
+        return gxsp_refuse(failure, "preconditioner");
+    if ((int)desc->matrix < 0 || desc->matrix > GXS_MATRIX_ASSEMBLED) return gxsp_refuse(failure, "matrix");
+    return GX_OK;
+}
+
+GXFEM_API gx_result gxs_solver_create(const gxs_solver_desc *desc, gxs_solver **solver, gx_failure *failure) {
     gx_allocator used = {NULL, NULL, NULL, NULL};
+    gx_failure ignored;
     gxs_solver *made;
-    if (!solver || (desc && (!desc->allocator.allocate != !desc->allocator.release ||
-                             (desc->allocator.reallocate && !desc->allocator.allocate))))
-        return GX_ERROR_ARGUMENT;
-    if (desc && ((int)desc->preconditioner < 0 || desc->preconditioner > GXS_VOLUME_RATIO || (int)desc->matrix < 0 ||
-                 desc->matrix > GXS_MATRIX_ASSEMBLED))
-        return GX_ERROR_ARGUMENT;
+    failure = failure ? failure : &ignored;
+    gxsp_end(failure, GX_OK);
+    if (!solver) return gxsp_refuse(failure, "solver");
+    if (gxsp_check_solver(desc, failure) != GX_OK) return failure->result;
     if (desc) used = desc->allocator;
     if (!used.allocate) {
         used.allocate = gxsp_malloc;
         used.release = gxsp_free;
     }
     made = (gxs_solver *)used.allocate(used.user, sizeof *made);
-    if (!made) return GX_ERROR_MEMORY;
+    if (!made) return gxsp_end(failure, GX_ERROR_MEMORY);
     memset(made, 0, sizeof *made);
     made->allocator = used;
     made->lasting.pool = gxsp_pool_make(&used);

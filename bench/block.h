@@ -193,7 +193,7 @@ static inline gx_result block_create(const block_desc *desc, gx_body **body) {
     gx_result result = block_make_mesh_and_body(desc, body);
     if (result != GX_OK) return result;
     result = block_cut(*body, desc);
-    if (result == GX_OK) result = gx_body_hold(*body, &top, 1);
+    if (result == GX_OK) result = gx_body_hold(*body, &top, 1, NULL);
     if (result == GX_OK) return GX_OK;
     gx_body_destroy(*body);
     *body = NULL;

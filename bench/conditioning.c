@@ -357,7 +357,7 @@ static gxs_solver *cube_solver(const cube *c) {
     desc.preconditioner = GXS_MULTIGRID;
     for (i = 0; i < 3 * c->model.copy_count; i++) v[i] = 1e-6 * c->model.positions[i];
     step.dt = dt;
-    expect(gxs_solver_create(&desc, &solver) == GX_OK && gxs_solver_set_model(solver, &c->model, NULL) == GX_OK,
+    expect(gxs_solver_create(&desc, &solver, NULL) == GX_OK && gxs_solver_set_model(solver, &c->model, NULL) == GX_OK,
            "no solver");
     expect(gxs_solver_step(solver, &step, u, v, NULL, NULL) == GX_OK, "no step");
     expect(solver->system->multigrid.level_count > 1, "the multigrid has no coarse level");
@@ -530,7 +530,7 @@ static void run(const char *name, double eps, const double *points, const double
     progress_draw("conditioning", runs++, RUNS, name);
     cube_create(&c, extended ? 0.5 : 1e-300);
     if (points) cube_cut(&c, points);
-    expect(gx_body_view(c.body, &view) == GX_OK && gx_body_model(c.body, &c.model) == GX_OK, "no model");
+    expect(gx_body_view(c.body, &view, NULL) == GX_OK && gx_body_model(c.body, &c.model, NULL) == GX_OK, "no model");
     expect(view.copy_count <= COPIES, "more copies than there is room for");
     cube_number(&c, &view);
     cube_enrich(&c, &view, points, plane);

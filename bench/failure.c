@@ -45,7 +45,7 @@ static void *deletion_create(const replay *scene) {
     d->uncut = (method_body *)method_body_create(scene);
     d->elements = (gxs_element *)method_memory(NULL, scene->element_count, sizeof *d->elements);
     d->changed = 1;
-    method_must(gxs_solver_create(NULL, &d->solver), "solver");
+    method_must(gxs_solver_create(NULL, &d->solver, NULL), "solver");
     return d;
 }
 
@@ -74,7 +74,7 @@ static const char *deletion_step(void *state, method_times *times) {
     gx_view view;
     deletion_look(d, &model, &displacement);
     if (model.element_count == 0) return NULL;
-    method_must(gx_body_view(d->uncut->body, &view), "view");
+    method_must(gx_body_view(d->uncut->body, &view, NULL), "view");
     if (d->changed) method_must(gxs_solver_set_model(d->solver, &model, NULL), "model");
     d->changed = 0;
     return method_solve(d->solver, d->uncut->scene, view.displacement, view.velocity, start, times);

@@ -87,7 +87,7 @@ static row run(uint32_t cells, double jitter) {
         cut_frame(body, t, i == 0 ? -0.1 : (i + 0.37) / cells, (i + 1 + 0.37) / cells);
         for (k = 1; k < FRAMES_BETWEEN; k++) plain_frame(body, t);
     }
-    check(gx_body_view(body, &view));
+    check(gx_body_view(body, &view, NULL));
     snprintf(r.block, sizeof r.block, "%s-%u", jitter > 0 ? "jittered" : "lattice", (unsigned)cells);
     r.elements = view.element_count;
     r.unknowns = 3 * view.copy_count;

@@ -56,13 +56,13 @@ static figures run(const char *name, const gxb_operand *operands, size_t count, 
     size_t i;
     memset(&r, 0, sizeof r);
     memset(&c, 0, sizeof c);
-    stop_at(name, gxb_boolean_create(NULL, &b));
+    stop_at(name, gxb_boolean_create(NULL, &b, NULL));
     for (i = 0; i < count; i++) {
         stop_at(name, gxb_boolean_add(b, &operands[i], NULL));
-        if (i + 1 == count || (each && i > 0)) stop_at(name, gxb_boolean_evaluate(b, &r));
+        if (i + 1 == count || (each && i > 0)) stop_at(name, gxb_boolean_evaluate(b, &r, NULL));
     }
-    if (ask) stop_at(name, gxb_boolean_components(b, &c));
-    stop_at(name, gxb_boolean_statistics(b, &s));
+    if (ask) stop_at(name, gxb_boolean_components(b, &c, NULL));
+    stop_at(name, gxb_boolean_statistics(b, &s, NULL));
     f.triangles = r.triangle_count;
     f.components = c.count;
     f.volume = c.total_volume;

@@ -479,10 +479,10 @@ static int literal_subtract(literal *l, const literal_domain *domain, const gx_s
                             gxb_boolean **boolean, gxb_boolean_result *result) {
     gx_result code;
     size_t i, near = 0;
-    code = gxb_boolean_create(NULL, boolean);
+    code = gxb_boolean_create(NULL, boolean, NULL);
     if (code == GX_OK && l->desc.mended) {
-        gxb_boolean_set_mend(*boolean, 1);
-        gxb_boolean_set_triangulation(*boolean, GXB_COARSE);
+        gxb_boolean_set_mend(*boolean, 1, NULL);
+        gxb_boolean_set_triangulation(*boolean, GXB_COARSE, NULL);
     }
     if (code == GX_OK)
         code = literal_add_operand(*boolean, domain->vertices, domain->vertex_count, domain->triangles,
@@ -496,7 +496,7 @@ static int literal_subtract(literal *l, const literal_domain *domain, const gx_s
     }
     if (code == GX_OK && near > 0) {
         l->report.booleans++;
-        code = gxb_boolean_evaluate(*boolean, result);
+        code = gxb_boolean_evaluate(*boolean, result, NULL);
     }
     l->report.failures += code != GX_OK;
     if (code == GX_OK && near > 0) return 1;
@@ -676,7 +676,7 @@ static void literal_part(const literal *l, uint32_t element, const literal_domai
         part->copy[n] = literal_copy_of(l, node, x);
     }
     if (gxi_tet_gradients(corners, gradients, &volume) != GX_OK ||
-        gxi_polyhedron_moments2(&surface, corners, &m) != GX_OK)
+        gxi_polyhedron_moments2(&surface, corners, &m, NULL) != GX_OK)
         return;
     memcpy(part->gradient, gradients, sizeof part->gradient);
     memcpy(matrix, gradients + 3, sizeof matrix);

@@ -168,7 +168,7 @@ static gxs_step_report scene_step(scene *s, const gxs_step_desc *step) {
     gxs_step_report report;
     gx_result result = GX_OK;
     if (!s->solver) {
-        result = gxs_solver_create(NULL, &s->solver);
+        result = gxs_solver_create(NULL, &s->solver, NULL);
         if (result == GX_OK) result = gxs_solver_set_model(s->solver, &s->model, NULL);
     }
     expect(result == GX_OK, "the model is refused");

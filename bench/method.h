@@ -59,10 +59,22 @@ static inline void method_take_report(const gx_step_report *report, method_times
     times->solve += report->seconds_prepare + report->seconds_solve;
 }
 
+/* The same for a solver without a body */
+static inline gxs_step_desc method_solver_desc(const replay *scene) {
+    const gx_step_desc like = method_step_desc(scene);
+    gxs_step_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.dt = like.dt;
+    memcpy(desc.gravity, like.gravity, sizeof desc.gravity);
+    desc.newton_iterations = like.newton_iterations;
+    desc.clock = like.clock;
+    return desc;
+}
+
 /* A solver's step of copies, begun at `start` */
 static inline const char *method_solve(gxs_solver *solver, const replay *scene, double *displacement, double *velocity,
                                        double start, method_times *times) {
-    const gx_step_desc desc = method_step_desc(scene);
+    const gxs_step_desc desc = method_solver_desc(scene);
     gx_step_report report;
     const gx_result result = gxs_solver_step(solver, &desc, displacement, velocity, &report, NULL);
     if (result != GX_OK) return gx_result_text(result);
@@ -98,8 +110,8 @@ static inline void *method_body_create(const replay *scene) {
     desc.density = scene->density;
     desc.clock = seconds;
     method_must(gx_body_create(&desc, &m->body, NULL), "body");
-    method_must(gx_body_hold(m->body, scene->regions, scene->region_count), "hold");
-    method_must(gx_body_view(m->body, &view), "view");
+    method_must(gx_body_hold(m->body, scene->regions, scene->region_count, NULL), "hold");
+    method_must(gx_body_view(m->body, &view, NULL), "view");
     memcpy(view.displacement, scene->displacement, 3 * scene->node_count * sizeof(double));
     memcpy(view.velocity, scene->velocity, 3 * scene->node_count * sizeof(double));
     return m;
@@ -140,14 +152,14 @@ static inline const char *method_library_step(void *state, method_times *times) 
 
 static inline size_t method_body_unknowns(void *state) {
     gx_view view;
-    method_must(gx_body_view(((method_body *)state)->body, &view), "view");
+    method_must(gx_body_view(((method_body *)state)->body, &view, NULL), "view");
     return 3 * view.copy_count;
 }
 
 static inline void method_library_look(void *state, gxs_model *model, const double **displacement) {
     gx_view view;
-    method_must(gx_body_view(((method_body *)state)->body, &view), "view");
-    method_must(gx_body_model(((method_body *)state)->body, model), "model");
+    method_must(gx_body_view(((method_body *)state)->body, &view, NULL), "view");
+    method_must(gx_body_model(((method_body *)state)->body, model, NULL), "model");
     *displacement = view.displacement;
 }
 
@@ -163,11 +175,11 @@ static inline void method_body_destroy(void *state) {
 
 static inline void method_vna_renew(method_body *m) {
     gxs_model model;
-    method_must(gx_body_model(m->body, &model), "model");
+    method_must(gx_body_model(m->body, &model, NULL), "model");
     m->replicas = (gxs_element *)method_memory(m->replicas, model.element_count, sizeof *m->replicas);
     vna_replicate(model.elements, model.element_count, &m->scene->density, m->replicas);
     model.elements = m->replicas;
-    if (!m->solver) method_must(gxs_solver_create(NULL, &m->solver), "solver");
+    if (!m->solver) method_must(gxs_solver_create(NULL, &m->solver, NULL), "solver");
     method_must(gxs_solver_set_model(m->solver, &model, NULL), "model");
     m->changed = 0;
 }
@@ -176,7 +188,7 @@ static inline const char *method_vna_step(void *state, method_times *times) {
     method_body *m = (method_body *)state;
     const double start = seconds(NULL);
     gx_view view;
-    method_must(gx_body_view(m->body, &view), "view");
+    method_must(gx_body_view(m->body, &view, NULL), "view");
     if (m->changed) method_vna_renew(m);
     return method_solve(m->solver, m->scene, view.displacement, view.velocity, start, times);
 }
@@ -218,7 +230,7 @@ static inline void *method_literal_create(const replay *scene) {
     m->cutter = literal_create(&desc);
     memcpy(m->cutter->displacement, scene->displacement, 3 * scene->node_count * sizeof(double));
     memcpy(m->cutter->velocity, scene->velocity, 3 * scene->node_count * sizeof(double));
-    method_must(gxs_solver_create(NULL, &m->solver), "solver");
+    method_must(gxs_solver_create(NULL, &m->solver, NULL), "solver");
     return m;
 }
 
@@ -235,9 +247,9 @@ static inline gx_surface method_solidify(const gx_surface *sheet, double thickne
     uint32_t *triangles = (uint32_t *)method_memory(NULL, 24 * sheet->triangle_count, sizeof(uint32_t));
     gx_surface solid;
     memset(&solid, 0, sizeof solid);
-    method_must(
-        gx_surface_solidify(sheet, thickness, vertices, &solid.vertex_count, triangles, &solid.triangle_count, NULL),
-        "solid");
+    method_must(gx_surface_solidify(sheet, thickness, vertices, &solid.vertex_count, triangles, &solid.triangle_count,
+                                    NULL, NULL),
+                "solid");
     solid.vertices = vertices;
     solid.triangles = triangles;
     solid.kind = GX_SURFACE_SOLID;
@@ -349,7 +361,7 @@ static inline void *method_rxfem_create(const replay *scene) {
         memcpy(m->displacement + 3 * i, scene->displacement + 3 * (size_t)m->model->values[i].node, 3 * sizeof(double));
         memcpy(m->velocity + 3 * i, scene->velocity + 3 * (size_t)m->model->values[i].node, 3 * sizeof(double));
     }
-    method_must(gxs_solver_create(NULL, &m->solver), "solver");
+    method_must(gxs_solver_create(NULL, &m->solver, NULL), "solver");
     return m;
 }
 

@@ -51,7 +51,7 @@ static inline parts_body parts_create(gx_body *body) {
     size_t i;
     memset(&p, 0, sizeof p);
     p.body = body;
-    part_expect(gx_body_model(body, &p.model));
+    part_expect(gx_body_model(body, &p.model, NULL));
     p.first = (uint32_t *)dense_memory(NULL, (size_t)body->mesh.element_count + 1, sizeof *p.first);
     p.leaf_part = (uint32_t *)dense_memory(NULL, body->leaves.count, sizeof *p.leaf_part);
     p.leaves = (uint32_t *)dense_memory(NULL, body->leaves.count, sizeof *p.leaves);

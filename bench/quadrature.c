@@ -249,8 +249,8 @@ static void read_part(gx_body *body, double value[INTEGRANDS]) {
     static const gx_region beside = {0, -1, 1e-300};
     gxs_model model;
     size_t i, at = 2;
-    expect(gx_body_hold(body, &beside, 1) == GX_OK, "node 0 cannot be held");
-    expect(gx_body_model(body, &model) == GX_OK && model.element_count == 2, "the cut does not make two parts");
+    expect(gx_body_hold(body, &beside, 1, NULL) == GX_OK, "node 0 cannot be held");
+    expect(gx_body_model(body, &model, NULL) == GX_OK && model.element_count == 2, "the cut does not make two parts");
     for (i = 0; i < 2; i++)
         if (model.held[model.elements[i].copy[0]]) at = i;
     expect(at < 2, "no part is at node 0");
@@ -304,7 +304,7 @@ static void positive_rule(part *p, unsigned degree, sampling_rule *rule) {
     surface.position_count = 3 * boundary.count;
     surface.triangles = index;
     surface.triangle_count = boundary.count;
-    expect(gxi_polyhedron_monomials(&surface, NULL, degree, moments, work) == GX_OK, "no moments");
+    expect(gxi_polyhedron_monomials(&surface, NULL, degree, moments, work, NULL) == GX_OK, "no moments");
     sampling_positive(inside.corners, inside.count, degree, moments, rule);
     free(index);
     free(inside.corners);

@@ -254,8 +254,8 @@ static void scene_make(scene *s, const least_mesh *mesh, double top, double held
     desc.allocator.user = &s->memory;
     desc.clock = seconds;
     check(gx_body_create(&desc, &s->body, NULL));
-    check(gx_body_hold(s->body, &region, 1));
-    check(gx_body_view(s->body, &view));
+    check(gx_body_hold(s->body, &region, 1, NULL));
+    check(gx_body_view(s->body, &view, NULL));
     s->unknowns = 3 * view.copy_count;
 }
 
@@ -356,8 +356,8 @@ static void count_unknowns(scene *s, const sheet *by, line *l) {
     least_result counted;
     gx_view view;
     gx_skin skin;
-    check(gx_body_view(s->body, &view));
-    check(gx_body_skin(s->body, NULL, &skin));
+    check(gx_body_view(s->body, &view, NULL));
+    check(gx_body_skin(s->body, NULL, &skin, NULL));
     sheets.x = by->x;
     sheets.y = by->y;
     sheets.z = s->heights;

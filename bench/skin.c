@@ -54,17 +54,17 @@ static row measure_frames(uint32_t cells) {
     row r;
     int i;
     memset(&r, 0, sizeof r);
-    check(gx_body_skin(body, &desc, &skin));
+    check(gx_body_skin(body, &desc, &skin, NULL));
     positions = (float *)malloc(3 * skin.vertex_count * sizeof *positions);
     normals = (float *)malloc(3 * skin.vertex_count * sizeof *normals);
     check(positions && normals ? GX_OK : GX_ERROR_MEMORY);
     for (i = 0; i < CALLS; i++) {
         const double start = 1e3 * seconds(NULL);
-        check(gx_body_skin_vertices(body, NULL, positions, NULL));
+        check(gx_body_skin_vertices(body, NULL, positions, NULL, NULL));
         times[0][i] = 1e3 * seconds(NULL) - start;
-        check(gx_body_skin_vertices(body, NULL, positions, normals));
+        check(gx_body_skin_vertices(body, NULL, positions, normals, NULL));
         times[1][i] = 1e3 * seconds(NULL) - start - times[0][i];
-        check(gx_body_pick(body, from, along, &hit));
+        check(gx_body_pick(body, from, along, &hit, NULL));
         times[2][i] = 1e3 * seconds(NULL) - start - times[0][i] - times[1][i];
     }
     r.cells = cells;
@@ -92,22 +92,22 @@ static row measure_cuts(uint32_t cells) {
     uint32_t i;
     size_t k;
     memset(&r, 0, sizeof r);
-    check(gx_body_skin(body, &desc, &skin));
+    check(gx_body_skin(body, &desc, &skin, NULL));
     for (i = 0; i < strips; i++) {
         start = 1e3 * seconds(NULL);
         check(block_cut_rectangle(body, 2, 0.4711, i == 0 ? -0.1 : (i + 0.37) / cells, (i + 1 + 0.37) / cells));
         cut[i] = 1e3 * seconds(NULL) - start;
         start = 1e3 * seconds(NULL);
-        check(gx_body_skin(body, &desc, &skin));
+        check(gx_body_skin(body, &desc, &skin, NULL));
         rebuild[i] = 1e3 * seconds(NULL) - start;
         start = 1e3 * seconds(NULL);
-        check(gx_body_view(body, &seen));
+        check(gx_body_view(body, &seen, NULL));
         view[i] = 1e3 * seconds(NULL) - start;
         for (k = 0, share[i] = 0; k < skin.triangle_range_count; k++)
             share[i] += skin.triangle_ranges[k].count / (double)skin.triangle_count;
     }
     start = 1e3 * seconds(NULL);
-    check(gx_body_skin(body, &other, &skin));
+    check(gx_body_skin(body, &other, &skin, NULL));
     start = 1e3 * seconds(NULL) - start;
     r.cells = cells;
     r.vertices = skin.vertex_count;

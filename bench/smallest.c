@@ -12,9 +12,9 @@ int main(void) {
                                      {b, 4, triangles, 4, GXB_DIFFERENCE, GXB_NONZERO, 0}};
     gxb_boolean *boolean = NULL;
     gxb_boolean_result r = {0};
-    gx_result result = gxb_boolean_create(NULL, &boolean);
+    gx_result result = gxb_boolean_create(NULL, &boolean, NULL);
     for (int i = 0; i < 2 && result == GX_OK; i++) result = gxb_boolean_add(boolean, &operands[i], NULL);
-    if (result == GX_OK) result = gxb_boolean_evaluate(boolean, &r);
+    if (result == GX_OK) result = gxb_boolean_evaluate(boolean, &r, NULL);
     printf("%lu triangles\n", (unsigned long)r.triangle_count);
     gxb_boolean_destroy(boolean);
     return result != GX_OK;

@@ -124,7 +124,7 @@ static gx_result begin_life(life *l, int integrator, uint64_t seed) {
     memset(l, 0, sizeof *l);
     l->floor = floor;
     result = make_body(l);
-    if (result == GX_OK && below(2)) result = gx_body_hold(l->body, &top, 1);
+    if (result == GX_OK && below(2)) result = gx_body_hold(l->body, &top, 1, NULL);
     l->kicks = below(3) == 0;
     l->step.integrator = (gxs_integrator)integrator;
     l->step.dt = pow(10, -3 + 1.5 * uniform());
@@ -204,7 +204,7 @@ static gx_result cut(life *l, gx_cut_report *report) {
 /* Every third vertex of the skin is a point of contact. */
 static gx_result find_points(life *l) {
     gx_skin skin;
-    gx_result result = gx_body_skin(l->body, NULL, &skin);
+    gx_result result = gx_body_skin(l->body, NULL, &skin, NULL);
     size_t i;
     l->point_count = 0;
     if (result != GX_OK) return result;
@@ -213,13 +213,7 @@ static gx_result find_points(life *l) {
         l->point_room = 2 * skin.vertex_count;
         l->points = (gxs_point *)room(l->point_room, sizeof *l->points);
     }
-    for (i = 0; i < skin.vertex_count; i += 3) {
-        gxs_point *point = &l->points[l->point_count++];
-        memcpy(point->copy, skin.vertex_copies + 4 * i, sizeof point->copy);
-        memcpy(point->weight, skin.vertex_weights + 4 * i, sizeof point->weight);
-        memcpy(point->position, skin.vertex_rest + 3 * i, sizeof point->position);
-        point->epoch = skin.epoch;
-    }
+    for (i = 0; i < skin.vertex_count; i += 3) l->points[l->point_count++] = gx_skin_point(&skin, (uint32_t)i);
     return GX_OK;
 }
 
@@ -261,7 +255,7 @@ static double gain_of(const life *l, double previous_dt, double *const before[2]
     double *work, *at, r, first, rate, start, end, kinetic_start, kinetic_end;
     gxs_model model;
     size_t i, n;
-    if (gx_body_model(l->body, &model) != GX_OK) return 1;
+    if (gx_body_model(l->body, &model, NULL) != GX_OK) return 1;
     n = 3 * model.copy_count;
     work = (double *)room(2 * n, sizeof *work);
     at = (double *)room(2 * n, sizeof *at);
@@ -324,7 +318,7 @@ static void measure_copies(life *l, const gx_view *view, row *r) {
     gx_motion *motion = (gx_motion *)room(view->fragment_count, sizeof *motion);
     size_t i, worst[2] = {0, 0};
     int k;
-    (void)gx_body_motion(l->body, motion, view->fragment_count);
+    (void)gx_body_motion(l->body, motion, view->fragment_count, NULL);
     for (i = 0; i < view->cell_count; i++)
         for (k = 0; k < 4; k++) {
             const size_t copy = view->cell_copies[4 * i + (size_t)k];
@@ -357,10 +351,10 @@ static void cut_now(life *l, row *r) {
     gx_view view;
     double volume;
     memset(&view, 0, sizeof view);
-    r->errors += gx_body_view(l->body, &view) != GX_OK;
+    r->errors += gx_body_view(l->body, &view, NULL) != GX_OK;
     volume = view.volume;
     r->cuts++;
-    r->errors += cut(l, &report) != GX_OK || find_points(l) != GX_OK || gx_body_view(l->body, &view) != GX_OK ||
+    r->errors += cut(l, &report) != GX_OK || find_points(l) != GX_OK || gx_body_view(l->body, &view, NULL) != GX_OK ||
                  fabs(view.volume + report.removed_volume - volume) > 1e-11;
 }
 
@@ -376,7 +370,7 @@ static int live_a_step(life *l, row *r) {
     size_t i, n;
     int k;
     if (l->done % 3 == 1) cut_now(l, r);
-    if (gx_body_view(l->body, &view) != GX_OK || view.cell_count == 0 || view.cell_count > MOST_CELLS) return 0;
+    if (gx_body_view(l->body, &view, NULL) != GX_OK || view.cell_count == 0 || view.cell_count > MOST_CELLS) return 0;
     n = 3 * view.copy_count;
     for (i = 0; l->kicks && l->done % 20 == 7 && i < n; i++)
         if (!view.copy_held[i / 3]) view.velocity[i] += 10 * bell();
@@ -387,7 +381,7 @@ static int live_a_step(life *l, row *r) {
     before[0] = copied(view.displacement, n);
     before[1] = copied(view.velocity, n);
     for (k = 0; k < 2 && previous_dt > 0; k++) past[k] = copied(l->body->copies.history[k], n);
-    if (gx_body_step(l->body, &l->step, &report, NULL) != GX_OK || gx_body_view(l->body, &view) != GX_OK) {
+    if (gx_body_step(l->body, &l->step, &report, NULL) != GX_OK || gx_body_view(l->body, &view, NULL) != GX_OK) {
         r->errors++;
         l->done = LIFE_STEPS;
     } else {

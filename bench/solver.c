@@ -272,7 +272,7 @@ static gx_result swing(gxs_solver *solver, int steps, state *s, outcome *o) {
 
 static gx_result set_and_swing(const gxs_solver_desc *desc, const gxs_model *model, int steps, state *s, outcome *o) {
     gxs_solver *solver = NULL;
-    gx_result result = gxs_solver_create(desc, &solver);
+    gx_result result = gxs_solver_create(desc, &solver, NULL);
     const double start = seconds(NULL);
     if (result == GX_OK) result = gxs_solver_set_model(solver, model, NULL);
     o->setup = seconds(NULL) - start;
@@ -388,7 +388,7 @@ static int run_products(const gxs_model *model, const state *s, double rate, pro
     operands o;
     gx_result result;
     memset(&o, 0, sizeof o);
-    result = operands_begin(&o, model->copy_count, rate) ? gxs_solver_create(NULL, &o.solver) : GX_ERROR_MEMORY;
+    result = operands_begin(&o, model->copy_count, rate) ? gxs_solver_create(NULL, &o.solver, NULL) : GX_ERROR_MEMORY;
     if (result == GX_OK) result = gxs_solver_set_model(o.solver, model, NULL);
     if (result == GX_OK) result = gxs_solver_linearise(o.solver, s->displacement, rate, 0, NULL);
     if (result == GX_OK) result = time_products(&o, p);
@@ -766,7 +766,7 @@ static gx_result step_tightly(const gxs_model *model, const gxs_step_desc *loose
     desc.preconditioner = GXS_MULTIGRID;
     desc.matrix = GXS_MATRIX_FREE;
     step.cg_tolerance = 1e-5;
-    result = gxs_solver_create(&desc, &solver);
+    result = gxs_solver_create(&desc, &solver, NULL);
     if (result == GX_OK) result = gxs_solver_set_model(solver, model, NULL);
     if (result == GX_OK) result = gxs_solver_step(solver, &step, s->displacement, s->velocity, report, NULL);
     gxs_solver_destroy(solver);
@@ -885,7 +885,7 @@ static int run_scene(const scene *s) {
     gxs_model model;
     gx_result result = block_create(&s->block, &body);
     int ok;
-    if (result == GX_OK) result = gx_body_model(body, &model);
+    if (result == GX_OK) result = gx_body_model(body, &model, NULL);
     if (result != GX_OK)
         ok = complain(s->name, result);
     else {

@@ -179,7 +179,7 @@ static gx_body *make_body(const gxio_mesh *mesh, const gx_region *held) {
     desc.materials = &material;
     desc.material_count = 1;
     expect(gx_body_create(&desc, &body, NULL) == GX_OK, "no body");
-    expect(gx_body_hold(body, held, 1) == GX_OK, "nothing is held");
+    expect(gx_body_hold(body, held, 1, NULL) == GX_OK, "nothing is held");
     return body;
 }
 
@@ -232,7 +232,7 @@ static double *find_rest(const gxs_model *given, size_t *unknowns) {
     step.newton_iterations = 1000;
     step.newton_tolerance = 1e-7;
     step.cg_tolerance = 1e-4;
-    expect(gxs_solver_create(NULL, &solver) == GX_OK && gxs_solver_set_model(solver, &model, NULL) == GX_OK,
+    expect(gxs_solver_create(NULL, &solver, NULL) == GX_OK && gxs_solver_set_model(solver, &model, NULL) == GX_OK,
            "no model");
     expect(gxs_solver_step(solver, &step, displacement, velocity, NULL, NULL) == GX_OK, "no rest is found");
     gxs_solver_destroy(solver);
@@ -348,7 +348,7 @@ static void run_cut(const strip *s, uint32_t refinement) {
     uncut_body = make_body(&mesh, &s->held);
     cut_body(body, s);
     p = parts_create(body);
-    expect(gx_body_model(uncut_body, &uncut) == GX_OK, "no model");
+    expect(gx_body_model(uncut_body, &uncut, NULL) == GX_OK, "no model");
     for (method = CUT; method < CONFORMING; method++) run_method(s, &p, &uncut, method, refinement);
     parts_free(&p);
     gx_body_destroy(body);
@@ -375,7 +375,7 @@ static double run_conforming(const strip *s, size_t piece, uint32_t refinement, 
         mesh = make_layers(s, refinement);
     body = make_body(&mesh, &s->held);
     if (s->piece_count == 1) cut_body(body, s);
-    expect(gx_body_model(body, &model) == GX_OK, "no model");
+    expect(gx_body_model(body, &model, NULL) == GX_OK, "no model");
     rest = find_rest(&model, unknowns);
     drop = drop_of(s, piece, &model, model.elements, rest);
     free(rest);

@@ -276,7 +276,7 @@ static gxs_solver *make_solver(const mover *m, const knobs *k) {
     desc.preconditioner = k->preconditioner;
     desc.matrix = k->matrix;
     model.lumped_mass = (uint32_t)k->lumped;
-    method_must(gxs_solver_create(&desc, &solver), "solver");
+    method_must(gxs_solver_create(&desc, &solver, NULL), "solver");
     method_must(gxs_solver_set_model(solver, &model, NULL), "model");
     return solver;
 }

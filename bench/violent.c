@@ -99,14 +99,14 @@ static void make(problem *p, int cut, int how, double ratio) {
     desc.cut = cut;
     desc.young = 1e6;
     check(block_create(&desc, &p->body));
-    check(gx_body_model(p->body, &p->model));
+    check(gx_body_model(p->body, &p->model, NULL));
     p->material = p->model.materials[0];
     p->material.poisson = ratio;
     p->model.materials = &p->material;
     p->model.held = NULL;
     p->count = 3 * p->model.copy_count;
     p->start = (double *)malloc(4 * p->count * sizeof(double));
-    check(p->start ? gxs_solver_create(NULL, &p->solver) : GX_ERROR_MEMORY);
+    check(p->start ? gxs_solver_create(NULL, &p->solver, NULL) : GX_ERROR_MEMORY);
     p->displacement = p->start + p->count;
     p->velocity = p->start + 2 * p->count;
     p->momentum = p->start + 3 * p->count;

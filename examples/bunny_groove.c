@@ -65,7 +65,7 @@ static double *turn_table(scene *s) {
     const double by = angle(s) + speed * s->step.dt;
     double *targets;
     size_t copy, i;
-    scene_must(s, gx_body_view(s->body, &s->view), "view");
+    scene_must(s, gx_body_view(s->body, &s->view, &s->failure), "view");
     targets = (double *)scene_array(s, s->view.copy_count, 3 * sizeof(double));
     for (copy = 0; copy < s->view.copy_count; copy++) {
         const double *x = s->mesh.positions + 3 * (size_t)s->view.copy_node[copy];

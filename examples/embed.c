@@ -10,14 +10,14 @@ static gx_result draw(gx_body *body, int frame) {
     char name[32];
     gx_view view;
     gx_skin skin;
-    gx_result result = gx_body_view(body, &view);
-    if (result == GX_OK) result = gx_body_skin(body, NULL, &skin);
+    gx_result result = gx_body_view(body, &view, NULL);
+    if (result == GX_OK) result = gx_body_skin(body, NULL, &skin, NULL);
     if (result != GX_OK) return result;
     snprintf(name, sizeof name, "frame_%02d.obj", frame);
     FILE *file = fopen(name, "w");
     double *x = (double *)malloc(3 * skin.vertex_count * sizeof *x);
     if (!file || !x) exit(1);
-    result = gx_body_skin_positions(body, x);
+    result = gx_body_skin_positions(body, x, NULL);
     for (size_t v = 0; v < skin.vertex_count; v++) fprintf(file, "v %g %g %g\n", x[3 * v], x[3 * v + 1], x[3 * v + 2]);
     for (size_t t = 0; t < skin.triangle_count; t++) {
         const uint32_t *v = skin.triangles + 3 * t;
@@ -46,7 +46,7 @@ int main(void) {
     cut.surfaces = &sheet, cut.surface_count = 1;
     step.dt = 1.0 / 60, step.gravity[0] = 1, step.gravity[2] = -9.81; /* s, m/s2 */
     gx_result result = gx_body_create(&cube, &body, NULL);
-    if (result == GX_OK) result = gx_body_hold(body, &top, 1);
+    if (result == GX_OK) result = gx_body_hold(body, &top, 1, NULL);
     for (int frame = 0; frame < 60 && result == GX_OK; frame++) {
         if (frame == 30) result = gx_body_cut(body, &cut, NULL, NULL);
         if (result == GX_OK) result = gx_body_step(body, &step, NULL, NULL);

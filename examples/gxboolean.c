@@ -14,6 +14,7 @@
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #endif
 #include "../gxfem_boolean.h"
+#include "gxfailure.h"
 
 enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_MISUSED = 2 };
 
@@ -150,12 +151,11 @@ static int add_surface(const settings *set, size_t i, gxb_boolean *boolean, gxio
     operand.triangle_count = surface.triangle_count;
     operand.operation = set->operations[i];
     operand.rule = set->rule;
-    failure.index = SIZE_MAX;
-    failure.result = gxb_boolean_add(boolean, &operand, &failure);
-    if (failure.result != GX_OK) {
+    if (gxb_boolean_add(boolean, &operand, &failure) != GX_OK) {
         const int known = failure.result == GX_ERROR_NOT_CLOSED && failure.index < surface.triangle_count;
+        const char *cause = text_of(failure.result);
         gxio_fail(error, set->surfaces[i], known ? surface.triangle_lines[failure.index] : 0, "%s",
-                  text_of(failure.result));
+                  known ? cause : gxfailure_say(&failure, cause).text);
     }
     if (i == 0)
         *first = surface;
@@ -171,29 +171,30 @@ typedef struct answer {
     gxb_defects defects;
 } answer;
 
-static gx_result ask(gxb_boolean *boolean, answer *a) {
-    gx_result result = gxb_boolean_evaluate(boolean, &a->result);
-    if (result == GX_OK) result = gxb_boolean_components(boolean, &a->components);
-    return result == GX_OK ? gxb_boolean_defects(boolean, &a->defects) : result;
+static gx_result ask(gxb_boolean *boolean, answer *a, gx_failure *failure) {
+    gx_result result = gxb_boolean_evaluate(boolean, &a->result, failure);
+    if (result == GX_OK) result = gxb_boolean_components(boolean, &a->components, failure);
+    return result == GX_OK ? gxb_boolean_defects(boolean, &a->defects, failure) : result;
 }
 
 static int combine(const settings *set, gxb_boolean **boolean, answer *a, gxio_error *error) {
     gxio_surface first;
     size_t i;
     int code = EXIT_DONE;
-    gx_result failed = gxb_boolean_create(NULL, boolean);
+    gx_failure failure;
+    gx_result failed = gxb_boolean_create(NULL, boolean, &failure);
     memset(&first, 0, sizeof first);
     if (failed == GX_OK) {
-        gxb_boolean_set_triangulation(*boolean, set->triangulation);
-        gxb_boolean_set_fine(*boolean, set->fine);
-        gxb_boolean_set_mend(*boolean, set->mend);
+        gxb_boolean_set_triangulation(*boolean, set->triangulation, NULL);
+        gxb_boolean_set_fine(*boolean, set->fine, NULL);
+        gxb_boolean_set_mend(*boolean, set->mend, NULL);
     }
     for (i = 0; i < set->count && failed == GX_OK && code == EXIT_DONE; i++)
         code = add_surface(set, i, *boolean, &first, error);
     gxio_surface_release(&first);
-    if (failed == GX_OK && code == EXIT_DONE) failed = ask(*boolean, a);
+    if (failed == GX_OK && code == EXIT_DONE) failed = ask(*boolean, a, &failure);
     if (failed == GX_OK) return code;
-    gxio_fail(error, "Boolean", 0, "%s", text_of(failed));
+    gxio_fail(error, "Boolean", 0, "%s", gxfailure_say(&failure, text_of(failed)).text);
     return EXIT_FAILED;
 }
 

@@ -15,6 +15,7 @@
 #define GXFEM_IMPLEMENTATION
 #endif
 #include "../gxfem.h"
+#include "gxfailure.h"
 
 #ifdef _WIN32
 #include <io.h>
@@ -268,38 +269,49 @@ static int complain(run *r, int code) {
     return code;
 }
 
-static int names_point(gx_result result) { return result == GX_ERROR_NOT_FINITE || result == GX_ERROR_RANGE; }
+/* A call on the body failed: "WHAT: field index: cause". */
+static int fail(run *r, const char *what, const gx_failure *failure) {
+    misused(&r->error, what, gxfailure_say(failure, gx_result_text(failure->result)).text);
+    return complain(r, EXIT_FAILED);
+}
+
+static int lack_memory(run *r, const char *what) {
+    misused(&r->error, what, "out of memory");
+    return complain(r, EXIT_FAILED);
+}
+
+static int is_named(const gx_failure *failure, const char *field) {
+    return failure->field && strcmp(failure->field, field) == 0;
+}
 
 /* The library refused the mesh: names the file, and the line of the node or element to blame. */
 static int refuse_mesh(run *r, const gx_failure *failure) {
-    const int node = names_point(failure->result);
+    const int node = is_named(failure, "positions");
     const char *path = node ? r->mesh.node_path : r->mesh.element_path, *text = gx_result_text(failure->result);
     const uint32_t *lines = node ? r->mesh.node_lines : r->mesh.element_lines;
     const size_t index = failure->index;
+    if (!failure->field) return fail(r, "body", failure);
     if (index >= (node ? r->mesh.node_count : r->mesh.element_count))
-        gxio_fail(&r->error, path, 0, "%s", text);
+        gxio_fail(&r->error, path, 0, "%s", gxfailure_say(failure, text).text);
     else
         gxio_fail(&r->error, path, lines ? lines[index] : 0, "%s %lu: %s", node ? "node" : "element",
                   (unsigned long)index, text);
-    return complain(r, failure->result == GX_ERROR_MEMORY ? EXIT_FAILED : EXIT_MISUSED);
+    return complain(r, EXIT_MISUSED);
 }
 
 /* A cut failed: names it, and the line of the triangle to blame. */
 static int refuse_cut(run *r, const gx_failure *failure) {
-    const char *text = gx_result_text(failure->result), *what = names_point(failure->result) ? "vertex" : "triangle";
+    const char *text = gx_result_text(failure->result);
     const size_t s = failure->surface, index = failure->index;
-    if (s >= r->set.cut_count) {
-        if (index == SIZE_MAX)
-            gxio_fail(&r->error, "cut", 0, "%s", text);
-        else
-            gxio_fail(&r->error, "cut", 0, "index %lu: %s", (unsigned long)index, text);
-    } else if (index == SIZE_MAX) {
-        gxio_fail(&r->error, r->set.cuts[s], 0, "cut %lu: %s", (unsigned long)s, text);
+    const int vertex = is_named(failure, "surfaces.vertices") || is_named(failure, "vertices");
+    if (s >= r->set.cut_count) return fail(r, "cut", failure);
+    if (index == SIZE_MAX) {
+        gxio_fail(&r->error, r->set.cuts[s], 0, "cut %lu: %s", (unsigned long)s, gxfailure_say(failure, text).text);
     } else {
         const gxio_surface *cut = &r->cuts[s];
-        const int known = cut->triangle_lines && !names_point(failure->result) && index < cut->triangle_count;
+        const int known = cut->triangle_lines && !vertex && index < cut->triangle_count;
         gxio_fail(&r->error, r->set.cuts[s], known ? cut->triangle_lines[index] : 0, "cut %lu, %s %lu: %s",
-                  (unsigned long)s, what, (unsigned long)index, text);
+                  (unsigned long)s, vertex ? "vertex" : "triangle", (unsigned long)index, text);
     }
     return complain(r, EXIT_FAILED);
 }
@@ -320,16 +332,18 @@ static int thicken(run *r, size_t i) {
     const gx_surface sheet = view_cut(r, i);
     gxio_surface solid;
     gx_failure failure;
+    gx_result result;
     memset(&solid, 0, sizeof solid);
-    failure.index = SIZE_MAX;
-    failure.surface = i;
     solid.vertices = (double *)gxio_array(sheet.vertex_count, 2 * 3 * sizeof(double));
     solid.triangles = (uint32_t *)gxio_array(sheet.triangle_count, 8 * 3 * sizeof(uint32_t));
-    failure.result = !solid.vertices || !solid.triangles
-                       ? GX_ERROR_MEMORY
-                       : gx_surface_solidify(&sheet, r->set.thickness, solid.vertices, &solid.vertex_count,
-                                             solid.triangles, &solid.triangle_count, NULL);
-    if (failure.result != GX_OK) {
+    if (!solid.vertices || !solid.triangles) {
+        gxio_surface_release(&solid);
+        return lack_memory(r, r->set.cuts[i]);
+    }
+    result = gx_surface_solidify(&sheet, r->set.thickness, solid.vertices, &solid.vertex_count, solid.triangles,
+                                 &solid.triangle_count, NULL, &failure);
+    if (result != GX_OK) {
+        failure.surface = i;
         gxio_surface_release(&solid);
         return refuse_cut(r, &failure);
     }
@@ -345,10 +359,7 @@ static int load(run *r) {
     int code = EXIT_DONE;
     if (!gxio_mesh_load(r->set.mesh, &r->mesh, &r->error)) return complain(r, EXIT_MISUSED);
     r->cuts = (gxio_surface *)calloc(r->set.cut_count + 1, sizeof *r->cuts);
-    if (!r->cuts) {
-        misused(&r->error, "cuts", "out of memory");
-        return complain(r, EXIT_FAILED);
-    }
+    if (!r->cuts) return lack_memory(r, "cuts");
     gxio_mesh_bounds(&r->mesh, body.low, body.high);
     for (i = 0; i < r->set.cut_count; i++)
         if (!gxio_surface_load(r->set.cuts[i], &body, &r->cuts[i], &r->error)) return complain(r, EXIT_MISUSED);
@@ -357,17 +368,11 @@ static int load(run *r) {
     return code;
 }
 
-/* A call on the body failed for no reason in its input: "WHAT: text". */
-static int fail(run *r, const char *what, gx_result result) {
-    misused(&r->error, what, gx_result_text(result));
-    return complain(r, EXIT_FAILED);
-}
-
 /* Displacement u = (s - 1)(X - centre of the bounding box), component by component. */
-static gx_result stretch(run *r) {
+static gx_result stretch(run *r, gx_failure *failure) {
     double low[3], high[3];
     size_t copy, axis;
-    const gx_result result = gx_body_view(r->body, &r->view);
+    const gx_result result = gx_body_view(r->body, &r->view, failure);
     gxio_mesh_bounds(&r->mesh, low, high);
     for (copy = 0; result == GX_OK && copy < r->view.copy_count; copy++)
         for (axis = 0; axis < 3; axis++) {
@@ -393,9 +398,12 @@ static int build(run *r) {
     desc.clock = gxio_seconds;
     result = gx_body_create(&desc, &r->body, &failure);
     if (result != GX_OK) return refuse_mesh(r, &failure);
-    result = stretch(r);
-    if (result == GX_OK && r->set.region_count) result = gx_body_hold(r->body, r->set.regions, r->set.region_count);
-    return result == GX_OK ? EXIT_DONE : fail(r, "body", result);
+    result = stretch(r, &failure);
+    if (result != GX_OK) return fail(r, "body", &failure);
+    if (r->set.region_count) result = gx_body_hold(r->body, r->set.regions, r->set.region_count, &failure);
+    if (result == GX_OK) return EXIT_DONE;
+    fail(r, "--fix", &failure);
+    return failure.field ? EXIT_MISUSED : EXIT_FAILED;
 }
 
 /* ------------------------------------------------------------------------------------------------- >>run */
@@ -407,7 +415,7 @@ static int cut(run *r) {
     gx_failure failure;
     gx_result result;
     size_t i;
-    if (!surfaces) return fail(r, "cut", GX_ERROR_MEMORY);
+    if (!surfaces) return lack_memory(r, "cut");
     for (i = 0; i < r->set.cut_count; i++) surfaces[i] = view_cut(r, i);
     memset(&desc, 0, sizeof desc);
     desc.surfaces = surfaces;
@@ -421,17 +429,16 @@ static int cut(run *r) {
 /* Looks at the body as it now is: view, and skin with room for its positions if frames are to be written. */
 static int look(run *r) {
     const gx_skin_desc shading = {0.6, 1}; /* creases of 34 degrees and more stay sharp */
-    gx_result result = gx_body_view(r->body, &r->view);
-    if (result == GX_OK && r->set.frames) {
-        result = gx_body_skin(r->body, &shading, &r->skin);
-        free(r->skin_positions);
-        free(r->skin_normals);
-        r->skin_positions = result == GX_OK ? (double *)gxio_array(r->skin.vertex_count, 3 * sizeof(double)) : NULL;
-        r->has_mesh = 0;
-        r->skin_normals = result == GX_OK ? (float *)gxio_array(r->skin.vertex_count, 3 * sizeof(float)) : NULL;
-        if (result == GX_OK && (!r->skin_positions || !r->skin_normals)) result = GX_ERROR_MEMORY;
-    }
-    return result == GX_OK ? EXIT_DONE : fail(r, "surface", result);
+    gx_failure failure;
+    if (gx_body_view(r->body, &r->view, &failure) != GX_OK) return fail(r, "surface", &failure);
+    if (!r->set.frames) return EXIT_DONE;
+    if (gx_body_skin(r->body, &shading, &r->skin, &failure) != GX_OK) return fail(r, "surface", &failure);
+    free(r->skin_positions);
+    free(r->skin_normals);
+    r->skin_positions = (double *)gxio_array(r->skin.vertex_count, 3 * sizeof(double));
+    r->has_mesh = 0;
+    r->skin_normals = (float *)gxio_array(r->skin.vertex_count, 3 * sizeof(float));
+    return r->skin_positions && r->skin_normals ? EXIT_DONE : lack_memory(r, "surface");
 }
 
 /* DIR/NAME; fails where it is too long. */
@@ -469,8 +476,8 @@ static int write_to_page(run *r, const gxio_triangles *t, uint32_t frame) {
 
 static int write_frame(run *r, uint32_t frame) {
     gxio_triangles t;
-    gx_body_skin_positions(r->body, r->skin_positions);
-    gx_body_skin_vertices(r->body, NULL, NULL, r->skin_normals);
+    gx_body_skin_positions(r->body, r->skin_positions, NULL);
+    gx_body_skin_vertices(r->body, NULL, NULL, r->skin_normals, NULL);
     t.positions = r->skin_positions;
     t.normals = r->skin_normals;
     t.texture = r->skin.vertex_texture;
@@ -508,28 +515,28 @@ static void draw_bar(run *r, uint32_t done) {
     r->bar = 1;
 }
 
-static int refuse_step(run *r, uint32_t frame, gx_result result) {
+static int refuse_step(run *r, uint32_t frame, const gx_failure *failure) {
+    const gxfailure_text cause = gxfailure_say(failure, gx_result_text(failure->result));
     char name[32];
     snprintf(name, sizeof name, "frame %lu", (unsigned long)frame);
     if (!finish_frames(r)) return complain(r, EXIT_MISUSED);
     if (frame)
-        gxio_fail(&r->error, name, 0, "%s; the %lu frames before it are in %s", gx_result_text(result),
-                  (unsigned long)frame, r->set.out);
+        gxio_fail(&r->error, name, 0, "%s; the %lu frames before it are in %s", cause.text, (unsigned long)frame,
+                  r->set.out);
     else
-        misused(&r->error, name, gx_result_text(result));
+        misused(&r->error, name, cause.text);
     return complain(r, EXIT_FAILED);
 }
 
 static int step(run *r, uint32_t frame) {
     gx_step_desc desc;
     gx_step_report report;
-    gx_result result;
+    gx_failure failure;
     memset(&desc, 0, sizeof desc);
     desc.dt = r->set.dt;
     memcpy(desc.gravity, r->set.gravity, sizeof desc.gravity);
     desc.newton_iterations = r->set.newton;
-    result = gx_body_step(r->body, &desc, &report, NULL);
-    if (result != GX_OK) return refuse_step(r, frame, result);
+    if (gx_body_step(r->body, &desc, &report, &failure) != GX_OK) return refuse_step(r, frame, &failure);
     r->seconds_newton += report.seconds;
     return EXIT_DONE;
 }
@@ -631,15 +638,16 @@ static double *copy_doubles(const double *values, size_t count) {
 }
 
 static int report(run *r) {
-    gx_result result = GX_OK;
-    const uint64_t hash = gx_body_topology_hash(r->body, &result);
+    gx_failure failure;
+    const uint64_t hash = gx_body_topology_hash(r->body, &failure);
     double *cells = copy_doubles(r->view.cell_volume, r->view.cell_count);
     double *fragments = copy_doubles(r->view.fragment_volume, r->view.fragment_count);
     gxio_writer writer;
     int code = EXIT_DONE;
-    if (!cells || !fragments) result = GX_ERROR_MEMORY;
-    if (result != GX_OK)
-        code = fail(r, "report", result);
+    if (failure.result != GX_OK)
+        code = fail(r, "report", &failure);
+    else if (!cells || !fragments)
+        code = lack_memory(r, "report");
     else if (!gxio_writer_open(&writer, r->set.report, &r->error))
         code = complain(r, EXIT_MISUSED);
     else {

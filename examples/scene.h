@@ -36,6 +36,7 @@
 #define GXFEM_IMPLEMENTATION
 #endif
 #include "../gxfem.h"
+#include "gxfailure.h"
 
 #ifdef _WIN32
 #include <io.h>
@@ -122,6 +123,7 @@ typedef struct scene {
     int has_page, has_mesh; /* the page is open; it has the triangles of the skin */
     int bar;                /* a progress bar stands on stderr */
     uint32_t checks, wrong;
+    gx_failure failure; /* of the last call on the body that was given it */
     gxio_error error;
 } scene;
 
@@ -146,10 +148,13 @@ static inline void scene_misuse(scene *s, const char *what, const char *cause) {
     scene_quit(s, SCENE_MISUSED);
 }
 
-/* Ends the program where a call on the body failed: "NAME: what: cause" */
+/* Ends the program where a call on the body failed: "NAME: what: field index: cause" */
 static inline void scene_must(scene *s, gx_result result, const char *what) {
     if (result == GX_OK) return;
-    gxio_fail(&s->error, what, 0, "%s", gx_result_text(result));
+    if (s->failure.result == result)
+        gxio_fail(&s->error, what, 0, "%s", gxfailure_say(&s->failure, gx_result_text(result)).text);
+    else
+        gxio_fail(&s->error, what, 0, "%s", gx_result_text(result));
     scene_quit(s, SCENE_WRONG);
 }
 
@@ -334,8 +339,6 @@ static inline void scene_keep(scene *s, int (*wanted)(const void *user, const do
 /* The body, of s->mesh by s->body_desc */
 static inline void scene_make(scene *s) {
     gx_body_desc *desc = &s->body_desc;
-    gx_failure failure;
-    gx_result result;
     desc->positions = s->mesh.positions;
     desc->node_count = s->mesh.node_count;
     desc->elements = s->mesh.elements;
@@ -345,11 +348,8 @@ static inline void scene_make(scene *s) {
     desc->allocator.reallocate = scene_reallocate;
     desc->allocator.user = &s->memory;
     desc->clock = gxio_seconds;
-    result = gx_body_create(desc, &s->body, &failure);
-    if (result != GX_OK && failure.index != SIZE_MAX)
-        fprintf(stderr, "%s: node or element %lu\n", s->mesh_name, (unsigned long)failure.index);
-    scene_must(s, result, s->mesh_name);
-    scene_must(s, gx_body_view(s->body, &s->view), "view");
+    scene_must(s, gx_body_create(desc, &s->body, &s->failure), s->mesh_name);
+    scene_must(s, gx_body_view(s->body, &s->view, &s->failure), "view");
     s->first_copies = s->view.copy_count;
 }
 
@@ -359,7 +359,7 @@ static inline void scene_hold_all(scene *s, const gx_region *regions, size_t cou
     s->regions = (gx_region *)scene_array(s, count, sizeof *regions);
     s->region_count = count;
     memcpy(s->regions, regions, count * sizeof *regions);
-    scene_must(s, gx_body_hold(s->body, regions, count), "hold");
+    scene_must(s, gx_body_hold(s->body, regions, count, &s->failure), "hold");
 }
 
 /* Holds what lies on one side (-1: below) of a plane across an axis. */
@@ -522,7 +522,7 @@ static inline void scene_cut_body(scene *s, const gx_surface *surfaces, size_t c
     memset(&desc, 0, sizeof desc);
     desc.surfaces = surfaces;
     desc.surface_count = count;
-    scene_must(s, gx_body_cut(s->body, &desc, &report, NULL), "cut");
+    scene_must(s, gx_body_cut(s->body, &desc, &report, &s->failure), "cut");
     s->frame_cut += gxio_seconds(NULL) - start;
     s->frame_seconds[SCENE_ARRANGEMENT] += report.seconds_arrangement;
     s->frame_seconds[SCENE_ENRICHMENT] += report.seconds_enrichment;
@@ -600,7 +600,7 @@ static inline void scene_take_skin(scene *s) {
     gxio_triangles *triangles = &s->skin.triangles;
     gx_skin skin;
     if (!s->looked) {
-        scene_must(s, gx_body_skin(s->body, &shading, &skin), "skin");
+        scene_must(s, gx_body_skin(s->body, &shading, &skin, &s->failure), "skin");
         free(s->skin.positions);
         free(s->skin.normals);
         s->has_mesh = 0;
@@ -620,14 +620,14 @@ static inline void scene_take_skin(scene *s) {
         triangles->surface = skin.triangle_surface;
         triangles->material = skin.triangle_material;
     }
-    scene_must(s, gx_body_skin_positions(s->body, s->skin.positions), "skin");
-    scene_must(s, gx_body_skin_vertices(s->body, NULL, NULL, s->skin.normals), "skin");
+    scene_must(s, gx_body_skin_positions(s->body, s->skin.positions, &s->failure), "skin");
+    scene_must(s, gx_body_skin_vertices(s->body, NULL, NULL, s->skin.normals, &s->failure), "skin");
 }
 
 /* View and skin of the body as it is now */
 static inline void scene_look(scene *s) {
     const double start = gxio_seconds(NULL);
-    if (!s->looked) scene_must(s, gx_body_view(s->body, &s->view), "view");
+    if (!s->looked) scene_must(s, gx_body_view(s->body, &s->view, &s->failure), "view");
     scene_take_skin(s);
     s->looked = 1;
     s->frame_seconds[SCENE_SKIN] += gxio_seconds(NULL) - start;
@@ -703,7 +703,7 @@ static inline void scene_move(scene *s, gx_step_report *report) {
     s->step.clock = scene_solver_clock;
     s->step.clock_user = s;
     s->solver_start = -1.0;
-    result = gx_body_step(s->body, &s->step, report, NULL);
+    result = gx_body_step(s->body, &s->step, report, &s->failure);
     if (result != GX_OK && s->out) scene_finish_frames(s); /* what there is can be looked at */
     scene_must(s, result, "step");
     seconds[SCENE_MODEL] = s->solver_start < 0.0 ? 0.0 : s->solver_start - start;
@@ -777,7 +777,7 @@ static inline double scene_mass(scene *s) {
     gxs_model model;
     double sum = 0.0, lost = 0.0;
     size_t e, i;
-    scene_must(s, gx_body_model(s->body, &model), "model");
+    scene_must(s, gx_body_model(s->body, &model, &s->failure), "model");
     for (e = 0; e < model.element_count; e++)
         for (i = 0; i < 10; i++) {
             const double once = i == 0 || i == 4 || i == 7 || i == 9 ? 1.0 : 2.0; /* diagonal or not */
@@ -901,7 +901,7 @@ static inline double scene_largest_stretch(scene *s) {
     gxs_model model;
     double largest = 0.0;
     size_t e;
-    scene_must(s, gx_body_model(s->body, &model), "model");
+    scene_must(s, gx_body_model(s->body, &model, &s->failure), "model");
     for (e = 0; e < model.element_count; e++)
         largest = fmax(largest, scene_element_stretch(&model.elements[e], s->view.displacement));
     return largest;
@@ -918,7 +918,7 @@ static inline uint32_t *scene_copy_fragments(scene *s) {
 /* How a fragment moves */
 static inline gx_motion scene_motion(scene *s, uint32_t fragment) {
     gx_motion *motions = (gx_motion *)scene_array(s, s->view.fragment_count, sizeof *motions), motion;
-    scene_must(s, gx_body_motion(s->body, motions, s->view.fragment_count), "motion");
+    scene_must(s, gx_body_motion(s->body, motions, s->view.fragment_count, &s->failure), "motion");
     motion = motions[fragment];
     free(motions);
     return motion;
@@ -1056,7 +1056,7 @@ static inline size_t scene_ring_fragments(scene *s, const scene_ring *ring) {
     desc.elements = ring->elements;
     desc.element_count = ring->element_count;
     desc.young = desc.density = 1.0;
-    scene_must(s, gx_body_create(&desc, &body, NULL), "elements around a node");
+    scene_must(s, gx_body_create(&desc, &body, &s->failure), "elements around a node");
     surfaces[0].vertices = ring->vertices;
     surfaces[0].vertex_count = 3 * ring->triangle_count;
     surfaces[0].triangles = ring->triangles;
@@ -1064,8 +1064,8 @@ static inline size_t scene_ring_fragments(scene *s, const scene_ring *ring) {
     for (i = 0, cut.surface_count = ring->triangle_count > 0; i < s->cut_count; i++)
         if (s->cuts[i].kind == GX_SURFACE_SOLID) surfaces[cut.surface_count++] = s->cuts[i];
     cut.surfaces = surfaces;
-    if (cut.surface_count) scene_must(s, gx_body_cut(body, &cut, NULL, NULL), "cut around a node");
-    scene_must(s, gx_body_view(body, &view), "elements around a node");
+    if (cut.surface_count) scene_must(s, gx_body_cut(body, &cut, NULL, &s->failure), "cut around a node");
+    scene_must(s, gx_body_view(body, &view, &s->failure), "elements around a node");
     i = view.fragment_count;
     gx_body_destroy(body);
     free(surfaces);

@@ -81,7 +81,8 @@ gallery() {
     echo "possible, which another program counts; volume and mass kept to 1e-12; a watertight surface; deflections equal to brute-force"
     echo "integration in the same space; and checks of its own. \`scene.h\` has what they share, for scenes of your own too: sheets that"
     echo "advance strip by strip, times, files, checks; \`slab.h\`: brute-force integration, locking; \`cheese.h\`: surfaces."
-    echo "\`gxcut.c\` and \`gxboolean.c\` are the command-line programs, \`gxio.h\` their readers and writers, \`gxshape.h\` their shapes."
+    echo "\`gxcut.c\` and \`gxboolean.c\` are the command-line programs, \`gxio.h\` their readers and writers, \`gxshape.h\` their shapes,"
+    echo "\`gxfailure.h\` their words for a refusal."
     echo
     echo "## Times"
     echo

@@ -214,8 +214,8 @@ static slab slab_take(scene *s, const gxio_mesh *mesh, gx_body *body, double den
     b.mesh = mesh;
     b.body = body;
     b.density = density;
-    scene_must(s, gx_body_view(body, &b.view), "view");
-    scene_must(s, gx_body_model(body, &b.model), "model");
+    scene_must(s, gx_body_view(body, &b.view, &s->failure), "view");
+    scene_must(s, gx_body_model(body, &b.model, &s->failure), "model");
     b.fragment = (uint32_t *)scene_array(s, b.view.copy_count, sizeof *b.fragment);
     b.held = (uint8_t *)scene_array(s, b.view.fragment_count, 1);
     b.elements = (gxs_element *)scene_array(s, b.model.element_count, sizeof *b.elements);
@@ -311,9 +311,9 @@ static double *slab_rest(const slab *b, const gxs_element *elements, size_t coun
     model.elements = elements;
     model.element_count = count;
     if (start) memcpy(displacement, start, 3 * b->view.copy_count * sizeof(double));
-    scene_must(b->s, gxs_solver_create(NULL, &solver), "solver");
-    scene_must(b->s, gxs_solver_set_model(solver, &model, NULL), "model");
-    scene_must(b->s, gxs_solver_step(solver, &step, displacement, velocity, NULL, NULL), "rest");
+    scene_must(b->s, gxs_solver_create(NULL, &solver, &b->s->failure), "solver");
+    scene_must(b->s, gxs_solver_set_model(solver, &model, &b->s->failure), "model");
+    scene_must(b->s, gxs_solver_step(solver, &step, displacement, velocity, NULL, &b->s->failure), "rest");
     gxs_solver_destroy(solver);
     free(velocity);
     return displacement;
@@ -448,8 +448,8 @@ static gx_body *slab_make_grid(scene *s, gxio_mesh *mesh, const uint32_t n[3], c
     desc.element_count = mesh->element_count;
     desc.materials = &material;
     desc.material_count = 1;
-    scene_must(s, gx_body_create(&desc, &body, NULL), "body");
-    scene_must(s, gx_body_hold(body, &wall, 1), "hold");
+    scene_must(s, gx_body_create(&desc, &body, &s->failure), "body");
+    scene_must(s, gx_body_hold(body, &wall, 1, &s->failure), "hold");
     return body;
 }
 
@@ -518,7 +518,7 @@ static void slab_study_cut(scene *s, slab_strip *strip, uint32_t refinement) {
         sheet.triangle_count = 2;
         cut.surfaces = &sheet;
         cut.surface_count = 1;
-        scene_must(s, gx_body_cut(body, &cut, NULL, NULL), "cut");
+        scene_must(s, gx_body_cut(body, &cut, NULL, &s->failure), "cut");
     }
     slab_study_body(s, strip, SLAB_CUT, 0, refinement, &mesh, body, strip->z, strip->z_count);
     gx_body_destroy(body);

@@ -169,7 +169,7 @@ static inline gxs_step_desc step_make(double dt, double gravity) {
 
 static inline gxs_solver *solver_make(void) {
     gxs_solver *solver = NULL;
-    ck_assert_int_eq(gxs_solver_create(NULL, &solver), GX_OK);
+    ck_assert_int_eq(gxs_solver_create(NULL, &solver, NULL), GX_OK);
     return solver;
 }
 

@@ -46,7 +46,7 @@ static void create(gx_result wanted) {
     gxb_complex *complex = NULL;
     gx_body *other = NULL;
     gxb_mesh mesh;
-    gx_result result = gxb_boolean_create(NULL, &boolean);
+    gx_result result = gxb_boolean_create(NULL, &boolean, NULL);
     expect("Boolean", result, wanted, boolean);
     gxb_boolean_destroy(boolean);
     memset(&mesh, 0, sizeof mesh);
@@ -64,7 +64,7 @@ static void create(gx_result wanted) {
 
 static void copy(gx_result wanted) {
     gx_body *other = NULL;
-    gx_result result = gx_body_clone(body, &other);
+    gx_result result = gx_body_clone(body, &other, NULL);
     expect("clone", result, wanted, other);
     gx_body_destroy(other);
     other = NULL;
@@ -74,9 +74,10 @@ static void copy(gx_result wanted) {
 }
 
 static int prepare(void) {
-    if (gx_body_create(&desc, &body, NULL) != GX_OK || gx_body_save(body, NULL, 0, &saved_size) != GX_OK) return 0;
+    if (gx_body_create(&desc, &body, NULL) != GX_OK || gx_body_save(body, NULL, 0, &saved_size, NULL) != GX_OK)
+        return 0;
     saved = (unsigned char *)malloc(saved_size);
-    return saved != NULL && gx_body_save(body, saved, saved_size, &saved_size) == GX_OK;
+    return saved != NULL && gx_body_save(body, saved, saved_size, &saved_size, NULL) == GX_OK;
 }
 
 int main(int argc, char **argv) {

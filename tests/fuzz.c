@@ -238,7 +238,7 @@ static void check_indices(const scene *s, const gxb_boolean_result *r) {
 static gxb_defects defects_of(gxb_boolean *b, const gxb_boolean_result *r) {
     gxb_defects d;
     size_t i;
-    const gx_result result = gxb_boolean_defects(b, &d);
+    const gx_result result = gxb_boolean_defects(b, &d, NULL);
     REQUIRE(result == GX_OK, "defects: error %d", (int)result);
     for (i = 0; i < d.count; i++) REQUIRE(d.triangles[i] < r->triangle_count, "defect %zu: no such triangle", i);
     return d;
@@ -249,7 +249,7 @@ static answer check_result(gxb_boolean *b, const scene *s, const gxb_boolean_res
     gxb_components c;
     size_t i, k;
     double sum = 0;
-    const gx_result result = gxb_boolean_components(b, &c);
+    const gx_result result = gxb_boolean_components(b, &c, NULL);
     count.evaluations++;
     REQUIRE(result == GX_OK, "components: error %d", (int)result);
     check_indices(s, r);
@@ -283,12 +283,12 @@ static gxb_boolean *create(scene *s, int fine, int callback) {
         desc.inside = is_inside;
         desc.user = s;
     }
-    REQUIRE(gxb_boolean_create(&desc, &b) == GX_OK && gxb_boolean_set_fine(b, fine) == GX_OK, "create");
+    REQUIRE(gxb_boolean_create(&desc, &b, NULL) == GX_OK && gxb_boolean_set_fine(b, fine, NULL) == GX_OK, "create");
     return b;
 }
 
 static answer evaluate(gxb_boolean *b, const scene *s, gxb_boolean_result *r) {
-    const gx_result result = gxb_boolean_evaluate(b, r);
+    const gx_result result = gxb_boolean_evaluate(b, r, NULL);
     REQUIRE(result == GX_OK, "evaluate: error %d", (int)result);
     return check_result(b, s, r);
 }
@@ -650,13 +650,13 @@ static void check_again(const gxb_boolean_result *r, const answer *a, double siz
     o.vertex_count = r->vertex_count;
     o.triangles = r->triangles;
     o.triangle_count = r->triangle_count;
-    REQUIRE(gxb_boolean_create(NULL, &b) == GX_OK, "create");
+    REQUIRE(gxb_boolean_create(NULL, &b, NULL) == GX_OK, "create");
     result = gxb_boolean_add(b, &o, NULL);
     REQUIRE(result == GX_OK || result == GX_ERROR_RANGE, "the result as an operand: error %d", (int)result);
     if (result == GX_OK) {
-        result = gxb_boolean_evaluate(b, &again);
+        result = gxb_boolean_evaluate(b, &again, NULL);
         REQUIRE(result == GX_OK, "the result again: error %d", (int)result);
-        result = gxb_boolean_components(b, &parts);
+        result = gxb_boolean_components(b, &parts, NULL);
         REQUIRE(result == GX_OK, "components of the result again: error %d", (int)result);
         REQUIRE(fabs(parts.total_volume - a->volume) <= 1e-6 * size + rounding_of(r),
                 "the result again: volume %.17g, was %.17g", parts.total_volume, a->volume);
@@ -716,7 +716,7 @@ static void check_mending(scene *s, const answer *a) {
     size_t i, k;
     for (k = 0; k < 2; k++) {
         b[k] = create(s, 1, 0);
-        REQUIRE(gxb_boolean_set_mend(b[k], (int)k) == GX_OK, "mend");
+        REQUIRE(gxb_boolean_set_mend(b[k], (int)k, NULL) == GX_OK, "mend");
         for (i = 0; i < s->count; i++) {
             const gxb_operand o = operand_of(&s->operand[i]);
             REQUIRE(gxb_boolean_add(b[k], &o, NULL) == GX_OK, "operand %zu refused the second time", i);
@@ -757,7 +757,7 @@ static void give_memory(void *user, void *memory, size_t size) {
 
 static uint64_t allocations_of(const gxb_boolean *b) {
     gxb_statistics s;
-    REQUIRE(gxb_boolean_statistics(b, &s) == GX_OK, "statistics");
+    REQUIRE(gxb_boolean_statistics(b, &s, NULL) == GX_OK, "statistics");
     return s.allocations;
 }
 
@@ -776,15 +776,16 @@ static void check_memory(const scene *s, const answer *a, int fine, uint64_t fai
     desc.allocator.allocate = take_memory;
     desc.allocator.release = give_memory;
     desc.allocator.user = &m;
-    while ((result = gxb_boolean_create(&desc, &b)) == GX_ERROR_MEMORY) {}
-    if (result == GX_OK) result = gxb_boolean_set_fine(b, fine);
+    while ((result = gxb_boolean_create(&desc, &b, NULL)) == GX_ERROR_MEMORY) {}
+    if (result == GX_OK) result = gxb_boolean_set_fine(b, fine, NULL);
     for (i = 0; i < s->count && result == GX_OK; i++) {
         const gxb_operand o = operand_of(&s->operand[i]);
         while ((result = gxb_boolean_add(b, &o, NULL)) == GX_ERROR_MEMORY) {}
     }
-    while (result == GX_OK && (result = gxb_boolean_evaluate(b, &r)) == GX_ERROR_MEMORY) result = GX_OK;
-    while (result == GX_OK && (result = gxb_boolean_components(b, &components)) == GX_ERROR_MEMORY) result = GX_OK;
-    while (result == GX_OK && (result = gxb_boolean_defects(b, &defects)) == GX_ERROR_MEMORY) result = GX_OK;
+    while (result == GX_OK && (result = gxb_boolean_evaluate(b, &r, NULL)) == GX_ERROR_MEMORY) result = GX_OK;
+    while (result == GX_OK && (result = gxb_boolean_components(b, &components, NULL)) == GX_ERROR_MEMORY)
+        result = GX_OK;
+    while (result == GX_OK && (result = gxb_boolean_defects(b, &defects, NULL)) == GX_ERROR_MEMORY) result = GX_OK;
     REQUIRE(result == GX_OK, "after a lack of memory: error %d", (int)result);
     again = check_result(b, s, &r);
     check_same("after a lack of memory", &again, a, fine);
@@ -837,7 +838,7 @@ static void test_boolean(test_case *c, int ask) {
     add_operands(b, c);
     s.count = c->operands;
     if (s.count == 0) {
-        REQUIRE(gxb_boolean_evaluate(b, &r) == GX_ERROR_EMPTY, "no operands, and no error");
+        REQUIRE(gxb_boolean_evaluate(b, &r, NULL) == GX_ERROR_SEQUENCE, "no operands, and no error");
         gxb_boolean_destroy(b);
         return;
     }
@@ -922,7 +923,7 @@ static size_t save_complex(gxb_complex *cx, unsigned char *bytes) {
     s.out = bytes;
     s.size = SAVED;
     gxb_complex_save(cx, &s);
-    REQUIRE(s.result == GX_OK || s.result == GX_ERROR_LIMIT, "complex: saving: error %d", (int)s.result);
+    REQUIRE(s.result == GX_OK || s.result == GX_ERROR_CAPACITY, "complex: saving: error %d", (int)s.result);
     return s.result == GX_OK ? s.at : 0;
 }
 

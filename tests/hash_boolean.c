@@ -109,8 +109,8 @@ static void run_operands(const test_case *c, uint64_t seed, int moved) {
     gxb_boolean *b = NULL;
     size_t i, operands = 0;
     int result = 0;
-    if (gxb_boolean_create(NULL, &b) != GX_OK) return;
-    gxb_boolean_set_fine(b, 1);
+    if (gxb_boolean_create(NULL, &b, NULL) != GX_OK) return;
+    gxb_boolean_set_fine(b, 1, NULL);
     for (i = 0; i < c->operands; i++) {
         static case_mesh m;
         gxb_operand o;
@@ -127,8 +127,8 @@ static void run_operands(const test_case *c, uint64_t seed, int moved) {
         operands += result == GX_OK;
         mix(&result, sizeof result);
         if (operands == 0) continue;
-        result = (int)gxb_boolean_evaluate(b, &r);
-        if (result == GX_OK) result = (int)gxb_boolean_components(b, &parts);
+        result = (int)gxb_boolean_evaluate(b, &r, NULL);
+        if (result == GX_OK) result = (int)gxb_boolean_components(b, &parts, NULL);
         mix(&result, sizeof result);
         if (result == GX_OK) hash_result(&r, &parts, operands);
     }

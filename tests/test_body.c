@@ -276,13 +276,13 @@ START_TEST(skin_follows_the_field) {
             view.displacement[3 * i + (size_t)k] = map[k][0] * x[0] + map[k][1] * x[1] + map[k][2] * x[2] + map[k][3];
         }
     for (i = 0; i < w.surface_count; i++) cut_by(body, &w, i, 1);
-    ck_assert_int_eq(gx_body_skin(body, NULL, &skin), GX_OK);
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
     view = view_of(body);
     moved = (double *)oracle_memory(NULL, 3 * skin.vertex_count + 1, sizeof *moved);
     material = (double *)oracle_memory(NULL, 3 * skin.vertex_count + 1, sizeof *material);
-    ck_assert_int_eq(gx_body_skin_positions(body, moved), GX_OK);
+    ck_assert_int_eq(gx_body_skin_positions(body, moved, NULL), GX_OK);
     for (i = 0; i < 3 * view.copy_count; i++) view.displacement[i] = 0;
-    ck_assert_int_eq(gx_body_skin_positions(body, material), GX_OK);
+    ck_assert_int_eq(gx_body_skin_positions(body, material, NULL), GX_OK);
     for (i = 0; i < skin.vertex_count; i++)
         for (k = 0; k < 3; k++) {
             const double *x = material + 3 * i;
@@ -1367,7 +1367,7 @@ START_TEST(solids_that_contain_everything) {
     cut_by(body, &w, 2, 1); /* the rest can still be cut, viewed and moved */
     cut_by(body, &w, 1, 1);
     ck_assert_uint_eq(view_of(body).cell_count, 0);
-    ck_assert_int_eq(gx_body_skin(body, NULL, &skin), GX_OK);
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
     ck_assert_uint_eq(skin.triangle_count, 0);
     memset(&step, 0, sizeof step);
     step.dt = 0.01;
@@ -1481,7 +1481,7 @@ static double solidify(workload *w, size_t sheet, double thickness) {
     solid->vertices = (double *)oracle_memory(NULL, 6 * s.vertex_count, sizeof(double));
     solid->triangles = (uint32_t *)oracle_memory(NULL, 24 * s.triangle_count, sizeof(uint32_t));
     ck_assert_int_eq(gx_surface_solidify(&s, thickness, solid->vertices, &solid->vertex_count, solid->triangles,
-                                         &solid->triangle_count, NULL),
+                                         &solid->triangle_count, NULL, NULL),
                      GX_OK);
     ck_assert_uint_le(solid->vertex_count, 2 * s.vertex_count);
     ck_assert_uint_le(solid->triangle_count, 8 * s.triangle_count);
@@ -1539,15 +1539,15 @@ START_TEST(solidified_sheets) {
     ck_assert_uint_eq(view_of(body).fragment_count, 2);
     gx_body_destroy(body);
     sheet = surface_of(&w.surfaces[0]);
-    ck_assert_int_eq(gx_surface_solidify(&sheet, 0, vertices, &nv, triangles, &nt, NULL), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gx_surface_solidify(&sheet, -1, vertices, &nv, triangles, &nt, NULL), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gx_surface_solidify(&sheet, NAN, vertices, &nv, triangles, &nt, NULL), GX_ERROR_NOT_FINITE);
-    ck_assert_int_eq(gx_surface_solidify(NULL, 1, vertices, &nv, triangles, &nt, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_surface_solidify(&sheet, 0, vertices, &nv, triangles, &nt, NULL, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_surface_solidify(&sheet, -1, vertices, &nv, triangles, &nt, NULL, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_surface_solidify(&sheet, NAN, vertices, &nv, triangles, &nt, NULL, NULL), GX_ERROR_NOT_FINITE);
+    ck_assert_int_eq(gx_surface_solidify(NULL, 1, vertices, &nv, triangles, &nt, NULL, NULL), GX_ERROR_ARGUMENT);
     memset(&half, 0, sizeof half);
     half.allocate = (void *(*)(void *, size_t))1;
-    ck_assert_int_eq(gx_surface_solidify(&sheet, 1, vertices, &nv, triangles, &nt, &half), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_surface_solidify(&sheet, 1, vertices, &nv, triangles, &nt, &half, NULL), GX_ERROR_ARGUMENT);
     sheet.triangle_count = 0;
-    ck_assert_int_eq(gx_surface_solidify(&sheet, 1, vertices, &nv, triangles, &nt, NULL), GX_ERROR_EMPTY);
+    ck_assert_int_eq(gx_surface_solidify(&sheet, 1, vertices, &nv, triangles, &nt, NULL, NULL), GX_ERROR_EMPTY);
     wl_free(&w);
     /* of any size, an eighth thick; a vertex that no triangle uses */
     for (e = -560; e <= 560; e += 280) {
@@ -1561,20 +1561,22 @@ START_TEST(solidified_sheets) {
         sheet.vertex_count = 4;
         sheet.triangles = corner;
         sheet.triangle_count = 1;
-        ck_assert_int_eq(gx_surface_solidify(&sheet, ldexp(0.125, e), vertices, &nv, triangles, &nt, NULL), GX_OK);
+        ck_assert_int_eq(gx_surface_solidify(&sheet, ldexp(0.125, e), vertices, &nv, triangles, &nt, NULL, NULL),
+                         GX_OK);
         for (i = 0; i < 3; i++) thick[i] = ldexp(vertices[i] - vertices[12 + i], -e);
         ck_assert_double_eq_tol(thick[2], 0.125, 1e-15);
         x[10] = NAN;
-        ck_assert_int_eq(gx_surface_solidify(&sheet, ldexp(0.125, e), vertices, &nv, triangles, &nt, NULL),
+        ck_assert_int_eq(gx_surface_solidify(&sheet, ldexp(0.125, e), vertices, &nv, triangles, &nt, NULL, NULL),
                          GX_ERROR_NOT_FINITE);
         for (i = 0; i < 24; i++) { /* coordinates beyond doubles are refused, on either side */
             x[i % 12] = i % 3 < 2 ? corners[i % 12] : i < 12 ? DBL_MAX : -DBL_MAX;
             if (i % 12 < 11) continue;
-            ck_assert_int_eq(gx_surface_solidify(&sheet, 1, vertices, &nv, triangles, &nt, NULL), GX_OK);
-            ck_assert_int_eq(gx_surface_solidify(&sheet, 1e300, vertices, &nv, triangles, &nt, NULL), GX_ERROR_RANGE);
+            ck_assert_int_eq(gx_surface_solidify(&sheet, 1, vertices, &nv, triangles, &nt, NULL, NULL), GX_OK);
+            ck_assert_int_eq(gx_surface_solidify(&sheet, 1e300, vertices, &nv, triangles, &nt, NULL, NULL),
+                             GX_ERROR_RANGE);
         }
         for (i = 0; i < 9; i++) x[i] = (2 * corners[i] - 1) * DBL_MAX;
-        ck_assert_int_eq(gx_surface_solidify(&sheet, 1, vertices, &nv, triangles, &nt, NULL), GX_ERROR_RANGE);
+        ck_assert_int_eq(gx_surface_solidify(&sheet, 1, vertices, &nv, triangles, &nt, NULL, NULL), GX_ERROR_RANGE);
     }
 }
 END_TEST
@@ -1749,17 +1751,17 @@ START_TEST(held_copies) {
         regions[i].side = random_below(2) ? 1 : -1;
         regions[i].value = random_real(0.05, 0.95);
     }
-    ck_assert_int_eq(gx_body_hold(body, regions, 2), GX_OK);
+    ck_assert_int_eq(gx_body_hold(body, regions, 2, NULL), GX_OK);
     check_held(body, regions, 2, seed);
     for (c = 0; c < w.surface_count; c++) {
         cut_by(body, &w, c, 1);
         if (c == 2) {
             regions[0].value = 0.5;
-            ck_assert_int_eq(gx_body_hold(body, regions, 1), GX_OK);
+            ck_assert_int_eq(gx_body_hold(body, regions, 1, NULL), GX_OK);
         }
         check_held(body, regions, c < 2 ? 2 : 1, seed);
     }
-    ck_assert_int_eq(gx_body_hold(body, NULL, 0), GX_OK);
+    ck_assert_int_eq(gx_body_hold(body, NULL, 0, NULL), GX_OK);
     check_held(body, NULL, 0, seed);
     gx_body_destroy(body);
     wl_free(&w);
@@ -1777,7 +1779,7 @@ START_TEST(pieces_outside_the_region_are_free) {
     add_axis_plane(&w, 2, 0.25);
     add_axis_plane(&w, 2, 0.5);
     add_axis_plane(&w, 2, 0.75);
-    ck_assert_int_eq(gx_body_hold(body, &region, 1), GX_OK);
+    ck_assert_int_eq(gx_body_hold(body, &region, 1, NULL), GX_OK);
     for (i = 0; i < 3; i++) {
         size_t j;
         cut_by(body, &w, i, 1);
@@ -1788,8 +1790,12 @@ START_TEST(pieces_outside_the_region_are_free) {
         }
         ck_assert_uint_eq(held, 4);
     }
-    region.value = 1;
-    ck_assert_int_eq(gx_body_hold(body, &region, 1), GX_OK);
+    region.value = 1; /* strictly above: nothing is left there, and what is held stays */
+    ck_assert_int_eq(gx_body_hold(body, &region, 1, NULL), GX_ERROR_EMPTY);
+    view = view_of(body);
+    for (i = held = 0; i < view.copy_count; i++) held += view.copy_held[i];
+    ck_assert_uint_eq(held, 4);
+    ck_assert_int_eq(gx_body_hold(body, NULL, 0, NULL), GX_OK);
     view = view_of(body);
     for (i = 0; i < view.copy_count; i++) ck_assert(!view.copy_held[i]);
     gx_body_destroy(body);
@@ -1926,7 +1932,7 @@ START_TEST(held_body_hangs) {
     int n, free_copies = 0;
     add_box(&w, 0, -1, -1, -1, 0.5, 3, 0.75);
     add_axis_plane(&w, 2, 0.75);
-    ck_assert_int_eq(gx_body_hold(body, &region, 1), GX_OK);
+    ck_assert_int_eq(gx_body_hold(body, &region, 1, NULL), GX_OK);
     step.gravity[2] = -9.81;
     step.newton_iterations = 2;
     step.cg_tolerance = 1e-6;
@@ -2249,7 +2255,7 @@ static void check_skin(gx_body *body, uint64_t seed) {
     double *positions, *volume, *old;
     size_t i, f;
     int k, j, pass;
-    ck_assert_int_eq(gx_body_skin(body, NULL, &skin), GX_OK);
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
     positions = (double *)oracle_memory(NULL, 3 * skin.vertex_count + 1, sizeof *positions);
     volume = (double *)oracle_memory(NULL, view.fragment_count + 1, sizeof *volume);
     old = (double *)oracle_memory(NULL, 3 * view.copy_count + 1, sizeof *old);
@@ -2262,7 +2268,7 @@ static void check_skin(gx_body *body, uint64_t seed) {
                 for (j = 0; j < 3 && pass == 1; j++)
                     view.displacement[3 * i + (size_t)k] += (map[k][j] - (k == j)) * x[j];
             }
-        ck_assert_int_eq(gx_body_skin_positions(body, positions), GX_OK);
+        ck_assert_int_eq(gx_body_skin_positions(body, positions, NULL), GX_OK);
         for (f = 0; f < view.fragment_count; f++) volume[f] = 0;
         for (i = 0; i < skin.triangle_count; i++) {
             CHECK_SEED(skin.triangle_fragment[i] < view.fragment_count &&
@@ -2290,7 +2296,7 @@ START_TEST(skin_encloses_the_volume) {
     gx_skin skin;
     size_t c;
     check_skin(body, seed);
-    ck_assert_int_eq(gx_body_skin(body, NULL, &skin), GX_OK);
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
     for (c = 0; c < skin.triangle_count; c++) CHECK_SEED(skin.triangle_surface[c] == GX_SKIN_OUTER, seed);
     for (c = 0; c < w.surface_count; c++) {
         cut_by(body, &w, c, 1);
@@ -2311,9 +2317,9 @@ START_TEST(skin_tells_cut_faces) {
     add_axis_plane(&w, 0, 0.375);
     add_box(&w, 1, 0.5, 0.25, 0.25, 0.75, 0.5, 0.5);
     body = cut_at_once(&w);
-    ck_assert_int_eq(gx_body_skin(body, NULL, &skin), GX_OK);
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
     x = (double *)oracle_memory(NULL, 3 * skin.vertex_count, sizeof *x);
-    ck_assert_int_eq(gx_body_skin_positions(body, x), GX_OK);
+    ck_assert_int_eq(gx_body_skin_positions(body, x, NULL), GX_OK);
     for (i = 0; i < skin.triangle_count; i++) {
         const double *a = x + 3 * skin.triangles[3 * i], *b = x + 3 * skin.triangles[3 * i + 1],
                      *c = x + 3 * skin.triangles[3 * i + 2];
@@ -2462,88 +2468,98 @@ END_TEST
 
 /* ---- bad input ---- */
 
-static void expect_no_body(gx_body_desc *desc, gx_result expected, size_t index, int line) {
+static void expect_no_body(gx_body_desc *desc, gx_result expected, const char *field, size_t index, int line) {
     gx_body *body = NULL;
     gx_failure failure;
     gx_result result = gx_body_create(desc, &body, &failure);
     ck_assert_msg(result == expected && failure.result == expected, "line %d: %s, should be: %s", line,
                   gx_result_text(result), gx_result_text(expected));
-    ck_assert_msg(failure.index == index, "line %d: index %zu, should be %zu", line, failure.index, index);
+    ck_assert_msg(failure.index == index && strcmp(failure.field, field) == 0, "line %d: %s %zu, should be %s %zu",
+                  line, failure.field, failure.index, field, index);
     ck_assert(body == NULL);
     ck_assert_int_eq(gx_body_create(desc, &body, NULL), (int)expected);
 }
-#define EXPECT_NO_BODY(desc, expected, index) expect_no_body(desc, expected, index, __LINE__)
+#define EXPECT_NO_BODY(desc, expected, field, index) expect_no_body(desc, expected, field, index, __LINE__)
 
 START_TEST(bad_bodies) {
     workload w = grid(2, 1, 1, 5);
     gx_body_desc good = desc_of(&w), d;
     gx_body *body;
+    float *texture = (float *)oracle_memory(NULL, 2 * w.node_count, sizeof *texture);
     uint32_t *e = (uint32_t *)oracle_memory(NULL, 4 * w.element_count + 4, sizeof *e);
     double *x = (double *)oracle_memory(NULL, 3 * w.node_count, sizeof *x), bad[3];
     int i;
+    memset(texture, 0, 2 * w.node_count * sizeof *texture);
+    texture[5] = NAN;
     ck_assert_int_eq(gx_body_create(NULL, &body, NULL), GX_ERROR_ARGUMENT);
     ck_assert_int_eq(gx_body_create(&good, NULL, NULL), GX_ERROR_ARGUMENT);
     d = good;
     d.positions = NULL;
-    EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
+    EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, "positions", SIZE_MAX);
     d = good;
     d.elements = NULL;
-    EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
+    EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, "elements", SIZE_MAX);
     d = good;
     d.node_count = 0;
-    EXPECT_NO_BODY(&d, GX_ERROR_EMPTY, SIZE_MAX);
+    EXPECT_NO_BODY(&d, GX_ERROR_EMPTY, "node_count", SIZE_MAX);
     d = good;
     d.element_count = 0;
-    EXPECT_NO_BODY(&d, GX_ERROR_EMPTY, SIZE_MAX);
+    EXPECT_NO_BODY(&d, GX_ERROR_EMPTY, "element_count", SIZE_MAX);
     d = good;
     d.young = 0;
-    EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
+    EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, "young", SIZE_MAX);
     d = good;
     d.young = -1;
-    EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
+    EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, "young", SIZE_MAX);
     d = good;
     d.young = NAN;
-    EXPECT_NO_BODY(&d, GX_ERROR_NOT_FINITE, SIZE_MAX);
+    EXPECT_NO_BODY(&d, GX_ERROR_NOT_FINITE, "young", SIZE_MAX);
     d = good;
     d.density = 0;
-    EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
+    EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, "density", SIZE_MAX);
     d = good;
     d.density = INFINITY;
-    EXPECT_NO_BODY(&d, GX_ERROR_NOT_FINITE, SIZE_MAX);
+    EXPECT_NO_BODY(&d, GX_ERROR_NOT_FINITE, "density", SIZE_MAX);
     d = good;
     d.poisson = 0.5;
-    EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
+    EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, "poisson", SIZE_MAX);
     d = good;
     d.poisson = -0.1;
-    EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
+    EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, "poisson", SIZE_MAX);
+    d = good;
+    d.material_count = 1;
+    EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, "materials", SIZE_MAX);
+    d = good;
+    d.texture = texture;
+    EXPECT_NO_BODY(&d, GX_ERROR_NOT_FINITE, "texture", 2);
     d = good;
     d.allocator.allocate = (void *(*)(void *, size_t))1;
-    EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
+    EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, "allocator", SIZE_MAX);
     d = good;
     d.allocator.reallocate = (void *(*)(void *, void *, size_t, size_t))1;
-    EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
+    EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, "allocator", SIZE_MAX);
     memcpy(e, w.elements, 4 * w.element_count * sizeof *e);
     memcpy(x, w.positions, 3 * w.node_count * sizeof *x);
     d = good;
     d.elements = e;
     d.positions = x;
     e[4 * 3 + 2] = (uint32_t)w.node_count;
-    EXPECT_NO_BODY(&d, GX_ERROR_INDEX, 3);
+    EXPECT_NO_BODY(&d, GX_ERROR_INDEX, "elements", 3);
     e[4 * 3 + 2] = UINT32_MAX;
-    EXPECT_NO_BODY(&d, GX_ERROR_INDEX, 3);
+    EXPECT_NO_BODY(&d, GX_ERROR_INDEX, "elements", 3);
     memcpy(e, w.elements, 4 * w.element_count * sizeof *e);
     e[4 * 7] = w.elements[4 * 7 + 1];
     e[4 * 7 + 1] = w.elements[4 * 7];
-    EXPECT_NO_BODY(&d, GX_ERROR_INVERTED, 7);
+    EXPECT_NO_BODY(&d, GX_ERROR_INVERTED, "elements", 7);
     e[4 * 7] = e[4 * 7 + 1];
-    EXPECT_NO_BODY(&d, GX_ERROR_FLAT, 7);
+    EXPECT_NO_BODY(&d, GX_ERROR_FLAT, "elements", 7);
     memcpy(e, w.elements, 4 * w.element_count * sizeof *e);
     bad[0] = NAN;
     bad[1] = INFINITY;
     bad[2] = -INFINITY;
     for (i = 0; i < 3; i++) {
         x[3 * 5 + i] = bad[i];
-        EXPECT_NO_BODY(&d, GX_ERROR_NOT_FINITE, 5);
+        EXPECT_NO_BODY(&d, GX_ERROR_NOT_FINITE, "positions", 5);
         x[3 * 5 + i] = w.positions[3 * 5 + i];
     }
     /* an element twice: its faces are shared by two on one side */
@@ -2557,6 +2573,7 @@ START_TEST(bad_bodies) {
     }
     free(e);
     free(x);
+    free(texture);
     wl_free(&w);
     { /* four nodes in a plane */
         static const double flat[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
@@ -2566,7 +2583,7 @@ START_TEST(bad_bodies) {
         d.node_count = 4;
         d.elements = n;
         d.element_count = 1;
-        EXPECT_NO_BODY(&d, GX_ERROR_FLAT, 0);
+        EXPECT_NO_BODY(&d, GX_ERROR_FLAT, "elements", 0);
     }
     { /* a coordinate far too small beside the others */
         static const double tiny[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1e-60, 0, 1}};
@@ -2576,7 +2593,7 @@ START_TEST(bad_bodies) {
         d.node_count = 4;
         d.elements = n;
         d.element_count = 1;
-        EXPECT_NO_BODY(&d, GX_ERROR_RANGE, 3);
+        EXPECT_NO_BODY(&d, GX_ERROR_RANGE, "positions", 3);
     }
 }
 END_TEST
@@ -2600,13 +2617,13 @@ START_TEST(volumes_that_round_below_zero) {
         if (gxb_orient3d(x, x + 3, x + 6, x + 9) >= 0) continue;
         d.positions = x;
         if (gxi_tet_volume(x) <= 0) {
-            EXPECT_NO_BODY(&d, GX_ERROR_FLAT, 0);
+            EXPECT_NO_BODY(&d, GX_ERROR_FLAT, "elements", 0);
             found++;
         }
         body = NULL;
         result = gx_body_create(&d, &body, NULL);
         ck_assert(result == GX_OK || result == GX_ERROR_FLAT);
-        if (result == GX_OK) result = gx_body_model(body, &model);
+        if (result == GX_OK) result = gx_body_model(body, &model, NULL);
         ck_assert_int_ne(result, GX_ERROR_INVERTED);
         gx_body_destroy(body);
     }
@@ -2628,7 +2645,7 @@ static void expect_numbers(gx_body *body) {
     size_t i, k;
     ck_assert(is_number(view.volume) && view.volume > 0 && is_number(view.mass) && view.mass > 0);
     for (i = 0; i < view.cell_count; i++) ck_assert(is_number(view.cell_volume[i]) && view.cell_volume[i] > 0);
-    ck_assert_int_eq(gx_body_motion(body, motions, 4), GX_OK);
+    ck_assert_int_eq(gx_body_motion(body, motions, 4, NULL), GX_OK);
     for (i = 0; i < view.fragment_count; i++) {
         ck_assert(is_number(view.fragment_volume[i]) && is_number(view.fragment_mass[i]));
         for (k = 0; k < 3; k++) ck_assert(is_number(view.fragment_center[3 * i + k]));
@@ -2636,9 +2653,9 @@ static void expect_numbers(gx_body *body) {
             ck_assert(is_number(view.fragment_inertia[6 * i + k]) && is_number(motions[i].inertia[k]));
         ck_assert(view.fragment_inertia[6 * i] > 0 && motions[i].mass > 0 && is_number(motions[i].mass));
     }
-    ck_assert_int_eq(gx_body_skin(body, NULL, &skin), GX_OK);
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
     drawn = (float *)oracle_memory(NULL, 3 * skin.vertex_count, sizeof *drawn);
-    ck_assert_int_eq(gx_body_skin_vertices(body, NULL, drawn, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_skin_vertices(body, NULL, drawn, NULL, NULL), GX_OK);
     for (i = 0; i < 3 * skin.vertex_count; i++) {
         const double x = skin.vertex_rest[i];
         ck_assert(isfinite(drawn[i]) && fabs((double)drawn[i] - x) <= FLT_EPSILON * fabs(x));
@@ -2660,8 +2677,8 @@ START_TEST(bodies_are_numbers_or_refused) {
     for (i = 0; i < 3 * w.surfaces[0].vertex_count; i++)
         w.surfaces[0].vertices[i] = ldexp(w.surfaces[0].vertices[i], e);
     desc = desc_of(&w);
-    if (e > 100) EXPECT_NO_BODY(&desc, GX_ERROR_RANGE, 1);
-    if (e < -100) EXPECT_NO_BODY(&desc, GX_ERROR_RANGE, SIZE_MAX);
+    if (e > 100) EXPECT_NO_BODY(&desc, GX_ERROR_RANGE, "positions", 1);
+    if (e < -100) EXPECT_NO_BODY(&desc, GX_ERROR_RANGE, "positions", SIZE_MAX);
     for (heavy = -1; heavy <= 1 && e >= -100 && e <= 100; heavy++) {
         gx_body *body = NULL;
         desc.density = heavy == 0 ? 1000 : 6 * ldexp(1, 700 * heavy - 3 * e);
@@ -2673,7 +2690,7 @@ START_TEST(bodies_are_numbers_or_refused) {
         gx_body_destroy(body);
         if (heavy == 0) continue;
         desc.density *= heavy > 0 ? 1.001 : 0.999;
-        EXPECT_NO_BODY(&desc, GX_ERROR_RANGE, 0);
+        EXPECT_NO_BODY(&desc, GX_ERROR_RANGE, "elements", 0);
     }
     wl_free(&w);
 }
@@ -2696,7 +2713,7 @@ START_TEST(what_is_out_of_range_is_named) {
     desc.element_materials = of;
     for (i = 1; i < 3; i++) {
         of[7] = (uint32_t)i;
-        EXPECT_NO_BODY(&desc, GX_ERROR_RANGE, 7);
+        EXPECT_NO_BODY(&desc, GX_ERROR_RANGE, "elements", 7);
         of[7] = 0;
     }
     wl_free(&w);
@@ -2705,7 +2722,7 @@ START_TEST(what_is_out_of_range_is_named) {
     for (i = 0; i < 3; i++) {
         double *const x = w.positions + 3 * (i + 1) + i;
         *x = 0x1.000001p100;
-        EXPECT_NO_BODY(&desc, GX_ERROR_RANGE, (size_t)i + 1);
+        EXPECT_NO_BODY(&desc, GX_ERROR_RANGE, "positions", (size_t)i + 1);
         *x = 1;
     }
     wl_free(&w);
@@ -2722,14 +2739,14 @@ START_TEST(motions_are_numbers_or_refused) {
     int i;
     for (i = 0; i < 3; i++) {
         view.displacement[3 * i] = far[i];
-        ck_assert_int_eq(gx_body_motion(body, &motion, 1), i == 2 ? GX_OK : GX_ERROR_RANGE);
+        ck_assert_int_eq(gx_body_motion(body, &motion, 1, NULL), i == 2 ? GX_OK : GX_ERROR_RANGE);
         view.displacement[3 * i] = 0;
         view.velocity[3 * i + 1] = -far[i];
-        ck_assert_int_eq(gx_body_motion(body, &motion, 1), i == 2 ? GX_OK : GX_ERROR_RANGE);
+        ck_assert_int_eq(gx_body_motion(body, &motion, 1, NULL), i == 2 ? GX_OK : GX_ERROR_RANGE);
         view.velocity[3 * i + 1] = i == 1 ? NAN : INFINITY;
-        ck_assert_int_eq(gx_body_motion(body, &motion, 1), GX_ERROR_NOT_FINITE);
+        ck_assert_int_eq(gx_body_motion(body, &motion, 1, NULL), GX_ERROR_NOT_FINITE);
         view.velocity[3 * i + 1] = 0;
-        ck_assert_int_eq(gx_body_motion(body, &motion, 1), GX_OK);
+        ck_assert_int_eq(gx_body_motion(body, &motion, 1, NULL), GX_OK);
     }
     gx_body_destroy(body);
     wl_free(&w);
@@ -2753,7 +2770,7 @@ START_TEST(unused_nodes) {
     add_axis_plane(&w, 0, 0.25);
     cut_by(body, &w, 0, 1);
     ck_assert_uint_eq(view_of(body).copy_count, 8);
-    ck_assert_int_eq(gx_body_skin(body, NULL, &skin), GX_OK);
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
     ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
     check_skin(body, 0);
     gx_body_destroy(body);
@@ -2761,8 +2778,8 @@ START_TEST(unused_nodes) {
 }
 END_TEST
 
-static void expect_no_cut(gx_body *body, const gx_cut_desc *desc, gx_result expected, size_t index, size_t surface,
-                          int line) {
+static void expect_no_cut(gx_body *body, const gx_cut_desc *desc, gx_result expected, const char *field, size_t index,
+                          size_t surface, int line) {
     uint64_t state = gx_body_state_hash(body), hash = hash_of(body);
     gx_failure failure;
     gx_cut_report report, untouched;
@@ -2772,13 +2789,15 @@ static void expect_no_cut(gx_body *body, const gx_cut_desc *desc, gx_result expe
     result = gx_body_cut(body, desc, &report, &failure);
     ck_assert_msg(result == expected && failure.result == expected, "line %d: %s, should be: %s", line,
                   gx_result_text(result), gx_result_text(expected));
+    ck_assert_msg(strcmp(failure.field, field) == 0, "line %d: %s, should be %s", line, failure.field, field);
     ck_assert_msg(failure.index == index && failure.surface == surface,
                   "line %d: index %zu of surface %zu, should be %zu of %zu", line, failure.index, failure.surface,
                   index, surface);
     ck_assert(gx_body_state_hash(body) == state && hash_of(body) == hash);
     ck_assert(memcmp(&report, &untouched, sizeof report) == 0);
 }
-#define EXPECT_NO_CUT(expected, index, surface) expect_no_cut(body, &desc, expected, index, surface, __LINE__)
+#define EXPECT_NO_CUT(expected, field, index, surface)                                                                 \
+    expect_no_cut(body, &desc, expected, field, index, surface, __LINE__)
 
 START_TEST(bad_cuts) {
     static const double v[9] = {-4, -4, 0.25, 4, -4, 0.25, 0, 4, 0.25};
@@ -2802,34 +2821,38 @@ START_TEST(bad_cuts) {
     ck_assert_int_eq(gx_body_cut(NULL, &desc, NULL, NULL), GX_ERROR_ARGUMENT);
     ck_assert_int_eq(gx_body_cut(body, NULL, NULL, NULL), GX_ERROR_ARGUMENT);
     desc.surface_count = 2;
-    EXPECT_NO_CUT(GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
+    EXPECT_NO_CUT(GX_ERROR_ARGUMENT, "surfaces", SIZE_MAX, SIZE_MAX);
     desc.surfaces = s;
     desc.surface_count = 0;
-    EXPECT_NO_CUT(GX_ERROR_EMPTY, SIZE_MAX, SIZE_MAX);
+    EXPECT_NO_CUT(GX_ERROR_EMPTY, "surface_count", SIZE_MAX, SIZE_MAX);
     desc.surface_count = 2;
     desc.sever_below = NAN;
-    EXPECT_NO_CUT(GX_ERROR_NOT_FINITE, SIZE_MAX, SIZE_MAX);
+    EXPECT_NO_CUT(GX_ERROR_NOT_FINITE, "sever_below", SIZE_MAX, SIZE_MAX);
+    desc.sever_below = -1e-300;
+    EXPECT_NO_CUT(GX_ERROR_ARGUMENT, "sever_below", SIZE_MAX, SIZE_MAX);
+    desc.sever_below = 1 + DBL_EPSILON;
+    EXPECT_NO_CUT(GX_ERROR_ARGUMENT, "sever_below", SIZE_MAX, SIZE_MAX);
     desc.sever_below = 0;
     s[1] = good;
     s[1].kind = 2;
-    EXPECT_NO_CUT(GX_ERROR_ARGUMENT, SIZE_MAX, 1);
+    EXPECT_NO_CUT(GX_ERROR_ARGUMENT, "surfaces.kind", SIZE_MAX, 1);
     s[1] = good;
     s[1].vertices = NULL;
-    EXPECT_NO_CUT(GX_ERROR_ARGUMENT, SIZE_MAX, 1);
+    EXPECT_NO_CUT(GX_ERROR_ARGUMENT, "surfaces.vertices", SIZE_MAX, 1);
     s[1] = good;
     s[1].triangles = NULL;
-    EXPECT_NO_CUT(GX_ERROR_ARGUMENT, SIZE_MAX, 1);
+    EXPECT_NO_CUT(GX_ERROR_ARGUMENT, "surfaces.triangles", SIZE_MAX, 1);
     s[1] = good;
     s[1].vertex_count = 0;
-    EXPECT_NO_CUT(GX_ERROR_EMPTY, SIZE_MAX, 1);
+    EXPECT_NO_CUT(GX_ERROR_EMPTY, "surfaces.vertex_count", SIZE_MAX, 1);
     s[1] = good;
     s[1].triangle_count = 0;
-    EXPECT_NO_CUT(GX_ERROR_EMPTY, SIZE_MAX, 1);
+    EXPECT_NO_CUT(GX_ERROR_EMPTY, "surfaces.triangle_count", SIZE_MAX, 1);
     s[1] = good;
     s[1].triangles = t;
     memcpy(t, n, sizeof t);
     t[4] = 3;
-    EXPECT_NO_CUT(GX_ERROR_INDEX, 1, 1);
+    EXPECT_NO_CUT(GX_ERROR_INDEX, "surfaces.triangles", 1, 1);
     s[1] = good;
     s[1].vertices = x;
     bad[0] = NAN;
@@ -2838,45 +2861,45 @@ START_TEST(bad_cuts) {
     for (i = 0; i < 3; i++) {
         memcpy(x, v, sizeof x);
         x[6 + i] = bad[i];
-        EXPECT_NO_CUT(GX_ERROR_NOT_FINITE, 2, 1);
+        EXPECT_NO_CUT(GX_ERROR_NOT_FINITE, "surfaces.vertices", 2, 1);
     }
     memcpy(x, v, sizeof x);
     x[2] = 1e-60;
-    EXPECT_NO_CUT(GX_ERROR_RANGE, 0, 1);
+    EXPECT_NO_CUT(GX_ERROR_RANGE, "surfaces.vertices", 0, 1);
     memcpy(x, v, sizeof x);
     x[3] = 1e60;
-    EXPECT_NO_CUT(GX_ERROR_RANGE, 1, 1);
+    EXPECT_NO_CUT(GX_ERROR_RANGE, "surfaces.vertices", 1, 1);
     memcpy(x, v, sizeof x);
     x[3] = 1e200;
-    EXPECT_NO_CUT(GX_ERROR_RANGE, 1, 1);
+    EXPECT_NO_CUT(GX_ERROR_RANGE, "surfaces.vertices", 1, 1);
     memcpy(x, v, sizeof x);
     x[3] = DBL_MAX;
     x[7] = DBL_MAX;
-    EXPECT_NO_CUT(GX_ERROR_RANGE, 1, 1);
+    EXPECT_NO_CUT(GX_ERROR_RANGE, "surfaces.vertices", 1, 1);
     for (i = 0; i < 9; i++) x[i] = v[i] + 40; /* far away, and used by no triangle */
     s[1].triangle_count = 1;
     x[2] = 1e-60;
-    EXPECT_NO_CUT(GX_ERROR_RANGE, 0, 1);
+    EXPECT_NO_CUT(GX_ERROR_RANGE, "surfaces.vertices", 0, 1);
     x[2] = 40;
     for (i = 0; i < 9; i++) x[i] *= 1e60;
-    EXPECT_NO_CUT(GX_ERROR_RANGE, 0, 1);
+    EXPECT_NO_CUT(GX_ERROR_RANGE, "surfaces.vertices", 0, 1);
     for (i = 0; i < 9; i++) x[i] = 1e300 + 1e299 * v[i];
-    EXPECT_NO_CUT(GX_ERROR_RANGE, 0, 1);
+    EXPECT_NO_CUT(GX_ERROR_RANGE, "surfaces.vertices", 0, 1);
     for (i = 0; i < 9; i++) x[i] = v[i] + 40;
     s[1].triangles = t;
     t[0] = t[1] = t[2] = 0;
     x[8] = -1e300;
-    EXPECT_NO_CUT(GX_ERROR_RANGE, 2, 1);
+    EXPECT_NO_CUT(GX_ERROR_RANGE, "surfaces.vertices", 2, 1);
     s[1] = good;
     s[1].texture = texture;
     for (i = 0; i < 6; i++) {
         texture[i] = (float)bad[i % 3];
-        EXPECT_NO_CUT(GX_ERROR_NOT_FINITE, i / 2, 1);
+        EXPECT_NO_CUT(GX_ERROR_NOT_FINITE, "surfaces.texture", i / 2, 1);
         texture[i] = 0;
     }
     s[1] = good;
     s[1].kind = GX_SURFACE_SOLID;
-    EXPECT_NO_CUT(GX_ERROR_NOT_CLOSED, 0, 1);
+    EXPECT_NO_CUT(GX_ERROR_NOT_CLOSED, "surfaces.triangles", 0, 1);
     gx_body_destroy(body);
     wl_free(&w);
 }
@@ -2889,27 +2912,27 @@ START_TEST(bad_arguments_elsewhere) {
     gx_step_desc step = still_step(), s;
     gx_view view = view_of(body);
     gx_skin skin;
-    gx_result result;
+    gx_failure failure;
     double forces[12];
     uint64_t state;
     memset(forces, 0, sizeof forces);
-    ck_assert_int_eq(gx_body_hold(body, &region, 1), GX_OK);
+    ck_assert_int_eq(gx_body_hold(body, &region, 1, NULL), GX_OK);
     state = gx_body_state_hash(body);
-    ck_assert_int_eq(gx_body_view(NULL, &view), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gx_body_view(body, NULL), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gx_body_skin(NULL, NULL, &skin), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gx_body_skin(body, NULL, NULL), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gx_body_hold(NULL, &region, 1), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gx_body_hold(body, NULL, 1), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_view(NULL, &view, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_view(body, NULL, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_skin(NULL, NULL, &skin, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_skin(body, NULL, NULL, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_hold(NULL, &region, 1, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_hold(body, NULL, 1, NULL), GX_ERROR_ARGUMENT);
     bad = region;
     bad.axis = 3;
-    ck_assert_int_eq(gx_body_hold(body, &bad, 1), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_hold(body, &bad, 1, NULL), GX_ERROR_ARGUMENT);
     bad = region;
     bad.side = 0;
-    ck_assert_int_eq(gx_body_hold(body, &bad, 1), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_hold(body, &bad, 1, NULL), GX_ERROR_ARGUMENT);
     bad = region;
     bad.value = NAN;
-    ck_assert_int_eq(gx_body_hold(body, &bad, 1), GX_ERROR_NOT_FINITE);
+    ck_assert_int_eq(gx_body_hold(body, &bad, 1, NULL), GX_ERROR_NOT_FINITE);
     ck_assert_int_eq(gx_body_step(NULL, &step, NULL, NULL), GX_ERROR_ARGUMENT);
     ck_assert_int_eq(gx_body_step(body, NULL, NULL, NULL), GX_ERROR_ARGUMENT);
     s = step;
@@ -2928,8 +2951,9 @@ START_TEST(bad_arguments_elsewhere) {
     s.forces = forces;
     forces[7] = NAN;
     ck_assert_int_eq(gx_body_step(body, &s, NULL, NULL), GX_ERROR_NOT_FINITE);
-    ck_assert(gx_body_topology_hash(NULL, &result) == 0);
-    ck_assert_int_eq(result, GX_ERROR_ARGUMENT);
+    ck_assert(gx_body_topology_hash(NULL, &failure) == 0);
+    ck_assert_int_eq(failure.result, GX_ERROR_ARGUMENT);
+    ck_assert_str_eq(failure.field, "body");
     ck_assert(gx_body_state_hash(body) == state);
     view.displacement[0] = NAN;
     ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_ERROR_NOT_FINITE);

@@ -34,7 +34,7 @@ static const char *solver_name(int which) {
 static gxs_solver *solver_of(int which) {
     gxs_solver_desc desc = solver_desc(which);
     gxs_solver *solver = NULL;
-    ck_assert_int_eq(gxs_solver_create(&desc, &solver), GX_OK);
+    ck_assert_int_eq(gxs_solver_create(&desc, &solver, NULL), GX_OK);
     return solver;
 }
 
@@ -195,6 +195,7 @@ static void check_finite(const scene *s) {
 static gxs_point point_at(const scene *s, size_t copy) {
     gxs_point point;
     memset(&point, 0, sizeof point);
+    point.count = 4;
     point.copy[0] = (uint32_t)copy;
     point.weight[0] = 1;
     memcpy(point.position, s->rest + 3 * copy, sizeof point.position);
@@ -205,6 +206,7 @@ static gxs_point point_within(const scene *s, size_t element, const double *weig
     gxs_point point;
     int k, r;
     memset(&point, 0, sizeof point);
+    point.count = 4;
     for (k = 0; k < 4; k++) {
         point.copy[k] = s->elements[element].copy[k];
         point.weight[k] = weights[k];
@@ -643,7 +645,8 @@ END_TEST
 
 /* Two ties of a free block, one of them wrong: the error is named, and the solver steps the model that it had, bit
    for bit. */
-static void expect_constraints(const gxs_constraint *ties, size_t count, gx_result expected, size_t index) {
+static void expect_constraints(const gxs_constraint *ties, size_t count, gx_result expected, const char *field,
+                               size_t index) {
     gxs_step_desc step = step_make(0.033, -9.81);
     double first[3 * 12];
     int run;
@@ -660,6 +663,7 @@ static void expect_constraints(const gxs_constraint *ties, size_t count, gx_resu
             s.held[0] = 0;
             ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, &failure), expected);
             ck_assert_int_eq(failure.result, expected);
+            ck_assert_pstr_eq(failure.field, field);
             ck_assert_uint_eq(failure.index, index);
         }
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
@@ -670,7 +674,7 @@ static void expect_constraints(const gxs_constraint *ties, size_t count, gx_resu
     }
 }
 
-#define constraints_with(change, result, index)                                                                        \
+#define constraints_with(change, result, field, index)                                                                 \
     do {                                                                                                               \
         gxs_constraint ties[2];                                                                                        \
         memset(ties, 0, sizeof ties);                                                                                  \
@@ -678,22 +682,22 @@ static void expect_constraints(const gxs_constraint *ties, size_t count, gx_resu
         ties[0].master[0] = ties[1].master[0] = 2;                                                                     \
         ties[0].weight[0] = ties[1].weight[0] = 1;                                                                     \
         change;                                                                                                        \
-        expect_constraints(ties, 2, result, index);                                                                    \
+        expect_constraints(ties, 2, result, field, index);                                                             \
     } while (0)
 
 START_TEST(bad_constraints_are_named) {
-    constraints_with(ties[0].copy = 12, GX_ERROR_INDEX, 0);
-    constraints_with(ties[1].copy = UINT32_MAX, GX_ERROR_INDEX, 1);
-    constraints_with(ties[1].master[0] = 12, GX_ERROR_INDEX, 1);
-    constraints_with(ties[1].master[3] = 12, GX_ERROR_INDEX, 1); /* of weight 0 */
-    constraints_with(ties[1].weight[2] = not_a_number(0), GX_ERROR_NOT_FINITE, 1);
-    constraints_with(ties[0].weight[0] = not_a_number(1), GX_ERROR_NOT_FINITE, 0);
-    constraints_with(ties[1].copy = 4, GX_ERROR_ARGUMENT, 1);      /* the same copy twice */
-    constraints_with(ties[1].master[0] = 4, GX_ERROR_ARGUMENT, 1); /* a chain */
-    constraints_with(ties[0].master[0] = 5, GX_ERROR_ARGUMENT, 0); /* a chain backwards */
-    constraints_with(ties[1].master[0] = 5, GX_ERROR_ARGUMENT, 1); /* of itself */
-    constraints_with(ties[0].master[0] = 5; ties[1].master[0] = 4, GX_ERROR_ARGUMENT, 0);
-    expect_constraints(NULL, 1, GX_ERROR_ARGUMENT, SIZE_MAX);
+    constraints_with(ties[0].copy = 12, GX_ERROR_INDEX, "constraints.copy", 0);
+    constraints_with(ties[1].copy = UINT32_MAX, GX_ERROR_INDEX, "constraints.copy", 1);
+    constraints_with(ties[1].master[0] = 12, GX_ERROR_INDEX, "constraints.master", 1);
+    constraints_with(ties[1].master[3] = 12, GX_ERROR_INDEX, "constraints.master", 1); /* of weight 0 */
+    constraints_with(ties[1].weight[2] = not_a_number(0), GX_ERROR_NOT_FINITE, "constraints.weight", 1);
+    constraints_with(ties[0].weight[0] = not_a_number(1), GX_ERROR_NOT_FINITE, "constraints.weight", 0);
+    constraints_with(ties[1].copy = 4, GX_ERROR_ARGUMENT, "constraints", 1);      /* the same copy twice */
+    constraints_with(ties[1].master[0] = 4, GX_ERROR_ARGUMENT, "constraints", 1); /* a chain */
+    constraints_with(ties[0].master[0] = 5, GX_ERROR_ARGUMENT, "constraints", 0); /* a chain backwards */
+    constraints_with(ties[1].master[0] = 5, GX_ERROR_ARGUMENT, "constraints", 1); /* of itself */
+    constraints_with(ties[0].master[0] = 5; ties[1].master[0] = 4, GX_ERROR_ARGUMENT, "constraints", 0);
+    expect_constraints(NULL, 1, GX_ERROR_ARGUMENT, "constraints", SIZE_MAX);
 }
 END_TEST
 
@@ -985,74 +989,219 @@ static void attempt_make(attempt *a) {
     a->step.contact = no_contact;
 }
 
-static void expect(attempt *a, gx_result result, size_t index) {
+static void expect(attempt *a, gx_result result, const char *field, size_t index) {
     const size_t count = 3 * a->s.model.copy_count;
     gx_failure failure;
     size_t i;
     ck_assert_int_eq(advance(a->solver, &a->s.model, &a->step, a->s.displacement, a->s.velocity, NULL, &failure),
                      result);
     ck_assert_int_eq(failure.result, result);
+    ck_assert_pstr_eq(failure.field, field);
     ck_assert_uint_eq(failure.index, index);
     for (i = 0; i < count && result != GX_OK; i++) ck_assert(a->s.displacement[i] == 0 && a->s.velocity[i] == 0);
     gxs_solver_destroy(a->solver);
     scene_free(&a->s);
 }
 
-#define attempt_with(change, result, index)                                                                            \
+#define attempt_with(change, result, field, index)                                                                     \
     do {                                                                                                               \
         attempt a;                                                                                                     \
         attempt_make(&a);                                                                                              \
         change;                                                                                                        \
-        expect(&a, result, index);                                                                                     \
+        expect(&a, result, field, index);                                                                              \
     } while (0)
 
 START_TEST(bad_input_is_named) {
     const double nan = not_a_number(0), infinity = not_a_number(1);
-    attempt_with((void)a, GX_OK, SIZE_MAX);
-    attempt_with(a.springs[1].point.copy[0] = 12, GX_ERROR_INDEX, 1);
-    attempt_with(a.springs[2].point.copy[3] = UINT32_MAX, GX_ERROR_INDEX, 2); /* of weight 0 */
-    attempt_with(a.springs[1].point.weight[3] = nan, GX_ERROR_NOT_FINITE, 1);
-    attempt_with(a.springs[1].point.position[0] = infinity, GX_ERROR_NOT_FINITE, 1);
-    attempt_with(a.springs[2].target[1] = nan, GX_ERROR_NOT_FINITE, 2);
-    attempt_with(a.springs[2].stiffness = nan, GX_ERROR_NOT_FINITE, 2);
-    attempt_with(a.springs[2].stiffness = infinity, GX_ERROR_NOT_FINITE, 2);
-    attempt_with(a.springs[2].stiffness = -1, GX_ERROR_ARGUMENT, 2);
-    attempt_with(a.step.springs = NULL, GX_ERROR_ARGUMENT, SIZE_MAX);
-    attempt_with(a.points[2].copy[1] = 12, GX_ERROR_INDEX, 2);
-    attempt_with(a.springs[1].point.epoch = 1, GX_ERROR_STALE, 1);
-    attempt_with(a.points[2].epoch = 1; a.points[2].copy[1] = 12, GX_ERROR_STALE, 2);
-    attempt_with(a.s.model.epoch = 1; a.springs[0].point.epoch = 1, GX_ERROR_STALE, 1);
-    attempt_with(a.s.model.epoch = 1; a.step.spring_count = 0, GX_ERROR_STALE, 0);
-    attempt_with(a.step.epoch = 1, GX_OK, SIZE_MAX);
-    attempt_with(a.step.epoch = 1; a.step.forces = a.s.forces, GX_ERROR_STALE, SIZE_MAX);
-    attempt_with(a.step.epoch = 1; a.step.targets = a.s.forces, GX_ERROR_STALE, SIZE_MAX);
-    attempt_with(a.step.forces = a.step.targets = a.s.forces, GX_OK, SIZE_MAX);
-    attempt_with(a.points[2].weight[0] = nan, GX_ERROR_NOT_FINITE, 2);
-    attempt_with(a.points[0].position[2] = nan, GX_ERROR_NOT_FINITE, 0);
-    attempt_with(a.step.points = NULL, GX_ERROR_ARGUMENT, SIZE_MAX);
-    attempt_with(a.planes[1].normal[0] = nan, GX_ERROR_NOT_FINITE, 1);
-    attempt_with(a.planes[1].offset = infinity, GX_ERROR_NOT_FINITE, 1);
-    attempt_with(a.planes[0].stiffness = nan, GX_ERROR_NOT_FINITE, 0);
-    attempt_with(a.planes[0].friction = nan, GX_ERROR_NOT_FINITE, 0);
-    attempt_with(a.planes[0].sticking_speed = nan, GX_ERROR_NOT_FINITE, 0);
-    attempt_with(a.planes[1].normal[2] = 1.01, GX_ERROR_ARGUMENT, 1);
-    attempt_with(a.planes[1].normal[2] = 0, GX_ERROR_ARGUMENT, 1);
-    attempt_with(a.planes[1].stiffness = -1, GX_ERROR_ARGUMENT, 1);
-    attempt_with(a.planes[1].friction = -1, GX_ERROR_ARGUMENT, 1);
-    attempt_with(a.planes[1].sticking_speed = -1, GX_ERROR_ARGUMENT, 1);
-    attempt_with(a.step.planes = NULL, GX_ERROR_ARGUMENT, SIZE_MAX);
-    attempt_with(a.step.sleep_speed = 1, GX_OK, SIZE_MAX);
-    attempt_with(a.step.sleep_speed = 1; a.step.rest_times = NULL, GX_ERROR_ARGUMENT, SIZE_MAX);
-    attempt_with(a.step.sleep_speed = -1, GX_ERROR_ARGUMENT, SIZE_MAX);
-    attempt_with(a.step.sleep_speed = nan, GX_ERROR_NOT_FINITE, SIZE_MAX);
-    attempt_with(a.step.sleep_time = -1, GX_ERROR_ARGUMENT, SIZE_MAX);
-    attempt_with(a.step.sleep_time = nan, GX_ERROR_NOT_FINITE, SIZE_MAX);
-    attempt_with(a.step.sleep_speed = 1; a.rest_times[7] = nan, GX_ERROR_NOT_FINITE, 7);
-    attempt_with(a.step.budget_seconds = 1, GX_OK, SIZE_MAX);
-    attempt_with(a.step.budget_seconds = 1; a.step.clock = NULL, GX_ERROR_ARGUMENT, SIZE_MAX);
-    attempt_with(a.step.budget_seconds = -1, GX_ERROR_ARGUMENT, SIZE_MAX);
-    attempt_with(a.step.budget_seconds = infinity, GX_ERROR_NOT_FINITE, SIZE_MAX);
-    attempt_with(a.step.integrator = GXS_STATIC; a.step.dt = -1, GX_ERROR_ARGUMENT, SIZE_MAX);
+    attempt_with((void)a, GX_OK, NULL, SIZE_MAX);
+    attempt_with(a.springs[1].point.copy[0] = 12, GX_ERROR_INDEX, "springs.point.copy", 1);
+    attempt_with(a.springs[2].point.copy[3] = UINT32_MAX, GX_ERROR_INDEX, "springs.point.copy", 2); /* of weight 0 */
+    attempt_with(a.springs[1].point.weight[3] = nan, GX_ERROR_NOT_FINITE, "springs.point.weight", 1);
+    attempt_with(a.springs[1].point.position[0] = infinity, GX_ERROR_NOT_FINITE, "springs.point.position", 1);
+    attempt_with(a.springs[2].target[1] = nan, GX_ERROR_NOT_FINITE, "springs.target", 2);
+    attempt_with(a.springs[2].stiffness = nan, GX_ERROR_NOT_FINITE, "springs.stiffness", 2);
+    attempt_with(a.springs[2].stiffness = infinity, GX_ERROR_NOT_FINITE, "springs.stiffness", 2);
+    attempt_with(a.springs[2].stiffness = -1, GX_ERROR_ARGUMENT, "springs.stiffness", 2);
+    attempt_with(a.step.springs = NULL, GX_ERROR_ARGUMENT, "springs", SIZE_MAX);
+    attempt_with(a.points[2].copy[1] = 12, GX_ERROR_INDEX, "points.copy", 2);
+    attempt_with(a.springs[1].point.epoch = 1, GX_ERROR_STALE, "springs.point.epoch", 1);
+    attempt_with(a.points[2].epoch = 1; a.points[2].copy[1] = 12, GX_ERROR_STALE, "points.epoch", 2);
+    attempt_with(a.s.model.epoch = 1; a.springs[0].point.epoch = 1, GX_ERROR_STALE, "springs.point.epoch", 1);
+    attempt_with(a.s.model.epoch = 1; a.step.spring_count = 0, GX_ERROR_STALE, "points.epoch", 0);
+    attempt_with(a.step.epoch = 1, GX_OK, NULL, SIZE_MAX);
+    attempt_with(a.step.epoch = 1; a.step.forces = a.s.forces, GX_ERROR_STALE, "epoch", SIZE_MAX);
+    attempt_with(a.step.epoch = 1; a.step.targets = a.s.forces, GX_ERROR_STALE, "epoch", SIZE_MAX);
+    attempt_with(a.step.forces = a.step.targets = a.s.forces, GX_OK, NULL, SIZE_MAX);
+    attempt_with(a.points[2].weight[0] = nan, GX_ERROR_NOT_FINITE, "points.weight", 2);
+    attempt_with(a.points[0].position[2] = nan, GX_ERROR_NOT_FINITE, "points.position", 0);
+    attempt_with(a.step.points = NULL, GX_ERROR_ARGUMENT, "points", SIZE_MAX);
+    attempt_with(a.planes[1].normal[0] = nan, GX_ERROR_NOT_FINITE, "planes.normal", 1);
+    attempt_with(a.planes[1].offset = infinity, GX_ERROR_NOT_FINITE, "planes.offset", 1);
+    attempt_with(a.planes[0].stiffness = nan, GX_ERROR_NOT_FINITE, "planes.stiffness", 0);
+    attempt_with(a.planes[0].friction = nan, GX_ERROR_NOT_FINITE, "planes.friction", 0);
+    attempt_with(a.planes[0].sticking_speed = nan, GX_ERROR_NOT_FINITE, "planes.sticking_speed", 0);
+    attempt_with(a.planes[1].normal[2] = 1.01, GX_ERROR_ARGUMENT, "planes.normal", 1);
+    attempt_with(a.planes[1].normal[2] = 0, GX_ERROR_ARGUMENT, "planes.normal", 1);
+    attempt_with(a.planes[1].stiffness = -1, GX_ERROR_ARGUMENT, "planes.stiffness", 1);
+    attempt_with(a.planes[1].friction = -1, GX_ERROR_ARGUMENT, "planes.friction", 1);
+    attempt_with(a.planes[1].sticking_speed = -1, GX_ERROR_ARGUMENT, "planes.sticking_speed", 1);
+    attempt_with(a.step.planes = NULL, GX_ERROR_ARGUMENT, "planes", SIZE_MAX);
+    attempt_with(a.step.sleep_speed = 1, GX_OK, NULL, SIZE_MAX);
+    attempt_with(a.step.sleep_speed = 1; a.step.rest_times = NULL, GX_ERROR_ARGUMENT, "rest_times", SIZE_MAX);
+    attempt_with(a.step.sleep_speed = -1, GX_ERROR_ARGUMENT, "sleep_speed", SIZE_MAX);
+    attempt_with(a.step.sleep_speed = nan, GX_ERROR_NOT_FINITE, "sleep_speed", SIZE_MAX);
+    attempt_with(a.step.sleep_time = -1, GX_ERROR_ARGUMENT, "sleep_time", SIZE_MAX);
+    attempt_with(a.step.sleep_time = nan, GX_ERROR_NOT_FINITE, "sleep_time", SIZE_MAX);
+    attempt_with(a.step.sleep_speed = 1; a.rest_times[7] = nan, GX_ERROR_NOT_FINITE, "rest_times", 7);
+    attempt_with(a.step.budget_seconds = 1, GX_OK, NULL, SIZE_MAX);
+    attempt_with(a.step.budget_seconds = 1; a.step.clock = NULL, GX_ERROR_ARGUMENT, "clock", SIZE_MAX);
+    attempt_with(a.step.budget_seconds = -1, GX_ERROR_ARGUMENT, "budget_seconds", SIZE_MAX);
+    attempt_with(a.step.budget_seconds = infinity, GX_ERROR_NOT_FINITE, "budget_seconds", SIZE_MAX);
+    attempt_with(a.step.integrator = GXS_STATIC; a.step.dt = -1, GX_ERROR_ARGUMENT, "dt", SIZE_MAX);
+}
+END_TEST
+
+/* ---- spans ---- */
+
+/* The block with a spring and contact points, stepped five times. way: 0: each point has its four copies; 1: in
+   arrays of the caller's; 2: each copy four times, with a quarter of its weight */
+static void step_spans(int which, int way, double *end, size_t count, double *force) {
+    gxs_solver *solver = solver_of(which);
+    scene s;
+    gxs_step_desc step = step_tight(0.01, -9.81);
+    enum { POINTS = 20 };
+    gxs_plane plane = plane_make(1e4, 0.4);
+    gxs_spring spring;
+    gxs_point points[POINTS + 1];
+    uint32_t copies[POINTS + 1][16];
+    double weights[POINTS + 1][16], at[4] = {0.1, 0.2, 0.3, 0.4};
+    int i, frame;
+    uint32_t k;
+    seed(9);
+    s = scene_block(4, 3, 3, 0.25, 0.1, 0);
+    ck_assert_uint_eq(count, 3 * s.model.copy_count);
+    for (i = 0; i <= POINTS; i++) {
+        gxs_point *p = &points[i];
+        *p = point_within(&s, (size_t)(7 * i) % s.model.element_count, at);
+        if (way == 0) continue;
+        for (k = 0; k < 16; k++) {
+            copies[i][k] = p->copy[k % 4];
+            weights[i][k] = way == 1 ? p->weight[k % 4] : p->weight[k % 4] / 4;
+        }
+        for (k = 0; k < 4; k++) p->copy[k] = UINT32_MAX; /* is not read */
+        p->count = way == 1 ? 4 : 16;
+        p->copies = copies[i];
+        p->weights = weights[i];
+    }
+    spring = spring_make(points[POINTS], 2e4);
+    spring.target[0] += 0.2;
+    spring.target[2] += 0.3;
+    plane.offset = 0.2;
+    step.springs = &spring;
+    step.spring_count = 1;
+    step.spring_forces = force;
+    step.points = points;
+    step.point_count = POINTS;
+    step.planes = &plane;
+    step.plane_count = 1;
+    step.sleep_speed = 1e-6;
+    step.rest_times = (double *)zeroed(s.model.copy_count, sizeof(double));
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+    for (frame = 0; frame < 5; frame++)
+        ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+    memcpy(end, s.displacement, count * sizeof *end);
+    free(step.rest_times);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+
+/* Where a point's copies stand is one; how often they are counted is one, but for rounding. */
+START_TEST(points_are_spans) {
+    enum { COUNT = 3 * 5 * 4 * 4 };
+    static double end[3][COUNT];
+    double force[3][3], most = 0;
+    int way, i;
+    for (way = 0; way < 3; way++) step_spans(_i, way, end[way], COUNT, force[way]);
+    ck_assert_int_eq(memcmp(end[0], end[1], sizeof end[0]), 0);
+    ck_assert_int_eq(memcmp(force[0], force[1], sizeof force[0]), 0);
+    for (i = 0; i < COUNT; i++) most = fmax(most, fabs(end[0][i]));
+    ck_assert(most > 1e-2);
+    for (i = 0; i < COUNT; i++)
+        assert_that(fabs(end[2][i] - end[0][i]) < 1e-8 * most, "%d: %.17g, not %.17g", i, end[2][i], end[0][i]);
+}
+END_TEST
+
+/* The difference of two points is a point whose weights have the sum 0: it has the copies of both. A spring draws the
+   two blocks together, and their common momentum stays. */
+START_TEST(a_pair_is_one_span) {
+    gxs_solver *solver = solver_of(_i);
+    scene s = scene_block(2, 2, 2, 0.5, 0.1, 200), other = scene_block(2, 2, 2, 0.5, 0.1, 0);
+    gxs_step_desc step = step_tight(0.01, 0);
+    const size_t apart = s.model.copy_count;
+    const size_t elements = s.model.element_count;
+    uint32_t copies[GXS_POINT_MOST];
+    double weights[GXS_POINT_MOST], force[3], momentum = 0, left = 0, at[4] = {0.25, 0.25, 0.25, 0.25};
+    gxs_point a, b;
+    gxs_spring spring;
+    size_t i;
+    int k, j;
+    scene_add(&s, &other, 3, 0, 0);
+    a = point_within(&s, 5, at);
+    b = point_within(&s, elements + 5, at);
+    memset(&spring, 0, sizeof spring);
+    for (k = 0; k < GXS_POINT_MOST; k++) { /* each copy four times, as the most copies of a point */
+        const gxs_point *side = k < GXS_POINT_MOST / 2 ? &a : &b;
+        copies[k] = side->copy[k % 4];
+        weights[k] = (side == &a ? 1 : -1) * side->weight[k % 4] / 4;
+    }
+    for (k = 0; k < 3; k++) spring.point.position[k] = a.position[k] - b.position[k];
+    spring.point.count = GXS_POINT_MOST;
+    spring.point.copies = copies;
+    spring.point.weights = weights;
+    spring.stiffness = 1e4; /* its target is 0: no distance */
+    step.springs = &spring;
+    step.spring_count = 1;
+    step.spring_forces = force;
+    ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+    ck_assert_double_gt(force[0], 1e4); /* on a, towards b */
+    for (i = 0; i < s.model.element_count; i++)
+        for (k = 0; k < 4; k++)
+            for (j = 0; j < 4; j++) {
+                static const int rows[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+                const double p = s.elements[i].mass[rows[k][j]] * s.velocity[3 * s.elements[i].copy[j]];
+                momentum += p;
+                left += s.elements[i].copy[j] < apart ? p : 0;
+            }
+    assert_that(fabs(left - step.dt * force[0]) < 1e-5 * left, "%g, not %g", left, step.dt * force[0]);
+    assert_that(fabs(momentum) < 1e-5 * left, "%g of %g", momentum, left);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
+START_TEST(bad_spans_are_named) {
+    static const uint32_t copies[40] = {0, 1, 2, 3, 4, 5}, beyond[6] = {0, 1, 2, 3, 12, 0};
+    static const double weights[40] = {0.5, 0.5};
+    double bad[6] = {0.5, 0.5, 0, 0, 0, 0};
+    bad[5] = not_a_number(0);
+#define SPAN(p, n, c, w)                                                                                               \
+    (p).count = (n);                                                                                                   \
+    (p).copies = (c);                                                                                                  \
+    (p).weights = (w)
+    attempt_with(SPAN(a.springs[1].point, 6, copies, weights), GX_OK, NULL, SIZE_MAX);
+    attempt_with(SPAN(a.points[1], GXS_POINT_MOST, copies, weights), GX_OK, NULL, SIZE_MAX);
+    attempt_with(a.springs[1].point.count = 0, GX_ERROR_ARGUMENT, "springs.point.count", 1);
+    attempt_with(a.springs[1].point.count = 5, GX_ERROR_ARGUMENT, "springs.point.copies", 1);
+    attempt_with(SPAN(a.springs[1].point, 4, NULL, weights), GX_ERROR_ARGUMENT, "springs.point.copies", 1);
+    attempt_with(SPAN(a.springs[1].point, 6, copies, NULL), GX_ERROR_ARGUMENT, "springs.point.weights", 1);
+    attempt_with(SPAN(a.springs[1].point, 33, copies, weights), GX_ERROR_LIMIT, "springs.point.count", 1);
+    attempt_with(SPAN(a.springs[1].point, 6, beyond, weights), GX_ERROR_INDEX, "springs.point.copies", 1);
+    attempt_with(SPAN(a.springs[1].point, 6, copies, bad), GX_ERROR_NOT_FINITE, "springs.point.weights", 1);
+    attempt_with(a.points[2].count = 0, GX_ERROR_ARGUMENT, "points.count", 2);
+    attempt_with(SPAN(a.points[2], 33, copies, weights), GX_ERROR_LIMIT, "points.count", 2);
+    attempt_with(SPAN(a.points[2], 6, beyond, weights), GX_ERROR_INDEX, "points.copies", 2);
+    attempt_with(SPAN(a.points[2], 6, copies, bad), GX_ERROR_NOT_FINITE, "points.weights", 2);
+#undef SPAN
 }
 END_TEST
 
@@ -2760,7 +2909,7 @@ static int run_with(failing *f, int which) {
     gxs_solver *solver = NULL;
     int size, failed = 0;
     desc.allocator.allocate = failing_allocate, desc.allocator.release = failing_release, desc.allocator.user = f;
-    if (gxs_solver_create(&desc, &solver) != GX_OK) {
+    if (gxs_solver_create(&desc, &solver, NULL) != GX_OK) {
         ck_assert_ptr_null(solver);
         return 1;
     }
@@ -2827,7 +2976,7 @@ START_TEST(steps_allocate_for_more_points_only) {
     scene s = scene_block(4, 4, 4, 0.5, 0, 0);
     points = points_of(&s, 0, s.model.copy_count);
     desc.allocator.allocate = failing_allocate, desc.allocator.release = failing_release, desc.allocator.user = &f;
-    ck_assert_int_eq(gxs_solver_create(&desc, &solver), GX_OK);
+    ck_assert_int_eq(gxs_solver_create(&desc, &solver, NULL), GX_OK);
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
     step.points = points;
     step.planes = &plane;
@@ -3189,6 +3338,9 @@ static Suite *forces_suite(void) {
     tcase_add_loop_test(springs, stiff_springs_lead, 0, SOLVERS);
     ADD_SOME(springs, later_springs_converge_as_well, 3 * 4); /* not by volume ratio, which is for comparison */
     tcase_add_test(input, bad_input_is_named);
+    tcase_add_test(input, bad_spans_are_named);
+    tcase_add_loop_test(input, points_are_spans, 0, SOLVERS);
+    tcase_add_loop_test(input, a_pair_is_one_span, 0, SOLVERS);
     ADD_SOME(contact, dropped_block_comes_to_rest, SOLVERS);
     tcase_add_loop_test(contact, contact_balances_momentum, 0, SOLVERS);
     tcase_add_loop_test(contact, friction_balances_momentum, 0, 4); /* not by volume ratio */

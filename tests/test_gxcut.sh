@@ -103,6 +103,7 @@ refuses "thickness 0" 2 "--thickness" cube5 --thickness 0
 refuses "frames -1" 2 "--frames" cube5 --frames -1
 refuses "gravity of two" 2 "--gravity" cube5 --gravity 0,1
 refuses "no such axis" 2 "--fix" cube5 --fix 'w<1'
+refuses "nothing to hold" 2 "--fix: regions 1: .*region" cube5 --fix 'z<0.1' --fix 'z>1'
 refuses "no such format" 2 "--format" cube5 --format stl
 refuses "cut after the end" 2 "--cut-at" cube5 --frames 3 --cut-at 3
 refuses "grid of 7" 2 "grid:1,1,1,7" grid:1,1,1,7

@@ -258,7 +258,7 @@ static void sheets_cut(sheets_case *c, size_t sheet) {
 static void sheets_check(sheets_case *c, uint64_t seed) {
     const least_result counted = least_of(&c->mesh, &c->sheets);
     gx_view view;
-    ck_assert_int_eq(gx_body_view(c->body, &view), GX_OK);
+    ck_assert_int_eq(gx_body_view(c->body, &view, NULL), GX_OK);
     ck_assert_msg(counted.least == view.copy_count && counted.replicas == view.copy_count,
                   "seed %lu: least %lu, replicas %lu, copies %lu", (unsigned long)seed, (unsigned long)counted.least,
                   (unsigned long)counted.replicas, (unsigned long)view.copy_count);

@@ -293,7 +293,7 @@ static const double origin0[3] = {0, 0, 0};
 static gxi_moments2 moments2_of(const mesh *m, const double *origin) {
     gxi_surface s = surface_of(m);
     gxi_moments2 r;
-    ck_assert_int_eq(gxi_polyhedron_moments2(&s, origin, &r), GX_OK);
+    ck_assert_int_eq(gxi_polyhedron_moments2(&s, origin, &r, NULL), GX_OK);
     return r;
 }
 
@@ -369,7 +369,7 @@ START_TEST(boxes_to_degree_6) {
     }
     m = make_box(lower, upper);
     s = surface_of(&m);
-    ck_assert_int_eq(gxi_polyhedron_monomials(&s, NULL, 6, moments, work), GX_OK);
+    ck_assert_int_eq(gxi_polyhedron_monomials(&s, NULL, 6, moments, work, NULL), GX_OK);
     for (p[0] = 0; p[0] <= 6; p[0]++)
         for (p[1] = 0; p[0] + p[1] <= 6; p[1]++)
             for (p[2] = 0; p[0] + p[1] + p[2] <= 6; p[2]++) {
@@ -399,7 +399,7 @@ START_TEST(translation_and_map) {
     assert_moments2(&r, &direct, 1e-11, 10);
     /* the general form in the same order */
     s = surface_of(&moved);
-    ck_assert_int_eq(gxi_polyhedron_monomials(&s, shift, 2, m20, work), GX_OK);
+    ck_assert_int_eq(gxi_polyhedron_monomials(&s, shift, 2, m20, work, NULL), GX_OK);
     ASSERT_NEAR(m20[0], direct.volume, 1e-11);
     for (i = 0; i < 3; i++) ASSERT_NEAR(m20[1 + i], direct.first[i], 1e-10);
     for (i = 0; i < 6; i++) ASSERT_NEAR(m20[4 + i], direct.second[i], 1e-9);
@@ -440,7 +440,7 @@ START_TEST(voxel_bodies_to_degree_6) {
     map_mesh(&m, a, t);
     s = surface_of(&m);
     voxel_oracle(3, cells, a, t, 6, sum, size);
-    ck_assert_int_eq(gxi_polyhedron_monomials(&s, NULL, 6, moments, work), GX_OK);
+    ck_assert_int_eq(gxi_polyhedron_monomials(&s, NULL, 6, moments, work, NULL), GX_OK);
     for (i = 0; i <= 6; i++)
         for (j = 0; i + j <= 6; j++)
             for (k = 0; i + j + k <= 6; k++) {
@@ -448,7 +448,7 @@ START_TEST(voxel_bodies_to_degree_6) {
                 double tolerance = 1e-13 * (pow(2, i + j + k) + (double)size[at]);
                 ASSERT_NEAR(moments[at], sum[at], tolerance);
                 if (_i > 2) continue;
-                ck_assert_int_eq(gxi_polyhedron_monomial(&s, NULL, i, j, k, &one), GX_OK);
+                ck_assert_int_eq(gxi_polyhedron_monomial(&s, NULL, i, j, k, &one, NULL), GX_OK);
                 ASSERT_NEAR(one, sum[at], tolerance);
             }
 }
@@ -468,9 +468,9 @@ START_TEST(far_from_the_origin) {
     moved = m;
     for (i = 0; i < 3 * m.position_count; i++) moved.positions[i] += far[i % 3];
     s = surface_of(&m);
-    ck_assert_int_eq(gxi_polyhedron_monomials(&s, NULL, 6, near_moments, work), GX_OK);
+    ck_assert_int_eq(gxi_polyhedron_monomials(&s, NULL, 6, near_moments, work, NULL), GX_OK);
     s = surface_of(&moved);
-    ck_assert_int_eq(gxi_polyhedron_monomials(&s, far, 6, far_moments, work), GX_OK);
+    ck_assert_int_eq(gxi_polyhedron_monomials(&s, far, 6, far_moments, work, NULL), GX_OK);
     for (i = 0; i < 84; i++) ASSERT_NEAR(far_moments[i], near_moments[i], 0);
     m2 = moments2_of(&moved, far);
     expected = moments2_of(&m, NULL);
@@ -496,9 +496,9 @@ START_TEST(monomials_translate) {
         shift[i] = random_between(-1, 1);
         minus[i] = -shift[i];
     }
-    ck_assert_int_eq(gxi_polyhedron_monomials(&s, NULL, 6, here, work), GX_OK);
-    ck_assert_int_eq(gxi_polyhedron_monomials(&s, minus, 6, there, work), GX_OK);
-    ck_assert_int_eq(gxi_monomials_translate(6, shift, here), GX_OK);
+    ck_assert_int_eq(gxi_polyhedron_monomials(&s, NULL, 6, here, work, NULL), GX_OK);
+    ck_assert_int_eq(gxi_polyhedron_monomials(&s, minus, 6, there, work, NULL), GX_OK);
+    ck_assert_int_eq(gxi_monomials_translate(6, shift, here, NULL), GX_OK);
     for (i = 0; i < 84; i++) ASSERT_NEAR(here[i], there[i], 1e-12);
 }
 END_TEST
@@ -513,7 +513,7 @@ START_TEST(high_degrees) {
     double *moments = (double *)malloc(2 * count * sizeof(double));
     unsigned i, j, k, step = degree > 20 ? degree / 5 : 1;
     ck_assert_ptr_nonnull(moments);
-    ck_assert_int_eq(gxi_polyhedron_monomials(&s, NULL, degree, moments, moments + count), GX_OK);
+    ck_assert_int_eq(gxi_polyhedron_monomials(&s, NULL, degree, moments, moments + count, NULL), GX_OK);
     for (i = 0; i <= degree; i += step)
         for (j = 0; i + j <= degree; j += step)
             for (k = 0; i + j + k <= degree; k += step) {
@@ -567,8 +567,8 @@ START_TEST(open_surface_against_gauss) {
         triangle_oracle(a, b, c, origin, sqrtl(area), 6, sum, size);
         for (d = 0; d < 3; d++) triangle_oracle(a, b, c, origin, n[d], 6, flux[d], flux_size[d]);
     }
-    ck_assert_int_eq(gxi_surface_monomials(&s, origin, 6, moments, work), GX_OK);
-    ck_assert_int_eq(gxi_surface_flux_monomials(&s, origin, 6, flux_moments, work), GX_OK);
+    ck_assert_int_eq(gxi_surface_monomials(&s, origin, 6, moments, work, NULL), GX_OK);
+    ck_assert_int_eq(gxi_surface_flux_monomials(&s, origin, 6, flux_moments, work, NULL), GX_OK);
     for (i = 0; i < 84; i++) {
         ASSERT_NEAR(moments[i], sum[i], 1e-14 * (1 + (double)size[i]));
         for (d = 0; d < 3; d++) ASSERT_NEAR(flux_moments[3 * i + d], flux[d][i], 1e-14 * (1 + (double)size[i]));
@@ -588,8 +588,8 @@ START_TEST(divergence_theorem) {
     for (d = 0; d < 9; d++) a[d] /= 3;
     map_mesh(&m, a, t);
     s = surface_of(&m);
-    ck_assert_int_eq(gxi_polyhedron_monomials(&s, NULL, 6, volume, work), GX_OK);
-    ck_assert_int_eq(gxi_surface_flux_monomials(&s, NULL, 6, flux, work), GX_OK);
+    ck_assert_int_eq(gxi_polyhedron_monomials(&s, NULL, 6, volume, work, NULL), GX_OK);
+    ck_assert_int_eq(gxi_surface_flux_monomials(&s, NULL, 6, flux, work, NULL), GX_OK);
     for (p[0] = 0; p[0] <= 6; p[0]++)
         for (p[1] = 0; p[0] + p[1] <= 6; p[1]++)
             for (p[2] = 0; p[0] + p[1] + p[2] <= 6; p[2]++)
@@ -608,7 +608,7 @@ START_TEST(areas) {
     mesh m = make_box(lower, upper);
     gxi_surface s = surface_of(&m);
     double moments[4], work[4], n[3];
-    ck_assert_int_eq(gxi_surface_monomials(&s, NULL, 1, moments, work), GX_OK);
+    ck_assert_int_eq(gxi_surface_monomials(&s, NULL, 1, moments, work, NULL), GX_OK);
     ASSERT_NEAR(moments[0], 22, 1e-14);
     ASSERT_NEAR(moments[1], 11, 1e-14);
     ASSERT_NEAR(moments[2], 22, 1e-14);
@@ -1172,7 +1172,8 @@ START_TEST(cut_faces) {
     ASSERT_RELATIVE(gxip_length(n), area, 1e-14);
     gxi_face_load_add(lambda[0], lambda[1], lambda[2], area, load);
     gxi_face_mass_add(lambda[0], lambda[1], lambda[2], area, mass);
-    ck_assert_int_eq(gxi_surface_monomials(&s, x, 2, moments, work), GX_OK); /* about vertex 0: lambda_0 = 1 there */
+    ck_assert_int_eq(gxi_surface_monomials(&s, x, 2, moments, work, NULL), GX_OK); /* about vertex 0: lambda_0 = 1 there
+                                                                                    */
     for (i = 0; i < 4; i++) ASSERT_NEAR(load[i], (i == 0) * moments[0] + gxip_dot(g + 3 * i, moments + 1), 1e-12);
     for (i = 0; i < 4; i++)
         for (j = i; j < 4; j++, at++) {
@@ -1229,12 +1230,12 @@ static gx_result moments2_result(const double *positions, size_t position_count,
     s.triangle_count = triangle_count;
     memset(&m, 0x2a, sizeof m);
     before = m;
-    result = gxi_polyhedron_moments2(&s, origin, &m);
+    result = gxi_polyhedron_moments2(&s, origin, &m, NULL);
     for (i = 0; i < 30; i++) moments[i] = work[i] = 42;
-    ck_assert_int_eq(gxi_polyhedron_monomials(&s, origin, 2, moments, work), result);
-    ck_assert_int_eq(gxi_surface_monomials(&s, origin, 2, moments, work), result);
-    ck_assert_int_eq(gxi_surface_flux_monomials(&s, origin, 2, moments, work), result);
-    ck_assert_int_eq(gxi_polyhedron_monomial(&s, origin, 0, 2, 0, &one), result);
+    ck_assert_int_eq(gxi_polyhedron_monomials(&s, origin, 2, moments, work, NULL), result);
+    ck_assert_int_eq(gxi_surface_monomials(&s, origin, 2, moments, work, NULL), result);
+    ck_assert_int_eq(gxi_surface_flux_monomials(&s, origin, 2, moments, work, NULL), result);
+    ck_assert_int_eq(gxi_polyhedron_monomial(&s, origin, 0, 2, 0, &one, NULL), result);
     if (result == GX_OK) return result;
     ck_assert_mem_eq(&m, &before, sizeof m);
     for (i = 0; i < 30; i++) ck_assert(moments[i] == 42 && work[i] == 42);
@@ -1266,19 +1267,19 @@ START_TEST(bad_surfaces) {
     p[7] = 0;
     ck_assert_int_eq(moments2_result(p, 4, t, 4, far), GX_ERROR_RANGE);
     p[7] = 1;
-    ck_assert_int_eq(gxi_polyhedron_moments2(NULL, NULL, NULL), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gxi_polyhedron_moments2(&s, NULL, NULL), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gxi_polyhedron_monomials(NULL, NULL, 0, m, w), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gxi_polyhedron_monomials(&s, NULL, 0, NULL, w), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gxi_polyhedron_monomials(&s, NULL, 0, m, NULL), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gxi_polyhedron_monomials(&s, NULL, GXI_DEGREE_MAX + 1, m, w), GX_ERROR_RANGE);
-    ck_assert_int_eq(gxi_polyhedron_monomial(&s, NULL, 0, 0, 0, NULL), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gxi_polyhedron_monomial(&s, NULL, (unsigned)-1, 1, 1, m), GX_ERROR_RANGE);
-    ck_assert_int_eq(gxi_polyhedron_monomial(&s, NULL, 200, 200, 200, m), GX_ERROR_RANGE);
-    ck_assert_int_eq(gxi_monomials_translate(0, NULL, m), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gxi_monomials_translate(0, origin0, NULL), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gxi_monomials_translate(0, bad_origin, m), GX_ERROR_NOT_FINITE);
-    ck_assert_int_eq(gxi_monomials_translate(GXI_DEGREE_MAX + 1, origin0, m), GX_ERROR_RANGE);
+    ck_assert_int_eq(gxi_polyhedron_moments2(NULL, NULL, NULL, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxi_polyhedron_moments2(&s, NULL, NULL, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxi_polyhedron_monomials(NULL, NULL, 0, m, w, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxi_polyhedron_monomials(&s, NULL, 0, NULL, w, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxi_polyhedron_monomials(&s, NULL, 0, m, NULL, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxi_polyhedron_monomials(&s, NULL, GXI_DEGREE_MAX + 1, m, w, NULL), GX_ERROR_RANGE);
+    ck_assert_int_eq(gxi_polyhedron_monomial(&s, NULL, 0, 0, 0, NULL, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxi_polyhedron_monomial(&s, NULL, (unsigned)-1, 1, 1, m, NULL), GX_ERROR_RANGE);
+    ck_assert_int_eq(gxi_polyhedron_monomial(&s, NULL, 200, 200, 200, m, NULL), GX_ERROR_RANGE);
+    ck_assert_int_eq(gxi_monomials_translate(0, NULL, m, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxi_monomials_translate(0, origin0, NULL, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxi_monomials_translate(0, bad_origin, m, NULL), GX_ERROR_NOT_FINITE);
+    ck_assert_int_eq(gxi_monomials_translate(GXI_DEGREE_MAX + 1, origin0, m, NULL), GX_ERROR_RANGE);
 }
 END_TEST
 
@@ -1293,13 +1294,13 @@ START_TEST(accepted_means_finite) {
     int e, accepted = 0, finite = 1;
     for (e = -1000; e < 1020; e += 3) {
         for (i = 0; i < 12; i++) p[i] = ldexp(i % 4 == 0 ? 1 : -0.9, e) * (i % 5 == 2 ? -1 : 1);
-        result = gxi_polyhedron_monomials(&s, NULL, degree, moments, work);
+        result = gxi_polyhedron_monomials(&s, NULL, degree, moments, work, NULL);
         if (result != GX_OK) break;
         accepted = e;
         for (i = 0; i < gxi_monomial_count(degree); i++)
             finite &= gxip_is_finite(moments[i]) && gxip_is_finite(work[i]);
         ck_assert(finite);
-        ck_assert_int_eq(gxi_surface_flux_monomials(&s, NULL, 0, moments, work), GX_OK);
+        ck_assert_int_eq(gxi_surface_flux_monomials(&s, NULL, 0, moments, work, NULL), GX_OK);
     }
     ck_assert_int_eq(result, GX_ERROR_RANGE);
     ck_assert_int_ge(accepted + 3, 900 / ((int)degree + 3)); /* not refused without need */

@@ -99,7 +99,7 @@ static void compare_models(const workload *w, double tolerance, double more) {
     gx_body *body = cut_in_sequence(w);
     literal *l = literal_cut_by(w);
     gxs_model ours, theirs;
-    ck_assert_int_eq(gx_body_model(body, &ours), GX_OK);
+    ck_assert_int_eq(gx_body_model(body, &ours, NULL), GX_OK);
     literal_model(l, &theirs);
     compare_parts(&ours, &theirs, tolerance, more);
     compare_copies(&ours, &theirs, tolerance, more);
@@ -223,7 +223,7 @@ START_TEST(replicas_are_whole_elements) {
     gxs_model model;
     gxs_element *replicas;
     size_t i, k;
-    ck_assert_int_eq(gx_body_model(uncut, &model), GX_OK);
+    ck_assert_int_eq(gx_body_model(uncut, &model, NULL), GX_OK);
     replicas = (gxs_element *)malloc(model.element_count * sizeof *replicas);
     vna_replicate(model.elements, model.element_count, &density, replicas);
     for (i = 0; i < model.element_count; i++) {
@@ -231,7 +231,7 @@ START_TEST(replicas_are_whole_elements) {
         for (k = 0; k < 10; k++) ck_assert_double_eq_tol(replicas[i].mass[k], model.elements[i].mass[k], 1e-11);
     }
     free(replicas);
-    ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
+    ck_assert_int_eq(gx_body_model(body, &model, NULL), GX_OK);
     replicas = (gxs_element *)malloc(model.element_count * sizeof *replicas);
     vna_replicate(model.elements, model.element_count, &density, replicas);
     for (i = 0; i < model.element_count; i++) {

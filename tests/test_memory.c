@@ -235,19 +235,19 @@ static gx_result cut_ring(gx_body *body) {
 }
 static gx_result look(gx_body *body) {
     gx_view view;
-    return gx_body_view(body, &view);
+    return gx_body_view(body, &view, NULL);
 }
 static gx_result draw(gx_body *body) {
     gx_skin skin;
-    return gx_body_skin(body, NULL, &skin);
+    return gx_body_skin(body, NULL, &skin, NULL);
 }
 static gx_result hold(gx_body *body) {
     static const gx_region regions[2] = {{2, 1, 0.9}, {0, -1, 0.2}};
-    return gx_body_hold(body, regions, 2);
+    return gx_body_hold(body, regions, 2, NULL);
 }
 static gx_result hold_and_look(gx_body *body) {
     static const gx_region region = {2, 1, 0.8};
-    gx_result result = gx_body_hold(body, &region, 1);
+    gx_result result = gx_body_hold(body, &region, 1, NULL);
     return result == GX_OK ? look(body) : result;
 }
 static gx_result step(gx_body *body) {
@@ -258,14 +258,14 @@ static gx_result step(gx_body *body) {
     return gx_body_step(body, &desc, NULL, NULL);
 }
 static gx_result hash(gx_body *body) {
-    gx_result result;
-    gx_body_topology_hash(body, &result);
-    return result;
+    gx_failure failure;
+    gx_body_topology_hash(body, &failure);
+    return failure.result;
 }
 
 static gx_result motion(gx_body *body) {
     gx_motion motions[64];
-    return gx_body_motion(body, motions, 64);
+    return gx_body_motion(body, motions, 64, NULL);
 }
 
 /* If a copy was made, it is right. */
@@ -277,7 +277,7 @@ static gx_result compare_and_destroy(gx_result result, gx_body *body, gx_body *c
 }
 static gx_result clone(gx_body *body) {
     gx_body *copy = NULL;
-    gx_result result = gx_body_clone(body, &copy);
+    gx_result result = gx_body_clone(body, &copy, NULL);
     return compare_and_destroy(result, body, copy);
 }
 static gx_result save_and_load(gx_body *body) {
@@ -286,7 +286,7 @@ static gx_result save_and_load(gx_body *body) {
     gx_body *copy = NULL;
     gx_result result;
     size_t size;
-    ck_assert_int_eq(gx_body_save(body, bytes, sizeof bytes, &size), GX_OK);
+    ck_assert_int_eq(gx_body_save(body, bytes, sizeof bytes, &size, NULL), GX_OK);
     memset(&desc, 0, sizeof desc);
     desc.allocator = allocator;
     result = gx_body_load(bytes, size, &desc, &copy, NULL);
@@ -296,7 +296,7 @@ static gx_result save_and_load(gx_body *body) {
 static gx_body *source; /* bodies become this one again; its own memory lasts */
 static gx_result restore(gx_body *body) {
     const uint64_t state = gx_body_state_hash(source);
-    const gx_result result = gx_body_restore(body, source);
+    const gx_result result = gx_body_restore(body, source, NULL);
     ck_assert(gx_body_state_hash(source) == state && (result != GX_OK || gx_body_state_hash(body) == state));
     return result;
 }
@@ -310,9 +310,9 @@ static gx_body *prepared(memory *m, const action *before) {
 }
 
 static uint64_t topology(gx_body *body) {
-    gx_result result;
-    uint64_t h = gx_body_topology_hash(body, &result);
-    ck_assert_int_eq(result, GX_OK);
+    gx_failure failure;
+    uint64_t h = gx_body_topology_hash(body, &failure);
+    ck_assert_int_eq(failure.result, GX_OK);
     return h;
 }
 
@@ -327,7 +327,7 @@ static outcome outcome_of(gx_body *body) {
     outcome o;
     gx_view view;
     memset(&o, 0, sizeof o);
-    ck_assert_int_eq(gx_body_view(body, &view), GX_OK);
+    ck_assert_int_eq(gx_body_view(body, &view, NULL), GX_OK);
     o.topology = topology(body);
     o.state = gx_body_state_hash(body);
     o.cells = view.cell_count;
@@ -523,7 +523,7 @@ START_TEST(holding) {
             ck_assert(result == GX_OK || (m.failed && result == GX_ERROR_MEMORY));
         }
         never_fail(&m);
-        ck_assert_int_eq(gx_body_view(body, &view), GX_OK);
+        ck_assert_int_eq(gx_body_view(body, &view, NULL), GX_OK);
         for (i = 0; i < view.copy_count; i++) count += view.copy_held[i];
         ck_assert_uint_gt(count, 0);
         gx_body_destroy(body);
@@ -599,7 +599,7 @@ START_TEST(step_with_fewer_copies) {
     memset(&m, 0, sizeof m);
     never_fail(&m);
     body = prepared(&m, stepped_and_smaller);
-    ck_assert_int_eq(gx_body_view(body, &view), GX_OK);
+    ck_assert_int_eq(gx_body_view(body, &view, NULL), GX_OK);
     ck_assert_uint_lt(view.copy_count, 8);
     gx_body_destroy(body);
     sweep("a step with fewer copies", stepped_and_smaller, step);
@@ -663,7 +663,7 @@ START_TEST(step_after_a_failed_model) {
         for (n = 0, result = GX_ERROR_MEMORY; result != GX_OK; n = next(n)) {
             body = prepared(&m, one_step);
             fail_from(&m, n, from_then_on);
-            result = gx_body_model(body, &model);
+            result = gx_body_model(body, &model, NULL);
             ck_assert_int_eq(result, m.failed ? GX_ERROR_MEMORY : GX_OK);
             never_fail(&m);
             ck_assert_int_eq(step(body), GX_OK);
@@ -691,7 +691,7 @@ START_TEST(solidifying) {
     a.reallocate = NULL;
     for (n = 0; result != GX_OK; n++) {
         fail_from(&m, n, 0);
-        result = gx_surface_solidify(&s, 0.1, vertices, &v, triangles, &t, &a);
+        result = gx_surface_solidify(&s, 0.1, vertices, &v, triangles, &t, &a, NULL);
         if (!m.failed) continue;
         ck_assert_int_eq(result, GX_ERROR_MEMORY);
         ck_assert(v == 99 && t == 98);

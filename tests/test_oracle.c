@@ -439,7 +439,7 @@ static void hold_against(const workload *w, const oracle *truth, const ordering 
     gx_body *body = build(w, o, seed);
     gx_view view;
     cut(body, w, o, seed);
-    ck_assert_int_eq(gx_body_view(body, &view), GX_OK);
+    ck_assert_int_eq(gx_body_view(body, &view, NULL), GX_OK);
     compare_cells(w, truth, &view, o, how, seed);
     compare_copies(w, truth, &view, how, seed);
     compare_fragments(truth, &view, o->scale, how, seed);

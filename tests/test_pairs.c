@@ -137,13 +137,13 @@ static answer combine(const gxio_surface *s, size_t count, uint32_t operation) {
     gxb_components c;
     answer a;
     size_t i;
-    ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+    ck_assert_int_eq(gxb_boolean_create(NULL, &b, NULL), GX_OK);
     for (i = 0; i < count; i++) {
         const gxb_operand o = operand_of(&s[i], i == 0 ? GXB_UNION : operation);
         ck_assert_int_eq(gxb_boolean_add(b, &o, NULL), GX_OK);
     }
-    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
-    ck_assert_int_eq(gxb_boolean_components(b, &c), GX_OK);
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
+    ck_assert_int_eq(gxb_boolean_components(b, &c, NULL), GX_OK);
     memset(&a, 0, sizeof a);
     a.components = c.count;
     a.volume = c.total_volume;
@@ -163,7 +163,7 @@ static void check_refused(const gxio_surface *s) {
     gx_failure failure;
     ck_assert_ptr_nonnull(rim);
     find_rim(s, rim);
-    ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+    ck_assert_int_eq(gxb_boolean_create(NULL, &b, NULL), GX_OK);
     ck_assert_int_eq(gxb_boolean_add(b, &o, &failure), GX_ERROR_NOT_CLOSED);
     ck_assert_uint_lt(failure.index, s->triangle_count);
     ck_assert(rim[failure.index]);

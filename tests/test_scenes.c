@@ -83,7 +83,7 @@ START_TEST(cheese_is_the_oracles) {
     cheese_fill(surfaces, CHEESE_COARSE);
     truth = cheese_truth(surfaces);
     body = cheese_body(surfaces);
-    ck_assert_int_eq(gx_body_view(body, &view), GX_OK);
+    ck_assert_int_eq(gx_body_view(body, &view, NULL), GX_OK);
     ck_assert_uint_eq(truth->cell_count, CHEESE_CELLS);
     ck_assert_uint_eq(truth->copy_count, CHEESE_COPIES);
     ck_assert_uint_eq(view.cell_count, truth->cell_count);

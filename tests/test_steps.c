@@ -19,7 +19,7 @@ static gx_step_desc step_of(double dt, double gravity) {
 static void hold_above(gx_body *body, double z) {
     gx_region region = {2, 1, 0};
     region.value = z;
-    ck_assert_int_eq(gx_body_hold(body, &region, 1), GX_OK);
+    ck_assert_int_eq(gx_body_hold(body, &region, 1, NULL), GX_OK);
 }
 
 static gxs_step_report advance(gx_body *body, const gx_step_desc *step, int steps) {
@@ -107,34 +107,46 @@ START_TEST(bad_materials_are_named) {
     materials[1] = materials[0];
     desc.materials = materials;
     desc.element_materials = which;
-#define EXPECT(result, at)                                                                                             \
+#define EXPECT(result, name, at)                                                                                       \
     do {                                                                                                               \
         ck_assert_int_eq(gx_body_create(&desc, &body, &failure), result);                                              \
+        ck_assert_pstr_eq(failure.field, name);                                                                        \
         ck_assert_uint_eq(failure.index, at);                                                                          \
     } while (0)
-    EXPECT(GX_ERROR_EMPTY, SIZE_MAX);
+    EXPECT(GX_ERROR_EMPTY, "material_count", SIZE_MAX);
     desc.material_count = 2;
     materials[1].density = 0;
-    EXPECT(GX_ERROR_ARGUMENT, 1);
+    EXPECT(GX_ERROR_ARGUMENT, "materials.density", 1);
     materials[1].density = 1000;
     materials[0].elastic.young = NAN;
-    EXPECT(GX_ERROR_NOT_FINITE, 0);
+    EXPECT(GX_ERROR_NOT_FINITE, "materials.elastic.young", 0);
     materials[0].elastic.young = 1e6;
     materials[1].elastic.damping = -1;
-    EXPECT(GX_ERROR_ARGUMENT, 1);
+    EXPECT(GX_ERROR_ARGUMENT, "materials.elastic.damping", 1);
     materials[1].elastic.damping = 0;
     materials[1].elastic.kind = GXS_CUSTOM;
-    EXPECT(GX_ERROR_ARGUMENT, 1);
+    EXPECT(GX_ERROR_ARGUMENT, "materials.elastic.energy", 1);
+    materials[1].elastic.kind = (gxs_material_kind)(GXS_CUSTOM + 1);
+    EXPECT(GX_ERROR_ARGUMENT, "materials.elastic.kind", 1);
     materials[1].elastic.kind = GXS_LINEAR;
+    materials[1].elastic.poisson = 0.5;
+    EXPECT(GX_ERROR_ARGUMENT, "materials.elastic.poisson", 1);
+    materials[1].elastic.poisson = 0;
     which[3] = 2;
-    EXPECT(GX_ERROR_INDEX, 3);
+    EXPECT(GX_ERROR_INDEX, "element_materials", 3);
     which[3] = 1;
+    desc.materials = NULL; /* what is said of them would be passed over */
+    EXPECT(GX_ERROR_ARGUMENT, "materials", SIZE_MAX);
+    desc.material_count = 0;
+    EXPECT(GX_ERROR_ARGUMENT, "materials", SIZE_MAX);
+    desc.materials = materials;
+    desc.material_count = 2;
     desc.support_below = -1;
-    EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX);
+    EXPECT(GX_ERROR_ARGUMENT, "support_below", SIZE_MAX);
     desc.support_below = 1;
-    EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX);
+    EXPECT(GX_ERROR_ARGUMENT, "support_below", SIZE_MAX);
     desc.support_below = NAN;
-    EXPECT(GX_ERROR_NOT_FINITE, SIZE_MAX);
+    EXPECT(GX_ERROR_NOT_FINITE, "support_below", SIZE_MAX);
     desc.support_below = 0;
     ck_assert_int_eq(gx_body_create(&desc, &body, &failure), GX_OK);
     gx_body_destroy(body);
@@ -153,7 +165,8 @@ START_TEST(model_is_what_the_body_moves) {
     gx_view view;
     gxs_model model;
     gxs_solver *solver = NULL;
-    gx_step_desc step = step_of(0.02, -9.81);
+    const gx_step_desc step = step_of(0.02, -9.81);
+    const gxs_step_desc own = solver_step(&step);
     double volume = 0, mass = 0, *u, *v;
     const double n[3] = {0.3, 1, 0.2}, p[3] = {1.5, 1.4, 1.6};
     size_t i, k, bytes;
@@ -164,7 +177,7 @@ START_TEST(model_is_what_the_body_moves) {
     view = view_of(body);
     bytes = 3 * view.copy_count * sizeof *u;
     for (i = 0; i < 3 * view.copy_count; i++) view.velocity[i] = random_real(-1, 1);
-    ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
+    ck_assert_int_eq(gx_body_model(body, &model, NULL), GX_OK);
     ck_assert_uint_eq(model.copy_count, view.copy_count);
     for (i = 0; i < model.element_count; i++) {
         volume += model.elements[i].weight;
@@ -176,20 +189,149 @@ START_TEST(model_is_what_the_body_moves) {
     v = (double *)malloc(bytes);
     memcpy(u, view.displacement, bytes);
     memcpy(v, view.velocity, bytes);
-    ck_assert_int_eq(gxs_solver_create(NULL, &solver), GX_OK);
+    ck_assert_int_eq(gxs_solver_create(NULL, &solver, NULL), GX_OK);
     ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
     for (i = 0; i < 5; i++) {
-        ck_assert_int_eq(gxs_solver_step(solver, &step, u, v, NULL, NULL), GX_OK);
+        ck_assert_int_eq(gxs_solver_step(solver, &own, u, v, NULL, NULL), GX_OK);
         advance(body, &step, 1);
     }
     ck_assert(memcmp(u, view.displacement, bytes) == 0 && memcmp(v, view.velocity, bytes) == 0);
-    ck_assert_int_eq(gx_body_model(NULL, &model), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gx_body_model(body, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_model(NULL, &model, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_model(body, NULL, NULL), GX_ERROR_ARGUMENT);
     free(u);
     free(v);
     gxs_solver_destroy(solver);
     gx_body_destroy(body);
     wl_free(&w);
+}
+END_TEST
+
+static double pushes(void *user, size_t point, const double *position, double *force, double *hessian) {
+    (void)point, (void)position;
+    if (hessian) memset(hessian, 0, 6 * sizeof *hessian);
+    force[0] = *(double *)user;
+    return -force[0] * position[0];
+}
+
+/* All that a body's step says reaches the solver: the same step of the body's model ends in the same bits. */
+START_TEST(every_field_of_a_step_counts) {
+    workload w = grid(2, 2, 2, 5);
+    gx_body *body = body_of(&w);
+    gx_view view;
+    gxs_model model;
+    gx_skin skin;
+    gxs_solver *solver = NULL;
+    gx_step_desc step = step_of(0.02, -9.81);
+    gxs_step_desc own;
+    gxs_spring spring;
+    gxs_plane plane;
+    gxs_point points[2];
+    double *state, *vector, *rest, push = 30, forces[2][3];
+    size_t n, i;
+    hold_above(body, 2 - 1e-9);
+    view = view_of(body);
+    n = 3 * view.copy_count;
+    state = (double *)calloc(4 * n, sizeof *state);
+    vector = state + 2 * n;
+    rest = state + 3 * n;
+    random_seed(5);
+    for (i = 0; i < n; i++) view.velocity[i] = state[n + i] = random_real(-1, 1);
+    for (i = 0; i < n; i++) vector[i] = random_real(-0.02, 0.02);
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
+    memset(&spring, 0, sizeof spring);
+    spring.point = gx_skin_point(&skin, 7);
+    spring.stiffness = 1e4;
+    points[0] = gx_skin_point(&skin, 0);
+    points[1] = gx_skin_point(&skin, 5);
+    memset(&plane, 0, sizeof plane);
+    plane.normal[2] = 1;
+    plane.offset = 0.5;
+    plane.stiffness = 1e4;
+    step.gravity[0] = 2;
+    step.integrator = GXS_BDF1;
+    step.newton_iterations = 3;
+    step.newton_tolerance = 1e-3;
+    step.cg_iterations = 7;
+    step.cg_tolerance = 1e-3;
+    step.mass_damping = 3;
+    step.forces = step.targets = vector;
+    step.epoch = view.epoch;
+    step.springs = &spring;
+    step.spring_count = 1;
+    step.spring_forces = forces[0];
+    step.points = points;
+    step.point_count = 2;
+    step.planes = &plane;
+    step.plane_count = 1;
+    step.contact = pushes;
+    step.contact_user = &push;
+    step.sleep_speed = 0.01;
+    step.sleep_time = 0.1;
+    own = solver_step(&step);
+    own.mass_damping = 3;
+    own.forces = own.targets = vector;
+    own.epoch = view.epoch;
+    own.springs = &spring;
+    own.spring_count = 1;
+    own.spring_forces = forces[1];
+    own.points = points;
+    own.point_count = 2;
+    own.planes = &plane;
+    own.plane_count = 1;
+    own.contact = pushes;
+    own.contact_user = &push;
+    own.sleep_speed = 0.01;
+    own.sleep_time = 0.1;
+    own.rest_times = rest;
+    ck_assert_int_eq(gx_body_model(body, &model, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_create(NULL, &solver, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
+    for (i = 0; i < 3; i++) {
+        ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
+        ck_assert_int_eq(gxs_solver_step(solver, &own, state, state + n, NULL, NULL), GX_OK);
+    }
+    ck_assert_int_eq(memcmp(state, view.displacement, n * sizeof *state), 0);
+    ck_assert_int_eq(memcmp(state + n, view.velocity, n * sizeof *state), 0);
+    ck_assert_int_eq(memcmp(rest, view.rest_time, view.copy_count * sizeof *rest), 0);
+    ck_assert_int_eq(memcmp(forces[0], forces[1], sizeof forces[0]), 0);
+    step.budget_seconds = 1; /* and nothing to tell the time */
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_ERROR_ARGUMENT);
+    free(state);
+    gxs_solver_destroy(solver);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A hit or a skin of more copies than a point holds is referred to. */
+START_TEST(points_hold_few_copies_or_refer) {
+    uint32_t copies[12] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}, k;
+    double weights[12] = {0.125, 0.25}, rest[6] = {1, 2, 3, 4, 5, 6};
+    gx_skin skin;
+    gx_hit hit;
+    gxs_point p;
+    memset(&skin, 0, sizeof skin);
+    memset(&hit, 0, sizeof hit);
+    skin.vertex_width = 4;
+    skin.vertex_copies = copies;
+    skin.vertex_weights = weights;
+    skin.vertex_rest = rest;
+    skin.epoch = hit.epoch = 77;
+    p = gx_skin_point(&skin, 1);
+    ck_assert(p.count == 4 && p.copies == NULL && p.weights == NULL && p.epoch == 77 && p.position[2] == 6);
+    for (k = 0; k < 4; k++) ck_assert(p.copy[k] == 4 + k);
+    skin.vertex_width = 6;
+    p = gx_skin_point(&skin, 1);
+    ck_assert(p.count == 6 && p.copies == copies + 6 && p.weights == weights + 6 && p.position[0] == 4);
+    hit.copy_count = 3;
+    memcpy(hit.copies, copies, sizeof copies);
+    hit.weights[1] = 1;
+    hit.material[1] = 8;
+    p = gx_hit_point(&hit);
+    ck_assert(p.count == 3 && p.copies == NULL && p.weight[1] == 1 && p.position[1] == 8 && p.epoch == 77);
+    hit.copy_count = 12;
+    p = gx_hit_point(&hit);
+    ck_assert(p.count == 12 && p.copies == hit.copies && p.weights == hit.weights);
 }
 END_TEST
 
@@ -222,14 +364,15 @@ START_TEST(energy_of_cut_bodies_falls_from_violent_starts) {
     gxs_material material;
     gxs_solver *solver = NULL;
     gxs_step_report report;
-    gx_step_desc step = step_of(dts[_i % 2], 0);
+    const gx_step_desc like = step_of(dts[_i % 2], 0);
+    gxs_step_desc step = solver_step(&like);
     double *start, *u, *v, before;
     size_t i, count;
     uint32_t k;
     random_seed((uint64_t)_i);
     for (i = 0; i < 3; i++) add_plane(&w, p[i], n[i], i == 1 ? 1.2 : 10);
     body = cut_at_once(&w);
-    ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
+    ck_assert_int_eq(gx_body_model(body, &model, NULL), GX_OK);
     material = model.materials[0];
     material.poisson = ratios[_i / 2 % 2];
     model.materials = &material;
@@ -238,7 +381,7 @@ START_TEST(energy_of_cut_bodies_falls_from_violent_starts) {
     u = start + count;
     v = u + count;
     for (i = 0; i < count; i++) start[i] = violent(how, i % 3, model.positions[i]);
-    ck_assert_int_eq(gxs_solver_create(NULL, &solver), GX_OK);
+    ck_assert_int_eq(gxs_solver_create(NULL, &solver, NULL), GX_OK);
     before = form_energy(&model, start);
     for (k = 1; k <= 20; k++) {
         memcpy(u, start, count * sizeof *u);
@@ -391,7 +534,7 @@ START_TEST(released_sleepers_fall) {
     step.sleep_speed = 1e-3;
     step.mass_damping = 5;
     body = hung_asleep(&w, 0, &step);
-    ck_assert_int_eq(gx_body_hold(body, NULL, 0), GX_OK);
+    ck_assert_int_eq(gx_body_hold(body, NULL, 0, NULL), GX_OK);
     view = view_of(body);
     ck_assert_uint_eq(advance(body, &step, 1).active_unknowns, 3 * view.copy_count);
     advance(body, &step, 9);
@@ -442,11 +585,11 @@ START_TEST(sleepers_see_what_is_written_through_changes) {
     if (!late) write_right(body, &w, velocity);
     switch (change) {
     case HELD_AGAIN: hold_above(body, 2 - 1e-9); break;
-    case CLONED: ck_assert_int_eq(gx_body_clone(body, &twin), GX_OK); break;
+    case CLONED: ck_assert_int_eq(gx_body_clone(body, &twin, NULL), GX_OK); break;
     case LOADED:
-        ck_assert_int_eq(gx_body_save(body, NULL, 0, &size), GX_OK);
+        ck_assert_int_eq(gx_body_save(body, NULL, 0, &size, NULL), GX_OK);
         bytes = malloc(size);
-        ck_assert_int_eq(gx_body_save(body, bytes, size, &size), GX_OK);
+        ck_assert_int_eq(gx_body_save(body, bytes, size, &size, NULL), GX_OK);
         ck_assert_int_eq(gx_body_load(bytes, size, NULL, &twin, NULL), GX_OK);
         free(bytes);
         break;
@@ -501,7 +644,7 @@ START_TEST(tiny_corners_fall) {
     cut_by(body, &w, 0, 1);
     view = view_of(body);
     ck_assert_uint_eq(view.fragment_count, 2);
-    ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
+    ck_assert_int_eq(gx_body_model(body, &model, NULL), GX_OK);
     ck_assert_uint_eq(model.constraint_count, view.copy_count - 8 - 1); /* one leads */
     for (i = 0; i < 3 * view.copy_count; i++) view.velocity[i] = (double)(i % 3);
     report = advance(body, &step, 10);
@@ -540,7 +683,7 @@ START_TEST(few_supports_are_enough) {
             add_plane(&w, point, normal, random_below(2) ? 40 : 0.7);
             cut_by(body, &w, (size_t)i, 1);
         }
-        ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
+        ck_assert_int_eq(gx_body_model(body, &model, NULL), GX_OK);
         follows = (uint8_t *)calloc(model.copy_count, 1);
         for (c = 0; c < model.constraint_count; c++) follows[model.constraints[c].copy] = 1;
         for (c = 0; c < model.constraint_count; c++)
@@ -624,7 +767,7 @@ START_TEST(kicked_slivers_stay_with_their_body) {
     desc.support_below = _i / 4 % 2 ? 1e-3 : 0;
     step.integrator = integrators[_i / 8];
     ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
-    ck_assert_int_eq(gx_body_hold(body, &top, 1), GX_OK);
+    ck_assert_int_eq(gx_body_hold(body, &top, 1, NULL), GX_OK);
     node = (size_t)random_below((int)w.node_count);
     for (k = 0; k < 3; k++) {
         const double normal[3] = {random_real(-1, 1), random_real(-1, 1), random_real(-1, 1)},
@@ -722,12 +865,12 @@ START_TEST(copies_without_support_follow_their_fragment) {
     hold_above(body, 4 - 1e-9);
     advance(body, &step, 3);
     view = view_of(body);
-    ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
+    ck_assert_int_eq(gx_body_model(body, &model, NULL), GX_OK);
     ck_assert_uint_gt(model.constraint_count, 0);
     before = (double *)malloc(3 * view.copy_count * sizeof *before);
     memcpy(before, view.displacement, 3 * view.copy_count * sizeof *before);
     advance(body, &step, 3);
-    ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
+    ck_assert_int_eq(gx_body_model(body, &model, NULL), GX_OK);
     for (i = 0; i < model.constraint_count; i++) {
         const gxs_constraint *c = &model.constraints[i];
         double sum = 0;
@@ -767,14 +910,12 @@ START_TEST(springs_pull_points_of_the_skin) {
     add_plane(&w, p, n, 10);
     body = cut_at_once(&w);
     view = view_of(body);
-    ck_assert_int_eq(gx_body_skin(body, NULL, &skin), GX_OK);
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
     x = (double *)malloc(3 * skin.vertex_count * sizeof *x);
-    ck_assert_int_eq(gx_body_skin_positions(body, x), GX_OK);
+    ck_assert_int_eq(gx_body_skin_positions(body, x, NULL), GX_OK);
     memset(&spring, 0, sizeof spring);
-    memcpy(spring.point.copy, skin.vertex_copies, sizeof spring.point.copy);
-    memcpy(spring.point.weight, skin.vertex_weights, sizeof spring.point.weight);
-    memcpy(spring.point.position, x, sizeof spring.point.position);
-    spring.point.epoch = skin.epoch;
+    spring.point = gx_skin_point(&skin, 0);
+    ck_assert(memcmp(spring.point.position, x, sizeof spring.point.position) == 0);
     memcpy(spring.target, x, sizeof spring.target);
     spring.target[1] += 1;
     spring.stiffness = 1000;
@@ -786,7 +927,7 @@ START_TEST(springs_pull_points_of_the_skin) {
     step.cg_tolerance = 1e-8;
     advance(body, &step, 1);
     mass = view.fragment_mass[skin.triangle_fragment[0]];
-    ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
+    ck_assert_int_eq(gx_body_model(body, &model, NULL), GX_OK);
     for (i = 0; i < model.element_count; i++)
         for (k = 0; k < 4; k++) {
             static const int rows[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
@@ -822,7 +963,7 @@ static void name_copies(naming *n, gx_body *body, int kind) {
     gx_view view = view_of(body);
     gx_skin skin;
     int i;
-    ck_assert_int_eq(gx_body_skin(body, NULL, &skin), GX_OK);
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
     free(n->vector);
     memset(n, 0, sizeof *n);
     n->vector = (double *)calloc(3 * view.copy_count + 1, sizeof *n->vector);
@@ -830,8 +971,7 @@ static void name_copies(naming *n, gx_body *body, int kind) {
     for (i = 0; i < 3; i++) {
         n->points[i].epoch = skin.epoch;
         if (skin.vertex_count == 0) continue;
-        memcpy(n->points[i].copy, skin.vertex_copies + 4 * i, sizeof n->points[i].copy);
-        memcpy(n->points[i].weight, skin.vertex_weights + 4 * i, sizeof n->points[i].weight);
+        n->points[i] = gx_skin_point(&skin, (uint32_t)i);
     }
     for (i = 0; i < 2; i++) {
         n->springs[i].point = n->points[i];
@@ -908,6 +1048,38 @@ START_TEST(names_of_copies_go_stale) {
 }
 END_TEST
 
+/* A ray along mesh edges and faces meets corners and edges of triangles: what has no share is not in the hit. */
+START_TEST(hits_at_corners_and_edges) {
+    static const double up[3] = {0, 0, 1}, at[4][2] = {{1, 1}, {0.5, 1}, {1, 0.25}, {0.5, 0.5}};
+    workload w = grid(2, 2, 2, 5);
+    gx_body *body = body_of(&w);
+    gx_view view = view_of(body);
+    gx_skin skin;
+    size_t c;
+    int i;
+    for (c = 0; c < view.copy_count; c++) view.displacement[3 * c + 2] = 0.125; /* as a whole, upwards */
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
+    for (i = 0; i < 4; i++) {
+        const double origin[3] = {at[i][0], at[i][1], -5};
+        double sum = 0;
+        gx_hit hit;
+        uint32_t n;
+        ck_assert_int_eq(gx_body_pick(body, origin, up, &hit, NULL), GX_OK);
+        ck_assert_uint_ne(hit.triangle, UINT32_MAX);
+        ck_assert(hit.position[0] == at[i][0] && hit.position[1] == at[i][1] && hit.position[2] == 0.125);
+        ck_assert(hit.material[2] == 0);
+        for (n = 0; n < hit.copy_count; n++) {
+            ck_assert_double_gt(hit.weights[n], 0);
+            sum += hit.weights[n];
+        }
+        ck_assert(sum == 1 && hit.copy_count <= 3);
+        if (i == 0) ck_assert_uint_eq(hit.copy_count, 1);
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* View, skin, hit and model of a cut body; a spring at the hit is fine. */
 START_TEST(whoever_tells_copies_tells_the_epoch) {
     static const double origin[3] = {0.3, 0.4, -5}, up[3] = {0, 0, 1};
@@ -923,14 +1095,12 @@ START_TEST(whoever_tells_copies_tells_the_epoch) {
     body = cut_at_once(&w);
     view = view_of(body);
     ck_assert(view.epoch != 0);
-    ck_assert_int_eq(gx_body_skin(body, NULL, &skin), GX_OK);
-    ck_assert_int_eq(gx_body_pick(body, origin, up, &hit), GX_OK);
-    ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_pick(body, origin, up, &hit, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_model(body, &model, NULL), GX_OK);
     ck_assert(skin.epoch == view.epoch && hit.epoch == view.epoch && model.epoch == view.epoch);
     memset(&spring, 0, sizeof spring);
-    memcpy(spring.point.copy, hit.copies, sizeof hit.copies);
-    memcpy(spring.point.weight, hit.weights, sizeof hit.weights);
-    spring.point.epoch = hit.epoch;
+    spring.point = gx_hit_point(&hit);
     spring.stiffness = 1;
     step.springs = &spring;
     step.spring_count = 1;
@@ -947,6 +1117,9 @@ int main(void) {
     tcase_add_test(tests, materials_by_element);
     tcase_add_test(tests, bad_materials_are_named);
     tcase_add_loop_test(tests, model_is_what_the_body_moves, 0, 4);
+    tcase_add_test(tests, every_field_of_a_step_counts);
+    tcase_add_test(tests, points_hold_few_copies_or_refer);
+    tcase_add_test(tests, hits_at_corners_and_edges);
     ADD_SOME(tests, energy_of_cut_bodies_falls_from_violent_starts, 4 * START_COUNT);
     tcase_add_test(tests, bdf2_goes_on_after_a_cut);
     tcase_add_test(tests, cuts_wake_what_they_touch);

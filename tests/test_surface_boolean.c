@@ -93,13 +93,13 @@ static void check_closed(const gxb_boolean_result *r) {
 
 static gxb_defects defects_of(gxb_boolean *b) {
     gxb_defects d;
-    ck_assert_int_eq(gxb_boolean_defects(b, &d), GX_OK);
+    ck_assert_int_eq(gxb_boolean_defects(b, &d, NULL), GX_OK);
     return d;
 }
 
 static gxb_components components_of(gxb_boolean *b) {
     gxb_components c;
-    ck_assert_int_eq(gxb_boolean_components(b, &c), GX_OK);
+    ck_assert_int_eq(gxb_boolean_components(b, &c, NULL), GX_OK);
     return c;
 }
 
@@ -109,7 +109,7 @@ static answer read_answer(gxb_boolean *b) {
     answer a;
     size_t i;
     double sum = 0;
-    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
     check_closed(&r);
     c = components_of(b);
     for (i = 0; i < r.triangle_count; i++) ck_assert_uint_lt(c.triangle[i], c.count);
@@ -131,10 +131,10 @@ static answer read_answer(gxb_boolean *b) {
 static gxb_boolean *boolean_of(const gxb_operand *o, size_t count, uint32_t triangulation, int fine, int mend) {
     gxb_boolean *b = NULL;
     size_t i;
-    ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
-    ck_assert_int_eq(gxb_boolean_set_triangulation(b, triangulation), GX_OK);
-    ck_assert_int_eq(gxb_boolean_set_fine(b, fine), GX_OK);
-    ck_assert_int_eq(gxb_boolean_set_mend(b, mend), GX_OK);
+    ck_assert_int_eq(gxb_boolean_create(NULL, &b, NULL), GX_OK);
+    ck_assert_int_eq(gxb_boolean_set_triangulation(b, triangulation, NULL), GX_OK);
+    ck_assert_int_eq(gxb_boolean_set_fine(b, fine, NULL), GX_OK);
+    ck_assert_int_eq(gxb_boolean_set_mend(b, mend, NULL), GX_OK);
     for (i = 0; i < count; i++) ck_assert_int_eq(gxb_boolean_add(b, &o[i], NULL), GX_OK);
     return b;
 }
@@ -144,7 +144,7 @@ static answer evaluate(const gxb_operand *operands, size_t count, int each) {
     gxb_boolean *b = NULL;
     answer a = {0, 0, 0, 0, 0};
     size_t i;
-    ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+    ck_assert_int_eq(gxb_boolean_create(NULL, &b, NULL), GX_OK);
     for (i = 0; i < count; i++) {
         ck_assert_int_eq(gxb_boolean_add(b, &operands[i], NULL), GX_OK);
         if (each && i + 1 < count) read_answer(b);
@@ -558,9 +558,9 @@ START_TEST(cavities_belong_to_their_component) {
         wl_add_aligned_box(&s[i], low[i], high[i]);
         o[i] = operand_of(&s[i], i == 1 ? GXB_DIFFERENCE : GXB_UNION);
     }
-    ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+    ck_assert_int_eq(gxb_boolean_create(NULL, &b, NULL), GX_OK);
     for (i = 0; i < 3; i++) ck_assert_int_eq(gxb_boolean_add(b, &o[i], NULL), GX_OK);
-    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
     c = components_of(b);
     ck_assert_uint_eq(c.count, 2);
     ck_assert(c.volume[0] == 729 - 343 && c.volume[1] == 125);
@@ -660,7 +660,7 @@ START_TEST(cavities_and_cores) {
     }
     for (i = 0; i < 3; i++) o[i] = operand_of(&s[i], i == 1 ? GXB_DIFFERENCE : GXB_UNION);
     b = boolean_of(o, 3, GXB_DIVIDED, 0, 0);
-    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
     c = components_of(b);
     ck_assert_uint_eq(c.count, ALL + 1);
     for (i = 0; i < c.count; i++) {
@@ -722,9 +722,9 @@ static void check_sides(const wl_surface *cube, const wl_surface *sheet, size_t 
     size_t i;
     o[0] = operand_of(cube, GXB_UNION);
     o[1] = operand_of(sheet, GXB_SPLIT);
-    ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+    ck_assert_int_eq(gxb_boolean_create(NULL, &b, NULL), GX_OK);
     for (i = 0; i < 2; i++) ck_assert_int_eq(gxb_boolean_add(b, &o[i], NULL), GX_OK);
-    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
     c = components_of(b);
     ck_assert_uint_eq(c.count, components);
     for (i = 0; i < components; i++) ck_assert(c.side[2 * i] == 0 && (c.side[2 * i + 1] == 0) == (components == 1));
@@ -808,9 +808,9 @@ START_TEST(closed_sheets_divide) {
                 sheet.triangles[3 * k] = sheet.triangles[3 * k + 1];
                 sheet.triangles[3 * k + 1] = swap;
             }
-        ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+        ck_assert_int_eq(gxb_boolean_create(NULL, &b, NULL), GX_OK);
         for (k = 0; k < 2; k++) ck_assert_int_eq(gxb_boolean_add(b, &o[k], NULL), GX_OK);
-        ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+        ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
         c = components_of(b);
         ck_assert_uint_eq(c.count, 2);
         ck_assert(c.volume[0] == 26 && c.volume[1] == 1);
@@ -891,12 +891,12 @@ START_TEST(everything_knows_where_it_comes_from) {
     gxb_boolean *b = NULL;
     gxb_boolean_result r;
     size_t i, kinds[4] = {0, 0, 0, 0};
-    ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+    ck_assert_int_eq(gxb_boolean_create(NULL, &b, NULL), GX_OK);
     for (i = 0; i <= w.surface_count; i++) {
         o[i] = operand_of(i == 0 ? &body : &w.surfaces[i - 1], i == 0 ? GXB_UNION : GXB_DIFFERENCE);
         ck_assert_int_eq(gxb_boolean_add(b, &o[i], NULL), GX_OK);
     }
-    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
     for (i = 0; i < r.vertex_count; i++) {
         check_origin(o, &r.vertex_origin[i], r.vertices + 3 * i);
         kinds[r.vertex_origin[i].kind]++;
@@ -920,7 +920,7 @@ static void divide_all_ways(const gxb_operand *o, size_t count, gxb_boolean *b[3
     int how;
     for (how = 0; how < 3; how++) {
         b[how] = boolean_of(o, count, triangulations[how], 0, 0);
-        ck_assert_int_eq(gxb_boolean_evaluate(b[how], &r[how]), GX_OK);
+        ck_assert_int_eq(gxb_boolean_evaluate(b[how], &r[how], NULL), GX_OK);
         check_closed(&r[how]);
     }
 }
@@ -1129,7 +1129,7 @@ static size_t find_defects(const gxb_operand *o, size_t count, int fine, int men
     gxb_defects d;
     size_t i, listed = 0;
     *a = read_answer(b);
-    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
     d = defects_of(b);
     for (i = 0; i < r.triangle_count; i++) {
         const int defect = listed < d.count && d.triangles[listed] == i;
@@ -1246,7 +1246,7 @@ START_TEST(mending_keeps_volumes) {
         o[0] = operand_of(&a, GXB_UNION);
         o[1] = operand_of(&ball, GXB_DIFFERENCE);
         b = boolean_of(o, 2, GXB_DIVIDED, 0, 1);
-        ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+        ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
         for (t = 0; t < r.triangle_count; t++) {
             const double *p = r.vertices + 3 * r.triangles[3 * t], *q = r.vertices + 3 * r.triangles[3 * t + 1],
                          *s = r.vertices + 3 * r.triangles[3 * t + 2];
@@ -1295,7 +1295,7 @@ static void check_walls(const gxb_operand *o, const double *wall, size_t walls, 
     gxb_boolean_result r;
     gxb_components c;
     size_t i, j;
-    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
     c = components_of(b);
     CHECK_CASE(c.count == walls, "%zu components", c.count);
     for (i = 0; i < walls; i++) {
@@ -1379,11 +1379,11 @@ START_TEST(read_off_in_all_ways) {
         gxb_boolean_result r[2];
         gxb_components c[2];
         gxb_defects d[2];
-        ck_assert_int_eq(gxb_boolean_set_triangulation(all, triangulations[way % 3]), GX_OK);
-        ck_assert_int_eq(gxb_boolean_set_fine(all, fine), GX_OK);
-        ck_assert_int_eq(gxb_boolean_set_mend(all, mend), GX_OK);
-        ck_assert_int_eq(gxb_boolean_evaluate(all, &r[0]), GX_OK);
-        ck_assert_int_eq(gxb_boolean_evaluate(fresh, &r[1]), GX_OK);
+        ck_assert_int_eq(gxb_boolean_set_triangulation(all, triangulations[way % 3], NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_set_fine(all, fine, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_set_mend(all, mend, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_evaluate(all, &r[0], NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_evaluate(fresh, &r[1], NULL), GX_OK);
         c[0] = components_of(all);
         c[1] = components_of(fresh);
         d[0] = defects_of(all);
@@ -1442,10 +1442,10 @@ static gx_result make_call(int i, const gxb_boolean_desc *desc, const gxb_operan
     gxb_boolean_result r;
     gxb_components c;
     gxb_defects d;
-    if (i < 0) return gxb_boolean_create(desc, b);
+    if (i < 0) return gxb_boolean_create(desc, b, NULL);
     if (i % 4 == 0) return gxb_boolean_add(*b, &o[i / 4], NULL);
-    if (i % 4 == 1) return gxb_boolean_evaluate(*b, &r);
-    return i % 4 == 2 ? gxb_boolean_components(*b, &c) : gxb_boolean_defects(*b, &d);
+    if (i % 4 == 1) return gxb_boolean_evaluate(*b, &r, NULL);
+    return i % 4 == 2 ? gxb_boolean_components(*b, &c, NULL) : gxb_boolean_defects(*b, &d, NULL);
 }
 
 /* Adds three boxes, evaluates after each, and gets everything. A call that fails is made again, and then succeeds. */
@@ -1471,7 +1471,7 @@ static answer despite_failures(memory *m, const gxb_operand *o, int *failed) {
             m->fail_at = SIZE_MAX;
             m->from_then_on = 0;
         }
-        if (i < 0) ck_assert_int_eq(gxb_boolean_set_triangulation(b, GXB_COARSE), GX_OK);
+        if (i < 0) ck_assert_int_eq(gxb_boolean_set_triangulation(b, GXB_COARSE, NULL), GX_OK);
     }
     m->fail_at = SIZE_MAX;
     m->from_then_on = 0;
@@ -1522,7 +1522,7 @@ START_TEST(memory_limit) {
     desc.memory_limit = 100; /* not even the Boolean itself */
     {
         gxb_boolean *b = NULL;
-        ck_assert_int_eq(gxb_boolean_create(&desc, &b), GX_ERROR_LIMIT);
+        ck_assert_int_eq(gxb_boolean_create(&desc, &b, NULL), GX_ERROR_LIMIT);
         ck_assert(b == NULL);
     }
     for (limit = 1 << 12; limit <= 1 << 23; limit *= 2) {
@@ -1530,13 +1530,13 @@ START_TEST(memory_limit) {
         gx_result result = GX_OK;
         memset(&desc, 0, sizeof desc);
         desc.memory_limit = limit;
-        ck_assert_int_eq(gxb_boolean_create(&desc, &b), GX_OK);
+        ck_assert_int_eq(gxb_boolean_create(&desc, &b, NULL), GX_OK);
         for (i = 0; i < 2 && result == GX_OK; i++) result = gxb_boolean_add(b, &o[i], NULL);
-        if (result == GX_OK) result = gxb_boolean_evaluate(b, &r);
-        if (result == GX_OK) result = gxb_boolean_components(b, &c);
+        if (result == GX_OK) result = gxb_boolean_evaluate(b, &r, NULL);
+        if (result == GX_OK) result = gxb_boolean_components(b, &c, NULL);
         if (result == GX_OK) {
             ck_assert_uint_eq(c.count, 2);
-            ck_assert_int_eq(gxb_boolean_statistics(b, &s), GX_OK);
+            ck_assert_int_eq(gxb_boolean_statistics(b, &s, NULL), GX_OK);
             ck_assert(s.peak_bytes <= limit && s.allocations > 0 && s.filter_calls >= s.exact_calls);
         } else {
             ck_assert_int_eq(result, GX_ERROR_LIMIT);
@@ -1554,7 +1554,7 @@ static gx_result refusal(const gxb_operand *o, size_t *index) {
     gxb_boolean *b = NULL;
     gx_failure failure;
     gx_result result;
-    ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+    ck_assert_int_eq(gxb_boolean_create(NULL, &b, NULL), GX_OK);
     result = gxb_boolean_add(b, o, &failure);
     *index = failure.index;
     gxb_boolean_destroy(b);
@@ -1581,14 +1581,14 @@ START_TEST(sizes_are_numbers_or_refused) {
     wl_add_aligned_box(&s[0], corner[0], corner[1]);
     for (k = 0; k < 3; k++) corner[0][k] = 0.75 * size;
     wl_add_aligned_box(&s[1], corner[0], corner[2]);
-    ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+    ck_assert_int_eq(gxb_boolean_create(NULL, &b, NULL), GX_OK);
     for (i = 0; i < 2; i++) {
         o[i] = operand_of(&s[i], i == 0 ? GXB_UNION : GXB_INTERSECTION);
         ck_assert_int_eq(gxb_boolean_add(b, &o[i], NULL), fits ? GX_OK : GX_ERROR_RANGE);
     }
     if (fits) {
-        ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
-        ck_assert_int_eq(gxb_boolean_components(b, &c), GX_OK);
+        ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_components(b, &c, NULL), GX_OK);
         ck_assert_uint_eq(c.count, 1);
         ck_assert_double_eq_tol(c.total_volume, ldexp(1, 3 * e - 6), ldexp(1, 3 * e - 50));
         for (i = 0; i < 3 * r.vertex_count; i++) ck_assert(fabs(r.vertices[i] / size - 0.875) <= 0.125 + 1e-10);
@@ -1612,13 +1612,13 @@ START_TEST(largest_volumes_are_numbers) {
     memset(s, 0, sizeof s);
     wl_add_aligned_box(&s[0], zero, one);
     wl_add_aligned_box(&s[1], zero, more);
-    ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+    ck_assert_int_eq(gxb_boolean_create(NULL, &b, NULL), GX_OK);
     for (i = 0; i < 2; i++) {
         o[i] = operand_of(&s[i], GXB_UNION);
         ck_assert_int_eq(gxb_boolean_add(b, &o[i], NULL), GX_OK);
     }
-    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
-    ck_assert_int_eq(gxb_boolean_components(b, &c), GX_OK);
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
+    ck_assert_int_eq(gxb_boolean_components(b, &c, NULL), GX_OK);
     ck_assert(c.total_volume == 0x1p981);
     for (i = 0; i < 3 * s[1].vertex_count; i++) s[1].vertices[i] *= 2;
     ck_assert_int_eq(gxb_boolean_add(b, &o[1], NULL), GX_ERROR_RANGE);
@@ -1667,37 +1667,37 @@ START_TEST(bad_input_is_refused) {
     ck_assert_int_eq(refusal(&good, &i), GX_ERROR_RANGE);
     ck_assert_uint_eq(i, 3);
     s.vertices[10] = kept;
-    ck_assert_int_eq(gxb_boolean_create(NULL, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_boolean_create(NULL, NULL, NULL), GX_ERROR_ARGUMENT);
     memset(&desc, 0, sizeof desc);
     desc.allocator.allocate = take; /* and nothing to release it */
-    ck_assert_int_eq(gxb_boolean_create(&desc, &b), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
-    ck_assert_int_eq(gxb_boolean_set_triangulation(b, 3), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gxb_boolean_set_triangulation(NULL, GXB_COARSE), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gxb_boolean_set_fine(NULL, 1), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gxb_boolean_set_mend(NULL, 1), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_ERROR_EMPTY);
-    ck_assert_int_eq(gxb_boolean_components(b, &c), GX_ERROR_EMPTY);
-    ck_assert_int_eq(gxb_boolean_defects(b, &d), GX_ERROR_EMPTY);
-    ck_assert_int_eq(gxb_boolean_components(NULL, &c), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gxb_boolean_components(b, NULL), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gxb_boolean_defects(NULL, &d), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gxb_boolean_defects(b, NULL), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gxb_boolean_statistics(NULL, &statistics), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gxb_boolean_statistics(b, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_boolean_create(&desc, &b, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_boolean_create(NULL, &b, NULL), GX_OK);
+    ck_assert_int_eq(gxb_boolean_set_triangulation(b, 3, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_boolean_set_triangulation(NULL, GXB_COARSE, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_boolean_set_fine(NULL, 1, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_boolean_set_mend(NULL, 1, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_ERROR_SEQUENCE);
+    ck_assert_int_eq(gxb_boolean_components(b, &c, NULL), GX_ERROR_SEQUENCE);
+    ck_assert_int_eq(gxb_boolean_defects(b, &d, NULL), GX_ERROR_SEQUENCE);
+    ck_assert_int_eq(gxb_boolean_components(NULL, &c, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_boolean_components(b, NULL, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_boolean_defects(NULL, &d, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_boolean_defects(b, NULL, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_boolean_statistics(NULL, &statistics, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_boolean_statistics(b, NULL, NULL), GX_ERROR_ARGUMENT);
     /* a refused operand leaves nothing behind */
     o = good;
     o.triangle_count = 11;
     ck_assert_int_eq(gxb_boolean_add(b, &o, NULL), GX_ERROR_NOT_CLOSED);
     ck_assert_int_eq(gxb_boolean_add(b, &good, NULL), GX_OK);
-    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
     ck_assert_uint_eq(r.triangle_count, 12);
     ck_assert_int_eq(gxb_boolean_add(b, &o, NULL), GX_ERROR_NOT_CLOSED); /* nor does it take the result away */
     c = components_of(b);
     ck_assert(c.total_volume == 1 && c.count == 1);
     ck_assert_int_eq(gxb_boolean_add(b, &good, NULL), GX_OK);
-    ck_assert_int_eq(gxb_boolean_components(b, &c), GX_ERROR_EMPTY); /* an operand does */
-    ck_assert_int_eq(gxb_boolean_defects(b, &d), GX_ERROR_EMPTY);
+    ck_assert_int_eq(gxb_boolean_components(b, &c, NULL), GX_ERROR_SEQUENCE); /* an operand does */
+    ck_assert_int_eq(gxb_boolean_defects(b, &d, NULL), GX_ERROR_SEQUENCE);
     gxb_boolean_destroy(b);
     surface_free(&s);
 }

@@ -47,9 +47,9 @@ static void look_at_skin(gx_body *body, answer *a) {
     gx_skin skin;
     double *positions;
     skin_counts n;
-    ck_assert_int_eq(gx_body_skin(body, NULL, &skin), GX_OK);
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
     positions = (double *)malloc((3 * skin.vertex_count + 1) * sizeof *positions);
-    ck_assert_int_eq(gx_body_skin_positions(body, positions), GX_OK);
+    ck_assert_int_eq(gx_body_skin_positions(body, positions, NULL), GX_OK);
     n = skin_count(&skin, UINT32_MAX, positions);
     a->euler = n.vertices - n.edges + n.triangles;
     a->open_edges = n.open_edges;
@@ -64,7 +64,7 @@ static answer cut_body(const workload *w, int at_once) {
     gx_view view;
     answer a = {0, 0, 0, 0, 0, 0};
     size_t i;
-    ck_assert_int_eq(gx_body_view(body, &view), GX_OK);
+    ck_assert_int_eq(gx_body_view(body, &view, NULL), GX_OK);
     a.size = view.volume;
     for (i = 0; i < w->surface_count; i++) surfaces[i] = surface_of(&w->surfaces[i]);
     for (i = 0; i < (at_once ? 1 : w->surface_count); i++) {
@@ -74,7 +74,7 @@ static answer cut_body(const workload *w, int at_once) {
         ck_assert_int_eq(gx_body_cut(body, &desc, &report, NULL), GX_OK);
         a.removed += report.removed_volume;
     }
-    ck_assert_int_eq(gx_body_view(body, &view), GX_OK);
+    ck_assert_int_eq(gx_body_view(body, &view, NULL), GX_OK);
     a.fragments = view.fragment_count;
     a.kept = view.volume;
     look_at_skin(body, &a);
@@ -143,8 +143,9 @@ START_TEST(w3_solidified_by_the_library) {
     double *vertices = (double *)oracle_memory(NULL, 6 * s->vertex_count, sizeof *vertices), removed;
     uint32_t *triangles = (uint32_t *)oracle_memory(NULL, 24 * s->triangle_count, sizeof *triangles);
     answer a;
-    ck_assert_int_eq(gx_surface_solidify(&sheet, 1e-3, vertices, &s->vertex_count, triangles, &s->triangle_count, NULL),
-                     GX_OK);
+    ck_assert_int_eq(
+        gx_surface_solidify(&sheet, 1e-3, vertices, &s->vertex_count, triangles, &s->triangle_count, NULL, NULL),
+        GX_OK);
     ck_assert_uint_eq(s->triangle_count, 1760);
     free(s->vertices);
     free(s->triangles);

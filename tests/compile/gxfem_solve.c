@@ -4,5 +4,5 @@
 
 int main(void) {
     gxs_solver_destroy(NULL);
-    return gxs_solver_create(NULL, NULL) == GX_ERROR_ARGUMENT ? 0 : 1;
+    return gxs_solver_create(NULL, NULL, NULL) == GX_ERROR_ARGUMENT ? 0 : 1;
 }

@@ -27,7 +27,7 @@ int main(void) {
     cut.surface_count = 1;
     result = gx_body_create(&desc, &body, NULL);
     if (result == GX_OK) result = gx_body_cut(body, &cut, NULL, NULL);
-    if (result == GX_OK) result = gx_body_view(body, &view);
+    if (result == GX_OK) result = gx_body_view(body, &view, NULL);
     printf("gxfem %d.%d.%d, %u fragments\n", GXFEM_VERSION_MAJOR, GXFEM_VERSION_MINOR, GXFEM_VERSION_PATCH,
            (unsigned)view.fragment_count);
     gx_body_destroy(body);

@@ -1,0 +1,523 @@
+/* What a call that is refused says: its result, the field, the index. No refusal changes the body; a call that succeeds
+   says so too. Other files have the refusals of gx_body_create and gx_body_cut (test_body.c), of models, changes and
+   steps (test_solve.c, test_updates.c, test_forces.c). */
+#ifndef GXFEM_LINKED
+#define GXFEM_IMPLEMENTATION
+#endif
+#include "../gxfem.h"
+#include "../gxfem_boolean.h"
+#include "../gxfem_integrate.h"
+#include <check.h>
+#include <float.h>
+#include <math.h>
+#include "body.h"
+
+/* What no call writes */
+static const char unset[] = "unset";
+static gx_failure failure;
+
+static void expect(gx_result result, gx_result expected, const char *field, size_t index, int line) {
+    ck_assert_msg(result == expected && failure.result == expected, "line %d: %s, should be: %s", line,
+                  gx_result_text(result), gx_result_text(expected));
+    ck_assert_msg(field == NULL ? failure.field == NULL : failure.field != NULL && strcmp(failure.field, field) == 0,
+                  "line %d: field %s, should be %s", line, failure.field ? failure.field : "NULL",
+                  field ? field : "NULL");
+    ck_assert_msg(failure.index == index && failure.surface == SIZE_MAX, "line %d: index %zu, should be %zu", line,
+                  failure.index, index);
+    failure.field = unset;
+    failure.index = failure.surface = 77;
+}
+
+/* The call is given &failure. */
+#define REFUSED(call, expected, field, index) expect(call, expected, field, index, __LINE__)
+#define DONE(call)                            expect(call, GX_OK, NULL, SIZE_MAX, __LINE__)
+
+/* ... and leaves the body alone */
+#define KEEPS(body, call, expected, field, index)                                                                      \
+    do {                                                                                                               \
+        const uint64_t state_ = gx_body_state_hash(body);                                                              \
+        REFUSED(call, expected, field, index);                                                                         \
+        ck_assert(gx_body_state_hash(body) == state_);                                                                 \
+    } while (0)
+
+START_TEST(views_and_motions) {
+    workload w = wl_through(0.1);
+    gx_body *body = cut_at_once(&w);
+    gx_motion motions[2];
+    gxs_model model;
+    gx_view view;
+    double *number;
+    REFUSED(gx_body_view(NULL, &view, &failure), GX_ERROR_ARGUMENT, "body", SIZE_MAX);
+    KEEPS(body, gx_body_view(body, NULL, &failure), GX_ERROR_ARGUMENT, "view", SIZE_MAX);
+    DONE(gx_body_view(body, &view, &failure));
+    REFUSED(gx_body_model(NULL, &model, &failure), GX_ERROR_ARGUMENT, "body", SIZE_MAX);
+    KEEPS(body, gx_body_model(body, NULL, &failure), GX_ERROR_ARGUMENT, "model", SIZE_MAX);
+    DONE(gx_body_model(body, &model, &failure));
+    REFUSED(gx_body_motion(NULL, motions, 2, &failure), GX_ERROR_ARGUMENT, "body", SIZE_MAX);
+    KEEPS(body, gx_body_motion(body, NULL, 2, &failure), GX_ERROR_ARGUMENT, "motions", SIZE_MAX);
+    KEEPS(body, gx_body_motion(body, motions, 1, &failure), GX_ERROR_CAPACITY, "capacity", SIZE_MAX);
+    KEEPS(body, gx_body_motion(body, NULL, 0, &failure), GX_ERROR_CAPACITY, "capacity", SIZE_MAX);
+    number = &view.displacement[3 * 4 + 1];
+    *number = NAN;
+    KEEPS(body, gx_body_motion(body, motions, 2, &failure), GX_ERROR_NOT_FINITE, "displacement", 4);
+    *number = 0;
+    number = &view.velocity[3 * 5 + 2];
+    *number = INFINITY;
+    KEEPS(body, gx_body_motion(body, motions, 2, &failure), GX_ERROR_NOT_FINITE, "velocity", 5);
+    *number = 1e300;
+    KEEPS(body, gx_body_motion(body, motions, 2, &failure), GX_ERROR_RANGE, NULL, SIZE_MAX);
+    *number = 0;
+    DONE(gx_body_motion(body, motions, 2, &failure));
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A region that holds nothing is refused, and what was held stays held; one that a cut leaves without a copy is not. */
+START_TEST(regions) {
+    workload w = grid(2, 1, 1, 5); /* x from 0 to 2 */
+    gx_body *body = body_of(&w);
+    gx_region good[2] = {{0, -1, 0.5}, {0, 1, 1.5}}, bad[2];
+    gx_view view;
+    size_t i, held = 0;
+    bad[0] = good[0];
+    DONE(gx_body_hold(body, good, 1, &failure));
+    DONE(gx_body_view(body, &view, &failure));
+    for (i = 0; i < view.copy_count; i++) held += view.copy_held[i];
+    ck_assert_uint_eq(held, 4);
+    REFUSED(gx_body_hold(NULL, good, 1, &failure), GX_ERROR_ARGUMENT, "body", SIZE_MAX);
+    KEEPS(body, gx_body_hold(body, NULL, 1, &failure), GX_ERROR_ARGUMENT, "regions", SIZE_MAX);
+    bad[1] = good[1];
+    bad[1].axis = 3;
+    KEEPS(body, gx_body_hold(body, bad, 2, &failure), GX_ERROR_ARGUMENT, "regions.axis", 1);
+    bad[1] = good[1];
+    bad[1].side = 0;
+    KEEPS(body, gx_body_hold(body, bad, 2, &failure), GX_ERROR_ARGUMENT, "regions.side", 1);
+    bad[1] = good[1];
+    bad[1].value = NAN;
+    KEEPS(body, gx_body_hold(body, bad, 2, &failure), GX_ERROR_NOT_FINITE, "regions.value", 1);
+    bad[1].value = 2; /* strictly above: no node */
+    KEEPS(body, gx_body_hold(body, bad, 2, &failure), GX_ERROR_EMPTY, "regions", 1);
+    bad[1].value = 1.99;
+    DONE(gx_body_hold(body, bad, 2, &failure));
+    bad[0].value = 0;
+    KEEPS(body, gx_body_hold(body, bad, 2, &failure), GX_ERROR_EMPTY, "regions", 0);
+    DONE(gx_body_view(body, &view, &failure));
+    for (i = held = 0; i < view.copy_count; i++) held += view.copy_held[i];
+    ck_assert_uint_eq(held, 8); /* those of the last call that succeeded */
+    DONE(gx_body_hold(body, NULL, 0, &failure));
+    DONE(gx_body_view(body, &view, &failure));
+    for (i = 0; i < view.copy_count; i++) ck_assert(!view.copy_held[i]);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A solid removes what a region held. The region stays; it holds nothing any more, and cannot be asked for again. */
+START_TEST(regions_that_a_cut_empties) {
+    static const double low[3] = {1.25, -1, -1}, high[3] = {3, 2, 2};
+    const gx_region end = {0, 1, 1.5};
+    workload w = grid(2, 1, 1, 5);
+    gx_body *body = body_of(&w), *copy = NULL;
+    gx_view view;
+    size_t i;
+    wl_add_aligned_box(wl_add_surface(&w, 1), low, high);
+    DONE(gx_body_hold(body, &end, 1, &failure));
+    cut_by(body, &w, 0, 1);
+    DONE(gx_body_view(body, &view, &failure));
+    for (i = 0; i < view.copy_count; i++) ck_assert(!view.copy_held[i]);
+    KEEPS(body, gx_body_hold(body, &end, 1, &failure), GX_ERROR_EMPTY, "regions", 0);
+    DONE(gx_body_clone(body, &copy, &failure)); /* a body with such a region is a body like others */
+    ck_assert(gx_body_state_hash(copy) == gx_body_state_hash(body));
+    gx_body_destroy(copy);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+START_TEST(skins_and_rays) {
+    workload w = grid(1, 1, 1, 5);
+    gx_body *body = body_of(&w);
+    const double o[3] = {0.3, 0.4, -1}, d[3] = {0, 0, 1}, none[3] = {0, 0, 0}, bad[3] = {0, INFINITY, 1};
+    double x[3 * 64];
+    float y[3 * 64];
+    gx_skin_desc desc;
+    gx_skin skin;
+    gx_hit hit;
+    memset(&desc, 0, sizeof desc);
+    add_axis_plane(&w, 0, 0.5);
+    /* before there is a skin */
+    KEEPS(body, gx_body_skin_positions(body, x, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
+    KEEPS(body, gx_body_skin_vertices(body, NULL, y, NULL, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
+    KEEPS(body, gx_body_pick(body, o, d, &hit, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
+    REFUSED(gx_body_skin(NULL, NULL, &skin, &failure), GX_ERROR_ARGUMENT, "body", SIZE_MAX);
+    KEEPS(body, gx_body_skin(body, NULL, NULL, &failure), GX_ERROR_ARGUMENT, "skin", SIZE_MAX);
+    desc.crease_angle = -1;
+    KEEPS(body, gx_body_skin(body, &desc, &skin, &failure), GX_ERROR_ARGUMENT, "crease_angle", SIZE_MAX);
+    desc.crease_angle = NAN;
+    KEEPS(body, gx_body_skin(body, &desc, &skin, &failure), GX_ERROR_NOT_FINITE, "crease_angle", SIZE_MAX);
+    DONE(gx_body_skin(body, NULL, &skin, &failure));
+    REFUSED(gx_body_skin_positions(NULL, x, &failure), GX_ERROR_ARGUMENT, "body", SIZE_MAX);
+    KEEPS(body, gx_body_skin_positions(body, NULL, &failure), GX_ERROR_ARGUMENT, "positions", SIZE_MAX);
+    DONE(gx_body_skin_positions(body, x, &failure));
+    REFUSED(gx_body_skin_vertices(NULL, NULL, y, NULL, &failure), GX_ERROR_ARGUMENT, "body", SIZE_MAX);
+    KEEPS(body, gx_body_skin_vertices(body, bad, y, NULL, &failure), GX_ERROR_NOT_FINITE, "origin", SIZE_MAX);
+    DONE(gx_body_skin_vertices(body, NULL, NULL, y, &failure));
+    REFUSED(gx_body_pick(NULL, o, d, &hit, &failure), GX_ERROR_ARGUMENT, "body", SIZE_MAX);
+    KEEPS(body, gx_body_pick(body, NULL, d, &hit, &failure), GX_ERROR_ARGUMENT, "origin", SIZE_MAX);
+    KEEPS(body, gx_body_pick(body, o, NULL, &hit, &failure), GX_ERROR_ARGUMENT, "direction", SIZE_MAX);
+    KEEPS(body, gx_body_pick(body, o, d, NULL, &failure), GX_ERROR_ARGUMENT, "hit", SIZE_MAX);
+    KEEPS(body, gx_body_pick(body, bad, d, &hit, &failure), GX_ERROR_NOT_FINITE, "origin", SIZE_MAX);
+    KEEPS(body, gx_body_pick(body, o, bad, &hit, &failure), GX_ERROR_NOT_FINITE, "direction", SIZE_MAX);
+    KEEPS(body, gx_body_pick(body, o, none, &hit, &failure), GX_ERROR_ARGUMENT, "direction", SIZE_MAX);
+    DONE(gx_body_pick(body, o, d, &hit, &failure));
+    /* after a cut */
+    cut_by(body, &w, 0, 1);
+    KEEPS(body, gx_body_skin_positions(body, x, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
+    KEEPS(body, gx_body_skin_vertices(body, NULL, y, NULL, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
+    KEEPS(body, gx_body_pick(body, o, d, &hit, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
+    DONE(gx_body_skin(body, NULL, &skin, &failure));
+    DONE(gx_body_pick(body, o, d, &hit, &failure));
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+START_TEST(scopes) {
+    static const uint32_t fragments[2] = {0, 2}, cells[2] = {0, 1000};
+    workload w = wl_through(0.1);
+    gx_body *body = cut_at_once(&w);
+    const gx_surface solid = surface_of(&w.surfaces[0]);
+    gx_cut_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.surfaces = &solid;
+    desc.surface_count = 1;
+    REFUSED(gx_body_cut(NULL, &desc, NULL, &failure), GX_ERROR_ARGUMENT, "body", SIZE_MAX);
+    KEEPS(body, gx_body_cut(body, NULL, NULL, &failure), GX_ERROR_ARGUMENT, "desc", SIZE_MAX);
+    desc.scope_fragment_count = 2;
+    KEEPS(body, gx_body_cut(body, &desc, NULL, &failure), GX_ERROR_ARGUMENT, "scope_fragments", SIZE_MAX);
+    desc.scope_fragments = fragments;
+    KEEPS(body, gx_body_cut(body, &desc, NULL, &failure), GX_ERROR_INDEX, "scope_fragments", 1);
+    desc.scope_fragment_count = 0;
+    desc.scope_cell_count = 2;
+    KEEPS(body, gx_body_cut(body, &desc, NULL, &failure), GX_ERROR_ARGUMENT, "scope_cells", SIZE_MAX);
+    desc.scope_cells = cells;
+    KEEPS(body, gx_body_cut(body, &desc, NULL, &failure), GX_ERROR_INDEX, "scope_cells", 1);
+    desc.scope_cell_count = 1;
+    desc.sever_below = 1;
+    DONE(gx_body_cut(body, &desc, NULL, &failure));
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+START_TEST(thick_sheets) {
+    double x[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, y[18];
+    uint32_t n[3] = {0, 1, 2}, t[24];
+    size_t nv, nt;
+    gx_surface s;
+    gx_allocator half;
+    memset(&s, 0, sizeof s);
+    memset(&half, 0, sizeof half);
+    half.allocate = (void *(*)(void *, size_t))1;
+    s.vertices = x;
+    s.vertex_count = 3;
+    s.triangles = n;
+    s.triangle_count = 1;
+#define SOLIDIFY(thickness) gx_surface_solidify(&s, thickness, y, &nv, t, &nt, NULL, &failure)
+    DONE(SOLIDIFY(0.1));
+    REFUSED(gx_surface_solidify(NULL, 1, y, &nv, t, &nt, NULL, &failure), GX_ERROR_ARGUMENT, "sheet", SIZE_MAX);
+    REFUSED(gx_surface_solidify(&s, 1, NULL, &nv, t, &nt, NULL, &failure), GX_ERROR_ARGUMENT, "solid_vertices",
+            SIZE_MAX);
+    REFUSED(gx_surface_solidify(&s, 1, y, NULL, t, &nt, NULL, &failure), GX_ERROR_ARGUMENT, "solid_vertex_count",
+            SIZE_MAX);
+    REFUSED(gx_surface_solidify(&s, 1, y, &nv, NULL, &nt, NULL, &failure), GX_ERROR_ARGUMENT, "solid_triangles",
+            SIZE_MAX);
+    REFUSED(gx_surface_solidify(&s, 1, y, &nv, t, NULL, NULL, &failure), GX_ERROR_ARGUMENT, "solid_triangle_count",
+            SIZE_MAX);
+    REFUSED(gx_surface_solidify(&s, 1, y, &nv, t, &nt, &half, &failure), GX_ERROR_ARGUMENT, "allocator", SIZE_MAX);
+    REFUSED(SOLIDIFY(0), GX_ERROR_ARGUMENT, "thickness", SIZE_MAX);
+    REFUSED(SOLIDIFY(-1), GX_ERROR_ARGUMENT, "thickness", SIZE_MAX);
+    REFUSED(SOLIDIFY(NAN), GX_ERROR_NOT_FINITE, "thickness", SIZE_MAX);
+    s.vertices = NULL;
+    REFUSED(SOLIDIFY(1), GX_ERROR_ARGUMENT, "vertices", SIZE_MAX);
+    s.vertices = x;
+    s.triangles = NULL;
+    REFUSED(SOLIDIFY(1), GX_ERROR_ARGUMENT, "triangles", SIZE_MAX);
+    s.triangles = n;
+    s.vertex_count = 0;
+    REFUSED(SOLIDIFY(1), GX_ERROR_EMPTY, "vertex_count", SIZE_MAX);
+    s.vertex_count = SIZE_MAX / 8;
+    REFUSED(SOLIDIFY(1), GX_ERROR_LIMIT, "vertex_count", SIZE_MAX);
+    s.vertex_count = 3;
+    s.triangle_count = 0;
+    REFUSED(SOLIDIFY(1), GX_ERROR_EMPTY, "triangle_count", SIZE_MAX);
+    s.triangle_count = SIZE_MAX / 8;
+    REFUSED(SOLIDIFY(1), GX_ERROR_LIMIT, "triangle_count", SIZE_MAX);
+    s.triangle_count = 1;
+    n[1] = 3;
+    REFUSED(SOLIDIFY(1), GX_ERROR_INDEX, "triangles", 0);
+    n[1] = 1;
+    x[7] = NAN;
+    REFUSED(SOLIDIFY(1), GX_ERROR_NOT_FINITE, "vertices", 2);
+    x[7] = 1;
+    x[2] = x[5] = x[8] = DBL_MAX;
+    REFUSED(SOLIDIFY(1e300), GX_ERROR_RANGE, "vertices", 0);
+#undef SOLIDIFY
+}
+END_TEST
+
+START_TEST(saving) {
+    workload w = wl_through(0.1);
+    gx_body *body = cut_at_once(&w), *other = NULL;
+    gx_body_desc desc;
+    unsigned char *bytes;
+    size_t size = 0;
+    memset(&desc, 0, sizeof desc);
+    REFUSED(gx_body_save(NULL, NULL, 0, &size, &failure), GX_ERROR_ARGUMENT, "body", SIZE_MAX);
+    KEEPS(body, gx_body_save(body, NULL, 0, NULL, &failure), GX_ERROR_ARGUMENT, "size", SIZE_MAX);
+    DONE(gx_body_save(body, NULL, 0, &size, &failure));
+    bytes = (unsigned char *)malloc(size);
+    KEEPS(body, gx_body_save(body, bytes, size - 1, &size, &failure), GX_ERROR_CAPACITY, "capacity", SIZE_MAX);
+    KEEPS(body, gx_body_save(body, bytes, 0, &size, &failure), GX_ERROR_CAPACITY, "capacity", SIZE_MAX);
+    DONE(gx_body_save(body, bytes, size, &size, &failure));
+    REFUSED(gx_body_load(NULL, size, NULL, &other, &failure), GX_ERROR_ARGUMENT, "memory", SIZE_MAX);
+    REFUSED(gx_body_load(bytes, size, NULL, NULL, &failure), GX_ERROR_ARGUMENT, "body", SIZE_MAX);
+    desc.allocator.release = (void (*)(void *, void *, size_t))1;
+    REFUSED(gx_body_load(bytes, size, &desc, &other, &failure), GX_ERROR_ARGUMENT, "allocator", SIZE_MAX);
+    REFUSED(gx_body_load(bytes, size - 1, NULL, &other, &failure), GX_ERROR_DAMAGED, "memory", 40);
+    bytes[8]--; /* another version */
+    REFUSED(gx_body_load(bytes, size, NULL, &other, &failure), GX_ERROR_FORMAT, "memory", 40);
+    bytes[8]++;
+    ck_assert(other == NULL);
+    DONE(gx_body_load(bytes, size, NULL, &other, &failure));
+    REFUSED(gx_body_clone(NULL, &other, &failure), GX_ERROR_ARGUMENT, "body", SIZE_MAX);
+    KEEPS(body, gx_body_clone(body, NULL, &failure), GX_ERROR_ARGUMENT, "clone", SIZE_MAX);
+    REFUSED(gx_body_restore(NULL, body, &failure), GX_ERROR_ARGUMENT, "body", SIZE_MAX);
+    KEEPS(body, gx_body_restore(body, NULL, &failure), GX_ERROR_ARGUMENT, "from", SIZE_MAX);
+    DONE(gx_body_restore(body, body, &failure));
+    DONE(gx_body_restore(body, other, &failure));
+    gx_body_topology_hash(NULL, &failure);
+    REFUSED(failure.result, GX_ERROR_ARGUMENT, "body", SIZE_MAX);
+    ck_assert(gx_body_topology_hash(body, &failure) != 0);
+    DONE(failure.result);
+    free(bytes);
+    gx_body_destroy(other);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A step names the fields of its description; a solver without a model says that something else comes first. */
+START_TEST(steps_and_solvers) {
+    workload w = grid(1, 1, 1, 5);
+    gx_body *body = body_of(&w);
+    gxs_solver_desc desc;
+    gxs_solver *solver = NULL;
+    gxs_change change;
+    gx_step_desc step;
+    gxs_step_desc own;
+    double u[24], v[24];
+    memset(&desc, 0, sizeof desc);
+    memset(&step, 0, sizeof step);
+    memset(&change, 0, sizeof change);
+    memset(u, 0, sizeof u);
+    memset(v, 0, sizeof v);
+    REFUSED(gx_body_step(NULL, &step, NULL, &failure), GX_ERROR_ARGUMENT, "body", SIZE_MAX);
+    KEEPS(body, gx_body_step(body, NULL, NULL, &failure), GX_ERROR_ARGUMENT, "desc", SIZE_MAX);
+    KEEPS(body, gx_body_step(body, &step, NULL, &failure), GX_ERROR_ARGUMENT, "dt", SIZE_MAX);
+    step.dt = 0.01;
+    step.gravity[1] = NAN;
+    KEEPS(body, gx_body_step(body, &step, NULL, &failure), GX_ERROR_NOT_FINITE, "gravity", SIZE_MAX);
+    step.gravity[1] = 0;
+    step.sleep_speed = -1;
+    KEEPS(body, gx_body_step(body, &step, NULL, &failure), GX_ERROR_ARGUMENT, "sleep_speed", SIZE_MAX);
+    step.sleep_speed = 0;
+    step.spring_count = 1;
+    KEEPS(body, gx_body_step(body, &step, NULL, &failure), GX_ERROR_ARGUMENT, "springs", SIZE_MAX);
+    step.spring_count = 0;
+    step.integrator = GXS_STATIC; /* nothing is held */
+    step.dt = 0;
+    KEEPS(body, gx_body_step(body, &step, NULL, &failure), GX_ERROR_FREE, NULL, 0);
+    step.integrator = GXS_BDF1;
+    step.dt = 0.01;
+    DONE(gx_body_step(body, &step, NULL, &failure));
+    own = solver_step(&step);
+    REFUSED(gxs_solver_create(NULL, NULL, &failure), GX_ERROR_ARGUMENT, "solver", SIZE_MAX);
+    desc.allocator.allocate = (void *(*)(void *, size_t))1;
+    REFUSED(gxs_solver_create(&desc, &solver, &failure), GX_ERROR_ARGUMENT, "allocator", SIZE_MAX);
+    desc.allocator.allocate = NULL;
+    desc.preconditioner = (gxs_preconditioner)(GXS_VOLUME_RATIO + 1);
+    REFUSED(gxs_solver_create(&desc, &solver, &failure), GX_ERROR_ARGUMENT, "preconditioner", SIZE_MAX);
+    desc.preconditioner = GXS_AUTOMATIC;
+    desc.matrix = (gxs_matrix)(GXS_MATRIX_ASSEMBLED + 1);
+    REFUSED(gxs_solver_create(&desc, &solver, &failure), GX_ERROR_ARGUMENT, "matrix", SIZE_MAX);
+    desc.matrix = GXS_MATRIX_FREE;
+    DONE(gxs_solver_create(&desc, &solver, &failure));
+    REFUSED(gxs_solver_set_model(solver, NULL, &failure), GX_ERROR_ARGUMENT, "model", SIZE_MAX);
+    REFUSED(gxs_solver_step(NULL, &own, u, v, NULL, &failure), GX_ERROR_ARGUMENT, "solver", SIZE_MAX);
+    REFUSED(gxs_solver_step(solver, &own, u, v, NULL, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
+    REFUSED(gxs_solver_update(solver, &change, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
+    REFUSED(gxs_solver_linearise(solver, u, 0, 0, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
+    REFUSED(gxs_solver_product(solver, u, v, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
+    REFUSED(gxs_solver_product(solver, NULL, v, &failure), GX_ERROR_ARGUMENT, "direction", SIZE_MAX);
+    REFUSED(gxs_solver_product(solver, u, NULL, &failure), GX_ERROR_ARGUMENT, "product", SIZE_MAX);
+    {
+        gxs_model model;
+        DONE(gx_body_model(body, &model, &failure));
+        DONE(gxs_solver_set_model(solver, &model, &failure));
+    }
+    REFUSED(gxs_solver_step(solver, NULL, u, v, NULL, &failure), GX_ERROR_ARGUMENT, "step", SIZE_MAX);
+    REFUSED(gxs_solver_step(solver, &own, NULL, v, NULL, &failure), GX_ERROR_ARGUMENT, "displacement", SIZE_MAX);
+    REFUSED(gxs_solver_step(solver, &own, u, NULL, NULL, &failure), GX_ERROR_ARGUMENT, "velocity", SIZE_MAX);
+    REFUSED(gxs_solver_product(solver, u, v, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
+    REFUSED(gxs_solver_linearise(solver, u, -1, 0, &failure), GX_ERROR_ARGUMENT, "rate", SIZE_MAX);
+    DONE(gxs_solver_linearise(solver, u, 1, 0, &failure));
+    DONE(gxs_solver_product(solver, u, v, &failure));
+    DONE(gxs_solver_step(solver, &own, u, v, NULL, &failure));
+    gxs_solver_destroy(solver);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+START_TEST(booleans) {
+    double x[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    uint32_t n[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    gxb_boolean_desc desc;
+    gxb_boolean *b = NULL;
+    gxb_boolean_result r;
+    gxb_components components;
+    gxb_statistics statistics;
+    gxb_defects defects;
+    gxb_operand o;
+    memset(&desc, 0, sizeof desc);
+    memset(&o, 0, sizeof o);
+    o.vertices = x;
+    o.vertex_count = 4;
+    o.triangles = n;
+    o.triangle_count = 4;
+    REFUSED(gxb_boolean_create(NULL, NULL, &failure), GX_ERROR_ARGUMENT, "boolean", SIZE_MAX);
+    desc.allocator.allocate = (void *(*)(void *, size_t))1;
+    REFUSED(gxb_boolean_create(&desc, &b, &failure), GX_ERROR_ARGUMENT, "allocator", SIZE_MAX);
+    desc.allocator.allocate = NULL;
+    desc.memory_limit = 1;
+    REFUSED(gxb_boolean_create(&desc, &b, &failure), GX_ERROR_LIMIT, "memory_limit", SIZE_MAX);
+    DONE(gxb_boolean_create(NULL, &b, &failure));
+    REFUSED(gxb_boolean_evaluate(b, &r, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
+    REFUSED(gxb_boolean_components(b, &components, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
+    REFUSED(gxb_boolean_defects(b, &defects, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
+    REFUSED(gxb_boolean_set_triangulation(b, 3, &failure), GX_ERROR_ARGUMENT, "triangulation", SIZE_MAX);
+    REFUSED(gxb_boolean_set_fine(NULL, 1, &failure), GX_ERROR_ARGUMENT, "boolean", SIZE_MAX);
+    REFUSED(gxb_boolean_set_mend(NULL, 1, &failure), GX_ERROR_ARGUMENT, "boolean", SIZE_MAX);
+    DONE(gxb_boolean_set_triangulation(b, GXB_DIVIDED, &failure));
+    DONE(gxb_boolean_set_fine(b, 0, &failure));
+    DONE(gxb_boolean_set_mend(b, 0, &failure));
+    REFUSED(gxb_boolean_add(NULL, &o, &failure), GX_ERROR_ARGUMENT, "boolean", SIZE_MAX);
+    REFUSED(gxb_boolean_add(b, NULL, &failure), GX_ERROR_ARGUMENT, "operand", SIZE_MAX);
+#define ADDED_WITH(change, undo, expected, field, index)                                                               \
+    change;                                                                                                            \
+    REFUSED(gxb_boolean_add(b, &o, &failure), expected, field, index);                                                 \
+    undo
+    ADDED_WITH(o.operation = 99, o.operation = GXB_UNION, GX_ERROR_ARGUMENT, "operation", SIZE_MAX);
+    ADDED_WITH(o.rule = 99, o.rule = GXB_NONZERO, GX_ERROR_ARGUMENT, "rule", SIZE_MAX);
+    ADDED_WITH(o.vertices = NULL, o.vertices = x, GX_ERROR_ARGUMENT, "vertices", SIZE_MAX);
+    ADDED_WITH(o.triangles = NULL, o.triangles = n, GX_ERROR_ARGUMENT, "triangles", SIZE_MAX);
+    ADDED_WITH(o.vertex_count = 0, o.vertex_count = 4, GX_ERROR_EMPTY, "vertex_count", SIZE_MAX);
+    ADDED_WITH(o.triangle_count = 0, o.triangle_count = 4, GX_ERROR_EMPTY, "triangle_count", SIZE_MAX);
+    ADDED_WITH(o.vertex_count = INT32_MAX, o.vertex_count = 4, GX_ERROR_LIMIT, "vertex_count", SIZE_MAX);
+    ADDED_WITH(o.triangle_count = INT32_MAX, o.triangle_count = 4, GX_ERROR_LIMIT, "triangle_count", SIZE_MAX);
+    ADDED_WITH(n[7] = 4, n[7] = 3, GX_ERROR_INDEX, "triangles", 2);
+    ADDED_WITH(x[10] = NAN, x[10] = 0, GX_ERROR_NOT_FINITE, "vertices", 3);
+    ADDED_WITH(x[3] = 1e300, x[3] = 1, GX_ERROR_RANGE, "vertices", 1);
+    ADDED_WITH(o.triangle_count = 3, o.triangle_count = 4, GX_ERROR_NOT_CLOSED, "triangles", 0);
+#undef ADDED_WITH
+    DONE(gxb_boolean_add(b, &o, &failure));
+    REFUSED(gxb_boolean_evaluate(NULL, &r, &failure), GX_ERROR_ARGUMENT, "boolean", SIZE_MAX);
+    REFUSED(gxb_boolean_evaluate(b, NULL, &failure), GX_ERROR_ARGUMENT, "result", SIZE_MAX);
+    DONE(gxb_boolean_evaluate(b, &r, &failure));
+    REFUSED(gxb_boolean_components(b, NULL, &failure), GX_ERROR_ARGUMENT, "components", SIZE_MAX);
+    REFUSED(gxb_boolean_defects(b, NULL, &failure), GX_ERROR_ARGUMENT, "defects", SIZE_MAX);
+    REFUSED(gxb_boolean_statistics(b, NULL, &failure), GX_ERROR_ARGUMENT, "statistics", SIZE_MAX);
+    DONE(gxb_boolean_components(b, &components, &failure));
+    DONE(gxb_boolean_defects(b, &defects, &failure));
+    DONE(gxb_boolean_statistics(b, &statistics, &failure));
+    gxb_boolean_destroy(b);
+}
+END_TEST
+
+START_TEST(integrals) {
+    double x[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, m[20], work[20];
+    uint32_t n[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    const double bad[3] = {0, NAN, 0}, origin[3] = {0, 0, 0};
+    gxi_surface s = {NULL, 4, NULL, 4};
+    gxi_moments2 moments;
+    s.positions = x;
+    s.triangles = n;
+    REFUSED(gxi_polyhedron_moments2(NULL, origin, &moments, &failure), GX_ERROR_ARGUMENT, "surface", SIZE_MAX);
+    REFUSED(gxi_polyhedron_moments2(&s, origin, NULL, &failure), GX_ERROR_ARGUMENT, "m", SIZE_MAX);
+    REFUSED(gxi_polyhedron_moments2(&s, bad, &moments, &failure), GX_ERROR_NOT_FINITE, "origin", SIZE_MAX);
+    DONE(gxi_polyhedron_moments2(&s, origin, &moments, &failure));
+    REFUSED(gxi_polyhedron_monomials(&s, NULL, 2, NULL, work, &failure), GX_ERROR_ARGUMENT, "moments", SIZE_MAX);
+    REFUSED(gxi_surface_monomials(&s, NULL, 2, m, NULL, &failure), GX_ERROR_ARGUMENT, "work", SIZE_MAX);
+    REFUSED(gxi_surface_flux_monomials(&s, NULL, GXI_DEGREE_MAX + 1, m, work, &failure), GX_ERROR_RANGE, "degree",
+            SIZE_MAX);
+    s.positions = NULL;
+    REFUSED(gxi_polyhedron_monomials(&s, NULL, 2, m, work, &failure), GX_ERROR_ARGUMENT, "positions", SIZE_MAX);
+    s.positions = x;
+    s.triangles = NULL;
+    REFUSED(gxi_polyhedron_monomials(&s, NULL, 2, m, work, &failure), GX_ERROR_ARGUMENT, "triangles", SIZE_MAX);
+    s.triangles = n;
+    s.position_count = 0;
+    REFUSED(gxi_polyhedron_monomials(&s, NULL, 2, m, work, &failure), GX_ERROR_EMPTY, "position_count", SIZE_MAX);
+    s.position_count = 3;
+    REFUSED(gxi_polyhedron_monomials(&s, NULL, 2, m, work, &failure), GX_ERROR_INDEX, "triangles", 1);
+    s.position_count = 4;
+    s.triangle_count = 0;
+    REFUSED(gxi_polyhedron_monomials(&s, NULL, 2, m, work, &failure), GX_ERROR_EMPTY, "triangle_count", SIZE_MAX);
+    s.triangle_count = 4;
+    x[7] = INFINITY;
+    REFUSED(gxi_polyhedron_monomials(&s, NULL, 2, m, work, &failure), GX_ERROR_NOT_FINITE, "positions", 2);
+    x[7] = 1e300;
+    REFUSED(gxi_polyhedron_monomials(&s, NULL, 2, m, work, &failure), GX_ERROR_RANGE, "positions", SIZE_MAX);
+    x[7] = 1;
+    DONE(gxi_polyhedron_monomials(&s, NULL, 3, m, work, &failure));
+    REFUSED(gxi_polyhedron_monomial(&s, NULL, 0, 0, 0, NULL, &failure), GX_ERROR_ARGUMENT, "moment", SIZE_MAX);
+    REFUSED(gxi_polyhedron_monomial(&s, NULL, 1, GXI_DEGREE_MAX, 1, m, &failure), GX_ERROR_RANGE, "j", SIZE_MAX);
+    DONE(gxi_polyhedron_monomial(&s, NULL, 1, 1, 1, m, &failure));
+    REFUSED(gxi_monomials_translate(1, NULL, m, &failure), GX_ERROR_ARGUMENT, "shift", SIZE_MAX);
+    REFUSED(gxi_monomials_translate(1, origin, NULL, &failure), GX_ERROR_ARGUMENT, "moments", SIZE_MAX);
+    REFUSED(gxi_monomials_translate(1, bad, m, &failure), GX_ERROR_NOT_FINITE, "shift", SIZE_MAX);
+    REFUSED(gxi_monomials_translate(GXI_DEGREE_MAX + 1, origin, m, &failure), GX_ERROR_RANGE, "degree", SIZE_MAX);
+    DONE(gxi_monomials_translate(1, origin, m, &failure));
+}
+END_TEST
+
+/* Every code has words of its own. */
+START_TEST(texts) {
+    const char *unknown = gx_result_text((gx_result)(GX_ERROR_CAPACITY + 1));
+    int i, j;
+    for (i = 0; i <= (int)GX_ERROR_CAPACITY; i++) {
+        ck_assert_str_ne(gx_result_text((gx_result)i), unknown);
+        for (j = 0; j < i; j++) ck_assert_str_ne(gx_result_text((gx_result)i), gx_result_text((gx_result)j));
+    }
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("failures");
+    TCase *tests = tcase_create("failures");
+    tcase_add_test(tests, views_and_motions);
+    tcase_add_test(tests, regions);
+    tcase_add_test(tests, regions_that_a_cut_empties);
+    tcase_add_test(tests, skins_and_rays);
+    tcase_add_test(tests, scopes);
+    tcase_add_test(tests, thick_sheets);
+    tcase_add_test(tests, saving);
+    tcase_add_test(tests, steps_and_solvers);
+    tcase_add_test(tests, booleans);
+    tcase_add_test(tests, integrals);
+    tcase_add_test(tests, texts);
+    suite_add_tcase(suite, tests);
+    return run_suite(suite);
+}
