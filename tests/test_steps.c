@@ -809,7 +809,7 @@ static double *droop(gxs_integrator integrator, int steps, size_t *count) {
     step.integrator = integrator;
     step.newton_iterations = 20, step.newton_tolerance = 1e-9, step.cg_tolerance = 1e-6;
     ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
-    ck_assert_int_eq(gx_body_hold(body, &end, 1), GX_OK);
+    ck_assert_int_eq(gx_body_hold(body, &end, 1, NULL), GX_OK);
     add_axis_plane(&w, 2, 1.0 / 15);
     add_axis_plane(&w, 2, 4.0 / 15);
     for (i = 0; i < 2; i++) cut_by(body, &w, i, 1);
