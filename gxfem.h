@@ -527,11 +527,14 @@ extern "C" {
 #pragma clang attribute push(__attribute__((target("no-simd128"))), apply_to = function)
 #endif
 
+/* COLD functions are seldom called: kept out of line and compiled for size. */
 #if defined(__GNUC__)
+#define GXP_COLD              __attribute__((cold, noinline))
 #define GXP_PREFETCH(address) __builtin_prefetch(address)
 #define GXP_PREFETCHES                                                                                                 \
     static inline __attribute__((always_inline)) /* without it gcc takes such a function for pure and drops calls */
 #else
+#define GXP_COLD
 #define GXP_PREFETCH(address) ((void)0)
 #define GXP_PREFETCHES        static inline
 #endif
@@ -1361,20 +1364,23 @@ static void gxp_unite_all(uint32_t *parent, const uint32_t copies[4]) {
     }
 }
 
-static gx_result gxp_fail(gx_failure *failure, gx_result result, const char *field, size_t index) {
+/* A result that blames nothing that was given: success, or a lack of memory */
+static gx_result gxp_end(gx_failure *failure, gx_result result) {
     if (failure != NULL) {
         failure->result = result;
-        failure->field = field;
-        failure->index = index;
-        failure->surface = SIZE_MAX;
+        failure->field = NULL;
+        failure->index = failure->surface = SIZE_MAX;
     }
     return result;
 }
 
-/* A result that blames nothing that was given: success, or a lack of memory */
-static gx_result gxp_end(gx_failure *failure, gx_result result) { return gxp_fail(failure, result, NULL, SIZE_MAX); }
+static GXP_COLD gx_result gxp_fail(gx_failure *failure, gx_result result, const char *field, size_t index) {
+    gxp_end(failure, result);
+    if (failure != NULL) failure->field = field, failure->index = index;
+    return result;
+}
 
-static gx_result gxp_refuse(gx_failure *failure, const char *field) {
+static GXP_COLD gx_result gxp_refuse(gx_failure *failure, const char *field) {
     return gxp_fail(failure, GX_ERROR_ARGUMENT, field, SIZE_MAX);
 }
 
@@ -7577,6 +7583,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
     return GX_OK;
 }
 
+#undef GXP_COLD
 #undef GXP_PREFETCH
 #undef GXP_PREFETCHES
 #undef GXP_NONE

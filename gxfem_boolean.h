@@ -3073,20 +3073,23 @@ static gx_result gxbp_fill_complex(gxb_complex *cx, const gxb_mesh *mesh, uint32
     return result == GX_OK ? gxbp_make_leaves(cx) : result;
 }
 
-static GXBP_COLD gx_result gxbp_fail(gx_failure *failure, gx_result result, const char *field, size_t index) {
+/* A result that blames nothing that was given: success, or a lack of memory */
+static gx_result gxbp_end(gx_failure *failure, gx_result result) {
     if (failure != NULL) {
         failure->result = result;
-        failure->field = field;
-        failure->index = index;
-        failure->surface = SIZE_MAX;
+        failure->field = NULL;
+        failure->index = failure->surface = SIZE_MAX;
     }
     return result;
 }
 
-/* A result that blames nothing that was given: success, or a lack of memory */
-static gx_result gxbp_end(gx_failure *failure, gx_result result) { return gxbp_fail(failure, result, NULL, SIZE_MAX); }
+static GXBP_COLD gx_result gxbp_fail(gx_failure *failure, gx_result result, const char *field, size_t index) {
+    gxbp_end(failure, result);
+    if (failure != NULL) failure->field = field, failure->index = index;
+    return result;
+}
 
-static gx_result gxbp_refuse(gx_failure *failure, const char *field) {
+static GXBP_COLD gx_result gxbp_refuse(gx_failure *failure, const char *field) {
     return gxbp_fail(failure, GX_ERROR_ARGUMENT, field, SIZE_MAX);
 }
 
@@ -11430,7 +11433,8 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
         gxbp_drop_points(b, points);
     } else
         b->out.evaluated = 0;
-    return gxbp_fail(failure, result, gxbp_blamed(result, "vertices", "triangles"), bad);
+    return result == GX_OK ? gxbp_end(failure, GX_OK)
+                           : gxbp_fail(failure, result, gxbp_blamed(result, "vertices", "triangles"), bad);
 }
 
 /* After an error: operands are as they were added, and nothing is arranged. Computed points stay known. */

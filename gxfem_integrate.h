@@ -361,6 +361,13 @@ extern "C" {
 /* A larger lambda cannot belong to a part of an element: the coordinates are not barycentric. */
 #define GXIP_LAMBDA_MAX 65536.0
 
+/* COLD functions are seldom called: kept out of line and compiled for size. */
+#if defined(__GNUC__)
+#define GXIP_COLD __attribute__((cold, noinline))
+#else
+#define GXIP_COLD
+#endif
+
 /* A bound 2^GXIP_EXPONENT_MAX on every intermediate result keeps them all finite. */
 #define GXIP_EXPONENT_MAX 1022
 
@@ -706,13 +713,18 @@ static gx_result gxip_check_reach(int e, unsigned degree) {
     return power + 8 * (int)degree / 5 + 63 > GXIP_EXPONENT_MAX ? GX_ERROR_RANGE : GX_OK;
 }
 
-static gx_result gxip_fail(gx_failure *failure, gx_result result, const char *field, size_t index) {
+static gx_result gxip_end(gx_failure *failure, gx_result result) {
     if (failure) {
         failure->result = result;
-        failure->field = field;
-        failure->index = index;
-        failure->surface = SIZE_MAX;
+        failure->field = NULL;
+        failure->index = failure->surface = SIZE_MAX;
     }
+    return result;
+}
+
+static GXIP_COLD gx_result gxip_fail(gx_failure *failure, gx_result result, const char *field, size_t index) {
+    gxip_end(failure, result);
+    if (failure) failure->field = field, failure->index = index;
     return result;
 }
 
@@ -737,7 +749,7 @@ static gx_result gxip_check_surface(const gxi_surface *surface, const double *or
             e = gxip_exponent_above(origin ? x - origin[i % 3] : x);
             if (e > largest) largest = e;
         }
-    return gxip_check_reach(largest, degree) == GX_OK ? gxip_fail(failure, GX_OK, NULL, SIZE_MAX)
+    return gxip_check_reach(largest, degree) == GX_OK ? gxip_end(failure, GX_OK)
                                                       : gxip_fail(failure, GX_ERROR_RANGE, "positions", SIZE_MAX);
 }
 
@@ -868,7 +880,7 @@ GXFEM_API gx_result gxi_monomials_translate(unsigned degree, const double shift[
     if (degree > GXI_DEGREE_MAX) return gxip_fail(failure, GX_ERROR_RANGE, "degree", SIZE_MAX);
     if (!gxip_all_finite(shift, 3)) return gxip_fail(failure, GX_ERROR_NOT_FINITE, "shift", SIZE_MAX);
     for (axis = 0; axis < 3; axis++) gxip_translate_axis(moments, degree, axis, shift[axis]);
-    return gxip_fail(failure, GX_OK, NULL, SIZE_MAX);
+    return gxip_end(failure, GX_OK);
 }
 
 GXFEM_API double gxi_tet_volume(const double positions[12]) {
@@ -1101,6 +1113,7 @@ GXFEM_API void gxi_face_mass_add(const double a[4], const double b[4], const dou
 #undef GXIP_ROUNDING
 #undef GXIP_LAMBDA_MAX
 #undef GXIP_FEW
+#undef GXIP_COLD
 #undef GXIP_EXPONENT_MAX
 #ifdef GXFEM_SCALAR
 #pragma clang attribute pop

@@ -597,7 +597,7 @@ extern "C" {
 #define GXSP_LIGHTER 0.02
 
 /* Light copies start, and go through the midpoint rule's second half, by themselves as far as GXSP_FREE of their
- * distance from the copies that guide them. Slices of a fifth of an element have such copies: where steps resolve
+ * distance from the copies that guide them. Slices of 1/15 of an element have such copies: where steps resolve
  * their motion, it is theirs. */
 #define GXSP_FREE 0.1
 
@@ -713,10 +713,13 @@ extern "C" {
 #define GXSP_RESTRICT
 #endif
 
-/* Inlined, so that compilers know the column numbers: columns that might be equal are not vectorised. */
+/* INLINE: compilers must know the column numbers. Columns that might be equal are not vectorised. COLD: seldom called,
+ * kept out of line and compiled for size. */
 #if defined(__GNUC__)
+#define GXSP_COLD   __attribute__((cold, noinline))
 #define GXSP_INLINE static inline __attribute__((always_inline))
 #else
+#define GXSP_COLD
 #define GXSP_INLINE static inline
 #endif
 
@@ -783,11 +786,18 @@ static int gxsp_all_finite_single(const void *numbers, size_t bytes) {
     return 1;
 }
 
-static gx_result gxsp_fail(gx_failure *failure, gx_result result, const char *field, size_t index) {
+/* A result that blames nothing that was given: success, or a lack of memory */
+static gx_result gxsp_end(gx_failure *failure, gx_result result) {
     failure->result = result;
+    failure->field = NULL;
+    failure->index = failure->surface = SIZE_MAX;
+    return result;
+}
+
+static GXSP_COLD gx_result gxsp_fail(gx_failure *failure, gx_result result, const char *field, size_t index) {
+    gxsp_end(failure, result);
     failure->field = field;
     failure->index = index;
-    failure->surface = SIZE_MAX;
     return result;
 }
 
@@ -8809,10 +8819,7 @@ static void gxsp_report_springs(const gxsp_problem *problem) {
 /* In: what the caller gives. Out: a result code, and the index of what is wrong. Nothing is written but the
  * failure and, by gxsp_check_free, marks of touched components. */
 
-/* A result that blames nothing that was given: success, or a lack of memory */
-static gx_result gxsp_end(gx_failure *failure, gx_result result) { return gxsp_fail(failure, result, NULL, SIZE_MAX); }
-
-static gx_result gxsp_refuse(gx_failure *failure, const char *field) {
+static GXSP_COLD gx_result gxsp_refuse(gx_failure *failure, const char *field) {
     return gxsp_fail(failure, GX_ERROR_ARGUMENT, field, SIZE_MAX);
 }
 
@@ -9460,6 +9467,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_CHUNK
 #undef GXSP_EACH_LANE
 #undef GXSP_RESTRICT
+#undef GXSP_COLD
 #undef GXSP_INLINE
 #undef GXSP_ROUNDING
 #undef GXSP_ABSURD
