@@ -93,13 +93,14 @@
  *
  * LIMITS. poisson in [0, 0.5); beyond 0.49999 the Hessian's single precision shows. Copies and elements below 2^30.
  * Energies, forces and states are doubles. The Hessian, its products and the preconditioner are single precision, which
- * limits one linear solve (to about 1e-6 of the residual), not the state that Newton's method reaches. A free body's
- * slowest modes are solved as well while inertia is above about 1e-6 of stiffness, rho h^2 / (E dt^2) for elements of
- * size h. The centre of the mass of a part of an element is rounded once, by at most 1e-7 of the element. Memory: 240
- * to 270 bytes per element in all for a mesh with four elements per copy; 290 to 350 where cuts leave two or three. The
- * material can invert without a failure and recovers by itself. An element collapsed to a point, where its energy is
- * stationary, is opened as if it were not quite collapsed. The same input gives the same bits with the same binary.
- * Nothing here needs isnan or infinities, so results are right under -ffast-math, though sums round differently.
+ * limits one linear solve (to about 1e-6 of the residual), not the state that Newton's method reaches. The slowest
+ * modes of a free body are solved too, as long as inertia is above about 1e-6 of stiffness: rho h^2 / (E dt^2) for
+ * elements of size h. The centre of the mass of a part of an element is rounded once, by at most 1e-7 of the element.
+ * Memory: 240 to 270 bytes per element in all for a mesh with four elements per copy; 290 to 350 where cuts leave two
+ * or three. The material can invert without a failure and recovers by itself. An element collapsed to a point, where
+ * its energy is stationary, is opened as if it were not quite collapsed. The same input gives the same bits with the
+ * same binary. Nothing here needs isnan or infinities, so results are right under -ffast-math, though sums round
+ * differently.
  *
  * REFERENCES. GXFEM: Generalized eXtended Finite Element Method for Deformable Cutting via Boolean Operations, 2024.
  * RXFEM: Koschier, Bender, Thuerey, Robust eXtended Finite Elements for Complex Cutting of Deformables, ACM Trans.
@@ -173,7 +174,8 @@ typedef enum gx_result {
 typedef struct gx_failure {
     gx_result result;
     /* The name of an argument, or of a member of the struct that an argument points to, with the members on the way:
-       "positions", "dt", "surfaces.vertices", "springs.point.copy". Static. NULL: nothing given is to blame */
+       "positions", "dt", "surfaces.vertices", "springs.point.copy". A string literal. NULL: nothing given is to
+       blame */
     const char *field;
     size_t index;   /* of the node, element, triangle, copy ... concerned; SIZE_MAX: no single one is */
     size_t surface; /* of a cut: which of its surfaces; else SIZE_MAX */
@@ -453,7 +455,8 @@ typedef struct gxs_solver gxs_solver;
  * contact points, or copies of them, than ever before. */
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
                                     double *velocity, gxs_step_report *report, gx_failure *failure);
-/* Checks of a step's description what needs no solver: its numbers, and that it names copies by the numbering `epoch`.
+/* Checks the parts of a step's description that need no solver: its numbers, and whether all that names copies does so
+   by the numbering `epoch`.
    Errors: ARGUMENT, NOT_FINITE, RANGE, LIMIT, STALE. */
 GXFEM_API gx_result gxs_step_check(const gxs_step_desc *step, uint64_t epoch, gx_failure *failure /* or NULL */);
 
@@ -469,9 +472,9 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
  * was not or the other way round, no element is left, or an element that stays has lost a copy. After this and
  * GX_ERROR_MEMORY no model is set: set one. On other errors the old model stays. */
 GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure);
-/* Sets the rest times of copies to 0 whose state has been written since the last step. Their components then wake even
- * if another model is set before the next step, or another solver takes it. Vectors use the present numbering; origins
- * (count): as in gxs_change. */
+/* Sets to 0 the rest times of copies whose state has been written since the last step. Their components then wake even
+ * if another model is set before the next step, or another solver takes that step. Vectors use the present numbering;
+ * origins (count): as in gxs_change. */
 GXFEM_API void gxs_solver_note_written(const gxs_solver *solver, const uint32_t *origins, size_t count,
                                        const double *displacement, const double *velocity, double *rest_times);
 /* For saving a state and continuing later. gxs_solver_scene gives the scene of the last step. gxs_solver_resume makes
@@ -6180,7 +6183,8 @@ static int gxsp_invert_fine(gxsp_system *system) {
 
 /* >>smoother: its step length -------------------------------------------------------------------------------------- */
 
-/* In: the last linearisation and its block diagonal. Out: gxsp_smoother. Uses the search and product vectors. */
+/* In: the last linearisation and its block diagonal. Out: gxsp_smoother. Uses the search and product vectors. The
+ * sweeps themselves are in >>cycle; the first one of level 0 is gxsp_scale in >>cg. */
 
 /* Largest eigenvalue of D^-1 (K + rate M) on copies that are not still, by the power method from a start that
  * favours none; 0 if nothing moves */
@@ -6351,7 +6355,7 @@ static void gxsp_factor_solve(const gxsp_factor *factor, gxsp_level *level) {
     for (i = 0; i < factor->n; i++) level->x[factor->order[i / 3]][i % 3] = (float)x[i];
 }
 
-/* x = the multigrid's answer to b on levels[at] and below, at > 0 */
+/* x = the multigrid's answer to b on levels[depth] and below. depth 0: only if level 0 is assembled */
 static void gxsp_cycle(gxsp_system *system, uint32_t depth) {
     gxsp_level *level = &system->multigrid.levels[depth];
     if (depth + 1 == system->multigrid.level_count) {
