@@ -10,6 +10,7 @@
 #include <check.h>
 #include <float.h>
 #include <math.h>
+#include "../examples/gxfailure.h"
 #include "body.h"
 
 /* What no call writes */
@@ -504,6 +505,23 @@ START_TEST(texts) {
 }
 END_TEST
 
+/* A failure in a sentence, with what it names and nothing else */
+START_TEST(sentences) {
+    gx_failure f = {GX_ERROR_NOT_FINITE, "surfaces.vertices", 7, 2};
+    ck_assert_str_eq(gxfailure_say(&f, "cause").text, "surfaces.vertices 7 of surface 2: cause");
+    f.index = SIZE_MAX;
+    ck_assert_str_eq(gxfailure_say(&f, "cause").text, "surfaces.vertices of surface 2: cause");
+    f.surface = SIZE_MAX;
+    ck_assert_str_eq(gxfailure_say(&f, "cause").text, "surfaces.vertices: cause");
+    f.index = 7;
+    ck_assert_str_eq(gxfailure_say(&f, "cause").text, "surfaces.vertices 7: cause");
+    f.field = NULL;
+    ck_assert_str_eq(gxfailure_say(&f, "cause").text, "index 7: cause");
+    f.index = SIZE_MAX;
+    ck_assert_str_eq(gxfailure_say(&f, "cause").text, "cause");
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("failures");
     TCase *tests = tcase_create("failures");
@@ -518,6 +536,7 @@ int main(void) {
     tcase_add_test(tests, booleans);
     tcase_add_test(tests, integrals);
     tcase_add_test(tests, texts);
+    tcase_add_test(tests, sentences);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }
