@@ -501,8 +501,9 @@ GXFEM_API const char *gx_result_text(gx_result result);
    concerned start anew: the next step makes its preconditioner and takes no guess from the last. Sleeping copies go on
    sleeping. Pointers are not saved. */
 
-/* Writes the body to memory of at least *size bytes; memory NULL: only computes *size. Fields have fixed widths, in the
-   machine's byte order, which the bytes tell. Errors: ARGUMENT, CAPACITY (it is below *size). */
+/* Writes the body to memory, which has room for capacity bytes. *size: receives how many bytes it takes, also after
+   CAPACITY. memory NULL: computes *size only. Fields have fixed widths, in the machine's byte order, which the bytes
+   tell. Errors: ARGUMENT, CAPACITY (capacity is below *size). */
 GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, size_t *size,
                                  gx_failure *failure /* or NULL */);
 /* Reads a body. Bytes from anywhere do no harm: a checksum detects accidental damage, and everything that a body relies
@@ -557,8 +558,8 @@ extern "C" {
    records of surfaces, made by cuts; the undo log of a cut; caches; working memory of a call. No function is here. */
 
 #define GXP_NONE UINT32_MAX
-/* Shares of an element, where gx_body_desc.support_below is 0: copies that nothing larger carries follow others;
-   fragments without anything larger move as points. */
+/* Shares of an element, where gx_body_desc.support_below is 0. Copies that no part above GXP_SUPPORT carries follow
+   others. Fragments without a part above GXP_SPECK move as points. */
 #define GXP_SUPPORT 1e-3
 #define GXP_SPECK   1e-9
 
@@ -905,8 +906,8 @@ struct gx_body {
 /* >>columns: every array of a body --------------------------------------------------------------------------------- */
 
 /* Each array of a body is listed here once, with the size of an entry. Columns of one table have an entry for each row.
-   Growth, undo, save, load, clone, hashes and destruction read these lists: an array that is added to a struct above is
-   added here, and nowhere else. */
+   Growth, undo, save, load, clone, hashes and destruction read these lists. An array that is added to a struct above is
+   added here, and nowhere else; a column takes one more place in its struct's capacity. */
 
 enum {
     GXP_TOPOLOGY = 1, /* saved, and hashed in the state: made by cuts */
@@ -3932,8 +3933,8 @@ static gx_result gxp_integrate_removed(gxp_cut *cut, const gxp_words *removed) {
 }
 
 /* >>cut: the driver ------------------------------------------------------------------------------------------------ */
-/* gx_body_cut: check, begin, arrange, enrich, integrate, then commit, or roll back on any error. The commit can't fail.
-   It drops dead copies, wakes the touched copies and marks model, skin, view and snapshot as stale. */
+/* gx_body_cut: check, begin, arrange, enrich, integrate, then commit, or roll back on any error. The commit cannot
+   fail. It drops dead copies, wakes the touched copies and marks model, skin, view and snapshot as stale. */
 
 static uint64_t gxp_hash_cut(uint64_t past, const gx_cut_desc *desc) {
     size_t i;
@@ -5049,7 +5050,7 @@ static double gxp_follow_weights(const gx_body *body, uint32_t copy, uint32_t ce
 
 /* Finds the strong cell that a weak copy follows. It searches from cell to cell. Among the nearest strong cells it
    takes the one whose field is extended least; if a copy as near already follows one, it takes that. Weak copies that
-   the search passed earlier than in its last round follow the same cell. Returns 0, or, if the fragment has no strong
+   the search met before its last round follow the same cell. Returns 0, or, if the fragment has no strong
    cell, the number of its copies, all of which the search has met. */
 static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *supports, uint32_t copy) {
     uint32_t begin, end, i, count = 1, best = GXP_NONE;
@@ -5272,8 +5273,8 @@ static gx_result gxp_make_model(gx_body *body, gxs_model *model, gx_failure *fai
     return GX_OK;
 }
 
-/* Applies the changes to the solver's model. After an error the model must be set whole: LIMIT and, if nothing is left,
-   EMPTY mean no more than that; MEMORY is a failure. */
+/* Applies the changes to the solver's model. After LIMIT, or EMPTY if no part is left, the model must be set whole, and
+   nothing has failed. After MEMORY it must be set whole too, but the call has failed. */
 static gx_result gxp_change_model(gx_body *body, gx_failure *failure) {
     gxp_model *model = &body->model;
     size_t room = 0;

@@ -4232,8 +4232,8 @@ static GXBP_COLD double gxbp_between(double a, double b) {
     return x >> 52 == y >> 52 && drop > 0 ? gxbp_double(y >> (drop - 1) << (drop - 1)) : gxbp_double(y >> 52 << 52);
 }
 
-/* Sorts the numbers. Returns how far apart the first and the last are, roughly: its exponent, and a number between the
- * two in the middle. */
+/* Sorts the numbers. *median: a number between the two in the middle. Returns the exponent of the difference of the
+ * last and the first, roughly. -2000: those in the middle are equal, and there is no median. */
 static int gxbp_median(double *x, uint32_t count, double *median) {
     uint32_t i, j;
     for (i = 1; i < count; i++) {

@@ -350,7 +350,7 @@ typedef struct gxs_spring {
 typedef struct gxs_plane {
     double normal[3];      /* of length 1 */
     double offset;         /* m */
-    double stiffness;      /* N/m, 0 or more */
+    double stiffness;      /* N/m, 0 or more; 0: it stops nothing */
     double friction;       /* Coulomb's coefficient, 0 or more */
     double sticking_speed; /* m/s; 0: 1e-3 */
 } gxs_plane;
@@ -599,9 +599,9 @@ extern "C" {
 #define GXSP_LIGHT   0.1
 #define GXSP_LIGHTER 0.02
 
-/* Light copies start, and go through the midpoint rule's second half, by themselves as far as GXSP_FREE of their
- * distance from the copies that guide them. Slices of a fifth of an element have such copies: where steps resolve
- * their motion, it is theirs. */
+/* Light copies start where the copies that guide them lead, except that they may be off by GXSP_FREE of their distance
+ * from these. So they go through the midpoint rule's second half too. Slices of a fifth of an element have such copies:
+ * where steps resolve their motion, it stays within this share. */
 #define GXSP_FREE 0.1
 
 /* Directions of light copies are bounded in the first GXSP_BOUNDED iterations of a step, where that costs at most
@@ -3777,7 +3777,7 @@ static void gxsp_coarse_rows(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *le
     if (!scratch->failed) gxsp_rows_make(pool, scratch, next, list.pair, list.count);
 }
 
-/* Adds the level after levels[at], at > 0, with twice its spacing. 0: it would not be much smaller. What it takes
+/* Adds the level after levels[depth], depth > 0, with twice its spacing. 0: it would not be much smaller. What it takes
  * of scratch stays there. */
 static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t depth) {
     gxsp_level *level = &system->multigrid.levels[depth], *next = level + 1;
@@ -8546,8 +8546,8 @@ static void gxsp_note_base(const gxsp_problem *problem) {
     }
 }
 
-/* Components whose E exceeds that at trial go from there towards their point as far as E falls. Returns how many
- * there were. */
+/* Puts components whose E exceeds that at trial back there. From there they go towards where they were, as far as E
+ * falls. Returns how many there were. */
 static size_t gxsp_bring_down(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     size_t i, k, count;
