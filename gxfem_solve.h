@@ -468,8 +468,9 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
  * Preconditioner and guesses are kept. Results are those of the whole model set anew, up to rounding and the tolerances
  * of steps. GX_ERROR_SEQUENCE: no model is set. GX_ERROR_ARGUMENT: groups or elements are not in order (index: of the
  * group or element), or a constraint is not allowed (its index). GX_ERROR_LIMIT: the change does not fit. Either the
- * matrix is assembled, mass is lumped, GXS_VOLUME_RATIO is used, empty lanes are a quarter of all, a copy is held that
- * was not or the other way round, no element is left, or an element that stays has lost a copy. After this and
+ * matrix is assembled, mass is lumped, GXS_VOLUME_RATIO is used, empty lanes exceed a quarter of the elements by two
+ * chunks, GXS_AUTOMATIC would now choose otherwise, a copy is held that was not or the other way round, two old copies
+ * (origins without + 1) are the same, no element is left, or an element that stays has lost a copy. After this and
  * GX_ERROR_MEMORY no model is set: set one. On other errors the old model stays. */
 GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure);
 /* Sets to 0 the rest times of copies whose state has been written since the last step. Their components then wake even
@@ -2678,7 +2679,7 @@ static double gxsp_place_moments(const double *mass, const uint8_t *order, gxsp_
     return sum;
 }
 
-/* Puts an element into lane `at` of a chunk. order: corner of the element for each corner of the lane */
+/* Puts an element into lane `place` of a chunk. order: corner of the element for each corner of the lane */
 static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *element, const uint8_t *order,
                                uint32_t place, uint32_t lumped) {
     gxsp_rest *rest = &chunk->rest[place / GXSP_LANES];
