@@ -5457,7 +5457,7 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     result = gxp_translate_step(body, desc, &step);
     if (gxp_end(failure, result) != GX_OK) return result;
     if (body->model.empty) {
-        result = gxs_step_check(&step, body->cuts.epoch, failure);
+        result = gxs_step_check(&step, body->copies.count, body->cuts.epoch, failure);
         if (result == GX_OK && report != NULL) {
             memset(report, 0, sizeof *report);
             report->stop = GXS_STOP_ASLEEP;

@@ -455,10 +455,11 @@ typedef struct gxs_solver gxs_solver;
  * contact points, or copies of them, than ever before. */
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
                                     double *velocity, gxs_step_report *report, gx_failure *failure);
-/* Checks the parts of a step's description that need no solver: its numbers, and whether all that names copies does so
-   by the numbering `epoch`.
-   Errors: ARGUMENT, NOT_FINITE, RANGE, LIMIT, STALE. */
-GXFEM_API gx_result gxs_step_check(const gxs_step_desc *step, uint64_t epoch, gx_failure *failure /* or NULL */);
+/* Checks the parts of a step's description that need no solver: its numbers, springs, points and planes, and whether
+   all that names copies does so by the numbering `epoch` of copy_count copies. The other arrays over copies are not read.
+   Errors: ARGUMENT, NOT_FINITE, RANGE, INDEX, LIMIT, STALE. */
+GXFEM_API gx_result gxs_step_check(const gxs_step_desc *step, size_t copy_count, uint64_t epoch,
+                                   gx_failure *failure /* or NULL */);
 
 /* Sets the model that the next steps move. Call it again after each cut and each change of materials or held copies.
  * The model is copied into the solver's own form. GX_ERROR_MEMORY is possible. On any error the old model stays. */
@@ -8981,15 +8982,6 @@ static gx_result gxsp_check_epochs(const gxs_step_desc *step, uint64_t epoch, gx
     return GX_OK;
 }
 
-GXFEM_API gx_result gxs_step_check(const gxs_step_desc *step, uint64_t epoch, gx_failure *failure) {
-    gx_failure ignored;
-    gx_result result;
-    if (failure == NULL) failure = &ignored;
-    gxsp_end(failure, GX_OK);
-    result = gxsp_check_step(step, failure);
-    return result == GX_OK ? gxsp_check_epochs(step, epoch, failure) : result;
-}
-
 /* names: of the point's count, copy, weight, copies, weights, position */
 static gx_result gxsp_check_point(const gxs_point *point, size_t n, const char *const names[6], size_t index,
                                   gx_failure *failure) {
@@ -9039,6 +9031,16 @@ static gx_result gxsp_check_points(const gxs_step_desc *step, size_t n, gx_failu
         result = gxsp_check_point(&step->points[i], n, of_points, i, failure);
     for (i = 0; i < step->plane_count && result == GX_OK; i++) result = gxsp_check_plane(&step->planes[i], i, failure);
     return result;
+}
+
+GXFEM_API gx_result gxs_step_check(const gxs_step_desc *step, size_t copy_count, uint64_t epoch, gx_failure *failure) {
+    gx_failure ignored;
+    gx_result result;
+    if (failure == NULL) failure = &ignored;
+    gxsp_end(failure, GX_OK);
+    result = gxsp_check_step(step, failure);
+    if (result == GX_OK) result = gxsp_check_epochs(step, epoch, failure);
+    return result == GX_OK ? gxsp_check_points(step, copy_count, failure) : result;
 }
 
 /* Every array that a step reads */
@@ -9319,9 +9321,7 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     if (!solver) return gxsp_refuse(failure, "solver");
     if (!solver->system) return gxsp_end(failure, GX_ERROR_SEQUENCE);
     n = solver->system->model.n;
-    if ((result = gxsp_check_step(step, failure)) != GX_OK ||
-        (result = gxsp_check_epochs(step, solver->system->model.epoch, failure)) != GX_OK ||
-        (result = gxsp_check_points(step, n, failure)) != GX_OK ||
+    if ((result = gxs_step_check(step, n, solver->system->model.epoch, failure)) != GX_OK ||
         (result = gxsp_check_vectors(step, n, displacement, velocity, solver->system->model.held, failure)) != GX_OK)
         return result;
     if (!gxsp_reserve_terms(&solver->lasting, step)) return gxsp_end(failure, GX_ERROR_MEMORY);
