@@ -119,7 +119,7 @@ typedef enum gx_result {
     GX_ERROR_ARGUMENT,   /* a required pointer is NULL, a required field is zero or senseless */
     GX_ERROR_MEMORY,     /* the allocator returned NULL */
     GX_ERROR_NOT_FINITE, /* a coordinate or parameter is NaN or infinite */
-    GX_ERROR_RANGE,      /* a coordinate or a mass is too large or too small (see "limits") */
+    GX_ERROR_RANGE,      /* a coordinate, a mass or another number is too large or too small (see "limits") */
     GX_ERROR_INDEX,      /* an index points outside its array */
     GX_ERROR_EMPTY,      /* no elements, no nodes or no triangles; a region that holds no copy */
     GX_ERROR_INVERTED,   /* an element has negative volume */
@@ -6939,10 +6939,10 @@ GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
 GXFEM_API const char *gx_result_text(gx_result result) {
     switch (result) {
     case GX_OK: return "no error";
-    case GX_ERROR_ARGUMENT: return "a required argument is missing or senseless";
+    case GX_ERROR_ARGUMENT: return "a required value is missing, or it is out of its range";
     case GX_ERROR_MEMORY: return "out of memory";
     case GX_ERROR_NOT_FINITE: return "a number is not finite";
-    case GX_ERROR_RANGE: return "a coordinate or a mass is too large or too small";
+    case GX_ERROR_RANGE: return "a number is too large or too small";
     case GX_ERROR_INDEX: return "an index is out of range";
     case GX_ERROR_EMPTY: return "nothing is there: no elements, nodes, triangles, or no copy in a region";
     case GX_ERROR_INVERTED: return "an element is inverted (negative volume)";
@@ -6954,7 +6954,7 @@ GXFEM_API const char *gx_result_text(gx_result result) {
     case GX_ERROR_FREE: return "nothing holds a component in a static balance";
     case GX_ERROR_FORMAT: return "not a saved body, or one of another version or kind of machine";
     case GX_ERROR_DAMAGED: return "a saved body is damaged";
-    case GX_ERROR_STALE: return "copies are named as before a cut";
+    case GX_ERROR_STALE: return "copies are named as they were before a cut";
     case GX_ERROR_CONFIGURATION: return "floating-point arithmetic is not what exact predicates need";
     case GX_ERROR_SEQUENCE: return "called too early or too late: another call must come before";
     case GX_ERROR_CAPACITY: return "the array or memory for the answer is too small";

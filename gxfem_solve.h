@@ -152,7 +152,7 @@ typedef enum gx_result {
     GX_ERROR_ARGUMENT,   /* a required pointer is NULL, a required field is zero or senseless */
     GX_ERROR_MEMORY,     /* the allocator returned NULL */
     GX_ERROR_NOT_FINITE, /* a coordinate or parameter is NaN or infinite */
-    GX_ERROR_RANGE,      /* a coordinate or a mass is too large or too small (see "limits") */
+    GX_ERROR_RANGE,      /* a coordinate, a mass or another number is too large or too small (see "limits") */
     GX_ERROR_INDEX,      /* an index points outside its array */
     GX_ERROR_EMPTY,      /* no elements, no nodes or no triangles; a region that holds no copy */
     GX_ERROR_INVERTED,   /* an element has negative volume */
@@ -456,7 +456,7 @@ typedef struct gxs_solver gxs_solver;
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
                                     double *velocity, gxs_step_report *report, gx_failure *failure);
 /* Checks the parts of a step's description that need no solver: its numbers, springs, points and planes, and whether
-   all that names copies does so by the numbering `epoch` of copy_count copies. The other arrays over copies are not read.
+   all that names copies does so by the numbering `epoch` of copy_count copies. Other arrays over copies are not read.
    Errors: ARGUMENT, NOT_FINITE, RANGE, INDEX, LIMIT, STALE. */
 GXFEM_API gx_result gxs_step_check(const gxs_step_desc *step, size_t copy_count, uint64_t epoch,
                                    gx_failure *failure /* or NULL */);
