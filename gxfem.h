@@ -6,6 +6,9 @@
  * copies of their displacement (GXFEM Eq. 18), and every integral over a cut element is exact. Implicit time steps move
  * it (gxfem_solve.h).
  *
+ * In one source file: #define GXFEM_IMPLEMENTATION before #include "gxfem.h", and link with -lm. Everywhere else: the
+ * #include alone. GXFEM_STATIC makes all functions static. All four headers must be there.
+ *
  * One minute:
  *
  *     #define GXFEM_IMPLEMENTATION
@@ -116,7 +119,7 @@ typedef enum gx_result {
     GX_ERROR_ARGUMENT,   /* a required pointer is NULL, a required field is zero or senseless */
     GX_ERROR_MEMORY,     /* the allocator returned NULL */
     GX_ERROR_NOT_FINITE, /* a coordinate or parameter is NaN or infinite */
-    GX_ERROR_RANGE,      /* a coordinate or a mass is too large or too small (see "limits") */
+    GX_ERROR_RANGE,      /* a coordinate, a mass or another number is too large or too small (see "limits") */
     GX_ERROR_INDEX,      /* an index points outside its array */
     GX_ERROR_EMPTY,      /* no elements, no nodes or no triangles; a region that holds no copy */
     GX_ERROR_INVERTED,   /* an element has negative volume */
@@ -138,7 +141,8 @@ typedef enum gx_result {
 typedef struct gx_failure {
     gx_result result;
     /* The name of an argument, or of a member of the struct that an argument points to, with the members on the way:
-       "positions", "dt", "surfaces.vertices", "springs.point.copy". Static. NULL: nothing given is to blame */
+       "positions", "dt", "surfaces.vertices", "springs.point.copy". A string literal. NULL: nothing given is to
+       blame */
     const char *field;
     size_t index;   /* of the node, element, triangle, copy ... concerned; SIZE_MAX: no single one is */
     size_t surface; /* of a cut: which of its surfaces; else SIZE_MAX */
@@ -190,8 +194,8 @@ typedef struct gx_body_desc {
     size_t material_count;
     const uint32_t *element_materials; /* element_count, below material_count; NULL: all of materials[0] */
     const float *texture;              /* node_count x 2: texture coordinates of the outer surface; NULL: all 0 */
-    /* Share of an element, below 1. Copies around which every part of an element is smaller follow other copies, see
-       gx_body_step. 0: 1e-3. 1e-300: none follow, and slivers may be flung away. */
+    /* A share of an element, below 1. A copy follows others if all parts of elements around it are smaller (see
+       gx_body_step). 0: 1e-3. 1e-300: none follow, and slivers may be flung away. */
     double support_below;
     gx_allocator allocator;      /* zero: malloc, free, realloc */
     double (*clock)(void *user); /* seconds, for the reports' timings and the steps' budgets; NULL: timings are 0 */
@@ -221,8 +225,8 @@ typedef struct gx_surface {
 typedef struct gx_cut_desc {
     const gx_surface *surfaces;
     size_t surface_count;
-    /* The cut affects only these fragments: indices below gx_view.fragment_count, not ids. Count 0 of both scopes: the
-       whole body. */
+    /* The cut affects only these fragments: indices below gx_view.fragment_count, not ids. Both counts 0: the whole
+       body. */
     const uint32_t *scope_fragments;
     size_t scope_fragment_count;
     const uint32_t *scope_cells; /* and these cells: indices below gx_view.cell_count */
@@ -233,7 +237,8 @@ typedef struct gx_cut_report {
     size_t touched_elements, created_cells, removed_cells, created_copies, removed_copies;
     size_t ignored_triangles; /* of zero area */
     size_t severed_links;
-    /* smallest link area / face area among the links of the cells that this cut touched; 1 if none is smaller */
+    /* smallest link area / face area among the links of the cells that this cut touched, severed ones included; 1 if
+       none is smaller */
     double min_link_ratio;
     double removed_volume; /* m3 */
     double seconds_arrangement, seconds_enrichment, seconds_integrals;
@@ -267,8 +272,9 @@ enum {
 };
 
 /* The state of a body. The arrays are the body's, valid until the next cut, restore or its destruction.
-   Changes of fragments are those between the last view before a cut (the creation counts as one) and the first view
-   after it; cuts without a view between them are one change. Views without a cut between them are equal. */
+   fragment_origin, fragment_change and removed_ids tell what has become of fragments since the last view before a cut.
+   Several cuts between two views count as one change. The creation counts as a view. Views without a cut between them
+   are equal. */
 typedef struct gx_view {
     size_t node_count, element_count;
     size_t cell_count;             /* kept cells, sorted by element */
@@ -331,7 +337,8 @@ typedef struct gx_region {
     double value;
 } gx_region;
 /* Holds copies at their present displacement (Dirichlet), now and after later cuts: those whose node is in a region and
-   whose own cells have material there. Replaces the regions held before; none release all. On an error these stay.
+   whose own cells have material there. Replaces the regions held before; region_count 0 releases all. On an error the
+   earlier regions stay held.
    Errors: ARGUMENT, NOT_FINITE, EMPTY (a region holds no copy; later cuts may leave it none), LIMIT, MEMORY;
    failure.index: region. */
 GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t region_count,
@@ -357,9 +364,9 @@ typedef struct gx_step_desc {
     const gxs_spring *springs; /* spring_count */
     size_t spring_count;
     double *spring_forces;   /* spring_count x 3: receives the force of each spring on the body, N; or NULL */
-    const gxs_point *points; /* point_count: of contact with planes and contact() */
+    const gxs_point *points; /* point_count: of contact. planes and contact() act on these and on nothing else */
     size_t point_count;
-    const gxs_plane *planes; /* plane_count */
+    const gxs_plane *planes; /* plane_count; without points they stop nothing */
     size_t plane_count;
     gxs_contact_fn contact; /* energy of a contact point; NULL: none */
     void *contact_user;
@@ -376,7 +383,11 @@ typedef gxs_step_report gx_step_report;
    nearest element without such copies. A fragment without such an element is thin everywhere; its parts are then
    compared with its fullest part. It moves as a point if that part is smaller than support_below of its element.
    Where support_below is 0, it moves as a point if that part is smaller than 1e-9 or if no part reaches a tenth as far
-   as its element. Errors: those of gxs_solver_step, MEMORY. */
+   as its element.
+   failure.index: a spring, point, plane or copy. The fields "displacement" and "velocity" are those of gx_view.
+   Errors: ARGUMENT, NOT_FINITE, INDEX, LIMIT, MEMORY, STALE (copies of another epoch), RANGE (a number is too large or
+   too small; as for FLAT, an element if field is NULL), FLAT (an element, see gx_body_model), DIVERGED, FREE
+   (GXS_STATIC; a copy of a component that nothing holds). */
 GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report /* or NULL */,
                                  gx_failure *failure /* or NULL */);
 
@@ -423,8 +434,8 @@ typedef struct gx_skin {
     /* triangle_count: GX_SKIN_OUTER; 1 + n: face of the n-th surface that cut the body, counted over all its cuts (the
        first, if several coincide); GX_SKIN_SEVERED: a severed link */
     const uint32_t *triangle_surface;
-    /* Vertices and triangles that differ from those of the call before, ascending. Counts may differ too, and fragments
-       anywhere. */
+    /* Vertices and triangles that differ from those of the call before, ascending. vertex_count and triangle_count may
+       differ too. triangle_fragment may differ outside of the ranges. */
     const gx_range *vertex_ranges;
     size_t vertex_range_count;
     const gx_range *triangle_ranges;
@@ -463,7 +474,8 @@ typedef struct gx_hit {
     double weights[GX_HIT_COPIES];       /* copy_count, above 0, 1 in sum */
     uint64_t epoch;                      /* of the numbering of copies, as in gx_view: for gxs_point */
 } gx_hit;
-/* The point of a hit, for springs and contact. Keep the hit as long: the point may refer to it. */
+/* The point of a hit, for springs and contact. Keep the hit as long: the point may refer to it. If the ray met nothing,
+   the point has count 0, which steps refuse. */
 GXFEM_API gxs_point gx_hit_point(const gx_hit *hit);
 /* Finds the nearest triangle on a ray. Errors: ARGUMENT (also: direction is 0), NOT_FINITE, SEQUENCE (there is no skin,
    or a cut has been since). */
@@ -476,6 +488,9 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
 GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_failure *failure /* or NULL */);
 /* Hash of all that a failed call must leave as it was, and of the fragments' ids */
 GXFEM_API uint64_t gx_body_state_hash(const gx_body *body);
+/* The cause in words. With a gx_failure:
+   fprintf(stderr, "%s: %s\n", failure.field ? failure.field : "the call", gx_result_text(failure.result));
+   examples/gxfailure.h adds the index and the surface. */
 GXFEM_API const char *gx_result_text(gx_result result);
 
 /* >>saving --------------------------------------------------------------------------------------------------------- */
@@ -486,13 +501,14 @@ GXFEM_API const char *gx_result_text(gx_result result);
    concerned start anew: the next step makes its preconditioner and takes no guess from the last. Sleeping copies go on
    sleeping. Pointers are not saved. */
 
-/* Writes the body to memory of at least *size bytes; memory NULL: only computes *size. Fields have fixed widths, in the
-   machine's byte order, which the bytes tell. Errors: ARGUMENT, CAPACITY (it is below *size). */
+/* Writes the body to memory, which has room for capacity bytes. *size: receives how many bytes it takes, also after
+   CAPACITY. memory NULL: computes *size only. Fields have fixed widths, in the machine's byte order, which the bytes
+   tell. Errors: ARGUMENT, CAPACITY (capacity is below *size). */
 GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, size_t *size,
                                  gx_failure *failure /* or NULL */);
 /* Reads a body. Bytes from anywhere do no harm: a checksum detects accidental damage, and everything that a body relies
    on is checked. Of desc (NULL: all zero) it takes allocator, clock and jobs, and, for each saved material of kind
-   GXS_CUSTOM, energy and user of the material with its number.
+   GXS_CUSTOM, energy and user of the material with its index.
    Errors: ARGUMENT (index: a material without its energy), MEMORY, LIMIT (also: one edge, face or element divided
    10,000 times in a row), FORMAT, DAMAGED (index: bytes read until then), CONFIGURATION. */
 GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_desc *desc, gx_body **body,
@@ -501,8 +517,8 @@ GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_
    LIMIT, CONFIGURATION. */
 GXFEM_API gx_result gx_body_clone(gx_body *body, gx_body **clone, gx_failure *failure /* or NULL */);
 /* The body becomes what `from` is: to go back to a clone, or to bring a clone up to date. If both have been cut alike,
-   only the state is copied, and neither cells nor the solver's model are made anew. Otherwise arrays of the view end,
-   as at a cut. Allocator, clock and jobs stay the body's own. On an error the body is as it was.
+   only the state is copied, and neither cells nor the solver's model are made anew. Otherwise the arrays of views and
+   skins become invalid, as by a cut. Allocator, clock and jobs stay the body's own. On an error the body is as it was.
    Errors: ARGUMENT, MEMORY, LIMIT, CONFIGURATION. */
 GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *failure /* or NULL */);
 
@@ -545,8 +561,8 @@ extern "C" {
    records of surfaces, made by cuts; the undo log of a cut; caches; working memory of a call. No function is here. */
 
 #define GXP_NONE UINT32_MAX
-/* Shares of an element, where gx_body_desc.support_below is 0: copies that nothing larger carries follow others;
-   fragments without anything larger move as points. */
+/* Shares of an element, where gx_body_desc.support_below is 0. Copies that no part above GXP_SUPPORT carries follow
+   others. Fragments without a part above GXP_SPECK move as points. */
 #define GXP_SUPPORT 1e-3
 #define GXP_SPECK   1e-9
 
@@ -893,8 +909,8 @@ struct gx_body {
 /* >>columns: every array of a body --------------------------------------------------------------------------------- */
 
 /* Each array of a body is listed here once, with the size of an entry. Columns of one table have an entry for each row.
-   Growth, undo, save, load, clone, hashes and destruction read these lists: an array that is added to a struct above is
-   added here, and nowhere else. */
+   Growth, undo, save, load, clone, hashes and destruction read these lists. An array that is added to a struct above is
+   added here, and nowhere else; a column takes one more place in its struct's capacity. */
 
 enum {
     GXP_TOPOLOGY = 1, /* saved, and hashed in the state: made by cuts */
@@ -3923,8 +3939,8 @@ static gx_result gxp_integrate_removed(gxp_cut *cut, const gxp_words *removed) {
 }
 
 /* >>cut: the driver ------------------------------------------------------------------------------------------------ */
-/* gx_body_cut: check, begin, arrange, enrich, integrate, then commit, or roll back on any error. The commit can't fail.
-   It drops dead copies, wakes the touched copies and marks model, skin, view and snapshot as stale. */
+/* gx_body_cut: check, begin, arrange, enrich, integrate, then commit, or roll back on any error. The commit cannot
+   fail. It drops dead copies, wakes the touched copies and marks model, skin, view and snapshot as stale. */
 
 static uint64_t gxp_hash_cut(uint64_t past, const gx_cut_desc *desc) {
     size_t i;
@@ -5040,7 +5056,7 @@ static double gxp_follow_weights(const gx_body *body, uint32_t copy, uint32_t ce
 
 /* Finds the strong cell that a weak copy follows. It searches from cell to cell. Among the nearest strong cells it
    takes the one whose field is extended least; if a copy as near already follows one, it takes that. Weak copies that
-   the search passed earlier than in its last round follow the same cell. Returns 0, or, if the fragment has no strong
+   the search met before its last round follow the same cell. Returns 0, or, if the fragment has no strong
    cell, the number of its copies, all of which the search has met. */
 static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *supports, uint32_t copy) {
     uint32_t begin, end, i, count = 1, best = GXP_NONE;
@@ -5263,8 +5279,8 @@ static gx_result gxp_make_model(gx_body *body, gxs_model *model, gx_failure *fai
     return GX_OK;
 }
 
-/* Applies the changes to the solver's model. After an error the model must be set whole: LIMIT and, if nothing is left,
-   EMPTY mean no more than that; MEMORY is a failure. */
+/* Applies the changes to the solver's model. After LIMIT, or EMPTY if no part is left, the model must be set whole, and
+   nothing has failed. After MEMORY it must be set whole too, but the call has failed. */
 static gx_result gxp_change_model(gx_body *body, gx_failure *failure) {
     gxp_model *model = &body->model;
     size_t room = 0;
@@ -5447,7 +5463,7 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     result = gxp_translate_step(body, desc, &step);
     if (gxp_end(failure, result) != GX_OK) return result;
     if (body->model.empty) {
-        result = gxs_step_check(&step, body->cuts.epoch, failure);
+        result = gxs_step_check(&step, body->copies.count, body->cuts.epoch, failure);
         if (result == GX_OK && report != NULL) {
             memset(report, 0, sizeof *report);
             report->stop = GXS_STOP_ASLEEP;
@@ -6929,10 +6945,10 @@ GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
 GXFEM_API const char *gx_result_text(gx_result result) {
     switch (result) {
     case GX_OK: return "no error";
-    case GX_ERROR_ARGUMENT: return "a required argument is missing or senseless";
+    case GX_ERROR_ARGUMENT: return "a required value is missing, or it is out of its range";
     case GX_ERROR_MEMORY: return "out of memory";
     case GX_ERROR_NOT_FINITE: return "a number is not finite";
-    case GX_ERROR_RANGE: return "a coordinate or a mass is too large or too small";
+    case GX_ERROR_RANGE: return "a number is too large or too small";
     case GX_ERROR_INDEX: return "an index is out of range";
     case GX_ERROR_EMPTY: return "nothing is there: no elements, nodes, triangles, or no copy in a region";
     case GX_ERROR_INVERTED: return "an element is inverted (negative volume)";
@@ -6944,7 +6960,7 @@ GXFEM_API const char *gx_result_text(gx_result result) {
     case GX_ERROR_FREE: return "nothing holds a component in a static balance";
     case GX_ERROR_FORMAT: return "not a saved body, or one of another version or kind of machine";
     case GX_ERROR_DAMAGED: return "a saved body is damaged";
-    case GX_ERROR_STALE: return "copies are named as before a cut";
+    case GX_ERROR_STALE: return "copies are named as they were before a cut";
     case GX_ERROR_CONFIGURATION: return "floating-point arithmetic is not what exact predicates need";
     case GX_ERROR_SEQUENCE: return "called too early or too late: another call must come before";
     case GX_ERROR_CAPACITY: return "the array or memory for the answer is too small";

@@ -145,7 +145,7 @@ typedef enum gx_result {
     GX_ERROR_ARGUMENT,   /* a required pointer is NULL, a required field is zero or senseless */
     GX_ERROR_MEMORY,     /* the allocator returned NULL */
     GX_ERROR_NOT_FINITE, /* a coordinate or parameter is NaN or infinite */
-    GX_ERROR_RANGE,      /* a coordinate or a mass is too large or too small (see "limits") */
+    GX_ERROR_RANGE,      /* a coordinate, a mass or another number is too large or too small (see "limits") */
     GX_ERROR_INDEX,      /* an index points outside its array */
     GX_ERROR_EMPTY,      /* no elements, no nodes or no triangles; a region that holds no copy */
     GX_ERROR_INVERTED,   /* an element has negative volume */
@@ -167,7 +167,8 @@ typedef enum gx_result {
 typedef struct gx_failure {
     gx_result result;
     /* The name of an argument, or of a member of the struct that an argument points to, with the members on the way:
-       "positions", "dt", "surfaces.vertices", "springs.point.copy". Static. NULL: nothing given is to blame */
+       "positions", "dt", "surfaces.vertices", "springs.point.copy". A string literal. NULL: nothing given is to
+       blame */
     const char *field;
     size_t index;   /* of the node, element, triangle, copy ... concerned; SIZE_MAX: no single one is */
     size_t surface; /* of a cut: which of its surfaces; else SIZE_MAX */
@@ -503,8 +504,8 @@ GXFEM_API gx_result gxb_complex_check_point(const gxb_complex *complex, const do
 GXFEM_API gx_result gxb_complex_add_point(gxb_complex *complex, const double x[3], uint32_t *point);
 /* Sets plane and orientation from the points. GX_ERROR_FLAT: the triangle has no area. */
 GXFEM_API gx_result gxb_complex_add_plane(gxb_complex *complex, gxb_triangle *triangle);
-/* Divides the leaves of one element that the triangle meets, and labels the facets that it covers. allowed: leaves for
- * which allowed(user, leaf) is 0 are left alone (NULL: none). */
+/* Divides the leaves of one element that the triangle meets, and labels the facets that it covers. Leaves for which
+ * allowed(user, leaf) is 0 are left alone; allowed NULL: all may be divided. */
 GXFEM_API gx_result gxb_complex_insert(gxb_complex *complex, gxb_triangle *triangle, uint32_t element,
                                        int (*allowed)(void *user, uint32_t leaf), void *user);
 /* For elements that meet in a mesh edge or a node only. Marks the parts of that edge that the triangle covers (their
@@ -539,7 +540,7 @@ GXFEM_API uint32_t gxb_complex_point_count(const gxb_complex *complex);
 GXFEM_API uint32_t gxb_complex_facet_count(const gxb_complex *complex);
 GXFEM_API uint32_t gxb_complex_leaf_count(const gxb_complex *complex);
 GXFEM_API uint32_t gxb_complex_label_count(const gxb_complex *complex);
-/* The marked facets: those that were labelled or made walls since begin, once for each time. */
+/* The marked facets: those that were labelled or made walls since begin. A facet is listed once for each mark. */
 GXFEM_API uint32_t gxb_complex_marked_count(const gxb_complex *complex);
 GXFEM_API uint32_t gxb_complex_marked_facet(const gxb_complex *complex, uint32_t index);
 /* 1: this mark made a wall of an open facet. */
@@ -4234,8 +4235,8 @@ static GXBP_COLD double gxbp_between(double a, double b) {
     return x >> 52 == y >> 52 && drop > 0 ? gxbp_double(y >> (drop - 1) << (drop - 1)) : gxbp_double(y >> 52 << 52);
 }
 
-/* Sorts the numbers. Returns how far apart the first and the last are, roughly: its exponent, and a number between the
- * two in the middle. */
+/* Sorts the numbers. *median: a number between the two in the middle. Returns the exponent of the difference of the
+ * last and the first, roughly. -2000: those in the middle are equal, and there is no median. */
 static int gxbp_median(double *x, uint32_t count, double *median) {
     uint32_t i, j;
     for (i = 1; i < count; i++) {

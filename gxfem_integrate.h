@@ -112,7 +112,7 @@ typedef enum gx_result {
     GX_ERROR_ARGUMENT,   /* a required pointer is NULL, a required field is zero or senseless */
     GX_ERROR_MEMORY,     /* the allocator returned NULL */
     GX_ERROR_NOT_FINITE, /* a coordinate or parameter is NaN or infinite */
-    GX_ERROR_RANGE,      /* a coordinate or a mass is too large or too small (see "limits") */
+    GX_ERROR_RANGE,      /* a coordinate, a mass or another number is too large or too small (see "limits") */
     GX_ERROR_INDEX,      /* an index points outside its array */
     GX_ERROR_EMPTY,      /* no elements, no nodes or no triangles; a region that holds no copy */
     GX_ERROR_INVERTED,   /* an element has negative volume */
@@ -134,7 +134,8 @@ typedef enum gx_result {
 typedef struct gx_failure {
     gx_result result;
     /* The name of an argument, or of a member of the struct that an argument points to, with the members on the way:
-       "positions", "dt", "surfaces.vertices", "springs.point.copy". Static. NULL: nothing given is to blame */
+       "positions", "dt", "surfaces.vertices", "springs.point.copy". A string literal. NULL: nothing given is to
+       blame */
     const char *field;
     size_t index;   /* of the node, element, triangle, copy ... concerned; SIZE_MAX: no single one is */
     size_t surface; /* of a cut: which of its surfaces; else SIZE_MAX */
@@ -255,7 +256,7 @@ GXFEM_API gx_result gxi_surface_monomials(const gxi_surface *surface, const doub
 GXFEM_API gx_result gxi_surface_flux_monomials(const gxi_surface *surface, const double origin[3], unsigned degree,
                                                double *moments, double *work, gx_failure *failure /* or NULL */);
 
-/* Integrals by volume or area about one origin to those about another, in place: of x + shift instead of x.
+/* Moves integrals by volume or area to another origin, in place: those of monomials of x become those of x + shift.
    moments: [gxi_monomial_count(degree)]. Fails: ARGUMENT, NOT_FINITE, RANGE (degree). */
 GXFEM_API gx_result gxi_monomials_translate(unsigned degree, const double shift[3], double *moments,
                                             gx_failure *failure /* or NULL */);

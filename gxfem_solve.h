@@ -93,13 +93,14 @@
  *
  * LIMITS. poisson in [0, 0.5); beyond 0.49999 the Hessian's single precision shows. Copies and elements below 2^30.
  * Energies, forces and states are doubles. The Hessian, its products and the preconditioner are single precision, which
- * limits one linear solve (to about 1e-6 of the residual), not the state that Newton's method reaches. A free body's
- * slowest modes are solved as well while inertia is above about 1e-6 of stiffness, rho h^2 / (E dt^2) for elements of
- * size h. The centre of the mass of a part of an element is rounded once, by at most 1e-7 of the element. Memory: 240
- * to 270 bytes per element in all for a mesh with four elements per copy; 290 to 350 where cuts leave two or three. The
- * material can invert without a failure and recovers by itself. An element collapsed to a point, where its energy is
- * stationary, is opened as if it were not quite collapsed. The same input gives the same bits with the same binary.
- * Nothing here needs isnan or infinities, so results are right under -ffast-math, though sums round differently.
+ * limits one linear solve (to about 1e-6 of the residual), not the state that Newton's method reaches. The slowest
+ * modes of a free body are solved too, as long as inertia is above about 1e-6 of stiffness: rho h^2 / (E dt^2) for
+ * elements of size h. The centre of the mass of a part of an element is rounded once, by at most 1e-7 of the element.
+ * Memory: 240 to 270 bytes per element in all for a mesh with four elements per copy; 290 to 350 where cuts leave two
+ * or three. The material can invert without a failure and recovers by itself. An element collapsed to a point, where
+ * its energy is stationary, is opened as if it were not quite collapsed. The same input gives the same bits with the
+ * same binary. Nothing here needs isnan or infinities, so results are right under -ffast-math, though sums round
+ * differently.
  *
  * REFERENCES. GXFEM: Generalized eXtended Finite Element Method for Deformable Cutting via Boolean Operations, 2024.
  * RXFEM: Koschier, Bender, Thuerey, Robust eXtended Finite Elements for Complex Cutting of Deformables, ACM Trans.
@@ -151,7 +152,7 @@ typedef enum gx_result {
     GX_ERROR_ARGUMENT,   /* a required pointer is NULL, a required field is zero or senseless */
     GX_ERROR_MEMORY,     /* the allocator returned NULL */
     GX_ERROR_NOT_FINITE, /* a coordinate or parameter is NaN or infinite */
-    GX_ERROR_RANGE,      /* a coordinate or a mass is too large or too small (see "limits") */
+    GX_ERROR_RANGE,      /* a coordinate, a mass or another number is too large or too small (see "limits") */
     GX_ERROR_INDEX,      /* an index points outside its array */
     GX_ERROR_EMPTY,      /* no elements, no nodes or no triangles; a region that holds no copy */
     GX_ERROR_INVERTED,   /* an element has negative volume */
@@ -173,7 +174,8 @@ typedef enum gx_result {
 typedef struct gx_failure {
     gx_result result;
     /* The name of an argument, or of a member of the struct that an argument points to, with the members on the way:
-       "positions", "dt", "surfaces.vertices", "springs.point.copy". Static. NULL: nothing given is to blame */
+       "positions", "dt", "surfaces.vertices", "springs.point.copy". A string literal. NULL: nothing given is to
+       blame */
     const char *field;
     size_t index;   /* of the node, element, triangle, copy ... concerned; SIZE_MAX: no single one is */
     size_t surface; /* of a cut: which of its surfaces; else SIZE_MAX */
@@ -348,7 +350,7 @@ typedef struct gxs_spring {
 typedef struct gxs_plane {
     double normal[3];      /* of length 1 */
     double offset;         /* m */
-    double stiffness;      /* N/m, 0 or more */
+    double stiffness;      /* N/m, 0 or more; 0: it stops nothing */
     double friction;       /* Coulomb's coefficient, 0 or more */
     double sticking_speed; /* m/s; 0: 1e-3 */
 } gxs_plane;
@@ -453,9 +455,11 @@ typedef struct gxs_solver gxs_solver;
  * contact points, or copies of them, than ever before. */
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
                                     double *velocity, gxs_step_report *report, gx_failure *failure);
-/* Checks of a step's description what needs no solver: its numbers, and that it names copies by the numbering `epoch`.
-   Errors: ARGUMENT, NOT_FINITE, RANGE, LIMIT, STALE. */
-GXFEM_API gx_result gxs_step_check(const gxs_step_desc *step, uint64_t epoch, gx_failure *failure /* or NULL */);
+/* Checks the parts of a step's description that need no solver: its numbers, springs, points and planes, and whether
+   all that names copies does so by the numbering `epoch` of copy_count copies. Other arrays over copies are not read.
+   Errors: ARGUMENT, NOT_FINITE, RANGE, INDEX, LIMIT, STALE. */
+GXFEM_API gx_result gxs_step_check(const gxs_step_desc *step, size_t copy_count, uint64_t epoch,
+                                   gx_failure *failure /* or NULL */);
 
 /* Sets the model that the next steps move. Call it again after each cut and each change of materials or held copies.
  * The model is copied into the solver's own form. GX_ERROR_MEMORY is possible. On any error the old model stays. */
@@ -465,13 +469,14 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
  * Preconditioner and guesses are kept. Results are those of the whole model set anew, up to rounding and the tolerances
  * of steps. GX_ERROR_SEQUENCE: no model is set. GX_ERROR_ARGUMENT: groups or elements are not in order (index: of the
  * group or element), or a constraint is not allowed (its index). GX_ERROR_LIMIT: the change does not fit. Either the
- * matrix is assembled, mass is lumped, GXS_VOLUME_RATIO is used, empty lanes are a quarter of all, a copy is held that
- * was not or the other way round, no element is left, or an element that stays has lost a copy. After this and
+ * matrix is assembled, mass is lumped, GXS_VOLUME_RATIO is used, empty lanes exceed a quarter of the elements by two
+ * chunks, GXS_AUTOMATIC would now choose otherwise, a copy is held that was not or the other way round, two old copies
+ * (origins without + 1) are the same, no element is left, or an element that stays has lost a copy. After this and
  * GX_ERROR_MEMORY no model is set: set one. On other errors the old model stays. */
 GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure);
-/* Sets the rest times of copies to 0 whose state has been written since the last step. Their components then wake even
- * if another model is set before the next step, or another solver takes it. Vectors use the present numbering; origins
- * (count): as in gxs_change. */
+/* Sets to 0 the rest times of copies whose state has been written since the last step. Their components then wake even
+ * if another model is set before the next step, or another solver takes that step. Vectors use the present numbering;
+ * origins (count): as in gxs_change. */
 GXFEM_API void gxs_solver_note_written(const gxs_solver *solver, const uint32_t *origins, size_t count,
                                        const double *displacement, const double *velocity, double *rest_times);
 /* For saving a state and continuing later. gxs_solver_scene gives the scene of the last step. gxs_solver_resume makes
@@ -596,9 +601,9 @@ extern "C" {
 #define GXSP_LIGHT   0.1
 #define GXSP_LIGHTER 0.02
 
-/* Light copies start, and go through the midpoint rule's second half, by themselves as far as GXSP_FREE of their
- * distance from the copies that guide them. Slices of 1/15 of an element have such copies: where steps resolve
- * their motion, it is theirs. */
+/* Light copies start where the copies that guide them lead, and follow these in the midpoint rule's second half. They
+ * may differ from them by GXSP_FREE of their distance from these. Slices of 1/15 of an element have such copies: where
+ * steps resolve their motion, it stays within this share. */
 #define GXSP_FREE 0.1
 
 /* Directions of light copies are bounded in the first GXSP_BOUNDED iterations of a step, where that costs at most
@@ -2685,7 +2690,7 @@ static double gxsp_place_moments(const double *mass, const uint8_t *order, gxsp_
     return sum;
 }
 
-/* Puts an element into lane `at` of a chunk. order: corner of the element for each corner of the lane */
+/* Puts an element into lane `place` of a chunk. order: corner of the element for each corner of the lane */
 static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *element, const uint8_t *order,
                                uint32_t place, uint32_t lumped) {
     gxsp_rest *rest = &chunk->rest[place / GXSP_LANES];
@@ -3784,7 +3789,7 @@ static void gxsp_coarse_rows(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *le
     if (!scratch->failed) gxsp_rows_make(pool, scratch, next, list.pair, list.count);
 }
 
-/* Adds the level after levels[at], at > 0, with twice its spacing. 0: it would not be much smaller. What it takes
+/* Adds the level after levels[depth], depth > 0, with twice its spacing. 0: it would not be much smaller. What it takes
  * of scratch stays there. */
 static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t depth) {
     gxsp_level *level = &system->multigrid.levels[depth], *next = level + 1;
@@ -6190,7 +6195,8 @@ static int gxsp_invert_fine(gxsp_system *system) {
 
 /* >>smoother: its step length -------------------------------------------------------------------------------------- */
 
-/* In: the last linearisation and its block diagonal. Out: gxsp_smoother. Uses the search and product vectors. */
+/* In: the last linearisation and its block diagonal. Out: gxsp_smoother. Uses the search and product vectors. The
+ * sweeps themselves are in >>cycle; the first one of level 0 is gxsp_scale in >>cg. */
 
 /* Largest eigenvalue of D^-1 (K + rate M) on copies that are not still, by the power method from a start that
  * favours none; 0 if nothing moves */
@@ -6361,7 +6367,7 @@ static void gxsp_factor_solve(const gxsp_factor *factor, gxsp_level *level) {
     for (i = 0; i < factor->n; i++) level->x[factor->order[i / 3]][i % 3] = (float)x[i];
 }
 
-/* x = the multigrid's answer to b on levels[at] and below, at > 0 */
+/* x = the multigrid's answer to b on levels[depth] and below. depth 0: only if level 0 is assembled */
 static void gxsp_cycle(gxsp_system *system, uint32_t depth) {
     gxsp_level *level = &system->multigrid.levels[depth];
     if (depth + 1 == system->multigrid.level_count) {
@@ -8552,8 +8558,8 @@ static void gxsp_note_base(const gxsp_problem *problem) {
     }
 }
 
-/* Components whose E exceeds that at trial go from there towards their point as far as E falls. Returns how many
- * there were. */
+/* Puts components whose E exceeds that at trial back there. From there they go towards where they were, as far as E
+ * falls. Returns how many there were. */
 static size_t gxsp_bring_down(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     size_t i, k, count;
@@ -8983,15 +8989,6 @@ static gx_result gxsp_check_epochs(const gxs_step_desc *step, uint64_t epoch, gx
     return GX_OK;
 }
 
-GXFEM_API gx_result gxs_step_check(const gxs_step_desc *step, uint64_t epoch, gx_failure *failure) {
-    gx_failure ignored;
-    gx_result result;
-    if (failure == NULL) failure = &ignored;
-    gxsp_end(failure, GX_OK);
-    result = gxsp_check_step(step, failure);
-    return result == GX_OK ? gxsp_check_epochs(step, epoch, failure) : result;
-}
-
 /* names: of the point's count, copy, weight, copies, weights, position */
 static gx_result gxsp_check_point(const gxs_point *point, size_t n, const char *const names[6], size_t index,
                                   gx_failure *failure) {
@@ -9041,6 +9038,16 @@ static gx_result gxsp_check_points(const gxs_step_desc *step, size_t n, gx_failu
         result = gxsp_check_point(&step->points[i], n, of_points, i, failure);
     for (i = 0; i < step->plane_count && result == GX_OK; i++) result = gxsp_check_plane(&step->planes[i], i, failure);
     return result;
+}
+
+GXFEM_API gx_result gxs_step_check(const gxs_step_desc *step, size_t copy_count, uint64_t epoch, gx_failure *failure) {
+    gx_failure ignored;
+    gx_result result;
+    if (failure == NULL) failure = &ignored;
+    gxsp_end(failure, GX_OK);
+    result = gxsp_check_step(step, failure);
+    if (result == GX_OK) result = gxsp_check_epochs(step, epoch, failure);
+    return result == GX_OK ? gxsp_check_points(step, copy_count, failure) : result;
 }
 
 /* Every array that a step reads */
@@ -9321,9 +9328,7 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     if (!solver) return gxsp_refuse(failure, "solver");
     if (!solver->system) return gxsp_end(failure, GX_ERROR_SEQUENCE);
     n = solver->system->model.n;
-    if ((result = gxsp_check_step(step, failure)) != GX_OK ||
-        (result = gxsp_check_epochs(step, solver->system->model.epoch, failure)) != GX_OK ||
-        (result = gxsp_check_points(step, n, failure)) != GX_OK ||
+    if ((result = gxs_step_check(step, n, solver->system->model.epoch, failure)) != GX_OK ||
         (result = gxsp_check_vectors(step, n, displacement, velocity, solver->system->model.held, failure)) != GX_OK)
         return result;
     if (!gxsp_reserve_terms(&solver->lasting, step)) return gxsp_end(failure, GX_ERROR_MEMORY);

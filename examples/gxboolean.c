@@ -123,7 +123,7 @@ static const char *text_of(gx_result result) {
     switch (result) {
     case GX_ERROR_MEMORY: return "out of memory";
     case GX_ERROR_NOT_FINITE: return "a coordinate is not finite";
-    case GX_ERROR_RANGE: return "a coordinate is too large or too small";
+    case GX_ERROR_RANGE: return "a number is too large or too small";
     case GX_ERROR_EMPTY: return "there are no triangles";
     case GX_ERROR_NOT_CLOSED: return "the surface is not closed, or its triangles are not oriented alike";
     case GX_ERROR_LIMIT: return "there are too many triangles";

@@ -306,7 +306,9 @@ static int refuse_cut(run *r, const gx_failure *failure) {
     const int vertex = is_named(failure, "surfaces.vertices") || is_named(failure, "vertices");
     if (s >= r->set.cut_count) return fail(r, "cut", failure);
     if (index == SIZE_MAX) {
-        gxio_fail(&r->error, r->set.cuts[s], 0, "cut %lu: %s", (unsigned long)s, gxfailure_say(failure, text).text);
+        gx_failure of_cut = *failure;
+        of_cut.surface = SIZE_MAX; /* "cut" says which */
+        gxio_fail(&r->error, r->set.cuts[s], 0, "cut %lu: %s", (unsigned long)s, gxfailure_say(&of_cut, text).text);
     } else {
         const gxio_surface *cut = &r->cuts[s];
         const int known = cut->triangle_lines && !vertex && index < cut->triangle_count;

@@ -10,6 +10,7 @@
 #include <check.h>
 #include <float.h>
 #include <math.h>
+#include "../examples/gxfailure.h"
 #include "body.h"
 
 /* What no call writes */
@@ -504,6 +505,63 @@ START_TEST(texts) {
 }
 END_TEST
 
+/* A body of which nothing is left has no copies that a spring, point or plane could be wrong about in silence. */
+START_TEST(steps_of_nothing) {
+    workload w = grid(1, 1, 1, 5);
+    gx_body *body;
+    gx_step_desc step;
+    gxs_spring spring;
+    gxs_point point;
+    gxs_plane plane;
+    add_box(&w, 1, -9, -9, -9, 9, 9, 9);
+    body = cut_at_once(&w);
+    ck_assert_uint_eq(view_of(body).copy_count, 0);
+    memset(&step, 0, sizeof step);
+    memset(&spring, 0, sizeof spring);
+    memset(&point, 0, sizeof point);
+    memset(&plane, 0, sizeof plane);
+    step.dt = 0.01;
+    spring.point.epoch = point.epoch = view_of(body).epoch;
+    step.springs = &spring;
+    step.spring_count = 1;
+    KEEPS(body, gx_body_step(body, &step, NULL, &failure), GX_ERROR_ARGUMENT, "springs.point.count", 0);
+    spring.point.count = 1;
+    KEEPS(body, gx_body_step(body, &step, NULL, &failure), GX_ERROR_INDEX, "springs.point.copy", 0);
+    step.spring_count = 0;
+    step.points = &point;
+    step.point_count = 1;
+    point.count = 1;
+    KEEPS(body, gx_body_step(body, &step, NULL, &failure), GX_ERROR_INDEX, "points.copy", 0);
+    point.epoch++;
+    KEEPS(body, gx_body_step(body, &step, NULL, &failure), GX_ERROR_STALE, "points.epoch", 0);
+    step.point_count = 0;
+    step.planes = &plane;
+    step.plane_count = 1;
+    KEEPS(body, gx_body_step(body, &step, NULL, &failure), GX_ERROR_ARGUMENT, "planes.normal", 0);
+    step.plane_count = 0;
+    DONE(gx_body_step(body, &step, NULL, &failure));
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A failure in a sentence, with what it names and nothing else */
+START_TEST(sentences) {
+    gx_failure f = {GX_ERROR_NOT_FINITE, "surfaces.vertices", 7, 2};
+    ck_assert_str_eq(gxfailure_say(&f, "cause").text, "surfaces.vertices 7 of surface 2: cause");
+    f.index = SIZE_MAX;
+    ck_assert_str_eq(gxfailure_say(&f, "cause").text, "surfaces.vertices of surface 2: cause");
+    f.surface = SIZE_MAX;
+    ck_assert_str_eq(gxfailure_say(&f, "cause").text, "surfaces.vertices: cause");
+    f.index = 7;
+    ck_assert_str_eq(gxfailure_say(&f, "cause").text, "surfaces.vertices 7: cause");
+    f.field = NULL;
+    ck_assert_str_eq(gxfailure_say(&f, "cause").text, "index 7: cause");
+    f.index = SIZE_MAX;
+    ck_assert_str_eq(gxfailure_say(&f, "cause").text, "cause");
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("failures");
     TCase *tests = tcase_create("failures");
@@ -518,6 +576,8 @@ int main(void) {
     tcase_add_test(tests, booleans);
     tcase_add_test(tests, integrals);
     tcase_add_test(tests, texts);
+    tcase_add_test(tests, steps_of_nothing);
+    tcase_add_test(tests, sentences);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }
