@@ -141,8 +141,8 @@ typedef enum gx_result {
 typedef struct gx_failure {
     gx_result result;
     /* The name of an argument, or of a member of the struct that an argument points to, with the members on the way:
-       "positions", "dt", "surfaces.vertices", "springs.point.copy". A string literal. NULL: nothing given is to
-       blame */
+       "positions", "dt", "surfaces.vertices", "springs.point.copy". GX_ERROR_SEQUENCE: the call that must come before,
+       as "gx_body_skin". A string literal. NULL: nothing given is to blame */
     const char *field;
     size_t index;   /* of the node, element, triangle, copy ... concerned; SIZE_MAX: no single one is */
     size_t surface; /* of a cut: which of its surfaces; else SIZE_MAX */
@@ -6381,7 +6381,7 @@ static int gxp_has_skin(const gx_body *body) { return body->skin.made && body->s
 GXFEM_API gx_result gx_body_skin_positions(const gx_body *body, double *positions, gx_failure *failure) {
     if (body == NULL) return gxp_refuse(failure, "body");
     if (positions == NULL) return gxp_refuse(failure, "positions");
-    if (!gxp_has_skin(body)) return gxp_end(failure, GX_ERROR_SEQUENCE);
+    if (!gxp_has_skin(body)) return gxp_fail(failure, GX_ERROR_SEQUENCE, "gx_body_skin", SIZE_MAX);
     gxp_move_vertices(body, positions);
     return gxp_end(failure, GX_OK);
 }
@@ -6399,7 +6399,7 @@ GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3],
     int k;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (origin != NULL && gxp_check_vector(origin, "origin", failure) != GX_OK) return GX_ERROR_NOT_FINITE;
-    if (!gxp_has_skin(body)) return gxp_end(failure, GX_ERROR_SEQUENCE);
+    if (!gxp_has_skin(body)) return gxp_fail(failure, GX_ERROR_SEQUENCE, "gx_body_skin", SIZE_MAX);
     s = &body->skin;
     gxp_move_vertices(body, s->positions);
     for (i = 0; i < s->vertex_count && positions != NULL; i++)
@@ -6519,8 +6519,7 @@ static gx_result gxp_check_ray(const gx_body *body, const double origin[3], cons
     if (gxp_check_vector(origin, "origin", failure) != GX_OK ||
         gxp_check_vector(direction, "direction", failure) != GX_OK)
         return GX_ERROR_NOT_FINITE;
-    if (!(gxp_dot(direction, direction) > 0)) return gxp_refuse(failure, "direction");
-    return gxp_end(failure, gxp_has_skin(body) ? GX_OK : GX_ERROR_SEQUENCE);
+    return gxp_dot(direction, direction) > 0 ? GX_OK : gxp_refuse(failure, "direction");
 }
 
 GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit,
@@ -6531,7 +6530,9 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
     gx_result result = gxp_check_ray(body, origin, direction, failure);
     if (result != GX_OK) return result;
     if (hit == NULL) return gxp_refuse(failure, "hit");
+    if (!gxp_has_skin(body)) return gxp_fail(failure, GX_ERROR_SEQUENCE, "gx_body_skin", SIZE_MAX);
     s = &body->skin;
+    gxp_end(failure, GX_OK);
     gxp_shear_along(body, origin, direction);
     memset(hit, 0, sizeof *hit);
     for (t = 0; t < s->triangle_count; t++) {
@@ -7489,7 +7490,7 @@ static gx_result gxp_copy_body(gx_body *from, const gx_body *host, gx_body **cop
     gx_body_desc desc;
     gxb_stream s;
     unsigned char *bytes;
-    size_t size;
+    size_t size = 0;
     gx_result result = gx_body_save(from, NULL, 0, &size, NULL);
     if (result != GX_OK) return result;
     bytes = (unsigned char *)gxp_allocate(&host->config.allocator, size);

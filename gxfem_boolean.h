@@ -167,8 +167,8 @@ typedef enum gx_result {
 typedef struct gx_failure {
     gx_result result;
     /* The name of an argument, or of a member of the struct that an argument points to, with the members on the way:
-       "positions", "dt", "surfaces.vertices", "springs.point.copy". A string literal. NULL: nothing given is to
-       blame */
+       "positions", "dt", "surfaces.vertices", "springs.point.copy". GX_ERROR_SEQUENCE: the call that must come before,
+       as "gx_body_skin". A string literal. NULL: nothing given is to blame */
     const char *field;
     size_t index;   /* of the node, element, triangle, copy ... concerned; SIZE_MAX: no single one is */
     size_t surface; /* of a cut: which of its surfaces; else SIZE_MAX */
@@ -11486,7 +11486,7 @@ static GXBP_APART void gxbp_show_result(const gxb_boolean *b, gxb_boolean_result
 GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *result, gx_failure *failure) {
     if (b == NULL) return gxbp_refuse(failure, "boolean");
     if (result == NULL) return gxbp_refuse(failure, "result");
-    if (b->in.operand_count == 0) return gxbp_end(failure, GX_ERROR_SEQUENCE);
+    if (b->in.operand_count == 0) return gxbp_fail(failure, GX_ERROR_SEQUENCE, "gxb_boolean_add", SIZE_MAX);
     b->error = GX_OK;
     b->budget.over_limit = b->out.measured = b->out.examined = 0;
     b->out.mended_count = 0;
@@ -11501,14 +11501,15 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *res
         gxbp_show_result(b, result);
     else
         gxbp_forget_arrangement(b);
-    return gxbp_fail(failure, b->error, b->error == GX_ERROR_OVERLAP ? "simple" : NULL, SIZE_MAX);
+    return b->error == GX_ERROR_OVERLAP ? gxbp_fail(failure, b->error, "simple", SIZE_MAX)
+                                        : gxbp_end(failure, b->error);
 }
 
 /* Checks that there is a result, and an address for the answer, an argument of that name. */
 static gx_result gxbp_begin_query(gxb_boolean *b, const void *answer, const char *name, gx_failure *failure) {
     if (b == NULL) return gxbp_refuse(failure, "boolean");
     if (answer == NULL) return gxbp_refuse(failure, name);
-    if (!b->out.evaluated) return gxbp_end(failure, GX_ERROR_SEQUENCE);
+    if (!b->out.evaluated) return gxbp_fail(failure, GX_ERROR_SEQUENCE, "gxb_boolean_evaluate", SIZE_MAX);
     b->error = GX_OK;
     b->budget.over_limit = 0;
     return GX_OK;

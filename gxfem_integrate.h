@@ -134,8 +134,8 @@ typedef enum gx_result {
 typedef struct gx_failure {
     gx_result result;
     /* The name of an argument, or of a member of the struct that an argument points to, with the members on the way:
-       "positions", "dt", "surfaces.vertices", "springs.point.copy". A string literal. NULL: nothing given is to
-       blame */
+       "positions", "dt", "surfaces.vertices", "springs.point.copy". GX_ERROR_SEQUENCE: the call that must come before,
+       as "gx_body_skin". A string literal. NULL: nothing given is to blame */
     const char *field;
     size_t index;   /* of the node, element, triangle, copy ... concerned; SIZE_MAX: no single one is */
     size_t surface; /* of a cut: which of its surfaces; else SIZE_MAX */

@@ -174,8 +174,8 @@ typedef enum gx_result {
 typedef struct gx_failure {
     gx_result result;
     /* The name of an argument, or of a member of the struct that an argument points to, with the members on the way:
-       "positions", "dt", "surfaces.vertices", "springs.point.copy". A string literal. NULL: nothing given is to
-       blame */
+       "positions", "dt", "surfaces.vertices", "springs.point.copy". GX_ERROR_SEQUENCE: the call that must come before,
+       as "gx_body_skin". A string literal. NULL: nothing given is to blame */
     const char *field;
     size_t index;   /* of the node, element, triangle, copy ... concerned; SIZE_MAX: no single one is */
     size_t surface; /* of a cut: which of its surfaces; else SIZE_MAX */
@@ -9172,7 +9172,7 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
     failure = failure ? failure : &ignored;
     gxsp_end(failure, GX_OK);
     if (!solver) return gxsp_refuse(failure, "solver");
-    if (!solver->system) return gxsp_end(failure, GX_ERROR_SEQUENCE);
+    if (!solver->system) return gxsp_fail(failure, GX_ERROR_SEQUENCE, "gxs_solver_set_model", SIZE_MAX);
     system = solver->system;
     if (gxsp_check_change(system, change, failure) != GX_OK) {
         if (failure->result == GX_ERROR_LIMIT) gxsp_drop_system(solver);
@@ -9214,7 +9214,7 @@ GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displ
     failure = failure ? failure : &ignored;
     gxsp_end(failure, GX_OK);
     if (!solver) return gxsp_refuse(failure, "solver");
-    if (!solver->system) return gxsp_end(failure, GX_ERROR_SEQUENCE);
+    if (!solver->system) return gxsp_fail(failure, GX_ERROR_SEQUENCE, "gxs_solver_set_model", SIZE_MAX);
     system = solver->system;
     if (gxsp_check_vector(displacement, system->model.n, "displacement", failure) != GX_OK ||
         gxsp_check_size(rate, "rate", SIZE_MAX, failure) != GX_OK)
@@ -9242,7 +9242,8 @@ GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *directi
     if (!solver) return gxsp_refuse(failure, "solver");
     if (!direction) return gxsp_refuse(failure, "direction");
     if (!product) return gxsp_refuse(failure, "product");
-    if (!solver->system || solver->system->state.product_rate < 0) return gxsp_end(failure, GX_ERROR_SEQUENCE);
+    if (!solver->system || solver->system->state.product_rate < 0)
+        return gxsp_fail(failure, GX_ERROR_SEQUENCE, "gxs_solver_linearise", SIZE_MAX);
     system = solver->system;
     memset(&pass, 0, sizeof pass);
     pass.system = system;
@@ -9326,7 +9327,7 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     failure = failure ? failure : &ignored;
     gxsp_end(failure, GX_OK);
     if (!solver) return gxsp_refuse(failure, "solver");
-    if (!solver->system) return gxsp_end(failure, GX_ERROR_SEQUENCE);
+    if (!solver->system) return gxsp_fail(failure, GX_ERROR_SEQUENCE, "gxs_solver_set_model", SIZE_MAX);
     n = solver->system->model.n;
     if ((result = gxs_step_check(step, n, solver->system->model.epoch, failure)) != GX_OK ||
         (result = gxsp_check_vectors(step, n, displacement, velocity, solver->system->model.held, failure)) != GX_OK)

@@ -91,7 +91,7 @@ int main(int argc, char **argv) {
     gap = scene_mean_gap(&s, 0.02);
     largest = scene_largest_stretch(&s);
     scene_say(&s, "elements cut: %lu", divided);
-    scene_check(&s, pieces == 3, "fragments: %lu and %lu crumbs (3: trunk, leg, tail)", pieces,
+    scene_check(&s, pieces == 3, "fragments: %lu and %lu splinters (3: trunk, leg, tail)", pieces,
                 (unsigned long)s.view.fragment_count - pieces);
     scene_check(&s, gap > 0.01, "faces of the cuts apart: %.3f m on average (more than 0.01 m)", gap);
     scene_check(&s, largest < 3.0, "largest stretch: %.2f (below 3: nothing drifts away)", largest);

@@ -12,8 +12,8 @@ typedef struct fineness {
     uint32_t columns, rows;
 } fineness; /* of the cut; columns: of each segment of its way */
 
-static const double stretch = 0.1, crumb = 1e-5; /* crumb: share of the volume */
-static const double low = -0.25, high = 1.0;     /* of the cut, m */
+static const double stretch = 0.1, splinter = 1e-5; /* share of the volume */
+static const double low = -0.25, high = 1.0;        /* of the cut, m */
 /* m: amplitudes of the noise between every fifth vertex, and at each */
 static const double bumps = 0.05, roughness = 0.015;
 
@@ -96,14 +96,14 @@ int main(int argc, char **argv) {
     for (; s.frame < s.frames; scene_step(&s)) scene_advance(&s, &blade, 0.02, 0.7);
     divided = (unsigned long)scene_divided_elements(&s);
     largest = scene_largest_stretch(&s);
-    gap = scene_mean_gap(&s, crumb);
-    halves = (unsigned long)scene_fragments_above(&s, crumb);
+    gap = scene_mean_gap(&s, splinter);
+    halves = (unsigned long)scene_fragments_above(&s, splinter);
     scene_say(&s, "elements cut: %lu, into %lu cells; RXFEM: 47643 unknowns, 53326 after the cut, +12 %%", divided,
               pieces(&s));
     scene_check(&s, pieces(&s) > 2 * divided, "cells per element cut: %.3f (more than 2: many are cut several times)",
                 (double)pieces(&s) / (double)divided);
-    scene_check(&s, halves == 2, "fragments: %lu and %lu crumbs below 1e-5 of the plate, where bumps cross (2)", halves,
-                (unsigned long)s.view.fragment_count - halves);
+    scene_check(&s, halves == 2, "fragments: %lu and %lu splinters below 1e-5 of the plate, where bumps cross (2)",
+                halves, (unsigned long)s.view.fragment_count - halves);
     scene_check(&s, gap > 0.02, "faces of the cut apart: %.3f m on average (more than 0.02 m)", gap);
     scene_check(&s, largest < 2.5, "largest stretch: %.2f, %.2f before the cut (below 2.5: nothing drifts away)",
                 largest, stretched);

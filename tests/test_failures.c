@@ -148,9 +148,9 @@ START_TEST(skins_and_rays) {
     memset(&desc, 0, sizeof desc);
     add_axis_plane(&w, 0, 0.5);
     /* before there is a skin */
-    KEEPS(body, gx_body_skin_positions(body, x, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
-    KEEPS(body, gx_body_skin_vertices(body, NULL, y, NULL, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
-    KEEPS(body, gx_body_pick(body, o, d, &hit, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
+    KEEPS(body, gx_body_skin_positions(body, x, &failure), GX_ERROR_SEQUENCE, "gx_body_skin", SIZE_MAX);
+    KEEPS(body, gx_body_skin_vertices(body, NULL, y, NULL, &failure), GX_ERROR_SEQUENCE, "gx_body_skin", SIZE_MAX);
+    KEEPS(body, gx_body_pick(body, o, d, &hit, &failure), GX_ERROR_SEQUENCE, "gx_body_skin", SIZE_MAX);
     REFUSED(gx_body_skin(NULL, NULL, &skin, &failure), GX_ERROR_ARGUMENT, "body", SIZE_MAX);
     KEEPS(body, gx_body_skin(body, NULL, NULL, &failure), GX_ERROR_ARGUMENT, "skin", SIZE_MAX);
     desc.crease_angle = -1;
@@ -174,9 +174,9 @@ START_TEST(skins_and_rays) {
     DONE(gx_body_pick(body, o, d, &hit, &failure));
     /* after a cut */
     cut_by(body, &w, 0, 1);
-    KEEPS(body, gx_body_skin_positions(body, x, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
-    KEEPS(body, gx_body_skin_vertices(body, NULL, y, NULL, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
-    KEEPS(body, gx_body_pick(body, o, d, &hit, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
+    KEEPS(body, gx_body_skin_positions(body, x, &failure), GX_ERROR_SEQUENCE, "gx_body_skin", SIZE_MAX);
+    KEEPS(body, gx_body_skin_vertices(body, NULL, y, NULL, &failure), GX_ERROR_SEQUENCE, "gx_body_skin", SIZE_MAX);
+    KEEPS(body, gx_body_pick(body, o, d, &hit, &failure), GX_ERROR_SEQUENCE, "gx_body_skin", SIZE_MAX);
     DONE(gx_body_skin(body, NULL, &skin, &failure));
     DONE(gx_body_pick(body, o, d, &hit, &failure));
     gx_body_destroy(body);
@@ -357,10 +357,10 @@ START_TEST(steps_and_solvers) {
     DONE(gxs_solver_create(&desc, &solver, &failure));
     REFUSED(gxs_solver_set_model(solver, NULL, &failure), GX_ERROR_ARGUMENT, "model", SIZE_MAX);
     REFUSED(gxs_solver_step(NULL, &own, u, v, NULL, &failure), GX_ERROR_ARGUMENT, "solver", SIZE_MAX);
-    REFUSED(gxs_solver_step(solver, &own, u, v, NULL, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
-    REFUSED(gxs_solver_update(solver, &change, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
-    REFUSED(gxs_solver_linearise(solver, u, 0, 0, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
-    REFUSED(gxs_solver_product(solver, u, v, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
+    REFUSED(gxs_solver_step(solver, &own, u, v, NULL, &failure), GX_ERROR_SEQUENCE, "gxs_solver_set_model", SIZE_MAX);
+    REFUSED(gxs_solver_update(solver, &change, &failure), GX_ERROR_SEQUENCE, "gxs_solver_set_model", SIZE_MAX);
+    REFUSED(gxs_solver_linearise(solver, u, 0, 0, &failure), GX_ERROR_SEQUENCE, "gxs_solver_set_model", SIZE_MAX);
+    REFUSED(gxs_solver_product(solver, u, v, &failure), GX_ERROR_SEQUENCE, "gxs_solver_linearise", SIZE_MAX);
     REFUSED(gxs_solver_product(solver, NULL, v, &failure), GX_ERROR_ARGUMENT, "direction", SIZE_MAX);
     REFUSED(gxs_solver_product(solver, u, NULL, &failure), GX_ERROR_ARGUMENT, "product", SIZE_MAX);
     {
@@ -371,7 +371,7 @@ START_TEST(steps_and_solvers) {
     REFUSED(gxs_solver_step(solver, NULL, u, v, NULL, &failure), GX_ERROR_ARGUMENT, "step", SIZE_MAX);
     REFUSED(gxs_solver_step(solver, &own, NULL, v, NULL, &failure), GX_ERROR_ARGUMENT, "displacement", SIZE_MAX);
     REFUSED(gxs_solver_step(solver, &own, u, NULL, NULL, &failure), GX_ERROR_ARGUMENT, "velocity", SIZE_MAX);
-    REFUSED(gxs_solver_product(solver, u, v, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
+    REFUSED(gxs_solver_product(solver, u, v, &failure), GX_ERROR_SEQUENCE, "gxs_solver_linearise", SIZE_MAX);
     REFUSED(gxs_solver_linearise(solver, u, -1, 0, &failure), GX_ERROR_ARGUMENT, "rate", SIZE_MAX);
     DONE(gxs_solver_linearise(solver, u, 1, 0, &failure));
     DONE(gxs_solver_product(solver, u, v, &failure));
@@ -405,9 +405,9 @@ START_TEST(booleans) {
     desc.memory_limit = 1;
     REFUSED(gxb_boolean_create(&desc, &b, &failure), GX_ERROR_LIMIT, "memory_limit", SIZE_MAX);
     DONE(gxb_boolean_create(NULL, &b, &failure));
-    REFUSED(gxb_boolean_evaluate(b, &r, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
-    REFUSED(gxb_boolean_components(b, &components, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
-    REFUSED(gxb_boolean_defects(b, &defects, &failure), GX_ERROR_SEQUENCE, NULL, SIZE_MAX);
+    REFUSED(gxb_boolean_evaluate(b, &r, &failure), GX_ERROR_SEQUENCE, "gxb_boolean_add", SIZE_MAX);
+    REFUSED(gxb_boolean_components(b, &components, &failure), GX_ERROR_SEQUENCE, "gxb_boolean_evaluate", SIZE_MAX);
+    REFUSED(gxb_boolean_defects(b, &defects, &failure), GX_ERROR_SEQUENCE, "gxb_boolean_evaluate", SIZE_MAX);
     REFUSED(gxb_boolean_set_triangulation(b, 3, &failure), GX_ERROR_ARGUMENT, "triangulation", SIZE_MAX);
     REFUSED(gxb_boolean_set_fine(NULL, 1, &failure), GX_ERROR_ARGUMENT, "boolean", SIZE_MAX);
     REFUSED(gxb_boolean_set_mend(NULL, 1, &failure), GX_ERROR_ARGUMENT, "boolean", SIZE_MAX);

@@ -615,7 +615,7 @@ START_TEST(bad_changes_are_named) {
     change.copy_count--;
     EXPECT(GX_ERROR_LIMIT, NULL, SIZE_MAX);
     change.copy_count++;
-    EXPECT(GX_ERROR_SEQUENCE, NULL, SIZE_MAX); /* no model is set any more */
+    EXPECT(GX_ERROR_SEQUENCE, "gxs_solver_set_model", SIZE_MAX); /* no model is set any more */
     ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_ERROR_SEQUENCE);
     ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
     /* two copies that are one */
