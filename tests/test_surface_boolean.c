@@ -1448,8 +1448,9 @@ static gx_result make_call(int i, const gxb_boolean_desc *desc, const gxb_operan
     return i % 4 == 2 ? gxb_boolean_components(*b, &c, NULL) : gxb_boolean_defects(*b, &d, NULL);
 }
 
-/* Adds three boxes, evaluates after each, and gets everything. A call that fails is made again, and then succeeds. */
-static answer despite_failures(memory *m, const gxb_operand *o, int *failed) {
+/* Adds the operands, evaluates after each, and gets everything. A call that fails is made again, and then succeeds. */
+static answer despite_failures(memory *m, const gxb_operand *o, int count, uint32_t triangulation, int mend,
+                               int *failed) {
     gxb_boolean_desc desc;
     gxb_boolean *b = NULL;
     gx_result result;
@@ -1461,7 +1462,7 @@ static answer despite_failures(memory *m, const gxb_operand *o, int *failed) {
     desc.allocator.user = m;
     desc.memory_limit = (size_t)1 << 19; /* so little that each array is an allocation of its own */
     *failed = 0;
-    for (i = -1; i < 12; i++) {
+    for (i = -1; i < 4 * count; i++) {
         for (;;) {
             result = make_call(i, &desc, o, &b);
             if (result == GX_OK) break;
@@ -1471,7 +1472,10 @@ static answer despite_failures(memory *m, const gxb_operand *o, int *failed) {
             m->fail_at = SIZE_MAX;
             m->from_then_on = 0;
         }
-        if (i < 0) ck_assert_int_eq(gxb_boolean_set_triangulation(b, GXB_COARSE, NULL), GX_OK);
+        if (i >= 0) continue;
+        ck_assert_int_eq(gxb_boolean_set_triangulation(b, triangulation, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_set_fine(b, mend, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_set_mend(b, mend, NULL), GX_OK);
     }
     m->fail_at = SIZE_MAX;
     m->from_then_on = 0;
@@ -1498,11 +1502,54 @@ START_TEST(memory_runs_out) {
             answer a;
             m.fail_at = n;
             m.from_then_on = i;
-            a = despite_failures(&m, o, &failed);
+            a = despite_failures(&m, o, 3, GXB_COARSE, 0, &failed);
             check_answer("after a failure", &a, 2, 27 - 9 - 2);
             ck_assert_uint_lt(n, 5000);
         }
     for (i = 0; i < 3; i++) surface_free(&s[i]);
+}
+END_TEST
+
+/* Each allocation fails, once and from then on. The answers are those without a failure. */
+static void sweep_failures(const char *name, const gxb_operand *o, int count, uint32_t triangulation, int mend) {
+    memory m = {0, 0, SIZE_MAX, 0};
+    int failed = 1, from_then_on;
+    const answer truth = despite_failures(&m, o, count, triangulation, mend, &failed);
+    size_t n;
+    for (from_then_on = 0; from_then_on < 2; from_then_on++)
+        for (n = 0, failed = 1; failed; n += FEWER) {
+            answer a;
+            memset(&m, 0, sizeof m);
+            m.fail_at = n;
+            m.from_then_on = from_then_on;
+            a = despite_failures(&m, o, count, triangulation, mend, &failed);
+            CHECK_CASE(a.euler == truth.euler && a.components == truth.components && a.triangles == truth.triangles &&
+                           a.defects == truth.defects && a.volume == truth.volume,
+                       "%s, triangulation %u, allocation %zu: another answer", name, (unsigned)triangulation, n);
+        }
+}
+
+/* Memory runs out while defects are mended and volumes are computed again, in all triangulations; with several
+   states, and with more than a list of them holds. */
+START_TEST(memory_runs_out_late) {
+    static const int hard[3] = {8, 13, 16}; /* P12, C3, C14 */
+    wl_frame rotated = wl_rotated();
+    int i, removed;
+    for (i = 0; i < 5; i++)
+        for (removed = 0; removed < 2; removed++) {
+            const char *name = i == 3 ? "W2f" : "W4r";
+            size_t pieces, n, k;
+            workload w = i < 3 ? wl_hard(hard[i], &name, &pieces) : i == 3 ? wl_ring_cut(5) : wl_sticks(&rotated);
+            wl_surface body = boundary_of(&w);
+            gxb_operand o[WL_SURFACES + 1];
+            n = w.surface_count;
+            for (k = 0; k < n; k++)
+                o[removed ? k : k + 1] = operand_of(&w.surfaces[k], removed ? GXB_UNION : GXB_DIFFERENCE);
+            o[removed ? n : 0] = operand_of(&body, removed ? GXB_INTERSECTION : GXB_UNION);
+            for (k = 0; k < (i == 4 ? 1u : 3u); k++) sweep_failures(name, o, (int)n + 1, triangulations[k], 1);
+            surface_free(&body);
+            wl_free(&w);
+        }
 }
 END_TEST
 
@@ -1736,6 +1783,7 @@ int main(void) {
     tcase_add_loop_test(tests, walls_of_a_few_units, 0, 30);
     tcase_add_test(tests, rounded_sticks_are_mended);
     tcase_add_test(tests, memory_runs_out);
+    tcase_add_test(tests, memory_runs_out_late);
     tcase_add_test(tests, memory_limit);
     tcase_add_loop_test(tests, sizes_are_numbers_or_refused, 0, 17);
     tcase_add_test(tests, largest_volumes_are_numbers);
