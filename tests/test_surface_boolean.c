@@ -316,24 +316,38 @@ static void add_box(wl_surface *s, int size) {
     wl_add_aligned_box(s, low, high);
 }
 
-/* A tetrahedron with corners on the lattice, oriented outward */
-static void add_tetrahedron(wl_surface *s, int size) {
+/* Oriented outward */
+static void add_oriented(wl_surface *s, double x[4][3]) {
     static const int faces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-    double x[4][3];
     uint32_t n[4];
-    int i, k, side = 0;
-    while (side == 0) {
-        for (i = 0; i < 4; i++)
-            for (k = 0; k < 3; k++) x[i][k] = random_below(size + 1);
-        side = gxb_orient3d(x[1], x[2], x[3], x[0]);
-    }
+    int i;
     for (i = 0; i < 4; i++) n[i] = wl_add_vertex(s, x[i]);
-    if (side < 0) {
+    if (gxb_orient3d(x[1], x[2], x[3], x[0]) < 0) {
         uint32_t swap = n[0];
         n[0] = n[1];
         n[1] = swap;
     }
     for (i = 0; i < 4; i++) wl_add_triangle(s, n[faces[i][0]], n[faces[i][1]], n[faces[i][2]]);
+}
+
+/* A tetrahedron with corners on the lattice */
+static void add_tetrahedron(wl_surface *s, int size) {
+    double x[4][3];
+    int i, k;
+    do
+        for (i = 0; i < 4; i++)
+            for (k = 0; k < 3; k++) x[i][k] = random_below(size + 1);
+    while (gxb_orient3d(x[1], x[2], x[3], x[0]) == 0);
+    add_oriented(s, x);
+}
+
+/* A tetrahedron around a place, of a size, in general position */
+static void add_spike(wl_surface *s, const double place[3], double size) {
+    double x[4][3];
+    int i, k;
+    for (i = 0; i < 4; i++)
+        for (k = 0; k < 3; k++) x[i][k] = place[k] + size * (random_below(20001) - 10000) / 10000.0;
+    add_oriented(s, x);
 }
 
 /* One to three boxes and tetrahedra: they may lie in, on and through each other. */
@@ -516,6 +530,36 @@ START_TEST(chains_are_exact) {
                    once.volume, each.volume);
         for (i = 0; i < 6; i++) surface_free(&s[i]);
     }
+}
+END_TEST
+
+/* Small solids through one face of a box, each evaluated, then large ones that cross that face between them: the same
+   as all at once, where the large ones come first. */
+START_TEST(crossings_around_islands) {
+    enum { SPIKES = 9, BLADES = 3, ALL = 1 + SPIKES + BLADES };
+    static const double low[3] = {-9, -9, -9}, high[3] = {9, 9, 0}, middle[3] = {0, 0, 0};
+    wl_surface s[ALL];
+    gxb_operand o[ALL], turned[ALL];
+    answer each, once;
+    int i;
+    random_state = 5000 + (uint64_t)_i;
+    memset(s, 0, sizeof s);
+    wl_add_aligned_box(&s[0], low, high);
+    for (i = 1; i <= SPIKES; i++) {
+        const double place[3] = {(random_below(1401) - 700) / 100.0, (random_below(1401) - 700) / 100.0, 0};
+        add_spike(&s[i], place, 0.7);
+    }
+    for (; i < ALL; i++) add_spike(&s[i], middle, 16);
+    for (i = 0; i < ALL; i++) {
+        o[i] = operand_of(&s[i], i == 0 ? GXB_UNION : GXB_DIFFERENCE);
+        turned[i == 0 ? 0 : ALL - i] = o[i];
+    }
+    each = evaluate(o, ALL, 1);
+    once = evaluate(turned, ALL, 0);
+    CHECK_CASE(each.components == once.components && each.euler == once.euler, "seed %d: %zu components, %ld; %zu, %ld",
+               _i, each.components, each.euler, once.components, once.euler);
+    CHECK_CASE(close_to(each.volume, once.volume, 3000), "seed %d: volumes %.17g %.17g", _i, each.volume, once.volume);
+    for (i = 0; i < ALL; i++) surface_free(&s[i]);
 }
 END_TEST
 
@@ -1803,6 +1847,7 @@ int main(void) {
     tcase_add_loop_test(tests, walls_of_a_few_units, 0, 30);
     tcase_add_test(tests, rounded_sticks_are_mended);
     tcase_add_test(tests, memory_runs_out);
+    tcase_add_loop_test(tests, crossings_around_islands, 0, 200 / FEWER);
     tcase_add_test(tests, memory_runs_out_late);
     tcase_add_test(tests, memory_runs_out_of_states);
     tcase_add_test(tests, memory_limit);
