@@ -2053,7 +2053,7 @@ static GXBP_APART void gxbp_release(const gx_allocator *a, void *memory, size_t 
 static GXBP_RARE void *gxbp_reallocate(const gx_allocator *a, void *old, size_t old_size, size_t used, size_t size) {
     void *memory;
     /* moves the pages of large blocks, not their bytes */
-    if (a->allocate == NULL && a->release == NULL) return realloc(old, size);
+    if (a->allocate == NULL) return realloc(old, size);
     if (a->reallocate != NULL && old != NULL) return a->reallocate(a->user, old, old_size, size);
     memory = gxbp_allocate(a, size);
     if (memory == NULL) return NULL;

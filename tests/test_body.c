@@ -1582,6 +1582,46 @@ START_TEST(solidified_sheets) {
 END_TEST
 
 /* Random sheets, some of inconsistent orientation or with a vertex in no triangle: always closed, always accepted. */
+/* Triangles of any size beside a large one, whose areas squared are no doubles: the thickness is exact across each. */
+START_TEST(solidified_sheets_of_any_size) {
+    static const double sides[4][2][3] = {
+        {{0, 1, 0}, {0, 0, 1}}, {{0, 0, 1}, {1, 0, 0}}, {{1, 0, 0}, {0, 1, 0}}, {{0.125, 1, 0}, {2, 0, -1}}};
+    static const int powers[3] = {0, -150, -260};
+    static const uint32_t triangles[6] = {0, 1, 2, 3, 4, 5};
+    int i, j, k, c;
+    for (i = 0; i < 4; i++)
+        for (j = 0; j < 3; j++) {
+            const double size = ldexp(1, powers[j]), thick = size / 4;
+            double x[18] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 9, 9, 9, 8, 9, 9, 9, 8, 9}, solid[36];
+            uint32_t faces[48];
+            size_t vertex_count, triangle_count;
+            gx_surface s;
+            memset(&s, 0, sizeof s);
+            for (c = 0; c < 2; c++)
+                for (k = 0; k < 3; k++) x[3 * (c + 1) + k] = sides[i][c][k] * size;
+            s.vertices = x;
+            s.vertex_count = 6;
+            s.triangles = triangles;
+            s.triangle_count = 2;
+            ck_assert_int_eq(
+                gx_surface_solidify(&s, thick, solid, &vertex_count, faces, &triangle_count, NULL, NULL), GX_OK);
+            ck_assert(vertex_count == 12 && triangle_count == 16);
+            for (c = 0; c < 3; c++) {
+                double across[3], along[2] = {0, 0}, square = 0;
+                for (k = 0; k < 3; k++) {
+                    across[k] = (solid[3 * c + k] - solid[18 + 3 * c + k]) / thick;
+                    square += across[k] * across[k];
+                    along[0] += across[k] * sides[i][0][k];
+                    along[1] += across[k] * sides[i][1][k];
+                }
+                ck_assert_double_eq_tol(square, 1, 1e-14);
+                ck_assert_double_eq_tol(along[0], 0, 1e-14);
+                ck_assert_double_eq_tol(along[1], 0, 1e-14);
+            }
+        }
+}
+END_TEST
+
 START_TEST(solidified_sheets_are_closed) {
     uint64_t seed = (uint64_t)_i;
     workload w;
@@ -1665,6 +1705,44 @@ START_TEST(cuts_that_only_touch_a_pinch) {
     w = pinched(2);
     wl_add_quad(wl_add_surface(&w, 0), half[0], half[1], half[2], half[3]);
     EXPECT_COUNTS(w, 2, 6, 1);
+}
+END_TEST
+
+/* A cut in scope lets go of a shared edge or node only if the scope has it: of the two elements, the first is divided
+   by x + y = 1/4 into a corner without the edge and the rest that has it. */
+START_TEST(scopes_at_a_pinch) {
+    static const double o[3] = {0, 0, 0}, z[3] = {0, 0, 1}, inside[3] = {1, 2, 0}, p[3] = {0.25, 0, 0},
+                        q[3] = {0, 0.25, 0}, r[3] = {0.25, 0, 1};
+    int shared, with_the_joint, by_itself;
+    for (shared = 1; shared <= 2; shared++)
+        for (with_the_joint = 0; with_the_joint < 2; with_the_joint++)
+            for (by_itself = 0; by_itself < 2; by_itself++) {
+                workload w = pinched(shared);
+                gx_body *body = body_of(&w);
+                gx_view view;
+                uint32_t cells[4], corner = UINT32_MAX;
+                size_t i, n = 0;
+                add_plane_through(&w, p, q, r);
+                add_plane_through(&w, o, z, inside);
+                cut_by(body, &w, 0, 1);
+                view = view_of(body);
+                ck_assert_uint_eq(view.cell_count, 3);
+                ck_assert_uint_eq(view.fragment_count, 2);
+                for (i = 0; i < 3; i++) /* the only cell of its fragment */
+                    if (view.cell_fragment[i] != view.cell_fragment[(i + 1) % 3] &&
+                        view.cell_fragment[i] != view.cell_fragment[(i + 2) % 3])
+                        corner = (uint32_t)i;
+                ck_assert_uint_lt(corner, 3);
+                for (i = 0; i < 3; i++)
+                    if ((i != corner) == with_the_joint && (!by_itself || view.cell_element[i] == 0))
+                        cells[n++] = (uint32_t)i;
+                ck_assert_int_eq(cut_in_scope(body, &w, 1, NULL, 0, cells, n, NULL), GX_OK);
+                view = view_of(body);
+                /* the corner in two; or both halves of the rest and the second element, or its halves, apart */
+                ck_assert_uint_eq(view.fragment_count, !with_the_joint ? 3 : by_itself ? 4 : 5);
+                gx_body_destroy(body);
+                wl_free(&w);
+            }
 }
 END_TEST
 
@@ -3009,8 +3087,10 @@ int main(void) {
     tcase_add_test(tests, triangle_soup_can_be_closed);
     tcase_add_test(tests, solidified_sheets);
     tcase_add_loop_test(tests, solidified_sheets_are_closed, first, last);
+    tcase_add_test(tests, solidified_sheets_of_any_size);
     tcase_add_test(tests, pinched_meshes);
     tcase_add_test(tests, cuts_that_only_touch_a_pinch);
+    tcase_add_test(tests, scopes_at_a_pinch);
     tcase_add_test(tests, solid_around_a_pinch);
     tcase_add_loop_test(tests, held_copies, first, last);
     tcase_add_test(tests, pieces_outside_the_region_are_free);

@@ -120,6 +120,32 @@ START_TEST(numbers_become_doubles) {
 }
 END_TEST
 
+/* 2^power */
+static void power_of_two(gxb_num *a, int power) {
+    GXB_NUM(b);
+    GXB_NUM(c);
+    gxb_num_set(&b, 1, power / 2);
+    gxb_num_set(&c, 1, power - power / 2);
+    gxb_num_mul(a, &b, &c);
+}
+
+/* What no double holds becomes 0 or infinity, a quotient 0 or a number as large. */
+START_TEST(numbers_beyond_doubles) {
+    const double infinity = pc_from_bits(UINT64_C(0x7ff0000000000000));
+    GXB_NUM(a);
+    GXB_NUM(b);
+    GXB_NUM(c);
+    power_of_two(&a, 1100);
+    power_of_two(&b, -1100);
+    gxb_num_set(&c, 0, 0);
+    ck_assert(gxb_num_to_double(&a) == infinity && gxb_num_to_double(&b) == 0 && gxb_num_to_double(&c) == 0);
+    ck_assert(gxb_num_ratio(&b, &a) == 0 && gxb_num_ratio(&c, &a) == 0);
+    ck_assert(gxb_num_ratio(&a, &b) >= 0x1p1000 && gxb_num_ratio(&a, &b) < infinity);
+    gxb_num_sub(&c, &b, &a);
+    ck_assert(gxb_num_to_double(&c) == -infinity && gxb_num_ratio(&c, &b) <= -0x1p1000);
+}
+END_TEST
+
 START_TEST(numbers_take_a_shift) {
     pc_random r = seeded(1);
     int i;
@@ -1268,6 +1294,47 @@ START_TEST(topology_is_the_same_moved_and_scaled) {
 }
 END_TEST
 
+/* A mesh one unit of the last place wide, far from the origin, is divided as at the origin. */
+START_TEST(one_unit_of_the_last_place) {
+    pc_random r = seeded((uint64_t)_i + 1);
+    scene s, far_away;
+    size_t i;
+    make_mesh(&s, &r, 6, 1, 0, 0);
+    make_cuts(&s, &r, 4, 1, 4, 0); /* whole numbers */
+    far_away = s;
+    for (i = 0; i < 3 * s.node_count; i++) far_away.nodes[i / 3][i % 3] = 0x1p20 + s.nodes[i / 3][i % 3] * 0x1p-32;
+    for (i = 0; i < 9 * s.cut_count; i++)
+        far_away.cuts[i / 9][i / 3 % 3][i % 3] = 0x1p20 + s.cuts[i / 9][i / 3 % 3][i % 3] * 0x1p-32;
+    ck_assert(topology_of(&s) == topology_of(&far_away));
+    run_scene(&far_away, &r);
+}
+END_TEST
+
+/* The coordinates of given points come back bit for bit, whatever the frame; also denormal ones. */
+START_TEST(given_coordinates_come_back) {
+    static const double sizes[4] = {1, 0x1p-100, 0x1p-960, 0x1p900}, offsets[4] = {0, 0, 0, 0x1p920};
+    pc_random r = seeded((uint64_t)_i + 1);
+    scene s;
+    gxb_complex *cx;
+    int i, k;
+    make_mesh(&s, &r, 6, sizes[_i], offsets[_i], 0.1);
+    cx = open_scene(&s, NULL);
+    gxb_complex_begin(cx);
+    for (i = 0; i < 200; i++) {
+        double x[3], given[3];
+        uint32_t point;
+        for (k = 0; k < 3; k++) {
+            x[k] = pc_uniform(&r) * sizes[_i];
+            if (i % 2) x[k] *= pc_power(-(int)pc_below(&r, 115)); /* 2^-1074 is the least double */
+        }
+        ck_assert_int_eq(gxb_complex_add_point(cx, x, &point), GX_OK);
+        gxbp_given(&cx->store, point, given);
+        for (k = 0; k < 3; k++) assert_that(given[k] == x[k], "%a, not %a", given[k], x[k]);
+    }
+    gxb_complex_destroy(cx);
+}
+END_TEST
+
 /* Stamps that have reached their last value begin again, and no stamp left at points and edges counts as new. */
 START_TEST(stamps_begin_again) {
     pc_random r = seeded((uint64_t)_i + 1);
@@ -1618,6 +1685,7 @@ START_TEST(bad_meshes_are_named) {
     gx_allocator half;
     gxb_complex *cx = NULL;
     gx_failure failure;
+    size_t i;
     make_mesh(&good, &r, 6, 1, 0, 0);
     expect_mesh(&good, GX_OK, SIZE_MAX);
     s = good;
@@ -1645,6 +1713,13 @@ START_TEST(bad_meshes_are_named) {
     s = good;
     s.element_count = 1;
     memcpy(s.nodes[7], s.nodes[2], sizeof s.nodes[7]);
+    expect_mesh(&s, GX_ERROR_FLAT, 0);
+    s = good;
+    for (i = 0; i < s.node_count; i++) s.nodes[i][2] = 0;
+    expect_mesh(&s, GX_ERROR_FLAT, 0);
+    for (i = 0; i < s.node_count; i++) s.nodes[i][2] = 3;
+    expect_mesh(&s, GX_ERROR_FLAT, 0);
+    memset(s.nodes, 0, sizeof s.nodes);
     expect_mesh(&s, GX_ERROR_FLAT, 0);
     s = good;
     s.element_count = 7;
@@ -1737,6 +1812,7 @@ static Suite *boolean_suite(void) {
     TCase *input = tcase_create("input");
     tcase_add_loop_test(numbers, numbers_are_exact, 0, 2);
     tcase_add_loop_test(numbers, numbers_become_doubles, 0, 2);
+    tcase_add_test(numbers, numbers_beyond_doubles);
     tcase_add_test(numbers, numbers_take_a_shift);
     tcase_add_test(predicates, orientation_is_as_documented);
     tcase_add_loop_test(predicates, predicates_have_the_right_sign, 0, 4);
@@ -1751,6 +1827,8 @@ static Suite *boolean_suite(void) {
     tcase_add_loop_test(complex, far_and_scaled_meshes_conform, 0, 6);
     tcase_add_loop_test(complex, rests_below_the_last_bit_count, 0, 8);
     tcase_add_loop_test(complex, topology_is_the_same_moved_and_scaled, 0, 4);
+    tcase_add_loop_test(complex, one_unit_of_the_last_place, 0, 4);
+    tcase_add_loop_test(complex, given_coordinates_come_back, 0, 4);
     tcase_add_loop_test(complex, stamps_begin_again, 0, 4);
     tcase_add_loop_test(complex, pieces_do_not_depend_on_the_order, 0, 6);
     tcase_add_loop_test(complex, coincident_cuts_share_their_facets, 0, 4);

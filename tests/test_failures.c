@@ -264,6 +264,10 @@ START_TEST(thick_sheets) {
     x[7] = 1;
     x[2] = x[5] = x[8] = DBL_MAX;
     REFUSED(SOLIDIFY(1e300), GX_ERROR_RANGE, "vertices", 0);
+    x[2] = x[5] = x[8] = 0; /* an edge longer than a double */
+    x[0] = -DBL_MAX;
+    x[3] = DBL_MAX;
+    REFUSED(SOLIDIFY(1), GX_ERROR_RANGE, "vertices", 0);
 #undef SOLIDIFY
 }
 END_TEST

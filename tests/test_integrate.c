@@ -1324,6 +1324,9 @@ START_TEST(bad_elements) {
     ck_assert(volume == 42);
     for (i = 0; i < 12; i++) x[i] = (i == 3 || i == 7 || i == 11) ? 1e-120 : 0; /* underflows */
     ck_assert_int_eq(gxi_tet_gradients(x, g, &volume), GX_ERROR_FLAT);
+    x[3] = x[7] = ldexp(1, 100);
+    x[11] = ldexp(1, -1030); /* whose inverse is no double */
+    ck_assert_int_eq(gxi_tet_gradients(x, g, &volume), GX_ERROR_FLAT);
     ck_assert_mem_eq(g, before, sizeof g);
 }
 END_TEST
@@ -1333,6 +1336,7 @@ START_TEST(bad_parts) {
     uint32_t triangles[12];
     gxi_moments2 m, before;
     unsigned k = 42;
+    size_t i;
     memcpy(lambdas, corners, sizeof corners);
     memcpy(triangles, faces, sizeof faces);
     memset(&m, 0x2a, sizeof m);
@@ -1357,6 +1361,23 @@ START_TEST(bad_parts) {
     lambdas[3] = 1e6;
     ck_assert_int_eq(gxi_part_moments(lambdas, 4, triangles, 4, &k, &m), GX_ERROR_RANGE);
     ck_assert_int_eq(gxi_part_moments_at(lambdas, 4, triangles, 4, 0, &m), GX_ERROR_RANGE);
+    lambdas[3] = 0;
+    for (i = 0; i < 16; i++) {
+        const double good = lambdas[i];
+        lambdas[i] = -1e6;
+        ck_assert_int_eq(gxi_part_moments(lambdas, 4, triangles, 4, &k, &m), GX_ERROR_RANGE);
+        lambdas[i] = (double)INFINITY;
+        ck_assert_int_eq(gxi_part_moments_at(lambdas, 4, triangles, 4, 0, &m), GX_ERROR_NOT_FINITE);
+        lambdas[i] = good;
+    }
+    {
+        /* more corners than are counted once each: the third triangle has a bad one, so the fourth is not looked at */
+        double many[4 * 100];
+        for (i = 0; i < 100; i++) memcpy(many + 4 * i, corners + i % 4 * 4, 4 * sizeof *many);
+        ck_assert_int_eq(gxi_part_moments_at(many, 100, triangles, 0, 0, &m), GX_ERROR_EMPTY);
+        many[4 * triangles[3] + 2] = (double)NAN;
+        ck_assert_int_eq(gxi_part_moments_at(many, 100, triangles, 4, 0, &m), GX_ERROR_NOT_FINITE);
+    }
     ck_assert_mem_eq(&m, &before, sizeof m);
     ck_assert_uint_eq(k, 42);
     lambdas[3] = 0; /* inside out: no mass */

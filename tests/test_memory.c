@@ -126,6 +126,7 @@ typedef struct mesh {
 } mesh;
 static const mesh cube_mesh = {&cube[0][0], 8, five, 5};
 static const mesh *mesh_of_bodies = &cube_mesh;
+static double support_below; /* of bodies made next */
 static gx_allocator allocator; /* of the body made last */
 
 static gx_result create(memory *m, gx_body **body) {
@@ -138,6 +139,7 @@ static gx_result create(memory *m, gx_body **body) {
     desc.young = 1e6;
     desc.poisson = 0.4;
     desc.density = 1000;
+    desc.support_below = support_below;
     allocator.allocate = take;
     allocator.release = give;
     allocator.user = m;
@@ -606,6 +608,13 @@ START_TEST(step_with_fewer_copies) {
 }
 END_TEST
 
+/* Next to the face x = 0: copies with next to nothing around them */
+static gx_result cut_thin(gx_body *body) {
+    static const double thin[9] = {0.01, -9, -9, 0.012, 9, -9, 0.011, 0, 19};
+    gx_surface s = sheet(thin);
+    return cut(body, &s, 1, 0, 0);
+}
+
 /* Two fans around the edge from node 0 to node 1, which join in that edge only */
 enum { FAN = 60, FANS_NODES = 2 + 2 * (FAN + 1) };
 static double fan_angle(int fan, double i) { return 0.2 + 2.6 * i / FAN + 3.14159 * fan; }
@@ -641,6 +650,51 @@ START_TEST(cut_of_a_fan) {
     mesh_of_bodies = &fans;
     sweep("a sheet in a fan", nothing, cut_fan);
     mesh_of_bodies = &cube_mesh;
+}
+END_TEST
+
+/* Two elements that share an edge. Cuts through it, with and without a scope, and all that looks at it */
+static gx_result cut_pinch(gx_body *body) {
+    static const double x[9] = {-8, -16, -9, -8, -16, 19, 12, 24, 5};
+    gx_surface s = sheet(x);
+    return cut(body, &s, 1, 0, 0);
+}
+static gx_result cut_pinch_scoped(gx_body *body) {
+    static const double x[9] = {-8, -16, -9, -8, -16, 19, 12, 24, 5};
+    gx_surface s = sheet(x);
+    return cut(body, &s, 1, 0, 1);
+}
+static const action low_pinch[] = {cut_corner, NULL};
+
+START_TEST(cut_of_a_pinch) {
+    static const double x[6][3] = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
+    static const uint32_t elements[8] = {0, 1, 2, 3, 0, 1, 4, 5};
+    static const mesh pair = {&x[0][0], 6, elements, 2};
+    mesh_of_bodies = &pair;
+    sweep("a sheet through a shared edge", nothing, cut_pinch);
+    sweep("a scoped sheet through a shared edge", nothing, cut_pinch_scoped);
+    sweep("a sheet across a shared edge", nothing, cut_part);
+    sweep("a skin at a shared edge", nothing, draw);
+    sweep("a hash at a shared edge", low_pinch, hash);
+    mesh_of_bodies = &cube_mesh;
+}
+END_TEST
+
+/* Memory runs out while copies with little around them are made to follow others. */
+START_TEST(followers) {
+    static const action thin[] = {cut_thin, NULL};
+    memory m;
+    gx_body *body;
+    gxs_model model;
+    support_below = 0.2;
+    memset(&m, 0, sizeof m);
+    never_fail(&m);
+    body = prepared(&m, thin);
+    ck_assert_int_eq(gx_body_model(body, &model, NULL), GX_OK);
+    ck_assert_uint_gt(model.constraint_count, 0);
+    gx_body_destroy(body);
+    sweep("a step with followers", thin, step);
+    support_below = 0;
 }
 END_TEST
 
@@ -724,6 +778,8 @@ int main(void) {
     tcase_add_test(tests, cut_after_steps);
     tcase_add_test(tests, step_with_fewer_copies);
     tcase_add_test(tests, cut_of_a_fan);
+    tcase_add_test(tests, cut_of_a_pinch);
+    tcase_add_test(tests, followers);
     tcase_add_test(tests, step_after_a_failed_model);
     tcase_add_test(tests, solidifying);
     suite_add_tcase(suite, tests);

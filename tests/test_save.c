@@ -311,6 +311,11 @@ static double custom_energy(void *user, const double *f, double *stress, double 
     return energy;
 }
 
+/* The same by another name */
+static double other_energy(void *user, const double *f, double *stress, double *hessian) {
+    return custom_energy(user, f, stress, hessian);
+}
+
 static void expect_same_steps(gx_body *a, gx_body *b, const gx_step_desc *step, int count, uint64_t seed) {
     int i;
     for (i = 0; i < count; i++) {
@@ -399,10 +404,19 @@ START_TEST(steps_go_on) {
     if (by_bytes) {
         bytes b = saved(body);
         if (custom_material) {
+            gx_body_desc few = desc;
             gx_failure failure;
             ck_assert_int_eq(gx_body_load(b.data, b.size, NULL, &copy, &failure), GX_ERROR_ARGUMENT);
             ck_assert_pstr_eq(failure.field, "materials.elastic.energy");
             ck_assert_uint_eq(failure.index, 1);
+            few.material_count = 1;
+            ck_assert_int_eq(gx_body_load(b.data, b.size, &few, &copy, &failure), GX_ERROR_ARGUMENT);
+            ck_assert_pstr_eq(failure.field, "materials.elastic.energy");
+            few.material_count = 2;
+            materials[1].elastic.energy = NULL;
+            ck_assert_int_eq(gx_body_load(b.data, b.size, &few, &copy, &failure), GX_ERROR_ARGUMENT);
+            ck_assert_pstr_eq(failure.field, "materials.elastic.energy");
+            materials[1].elastic.energy = custom_energy;
             ck_assert_ptr_null(copy);
         }
         ck_assert_int_eq(gx_body_load(b.data, b.size, &desc, &copy, NULL), GX_OK);
@@ -545,6 +559,97 @@ START_TEST(restoring_from_strangers) {
     gx_body_destroy(c);
     wl_free(&w);
     wl_free(&v);
+}
+END_TEST
+
+/* ... nor bodies of which one number of one material, or one held region, is another: their own state is restored,
+   and they move as before. */
+START_TEST(restoring_from_near_strangers) {
+    enum { OTHERS = 12 };
+    custom user = {1e5, 0}, other_user = {1e5, 0};
+    workload w = grid(2, 1, 1, 5);
+    gx_body_desc desc = desc_of(&w);
+    gx_material materials[2];
+    gx_region regions[2] = {{2, -1, 0.5}, {0, -1, 0.5}};
+    gx_body *bodies[OTHERS + 1];
+    gx_step_desc step;
+    uint32_t of[16];
+    int i, j;
+    memset(&step, 0, sizeof step);
+    step.dt = 0.01;
+    step.gravity[2] = -1;
+    for (i = 0; i < 16; i++) of[i] = (uint32_t)i % 2;
+    for (i = 0; i <= OTHERS; i++) {
+        gx_body *body = NULL;
+        memset(materials, 0, sizeof materials);
+        for (j = 0; j < 2; j++) {
+            materials[j].elastic.young = 1e5;
+            materials[j].elastic.poisson = 0.25;
+            materials[j].density = 1000;
+        }
+        materials[0].elastic.kind = GXS_CUSTOM;
+        materials[0].elastic.energy = custom_energy;
+        materials[0].elastic.user = i == 11 ? &other_user : &user;
+        if (i == 1) materials[1].elastic.kind = GXS_LINEAR;
+        if (i == 2) materials[1].elastic.young *= 2;
+        if (i == 3) materials[1].elastic.poisson *= 1.5;
+        if (i == 4) materials[1].elastic.damping = 1e-3;
+        if (i == 5) materials[1].density *= 2;
+        if (i == 6) materials[0].elastic.young *= 2;
+        if (i == 12) materials[0].elastic.energy = other_energy;
+        regions[1].axis = i == 7 ? 1 : 0;
+        regions[1].side = i == 8 ? 1 : -1;
+        regions[1].value = i == 9 ? 1.5 : 0.5;
+        desc.materials = materials;
+        desc.material_count = i == 10 ? 1 : 2;
+        desc.element_materials = i == 10 ? NULL : of;
+        ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+        ck_assert_int_eq(gx_body_hold(body, regions, i == 10 ? 1 : 2, NULL), GX_OK);
+        bodies[i] = body;
+    }
+    for (i = 1; i <= OTHERS; i++) {
+        gx_body *clone = clone_of(bodies[0]);
+        shake(bodies[i], 0.01);
+        ck_assert_int_eq(gx_body_step(clone, &step, NULL, NULL), GX_OK); /* with a solver of its own materials */
+        ck_assert_int_eq(gx_body_restore(clone, bodies[i], NULL), GX_OK);
+        expect_equal(clone, bodies[i], (uint64_t)i);
+        expect_same_steps(clone, bodies[i], &step, 2, (uint64_t)i);
+        gx_body_destroy(clone);
+    }
+    ck_assert(user.calls > 0 && other_user.calls > 0);
+    for (i = 0; i <= OTHERS; i++) gx_body_destroy(bodies[i]);
+    wl_free(&w);
+}
+END_TEST
+
+/* The fragments that a view has reported as removed, and what it said of the others, go with the body. */
+START_TEST(removed_fragments_are_kept) {
+    workload w = grid(2, 1, 1, 5);
+    gx_body *body = body_of(&w), *twin;
+    gx_view view;
+    uint32_t gone;
+    int by_bytes;
+    add_axis_plane(&w, 0, 0.7);
+    {
+        static const double low[3] = {-1, -1, -1}, high[3] = {0.8, 2, 2};
+        wl_add_aligned_box(wl_add_surface(&w, 1), low, high);
+    }
+    cut_by(body, &w, 0, 1);
+    view = view_of(body);
+    ck_assert_uint_eq(view.fragment_count, 2);
+    gone = view.fragment_id[view.fragment_center[0] < view.fragment_center[3] ? 0 : 1];
+    cut_by(body, &w, 1, 1);
+    view = view_of(body);
+    ck_assert(view.fragment_count == 1 && view.removed_count == 1 && view.removed_ids[0] == gone);
+    for (by_bytes = 0; by_bytes < 2; by_bytes++) {
+        twin = twin_of(body, by_bytes);
+        ck_assert_uint_eq(twin->snapshot.removed.count, 1);
+        ck_assert_uint_eq(twin->snapshot.removed.data[0], gone);
+        expect_equal(body, twin, 0);
+        gx_body_destroy(twin);
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
 }
 END_TEST
 
@@ -950,6 +1055,8 @@ int main(void) {
     tcase_add_test(tests, sleepers_sleep_on);
     tcase_add_loop_test(tests, rollback, 0, 4);
     tcase_add_test(tests, restoring_from_strangers);
+    tcase_add_test(tests, restoring_from_near_strangers);
+    tcase_add_test(tests, removed_fragments_are_kept);
     tcase_add_test(tests, epochs_go_with_the_copies);
     tcase_add_test(tests, copies_stand_alone);
     tcase_add_test(tests, arguments);

@@ -700,6 +700,24 @@ END_TEST
 
 /* ---- errors ---- */
 
+/* The skin of a body of which nothing is left has no vertices. */
+START_TEST(nothing_is_left_to_draw) {
+    static const double low[3] = {-1, -1, -1}, high[3] = {2, 2, 2};
+    workload w = grid(1, 1, 1, 5);
+    gx_body *body = body_of(&w);
+    float x = 7, n = 7;
+    gx_skin skin;
+    wl_add_aligned_box(wl_add_surface(&w, 1), low, high);
+    cut_by(body, &w, 0, 1);
+    skin = skin_of(body, NULL);
+    ck_assert(skin.vertex_count == 0 && skin.triangle_count == 0);
+    ck_assert_int_eq(gx_body_skin_vertices(body, NULL, &x, &n, NULL), GX_OK);
+    ck_assert(x == 7 && n == 7);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 START_TEST(errors) {
     workload w = grid(1, 1, 1, 5);
     gx_body *body = body_of(&w);
@@ -768,6 +786,7 @@ int main(void) {
     tcase_add_loop_test(tests, texture, first, last);
     tcase_add_loop_test(tests, picks_what_a_ray_meets, first, last);
     tcase_add_loop_test(tests, no_ray_slips_through, 0, 3);
+    tcase_add_test(tests, nothing_is_left_to_draw);
     tcase_add_test(tests, errors);
     suite_add_tcase(suite, tests);
     return run_suite(suite);

@@ -1556,15 +1556,26 @@ START_TEST(overflow_is_divergence) {
     attempt_with(a.s.velocity[4] = 1e120, GX_ERROR_DIVERGED, NULL, SIZE_MAX);
     attempt_with(a.step.dt = 1e-200, GX_ERROR_RANGE, "dt", SIZE_MAX);
     attempt_with(a.step.dt = 1e200, GX_ERROR_RANGE, "dt", SIZE_MAX);
+    { /* all copies are held, and their targets are further than any speed reaches */
+        double targets[36];
+        int i;
+        for (i = 0; i < 36; i++) targets[i] = 1e250;
+        attempt_with(a.step.dt = 1e-70; a.step.targets = targets; memset(a.s.held, 1, 12), GX_ERROR_DIVERGED, NULL,
+                     SIZE_MAX);
+    }
     attempt_with(a.s.material->young = 1e308; a.s.displacement[0] = 10, GX_ERROR_DIVERGED, NULL, SIZE_MAX);
 }
 END_TEST
 
 /* copies without an element, elements without weight, bodies without mass, velocities beyond reach */
 START_TEST(degenerate_models_are_harmless) {
-    gxs_solver *solver = solver_make();
+    gxs_solver_desc desc;
+    gxs_solver *solver = NULL;
     int which;
-    for (which = 0; which < 5; which++) {
+    memset(&desc, 0, sizeof desc);
+    desc.preconditioner = _i ? GXS_MULTIGRID : GXS_AUTOMATIC;
+    ck_assert_int_eq(gxs_solver_create(&desc, &solver, NULL), GX_OK);
+    for (which = 0; which < 7; which++) {
         gxs_step_desc step = step_make(0.033, -9.81);
         gxs_step_report report;
         size_t e, k;
@@ -1573,6 +1584,12 @@ START_TEST(degenerate_models_are_harmless) {
             if (which == 1 || (which == 2 && e % 2)) s.elements[e].weight = 0;
             for (k = 0; k < 10; k++)
                 if (which >= 2 && which < 4 && (which == 3 || e % 2)) s.elements[e].mass[k] = 0;
+            if (which == 5 && e < 24) { /* neither weight nor mass */
+                s.elements[e].weight = 0;
+                memset(s.elements[e].mass, 0, sizeof s.elements[e].mass);
+            }
+            /* the gradients of no element that has a volume */
+            if (which == 6) memset(s.elements[e].gradient, 0, sizeof s.elements[e].gradient);
         }
         if (which == 4)
             for (e = 0; e < 3 * s.model.copy_count; e++) s.velocity[e] = e % 3 ? 1e60 : -1e60;
@@ -1588,6 +1605,41 @@ START_TEST(degenerate_models_are_harmless) {
         scene_free(&s);
     }
     gxs_solver_destroy(solver);
+}
+END_TEST
+
+/* A copy so far from the others that coarse nodes cannot be placed: the solver does without them. */
+START_TEST(positions_beyond_single_precision) {
+    static const gxs_preconditioner kinds[2] = {GXS_BLOCK_JACOBI, GXS_MULTIGRID};
+    double *end[2];
+    int i, far_away;
+    for (far_away = 0; far_away < 2; far_away++) {
+        size_t n = 0, k;
+        for (i = 0; i < 2; i++) {
+            scene s = scene_block(4, 4, 4, 0.25, 0, 1);
+            gxs_solver_desc desc;
+            gxs_step_desc step = step_make(0.033, -9.81);
+            gxs_step_report report;
+            gxs_solver *solver = NULL;
+            memset(&desc, 0, sizeof desc);
+            desc.preconditioner = kinds[i];
+            scene_hold_left(&s);
+            n = 3 * s.model.copy_count;
+            s.model.copy_count++;
+            s.rest[n] = far_away ? 1e9 : 2;
+            step.newton_iterations = 5;
+            step.cg_tolerance = 1e-9;
+            ck_assert_int_eq(gxs_solver_create(&desc, &solver, NULL), GX_OK);
+            ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+            ck_assert_int_eq(report.preconditioner, far_away ? GXS_BLOCK_JACOBI : kinds[i]);
+            end[i] = (double *)zeroed(n, sizeof(double));
+            memcpy(end[i], s.displacement, n * sizeof(double));
+            gxs_solver_destroy(solver);
+            scene_free(&s);
+        }
+        for (k = 0; k < n; k++) assert_that(fabs(end[0][k] - end[1][k]) < 1e-9, "%g %g", end[0][k], end[1][k]);
+        free(end[0]), free(end[1]);
+    }
 }
 END_TEST
 
@@ -1939,7 +1991,8 @@ static Suite *solve_suite(void) {
     tcase_add_test(input, bad_input_is_named);
     tcase_add_test(input, late_failures_keep_what_was_found);
     tcase_add_test(input, overflow_is_divergence);
-    tcase_add_test(input, degenerate_models_are_harmless);
+    tcase_add_loop_test(input, degenerate_models_are_harmless, 0, 2);
+    tcase_add_test(input, positions_beyond_single_precision);
     tcase_add_test(input, every_allocation_may_fail);
     tcase_add_test(input, steps_do_not_allocate);
     tcase_set_timeout(violent, 120);

@@ -316,24 +316,38 @@ static void add_box(wl_surface *s, int size) {
     wl_add_aligned_box(s, low, high);
 }
 
-/* A tetrahedron with corners on the lattice, oriented outward */
-static void add_tetrahedron(wl_surface *s, int size) {
+/* Oriented outward */
+static void add_oriented(wl_surface *s, double x[4][3]) {
     static const int faces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-    double x[4][3];
     uint32_t n[4];
-    int i, k, side = 0;
-    while (side == 0) {
-        for (i = 0; i < 4; i++)
-            for (k = 0; k < 3; k++) x[i][k] = random_below(size + 1);
-        side = gxb_orient3d(x[1], x[2], x[3], x[0]);
-    }
+    int i;
     for (i = 0; i < 4; i++) n[i] = wl_add_vertex(s, x[i]);
-    if (side < 0) {
+    if (gxb_orient3d(x[1], x[2], x[3], x[0]) < 0) {
         uint32_t swap = n[0];
         n[0] = n[1];
         n[1] = swap;
     }
     for (i = 0; i < 4; i++) wl_add_triangle(s, n[faces[i][0]], n[faces[i][1]], n[faces[i][2]]);
+}
+
+/* A tetrahedron with corners on the lattice */
+static void add_tetrahedron(wl_surface *s, int size) {
+    double x[4][3];
+    int i, k;
+    do
+        for (i = 0; i < 4; i++)
+            for (k = 0; k < 3; k++) x[i][k] = random_below(size + 1);
+    while (gxb_orient3d(x[1], x[2], x[3], x[0]) == 0);
+    add_oriented(s, x);
+}
+
+/* A tetrahedron around a place, of a size, in general position */
+static void add_spike(wl_surface *s, const double place[3], double size) {
+    double x[4][3];
+    int i, k;
+    for (i = 0; i < 4; i++)
+        for (k = 0; k < 3; k++) x[i][k] = place[k] + size * (random_below(20001) - 10000) / 10000.0;
+    add_oriented(s, x);
 }
 
 /* One to three boxes and tetrahedra: they may lie in, on and through each other. */
@@ -516,6 +530,36 @@ START_TEST(chains_are_exact) {
                    once.volume, each.volume);
         for (i = 0; i < 6; i++) surface_free(&s[i]);
     }
+}
+END_TEST
+
+/* Small solids through one face of a box, each evaluated, then large ones that cross that face between them: the same
+   as all at once, where the large ones come first. */
+START_TEST(crossings_around_islands) {
+    enum { SPIKES = 9, BLADES = 3, ALL = 1 + SPIKES + BLADES };
+    static const double low[3] = {-9, -9, -9}, high[3] = {9, 9, 0}, middle[3] = {0, 0, 0};
+    wl_surface s[ALL];
+    gxb_operand o[ALL], turned[ALL];
+    answer each, once;
+    int i;
+    random_state = 5000 + (uint64_t)_i;
+    memset(s, 0, sizeof s);
+    wl_add_aligned_box(&s[0], low, high);
+    for (i = 1; i <= SPIKES; i++) {
+        const double place[3] = {(random_below(1401) - 700) / 100.0, (random_below(1401) - 700) / 100.0, 0};
+        add_spike(&s[i], place, 0.7);
+    }
+    for (; i < ALL; i++) add_spike(&s[i], middle, 16);
+    for (i = 0; i < ALL; i++) {
+        o[i] = operand_of(&s[i], i == 0 ? GXB_UNION : GXB_DIFFERENCE);
+        turned[i == 0 ? 0 : ALL - i] = o[i];
+    }
+    each = evaluate(o, ALL, 1);
+    once = evaluate(turned, ALL, 0);
+    CHECK_CASE(each.components == once.components && each.euler == once.euler, "seed %d: %zu components, %ld; %zu, %ld",
+               _i, each.components, each.euler, once.components, once.euler);
+    CHECK_CASE(close_to(each.volume, once.volume, 3000), "seed %d: volumes %.17g %.17g", _i, each.volume, once.volume);
+    for (i = 0; i < ALL; i++) surface_free(&s[i]);
 }
 END_TEST
 
@@ -1448,8 +1492,9 @@ static gx_result make_call(int i, const gxb_boolean_desc *desc, const gxb_operan
     return i % 4 == 2 ? gxb_boolean_components(*b, &c, NULL) : gxb_boolean_defects(*b, &d, NULL);
 }
 
-/* Adds three boxes, evaluates after each, and gets everything. A call that fails is made again, and then succeeds. */
-static answer despite_failures(memory *m, const gxb_operand *o, int *failed) {
+/* Adds the operands, evaluates after each, and gets everything. A call that fails is made again, and then succeeds. */
+static answer despite_failures(memory *m, const gxb_operand *o, int count, uint32_t triangulation, int mend,
+                               int *failed) {
     gxb_boolean_desc desc;
     gxb_boolean *b = NULL;
     gx_result result;
@@ -1461,7 +1506,7 @@ static answer despite_failures(memory *m, const gxb_operand *o, int *failed) {
     desc.allocator.user = m;
     desc.memory_limit = (size_t)1 << 19; /* so little that each array is an allocation of its own */
     *failed = 0;
-    for (i = -1; i < 12; i++) {
+    for (i = -1; i < 4 * count; i++) {
         for (;;) {
             result = make_call(i, &desc, o, &b);
             if (result == GX_OK) break;
@@ -1471,7 +1516,10 @@ static answer despite_failures(memory *m, const gxb_operand *o, int *failed) {
             m->fail_at = SIZE_MAX;
             m->from_then_on = 0;
         }
-        if (i < 0) ck_assert_int_eq(gxb_boolean_set_triangulation(b, GXB_COARSE, NULL), GX_OK);
+        if (i >= 0) continue;
+        ck_assert_int_eq(gxb_boolean_set_triangulation(b, triangulation, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_set_fine(b, mend, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_set_mend(b, mend, NULL), GX_OK);
     }
     m->fail_at = SIZE_MAX;
     m->from_then_on = 0;
@@ -1498,11 +1546,74 @@ START_TEST(memory_runs_out) {
             answer a;
             m.fail_at = n;
             m.from_then_on = i;
-            a = despite_failures(&m, o, &failed);
+            a = despite_failures(&m, o, 3, GXB_COARSE, 0, &failed);
             check_answer("after a failure", &a, 2, 27 - 9 - 2);
             ck_assert_uint_lt(n, 5000);
         }
     for (i = 0; i < 3; i++) surface_free(&s[i]);
+}
+END_TEST
+
+/* Each allocation fails, once and from then on. The answers are those without a failure; triangles may
+   come in another order. */
+static void sweep_failures(const char *name, const gxb_operand *o, int count, uint32_t triangulation, int mend) {
+    memory m = {0, 0, SIZE_MAX, 0};
+    int failed = 1, from_then_on;
+    const answer truth = despite_failures(&m, o, count, triangulation, mend, &failed);
+    size_t n;
+    for (from_then_on = 0; from_then_on < 2; from_then_on++)
+        for (n = 0, failed = 1; failed; n += FEWER) {
+            answer a;
+            memset(&m, 0, sizeof m);
+            m.fail_at = n;
+            m.from_then_on = from_then_on;
+            a = despite_failures(&m, o, count, triangulation, mend, &failed);
+            CHECK_CASE(a.euler == truth.euler && a.components == truth.components && a.triangles == truth.triangles &&
+                           a.defects == truth.defects && fabs(a.volume - truth.volume) <= 1e-14 * truth.volume,
+                       "%s, triangulation %u, allocation %zu: another answer", name, (unsigned)triangulation, n);
+        }
+}
+
+/* Memory runs out while defects are mended and volumes are computed again, in all triangulations */
+START_TEST(memory_runs_out_late) {
+    static const int hard[3] = {8, 13, 16}; /* P12, C3, C14 */
+    int i, removed, k;
+    for (i = 0; i < 4; i++)
+        for (removed = 0; removed < 2; removed++) {
+            const char *name = "W2f";
+            size_t pieces, n, j;
+            workload w = i < 3 ? wl_hard(hard[i], &name, &pieces) : wl_ring_cut(5);
+            wl_surface body = boundary_of(&w);
+            gxb_operand o[WL_SURFACES + 1];
+            n = w.surface_count;
+            for (j = 0; j < n; j++)
+                o[removed ? j : j + 1] = operand_of(&w.surfaces[j], removed ? GXB_UNION : GXB_DIFFERENCE);
+            o[removed ? n : 0] = operand_of(&body, removed ? GXB_INTERSECTION : GXB_UNION);
+            for (k = 0; k < 3; k++) sweep_failures(name, o, (int)n + 1, triangulations[k], 1);
+            surface_free(&body);
+            wl_free(&w);
+        }
+}
+END_TEST
+
+/* ... and while it lists states, of which there are more than a few: of six boxes along a diagonal any neighbours meet */
+START_TEST(memory_runs_out_of_states) {
+    enum { BOXES = 6 };
+    wl_surface s[BOXES];
+    gxb_operand o[BOXES];
+    int i, k;
+    memset(s, 0, sizeof s);
+    for (i = 0; i < BOXES; i++) {
+        double low[3], high[3];
+        for (k = 0; k < 3; k++) {
+            low[k] = i;
+            high[k] = i + BOXES + 0.5;
+        }
+        wl_add_aligned_box(&s[i], low, high);
+        o[i] = operand_of(&s[i], GXB_SYMMETRIC_DIFFERENCE);
+    }
+    sweep_failures("boxes", o, BOXES, GXB_COARSE, 0);
+    for (i = 0; i < BOXES; i++) surface_free(&s[i]);
 }
 END_TEST
 
@@ -1736,6 +1847,9 @@ int main(void) {
     tcase_add_loop_test(tests, walls_of_a_few_units, 0, 30);
     tcase_add_test(tests, rounded_sticks_are_mended);
     tcase_add_test(tests, memory_runs_out);
+    tcase_add_loop_test(tests, crossings_around_islands, 0, 200 / FEWER);
+    tcase_add_test(tests, memory_runs_out_late);
+    tcase_add_test(tests, memory_runs_out_of_states);
     tcase_add_test(tests, memory_limit);
     tcase_add_loop_test(tests, sizes_are_numbers_or_refused, 0, 17);
     tcase_add_test(tests, largest_volumes_are_numbers);
