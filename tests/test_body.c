@@ -1603,8 +1603,8 @@ START_TEST(solidified_sheets_of_any_size) {
             s.vertex_count = 6;
             s.triangles = triangles;
             s.triangle_count = 2;
-            ck_assert_int_eq(
-                gx_surface_solidify(&s, thick, solid, &vertex_count, faces, &triangle_count, NULL, NULL), GX_OK);
+            ck_assert_int_eq(gx_surface_solidify(&s, thick, solid, &vertex_count, faces, &triangle_count, NULL, NULL),
+                             GX_OK);
             ck_assert(vertex_count == 12 && triangle_count == 16);
             for (c = 0; c < 3; c++) {
                 double across[3], along[2] = {0, 0}, square = 0;

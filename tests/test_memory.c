@@ -126,7 +126,7 @@ typedef struct mesh {
 } mesh;
 static const mesh cube_mesh = {&cube[0][0], 8, five, 5};
 static const mesh *mesh_of_bodies = &cube_mesh;
-static double support_below; /* of bodies made next */
+static double support_below;   /* of bodies made next */
 static gx_allocator allocator; /* of the body made last */
 
 static gx_result create(memory *m, gx_body **body) {

@@ -1560,8 +1560,8 @@ START_TEST(overflow_is_divergence) {
         double targets[36];
         int i;
         for (i = 0; i < 36; i++) targets[i] = 1e250;
-        attempt_with(a.step.dt = 1e-70; a.step.targets = targets; memset(a.s.held, 1, 12), GX_ERROR_DIVERGED, NULL,
-                     SIZE_MAX);
+        attempt_with(a.step.dt = 1e-70; a.step.targets = targets;
+                     memset(a.s.held, 1, 12), GX_ERROR_DIVERGED, NULL, SIZE_MAX);
     }
     attempt_with(a.s.material->young = 1e308; a.s.displacement[0] = 10, GX_ERROR_DIVERGED, NULL, SIZE_MAX);
 }

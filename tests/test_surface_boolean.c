@@ -1596,7 +1596,8 @@ START_TEST(memory_runs_out_late) {
 }
 END_TEST
 
-/* ... and while it lists states, of which there are more than a few: of six boxes along a diagonal any neighbours meet */
+/* ... and while it lists states, of which there are more than a few: of six boxes along a diagonal any neighbours meet
+ */
 START_TEST(memory_runs_out_of_states) {
     enum { BOXES = 6 };
     wl_surface s[BOXES];
