@@ -7216,12 +7216,13 @@ static void gxsp_untouch_components(gxsp_system *system) {
 /* Components on which springs and contact act, by their terms, are not loose for the rest of this run of Newton's
  * method: their momentum is no longer that of the start. */
 static void gxsp_touch_components(gxsp_system *system) {
-    const gxsp_share *share = system->lasting->share, *end = share + system->lasting->share_count;
+    const gxsp_share *share = system->lasting->share;
     uint32_t p;
+    size_t i;
     for (p = 0; p < system->model.component_count; p++) system->model.components[p].state &= ~GXSP_TOUCHES;
-    for (; share < end; share++)
-        if (share->weight * share->weight > 0)
-            system->model.components[system->model.component[share->copy]].state |= GXSP_TOUCHED | GXSP_TOUCHES;
+    for (i = 0; i < system->lasting->share_count; i++)
+        if (share[i].weight * share[i].weight > 0)
+            system->model.components[system->model.component[share[i].copy]].state |= GXSP_TOUCHED | GXSP_TOUCHES;
     system->state.loose_count = system->state.free_count = 0;
     for (p = 0; p < system->model.component_count; p++) {
         system->state.loose_count += system->model.components[p].state == 0;
