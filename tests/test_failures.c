@@ -313,6 +313,88 @@ START_TEST(saving) {
 }
 END_TEST
 
+/* A body's material, its table of materials, and what else a description says */
+START_TEST(descriptions) {
+    workload w = grid(1, 1, 1, 5);
+    gx_body_desc desc = desc_of(&w);
+    gx_body *body = NULL;
+    gx_material m;
+    uint32_t of[5] = {0, 0, 0, 0, 0};
+    const gx_body_desc good = desc;
+    memset(&m, 0, sizeof m);
+    m.elastic.young = m.density = 1;
+#define CREATED(change, expected, field, index)                                                                        \
+    desc = good;                                                                                                       \
+    change;                                                                                                            \
+    REFUSED(gx_body_create(&desc, &body, &failure), expected, field, index)
+    CREATED(desc.support_below = -0.1, GX_ERROR_ARGUMENT, "support_below", SIZE_MAX);
+    CREATED(desc.support_below = 1, GX_ERROR_ARGUMENT, "support_below", SIZE_MAX);
+    CREATED(desc.support_below = NAN, GX_ERROR_NOT_FINITE, "support_below", SIZE_MAX);
+    CREATED(desc.element_materials = of, GX_ERROR_ARGUMENT, "materials", SIZE_MAX);
+    CREATED(desc.material_count = 1, GX_ERROR_ARGUMENT, "materials", SIZE_MAX);
+    CREATED(desc.materials = &m, GX_ERROR_EMPTY, "material_count", SIZE_MAX);
+    CREATED(desc.materials = &m; desc.material_count = INT32_MAX, GX_ERROR_LIMIT, "material_count", SIZE_MAX);
+    CREATED(desc.element_count = INT32_MAX, GX_ERROR_LIMIT, "element_count", SIZE_MAX);
+#undef CREATED
+    desc = good;
+    desc.materials = &m;
+    desc.material_count = 1;
+#define CREATED(change, undo, expected, field)                                                                         \
+    change;                                                                                                            \
+    REFUSED(gx_body_create(&desc, &body, &failure), expected, field, 0);                                               \
+    undo
+    CREATED(m.elastic.kind = (gxs_material_kind)(GXS_CUSTOM + 1), m.elastic.kind = GXS_STABLE_NEO_HOOKEAN,
+            GX_ERROR_ARGUMENT, "materials.elastic.kind");
+    CREATED(m.elastic.kind = GXS_CUSTOM, m.elastic.kind = GXS_STABLE_NEO_HOOKEAN, GX_ERROR_ARGUMENT,
+            "materials.elastic.energy");
+    CREATED(m.elastic.damping = -1, m.elastic.damping = 0, GX_ERROR_ARGUMENT, "materials.elastic.damping");
+    CREATED(m.elastic.damping = NAN, m.elastic.damping = 0, GX_ERROR_NOT_FINITE, "materials.elastic.damping");
+#undef CREATED
+    ck_assert(body == NULL);
+    DONE(gx_body_create(&desc, &body, &failure));
+    {
+        static const double x[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+        static const uint32_t t[3] = {0, 1, 2};
+        gx_surface s;
+        gx_cut_desc cut;
+        memset(&s, 0, sizeof s);
+        memset(&cut, 0, sizeof cut);
+        cut.surfaces = &s;
+        cut.surface_count = 1;
+        s.vertices = x;
+        s.triangles = t;
+        s.vertex_count = 3;
+        s.triangle_count = INT32_MAX;
+        ck_assert_int_eq(gx_body_cut(body, &cut, NULL, &failure), GX_ERROR_LIMIT);
+        ck_assert(strcmp(failure.field, "surfaces.triangle_count") == 0 && failure.surface == 0);
+        ck_assert(view_of(body).cell_count == 5);
+    }
+    {
+        const gxs_constraint *none = (const gxs_constraint *)&m; /* not read */
+        gxs_solver *solver = NULL;
+        gxs_change change;
+        gxs_model model;
+        uint32_t origins[8] = {0};
+        DONE(gx_body_model(body, &model, &failure));
+        DONE(gxs_solver_create(NULL, &solver, &failure));
+        model.constraints = none;
+        model.constraint_count = model.copy_count + 1;
+        REFUSED(gxs_solver_set_model(solver, &model, &failure), GX_ERROR_LIMIT, "constraint_count", SIZE_MAX);
+        model.constraint_count = 0;
+        DONE(gxs_solver_set_model(solver, &model, &failure));
+        memset(&change, 0, sizeof change);
+        change.origins = origins;
+        change.copy_count = 8;
+        change.elements = model.elements;
+        change.element_count = UINT32_MAX / 4;
+        REFUSED(gxs_solver_update(solver, &change, &failure), GX_ERROR_LIMIT, "element_count", SIZE_MAX);
+        gxs_solver_destroy(solver);
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* A step names the fields of its description; a solver without a model says that something else comes first. */
 START_TEST(steps_and_solvers) {
     workload w = grid(1, 1, 1, 5);
@@ -376,6 +458,14 @@ START_TEST(steps_and_solvers) {
     REFUSED(gxs_solver_step(solver, &own, NULL, v, NULL, &failure), GX_ERROR_ARGUMENT, "displacement", SIZE_MAX);
     REFUSED(gxs_solver_step(solver, &own, u, NULL, NULL, &failure), GX_ERROR_ARGUMENT, "velocity", SIZE_MAX);
     REFUSED(gxs_solver_product(solver, u, v, &failure), GX_ERROR_SEQUENCE, "gxs_solver_linearise", SIZE_MAX);
+    own.integrator = (gxs_integrator)(GXS_STATIC + 1);
+    REFUSED(gxs_solver_step(solver, &own, u, v, NULL, &failure), GX_ERROR_ARGUMENT, "integrator", SIZE_MAX);
+    own.integrator = GXS_BDF1;
+    own.previous_dt = NAN;
+    REFUSED(gxs_solver_step(solver, &own, u, v, NULL, &failure), GX_ERROR_NOT_FINITE, "previous_dt", SIZE_MAX);
+    ck_assert_int_eq(gxs_step_check(&own, 0, NULL), GX_ERROR_NOT_FINITE);
+    own.previous_dt = 0;
+    ck_assert_int_eq(gxs_step_check(&own, 0, NULL), GX_OK);
     REFUSED(gxs_solver_linearise(solver, u, -1, 0, &failure), GX_ERROR_ARGUMENT, "rate", SIZE_MAX);
     DONE(gxs_solver_linearise(solver, u, 1, 0, &failure));
     DONE(gxs_solver_product(solver, u, v, &failure));
@@ -489,6 +579,10 @@ START_TEST(integrals) {
     DONE(gxi_polyhedron_monomials(&s, NULL, 3, m, work, &failure));
     REFUSED(gxi_polyhedron_monomial(&s, NULL, 0, 0, 0, NULL, &failure), GX_ERROR_ARGUMENT, "moment", SIZE_MAX);
     REFUSED(gxi_polyhedron_monomial(&s, NULL, 1, GXI_DEGREE_MAX, 1, m, &failure), GX_ERROR_RANGE, "j", SIZE_MAX);
+    REFUSED(gxi_polyhedron_monomial(&s, NULL, GXI_DEGREE_MAX + 1, 0, 0, m, &failure), GX_ERROR_RANGE, "i", SIZE_MAX);
+    REFUSED(gxi_polyhedron_monomial(&s, NULL, 0, GXI_DEGREE_MAX + 1, 0, m, &failure), GX_ERROR_RANGE, "j", SIZE_MAX);
+    REFUSED(gxi_polyhedron_monomial(&s, NULL, 0, 0, GXI_DEGREE_MAX + 1, m, &failure), GX_ERROR_RANGE, "k", SIZE_MAX);
+    REFUSED(gxi_polyhedron_monomial(&s, NULL, 2, 1, GXI_DEGREE_MAX, m, &failure), GX_ERROR_RANGE, "k", SIZE_MAX);
     DONE(gxi_polyhedron_monomial(&s, NULL, 1, 1, 1, m, &failure));
     REFUSED(gxi_monomials_translate(1, NULL, m, &failure), GX_ERROR_ARGUMENT, "shift", SIZE_MAX);
     REFUSED(gxi_monomials_translate(1, origin, NULL, &failure), GX_ERROR_ARGUMENT, "moments", SIZE_MAX);
@@ -576,6 +670,7 @@ int main(void) {
     tcase_add_test(tests, scopes);
     tcase_add_test(tests, thick_sheets);
     tcase_add_test(tests, saving);
+    tcase_add_test(tests, descriptions);
     tcase_add_test(tests, steps_and_solvers);
     tcase_add_test(tests, booleans);
     tcase_add_test(tests, integrals);

@@ -468,6 +468,14 @@ START_TEST(sleepers_sleep_on) {
     expect_same_steps(clone, copy, &step, 1, 0);
     ck_assert_int_eq(gx_body_step(body, &step, &report, NULL), GX_OK);
     ck_assert_int_eq(report.stop, GXS_STOP_ASLEEP);
+    { /* the state of a sleeping copy is written: it wakes */
+        gx_body *written = clone_of(body);
+        gx_view view = view_of(written);
+        view.velocity[3 * (view.copy_count - 1)] = 0.5;
+        ck_assert_int_eq(gx_body_step(written, &step, &report, NULL), GX_OK);
+        ck_assert_int_ne(report.stop, GXS_STOP_ASLEEP);
+        gx_body_destroy(written);
+    }
     step.gravity[0] = 1;
     ck_assert_int_eq(gx_body_step(copy, &step, &report, NULL), GX_OK);
     ck_assert_int_ne(report.stop, GXS_STOP_ASLEEP);
