@@ -221,12 +221,16 @@ typedef struct gx_surface {
     size_t triangle_count;
     uint32_t kind;        /* GX_SURFACE_SHEET or GX_SURFACE_SOLID */
     const float *texture; /* vertex_count x 2: texture coordinates of the faces that it cuts; NULL: all 0 */
+    /* The surface cuts only the cells of these slots (gx_view.cell_slot), whatever the cut's scope is. All surfaces of
+       a cut see the cells of before the cut. A slot whose cell was removed stands for nothing. NULL: the cut's scope */
+    const uint32_t *scope_slots; /* scope_slot_count, below gx_view.slot_count */
+    size_t scope_slot_count;
 } gx_surface;
 typedef struct gx_cut_desc {
     const gx_surface *surfaces;
     size_t surface_count;
     /* The cut affects only these fragments: indices below gx_view.fragment_count, not ids. Both counts 0: the whole
-       body. */
+       body. A surface may have a scope of its own in place of this one. */
     const uint32_t *scope_fragments;
     size_t scope_fragment_count;
     const uint32_t *scope_cells; /* and these cells: indices below gx_view.cell_count */
@@ -246,7 +250,7 @@ typedef struct gx_cut_report {
 /* Cuts by all surfaces at once. Displacement and velocity are the same functions of material points before and after.
    On an error the body is exactly as it was; failure.surface is the surface, failure.index as named here. A field of a
    surface reads "surfaces.vertices".
-   Errors: ARGUMENT, EMPTY, INDEX (triangle, or place in the scope), NOT_FINITE (vertex), RANGE (vertex), NOT_CLOSED
+   Errors: ARGUMENT, EMPTY, INDEX (triangle, or place in a scope), NOT_FINITE (vertex), RANGE (vertex), NOT_CLOSED
    (triangle), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report /* or NULL */,
                                 gx_failure *failure /* or NULL */);
@@ -282,6 +286,12 @@ typedef struct gx_view {
     const uint32_t *cell_copies;   /* cell_count x 4 */
     const double *cell_volume;     /* cell_count, m3 */
     const uint32_t *cell_fragment; /* cell_count */
+    /* cell_count, below slot_count. A slot names a cell across cuts, while cell_ arrays are sorted anew. Of the parts
+       into which a cut divides a cell one keeps the slot; the others have new ones, from the slot_count of before on.
+       No slot is used again. The first cells of elements have those below element_count. */
+    const uint32_t *cell_slot;
+    size_t slot_count;
+    const uint32_t *slot_parent; /* slot_count: the slot that was divided, which is smaller; of a first cell: itself */
     size_t copy_count;
     const uint32_t *copy_node; /* copy_count */
     const uint8_t *copy_held;  /* copy_count, 1: held by a Dirichlet region */
@@ -631,8 +641,9 @@ typedef struct gxp_cell { /* without gaps between its members: rows are saved as
 } gxp_cell;
 
 typedef struct gxp_cells { /* slots 0 ... element_count-1 are the elements' first cells */
-    uint32_t count, capacity[4];
+    uint32_t count, capacity[5];
     gxp_cell *data;
+    uint32_t *parent;    /* the slot from which it was divided; of a first cell: its own */
     uint32_t *stamp;     /* scratch.stamp of the last walk that met the cell */
     uint32_t *saved_by;  /* undo.cut_number of the last cut that saved or made it */
     uint32_t *new_index; /* its index in scratch.new_cells, if it is there */
@@ -852,7 +863,7 @@ typedef struct gxp_boundary {
 
 typedef struct gxp_scratch {
     uint32_t stamp;       /* of the last walk through cells or leaves */
-    uint32_t scope_stamp; /* of the cells that the cut may touch */
+    uint32_t scope_stamp; /* of the cells that a surface of the cut may touch */
     /* a cut, from step to step */
     gxp_words removed;    /* leaves that solids remove */
     gxp_words pinches;    /* nodes at which walls may break joints */
@@ -955,7 +966,8 @@ static const gxp_column gxp_cell_columns[] = {
     GXP_COLUMN(cells, data,      capacity, 0, sizeof(gxp_cell), GXP_TOPOLOGY | GXP_UNDONE),
     GXP_COLUMN(cells, stamp,     capacity, 1, sizeof(uint32_t), GXP_CLEARED),
     GXP_COLUMN(cells, saved_by,  capacity, 2, sizeof(uint32_t), GXP_CLEARED),
-    GXP_COLUMN(cells, new_index, capacity, 3, sizeof(uint32_t), GXP_CLEARED)};
+    GXP_COLUMN(cells, new_index, capacity, 3, sizeof(uint32_t), GXP_CLEARED),
+    GXP_COLUMN(cells, parent,    capacity, 4, sizeof(uint32_t), GXP_TOPOLOGY)};
 static const gxp_column gxp_leaf_columns[] = {
     GXP_COLUMN(leaves, data, capacity, 0, sizeof(gxp_leaf), GXP_TOPOLOGY | GXP_UNDONE),
     GXP_COLUMN(leaves, mark, capacity, 1, sizeof(gxp_leaf_mark), GXP_CLEARED)};
@@ -1857,6 +1869,7 @@ static void gxp_wake_resumed(gx_body *body, size_t copies) {
 typedef struct gxp_cut {
     gx_body *body;
     const gx_cut_desc *desc;
+    const gx_surface *stamped; /* whose slots bear the scope's stamp; NULL: the cells of the cut's scope do */
     gx_cut_report report;
     gx_failure failure;
 } gxp_cut;
@@ -2136,16 +2149,20 @@ static int gxp_in_scope(void *user, uint32_t leaf) {
     return body->cells.stamp[body->leaves.data[gxp_old_leaf(body, leaf)].cell] == body->scratch.scope_stamp;
 }
 
-/* Stamps the cells that the cut may touch. *scoped: 0 if these are all. */
-static gx_result gxp_stamp_scope(gxp_cut *cut, int *scoped) {
+static int gxp_has_scope(const gx_cut_desc *desc) {
+    return desc->scope_fragment_count > 0 || desc->scope_cell_count > 0;
+}
+
+/* Stamps the cells of the cut's scope, if it has one. */
+static gx_result gxp_stamp_scope(gxp_cut *cut) {
     gx_body *body = cut->body;
     gxp_view *view = &body->view;
     gxp_scratch *scratch = &body->scratch;
     const gx_cut_desc *desc = cut->desc;
     gx_result result;
     size_t i, j;
-    *scoped = desc->scope_fragment_count > 0 || desc->scope_cell_count > 0;
-    if (!*scoped) return GX_OK;
+    cut->stamped = NULL;
+    if (!gxp_has_scope(desc)) return GX_OK;
     result = gxp_update_view(body);
     if (result != GX_OK) return result;
     scratch->scope_stamp = ++scratch->stamp;
@@ -2159,6 +2176,20 @@ static gx_result gxp_stamp_scope(gxp_cut *cut, int *scoped) {
         for (j = 0; j < view->count; j++)
             if (view->fragment[j] == desc->scope_fragments[i]) body->cells.stamp[view->slot[j]] = scratch->scope_stamp;
     }
+    return GX_OK;
+}
+
+/* Stamps the cells that a surface may touch, unless they bear the stamp. *scoped: 0 if these are all. */
+static gx_result gxp_stamp_surface(gxp_cut *cut, const gx_surface *s, int *scoped) {
+    gx_body *body = cut->body;
+    size_t i;
+    *scoped = s->scope_slots != NULL || gxp_has_scope(cut->desc);
+    if (cut->stamped == (s->scope_slots != NULL ? s : NULL)) return GX_OK;
+    if (s->scope_slots == NULL) return gxp_stamp_scope(cut);
+    body->scratch.scope_stamp = ++body->scratch.stamp;
+    for (i = 0; i < s->scope_slot_count; i++)
+        if (body->cells.data[s->scope_slots[i]].kept) body->cells.stamp[s->scope_slots[i]] = body->scratch.scope_stamp;
+    cut->stamped = s;
     return GX_OK;
 }
 
@@ -2226,8 +2257,17 @@ static gx_result gxp_check_surface_arrays(const gx_surface *s, gx_failure *failu
     return GX_OK;
 }
 
+static gx_result gxp_check_slots(const gx_body *body, const gx_surface *s, gx_failure *failure) {
+    size_t i;
+    if (s->scope_slot_count > 0 && s->scope_slots == NULL) return gxp_refuse(failure, "surfaces.scope_slots");
+    for (i = 0; i < s->scope_slot_count; i++)
+        if (s->scope_slots[i] >= body->cells.count) return gxp_fail(failure, GX_ERROR_INDEX, "surfaces.scope_slots", i);
+    return GX_OK;
+}
+
 static gx_result gxp_check_surface(const gx_body *body, const gx_surface *s, gx_failure *failure) {
     gx_result result = gxp_check_surface_arrays(s, failure);
+    if (result == GX_OK) result = gxp_check_slots(body, s, failure);
     size_t i;
     for (i = 0; i < s->vertex_count && result == GX_OK; i++) {
         result = gxb_complex_check_point(body->complex, s->vertices + 3 * i);
@@ -2893,6 +2933,16 @@ static gx_result gxp_seed_untouched(gxp_cut *cut) {
     return result;
 }
 
+/* Adds one leaf of each cell in the surface's own scope to the seeds. The flood crosses all facets inside a cell. */
+static gx_result gxp_seed_slots(gx_body *body, const gx_surface *s) {
+    gx_result result = GX_OK;
+    size_t i;
+    for (i = 0; i < s->scope_slot_count && result == GX_OK; i++)
+        if (body->cells.data[s->scope_slots[i]].kept)
+            result = gxp_push(body, &body->scratch.seed_leaves, body->cells.data[s->scope_slots[i]].first_leaf);
+    return result;
+}
+
 /* Finds the winding numbers of the seeds and of all leaves that they lead to: scratch.flooded. */
 static gx_result gxp_find_windings(gx_body *body, const gxp_surface *s, int scoped) {
     gxp_scratch *scratch = &body->scratch;
@@ -2911,12 +2961,15 @@ static gx_result gxp_find_windings(gx_body *body, const gxp_surface *s, int scop
 }
 
 /* Appends to scratch.removed the leaves around which the solid winds. All surfaces of the cut are in the complex. */
-static gx_result gxp_find_solid(gxp_cut *cut, const gxp_surface *s, int scoped) {
+static gx_result gxp_find_solid(gxp_cut *cut, const gxp_surface *s) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
     uint32_t i;
-    gx_result result = gxp_list_marked_leaves(body, 0, &scratch->seed_leaves);
-    if (result == GX_OK) result = gxp_seed_untouched(cut);
+    int scoped;
+    gx_result result = gxp_stamp_surface(cut, s->given, &scoped);
+    if (result == GX_OK) result = gxp_list_marked_leaves(body, 0, &scratch->seed_leaves);
+    if (result == GX_OK)
+        result = s->given->scope_slots != NULL ? gxp_seed_slots(body, s->given) : gxp_seed_untouched(cut);
     if (result == GX_OK) result = gxp_find_windings(body, s, scoped);
     if (result == GX_OK) result = gxp_words_room(body, &scratch->removed, scratch->flooded.count);
     for (i = 0; i < scratch->flooded.count && result == GX_OK; i++)
@@ -3191,6 +3244,7 @@ static gx_result gxp_new_cell(gx_body *body, uint32_t like, uint32_t *slot) {
     if (result != GX_OK) return result;
     *slot = body->cells.count++;
     body->cells.data[*slot] = body->cells.data[like];
+    body->cells.parent[*slot] = like;
     body->cells.data[like].next = *slot;
     body->cells.data[*slot].first_leaf = GXP_NONE;
     body->cells.stamp[*slot] = 0;
@@ -3951,6 +4005,7 @@ static uint64_t gxp_hash_cut(uint64_t past, const gx_cut_desc *desc) {
         past = gxp_hash_doubles(gxp_mix(past ^ s->kind ^ (uint64_t)s->vertex_count << 8), s->vertices,
                                 3 * s->vertex_count);
         past = gxp_hash_texture(gxp_hash_words(past, s->triangles, 3 * s->triangle_count), s->texture, s->vertex_count);
+        if (s->scope_slots != NULL) past = gxp_hash_words(gxp_mix(past), s->scope_slots, s->scope_slot_count);
     }
     return past;
 }
@@ -3994,14 +4049,15 @@ static gx_result gxp_arrange_surfaces(gxp_cut *cut, gxp_surface *surfaces) {
     const size_t count = cut->desc->surface_count;
     size_t i;
     int scoped;
-    gx_result result = gxp_stamp_scope(cut, &scoped);
+    gx_result result = gxp_stamp_scope(cut);
     for (i = 0; i < count && result == GX_OK; i++) {
-        result = gxp_surface_open(cut, &surfaces[i], &cut->desc->surfaces[i], i);
+        result = gxp_stamp_surface(cut, &cut->desc->surfaces[i], &scoped);
+        if (result == GX_OK) result = gxp_surface_open(cut, &surfaces[i], &cut->desc->surfaces[i], i);
         if (result == GX_OK) result = gxp_insert_surface(cut, &surfaces[i], scoped);
     }
     if (result == GX_OK) result = gxp_follow_leaves(cut->body);
     for (i = 0; i < count && result == GX_OK; i++)
-        if (surfaces[i].given->kind == GX_SURFACE_SOLID) result = gxp_find_solid(cut, &surfaces[i], scoped);
+        if (surfaces[i].given->kind == GX_SURFACE_SOLID) result = gxp_find_solid(cut, &surfaces[i]);
     return result;
 }
 
@@ -4765,6 +4821,9 @@ GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view, gx_failure *failu
     view->cell_copies = own->copies;
     view->cell_volume = own->volume;
     view->cell_fragment = own->fragment;
+    view->cell_slot = own->slot;
+    view->slot_count = body->cells.count;
+    view->slot_parent = body->cells.parent;
     view->copy_count = body->copies.count;
     view->copy_node = body->copies.node;
     view->copy_held = body->copies.held;
@@ -6593,6 +6652,7 @@ static gx_result gxp_make_first_cells(gx_body *body, gx_failure *failure) {
         gxp_cell *cell = &body->cells.data[e];
         memset(cell, 0, sizeof *cell);
         cell->element = cell->first_leaf = e;
+        body->cells.parent[e] = e;
         memcpy(cell->copies, gxb_complex_element_nodes(body->complex, e), sizeof cell->copies);
         cell->next = GXP_NONE;
         cell->kept = 1;
@@ -6982,7 +7042,7 @@ static void gxp_require_true(gxb_stream *s, int holds) {
 }
 static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
 
-#define GXP_SAVE_VERSION 4u /* raised by every change of the format */
+#define GXP_SAVE_VERSION 5u /* raised by every change of the format */
 #define GXP_BYTE_ORDER   0x01020304u
 
 typedef struct gxp_head {
@@ -7252,6 +7312,12 @@ static void gxp_check_cell(gxb_stream *s, gx_body *body, uint32_t cell, const gx
     }
 }
 
+/* An element's first cell is its own parent; others were divided from an earlier one of their element. */
+static int gxp_is_parent(const gx_body *body, uint32_t cell) {
+    const uint32_t parent = body->cells.parent[cell], element = body->cells.data[cell].element;
+    return cell == element ? parent == cell : parent < cell && body->cells.data[parent].element == element;
+}
+
 /* Every cell is in its element's list once, every kept leaf in one kept cell, and every copy moves a cell. */
 static void gxp_check_lists(gxb_stream *s, gx_body *body, const gxp_places *seen) {
     uint32_t e, i, cell;
@@ -7260,7 +7326,7 @@ static void gxp_check_lists(gxb_stream *s, gx_body *body, const gxp_places *seen
             gxp_require_true(s, cell < body->cells.count && !seen->cell[cell < body->cells.count ? cell : 0]);
             if (s->result != GX_OK) return;
             seen->cell[cell] = 1;
-            gxp_require_true(s, body->cells.data[cell].element == e);
+            gxp_require_true(s, body->cells.data[cell].element == e && gxp_is_parent(body, cell));
             if (s->result == GX_OK) gxp_check_cell(s, body, cell, seen);
         }
     for (i = 0; i < body->cells.count; i++) gxp_require_true(s, seen->cell[i]);

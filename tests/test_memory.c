@@ -199,6 +199,19 @@ static gx_result cut_scoped_solid(gx_body *body) {
     gx_surface s = solid();
     return cut(body, &s, 1, 0, 1);
 }
+/* Surfaces with scopes of their own beside one without */
+static gx_result cut_slots(gx_body *body) {
+    static const uint32_t slots[4] = {0, 1, 4, 5};
+    gx_surface s[3];
+    s[0] = sheet(sheet_b);
+    s[1] = solid();
+    s[2] = sheet(sheet_part);
+    s[0].scope_slots = slots;
+    s[0].scope_slot_count = 4;
+    s[1].scope_slots = slots + 1;
+    s[1].scope_slot_count = 2;
+    return cut(body, s, 3, 0, 1);
+}
 static gx_result cut_severing(gx_body *body) {
     gx_surface s = sheet(sheet_b);
     return cut(body, &s, 1, 0.4, 0);
@@ -486,6 +499,7 @@ END_TEST
 START_TEST(scoped_cut) {
     sweep("a scoped sheet", after_a_cut, cut_scoped);
     sweep("a scoped solid", after_a_cut, cut_scoped_solid);
+    sweep("surfaces in slots", after_a_cut, cut_slots);
 }
 END_TEST
 

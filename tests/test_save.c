@@ -119,6 +119,9 @@ static void expect_equal_views(gx_body *a, gx_body *b, uint64_t seed) {
     SAME(p.cell_copies, q.cell_copies, 4 * p.cell_count);
     SAME(p.cell_volume, q.cell_volume, p.cell_count);
     SAME(p.cell_fragment, q.cell_fragment, p.cell_count);
+    SAME(p.cell_slot, q.cell_slot, p.cell_count);
+    CHECK_SEED(p.slot_count == q.slot_count, seed);
+    SAME(p.slot_parent, q.slot_parent, p.slot_count);
     SAME(p.copy_node, q.copy_node, p.copy_count);
     SAME(p.copy_held, q.copy_held, p.copy_count);
     SAME(p.displacement, q.displacement, 3 * p.copy_count);
@@ -769,7 +772,7 @@ START_TEST(foreign_bytes) {
     { /* older versions, and one yet to come */
         uint32_t version, now;
         memcpy(&now, b.data + 8, sizeof now);
-        ck_assert_uint_eq(now, 4);
+        ck_assert_uint_eq(now, 5);
         for (version = 0; version <= now; version++) {
             const uint32_t wrong = version < now ? version : now + 1;
             memcpy(b.data + 8, &wrong, sizeof wrong);
