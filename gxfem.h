@@ -41,6 +41,7 @@
  *     >>creating   bodies
  *     >>cutting    surfaces, cuts, solidified sheets
  *     >>viewing    cells, copies, fragments, motion
+ *     >>anchoring  material points that survive cuts
  *     >>stepping   held regions, time steps
  *     >>drawing    the visual surface, rays
  *     >>hashing    of the topology, of the state
@@ -50,8 +51,8 @@
  *     tools:                     >>memory >>basics >>mesh >>search >>copies >>transaction >>complex >>numbering
  *     a cut:                     >>surfaces >>pinches >>arrange >>solids >>links >>cells >>components >>integrals >>cut
  *     a sheet's thickness:       >>solidify
- *     what is held and whole:    >>regions >>map >>fragments >>motion
- *     a step:                    >>supports >>model >>step
+ *     what is held and whole:    >>anchors >>regions >>map >>fragments >>motion
+ *     a step:                    >>attached >>supports >>model >>step
  *     the skin:                  >>corners >>vertices >>faces >>skinning >>rays
  *     beginning, end, bytes:     >>create >>hashes >>stream >>save
  *
@@ -221,8 +222,8 @@ typedef struct gx_surface {
     size_t triangle_count;
     uint32_t kind;        /* GX_SURFACE_SHEET or GX_SURFACE_SOLID */
     const float *texture; /* vertex_count x 2: texture coordinates of the faces that it cuts; NULL: all 0 */
-    /* The surface cuts only the cells of these slots (gx_view.cell_slot), whatever the cut's scope is. All surfaces of a
-       cut see the cells of before the cut. A slot whose cell was removed stands for nothing. NULL: the cut's scope */
+    /* The surface cuts only the cells of these slots (gx_view.cell_slot), whatever the cut's scope is. All surfaces of
+       a cut see the cells of before the cut. A slot whose cell was removed stands for nothing. NULL: the cut's scope */
     const uint32_t *scope_slots; /* scope_slot_count, below gx_view.slot_count */
     size_t scope_slot_count;
 } gx_surface;
@@ -287,8 +288,8 @@ typedef struct gx_view {
     const double *cell_volume;     /* cell_count, m3 */
     const uint32_t *cell_fragment; /* cell_count */
     /* cell_count, below slot_count. A slot names a cell across cuts, while cell_ arrays are sorted anew. Of the parts
-       into which a cut divides a cell one keeps the slot; the others have new ones, from the slot_count of before on. No
-       slot is used again. The first cells of elements have those below element_count. */
+       into which a cut divides a cell one keeps the slot; the others have new ones, from the slot_count of before on.
+       No slot is used again. The first cells of elements have those below element_count. */
     const uint32_t *cell_slot;
     size_t slot_count;
     const uint32_t *slot_parent; /* slot_count: the slot that was divided, which is smaller; of a first cell: itself */
@@ -338,6 +339,33 @@ typedef struct gx_motion {
 GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t capacity,
                                    gx_failure *failure /* or NULL */);
 
+/* >>anchoring ------------------------------------------------------------------------------------------------------ */
+
+/* A point of the material that stays what it is through cuts, removal, saving and going back. It names no copy, cell or
+   slot, so nothing makes it stale. It may be kept and copied. */
+typedef struct gx_anchor {
+    uint32_t element;
+    double position[3]; /* in the element, material coordinates, m */
+    /* The side: if a cut passes through position, exactly, the anchor goes with the part towards this point. If the cut
+       passes through both, it goes with the part in front of the triangle's plane */
+    double toward[3];
+} gx_anchor;
+/* Makes an anchor of a material point in an element. Where walls meet at the point, it belongs to a part that is left.
+   A point that is off the element, or off what is left of it, by less than 1e-6 of the element's size, is moved there.
+   Errors: ARGUMENT, INDEX (element), NOT_FINITE, RANGE, EMPTY (the point is not in what is left of the element), FLAT
+   (the part there is too thin for points given by doubles), MEMORY, LIMIT. */
+GXFEM_API gx_result gx_body_anchor(gx_body *body, uint32_t element, const double material[3], gx_anchor *anchor,
+                                   gx_failure *failure /* or NULL */);
+/* Gives the copies and weights that move an anchor now, and where it is. Errors: ARGUMENT (also: its position is not in
+   its element), INDEX (its element), NOT_FINITE, RANGE, EMPTY (its material is gone). */
+GXFEM_API gx_result gx_body_anchor_point(gx_body *body, const gx_anchor *anchor, gxs_point *point /* or NULL */,
+                                         double position[3] /* in space, m; or NULL */,
+                                         gx_failure *failure /* or NULL */);
+/* Tells which anchors have lost their material: lost[i] becomes 1. After an error the output means nothing. Errors:
+   ARGUMENT, INDEX, NOT_FINITE, RANGE; failure.index: anchor. */
+GXFEM_API gx_result gx_body_lost_anchors(gx_body *body, const gx_anchor *anchors, size_t count,
+                                         uint8_t *lost /* count */, gx_failure *failure /* or NULL */);
+
 /* >>stepping ------------------------------------------------------------------------------------------------------- */
 
 /* Half-space of material coordinates: X[axis] < value (side -1) or > value (side +1), strictly */
@@ -356,7 +384,8 @@ GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t
 
 /* A time step. Zero but for dt: implicit Euler, one Newton iteration, nothing but inertia and elasticity. Arrays are by
    copy, as in gx_view. Points, forces and targets name copies: they have the epoch of the view, skin or hit that they
-   come from, and are refused (GX_ERROR_STALE) after a cut that began another one. */
+   come from, and are refused (GX_ERROR_STALE) after a cut that began another one. Anchors in their place are good after
+   any cut; one that has lost its material does nothing, and its spring's force is 0 (see gx_body_lost_anchors). */
 typedef struct gx_step_desc {
     double dt;         /* s, above 0; GXS_STATIC: 0 or more */
     double gravity[3]; /* m/s2 */
@@ -373,9 +402,14 @@ typedef struct gx_step_desc {
     uint64_t epoch;            /* of forces and targets; read if one of them is given */
     const gxs_spring *springs; /* spring_count */
     size_t spring_count;
-    double *spring_forces;   /* spring_count x 3: receives the force of each spring on the body, N; or NULL */
+    const gx_anchor *spring_anchors; /* spring_count: in place of each spring's point, which is not read; or NULL */
+    double *spring_forces;           /* spring_count x 3: receives the force of each spring on the body, N; or NULL */
     const gxs_point *points; /* point_count: of contact. planes and contact() act on these and on nothing else */
     size_t point_count;
+    const gx_anchor *point_anchors; /* point_count: in place of points, which is not read; or NULL */
+    const gx_anchor *force_anchors; /* force_count */
+    const double *anchor_forces;    /* force_count x 3, N: on force_anchors, beside forces */
+    size_t force_count;
     const gxs_plane *planes; /* plane_count; without points they stop nothing */
     size_t plane_count;
     gxs_contact_fn contact; /* energy of a contact point; NULL: none */
@@ -394,7 +428,7 @@ typedef gxs_step_report gx_step_report;
    compared with its fullest part. It moves as a point if that part is smaller than support_below of its element.
    Where support_below is 0, it moves as a point if that part is smaller than 1e-9 or if no part reaches a tenth as far
    as its element.
-   failure.index: a spring, point, plane or copy. The fields "displacement" and "velocity" are those of gx_view.
+   failure.index: a spring, point, plane, anchor or copy. The fields "displacement" and "velocity" are those of gx_view.
    Errors: ARGUMENT, NOT_FINITE, INDEX, LIMIT, MEMORY, STALE (copies of another epoch), RANGE (a number is too large or
    too small; as for FLAT, an element if field is NULL), FLAT (an element, see gx_body_model), DIVERGED, FREE
    (GXS_STATIC; a copy of a component that nothing holds). */
@@ -487,6 +521,12 @@ typedef struct gx_hit {
 /* The point of a hit, for springs and contact. Keep the hit as long: the point may refer to it. If the ray met nothing,
    the point has count 0, which steps refuse. */
 GXFEM_API gxs_point gx_hit_point(const gx_hit *hit);
+/* Makes an anchor of a hit. Its position is exactly in the part of the body that was hit: the hit's material point, or,
+   where rounding has put that beside the part, the nearest point found on the way into it. Errors: ARGUMENT, EMPTY (the
+   ray met nothing), STALE (a cut has begun another epoch since the hit), INDEX, NOT_FINITE, RANGE, FLAT (the part is
+   too thin for points given by doubles), MEMORY, LIMIT. */
+GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *anchor,
+                                  gx_failure *failure /* or NULL */);
 /* Finds the nearest triangle on a ray. Errors: ARGUMENT (also: direction is 0), NOT_FINITE, SEQUENCE (there is no skin,
    or a cut has been since). */
 GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit,
@@ -786,6 +826,13 @@ typedef struct gxp_model {
     uint32_t constraint_count, constraint_capacity;
 } gxp_model;
 
+typedef struct gxp_attached { /* of a step: what it has at anchors, by copies */
+    gxs_spring *springs;
+    gxs_point *points;
+    double *forces; /* copies x 3, N: all that are given */
+    uint32_t spring_capacity, point_capacity, force_capacity;
+} gxp_attached;
+
 /* The key of a vertex of the skin: a point of the complex, four names in ascending order, a group. On the
    outer surface the names are slots and the group is 0. On a face of a cut they are copies; the group is the surface
    and the side, or the surface, the plane and the side. */
@@ -882,7 +929,7 @@ typedef struct gxp_scratch {
     gxp_words seed_leaves; /* where the flood starts */
     gxp_words flooded;     /* leaves whose winding number is known */
     gxp_words seeded;      /* by fragment: 1 if one of its leaves is a seed */
-    gxp_words leaf_points; /* of a leaf; also of >>regions */
+    gxp_words leaf_points; /* of a leaf; also of >>anchors, >>regions */
     /* >>cells, >>links */
     gxp_words wall_leaves;  /* on both sides of new walls */
     gxp_words cell_leaves;  /* of a cell that is divided */
@@ -913,6 +960,7 @@ struct gx_body {
     gxp_view view;
     gxp_snapshot snapshot;
     gxp_model model;
+    gxp_attached attached;
     gxp_skin skin;
     gxp_scratch scratch;
 };
@@ -1058,6 +1106,9 @@ static const gxp_column gxp_lists[] = {
     GXP_WORDS(view.copy_fragment), GXP_WORDS(view.fragment_number),
     GXP_WORDS(view.splits), GXP_WORDS(view.split_cells), GXP_WORDS(view.split_parents),
     GXP_WORDS(model.changed), GXP_WORDS(model.thin),
+    GXP_LIST(attached.springs, attached.spring_capacity, sizeof(gxs_spring)),
+    GXP_LIST(attached.points, attached.point_capacity, sizeof(gxs_point)),
+    GXP_LIST(attached.forces, attached.force_capacity, 3 * sizeof(double)),
     GXP_WORDS(skin.dirty), GXP_WORDS(skin.first), GXP_LIST(skin.slots, skin.slot_capacity, sizeof(gxp_skin_slot)),
     GXP_WORDS(skin.vertex_buckets), GXP_WORDS(skin.slot_buckets), GXP_WORDS(skin.boundary), GXP_WORDS(skin.groups),
     GXP_LIST(skin.group_normals, skin.group_normal_capacity, 3 * sizeof(double)),
@@ -2188,8 +2239,7 @@ static gx_result gxp_stamp_surface(gxp_cut *cut, const gx_surface *s, int *scope
     if (s->scope_slots == NULL) return gxp_stamp_scope(cut);
     body->scratch.scope_stamp = ++body->scratch.stamp;
     for (i = 0; i < s->scope_slot_count; i++)
-        if (body->cells.data[s->scope_slots[i]].kept)
-            body->cells.stamp[s->scope_slots[i]] = body->scratch.scope_stamp;
+        if (body->cells.data[s->scope_slots[i]].kept) body->cells.stamp[s->scope_slots[i]] = body->scratch.scope_stamp;
     cut->stamped = s;
     return GX_OK;
 }
@@ -2262,8 +2312,7 @@ static gx_result gxp_check_slots(const gx_body *body, const gx_surface *s, gx_fa
     size_t i;
     if (s->scope_slot_count > 0 && s->scope_slots == NULL) return gxp_refuse(failure, "surfaces.scope_slots");
     for (i = 0; i < s->scope_slot_count; i++)
-        if (s->scope_slots[i] >= body->cells.count)
-            return gxp_fail(failure, GX_ERROR_INDEX, "surfaces.scope_slots", i);
+        if (s->scope_slots[i] >= body->cells.count) return gxp_fail(failure, GX_ERROR_INDEX, "surfaces.scope_slots", i);
     return GX_OK;
 }
 
@@ -4425,6 +4474,341 @@ GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thicknes
     return GX_OK;
 }
 
+/* >>anchors: material points that survive cuts --------------------------------------------------------------------- */
+/* In: a material point in an element, and another one towards which it holds its side. Out: the leaf and the cell that
+   have it now, exactly; anchors made such that they lie in a given part. Changes nothing but the complex's exact
+   numbers and lists. */
+
+/* The leaf that has a material point, kept or removed: see gxb_complex_leaf_at. toward: or NULL */
+static gx_result gxp_leaf_at(gx_body *body, uint32_t element, const double position[3], const double toward[3],
+                             uint32_t *leaf) {
+    gx_result result = gxb_complex_check_point(body->complex, position);
+    if (result == GX_OK && toward != NULL) result = gxb_complex_check_point(body->complex, toward);
+    if (result == GX_OK) *leaf = gxb_complex_leaf_at(body->complex, element, position, toward, NULL);
+    return result;
+}
+
+/* The least side on which the point lies of the element's faces, exactly: 1 inside the element, 0 on its boundary, -1
+   outside */
+static int gxp_element_side(const gx_body *body, uint32_t element, const double x[3]) {
+    const uint32_t *n = gxb_complex_element_nodes(body->complex, element);
+    const double *p = body->mesh.positions;
+    int least = 1, k;
+    for (k = 0; k < 4 && least >= 0; k++) {
+        const uint8_t *face = gxp_outward[k];
+        const int side =
+            gxb_orient3d(p + 3 * (size_t)n[face[0]], p + 3 * (size_t)n[face[1]], p + 3 * (size_t)n[face[2]], x);
+        if (side < least) least = side;
+    }
+    return least;
+}
+
+/* names: of the anchor's element, position, toward */
+static gx_result gxp_check_anchor(const gx_body *body, const gx_anchor *anchor, const char *const names[3],
+                                  size_t index, gx_failure *failure) {
+    gx_result result;
+    if (anchor->element >= body->mesh.element_count) return gxp_fail(failure, GX_ERROR_INDEX, names[0], index);
+    result = gxb_complex_check_point(body->complex, anchor->position);
+    if (result != GX_OK) return gxp_fail(failure, result, names[1], index);
+    result = gxb_complex_check_point(body->complex, anchor->toward);
+    if (result != GX_OK) return gxp_fail(failure, result, names[2], index);
+    return gxp_element_side(body, anchor->element, anchor->position) >= 0
+             ? GX_OK
+             : gxp_fail(failure, GX_ERROR_ARGUMENT, names[1], index);
+}
+
+/* The cell that has the material of an anchor, which was checked; GXP_NONE: it is gone */
+static uint32_t gxp_anchor_cell(gx_body *body, const gx_anchor *anchor) {
+    const uint32_t leaf = gxb_complex_leaf_at(body->complex, anchor->element, anchor->position, anchor->toward, NULL);
+    return gxp_is_kept(body, leaf) ? body->leaves.data[leaf].cell : GXP_NONE;
+}
+
+/* det(b - a, c - a, d - a) of x = a b c d, exact */
+static GXP_COLD void gxp_exact_determinant(const double *const x[4], gxb_num *r) {
+    gxb_limb limbs[9][GXB_NUM_LIMBS];
+    gxb_num e[9];
+    int i, k;
+    GXB_NUM(p);
+    GXB_NUM(q);
+    GXB_NUM(minor);
+    GXB_NUM(term);
+    GXB_NUM(sum);
+    for (i = 0; i < 9; i++) {
+        memset(&e[i], 0, sizeof e[i]);
+        e[i].d = limbs[i];
+        gxb_num_set(&p, x[1 + i / 3][i % 3], 0);
+        gxb_num_set(&q, x[0][i % 3], 0);
+        gxb_num_sub(&e[i], &p, &q);
+    }
+    gxb_num_set(r, 0, 0);
+    for (k = 0; k < 3; k++) {
+        gxb_num_mul(&p, &e[3 + (k + 1) % 3], &e[6 + (k + 2) % 3]);
+        gxb_num_mul(&q, &e[3 + (k + 2) % 3], &e[6 + (k + 1) % 3]);
+        gxb_num_sub(&minor, &p, &q);
+        gxb_num_mul(&term, &e[k], &minor);
+        gxb_num_add(&sum, r, &term);
+        gxb_num_set(&p, 1, 0);
+        gxb_num_mul(r, &sum, &p);
+    }
+}
+
+/* The same in doubles. *size: the sum of its terms' absolute values */
+static double gxp_determinant(const double *const x[4], double *size) {
+    double e[3][3], sum = 0;
+    int i, k;
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 3; k++) e[i][k] = x[1 + i][k] - x[0][k];
+    *size = 0;
+    for (k = 0; k < 3; k++) {
+        const int p = (k + 1) % 3, q = (k + 2) % 3;
+        sum += e[0][k] * (e[1][p] * e[2][q] - e[1][q] * e[2][p]);
+        *size += fabs(e[0][k]) * (fabs(e[1][p] * e[2][q]) + fabs(e[1][q] * e[2][p]));
+    }
+    return sum;
+}
+
+/* Where the terms of volumes cancel by more, weights are computed from exact volumes. */
+#define GXP_WEIGHT_LOSS 1e-3
+
+/* The element's barycentric coordinates of a point in it: 0 or more, 1 in sum */
+static void gxp_element_weights(const gx_body *body, uint32_t element, const double x[3], double weight[4]) {
+    const uint32_t *n = gxb_complex_element_nodes(body->complex, element);
+    const double *corner[4], *part[4];
+    double sum = 0, sizes = 0;
+    int k;
+    for (k = 0; k < 4; k++) corner[k] = body->mesh.positions + 3 * (size_t)n[k];
+    for (k = 0; k < 4; k++) {
+        double size;
+        memcpy(part, corner, sizeof part);
+        part[k] = x;
+        weight[k] = fmax(gxp_determinant(part, &size), 0);
+        sum += weight[k];
+        sizes += size;
+    }
+    for (k = 0; k < 4 && !(sum > GXP_WEIGHT_LOSS * sizes); k++) {
+        GXB_NUM(own);
+        GXB_NUM(whole);
+        memcpy(part, corner, sizeof part);
+        part[k] = x;
+        gxp_exact_determinant(part, &own);
+        gxp_exact_determinant(corner, &whole);
+        weight[k] = fmax(gxb_num_ratio(&own, &whole), 0);
+    }
+    for (k = 0, sum = 0; k < 4; k++) sum += weight[k];
+    for (k = 0; k < 4; k++) weight[k] /= sum;
+}
+
+/* --- making anchors --- */
+
+/* Of a coordinate, about; also the first step towards the inside of a leaf, as a share of the way */
+#define GXP_ROUNDING 1.1102230246251565e-16
+/* A material point may be off its element, or off what is left there, by this share of the element's size. */
+#define GXP_OFF 1e-6
+
+/* Is the point inside the leaf, not on its boundary? */
+static int gxp_is_inside_leaf(gx_body *body, uint32_t leaf, const double x[3]) {
+    const uint32_t element = gxb_complex_leaf(body->complex, leaf)->element;
+    int on;
+    return gxb_complex_check_point(body->complex, x) == GX_OK && gxp_element_side(body, element, x) > 0 &&
+           gxb_complex_leaf_at(body->complex, element, x, NULL, &on) == leaf && !on;
+}
+
+/* The mean of the leaf's points, by their coordinates in the element */
+static gx_result gxp_leaf_middle(gx_body *body, uint32_t leaf, double middle[3]) {
+    const uint32_t element = gxb_complex_leaf(body->complex, leaf)->element;
+    const uint32_t *n = gxb_complex_element_nodes(body->complex, element);
+    const gxp_words *points = &body->scratch.leaf_points;
+    double sum[4] = {1, 1, 1, 1}, count = 4;
+    uint32_t i;
+    int j, k;
+    if (gxb_complex_leaf(body->complex, leaf)->facet_count > 0) {
+        const gx_result result = gxp_collect_leaf_points(body, leaf);
+        if (result != GX_OK) return result;
+        memset(sum, 0, sizeof sum);
+        for (i = 0; i < points->count; i++) {
+            double lambda[4];
+            gxb_complex_barycentric(body->complex, points->data[i], element, lambda);
+            for (j = 0; j < 4; j++) sum[j] += lambda[j];
+        }
+        count = points->count;
+    }
+    for (k = 0; k < 3; k++) {
+        middle[k] = body->mesh.positions[3 * (size_t)n[0] + (size_t)k];
+        for (j = 1; j < 4; j++)
+            middle[k] += sum[j] / count *
+                         (body->mesh.positions[3 * (size_t)n[j] + (size_t)k] -
+                          body->mesh.positions[3 * (size_t)n[0] + (size_t)k]);
+    }
+    return GX_OK;
+}
+
+/* Neighbour i of a point on a lattice of that width: 0 is the point itself, 1 ... 26 are around it. */
+static void gxp_neighbour_point(const double x[3], int i, double width, double p[3]) {
+    static const int way[3] = {0, 1, -1};
+    p[0] = x[0] + way[i % 3] * width;
+    p[1] = x[1] + way[i / 3 % 3] * width;
+    p[2] = x[2] + way[i / 9] * width;
+}
+
+/* The rounding of the element's coordinates, about */
+static double gxp_element_rounding(const gx_body *body, uint32_t element) {
+    double x[12], most = 0;
+    int i;
+    gxp_element_positions(body, element, x);
+    for (i = 0; i < 12; i++) most = fmax(most, fabs(x[i]));
+    return GXP_ROUNDING * most;
+}
+
+/* A point inside the leaf: its middle, or a double beside that. *found: 0 if none of these is inside */
+static gx_result gxp_find_inside(gx_body *body, uint32_t leaf, double inside[3], int *found) {
+    const double width = gxp_element_rounding(body, gxb_complex_leaf(body->complex, leaf)->element);
+    double middle[3];
+    int i;
+    const gx_result result = gxp_leaf_middle(body, leaf, middle);
+    *found = 0;
+    for (i = 0; i < 27 && result == GX_OK && !*found; i++) {
+        gxp_neighbour_point(middle, i, width, inside);
+        *found = gxp_is_inside_leaf(body, leaf, inside);
+    }
+    return result;
+}
+
+/* Where an anchor can stand */
+typedef struct gxp_footing {
+    gx_anchor anchor;
+    double moved; /* how far from the point that is asked for, m; until one is found: how far it may be at most */
+    int found;
+} gxp_footing;
+
+/* Stands at p, if that is in the closed leaf, exactly, and nearer to x than what was found so far. inside: of the leaf.
+   Returns 0 if p is not nearer. */
+static int gxp_stand(gx_body *body, uint32_t leaf, const double x[3], const double p[3], const double inside[3],
+                     gxp_footing *best) {
+    const uint32_t element = gxb_complex_leaf(body->complex, leaf)->element;
+    double moved = 0;
+    int k;
+    for (k = 0; k < 3; k++) moved = fmax(moved, fabs(p[k] - x[k]));
+    if (moved > best->moved || (best->found && !(moved < best->moved))) return 0;
+    if (gxb_complex_check_point(body->complex, p) != GX_OK || gxp_element_side(body, element, p) < 0 ||
+        gxb_complex_leaf_at(body->complex, element, p, inside, NULL) != leaf)
+        return 1;
+    best->anchor.element = element;
+    memcpy(best->anchor.position, p, 3 * sizeof *p);
+    memcpy(best->anchor.toward, inside, 3 * sizeof *inside);
+    best->moved = moved;
+    best->found = 1;
+    return 0;
+}
+
+/* Moves from x towards the inside of a leaf until the leaf has the point. */
+static gx_result gxp_try_leaf(gx_body *body, uint32_t leaf, const double x[3], gxp_footing *best) {
+    double share = 0, inside[3], p[3];
+    int found, k, going = 1;
+    const gx_result result = gxp_find_inside(body, leaf, inside, &found);
+    while (result == GX_OK && found && going) {
+        for (k = 0; k < 3; k++) p[k] = share < 1 ? x[k] + share * (inside[k] - x[k]) : inside[k];
+        going = gxp_stand(body, leaf, x, p, inside, best);
+        share = share > 0 ? 2 * share : GXP_ROUNDING;
+    }
+    return result;
+}
+
+/* Is the cell kept, and does it move all that moves the hit, if there is one? */
+static int gxp_moves_hit(const gxp_cell *cell, const gx_hit *hit) {
+    uint32_t i, k, found = 0;
+    for (i = 0; hit != NULL && i < hit->copy_count && i < GX_HIT_COPIES; i++)
+        for (k = 0; k < 4; k++) found += cell->copies[k] == hit->copies[i];
+    return cell->kept && (hit == NULL || found == hit->copy_count);
+}
+
+/* Looks for a leaf of the right cell at x and some roundings around. Stands at x, if the leaf has it, or there. */
+static gx_result gxp_try_near(gx_body *body, uint32_t element, const double x[3], const gx_hit *hit,
+                              gxp_footing *best) {
+    double width = gxp_element_rounding(body, element), p[3], inside[3];
+    gx_result result = GX_OK;
+    int i, round, found;
+    for (round = 0; round < 7 && !best->found; round++, width *= 2)
+        for (i = round > 0; i < 27 && !best->found && result == GX_OK; i++) {
+            uint32_t leaf = 0;
+            gxp_neighbour_point(x, i, width, p);
+            if (gxp_leaf_at(body, element, p, NULL, &leaf) != GX_OK || gxp_element_side(body, element, p) < 0 ||
+                !gxp_is_kept(body, leaf) || !gxp_moves_hit(&body->cells.data[body->leaves.data[leaf].cell], hit))
+                continue;
+            result = gxp_find_inside(body, leaf, inside, &found);
+            if (result == GX_OK && found && gxp_stand(body, leaf, x, x, inside, best))
+                (void)gxp_stand(body, leaf, x, p, inside, best);
+        }
+    return result;
+}
+
+/* Finds where an anchor can stand for a point of an element, at most best->moved from it. hit: in the cell that was
+   hit; NULL: in any cell that is left */
+static gx_result gxp_find_footing(gx_body *body, uint32_t element, const double x[3], const gx_hit *hit,
+                                  gxp_footing *best) {
+    gx_result result = gxp_try_near(body, element, x, hit, best);
+    const int near = best->found;
+    uint32_t cell, leaf;
+    for (cell = element; cell != GXP_NONE && result == GX_OK && !near; cell = body->cells.data[cell].next) {
+        if (!gxp_moves_hit(&body->cells.data[cell], hit)) continue;
+        for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
+             leaf = body->leaves.data[leaf].next)
+            result = gxp_try_leaf(body, leaf, x, best);
+    }
+    return result;
+}
+
+/* The longest side of the element's box, m */
+static double gxp_element_size(const gx_body *body, uint32_t element) {
+    double x[12], size = 0;
+    int i;
+    gxp_element_positions(body, element, x);
+    for (i = 3; i < 12; i++) size = fmax(size, fabs(x[i] - x[i % 3]));
+    return size;
+}
+
+GXFEM_API gx_result gx_body_anchor(gx_body *body, uint32_t element, const double material[3], gx_anchor *anchor,
+                                   gx_failure *failure) {
+    gxp_footing best;
+    uint32_t leaf = 0;
+    gx_result result;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (material == NULL) return gxp_refuse(failure, "material");
+    if (anchor == NULL) return gxp_refuse(failure, "anchor");
+    if (element >= body->mesh.element_count) return gxp_fail(failure, GX_ERROR_INDEX, "element", element);
+    result = gxp_leaf_at(body, element, material, NULL, &leaf);
+    if (result != GX_OK) return gxp_fail(failure, result, "material", SIZE_MAX);
+    memset(&best, 0, sizeof best);
+    best.moved = GXP_OFF * gxp_element_size(body, element);
+    result = gxp_find_footing(body, element, material, NULL, &best);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    if (!best.found) {
+        const int there = gxp_is_kept(body, leaf) && gxp_element_side(body, element, material) >= 0;
+        return gxp_fail(failure, there ? GX_ERROR_FLAT : GX_ERROR_EMPTY, "material", SIZE_MAX);
+    }
+    *anchor = best.anchor;
+    return GX_OK;
+}
+
+GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *anchor, gx_failure *failure) {
+    gxp_footing best;
+    gx_result result;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (hit == NULL) return gxp_refuse(failure, "hit");
+    if (anchor == NULL) return gxp_refuse(failure, "anchor");
+    if (hit->copy_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "hit", SIZE_MAX);
+    if (hit->epoch != body->cuts.epoch) return gxp_fail(failure, GX_ERROR_STALE, "hit.epoch", SIZE_MAX);
+    if (hit->element >= body->mesh.element_count) return gxp_fail(failure, GX_ERROR_INDEX, "hit.element", SIZE_MAX);
+    result = gxb_complex_check_point(body->complex, hit->material);
+    if (result != GX_OK) return gxp_fail(failure, result, "hit.material", SIZE_MAX);
+    memset(&best, 0, sizeof best);
+    best.moved = 2 * gxp_element_size(body, hit->element);
+    result = gxp_find_footing(body, hit->element, hit->material, hit, &best);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    if (!best.found) return gxp_fail(failure, GX_ERROR_FLAT, "hit.material", SIZE_MAX);
+    *anchor = best.anchor;
+    return GX_OK;
+}
+
 /* >>regions: held copies ------------------------------------------------------------------------------------------- */
 /* In: regions that are to be held. Out: a flag for each copy, found anew after a cut or when regions change. */
 
@@ -4997,6 +5381,158 @@ GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t cap
     return result;
 }
 
+/* >>attached: anchors of a step ------------------------------------------------------------------------------------ */
+/* In: anchors, and what a step has at them. Out: springs, contact points and forces by copies, as the solver takes
+   them. Touches working memory of a step only. */
+
+/* The copies that move an anchor, which was checked. Returns 0 if its material is gone: the point then names a copy
+   with a weight of 0, so that nothing moves it and it pulls at nothing. */
+static int gxp_place_anchor(gx_body *body, const gx_anchor *anchor, gxs_point *point) {
+    const uint32_t cell = gxp_anchor_cell(body, anchor);
+    double weight[4];
+    int k;
+    memset(point, 0, sizeof *point);
+    memcpy(point->position, anchor->position, sizeof point->position);
+    point->epoch = body->cuts.epoch;
+    if (cell == GXP_NONE) {
+        point->count = 1;
+        return 0;
+    }
+    gxp_element_weights(body, anchor->element, anchor->position, weight);
+    for (k = 0; k < 4; k++) {
+        if (!(weight[k] > 0)) continue;
+        point->copy[point->count] = body->cells.data[cell].copies[k];
+        point->weight[point->count++] = weight[k];
+    }
+    return 1;
+}
+
+GXFEM_API gx_result gx_body_anchor_point(gx_body *body, const gx_anchor *anchor, gxs_point *point, double position[3],
+                                         gx_failure *failure) {
+    static const char *const names[3] = {"anchor.element", "anchor.position", "anchor.toward"};
+    gxs_point own;
+    gx_result result;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (anchor == NULL) return gxp_refuse(failure, "anchor");
+    result = gxp_check_anchor(body, anchor, names, SIZE_MAX, failure);
+    if (result != GX_OK) return result;
+    if (!gxp_place_anchor(body, anchor, &own)) return gxp_fail(failure, GX_ERROR_EMPTY, "anchor", SIZE_MAX);
+    if (position != NULL) gxp_map_point(body, own.position, own.copy, own.weight, own.count, position);
+    if (point != NULL) *point = own;
+    return gxp_end(failure, GX_OK);
+}
+
+GXFEM_API gx_result gx_body_lost_anchors(gx_body *body, const gx_anchor *anchors, size_t count, uint8_t *lost,
+                                         gx_failure *failure) {
+    static const char *const names[3] = {"anchors.element", "anchors.position", "anchors.toward"};
+    gx_result result = GX_OK;
+    size_t i;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (anchors == NULL && count > 0) return gxp_refuse(failure, "anchors");
+    if (lost == NULL && count > 0) return gxp_refuse(failure, "lost");
+    for (i = 0; i < count && result == GX_OK; i++) {
+        result = gxp_check_anchor(body, &anchors[i], names, i, failure);
+        if (result == GX_OK) lost[i] = gxp_anchor_cell(body, &anchors[i]) == GXP_NONE;
+    }
+    return result == GX_OK ? gxp_end(failure, GX_OK) : result;
+}
+
+/* Room for `count` items of a step; blames the count if there are too many. */
+static gx_result gxp_attached_room(gx_body *body, void *array, size_t size, uint32_t *capacity, size_t count,
+                                   const char *field, gx_failure *failure) {
+    const gx_result result =
+        count > INT32_MAX ? GX_ERROR_LIMIT : gxp_reserve(&body->config.allocator, array, size, 0, capacity, count);
+    return result == GX_ERROR_LIMIT ? gxp_fail(failure, result, field, SIZE_MAX) : gxp_end(failure, result);
+}
+
+static gx_result gxp_attach_springs(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step, gx_failure *failure) {
+    static const char *const names[3] = {"spring_anchors.element", "spring_anchors.position", "spring_anchors.toward"};
+    gxp_attached *attached = &body->attached;
+    gx_result result;
+    size_t i;
+    if (desc->spring_anchors == NULL || desc->springs == NULL) return GX_OK;
+    result = gxp_attached_room(body, &attached->springs, sizeof *attached->springs, &attached->spring_capacity,
+                               desc->spring_count, "spring_count", failure);
+    for (i = 0; i < desc->spring_count && result == GX_OK; i++) {
+        gxs_spring *spring = &attached->springs[i];
+        *spring = desc->springs[i];
+        result = gxp_check_anchor(body, &desc->spring_anchors[i], names, i, failure);
+        if (result == GX_OK && !gxp_place_anchor(body, &desc->spring_anchors[i], &spring->point) &&
+            gxp_is_finite(spring->stiffness) && spring->stiffness > 0)
+            spring->stiffness = 0;
+    }
+    step->springs = attached->springs;
+    return result;
+}
+
+static gx_result gxp_attach_points(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step, gx_failure *failure) {
+    static const char *const names[3] = {"point_anchors.element", "point_anchors.position", "point_anchors.toward"};
+    gxp_attached *attached = &body->attached;
+    gx_result result;
+    size_t i;
+    if (desc->point_anchors == NULL) return GX_OK;
+    result = gxp_attached_room(body, &attached->points, sizeof *attached->points, &attached->point_capacity,
+                               desc->point_count, "point_count", failure);
+    for (i = 0; i < desc->point_count && result == GX_OK; i++) {
+        result = gxp_check_anchor(body, &desc->point_anchors[i], names, i, failure);
+        if (result == GX_OK) (void)gxp_place_anchor(body, &desc->point_anchors[i], &attached->points[i]);
+    }
+    step->points = attached->points;
+    return result;
+}
+
+static gx_result gxp_check_forces(const gx_body *body, const gx_step_desc *desc, gx_failure *failure) {
+    static const char *const names[3] = {"force_anchors.element", "force_anchors.position", "force_anchors.toward"};
+    gx_result result = GX_OK;
+    size_t i;
+    int k;
+    if (desc->force_anchors == NULL) return gxp_refuse(failure, "force_anchors");
+    if (desc->anchor_forces == NULL) return gxp_refuse(failure, "anchor_forces");
+    if (desc->forces != NULL && desc->epoch != body->cuts.epoch)
+        return gxp_fail(failure, GX_ERROR_STALE, "epoch", SIZE_MAX);
+    for (i = 0; i < desc->force_count && result == GX_OK; i++) {
+        result = gxp_check_anchor(body, &desc->force_anchors[i], names, i, failure);
+        for (k = 0; k < 3 && result == GX_OK; k++)
+            if (!gxp_is_finite(desc->anchor_forces[3 * i + (size_t)k]))
+                result = gxp_fail(failure, GX_ERROR_NOT_FINITE, "anchor_forces", i);
+    }
+    return result;
+}
+
+/* Adds the forces at anchors to those of copies. */
+static gx_result gxp_attach_forces(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step, gx_failure *failure) {
+    gxp_attached *attached = &body->attached;
+    const size_t count = 3 * (size_t)body->copies.count;
+    gxs_point point;
+    gx_result result;
+    size_t i;
+    uint32_t j;
+    int k;
+    if (desc->force_count == 0) return GX_OK;
+    result = gxp_check_forces(body, desc, failure);
+    if (result != GX_OK) return result;
+    result = gxp_reserve(&body->config.allocator, &attached->forces, 3 * sizeof(double), 0, &attached->force_capacity,
+                         (size_t)body->copies.count + 1);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    for (i = 0; i < count; i++) attached->forces[i] = desc->forces != NULL ? desc->forces[i] : 0;
+    for (i = 0; i < desc->force_count; i++) {
+        if (!gxp_place_anchor(body, &desc->force_anchors[i], &point)) continue;
+        for (j = 0; j < point.count; j++)
+            for (k = 0; k < 3; k++)
+                attached->forces[3 * (size_t)point.copy[j] + (size_t)k] +=
+                    point.weight[j] * desc->anchor_forces[3 * i + (size_t)k];
+    }
+    step->forces = attached->forces;
+    if (desc->forces == NULL && desc->targets == NULL) step->epoch = body->cuts.epoch;
+    return GX_OK;
+}
+
+static gx_result gxp_attach(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step, gx_failure *failure) {
+    gx_result result = gxp_attach_springs(body, desc, step, failure);
+    if (result == GX_OK) result = gxp_attach_points(body, desc, step, failure);
+    return result == GX_OK ? gxp_attach_forces(body, desc, step, failure) : result;
+}
+
 /* >>supports: copies that only slivers carry follow others (RXFEM Eq. 22) ------------------------------------------ */
 /* In: the elements with a small part. Out: constraints by which copies that next to nothing holds follow others.
    Touches the list of thin elements and the model's constraints.
@@ -5510,6 +6046,17 @@ static gx_result gxp_step(gx_body *body, const gxs_step_desc *step, gx_step_repo
     return GX_OK;
 }
 
+/* A step of a body of which nothing is left. Lost anchors name copy 0, which is not there. */
+static gx_result gxp_check_empty_step(const gx_body *body, const gx_step_desc *desc, const gxs_step_desc *step,
+                                      gx_failure *failure) {
+    const uint32_t named = desc->spring_anchors != NULL || desc->point_anchors != NULL;
+    const gx_result result = gxs_step_check(step, body->copies.count + named, body->cuts.epoch, failure);
+    size_t i;
+    for (i = 0; i < 3 * step->spring_count && step->spring_forces != NULL && result == GX_OK; i++)
+        step->spring_forces[i] = 0;
+    return result;
+}
+
 GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report, gx_failure *failure) {
     const double start = body != NULL ? gxp_seconds(body) : 0;
     gxs_step_desc step;
@@ -5522,9 +6069,10 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     result = gxp_update_model(body, &refused);
     if (result != GX_OK) return gxp_fail(failure, result, NULL, refused.index);
     result = gxp_translate_step(body, desc, &step);
-    if (gxp_end(failure, result) != GX_OK) return result;
+    if (gxp_end(failure, result) == GX_OK) result = gxp_attach(body, desc, &step, failure);
+    if (result != GX_OK) return result;
     if (body->model.empty) {
-        result = gxs_step_check(&step, body->copies.count, body->cuts.epoch, failure);
+        result = gxp_check_empty_step(body, desc, &step, failure);
         if (result == GX_OK && report != NULL) {
             memset(report, 0, sizeof *report);
             report->stop = GXS_STOP_ASLEEP;
@@ -7693,6 +8241,9 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_CANCELLATION
 #undef GXP_REST_CELLS
 #undef GXP_REST
+#undef GXP_WEIGHT_LOSS
+#undef GXP_ROUNDING
+#undef GXP_OFF
 #undef GXP_NO_INERTIA
 #undef GXP_SAVE_VERSION
 #undef GXP_BYTE_ORDER

@@ -38,7 +38,8 @@
  *                   division: add_point, add_plane, insert, open_element, cover_edge, cover_node, set_wall, set_removed
  *                   lists: gxb_leaf_resolve_facets, gxb_facet_resolve_edges
  *                   reading: gxb_complex_point and others
- *                   questions: gxb_complex_side, turn, compare, winding, barycentric, support, barycentric_fine
+ *                   questions: gxb_complex_side, turn, compare, leaf_at, winding, barycentric, support,
+ * barycentric_fine
  *     >>stream      a complex as bytes: gxb_stream_pass, has; gxb_complex_save, load
  *     >>boolean     exact, chainable Booleans of closed triangle surfaces: gxb_boolean_create, add, evaluate, destroy
  *                   options of a result: set_triangulation, set_fine, set_mend
@@ -49,7 +50,8 @@
  *     predicates      >>points, >>trial (tests of the machine's arithmetic)
  * Of complexes:
  *     storage         >>memory (arrays), >>store (points, planes, exact numbers), >>transaction
- *     structure       >>topology (of the mesh), >>access (reading), >>split (by a plane)
+ *     structure       >>topology (of the mesh), >>access (reading), >>places (which leaf is there), >>split (by a
+ *                     plane)
  *     a triangle      >>clip, >>walls, >>cover (what is there already), >>rebalance and >>crowds (trees), >>insert
  *     questions       >>inside (winding numbers), >>pairs (of doubles), >>barycentric
  *     bytes           >>save, >>check (what was read), >>load
@@ -575,6 +577,13 @@ GXFEM_API int gxb_complex_side(gxb_complex *complex, uint32_t point, uint32_t pl
 GXFEM_API int gxb_complex_turn(gxb_complex *complex, uint32_t a, uint32_t b, uint32_t c, uint32_t plane);
 /* Sign of point[axis] - value, exact. */
 GXFEM_API int gxb_complex_compare(gxb_complex *complex, uint32_t point, int axis, double value);
+/* The leaf of an element, kept or removed, that has the point x, by its exact side of each plane on the way down the
+   element's tree. Where x lies on a plane, the side of toward decides; where that lies on it too or is NULL, the front.
+   So if x is in a closed leaf and toward inside it, the answer is that leaf. *on becomes 1 if x lies on one of these
+   planes. gxb_complex_check_point must accept x and toward. Faces of the element are not asked: of an x outside, the
+   answer is the leaf to which the planes lead. */
+GXFEM_API uint32_t gxb_complex_leaf_at(gxb_complex *complex, uint32_t element, const double x[3],
+                                       const double toward[3] /* or NULL */, int *on /* or NULL */);
 /* gxb_winding_number around a point inside the convex hull of points of the complex: the sum of their homogeneous
    coordinates. Exact also for hulls that contain no double. The surface is in the given coordinates and must not pass
    through the hull's inside. */
@@ -3259,6 +3268,80 @@ GXFEM_API void gxb_complex_prefetch_element(const gxb_complex *cx, uint32_t elem
     GXBP_FETCH(cx->root + element);
     (void)cx;
     (void)element;
+}
+
+/* >>places: the leaf at a point given by doubles ------------------------------------------------------------------- */
+/* In: an element and a point that the complex need not have. Out: the leaf that has the point, exactly. Keeps exact
+   numbers of planes; nothing else changes. */
+
+typedef struct gxbp_place {
+    const double *given;
+    gxb_ball ball;
+    gxbp_vec exact; /* in the frame */
+    int is_exact;   /* exact is there */
+} gxbp_place;
+
+/* Where the origin is 0, scaling by a power of two is exact: the point is in range, so nothing under- or overflows. */
+static void gxbp_place_init(const gxb_store *store, const double x[3], gxbp_place *place) {
+    const int moved =
+        !gxbp_is_zero(store->origin[0]) || !gxbp_is_zero(store->origin[1]) || !gxbp_is_zero(store->origin[2]);
+    int k;
+    place->given = x;
+    place->is_exact = 0;
+    place->ball.error = GXBP_NO_BALL;
+    if (store->shift < -800 || store->shift > 800) return;
+    for (k = 0; k < 3; k++)
+        place->ball.x[k] = gxbp_fence(gxbp_fence(x[k] - store->origin[k]) * gxbp_power(store->shift));
+    place->ball.error = moved ? 4 * GXBP_U * gxbp_max3(place->ball.x) + GXBP_TINY : 0;
+}
+
+static GXBP_COLD int gxbp_place_exact_side(gxb_store *store, gxbp_place *place, uint32_t plane) {
+    const gxb_cplane *f = &store->planes[plane];
+    const double *x[4];
+    GXB_NUM(r);
+    gxbp_vec own;
+    store->exact_calls++;
+    if (!(place->ball.error > 0) && !f->along_axis && gxbp_given_points(store, f->def, 3, x)) {
+        int turn;
+        x[3] = place->ball.x;
+        turn = gxbp_orient3d_short(x);
+        if (turn != GXBP_UNKNOWN) return -turn;
+    }
+    if (!place->is_exact) (void)gxbp_frame_exact(store, place->given, &place->exact);
+    place->is_exact = 1;
+    gxbp_exact_side(&r, place->exact.c, gxbp_exact_cplane(store, plane, &own));
+    return r.sign;
+}
+
+static int gxbp_place_side(gxb_store *store, gxbp_place *place, uint32_t plane) {
+    store->filter_calls++;
+    if (place->ball.error < GXBP_NO_BALL) {
+        double bound;
+        const double value = gxbp_filter_side(&place->ball, &store->planes[plane].filter, &bound);
+        const int sign = gxbp_filter_sign(value, bound);
+        if (sign != 0) return sign;
+    }
+    return gxbp_place_exact_side(store, place, plane);
+}
+
+GXFEM_API uint32_t gxb_complex_leaf_at(gxb_complex *cx, uint32_t element, const double x[3], const double toward[3],
+                                       int *on) {
+    uint32_t reference = cx->root[element];
+    gxbp_place at, then;
+    gxbp_place_init(&cx->store, x, &at);
+    then.given = NULL;
+    if (on != NULL) *on = 0;
+    while (reference & 1) {
+        const gxb_node *node = &cx->nodes[reference >> 1];
+        int side = gxbp_place_side(&cx->store, &at, node->plane);
+        if (side == 0) {
+            if (on != NULL) *on = 1;
+            if (toward != NULL && then.given == NULL) gxbp_place_init(&cx->store, toward, &then);
+            if (toward != NULL) side = gxbp_place_side(&cx->store, &then, node->plane);
+        }
+        reference = node->child[side < 0];
+    }
+    return reference >> 1;
 }
 
 /* >>split: dividing edges, facets and leaves by a plane ------------------------------------------------------------ */

@@ -272,6 +272,27 @@ static gx_result step(gx_body *body) {
     desc.gravity[2] = -9.81;
     return gx_body_step(body, &desc, NULL, NULL);
 }
+/* The middle of the first element, between sheets and beside them */
+static gx_result anchor(gx_body *body) {
+    static const double x[3] = {0.5, 0.5, 0.5};
+    gx_anchor a;
+    return gx_body_anchor(body, 0, x, &a, NULL);
+}
+static gx_result anchored_step(gx_body *body) {
+    gx_anchor anchors[2] = {{0, {0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}}, {0, {0.3, 0.4, 0.4}, {0.5, 0.5, 0.5}}};
+    const double push[6] = {0, 0, 10, 20, 0, 0};
+    gxs_spring springs[2];
+    gx_step_desc desc;
+    memset(springs, 0, sizeof springs);
+    springs[1].stiffness = 100;
+    memset(&desc, 0, sizeof desc);
+    desc.dt = 0.01;
+    desc.springs = springs;
+    desc.spring_anchors = desc.point_anchors = desc.force_anchors = anchors;
+    desc.spring_count = desc.point_count = desc.force_count = 2;
+    desc.anchor_forces = push;
+    return gx_body_step(body, &desc, NULL, NULL);
+}
 static gx_result hash(gx_body *body) {
     gx_failure failure;
     gx_body_topology_hash(body, &failure);
@@ -518,6 +539,7 @@ START_TEST(view_hold_skin_hash) {
     sweep("a solid in a body with a skin", drawn, cut_solid);
     sweep("a skin that follows a cut", drawn_and_cut, draw);
     sweep("a hash", after_a_cut, hash);
+    sweep("an anchor", after_a_ring, anchor);
 }
 END_TEST
 
@@ -552,6 +574,8 @@ START_TEST(stepping) {
     sweep("a first step", nothing, step);
     sweep("a step after a cut", after_a_cut, step);
     sweep("a further step", held, step);
+    sweep("a step with anchors", after_a_cut, anchored_step);
+    sweep("a further step with anchors", held, anchored_step);
 }
 END_TEST
 

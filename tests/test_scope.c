@@ -310,7 +310,7 @@ START_TEST(slots_of_copies) {
     slots scope;
     gx_view view, other;
     uint64_t state, cut;
-    size_t size;
+    size_t size = 0;
     random_seed(seed);
     body = random_body(&w, 4);
     view = view_of(body);
@@ -381,7 +381,7 @@ START_TEST(parents_that_cannot_be) {
         const uint32_t slot = i < 3 ? 5 : 1, right = body->cells.parent[slot];
         gx_body *read = NULL;
         unsigned char *bytes;
-        size_t size;
+        size_t size = 0;
         body->cells.parent[slot] = i < 3 ? wrong[i] : 0;
         ck_assert_int_eq(gx_body_save(body, NULL, 0, &size, NULL), GX_OK);
         bytes = (unsigned char *)malloc(size);
@@ -463,11 +463,11 @@ static Suite *suite(void) {
     Suite *s = suite_create("scope");
     TCase *tests = tcase_create("slots");
     tcase_set_timeout(tests, 300);
-    ADD_SOME(tests, one_cut_or_several, 60);
-    ADD_SOME(tests, own_scopes_beside_that_of_the_cut, 40);
-    ADD_SOME(tests, solids_remove_in_their_scope_only, 60);
+    ADD_SOME(tests, one_cut_or_several, 200);
+    ADD_SOME(tests, own_scopes_beside_that_of_the_cut, 100);
+    ADD_SOME(tests, solids_remove_in_their_scope_only, 150);
     tcase_add_test(tests, a_piece_that_the_surface_does_not_touch);
-    ADD_SOME(tests, slots_after_many_cuts, 20);
+    ADD_SOME(tests, slots_after_many_cuts, 40);
     ADD_SOME(tests, slots_of_copies, 20);
     tcase_add_test(tests, epochs);
     tcase_add_test(tests, parents_that_cannot_be);
