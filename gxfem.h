@@ -51,7 +51,7 @@
  *     tools:                     >>memory >>basics >>mesh >>search >>copies >>transaction >>complex >>numbering
  *     a cut:                     >>surfaces >>pinches >>arrange >>solids >>links >>cells >>components >>integrals >>cut
  *     a sheet's thickness:       >>solidify
- *     what is held and whole:    >>anchors >>regions >>map >>fragments >>motion
+ *     what is held and whole:    >>anchors >>regions >>grips >>map >>fragments >>motion
  *     a step:                    >>attached >>supports >>model >>step
  *     the skin:                  >>corners >>vertices >>faces >>skinning >>rays
  *     beginning, end, bytes:     >>create >>hashes >>stream >>save
@@ -295,7 +295,9 @@ typedef struct gx_view {
     const uint32_t *slot_parent; /* slot_count: the slot that was divided, which is smaller; of a first cell: itself */
     size_t copy_count;
     const uint32_t *copy_node; /* copy_count */
-    const uint8_t *copy_held;  /* copy_count, 1: held by a Dirichlet region */
+    const uint8_t *copy_held;  /* copy_count, 1: held by a region (gx_body_hold) */
+    /* copy_count: the first of the regions that hold the copy, which moves it; UINT32_MAX: none */
+    const uint32_t *copy_region;
     /* Names this numbering of copies. A cut that creates or removes copies begins a new one; other cuts keep it. 0: no
        cut has begun one yet. Bodies that were cut alike have the same epoch, others have different ones. */
     uint64_t epoch;
@@ -368,17 +370,38 @@ GXFEM_API gx_result gx_body_lost_anchors(gx_body *body, const gx_anchor *anchors
 
 /* >>stepping ------------------------------------------------------------------------------------------------------- */
 
-/* Half-space of material coordinates: X[axis] < value (side -1) or > value (side +1), strictly */
+/* Which material is held, in material coordinates, m. kind says which members are read; zero the others. Regions are
+   open: what lies on their boundary is outside. */
+enum {
+    GX_REGION_HALF_SPACE = 0, /* X[axis] < value (side -1) or > value (side +1) */
+    GX_REGION_BOX,            /* low < X < high along each axis */
+    GX_REGION_SPHERE,         /* |X - center| < radius */
+    GX_REGION_SURFACE,        /* around which a closed surface winds */
+    GX_REGION_NODES,          /* at these nodes of the mesh */
+    GX_REGION_ANCHORS         /* at these anchors */
+};
 typedef struct gx_region {
     uint32_t axis;
     int32_t side;
     double value;
+    uint32_t kind; /* GX_REGION_ */
+    double low[3], high[3];
+    double center[3], radius;
+    const gx_surface *surface; /* vertices and triangles are read */
+    const uint32_t *nodes;     /* node_count */
+    size_t node_count;
+    const gx_anchor *anchors; /* anchor_count */
+    size_t anchor_count;
 } gx_region;
+GXFEM_API gx_region gx_region_half_space(uint32_t axis, int side, double value);
+GXFEM_API gx_region gx_region_box(const double low[3], const double high[3]);
+GXFEM_API gx_region gx_region_sphere(const double center[3], double radius);
 /* Holds copies at their present displacement (Dirichlet), now and after later cuts: those whose node is in a region and
-   whose own cells have material there. Replaces the regions held before; region_count 0 releases all. On an error the
-   earlier regions stay held.
-   Errors: ARGUMENT, NOT_FINITE, EMPTY (a region holds no copy; later cuts may leave it none), LIMIT, MEMORY;
-   failure.index: region. */
+   whose own cells have material there. Those of anchors: the copies that move them. gx_step_desc.region_poses moves
+   what a region holds. Arrays are copied. Replaces the regions held before; region_count 0 releases all. On an error
+   the earlier regions stay held.
+   Errors: ARGUMENT, NOT_FINITE, RANGE, INDEX, NOT_CLOSED, EMPTY (a region holds no copy; later cuts may leave it none),
+   LIMIT, MEMORY; failure.index: region. */
 GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t region_count,
                                  gx_failure *failure /* or NULL */);
 
@@ -399,6 +422,10 @@ typedef struct gx_step_desc {
     const double *forces;       /* copy_count x 3, N; NULL: none */
     /* copy_count x 3: displacement of held copies at the step's end; others are not read. NULL: held copies stay */
     const double *targets;
+    /* Twelve for each region that is held, or NULL: the three rows of A b, which put what the region holds at A X + b
+       at the step's end, X in material coordinates. They go before targets. Twelve zeros: the region has no pose, and
+       its copies have their targets or stay */
+    const double *region_poses;
     uint64_t epoch;            /* of forces and targets; read if one of them is given */
     const gxs_spring *springs; /* spring_count */
     size_t spring_count;
@@ -428,9 +455,9 @@ typedef gxs_step_report gx_step_report;
    compared with its fullest part. It moves as a point if that part is smaller than support_below of its element.
    Where support_below is 0, it moves as a point if that part is smaller than 1e-9 or if no part reaches a tenth as far
    as its element.
-   failure.index: a spring, point, plane, anchor or copy. The fields "displacement" and "velocity" are those of gx_view.
-   Errors: ARGUMENT, NOT_FINITE, INDEX, LIMIT, MEMORY, STALE (copies of another epoch), RANGE (a number is too large or
-   too small; as for FLAT, an element if field is NULL), FLAT (an element, see gx_body_model), DIVERGED, FREE
+   failure.index: a spring, point, plane, anchor, region or copy. The fields "displacement" and "velocity" are those of
+   gx_view. Errors: ARGUMENT, NOT_FINITE, INDEX, LIMIT, MEMORY, STALE (copies of another epoch), RANGE (a number is too
+   large or too small; as for FLAT, an element if field is NULL), FLAT (an element, see gx_body_model), DIVERGED, FREE
    (GXS_STATIC; a copy of a component that nothing holds). */
 GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report /* or NULL */,
                                  gx_failure *failure /* or NULL */);
@@ -734,10 +761,41 @@ typedef struct gxp_cuts { /* the surfaces that have cut the body */
     uint64_t epoch; /* the hash when copies were created or removed last; 0: never */
 } gxp_cuts;
 
+typedef struct gxp_region { /* without gaps between its members: rows are saved as bytes */
+    uint32_t kind, axis;
+    int32_t side;
+    uint32_t first_index, index_count;   /* in holds.indices: triangles x 3, nodes, or elements of anchors */
+    uint32_t first_vertex, vertex_count; /* in holds.vertices: of a surface, or two of each anchor */
+    uint32_t zero;
+    double value, low[3], high[3], center[3], radius; /* see gx_region */
+} gxp_region;
+
+/* A closed surface in the complex while it is asked about, see >>grips */
+typedef struct gxp_probe {
+    const gxp_region *region; /* NULL: no transaction is open */
+    gx_surface shell;
+    double corners[24];      /* of a box */
+    gxp_words points;        /* by vertex: in the complex, or GXP_NONE */
+    gxb_triangle *triangles; /* by triangle; plane GXP_NONE: not in the complex yet */
+    uint32_t triangle_capacity;
+    gxp_words reached; /* by a triangle: leaves */
+    gx_result result;  /* of noting these */
+} gxp_probe;
+
 typedef struct gxp_holds {
     uint32_t count, capacity[1];
-    gx_region *regions;
-    int stale; /* copies.held is older than the regions or the last cut */
+    gxp_region *regions;
+    uint32_t index_count, index_capacity[1], *indices;
+    uint32_t vertex_count, vertex_capacity[1];
+    double *vertices;     /* x 3 */
+    int listed;           /* the next two are those of the regions */
+    gxp_words node_first; /* count + 1, into nodes */
+    gxp_words nodes;      /* in each region, ascending; none for anchors */
+    int stale;            /* copies.held is older than the regions or the last cut */
+    gxp_words region_of;  /* by copy: the region that holds it, or GXP_NONE */
+    /* of a call */
+    gxp_words near_nodes; /* that may be in a region */
+    gxp_probe probe;
 } gxp_holds;
 
 /* --- the undo log of a cut --- */
@@ -759,6 +817,8 @@ enum { /* indices of gxp_tables */
        GXP_SURFACES,
        GXP_MAPS,
        GXP_REGIONS,
+       GXP_REGION_INDICES,
+       GXP_REGION_VERTICES,
        GXP_SNAPSHOT,
        GXP_REMOVED_IDS,
        GXP_VIEW,
@@ -826,11 +886,12 @@ typedef struct gxp_model {
     uint32_t constraint_count, constraint_capacity;
 } gxp_model;
 
-typedef struct gxp_attached { /* of a step: what it has at anchors, by copies */
+typedef struct gxp_attached { /* of a step: what it has at anchors and regions, by copies */
     gxs_spring *springs;
     gxs_point *points;
-    double *forces; /* copies x 3, N: all that are given */
-    uint32_t spring_capacity, point_capacity, force_capacity;
+    double *forces;  /* copies x 3, N: all that are given */
+    double *targets; /* copies x 3, m: of held copies */
+    uint32_t spring_capacity, point_capacity, force_capacity, target_capacity;
 } gxp_attached;
 
 /* The key of a vertex of the skin: a point of the complex, four names in ascending order, a group. On the
@@ -929,12 +990,12 @@ typedef struct gxp_scratch {
     gxp_words seed_leaves; /* where the flood starts */
     gxp_words flooded;     /* leaves whose winding number is known */
     gxp_words seeded;      /* by fragment: 1 if one of its leaves is a seed */
-    gxp_words leaf_points; /* of a leaf; also of >>anchors, >>regions */
+    gxp_words leaf_points; /* of a leaf; also of >>anchors, >>grips */
     /* >>cells, >>links */
     gxp_words wall_leaves;  /* on both sides of new walls */
     gxp_words cell_leaves;  /* of a cell that is divided */
     gxp_words part_leaves;  /* of one of its connected parts */
-    gxp_words facet_points; /* of a facet of a link */
+    gxp_words facet_points; /* of a facet of a link; also of >>grips */
     /* >>components */
     gxp_keys pairs;            /* node, cell around it */
     gxp_words subdomains;      /* of a node: 2 x start in subdomain_cells, + 1 if it is open */
@@ -1037,7 +1098,11 @@ static const gxp_column gxp_surface_columns[] = {
 static const gxp_column gxp_map_columns[] = {
     GXP_COLUMN(cuts, maps, map_capacity, 0, 8 * sizeof(double), GXP_TOPOLOGY)};
 static const gxp_column gxp_region_columns[] = {
-    GXP_COLUMN(holds, regions, capacity, 0, sizeof(gx_region), GXP_STATE)};
+    GXP_COLUMN(holds, regions, capacity, 0, sizeof(gxp_region), GXP_STATE)};
+static const gxp_column gxp_region_index_columns[] = {
+    GXP_COLUMN(holds, indices, index_capacity, 0, sizeof(uint32_t), GXP_STATE)};
+static const gxp_column gxp_region_vertex_columns[] = {
+    GXP_COLUMN(holds, vertices, vertex_capacity, 0, 3 * sizeof(double), GXP_STATE)};
 static const gxp_column gxp_snapshot_columns[] = {
     GXP_COLUMN(snapshot, id,     capacity, 0, sizeof(uint32_t), GXP_STATE),
     GXP_COLUMN(snapshot, origin, capacity, 1, sizeof(uint32_t), GXP_STATE),
@@ -1084,6 +1149,8 @@ static const gxp_table gxp_tables[GXP_TABLES] = { /* in the order of GXP_NODES .
     GXP_TABLE(cuts.surface_count, gxp_surface_columns),
     GXP_TABLE(cuts.map_count, gxp_map_columns),
     GXP_TABLE(holds.count, gxp_region_columns),
+    GXP_TABLE(holds.index_count, gxp_region_index_columns),
+    GXP_TABLE(holds.vertex_count, gxp_region_vertex_columns),
     GXP_TABLE(snapshot.count, gxp_snapshot_columns),
     GXP_TABLE(snapshot.removed.count, gxp_removed_id_columns),
     GXP_TABLE(view.count, gxp_view_columns),
@@ -1103,12 +1170,16 @@ static const gxp_column gxp_model_lists[] = { /* released once the solver has co
 static const gxp_column gxp_lists[] = {
     GXP_WORDS(undo.cells.rows), GXP_LIST(undo.cells.bytes, undo.cells.byte_capacity, 1),
     GXP_WORDS(undo.leaves.rows), GXP_LIST(undo.leaves.bytes, undo.leaves.byte_capacity, 1),
+    GXP_WORDS(holds.node_first), GXP_WORDS(holds.nodes), GXP_WORDS(holds.region_of), GXP_WORDS(holds.near_nodes),
+    GXP_WORDS(holds.probe.points), GXP_WORDS(holds.probe.reached),
+    GXP_LIST(holds.probe.triangles, holds.probe.triangle_capacity, sizeof(gxb_triangle)),
     GXP_WORDS(view.copy_fragment), GXP_WORDS(view.fragment_number),
     GXP_WORDS(view.splits), GXP_WORDS(view.split_cells), GXP_WORDS(view.split_parents),
     GXP_WORDS(model.changed), GXP_WORDS(model.thin),
     GXP_LIST(attached.springs, attached.spring_capacity, sizeof(gxs_spring)),
     GXP_LIST(attached.points, attached.point_capacity, sizeof(gxs_point)),
     GXP_LIST(attached.forces, attached.force_capacity, 3 * sizeof(double)),
+    GXP_LIST(attached.targets, attached.target_capacity, 3 * sizeof(double)),
     GXP_WORDS(skin.dirty), GXP_WORDS(skin.first), GXP_LIST(skin.slots, skin.slot_capacity, sizeof(gxp_skin_slot)),
     GXP_WORDS(skin.vertex_buckets), GXP_WORDS(skin.slot_buckets), GXP_WORDS(skin.boundary), GXP_WORDS(skin.groups),
     GXP_LIST(skin.group_normals, skin.group_normal_capacity, 3 * sizeof(double)),
@@ -4809,106 +4880,802 @@ GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *a
     return GX_OK;
 }
 
-/* >>regions: held copies ------------------------------------------------------------------------------------------- */
-/* In: regions that are to be held. Out: a flag for each copy, found anew after a cut or when regions change. */
+/* >>regions: what is held ------------------------------------------------------------------------------------------ */
+/* In: regions that are to be held, with all that they point to. Out: the body's copy of them, checked; the nodes in
+   each. Touches the tables of regions and the lists of their nodes. */
 
-/* points below node_count are nodes */
-static int gxp_point_in_region(gx_body *body, uint32_t point, const gx_region *r) {
-    if (point < body->mesh.node_count) {
-        const double x = body->mesh.positions[3 * (size_t)point + r->axis];
-        return r->side < 0 ? x < r->value : x > r->value;
+/* Counts of the tables of regions and of the lists of nodes: what a call that fails goes back to */
+typedef struct gxp_extent {
+    uint32_t regions, indices, vertices, nodes;
+} gxp_extent;
+
+static gxp_extent gxp_holds_extent(const gxp_holds *holds) {
+    gxp_extent extent;
+    extent.regions = holds->count;
+    extent.indices = holds->index_count;
+    extent.vertices = holds->vertex_count;
+    extent.nodes = holds->nodes.count;
+    return extent;
+}
+
+/* Forgets the regions beyond an extent. */
+static void gxp_cut_holds(gxp_holds *holds, const gxp_extent *extent) {
+    holds->count = extent->regions;
+    holds->index_count = extent->indices;
+    holds->vertex_count = extent->vertices;
+    holds->nodes.count = extent->nodes;
+    holds->node_first.count = extent->regions + 1;
+}
+
+/* Forgets the regions before an extent: the others move down. */
+static void gxp_drop_holds(gxp_holds *holds, const gxp_extent *first) {
+    uint32_t i;
+    for (i = first->regions; i < holds->count; i++) {
+        gxp_region *r = &holds->regions[i - first->regions];
+        *r = holds->regions[i];
+        r->first_index -= first->indices;
+        r->first_vertex -= first->vertices;
+        holds->node_first.data[i - first->regions] = holds->node_first.data[i] - first->nodes;
     }
-    return gxb_complex_compare(body->complex, point, (int)r->axis, r->value) * r->side > 0;
+    holds->count -= first->regions;
+    holds->index_count -= first->indices;
+    holds->vertex_count -= first->vertices;
+    holds->nodes.count -= first->nodes;
+    holds->node_first.data[holds->count] = holds->nodes.count;
+    holds->node_first.count = holds->count + 1;
+    if (holds->index_count > 0)
+        memmove(holds->indices, holds->indices + first->indices, holds->index_count * sizeof *holds->indices);
+    if (holds->vertex_count > 0)
+        memmove(holds->vertices, holds->vertices + 3 * (size_t)first->vertices,
+                3 * (size_t)holds->vertex_count * sizeof *holds->vertices);
+    if (holds->nodes.count > 0)
+        memmove(holds->nodes.data, holds->nodes.data + first->nodes, holds->nodes.count * sizeof *holds->nodes.data);
 }
 
-/* Does the cell have material in the region? Its leaves are convex, so their points decide. */
-static gx_result gxp_cell_in_region(gx_body *body, uint32_t cell, const gx_region *r, int *inside) {
-    uint32_t leaf, i;
+/* Appends indices, or vertices, to the last region. */
+static gx_result gxp_add_indices(gx_body *body, const uint32_t *indices, size_t count) {
+    gxp_holds *holds = &body->holds;
+    const gx_result result = gxp_grow_rows(body, GXP_REGION_INDICES, count);
+    if (result != GX_OK) return result;
+    if (count > 0) memcpy(holds->indices + holds->index_count, indices, count * sizeof *indices);
+    holds->index_count += (uint32_t)count;
+    holds->regions[holds->count - 1].index_count += (uint32_t)count;
+    return GX_OK;
+}
+static gx_result gxp_add_vertices(gx_body *body, const double *vertices, size_t count) {
+    gxp_holds *holds = &body->holds;
+    const gx_result result = gxp_grow_rows(body, GXP_REGION_VERTICES, count);
+    if (result != GX_OK) return result;
+    if (count > 0) memcpy(holds->vertices + 3 * (size_t)holds->vertex_count, vertices, 3 * count * sizeof *vertices);
+    holds->vertex_count += (uint32_t)count;
+    holds->regions[holds->count - 1].vertex_count += (uint32_t)count;
+    return GX_OK;
+}
+
+static gx_result gxp_copy_surface(gx_body *body, const gx_surface *s, size_t index, gx_failure *failure) {
+    gx_result result;
+    if (s == NULL) return gxp_fail(failure, GX_ERROR_ARGUMENT, "regions.surface", index);
+    if (s->vertex_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "regions.surface.vertex_count", index);
+    if (s->triangle_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "regions.surface.triangle_count", index);
+    if (s->vertices == NULL) return gxp_fail(failure, GX_ERROR_ARGUMENT, "regions.surface.vertices", index);
+    if (s->triangles == NULL) return gxp_fail(failure, GX_ERROR_ARGUMENT, "regions.surface.triangles", index);
+    if (s->vertex_count > INT32_MAX / 4)
+        return gxp_fail(failure, GX_ERROR_LIMIT, "regions.surface.vertex_count", index);
+    if (s->triangle_count > INT32_MAX / 4)
+        return gxp_fail(failure, GX_ERROR_LIMIT, "regions.surface.triangle_count", index);
+    result = gxp_add_indices(body, s->triangles, 3 * s->triangle_count);
+    if (result == GX_OK) result = gxp_add_vertices(body, s->vertices, s->vertex_count);
+    return gxp_end(failure, result);
+}
+
+static gx_result gxp_copy_nodes(gx_body *body, const gx_region *given, size_t index, gx_failure *failure) {
+    if (given->node_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "regions.node_count", index);
+    if (given->nodes == NULL) return gxp_fail(failure, GX_ERROR_ARGUMENT, "regions.nodes", index);
+    if (given->node_count > INT32_MAX / 4) return gxp_fail(failure, GX_ERROR_LIMIT, "regions.node_count", index);
+    return gxp_end(failure, gxp_add_indices(body, given->nodes, given->node_count));
+}
+
+/* An anchor as an index, its element, and two vertices: position, toward */
+static gx_result gxp_copy_anchors(gx_body *body, const gx_region *given, size_t index, gx_failure *failure) {
     gx_result result = GX_OK;
-    *inside = 0;
-    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK && !*inside;
-         leaf = body->leaves.data[leaf].next) {
-        if (gxb_complex_leaf(body->complex, leaf)->facet_count == 0) {
-            for (i = 0; i < 4; i++)
-                *inside |= gxp_point_in_region(
-                    body, gxb_complex_element_nodes(body->complex, body->cells.data[cell].element)[i], r);
-            continue;
-        }
-        result = gxp_collect_leaf_points(body, leaf);
-        for (i = 0; i < body->scratch.leaf_points.count && result == GX_OK && !*inside; i++)
-            *inside = gxp_point_in_region(body, body->scratch.leaf_points.data[i], r);
+    size_t i;
+    if (given->anchor_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "regions.anchor_count", index);
+    if (given->anchors == NULL) return gxp_fail(failure, GX_ERROR_ARGUMENT, "regions.anchors", index);
+    if (given->anchor_count > INT32_MAX / 4) return gxp_fail(failure, GX_ERROR_LIMIT, "regions.anchor_count", index);
+    for (i = 0; i < given->anchor_count && result == GX_OK; i++) {
+        result = gxp_add_indices(body, &given->anchors[i].element, 1);
+        if (result == GX_OK) result = gxp_add_vertices(body, given->anchors[i].position, 1);
+        if (result == GX_OK) result = gxp_add_vertices(body, given->anchors[i].toward, 1);
     }
-    return result;
+    return gxp_end(failure, result);
 }
 
-/* Does a cell of the copy, whose node is in the region, have material in the region? */
-static gx_result gxp_copy_in_region(gx_body *body, uint32_t copy, const gx_region *r, int *inside) {
-    const uint32_t node = body->copies.node[copy];
-    uint32_t j, cell;
-    gx_result result = GX_OK;
-    *inside = 0;
-    if (!gxp_point_in_region(body, node, r)) return GX_OK;
-    for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1] && !*inside; j++) {
-        const int k = gxp_local_node(body, body->mesh.node_elements[j], node);
-        for (cell = body->mesh.node_elements[j]; cell != GXP_NONE && result == GX_OK && !*inside;
-             cell = body->cells.data[cell].next)
-            if (body->cells.data[cell].kept && body->cells.data[cell].copies[k] == copy)
-                result = gxp_cell_in_region(body, cell, r, inside);
+/* Appends the body's copy of a region; its numbers are checked later. index: for the failure */
+static gx_result gxp_copy_region(gx_body *body, const gx_region *given, size_t index, gx_failure *failure) {
+    gxp_holds *holds = &body->holds;
+    gx_result result = gxp_grow_rows(body, GXP_REGIONS, 1);
+    gxp_region *r;
+    if (gxp_end(failure, result) != GX_OK) return result;
+    r = &holds->regions[holds->count++];
+    memset(r, 0, sizeof *r);
+    r->kind = given->kind;
+    r->first_index = holds->index_count;
+    r->first_vertex = holds->vertex_count;
+    switch (given->kind) {
+    case GX_REGION_HALF_SPACE:
+        r->axis = given->axis;
+        r->side = given->side;
+        r->value = given->value;
+        return GX_OK;
+    case GX_REGION_BOX:
+        memcpy(r->low, given->low, sizeof r->low);
+        memcpy(r->high, given->high, sizeof r->high);
+        return GX_OK;
+    case GX_REGION_SPHERE:
+        memcpy(r->center, given->center, sizeof r->center);
+        r->radius = given->radius;
+        return GX_OK;
+    case GX_REGION_SURFACE: return gxp_copy_surface(body, given->surface, index, failure);
+    case GX_REGION_NODES: return gxp_copy_nodes(body, given, index, failure);
+    case GX_REGION_ANCHORS: return gxp_copy_anchors(body, given, index, failure);
     }
-    return result;
+    return gxp_fail(failure, GX_ERROR_ARGUMENT, "regions.kind", index);
 }
 
-/* Finds the held copies anew if there has been a cut, or regions have changed. */
-static gx_result gxp_update_held(gx_body *body) {
-    uint32_t c, r;
-    gx_result result = GX_OK;
-    if (!body->holds.stale) return GX_OK;
-    for (c = 0; c < body->copies.count && result == GX_OK; c++) {
-        int held = 0;
-        for (r = 0; r < body->holds.count && result == GX_OK && !held; r++)
-            result = gxp_copy_in_region(body, c, &body->holds.regions[r], &held);
-        if (body->copies.held[c] && !held) body->copies.rest_time[c] = 0; /* released copies wake */
-        body->copies.held[c] = (uint8_t)held;
-    }
-    if (result == GX_OK) body->holds.stale = 0;
-    return result;
+/* --- checks, also of what is read --- */
+
+static gx_anchor gxp_region_anchor(const gx_body *body, const gxp_region *r, uint32_t i) {
+    const double *x = body->holds.vertices + 3 * ((size_t)r->first_vertex + 2 * (size_t)i);
+    gx_anchor anchor;
+    memset(&anchor, 0, sizeof anchor);
+    anchor.element = body->holds.indices[r->first_index + i];
+    memcpy(anchor.position, x, sizeof anchor.position);
+    memcpy(anchor.toward, x + 3, sizeof anchor.toward);
+    return anchor;
 }
 
-/* Refuses a region that holds no copy. */
-static gx_result gxp_check_grip(gx_body *body, const gx_region *r, size_t index, gx_failure *failure) {
-    uint32_t c;
-    int holds = 0;
-    gx_result result = GX_OK;
-    for (c = 0; c < body->copies.count && result == GX_OK && !holds; c++)
-        result = gxp_copy_in_region(body, c, r, &holds);
-    if (result != GX_OK) return gxp_end(failure, result);
-    return holds ? GX_OK : gxp_fail(failure, GX_ERROR_EMPTY, "regions", index);
-}
-
-static gx_result gxp_check_region(const gx_region *r, size_t index, gx_failure *failure) {
+static gx_result gxp_check_half_space(const gxp_region *r, size_t index, gx_failure *failure) {
     if (r->axis > 2) return gxp_fail(failure, GX_ERROR_ARGUMENT, "regions.axis", index);
     if (r->side != 1 && r->side != -1) return gxp_fail(failure, GX_ERROR_ARGUMENT, "regions.side", index);
     return gxp_is_finite(r->value) ? GX_OK : gxp_fail(failure, GX_ERROR_NOT_FINITE, "regions.value", index);
 }
 
+static gx_result gxp_check_box(const gx_body *body, const gxp_region *r, size_t index, gx_failure *failure) {
+    gx_result result = gxb_complex_check_point(body->complex, r->low);
+    int k;
+    if (result != GX_OK) return gxp_fail(failure, result, "regions.low", index);
+    result = gxb_complex_check_point(body->complex, r->high);
+    if (result != GX_OK) return gxp_fail(failure, result, "regions.high", index);
+    for (k = 0; k < 3; k++)
+        if (!(r->low[k] < r->high[k])) return gxp_fail(failure, GX_ERROR_ARGUMENT, "regions.high", index);
+    return GX_OK;
+}
+
+static gx_result gxp_check_sphere(const gx_body *body, const gxp_region *r, size_t index, gx_failure *failure) {
+    const gx_result result = gxb_complex_check_point(body->complex, r->center);
+    if (result != GX_OK) return gxp_fail(failure, result, "regions.center", index);
+    if (!gxp_is_finite(r->radius)) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "regions.radius", index);
+    return r->radius > 0 ? GX_OK : gxp_fail(failure, GX_ERROR_ARGUMENT, "regions.radius", index);
+}
+
+/* Is the surface closed, its triangles oriented alike? */
+static gx_result gxp_check_shell(gx_body *body, const gx_surface *shell, size_t index, gx_failure *failure) {
+    const gx_allocator *a = &body->config.allocator;
+    const size_t merged = shell->vertex_count * sizeof(uint32_t),
+                 edges = 3 * shell->triangle_count * sizeof(gxp_half_edge);
+    gxp_surface s;
+    gxp_cut cut;
+    gx_result result = GX_ERROR_MEMORY;
+    memset(&s, 0, sizeof s);
+    memset(&cut, 0, sizeof cut);
+    s.given = shell;
+    s.merged = (uint32_t *)gxp_allocate(a, merged);
+    s.edges = (gxp_half_edge *)gxp_allocate(a, edges);
+    if (s.merged != NULL && s.edges != NULL) result = gxp_merge_vertices(body, &s);
+    if (result == GX_OK) {
+        gxp_sort_edges(&s);
+        result = gxp_check_closed(&cut, &s);
+    }
+    gxp_release(a, s.merged, merged);
+    gxp_release(a, s.edges, edges);
+    return result == GX_ERROR_NOT_CLOSED ? gxp_fail(failure, result, "regions.surface.triangles", index)
+                                         : gxp_end(failure, result);
+}
+
+/* The closed surface of a region, in the body's arrays */
+static gx_surface gxp_region_shell(const gx_body *body, const gxp_region *r) {
+    gx_surface shell;
+    memset(&shell, 0, sizeof shell);
+    shell.vertices = body->holds.vertices + 3 * (size_t)r->first_vertex;
+    shell.vertex_count = r->vertex_count;
+    shell.triangles = body->holds.indices + r->first_index;
+    shell.triangle_count = r->index_count / 3;
+    return shell;
+}
+
+static gx_result gxp_check_region_surface(gx_body *body, const gxp_region *r, size_t index, gx_failure *failure) {
+    const gx_surface shell = gxp_region_shell(body, r);
+    size_t i;
+    for (i = 0; i < shell.vertex_count; i++) {
+        const gx_result result = gxb_complex_check_point(body->complex, shell.vertices + 3 * i);
+        if (result != GX_OK) return gxp_fail(failure, result, "regions.surface.vertices", index);
+    }
+    for (i = 0; i < 3 * shell.triangle_count; i++)
+        if (shell.triangles[i] >= shell.vertex_count)
+            return gxp_fail(failure, GX_ERROR_INDEX, "regions.surface.triangles", index);
+    return gxp_check_shell(body, &shell, index, failure);
+}
+
+static gx_result gxp_check_region_lists(const gx_body *body, const gxp_region *r, size_t index, gx_failure *failure) {
+    static const char *const names[3] = {"regions.anchors.element", "regions.anchors.position",
+                                         "regions.anchors.toward"};
+    gx_result result = GX_OK;
+    uint32_t i;
+    for (i = 0; i < r->index_count && result == GX_OK; i++) {
+        if (r->kind == GX_REGION_ANCHORS) {
+            const gx_anchor anchor = gxp_region_anchor(body, r, i);
+            result = gxp_check_anchor(body, &anchor, names, index, failure);
+        } else if (body->holds.indices[r->first_index + i] >= body->mesh.node_count)
+            result = gxp_fail(failure, GX_ERROR_INDEX, "regions.nodes", index);
+    }
+    return result;
+}
+
+/* Numbers, indices and shape of a region in the body's tables; index: for the failure */
+static gx_result gxp_check_region(gx_body *body, const gxp_region *r, size_t index, gx_failure *failure) {
+    switch (r->kind) {
+    case GX_REGION_HALF_SPACE: return gxp_check_half_space(r, index, failure);
+    case GX_REGION_BOX: return gxp_check_box(body, r, index, failure);
+    case GX_REGION_SPHERE: return gxp_check_sphere(body, r, index, failure);
+    case GX_REGION_SURFACE: return gxp_check_region_surface(body, r, index, failure);
+    default: return gxp_check_region_lists(body, r, index, failure);
+    }
+}
+
+/* --- the nodes in a region --- */
+
+/* |x - center|^2 - radius^2, exact */
+static GXP_COLD int gxp_exact_ball_side(const double x[3], const double center[3], double radius) {
+    int k;
+    GXB_NUM(a);
+    GXB_NUM(b);
+    GXB_NUM(d);
+    GXB_NUM(square);
+    GXB_NUM(sum);
+    gxb_num_set(&a, radius, 0);
+    gxb_num_mul(&square, &a, &a);
+    for (k = 0; k < 3; k++) {
+        gxb_num_set(&a, x[k], 0);
+        gxb_num_set(&b, center[k], 0);
+        gxb_num_sub(&d, &a, &b);
+        gxb_num_mul(&b, &d, &d);
+        gxb_num_sub(&sum, &square, &b);
+        gxb_num_set(&a, 1, 0);
+        gxb_num_mul(&square, &sum, &a);
+    }
+    return -square.sign;
+}
+
+/* Is the point strictly inside the ball? Exact */
+static int gxp_is_in_ball(const double x[3], const double center[3], double radius) {
+    double square = 0, size = radius * radius;
+    int k;
+    for (k = 0; k < 3; k++) {
+        square += (x[k] - center[k]) * (x[k] - center[k]);
+        size += x[k] * x[k] + center[k] * center[k];
+    }
+    if (fabs(square - radius * radius) > 1e-14 * size && gxp_is_finite(size) && size > 1e-280)
+        return square < radius * radius;
+    return gxp_exact_ball_side(x, center, radius) < 0;
+}
+
+static int gxp_is_node_inside(const gx_body *body, const gxp_region *r, uint32_t node) {
+    const double *x = body->mesh.positions + 3 * (size_t)node;
+    int on_surface, k;
+    switch (r->kind) {
+    case GX_REGION_HALF_SPACE: return r->side < 0 ? x[r->axis] < r->value : x[r->axis] > r->value;
+    case GX_REGION_BOX:
+        for (k = 0; k < 3; k++)
+            if (!(x[k] > r->low[k] && x[k] < r->high[k])) return 0;
+        return 1;
+    case GX_REGION_SPHERE: return gxp_is_in_ball(x, r->center, r->radius);
+    default: {
+        const gx_surface shell = gxp_region_shell(body, r);
+        const int winding = gxb_winding_number(shell.vertices, shell.triangles, shell.triangle_count, x, &on_surface);
+        return winding != 0 && !on_surface;
+    }
+    }
+}
+
+/* A box around the region, which may be infinite */
+static void gxp_region_bounds(const gx_body *body, const gxp_region *r, double low[3], double high[3]) {
+    uint32_t i;
+    int k;
+    for (k = 0; k < 3; k++) {
+        low[k] = -1e308;
+        high[k] = 1e308;
+        if (r->kind == GX_REGION_HALF_SPACE && r->axis == (uint32_t)k) {
+            if (r->side < 0) high[k] = r->value;
+            if (r->side > 0) low[k] = r->value;
+        }
+        if (r->kind == GX_REGION_BOX) {
+            low[k] = r->low[k];
+            high[k] = r->high[k];
+        }
+        if (r->kind == GX_REGION_SPHERE) {
+            const double margin = 1e-14 * (fabs(r->center[k]) + r->radius);
+            low[k] = r->center[k] - r->radius - margin;
+            high[k] = r->center[k] + r->radius + margin;
+        }
+        if (r->kind != GX_REGION_SURFACE) continue;
+        low[k] = 1e308;
+        high[k] = -1e308;
+        for (i = 0; i < r->vertex_count; i++) {
+            low[k] = fmin(low[k], body->holds.vertices[3 * ((size_t)r->first_vertex + i) + (size_t)k]);
+            high[k] = fmax(high[k], body->holds.vertices[3 * ((size_t)r->first_vertex + i) + (size_t)k]);
+        }
+    }
+}
+
+static int gxp_boxes_meet(const double *low, const double *high, const double *other_low, const double *other_high) {
+    return low[0] <= other_high[0] && high[0] >= other_low[0] && low[1] <= other_high[1] && high[1] >= other_low[1] &&
+           low[2] <= other_high[2] && high[2] >= other_low[2];
+}
+
+/* Lists the nodes of elements near a box; some more than once. */
+static gx_result gxp_push_near_nodes(gx_body *body, const double low[3], const double high[3], gxp_words *nodes) {
+    uint32_t stack[128], depth = 0, i, k;
+    gx_result result = GX_OK;
+    stack[depth++] = 0;
+    while (depth > 0 && result == GX_OK) {
+        const gxp_box *box = &body->mesh.boxes[stack[--depth]];
+        if (!gxp_boxes_meet(low, high, box->low, box->high)) continue;
+        if (box->count == 0) {
+            stack[depth++] = box->first + 1;
+            stack[depth++] = box->first;
+        }
+        for (i = 0; i < box->count; i++)
+            for (k = 0; k < 4 && result == GX_OK; k++)
+                result = gxp_push(body, nodes,
+                                  gxb_complex_element_nodes(body->complex, body->mesh.box_elements[box->first + i])[k]);
+    }
+    return result;
+}
+
+/* Appends the nodes in a region, ascending, to the lists; these have those of all regions before it. */
+static gx_result gxp_list_nodes(gx_body *body, const gxp_region *r) {
+    gxp_holds *holds = &body->holds;
+    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
+    uint32_t i;
+    gx_result result = gxp_start_words(body, &holds->near_nodes, r->index_count);
+    if (result != GX_OK) return result;
+    if (r->kind == GX_REGION_NODES) {
+        memcpy(holds->near_nodes.data, holds->indices + r->first_index, r->index_count * sizeof *holds->indices);
+        holds->near_nodes.count = r->index_count;
+    } else if (r->kind != GX_REGION_ANCHORS) {
+        gxp_region_bounds(body, r, low, high);
+        result = gxp_push_near_nodes(body, low, high, &holds->near_nodes);
+    }
+    gxp_sort_unique(&holds->near_nodes);
+    for (i = 0; i < holds->near_nodes.count && result == GX_OK; i++) {
+        const double *x = body->mesh.positions + 3 * (size_t)holds->near_nodes.data[i];
+        if (r->kind == GX_REGION_NODES ||
+            (gxp_boxes_meet(x, x, low, high) && gxp_is_node_inside(body, r, holds->near_nodes.data[i])))
+            result = gxp_push(body, &holds->nodes, holds->near_nodes.data[i]);
+    }
+    return result == GX_OK ? gxp_push(body, &holds->node_first, holds->nodes.count) : result;
+}
+
+/* Lists the nodes in all regions, unless they are listed. */
+static gx_result gxp_list_all_nodes(gx_body *body) {
+    gxp_holds *holds = &body->holds;
+    uint32_t r;
+    gx_result result;
+    if (holds->listed) return GX_OK;
+    holds->nodes.count = holds->node_first.count = 0;
+    result = gxp_push(body, &holds->node_first, 0);
+    for (r = 0; r < holds->count && result == GX_OK; r++) result = gxp_list_nodes(body, &holds->regions[r]);
+    if (result == GX_OK) holds->listed = 1;
+    return result;
+}
+
+/* >>grips: held copies --------------------------------------------------------------------------------------------- */
+/* In: regions and the nodes in them. Out: for each copy the first region that holds it, found anew after a cut or when
+   regions change. A copy is held if its node is in the region and one of its own cells has material there. Most cells
+   have the node as a corner, and material beside it. The others lie behind a wall. Whether a box or a surface reaches
+   them is what the complex tells when its triangles are inserted, in a transaction that is taken back. Touches held
+   flags and rest times of copies. */
+
+/* Corners of a box by bits: 1, 2, 4 for its high side along each axis */
+static const uint32_t gxp_box_triangles[36] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                                               2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+
+/* The part of a box near the mesh, as a surface with these corners */
+static gx_surface gxp_box_shell(const gx_body *body, const gxp_region *r, double corners[24]) {
+    const gxp_box *all = &body->mesh.boxes[0];
+    gx_surface shell;
+    uint32_t i;
+    int k;
+    for (i = 0; i < 8; i++)
+        for (k = 0; k < 3; k++) {
+            const double size = all->high[k] - all->low[k] + fabs(all->low[k]) + fabs(all->high[k]);
+            corners[3 * i + (uint32_t)k] =
+                i >> k & 1 ? fmin(r->high[k], all->high[k] + size) : fmax(r->low[k], all->low[k] - size);
+        }
+    memset(&shell, 0, sizeof shell);
+    shell.vertices = corners;
+    shell.vertex_count = 8;
+    shell.triangles = gxp_box_triangles;
+    shell.triangle_count = 12;
+    return shell;
+}
+
+/* Makes the surface of a region the one that is asked about; opens the transaction. */
+static gx_result gxp_begin_probe(gx_body *body, const gxp_region *r) {
+    gxp_probe *probe = &body->holds.probe;
+    gx_result result;
+    size_t i;
+    if (probe->region == r) return GX_OK;
+    if (probe->region == NULL) gxb_complex_begin(body->complex);
+    probe->region = r;
+    probe->shell = r->kind == GX_REGION_BOX ? gxp_box_shell(body, r, probe->corners) : gxp_region_shell(body, r);
+    result = gxp_start_words(body, &probe->points, probe->shell.vertex_count);
+    if (result == GX_OK)
+        result = gxp_reserve(&body->config.allocator, &probe->triangles, sizeof *probe->triangles, 0,
+                             &probe->triangle_capacity, probe->shell.triangle_count);
+    if (result != GX_OK) return result;
+    memset(probe->points.data, 0xff, probe->shell.vertex_count * sizeof *probe->points.data);
+    for (i = 0; i < probe->shell.triangle_count; i++) probe->triangles[i].plane = GXP_NONE;
+    return GX_OK;
+}
+
+static void gxp_end_probe(gx_body *body) {
+    if (body->holds.probe.region != NULL) gxb_complex_rollback(body->complex);
+    body->holds.probe.region = NULL;
+}
+
+/* Gives a triangle of the surface its points and its plane in the complex, unless it has them. */
+static gx_result gxp_probe_triangle(gx_body *body, uint32_t index) {
+    gxp_probe *probe = &body->holds.probe;
+    gxb_triangle *t = &probe->triangles[index];
+    uint32_t k;
+    gx_result result = GX_OK;
+    if (t->plane != GXP_NONE) return GX_OK;
+    memset(t, 0, sizeof *t);
+    for (k = 0; k < 3 && result == GX_OK; k++) {
+        const uint32_t v = probe->shell.triangles[3 * index + k];
+        if (probe->points.data[v] == GXP_NONE)
+            result =
+                gxb_complex_add_point(body->complex, probe->shell.vertices + 3 * (size_t)v, &probe->points.data[v]);
+        t->point[k] = probe->points.data[v];
+    }
+    return result == GX_OK ? gxb_complex_add_plane(body->complex, t) : result;
+}
+
+/* Notes a leaf of which the triangle has a part, and has the complex leave it alone. */
+static int gxp_note_reached(void *user, uint32_t leaf) {
+    gx_body *body = (gx_body *)user;
+    const gx_result result = gxp_push(body, &body->holds.probe.reached, leaf);
+    if (result != GX_OK) body->holds.probe.result = result;
+    return 0;
+}
+
+/* Stamps the leaves that the plane of a triangle divides, of those that it reached. It may cover a facet of others. */
+static gx_result gxp_stamp_reached(gx_body *body, uint32_t plane) {
+    const gxp_words *reached = &body->holds.probe.reached;
+    gx_result result = GX_OK;
+    uint32_t i, j;
+    for (i = 0; i < reached->count && result == GX_OK; i++) {
+        int sides = 0;
+        if (body->leaves.mark[reached->data[i]].stamp == body->scratch.stamp) continue;
+        result = gxp_collect_leaf_points(body, reached->data[i]);
+        for (j = 0; j < body->scratch.leaf_points.count && result == GX_OK; j++) {
+            const int side = gxb_complex_side(body->complex, body->scratch.leaf_points.data[j], plane);
+            sides |= side > 0 ? 1 : side < 0 ? 2 : 0;
+        }
+        if (sides == 3) body->leaves.mark[reached->data[i]].stamp = body->scratch.stamp;
+    }
+    return result;
+}
+
+/* Stamps the leaves of an element through whose inside the surface of a region passes. */
+static gx_result gxp_reach_element(gx_body *body, const gxp_region *r, uint32_t element) {
+    gxp_probe *probe = &body->holds.probe;
+    double x[12], low[3], high[3];
+    uint32_t t;
+    int i, k;
+    gx_result result = gxp_begin_probe(body, r);
+    gxp_element_positions(body, element, x);
+    for (k = 0; k < 3; k++) {
+        low[k] = high[k] = x[k];
+        for (i = 1; i < 4; i++) {
+            low[k] = fmin(low[k], x[3 * i + k]);
+            high[k] = fmax(high[k], x[3 * i + k]);
+        }
+    }
+    body->scratch.stamp++;
+    for (t = 0; t < probe->shell.triangle_count && result == GX_OK; t++) {
+        const uint32_t *n = probe->shell.triangles + 3 * (size_t)t;
+        const double *a = probe->shell.vertices + 3 * (size_t)n[0], *b = probe->shell.vertices + 3 * (size_t)n[1],
+                     *c = probe->shell.vertices + 3 * (size_t)n[2];
+        double least[3], most[3];
+        for (k = 0; k < 3; k++) {
+            least[k] = fmin(a[k], fmin(b[k], c[k]));
+            most[k] = fmax(a[k], fmax(b[k], c[k]));
+        }
+        if (!gxp_boxes_meet(least, most, low, high) || gxp_is_flat(a, b, c)) continue;
+        probe->reached.count = 0;
+        probe->result = GX_OK;
+        result = gxp_probe_triangle(body, t);
+        if (result == GX_OK)
+            result = gxb_complex_insert(body->complex, &probe->triangles[t], element, gxp_note_reached, body);
+        if (result == GX_OK) result = probe->result;
+        if (result == GX_OK) result = gxp_stamp_reached(body, probe->triangles[t].plane);
+    }
+    return result;
+}
+
+/* |p|^2 of the point of a segment that is nearest to the origin */
+static double gxp_segment_square(const double a[3], const double b[3]) {
+    const double way[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, length = gxp_dot(way, way);
+    const double t = length > 0 ? fmin(fmax(-gxp_dot(a, way) / length, 0), 1) : 0;
+    const double p[3] = {a[0] + t * way[0], a[1] + t * way[1], a[2] + t * way[2]};
+    return gxp_dot(p, p);
+}
+
+/* The same of a triangle x = a b c */
+static double gxp_triangle_square(const double x[9]) {
+    static const uint32_t corners[3] = {0, 1, 2};
+    double n[3], square, height;
+    int k, inside = 1;
+    gxp_triangle_normal(x, corners, n);
+    square = gxp_dot(n, n);
+    for (k = 0; k < 3; k++) { /* the origin's projection is on the inner side of each edge */
+        const double *a = x + 3 * k, *b = x + 3 * ((k + 1) % 3), way[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+        const double side[3] = {n[1] * way[2] - n[2] * way[1], n[2] * way[0] - n[0] * way[2],
+                                n[0] * way[1] - n[1] * way[0]};
+        inside &= gxp_dot(side, a) <= 0;
+    }
+    height = gxp_dot(n, x);
+    if (inside && square > 0) return height * height / square;
+    return fmin(gxp_segment_square(x, x + 3), fmin(gxp_segment_square(x + 3, x + 6), gxp_segment_square(x + 6, x)));
+}
+
+/* A point of the complex less a centre, rounded */
+static void gxp_point_from(gx_body *body, uint32_t point, uint32_t element, const double center[3], double x[3]) {
+    const uint32_t *n = gxb_complex_element_nodes(body->complex, element);
+    double lambda[4];
+    int j, k;
+    gxb_complex_barycentric(body->complex, point, element, lambda);
+    for (k = 0; k < 3; k++) {
+        x[k] = 0;
+        for (j = 0; j < 4; j++) x[k] += lambda[j] * (body->mesh.positions[3 * (size_t)n[j] + (size_t)k] - center[k]);
+    }
+}
+
+/* Does the leaf reach into the ball? Its points are rounded, so a leaf that only touches the ball may be taken either
+   way. */
+static gx_result gxp_leaf_in_ball(gx_body *body, uint32_t leaf, const gxp_region *r, int *inside) {
+    gxb_complex *cx = body->complex;
+    const uint32_t element = gxb_complex_leaf(cx, leaf)->element;
+    const gxp_words *points = &body->scratch.facet_points;
+    uint32_t first, count = 0, i, j;
+    double x[9];
+    gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
+    *inside = gxp_element_side(body, element, r->center) >= 0 &&
+              gxb_complex_leaf_at(cx, element, r->center, NULL, NULL) == leaf;
+    for (i = 0; i < count && result == GX_OK && !*inside; i++) {
+        result = gxp_collect_facet_points(body, gxp_item(cx, first + i));
+        if (result == GX_OK) gxp_point_from(body, points->data[0], element, r->center, x);
+        for (j = 1; j + 1 < points->count && result == GX_OK && !*inside; j++) {
+            gxp_point_from(body, points->data[j], element, r->center, x + 3);
+            gxp_point_from(body, points->data[j + 1], element, r->center, x + 6);
+            *inside = gxp_triangle_square(x) < r->radius * r->radius;
+        }
+    }
+    return result;
+}
+
+/* Does a leaf have material in a region? Of a box or a surface gxp_reach_element has stamped the leaves that its
+   surface divides; others are inside or outside as a whole. */
+static gx_result gxp_leaf_in_region(gx_body *body, uint32_t leaf, const gxp_region *r, int *inside) {
+    const gxp_words *points = &body->scratch.leaf_points;
+    const gx_surface *shell = &body->holds.probe.shell;
+    uint32_t i;
+    gx_result result;
+    if (r->kind == GX_REGION_SPHERE) return gxp_leaf_in_ball(body, leaf, r, inside);
+    *inside = r->kind != GX_REGION_HALF_SPACE && body->leaves.mark[leaf].stamp == body->scratch.stamp;
+    if (*inside) return GX_OK;
+    result = gxp_collect_leaf_points(body, leaf);
+    if (result != GX_OK) return result;
+    if (r->kind != GX_REGION_HALF_SPACE)
+        *inside = gxb_complex_winding(body->complex, points->data, points->count, shell->vertices, shell->triangles,
+                                      shell->triangle_count) != 0;
+    for (i = 0; i < points->count && r->kind == GX_REGION_HALF_SPACE && !*inside; i++)
+        *inside = gxb_complex_compare(body->complex, points->data[i], (int)r->axis, r->value) * r->side > 0;
+    return GX_OK;
+}
+
+/* Is the node a corner of the cell? */
+static gx_result gxp_has_corner(gx_body *body, uint32_t cell, uint32_t node, int *corner) {
+    const gxp_words *points = &body->scratch.leaf_points;
+    uint32_t leaf, i;
+    gx_result result = GX_OK;
+    *corner = 0;
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK && !*corner;
+         leaf = body->leaves.data[leaf].next) {
+        if (gxb_complex_leaf(body->complex, leaf)->facet_count == 0) {
+            *corner = 1;
+            continue;
+        }
+        result = gxp_collect_leaf_points(body, leaf);
+        for (i = 0; i < points->count && result == GX_OK && !*corner; i++) *corner = points->data[i] == node;
+    }
+    return result;
+}
+
+/* Does a cell around a node in a region have material in the region? *reached: 1 if the region's surface has been asked
+   about for this element */
+static gx_result gxp_cell_in_region(gx_body *body, uint32_t cell, uint32_t node, const gxp_region *r, int *reached,
+                                    int *inside) {
+    uint32_t leaf;
+    gx_result result = gxp_has_corner(body, cell, node, inside);
+    if (*inside || r->kind == GX_REGION_NODES || result != GX_OK) return result;
+    if ((r->kind == GX_REGION_BOX || r->kind == GX_REGION_SURFACE) && !*reached) {
+        result = gxp_reach_element(body, r, body->cells.data[cell].element);
+        *reached = 1;
+    }
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK && !*inside;
+         leaf = body->leaves.data[leaf].next)
+        result = gxp_leaf_in_region(body, leaf, r, inside);
+    return result;
+}
+
+/* Gives the copies of a node that a region holds to it, unless earlier regions have them. region_of NULL: only asks if
+   there is any. */
+static gx_result gxp_hold_node(gx_body *body, uint32_t region, uint32_t node, uint32_t *region_of, int *any) {
+    const gxp_region *r = &body->holds.regions[region];
+    uint32_t j, cell;
+    gx_result result = GX_OK;
+    for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1]; j++) {
+        const int k = gxp_local_node(body, body->mesh.node_elements[j], node);
+        int reached = 0, inside;
+        for (cell = body->mesh.node_elements[j]; cell != GXP_NONE && result == GX_OK;
+             cell = body->cells.data[cell].next) {
+            const gxp_cell *c = &body->cells.data[cell];
+            if (!c->kept || (region_of != NULL ? region_of[c->copies[k]] != GXP_NONE : *any)) continue;
+            result = gxp_cell_in_region(body, cell, node, r, &reached, &inside);
+            if (!inside || result != GX_OK) continue;
+            *any = 1;
+            if (region_of != NULL) region_of[c->copies[k]] = region;
+        }
+    }
+    return result;
+}
+
+/* The same for the copies that move a region's anchors */
+static void gxp_hold_anchors(gx_body *body, uint32_t region, uint32_t *region_of, int *any) {
+    const gxp_region *r = &body->holds.regions[region];
+    uint32_t i;
+    int k;
+    for (i = 0; i < r->index_count; i++) {
+        const gx_anchor anchor = gxp_region_anchor(body, r, i);
+        const uint32_t cell = gxp_anchor_cell(body, &anchor);
+        double weight[4];
+        if (cell == GXP_NONE) continue;
+        *any = 1;
+        gxp_element_weights(body, anchor.element, anchor.position, weight);
+        for (k = 0; k < 4 && region_of != NULL; k++)
+            if (weight[k] > 0 && region_of[body->cells.data[cell].copies[k]] == GXP_NONE)
+                region_of[body->cells.data[cell].copies[k]] = region;
+    }
+}
+
+static gx_result gxp_hold_region(gx_body *body, uint32_t region, uint32_t *region_of, int *any) {
+    const gxp_holds *holds = &body->holds;
+    gx_result result = GX_OK;
+    uint32_t i;
+    if (holds->regions[region].kind == GX_REGION_ANCHORS) gxp_hold_anchors(body, region, region_of, any);
+    for (i = holds->node_first.data[region]; i < holds->node_first.data[region + 1] && result == GX_OK; i++)
+        if (region_of != NULL || !*any) result = gxp_hold_node(body, region, holds->nodes.data[i], region_of, any);
+    return result;
+}
+
+/* Finds anew which region holds which copy, if there has been a cut or regions have changed. */
+static gx_result gxp_find_held(gx_body *body) {
+    gxp_holds *holds = &body->holds;
+    uint32_t r;
+    int any = 0;
+    gx_result result;
+    if (!holds->stale) return GX_OK;
+    result = gxp_list_all_nodes(body);
+    if (result == GX_OK) result = gxp_start_words(body, &holds->region_of, (size_t)body->copies.count + 1);
+    if (result != GX_OK) return result;
+    memset(holds->region_of.data, 0xff, body->copies.count * sizeof *holds->region_of.data);
+    for (r = 0; r < holds->count && result == GX_OK; r++)
+        result = gxp_hold_region(body, r, holds->region_of.data, &any);
+    gxp_end_probe(body);
+    return result;
+}
+
+/* Flags the held copies that were found. */
+static void gxp_flag_held(gx_body *body) {
+    uint32_t c;
+    if (!body->holds.stale) return;
+    for (c = 0; c < body->copies.count; c++) {
+        const int held = body->holds.region_of.data[c] != GXP_NONE;
+        if (body->copies.held[c] && !held) body->copies.rest_time[c] = 0; /* released copies wake */
+        body->copies.held[c] = (uint8_t)held;
+    }
+    body->holds.stale = 0;
+}
+
+static gx_result gxp_update_held(gx_body *body) {
+    const gx_result result = gxp_find_held(body);
+    if (result == GX_OK) gxp_flag_held(body);
+    return result;
+}
+
+/* Takes a region over and refuses one that holds no copy. index: for the failure */
+static gx_result gxp_take_region(gx_body *body, const gx_region *given, size_t index, gx_failure *failure) {
+    gxp_holds *holds = &body->holds;
+    int any = 0;
+    gx_result result = gxp_copy_region(body, given, index, failure);
+    if (result == GX_OK) result = gxp_check_region(body, &holds->regions[holds->count - 1], index, failure);
+    if (result != GX_OK) return result;
+    result = gxp_list_nodes(body, &holds->regions[holds->count - 1]);
+    if (result == GX_OK) result = gxp_hold_region(body, holds->count - 1, NULL, &any);
+    gxp_end_probe(body);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    return any ? GX_OK : gxp_fail(failure, GX_ERROR_EMPTY, "regions", index);
+}
+
 GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t region_count, gx_failure *failure) {
+    gxp_extent before;
     gx_result result;
     size_t i;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (region_count > 0 && regions == NULL) return gxp_refuse(failure, "regions");
-    if (region_count > INT32_MAX) return gxp_fail(failure, GX_ERROR_LIMIT, "region_count", SIZE_MAX);
-    for (i = 0; i < region_count; i++) {
-        result = gxp_check_region(&regions[i], i, failure);
-        if (result == GX_OK) result = gxp_check_grip(body, &regions[i], i, failure);
-        if (result != GX_OK) return result;
-    }
-    result = gxp_grow_rows(body, GXP_REGIONS, region_count);
+    if (region_count > INT32_MAX / 2) return gxp_fail(failure, GX_ERROR_LIMIT, "region_count", SIZE_MAX);
+    result = gxp_list_all_nodes(body);
     if (gxp_end(failure, result) != GX_OK) return result;
-    if (region_count > 0) memcpy(body->holds.regions, regions, region_count * sizeof *regions);
-    body->holds.count = (uint32_t)region_count;
+    before = gxp_holds_extent(&body->holds);
+    for (i = 0; i < region_count && result == GX_OK; i++) result = gxp_take_region(body, &regions[i], i, failure);
+    if (result != GX_OK) {
+        gxp_cut_holds(&body->holds, &before);
+        return result;
+    }
+    gxp_drop_holds(&body->holds, &before);
     body->holds.stale = 1;
     body->model.state = GXP_MODEL_STALE;
     return GX_OK;
+}
+
+GXFEM_API gx_region gx_region_half_space(uint32_t axis, int side, double value) {
+    gx_region region;
+    memset(&region, 0, sizeof region);
+    region.axis = axis;
+    region.side = side;
+    region.value = value;
+    return region;
+}
+
+GXFEM_API gx_region gx_region_box(const double low[3], const double high[3]) {
+    gx_region region;
+    memset(&region, 0, sizeof region);
+    region.kind = GX_REGION_BOX;
+    memcpy(region.low, low, sizeof region.low);
+    memcpy(region.high, high, sizeof region.high);
+    return region;
+}
+
+GXFEM_API gx_region gx_region_sphere(const double center[3], double radius) {
+    gx_region region;
+    memset(&region, 0, sizeof region);
+    region.kind = GX_REGION_SPHERE;
+    memcpy(region.center, center, sizeof region.center);
+    region.radius = radius;
+    return region;
 }
 
 /* >>map: from rest to space ---------------------------------------------------------------------------------------- */
@@ -5196,9 +5963,10 @@ GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view, gx_failure *failu
     if (view == NULL) return gxp_refuse(failure, "view");
     result = gxp_update_view(body);
     if (result == GX_OK && body->view.sums_stale) result = gxp_sum_fragments(body);
+    if (result == GX_OK) result = gxp_find_held(body);
     if (result == GX_OK) result = gxp_take_snapshot(body);
-    if (result == GX_OK) result = gxp_update_held(body);
     if (gxp_end(failure, result) != GX_OK) return result;
+    gxp_flag_held(body);
     own = &body->view;
     view->node_count = body->mesh.node_count;
     view->element_count = body->mesh.element_count;
@@ -5213,6 +5981,7 @@ GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view, gx_failure *failu
     view->copy_count = body->copies.count;
     view->copy_node = body->copies.node;
     view->copy_held = body->copies.held;
+    view->copy_region = body->holds.region_of.data;
     view->epoch = body->cuts.epoch;
     view->displacement = body->copies.displacement;
     view->velocity = body->copies.velocity;
@@ -5381,9 +6150,9 @@ GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t cap
     return result;
 }
 
-/* >>attached: anchors of a step ------------------------------------------------------------------------------------ */
-/* In: anchors, and what a step has at them. Out: springs, contact points and forces by copies, as the solver takes
-   them. Touches working memory of a step only. */
+/* >>attached: anchors and regions of a step ------------------------------------------------------------------------ */
+/* In: anchors, and what a step has at them; poses of regions. Out: springs, contact points, forces and targets by
+   copies, as the solver takes them. Touches working memory of a step only. */
 
 /* The copies that move an anchor, which was checked. Returns 0 if its material is gone: the point then names a copy
    with a weight of 0, so that nothing moves it and it pulls at nothing. */
@@ -5488,8 +6257,6 @@ static gx_result gxp_check_forces(const gx_body *body, const gx_step_desc *desc,
     int k;
     if (desc->force_anchors == NULL) return gxp_refuse(failure, "force_anchors");
     if (desc->anchor_forces == NULL) return gxp_refuse(failure, "anchor_forces");
-    if (desc->forces != NULL && desc->epoch != body->cuts.epoch)
-        return gxp_fail(failure, GX_ERROR_STALE, "epoch", SIZE_MAX);
     for (i = 0; i < desc->force_count && result == GX_OK; i++) {
         result = gxp_check_anchor(body, &desc->force_anchors[i], names, i, failure);
         for (k = 0; k < 3 && result == GX_OK; k++)
@@ -5523,14 +6290,63 @@ static gx_result gxp_attach_forces(gx_body *body, const gx_step_desc *desc, gxs_
                     point.weight[j] * desc->anchor_forces[3 * i + (size_t)k];
     }
     step->forces = attached->forces;
-    if (desc->forces == NULL && desc->targets == NULL) step->epoch = body->cuts.epoch;
     return GX_OK;
 }
 
+/* Is the pose twelve zeros? */
+static int gxp_is_no_pose(const double pose[12]) {
+    int i;
+    for (i = 0; i < 12; i++)
+        if (pose[i] < 0 || pose[i] > 0) return 0;
+    return 1;
+}
+
+/* The displacement of a held copy at the step's end */
+static void gxp_pose_copy(const gx_body *body, const gx_step_desc *desc, uint32_t copy, double target[3]) {
+    const double *pose = desc->region_poses + 12 * (size_t)body->holds.region_of.data[copy];
+    const double *x = body->mesh.positions + 3 * (size_t)body->copies.node[copy];
+    const double *other = desc->targets != NULL ? desc->targets : body->copies.displacement;
+    int k;
+    if (gxp_is_no_pose(pose)) {
+        memcpy(target, other + 3 * (size_t)copy, 3 * sizeof *target);
+        return;
+    }
+    for (k = 0; k < 3; k++) {
+        const double *row = pose + 4 * k;
+        target[k] = row[0] * x[0] + row[1] * x[1] + row[2] * x[2] + row[3] - x[k];
+    }
+}
+
+/* The targets of what regions hold. Held copies are up to date. */
+static gx_result gxp_attach_poses(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step, gx_failure *failure) {
+    gxp_attached *attached = &body->attached;
+    gx_result result;
+    size_t i;
+    uint32_t c;
+    if (desc->region_poses == NULL) return GX_OK;
+    for (i = 0; i < 12 * (size_t)body->holds.count; i++)
+        if (!gxp_is_finite(desc->region_poses[i]))
+            return gxp_fail(failure, GX_ERROR_NOT_FINITE, "region_poses", i / 12);
+    result = gxp_reserve(&body->config.allocator, &attached->targets, 3 * sizeof(double), 0, &attached->target_capacity,
+                         (size_t)body->copies.count + 1);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    memset(attached->targets, 0, 3 * (size_t)body->copies.count * sizeof *attached->targets);
+    for (c = 0; c < body->copies.count; c++)
+        if (body->copies.held[c]) gxp_pose_copy(body, desc, c, attached->targets + 3 * (size_t)c);
+    step->targets = attached->targets;
+    return GX_OK;
+}
+
+/* Arrays by copy are read only if they have the present numbering. */
 static gx_result gxp_attach(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step, gx_failure *failure) {
     gx_result result = gxp_attach_springs(body, desc, step, failure);
     if (result == GX_OK) result = gxp_attach_points(body, desc, step, failure);
-    return result == GX_OK ? gxp_attach_forces(body, desc, step, failure) : result;
+    if (result != GX_OK || (desc->force_count == 0 && desc->region_poses == NULL)) return result;
+    if ((desc->forces != NULL || desc->targets != NULL) && desc->epoch != body->cuts.epoch)
+        return gxp_fail(failure, GX_ERROR_STALE, "epoch", SIZE_MAX);
+    step->epoch = body->cuts.epoch;
+    result = gxp_attach_forces(body, desc, step, failure);
+    return result == GX_OK ? gxp_attach_poses(body, desc, step, failure) : result;
 }
 
 /* >>supports: copies that only slivers carry follow others (RXFEM Eq. 22) ------------------------------------------ */
@@ -7592,7 +8408,7 @@ static void gxp_require_true(gxb_stream *s, int holds) {
 }
 static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
 
-#define GXP_SAVE_VERSION 5u /* raised by every change of the format */
+#define GXP_SAVE_VERSION 6u /* raised by every change of the format */
 #define GXP_BYTE_ORDER   0x01020304u
 
 typedef struct gxp_head {
@@ -7996,14 +8812,43 @@ static void gxp_save_state(gxb_stream *s, gx_body *body) {
     gxp_pass_state(s, body, &n);
 }
 
+/* Has the region as many indices and vertices as its kind can have? */
+static int gxp_is_region_whole(const gxp_region *r) {
+    const uint32_t indices = r->index_count, vertices = r->vertex_count;
+    switch (r->kind) {
+    case GX_REGION_SURFACE: return indices > 0 && indices % 3 == 0 && vertices > 0;
+    case GX_REGION_NODES: return indices > 0 && vertices == 0;
+    case GX_REGION_ANCHORS: return indices > 0 && vertices % 2 == 0 && vertices / 2 == indices;
+    default: return indices == 0 && vertices == 0;
+    }
+}
+
+/* Regions have their indices and vertices one after the other, and nothing else is there. */
+static void gxp_check_regions(gxb_stream *s, gx_body *body) {
+    const gxp_holds *holds = &body->holds;
+    uint32_t i, indices = 0, vertices = 0;
+    for (i = 0; i < holds->count && s->result == GX_OK; i++) {
+        const gxp_region *r = &holds->regions[i];
+        gx_result result;
+        gxp_require_true(s, r->kind <= GX_REGION_ANCHORS && r->zero == 0 && gxp_is_region_whole(r));
+        gxp_require_true(s, r->first_index == indices && r->index_count <= holds->index_count - indices);
+        gxp_require_true(s, r->first_vertex == vertices && r->vertex_count <= holds->vertex_count - vertices);
+        if (s->result != GX_OK) return;
+        indices += r->index_count;
+        vertices += r->vertex_count;
+        result = gxp_check_region(body, r, i, NULL);
+        gxp_require(s, result == GX_OK || result == GX_ERROR_MEMORY ? result : GX_ERROR_DAMAGED);
+    }
+    gxp_require_true(s, indices == holds->index_count && vertices == holds->vertex_count);
+}
+
 static void gxp_check_state(gxb_stream *s, gx_body *body, const gxp_state_counts *n) {
     const gxp_snapshot *snapshot = &body->snapshot;
     const double dt = body->copies.previous_dt;
     uint32_t i;
     gxp_require_true(s, snapshot->next_id >= 1 && snapshot->stale <= 1);
     gxp_require_true(s, gxp_is_finite(dt) && (n->history ? dt > 0 : !(dt > 0 || dt < 0)));
-    for (i = 0; i < body->holds.count; i++)
-        gxp_require_true(s, gxp_check_region(&body->holds.regions[i], i, NULL) == GX_OK);
+    gxp_check_regions(s, body);
     for (i = 0; i < body->copies.count; i++) gxp_require_true(s, body->copies.label[i] >> 1 < snapshot->count);
     for (i = 0; i < snapshot->count; i++)
         gxp_require_true(s, snapshot->id[i] - 1 < snapshot->next_id - 1 &&
@@ -8155,13 +9000,11 @@ static int gxp_same_materials(const gx_body *a, const gx_body *b) {
 }
 
 static int gxp_same_regions(const gx_body *a, const gx_body *b) {
-    uint32_t i;
-    int same = a->holds.count == b->holds.count;
-    for (i = 0; i < a->holds.count && same; i++) {
-        const gx_region *p = &a->holds.regions[i], *q = &b->holds.regions[i];
-        same = p->axis == q->axis && p->side == q->side && gxp_same_doubles(&p->value, &q->value, 1);
-    }
-    return same;
+    const gxp_holds *p = &a->holds, *q = &b->holds;
+    return p->count == q->count && p->index_count == q->index_count && p->vertex_count == q->vertex_count &&
+           (p->count == 0 || memcmp(p->regions, q->regions, p->count * sizeof *p->regions) == 0) &&
+           (p->index_count == 0 || memcmp(p->indices, q->indices, p->index_count * sizeof *p->indices) == 0) &&
+           (p->vertex_count == 0 || gxp_same_doubles(p->vertices, q->vertices, 3 * (size_t)p->vertex_count));
 }
 
 /* Copies the state of a body with the same cells and copies. */
@@ -8190,6 +9033,7 @@ static gx_result gxp_restore_state(gx_body *body, gx_body *from) {
     gxp_release(&body->config.allocator, bytes, size);
     if (!same_held) {
         memset(body->copies.held, 0, body->copies.count);
+        body->holds.listed = 0;
         body->holds.stale = 1;
         body->model.state = GXP_MODEL_STALE;
     }

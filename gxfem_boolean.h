@@ -2205,6 +2205,8 @@ static GXBP_COLD void gxbp_drop_numbers(gxb_store *store, const gxb_block *last)
 /* Releases exact numbers kept since begin. Those of older points and planes are computed again when needed. */
 static GXBP_COLD void gxbp_drop_recent_numbers(gxb_store *store) {
     uint32_t i;
+    if (store->blocks == store->mark_block && (store->blocks == NULL || store->blocks->used == store->mark_used))
+        return;
     for (i = 0; i < store->mark[0]; i++)
         if (store->points[i].exact != NULL && gxbp_is_recent(store, store->points[i].exact))
             store->points[i].exact = NULL;

@@ -189,7 +189,7 @@ static gx_result block_make_mesh_and_body(const block_desc *desc, gx_body **body
 
 /* The scene: made, cut and held at z = 1. GX_ERROR_INVERTED if the jitter turned an element inside out. */
 static inline gx_result block_create(const block_desc *desc, gx_body **body) {
-    const gx_region top = {2, 1, 1.0 - 1e-9};
+    const gx_region top = gx_region_half_space(2, 1, 1.0 - 1e-9);
     gx_result result = block_make_mesh_and_body(desc, body);
     if (result != GX_OK) return result;
     result = block_cut(*body, desc);

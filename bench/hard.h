@@ -512,7 +512,7 @@ static const hard_case hard_cases[] = {
 enum { HARD_CASES = sizeof hard_cases / sizeof hard_cases[0] };
 
 static void hard_trial_make(hard_trial *t, const hard_case *row) {
-    static const gx_region top = {2, 1, 0.999};
+    const gx_region top = gx_region_half_space(2, 1, 0.999);
     size_t e, k;
     memset(t, 0, sizeof *t);
     t->scene.name = row->name;

@@ -246,7 +246,7 @@ static void integrate_mass(const double mass[10], double value[INTEGRANDS]) {
 
 /* The part at node 0: it has the copy of that node with material at x < 1e-300. */
 static void read_part(gx_body *body, double value[INTEGRANDS]) {
-    static const gx_region beside = {0, -1, 1e-300};
+    const gx_region beside = gx_region_half_space(0, -1, 1e-300);
     gxs_model model;
     size_t i, at = 2;
     expect(gx_body_hold(body, &beside, 1, NULL) == GX_OK, "node 0 cannot be held");

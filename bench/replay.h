@@ -107,9 +107,9 @@ static inline void replay_read_regions(replay *r) {
     r->region_count = replay_count(r);
     r->regions = (gx_region *)replay_array(r, NULL, r->region_count, sizeof *r->regions);
     for (i = 0; i < r->region_count; i++) {
-        r->regions[i].axis = (uint32_t)replay_count(r);
-        r->regions[i].side = (int32_t)replay_number(r);
-        r->regions[i].value = replay_number(r);
+        const uint32_t axis = (uint32_t)replay_count(r);
+        const int side = (int)replay_number(r);
+        r->regions[i] = gx_region_half_space(axis, side, replay_number(r));
         replay_expect(r, r->regions[i].axis < 3);
     }
 }

@@ -232,7 +232,7 @@ static double uniform(scene *s) {
 
 /* The mesh stays the caller's until scene_free. held: z from which on the body is held */
 static void scene_make(scene *s, const least_mesh *mesh, double top, double held, pool *p) {
-    const gx_region region = {2, 1, held};
+    const gx_region region = gx_region_half_space(2, 1, held);
     gx_body_desc desc;
     gx_view view;
     memset(s, 0, sizeof *s);

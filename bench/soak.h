@@ -117,7 +117,7 @@ static gx_result make_body(life *l) {
 }
 
 static gx_result begin_life(life *l, int integrator, uint64_t seed) {
-    static const gx_region top = {2, 1, 0.99};
+    const gx_region top = gx_region_half_space(2, 1, 0.99);
     static const gxs_plane floor = {{0, 0, 1}, -0.3, 3e4, 0.3, 0};
     gx_result result;
     random_state = 3 * seed + (uint64_t)integrator;

@@ -74,7 +74,7 @@ typedef struct strip {
 
 static strip make_slices(uint32_t length) {
     static const double z[PIECES + 1] = {0, 1.0 / 15, 3.0 / 15, 6.0 / 15, 10.0 / 15, 1};
-    const gx_region wall = {0, -1, 1e-9};
+    const gx_region wall = gx_region_half_space(0, -1, 1e-9);
     strip s;
     size_t i;
     memset(&s, 0, sizeof s);
@@ -98,7 +98,7 @@ static strip make_slices(uint32_t length) {
 
 /* Where the scene's cuts lie, in cubes. Ends are on planes of nodes. */
 static strip make_accordion(uint32_t cubes, size_t folds) {
-    const gx_region top = {2, 1, cubes - 1e-9};
+    const gx_region top = gx_region_half_space(2, 1, cubes - 1e-9);
     strip s;
     size_t i;
     memset(&s, 0, sizeof s);

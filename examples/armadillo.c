@@ -66,7 +66,8 @@ int main(int argc, char **argv) {
                              .frames = 300,
                              .small_frames = 80,
                              .least_frames = 80};
-    const gx_region limbs[3] = {{1, -1, -0.42}, {0, -1, -0.48}, {0, 1, 0.48}};
+    const gx_region limbs[3] = {gx_region_half_space(1, -1, -0.42), gx_region_half_space(0, -1, -0.48),
+                                gx_region_half_space(0, 1, 0.48)};
     const gx_material material = {{GXS_ST_VENANT_KIRCHHOFF, 6e4, 0.4, 0.0, NULL, NULL}, 1000.0};
     scene s;
     scene_sheet sheets[BLADES];

@@ -34,8 +34,8 @@ int main(void) {
     const uint32_t elements[] = {0, 5, 3, 6, 1, 3, 0, 5, 2, 0, 3, 6, 4, 6, 5, 0, 7, 5, 6, 3};
     const double corners[] = {-9, -9, 0.7, 9, -9, 0.2, 0, 9, 0.5}; /* a triangle larger than the cube, through it */
     const uint32_t triangle[] = {0, 1, 2};
-    const gx_region top = {2, 1, 0.9}; /* axis z, above 0.9 m: nodes there stay where they are */
-    static gx_body_desc cube;          /* static, hence zero: each field has its default */
+    const gx_region top = gx_region_half_space(2, 1, 0.9); /* axis z, above 0.9 m: nodes there stay where they are */
+    static gx_body_desc cube;                              /* static, hence zero: each field has its default */
     static gx_surface sheet;
     static gx_cut_desc cut;
     static gx_step_desc step;

@@ -108,6 +108,8 @@ static const char usage[] =
     "  --density D         kg/m3 (1000)\n"
     "  --gravity X,Y,Z     m/s2 (0,0,-9.81)\n"
     "  --fix 'AXIS<V'      holds the material with x, y or z below V; 'AXIS>V': above\n"
+    "  --fix box:X0,Y0,Z0,X1,Y1,Z1, --fix sphere:X,Y,Z,RADIUS\n"
+    "                      holds the material inside\n"
     "  --stretch X,Y,Z     starts scaled by these factors about the centre of the bounding box\n"
     "  --out PATH          directory of the frames (out); with --format html: the file (out.html)\n"
     "  --format vtu|obj|html\n"
@@ -129,12 +131,24 @@ static int parse_count(const char *text, uint32_t *count) {
     return 1;
 }
 
-/* AXIS<V or AXIS>V */
+/* AXIS<V, AXIS>V, box:X0,Y0,Z0,X1,Y1,Z1, sphere:X,Y,Z,R */
 static int parse_region(const char *text, gx_region *region) {
+    const char *box = gxio_after(text, "box:"), *sphere = gxio_after(text, "sphere:");
+    double v[6];
+    if (box) {
+        if (gxio_argument_list(box, v, 6, 6) != 6) return 0;
+        *region = gx_region_box(v, v + 3);
+        return 1;
+    }
+    if (sphere) {
+        if (gxio_argument_list(sphere, v, 4, 4) != 4) return 0;
+        *region = gx_region_sphere(v, v[3]);
+        return 1;
+    }
     if (text[0] < 'x' || text[0] > 'z' || (text[1] != '<' && text[1] != '>')) return 0;
-    region->axis = (uint32_t)(text[0] - 'x');
-    region->side = text[1] == '<' ? -1 : 1;
-    return gxio_argument_number(text + 2, &region->value);
+    if (!gxio_argument_number(text + 2, v)) return 0;
+    *region = gx_region_half_space((uint32_t)(text[0] - 'x'), text[1] == '<' ? -1 : 1, v[0]);
+    return 1;
 }
 
 static void add_cut(settings *set, const char *spec, uint32_t kind) {
@@ -155,7 +169,7 @@ static const char *store(settings *set, const option *o, const char *value) {
     default:
         return parse_region(value, &set->regions[set->region_count++])
                  ? NULL
-                 : "is not AXIS<V or AXIS>V with the axis x, y or z";
+                 : "is not AXIS<V or AXIS>V with the axis x, y or z, box:X0,Y0,Z0,X1,Y1,Z1 or sphere:X,Y,Z,RADIUS";
     }
 }
 

@@ -46,7 +46,8 @@ int main(int argc, char **argv) {
         .frames = 400,
         .small_frames = 20};
     gx_material material = {{GXS_ST_VENANT_KIRCHHOFF, 2e7, 0.4, 0, NULL, NULL}, 1000.0};
-    gx_region sides[4] = {{0, -1, 1e-9}, {0, 1, 0}, {1, -1, 1e-9}, {1, 1, 0}};
+    gx_region sides[4] = {gx_region_half_space(0, -1, 1e-9), gx_region_half_space(0, 1, 0),
+                          gx_region_half_space(1, -1, 1e-9), gx_region_half_space(1, 1, 0)};
     scene_sheet blade;
     spiral course;
     double cubes, before, stretch;

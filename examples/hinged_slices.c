@@ -29,7 +29,7 @@ int main(int argc, char **argv) {
         .small_frames = 600};
     const double edge = 1.4142135623730951; /* across the hinge, m */
     const double y[CUTS] = {0.1, 0.3, 0.6}; /* slices of 0.1, 0.2 and 0.3 m, and 0.4 m at the wall, y = 1 */
-    const gx_region held[2] = {{0, -1, 1e-9}, {1, 1, 1.0 - 1e-9}};
+    const gx_region held[2] = {gx_region_half_space(0, -1, 1e-9), gx_region_half_space(1, 1, 1.0 - 1e-9)};
     gx_material material = {{GXS_ST_VENANT_KIRCHHOFF, 1e6, 0.4, 0, NULL, NULL}, 1000.0};
     scene_sheet blades[CUTS];
     double residual;

@@ -74,7 +74,7 @@ int main(int argc, char **argv) {
                              .frames = 240,
                              .small_frames = 40,
                              .least_frames = 40};
-    const gx_region sides[2] = {{1, -1, -0.95}, {1, 1, 0.95}};
+    const gx_region sides[2] = {gx_region_half_space(1, -1, -0.95), gx_region_half_space(1, 1, 0.95)};
     const gx_material material = {{GXS_ST_VENANT_KIRCHHOFF, 2e6, 0.4, 0.0, NULL, NULL}, 1000.0};
     const fineness full = {45, 48}, coarse = {20, 21};
     scene s;

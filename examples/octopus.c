@@ -69,7 +69,9 @@ static double mouth_opening(const scene *s, lips of)
 
 static void hold_arms(scene *s)
 {
-    const gx_region held[4] = {{2, 1, 0.02 * scale}, {0, -1, -0.14 * scale}, {0, 1, 0.16 * scale}, {1, 1, 0.09 * scale}};
+    const gx_region held[4] = {
+        gx_region_half_space(2, 1, 0.02 * scale), gx_region_half_space(0, -1, -0.14 * scale),
+        gx_region_half_space(0, 1, 0.16 * scale), gx_region_half_space(1, 1, 0.09 * scale)};
     /* clang-format on */
     scene_hold_all(s, held, 4);
 }

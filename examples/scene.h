@@ -364,10 +364,7 @@ static inline void scene_hold_all(scene *s, const gx_region *regions, size_t cou
 
 /* Holds what lies on one side (-1: below) of a plane across an axis. */
 static inline void scene_hold(scene *s, uint32_t axis, int32_t side, double value) {
-    gx_region region;
-    region.axis = axis;
-    region.side = side;
-    region.value = value;
+    const gx_region region = gx_region_half_space(axis, side, value);
     scene_hold_all(s, &region, 1);
 }
 

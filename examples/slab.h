@@ -427,7 +427,7 @@ enum { SLAB_CUT, SLAB_CONFORMING }; /* the slab's own space, cut; a slice's mesh
 
 /* A grid of nx x ny x nz cubes to fill length, width and thickness, held at x = 0, of small-strain elastic material */
 static gx_body *slab_make_grid(scene *s, gxio_mesh *mesh, const uint32_t n[3], const double size[3]) {
-    static const gx_region wall = {0, -1, 1e-9};
+    const gx_region wall = gx_region_half_space(0, -1, 1e-9);
     gx_body_desc desc;
     gx_material material;
     gx_body *body;

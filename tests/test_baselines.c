@@ -800,7 +800,7 @@ typedef struct swing {
 
 /* Both are held where x is near 0, on each side of the cuts, and have the same material. */
 static swing swing_begin(const workload *w, gxs_material *material) {
-    static const gx_region root = {0, -1, 1e-6};
+    const gx_region root = gx_region_half_space(0, -1, 1e-6);
     swing s;
     size_t i;
     memset(&s, 0, sizeof s);

@@ -1825,9 +1825,9 @@ START_TEST(held_copies) {
     size_t c;
     int i;
     for (i = 0; i < 2; i++) {
-        regions[i].axis = (uint32_t)random_below(3);
-        regions[i].side = random_below(2) ? 1 : -1;
-        regions[i].value = random_real(0.05, 0.95);
+        const uint32_t axis = (uint32_t)random_below(3);
+        const int side = random_below(2) ? 1 : -1;
+        regions[i] = gx_region_half_space(axis, side, random_real(0.05, 0.95));
     }
     ck_assert_int_eq(gx_body_hold(body, regions, 2, NULL), GX_OK);
     check_held(body, regions, 2, seed);
@@ -1850,7 +1850,7 @@ END_TEST
    border is not inside. */
 START_TEST(pieces_outside_the_region_are_free) {
     workload w = grid(1, 1, 1, 5);
-    gx_region region = {2, 1, 0.75};
+    gx_region region = gx_region_half_space(2, 1, 0.75);
     gx_body *body = body_of(&w);
     gx_view view;
     size_t i, held = 0;
@@ -2003,7 +2003,7 @@ END_TEST
 START_TEST(held_body_hangs) {
     workload w = grid(1, 1, 2, 5);
     gx_body *body = body_of(&w);
-    gx_region region = {2, 1, 1.5};
+    gx_region region = gx_region_half_space(2, 1, 1.5);
     gx_step_desc step = still_step();
     gx_view view;
     size_t i;
@@ -2986,7 +2986,7 @@ END_TEST
 START_TEST(bad_arguments_elsewhere) {
     workload w = corner_tet();
     gx_body *body = body_of(&w);
-    gx_region region = {0, 1, 0.5}, bad;
+    gx_region region = gx_region_half_space(0, 1, 0.5), bad;
     gx_step_desc step = still_step(), s;
     gx_view view = view_of(body);
     gx_skin skin;

@@ -78,7 +78,7 @@ END_TEST
 START_TEST(regions) {
     workload w = grid(2, 1, 1, 5); /* x from 0 to 2 */
     gx_body *body = body_of(&w);
-    gx_region good[2] = {{0, -1, 0.5}, {0, 1, 1.5}}, bad[2];
+    gx_region good[2] = {gx_region_half_space(0, -1, 0.5), gx_region_half_space(0, 1, 1.5)}, bad[2];
     gx_view view;
     size_t i, held = 0;
     bad[0] = good[0];
@@ -117,7 +117,7 @@ END_TEST
 /* A solid removes what a region held. The region stays; it holds nothing any more, and cannot be asked for again. */
 START_TEST(regions_that_a_cut_empties) {
     static const double low[3] = {1.25, -1, -1}, high[3] = {3, 2, 2};
-    const gx_region end = {0, 1, 1.5};
+    const gx_region end = gx_region_half_space(0, 1, 1.5);
     workload w = grid(2, 1, 1, 5);
     gx_body *body = body_of(&w), *copy = NULL;
     gx_view view;

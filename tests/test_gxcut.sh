@@ -104,6 +104,10 @@ refuses "frames -1" 2 "--frames" cube5 --frames -1
 refuses "gravity of two" 2 "--gravity" cube5 --gravity 0,1
 refuses "no such axis" 2 "--fix" cube5 --fix 'w<1'
 refuses "nothing to hold" 2 "--fix: regions 1: .*region" cube5 --fix 'z<0.1' --fix 'z>1'
+refuses "box of five" 2 "--fix: 'box:0,0,0,1,1' is not" cube5 --fix box:0,0,0,1,1
+refuses "box turned over to hold" 2 "--fix: regions.high 0" cube5 --fix box:0,0,0,-1,1,1
+refuses "sphere without radius" 2 "--fix: 'sphere:0,0,0' is not" cube5 --fix sphere:0,0,0
+refuses "sphere that holds nothing" 2 "--fix: regions 0: .*region" cube5 --fix sphere:0.5,0.5,0.5,0.1
 refuses "no such format" 2 "--format" cube5 --format stl
 refuses "cut after the end" 2 "--cut-at" cube5 --frames 3 --cut-at 3
 refuses "grid of 7" 2 "grid:1,1,1,7" grid:1,1,1,7
@@ -247,6 +251,7 @@ check "four frames and a collection" "$([ "$(find out -type f | wc -l)" -eq 5 ] 
 has "frames" frames 4
 has "frames" fragments 2
 check "summary" "$(grep -q 'frames.pvd' stdout && grep -q 'ms each' stdout || echo 'incomplete')"
+runs "held in a box and a sphere" cube5 --sheet plane:0.5,0.5,0.5,1,0,0 --frames 2 --fix box:-1,-1,0.9,0.1,2,2 --fix sphere:1,1,1,0.5
 runs "obj frames" cube5 $planes_x --frames 2 --format obj --out here
 check "groups" "$([ "$(grep -c '^g ' here/frame_0001.obj)" -eq 6 ] && [ ! -e here/frames.pvd ] || echo 'other groups or files')"
 

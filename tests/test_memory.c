@@ -257,11 +257,41 @@ static gx_result draw(gx_body *body) {
     return gx_body_skin(body, NULL, &skin, NULL);
 }
 static gx_result hold(gx_body *body) {
-    static const gx_region regions[2] = {{2, 1, 0.9}, {0, -1, 0.2}};
+    const gx_region regions[2] = {gx_region_half_space(2, 1, 0.9), gx_region_half_space(0, -1, 0.2)};
     return gx_body_hold(body, regions, 2, NULL);
 }
+/* Regions of all other kinds */
+static gx_result hold_kinds(gx_body *body) {
+    const double low[3] = {-1, -1, -1}, high[3] = {0.45, 0.6, 2}, center[3] = {1, 1, 1};
+    const uint32_t nodes[2] = {1, 2};
+    const gx_anchor anchor = {0, {0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}};
+    static const double corner[12] = {-1, -1, -1, 3, -1, -1, -1, 3, -1, -1, -1, 3};
+    static const uint32_t triangles[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    const gx_surface shell = surface(corner, 4, triangles, 4, GX_SURFACE_SOLID);
+    gx_region regions[5];
+    memset(regions, 0, sizeof regions);
+    regions[0] = gx_region_sphere(center, 0.9);
+    regions[1] = gx_region_box(low, high);
+    regions[2].kind = GX_REGION_SURFACE;
+    regions[2].surface = &shell;
+    regions[3].kind = GX_REGION_NODES;
+    regions[3].nodes = nodes;
+    regions[3].node_count = 2;
+    regions[4].kind = GX_REGION_ANCHORS;
+    regions[4].anchors = &anchor;
+    regions[4].anchor_count = 1;
+    return gx_body_hold(body, regions, 5, NULL);
+}
+static gx_result posed_step(gx_body *body) {
+    static const double poses[60] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0.01};
+    gx_step_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.dt = 0.01;
+    desc.region_poses = poses;
+    return gx_body_step(body, &desc, NULL, NULL);
+}
 static gx_result hold_and_look(gx_body *body) {
-    static const gx_region region = {2, 1, 0.8};
+    const gx_region region = gx_region_half_space(2, 1, 0.8);
     gx_result result = gx_body_hold(body, &region, 1, NULL);
     return result == GX_OK ? look(body) : result;
 }
@@ -462,7 +492,7 @@ static void sweep(const char *what, const action *before, action act) {
     sweep_stubborn(what, before, act, &truth);
 }
 
-static const action nothing[] = {NULL}, after_a_cut[] = {cut_sheet, NULL},
+static const action nothing[] = {NULL}, after_a_cut[] = {cut_sheet, NULL}, held_kinds[] = {hold_kinds, cut_sheet, NULL},
                     after_two[] = {cut_sheet, cut_part, look, NULL}, after_solid[] = {cut_solid, NULL},
                     after_a_ring[] = {cut_ring, NULL}, held[] = {hold, cut_sheet, step, NULL},
                     drawn[] = {cut_sheet, draw, NULL},
@@ -546,6 +576,10 @@ END_TEST
 /* A region may be taken even if the view after it fails: the state is then the one with the region. */
 START_TEST(holding) {
     sweep("a hold", after_a_cut, hold);
+    sweep("a hold of all kinds", after_a_cut, hold_kinds);
+    sweep("a view of what is held", held_kinds, look);
+    sweep("a step with poses", held_kinds, posed_step);
+    sweep("cloning what is held", held_kinds, clone);
     {
         memory m;
         gx_body *body;

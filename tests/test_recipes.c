@@ -39,7 +39,7 @@ static gx_body *make_body(uint32_t cells, const gx_jobs *jobs) {
 }
 
 static gx_body *make_hanging(uint32_t cells, const gx_jobs *jobs) {
-    const gx_region top = {2, 1, 1 - 1e-9};
+    const gx_region top = gx_region_half_space(2, 1, 1 - 1e-9);
     gx_body *body = make_body(cells, jobs);
     OK(gx_body_hold(body, &top, 1, NULL));
     return body;
@@ -124,6 +124,26 @@ static double height_of(gx_body *body) {
     return hit.position[2];
 }
 
+/* Removes all below a height. */
+static void cut_away_below(gx_body *body, double height) {
+    static const uint32_t triangles[36] = {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
+                                           1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7};
+    const double x[24] = {-9, -9, -9,     9, -9, -9,     9, 9, -9,     -9, 9, -9,
+                          -9, -9, height, 9, -9, height, 9, 9, height, -9, 9, height};
+    gx_surface box;
+    gx_cut_desc cut;
+    memset(&box, 0, sizeof box);
+    memset(&cut, 0, sizeof cut);
+    box.vertices = x;
+    box.vertex_count = 8;
+    box.triangles = triangles;
+    box.triangle_count = 12;
+    box.kind = GX_SURFACE_SOLID;
+    cut.surfaces = &box;
+    cut.surface_count = 1;
+    OK(gx_body_cut(body, &cut, NULL, NULL));
+}
+
 START_TEST(drag) {
     gx_body *body = make_hanging(4, NULL);
     const gx_step_desc step = step_of(1.0 / 60);
@@ -140,11 +160,19 @@ START_TEST(drag) {
     ck_assert(height_of(body) < before - 0.1);
     ck_assert(g.force[2] < 0); /* it is pulled down */
     cut_through(body, 2, 0.4711);
-    ck_assert_int_eq(drag_step(body, step, &g), GX_ERROR_STALE);
-    OK(gx_body_skin(body, NULL, &skin, NULL));
-    OK(grab_again(body, below, up, &g));
+    OK(keep_hold(body, &g));
     ck_assert(g.holds);
-    OK(drag_step(body, step, &g));
+    for (i = 0; i < 60; i++) OK(drag_step(body, step, &g)); /* what was cut off hangs on the spring alone */
+    {
+        double held[3];
+        OK(gx_body_anchor_point(body, &g.anchor, NULL, held, NULL));
+        ck_assert(fabs(held[2] - g.spring.target[2]) < 0.05);
+    }
+    cut_away_below(body, 0.4);
+    OK(keep_hold(body, &g));
+    ck_assert(!g.holds);
+    OK(drag_step(body, step, &g)); /* nothing is held: a step as any */
+    OK(gx_body_skin(body, NULL, &skin, NULL));
     {
         const double beside[3] = {9, 9, -5};
         OK(grab(body, beside, up, 1e4, &g));
@@ -159,28 +187,39 @@ END_TEST
 
 START_TEST(hold) {
     enum { CELLS = 4, NODES = 125 };
+    const double joint[3] = {0, 0, 0}, shift[3] = {0, 0.05, -0.02};
     gx_body *body = make_body(CELLS, NULL);
-    gx_step_desc step = step_of(1.0 / 60);
-    static gxs_spring springs[NODES];
-    uint8_t is_held[NODES];
+    const gx_step_desc step = step_of(1.0 / 60);
+    uint32_t nodes[NODES];
     block_mesh mesh;
-    size_t i, count;
+    gx_view view;
+    size_t i, k, count = 0, held[2] = {0, 0};
     OK(block_make_mesh(CELLS, 0.2, &mesh));
-    for (i = 0; i < NODES; i++) is_held[i] = mesh.positions[3 * i + 2] > 0.999 && mesh.positions[3 * i] < 0.6;
-    OK(hold_nodes(body, is_held, mesh.positions, 1e6, springs, NODES, &count));
+    for (i = 0; i < NODES; i++)
+        if (mesh.positions[3 * i + 2] > 0.999 && mesh.positions[3 * i] < 0.6) nodes[count++] = (uint32_t)i;
     ck_assert_uint_eq(count, 15);
-    step.springs = springs;
-    step.spring_count = count;
-    for (i = 0; i < 120; i++) OK(gx_body_step(body, &step, NULL, NULL));
-    {
-        const gx_view view = view_of(body);
-        size_t c;
-        for (c = 0; c < view.copy_count; c++)
-            if (is_held[view.copy_node[c]]) ck_assert(fabs(view.displacement[3 * c + 2]) < 0.01);
+    OK(hold_parts(body, nodes, count, joint, 0.3));
+    for (i = 0; i < 20; i++) {
+        const double now[3] = {0, 0.05 * (double)(i + 1) / 20, -0.02 * (double)(i + 1) / 20};
+        OK(pose_step(body, step, joint, 0.2 * (double)(i + 1) / 20, now));
     }
-    memset(is_held, 0, sizeof is_held);
-    OK(hold_nodes(body, is_held, mesh.positions, 1e6, springs, NODES, &count));
-    ck_assert_uint_eq(count, 0);
+    view = view_of(body);
+    for (i = 0; i < view.copy_count; i++) {
+        const double *x = mesh.positions + 3 * view.copy_node[i], *u = view.displacement + 3 * i;
+        if (view.copy_region[i] == UINT32_MAX) continue;
+        held[view.copy_region[i]]++;
+        if (view.copy_region[i] == 0)
+            for (k = 0; k < 3; k++) ck_assert(fabs(u[k]) < 1e-15);
+        else {
+            ck_assert(fabs(x[0] + u[0] - (cos(0.2) * x[0] - sin(0.2) * x[1] + shift[0])) < 1e-12);
+            ck_assert(fabs(x[1] + u[1] - (sin(0.2) * x[0] + cos(0.2) * x[1] + shift[1])) < 1e-12);
+            ck_assert(fabs(u[2] - shift[2]) < 1e-12);
+        }
+    }
+    ck_assert_uint_eq(held[0], 15);
+    ck_assert_uint_gt(held[1], 3);
+    ck_assert_int_eq(hold_parts(body, nodes, count, mesh.positions, 1e-6), GX_OK); /* one node */
+    ck_assert_int_eq(hold_parts(body, nodes, count, shift, 1e-6), GX_ERROR_EMPTY);
     block_free_mesh(&mesh);
     gx_body_destroy(body);
 }
@@ -316,7 +355,7 @@ END_TEST
 /* A block of 0.6 m, turned by 45 degrees, held by its upper edge */
 static gx_body *make_pendulum(void) {
     const double size = 0.6, half = sqrt(0.5), edge = 2 * size * half;
-    gx_region top = {2, 1, 0};
+    gx_region top = gx_region_half_space(2, 1, 0);
     gx_step_desc rest = step_of(0);
     gx_body_desc desc;
     block_mesh mesh;

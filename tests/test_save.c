@@ -57,11 +57,38 @@ static gx_body *random_body(workload *w, int cuts, int spare) {
 }
 
 static gx_result hold_low(gx_body *body, double value) {
-    gx_region region;
-    region.axis = 2;
-    region.side = -1;
-    region.value = value;
+    const gx_region region = gx_region_half_space(2, -1, value);
     return gx_body_hold(body, &region, 1, NULL);
+}
+
+/* Regions of all kinds, of which each but the first may hold nothing that the others do not. If one holds nothing at
+   all, the first alone. */
+static void hold_all(gx_body *body, double value) {
+    static const double x[12] = {-1, -1, -1, 9, -1, -1, -1, 9, -1, -1, -1, 9}, middle[3] = {0.25, 0.25, 0.25};
+    static const uint32_t triangles[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}, nodes[3] = {3, 1, 3};
+    const double low[3] = {-1, -0.5, -1}, high[3] = {value, 0.9, 5};
+    gx_surface shell;
+    gx_anchor anchor;
+    gx_region regions[6];
+    memset(&shell, 0, sizeof shell);
+    memset(regions, 0, sizeof regions);
+    shell.vertices = x;
+    shell.vertex_count = 4;
+    shell.triangles = triangles;
+    shell.triangle_count = 4;
+    regions[0] = gx_region_half_space(2, -1, value);
+    regions[1] = gx_region_box(low, high);
+    regions[2] = gx_region_sphere(low, 1.75);
+    regions[3].kind = GX_REGION_SURFACE;
+    regions[3].surface = &shell;
+    regions[4].kind = GX_REGION_NODES;
+    regions[4].nodes = nodes;
+    regions[4].node_count = 3;
+    regions[5].kind = GX_REGION_ANCHORS;
+    regions[5].anchors = &anchor;
+    regions[5].anchor_count = 1;
+    if (gx_body_anchor(body, 0, middle, &anchor, NULL) != GX_OK || gx_body_hold(body, regions, 6, NULL) != GX_OK)
+        ck_assert_int_eq(gx_body_hold(body, regions, 1, NULL), GX_OK);
 }
 
 /* ---- bytes ---- */
@@ -124,6 +151,7 @@ static void expect_equal_views(gx_body *a, gx_body *b, uint64_t seed) {
     SAME(p.slot_parent, q.slot_parent, p.slot_count);
     SAME(p.copy_node, q.copy_node, p.copy_count);
     SAME(p.copy_held, q.copy_held, p.copy_count);
+    SAME(p.copy_region, q.copy_region, p.copy_count);
     SAME(p.displacement, q.displacement, 3 * p.copy_count);
     SAME(p.velocity, q.velocity, 3 * p.copy_count);
     SAME(p.rest_time, q.rest_time, p.copy_count);
@@ -180,7 +208,7 @@ START_TEST(random_bodies) {
     w = random_below(2) ? random_mesh() : grid(2, 2, 1 + (size_t)random_below(2), random_below(2) ? 5 : 6);
     body = random_body(&w, 1 + random_below(5), 3);
     if (random_below(2)) shake(body, 0.05);
-    if (random_below(2)) ck_assert_int_eq(hold_low(body, random_real(0.1, 1)), GX_OK);
+    if (random_below(2)) hold_all(body, random_real(0.1, 1));
     b = saved(body);
     copy = _i % 2 ? clone_of(body) : loaded(b);
     again = saved(copy);
@@ -581,7 +609,7 @@ START_TEST(restoring_from_near_strangers) {
     workload w = grid(2, 1, 1, 5);
     gx_body_desc desc = desc_of(&w);
     gx_material materials[2];
-    gx_region regions[2] = {{2, -1, 0.5}, {0, -1, 0.5}};
+    gx_region regions[2] = {gx_region_half_space(2, -1, 0.5), gx_region_half_space(0, -1, 0.5)};
     gx_body *bodies[OTHERS + 1];
     gx_step_desc step;
     uint32_t of[16];
@@ -772,7 +800,7 @@ START_TEST(foreign_bytes) {
     { /* older versions, and one yet to come */
         uint32_t version, now;
         memcpy(&now, b.data + 8, sizeof now);
-        ck_assert_uint_eq(now, 5);
+        ck_assert_uint_eq(now, 6);
         for (version = 0; version <= now; version++) {
             const uint32_t wrong = version < now ? version : now + 1;
             memcpy(b.data + 8, &wrong, sizeof wrong);
@@ -848,7 +876,7 @@ static gx_body *small_body(workload *w, int variant) {
     step.dt = 0.01;
     step.gravity[2] = -9.81;
     step.integrator = GXS_BDF2;
-    ck_assert_int_eq(hold_low(body, 0.1), GX_OK);
+    hold_all(body, 0.1);
     ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
     view_of(body);
     cut_by(body, w, 1, 2);
@@ -865,7 +893,7 @@ static void seal(bytes b) {
 
 /* A loaded body is used in every way; errors are fine. */
 static void use(gx_body *body, const workload *w) {
-    static const gx_region region = {0, 1, 0.3};
+    const gx_region region = gx_region_half_space(0, 1, 0.3);
     static const double origin[3] = {0.2, 0.2, -3}, direction[3] = {0, 0.01, 1};
     gx_surface surface = surface_of(&w->surfaces[3]);
     gx_cut_desc cut;

@@ -17,8 +17,7 @@ static gx_step_desc step_of(double dt, double gravity) {
 }
 
 static void hold_above(gx_body *body, double z) {
-    gx_region region = {2, 1, 0};
-    region.value = z;
+    const gx_region region = gx_region_half_space(2, 1, z);
     ck_assert_int_eq(gx_body_hold(body, &region, 1, NULL), GX_OK);
 }
 
@@ -752,7 +751,7 @@ static double most_of(const workload *w, const gx_view *view, const double *vect
 START_TEST(kicked_slivers_stay_with_their_body) {
     static const uint64_t seeds[4] = {87, 93, 124, 7};
     static const gxs_integrator integrators[3] = {GXS_BDF1, GXS_BDF2, GXS_MIDPOINT};
-    const gx_region top = {2, 1, 1.9};
+    const gx_region top = gx_region_half_space(2, 1, 1.9);
     gx_step_desc step = step_of(1.0 / 60, -9.81);
     workload w;
     gx_body *body = NULL;
@@ -798,7 +797,7 @@ END_TEST
 
 /* Displacement of a bar held at one end, in slices of 1/15 of an element and more, after 0.24 s of gravity */
 static double *droop(gxs_integrator integrator, int steps, size_t *count) {
-    const gx_region end = {0, -1, 0.1};
+    const gx_region end = gx_region_half_space(0, -1, 0.1);
     gx_step_desc step = step_of(0.24 / steps, -9.81);
     workload w = grid(4, 1, 1, 5);
     gx_body_desc desc = desc_of(&w);

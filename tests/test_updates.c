@@ -9,7 +9,7 @@
 enum { BLOCK = 6 }; /* cells along an edge: enough copies for multigrid */
 
 static void hold_top(gx_body *body) {
-    const gx_region top = {2, 1, BLOCK - 1e-9};
+    const gx_region top = gx_region_half_space(2, 1, BLOCK - 1e-9);
     ck_assert_int_eq(gx_body_hold(body, &top, 1, NULL), GX_OK);
 }
 
@@ -248,7 +248,7 @@ static double coarse_difference(const gxsp_level *level, const float *block) {
    the numbers of a model whose numbers are all made at that state. */
 START_TEST(small_cuts_keep_coarse_numbers) {
     workload w = grid(40, 4, 4, 5 + (uint32_t)(_i % 2));
-    const gx_region left = {0, -1, 1e-9};
+    const gx_region left = gx_region_half_space(0, -1, 1e-9);
     gx_step_desc step = step_of(0.2);
     gx_body *body;
     size_t c;
@@ -291,7 +291,7 @@ END_TEST
 START_TEST(changed_models_take_no_more_iterations) {
     workload w = grid(12, 12, 12, 5);
     gx_body *changed, *whole;
-    const gx_region top = {2, 1, 12 - 1e-9};
+    const gx_region top = gx_region_half_space(2, 1, 12 - 1e-9);
     gx_step_desc step = step_of(0.033);
     uint32_t by_change = 0, by_whole = 0;
     double x;
@@ -419,7 +419,7 @@ END_TEST
 START_TEST(what_is_written_between_cut_and_step_wakes) {
     workload w = grid(4, 2, 2, 5);
     gx_body *body;
-    const gx_region top = {2, 1, 2 - 1e-9};
+    const gx_region top = gx_region_half_space(2, 1, 2 - 1e-9);
     gx_step_desc step = step_of(0.033);
     gxs_step_report report;
     gx_view view;
