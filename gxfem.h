@@ -7281,7 +7281,7 @@ static gx_result gxp_visit_near(gx_body *body, gxp_walk *walk, uint32_t element)
 }
 
 /* Finds the cell nearest to a point of space, among those for which admits(user, slot) is not 0 (NULL: all), of equally
-   near ones that with the lowest slot. Cells that contain the point count by the distance of their surface. */
+   near ones that with the lowest slot. The point lies in none of them (gxp_find_cells_at). */
 static gx_result gxp_find_nearest(gx_body *body, const double point[3], int (*admits)(void *user, uint32_t slot),
                                   void *user, gxp_near *near) {
     gxp_near_walk own;
