@@ -44,6 +44,7 @@
  *     >>anchoring  material points that survive cuts
  *     >>stepping   held regions, time steps
  *     >>drawing    the visual surface, rays
+ *     >>locating   points of space: what material is there; where material is
  *     >>hashing    of the topology, of the state
  *     >>saving     save and load, clone and restore
  *     then, under GXFEM_IMPLEMENTATION, in the order of a cut; functions call their own and earlier sections only:
@@ -53,7 +54,8 @@
  *     a sheet's thickness:       >>solidify
  *     what is held and whole:    >>anchors >>regions >>grips >>map >>fragments >>motion
  *     a step:                    >>attached >>supports >>model >>step
- *     the skin:                  >>corners >>vertices >>faces >>skinning >>rays
+ *     the skin:                  >>corners >>vertices >>faces >>skinning
+ *     points and rays:           >>tree >>locate >>rays
  *     beginning, end, bytes:     >>create >>hashes >>stream >>save
  *
  * Words. Facet: a polygon inside an element or in an element face, made by cuts. Wall: a facet that a sheet covers.
@@ -534,16 +536,22 @@ GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3] 
 
 #define GX_HIT_COPIES 16 /* room for the copies of a hit */
 
-/* Where a ray first meets the deformed skin. gx_hit_point makes a point of it, to which a spring can be attached. */
+/* A point of the deformed body: where a ray first meets the skin (gx_body_pick), or the material at or nearest to a
+   point of space (gx_body_locate). gx_hit_point makes a point of it, to which a spring can be attached. */
 typedef struct gx_hit {
-    uint32_t triangle;                   /* of the skin; UINT32_MAX: the ray meets nothing, and the rest is 0 */
-    uint32_t fragment, element, surface; /* of the triangle */
-    double distance;                     /* in lengths of direction */
-    double position[3], material[3];     /* deformed, m; material coordinates, m */
-    uint32_t copy_count;                 /* of the copies that move the point */
-    uint32_t copies[GX_HIT_COPIES];      /* copy_count */
-    double weights[GX_HIT_COPIES];       /* copy_count, above 0, 1 in sum */
-    uint64_t epoch;                      /* of the numbering of copies, as in gx_view: for gxs_point */
+    /* Of the skin. UINT32_MAX: the ray meets nothing, and the rest is 0; or a located point, which has none */
+    uint32_t triangle;
+    uint32_t fragment, element;
+    uint32_t surface; /* of the triangle; of a located point: 0 */
+    uint32_t cell;    /* below gx_view.cell_count */
+    uint32_t slot;    /* names the cell also after further cuts, see gx_body_place */
+    /* of a ray: in lengths of direction. Of a located point: m, from the point of space; 0: that is in the cell */
+    double distance;
+    double position[3], material[3]; /* deformed, m; material coordinates, m */
+    uint32_t copy_count;             /* of the copies that move the point */
+    uint32_t copies[GX_HIT_COPIES];  /* copy_count */
+    double weights[GX_HIT_COPIES];   /* copy_count, above 0, 1 in sum */
+    uint64_t epoch;                  /* of the numbering of copies, as in gx_view: for gxs_point */
 } gx_hit;
 /* The point of a hit, for springs and contact. Keep the hit as long: the point may refer to it. If the ray met nothing,
    the point has count 0, which steps refuse. */
@@ -554,10 +562,37 @@ GXFEM_API gxs_point gx_hit_point(const gx_hit *hit);
    too thin for points given by doubles), MEMORY, LIMIT. */
 GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *anchor,
                                   gx_failure *failure /* or NULL */);
-/* Finds the nearest triangle on a ray. Errors: ARGUMENT (also: direction is 0), NOT_FINITE, SEQUENCE (there is no skin,
-   or a cut has been since). */
+/* Finds the nearest triangle on a ray, the first of equally near ones. Takes a pass over the copies, then no more than
+   the ray meets. Errors: ARGUMENT (also: direction is 0), NOT_FINITE, SEQUENCE (there is no skin, or a cut has been
+   since), MEMORY, LIMIT. */
 GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit,
                                  gx_failure *failure /* or NULL */);
+
+/* >>locating ------------------------------------------------------------------------------------------------------- */
+
+/* A cell of an uncut element fills its deformed element. A cell of a cut one fills the part that is its own. Corners
+   are where rest + displacement, rounded once, puts them; which cells contain a point is decided exactly by that. Faces
+   and walls belong to the cells on both their sides. Inverted elements contain points as others do, flat ones none. */
+
+/* Finds the material at points of space: of the cells that contain a point the one with the lowest slot. hit.material
+   is within 2^-48 of the element's size of the exact place, and hit.position is the point. Where no cell contains it,
+   the nearest point of the body's surface: distance is above 0. The first call makes a tree of boxes; each takes a pass
+   over the copies, and the first after a cut lists the cells. Many points are faster in one call than in many.
+   points: count x 3, m, in space. hits: room for count. After an error hits mean nothing.
+   Errors: ARGUMENT, NOT_FINITE (a point, or a copy's displacement), RANGE (likewise: 2^128 or more), EMPTY (all
+   material is removed), LIMIT, MEMORY. */
+GXFEM_API gx_result gx_body_locate(gx_body *body, const double *points, size_t count, gx_hit *hits,
+                                   gx_failure *failure /* or NULL */);
+/* Finds all cells that contain a point, by slot: several where pieces overlap, and on faces and walls. *count: how many
+   there are, also after CAPACITY; 0 is no error. Errors: as above, CAPACITY (capacity is below *count). */
+GXFEM_API gx_result gx_body_locate_all(gx_body *body, const double point[3], gx_hit *hits, size_t capacity,
+                                       size_t *count, gx_failure *failure /* or NULL */);
+/* Gives where a cell has a material point; outside of its element, where its affine map, extended, would have it. slot:
+   of a hit, below gx_view.slot_count. It names a cell for good; where a cut divides the cell, one part keeps it.
+   Errors: ARGUMENT, NOT_FINITE (material, or a copy's displacement), RANGE (likewise), INDEX (slot), EMPTY (slot: the
+   cell was removed). */
+GXFEM_API gx_result gx_body_place(const gx_body *body, uint32_t slot, const double material[3], double position[3],
+                                  gx_failure *failure /* or NULL */);
 
 /* >>hashing -------------------------------------------------------------------------------------------------------- */
 
@@ -732,7 +767,7 @@ typedef struct gxp_leaves { /* beside the leaves of the complex */
 } gxp_leaves;
 
 typedef struct gxp_copies {
-    uint32_t count, capacity[11];
+    uint32_t count, capacity[12];
     uint32_t *node;
     double *displacement, *velocity; /* x 3 */
     double *rest_time;               /* s */
@@ -741,6 +776,7 @@ typedef struct gxp_copies {
     uint32_t *before; /* 2 x its index when the solver's model was made; of a newer copy: 2 x that of its origin, + 1 */
     /* displacement and velocity a step ago, x 3, and room for those of now; from the first BDF2 step on */
     double *history[4];
+    double *seen;       /* displacement when the tree was last refitted, x 3; from the first use of the tree on */
     double previous_dt; /* s, of the step that history[0] and [1] are from; 0: there is none */
 } gxp_copies;
 
@@ -841,6 +877,7 @@ typedef struct gxp_view { /* the body as gx_view tells it */
     uint32_t count, capacity[5];
     uint32_t *slot, *fragment, *element, *copies; /* of each kept cell; copies x 4 */
     double *volume;
+    gxp_words indices;         /* by slot: the index of a kept cell in these lists; empty until somebody asks */
     gxp_words copy_fragment;   /* of each copy: a parent among copies, see gxp_find; the root stands for its fragment */
     gxp_words fragment_number; /* of each root */
     /* copy_fragment and fragment_number hold for copies older than splits, and nothing has been removed */
@@ -933,9 +970,10 @@ typedef struct gxp_skin {
     uint32_t *copies, *point; /* from here on see gx_skin */
     double *weights, *rest;
     float *normal, *texture;
-    uint32_t triangle_count, triangle_capacity[6];
+    uint32_t triangle_count, triangle_capacity[7];
     gxp_skin_links *links;
     uint32_t *triangles, *fragment, *element, *material, *surface;
+    uint32_t *cell;  /* slot */
     gxp_words first; /* element_count: the first of its triangles */
     gxp_skin_slot *slots;
     uint32_t slot_count, slot_capacity, free_slot;
@@ -955,6 +993,33 @@ typedef struct gxp_skin {
     double *positions;                        /* vertices x 3 */
     uint32_t normal_capacity, position_capacity;
 } gxp_skin;
+
+typedef struct gxp_bounds {
+    double low[3], high[3]; /* low above high: nothing is there */
+} gxp_bounds;
+
+/* Boxes over the deformed cells, see >>tree */
+typedef struct gxp_tree {
+    uint32_t cluster_count; /* a power of two; 0: the tree is not made */
+    gxp_words leaf_first;   /* cluster_count x GXP_TREE_LEAVES + 1, into mesh.box_elements */
+    gxp_bounds *leaf_boxes; /* cluster_count x GXP_TREE_LEAVES */
+    gxp_bounds *own_boxes;  /* element_count: of elements, in the order of mesh.box_elements */
+    gxp_bounds *boxes;      /* 2 x cluster_count - 1: below i are 2 i + 1 and 2 i + 2; clusters are the last ones */
+    uint32_t leaf_box_capacity, own_box_capacity, box_capacity;
+    gxp_words marks;         /* of boxes: GXP_BOX_MOVED, GXP_BOX_STALE */
+    gxp_words node_first;    /* node_count + 1, into node_clusters */
+    gxp_words node_clusters; /* clusters with elements around each node */
+    double reach[3];         /* largest |coordinates| at rest */
+    int wild;                /* a copy was out of range when the boxes were refitted */
+    /* of a call */
+    gxp_words found; /* slots of cells at a point, ascending */
+    gxp_words near;  /* places in mesh.box_elements: of elements near points that are located together */
+    gxp_keys order;  /* place on a curve, point */
+} gxp_tree;
+enum {
+    GXP_BOX_MOVED = 1, /* copies that it must contain have moved */
+    GXP_BOX_STALE = 2  /* of a cluster: its leaves' boxes are older than its own */
+};
 
 /* --- working memory of one call. No contents last to the next call; the memory stays, so that a cut as large as the
    last one allocates nothing. --- */
@@ -1023,6 +1088,7 @@ struct gx_body {
     gxp_model model;
     gxp_attached attached;
     gxp_skin skin;
+    gxp_tree tree;
     gxp_scratch scratch;
 };
 
@@ -1091,8 +1157,9 @@ static const gxp_column gxp_copy_columns[] = {
     GXP_COLUMN(copies, history[0],   capacity,  7, 3 * sizeof(double), GXP_HISTORY | GXP_LATER),
     GXP_COLUMN(copies, history[1],   capacity,  8, 3 * sizeof(double), GXP_HISTORY | GXP_LATER),
     GXP_COLUMN(copies, history[2],   capacity,  9, 3 * sizeof(double), GXP_LATER),
-    GXP_COLUMN(copies, history[3],   capacity, 10, 3 * sizeof(double), GXP_LATER)};
-enum { GXP_TEXTURE_COLUMN = 3, GXP_FIRST_HISTORY = 7 }; /* places in the lists above */
+    GXP_COLUMN(copies, history[3],   capacity, 10, 3 * sizeof(double), GXP_LATER),
+    GXP_COLUMN(copies, seen,         capacity, 11, 3 * sizeof(double), GXP_LATER)};
+enum { GXP_TEXTURE_COLUMN = 3, GXP_FIRST_HISTORY = 7, GXP_SEEN_COLUMN = 11 }; /* places in the lists above */
 static const gxp_column gxp_surface_columns[] = {
     GXP_COLUMN(cuts, surfaces, surface_capacity, 0, sizeof(gxp_surface_record), GXP_TOPOLOGY)};
 static const gxp_column gxp_map_columns[] = {
@@ -1134,7 +1201,8 @@ static const gxp_column gxp_skin_triangle_columns[] = {
     GXP_COLUMN(skin, fragment,  triangle_capacity, 2, sizeof(uint32_t), 0),
     GXP_COLUMN(skin, element,   triangle_capacity, 3, sizeof(uint32_t), 0),
     GXP_COLUMN(skin, material,  triangle_capacity, 4, sizeof(uint32_t), 0),
-    GXP_COLUMN(skin, surface,   triangle_capacity, 5, sizeof(uint32_t), 0)};
+    GXP_COLUMN(skin, surface,   triangle_capacity, 5, sizeof(uint32_t), 0),
+    GXP_COLUMN(skin, cell,      triangle_capacity, 6, sizeof(uint32_t), 0)};
 
 #define GXP_TABLE(count, columns) {offsetof(gx_body, count), columns, sizeof columns / sizeof *columns}
 
@@ -1173,7 +1241,7 @@ static const gxp_column gxp_lists[] = {
     GXP_WORDS(holds.node_first), GXP_WORDS(holds.nodes), GXP_WORDS(holds.region_of), GXP_WORDS(holds.near_nodes),
     GXP_WORDS(holds.probe.points), GXP_WORDS(holds.probe.reached),
     GXP_LIST(holds.probe.triangles, holds.probe.triangle_capacity, sizeof(gxb_triangle)),
-    GXP_WORDS(view.copy_fragment), GXP_WORDS(view.fragment_number),
+    GXP_WORDS(view.indices), GXP_WORDS(view.copy_fragment), GXP_WORDS(view.fragment_number),
     GXP_WORDS(view.splits), GXP_WORDS(view.split_cells), GXP_WORDS(view.split_parents),
     GXP_WORDS(model.changed), GXP_WORDS(model.thin),
     GXP_LIST(attached.springs, attached.spring_capacity, sizeof(gxs_spring)),
@@ -1189,6 +1257,11 @@ static const gxp_column gxp_lists[] = {
     GXP_WORDS(skin.corner_points), GXP_WORDS(skin.corner_vertices),
     GXP_LIST(skin.normals, skin.normal_capacity, 3 * sizeof(double)),
     GXP_LIST(skin.positions, skin.position_capacity, 3 * sizeof(double)),
+    GXP_WORDS(tree.leaf_first), GXP_LIST(tree.leaf_boxes, tree.leaf_box_capacity, sizeof(gxp_bounds)),
+    GXP_LIST(tree.own_boxes, tree.own_box_capacity, sizeof(gxp_bounds)),
+    GXP_LIST(tree.boxes, tree.box_capacity, sizeof(gxp_bounds)), GXP_WORDS(tree.marks),
+    GXP_WORDS(tree.node_first), GXP_WORDS(tree.node_clusters), GXP_WORDS(tree.found), GXP_WORDS(tree.near),
+    GXP_KEYS(tree.order),
     GXP_WORDS(scratch.removed), GXP_WORDS(scratch.pinches), GXP_WORDS(scratch.touched), GXP_WORDS(scratch.new_cells),
     GXP_KEYS(scratch.links), GXP_WORDS(scratch.link_first), GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
     GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements),
@@ -2204,7 +2277,7 @@ static gx_result gxp_list_cells(gx_body *body) {
     gxp_view *view = &body->view;
     uint32_t e, cell, i;
     gx_result result;
-    view->count = 0;
+    view->count = view->indices.count = 0;
     result = gxp_grow_rows(body, GXP_VIEW, body->cells.count);
     if (result == GX_OK) result = gxp_start_words(body, &view->copy_fragment, body->copies.count);
     if (result != GX_OK) return result;
@@ -2256,6 +2329,19 @@ static gx_result gxp_update_view(gx_body *body) {
     view->stale = 0;
     view->sums_stale = view->labels_known = 1;
     view->splits.count = 0;
+    return GX_OK;
+}
+
+/* Lists the index of each kept cell by slot, if that is not there; the view is up to date. */
+static gx_result gxp_list_indices(gx_body *body) {
+    gxp_view *view = &body->view;
+    gx_result result;
+    uint32_t i;
+    if (view->indices.count > 0) return GX_OK;
+    result = gxp_start_words(body, &view->indices, body->cells.count);
+    if (result != GX_OK) return result;
+    view->indices.count = body->cells.count;
+    for (i = 0; i < view->count; i++) view->indices.data[view->slot[i]] = i;
     return GX_OK;
 }
 
@@ -2881,13 +2967,16 @@ static uint32_t gxp_grid_place(double x, int shift) {
     return (uint32_t)(bits >> 63 ? ~m : m) & 511;
 }
 
-/* The place of a triangle's first corner on a Z-curve through the body: the bits of its three grid places in turn */
-static uint32_t gxp_curve_place(const gxp_cut *cut, const gxp_surface *s, uint32_t triangle) {
-    const double *x = s->given->vertices + 3 * (size_t)s->given->triangles[3 * (size_t)triangle];
-    uint32_t place = 0, k, b;
+/* The place of a point on a Z-curve through the body: the bits of its three grid places in turn */
+static uint32_t gxp_curve_place(const gx_body *body, const double x[3]) {
+    uint32_t place = 0, k;
     for (k = 0; k < 3; k++) {
-        const uint32_t along = gxp_grid_place(x[k], gxb_complex_shift(cut->body->complex));
-        for (b = 0; b < 9; b++) place |= (along >> b & 1) << (3 * b + k);
+        uint32_t bits = gxp_grid_place(x[k], gxb_complex_shift(body->complex)); /* two zeros go between its bits */
+        bits = (bits | bits << 16) & 0x030000ffu;
+        bits = (bits | bits << 8) & 0x0300f00fu;
+        bits = (bits | bits << 4) & 0x030c30c3u;
+        bits = (bits | bits << 2) & 0x09249249u;
+        place |= bits << k;
     }
     return place;
 }
@@ -2910,10 +2999,12 @@ static gx_result gxp_insert_surface(gxp_cut *cut, gxp_surface *s, int scoped) {
     result = gxp_keys_room(body, &scratch->order, 2 * (size_t)count); /* sorting takes as much again */
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint64_t random = gxp_mix(i);
-        uint32_t round = GXP_LAST_ROUND;
+        uint32_t round = GXP_LAST_ROUND, place;
         while (round > 16 && !(random >> 3 * (GXP_LAST_ROUND - round) & 7)) round--;
         before += round < GXP_LAST_ROUND && !s->flat[i];
-        if (!s->flat[i]) result = gxp_push_key(body, &scratch->order, round << 27 | gxp_curve_place(cut, s, i), i);
+        if (s->flat[i]) continue;
+        place = gxp_curve_place(body, s->given->vertices + 3 * (size_t)s->given->triangles[3 * (size_t)i]);
+        result = gxp_push_key(body, &scratch->order, round << 27 | place, i);
     }
     if (result == GX_OK) result = gxp_sort_keys(body, &scratch->order, 0, scratch->order.count);
     for (i = 0; i < scratch->order.count && result == GX_OK; i++) {
@@ -5712,6 +5803,35 @@ static void gxp_cell_corners(const gx_body *body, const gxp_cell *cell, int move
     }
 }
 
+/* Where a copy of a node is: rest + displacement, rounded once */
+static inline void gxp_copy_position(const gx_body *body, uint32_t node, uint32_t copy, double x[3]) {
+    const double *rest = body->mesh.positions + 3 * (size_t)node, *u = body->copies.displacement + 3 * (size_t)copy;
+    x[0] = rest[0] + u[0];
+    x[1] = rest[1] + u[1];
+    x[2] = rest[2] + u[2];
+}
+
+/* Where the corners of a cell's element are, as its copies move them. These doubles are what locating takes as exact.
+ */
+static inline void gxp_moved_corners(const gx_body *body, const gxp_cell *cell, double x[12]) {
+    const uint32_t *node = gxb_complex_element_nodes(body->complex, cell->element);
+    gxp_copy_position(body, node[0], cell->copies[0], x);
+    gxp_copy_position(body, node[1], cell->copies[1], x + 3);
+    gxp_copy_position(body, node[2], cell->copies[2], x + 6);
+    gxp_copy_position(body, node[3], cell->copies[3], x + 9);
+}
+
+/* Where the cell's affine map has a material point: weights are its barycentric coordinates in the element */
+static void gxp_map_affine(const gx_body *body, const gxp_cell *cell, const double weights[4], const double rest[3],
+                           double position[3]) {
+    int n, k;
+    for (k = 0; k < 3; k++) {
+        position[k] = rest[k];
+        for (n = 0; n < 4; n++)
+            position[k] += weights[n] * body->copies.displacement[3 * (size_t)cell->copies[n] + (size_t)k];
+    }
+}
+
 /* The velocities of the cell's copies, less a mean */
 static void gxp_cell_velocities(const gx_body *body, const gxp_cell *cell, const double mean[3], double v[4][3]) {
     int n, k;
@@ -7111,7 +7231,7 @@ static gx_result gxp_own_slot(gx_body *body, uint32_t *slot) {
 
 /* A facet that is shown, as seen from one cell */
 typedef struct gxp_skin_face {
-    uint32_t element;
+    uint32_t element, cell;
     const uint32_t *copies; /* the cell's */
     uint32_t slots[4];      /* outer: of the face's nodes, by local node */
     uint8_t outer;
@@ -7341,6 +7461,7 @@ static gx_result gxp_add_skin_triangle(gx_body *body, const gxp_skin_face *face,
     for (k = 0; k < 3; k++) corner[k] = vertex[inward ? 2 - k : k];
     s->triangle_count++;
     s->element[t] = face->element;
+    s->cell[t] = face->cell;
     s->material[t] = body->mesh.element_materials[face->element];
     s->surface[t] = face->surface;
     memset(s->links[t].normal, 0, sizeof s->links[t].normal);
@@ -7540,6 +7661,7 @@ static gx_result gxp_skin_element(gx_body *body, uint32_t element) {
     if (!untouched) result = gxb_complex_open_element(body->complex, element);
     for (cell = element; cell != GXP_NONE && result == GX_OK; cell = body->cells.data[cell].next) {
         if (!body->cells.data[cell].kept) continue;
+        face.cell = cell;
         face.copies = body->cells.data[cell].copies;
         if (untouched)
             result = gxp_skin_whole(body, &face);
@@ -7834,36 +7956,1102 @@ GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3],
     return gxp_end(failure, GX_OK);
 }
 
-/* >>rays: picking -------------------------------------------------------------------------------------------------- */
-/* In: a ray. Out: where it first meets the deformed skin. Touches the skin's working positions. */
+/* >>tree: boxes over the deformed cells ---------------------------------------------------------------------------- */
+/* In: where copies are. Out: walks through the elements whose deformed cells may be somewhere, or nearest to something.
+   Touches the tree and copies.seen.
+ *
+ * The tree is made when somebody first asks, in the order of mesh.boxes. It is a complete binary tree. Its last level
+ * are clusters of up to 64 neighbouring elements, each with GXP_TREE_LEAVES leaves of up to GXP_TREE_LEAF elements. Its
+ * boxes contain the corners of all kept cells of their elements, as copies move them, and what rounding makes of points
+ * between these. One pass over the copies finds those that have moved since the last refit. A cluster's box is the hull
+ * of the copies of its nodes; it is found again where one of them has moved. Boxes of leaves are found again when a
+ walk
+ * enters the cluster.
+ *
+ * Cuts need no refit: a new copy is where the one is that it comes from, with the same row of copies.seen, and cells
+ * only change to such copies. A rollback leaves older rows alone. The last copy, put in the place of a dead one, takes
+ * its row along. */
 
-/* Transforms the deformed vertices to the ray's coordinates: two across it, sheared along its largest component, and
-   the distance along it in lengths of direction. */
-static void gxp_shear_along(const gx_body *body, const double origin[3], const double direction[3]) {
-    const gxp_skin *s = &body->skin;
-    int axis = 0, k;
-    size_t i;
-    for (k = 1; k < 3; k++)
-        if (fabs(direction[k]) > fabs(direction[axis])) axis = k;
-    gxp_move_vertices(body, s->positions);
-    for (i = 0; i < s->vertex_count; i++) {
-        double *x = s->positions + 3 * i;
-        const double along = (x[axis] - origin[axis]) / direction[axis];
-        const double p = x[(axis + 1) % 3] - origin[(axis + 1) % 3], q = x[(axis + 2) % 3] - origin[(axis + 2) % 3];
-        x[0] = p - along * direction[(axis + 1) % 3];
-        x[1] = q - along * direction[(axis + 2) % 3];
-        x[2] = along;
+#define GXP_TREE_LEAVES 16u
+#define GXP_TREE_LEAF   4u
+
+/* Boxes are wider than their copies' positions by this share (2^-44) of the coordinates at rest and the displacement.
+   A point of the skin is the sum of 5 products of these, at most 12 roundings of each: its error is below a tenth of
+   the same mean of its copies' margins. */
+#define GXP_TREE_MARGIN 5.6843418860808015e-14
+
+/* A limit that excludes nothing, and a bound above it */
+#define GXP_TREE_ALL    1.797e308
+#define GXP_TREE_BEYOND 1.7976931348623157e308
+
+/* Is |x| below 2^128? Reads bits, so that it is right for what is not finite under any flag. */
+static int gxp_is_near(double x) {
+    uint64_t b;
+    memcpy(&b, &x, sizeof b);
+    return ((b >> 52) & 0x7ff) < 1023 + 128;
+}
+
+static void gxp_empty_bounds(gxp_bounds *box) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        box->low[k] = GXP_TREE_BEYOND;
+        box->high[k] = -GXP_TREE_BEYOND;
     }
 }
 
-/* Does the ray pass through the triangle? share: the weights of its corners at the point; distance: of the point. The
-   signs are exact, so that no ray slips through between triangles that share corners. */
-static int gxp_meet_triangle(const gxp_skin *s, const uint32_t *t, double share[3], double *distance) {
+static void gxp_add_bounds(gxp_bounds *box, const gxp_bounds *other) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        box->low[k] = other->low[k] < box->low[k] ? other->low[k] : box->low[k];
+        box->high[k] = other->high[k] > box->high[k] ? other->high[k] : box->high[k];
+    }
+}
+
+/* The box of one copy, with its margin */
+static void gxp_copy_bounds(const gx_body *body, uint32_t node, uint32_t copy, gxp_bounds *box) {
+    const double *u = body->copies.displacement + 3 * (size_t)copy;
+    double x[3];
+    int k;
+    gxp_copy_position(body, node, copy, x);
+    for (k = 0; k < 3; k++) {
+        const double margin = GXP_TREE_MARGIN * (body->tree.reach[k] + fabs(u[k]));
+        box->low[k] = x[k] - margin;
+        box->high[k] = x[k] + margin;
+    }
+}
+
+/* --- making it --- */
+
+/* The first leaves of the halves, halves of halves and so on of `leaves` leaves over the elements in mesh.box_elements,
+   as gxp_build_boxes halves them */
+static void gxp_divide_leaves(gx_body *body, uint32_t leaves) {
+    uint32_t i, bit;
+    for (i = 0; i < leaves; i++) {
+        uint32_t first = 0, count = body->mesh.element_count;
+        for (bit = leaves / 2; bit > 0; bit /= 2) {
+            const uint32_t half = count / 2;
+            if (i & bit) first += half;
+            count = i & bit ? count - half : half;
+        }
+        body->tree.leaf_first.data[i] = first;
+    }
+    body->tree.leaf_first.data[leaves] = body->mesh.element_count;
+    body->tree.leaf_first.count = leaves + 1;
+}
+
+/* Lists the clusters around each node. cluster: of each element */
+static gx_result gxp_list_node_clusters(gx_body *body, const uint32_t *cluster) {
+    gxp_tree *tree = &body->tree;
+    uint32_t node, i, j;
+    gx_result result = GX_OK;
+    tree->node_clusters.count = 0;
+    for (node = 0; node < body->mesh.node_count && result == GX_OK; node++) {
+        const uint32_t first = tree->node_first.data[node] = tree->node_clusters.count;
+        for (i = body->mesh.node_start[node]; i < body->mesh.node_start[node + 1] && result == GX_OK; i++) {
+            const uint32_t own = cluster[body->mesh.node_elements[i]];
+            for (j = first; j < tree->node_clusters.count && tree->node_clusters.data[j] != own;) j++;
+            if (j == tree->node_clusters.count) result = gxp_push(body, &tree->node_clusters, own);
+        }
+    }
+    tree->node_first.data[body->mesh.node_count] = tree->node_clusters.count;
+    return result;
+}
+
+static gx_result gxp_find_node_clusters(gx_body *body, uint32_t clusters) {
+    const uint32_t *first = body->tree.leaf_first.data;
+    const size_t bytes = body->mesh.element_count * sizeof(uint32_t);
+    uint32_t *cluster = (uint32_t *)gxp_allocate(&body->config.allocator, bytes), c, i;
+    gx_result result;
+    if (cluster == NULL) return GX_ERROR_MEMORY;
+    for (c = 0; c < clusters; c++)
+        for (i = first[c * GXP_TREE_LEAVES]; i < first[(c + 1) * GXP_TREE_LEAVES]; i++)
+            cluster[body->mesh.box_elements[i]] = c;
+    result = gxp_list_node_clusters(body, cluster);
+    gxp_release(&body->config.allocator, cluster, bytes);
+    return result;
+}
+
+/* Makes the tree; all of it is to be refitted. After an error it counts as not made. */
+static GXP_COLD gx_result gxp_make_tree(gx_body *body) {
+    gxp_tree *tree = &body->tree;
+    const gx_allocator *a = &body->config.allocator;
+    uint32_t clusters = 1, leaves, i;
+    int k;
+    gx_result result;
+    while (body->mesh.element_count > (uint64_t)clusters * GXP_TREE_LEAVES * GXP_TREE_LEAF) clusters *= 2;
+    leaves = clusters * GXP_TREE_LEAVES;
+    result = gxp_grow_column(body, &gxp_copy_columns[GXP_SEEN_COLUMN], 0, body->copies.count);
+    if (result == GX_OK) result = gxp_start_words(body, &tree->leaf_first, (size_t)leaves + 1);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &tree->leaf_boxes, sizeof *tree->leaf_boxes, 0, &tree->leaf_box_capacity, leaves);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &tree->own_boxes, sizeof *tree->own_boxes, 0, &tree->own_box_capacity,
+                             body->mesh.element_count);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &tree->boxes, sizeof *tree->boxes, 0, &tree->box_capacity, 2 * (size_t)clusters);
+    if (result == GX_OK) result = gxp_start_words(body, &tree->marks, 2 * (size_t)clusters);
+    if (result == GX_OK) result = gxp_start_words(body, &tree->node_first, (size_t)body->mesh.node_count + 1);
+    if (result != GX_OK) return result;
+    gxp_divide_leaves(body, leaves);
+    result = gxp_find_node_clusters(body, clusters);
+    if (result != GX_OK) return result;
+    for (k = 0; k < 3; k++) tree->reach[k] = fmax(fabs(body->mesh.boxes[0].low[k]), fabs(body->mesh.boxes[0].high[k]));
+    if (body->copies.count > 0)
+        memcpy(body->copies.seen, body->copies.displacement, 3 * (size_t)body->copies.count * sizeof(double));
+    for (i = 0; i < 2 * clusters - 1; i++) tree->marks.data[i] = GXP_BOX_MOVED;
+    tree->marks.count = 2 * clusters - 1;
+    tree->cluster_count = clusters;
+    return GX_OK;
+}
+
+/* --- refitting it --- */
+
+/* Marks the clusters around nodes whose copies have moved. Returns whether any have. */
+static int gxp_mark_moved(gx_body *body) {
+    gxp_tree *tree = &body->tree;
+    uint32_t *marks = tree->marks.data + tree->cluster_count - 1;
+    double *seen = body->copies.seen;
+    const double *u = body->copies.displacement;
+    uint32_t i, j;
+    int moved = 0;
+    for (i = 0; i < body->copies.count; i++, u += 3, seen += 3) {
+        const uint32_t node = body->copies.node[i];
+        if (memcmp(u, seen, 3 * sizeof *u) == 0) continue;
+        memcpy(seen, u, 3 * sizeof *u);
+        moved = 1;
+        for (j = tree->node_first.data[node]; j < tree->node_first.data[node + 1]; j++)
+            marks[tree->node_clusters.data[j]] |= GXP_BOX_MOVED;
+    }
+    return moved;
+}
+
+/* Finds the boxes of marked clusters: the hulls of the copies of their nodes. */
+static void gxp_fit_clusters(gx_body *body) {
+    gxp_tree *tree = &body->tree;
+    const uint32_t *marks = tree->marks.data + tree->cluster_count - 1;
+    gxp_bounds *boxes = tree->boxes + tree->cluster_count - 1;
+    uint32_t i, j;
+    int k;
+    for (i = 0; i < tree->cluster_count; i++)
+        if (marks[i] & GXP_BOX_MOVED) gxp_empty_bounds(&boxes[i]);
+    tree->wild = 0;
+    for (i = 0; i < body->copies.count; i++) {
+        const uint32_t node = body->copies.node[i];
+        gxp_bounds own;
+        gxp_copy_bounds(body, node, i, &own);
+        for (k = 0; k < 3; k++) tree->wild |= !gxp_is_near(own.low[k]) || !gxp_is_near(own.high[k]);
+        for (j = tree->node_first.data[node]; j < tree->node_first.data[node + 1]; j++)
+            if (marks[tree->node_clusters.data[j]] & GXP_BOX_MOVED)
+                gxp_add_bounds(&boxes[tree->node_clusters.data[j]], &own);
+    }
+}
+
+/* Finds the boxes above moved ones, and makes leaves' boxes in moved clusters stale. */
+static void gxp_fit_above(gxp_tree *tree) {
+    uint32_t *marks = tree->marks.data, i;
+    for (i = tree->cluster_count - 1; i-- > 0;) {
+        if (!((marks[2 * i + 1] | marks[2 * i + 2]) & GXP_BOX_MOVED)) continue;
+        tree->boxes[i] = tree->boxes[2 * i + 1];
+        gxp_add_bounds(&tree->boxes[i], &tree->boxes[2 * i + 2]);
+        marks[i] |= GXP_BOX_MOVED;
+    }
+    for (i = 0; i < 2 * tree->cluster_count - 1; i++)
+        if (marks[i] & GXP_BOX_MOVED) marks[i] = GXP_BOX_STALE;
+}
+
+/* Brings the boxes of clusters and above up to date: one pass over the copies, more where any have moved. Call it
+   before a walk whenever displacements may have changed. Errors: MEMORY, LIMIT. */
+static gx_result gxp_refit_tree(gx_body *body) {
+    gx_result result = GX_OK;
+    int moved = body->tree.cluster_count == 0;
+    if (moved)
+        result = gxp_make_tree(body);
+    else
+        moved = gxp_mark_moved(body);
+    if (result != GX_OK || !moved) return result;
+    gxp_fit_clusters(body);
+    gxp_fit_above(&body->tree);
+    return GX_OK;
+}
+
+/* A copy that is out of range or not finite, GXP_NONE: there is none. The boxes are up to date. */
+static uint32_t gxp_wild_copy(gx_body *body) {
+    uint32_t i;
+    int k;
+    if (!body->tree.wild) return GXP_NONE;
+    for (i = 0; i < body->copies.count; i++) {
+        gxp_bounds own;
+        gxp_copy_bounds(body, body->copies.node[i], i, &own);
+        for (k = 0; k < 3; k++)
+            if (!gxp_is_near(own.low[k]) || !gxp_is_near(own.high[k])) return i;
+    }
+    body->tree.wild = 0; /* a cut has removed it since */
+    return GXP_NONE;
+}
+
+/* The box of all kept cells of an element */
+static void gxp_fit_element(const gx_body *body, uint32_t element, gxp_bounds *box) {
+    const uint32_t *node = gxb_complex_element_nodes(body->complex, element);
+    gxp_bounds own;
+    uint32_t slot;
+    int k;
+    gxp_empty_bounds(box);
+    for (slot = element; slot != GXP_NONE; slot = body->cells.data[slot].next)
+        for (k = 0; k < 4 && body->cells.data[slot].kept; k++) {
+            gxp_copy_bounds(body, node[k], body->cells.data[slot].copies[k], &own);
+            gxp_add_bounds(box, &own);
+        }
+}
+
+/* Finds the boxes of a cluster's elements and leaves, and its own, which is now that of its cells. */
+static void gxp_fit_leaves(gx_body *body, uint32_t cluster) {
+    gxp_tree *tree = &body->tree;
+    gxp_bounds *all = &tree->boxes[tree->cluster_count - 1 + cluster];
+    uint32_t i, e;
+    gxp_empty_bounds(all);
+    for (i = cluster * GXP_TREE_LEAVES; i < (cluster + 1) * GXP_TREE_LEAVES; i++) {
+        gxp_empty_bounds(&tree->leaf_boxes[i]);
+        for (e = tree->leaf_first.data[i]; e < tree->leaf_first.data[i + 1]; e++) {
+            gxp_fit_element(body, body->mesh.box_elements[e], &tree->own_boxes[e]);
+            gxp_add_bounds(&tree->leaf_boxes[i], &tree->own_boxes[e]);
+        }
+        gxp_add_bounds(all, &tree->leaf_boxes[i]);
+    }
+    tree->marks.data[tree->cluster_count - 1 + cluster] &= ~(uint32_t)GXP_BOX_STALE;
+}
+
+/* --- walking through it --- */
+
+static inline double gxp_more(double a, double b) { return a > b ? a : b; }
+
+/* Above 0 where the boxes do not meet */
+static inline double gxp_gap(const gxp_bounds *a, const gxp_bounds *b) {
+    const double x = gxp_more(a->low[0] - b->high[0], b->low[0] - a->high[0]),
+                 y = gxp_more(a->low[1] - b->high[1], b->low[1] - a->high[1]),
+                 z = gxp_more(a->low[2] - b->high[2], b->low[2] - a->high[2]);
+    return gxp_more(x, gxp_more(y, z));
+}
+
+static gx_result gxp_meet_cluster(gx_body *body, const gxp_bounds *given, uint32_t cluster,
+                                  gx_result (*visit)(gx_body *body, void *user, uint32_t place), void *user) {
+    const gxp_tree *tree = &body->tree;
+    const uint32_t first = cluster * GXP_TREE_LEAVES;
+    const gxp_bounds box = *given; /* in registers */
+    uint32_t i, e;
+    gx_result result = GX_OK;
+    if (tree->marks.data[tree->cluster_count - 1 + cluster] & GXP_BOX_STALE) gxp_fit_leaves(body, cluster);
+    for (i = first; i < first + GXP_TREE_LEAVES && result == GX_OK; i++) {
+        if (gxp_gap(&tree->leaf_boxes[i], &box) > 0) continue;
+        for (e = tree->leaf_first.data[i]; e < tree->leaf_first.data[i + 1] && result == GX_OK; e++)
+            if (!(gxp_gap(&tree->own_boxes[e], &box) > 0)) result = visit(body, user, e);
+    }
+    return result;
+}
+
+/* Calls visit(body, user, place) for each element whose box meets a box; place: in mesh.box_elements. */
+static gx_result gxp_meet_box(gx_body *body, const gxp_bounds *given,
+                              gx_result (*visit)(gx_body *body, void *user, uint32_t place), void *user) {
+    const gxp_tree *tree = &body->tree;
+    const uint32_t first_cluster = tree->cluster_count - 1;
+    const gxp_bounds box = *given;
+    uint32_t stack[64], depth = 0;
+    gx_result result = GX_OK;
+    if (!(gxp_gap(&tree->boxes[0], &box) > 0)) stack[depth++] = 0;
+    while (depth > 0 && result == GX_OK) {
+        const uint32_t i = stack[--depth];
+        if (i >= first_cluster)
+            result = gxp_meet_cluster(body, given, i - first_cluster, visit, user);
+        else {
+            stack[depth] = 2 * i + 1;
+            depth += !(gxp_gap(&tree->boxes[2 * i + 1], &box) > 0);
+            stack[depth] = 2 * i + 2;
+            depth += !(gxp_gap(&tree->boxes[2 * i + 2], &box) > 0);
+        }
+    }
+    return result;
+}
+
+/* A walk to what is least by a measure. Callers put it first in a struct of their own. */
+typedef struct gxp_walk {
+    /* No less than this comes of what is in the box. Above limit, or GXP_TREE_BEYOND: nothing there counts */
+    double (*bound)(const struct gxp_walk *walk, const gxp_bounds *box);
+    /* Called for each element in a leaf whose bound is no more than limit */
+    gx_result (*visit)(gx_body *body, struct gxp_walk *walk, uint32_t element);
+    double limit; /* GXP_TREE_ALL, or less; visit may lower it */
+} gxp_walk;
+
+/* Visits a cluster's leaves, those with the least bounds first. */
+static gx_result gxp_walk_cluster(gx_body *body, gxp_walk *walk, uint32_t cluster) {
+    const gxp_tree *tree = &body->tree;
+    const uint32_t first = cluster * GXP_TREE_LEAVES;
+    double bound[GXP_TREE_LEAVES];
+    uint32_t i, e;
+    gx_result result = GX_OK;
+    if (tree->marks.data[tree->cluster_count - 1 + cluster] & GXP_BOX_STALE) gxp_fit_leaves(body, cluster);
+    for (i = 0; i < GXP_TREE_LEAVES; i++) bound[i] = walk->bound(walk, &tree->leaf_boxes[first + i]);
+    while (result == GX_OK) {
+        uint32_t least = 0;
+        for (i = 1; i < GXP_TREE_LEAVES; i++)
+            if (bound[i] < bound[least]) least = i;
+        if (!(bound[least] <= walk->limit)) break;
+        bound[least] = GXP_TREE_BEYOND;
+        for (e = tree->leaf_first.data[first + least]; e < tree->leaf_first.data[first + least + 1] && result == GX_OK;
+             e++)
+            if (walk->bound(walk, &tree->own_boxes[e]) <= walk->limit)
+                result = walk->visit(body, walk, body->mesh.box_elements[e]);
+    }
+    return result;
+}
+
+/* Walks through the tree, of two boxes first to the one with the lower bound. What the walk finds depends on the order
+   only if visit or bound does. */
+static gx_result gxp_walk_tree(gx_body *body, gxp_walk *walk) {
+    const gxp_tree *tree = &body->tree;
+    const uint32_t first_cluster = tree->cluster_count - 1;
+    uint32_t stack[64], depth = 0, i;
+    double bounds[64];
+    gx_result result = GX_OK;
+    stack[depth] = 0;
+    bounds[depth++] = walk->bound(walk, &tree->boxes[0]);
+    while (depth > 0 && result == GX_OK) {
+        i = stack[--depth];
+        if (!(bounds[depth] <= walk->limit)) continue;
+        if (i >= first_cluster)
+            result = gxp_walk_cluster(body, walk, i - first_cluster);
+        else {
+            const double left = walk->bound(walk, &tree->boxes[2 * i + 1]),
+                         right = walk->bound(walk, &tree->boxes[2 * i + 2]);
+            const uint32_t nearer = right < left;
+            stack[depth] = 2 * i + 2 - nearer;
+            bounds[depth++] = nearer ? left : right;
+            stack[depth] = 2 * i + 1 + nearer;
+            bounds[depth++] = nearer ? right : left;
+        }
+    }
+    return result;
+}
+
+/* >>locate: points of space and cells ------------------------------------------------------------------------------ */
+/* In: points of space, material points, boxes. Out: the cells that contain them, exactly, or are nearest; material
+   points, weights and positions. The tree is up to date (gxp_refit_tree) where cells are sought. Touches the tree's
+   working memory, the boundary of >>integrals and the complex's lists and exact numbers.
+ *
+ * For other sections: gxp_walk_box, gxp_find_cells_at, gxp_find_nearest, gxp_pull_back, gxp_image, gxp_stretch. */
+
+/* --- cells by their deformed elements --- */
+
+/* The box of a cell's deformed element */
+static void gxp_cell_bounds(const gx_body *body, const gxp_cell *cell, gxp_bounds *box) {
+    double x[12];
+    int n, k;
+    gxp_moved_corners(body, cell, x);
+    gxp_empty_bounds(box);
+    for (n = 0; n < 4; n++)
+        for (k = 0; k < 3; k++) {
+            box->low[k] = x[3 * n + k] < box->low[k] ? x[3 * n + k] : box->low[k];
+            box->high[k] = x[3 * n + k] > box->high[k] ? x[3 * n + k] : box->high[k];
+        }
+}
+
+typedef struct gxp_box_walk {
+    gxp_bounds box;
+    gx_result (*visit)(gx_body *body, void *user, uint32_t slot);
+    void *user;
+} gxp_box_walk;
+
+static inline gx_result gxp_visit_in_box(gx_body *body, void *user, uint32_t place) {
+    const gxp_box_walk *walk = (const gxp_box_walk *)user;
+    uint32_t slot;
+    gx_result result = GX_OK;
+    for (slot = body->mesh.box_elements[place]; slot != GXP_NONE && result == GX_OK;
+         slot = body->cells.data[slot].next) {
+        gxp_bounds box;
+        if (!body->cells.data[slot].kept) continue;
+        gxp_cell_bounds(body, &body->cells.data[slot], &box);
+        if (!(gxp_gap(&box, &walk->box) > 0)) result = walk->visit(body, walk->user, slot);
+    }
+    return result;
+}
+
+/* Calls visit(body, user, slot) for each kept cell whose deformed element's box meets the box, once. visit must not
+   change cells. The walk ends with the first error. */
+static inline gx_result gxp_walk_box(gx_body *body, const gxp_bounds *box,
+                                     gx_result (*visit)(gx_body *body, void *user, uint32_t slot), void *user) {
+    gxp_box_walk walk;
+    walk.box = *box;
+    walk.visit = visit;
+    walk.user = user;
+    return gxp_meet_box(body, box, gxp_visit_in_box, &walk);
+}
+
+/* Is a leaf of the cell among those below a reference to its element's tree to which the planes lead the pulled-back
+   point? From a plane that contains it both sides are followed. */
+static int gxp_leads_to(gx_body *body, gxb_pullback *back, uint32_t reference, uint32_t slot) {
+    const uint32_t element = body->cells.data[slot].element;
+    while (reference & 1) {
+        const gxb_node *node = gxb_complex_tree_node(body->complex, reference >> 1);
+        const int side = gxb_complex_pullback_side(body->complex, back, element, node->plane);
+        if (side == 0 && gxp_leads_to(body, back, node->child[0], slot)) return 1;
+        reference = node->child[side <= 0];
+    }
+    return gxp_is_kept(body, reference >> 1) && body->leaves.data[reference >> 1].cell == slot;
+}
+
+/* Does the cell, or its boundary, contain a point of space? Exact for the corners that gxp_moved_corners gives. */
+static int gxp_contains_point(gx_body *body, uint32_t slot, const double point[3]) {
+    const gxp_cell *cell = &body->cells.data[slot];
+    gxb_pullback back;
+    double x[12];
+    gxp_moved_corners(body, cell, x);
+    if (gxb_pullback_misses(x, point)) return 0;
+    gxb_pullback_set(&back, x, point);
+    return gxb_pullback_contains(&back) &&
+           gxp_leads_to(body, &back, gxb_complex_root(body->complex, cell->element), slot);
+}
+
+typedef struct gxp_point_walk {
+    const double *point;
+    gxp_words *slots;
+} gxp_point_walk;
+
+/* Adds a slot to an ascending list. */
+static gx_result gxp_push_in_order(gx_body *body, gxp_words *slots, uint32_t slot) {
+    uint32_t i = slots->count;
+    const gx_result result = gxp_push(body, slots, slot);
+    if (result != GX_OK) return result;
+    for (; i > 0 && slots->data[i - 1] > slot; i--) slots->data[i] = slots->data[i - 1];
+    slots->data[i] = slot;
+    return GX_OK;
+}
+
+static gx_result gxp_visit_at_point(gx_body *body, void *user, uint32_t place) {
+    const gxp_point_walk *walk = (const gxp_point_walk *)user;
+    uint32_t slot;
+    gx_result result = GX_OK;
+    for (slot = body->mesh.box_elements[place]; slot != GXP_NONE && result == GX_OK; slot = body->cells.data[slot].next)
+        if (body->cells.data[slot].kept && gxp_contains_point(body, slot, walk->point))
+            result = gxp_push_in_order(body, walk->slots, slot);
+    return result;
+}
+
+/* Lists the cells that contain a point of space, or have it on their boundary, ascending by slot. point: finite */
+static gx_result gxp_find_cells_at(gx_body *body, const double point[3], gxp_words *slots) {
+    gxp_point_walk walk;
+    gxp_bounds box;
+    memcpy(box.low, point, sizeof box.low);
+    memcpy(box.high, point, sizeof box.high);
+    walk.point = point;
+    walk.slots = slots;
+    slots->count = 0;
+    return gxp_meet_box(body, &box, gxp_visit_at_point, &walk);
+}
+
+/* --- the maps of a cell --- */
+
+/* The material point with these barycentric coordinates; exactly a node, or in a coordinate plane, where they say so */
+static void gxp_weigh_material(const double rest[12], const double weights[4], double material[3]) {
+    int n, k, most = 0;
+    for (n = 1; n < 4; n++)
+        if (fabs(weights[n]) > fabs(weights[most])) most = n;
+    for (k = 0; k < 3; k++) {
+        double sum = 0;
+        for (n = 0; n < 4; n++) sum += weights[n] * (rest[3 * n + k] - rest[3 * most + k]);
+        material[k] = rest[3 * most + k] + sum;
+    }
+}
+
+/* Pulls a point of space back by the affine map of a cell's deformed element, also from outside of it. weights: of the
+   cell's copies, 1 in sum. At rest the material point is the point, bit by bit. 0: the element is flat. */
+static int gxp_pull_back(const gx_body *body, uint32_t slot, const double point[3], double weights[4],
+                         double material[3]) {
+    const gxp_cell *cell = &body->cells.data[slot];
+    gxb_pullback back;
+    double x[12], rest[12];
+    int i, still = 1;
+    gxp_moved_corners(body, cell, x);
+    gxp_element_positions(body, cell->element, rest);
+    gxb_pullback_set(&back, x, point);
+    if (!gxb_pullback_contains(&back) && gxb_pullback_orient(&back) == 0) return 0;
+    gxb_pullback_weights(&back, weights);
+    for (i = 0; i < 12; i++) still = still && !(x[i] < rest[i]) && !(x[i] > rest[i]);
+    if (still)
+        memcpy(material, point, 3 * sizeof *material);
+    else
+        gxp_weigh_material(rest, weights, material);
+    return 1;
+}
+
+/* Where a cell has a material point, also from outside of its element */
+static void gxp_image(const gx_body *body, uint32_t slot, const double material[3], double position[3]) {
+    const gxp_cell *cell = &body->cells.data[slot];
+    gxb_pullback back;
+    double rest[12], weights[4];
+    gxp_element_positions(body, cell->element, rest);
+    gxb_pullback_set(&back, rest, material);
+    (void)gxb_pullback_contains(&back);
+    gxb_pullback_weights(&back, weights);
+    gxp_map_affine(body, cell, weights, material, position);
+}
+
+/* The volume of a cell's deformed element as a share of that at rest, below 0 where it is inverted; in doubles */
+static inline double gxp_stretch(const gx_body *body, uint32_t slot) {
+    const gxp_cell *cell = &body->cells.data[slot];
+    double x[12];
+    gxp_moved_corners(body, cell, x);
+    return gxi_tet_volume(x) / gxp_element_volume(body, cell->element);
+}
+
+/* --- the nearest cell --- */
+
+/* The point of a cell's deformed material that is nearest to a point of space outside of it */
+typedef struct gxp_near {
+    uint32_t slot;     /* GXP_NONE: there is none */
+    double square;     /* of the distance */
+    double weights[4]; /* of the cell's copies: 0 or more, 1 in sum */
+} gxp_near;
+
+typedef struct gxp_near_walk {
+    gxp_walk walk;
+    const double *point;
+    int (*admits)(void *user, uint32_t slot); /* NULL: all cells are admitted */
+    void *user;
+    gxp_near near;
+} gxp_near_walk;
+
+/* Rounding of bounds and squares stays below this share of them. */
+#define GXP_NEAR_MARGIN 1e-12
+
+static double gxp_bound_distance(const gxp_walk *walk, const gxp_bounds *box) {
+    const double *x = ((const gxp_near_walk *)(const void *)walk)->point;
+    double square = 0;
+    int k;
+    for (k = 0; k < 3; k++) {
+        const double below = box->low[k] - x[k], above = x[k] - box->high[k], most = below > above ? below : above;
+        if (most > 0) square += most * most;
+    }
+    return square * (1 - GXP_NEAR_MARGIN);
+}
+
+/* Rounding of what follows is far below this share (2^-46) of the sizes of the terms. */
+#define GXP_NEAR_ROUNDING 1.4210854715202004e-14
+
+static void gxp_cross(double r[3], const double a[3], const double b[3]) {
+    r[0] = a[1] * b[2] - a[2] * b[1];
+    r[1] = a[2] * b[0] - a[0] * b[2];
+    r[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* If a point of the segment from corner i to corner j is nearer to the origin than *square: sets that and the shares.
+ */
+static void gxp_near_segment(double p[3][3], int i, int j, double share[3], double *square) {
+    const double *a = p[i], *b = p[j];
+    const double e[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    const double length = gxp_dot(e, e), along = -gxp_dot(a, e);
+    const double t = !(along > 0) ? 0 : along >= length ? 1 : along / length;
+    const double x[3] = {t < 1 ? a[0] + t * e[0] : b[0], t < 1 ? a[1] + t * e[1] : b[1],
+                         t < 1 ? a[2] + t * e[2] : b[2]};
+    const double s = gxp_dot(x, x);
+    if (!(s < *square)) return;
+    *square = s;
+    share[0] = share[1] = share[2] = 0;
+    share[i] = 1 - t;
+    share[j] = t;
+}
+
+/* The foot of the perpendicular from the origin, if it is nearer; all w are above 0 */
+static void gxp_near_foot(double p[3][3], const double w[3], double share[3], double *square) {
+    const double sum = w[0] + w[1] + w[2];
+    double x[3], s;
+    int k;
+    for (k = 0; k < 3; k++) x[k] = (w[0] * p[0][k] + w[1] * p[1][k] + w[2] * p[2][k]) / sum;
+    s = gxp_dot(x, x);
+    if (!(s < *square)) return;
+    *square = s;
+    for (k = 0; k < 3; k++) share[k] = w[k] / sum;
+}
+
+/* Finds the point of a triangle that is nearest to the origin, as shares of its corners. Returns the square of its
+   distance; GXP_TREE_BEYOND if the triangle's plane is certainly further than limit. With v = -p0, a = p1 - p0, b = p2
+   - p0 and n = a x b, the foot of the perpendicular has the coordinates n.(v x b) and n.(a x v), over n.n. If it is
+   beyond some edges, the nearest point is on one of these. Edges are tried wherever rounding might hide that. */
+static double gxp_near_triangle(double p[3][3], double limit, double share[3]) {
+    const double a[3] = {p[1][0] - p[0][0], p[1][1] - p[0][1], p[1][2] - p[0][2]};
+    const double b[3] = {p[2][0] - p[0][0], p[2][1] - p[0][1], p[2][2] - p[0][2]};
+    const double v[3] = {-p[0][0], -p[0][1], -p[0][2]};
+    const double scale = gxp_size(a) * gxp_size(b), far = gxp_size(v);
+    double n[3], c[3], w[3], normal, height, rounding, square = GXP_TREE_BEYOND;
+    int i;
+    gxp_cross(n, a, b);
+    normal = gxp_dot(n, n);
+    height = fabs(gxp_dot(n, v)) - GXP_NEAR_ROUNDING * scale * far;
+    if (height > 0 && height * height * (1 - GXP_NEAR_MARGIN) > limit * normal) return square;
+    gxp_cross(c, v, b);
+    w[1] = gxp_dot(n, c);
+    gxp_cross(c, a, v);
+    w[2] = gxp_dot(n, c);
+    w[0] = normal - w[1] - w[2];
+    rounding = GXP_NEAR_ROUNDING * scale * (scale + far * (gxp_size(a) + gxp_size(b)));
+    for (i = 0; i < 3; i++)
+        if (!(w[i] > rounding)) gxp_near_segment(p, (i + 1) % 3, (i + 2) % 3, share, &square);
+    if (w[0] > 0 && w[1] > 0 && w[2] > 0) gxp_near_foot(p, w, share, &square);
+    return square;
+}
+
+/* Compares the nearest point of a triangle with what was found before. p: its corners less the point; lambda: their
+   coordinates in the cell's element. Of equally near cells the one with the lowest slot stays. */
+static void gxp_try_triangle(gxp_near_walk *own, uint32_t slot, double p[3][3], const double *const lambda[3]) {
+    double share[3] = {0, 0, 0};
+    const double square = gxp_near_triangle(p, own->walk.limit, share);
+    int n;
+    if (square > own->walk.limit ||
+        (own->near.slot != GXP_NONE && !(square < own->walk.limit) && slot >= own->near.slot))
+        return;
+    own->near.slot = slot;
+    own->near.square = own->walk.limit = square;
+    for (n = 0; n < 4; n++)
+        own->near.weights[n] = share[0] * lambda[0][n] + share[1] * lambda[1][n] + share[2] * lambda[2][n];
+}
+
+/* Is the origin certainly on the side of the triangle on which x is? */
+static int gxp_is_beside(double p[3][3], const double x[3]) {
+    const double a[3] = {p[1][0] - p[0][0], p[1][1] - p[0][1], p[1][2] - p[0][2]};
+    const double b[3] = {p[2][0] - p[0][0], p[2][1] - p[0][1], p[2][2] - p[0][2]};
+    const double v[3] = {-p[0][0], -p[0][1], -p[0][2]}, e[3] = {x[0] - p[0][0], x[1] - p[0][1], x[2] - p[0][2]};
+    const double rounding = GXP_NEAR_ROUNDING * gxp_size(a) * gxp_size(b);
+    double n[3], h, g;
+    gxp_cross(n, a, b);
+    h = gxp_dot(n, v);
+    g = gxp_dot(n, e);
+    return (h > rounding * gxp_size(v) && g > rounding * gxp_size(e)) ||
+           (h < -rounding * gxp_size(v) && g < -rounding * gxp_size(e));
+}
+
+/* Tries the faces of an element that is all its cell's, but those that hide behind it. x: its moved corners less the
+   point */
+static void gxp_try_faces(gxp_near_walk *own, uint32_t slot, double x[4][3]) {
+    static const double corner[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+    int k, i;
+    for (k = 0; k < 4; k++) {
+        const double *lambda[3];
+        double p[3][3];
+        for (i = 0; i < 3; i++) {
+            lambda[i] = corner[gxp_outward[k][i]];
+            memcpy(p[i], x[gxp_outward[k][i]], sizeof p[i]);
+        }
+        if (!gxp_is_beside(p, x[k])) gxp_try_triangle(own, slot, p, lambda);
+    }
+}
+
+/* Adds the facets that bound a cell to the boundary, which has no triangles. Facets with the cell on both sides are
+   left out: what is outside of the cell is nearer to others. */
+static gx_result gxp_bound_cell(gx_body *body, uint32_t slot) {
+    gxb_complex *cx = body->complex;
+    uint32_t leaf, first, count, i;
+    gx_result result = GX_OK;
+    for (leaf = body->cells.data[slot].first_leaf; leaf != GXP_NONE && result == GX_OK;
+         leaf = body->leaves.data[leaf].next) {
+        result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
+        for (i = 0; i < count && result == GX_OK; i++) {
+            const uint32_t facet = gxp_item(cx, first + i);
+            const gxb_facet *f = gxb_complex_facet(cx, facet);
+            const uint32_t other = f->leaf[f->leaf[0] == leaf];
+            if (gxp_is_kept(body, other) && body->leaves.data[other].cell == slot) continue;
+            result = gxp_add_boundary_facet(body, body->cells.data[slot].element, facet, 0);
+        }
+    }
+    return result;
+}
+
+/* Tries the facets that bound a cell of a divided element. */
+static gx_result gxp_try_facets(gx_body *body, gxp_near_walk *own, uint32_t slot, double x[4][3]) {
+    const gxp_boundary *boundary = &body->scratch.boundary;
+    uint32_t i;
+    int k, j;
+    gx_result result;
+    gxp_clear_boundary(body, 1);
+    result = gxp_bound_cell(body, slot);
+    for (i = 0; i < boundary->triangles.count && result == GX_OK; i += 3) {
+        const double *lambda[3];
+        double p[3][3];
+        for (k = 0; k < 3; k++) {
+            const double *l = lambda[k] = boundary->lambdas + 4 * (size_t)boundary->triangles.data[i + (uint32_t)k];
+            for (j = 0; j < 3; j++) p[k][j] = l[0] * x[0][j] + l[1] * x[1][j] + l[2] * x[2][j] + l[3] * x[3][j];
+        }
+        gxp_try_triangle(own, slot, p, lambda);
+    }
+    return result;
+}
+
+static gx_result gxp_visit_near(gx_body *body, gxp_walk *walk, uint32_t element) {
+    gxp_near_walk *own = (gxp_near_walk *)(void *)walk;
+    const int divided = (int)(gxb_complex_root(body->complex, element) & 1);
+    uint32_t slot;
+    gx_result result = GX_OK;
+    for (slot = element; slot != GXP_NONE && result == GX_OK; slot = body->cells.data[slot].next) {
+        const gxp_cell *cell = &body->cells.data[slot];
+        double x[4][3];
+        gxp_bounds box;
+        if (!cell->kept || (own->admits != NULL && !own->admits(own->user, slot))) continue;
+        if (divided) {
+            gxp_cell_bounds(body, cell, &box);
+            if (gxp_bound_distance(walk, &box) > walk->limit) continue;
+        }
+        gxp_cell_corners(body, cell, 1, own->point, x);
+        if (divided)
+            result = gxp_try_facets(body, own, slot, x);
+        else
+            gxp_try_faces(own, slot, x);
+    }
+    return result;
+}
+
+/* Finds the cell nearest to a point of space, among those for which admits(user, slot) is not 0 (NULL: all), of equally
+   near ones that with the lowest slot. The point lies in none of them (gxp_find_cells_at). */
+static gx_result gxp_find_nearest(gx_body *body, const double point[3], int (*admits)(void *user, uint32_t slot),
+                                  void *user, gxp_near *near) {
+    gxp_near_walk own;
+    gx_result result;
+    own.walk.bound = gxp_bound_distance;
+    own.walk.visit = gxp_visit_near;
+    own.walk.limit = GXP_TREE_ALL;
+    own.point = point;
+    own.admits = admits;
+    own.user = user;
+    memset(&own.near, 0, sizeof own.near);
+    own.near.slot = GXP_NONE;
+    result = gxp_walk_tree(body, &own.walk);
+    *near = own.near;
+    return result;
+}
+
+/* --- hits --- */
+
+/* Sets all of a hit but distance, material and position. weights: of the cell's copies; the view, its indices and its
+   fragments are up to date. */
+static void gxp_start_hit(gx_body *body, uint32_t slot, const double weights[4], gx_hit *hit) {
+    const gxp_cell *cell = &body->cells.data[slot];
+    int n;
+    memset(hit, 0, sizeof *hit);
+    hit->triangle = UINT32_MAX;
+    hit->fragment = gxp_cell_fragment(body, slot);
+    hit->element = cell->element;
+    hit->cell = body->view.indices.data[slot];
+    hit->slot = slot;
+    hit->epoch = body->cuts.epoch;
+    for (n = 0; n < 4; n++)
+        if (weights[n] > 0) {
+            hit->copies[hit->copy_count] = cell->copies[n];
+            hit->weights[hit->copy_count++] = weights[n];
+        }
+}
+
+/* The hit of a point that the cell contains */
+static void gxp_hit_inside(gx_body *body, uint32_t slot, const double point[3], gx_hit *hit) {
+    double weights[4], material[3];
+    (void)gxp_pull_back(body, slot, point, weights, material);
+    gxp_start_hit(body, slot, weights, hit);
+    memcpy(hit->material, material, sizeof hit->material);
+    memcpy(hit->position, point, sizeof hit->position);
+}
+
+/* The hit of a point outside of all cells. Its distance is above 0 even where it rounds to 0. */
+static void gxp_hit_near(gx_body *body, const gxp_near *near, gx_hit *hit) {
+    double rest[12];
+    gxp_start_hit(body, near->slot, near->weights, hit);
+    gxp_element_positions(body, hit->element, rest);
+    gxp_weigh_material(rest, near->weights, hit->material);
+    gxp_map_point(body, hit->material, hit->copies, hit->weights, hit->copy_count, hit->position);
+    hit->distance = fmax(sqrt(near->square), ldexp(1, -1000));
+}
+
+/* The hit of a point that the cells in tree.found contain, or the nearest if there are none */
+static gx_result gxp_make_hit(gx_body *body, const double point[3], gx_hit *hit) {
+    gxp_near near;
+    gx_result result = GX_OK;
+    if (body->tree.found.count > 0)
+        gxp_hit_inside(body, body->tree.found.data[0], point, hit);
+    else {
+        result = gxp_find_nearest(body, point, NULL, NULL, &near);
+        if (result == GX_OK) gxp_hit_near(body, &near, hit);
+    }
+    return result;
+}
+
+static gx_result gxp_locate(gx_body *body, const double point[3], gx_hit *hit) {
+    const gx_result result = gxp_find_cells_at(body, point, &body->tree.found);
+    return result == GX_OK ? gxp_make_hit(body, point, hit) : result;
+}
+
+/* A number as points and displacements may have it */
+static gx_result gxp_check_near(double x) {
+    return gxp_is_near(x) ? GX_OK : gxp_is_finite(x) ? GX_ERROR_RANGE : GX_ERROR_NOT_FINITE;
+}
+
+static gx_result gxp_check_points(const double *points, size_t count, const char *field, int indexed,
+                                  gx_failure *failure) {
+    size_t i;
+    for (i = 0; i < 3 * count; i++) {
+        const gx_result result = gxp_check_near(points[i]);
+        if (result != GX_OK) return gxp_fail(failure, result, field, indexed ? i / 3 : SIZE_MAX);
+    }
+    return GX_OK;
+}
+
+/* Blames a copy that is where no cell can be located: its displacement is not finite or too large. */
+static gx_result gxp_check_copy(const gx_body *body, uint32_t copy, gx_failure *failure) {
+    gx_result worst = GX_ERROR_RANGE;
+    int k;
+    for (k = 0; k < 3; k++)
+        if (!gxp_is_finite(body->copies.displacement[3 * (size_t)copy + (size_t)k])) worst = GX_ERROR_NOT_FINITE;
+    return gxp_fail(failure, worst, "displacement", copy);
+}
+
+/* Brings what locating reads up to date: the view, its indices, the tree. */
+static gx_result gxp_prepare_locate(gx_body *body, gx_failure *failure) {
+    uint32_t wild;
+    gx_result result = gxp_update_view(body);
+    if (result == GX_OK) result = gxp_list_indices(body);
+    if (result == GX_OK) result = gxp_refit_tree(body);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    if (body->view.count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "body", SIZE_MAX);
+    wild = gxp_wild_copy(body);
+    return wild == GXP_NONE ? GX_OK : gxp_check_copy(body, wild, failure);
+}
+
+/* --- many points --- */
+
+/* More points than that are located along a curve through space: data of the tree and of elements is in the cache for
+   all points that are near. */
+#define GXP_LOCATE_FEW 8
+
+/* Points that lie close together, at most so many, share one walk to the elements near them, if these are no more than
+   GXP_GROUP_ELEMENTS. */
+#define GXP_GROUP_POINTS   32
+#define GXP_GROUP_ELEMENTS 128
+
+/* The points order.data[first ... end-1], and their box */
+typedef struct gxp_group {
+    uint32_t first, end;
+    gxp_bounds box;
+} gxp_group;
+
+/* Takes further points into a group while its box is no longer than reach. */
+static void gxp_grow_group(const gxp_keys *order, const double *points, double reach, gxp_group *group) {
+    int k;
+    gxp_empty_bounds(&group->box);
+    for (group->end = group->first; group->end < order->count && group->end < group->first + GXP_GROUP_POINTS;
+         group->end++) {
+        const double *x = points + 3 * (size_t)GXP_SECOND(order->data[group->end]);
+        gxp_bounds box = group->box, own;
+        memcpy(own.low, x, sizeof own.low);
+        memcpy(own.high, x, sizeof own.high);
+        gxp_add_bounds(&box, &own);
+        for (k = 0; k < 3; k++)
+            if (box.high[k] - box.low[k] > reach && group->end > group->first) return;
+        group->box = box;
+    }
+}
+
+/* Lists an element that is near a group. Its error ends the walk where there are too many. */
+static gx_result gxp_visit_near_group(gx_body *body, void *user, uint32_t place) {
+    (void)user;
+    return body->tree.near.count < GXP_GROUP_ELEMENTS ? gxp_push(body, &body->tree.near, place) : GX_ERROR_CAPACITY;
+}
+
+/* Finds the cells at a point of a group among the elements near it: tree.found. */
+static gx_result gxp_find_cells_near(gx_body *body, const double point[3]) {
+    const gxp_tree *tree = &body->tree;
+    gxp_point_walk walk;
+    gxp_bounds box;
+    uint32_t i;
+    gx_result result = GX_OK;
+    memcpy(box.low, point, sizeof box.low);
+    memcpy(box.high, point, sizeof box.high);
+    walk.point = point;
+    walk.slots = &body->tree.found;
+    walk.slots->count = 0;
+    for (i = 0; i < tree->near.count && result == GX_OK; i++)
+        if (!(gxp_gap(&tree->own_boxes[tree->near.data[i]], &box) > 0))
+            result = gxp_visit_at_point(body, &walk, tree->near.data[i]);
+    return result;
+}
+
+static gx_result gxp_locate_group(gx_body *body, const double *points, const gxp_group *group, gx_hit *hits) {
+    const gxp_keys *order = &body->tree.order;
+    uint32_t i;
+    int together = group->end > group->first + 1;
+    gx_result result = GX_OK;
+    body->tree.near.count = 0;
+    if (together) result = gxp_meet_box(body, &group->box, gxp_visit_near_group, NULL);
+    if (result == GX_ERROR_CAPACITY) {
+        together = 0;
+        result = GX_OK;
+    }
+    for (i = group->first; i < group->end && result == GX_OK; i++) {
+        const size_t point = GXP_SECOND(order->data[i]);
+        const double *x = points + 3 * point;
+        result = together ? gxp_find_cells_near(body, x) : gxp_find_cells_at(body, x, &body->tree.found);
+        if (result == GX_OK) result = gxp_make_hit(body, x, &hits[point]);
+    }
+    return result;
+}
+
+/* The edge of a cube that has the volume of the body's box at rest over the leaves of the tree */
+static double gxp_leaf_size(const gx_body *body) {
+    const gxp_box *all = &body->mesh.boxes[0];
+    double size = 1;
+    int k;
+    for (k = 0; k < 3; k++) size *= cbrt(all->high[k] - all->low[k]);
+    return size / cbrt((double)body->tree.cluster_count * GXP_TREE_LEAVES);
+}
+
+static gx_result gxp_locate_many(gx_body *body, const double *points, uint32_t count, gx_hit *hits) {
+    const double reach = gxp_leaf_size(body);
+    gxp_keys *order = &body->tree.order;
+    gxp_group group;
+    uint32_t i;
+    gx_result result;
+    order->count = 0;
+    result = gxp_keys_room(body, order, 2 * (size_t)count); /* sorting takes as much again */
+    for (i = 0; i < count && result == GX_OK; i++)
+        result = gxp_push_key(body, order, gxp_curve_place(body, points + 3 * (size_t)i), i);
+    if (result == GX_OK) result = gxp_sort_keys(body, order, 0, count);
+    for (group.first = 0; group.first < count && result == GX_OK; group.first = group.end) {
+        gxp_grow_group(order, points, reach, &group);
+        result = gxp_locate_group(body, points, &group, hits);
+    }
+    return result;
+}
+
+GXFEM_API gx_result gx_body_locate(gx_body *body, const double *points, size_t count, gx_hit *hits,
+                                   gx_failure *failure) {
+    gx_result result;
+    size_t i;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (points == NULL && count > 0) return gxp_refuse(failure, "points");
+    if (hits == NULL && count > 0) return gxp_refuse(failure, "hits");
+    if (count > INT32_MAX / 4) return gxp_fail(failure, GX_ERROR_LIMIT, "count", SIZE_MAX);
+    result = gxp_check_points(points, count, "points", 1, failure);
+    if (result == GX_OK) result = gxp_prepare_locate(body, failure);
+    if (result != GX_OK) return result;
+    if (count > GXP_LOCATE_FEW)
+        result = gxp_locate_many(body, points, (uint32_t)count, hits);
+    else
+        for (i = 0; i < count && result == GX_OK; i++) result = gxp_locate(body, points + 3 * i, &hits[i]);
+    return gxp_end(failure, result);
+}
+
+GXFEM_API gx_result gx_body_locate_all(gx_body *body, const double point[3], gx_hit *hits, size_t capacity,
+                                       size_t *count, gx_failure *failure) {
+    gx_result result;
+    size_t i;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (point == NULL) return gxp_refuse(failure, "point");
+    if (hits == NULL && capacity > 0) return gxp_refuse(failure, "hits");
+    if (count == NULL) return gxp_refuse(failure, "count");
+    result = gxp_check_points(point, 1, "point", 0, failure);
+    if (result == GX_OK) result = gxp_prepare_locate(body, failure);
+    if (result != GX_OK) return result;
+    result = gxp_find_cells_at(body, point, &body->tree.found);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    *count = body->tree.found.count;
+    if (capacity < *count) return gxp_fail(failure, GX_ERROR_CAPACITY, "capacity", SIZE_MAX);
+    for (i = 0; i < *count; i++) gxp_hit_inside(body, body->tree.found.data[i], point, &hits[i]);
+    return GX_OK;
+}
+
+GXFEM_API gx_result gx_body_place(const gx_body *body, uint32_t slot, const double material[3], double position[3],
+                                  gx_failure *failure) {
+    gx_result result;
+    int n, k;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (material == NULL) return gxp_refuse(failure, "material");
+    if (position == NULL) return gxp_refuse(failure, "position");
+    if (slot >= body->cells.count) return gxp_fail(failure, GX_ERROR_INDEX, "slot", SIZE_MAX);
+    if (!body->cells.data[slot].kept) return gxp_fail(failure, GX_ERROR_EMPTY, "slot", SIZE_MAX);
+    result = gxp_check_points(material, 1, "material", 0, failure);
+    for (n = 0; n < 4 && result == GX_OK; n++)
+        for (k = 0; k < 3 && result == GX_OK; k++)
+            if (!gxp_is_near(body->copies.displacement[3 * (size_t)body->cells.data[slot].copies[n] + (size_t)k]))
+                result = gxp_check_copy(body, body->cells.data[slot].copies[n], failure);
+    if (result != GX_OK) return result;
+    gxp_image(body, slot, material, position);
+    return gxp_end(failure, GX_OK);
+}
+
+/* >>rays: picking -------------------------------------------------------------------------------------------------- */
+/* In: a ray. Out: where it first meets the deformed skin. The tree leads to the elements that the ray may meet; the
+   triangles that these show are tested exactly. Touches the tree and the view's lists. */
+
+/* The ray's coordinates: two across it, sheared along the largest component of its direction, and the distance along it
+   in lengths of direction */
+typedef struct gxp_ray_walk {
+    gxp_walk walk; /* limit: the distance of the triangle found */
+    const double *origin, *direction;
+    double slope[2];  /* of the two coordinates across, along the axis */
+    double margin[3]; /* of the ray's coordinates of a box: above all rounding of those of points in it */
+    int axis;
+    uint32_t found; /* triangle, UINT32_MAX: none */
+    double share[3];
+} gxp_ray_walk;
+
+static void gxp_shear(const gxp_ray_walk *ray, const double x[3], double across[3]) {
+    const double *o = ray->origin, *d = ray->direction;
+    const int axis = ray->axis, i = (axis + 1) % 3, j = (axis + 2) % 3;
+    const double along = (x[axis] - o[axis]) / d[axis], p = x[i] - o[i], q = x[j] - o[j];
+    across[0] = p - along * d[i];
+    across[1] = q - along * d[j];
+    across[2] = along;
+}
+
+/* Share of coordinates' sizes (2^-44), far above the rounding of the ray's coordinates: a few units of 2^-52 */
+#define GXP_RAY_MARGIN 5.6843418860808015e-14
+
+/* A quotient along the ray that falls below all doubles, or is flushed to 0, is wrong by 2^-1022 at most. */
+static void gxp_start_ray(const gx_body *body, const double origin[3], const double direction[3], gxp_ray_walk *ray) {
+    const gxp_bounds *all = &body->tree.boxes[0];
+    double size = 0;
+    int axis = 0, k;
+    for (k = 1; k < 3; k++)
+        if (fabs(direction[k]) > fabs(direction[axis])) axis = k;
+    for (k = 0; k < 3; k++) size = fmax(size, fmax(fmax(fabs(all->low[k]), fabs(all->high[k])), fabs(origin[k])));
+    ray->origin = origin;
+    ray->direction = direction;
+    ray->axis = axis;
+    for (k = 0; k < 2; k++) {
+        ray->slope[k] = direction[(axis + 1 + k) % 3] / direction[axis];
+        ray->margin[k] = GXP_RAY_MARGIN * size + fabs(direction[axis]) * ldexp(1, -1021);
+    }
+    ray->margin[2] = GXP_RAY_MARGIN * (size / fabs(direction[axis])) + ldexp(1, -1021);
+    ray->found = UINT32_MAX;
+}
+
+/* Where the ray may first meet the box, less the margin. A box is left out only where that is certain, so that what is
+   not finite does no harm. */
+static double gxp_bound_ray(const gxp_walk *walk, const gxp_bounds *box) {
+    const gxp_ray_walk *ray = (const gxp_ray_walk *)(const void *)walk;
+    const int axis = ray->axis;
+    const double low = box->low[axis] - ray->origin[axis], high = box->high[axis] - ray->origin[axis];
+    const double first = low / ray->direction[axis], last = high / ray->direction[axis];
+    const double near = (first < last ? first : last) - ray->margin[2],
+                 far = (first < last ? last : first) + ray->margin[2];
+    int k, beyond = far < 0;
+    for (k = 0; k < 2; k++) {
+        const int i = (axis + 1 + k) % 3;
+        const double p = low * ray->slope[k], q = high * ray->slope[k];
+        beyond |= box->low[i] - ray->origin[i] - (p > q ? p : q) > ray->margin[k];
+        beyond |= box->high[i] - ray->origin[i] - (p > q ? q : p) < -ray->margin[k];
+    }
+    return beyond ? GXP_TREE_BEYOND : near > 0 ? near : 0;
+}
+
+/* Does the ray pass through the triangle? p: its corners in the ray's coordinates. share: the weights of its corners at
+   the point; distance: of the point. The signs are exact, so that no ray slips through between triangles that share
+   corners. */
+static int gxp_meet_triangle(double p[3][3], double share[3], double *distance) {
     static const double ray[2] = {0, 0};
-    const double *p[3];
     double sum = 0;
     int k, positive = 0, negative = 0;
-    for (k = 0; k < 3; k++) p[k] = s->positions + 3 * (size_t)t[k];
     for (k = 0; k < 2; k++)
         if (!(fmin(p[0][k], fmin(p[1][k], p[2][k])) <= 0 && fmax(p[0][k], fmax(p[1][k], p[2][k])) >= 0)) return 0;
     for (k = 0; k < 3; k++) {
@@ -7881,6 +9069,28 @@ static int gxp_meet_triangle(const gxp_skin *s, const uint32_t *t, double share[
         *distance += share[k] * p[k][2];
     }
     return *distance >= 0;
+}
+
+/* Tests the triangles that an element shows. Of equally near ones the first of the skin counts. */
+static gx_result gxp_visit_on_ray(gx_body *body, gxp_walk *walk, uint32_t element) {
+    gxp_ray_walk *ray = (gxp_ray_walk *)(void *)walk;
+    const gxp_skin *s = &body->skin;
+    uint32_t t;
+    int k;
+    for (t = s->first.data[element]; t != GXP_NONE; t = s->links[t].next) {
+        double p[3][3], x[3], share[3], distance;
+        for (k = 0; k < 3; k++) {
+            const size_t v = s->triangles[3 * (size_t)t + (size_t)k];
+            gxp_map_point(body, s->rest + 3 * v, s->copies + 4 * v, s->weights + 4 * v, 4, x);
+            gxp_shear(ray, x, p[k]);
+        }
+        if (!gxp_meet_triangle(p, share, &distance) || distance > walk->limit) continue;
+        if (ray->found != UINT32_MAX && !(distance < walk->limit) && t > ray->found) continue;
+        ray->found = t;
+        walk->limit = distance;
+        memcpy(ray->share, share, sizeof share);
+    }
+    return GX_OK;
 }
 
 /* A point of up to GXS_POINT_OWN copies holds them itself, others refer to the arrays. */
@@ -7921,6 +9131,8 @@ static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double sh
     hit->fragment = s->fragment[triangle];
     hit->element = s->element[triangle];
     hit->surface = s->surface[triangle];
+    hit->slot = s->cell[triangle];
+    hit->cell = body->view.indices.data[hit->slot];
     for (i = 0; i < 3; i++) {
         const size_t v = s->triangles[3 * (size_t)triangle + i];
         for (j = 0; j < 3; j++) hit->material[j] += share[i] * s->rest[3 * v + (size_t)j];
@@ -7949,28 +9161,25 @@ static gx_result gxp_check_ray(const gx_body *body, const double origin[3], cons
 
 GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit,
                                  gx_failure *failure) {
-    double share[3], best[3] = {0, 0, 0}, distance;
-    uint32_t t, found = UINT32_MAX;
-    const gxp_skin *s;
+    gxp_ray_walk ray;
     gx_result result = gxp_check_ray(body, origin, direction, failure);
     if (result != GX_OK) return result;
     if (hit == NULL) return gxp_refuse(failure, "hit");
     if (!gxp_has_skin(body)) return gxp_fail(failure, GX_ERROR_SEQUENCE, "gx_body_skin", SIZE_MAX);
-    s = &body->skin;
-    gxp_end(failure, GX_OK);
-    gxp_shear_along(body, origin, direction);
+    result = gxp_update_view(body);
+    if (result == GX_OK) result = gxp_list_indices(body);
+    if (result == GX_OK) result = gxp_refit_tree(body);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    ray.walk.bound = gxp_bound_ray;
+    ray.walk.visit = gxp_visit_on_ray;
+    ray.walk.limit = GXP_TREE_ALL;
+    gxp_start_ray(body, origin, direction, &ray);
+    (void)gxp_walk_tree(body, &ray.walk);
     memset(hit, 0, sizeof *hit);
-    for (t = 0; t < s->triangle_count; t++) {
-        if (!gxp_meet_triangle(s, s->triangles + 3 * (size_t)t, share, &distance)) continue;
-        if (found != UINT32_MAX && distance >= hit->distance) continue;
-        found = t;
-        hit->distance = distance;
-        memcpy(best, share, sizeof best);
-    }
-    if (found == UINT32_MAX)
-        hit->triangle = found;
-    else
-        gxp_fill_hit(body, found, best, hit);
+    hit->triangle = ray.found;
+    if (ray.found == UINT32_MAX) return GX_OK;
+    hit->distance = ray.walk.limit;
+    gxp_fill_hit(body, ray.found, ray.share, hit);
     return GX_OK;
 }
 
@@ -9078,6 +10287,17 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_LINK_FACET
 #undef GXP_LINK_FACE
 #undef GXP_SEARCH_MARGIN
+#undef GXP_TREE_LEAVES
+#undef GXP_TREE_LEAF
+#undef GXP_TREE_MARGIN
+#undef GXP_TREE_ALL
+#undef GXP_TREE_BEYOND
+#undef GXP_NEAR_MARGIN
+#undef GXP_NEAR_ROUNDING
+#undef GXP_LOCATE_FEW
+#undef GXP_GROUP_POINTS
+#undef GXP_GROUP_ELEMENTS
+#undef GXP_RAY_MARGIN
 #undef GXP_REACH
 #undef GXP_WEIGHT
 #undef GXP_LAST_ROUND
