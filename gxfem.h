@@ -532,6 +532,45 @@ GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *a
 GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit,
                                  gx_failure *failure /* or NULL */);
 
+/* >>blade: cutting where a knife is, while the body moves ---------------------------------------------------------- */
+
+/* A blade is an edge in space, a polyline, that is moved through a body, which moves meanwhile. Each piece is cut where
+   it meets the edge: pieces that lie over each other in space are different layers, and each remembers, in material
+   coordinates, how far the edge has come in it (its front). A move cuts what lies between the fronts and the edge when
+   a front has advanced far enough, or before its path bends away from a straight strip. A partly cut element has no
+   mechanical effect, so that waiting costs nothing. */
+typedef struct gx_blade gx_blade; /* opaque; belongs to a body, which destroys it at last */
+
+typedef struct gx_blade_desc {
+    /* m: a strip begins anew where the edge's path in the material bends by more. 0: a hundredth of the mean size of
+       elements, which is the cube root of six times their volume */
+    double tolerance;
+    double min_advance;   /* m: a front that has come less far waits. 0: half the mean size of elements */
+    uint32_t max_samples; /* places at which a layer looks at the edge, at most; 0: 1000 */
+    int starts_inside;    /* 1: the first edge, and the first after a lift, may be in the material */
+} gx_blade_desc;
+typedef struct gx_blade_report {
+    size_t layer_count;    /* pieces near the edge */
+    size_t triangle_count; /* of the strips that cut */
+    double deviation;      /* m: the largest distance between the edge's path and these strips, as far as it was seen */
+    gx_cut_report cut;     /* zero, with min_link_ratio 1, where nothing was cut */
+} gx_blade_report;
+/* Creates a blade. Errors: ARGUMENT, NOT_FINITE, MEMORY, CONFIGURATION. */
+GXFEM_API gx_result gx_blade_create(gx_body *body, const gx_blade_desc *desc /* or NULL: zero */, gx_blade **blade,
+                                    gx_failure *failure /* or NULL */);
+GXFEM_API void gx_blade_destroy(gx_blade *blade); /* or NULL */
+/* Moves the edge and cuts what it has passed since the last move, relative to the material. edge: point_count x 3, in
+   space, m; as many points at each move until the blade is lifted, 2 or more. scope: fragments that alone are cut,
+   below gx_view.fragment_count; count 0: all. On an error body and blade are as they were.
+   Errors: ARGUMENT (also: the first edge is inside the material and starts_inside is 0, index: point), INDEX,
+   NOT_FINITE, RANGE, LIMIT, MEMORY. */
+GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t point_count,
+                                  const uint32_t *scope_fragments, size_t scope_fragment_count,
+                                  gx_blade_report *report /* or NULL */, gx_failure *failure /* or NULL */);
+/* Cuts what waits, and forgets fronts and edge: the next move begins anew. Errors: ARGUMENT, LIMIT, MEMORY. */
+GXFEM_API gx_result gx_blade_lift(gx_blade *blade, gx_blade_report *report /* or NULL */,
+                                  gx_failure *failure /* or NULL */);
+
 /* >>hashing -------------------------------------------------------------------------------------------------------- */
 
 /* Hash of the cells and copies, the same on every compiler. 0 after an error: ARGUMENT, MEMORY, LIMIT. */
@@ -895,6 +934,107 @@ typedef struct gxp_skin {
     uint32_t normal_capacity, position_capacity;
 } gxp_skin;
 
+/* --- blades --- */
+
+/* A place on a blade's edge, as one layer sees it */
+typedef struct gxp_front_vertex {
+    double rest[3];     /* material point; in the air at most an element's size away from the layer */
+    double extended[3]; /* the same by the extended map alone: in the air as far away as the edge is */
+    double position[3]; /* in space, when it was seen */
+    double ahead[3];    /* in which direction the front came here, of length 1; 0: it began here */
+    double distance;    /* from the layer, m; 0: inside */
+    double size;        /* of the element, m */
+    double along;       /* index of a point of the edge, + share of the way to the next */
+    uint32_t element;   /* whose map it is */
+    uint32_t unused;    /* rows are saved as bytes */
+} gxp_front_vertex;
+typedef struct gxp_front_list {
+    gxp_front_vertex *data;
+    uint32_t count, capacity;
+} gxp_front_list;
+typedef struct gxp_points {
+    double *data; /* count x 3 */
+    uint32_t count, capacity;
+} gxp_points;
+
+/* What a layer remembers: ranges of the state's lists */
+typedef struct gxp_layer {
+    uint32_t front, front_count;   /* vertices: up to here it is cut */
+    uint32_t latest, latest_count; /* vertices: how far the edge had come at the last move; waits to be cut */
+    uint32_t path, path_count;     /* points: where the edge has been since the front was cut */
+    uint32_t sheet, sheet_count;   /* points, 3 for each triangle: the last strips */
+} gxp_layer;
+typedef struct gxp_layer_list {
+    gxp_layer *data;
+    uint32_t count, capacity;
+} gxp_layer_list;
+
+typedef struct gxp_blade_state { /* what lasts from move to move */
+    gxp_front_list vertices;
+    gxp_points points;
+    gxp_layer_list layers;
+    gxp_keys members;    /* slot of a near cell, layer; ascending */
+    uint32_t slot_count; /* of the body then */
+    gxp_points edge;     /* none: the blade is lifted */
+} gxp_blade_state;
+
+typedef struct gxp_near_cell { /* a kept cell around the edge */
+    uint32_t slot, layer;
+    double corners[4][3], low[3], high[3]; /* deformed */
+    double stretch;                        /* volume / volume at rest of its element; negative: inverted */
+    double size;                           /* of its element, m */
+} gxp_near_cell;
+typedef struct gxp_near {
+    gxp_near_cell *cells;
+    uint32_t count, capacity;
+    uint32_t layer_count;
+    gxp_words of_slot;     /* by slot: index in cells, if that has the slot */
+    gxp_words of_copy;     /* by copy: index of a cell with that copy, if it has it */
+    gxp_words parents;     /* of cells, see gxp_find */
+    gxp_keys order;        /* place along the axis, index in cells: by layer, ascending */
+    gxp_words layer_start; /* layer_count + 1, into order */
+    int axis;
+    double widest; /* of the cells along the axis */
+} gxp_near;
+
+/* Where a place on the edge lies by a layer's front */
+typedef struct gxp_relation {
+    double share;     /* of the nearest point on the segment */
+    double distance;  /* m */
+    uint32_t segment; /* of the front, the nearest */
+    uint8_t ahead;    /* 1: the front advances there */
+    uint8_t strays;   /* 1: the edge has left its cut through the side */
+    uint8_t beyond;   /* 1: past an end of the front */
+} gxp_relation;
+
+struct gx_blade {
+    gx_body *body;
+    gx_blade *next;                         /* of the body's */
+    double tolerance, min_advance, largest; /* m; the largest size of elements */
+    uint32_t max_samples;
+    int starts_inside;
+    gxp_blade_state now, then; /* then: what a move makes; it becomes now if the move succeeds */
+    /* working memory of a move */
+    gxp_near near;
+    gxp_points quads;   /* 4 for each part of the strip that was swept; of a layer: corners of its strips, in space */
+    gxp_words found;    /* cells around a quad */
+    gxp_words in_scope; /* by fragment: 1 if it is in the scope */
+    gxp_words scope;    /* slots of each surface in turn */
+    gxp_points corners; /* 3 for each triangle of each surface in turn */
+    gxp_words surface_starts; /* of each surface: in scope, in corners */
+    gxp_words triangles;      /* 0, 1, 2 ... */
+    gx_surface *surfaces;
+    uint32_t surface_capacity;
+    /* of one layer at a move */
+    gxp_front_list front, latest, samples, advanced;
+    gxp_front_list strip, cut; /* 3 for each triangle: of one strip, of all */
+    gxp_points path, sheet;
+    gxp_relation *relations; /* of the samples */
+    uint32_t relation_capacity;
+    gxp_words needed; /* by sample: 1 if it is not on a line with others */
+    gxp_words owners; /* old layers that flow into it */
+};
+
 /* --- working memory of one call. No contents last to the next call; the memory stays, so that a cut as large as the
    last one allocates nothing. --- */
 
@@ -962,6 +1102,7 @@ struct gx_body {
     gxp_model model;
     gxp_attached attached;
     gxp_skin skin;
+    gx_blade *blades; /* list through next */
     gxp_scratch scratch;
 };
 
@@ -7158,6 +7299,1479 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
     return GX_OK;
 }
 
+/* STAND-INS */
+/* The cell of an element at a material point, GXP_NONE where it was removed */
+static gx_result gxp_cell_at(gx_body *body, uint32_t element, const double rest[3], const double *toward,
+                             uint32_t *cell) {
+    uint32_t leaf = GXP_NONE;
+    const gx_result result = gxp_leaf_at(body, element, rest, toward, &leaf);
+    *cell = GXP_NONE;
+    if (result == GX_OK && gxp_is_kept(body, leaf)) *cell = body->leaves.data[leaf].cell;
+    return result;
+}
+static gx_result gxp_find_in_box(gx_body *body, const double low[3], const double high[3], gxp_words *found) {
+    uint32_t e, c;
+    gx_result result = GX_OK;
+    found->count = 0;
+    for (e = 0; e < body->mesh.element_count; e++)
+        for (c = e; c != GXP_NONE; c = body->cells.data[c].next) {
+            static const double origin[3] = {0, 0, 0};
+            double x[4][3];
+            int k, out = 0;
+            if (!body->cells.data[c].kept) continue;
+            gxp_cell_corners(body, &body->cells.data[c], 1, origin, x);
+            for (k = 0; k < 3; k++) {
+                out |= x[0][k] > high[k] && x[1][k] > high[k] && x[2][k] > high[k] && x[3][k] > high[k];
+                out |= x[0][k] < low[k] && x[1][k] < low[k] && x[2][k] < low[k] && x[3][k] < low[k];
+            }
+            if (!out && result == GX_OK) result = gxp_push(body, found, c);
+        }
+    return result;
+}
+static gx_result gxp_find_rest_cell(gx_body *body, const double x[3], uint32_t *cell) {
+    uint32_t stack[128], depth = 0, i;
+    int k;
+    *cell = GXP_NONE;
+    stack[depth++] = 0;
+    while (depth > 0) {
+        const gxp_box *box = &body->mesh.boxes[stack[--depth]];
+        int out = 0;
+        for (k = 0; k < 3; k++) out |= x[k] < box->low[k] || x[k] > box->high[k];
+        if (out) continue;
+        if (box->count == 0) {
+            stack[depth++] = box->first + 1;
+            stack[depth++] = box->first;
+        }
+        for (i = 0; i < box->count; i++) {
+            const uint32_t e = body->mesh.box_elements[box->first + i];
+            const uint32_t *node = gxb_complex_element_nodes(body->complex, e);
+            out = 0;
+            for (k = 0; k < 4; k++)
+                out |= gxb_orient3d(body->mesh.positions + 3 * (size_t)node[gxp_outward[k][0]],
+                                    body->mesh.positions + 3 * (size_t)node[gxp_outward[k][1]],
+                                    body->mesh.positions + 3 * (size_t)node[gxp_outward[k][2]], x) < 0;
+            if (!out) return gxp_cell_at(body, e, x, NULL, cell);
+        }
+    }
+    return GX_OK;
+}
+#define GXP_EDGE_REACH 110
+/* END OF STAND-INS */
+/* >>layers: the cells around a blade, and how they hang together --------------------------------------------------- */
+/* In: the strip between the fronts of a blade and its edge. Out: the cells within an element's size of it, with their
+   deformed corners, and the layer to which each belongs: cells that hang together there through copies. Pieces that lie
+   over each other in space are different layers. Touches the blade's working memory. */
+
+static double gxp_square_distance(const double *a, const double *b) {
+    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    return gxp_dot(d, d);
+}
+
+/* The point of a segment nearest to p: *share of the way from a to b. Returns the squared distance. */
+static double gxp_near_segment(const double *p, const double *a, const double *b, double *share, double nearest[3]) {
+    double along = 0, length = 0, t;
+    int k;
+    for (k = 0; k < 3; k++) {
+        along += (p[k] - a[k]) * (b[k] - a[k]);
+        length += (b[k] - a[k]) * (b[k] - a[k]);
+    }
+    t = length > 0 ? along / length : 0;
+    t = t < 0 ? 0 : t > 1 ? 1 : t;
+    for (k = 0; k < 3; k++) nearest[k] = a[k] + t * (b[k] - a[k]);
+    *share = t;
+    return gxp_square_distance(p, nearest);
+}
+
+static void gxp_cross(const double a[3], const double b[3], double n[3]) {
+    n[0] = a[1] * b[2] - a[2] * b[1];
+    n[1] = a[2] * b[0] - a[0] * b[2];
+    n[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* The point of a triangle nearest to p. Returns the squared distance. */
+static double gxp_near_triangle(const double *p, const double *a, const double *b, const double *c, double nearest[3]) {
+    const double *corner[4] = {a, b, c, a};
+    const double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]},
+                 w[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
+    double n[3], x[3], y[3], square, best, share, at[3];
+    int k;
+    gxp_cross(u, v, n);
+    gxp_cross(w, v, x);
+    gxp_cross(u, w, y);
+    square = gxp_dot(n, n);
+    if (square > 0 && gxp_dot(x, n) >= 0 && gxp_dot(y, n) >= 0 && gxp_dot(x, n) + gxp_dot(y, n) <= square) {
+        const double height = gxp_dot(w, n) / square;
+        for (k = 0; k < 3; k++) nearest[k] = p[k] - height * n[k];
+        return height * height * square;
+    }
+    best = gxp_near_segment(p, a, b, &share, nearest);
+    for (k = 1; k < 3; k++) {
+        square = gxp_near_segment(p, corner[k], corner[k + 1], &share, at);
+        if (square < best) {
+            best = square;
+            memcpy(nearest, at, sizeof at);
+        }
+    }
+    return best;
+}
+
+/* Weights of a point by the corners of a tetrahedron, 1 in sum. Returns six times its volume. */
+static double gxp_tet_weights(double corners[4][3], const double p[3], double weights[4]) {
+    double e[3][3], n[3][3], d[3], volume;
+    int i, k;
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 3; k++) e[i][k] = corners[i + 1][k] - corners[0][k];
+    for (k = 0; k < 3; k++) d[k] = p[k] - corners[0][k];
+    for (i = 0; i < 3; i++) gxp_cross(e[(i + 1) % 3], e[(i + 2) % 3], n[i]);
+    volume = gxp_dot(e[0], n[0]);
+    weights[0] = 1;
+    for (i = 0; i < 3; i++) {
+        weights[i + 1] = gxp_dot(n[i], d) / volume;
+        weights[0] -= weights[i + 1];
+    }
+    return volume;
+}
+
+/* The point of those weights */
+static void gxp_weigh(double corners[4][3], const double weights[4], double p[3]) {
+    int i, k;
+    for (k = 0; k < 3; k++) {
+        p[k] = 0;
+        for (i = 0; i < 4; i++) p[k] += weights[i] * corners[i][k];
+    }
+}
+
+static gx_result gxp_push_vertex(gx_body *body, gxp_front_list *list, const gxp_front_vertex *vertex) {
+    const gx_result result =
+        gxp_reserve(&body->config.allocator, &list->data, sizeof *list->data, list->count, &list->capacity, 1);
+    if (result == GX_OK) list->data[list->count++] = *vertex;
+    return result;
+}
+
+static gx_result gxp_push_point(gx_body *body, gxp_points *list, const double x[3]) {
+    const gx_result result =
+        gxp_reserve(&body->config.allocator, &list->data, 3 * sizeof *list->data, list->count, &list->capacity, 1);
+    if (result == GX_OK) memcpy(list->data + 3 * (size_t)list->count++, x, 3 * sizeof *x);
+    return result;
+}
+
+static gx_result gxp_append_front(gx_body *body, gxp_front_list *to, const gxp_front_vertex *from, uint32_t count) {
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (i = 0; i < count && result == GX_OK; i++) result = gxp_push_vertex(body, to, &from[i]);
+    return result;
+}
+
+static gx_result gxp_copy_front(gx_body *body, gxp_front_list *to, const gxp_front_list *from) {
+    to->count = 0;
+    return gxp_append_front(body, to, from->data, from->count);
+}
+
+/* The near cell of a slot, or GXP_NONE */
+static uint32_t gxp_near_index(const gxp_near *near, uint32_t slot) {
+    const uint32_t index = slot < near->of_slot.count ? near->of_slot.data[slot] : GXP_NONE;
+    return index < near->count && near->cells[index].slot == slot ? index : GXP_NONE;
+}
+
+/* The layer of a slot, or GXP_NONE */
+static uint32_t gxp_layer_of(const gxp_near *near, uint32_t slot) {
+    const uint32_t index = gxp_near_index(near, slot);
+    return index == GXP_NONE ? GXP_NONE : near->cells[index].layer;
+}
+
+/* The layer to which a cell belonged at the last move, or GXP_NONE. Parts of a cell that was divided since inherit. */
+static uint32_t gxp_old_layer(const gx_blade *blade, uint32_t slot) {
+    const gxp_keys *members = &blade->now.members;
+    const uint32_t *parent = blade->body->cells.parent;
+    uint32_t low = 0, high = members->count;
+    while (slot >= blade->now.slot_count && parent[slot] != slot) slot = parent[slot];
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (GXP_FIRST(members->data[middle]) < slot)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < members->count && GXP_FIRST(members->data[low]) == slot ? GXP_SECOND(members->data[low]) : GXP_NONE;
+}
+
+/* Where a vertex of a front is now, as a layer has it: by a cell of its element that belongs to the layer, if there is
+   one, and that contains it. old: the layer is one of the last move's. */
+static gx_result gxp_front_position(gx_blade *blade, uint32_t layer, int old, const gxp_front_vertex *v, double x[3]) {
+    static const double origin[3] = {0, 0, 0};
+    gx_body *body = blade->body;
+    uint32_t cell, best = GXP_NONE, most = 0, holder = GXP_NONE;
+    double corners[4][3], weights[4];
+    gx_result result = GX_OK;
+    memcpy(x, v->position, 3 * sizeof *x);
+    if (body->cells.data[v->element].next != GXP_NONE) result = gxp_cell_at(body, v->element, v->rest, NULL, &holder);
+    for (cell = v->element; cell != GXP_NONE; cell = body->cells.data[cell].next) {
+        const uint32_t own = old ? gxp_old_layer(blade, cell) : gxp_layer_of(&blade->near, cell),
+                       rank = 1 + 2 * (uint32_t)(own == layer) + (uint32_t)(cell == holder);
+        if (!body->cells.data[cell].kept || rank <= most) continue;
+        most = rank;
+        best = cell;
+    }
+    if (best == GXP_NONE || result != GX_OK) return result;
+    gxp_cell_corners(body, &body->cells.data[best], 0, origin, corners);
+    gxp_tet_weights(corners, v->extended, weights);
+    gxp_cell_corners(body, &body->cells.data[best], 1, origin, corners);
+    gxp_weigh(corners, weights, x);
+    return GX_OK;
+}
+
+/* A place on the edge: index of its point, + share of the way to the next */
+static void gxp_edge_position(const double *edge, uint32_t count, double along, double x[3]) {
+    const uint32_t i = along < count - 2 ? (uint32_t)along : count - 2;
+    const double share = along - i;
+    int k;
+    for (k = 0; k < 3; k++) {
+        const double a = edge[3 * (size_t)i + (size_t)k], b = edge[3 * (size_t)i + 3 + (size_t)k];
+        x[k] = share <= 0 ? a : share >= 1 ? b : a + share * (b - a);
+    }
+}
+
+static gx_result gxp_push_quad(gx_blade *blade, const double *a, const double *b, const double *c, const double *d) {
+    gx_result result = gxp_push_point(blade->body, &blade->quads, a);
+    if (result == GX_OK) result = gxp_push_point(blade->body, &blade->quads, b);
+    if (result == GX_OK) result = gxp_push_point(blade->body, &blade->quads, c);
+    return result == GX_OK ? gxp_push_point(blade->body, &blade->quads, d) : result;
+}
+
+/* The part of the edge between two of its points, from the last move's place to the new one, in pieces of about twice
+   the largest element. Far ends are long pieces: no cell is there. */
+static gx_result gxp_sweep_segment(gx_blade *blade, const double *before, const double *after) {
+    double from[4][3], length;
+    uint32_t parts, i;
+    int k, n;
+    gx_result result = GX_OK;
+    length = sqrt(gxp_square_distance(after, after + 3));
+    parts = length < 200 * blade->largest ? 1 + (uint32_t)(0.5 * length / blade->largest) : 100;
+    for (i = 0; i < parts && result == GX_OK; i++) {
+        for (n = 0; n < 2; n++)
+            for (k = 0; k < 3; k++) {
+                const double share = (double)(i + (uint32_t)n) / parts;
+                from[n][k] = before[k] + share * (before[3 + k] - before[k]);
+                from[3 - n][k] = after[k] + share * (after[3 + k] - after[k]);
+            }
+        result = gxp_push_quad(blade, from[0], from[1], from[2], from[3]);
+    }
+    return result;
+}
+
+/* The strip that the edge may have swept since the fronts were cut: from the edge of the last move, and from the place
+   where each front is now */
+static gx_result gxp_sweep(gx_blade *blade, const double *edge, uint32_t count) {
+    const gxp_blade_state *now = &blade->now;
+    const double *before = now->edge.count > 0 ? now->edge.data : edge;
+    uint32_t i, j;
+    gx_result result = GX_OK;
+    blade->quads.count = 0;
+    for (i = 0; i + 1 < count && result == GX_OK; i++)
+        result = gxp_sweep_segment(blade, before + 3 * (size_t)i, edge + 3 * (size_t)i);
+    for (j = 0; j < now->layers.count && result == GX_OK; j++) {
+        const gxp_front_vertex *v = now->vertices.data + now->layers.data[j].front;
+        for (i = 0; i + 1 < now->layers.data[j].front_count && result == GX_OK; i++) {
+            double x[4][3];
+            result = gxp_front_position(blade, j, 1, &v[i], x[0]);
+            if (result == GX_OK) result = gxp_front_position(blade, j, 1, &v[i + 1], x[1]);
+            gxp_edge_position(edge, count, v[i + 1].along, x[2]);
+            gxp_edge_position(edge, count, v[i].along, x[3]);
+            if (result == GX_OK) result = gxp_push_quad(blade, x[0], x[1], x[2], x[3]);
+        }
+    }
+    return result;
+}
+
+/* The deformed corners of a near cell */
+static void gxp_place_near(const gx_body *body, gxp_near_cell *near) {
+    static const double origin[3] = {0, 0, 0};
+    const gxp_cell *cell = &body->cells.data[near->slot];
+    const double volume = gxp_element_volume(body, cell->element);
+    double weights[4];
+    int n, k;
+    gxp_cell_corners(body, cell, 1, origin, near->corners);
+    for (k = 0; k < 3; k++) {
+        near->low[k] = near->high[k] = near->corners[0][k];
+        for (n = 1; n < 4; n++) {
+            near->low[k] = fmin(near->low[k], near->corners[n][k]);
+            near->high[k] = fmax(near->high[k], near->corners[n][k]);
+        }
+    }
+    near->stretch = gxp_tet_weights(near->corners, near->low, weights) / (6 * volume);
+    near->size = cbrt(6 * volume);
+}
+
+/* Is the ball around a cell within a distance of one of two triangles of a quad? */
+static int gxp_is_near_quad(const gxp_near_cell *near, const double *quad, double reach) {
+    double middle[3], radius = 0, at[3];
+    int n, k;
+    for (k = 0; k < 3; k++)
+        middle[k] = 0.25 * (near->corners[0][k] + near->corners[1][k] + near->corners[2][k] + near->corners[3][k]);
+    for (n = 0; n < 4; n++) radius = fmax(radius, gxp_square_distance(middle, near->corners[n]));
+    radius = sqrt(radius) + reach;
+    return gxp_near_triangle(middle, quad, quad + 3, quad + 6, at) <= radius * radius ||
+           gxp_near_triangle(middle, quad, quad + 6, quad + 9, at) <= radius * radius;
+}
+
+/* Adds a cell that is within an element's size of the quad, unless it is there. */
+static gx_result gxp_add_near(gx_blade *blade, uint32_t slot, const double *quad) {
+    gxp_near *near = &blade->near;
+    gxp_near_cell cell;
+    gx_result result;
+    if (gxp_near_index(near, slot) != GXP_NONE) return GX_OK;
+    memset(&cell, 0, sizeof cell);
+    cell.slot = slot;
+    gxp_place_near(blade->body, &cell);
+    if (!gxp_is_near_quad(&cell, quad, cell.size)) return GX_OK;
+    result =
+        gxp_reserve(&blade->body->config.allocator, &near->cells, sizeof *near->cells, near->count, &near->capacity, 1);
+    if (result != GX_OK) return result;
+    near->of_slot.data[slot] = near->count;
+    near->cells[near->count++] = cell;
+    return GX_OK;
+}
+
+/* Unites a near cell with those before it that share a copy. */
+static void gxp_join_near(gx_blade *blade, uint32_t index) {
+    gxp_near *near = &blade->near;
+    const gx_body *body = blade->body;
+    const uint32_t *copies = body->cells.data[near->cells[index].slot].copies;
+    uint32_t k, n;
+    for (k = 0; k < 4; k++) {
+        const uint32_t first = near->of_copy.data[copies[k]];
+        int shared = 0;
+        for (n = 0; n < 4 && first < index; n++)
+            shared |= body->cells.data[near->cells[first].slot].copies[n] == copies[k];
+        if (shared)
+            gxp_unite(near->parents.data, first, index);
+        else
+            near->of_copy.data[copies[k]] = index;
+    }
+}
+
+/* Words by slot or copy, which keep what they have; new ones are 0. */
+static gx_result gxp_extend_words(gx_body *body, gxp_words *words, uint32_t count) {
+    gx_result result;
+    if (count <= words->count) return GX_OK;
+    result = gxp_words_room(body, words, count - words->count);
+    if (result != GX_OK) return result;
+    memset(words->data + words->count, 0, (count - words->count) * sizeof *words->data);
+    words->count = count;
+    return GX_OK;
+}
+
+/* Numbers the layers in the order of their first cells. */
+static gx_result gxp_number_layers(gx_blade *blade) {
+    gxp_near *near = &blade->near;
+    gx_body *body = blade->body;
+    uint32_t i;
+    gx_result result = gxp_extend_words(body, &near->of_copy, body->copies.count);
+    near->parents.count = 0;
+    for (i = 0; i < near->count && result == GX_OK; i++) result = gxp_push(body, &near->parents, i);
+    if (result != GX_OK) return result;
+    for (i = 0; i < near->count; i++) gxp_join_near(blade, i);
+    near->layer_count = 0;
+    for (i = 0; i < near->count; i++) {
+        const uint32_t root = gxp_find(near->parents.data, i);
+        near->cells[i].layer = root == i ? near->layer_count++ : near->cells[root].layer;
+    }
+    return GX_OK;
+}
+
+/* Orders the cells of each layer along the axis along which the edge is longest, so that searches look at few. */
+static gx_result gxp_order_near(gx_blade *blade) {
+    gxp_near *near = &blade->near;
+    gx_body *body = blade->body;
+    double low = 0, high = 0;
+    uint32_t i, sum = 0;
+    gx_result result = gxp_start_words(body, &near->layer_start, (size_t)near->layer_count + 1);
+    near->order.count = 0;
+    if (result == GX_OK) result = gxp_keys_room(body, &near->order, 3 * (size_t)near->count);
+    if (result != GX_OK) return result;
+    near->layer_start.count = near->layer_count + 1;
+    memset(near->layer_start.data, 0, near->layer_start.count * sizeof *near->layer_start.data);
+    near->widest = 0;
+    for (i = 0; i < near->count; i++) {
+        const gxp_near_cell *c = &near->cells[i];
+        low = i == 0 || c->low[near->axis] < low ? c->low[near->axis] : low;
+        high = i == 0 || c->low[near->axis] > high ? c->low[near->axis] : high;
+        near->widest = fmax(near->widest, c->high[near->axis] - c->low[near->axis]);
+        near->layer_start.data[c->layer]++;
+    }
+    for (i = 0; i <= near->layer_count; i++) {
+        const uint32_t count = near->layer_start.data[i];
+        near->layer_start.data[i] = sum;
+        sum += count;
+    }
+    for (i = 0; i < near->count; i++) {
+        const double share = high > low ? (near->cells[i].low[near->axis] - low) / (high - low) : 0;
+        near->order.data[near->order.count++] = (uint64_t)(4294967295.0 * share) << 32 | i;
+    }
+    result = gxp_sort_keys(body, &near->order, 0, near->count);
+    if (result != GX_OK) return result;
+    for (i = 0; i < near->count; i++) { /* by layer, stable */
+        const uint32_t cell = GXP_SECOND(near->order.data[i]);
+        near->order.data[near->count + near->layer_start.data[near->cells[cell].layer]++] = near->order.data[i];
+    }
+    memcpy(near->order.data, near->order.data + near->count, near->count * sizeof *near->order.data);
+    for (i = near->layer_count; i > 0; i--) near->layer_start.data[i] = near->layer_start.data[i - 1];
+    near->layer_start.data[0] = 0;
+    return GX_OK;
+}
+
+/* Finds the near cells and their layers. */
+static gx_result gxp_find_layers(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope) {
+    gxp_near *near = &blade->near;
+    gx_body *body = blade->body;
+    uint32_t q, i;
+    int k;
+    gx_result result = gxp_sweep(blade, edge, count);
+    near->count = 0;
+    if (result == GX_OK) result = gxp_extend_words(body, &near->of_slot, body->cells.count);
+    for (q = 0; q < blade->quads.count && result == GX_OK; q += 4) {
+        const double *x = blade->quads.data + 3 * (size_t)q;
+        double low[3], high[3];
+        for (k = 0; k < 3; k++) {
+            low[k] = fmin(fmin(x[k], x[3 + k]), fmin(x[6 + k], x[9 + k])) - blade->largest;
+            high[k] = fmax(fmax(x[k], x[3 + k]), fmax(x[6 + k], x[9 + k])) + blade->largest;
+        }
+        result = gxp_find_in_box(body, low, high, &blade->found);
+        for (i = 0; i < blade->found.count && result == GX_OK; i++)
+            if (scope == NULL || scope->data[gxp_cell_fragment(body, blade->found.data[i])])
+                result = gxp_add_near(blade, blade->found.data[i], x);
+    }
+    if (result == GX_OK) result = gxp_number_layers(blade);
+    near->axis = 0;
+    for (k = 1; k < 3; k++)
+        if (fabs(edge[3 * (size_t)count - 3 + (size_t)k] - edge[k]) >
+            fabs(edge[3 * (size_t)count - 3 + (size_t)near->axis] - edge[near->axis]))
+            near->axis = k;
+    return result == GX_OK ? gxp_order_near(blade) : result;
+}
+
+/* >>edges: the edge as a layer sees it ----------------------------------------------------------------------------- */
+/* In: a layer and the edge. Out: places on the edge with their material points: few where the layer is not, or where
+   they lie on a line. In the air the map of the nearest cell is extended. Touches the blade's working memory. */
+
+/* Cells of less volume, as a share of that at rest, map nothing back: other cells are near. */
+#define GXP_FLAT_MAP 1e-3
+/* A place within the element of a near cell, but in the part of another one, is taken to be this far off the cell, in
+   element sizes. */
+#define GXP_BESIDE 1e-3
+
+typedef struct gxp_sight { /* what a search for the nearest cell of a layer has found */
+    uint32_t index;        /* of a near cell, GXP_NONE: none */
+    double square;         /* of the distance, m2; 0: inside */
+    double nearest[3];     /* in space */
+    double weights[4];     /* of the place, by the corners of that cell */
+} gxp_sight;
+
+static double gxp_square_to_box(const double x[3], const double low[3], const double high[3]) {
+    double square = 0;
+    int k;
+    for (k = 0; k < 3; k++) {
+        const double d = x[k] < low[k] ? low[k] - x[k] : x[k] > high[k] ? x[k] - high[k] : 0;
+        square += d * d;
+    }
+    return square;
+}
+
+/* A cell whose element contains the place: is the place in the cell's own part? */
+static gx_result gxp_look_inside(gx_blade *blade, uint32_t index, const double x[3], const double weights[4],
+                                 gxp_sight *sight) {
+    static const double origin[3] = {0, 0, 0};
+    gx_body *body = blade->body;
+    const gxp_near_cell *c = &blade->near.cells[index];
+    const gxp_cell *cell = &body->cells.data[c->slot];
+    const double beside = GXP_BESIDE * c->size;
+    uint32_t holder = c->slot;
+    gx_result result = GX_OK;
+    if (body->cells.data[cell->element].next != GXP_NONE) {
+        double corners[4][3], rest[3];
+        gxp_cell_corners(body, cell, 0, origin, corners);
+        gxp_weigh(corners, weights, rest);
+        result = gxp_cell_at(body, cell->element, rest, NULL, &holder);
+    }
+    if (holder != c->slot && beside * beside >= sight->square) return result;
+    sight->index = index;
+    sight->square = holder == c->slot ? 0 : beside * beside;
+    memcpy(sight->nearest, x, sizeof sight->nearest);
+    memcpy(sight->weights, weights, sizeof sight->weights);
+    return result;
+}
+
+/* A cell whose element does not contain the place: is it nearer than what was found before? */
+static void gxp_look_outside(const gx_blade *blade, uint32_t index, const double x[3], const double weights[4],
+                             gxp_sight *sight) {
+    const gxp_near_cell *c = &blade->near.cells[index];
+    int f;
+    if (c->stretch < GXP_FLAT_MAP) return; /* flat or inverted: outside is inside by its map */
+    for (f = 0; f < 4; f++) {
+        double nearest[3], square;
+        if (weights[f] >= 0) continue;
+        square = gxp_near_triangle(x, c->corners[gxp_outward[f][0]], c->corners[gxp_outward[f][1]],
+                                   c->corners[gxp_outward[f][2]], nearest);
+        if (square >= sight->square) continue;
+        sight->index = index;
+        sight->square = square;
+        memcpy(sight->nearest, nearest, sizeof nearest);
+        memcpy(sight->weights, weights, sizeof sight->weights);
+    }
+}
+
+static gx_result gxp_look_at(gx_blade *blade, uint32_t index, const double x[3], gxp_sight *sight) {
+    gxp_near_cell *c = &blade->near.cells[index];
+    double weights[4];
+    if (gxp_square_to_box(x, c->low, c->high) >= sight->square || fabs(c->stretch) < GXP_FLAT_MAP) return GX_OK;
+    gxp_tet_weights(c->corners, x, weights);
+    if (weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0 && weights[3] >= 0)
+        return gxp_look_inside(blade, index, x, weights, sight);
+    gxp_look_outside(blade, index, x, weights, sight);
+    return GX_OK;
+}
+
+/* Finds the cell of a layer that contains a place, or else the nearest one. */
+static gx_result gxp_look(gx_blade *blade, uint32_t layer, const double x[3], gxp_sight *sight) {
+    const gxp_near *near = &blade->near;
+    const double along = x[near->axis];
+    uint32_t low = near->layer_start.data[layer], high = near->layer_start.data[layer + 1], first = low, end = high, i;
+    gx_result result = GX_OK;
+    sight->index = GXP_NONE;
+    sight->square = HUGE_VAL;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (near->cells[GXP_SECOND(near->order.data[middle])].low[near->axis] <= along)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    for (i = low; i > first && result == GX_OK && sight->square > 0; i--) {
+        const uint32_t index = GXP_SECOND(near->order.data[i - 1]);
+        const double off = along - near->cells[index].low[near->axis] - near->widest;
+        if (off > 0 && off * off >= sight->square) break;
+        result = gxp_look_at(blade, index, x, sight);
+    }
+    for (i = low; i < end && result == GX_OK && sight->square > 0; i++) {
+        const uint32_t index = GXP_SECOND(near->order.data[i]);
+        const double off = near->cells[index].low[near->axis] - along;
+        if (off * off >= sight->square) break;
+        result = gxp_look_at(blade, index, x, sight);
+    }
+    return result;
+}
+
+/* Is there material of the layer at a material point? */
+static gx_result gxp_is_in_layer(gx_blade *blade, uint32_t layer, const double rest[3], int *inside) {
+    uint32_t slot = GXP_NONE;
+    const gx_result result = gxp_find_rest_cell(blade->body, rest, &slot);
+    *inside = slot != GXP_NONE && gxp_layer_of(&blade->near, slot) == layer;
+    return result;
+}
+
+/* The material point of a place in the air, at most an element's size away from the nearest one of the layer's
+   surface. It moves towards that one while there is material of the layer: the map extended is not the layer's. */
+static gx_result gxp_place_in_air(gx_blade *blade, uint32_t layer, const gxp_sight *sight, double corners[4][3],
+                                  gxp_front_vertex *v) {
+    const gxp_near_cell *c = &blade->near.cells[sight->index];
+    double weights[4], surface[3], position[3], away;
+    const double share = v->distance > v->size ? v->size / v->distance : 1;
+    int k, tries, inside = 1;
+    gx_result result = GX_OK;
+    gxp_tet_weights(blade->near.cells[sight->index].corners, sight->nearest, weights);
+    gxp_weigh(corners, weights, surface);
+    for (k = 0; k < 3; k++) position[k] = sight->nearest[k] + share * (v->position[k] - sight->nearest[k]);
+    gxp_tet_weights(blade->near.cells[sight->index].corners, position, weights);
+    gxp_weigh(corners, weights, v->rest);
+    away = sqrt(gxp_square_distance(v->rest, surface));
+    if (away > 1.5 * c->size)
+        for (k = 0; k < 3; k++) v->rest[k] = surface[k] + 1.5 * c->size / away * (v->rest[k] - surface[k]);
+    for (tries = 0; tries < 6 && inside && result == GX_OK; tries++) {
+        result = gxp_is_in_layer(blade, layer, v->rest, &inside);
+        for (k = 0; k < 3 && inside; k++) v->rest[k] = surface[k] + 0.4 * (v->rest[k] - surface[k]);
+    }
+    return result;
+}
+
+/* How a layer sees a place on the edge */
+static gx_result gxp_see(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count, double along,
+                         gxp_front_vertex *v) {
+    static const double origin[3] = {0, 0, 0};
+    const gxp_near_cell *c;
+    double corners[4][3];
+    gxp_sight sight;
+    gx_result result;
+    memset(v, 0, sizeof *v);
+    v->along = along;
+    gxp_edge_position(edge, count, along, v->position);
+    result = gxp_look(blade, layer, v->position, &sight);
+    if (result != GX_OK) return result;
+    if (sight.index == GXP_NONE) { /* every cell is flat or inverted */
+        sight.index = GXP_SECOND(blade->near.order.data[blade->near.layer_start.data[layer]]);
+        v->element = blade->body->cells.data[blade->near.cells[sight.index].slot].element;
+        v->distance = HUGE_VAL;
+        memcpy(v->rest, v->position, sizeof v->rest);
+        memcpy(v->extended, v->position, sizeof v->extended);
+        return GX_OK;
+    }
+    c = &blade->near.cells[sight.index];
+    v->element = blade->body->cells.data[c->slot].element;
+    v->size = c->size;
+    v->distance = sqrt(sight.square);
+    gxp_cell_corners(blade->body, &blade->body->cells.data[c->slot], 0, origin, corners);
+    gxp_weigh(corners, sight.weights, v->extended);
+    memcpy(v->rest, v->extended, sizeof v->rest);
+    return v->distance > 0 ? gxp_place_in_air(blade, layer, &sight, corners, v) : GX_OK;
+}
+
+/* Are there places between two that must be seen? None, if the layer can't be there: its distance from a place is at
+   most that from another one and the way between them. */
+static int gxp_must_refine(const gx_blade *blade, const gxp_front_vertex *a, const gxp_front_vertex *b) {
+    const double length = sqrt(gxp_square_distance(a->position, b->position));
+    const double size = a->size < b->size ? a->size : b->size;
+    if (blade->samples.count >= blade->max_samples) return 0;
+    if (a->distance > 0 && b->distance > 0 && a->distance + b->distance > length) return 0;
+    return length > size * ((a->distance > 0) == (b->distance > 0) ? 0.5 : 0.125);
+}
+
+/* Appends what must be seen between two places. */
+static gx_result gxp_refine(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count,
+                            const gxp_front_vertex *a, const gxp_front_vertex *b) {
+    gxp_front_vertex middle;
+    const double along = 0.5 * a->along + 0.5 * b->along;
+    gx_result result;
+    if (!gxp_must_refine(blade, a, b) || !(along > a->along && along < b->along)) return GX_OK;
+    result = gxp_see(blade, layer, edge, count, along, &middle);
+    if (result == GX_OK) result = gxp_refine(blade, layer, edge, count, a, &middle);
+    if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->samples, &middle);
+    return result == GX_OK ? gxp_refine(blade, layer, edge, count, &middle, b) : result;
+}
+
+/* Flags the places that are needed for a polyline within a tolerance [Douglas, Peucker 1973]. */
+static void gxp_keep_bends(const gxp_front_vertex *v, uint32_t first, uint32_t last, double tolerance, uint32_t *keep) {
+    while (first + 1 < last) {
+        double most = 0, share, at[3];
+        uint32_t i, middle = first;
+        for (i = first + 1; i < last; i++) {
+            const double square = gxp_near_segment(v[i].rest, v[first].rest, v[last].rest, &share, at);
+            if (square > most) most = square, middle = i;
+        }
+        if (most <= tolerance * tolerance) return;
+        keep[middle] = 1;
+        gxp_keep_bends(v, first, middle, tolerance, keep);
+        first = middle;
+    }
+}
+
+/* Drops the ends of the edge that are farther than an element's size from the layer, and places on lines. */
+static gx_result gxp_thin_samples(gx_blade *blade) {
+    gxp_front_vertex *v = blade->samples.data;
+    uint32_t first = 0, last = blade->samples.count - 1, count = 0, i;
+    gx_result result = gxp_start_words(blade->body, &blade->needed, blade->samples.count);
+    if (result != GX_OK) return result;
+    while (first < last && v[first + 1].distance > v[first + 1].size) first++;
+    while (last > first && v[last - 1].distance > v[last - 1].size) last--;
+    if (first >= last) first = 0, last = blade->samples.count - 1;
+    memset(blade->needed.data, 0, blade->samples.count * sizeof *blade->needed.data);
+    blade->needed.data[first] = blade->needed.data[last] = 1;
+    gxp_keep_bends(v, first, last, 0.5 * blade->tolerance, blade->needed.data);
+    for (i = first; i <= last; i++)
+        if (blade->needed.data[i]) v[count++] = v[i];
+    blade->samples.count = count;
+    return GX_OK;
+}
+
+/* Lists in blade.samples how a layer sees the edge. */
+static gx_result gxp_see_edge(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count) {
+    gxp_front_vertex before, v;
+    uint32_t i;
+    gx_result result = gxp_see(blade, layer, edge, count, 0, &before);
+    blade->samples.count = 0;
+    if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->samples, &before);
+    for (i = 1; i < count && result == GX_OK; i++) {
+        result = gxp_see(blade, layer, edge, count, (double)i, &v);
+        if (result == GX_OK) result = gxp_refine(blade, layer, edge, count, &before, &v);
+        if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->samples, &v);
+        before = v;
+    }
+    return result == GX_OK ? gxp_thin_samples(blade) : result;
+}
+
+/* >>fronts: how far the edge has come in a layer ------------------------------------------------------------------- */
+/* In: a layer's front and how it sees the edge. Out: the front advanced where the edge is ahead of it, and the strip of
+   triangles between the two. Where the edge goes back through its own cut the front stays. Touches the blade's working
+   memory. */
+
+/* Shares of an element's size. An advance of less is none. A place behind the front is in the cut if it is no farther
+   from its sheet, else the edge has left the cut through its side. */
+#define GXP_LEAST_ADVANCE 0.02
+#define GXP_CUT_WIDTH     0.15
+/* Triangles of the last strips that a layer remembers. */
+#define GXP_SHEET_TRIANGLES 400u
+
+/* The point of a front nearest to a material point */
+static void gxp_near_front(const gxp_front_list *front, const double rest[3], gxp_relation *r, double nearest[3]) {
+    double best = HUGE_VAL;
+    uint32_t i;
+    r->segment = 0;
+    r->share = 0;
+    memcpy(nearest, front->data[0].rest, 3 * sizeof *nearest);
+    for (i = 0; i + 1 < front->count; i++) {
+        double share, at[3];
+        const double square = gxp_near_segment(rest, front->data[i].rest, front->data[i + 1].rest, &share, at);
+        if (square >= best) continue;
+        best = square;
+        r->segment = i;
+        r->share = share;
+        memcpy(nearest, at, sizeof at);
+    }
+    r->distance = sqrt(gxp_square_distance(rest, nearest));
+}
+
+/* The point of a sheet nearest to a material point. Returns the distance. */
+static double gxp_near_sheet(const gxp_points *sheet, const double rest[3], double nearest[3]) {
+    double best = HUGE_VAL;
+    uint32_t i;
+    for (i = 0; i + 2 < sheet->count; i += 3) {
+        const double *x = sheet->data + 3 * (size_t)i;
+        double at[3];
+        const double square = gxp_near_triangle(rest, x, x + 3, x + 6, at);
+        if (square >= best) continue;
+        best = square;
+        memcpy(nearest, at, sizeof at);
+    }
+    return sqrt(best);
+}
+
+/* Is the place past an end of the front, where the section of layer and sheet has become longer? */
+static int gxp_is_beyond(const gxp_front_list *front, const gxp_front_vertex *v, const gxp_relation *r) {
+    const uint32_t last = front->count - 1, end = r->share > 0 ? last : 0;
+    const double *x = front->data[end].rest, *next = front->data[end == 0 ? 1 : last - 1].rest;
+    double out = 0;
+    int k;
+    if (!(r->segment == 0 && r->share <= 0) && !(r->segment + 1 == last && r->share >= 1)) return 0;
+    for (k = 0; k < 3; k++) out += (v->rest[k] - x[k]) * (x[k] - next[k]);
+    return out > 0;
+}
+
+/* A place behind the front: is it in the cut, has it left that, or is it beside the cut's rim, ahead? */
+static gx_result gxp_judge_behind(gx_blade *blade, const gxp_front_vertex *v, gxp_relation *r) {
+    double nearest[3], distance;
+    uint32_t slot = GXP_NONE;
+    gx_result result;
+    if (r->distance <= 2 * blade->tolerance || blade->sheet.count == 0) return GX_OK;
+    distance = gxp_near_sheet(&blade->sheet, v->rest, nearest);
+    result = gxp_find_rest_cell(blade->body, nearest, &slot);
+    if (slot == GXP_NONE)
+        r->ahead = 1; /* the sheet is in the air there: nothing is cut yet */
+    else if (distance > GXP_CUT_WIDTH * v->size && distance > 2 * blade->tolerance) {
+        r->strays = distance < 0.8 * r->distance;
+        r->ahead = !r->strays;
+    }
+    return result;
+}
+
+/* The direction in which the front came to the nearest point on it, or to the vertices in the material next to that:
+   those in the air have come as the map extended. Returns 0 if the whole front is in the air. */
+static int gxp_front_direction(const gxp_front_list *front, const gxp_relation *r, double direction[3]) {
+    const gxp_front_vertex *v = front->data;
+    uint32_t left = r->segment, right = r->segment + 1;
+    double share = r->share;
+    int k;
+    while (left > 0 && v[left].distance > 0) left--;
+    while (right + 1 < front->count && v[right].distance > 0) right++;
+    if (v[left].distance > 0) share = 1;
+    if (v[right].distance > 0) share = 0;
+    for (k = 0; k < 3; k++) direction[k] = (1 - share) * v[left].ahead[k] + share * v[right].ahead[k];
+    return !(v[left].distance > 0 && v[right].distance > 0);
+}
+
+/* Where a place on the edge lies by the front. Where the front is in the air, nothing is cut yet, and it follows the
+   edge. */
+static gx_result gxp_relate(gx_blade *blade, const gxp_front_vertex *v, gxp_relation *r) {
+    double nearest[3], direction[3], way[3];
+    int k;
+    gx_result result = GX_OK;
+    memset(r, 0, sizeof *r);
+    gxp_near_front(&blade->front, v->rest, r, nearest);
+    for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
+    r->ahead = r->distance > 0;
+    if (gxp_front_direction(&blade->front, r, direction) && gxp_dot(direction, direction) > 0)
+        r->ahead = gxp_dot(direction, way) > 0;
+    if (v->distance > 0) return GX_OK;
+    r->beyond = r->distance > 0 && gxp_is_beyond(&blade->front, v, r);
+    if (r->beyond) r->ahead = 1;
+    if (!r->ahead) result = gxp_judge_behind(blade, v, r);
+    if (r->distance < GXP_LEAST_ADVANCE * v->size && r->distance < 0.1 * blade->min_advance) r->ahead = 0;
+    return result;
+}
+
+/* What the layer's edge does at a move */
+typedef struct gxp_advance {
+    double most; /* the largest advance, m; of places inside, if there are any */
+    int wider;   /* the section has become longer than the front */
+    int strays;
+} gxp_advance;
+
+/* The vertex of the front next to the nearest point */
+static uint32_t gxp_pin(const gxp_relation *r) { return r->segment + (r->share > 0.5); }
+
+/* Appends the front's own vertices for a run of places that are not ahead: *at is the first vertex not passed yet. */
+static gx_result gxp_stay(gx_blade *blade, const gxp_relation *r, uint32_t count, int first, int last, uint32_t *at) {
+    uint32_t low = GXP_NONE, high = 0, i;
+    gx_result result = GX_OK;
+    for (i = 0; i < count; i++) {
+        const uint32_t pin = gxp_pin(&r[i]);
+        if (pin < low) low = pin;
+        if (pin > high) high = pin;
+    }
+    if (first) low = 0;
+    if (last) high = blade->front.count - 1;
+    if (low < *at) low = *at;
+    for (i = low; i <= high && result == GX_OK; i++)
+        result = gxp_push_vertex(blade->body, &blade->advanced, &blade->front.data[i]);
+    if (high > *at) *at = high;
+    return result;
+}
+
+/* Lists in blade.advanced the front as far as the samples have come: these where they are ahead, else its own
+   vertices. */
+static gx_result gxp_advance_front(gx_blade *blade, gxp_advance *move) {
+    const gxp_front_list *samples = &blade->samples;
+    gxp_relation *r;
+    uint32_t i, j, at = 0;
+    int in_air = 1;
+    gx_result result = gxp_reserve(&blade->body->config.allocator, &blade->relations, sizeof *r, 0,
+                                   &blade->relation_capacity, samples->count);
+    memset(move, 0, sizeof *move);
+    blade->advanced.count = 0;
+    if (result != GX_OK) return result;
+    r = blade->relations;
+    for (i = 0; i < samples->count; i++) in_air &= samples->data[i].distance > 0;
+    for (i = 0; i < samples->count && result == GX_OK; i++) {
+        result = gxp_relate(blade, &samples->data[i], &r[i]);
+        if (r[i].ahead && (in_air || !(samples->data[i].distance > 0))) move->most = fmax(move->most, r[i].distance);
+        move->wider |= r[i].beyond;
+        move->strays |= r[i].strays;
+    }
+    for (i = 0; i < samples->count && result == GX_OK; i = j) {
+        for (j = i; j < samples->count && r[j].ahead == r[i].ahead; j++) {}
+        result = r[i].ahead ? gxp_append_front(blade->body, &blade->advanced, samples->data + i, j - i)
+                            : gxp_stay(blade, r + i, j - i, i == 0, j == samples->count, &at);
+    }
+    return result;
+}
+
+static int gxp_same_rest(const gxp_front_vertex *a, const gxp_front_vertex *b) {
+    return a->rest[0] == b->rest[0] && a->rest[1] == b->rest[1] && a->rest[2] == b->rest[2];
+}
+
+/* Lists in blade.strip the triangles between two fronts: the shorter diagonal comes first. Vertices that both have make
+   no triangle. */
+static gx_result gxp_zip(gx_blade *blade, const gxp_front_list *from, const gxp_front_list *to) {
+    uint32_t i = 0, j = 0, k;
+    gx_result result = GX_OK;
+    blade->strip.count = 0;
+    while ((i + 1 < from->count || j + 1 < to->count) && result == GX_OK) {
+        const gxp_front_vertex *corner[3];
+        const int by_from = i + 1 < from->count &&
+                            (j + 1 == to->count || gxp_square_distance(from->data[i + 1].rest, to->data[j].rest) <=
+                                                       gxp_square_distance(from->data[i].rest, to->data[j + 1].rest));
+        corner[0] = &from->data[i];
+        corner[1] = by_from ? &from->data[i + 1] : &to->data[j + 1];
+        corner[2] = &to->data[j];
+        i += (uint32_t)by_from;
+        j += (uint32_t)!by_from;
+        if (gxp_same_rest(corner[0], corner[1]) || gxp_same_rest(corner[1], corner[2]) ||
+            gxp_same_rest(corner[0], corner[2]))
+            continue;
+        for (k = 0; k < 3 && result == GX_OK; k++) result = gxp_push_vertex(blade->body, &blade->strip, corner[k]);
+    }
+    return result;
+}
+
+/* The largest distance between the edge's path since the front was cut and the strip */
+static double gxp_bend(const gx_blade *blade) {
+    double most = 0;
+    uint32_t i, t;
+    for (i = 0; i < blade->path.count && blade->strip.count > 0; i++) {
+        const double *x = blade->path.data + 3 * (size_t)i;
+        double best = HUGE_VAL, at[3];
+        for (t = 0; t < blade->strip.count; t += 3)
+            best = fmin(best, gxp_near_triangle(x, blade->strip.data[t].rest, blade->strip.data[t + 1].rest,
+                                                blade->strip.data[t + 2].rest, at));
+        most = fmax(most, best);
+    }
+    return sqrt(most);
+}
+
+static int gxp_has_direction(const gxp_front_vertex *v) { return gxp_dot(v->ahead, v->ahead) > 0; }
+
+/* The direction in which each vertex of the new front has come from the old one. Those that have not come take the
+   old front's, or their neighbours'. */
+static void gxp_set_directions(const gxp_front_list *from, gxp_front_list *to) {
+    uint32_t i, off;
+    int k;
+    for (i = 0; i < to->count; i++) {
+        gxp_front_vertex *v = &to->data[i];
+        gxp_relation r;
+        double nearest[3], way[3];
+        gxp_near_front(from, v->rest, &r, nearest);
+        for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
+        if (gxp_unit(way, v->ahead)) continue;
+        for (k = 0; k < 3; k++)
+            v->ahead[k] = (1 - r.share) * from->data[r.segment].ahead[k] + r.share * from->data[r.segment + 1].ahead[k];
+    }
+    for (i = 0; i < to->count; i++)
+        for (off = 1; off < to->count && !gxp_has_direction(&to->data[i]); off++) {
+            if (i >= off) memcpy(to->data[i].ahead, to->data[i - off].ahead, sizeof to->data[i].ahead);
+            if (!gxp_has_direction(&to->data[i]) && i + off < to->count)
+                memcpy(to->data[i].ahead, to->data[i + off].ahead, sizeof to->data[i].ahead);
+        }
+}
+
+/* Cuts the strip up to a new front, which becomes the layer's. */
+static gx_result gxp_cut_strip(gx_blade *blade, gxp_front_list *to, gx_blade_report *report) {
+    gx_body *body = blade->body;
+    const uint32_t room = 3 * GXP_SHEET_TRIANGLES;
+    uint32_t i;
+    gx_result result = gxp_append_front(body, &blade->cut, blade->strip.data, blade->strip.count);
+    report->deviation = fmax(report->deviation, gxp_bend(blade));
+    for (i = 0; i < blade->strip.count && result == GX_OK; i++)
+        result = gxp_push_point(body, &blade->sheet, blade->strip.data[i].rest);
+    if (result != GX_OK) return result;
+    if (blade->sheet.count > room) {
+        memmove(blade->sheet.data, blade->sheet.data + 3 * (size_t)(blade->sheet.count - room),
+                3 * room * sizeof *blade->sheet.data);
+        blade->sheet.count = room;
+    }
+    gxp_set_directions(&blade->front, to);
+    blade->path.count = blade->latest.count = 0;
+    return gxp_copy_front(body, &blade->front, to);
+}
+
+/* The edge has left its cut through the side: the front begins anew there, a little on the other side of the sheet, so
+   that the next strip crosses it. */
+static gx_result gxp_begin_track(gx_blade *blade) {
+    uint32_t i;
+    int k;
+    gx_result result = gxp_copy_front(blade->body, &blade->front, &blade->samples);
+    for (i = 0; i < blade->front.count; i++) {
+        gxp_front_vertex *v = &blade->front.data[i];
+        double nearest[3], way[3];
+        const double distance = gxp_near_sheet(&blade->sheet, v->rest, nearest);
+        for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
+        if (!(distance > blade->tolerance) || !gxp_unit(way, v->ahead)) continue;
+        for (k = 0; k < 3; k++) v->rest[k] = nearest[k] - 2 * blade->tolerance * v->ahead[k];
+    }
+    blade->path.count = blade->latest.count = 0;
+    return result;
+}
+
+/* Remembers where the edge is, if it has come far enough since it was remembered last. */
+static gx_result gxp_note_path(gx_blade *blade) {
+    uint32_t i;
+    double most = 0;
+    gx_result result = GX_OK;
+    for (i = 0; i < blade->advanced.count && blade->latest.count > 0; i++) {
+        gxp_relation r;
+        double nearest[3];
+        gxp_near_front(&blade->latest, blade->advanced.data[i].rest, &r, nearest);
+        most = fmax(most, r.distance);
+    }
+    if (blade->latest.count == 0 || most > 0.125 * blade->min_advance)
+        for (i = 0; i < blade->advanced.count && result == GX_OK; i++)
+            if (!(blade->advanced.data[i].distance > 0))
+                result = gxp_push_point(blade->body, &blade->path, blade->advanced.data[i].rest);
+    return result == GX_OK ? gxp_copy_front(blade->body, &blade->latest, &blade->advanced) : result;
+}
+
+/* Advances the front of the layer at work to the samples: cuts what must be cut, and lets the rest wait. finish: cuts
+   all. */
+static gx_result gxp_follow_edge(gx_blade *blade, int finish, gx_blade_report *report) {
+    gxp_advance move;
+    gx_result result = gxp_advance_front(blade, &move);
+    if (result == GX_OK && move.strays && !finish) {
+        if (move.most > 0) {
+            result = gxp_zip(blade, &blade->front, &blade->advanced);
+            if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
+        }
+        if (result == GX_OK) result = gxp_begin_track(blade);
+        if (result == GX_OK) result = gxp_advance_front(blade, &move);
+    }
+    if (result != GX_OK || !(move.most > 0)) return result;
+    result = gxp_zip(blade, &blade->front, &blade->advanced);
+    if (result == GX_OK && blade->latest.count > 0 && (move.wider || gxp_bend(blade) > blade->tolerance)) {
+        result = gxp_zip(blade, &blade->front, &blade->latest);
+        if (result == GX_OK) result = gxp_copy_front(blade->body, &blade->advanced, &blade->latest);
+        if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
+        if (result == GX_OK) result = gxp_advance_front(blade, &move);
+        if (result == GX_OK) result = gxp_zip(blade, &blade->front, &blade->advanced);
+    }
+    if (result != GX_OK || !(move.most > 0)) return result;
+    return finish || move.most >= blade->min_advance ? gxp_cut_strip(blade, &blade->advanced, report)
+                                                     : gxp_note_path(blade);
+}
+
+/* >>strokes: what a blade remembers from move to move ---------------------------------------------------------------
+ */
+/* In: the layers of the last move, those of now. Out: each new layer with the front of the old ones that flow into it.
+   Touches the blade's working memory and the state that the move makes. */
+
+/* A front, path and sheet become those of the layer at work. */
+static gx_result gxp_resume_layer(gx_blade *blade, const gxp_layer *old) {
+    const gxp_blade_state *now = &blade->now;
+    uint32_t i;
+    gx_result result = gxp_append_front(blade->body, &blade->front, now->vertices.data + old->front, old->front_count);
+    if (result == GX_OK)
+        result = gxp_append_front(blade->body, &blade->latest, now->vertices.data + old->latest, old->latest_count);
+    for (i = 0; i < old->path_count && result == GX_OK; i++)
+        result = gxp_push_point(blade->body, &blade->path, now->points.data + 3 * (size_t)(old->path + i));
+    for (i = 0; i < old->sheet_count && result == GX_OK; i++)
+        result = gxp_push_point(blade->body, &blade->sheet, now->points.data + 3 * (size_t)(old->sheet + i));
+    return result;
+}
+
+/* Lists in blade.owners the old layers that flow into a new one. */
+static gx_result gxp_find_owners(gx_blade *blade, uint32_t layer) {
+    const gxp_near *near = &blade->near;
+    uint32_t i, last = GXP_NONE;
+    gx_result result = GX_OK;
+    blade->owners.count = 0;
+    for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++) {
+        const uint32_t old = gxp_old_layer(blade, near->cells[GXP_SECOND(near->order.data[i])].slot);
+        if (old == GXP_NONE || old == last) continue;
+        last = old;
+        if (!gxp_contains(&blade->owners, old)) result = gxp_push(blade->body, &blade->owners, old);
+    }
+    return result;
+}
+
+/* The part of a front that is in the material, with a vertex in the air on each side. Returns 0 if there is none. */
+static int gxp_inner_run(const gxp_front_vertex *v, uint32_t count, uint32_t *first, uint32_t *end) {
+    *first = 0;
+    *end = count;
+    while (*first < count && v[*first].distance > 0) ++*first;
+    if (*first == count) return 0;
+    while (v[*end - 1].distance > 0) --*end;
+    if (*first > 0) --*first;
+    if (*end < count) ++*end;
+    return 1;
+}
+
+/* Several layers have become one: the front takes from each what is in the material, in the order along the edge. Where
+   the run of one overlaps that of another, it begins behind that. What waits is looked at again. */
+static gx_result gxp_join_layers(gx_blade *blade) {
+    const gxp_blade_state *now = &blade->now;
+    double reached = -1;
+    uint32_t done, k, i;
+    gx_result result = GX_OK;
+    for (done = 0; done < blade->owners.count && result == GX_OK; done++) {
+        double from = HUGE_VAL;
+        uint32_t best = GXP_NONE, first, end, best_first = 0, best_end = 0;
+        for (k = 0; k < blade->owners.count; k++) {
+            const gxp_layer *l = &now->layers.data[blade->owners.data[k]];
+            const gxp_front_vertex *v = now->vertices.data + l->front;
+            if (!gxp_inner_run(v, l->front_count, &first, &end)) continue;
+            while (first < end && v[first].along <= reached) first++;
+            if (first == end || v[first].along >= from) continue;
+            from = v[first].along;
+            best = l->front;
+            best_first = first;
+            best_end = end;
+        }
+        if (best == GXP_NONE) break;
+        result =
+            gxp_append_front(blade->body, &blade->front, now->vertices.data + best + best_first, best_end - best_first);
+        reached = now->vertices.data[best + best_end - 1].along;
+    }
+    for (k = 0; k < blade->owners.count && result == GX_OK; k++) {
+        const gxp_layer *l = &now->layers.data[blade->owners.data[k]];
+        for (i = 0; i < l->sheet_count && result == GX_OK; i++)
+            result = gxp_push_point(blade->body, &blade->sheet, now->points.data + 3 * (size_t)(l->sheet + i));
+    }
+    return result;
+}
+
+/* Makes a new layer's front ready for the move. *begun: it has none of before. */
+static gx_result gxp_begin_layer(gx_blade *blade, uint32_t layer, int *begun) {
+    gx_result result = gxp_find_owners(blade, layer);
+    blade->front.count = blade->latest.count = blade->path.count = blade->sheet.count = blade->cut.count = 0;
+    *begun = 0;
+    if (result == GX_OK && blade->owners.count > 1) result = gxp_join_layers(blade);
+    if (result == GX_OK && blade->owners.count > 0 && blade->front.count < 2) {
+        blade->front.count = blade->sheet.count = 0;
+        result = gxp_resume_layer(blade, &blade->now.layers.data[blade->owners.data[0]]);
+    }
+    *begun = blade->owners.count == 0;
+    return result;
+}
+
+/* Writes the layer at work to the state that the move makes. */
+static gx_result gxp_keep_layer(gx_blade *blade) {
+    gxp_blade_state *then = &blade->then;
+    gxp_layer layer;
+    uint32_t i;
+    gx_result result = gxp_reserve(&blade->body->config.allocator, &then->layers.data, sizeof *then->layers.data,
+                                   then->layers.count, &then->layers.capacity, 1);
+    layer.front = then->vertices.count;
+    layer.front_count = blade->front.count;
+    if (result == GX_OK) result = gxp_append_front(blade->body, &then->vertices, blade->front.data, blade->front.count);
+    layer.latest = then->vertices.count;
+    layer.latest_count = blade->latest.count;
+    if (result == GX_OK)
+        result = gxp_append_front(blade->body, &then->vertices, blade->latest.data, blade->latest.count);
+    layer.path = then->points.count;
+    layer.path_count = blade->path.count;
+    for (i = 0; i < blade->path.count && result == GX_OK; i++)
+        result = gxp_push_point(blade->body, &then->points, blade->path.data + 3 * (size_t)i);
+    layer.sheet = then->points.count;
+    layer.sheet_count = blade->sheet.count;
+    for (i = 0; i < blade->sheet.count && result == GX_OK; i++)
+        result = gxp_push_point(blade->body, &then->points, blade->sheet.data + 3 * (size_t)i);
+    if (result == GX_OK) then->layers.data[then->layers.count++] = layer;
+    return result;
+}
+
+/* Notes which cells belong to which layer, and where the edge is. */
+static gx_result gxp_keep_members(gx_blade *blade, const double *edge, uint32_t count) {
+    gxp_blade_state *then = &blade->then;
+    uint32_t i;
+    gx_result result = GX_OK;
+    then->members.count = then->edge.count = 0;
+    then->slot_count = blade->body->cells.count;
+    for (i = 0; i < blade->near.count && result == GX_OK; i++)
+        result = gxp_push_key(blade->body, &then->members, blade->near.cells[i].slot, blade->near.cells[i].layer);
+    if (result == GX_OK) result = gxp_sort_keys(blade->body, &then->members, 0, then->members.count);
+    for (i = 0; i < count && result == GX_OK; i++)
+        result = gxp_push_point(blade->body, &then->edge, edge + 3 * (size_t)i);
+    return result;
+}
+
+/* >>blade: the blade's moves --------------------------------------------------------------------------------------- */
+/* gx_blade_move: find the layers, advance their fronts, cut the strips in one transaction, keep the new state. On any
+   error nothing of body or blade has changed. */
+
+/* A strip reaches cells that are within this share of their size of it, as the body lies now: where strip and layer
+   are far from each other in space, none of it is meant for them. */
+#define GXP_STRIP_REACH 0.25
+
+/* Is the cell within reach of a strip, given by its corners in space? */
+static int gxp_is_in_reach(const gxp_near_cell *c, const double *corners, uint32_t triangles) {
+    double middle[3], radius = 0, at[3];
+    uint32_t t;
+    int n, k;
+    for (k = 0; k < 3; k++)
+        middle[k] = 0.25 * (c->corners[0][k] + c->corners[1][k] + c->corners[2][k] + c->corners[3][k]);
+    for (n = 0; n < 4; n++) radius = fmax(radius, gxp_square_distance(middle, c->corners[n]));
+    radius = sqrt(radius) + GXP_STRIP_REACH * c->size;
+    for (t = 0; t < triangles; t++) {
+        const double *x = corners + 9 * (size_t)t;
+        int beyond = 0;
+        for (k = 0; k < 3; k++) {
+            beyond |= fmin(x[k], fmin(x[3 + k], x[6 + k])) > middle[k] + radius;
+            beyond |= fmax(x[k], fmax(x[3 + k], x[6 + k])) < middle[k] - radius;
+        }
+        if (!beyond && gxp_near_triangle(middle, x, x + 3, x + 6, at) <= radius * radius) return 1;
+    }
+    return 0;
+}
+
+/* Lists the slots of a layer that the strips of blade.cut may cut. */
+static gx_result gxp_list_scope(gx_blade *blade, uint32_t layer) {
+    const gxp_near *near = &blade->near;
+    uint32_t i;
+    gx_result result = GX_OK;
+    blade->quads.count = 0;
+    for (i = 0; i < blade->cut.count && result == GX_OK; i++) {
+        double x[3];
+        result = gxp_front_position(blade, layer, 0, &blade->cut.data[i], x);
+        if (result == GX_OK) result = gxp_push_point(blade->body, &blade->quads, x);
+    }
+    for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++) {
+        const gxp_near_cell *c = &near->cells[GXP_SECOND(near->order.data[i])];
+        if (gxp_is_in_reach(c, blade->quads.data, blade->cut.count / 3))
+            result = gxp_push(blade->body, &blade->scope, c->slot);
+    }
+    return result;
+}
+
+/* Adds the strips of the layer at work to those of the move. */
+static gx_result gxp_add_surface(gx_blade *blade, uint32_t layer) {
+    gx_body *body = blade->body;
+    const uint32_t before = blade->scope.count;
+    uint32_t i;
+    gx_result result = blade->cut.count > 0 ? gxp_list_scope(blade, layer) : GX_OK;
+    if (result != GX_OK || blade->scope.count == before) return result;
+    result = gxp_push(body, &blade->surface_starts, before);
+    if (result == GX_OK) result = gxp_push(body, &blade->surface_starts, blade->corners.count);
+    for (i = 0; i < blade->cut.count && result == GX_OK; i++)
+        result = gxp_push_point(body, &blade->corners, blade->cut.data[i].rest);
+    return result;
+}
+
+/* Cuts the body by the strips of all layers at once. */
+static gx_result gxp_cut_surfaces(gx_blade *blade, gx_blade_report *report, gx_failure *failure) {
+    gx_body *body = blade->body;
+    const uint32_t count = blade->surface_starts.count / 2;
+    uint32_t i;
+    gx_cut_desc desc;
+    gx_result result = gxp_start_words(body, &blade->triangles, blade->corners.count);
+    if (result == GX_OK)
+        result = gxp_reserve(&body->config.allocator, &blade->surfaces, sizeof *blade->surfaces, 0,
+                             &blade->surface_capacity, count);
+    if (result != GX_OK || count == 0) return gxp_end(failure, result);
+    for (i = 0; i < blade->corners.count; i++) blade->triangles.data[i] = i;
+    for (i = 0; i < count; i++) {
+        gx_surface *s = &blade->surfaces[i];
+        const uint32_t *start = blade->surface_starts.data + 2 * (size_t)i;
+        const uint32_t slots_end = i + 1 < count ? start[2] : blade->scope.count,
+                       corners_end = i + 1 < count ? start[3] : blade->corners.count;
+        memset(s, 0, sizeof *s);
+        s->scope_slots = blade->scope.data + start[0];
+        s->scope_slot_count = slots_end - start[0];
+        s->vertices = blade->corners.data + 3 * (size_t)start[1];
+        s->vertex_count = corners_end - start[1];
+        s->triangles = blade->triangles.data;
+        s->triangle_count = s->vertex_count / 3;
+        report->triangle_count += s->triangle_count;
+    }
+    memset(&desc, 0, sizeof desc);
+    desc.surfaces = blade->surfaces;
+    desc.surface_count = count;
+    result = gx_body_cut(body, &desc, &report->cut, failure);
+    if (result != GX_OK && failure != NULL) failure->field = "edge", failure->index = failure->surface = SIZE_MAX;
+    return result;
+}
+
+/* Blames a point of a blade's first edge that is in the material, unless it may be. */
+static gx_result gxp_check_start(gx_blade *blade, gx_failure *failure) {
+    uint32_t i;
+    if (blade->starts_inside || blade->now.edge.count > 0) return GX_OK;
+    for (i = 0; i < blade->front.count; i++)
+        if (!(blade->front.data[i].distance > 0))
+            return gxp_fail(failure, GX_ERROR_ARGUMENT, "edge", (size_t)blade->front.data[i].along);
+    return GX_OK;
+}
+
+/* Advances the fronts of all layers to the edge, and lists the strips. */
+static gx_result gxp_advance_layers(gx_blade *blade, const double *edge, uint32_t count, int finish,
+                                    gx_blade_report *report, gx_failure *failure) {
+    const double *before = blade->now.edge.count > 0 ? blade->now.edge.data : edge;
+    uint32_t layer;
+    gx_result result = GX_OK;
+    blade->surface_starts.count = blade->corners.count = blade->scope.count = 0;
+    blade->then.layers.count = blade->then.vertices.count = blade->then.points.count = 0;
+    for (layer = 0; layer < blade->near.layer_count && result == GX_OK; layer++) {
+        int begun;
+        result = gxp_begin_layer(blade, layer, &begun);
+        if (result == GX_OK && begun) {
+            result = gxp_see_edge(blade, layer, before, count);
+            if (result == GX_OK) result = gxp_copy_front(blade->body, &blade->front, &blade->samples);
+            if (result == GX_OK && gxp_check_start(blade, failure) != GX_OK) return GX_ERROR_ARGUMENT;
+        }
+        if (result == GX_OK) result = gxp_see_edge(blade, layer, edge, count);
+        if (result == GX_OK) result = gxp_follow_edge(blade, finish, report);
+        if (result == GX_OK) result = gxp_add_surface(blade, layer);
+        if (result == GX_OK) result = gxp_keep_layer(blade);
+    }
+    report->layer_count = blade->near.layer_count;
+    return gxp_end(failure, result);
+}
+
+/* Flags the fragments of a scope in blade.in_scope. */
+static gx_result gxp_flag_scope(gx_blade *blade, const uint32_t *fragments, size_t count, gx_failure *failure) {
+    gx_body *body = blade->body;
+    size_t i;
+    gx_result result = gxp_update_view(body);
+    if (result == GX_OK) result = gxp_start_words(body, &blade->in_scope, body->view.fragment_count);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    blade->in_scope.count = body->view.fragment_count;
+    memset(blade->in_scope.data, 0, blade->in_scope.count * sizeof *blade->in_scope.data);
+    for (i = 0; i < count; i++) {
+        if (fragments[i] >= body->view.fragment_count) return gxp_fail(failure, GX_ERROR_INDEX, "scope_fragments", i);
+        blade->in_scope.data[fragments[i]] = 1;
+    }
+    return GX_OK;
+}
+
+static gx_result gxp_check_edge(const gx_blade *blade, const double *edge, size_t count, gx_failure *failure) {
+    size_t i;
+    if (edge == NULL) return gxp_refuse(failure, "edge");
+    if (count < 2) return gxp_refuse(failure, "point_count");
+    if (count > INT32_MAX / 4) return gxp_fail(failure, GX_ERROR_LIMIT, "point_count", SIZE_MAX);
+    if (blade->now.edge.count > 0 && blade->now.edge.count != count) return gxp_refuse(failure, "point_count");
+    for (i = 0; i < 3 * count; i++) {
+        if (!gxp_is_finite(edge[i])) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "edge", i / 3);
+        if (fabs(edge[i]) > ldexp(1, GXP_EDGE_REACH)) return gxp_fail(failure, GX_ERROR_RANGE, "edge", i / 3);
+    }
+    return GX_OK;
+}
+
+static void gxp_clear_report(gx_blade_report *report) {
+    memset(report, 0, sizeof *report);
+    report->cut.min_link_ratio = 1;
+}
+
+/* A move to the edge; finish: cuts all that waits. */
+static gx_result gxp_move_blade(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope, int finish,
+                                gx_blade_report *report, gx_failure *failure) {
+    const gxp_blade_state now = blade->now;
+    gx_result result;
+    gxp_clear_report(report);
+    result = gxp_find_layers(blade, edge, count, scope);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    result = gxp_advance_layers(blade, edge, count, finish, report, failure);
+    if (result != GX_OK) return result;
+    result = gxp_keep_members(blade, edge, count);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    result = gxp_cut_surfaces(blade, report, failure);
+    if (result != GX_OK) return result;
+    blade->now = blade->then;
+    blade->then = now;
+    return GX_OK;
+}
+
+GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t point_count,
+                                  const uint32_t *scope_fragments, size_t scope_fragment_count, gx_blade_report *report,
+                                  gx_failure *failure) {
+    gx_blade_report own;
+    gx_result result;
+    if (blade == NULL) return gxp_refuse(failure, "blade");
+    if (scope_fragment_count > 0 && scope_fragments == NULL) return gxp_refuse(failure, "scope_fragments");
+    result = gxp_check_edge(blade, edge, point_count, failure);
+    if (result == GX_OK && scope_fragment_count > 0)
+        result = gxp_flag_scope(blade, scope_fragments, scope_fragment_count, failure);
+    if (result != GX_OK) return result;
+    result = gxp_move_blade(blade, edge, (uint32_t)point_count, scope_fragment_count > 0 ? &blade->in_scope : NULL, 0,
+                            &own, failure);
+    if (result == GX_OK && report != NULL) *report = own;
+    return result;
+}
+
+GXFEM_API gx_result gx_blade_lift(gx_blade *blade, gx_blade_report *report, gx_failure *failure) {
+    gx_blade_report own;
+    gx_result result = GX_OK;
+    if (blade == NULL) return gxp_refuse(failure, "blade");
+    gxp_clear_report(&own);
+    if (blade->now.edge.count > 0)
+        result = gxp_move_blade(blade, blade->now.edge.data, blade->now.edge.count, NULL, 1, &own, failure);
+    if (result != GX_OK) return result;
+    blade->now.edge.count = blade->now.layers.count = blade->now.members.count = 0;
+    blade->now.vertices.count = blade->now.points.count = 0;
+    if (report != NULL) *report = own;
+    return gxp_end(failure, GX_OK);
+}
+
+static gx_result gxp_check_blade(const gx_blade_desc *desc, gx_failure *failure) {
+    if (!gxp_is_finite(desc->tolerance)) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "tolerance", SIZE_MAX);
+    if (!gxp_is_finite(desc->min_advance)) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "min_advance", SIZE_MAX);
+    if (desc->tolerance < 0) return gxp_refuse(failure, "tolerance");
+    return desc->min_advance < 0 ? gxp_refuse(failure, "min_advance") : GX_OK;
+}
+
+/* Sizes of elements: the mean and the largest. Those that are removed count too. */
+static double gxp_mean_size(const gx_body *body, double *largest) {
+    double sum = 0;
+    uint32_t e;
+    *largest = 0;
+    for (e = 0; e < body->mesh.element_count; e++) {
+        const double size = cbrt(6 * gxp_element_volume(body, e));
+        *largest = fmax(*largest, size);
+        sum += size;
+    }
+    return sum / body->mesh.element_count;
+}
+
+GXFEM_API gx_result gx_blade_create(gx_body *body, const gx_blade_desc *desc, gx_blade **blade, gx_failure *failure) {
+    gx_blade_desc zero;
+    gx_blade *b;
+    double size;
+    gx_result result;
+    memset(&zero, 0, sizeof zero);
+    if (desc == NULL) desc = &zero;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (blade == NULL) return gxp_refuse(failure, "blade");
+    result = gxp_check_blade(desc, failure);
+    if (result != GX_OK) return result;
+    b = (gx_blade *)gxp_allocate(&body->config.allocator, sizeof *b);
+    if (b == NULL) return gxp_end(failure, GX_ERROR_MEMORY);
+    memset(b, 0, sizeof *b);
+    size = gxp_mean_size(body, &b->largest);
+    b->body = body;
+    b->tolerance = desc->tolerance > 0 ? desc->tolerance : 0.01 * size;
+    b->min_advance = desc->min_advance > 0 ? desc->min_advance : 0.5 * size;
+    b->max_samples = desc->max_samples > 0 ? desc->max_samples : 1000;
+    b->starts_inside = desc->starts_inside != 0;
+    b->next = body->blades;
+    body->blades = b;
+    *blade = b;
+    return gxp_end(failure, GX_OK);
+}
+
+static void gxp_release_state(gx_body *body, gxp_blade_state *s) {
+    const gx_allocator *a = &body->config.allocator;
+    gxp_release(a, s->vertices.data, s->vertices.capacity * sizeof *s->vertices.data);
+    gxp_release(a, s->points.data, 3 * s->points.capacity * sizeof *s->points.data);
+    gxp_release(a, s->layers.data, s->layers.capacity * sizeof *s->layers.data);
+    gxp_release(a, s->members.data, s->members.capacity * sizeof *s->members.data);
+    gxp_release(a, s->edge.data, 3 * s->edge.capacity * sizeof *s->edge.data);
+}
+
+static void gxp_release_words(gx_body *body, gxp_words *words) {
+    gxp_release(&body->config.allocator, words->data, words->capacity * sizeof *words->data);
+}
+
+static void gxp_release_front(gx_body *body, gxp_front_list *list) {
+    gxp_release(&body->config.allocator, list->data, list->capacity * sizeof *list->data);
+}
+
+static void gxp_release_points(gx_body *body, gxp_points *list) {
+    gxp_release(&body->config.allocator, list->data, 3 * list->capacity * sizeof *list->data);
+}
+
+/* Releases a blade; the body's list of blades is the caller's. */
+static void gxp_release_blade(gx_blade *b) {
+    gx_body *body = b->body;
+    const gx_allocator *a = &body->config.allocator;
+    gxp_release_state(body, &b->now);
+    gxp_release_state(body, &b->then);
+    gxp_release(a, b->near.cells, b->near.capacity * sizeof *b->near.cells);
+    gxp_release_words(body, &b->near.of_slot);
+    gxp_release_words(body, &b->near.of_copy);
+    gxp_release_words(body, &b->near.parents);
+    gxp_release(a, b->near.order.data, b->near.order.capacity * sizeof *b->near.order.data);
+    gxp_release_words(body, &b->near.layer_start);
+    gxp_release_front(body, &b->front);
+    gxp_release_front(body, &b->latest);
+    gxp_release_front(body, &b->samples);
+    gxp_release_front(body, &b->advanced);
+    gxp_release_front(body, &b->strip);
+    gxp_release_front(body, &b->cut);
+    gxp_release(a, b->relations, b->relation_capacity * sizeof *b->relations);
+    gxp_release_points(body, &b->path);
+    gxp_release_points(body, &b->sheet);
+    gxp_release_points(body, &b->quads);
+    gxp_release_points(body, &b->corners);
+    gxp_release_words(body, &b->owners);
+    gxp_release_words(body, &b->in_scope);
+    gxp_release_words(body, &b->needed);
+    gxp_release_words(body, &b->found);
+    gxp_release_words(body, &b->scope);
+    gxp_release_words(body, &b->surface_starts);
+    gxp_release_words(body, &b->triangles);
+    gxp_release(a, b->surfaces, b->surface_capacity * sizeof *b->surfaces);
+    gxp_release(a, b, sizeof *b);
+}
+
+GXFEM_API void gx_blade_destroy(gx_blade *blade) {
+    gx_blade **place;
+    if (blade == NULL) return;
+    for (place = &blade->body->blades; *place != blade;) place = &(*place)->next;
+    *place = blade->next;
+    gxp_release_blade(blade);
+}
+
 /* >>create: create and destroy ------------------------------------------------------------------------------------- */
 /* In: a description. Out: a body with one cell for each element and one copy for each node that an element uses. After
    an error everything made so far is destroyed. */
@@ -7386,6 +9000,7 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_release_model(body);
     gxs_solver_destroy(body->solver);
     gxb_complex_destroy(body->complex);
+    while (body->blades != NULL) gx_blade_destroy(body->blades);
     gxp_release(&a, body, sizeof *body);
 }
 
