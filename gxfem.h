@@ -44,6 +44,7 @@
  *     >>anchoring  material points that survive cuts
  *     >>stepping   held regions, time steps
  *     >>drawing    the visual surface, rays
+ *     >>slicing    blades in space
  *     >>hashing    of the topology, of the state
  *     >>saving     save and load, clone and restore
  *     then, under GXFEM_IMPLEMENTATION, in the order of a cut; functions call their own and earlier sections only:
@@ -54,6 +55,7 @@
  *     what is held and whole:    >>anchors >>regions >>map >>fragments >>motion
  *     a step:                    >>attached >>supports >>model >>step
  *     the skin:                  >>corners >>vertices >>faces >>skinning >>rays
+ *     a blade in space:          >>layers >>edges >>fronts >>strokes >>blade
  *     beginning, end, bytes:     >>create >>hashes >>stream >>save
  *
  * Words. Facet: a polygon inside an element or in an element face, made by cuts. Wall: a facet that a sheet covers.
@@ -532,7 +534,7 @@ GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *a
 GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit,
                                  gx_failure *failure /* or NULL */);
 
-/* >>blade: cutting where a knife is, while the body moves ---------------------------------------------------------- */
+/* >>slicing: where a blade is, while the body moves --------------------------------------------------------------- */
 
 /* A blade is an edge in space, a polyline, that is moved through a body, which moves meanwhile. Each piece is cut where
    it meets the edge: pieces that lie over each other in space are different layers, and each remembers, in material
@@ -559,6 +561,10 @@ typedef struct gx_blade_report {
 GXFEM_API gx_result gx_blade_create(gx_body *body, const gx_blade_desc *desc /* or NULL: zero */, gx_blade **blade,
                                     gx_failure *failure /* or NULL */);
 GXFEM_API void gx_blade_destroy(gx_blade *blade); /* or NULL */
+/* The body's blades in the order in which they were created, to find those of a loaded or cloned body; NULL where there
+   are no more. After gx_body_restore the body has the blades of the other: those with the same index stay valid, those
+   that the other lacks are lifted. */
+GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index);
 /* Moves the edge and cuts what it has passed since the last move, relative to the material. edge: point_count x 3, in
    space, m; as many points at each move until the blade is lifted, 2 or more. scope: fragments that alone are cut,
    below gx_view.fragment_count; count 0: all. On an error body and blade are as they were.
@@ -958,7 +964,7 @@ typedef struct gxp_points {
 } gxp_points;
 
 /* What a layer remembers: ranges of the state's lists */
-typedef struct gxp_layer {
+typedef struct gxp_layer {         /* words only: rows are saved as bytes */
     uint32_t front, front_count;   /* vertices: up to here it is cut */
     uint32_t latest, latest_count; /* vertices: how far the edge had come at the last move; waits to be cut */
     uint32_t path, path_count;     /* points: where the edge has been since the front was cut */
@@ -7355,7 +7361,6 @@ static gx_result gxp_find_rest_cell(gx_body *body, const double x[3], uint32_t *
     }
     return GX_OK;
 }
-#define GXP_EDGE_REACH 110
 /* END OF STAND-INS */
 /* >>layers: the cells around a blade, and how they hang together --------------------------------------------------- */
 /* In: the strip between the fronts of a blade and its edge. Out: the cells within an element's size of it, with their
@@ -7778,7 +7783,7 @@ static double gxp_square_to_box(const double x[3], const double low[3], const do
 }
 
 /* A cell whose element contains the place: is the place in the cell's own part? */
-static gx_result gxp_look_inside(gx_blade *blade, uint32_t index, const double x[3], const double weights[4],
+static gx_result gxp_seek_inside(gx_blade *blade, uint32_t index, const double x[3], const double weights[4],
                                  gxp_sight *sight) {
     static const double origin[3] = {0, 0, 0};
     gx_body *body = blade->body;
@@ -7802,7 +7807,7 @@ static gx_result gxp_look_inside(gx_blade *blade, uint32_t index, const double x
 }
 
 /* A cell whose element does not contain the place: is it nearer than what was found before? */
-static void gxp_look_outside(const gx_blade *blade, uint32_t index, const double x[3], const double weights[4],
+static void gxp_seek_outside(const gx_blade *blade, uint32_t index, const double x[3], const double weights[4],
                              gxp_sight *sight) {
     const gxp_near_cell *c = &blade->near.cells[index];
     int f;
@@ -7820,19 +7825,19 @@ static void gxp_look_outside(const gx_blade *blade, uint32_t index, const double
     }
 }
 
-static gx_result gxp_look_at(gx_blade *blade, uint32_t index, const double x[3], gxp_sight *sight) {
+static gx_result gxp_seek_at(gx_blade *blade, uint32_t index, const double x[3], gxp_sight *sight) {
     gxp_near_cell *c = &blade->near.cells[index];
     double weights[4];
     if (gxp_square_to_box(x, c->low, c->high) >= sight->square || fabs(c->stretch) < GXP_FLAT_MAP) return GX_OK;
     gxp_tet_weights(c->corners, x, weights);
     if (weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0 && weights[3] >= 0)
-        return gxp_look_inside(blade, index, x, weights, sight);
-    gxp_look_outside(blade, index, x, weights, sight);
+        return gxp_seek_inside(blade, index, x, weights, sight);
+    gxp_seek_outside(blade, index, x, weights, sight);
     return GX_OK;
 }
 
 /* Finds the cell of a layer that contains a place, or else the nearest one. */
-static gx_result gxp_look(gx_blade *blade, uint32_t layer, const double x[3], gxp_sight *sight) {
+static gx_result gxp_seek(gx_blade *blade, uint32_t layer, const double x[3], gxp_sight *sight) {
     const gxp_near *near = &blade->near;
     const double along = x[near->axis];
     uint32_t low = near->layer_start.data[layer], high = near->layer_start.data[layer + 1], first = low, end = high, i;
@@ -7850,13 +7855,13 @@ static gx_result gxp_look(gx_blade *blade, uint32_t layer, const double x[3], gx
         const uint32_t index = GXP_SECOND(near->order.data[i - 1]);
         const double off = along - near->cells[index].low[near->axis] - near->widest;
         if (off > 0 && off * off >= sight->square) break;
-        result = gxp_look_at(blade, index, x, sight);
+        result = gxp_seek_at(blade, index, x, sight);
     }
     for (i = low; i < end && result == GX_OK && sight->square > 0; i++) {
         const uint32_t index = GXP_SECOND(near->order.data[i]);
         const double off = near->cells[index].low[near->axis] - along;
         if (off * off >= sight->square) break;
-        result = gxp_look_at(blade, index, x, sight);
+        result = gxp_seek_at(blade, index, x, sight);
     }
     return result;
 }
@@ -7904,7 +7909,7 @@ static gx_result gxp_see(gx_blade *blade, uint32_t layer, const double *edge, ui
     memset(v, 0, sizeof *v);
     v->along = along;
     gxp_edge_position(edge, count, along, v->position);
-    result = gxp_look(blade, layer, v->position, &sight);
+    result = gxp_seek(blade, layer, v->position, &sight);
     if (result != GX_OK) return result;
     if (sight.index == GXP_NONE) { /* every cell is flat or inverted */
         sight.index = GXP_SECOND(blade->near.order.data[blade->near.layer_start.data[layer]]);
@@ -8313,8 +8318,7 @@ static gx_result gxp_follow_edge(gx_blade *blade, int finish, gx_blade_report *r
                                                      : gxp_note_path(blade);
 }
 
-/* >>strokes: what a blade remembers from move to move ---------------------------------------------------------------
- */
+/* >>strokes: what a blade remembers from move to move -------------------------------------------------------------- */
 /* In: the layers of the last move, those of now. Out: each new layer with the front of the old ones that flow into it.
    Touches the blade's working memory and the state that the move makes. */
 
@@ -8349,13 +8353,12 @@ static gx_result gxp_find_owners(gx_blade *blade, uint32_t layer) {
 
 /* The part of a front that is in the material, with a vertex in the air on each side. Returns 0 if there is none. */
 static int gxp_inner_run(const gxp_front_vertex *v, uint32_t count, uint32_t *first, uint32_t *end) {
-    *first = 0;
-    *end = count;
-    while (*first < count && v[*first].distance > 0) ++*first;
-    if (*first == count) return 0;
-    while (v[*end - 1].distance > 0) --*end;
-    if (*first > 0) --*first;
-    if (*end < count) ++*end;
+    uint32_t i = 0, j = count;
+    while (i < count && v[i].distance > 0) i++;
+    if (i == count) return 0;
+    while (v[j - 1].distance > 0) j--;
+    *first = i > 0 ? i - 1 : 0;
+    *end = j < count ? j + 1 : count;
     return 1;
 }
 
@@ -8451,6 +8454,9 @@ static gx_result gxp_keep_members(gx_blade *blade, const double *edge, uint32_t 
 /* >>blade: the blade's moves --------------------------------------------------------------------------------------- */
 /* gx_blade_move: find the layers, advance their fronts, cut the strips in one transaction, keep the new state. On any
    error nothing of body or blade has changed. */
+
+/* Coordinates of an edge are at most 2^GXP_EDGE_REACH: squares of distances are finite. */
+#define GXP_EDGE_REACH 110
 
 /* A strip reaches cells that are within this share of their size of it, as the body lies now: where strip and layer
    are far from each other in space, none of it is meant for them. */
@@ -8649,6 +8655,11 @@ GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t po
     return result;
 }
 
+static void gxp_forget(gxp_blade_state *state) {
+    state->edge.count = state->layers.count = state->members.count = 0;
+    state->vertices.count = state->points.count = state->slot_count = 0;
+}
+
 GXFEM_API gx_result gx_blade_lift(gx_blade *blade, gx_blade_report *report, gx_failure *failure) {
     gx_blade_report own;
     gx_result result = GX_OK;
@@ -8657,8 +8668,7 @@ GXFEM_API gx_result gx_blade_lift(gx_blade *blade, gx_blade_report *report, gx_f
     if (blade->now.edge.count > 0)
         result = gxp_move_blade(blade, blade->now.edge.data, blade->now.edge.count, NULL, 1, &own, failure);
     if (result != GX_OK) return result;
-    blade->now.edge.count = blade->now.layers.count = blade->now.members.count = 0;
-    blade->now.vertices.count = blade->now.points.count = 0;
+    gxp_forget(&blade->now);
     if (report != NULL) *report = own;
     return gxp_end(failure, GX_OK);
 }
@@ -8685,7 +8695,7 @@ static double gxp_mean_size(const gx_body *body, double *largest) {
 
 GXFEM_API gx_result gx_blade_create(gx_body *body, const gx_blade_desc *desc, gx_blade **blade, gx_failure *failure) {
     gx_blade_desc zero;
-    gx_blade *b;
+    gx_blade *b, **place;
     double size;
     gx_result result;
     memset(&zero, 0, sizeof zero);
@@ -8703,9 +8713,8 @@ GXFEM_API gx_result gx_blade_create(gx_body *body, const gx_blade_desc *desc, gx
     b->min_advance = desc->min_advance > 0 ? desc->min_advance : 0.5 * size;
     b->max_samples = desc->max_samples > 0 ? desc->max_samples : 1000;
     b->starts_inside = desc->starts_inside != 0;
-    b->next = body->blades;
-    body->blades = b;
-    *blade = b;
+    for (place = &body->blades; *place != NULL;) place = &(*place)->next;
+    *blade = *place = b;
     return gxp_end(failure, GX_OK);
 }
 
@@ -8770,6 +8779,12 @@ GXFEM_API void gx_blade_destroy(gx_blade *blade) {
     for (place = &blade->body->blades; *place != blade;) place = &(*place)->next;
     *place = blade->next;
     gxp_release_blade(blade);
+}
+
+GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index) {
+    gx_blade *blade = body != NULL ? body->blades : NULL;
+    for (; blade != NULL && index > 0; index--) blade = blade->next;
+    return blade;
 }
 
 /* >>create: create and destroy ------------------------------------------------------------------------------------- */
@@ -9151,9 +9166,19 @@ GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_failure *failure) {
     return gxp_end(failure, r) == GX_OK ? hash : 0;
 }
 
+static uint64_t gxp_hash_blade(uint64_t hash, const gxp_blade_state *b) {
+    size_t i;
+    hash = gxp_hash_bytes(hash, (const unsigned char *)b->vertices.data, b->vertices.count * sizeof *b->vertices.data);
+    hash = gxp_hash_doubles(hash, b->points.data, 3 * (size_t)b->points.count);
+    hash = gxp_hash_bytes(hash, (const unsigned char *)b->layers.data, b->layers.count * sizeof *b->layers.data);
+    for (i = 0; i < b->members.count; i++) hash = gxp_mix(hash ^ b->members.data[i]);
+    return gxp_hash_doubles(gxp_mix(hash ^ b->slot_count), b->edge.data, 3 * (size_t)b->edge.count);
+}
+
 GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
     const uint32_t use = GXP_TOPOLOGY | GXP_STATE | (body->copies.previous_dt > 0 ? (uint32_t)GXP_HISTORY : 0);
     uint64_t hash = gxp_mix(body->cuts.epoch ^ (uint64_t)body->snapshot.next_id << 32);
+    const gx_blade *blade;
     uint32_t t, i;
     for (t = 0; t < GXP_TABLES; t++) {
         const size_t rows = gxp_count(body, t);
@@ -9165,6 +9190,7 @@ GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
     }
     for (i = 0; i < gxb_complex_leaf_count(body->complex); i++)
         hash = gxp_mix(hash ^ gxb_complex_leaf(body->complex, i)->removed);
+    for (blade = body->blades; blade != NULL; blade = blade->next) hash = gxp_hash_blade(hash, &blade->now);
     return hash;
 }
 
@@ -9640,12 +9666,207 @@ static void gxp_load_state(gxb_stream *s, gx_body *body, int trusted) {
     if (s->result == GX_OK && !trusted) gxp_check_state(s, body, &n);
 }
 
+/* One blade: what it remembers. n: the counts of its lists, which have room for them if it is read. */
+enum { GXP_BLADE_VERTICES, GXP_BLADE_POINTS, GXP_BLADE_LAYERS, GXP_BLADE_MEMBERS, GXP_BLADE_EDGE, GXP_BLADE_LISTS };
+
+static void gxp_pass_blade_head(gxb_stream *s, gx_blade *blade, uint32_t n[GXP_BLADE_LISTS]) {
+    uint32_t inside = (uint32_t)blade->starts_inside;
+    gxb_stream_pass(s, &blade->tolerance, 1, sizeof blade->tolerance);
+    gxb_stream_pass(s, &blade->min_advance, 1, sizeof blade->min_advance);
+    gxp_pass_word(s, &blade->max_samples);
+    gxp_pass_word(s, &inside);
+    gxp_pass_word(s, &blade->now.slot_count);
+    gxb_stream_pass(s, n, GXP_BLADE_LISTS, sizeof *n);
+    blade->starts_inside = inside != 0;
+}
+
+static void gxp_pass_blade(gxb_stream *s, gxp_blade_state *b) {
+    uint32_t i;
+    for (i = 0; i < b->vertices.count; i++) {
+        gxp_front_vertex *v = &b->vertices.data[i];
+        gxb_stream_pass(s, v->rest, 3, sizeof *v->rest);
+        gxb_stream_pass(s, v->extended, 3, sizeof *v->extended);
+        gxb_stream_pass(s, v->position, 3, sizeof *v->position);
+        gxb_stream_pass(s, v->ahead, 3, sizeof *v->ahead);
+        gxb_stream_pass(s, &v->distance, 1, sizeof v->distance);
+        gxb_stream_pass(s, &v->size, 1, sizeof v->size);
+        gxb_stream_pass(s, &v->along, 1, sizeof v->along);
+        gxp_pass_word(s, &v->element);
+        v->unused = 0;
+    }
+    gxb_stream_pass(s, b->points.data, 3 * (size_t)b->points.count, sizeof(double));
+    gxb_stream_pass(s, b->layers.data, sizeof(gxp_layer) / sizeof(uint32_t) * (size_t)b->layers.count,
+                    sizeof(uint32_t));
+    gxb_stream_pass(s, b->members.data, b->members.count, sizeof(uint64_t));
+    gxb_stream_pass(s, b->edge.data, 3 * (size_t)b->edge.count, sizeof(double));
+}
+
+static void gxp_save_blades(gxb_stream *s, gx_body *body) {
+    uint32_t count = 0;
+    gx_blade *b;
+    for (b = body->blades; b != NULL; b = b->next) count++;
+    gxp_pass_word(s, &count);
+    for (b = body->blades; b != NULL; b = b->next) {
+        uint32_t n[GXP_BLADE_LISTS];
+        n[GXP_BLADE_VERTICES] = b->now.vertices.count;
+        n[GXP_BLADE_POINTS] = b->now.points.count;
+        n[GXP_BLADE_LAYERS] = b->now.layers.count;
+        n[GXP_BLADE_MEMBERS] = b->now.members.count;
+        n[GXP_BLADE_EDGE] = b->now.edge.count;
+        gxp_pass_blade_head(s, b, n);
+        gxp_pass_blade(s, &b->now);
+    }
+}
+
+static int gxp_are_finite(const double *x, size_t count) {
+    size_t i;
+    for (i = 0; i < count; i++)
+        if (!gxp_is_finite(x[i])) return 0;
+    return 1;
+}
+
+static void gxp_check_vertex(gxb_stream *s, const gx_body *body, const gxp_blade_state *b, const gxp_front_vertex *v) {
+    gxp_require_true(s, v->element < body->mesh.element_count && v->along >= 0 && v->along <= b->edge.count &&
+                            v->distance >= 0 && v->size >= 0);
+    gxp_require_true(s, gxp_are_finite(v->rest, 3) && gxp_are_finite(v->extended, 3) &&
+                            gxp_are_finite(v->position, 3) && gxp_are_finite(v->ahead, 3) && gxp_is_finite(v->size));
+}
+
+static int gxp_is_range(uint32_t first, uint32_t count, uint32_t all) { return first <= all && count <= all - first; }
+
+/* What a move relies on: ranges within their lists, members in order */
+static void gxp_check_strokes(gxb_stream *s, const gx_body *body, const gx_blade *blade) {
+    const gxp_blade_state *b = &blade->now;
+    uint32_t i;
+    gxp_require_true(s, gxp_is_finite(blade->tolerance) && blade->tolerance > 0 && gxp_is_finite(blade->min_advance) &&
+                            blade->min_advance > 0 && b->slot_count <= body->cells.count && b->edge.count != 1);
+    for (i = 0; i < b->vertices.count; i++) gxp_check_vertex(s, body, b, &b->vertices.data[i]);
+    gxp_require_true(s, gxp_are_finite(b->points.data, 3 * (size_t)b->points.count) &&
+                            gxp_are_finite(b->edge.data, 3 * (size_t)b->edge.count));
+    for (i = 0; i < b->layers.count; i++) {
+        const gxp_layer *l = &b->layers.data[i];
+        gxp_require_true(s, l->front_count >= 2 && l->latest_count != 1 &&
+                                gxp_is_range(l->front, l->front_count, b->vertices.count) &&
+                                gxp_is_range(l->latest, l->latest_count, b->vertices.count) &&
+                                gxp_is_range(l->path, l->path_count, b->points.count) &&
+                                gxp_is_range(l->sheet, l->sheet_count, b->points.count));
+    }
+    for (i = 0; i < b->members.count; i++)
+        gxp_require_true(s, GXP_FIRST(b->members.data[i]) < b->slot_count &&
+                                GXP_SECOND(b->members.data[i]) < b->layers.count &&
+                                (i == 0 || b->members.data[i - 1] < b->members.data[i]));
+}
+
+/* Room for what a blade remembers, with these counts */
+static gx_result gxp_blade_room(gx_body *body, gxp_blade_state *b, const uint32_t n[GXP_BLADE_LISTS]) {
+    const gx_allocator *a = &body->config.allocator;
+    gx_result result =
+        gxp_reserve(a, &b->vertices.data, sizeof *b->vertices.data, 0, &b->vertices.capacity, n[GXP_BLADE_VERTICES]);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &b->points.data, 3 * sizeof(double), 0, &b->points.capacity, n[GXP_BLADE_POINTS]);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &b->layers.data, sizeof *b->layers.data, 0, &b->layers.capacity, n[GXP_BLADE_LAYERS]);
+    if (result == GX_OK)
+        result =
+            gxp_reserve(a, &b->members.data, sizeof *b->members.data, 0, &b->members.capacity, n[GXP_BLADE_MEMBERS]);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &b->edge.data, 3 * sizeof(double), 0, &b->edge.capacity, n[GXP_BLADE_EDGE]);
+    if (result != GX_OK) return result;
+    b->vertices.count = n[GXP_BLADE_VERTICES];
+    b->points.count = n[GXP_BLADE_POINTS];
+    b->layers.count = n[GXP_BLADE_LAYERS];
+    b->members.count = n[GXP_BLADE_MEMBERS];
+    b->edge.count = n[GXP_BLADE_EDGE];
+    return GX_OK;
+}
+
+static void gxp_load_blade(gxb_stream *s, gx_body *body, int trusted) {
+    uint32_t n[GXP_BLADE_LISTS], i;
+    gx_blade *b = NULL;
+    gxp_require(s, gx_blade_create(body, NULL, &b, NULL));
+    if (s->result != GX_OK) return;
+    gxp_pass_blade_head(s, b, n);
+    for (i = 0; i < GXP_BLADE_LISTS; i++) gxp_require_true(s, gxb_stream_has(s, n[i], sizeof(uint64_t)));
+    if (s->result == GX_OK) gxp_require(s, gxp_blade_room(body, &b->now, n));
+    if (s->result == GX_OK) gxp_pass_blade(s, &b->now);
+    if (s->result == GX_OK && !trusted) gxp_check_strokes(s, body, b);
+}
+
+static void gxp_load_blades(gxb_stream *s, gx_body *body, int trusted) {
+    uint32_t count = 0, i;
+    gxp_pass_word(s, &count);
+    for (i = 0; i < count && s->result == GX_OK; i++) gxp_load_blade(s, body, trusted);
+}
+
+/* Makes ready that the body's blades become those of another: as many, and what these remember in `then`. made: how
+   many it added. */
+static gx_result gxp_prepare_blades(gx_body *body, const gx_body *from, uint32_t *made) {
+    const gx_blade *source;
+    gx_blade *b = body->blades;
+    gx_result result = GX_OK;
+    *made = 0;
+    for (source = from->blades; source != NULL && result == GX_OK; source = source->next) {
+        const gxp_blade_state *f = &source->now;
+        uint32_t n[GXP_BLADE_LISTS];
+        n[GXP_BLADE_VERTICES] = f->vertices.count;
+        n[GXP_BLADE_POINTS] = f->points.count;
+        n[GXP_BLADE_LAYERS] = f->layers.count;
+        n[GXP_BLADE_MEMBERS] = f->members.count;
+        n[GXP_BLADE_EDGE] = f->edge.count;
+        if (b == NULL) {
+            result = gx_blade_create(body, NULL, &b, NULL);
+            *made += result == GX_OK;
+        }
+        if (result == GX_OK) result = gxp_blade_room(body, &b->then, n);
+        if (result != GX_OK) break;
+        if (f->vertices.count > 0)
+            memcpy(b->then.vertices.data, f->vertices.data, f->vertices.count * sizeof *f->vertices.data);
+        if (f->points.count > 0) memcpy(b->then.points.data, f->points.data, 3 * f->points.count * sizeof(double));
+        if (f->layers.count > 0) memcpy(b->then.layers.data, f->layers.data, f->layers.count * sizeof *f->layers.data);
+        if (f->members.count > 0)
+            memcpy(b->then.members.data, f->members.data, f->members.count * sizeof *f->members.data);
+        if (f->edge.count > 0) memcpy(b->then.edge.data, f->edge.data, 3 * f->edge.count * sizeof(double));
+        b->then.slot_count = f->slot_count;
+        b = b->next;
+    }
+    return result;
+}
+
+/* The body's blades become those of another, as they were made ready. Those that it lacks are lifted. */
+static void gxp_take_blades(gx_body *body, const gx_body *from) {
+    const gx_blade *source = from->blades;
+    gx_blade *b;
+    for (b = body->blades; b != NULL; b = b->next) {
+        const gxp_blade_state now = b->now;
+        if (source == NULL) {
+            gxp_forget(&b->now);
+            continue;
+        }
+        b->now = b->then;
+        b->then = now;
+        b->tolerance = source->tolerance;
+        b->min_advance = source->min_advance;
+        b->max_samples = source->max_samples;
+        b->starts_inside = source->starts_inside;
+        source = source->next;
+    }
+}
+
+/* Takes back blades that were added last. */
+static void gxp_drop_blades(gx_body *body, uint32_t count) {
+    uint32_t all = 0;
+    gx_blade *b;
+    for (b = body->blades; b != NULL; b = b->next) all++;
+    for (; count > 0; count--, all--) gx_blade_destroy(gx_body_blade(body, all - 1));
+}
+
 static void gxp_write(gxb_stream *s, gx_body *body) {
     gxp_head head = gxp_make_head(0, 0);
     gxp_pass_head(s, &head);
     gxp_save_mesh(s, body);
     gxp_save_topology(s, body);
     gxp_save_state(s, body);
+    gxp_save_blades(s, body);
 }
 
 static void gxp_resume(gx_body *body) {
@@ -9692,6 +9913,7 @@ static gx_result gxp_read(gxb_stream *s, const gx_body_desc *desc, int trusted, 
     if (s->result == GX_OK) gxp_load_mesh(s, desc, &made, failure);
     if (s->result == GX_OK) gxp_load_topology(s, made, trusted);
     if (s->result == GX_OK) gxp_load_state(s, made, trusted);
+    if (s->result == GX_OK) gxp_load_blades(s, made, trusted);
     gxp_require_true(s, s->at == s->size);
     if (s->result == GX_OK)
         *body = made;
@@ -9812,23 +10034,39 @@ static gx_result gxp_restore_state(gx_body *body, gx_body *from) {
     return GX_OK;
 }
 
-GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *failure) {
+/* Replaces cells and all else by a copy of another body's. The body's own blades stay, and the copy's go with the old
+   body. */
+static gx_result gxp_restore_all(gx_body *body, gx_body *from) {
     gx_body *copy, swap;
+    const gx_result result = gxp_copy_body(from, body, &copy);
+    if (result != GX_OK) return result;
+    swap = *body;
+    *body = *copy;
+    *copy = swap;
+    copy->blades = body->blades;
+    body->blades = swap.blades;
+    gx_body_destroy(copy);
+    return GX_OK;
+}
+
+GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *failure) {
+    uint32_t made;
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (from == NULL) return gxp_refuse(failure, "from");
     if (body == from) return gxp_end(failure, GX_OK);
-    if (body->cuts.hash == from->cuts.hash && body->copies.count == from->copies.count &&
-        body->cells.count == from->cells.count && body->leaves.count == from->leaves.count &&
-        gxp_same_materials(body, from))
-        return gxp_end(failure, gxp_restore_state(body, from));
-    result = gxp_copy_body(from, body, &copy);
-    if (gxp_end(failure, result) != GX_OK) return result;
-    swap = *body;
-    *body = *copy;
-    *copy = swap;
-    gx_body_destroy(copy);
-    return GX_OK;
+    result = gxp_prepare_blades(body, from, &made);
+    if (result == GX_OK)
+        result = body->cuts.hash == from->cuts.hash && body->copies.count == from->copies.count &&
+                         body->cells.count == from->cells.count && body->leaves.count == from->leaves.count &&
+                         gxp_same_materials(body, from)
+                   ? gxp_restore_state(body, from)
+                   : gxp_restore_all(body, from);
+    if (result == GX_OK)
+        gxp_take_blades(body, from);
+    else
+        gxp_drop_blades(body, made);
+    return gxp_end(failure, result);
 }
 
 #undef GXP_COLD
@@ -9864,6 +10102,13 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_BYTE_ORDER
 #undef GXP_BESIDE_WALL
 #undef GXP_ACROSS_WALL
+#undef GXP_FLAT_MAP
+#undef GXP_BESIDE
+#undef GXP_LEAST_ADVANCE
+#undef GXP_CUT_WIDTH
+#undef GXP_SHEET_TRIANGLES
+#undef GXP_STRIP_REACH
+#undef GXP_EDGE_REACH
 #ifdef GXFEM_SCALAR
 #pragma clang attribute pop
 #endif
