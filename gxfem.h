@@ -55,7 +55,7 @@
  *     what is held and whole:    >>anchors >>regions >>map >>fragments >>motion
  *     a step:                    >>attached >>supports >>model >>step
  *     the skin:                  >>corners >>vertices >>faces >>skinning >>rays
- *     a blade in space:          >>layers >>edges >>fronts >>strokes >>blade
+ *     a blade in space:          >>layers >>edges >>fronts >>strokes >>blade >>carve
  *     beginning, end, bytes:     >>create >>hashes >>stream >>save
  *
  * Words. Facet: a polygon inside an element or in an element face, made by cuts. Wall: a facet that a sheet covers.
@@ -577,6 +577,13 @@ GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t po
 GXFEM_API gx_result gx_blade_lift(gx_blade *blade, gx_blade_report *report /* or NULL */,
                                   gx_failure *failure /* or NULL */);
 
+/* Removes the material that a closed tool in space covers now (a drill, a punch), from each piece where it meets the
+   tool. tool: vertices in space, m; kind and scope_slots are not read. Its triangles are divided where elements
+   are smaller.
+   Errors: as gx_body_cut; a field of the tool reads "tool.vertices". */
+GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_report *report /* or NULL */,
+                                  gx_failure *failure /* or NULL */);
+
 /* >>hashing -------------------------------------------------------------------------------------------------------- */
 
 /* Hash of the cells and copies, the same on every compiler. 0 after an error: ARGUMENT, MEMORY, LIMIT. */
@@ -1037,8 +1044,10 @@ struct gx_blade {
     gxp_points path, sheet;
     gxp_relation *relations; /* of the samples */
     uint32_t relation_capacity;
-    gxp_words needed; /* by sample: 1 if it is not on a line with others */
-    gxp_words owners; /* old layers that flow into it */
+    gxp_words needed;  /* by sample: 1 if it is not on a line with others */
+    gxp_words owners;  /* old layers that flow into it */
+    gxp_keys halved;   /* edges of a tool, two vertices each */
+    gxp_words divided; /* triangles of a tool */
 };
 
 /* --- working memory of one call. No contents last to the next call; the memory stays, so that a cut as large as the
@@ -7619,7 +7628,7 @@ static int gxp_is_near_quad(const gxp_near_cell *near, const double *quad, doubl
            gxp_near_triangle(middle, quad, quad + 6, quad + 9, at) <= radius * radius;
 }
 
-/* Adds a cell that is within an element's size of the quad, unless it is there. */
+/* Adds a cell that is within an element's size of the quad, unless it is there. quad NULL: wherever it is */
 static gx_result gxp_add_near(gx_blade *blade, uint32_t slot, const double *quad) {
     gxp_near *near = &blade->near;
     gxp_near_cell cell;
@@ -7628,7 +7637,7 @@ static gx_result gxp_add_near(gx_blade *blade, uint32_t slot, const double *quad
     memset(&cell, 0, sizeof cell);
     cell.slot = slot;
     gxp_place_near(blade->body, &cell);
-    if (!gxp_is_near_quad(&cell, quad, cell.size)) return GX_OK;
+    if (quad != NULL && !gxp_is_near_quad(&cell, quad, cell.size)) return GX_OK;
     result =
         gxp_reserve(&blade->body->config.allocator, &near->cells, sizeof *near->cells, near->count, &near->capacity, 1);
     if (result != GX_OK) return result;
@@ -7725,15 +7734,14 @@ static gx_result gxp_order_near(gx_blade *blade) {
     return GX_OK;
 }
 
-/* Finds the near cells and their layers. */
-static gx_result gxp_find_layers(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope) {
+/* Finds the cells near the quads. scope: by fragment, 1 if it is in the scope; NULL: all are. */
+static gx_result gxp_find_near(gx_blade *blade, const gxp_words *scope) {
     gxp_near *near = &blade->near;
     gx_body *body = blade->body;
     uint32_t q, i;
     int k;
-    gx_result result = gxp_sweep(blade, edge, count);
+    gx_result result = gxp_extend_words(body, &near->of_slot, body->cells.count);
     near->count = 0;
-    if (result == GX_OK) result = gxp_extend_words(body, &near->of_slot, body->cells.count);
     for (q = 0; q < blade->quads.count && result == GX_OK; q += 4) {
         const double *x = blade->quads.data + 3 * (size_t)q;
         double low[3], high[3];
@@ -7746,12 +7754,19 @@ static gx_result gxp_find_layers(gx_blade *blade, const double *edge, uint32_t c
             if (scope == NULL || scope->data[gxp_cell_fragment(body, blade->found.data[i])])
                 result = gxp_add_near(blade, blade->found.data[i], x);
     }
+    return result;
+}
+
+/* Finds the near cells and their layers. */
+static gx_result gxp_find_layers(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope) {
+    const double *last = edge + 3 * ((size_t)count - 1);
+    int k;
+    gx_result result = gxp_sweep(blade, edge, count);
+    if (result == GX_OK) result = gxp_find_near(blade, scope);
     if (result == GX_OK) result = gxp_number_layers(blade);
-    near->axis = 0;
+    blade->near.axis = 0;
     for (k = 1; k < 3; k++)
-        if (fabs(edge[3 * (size_t)count - 3 + (size_t)k] - edge[k]) >
-            fabs(edge[3 * (size_t)count - 3 + (size_t)near->axis] - edge[near->axis]))
-            near->axis = k;
+        if (fabs(last[k] - edge[k]) > fabs(last[blade->near.axis] - edge[blade->near.axis])) blade->near.axis = k;
     return result == GX_OK ? gxp_order_near(blade) : result;
 }
 
@@ -7898,35 +7913,38 @@ static gx_result gxp_place_in_air(gx_blade *blade, uint32_t layer, const gxp_sig
     return result;
 }
 
-/* How a layer sees a place on the edge */
-static gx_result gxp_see(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count, double along,
-                         gxp_front_vertex *v) {
+/* How a layer sees a place in space: v->position is given. */
+static gx_result gxp_see_place(gx_blade *blade, uint32_t layer, gxp_front_vertex *v) {
     static const double origin[3] = {0, 0, 0};
+    const gxp_near *near = &blade->near;
     const gxp_near_cell *c;
     double corners[4][3];
     gxp_sight sight;
-    gx_result result;
-    memset(v, 0, sizeof *v);
-    v->along = along;
-    gxp_edge_position(edge, count, along, v->position);
-    result = gxp_seek(blade, layer, v->position, &sight);
+    const gx_result result = gxp_seek(blade, layer, v->position, &sight);
     if (result != GX_OK) return result;
+    c = &near->cells[sight.index != GXP_NONE ? sight.index
+                                             : GXP_SECOND(near->order.data[near->layer_start.data[layer]])];
+    v->element = blade->body->cells.data[c->slot].element;
+    v->size = c->size;
+    v->distance = sqrt(sight.square);
     if (sight.index == GXP_NONE) { /* every cell is flat or inverted */
-        sight.index = GXP_SECOND(blade->near.order.data[blade->near.layer_start.data[layer]]);
-        v->element = blade->body->cells.data[blade->near.cells[sight.index].slot].element;
-        v->distance = HUGE_VAL;
         memcpy(v->rest, v->position, sizeof v->rest);
         memcpy(v->extended, v->position, sizeof v->extended);
         return GX_OK;
     }
-    c = &blade->near.cells[sight.index];
-    v->element = blade->body->cells.data[c->slot].element;
-    v->size = c->size;
-    v->distance = sqrt(sight.square);
     gxp_cell_corners(blade->body, &blade->body->cells.data[c->slot], 0, origin, corners);
     gxp_weigh(corners, sight.weights, v->extended);
     memcpy(v->rest, v->extended, sizeof v->rest);
     return v->distance > 0 ? gxp_place_in_air(blade, layer, &sight, corners, v) : GX_OK;
+}
+
+/* How a layer sees a place on the edge */
+static gx_result gxp_see(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count, double along,
+                         gxp_front_vertex *v) {
+    memset(v, 0, sizeof *v);
+    v->along = along;
+    gxp_edge_position(edge, count, along, v->position);
+    return gxp_see_place(blade, layer, v);
 }
 
 /* Are there places between two that must be seen? None, if the layer can't be there: its distance from a place is at
@@ -8516,8 +8534,8 @@ static gx_result gxp_add_surface(gx_blade *blade, uint32_t layer) {
     return result;
 }
 
-/* Cuts the body by the strips of all layers at once. */
-static gx_result gxp_cut_surfaces(gx_blade *blade, gx_blade_report *report, gx_failure *failure) {
+/* Cuts the body by the surfaces of all layers at once. */
+static gx_result gxp_cut_surfaces(gx_blade *blade, uint32_t kind, gx_blade_report *report, gx_failure *failure) {
     gx_body *body = blade->body;
     const uint32_t count = blade->surface_starts.count / 2;
     uint32_t i;
@@ -8534,6 +8552,7 @@ static gx_result gxp_cut_surfaces(gx_blade *blade, gx_blade_report *report, gx_f
         const uint32_t slots_end = i + 1 < count ? start[2] : blade->scope.count,
                        corners_end = i + 1 < count ? start[3] : blade->corners.count;
         memset(s, 0, sizeof *s);
+        s->kind = kind;
         s->scope_slots = blade->scope.data + start[0];
         s->scope_slot_count = slots_end - start[0];
         s->vertices = blade->corners.data + 3 * (size_t)start[1];
@@ -8546,7 +8565,8 @@ static gx_result gxp_cut_surfaces(gx_blade *blade, gx_blade_report *report, gx_f
     desc.surfaces = blade->surfaces;
     desc.surface_count = count;
     result = gx_body_cut(body, &desc, &report->cut, failure);
-    if (result != GX_OK && failure != NULL) failure->field = "edge", failure->index = failure->surface = SIZE_MAX;
+    if (result != GX_OK && result != GX_ERROR_NOT_CLOSED && failure != NULL)
+        failure->field = NULL, failure->index = SIZE_MAX;
     return result;
 }
 
@@ -8631,7 +8651,7 @@ static gx_result gxp_move_blade(gx_blade *blade, const double *edge, uint32_t co
     if (result != GX_OK) return result;
     result = gxp_keep_members(blade, edge, count);
     if (gxp_end(failure, result) != GX_OK) return result;
-    result = gxp_cut_surfaces(blade, report, failure);
+    result = gxp_cut_surfaces(blade, GX_SURFACE_SHEET, report, failure);
     if (result != GX_OK) return result;
     blade->now = blade->then;
     blade->then = now;
@@ -8763,6 +8783,8 @@ static void gxp_release_blade(gx_blade *b) {
     gxp_release_points(body, &b->quads);
     gxp_release_points(body, &b->corners);
     gxp_release_words(body, &b->owners);
+    gxp_release_words(body, &b->divided);
+    gxp_release(a, b->halved.data, b->halved.capacity * sizeof *b->halved.data);
     gxp_release_words(body, &b->in_scope);
     gxp_release_words(body, &b->needed);
     gxp_release_words(body, &b->found);
@@ -8785,6 +8807,251 @@ GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index) {
     gx_blade *blade = body != NULL ? body->blades : NULL;
     for (; blade != NULL && index > 0; index--) blade = blade->next;
     return blade;
+}
+
+/* >>carve: what a closed tool in space covers ---------------------------------------------------------------------- */
+/* gx_body_carve: find the layers around the tool, divide its triangles as finely as the elements of each, map them
+   back, and remove what they enclose there, in one cut. On any error the body is as it was. */
+
+/* Tools are divided into at most so many triangles. */
+#define GXP_TOOL_TRIANGLES 1000000u
+
+/* The cells of a layer see the tool: its vertices are blade.samples, its triangles blade.triangles. */
+static gx_result gxp_see_tool(gx_blade *blade, uint32_t layer, const gx_surface *tool) {
+    size_t i;
+    gx_result result = gxp_start_words(blade->body, &blade->triangles, 3 * tool->triangle_count);
+    blade->samples.count = 0;
+    for (i = 0; i < tool->vertex_count && result == GX_OK; i++) {
+        gxp_front_vertex v;
+        memset(&v, 0, sizeof v);
+        memcpy(v.position, tool->vertices + 3 * i, sizeof v.position);
+        result = gxp_see_place(blade, layer, &v);
+        if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->samples, &v);
+    }
+    if (result != GX_OK) return result;
+    memcpy(blade->triangles.data, tool->triangles, 3 * tool->triangle_count * sizeof *tool->triangles);
+    blade->triangles.count = 3 * (uint32_t)tool->triangle_count;
+    return GX_OK;
+}
+
+static uint64_t gxp_edge_key(uint32_t a, uint32_t b) { return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a; }
+
+/* Lists in blade.owners the edges that are to be halved, ascending: those between places that are farther apart than
+   half an element, where the layer may be. Both triangles of an edge agree. */
+static gx_result gxp_list_long_edges(gx_blade *blade, gxp_keys *halved) {
+    const gxp_front_vertex *v = blade->samples.data;
+    uint32_t i, n = 0;
+    gx_result result = gxp_keys_room(blade->body, halved, 2 * (size_t)blade->triangles.count);
+    halved->count = 0;
+    for (i = 0; i < blade->triangles.count && result == GX_OK; i++) {
+        const uint32_t a = blade->triangles.data[i], b = blade->triangles.data[i % 3 == 2 ? i - 2 : i + 1];
+        const double length = sqrt(gxp_square_distance(v[a].position, v[b].position));
+        if (v[a].distance > 0 && v[b].distance > 0 && v[a].distance + v[b].distance > length) continue;
+        if (length > 0.5 * (v[a].size < v[b].size ? v[a].size : v[b].size))
+            halved->data[halved->count++] = gxp_edge_key(a, b);
+    }
+    if (result == GX_OK) result = gxp_sort_keys(blade->body, halved, 0, halved->count);
+    for (i = 0; i < halved->count && result == GX_OK; i++)
+        if (n == 0 || halved->data[n - 1] != halved->data[i]) halved->data[n++] = halved->data[i];
+    halved->count = n;
+    return result;
+}
+
+/* The vertex in the middle of an edge, if it is halved; GXP_NONE: it is not */
+static uint32_t gxp_middle_vertex(const gxp_keys *halved, uint32_t first, uint32_t a, uint32_t b) {
+    const uint64_t key = gxp_edge_key(a, b);
+    uint32_t low = 0, high = halved->count;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (halved->data[middle] < key)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < halved->count && halved->data[low] == key ? first + low : GXP_NONE;
+}
+
+static gx_result gxp_push_triangle(gx_body *body, gxp_words *out, uint32_t a, uint32_t b, uint32_t c) {
+    gx_result result = gxp_words_room(body, out, 3);
+    if (result != GX_OK) return result;
+    out->data[out->count++] = a;
+    out->data[out->count++] = b;
+    out->data[out->count++] = c;
+    return result;
+}
+
+/* Divides a triangle by the middles of its edges, m[k] of corner k and the next. */
+static gx_result gxp_divide_triangle(gx_body *body, const uint32_t t[3], const uint32_t m[3], gxp_words *out) {
+    uint32_t k, halved = 0, first = 0;
+    gx_result result;
+    for (k = 0; k < 3; k++) halved += m[k] != GXP_NONE;
+    if (halved == 0) return gxp_push_triangle(body, out, t[0], t[1], t[2]);
+    if (halved == 3) {
+        result = gxp_push_triangle(body, out, m[0], m[1], m[2]);
+        for (k = 0; k < 3 && result == GX_OK; k++) result = gxp_push_triangle(body, out, t[k], m[k], m[(k + 2) % 3]);
+        return result;
+    }
+    /* edge `first` is halved, and the next one too if two are */
+    while (m[first] == GXP_NONE || (halved == 2 && m[(first + 1) % 3] == GXP_NONE)) first++;
+    {
+        const uint32_t a = t[first], b = t[(first + 1) % 3], c = t[(first + 2) % 3], ab = m[first],
+                       bc = m[(first + 1) % 3];
+        result = gxp_push_triangle(body, out, a, ab, halved == 1 ? c : bc);
+        if (halved == 1) return result == GX_OK ? gxp_push_triangle(body, out, ab, b, c) : result;
+        if (result == GX_OK) result = gxp_push_triangle(body, out, ab, b, bc);
+        return result == GX_OK ? gxp_push_triangle(body, out, a, bc, c) : result;
+    }
+}
+
+/* Halves the edges of the tool until all that are near the layer are short. */
+static gx_result gxp_refine_tool(gx_blade *blade, uint32_t layer) {
+    gx_body *body = blade->body;
+    gxp_keys *halved = &blade->halved;
+    gxp_words *divided = &blade->divided;
+    gx_result result = gxp_list_long_edges(blade, halved);
+    while (result == GX_OK && halved->count > 0 && blade->triangles.count < 3 * GXP_TOOL_TRIANGLES) {
+        const uint32_t first = blade->samples.count;
+        gxp_words swap;
+        uint32_t i, k, n;
+        for (i = 0; i < halved->count && result == GX_OK; i++) {
+            const gxp_front_vertex *a = &blade->samples.data[GXP_FIRST(halved->data[i])],
+                                   *b = &blade->samples.data[GXP_SECOND(halved->data[i])];
+            gxp_front_vertex v;
+            memset(&v, 0, sizeof v);
+            for (n = 0; n < 3; n++) v.position[n] = 0.5 * a->position[n] + 0.5 * b->position[n];
+            result = gxp_see_place(blade, layer, &v);
+            if (result == GX_OK) result = gxp_push_vertex(body, &blade->samples, &v);
+        }
+        divided->count = 0;
+        for (i = 0; i < blade->triangles.count && result == GX_OK; i += 3) {
+            const uint32_t *t = blade->triangles.data + i;
+            uint32_t middle[3];
+            for (k = 0; k < 3; k++) middle[k] = gxp_middle_vertex(halved, first, t[k], t[(k + 1) % 3]);
+            result = gxp_divide_triangle(body, t, middle, divided);
+        }
+        if (result != GX_OK) return result;
+        swap = blade->triangles;
+        blade->triangles = *divided;
+        *divided = swap;
+        result = gxp_list_long_edges(blade, halved);
+    }
+    return result;
+}
+
+/* Adds the cells that are inside the tool and not near its surface. */
+static gx_result gxp_add_covered(gx_blade *blade, const gx_surface *tool) {
+    gx_body *body = blade->body;
+    double low[3], high[3];
+    size_t i;
+    int k;
+    gx_result result;
+    memcpy(low, tool->vertices, sizeof low);
+    memcpy(high, tool->vertices, sizeof high);
+    for (i = 0; i < 3 * tool->vertex_count; i++) {
+        low[i % 3] = fmin(low[i % 3], tool->vertices[i]);
+        high[i % 3] = fmax(high[i % 3], tool->vertices[i]);
+    }
+    result = gxp_find_in_box(body, low, high, &blade->found);
+    for (i = 0; i < blade->found.count && result == GX_OK; i++) {
+        static const double origin[3] = {0, 0, 0};
+        const uint32_t slot = blade->found.data[i];
+        double x[4][3], middle[3];
+        int on;
+        if (gxp_near_index(&blade->near, slot) != GXP_NONE) continue;
+        gxp_cell_corners(body, &body->cells.data[slot], 1, origin, x);
+        for (k = 0; k < 3; k++) middle[k] = 0.25 * (x[0][k] + x[1][k] + x[2][k] + x[3][k]);
+        if (gxb_winding_number(tool->vertices, tool->triangles, tool->triangle_count, middle, &on) != 0)
+            result = gxp_add_near(blade, slot, NULL);
+    }
+    return result;
+}
+
+/* Finds the cells that the tool covers or is near, and their layers. */
+static gx_result gxp_find_tool_layers(gx_blade *blade, const gx_surface *tool) {
+    size_t i;
+    gx_result result = GX_OK;
+    blade->quads.count = 0;
+    for (i = 0; i < tool->triangle_count && result == GX_OK; i++) {
+        const uint32_t *t = tool->triangles + 3 * i;
+        const double *a = tool->vertices + 3 * (size_t)t[0], *b = tool->vertices + 3 * (size_t)t[1],
+                     *c = tool->vertices + 3 * (size_t)t[2];
+        result = gxp_push_quad(blade, a, b, c, c);
+    }
+    if (result == GX_OK) result = gxp_find_near(blade, NULL);
+    if (result == GX_OK) result = gxp_add_covered(blade, tool);
+    if (result == GX_OK) result = gxp_number_layers(blade);
+    return result == GX_OK ? gxp_order_near(blade) : result;
+}
+
+/* Adds the tool as a layer sees it to the surfaces of the cut. */
+static gx_result gxp_add_tool(gx_blade *blade, uint32_t layer) {
+    const gxp_near *near = &blade->near;
+    gx_body *body = blade->body;
+    uint32_t i;
+    gx_result result = gxp_push(body, &blade->surface_starts, blade->scope.count);
+    if (result == GX_OK) result = gxp_push(body, &blade->surface_starts, blade->corners.count);
+    for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++)
+        result = gxp_push(body, &blade->scope, near->cells[GXP_SECOND(near->order.data[i])].slot);
+    for (i = 0; i < blade->triangles.count && result == GX_OK; i++)
+        result = gxp_push_point(body, &blade->corners, blade->samples.data[blade->triangles.data[i]].rest);
+    return result;
+}
+
+/* Does the tool come near the layer anywhere? */
+static int gxp_meets_tool(const gx_blade *blade) {
+    uint32_t i;
+    for (i = 0; i < blade->samples.count; i++)
+        if (blade->samples.data[i].distance < 0.5 * blade->samples.data[i].size) return 1;
+    return 0;
+}
+
+static gx_result gxp_carve_layers(gx_blade *blade, const gx_surface *tool, gx_blade_report *report,
+                                  gx_failure *failure) {
+    uint32_t layer;
+    gx_result result = gxp_find_tool_layers(blade, tool);
+    blade->surface_starts.count = blade->corners.count = blade->scope.count = 0;
+    for (layer = 0; layer < blade->near.layer_count && result == GX_OK; layer++) {
+        result = gxp_see_tool(blade, layer, tool);
+        if (result == GX_OK) result = gxp_refine_tool(blade, layer);
+        if (result == GX_OK && gxp_meets_tool(blade)) result = gxp_add_tool(blade, layer);
+    }
+    if (gxp_end(failure, result) != GX_OK) return result;
+    return gxp_cut_surfaces(blade, GX_SURFACE_SOLID, report, failure);
+}
+
+static gx_result gxp_check_tool(const gx_surface *tool, gx_failure *failure) {
+    size_t i;
+    if (tool->vertex_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "tool.vertex_count", SIZE_MAX);
+    if (tool->triangle_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "tool.triangle_count", SIZE_MAX);
+    if (tool->vertices == NULL) return gxp_refuse(failure, "tool.vertices");
+    if (tool->triangles == NULL) return gxp_refuse(failure, "tool.triangles");
+    if (tool->vertex_count > INT32_MAX / 4) return gxp_fail(failure, GX_ERROR_LIMIT, "tool.vertex_count", SIZE_MAX);
+    if (tool->triangle_count > INT32_MAX / 12)
+        return gxp_fail(failure, GX_ERROR_LIMIT, "tool.triangle_count", SIZE_MAX);
+    for (i = 0; i < 3 * tool->vertex_count; i++) {
+        if (!gxp_is_finite(tool->vertices[i])) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "tool.vertices", i / 3);
+        if (fabs(tool->vertices[i]) > ldexp(1, GXP_EDGE_REACH))
+            return gxp_fail(failure, GX_ERROR_RANGE, "tool.vertices", i / 3);
+    }
+    for (i = 0; i < 3 * tool->triangle_count; i++)
+        if (tool->triangles[i] >= tool->vertex_count) return gxp_fail(failure, GX_ERROR_INDEX, "tool.triangles", i / 3);
+    return GX_OK;
+}
+
+GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_report *report, gx_failure *failure) {
+    gx_blade *blade;
+    gx_blade_report own;
+    gx_result result;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (tool == NULL) return gxp_refuse(failure, "tool");
+    result = gxp_check_tool(tool, failure);
+    if (result == GX_OK) result = gx_blade_create(body, NULL, &blade, failure);
+    if (result != GX_OK) return result;
+    gxp_clear_report(&own);
+    result = gxp_carve_layers(blade, tool, &own, failure);
+    gx_blade_destroy(blade);
+    if (result == GX_OK && report != NULL) *report = own.cut;
+    return result;
 }
 
 /* >>create: create and destroy ------------------------------------------------------------------------------------- */
@@ -10109,6 +10376,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_SHEET_TRIANGLES
 #undef GXP_STRIP_REACH
 #undef GXP_EDGE_REACH
+#undef GXP_TOOL_TRIANGLES
 #ifdef GXFEM_SCALAR
 #pragma clang attribute pop
 #endif
