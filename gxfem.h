@@ -8816,18 +8816,27 @@ GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index) {
 /* Tools are divided into at most so many triangles. */
 #define GXP_TOOL_TRIANGLES 1000000u
 
-/* The cells of a layer see the tool: its vertices are blade.samples, its triangles blade.triangles. */
+/* Appends a place of the tool to blade.samples. Outside the layer its material point is as far away as the tool is: a
+   tool that covers much of a layer must not be drawn in. */
+static gx_result gxp_push_tool_place(gx_blade *blade, uint32_t layer, const double position[3]) {
+    gxp_front_vertex v;
+    int inside = 0;
+    gx_result result;
+    memset(&v, 0, sizeof v);
+    memcpy(v.position, position, sizeof v.position);
+    result = gxp_see_place(blade, layer, &v);
+    if (result == GX_OK && v.distance > 0) result = gxp_is_in_layer(blade, layer, v.extended, &inside);
+    if (!inside) memcpy(v.rest, v.extended, sizeof v.rest);
+    return result == GX_OK ? gxp_push_vertex(blade->body, &blade->samples, &v) : result;
+}
+
+/* The tool as a layer sees it: its vertices are blade.samples, its triangles blade.triangles. */
 static gx_result gxp_see_tool(gx_blade *blade, uint32_t layer, const gx_surface *tool) {
     size_t i;
     gx_result result = gxp_start_words(blade->body, &blade->triangles, 3 * tool->triangle_count);
     blade->samples.count = 0;
-    for (i = 0; i < tool->vertex_count && result == GX_OK; i++) {
-        gxp_front_vertex v;
-        memset(&v, 0, sizeof v);
-        memcpy(v.position, tool->vertices + 3 * i, sizeof v.position);
-        result = gxp_see_place(blade, layer, &v);
-        if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->samples, &v);
-    }
+    for (i = 0; i < tool->vertex_count && result == GX_OK; i++)
+        result = gxp_push_tool_place(blade, layer, tool->vertices + 3 * i);
     if (result != GX_OK) return result;
     memcpy(blade->triangles.data, tool->triangles, 3 * tool->triangle_count * sizeof *tool->triangles);
     blade->triangles.count = 3 * (uint32_t)tool->triangle_count;
@@ -8916,11 +8925,9 @@ static gx_result gxp_refine_tool(gx_blade *blade, uint32_t layer) {
         for (i = 0; i < halved->count && result == GX_OK; i++) {
             const gxp_front_vertex *a = &blade->samples.data[GXP_FIRST(halved->data[i])],
                                    *b = &blade->samples.data[GXP_SECOND(halved->data[i])];
-            gxp_front_vertex v;
-            memset(&v, 0, sizeof v);
-            for (n = 0; n < 3; n++) v.position[n] = 0.5 * a->position[n] + 0.5 * b->position[n];
-            result = gxp_see_place(blade, layer, &v);
-            if (result == GX_OK) result = gxp_push_vertex(body, &blade->samples, &v);
+            double middle[3];
+            for (n = 0; n < 3; n++) middle[n] = 0.5 * a->position[n] + 0.5 * b->position[n];
+            result = gxp_push_tool_place(blade, layer, middle);
         }
         divided->count = 0;
         for (i = 0; i < blade->triangles.count && result == GX_OK; i += 3) {
@@ -8983,26 +8990,56 @@ static gx_result gxp_find_tool_layers(gx_blade *blade, const gx_surface *tool) {
     return result == GX_OK ? gxp_order_near(blade) : result;
 }
 
-/* Adds the tool as a layer sees it to the surfaces of the cut. */
-static gx_result gxp_add_tool(gx_blade *blade, uint32_t layer) {
-    const gxp_near *near = &blade->near;
-    gx_body *body = blade->body;
-    uint32_t i;
-    gx_result result = gxp_push(body, &blade->surface_starts, blade->scope.count);
-    if (result == GX_OK) result = gxp_push(body, &blade->surface_starts, blade->corners.count);
-    for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++)
-        result = gxp_push(body, &blade->scope, near->cells[GXP_SECOND(near->order.data[i])].slot);
-    for (i = 0; i < blade->triangles.count && result == GX_OK; i++)
-        result = gxp_push_point(body, &blade->corners, blade->samples.data[blade->triangles.data[i]].rest);
-    return result;
-}
-
 /* Does the tool come near the layer anywhere? */
 static int gxp_meets_tool(const gx_blade *blade) {
     uint32_t i;
     for (i = 0; i < blade->samples.count; i++)
         if (blade->samples.data[i].distance < 0.5 * blade->samples.data[i].size) return 1;
     return 0;
+}
+
+/* The tool becomes a box around the whole body at rest: a layer that it covers wholly loses all. */
+static gx_result gxp_take_all(gx_blade *blade) {
+    static const uint32_t faces[36] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                                       2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+    const gxp_box *all = &blade->body->mesh.boxes[0];
+    uint32_t i, k;
+    gx_result result = gxp_start_words(blade->body, &blade->triangles, 36);
+    blade->samples.count = 0;
+    for (i = 0; i < 8 && result == GX_OK; i++) {
+        gxp_front_vertex v;
+        memset(&v, 0, sizeof v);
+        for (k = 0; k < 3; k++) v.rest[k] = i >> k & 1 ? all->high[k] + blade->largest : all->low[k] - blade->largest;
+        result = gxp_push_vertex(blade->body, &blade->samples, &v);
+    }
+    if (result != GX_OK) return result;
+    memcpy(blade->triangles.data, faces, sizeof faces);
+    blade->triangles.count = 36;
+    return GX_OK;
+}
+
+/* Adds the tool as a layer sees it to the surfaces of the cut. A layer that it does not come near is inside it, or not,
+   as its first cell is. */
+static gx_result gxp_add_tool(gx_blade *blade, uint32_t layer, const gx_surface *tool) {
+    const gxp_near *near = &blade->near;
+    const uint32_t first = near->layer_start.data[layer];
+    gx_body *body = blade->body;
+    uint32_t i;
+    int on;
+    gx_result result = GX_OK;
+    if (!gxp_meets_tool(blade)) {
+        if (gxb_winding_number(tool->vertices, tool->triangles, tool->triangle_count,
+                               near->cells[GXP_SECOND(near->order.data[first])].corners[0], &on) == 0)
+            return GX_OK;
+        result = gxp_take_all(blade);
+    }
+    if (result == GX_OK) result = gxp_push(body, &blade->surface_starts, blade->scope.count);
+    if (result == GX_OK) result = gxp_push(body, &blade->surface_starts, blade->corners.count);
+    for (i = first; i < near->layer_start.data[layer + 1] && result == GX_OK; i++)
+        result = gxp_push(body, &blade->scope, near->cells[GXP_SECOND(near->order.data[i])].slot);
+    for (i = 0; i < blade->triangles.count && result == GX_OK; i++)
+        result = gxp_push_point(body, &blade->corners, blade->samples.data[blade->triangles.data[i]].rest);
+    return result;
 }
 
 static gx_result gxp_carve_layers(gx_blade *blade, const gx_surface *tool, gx_blade_report *report,
@@ -9013,7 +9050,7 @@ static gx_result gxp_carve_layers(gx_blade *blade, const gx_surface *tool, gx_bl
     for (layer = 0; layer < blade->near.layer_count && result == GX_OK; layer++) {
         result = gxp_see_tool(blade, layer, tool);
         if (result == GX_OK) result = gxp_refine_tool(blade, layer);
-        if (result == GX_OK && gxp_meets_tool(blade)) result = gxp_add_tool(blade, layer);
+        if (result == GX_OK) result = gxp_add_tool(blade, layer, tool);
     }
     if (gxp_end(failure, result) != GX_OK) return result;
     return gxp_cut_surfaces(blade, GX_SURFACE_SOLID, report, failure);
