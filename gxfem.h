@@ -44,6 +44,7 @@
  *     >>anchoring  material points that survive cuts
  *     >>stepping   held regions, time steps
  *     >>drawing    the visual surface, rays
+ *     >>slicing    blades in space
  *     >>hashing    of the topology, of the state
  *     >>saving     save and load, clone and restore
  *     then, under GXFEM_IMPLEMENTATION, in the order of a cut; functions call their own and earlier sections only:
@@ -54,6 +55,7 @@
  *     what is held and whole:    >>anchors >>regions >>map >>fragments >>motion
  *     a step:                    >>attached >>supports >>model >>step
  *     the skin:                  >>corners >>vertices >>faces >>skinning >>rays
+ *     a blade in space:          >>layers >>edges >>fronts >>strokes >>blade >>carve
  *     beginning, end, bytes:     >>create >>hashes >>stream >>save
  *
  * Words. Facet: a polygon inside an element or in an element face, made by cuts. Wall: a facet that a sheet covers.
@@ -532,7 +534,7 @@ GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *a
 GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit,
                                  gx_failure *failure /* or NULL */);
 
-/* >>blade: cutting where a knife is, while the body moves ---------------------------------------------------------- */
+/* >>slicing: where a blade is, while the body moves --------------------------------------------------------------- */
 
 /* A blade is an edge in space, a polyline, that is moved through a body, which moves meanwhile. Each piece is cut where
    it meets the edge: pieces that lie over each other in space are different layers, and each remembers, in material
@@ -559,6 +561,10 @@ typedef struct gx_blade_report {
 GXFEM_API gx_result gx_blade_create(gx_body *body, const gx_blade_desc *desc /* or NULL: zero */, gx_blade **blade,
                                     gx_failure *failure /* or NULL */);
 GXFEM_API void gx_blade_destroy(gx_blade *blade); /* or NULL */
+/* The body's blades in the order in which they were created, to find those of a loaded or cloned body; NULL where there
+   are no more. After gx_body_restore the body has the blades of the other: those with the same index stay valid, those
+   that the other lacks are lifted. */
+GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index);
 /* Moves the edge and cuts what it has passed since the last move, relative to the material. edge: point_count x 3, in
    space, m; as many points at each move until the blade is lifted, 2 or more. scope: fragments that alone are cut,
    below gx_view.fragment_count; count 0: all. On an error body and blade are as they were.
@@ -569,6 +575,13 @@ GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t po
                                   gx_blade_report *report /* or NULL */, gx_failure *failure /* or NULL */);
 /* Cuts what waits, and forgets fronts and edge: the next move begins anew. Errors: ARGUMENT, LIMIT, MEMORY. */
 GXFEM_API gx_result gx_blade_lift(gx_blade *blade, gx_blade_report *report /* or NULL */,
+                                  gx_failure *failure /* or NULL */);
+
+/* Removes the material that a closed tool in space covers now (a drill, a punch), from each piece where it meets the
+   tool. tool: vertices in space, m; kind and scope_slots are not read. Its triangles are divided where elements
+   are smaller.
+   Errors: as gx_body_cut; a field of the tool reads "tool.vertices". */
+GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_report *report /* or NULL */,
                                   gx_failure *failure /* or NULL */);
 
 /* >>hashing -------------------------------------------------------------------------------------------------------- */
@@ -958,7 +971,7 @@ typedef struct gxp_points {
 } gxp_points;
 
 /* What a layer remembers: ranges of the state's lists */
-typedef struct gxp_layer {
+typedef struct gxp_layer {         /* words only: rows are saved as bytes */
     uint32_t front, front_count;   /* vertices: up to here it is cut */
     uint32_t latest, latest_count; /* vertices: how far the edge had come at the last move; waits to be cut */
     uint32_t path, path_count;     /* points: where the edge has been since the front was cut */
@@ -1031,8 +1044,10 @@ struct gx_blade {
     gxp_points path, sheet;
     gxp_relation *relations; /* of the samples */
     uint32_t relation_capacity;
-    gxp_words needed; /* by sample: 1 if it is not on a line with others */
-    gxp_words owners; /* old layers that flow into it */
+    gxp_words needed;  /* by sample: 1 if it is not on a line with others */
+    gxp_words owners;  /* old layers that flow into it */
+    gxp_keys halved;   /* edges of a tool, two vertices each */
+    gxp_words divided; /* triangles of a tool */
 };
 
 /* --- working memory of one call. No contents last to the next call; the memory stays, so that a cut as large as the
@@ -7355,7 +7370,6 @@ static gx_result gxp_find_rest_cell(gx_body *body, const double x[3], uint32_t *
     }
     return GX_OK;
 }
-#define GXP_EDGE_REACH 110
 /* END OF STAND-INS */
 /* >>layers: the cells around a blade, and how they hang together --------------------------------------------------- */
 /* In: the strip between the fronts of a blade and its edge. Out: the cells within an element's size of it, with their
@@ -7614,7 +7628,7 @@ static int gxp_is_near_quad(const gxp_near_cell *near, const double *quad, doubl
            gxp_near_triangle(middle, quad, quad + 6, quad + 9, at) <= radius * radius;
 }
 
-/* Adds a cell that is within an element's size of the quad, unless it is there. */
+/* Adds a cell that is within an element's size of the quad, unless it is there. quad NULL: wherever it is */
 static gx_result gxp_add_near(gx_blade *blade, uint32_t slot, const double *quad) {
     gxp_near *near = &blade->near;
     gxp_near_cell cell;
@@ -7623,7 +7637,7 @@ static gx_result gxp_add_near(gx_blade *blade, uint32_t slot, const double *quad
     memset(&cell, 0, sizeof cell);
     cell.slot = slot;
     gxp_place_near(blade->body, &cell);
-    if (!gxp_is_near_quad(&cell, quad, cell.size)) return GX_OK;
+    if (quad != NULL && !gxp_is_near_quad(&cell, quad, cell.size)) return GX_OK;
     result =
         gxp_reserve(&blade->body->config.allocator, &near->cells, sizeof *near->cells, near->count, &near->capacity, 1);
     if (result != GX_OK) return result;
@@ -7720,15 +7734,14 @@ static gx_result gxp_order_near(gx_blade *blade) {
     return GX_OK;
 }
 
-/* Finds the near cells and their layers. */
-static gx_result gxp_find_layers(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope) {
+/* Finds the cells near the quads. scope: by fragment, 1 if it is in the scope; NULL: all are. */
+static gx_result gxp_find_near(gx_blade *blade, const gxp_words *scope) {
     gxp_near *near = &blade->near;
     gx_body *body = blade->body;
     uint32_t q, i;
     int k;
-    gx_result result = gxp_sweep(blade, edge, count);
+    gx_result result = gxp_extend_words(body, &near->of_slot, body->cells.count);
     near->count = 0;
-    if (result == GX_OK) result = gxp_extend_words(body, &near->of_slot, body->cells.count);
     for (q = 0; q < blade->quads.count && result == GX_OK; q += 4) {
         const double *x = blade->quads.data + 3 * (size_t)q;
         double low[3], high[3];
@@ -7741,12 +7754,19 @@ static gx_result gxp_find_layers(gx_blade *blade, const double *edge, uint32_t c
             if (scope == NULL || scope->data[gxp_cell_fragment(body, blade->found.data[i])])
                 result = gxp_add_near(blade, blade->found.data[i], x);
     }
+    return result;
+}
+
+/* Finds the near cells and their layers. */
+static gx_result gxp_find_layers(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope) {
+    const double *last = edge + 3 * ((size_t)count - 1);
+    int k;
+    gx_result result = gxp_sweep(blade, edge, count);
+    if (result == GX_OK) result = gxp_find_near(blade, scope);
     if (result == GX_OK) result = gxp_number_layers(blade);
-    near->axis = 0;
+    blade->near.axis = 0;
     for (k = 1; k < 3; k++)
-        if (fabs(edge[3 * (size_t)count - 3 + (size_t)k] - edge[k]) >
-            fabs(edge[3 * (size_t)count - 3 + (size_t)near->axis] - edge[near->axis]))
-            near->axis = k;
+        if (fabs(last[k] - edge[k]) > fabs(last[blade->near.axis] - edge[blade->near.axis])) blade->near.axis = k;
     return result == GX_OK ? gxp_order_near(blade) : result;
 }
 
@@ -7778,7 +7798,7 @@ static double gxp_square_to_box(const double x[3], const double low[3], const do
 }
 
 /* A cell whose element contains the place: is the place in the cell's own part? */
-static gx_result gxp_look_inside(gx_blade *blade, uint32_t index, const double x[3], const double weights[4],
+static gx_result gxp_seek_inside(gx_blade *blade, uint32_t index, const double x[3], const double weights[4],
                                  gxp_sight *sight) {
     static const double origin[3] = {0, 0, 0};
     gx_body *body = blade->body;
@@ -7802,7 +7822,7 @@ static gx_result gxp_look_inside(gx_blade *blade, uint32_t index, const double x
 }
 
 /* A cell whose element does not contain the place: is it nearer than what was found before? */
-static void gxp_look_outside(const gx_blade *blade, uint32_t index, const double x[3], const double weights[4],
+static void gxp_seek_outside(const gx_blade *blade, uint32_t index, const double x[3], const double weights[4],
                              gxp_sight *sight) {
     const gxp_near_cell *c = &blade->near.cells[index];
     int f;
@@ -7820,19 +7840,19 @@ static void gxp_look_outside(const gx_blade *blade, uint32_t index, const double
     }
 }
 
-static gx_result gxp_look_at(gx_blade *blade, uint32_t index, const double x[3], gxp_sight *sight) {
+static gx_result gxp_seek_at(gx_blade *blade, uint32_t index, const double x[3], gxp_sight *sight) {
     gxp_near_cell *c = &blade->near.cells[index];
     double weights[4];
     if (gxp_square_to_box(x, c->low, c->high) >= sight->square || fabs(c->stretch) < GXP_FLAT_MAP) return GX_OK;
     gxp_tet_weights(c->corners, x, weights);
     if (weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0 && weights[3] >= 0)
-        return gxp_look_inside(blade, index, x, weights, sight);
-    gxp_look_outside(blade, index, x, weights, sight);
+        return gxp_seek_inside(blade, index, x, weights, sight);
+    gxp_seek_outside(blade, index, x, weights, sight);
     return GX_OK;
 }
 
 /* Finds the cell of a layer that contains a place, or else the nearest one. */
-static gx_result gxp_look(gx_blade *blade, uint32_t layer, const double x[3], gxp_sight *sight) {
+static gx_result gxp_seek(gx_blade *blade, uint32_t layer, const double x[3], gxp_sight *sight) {
     const gxp_near *near = &blade->near;
     const double along = x[near->axis];
     uint32_t low = near->layer_start.data[layer], high = near->layer_start.data[layer + 1], first = low, end = high, i;
@@ -7850,13 +7870,13 @@ static gx_result gxp_look(gx_blade *blade, uint32_t layer, const double x[3], gx
         const uint32_t index = GXP_SECOND(near->order.data[i - 1]);
         const double off = along - near->cells[index].low[near->axis] - near->widest;
         if (off > 0 && off * off >= sight->square) break;
-        result = gxp_look_at(blade, index, x, sight);
+        result = gxp_seek_at(blade, index, x, sight);
     }
     for (i = low; i < end && result == GX_OK && sight->square > 0; i++) {
         const uint32_t index = GXP_SECOND(near->order.data[i]);
         const double off = near->cells[index].low[near->axis] - along;
         if (off * off >= sight->square) break;
-        result = gxp_look_at(blade, index, x, sight);
+        result = gxp_seek_at(blade, index, x, sight);
     }
     return result;
 }
@@ -7893,35 +7913,38 @@ static gx_result gxp_place_in_air(gx_blade *blade, uint32_t layer, const gxp_sig
     return result;
 }
 
-/* How a layer sees a place on the edge */
-static gx_result gxp_see(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count, double along,
-                         gxp_front_vertex *v) {
+/* How a layer sees a place in space: v->position is given. */
+static gx_result gxp_see_place(gx_blade *blade, uint32_t layer, gxp_front_vertex *v) {
     static const double origin[3] = {0, 0, 0};
+    const gxp_near *near = &blade->near;
     const gxp_near_cell *c;
     double corners[4][3];
     gxp_sight sight;
-    gx_result result;
-    memset(v, 0, sizeof *v);
-    v->along = along;
-    gxp_edge_position(edge, count, along, v->position);
-    result = gxp_look(blade, layer, v->position, &sight);
+    const gx_result result = gxp_seek(blade, layer, v->position, &sight);
     if (result != GX_OK) return result;
+    c = &near->cells[sight.index != GXP_NONE ? sight.index
+                                             : GXP_SECOND(near->order.data[near->layer_start.data[layer]])];
+    v->element = blade->body->cells.data[c->slot].element;
+    v->size = c->size;
+    v->distance = sqrt(sight.square);
     if (sight.index == GXP_NONE) { /* every cell is flat or inverted */
-        sight.index = GXP_SECOND(blade->near.order.data[blade->near.layer_start.data[layer]]);
-        v->element = blade->body->cells.data[blade->near.cells[sight.index].slot].element;
-        v->distance = HUGE_VAL;
         memcpy(v->rest, v->position, sizeof v->rest);
         memcpy(v->extended, v->position, sizeof v->extended);
         return GX_OK;
     }
-    c = &blade->near.cells[sight.index];
-    v->element = blade->body->cells.data[c->slot].element;
-    v->size = c->size;
-    v->distance = sqrt(sight.square);
     gxp_cell_corners(blade->body, &blade->body->cells.data[c->slot], 0, origin, corners);
     gxp_weigh(corners, sight.weights, v->extended);
     memcpy(v->rest, v->extended, sizeof v->rest);
     return v->distance > 0 ? gxp_place_in_air(blade, layer, &sight, corners, v) : GX_OK;
+}
+
+/* How a layer sees a place on the edge */
+static gx_result gxp_see(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count, double along,
+                         gxp_front_vertex *v) {
+    memset(v, 0, sizeof *v);
+    v->along = along;
+    gxp_edge_position(edge, count, along, v->position);
+    return gxp_see_place(blade, layer, v);
 }
 
 /* Are there places between two that must be seen? None, if the layer can't be there: its distance from a place is at
@@ -8313,8 +8336,7 @@ static gx_result gxp_follow_edge(gx_blade *blade, int finish, gx_blade_report *r
                                                      : gxp_note_path(blade);
 }
 
-/* >>strokes: what a blade remembers from move to move ---------------------------------------------------------------
- */
+/* >>strokes: what a blade remembers from move to move -------------------------------------------------------------- */
 /* In: the layers of the last move, those of now. Out: each new layer with the front of the old ones that flow into it.
    Touches the blade's working memory and the state that the move makes. */
 
@@ -8349,13 +8371,12 @@ static gx_result gxp_find_owners(gx_blade *blade, uint32_t layer) {
 
 /* The part of a front that is in the material, with a vertex in the air on each side. Returns 0 if there is none. */
 static int gxp_inner_run(const gxp_front_vertex *v, uint32_t count, uint32_t *first, uint32_t *end) {
-    *first = 0;
-    *end = count;
-    while (*first < count && v[*first].distance > 0) ++*first;
-    if (*first == count) return 0;
-    while (v[*end - 1].distance > 0) --*end;
-    if (*first > 0) --*first;
-    if (*end < count) ++*end;
+    uint32_t i = 0, j = count;
+    while (i < count && v[i].distance > 0) i++;
+    if (i == count) return 0;
+    while (v[j - 1].distance > 0) j--;
+    *first = i > 0 ? i - 1 : 0;
+    *end = j < count ? j + 1 : count;
     return 1;
 }
 
@@ -8452,6 +8473,9 @@ static gx_result gxp_keep_members(gx_blade *blade, const double *edge, uint32_t 
 /* gx_blade_move: find the layers, advance their fronts, cut the strips in one transaction, keep the new state. On any
    error nothing of body or blade has changed. */
 
+/* Coordinates of an edge are at most 2^GXP_EDGE_REACH: squares of distances are finite. */
+#define GXP_EDGE_REACH 110
+
 /* A strip reaches cells that are within this share of their size of it, as the body lies now: where strip and layer
    are far from each other in space, none of it is meant for them. */
 #define GXP_STRIP_REACH 0.25
@@ -8510,8 +8534,8 @@ static gx_result gxp_add_surface(gx_blade *blade, uint32_t layer) {
     return result;
 }
 
-/* Cuts the body by the strips of all layers at once. */
-static gx_result gxp_cut_surfaces(gx_blade *blade, gx_blade_report *report, gx_failure *failure) {
+/* Cuts the body by the surfaces of all layers at once. */
+static gx_result gxp_cut_surfaces(gx_blade *blade, uint32_t kind, gx_blade_report *report, gx_failure *failure) {
     gx_body *body = blade->body;
     const uint32_t count = blade->surface_starts.count / 2;
     uint32_t i;
@@ -8528,6 +8552,7 @@ static gx_result gxp_cut_surfaces(gx_blade *blade, gx_blade_report *report, gx_f
         const uint32_t slots_end = i + 1 < count ? start[2] : blade->scope.count,
                        corners_end = i + 1 < count ? start[3] : blade->corners.count;
         memset(s, 0, sizeof *s);
+        s->kind = kind;
         s->scope_slots = blade->scope.data + start[0];
         s->scope_slot_count = slots_end - start[0];
         s->vertices = blade->corners.data + 3 * (size_t)start[1];
@@ -8540,7 +8565,8 @@ static gx_result gxp_cut_surfaces(gx_blade *blade, gx_blade_report *report, gx_f
     desc.surfaces = blade->surfaces;
     desc.surface_count = count;
     result = gx_body_cut(body, &desc, &report->cut, failure);
-    if (result != GX_OK && failure != NULL) failure->field = "edge", failure->index = failure->surface = SIZE_MAX;
+    if (result != GX_OK && result != GX_ERROR_NOT_CLOSED && failure != NULL)
+        failure->field = NULL, failure->index = SIZE_MAX;
     return result;
 }
 
@@ -8625,7 +8651,7 @@ static gx_result gxp_move_blade(gx_blade *blade, const double *edge, uint32_t co
     if (result != GX_OK) return result;
     result = gxp_keep_members(blade, edge, count);
     if (gxp_end(failure, result) != GX_OK) return result;
-    result = gxp_cut_surfaces(blade, report, failure);
+    result = gxp_cut_surfaces(blade, GX_SURFACE_SHEET, report, failure);
     if (result != GX_OK) return result;
     blade->now = blade->then;
     blade->then = now;
@@ -8649,6 +8675,11 @@ GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t po
     return result;
 }
 
+static void gxp_forget(gxp_blade_state *state) {
+    state->edge.count = state->layers.count = state->members.count = 0;
+    state->vertices.count = state->points.count = state->slot_count = 0;
+}
+
 GXFEM_API gx_result gx_blade_lift(gx_blade *blade, gx_blade_report *report, gx_failure *failure) {
     gx_blade_report own;
     gx_result result = GX_OK;
@@ -8657,8 +8688,7 @@ GXFEM_API gx_result gx_blade_lift(gx_blade *blade, gx_blade_report *report, gx_f
     if (blade->now.edge.count > 0)
         result = gxp_move_blade(blade, blade->now.edge.data, blade->now.edge.count, NULL, 1, &own, failure);
     if (result != GX_OK) return result;
-    blade->now.edge.count = blade->now.layers.count = blade->now.members.count = 0;
-    blade->now.vertices.count = blade->now.points.count = 0;
+    gxp_forget(&blade->now);
     if (report != NULL) *report = own;
     return gxp_end(failure, GX_OK);
 }
@@ -8685,7 +8715,7 @@ static double gxp_mean_size(const gx_body *body, double *largest) {
 
 GXFEM_API gx_result gx_blade_create(gx_body *body, const gx_blade_desc *desc, gx_blade **blade, gx_failure *failure) {
     gx_blade_desc zero;
-    gx_blade *b;
+    gx_blade *b, **place;
     double size;
     gx_result result;
     memset(&zero, 0, sizeof zero);
@@ -8703,9 +8733,8 @@ GXFEM_API gx_result gx_blade_create(gx_body *body, const gx_blade_desc *desc, gx
     b->min_advance = desc->min_advance > 0 ? desc->min_advance : 0.5 * size;
     b->max_samples = desc->max_samples > 0 ? desc->max_samples : 1000;
     b->starts_inside = desc->starts_inside != 0;
-    b->next = body->blades;
-    body->blades = b;
-    *blade = b;
+    for (place = &body->blades; *place != NULL;) place = &(*place)->next;
+    *blade = *place = b;
     return gxp_end(failure, GX_OK);
 }
 
@@ -8754,6 +8783,8 @@ static void gxp_release_blade(gx_blade *b) {
     gxp_release_points(body, &b->quads);
     gxp_release_points(body, &b->corners);
     gxp_release_words(body, &b->owners);
+    gxp_release_words(body, &b->divided);
+    gxp_release(a, b->halved.data, b->halved.capacity * sizeof *b->halved.data);
     gxp_release_words(body, &b->in_scope);
     gxp_release_words(body, &b->needed);
     gxp_release_words(body, &b->found);
@@ -8770,6 +8801,294 @@ GXFEM_API void gx_blade_destroy(gx_blade *blade) {
     for (place = &blade->body->blades; *place != blade;) place = &(*place)->next;
     *place = blade->next;
     gxp_release_blade(blade);
+}
+
+GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index) {
+    gx_blade *blade = body != NULL ? body->blades : NULL;
+    for (; blade != NULL && index > 0; index--) blade = blade->next;
+    return blade;
+}
+
+/* >>carve: what a closed tool in space covers ---------------------------------------------------------------------- */
+/* gx_body_carve: find the layers around the tool, divide its triangles as finely as the elements of each, map them
+   back, and remove what they enclose there, in one cut. On any error the body is as it was. */
+
+/* Tools are divided into at most so many triangles. */
+#define GXP_TOOL_TRIANGLES 1000000u
+
+/* Appends a place of the tool to blade.samples. Outside the layer its material point is as far away as the tool is: a
+   tool that covers much of a layer must not be drawn in. */
+static gx_result gxp_push_tool_place(gx_blade *blade, uint32_t layer, const double position[3]) {
+    gxp_front_vertex v;
+    int inside = 0;
+    gx_result result;
+    memset(&v, 0, sizeof v);
+    memcpy(v.position, position, sizeof v.position);
+    result = gxp_see_place(blade, layer, &v);
+    if (result == GX_OK && v.distance > 0) result = gxp_is_in_layer(blade, layer, v.extended, &inside);
+    if (!inside) memcpy(v.rest, v.extended, sizeof v.rest);
+    return result == GX_OK ? gxp_push_vertex(blade->body, &blade->samples, &v) : result;
+}
+
+/* The tool as a layer sees it: its vertices are blade.samples, its triangles blade.triangles. */
+static gx_result gxp_see_tool(gx_blade *blade, uint32_t layer, const gx_surface *tool) {
+    size_t i;
+    gx_result result = gxp_start_words(blade->body, &blade->triangles, 3 * tool->triangle_count);
+    blade->samples.count = 0;
+    for (i = 0; i < tool->vertex_count && result == GX_OK; i++)
+        result = gxp_push_tool_place(blade, layer, tool->vertices + 3 * i);
+    if (result != GX_OK) return result;
+    memcpy(blade->triangles.data, tool->triangles, 3 * tool->triangle_count * sizeof *tool->triangles);
+    blade->triangles.count = 3 * (uint32_t)tool->triangle_count;
+    return GX_OK;
+}
+
+static uint64_t gxp_edge_key(uint32_t a, uint32_t b) { return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a; }
+
+/* Lists in blade.owners the edges that are to be halved, ascending: those between places that are farther apart than
+   half an element, where the layer may be. Both triangles of an edge agree. */
+static gx_result gxp_list_long_edges(gx_blade *blade, gxp_keys *halved) {
+    const gxp_front_vertex *v = blade->samples.data;
+    uint32_t i, n = 0;
+    gx_result result = gxp_keys_room(blade->body, halved, 2 * (size_t)blade->triangles.count);
+    halved->count = 0;
+    for (i = 0; i < blade->triangles.count && result == GX_OK; i++) {
+        const uint32_t a = blade->triangles.data[i], b = blade->triangles.data[i % 3 == 2 ? i - 2 : i + 1];
+        const double length = sqrt(gxp_square_distance(v[a].position, v[b].position));
+        if (v[a].distance > 0 && v[b].distance > 0 && v[a].distance + v[b].distance > length) continue;
+        if (length > 0.5 * (v[a].size < v[b].size ? v[a].size : v[b].size))
+            halved->data[halved->count++] = gxp_edge_key(a, b);
+    }
+    if (result == GX_OK) result = gxp_sort_keys(blade->body, halved, 0, halved->count);
+    for (i = 0; i < halved->count && result == GX_OK; i++)
+        if (n == 0 || halved->data[n - 1] != halved->data[i]) halved->data[n++] = halved->data[i];
+    halved->count = n;
+    return result;
+}
+
+/* The vertex in the middle of an edge, if it is halved; GXP_NONE: it is not */
+static uint32_t gxp_middle_vertex(const gxp_keys *halved, uint32_t first, uint32_t a, uint32_t b) {
+    const uint64_t key = gxp_edge_key(a, b);
+    uint32_t low = 0, high = halved->count;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (halved->data[middle] < key)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < halved->count && halved->data[low] == key ? first + low : GXP_NONE;
+}
+
+static gx_result gxp_push_triangle(gx_body *body, gxp_words *out, uint32_t a, uint32_t b, uint32_t c) {
+    gx_result result = gxp_words_room(body, out, 3);
+    if (result != GX_OK) return result;
+    out->data[out->count++] = a;
+    out->data[out->count++] = b;
+    out->data[out->count++] = c;
+    return result;
+}
+
+/* Divides a triangle by the middles of its edges, m[k] of corner k and the next. */
+static gx_result gxp_divide_triangle(gx_body *body, const uint32_t t[3], const uint32_t m[3], gxp_words *out) {
+    uint32_t k, halved = 0, first = 0;
+    gx_result result;
+    for (k = 0; k < 3; k++) halved += m[k] != GXP_NONE;
+    if (halved == 0) return gxp_push_triangle(body, out, t[0], t[1], t[2]);
+    if (halved == 3) {
+        result = gxp_push_triangle(body, out, m[0], m[1], m[2]);
+        for (k = 0; k < 3 && result == GX_OK; k++) result = gxp_push_triangle(body, out, t[k], m[k], m[(k + 2) % 3]);
+        return result;
+    }
+    /* edge `first` is halved, and the next one too if two are */
+    while (m[first] == GXP_NONE || (halved == 2 && m[(first + 1) % 3] == GXP_NONE)) first++;
+    {
+        const uint32_t a = t[first], b = t[(first + 1) % 3], c = t[(first + 2) % 3], ab = m[first],
+                       bc = m[(first + 1) % 3];
+        result = gxp_push_triangle(body, out, a, ab, halved == 1 ? c : bc);
+        if (halved == 1) return result == GX_OK ? gxp_push_triangle(body, out, ab, b, c) : result;
+        if (result == GX_OK) result = gxp_push_triangle(body, out, ab, b, bc);
+        return result == GX_OK ? gxp_push_triangle(body, out, a, bc, c) : result;
+    }
+}
+
+/* Halves the edges of the tool until all that are near the layer are short. */
+static gx_result gxp_refine_tool(gx_blade *blade, uint32_t layer) {
+    gx_body *body = blade->body;
+    gxp_keys *halved = &blade->halved;
+    gxp_words *divided = &blade->divided;
+    gx_result result = gxp_list_long_edges(blade, halved);
+    while (result == GX_OK && halved->count > 0 && blade->triangles.count < 3 * GXP_TOOL_TRIANGLES) {
+        const uint32_t first = blade->samples.count;
+        gxp_words swap;
+        uint32_t i, k, n;
+        for (i = 0; i < halved->count && result == GX_OK; i++) {
+            const gxp_front_vertex *a = &blade->samples.data[GXP_FIRST(halved->data[i])],
+                                   *b = &blade->samples.data[GXP_SECOND(halved->data[i])];
+            double middle[3];
+            for (n = 0; n < 3; n++) middle[n] = 0.5 * a->position[n] + 0.5 * b->position[n];
+            result = gxp_push_tool_place(blade, layer, middle);
+        }
+        divided->count = 0;
+        for (i = 0; i < blade->triangles.count && result == GX_OK; i += 3) {
+            const uint32_t *t = blade->triangles.data + i;
+            uint32_t middle[3];
+            for (k = 0; k < 3; k++) middle[k] = gxp_middle_vertex(halved, first, t[k], t[(k + 1) % 3]);
+            result = gxp_divide_triangle(body, t, middle, divided);
+        }
+        if (result != GX_OK) return result;
+        swap = blade->triangles;
+        blade->triangles = *divided;
+        *divided = swap;
+        result = gxp_list_long_edges(blade, halved);
+    }
+    return result;
+}
+
+/* Adds the cells that are inside the tool and not near its surface. */
+static gx_result gxp_add_covered(gx_blade *blade, const gx_surface *tool) {
+    gx_body *body = blade->body;
+    double low[3], high[3];
+    size_t i;
+    int k;
+    gx_result result;
+    memcpy(low, tool->vertices, sizeof low);
+    memcpy(high, tool->vertices, sizeof high);
+    for (i = 0; i < 3 * tool->vertex_count; i++) {
+        low[i % 3] = fmin(low[i % 3], tool->vertices[i]);
+        high[i % 3] = fmax(high[i % 3], tool->vertices[i]);
+    }
+    result = gxp_find_in_box(body, low, high, &blade->found);
+    for (i = 0; i < blade->found.count && result == GX_OK; i++) {
+        static const double origin[3] = {0, 0, 0};
+        const uint32_t slot = blade->found.data[i];
+        double x[4][3], middle[3];
+        int on;
+        if (gxp_near_index(&blade->near, slot) != GXP_NONE) continue;
+        gxp_cell_corners(body, &body->cells.data[slot], 1, origin, x);
+        for (k = 0; k < 3; k++) middle[k] = 0.25 * (x[0][k] + x[1][k] + x[2][k] + x[3][k]);
+        if (gxb_winding_number(tool->vertices, tool->triangles, tool->triangle_count, middle, &on) != 0)
+            result = gxp_add_near(blade, slot, NULL);
+    }
+    return result;
+}
+
+/* Finds the cells that the tool covers or is near, and their layers. */
+static gx_result gxp_find_tool_layers(gx_blade *blade, const gx_surface *tool) {
+    size_t i;
+    gx_result result = GX_OK;
+    blade->quads.count = 0;
+    for (i = 0; i < tool->triangle_count && result == GX_OK; i++) {
+        const uint32_t *t = tool->triangles + 3 * i;
+        const double *a = tool->vertices + 3 * (size_t)t[0], *b = tool->vertices + 3 * (size_t)t[1],
+                     *c = tool->vertices + 3 * (size_t)t[2];
+        result = gxp_push_quad(blade, a, b, c, c);
+    }
+    if (result == GX_OK) result = gxp_find_near(blade, NULL);
+    if (result == GX_OK) result = gxp_add_covered(blade, tool);
+    if (result == GX_OK) result = gxp_number_layers(blade);
+    return result == GX_OK ? gxp_order_near(blade) : result;
+}
+
+/* Does the tool come near the layer anywhere? */
+static int gxp_meets_tool(const gx_blade *blade) {
+    uint32_t i;
+    for (i = 0; i < blade->samples.count; i++)
+        if (blade->samples.data[i].distance < 0.5 * blade->samples.data[i].size) return 1;
+    return 0;
+}
+
+/* The tool becomes a box around the whole body at rest: a layer that it covers wholly loses all. */
+static gx_result gxp_take_all(gx_blade *blade) {
+    static const uint32_t faces[36] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                                       2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+    const gxp_box *all = &blade->body->mesh.boxes[0];
+    uint32_t i, k;
+    gx_result result = gxp_start_words(blade->body, &blade->triangles, 36);
+    blade->samples.count = 0;
+    for (i = 0; i < 8 && result == GX_OK; i++) {
+        gxp_front_vertex v;
+        memset(&v, 0, sizeof v);
+        for (k = 0; k < 3; k++) v.rest[k] = i >> k & 1 ? all->high[k] + blade->largest : all->low[k] - blade->largest;
+        result = gxp_push_vertex(blade->body, &blade->samples, &v);
+    }
+    if (result != GX_OK) return result;
+    memcpy(blade->triangles.data, faces, sizeof faces);
+    blade->triangles.count = 36;
+    return GX_OK;
+}
+
+/* Adds the tool as a layer sees it to the surfaces of the cut. A layer that it does not come near is inside it, or not,
+   as its first cell is. */
+static gx_result gxp_add_tool(gx_blade *blade, uint32_t layer, const gx_surface *tool) {
+    const gxp_near *near = &blade->near;
+    const uint32_t first = near->layer_start.data[layer];
+    gx_body *body = blade->body;
+    uint32_t i;
+    int on;
+    gx_result result = GX_OK;
+    if (!gxp_meets_tool(blade)) {
+        if (gxb_winding_number(tool->vertices, tool->triangles, tool->triangle_count,
+                               near->cells[GXP_SECOND(near->order.data[first])].corners[0], &on) == 0)
+            return GX_OK;
+        result = gxp_take_all(blade);
+    }
+    if (result == GX_OK) result = gxp_push(body, &blade->surface_starts, blade->scope.count);
+    if (result == GX_OK) result = gxp_push(body, &blade->surface_starts, blade->corners.count);
+    for (i = first; i < near->layer_start.data[layer + 1] && result == GX_OK; i++)
+        result = gxp_push(body, &blade->scope, near->cells[GXP_SECOND(near->order.data[i])].slot);
+    for (i = 0; i < blade->triangles.count && result == GX_OK; i++)
+        result = gxp_push_point(body, &blade->corners, blade->samples.data[blade->triangles.data[i]].rest);
+    return result;
+}
+
+static gx_result gxp_carve_layers(gx_blade *blade, const gx_surface *tool, gx_blade_report *report,
+                                  gx_failure *failure) {
+    uint32_t layer;
+    gx_result result = gxp_find_tool_layers(blade, tool);
+    blade->surface_starts.count = blade->corners.count = blade->scope.count = 0;
+    for (layer = 0; layer < blade->near.layer_count && result == GX_OK; layer++) {
+        result = gxp_see_tool(blade, layer, tool);
+        if (result == GX_OK) result = gxp_refine_tool(blade, layer);
+        if (result == GX_OK) result = gxp_add_tool(blade, layer, tool);
+    }
+    if (gxp_end(failure, result) != GX_OK) return result;
+    return gxp_cut_surfaces(blade, GX_SURFACE_SOLID, report, failure);
+}
+
+static gx_result gxp_check_tool(const gx_surface *tool, gx_failure *failure) {
+    size_t i;
+    if (tool->vertex_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "tool.vertex_count", SIZE_MAX);
+    if (tool->triangle_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "tool.triangle_count", SIZE_MAX);
+    if (tool->vertices == NULL) return gxp_refuse(failure, "tool.vertices");
+    if (tool->triangles == NULL) return gxp_refuse(failure, "tool.triangles");
+    if (tool->vertex_count > INT32_MAX / 4) return gxp_fail(failure, GX_ERROR_LIMIT, "tool.vertex_count", SIZE_MAX);
+    if (tool->triangle_count > INT32_MAX / 12)
+        return gxp_fail(failure, GX_ERROR_LIMIT, "tool.triangle_count", SIZE_MAX);
+    for (i = 0; i < 3 * tool->vertex_count; i++) {
+        if (!gxp_is_finite(tool->vertices[i])) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "tool.vertices", i / 3);
+        if (fabs(tool->vertices[i]) > ldexp(1, GXP_EDGE_REACH))
+            return gxp_fail(failure, GX_ERROR_RANGE, "tool.vertices", i / 3);
+    }
+    for (i = 0; i < 3 * tool->triangle_count; i++)
+        if (tool->triangles[i] >= tool->vertex_count) return gxp_fail(failure, GX_ERROR_INDEX, "tool.triangles", i / 3);
+    return GX_OK;
+}
+
+GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_report *report, gx_failure *failure) {
+    gx_blade *blade;
+    gx_blade_report own;
+    gx_result result;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (tool == NULL) return gxp_refuse(failure, "tool");
+    result = gxp_check_tool(tool, failure);
+    if (result == GX_OK) result = gx_blade_create(body, NULL, &blade, failure);
+    if (result != GX_OK) return result;
+    gxp_clear_report(&own);
+    result = gxp_carve_layers(blade, tool, &own, failure);
+    gx_blade_destroy(blade);
+    if (result == GX_OK && report != NULL) *report = own.cut;
+    return result;
 }
 
 /* >>create: create and destroy ------------------------------------------------------------------------------------- */
@@ -9151,9 +9470,19 @@ GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_failure *failure) {
     return gxp_end(failure, r) == GX_OK ? hash : 0;
 }
 
+static uint64_t gxp_hash_blade(uint64_t hash, const gxp_blade_state *b) {
+    size_t i;
+    hash = gxp_hash_bytes(hash, (const unsigned char *)b->vertices.data, b->vertices.count * sizeof *b->vertices.data);
+    hash = gxp_hash_doubles(hash, b->points.data, 3 * (size_t)b->points.count);
+    hash = gxp_hash_bytes(hash, (const unsigned char *)b->layers.data, b->layers.count * sizeof *b->layers.data);
+    for (i = 0; i < b->members.count; i++) hash = gxp_mix(hash ^ b->members.data[i]);
+    return gxp_hash_doubles(gxp_mix(hash ^ b->slot_count), b->edge.data, 3 * (size_t)b->edge.count);
+}
+
 GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
     const uint32_t use = GXP_TOPOLOGY | GXP_STATE | (body->copies.previous_dt > 0 ? (uint32_t)GXP_HISTORY : 0);
     uint64_t hash = gxp_mix(body->cuts.epoch ^ (uint64_t)body->snapshot.next_id << 32);
+    const gx_blade *blade;
     uint32_t t, i;
     for (t = 0; t < GXP_TABLES; t++) {
         const size_t rows = gxp_count(body, t);
@@ -9165,6 +9494,7 @@ GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
     }
     for (i = 0; i < gxb_complex_leaf_count(body->complex); i++)
         hash = gxp_mix(hash ^ gxb_complex_leaf(body->complex, i)->removed);
+    for (blade = body->blades; blade != NULL; blade = blade->next) hash = gxp_hash_blade(hash, &blade->now);
     return hash;
 }
 
@@ -9640,12 +9970,207 @@ static void gxp_load_state(gxb_stream *s, gx_body *body, int trusted) {
     if (s->result == GX_OK && !trusted) gxp_check_state(s, body, &n);
 }
 
+/* One blade: what it remembers. n: the counts of its lists, which have room for them if it is read. */
+enum { GXP_BLADE_VERTICES, GXP_BLADE_POINTS, GXP_BLADE_LAYERS, GXP_BLADE_MEMBERS, GXP_BLADE_EDGE, GXP_BLADE_LISTS };
+
+static void gxp_pass_blade_head(gxb_stream *s, gx_blade *blade, uint32_t n[GXP_BLADE_LISTS]) {
+    uint32_t inside = (uint32_t)blade->starts_inside;
+    gxb_stream_pass(s, &blade->tolerance, 1, sizeof blade->tolerance);
+    gxb_stream_pass(s, &blade->min_advance, 1, sizeof blade->min_advance);
+    gxp_pass_word(s, &blade->max_samples);
+    gxp_pass_word(s, &inside);
+    gxp_pass_word(s, &blade->now.slot_count);
+    gxb_stream_pass(s, n, GXP_BLADE_LISTS, sizeof *n);
+    blade->starts_inside = inside != 0;
+}
+
+static void gxp_pass_blade(gxb_stream *s, gxp_blade_state *b) {
+    uint32_t i;
+    for (i = 0; i < b->vertices.count; i++) {
+        gxp_front_vertex *v = &b->vertices.data[i];
+        gxb_stream_pass(s, v->rest, 3, sizeof *v->rest);
+        gxb_stream_pass(s, v->extended, 3, sizeof *v->extended);
+        gxb_stream_pass(s, v->position, 3, sizeof *v->position);
+        gxb_stream_pass(s, v->ahead, 3, sizeof *v->ahead);
+        gxb_stream_pass(s, &v->distance, 1, sizeof v->distance);
+        gxb_stream_pass(s, &v->size, 1, sizeof v->size);
+        gxb_stream_pass(s, &v->along, 1, sizeof v->along);
+        gxp_pass_word(s, &v->element);
+        v->unused = 0;
+    }
+    gxb_stream_pass(s, b->points.data, 3 * (size_t)b->points.count, sizeof(double));
+    gxb_stream_pass(s, b->layers.data, sizeof(gxp_layer) / sizeof(uint32_t) * (size_t)b->layers.count,
+                    sizeof(uint32_t));
+    gxb_stream_pass(s, b->members.data, b->members.count, sizeof(uint64_t));
+    gxb_stream_pass(s, b->edge.data, 3 * (size_t)b->edge.count, sizeof(double));
+}
+
+static void gxp_save_blades(gxb_stream *s, gx_body *body) {
+    uint32_t count = 0;
+    gx_blade *b;
+    for (b = body->blades; b != NULL; b = b->next) count++;
+    gxp_pass_word(s, &count);
+    for (b = body->blades; b != NULL; b = b->next) {
+        uint32_t n[GXP_BLADE_LISTS];
+        n[GXP_BLADE_VERTICES] = b->now.vertices.count;
+        n[GXP_BLADE_POINTS] = b->now.points.count;
+        n[GXP_BLADE_LAYERS] = b->now.layers.count;
+        n[GXP_BLADE_MEMBERS] = b->now.members.count;
+        n[GXP_BLADE_EDGE] = b->now.edge.count;
+        gxp_pass_blade_head(s, b, n);
+        gxp_pass_blade(s, &b->now);
+    }
+}
+
+static int gxp_are_finite(const double *x, size_t count) {
+    size_t i;
+    for (i = 0; i < count; i++)
+        if (!gxp_is_finite(x[i])) return 0;
+    return 1;
+}
+
+static void gxp_check_vertex(gxb_stream *s, const gx_body *body, const gxp_blade_state *b, const gxp_front_vertex *v) {
+    gxp_require_true(s, v->element < body->mesh.element_count && v->along >= 0 && v->along <= b->edge.count &&
+                            v->distance >= 0 && v->size >= 0);
+    gxp_require_true(s, gxp_are_finite(v->rest, 3) && gxp_are_finite(v->extended, 3) &&
+                            gxp_are_finite(v->position, 3) && gxp_are_finite(v->ahead, 3) && gxp_is_finite(v->size));
+}
+
+static int gxp_is_range(uint32_t first, uint32_t count, uint32_t all) { return first <= all && count <= all - first; }
+
+/* What a move relies on: ranges within their lists, members in order */
+static void gxp_check_strokes(gxb_stream *s, const gx_body *body, const gx_blade *blade) {
+    const gxp_blade_state *b = &blade->now;
+    uint32_t i;
+    gxp_require_true(s, gxp_is_finite(blade->tolerance) && blade->tolerance > 0 && gxp_is_finite(blade->min_advance) &&
+                            blade->min_advance > 0 && b->slot_count <= body->cells.count && b->edge.count != 1);
+    for (i = 0; i < b->vertices.count; i++) gxp_check_vertex(s, body, b, &b->vertices.data[i]);
+    gxp_require_true(s, gxp_are_finite(b->points.data, 3 * (size_t)b->points.count) &&
+                            gxp_are_finite(b->edge.data, 3 * (size_t)b->edge.count));
+    for (i = 0; i < b->layers.count; i++) {
+        const gxp_layer *l = &b->layers.data[i];
+        gxp_require_true(s, l->front_count >= 2 && l->latest_count != 1 &&
+                                gxp_is_range(l->front, l->front_count, b->vertices.count) &&
+                                gxp_is_range(l->latest, l->latest_count, b->vertices.count) &&
+                                gxp_is_range(l->path, l->path_count, b->points.count) &&
+                                gxp_is_range(l->sheet, l->sheet_count, b->points.count));
+    }
+    for (i = 0; i < b->members.count; i++)
+        gxp_require_true(s, GXP_FIRST(b->members.data[i]) < b->slot_count &&
+                                GXP_SECOND(b->members.data[i]) < b->layers.count &&
+                                (i == 0 || b->members.data[i - 1] < b->members.data[i]));
+}
+
+/* Room for what a blade remembers, with these counts */
+static gx_result gxp_blade_room(gx_body *body, gxp_blade_state *b, const uint32_t n[GXP_BLADE_LISTS]) {
+    const gx_allocator *a = &body->config.allocator;
+    gx_result result =
+        gxp_reserve(a, &b->vertices.data, sizeof *b->vertices.data, 0, &b->vertices.capacity, n[GXP_BLADE_VERTICES]);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &b->points.data, 3 * sizeof(double), 0, &b->points.capacity, n[GXP_BLADE_POINTS]);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &b->layers.data, sizeof *b->layers.data, 0, &b->layers.capacity, n[GXP_BLADE_LAYERS]);
+    if (result == GX_OK)
+        result =
+            gxp_reserve(a, &b->members.data, sizeof *b->members.data, 0, &b->members.capacity, n[GXP_BLADE_MEMBERS]);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &b->edge.data, 3 * sizeof(double), 0, &b->edge.capacity, n[GXP_BLADE_EDGE]);
+    if (result != GX_OK) return result;
+    b->vertices.count = n[GXP_BLADE_VERTICES];
+    b->points.count = n[GXP_BLADE_POINTS];
+    b->layers.count = n[GXP_BLADE_LAYERS];
+    b->members.count = n[GXP_BLADE_MEMBERS];
+    b->edge.count = n[GXP_BLADE_EDGE];
+    return GX_OK;
+}
+
+static void gxp_load_blade(gxb_stream *s, gx_body *body, int trusted) {
+    uint32_t n[GXP_BLADE_LISTS], i;
+    gx_blade *b = NULL;
+    gxp_require(s, gx_blade_create(body, NULL, &b, NULL));
+    if (s->result != GX_OK) return;
+    gxp_pass_blade_head(s, b, n);
+    for (i = 0; i < GXP_BLADE_LISTS; i++) gxp_require_true(s, gxb_stream_has(s, n[i], sizeof(uint64_t)));
+    if (s->result == GX_OK) gxp_require(s, gxp_blade_room(body, &b->now, n));
+    if (s->result == GX_OK) gxp_pass_blade(s, &b->now);
+    if (s->result == GX_OK && !trusted) gxp_check_strokes(s, body, b);
+}
+
+static void gxp_load_blades(gxb_stream *s, gx_body *body, int trusted) {
+    uint32_t count = 0, i;
+    gxp_pass_word(s, &count);
+    for (i = 0; i < count && s->result == GX_OK; i++) gxp_load_blade(s, body, trusted);
+}
+
+/* Makes ready that the body's blades become those of another: as many, and what these remember in `then`. made: how
+   many it added. */
+static gx_result gxp_prepare_blades(gx_body *body, const gx_body *from, uint32_t *made) {
+    const gx_blade *source;
+    gx_blade *b = body->blades;
+    gx_result result = GX_OK;
+    *made = 0;
+    for (source = from->blades; source != NULL && result == GX_OK; source = source->next) {
+        const gxp_blade_state *f = &source->now;
+        uint32_t n[GXP_BLADE_LISTS];
+        n[GXP_BLADE_VERTICES] = f->vertices.count;
+        n[GXP_BLADE_POINTS] = f->points.count;
+        n[GXP_BLADE_LAYERS] = f->layers.count;
+        n[GXP_BLADE_MEMBERS] = f->members.count;
+        n[GXP_BLADE_EDGE] = f->edge.count;
+        if (b == NULL) {
+            result = gx_blade_create(body, NULL, &b, NULL);
+            *made += result == GX_OK;
+        }
+        if (result == GX_OK) result = gxp_blade_room(body, &b->then, n);
+        if (result != GX_OK) break;
+        if (f->vertices.count > 0)
+            memcpy(b->then.vertices.data, f->vertices.data, f->vertices.count * sizeof *f->vertices.data);
+        if (f->points.count > 0) memcpy(b->then.points.data, f->points.data, 3 * f->points.count * sizeof(double));
+        if (f->layers.count > 0) memcpy(b->then.layers.data, f->layers.data, f->layers.count * sizeof *f->layers.data);
+        if (f->members.count > 0)
+            memcpy(b->then.members.data, f->members.data, f->members.count * sizeof *f->members.data);
+        if (f->edge.count > 0) memcpy(b->then.edge.data, f->edge.data, 3 * f->edge.count * sizeof(double));
+        b->then.slot_count = f->slot_count;
+        b = b->next;
+    }
+    return result;
+}
+
+/* The body's blades become those of another, as they were made ready. Those that it lacks are lifted. */
+static void gxp_take_blades(gx_body *body, const gx_body *from) {
+    const gx_blade *source = from->blades;
+    gx_blade *b;
+    for (b = body->blades; b != NULL; b = b->next) {
+        const gxp_blade_state now = b->now;
+        if (source == NULL) {
+            gxp_forget(&b->now);
+            continue;
+        }
+        b->now = b->then;
+        b->then = now;
+        b->tolerance = source->tolerance;
+        b->min_advance = source->min_advance;
+        b->max_samples = source->max_samples;
+        b->starts_inside = source->starts_inside;
+        source = source->next;
+    }
+}
+
+/* Takes back blades that were added last. */
+static void gxp_drop_blades(gx_body *body, uint32_t count) {
+    uint32_t all = 0;
+    gx_blade *b;
+    for (b = body->blades; b != NULL; b = b->next) all++;
+    for (; count > 0; count--, all--) gx_blade_destroy(gx_body_blade(body, all - 1));
+}
+
 static void gxp_write(gxb_stream *s, gx_body *body) {
     gxp_head head = gxp_make_head(0, 0);
     gxp_pass_head(s, &head);
     gxp_save_mesh(s, body);
     gxp_save_topology(s, body);
     gxp_save_state(s, body);
+    gxp_save_blades(s, body);
 }
 
 static void gxp_resume(gx_body *body) {
@@ -9692,6 +10217,7 @@ static gx_result gxp_read(gxb_stream *s, const gx_body_desc *desc, int trusted, 
     if (s->result == GX_OK) gxp_load_mesh(s, desc, &made, failure);
     if (s->result == GX_OK) gxp_load_topology(s, made, trusted);
     if (s->result == GX_OK) gxp_load_state(s, made, trusted);
+    if (s->result == GX_OK) gxp_load_blades(s, made, trusted);
     gxp_require_true(s, s->at == s->size);
     if (s->result == GX_OK)
         *body = made;
@@ -9812,23 +10338,39 @@ static gx_result gxp_restore_state(gx_body *body, gx_body *from) {
     return GX_OK;
 }
 
-GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *failure) {
+/* Replaces cells and all else by a copy of another body's. The body's own blades stay, and the copy's go with the old
+   body. */
+static gx_result gxp_restore_all(gx_body *body, gx_body *from) {
     gx_body *copy, swap;
+    const gx_result result = gxp_copy_body(from, body, &copy);
+    if (result != GX_OK) return result;
+    swap = *body;
+    *body = *copy;
+    *copy = swap;
+    copy->blades = body->blades;
+    body->blades = swap.blades;
+    gx_body_destroy(copy);
+    return GX_OK;
+}
+
+GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *failure) {
+    uint32_t made;
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (from == NULL) return gxp_refuse(failure, "from");
     if (body == from) return gxp_end(failure, GX_OK);
-    if (body->cuts.hash == from->cuts.hash && body->copies.count == from->copies.count &&
-        body->cells.count == from->cells.count && body->leaves.count == from->leaves.count &&
-        gxp_same_materials(body, from))
-        return gxp_end(failure, gxp_restore_state(body, from));
-    result = gxp_copy_body(from, body, &copy);
-    if (gxp_end(failure, result) != GX_OK) return result;
-    swap = *body;
-    *body = *copy;
-    *copy = swap;
-    gx_body_destroy(copy);
-    return GX_OK;
+    result = gxp_prepare_blades(body, from, &made);
+    if (result == GX_OK)
+        result = body->cuts.hash == from->cuts.hash && body->copies.count == from->copies.count &&
+                         body->cells.count == from->cells.count && body->leaves.count == from->leaves.count &&
+                         gxp_same_materials(body, from)
+                   ? gxp_restore_state(body, from)
+                   : gxp_restore_all(body, from);
+    if (result == GX_OK)
+        gxp_take_blades(body, from);
+    else
+        gxp_drop_blades(body, made);
+    return gxp_end(failure, result);
 }
 
 #undef GXP_COLD
@@ -9864,6 +10406,14 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_BYTE_ORDER
 #undef GXP_BESIDE_WALL
 #undef GXP_ACROSS_WALL
+#undef GXP_FLAT_MAP
+#undef GXP_BESIDE
+#undef GXP_LEAST_ADVANCE
+#undef GXP_CUT_WIDTH
+#undef GXP_SHEET_TRIANGLES
+#undef GXP_STRIP_REACH
+#undef GXP_EDGE_REACH
+#undef GXP_TOOL_TRIANGLES
 #ifdef GXFEM_SCALAR
 #pragma clang attribute pop
 #endif
