@@ -701,6 +701,61 @@ START_TEST(blades) {
 }
 END_TEST
 
+/* Tools that cannot be carved with */
+START_TEST(tools) {
+    static const double low[3] = {0.5, 0.5, 0.5}, high[3] = {1.5, 1.5, 1.5};
+    workload w = grid(2, 2, 2, 5);
+    gx_body *body = body_of(&w);
+    gx_cut_report report;
+    gx_surface tool;
+    double *x;
+    uint32_t *t, first;
+    wl_add_aligned_box(wl_add_surface(&w, 1), low, high);
+    tool = surface_of(&w.surfaces[0]);
+    x = w.surfaces[0].vertices;
+    t = w.surfaces[0].triangles;
+    REFUSED(gx_body_carve(NULL, &tool, &report, &failure), GX_ERROR_ARGUMENT, "body", SIZE_MAX);
+    KEEPS(body, gx_body_carve(body, NULL, &report, &failure), GX_ERROR_ARGUMENT, "tool", SIZE_MAX);
+    tool.vertices = NULL;
+    KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_ARGUMENT, "tool.vertices", SIZE_MAX);
+    tool.vertices = x;
+    tool.triangles = NULL;
+    KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_ARGUMENT, "tool.triangles", SIZE_MAX);
+    tool.triangles = t;
+    tool.vertex_count = 0;
+    KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_EMPTY, "tool.vertex_count", SIZE_MAX);
+    tool.vertex_count = UINT32_MAX;
+    KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_LIMIT, "tool.vertex_count", SIZE_MAX);
+    tool.vertex_count = 8;
+    tool.triangle_count = 0;
+    KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_EMPTY, "tool.triangle_count", SIZE_MAX);
+    tool.triangle_count = UINT32_MAX;
+    KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_LIMIT, "tool.triangle_count", SIZE_MAX);
+    tool.triangle_count = 12;
+    x[3 * 5] = NAN;
+    KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_NOT_FINITE, "tool.vertices", 5);
+    x[3 * 5] = 1e300;
+    KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_RANGE, "tool.vertices", 5);
+    x[3 * 5] = 1.5;
+    first = t[3 * 7];
+    t[3 * 7] = 8;
+    KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_INDEX, "tool.triangles", 7);
+    t[3 * 7] = first;
+    tool.triangle_count = 11;
+    {
+        const uint64_t state = gx_body_state_hash(body);
+        ck_assert_int_eq(gx_body_carve(body, &tool, &report, &failure), GX_ERROR_NOT_CLOSED);
+        ck_assert(gx_body_state_hash(body) == state);
+        failure.field = unset;
+    }
+    tool.triangle_count = 12;
+    DONE(gx_body_carve(body, &tool, &report, &failure));
+    ck_assert(fabs(report.removed_volume - 1) < 1e-12);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* A failure in a sentence, with what it names and nothing else */
 START_TEST(sentences) {
     gx_failure f = {GX_ERROR_NOT_FINITE, "surfaces.vertices", 7, 2};
@@ -735,6 +790,7 @@ int main(void) {
     tcase_add_test(tests, texts);
     tcase_add_test(tests, steps_of_nothing);
     tcase_add_test(tests, blades);
+    tcase_add_test(tests, tools);
     tcase_add_test(tests, sentences);
     suite_add_tcase(suite, tests);
     return run_suite(suite);

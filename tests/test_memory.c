@@ -325,6 +325,14 @@ static gx_result blade_in_scope(gx_body *body) {
     gx_blade_destroy(blade);
     return result;
 }
+/* The tool is as large as the solid, so that a corner of the cube goes. */
+static gx_result carve(gx_body *body) {
+    const gx_surface tool = solid();
+    gx_cut_report report;
+    const gx_result result = gx_body_carve(body, &tool, &report, NULL);
+    if (result == GX_OK) ck_assert(report.removed_volume > 0);
+    return result;
+}
 static gx_result hash(gx_body *body) {
     gx_failure failure;
     gx_body_topology_hash(body, &failure);
@@ -494,7 +502,16 @@ static void sweep(const char *what, const action *before, action act) {
     sweep_stubborn(what, before, act, &truth);
 }
 
-static const action nothing[] = {NULL}, after_a_cut[] = {cut_sheet, NULL},
+/* A blade that stays in the middle of the body */
+static gx_result blade_inside(gx_body *body) {
+    static const double before[6] = {-9, -0.4, 0.45, 9, -0.3, 0.55}, inside[6] = {-9, 0.6, 0.45, 9, 0.7, 0.55};
+    gx_blade *blade = NULL;
+    gx_result result = gx_blade_create(body, NULL, &blade, NULL);
+    if (result == GX_OK) result = gx_blade_move(blade, before, 2, NULL, 0, NULL, NULL);
+    return result == GX_OK ? gx_blade_move(blade, inside, 2, NULL, 0, NULL, NULL) : result;
+}
+
+static const action nothing[] = {NULL}, with_a_blade[] = {blade_inside, NULL}, after_a_cut[] = {cut_sheet, NULL},
                     after_two[] = {cut_sheet, cut_part, look, NULL}, after_solid[] = {cut_solid, NULL},
                     after_a_ring[] = {cut_ring, NULL}, held[] = {hold, cut_sheet, step, NULL},
                     drawn[] = {cut_sheet, draw, NULL},
@@ -561,6 +578,10 @@ START_TEST(blades) {
     sweep("a blade that waits", nothing, blade_that_waits);
     sweep("a blade in a cut body that has moved", held, blade_that_moves);
     sweep("a blade with a scope", after_a_cut, blade_in_scope);
+    sweep("a tool", nothing, carve);
+    sweep("a tool in a cut body that has moved", held, carve);
+    sweep("a clone of a body with a blade", with_a_blade, clone);
+    sweep("loading a body with a blade", with_a_blade, save_and_load);
 }
 END_TEST
 
