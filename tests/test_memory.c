@@ -323,6 +323,46 @@ static gx_result anchored_step(gx_body *body) {
     desc.anchor_forces = push;
     return gx_body_step(body, &desc, NULL, NULL);
 }
+/* A blade's whole life: it comes near, cuts with all that it has passed, and is lifted. One call changes the body. */
+static gx_result blade_life(gx_body *body, int waits) {
+    static const double before[6] = {-9, -0.4, 0.45, 9, -0.3, 0.55}, behind[6] = {-9, 1.3, 0.45, 9, 1.4, 0.55};
+    gx_blade_desc desc;
+    gx_blade_report report;
+    gx_blade *blade = NULL;
+    gx_result result;
+    memset(&desc, 0, sizeof desc);
+    desc.min_advance = waits ? 100 : 0;
+    result = gx_blade_create(body, &desc, &blade, NULL);
+    ck_assert((result == GX_OK) == (blade != NULL));
+    if (result == GX_OK) result = gx_blade_move(blade, before, 2, NULL, 0, &report, NULL);
+    if (result == GX_OK) ck_assert_uint_eq(report.triangle_count, 0);
+    if (result == GX_OK) result = gx_blade_move(blade, behind, 2, NULL, 0, &report, NULL);
+    if (result == GX_OK) ck_assert((report.triangle_count > 0) == !waits);
+    if (waits && result == GX_OK) result = gx_blade_lift(blade, &report, NULL);
+    if (result == GX_OK) ck_assert_uint_gt(report.cut.touched_elements, 0);
+    gx_blade_destroy(blade);
+    return result;
+}
+static gx_result blade_that_moves(gx_body *body) { return blade_life(body, 0); }
+static gx_result blade_that_waits(gx_body *body) { return blade_life(body, 1); }
+static gx_result blade_in_scope(gx_body *body) {
+    static const double before[6] = {-9, -0.4, 0.45, 9, -0.3, 0.55}, behind[6] = {-9, 1.3, 0.45, 9, 1.4, 0.55};
+    static const uint32_t first = 0;
+    gx_blade *blade = NULL;
+    gx_result result = gx_blade_create(body, NULL, &blade, NULL);
+    if (result == GX_OK) result = gx_blade_move(blade, before, 2, &first, 1, NULL, NULL);
+    if (result == GX_OK) result = gx_blade_move(blade, behind, 2, &first, 1, NULL, NULL);
+    gx_blade_destroy(blade);
+    return result;
+}
+/* The tool is as large as the solid, so that a corner of the cube goes. */
+static gx_result carve(gx_body *body) {
+    const gx_surface tool = solid();
+    gx_cut_report report;
+    const gx_result result = gx_body_carve(body, &tool, &report, NULL);
+    if (result == GX_OK) ck_assert(report.removed_volume > 0);
+    return result;
+}
 static gx_result hash(gx_body *body) {
     gx_failure failure;
     gx_body_topology_hash(body, &failure);
@@ -492,7 +532,17 @@ static void sweep(const char *what, const action *before, action act) {
     sweep_stubborn(what, before, act, &truth);
 }
 
-static const action nothing[] = {NULL}, after_a_cut[] = {cut_sheet, NULL}, held_kinds[] = {hold_kinds, cut_sheet, NULL},
+/* A blade that stays in the middle of the body */
+static gx_result blade_inside(gx_body *body) {
+    static const double before[6] = {-9, -0.4, 0.45, 9, -0.3, 0.55}, inside[6] = {-9, 0.6, 0.45, 9, 0.7, 0.55};
+    gx_blade *blade = NULL;
+    gx_result result = gx_blade_create(body, NULL, &blade, NULL);
+    if (result == GX_OK) result = gx_blade_move(blade, before, 2, NULL, 0, NULL, NULL);
+    return result == GX_OK ? gx_blade_move(blade, inside, 2, NULL, 0, NULL, NULL) : result;
+}
+
+static const action nothing[] = {NULL}, with_a_blade[] = {blade_inside, NULL}, after_a_cut[] = {cut_sheet, NULL},
+                    held_kinds[] = {hold_kinds, cut_sheet, NULL},
                     after_two[] = {cut_sheet, cut_part, look, NULL}, after_solid[] = {cut_solid, NULL},
                     after_a_ring[] = {cut_ring, NULL}, held[] = {hold, cut_sheet, step, NULL},
                     drawn[] = {cut_sheet, draw, NULL},
@@ -551,6 +601,18 @@ START_TEST(scoped_cut) {
     sweep("a scoped sheet", after_a_cut, cut_scoped);
     sweep("a scoped solid", after_a_cut, cut_scoped_solid);
     sweep("surfaces in slots", after_a_cut, cut_slots);
+}
+END_TEST
+
+START_TEST(blades) {
+    sweep("a blade", nothing, blade_that_moves);
+    sweep("a blade that waits", nothing, blade_that_waits);
+    sweep("a blade in a cut body that has moved", held, blade_that_moves);
+    sweep("a blade with a scope", after_a_cut, blade_in_scope);
+    sweep("a tool", nothing, carve);
+    sweep("a tool in a cut body that has moved", held, carve);
+    sweep("a clone of a body with a blade", with_a_blade, clone);
+    sweep("loading a body with a blade", with_a_blade, save_and_load);
 }
 END_TEST
 
@@ -839,6 +901,7 @@ int main(void) {
     tcase_add_test(tests, solid_cut);
     tcase_add_test(tests, cut_of_a_cut_body);
     tcase_add_test(tests, scoped_cut);
+    tcase_add_test(tests, blades);
     tcase_add_test(tests, severing_cut);
     tcase_add_test(tests, many_surfaces);
     tcase_add_test(tests, view_hold_skin_hash);
