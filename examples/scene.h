@@ -1,4 +1,4 @@
-/* scene.h: what the scenes of the two papers share, over gxio.h and gxfem.h. Include it in place of both.
+/* scene.h: what the scenes share, over gxio.h and gxfem.h. Include it in place of both.
 
    A scene reads
 
