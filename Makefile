@@ -27,7 +27,7 @@ help:
 	@echo "make check       builds and runs the tests; installs Check and pkg-config where they are missing"
 	@echo "make check-all   check, then lint, compile tests, sanitizers, compilers and flags; takes longer"
 	@echo "make examples    builds $(examples) in $(BUILD)/"
-	@echo "make scenes      runs the scenes of the papers, writes docs/SCENES.md; SMALL=1: small ones, $(BUILD)/scenes/SCENES.md"
+	@echo "make scenes      runs the scenes, writes docs/SCENES.md; SMALL=1: small ones, $(BUILD)/scenes/SCENES.md"
 	@echo "make pictures    renders the scenes into docs/pictures/; installs f3d and a virtual display where they are missing"
 	@echo "make animation   the README's animated picture, docs/pictures/cut.webp; installs Chromium, node and img2webp"
 	@echo "make lint        house rules of the four headers"
