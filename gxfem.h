@@ -9743,7 +9743,8 @@ static gx_result gxp_order_near(gx_blade *blade) {
         const uint32_t cell = GXP_SECOND(near->order.data[i]);
         near->order.data[near->count + near->layer_start.data[near->cells[cell].layer]++] = near->order.data[i];
     }
-    memcpy(near->order.data, near->order.data + near->count, near->count * sizeof *near->order.data);
+    if (near->count > 0)
+        memcpy(near->order.data, near->order.data + near->count, near->count * sizeof *near->order.data);
     for (i = near->layer_count; i > 0; i--) near->layer_start.data[i] = near->layer_start.data[i - 1];
     near->layer_start.data[0] = 0;
     return GX_OK;
@@ -10102,8 +10103,15 @@ static double gxp_near_sheet(const gxp_points *sheet, const double rest[3], doub
     uint32_t i;
     for (i = 0; i + 2 < sheet->count; i += 3) {
         const double *x = sheet->data + 3 * (size_t)i;
-        double at[3];
-        const double square = gxp_onto_triangle(rest, x, x + 3, x + 6, at);
+        double at[3], square = 0;
+        int k;
+        for (k = 0; k < 3; k++) {
+            const double below = fmin(x[k], fmin(x[3 + k], x[6 + k])) - rest[k],
+                         above = rest[k] - fmax(x[k], fmax(x[3 + k], x[6 + k])), off = fmax(below, above);
+            if (off > 0) square += off * off;
+        }
+        if (square >= best) continue;
+        square = gxp_onto_triangle(rest, x, x + 3, x + 6, at);
         if (square >= best) continue;
         best = square;
         memcpy(nearest, at, sizeof at);

@@ -542,10 +542,9 @@ static gx_result blade_inside(gx_body *body) {
 }
 
 static const action nothing[] = {NULL}, with_a_blade[] = {blade_inside, NULL}, after_a_cut[] = {cut_sheet, NULL},
-                    held_kinds[] = {hold_kinds, cut_sheet, NULL},
-                    after_two[] = {cut_sheet, cut_part, look, NULL}, after_solid[] = {cut_solid, NULL},
-                    after_a_ring[] = {cut_ring, NULL}, held[] = {hold, cut_sheet, step, NULL},
-                    drawn[] = {cut_sheet, draw, NULL},
+                    held_kinds[] = {hold_kinds, cut_sheet, NULL}, after_two[] = {cut_sheet, cut_part, look, NULL},
+                    after_solid[] = {cut_solid, NULL}, after_a_ring[] = {cut_ring, NULL},
+                    held[] = {hold, cut_sheet, step, NULL}, drawn[] = {cut_sheet, draw, NULL},
                     drawn_and_cut[] = {draw, cut_sheet, draw, cut_second_sheet, NULL};
 
 START_TEST(creation) {
