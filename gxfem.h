@@ -56,7 +56,7 @@
  *     what is held and whole:    >>anchors >>regions >>grips >>map >>fragments >>motion
  *     a step:                    >>attached >>supports >>model >>step
  *     the skin:                  >>corners >>vertices >>faces >>skinning
- *     points and rays:           >>tree >>locate >>rays
+ *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
  *     a blade in space:          >>layers >>edges >>fronts >>strokes >>blade >>carve
  *     beginning, end, bytes:     >>create >>hashes >>stream >>save
  *
@@ -8492,12 +8492,12 @@ static gx_result gxp_walk_tree(gx_body *body, gxp_walk *walk) {
     return result;
 }
 
-/* >>locate: points of space and cells ------------------------------------------------------------------------------ */
-/* In: points of space, material points, boxes. Out: the cells that contain them, exactly, or are nearest; material
-   points, weights and positions. The tree is up to date (gxp_refit_tree) where cells are sought. Touches the tree's
-   working memory, the boundary of >>integrals and the complex's lists and exact numbers.
+/* >>locate: cells at points of space, and their maps --------------------------------------------------------------- */
+/* In: points of space, material points, boxes. Out: the cells that contain a point, exactly; those whose deformed
+   elements a box meets; material points, weights, positions. The tree is up to date (gxp_refit_tree) where cells are
+   sought. Touches lists that are given, and the complex's exact numbers.
  *
- * For other sections: gxp_walk_box, gxp_find_cells_at, gxp_find_nearest, gxp_pull_back, gxp_image, gxp_stretch. */
+ * Other sections may use gxp_walk_box, gxp_find_cells_at, gxp_contains_point, gxp_pull_back, gxp_image, gxp_stretch. */
 
 /* --- cells by their deformed elements --- */
 
@@ -8536,8 +8536,8 @@ static inline gx_result gxp_visit_in_box(gx_body *body, void *user, uint32_t pla
 
 /* Calls visit(body, user, slot) for each kept cell whose deformed element's box meets the box, once. visit must not
    change cells. The walk ends with the first error. */
-static inline gx_result gxp_walk_box(gx_body *body, const gxp_bounds *box,
-                                     gx_result (*visit)(gx_body *body, void *user, uint32_t slot), void *user) {
+static gx_result gxp_walk_box(gx_body *body, const gxp_bounds *box,
+                              gx_result (*visit)(gx_body *body, void *user, uint32_t slot), void *user) {
     gxp_box_walk walk;
     walk.box = *box;
     walk.visit = visit;
@@ -8655,14 +8655,17 @@ static void gxp_image(const gx_body *body, uint32_t slot, const double material[
 }
 
 /* The volume of a cell's deformed element as a share of that at rest, below 0 where it is inverted; in doubles */
-static inline double gxp_stretch(const gx_body *body, uint32_t slot) {
+static double gxp_stretch(const gx_body *body, uint32_t slot) {
     const gxp_cell *cell = &body->cells.data[slot];
     double x[12];
     gxp_moved_corners(body, cell, x);
     return gxi_tet_volume(x) / gxp_element_volume(body, cell->element);
 }
 
-/* --- the nearest cell --- */
+/* >>nearest: the cell that is nearest to a point of space ---------------------------------------------------------- */
+/* In: a point that lies in no cell that counts. Out: the nearest point of the deformed surface of those cells, in
+   doubles. The tree is up to date. Touches the boundary of >>integrals and the complex's lists. Other sections may use
+   gxp_find_nearest. */
 
 /* The point of a cell's deformed material that is nearest to a point of space outside of it */
 typedef struct gxp_near {
@@ -8885,7 +8888,9 @@ static gx_result gxp_find_nearest(gx_body *body, const double point[3], int (*ad
     return result;
 }
 
-/* --- hits --- */
+/* >>hits: what the caller learns of points of space ---------------------------------------------------------------- */
+/* In: points of space, one or many. Out: hits: cells, material points, weights, distances. Touches the view's lists,
+   the tree and its working memory. */
 
 /* Sets all of a hit but distance, material and position. weights: of the cell's copies; the view, its indices and its
    fragments are up to date. */
@@ -9457,22 +9462,17 @@ static gx_result gxp_copy_front(gx_body *body, gxp_front_list *to, const gxp_fro
     return gxp_append_front(body, to, from->data, from->count);
 }
 
-/* Lists the kept cells of an element, given by its place in mesh.box_elements. */
-static gx_result gxp_list_element(gx_body *body, void *user, uint32_t place) {
-    uint32_t cell;
-    gx_result result = GX_OK;
-    for (cell = body->mesh.box_elements[place]; cell != GXP_NONE && result == GX_OK; cell = body->cells.data[cell].next)
-        if (body->cells.data[cell].kept) result = gxp_push(body, (gxp_words *)user, cell);
-    return result;
+static gx_result gxp_list_slot(gx_body *body, void *user, uint32_t slot) {
+    return gxp_push(body, (gxp_words *)user, slot);
 }
 
-/* Lists the cells of elements whose deformed cells' box meets a box. The tree is up to date. */
+/* Lists the cells whose deformed elements' boxes meet a box. The tree is up to date. */
 static gx_result gxp_find_in_box(gx_body *body, const double low[3], const double high[3], gxp_words *found) {
     gxp_bounds box;
     memcpy(box.low, low, sizeof box.low);
     memcpy(box.high, high, sizeof box.high);
     found->count = 0;
-    return gxp_meet_box(body, &box, gxp_list_element, found);
+    return gxp_walk_box(body, &box, gxp_list_slot, found);
 }
 
 /* The near cell of a slot, or GXP_NONE */
@@ -9595,8 +9595,6 @@ static gx_result gxp_sweep(gx_blade *blade, const double *edge, uint32_t count) 
 static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
     static const double origin[3] = {0, 0, 0};
     const gxp_cell *cell = &body->cells.data[c->slot];
-    const double volume = gxp_element_volume(body, cell->element);
-    double weights[4];
     int n, k;
     gxp_cell_corners(body, cell, 1, origin, c->corners);
     for (k = 0; k < 3; k++) {
@@ -9611,8 +9609,8 @@ static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
         if (square > c->radius) c->radius = square;
     }
     c->radius = sqrt(c->radius);
-    c->stretch = gxp_tet_weights(c->corners, c->middle, weights) / (6 * volume);
-    c->size = cbrt(6 * volume);
+    c->stretch = gxp_stretch(body, c->slot);
+    c->size = cbrt(6 * gxp_element_volume(body, cell->element));
 }
 
 /* Is the ball around a cell within a distance of a triangle? */

@@ -1,6 +1,6 @@
 /* What a call that is refused says: its result, the field, the index. No refusal changes the body; a call that succeeds
    says so too. Other files have the refusals of gx_body_create and gx_body_cut (test_body.c), of models, changes and
-   steps (test_solve.c, test_updates.c, test_forces.c). */
+   steps (test_solve.c, test_updates.c, test_forces.c), of points of space (test_locate.c). */
 #ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
 #endif

@@ -374,6 +374,36 @@ static gx_result motion(gx_body *body) {
     return gx_body_motion(body, motions, 64, NULL);
 }
 
+enum { POINTS = 27 };
+static gx_hit located[POINTS]; /* by the first call since the test set this to 0 */
+
+/* Points inside, near faces of cuts, outside and on faces. Whatever failed before, the hits are the same. */
+static gx_result locate(gx_body *body) {
+    double points[3 * POINTS];
+    gx_hit hits[POINTS];
+    gx_result result;
+    int i;
+    for (i = 0; i < 3 * POINTS; i++) points[i] = 0.11 + 0.37 * (i * 7 % 5) - 0.3 * (i % 81 > 60);
+    result = gx_body_locate(body, points, POINTS, hits, NULL);
+    if (result != GX_OK) return result;
+    if (located[0].copy_count == 0) memcpy(located, hits, sizeof located);
+    ck_assert(memcmp(located, hits, sizeof located) == 0);
+    return GX_OK;
+}
+static gx_result locate_all(gx_body *body) {
+    static const double corner[3] = {0, 0, 0};
+    gx_hit hits[32];
+    size_t count;
+    return gx_body_locate_all(body, corner, hits, 32, &count, NULL);
+}
+static gx_result pick(gx_body *body) {
+    static const double below[3] = {0.3, 0.35, -1}, up[3] = {0.01, 0.02, 1};
+    gx_hit hit;
+    const gx_result result = gx_body_pick(body, below, up, &hit, NULL);
+    ck_assert(result != GX_OK || hit.triangle != UINT32_MAX);
+    return result;
+}
+
 /* If a copy was made, it is right. */
 static gx_result compare_and_destroy(gx_result result, gx_body *body, gx_body *copy) {
     ck_assert((result == GX_OK) == (copy != NULL));
@@ -544,7 +574,8 @@ static gx_result blade_inside(gx_body *body) {
 static const action nothing[] = {NULL}, with_a_blade[] = {blade_inside, NULL}, after_a_cut[] = {cut_sheet, NULL},
                     held_kinds[] = {hold_kinds, cut_sheet, NULL}, after_two[] = {cut_sheet, cut_part, look, NULL},
                     after_solid[] = {cut_solid, NULL}, after_a_ring[] = {cut_ring, NULL},
-                    held[] = {hold, cut_sheet, step, NULL}, drawn[] = {cut_sheet, draw, NULL},
+                    held[] = {hold, cut_sheet, step, NULL}, drawn[] = {cut_sheet, draw, NULL}, found[] = {locate, NULL},
+                    found_and_moved[] = {cut_sheet, locate_all, step, NULL}, cut_since[] = {locate_all, cut_all, NULL},
                     drawn_and_cut[] = {draw, cut_sheet, draw, cut_second_sheet, NULL};
 
 START_TEST(creation) {
@@ -631,6 +662,26 @@ START_TEST(view_hold_skin_hash) {
     sweep("a skin that follows a cut", drawn_and_cut, draw);
     sweep("a hash", after_a_cut, hash);
     sweep("an anchor", after_a_ring, anchor);
+}
+END_TEST
+
+START_TEST(points_and_rays) {
+    static const struct {
+        const char *what;
+        const action *before;
+        action act;
+    } calls[] = {{"locating", nothing, locate},
+                 {"locating after a cut", after_a_cut, locate},
+                 {"locating after a step", found_and_moved, locate},
+                 {"locating after a cut of a located body", cut_since, locate},
+                 {"locating all", after_solid, locate_all},
+                 {"a cut of a located body", found, cut_all},
+                 {"a ray", drawn, pick}};
+    size_t i;
+    for (i = 0; i < sizeof calls / sizeof *calls; i++) {
+        memset(located, 0, sizeof located);
+        sweep(calls[i].what, calls[i].before, calls[i].act);
+    }
 }
 END_TEST
 
@@ -904,6 +955,7 @@ int main(void) {
     tcase_add_test(tests, severing_cut);
     tcase_add_test(tests, many_surfaces);
     tcase_add_test(tests, view_hold_skin_hash);
+    tcase_add_test(tests, points_and_rays);
     tcase_add_test(tests, holding);
     tcase_add_test(tests, stepping);
     tcase_add_test(tests, motions);

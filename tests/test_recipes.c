@@ -113,6 +113,30 @@ START_TEST(draw) {
 }
 END_TEST
 
+/* ---- Mark ---- */
+
+START_TEST(marks) {
+    gx_body *body = make_hanging(4, NULL);
+    const double points[12] = {0.5, 0.5, 0.2, 0.3, 0.6, -0.01, 0.4, 0.4, 0.9, 0.5, 0.5, -3};
+    mark made[4];
+    double x[3], y[3];
+    size_t count, i;
+    int k;
+    OK(put_marks(body, points, 4, 0.02, made, &count));
+    ck_assert_uint_eq(count, 3); /* the last one is far away */
+    ck_assert(fabs(made[1].material[2]) < 1e-15);
+    for (i = 0; i < count; i++) {
+        OK(find_mark(body, &made[i], x));
+        for (k = 0; k < 3; k++) ck_assert(fabs(x[k] - made[i].material[k]) < 1e-15); /* at rest */
+    }
+    advance(body, 20);
+    OK(find_mark(body, &made[0], x));
+    OK(find_mark(body, &made[2], y));
+    ck_assert(x[2] < points[2] && x[2] - points[2] < y[2] - points[8]); /* it hangs: below it gives more */
+    gx_body_destroy(body);
+}
+END_TEST
+
 /* ---- Drag ---- */
 
 static const double below[3] = {0.47, 0.53, -5}, up[3] = {0, 0, 1};
@@ -581,6 +605,7 @@ int main(void) {
     TCase *tc = tcase_create("snippets of docs/RECIPES.md");
     tcase_set_timeout(tc, 60);
     tcase_add_test(tc, draw);
+    tcase_add_test(tc, marks);
     tcase_add_test(tc, drag);
     tcase_add_loop_test(tc, blade_in_space, 0, 2);
     tcase_add_test(tc, blade_begins_outside);
