@@ -2062,7 +2062,12 @@ static GXBP_RARE void *gxbp_reallocate(const gx_allocator *a, void *old, size_t 
     return memory;
 }
 
-static size_t gxbp_room_for(size_t need) { return need + need / 2 + 16; }
+/* Room beyond what is needed. tests/test_tight.c says that there is none, so that memory can run out at each item. */
+#ifndef GXBP_SPARE
+#define GXBP_SPARE(need) ((need) / 2 + 16)
+#endif
+
+static size_t gxbp_room_for(size_t need) { return need + GXBP_SPARE(need); }
 
 /* Makes room for `extra` items more in an array. array: the address of its pointer. The one way by which arrays grow.
  */
@@ -6159,7 +6164,9 @@ struct gxb_boolean { /* what is used most comes first: its addresses are short *
 /* In: sizes. Out: memory, counted against the limit; small amounts come from the arena behind the struct. Touches the
    budget, the growing arrays and the first error of an evaluation. */
 
+#ifndef GXBP_ARENA
 #define GXBP_ARENA ((size_t)1 << 16)
+#endif
 
 static size_t gxbp_whole_words(size_t size) { return (size + 15) & ~(size_t)15; }
 
@@ -6233,7 +6240,8 @@ static GXBP_COLD int gxbp_stop(gxb_boolean *b, gx_result result) {
 /* The first items of an array come from the arena, so that small cases allocate nothing. */
 static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, uint32_t count, uint32_t *capacity, size_t item,
                                 size_t extra) {
-    const size_t least = *capacity == 0 && extra < 16 ? 16 : extra, room = gxbp_room_for(least);
+    const size_t first = GXBP_SPARE((size_t)0), least = *capacity == 0 && extra < first ? first : extra,
+                 room = gxbp_room_for(least);
     void *memory = *capacity == 0 && least < GXBP_ARENA ? gxbp_take(b, room * item) : NULL;
     gx_result result;
     if (memory != NULL) {
@@ -11576,6 +11584,7 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_LOOSE
 #undef GXBP_BARE
 #undef GXBP_ARENA
+#undef GXBP_SPARE
 #undef GXBP_LARGEST
 #undef GXBP_ROOM
 #undef GXBP_REMOVED

@@ -355,8 +355,11 @@ static void check_outcome(gx_body *body, const outcome *truth, const char *what,
     ck_assert_msg(o.state == truth->state && o.volume == truth->volume, "%s, allocation %zu: another state", what, n);
 }
 
-/* Which allocation fails next: each, or under a sanitizer each of the first hundred and then every fourth */
-static size_t next(size_t n) { return n < 100 ? n + 1 : n + FEWER; }
+/* Which allocation fails next: each, or each of the first hundred and then fewer: under a sanitizer every fourth */
+#ifndef STRIDE
+#define STRIDE 1
+#endif
+static size_t next(size_t n) { return n < 100 ? n + 1 : n + FEWER * STRIDE; }
 
 /* A new body for every n */
 static void sweep_fresh(const char *what, const action *before, action act, const outcome *truth, int from_then_on) {
@@ -400,7 +403,7 @@ static void sweep_stubborn(const char *what, const action *before, action act, c
     never_fail(&m);
     body = prepared(&m, before);
     state = gx_body_state_hash(body);
-    for (n = 0; result != GX_OK; n++) {
+    for (n = 0; result != GX_OK; n = next(n)) {
         fail_from(&m, n, n % 2 == 1);
         result = act(body);
         if (result != GX_OK) check_failure(result, state, body, what, n, n % 2 == 1);
@@ -517,6 +520,7 @@ START_TEST(holding) {
         size_t n, i, count = 0;
         gx_result result = GX_ERROR_MEMORY;
         memset(&m, 0, sizeof m);
+        memset(&view, 0, sizeof view);
         never_fail(&m);
         body = prepared(&m, after_a_cut);
         for (n = 0; result != GX_OK; n++) {
