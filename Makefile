@@ -11,8 +11,8 @@ JOBS ?= 2
 BENCH_CFLAGS ?= -O3 -march=native
 
 headers = gxfem.h gxfem_boolean.h gxfem_integrate.h gxfem_solve.h
-# The largest first, since they take longest
-tests = $(patsubst tests/%.c,%,$(shell ls -S tests/test_*.c))
+# The largest first, since they take longest. Those of which a part runs again, test_tight and test_tight_boolean, are short to read only.
+tests = $(patsubst tests/%.c,%,$(wildcard tests/test_tight*.c) $(shell ls -S tests/test_*.c | grep -v test_tight))
 linked_tests = $(patsubst tests/%.c,%,$(shell grep -l GXFEM_LINKED tests/test_*.c))
 examples = $(patsubst examples/%.c,%,$(sort $(wildcard examples/*.c)))
 scenes = $(filter-out embed gxcut gxboolean animation,$(examples))
@@ -63,7 +63,8 @@ help:
 	@echo "make check-amalgam  compile tests of that header"
 	@echo "make install     the headers and gxfem.pc, for pkg-config; PREFIX=/usr/local, DESTDIR= (a stage)"
 	@echo "make check-package  installs into $(BUILD)/package and uses that: by CMake, if it is there, and by pkg-config"
-	@echo "make coverage    lines and branches of the headers that make check reaches: $(BUILD)/coverage/; needs gcc and gcov"
+	@echo "make coverage    lines and branches of the headers that make check reaches: $(BUILD)/coverage/; needs gcc and gcov;"
+	@echo "                 tests/unreached.txt says why others are not"
 	@echo "make clean       removes $(BUILD)/"
 
 # ---- programs
@@ -232,6 +233,7 @@ coverage:
 lint:
 	@sh tests/lint.sh
 	@sh tests/test_lint.sh
+	@sh tests/test_coverage.sh
 
 # By clang-format 14; other versions differ in details. Tables between "clang-format off" and "on" stay as they are.
 formatted = $(headers) $(wildcard examples/*.[ch] tests/*.[ch] tests/compile/*.[ch] tests/compile/*.cc tests/package/*.c bench/*.[ch])
