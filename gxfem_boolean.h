@@ -2062,7 +2062,13 @@ static GXBP_RARE void *gxbp_reallocate(const gx_allocator *a, void *old, size_t 
     return memory;
 }
 
-/* Room beyond what is needed. tests/test_tight.c says that there is none, so that memory can run out at each item. */
+/* Does an array have room? tests/test_tight.c says no and has no memory then: memory runs out wherever an array could
+   grow. */
+#ifndef GXBP_HAS_ROOM
+#define GXBP_HAS_ROOM(allocator, need, capacity) ((need) <= (capacity))
+#endif
+
+/* Room beyond what is needed; none in tests/test_tight_boolean.c */
 #ifndef GXBP_SPARE
 #define GXBP_SPARE(need) ((need) / 2 + 16)
 #endif
@@ -2075,7 +2081,7 @@ static GXBP_APART gx_result gxbp_reserve(const gx_allocator *a, void *array, uin
                                          size_t item, size_t extra) {
     const size_t need = (size_t)count + extra, room = gxbp_room_for(need);
     void *old, *memory;
-    if (need <= *capacity) return GX_OK;
+    if (GXBP_HAS_ROOM(a, need, *capacity)) return GX_OK;
     if (room > INT32_MAX || room > SIZE_MAX / item) return GX_ERROR_LIMIT;
     memcpy(&old, array, sizeof old);
     memory = gxbp_reallocate(a, old, (size_t)*capacity * item, count * item, room * item);
@@ -2087,7 +2093,7 @@ static GXBP_APART gx_result gxbp_reserve(const gx_allocator *a, void *array, uin
 
 /* The same for owner->array with owner->counter_count items. */
 #define GXBP_RESERVE(allocator, owner, array, counter, extra)                                                          \
-    ((size_t)(extra) <= (owner)->counter##_capacity - (owner)->counter##_count                                         \
+    (GXBP_HAS_ROOM(allocator, (size_t)(extra), (owner)->counter##_capacity - (owner)->counter##_count)                 \
          ? GX_OK                                                                                                       \
          : gxbp_reserve(allocator, &(owner)->array, (owner)->counter##_count, &(owner)->counter##_capacity,            \
                         sizeof *(owner)->array, extra))
@@ -6164,9 +6170,7 @@ struct gxb_boolean { /* what is used most comes first: its addresses are short *
 /* In: sizes. Out: memory, counted against the limit; small amounts come from the arena behind the struct. Touches the
    budget, the growing arrays and the first error of an evaluation. */
 
-#ifndef GXBP_ARENA
 #define GXBP_ARENA ((size_t)1 << 16)
-#endif
 
 static size_t gxbp_whole_words(size_t size) { return (size + 15) & ~(size_t)15; }
 
@@ -11584,6 +11588,7 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_LOOSE
 #undef GXBP_BARE
 #undef GXBP_ARENA
+#undef GXBP_HAS_ROOM
 #undef GXBP_SPARE
 #undef GXBP_LARGEST
 #undef GXBP_ROOM

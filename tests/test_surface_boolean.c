@@ -1629,9 +1629,10 @@ static void sweep_failures(const char *name, const gxb_operand *o, int count, ui
     memory m = {0, 0, SIZE_MAX, 0};
     int failed = 1, from_then_on;
     const answer truth = despite_failures(&m, o, count, triangulation, mend, &failed);
+    static size_t sweeps;
     size_t n;
     for (from_then_on = 0; from_then_on < 2; from_then_on++)
-        for (n = 0, failed = 1; failed; n += FEWER * STRIDE) {
+        for (n = 5 * sweeps++ % STRIDE, failed = 1; failed; n += FEWER * STRIDE) {
             answer a;
             memset(&m, 0, sizeof m);
             m.fail_at = n;
