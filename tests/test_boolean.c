@@ -512,14 +512,16 @@ END_TEST
 START_TEST(triangles_without_area_have_no_outside) {
     const double segment[9] = {1, 0, 0, 2, 0, 0, 3, 0, 0}, before[3] = {0, 0, 0}, on[3] = {1.5, 0, 0},
                  after[3] = {4, 0, 0};
-    const uint32_t triangle[3] = {0, 1, 2};
-    int on_surface;
-    gxb_winding_number(segment, triangle, 1, on, &on_surface);
-    ck_assert_int_ne(on_surface, 0);
-    gxb_winding_number(segment, triangle, 1, after, &on_surface);
-    ck_assert_int_eq(on_surface, 0);
-    gxb_winding_number(segment, triangle, 1, before, &on_surface);
-    ck_assert_int_eq(on_surface, 0);
+    static const uint32_t orders[3][3] = {{0, 1, 2}, {1, 0, 2}, {2, 1, 0}};
+    int on_surface, i;
+    for (i = 0; i < 3; i++) {
+        gxb_winding_number(segment, orders[i], 1, on, &on_surface);
+        ck_assert_int_ne(on_surface, 0);
+        gxb_winding_number(segment, orders[i], 1, after, &on_surface);
+        ck_assert_int_eq(on_surface, 0);
+        gxb_winding_number(segment, orders[i], 1, before, &on_surface);
+        ck_assert_int_eq(on_surface, 0);
+    }
 }
 END_TEST
 

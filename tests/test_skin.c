@@ -657,6 +657,57 @@ START_TEST(texture) {
 }
 END_TEST
 
+/* Triangles without area among others have no map to their texture, and change nothing. */
+START_TEST(texture_of_flat_triangles) {
+    enum { SIDE = 10, QUADS = SIDE * SIDE };
+    double x[3 * (SIDE + 1) * (SIDE + 1)];
+    float map[2 * (SIDE + 1) * (SIDE + 1)];
+    uint32_t triangles[9 * QUADS];
+    workload w = grid(2, 2, 2, 5);
+    gx_surface surface;
+    gx_cut_desc cut;
+    size_t count[2], i;
+    int way, k;
+    memset(&surface, 0, sizeof surface);
+    memset(&cut, 0, sizeof cut);
+    for (i = 0; i < (SIDE + 1) * (SIDE + 1); i++) {
+        x[3 * i] = 0.3 * (double)(i % (SIDE + 1)) - 0.5;
+        x[3 * i + 1] = 0.3 * (double)(i / (SIDE + 1)) - 0.5;
+        x[3 * i + 2] = 0.9;
+        for (k = 0; k < 2; k++) map[2 * i + (size_t)k] = linear(x + 3 * i, k);
+    }
+    for (i = 0; i < QUADS; i++) {
+        const uint32_t v = (uint32_t)(i / SIDE * (SIDE + 1) + i % SIDE);
+        const uint32_t corners[9] = {v, v + 1, v + SIDE + 2, v, v + SIDE + 2, v + SIDE + 1, v, v + 1, v};
+        memcpy(triangles + 9 * i, corners, sizeof corners);
+    }
+    surface.vertices = x;
+    surface.vertex_count = (SIDE + 1) * (SIDE + 1);
+    surface.triangles = triangles;
+    surface.texture = map;
+    cut.surfaces = &surface;
+    cut.surface_count = 1;
+    for (way = 0; way < 2; way++) { /* all triangles, then those with area only */
+        gx_body *body = body_of(&w);
+        gx_skin skin;
+        surface.triangle_count = (way ? 2 : 3) * QUADS;
+        for (i = 0; way && i < 6 * QUADS; i++) triangles[i] = triangles[i / 6 * 9 + i % 6];
+        ck_assert_int_eq(gx_body_cut(body, &cut, NULL, NULL), GX_OK);
+        skin = skin_of(body, NULL);
+        count[way] = skin.triangle_count;
+        for (i = 0; i < 3 * skin.triangle_count; i++) {
+            const uint32_t v = skin.triangles[i];
+            for (k = 0; k < 2 && skin.triangle_surface[i / 3] == 1; k++)
+                ck_assert_double_eq_tol((double)skin.vertex_texture[2 * v + (uint32_t)k],
+                                        (double)linear(skin.vertex_rest + 3 * v, k), 1e-4);
+        }
+        gx_body_destroy(body);
+    }
+    ck_assert_uint_eq(count[0], count[1]);
+    wl_free(&w);
+}
+END_TEST
+
 /* ---- rays ---- */
 
 /* Moeller and Trumbore's test, with a margin: -1 misses, 1 hits, 0 too close to an edge to tell */
@@ -863,6 +914,7 @@ int main(void) {
     tcase_add_test(tests, corners_within_an_element);
     tcase_add_test(tests, severed_walls_are_flat);
     tcase_add_loop_test(tests, texture, first, last);
+    tcase_add_test(tests, texture_of_flat_triangles);
     tcase_add_loop_test(tests, picks_what_a_ray_meets, first, last);
     tcase_add_loop_test(tests, no_ray_slips_through, 0, 3);
     tcase_add_test(tests, nothing_is_left_to_draw);
