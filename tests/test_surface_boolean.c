@@ -1782,6 +1782,30 @@ START_TEST(sizes_are_numbers_or_refused) {
 }
 END_TEST
 
+/* A coordinate far below the others, but not 0 */
+START_TEST(small_coordinates_are_numbers_or_refused) {
+    static const double one[3] = {1, 1, 1}, small[3] = {0x1p-128, 0x1p-129, 5e-324};
+    int i;
+    for (i = 0; i < 3; i++) {
+        double low[3] = {0, 0, 0};
+        gxb_boolean *b = NULL;
+        gxb_operand o;
+        gx_failure failure;
+        wl_surface s;
+        low[1] = small[i];
+        memset(&s, 0, sizeof s);
+        wl_add_aligned_box(&s, low, one);
+        o = operand_of(&s, GXB_UNION);
+        ck_assert_int_eq(gxb_boolean_create(NULL, &b, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_add(b, &o, &failure), i == 0 ? GX_OK : GX_ERROR_RANGE);
+        ck_assert(i == 0 || failure.index < s.vertex_count);
+        gxb_boolean_destroy(b);
+        surface_free(&s);
+    }
+    gxb_boolean_destroy(NULL);
+}
+END_TEST
+
 /* The largest possible: a second operand 2^128 times as large as the first one */
 START_TEST(largest_volumes_are_numbers) {
     static const double zero[3] = {0, 0, 0};
@@ -1923,6 +1947,7 @@ int main(void) {
     tcase_add_loop_test(tests, crossings_around_islands, 0, 200 / FEWER);
     tcase_add_test(tests, memory_limit);
     tcase_add_loop_test(tests, sizes_are_numbers_or_refused, 0, 17);
+    tcase_add_test(tests, small_coordinates_are_numbers_or_refused);
     tcase_add_test(tests, largest_volumes_are_numbers);
     tcase_add_test(tests, bad_input_is_refused);
     suite_add_tcase(suite, tests);
