@@ -11,8 +11,8 @@ JOBS ?= 2
 BENCH_CFLAGS ?= -O3 -march=native
 
 headers = gxfem.h gxfem_boolean.h gxfem_integrate.h gxfem_solve.h
-# The largest first, since they take longest
-tests = $(patsubst tests/%.c,%,$(shell ls -S tests/test_*.c))
+# The largest first, since they take longest. Those of which a part runs again, test_tight and test_tight_boolean, are short to read only.
+tests = $(patsubst tests/%.c,%,$(wildcard tests/test_tight*.c) $(shell ls -S tests/test_*.c | grep -v test_tight))
 linked_tests = $(patsubst tests/%.c,%,$(shell grep -l GXFEM_LINKED tests/test_*.c))
 examples = $(patsubst examples/%.c,%,$(sort $(wildcard examples/*.c)))
 scenes = $(filter-out embed gxcut gxboolean animation,$(examples))
@@ -64,7 +64,8 @@ help:
 	@echo "make check-amalgam  compile tests of that header"
 	@echo "make install     the headers and gxfem.pc, for pkg-config; PREFIX=/usr/local, DESTDIR= (a stage)"
 	@echo "make check-package  installs into $(BUILD)/package and uses that: by CMake, if it is there, and by pkg-config"
-	@echo "make coverage    lines and branches of the headers that make check reaches: $(BUILD)/coverage/; needs gcc and gcov"
+	@echo "make coverage    lines and branches of the headers that make check reaches: $(BUILD)/coverage/; needs gcc and gcov;"
+	@echo "                 tests/unreached.txt says why others are not"
 	@echo "make clean       removes $(BUILD)/"
 
 # ---- programs
@@ -153,6 +154,9 @@ $(linked_tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: tests/%.c $(BUILD)/gxfem.o
 	@mkdir -p $(@D)
 	$(linked) -Itests $(shell pkg-config --cflags check) $< $(BUILD)/gxfem.o -o $@ $(LDFLAGS) $(shell pkg-config --libs check) -lm
 
+$(BUILD)/tests/test_tight: tests/test_memory.c
+$(BUILD)/tests/test_tight_boolean: tests/test_surface_boolean.c
+
 # The recipes' test includes the snippets of the page.
 $(BUILD)/tests/test_recipes: $(BUILD)/recipes.h
 $(BUILD)/tests/test_recipes: compile += -I$(BUILD) -pthread
@@ -217,18 +221,20 @@ install:
 check-package:
 	@JOBS=$(JOBS) CC="$(CC)" sh tests/package.sh $(BUILD)/package
 
-# Without optimisation, so that each branch of the source is one of the program; counts are added atomically, as threads count too.
+# Without optimisation, and nothing is inlined by force, so that each branch of the source is one of the program; counts are added
+# atomically, as threads count too.
 coverage:
 	@sh tests/install.sh check
 	@mkdir -p $(BUILD)/coverage && find $(BUILD)/coverage -name '*.gcda' -exec rm -f {} +
 	@CK_TIMEOUT_MULTIPLIER=20 $(MAKE) --no-print-directory -k -j$(JOBS) check-programs CC=gcc BUILD=$(BUILD)/coverage \
-	    CFLAGS="-O0 --coverage -fprofile-update=prefer-atomic" >$(BUILD)/coverage/check.log 2>&1 || \
+	    CFLAGS="-O0 -Dalways_inline=unused --coverage -fprofile-update=prefer-atomic" >$(BUILD)/coverage/check.log 2>&1 || \
 	    { grep -E 'FAILED|:[FE]:|error' $(BUILD)/coverage/check.log; echo "tests fail: $(BUILD)/coverage/check.log"; exit 1; }
 	@sh tests/coverage.sh $(BUILD)/coverage
 
 lint:
 	@sh tests/lint.sh
 	@sh tests/test_lint.sh
+	@sh tests/test_coverage.sh
 
 # By clang-format 14; other versions differ in details. Tables between "clang-format off" and "on" stay as they are.
 formatted = $(headers) $(wildcard examples/*.[ch] tests/*.[ch] tests/compile/*.[ch] tests/compile/*.cc tests/package/*.c bench/*.[ch])

@@ -1483,10 +1483,16 @@ static gx_result gxp_grow(const gx_allocator *a, void *array, size_t item, size_
     return GX_OK;
 }
 
+/* Does an array have room? tests/test_tight.c says no and has no memory then: memory runs out wherever an array could
+   grow. */
+#ifndef GXP_HAS_ROOM
+#define GXP_HAS_ROOM(allocator, need, capacity) ((need) <= (capacity))
+#endif
+
 /* Makes room for count + extra items; array is the address of the pointer. */
 static inline gx_result gxp_reserve(const gx_allocator *a, void *array, size_t item, size_t count, uint32_t *capacity,
                                     size_t extra) {
-    return count + extra <= *capacity ? GX_OK : gxp_grow(a, array, item, count, capacity, extra);
+    return GXP_HAS_ROOM(a, count + extra, *capacity) ? GX_OK : gxp_grow(a, array, item, count, capacity, extra);
 }
 
 static gx_result gxp_words_room(gx_body *body, gxp_words *words, size_t extra) {
@@ -12526,6 +12532,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_LIST
 #undef GXP_WORDS
 #undef GXP_KEYS
+#undef GXP_HAS_ROOM
 #undef GXP_FIRST
 #undef GXP_SECOND
 #undef GXP_LINK_CELL

@@ -2111,7 +2111,18 @@ static GXBP_RARE void *gxbp_reallocate(const gx_allocator *a, void *old, size_t 
     return memory;
 }
 
-static size_t gxbp_room_for(size_t need) { return need + need / 2 + 16; }
+/* Does an array have room? tests/test_tight.c says no and has no memory then: memory runs out wherever an array could
+   grow. */
+#ifndef GXBP_HAS_ROOM
+#define GXBP_HAS_ROOM(allocator, need, capacity) ((need) <= (capacity))
+#endif
+
+/* Room beyond what is needed; none in tests/test_tight_boolean.c */
+#ifndef GXBP_SPARE
+#define GXBP_SPARE(need) ((need) / 2 + 16)
+#endif
+
+static size_t gxbp_room_for(size_t need) { return need + GXBP_SPARE(need); }
 
 /* Makes room for `extra` items more in an array. array: the address of its pointer. The one way by which arrays grow.
  */
@@ -2119,7 +2130,7 @@ static GXBP_APART gx_result gxbp_reserve(const gx_allocator *a, void *array, uin
                                          size_t item, size_t extra) {
     const size_t need = (size_t)count + extra, room = gxbp_room_for(need);
     void *old, *memory;
-    if (need <= *capacity) return GX_OK;
+    if (GXBP_HAS_ROOM(a, need, *capacity)) return GX_OK;
     if (room > INT32_MAX || room > SIZE_MAX / item) return GX_ERROR_LIMIT;
     memcpy(&old, array, sizeof old);
     memory = gxbp_reallocate(a, old, (size_t)*capacity * item, count * item, room * item);
@@ -2131,7 +2142,7 @@ static GXBP_APART gx_result gxbp_reserve(const gx_allocator *a, void *array, uin
 
 /* The same for owner->array with owner->counter_count items. */
 #define GXBP_RESERVE(allocator, owner, array, counter, extra)                                                          \
-    ((size_t)(extra) <= (owner)->counter##_capacity - (owner)->counter##_count                                         \
+    (GXBP_HAS_ROOM(allocator, (size_t)(extra), (owner)->counter##_capacity - (owner)->counter##_count)                 \
          ? GX_OK                                                                                                       \
          : gxbp_reserve(allocator, &(owner)->array, (owner)->counter##_count, &(owner)->counter##_capacity,            \
                         sizeof *(owner)->array, extra))
@@ -6583,7 +6594,8 @@ static GXBP_COLD int gxbp_stop(gxb_boolean *b, gx_result result) {
 /* The first items of an array come from the arena, so that small cases allocate nothing. */
 static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, uint32_t count, uint32_t *capacity, size_t item,
                                 size_t extra) {
-    const size_t least = *capacity == 0 && extra < 16 ? 16 : extra, room = gxbp_room_for(least);
+    const size_t first = GXBP_SPARE((size_t)0), least = *capacity == 0 && extra < first ? first : extra,
+                 room = gxbp_room_for(least);
     void *memory = *capacity == 0 && least < GXBP_ARENA ? gxbp_take(b, room * item) : NULL;
     gx_result result;
     if (memory != NULL) {
@@ -11915,6 +11927,8 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_LOOSE
 #undef GXBP_BARE
 #undef GXBP_ARENA
+#undef GXBP_HAS_ROOM
+#undef GXBP_SPARE
 #undef GXBP_LARGEST
 #undef GXBP_ROOM
 #undef GXBP_REMOVED

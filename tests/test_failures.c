@@ -145,6 +145,7 @@ START_TEST(skins_and_rays) {
     gx_skin_desc desc;
     gx_skin skin;
     gx_hit hit;
+    int k;
     memset(&desc, 0, sizeof desc);
     add_axis_plane(&w, 0, 0.5);
     /* before there is a skin */
@@ -168,7 +169,11 @@ START_TEST(skins_and_rays) {
     KEEPS(body, gx_body_pick(body, NULL, d, &hit, &failure), GX_ERROR_ARGUMENT, "origin", SIZE_MAX);
     KEEPS(body, gx_body_pick(body, o, NULL, &hit, &failure), GX_ERROR_ARGUMENT, "direction", SIZE_MAX);
     KEEPS(body, gx_body_pick(body, o, d, NULL, &failure), GX_ERROR_ARGUMENT, "hit", SIZE_MAX);
-    KEEPS(body, gx_body_pick(body, bad, d, &hit, &failure), GX_ERROR_NOT_FINITE, "origin", SIZE_MAX);
+    for (k = 0; k < 3; k++) {
+        double one[3] = {0, 0, 0};
+        one[k] = (double)INFINITY;
+        KEEPS(body, gx_body_pick(body, one, d, &hit, &failure), GX_ERROR_NOT_FINITE, "origin", SIZE_MAX);
+    }
     KEEPS(body, gx_body_pick(body, o, bad, &hit, &failure), GX_ERROR_NOT_FINITE, "direction", SIZE_MAX);
     KEEPS(body, gx_body_pick(body, o, none, &hit, &failure), GX_ERROR_ARGUMENT, "direction", SIZE_MAX);
     DONE(gx_body_pick(body, o, d, &hit, &failure));
