@@ -11,8 +11,8 @@ JOBS ?= 2
 BENCH_CFLAGS ?= -O3 -march=native
 
 headers = gxfem.h gxfem_boolean.h gxfem_integrate.h gxfem_solve.h
-# The largest first, since they take longest
-tests = $(patsubst tests/%.c,%,$(shell ls -S tests/test_*.c))
+# The largest first, since they take longest. Those of which a part runs again, test_tight and test_tight_boolean, are short to read only.
+tests = $(patsubst tests/%.c,%,$(wildcard tests/test_tight*.c) $(shell ls -S tests/test_*.c | grep -v test_tight))
 linked_tests = $(patsubst tests/%.c,%,$(shell grep -l GXFEM_LINKED tests/test_*.c))
 examples = $(patsubst examples/%.c,%,$(sort $(wildcard examples/*.c)))
 scenes = $(filter-out embed gxcut gxboolean animation,$(examples))
@@ -27,7 +27,7 @@ help:
 	@echo "make check       builds and runs the tests; installs Check and pkg-config where they are missing"
 	@echo "make check-all   check, then lint, compile tests, sanitizers, compilers and flags; takes longer"
 	@echo "make examples    builds $(examples) in $(BUILD)/"
-	@echo "make scenes      runs the scenes of the papers, writes docs/SCENES.md; SMALL=1: small ones, $(BUILD)/scenes/SCENES.md"
+	@echo "make scenes      runs the scenes, writes docs/SCENES.md; SMALL=1: small ones, $(BUILD)/scenes/SCENES.md"
 	@echo "make pictures    renders the scenes into docs/pictures/; installs f3d and a virtual display where they are missing"
 	@echo "make animation   the README's animated picture, docs/pictures/cut.webp; installs Chromium, node and img2webp"
 	@echo "make lint        house rules of the four headers"
@@ -59,11 +59,13 @@ help:
 	@echo "  soak           100,000 steps of bodies that are cut, kicked and dropped: does a copy run away?"
 	@echo "  frames         frames with a cut beside frames without one"
 	@echo "  skin           the visual surface: moved in each frame, updated after a cut"
+	@echo "  blade          blades in space through bodies that move: pieces, distance to known sheets, cost"
 	@echo "make amalgam     $(BUILD)/gxfem_all.h: the four headers in one"
 	@echo "make check-amalgam  compile tests of that header"
 	@echo "make install     the headers and gxfem.pc, for pkg-config; PREFIX=/usr/local, DESTDIR= (a stage)"
 	@echo "make check-package  installs into $(BUILD)/package and uses that: by CMake, if it is there, and by pkg-config"
-	@echo "make coverage    lines and branches of the headers that make check reaches: $(BUILD)/coverage/; needs gcc and gcov"
+	@echo "make coverage    lines and branches of the headers that make check reaches: $(BUILD)/coverage/; needs gcc and gcov;"
+	@echo "                 tests/unreached.txt says why others are not"
 	@echo "make clean       removes $(BUILD)/"
 
 # ---- programs
@@ -152,6 +154,9 @@ $(linked_tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: tests/%.c $(BUILD)/gxfem.o
 	@mkdir -p $(@D)
 	$(linked) -Itests $(shell pkg-config --cflags check) $< $(BUILD)/gxfem.o -o $@ $(LDFLAGS) $(shell pkg-config --libs check) -lm
 
+$(BUILD)/tests/test_tight: tests/test_memory.c
+$(BUILD)/tests/test_tight_boolean: tests/test_surface_boolean.c
+
 # The recipes' test includes the snippets of the page.
 $(BUILD)/tests/test_recipes: $(BUILD)/recipes.h
 $(BUILD)/tests/test_recipes: compile += -I$(BUILD) -pthread
@@ -216,18 +221,20 @@ install:
 check-package:
 	@JOBS=$(JOBS) CC="$(CC)" sh tests/package.sh $(BUILD)/package
 
-# Without optimisation, so that each branch of the source is one of the program; counts are added atomically, as threads count too.
+# Without optimisation, and nothing is inlined by force, so that each branch of the source is one of the program; counts are added
+# atomically, as threads count too.
 coverage:
 	@sh tests/install.sh check
 	@mkdir -p $(BUILD)/coverage && find $(BUILD)/coverage -name '*.gcda' -exec rm -f {} +
 	@CK_TIMEOUT_MULTIPLIER=20 $(MAKE) --no-print-directory -k -j$(JOBS) check-programs CC=gcc BUILD=$(BUILD)/coverage \
-	    CFLAGS="-O0 --coverage -fprofile-update=prefer-atomic" >$(BUILD)/coverage/check.log 2>&1 || \
+	    CFLAGS="-O0 -Dalways_inline=unused --coverage -fprofile-update=prefer-atomic" >$(BUILD)/coverage/check.log 2>&1 || \
 	    { grep -E 'FAILED|:[FE]:|error' $(BUILD)/coverage/check.log; echo "tests fail: $(BUILD)/coverage/check.log"; exit 1; }
 	@sh tests/coverage.sh $(BUILD)/coverage
 
 lint:
 	@sh tests/lint.sh
 	@sh tests/test_lint.sh
+	@sh tests/test_coverage.sh
 
 # By clang-format 14; other versions differ in details. Tables between "clang-format off" and "on" stay as they are.
 formatted = $(headers) $(wildcard examples/*.[ch] tests/*.[ch] tests/compile/*.[ch] tests/compile/*.cc tests/package/*.c bench/*.[ch])
@@ -250,7 +257,7 @@ check-wasm:
 
 # ---- benches. Only their CSV goes to stdout. BENCH=--small: smaller ones, with a folder of their own for tables and charts
 
-benches = quadrature stepping space table2 conditioning failure scaling kernel smallest solver violent accuracy drift frames skin soak
+benches = quadrature stepping space table2 conditioning failure scaling kernel smallest solver violent accuracy drift frames skin blade soak
 small = $(filter --small,$(BENCH))
 tables = $(BUILD)/bench$(if $(small),/small)
 # The compiler's own default: with -std=c99 gcc fuses no multiplications with additions, whatever -march says.
@@ -273,7 +280,7 @@ $(BUILD)/bench/solver: bench/solver.c $(wildcard bench/*.h) $(headers)
 	    $(shell pkg-config --libs CHOLMOD 2>/dev/null || echo -lcholmod) -lm
 
 # Frames are measured as users build: their table stands in the README.
-$(BUILD)/bench/frames: BENCH_CFLAGS = -O2
+$(BUILD)/bench/frames $(BUILD)/bench/blade: BENCH_CFLAGS = -O2
 
 bench-solver:
 	@sh tests/install.sh bench >&2

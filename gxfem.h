@@ -44,6 +44,8 @@
  *     >>anchoring  material points that survive cuts
  *     >>stepping   held regions, time steps
  *     >>drawing    the visual surface, rays
+ *     >>locating   points of space: what material is there; where material is
+ *     >>slicing    blades in space
  *     >>hashing    of the topology, of the state
  *     >>saving     save and load, clone and restore
  *     then, under GXFEM_IMPLEMENTATION, in the order of a cut; functions call their own and earlier sections only:
@@ -53,7 +55,9 @@
  *     a sheet's thickness:       >>solidify
  *     what is held and whole:    >>anchors >>regions >>grips >>map >>fragments >>motion
  *     a step:                    >>attached >>supports >>model >>step
- *     the skin:                  >>corners >>vertices >>faces >>skinning >>rays
+ *     the skin:                  >>corners >>vertices >>faces >>skinning
+ *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
+ *     a blade in space:          >>layers >>edges >>fronts >>strokes >>blade >>carve
  *     beginning, end, bytes:     >>create >>hashes >>stream >>save
  *
  * Words. Facet: a polygon inside an element or in an element face, made by cuts. Wall: a facet that a sheet covers.
@@ -64,8 +68,9 @@
  * Exact: the set of cells and their links, hence copies and fragments. Decisions are signs of polynomials in the given
  * coordinates (gxfem_boolean.h). Rounded once, to doubles: volumes, masses and vertices.
  *
- * Not there yet: contact between fragments; cuts given in the deformed state; unknowns within a partly cut element (a
- * sheet that ends inside an element separates nothing there until another sheet completes it).
+ * Not there yet: contact between fragments; surfaces given in the deformed state (a moving edge is: gx_blade);
+ * unknowns within a partly cut element (a sheet that ends inside an element separates nothing there until another sheet
+ * completes it).
  *
  * Limits: fewer than 2^28 elements a body (2^24 where pointers have 32 bits), fewer than 2^30 cells and 2^30 copies
  * for steps, some 1.4e9 of each other kind of object, 5e8 vertices and triangles a surface (GX_ERROR_LIMIT). A body's
@@ -534,16 +539,22 @@ GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3] 
 
 #define GX_HIT_COPIES 16 /* room for the copies of a hit */
 
-/* Where a ray first meets the deformed skin. gx_hit_point makes a point of it, to which a spring can be attached. */
+/* A point of the deformed body: where a ray first meets the skin (gx_body_pick), or the material at or nearest to a
+   point of space (gx_body_locate). gx_hit_point makes a point of it, to which a spring can be attached. */
 typedef struct gx_hit {
-    uint32_t triangle;                   /* of the skin; UINT32_MAX: the ray meets nothing, and the rest is 0 */
-    uint32_t fragment, element, surface; /* of the triangle */
-    double distance;                     /* in lengths of direction */
-    double position[3], material[3];     /* deformed, m; material coordinates, m */
-    uint32_t copy_count;                 /* of the copies that move the point */
-    uint32_t copies[GX_HIT_COPIES];      /* copy_count */
-    double weights[GX_HIT_COPIES];       /* copy_count, above 0, 1 in sum */
-    uint64_t epoch;                      /* of the numbering of copies, as in gx_view: for gxs_point */
+    /* Of the skin. UINT32_MAX: the ray meets nothing, and the rest is 0; or a located point, which has none */
+    uint32_t triangle;
+    uint32_t fragment, element;
+    uint32_t surface; /* of the triangle; of a located point: 0 */
+    uint32_t cell;    /* below gx_view.cell_count */
+    uint32_t slot;    /* names the cell also after further cuts, see gx_body_place */
+    /* of a ray: in lengths of direction. Of a located point: m, from the point of space; 0: that is in the cell */
+    double distance;
+    double position[3], material[3]; /* deformed, m; material coordinates, m */
+    uint32_t copy_count;             /* of the copies that move the point */
+    uint32_t copies[GX_HIT_COPIES];  /* copy_count */
+    double weights[GX_HIT_COPIES];   /* copy_count, above 0, 1 in sum */
+    uint64_t epoch;                  /* of the numbering of copies, as in gx_view: for gxs_point */
 } gx_hit;
 /* The point of a hit, for springs and contact. Keep the hit as long: the point may refer to it. If the ray met nothing,
    the point has count 0, which steps refuse. */
@@ -554,10 +565,86 @@ GXFEM_API gxs_point gx_hit_point(const gx_hit *hit);
    too thin for points given by doubles), MEMORY, LIMIT. */
 GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *anchor,
                                   gx_failure *failure /* or NULL */);
-/* Finds the nearest triangle on a ray. Errors: ARGUMENT (also: direction is 0), NOT_FINITE, SEQUENCE (there is no skin,
-   or a cut has been since). */
+/* Finds the nearest triangle on a ray, the first of equally near ones. Takes a pass over the copies, then no more than
+   the ray meets. Errors: ARGUMENT (also: direction is 0), NOT_FINITE, SEQUENCE (there is no skin, or a cut has been
+   since), MEMORY, LIMIT. */
 GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit,
                                  gx_failure *failure /* or NULL */);
+
+/* >>locating ------------------------------------------------------------------------------------------------------- */
+
+/* A cell of an uncut element fills its deformed element. A cell of a cut one fills the part that is its own. Corners
+   are where rest + displacement, rounded once, puts them; which cells contain a point is decided exactly by that. Faces
+   and walls belong to the cells on both their sides. Inverted elements contain points as others do, flat ones none. */
+
+/* Finds the material at points of space: of the cells that contain a point the one with the lowest slot. hit.material
+   is within 2^-48 of the element's size of the exact place, and hit.position is the point. Where no cell contains it,
+   the nearest point of the body's surface: distance is above 0. The first call makes a tree of boxes; each takes a pass
+   over the copies, and the first after a cut lists the cells. Many points are faster in one call than in many.
+   points: count x 3, m, in space. hits: room for count. After an error hits mean nothing.
+   Errors: ARGUMENT, NOT_FINITE (a point, or a copy's displacement), RANGE (likewise: 2^128 or more), EMPTY (all
+   material is removed), LIMIT, MEMORY. */
+GXFEM_API gx_result gx_body_locate(gx_body *body, const double *points, size_t count, gx_hit *hits,
+                                   gx_failure *failure /* or NULL */);
+/* Finds all cells that contain a point, by slot: several where pieces overlap, and on faces and walls. *count: how many
+   there are, also after CAPACITY; 0 is no error. Errors: as above, CAPACITY (capacity is below *count). */
+GXFEM_API gx_result gx_body_locate_all(gx_body *body, const double point[3], gx_hit *hits, size_t capacity,
+                                       size_t *count, gx_failure *failure /* or NULL */);
+/* Gives where a cell has a material point; outside of its element, where its affine map, extended, would have it. slot:
+   of a hit, below gx_view.slot_count. It names a cell for good; where a cut divides the cell, one part keeps it.
+   Errors: ARGUMENT, NOT_FINITE (material, or a copy's displacement), RANGE (likewise), INDEX (slot), EMPTY (slot: the
+   cell was removed). */
+GXFEM_API gx_result gx_body_place(const gx_body *body, uint32_t slot, const double material[3], double position[3],
+                                  gx_failure *failure /* or NULL */);
+/* >>slicing: where a blade is, while the body moves --------------------------------------------------------------- */
+
+/* A blade is an edge in space, a polyline, that is moved through a body, which moves meanwhile. Each piece is cut where
+   it meets the edge: pieces that lie over each other in space are different layers, and each remembers, in material
+   coordinates, how far the edge has come in it (its front). A move cuts what lies between the fronts and the edge when
+   a front has advanced far enough, or before its path bends away from a straight strip. A partly cut element has no
+   mechanical effect, so that waiting costs nothing. */
+typedef struct gx_blade gx_blade; /* opaque; belongs to a body, which destroys it at last */
+
+typedef struct gx_blade_desc {
+    /* m: a strip begins anew where the edge's path in the material bends by more. 0: a hundredth of the mean size of
+       elements, which is the cube root of six times their volume */
+    double tolerance;
+    double min_advance;   /* m: a front that has come less far waits. 0: half the mean size of elements */
+    uint32_t max_samples; /* places at which a layer looks at the edge, at most; 0: 1000 */
+    int starts_inside;    /* 1: the first edge, and the first after a lift, may be in the material */
+} gx_blade_desc;
+typedef struct gx_blade_report {
+    size_t layer_count;    /* pieces near the edge */
+    size_t triangle_count; /* of the strips that cut */
+    double deviation;      /* m: the largest distance between the edge's path and these strips, as far as it was seen */
+    gx_cut_report cut;     /* zero, with min_link_ratio 1, where nothing was cut */
+} gx_blade_report;
+/* Creates a blade. Errors: ARGUMENT, NOT_FINITE, MEMORY, CONFIGURATION. */
+GXFEM_API gx_result gx_blade_create(gx_body *body, const gx_blade_desc *desc /* or NULL: zero */, gx_blade **blade,
+                                    gx_failure *failure /* or NULL */);
+GXFEM_API void gx_blade_destroy(gx_blade *blade); /* or NULL */
+/* The body's blades in the order in which they were created, to find those of a loaded or cloned body; NULL where there
+   are no more. After gx_body_restore the body has the blades of the other: those with the same index stay valid, those
+   that the other lacks are lifted. */
+GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index);
+/* Moves the edge and cuts what it has passed since the last move, relative to the material. edge: point_count x 3, in
+   space, m; as many points at each move until the blade is lifted, 2 or more. scope: fragments that alone are cut,
+   below gx_view.fragment_count; count 0: all. On an error body and blade are as they were.
+   Errors: ARGUMENT (also: the first edge is inside the material and starts_inside is 0, index: point), INDEX,
+   NOT_FINITE, RANGE, LIMIT, MEMORY. */
+GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t point_count,
+                                  const uint32_t *scope_fragments, size_t scope_fragment_count,
+                                  gx_blade_report *report /* or NULL */, gx_failure *failure /* or NULL */);
+/* Cuts what waits, and forgets fronts and edge: the next move begins anew. Errors: ARGUMENT, LIMIT, MEMORY. */
+GXFEM_API gx_result gx_blade_lift(gx_blade *blade, gx_blade_report *report /* or NULL */,
+                                  gx_failure *failure /* or NULL */);
+
+/* Removes the material that a closed tool in space covers now (a drill, a punch), from each piece where it meets the
+   tool. tool: vertices in space, m; kind and scope_slots are not read. Its triangles are divided where elements
+   are smaller.
+   Errors: as gx_body_cut; a field of the tool reads "tool.vertices". */
+GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_report *report /* or NULL */,
+                                  gx_failure *failure /* or NULL */);
 
 /* >>hashing -------------------------------------------------------------------------------------------------------- */
 
@@ -732,7 +819,7 @@ typedef struct gxp_leaves { /* beside the leaves of the complex */
 } gxp_leaves;
 
 typedef struct gxp_copies {
-    uint32_t count, capacity[11];
+    uint32_t count, capacity[12];
     uint32_t *node;
     double *displacement, *velocity; /* x 3 */
     double *rest_time;               /* s */
@@ -741,6 +828,7 @@ typedef struct gxp_copies {
     uint32_t *before; /* 2 x its index when the solver's model was made; of a newer copy: 2 x that of its origin, + 1 */
     /* displacement and velocity a step ago, x 3, and room for those of now; from the first BDF2 step on */
     double *history[4];
+    double *seen;       /* displacement when the tree was last refitted, x 3; from the first use of the tree on */
     double previous_dt; /* s, of the step that history[0] and [1] are from; 0: there is none */
 } gxp_copies;
 
@@ -841,6 +929,7 @@ typedef struct gxp_view { /* the body as gx_view tells it */
     uint32_t count, capacity[5];
     uint32_t *slot, *fragment, *element, *copies; /* of each kept cell; copies x 4 */
     double *volume;
+    gxp_words indices;         /* by slot: the index of a kept cell in these lists; empty until somebody asks */
     gxp_words copy_fragment;   /* of each copy: a parent among copies, see gxp_find; the root stands for its fragment */
     gxp_words fragment_number; /* of each root */
     /* copy_fragment and fragment_number hold for copies older than splits, and nothing has been removed */
@@ -933,9 +1022,10 @@ typedef struct gxp_skin {
     uint32_t *copies, *point; /* from here on see gx_skin */
     double *weights, *rest;
     float *normal, *texture;
-    uint32_t triangle_count, triangle_capacity[6];
+    uint32_t triangle_count, triangle_capacity[7];
     gxp_skin_links *links;
     uint32_t *triangles, *fragment, *element, *material, *surface;
+    uint32_t *cell;  /* slot */
     gxp_words first; /* element_count: the first of its triangles */
     gxp_skin_slot *slots;
     uint32_t slot_count, slot_capacity, free_slot;
@@ -955,6 +1045,141 @@ typedef struct gxp_skin {
     double *positions;                        /* vertices x 3 */
     uint32_t normal_capacity, position_capacity;
 } gxp_skin;
+
+/* --- blades --- */
+
+/* A place on a blade's edge, as one layer sees it */
+typedef struct gxp_front_vertex {
+    double rest[3];     /* material point; in the air at most an element's size away from the layer */
+    double extended[3]; /* the same by the extended map alone: in the air as far away as the edge is */
+    double position[3]; /* in space, when it was seen */
+    double ahead[3];    /* in which direction the front came here, of length 1; 0: it began here */
+    double distance;    /* from the layer, m; 0: inside */
+    double size;        /* of the element, m */
+    double along;       /* index of a point of the edge, + share of the way to the next */
+    uint32_t element;   /* whose map it is */
+    uint32_t unused;    /* rows are saved as bytes */
+} gxp_front_vertex;
+typedef struct gxp_front_list {
+    gxp_front_vertex *data;
+    uint32_t count, capacity;
+} gxp_front_list;
+typedef struct gxp_points {
+    double *data; /* count x 3 */
+    uint32_t count, capacity;
+} gxp_points;
+
+/* What a layer remembers: ranges of the state's lists */
+typedef struct gxp_layer {         /* words only: rows are saved as bytes */
+    uint32_t front, front_count;   /* vertices: up to here it is cut */
+    uint32_t latest, latest_count; /* vertices: how far the edge had come at the last move; waits to be cut */
+    uint32_t path, path_count;     /* points: where the edge has been since the front was cut */
+    uint32_t sheet, sheet_count;   /* points, 3 for each triangle: the last strips */
+} gxp_layer;
+typedef struct gxp_layer_list {
+    gxp_layer *data;
+    uint32_t count, capacity;
+} gxp_layer_list;
+
+typedef struct gxp_blade_state { /* what lasts from move to move */
+    gxp_front_list vertices;
+    gxp_points points;
+    gxp_layer_list layers;
+    gxp_keys members;    /* slot of a near cell, layer; ascending */
+    uint32_t slot_count; /* of the body then */
+    gxp_points edge;     /* none: the blade is lifted */
+} gxp_blade_state;
+
+typedef struct gxp_close_cell { /* a kept cell around the edge */
+    uint32_t slot, layer;
+    double corners[4][3], low[3], high[3]; /* deformed */
+    double middle[3], radius;              /* of a ball around the corners */
+    double stretch;                        /* volume / volume at rest of its element; negative: inverted */
+    double size;                           /* of its element, m */
+    int is_near;                           /* 0: looked at in vain */
+} gxp_close_cell;
+typedef struct gxp_vicinity {
+    gxp_close_cell *cells;
+    uint32_t count, capacity;
+    uint32_t layer_count;
+    gxp_words of_slot;     /* by slot: index in cells, if that has the slot */
+    gxp_words of_copy;     /* by copy: index of a cell with that copy, if it has it */
+    gxp_words parents;     /* of cells, see gxp_find */
+    gxp_keys order;        /* place along the axis, index in cells: by layer, ascending */
+    gxp_words layer_start; /* layer_count + 1, into order */
+    int axis;
+    double widest; /* of the cells along the axis */
+} gxp_vicinity;
+
+/* Where a place on the edge lies by a layer's front */
+typedef struct gxp_relation {
+    double share;     /* of the nearest point on the segment */
+    double distance;  /* m */
+    uint32_t segment; /* of the front, the nearest */
+    uint8_t ahead;    /* 1: the front advances there */
+    uint8_t strays;   /* 1: the edge has left its cut through the side */
+    uint8_t beyond;   /* 1: past an end of the front */
+} gxp_relation;
+
+struct gx_blade {
+    gx_body *body;
+    gx_blade *next;                         /* of the body's */
+    double tolerance, min_advance, largest; /* m; the largest size of elements */
+    uint32_t max_samples;
+    int starts_inside;
+    gxp_blade_state now, then; /* then: what a move makes; it becomes now if the move succeeds */
+    /* working memory of a move */
+    gxp_vicinity near;
+    gxp_points quads;   /* 4 for each part of the strip that was swept; of a layer: corners of its strips, in space */
+    gxp_words found;    /* cells around a quad */
+    gxp_words in_scope; /* by fragment: 1 if it is in the scope */
+    gxp_words scope;    /* slots of each surface in turn */
+    gxp_points corners; /* 3 for each triangle of each surface in turn */
+    gxp_words surface_starts; /* of each surface: in scope, in corners */
+    gxp_words triangles;      /* 0, 1, 2 ... */
+    gx_surface *surfaces;
+    uint32_t surface_capacity;
+    /* of one layer at a move */
+    gxp_front_list front, latest, samples, advanced;
+    gxp_front_list strip, cut; /* 3 for each triangle: of one strip, of all */
+    gxp_points path, sheet;
+    gxp_relation *relations; /* of the samples */
+    uint32_t relation_capacity;
+    uint32_t last_sight; /* a near cell: the next place on the edge is not far from it */
+    gxp_words needed;    /* by sample: 1 if it is not on a line with others */
+    gxp_words owners;    /* old layers that flow into it */
+    gxp_keys halved;     /* edges of a tool, two vertices each */
+    gxp_words divided;   /* triangles of a tool */
+};
+
+/* --- a cache: boxes over the deformed cells --- */
+
+typedef struct gxp_bounds {
+    double low[3], high[3]; /* low above high: nothing is there */
+} gxp_bounds;
+
+/* Boxes over the deformed cells, see >>tree */
+typedef struct gxp_tree {
+    uint32_t cluster_count; /* a power of two; 0: the tree is not made */
+    gxp_words leaf_first;   /* cluster_count x GXP_TREE_LEAVES + 1, into mesh.box_elements */
+    gxp_bounds *leaf_boxes; /* cluster_count x GXP_TREE_LEAVES */
+    gxp_bounds *own_boxes;  /* element_count: of elements, in the order of mesh.box_elements */
+    gxp_bounds *boxes;      /* 2 x cluster_count - 1: below i are 2 i + 1 and 2 i + 2; clusters are the last ones */
+    uint32_t leaf_box_capacity, own_box_capacity, box_capacity;
+    gxp_words marks;         /* of boxes: GXP_BOX_MOVED, GXP_BOX_STALE */
+    gxp_words node_first;    /* node_count + 1, into node_clusters */
+    gxp_words node_clusters; /* clusters with elements around each node */
+    double reach[3];         /* largest |coordinates| at rest */
+    int wild;                /* a copy was out of range when the boxes were refitted */
+    /* of a call */
+    gxp_words found; /* slots of cells at a point, ascending */
+    gxp_words near;  /* places in mesh.box_elements: of elements near points that are located together */
+    gxp_keys order;  /* place on a curve, point */
+} gxp_tree;
+enum {
+    GXP_BOX_MOVED = 1, /* copies that it must contain have moved */
+    GXP_BOX_STALE = 2  /* of a cluster: its leaves' boxes are older than its own */
+};
 
 /* --- working memory of one call. No contents last to the next call; the memory stays, so that a cut as large as the
    last one allocates nothing. --- */
@@ -1023,6 +1248,8 @@ struct gx_body {
     gxp_model model;
     gxp_attached attached;
     gxp_skin skin;
+    gx_blade *blades; /* list through next */
+    gxp_tree tree;
     gxp_scratch scratch;
 };
 
@@ -1091,8 +1318,9 @@ static const gxp_column gxp_copy_columns[] = {
     GXP_COLUMN(copies, history[0],   capacity,  7, 3 * sizeof(double), GXP_HISTORY | GXP_LATER),
     GXP_COLUMN(copies, history[1],   capacity,  8, 3 * sizeof(double), GXP_HISTORY | GXP_LATER),
     GXP_COLUMN(copies, history[2],   capacity,  9, 3 * sizeof(double), GXP_LATER),
-    GXP_COLUMN(copies, history[3],   capacity, 10, 3 * sizeof(double), GXP_LATER)};
-enum { GXP_TEXTURE_COLUMN = 3, GXP_FIRST_HISTORY = 7 }; /* places in the lists above */
+    GXP_COLUMN(copies, history[3],   capacity, 10, 3 * sizeof(double), GXP_LATER),
+    GXP_COLUMN(copies, seen,         capacity, 11, 3 * sizeof(double), GXP_LATER)};
+enum { GXP_TEXTURE_COLUMN = 3, GXP_FIRST_HISTORY = 7, GXP_SEEN_COLUMN = 11 }; /* places in the lists above */
 static const gxp_column gxp_surface_columns[] = {
     GXP_COLUMN(cuts, surfaces, surface_capacity, 0, sizeof(gxp_surface_record), GXP_TOPOLOGY)};
 static const gxp_column gxp_map_columns[] = {
@@ -1134,7 +1362,8 @@ static const gxp_column gxp_skin_triangle_columns[] = {
     GXP_COLUMN(skin, fragment,  triangle_capacity, 2, sizeof(uint32_t), 0),
     GXP_COLUMN(skin, element,   triangle_capacity, 3, sizeof(uint32_t), 0),
     GXP_COLUMN(skin, material,  triangle_capacity, 4, sizeof(uint32_t), 0),
-    GXP_COLUMN(skin, surface,   triangle_capacity, 5, sizeof(uint32_t), 0)};
+    GXP_COLUMN(skin, surface,   triangle_capacity, 5, sizeof(uint32_t), 0),
+    GXP_COLUMN(skin, cell,      triangle_capacity, 6, sizeof(uint32_t), 0)};
 
 #define GXP_TABLE(count, columns) {offsetof(gx_body, count), columns, sizeof columns / sizeof *columns}
 
@@ -1173,7 +1402,7 @@ static const gxp_column gxp_lists[] = {
     GXP_WORDS(holds.node_first), GXP_WORDS(holds.nodes), GXP_WORDS(holds.region_of), GXP_WORDS(holds.near_nodes),
     GXP_WORDS(holds.probe.points), GXP_WORDS(holds.probe.reached),
     GXP_LIST(holds.probe.triangles, holds.probe.triangle_capacity, sizeof(gxb_triangle)),
-    GXP_WORDS(view.copy_fragment), GXP_WORDS(view.fragment_number),
+    GXP_WORDS(view.indices), GXP_WORDS(view.copy_fragment), GXP_WORDS(view.fragment_number),
     GXP_WORDS(view.splits), GXP_WORDS(view.split_cells), GXP_WORDS(view.split_parents),
     GXP_WORDS(model.changed), GXP_WORDS(model.thin),
     GXP_LIST(attached.springs, attached.spring_capacity, sizeof(gxs_spring)),
@@ -1189,6 +1418,11 @@ static const gxp_column gxp_lists[] = {
     GXP_WORDS(skin.corner_points), GXP_WORDS(skin.corner_vertices),
     GXP_LIST(skin.normals, skin.normal_capacity, 3 * sizeof(double)),
     GXP_LIST(skin.positions, skin.position_capacity, 3 * sizeof(double)),
+    GXP_WORDS(tree.leaf_first), GXP_LIST(tree.leaf_boxes, tree.leaf_box_capacity, sizeof(gxp_bounds)),
+    GXP_LIST(tree.own_boxes, tree.own_box_capacity, sizeof(gxp_bounds)),
+    GXP_LIST(tree.boxes, tree.box_capacity, sizeof(gxp_bounds)), GXP_WORDS(tree.marks),
+    GXP_WORDS(tree.node_first), GXP_WORDS(tree.node_clusters), GXP_WORDS(tree.found), GXP_WORDS(tree.near),
+    GXP_KEYS(tree.order),
     GXP_WORDS(scratch.removed), GXP_WORDS(scratch.pinches), GXP_WORDS(scratch.touched), GXP_WORDS(scratch.new_cells),
     GXP_KEYS(scratch.links), GXP_WORDS(scratch.link_first), GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
     GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements),
@@ -1249,10 +1483,16 @@ static gx_result gxp_grow(const gx_allocator *a, void *array, size_t item, size_
     return GX_OK;
 }
 
+/* Does an array have room? tests/test_tight.c says no and has no memory then: memory runs out wherever an array could
+   grow. */
+#ifndef GXP_HAS_ROOM
+#define GXP_HAS_ROOM(allocator, need, capacity) ((need) <= (capacity))
+#endif
+
 /* Makes room for count + extra items; array is the address of the pointer. */
 static inline gx_result gxp_reserve(const gx_allocator *a, void *array, size_t item, size_t count, uint32_t *capacity,
                                     size_t extra) {
-    return count + extra <= *capacity ? GX_OK : gxp_grow(a, array, item, count, capacity, extra);
+    return GXP_HAS_ROOM(a, count + extra, *capacity) ? GX_OK : gxp_grow(a, array, item, count, capacity, extra);
 }
 
 static gx_result gxp_words_room(gx_body *body, gxp_words *words, size_t extra) {
@@ -2204,7 +2444,7 @@ static gx_result gxp_list_cells(gx_body *body) {
     gxp_view *view = &body->view;
     uint32_t e, cell, i;
     gx_result result;
-    view->count = 0;
+    view->count = view->indices.count = 0;
     result = gxp_grow_rows(body, GXP_VIEW, body->cells.count);
     if (result == GX_OK) result = gxp_start_words(body, &view->copy_fragment, body->copies.count);
     if (result != GX_OK) return result;
@@ -2256,6 +2496,19 @@ static gx_result gxp_update_view(gx_body *body) {
     view->stale = 0;
     view->sums_stale = view->labels_known = 1;
     view->splits.count = 0;
+    return GX_OK;
+}
+
+/* Lists the index of each kept cell by slot, if that is not there; the view is up to date. */
+static gx_result gxp_list_indices(gx_body *body) {
+    gxp_view *view = &body->view;
+    gx_result result;
+    uint32_t i;
+    if (view->indices.count > 0) return GX_OK;
+    result = gxp_start_words(body, &view->indices, body->cells.count);
+    if (result != GX_OK) return result;
+    view->indices.count = body->cells.count;
+    for (i = 0; i < view->count; i++) view->indices.data[view->slot[i]] = i;
     return GX_OK;
 }
 
@@ -2881,13 +3134,16 @@ static uint32_t gxp_grid_place(double x, int shift) {
     return (uint32_t)(bits >> 63 ? ~m : m) & 511;
 }
 
-/* The place of a triangle's first corner on a Z-curve through the body: the bits of its three grid places in turn */
-static uint32_t gxp_curve_place(const gxp_cut *cut, const gxp_surface *s, uint32_t triangle) {
-    const double *x = s->given->vertices + 3 * (size_t)s->given->triangles[3 * (size_t)triangle];
-    uint32_t place = 0, k, b;
+/* The place of a point on a Z-curve through the body: the bits of its three grid places in turn */
+static uint32_t gxp_curve_place(const gx_body *body, const double x[3]) {
+    uint32_t place = 0, k;
     for (k = 0; k < 3; k++) {
-        const uint32_t along = gxp_grid_place(x[k], gxb_complex_shift(cut->body->complex));
-        for (b = 0; b < 9; b++) place |= (along >> b & 1) << (3 * b + k);
+        uint32_t bits = gxp_grid_place(x[k], gxb_complex_shift(body->complex)); /* two zeros go between its bits */
+        bits = (bits | bits << 16) & 0x030000ffu;
+        bits = (bits | bits << 8) & 0x0300f00fu;
+        bits = (bits | bits << 4) & 0x030c30c3u;
+        bits = (bits | bits << 2) & 0x09249249u;
+        place |= bits << k;
     }
     return place;
 }
@@ -2910,10 +3166,12 @@ static gx_result gxp_insert_surface(gxp_cut *cut, gxp_surface *s, int scoped) {
     result = gxp_keys_room(body, &scratch->order, 2 * (size_t)count); /* sorting takes as much again */
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint64_t random = gxp_mix(i);
-        uint32_t round = GXP_LAST_ROUND;
+        uint32_t round = GXP_LAST_ROUND, place;
         while (round > 16 && !(random >> 3 * (GXP_LAST_ROUND - round) & 7)) round--;
         before += round < GXP_LAST_ROUND && !s->flat[i];
-        if (!s->flat[i]) result = gxp_push_key(body, &scratch->order, round << 27 | gxp_curve_place(cut, s, i), i);
+        if (s->flat[i]) continue;
+        place = gxp_curve_place(body, s->given->vertices + 3 * (size_t)s->given->triangles[3 * (size_t)i]);
+        result = gxp_push_key(body, &scratch->order, round << 27 | place, i);
     }
     if (result == GX_OK) result = gxp_sort_keys(body, &scratch->order, 0, scratch->order.count);
     for (i = 0; i < scratch->order.count && result == GX_OK; i++) {
@@ -5712,6 +5970,35 @@ static void gxp_cell_corners(const gx_body *body, const gxp_cell *cell, int move
     }
 }
 
+/* Where a copy of a node is: rest + displacement, rounded once */
+static inline void gxp_copy_position(const gx_body *body, uint32_t node, uint32_t copy, double x[3]) {
+    const double *rest = body->mesh.positions + 3 * (size_t)node, *u = body->copies.displacement + 3 * (size_t)copy;
+    x[0] = rest[0] + u[0];
+    x[1] = rest[1] + u[1];
+    x[2] = rest[2] + u[2];
+}
+
+/* Where the corners of a cell's element are, as its copies move them. These doubles are what locating takes as exact.
+ */
+static inline void gxp_moved_corners(const gx_body *body, const gxp_cell *cell, double x[12]) {
+    const uint32_t *node = gxb_complex_element_nodes(body->complex, cell->element);
+    gxp_copy_position(body, node[0], cell->copies[0], x);
+    gxp_copy_position(body, node[1], cell->copies[1], x + 3);
+    gxp_copy_position(body, node[2], cell->copies[2], x + 6);
+    gxp_copy_position(body, node[3], cell->copies[3], x + 9);
+}
+
+/* Where the cell's affine map has a material point: weights are its barycentric coordinates in the element */
+static void gxp_map_affine(const gx_body *body, const gxp_cell *cell, const double weights[4], const double rest[3],
+                           double position[3]) {
+    int n, k;
+    for (k = 0; k < 3; k++) {
+        position[k] = rest[k];
+        for (n = 0; n < 4; n++)
+            position[k] += weights[n] * body->copies.displacement[3 * (size_t)cell->copies[n] + (size_t)k];
+    }
+}
+
 /* The velocities of the cell's copies, less a mean */
 static void gxp_cell_velocities(const gx_body *body, const gxp_cell *cell, const double mean[3], double v[4][3]) {
     int n, k;
@@ -7111,7 +7398,7 @@ static gx_result gxp_own_slot(gx_body *body, uint32_t *slot) {
 
 /* A facet that is shown, as seen from one cell */
 typedef struct gxp_skin_face {
-    uint32_t element;
+    uint32_t element, cell;
     const uint32_t *copies; /* the cell's */
     uint32_t slots[4];      /* outer: of the face's nodes, by local node */
     uint8_t outer;
@@ -7341,6 +7628,7 @@ static gx_result gxp_add_skin_triangle(gx_body *body, const gxp_skin_face *face,
     for (k = 0; k < 3; k++) corner[k] = vertex[inward ? 2 - k : k];
     s->triangle_count++;
     s->element[t] = face->element;
+    s->cell[t] = face->cell;
     s->material[t] = body->mesh.element_materials[face->element];
     s->surface[t] = face->surface;
     memset(s->links[t].normal, 0, sizeof s->links[t].normal);
@@ -7540,6 +7828,7 @@ static gx_result gxp_skin_element(gx_body *body, uint32_t element) {
     if (!untouched) result = gxb_complex_open_element(body->complex, element);
     for (cell = element; cell != GXP_NONE && result == GX_OK; cell = body->cells.data[cell].next) {
         if (!body->cells.data[cell].kept) continue;
+        face.cell = cell;
         face.copies = body->cells.data[cell].copies;
         if (untouched)
             result = gxp_skin_whole(body, &face);
@@ -7834,36 +8123,1107 @@ GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3],
     return gxp_end(failure, GX_OK);
 }
 
-/* >>rays: picking -------------------------------------------------------------------------------------------------- */
-/* In: a ray. Out: where it first meets the deformed skin. Touches the skin's working positions. */
+/* >>tree: boxes over the deformed cells ---------------------------------------------------------------------------- */
+/* In: where copies are. Out: walks through the elements whose deformed cells may be somewhere, or nearest to something.
+   Touches the tree and copies.seen.
+ *
+ * The tree is made when somebody first asks, in the order of mesh.boxes. It is a complete binary tree. Its last level
+ * are clusters of up to 64 neighbouring elements, each with GXP_TREE_LEAVES leaves of up to GXP_TREE_LEAF elements. Its
+ * boxes contain the corners of all kept cells of their elements, as copies move them, and what rounding makes of points
+ * between these. One pass over the copies finds those that have moved since the last refit. A cluster's box is the hull
+ * of the copies of its nodes; it is found again where one of them has moved. Boxes of leaves are found again when a
+ walk
+ * enters the cluster.
+ *
+ * Cuts need no refit: a new copy is where the one is that it comes from, with the same row of copies.seen, and cells
+ * only change to such copies. A rollback leaves older rows alone. The last copy, put in the place of a dead one, takes
+ * its row along. */
 
-/* Transforms the deformed vertices to the ray's coordinates: two across it, sheared along its largest component, and
-   the distance along it in lengths of direction. */
-static void gxp_shear_along(const gx_body *body, const double origin[3], const double direction[3]) {
-    const gxp_skin *s = &body->skin;
-    int axis = 0, k;
-    size_t i;
-    for (k = 1; k < 3; k++)
-        if (fabs(direction[k]) > fabs(direction[axis])) axis = k;
-    gxp_move_vertices(body, s->positions);
-    for (i = 0; i < s->vertex_count; i++) {
-        double *x = s->positions + 3 * i;
-        const double along = (x[axis] - origin[axis]) / direction[axis];
-        const double p = x[(axis + 1) % 3] - origin[(axis + 1) % 3], q = x[(axis + 2) % 3] - origin[(axis + 2) % 3];
-        x[0] = p - along * direction[(axis + 1) % 3];
-        x[1] = q - along * direction[(axis + 2) % 3];
-        x[2] = along;
+#define GXP_TREE_LEAVES 16u
+#define GXP_TREE_LEAF   4u
+
+/* Boxes are wider than their copies' positions by this share (2^-44) of the coordinates at rest and the displacement.
+   A point of the skin is the sum of 5 products of these, at most 12 roundings of each: its error is below a tenth of
+   the same mean of its copies' margins. */
+#define GXP_TREE_MARGIN 5.6843418860808015e-14
+
+/* A limit that excludes nothing, and a bound above it */
+#define GXP_TREE_ALL    1.797e308
+#define GXP_TREE_BEYOND 1.7976931348623157e308
+
+/* Is |x| below 2^128? Reads bits, so that it is right for what is not finite under any flag. */
+static int gxp_is_near(double x) {
+    uint64_t b;
+    memcpy(&b, &x, sizeof b);
+    return ((b >> 52) & 0x7ff) < 1023 + 128;
+}
+
+static void gxp_empty_bounds(gxp_bounds *box) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        box->low[k] = GXP_TREE_BEYOND;
+        box->high[k] = -GXP_TREE_BEYOND;
     }
 }
 
-/* Does the ray pass through the triangle? share: the weights of its corners at the point; distance: of the point. The
-   signs are exact, so that no ray slips through between triangles that share corners. */
-static int gxp_meet_triangle(const gxp_skin *s, const uint32_t *t, double share[3], double *distance) {
+static void gxp_add_bounds(gxp_bounds *box, const gxp_bounds *other) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        box->low[k] = other->low[k] < box->low[k] ? other->low[k] : box->low[k];
+        box->high[k] = other->high[k] > box->high[k] ? other->high[k] : box->high[k];
+    }
+}
+
+/* The box of one copy, with its margin */
+static void gxp_copy_bounds(const gx_body *body, uint32_t node, uint32_t copy, gxp_bounds *box) {
+    const double *u = body->copies.displacement + 3 * (size_t)copy;
+    double x[3];
+    int k;
+    gxp_copy_position(body, node, copy, x);
+    for (k = 0; k < 3; k++) {
+        const double margin = GXP_TREE_MARGIN * (body->tree.reach[k] + fabs(u[k]));
+        box->low[k] = x[k] - margin;
+        box->high[k] = x[k] + margin;
+    }
+}
+
+/* --- making it --- */
+
+/* The first leaves of the halves, halves of halves and so on of `leaves` leaves over the elements in mesh.box_elements,
+   as gxp_build_boxes halves them */
+static void gxp_divide_leaves(gx_body *body, uint32_t leaves) {
+    uint32_t i, bit;
+    for (i = 0; i < leaves; i++) {
+        uint32_t first = 0, count = body->mesh.element_count;
+        for (bit = leaves / 2; bit > 0; bit /= 2) {
+            const uint32_t half = count / 2;
+            if (i & bit) first += half;
+            count = i & bit ? count - half : half;
+        }
+        body->tree.leaf_first.data[i] = first;
+    }
+    body->tree.leaf_first.data[leaves] = body->mesh.element_count;
+    body->tree.leaf_first.count = leaves + 1;
+}
+
+/* Lists the clusters around each node. cluster: of each element */
+static gx_result gxp_list_node_clusters(gx_body *body, const uint32_t *cluster) {
+    gxp_tree *tree = &body->tree;
+    uint32_t node, i, j;
+    gx_result result = GX_OK;
+    tree->node_clusters.count = 0;
+    for (node = 0; node < body->mesh.node_count && result == GX_OK; node++) {
+        const uint32_t first = tree->node_first.data[node] = tree->node_clusters.count;
+        for (i = body->mesh.node_start[node]; i < body->mesh.node_start[node + 1] && result == GX_OK; i++) {
+            const uint32_t own = cluster[body->mesh.node_elements[i]];
+            for (j = first; j < tree->node_clusters.count && tree->node_clusters.data[j] != own;) j++;
+            if (j == tree->node_clusters.count) result = gxp_push(body, &tree->node_clusters, own);
+        }
+    }
+    tree->node_first.data[body->mesh.node_count] = tree->node_clusters.count;
+    return result;
+}
+
+static gx_result gxp_find_node_clusters(gx_body *body, uint32_t clusters) {
+    const uint32_t *first = body->tree.leaf_first.data;
+    const size_t bytes = body->mesh.element_count * sizeof(uint32_t);
+    uint32_t *cluster = (uint32_t *)gxp_allocate(&body->config.allocator, bytes), c, i;
+    gx_result result;
+    if (cluster == NULL) return GX_ERROR_MEMORY;
+    for (c = 0; c < clusters; c++)
+        for (i = first[c * GXP_TREE_LEAVES]; i < first[(c + 1) * GXP_TREE_LEAVES]; i++)
+            cluster[body->mesh.box_elements[i]] = c;
+    result = gxp_list_node_clusters(body, cluster);
+    gxp_release(&body->config.allocator, cluster, bytes);
+    return result;
+}
+
+/* Makes the tree; all of it is to be refitted. After an error it counts as not made. */
+static GXP_COLD gx_result gxp_make_tree(gx_body *body) {
+    gxp_tree *tree = &body->tree;
+    const gx_allocator *a = &body->config.allocator;
+    uint32_t clusters = 1, leaves, i;
+    int k;
+    gx_result result;
+    while (body->mesh.element_count > (uint64_t)clusters * GXP_TREE_LEAVES * GXP_TREE_LEAF) clusters *= 2;
+    leaves = clusters * GXP_TREE_LEAVES;
+    result = gxp_grow_column(body, &gxp_copy_columns[GXP_SEEN_COLUMN], 0, body->copies.count);
+    if (result == GX_OK) result = gxp_start_words(body, &tree->leaf_first, (size_t)leaves + 1);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &tree->leaf_boxes, sizeof *tree->leaf_boxes, 0, &tree->leaf_box_capacity, leaves);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &tree->own_boxes, sizeof *tree->own_boxes, 0, &tree->own_box_capacity,
+                             body->mesh.element_count);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &tree->boxes, sizeof *tree->boxes, 0, &tree->box_capacity, 2 * (size_t)clusters);
+    if (result == GX_OK) result = gxp_start_words(body, &tree->marks, 2 * (size_t)clusters);
+    if (result == GX_OK) result = gxp_start_words(body, &tree->node_first, (size_t)body->mesh.node_count + 1);
+    if (result != GX_OK) return result;
+    gxp_divide_leaves(body, leaves);
+    result = gxp_find_node_clusters(body, clusters);
+    if (result != GX_OK) return result;
+    for (k = 0; k < 3; k++) tree->reach[k] = fmax(fabs(body->mesh.boxes[0].low[k]), fabs(body->mesh.boxes[0].high[k]));
+    if (body->copies.count > 0)
+        memcpy(body->copies.seen, body->copies.displacement, 3 * (size_t)body->copies.count * sizeof(double));
+    for (i = 0; i < 2 * clusters - 1; i++) tree->marks.data[i] = GXP_BOX_MOVED;
+    tree->marks.count = 2 * clusters - 1;
+    tree->cluster_count = clusters;
+    return GX_OK;
+}
+
+/* --- refitting it --- */
+
+/* Marks the clusters around nodes whose copies have moved. Returns whether any have. */
+static int gxp_mark_moved(gx_body *body) {
+    gxp_tree *tree = &body->tree;
+    uint32_t *marks = tree->marks.data + tree->cluster_count - 1;
+    double *seen = body->copies.seen;
+    const double *u = body->copies.displacement;
+    uint32_t i, j;
+    int moved = 0;
+    for (i = 0; i < body->copies.count; i++, u += 3, seen += 3) {
+        const uint32_t node = body->copies.node[i];
+        if (memcmp(u, seen, 3 * sizeof *u) == 0) continue;
+        memcpy(seen, u, 3 * sizeof *u);
+        moved = 1;
+        for (j = tree->node_first.data[node]; j < tree->node_first.data[node + 1]; j++)
+            marks[tree->node_clusters.data[j]] |= GXP_BOX_MOVED;
+    }
+    return moved;
+}
+
+/* Finds the boxes of marked clusters: the hulls of the copies of their nodes. */
+static void gxp_fit_clusters(gx_body *body) {
+    gxp_tree *tree = &body->tree;
+    const uint32_t *marks = tree->marks.data + tree->cluster_count - 1;
+    gxp_bounds *boxes = tree->boxes + tree->cluster_count - 1;
+    uint32_t i, j;
+    int k;
+    for (i = 0; i < tree->cluster_count; i++)
+        if (marks[i] & GXP_BOX_MOVED) gxp_empty_bounds(&boxes[i]);
+    tree->wild = 0;
+    for (i = 0; i < body->copies.count; i++) {
+        const uint32_t node = body->copies.node[i];
+        gxp_bounds own;
+        gxp_copy_bounds(body, node, i, &own);
+        for (k = 0; k < 3; k++) tree->wild |= !gxp_is_near(own.low[k]) || !gxp_is_near(own.high[k]);
+        for (j = tree->node_first.data[node]; j < tree->node_first.data[node + 1]; j++)
+            if (marks[tree->node_clusters.data[j]] & GXP_BOX_MOVED)
+                gxp_add_bounds(&boxes[tree->node_clusters.data[j]], &own);
+    }
+}
+
+/* Finds the boxes above moved ones, and makes leaves' boxes in moved clusters stale. */
+static void gxp_fit_above(gxp_tree *tree) {
+    uint32_t *marks = tree->marks.data, i;
+    for (i = tree->cluster_count - 1; i-- > 0;) {
+        if (!((marks[2 * i + 1] | marks[2 * i + 2]) & GXP_BOX_MOVED)) continue;
+        tree->boxes[i] = tree->boxes[2 * i + 1];
+        gxp_add_bounds(&tree->boxes[i], &tree->boxes[2 * i + 2]);
+        marks[i] |= GXP_BOX_MOVED;
+    }
+    for (i = 0; i < 2 * tree->cluster_count - 1; i++)
+        if (marks[i] & GXP_BOX_MOVED) marks[i] = GXP_BOX_STALE;
+}
+
+/* Brings the boxes of clusters and above up to date: one pass over the copies, more where any have moved. Call it
+   before a walk whenever displacements may have changed. Errors: MEMORY, LIMIT. */
+static gx_result gxp_refit_tree(gx_body *body) {
+    gx_result result = GX_OK;
+    int moved = body->tree.cluster_count == 0;
+    if (moved)
+        result = gxp_make_tree(body);
+    else
+        moved = gxp_mark_moved(body);
+    if (result != GX_OK || !moved) return result;
+    gxp_fit_clusters(body);
+    gxp_fit_above(&body->tree);
+    return GX_OK;
+}
+
+/* A copy that is out of range or not finite, GXP_NONE: there is none. The boxes are up to date. */
+static uint32_t gxp_wild_copy(gx_body *body) {
+    uint32_t i;
+    int k;
+    if (!body->tree.wild) return GXP_NONE;
+    for (i = 0; i < body->copies.count; i++) {
+        gxp_bounds own;
+        gxp_copy_bounds(body, body->copies.node[i], i, &own);
+        for (k = 0; k < 3; k++)
+            if (!gxp_is_near(own.low[k]) || !gxp_is_near(own.high[k])) return i;
+    }
+    body->tree.wild = 0; /* a cut has removed it since */
+    return GXP_NONE;
+}
+
+/* The box of all kept cells of an element */
+static void gxp_fit_element(const gx_body *body, uint32_t element, gxp_bounds *box) {
+    const uint32_t *node = gxb_complex_element_nodes(body->complex, element);
+    gxp_bounds own;
+    uint32_t slot;
+    int k;
+    gxp_empty_bounds(box);
+    for (slot = element; slot != GXP_NONE; slot = body->cells.data[slot].next)
+        for (k = 0; k < 4 && body->cells.data[slot].kept; k++) {
+            gxp_copy_bounds(body, node[k], body->cells.data[slot].copies[k], &own);
+            gxp_add_bounds(box, &own);
+        }
+}
+
+/* Finds the boxes of a cluster's elements and leaves, and its own, which is now that of its cells. */
+static void gxp_fit_leaves(gx_body *body, uint32_t cluster) {
+    gxp_tree *tree = &body->tree;
+    gxp_bounds *all = &tree->boxes[tree->cluster_count - 1 + cluster];
+    uint32_t i, e;
+    gxp_empty_bounds(all);
+    for (i = cluster * GXP_TREE_LEAVES; i < (cluster + 1) * GXP_TREE_LEAVES; i++) {
+        gxp_empty_bounds(&tree->leaf_boxes[i]);
+        for (e = tree->leaf_first.data[i]; e < tree->leaf_first.data[i + 1]; e++) {
+            gxp_fit_element(body, body->mesh.box_elements[e], &tree->own_boxes[e]);
+            gxp_add_bounds(&tree->leaf_boxes[i], &tree->own_boxes[e]);
+        }
+        gxp_add_bounds(all, &tree->leaf_boxes[i]);
+    }
+    tree->marks.data[tree->cluster_count - 1 + cluster] &= ~(uint32_t)GXP_BOX_STALE;
+}
+
+/* --- walking through it --- */
+
+static inline double gxp_more(double a, double b) { return a > b ? a : b; }
+
+/* Above 0 where the boxes do not meet */
+static inline double gxp_gap(const gxp_bounds *a, const gxp_bounds *b) {
+    const double x = gxp_more(a->low[0] - b->high[0], b->low[0] - a->high[0]),
+                 y = gxp_more(a->low[1] - b->high[1], b->low[1] - a->high[1]),
+                 z = gxp_more(a->low[2] - b->high[2], b->low[2] - a->high[2]);
+    return gxp_more(x, gxp_more(y, z));
+}
+
+static gx_result gxp_meet_cluster(gx_body *body, const gxp_bounds *given, uint32_t cluster,
+                                  gx_result (*visit)(gx_body *body, void *user, uint32_t place), void *user) {
+    const gxp_tree *tree = &body->tree;
+    const uint32_t first = cluster * GXP_TREE_LEAVES;
+    const gxp_bounds box = *given; /* in registers */
+    uint32_t i, e;
+    gx_result result = GX_OK;
+    if (tree->marks.data[tree->cluster_count - 1 + cluster] & GXP_BOX_STALE) gxp_fit_leaves(body, cluster);
+    for (i = first; i < first + GXP_TREE_LEAVES && result == GX_OK; i++) {
+        if (gxp_gap(&tree->leaf_boxes[i], &box) > 0) continue;
+        for (e = tree->leaf_first.data[i]; e < tree->leaf_first.data[i + 1] && result == GX_OK; e++)
+            if (!(gxp_gap(&tree->own_boxes[e], &box) > 0)) result = visit(body, user, e);
+    }
+    return result;
+}
+
+/* Calls visit(body, user, place) for each element whose box meets a box; place: in mesh.box_elements. */
+static gx_result gxp_meet_box(gx_body *body, const gxp_bounds *given,
+                              gx_result (*visit)(gx_body *body, void *user, uint32_t place), void *user) {
+    const gxp_tree *tree = &body->tree;
+    const uint32_t first_cluster = tree->cluster_count - 1;
+    const gxp_bounds box = *given;
+    uint32_t stack[64], depth = 0;
+    gx_result result = GX_OK;
+    if (!(gxp_gap(&tree->boxes[0], &box) > 0)) stack[depth++] = 0;
+    while (depth > 0 && result == GX_OK) {
+        const uint32_t i = stack[--depth];
+        if (i >= first_cluster)
+            result = gxp_meet_cluster(body, given, i - first_cluster, visit, user);
+        else {
+            stack[depth] = 2 * i + 1;
+            depth += !(gxp_gap(&tree->boxes[2 * i + 1], &box) > 0);
+            stack[depth] = 2 * i + 2;
+            depth += !(gxp_gap(&tree->boxes[2 * i + 2], &box) > 0);
+        }
+    }
+    return result;
+}
+
+/* A walk to what is least by a measure. Callers put it first in a struct of their own. */
+typedef struct gxp_walk {
+    /* No less than this comes of what is in the box. Above limit, or GXP_TREE_BEYOND: nothing there counts */
+    double (*bound)(const struct gxp_walk *walk, const gxp_bounds *box);
+    /* Called for each element in a leaf whose bound is no more than limit */
+    gx_result (*visit)(gx_body *body, struct gxp_walk *walk, uint32_t element);
+    double limit; /* GXP_TREE_ALL, or less; visit may lower it */
+} gxp_walk;
+
+/* Visits a cluster's leaves, those with the least bounds first. */
+static gx_result gxp_walk_cluster(gx_body *body, gxp_walk *walk, uint32_t cluster) {
+    const gxp_tree *tree = &body->tree;
+    const uint32_t first = cluster * GXP_TREE_LEAVES;
+    double bound[GXP_TREE_LEAVES];
+    uint32_t i, e;
+    gx_result result = GX_OK;
+    if (tree->marks.data[tree->cluster_count - 1 + cluster] & GXP_BOX_STALE) gxp_fit_leaves(body, cluster);
+    for (i = 0; i < GXP_TREE_LEAVES; i++) bound[i] = walk->bound(walk, &tree->leaf_boxes[first + i]);
+    while (result == GX_OK) {
+        uint32_t least = 0;
+        for (i = 1; i < GXP_TREE_LEAVES; i++)
+            if (bound[i] < bound[least]) least = i;
+        if (!(bound[least] <= walk->limit)) break;
+        bound[least] = GXP_TREE_BEYOND;
+        for (e = tree->leaf_first.data[first + least]; e < tree->leaf_first.data[first + least + 1] && result == GX_OK;
+             e++)
+            if (walk->bound(walk, &tree->own_boxes[e]) <= walk->limit)
+                result = walk->visit(body, walk, body->mesh.box_elements[e]);
+    }
+    return result;
+}
+
+/* Walks through the tree, of two boxes first to the one with the lower bound. What the walk finds depends on the order
+   only if visit or bound does. */
+static gx_result gxp_walk_tree(gx_body *body, gxp_walk *walk) {
+    const gxp_tree *tree = &body->tree;
+    const uint32_t first_cluster = tree->cluster_count - 1;
+    uint32_t stack[64], depth = 0, i;
+    double bounds[64];
+    gx_result result = GX_OK;
+    stack[depth] = 0;
+    bounds[depth++] = walk->bound(walk, &tree->boxes[0]);
+    while (depth > 0 && result == GX_OK) {
+        i = stack[--depth];
+        if (!(bounds[depth] <= walk->limit)) continue;
+        if (i >= first_cluster)
+            result = gxp_walk_cluster(body, walk, i - first_cluster);
+        else {
+            const double left = walk->bound(walk, &tree->boxes[2 * i + 1]),
+                         right = walk->bound(walk, &tree->boxes[2 * i + 2]);
+            const uint32_t nearer = right < left;
+            stack[depth] = 2 * i + 2 - nearer;
+            bounds[depth++] = nearer ? left : right;
+            stack[depth] = 2 * i + 1 + nearer;
+            bounds[depth++] = nearer ? right : left;
+        }
+    }
+    return result;
+}
+
+/* >>locate: cells at points of space, and their maps --------------------------------------------------------------- */
+/* In: points of space, material points, boxes. Out: the cells that contain a point, exactly; those whose deformed
+   elements a box meets; material points, weights, positions. The tree is up to date (gxp_refit_tree) where cells are
+   sought. Touches lists that are given, and the complex's exact numbers.
+ *
+ * Other sections may use gxp_walk_box, gxp_find_cells_at, gxp_contains_point, gxp_pull_back, gxp_image, gxp_stretch. */
+
+/* --- cells by their deformed elements --- */
+
+/* The box of a cell's deformed element */
+static void gxp_cell_bounds(const gx_body *body, const gxp_cell *cell, gxp_bounds *box) {
+    double x[12];
+    int n, k;
+    gxp_moved_corners(body, cell, x);
+    gxp_empty_bounds(box);
+    for (n = 0; n < 4; n++)
+        for (k = 0; k < 3; k++) {
+            box->low[k] = x[3 * n + k] < box->low[k] ? x[3 * n + k] : box->low[k];
+            box->high[k] = x[3 * n + k] > box->high[k] ? x[3 * n + k] : box->high[k];
+        }
+}
+
+typedef struct gxp_box_walk {
+    gxp_bounds box;
+    gx_result (*visit)(gx_body *body, void *user, uint32_t slot);
+    void *user;
+} gxp_box_walk;
+
+static inline gx_result gxp_visit_in_box(gx_body *body, void *user, uint32_t place) {
+    const gxp_box_walk *walk = (const gxp_box_walk *)user;
+    uint32_t slot;
+    gx_result result = GX_OK;
+    for (slot = body->mesh.box_elements[place]; slot != GXP_NONE && result == GX_OK;
+         slot = body->cells.data[slot].next) {
+        gxp_bounds box;
+        if (!body->cells.data[slot].kept) continue;
+        gxp_cell_bounds(body, &body->cells.data[slot], &box);
+        if (!(gxp_gap(&box, &walk->box) > 0)) result = walk->visit(body, walk->user, slot);
+    }
+    return result;
+}
+
+/* Calls visit(body, user, slot) for each kept cell whose deformed element's box meets the box, once. visit must not
+   change cells. The walk ends with the first error. */
+static gx_result gxp_walk_box(gx_body *body, const gxp_bounds *box,
+                              gx_result (*visit)(gx_body *body, void *user, uint32_t slot), void *user) {
+    gxp_box_walk walk;
+    walk.box = *box;
+    walk.visit = visit;
+    walk.user = user;
+    return gxp_meet_box(body, box, gxp_visit_in_box, &walk);
+}
+
+/* Is a leaf of the cell among those below a reference to its element's tree to which the planes lead the pulled-back
+   point? From a plane that contains it both sides are followed. */
+static int gxp_leads_to(gx_body *body, gxb_pullback *back, uint32_t reference, uint32_t slot) {
+    const uint32_t element = body->cells.data[slot].element;
+    while (reference & 1) {
+        const gxb_node *node = gxb_complex_tree_node(body->complex, reference >> 1);
+        const int side = gxb_complex_pullback_side(body->complex, back, element, node->plane);
+        if (side == 0 && gxp_leads_to(body, back, node->child[0], slot)) return 1;
+        reference = node->child[side <= 0];
+    }
+    return gxp_is_kept(body, reference >> 1) && body->leaves.data[reference >> 1].cell == slot;
+}
+
+/* Does the cell, or its boundary, contain a point of space? Exact for the corners that gxp_moved_corners gives. */
+static int gxp_contains_point(gx_body *body, uint32_t slot, const double point[3]) {
+    const gxp_cell *cell = &body->cells.data[slot];
+    gxb_pullback back;
+    double x[12];
+    gxp_moved_corners(body, cell, x);
+    if (gxb_pullback_misses(x, point)) return 0;
+    gxb_pullback_set(&back, x, point);
+    return gxb_pullback_contains(&back) &&
+           gxp_leads_to(body, &back, gxb_complex_root(body->complex, cell->element), slot);
+}
+
+typedef struct gxp_point_walk {
+    const double *point;
+    gxp_words *slots;
+} gxp_point_walk;
+
+/* Adds a slot to an ascending list. */
+static gx_result gxp_push_in_order(gx_body *body, gxp_words *slots, uint32_t slot) {
+    uint32_t i = slots->count;
+    const gx_result result = gxp_push(body, slots, slot);
+    if (result != GX_OK) return result;
+    for (; i > 0 && slots->data[i - 1] > slot; i--) slots->data[i] = slots->data[i - 1];
+    slots->data[i] = slot;
+    return GX_OK;
+}
+
+static gx_result gxp_visit_at_point(gx_body *body, void *user, uint32_t place) {
+    const gxp_point_walk *walk = (const gxp_point_walk *)user;
+    uint32_t slot;
+    gx_result result = GX_OK;
+    for (slot = body->mesh.box_elements[place]; slot != GXP_NONE && result == GX_OK; slot = body->cells.data[slot].next)
+        if (body->cells.data[slot].kept && gxp_contains_point(body, slot, walk->point))
+            result = gxp_push_in_order(body, walk->slots, slot);
+    return result;
+}
+
+/* Lists the cells that contain a point of space, or have it on their boundary, ascending by slot. point: finite */
+static gx_result gxp_find_cells_at(gx_body *body, const double point[3], gxp_words *slots) {
+    gxp_point_walk walk;
+    gxp_bounds box;
+    memcpy(box.low, point, sizeof box.low);
+    memcpy(box.high, point, sizeof box.high);
+    walk.point = point;
+    walk.slots = slots;
+    slots->count = 0;
+    return gxp_meet_box(body, &box, gxp_visit_at_point, &walk);
+}
+
+/* --- the maps of a cell --- */
+
+/* The material point with these barycentric coordinates; exactly a node, or in a coordinate plane, where they say so */
+static void gxp_weigh_material(const double rest[12], const double weights[4], double material[3]) {
+    int n, k, most = 0;
+    for (n = 1; n < 4; n++)
+        if (fabs(weights[n]) > fabs(weights[most])) most = n;
+    for (k = 0; k < 3; k++) {
+        double sum = 0;
+        for (n = 0; n < 4; n++) sum += weights[n] * (rest[3 * n + k] - rest[3 * most + k]);
+        material[k] = rest[3 * most + k] + sum;
+    }
+}
+
+/* Pulls a point of space back by the affine map of a cell's deformed element, also from outside of it. weights: of the
+   cell's copies, 1 in sum. At rest the material point is the point, bit by bit. 0: the element is flat. */
+static int gxp_pull_back(const gx_body *body, uint32_t slot, const double point[3], double weights[4],
+                         double material[3]) {
+    const gxp_cell *cell = &body->cells.data[slot];
+    gxb_pullback back;
+    double x[12], rest[12];
+    int i, still = 1;
+    gxp_moved_corners(body, cell, x);
+    gxp_element_positions(body, cell->element, rest);
+    gxb_pullback_set(&back, x, point);
+    if (!gxb_pullback_contains(&back) && gxb_pullback_orient(&back) == 0) return 0;
+    gxb_pullback_weights(&back, weights);
+    for (i = 0; i < 12; i++) still = still && !(x[i] < rest[i]) && !(x[i] > rest[i]);
+    if (still)
+        memcpy(material, point, 3 * sizeof *material);
+    else
+        gxp_weigh_material(rest, weights, material);
+    return 1;
+}
+
+/* Where a cell has a material point, also from outside of its element */
+static void gxp_image(const gx_body *body, uint32_t slot, const double material[3], double position[3]) {
+    const gxp_cell *cell = &body->cells.data[slot];
+    gxb_pullback back;
+    double rest[12], weights[4];
+    gxp_element_positions(body, cell->element, rest);
+    gxb_pullback_set(&back, rest, material);
+    (void)gxb_pullback_contains(&back);
+    gxb_pullback_weights(&back, weights);
+    gxp_map_affine(body, cell, weights, material, position);
+}
+
+/* The volume of a cell's deformed element as a share of that at rest, below 0 where it is inverted; in doubles */
+static double gxp_stretch(const gx_body *body, uint32_t slot) {
+    const gxp_cell *cell = &body->cells.data[slot];
+    double x[12];
+    gxp_moved_corners(body, cell, x);
+    return gxi_tet_volume(x) / gxp_element_volume(body, cell->element);
+}
+
+/* >>nearest: the cell that is nearest to a point of space ---------------------------------------------------------- */
+/* In: a point that lies in no cell that counts. Out: the nearest point of the deformed surface of those cells, in
+   doubles. The tree is up to date. Touches the boundary of >>integrals and the complex's lists. Other sections may use
+   gxp_find_nearest. */
+
+/* The point of a cell's deformed material that is nearest to a point of space outside of it */
+typedef struct gxp_near {
+    uint32_t slot;     /* GXP_NONE: there is none */
+    double square;     /* of the distance */
+    double weights[4]; /* of the cell's copies: 0 or more, 1 in sum */
+} gxp_near;
+
+typedef struct gxp_near_walk {
+    gxp_walk walk;
+    const double *point;
+    int (*admits)(void *user, uint32_t slot); /* NULL: all cells are admitted */
+    void *user;
+    gxp_near near;
+} gxp_near_walk;
+
+/* Rounding of bounds and squares stays below this share of them. */
+#define GXP_NEAR_MARGIN 1e-12
+
+static double gxp_bound_distance(const gxp_walk *walk, const gxp_bounds *box) {
+    const double *x = ((const gxp_near_walk *)(const void *)walk)->point;
+    double square = 0;
+    int k;
+    for (k = 0; k < 3; k++) {
+        const double below = box->low[k] - x[k], above = x[k] - box->high[k], most = below > above ? below : above;
+        if (most > 0) square += most * most;
+    }
+    return square * (1 - GXP_NEAR_MARGIN);
+}
+
+/* Rounding of what follows is far below this share (2^-46) of the sizes of the terms. */
+#define GXP_NEAR_ROUNDING 1.4210854715202004e-14
+
+static void gxp_cross(double r[3], const double a[3], const double b[3]) {
+    r[0] = a[1] * b[2] - a[2] * b[1];
+    r[1] = a[2] * b[0] - a[0] * b[2];
+    r[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* If a point of the segment from corner i to corner j is nearer to the origin than *square: sets that and the shares.
+ */
+static void gxp_near_segment(double p[3][3], int i, int j, double share[3], double *square) {
+    const double *a = p[i], *b = p[j];
+    const double e[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    const double length = gxp_dot(e, e), along = -gxp_dot(a, e);
+    const double t = !(along > 0) ? 0 : along >= length ? 1 : along / length;
+    const double x[3] = {t < 1 ? a[0] + t * e[0] : b[0], t < 1 ? a[1] + t * e[1] : b[1],
+                         t < 1 ? a[2] + t * e[2] : b[2]};
+    const double s = gxp_dot(x, x);
+    if (!(s < *square)) return;
+    *square = s;
+    share[0] = share[1] = share[2] = 0;
+    share[i] = 1 - t;
+    share[j] = t;
+}
+
+/* The foot of the perpendicular from the origin, if it is nearer; all w are above 0 */
+static void gxp_near_foot(double p[3][3], const double w[3], double share[3], double *square) {
+    const double sum = w[0] + w[1] + w[2];
+    double x[3], s;
+    int k;
+    for (k = 0; k < 3; k++) x[k] = (w[0] * p[0][k] + w[1] * p[1][k] + w[2] * p[2][k]) / sum;
+    s = gxp_dot(x, x);
+    if (!(s < *square)) return;
+    *square = s;
+    for (k = 0; k < 3; k++) share[k] = w[k] / sum;
+}
+
+/* Finds the point of a triangle that is nearest to the origin, as shares of its corners. Returns the square of its
+   distance; GXP_TREE_BEYOND if the triangle's plane is certainly further than limit. With v = -p0, a = p1 - p0, b = p2
+   - p0 and n = a x b, the foot of the perpendicular has the coordinates n.(v x b) and n.(a x v), over n.n. If it is
+   beyond some edges, the nearest point is on one of these. Edges are tried wherever rounding might hide that. */
+static double gxp_near_triangle(double p[3][3], double limit, double share[3]) {
+    const double a[3] = {p[1][0] - p[0][0], p[1][1] - p[0][1], p[1][2] - p[0][2]};
+    const double b[3] = {p[2][0] - p[0][0], p[2][1] - p[0][1], p[2][2] - p[0][2]};
+    const double v[3] = {-p[0][0], -p[0][1], -p[0][2]};
+    const double scale = gxp_size(a) * gxp_size(b), far = gxp_size(v);
+    double n[3], c[3], w[3], normal, height, rounding, square = GXP_TREE_BEYOND;
+    int i;
+    gxp_cross(n, a, b);
+    normal = gxp_dot(n, n);
+    height = fabs(gxp_dot(n, v)) - GXP_NEAR_ROUNDING * scale * far;
+    if (height > 0 && height * height * (1 - GXP_NEAR_MARGIN) > limit * normal) return square;
+    gxp_cross(c, v, b);
+    w[1] = gxp_dot(n, c);
+    gxp_cross(c, a, v);
+    w[2] = gxp_dot(n, c);
+    w[0] = normal - w[1] - w[2];
+    rounding = GXP_NEAR_ROUNDING * scale * (scale + far * (gxp_size(a) + gxp_size(b)));
+    for (i = 0; i < 3; i++)
+        if (!(w[i] > rounding)) gxp_near_segment(p, (i + 1) % 3, (i + 2) % 3, share, &square);
+    if (w[0] > 0 && w[1] > 0 && w[2] > 0) gxp_near_foot(p, w, share, &square);
+    return square;
+}
+
+/* Compares the nearest point of a triangle with what was found before. p: its corners less the point; lambda: their
+   coordinates in the cell's element. Of equally near cells the one with the lowest slot stays. */
+static void gxp_try_triangle(gxp_near_walk *own, uint32_t slot, double p[3][3], const double *const lambda[3]) {
+    double share[3] = {0, 0, 0};
+    const double square = gxp_near_triangle(p, own->walk.limit, share);
+    int n;
+    if (square > own->walk.limit ||
+        (own->near.slot != GXP_NONE && !(square < own->walk.limit) && slot >= own->near.slot))
+        return;
+    own->near.slot = slot;
+    own->near.square = own->walk.limit = square;
+    for (n = 0; n < 4; n++)
+        own->near.weights[n] = share[0] * lambda[0][n] + share[1] * lambda[1][n] + share[2] * lambda[2][n];
+}
+
+/* Is the origin certainly on the side of the triangle on which x is? */
+static int gxp_is_beside(double p[3][3], const double x[3]) {
+    const double a[3] = {p[1][0] - p[0][0], p[1][1] - p[0][1], p[1][2] - p[0][2]};
+    const double b[3] = {p[2][0] - p[0][0], p[2][1] - p[0][1], p[2][2] - p[0][2]};
+    const double v[3] = {-p[0][0], -p[0][1], -p[0][2]}, e[3] = {x[0] - p[0][0], x[1] - p[0][1], x[2] - p[0][2]};
+    const double rounding = GXP_NEAR_ROUNDING * gxp_size(a) * gxp_size(b);
+    double n[3], h, g;
+    gxp_cross(n, a, b);
+    h = gxp_dot(n, v);
+    g = gxp_dot(n, e);
+    return (h > rounding * gxp_size(v) && g > rounding * gxp_size(e)) ||
+           (h < -rounding * gxp_size(v) && g < -rounding * gxp_size(e));
+}
+
+/* Tries the faces of an element that is all its cell's, but those that hide behind it. x: its moved corners less the
+   point */
+static void gxp_try_faces(gxp_near_walk *own, uint32_t slot, double x[4][3]) {
+    static const double corner[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+    int k, i;
+    for (k = 0; k < 4; k++) {
+        const double *lambda[3];
+        double p[3][3];
+        for (i = 0; i < 3; i++) {
+            lambda[i] = corner[gxp_outward[k][i]];
+            memcpy(p[i], x[gxp_outward[k][i]], sizeof p[i]);
+        }
+        if (!gxp_is_beside(p, x[k])) gxp_try_triangle(own, slot, p, lambda);
+    }
+}
+
+/* Adds the facets that bound a cell to the boundary, which has no triangles. Facets with the cell on both sides are
+   left out: what is outside of the cell is nearer to others. */
+static gx_result gxp_bound_cell(gx_body *body, uint32_t slot) {
+    gxb_complex *cx = body->complex;
+    uint32_t leaf, first, count, i;
+    gx_result result = GX_OK;
+    for (leaf = body->cells.data[slot].first_leaf; leaf != GXP_NONE && result == GX_OK;
+         leaf = body->leaves.data[leaf].next) {
+        result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
+        for (i = 0; i < count && result == GX_OK; i++) {
+            const uint32_t facet = gxp_item(cx, first + i);
+            const gxb_facet *f = gxb_complex_facet(cx, facet);
+            const uint32_t other = f->leaf[f->leaf[0] == leaf];
+            if (gxp_is_kept(body, other) && body->leaves.data[other].cell == slot) continue;
+            result = gxp_add_boundary_facet(body, body->cells.data[slot].element, facet, 0);
+        }
+    }
+    return result;
+}
+
+/* Tries the facets that bound a cell of a divided element. */
+static gx_result gxp_try_facets(gx_body *body, gxp_near_walk *own, uint32_t slot, double x[4][3]) {
+    const gxp_boundary *boundary = &body->scratch.boundary;
+    uint32_t i;
+    int k, j;
+    gx_result result;
+    gxp_clear_boundary(body, 1);
+    result = gxp_bound_cell(body, slot);
+    for (i = 0; i < boundary->triangles.count && result == GX_OK; i += 3) {
+        const double *lambda[3];
+        double p[3][3];
+        for (k = 0; k < 3; k++) {
+            const double *l = lambda[k] = boundary->lambdas + 4 * (size_t)boundary->triangles.data[i + (uint32_t)k];
+            for (j = 0; j < 3; j++) p[k][j] = l[0] * x[0][j] + l[1] * x[1][j] + l[2] * x[2][j] + l[3] * x[3][j];
+        }
+        gxp_try_triangle(own, slot, p, lambda);
+    }
+    return result;
+}
+
+static gx_result gxp_visit_near(gx_body *body, gxp_walk *walk, uint32_t element) {
+    gxp_near_walk *own = (gxp_near_walk *)(void *)walk;
+    const int divided = (int)(gxb_complex_root(body->complex, element) & 1);
+    uint32_t slot;
+    gx_result result = GX_OK;
+    for (slot = element; slot != GXP_NONE && result == GX_OK; slot = body->cells.data[slot].next) {
+        const gxp_cell *cell = &body->cells.data[slot];
+        double x[4][3];
+        gxp_bounds box;
+        if (!cell->kept || (own->admits != NULL && !own->admits(own->user, slot))) continue;
+        if (divided) {
+            gxp_cell_bounds(body, cell, &box);
+            if (gxp_bound_distance(walk, &box) > walk->limit) continue;
+        }
+        gxp_cell_corners(body, cell, 1, own->point, x);
+        if (divided)
+            result = gxp_try_facets(body, own, slot, x);
+        else
+            gxp_try_faces(own, slot, x);
+    }
+    return result;
+}
+
+/* Finds the cell nearest to a point of space, among those for which admits(user, slot) is not 0 (NULL: all), of equally
+   near ones that with the lowest slot. The point lies in none of them (gxp_find_cells_at). */
+static gx_result gxp_find_nearest(gx_body *body, const double point[3], int (*admits)(void *user, uint32_t slot),
+                                  void *user, gxp_near *near) {
+    gxp_near_walk own;
+    gx_result result;
+    own.walk.bound = gxp_bound_distance;
+    own.walk.visit = gxp_visit_near;
+    own.walk.limit = GXP_TREE_ALL;
+    own.point = point;
+    own.admits = admits;
+    own.user = user;
+    memset(&own.near, 0, sizeof own.near);
+    own.near.slot = GXP_NONE;
+    result = gxp_walk_tree(body, &own.walk);
+    *near = own.near;
+    return result;
+}
+
+/* >>hits: what the caller learns of points of space ---------------------------------------------------------------- */
+/* In: points of space, one or many. Out: hits: cells, material points, weights, distances. Touches the view's lists,
+   the tree and its working memory. */
+
+/* Sets all of a hit but distance, material and position. weights: of the cell's copies; the view, its indices and its
+   fragments are up to date. */
+static void gxp_start_hit(gx_body *body, uint32_t slot, const double weights[4], gx_hit *hit) {
+    const gxp_cell *cell = &body->cells.data[slot];
+    int n;
+    memset(hit, 0, sizeof *hit);
+    hit->triangle = UINT32_MAX;
+    hit->fragment = gxp_cell_fragment(body, slot);
+    hit->element = cell->element;
+    hit->cell = body->view.indices.data[slot];
+    hit->slot = slot;
+    hit->epoch = body->cuts.epoch;
+    for (n = 0; n < 4; n++)
+        if (weights[n] > 0) {
+            hit->copies[hit->copy_count] = cell->copies[n];
+            hit->weights[hit->copy_count++] = weights[n];
+        }
+}
+
+/* The hit of a point that the cell contains */
+static void gxp_hit_inside(gx_body *body, uint32_t slot, const double point[3], gx_hit *hit) {
+    double weights[4], material[3];
+    (void)gxp_pull_back(body, slot, point, weights, material);
+    gxp_start_hit(body, slot, weights, hit);
+    memcpy(hit->material, material, sizeof hit->material);
+    memcpy(hit->position, point, sizeof hit->position);
+}
+
+/* The hit of a point outside of all cells. Its distance is above 0 even where it rounds to 0. */
+static void gxp_hit_near(gx_body *body, const gxp_near *near, gx_hit *hit) {
+    double rest[12];
+    gxp_start_hit(body, near->slot, near->weights, hit);
+    gxp_element_positions(body, hit->element, rest);
+    gxp_weigh_material(rest, near->weights, hit->material);
+    gxp_map_point(body, hit->material, hit->copies, hit->weights, hit->copy_count, hit->position);
+    hit->distance = fmax(sqrt(near->square), ldexp(1, -1000));
+}
+
+/* The hit of a point that the cells in tree.found contain, or the nearest if there are none */
+static gx_result gxp_make_hit(gx_body *body, const double point[3], gx_hit *hit) {
+    gxp_near near;
+    gx_result result = GX_OK;
+    if (body->tree.found.count > 0)
+        gxp_hit_inside(body, body->tree.found.data[0], point, hit);
+    else {
+        result = gxp_find_nearest(body, point, NULL, NULL, &near);
+        if (result == GX_OK) gxp_hit_near(body, &near, hit);
+    }
+    return result;
+}
+
+static gx_result gxp_locate(gx_body *body, const double point[3], gx_hit *hit) {
+    const gx_result result = gxp_find_cells_at(body, point, &body->tree.found);
+    return result == GX_OK ? gxp_make_hit(body, point, hit) : result;
+}
+
+/* A number as points and displacements may have it */
+static gx_result gxp_check_near(double x) {
+    return gxp_is_near(x) ? GX_OK : gxp_is_finite(x) ? GX_ERROR_RANGE : GX_ERROR_NOT_FINITE;
+}
+
+static gx_result gxp_check_points(const double *points, size_t count, const char *field, int indexed,
+                                  gx_failure *failure) {
+    size_t i;
+    for (i = 0; i < 3 * count; i++) {
+        const gx_result result = gxp_check_near(points[i]);
+        if (result != GX_OK) return gxp_fail(failure, result, field, indexed ? i / 3 : SIZE_MAX);
+    }
+    return GX_OK;
+}
+
+/* Blames a copy that is where no cell can be located: its displacement is not finite or too large. */
+static gx_result gxp_check_copy(const gx_body *body, uint32_t copy, gx_failure *failure) {
+    gx_result worst = GX_ERROR_RANGE;
+    int k;
+    for (k = 0; k < 3; k++)
+        if (!gxp_is_finite(body->copies.displacement[3 * (size_t)copy + (size_t)k])) worst = GX_ERROR_NOT_FINITE;
+    return gxp_fail(failure, worst, "displacement", copy);
+}
+
+/* Brings what locating reads up to date: the view, its indices, the tree. */
+static gx_result gxp_prepare_locate(gx_body *body, gx_failure *failure) {
+    uint32_t wild;
+    gx_result result = gxp_update_view(body);
+    if (result == GX_OK) result = gxp_list_indices(body);
+    if (result == GX_OK) result = gxp_refit_tree(body);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    if (body->view.count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "body", SIZE_MAX);
+    wild = gxp_wild_copy(body);
+    return wild == GXP_NONE ? GX_OK : gxp_check_copy(body, wild, failure);
+}
+
+/* --- many points --- */
+
+/* More points than that are located along a curve through space: data of the tree and of elements is in the cache for
+   all points that are near. */
+#define GXP_LOCATE_FEW 8
+
+/* Points that lie close together, at most so many, share one walk to the elements near them, if these are no more than
+   GXP_GROUP_ELEMENTS. */
+#define GXP_GROUP_POINTS   32
+#define GXP_GROUP_ELEMENTS 128
+
+/* The points order.data[first ... end-1], and their box */
+typedef struct gxp_group {
+    uint32_t first, end;
+    gxp_bounds box;
+} gxp_group;
+
+/* Takes further points into a group while its box is no longer than reach. */
+static void gxp_grow_group(const gxp_keys *order, const double *points, double reach, gxp_group *group) {
+    int k;
+    gxp_empty_bounds(&group->box);
+    for (group->end = group->first; group->end < order->count && group->end < group->first + GXP_GROUP_POINTS;
+         group->end++) {
+        const double *x = points + 3 * (size_t)GXP_SECOND(order->data[group->end]);
+        gxp_bounds box = group->box, own;
+        memcpy(own.low, x, sizeof own.low);
+        memcpy(own.high, x, sizeof own.high);
+        gxp_add_bounds(&box, &own);
+        for (k = 0; k < 3; k++)
+            if (box.high[k] - box.low[k] > reach && group->end > group->first) return;
+        group->box = box;
+    }
+}
+
+/* Lists an element that is near a group. Its error ends the walk where there are too many. */
+static gx_result gxp_visit_near_group(gx_body *body, void *user, uint32_t place) {
+    (void)user;
+    return body->tree.near.count < GXP_GROUP_ELEMENTS ? gxp_push(body, &body->tree.near, place) : GX_ERROR_CAPACITY;
+}
+
+/* Finds the cells at a point of a group among the elements near it: tree.found. */
+static gx_result gxp_find_cells_near(gx_body *body, const double point[3]) {
+    const gxp_tree *tree = &body->tree;
+    gxp_point_walk walk;
+    gxp_bounds box;
+    uint32_t i;
+    gx_result result = GX_OK;
+    memcpy(box.low, point, sizeof box.low);
+    memcpy(box.high, point, sizeof box.high);
+    walk.point = point;
+    walk.slots = &body->tree.found;
+    walk.slots->count = 0;
+    for (i = 0; i < tree->near.count && result == GX_OK; i++)
+        if (!(gxp_gap(&tree->own_boxes[tree->near.data[i]], &box) > 0))
+            result = gxp_visit_at_point(body, &walk, tree->near.data[i]);
+    return result;
+}
+
+static gx_result gxp_locate_group(gx_body *body, const double *points, const gxp_group *group, gx_hit *hits) {
+    const gxp_keys *order = &body->tree.order;
+    uint32_t i;
+    int together = group->end > group->first + 1;
+    gx_result result = GX_OK;
+    body->tree.near.count = 0;
+    if (together) result = gxp_meet_box(body, &group->box, gxp_visit_near_group, NULL);
+    if (result == GX_ERROR_CAPACITY) {
+        together = 0;
+        result = GX_OK;
+    }
+    for (i = group->first; i < group->end && result == GX_OK; i++) {
+        const size_t point = GXP_SECOND(order->data[i]);
+        const double *x = points + 3 * point;
+        result = together ? gxp_find_cells_near(body, x) : gxp_find_cells_at(body, x, &body->tree.found);
+        if (result == GX_OK) result = gxp_make_hit(body, x, &hits[point]);
+    }
+    return result;
+}
+
+/* The edge of a cube that has the volume of the body's box at rest over the leaves of the tree */
+static double gxp_leaf_size(const gx_body *body) {
+    const gxp_box *all = &body->mesh.boxes[0];
+    double size = 1;
+    int k;
+    for (k = 0; k < 3; k++) size *= cbrt(all->high[k] - all->low[k]);
+    return size / cbrt((double)body->tree.cluster_count * GXP_TREE_LEAVES);
+}
+
+static gx_result gxp_locate_many(gx_body *body, const double *points, uint32_t count, gx_hit *hits) {
+    const double reach = gxp_leaf_size(body);
+    gxp_keys *order = &body->tree.order;
+    gxp_group group;
+    uint32_t i;
+    gx_result result;
+    order->count = 0;
+    result = gxp_keys_room(body, order, 2 * (size_t)count); /* sorting takes as much again */
+    for (i = 0; i < count && result == GX_OK; i++)
+        result = gxp_push_key(body, order, gxp_curve_place(body, points + 3 * (size_t)i), i);
+    if (result == GX_OK) result = gxp_sort_keys(body, order, 0, count);
+    for (group.first = 0; group.first < count && result == GX_OK; group.first = group.end) {
+        gxp_grow_group(order, points, reach, &group);
+        result = gxp_locate_group(body, points, &group, hits);
+    }
+    return result;
+}
+
+GXFEM_API gx_result gx_body_locate(gx_body *body, const double *points, size_t count, gx_hit *hits,
+                                   gx_failure *failure) {
+    gx_result result;
+    size_t i;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (points == NULL && count > 0) return gxp_refuse(failure, "points");
+    if (hits == NULL && count > 0) return gxp_refuse(failure, "hits");
+    if (count > INT32_MAX / 4) return gxp_fail(failure, GX_ERROR_LIMIT, "count", SIZE_MAX);
+    result = gxp_check_points(points, count, "points", 1, failure);
+    if (result == GX_OK) result = gxp_prepare_locate(body, failure);
+    if (result != GX_OK) return result;
+    if (count > GXP_LOCATE_FEW)
+        result = gxp_locate_many(body, points, (uint32_t)count, hits);
+    else
+        for (i = 0; i < count && result == GX_OK; i++) result = gxp_locate(body, points + 3 * i, &hits[i]);
+    return gxp_end(failure, result);
+}
+
+GXFEM_API gx_result gx_body_locate_all(gx_body *body, const double point[3], gx_hit *hits, size_t capacity,
+                                       size_t *count, gx_failure *failure) {
+    gx_result result;
+    size_t i;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (point == NULL) return gxp_refuse(failure, "point");
+    if (hits == NULL && capacity > 0) return gxp_refuse(failure, "hits");
+    if (count == NULL) return gxp_refuse(failure, "count");
+    result = gxp_check_points(point, 1, "point", 0, failure);
+    if (result == GX_OK) result = gxp_prepare_locate(body, failure);
+    if (result != GX_OK) return result;
+    result = gxp_find_cells_at(body, point, &body->tree.found);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    *count = body->tree.found.count;
+    if (capacity < *count) return gxp_fail(failure, GX_ERROR_CAPACITY, "capacity", SIZE_MAX);
+    for (i = 0; i < *count; i++) gxp_hit_inside(body, body->tree.found.data[i], point, &hits[i]);
+    return GX_OK;
+}
+
+GXFEM_API gx_result gx_body_place(const gx_body *body, uint32_t slot, const double material[3], double position[3],
+                                  gx_failure *failure) {
+    gx_result result;
+    int n, k;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (material == NULL) return gxp_refuse(failure, "material");
+    if (position == NULL) return gxp_refuse(failure, "position");
+    if (slot >= body->cells.count) return gxp_fail(failure, GX_ERROR_INDEX, "slot", SIZE_MAX);
+    if (!body->cells.data[slot].kept) return gxp_fail(failure, GX_ERROR_EMPTY, "slot", SIZE_MAX);
+    result = gxp_check_points(material, 1, "material", 0, failure);
+    for (n = 0; n < 4 && result == GX_OK; n++)
+        for (k = 0; k < 3 && result == GX_OK; k++)
+            if (!gxp_is_near(body->copies.displacement[3 * (size_t)body->cells.data[slot].copies[n] + (size_t)k]))
+                result = gxp_check_copy(body, body->cells.data[slot].copies[n], failure);
+    if (result != GX_OK) return result;
+    gxp_image(body, slot, material, position);
+    return gxp_end(failure, GX_OK);
+}
+
+/* >>rays: picking -------------------------------------------------------------------------------------------------- */
+/* In: a ray. Out: where it first meets the deformed skin. The tree leads to the elements that the ray may meet; the
+   triangles that these show are tested exactly. Touches the tree and the view's lists. */
+
+/* The ray's coordinates: two across it, sheared along the largest component of its direction, and the distance along it
+   in lengths of direction */
+typedef struct gxp_ray_walk {
+    gxp_walk walk; /* limit: the distance of the triangle found */
+    const double *origin, *direction;
+    double slope[2];  /* of the two coordinates across, along the axis */
+    double margin[3]; /* of the ray's coordinates of a box: above all rounding of those of points in it */
+    int axis;
+    uint32_t found; /* triangle, UINT32_MAX: none */
+    double share[3];
+} gxp_ray_walk;
+
+static void gxp_shear(const gxp_ray_walk *ray, const double x[3], double across[3]) {
+    const double *o = ray->origin, *d = ray->direction;
+    const int axis = ray->axis, i = (axis + 1) % 3, j = (axis + 2) % 3;
+    const double along = (x[axis] - o[axis]) / d[axis], p = x[i] - o[i], q = x[j] - o[j];
+    across[0] = p - along * d[i];
+    across[1] = q - along * d[j];
+    across[2] = along;
+}
+
+/* Share of coordinates' sizes (2^-44), far above the rounding of the ray's coordinates: a few units of 2^-52 */
+#define GXP_RAY_MARGIN 5.6843418860808015e-14
+
+/* A quotient along the ray that falls below all doubles, or is flushed to 0, is wrong by 2^-1022 at most. */
+static void gxp_start_ray(const gx_body *body, const double origin[3], const double direction[3], gxp_ray_walk *ray) {
+    const gxp_bounds *all = &body->tree.boxes[0];
+    double size = 0;
+    int axis = 0, k;
+    for (k = 1; k < 3; k++)
+        if (fabs(direction[k]) > fabs(direction[axis])) axis = k;
+    for (k = 0; k < 3; k++) size = fmax(size, fmax(fmax(fabs(all->low[k]), fabs(all->high[k])), fabs(origin[k])));
+    ray->origin = origin;
+    ray->direction = direction;
+    ray->axis = axis;
+    for (k = 0; k < 2; k++) {
+        ray->slope[k] = direction[(axis + 1 + k) % 3] / direction[axis];
+        ray->margin[k] = GXP_RAY_MARGIN * size + fabs(direction[axis]) * ldexp(1, -1021);
+    }
+    ray->margin[2] = GXP_RAY_MARGIN * (size / fabs(direction[axis])) + ldexp(1, -1021);
+    ray->found = UINT32_MAX;
+}
+
+/* Where the ray may first meet the box, less the margin. A box is left out only where that is certain, so that what is
+   not finite does no harm. */
+static double gxp_bound_ray(const gxp_walk *walk, const gxp_bounds *box) {
+    const gxp_ray_walk *ray = (const gxp_ray_walk *)(const void *)walk;
+    const int axis = ray->axis;
+    const double low = box->low[axis] - ray->origin[axis], high = box->high[axis] - ray->origin[axis];
+    const double first = low / ray->direction[axis], last = high / ray->direction[axis];
+    const double near = (first < last ? first : last) - ray->margin[2],
+                 far = (first < last ? last : first) + ray->margin[2];
+    int k, beyond = far < 0;
+    for (k = 0; k < 2; k++) {
+        const int i = (axis + 1 + k) % 3;
+        const double p = low * ray->slope[k], q = high * ray->slope[k];
+        beyond |= box->low[i] - ray->origin[i] - (p > q ? p : q) > ray->margin[k];
+        beyond |= box->high[i] - ray->origin[i] - (p > q ? q : p) < -ray->margin[k];
+    }
+    return beyond ? GXP_TREE_BEYOND : near > 0 ? near : 0;
+}
+
+/* Does the ray pass through the triangle? p: its corners in the ray's coordinates. share: the weights of its corners at
+   the point; distance: of the point. The signs are exact, so that no ray slips through between triangles that share
+   corners. */
+static int gxp_meet_triangle(double p[3][3], double share[3], double *distance) {
     static const double ray[2] = {0, 0};
-    const double *p[3];
     double sum = 0;
     int k, positive = 0, negative = 0;
-    for (k = 0; k < 3; k++) p[k] = s->positions + 3 * (size_t)t[k];
     for (k = 0; k < 2; k++)
         if (!(fmin(p[0][k], fmin(p[1][k], p[2][k])) <= 0 && fmax(p[0][k], fmax(p[1][k], p[2][k])) >= 0)) return 0;
     for (k = 0; k < 3; k++) {
@@ -7881,6 +9241,28 @@ static int gxp_meet_triangle(const gxp_skin *s, const uint32_t *t, double share[
         *distance += share[k] * p[k][2];
     }
     return *distance >= 0;
+}
+
+/* Tests the triangles that an element shows. Of equally near ones the first of the skin counts. */
+static gx_result gxp_visit_on_ray(gx_body *body, gxp_walk *walk, uint32_t element) {
+    gxp_ray_walk *ray = (gxp_ray_walk *)(void *)walk;
+    const gxp_skin *s = &body->skin;
+    uint32_t t;
+    int k;
+    for (t = s->first.data[element]; t != GXP_NONE; t = s->links[t].next) {
+        double p[3][3], x[3], share[3], distance;
+        for (k = 0; k < 3; k++) {
+            const size_t v = s->triangles[3 * (size_t)t + (size_t)k];
+            gxp_map_point(body, s->rest + 3 * v, s->copies + 4 * v, s->weights + 4 * v, 4, x);
+            gxp_shear(ray, x, p[k]);
+        }
+        if (!gxp_meet_triangle(p, share, &distance) || distance > walk->limit) continue;
+        if (ray->found != UINT32_MAX && !(distance < walk->limit) && t > ray->found) continue;
+        ray->found = t;
+        walk->limit = distance;
+        memcpy(ray->share, share, sizeof share);
+    }
+    return GX_OK;
 }
 
 /* A point of up to GXS_POINT_OWN copies holds them itself, others refer to the arrays. */
@@ -7921,6 +9303,8 @@ static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double sh
     hit->fragment = s->fragment[triangle];
     hit->element = s->element[triangle];
     hit->surface = s->surface[triangle];
+    hit->slot = s->cell[triangle];
+    hit->cell = body->view.indices.data[hit->slot];
     for (i = 0; i < 3; i++) {
         const size_t v = s->triangles[3 * (size_t)triangle + i];
         for (j = 0; j < 3; j++) hit->material[j] += share[i] * s->rest[3 * v + (size_t)j];
@@ -7949,29 +9333,1881 @@ static gx_result gxp_check_ray(const gx_body *body, const double origin[3], cons
 
 GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit,
                                  gx_failure *failure) {
-    double share[3], best[3] = {0, 0, 0}, distance;
-    uint32_t t, found = UINT32_MAX;
-    const gxp_skin *s;
+    gxp_ray_walk ray;
     gx_result result = gxp_check_ray(body, origin, direction, failure);
     if (result != GX_OK) return result;
     if (hit == NULL) return gxp_refuse(failure, "hit");
     if (!gxp_has_skin(body)) return gxp_fail(failure, GX_ERROR_SEQUENCE, "gx_body_skin", SIZE_MAX);
-    s = &body->skin;
-    gxp_end(failure, GX_OK);
-    gxp_shear_along(body, origin, direction);
+    result = gxp_update_view(body);
+    if (result == GX_OK) result = gxp_list_indices(body);
+    if (result == GX_OK) result = gxp_refit_tree(body);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    ray.walk.bound = gxp_bound_ray;
+    ray.walk.visit = gxp_visit_on_ray;
+    ray.walk.limit = GXP_TREE_ALL;
+    gxp_start_ray(body, origin, direction, &ray);
+    (void)gxp_walk_tree(body, &ray.walk);
     memset(hit, 0, sizeof *hit);
-    for (t = 0; t < s->triangle_count; t++) {
-        if (!gxp_meet_triangle(s, s->triangles + 3 * (size_t)t, share, &distance)) continue;
-        if (found != UINT32_MAX && distance >= hit->distance) continue;
-        found = t;
-        hit->distance = distance;
-        memcpy(best, share, sizeof best);
-    }
-    if (found == UINT32_MAX)
-        hit->triangle = found;
-    else
-        gxp_fill_hit(body, found, best, hit);
+    hit->triangle = ray.found;
+    if (ray.found == UINT32_MAX) return GX_OK;
+    hit->distance = ray.walk.limit;
+    gxp_fill_hit(body, ray.found, ray.share, hit);
     return GX_OK;
+}
+
+/* >>layers: the cells around a blade, and how they hang together --------------------------------------------------- */
+/* In: the strip between the fronts of a blade and its edge. Out: the cells within an element's size of it, with their
+   deformed corners, and the layer to which each belongs: cells that hang together there through copies. Pieces that lie
+   over each other in space are different layers. Touches the blade's working memory. */
+
+/* The cell of an element at a material point, GXP_NONE where it was removed */
+static gx_result gxp_cell_at(gx_body *body, uint32_t element, const double rest[3], uint32_t *cell) {
+    uint32_t leaf = GXP_NONE;
+    const gx_result result = gxp_leaf_at(body, element, rest, NULL, &leaf);
+    *cell = GXP_NONE;
+    if (result == GX_OK && gxp_is_kept(body, leaf)) *cell = body->leaves.data[leaf].cell;
+    return result;
+}
+
+static double gxp_square_distance(const double *a, const double *b) {
+    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    return gxp_dot(d, d);
+}
+
+/* The point of a segment nearest to p: *share of the way from a to b. Returns the squared distance. */
+static double gxp_onto_segment(const double *p, const double *a, const double *b, double *share, double nearest[3]) {
+    double along = 0, length = 0, t;
+    int k;
+    for (k = 0; k < 3; k++) {
+        along += (p[k] - a[k]) * (b[k] - a[k]);
+        length += (b[k] - a[k]) * (b[k] - a[k]);
+    }
+    t = length > 0 ? along / length : 0;
+    t = t < 0 ? 0 : t > 1 ? 1 : t;
+    for (k = 0; k < 3; k++) nearest[k] = a[k] + t * (b[k] - a[k]);
+    *share = t;
+    return gxp_square_distance(p, nearest);
+}
+
+/* The point of a triangle nearest to p. Returns the squared distance. */
+static double gxp_onto_triangle(const double *p, const double *a, const double *b, const double *c, double nearest[3]) {
+    const double *corner[4] = {a, b, c, a};
+    const double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]},
+                 w[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
+    double n[3], x[3], y[3], square, best, share, at[3];
+    int k;
+    gxp_cross(n, u, v);
+    gxp_cross(x, w, v);
+    gxp_cross(y, u, w);
+    square = gxp_dot(n, n);
+    if (square > 0 && gxp_dot(x, n) >= 0 && gxp_dot(y, n) >= 0 && gxp_dot(x, n) + gxp_dot(y, n) <= square) {
+        const double height = gxp_dot(w, n) / square;
+        for (k = 0; k < 3; k++) nearest[k] = p[k] - height * n[k];
+        return height * height * square;
+    }
+    best = gxp_onto_segment(p, a, b, &share, nearest);
+    for (k = 1; k < 3; k++) {
+        square = gxp_onto_segment(p, corner[k], corner[k + 1], &share, at);
+        if (square < best) {
+            best = square;
+            memcpy(nearest, at, sizeof at);
+        }
+    }
+    return best;
+}
+
+/* Weights of a point by the corners of a tetrahedron, 1 in sum. Returns six times its volume. */
+static double gxp_tet_weights(double corners[4][3], const double p[3], double weights[4]) {
+    double e[3][3], n[3][3], d[3], volume;
+    int i, k;
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 3; k++) e[i][k] = corners[i + 1][k] - corners[0][k];
+    for (k = 0; k < 3; k++) d[k] = p[k] - corners[0][k];
+    for (i = 0; i < 3; i++) gxp_cross(n[i], e[(i + 1) % 3], e[(i + 2) % 3]);
+    volume = gxp_dot(e[0], n[0]);
+    weights[0] = 1;
+    for (i = 0; i < 3; i++) {
+        weights[i + 1] = gxp_dot(n[i], d) / volume;
+        weights[0] -= weights[i + 1];
+    }
+    return volume;
+}
+
+/* The point of those weights */
+static void gxp_weigh(double corners[4][3], const double weights[4], double p[3]) {
+    int i, k;
+    for (k = 0; k < 3; k++) {
+        p[k] = 0;
+        for (i = 0; i < 4; i++) p[k] += weights[i] * corners[i][k];
+    }
+}
+
+static gx_result gxp_push_vertex(gx_body *body, gxp_front_list *list, const gxp_front_vertex *vertex) {
+    const gx_result result =
+        gxp_reserve(&body->config.allocator, &list->data, sizeof *list->data, list->count, &list->capacity, 1);
+    if (result == GX_OK) list->data[list->count++] = *vertex;
+    return result;
+}
+
+static gx_result gxp_push_point(gx_body *body, gxp_points *list, const double x[3]) {
+    const gx_result result =
+        gxp_reserve(&body->config.allocator, &list->data, 3 * sizeof *list->data, list->count, &list->capacity, 1);
+    if (result == GX_OK) memcpy(list->data + 3 * (size_t)list->count++, x, 3 * sizeof *x);
+    return result;
+}
+
+static gx_result gxp_append_front(gx_body *body, gxp_front_list *to, const gxp_front_vertex *from, uint32_t count) {
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (i = 0; i < count && result == GX_OK; i++) result = gxp_push_vertex(body, to, &from[i]);
+    return result;
+}
+
+static gx_result gxp_copy_front(gx_body *body, gxp_front_list *to, const gxp_front_list *from) {
+    to->count = 0;
+    return gxp_append_front(body, to, from->data, from->count);
+}
+
+static gx_result gxp_list_slot(gx_body *body, void *user, uint32_t slot) {
+    return gxp_push(body, (gxp_words *)user, slot);
+}
+
+/* Lists the cells whose deformed elements' boxes meet a box. The tree is up to date. */
+static gx_result gxp_find_in_box(gx_body *body, const double low[3], const double high[3], gxp_words *found) {
+    gxp_bounds box;
+    memcpy(box.low, low, sizeof box.low);
+    memcpy(box.high, high, sizeof box.high);
+    found->count = 0;
+    return gxp_walk_box(body, &box, gxp_list_slot, found);
+}
+
+/* The near cell of a slot, or GXP_NONE */
+static uint32_t gxp_close_index(const gxp_vicinity *near, uint32_t slot) {
+    const uint32_t index = slot < near->of_slot.count ? near->of_slot.data[slot] : GXP_NONE;
+    return index < near->count && near->cells[index].slot == slot ? index : GXP_NONE;
+}
+
+/* The layer of a slot, or GXP_NONE */
+static uint32_t gxp_layer_of(const gxp_vicinity *near, uint32_t slot) {
+    const uint32_t index = gxp_close_index(near, slot);
+    return index == GXP_NONE ? GXP_NONE : near->cells[index].layer;
+}
+
+/* The layer to which a cell belonged at the last move, or GXP_NONE. Parts of a cell that was divided since inherit. */
+static uint32_t gxp_old_layer(const gx_blade *blade, uint32_t slot) {
+    const gxp_keys *members = &blade->now.members;
+    const uint32_t *parent = blade->body->cells.parent;
+    uint32_t low = 0, high = members->count;
+    while (slot >= blade->now.slot_count && parent[slot] != slot) slot = parent[slot];
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (GXP_FIRST(members->data[middle]) < slot)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < members->count && GXP_FIRST(members->data[low]) == slot ? GXP_SECOND(members->data[low]) : GXP_NONE;
+}
+
+/* Where a vertex of a front is now, as a layer has it: by a cell of its element that belongs to the layer, if there is
+   one, and that contains it. old: the layer is one of the last move's. */
+static gx_result gxp_front_position(gx_blade *blade, uint32_t layer, int old, const gxp_front_vertex *v, double x[3]) {
+    static const double origin[3] = {0, 0, 0};
+    gx_body *body = blade->body;
+    uint32_t cell, best = GXP_NONE, most = 0, holder = GXP_NONE;
+    double corners[4][3], weights[4];
+    gx_result result = GX_OK;
+    memcpy(x, v->position, 3 * sizeof *x);
+    if (body->cells.data[v->element].next != GXP_NONE) result = gxp_cell_at(body, v->element, v->rest, &holder);
+    for (cell = v->element; cell != GXP_NONE; cell = body->cells.data[cell].next) {
+        const uint32_t own = old ? gxp_old_layer(blade, cell) : gxp_layer_of(&blade->near, cell),
+                       rank = 1 + 2 * (uint32_t)(own == layer) + (uint32_t)(cell == holder);
+        if (!body->cells.data[cell].kept || rank <= most) continue;
+        most = rank;
+        best = cell;
+    }
+    if (best == GXP_NONE || result != GX_OK) return result;
+    gxp_cell_corners(body, &body->cells.data[best], 0, origin, corners);
+    gxp_tet_weights(corners, v->extended, weights);
+    gxp_cell_corners(body, &body->cells.data[best], 1, origin, corners);
+    gxp_weigh(corners, weights, x);
+    return GX_OK;
+}
+
+/* A place on the edge: index of its point, + share of the way to the next */
+static void gxp_edge_position(const double *edge, uint32_t count, double along, double x[3]) {
+    const uint32_t i = along < count - 2 ? (uint32_t)along : count - 2;
+    const double share = along - i;
+    int k;
+    for (k = 0; k < 3; k++) {
+        const double a = edge[3 * (size_t)i + (size_t)k], b = edge[3 * (size_t)i + 3 + (size_t)k];
+        x[k] = share <= 0 ? a : share >= 1 ? b : a + share * (b - a);
+    }
+}
+
+static gx_result gxp_push_quad(gx_blade *blade, const double *a, const double *b, const double *c, const double *d) {
+    gx_result result = gxp_push_point(blade->body, &blade->quads, a);
+    if (result == GX_OK) result = gxp_push_point(blade->body, &blade->quads, b);
+    if (result == GX_OK) result = gxp_push_point(blade->body, &blade->quads, c);
+    return result == GX_OK ? gxp_push_point(blade->body, &blade->quads, d) : result;
+}
+
+/* The part of the edge between two of its points, from the last move's place to the new one, in pieces of about twice
+   the largest element. Far ends are long pieces: no cell is there. */
+static gx_result gxp_sweep_segment(gx_blade *blade, const double *before, const double *after) {
+    double from[4][3], length;
+    uint32_t parts, i;
+    int k, n;
+    gx_result result = GX_OK;
+    length = sqrt(gxp_square_distance(after, after + 3));
+    parts = length < 200 * blade->largest ? 1 + (uint32_t)(0.5 * length / blade->largest) : 100;
+    for (i = 0; i < parts && result == GX_OK; i++) {
+        for (n = 0; n < 2; n++)
+            for (k = 0; k < 3; k++) {
+                const double share = (double)(i + (uint32_t)n) / parts;
+                from[n][k] = before[k] + share * (before[3 + k] - before[k]);
+                from[3 - n][k] = after[k] + share * (after[3 + k] - after[k]);
+            }
+        result = gxp_push_quad(blade, from[0], from[1], from[2], from[3]);
+    }
+    return result;
+}
+
+/* The strip that the edge may have swept since the fronts were cut: from the edge of the last move, and from the place
+   where each front is now */
+static gx_result gxp_sweep(gx_blade *blade, const double *edge, uint32_t count) {
+    const gxp_blade_state *now = &blade->now;
+    const double *before = now->edge.count > 0 ? now->edge.data : edge;
+    uint32_t i, j;
+    gx_result result = GX_OK;
+    blade->quads.count = 0;
+    for (i = 0; i + 1 < count && result == GX_OK; i++)
+        result = gxp_sweep_segment(blade, before + 3 * (size_t)i, edge + 3 * (size_t)i);
+    for (j = 0; j < now->layers.count && result == GX_OK; j++) {
+        const gxp_front_vertex *v = now->vertices.data + now->layers.data[j].front;
+        for (i = 0; i + 1 < now->layers.data[j].front_count && result == GX_OK; i++) {
+            double x[4][3];
+            result = gxp_front_position(blade, j, 1, &v[i], x[0]);
+            if (result == GX_OK) result = gxp_front_position(blade, j, 1, &v[i + 1], x[1]);
+            gxp_edge_position(edge, count, v[i + 1].along, x[2]);
+            gxp_edge_position(edge, count, v[i].along, x[3]);
+            if (result == GX_OK) result = gxp_push_quad(blade, x[0], x[1], x[2], x[3]);
+        }
+    }
+    return result;
+}
+
+/* The deformed corners of a cell, and what contains them */
+static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
+    static const double origin[3] = {0, 0, 0};
+    const gxp_cell *cell = &body->cells.data[c->slot];
+    int n, k;
+    gxp_cell_corners(body, cell, 1, origin, c->corners);
+    for (k = 0; k < 3; k++) {
+        const double x[4] = {c->corners[0][k], c->corners[1][k], c->corners[2][k], c->corners[3][k]};
+        c->low[k] = gxp_least(x);
+        c->high[k] = gxp_greatest(x);
+        c->middle[k] = 0.25 * (x[0] + x[1] + x[2] + x[3]);
+    }
+    c->radius = 0;
+    for (n = 0; n < 4; n++) {
+        const double square = gxp_square_distance(c->middle, c->corners[n]);
+        if (square > c->radius) c->radius = square;
+    }
+    c->radius = sqrt(c->radius);
+    c->stretch = gxp_stretch(body, c->slot);
+    c->size = cbrt(6 * gxp_element_volume(body, cell->element));
+}
+
+/* Is the ball around a cell within a distance of a triangle? */
+static int gxp_is_near_triangle(const gxp_close_cell *c, const double *x, const double *y, const double *z,
+                                double reach) {
+    const double least = c->radius + reach;
+    double at[3];
+    int k, beyond = 0;
+    for (k = 0; k < 3; k++) {
+        beyond |= x[k] > c->middle[k] + least && y[k] > c->middle[k] + least && z[k] > c->middle[k] + least;
+        beyond |= x[k] < c->middle[k] - least && y[k] < c->middle[k] - least && z[k] < c->middle[k] - least;
+    }
+    return !beyond && gxp_onto_triangle(c->middle, x, y, z, at) <= least * least;
+}
+
+/* Looks at a cell: it is near if it is within an element's size of the quad. quad NULL: wherever it is */
+static gx_result gxp_add_near(gx_blade *blade, uint32_t slot, const double *quad) {
+    gxp_vicinity *near = &blade->near;
+    uint32_t index = gxp_close_index(near, slot);
+    gxp_close_cell *c;
+    if (index == GXP_NONE) {
+        const gx_result result = gxp_reserve(&blade->body->config.allocator, &near->cells, sizeof *near->cells,
+                                             near->count, &near->capacity, 1);
+        if (result != GX_OK) return result;
+        index = near->of_slot.data[slot] = near->count++;
+        memset(&near->cells[index], 0, sizeof near->cells[index]);
+        near->cells[index].slot = slot;
+        gxp_place_near(blade->body, &near->cells[index]);
+    }
+    c = &near->cells[index];
+    if (!c->is_near)
+        c->is_near = quad == NULL || gxp_is_near_triangle(c, quad, quad + 3, quad + 6, c->size) ||
+                     gxp_is_near_triangle(c, quad, quad + 6, quad + 9, c->size);
+    return GX_OK;
+}
+
+/* Drops the cells that were looked at in vain. */
+static void gxp_keep_near(gxp_vicinity *near) {
+    uint32_t i, n = 0;
+    for (i = 0; i < near->count; i++) {
+        if (!near->cells[i].is_near) continue;
+        if (n < i) near->cells[n] = near->cells[i];
+        near->of_slot.data[near->cells[n].slot] = n;
+        n++;
+    }
+    near->count = n;
+}
+
+/* Unites a near cell with those before it that share a copy. */
+static void gxp_join_near(gx_blade *blade, uint32_t index) {
+    gxp_vicinity *near = &blade->near;
+    const gx_body *body = blade->body;
+    const uint32_t *copies = body->cells.data[near->cells[index].slot].copies;
+    uint32_t k, n;
+    for (k = 0; k < 4; k++) {
+        const uint32_t first = near->of_copy.data[copies[k]];
+        int shared = 0;
+        for (n = 0; n < 4 && first < index; n++)
+            shared |= body->cells.data[near->cells[first].slot].copies[n] == copies[k];
+        if (shared)
+            gxp_unite(near->parents.data, first, index);
+        else
+            near->of_copy.data[copies[k]] = index;
+    }
+}
+
+/* Words by slot or copy, which keep what they have; new ones are 0. */
+static gx_result gxp_extend_words(gx_body *body, gxp_words *words, uint32_t count) {
+    gx_result result;
+    if (count <= words->count) return GX_OK;
+    result = gxp_words_room(body, words, count - words->count);
+    if (result != GX_OK) return result;
+    memset(words->data + words->count, 0, (count - words->count) * sizeof *words->data);
+    words->count = count;
+    return GX_OK;
+}
+
+/* Numbers the layers in the order of their first cells. */
+static gx_result gxp_number_layers(gx_blade *blade) {
+    gxp_vicinity *near = &blade->near;
+    gx_body *body = blade->body;
+    uint32_t i;
+    gx_result result = gxp_extend_words(body, &near->of_copy, body->copies.count);
+    near->parents.count = 0;
+    for (i = 0; i < near->count && result == GX_OK; i++) result = gxp_push(body, &near->parents, i);
+    if (result != GX_OK) return result;
+    for (i = 0; i < near->count; i++) gxp_join_near(blade, i);
+    near->layer_count = 0;
+    for (i = 0; i < near->count; i++) {
+        const uint32_t root = gxp_find(near->parents.data, i);
+        near->cells[i].layer = root == i ? near->layer_count++ : near->cells[root].layer;
+    }
+    return GX_OK;
+}
+
+/* Orders the cells of each layer along the axis along which the edge is longest, so that searches look at few. */
+static gx_result gxp_order_near(gx_blade *blade) {
+    gxp_vicinity *near = &blade->near;
+    gx_body *body = blade->body;
+    double low = 0, high = 0;
+    uint32_t i, sum = 0;
+    gx_result result = gxp_start_words(body, &near->layer_start, (size_t)near->layer_count + 1);
+    near->order.count = 0;
+    if (result == GX_OK) result = gxp_keys_room(body, &near->order, 3 * (size_t)near->count);
+    if (result != GX_OK) return result;
+    near->layer_start.count = near->layer_count + 1;
+    memset(near->layer_start.data, 0, near->layer_start.count * sizeof *near->layer_start.data);
+    near->widest = 0;
+    for (i = 0; i < near->count; i++) {
+        const gxp_close_cell *c = &near->cells[i];
+        low = i == 0 || c->low[near->axis] < low ? c->low[near->axis] : low;
+        high = i == 0 || c->low[near->axis] > high ? c->low[near->axis] : high;
+        near->widest = fmax(near->widest, c->high[near->axis] - c->low[near->axis]);
+        near->layer_start.data[c->layer]++;
+    }
+    for (i = 0; i <= near->layer_count; i++) {
+        const uint32_t count = near->layer_start.data[i];
+        near->layer_start.data[i] = sum;
+        sum += count;
+    }
+    for (i = 0; i < near->count; i++) {
+        const double share = high > low ? (near->cells[i].low[near->axis] - low) / (high - low) : 0;
+        near->order.data[near->order.count++] = (uint64_t)(4294967295.0 * share) << 32 | i;
+    }
+    result = gxp_sort_keys(body, &near->order, 0, near->count);
+    if (result != GX_OK) return result;
+    for (i = 0; i < near->count; i++) { /* by layer, stable */
+        const uint32_t cell = GXP_SECOND(near->order.data[i]);
+        near->order.data[near->count + near->layer_start.data[near->cells[cell].layer]++] = near->order.data[i];
+    }
+    if (near->count > 0)
+        memcpy(near->order.data, near->order.data + near->count, near->count * sizeof *near->order.data);
+    for (i = near->layer_count; i > 0; i--) near->layer_start.data[i] = near->layer_start.data[i - 1];
+    near->layer_start.data[0] = 0;
+    return GX_OK;
+}
+
+/* Finds the cells near the quads. scope: by fragment, 1 if it is in the scope; NULL: all are. */
+static gx_result gxp_find_near(gx_blade *blade, const gxp_words *scope) {
+    gxp_vicinity *near = &blade->near;
+    gx_body *body = blade->body;
+    uint32_t q, i;
+    int k;
+    gx_result result = gxp_refit_tree(body);
+    if (result == GX_OK) result = gxp_extend_words(body, &near->of_slot, body->cells.count);
+    near->count = 0;
+    for (q = 0; q < blade->quads.count && result == GX_OK; q += 4) {
+        const double *x = blade->quads.data + 3 * (size_t)q;
+        double low[3], high[3];
+        for (k = 0; k < 3; k++) {
+            low[k] = fmin(fmin(x[k], x[3 + k]), fmin(x[6 + k], x[9 + k])) - blade->largest;
+            high[k] = fmax(fmax(x[k], x[3 + k]), fmax(x[6 + k], x[9 + k])) + blade->largest;
+        }
+        result = gxp_find_in_box(body, low, high, &blade->found);
+        for (i = 0; i < blade->found.count && result == GX_OK; i++)
+            if (scope == NULL || scope->data[gxp_cell_fragment(body, blade->found.data[i])])
+                result = gxp_add_near(blade, blade->found.data[i], x);
+    }
+    return result;
+}
+
+/* Finds the near cells and their layers. */
+static gx_result gxp_find_layers(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope) {
+    const double *last = edge + 3 * ((size_t)count - 1);
+    int k;
+    gx_result result = gxp_sweep(blade, edge, count);
+    if (result == GX_OK) result = gxp_find_near(blade, scope);
+    gxp_keep_near(&blade->near);
+    if (result == GX_OK) result = gxp_number_layers(blade);
+    blade->near.axis = 0;
+    for (k = 1; k < 3; k++)
+        if (fabs(last[k] - edge[k]) > fabs(last[blade->near.axis] - edge[blade->near.axis])) blade->near.axis = k;
+    return result == GX_OK ? gxp_order_near(blade) : result;
+}
+
+/* >>edges: the edge as a layer sees it ----------------------------------------------------------------------------- */
+/* In: a layer and the edge. Out: places on the edge with their material points: few where the layer is not, or where
+   they lie on a line. In the air the map of the nearest cell is extended. Touches the blade's working memory. */
+
+/* Cells of less volume, as a share of that at rest, map nothing back: other cells are near. */
+#define GXP_FLAT_MAP 1e-3
+/* A place within the element of a near cell, but in the part of another one, is taken to be this far off the cell, in
+   element sizes. */
+#define GXP_BESIDE 1e-3
+
+typedef struct gxp_sight { /* what a search for the nearest cell of a layer has found */
+    uint32_t index;        /* of a near cell, GXP_NONE: none */
+    double square;         /* of the distance, m2; 0: inside */
+    double nearest[3];     /* in space */
+    double weights[4];     /* of the place, by the corners of that cell */
+} gxp_sight;
+
+static double gxp_square_to_box(const double x[3], const double low[3], const double high[3]) {
+    double square = 0;
+    int k;
+    for (k = 0; k < 3; k++) {
+        const double d = x[k] < low[k] ? low[k] - x[k] : x[k] > high[k] ? x[k] - high[k] : 0;
+        square += d * d;
+    }
+    return square;
+}
+
+/* A cell whose element contains the place: is the place in the cell's own part? */
+static gx_result gxp_seek_inside(gx_blade *blade, uint32_t index, const double x[3], const double weights[4],
+                                 gxp_sight *sight) {
+    static const double origin[3] = {0, 0, 0};
+    gx_body *body = blade->body;
+    const gxp_close_cell *c = &blade->near.cells[index];
+    const gxp_cell *cell = &body->cells.data[c->slot];
+    const double beside = GXP_BESIDE * c->size;
+    uint32_t holder = c->slot;
+    gx_result result = GX_OK;
+    if (body->cells.data[cell->element].next != GXP_NONE) {
+        double corners[4][3], rest[3];
+        gxp_cell_corners(body, cell, 0, origin, corners);
+        gxp_weigh(corners, weights, rest);
+        result = gxp_cell_at(body, cell->element, rest, &holder);
+    }
+    if (holder != c->slot && beside * beside >= sight->square) return result;
+    sight->index = index;
+    sight->square = holder == c->slot ? 0 : beside * beside;
+    memcpy(sight->nearest, x, sizeof sight->nearest);
+    memcpy(sight->weights, weights, sizeof sight->weights);
+    return result;
+}
+
+/* A cell whose element does not contain the place: is it nearer than what was found before? */
+static void gxp_seek_outside(const gx_blade *blade, uint32_t index, const double x[3], const double weights[4],
+                             gxp_sight *sight) {
+    const gxp_close_cell *c = &blade->near.cells[index];
+    int f;
+    if (c->stretch < GXP_FLAT_MAP) return; /* flat or inverted: outside is inside by its map */
+    for (f = 0; f < 4; f++) {
+        double nearest[3], square;
+        if (weights[f] >= 0) continue;
+        square = gxp_onto_triangle(x, c->corners[gxp_outward[f][0]], c->corners[gxp_outward[f][1]],
+                                   c->corners[gxp_outward[f][2]], nearest);
+        if (square >= sight->square) continue;
+        sight->index = index;
+        sight->square = square;
+        memcpy(sight->nearest, nearest, sizeof nearest);
+        memcpy(sight->weights, weights, sizeof sight->weights);
+    }
+}
+
+static gx_result gxp_seek_at(gx_blade *blade, uint32_t index, const double x[3], gxp_sight *sight) {
+    gxp_close_cell *c = &blade->near.cells[index];
+    double weights[4];
+    if (gxp_square_to_box(x, c->low, c->high) >= sight->square || fabs(c->stretch) < GXP_FLAT_MAP) return GX_OK;
+    gxp_tet_weights(c->corners, x, weights);
+    if (weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0 && weights[3] >= 0)
+        return gxp_seek_inside(blade, index, x, weights, sight);
+    gxp_seek_outside(blade, index, x, weights, sight);
+    return GX_OK;
+}
+
+/* Finds the cell of a layer that contains a place, or else the nearest one. */
+static gx_result gxp_seek(gx_blade *blade, uint32_t layer, const double x[3], gxp_sight *sight) {
+    const gxp_vicinity *near = &blade->near;
+    const double along = x[near->axis];
+    uint32_t low = near->layer_start.data[layer], high = near->layer_start.data[layer + 1], first = low, end = high, i;
+    gx_result result = GX_OK;
+    sight->index = GXP_NONE;
+    sight->square = HUGE_VAL;
+    if (blade->last_sight < near->count && near->cells[blade->last_sight].layer == layer)
+        result = gxp_seek_at(blade, blade->last_sight, x, sight);
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (near->cells[GXP_SECOND(near->order.data[middle])].low[near->axis] <= along)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    for (i = low; i > first && result == GX_OK && sight->square > 0; i--) {
+        const uint32_t index = GXP_SECOND(near->order.data[i - 1]);
+        const double off = along - near->cells[index].low[near->axis] - near->widest;
+        if (off > 0 && off * off >= sight->square) break;
+        result = gxp_seek_at(blade, index, x, sight);
+    }
+    for (i = low; i < end && result == GX_OK && sight->square > 0; i++) {
+        const uint32_t index = GXP_SECOND(near->order.data[i]);
+        const double off = near->cells[index].low[near->axis] - along;
+        if (off * off >= sight->square) break;
+        result = gxp_seek_at(blade, index, x, sight);
+    }
+    return result;
+}
+
+/* The cell that has a material point, GXP_NONE: there is none */
+static gx_result gxp_find_rest_cell(gx_body *body, const double rest[3], uint32_t *cell) {
+    uint32_t stack[128], depth = 0, i;
+    int k;
+    *cell = GXP_NONE;
+    stack[depth++] = 0;
+    while (depth > 0) {
+        const gxp_box *box = &body->mesh.boxes[stack[--depth]];
+        int beyond = 0;
+        for (k = 0; k < 3; k++) beyond |= rest[k] < box->low[k] || rest[k] > box->high[k];
+        if (beyond) continue;
+        if (box->count == 0) {
+            stack[depth++] = box->first + 1;
+            stack[depth++] = box->first;
+        }
+        for (i = 0; i < box->count; i++) {
+            const uint32_t element = body->mesh.box_elements[box->first + i];
+            if (gxp_element_side(body, element, rest) >= 0) return gxp_cell_at(body, element, rest, cell);
+        }
+    }
+    return GX_OK;
+}
+
+/* Is there material of the layer at a material point? */
+static gx_result gxp_is_in_layer(gx_blade *blade, uint32_t layer, const double rest[3], int *inside) {
+    uint32_t slot = GXP_NONE;
+    const gx_result result = gxp_find_rest_cell(blade->body, rest, &slot);
+    *inside = slot != GXP_NONE && gxp_layer_of(&blade->near, slot) == layer;
+    return result;
+}
+
+/* The material point of a place in the air, at most an element's size away from the nearest one of the layer's
+   surface. It moves towards that one while there is material of the layer: the map extended is not the layer's. */
+static gx_result gxp_place_in_air(gx_blade *blade, uint32_t layer, const gxp_sight *sight, double corners[4][3],
+                                  gxp_front_vertex *v) {
+    const gxp_close_cell *c = &blade->near.cells[sight->index];
+    double weights[4], surface[3], position[3], away;
+    const double share = v->distance > v->size ? v->size / v->distance : 1;
+    int k, tries, inside = 1;
+    gx_result result = GX_OK;
+    gxp_tet_weights(blade->near.cells[sight->index].corners, sight->nearest, weights);
+    gxp_weigh(corners, weights, surface);
+    for (k = 0; k < 3; k++) position[k] = sight->nearest[k] + share * (v->position[k] - sight->nearest[k]);
+    gxp_tet_weights(blade->near.cells[sight->index].corners, position, weights);
+    gxp_weigh(corners, weights, v->rest);
+    away = sqrt(gxp_square_distance(v->rest, surface));
+    if (away > 1.5 * c->size)
+        for (k = 0; k < 3; k++) v->rest[k] = surface[k] + 1.5 * c->size / away * (v->rest[k] - surface[k]);
+    for (tries = 0; tries < 6 && inside && result == GX_OK; tries++) {
+        result = gxp_is_in_layer(blade, layer, v->rest, &inside);
+        for (k = 0; k < 3 && inside; k++) v->rest[k] = surface[k] + 0.4 * (v->rest[k] - surface[k]);
+    }
+    return result;
+}
+
+/* How a layer sees a place in space: v->position is given. */
+static gx_result gxp_see_place(gx_blade *blade, uint32_t layer, gxp_front_vertex *v) {
+    static const double origin[3] = {0, 0, 0};
+    const gxp_vicinity *near = &blade->near;
+    const gxp_close_cell *c;
+    double corners[4][3];
+    gxp_sight sight;
+    const gx_result result = gxp_seek(blade, layer, v->position, &sight);
+    if (result != GX_OK) return result;
+    c = &near->cells[sight.index != GXP_NONE ? sight.index
+                                             : GXP_SECOND(near->order.data[near->layer_start.data[layer]])];
+    v->element = blade->body->cells.data[c->slot].element;
+    v->size = c->size;
+    v->distance = sqrt(sight.square);
+    blade->last_sight = sight.index;
+    if (sight.index == GXP_NONE) { /* every cell is flat or inverted */
+        memcpy(v->rest, v->position, sizeof v->rest);
+        memcpy(v->extended, v->position, sizeof v->extended);
+        return GX_OK;
+    }
+    gxp_cell_corners(blade->body, &blade->body->cells.data[c->slot], 0, origin, corners);
+    gxp_weigh(corners, sight.weights, v->extended);
+    memcpy(v->rest, v->extended, sizeof v->rest);
+    return v->distance > 0 ? gxp_place_in_air(blade, layer, &sight, corners, v) : GX_OK;
+}
+
+/* How a layer sees a place on the edge */
+static gx_result gxp_see(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count, double along,
+                         gxp_front_vertex *v) {
+    memset(v, 0, sizeof *v);
+    v->along = along;
+    gxp_edge_position(edge, count, along, v->position);
+    return gxp_see_place(blade, layer, v);
+}
+
+/* Are there places between two that must be seen? None, if the layer can't be there: its distance from a place is at
+   most that from another one and the way between them. */
+static int gxp_must_refine(const gx_blade *blade, const gxp_front_vertex *a, const gxp_front_vertex *b) {
+    const double length = sqrt(gxp_square_distance(a->position, b->position));
+    const double size = a->size < b->size ? a->size : b->size;
+    if (blade->samples.count >= blade->max_samples) return 0;
+    if (a->distance > 0 && b->distance > 0 && a->distance + b->distance > length) return 0;
+    return length > size * ((a->distance > 0) == (b->distance > 0) ? 0.5 : 0.125);
+}
+
+/* Appends what must be seen between two places. */
+static gx_result gxp_refine(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count,
+                            const gxp_front_vertex *a, const gxp_front_vertex *b) {
+    gxp_front_vertex middle;
+    const double along = 0.5 * a->along + 0.5 * b->along;
+    gx_result result;
+    if (!gxp_must_refine(blade, a, b) || !(along > a->along && along < b->along)) return GX_OK;
+    result = gxp_see(blade, layer, edge, count, along, &middle);
+    if (result == GX_OK) result = gxp_refine(blade, layer, edge, count, a, &middle);
+    if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->samples, &middle);
+    return result == GX_OK ? gxp_refine(blade, layer, edge, count, &middle, b) : result;
+}
+
+/* Flags the places that are needed for a polyline within a tolerance [Douglas, Peucker 1973]. */
+static void gxp_keep_bends(const gxp_front_vertex *v, uint32_t first, uint32_t last, double tolerance, uint32_t *keep) {
+    while (first + 1 < last) {
+        double most = 0, share, at[3];
+        uint32_t i, middle = first;
+        for (i = first + 1; i < last; i++) {
+            const double square = gxp_onto_segment(v[i].rest, v[first].rest, v[last].rest, &share, at);
+            if (square > most) most = square, middle = i;
+        }
+        if (most <= tolerance * tolerance) return;
+        keep[middle] = 1;
+        gxp_keep_bends(v, first, middle, tolerance, keep);
+        first = middle;
+    }
+}
+
+/* Drops the ends of the edge that are farther than an element's size from the layer, and places on lines. */
+static gx_result gxp_thin_samples(gx_blade *blade) {
+    gxp_front_vertex *v = blade->samples.data;
+    uint32_t first = 0, last = blade->samples.count - 1, count = 0, i;
+    gx_result result = gxp_start_words(blade->body, &blade->needed, blade->samples.count);
+    if (result != GX_OK) return result;
+    while (first < last && v[first + 1].distance > v[first + 1].size) first++;
+    while (last > first && v[last - 1].distance > v[last - 1].size) last--;
+    if (first >= last) first = 0, last = blade->samples.count - 1;
+    memset(blade->needed.data, 0, blade->samples.count * sizeof *blade->needed.data);
+    blade->needed.data[first] = blade->needed.data[last] = 1;
+    gxp_keep_bends(v, first, last, 0.5 * blade->tolerance, blade->needed.data);
+    for (i = first; i <= last; i++)
+        if (blade->needed.data[i]) v[count++] = v[i];
+    blade->samples.count = count;
+    return GX_OK;
+}
+
+/* Lists in blade.samples how a layer sees the edge. */
+static gx_result gxp_see_edge(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count) {
+    gxp_front_vertex before, v;
+    uint32_t i;
+    gx_result result;
+    blade->last_sight = GXP_NONE;
+    blade->samples.count = 0;
+    result = gxp_see(blade, layer, edge, count, 0, &before);
+    if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->samples, &before);
+    for (i = 1; i < count && result == GX_OK; i++) {
+        result = gxp_see(blade, layer, edge, count, (double)i, &v);
+        if (result == GX_OK) result = gxp_refine(blade, layer, edge, count, &before, &v);
+        if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->samples, &v);
+        before = v;
+    }
+    return result == GX_OK ? gxp_thin_samples(blade) : result;
+}
+
+/* >>fronts: how far the edge has come in a layer ------------------------------------------------------------------- */
+/* In: a layer's front and how it sees the edge. Out: the front advanced where the edge is ahead of it, and the strip of
+   triangles between the two. Where the edge goes back through its own cut the front stays. Touches the blade's working
+   memory. */
+
+/* Shares of an element's size. An advance of less is none. A place behind the front is in the cut if it is no farther
+   from its sheet, else the edge has left the cut through its side. */
+#define GXP_LEAST_ADVANCE 0.02
+#define GXP_CUT_WIDTH     0.15
+/* Triangles of the last strips that a layer remembers. */
+#define GXP_SHEET_TRIANGLES 400u
+
+/* The point of a front nearest to a material point */
+static void gxp_near_front(const gxp_front_list *front, const double rest[3], gxp_relation *r, double nearest[3]) {
+    double best = HUGE_VAL;
+    uint32_t i;
+    r->segment = 0;
+    r->share = 0;
+    memcpy(nearest, front->data[0].rest, 3 * sizeof *nearest);
+    for (i = 0; i + 1 < front->count; i++) {
+        double share, at[3];
+        const double square = gxp_onto_segment(rest, front->data[i].rest, front->data[i + 1].rest, &share, at);
+        if (square >= best) continue;
+        best = square;
+        r->segment = i;
+        r->share = share;
+        memcpy(nearest, at, sizeof at);
+    }
+    r->distance = sqrt(gxp_square_distance(rest, nearest));
+}
+
+/* The point of a sheet nearest to a material point. Returns the distance. */
+static double gxp_near_sheet(const gxp_points *sheet, const double rest[3], double nearest[3]) {
+    double best = HUGE_VAL;
+    uint32_t i;
+    for (i = 0; i + 2 < sheet->count; i += 3) {
+        const double *x = sheet->data + 3 * (size_t)i;
+        double at[3], square = 0;
+        int k;
+        for (k = 0; k < 3; k++) {
+            const double below = fmin(x[k], fmin(x[3 + k], x[6 + k])) - rest[k],
+                         above = rest[k] - fmax(x[k], fmax(x[3 + k], x[6 + k])), off = fmax(below, above);
+            if (off > 0) square += off * off;
+        }
+        if (square >= best) continue;
+        square = gxp_onto_triangle(rest, x, x + 3, x + 6, at);
+        if (square >= best) continue;
+        best = square;
+        memcpy(nearest, at, sizeof at);
+    }
+    return sqrt(best);
+}
+
+/* Is the place past an end of the front, where the section of layer and sheet has become longer? */
+static int gxp_is_beyond(const gxp_front_list *front, const gxp_front_vertex *v, const gxp_relation *r) {
+    const uint32_t last = front->count - 1, end = r->share > 0 ? last : 0;
+    const double *x = front->data[end].rest, *next = front->data[end == 0 ? 1 : last - 1].rest;
+    double out = 0;
+    int k;
+    if (!(r->segment == 0 && r->share <= 0) && !(r->segment + 1 == last && r->share >= 1)) return 0;
+    for (k = 0; k < 3; k++) out += (v->rest[k] - x[k]) * (x[k] - next[k]);
+    return out > 0;
+}
+
+/* A place behind the front: is it in the cut, has it left that through the side, or is it beside the front, ahead of
+   where it turns? */
+static gx_result gxp_judge_behind(gx_blade *blade, const gxp_front_vertex *v, gxp_relation *r) {
+    const double width = fmax(GXP_CUT_WIDTH * v->size, 2 * blade->tolerance);
+    double nearest[3], at[3];
+    gxp_relation of_sheet;
+    uint32_t slot = GXP_NONE;
+    gx_result result;
+    if (r->distance <= 2 * blade->tolerance || blade->sheet.count == 0) return GX_OK;
+    if (gxp_near_sheet(&blade->sheet, v->rest, nearest) <= width) {
+        result = gxp_find_rest_cell(blade->body, nearest, &slot);
+        r->ahead = slot == GXP_NONE; /* the sheet is in the air there: nothing is cut yet */
+        return result;
+    }
+    gxp_near_front(&blade->front, nearest, &of_sheet, at);
+    r->strays = of_sheet.distance > 2 * width;
+    r->ahead = !r->strays;
+    return GX_OK;
+}
+
+/* The direction in which the front came to the nearest point on it, or to the vertices in the material next to that:
+   those in the air have come as the map extended. Returns 0 if the whole front is in the air. */
+static int gxp_front_direction(const gxp_front_list *front, const gxp_relation *r, double direction[3]) {
+    const gxp_front_vertex *v = front->data;
+    uint32_t left = r->segment, right = r->segment + 1;
+    double share = r->share;
+    int k;
+    while (left > 0 && v[left].distance > 0) left--;
+    while (right + 1 < front->count && v[right].distance > 0) right++;
+    if (v[left].distance > 0) share = 1;
+    if (v[right].distance > 0) share = 0;
+    for (k = 0; k < 3; k++) direction[k] = (1 - share) * v[left].ahead[k] + share * v[right].ahead[k];
+    return !(v[left].distance > 0 && v[right].distance > 0);
+}
+
+/* A place in the air behind the front: it stays if it is in the cut. */
+static void gxp_judge_air(const gx_blade *blade, const gxp_front_vertex *v, gxp_relation *r) {
+    double nearest[3];
+    const double distance = gxp_near_sheet(&blade->sheet, v->rest, nearest);
+    r->ahead = distance > GXP_CUT_WIDTH * v->size && distance > 2 * blade->tolerance;
+}
+
+/* Where a place on the edge lies by the front. A front in the air follows the edge: nothing is cut yet. */
+static gx_result gxp_relate(gx_blade *blade, const gxp_front_vertex *v, gxp_relation *r) {
+    double nearest[3], direction[3], way[3];
+    int k;
+    gx_result result = GX_OK;
+    memset(r, 0, sizeof *r);
+    gxp_near_front(&blade->front, v->rest, r, nearest);
+    for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
+    r->ahead = r->distance > 0;
+    if (gxp_front_direction(&blade->front, r, direction) && gxp_dot(direction, direction) > 0)
+        r->ahead = gxp_dot(direction, way) > 0;
+    if (v->distance > 0) {
+        if (!r->ahead && r->distance > 0) gxp_judge_air(blade, v, r);
+        return GX_OK;
+    }
+    r->beyond = r->distance > 0 && gxp_is_beyond(&blade->front, v, r);
+    if (r->beyond) r->ahead = 1;
+    if (!r->ahead) result = gxp_judge_behind(blade, v, r);
+    if (r->distance < GXP_LEAST_ADVANCE * v->size && r->distance < 0.1 * blade->min_advance) r->ahead = 0;
+    return result;
+}
+
+/* What the layer's edge does at a move */
+typedef struct gxp_advance {
+    double most; /* the largest advance, m; of places inside, if there are any */
+    int wider;   /* the section has become longer than the front */
+    int strays;
+    int is_back; /* 1: all of the edge is in the air, and has come there through its own cut */
+} gxp_advance;
+
+/* The vertex of the front next to the nearest point */
+static uint32_t gxp_pin(const gxp_relation *r) { return r->segment + (r->share > 0.5); }
+
+/* Appends the front's own vertices for a run of places that are not ahead: *at is the first vertex not passed yet. */
+static gx_result gxp_stay(gx_blade *blade, const gxp_relation *r, uint32_t count, int first, int last, uint32_t *at) {
+    uint32_t low = GXP_NONE, high = 0, i;
+    gx_result result = GX_OK;
+    for (i = 0; i < count; i++) {
+        const uint32_t pin = gxp_pin(&r[i]);
+        if (pin < low) low = pin;
+        if (pin > high) high = pin;
+    }
+    if (first) low = 0;
+    if (last) high = blade->front.count - 1;
+    if (low < *at) low = *at;
+    for (i = low; i <= high && result == GX_OK; i++)
+        result = gxp_push_vertex(blade->body, &blade->advanced, &blade->front.data[i]);
+    if (high > *at) *at = high;
+    return result;
+}
+
+/* Has an edge that is all in the air come there through its cut? From each vertex of the front in the material, the way
+   to the edge begins in the cut's sheet. Otherwise there is material on it that the edge has passed. */
+static gx_result gxp_came_back(gx_blade *blade, int *is_back) {
+    uint32_t i, seen = 0;
+    gx_result result = GX_OK;
+    *is_back = 0;
+    for (i = 0; i < blade->front.count && result == GX_OK; i++) {
+        const gxp_front_vertex *v = &blade->front.data[i];
+        gxp_relation r;
+        double nearest[3], step[3], place[3];
+        uint32_t slot = GXP_NONE;
+        int k;
+        if (v->distance > 0) continue;
+        gxp_near_front(&blade->samples, v->rest, &r, nearest);
+        for (k = 0; k < 3; k++) step[k] = nearest[k] - v->rest[k];
+        if (!gxp_unit(step, step)) continue;
+        for (k = 0; k < 3; k++) place[k] = v->rest[k] + 2 * GXP_CUT_WIDTH * v->size * step[k];
+        result = gxp_find_rest_cell(blade->body, place, &slot);
+        if (slot == GXP_NONE) continue; /* at the surface: nothing is on the way */
+        if (gxp_near_sheet(&blade->sheet, place, nearest) > GXP_CUT_WIDTH * v->size) return result;
+        seen++;
+    }
+    *is_back = seen > 0;
+    return result;
+}
+
+/* Lists in blade.advanced the front as far as the samples have come: these where they are ahead, else its own
+   vertices. */
+static gx_result gxp_advance_front(gx_blade *blade, gxp_advance *move) {
+    const gxp_front_list *samples = &blade->samples;
+    gxp_relation *r;
+    uint32_t i, j, at = 0;
+    int in_air = 1;
+    gx_result result = gxp_reserve(&blade->body->config.allocator, &blade->relations, sizeof *r, 0,
+                                   &blade->relation_capacity, samples->count);
+    memset(move, 0, sizeof *move);
+    blade->advanced.count = 0;
+    if (result != GX_OK) return result;
+    r = blade->relations;
+    for (i = 0; i < samples->count; i++) in_air &= samples->data[i].distance > 0;
+    if (in_air) result = gxp_came_back(blade, &move->is_back);
+    for (i = 0; i < samples->count && result == GX_OK; i++) {
+        const gxp_front_vertex *v = &samples->data[i];
+        result = gxp_relate(blade, v, &r[i]);
+        if (in_air) r[i].ahead = !move->is_back && r[i].distance > 0;
+        if (r[i].ahead && (in_air || !(v->distance > 0))) move->most = fmax(move->most, r[i].distance);
+        move->wider |= r[i].beyond;
+        move->strays |= r[i].strays;
+    }
+    for (i = 0; i < samples->count && result == GX_OK; i = j) {
+        for (j = i; j < samples->count && r[j].ahead == r[i].ahead; j++) {}
+        result = r[i].ahead ? gxp_append_front(blade->body, &blade->advanced, samples->data + i, j - i)
+                            : gxp_stay(blade, r + i, j - i, i == 0, j == samples->count, &at);
+    }
+    return result;
+}
+
+static int gxp_same_rest(const gxp_front_vertex *a, const gxp_front_vertex *b) {
+    return a->rest[0] == b->rest[0] && a->rest[1] == b->rest[1] && a->rest[2] == b->rest[2];
+}
+
+/* Lists in blade.strip the triangles between two fronts: the shorter diagonal comes first. Vertices that both have make
+   no triangle. */
+static gx_result gxp_zip(gx_blade *blade, const gxp_front_list *from, const gxp_front_list *to) {
+    uint32_t i = 0, j = 0, k;
+    gx_result result = GX_OK;
+    blade->strip.count = 0;
+    while ((i + 1 < from->count || j + 1 < to->count) && result == GX_OK) {
+        const gxp_front_vertex *corner[3];
+        const int by_from = i + 1 < from->count &&
+                            (j + 1 == to->count || gxp_square_distance(from->data[i + 1].rest, to->data[j].rest) <=
+                                                       gxp_square_distance(from->data[i].rest, to->data[j + 1].rest));
+        corner[0] = &from->data[i];
+        corner[1] = by_from ? &from->data[i + 1] : &to->data[j + 1];
+        corner[2] = &to->data[j];
+        i += (uint32_t)by_from;
+        j += (uint32_t)!by_from;
+        if (gxp_same_rest(corner[0], corner[1]) || gxp_same_rest(corner[1], corner[2]) ||
+            gxp_same_rest(corner[0], corner[2]))
+            continue;
+        for (k = 0; k < 3 && result == GX_OK; k++) result = gxp_push_vertex(blade->body, &blade->strip, corner[k]);
+    }
+    return result;
+}
+
+/* The largest distance of the edge's path since the front was cut from the strip, or from the front where that stays */
+static double gxp_bend(const gx_blade *blade) {
+    double most = 0;
+    uint32_t i, t;
+    for (i = 0; i < blade->path.count && blade->strip.count > 0; i++) {
+        const double *x = blade->path.data + 3 * (size_t)i;
+        double best, at[3];
+        gxp_relation r;
+        gxp_near_front(&blade->front, x, &r, at);
+        best = r.distance * r.distance;
+        for (t = 0; t < blade->strip.count; t += 3)
+            best = fmin(best, gxp_onto_triangle(x, blade->strip.data[t].rest, blade->strip.data[t + 1].rest,
+                                                blade->strip.data[t + 2].rest, at));
+        most = fmax(most, best);
+    }
+    return sqrt(most);
+}
+
+static int gxp_has_direction(const gxp_front_vertex *v) { return gxp_dot(v->ahead, v->ahead) > 0; }
+
+/* The direction in which each vertex of the new front has come from the old one. Those that have not come take the
+   old front's, or their neighbours'. */
+static void gxp_set_directions(const gxp_front_list *from, gxp_front_list *to) {
+    uint32_t i, off;
+    int k;
+    for (i = 0; i < to->count; i++) {
+        gxp_front_vertex *v = &to->data[i];
+        gxp_relation r;
+        double nearest[3], way[3];
+        gxp_near_front(from, v->rest, &r, nearest);
+        for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
+        if (gxp_unit(way, v->ahead) && r.distance > GXP_LEAST_ADVANCE * v->size) continue;
+        if (!gxp_has_direction(&from->data[r.segment]) && !gxp_has_direction(&from->data[r.segment + 1])) continue;
+        for (k = 0; k < 3; k++)
+            v->ahead[k] = (1 - r.share) * from->data[r.segment].ahead[k] + r.share * from->data[r.segment + 1].ahead[k];
+    }
+    for (i = 0; i < to->count; i++)
+        for (off = 1; off < to->count && !gxp_has_direction(&to->data[i]); off++) {
+            if (i >= off) memcpy(to->data[i].ahead, to->data[i - off].ahead, sizeof to->data[i].ahead);
+            if (!gxp_has_direction(&to->data[i]) && i + off < to->count)
+                memcpy(to->data[i].ahead, to->data[i + off].ahead, sizeof to->data[i].ahead);
+        }
+}
+
+/* Cuts the strip up to a new front, which becomes the layer's. */
+static gx_result gxp_cut_strip(gx_blade *blade, gxp_front_list *to, gx_blade_report *report) {
+    gx_body *body = blade->body;
+    const uint32_t room = 3 * GXP_SHEET_TRIANGLES;
+    uint32_t i;
+    gx_result result = gxp_append_front(body, &blade->cut, blade->strip.data, blade->strip.count);
+    report->deviation = fmax(report->deviation, gxp_bend(blade));
+    for (i = 0; i < blade->strip.count && result == GX_OK; i++)
+        result = gxp_push_point(body, &blade->sheet, blade->strip.data[i].rest);
+    if (result != GX_OK) return result;
+    if (blade->sheet.count > room) {
+        memmove(blade->sheet.data, blade->sheet.data + 3 * (size_t)(blade->sheet.count - room),
+                3 * room * sizeof *blade->sheet.data);
+        blade->sheet.count = room;
+    }
+    gxp_set_directions(&blade->front, to);
+    blade->path.count = blade->latest.count = 0;
+    return gxp_copy_front(body, &blade->front, to);
+}
+
+/* Is the edge farther than an element from the layer? */
+static int gxp_is_away(const gx_blade *blade) {
+    uint32_t i;
+    for (i = 0; i < blade->samples.count; i++)
+        if (!(blade->samples.data[i].distance > blade->samples.data[i].size)) return 0;
+    return 1;
+}
+
+/* The edge has come back out of its cut: the front begins anew in the air. */
+static gx_result gxp_begin_outside(gx_blade *blade) {
+    blade->path.count = blade->latest.count = blade->sheet.count = 0;
+    return gxp_copy_front(blade->body, &blade->front, &blade->samples);
+}
+
+/* The edge has left its cut through the side: the front begins anew there, all of it a little on the other side of the
+   sheet, so that the next strip crosses it. Places still in the cut cross it the way that the farthest one has left. */
+static gx_result gxp_begin_track(gx_blade *blade) {
+    double most = 0, side[3] = {0, 0, 0};
+    uint32_t i;
+    int k;
+    gx_result result = gxp_copy_front(blade->body, &blade->front, &blade->samples);
+    for (i = 0; i < blade->front.count; i++) {
+        const gxp_front_vertex *v = &blade->front.data[i];
+        double nearest[3], way[3];
+        const double distance = gxp_near_sheet(&blade->sheet, v->rest, nearest);
+        for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
+        if (!(v->distance > 0) && distance > most && gxp_unit(way, side)) most = distance;
+    }
+    for (i = 0; i < blade->front.count; i++) {
+        gxp_front_vertex *v = &blade->front.data[i];
+        double nearest[3], way[3];
+        const double distance = gxp_near_sheet(&blade->sheet, v->rest, nearest);
+        memcpy(v->ahead, side, sizeof side);
+        for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
+        if (distance > 2 * blade->tolerance) gxp_unit(way, v->ahead);
+        for (k = 0; k < 3; k++) v->rest[k] = nearest[k] - 2 * blade->tolerance * v->ahead[k];
+    }
+    blade->path.count = blade->latest.count = 0;
+    return result;
+}
+
+/* Remembers where the edge is, if it has come far enough since it was remembered last. */
+static gx_result gxp_note_path(gx_blade *blade) {
+    uint32_t i;
+    double most = 0;
+    gx_result result = GX_OK;
+    for (i = 0; i < blade->advanced.count && blade->latest.count > 0; i++) {
+        gxp_relation r;
+        double nearest[3];
+        gxp_near_front(&blade->latest, blade->advanced.data[i].rest, &r, nearest);
+        most = fmax(most, r.distance);
+    }
+    if (blade->latest.count == 0 || most > 0.125 * blade->min_advance)
+        for (i = 0; i < blade->advanced.count && result == GX_OK; i++)
+            if (!(blade->advanced.data[i].distance > 0))
+                result = gxp_push_point(blade->body, &blade->path, blade->advanced.data[i].rest);
+    return result == GX_OK ? gxp_copy_front(blade->body, &blade->latest, &blade->advanced) : result;
+}
+
+/* Advances the front of the layer at work to the samples: cuts what must be cut, and lets the rest wait. finish: cuts
+   all. */
+static gx_result gxp_follow_edge(gx_blade *blade, int finish, gx_blade_report *report) {
+    gxp_advance move;
+    gx_result result = gxp_advance_front(blade, &move);
+    if (result == GX_OK && move.is_back) return gxp_is_away(blade) ? gxp_begin_outside(blade) : GX_OK;
+    if (result == GX_OK && move.strays && !finish) {
+        if (move.most > 0) {
+            result = gxp_zip(blade, &blade->front, &blade->advanced);
+            if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
+        }
+        if (result == GX_OK) result = gxp_begin_track(blade);
+        if (result == GX_OK) result = gxp_advance_front(blade, &move);
+    }
+    if (result != GX_OK || !(move.most > 0)) return result;
+    result = gxp_zip(blade, &blade->front, &blade->advanced);
+    if (result == GX_OK && blade->latest.count > 0 && (move.wider || gxp_bend(blade) > blade->tolerance)) {
+        result = gxp_zip(blade, &blade->front, &blade->latest);
+        if (result == GX_OK) result = gxp_copy_front(blade->body, &blade->advanced, &blade->latest);
+        if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
+        if (result == GX_OK) result = gxp_advance_front(blade, &move);
+        if (result == GX_OK) result = gxp_zip(blade, &blade->front, &blade->advanced);
+    }
+    if (result != GX_OK || !(move.most > 0)) return result;
+    return finish || move.most >= blade->min_advance ? gxp_cut_strip(blade, &blade->advanced, report)
+                                                     : gxp_note_path(blade);
+}
+
+/* >>strokes: what a blade remembers from move to move -------------------------------------------------------------- */
+/* In: the layers of the last move, those of now. Out: each new layer with the front of the old ones that flow into it.
+   Touches the blade's working memory and the state that the move makes. */
+
+/* A front, path and sheet become those of the layer at work. */
+static gx_result gxp_resume_layer(gx_blade *blade, const gxp_layer *old) {
+    const gxp_blade_state *now = &blade->now;
+    uint32_t i;
+    gx_result result = gxp_append_front(blade->body, &blade->front, now->vertices.data + old->front, old->front_count);
+    if (result == GX_OK)
+        result = gxp_append_front(blade->body, &blade->latest, now->vertices.data + old->latest, old->latest_count);
+    for (i = 0; i < old->path_count && result == GX_OK; i++)
+        result = gxp_push_point(blade->body, &blade->path, now->points.data + 3 * (size_t)(old->path + i));
+    for (i = 0; i < old->sheet_count && result == GX_OK; i++)
+        result = gxp_push_point(blade->body, &blade->sheet, now->points.data + 3 * (size_t)(old->sheet + i));
+    return result;
+}
+
+/* Lists in blade.owners the old layers that flow into a new one. */
+static gx_result gxp_find_owners(gx_blade *blade, uint32_t layer) {
+    const gxp_vicinity *near = &blade->near;
+    uint32_t i, last = GXP_NONE;
+    gx_result result = GX_OK;
+    blade->owners.count = 0;
+    for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++) {
+        const uint32_t old = gxp_old_layer(blade, near->cells[GXP_SECOND(near->order.data[i])].slot);
+        if (old == GXP_NONE || old == last) continue;
+        last = old;
+        if (!gxp_contains(&blade->owners, old)) result = gxp_push(blade->body, &blade->owners, old);
+    }
+    return result;
+}
+
+/* The part of a front that is in the material, with a vertex in the air on each side. Returns 0 if there is none. */
+static int gxp_inner_run(const gxp_front_vertex *v, uint32_t count, uint32_t *first, uint32_t *end) {
+    uint32_t i = 0, j = count;
+    while (i < count && v[i].distance > 0) i++;
+    if (i == count) return 0;
+    while (v[j - 1].distance > 0) j--;
+    *first = i > 0 ? i - 1 : 0;
+    *end = j < count ? j + 1 : count;
+    return 1;
+}
+
+/* Several layers have become one: the front takes from each what is in the material, in the order along the edge. Where
+   the run of one overlaps that of another, it begins behind that. What waits is looked at again. */
+static gx_result gxp_join_layers(gx_blade *blade) {
+    const gxp_blade_state *now = &blade->now;
+    double reached = -1;
+    uint32_t done, k, i;
+    gx_result result = GX_OK;
+    for (done = 0; done < blade->owners.count && result == GX_OK; done++) {
+        double from = HUGE_VAL;
+        uint32_t best = GXP_NONE, first, end, best_first = 0, best_end = 0;
+        for (k = 0; k < blade->owners.count; k++) {
+            const gxp_layer *l = &now->layers.data[blade->owners.data[k]];
+            const gxp_front_vertex *v = now->vertices.data + l->front;
+            if (!gxp_inner_run(v, l->front_count, &first, &end)) continue;
+            while (first < end && v[first].along <= reached) first++;
+            if (first == end || v[first].along >= from) continue;
+            from = v[first].along;
+            best = l->front;
+            best_first = first;
+            best_end = end;
+        }
+        if (best == GXP_NONE) break;
+        result =
+            gxp_append_front(blade->body, &blade->front, now->vertices.data + best + best_first, best_end - best_first);
+        reached = now->vertices.data[best + best_end - 1].along;
+    }
+    for (k = 0; k < blade->owners.count && result == GX_OK; k++) {
+        const gxp_layer *l = &now->layers.data[blade->owners.data[k]];
+        for (i = 0; i < l->sheet_count && result == GX_OK; i++)
+            result = gxp_push_point(blade->body, &blade->sheet, now->points.data + 3 * (size_t)(l->sheet + i));
+    }
+    return result;
+}
+
+/* Makes a new layer's front ready for the move. *begun: it has none of before. */
+static gx_result gxp_begin_layer(gx_blade *blade, uint32_t layer, int *begun) {
+    gx_result result = gxp_find_owners(blade, layer);
+    blade->front.count = blade->latest.count = blade->path.count = blade->sheet.count = blade->cut.count = 0;
+    *begun = 0;
+    if (result == GX_OK && blade->owners.count > 1) result = gxp_join_layers(blade);
+    if (result == GX_OK && blade->owners.count > 0 && blade->front.count < 2) {
+        blade->front.count = blade->sheet.count = 0;
+        result = gxp_resume_layer(blade, &blade->now.layers.data[blade->owners.data[0]]);
+    }
+    *begun = blade->owners.count == 0;
+    return result;
+}
+
+/* Writes the layer at work to the state that the move makes. */
+static gx_result gxp_keep_layer(gx_blade *blade) {
+    gxp_blade_state *then = &blade->then;
+    gxp_layer layer;
+    uint32_t i;
+    gx_result result = gxp_reserve(&blade->body->config.allocator, &then->layers.data, sizeof *then->layers.data,
+                                   then->layers.count, &then->layers.capacity, 1);
+    layer.front = then->vertices.count;
+    layer.front_count = blade->front.count;
+    if (result == GX_OK) result = gxp_append_front(blade->body, &then->vertices, blade->front.data, blade->front.count);
+    layer.latest = then->vertices.count;
+    layer.latest_count = blade->latest.count;
+    if (result == GX_OK)
+        result = gxp_append_front(blade->body, &then->vertices, blade->latest.data, blade->latest.count);
+    layer.path = then->points.count;
+    layer.path_count = blade->path.count;
+    for (i = 0; i < blade->path.count && result == GX_OK; i++)
+        result = gxp_push_point(blade->body, &then->points, blade->path.data + 3 * (size_t)i);
+    layer.sheet = then->points.count;
+    layer.sheet_count = blade->sheet.count;
+    for (i = 0; i < blade->sheet.count && result == GX_OK; i++)
+        result = gxp_push_point(blade->body, &then->points, blade->sheet.data + 3 * (size_t)i);
+    if (result == GX_OK) then->layers.data[then->layers.count++] = layer;
+    return result;
+}
+
+/* Notes which cells belong to which layer, and where the edge is. */
+static gx_result gxp_keep_members(gx_blade *blade, const double *edge, uint32_t count) {
+    gxp_blade_state *then = &blade->then;
+    uint32_t i;
+    gx_result result = GX_OK;
+    then->members.count = then->edge.count = 0;
+    then->slot_count = blade->body->cells.count;
+    for (i = 0; i < blade->near.count && result == GX_OK; i++)
+        result = gxp_push_key(blade->body, &then->members, blade->near.cells[i].slot, blade->near.cells[i].layer);
+    if (result == GX_OK) result = gxp_sort_keys(blade->body, &then->members, 0, then->members.count);
+    for (i = 0; i < count && result == GX_OK; i++)
+        result = gxp_push_point(blade->body, &then->edge, edge + 3 * (size_t)i);
+    return result;
+}
+
+/* >>blade: the blade's moves --------------------------------------------------------------------------------------- */
+/* gx_blade_move: find the layers, advance their fronts, cut the strips in one transaction, keep the new state. On any
+   error nothing of body or blade has changed. */
+
+/* Coordinates of an edge are at most 2^GXP_EDGE_REACH: squares of distances are finite. */
+#define GXP_EDGE_REACH 110
+
+/* A strip reaches cells that are within this share of their size of it, as the body lies now: where strip and layer
+   are far from each other in space, none of it is meant for them. */
+#define GXP_STRIP_REACH 0.25
+
+/* Is the cell within reach of a strip, given by its corners in space? */
+static int gxp_is_in_reach(const gxp_close_cell *c, const double *corners, uint32_t triangles) {
+    uint32_t t;
+    for (t = 0; t < triangles; t++) {
+        const double *x = corners + 9 * (size_t)t;
+        if (gxp_is_near_triangle(c, x, x + 3, x + 6, GXP_STRIP_REACH * c->size)) return 1;
+    }
+    return 0;
+}
+
+/* Lists the slots of a layer that the strips of blade.cut may cut. */
+static gx_result gxp_list_scope(gx_blade *blade, uint32_t layer) {
+    const gxp_vicinity *near = &blade->near;
+    uint32_t i;
+    gx_result result = GX_OK;
+    blade->quads.count = 0;
+    for (i = 0; i < blade->cut.count && result == GX_OK; i++) {
+        double x[3];
+        result = gxp_front_position(blade, layer, 0, &blade->cut.data[i], x);
+        if (result == GX_OK) result = gxp_push_point(blade->body, &blade->quads, x);
+    }
+    for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++) {
+        const gxp_close_cell *c = &near->cells[GXP_SECOND(near->order.data[i])];
+        if (gxp_is_in_reach(c, blade->quads.data, blade->cut.count / 3))
+            result = gxp_push(blade->body, &blade->scope, c->slot);
+    }
+    return result;
+}
+
+/* Adds the strips of the layer at work to those of the move. */
+static gx_result gxp_add_surface(gx_blade *blade, uint32_t layer) {
+    gx_body *body = blade->body;
+    const uint32_t before = blade->scope.count;
+    uint32_t i;
+    gx_result result = blade->cut.count > 0 ? gxp_list_scope(blade, layer) : GX_OK;
+    if (result != GX_OK || blade->scope.count == before) return result;
+    result = gxp_push(body, &blade->surface_starts, before);
+    if (result == GX_OK) result = gxp_push(body, &blade->surface_starts, blade->corners.count);
+    for (i = 0; i < blade->cut.count && result == GX_OK; i++)
+        result = gxp_push_point(body, &blade->corners, blade->cut.data[i].rest);
+    return result;
+}
+
+/* Cuts the body by the surfaces of all layers at once. */
+static gx_result gxp_cut_surfaces(gx_blade *blade, uint32_t kind, gx_blade_report *report, gx_failure *failure) {
+    gx_body *body = blade->body;
+    const uint32_t count = blade->surface_starts.count / 2;
+    uint32_t i;
+    gx_cut_desc desc;
+    gx_result result = gxp_start_words(body, &blade->triangles, blade->corners.count);
+    if (result == GX_OK)
+        result = gxp_reserve(&body->config.allocator, &blade->surfaces, sizeof *blade->surfaces, 0,
+                             &blade->surface_capacity, count);
+    if (result != GX_OK || count == 0) return gxp_end(failure, result);
+    for (i = 0; i < blade->corners.count; i++) blade->triangles.data[i] = i;
+    for (i = 0; i < count; i++) {
+        gx_surface *s = &blade->surfaces[i];
+        const uint32_t *start = blade->surface_starts.data + 2 * (size_t)i;
+        const uint32_t slots_end = i + 1 < count ? start[2] : blade->scope.count,
+                       corners_end = i + 1 < count ? start[3] : blade->corners.count;
+        memset(s, 0, sizeof *s);
+        s->kind = kind;
+        s->scope_slots = blade->scope.data + start[0];
+        s->scope_slot_count = slots_end - start[0];
+        s->vertices = blade->corners.data + 3 * (size_t)start[1];
+        s->vertex_count = corners_end - start[1];
+        s->triangles = blade->triangles.data;
+        s->triangle_count = s->vertex_count / 3;
+        report->triangle_count += s->triangle_count;
+    }
+    memset(&desc, 0, sizeof desc);
+    desc.surfaces = blade->surfaces;
+    desc.surface_count = count;
+    result = gx_body_cut(body, &desc, &report->cut, failure);
+    if (result != GX_OK && result != GX_ERROR_NOT_CLOSED && failure != NULL)
+        failure->field = NULL, failure->index = SIZE_MAX;
+    return result;
+}
+
+/* Blames a point of a blade's first edge that is in the material, unless it may be. */
+static gx_result gxp_check_start(gx_blade *blade, gx_failure *failure) {
+    uint32_t i;
+    if (blade->starts_inside || blade->now.edge.count > 0) return GX_OK;
+    for (i = 0; i < blade->front.count; i++)
+        if (!(blade->front.data[i].distance > 0))
+            return gxp_fail(failure, GX_ERROR_ARGUMENT, "edge", (size_t)blade->front.data[i].along);
+    return GX_OK;
+}
+
+/* Advances the fronts of all layers to the edge, and lists the strips. */
+static gx_result gxp_advance_layers(gx_blade *blade, const double *edge, uint32_t count, int finish,
+                                    gx_blade_report *report, gx_failure *failure) {
+    const double *before = blade->now.edge.count > 0 ? blade->now.edge.data : edge;
+    uint32_t layer;
+    gx_result result = GX_OK;
+    blade->surface_starts.count = blade->corners.count = blade->scope.count = 0;
+    blade->then.layers.count = blade->then.vertices.count = blade->then.points.count = 0;
+    for (layer = 0; layer < blade->near.layer_count && result == GX_OK; layer++) {
+        int begun;
+        result = gxp_begin_layer(blade, layer, &begun);
+        if (result == GX_OK && begun) {
+            result = gxp_see_edge(blade, layer, before, count);
+            if (result == GX_OK) result = gxp_copy_front(blade->body, &blade->front, &blade->samples);
+            if (result == GX_OK && gxp_check_start(blade, failure) != GX_OK) return GX_ERROR_ARGUMENT;
+        }
+        if (result == GX_OK) result = gxp_see_edge(blade, layer, edge, count);
+        if (result == GX_OK) result = gxp_follow_edge(blade, finish, report);
+        if (result == GX_OK) result = gxp_add_surface(blade, layer);
+        if (result == GX_OK) result = gxp_keep_layer(blade);
+    }
+    report->layer_count = blade->near.layer_count;
+    return gxp_end(failure, result);
+}
+
+/* Flags the fragments of a scope in blade.in_scope. */
+static gx_result gxp_flag_scope(gx_blade *blade, const uint32_t *fragments, size_t count, gx_failure *failure) {
+    gx_body *body = blade->body;
+    size_t i;
+    gx_result result = gxp_update_view(body);
+    if (result == GX_OK) result = gxp_start_words(body, &blade->in_scope, body->view.fragment_count);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    blade->in_scope.count = body->view.fragment_count;
+    memset(blade->in_scope.data, 0, blade->in_scope.count * sizeof *blade->in_scope.data);
+    for (i = 0; i < count; i++) {
+        if (fragments[i] >= body->view.fragment_count) return gxp_fail(failure, GX_ERROR_INDEX, "scope_fragments", i);
+        blade->in_scope.data[fragments[i]] = 1;
+    }
+    return GX_OK;
+}
+
+static gx_result gxp_check_edge(const gx_blade *blade, const double *edge, size_t count, gx_failure *failure) {
+    size_t i;
+    if (edge == NULL) return gxp_refuse(failure, "edge");
+    if (count < 2) return gxp_refuse(failure, "point_count");
+    if (count > INT32_MAX / 4) return gxp_fail(failure, GX_ERROR_LIMIT, "point_count", SIZE_MAX);
+    if (blade->now.edge.count > 0 && blade->now.edge.count != count) return gxp_refuse(failure, "point_count");
+    for (i = 0; i < 3 * count; i++) {
+        if (!gxp_is_finite(edge[i])) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "edge", i / 3);
+        if (fabs(edge[i]) > ldexp(1, GXP_EDGE_REACH)) return gxp_fail(failure, GX_ERROR_RANGE, "edge", i / 3);
+    }
+    return GX_OK;
+}
+
+static void gxp_clear_report(gx_blade_report *report) {
+    memset(report, 0, sizeof *report);
+    report->cut.min_link_ratio = 1;
+}
+
+/* A move to the edge; finish: cuts all that waits. */
+static gx_result gxp_move_blade(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope, int finish,
+                                gx_blade_report *report, gx_failure *failure) {
+    const gxp_blade_state now = blade->now;
+    gx_result result;
+    gxp_clear_report(report);
+    result = gxp_find_layers(blade, edge, count, scope);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    result = gxp_advance_layers(blade, edge, count, finish, report, failure);
+    if (result != GX_OK) return result;
+    result = gxp_keep_members(blade, edge, count);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    result = gxp_cut_surfaces(blade, GX_SURFACE_SHEET, report, failure);
+    if (result != GX_OK) return result;
+    blade->now = blade->then;
+    blade->then = now;
+    return GX_OK;
+}
+
+GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t point_count,
+                                  const uint32_t *scope_fragments, size_t scope_fragment_count, gx_blade_report *report,
+                                  gx_failure *failure) {
+    gx_blade_report own;
+    gx_result result;
+    if (blade == NULL) return gxp_refuse(failure, "blade");
+    if (scope_fragment_count > 0 && scope_fragments == NULL) return gxp_refuse(failure, "scope_fragments");
+    result = gxp_check_edge(blade, edge, point_count, failure);
+    if (result == GX_OK && scope_fragment_count > 0)
+        result = gxp_flag_scope(blade, scope_fragments, scope_fragment_count, failure);
+    if (result != GX_OK) return result;
+    result = gxp_move_blade(blade, edge, (uint32_t)point_count, scope_fragment_count > 0 ? &blade->in_scope : NULL, 0,
+                            &own, failure);
+    if (result == GX_OK && report != NULL) *report = own;
+    return result;
+}
+
+static void gxp_forget(gxp_blade_state *state) {
+    state->edge.count = state->layers.count = state->members.count = 0;
+    state->vertices.count = state->points.count = state->slot_count = 0;
+}
+
+GXFEM_API gx_result gx_blade_lift(gx_blade *blade, gx_blade_report *report, gx_failure *failure) {
+    gx_blade_report own;
+    gx_result result = GX_OK;
+    if (blade == NULL) return gxp_refuse(failure, "blade");
+    gxp_clear_report(&own);
+    if (blade->now.edge.count > 0)
+        result = gxp_move_blade(blade, blade->now.edge.data, blade->now.edge.count, NULL, 1, &own, failure);
+    if (result != GX_OK) return result;
+    gxp_forget(&blade->now);
+    if (report != NULL) *report = own;
+    return gxp_end(failure, GX_OK);
+}
+
+static gx_result gxp_check_blade(const gx_blade_desc *desc, gx_failure *failure) {
+    if (!gxp_is_finite(desc->tolerance)) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "tolerance", SIZE_MAX);
+    if (!gxp_is_finite(desc->min_advance)) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "min_advance", SIZE_MAX);
+    if (desc->tolerance < 0) return gxp_refuse(failure, "tolerance");
+    return desc->min_advance < 0 ? gxp_refuse(failure, "min_advance") : GX_OK;
+}
+
+/* Sizes of elements: the mean and the largest. Those that are removed count too. */
+static double gxp_mean_size(const gx_body *body, double *largest) {
+    double sum = 0;
+    uint32_t e;
+    *largest = 0;
+    for (e = 0; e < body->mesh.element_count; e++) {
+        const double size = cbrt(6 * gxp_element_volume(body, e));
+        *largest = fmax(*largest, size);
+        sum += size;
+    }
+    return sum / body->mesh.element_count;
+}
+
+GXFEM_API gx_result gx_blade_create(gx_body *body, const gx_blade_desc *desc, gx_blade **blade, gx_failure *failure) {
+    gx_blade_desc zero;
+    gx_blade *b, **place;
+    double size;
+    gx_result result;
+    memset(&zero, 0, sizeof zero);
+    if (desc == NULL) desc = &zero;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (blade == NULL) return gxp_refuse(failure, "blade");
+    result = gxp_check_blade(desc, failure);
+    if (result != GX_OK) return result;
+    b = (gx_blade *)gxp_allocate(&body->config.allocator, sizeof *b);
+    if (b == NULL) return gxp_end(failure, GX_ERROR_MEMORY);
+    memset(b, 0, sizeof *b);
+    size = gxp_mean_size(body, &b->largest);
+    b->body = body;
+    b->tolerance = desc->tolerance > 0 ? desc->tolerance : 0.01 * size;
+    b->min_advance = desc->min_advance > 0 ? desc->min_advance : 0.5 * size;
+    b->max_samples = desc->max_samples > 0 ? desc->max_samples : 1000;
+    b->starts_inside = desc->starts_inside != 0;
+    for (place = &body->blades; *place != NULL;) place = &(*place)->next;
+    *blade = *place = b;
+    return gxp_end(failure, GX_OK);
+}
+
+static void gxp_release_state(gx_body *body, gxp_blade_state *s) {
+    const gx_allocator *a = &body->config.allocator;
+    gxp_release(a, s->vertices.data, s->vertices.capacity * sizeof *s->vertices.data);
+    gxp_release(a, s->points.data, 3 * s->points.capacity * sizeof *s->points.data);
+    gxp_release(a, s->layers.data, s->layers.capacity * sizeof *s->layers.data);
+    gxp_release(a, s->members.data, s->members.capacity * sizeof *s->members.data);
+    gxp_release(a, s->edge.data, 3 * s->edge.capacity * sizeof *s->edge.data);
+}
+
+static void gxp_release_words(gx_body *body, gxp_words *words) {
+    gxp_release(&body->config.allocator, words->data, words->capacity * sizeof *words->data);
+}
+
+static void gxp_release_front(gx_body *body, gxp_front_list *list) {
+    gxp_release(&body->config.allocator, list->data, list->capacity * sizeof *list->data);
+}
+
+static void gxp_release_points(gx_body *body, gxp_points *list) {
+    gxp_release(&body->config.allocator, list->data, 3 * list->capacity * sizeof *list->data);
+}
+
+/* Releases a blade; the body's list of blades is the caller's. */
+static void gxp_release_blade(gx_blade *b) {
+    gx_body *body = b->body;
+    const gx_allocator *a = &body->config.allocator;
+    gxp_release_state(body, &b->now);
+    gxp_release_state(body, &b->then);
+    gxp_release(a, b->near.cells, b->near.capacity * sizeof *b->near.cells);
+    gxp_release_words(body, &b->near.of_slot);
+    gxp_release_words(body, &b->near.of_copy);
+    gxp_release_words(body, &b->near.parents);
+    gxp_release(a, b->near.order.data, b->near.order.capacity * sizeof *b->near.order.data);
+    gxp_release_words(body, &b->near.layer_start);
+    gxp_release_front(body, &b->front);
+    gxp_release_front(body, &b->latest);
+    gxp_release_front(body, &b->samples);
+    gxp_release_front(body, &b->advanced);
+    gxp_release_front(body, &b->strip);
+    gxp_release_front(body, &b->cut);
+    gxp_release(a, b->relations, b->relation_capacity * sizeof *b->relations);
+    gxp_release_points(body, &b->path);
+    gxp_release_points(body, &b->sheet);
+    gxp_release_points(body, &b->quads);
+    gxp_release_points(body, &b->corners);
+    gxp_release_words(body, &b->owners);
+    gxp_release_words(body, &b->divided);
+    gxp_release(a, b->halved.data, b->halved.capacity * sizeof *b->halved.data);
+    gxp_release_words(body, &b->in_scope);
+    gxp_release_words(body, &b->needed);
+    gxp_release_words(body, &b->found);
+    gxp_release_words(body, &b->scope);
+    gxp_release_words(body, &b->surface_starts);
+    gxp_release_words(body, &b->triangles);
+    gxp_release(a, b->surfaces, b->surface_capacity * sizeof *b->surfaces);
+    gxp_release(a, b, sizeof *b);
+}
+
+GXFEM_API void gx_blade_destroy(gx_blade *blade) {
+    gx_blade **place;
+    if (blade == NULL) return;
+    for (place = &blade->body->blades; *place != blade;) place = &(*place)->next;
+    *place = blade->next;
+    gxp_release_blade(blade);
+}
+
+GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index) {
+    gx_blade *blade = body != NULL ? body->blades : NULL;
+    for (; blade != NULL && index > 0; index--) blade = blade->next;
+    return blade;
+}
+
+/* >>carve: what a closed tool in space covers ---------------------------------------------------------------------- */
+/* gx_body_carve: find the layers around the tool, divide its triangles as finely as the elements of each, map them
+   back, and remove what they enclose there, in one cut. On any error the body is as it was. */
+
+/* Tools are divided into at most so many triangles. */
+#define GXP_TOOL_TRIANGLES 1000000u
+
+/* Appends a place of the tool to blade.samples. Outside the layer its material point is as far away as the tool is: a
+   tool that covers much of a layer must not be drawn in. */
+static gx_result gxp_push_tool_place(gx_blade *blade, uint32_t layer, const double position[3]) {
+    gxp_front_vertex v;
+    int inside = 0;
+    gx_result result;
+    memset(&v, 0, sizeof v);
+    memcpy(v.position, position, sizeof v.position);
+    result = gxp_see_place(blade, layer, &v);
+    if (result == GX_OK && v.distance > 0) result = gxp_is_in_layer(blade, layer, v.extended, &inside);
+    if (!inside) memcpy(v.rest, v.extended, sizeof v.rest);
+    return result == GX_OK ? gxp_push_vertex(blade->body, &blade->samples, &v) : result;
+}
+
+/* The tool as a layer sees it: its vertices are blade.samples, its triangles blade.triangles. */
+static gx_result gxp_see_tool(gx_blade *blade, uint32_t layer, const gx_surface *tool) {
+    size_t i;
+    gx_result result = gxp_start_words(blade->body, &blade->triangles, 3 * tool->triangle_count);
+    blade->last_sight = GXP_NONE;
+    blade->samples.count = 0;
+    for (i = 0; i < tool->vertex_count && result == GX_OK; i++)
+        result = gxp_push_tool_place(blade, layer, tool->vertices + 3 * i);
+    if (result != GX_OK) return result;
+    memcpy(blade->triangles.data, tool->triangles, 3 * tool->triangle_count * sizeof *tool->triangles);
+    blade->triangles.count = 3 * (uint32_t)tool->triangle_count;
+    return GX_OK;
+}
+
+static uint64_t gxp_edge_key(uint32_t a, uint32_t b) { return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a; }
+
+/* Lists in blade.owners the edges that are to be halved, ascending: those between places that are farther apart than
+   half an element, where the layer may be. Both triangles of an edge agree. */
+static gx_result gxp_list_long_edges(gx_blade *blade, gxp_keys *halved) {
+    const gxp_front_vertex *v = blade->samples.data;
+    uint32_t i, n = 0;
+    gx_result result = gxp_keys_room(blade->body, halved, 2 * (size_t)blade->triangles.count);
+    halved->count = 0;
+    for (i = 0; i < blade->triangles.count && result == GX_OK; i++) {
+        const uint32_t a = blade->triangles.data[i], b = blade->triangles.data[i % 3 == 2 ? i - 2 : i + 1];
+        const double length = sqrt(gxp_square_distance(v[a].position, v[b].position));
+        if (v[a].distance > 0 && v[b].distance > 0 && v[a].distance + v[b].distance > length) continue;
+        if (length > 0.5 * (v[a].size < v[b].size ? v[a].size : v[b].size))
+            halved->data[halved->count++] = gxp_edge_key(a, b);
+    }
+    if (result == GX_OK) result = gxp_sort_keys(blade->body, halved, 0, halved->count);
+    for (i = 0; i < halved->count && result == GX_OK; i++)
+        if (n == 0 || halved->data[n - 1] != halved->data[i]) halved->data[n++] = halved->data[i];
+    halved->count = n;
+    return result;
+}
+
+/* The vertex in the middle of an edge, if it is halved; GXP_NONE: it is not */
+static uint32_t gxp_middle_vertex(const gxp_keys *halved, uint32_t first, uint32_t a, uint32_t b) {
+    const uint64_t key = gxp_edge_key(a, b);
+    uint32_t low = 0, high = halved->count;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (halved->data[middle] < key)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < halved->count && halved->data[low] == key ? first + low : GXP_NONE;
+}
+
+static gx_result gxp_push_triangle(gx_body *body, gxp_words *out, uint32_t a, uint32_t b, uint32_t c) {
+    gx_result result = gxp_words_room(body, out, 3);
+    if (result != GX_OK) return result;
+    out->data[out->count++] = a;
+    out->data[out->count++] = b;
+    out->data[out->count++] = c;
+    return result;
+}
+
+/* Divides a triangle by the middles of its edges, m[k] of corner k and the next. */
+static gx_result gxp_divide_triangle(gx_body *body, const uint32_t t[3], const uint32_t m[3], gxp_words *out) {
+    uint32_t k, halved = 0, first = 0;
+    gx_result result;
+    for (k = 0; k < 3; k++) halved += m[k] != GXP_NONE;
+    if (halved == 0) return gxp_push_triangle(body, out, t[0], t[1], t[2]);
+    if (halved == 3) {
+        result = gxp_push_triangle(body, out, m[0], m[1], m[2]);
+        for (k = 0; k < 3 && result == GX_OK; k++) result = gxp_push_triangle(body, out, t[k], m[k], m[(k + 2) % 3]);
+        return result;
+    }
+    /* edge `first` is halved, and the next one too if two are */
+    while (m[first] == GXP_NONE || (halved == 2 && m[(first + 1) % 3] == GXP_NONE)) first++;
+    {
+        const uint32_t a = t[first], b = t[(first + 1) % 3], c = t[(first + 2) % 3], ab = m[first],
+                       bc = m[(first + 1) % 3];
+        result = gxp_push_triangle(body, out, a, ab, halved == 1 ? c : bc);
+        if (halved == 1) return result == GX_OK ? gxp_push_triangle(body, out, ab, b, c) : result;
+        if (result == GX_OK) result = gxp_push_triangle(body, out, ab, b, bc);
+        return result == GX_OK ? gxp_push_triangle(body, out, a, bc, c) : result;
+    }
+}
+
+/* Halves the edges of the tool until all that are near the layer are short. */
+static gx_result gxp_refine_tool(gx_blade *blade, uint32_t layer) {
+    gx_body *body = blade->body;
+    gxp_keys *halved = &blade->halved;
+    gxp_words *divided = &blade->divided;
+    gx_result result = gxp_list_long_edges(blade, halved);
+    while (result == GX_OK && halved->count > 0 && blade->triangles.count < 3 * GXP_TOOL_TRIANGLES) {
+        const uint32_t first = blade->samples.count;
+        gxp_words swap;
+        uint32_t i, k, n;
+        for (i = 0; i < halved->count && result == GX_OK; i++) {
+            const gxp_front_vertex *a = &blade->samples.data[GXP_FIRST(halved->data[i])],
+                                   *b = &blade->samples.data[GXP_SECOND(halved->data[i])];
+            double middle[3];
+            for (n = 0; n < 3; n++) middle[n] = 0.5 * a->position[n] + 0.5 * b->position[n];
+            result = gxp_push_tool_place(blade, layer, middle);
+        }
+        divided->count = 0;
+        for (i = 0; i < blade->triangles.count && result == GX_OK; i += 3) {
+            const uint32_t *t = blade->triangles.data + i;
+            uint32_t middle[3];
+            for (k = 0; k < 3; k++) middle[k] = gxp_middle_vertex(halved, first, t[k], t[(k + 1) % 3]);
+            result = gxp_divide_triangle(body, t, middle, divided);
+        }
+        if (result != GX_OK) return result;
+        swap = blade->triangles;
+        blade->triangles = *divided;
+        *divided = swap;
+        result = gxp_list_long_edges(blade, halved);
+    }
+    return result;
+}
+
+/* Adds the cells that are inside the tool and not near its surface. */
+static gx_result gxp_add_covered(gx_blade *blade, const gx_surface *tool) {
+    gx_body *body = blade->body;
+    double low[3], high[3];
+    size_t i;
+    int k;
+    gx_result result;
+    memcpy(low, tool->vertices, sizeof low);
+    memcpy(high, tool->vertices, sizeof high);
+    for (i = 0; i < 3 * tool->vertex_count; i++) {
+        low[i % 3] = fmin(low[i % 3], tool->vertices[i]);
+        high[i % 3] = fmax(high[i % 3], tool->vertices[i]);
+    }
+    result = gxp_find_in_box(body, low, high, &blade->found);
+    for (i = 0; i < blade->found.count && result == GX_OK; i++) {
+        static const double origin[3] = {0, 0, 0};
+        const uint32_t slot = blade->found.data[i];
+        double x[4][3], middle[3];
+        int on;
+        const uint32_t index = gxp_close_index(&blade->near, slot);
+        if (index != GXP_NONE && blade->near.cells[index].is_near) continue;
+        gxp_cell_corners(body, &body->cells.data[slot], 1, origin, x);
+        for (k = 0; k < 3; k++) middle[k] = 0.25 * (x[0][k] + x[1][k] + x[2][k] + x[3][k]);
+        if (gxb_winding_number(tool->vertices, tool->triangles, tool->triangle_count, middle, &on) != 0)
+            result = gxp_add_near(blade, slot, NULL);
+    }
+    return result;
+}
+
+/* Finds the cells that the tool covers or is near, and their layers. */
+static gx_result gxp_find_tool_layers(gx_blade *blade, const gx_surface *tool) {
+    size_t i;
+    gx_result result = GX_OK;
+    blade->quads.count = 0;
+    for (i = 0; i < tool->triangle_count && result == GX_OK; i++) {
+        const uint32_t *t = tool->triangles + 3 * i;
+        const double *a = tool->vertices + 3 * (size_t)t[0], *b = tool->vertices + 3 * (size_t)t[1],
+                     *c = tool->vertices + 3 * (size_t)t[2];
+        result = gxp_push_quad(blade, a, b, c, c);
+    }
+    if (result == GX_OK) result = gxp_find_near(blade, NULL);
+    if (result == GX_OK) result = gxp_add_covered(blade, tool);
+    gxp_keep_near(&blade->near);
+    if (result == GX_OK) result = gxp_number_layers(blade);
+    return result == GX_OK ? gxp_order_near(blade) : result;
+}
+
+/* Does the tool come near the layer anywhere? */
+static int gxp_meets_tool(const gx_blade *blade) {
+    uint32_t i;
+    for (i = 0; i < blade->samples.count; i++)
+        if (blade->samples.data[i].distance < 0.5 * blade->samples.data[i].size) return 1;
+    return 0;
+}
+
+/* The tool becomes a box around the whole body at rest: a layer that it covers wholly loses all. */
+static gx_result gxp_take_all(gx_blade *blade) {
+    static const uint32_t faces[36] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                                       2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+    const gxp_box *all = &blade->body->mesh.boxes[0];
+    uint32_t i, k;
+    gx_result result = gxp_start_words(blade->body, &blade->triangles, 36);
+    blade->samples.count = 0;
+    for (i = 0; i < 8 && result == GX_OK; i++) {
+        gxp_front_vertex v;
+        memset(&v, 0, sizeof v);
+        for (k = 0; k < 3; k++) v.rest[k] = i >> k & 1 ? all->high[k] + blade->largest : all->low[k] - blade->largest;
+        result = gxp_push_vertex(blade->body, &blade->samples, &v);
+    }
+    if (result != GX_OK) return result;
+    memcpy(blade->triangles.data, faces, sizeof faces);
+    blade->triangles.count = 36;
+    return GX_OK;
+}
+
+/* Adds the tool as a layer sees it to the surfaces of the cut. A layer that it does not come near is inside it, or not,
+   as its first cell is. */
+static gx_result gxp_add_tool(gx_blade *blade, uint32_t layer, const gx_surface *tool) {
+    const gxp_vicinity *near = &blade->near;
+    const uint32_t first = near->layer_start.data[layer];
+    gx_body *body = blade->body;
+    uint32_t i;
+    int on;
+    gx_result result = GX_OK;
+    if (!gxp_meets_tool(blade)) {
+        if (gxb_winding_number(tool->vertices, tool->triangles, tool->triangle_count,
+                               near->cells[GXP_SECOND(near->order.data[first])].corners[0], &on) == 0)
+            return GX_OK;
+        result = gxp_take_all(blade);
+    }
+    if (result == GX_OK) result = gxp_push(body, &blade->surface_starts, blade->scope.count);
+    if (result == GX_OK) result = gxp_push(body, &blade->surface_starts, blade->corners.count);
+    for (i = first; i < near->layer_start.data[layer + 1] && result == GX_OK; i++)
+        result = gxp_push(body, &blade->scope, near->cells[GXP_SECOND(near->order.data[i])].slot);
+    for (i = 0; i < blade->triangles.count && result == GX_OK; i++)
+        result = gxp_push_point(body, &blade->corners, blade->samples.data[blade->triangles.data[i]].rest);
+    return result;
+}
+
+static gx_result gxp_carve_layers(gx_blade *blade, const gx_surface *tool, gx_blade_report *report,
+                                  gx_failure *failure) {
+    uint32_t layer;
+    gx_result result = gxp_find_tool_layers(blade, tool);
+    blade->surface_starts.count = blade->corners.count = blade->scope.count = 0;
+    for (layer = 0; layer < blade->near.layer_count && result == GX_OK; layer++) {
+        result = gxp_see_tool(blade, layer, tool);
+        if (result == GX_OK) result = gxp_refine_tool(blade, layer);
+        if (result == GX_OK) result = gxp_add_tool(blade, layer, tool);
+    }
+    if (gxp_end(failure, result) != GX_OK) return result;
+    return gxp_cut_surfaces(blade, GX_SURFACE_SOLID, report, failure);
+}
+
+static gx_result gxp_check_tool(const gx_surface *tool, gx_failure *failure) {
+    size_t i;
+    if (tool->vertex_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "tool.vertex_count", SIZE_MAX);
+    if (tool->triangle_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "tool.triangle_count", SIZE_MAX);
+    if (tool->vertices == NULL) return gxp_refuse(failure, "tool.vertices");
+    if (tool->triangles == NULL) return gxp_refuse(failure, "tool.triangles");
+    if (tool->vertex_count > INT32_MAX / 4) return gxp_fail(failure, GX_ERROR_LIMIT, "tool.vertex_count", SIZE_MAX);
+    if (tool->triangle_count > INT32_MAX / 12)
+        return gxp_fail(failure, GX_ERROR_LIMIT, "tool.triangle_count", SIZE_MAX);
+    for (i = 0; i < 3 * tool->vertex_count; i++) {
+        if (!gxp_is_finite(tool->vertices[i])) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "tool.vertices", i / 3);
+        if (fabs(tool->vertices[i]) > ldexp(1, GXP_EDGE_REACH))
+            return gxp_fail(failure, GX_ERROR_RANGE, "tool.vertices", i / 3);
+    }
+    for (i = 0; i < 3 * tool->triangle_count; i++)
+        if (tool->triangles[i] >= tool->vertex_count) return gxp_fail(failure, GX_ERROR_INDEX, "tool.triangles", i / 3);
+    return GX_OK;
+}
+
+GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_report *report, gx_failure *failure) {
+    gx_blade *blade;
+    gx_blade_report own;
+    gx_result result;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (tool == NULL) return gxp_refuse(failure, "tool");
+    result = gxp_check_tool(tool, failure);
+    if (result == GX_OK) result = gx_blade_create(body, NULL, &blade, failure);
+    if (result != GX_OK) return result;
+    gxp_clear_report(&own);
+    result = gxp_carve_layers(blade, tool, &own, failure);
+    gx_blade_destroy(blade);
+    if (result == GX_OK && report != NULL) *report = own.cut;
+    return result;
 }
 
 /* >>create: create and destroy ------------------------------------------------------------------------------------- */
@@ -8202,6 +11438,7 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_release_model(body);
     gxs_solver_destroy(body->solver);
     gxb_complex_destroy(body->complex);
+    while (body->blades != NULL) gx_blade_destroy(body->blades);
     gxp_release(&a, body, sizeof *body);
 }
 
@@ -8352,9 +11589,19 @@ GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_failure *failure) {
     return gxp_end(failure, r) == GX_OK ? hash : 0;
 }
 
+static uint64_t gxp_hash_blade(uint64_t hash, const gxp_blade_state *b) {
+    size_t i;
+    hash = gxp_hash_bytes(hash, (const unsigned char *)b->vertices.data, b->vertices.count * sizeof *b->vertices.data);
+    hash = gxp_hash_doubles(hash, b->points.data, 3 * (size_t)b->points.count);
+    hash = gxp_hash_bytes(hash, (const unsigned char *)b->layers.data, b->layers.count * sizeof *b->layers.data);
+    for (i = 0; i < b->members.count; i++) hash = gxp_mix(hash ^ b->members.data[i]);
+    return gxp_hash_doubles(gxp_mix(hash ^ b->slot_count), b->edge.data, 3 * (size_t)b->edge.count);
+}
+
 GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
     const uint32_t use = GXP_TOPOLOGY | GXP_STATE | (body->copies.previous_dt > 0 ? (uint32_t)GXP_HISTORY : 0);
     uint64_t hash = gxp_mix(body->cuts.epoch ^ (uint64_t)body->snapshot.next_id << 32);
+    const gx_blade *blade;
     uint32_t t, i;
     for (t = 0; t < GXP_TABLES; t++) {
         const size_t rows = gxp_count(body, t);
@@ -8366,6 +11613,7 @@ GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
     }
     for (i = 0; i < gxb_complex_leaf_count(body->complex); i++)
         hash = gxp_mix(hash ^ gxb_complex_leaf(body->complex, i)->removed);
+    for (blade = body->blades; blade != NULL; blade = blade->next) hash = gxp_hash_blade(hash, &blade->now);
     return hash;
 }
 
@@ -8870,12 +12118,207 @@ static void gxp_load_state(gxb_stream *s, gx_body *body, int trusted) {
     if (s->result == GX_OK && !trusted) gxp_check_state(s, body, &n);
 }
 
+/* One blade: what it remembers. n: the counts of its lists, which have room for them if it is read. */
+enum { GXP_BLADE_VERTICES, GXP_BLADE_POINTS, GXP_BLADE_LAYERS, GXP_BLADE_MEMBERS, GXP_BLADE_EDGE, GXP_BLADE_LISTS };
+
+static void gxp_pass_blade_head(gxb_stream *s, gx_blade *blade, uint32_t n[GXP_BLADE_LISTS]) {
+    uint32_t inside = (uint32_t)blade->starts_inside;
+    gxb_stream_pass(s, &blade->tolerance, 1, sizeof blade->tolerance);
+    gxb_stream_pass(s, &blade->min_advance, 1, sizeof blade->min_advance);
+    gxp_pass_word(s, &blade->max_samples);
+    gxp_pass_word(s, &inside);
+    gxp_pass_word(s, &blade->now.slot_count);
+    gxb_stream_pass(s, n, GXP_BLADE_LISTS, sizeof *n);
+    blade->starts_inside = inside != 0;
+}
+
+static void gxp_pass_blade(gxb_stream *s, gxp_blade_state *b) {
+    uint32_t i;
+    for (i = 0; i < b->vertices.count; i++) {
+        gxp_front_vertex *v = &b->vertices.data[i];
+        gxb_stream_pass(s, v->rest, 3, sizeof *v->rest);
+        gxb_stream_pass(s, v->extended, 3, sizeof *v->extended);
+        gxb_stream_pass(s, v->position, 3, sizeof *v->position);
+        gxb_stream_pass(s, v->ahead, 3, sizeof *v->ahead);
+        gxb_stream_pass(s, &v->distance, 1, sizeof v->distance);
+        gxb_stream_pass(s, &v->size, 1, sizeof v->size);
+        gxb_stream_pass(s, &v->along, 1, sizeof v->along);
+        gxp_pass_word(s, &v->element);
+        v->unused = 0;
+    }
+    gxb_stream_pass(s, b->points.data, 3 * (size_t)b->points.count, sizeof(double));
+    gxb_stream_pass(s, b->layers.data, sizeof(gxp_layer) / sizeof(uint32_t) * (size_t)b->layers.count,
+                    sizeof(uint32_t));
+    gxb_stream_pass(s, b->members.data, b->members.count, sizeof(uint64_t));
+    gxb_stream_pass(s, b->edge.data, 3 * (size_t)b->edge.count, sizeof(double));
+}
+
+static void gxp_save_blades(gxb_stream *s, gx_body *body) {
+    uint32_t count = 0;
+    gx_blade *b;
+    for (b = body->blades; b != NULL; b = b->next) count++;
+    gxp_pass_word(s, &count);
+    for (b = body->blades; b != NULL; b = b->next) {
+        uint32_t n[GXP_BLADE_LISTS];
+        n[GXP_BLADE_VERTICES] = b->now.vertices.count;
+        n[GXP_BLADE_POINTS] = b->now.points.count;
+        n[GXP_BLADE_LAYERS] = b->now.layers.count;
+        n[GXP_BLADE_MEMBERS] = b->now.members.count;
+        n[GXP_BLADE_EDGE] = b->now.edge.count;
+        gxp_pass_blade_head(s, b, n);
+        gxp_pass_blade(s, &b->now);
+    }
+}
+
+static int gxp_are_finite(const double *x, size_t count) {
+    size_t i;
+    for (i = 0; i < count; i++)
+        if (!gxp_is_finite(x[i])) return 0;
+    return 1;
+}
+
+static void gxp_check_vertex(gxb_stream *s, const gx_body *body, const gxp_blade_state *b, const gxp_front_vertex *v) {
+    gxp_require_true(s, v->element < body->mesh.element_count && v->along >= 0 && v->along <= b->edge.count &&
+                            v->distance >= 0 && v->size >= 0);
+    gxp_require_true(s, gxp_are_finite(v->rest, 3) && gxp_are_finite(v->extended, 3) &&
+                            gxp_are_finite(v->position, 3) && gxp_are_finite(v->ahead, 3) && gxp_is_finite(v->size));
+}
+
+static int gxp_is_range(uint32_t first, uint32_t count, uint32_t all) { return first <= all && count <= all - first; }
+
+/* What a move relies on: ranges within their lists, members in order */
+static void gxp_check_strokes(gxb_stream *s, const gx_body *body, const gx_blade *blade) {
+    const gxp_blade_state *b = &blade->now;
+    uint32_t i;
+    gxp_require_true(s, gxp_is_finite(blade->tolerance) && blade->tolerance > 0 && gxp_is_finite(blade->min_advance) &&
+                            blade->min_advance > 0 && b->slot_count <= body->cells.count && b->edge.count != 1);
+    for (i = 0; i < b->vertices.count; i++) gxp_check_vertex(s, body, b, &b->vertices.data[i]);
+    gxp_require_true(s, gxp_are_finite(b->points.data, 3 * (size_t)b->points.count) &&
+                            gxp_are_finite(b->edge.data, 3 * (size_t)b->edge.count));
+    for (i = 0; i < b->layers.count; i++) {
+        const gxp_layer *l = &b->layers.data[i];
+        gxp_require_true(s, l->front_count >= 2 && l->latest_count != 1 &&
+                                gxp_is_range(l->front, l->front_count, b->vertices.count) &&
+                                gxp_is_range(l->latest, l->latest_count, b->vertices.count) &&
+                                gxp_is_range(l->path, l->path_count, b->points.count) &&
+                                gxp_is_range(l->sheet, l->sheet_count, b->points.count));
+    }
+    for (i = 0; i < b->members.count; i++)
+        gxp_require_true(s, GXP_FIRST(b->members.data[i]) < b->slot_count &&
+                                GXP_SECOND(b->members.data[i]) < b->layers.count &&
+                                (i == 0 || b->members.data[i - 1] < b->members.data[i]));
+}
+
+/* Room for what a blade remembers, with these counts */
+static gx_result gxp_blade_room(gx_body *body, gxp_blade_state *b, const uint32_t n[GXP_BLADE_LISTS]) {
+    const gx_allocator *a = &body->config.allocator;
+    gx_result result =
+        gxp_reserve(a, &b->vertices.data, sizeof *b->vertices.data, 0, &b->vertices.capacity, n[GXP_BLADE_VERTICES]);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &b->points.data, 3 * sizeof(double), 0, &b->points.capacity, n[GXP_BLADE_POINTS]);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &b->layers.data, sizeof *b->layers.data, 0, &b->layers.capacity, n[GXP_BLADE_LAYERS]);
+    if (result == GX_OK)
+        result =
+            gxp_reserve(a, &b->members.data, sizeof *b->members.data, 0, &b->members.capacity, n[GXP_BLADE_MEMBERS]);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &b->edge.data, 3 * sizeof(double), 0, &b->edge.capacity, n[GXP_BLADE_EDGE]);
+    if (result != GX_OK) return result;
+    b->vertices.count = n[GXP_BLADE_VERTICES];
+    b->points.count = n[GXP_BLADE_POINTS];
+    b->layers.count = n[GXP_BLADE_LAYERS];
+    b->members.count = n[GXP_BLADE_MEMBERS];
+    b->edge.count = n[GXP_BLADE_EDGE];
+    return GX_OK;
+}
+
+static void gxp_load_blade(gxb_stream *s, gx_body *body, int trusted) {
+    uint32_t n[GXP_BLADE_LISTS], i;
+    gx_blade *b = NULL;
+    gxp_require(s, gx_blade_create(body, NULL, &b, NULL));
+    if (s->result != GX_OK) return;
+    gxp_pass_blade_head(s, b, n);
+    for (i = 0; i < GXP_BLADE_LISTS; i++) gxp_require_true(s, gxb_stream_has(s, n[i], sizeof(uint64_t)));
+    if (s->result == GX_OK) gxp_require(s, gxp_blade_room(body, &b->now, n));
+    if (s->result == GX_OK) gxp_pass_blade(s, &b->now);
+    if (s->result == GX_OK && !trusted) gxp_check_strokes(s, body, b);
+}
+
+static void gxp_load_blades(gxb_stream *s, gx_body *body, int trusted) {
+    uint32_t count = 0, i;
+    gxp_pass_word(s, &count);
+    for (i = 0; i < count && s->result == GX_OK; i++) gxp_load_blade(s, body, trusted);
+}
+
+/* Makes ready that the body's blades become those of another: as many, and what these remember in `then`. made: how
+   many it added. */
+static gx_result gxp_prepare_blades(gx_body *body, const gx_body *from, uint32_t *made) {
+    const gx_blade *source;
+    gx_blade *b = body->blades;
+    gx_result result = GX_OK;
+    *made = 0;
+    for (source = from->blades; source != NULL && result == GX_OK; source = source->next) {
+        const gxp_blade_state *f = &source->now;
+        uint32_t n[GXP_BLADE_LISTS];
+        n[GXP_BLADE_VERTICES] = f->vertices.count;
+        n[GXP_BLADE_POINTS] = f->points.count;
+        n[GXP_BLADE_LAYERS] = f->layers.count;
+        n[GXP_BLADE_MEMBERS] = f->members.count;
+        n[GXP_BLADE_EDGE] = f->edge.count;
+        if (b == NULL) {
+            result = gx_blade_create(body, NULL, &b, NULL);
+            *made += result == GX_OK;
+        }
+        if (result == GX_OK) result = gxp_blade_room(body, &b->then, n);
+        if (result != GX_OK) break;
+        if (f->vertices.count > 0)
+            memcpy(b->then.vertices.data, f->vertices.data, f->vertices.count * sizeof *f->vertices.data);
+        if (f->points.count > 0) memcpy(b->then.points.data, f->points.data, 3 * f->points.count * sizeof(double));
+        if (f->layers.count > 0) memcpy(b->then.layers.data, f->layers.data, f->layers.count * sizeof *f->layers.data);
+        if (f->members.count > 0)
+            memcpy(b->then.members.data, f->members.data, f->members.count * sizeof *f->members.data);
+        if (f->edge.count > 0) memcpy(b->then.edge.data, f->edge.data, 3 * f->edge.count * sizeof(double));
+        b->then.slot_count = f->slot_count;
+        b = b->next;
+    }
+    return result;
+}
+
+/* The body's blades become those of another, as they were made ready. Those that it lacks are lifted. */
+static void gxp_take_blades(gx_body *body, const gx_body *from) {
+    const gx_blade *source = from->blades;
+    gx_blade *b;
+    for (b = body->blades; b != NULL; b = b->next) {
+        const gxp_blade_state now = b->now;
+        if (source == NULL) {
+            gxp_forget(&b->now);
+            continue;
+        }
+        b->now = b->then;
+        b->then = now;
+        b->tolerance = source->tolerance;
+        b->min_advance = source->min_advance;
+        b->max_samples = source->max_samples;
+        b->starts_inside = source->starts_inside;
+        source = source->next;
+    }
+}
+
+/* Takes back blades that were added last. */
+static void gxp_drop_blades(gx_body *body, uint32_t count) {
+    uint32_t all = 0;
+    gx_blade *b;
+    for (b = body->blades; b != NULL; b = b->next) all++;
+    for (; count > 0; count--, all--) gx_blade_destroy(gx_body_blade(body, all - 1));
+}
+
 static void gxp_write(gxb_stream *s, gx_body *body) {
     gxp_head head = gxp_make_head(0, 0);
     gxp_pass_head(s, &head);
     gxp_save_mesh(s, body);
     gxp_save_topology(s, body);
     gxp_save_state(s, body);
+    gxp_save_blades(s, body);
 }
 
 static void gxp_resume(gx_body *body) {
@@ -8922,6 +12365,7 @@ static gx_result gxp_read(gxb_stream *s, const gx_body_desc *desc, int trusted, 
     if (s->result == GX_OK) gxp_load_mesh(s, desc, &made, failure);
     if (s->result == GX_OK) gxp_load_topology(s, made, trusted);
     if (s->result == GX_OK) gxp_load_state(s, made, trusted);
+    if (s->result == GX_OK) gxp_load_blades(s, made, trusted);
     gxp_require_true(s, s->at == s->size);
     if (s->result == GX_OK)
         *body = made;
@@ -9041,23 +12485,39 @@ static gx_result gxp_restore_state(gx_body *body, gx_body *from) {
     return GX_OK;
 }
 
-GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *failure) {
+/* Replaces cells and all else by a copy of another body's. The body's own blades stay, and the copy's go with the old
+   body. */
+static gx_result gxp_restore_all(gx_body *body, gx_body *from) {
     gx_body *copy, swap;
+    const gx_result result = gxp_copy_body(from, body, &copy);
+    if (result != GX_OK) return result;
+    swap = *body;
+    *body = *copy;
+    *copy = swap;
+    copy->blades = body->blades;
+    body->blades = swap.blades;
+    gx_body_destroy(copy);
+    return GX_OK;
+}
+
+GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *failure) {
+    uint32_t made;
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (from == NULL) return gxp_refuse(failure, "from");
     if (body == from) return gxp_end(failure, GX_OK);
-    if (body->cuts.hash == from->cuts.hash && body->copies.count == from->copies.count &&
-        body->cells.count == from->cells.count && body->leaves.count == from->leaves.count &&
-        gxp_same_materials(body, from))
-        return gxp_end(failure, gxp_restore_state(body, from));
-    result = gxp_copy_body(from, body, &copy);
-    if (gxp_end(failure, result) != GX_OK) return result;
-    swap = *body;
-    *body = *copy;
-    *copy = swap;
-    gx_body_destroy(copy);
-    return GX_OK;
+    result = gxp_prepare_blades(body, from, &made);
+    if (result == GX_OK)
+        result = body->cuts.hash == from->cuts.hash && body->copies.count == from->copies.count &&
+                         body->cells.count == from->cells.count && body->leaves.count == from->leaves.count &&
+                         gxp_same_materials(body, from)
+                   ? gxp_restore_state(body, from)
+                   : gxp_restore_all(body, from);
+    if (result == GX_OK)
+        gxp_take_blades(body, from);
+    else
+        gxp_drop_blades(body, made);
+    return gxp_end(failure, result);
 }
 
 #undef GXP_COLD
@@ -9072,12 +12532,24 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_LIST
 #undef GXP_WORDS
 #undef GXP_KEYS
+#undef GXP_HAS_ROOM
 #undef GXP_FIRST
 #undef GXP_SECOND
 #undef GXP_LINK_CELL
 #undef GXP_LINK_FACET
 #undef GXP_LINK_FACE
 #undef GXP_SEARCH_MARGIN
+#undef GXP_TREE_LEAVES
+#undef GXP_TREE_LEAF
+#undef GXP_TREE_MARGIN
+#undef GXP_TREE_ALL
+#undef GXP_TREE_BEYOND
+#undef GXP_NEAR_MARGIN
+#undef GXP_NEAR_ROUNDING
+#undef GXP_LOCATE_FEW
+#undef GXP_GROUP_POINTS
+#undef GXP_GROUP_ELEMENTS
+#undef GXP_RAY_MARGIN
 #undef GXP_REACH
 #undef GXP_WEIGHT
 #undef GXP_LAST_ROUND
@@ -9093,6 +12565,14 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_BYTE_ORDER
 #undef GXP_BESIDE_WALL
 #undef GXP_ACROSS_WALL
+#undef GXP_FLAT_MAP
+#undef GXP_BESIDE
+#undef GXP_LEAST_ADVANCE
+#undef GXP_CUT_WIDTH
+#undef GXP_SHEET_TRIANGLES
+#undef GXP_STRIP_REACH
+#undef GXP_EDGE_REACH
+#undef GXP_TOOL_TRIANGLES
 #ifdef GXFEM_SCALAR
 #pragma clang attribute pop
 #endif

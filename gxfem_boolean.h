@@ -39,7 +39,9 @@
  *                   lists: gxb_leaf_resolve_facets, gxb_facet_resolve_edges
  *                   reading: gxb_complex_point and others
  *                   questions: gxb_complex_side, turn, compare, leaf_at, winding, barycentric, support,
- * barycentric_fine
+ *                   barycentric_fine
+ *                   points of moved elements: gxb_pullback_misses, set, contains, orient, weights;
+ * gxb_complex_pullback_side
  *     >>stream      a complex as bytes: gxb_stream_pass, has; gxb_complex_save, load
  *     >>boolean     exact, chainable Booleans of closed triangle surfaces: gxb_boolean_create, add, evaluate, destroy
  *                   options of a result: set_triangulation, set_fine, set_mend
@@ -53,7 +55,7 @@
  *     structure       >>topology (of the mesh), >>access (reading), >>places (which leaf is there), >>split (by a
  *                     plane)
  *     a triangle      >>clip, >>walls, >>cover (what is there already), >>rebalance and >>crowds (trees), >>insert
- *     questions       >>inside (winding numbers), >>pairs (of doubles), >>barycentric
+ *     questions       >>inside (winding numbers), >>pairs (of doubles), >>barycentric, >>pullback (of points of space)
  *     bytes           >>save, >>check (what was read), >>load
  *
  * Of Booleans, in the order of the work:
@@ -596,6 +598,31 @@ GXFEM_API void gxb_complex_barycentric(gxb_complex *complex, uint32_t point, uin
 GXFEM_API unsigned gxb_complex_support(const gxb_complex *complex, uint32_t point, uint32_t element);
 /* The coordinates with a relative error below 2^-180. */
 GXFEM_API void gxb_complex_barycentric_fine(gxb_complex *complex, uint32_t point, uint32_t element, gxb_num lambda[4]);
+
+/* A point p of space against an element whose corners have moved to x0 ... x3. The affine map that moves the corners
+   takes a material point to p: the sum of D_i / D times corner i at rest. D = |x1-x0 x2-x0 x3-x0|, and D_i is the same
+   with p in the place of x_i. Corners and p are finite doubles, taken as exact; x0 ... x3 may be inverted or flat. */
+typedef struct gxb_pullback {
+    const double *corners; /* x0 ... x3: 4 x 3; they and the point must outlive it */
+    const double *point;   /* 3 */
+    double d[4], error;    /* each D_i within error; error < 0: nothing is known */
+    int8_t sign[4];        /* of D_i; 2: not certain yet */
+    int8_t orientation;    /* sign of D; 2: not known yet */
+} gxb_pullback;
+/* 1 where the point certainly lies outside of the moved element: a quick test for many elements */
+GXFEM_API int gxb_pullback_misses(const double corners[12], const double point[3]);
+/* Sets all members, without exact arithmetic. */
+GXFEM_API void gxb_pullback_set(gxb_pullback *back, const double corners[12], const double point[3]);
+/* 1 where the point lies in the moved element or on its boundary, exactly. A flat one contains nothing. */
+GXFEM_API int gxb_pullback_contains(gxb_pullback *back);
+/* Sign of D, exact: 0 where the moved element is flat. */
+GXFEM_API int gxb_pullback_orient(gxb_pullback *back);
+/* The barycentric coordinates D_i / D, also outside of the element; D is not 0. Inside, none is below 0, and the point
+   that they give at rest is within 2^-46 of the element's size of the exact one (2^-47 where sums are rounded to
+   nearest; far below 2^-48 as a rule). */
+GXFEM_API void gxb_pullback_weights(gxb_pullback *back, double lambda[4]);
+/* Sign of the material point against a plane of the complex, exact; D is not 0. */
+GXFEM_API int gxb_complex_pullback_side(gxb_complex *complex, gxb_pullback *back, uint32_t element, uint32_t plane);
 
 /* >>stream --------------------------------------------------------------------------------------------------------- */
 
@@ -1253,6 +1280,19 @@ static void gxbp_cross(double r[3], const double a[3], const double b[3]) {
    products of size A B inherit A eb + B ea + ea eb each; rounding adds 8u of 2 A B. */
 static double gxbp_cross_error(double A, double ea, double B, double eb) {
     return 4 * (A * eb + B * ea + ea * eb) + 32 * GXBP_U * A * B + GXBP_TINY;
+}
+
+/* Component k of a x c, and the size of its products. A product of three fenced differences suffers three roundings in
+   them, two in itself and at most five in the sum that makes an orientation of it: within 32u of the products' sizes.
+ */
+static double gxbp_cross_size(const double a[3], const double c[3], int i, int j, double *size) {
+    *size = gxbp_abs(a[i] * c[j]) + gxbp_abs(a[j] * c[i]);
+    return a[i] * c[j] - a[j] * c[i];
+}
+
+static void gxbp_cross_sizes(double m[3], double size[3], const double a[3], const double c[3]) {
+    int k;
+    for (k = 0; k < 3; k++) m[k] = gxbp_cross_size(a, c, (k + 1) % 3, (k + 2) % 3, &size[k]);
 }
 
 /* r = a x b, with errors ea and eb of the components of a and b. Returns the error bound of r's components. */
@@ -2071,7 +2111,18 @@ static GXBP_RARE void *gxbp_reallocate(const gx_allocator *a, void *old, size_t 
     return memory;
 }
 
-static size_t gxbp_room_for(size_t need) { return need + need / 2 + 16; }
+/* Does an array have room? tests/test_tight.c says no and has no memory then: memory runs out wherever an array could
+   grow. */
+#ifndef GXBP_HAS_ROOM
+#define GXBP_HAS_ROOM(allocator, need, capacity) ((need) <= (capacity))
+#endif
+
+/* Room beyond what is needed; none in tests/test_tight_boolean.c */
+#ifndef GXBP_SPARE
+#define GXBP_SPARE(need) ((need) / 2 + 16)
+#endif
+
+static size_t gxbp_room_for(size_t need) { return need + GXBP_SPARE(need); }
 
 /* Makes room for `extra` items more in an array. array: the address of its pointer. The one way by which arrays grow.
  */
@@ -2079,7 +2130,7 @@ static GXBP_APART gx_result gxbp_reserve(const gx_allocator *a, void *array, uin
                                          size_t item, size_t extra) {
     const size_t need = (size_t)count + extra, room = gxbp_room_for(need);
     void *old, *memory;
-    if (need <= *capacity) return GX_OK;
+    if (GXBP_HAS_ROOM(a, need, *capacity)) return GX_OK;
     if (room > INT32_MAX || room > SIZE_MAX / item) return GX_ERROR_LIMIT;
     memcpy(&old, array, sizeof old);
     memory = gxbp_reallocate(a, old, (size_t)*capacity * item, count * item, room * item);
@@ -2091,7 +2142,7 @@ static GXBP_APART gx_result gxbp_reserve(const gx_allocator *a, void *array, uin
 
 /* The same for owner->array with owner->counter_count items. */
 #define GXBP_RESERVE(allocator, owner, array, counter, extra)                                                          \
-    ((size_t)(extra) <= (owner)->counter##_capacity - (owner)->counter##_count                                         \
+    (GXBP_HAS_ROOM(allocator, (size_t)(extra), (owner)->counter##_capacity - (owner)->counter##_count)                 \
          ? GX_OK                                                                                                       \
          : gxbp_reserve(allocator, &(owner)->array, (owner)->counter##_count, &(owner)->counter##_capacity,            \
                         sizeof *(owner)->array, extra))
@@ -5142,6 +5193,231 @@ GXFEM_API GXBP_RARE void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t 
     }
 }
 
+/* >>pullback: points of space in moved elements -------------------------------------------------------------------- */
+/* In: a point, the corners of an element where they have moved to, a plane of the complex. Out: exact signs and rounded
+   barycentric coordinates of the point pulled back. Changes nothing but the cache of exact numbers.
+ *
+ * With e_i = x_i - p, D_0 = e1.(e2 x e3), D_1 = -e0.(e2 x e3), D_2 = (e0 x e1).e3, D_3 = -(e0 x e1).e2. Each is a sum
+ of
+ * six products of three fenced differences, within 10u of the sum of their sizes (see gxbp_cross_size). S is the sum of
+ * these sums; GXBP_PULLBACK_ERROR times S is more than twice the error of each.
+ */
+#define GXBP_PULLBACK_ERROR (24 * GXBP_U)
+
+/* Where S exceeds this multiple of |D|, coordinates come from exact numbers. Rounding to nearest has errors of 2^-53:
+   those of the four D_i are below 10 * 2^-53 S together, so those of D_i / D below 40 * 2^-53; the sum, the quotients
+   and their sum add 6 at most. All are below 2^-47. */
+#define GXBP_PULLBACK_LOSS 4.0
+
+static double gxbp_dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* e = corner - point. Fences hide how these were computed: they are taken as the doubles that they are. */
+static inline void gxbp_pullback_edge(double e[3], const double corner[3], const double point[3]) {
+    e[0] = gxbp_fence(gxbp_fence(corner[0]) - point[0]);
+    e[1] = gxbp_fence(gxbp_fence(corner[1]) - point[1]);
+    e[2] = gxbp_fence(gxbp_fence(corner[2]) - point[2]);
+}
+
+/* The vectors e_i, without a loop, which some compilers would keep */
+static inline void gxbp_pullback_edges(double e[4][3], const double corners[12], const double point[3]) {
+    double p[3];
+    p[0] = gxbp_fence(point[0]);
+    p[1] = gxbp_fence(point[1]);
+    p[2] = gxbp_fence(point[2]);
+    gxbp_pullback_edge(e[0], corners, p);
+    gxbp_pullback_edge(e[1], corners + 3, p);
+    gxbp_pullback_edge(e[2], corners + 6, p);
+    gxbp_pullback_edge(e[3], corners + 9, p);
+}
+
+static inline double gxbp_sum_of_sizes(const double a[3]) { return gxbp_abs(a[0]) + gxbp_abs(a[1]) + gxbp_abs(a[2]); }
+
+/* Are the sizes of all products of a sum below 2^500, so that none overflows? */
+static int gxbp_is_moderate(double size) { return gxbp_exponent_bits(size) < 1023 + 500; }
+
+/* A product is not above the product of its vectors' sums of sizes. */
+GXFEM_API int gxb_pullback_misses(const double corners[12], const double point[3]) {
+    double e[4][3], c[3], n[4], d, g, bound;
+    int positive, negative;
+    gxbp_pullback_edges(e, corners, point);
+    n[0] = gxbp_sum_of_sizes(e[0]);
+    n[1] = gxbp_sum_of_sizes(e[1]);
+    n[2] = gxbp_sum_of_sizes(e[2]);
+    n[3] = gxbp_sum_of_sizes(e[3]);
+    gxbp_cross(c, e[2], e[3]);
+    d = gxbp_dot(e[1], c);
+    g = gxbp_dot(e[0], c);
+    bound = GXBP_PULLBACK_ERROR * gxbp_max(n[0], n[1]) * n[2] * n[3] + GXBP_TINY;
+    if (!gxbp_is_moderate(bound)) return 0;
+    positive = (d > bound) | (g < -bound);
+    negative = (d < -bound) | (g > bound);
+    if (positive & negative) return 1;
+    gxbp_cross(c, e[0], e[1]);
+    d = gxbp_dot(e[3], c);
+    g = gxbp_dot(e[2], c);
+    bound = GXBP_PULLBACK_ERROR * gxbp_max(n[2], n[3]) * n[0] * n[1] + GXBP_TINY;
+    if (!gxbp_is_moderate(bound)) return 0;
+    positive |= (d > bound) | (g < -bound);
+    negative |= (d < -bound) | (g > bound);
+    return positive & negative;
+}
+
+/* a.c, and the size of its products added to *size, where sizes are those of c's own */
+static double gxbp_dot_sizes(const double a[3], const double c[3], const double sizes[3], double *size) {
+    *size += gxbp_abs(a[0]) * sizes[0] + gxbp_abs(a[1]) * sizes[1] + gxbp_abs(a[2]) * sizes[2];
+    return gxbp_dot(a, c);
+}
+
+GXFEM_API void gxb_pullback_set(gxb_pullback *back, const double corners[12], const double point[3]) {
+    double e[4][3], c[3], sizes[3], size = 0;
+    int i;
+    back->corners = corners;
+    back->point = point;
+    back->error = -1;
+    back->orientation = 2;
+    for (i = 0; i < 4; i++) back->sign[i] = 2;
+    gxbp_pullback_edges(e, corners, point);
+    gxbp_cross_sizes(c, sizes, e[2], e[3]);
+    back->d[0] = gxbp_dot_sizes(e[1], c, sizes, &size);
+    back->d[1] = -gxbp_dot_sizes(e[0], c, sizes, &size);
+    gxbp_cross_sizes(c, sizes, e[0], e[1]);
+    back->d[2] = gxbp_dot_sizes(e[3], c, sizes, &size);
+    back->d[3] = -gxbp_dot_sizes(e[2], c, sizes, &size);
+    if (!gxbp_is_moderate(size)) return;
+    back->error = GXBP_PULLBACK_ERROR * size + GXBP_TINY;
+    for (i = 0; i < 4; i++) {
+        const int sign = gxbp_filter_sign(back->d[i], back->error);
+        if (sign != 0) back->sign[i] = (int8_t)sign;
+    }
+}
+
+/* The points of which D_i is the determinant, and the point */
+static void gxbp_pullback_face(const gxb_pullback *back, int i, const double *p[4]) {
+    int j, n = 0;
+    for (j = 0; j < 4; j++)
+        if (j != i) p[n++] = back->corners + 3 * j;
+    p[3] = back->point;
+}
+
+/* The sign of D_i; decides it where it is not certain. */
+static int gxbp_pullback_sign(gxb_pullback *back, int i) {
+    const double *p[4];
+    int sign;
+    if (back->sign[i] != 2) return back->sign[i];
+    gxbp_pullback_face(back, i, p);
+    sign = gxbp_orient3d_exact(p);
+    back->sign[i] = (int8_t)(i % 2 == 0 ? sign : -sign);
+    return back->sign[i];
+}
+
+GXFEM_API int gxb_pullback_contains(gxb_pullback *back) {
+    int i, positive = 0, negative = 0;
+    for (i = 0; i < 4; i++) {
+        positive |= back->sign[i] == 1;
+        negative |= back->sign[i] == -1;
+    }
+    for (i = 0; i < 4 && !(positive && negative); i++) {
+        const int sign = gxbp_pullback_sign(back, i);
+        positive |= sign > 0;
+        negative |= sign < 0;
+    }
+    if (positive != negative) back->orientation = (int8_t)(positive ? 1 : -1); /* D is the sum of the D_i */
+    return positive != negative;
+}
+
+GXFEM_API int gxb_pullback_orient(gxb_pullback *back) {
+    const double *x = back->corners;
+    if (back->orientation == 2) back->orientation = (int8_t)gxb_orient3d(x + 3, x + 6, x + 9, x);
+    return back->orientation;
+}
+
+/* The exact D_i, and D after them */
+typedef struct gxbp_shares {
+    gxb_num d[5];
+    gxb_limb limbs[5][GXB_NUM_LIMBS];
+} gxbp_shares;
+
+/* Degree 3 of any finite doubles: 100 limbs of 64 bits */
+static GXBP_COLD void gxbp_exact_shares(const gxb_pullback *back, gxbp_shares *shares) {
+    const double *p[5];
+    gxbp_vec e[4];
+    int i;
+    for (i = 0; i < 4; i++) p[i] = back->corners + 3 * i;
+    p[4] = back->point;
+    gxbp_exact_differences(e, p, 5, 3);
+    memset(shares->d, 0, sizeof shares->d);
+    for (i = 0; i < 5; i++) shares->d[i].d = shares->limbs[i];
+    for (i = 0; i < 4; i++) {
+        gxbp_num_det3(&shares->d[i], e[i == 0].c, e[i <= 1 ? 2 : 1].c, e[i <= 2 ? 3 : 2].c);
+        if (i % 2 != 0) shares->d[i].sign = -shares->d[i].sign;
+        gxbp_num_increase(&shares->d[4], &shares->d[i], 1);
+    }
+}
+
+static GXBP_COLD void gxbp_exact_weights(const gxb_pullback *back, double lambda[4]) {
+    gxbp_shares shares;
+    int i;
+    gxbp_exact_shares(back, &shares);
+    for (i = 0; i < 4; i++) lambda[i] = gxb_num_ratio(&shares.d[i], &shares.d[4]);
+}
+
+/* Outside, D is the sum of D_i that may cancel: then it is far below S. */
+GXFEM_API void gxb_pullback_weights(gxb_pullback *back, double lambda[4]) {
+    const double D = (back->d[0] + back->d[1]) + (back->d[2] + back->d[3]);
+    double sum;
+    int i, inside = 1;
+    if (!(back->error >= 0) || !(back->error <= GXBP_PULLBACK_ERROR * GXBP_PULLBACK_LOSS * gxbp_abs(D)))
+        gxbp_exact_weights(back, lambda);
+    else {
+        for (i = 0; i < 4; i++) lambda[i] = back->sign[i] == 0 ? 0 : back->d[i] / D;
+        for (i = 0; i < 4; i++) inside = inside && back->sign[i] * back->orientation >= 0 && back->sign[i] != 2;
+        for (i = 0; i < 4 && inside; i++) lambda[i] = gxbp_max(lambda[i], 0);
+    }
+    sum = (lambda[0] + lambda[1]) + (lambda[2] + lambda[3]);
+    for (i = 0; i < 4; i++) lambda[i] /= sum;
+}
+
+/* The sides h_i of the corners at rest give that of the material point: D_i h_i, summed, over D. */
+static GXBP_COLD int gxbp_exact_pullback_side(gxb_complex *cx, const gxb_pullback *back, uint32_t element,
+                                              uint32_t plane) {
+    gxbp_shares shares;
+    gxbp_vec own, x;
+    const gxb_num *n = gxbp_exact_cplane(&cx->store, plane, &own);
+    int i;
+    GXB_NUM(sum);
+    gxbp_exact_shares(back, &shares);
+    for (i = 0; i < 4; i++) {
+        GXB_NUM(height);
+        GXB_NUM(term);
+        gxbp_exact_side(&height, gxbp_exact_cpoint(&cx->store, cx->elements[4 * (size_t)element + (uint32_t)i], &x), n);
+        gxb_num_mul(&term, &shares.d[i], &height);
+        gxbp_num_increase(&sum, &term, 1);
+    }
+    return sum.sign;
+}
+
+GXFEM_API int gxb_complex_pullback_side(gxb_complex *cx, gxb_pullback *back, uint32_t element, uint32_t plane) {
+    const int orientation = gxb_pullback_orient(back);
+    double value = 0, size = 0, bound = GXBP_TINY;
+    int i, sign = 0;
+    cx->store.filter_calls++;
+    for (i = 0; i < 4 && back->error >= 0; i++) {
+        const uint32_t node = cx->elements[4 * (size_t)element + (uint32_t)i];
+        double error;
+        const double height =
+            gxbp_fence(gxbp_filter_side(&cx->store.points[node].ball, &cx->store.planes[plane].filter, &error));
+        value += back->d[i] * height;
+        size += gxbp_abs(back->d[i] * height);
+        bound += 2 * (gxbp_abs(back->d[i]) * error + back->error * (gxbp_abs(height) + error));
+    }
+    if (back->error >= 0) sign = gxbp_filter_sign(value, bound + 16 * GXBP_U * size);
+    if (sign == 0) {
+        cx->store.exact_calls++;
+        sign = gxbp_exact_pullback_side(cx, back, element, plane);
+    }
+    return sign * orientation;
+}
+
 /* >>save: points by their definitions, the rest by indices --------------------------------------------------------- */
 /* In: a complex, or bytes. Out: bytes, or a complex that has been checked. Reading trusts nothing. */
 
@@ -6318,7 +6594,8 @@ static GXBP_COLD int gxbp_stop(gxb_boolean *b, gx_result result) {
 /* The first items of an array come from the arena, so that small cases allocate nothing. */
 static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, uint32_t count, uint32_t *capacity, size_t item,
                                 size_t extra) {
-    const size_t least = *capacity == 0 && extra < 16 ? 16 : extra, room = gxbp_room_for(least);
+    const size_t first = GXBP_SPARE((size_t)0), least = *capacity == 0 && extra < first ? first : extra,
+                 room = gxbp_room_for(least);
     void *memory = *capacity == 0 && least < GXBP_ARENA ? gxbp_take(b, room * item) : NULL;
     gx_result result;
     if (memory != NULL) {
@@ -6876,19 +7153,6 @@ static GXBP_COLD int gxbp_list_exits(gxb_boolean *b, const uint32_t *triangles, 
 
 static void gxbp_drop_exits(gxb_boolean *b, gxbp_exits *exits) {
     gxbp_release(&b->store.allocator, exits->list, exits->bytes);
-}
-
-/* Component k of a x c, and the size of its products. A product of three fenced differences suffers three roundings in
-   them, two in itself and at most five in the sum that makes an orientation of it: within 32u of the products' sizes.
- */
-static double gxbp_cross_size(const double a[3], const double c[3], int i, int j, double *size) {
-    *size = gxbp_abs(a[i] * c[j]) + gxbp_abs(a[j] * c[i]);
-    return a[i] * c[j] - a[j] * c[i];
-}
-
-static void gxbp_cross_sizes(double m[3], double size[3], const double a[3], const double c[3]) {
-    int k;
-    for (k = 0; k < 3; k++) m[k] = gxbp_cross_size(a, c, (k + 1) % 3, (k + 2) % 3, &size[k]);
 }
 
 static GXBP_COLD int gxbp_has_area_exactly(const double *p, const double *q, const double *r) {
@@ -11655,12 +11919,16 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_IN_ROOT
 #undef GXBP_PAIR_U
 #undef GXBP_PAIR_RANGE
+#undef GXBP_PULLBACK_ERROR
+#undef GXBP_PULLBACK_LOSS
 #undef GXBP_DEPTH
 #undef GXBP_UNSEEN
 #undef GXBP_EDGE_LABEL
 #undef GXBP_LOOSE
 #undef GXBP_BARE
 #undef GXBP_ARENA
+#undef GXBP_HAS_ROOM
+#undef GXBP_SPARE
 #undef GXBP_LARGEST
 #undef GXBP_ROOM
 #undef GXBP_REMOVED

@@ -9,7 +9,7 @@ tables=$1
 page=$2
 readme=$3
 
-for bench in quadrature stepping conditioning failure table2 table2_ratios scaling kernel smallest solver product violent accuracy drift frames skin; do
+for bench in quadrature stepping conditioning failure table2 table2_ratios scaling kernel smallest solver product violent accuracy drift frames skin blade; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$(echo $bench | sed 's/_ratios//; s/product/solver/')" >&2; exit 2; }
 done
 for name in why speed; do
@@ -225,6 +225,48 @@ skin() {
     awk -F, 'NR > 1 { for (i = 2; i <= NF; i++) printf("| %s ", $i); print "|" }' "$tables/skin.csv"
 }
 
+# blade_rows KIND COLUMNS: an awk expression of rows of blade.csv, as rows of a table
+blade_rows() {
+    awk -F, -v kind="$1" '$1 == kind { print "| " '"$2"' " |" }' "$tables/blade.csv"
+}
+
+# heading NAME...: the head of a table, numbers on the right but for the first column
+heading() {
+    for name in "$@"; do printf '| %s ' "$name"; done
+    echo "|"
+    shift
+    printf '| --- '
+    for name in "$@"; do printf '| ---: '; done
+    echo "|"
+}
+
+blade() {
+    text "Straight and bent edges in space through blocks of 12^3 cubes, six elements each, that move by steps. Elements count as \
+often as they were divided; leaves are what each of them added."
+    echo
+    heading scene fragments expected "elements divided" "leaves each" "us each" "smallest link"
+    blade_rows scene '$2 " | " $7 " | " $8 " | " $9 " | " $10 " | " $11 " | " $12'
+    echo
+    text "Random straight passes through blocks of 4^3 cubes that move, with noise at each node and frame; flat: squeezed to a \
+fifth, so that elements turn inside out."
+    echo
+    heading "noise, cubes" "two pieces" passes "smallest link"
+    blade_rows passes '$2 " | " $7 " | " $8 " | " $12'
+    echo
+    text "Edges that follow known sheets in blocks of 8^3 cubes, all seeds: how far the walls of the cut are off."
+    echo
+    echo "![Distance of a blade's cut from known sheets](charts/blade.svg)"
+    echo
+    heading motion frames "tolerance, cubes" "least advance, cubes" "largest, cubes" "root mean square" "a move, ms"
+    blade_rows error '$2 " | " $4 " | " $5 " | " $6 " | " $14 " | " $15 " | " $16'
+    echo
+    heading cost elements frames "elements divided" "leaves each" "us each" "a move, ms" "worst, ms" "a step, ms" "ns a point"
+    awk -F, '$1 ~ /^(cost|idle|sample|frame)$/ {
+        name["cost"] = "a pass"; name["idle"] = "a move far from the body"; name["sample"] = "a move that cuts nothing"
+        name["frame"] = "a frame: blade, cut, model, skin"
+        print "| " name[$1] " | " $3 " | " $4 " | " $9 " | " $10 " | " $11 " | " $16 " | " $17 " | " $18 " | " $20 " |" }' "$tables/blade.csv"
+}
+
 # A paragraph
 text() { echo "$*" | fold -s -w 119 | sed 's/ *$//'; }
 
@@ -348,6 +390,10 @@ solver's model and multigrid where it has touched them, $(range frames 8 1) time
     echo
     skin
     echo
+    echo "## Blades in moving bodies"
+    echo
+    blade
+    echo
     echo "## Booleans of closed surfaces"
     echo
     text "\"+\": evaluated after each operand, \"?\": surfaces that are not vouched for as simple. Times include components and \
@@ -381,7 +427,7 @@ judges."
     echo
     echo "| file in \`bench/\` | what it is |"
     echo "| --- | --- |"
-    echo "| \`quadrature.c\`, \`stepping.c\`, \`space.c\`, \`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`, \`solver.c\`, \`violent.c\`, \`kernel.c\`, \`smallest.sh\`, \`accuracy.c\`, \`drift.c\`, \`frames.c\`, \`skin.c\` | the sections above, in this order but for Booleans |"
+    echo "| \`quadrature.c\`, \`stepping.c\`, \`space.c\`, \`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`, \`solver.c\`, \`violent.c\`, \`kernel.c\`, \`smallest.sh\`, \`accuracy.c\`, \`drift.c\`, \`frames.c\`, \`skin.c\`, \`blade.c\` | the sections above, in this order but for Booleans |"
     echo "| \`soak.c\` | 100,000 steps of bodies that are cut, kicked and dropped: no copy may run away |"
     echo "| \`rxfem.h\`, \`rxfem_rules.h\`, \`rxfem_model.h\` | RXFEM (Koschier, Bender, Thuerey 2017), written for the bench |"
     echo "| \`vna.h\`, \`literal.h\` | virtual nodes (element duplication); GXFEM's Algorithm 1 as published, a Boolean for each subdomain |"

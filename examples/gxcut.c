@@ -6,8 +6,11 @@
 
    contents
      >>settings    the command line
-     >>input       mesh, cuts, body
-     >>run         cut, steps, frames
+     >>input       mesh, cuts, blade, body
+     >>cut         all surfaces in one call; view and skin
+     >>frames      their files, the progress bar, where a run ends early
+     >>blade       the blade that cuts while the body steps
+     >>run         steps, frame by frame
      >>report      summary and JSON */
 #include "gxio.h"
 
@@ -30,23 +33,40 @@ enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_MISUSED = 2 };
 /* -------------------------------------------------------------------------------------------- >>settings */
 
 typedef struct settings {
-    const char *mesh, *out, *format, *report;
+    const char *mesh, *blade, *out, *format, *report;
     const char **cuts; /* cut_count, as given */
     uint32_t *kinds;   /* cut_count, GX_SURFACE_SHEET or _SOLID */
     size_t cut_count;
     gx_region *regions; /* region_count */
     size_t region_count;
-    double thickness; /* m; 0: sheets stay sheets */
+    double thickness;   /* m; 0: sheets stay sheets */
+    gx_blade_desc edge; /* of the blade */
     double dt, young, poisson, density, gravity[3], stretch[3];
     uint32_t frames, newton, cut_at;
     int quiet, help;
 } settings;
 
+/* What the blade did */
+typedef struct strokes {
+    size_t moves, triangles;
+    size_t layers;         /* most at once */
+    size_t divided;        /* elements that got more cells, summed over the blade's cuts */
+    double deviation;      /* the largest, m */
+    double seconds;        /* in moves and lifts */
+    double min_link_ratio; /* the smallest */
+    double seconds_arrangement, seconds_enrichment, seconds_integrals;
+} strokes;
+
 typedef struct run {
     settings set;
     gxio_mesh mesh;
     gxio_surface *cuts; /* cut_count */
+    gxio_blade edges;
     gx_body *body;
+    gx_blade *blade; /* the body's; NULL: none */
+    strokes strokes;
+    uint32_t *divided_at; /* element_count: number of the last cut of the blade that gave the element more cells */
+    uint32_t blade_cuts;
     gx_view view;
     gx_skin skin;
     double *skin_positions; /* skin.vertex_count x 3 */
@@ -100,6 +120,13 @@ static const char usage[] =
     "  --solid CUT         closed: removes what lies inside\n"
     "  --thickness E       makes each sheet a solid of this thickness, m\n"
     "  --cut-at FRAME      cuts before this frame's step (0)\n"
+    "  --blade FILE        a blade that cuts while the body steps, from that frame on. The file has a line for each\n"
+    "                      frame: x y z, in space, of each point of the edge at the frame's end, two points or more.\n"
+    "                      An empty line lifts the blade, as do the file's end and the last frame; # begins a\n"
+    "                      comment\n"
+    "  --blade-tolerance M how far a strip of its cut may be off the edge's path, m (0: by the mesh)\n"
+    "  --blade-advance M   how far the edge goes before it cuts, m (0: by the mesh)\n"
+    "  --blade-inside      the edge may start in the material: a stab\n"
     "  --frames N          steps and frames (60); 0: cut and report only\n"
     "  --dt S              time step, s (0.033)\n"
     "  --newton N          Newton iterations per step (1)\n"
@@ -207,6 +234,10 @@ static int take_arguments(settings *set, int argc, char **argv, gxio_error *erro
                         {"--solid", TAKES_SOLID, NULL, 0},
                         {"--thickness", TAKES_NUMBER, &set->thickness, 0},
                         {"--cut-at", TAKES_COUNT, &set->cut_at, 0},
+                        {"--blade", TAKES_TEXT, &set->blade, 0},
+                        {"--blade-tolerance", TAKES_NUMBER, &set->edge.tolerance, 0},
+                        {"--blade-advance", TAKES_NUMBER, &set->edge.min_advance, 0},
+                        {"--blade-inside", TAKES_NOTHING, &set->edge.starts_inside, 0},
                         {"--frames", TAKES_COUNT, &set->frames, 0},
                         {"--dt", TAKES_NUMBER, &set->dt, 0},
                         {"--newton", TAKES_COUNT, &set->newton, 0},
@@ -222,11 +253,15 @@ static int take_arguments(settings *set, int argc, char **argv, gxio_error *erro
                         {"--quiet", TAKES_NOTHING, &set->quiet, 0},
                         {"--help", TAKES_NOTHING, &set->help, 0},
                         {NULL, 0, NULL, 0}};
+    const option *o;
     int i;
     for (i = 1; i < argc; i++)
         if (!take_argument(set, options, argc, argv, &i, error)) return 0;
     if (find_option(options, "--thickness")->seen && !(set->thickness > 0.0))
         return misused(error, "--thickness", "must be above 0");
+    for (o = options; o->name && !set->blade; o++)
+        if (o->seen && strncmp(o->name, "--blade-", strlen("--blade-")) == 0)
+            return misused(error, o->name, "needs a --blade");
     return 1;
 }
 
@@ -243,6 +278,9 @@ static int check_settings(const settings *set, gxio_error *error) {
     if (!set->newton) return misused(error, "--newton", "must be at least 1");
     if (set->cut_at && set->cut_at >= set->frames)
         return misused(error, "--cut-at", "must be below the number of frames");
+    if (set->blade && !set->frames) return misused(error, "--blade", "needs frames, and --frames is 0");
+    if (!(set->edge.tolerance >= 0.0)) return misused(error, "--blade-tolerance", "must be at least 0");
+    if (!(set->edge.min_advance >= 0.0)) return misused(error, "--blade-advance", "must be at least 0");
     if (!is_format(set, "vtu") && !is_format(set, "obj") && !is_format(set, "html"))
         return misused(error, "--format", "must be vtu, obj or html");
     return 1;
@@ -381,7 +419,8 @@ static int load(run *r) {
         if (!gxio_surface_load(r->set.cuts[i], &body, &r->cuts[i], &r->error)) return complain(r, EXIT_MISUSED);
     for (i = 0; i < r->set.cut_count && code == EXIT_DONE && r->set.thickness > 0.0; i++)
         if (r->set.kinds[i] == GX_SURFACE_SHEET) code = thicken(r, i);
-    return code;
+    if (code != EXIT_DONE || !r->set.blade) return code;
+    return gxio_blade_load(r->set.blade, &r->edges, &r->error) ? EXIT_DONE : complain(r, EXIT_MISUSED);
 }
 
 /* Displacement u = (s - 1)(X - centre of the bounding box), component by component. */
@@ -396,6 +435,16 @@ static gx_result stretch(run *r, gx_failure *failure) {
             r->view.displacement[3 * copy + axis] = (r->set.stretch[axis] - 1.0) * (x - 0.5 * (low[axis] + high[axis]));
         }
     return result;
+}
+
+static int make_blade(run *r) {
+    gx_failure failure;
+    r->strokes.min_link_ratio = 1.0;
+    if (!r->set.blade) return EXIT_DONE;
+    r->divided_at = (uint32_t *)calloc(r->mesh.element_count, sizeof *r->divided_at);
+    if (!r->divided_at) return lack_memory(r, "--blade");
+    if (gx_blade_create(r->body, &r->set.edge, &r->blade, &failure) != GX_OK) return fail(r, "--blade", &failure);
+    return EXIT_DONE;
 }
 
 /* The body, stretched, then held: what is held stays where the stretch put it. */
@@ -417,12 +466,12 @@ static int build(run *r) {
     result = stretch(r, &failure);
     if (result != GX_OK) return fail(r, "body", &failure);
     if (r->set.region_count) result = gx_body_hold(r->body, r->set.regions, r->set.region_count, &failure);
-    if (result == GX_OK) return EXIT_DONE;
+    if (result == GX_OK) return make_blade(r);
     fail(r, "--fix", &failure);
     return failure.field ? EXIT_MISUSED : EXIT_FAILED;
 }
 
-/* ------------------------------------------------------------------------------------------------- >>run */
+/* ------------------------------------------------------------------------------------------------- >>cut */
 
 /* All cuts in one call. */
 static int cut(run *r) {
@@ -456,6 +505,8 @@ static int look(run *r) {
     r->skin_normals = (float *)gxio_array(r->skin.vertex_count, 3 * sizeof(float));
     return r->skin_positions && r->skin_normals ? EXIT_DONE : lack_memory(r, "surface");
 }
+
+/* ---------------------------------------------------------------------------------------------- >>frames */
 
 /* DIR/NAME; fails where it is too long. */
 static int join_path(run *r, const char *name, char path[GXIO_PATH_ROOM]) {
@@ -531,17 +582,92 @@ static void draw_bar(run *r, uint32_t done) {
     r->bar = 1;
 }
 
+/* A frame failed: completes those before it, and says why and where they are. */
+static int end_early(run *r, const char *name, size_t line, const char *cause) {
+    if (!finish_frames(r)) return complain(r, EXIT_MISUSED);
+    if (r->frames_written)
+        gxio_fail(&r->error, name, line, "%s; the %lu frames before it are in %s", cause,
+                  (unsigned long)r->frames_written, r->set.out);
+    else
+        gxio_fail(&r->error, name, line, "%s", cause);
+    return complain(r, EXIT_FAILED);
+}
+
+/* ----------------------------------------------------------------------------------------------- >>blade */
+
+/* The blade's edge of a line of its file failed. */
+static int refuse_edge(run *r, size_t line, const gx_failure *failure) {
+    char cause[256];
+    if (!is_named(failure, "edge"))
+        snprintf(cause, sizeof cause, "%s", gxfailure_say(failure, gx_result_text(failure->result)).text);
+    else
+        snprintf(cause, sizeof cause, "point %lu of the edge: %s", (unsigned long)failure->index,
+                 failure->result == GX_ERROR_ARGUMENT ? "the blade starts in the material, which --blade-inside allows"
+                                                      : gx_result_text(failure->result));
+    return end_early(r, r->set.blade, line, cause);
+}
+
+static void add_stroke(strokes *s, const gx_blade_report *report) {
+    if (report->layer_count > s->layers) s->layers = report->layer_count;
+    s->triangles += report->triangle_count;
+    s->deviation = fmax(s->deviation, report->deviation);
+    s->min_link_ratio = fmin(s->min_link_ratio, report->cut.min_link_ratio);
+    s->seconds_arrangement += report->cut.seconds_arrangement;
+    s->seconds_enrichment += report->cut.seconds_enrichment;
+    s->seconds_integrals += report->cut.seconds_integrals;
+}
+
+/* Counts the elements to which the last cut gave slots from `before` on. Slots below element_count are the elements. */
+static void count_divided(run *r, size_t before) {
+    size_t slot;
+    r->blade_cuts++;
+    for (slot = before; slot < r->view.slot_count; slot++) {
+        uint32_t element = (uint32_t)slot;
+        while (r->view.slot_parent[element] != element) element = r->view.slot_parent[element];
+        if (r->divided_at[element] != r->blade_cuts) r->strokes.divided++;
+        r->divided_at[element] = r->blade_cuts;
+    }
+}
+
+/* Moves the blade to an edge, or lifts it if the edge is NULL. */
+static int move_blade(run *r, const gxio_edge *edge, size_t line) {
+    const double start = gxio_seconds(NULL);
+    const size_t slots = r->view.slot_count;
+    gx_blade_report report;
+    gx_failure failure;
+    int code;
+    const gx_result result =
+        edge ? gx_blade_move(r->blade, r->edges.points + 3 * edge->first, edge->count, NULL, 0, &report, &failure)
+             : gx_blade_lift(r->blade, &report, &failure);
+    if (result != GX_OK) return refuse_edge(r, line, &failure);
+    r->strokes.seconds += gxio_seconds(NULL) - start;
+    r->strokes.moves += edge != NULL;
+    add_stroke(&r->strokes, &report);
+    if (!report.triangle_count) return EXIT_DONE;
+    code = look(r);
+    if (code == EXIT_DONE) count_divided(r, slots);
+    return code;
+}
+
+/* The line of the blade's file that is due after a frame's step. After the last one it is lifted. */
+static int follow_blade(run *r, uint32_t frame) {
+    const size_t i = frame < r->set.cut_at ? r->edges.edge_count : frame - r->set.cut_at;
+    const gxio_edge *edge;
+    int code = EXIT_DONE;
+    if (i >= r->edges.edge_count) return EXIT_DONE;
+    edge = &r->edges.edges[i];
+    if (edge->count) code = move_blade(r, edge, edge->line);
+    if (code != EXIT_DONE || (edge->count && i + 1 < r->edges.edge_count && frame + 1 < r->set.frames)) return code;
+    return move_blade(r, NULL, edge->line);
+}
+
+/* ------------------------------------------------------------------------------------------------- >>run */
+
 static int refuse_step(run *r, uint32_t frame, const gx_failure *failure) {
     const gxfailure_text cause = gxfailure_say(failure, gx_result_text(failure->result));
     char name[32];
     snprintf(name, sizeof name, "frame %lu", (unsigned long)frame);
-    if (!finish_frames(r)) return complain(r, EXIT_MISUSED);
-    if (frame)
-        gxio_fail(&r->error, name, 0, "%s; the %lu frames before it are in %s", cause.text, (unsigned long)frame,
-                  r->set.out);
-    else
-        misused(&r->error, name, cause.text);
-    return complain(r, EXIT_FAILED);
+    return end_early(r, name, 0, cause.text);
 }
 
 static int step(run *r, uint32_t frame) {
@@ -557,7 +683,7 @@ static int step(run *r, uint32_t frame) {
     return EXIT_DONE;
 }
 
-/* One frame: cut if it is time to, step, write. */
+/* One frame: cut if it is time to, step, move the blade, write. */
 static int advance(run *r, uint32_t frame) {
     int code = EXIT_DONE;
     if (frame == r->set.cut_at) {
@@ -565,6 +691,7 @@ static int advance(run *r, uint32_t frame) {
         if (code == EXIT_DONE) code = look(r);
     }
     if (code == EXIT_DONE) code = step(r, frame);
+    if (code == EXIT_DONE) code = follow_blade(r, frame);
     if (code != EXIT_DONE) return code;
     if (!write_frame(r, frame)) return complain(r, EXIT_MISUSED);
     draw_bar(r, frame + 1);
@@ -592,7 +719,21 @@ static int compare_doubles(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-static double smallest_link(const run *r) { return r->has_cut ? r->cut.min_link_ratio : 1.0; }
+static double smallest_link(const run *r) {
+    return fmin(r->has_cut ? r->cut.min_link_ratio : 1.0, r->strokes.min_link_ratio);
+}
+
+static double us_per_divided_element(const strokes *s) {
+    return s->divided ? 1e6 * s->seconds / (double)s->divided : 0.0;
+}
+
+static void print_blade(FILE *stream, const strokes *s) {
+    fprintf(stream,
+            "  \"blade\": {\"moves\": %lu, \"layers\": %lu, \"triangles\": %lu, \"deviation\": %.17g, "
+            "\"divided_elements\": %lu, \"us_per_divided_element\": %.17g},\n",
+            (unsigned long)s->moves, (unsigned long)s->layers, (unsigned long)s->triangles, s->deviation,
+            (unsigned long)s->divided, us_per_divided_element(s));
+}
 
 /* "name": [values, ascending]; sorts them in place. */
 static void print_volumes(FILE *stream, const char *name, double *values, size_t count) {
@@ -642,8 +783,11 @@ static void print_report(FILE *stream, run *r, uint64_t hash, double *cell_volum
     fprintf(stream,
             "  \"timings\": {\"arrangement\": %.17g, \"enrichment\": %.17g, \"integrals\": %.17g, \"newton\": %.17g, "
             "\"total\": %.17g},\n",
-            r->cut.seconds_arrangement, r->cut.seconds_enrichment, r->cut.seconds_integrals, r->seconds_newton,
+            r->cut.seconds_arrangement + r->strokes.seconds_arrangement,
+            r->cut.seconds_enrichment + r->strokes.seconds_enrichment,
+            r->cut.seconds_integrals + r->strokes.seconds_integrals, r->seconds_newton,
             gxio_seconds(NULL) - r->seconds_start);
+    if (r->blade) print_blade(stream, &r->strokes);
     fprintf(stream, "  \"frames\": %lu\n}\n", (unsigned long)r->set.frames);
 }
 
@@ -691,6 +835,13 @@ static void summarise_frames(const run *r) {
     putchar('\n');
 }
 
+static void summarise_blade(const strokes *s) {
+    printf("blade     %lu moves, at most %lu layers: %lu triangles, at most %.3g m off its path\n",
+           (unsigned long)s->moves, (unsigned long)s->layers, (unsigned long)s->triangles, s->deviation);
+    printf("          %lu elements divided, %.3g us each; smallest link %.3g of its face\n", (unsigned long)s->divided,
+           us_per_divided_element(s), s->min_link_ratio);
+}
+
 static void summarise(const run *r) {
     const gx_view *view = &r->view;
     printf("mesh      %s: %lu nodes, %lu elements\n", r->set.mesh, (unsigned long)view->node_count,
@@ -699,6 +850,7 @@ static void summarise(const run *r) {
         printf("cuts      %lu: %lu elements touched, smallest link %.3g of its face, removed volume %.6g m3\n",
                (unsigned long)r->set.cut_count, (unsigned long)r->cut.touched_elements, r->cut.min_link_ratio,
                r->cut.removed_volume);
+    if (r->blade) summarise_blade(&r->strokes);
     printf("body      %lu cells, %lu fragments, volume %.15g m3, mass %.6g kg\n", (unsigned long)view->cell_count,
            (unsigned long)view->fragment_count, view->volume, view->mass);
     printf("unknowns  %lu copies x 3 = %lu\n", (unsigned long)view->copy_count, 3 * (unsigned long)view->copy_count);
@@ -715,6 +867,8 @@ static void release(run *r) {
     if (r->has_page) finish_frames(r); /* a cut failed: the frames before it stay, as files do */
     for (i = 0; r->cuts && i < r->set.cut_count; i++) gxio_surface_release(&r->cuts[i]);
     free(r->cuts);
+    gxio_blade_release(&r->edges);
+    free(r->divided_at);
     free(r->skin_positions);
     free(r->skin_normals);
     gx_body_destroy(r->body);

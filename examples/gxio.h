@@ -9,6 +9,7 @@
      >>vtk         what legacy .vtk files of meshes and surfaces share; meshes
      >>generate    generated meshes: cube5, grid:..., tet, shapes of gxshape.h; any mesh by its name
      >>surface     triangle surfaces: .obj, .off, .stl, .vtk, generated plane:..., box:..., wave:...
+     >>blade       the edge of a blade, frame by frame
      >>writer      files that are either complete or not there
      >>frames      triangles with fragment ids as .vtu or .obj, and the .pvd collection of a run
      >>page        frames as one .html file that a browser plays
@@ -1700,6 +1701,90 @@ static inline int gxio_surface_load(const char *spec, const gxio_box *body, gxio
     else
         good = gxio_surface_read(spec, surface, error);
     if (!good) gxio_surface_release(surface);
+    return good;
+}
+
+/* ---------------------------------------------------------------------------------------------- >>blade */
+
+typedef struct gxio_edge {
+    size_t first, count; /* of its points; count 0: the blade is lifted */
+    size_t line;         /* of the file */
+} gxio_edge;
+
+typedef struct gxio_blade {
+    double *points;   /* x 3, of one edge after the other; owned */
+    gxio_edge *edges; /* edge_count, one for each frame; owned */
+    size_t edge_count;
+} gxio_blade;
+
+static inline void gxio_blade_release(gxio_blade *blade) {
+    free(blade->points);
+    free(blade->edges);
+    memset(blade, 0, sizeof *blade);
+}
+
+/* The points up to the end of the line */
+static inline int gxio_edge_points(gxio_reader *reader, gxio_blade *blade, gxio_edge *edge, gxio_error *error) {
+    while (gxio_next(reader, GXIO_SAME_LINE)) {
+        double *x = blade->points + 3 * (edge->first + edge->count++);
+        if (!gxio_parse_number(reader->token, reader->token + reader->token_length, x))
+            return gxio_bad_token(reader, "is not a finite number", error);
+        if (!gxio_read_number(reader, GXIO_SAME_LINE, "a coordinate", x + 1, error) ||
+            !gxio_read_number(reader, GXIO_SAME_LINE, "a coordinate", x + 2, error))
+            return 0;
+    }
+    return 1;
+}
+
+/* A line of the file. An edge has as many points as the one before, unless the blade was lifted between them. */
+static inline int gxio_blade_edge(gxio_reader *reader, gxio_blade *blade, gxio_error *error) {
+    gxio_edge *edge = &blade->edges[blade->edge_count];
+    const gxio_edge *before = blade->edge_count ? edge - 1 : NULL;
+    edge->first = before ? before->first + before->count : 0;
+    edge->count = 0;
+    edge->line = reader->line;
+    if (!gxio_edge_points(reader, blade, edge, error)) return 0;
+    if (edge->count == 1)
+        return gxio_fail(error, reader->path, edge->line, "the edge has one point, two are the least");
+    if (edge->count && before && before->count && before->count != edge->count)
+        return gxio_fail(error, reader->path, edge->line, "the edge has %lu points, and %lu in line %lu",
+                         (unsigned long)edge->count, (unsigned long)before->count, (unsigned long)before->line);
+    blade->edge_count++;
+    return 1;
+}
+
+/* Room for all that a file of this text may have: six bytes or more a point, a line an edge */
+static inline int gxio_blade_room(const gxio_reader *reader, gxio_blade *blade) {
+    size_t lines = 1;
+    const char *at;
+    for (at = reader->text; at < reader->end; at++) lines += *at == '\n';
+    blade->points = (double *)gxio_array((size_t)(reader->end - reader->text) / 6 + 1, 3 * sizeof(double));
+    blade->edges = (gxio_edge *)gxio_array(lines, sizeof *blade->edges);
+    return blade->points && blade->edges;
+}
+
+static inline int gxio_blade_edges(gxio_reader *reader, gxio_blade *blade, gxio_error *error) {
+    if (!gxio_blade_room(reader, blade)) return gxio_fail(error, reader->path, 0, "out of memory");
+    while (*reader->at) {
+        while (gxio_is_blank(*reader->at)) reader->at++;
+        if (*reader->at != '#' && !gxio_blade_edge(reader, blade, error)) return 0;
+        gxio_next_line(reader);
+    }
+    while (blade->edge_count && !blade->edges[blade->edge_count - 1].count) blade->edge_count--;
+    return blade->edge_count ? 1
+                             : gxio_fail(error, reader->path, 0, "has no edge: x y z of each point, a line a frame");
+}
+
+/* A line for each frame: x y z of each point of the edge. An empty line lifts the blade; a line that begins with # is a
+   comment and no frame. */
+static inline int gxio_blade_load(const char *path, gxio_blade *blade, gxio_error *error) {
+    gxio_reader reader;
+    int good;
+    memset(blade, 0, sizeof *blade);
+    if (!gxio_reader_open(&reader, path, error)) return 0;
+    good = gxio_blade_edges(&reader, blade, error);
+    gxio_reader_release(&reader);
+    if (!good) gxio_blade_release(blade);
     return good;
 }
 

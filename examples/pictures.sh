@@ -43,4 +43,6 @@ picture octopus 10 0011 surface 0 0 --up=+Y --camera-position=70,-20,-170 --came
 picture bunny_groove 20 0009 surface 0 0 --up=+Y --camera-position=0.15,0.3,0.5 --camera-focal-point=0.01,0.075,0.01 --camera-view-angle=28
 picture armadillo 25 0006 surface 0 0 --up=+Y --camera-position=1.6,0.9,3.6 --camera-focal-point=0.05,0.2,0.1 --camera-view-angle=24
 picture noisy_plate 20 0011 surface 0 0 --up=+Z --camera-position=-2.5,-2.8,3.2 --camera-focal-point=-0.2,0,0 --camera-view-angle=40
+picture overhang 12 0006 fragment 0 0 --up=+Z --camera-position=4.2,-4.6,2.4 --camera-focal-point=1.2,0.4,0.35 --camera-view-angle=21
+picture surgeon 20 0010 surface 0 0 --up=+Z --camera-position=-0.25,-0.62,0.4 --camera-focal-point=0.005,-0.05,-0.035 --camera-view-angle=24
 exit $failed

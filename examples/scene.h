@@ -1,4 +1,4 @@
-/* scene.h: what the scenes of the two papers share, over gxio.h and gxfem.h. Include it in place of both.
+/* scene.h: what the scenes share, over gxio.h and gxfem.h. Include it in place of both.
 
    A scene reads
 
@@ -20,6 +20,7 @@
      >>sheets      surfaces that advance strip by strip
      >>trace       the run as a file, for other programs to repeat
      >>cuts        a cut, and the record of all
+     >>blade       an edge in space that cuts while the body moves
      >>skin        the visual surface: the one place that knows how gxfem.h gives it
      >>frames      steps, times, files, progress bar
      >>measures    what a scene is judged by
@@ -86,6 +87,13 @@ typedef struct scene_sheet {
 
 /* Where the sheet is at a (along) and b (across), both from 0 to 1 */
 typedef void (*scene_point_fn)(const void *user, double a, double b, double *x);
+
+/* A blade, and what its cuts were like */
+typedef struct scene_blade {
+    gx_blade *blade; /* the body's */
+    size_t layers;   /* most at once */
+    double deviation, min_link_ratio;
+} scene_blade;
 
 /* The body's surface as triangles, and where its vertices come from */
 typedef struct scene_skin {
@@ -564,6 +572,11 @@ static inline uint32_t scene_due(const scene *s, double from, double to, uint32_
     return share >= 1.0 ? count : share <= 0.0 ? 0 : (uint32_t)(share * count + 1e-9);
 }
 
+/* The share of what begins at `from` and ends at `to`, shares of the run, that is over at the end of a frame */
+static inline double scene_share(const scene *s, double frame, double from, double to) {
+    return fmin(1.0, fmax(0.0, ((frame + 1.0) / s->frames - from) / (to - from)));
+}
+
 /* Cuts the strips that are due: the sheet's sweep takes the run from `from` to `to`. */
 static inline void scene_advance(scene *s, scene_sheet *sheet, double from, double to) {
     scene_cut_up_to(s, sheet, scene_due(s, from, to, sheet->along));
@@ -587,6 +600,63 @@ static inline void scene_cut_across(scene *s, uint32_t axis, double at) {
     u[j] = 4.0 * (high[j] - low[j]);
     v[k] = 4.0 * (high[k] - low[k]);
     scene_cut_flat(s, corner, u, v);
+}
+
+/* --------------------------------------------------------------------------------------------- >>blade */
+
+/* desc: NULL: the library's defaults. No trace has its cuts: they are the body's, not the scene's. */
+static inline scene_blade scene_make_blade(scene *s, const gx_blade_desc *desc) {
+    scene_blade b = {NULL, 0, 0.0, 1.0};
+    if (s->trace) scene_misuse(s, "--trace", "is for scenes that cut by surfaces, not by a blade");
+    scene_must(s, gx_blade_create(s->body, desc, &b.blade, &s->failure), "blade");
+    return b;
+}
+
+static inline void scene_count_blade(scene *s, scene_blade *b, const gx_blade_report *report, double seconds) {
+    if (report->layer_count > b->layers) b->layers = report->layer_count;
+    b->deviation = fmax(b->deviation, report->deviation);
+    b->min_link_ratio = fmin(b->min_link_ratio, report->cut.min_link_ratio);
+    s->frame_cut += seconds;
+    s->frame_seconds[SCENE_ARRANGEMENT] += report->cut.seconds_arrangement;
+    s->frame_seconds[SCENE_ENRICHMENT] += report->cut.seconds_enrichment;
+    s->frame_seconds[SCENE_INTEGRALS] += report->cut.seconds_integrals;
+    s->cut_triangles += report->triangle_count;
+    if (report->triangle_count) s->looked = 0;
+}
+
+static inline void scene_move_blade(scene *s, scene_blade *b, const double *edge, size_t count) {
+    const double start = gxio_seconds(NULL);
+    gx_blade_report report;
+    scene_must(s, gx_blade_move(b->blade, edge, count, NULL, 0, &report, &s->failure), "blade");
+    scene_count_blade(s, b, &report, gxio_seconds(NULL) - start);
+}
+
+static inline void scene_lift_blade(scene *s, scene_blade *b) {
+    const double start = gxio_seconds(NULL);
+    gx_blade_report report;
+    scene_must(s, gx_blade_lift(b->blade, &report, &s->failure), "blade");
+    scene_count_blade(s, b, &report, gxio_seconds(NULL) - start);
+}
+
+/* Moves the edge to its place at `a` of its path; the edge has across + 1 points. */
+static inline void scene_place_blade(scene *s, scene_blade *b, scene_point_fn point, const void *user, uint32_t across,
+                                     double a) {
+    double *edge = (double *)scene_array(s, (size_t)across + 1, 3 * sizeof(double));
+    uint32_t j;
+    for (j = 0; j <= across; j++) point(user, a, (double)j / across, edge + 3 * (size_t)j);
+    scene_move_blade(s, b, edge, (size_t)across + 1);
+    free(edge);
+}
+
+/* Moves the blade to where it is due: a stroke takes the run from `from` to `to`, its path is that of a sheet's
+   columns, in space. After the stroke the blade is lifted. */
+static inline void scene_stroke(scene *s, scene_blade *b, scene_point_fn point, const void *user, uint32_t across,
+                                double from, double to) {
+    const double before = scene_share(s, s->frame - 1.0, from, to), now = scene_share(s, s->frame, from, to);
+    if (before >= 1.0 || now <= 0.0) return;
+    if (before <= 0.0) scene_place_blade(s, b, point, user, across, 0.0);
+    scene_place_blade(s, b, point, user, across, now);
+    if (now >= 1.0) scene_lift_blade(s, b);
 }
 
 /* ---------------------------------------------------------------------------------------------- >>skin */
@@ -1146,16 +1216,21 @@ static inline void scene_say(scene *s, const char *format, ...) {
     putchar('\n');
 }
 
-/* What holds in every scene that cuts by sheets: no volume lost, no copy too many or too few, no crack in the surface
- */
-static inline void scene_check_body(scene *s) {
+/* What holds in every scene: no volume lost, no crack in the surface */
+static inline void scene_check_whole(scene *s) {
     const double volume = scene_volume_error(s);
-    const size_t least = scene_least_copies(s), open = scene_open_edges(s);
+    const size_t open = scene_open_edges(s);
+    scene_check(s, volume <= 1e-12, "volume of the cells against the mesh's: %.1e (at most 1e-12)", volume);
+    scene_check(s, open == 0, "open edges of the surface: %lu (0)", (unsigned long)open);
+}
+
+/* What holds in every scene that cuts by surfaces: no copy too many or too few either */
+static inline void scene_check_body(scene *s) {
+    const size_t least = scene_least_copies(s);
     scene_check(s, s->view.copy_count == least, "unknowns: %lu, %+.1f %% of the uncut body's %lu (least possible: %lu)",
                 scene_unknowns(s), 100.0 * ((double)s->view.copy_count / (double)s->first_copies - 1.0),
                 3 * (unsigned long)s->first_copies, 3 * (unsigned long)least);
-    scene_check(s, volume <= 1e-12, "volume of the cells against the mesh's: %.1e (at most 1e-12)", volume);
-    scene_check(s, open == 0, "open edges of the surface: %lu (0)", (unsigned long)open);
+    scene_check_whole(s);
 }
 
 /* Milliseconds, to a microsecond */

@@ -67,7 +67,8 @@ gallery() {
 {
     echo "# Scenes"
     echo
-    echo "The scenes of the two papers, by their parameters where they give them, one file each in \`examples/\`."
+    echo "The scenes of the two papers, by their parameters where they give them, and two in which a blade cuts while the body moves"
+    echo "(\`overhang\`, \`surgeon\`); one file each in \`examples/\`."
     echo
     gallery "$@"
     echo
@@ -77,10 +78,11 @@ gallery() {
     echo "    make scenes                             # all of them: this page (minutes)"
     echo "    make pictures                           # the pictures above (f3d)"
     echo
-    echo "Each prints the numbers that show whether it is right, and ends with exit code 1 if one is not: no copy more than the least"
-    echo "possible, which another program counts; volume and mass kept to 1e-12; a watertight surface; deflections equal to brute-force"
-    echo "integration in the same space; and checks of its own. \`scene.h\` has what they share, for scenes of your own too: sheets that"
-    echo "advance strip by strip, times, files, checks; \`slab.h\`: brute-force integration, locking; \`cheese.h\`: surfaces."
+    echo "Each prints the numbers that show whether it is right, and ends with exit code 1 if one is not: where surfaces cut, no copy"
+    echo "more than the least possible, which another program counts; volume and mass kept to 1e-12; a watertight surface; deflections"
+    echo "equal to brute-force integration in the same space; and checks of its own. \`scene.h\` has what they share, for scenes of your"
+    echo "own too: sheets that advance strip by strip, strokes of a blade, times, files, checks; \`slab.h\`: brute-force integration,"
+    echo "locking; \`cheese.h\`: surfaces."
     echo "\`gxcut.c\` and \`gxboolean.c\` are the command-line programs, \`gxio.h\` their readers and writers, \`gxshape.h\` their shapes,"
     echo "\`gxfailure.h\` their words for a refusal."
     echo

@@ -632,6 +632,31 @@ START_TEST(sheet_that_ends_between_elements) {
 }
 END_TEST
 
+/* A triangle much larger than the body cuts as one that just covers it. */
+START_TEST(sheets_may_reach_far) {
+    static const double corners[2][9] = {{-9, -9, 0.7, 9, -9, 0.7, 0, 19, 0.7},
+                                         {-1e14, -3e13, 0.7, 1e18, -1e15, 0.7, 0, 1e18, 0.7}};
+    size_t cells[2], copies[2];
+    int i, k;
+    for (i = 0; i < 2; i++) {
+        workload w = grid(2, 2, 2, 5);
+        wl_surface *s = wl_add_surface(&w, 0);
+        gx_body *body;
+        gx_view view;
+        for (k = 0; k < 3; k++) wl_add_vertex(s, corners[i] + 3 * k);
+        wl_add_triangle(s, 0, 1, 2);
+        body = cut_in_sequence(&w);
+        view = view_of(body);
+        cells[i] = view.cell_count;
+        copies[i] = view.copy_count;
+        ck_assert_uint_eq(view.fragment_count, 2);
+        gx_body_destroy(body);
+        wl_free(&w);
+    }
+    ck_assert(cells[0] == cells[1] && copies[0] == copies[1]);
+}
+END_TEST
+
 START_TEST(severed_links) {
     double d = ldexp(1, -30), ratio = (0.75 * 0.75) - (0.75 - d) * (0.75 - d);
     workload w = wl_pair();
@@ -3065,6 +3090,7 @@ int main(void) {
     tcase_add_test(tests, tangent_cuts_do_nothing);
     tcase_add_test(tests, sheet_that_ends_inside_an_element);
     tcase_add_test(tests, sheet_that_ends_between_elements);
+    tcase_add_test(tests, sheets_may_reach_far);
     tcase_add_test(tests, severed_links);
     tcase_add_test(tests, closed_sheets_make_cells);
     tcase_add_test(tests, sheet_with_a_hole);

@@ -386,6 +386,30 @@ START_TEST(orient_takes_any_double) {
 }
 END_TEST
 
+/* Circles and spheres far beyond the range of the filters */
+START_TEST(circles_and_spheres_of_any_size) {
+    static const double circle[6][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, 0.5}, {0, -1}, {0.5, -1}};
+    static const double sphere[7][3] = {{1, 0, 0},     {0, 1, 0}, {-1, 0, 0}, {0, 0, -1},
+                                        {0, 0.5, 0.5}, {0, 0, 1}, {0.5, 0, 1}};
+    static const int powers[5] = {0, -300, -90, 90, 300};
+    int p, i, k, sides[3] = {0, 0, 0};
+    for (p = 0; p < 5; p++) {
+        double x[7][3];
+        for (i = 0; i < 7; i++)
+            for (k = 0; k < 2 && i < 6; k++) x[i][k] = ldexp(circle[i][k], powers[p]);
+        for (i = 0; i < 3; i++) ck_assert_int_eq(gxb_incircle(x[0], x[1], x[2], x[3 + i]), 1 - i);
+        for (i = 0; i < 7; i++)
+            for (k = 0; k < 3; k++) x[i][k] = ldexp(sphere[i][k], powers[p]);
+        for (i = 0; i < 3; i++) {
+            const int side = gxb_insphere(x[0], x[1], x[2], x[3], x[4 + i]);
+            if (p == 0) sides[i] = side;
+            ck_assert_int_eq(side, sides[i]);
+        }
+    }
+    ck_assert(sides[0] != 0 && sides[1] == 0 && sides[2] == -sides[0]);
+}
+END_TEST
+
 START_TEST(orientation_is_as_documented) {
     const double a[3] = {0, 0, 0}, b[3] = {1, 0, 0}, c[3] = {0, 1, 0}, above[3] = {0, 0, 1}, below[3] = {0, 0, -1};
     gxb_plane plane;
@@ -488,14 +512,16 @@ END_TEST
 START_TEST(triangles_without_area_have_no_outside) {
     const double segment[9] = {1, 0, 0, 2, 0, 0, 3, 0, 0}, before[3] = {0, 0, 0}, on[3] = {1.5, 0, 0},
                  after[3] = {4, 0, 0};
-    const uint32_t triangle[3] = {0, 1, 2};
-    int on_surface;
-    gxb_winding_number(segment, triangle, 1, on, &on_surface);
-    ck_assert_int_ne(on_surface, 0);
-    gxb_winding_number(segment, triangle, 1, after, &on_surface);
-    ck_assert_int_eq(on_surface, 0);
-    gxb_winding_number(segment, triangle, 1, before, &on_surface);
-    ck_assert_int_eq(on_surface, 0);
+    static const uint32_t orders[3][3] = {{0, 1, 2}, {1, 0, 2}, {2, 1, 0}};
+    int on_surface, i;
+    for (i = 0; i < 3; i++) {
+        gxb_winding_number(segment, orders[i], 1, on, &on_surface);
+        ck_assert_int_ne(on_surface, 0);
+        gxb_winding_number(segment, orders[i], 1, after, &on_surface);
+        ck_assert_int_eq(on_surface, 0);
+        gxb_winding_number(segment, orders[i], 1, before, &on_surface);
+        ck_assert_int_eq(on_surface, 0);
+    }
 }
 END_TEST
 
@@ -1819,6 +1845,7 @@ static Suite *boolean_suite(void) {
     tcase_add_loop_test(predicates, inherited_errors_stay_within_bounds, 0, 2);
     tcase_add_loop_test(predicates, points_of_all_kinds_compare, 0, 2);
     tcase_add_loop_test(predicates, orient_takes_any_double, 0, 3);
+    tcase_add_test(predicates, circles_and_spheres_of_any_size);
     tcase_add_test(predicates, published_cases);
     tcase_add_loop_test(predicates, winding_numbers_count, 0, 2);
     tcase_add_test(predicates, triangles_without_area_have_no_outside);

@@ -1,6 +1,6 @@
 /* What a call that is refused says: its result, the field, the index. No refusal changes the body; a call that succeeds
    says so too. Other files have the refusals of gx_body_create and gx_body_cut (test_body.c), of models, changes and
-   steps (test_solve.c, test_updates.c, test_forces.c). */
+   steps (test_solve.c, test_updates.c, test_forces.c), of points of space (test_locate.c). */
 #ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
 #endif
@@ -145,6 +145,7 @@ START_TEST(skins_and_rays) {
     gx_skin_desc desc;
     gx_skin skin;
     gx_hit hit;
+    int k;
     memset(&desc, 0, sizeof desc);
     add_axis_plane(&w, 0, 0.5);
     /* before there is a skin */
@@ -168,7 +169,11 @@ START_TEST(skins_and_rays) {
     KEEPS(body, gx_body_pick(body, NULL, d, &hit, &failure), GX_ERROR_ARGUMENT, "origin", SIZE_MAX);
     KEEPS(body, gx_body_pick(body, o, NULL, &hit, &failure), GX_ERROR_ARGUMENT, "direction", SIZE_MAX);
     KEEPS(body, gx_body_pick(body, o, d, NULL, &failure), GX_ERROR_ARGUMENT, "hit", SIZE_MAX);
-    KEEPS(body, gx_body_pick(body, bad, d, &hit, &failure), GX_ERROR_NOT_FINITE, "origin", SIZE_MAX);
+    for (k = 0; k < 3; k++) {
+        double one[3] = {0, 0, 0};
+        one[k] = (double)INFINITY;
+        KEEPS(body, gx_body_pick(body, one, d, &hit, &failure), GX_ERROR_NOT_FINITE, "origin", SIZE_MAX);
+    }
     KEEPS(body, gx_body_pick(body, o, bad, &hit, &failure), GX_ERROR_NOT_FINITE, "direction", SIZE_MAX);
     KEEPS(body, gx_body_pick(body, o, none, &hit, &failure), GX_ERROR_ARGUMENT, "direction", SIZE_MAX);
     DONE(gx_body_pick(body, o, d, &hit, &failure));
@@ -643,6 +648,119 @@ START_TEST(steps_of_nothing) {
 }
 END_TEST
 
+/* A refused move leaves body and blade as they were: the moves after it succeed. */
+START_TEST(blades) {
+    workload w = grid(2, 2, 2, 5);
+    gx_body *body = body_of(&w);
+    const double edge[6] = {-9, -1, 1, 9, -1, 1}, inside[9] = {-9, 1.1, 1, 0.5, 1.1, 1, 1, 1.3, 1};
+    double bad[6];
+    const uint32_t scope[2] = {0, 1};
+    gx_blade_desc desc;
+    gx_blade *blade = NULL;
+    memset(&desc, 0, sizeof desc);
+    REFUSED(gx_blade_create(NULL, NULL, &blade, &failure), GX_ERROR_ARGUMENT, "body", SIZE_MAX);
+    KEEPS(body, gx_blade_create(body, NULL, NULL, &failure), GX_ERROR_ARGUMENT, "blade", SIZE_MAX);
+    desc.tolerance = NAN;
+    KEEPS(body, gx_blade_create(body, &desc, &blade, &failure), GX_ERROR_NOT_FINITE, "tolerance", SIZE_MAX);
+    desc.tolerance = -1e-9;
+    KEEPS(body, gx_blade_create(body, &desc, &blade, &failure), GX_ERROR_ARGUMENT, "tolerance", SIZE_MAX);
+    desc.tolerance = 0;
+    desc.min_advance = INFINITY;
+    KEEPS(body, gx_blade_create(body, &desc, &blade, &failure), GX_ERROR_NOT_FINITE, "min_advance", SIZE_MAX);
+    desc.min_advance = -1;
+    KEEPS(body, gx_blade_create(body, &desc, &blade, &failure), GX_ERROR_ARGUMENT, "min_advance", SIZE_MAX);
+    ck_assert_ptr_null(blade);
+    desc.min_advance = 0.1;
+    DONE(gx_blade_create(body, &desc, &blade, &failure));
+    REFUSED(gx_blade_move(NULL, edge, 2, NULL, 0, NULL, &failure), GX_ERROR_ARGUMENT, "blade", SIZE_MAX);
+    REFUSED(gx_blade_lift(NULL, NULL, &failure), GX_ERROR_ARGUMENT, "blade", SIZE_MAX);
+    KEEPS(body, gx_blade_move(blade, NULL, 2, NULL, 0, NULL, &failure), GX_ERROR_ARGUMENT, "edge", SIZE_MAX);
+    KEEPS(body, gx_blade_move(blade, edge, 1, NULL, 0, NULL, &failure), GX_ERROR_ARGUMENT, "point_count", SIZE_MAX);
+    KEEPS(body, gx_blade_move(blade, edge, 0, NULL, 0, NULL, &failure), GX_ERROR_ARGUMENT, "point_count", SIZE_MAX);
+    KEEPS(body, gx_blade_move(blade, edge, UINT32_MAX, NULL, 0, NULL, &failure), GX_ERROR_LIMIT, "point_count",
+          SIZE_MAX);
+    KEEPS(body, gx_blade_move(blade, inside, 3, NULL, 0, NULL, &failure), GX_ERROR_ARGUMENT, "edge", 1);
+    DONE(gx_blade_lift(blade, NULL, &failure)); /* nothing waits */
+    DONE(gx_blade_move(blade, edge, 2, NULL, 0, NULL, &failure));
+    KEEPS(body, gx_blade_move(blade, inside, 3, NULL, 0, NULL, &failure), GX_ERROR_ARGUMENT, "point_count", SIZE_MAX);
+    memcpy(bad, edge, sizeof bad);
+    bad[4] = NAN;
+    KEEPS(body, gx_blade_move(blade, bad, 2, NULL, 0, NULL, &failure), GX_ERROR_NOT_FINITE, "edge", 1);
+    bad[4] = -INFINITY;
+    KEEPS(body, gx_blade_move(blade, bad, 2, NULL, 0, NULL, &failure), GX_ERROR_NOT_FINITE, "edge", 1);
+    bad[4] = 1;
+    bad[0] = -DBL_MAX;
+    KEEPS(body, gx_blade_move(blade, bad, 2, NULL, 0, NULL, &failure), GX_ERROR_RANGE, "edge", 0);
+    KEEPS(body, gx_blade_move(blade, edge, 2, NULL, 1, NULL, &failure), GX_ERROR_ARGUMENT, "scope_fragments", SIZE_MAX);
+    KEEPS(body, gx_blade_move(blade, edge, 2, scope, 2, NULL, &failure), GX_ERROR_INDEX, "scope_fragments", 1);
+    ck_assert_uint_eq(view_of(body).fragment_count, 1);
+    bad[0] = -9;
+    bad[1] = bad[4] = 3;
+    DONE(gx_blade_move(blade, bad, 2, scope, 1, NULL, &failure));
+    DONE(gx_blade_lift(blade, NULL, &failure));
+    ck_assert_uint_eq(view_of(body).fragment_count, 2);
+    gx_blade_destroy(blade);
+    gx_blade_destroy(NULL);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Tools that cannot be carved with */
+START_TEST(tools) {
+    static const double low[3] = {0.5, 0.5, 0.5}, high[3] = {1.5, 1.5, 1.5};
+    workload w = grid(2, 2, 2, 5);
+    gx_body *body = body_of(&w);
+    gx_cut_report report;
+    gx_surface tool;
+    double *x;
+    uint32_t *t, first;
+    wl_add_aligned_box(wl_add_surface(&w, 1), low, high);
+    tool = surface_of(&w.surfaces[0]);
+    x = w.surfaces[0].vertices;
+    t = w.surfaces[0].triangles;
+    REFUSED(gx_body_carve(NULL, &tool, &report, &failure), GX_ERROR_ARGUMENT, "body", SIZE_MAX);
+    KEEPS(body, gx_body_carve(body, NULL, &report, &failure), GX_ERROR_ARGUMENT, "tool", SIZE_MAX);
+    tool.vertices = NULL;
+    KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_ARGUMENT, "tool.vertices", SIZE_MAX);
+    tool.vertices = x;
+    tool.triangles = NULL;
+    KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_ARGUMENT, "tool.triangles", SIZE_MAX);
+    tool.triangles = t;
+    tool.vertex_count = 0;
+    KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_EMPTY, "tool.vertex_count", SIZE_MAX);
+    tool.vertex_count = UINT32_MAX;
+    KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_LIMIT, "tool.vertex_count", SIZE_MAX);
+    tool.vertex_count = 8;
+    tool.triangle_count = 0;
+    KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_EMPTY, "tool.triangle_count", SIZE_MAX);
+    tool.triangle_count = UINT32_MAX;
+    KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_LIMIT, "tool.triangle_count", SIZE_MAX);
+    tool.triangle_count = 12;
+    x[3 * 5] = NAN;
+    KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_NOT_FINITE, "tool.vertices", 5);
+    x[3 * 5] = 1e300;
+    KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_RANGE, "tool.vertices", 5);
+    x[3 * 5] = 1.5;
+    first = t[3 * 7];
+    t[3 * 7] = 8;
+    KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_INDEX, "tool.triangles", 7);
+    t[3 * 7] = first;
+    tool.triangle_count = 11;
+    {
+        const uint64_t state = gx_body_state_hash(body);
+        ck_assert_int_eq(gx_body_carve(body, &tool, &report, &failure), GX_ERROR_NOT_CLOSED);
+        ck_assert(gx_body_state_hash(body) == state);
+        failure.field = unset;
+    }
+    tool.triangle_count = 12;
+    DONE(gx_body_carve(body, &tool, &report, &failure));
+    ck_assert(fabs(report.removed_volume - 1) < 1e-12);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* A failure in a sentence, with what it names and nothing else */
 START_TEST(sentences) {
     gx_failure f = {GX_ERROR_NOT_FINITE, "surfaces.vertices", 7, 2};
@@ -676,6 +794,8 @@ int main(void) {
     tcase_add_test(tests, integrals);
     tcase_add_test(tests, texts);
     tcase_add_test(tests, steps_of_nothing);
+    tcase_add_test(tests, blades);
+    tcase_add_test(tests, tools);
     tcase_add_test(tests, sentences);
     suite_add_tcase(suite, tests);
     return run_suite(suite);

@@ -62,6 +62,18 @@ mesh() {
       echo End; } >"$name"
 }
 
+# of_blade NAME KEY CONDITION: the number v in the object "blade" of the last report must be such that CONDITION holds
+of_blade() {
+    got=$(sed -n 's/^ *"blade": {.*"'"$2"'": \([^,}]*\)[,}].*/\1/p' r.json 2>/dev/null)
+    check "$1: $2" "$(awk -v v="$got" 'BEGIN { v += 0; if (!('"$3"')) print "is " v ", not '"$3"'" }')"
+}
+
+# pass FILE FRAMES FROM TO: a horizontal edge of two points at z = 2.1 goes through a grid of 4 cubes a side along x
+pass() {
+    awk -v n="$2" -v from="$3" -v to="$4" 'BEGIN { for (i = 0; i < n; i++) {
+        x = from + (to - from) * i / (n - 1); print x, -1, 2.1, x, 5, 2.1 } }' >"$1"
+}
+
 # page_lines: what the lines of page.html hold: "mesh VERTICES TRIANGLES FRAGMENTS CUT_TRIANGLES" or
 # "frame VERTICES SECONDS_POSITIVE"; a line of any other length than its counts make it is "bad"
 page_lines() {
@@ -181,6 +193,45 @@ printf 'v 0.5 -1 -1\nv 0.5 3 -1\nv 0.5 -1 3\nf 1 2 3\n' >c.obj
 refuses "open surface as solid" 1 "c.obj.*closed" cube5 --solid c.obj --report r.json
 refuses "open surface as solid, second cut" 1 "cut 1.*closed" cube5 --solid box:0.1,0.1,0.1,0.2,0.2,0.2 --solid plane:0.5,0.5,0.5,1,0,0
 
+# ---- bad blades
+refuses "missing blade" 2 "none.blade: cannot be read" cube5 --blade none.blade
+printf '# knife\n0 -9 0 1 -9 0\n' >k.blade
+refuses "blade without frames" 2 "--blade: needs frames" cube5 --blade k.blade --frames 0
+refuses "tolerance without blade" 2 "--blade-tolerance: needs a --blade" cube5 --blade-tolerance 0.1
+refuses "advance without blade" 2 "--blade-advance: needs a --blade" cube5 --blade-advance 0.1
+refuses "inside without blade" 2 "--blade-inside: needs a --blade" cube5 --blade-inside
+refuses "negative tolerance" 2 "--blade-tolerance: must be at least 0" cube5 --blade k.blade --blade-tolerance -1
+refuses "negative advance" 2 "--blade-advance: must be at least 0" cube5 --blade k.blade --blade-advance -1
+refuses "NaN advance" 2 "--blade-advance: 'nan' is not a finite number" cube5 --blade k.blade --blade-advance nan
+printf '\n # a comment\n\n' >k.blade
+refuses "blade without an edge" 2 "k.blade: has no edge" cube5 --blade k.blade
+: >k.blade
+refuses "empty blade" 2 "k.blade: has no edge" cube5 --blade k.blade
+printf '0 -9 0 1 -9 0\n# next\n0 -9 0\n' >k.blade
+refuses "edge of one point" 2 "k.blade:3: the edge has one point" cube5 --blade k.blade
+printf '0 -9 0 1 -9 0\n\n0 -9 0 1 -9 0\n# next\n0 -9 0 1 -9 0 2 -9 0\n' >k.blade
+refuses "another number of points" 2 "k.blade:5: the edge has 3 points, and 2 in line 3" cube5 --blade k.blade
+printf '0 -9 0 1 -9 0\n0 -9 0 1 -9\n0 -9 0 1 -9 0\n' >k.blade
+refuses "coordinate of an edge missing" 2 "k.blade:2: a coordinate is missing" cube5 --blade k.blade
+printf '0 -9 0 1 -9 0\n0 -9 0 1 -9' >k.blade
+refuses "blade cut off" 2 "k.blade:2: the file ends where a coordinate" cube5 --blade k.blade
+printf '0 -9 0 1 -9 0\n0 -9 0 1 -9 O\n' >k.blade
+refuses "letter for a coordinate" 2 "k.blade:2: 'O' is not a finite number" cube5 --blade k.blade
+printf '0 -9 0 1 -9 0\ninf -9 0 1 -9 0\n' >k.blade
+refuses "infinite coordinate of an edge" 2 "k.blade:2: 'inf' is not a finite number" cube5 --blade k.blade
+printf '0 -9 0 1 -9 0\n\000' >k.blade
+refuses "binary blade" 2 "k.blade: is binary" cube5 --blade k.blade
+printf '# knife\n0.5 -1 0.5 0.5 0.5 0.5\n' >k.blade
+refuses "blade starts inside" 1 "k.blade:2: point [01] of the edge: .*--blade-inside" cube5 --blade k.blade --report r.json
+printf '0 -9 0 1 -9 1e300\n' >k.blade
+refuses "edge too far out" 1 "k.blade:1: point 1 of the edge: .*large" cube5 --blade k.blade --report r.json
+printf '\n\n0 -9 0 1 -9 1e300\n' >k.blade
+rm -rf out
+"$program" cube5 --blade k.blade --frames 4 >stdout 2>stderr
+check "frames before an edge that fails" "$([ $? -eq 1 ] && grep -q 'k.blade:3: .*the 2 frames before it are in out' stderr &&
+    [ "$(grep -c 'frame_000[01].vtu' out/frames.pvd)" -eq 2 ] || cat stderr)"
+rm -rf out
+
 # ---- output that cannot be written
 : >file
 refuses "directory is a file" 2 "file/frame_0000.vtu: cannot be written|file: cannot" cube5 --frames 1 --out file
@@ -276,6 +327,53 @@ rm page.html
 "$program" cube5 --solid c.obj --cut-at 2 --frames 4 --format html --out page.html >stdout 2>stderr
 check "frames before a cut that fails" "$([ $? -eq 1 ] && [ "$(page_lines | grep -c '^frame')" -eq 2 ] &&
     [ "$(tail -n 1 page.html)" = '</html>' ] || echo 'are not in the page')"
+
+# ---- a blade
+pass k.blade 41 -1 5
+runs "pass through a swing" grid:4,4,4 --fix 'z>3.9' --stretch 1.1,1,1.2 --blade k.blade --frames 45 --report r.json
+has "pass through a swing" fragments 2
+near "pass through a swing" volume 64
+sums "pass through a swing" fragment_volumes 64
+of_blade "pass through a swing" moves "v == 41"
+of_blade "pass through a swing" layers "v >= 1"
+of_blade "pass through a swing" triangles "v > 0"
+of_blade "pass through a swing" deviation "v > 0 && v < 0.1"
+of_blade "pass through a swing" divided_elements "v >= 80 && v <= 320"
+of_blade "pass through a swing" us_per_divided_element "v > 0"
+check "blade in the summary" "$(grep -q '^blade .*41 moves' stdout && grep -q 'elements divided' stdout || cat stdout)"
+check "skin of the cut in frames" "$(cmp -s out/frame_0005.vtu out/frame_0044.vtu && echo 'first and last are the same')"
+runs "the same without a swing" grid:4,4,4 --gravity 0,0,0 --blade k.blade --frames 45 --report r.json --format html --out page.html
+has "the same without a swing" fragments 2
+page_lines >lines
+check "a mesh in the page for each cut, with more and more faces" "$(awk '/^mesh/ { n++; if ($5 < faces) print; faces = $5 }
+    END { if (n < 5 || !faces) print n " meshes" }' lines)"
+check "two fragments in the page's last mesh" "$(awk '/^mesh/ { last = $4 } END { if (last != 2) print last }' lines)"
+runs "later" grid:4,4,4 --gravity 0,0,0 --blade k.blade --cut-at 10 --frames 51 --report r.json
+has "later" fragments 2
+of_blade "later" moves "v == 41"
+runs "the run ends first" grid:4,4,4 --gravity 0,0,0 --blade k.blade --frames 20 --report r.json
+has "the run ends first" fragments 1
+of_blade "the run ends first" moves "v == 20"
+of_blade "the run ends first" divided_elements "v > 0"
+runs "sheet and blade" grid:4,4,4 --gravity 0,0,0 --sheet plane:2.1,2,2,1,0,0 --cut-at 3 --blade k.blade --frames 50 --report r.json
+has "sheet and blade" fragments 4
+pass k.blade 2 -1 5
+runs "in one move" grid:4,4,4 --gravity 0,0,0 --blade k.blade --frames 2 --report r.json
+has "in one move" fragments 2
+pass k.blade 3 -1 5
+echo >>k.blade
+awk 'BEGIN { for (i = 0; i < 8; i++) print 2.1, i - 1, -1, 2.1, i - 1, 2, 2.1, i - 1, 5, "# pass", i, "\n# between" }' >>k.blade
+runs "lifted between two passes" grid:4,4,4 --gravity 0,0,0 --blade k.blade --frames 20 --report r.json
+has "lifted between two passes" fragments 4
+of_blade "lifted between two passes" moves "v == 11"
+pass k.blade 21 2 4.01
+runs "from inside out" grid:4,4,4 --gravity 0,0,0 --blade k.blade --blade-inside --frames 22 --report r.json
+has "from inside out" fragments 1
+of_blade "from inside out" divided_elements "v > 0"
+pass k.blade 41 -1 5
+runs "coarse" grid:4,4,4 --fix 'z>3.9' --stretch 1.1,1,1.2 --blade k.blade --blade-tolerance 0.5 --blade-advance 2 --frames 45 --report r.json
+has "coarse" fragments 2
+of_blade "coarse" triangles "v > 0 && v < 60"
 
 echo "$passed passed, $failed failed"
 [ $failed -eq 0 ]

@@ -749,6 +749,58 @@ START_TEST(bad_shapes) {
 }
 END_TEST
 
+/* ---- blades ---- */
+
+/* Lines without and with blanks, ends of lines of both kinds, no end of the last one; a comment is no frame. */
+START_TEST(blade_frame_by_frame) {
+    static const char text[] = "# edge\n1 2 3  4 5 6 # at first\r\n\t-1e3 2 3 \\\n 4 5 .5\n   # not yet\n \r\n\n"
+                               "1 1 1 2 2 2 3 3 3\n\n\n";
+    static const size_t first[5] = {0, 2, 4, 4, 4}, count[5] = {2, 2, 0, 0, 3}, lines[5] = {2, 3, 6, 7, 8};
+    gxio_blade blade;
+    gxio_error error = {""};
+    size_t i;
+    put(".txt", text);
+    ck_assert_msg(gxio_blade_load(path, &blade, &error), "%s", error.text);
+    ck_assert_uint_eq(blade.edge_count, 5); /* lifted after the last edge anyway */
+    for (i = 0; i < 5; i++) {
+        ck_assert_uint_eq(blade.edges[i].first, first[i]);
+        ck_assert_uint_eq(blade.edges[i].count, count[i]);
+        ck_assert_uint_eq(blade.edges[i].line, lines[i]);
+    }
+    ck_assert(blade.points[6] < -999.0 && blade.points[11] > 0.4 && blade.points[20] > 2.9);
+    gxio_blade_release(&blade);
+    put(".txt", "\n0 0 0 1 1 1");
+    ck_assert_msg(gxio_blade_load(path, &blade, &error), "%s", error.text);
+    ck_assert_uint_eq(blade.edge_count, 2);
+    ck_assert_uint_eq(blade.edges[0].count, 0);
+    ck_assert_uint_eq(blade.edges[1].count, 2);
+    gxio_blade_release(&blade);
+}
+END_TEST
+
+static void refuse_blade(const char *text, const char *what, int line) {
+    gxio_blade blade;
+    gxio_error error = {""};
+    put(".txt", text);
+    ck_assert_msg(!gxio_blade_load(path, &blade, &error), "line %d: is read, but should be refused", line);
+    ck_assert(!blade.points && !blade.edges);
+    expect_error(&error, what, line);
+}
+#define REFUSE_BLADE(text, what) refuse_blade(text, what, __LINE__)
+
+START_TEST(bad_blades) {
+    REFUSE_BLADE("", ": has no edge");
+    REFUSE_BLADE("# 1 2 3 4 5 6\n\n", ": has no edge");
+    REFUSE_BLADE("\n1 2 3\n", ":2: the edge has one point");
+    REFUSE_BLADE("1 2 3 4 5 6\n\n1 2 3 4 5 6 7 8 9\n# 0\n1 2 3 4 5 6", ":5: the edge has 2 points, and 3 in line 3");
+    REFUSE_BLADE("1 2 3 4 5\n1 2 3 4 5 6\n", ":1: a coordinate is missing");
+    REFUSE_BLADE("1 2 3 4 5 6\n1 2 3 4 5", ":2: the file ends where a coordinate should stand");
+    REFUSE_BLADE("1 2 3 x 5 6\n", ":1: 'x' is not a finite number");
+    REFUSE_BLADE("1 2 3 4 nan 6\n", ":1: 'nan' is not a finite number");
+    REFUSE_BLADE("1,2,3 4,5,6\n", ":1: '1,2,3' is not a finite number");
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("gxio");
     TCase *files = tcase_create("files"), *shape = tcase_create("shapes");
@@ -765,6 +817,8 @@ int main(void) {
     tcase_add_test(files, vtk_strips);
     tcase_add_test(files, binary_stl_files);
     tcase_add_test(files, bad_surfaces);
+    tcase_add_test(files, blade_frame_by_frame);
+    tcase_add_test(files, bad_blades);
     tcase_set_timeout(files, 60);
     tcase_set_timeout(shape, 120);
     tcase_add_loop_test(shape, angles_are_bounded, 0, SEEDS);

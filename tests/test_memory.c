@@ -19,7 +19,8 @@ typedef struct memory {
     size_t calls;
     size_t fail_at; /* this call fails, SIZE_MAX: none does */
     int from_then_on;
-    int grows; /* blocks are made larger by the allocator */
+    int grows;   /* blocks are made larger by the allocator */
+    int refuses; /* the next call fails, see runs_out */
     /* did one fail? was a block released with another size? was something written behind one? */
     int failed, wrong, overrun;
 } memory;
@@ -34,7 +35,8 @@ static void *take(void *user, size_t size) {
     const size_t call = m->calls++;
     char *block;
     if (size == 0) m->wrong = 1;
-    if (call == m->fail_at || (m->from_then_on && call > m->fail_at)) {
+    if (m->refuses || call == m->fail_at || (m->from_then_on && call > m->fail_at)) {
+        m->refuses = 0;
         m->failed = 1;
         return NULL;
     }
@@ -69,14 +71,31 @@ static void give(void *user, void *block, size_t size) {
 static void *grow(void *user, void *block, size_t size, size_t larger) {
     memory *m = (memory *)user;
     void *moved = take(user, larger);
-    if (block == NULL || larger <= size) m->wrong = 1;
+    if (block == NULL || (larger <= size && moved != NULL)) m->wrong = 1;
     if (block == NULL || moved == NULL) return moved;
     memcpy(moved, block, size);
     give(user, block, size);
     return moved;
 }
 
+/* test_tight.c: an array that has room asks too, which counts as a call. If that fails, the array asks for memory. */
+#ifdef TIGHT
+static memory *watched;
+
+static int runs_out(const gx_allocator *a) {
+    memory *m = watched;
+    size_t call;
+    if (m == NULL || a->user != m || m->refuses) return m != NULL && a->user == m;
+    call = m->calls++;
+    m->refuses = call == m->fail_at || (m->from_then_on && call > m->fail_at);
+    return m->refuses;
+}
+#endif
+
 static void fail_from(memory *m, size_t n, int from_then_on) {
+#ifdef TIGHT
+    watched = n == SIZE_MAX ? NULL : m;
+#endif
     m->calls = 0;
     m->fail_at = n;
     m->from_then_on = from_then_on;
@@ -323,6 +342,46 @@ static gx_result anchored_step(gx_body *body) {
     desc.anchor_forces = push;
     return gx_body_step(body, &desc, NULL, NULL);
 }
+/* A blade's whole life: it comes near, cuts with all that it has passed, and is lifted. One call changes the body. */
+static gx_result blade_life(gx_body *body, int waits) {
+    static const double before[6] = {-9, -0.4, 0.45, 9, -0.3, 0.55}, behind[6] = {-9, 1.3, 0.45, 9, 1.4, 0.55};
+    gx_blade_desc desc;
+    gx_blade_report report;
+    gx_blade *blade = NULL;
+    gx_result result;
+    memset(&desc, 0, sizeof desc);
+    desc.min_advance = waits ? 100 : 0;
+    result = gx_blade_create(body, &desc, &blade, NULL);
+    ck_assert((result == GX_OK) == (blade != NULL));
+    if (result == GX_OK) result = gx_blade_move(blade, before, 2, NULL, 0, &report, NULL);
+    if (result == GX_OK) ck_assert_uint_eq(report.triangle_count, 0);
+    if (result == GX_OK) result = gx_blade_move(blade, behind, 2, NULL, 0, &report, NULL);
+    if (result == GX_OK) ck_assert((report.triangle_count > 0) == !waits);
+    if (waits && result == GX_OK) result = gx_blade_lift(blade, &report, NULL);
+    if (result == GX_OK) ck_assert_uint_gt(report.cut.touched_elements, 0);
+    gx_blade_destroy(blade);
+    return result;
+}
+static gx_result blade_that_moves(gx_body *body) { return blade_life(body, 0); }
+static gx_result blade_that_waits(gx_body *body) { return blade_life(body, 1); }
+static gx_result blade_in_scope(gx_body *body) {
+    static const double before[6] = {-9, -0.4, 0.45, 9, -0.3, 0.55}, behind[6] = {-9, 1.3, 0.45, 9, 1.4, 0.55};
+    static const uint32_t first = 0;
+    gx_blade *blade = NULL;
+    gx_result result = gx_blade_create(body, NULL, &blade, NULL);
+    if (result == GX_OK) result = gx_blade_move(blade, before, 2, &first, 1, NULL, NULL);
+    if (result == GX_OK) result = gx_blade_move(blade, behind, 2, &first, 1, NULL, NULL);
+    gx_blade_destroy(blade);
+    return result;
+}
+/* The tool is as large as the solid, so that a corner of the cube goes. */
+static gx_result carve(gx_body *body) {
+    const gx_surface tool = solid();
+    gx_cut_report report;
+    const gx_result result = gx_body_carve(body, &tool, &report, NULL);
+    if (result == GX_OK) ck_assert(report.removed_volume > 0);
+    return result;
+}
 static gx_result hash(gx_body *body) {
     gx_failure failure;
     gx_body_topology_hash(body, &failure);
@@ -332,6 +391,36 @@ static gx_result hash(gx_body *body) {
 static gx_result motion(gx_body *body) {
     gx_motion motions[64];
     return gx_body_motion(body, motions, 64, NULL);
+}
+
+enum { POINTS = 27 };
+static gx_hit located[POINTS]; /* by the first call since the test set this to 0 */
+
+/* Points inside, near faces of cuts, outside and on faces. Whatever failed before, the hits are the same. */
+static gx_result locate(gx_body *body) {
+    double points[3 * POINTS];
+    gx_hit hits[POINTS];
+    gx_result result;
+    int i;
+    for (i = 0; i < 3 * POINTS; i++) points[i] = 0.11 + 0.37 * (i * 7 % 5) - 0.3 * (i % 81 > 60);
+    result = gx_body_locate(body, points, POINTS, hits, NULL);
+    if (result != GX_OK) return result;
+    if (located[0].copy_count == 0) memcpy(located, hits, sizeof located);
+    ck_assert(memcmp(located, hits, sizeof located) == 0);
+    return GX_OK;
+}
+static gx_result locate_all(gx_body *body) {
+    static const double corner[3] = {0, 0, 0};
+    gx_hit hits[32];
+    size_t count;
+    return gx_body_locate_all(body, corner, hits, 32, &count, NULL);
+}
+static gx_result pick(gx_body *body) {
+    static const double below[3] = {0.3, 0.35, -1}, up[3] = {0.01, 0.02, 1};
+    gx_hit hit;
+    const gx_result result = gx_body_pick(body, below, up, &hit, NULL);
+    ck_assert(result != GX_OK || hit.triangle != UINT32_MAX);
+    return result;
 }
 
 /* If a copy was made, it is right. */
@@ -419,8 +508,18 @@ static void check_outcome(gx_body *body, const outcome *truth, const char *what,
     ck_assert_msg(o.state == truth->state && o.volume == truth->volume, "%s, allocation %zu: another state", what, n);
 }
 
-/* Which allocation fails next: each, or under a sanitizer each of the first hundred and then every fourth */
-static size_t next(size_t n) { return n < 100 ? n + 1 : n + FEWER; }
+/* Which allocation fails next: each, or each of the first and then every so many-th, others in each sweep: under a
+   sanitizer, and in large bodies that ask for memory wherever an array could grow */
+#ifdef TIGHT
+enum { FIRST = 50, LARGE = 331 };
+#else
+enum { FIRST = 100, LARGE = 1 };
+#endif
+static size_t sweeps, stride = FEWER;
+static size_t next(size_t n) {
+    if (n + 1 == FIRST) return FIRST + 7 * sweeps++ % stride;
+    return n < FIRST ? n + 1 : n + stride;
+}
 
 /* A new body for every n */
 static void sweep_fresh(const char *what, const action *before, action act, const outcome *truth, int from_then_on) {
@@ -464,7 +563,7 @@ static void sweep_stubborn(const char *what, const action *before, action act, c
     never_fail(&m);
     body = prepared(&m, before);
     state = gx_body_state_hash(body);
-    for (n = 0; result != GX_OK; n++) {
+    for (n = 0; result != GX_OK; n = next(n)) {
         fail_from(&m, n, n % 2 == 1);
         result = act(body);
         if (result != GX_OK) check_failure(result, state, body, what, n, n % 2 == 1);
@@ -492,10 +591,20 @@ static void sweep(const char *what, const action *before, action act) {
     sweep_stubborn(what, before, act, &truth);
 }
 
-static const action nothing[] = {NULL}, after_a_cut[] = {cut_sheet, NULL}, held_kinds[] = {hold_kinds, cut_sheet, NULL},
-                    after_two[] = {cut_sheet, cut_part, look, NULL}, after_solid[] = {cut_solid, NULL},
-                    after_a_ring[] = {cut_ring, NULL}, held[] = {hold, cut_sheet, step, NULL},
-                    drawn[] = {cut_sheet, draw, NULL},
+/* A blade that stays in the middle of the body */
+static gx_result blade_inside(gx_body *body) {
+    static const double before[6] = {-9, -0.4, 0.45, 9, -0.3, 0.55}, inside[6] = {-9, 0.6, 0.45, 9, 0.7, 0.55};
+    gx_blade *blade = NULL;
+    gx_result result = gx_blade_create(body, NULL, &blade, NULL);
+    if (result == GX_OK) result = gx_blade_move(blade, before, 2, NULL, 0, NULL, NULL);
+    return result == GX_OK ? gx_blade_move(blade, inside, 2, NULL, 0, NULL, NULL) : result;
+}
+
+static const action nothing[] = {NULL}, with_a_blade[] = {blade_inside, NULL}, after_a_cut[] = {cut_sheet, NULL},
+                    held_kinds[] = {hold_kinds, cut_sheet, NULL}, after_two[] = {cut_sheet, cut_part, look, NULL},
+                    after_solid[] = {cut_solid, NULL}, after_a_ring[] = {cut_ring, NULL},
+                    held[] = {hold, cut_sheet, step, NULL}, drawn[] = {cut_sheet, draw, NULL}, found[] = {locate, NULL},
+                    found_and_moved[] = {cut_sheet, locate_all, step, NULL}, cut_since[] = {locate_all, cut_all, NULL},
                     drawn_and_cut[] = {draw, cut_sheet, draw, cut_second_sheet, NULL};
 
 START_TEST(creation) {
@@ -531,8 +640,10 @@ START_TEST(partial_cut) { sweep("a part of a sheet", nothing, cut_part); }
 END_TEST
 
 START_TEST(cut_of_many_triangles) {
+    stride *= LARGE;
     sweep("a ring", nothing, cut_ring);
     sweep("a sheet after a ring", after_a_ring, cut_second_sheet);
+    stride /= LARGE;
 }
 END_TEST
 
@@ -551,6 +662,18 @@ START_TEST(scoped_cut) {
     sweep("a scoped sheet", after_a_cut, cut_scoped);
     sweep("a scoped solid", after_a_cut, cut_scoped_solid);
     sweep("surfaces in slots", after_a_cut, cut_slots);
+}
+END_TEST
+
+START_TEST(blades) {
+    sweep("a blade", nothing, blade_that_moves);
+    sweep("a blade that waits", nothing, blade_that_waits);
+    sweep("a blade in a cut body that has moved", held, blade_that_moves);
+    sweep("a blade with a scope", after_a_cut, blade_in_scope);
+    sweep("a tool", nothing, carve);
+    sweep("a tool in a cut body that has moved", held, carve);
+    sweep("a clone of a body with a blade", with_a_blade, clone);
+    sweep("loading a body with a blade", with_a_blade, save_and_load);
 }
 END_TEST
 
@@ -573,6 +696,26 @@ START_TEST(view_hold_skin_hash) {
 }
 END_TEST
 
+START_TEST(points_and_rays) {
+    static const struct {
+        const char *what;
+        const action *before;
+        action act;
+    } calls[] = {{"locating", nothing, locate},
+                 {"locating after a cut", after_a_cut, locate},
+                 {"locating after a step", found_and_moved, locate},
+                 {"locating after a cut of a located body", cut_since, locate},
+                 {"locating all", after_solid, locate_all},
+                 {"a cut of a located body", found, cut_all},
+                 {"a ray", drawn, pick}};
+    size_t i;
+    for (i = 0; i < sizeof calls / sizeof *calls; i++) {
+        memset(located, 0, sizeof located);
+        sweep(calls[i].what, calls[i].before, calls[i].act);
+    }
+}
+END_TEST
+
 /* A region may be taken even if the view after it fails: the state is then the one with the region. */
 START_TEST(holding) {
     sweep("a hold", after_a_cut, hold);
@@ -587,6 +730,7 @@ START_TEST(holding) {
         size_t n, i, count = 0;
         gx_result result = GX_ERROR_MEMORY;
         memset(&m, 0, sizeof m);
+        memset(&view, 0, sizeof view);
         never_fail(&m);
         body = prepared(&m, after_a_cut);
         for (n = 0; result != GX_OK; n++) {
@@ -720,7 +864,9 @@ START_TEST(cut_of_a_fan) {
             }
         }
     mesh_of_bodies = &fans;
+    stride *= LARGE;
     sweep("a sheet in a fan", nothing, cut_fan);
+    stride /= LARGE;
     mesh_of_bodies = &cube_mesh;
 }
 END_TEST
@@ -839,9 +985,11 @@ int main(void) {
     tcase_add_test(tests, solid_cut);
     tcase_add_test(tests, cut_of_a_cut_body);
     tcase_add_test(tests, scoped_cut);
+    tcase_add_test(tests, blades);
     tcase_add_test(tests, severing_cut);
     tcase_add_test(tests, many_surfaces);
     tcase_add_test(tests, view_hold_skin_hash);
+    tcase_add_test(tests, points_and_rays);
     tcase_add_test(tests, holding);
     tcase_add_test(tests, stepping);
     tcase_add_test(tests, motions);

@@ -113,6 +113,30 @@ START_TEST(draw) {
 }
 END_TEST
 
+/* ---- Mark ---- */
+
+START_TEST(marks) {
+    gx_body *body = make_hanging(4, NULL);
+    const double points[12] = {0.5, 0.5, 0.2, 0.3, 0.6, -0.01, 0.4, 0.4, 0.9, 0.5, 0.5, -3};
+    mark made[4];
+    double x[3], y[3];
+    size_t count, i;
+    int k;
+    OK(put_marks(body, points, 4, 0.02, made, &count));
+    ck_assert_uint_eq(count, 3); /* the last one is far away */
+    ck_assert(fabs(made[1].material[2]) < 1e-15);
+    for (i = 0; i < count; i++) {
+        OK(find_mark(body, &made[i], x));
+        for (k = 0; k < 3; k++) ck_assert(fabs(x[k] - made[i].material[k]) < 1e-15); /* at rest */
+    }
+    advance(body, 20);
+    OK(find_mark(body, &made[0], x));
+    OK(find_mark(body, &made[2], y));
+    ck_assert(x[2] < points[2] && x[2] - points[2] < y[2] - points[8]); /* it hangs: below it gives more */
+    gx_body_destroy(body);
+}
+END_TEST
+
 /* ---- Drag ---- */
 
 static const double below[3] = {0.47, 0.53, -5}, up[3] = {0, 0, 1};
@@ -179,6 +203,74 @@ START_TEST(drag) {
         ck_assert(!g.holds);
         OK(drag_step(body, step, &g)); /* nothing is held: a step as any */
     }
+    gx_body_destroy(body);
+}
+END_TEST
+
+/* ---- Blade ---- */
+
+/* The block is pushed aside by gravity, so that it swings. Returns how often it was cut. */
+static int pass_through(gx_body *body, gx_blade *blade, int frames, double edge_at(int frame, double edge[6])) {
+    gx_step_desc step = step_of(1.0 / 60);
+    uint64_t topology = gx_body_topology_hash(body, NULL);
+    int frame, cuts = 0, changed;
+    step.gravity[0] = 5;
+    for (frame = 0; frame <= frames; frame++) { /* the last one lifts */
+        double edge[6];
+        uint64_t hash;
+        edge_at(frame, edge);
+        OK(blade_frame(body, blade, &step, frame < frames ? edge : NULL, 2, &changed));
+        hash = gx_body_topology_hash(body, NULL);
+        if (!changed) ck_assert(hash == topology);
+        topology = hash;
+        cuts += changed;
+    }
+    return cuts;
+}
+
+static double across_edge(int frame, double edge[6]) {
+    const double x = -0.5 + frame / 20.0, across[6] = {x, -0.5, 0.5, x, 1.5, 0.4};
+    memcpy(edge, across, sizeof across);
+    return x;
+}
+
+static double mouse_at(int frame, double edge[6]) {
+    const double eye[3] = {0.5, -3, 0.5}, direction[3] = {-0.5 + frame / 20.0, 1, 0.02};
+    mouse_edge(eye, direction, 6, edge);
+    return direction[0];
+}
+
+START_TEST(blade_in_space) {
+    gx_body *body = make_hanging(6, NULL);
+    gx_blade *blade = NULL;
+    OK(gx_blade_create(body, NULL, &blade, NULL));
+    ck_assert_int_gt(_i == 0 ? pass_through(body, blade, 60, across_edge) : pass_through(body, blade, 21, mouse_at), 3);
+    ck_assert_uint_eq(view_of(body).fragment_count, 2);
+    ck_assert(fabs(view_of(body).volume - 1) < 1e-12);
+    gx_body_destroy(body);
+}
+END_TEST
+
+START_TEST(blade_begins_outside) {
+    const double edge[6] = {0.5, -1, 0.5, 0.5, 0.5, 0.5}, beside[6] = {9, -1, 0.5, 9, 2, 0.5};
+    gx_body *body = make_hanging(4, NULL);
+    gx_step_desc step = step_of(1.0 / 60);
+    gx_blade_desc stab;
+    gx_blade *blade = NULL;
+    gx_failure failure;
+    int changed;
+    OK(gx_blade_create(body, NULL, &blade, NULL));
+    ck_assert_int_eq(gx_blade_move(blade, edge, 2, NULL, 0, NULL, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_uint_eq(failure.index, 1);
+    ck_assert_int_eq(blade_frame(body, blade, &step, edge, 2, &changed), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(changed, 0);
+    OK(blade_frame(body, blade, &step, beside, 2, &changed));
+    ck_assert_int_eq(gx_blade_move(blade, edge, 1, NULL, 0, NULL, NULL), GX_ERROR_ARGUMENT);
+    memset(&stab, 0, sizeof stab);
+    stab.starts_inside = 1;
+    OK(gx_blade_create(body, &stab, &blade, NULL));
+    OK(blade_frame(body, blade, &step, edge, 2, &changed));
+    ck_assert_uint_eq(view_of(body).fragment_count, 1);
     gx_body_destroy(body);
 }
 END_TEST
@@ -513,7 +605,10 @@ int main(void) {
     TCase *tc = tcase_create("snippets of docs/RECIPES.md");
     tcase_set_timeout(tc, 60);
     tcase_add_test(tc, draw);
+    tcase_add_test(tc, marks);
     tcase_add_test(tc, drag);
+    tcase_add_loop_test(tc, blade_in_space, 0, 2);
+    tcase_add_test(tc, blade_begins_outside);
     tcase_add_test(tc, hold);
     tcase_add_test(tc, ground);
     tcase_add_test(tc, ground_after_cuts);

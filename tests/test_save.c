@@ -604,7 +604,7 @@ END_TEST
 /* ... nor bodies of which one number of one material, or one held region, is another: their own state is restored,
    and they move as before. */
 START_TEST(restoring_from_near_strangers) {
-    enum { OTHERS = 12 };
+    enum { OTHERS = 13 };
     custom user = {1e5, 0}, other_user = {1e5, 0};
     workload w = grid(2, 1, 1, 5);
     gx_body_desc desc = desc_of(&w);
@@ -636,6 +636,7 @@ START_TEST(restoring_from_near_strangers) {
         if (i == 5) materials[1].density *= 2;
         if (i == 6) materials[0].elastic.young *= 2;
         if (i == 12) materials[0].elastic.energy = other_energy;
+        regions[0].value = i == 13 ? 0.75 : 0.5;
         regions[1].axis = i == 7 ? 1 : 0;
         regions[1].side = i == 8 ? 1 : -1;
         regions[1].value = i == 9 ? 1.5 : 0.5;

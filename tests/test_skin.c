@@ -532,6 +532,83 @@ START_TEST(smooth_cuts) {
 }
 END_TEST
 
+/* Corners of a hole within an element are weighed by all four of its copies. At rest, their normals are those of the
+   skin. */
+START_TEST(corners_within_an_element) {
+    static const double low[3] = {0.45, 0.45, 0.45}, high[3] = {0.55, 0.55, 0.55};
+    workload w = grid(1, 1, 1, 5);
+    gx_body *body;
+    gx_skin_desc desc;
+    gx_skin skin;
+    float *x, *normals;
+    size_t i, within = 0;
+    int k;
+    memset(&desc, 0, sizeof desc);
+    wl_add_aligned_box(wl_add_surface(&w, 1), low, high);
+    body = cut_in_sequence(&w);
+    skin = skin_of(body, &desc);
+    x = (float *)malloc(3 * skin.vertex_count * sizeof *x);
+    normals = (float *)malloc(3 * skin.vertex_count * sizeof *normals);
+    ck_assert_int_eq(gx_body_skin_vertices(body, NULL, x, normals, NULL), GX_OK);
+    for (i = 0; i < skin.vertex_count; i++) within += skin.vertex_weights[4 * i + 3] > 0;
+    ck_assert_uint_ge(within, 8);
+    for (i = 0; i < skin.vertex_count; i++)
+        for (k = 0; k < 3; k++) {
+            const size_t at = 3 * i + (size_t)k;
+            ck_assert_msg(fabsf(normals[at] - skin.vertex_normal[at]) < 1e-6f, "vertex %zu: %g, not %g", i,
+                          (double)normals[at], (double)skin.vertex_normal[at]);
+        }
+    free(x);
+    free(normals);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A link that is severed has no surface to be smooth with: its faces are flat. */
+START_TEST(severed_walls_are_flat) {
+    workload w = wl_pair();
+    gx_body *body = body_of(&w);
+    gx_surface surfaces[2];
+    gx_cut_desc cut;
+    gx_cut_report report;
+    gx_skin_desc desc;
+    gx_skin skin;
+    size_t i, severed = 0;
+    int k;
+    for (k = 0; k < 2; k++) { /* on both sides of the face x = y + z, but for a strip beside it */
+        const double y = k ? 0.25 + 1e-6 : 0.25, far = k ? -4 : 4, p[3] = {y - 4, y, -4}, q[3] = {y + 4, y, 4},
+                     r[3] = {4 * far, y, -far};
+        wl_surface *half = wl_add_surface(&w, 0);
+        wl_add_vertex(half, p);
+        wl_add_vertex(half, q);
+        wl_add_vertex(half, r);
+        wl_add_triangle(half, 0, 1, 2);
+        surfaces[k] = surface_of(half);
+    }
+    memset(&cut, 0, sizeof cut);
+    memset(&desc, 0, sizeof desc);
+    cut.surfaces = surfaces;
+    cut.surface_count = 2;
+    cut.sever_below = 0.01;
+    ck_assert_int_eq(gx_body_cut(body, &cut, &report, NULL), GX_OK);
+    ck_assert_uint_eq(report.severed_links, 1);
+    desc.smooth_cuts = 1;
+    skin = skin_of(body, &desc);
+    for (i = 0; i < skin.triangle_count; i++) {
+        double m[3];
+        if (skin.triangle_surface[i] != GX_SKIN_SEVERED) continue;
+        severed++;
+        normal_of(skin.vertex_rest, skin.triangles + 3 * i, m);
+        for (k = 0; k < 3; k++)
+            ck_assert_double_gt(agreement(skin.vertex_normal + 3 * skin.triangles[3 * i + (size_t)k], m), 0.999);
+    }
+    ck_assert_uint_gt(severed, 0);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* ---- texture coordinates ---- */
 
 static float linear(const double *x, int k) {
@@ -576,6 +653,57 @@ START_TEST(texture) {
         for (k = 0; k < 2 && s >= 2; k++) ck_assert(skin.vertex_texture[2 * v + (uint32_t)k] == 0);
     }
     gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Triangles without area among others have no map to their texture, and change nothing. */
+START_TEST(texture_of_flat_triangles) {
+    enum { SIDE = 10, QUADS = SIDE * SIDE };
+    double x[3 * (SIDE + 1) * (SIDE + 1)];
+    float map[2 * (SIDE + 1) * (SIDE + 1)];
+    uint32_t triangles[9 * QUADS];
+    workload w = grid(2, 2, 2, 5);
+    gx_surface surface;
+    gx_cut_desc cut;
+    size_t count[2], i;
+    int way, k;
+    memset(&surface, 0, sizeof surface);
+    memset(&cut, 0, sizeof cut);
+    for (i = 0; i < (SIDE + 1) * (SIDE + 1); i++) {
+        x[3 * i] = 0.3 * (double)(i % (SIDE + 1)) - 0.5;
+        x[3 * i + 1] = 0.3 * (double)(i / (SIDE + 1)) - 0.5;
+        x[3 * i + 2] = 0.9;
+        for (k = 0; k < 2; k++) map[2 * i + (size_t)k] = linear(x + 3 * i, k);
+    }
+    for (i = 0; i < QUADS; i++) {
+        const uint32_t v = (uint32_t)(i / SIDE * (SIDE + 1) + i % SIDE);
+        const uint32_t corners[9] = {v, v + 1, v + SIDE + 2, v, v + SIDE + 2, v + SIDE + 1, v, v + 1, v};
+        memcpy(triangles + 9 * i, corners, sizeof corners);
+    }
+    surface.vertices = x;
+    surface.vertex_count = (SIDE + 1) * (SIDE + 1);
+    surface.triangles = triangles;
+    surface.texture = map;
+    cut.surfaces = &surface;
+    cut.surface_count = 1;
+    for (way = 0; way < 2; way++) { /* all triangles, then those with area only */
+        gx_body *body = body_of(&w);
+        gx_skin skin;
+        surface.triangle_count = (way ? 2 : 3) * QUADS;
+        for (i = 0; way && i < 6 * QUADS; i++) triangles[i] = triangles[i / 6 * 9 + i % 6];
+        ck_assert_int_eq(gx_body_cut(body, &cut, NULL, NULL), GX_OK);
+        skin = skin_of(body, NULL);
+        count[way] = skin.triangle_count;
+        for (i = 0; i < 3 * skin.triangle_count; i++) {
+            const uint32_t v = skin.triangles[i];
+            for (k = 0; k < 2 && skin.triangle_surface[i / 3] == 1; k++)
+                ck_assert_double_eq_tol((double)skin.vertex_texture[2 * v + (uint32_t)k],
+                                        (double)linear(skin.vertex_rest + 3 * v, k), 1e-4);
+        }
+        gx_body_destroy(body);
+    }
+    ck_assert_uint_eq(count[0], count[1]);
     wl_free(&w);
 }
 END_TEST
@@ -783,7 +911,10 @@ int main(void) {
     tcase_add_loop_test(tests, normals_at_any_size, 0, 4);
     tcase_add_test(tests, smooth_normals);
     tcase_add_test(tests, smooth_cuts);
+    tcase_add_test(tests, corners_within_an_element);
+    tcase_add_test(tests, severed_walls_are_flat);
     tcase_add_loop_test(tests, texture, first, last);
+    tcase_add_test(tests, texture_of_flat_triangles);
     tcase_add_loop_test(tests, picks_what_a_ray_meets, first, last);
     tcase_add_loop_test(tests, no_ray_slips_through, 0, 3);
     tcase_add_test(tests, nothing_is_left_to_draw);

@@ -997,6 +997,37 @@ START_TEST(tangled_body_recovers) {
 }
 END_TEST
 
+/* Elements of energies that open a collapsed element by themselves, beside others: the body leaves the collapse. */
+START_TEST(collapsed_bodies_of_several_materials_open) {
+    static const int kinds[3] = {GXS_STABLE_NEO_HOOKEAN, GXS_LINEAR, GXS_CUSTOM};
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = step_make(0.033, 0);
+    gxs_step_report report;
+    gxs_material materials[3];
+    double before, after;
+    size_t i;
+    scene s;
+    seed(7);
+    s = scene_block(3, 2, 2, 0.5, 0.1, 0);
+    for (i = 0; i < 3; i++) {
+        materials[i] = *s.material;
+        set_kind(&materials[i], kinds[i]);
+    }
+    s.model.materials = materials;
+    s.model.material_count = 3;
+    for (i = 0; i < s.model.element_count; i++) s.elements[i].material = (uint32_t)(i / 16 % 3);
+    violate(&s, COLLAPSED, 0.5);
+    before = form_energy(&s.model, s.displacement);
+    step.newton_iterations = 20;
+    ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+    after = form_energy(&s.model, s.displacement);
+    ck_assert_uint_gt(report.newton_iterations, 0);
+    assert_that(after < 0.5 * before, "%g J of %g J", after, before);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
 /* ---- tiny components ---- */
 
 /* CG iterations of one step of a hanging body; a share of the elements has weight and mass scaled by tiny */
@@ -1575,7 +1606,7 @@ START_TEST(degenerate_models_are_harmless) {
     memset(&desc, 0, sizeof desc);
     desc.preconditioner = _i ? GXS_MULTIGRID : GXS_AUTOMATIC;
     ck_assert_int_eq(gxs_solver_create(&desc, &solver, NULL), GX_OK);
-    for (which = 0; which < 7; which++) {
+    for (which = 0; which < 8; which++) {
         gxs_step_desc step = step_make(0.033, -9.81);
         gxs_step_report report;
         size_t e, k;
@@ -1587,6 +1618,11 @@ START_TEST(degenerate_models_are_harmless) {
             if (which == 5 && e < 24) { /* neither weight nor mass */
                 s.elements[e].weight = 0;
                 memset(s.elements[e].mass, 0, sizeof s.elements[e].mass);
+            }
+            if (which == 7 && e % 3 == 0) { /* no weight, and mass at the last corner only */
+                s.elements[e].weight = 0;
+                memset(s.elements[e].mass, 0, sizeof s.elements[e].mass);
+                s.elements[e].mass[9] = 1;
             }
             /* the gradients of no element that has a volume */
             if (which == 6) memset(s.elements[e].gradient, 0, sizeof s.elements[e].gradient);
@@ -1988,6 +2024,7 @@ static Suite *solve_suite(void) {
     ADD_SOME(step, jobs_do_not_change_results, KINDS);
     ADD_SOME(violent, energy_falls_from_violent_starts, 4 * START_COUNT);
     tcase_add_test(violent, tangled_body_recovers);
+    tcase_add_test(violent, collapsed_bodies_of_several_materials_open);
     tcase_add_test(input, bad_input_is_named);
     tcase_add_test(input, late_failures_keep_what_was_found);
     tcase_add_test(input, overflow_is_divergence);

@@ -807,6 +807,61 @@ START_TEST(sheets_divide) {
 }
 END_TEST
 
+/* A flat sheet of so many triangles that they are sorted, all at one height */
+START_TEST(a_fine_flat_sheet_divides) {
+    enum { SIDE = 12 };
+    static const double zero[3] = {0, 0, 0}, one[3] = {1, 1, 1};
+    wl_surface cube, sheet;
+    answer r;
+    int i, j;
+    memset(&cube, 0, sizeof cube);
+    memset(&sheet, 0, sizeof sheet);
+    wl_add_aligned_box(&cube, zero, one);
+    for (j = 0; j <= SIDE; j++)
+        for (i = 0; i <= SIDE; i++) {
+            double x[3];
+            x[0] = 0.25 * i - 1;
+            x[1] = 0.25 * j - 1;
+            x[2] = 0.375;
+            wl_add_vertex(&sheet, x);
+        }
+    for (j = 0; j < SIDE; j++)
+        for (i = 0; i < SIDE; i++) {
+            const uint32_t v = (uint32_t)(j * (SIDE + 1) + i);
+            wl_add_triangle(&sheet, v, v + 1, v + SIDE + 2);
+            wl_add_triangle(&sheet, v, v + SIDE + 2, v + SIDE + 1);
+        }
+    r = combine(&cube, GXB_SPLIT, &sheet);
+    check_answer("fine flat sheet", &r, 2, 1);
+    surface_free(&cube);
+    surface_free(&sheet);
+}
+END_TEST
+
+/* An operand that is a point, twice: nothing, whatever is done with it */
+START_TEST(an_operand_of_one_point_is_nothing) {
+    double zeros[9] = {0};
+    uint32_t triangles[6] = {0, 1, 2, 0, 2, 1};
+    gxb_boolean_desc desc;
+    gxb_boolean *b = NULL;
+    gxb_boolean_result r;
+    gxb_operand o;
+    memset(&desc, 0, sizeof desc);
+    memset(&o, 0, sizeof o);
+    memset(&r, 0, sizeof r);
+    o.vertices = zeros;
+    o.vertex_count = 3;
+    o.triangles = triangles;
+    o.triangle_count = 2;
+    o.operation = GXB_UNION;
+    ck_assert_int_eq(gxb_boolean_create(&desc, &b, NULL), GX_OK);
+    ck_assert_int_eq(gxb_boolean_add(b, &o, NULL), GX_OK);
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
+    ck_assert_uint_eq(r.triangle_count, 0);
+    gxb_boolean_destroy(b);
+}
+END_TEST
+
 /* Its triangles within the cube meet nothing, and occur twice. */
 START_TEST(a_wave_divides) {
     static const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1};
@@ -1463,6 +1518,11 @@ END_TEST
 
 /* ---- memory and bad input ---- */
 
+/* Of the allocations each so many-th fails. */
+#ifndef STRIDE
+#define STRIDE 1
+#endif
+
 typedef struct memory {
     size_t live, calls, fail_at;
     int from_then_on;
@@ -1479,6 +1539,14 @@ static void *take(void *user, size_t size) {
 static void give(void *user, void *block, size_t size) {
     ((memory *)user)->live -= size;
     free(block);
+}
+
+static void *grow(void *user, void *block, size_t size, size_t larger) {
+    void *moved = take(user, larger);
+    if (moved == NULL) return NULL;
+    memcpy(moved, block, size);
+    give(user, block, size);
+    return moved;
 }
 
 /* Create, and for each operand: add, evaluate, components, defects */
@@ -1504,6 +1572,7 @@ static answer despite_failures(memory *m, const gxb_operand *o, int count, uint3
     desc.allocator.allocate = take;
     desc.allocator.release = give;
     desc.allocator.user = m;
+    desc.allocator.reallocate = m->from_then_on ? grow : NULL;
     desc.memory_limit = (size_t)1 << 19; /* so little that each array is an allocation of its own */
     *failed = 0;
     for (i = -1; i < 4 * count; i++) {
@@ -1541,14 +1610,14 @@ START_TEST(memory_runs_out) {
         o[i] = operand_of(&s[i], i == 0 ? GXB_UNION : GXB_DIFFERENCE);
     }
     for (i = 0; i < 2; i++)
-        for (n = 0, failed = 1; failed; n++) {
+        for (n = 0, failed = 1; failed; n += STRIDE) {
             memory m = {0, 0, 0, 0};
             answer a;
             m.fail_at = n;
             m.from_then_on = i;
             a = despite_failures(&m, o, 3, GXB_COARSE, 0, &failed);
             check_answer("after a failure", &a, 2, 27 - 9 - 2);
-            ck_assert_uint_lt(n, 5000);
+            ck_assert_uint_lt(n, 5000 * STRIDE);
         }
     for (i = 0; i < 3; i++) surface_free(&s[i]);
 }
@@ -1560,9 +1629,10 @@ static void sweep_failures(const char *name, const gxb_operand *o, int count, ui
     memory m = {0, 0, SIZE_MAX, 0};
     int failed = 1, from_then_on;
     const answer truth = despite_failures(&m, o, count, triangulation, mend, &failed);
+    static size_t sweeps;
     size_t n;
     for (from_then_on = 0; from_then_on < 2; from_then_on++)
-        for (n = 0, failed = 1; failed; n += FEWER) {
+        for (n = 5 * sweeps++ % STRIDE, failed = 1; failed; n += FEWER * STRIDE) {
             answer a;
             memset(&m, 0, sizeof m);
             m.fail_at = n;
@@ -1630,6 +1700,7 @@ START_TEST(memory_limit) {
     int i;
     o[0] = operand_of(&body, GXB_UNION);
     o[1] = operand_of(&w.surfaces[0], GXB_DIFFERENCE);
+    memset(&s, 0, sizeof s);
     memset(&desc, 0, sizeof desc);
     desc.memory_limit = 100; /* not even the Boolean itself */
     {
@@ -1708,6 +1779,30 @@ START_TEST(sizes_are_numbers_or_refused) {
     gxb_boolean_destroy(b);
     surface_free(&s[0]);
     surface_free(&s[1]);
+}
+END_TEST
+
+/* A coordinate far below the others, but not 0 */
+START_TEST(small_coordinates_are_numbers_or_refused) {
+    static const double one[3] = {1, 1, 1}, small[3] = {0x1p-128, 0x1p-129, 5e-324};
+    int i;
+    for (i = 0; i < 3; i++) {
+        double low[3] = {0, 0, 0};
+        gxb_boolean *b = NULL;
+        gxb_operand o;
+        gx_failure failure;
+        wl_surface s;
+        low[1] = small[i];
+        memset(&s, 0, sizeof s);
+        wl_add_aligned_box(&s, low, one);
+        o = operand_of(&s, GXB_UNION);
+        ck_assert_int_eq(gxb_boolean_create(NULL, &b, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_add(b, &o, &failure), i == 0 ? GX_OK : GX_ERROR_RANGE);
+        ck_assert(i == 0 || failure.index < s.vertex_count);
+        gxb_boolean_destroy(b);
+        surface_free(&s);
+    }
+    gxb_boolean_destroy(NULL);
 }
 END_TEST
 
@@ -1817,7 +1912,7 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("Booleans of surfaces");
-    TCase *tests = tcase_create("Booleans");
+    TCase *tests = tcase_create("Booleans"), *scarce = tcase_create("memory");
     int result;
     tcase_set_timeout(tests, 300);
     tcase_add_test(tests, slabs);
@@ -1836,6 +1931,8 @@ int main(void) {
     tcase_add_test(tests, touching_solids);
     tcase_add_test(tests, handles_are_counted);
     tcase_add_test(tests, sheets_divide);
+    tcase_add_test(tests, a_fine_flat_sheet_divides);
+    tcase_add_test(tests, an_operand_of_one_point_is_nothing);
     tcase_add_test(tests, a_wave_divides);
     tcase_add_test(tests, everything_knows_where_it_comes_from);
     tcase_add_test(tests, faces_in_as_few_triangles_as_possible);
@@ -1847,15 +1944,18 @@ int main(void) {
     tcase_add_loop_test(tests, mending_keeps_volumes, 0, 12);
     tcase_add_loop_test(tests, walls_of_a_few_units, 0, 30);
     tcase_add_test(tests, rounded_sticks_are_mended);
-    tcase_add_test(tests, memory_runs_out);
     tcase_add_loop_test(tests, crossings_around_islands, 0, 200 / FEWER);
-    tcase_add_test(tests, memory_runs_out_late);
-    tcase_add_test(tests, memory_runs_out_of_states);
     tcase_add_test(tests, memory_limit);
     tcase_add_loop_test(tests, sizes_are_numbers_or_refused, 0, 17);
+    tcase_add_test(tests, small_coordinates_are_numbers_or_refused);
     tcase_add_test(tests, largest_volumes_are_numbers);
     tcase_add_test(tests, bad_input_is_refused);
     suite_add_tcase(suite, tests);
+    tcase_set_timeout(scarce, 300);
+    tcase_add_test(scarce, memory_runs_out);
+    tcase_add_test(scarce, memory_runs_out_late);
+    tcase_add_test(scarce, memory_runs_out_of_states);
+    suite_add_tcase(suite, scarce);
     result = run_suite(suite);
     rat_arena_free();
     return result;

@@ -699,6 +699,50 @@ START_TEST(changes_of_nothing_change_nothing) {
 }
 END_TEST
 
+/* Assembled matrices, volume ratios and lumped masses are not renewed: the update says so, and the model is set anew.
+ */
+START_TEST(some_solvers_take_no_changes) {
+    workload w = grid(BLOCK, BLOCK, BLOCK, 5);
+    gx_body *body = body_of(&w);
+    gxs_model model = model_of(body);
+    const size_t n = model.copy_count;
+    uint32_t *origins = (uint32_t *)malloc(n * sizeof *origins);
+    double *u = (double *)calloc(6 * n, sizeof *u);
+    gxs_step_desc step;
+    gxs_change change;
+    size_t i;
+    int kind;
+    memset(&step, 0, sizeof step);
+    memset(&change, 0, sizeof change);
+    step.dt = 0.02;
+    for (i = 0; i < n; i++) origins[i] = 2 * (uint32_t)i;
+    change.copy_count = n;
+    change.origins = origins;
+    for (kind = 0; kind < 4; kind++) {
+        gxs_solver_desc desc;
+        gxs_solver *solver = NULL;
+        memset(&desc, 0, sizeof desc);
+        desc.preconditioner = kind == 1 ? GXS_VOLUME_RATIO : GXS_MULTIGRID;
+        desc.matrix = kind == 2 ? GXS_MATRIX_ASSEMBLED : GXS_MATRIX_FREE;
+        model.lumped_mass = kind == 3;
+        ck_assert_int_eq(gxs_solver_create(&desc, &solver, NULL), GX_OK);
+        ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
+        ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * n, NULL, NULL), GX_OK);
+        ck_assert_int_eq(gxs_solver_update(solver, &change, NULL), kind == 0 ? GX_OK : GX_ERROR_LIMIT);
+        if (kind > 0) {
+            ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * n, NULL, NULL), GX_ERROR_SEQUENCE);
+            ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
+        }
+        ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * n, NULL, NULL), GX_OK);
+        gxs_solver_destroy(solver);
+    }
+    free(origins);
+    free(u);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* ---- memory ---- */
 
 typedef struct memory {
@@ -905,6 +949,7 @@ static Suite *updates_suite(void) {
     tcase_add_test(tests, own_materials_are_cut);
     tcase_add_test(tests, bad_changes_are_named);
     tcase_add_test(tests, changes_of_nothing_change_nothing);
+    tcase_add_test(tests, some_solvers_take_no_changes);
     tcase_add_loop_test(tests, memory_may_run_out, 0, 2);
     tcase_add_loop_test(tests, solvers_take_bounded_memory, 0, 8);
     tcase_add_test(tests, small_pieces_beside_a_large_one);

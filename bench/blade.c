@@ -1,0 +1,396 @@
+/* blade.c - blades that are moved through bodies which move meanwhile (blade.h): what comes of it, how near the cut is
+   to where it should be, and what it costs.
+
+   make bench-blade builds it by -O2, as users do, and runs it. It prints CSV and writes it to build/bench/blade.csv,
+   and a table to stderr. usage: blade [FILE [--small]]; --small: small blocks and few passes.
+
+   kind      a row
+   scene     a scene of blade.h on a block of 12^3 cubes
+   passes    random straight passes through blocks of 4^3 cubes that move, with noise: `fragments` of them, of
+             `expected`, gave exactly two pieces
+   error     edges that follow known sheets, over all seeds: distance of the walls to the sheet, in cubes. tolerance and
+             advance: of the blade, in cubes. calm: a tenth of a cube a frame at 60 frames, violent: a cube
+   cost      a pass through a block that moves calmly, with 60 and 600 frames
+   idle      moves far from the block beside a step
+   sample    a move that cuts nothing, with 1001 points of the edge beside 2
+   frame     a pass by steps, 60 frames: all but the step (blade, cut, solver's model, skin and its positions)
+
+   divided: elements that strips have touched, each as often as it was. leaves: that were added, for each of those.
+   link: the smallest share of a face that still joins two cells. median_ms and worst_ms: of a move, in `frame` of a
+   frame. share: of a step. */
+#define _POSIX_C_SOURCE 200112L
+#define GXFEM_IMPLEMENTATION
+#include "../gxfem.h"
+#include "blade.h"
+#include "clock.h"
+#include "csv.h"
+#include "progress.h"
+
+enum { MOST_FRAMES = 601, SEEDS = 12, POINTS = 1001 };
+
+typedef struct row {
+    const char *kind, *name;
+    size_t elements, fragments, expected, divided;
+    int frames;
+    double tolerance, advance;
+    double leaves, us, link, deviation;
+    double most, rms; /* cubes */
+    double median, worst, step, share;
+    double ns; /* for each sample */
+} row;
+
+static int small;
+
+static void fail(const char *kind, const stage *s) {
+    if (stage_ok(s)) return;
+    fprintf(stderr, "blade: %s: %s, %s\n", kind, gx_result_text(s->failure.result),
+            s->failure.field ? s->failure.field : "no field");
+    exit(1);
+}
+
+static void check(gx_result result) {
+    if (result == GX_OK) return;
+    fprintf(stderr, "blade: %s\n", gx_result_text(result));
+    exit(1);
+}
+
+static stage open_stage(uint32_t n, uint64_t seed, double noise, const gx_blade_desc *blade) {
+    stage s;
+    memset(&s, 0, sizeof s);
+    s.cells[0] = s.cells[1] = s.cells[2] = n;
+    s.random = seed * 7919;
+    s.noise = noise;
+    s.clock = seconds;
+    stage_open(&s, 250.0 * n, 0, blade);
+    fail("opening", &s);
+    return s;
+}
+
+/* ---- rows ---- */
+
+/* A value, or nothing where there is none */
+static const char *number(char text[16], const char *format, double value) {
+    if (value > 0)
+        snprintf(text, 16, format, value);
+    else
+        text[0] = 0;
+    return text;
+}
+
+static const char *whole(char text[16], size_t value) { return number(text, "%.0f", (double)value); }
+
+static void print_row(const row *r) {
+    char t[18][16];
+    csv_row("%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s", r->kind, r->name, whole(t[0], r->elements),
+            whole(t[1], (size_t)r->frames), number(t[2], "%g", r->tolerance), number(t[3], "%g", r->advance),
+            whole(t[4], r->fragments), whole(t[5], r->expected), whole(t[6], r->divided),
+            number(t[7], "%.2f", r->leaves), number(t[8], "%.1f", r->us), number(t[9], "%.1e", r->link),
+            number(t[10], "%.1e", r->deviation), number(t[11], "%.2e", r->most), number(t[12], "%.2e", r->rms),
+            number(t[13], "%.3f", r->median), number(t[14], "%.3f", r->worst), number(t[15], "%.3f", r->step),
+            number(t[16], "%.4f", r->share), number(t[17], "%.0f", r->ns));
+}
+
+/* What the stage's moves have been; times of a move only where all were measured */
+static row row_of(const char *kind, const char *name, const stage *s) {
+    const stage_tally *t = &s->tally;
+    row r;
+    memset(&r, 0, sizeof r);
+    r.kind = kind;
+    r.name = name;
+    r.elements = s->view.element_count;
+    r.frames = (int)t->moves;
+    r.fragments = s->view.fragment_count;
+    r.divided = t->divided;
+    r.link = t->link;
+    r.deviation = t->deviation;
+    r.worst = 1e3 * t->slowest;
+    if (t->divided == 0) return r;
+    r.us = 1e6 * t->seconds / (double)t->divided;
+    r.leaves = ((double)gxb_complex_leaf_count(s->body->complex) - (double)s->view.element_count) / (double)t->divided;
+    return r;
+}
+
+static void put(const row *r, const char *line, ...) {
+    char text[160];
+    va_list values;
+    print_row(r);
+    va_start(values, line);
+    vsnprintf(text, sizeof text, line, values);
+    va_end(values);
+    progress_clear();
+    fprintf(stderr, "%-7s %-10s %s\n", r->kind, r->name, text);
+}
+
+/* ---- scenes and passes ---- */
+
+static void measure_scene(const stage_scene *scene) {
+    stage s;
+    row r;
+    memset(&s, 0, sizeof s);
+    s.random = 1;
+    s.clock = seconds;
+    stage_play(&s, scene, small ? 6 : 12, NULL);
+    fail(scene->name, &s);
+    r = row_of("scene", scene->name, &s);
+    r.expected = scene->fragments;
+    put(&r, "%2lu of %2lu fragments, %6lu elements divided, %.2f leaves and %6.1f us each, link %.1e, deviation %.1e",
+        (unsigned long)r.fragments, (unsigned long)r.expected, (unsigned long)r.divided, r.leaves, r.us, r.link,
+        r.deviation);
+    stage_close(&s);
+}
+
+static void measure_passes(const char *name, double noise, double squeeze, int count) {
+    row r;
+    size_t right = 0, divided = 0, moves = 0;
+    double link = 1, deviation = 0, time = 0;
+    int seed;
+    for (seed = 1; seed <= count; seed++) {
+        stage s = open_stage(4, (uint64_t)seed, noise, NULL);
+        stage_motion m = stage_random_motion(&s, STAGE_CALM);
+        m.squeeze[seed % 3] = squeeze;
+        stage_random_pass(&s, &m, 40);
+        fail(name, &s);
+        right += s.view.fragment_count == 2;
+        divided += s.tally.divided;
+        moves += s.tally.moves;
+        time += s.tally.seconds;
+        link = fmin(link, s.tally.link);
+        deviation = fmax(deviation, s.tally.deviation);
+        if (seed == count) r = row_of("passes", name, &s);
+        stage_close(&s);
+        if (seed % 64 == 0) progress_draw("blade", (size_t)seed, (size_t)count, name);
+    }
+    r.fragments = right;
+    r.expected = (size_t)count;
+    r.divided = divided;
+    r.frames = (int)(moves / (size_t)count);
+    r.link = link;
+    r.deviation = deviation;
+    r.us = 1e6 * time / (double)divided;
+    r.leaves = r.worst = 0;
+    put(&r, "%5lu of %5lu right, link %.1e", (unsigned long)right, (unsigned long)count, link);
+}
+
+/* ---- errors ---- */
+
+static void measure_error(const char *name, int kind, int frames, double tolerance, double advance) {
+    const int seeds = small ? 2 : SEEDS;
+    gx_blade_desc desc;
+    double most = 0, sum = 0, time = 0, deviation = 0;
+    size_t right = 0, moves = 0;
+    row r;
+    int seed;
+    memset(&desc, 0, sizeof desc);
+    desc.tolerance = tolerance;
+    desc.min_advance = advance;
+    memset(&r, 0, sizeof r);
+    for (seed = 1; seed <= seeds; seed++) {
+        stage s = open_stage(small ? 4 : 8, (uint64_t)seed, 0, &desc);
+        const stage_sheet sheet = stage_random_sheet(&s);
+        const stage_motion m = stage_random_motion(&s, kind);
+        double square;
+        stage_follow_sheet(&s, &sheet, &m, frames);
+        most = fmax(most, stage_wall_error(&s, &sheet, &square));
+        fail(name, &s);
+        sum += square;
+        right += s.view.fragment_count == 2;
+        time += s.tally.seconds;
+        moves += s.tally.moves;
+        deviation = fmax(deviation, s.tally.deviation);
+        if (seed == seeds) r = row_of("error", name, &s);
+        stage_close(&s);
+    }
+    r.frames = frames;
+    r.tolerance = tolerance;
+    r.advance = advance;
+    r.fragments = right;
+    r.expected = (size_t)seeds;
+    r.deviation = deviation;
+    r.most = most;
+    r.rms = sqrt(sum / seeds);
+    r.median = 1e3 * time / (double)moves;
+    r.divided = 0;
+    r.leaves = r.us = r.link = r.worst = 0;
+    put(&r, "%4d frames, tolerance %5g, advance %4g: off by %.1e at most, %.1e rms; %lu of %d right, %.2f ms a move",
+        frames, tolerance, advance, r.most, r.rms, (unsigned long)right, seeds, r.median);
+}
+
+static void measure_errors(void) {
+    static const char *const names[3] = {"calm", "swinging", "violent"};
+    static const int frames[5] = {20, 40, 60, 120, 240};
+    static const double tolerances[5] = {0.001, 0.003, 0.01, 0.03, 0.1}, advances[3] = {0.25, 1, 2};
+    int kind, i;
+    for (kind = STAGE_CALM; kind <= STAGE_VIOLENT; kind++) {
+        for (i = small; i < (small ? 2 : 5); i++) measure_error(names[kind], kind, frames[i], 0.01, 0.5);
+        for (i = 0; i < (small ? 1 : 5); i++)
+            if (tolerances[i] < 0.01 || tolerances[i] > 0.01) measure_error(names[kind], kind, 60, tolerances[i], 0.5);
+        for (i = 0; i < (small ? 1 : 3); i++) measure_error(names[kind], kind, 60, 0.01, advances[i]);
+    }
+}
+
+/* ---- cost ---- */
+
+/* A straight edge along y, oblique, through a block that follows a motion. times: of each move, ms */
+static void pass_calmly(stage *s, int frames, double *times) {
+    const stage_motion m = stage_random_motion(s, STAGE_CALM);
+    const double n = s->cells[0];
+    int k;
+    for (k = 0; k <= frames; k++) {
+        const double share = (double)k / frames, y = -2 + (n + 4) * share, before = s->tally.seconds;
+        stage_pose(s, &m, share);
+        stage_move(s, -n, y, 0.45 * n, 2 * n, y + 0.05 * n, 0.5 * n);
+        times[k] = 1e3 * (s->tally.seconds - before);
+    }
+    stage_lift(s);
+}
+
+static void measure_cost(uint32_t n, int frames) {
+    static double times[MOST_FRAMES];
+    stage s = open_stage(n, 1, 0, NULL);
+    row r;
+    pass_calmly(&s, frames, times);
+    fail("cost", &s);
+    r = row_of("cost", "pass", &s);
+    r.frames = frames;
+    r.expected = 2;
+    r.median = median(times, (size_t)frames + 1);
+    put(&r, "%7lu elements, %3d frames: %5lu divided, %.2f leaves and %6.1f us each; a move %.3f ms, worst %.3f ms",
+        (unsigned long)r.elements, frames, (unsigned long)r.divided, r.leaves, r.us, r.median, r.worst);
+    stage_close(&s);
+}
+
+static double step_ms(stage *s) {
+    const double start = seconds(NULL);
+    stage_step(s, s->swing, 0, -9.8);
+    return 1e3 * (seconds(NULL) - start);
+}
+
+/* A blade that is moved, but far from the body */
+static void measure_idle(uint32_t n) {
+    enum { MOVES = 21 };
+    stage s = open_stage(n, 1, 0, NULL);
+    double moves[MOVES], steps[MOVES];
+    row r;
+    int k;
+    s.swing = 6;
+    for (k = 0; k < MOVES; k++) {
+        const double before = s.tally.seconds;
+        steps[k] = step_ms(&s);
+        stage_move(&s, -9, 10.0 * n + k, 0, 9, 10.0 * n + k, 0);
+        moves[k] = 1e3 * (s.tally.seconds - before);
+    }
+    fail("idle", &s);
+    r = row_of("idle", "far", &s);
+    r.fragments = 0;
+    r.link = 0;
+    r.median = median(moves, MOVES);
+    r.step = median(steps, MOVES);
+    r.share = r.median / r.step;
+    put(&r, "%7lu elements: a move %.3f ms, a step %.2f ms: %.2f %%", (unsigned long)r.elements, r.median, r.step,
+        100 * r.share);
+    stage_close(&s);
+}
+
+/* The time of a move that cuts nothing, s: the edge stays where it is in the middle of the block. */
+static double still_move(uint32_t n, size_t points) {
+    enum { MOVES = 21 };
+    static double edge[3 * POINTS];
+    stage s = open_stage(n, 1, 0, NULL);
+    double times[MOVES];
+    int k;
+    for (k = 0; k < 30 + MOVES; k++) {
+        const double y = -1 + (k < 30 ? k : 29) * (0.5 * n + 1) / 29, before = s.tally.seconds;
+        size_t i;
+        for (i = 0; i < points; i++) {
+            edge[3 * i] = -1 + (n + 2.0) * (double)i / (double)(points - 1);
+            edge[3 * i + 1] = y;
+            edge[3 * i + 2] = 0.47 * n;
+        }
+        stage_move_edge(&s, edge, points);
+        if (k >= 30) times[k - 30] = s.tally.seconds - before;
+    }
+    fail("sample", &s);
+    stage_close(&s);
+    return median(times, MOVES);
+}
+
+static void measure_sample(uint32_t n) {
+    const double few = still_move(n, 2), many = still_move(n, POINTS);
+    row r;
+    memset(&r, 0, sizeof r);
+    r.kind = "sample";
+    r.name = "still";
+    r.elements = (size_t)n * n * n * 6;
+    r.median = 1e3 * many;
+    r.ns = 1e9 * (many - few) / (POINTS - 2);
+    put(&r, "%7lu elements: %.0f ns for a point of the edge", (unsigned long)r.elements, r.ns);
+}
+
+/* ---- frames ---- */
+
+static double draw(stage *s, double **positions) {
+    const double start = seconds(NULL);
+    gxs_model model;
+    gx_skin skin;
+    check(gx_body_model(s->body, &model, NULL));
+    check(gx_body_skin(s->body, NULL, &skin, NULL));
+    *positions = (double *)realloc(*positions, 3 * skin.vertex_count * sizeof **positions);
+    if (*positions == NULL) check(GX_ERROR_MEMORY);
+    check(gx_body_skin_positions(s->body, *positions, NULL));
+    return seconds(NULL) - start;
+}
+
+static void measure_frames(uint32_t n) {
+    enum { FRAMES = 60 };
+    stage s = open_stage(n, 1, 0, NULL);
+    double times[FRAMES + 1], steps[FRAMES + 1], *positions = NULL;
+    row r;
+    int k;
+    s.swing = 6;
+    for (k = 0; k < 10; k++) step_ms(&s);
+    draw(&s, &positions);
+    stage_clear_tally(&s);
+    for (k = 0; k <= FRAMES; k++) {
+        const double share = (double)k / FRAMES, y = -2 + (n + 4.0) * share;
+        double before;
+        steps[k] = step_ms(&s);
+        before = s.tally.seconds;
+        stage_move(&s, -2.0 * n, y, 0.45 * n, 3.0 * n, y + 0.7, 0.45 * n + 1.1);
+        fail("frame", &s);
+        times[k] = 1e3 * (s.tally.seconds - before + draw(&s, &positions));
+    }
+    r = row_of("frame", "pass", &s);
+    r.frames = FRAMES;
+    r.expected = 2;
+    r.median = median(times, FRAMES + 1);
+    r.worst = times[FRAMES]; /* sorted */
+    r.step = median(steps, FRAMES + 1);
+    r.share = r.median / r.step;
+    put(&r, "%7lu elements: blade, cut, model and skin %.2f ms a frame, worst %.2f ms; a step %.1f ms",
+        (unsigned long)r.elements, r.median, r.worst, r.step);
+    free(positions);
+    stage_close(&s);
+}
+
+int main(int argc, char **argv) {
+    static const uint32_t sizes[3] = {12, 19, 55}; /* 10,368, 41,154 and 998,250 elements */
+    const char *path = csv_arguments(argc, argv, &small);
+    const int count = small ? 1 : 3;
+    int i;
+    csv_open(
+        argv[0], path,
+        "kind,name,elements,frames,tolerance,advance,fragments,expected,divided,leaves,us_per_divided,link,deviation,"
+        "max_error,rms_error,median_ms,worst_ms,step_ms,share,ns_per_sample");
+    for (i = 0; i < STAGE_SCENES; i++) measure_scene(&stage_scenes[i]);
+    measure_passes("0.02", 0.02, 1, small ? 20 : 10000);
+    measure_passes("0.06", 0.06, 1, small ? 20 : 1000);
+    measure_passes("0.1", 0.1, 1, small ? 20 : 1000);
+    measure_passes("0.1 flat", 0.1, 0.2, small ? 20 : 1000);
+    measure_errors();
+    for (i = 0; i < count; i++) measure_cost(small ? 8 : sizes[i], 60);
+    for (i = 0; i < (small ? 1 : 2); i++) measure_cost(small ? 8 : sizes[i], 600);
+    for (i = 0; i < (small ? 1 : 2); i++) measure_idle(small ? 8 : sizes[i]);
+    for (i = 0; i < (small ? 1 : 2); i++) measure_sample(small ? 8 : sizes[i]);
+    for (i = 0; i < (small ? 1 : 2); i++) measure_frames(small ? 8 : sizes[i]);
+    return csv_close();
+}

@@ -1,0 +1,1001 @@
+/* test_blade.c - blades: edges in space that are moved through bodies which move meanwhile. Scenes, given motions and
+   known sheets are those of bench/blade.h. What must come of a pass: the fragments that a cut by the swept sheet gives,
+   the volume of before, no link across the cut.
+
+   Random tests print their seed; GXFEM_SEED=n runs seed n alone. GXFEM_PASSES=n runs n random passes in place of 200;
+   CK_RUN_CASE=passes runs those alone. */
+#ifndef GXFEM_LINKED
+#define GXFEM_IMPLEMENTATION
+#endif
+#include "../gxfem.h"
+#include "body.h"
+#include "../bench/blade.h"
+#include "../examples/gxshape.h"
+
+enum { PASSES = 200, PASSES_AT_ONCE = 20 };
+
+static void check_stage(const stage *s, uint64_t seed) {
+    ck_assert_msg(stage_ok(s), "seed %llu: %s, field %s, index %zu", (unsigned long long)seed,
+                  gx_result_text(s->failure.result), s->failure.field ? s->failure.field : "none", s->failure.index);
+    ck_assert_msg(s->tally.volume <= 1e-12, "seed %llu: the volume is off by %g", (unsigned long long)seed,
+                  s->tally.volume);
+    ck_assert_msg(s->tally.link > 0, "seed %llu: a link has no area", (unsigned long long)seed);
+}
+
+static void check_fragments(const stage *s, size_t expected, uint64_t seed) {
+    double least = HUGE_VAL;
+    size_t i;
+    check_stage(s, seed);
+    for (i = 0; i < s->view.fragment_count; i++) least = fmin(least, s->view.fragment_volume[i]);
+    ck_assert_msg(s->view.fragment_count == expected, "seed %llu: %zu fragments in place of %zu; the smallest of %g m3",
+                  (unsigned long long)seed, s->view.fragment_count, expected, least);
+}
+
+static stage block_of(uint32_t n, uint64_t seed) {
+    stage s;
+    memset(&s, 0, sizeof s);
+    s.cells[0] = s.cells[1] = s.cells[2] = n;
+    s.random = seed * 7919;
+    return s;
+}
+
+static stage open_block(uint32_t n, uint64_t seed) {
+    stage s = block_of(n, seed);
+    stage_open(&s, 1e3, 0, NULL);
+    return s;
+}
+
+/* Are the fragments of two bodies of the same volumes? */
+static double volume_difference(const gx_view *a, const gx_view *b) {
+    double most = 0;
+    size_t i, j;
+    if (a->fragment_count != b->fragment_count) return HUGE_VAL;
+    for (i = 0; i < a->fragment_count; i++) {
+        double best = HUGE_VAL;
+        for (j = 0; j < b->fragment_count; j++) best = fmin(best, fabs(a->fragment_volume[i] - b->fragment_volume[j]));
+        most = fmax(most, best);
+    }
+    return most;
+}
+
+/* ---- scenes ---- */
+
+/* Cubes along an edge, by scene of bench/blade.h */
+static const uint32_t scene_sizes[STAGE_SCENES] = {6, 6, 6, 7, 6, 8, 6, 6, 6, 6, 6, 6, 6};
+
+START_TEST(scenes) {
+    const stage_scene *scene = &stage_scenes[_i];
+    stage s;
+    memset(&s, 0, sizeof s);
+    s.random = 1;
+    stage_play(&s, scene, scene_sizes[_i], NULL);
+    check_fragments(&s, scene->fragments, (uint64_t)_i);
+    ck_assert_uint_gt(s.tally.triangles, 0);
+    if (strcmp(scene->name, "arms") == 0 || strcmp(scene->name, "over") == 0 || strcmp(scene->name, "slit") == 0)
+        ck_assert_msg(s.overlap > 1, "pieces are %g cubes in each other", s.overlap);
+    stage_close(&s);
+}
+END_TEST
+
+/* ---- at rest ---- */
+
+typedef struct plane_pass {
+    double point[3], along[3], way[3];
+} plane_pass;
+
+/* Moves a straight edge through a body at rest in the plane through `point`. */
+static void pass_at_rest(gx_body *body, const plane_pass *p, double reach, int frames) {
+    gx_blade *blade = NULL;
+    gx_blade_report report;
+    int i, k;
+    ck_assert_int_eq(gx_blade_create(body, NULL, &blade, NULL), GX_OK);
+    for (i = 0; i <= frames; i++) {
+        const double t = reach * (2.0 * i / frames - 1);
+        double edge[6];
+        for (k = 0; k < 6; k++)
+            edge[k] = p->point[k % 3] + t * p->way[k % 3] + (k < 3 ? -reach : reach) * p->along[k % 3];
+        ck_assert_int_eq(gx_blade_move(blade, edge, 2, NULL, 0, &report, NULL), GX_OK);
+        ck_assert(report.cut.min_link_ratio > 0);
+    }
+    ck_assert_int_eq(gx_blade_lift(blade, &report, NULL), GX_OK);
+    gx_blade_destroy(blade);
+}
+
+static void check_at_rest(workload *w, const plane_pass *p, double reach, int frames, double tolerance) {
+    gx_body *passed = body_of(w), *cut = body_of(w);
+    double n[3];
+    gx_view a, b;
+    int k;
+    for (k = 0; k < 3; k++)
+        n[k] = p->along[(k + 1) % 3] * p->way[(k + 2) % 3] - p->along[(k + 2) % 3] * p->way[(k + 1) % 3];
+    add_plane(w, p->point, n, reach);
+    cut_by(cut, w, w->surface_count - 1, 1);
+    pass_at_rest(passed, p, reach, frames);
+    a = view_of(passed);
+    b = view_of(cut);
+    ck_assert_msg(volume_difference(&a, &b) <= tolerance * b.volume, "%zu fragments, %zu by the sheet, %g apart",
+                  a.fragment_count, b.fragment_count, volume_difference(&a, &b));
+    ck_assert(fabs(a.volume - b.volume) <= 1e-12 * b.volume);
+    gx_body_destroy(passed);
+    gx_body_destroy(cut);
+}
+
+/* In planes of nodes, along mesh edges, through nodes: exactly the sheet's pieces */
+static const plane_pass rest_passes[] = {
+    {{2, 2, 2}, {1, 0, 0}, {0, 1, 0}},   /* in a plane of nodes, along mesh edges */
+    {{2, 2, 2}, {1, 1, 0}, {-1, 1, 0}},  /* ... along diagonals */
+    {{2, 2, 2}, {0, 0, 1}, {1, 0, 0}},   /* ... another one */
+    {{2, 2, 2}, {0, 0, 1}, {1, 1, 0}},   /* in a plane of diagonals */
+    {{2, 2, 2}, {1, 1, 0}, {0, 0, 1}},   /* ... along diagonals */
+    {{2, 2, 2}, {1, 0, 0}, {0, 1, 0.5}}, /* along mesh edges, through nodes */
+    {{2, 2, 2.25}, {1, 0, 0}, {0, 1, 0}},
+    /* up to the tolerance on the cut's area: fronts are thinned, and places in the air are brought nearer */
+    {{2, 2, 2}, {1, 0.5, 0.25}, {0, 1, -0.5}},
+    {{2.1, 1.7, 2.3}, {1, 0.3, 0.2}, {-0.2, 1, 0.3}},
+};
+enum { REST_PASSES = sizeof rest_passes / sizeof *rest_passes };
+
+START_TEST(path_and_sheet) {
+    static const int frames[3] = {16, 32, 64};
+    const double tolerance = _i + 2 < REST_PASSES ? 1e-12 : 0.01 * 16 / 64;
+    workload six = grid(4, 4, 4, 6), five = grid(4, 4, 4, 5);
+    int i;
+    for (i = 0; i < 3; i++) {
+        check_at_rest(&six, &rest_passes[_i], 8, frames[i], tolerance);
+        check_at_rest(&five, &rest_passes[_i], 8, frames[i], tolerance);
+    }
+    wl_free(&six);
+    wl_free(&five);
+}
+END_TEST
+
+/* Meshes that are no lattices: nodes moved at random, and an octopus whose arms fall off */
+START_TEST(other_meshes) {
+    static const plane_pass jittered = {{2.1, 1.7, 2.3}, {1, 0.3, 0.2}, {-0.2, 1, 0.3}},
+                            arms = {{0.01, -0.01, -0.05}, {1, 0.1, 0.05}, {-0.1, 1, 0}};
+    workload w = grid(4, 4, 4, _i == 0 ? 5 : 6);
+    gxshape_field field;
+    gxshape_mesh mesh;
+    size_t i;
+    random_seed((uint64_t)_i + 1);
+    for (i = 0; i < 3 * w.node_count; i++) w.positions[i] += random_real(-0.15, 0.15);
+    check_at_rest(&w, &jittered, 8, 30, 1e-3);
+    wl_free(&w);
+    if (_i > 0) return;
+    memset(&field, 0, sizeof field);
+    gxshape_octopus(&field);
+    ck_assert_ptr_null(gxshape_fill(&field, 0.04, &mesh));
+    w = wl_empty();
+    w.positions = mesh.positions;
+    w.node_count = mesh.node_count;
+    w.elements = mesh.elements;
+    w.element_count = mesh.element_count;
+    check_at_rest(&w, &arms, 1, 60, 1e-3);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- relativity ---- */
+
+/* A rigid motion of an edge through a block: turned about the block's middle, then shifted */
+static void place_rigidly(const stage *s, double time, int back, const double from[3], double to[3]) {
+    static const double axis[3] = {0.6, 0, 0.8};
+    const double angle = 0.7 * sin(2 * time), middle = 0.5 * s->cells[0],
+                 shift[3] = {0.5 * sin(5 * time), (s->cells[0] + 6.0) * time, 0.4 * sin(4 * time)};
+    int k;
+    for (k = 0; k < 3; k++) to[k] = from[k] - middle - (back ? shift[k] : 0);
+    stage_turn(axis, back ? -angle : angle, to);
+    for (k = 0; k < 3; k++) to[k] += middle + (back ? 0 : shift[k]);
+}
+
+/* The blade through the still body, or the body through the still blade */
+static void pass_rigidly(stage *s, int body_moves, int frames) {
+    const double middle = 0.5 * s->cells[0],
+                 still[6] = {middle - STAGE_FAR, -3, middle - 0.4, middle + STAGE_FAR, -2.6, middle + 0.3};
+    double edge[6];
+    size_t c;
+    int i, k;
+    for (i = 0; i <= frames; i++) {
+        const double time = (double)i / frames;
+        memcpy(edge, still, sizeof edge);
+        if (!body_moves) {
+            place_rigidly(s, time, 0, still, edge);
+            place_rigidly(s, time, 0, still + 3, edge + 3);
+        }
+        for (c = 0; c < s->view.copy_count && body_moves; c++) {
+            const double *rest = s->rest + 3 * s->view.copy_node[c];
+            double x[3];
+            place_rigidly(s, time, 1, rest, x);
+            for (k = 0; k < 3; k++) s->view.displacement[3 * c + (size_t)k] = x[k] - rest[k];
+        }
+        stage_move_edge(s, edge, 2);
+    }
+    stage_lift(s);
+}
+
+/* The same pieces in both, and with 1, 2, 5 and 20 times as many frames, up to the blade's tolerance on the cut's
+   area */
+START_TEST(relativity) {
+    static const int factors[4] = {1, 2, 5, 20};
+    const uint32_t n = 5;
+    stage first = open_block(n, 1);
+    int i, body_moves;
+    pass_rigidly(&first, 0, 20);
+    check_fragments(&first, 2, 0);
+    for (i = 0; i < 4; i++)
+        for (body_moves = 0; body_moves < 2; body_moves++) {
+            stage s = open_block(n, 1);
+            double off;
+            pass_rigidly(&s, body_moves, 20 * factors[i]);
+            check_fragments(&s, 2, (uint64_t)factors[i]);
+            off = volume_difference(&first.view, &s.view);
+            /* 20 frames know less of the path than 400 */
+            ck_assert_msg(off <= 0.02 * 2 * n * n, "%d frames, the %s moves: %g m3 apart", 20 * factors[i],
+                          body_moves ? "body" : "blade", off);
+            stage_close(&s);
+        }
+    stage_close(&first);
+}
+END_TEST
+
+/* ---- known sheets ---- */
+
+/* The edge follows a sheet of the material: two pieces, the sheet's own, and walls near it. Limits are loose; the bench
+   has figures. */
+START_TEST(known_sheets) {
+    const uint64_t seed = (uint64_t)_i + 1;
+    const int kind = _i % 3;
+    const uint32_t n = 5;
+    stage s = open_block(n, seed), cut = open_block(n, seed);
+    const stage_sheet sheet = stage_random_sheet(&s);
+    const stage_motion motion = stage_random_motion(&s, kind);
+    double error, square;
+    stage_follow_sheet(&s, &sheet, &motion, 40);
+    check_fragments(&s, 2, seed);
+    error = stage_wall_error(&s, &sheet, &square);
+    check_stage(&s, seed);
+    ck_assert_msg(error > 0 && error <= (kind == STAGE_CALM ? 0.04 : 0.08), "seed %d: walls are %g cubes off", _i + 1,
+                  error);
+    stage_cut_sheet(&cut, &sheet, 24);
+    check_fragments(&cut, 2, seed);
+    CHECK_SEED(volume_difference(&s.view, &cut.view) <= 0.01 * 2 * n * n, seed);
+    stage_close(&s);
+    stage_close(&cut);
+}
+END_TEST
+
+/* With more frames the walls come no farther off, and the pieces stay. */
+START_TEST(more_frames) {
+    static const int factors[4] = {1, 2, 5, 20};
+    const uint64_t seed = (uint64_t)_i + 1;
+    int i;
+    for (i = 0; i < 4; i++) {
+        stage s = open_block(4, seed);
+        const stage_sheet sheet = stage_random_sheet(&s);
+        const stage_motion motion = stage_random_motion(&s, STAGE_CALM);
+        double square;
+        stage_follow_sheet(&s, &sheet, &motion, 20 * factors[i]);
+        check_fragments(&s, 2, seed);
+        CHECK_SEED(stage_wall_error(&s, &sheet, &square) <= 0.04, seed);
+        stage_close(&s);
+    }
+}
+END_TEST
+
+/* ---- random passes ---- */
+
+static void random_pass(stage *s, uint64_t seed, double noise, double squeeze) {
+    stage_motion motion;
+    *s = block_of(4, seed);
+    s->noise = noise;
+    stage_open(s, 1e3, 0, NULL);
+    motion = stage_random_motion(s, STAGE_CALM);
+    motion.squeeze[seed % 3] = squeeze;
+    stage_random_pass(s, &motion, 40);
+}
+
+/* Straight edges through blocks that move, with noise of 0.02 cubes a node and frame: two pieces each */
+START_TEST(passes) {
+    const char *more = getenv("GXFEM_PASSES"), *only = getenv("GXFEM_SEED");
+    const int count = (more ? atoi(more) : PASSES) / PASSES_AT_ONCE;
+    const int first = only ? atoi(only) : 1 + _i * count, end = only ? first + (_i == 0) : first + count;
+    int seed;
+    for (seed = first; seed < end; seed++) {
+        stage s;
+        random_pass(&s, (uint64_t)seed, 0.02, 1);
+        check_fragments(&s, 2, (uint64_t)seed);
+        stage_close(&s);
+    }
+}
+END_TEST
+
+/* The volume of all fragments but the two largest */
+static double specks(const gx_view *view) {
+    double first = 0, second = 0, sum = 0;
+    size_t i;
+    for (i = 0; i < view->fragment_count; i++) {
+        const double v = view->fragment_volume[i];
+        sum += v;
+        if (v > first)
+            second = first, first = v;
+        else if (v > second)
+            second = v;
+    }
+    return sum - first - second;
+}
+
+/* Much noise, without and with elements that it turns inside out: two pieces, and next to nothing beside them */
+START_TEST(noise) {
+    const int inverted = _i;
+    size_t seen = 0;
+    uint64_t seed;
+    for (seed = 1; seed <= 30; seed++) {
+        stage s;
+        random_pass(&s, seed, 0.1, inverted ? 0.2 : 1);
+        check_stage(&s, seed);
+        seen += s.tally.inverted;
+        ck_assert_msg(s.view.fragment_count >= 2, "seed %d: one piece is left", (int)seed);
+        ck_assert_msg(specks(&s.view) <= (inverted ? 1 : 1e-3) / 6, "seed %d: %zu fragments, %g m3 beside two",
+                      (int)seed, s.view.fragment_count, specks(&s.view));
+        stage_close(&s);
+    }
+    ck_assert_int_eq(seen > 0, inverted);
+}
+END_TEST
+
+/* ---- strokes ---- */
+
+/* An edge across x at a place y and height z of a block */
+static void move_at(stage *s, double y, double z) {
+    const double middle = 0.5 * s->cells[0];
+    stage_move(s, middle - STAGE_FAR, y, z, middle + STAGE_FAR, y + 0.4, z + 0.3);
+}
+
+static void move_between(stage *s, double from, double to, double z) {
+    const int frames = (int)(fabs(to - from) / 0.3) + 1;
+    int k;
+    for (k = 0; k <= frames; k++) move_at(s, from + (to - from) * k / frames, z);
+}
+
+static stage open_for_stab(uint32_t n) {
+    stage s = block_of(n, 1);
+    gx_blade_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.starts_inside = 1;
+    stage_open(&s, 1e3, 0, &desc);
+    return s;
+}
+
+/* The same exactly in a plane of the material */
+static void move_in_plane(stage *s, double from, double to) {
+    int k;
+    for (k = 0; k <= 10; k++) {
+        const double y = from + (to - from) * k / 10, edge[6] = {-9, y, 2.25, 15, y, 2.25};
+        stage_move_edge(s, edge, 2);
+    }
+    stage_lift(s);
+}
+
+/* A stab into the middle and out on one side; another one, a little before it, out on the other side */
+START_TEST(stab) {
+    stage s = open_for_stab(5);
+    move_in_plane(&s, 2.5, -2);
+    check_fragments(&s, 1, 0);
+    ck_assert_uint_gt(s.tally.divided, 20);
+    move_in_plane(&s, _i == 0 ? 2.5 : 2.25, 7);
+    check_fragments(&s, 2, 0);
+    stage_close(&s);
+}
+END_TEST
+
+/* The blade is lifted in the middle; it begins anew where it was, or a little behind. */
+START_TEST(lift_in_the_middle) {
+    stage s = open_for_stab(5);
+    move_in_plane(&s, -2, 2.75);
+    check_fragments(&s, 1, 0);
+    move_in_plane(&s, _i == 0 ? 2.75 : 2.5, 7);
+    check_fragments(&s, 2, 0);
+    stage_close(&s);
+}
+END_TEST
+
+/* A stroke that ends in the block, and another one from outside along the same path: the second goes through the cut of
+   the first. */
+START_TEST(second_stroke) {
+    stage s = open_block(5, 1);
+    move_between(&s, -2, 2.6, 2.2);
+    stage_lift(&s);
+    move_between(&s, -2, 7, 2.2);
+    stage_lift(&s);
+    check_stage(&s, 0);
+    ck_assert_uint_ge(s.view.fragment_count, 2);
+    ck_assert(specks(&s.view) <= 1e-2);
+    stage_close(&s);
+}
+END_TEST
+
+/* Five strokes of one blade: six slices */
+START_TEST(several_strokes) {
+    stage s = open_block(5, 1);
+    int i;
+    for (i = 0; i < 5; i++) {
+        if (i % 2 == 0)
+            move_between(&s, -2, 7, 0.4 + 0.83 * i);
+        else
+            move_between(&s, 7, -2, 0.4 + 0.83 * i);
+        stage_lift(&s);
+        check_fragments(&s, (size_t)i + 2, (uint64_t)i);
+    }
+    stage_close(&s);
+}
+END_TEST
+
+/* What waits is cut when the blade is lifted; a second lift does nothing. */
+START_TEST(lift_cuts_what_waits) {
+    gx_blade_desc desc;
+    gx_blade_report report;
+    stage s = block_of(3, 1);
+    uint64_t state;
+    memset(&desc, 0, sizeof desc);
+    desc.min_advance = 100;
+    stage_open(&s, 1e3, 0, &desc);
+    move_at(&s, -1, 1.3);
+    move_at(&s, 4, 1.3);
+    check_fragments(&s, 1, 0);
+    ck_assert_uint_eq(s.tally.triangles, 0);
+    stage_lift(&s);
+    check_fragments(&s, 2, 0);
+    state = gx_body_state_hash(s.body);
+    memset(&report, 1, sizeof report);
+    ck_assert_int_eq(gx_blade_lift(s.blade, &report, &s.failure), GX_OK);
+    ck_assert(report.triangle_count == 0 && report.layer_count == 0 && report.cut.touched_elements == 0);
+    ck_assert(report.deviation == 0 && report.cut.min_link_ratio == 1);
+    ck_assert(gx_body_state_hash(s.body) == state);
+    stage_close(&s);
+}
+END_TEST
+
+/* ---- scopes, other blades, other cuts ---- */
+
+/* A vertical plane makes two pieces, of which the blade cuts one. */
+START_TEST(scope) {
+    stage s = open_block(5, 1);
+    gx_blade_report report;
+    int k;
+    stage_cut_plane(&s, 2.41);
+    stage_look(&s);
+    for (k = 0; k <= 30; k++) {
+        const double y = -2 + 0.3 * k, edge[6] = {-9, y, 2.2, 15, y + 0.4, 2.5};
+        uint32_t left = 0;
+        while (s.view.fragment_center[3 * left] > 2.4) left++;
+        ck_assert_int_eq(gx_blade_move(s.blade, edge, 2, &left, 1, &report, &s.failure), GX_OK);
+        stage_look(&s);
+        if (s.view.fragment_count > 2) break; /* what has come off is not in the scope of one fragment */
+    }
+    check_fragments(&s, 3, 0);
+    stage_close(&s);
+}
+END_TEST
+
+/* Two blades cross in one body, move by move in turn; then one is destroyed, and the other goes on. */
+START_TEST(two_blades) {
+    stage s = open_block(5, 1);
+    gx_blade *other = NULL;
+    int k;
+    ck_assert_int_eq(gx_blade_create(s.body, NULL, &other, NULL), GX_OK);
+    for (k = 0; k <= 40; k++) {
+        const double way = -2 + 9 * k / 40.0, edge[6] = {2.3, -9, way, 2.6, 15, way + 0.2};
+        move_at(&s, way, 2.2);
+        ck_assert_int_eq(gx_blade_move(other, edge, 2, NULL, 0, NULL, &s.failure), GX_OK);
+        stage_look(&s);
+    }
+    stage_lift(&s);
+    ck_assert_int_eq(gx_blade_lift(other, NULL, NULL), GX_OK);
+    stage_look(&s);
+    check_fragments(&s, 4, 0);
+    gx_blade_destroy(s.blade);
+    for (k = 0; k <= 40; k++) {
+        const double way = -2 + 9 * k / 40.0, edge[6] = {-9, way, 1.1, 15, way + 0.3, 1.2};
+        ck_assert_int_eq(gx_blade_move(other, edge, 2, NULL, 0, NULL, &s.failure), GX_OK);
+    }
+    stage_look(&s);
+    check_fragments(&s, 6, 0);
+    stage_close(&s); /* the body destroys the blade that is left */
+}
+END_TEST
+
+/* While the blade is in the middle, a plane cuts the body across it. */
+START_TEST(cut_between_moves) {
+    stage s = open_block(5, 1);
+    move_between(&s, -2, 2.6, 2.2);
+    stage_cut_plane(&s, 2.41);
+    stage_look(&s);
+    check_fragments(&s, 2, 0);
+    move_between(&s, 2.7, 7, 2.2);
+    stage_lift(&s);
+    check_fragments(&s, 4, 0);
+    stage_close(&s);
+}
+END_TEST
+
+static void remove_box(stage *s, const double low[3], const double high[3]) {
+    workload w = wl_empty();
+    wl_add_aligned_box(wl_add_surface(&w, 1), low, high);
+    cut_by(s->body, &w, 0, 1);
+    ck_assert_int_eq(gx_body_view(s->body, &s->view, NULL), GX_OK);
+    s->volume = s->view.volume;
+    wl_free(&w);
+}
+
+/* While the blade is in the middle, material is taken away: where it is, ahead of it, or all of it. */
+START_TEST(removal_between_moves) {
+    static const double low[3][3] = {{-1, 1.9, 1.4}, {1.3, 3.6, -1}, {-1, -1, -1}},
+                        high[3][3] = {{3.1, 3.4, 3.3}, {3.2, 4.2, 6}, {6, 6, 6}};
+    stage s = open_block(5, 1);
+    move_between(&s, -2, 2.6, 2.2);
+    remove_box(&s, low[_i], high[_i]);
+    check_fragments(&s, _i == 2 ? 0 : 1, (uint64_t)_i);
+    if (_i < 2) {
+        move_between(&s, 2.7, 7, 2.2);
+        stage_lift(&s);
+        check_fragments(&s, 2, (uint64_t)_i);
+    } else {
+        gx_blade_report report;
+        const double edge[6] = {-9, 2.7, 2.2, 15, 3, 2.3};
+        ck_assert_int_eq(gx_blade_move(s.blade, edge, 2, NULL, 0, &report, NULL), GX_OK);
+        ck_assert_uint_eq(report.triangle_count, 0);
+        ck_assert_int_eq(gx_blade_lift(s.blade, &report, NULL), GX_OK);
+    }
+    stage_close(&s);
+}
+END_TEST
+
+/* The body goes back to what it was before the stroke, or becomes a clone that is cut otherwise: its blade is lifted,
+   or where the clone's is. The blade goes on. */
+START_TEST(restored_between_moves) {
+    stage s = open_for_stab(4);
+    gx_body *before = NULL;
+    ck_assert_int_eq(gx_body_clone(s.body, &before, NULL), GX_OK);
+    move_between(&s, -2, 2, 1.8);
+    if (_i == 1) {
+        workload w = wl_empty();
+        add_axis_plane(&w, 0, 1.7);
+        cut_by(before, &w, 0, 1);
+        wl_free(&w);
+    }
+    ck_assert_int_eq(gx_body_restore(s.body, before, NULL), GX_OK);
+    ck_assert(gx_body_state_hash(s.body) == gx_body_state_hash(before));
+    stage_look(&s);
+    check_fragments(&s, _i == 0 ? 1 : 2, 0);
+    ck_assert_ptr_eq(gx_body_blade(s.body, 0), s.blade);
+    move_between(&s, -2, 6, 1.8);
+    stage_lift(&s);
+    check_fragments(&s, _i == 0 ? 2 : 4, 0);
+    gx_body_destroy(before);
+    stage_close(&s);
+}
+END_TEST
+
+static gx_body *saved_and_loaded(gx_body *body) {
+    gx_body *loaded = NULL;
+    void *bytes;
+    size_t size;
+    ck_assert_int_eq(gx_body_save(body, NULL, 0, &size, NULL), GX_OK);
+    bytes = malloc(size);
+    ck_assert_int_eq(gx_body_save(body, bytes, size, &size, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_load(bytes, size, NULL, &loaded, NULL), GX_OK);
+    free(bytes);
+    return loaded;
+}
+
+/* At every move of a stroke a copy is made. Each goes on as the body does, to the same bits. */
+START_TEST(copies_go_on) {
+    enum { MOVES = 16 };
+    gx_body *copies[MOVES];
+    stage s = open_block(4, 5);
+    stage_motion motion = stage_random_motion(&s, STAGE_CALM);
+    double edges[MOVES][6];
+    int i, k, c;
+    for (k = 0; k < MOVES; k++) {
+        const double share = k / (MOVES - 1.0), y = -1.5 + 7 * share, edge[6] = {-9, y, 1.7, 13, y + 0.4, 2.2};
+        memcpy(edges[k], edge, sizeof edge);
+        if (_i == 0)
+            ck_assert_int_eq(gx_body_clone(s.body, &copies[k], NULL), GX_OK);
+        else
+            copies[k] = saved_and_loaded(s.body);
+        ck_assert(gx_body_state_hash(copies[k]) == gx_body_state_hash(s.body));
+        stage_pose(&s, &motion, share);
+        stage_move_edge(&s, edges[k], 2);
+        for (i = 0; i <= k; i++) { /* the others follow */
+            stage other = s;
+            other.body = copies[i];
+            other.view = view_of(copies[i]);
+            other.blade = gx_body_blade(copies[i], 0);
+            ck_assert_ptr_nonnull(other.blade);
+            ck_assert_ptr_null(gx_body_blade(copies[i], 1));
+            stage_pose(&other, &motion, share);
+            stage_move_edge(&other, edges[k], 2);
+            ck_assert_msg(gx_body_state_hash(copies[i]) == gx_body_state_hash(s.body), "copy %d differs at move %d", i,
+                          k);
+        }
+    }
+    check_fragments(&s, 2, 0);
+    for (c = 0; c < MOVES; c++) gx_body_destroy(copies[c]);
+    stage_close(&s);
+}
+END_TEST
+
+/* Blades by index: in the order of their creation */
+START_TEST(blades_of_a_body) {
+    stage s = open_block(2, 1);
+    gx_blade *second = NULL, *third = NULL;
+    ck_assert_int_eq(gx_blade_create(s.body, NULL, &second, NULL), GX_OK);
+    ck_assert_int_eq(gx_blade_create(s.body, NULL, &third, NULL), GX_OK);
+    ck_assert(gx_body_blade(s.body, 0) == s.blade && gx_body_blade(s.body, 1) == second);
+    ck_assert(gx_body_blade(s.body, 2) == third && gx_body_blade(s.body, 3) == NULL);
+    ck_assert_ptr_null(gx_body_blade(NULL, 0));
+    gx_blade_destroy(second);
+    ck_assert(gx_body_blade(s.body, 0) == s.blade && gx_body_blade(s.body, 1) == third);
+    stage_close(&s);
+}
+END_TEST
+
+/* ---- carving ---- */
+
+/* A closed box in space, its edges along the axes; m */
+static gx_result carve_box(gx_body *body, const double low[3], const double high[3], gx_cut_report *report) {
+    workload w = wl_empty();
+    gx_surface tool;
+    gx_result result;
+    wl_add_aligned_box(wl_add_surface(&w, 1), low, high);
+    tool = surface_of(&w.surfaces[0]);
+    result = gx_body_carve(body, &tool, report, NULL);
+    wl_free(&w);
+    return result;
+}
+
+/* At rest a tool removes what the same solid cuts out; in a body that is shifted, what lies there then. */
+START_TEST(carving) {
+    static const double low[3] = {-1, 0.6, 1.3}, high[3] = {2.6, 2.3, 2.9}, shift[3] = {0.7, -0.3, 0.45};
+    const double expected = 2.6 * 1.7 * 1.6;
+    stage s = open_block(4, 1);
+    gx_cut_report report;
+    double from[3], to[3];
+    size_t i;
+    int k;
+    for (i = 0; i < 3 * s.view.copy_count && _i == 1; i++) s.view.displacement[i] = shift[i % 3];
+    for (k = 0; k < 3; k++) {
+        from[k] = low[k] + (_i == 1 ? shift[k] : 0);
+        to[k] = high[k] + (_i == 1 ? shift[k] : 0);
+    }
+    ck_assert_int_eq(carve_box(s.body, from, to, &report), GX_OK);
+    ck_assert_msg(fabs(report.removed_volume - expected) <= 1e-9, "%g m3 in place of %g", report.removed_volume,
+                  expected);
+    ck_assert(fabs(view_of(s.body).volume - (64 - expected)) <= 1e-9);
+    ck_assert_uint_eq(view_of(s.body).fragment_count, 1);
+    stage_close(&s);
+}
+END_TEST
+
+/* In a body that is bent and turned, the volume that a small tool removes is what it covers in space, piece by piece:
+   within a share of it, since edges of the tool are straight in space and not in the material. What is left is at its
+   place: no vertex of the skin is inside the tool. */
+START_TEST(carving_what_moves) {
+    static const double low[3] = {1.1, 0.9, 1.2}, high[3] = {2.7, 2.8, 2.6};
+    stage s = open_block(4, (uint64_t)_i + 1);
+    const stage_motion motion = stage_random_motion(&s, STAGE_CALM);
+    const double covered = 1.6 * 1.9 * 1.4;
+    gx_cut_report report;
+    gx_skin skin;
+    double *x;
+    size_t i;
+    stage_pose(&s, &motion, 0.3);
+    ck_assert_int_eq(carve_box(s.body, low, high, &report), GX_OK);
+    CHECK_SEED(fabs(report.removed_volume / covered - 1) <= 0.35, _i + 1); /* waves stretch by up to a third */
+    ck_assert_int_eq(gx_body_skin(s.body, NULL, &skin, NULL), GX_OK);
+    x = (double *)malloc(3 * skin.vertex_count * sizeof *x);
+    ck_assert_int_eq(gx_body_skin_positions(s.body, x, NULL), GX_OK);
+    for (i = 0; i < skin.vertex_count; i++) {
+        double depth = HUGE_VAL;
+        int k;
+        for (k = 0; k < 3; k++)
+            depth = fmin(depth, fmin(x[3 * i + (size_t)k] - low[k], high[k] - x[3 * i + (size_t)k]));
+        ck_assert_msg(depth <= 0.05, "seed %d: a vertex is %g m inside the tool", _i + 1, depth);
+    }
+    free(x);
+    stage_close(&s);
+}
+END_TEST
+
+/* ---- other sizes and places ---- */
+
+/* Small, large, and far from the origin: pieces as at home. Of another size by a power of two: the same cells. */
+START_TEST(sizes_and_places) {
+    static const double scales[5] = {1048576, 1.0 / 1048576, 1e6, 1e-6, 1},
+                        places[5][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {1e6, -3e6, 2e6}};
+    stage home = open_block(4, 1), s = block_of(4, 1);
+    stage_sheet sheet;
+    stage_motion motion;
+    gx_view view;
+    size_t i;
+    s.scale = scales[_i];
+    memcpy(s.origin, places[_i], sizeof s.origin);
+    stage_open(&s, 1e3, 0, NULL);
+    sheet = stage_random_sheet(&home);
+    motion = stage_random_motion(&home, STAGE_CALM);
+    stage_follow_sheet(&home, &sheet, &motion, 30);
+    stage_follow_sheet(&s, &sheet, &motion, 30);
+    check_fragments(&home, 2, 0);
+    ck_assert_int_eq(s.failure.result, GX_OK);
+    ck_assert_uint_eq(s.view.fragment_count, 2);
+    if (_i < 2) ck_assert(hash_of(home.body) == hash_of(s.body));
+    view = s.view;
+    ck_assert(fabs(view.volume / pow(s.scale, 3) - home.view.volume) <= 1e-9 * home.view.volume);
+    for (i = 0; i < 2; i++) {
+        const double v = view.fragment_volume[i] / pow(s.scale, 3);
+        /* a strip may begin a move earlier or later: within the tolerance of 0.01 cubes of the section */
+        const double near = _i < 2 ? 1e-4 : 0.01 * 16;
+        ck_assert(fabs(v - home.view.fragment_volume[0]) < near || fabs(v - home.view.fragment_volume[1]) < near);
+    }
+    stage_close(&home);
+    stage_close(&s);
+}
+END_TEST
+
+/* ---- edges ---- */
+
+/* The same straight edge of two points and of many, evenly or not, some of them equal */
+START_TEST(many_points) {
+    enum { MANY = 1001 };
+    static double edge[3 * MANY];
+    stage two = open_block(4, 1), many = open_block(4, 1);
+    int k, i, c;
+    for (k = 0; k <= 30; k++) {
+        const double y = -2 + 0.27 * k, ends[6] = {-9, y, 1.8, 13, y + 0.3, 2.1};
+        for (i = 0; i < MANY; i++) {
+            const double even = (double)i / (MANY - 1), share = _i == 0 ? even : _i == 1 ? even * even : i / 100 / 10.0;
+            for (c = 0; c < 3; c++)
+                edge[3 * i + c] = i == MANY - 1 ? ends[3 + c] : ends[c] + share * (ends[3 + c] - ends[c]);
+        }
+        stage_move_edge(&two, ends, 2);
+        stage_move_edge(&many, edge, MANY);
+    }
+    stage_lift(&two);
+    stage_lift(&many);
+    check_fragments(&two, 2, 0);
+    check_fragments(&many, 2, 0);
+    ck_assert(volume_difference(&two.view, &many.view) <= 0.01 * 32);
+    stage_close(&two);
+    stage_close(&many);
+}
+END_TEST
+
+/* A bent edge, and one that is a closed line: what it goes around comes out as a plug. */
+START_TEST(bent_edges) {
+    enum { POINTS = 41 };
+    stage s = open_block(5, 1);
+    double edge[3 * POINTS];
+    int k, i;
+    for (k = 0; k <= 40; k++) {
+        const double z = 7 - 0.23 * k;
+        for (i = 0; i < POINTS; i++) {
+            const double angle = 6.283185307179586 * i / (POINTS - 1), u = (i - 20) / 2.0;
+            edge[3 * i] = _i == 0 ? 2.5 + u : 2.47 + (i == POINTS - 1 ? 1.6 : 1.6 * cos(angle));
+            edge[3 * i + 1] = _i == 0 ? 1.6 + 0.1 * u * u : 2.52 + (i == POINTS - 1 ? 0 : 1.6 * sin(angle));
+            edge[3 * i + 2] = z;
+        }
+        stage_move_edge(&s, edge, POINTS);
+    }
+    stage_lift(&s);
+    check_stage(&s, 0);
+    if (_i == 0)
+        check_fragments(&s, 2, 0);
+    else /* the ends are two places of one point: no more is asked of them than this */
+        ck_assert_uint_ge(s.view.fragment_count, 1);
+    stage_close(&s);
+}
+END_TEST
+
+/* Edges that are one point, edges that do not move, edges that move along themselves: nothing comes off, nothing
+   fails. */
+START_TEST(degenerate_edges) {
+    stage s = open_block(3, 1);
+    int k;
+    for (k = 0; k <= 20; k++) {
+        const double y = -2 + 0.35 * k, point[9] = {1.4, y, 1.3, 1.4, y, 1.3, 1.4, y, 1.3},
+                     still[9] = {-9, -1, 1.3, 0, -1, 1.3, 9, -1, 1.3},
+                     along[9] = {-9 - y, 1.2, 1.3, -8 - y, 1.2, 1.3, 12 + y, 1.2, 1.3};
+        if (_i == 2 && k == 0) { /* the edge comes to lie in the block at the first two moves */
+            const double outside[9] = {-9, -1, 1.3, 0, -1, 1.3, 9, -1, 1.3};
+            stage_move_edge(&s, outside, 3);
+        }
+        stage_move_edge(&s, _i == 0 ? point : _i == 1 ? still : along, 3);
+    }
+    stage_lift(&s);
+    check_fragments(&s, 1, 0);
+    stage_close(&s);
+}
+END_TEST
+
+/* Far from the body nothing happens. */
+START_TEST(nothing_near) {
+    stage s = open_block(3, 1);
+    const uint64_t topology = hash_of(s.body);
+    gx_blade_report report;
+    int k;
+    for (k = 0; k < 5; k++) {
+        const double edge[6] = {-9, 20.0 + k, 1, 9, 20.0 + k, 1};
+        memset(&report, 1, sizeof report);
+        ck_assert_int_eq(gx_blade_move(s.blade, edge, 2, NULL, 0, &report, &s.failure), GX_OK);
+        ck_assert(report.layer_count == 0 && report.triangle_count == 0 && report.deviation == 0);
+        ck_assert(report.cut.touched_elements == 0 && report.cut.min_link_ratio == 1);
+        ck_assert_ptr_null(s.failure.field);
+        ck_assert_uint_eq(s.failure.index, SIZE_MAX);
+    }
+    ck_assert(hash_of(s.body) == topology);
+    stage_close(&s);
+}
+END_TEST
+
+/* ---- refusals and memory ---- */
+
+/* Moves that are refused between those that are not leave no trace. (test_failures.c has the fields.) */
+START_TEST(refused_moves) {
+    stage plain = open_block(4, 1), tried = open_block(4, 1);
+    const double bad[6] = {-9, NAN, 1, 9, 1, 1}, three[9] = {0, 0, 0, 1, 0, 0, 2, 0, 0};
+    const uint32_t nowhere = 99;
+    int k;
+    for (k = 0; k <= 20; k++) {
+        const double y = -2 + 0.4 * k;
+        move_at(&plain, y, 1.8);
+        if (k > 0) {
+            const uint64_t state = gx_body_state_hash(tried.body);
+            ck_assert_int_eq(gx_blade_move(tried.blade, bad, 2, NULL, 0, NULL, NULL), GX_ERROR_NOT_FINITE);
+            ck_assert_int_eq(gx_blade_move(tried.blade, three, 3, NULL, 0, NULL, NULL), GX_ERROR_ARGUMENT);
+            ck_assert_int_eq(gx_blade_move(tried.blade, three, 2, &nowhere, 1, NULL, NULL), GX_ERROR_INDEX);
+            ck_assert(gx_body_state_hash(tried.body) == state);
+        }
+        move_at(&tried, y, 1.8);
+    }
+    check_fragments(&plain, 2, 0);
+    check_fragments(&tried, 2, 0);
+    ck_assert(hash_of(plain.body) == hash_of(tried.body));
+    ck_assert(gx_body_state_hash(plain.body) == gx_body_state_hash(tried.body));
+    stage_close(&plain);
+    stage_close(&tried);
+}
+END_TEST
+
+typedef struct failing {
+    size_t calls, fail_at; /* SIZE_MAX: none */
+    int from_then_on, failed;
+} failing;
+
+static void *fail_or_take(void *user, size_t size) {
+    failing *f = (failing *)user;
+    const size_t call = f->calls++;
+    if (call != f->fail_at && !(f->from_then_on && call > f->fail_at)) return malloc(size);
+    f->failed = 1;
+    return NULL;
+}
+static void give_back(void *user, void *memory, size_t size) {
+    (void)user;
+    (void)size;
+    free(memory);
+}
+
+static gx_body *body_on(failing *f, const workload *w) {
+    gx_body_desc desc = desc_of(w);
+    gx_body *body = NULL;
+    memset(f, 0, sizeof *f);
+    f->fail_at = SIZE_MAX;
+    desc.allocator.allocate = fail_or_take;
+    desc.allocator.release = give_back;
+    desc.allocator.user = f;
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+    return body;
+}
+
+static gx_result move_far(gx_blade *blade, int k) {
+    const double y = -1.6 + 0.8 * k, edge[6] = {-9, y, 0.9, 11, y + 0.3, 1.2};
+    return gx_blade_move(blade, edge, 2, NULL, 0, NULL, NULL);
+}
+
+/* At each move of a stroke, every allocation fails in turn: the body is as it was, and the blade goes on as if nothing
+   had been. */
+START_TEST(memory_runs_out) {
+    enum { MOVES = 6 };
+    workload w = grid(2, 2, 2, 5);
+    failing f, g;
+    gx_body *body = body_on(&f, &w), *plain = body_on(&g, &w);
+    gx_blade *blade = NULL, *plain_blade = NULL;
+    size_t failures = 0;
+    int k;
+    ck_assert_int_eq(gx_blade_create(body, NULL, &blade, NULL), GX_OK);
+    ck_assert_int_eq(gx_blade_create(plain, NULL, &plain_blade, NULL), GX_OK);
+    for (k = 0; k <= MOVES; k++) {
+        gx_result result = GX_ERROR_MEMORY;
+        const uint64_t state = gx_body_state_hash(body);
+        size_t n;
+        for (n = 0; result != GX_OK; n++) {
+            f.calls = 0;
+            f.fail_at = n;
+            f.from_then_on = _i;
+            result = k < MOVES ? move_far(blade, k) : gx_blade_lift(blade, NULL, NULL);
+            if (result == GX_OK) break;
+            failures++;
+            ck_assert_int_eq(result, GX_ERROR_MEMORY);
+            ck_assert_msg(gx_body_state_hash(body) == state, "move %d, allocation %zu: the body has changed", k, n);
+        }
+        f.fail_at = SIZE_MAX;
+        ck_assert_int_eq(k < MOVES ? move_far(plain_blade, k) : gx_blade_lift(plain_blade, NULL, NULL), GX_OK);
+        ck_assert_msg(hash_of(body) == hash_of(plain), "move %d: other cells", k);
+        ck_assert_msg(gx_body_state_hash(body) == gx_body_state_hash(plain), "move %d: another state", k);
+    }
+    ck_assert_uint_gt(failures, 50);
+    ck_assert_uint_eq(view_of(body).fragment_count, 2);
+    gx_body_destroy(body);
+    gx_body_destroy(plain);
+    wl_free(&w);
+}
+END_TEST
+
+/* The same moves give the same bits. */
+START_TEST(same_bits) {
+    stage a = open_block(4, 3), b = open_block(4, 3);
+    const stage_motion m = stage_random_motion(&a, STAGE_SWINGING);
+    b.random = a.random;
+    stage_random_pass(&a, &m, 40);
+    stage_random_pass(&b, &m, 40);
+    check_stage(&a, 3);
+    ck_assert(hash_of(a.body) == hash_of(b.body));
+    ck_assert(gx_body_state_hash(a.body) == gx_body_state_hash(b.body));
+    stage_close(&a);
+    stage_close(&b);
+}
+END_TEST
+
+static TCase *add_case(Suite *suite, const char *name, double timeout) {
+    TCase *tests = tcase_create(name);
+    tcase_set_timeout(tests, timeout);
+    suite_add_tcase(suite, tests);
+    return tests;
+}
+
+int main(void) {
+    Suite *suite = suite_create("blade");
+    TCase *tests = add_case(suite, "blade", 120), *some = add_case(suite, "passes", 36000);
+    const char *only = getenv("GXFEM_SEED");
+    const int first = only ? atoi(only) - 1 : 0;
+    tcase_add_loop_test(tests, scenes, 0, STAGE_SCENES);
+    tcase_add_loop_test(tests, path_and_sheet, 0, REST_PASSES);
+    tcase_add_loop_test(tests, other_meshes, 0, 2);
+    tcase_add_test(tests, relativity);
+    tcase_add_loop_test(tests, known_sheets, first, only ? first + 1 : 18 / FEWER);
+    tcase_add_loop_test(tests, more_frames, first, only ? first + 1 : 2);
+    tcase_add_loop_test(tests, noise, 0, 2);
+    tcase_add_loop_test(tests, stab, 0, 2);
+    tcase_add_loop_test(tests, lift_in_the_middle, 0, 2);
+    tcase_add_test(tests, second_stroke);
+    tcase_add_test(tests, several_strokes);
+    tcase_add_test(tests, lift_cuts_what_waits);
+    tcase_add_test(tests, scope);
+    tcase_add_test(tests, two_blades);
+    tcase_add_test(tests, cut_between_moves);
+    tcase_add_loop_test(tests, removal_between_moves, 0, 3);
+    tcase_add_loop_test(tests, restored_between_moves, 0, 2);
+    tcase_add_loop_test(tests, copies_go_on, 0, 2);
+    tcase_add_test(tests, blades_of_a_body);
+    tcase_add_loop_test(tests, carving, 0, 2);
+    tcase_add_loop_test(tests, carving_what_moves, first, only ? first + 1 : 6);
+    tcase_add_loop_test(tests, sizes_and_places, 0, 5);
+    tcase_add_loop_test(tests, many_points, 0, 3);
+    tcase_add_loop_test(tests, bent_edges, 0, 2);
+    tcase_add_loop_test(tests, degenerate_edges, 0, 3);
+    tcase_add_test(tests, nothing_near);
+    tcase_add_test(tests, refused_moves);
+    tcase_add_loop_test(tests, memory_runs_out, 0, 2);
+    tcase_add_test(tests, same_bits);
+    tcase_add_loop_test(some, passes, 0, PASSES_AT_ONCE);
+    return run_suite(suite);
+}
