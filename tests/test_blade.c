@@ -12,7 +12,7 @@
 #include "../bench/blade.h"
 #include "../examples/gxshape.h"
 
-enum { PASSES = 200, PASSES_AT_ONCE = 20 };
+enum { PASSES = 200 / FEWER, PASSES_AT_ONCE = 20 };
 
 static void check_stage(const stage *s, uint64_t seed) {
     ck_assert_msg(stage_ok(s), "seed %llu: %s, field %s, index %zu", (unsigned long long)seed,
