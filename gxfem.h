@@ -10496,42 +10496,51 @@ static gx_result gxp_find_owners(gx_blade *blade, uint32_t layer) {
     return result;
 }
 
-/* The part of a front that is in the material, with a vertex in the air on each side. Returns 0 if there is none. */
-static int gxp_inner_run(const gxp_front_vertex *v, uint32_t count, uint32_t *first, uint32_t *end) {
-    uint32_t i = 0, j = count;
-    while (i < count && v[i].distance > 0) i++;
+/* The part of a front that is in the material or, if none is, within an element of it, with a vertex on each side.
+ *along: where it begins. Returns 0 if there is none. */
+static int gxp_inner_run(const gxp_front_vertex *v, uint32_t count, uint32_t *first, uint32_t *end, double *along) {
+    uint32_t i, j = count, n;
+    double reach = 0;
+    for (i = 0, n = 0; i < count; i++) n += !(v[i].distance > 0);
+    if (n == 0) reach = 1;
+    for (i = 0; i < count && v[i].distance > reach * v[i].size;) i++;
     if (i == count) return 0;
-    while (v[j - 1].distance > 0) j--;
+    while (v[j - 1].distance > reach * v[j - 1].size) j--;
+    *along = v[i].along;
     *first = i > 0 ? i - 1 : 0;
     *end = j < count ? j + 1 : count;
     return 1;
 }
 
-/* Several layers have become one: the front takes from each what is in the material, in the order along the edge. Where
-   the run of one overlaps that of another, it begins behind that. What waits is looked at again. */
+/* Several layers have become one: the front takes from each what is in the material and a vertex in the air on each
+   side, in the order along the edge. So no part of a sheet's rim in the material is lost; between two runs the front
+   may go back and forth in the gap. What waits is looked at again. */
 static gx_result gxp_join_layers(gx_blade *blade) {
     const gxp_blade_state *now = &blade->now;
     double reached = -1;
-    uint32_t done, k, i;
+    uint32_t done, k, i, last = 0;
     gx_result result = GX_OK;
     for (done = 0; done < blade->owners.count && result == GX_OK; done++) {
         double from = HUGE_VAL;
-        uint32_t best = GXP_NONE, first, end, best_first = 0, best_end = 0;
+        uint32_t best = GXP_NONE, best_first = 0, best_end = 0;
         for (k = 0; k < blade->owners.count; k++) {
             const gxp_layer *l = &now->layers.data[blade->owners.data[k]];
             const gxp_front_vertex *v = now->vertices.data + l->front;
-            if (!gxp_inner_run(v, l->front_count, &first, &end)) continue;
-            while (first < end && v[first].along <= reached) first++;
-            if (first == end || v[first].along >= from) continue;
-            from = v[first].along;
-            best = l->front;
+            uint32_t first, end;
+            double along;
+            if (!gxp_inner_run(v, l->front_count, &first, &end, &along)) continue;
+            if (along < reached || (!(along > reached) && done > 0 && k <= last) || along >= from) continue;
+            from = along;
+            best = k;
             best_first = first;
             best_end = end;
         }
         if (best == GXP_NONE) break;
-        result =
-            gxp_append_front(blade->body, &blade->front, now->vertices.data + best + best_first, best_end - best_first);
-        reached = now->vertices.data[best + best_end - 1].along;
+        result = gxp_append_front(blade->body, &blade->front,
+                                  now->vertices.data + now->layers.data[blade->owners.data[best]].front + best_first,
+                                  best_end - best_first);
+        reached = from;
+        last = best;
     }
     for (k = 0; k < blade->owners.count && result == GX_OK; k++) {
         const gxp_layer *l = &now->layers.data[blade->owners.data[k]];
@@ -10681,9 +10690,9 @@ static gx_result gxp_cut_surfaces(gx_blade *blade, uint32_t kind, gx_blade_repor
     desc.surfaces = blade->surfaces;
     desc.surface_count = count;
     result = gx_body_cut(body, &desc, &report->cut, failure);
-    if (result != GX_OK && result != GX_ERROR_NOT_CLOSED && failure != NULL)
-        failure->field = NULL, failure->index = SIZE_MAX;
-    return result;
+    if (result == GX_OK) return result;
+    gxp_end(failure, result);
+    return result == GX_ERROR_NOT_CLOSED ? gxp_fail(failure, result, "tool.triangles", SIZE_MAX) : result;
 }
 
 /* Blames a point of a blade's first edge that is in the material, unless it may be. */

@@ -511,11 +511,11 @@ static void check_outcome(gx_body *body, const outcome *truth, const char *what,
 /* Which allocation fails next: each, or each of the first and then every so many-th, others in each sweep: under a
    sanitizer, and in large bodies that ask for memory wherever an array could grow */
 #ifdef TIGHT
-enum { FIRST = 50, LARGE = 331 };
+enum { FIRST = 50, LARGE = 47, APART = 7 };
 #else
-enum { FIRST = 100, LARGE = 1 };
+enum { FIRST = 100, LARGE = 1, APART = 1 };
 #endif
-static size_t sweeps, stride = FEWER;
+static size_t sweeps, stride = FEWER * APART;
 static size_t next(size_t n) {
     if (n + 1 == FIRST) return FIRST + 7 * sweeps++ % stride;
     return n < FIRST ? n + 1 : n + stride;
@@ -666,6 +666,7 @@ START_TEST(scoped_cut) {
 END_TEST
 
 START_TEST(blades) {
+    stride *= 10 * LARGE; /* a move asks for memory some 100,000 times */
     sweep("a blade", nothing, blade_that_moves);
     sweep("a blade that waits", nothing, blade_that_waits);
     sweep("a blade in a cut body that has moved", held, blade_that_moves);
@@ -674,6 +675,7 @@ START_TEST(blades) {
     sweep("a tool in a cut body that has moved", held, carve);
     sweep("a clone of a body with a blade", with_a_blade, clone);
     sweep("loading a body with a blade", with_a_blade, save_and_load);
+    stride /= 10 * LARGE;
 }
 END_TEST
 
