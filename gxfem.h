@@ -10496,13 +10496,13 @@ static gx_result gxp_find_owners(gx_blade *blade, uint32_t layer) {
     return result;
 }
 
-/* The part of a front that is in the material or, if none is, within an element of it, with a vertex on each side.
+/* The part of a front that is in the material or, if none is, within half an element of it, with a vertex on each side.
  *along: where it begins. Returns 0 if there is none. */
 static int gxp_inner_run(const gxp_front_vertex *v, uint32_t count, uint32_t *first, uint32_t *end, double *along) {
     uint32_t i, j = count, n;
     double reach = 0;
     for (i = 0, n = 0; i < count; i++) n += !(v[i].distance > 0);
-    if (n == 0) reach = 1;
+    if (n == 0) reach = 0.5;
     for (i = 0; i < count && v[i].distance > reach * v[i].size;) i++;
     if (i == count) return 0;
     while (v[j - 1].distance > reach * v[j - 1].size) j--;
