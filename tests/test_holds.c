@@ -395,9 +395,10 @@ START_TEST(poses_move_what_is_held) {
         step.epoch = view.epoch;
         ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
         for (c = 0; c < view.copy_count; c++) {
-            const double *x = w.positions + 3 * view.copy_node[c], *pose = poses + 12 * view.copy_region[c];
+            const double *x = w.positions + 3 * view.copy_node[c], *pose;
             if (!view.copy_held[c]) continue;
             ck_assert_uint_lt(view.copy_region[c], 3);
+            pose = poses + 12 * view.copy_region[c];
             if (view.copy_region[c] == 0) ck_assert_uint_eq(view.copy_node[c], 0);
             for (k = 0; k < 3; k++) {
                 const double there = view.copy_region[c] == 2 ? targets[3 * c + k]
