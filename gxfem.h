@@ -51,7 +51,8 @@
  *     then, under GXFEM_IMPLEMENTATION, in the order of a cut; functions call their own and earlier sections only:
  *     what a body is made of:    >>state >>columns
  *     tools:                     >>memory >>basics >>mesh >>search >>copies >>transaction >>complex >>numbering
- *     a cut:                     >>surfaces >>pinches >>arrange >>solids >>links >>cells >>components >>integrals >>cut
+ *     a cut:                     >>surfaces >>pinches >>arrange >>solids >>links >>cells >>components
+ *                                >>integrals >>settle >>cut
  *     a sheet's thickness:       >>solidify
  *     what is held and whole:    >>anchors >>regions >>grips >>map >>fragments >>motion
  *     a step:                    >>attached >>supports >>model >>step
@@ -983,12 +984,13 @@ typedef struct gxp_attached { /* of a step: what it has at anchors and regions, 
     uint32_t spring_capacity, point_capacity, force_capacity, target_capacity;
 } gxp_attached;
 
-/* The key of a vertex of the skin: a point of the complex, four names in ascending order, a group. On the
+/* The key of a vertex of the skin: the name of a point of the complex, four names in ascending order, a group. On the
    outer surface the names are slots and the group is 0. On a face of a cut they are copies; the group is the surface
    and the side, or the surface, the plane and the side. */
 typedef struct gxp_skin_key {
     uint32_t point, name[4], group[2];
 } gxp_skin_key;
+#define GXP_PLANE_GROUP 2u /* group[1] of plane 0, behind it */
 
 typedef struct gxp_skin_vertex { /* beside the columns that users see */
     gxp_skin_key key;
@@ -4372,6 +4374,68 @@ static gx_result gxp_integrate_removed(gxp_cut *cut, const gxp_words *removed) {
     return result;
 }
 
+/* >>settle: giving back what removed material has held ------------------------------------------------------------- */
+/* In: a body between cuts. Out: the same body after gxb_complex_compact. Touches indices of leaves and planes. Without
+   memory for it, the body stays as it was. */
+
+static uint32_t *gxp_vertex_bucket(gxp_skin *s, const gxp_skin_key *key) {
+    uint64_t h = gxp_mix((uint64_t)key->group[0] << 32 | key->group[1]) + key->point;
+    h = gxp_mix(h ^ ((uint64_t)key->name[0] << 32 | key->name[1]));
+    h = gxp_mix(h ^ ((uint64_t)key->name[2] << 32 | key->name[3]));
+    return &s->vertex_buckets.data[h & (s->vertex_buckets.count - 1)];
+}
+
+/* Rows of leaves that went go, others get their new places. */
+static void gxp_settle_leaves(gx_body *body, const gxb_renumbering *r) {
+    uint32_t i, next = 0;
+    for (i = 0; i < r->leaf_count; i++) {
+        if (r->leaves[i] != next) continue; /* another one stands for it */
+        gxp_copy_row(body, GXP_LEAVES, i, next);
+        if (body->leaves.data[next].next != GXP_NONE)
+            body->leaves.data[next].next = r->leaves[body->leaves.data[next].next];
+        next++;
+    }
+    body->leaves.count = next;
+    for (i = 0; i < body->cells.count; i++)
+        if (body->cells.data[i].first_leaf != GXP_NONE)
+            body->cells.data[i].first_leaf = r->leaves[body->cells.data[i].first_leaf];
+}
+
+/* Keys of the skin's vertices name planes. Those of planes that went are of no use: their elements will be drawn anew.
+ */
+static void gxp_settle_skin(gx_body *body, const gxb_renumbering *r) {
+    gxp_skin *s = &body->skin;
+    uint32_t i;
+    if (!s->made || r->renamed) {
+        s->made = 0;
+        return;
+    }
+    if (s->vertex_buckets.count > 0)
+        memset(s->vertex_buckets.data, 0xff, s->vertex_buckets.count * sizeof *s->vertex_buckets.data);
+    for (i = 0; i < s->vertex_count; i++) {
+        gxp_skin_key *key = &s->vertices[i].key;
+        uint32_t *bucket;
+        if (key->group[1] >= GXP_PLANE_GROUP && key->group[1] != GXP_NONE) {
+            const uint32_t plane = r->planes[(key->group[1] - GXP_PLANE_GROUP) >> 1], side = key->group[1] & 1;
+            key->group[1] = plane == GXB_NONE ? GXP_NONE : GXP_PLANE_GROUP + 2 * plane + side;
+        }
+        bucket = gxp_vertex_bucket(s, key);
+        s->vertices[i].next = *bucket;
+        *bucket = i;
+    }
+}
+
+/* Once a body has cost enough since the last time. The order of all items stays, so that nothing else changes. */
+static void gxp_settle(gx_body *body) {
+    gxb_renumbering r;
+    if (!gxb_complex_is_sparse(body->complex)) return;
+    if (gxb_complex_compact(body->complex, body->mesh.node_pinched, &r) != GX_OK) return;
+    gxp_settle_leaves(body, &r);
+    gxp_settle_skin(body, &r);
+    body->scratch.boundary.points.count = 0;
+    gxb_complex_forget(body->complex, &r);
+}
+
 /* >>cut: the driver ------------------------------------------------------------------------------------------------ */
 /* gx_body_cut: check, begin, arrange, enrich, integrate, then commit, or roll back on any error. The commit cannot
    fail. It drops dead copies, wakes the touched copies and marks model, skin, view and snapshot as stale. */
@@ -4668,6 +4732,7 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
     }
     gxp_wake_resumed(body, body->undo.counts[GXP_COPIES]);
     gxp_commit(&cut);
+    gxp_settle(body);
     if (body->model.resumed != 0) body->model.resumed = gxp_hash_state(body, body->copies.count);
     if (report != NULL) *report = cut.report;
     return gxp_end(failure, GX_OK);
@@ -7409,13 +7474,6 @@ typedef struct gxp_skin_face {
     double normal[3];  /* outward at rest, of any length */
 } gxp_skin_face;
 
-static uint32_t *gxp_vertex_bucket(gxp_skin *s, const gxp_skin_key *key) {
-    uint64_t h = gxp_mix((uint64_t)key->group[0] << 32 | key->group[1]) + key->point;
-    h = gxp_mix(h ^ ((uint64_t)key->name[0] << 32 | key->name[1]));
-    h = gxp_mix(h ^ ((uint64_t)key->name[2] << 32 | key->name[3]));
-    return &s->vertex_buckets.data[h & (s->vertex_buckets.count - 1)];
-}
-
 /* Room for one more vertex; the buckets grow with the vertices. */
 static gx_result gxp_vertex_room(gx_body *body) {
     gxp_skin *s = &body->skin;
@@ -7437,7 +7495,7 @@ static void gxp_make_key(const gx_body *body, const gxp_skin_face *face, uint32_
     const unsigned support = gxb_complex_support(body->complex, point, face->element);
     uint32_t i, j, n = 0;
     memset(key->name, 0xff, sizeof key->name);
-    key->point = point;
+    key->point = gxb_complex_point(body->complex, point)->name;
     key->group[0] = face->group[0];
     key->group[1] = face->group[1];
     for (i = 0; i < 4; i++) {
@@ -7479,8 +7537,9 @@ static void gxp_set_texture(gx_body *body, uint32_t vertex, const gxp_skin_face 
     }
 }
 
-/* Appends a vertex with this key; there is room. */
-static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const gxp_skin_key *key, uint32_t *vertex) {
+/* Appends a vertex with this key at a point of the complex; there is room. */
+static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const gxp_skin_key *key, uint32_t point,
+                                uint32_t *vertex) {
     gxp_skin *s = &body->skin;
     const uint32_t i = s->vertex_count;
     gxp_skin_vertex *v = &s->vertices[i];
@@ -7489,7 +7548,7 @@ static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const 
     uint32_t n, slot, own = GXP_NONE;
     int k;
     gx_result result = face->outer ? GX_OK : gxp_own_slot(body, &own);
-    if (result == GX_OK) result = gxp_add_boundary_point(body, face->element, key->point, &slot);
+    if (result == GX_OK) result = gxp_add_boundary_point(body, face->element, point, &slot);
     if (result != GX_OK) return result;
     lambda = body->scratch.boundary.lambdas + 4 * (size_t)slot;
     gxp_weigh_point(face, lambda, s->copies + 4 * (size_t)i, s->weights + 4 * (size_t)i, v->slots);
@@ -7533,7 +7592,7 @@ static gx_result gxp_find_vertex(gx_body *body, const gxp_skin_face *face, uint3
     for (; *vertex != GXP_NONE; *vertex = s->vertices[*vertex].next)
         if (memcmp(&s->vertices[*vertex].key, &key, sizeof key) == 0) return gxp_note_vertex(body, *vertex);
     result = gxp_vertex_room(body);
-    if (result == GX_OK) result = gxp_add_vertex(body, face, &key, vertex);
+    if (result == GX_OK) result = gxp_add_vertex(body, face, &key, point, vertex);
     return result == GX_OK ? gxp_note_vertex(body, *vertex) : result;
 }
 
@@ -7743,7 +7802,7 @@ static void gxp_cut_face(const gx_body *body, uint32_t facet, uint32_t leaf, gxp
     if (body->skin.desc.smooth_cuts && first != GXP_NONE)
         face->group[1] = (uint32_t)(front ^ (gxb_complex_label(cx, first)->orientation < 0));
     else
-        face->group[1] = 2 + 2 * face->plane + (uint32_t)front;
+        face->group[1] = GXP_PLANE_GROUP + 2 * face->plane + (uint32_t)front;
 }
 
 /* Adds all that a leaf shows. */
@@ -7798,7 +7857,7 @@ static int gxp_face_is_whole(const gx_body *body, uint32_t element, uint32_t k) 
 static int gxp_is_untouched(const gx_body *body, uint32_t element) {
     const gxb_complex *cx = body->complex;
     uint32_t k;
-    if (body->cells.data[element].next != GXP_NONE || body->leaves.data[element].next != GXP_NONE ||
+    if (body->cells.data[element].next != GXP_NONE || gxb_complex_root(cx, element) != 2 * element ||
         gxb_complex_leaf(cx, element)->removed)
         return 0;
     for (k = 0; k < 4; k++)
@@ -11665,7 +11724,7 @@ static void gxp_require_true(gxb_stream *s, int holds) {
 }
 static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
 
-#define GXP_SAVE_VERSION 6u /* raised by every change of the format */
+#define GXP_SAVE_VERSION 7u /* raised by every change of the format */
 #define GXP_BYTE_ORDER   0x01020304u
 
 typedef struct gxp_head {
@@ -12536,6 +12595,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_SUPPORT
 #undef GXP_SPECK
 #undef GXP_SPECK_REACH
+#undef GXP_PLANE_GROUP
 #undef GXP_COLUMN
 #undef GXP_TABLE
 #undef GXP_LIST

@@ -37,6 +37,7 @@
  *                   transactions: begin, commit, rollback, reserve
  *                   division: add_point, add_plane, insert, open_element, cover_edge, cover_node, set_wall, set_removed
  *                   lists: gxb_leaf_resolve_facets, gxb_facet_resolve_edges
+ *                   giving back what nothing needs: is_sparse, compact, forget
  *                   reading: gxb_complex_point and others
  *                   questions: gxb_complex_side, turn, compare, leaf_at, winding, barycentric, support,
  *                   barycentric_fine
@@ -56,6 +57,7 @@
  *                     plane)
  *     a triangle      >>clip, >>walls, >>cover (what is there already), >>rebalance and >>crowds (trees), >>insert
  *     questions       >>inside (winding numbers), >>pairs (of doubles), >>barycentric, >>pullback (of points of space)
+ *     less            >>compact (what nothing needs any more goes)
  *     bytes           >>save, >>check (what was read), >>load
  *
  * Of Booleans, in the order of the work:
@@ -323,6 +325,7 @@ typedef struct gxb_cpoint { /* a point of the complex */
      * first is negative until they are computed */
     double parameter[3];
     uint32_t rim_edge; /* while the rim of a new facet is closed: the rim's edge that leaves the point */
+    uint32_t name;     /* a number of its own, which it keeps when gxb_complex_compact gives it another index */
 } gxb_cpoint;
 
 typedef struct gxb_cplane { /* a plane: of three points, or through points 0 and 1 along coordinate axis def[2] */
@@ -334,10 +337,13 @@ typedef struct gxb_cplane { /* a plane: of three points, or through points 0 and
     int8_t axis_sign; /* its sign */
 } gxb_cplane;
 
+/* The child of an edge or facet that is divided, but whose parts are no longer listed: see gxb_complex_compact */
+#define GXB_UNLISTED (UINT32_MAX - 1)
+
 typedef struct gxb_edge {
     uint32_t v[2];    /* points */
     uint32_t line[2]; /* two points (explicit_line) or two planes whose intersection carries the edge */
-    /* GXB_NONE, or the first of the two edges (child, child + 1) into which it was divided */
+    /* GXB_NONE, or the first of the two edges (child, child + 1) into which it was divided; GXB_UNLISTED */
     uint32_t child;
     uint32_t explicit_line : 1;
     uint32_t wall : 1;   /* 1: a triangle separates elements that meet in this edge only */
@@ -351,7 +357,7 @@ typedef struct gxb_facet { /* a convex polygon */
     uint32_t loop, loop_count : 31;
     uint32_t wall : 1; /* 1: material on its two sides is separated */
     uint32_t leaf[2];  /* in front (where the normal points), behind; GXB_NONE outside the mesh */
-    /* GXB_NONE, or the first of the two facets (child, child + 1) into which it was divided */
+    /* GXB_NONE, or the first of the two facets (child, child + 1) into which it was divided; GXB_UNLISTED */
     uint32_t child;
     uint32_t labels; /* in complex.labels, or GXB_NONE: triangles that cover it */
     uint32_t face;   /* the mesh face that it is part of, or GXB_NONE inside an element */
@@ -365,9 +371,11 @@ typedef struct gxb_label {
 
 typedef struct gxb_leaf { /* a convex subdomain of an element */
     uint32_t element;
-    uint32_t facets, facet_count; /* in complex.pool; count 0: no triangle has touched the element */
-    uint32_t parent;              /* leaf from which it was split, GXB_NONE for an element's first */
-    uint32_t removed;             /* set by the user of the complex */
+    /* in complex.pool; count 0: no triangle has touched the element, or, of a removed leaf, it stands for all removed
+     * ones of its element: see gxb_complex_compact */
+    uint32_t facets, facet_count;
+    uint32_t parent;  /* leaf from which it was split, GXB_NONE for an element's first */
+    uint32_t removed; /* set by the user of the complex */
 } gxb_leaf;
 
 typedef struct gxb_node {     /* of an element's tree of planes */
@@ -416,7 +424,8 @@ typedef struct gxb_store {
     double origin[3];
     gxb_block *blocks; /* exact coordinates, computed when first needed and kept */
     /* the transaction: counts and the last block at its begin, items that changed since and their old contents */
-    uint32_t mark[2]; /* points, planes */
+    uint32_t mark[2];              /* points, planes */
+    uint32_t next_name, mark_name; /* of the next point, now and at begin */
     gxb_block *mark_block;
     size_t mark_used;
     gxb_undo *undo;
@@ -449,7 +458,9 @@ typedef struct gxb_complex { /* what is used most comes first: its addresses are
     uint32_t *mesh_edge;     /* mesh_edge_count: GXB_NONE until touched */
     uint32_t *root;          /* element_count: tree reference */
     uint32_t node_count, element_count, face_count, mesh_edge_count;
-    uint32_t pool_live, mark_live; /* words of lists in use, now and at begin */
+    uint32_t pool_live, mark_live;        /* words of lists in use, now and at begin */
+    uint32_t removed_count, mark_removed; /* removed leaves, now and at begin */
+    uint64_t settled;                     /* items when gxb_complex_compact was called last; 0: never */
     gxb_label *labels;
     uint32_t label_count, label_capacity;
     /* marked facets, which were labelled or made walls since begin: 2 x facet, + 1 if this made it a wall */
@@ -520,13 +531,34 @@ GXFEM_API gx_result gxb_complex_cover_node(gxb_complex *complex, gxb_triangle *t
 /* Makes a facet a wall. */
 GXFEM_API gx_result gxb_complex_set_wall(gxb_complex *complex, uint32_t facet);
 GXFEM_API gx_result gxb_complex_set_removed(gxb_complex *complex, uint32_t leaf);
-/* Makes the four facets of an untouched element. */
+/* Makes the four facets of an untouched element. A removed leaf leaves nothing to be made. */
 GXFEM_API gx_result gxb_complex_open_element(gxb_complex *complex, uint32_t element);
 /* Brings a leaf's list of facets, or a facet's loop of edges, up to date: divided items are replaced by their parts.
    The list is at gxb_complex_list(complex, *first), *count long. Calls for other leaves and facets leave it there. May
    append to the lists and to the undo log. Errors: MEMORY, LIMIT. */
 GXFEM_API gx_result gxb_leaf_resolve_facets(gxb_complex *complex, uint32_t leaf, uint32_t *first, uint32_t *count);
 GXFEM_API gx_result gxb_facet_resolve_edges(gxb_complex *complex, uint32_t facet, uint32_t *first, uint32_t *count);
+
+/* How gxb_complex_compact has numbered leaves and planes anew: new numbers by old ones; GXB_NONE: it is gone. Removed
+   leaves that went have the number of the one that stands for them. */
+typedef struct gxb_renumbering {
+    const uint32_t *leaves, *planes;
+    uint32_t leaf_count, plane_count; /* before */
+    int renamed;                      /* 1: points have other names (gxb_cpoint.name) than before */
+    void *memory;
+    size_t size;
+} gxb_renumbering;
+/* Has so much been made since the last compaction, and something been removed, that another one pays? The answer
+   depends on counts only, which are saved. */
+GXFEM_API int gxb_complex_is_sparse(const gxb_complex *complex);
+/* Gives back what nothing needs any more: removed leaves but one for each element, facets between removed leaves, edges
+   and facets that are divided, points, planes, nodes of trees, labels and exact numbers that only these had. What stays
+   gets new numbers in the same order. Facets of a mesh face between elements that triangles have touched, and edges of
+   a mesh edge around such, are no longer listed as its parts. pinned: node_count; elements with a node that is not 0
+   here keep all they have; NULL: none. No transaction may be open. After an error the complex is as it was.
+   renumbering: to be released by gxb_complex_forget. Errors: MEMORY, LIMIT. */
+GXFEM_API gx_result gxb_complex_compact(gxb_complex *complex, const uint8_t *pinned, gxb_renumbering *renumbering);
+GXFEM_API void gxb_complex_forget(gxb_complex *complex, gxb_renumbering *renumbering);
 
 /* Read access. Indices must be below the counts. Pointers are valid until the next call that changes or resolves. */
 GXFEM_API const gxb_cpoint *gxb_complex_point(const gxb_complex *complex, uint32_t point);
@@ -2229,6 +2261,7 @@ static void gxbp_put_back(gxb_store *store, void *item, size_t size) {
 
 static void gxbp_store_begin(gxb_store *store) {
     gxbp_mark_arrays(store, gxbp_store_arrays, store->mark, 2);
+    store->mark_name = store->next_name;
     store->mark_block = store->blocks;
     store->mark_used = store->blocks != NULL ? store->blocks->used : 0;
     store->undo_count = store->undo_byte_count = 0;
@@ -2280,6 +2313,7 @@ static void gxbp_forget_signs(gxb_store *store, int slot) {
 static GXBP_RARE void gxbp_store_rollback(gxb_store *store) {
     gxbp_drop_recent_numbers(store);
     gxbp_cut_arrays(store, gxbp_store_arrays, store->mark, 2);
+    store->next_name = store->mark_name;
     gxbp_forget_signs(store, 0);
     gxbp_forget_signs(store, 1);
 }
@@ -2345,6 +2379,7 @@ static gx_result gxbp_new_point(gxb_store *store, uint32_t *id) {
     *id = store->point_count++;
     memset(&store->points[*id], 0, sizeof store->points[*id]);
     store->points[*id].parameter[0] = -1;
+    store->points[*id].name = store->next_name++;
     return GX_OK;
 }
 
@@ -2853,6 +2888,7 @@ static GXBP_APART void gxbp_set_marks(gxb_complex *cx) {
     gxbp_store_begin(&cx->store);
     gxbp_mark_arrays(cx, gxbp_complex_arrays, cx->mark, GXBP_MARKS);
     cx->mark_live = cx->pool_live;
+    cx->mark_removed = cx->removed_count;
     cx->marked_count = cx->corner_count = cx->task_count = 0;
 }
 
@@ -2902,6 +2938,7 @@ GXFEM_API GXBP_RARE void gxb_complex_rollback(gxb_complex *cx) {
     gxbp_store_rollback(&cx->store);
     gxbp_cut_arrays(cx, gxbp_complex_arrays, cx->mark, GXBP_MARKS);
     cx->pool_live = cx->mark_live;
+    cx->removed_count = cx->mark_removed;
     gxbp_forget_rim(cx);
     gxbp_forget_pairs(cx);
     gxbp_set_marks(cx);
@@ -3546,6 +3583,7 @@ static uint32_t gxbp_cross_edge(gxb_complex *cx, const gxb_edge *e, uint32_t pla
     p = &cx->store.points[id];
     memset(p, 0, sizeof *p);
     p->parameter[0] = -1;
+    p->name = cx->store.next_name++;
     p->kind = e->explicit_line ? GXB_LINE_PLANE : GXB_THREE_PLANES;
     p->def[0] = e->line[0];
     p->def[1] = e->line[1];
@@ -3852,7 +3890,7 @@ static GXBP_APART gx_result gxbp_open_face(gxb_complex *cx, uint32_t element, ui
 GXFEM_API gx_result gxb_complex_open_element(gxb_complex *cx, uint32_t element) {
     uint32_t k, list;
     gx_result result;
-    if (cx->leaves[element].facet_count > 0) return GX_OK;
+    if (cx->leaves[element].facet_count > 0 || cx->leaves[element].removed) return GX_OK;
     for (k = 0; k < 4; k++) {
         result = gxbp_open_face(cx, element, k);
         if (result != GX_OK) return result;
@@ -4001,6 +4039,7 @@ GXFEM_API gx_result gxb_complex_set_removed(gxb_complex *cx, uint32_t leaf) {
     const gx_result result = gxbp_reserve_undo(&cx->store, 1);
     if (result != GX_OK) return result;
     gxbp_save(cx, GXBP_LEAVES, leaf);
+    cx->removed_count += !cx->leaves[leaf].removed;
     cx->leaves[leaf].removed = 1;
     return GX_OK;
 }
@@ -4170,7 +4209,7 @@ static GXBP_APART int gxbp_all_facet_sides(gxb_complex *cx, uint32_t facet, cons
 static int gxbp_leaf_sides(gxb_complex *cx, uint32_t leaf, const gxbp_splitter *splitter) {
     const gxb_leaf *l = &cx->leaves[leaf];
     uint32_t i;
-    int sides = 0;
+    int sides = l->facet_count > 0 ? 0 : 3; /* where one stands for all removed leaves, nobody knows */
     for (i = 0; i < l->facet_count && sides != 3; i++)
         sides |= gxbp_all_facet_sides(cx, cx->pool[l->facets + i], splitter);
     return sides;
@@ -4469,6 +4508,7 @@ static GXBP_COLD gx_result gxbp_divide_crowded(gxb_complex *cx, const gxbp_task 
         result = gxbp_new_free_plane(cx, l.element, rank[k], median[rank[k]], &splitter.plane);
         if (result != GX_OK) return result;
         if (gxbp_plane_parts(cx, inner, n, &splitter)) break;
+        cx->store.next_name -= cx->store.point_count - points;
         cx->store.point_count = points;
         cx->store.plane_count = planes;
     }
@@ -4572,7 +4612,7 @@ static uint32_t gxbp_choose_section(const int sign[4], uint8_t corners[4][3]) {
  * GXB_NONE: another plane did, or none. */
 static uint32_t gxbp_made_crossing(const gxb_complex *cx, uint32_t mesh_edge, uint32_t plane) {
     const uint32_t child = cx->edges[cx->mesh_edge[mesh_edge]].child;
-    const uint32_t point = child != GXB_NONE ? cx->edges[child].v[1] : GXB_NONE;
+    const uint32_t point = child < GXB_UNLISTED ? cx->edges[child].v[1] : GXB_NONE;
     return point != GXB_NONE && cx->store.points[point].kind == GXB_LINE_PLANE &&
                    cx->store.points[point].def[2] == plane
              ? point
@@ -4703,6 +4743,7 @@ GXFEM_API gx_result gxb_complex_insert(gxb_complex *cx, gxb_triangle *t, uint32_
     gxbp_task task;
     gx_result result;
     int sign[4];
+    if (cx->root[element] == 2 * element && cx->leaves[element].removed) return GX_OK;
     if (cx->sign_plane != t->plane) {
         cx->sign_plane = t->plane;
         gxbp_forget_signs(&cx->store, 0);
@@ -5418,6 +5459,603 @@ GXFEM_API int gxb_complex_pullback_side(gxb_complex *cx, gxb_pullback *back, uin
     return sign * orientation;
 }
 
+/* >>compact: giving back what nothing needs any more --------------------------------------------------------------- */
+/* In: a complex without a transaction. Out: the same complex without the leaves that were removed and what only they,
+   or edges and facets that are divided, had need of. Items keep their order. First everything that stays is marked, and
+   all memory is taken; then nothing can fail. */
+
+/* Everything of an element with a removed leaf stays, or only what kept leaves need; what is not touched stays listed
+ */
+enum {
+    GXBP_SOLID = 1,  /* of an element: some of it is left */
+    GXBP_LISTED = 2, /* parts of its faces and edges stay listed: nothing has touched it, or it is pinned */
+    GXBP_PINNED = 4  /* its removed leaves stay */
+};
+
+/* What stays: new numbers by old ones, or GXB_NONE */
+typedef struct gxbp_census {
+    gxb_complex *cx;
+    uint32_t *points, *planes, *edges, *facets, *leaves, *nodes, *labels;
+    uint32_t *elements;   /* GXBP_SOLID ... */
+    uint32_t *hollow;     /* of each element: its first removed leaf, which stands for all; GXB_NONE: there is none */
+    uint32_t *mesh_edges; /* the states of the elements around each */
+    uint32_t *leaf_up;    /* of each leaf: the node above it */
+    uint32_t *children;   /* of each node, 2: what its children become, by old numbers */
+    uint32_t *roots;      /* of each element: what its tree becomes, by old numbers */
+    uint32_t *block;      /* all of these */
+    size_t words;
+    size_t pool, exact; /* words of lists, bytes of exact numbers */
+    uint32_t *list;     /* the new pool */
+    gxb_block *numbers; /* the new block of exact numbers, or NULL */
+} gxbp_census;
+
+static int gxbp_stays(const gxbp_census *c, uint32_t leaf) {
+    const gxb_leaf *l = &c->cx->leaves[leaf];
+    return !l->removed || (c->elements[l->element] & GXBP_PINNED);
+}
+
+/* Is it a facet of a leaf that stays? */
+static int gxbp_facet_stays(const gxbp_census *c, const gxb_facet *f) {
+    return (f->leaf[0] != GXB_NONE && gxbp_stays(c, f->leaf[0])) ||
+           (f->leaf[1] != GXB_NONE && gxbp_stays(c, f->leaf[1]));
+}
+
+/* The states of elements, and the leaves that stay */
+static void gxbp_mark_leaves(gxbp_census *c, const uint8_t *pinned) {
+    gxb_complex *cx = c->cx;
+    uint32_t i, k;
+    memset(c->elements, 0, cx->element_count * sizeof *c->elements);
+    memset(c->mesh_edges, 0, cx->mesh_edge_count * sizeof *c->mesh_edges);
+    for (i = 0; i < 4 * cx->element_count && pinned != NULL; i++)
+        if (pinned[cx->elements[i]]) c->elements[i / 4] = GXBP_PINNED | GXBP_LISTED | GXBP_SOLID;
+    for (i = 0; i < cx->leaf_count; i++) {
+        const gxb_leaf *l = &cx->leaves[i];
+        if (gxbp_stays(c, i))
+            c->elements[l->element] |= l->facet_count > 0 ? GXBP_SOLID : GXBP_SOLID | GXBP_LISTED;
+        else if (c->hollow[l->element] == GXB_NONE)
+            c->hollow[l->element] = i;
+        if (i < cx->element_count || gxbp_stays(c, i) || c->hollow[l->element] == i) c->leaves[i] = 0;
+    }
+    for (i = 0; i < cx->element_count; i++)
+        for (k = 0; k < 6; k++) c->mesh_edges[cx->element_edges[6 * i + k]] |= c->elements[i];
+}
+
+/* Marks the parts of an edge. Returns their number. */
+static GXBP_COLD uint32_t gxbp_mark_edges(gxbp_census *c, uint32_t edge) {
+    const uint32_t child = c->cx->edges[edge].child;
+    if (child < GXB_UNLISTED) return gxbp_mark_edges(c, child) + gxbp_mark_edges(c, child + 1);
+    c->edges[edge] = 0;
+    return 1;
+}
+
+/* Marks an undivided facet with its labels and the edges of its loop. */
+static void gxbp_mark_facet(gxbp_census *c, uint32_t facet) {
+    const gxb_facet *f = &c->cx->facets[facet];
+    uint32_t i, l;
+    if (c->facets[facet] != GXB_NONE) return;
+    c->facets[facet] = 0;
+    for (i = 0; i < f->loop_count; i++) c->pool += gxbp_mark_edges(c, c->cx->pool[f->loop + i] >> 1);
+    for (l = f->labels; l != GXB_NONE && c->labels[l] == GXB_NONE; l = c->cx->labels[l].next) c->labels[l] = 0;
+}
+
+/* Marks the parts of a facet. Returns their number. */
+static GXBP_COLD uint32_t gxbp_mark_facets(gxbp_census *c, uint32_t facet) {
+    const uint32_t child = c->cx->facets[facet].child;
+    if (child < GXB_UNLISTED) return gxbp_mark_facets(c, child) + gxbp_mark_facets(c, child + 1);
+    gxbp_mark_facet(c, facet);
+    return 1;
+}
+
+/* Marks a facet (edge) with all that it was divided into. */
+static GXBP_COLD void gxbp_mark_facet_tree(gxbp_census *c, uint32_t facet) {
+    const uint32_t child = c->cx->facets[facet].child;
+    if (child >= GXB_UNLISTED) {
+        gxbp_mark_facet(c, facet);
+        return;
+    }
+    c->facets[facet] = 0;
+    gxbp_mark_facet_tree(c, child);
+    gxbp_mark_facet_tree(c, child + 1);
+}
+static GXBP_COLD void gxbp_mark_edge_tree(gxbp_census *c, uint32_t edge) {
+    const uint32_t child = c->cx->edges[edge].child;
+    c->edges[edge] = 0;
+    if (child >= GXB_UNLISTED) return;
+    gxbp_mark_edge_tree(c, child);
+    gxbp_mark_edge_tree(c, child + 1);
+}
+
+static uint32_t gxbp_face_state(const gxbp_census *c, uint32_t face) {
+    const uint32_t *e = c->cx->face_elements + 2 * (size_t)face;
+    return (e[0] != GXB_NONE ? c->elements[e[0]] : 0) | (e[1] != GXB_NONE ? c->elements[e[1]] : 0);
+}
+
+/* The facets of leaves that stay, and their edges. Of faces and mesh edges either all parts or the first item alone,
+   which still gives a face its plane. */
+static void gxbp_mark_polygons(gxbp_census *c) {
+    gxb_complex *cx = c->cx;
+    uint32_t i, j;
+    for (i = 0; i < cx->leaf_count; i++) {
+        const gxb_leaf *l = &cx->leaves[i];
+        for (j = 0; j < l->facet_count && gxbp_stays(c, i); j++)
+            c->pool += gxbp_mark_facets(c, cx->pool[l->facets + j]);
+    }
+    for (i = 0; i < cx->face_count; i++) {
+        const uint32_t state = gxbp_face_state(c, i), root = cx->face_facet[i];
+        if (root == GXB_NONE || state == 0) continue;
+        if (state & GXBP_LISTED)
+            gxbp_mark_facet_tree(c, root);
+        else
+            c->facets[root] = 0;
+    }
+    for (i = 0; i < cx->mesh_edge_count; i++) {
+        const uint32_t root = cx->mesh_edge[i];
+        if (root == GXB_NONE || c->mesh_edges[i] == 0) continue;
+        if (c->mesh_edges[i] & GXBP_LISTED)
+            gxbp_mark_edge_tree(c, root);
+        else
+            c->edges[root] = 0;
+    }
+}
+
+/* Marks the nodes whose plane bounds a leaf below them that stays. */
+static void gxbp_mark_bounds(gxbp_census *c) {
+    gxb_complex *cx = c->cx;
+    uint32_t i, j, k, up;
+    memset(c->leaf_up, 0xff, cx->leaf_count * sizeof *c->leaf_up);
+    for (i = 0; i < cx->tree_count; i++)
+        for (k = 0; k < 2; k++)
+            if (!(cx->nodes[i].child[k] & 1)) c->leaf_up[cx->nodes[i].child[k] >> 1] = i;
+    for (i = 0; i < cx->facet_count; i++)
+        for (k = 0; k < 2; k++) {
+            const gxb_facet *f = &cx->facets[i];
+            if (c->facets[i] == GXB_NONE || f->child != GXB_NONE || f->face != GXB_NONE) break;
+            j = 2 * f->leaf[k];
+            for (up = gxbp_stays(c, f->leaf[k]) ? c->leaf_up[f->leaf[k]] : GXB_NONE; up != GXB_NONE;
+                 j = 2 * up + 1, up = cx->nodes[up].parent)
+                if (cx->nodes[up].plane == f->plane && cx->nodes[up].child[k] == j) break;
+            if (up != GXB_NONE) c->nodes[up] = 0;
+        }
+}
+
+/* What becomes of a part of an element's tree: the removed leaf that stands for all where nothing else is left. A node
+   that has nothing on one side, and whose plane bounds nothing on the other, goes. */
+static GXBP_COLD uint32_t gxbp_prune(gxbp_census *c, uint32_t reference) {
+    const uint32_t index = reference >> 1;
+    uint32_t k, *child, hollow;
+    if (!(reference & 1)) return gxbp_stays(c, index) ? reference : 2 * c->hollow[c->cx->leaves[index].element];
+    child = c->children + 2 * (size_t)index;
+    for (k = 0; k < 2; k++) child[k] = gxbp_prune(c, c->cx->nodes[index].child[k]);
+    for (k = 0; k < 2; k++) {
+        hollow = child[k];
+        if ((hollow & 1) || gxbp_stays(c, hollow >> 1)) continue;
+        if (child[1 - k] != hollow && c->nodes[index] != GXB_NONE) continue;
+        c->nodes[index] = GXB_NONE;
+        return child[1 - k];
+    }
+    c->nodes[index] = 0;
+    return reference;
+}
+
+static void gxbp_mark_line(gxbp_census *c, const uint32_t line[2], uint32_t explicit_line) {
+    uint32_t *of = explicit_line ? c->points : c->planes;
+    of[line[0]] = of[line[1]] = 0;
+}
+
+/* The points and planes of all that stays, and what these are defined by */
+static void gxbp_mark_definitions(gxbp_census *c) {
+    gxb_complex *cx = c->cx;
+    uint32_t i;
+    memset(c->points, 0, cx->node_count * sizeof *c->points);
+    for (i = 0; i < cx->edge_count; i++) {
+        const gxb_edge *e = &cx->edges[i];
+        if (c->edges[i] == GXB_NONE) continue;
+        c->points[e->v[0]] = c->points[e->v[1]] = 0;
+        gxbp_mark_line(c, e->line, e->explicit_line);
+    }
+    for (i = 0; i < cx->facet_count; i++)
+        if (c->facets[i] != GXB_NONE) c->planes[cx->facets[i].plane] = 0;
+    for (i = 0; i < cx->tree_count; i++)
+        if (c->nodes[i] != GXB_NONE) c->planes[cx->nodes[i].plane] = 0;
+    for (i = cx->node_count; i < cx->store.point_count; i++) {
+        const gxb_cpoint *p = &cx->store.points[i];
+        if (c->points[i] == GXB_NONE || p->kind == GXB_EXPLICIT) continue;
+        gxbp_mark_line(c, p->def, p->kind == GXB_LINE_PLANE);
+        c->planes[p->def[2]] = 0;
+    }
+    for (i = 0; i < cx->store.plane_count; i++) {
+        const gxb_cplane *f = &cx->store.planes[i];
+        if (c->planes[i] == GXB_NONE) continue;
+        c->points[f->def[0]] = c->points[f->def[1]] = 0;
+        if (!f->along_axis) c->points[f->def[2]] = 0;
+    }
+}
+
+static size_t gxbp_exact_size(const gxb_num *exact) {
+    size_t size = 4 * sizeof *exact;
+    int k;
+    for (k = 0; k < 4 && exact != NULL; k++) size += exact[k].n * sizeof *exact->d;
+    return exact == NULL ? 0 : (size + 15) & ~(size_t)15;
+}
+
+static void gxbp_count_exact(gxbp_census *c) {
+    const gxb_store *store = &c->cx->store;
+    uint32_t i;
+    for (i = 0; i < store->point_count; i++)
+        if (c->points[i] != GXB_NONE) c->exact += gxbp_exact_size(store->points[i].exact);
+    for (i = 0; i < store->plane_count; i++)
+        if (c->planes[i] != GXB_NONE) c->exact += gxbp_exact_size(store->planes[i].exact);
+}
+
+/* Numbers what stays. */
+static uint32_t gxbp_number(uint32_t *number, uint32_t count) {
+    uint32_t i, n = 0;
+    for (i = 0; i < count; i++)
+        if (number[i] != GXB_NONE) number[i] = n++;
+    return n;
+}
+
+/* Leaves that go have the number of the one that stands for them, which comes before them. */
+static uint32_t gxbp_number_leaves(gxbp_census *c) {
+    const gxb_complex *cx = c->cx;
+    uint32_t i, n = 0;
+    for (i = 0; i < cx->leaf_count; i++)
+        c->leaves[i] = c->leaves[i] != GXB_NONE ? n++ : c->leaves[c->hollow[cx->leaves[i].element]];
+    return n;
+}
+
+/* --- from here on nothing fails --- */
+
+static void gxbp_keep_edges(gxbp_census *c, uint32_t signed_edge, uint32_t *count) {
+    const uint32_t child = c->cx->edges[signed_edge >> 1].child, back = signed_edge & 1;
+    if (child >= GXB_UNLISTED) {
+        c->list[(*count)++] = c->edges[signed_edge >> 1] << 1 | back;
+        return;
+    }
+    gxbp_keep_edges(c, (child + back) << 1 | back, count);
+    gxbp_keep_edges(c, (child + 1 - back) << 1 | back, count);
+}
+
+static void gxbp_keep_facets(gxbp_census *c, uint32_t facet, uint32_t *count) {
+    const uint32_t child = c->cx->facets[facet].child;
+    if (child >= GXB_UNLISTED) {
+        c->list[(*count)++] = c->facets[facet];
+        return;
+    }
+    gxbp_keep_facets(c, child, count);
+    gxbp_keep_facets(c, child + 1, count);
+}
+
+/* Writes the lists of what stays to the new pool, with divided items replaced by their parts. */
+static void gxbp_keep_lists(gxbp_census *c) {
+    gxb_complex *cx = c->cx;
+    uint32_t i, j, n = 0;
+    for (i = 0; i < cx->facet_count; i++) {
+        gxb_facet *f = &cx->facets[i];
+        const uint32_t first = n;
+        if (c->facets[i] == GXB_NONE) continue;
+        for (j = 0; j < f->loop_count && gxbp_facet_stays(c, f); j++) gxbp_keep_edges(c, cx->pool[f->loop + j], &n);
+        gxbp_set_loop(f, first, n - first);
+    }
+    for (i = 0; i < cx->leaf_count; i++) {
+        gxb_leaf *l = &cx->leaves[i];
+        const uint32_t first = n;
+        for (j = 0; j < l->facet_count && gxbp_stays(c, i); j++) gxbp_keep_facets(c, cx->pool[l->facets + j], &n);
+        l->facets = first;
+        l->facet_count = n - first;
+    }
+    gxbp_release(&cx->store.allocator, cx->pool, (size_t)cx->pool_capacity * sizeof *cx->pool);
+    cx->pool = c->list;
+    cx->pool_count = cx->pool_live = n;
+    cx->pool_capacity = (uint32_t)c->pool;
+}
+
+/* Moves exact numbers to the new block. */
+static gxb_num *gxbp_move_exact(gxbp_census *c, const gxb_num *exact) {
+    gxb_num *copy;
+    gxb_limb *d;
+    int k;
+    if (exact == NULL) return NULL;
+    copy = (gxb_num *)(void *)((unsigned char *)c->numbers + c->numbers->used);
+    c->numbers->used += gxbp_exact_size(exact);
+    d = (gxb_limb *)(void *)(copy + 4);
+    for (k = 0; k < 4; k++) {
+        copy[k] = exact[k];
+        copy[k].d = d;
+        memcpy(d, exact[k].d, exact[k].n * sizeof *d);
+        d += exact[k].n;
+    }
+    return copy;
+}
+
+static void gxbp_move_line(const gxbp_census *c, uint32_t line[2], uint32_t explicit_line) {
+    const uint32_t *of = explicit_line ? c->points : c->planes;
+    line[0] = of[line[0]];
+    line[1] = of[line[1]];
+}
+
+static void gxbp_keep_store(gxbp_census *c, uint32_t points, uint32_t planes) {
+    gxb_store *store = &c->cx->store;
+    uint32_t i;
+    for (i = 0; i < store->point_count; i++) {
+        gxb_cpoint *p = &store->points[i];
+        if (c->points[i] == GXB_NONE) continue;
+        p->exact = gxbp_move_exact(c, p->exact);
+        if (p->kind != GXB_EXPLICIT) {
+            gxbp_move_line(c, p->def, p->kind == GXB_LINE_PLANE);
+            p->def[2] = c->planes[p->def[2]];
+        }
+        store->points[c->points[i]] = *p;
+    }
+    for (i = 0; i < store->plane_count; i++) {
+        gxb_cplane *f = &store->planes[i];
+        if (c->planes[i] == GXB_NONE) continue;
+        f->exact = gxbp_move_exact(c, f->exact);
+        gxbp_move_line(c, f->def, 1);
+        if (!f->along_axis) f->def[2] = c->points[f->def[2]];
+        store->planes[c->planes[i]] = *f;
+    }
+    store->point_count = points;
+    store->plane_count = planes;
+    gxbp_drop_numbers(store, NULL);
+    store->blocks = c->numbers;
+}
+
+/* Takes the parts of faces and mesh edges from the lists of what they were divided into, unless these stay. */
+static void gxbp_unlist(gxbp_census *c) {
+    gxb_complex *cx = c->cx;
+    uint32_t i, root;
+    for (i = 0; i < cx->face_count; i++) {
+        root = cx->face_facet[i];
+        if (root == GXB_NONE) continue;
+        if (!(gxbp_face_state(c, i) & GXBP_LISTED) && cx->facets[root].child < GXB_UNLISTED)
+            cx->facets[root].child = GXB_UNLISTED;
+        cx->face_facet[i] = c->facets[root];
+    }
+    for (i = 0; i < cx->mesh_edge_count; i++) {
+        root = cx->mesh_edge[i];
+        if (root == GXB_NONE) continue;
+        if (!(c->mesh_edges[i] & GXBP_LISTED) && cx->edges[root].child < GXB_UNLISTED)
+            cx->edges[root].child = GXB_UNLISTED;
+        cx->mesh_edge[i] = c->edges[root];
+    }
+}
+
+static void gxbp_keep_polygons(gxbp_census *c, uint32_t edges, uint32_t facets) {
+    gxb_complex *cx = c->cx;
+    uint32_t i, k;
+    for (i = 0; i < cx->edge_count; i++) {
+        gxb_edge *e = &cx->edges[i];
+        if (c->edges[i] == GXB_NONE) continue;
+        e->v[0] = c->points[e->v[0]];
+        e->v[1] = c->points[e->v[1]];
+        gxbp_move_line(c, e->line, e->explicit_line);
+        if (e->child < GXB_UNLISTED) e->child = c->edges[e->child];
+        cx->edges[c->edges[i]] = *e;
+    }
+    for (i = 0; i < cx->facet_count; i++) {
+        gxb_facet *f = &cx->facets[i];
+        if (c->facets[i] == GXB_NONE) continue;
+        f->plane = c->planes[f->plane];
+        f->labels = f->loop_count > 0 && f->labels != GXB_NONE ? c->labels[f->labels] : GXB_NONE;
+        if (f->child < GXB_UNLISTED) f->child = c->facets[f->child];
+        for (k = 0; k < 2; k++)
+            if (f->leaf[k] != GXB_NONE) f->leaf[k] = c->leaves[f->leaf[k]];
+        cx->facets[c->facets[i]] = *f;
+    }
+    cx->edge_count = edges;
+    cx->facet_count = facets;
+}
+
+static void gxbp_keep_labels(gxbp_census *c, uint32_t labels) {
+    gxb_complex *cx = c->cx;
+    uint32_t i;
+    for (i = 0; i < cx->label_count; i++) {
+        gxb_label *l = &cx->labels[i];
+        if (c->labels[i] == GXB_NONE) continue;
+        if (l->next != GXB_NONE) l->next = c->labels[l->next];
+        cx->labels[c->labels[i]] = *l;
+    }
+    cx->label_count = labels;
+}
+
+static uint32_t gxbp_new_reference(const gxbp_census *c, uint32_t reference) {
+    return reference & 1 ? c->nodes[reference >> 1] << 1 | 1 : c->leaves[reference >> 1] << 1;
+}
+
+/* Parents of nodes and numbers of leaves, from the nodes' children */
+static void gxbp_link_trees(gxb_complex *cx) {
+    uint32_t i, k, n;
+    for (i = 0; i < cx->tree_count; i++) {
+        cx->nodes[i].parent = GXB_NONE;
+        cx->nodes[i].leaves = 0;
+    }
+    for (i = 0; i < cx->tree_count; i++)
+        for (k = 0; k < 2; k++)
+            if (cx->nodes[i].child[k] & 1) cx->nodes[cx->nodes[i].child[k] >> 1].parent = i;
+    for (i = 0; i < cx->tree_count; i++)
+        for (k = 0; k < 2; k++)
+            for (n = cx->nodes[i].child[k] & 1 ? GXB_NONE : i; n != GXB_NONE; n = cx->nodes[n].parent)
+                cx->nodes[n].leaves++;
+}
+
+static void gxbp_keep_trees(gxbp_census *c, uint32_t leaves, uint32_t nodes) {
+    gxb_complex *cx = c->cx;
+    uint32_t i, k, next = 0;
+    cx->removed_count = 0;
+    for (i = 0; i < cx->tree_count; i++) {
+        gxb_node *n = &cx->nodes[i];
+        if (c->nodes[i] == GXB_NONE) continue;
+        n->plane = c->planes[n->plane];
+        for (k = 0; k < 2; k++) n->child[k] = gxbp_new_reference(c, c->children[2 * (size_t)i + k]);
+        cx->nodes[c->nodes[i]] = *n;
+    }
+    for (i = 0; i < cx->element_count; i++) cx->root[i] = gxbp_new_reference(c, c->roots[i]);
+    for (i = 0; i < cx->leaf_count; i++) {
+        if (c->leaves[i] != next) continue; /* another one stands for it */
+        cx->leaves[next] = cx->leaves[i];
+        if (next >= cx->element_count) cx->leaves[next].parent = cx->leaves[next].element;
+        cx->removed_count += cx->leaves[next++].removed;
+    }
+    cx->leaf_count = leaves;
+    cx->tree_count = nodes;
+    gxbp_link_trees(cx);
+}
+
+/* --- the whole of it --- */
+
+static uint32_t *gxbp_take_words(uint32_t **block, size_t count) {
+    uint32_t *words = *block;
+    *block += count;
+    return words;
+}
+
+static gx_result gxbp_open_census(gxbp_census *c, gxb_complex *cx) {
+    const size_t e = cx->element_count, l = cx->leaf_count, n = cx->tree_count;
+    const size_t items = (size_t)cx->store.point_count + cx->store.plane_count + cx->edge_count + cx->facet_count;
+    uint32_t *next;
+    memset(c, 0, sizeof *c);
+    c->cx = cx;
+    c->words = items + 2 * l + 3 * n + cx->label_count + 3 * e + cx->mesh_edge_count;
+    if (c->words > SIZE_MAX / sizeof *next) return GX_ERROR_LIMIT;
+    c->block = (uint32_t *)gxbp_allocate(&cx->store.allocator, c->words * sizeof *next);
+    if (c->block == NULL) return GX_ERROR_MEMORY;
+    memset(c->block, 0xff, c->words * sizeof *next);
+    next = c->block;
+    c->leaves = gxbp_take_words(&next, l);
+    c->planes = gxbp_take_words(&next, cx->store.plane_count);
+    c->points = gxbp_take_words(&next, cx->store.point_count);
+    c->edges = gxbp_take_words(&next, cx->edge_count);
+    c->facets = gxbp_take_words(&next, cx->facet_count);
+    c->nodes = gxbp_take_words(&next, n);
+    c->labels = gxbp_take_words(&next, cx->label_count);
+    c->elements = gxbp_take_words(&next, e);
+    c->hollow = gxbp_take_words(&next, e);
+    c->roots = gxbp_take_words(&next, e);
+    c->mesh_edges = gxbp_take_words(&next, cx->mesh_edge_count);
+    c->leaf_up = gxbp_take_words(&next, l);
+    c->children = gxbp_take_words(&next, 2 * n);
+    return GX_OK;
+}
+
+/* Memory for lists and exact numbers of what stays */
+static gx_result gxbp_take_room(gxbp_census *c) {
+    const gx_allocator *a = &c->cx->store.allocator;
+    const size_t head = (sizeof(gxb_block) + 15) & ~(size_t)15;
+    c->pool = gxbp_room_for(c->pool) + 1;
+    if (c->pool > INT32_MAX) return GX_ERROR_LIMIT;
+    c->list = (uint32_t *)gxbp_allocate(a, c->pool * sizeof *c->list);
+    if (c->list == NULL) return GX_ERROR_MEMORY;
+    if (c->exact == 0) return GX_OK;
+    c->numbers = (gxb_block *)gxbp_allocate(a, head + c->exact);
+    if (c->numbers == NULL) {
+        gxbp_release(a, c->list, c->pool * sizeof *c->list);
+        return GX_ERROR_MEMORY;
+    }
+    c->numbers->next = NULL;
+    c->numbers->size = head + c->exact;
+    c->numbers->used = head;
+    return GX_OK;
+}
+
+static gx_result gxbp_take_census(gxbp_census *c, const uint8_t *pinned) {
+    uint32_t i;
+    gxbp_mark_leaves(c, pinned);
+    gxbp_mark_polygons(c);
+    gxbp_mark_bounds(c);
+    for (i = 0; i < c->cx->element_count; i++) c->roots[i] = gxbp_prune(c, c->cx->root[i]);
+    gxbp_mark_definitions(c);
+    gxbp_count_exact(c);
+    return gxbp_take_room(c);
+}
+
+/* An array whose room is several times what it holds becomes smaller. Without memory for that it stays as it is. A
+   caller's reallocate need not know how to make a block smaller. */
+static void gxbp_shrink(gx_allocator a, void *owner, const gxbp_array *array) {
+    const uint32_t count = *gxbp_word(owner, array->count);
+    uint32_t *capacity = gxbp_word(owner, array->capacity);
+    const size_t room = gxbp_room_for(2 * (size_t)count);
+    void *old, *memory;
+    if (*capacity <= room) return;
+    memcpy(&old, gxbp_field(owner, array->pointer), sizeof old);
+    a.reallocate = NULL;
+    memory = gxbp_reallocate(&a, old, (size_t)*capacity * array->item, (size_t)count * array->item, room * array->item);
+    if (memory == NULL) return;
+    memcpy(gxbp_field(owner, array->pointer), &memory, sizeof memory);
+    *capacity = (uint32_t)room;
+}
+
+static uint64_t gxbp_count_items(const gxb_complex *cx) {
+    return (uint64_t)cx->store.point_count + cx->store.plane_count + cx->edge_count + cx->facet_count + cx->leaf_count;
+}
+
+/* Numbers stay what they were as long as names are far from their end: arrays are shorter than that. */
+static int gxbp_rename(gxb_store *store) {
+    uint32_t i;
+    if (store->next_name <= INT32_MAX) return 0;
+    for (i = 0; i < store->point_count; i++) store->points[i].name = i;
+    store->next_name = store->point_count;
+    return 1;
+}
+
+static void gxbp_settle(gxbp_census *c) {
+    gxb_complex *cx = c->cx;
+    const uint32_t points = gxbp_number(c->points, cx->store.point_count),
+                   planes = gxbp_number(c->planes, cx->store.plane_count),
+                   edges = gxbp_number(c->edges, cx->edge_count), facets = gxbp_number(c->facets, cx->facet_count),
+                   leaves = gxbp_number_leaves(c), nodes = gxbp_number(c->nodes, cx->tree_count),
+                   labels = gxbp_number(c->labels, cx->label_count);
+    uint32_t i;
+    gxbp_keep_lists(c);
+    gxbp_unlist(c);
+    gxbp_keep_polygons(c, edges, facets);
+    gxbp_keep_labels(c, labels);
+    gxbp_keep_trees(c, leaves, nodes);
+    gxbp_keep_store(c, points, planes);
+    for (i = 0; i < 2; i++) gxbp_forget_signs(&cx->store, (int)i);
+    cx->sign_plane = GXB_NONE;
+    gxbp_forget_pairs(cx);
+    for (i = 0; i < 2; i++) gxbp_shrink(cx->store.allocator, &cx->store, &gxbp_store_arrays[i]);
+    for (i = 0; i < GXBP_MARKS; i++) gxbp_shrink(cx->store.allocator, cx, &gxbp_complex_arrays[i]);
+    cx->settled = gxbp_count_items(cx);
+    gxbp_set_marks(cx);
+}
+
+/* Tests compact at every opportunity. */
+#ifndef GXBP_IS_SPARSE
+#define GXBP_IS_SPARSE(removed, items, settled) ((removed) > 0 && (items) > 2 * (settled) + 16384)
+#endif
+
+GXFEM_API int gxb_complex_is_sparse(const gxb_complex *cx) {
+    return GXBP_IS_SPARSE(cx->removed_count, gxbp_count_items(cx), cx->settled);
+}
+
+GXFEM_API gx_result gxb_complex_compact(gxb_complex *cx, const uint8_t *pinned, gxb_renumbering *r) {
+    gxbp_census c;
+    gx_result result = gxbp_open_census(&c, cx);
+    memset(r, 0, sizeof *r);
+    if (result != GX_OK) return result;
+    result = gxbp_take_census(&c, pinned);
+    if (result != GX_OK) {
+        gxbp_release(&cx->store.allocator, c.block, c.words * sizeof *c.block);
+        return result;
+    }
+    r->leaf_count = cx->leaf_count;
+    r->plane_count = cx->store.plane_count;
+    r->leaves = c.leaves;
+    r->planes = c.planes;
+    r->memory = c.block;
+    r->size = c.words * sizeof *c.block;
+    gxbp_settle(&c);
+    r->renamed = gxbp_rename(&cx->store);
+    return GX_OK;
+}
+
+GXFEM_API void gxb_complex_forget(gxb_complex *cx, gxb_renumbering *r) {
+    gxbp_release(&cx->store.allocator, r->memory, r->size);
+    memset(r, 0, sizeof *r);
+}
+
 /* >>save: points by their definitions, the rest by indices --------------------------------------------------------- */
 /* In: a complex, or bytes. Out: bytes, or a complex that has been checked. Reading trusts nothing. */
 
@@ -5620,6 +6258,8 @@ static GXBP_COLD void gxbp_pass_rest(gxb_complex *cx, gxb_stream *s) {
     gxb_stream_pass(s, cx->face_facet, cx->face_count, sizeof *cx->face_facet);
     gxb_stream_pass(s, cx->mesh_edge, cx->mesh_edge_count, sizeof *cx->mesh_edge);
     gxb_stream_pass(s, cx->root, cx->element_count, sizeof *cx->root);
+    gxb_stream_pass(s, &cx->settled, 1, sizeof cx->settled);
+    gxbp_require_true(s, cx->settled <= (uint64_t)5 * INT32_MAX);
     for (i = 0; i < cx->tree_count; i++) {
         gxbp_pass_word(s, &cx->nodes[i].plane);
         gxb_stream_pass(s, cx->nodes[i].child, 2, sizeof *cx->nodes[i].child);
@@ -5700,13 +6340,13 @@ GXFEM_API GXBP_RARE void gxb_complex_save(gxb_complex *cx, gxb_stream *stream) {
 #define GXBP_DEPTH 10000 /* of a tree of edges, facets or leaves: functions that walk them call themselves */
 
 /* Trees of items that were divided into (child, child + 1): each child comes behind its one parent. child: of item i at
-   first + i * size. depth: count. */
+   first + i * size. depth: count. Items whose parts are not listed are checked elsewhere. */
 static void gxbp_check_trees(gxb_stream *s, const uint32_t *first, size_t size, uint32_t count, uint32_t *depth) {
     uint32_t i, child;
     if (count > 0) memset(depth, 0, count * sizeof *depth);
     for (i = 0; i < count && s->result == GX_OK; i++) {
         memcpy(&child, (const unsigned char *)first + i * size, sizeof child);
-        if (child == GXB_NONE) continue;
+        if (child >= GXB_UNLISTED) continue;
         gxbp_require_true(s, child > i && child < count - 1 && depth[child] == 0 && depth[child + 1] == 0);
         if (s->result != GX_OK) return;
         depth[child] = depth[child + 1] = depth[i] + 1;
@@ -5715,6 +6355,16 @@ static void gxbp_check_trees(gxb_stream *s, const uint32_t *first, size_t size, 
 }
 
 static int gxbp_below(uint32_t index, uint32_t count) { return index == GXB_NONE || index < count; }
+
+/* Does the leaf stand for all removed leaves of its element? It has no facets, and may hang in several places. */
+static int gxbp_is_hollow(const gxb_complex *cx, uint32_t leaf) {
+    return leaf != GXB_NONE && cx->leaves[leaf].removed && cx->leaves[leaf].facet_count == 0;
+}
+
+/* Is it an element that nothing has touched? When it is opened, it takes all parts of its faces and edges. */
+static int gxbp_is_closed(const gxb_complex *cx, uint32_t element) {
+    return element != GXB_NONE && !cx->leaves[element].removed && cx->leaves[element].facet_count == 0;
+}
 
 static void gxbp_check_indices(gxb_complex *cx, gxb_stream *s) {
     uint32_t i, j;
@@ -5738,9 +6388,9 @@ static void gxbp_check_indices(gxb_complex *cx, gxb_stream *s) {
     for (i = 0; i < cx->leaf_count; i++) {
         const gxb_leaf *l = &cx->leaves[i];
         good &= l->element < cx->element_count && l->removed <= 1;
-        good &= i < cx->element_count
-                  ? l->element == i && l->parent == GXB_NONE
-                  : l->parent < i && cx->leaves[l->parent].element == l->element && l->facet_count > 0;
+        good &= i < cx->element_count ? l->element == i && l->parent == GXB_NONE
+                                      : l->parent < i && cx->leaves[l->parent].element == l->element &&
+                                            (l->facet_count > 0 || l->removed == 1);
         for (j = 0; j < l->facet_count; j++) good &= cx->pool[l->facets + j] < cx->facet_count;
         if (!good) break;
     }
@@ -5822,7 +6472,7 @@ static void gxbp_check_edges(gxb_complex *cx, gxb_stream *s, const uint32_t *dep
                                                   : gxbp_planes_cross(&cx->store, e->line[0], e->line[1]));
             gxbp_require_true(s, gxbp_on_line(cx, e->v[0], e) && gxbp_on_line(cx, e->v[1], e));
         }
-        if (e->child != GXB_NONE && s->result == GX_OK) gxbp_require_true(s, gxbp_edge_is_divided(cx, e));
+        if (e->child < GXB_UNLISTED && s->result == GX_OK) gxbp_require_true(s, gxbp_edge_is_divided(cx, e));
     }
     for (i = 0; i < 6 * cx->element_count && s->result == GX_OK; i++) {
         const uint32_t edge = cx->mesh_edge[cx->element_edges[i]], *node = cx->elements + 4 * (size_t)(i / 6);
@@ -5830,6 +6480,7 @@ static void gxbp_check_edges(gxb_complex *cx, gxb_stream *s, const uint32_t *dep
         const gxb_edge *e;
         if (edge == GXB_NONE) continue;
         e = &cx->edges[edge];
+        gxbp_require_true(s, e->child != GXB_UNLISTED || !gxbp_is_closed(cx, i / 6));
         gxbp_require_true(s, depth[edge] == 0 && e->explicit_line && e->line[0] == (a < b ? a : b) &&
                                  e->line[1] == (a < b ? b : a) && memcmp(e->v, e->line, sizeof e->v) == 0);
     }
@@ -5859,6 +6510,7 @@ typedef struct gxbp_checker {
 /* Appends the parts of a signed edge; none may come twice in a facet. */
 static GXBP_COLD void gxbp_collect_edges(gxbp_checker *c, uint32_t signed_edge) {
     const uint32_t child = c->cx->edges[signed_edge >> 1].child, back = signed_edge & 1;
+    gxbp_require_true(c->s, child != GXB_UNLISTED);
     if (c->s->result != GX_OK) return;
     if (child != GXB_NONE) {
         gxbp_collect_edges(c, (child + back) << 1 | back);
@@ -5924,6 +6576,22 @@ static void gxbp_check_polygon(gxbp_checker *c, uint32_t facet) {
         gxbp_require_true(c->s, gxbp_side_is_convex(c, plane, c->corner[i], c->corner[(i + 1) % c->corners]));
 }
 
+/* Is it the first facet of a mesh face, and nothing is left at the face? */
+static int gxbp_is_spent(const gxb_complex *cx, uint32_t facet) {
+    const gxb_facet *f = &cx->facets[facet];
+    return f->child == GXB_NONE && f->face != GXB_NONE && cx->face_facet[f->face] == facet &&
+           (f->leaf[0] == GXB_NONE || gxbp_is_hollow(cx, f->leaf[0])) &&
+           (f->leaf[1] == GXB_NONE || gxbp_is_hollow(cx, f->leaf[1]));
+}
+
+/* A facet of a mesh face is its first one, or a part of that, or that does not list its parts. */
+static int gxbp_is_in_face(const gxbp_checker *c, uint32_t facet) {
+    const uint32_t root = c->cx->face_facet[c->cx->facets[facet].face];
+    if (c->facet_depth[facet] > 0) return c->cx->facets[facet].child != GXB_UNLISTED;
+    return root == facet ||
+           (root != GXB_NONE && c->cx->facets[root].child == GXB_UNLISTED && c->cx->facets[facet].child == GXB_NONE);
+}
+
 /* A facet's leaves are one element's, or those of its face's two elements. */
 static int gxbp_facet_is_between(const gxb_complex *cx, const gxb_facet *f) {
     int k;
@@ -5943,19 +6611,20 @@ static void gxbp_check_facets(gxbp_checker *c) {
     gxb_complex *cx = c->cx;
     uint32_t i;
     for (i = 0; i < cx->facet_count && c->s->result == GX_OK; i++) {
-        const gxb_facet *f = &cx->facets[i], *half = f->child == GXB_NONE ? f : &cx->facets[f->child];
+        const gxb_facet *f = &cx->facets[i], *half = f->child < GXB_UNLISTED ? &cx->facets[f->child] : f;
         gxbp_require_true(c->s, half[0].plane == f->plane && half[0].face == f->face &&
-                                    (f->child == GXB_NONE || (half[1].plane == f->plane && half[1].face == f->face)));
-        if (f->face != GXB_NONE && c->facet_depth[i] == 0) gxbp_require_true(c->s, cx->face_facet[f->face] == i);
+                                    (half == f || (half[1].plane == f->plane && half[1].face == f->face)));
+        gxbp_require_true(c->s, f->face != GXB_NONE ? gxbp_is_in_face(c, i) : f->child != GXB_UNLISTED);
         if (f->child != GXB_NONE || c->s->result != GX_OK) continue;
         gxbp_require_true(c->s, gxbp_facet_is_between(cx, f));
-        if (c->s->result == GX_OK) gxbp_check_polygon(c, i);
+        if (c->s->result == GX_OK && (f->loop_count > 0 || !gxbp_is_spent(cx, i))) gxbp_check_polygon(c, i);
     }
 }
 
 /* Collects the facets into which one was divided; those of a leaf's list must be its own, each listed once. */
 static GXBP_COLD void gxbp_collect_facets(gxbp_checker *c, uint32_t facet, uint32_t leaf) {
     const gxb_facet *f = &c->cx->facets[facet];
+    gxbp_require_true(c->s, f->child != GXB_UNLISTED);
     if (c->s->result != GX_OK) return;
     if (f->child != GXB_NONE) {
         gxbp_collect_facets(c, f->child, leaf);
@@ -5985,23 +6654,38 @@ static void gxbp_add_border(gxbp_checker *c, uint32_t facet, uint32_t flip, uint
     }
 }
 
-/* --- mesh faces: their facets cover them once, up to the parts of their mesh edges --- */
+/* --- mesh faces: their facets, if they are listed, cover them once, up to the parts of their mesh edges --- */
 
 /* Are all parts of the signed edge on the border? Returns how many there are. */
 static GXBP_COLD uint32_t gxbp_count_border(gxbp_checker *c, uint32_t signed_edge, uint32_t round) {
     const uint32_t child = c->cx->edges[signed_edge >> 1].child, back = signed_edge & 1;
-    if (child != GXB_NONE)
+    if (child < GXB_UNLISTED)
         return gxbp_count_border(c, child << 1 | back, round) + gxbp_count_border(c, (child + 1) << 1 | back, round);
     gxbp_require_true(c->s, c->border[signed_edge] == round && c->border[signed_edge ^ 1] != round);
     return 1;
 }
 
+/* Are all parts of the face and of its edges listed? They must be where an element is closed. */
+static int gxbp_face_is_listed(gxbp_checker *c, uint32_t face, const uint32_t edges[3]) {
+    const gxb_complex *cx = c->cx;
+    const uint32_t root = cx->face_facet[face];
+    int listed =
+        cx->facets[root].child != GXB_UNLISTED && (cx->facets[root].loop_count > 0 || !gxbp_is_spent(cx, root));
+    uint32_t j;
+    for (j = 0; j < 3; j++)
+        listed =
+            listed && (cx->mesh_edge[edges[j]] == GXB_NONE || cx->edges[cx->mesh_edge[edges[j]]].child != GXB_UNLISTED);
+    gxbp_require_true(c->s, listed || !(gxbp_is_closed(cx, cx->face_elements[2 * face]) ||
+                                        gxbp_is_closed(cx, cx->face_elements[2 * face + 1])));
+    return listed;
+}
+
 /* Element's face k: nodes a < b < c are its plane, and its border runs from a to b to c. */
 static void gxbp_check_face(gxbp_checker *c, uint32_t element, uint32_t k) {
     gxb_complex *cx = c->cx;
-    const uint32_t *node = cx->elements + 4 * (size_t)element,
-                   root = cx->face_facet[cx->element_faces[4 * (size_t)element + k]];
-    uint32_t local[3], n[3], i, j, parts = 0, round;
+    const uint32_t *node = cx->elements + 4 * (size_t)element, face = cx->element_faces[4 * (size_t)element + k],
+                   root = cx->face_facet[face];
+    uint32_t local[3], n[3], edge[3], i, j, parts = 0, round;
     const gxb_cplane *plane;
     if (root == GXB_NONE) return;
     plane = &cx->store.planes[cx->facets[root].plane];
@@ -6010,18 +6694,19 @@ static void gxbp_check_face(gxbp_checker *c, uint32_t element, uint32_t k) {
     for (j = 0; j < 3; j++)
         for (i = 0; i < 4; i++)
             if (node[i] == n[j]) local[j] = i;
-    gxbp_require_true(c->s, c->facet_depth[root] == 0 &&
-                                cx->facets[root].face == cx->element_faces[4 * (size_t)element + k] &&
-                                !plane->along_axis && memcmp(plane->def, n, sizeof n) == 0);
+    for (j = 0; j < 3; j++)
+        edge[j] = cx->element_edges[6 * (size_t)element + gxbp_local_edge(local[j], local[(j + 1) % 3])];
+    gxbp_require_true(c->s, c->facet_depth[root] == 0 && cx->facets[root].face == face && !plane->along_axis &&
+                                memcmp(plane->def, n, sizeof n) == 0);
+    if (!gxbp_face_is_listed(c, face, edge)) return;
     c->facets = c->loose = 0;
     round = ++c->round;
     gxbp_collect_facets(c, root, GXB_NONE);
     for (i = 0; i < c->facets && c->s->result == GX_OK; i++) gxbp_add_border(c, c->facet[i], 0, round);
     for (j = 0; j < 3 && c->s->result == GX_OK; j++) {
-        const uint32_t edge =
-            cx->mesh_edge[cx->element_edges[6 * (size_t)element + gxbp_local_edge(local[j], local[(j + 1) % 3])]];
-        gxbp_require_true(c->s, edge != GXB_NONE);
-        if (c->s->result == GX_OK) parts += gxbp_count_border(c, edge << 1 | (j == 2 ? 1u : 0u), round);
+        const uint32_t first = cx->mesh_edge[edge[j]];
+        gxbp_require_true(c->s, first != GXB_NONE);
+        if (c->s->result == GX_OK) parts += gxbp_count_border(c, first << 1 | (j == 2 ? 1u : 0u), round);
     }
     gxbp_require_true(c->s, parts == c->loose);
 }
@@ -6033,7 +6718,8 @@ static void gxbp_check_face(gxbp_checker *c, uint32_t element, uint32_t k) {
 static void gxbp_hang(gxbp_checker *c, uint32_t reference, uint32_t up, uint32_t element, uint32_t depth) {
     const uint32_t index = reference >> 1, count = reference & 1 ? c->cx->tree_count : c->cx->leaf_count;
     uint32_t *from = reference & 1 ? c->node_up : c->leaf_up;
-    gxbp_require_true(c->s, index < count && from[index < count ? index : 0] == GXBP_UNSEEN);
+    gxbp_require_true(c->s, index < count && (from[index < count ? index : 0] == GXBP_UNSEEN ||
+                                              (!(reference & 1) && gxbp_is_hollow(c->cx, index))));
     if (c->s->result != GX_OK) return;
     from[index] = up;
     if (!(reference & 1)) {
@@ -6046,7 +6732,7 @@ static void gxbp_hang(gxbp_checker *c, uint32_t reference, uint32_t up, uint32_t
     if (depth > GXBP_DEPTH) gxbp_require(c->s, GX_ERROR_LIMIT);
 }
 
-/* From the roots down: every node and leaf hangs somewhere, once. */
+/* From the roots down: every node and leaf hangs somewhere, once unless it stands for several. */
 static void gxbp_check_tree(gxbp_checker *c) {
     gxb_complex *cx = c->cx;
     uint32_t i, k;
@@ -6118,6 +6804,8 @@ static void gxbp_check_open_leaf(gxbp_checker *c, uint32_t leaf) {
         gxbp_require_true(c->s, gxbp_lies_beside(c, f->plane, f->leaf[0] == leaf ? 1 : -1, &off) && off);
         gxbp_require_true(c->s, f->face != GXB_NONE || gxbp_is_above(c, leaf, f));
     }
+    for (i = 0; i < 6; i++)
+        gxbp_require_true(c->s, cx->mesh_edge[cx->element_edges[6 * (size_t)l.element + i]] != GXB_NONE);
     for (i = 0; i < 4 && c->s->result == GX_OK; i++) {
         const uint32_t face = cx->element_faces[4 * (size_t)l.element + i];
         gxbp_require_true(c->s, cx->face_facet[face] != GXB_NONE);
@@ -6136,13 +6824,13 @@ static void gxbp_check_leaves(gxbp_checker *c) {
     for (i = 0; i < cx->leaf_count && c->s->result == GX_OK; i++) {
         if (cx->leaves[i].facet_count > 0)
             gxbp_check_open_leaf(c, i);
-        else
+        else if (!gxbp_is_hollow(cx, i))
             gxbp_require_true(c->s, cx->root[i] == 2 * i);
     }
     for (i = 0; i < cx->facet_count && c->s->result == GX_OK; i++)
         for (k = 0; k < 2; k++) {
             const gxb_facet *f = &cx->facets[i];
-            if (f->child != GXB_NONE || f->leaf[k] == GXB_NONE) continue;
+            if (f->child != GXB_NONE || f->leaf[k] == GXB_NONE || gxbp_is_hollow(cx, f->leaf[k])) continue;
             gxbp_require_true(c->s, cx->leaves[f->leaf[k]].facet_count > 0 ? c->facet_mark[2 * i + k] != 0
                                                                            : f->face != GXB_NONE);
         }
@@ -6203,24 +6891,8 @@ static GXBP_COLD void gxbp_check(gxb_complex *cx, gxb_stream *s) {
 /* >>load: a complex from bytes ------------------------------------------------------------------------------------- */
 /* In: bytes. Out: a complex, checked unless the caller vouches for the bytes, in a transaction of its own. */
 
-/* Parents of nodes and numbers of leaves, which are not saved */
-static void gxbp_link_trees(gxb_complex *cx) {
-    uint32_t i, k, n;
-    for (i = 0; i < cx->tree_count; i++) {
-        cx->nodes[i].parent = GXB_NONE;
-        cx->nodes[i].leaves = 0;
-    }
-    for (i = 0; i < cx->tree_count; i++)
-        for (k = 0; k < 2; k++)
-            if (cx->nodes[i].child[k] & 1) cx->nodes[cx->nodes[i].child[k] >> 1].parent = i;
-    for (i = 0; i < cx->tree_count; i++)
-        for (k = 0; k < 2; k++)
-            for (n = cx->nodes[i].child[k] & 1 ? GXB_NONE : i; n != GXB_NONE; n = cx->nodes[n].parent)
-                cx->nodes[n].leaves++;
-}
-
 GXFEM_API GXBP_RARE gx_result gxb_complex_load(gxb_complex *cx, gxb_stream *s, int trusted) {
-    uint32_t counts[GXBP_COUNTS];
+    uint32_t counts[GXBP_COUNTS], i;
     gxbp_pass_counts(cx, s, counts);
     if (s->result == GX_OK) gxbp_load_points(cx, s, counts[0]);
     if (s->result == GX_OK) gxbp_load_planes(cx, s, counts[1]);
@@ -6230,6 +6902,7 @@ GXFEM_API GXBP_RARE gx_result gxb_complex_load(gxb_complex *cx, gxb_stream *s, i
     if (s->result != GX_OK) return s->result;
     gxbp_link_trees(cx);
     cx->pool_live = cx->pool_count;
+    for (i = 0; i < cx->leaf_count; i++) cx->removed_count += cx->leaves[i].removed;
     gxb_complex_begin(cx);
     return GX_OK;
 }
@@ -11927,6 +12600,7 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_LOOSE
 #undef GXBP_BARE
 #undef GXBP_ARENA
+#undef GXBP_IS_SPARSE
 #undef GXBP_HAS_ROOM
 #undef GXBP_SPARE
 #undef GXBP_LARGEST
