@@ -789,20 +789,26 @@ typedef struct gxp_cell { /* without gaps between its members: rows are saved as
     uint32_t element;
     uint32_t copies[4];
     uint32_t first_leaf; /* list through gxp_leaf.next; GXP_NONE: removed */
-    uint32_t next;       /* next slot of the element, GXP_NONE: last */
+    uint32_t next;       /* next cell of the element, GXP_NONE: last */
     uint32_t kept;
     double volume;   /* m3 */
     double mass[10]; /* kg, order of gxs_element.mass */
 } gxp_cell;
 
-typedef struct gxp_cells { /* slots 0 ... element_count-1 are the elements' first cells */
+/* Rows 0 ... element_count-1 are the elements' first cells. Others go some time after they are removed: see >>settle */
+typedef struct gxp_cells {
     uint32_t count, capacity[5];
     gxp_cell *data;
-    uint32_t *parent;    /* the slot from which it was divided; of a first cell: its own */
+    uint32_t *slot;      /* its name, ascending */
     uint32_t *stamp;     /* scratch.stamp of the last walk that met the cell */
     uint32_t *saved_by;  /* undo.cut_number of the last cut that saved or made it */
     uint32_t *new_index; /* its index in scratch.new_cells, if it is there */
 } gxp_cells;
+
+typedef struct gxp_slots { /* all that there have been */
+    uint32_t count, capacity[1];
+    uint32_t *parent; /* the slot from which it was divided; of a first cell: its own */
+} gxp_slots;
 
 typedef struct gxp_leaf {
     uint32_t cell, next; /* next of the cell, GXP_NONE: last, or removed */
@@ -901,6 +907,7 @@ enum { /* indices of gxp_tables */
        GXP_EDGES,
        GXP_MATERIALS,
        GXP_CELLS,
+       GXP_SLOTS,
        GXP_LEAVES,
        GXP_COPIES,
        GXP_SURFACES,
@@ -927,10 +934,10 @@ typedef struct gxp_undo {
 
 typedef struct gxp_view { /* the body as gx_view tells it */
     int stale;            /* a cut has been since the lists were made */
-    uint32_t count, capacity[5];
-    uint32_t *slot, *fragment, *element, *copies; /* of each kept cell; copies x 4 */
+    uint32_t count, capacity[6];
+    uint32_t *cell, *slot, *fragment, *element, *copies; /* of each kept cell; copies x 4 */
     double *volume;
-    gxp_words indices;         /* by slot: the index of a kept cell in these lists; empty until somebody asks */
+    gxp_words indices;         /* by cell: the index of a kept one in these lists; empty until somebody asks */
     gxp_words copy_fragment;   /* of each copy: a parent among copies, see gxp_find; the root stands for its fragment */
     gxp_words fragment_number; /* of each root */
     /* copy_fragment and fragment_number hold for copies older than splits, and nothing has been removed */
@@ -1027,7 +1034,7 @@ typedef struct gxp_skin {
     uint32_t triangle_count, triangle_capacity[7];
     gxp_skin_links *links;
     uint32_t *triangles, *fragment, *element, *material, *surface;
-    uint32_t *cell;  /* slot */
+    uint32_t *cell;
     gxp_words first; /* element_count: the first of its triangles */
     gxp_skin_slot *slots;
     uint32_t slot_count, slot_capacity, free_slot;
@@ -1240,6 +1247,7 @@ struct gx_body {
     gxb_complex *complex;
     gxs_solver *solver;
     gxp_cells cells;
+    gxp_slots slots;
     gxp_leaves leaves;
     gxp_copies copies;
     gxp_cuts cuts;
@@ -1305,7 +1313,9 @@ static const gxp_column gxp_cell_columns[] = {
     GXP_COLUMN(cells, stamp,     capacity, 1, sizeof(uint32_t), GXP_CLEARED),
     GXP_COLUMN(cells, saved_by,  capacity, 2, sizeof(uint32_t), GXP_CLEARED),
     GXP_COLUMN(cells, new_index, capacity, 3, sizeof(uint32_t), GXP_CLEARED),
-    GXP_COLUMN(cells, parent,    capacity, 4, sizeof(uint32_t), GXP_TOPOLOGY)};
+    GXP_COLUMN(cells, slot,      capacity, 4, sizeof(uint32_t), GXP_TOPOLOGY)};
+static const gxp_column gxp_slot_columns[] = {
+    GXP_COLUMN(slots, parent, capacity, 0, sizeof(uint32_t), GXP_TOPOLOGY)};
 static const gxp_column gxp_leaf_columns[] = {
     GXP_COLUMN(leaves, data, capacity, 0, sizeof(gxp_leaf), GXP_TOPOLOGY | GXP_UNDONE),
     GXP_COLUMN(leaves, mark, capacity, 1, sizeof(gxp_leaf_mark), GXP_CLEARED)};
@@ -1344,7 +1354,8 @@ static const gxp_column gxp_view_columns[] = {
     GXP_COLUMN(view, fragment, capacity, 1, sizeof(uint32_t), 0),
     GXP_COLUMN(view, element,  capacity, 2, sizeof(uint32_t), 0),
     GXP_COLUMN(view, copies,   capacity, 3, 4 * sizeof(uint32_t), 0),
-    GXP_COLUMN(view, volume,   capacity, 4, sizeof(double), 0)};
+    GXP_COLUMN(view, volume,   capacity, 4, sizeof(double), 0),
+    GXP_COLUMN(view, cell,     capacity, 5, sizeof(uint32_t), 0)};
 static const gxp_column gxp_sum_columns[] = {
     GXP_COLUMN(view, fragment_volume,  sum_capacity, 0, sizeof(double), 0),
     GXP_COLUMN(view, fragment_mass,    sum_capacity, 1, sizeof(double), 0),
@@ -1375,6 +1386,7 @@ static const gxp_table gxp_tables[GXP_TABLES] = { /* in the order of GXP_NODES .
     GXP_TABLE(mesh.edge_count, gxp_edge_columns),
     GXP_TABLE(mesh.material_count, gxp_material_columns),
     GXP_TABLE(cells.count, gxp_cell_columns),
+    GXP_TABLE(slots.count, gxp_slot_columns),
     GXP_TABLE(leaves.count, gxp_leaf_columns),
     GXP_TABLE(copies.count, gxp_copy_columns),
     GXP_TABLE(cuts.surface_count, gxp_surface_columns),
@@ -2197,6 +2209,27 @@ static uint32_t gxp_copy_of(const gx_body *body, uint32_t cell, uint32_t node) {
     return body->cells.data[cell].copies[gxp_local_node(body, body->cells.data[cell].element, node)];
 }
 
+/* The cell of a slot, or GXP_NONE if its row is gone. */
+static uint32_t gxp_cell_of_slot(const gx_body *body, uint32_t slot) {
+    const uint32_t *name = body->cells.slot;
+    uint32_t low = 0, high = body->cells.count;
+    if (slot < high && name[slot] == slot) return slot;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (name[middle] < slot)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < body->cells.count && name[low] == slot ? low : GXP_NONE;
+}
+
+/* The cell of a slot that is below slots.count; GXP_NONE: it is removed. */
+static uint32_t gxp_kept_cell(const gx_body *body, uint32_t slot) {
+    const uint32_t cell = gxp_cell_of_slot(body, slot);
+    return cell != GXP_NONE && body->cells.data[cell].kept ? cell : GXP_NONE;
+}
+
 /* Adds a row for each new leaf of the complex. It starts in its parent's cell, outside the cell's list. */
 static gx_result gxp_follow_leaves(gx_body *body) {
     const uint32_t count = gxb_complex_leaf_count(body->complex);
@@ -2457,7 +2490,8 @@ static gx_result gxp_list_cells(gx_body *body) {
             const gxp_cell *c = &body->cells.data[cell];
             if (!c->kept) continue;
             view->volume[view->count] = c->volume;
-            view->slot[view->count] = cell;
+            view->cell[view->count] = cell;
+            view->slot[view->count] = body->cells.slot[cell];
             view->element[view->count] = e;
             memcpy(view->copies + 4 * (size_t)view->count++, c->copies, sizeof c->copies);
             gxp_unite_all(view->copy_fragment.data, c->copies);
@@ -2481,7 +2515,7 @@ static gx_result gxp_number_fragments(gx_body *body) {
     return GX_OK;
 }
 
-/* The fragment of a cell slot; the view is up to date. */
+/* The fragment of a cell; the view is up to date. */
 static uint32_t gxp_cell_fragment(gx_body *body, uint32_t cell) {
     return body->view.fragment_number.data[gxp_find(body->view.copy_fragment.data, body->cells.data[cell].copies[0])];
 }
@@ -2501,7 +2535,7 @@ static gx_result gxp_update_view(gx_body *body) {
     return GX_OK;
 }
 
-/* Lists the index of each kept cell by slot, if that is not there; the view is up to date. */
+/* Lists the index of each kept cell, if that is not there; the view is up to date. */
 static gx_result gxp_list_indices(gx_body *body) {
     gxp_view *view = &body->view;
     gx_result result;
@@ -2510,7 +2544,7 @@ static gx_result gxp_list_indices(gx_body *body) {
     result = gxp_start_words(body, &view->indices, body->cells.count);
     if (result != GX_OK) return result;
     view->indices.count = body->cells.count;
-    for (i = 0; i < view->count; i++) view->indices.data[view->slot[i]] = i;
+    for (i = 0; i < view->count; i++) view->indices.data[view->cell[i]] = i;
     return GX_OK;
 }
 
@@ -2545,13 +2579,13 @@ static gx_result gxp_stamp_scope(gxp_cut *cut) {
     scratch->scope_stamp = ++scratch->stamp;
     for (i = 0; i < desc->scope_cell_count; i++) {
         if (desc->scope_cells[i] >= view->count) return gxp_fail(&cut->failure, GX_ERROR_INDEX, "scope_cells", i);
-        body->cells.stamp[view->slot[desc->scope_cells[i]]] = scratch->scope_stamp;
+        body->cells.stamp[view->cell[desc->scope_cells[i]]] = scratch->scope_stamp;
     }
     for (i = 0; i < desc->scope_fragment_count; i++) {
         if (desc->scope_fragments[i] >= view->fragment_count)
             return gxp_fail(&cut->failure, GX_ERROR_INDEX, "scope_fragments", i);
         for (j = 0; j < view->count; j++)
-            if (view->fragment[j] == desc->scope_fragments[i]) body->cells.stamp[view->slot[j]] = scratch->scope_stamp;
+            if (view->fragment[j] == desc->scope_fragments[i]) body->cells.stamp[view->cell[j]] = scratch->scope_stamp;
     }
     return GX_OK;
 }
@@ -2564,8 +2598,10 @@ static gx_result gxp_stamp_surface(gxp_cut *cut, const gx_surface *s, int *scope
     if (cut->stamped == (s->scope_slots != NULL ? s : NULL)) return GX_OK;
     if (s->scope_slots == NULL) return gxp_stamp_scope(cut);
     body->scratch.scope_stamp = ++body->scratch.stamp;
-    for (i = 0; i < s->scope_slot_count; i++)
-        if (body->cells.data[s->scope_slots[i]].kept) body->cells.stamp[s->scope_slots[i]] = body->scratch.scope_stamp;
+    for (i = 0; i < s->scope_slot_count; i++) {
+        const uint32_t cell = gxp_kept_cell(body, s->scope_slots[i]);
+        if (cell != GXP_NONE) body->cells.stamp[cell] = body->scratch.scope_stamp;
+    }
     cut->stamped = s;
     return GX_OK;
 }
@@ -2638,7 +2674,7 @@ static gx_result gxp_check_slots(const gx_body *body, const gx_surface *s, gx_fa
     size_t i;
     if (s->scope_slot_count > 0 && s->scope_slots == NULL) return gxp_refuse(failure, "surfaces.scope_slots");
     for (i = 0; i < s->scope_slot_count; i++)
-        if (s->scope_slots[i] >= body->cells.count) return gxp_fail(failure, GX_ERROR_INDEX, "surfaces.scope_slots", i);
+        if (s->scope_slots[i] >= body->slots.count) return gxp_fail(failure, GX_ERROR_INDEX, "surfaces.scope_slots", i);
     return GX_OK;
 }
 
@@ -3307,7 +3343,7 @@ static gx_result gxp_seed_untouched(gxp_cut *cut) {
         if (gxp_is_kept(body, scratch->seed_leaves.data[i]))
             scratch->seeded.data[gxp_cell_fragment(body, body->leaves.data[scratch->seed_leaves.data[i]].cell)] = 1;
     for (i = 0; i < view->count && result == GX_OK; i++) {
-        const uint32_t cell = view->slot[i];
+        const uint32_t cell = view->cell[i];
         if (scratch->seeded.data[view->fragment[i]] && gxp_is_flooded(cut, cell)) continue;
         scratch->seeded.data[view->fragment[i]] = 1;
         result = gxp_push(body, &scratch->seed_leaves, body->cells.data[cell].first_leaf);
@@ -3319,9 +3355,10 @@ static gx_result gxp_seed_untouched(gxp_cut *cut) {
 static gx_result gxp_seed_slots(gx_body *body, const gx_surface *s) {
     gx_result result = GX_OK;
     size_t i;
-    for (i = 0; i < s->scope_slot_count && result == GX_OK; i++)
-        if (body->cells.data[s->scope_slots[i]].kept)
-            result = gxp_push(body, &body->scratch.seed_leaves, body->cells.data[s->scope_slots[i]].first_leaf);
+    for (i = 0; i < s->scope_slot_count && result == GX_OK; i++) {
+        const uint32_t cell = gxp_kept_cell(body, s->scope_slots[i]);
+        if (cell != GXP_NONE) result = gxp_push(body, &body->scratch.seed_leaves, body->cells.data[cell].first_leaf);
+    }
     return result;
 }
 
@@ -3620,17 +3657,19 @@ static gx_result gxp_list_new_leaves(gxp_cut *cut) {
 }
 
 /* Appends a cell to the element of another one, with that one's copies and without leaves. */
-static gx_result gxp_new_cell(gx_body *body, uint32_t like, uint32_t *slot) {
+static gx_result gxp_new_cell(gx_body *body, uint32_t like, uint32_t *cell) {
     gx_result result = gxp_grow_rows(body, GXP_CELLS, 1);
+    if (result == GX_OK) result = gxp_grow_rows(body, GXP_SLOTS, 1);
     if (result == GX_OK) result = gxp_save_cell(body, like);
     if (result != GX_OK) return result;
-    *slot = body->cells.count++;
-    body->cells.data[*slot] = body->cells.data[like];
-    body->cells.parent[*slot] = like;
-    body->cells.data[like].next = *slot;
-    body->cells.data[*slot].first_leaf = GXP_NONE;
-    body->cells.stamp[*slot] = 0;
-    body->cells.saved_by[*slot] = body->undo.cut_number;
+    *cell = body->cells.count++;
+    body->cells.data[*cell] = body->cells.data[like];
+    body->cells.slot[*cell] = body->slots.count;
+    body->slots.parent[body->slots.count++] = body->cells.slot[like];
+    body->cells.data[like].next = *cell;
+    body->cells.data[*cell].first_leaf = GXP_NONE;
+    body->cells.stamp[*cell] = 0;
+    body->cells.saved_by[*cell] = body->undo.cut_number;
     return GX_OK;
 }
 
@@ -4425,15 +4464,47 @@ static void gxp_settle_skin(gx_body *body, const gxb_renumbering *r) {
     }
 }
 
+/* Rows of removed cells go, but for the elements' first ones. place: by row, for their new places */
+static void gxp_settle_cells(gx_body *body, uint32_t *place) {
+    gxp_cell *data = body->cells.data;
+    uint32_t i, n = 0;
+    for (i = 0; i < body->cells.count; i++) place[i] = i < body->mesh.element_count || data[i].kept ? n++ : GXP_NONE;
+    for (i = 0; i < body->leaves.count; i++) {
+        const uint32_t cell = body->leaves.data[i].cell; /* the leaf that stands for removed ones may have had another
+                                                          */
+        body->leaves.data[i].cell = place[cell] == GXP_NONE ? data[cell].element : place[cell];
+    }
+    for (i = 0; i < body->skin.triangle_count; i++) {
+        const uint32_t cell = body->skin.cell[i];
+        body->skin.cell[i] = place[cell] == GXP_NONE ? data[cell].element : place[cell];
+    }
+    for (i = 0; i < body->cells.count; i++)
+        while (data[i].next != GXP_NONE && place[data[i].next] == GXP_NONE) data[i].next = data[data[i].next].next;
+    for (i = 0; i < body->cells.count; i++) {
+        if (place[i] == GXP_NONE) continue;
+        if (data[i].next != GXP_NONE) data[i].next = place[data[i].next];
+        gxp_copy_row(body, GXP_CELLS, i, place[i]);
+    }
+    body->cells.count = n;
+    body->scratch.new_cells.count = 0;
+}
+
 /* Once a body has cost enough since the last time. The order of all items stays, so that nothing else changes. */
 static void gxp_settle(gx_body *body) {
+    const gx_allocator *a = &body->config.allocator;
+    const size_t size = body->cells.count * sizeof(uint32_t);
     gxb_renumbering r;
+    uint32_t *place;
     if (!gxb_complex_is_sparse(body->complex)) return;
-    if (gxb_complex_compact(body->complex, body->mesh.node_pinched, &r) != GX_OK) return;
-    gxp_settle_leaves(body, &r);
-    gxp_settle_skin(body, &r);
-    body->scratch.boundary.points.count = 0;
-    gxb_complex_forget(body->complex, &r);
+    place = (uint32_t *)gxp_allocate(a, size);
+    if (place != NULL && gxb_complex_compact(body->complex, body->mesh.node_pinched, &r) == GX_OK) {
+        gxp_settle_leaves(body, &r);
+        gxp_settle_skin(body, &r);
+        gxb_complex_forget(body->complex, &r);
+        gxp_settle_cells(body, place);
+        body->scratch.boundary.points.count = 0;
+    }
+    gxp_release(a, place, size);
 }
 
 /* >>cut: the driver ------------------------------------------------------------------------------------------------ */
@@ -6133,7 +6204,7 @@ static gx_result gxp_sum_fragments(gx_body *body) {
     memset(view->fragment_center, 0, 3 * count * sizeof *view->fragment_center);
     memset(view->fragment_inertia, 0, 6 * count * sizeof *view->fragment_inertia);
     for (i = 0; i < view->count; i++) {
-        const gxp_cell *cell = &body->cells.data[view->slot[i]];
+        const gxp_cell *cell = &body->cells.data[view->cell[i]];
         f = view->fragment[i];
         view->fragment_volume[f] += cell->volume;
         for (n = 0; n < 4; n++) view->fragment_mass[f] += gxp_mass_row(cell->mass, n);
@@ -6147,7 +6218,7 @@ static gx_result gxp_sum_fragments(gx_body *body) {
             if (view->fragment_mass[f] > 0) view->fragment_center[3 * (size_t)f + (size_t)n] /= view->fragment_mass[f];
     }
     for (i = 0; i < view->count; i++) {
-        const gxp_cell *cell = &body->cells.data[view->slot[i]];
+        const gxp_cell *cell = &body->cells.data[view->cell[i]];
         f = view->fragment[i];
         gxp_cell_corners(body, cell, 0, view->fragment_center + 3 * (size_t)f, x);
         gxp_mass_times(cell, x, mx);
@@ -6328,8 +6399,8 @@ GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view, gx_failure *failu
     view->cell_volume = own->volume;
     view->cell_fragment = own->fragment;
     view->cell_slot = own->slot;
-    view->slot_count = body->cells.count;
-    view->slot_parent = body->cells.parent;
+    view->slot_count = body->slots.count;
+    view->slot_parent = body->slots.parent;
     view->copy_count = body->copies.count;
     view->copy_node = body->copies.node;
     view->copy_held = body->copies.held;
@@ -6431,7 +6502,7 @@ static void gxp_find_centers(const gx_body *body, gx_motion *motions) {
     int k;
     memset(motions, 0, view->fragment_count * sizeof *motions);
     for (i = 0; i < view->count; i++) {
-        const gxp_cell *cell = &body->cells.data[view->slot[i]];
+        const gxp_cell *cell = &body->cells.data[view->cell[i]];
         gx_motion *motion = &motions[view->fragment[i]];
         double x[4][3], v[4][3];
         gxp_cell_corners(body, cell, 1, zero, x);
@@ -6485,7 +6556,7 @@ GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t cap
     memset(momentum, 0, bytes);
     gxp_find_centers(body, motions);
     for (i = 0; i < body->view.count; i++) {
-        const gxp_cell *cell = &body->cells.data[body->view.slot[i]];
+        const gxp_cell *cell = &body->cells.data[body->view.cell[i]];
         const uint32_t f = body->view.fragment[i];
         double x[4][3], v[4][3];
         gxp_cell_corners(body, cell, 1, motions[f].center, x);
@@ -8967,7 +9038,7 @@ static void gxp_start_hit(gx_body *body, uint32_t slot, const double weights[4],
     hit->fragment = gxp_cell_fragment(body, slot);
     hit->element = cell->element;
     hit->cell = body->view.indices.data[slot];
-    hit->slot = slot;
+    hit->slot = body->cells.slot[slot];
     hit->epoch = body->cuts.epoch;
     for (n = 0; n < 4; n++)
         if (weights[n] > 0) {
@@ -9193,20 +9264,22 @@ GXFEM_API gx_result gx_body_locate_all(gx_body *body, const double point[3], gx_
 
 GXFEM_API gx_result gx_body_place(const gx_body *body, uint32_t slot, const double material[3], double position[3],
                                   gx_failure *failure) {
+    uint32_t cell;
     gx_result result;
     int n, k;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (material == NULL) return gxp_refuse(failure, "material");
     if (position == NULL) return gxp_refuse(failure, "position");
-    if (slot >= body->cells.count) return gxp_fail(failure, GX_ERROR_INDEX, "slot", SIZE_MAX);
-    if (!body->cells.data[slot].kept) return gxp_fail(failure, GX_ERROR_EMPTY, "slot", SIZE_MAX);
+    if (slot >= body->slots.count) return gxp_fail(failure, GX_ERROR_INDEX, "slot", SIZE_MAX);
+    cell = gxp_kept_cell(body, slot);
+    if (cell == GXP_NONE) return gxp_fail(failure, GX_ERROR_EMPTY, "slot", SIZE_MAX);
     result = gxp_check_points(material, 1, "material", 0, failure);
     for (n = 0; n < 4 && result == GX_OK; n++)
         for (k = 0; k < 3 && result == GX_OK; k++)
-            if (!gxp_is_near(body->copies.displacement[3 * (size_t)body->cells.data[slot].copies[n] + (size_t)k]))
-                result = gxp_check_copy(body, body->cells.data[slot].copies[n], failure);
+            if (!gxp_is_near(body->copies.displacement[3 * (size_t)body->cells.data[cell].copies[n] + (size_t)k]))
+                result = gxp_check_copy(body, body->cells.data[cell].copies[n], failure);
     if (result != GX_OK) return result;
-    gxp_image(body, slot, material, position);
+    gxp_image(body, cell, material, position);
     return gxp_end(failure, GX_OK);
 }
 
@@ -9362,8 +9435,8 @@ static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double sh
     hit->fragment = s->fragment[triangle];
     hit->element = s->element[triangle];
     hit->surface = s->surface[triangle];
-    hit->slot = s->cell[triangle];
-    hit->cell = body->view.indices.data[hit->slot];
+    hit->slot = body->cells.slot[s->cell[triangle]];
+    hit->cell = body->view.indices.data[s->cell[triangle]];
     for (i = 0; i < 3; i++) {
         const size_t v = s->triangles[3 * (size_t)triangle + i];
         for (j = 0; j < 3; j++) hit->material[j] += share[i] * s->rest[3 * v + (size_t)j];
@@ -9553,10 +9626,10 @@ static uint32_t gxp_layer_of(const gxp_vicinity *near, uint32_t slot) {
 }
 
 /* The layer to which a cell belonged at the last move, or GXP_NONE. Parts of a cell that was divided since inherit. */
-static uint32_t gxp_old_layer(const gx_blade *blade, uint32_t slot) {
+static uint32_t gxp_old_layer(const gx_blade *blade, uint32_t cell) {
     const gxp_keys *members = &blade->now.members;
-    const uint32_t *parent = blade->body->cells.parent;
-    uint32_t low = 0, high = members->count;
+    const uint32_t *parent = blade->body->slots.parent;
+    uint32_t low = 0, high = members->count, slot = blade->body->cells.slot[cell];
     while (slot >= blade->now.slot_count && parent[slot] != slot) slot = parent[slot];
     while (low < high) {
         const uint32_t middle = low + (high - low) / 2;
@@ -10655,9 +10728,10 @@ static gx_result gxp_keep_members(gx_blade *blade, const double *edge, uint32_t 
     uint32_t i;
     gx_result result = GX_OK;
     then->members.count = then->edge.count = 0;
-    then->slot_count = blade->body->cells.count;
+    then->slot_count = blade->body->slots.count;
     for (i = 0; i < blade->near.count && result == GX_OK; i++)
-        result = gxp_push_key(blade->body, &then->members, blade->near.cells[i].slot, blade->near.cells[i].layer);
+        result = gxp_push_key(blade->body, &then->members, blade->body->cells.slot[blade->near.cells[i].slot],
+                              blade->near.cells[i].layer);
     if (result == GX_OK) result = gxp_sort_keys(blade->body, &then->members, 0, then->members.count);
     for (i = 0; i < count && result == GX_OK; i++)
         result = gxp_push_point(blade->body, &then->edge, edge + 3 * (size_t)i);
@@ -10699,7 +10773,7 @@ static gx_result gxp_list_scope(gx_blade *blade, uint32_t layer) {
     for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++) {
         const gxp_close_cell *c = &near->cells[GXP_SECOND(near->order.data[i])];
         if (gxp_is_in_reach(c, blade->quads.data, blade->cut.count / 3))
-            result = gxp_push(blade->body, &blade->scope, c->slot);
+            result = gxp_push(blade->body, &blade->scope, blade->body->cells.slot[c->slot]);
     }
     return result;
 }
@@ -11223,7 +11297,7 @@ static gx_result gxp_add_tool(gx_blade *blade, uint32_t layer, const gx_surface 
     if (result == GX_OK) result = gxp_push(body, &blade->surface_starts, blade->scope.count);
     if (result == GX_OK) result = gxp_push(body, &blade->surface_starts, blade->corners.count);
     for (i = first; i < near->layer_start.data[layer + 1] && result == GX_OK; i++)
-        result = gxp_push(body, &blade->scope, near->cells[GXP_SECOND(near->order.data[i])].slot);
+        result = gxp_push(body, &blade->scope, body->cells.slot[near->cells[GXP_SECOND(near->order.data[i])].slot]);
     for (i = 0; i < blade->triangles.count && result == GX_OK; i++)
         result = gxp_push_point(body, &blade->corners, blade->samples.data[blade->triangles.data[i]].rest);
     return result;
@@ -11317,12 +11391,12 @@ static gx_result gxp_check_volume(const gx_body *body, uint32_t element, double 
 static gx_result gxp_make_first_cells(gx_body *body, gx_failure *failure) {
     gx_result result = GX_OK;
     uint32_t e;
-    body->cells.count = body->leaves.count = body->mesh.element_count;
+    body->cells.count = body->slots.count = body->leaves.count = body->mesh.element_count;
     for (e = 0; e < body->mesh.element_count; e++) {
         gxp_cell *cell = &body->cells.data[e];
         memset(cell, 0, sizeof *cell);
         cell->element = cell->first_leaf = e;
-        body->cells.parent[e] = e;
+        body->cells.slot[e] = body->slots.parent[e] = e;
         memcpy(cell->copies, gxb_complex_element_nodes(body->complex, e), sizeof cell->copies);
         cell->next = GXP_NONE;
         cell->kept = 1;
@@ -11369,6 +11443,7 @@ static gx_result gxp_make_tables(gx_body *body, const gx_body_desc *desc) {
     if (result == GX_OK && desc->texture != NULL)
         result = gxp_make_column(body, &gxp_node_columns[GXP_TEXTURE_COLUMN], nodes);
     if (result == GX_OK) result = gxp_grow_rows(body, GXP_CELLS, body->mesh.element_count);
+    if (result == GX_OK) result = gxp_grow_rows(body, GXP_SLOTS, body->mesh.element_count);
     if (result == GX_OK) result = gxp_grow_rows(body, GXP_LEAVES, body->mesh.element_count);
     return result == GX_OK ? gxp_grow_rows(body, GXP_COPIES, nodes) : result;
 }
@@ -11607,10 +11682,10 @@ static gx_result gxp_name_cells(gx_body *body, uint64_t *name, uint64_t *next) {
     uint32_t i, round;
     gx_result result = GX_OK;
     for (i = 0; i < view->count && result == GX_OK; i++)
-        result = gxp_first_name(body, view->slot[i], &name[view->slot[i]]);
+        result = gxp_first_name(body, view->cell[i], &name[view->cell[i]]);
     for (round = 0; round < 3 && result == GX_OK; round++) {
         for (i = 0; i < view->count && result == GX_OK; i++) {
-            const uint32_t cell = view->slot[i];
+            const uint32_t cell = view->cell[i];
             pairs.count = 0;
             result = gxp_push_neighbours(body, cell, &pairs);
             if (result == GX_OK) result = gxp_sort_keys(body, &pairs, 0, pairs.count);
@@ -11628,7 +11703,7 @@ static uint64_t gxp_hash_names(const gx_body *body, const uint64_t *name, uint64
     uint32_t i, k;
     memset(copies, 0, body->copies.count * sizeof *copies);
     for (i = 0; i < body->view.count; i++) {
-        const uint32_t cell = body->view.slot[i];
+        const uint32_t cell = body->view.cell[i];
         sum += gxp_mix(name[cell]);
         for (k = 0; k < 4; k++) copies[body->cells.data[cell].copies[k]] += gxp_mix(name[cell] + k);
     }
@@ -11994,10 +12069,15 @@ static void gxp_check_cell(gxb_stream *s, gx_body *body, uint32_t cell, const gx
     }
 }
 
-/* An element's first cell is its own parent; others were divided from an earlier one of their element. */
-static int gxp_is_parent(const gx_body *body, uint32_t cell) {
-    const uint32_t parent = body->cells.parent[cell], element = body->cells.data[cell].element;
-    return cell == element ? parent == cell : parent < cell && body->cells.data[parent].element == element;
+/* The cell's name is that of its element, or one of a later cell. It comes from a cell of its element, if that is
+   still there. */
+static int gxp_is_named(const gx_body *body, uint32_t cell) {
+    const uint32_t slot = body->cells.slot[cell], element = body->cells.data[cell].element;
+    uint32_t parent;
+    if (cell == element) return slot == cell;
+    if (slot <= body->cells.slot[cell - 1] || slot >= body->slots.count) return 0;
+    parent = gxp_cell_of_slot(body, body->slots.parent[slot]);
+    return parent == GXP_NONE || body->cells.data[parent].element == element;
 }
 
 /* Every cell is in its element's list once, every kept leaf in one kept cell, and every copy moves a cell. */
@@ -12008,10 +12088,12 @@ static void gxp_check_lists(gxb_stream *s, gx_body *body, const gxp_places *seen
             gxp_require_true(s, cell < body->cells.count && !seen->cell[cell < body->cells.count ? cell : 0]);
             if (s->result != GX_OK) return;
             seen->cell[cell] = 1;
-            gxp_require_true(s, body->cells.data[cell].element == e && gxp_is_parent(body, cell));
+            gxp_require_true(s, body->cells.data[cell].element == e && gxp_is_named(body, cell));
             if (s->result == GX_OK) gxp_check_cell(s, body, cell, seen);
         }
     for (i = 0; i < body->cells.count; i++) gxp_require_true(s, seen->cell[i]);
+    for (i = 0; i < body->slots.count; i++) /* an element's first cell is its own parent */
+        gxp_require_true(s, i < body->mesh.element_count ? body->slots.parent[i] == i : body->slots.parent[i] < i);
     for (i = 0; i < body->copies.count; i++) gxp_require_true(s, seen->copy[i]);
     for (i = 0; i < body->leaves.count; i++) {
         gxp_require_true(s, body->leaves.data[i].cell < body->cells.count &&
@@ -12058,7 +12140,7 @@ static void gxp_load_topology(gxb_stream *s, gx_body *body, int trusted) {
     (void)gxb_complex_load(body->complex, s, trusted);
     gxp_pass_counts(s, GXP_TOPOLOGY, counts);
     gxp_check_counts(s, GXP_TOPOLOGY, counts);
-    gxp_require_true(s, counts[GXP_CELLS] >= body->mesh.element_count &&
+    gxp_require_true(s, counts[GXP_CELLS] >= body->mesh.element_count && counts[GXP_SLOTS] >= counts[GXP_CELLS] &&
                             counts[GXP_LEAVES] == gxb_complex_leaf_count(body->complex));
     if (s->result == GX_OK) gxp_require(s, gxp_rows_room(body, GXP_TOPOLOGY, counts));
     if (s->result != GX_OK) return;
@@ -12259,7 +12341,7 @@ static void gxp_check_strokes(gxb_stream *s, const gx_body *body, const gx_blade
     const gxp_blade_state *b = &blade->now;
     uint32_t i;
     gxp_require_true(s, gxp_is_finite(blade->tolerance) && blade->tolerance > 0 && gxp_is_finite(blade->min_advance) &&
-                            blade->min_advance > 0 && b->slot_count <= body->cells.count && b->edge.count != 1);
+                            blade->min_advance > 0 && b->slot_count <= body->slots.count && b->edge.count != 1);
     for (i = 0; i < b->vertices.count; i++) gxp_check_vertex(s, body, b, &b->vertices.data[i]);
     gxp_require_true(s, gxp_are_finite(b->points.data, 3 * (size_t)b->points.count) &&
                             gxp_are_finite(b->edge.data, 3 * (size_t)b->edge.count));
@@ -12577,8 +12659,8 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
     result = gxp_prepare_blades(body, from, &made);
     if (result == GX_OK)
         result = body->cuts.hash == from->cuts.hash && body->copies.count == from->copies.count &&
-                         body->cells.count == from->cells.count && body->leaves.count == from->leaves.count &&
-                         gxp_same_materials(body, from)
+                         body->cells.count == from->cells.count && body->slots.count == from->slots.count &&
+                         body->leaves.count == from->leaves.count && gxp_same_materials(body, from)
                    ? gxp_restore_state(body, from)
                    : gxp_restore_all(body, from);
     if (result == GX_OK)

@@ -1834,7 +1834,7 @@ static void check_held(gx_body *body, const gx_region *regions, size_t count, ui
             for (i = 0; i < view.cell_count; i++)
                 for (k = 0; k < 4; k++)
                     if (view.cell_copies[4 * i + k] == c)
-                        expected = (int)fmax(expected, cell_reaches(body, body->view.slot[i], &regions[r]));
+                        expected = (int)fmax(expected, cell_reaches(body, body->view.cell[i], &regions[r]));
         }
         if (expected != 0)
             ck_assert_msg((expected > 0) == (view.copy_held[c] == 1), "seed %llu: copy %zu of node %u: held %u",
@@ -2082,7 +2082,7 @@ static void deformed_center(gx_body *body, uint32_t fragment, double center[3]) 
     int a, k;
     center[0] = center[1] = center[2] = 0;
     for (i = 0; i < view.cell_count; i++) {
-        const gxp_cell *cell = &body->cells.data[body->view.slot[i]];
+        const gxp_cell *cell = &body->cells.data[body->view.cell[i]];
         if (view.cell_fragment[i] != fragment) continue;
         for (a = 0; a < 4; a++) {
             const double m = gxp_mass_row(cell->mass, a);

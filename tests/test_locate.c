@@ -139,7 +139,7 @@ static double error_of(gx_body *body, const double p[3], const gx_hit *hit) {
     double x[4][3], error = 0, longest = 0;
     big share[4], whole;
     int i, j, k;
-    corners_of(body, hit->slot, x);
+    corners_of(body, gxp_cell_of_slot(body, hit->slot), x);
     whole = shares_of(x, p, share);
     for (k = 0; k < 3; k++) {
         big sum = big_zero();
@@ -242,7 +242,7 @@ static double cell_distance(gx_body *body, uint32_t slot, const double p[3]) {
 
 static void check_fields(gx_body *body, const gx_hit *hit, uint64_t seed) {
     const gx_view view = view_of(body);
-    const gxp_cell *cell = &body->cells.data[hit->slot];
+    const gxp_cell *cell = &body->cells.data[gxp_cell_of_slot(body, hit->slot)];
     double sum = 0, x[3] = {0, 0, 0};
     uint32_t i, n;
     int k;
@@ -276,7 +276,7 @@ static int check_hit(gx_body *body, const double p[3], const gx_hit *hit, double
     ck_assert_int_eq(gx_body_locate_all(body, p, all, 64, &found, NULL), GX_OK);
     CHECK_SEED(found == count, seed);
     for (i = 0; i < count; i++) {
-        CHECK_SEED(all[i].slot == slots[i] && !(all[i].distance > 0), seed);
+        CHECK_SEED(all[i].slot == body->cells.slot[slots[i]] && !(all[i].distance > 0), seed);
         CHECK_SEED(error_of(body, p, &all[i]) <= tolerance, seed);
         CHECK_SEED(memcmp(all[i].position, p, 3 * sizeof *p) == 0, seed);
         check_fields(body, &all[i], seed);
@@ -288,7 +288,7 @@ static int check_hit(gx_body *body, const double p[3], const gx_hit *hit, double
     for (slot = 0; slot < body->cells.count; slot++) {
         const double distance = body->cells.data[slot].kept ? cell_distance(body, slot, p) : HUGE_VAL;
         least = fmin(least, distance);
-        if (slot == hit->slot) own = distance;
+        if (body->cells.slot[slot] == hit->slot) own = distance;
     }
     for (k = 0; k < 3; k++) away += pow(hit->position[k] - p[k], 2);
     CHECK_SEED(hit->distance > 0, seed);
@@ -302,8 +302,8 @@ static int check_hit(gx_body *body, const double p[3], const gx_hit *hit, double
    motion is dyadic */
 static void choose_point(gx_body *body, double p[3]) {
     const gx_view view = view_of(body);
-    const uint32_t slot = body->view.slot[random_below((int)view.cell_count)],
-                   other = body->view.slot[random_below((int)view.cell_count)];
+    const uint32_t slot = body->view.cell[random_below((int)view.cell_count)],
+                   other = body->view.cell[random_below((int)view.cell_count)];
     const int kind = random_below(8);
     double x[4][3], y[4][3], weight[4], sum = 0;
     int i, k;

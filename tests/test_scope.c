@@ -378,16 +378,16 @@ START_TEST(parents_that_cannot_be) {
     ck_assert_uint_gt(body->cells.count, 5);
     ck_assert_uint_ne(body->cells.data[5].element, wrong[1]);
     for (i = 0; i < 4; i++) {
-        const uint32_t slot = i < 3 ? 5 : 1, right = body->cells.parent[slot];
+        const uint32_t slot = i < 3 ? 5 : 1, right = body->slots.parent[slot];
         gx_body *read = NULL;
         unsigned char *bytes;
         size_t size = 0;
-        body->cells.parent[slot] = i < 3 ? wrong[i] : 0;
+        body->slots.parent[slot] = i < 3 ? wrong[i] : 0;
         ck_assert_int_eq(gx_body_save(body, NULL, 0, &size, NULL), GX_OK);
         bytes = (unsigned char *)malloc(size);
         ck_assert_int_eq(gx_body_save(body, bytes, size, &size, NULL), GX_OK);
         ck_assert_int_eq(gx_body_load(bytes, size, NULL, &read, NULL), GX_ERROR_DAMAGED);
-        body->cells.parent[slot] = right;
+        body->slots.parent[slot] = right;
         free(bytes);
     }
     gx_body_destroy(body);
