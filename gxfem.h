@@ -497,8 +497,8 @@ typedef struct gx_skin {
     uint32_t vertex_width;         /* copies for which a vertex has room */
     const uint32_t *vertex_copies; /* vertex_count x vertex_width: copies that move it; those of weight 0 stand last */
     const double *vertex_weights;  /* vertex_count x vertex_width: x = X + sum of weight u over the copies */
-    /* vertex_count: equal for vertices at the same material point, exactly. Vertices whose copies of weight not 0 are
-       equal too are one corner of the surface: with corners merged like this it is watertight. */
+    /* vertex_count: a name, equal for vertices at the same material point, exactly. Vertices whose copies of weight not
+       0 are equal too are one corner of the surface: with corners merged like this it is watertight. */
     const uint32_t *vertex_point;
     const double *vertex_rest;   /* vertex_count x 3, material coordinates, m */
     const float *vertex_normal;  /* vertex_count x 3, outward, of length 1, at rest */
@@ -4424,24 +4424,27 @@ static uint32_t *gxp_vertex_bucket(gxp_skin *s, const gxp_skin_key *key) {
     return &s->vertex_buckets.data[h & (s->vertex_buckets.count - 1)];
 }
 
-/* Rows of leaves that went go, others get their new places. */
+/* Rows of leaves that went go, others get their new places. Of those of a cell that became one, the first stays. */
 static void gxp_settle_leaves(gx_body *body, const gxb_renumbering *r) {
-    uint32_t i, next = 0;
-    for (i = 0; i < r->leaf_count; i++) {
-        if (r->leaves[i] != next) continue; /* another one stands for it */
-        gxp_copy_row(body, GXP_LEAVES, i, next);
-        if (body->leaves.data[next].next != GXP_NONE)
-            body->leaves.data[next].next = r->leaves[body->leaves.data[next].next];
-        next++;
+    gxp_leaf *data = body->leaves.data;
+    uint32_t cell, leaf, next;
+    for (cell = 0; cell < body->cells.count; cell++) {
+        uint32_t *link = &body->cells.data[cell].first_leaf;
+        for (leaf = *link; leaf != GXP_NONE; leaf = next) {
+            next = data[leaf].next;
+            if (r->leaf_of[leaf] != leaf) continue;
+            *link = r->leaves[leaf];
+            link = &data[leaf].next;
+        }
+        *link = GXP_NONE;
     }
+    for (leaf = next = 0; leaf < r->leaf_count; leaf++)
+        if (r->leaf_of[leaf] == leaf) gxp_copy_row(body, GXP_LEAVES, leaf, next++);
     body->leaves.count = next;
-    for (i = 0; i < body->cells.count; i++)
-        if (body->cells.data[i].first_leaf != GXP_NONE)
-            body->cells.data[i].first_leaf = r->leaves[body->cells.data[i].first_leaf];
 }
 
 /* Keys of the skin's vertices name planes. Those of planes that went are of no use: their elements will be drawn anew.
- */
+   There is room to note which. */
 static void gxp_settle_skin(gx_body *body, const gxb_renumbering *r) {
     gxp_skin *s = &body->skin;
     uint32_t i;
@@ -4449,6 +4452,8 @@ static void gxp_settle_skin(gx_body *body, const gxb_renumbering *r) {
         s->made = 0;
         return;
     }
+    for (i = 0; i < body->mesh.element_count; i++)
+        if (r->changed[i]) s->dirty.data[s->dirty.count++] = i;
     if (s->vertex_buckets.count > 0)
         memset(s->vertex_buckets.data, 0xff, s->vertex_buckets.count * sizeof *s->vertex_buckets.data);
     for (i = 0; i < s->vertex_count; i++) {
@@ -4489,25 +4494,64 @@ static void gxp_settle_cells(gx_body *body, uint32_t *place) {
     body->scratch.new_cells.count = 0;
 }
 
+/* The surface of a cut triangle */
+static uint32_t gxp_label_surface(const gx_body *body, uint32_t label) {
+    uint32_t low = 0, high = body->cuts.surface_count;
+    while (high - low > 1) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (body->cuts.surfaces[middle].label <= label)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* Maps of surfaces that show nowhere any more go. shown: a byte for each surface */
+static void gxp_settle_maps(gx_body *body, unsigned char *shown) {
+    gxp_cuts *cuts = &body->cuts;
+    uint32_t i, n = 0;
+    if (cuts->map_count == 0) return;
+    memset(shown, 0, cuts->surface_count);
+    for (i = 0; i < gxb_complex_label_count(body->complex); i++)
+        shown[gxp_label_surface(body, gxb_complex_label(body->complex, i)->triangle)] = 1;
+    for (i = 0; i < cuts->surface_count; i++) {
+        gxp_surface_record *r = &cuts->surfaces[i];
+        const uint32_t end = i + 1 < cuts->surface_count ? r[1].label : cuts->label_count, count = end - r->label;
+        if (r->map == GXP_NONE) continue;
+        if (shown[i]) {
+            memmove(cuts->maps + 8 * (size_t)n, cuts->maps + 8 * (size_t)r->map, 8 * count * sizeof *cuts->maps);
+            r->map = n;
+            n += count;
+        } else
+            r->map = GXP_NONE;
+    }
+    cuts->map_count = n;
+}
+
 /* Once a body has cost enough since the last time. The order of all items stays, so that nothing else changes. */
 static void gxp_settle(gx_body *body) {
     const gx_allocator *a = &body->config.allocator;
-    const size_t size = body->cells.count * sizeof(uint32_t);
+    const size_t size = body->cells.count * sizeof(uint32_t) + body->cuts.surface_count;
     gxb_renumbering r;
     uint32_t *place;
-    if (!gxb_complex_is_sparse(body->complex)) return;
+    if (!gxb_complex_is_sparse(body->complex) ||
+        (body->skin.made && gxp_words_room(body, &body->skin.dirty, body->mesh.element_count) != GX_OK))
+        return;
     place = (uint32_t *)gxp_allocate(a, size);
     if (place != NULL && gxb_complex_compact(body->complex, body->mesh.node_pinched, &r) == GX_OK) {
         gxp_settle_leaves(body, &r);
         gxp_settle_skin(body, &r);
         gxb_complex_forget(body->complex, &r);
+        gxp_settle_maps(body, (unsigned char *)(place + body->cells.count));
         gxp_settle_cells(body, place);
         body->scratch.boundary.points.count = 0;
     }
     gxp_release(a, place, size);
 }
 
-/* >>cut: the driver ------------------------------------------------------------------------------------------------ */
+/* >>cut: the driver
+ * ------------------------------------------------------------------------------------------------ */
 /* gx_body_cut: check, begin, arrange, enrich, integrate, then commit, or roll back on any error. The commit cannot
    fail. It drops dead copies, wakes the touched copies and marks model, skin, view and snapshot as stale. */
 
@@ -4615,8 +4659,8 @@ static gx_result gxp_integrate_new(gx_body *body, uint32_t cell, uint32_t *befor
     return gxp_integrate_element(body, element);
 }
 
-/* Prefetches the data that weighing the links of the next new cells will read: facets three cells ahead, their loops
-   two ahead, the edges of the next. */
+/* Prefetches the data that weighing the links of the next new cells will read: facets three cells ahead, their
+   loops two ahead, the edges of the next. */
 GXP_PREFETCHES void gxp_prefetch_links(const gx_body *body, uint32_t index) {
     const gxp_scratch *scratch = &body->scratch;
     const gxb_complex *cx = body->complex;
@@ -4639,8 +4683,8 @@ GXP_PREFETCHES void gxp_prefetch_links(const gx_body *body, uint32_t index) {
         }
 }
 
-/* Integrates the new cells. Unless links were weighed before to be severed, weighs them here, while their facets are in
-   the cache. */
+/* Integrates the new cells. Unless links were weighed before to be severed, weighs them here, while their facets
+   are in the cache. */
 static gx_result gxp_integrate(gxp_cut *cut) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
@@ -4669,8 +4713,8 @@ static gx_result gxp_push_leaf_elements(gx_body *body, uint32_t facet) {
     return result;
 }
 
-/* Notes for the skin the elements in which the cut made facets or walls or changed a cell, and those whose copies get
-   new numbers when dead ones are dropped. An element noted in vain does no harm. */
+/* Notes for the skin the elements in which the cut made facets or walls or changed a cell, and those whose copies
+   get new numbers when dead ones are dropped. An element noted in vain does no harm. */
 static gx_result gxp_note_for_skin(gxp_cut *cut, uint32_t first_facet) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
@@ -4809,11 +4853,13 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
     return gxp_end(failure, GX_OK);
 }
 
-/* >>solidify: a sheet made solid ----------------------------------------------------------------------------------- */
-/* In: a sheet and a thickness. Out: the closed surface between its two offsets (GXFEM section 4.1). Knows no body. */
+/* >>solidify: a sheet made solid
+ * ----------------------------------------------------------------------------------- */
+/* In: a sheet and a thickness. Out: the closed surface between its two offsets (GXFEM section 4.1). Knows no body.
+ */
 
-/* Sums the area normals around each vertex of the sheet and scales each sum to half the thickness. Edges are measured
-   in units of the longest one's power of two, so that areas stay in range. */
+/* Sums the area normals around each vertex of the sheet and scales each sum to half the thickness. Edges are
+   measured in units of the longest one's power of two, so that areas stay in range. */
 static void gxp_offset_vectors(const gx_surface *s, double half, double *normals) {
     double longest = 0;
     size_t i;
@@ -4939,10 +4985,11 @@ GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thicknes
     return GX_OK;
 }
 
-/* >>anchors: material points that survive cuts --------------------------------------------------------------------- */
-/* In: a material point in an element, and another one towards which it holds its side. Out: the leaf and the cell that
-   have it now, exactly; anchors made such that they lie in a given part. Changes nothing but the complex's exact
-   numbers and lists. */
+/* >>anchors: material points that survive cuts
+ * --------------------------------------------------------------------- */
+/* In: a material point in an element, and another one towards which it holds its side. Out: the leaf and the cell
+   that have it now, exactly; anchors made such that they lie in a given part. Changes nothing but the complex's
+   exact numbers and lists. */
 
 /* The leaf that has a material point, kept or removed: see gxb_complex_leaf_at. toward: or NULL */
 static gx_result gxp_leaf_at(gx_body *body, uint32_t element, const double position[3], const double toward[3],
@@ -4953,8 +5000,8 @@ static gx_result gxp_leaf_at(gx_body *body, uint32_t element, const double posit
     return result;
 }
 
-/* The least side on which the point lies of the element's faces, exactly: 1 inside the element, 0 on its boundary, -1
-   outside */
+/* The least side on which the point lies of the element's faces, exactly: 1 inside the element, 0 on its boundary,
+   -1 outside */
 static int gxp_element_side(const gx_body *body, uint32_t element, const double x[3]) {
     const uint32_t *n = gxb_complex_element_nodes(body->complex, element);
     const double *p = body->mesh.positions;
@@ -5145,8 +5192,8 @@ typedef struct gxp_footing {
     int found;
 } gxp_footing;
 
-/* Stands at p, if that is in the closed leaf, exactly, and nearer to x than what was found so far. inside: of the leaf.
-   Returns 0 if p is not nearer. */
+/* Stands at p, if that is in the closed leaf, exactly, and nearer to x than what was found so far. inside: of the
+   leaf. Returns 0 if p is not nearer. */
 static int gxp_stand(gx_body *body, uint32_t leaf, const double x[3], const double p[3], const double inside[3],
                      gxp_footing *best) {
     const uint32_t element = gxb_complex_leaf(body->complex, leaf)->element;
@@ -5274,7 +5321,8 @@ GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *a
     return GX_OK;
 }
 
-/* >>regions: what is held ------------------------------------------------------------------------------------------ */
+/* >>regions: what is held
+ * ------------------------------------------------------------------------------------------ */
 /* In: regions that are to be held, with all that they point to. Out: the body's copy of them, checked; the nodes in
    each. Touches the tables of regions and the lists of their nodes. */
 
@@ -5673,12 +5721,13 @@ static gx_result gxp_list_all_nodes(gx_body *body) {
     return result;
 }
 
-/* >>grips: held copies --------------------------------------------------------------------------------------------- */
-/* In: regions and the nodes in them. Out: for each copy the first region that holds it, found anew after a cut or when
-   regions change. A copy is held if its node is in the region and one of its own cells has material there. Most cells
-   have the node as a corner, and material beside it. The others lie behind a wall. Whether a box or a surface reaches
-   them is what the complex tells when its triangles are inserted, in a transaction that is taken back. Touches held
-   flags and rest times of copies. */
+/* >>grips: held copies
+ * --------------------------------------------------------------------------------------------- */
+/* In: regions and the nodes in them. Out: for each copy the first region that holds it, found anew after a cut or
+   when regions change. A copy is held if its node is in the region and one of its own cells has material there.
+   Most cells have the node as a corner, and material beside it. The others lie behind a wall. Whether a box or a
+   surface reaches them is what the complex tells when its triangles are inserted, in a transaction that is taken
+   back. Touches held flags and rest times of copies. */
 
 /* Corners of a box by bits: 1, 2, 4 for its high side along each axis */
 static const uint32_t gxp_box_triangles[36] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
@@ -5754,7 +5803,8 @@ static int gxp_note_reached(void *user, uint32_t leaf) {
     return 0;
 }
 
-/* Stamps the leaves that the plane of a triangle divides, of those that it reached. It may cover a facet of others. */
+/* Stamps the leaves that the plane of a triangle divides, of those that it reached. It may cover a facet of others.
+ */
 static gx_result gxp_stamp_reached(gx_body *body, uint32_t plane) {
     const gxp_words *reached = &body->holds.probe.reached;
     gx_result result = GX_OK;
@@ -5847,8 +5897,8 @@ static void gxp_point_from(gx_body *body, uint32_t point, uint32_t element, cons
     }
 }
 
-/* Does the leaf reach into the ball? Its points are rounded, so a leaf that only touches the ball may be taken either
-   way. */
+/* Does the leaf reach into the ball? Its points are rounded, so a leaf that only touches the ball may be taken
+   either way. */
 static gx_result gxp_leaf_in_ball(gx_body *body, uint32_t leaf, const gxp_region *r, int *inside) {
     gxb_complex *cx = body->complex;
     const uint32_t element = gxb_complex_leaf(cx, leaf)->element;
@@ -5908,8 +5958,8 @@ static gx_result gxp_has_corner(gx_body *body, uint32_t cell, uint32_t node, int
     return result;
 }
 
-/* Does a cell around a node in a region have material in the region? *reached: 1 if the region's surface has been asked
-   about for this element */
+/* Does a cell around a node in a region have material in the region? *reached: 1 if the region's surface has been
+   asked about for this element */
 static gx_result gxp_cell_in_region(gx_body *body, uint32_t cell, uint32_t node, const gxp_region *r, int *reached,
                                     int *inside) {
     uint32_t leaf;
@@ -5925,8 +5975,8 @@ static gx_result gxp_cell_in_region(gx_body *body, uint32_t cell, uint32_t node,
     return result;
 }
 
-/* Gives the copies of a node that a region holds to it, unless earlier regions have them. region_of NULL: only asks if
-   there is any. */
+/* Gives the copies of a node that a region holds to it, unless earlier regions have them. region_of NULL: only asks
+   if there is any. */
 static gx_result gxp_hold_node(gx_body *body, uint32_t region, uint32_t node, uint32_t *region_of, int *any) {
     const gxp_region *r = &body->holds.regions[region];
     uint32_t j, cell;
@@ -6072,10 +6122,11 @@ GXFEM_API gx_region gx_region_sphere(const double center[3], double radius) {
     return region;
 }
 
-/* >>map: from rest to space ---------------------------------------------------------------------------------------- */
+/* >>map: from rest to space
+ * ---------------------------------------------------------------------------------------- */
 /* In: a material point, or a cell. Out: where it is, how fast its corners are. Nothing else in this file turns
-   displacements of copies into positions: copies that do more than move a cell's corners change this section, and the
-   integrals at >>motion, which rest on the map being affine within a cell. Touches nothing. */
+   displacements of copies into positions: copies that do more than move a cell's corners change this section, and
+   the integrals at >>motion, which rest on the map being affine within a cell. Touches nothing. */
 
 /* Where a point is: rest + sum of weight u over the copies of weight not 0, which stand first */
 static inline void gxp_map_point(const gx_body *body, const double rest[3], const uint32_t *copies,
@@ -6114,7 +6165,8 @@ static inline void gxp_copy_position(const gx_body *body, uint32_t node, uint32_
     x[2] = rest[2] + u[2];
 }
 
-/* Where the corners of a cell's element are, as its copies move them. These doubles are what locating takes as exact.
+/* Where the corners of a cell's element are, as its copies move them. These doubles are what locating takes as
+ * exact.
  */
 static inline void gxp_moved_corners(const gx_body *body, const gxp_cell *cell, double x[12]) {
     const uint32_t *node = gxb_complex_element_nodes(body->complex, cell->element);
@@ -6142,9 +6194,10 @@ static void gxp_cell_velocities(const gx_body *body, const gxp_cell *cell, const
         for (k = 0; k < 3; k++) v[n][k] = body->copies.velocity[3 * (size_t)cell->copies[n] + (size_t)k] - mean[k];
 }
 
-/* >>fragments: sums, ids, changes, the view ------------------------------------------------------------------------ */
-/* In: the numbering of fragments. Out: their volumes, masses, centres and inertia; ids that stay, by comparison with
-   the last snapshot. Touches the view's sums, the snapshot and the copies' labels. */
+/* >>fragments: sums, ids, changes, the view
+ * ------------------------------------------------------------------------ */
+/* In: the numbering of fragments. Out: their volumes, masses, centres and inertia; ids that stay, by comparison
+   with the last snapshot. Touches the view's sums, the snapshot and the copies' labels. */
 
 /* The place of entry ij in a mass block */
 static const uint8_t gxp_mass_at[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
@@ -6173,7 +6226,8 @@ static void gxp_mass_times(const gxp_cell *cell, double x[4][3], double mx[4][3]
         }
 }
 
-/* inertia += density * integral of (|x|^2 1 - x x^T) = sum_ij m_ij (x_i . x_j 1 - x_i x_j^T); mx: see gxp_mass_times */
+/* inertia += density * integral of (|x|^2 1 - x x^T) = sum_ij m_ij (x_i . x_j 1 - x_i x_j^T); mx: see
+ * gxp_mass_times */
 static void gxp_add_inertia(double x[4][3], double mx[4][3], double inertia[6]) {
     int i;
     for (i = 0; i < 4; i++) {
@@ -6253,8 +6307,9 @@ static gx_result gxp_join_around_splits(gx_body *body) {
     return GX_OK;
 }
 
-/* Finds the fragment of each copy. Sheets remove nothing: if two old copies were connected, so are their descendants.
-   If each new copy is still connected with the one it comes from, around its node, no fragment has fallen apart. */
+/* Finds the fragment of each copy. Sheets remove nothing: if two old copies were connected, so are their
+   descendants. If each new copy is still connected with the one it comes from, around its node, no fragment has
+   fallen apart. */
 static gx_result gxp_update_labels(gx_body *body) {
     gxp_view *view = &body->view;
     const gxp_words *splits = &view->splits;
@@ -6337,8 +6392,8 @@ static gx_result gxp_snapshot_room(gx_body *body) {
     return result == GX_OK && snapshot->next_id > UINT32_MAX - body->view.fragment_count ? GX_ERROR_LIMIT : result;
 }
 
-/* Brings the snapshot up to date with the view. After an error labels and ids are as they were, so that no change is
-   lost. */
+/* Brings the snapshot up to date with the view. After an error labels and ids are as they were, so that no change
+   is lost. */
 static gx_result gxp_take_snapshot(gx_body *body) {
     const size_t now = body->view.fragment_count, before = body->snapshot.count,
                  bytes = (2 * now + 2 * before + 1) * sizeof(uint32_t);
@@ -6573,7 +6628,8 @@ GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t cap
     return result;
 }
 
-/* >>attached: anchors and regions of a step ------------------------------------------------------------------------ */
+/* >>attached: anchors and regions of a step
+ * ------------------------------------------------------------------------ */
 /* In: anchors, and what a step has at them; poses of regions. Out: springs, contact points, forces and targets by
    copies, as the solver takes them. Touches working memory of a step only. */
 
@@ -6772,22 +6828,23 @@ static gx_result gxp_attach(gx_body *body, const gx_step_desc *desc, gxs_step_de
     return result == GX_OK ? gxp_attach_poses(body, desc, step, failure) : result;
 }
 
-/* >>supports: copies that only slivers carry follow others (RXFEM Eq. 22) ------------------------------------------ */
+/* >>supports: copies that only slivers carry follow others (RXFEM Eq. 22)
+ * ------------------------------------------ */
 /* In: the elements with a small part. Out: constraints by which copies that next to nothing holds follow others.
    Touches the list of thin elements and the model's constraints.
-   A part is the cells of an element that the same four copies move; its share is its volume over the element's. A copy
-   is weak if every part around it has a share below follow_below: so little moves it that nothing else would keep it
-   from running away. It takes the increment of the field of a strong cell near it, that is, one without weak copies. A
-   fragment without a strong cell is thin everywhere. Its copies are then weak by comparison with its fullest part; if
-   that part has a share below speck_below, or no cell reaches speck_reach, the fragment is a speck and moves as a
-   point. All work is around thin elements, which are those with a part of so small a share. */
+   A part is the cells of an element that the same four copies move; its share is its volume over the element's. A
+   copy is weak if every part around it has a share below follow_below: so little moves it that nothing else would
+   keep it from running away. It takes the increment of the field of a strong cell near it, that is, one without
+   weak copies. A fragment without a strong cell is thin everywhere. Its copies are then weak by comparison with its
+   fullest part; if that part has a share below speck_below, or no cell reaches speck_reach, the fragment is a speck
+   and moves as a point. All work is around thin elements, which are those with a part of so small a share. */
 
 enum { GXP_FREE, GXP_FOLLOWS, GXP_FOLLOWS_POINT };
 
 typedef struct gxp_supports {
     uint8_t *weak; /* copy_count: GXP_FREE or how it follows */
-    /* copy_count: the cell whose field the copy follows, or whose first copy if it is part of a point; GXP_NONE: not
-     * known, or none */
+    /* copy_count: the cell whose field the copy follows, or whose first copy if it is part of a point; GXP_NONE:
+     * not known, or none */
     uint32_t *cell;
     uint32_t *queue; /* copy_count: copies that the search has met, in order */
     uint32_t *seen;  /* copy_count: the last search that has met the copy */
@@ -6891,8 +6948,8 @@ static double gxp_follow_weights(const gx_body *body, uint32_t copy, uint32_t ce
 }
 
 /* Finds the strong cell that a weak copy follows. It searches from cell to cell. Among the nearest strong cells it
-   takes the one whose field is extended least; if a copy as near already follows one, it takes that. Weak copies that
-   the search met before its last round follow the same cell. Returns 0, or, if the fragment has no strong
+   takes the one whose field is extended least; if a copy as near already follows one, it takes that. Weak copies
+   that the search met before its last round follow the same cell. Returns 0, or, if the fragment has no strong
    cell, the number of its copies, all of which the search has met. */
 static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *supports, uint32_t copy) {
     uint32_t begin, end, i, count = 1, best = GXP_NONE;
@@ -6928,9 +6985,9 @@ static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *supports, uint3
     return best == GXP_NONE ? count : 0;
 }
 
-/* How far a cell reaches within its element: the square root of the trace of its covariance in barycentric coordinates
-   over that of the element, which is 4 (1/10 - 1/16). The reach of a speck in a corner is about its size; the reach of
-   a layer, however thin, is about 1. */
+/* How far a cell reaches within its element: the square root of the trace of its covariance in barycentric
+   coordinates over that of the element, which is 4 (1/10 - 1/16). The reach of a speck in a corner is about its
+   size; the reach of a layer, however thin, is about 1. */
 static double gxp_cell_reach(const gxp_cell *cell) {
     double mass = 0, trace = 0;
     int i, k;
@@ -7034,10 +7091,11 @@ static gx_result gxp_make_constraints(gx_body *body) {
     return result;
 }
 
-/* >>model: the model that the solver takes ------------------------------------------------------------------------- */
-/* In: cells, copies, held flags. Out: the solver's model, made anew or changed where cuts have been. The cells of an
-   element that move by the same four copies are one element of the model, a part. Touches the solver and the model's
-   arrays, which are there only while it is made. */
+/* >>model: the model that the solver takes
+ * ------------------------------------------------------------------------- */
+/* In: cells, copies, held flags. Out: the solver's model, made anew or changed where cuts have been. The cells of
+   an element that move by the same four copies are one element of the model, a part. Touches the solver and the
+   model's arrays, which are there only while it is made. */
 
 /* Adds a cell to the part with its copies, or begins a new part. first: the element's first part. */
 static void gxp_add_part(gx_body *body, const gxp_cell *cell, uint32_t first, const double gradients[12]) {
@@ -7115,8 +7173,8 @@ static gx_result gxp_make_model(gx_body *body, gxs_model *model, gx_failure *fai
     return GX_OK;
 }
 
-/* Applies the changes to the solver's model. After LIMIT, or EMPTY if no part is left, the model must be set whole, and
-   nothing has failed. After MEMORY it must be set whole too, but the call has failed. */
+/* Applies the changes to the solver's model. After LIMIT, or EMPTY if no part is left, the model must be set whole,
+   and nothing has failed. After MEMORY it must be set whole too, but the call has failed. */
 static gx_result gxp_change_model(gx_body *body, gx_failure *failure) {
     gxp_model *model = &body->model;
     size_t room = 0;
@@ -7168,7 +7226,8 @@ static void gxp_release_model(gx_body *body) {
     gxp_release_columns(body, gxp_model_lists, sizeof gxp_model_lists / sizeof *gxp_model_lists);
 }
 
-/* Brings the solver's model up to date after cuts and holds. The solver copies it, so that the arrays are released. */
+/* Brings the solver's model up to date after cuts and holds. The solver copies it, so that the arrays are released.
+ */
 static gx_result gxp_update_model(gx_body *body, gx_failure *failure) {
     gxp_model *model = &body->model;
     gx_result result = gxp_update_held(body);
@@ -7206,7 +7265,8 @@ GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model, gx_failure *f
     return gxp_close(failure, result);
 }
 
-/* >>step: time steps ----------------------------------------------------------------------------------------------- */
+/* >>step: time steps
+ * ----------------------------------------------------------------------------------------------- */
 /* In: a step's description. Out: displacement and velocity at its end, or the body as it was. Touches the state of
    copies, the history that BDF2 needs, and the solver. */
 
@@ -7324,7 +7384,8 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     return result;
 }
 
-/* >>corners: the skin: normals and textures ------------------------------------------------------------------------ */
+/* >>corners: the skin: normals and textures
+ * ------------------------------------------------------------------------ */
 /* The visual surface takes four sections. This one: which corners of the outer surface are shaded as one, and which
    texture a cut face has. In: the mesh, the records of surfaces. Out: groups of corners. Touches the skin only. */
 
@@ -7406,8 +7467,8 @@ static gx_result gxp_join_faces(gx_body *body) {
     return GX_OK;
 }
 
-/* Groups the corners of outer faces. skin.groups: the group of each of the four nodes of an outer face (that of node k
-   is not used); skin.group_normals: the normal of each at rest, weighted by area, not of length 1. */
+/* Groups the corners of outer faces. skin.groups: the group of each of the four nodes of an outer face (that of
+   node k is not used); skin.group_normals: the normal of each at rest, weighted by area, not of length 1. */
 static gx_result gxp_group_corners(gx_body *body) {
     gxp_skin *s = &body->skin;
     uint32_t i, k;
@@ -7431,19 +7492,6 @@ static gx_result gxp_group_corners(gx_body *body) {
             for (j = 0; j < 3; j++) s->group_normals[3 * (size_t)s->groups.data[4 * i + k] + (size_t)j] += n[j];
     }
     return GX_OK;
-}
-
-/* The surface of a cut triangle */
-static uint32_t gxp_label_surface(const gx_body *body, uint32_t label) {
-    uint32_t low = 0, high = body->cuts.surface_count;
-    while (high - low > 1) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (body->cuts.surfaces[middle].label <= label)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
 }
 
 /* The affine map to the texture of a cut triangle, or NULL if its surface has none */
