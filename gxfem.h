@@ -627,11 +627,11 @@ GXFEM_API void gx_blade_destroy(gx_blade *blade); /* or NULL */
    are no more. After gx_body_restore the body has the blades of the other: those with the same index stay valid, those
    that the other lacks are lifted. */
 GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index);
-/* Moves the edge and cuts what it has passed since the last move, relative to the material. edge: point_count x 3, in
-   space, m; as many points at each move until the blade is lifted, 2 or more. scope: fragments that alone are cut,
-   below gx_view.fragment_count; count 0: all. On an error body and blade are as they were.
-   Errors: ARGUMENT (also: the first edge is inside the material and starts_inside is 0, index: point), INDEX,
-   NOT_FINITE, RANGE, LIMIT, MEMORY. */
+/* Moves the edge and cuts what it has passed since the last move, relative to the material. A long move goes in steps
+   of an element at most. edge: point_count x 3, in space, m; as many points at each move until the blade is lifted, 2
+   or more. scope: fragments that alone are cut, below gx_view.fragment_count; count 0: all. On an error body and blade
+   are as they were. Errors: ARGUMENT (also: the first edge is inside the material and starts_inside is 0, index:
+   point), INDEX, NOT_FINITE, RANGE, LIMIT, MEMORY. */
 GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t point_count,
                                   const uint32_t *scope_fragments, size_t scope_fragment_count,
                                   gx_blade_report *report /* or NULL */, gx_failure *failure /* or NULL */);
@@ -1053,12 +1053,17 @@ typedef struct gxp_front_vertex {
     double rest[3];     /* material point; in the air at most an element's size away from the layer */
     double extended[3]; /* the same by the extended map alone: in the air as far away as the edge is */
     double position[3]; /* in space, when it was seen */
+    double foot[3];     /* material point of the layer next to it; in the layer: rest */
+    double foot_at[3];  /* in space, when it was seen */
     double ahead[3];    /* in which direction the front came here, of length 1; 0: it began here */
     double distance;    /* from the layer, m; 0: inside */
     double size;        /* of the element, m */
     double along;       /* index of a point of the edge, + share of the way to the next */
     uint32_t element;   /* whose map it is */
-    uint32_t unused;    /* rows are saved as bytes */
+    uint8_t soft;       /* 1: says where the layer is on a straight line of the front; no corner of strips */
+    uint8_t gap;        /* 1: the front ends here, and goes on elsewhere */
+    uint8_t walled;     /* 1: in the air between walls of the layer; rest is on the nearer one */
+    uint8_t unused;
 } gxp_front_vertex;
 typedef struct gxp_front_list {
     gxp_front_vertex *data;
@@ -1075,6 +1080,7 @@ typedef struct gxp_layer {         /* words only: rows are saved as bytes */
     uint32_t latest, latest_count; /* vertices: how far the edge had come at the last move; waits to be cut */
     uint32_t path, path_count;     /* points: where the edge has been since the front was cut */
     uint32_t sheet, sheet_count;   /* points, 3 for each triangle: the last strips */
+    uint32_t seen, seen_count;     /* vertices: how it saw the edge at the last move */
 } gxp_layer;
 typedef struct gxp_layer_list {
     gxp_layer *data;
@@ -1088,6 +1094,7 @@ typedef struct gxp_blade_state { /* what lasts from move to move */
     gxp_keys members;    /* slot of a near cell, layer; ascending */
     uint32_t slot_count; /* of the body then */
     gxp_points edge;     /* none: the blade is lifted */
+    double middle[3];    /* of the deformed body's box then */
 } gxp_blade_state;
 
 typedef struct gxp_close_cell { /* a kept cell around the edge */
@@ -1096,7 +1103,10 @@ typedef struct gxp_close_cell { /* a kept cell around the edge */
     double middle[3], radius;              /* of a ball around the corners */
     double stretch;                        /* volume / volume at rest of its element; negative: inverted */
     double size;                           /* of its element, m */
-    int is_near;                           /* 0: looked at in vain */
+    uint32_t facets, facet_count;          /* of a divided element's cell: in lambdas, once they were asked for */
+    uint8_t is_near;                       /* 0: looked at in vain */
+    uint8_t is_divided;                    /* its element */
+    uint8_t has_facets;
 } gxp_close_cell;
 typedef struct gxp_vicinity {
     gxp_close_cell *cells;
@@ -1108,7 +1118,9 @@ typedef struct gxp_vicinity {
     gxp_keys order;        /* place along the axis, index in cells: by layer, ascending */
     gxp_words layer_start; /* layer_count + 1, into order */
     int axis;
-    double widest; /* of the cells along the axis */
+    double widest;   /* of the cells along the axis */
+    double *lambdas; /* count x 3 x 4: triangles that bound cells, by coordinates in their elements */
+    uint32_t lambda_count, lambda_capacity;
 } gxp_vicinity;
 
 /* Where a place on the edge lies by a layer's front */
@@ -1118,16 +1130,17 @@ typedef struct gxp_relation {
     uint32_t segment; /* of the front, the nearest */
     uint8_t ahead;    /* 1: the front advances there */
     uint8_t strays;   /* 1: the edge has left its cut through the side */
-    uint8_t beyond;   /* 1: past an end of the front */
 } gxp_relation;
 
 struct gx_blade {
     gx_body *body;
     gx_blade *next;                         /* of the body's */
     double tolerance, min_advance, largest; /* m; the largest size of elements */
+    double step;                            /* m: the edge goes by no more at once */
     uint32_t max_samples;
     int starts_inside;
-    gxp_blade_state now, then; /* then: what a move makes; it becomes now if the move succeeds */
+    gxp_blade_state now, then; /* then: what a step of a move makes */
+    gxp_blade_state start;     /* what was now before the move, during the later steps of one */
     /* working memory of a move */
     gxp_vicinity near;
     gxp_points quads;   /* 4 for each part of the strip that was swept; of a layer: corners of its strips, in space */
@@ -1140,16 +1153,23 @@ struct gx_blade {
     gx_surface *surfaces;
     uint32_t surface_capacity;
     /* of one layer at a move */
-    gxp_front_list front, latest, samples, advanced;
+    gxp_front_list front, latest, seen, samples, advanced;
     gxp_front_list strip, cut; /* 3 for each triangle: of one strip, of all */
     gxp_points path, sheet;
-    gxp_relation *relations; /* of the samples */
+    /* the edge at a move, with a point wherever a layer had seen it */
+    gxp_front_list places;    /* on the edge of the last move: along, ascending */
+    gxp_points carried, goal; /* where the material has carried the edge of the last move to; where it goes */
+    gxp_points from, to;      /* a step's way */
+    gxp_relation *relations;  /* of the samples */
     uint32_t relation_capacity;
-    uint32_t last_sight; /* a near cell: the next place on the edge is not far from it */
-    gxp_words needed;    /* by sample: 1 if it is not on a line with others */
-    gxp_words owners;    /* old layers that flow into it */
-    gxp_keys halved;     /* edges of a tool, two vertices each */
-    gxp_words divided;   /* triangles of a tool */
+    uint32_t last_sight;    /* a near cell: the next place on the edge is not far from it */
+    gxp_words needed;       /* by sample: 1 if it is not on a line with others */
+    gxp_words owners;       /* old layers that flow into it */
+    gxp_words heirs;        /* by old layer: new ones into which it flows */
+    gxp_front_list owned;   /* their fronts in turn, with places on the edge of now */
+    gxp_words owned_starts; /* owners + 1: of each in owned */
+    gxp_keys halved;        /* edges of a tool, two vertices each */
+    gxp_words divided;      /* triangles of a tool */
 };
 
 /* --- a cache: boxes over the deformed cells --- */
@@ -9509,15 +9529,16 @@ static uint32_t gxp_old_layer(const gx_blade *blade, uint32_t slot) {
     return low < members->count && GXP_FIRST(members->data[low]) == slot ? GXP_SECOND(members->data[low]) : GXP_NONE;
 }
 
-/* Where a vertex of a front is now, as a layer has it: by a cell of its element that belongs to the layer, if there is
-   one, and that contains it. old: the layer is one of the last move's. */
-static gx_result gxp_front_position(gx_blade *blade, uint32_t layer, int old, const gxp_front_vertex *v, double x[3]) {
+/* Where a material point is now, as a layer has it: by a cell of a vertex' element that belongs to the layer, if there
+   is one, and that contains the vertex. old: the layer is one of the last move's. Returns x as it was if the element is
+   no more. */
+static gx_result gxp_place_by(gx_blade *blade, uint32_t layer, int old, const gxp_front_vertex *v,
+                              const double point[3], double x[3]) {
     static const double origin[3] = {0, 0, 0};
     gx_body *body = blade->body;
     uint32_t cell, best = GXP_NONE, most = 0, holder = GXP_NONE;
     double corners[4][3], weights[4];
     gx_result result = GX_OK;
-    memcpy(x, v->position, 3 * sizeof *x);
     if (body->cells.data[v->element].next != GXP_NONE) result = gxp_cell_at(body, v->element, v->rest, &holder);
     for (cell = v->element; cell != GXP_NONE; cell = body->cells.data[cell].next) {
         const uint32_t own = old ? gxp_old_layer(blade, cell) : gxp_layer_of(&blade->near, cell),
@@ -9528,10 +9549,16 @@ static gx_result gxp_front_position(gx_blade *blade, uint32_t layer, int old, co
     }
     if (best == GXP_NONE || result != GX_OK) return result;
     gxp_cell_corners(body, &body->cells.data[best], 0, origin, corners);
-    gxp_tet_weights(corners, v->extended, weights);
+    gxp_tet_weights(corners, point, weights);
     gxp_cell_corners(body, &body->cells.data[best], 1, origin, corners);
     gxp_weigh(corners, weights, x);
     return GX_OK;
+}
+
+/* Where a vertex of a front is now, as a layer has it */
+static gx_result gxp_front_position(gx_blade *blade, uint32_t layer, int old, const gxp_front_vertex *v, double x[3]) {
+    memcpy(x, v->position, 3 * sizeof *x);
+    return gxp_place_by(blade, layer, old, v, v->extended, x);
 }
 
 /* A place on the edge: index of its point, + share of the way to the next */
@@ -9543,6 +9570,20 @@ static void gxp_edge_position(const double *edge, uint32_t count, double along, 
         const double a = edge[3 * (size_t)i + (size_t)k], b = edge[3 * (size_t)i + 3 + (size_t)k];
         x[k] = share <= 0 ? a : share >= 1 ? b : a + share * (b - a);
     }
+}
+
+/* The place on the edge that is nearest to a point: *along. Returns the squared distance. */
+static double gxp_onto_edge(const double *edge, uint32_t count, const double x[3], double *along) {
+    double best = HUGE_VAL;
+    uint32_t i;
+    for (i = 0; i + 1 < count; i++) {
+        double share, nearest[3];
+        const double square = gxp_onto_segment(x, edge + 3 * (size_t)i, edge + 3 * (size_t)i + 3, &share, nearest);
+        if (square >= best) continue;
+        best = square;
+        *along = i + share;
+    }
+    return best;
 }
 
 static gx_result gxp_push_quad(gx_blade *blade, const double *a, const double *b, const double *c, const double *d) {
@@ -9573,11 +9614,10 @@ static gx_result gxp_sweep_segment(gx_blade *blade, const double *before, const 
     return result;
 }
 
-/* The strip that the edge may have swept since the fronts were cut: from the edge of the last move, and from the place
-   where each front is now */
-static gx_result gxp_sweep(gx_blade *blade, const double *edge, uint32_t count) {
+/* The strip that the edge may have swept since the fronts were cut: from the edge before, and from the place where each
+   front is now */
+static gx_result gxp_sweep(gx_blade *blade, const double *before, const double *edge, uint32_t count) {
     const gxp_blade_state *now = &blade->now;
-    const double *before = now->edge.count > 0 ? now->edge.data : edge;
     uint32_t i, j;
     gx_result result = GX_OK;
     blade->quads.count = 0;
@@ -9586,11 +9626,14 @@ static gx_result gxp_sweep(gx_blade *blade, const double *edge, uint32_t count) 
     for (j = 0; j < now->layers.count && result == GX_OK; j++) {
         const gxp_front_vertex *v = now->vertices.data + now->layers.data[j].front;
         for (i = 0; i + 1 < now->layers.data[j].front_count && result == GX_OK; i++) {
-            double x[4][3];
+            double x[4][3], along;
+            if (v[i].gap) continue;
             result = gxp_front_position(blade, j, 1, &v[i], x[0]);
             if (result == GX_OK) result = gxp_front_position(blade, j, 1, &v[i + 1], x[1]);
-            gxp_edge_position(edge, count, v[i + 1].along, x[2]);
-            gxp_edge_position(edge, count, v[i].along, x[3]);
+            gxp_onto_edge(edge, count, x[1], &along);
+            gxp_edge_position(edge, count, along, x[2]);
+            gxp_onto_edge(edge, count, x[0], &along);
+            gxp_edge_position(edge, count, along, x[3]);
             if (result == GX_OK) result = gxp_push_quad(blade, x[0], x[1], x[2], x[3]);
         }
     }
@@ -9615,6 +9658,8 @@ static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
         if (square > c->radius) c->radius = square;
     }
     c->radius = sqrt(c->radius);
+    c->is_divided = (uint8_t)(gxb_complex_root(body->complex, cell->element) & 1);
+    c->has_facets = 0;
     c->stretch = gxp_stretch(body, c->slot);
     c->size = cbrt(6 * gxp_element_volume(body, cell->element));
 }
@@ -9762,7 +9807,7 @@ static gx_result gxp_find_near(gx_blade *blade, const gxp_words *scope) {
     int k;
     gx_result result = gxp_refit_tree(body);
     if (result == GX_OK) result = gxp_extend_words(body, &near->of_slot, body->cells.count);
-    near->count = 0;
+    near->count = near->lambda_count = 0;
     for (q = 0; q < blade->quads.count && result == GX_OK; q += 4) {
         const double *x = blade->quads.data + 3 * (size_t)q;
         double low[3], high[3];
@@ -9779,10 +9824,11 @@ static gx_result gxp_find_near(gx_blade *blade, const gxp_words *scope) {
 }
 
 /* Finds the near cells and their layers. */
-static gx_result gxp_find_layers(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope) {
+static gx_result gxp_find_layers(gx_blade *blade, const double *before, const double *edge, uint32_t count,
+                                 const gxp_words *scope) {
     const double *last = edge + 3 * ((size_t)count - 1);
     int k;
-    gx_result result = gxp_sweep(blade, edge, count);
+    gx_result result = gxp_sweep(blade, before, edge, count);
     if (result == GX_OK) result = gxp_find_near(blade, scope);
     gxp_keep_near(&blade->near);
     if (result == GX_OK) result = gxp_number_layers(blade);
@@ -9798,15 +9844,17 @@ static gx_result gxp_find_layers(gx_blade *blade, const double *edge, uint32_t c
 
 /* Cells of less volume, as a share of that at rest, map nothing back: other cells are near. */
 #define GXP_FLAT_MAP 1e-3
-/* A place within the element of a near cell, but in the part of another one, is taken to be this far off the cell, in
-   element sizes. */
-#define GXP_BESIDE 1e-3
+/* The parts of an edge near a layer end this far from it, in element sizes. */
+#define GXP_CAP 1.25
+/* In the air, places that are seen are at most this share of their distances from the layer apart. */
+#define GXP_AIR 0.5
 
 typedef struct gxp_sight { /* what a search for the nearest cell of a layer has found */
     uint32_t index;        /* of a near cell, GXP_NONE: none */
     double square;         /* of the distance, m2; 0: inside */
     double nearest[3];     /* in space */
     double weights[4];     /* of the place, by the corners of that cell */
+    int wall;              /* 1: the nearest point is on a wall of the cell */
 } gxp_sight;
 
 static double gxp_square_to_box(const double x[3], const double low[3], const double high[3]) {
@@ -9819,58 +9867,98 @@ static double gxp_square_to_box(const double x[3], const double low[3], const do
     return square;
 }
 
-/* A cell whose element contains the place: is the place in the cell's own part? */
-static gx_result gxp_seek_inside(gx_blade *blade, uint32_t index, const double x[3], const double weights[4],
-                                 gxp_sight *sight) {
+/* Is the place, of these weights in the cell's element, in the cell's own part? */
+static gx_result gxp_is_own_part(gx_body *body, const gxp_close_cell *c, const double weights[4], int *own) {
     static const double origin[3] = {0, 0, 0};
-    gx_body *body = blade->body;
-    const gxp_close_cell *c = &blade->near.cells[index];
     const gxp_cell *cell = &body->cells.data[c->slot];
-    const double beside = GXP_BESIDE * c->size;
+    double corners[4][3], rest[3];
     uint32_t holder = c->slot;
-    gx_result result = GX_OK;
-    if (body->cells.data[cell->element].next != GXP_NONE) {
-        double corners[4][3], rest[3];
-        gxp_cell_corners(body, cell, 0, origin, corners);
-        gxp_weigh(corners, weights, rest);
-        result = gxp_cell_at(body, cell->element, rest, &holder);
-    }
-    if (holder != c->slot && beside * beside >= sight->square) return result;
-    sight->index = index;
-    sight->square = holder == c->slot ? 0 : beside * beside;
-    memcpy(sight->nearest, x, sizeof sight->nearest);
-    memcpy(sight->weights, weights, sizeof sight->weights);
+    gx_result result;
+    *own = 1;
+    if (!c->is_divided) return GX_OK;
+    gxp_cell_corners(body, cell, 0, origin, corners);
+    gxp_weigh(corners, weights, rest);
+    result = gxp_cell_at(body, cell->element, rest, &holder);
+    *own = holder == c->slot;
     return result;
 }
 
-/* A cell whose element does not contain the place: is it nearer than what was found before? */
-static void gxp_seek_outside(const gx_blade *blade, uint32_t index, const double x[3], const double weights[4],
-                             gxp_sight *sight) {
-    const gxp_close_cell *c = &blade->near.cells[index];
-    int f;
-    if (c->stretch < GXP_FLAT_MAP) return; /* flat or inverted: outside is inside by its map */
-    for (f = 0; f < 4; f++) {
-        double nearest[3], square;
-        if (weights[f] >= 0) continue;
-        square = gxp_onto_triangle(x, c->corners[gxp_outward[f][0]], c->corners[gxp_outward[f][1]],
-                                   c->corners[gxp_outward[f][2]], nearest);
+/* Lists the triangles that bound the cell of a divided element. */
+static gx_result gxp_list_facets(gx_blade *blade, gxp_close_cell *c) {
+    gx_body *body = blade->body;
+    gxp_vicinity *near = &blade->near;
+    const gxp_boundary *boundary = &body->scratch.boundary;
+    uint32_t i;
+    gx_result result;
+    gxp_clear_boundary(body, 1);
+    result = gxp_bound_cell(body, c->slot);
+    if (result == GX_OK)
+        result = gxp_reserve(&body->config.allocator, &near->lambdas, 12 * sizeof *near->lambdas, near->lambda_count,
+                             &near->lambda_capacity, boundary->triangles.count / 3);
+    if (result != GX_OK) return result;
+    c->facets = near->lambda_count;
+    c->facet_count = boundary->triangles.count / 3;
+    c->has_facets = 1;
+    for (i = 0; i < boundary->triangles.count; i++)
+        memcpy(near->lambdas + 12 * (size_t)near->lambda_count + 4 * (size_t)i,
+               boundary->lambdas + 4 * (size_t)boundary->triangles.data[i], 4 * sizeof *near->lambdas);
+    near->lambda_count += c->facet_count;
+    return GX_OK;
+}
+
+/* A cell that does not contain the place: is its material nearer than what was found before? */
+static gx_result gxp_seek_outside(gx_blade *blade, uint32_t index, const double x[3], const double weights[4],
+                                  gxp_sight *sight) {
+    static const double own[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+    gxp_close_cell *c = &blade->near.cells[index];
+    uint32_t count = 4, i;
+    int n, k;
+    if (c->stretch < GXP_FLAT_MAP) return GX_OK; /* flat or inverted: outside is inside by its map */
+    if (c->is_divided && !c->has_facets) {
+        const gx_result result = gxp_list_facets(blade, c);
+        if (result != GX_OK) return result;
+    }
+    if (c->is_divided) count = c->facet_count;
+    for (i = 0; i < count; i++) {
+        const double *lambda[3];
+        double corner[3][3], nearest[3], square;
+        if (!c->is_divided && weights[i] >= 0) continue;
+        for (n = 0; n < 3; n++)
+            lambda[n] =
+                c->is_divided ? blade->near.lambdas + 12 * (size_t)(c->facets + i) + 4 * n : own[gxp_outward[i][n]];
+        for (n = 0; n < 3; n++)
+            for (k = 0; k < 3; k++)
+                corner[n][k] = lambda[n][0] * c->corners[0][k] + lambda[n][1] * c->corners[1][k] +
+                               lambda[n][2] * c->corners[2][k] + lambda[n][3] * c->corners[3][k];
+        square = gxp_onto_triangle(x, corner[0], corner[1], corner[2], nearest);
         if (square >= sight->square) continue;
         sight->index = index;
         sight->square = square;
+        sight->wall = 1;
+        for (n = 0; n < 4; n++)
+            if (!(lambda[0][n] > 0) && !(lambda[1][n] > 0) && !(lambda[2][n] > 0)) sight->wall = 0;
         memcpy(sight->nearest, nearest, sizeof nearest);
         memcpy(sight->weights, weights, sizeof sight->weights);
     }
+    return GX_OK;
 }
 
 static gx_result gxp_seek_at(gx_blade *blade, uint32_t index, const double x[3], gxp_sight *sight) {
     gxp_close_cell *c = &blade->near.cells[index];
     double weights[4];
+    int own = 0;
+    gx_result result = GX_OK;
     if (gxp_square_to_box(x, c->low, c->high) >= sight->square || fabs(c->stretch) < GXP_FLAT_MAP) return GX_OK;
     gxp_tet_weights(c->corners, x, weights);
     if (weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0 && weights[3] >= 0)
-        return gxp_seek_inside(blade, index, x, weights, sight);
-    gxp_seek_outside(blade, index, x, weights, sight);
-    return GX_OK;
+        result = gxp_is_own_part(blade->body, c, weights, &own);
+    if (!own && result == GX_OK) return gxp_seek_outside(blade, index, x, weights, sight);
+    sight->index = index;
+    sight->square = 0;
+    sight->wall = 0;
+    memcpy(sight->nearest, x, sizeof sight->nearest);
+    memcpy(sight->weights, weights, sizeof sight->weights);
+    return result;
 }
 
 /* Finds the cell of a layer that contains a place, or else the nearest one. */
@@ -9942,11 +10030,13 @@ static gx_result gxp_place_in_air(gx_blade *blade, uint32_t layer, const gxp_sig
                                   gxp_front_vertex *v) {
     const gxp_close_cell *c = &blade->near.cells[sight->index];
     double weights[4], surface[3], position[3], away;
-    const double share = v->distance > v->size ? v->size / v->distance : 1;
+    const double reach = GXP_CAP * v->size, share = v->distance > reach ? reach / v->distance : 1;
     int k, tries, inside = 1;
     gx_result result = GX_OK;
     gxp_tet_weights(blade->near.cells[sight->index].corners, sight->nearest, weights);
     gxp_weigh(corners, weights, surface);
+    memcpy(v->foot, surface, sizeof surface);
+    memcpy(v->foot_at, sight->nearest, sizeof v->foot_at);
     for (k = 0; k < 3; k++) position[k] = sight->nearest[k] + share * (v->position[k] - sight->nearest[k]);
     gxp_tet_weights(blade->near.cells[sight->index].corners, position, weights);
     gxp_weigh(corners, weights, v->rest);
@@ -9955,6 +10045,11 @@ static gx_result gxp_place_in_air(gx_blade *blade, uint32_t layer, const gxp_sig
         for (k = 0; k < 3; k++) v->rest[k] = surface[k] + 1.5 * c->size / away * (v->rest[k] - surface[k]);
     for (tries = 0; tries < 6 && inside && result == GX_OK; tries++) {
         result = gxp_is_in_layer(blade, layer, v->rest, &inside);
+        if (inside && sight->wall) {
+            memcpy(v->rest, surface, sizeof surface);
+            v->walled = 1;
+            break;
+        }
         for (k = 0; k < 3 && inside; k++) v->rest[k] = surface[k] + 0.4 * (v->rest[k] - surface[k]);
     }
     return result;
@@ -9978,11 +10073,15 @@ static gx_result gxp_see_place(gx_blade *blade, uint32_t layer, gxp_front_vertex
     if (sight.index == GXP_NONE) { /* every cell is flat or inverted */
         memcpy(v->rest, v->position, sizeof v->rest);
         memcpy(v->extended, v->position, sizeof v->extended);
+        memcpy(v->foot, v->position, sizeof v->foot);
+        memcpy(v->foot_at, v->position, sizeof v->foot_at);
         return GX_OK;
     }
     gxp_cell_corners(blade->body, &blade->body->cells.data[c->slot], 0, origin, corners);
     gxp_weigh(corners, sight.weights, v->extended);
     memcpy(v->rest, v->extended, sizeof v->rest);
+    memcpy(v->foot, v->rest, sizeof v->foot);
+    memcpy(v->foot_at, v->position, sizeof v->foot_at);
     return v->distance > 0 ? gxp_place_in_air(blade, layer, &sight, corners, v) : GX_OK;
 }
 
@@ -9995,13 +10094,14 @@ static gx_result gxp_see(gx_blade *blade, uint32_t layer, const double *edge, ui
     return gxp_see_place(blade, layer, v);
 }
 
-/* Are there places between two that must be seen? None, if the layer can't be there: its distance from a place is at
-   most that from another one and the way between them. */
+/* Are there places between two that must be seen? In the air the line between them must stay out of the layer: they
+   are near to each other beside their distances from it. */
 static int gxp_must_refine(const gx_blade *blade, const gxp_front_vertex *a, const gxp_front_vertex *b) {
     const double length = sqrt(gxp_square_distance(a->position, b->position));
     const double size = a->size < b->size ? a->size : b->size;
-    if (blade->samples.count >= blade->max_samples) return 0;
-    if (a->distance > 0 && b->distance > 0 && a->distance + b->distance > length) return 0;
+    if (blade->seen.count >= blade->max_samples) return 0;
+    if (a->distance > 0 && b->distance > 0)
+        return length > size * 0.125 && length > GXP_AIR * (a->distance + b->distance);
     return length > size * ((a->distance > 0) == (b->distance > 0) ? 0.5 : 0.125);
 }
 
@@ -10014,7 +10114,7 @@ static gx_result gxp_refine(gx_blade *blade, uint32_t layer, const double *edge,
     if (!gxp_must_refine(blade, a, b) || !(along > a->along && along < b->along)) return GX_OK;
     result = gxp_see(blade, layer, edge, count, along, &middle);
     if (result == GX_OK) result = gxp_refine(blade, layer, edge, count, a, &middle);
-    if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->samples, &middle);
+    if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->seen, &middle);
     return result == GX_OK ? gxp_refine(blade, layer, edge, count, &middle, b) : result;
 }
 
@@ -10034,22 +10134,78 @@ static void gxp_keep_bends(const gxp_front_vertex *v, uint32_t first, uint32_t l
     }
 }
 
-/* Drops the ends of the edge that are farther than an element's size from the layer, and places on lines. */
-static gx_result gxp_thin_samples(gx_blade *blade) {
+/* Flags the places that tell where the layer is: the first and the last of each stretch of the edge in the layer, the
+   middle one, and those next to it in the air. */
+static void gxp_keep_stretches(const gxp_front_vertex *v, uint32_t first, uint32_t last, uint32_t *keep) {
+    uint32_t i, j;
+    for (i = first; i <= last; i = j) {
+        for (j = i + 1; j <= last && (v[j].distance > 0) == (v[i].distance > 0); j++) {}
+        keep[i] |= 2;
+        keep[j - 1] |= 2;
+        keep[i + (j - i) / 2] |= 2;
+    }
+}
+
+/* Drops places on lines. */
+static gx_result gxp_thin_run(gx_blade *blade, uint32_t first) {
     gxp_front_vertex *v = blade->samples.data;
-    uint32_t first = 0, last = blade->samples.count - 1, count = 0, i;
+    const uint32_t last = blade->samples.count - 1;
+    uint32_t count = first, i, *needed;
     gx_result result = gxp_start_words(blade->body, &blade->needed, blade->samples.count);
     if (result != GX_OK) return result;
-    while (first < last && v[first + 1].distance > v[first + 1].size) first++;
-    while (last > first && v[last - 1].distance > v[last - 1].size) last--;
-    if (first >= last) first = 0, last = blade->samples.count - 1;
-    memset(blade->needed.data, 0, blade->samples.count * sizeof *blade->needed.data);
-    blade->needed.data[first] = blade->needed.data[last] = 1;
-    gxp_keep_bends(v, first, last, 0.5 * blade->tolerance, blade->needed.data);
-    for (i = first; i <= last; i++)
-        if (blade->needed.data[i]) v[count++] = v[i];
+    needed = blade->needed.data;
+    memset(needed, 0, blade->samples.count * sizeof *needed);
+    needed[first] = needed[last] = 1;
+    gxp_keep_bends(v, first, last, 0.5 * blade->tolerance, needed);
+    gxp_keep_stretches(v, first, last, needed);
+    for (i = first; i <= last; i++) {
+        if (!needed[i]) continue;
+        v[i].soft = needed[i] == 2;
+        v[count++] = v[i];
+    }
+    v[count - 1].gap = 1;
     blade->samples.count = count;
     return GX_OK;
+}
+
+/* Appends the place at which the part of the edge that is near the layer ends: between a place seen near it and the
+   next one, so far that the layer cannot be farther than GXP_CAP. */
+static gx_result gxp_push_cap(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count,
+                              const gxp_front_vertex *near, const gxp_front_vertex *far) {
+    const double length = sqrt(gxp_square_distance(near->position, far->position)),
+                 reach = fmax(GXP_CAP * near->size - near->distance, 0.25 * near->size);
+    gxp_front_vertex v = *far;
+    gx_result result = GX_OK;
+    if (reach < length)
+        result = gxp_see(blade, layer, edge, count, near->along + reach / length * (far->along - near->along), &v);
+    return result == GX_OK ? gxp_push_vertex(blade->body, &blade->samples, &v) : result;
+}
+
+/* Is a place of the edge within an element's size of the layer, or not much farther than the nearest one? */
+static int gxp_is_run(const gxp_front_vertex *v, double least) {
+    return v->distance <= fmax(v->size, least + 0.5 * v->size);
+}
+
+/* Lists in blade.samples the parts of the edge that are near the layer, each with an end in the air on both sides. */
+static gx_result gxp_list_runs(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count) {
+    const gxp_front_list *seen = &blade->seen;
+    double least = HUGE_VAL;
+    uint32_t i, j;
+    gx_result result = GX_OK;
+    blade->samples.count = 0;
+    for (i = 0; i < seen->count; i++) least = fmin(least, seen->data[i].distance);
+    for (i = 0; i < seen->count && result == GX_OK; i = j + 1) {
+        const uint32_t first = blade->samples.count;
+        j = i;
+        if (!gxp_is_run(&seen->data[i], least)) continue;
+        while (j + 1 < seen->count && gxp_is_run(&seen->data[j + 1], least)) j++;
+        if (i > 0) result = gxp_push_cap(blade, layer, edge, count, &seen->data[i], &seen->data[i - 1]);
+        if (result == GX_OK) result = gxp_append_front(blade->body, &blade->samples, seen->data + i, j - i + 1);
+        if (result == GX_OK && j + 1 < seen->count)
+            result = gxp_push_cap(blade, layer, edge, count, &seen->data[j], &seen->data[j + 1]);
+        if (result == GX_OK) result = gxp_thin_run(blade, first);
+    }
+    return result;
 }
 
 /* Lists in blade.samples how a layer sees the edge. */
@@ -10058,16 +10214,16 @@ static gx_result gxp_see_edge(gx_blade *blade, uint32_t layer, const double *edg
     uint32_t i;
     gx_result result;
     blade->last_sight = GXP_NONE;
-    blade->samples.count = 0;
+    blade->seen.count = 0;
     result = gxp_see(blade, layer, edge, count, 0, &before);
-    if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->samples, &before);
+    if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->seen, &before);
     for (i = 1; i < count && result == GX_OK; i++) {
         result = gxp_see(blade, layer, edge, count, (double)i, &v);
         if (result == GX_OK) result = gxp_refine(blade, layer, edge, count, &before, &v);
-        if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->samples, &v);
+        if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->seen, &v);
         before = v;
     }
-    return result == GX_OK ? gxp_thin_samples(blade) : result;
+    return result == GX_OK ? gxp_list_runs(blade, layer, edge, count) : result;
 }
 
 /* >>fronts: how far the edge has come in a layer ------------------------------------------------------------------- */
@@ -10079,6 +10235,8 @@ static gx_result gxp_see_edge(gx_blade *blade, uint32_t layer, const double *edg
    from its sheet, else the edge has left the cut through its side. */
 #define GXP_LEAST_ADVANCE 0.02
 #define GXP_CUT_WIDTH     0.15
+/* So far on the other side of the sheet does a track begin, in element sizes. */
+#define GXP_CROSSING 0.1
 /* Triangles of the last strips that a layer remembers. */
 #define GXP_SHEET_TRIANGLES 400u
 
@@ -10090,8 +10248,9 @@ static void gxp_near_front(const gxp_front_list *front, const double rest[3], gx
     r->share = 0;
     memcpy(nearest, front->data[0].rest, 3 * sizeof *nearest);
     for (i = 0; i + 1 < front->count; i++) {
+        const gxp_front_vertex *next = &front->data[i + (front->data[i].gap ? 0 : 1)];
         double share, at[3];
-        const double square = gxp_onto_segment(rest, front->data[i].rest, front->data[i + 1].rest, &share, at);
+        const double square = gxp_onto_segment(rest, front->data[i].rest, next->rest, &share, at);
         if (square >= best) continue;
         best = square;
         r->segment = i;
@@ -10121,17 +10280,6 @@ static double gxp_near_sheet(const gxp_points *sheet, const double rest[3], doub
         memcpy(nearest, at, sizeof at);
     }
     return sqrt(best);
-}
-
-/* Is the place past an end of the front, where the section of layer and sheet has become longer? */
-static int gxp_is_beyond(const gxp_front_list *front, const gxp_front_vertex *v, const gxp_relation *r) {
-    const uint32_t last = front->count - 1, end = r->share > 0 ? last : 0;
-    const double *x = front->data[end].rest, *next = front->data[end == 0 ? 1 : last - 1].rest;
-    double out = 0;
-    int k;
-    if (!(r->segment == 0 && r->share <= 0) && !(r->segment + 1 == last && r->share >= 1)) return 0;
-    for (k = 0; k < 3; k++) out += (v->rest[k] - x[k]) * (x[k] - next[k]);
-    return out > 0;
 }
 
 /* A place behind the front: is it in the cut, has it left that through the side, or is it beside the front, ahead of
@@ -10188,11 +10336,9 @@ static gx_result gxp_relate(gx_blade *blade, const gxp_front_vertex *v, gxp_rela
     if (gxp_front_direction(&blade->front, r, direction) && gxp_dot(direction, direction) > 0)
         r->ahead = gxp_dot(direction, way) > 0;
     if (v->distance > 0) {
-        if (!r->ahead && r->distance > 0) gxp_judge_air(blade, v, r);
+        if ((!r->ahead || v->walled) && r->distance > 0) gxp_judge_air(blade, v, r);
         return GX_OK;
     }
-    r->beyond = r->distance > 0 && gxp_is_beyond(&blade->front, v, r);
-    if (r->beyond) r->ahead = 1;
     if (!r->ahead) result = gxp_judge_behind(blade, v, r);
     if (r->distance < GXP_LEAST_ADVANCE * v->size && r->distance < 0.1 * blade->min_advance) r->ahead = 0;
     return result;
@@ -10201,7 +10347,6 @@ static gx_result gxp_relate(gx_blade *blade, const gxp_front_vertex *v, gxp_rela
 /* What the layer's edge does at a move */
 typedef struct gxp_advance {
     double most; /* the largest advance, m; of places inside, if there are any */
-    int wider;   /* the section has become longer than the front */
     int strays;
     int is_back; /* 1: all of the edge is in the air, and has come there through its own cut */
 } gxp_advance;
@@ -10273,13 +10418,16 @@ static gx_result gxp_advance_front(gx_blade *blade, gxp_advance *move) {
         result = gxp_relate(blade, v, &r[i]);
         if (in_air) r[i].ahead = !move->is_back && r[i].distance > 0;
         if (r[i].ahead && (in_air || !(v->distance > 0))) move->most = fmax(move->most, r[i].distance);
-        move->wider |= r[i].beyond;
         move->strays |= r[i].strays;
     }
     for (i = 0; i < samples->count && result == GX_OK; i = j) {
+        uint32_t start = blade->advanced.count;
         for (j = i; j < samples->count && r[j].ahead == r[i].ahead; j++) {}
         result = r[i].ahead ? gxp_append_front(blade->body, &blade->advanced, samples->data + i, j - i)
                             : gxp_stay(blade, r + i, j - i, i == 0, j == samples->count, &at);
+        if (blade->advanced.count == start) continue;
+        blade->advanced.data[start].soft = blade->advanced.data[blade->advanced.count - 1].soft = 0;
+        blade->advanced.data[blade->advanced.count - 1].gap = samples->data[j - 1].gap;
     }
     return result;
 }
@@ -10288,26 +10436,68 @@ static int gxp_same_rest(const gxp_front_vertex *a, const gxp_front_vertex *b) {
     return a->rest[0] == b->rest[0] && a->rest[1] == b->rest[1] && a->rest[2] == b->rest[2];
 }
 
-/* Lists in blade.strip the triangles between two fronts: the shorter diagonal comes first. Vertices that both have make
-   no triangle. */
-static gx_result gxp_zip(gx_blade *blade, const gxp_front_list *from, const gxp_front_list *to) {
-    uint32_t i = 0, j = 0, k;
+/* The next corner of a front after a vertex, or count */
+static uint32_t gxp_next_corner(const gxp_front_list *front, uint32_t i) {
+    for (i++; i < front->count && front->data[i].soft; i++) {}
+    return i;
+}
+
+/* The first gap of a front from a vertex on that overlaps a gap of another one, by places on the edge, or count */
+static uint32_t gxp_shared_gap(const gxp_front_list *front, uint32_t i, const gxp_front_list *other, uint32_t from,
+                               uint32_t *of_other) {
+    uint32_t j;
+    for (; i + 1 < front->count; i++) {
+        if (!front->data[i].gap) continue;
+        for (j = from; j + 1 < other->count; j++)
+            if (other->data[j].gap && other->data[j].along < front->data[i + 1].along &&
+                front->data[i].along < other->data[j + 1].along) {
+                *of_other = j;
+                return i;
+            }
+    }
+    *of_other = other->count - 1;
+    return front->count - 1;
+}
+
+/* Appends to blade.strip the triangles between two vertices of a front and two of another one: the shorter diagonal
+   comes first. Vertices that both have make no triangle. */
+static gx_result gxp_zip_runs(gx_blade *blade, const gxp_front_list *from, uint32_t i, uint32_t i_end,
+                              const gxp_front_list *to, uint32_t j, uint32_t j_end) {
+    uint32_t k, next_i = gxp_next_corner(from, i), next_j = gxp_next_corner(to, j);
     gx_result result = GX_OK;
-    blade->strip.count = 0;
-    while ((i + 1 < from->count || j + 1 < to->count) && result == GX_OK) {
+    while ((next_i <= i_end || next_j <= j_end) && result == GX_OK) {
         const gxp_front_vertex *corner[3];
-        const int by_from = i + 1 < from->count &&
-                            (j + 1 == to->count || gxp_square_distance(from->data[i + 1].rest, to->data[j].rest) <=
-                                                       gxp_square_distance(from->data[i].rest, to->data[j + 1].rest));
+        const int by_from =
+            next_i <= i_end && (next_j > j_end || gxp_square_distance(from->data[next_i].rest, to->data[j].rest) <=
+                                                      gxp_square_distance(from->data[i].rest, to->data[next_j].rest));
         corner[0] = &from->data[i];
-        corner[1] = by_from ? &from->data[i + 1] : &to->data[j + 1];
+        corner[1] = by_from ? &from->data[next_i] : &to->data[next_j];
         corner[2] = &to->data[j];
-        i += (uint32_t)by_from;
-        j += (uint32_t)!by_from;
+        if (by_from) {
+            i = next_i;
+            next_i = gxp_next_corner(from, i);
+        } else {
+            j = next_j;
+            next_j = gxp_next_corner(to, j);
+        }
         if (gxp_same_rest(corner[0], corner[1]) || gxp_same_rest(corner[1], corner[2]) ||
             gxp_same_rest(corner[0], corner[2]))
             continue;
         for (k = 0; k < 3 && result == GX_OK; k++) result = gxp_push_vertex(blade->body, &blade->strip, corner[k]);
+    }
+    return result;
+}
+
+/* Lists in blade.strip the triangles between two fronts. A gap that both have stays open. */
+static gx_result gxp_zip(gx_blade *blade, const gxp_front_list *from, const gxp_front_list *to) {
+    uint32_t i = 0, j = 0, i_end, j_end;
+    gx_result result = GX_OK;
+    blade->strip.count = 0;
+    while (i < from->count && j < to->count && result == GX_OK) {
+        i_end = gxp_shared_gap(from, i, to, j, &j_end);
+        result = gxp_zip_runs(blade, from, i, i_end, to, j, j_end);
+        i = i_end + 1;
+        j = j_end + 1;
     }
     return result;
 }
@@ -10390,28 +10580,47 @@ static gx_result gxp_begin_outside(gx_blade *blade) {
     return gxp_copy_front(blade->body, &blade->front, &blade->samples);
 }
 
-/* The edge has left its cut through the side: the front begins anew there, all of it a little on the other side of the
-   sheet, so that the next strip crosses it. Places still in the cut cross it the way that the farthest one has left. */
-static gx_result gxp_begin_track(gx_blade *blade) {
+/* A place of a track begins on the other side of the sheet from where the edge has left it. side: the way that the
+   farthest place has left */
+static void gxp_cross_sheet(const gx_blade *blade, const double side[3], gxp_front_vertex *v) {
+    double nearest[3], way[3];
+    const double distance = gxp_near_sheet(&blade->sheet, v->rest, nearest),
+                 across = fmax(2 * blade->tolerance, GXP_CROSSING * v->size);
+    int k;
+    memcpy(v->ahead, side, sizeof v->ahead);
+    for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
+    if (distance > 2 * blade->tolerance) gxp_unit(way, v->ahead);
+    for (k = 0; k < 3; k++) v->rest[k] = nearest[k] - across * v->ahead[k];
+}
+
+/* The edge has left its cut through the side: the front begins anew there, a little on the other side of the sheet, so
+   that the next strip crosses it. Places still in the cut cross it the way that the farthest one has left. goes_on:
+   places that were ahead are on the sheet's rim, and the front goes on there. */
+static gx_result gxp_begin_track(gx_blade *blade, int goes_on) {
+    const gxp_front_list *samples = &blade->samples;
+    const gxp_relation *r = blade->relations;
     double most = 0, side[3] = {0, 0, 0};
     uint32_t i;
     int k;
-    gx_result result = gxp_copy_front(blade->body, &blade->front, &blade->samples);
-    for (i = 0; i < blade->front.count; i++) {
-        const gxp_front_vertex *v = &blade->front.data[i];
+    gx_result result = GX_OK;
+    for (i = 0; i < samples->count; i++) {
+        const gxp_front_vertex *v = &samples->data[i];
         double nearest[3], way[3];
         const double distance = gxp_near_sheet(&blade->sheet, v->rest, nearest);
         for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
         if (!(v->distance > 0) && distance > most && gxp_unit(way, side)) most = distance;
     }
-    for (i = 0; i < blade->front.count; i++) {
-        gxp_front_vertex *v = &blade->front.data[i];
-        double nearest[3], way[3];
-        const double distance = gxp_near_sheet(&blade->sheet, v->rest, nearest);
-        memcpy(v->ahead, side, sizeof side);
-        for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
-        if (distance > 2 * blade->tolerance) gxp_unit(way, v->ahead);
-        for (k = 0; k < 3; k++) v->rest[k] = nearest[k] - 2 * blade->tolerance * v->ahead[k];
+    blade->front.count = 0;
+    for (i = 0; i < samples->count && result == GX_OK; i++) {
+        const int rim = goes_on && r[i].ahead;
+        gxp_front_vertex v = samples->data[i], crossing = v;
+        gxp_cross_sheet(blade, side, &crossing);
+        crossing.soft = v.soft = 0;
+        if (rim && i > 0 && !r[i - 1].ahead && !samples->data[i - 1].gap)
+            result = gxp_push_vertex(blade->body, &blade->front, &crossing);
+        if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->front, rim ? &v : &crossing);
+        if (result == GX_OK && rim && i + 1 < samples->count && !r[i + 1].ahead && !v.gap)
+            result = gxp_push_vertex(blade->body, &blade->front, &crossing);
     }
     blade->path.count = blade->latest.count = 0;
     return result;
@@ -10435,23 +10644,36 @@ static gx_result gxp_note_path(gx_blade *blade) {
     return result == GX_OK ? gxp_copy_front(blade->body, &blade->latest, &blade->advanced) : result;
 }
 
+/* Are front and edge farther than an element from the layer, and nothing waits? */
+static int gxp_has_left(const gx_blade *blade) {
+    uint32_t i;
+    if (blade->latest.count > 0) return 0;
+    for (i = 0; i < blade->front.count; i++)
+        if (!(blade->front.data[i].distance > blade->front.data[i].size)) return 0;
+    return gxp_is_away(blade);
+}
+
 /* Advances the front of the layer at work to the samples: cuts what must be cut, and lets the rest wait. finish: cuts
-   all. */
+   all. A front that has left the layer is no more. */
 static gx_result gxp_follow_edge(gx_blade *blade, int finish, gx_blade_report *report) {
     gxp_advance move;
     gx_result result = gxp_advance_front(blade, &move);
+    if (result == GX_OK && gxp_has_left(blade)) {
+        blade->front.count = 0;
+        return GX_OK;
+    }
     if (result == GX_OK && move.is_back) return gxp_is_away(blade) ? gxp_begin_outside(blade) : GX_OK;
     if (result == GX_OK && move.strays && !finish) {
         if (move.most > 0) {
             result = gxp_zip(blade, &blade->front, &blade->advanced);
             if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
         }
-        if (result == GX_OK) result = gxp_begin_track(blade);
+        if (result == GX_OK) result = gxp_begin_track(blade, move.most > 0);
         if (result == GX_OK) result = gxp_advance_front(blade, &move);
     }
     if (result != GX_OK || !(move.most > 0)) return result;
     result = gxp_zip(blade, &blade->front, &blade->advanced);
-    if (result == GX_OK && blade->latest.count > 0 && (move.wider || gxp_bend(blade) > blade->tolerance)) {
+    if (result == GX_OK && blade->latest.count > 0 && (gxp_is_away(blade) || gxp_bend(blade) > blade->tolerance)) {
         result = gxp_zip(blade, &blade->front, &blade->latest);
         if (result == GX_OK) result = gxp_copy_front(blade->body, &blade->advanced, &blade->latest);
         if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
@@ -10463,23 +10685,60 @@ static gx_result gxp_follow_edge(gx_blade *blade, int finish, gx_blade_report *r
                                                      : gxp_note_path(blade);
 }
 
+/* A strip reaches cells that are within this share of their size of it, as the body lies now: where strip and layer
+   are far from each other in space, none of it is meant for them. */
+#define GXP_STRIP_REACH 0.25
+
+/* Is the cell within reach of a strip, given by its corners in space? */
+static int gxp_is_in_reach(const gxp_close_cell *c, const double *corners, uint32_t triangles) {
+    uint32_t t;
+    for (t = 0; t < triangles; t++) {
+        const double *x = corners + 9 * (size_t)t;
+        if (gxp_is_near_triangle(c, x, x + 3, x + 6, GXP_STRIP_REACH * c->size)) return 1;
+    }
+    return 0;
+}
+
+/* Lists the slots of a layer that the strips of blade.cut may cut. old: only those that belonged to this layer at the
+   last move; GXP_NONE: all. */
+static gx_result gxp_list_scope(gx_blade *blade, uint32_t layer, uint32_t old) {
+    const gxp_vicinity *near = &blade->near;
+    uint32_t i;
+    gx_result result = GX_OK;
+    blade->quads.count = 0;
+    for (i = 0; i < blade->cut.count && result == GX_OK; i++) {
+        double x[3];
+        result = gxp_front_position(blade, layer, 0, &blade->cut.data[i], x);
+        if (result == GX_OK) result = gxp_push_point(blade->body, &blade->quads, x);
+    }
+    for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++) {
+        const gxp_close_cell *c = &near->cells[GXP_SECOND(near->order.data[i])];
+        if (old != GXP_NONE && gxp_old_layer(blade, c->slot) != old) continue;
+        if (gxp_is_in_reach(c, blade->quads.data, blade->cut.count / 3))
+            result = gxp_push(blade->body, &blade->scope, c->slot);
+    }
+    return result;
+}
+
+/* Adds the strips of the layer at work to those of the move. */
+static gx_result gxp_add_surface(gx_blade *blade, uint32_t layer, uint32_t old) {
+    gx_body *body = blade->body;
+    const uint32_t before = blade->scope.count;
+    uint32_t i;
+    gx_result result = blade->cut.count > 0 ? gxp_list_scope(blade, layer, old) : GX_OK;
+    if (blade->scope.count == before) blade->cut.count = 0;
+    if (result != GX_OK || blade->scope.count == before) return result;
+    result = gxp_push(body, &blade->surface_starts, before);
+    if (result == GX_OK) result = gxp_push(body, &blade->surface_starts, blade->corners.count);
+    for (i = 0; i < blade->cut.count && result == GX_OK; i++)
+        result = gxp_push_point(body, &blade->corners, blade->cut.data[i].rest);
+    blade->cut.count = 0;
+    return result;
+}
+
 /* >>strokes: what a blade remembers from move to move -------------------------------------------------------------- */
 /* In: the layers of the last move, those of now. Out: each new layer with the front of the old ones that flow into it.
    Touches the blade's working memory and the state that the move makes. */
-
-/* A front, path and sheet become those of the layer at work. */
-static gx_result gxp_resume_layer(gx_blade *blade, const gxp_layer *old) {
-    const gxp_blade_state *now = &blade->now;
-    uint32_t i;
-    gx_result result = gxp_append_front(blade->body, &blade->front, now->vertices.data + old->front, old->front_count);
-    if (result == GX_OK)
-        result = gxp_append_front(blade->body, &blade->latest, now->vertices.data + old->latest, old->latest_count);
-    for (i = 0; i < old->path_count && result == GX_OK; i++)
-        result = gxp_push_point(blade->body, &blade->path, now->points.data + 3 * (size_t)(old->path + i));
-    for (i = 0; i < old->sheet_count && result == GX_OK; i++)
-        result = gxp_push_point(blade->body, &blade->sheet, now->points.data + 3 * (size_t)(old->sheet + i));
-    return result;
-}
 
 /* Lists in blade.owners the old layers that flow into a new one. */
 static gx_result gxp_find_owners(gx_blade *blade, uint32_t layer) {
@@ -10491,77 +10750,319 @@ static gx_result gxp_find_owners(gx_blade *blade, uint32_t layer) {
         const uint32_t old = gxp_old_layer(blade, near->cells[GXP_SECOND(near->order.data[i])].slot);
         if (old == GXP_NONE || old == last) continue;
         last = old;
+        if (blade->now.layers.data[old].front_count == 0) continue;
         if (!gxp_contains(&blade->owners, old)) result = gxp_push(blade->body, &blade->owners, old);
     }
     return result;
 }
 
-/* The part of a front that is in the material or, if none is, within half an element of it, with a vertex on each side.
- *along: where it begins. Returns 0 if there is none. */
-static int gxp_inner_run(const gxp_front_vertex *v, uint32_t count, uint32_t *first, uint32_t *end, double *along) {
-    uint32_t i, j = count, n;
-    double reach = 0;
-    for (i = 0, n = 0; i < count; i++) n += !(v[i].distance > 0);
-    if (n == 0) reach = 0.5;
-    for (i = 0; i < count && v[i].distance > reach * v[i].size;) i++;
-    if (i == count) return 0;
-    while (v[j - 1].distance > reach * v[j - 1].size) j--;
-    *along = v[i].along;
-    *first = i > 0 ? i - 1 : 0;
-    *end = j < count ? j + 1 : count;
-    return 1;
+/* Appends a front to blade.owned, with the places on the edge that it is at now, ascending. */
+static gx_result gxp_list_owned(gx_blade *blade, uint32_t layer, int old, const gxp_front_vertex *vertices,
+                                uint32_t vertex_count, const double *edge, uint32_t count) {
+    double reached = 0;
+    uint32_t i;
+    gx_result result = gxp_push(blade->body, &blade->owned_starts, blade->owned.count);
+    for (i = 0; i < vertex_count && result == GX_OK; i++) {
+        gxp_front_vertex v = vertices[i];
+        double x[3];
+        result = gxp_front_position(blade, layer, old, &v, x);
+        gxp_onto_edge(edge, count, x, &v.along);
+        v.along = reached = fmax(reached, v.along);
+        if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->owned, &v);
+    }
+    return result;
 }
 
-/* Several layers have become one: the front takes from each what is in the material and a vertex in the air on each
-   side, in the order along the edge. So no part of a sheet's rim in the material is lost; between two runs the front
-   may go back and forth in the gap. What waits is looked at again. */
-static gx_result gxp_join_layers(gx_blade *blade) {
-    const gxp_blade_state *now = &blade->now;
-    double reached = -1;
-    uint32_t done, k, i, last = 0;
+/* Between two places on the edge: how far an owned front is from its layer, HUGE_VAL if it is not there */
+static double gxp_owned_distance(const gx_blade *blade, uint32_t owner, double from, double to) {
+    const gxp_front_vertex *v = blade->owned.data;
+    const uint32_t first = blade->owned_starts.data[owner], end = blade->owned_starts.data[owner + 1];
+    double share;
+    uint32_t i;
+    for (i = first; i + 1 < end; i++)
+        if (!v[i].gap && v[i].along <= from && v[i + 1].along >= to && v[i + 1].along > v[i].along) break;
+    if (i + 1 >= end) return HUGE_VAL;
+    if (!(v[i].distance > 0) || !(v[i + 1].distance > 0)) return 0;
+    share = (0.5 * (from + to) - v[i].along) / (v[i + 1].along - v[i].along);
+    return v[i].distance + share * (v[i + 1].distance - v[i].distance);
+}
+
+/* An owned front begins to be the layer's, or ends to be it, at a place on the edge: its vertices there, or a point of
+   it. */
+static gx_result gxp_push_owned_place(gx_blade *blade, uint32_t owner, double along) {
+    const gxp_front_vertex *v = blade->owned.data;
+    const uint32_t first = blade->owned_starts.data[owner], end = blade->owned_starts.data[owner + 1],
+                   before = blade->front.count;
+    gxp_front_vertex at;
+    double share;
+    uint32_t i;
+    int k;
     gx_result result = GX_OK;
-    for (done = 0; done < blade->owners.count && result == GX_OK; done++) {
-        double from = HUGE_VAL;
-        uint32_t best = GXP_NONE, best_first = 0, best_end = 0;
-        for (k = 0; k < blade->owners.count; k++) {
-            const gxp_layer *l = &now->layers.data[blade->owners.data[k]];
-            const gxp_front_vertex *v = now->vertices.data + l->front;
-            uint32_t first, end;
-            double along;
-            if (!gxp_inner_run(v, l->front_count, &first, &end, &along)) continue;
-            if (along < reached || (!(along > reached) && done > 0 && k <= last) || along >= from) continue;
-            from = along;
-            best = k;
-            best_first = first;
-            best_end = end;
-        }
-        if (best == GXP_NONE) break;
-        result = gxp_append_front(blade->body, &blade->front,
-                                  now->vertices.data + now->layers.data[blade->owners.data[best]].front + best_first,
-                                  best_end - best_first);
-        reached = from;
-        last = best;
+    for (i = first; i < end && result == GX_OK; i++) {
+        if (v[i].along < along || v[i].along > along) continue;
+        at = v[i];
+        at.soft = at.gap = 0;
+        result = gxp_push_vertex(blade->body, &blade->front, &at);
     }
-    for (k = 0; k < blade->owners.count && result == GX_OK; k++) {
-        const gxp_layer *l = &now->layers.data[blade->owners.data[k]];
-        for (i = 0; i < l->sheet_count && result == GX_OK; i++)
-            result = gxp_push_point(blade->body, &blade->sheet, now->points.data + 3 * (size_t)(l->sheet + i));
+    if (blade->front.count > before || result != GX_OK) return result;
+    for (i = first; i + 1 < end && v[i + 1].along <= along;) i++;
+    at = v[i];
+    share = (along - at.along) / (v[i + 1].along - at.along);
+    for (k = 0; k < 3; k++) {
+        at.rest[k] += share * (v[i + 1].rest[k] - at.rest[k]);
+        at.extended[k] += share * (v[i + 1].extended[k] - at.extended[k]);
+        at.position[k] += share * (v[i + 1].position[k] - at.position[k]);
+    }
+    at.distance += share * (v[i + 1].distance - at.distance);
+    at.along = along;
+    at.soft = at.gap = 0;
+    return gxp_push_vertex(blade->body, &blade->front, &at);
+}
+
+/* The owned front that is the layer's from one place on the edge to the next: that before, or the one nearest to its
+   own layer. The last one, if it is not an owner's, only where there is no other. */
+static uint32_t gxp_leading_owner(const gx_blade *blade, double from, double to, uint32_t before) {
+    uint32_t best = GXP_NONE, k;
+    double least = HUGE_VAL;
+    if (before < blade->owners.count) least = gxp_owned_distance(blade, before, from, to);
+    if (least < HUGE_VAL) best = before;
+    for (k = 0; k + 1 < blade->owned_starts.count; k++) {
+        const double distance = gxp_owned_distance(blade, k, from, to);
+        if (distance >= least || (k >= blade->owners.count && best != GXP_NONE)) continue;
+        least = distance;
+        best = k;
+    }
+    return best;
+}
+
+/* The next place on the edge at which one of the owned fronts has a vertex, HUGE_VAL if there is none */
+static double gxp_next_place(const gx_blade *blade, double after) {
+    double next = HUGE_VAL;
+    uint32_t i;
+    for (i = 0; i < blade->owned.count; i++) {
+        const double along = blade->owned.data[i].along;
+        if (along > after && along < next) next = along;
+    }
+    return next;
+}
+
+/* An owned front goes on from one place on the edge, exclusive, to another one. */
+static gx_result gxp_push_owned(gx_blade *blade, uint32_t owner, double from, double to) {
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (i = blade->owned_starts.data[owner]; i < blade->owned_starts.data[owner + 1] && result == GX_OK; i++) {
+        gxp_front_vertex v = blade->owned.data[i];
+        v.gap = 0;
+        if (v.along > from && v.along <= to) result = gxp_push_vertex(blade->body, &blade->front, &v);
     }
     return result;
 }
 
-/* Makes a new layer's front ready for the move. *begun: it has none of before. */
-static gx_result gxp_begin_layer(gx_blade *blade, uint32_t layer, int *begun) {
-    gx_result result = gxp_find_owners(blade, layer);
-    blade->front.count = blade->latest.count = blade->path.count = blade->sheet.count = blade->cut.count = 0;
-    *begun = 0;
-    if (result == GX_OK && blade->owners.count > 1) result = gxp_join_layers(blade);
-    if (result == GX_OK && blade->owners.count > 0 && blade->front.count < 2) {
-        blade->front.count = blade->sheet.count = 0;
-        result = gxp_resume_layer(blade, &blade->now.layers.data[blade->owners.data[0]]);
+/* The last vertex of the layer's front: the front ends there (gap 1), or another owner's begins. */
+static void gxp_end_lead(gxp_front_list *front, int gap) {
+    if (front->count == 0) return;
+    front->data[front->count - 1].soft = 0;
+    front->data[front->count - 1].gap = gap != 0;
+}
+
+/* Lists in blade.front, at each place on the edge, the owned front that is nearest to its layer there. */
+static gx_result gxp_join_owned(gx_blade *blade) {
+    double from, to;
+    uint32_t leader = GXP_NONE;
+    gx_result result = GX_OK;
+    blade->front.count = 0;
+    for (from = gxp_next_place(blade, -1); result == GX_OK && (to = gxp_next_place(blade, from)) < HUGE_VAL;
+         from = to) {
+        const uint32_t next = gxp_leading_owner(blade, from, to, leader);
+        if (next != leader) {
+            if (leader != GXP_NONE && blade->front.data[blade->front.count - 1].along < from)
+                result = gxp_push_owned_place(blade, leader, from);
+            gxp_end_lead(&blade->front, next == GXP_NONE);
+            if (next != GXP_NONE && result == GX_OK) result = gxp_push_owned_place(blade, next, from);
+            leader = next;
+        }
+        if (next != GXP_NONE && result == GX_OK) result = gxp_push_owned(blade, next, from, to);
     }
-    *begun = blade->owners.count == 0;
+    gxp_end_lead(&blade->front, 1);
     return result;
+}
+
+/* Lists in blade.strip what closes the gap between an owner's front and that of the layer it has flowed into. */
+static gx_result gxp_close_owner(gx_blade *blade, uint32_t owner) {
+    const gxp_front_vertex *v = blade->owned.data;
+    const uint32_t first = blade->owned_starts.data[owner], end = blade->owned_starts.data[owner + 1];
+    uint32_t i;
+    gx_result result;
+    blade->advanced.count = blade->latest.count = 0;
+    result = gxp_append_front(blade->body, &blade->latest, v + first, end - first);
+    for (i = 0; i < blade->front.count && result == GX_OK; i++)
+        if (blade->front.data[i].along >= v[first].along && blade->front.data[i].along <= v[end - 1].along)
+            result = gxp_push_vertex(blade->body, &blade->advanced, &blade->front.data[i]);
+    if (result == GX_OK) result = gxp_zip(blade, &blade->latest, &blade->advanced);
+    blade->latest.count = 0;
+    return result;
+}
+
+/* Is there a place of the edge in the layer, or next to it, at which no owned front is? */
+static int gxp_is_uncovered(const gx_blade *blade) {
+    uint32_t i, k;
+    for (i = 0; i < blade->samples.count; i++) {
+        const gxp_front_vertex *v = &blade->samples.data[i];
+        if (v->distance > 0.5 * v->size) continue;
+        for (k = 0; k < blade->owners.count; k++)
+            if (gxp_owned_distance(blade, k, v->along, v->along) < HUGE_VAL) break;
+        if (k == blade->owners.count) return 1;
+    }
+    return 0;
+}
+
+/* An owner's front, path and sheet become those of the layer at work. */
+static gx_result gxp_resume_owner(gx_blade *blade, uint32_t owner) {
+    const gxp_blade_state *now = &blade->now;
+    const gxp_layer *l = &now->layers.data[blade->owners.data[owner]];
+    uint32_t i;
+    gx_result result;
+    blade->front.count = blade->latest.count = blade->path.count = 0;
+    result = gxp_append_front(blade->body, &blade->front, now->vertices.data + l->front, l->front_count);
+    if (result == GX_OK)
+        result = gxp_append_front(blade->body, &blade->latest, now->vertices.data + l->latest, l->latest_count);
+    for (i = 0; i < l->path_count && result == GX_OK; i++)
+        result = gxp_push_point(blade->body, &blade->path, now->points.data + 3 * (size_t)(l->path + i));
+    for (i = 0; i < l->sheet_count && result == GX_OK; i++)
+        result = gxp_push_point(blade->body, &blade->sheet, now->points.data + 3 * (size_t)(l->sheet + i));
+    return result;
+}
+
+/* Lists the owners' fronts in blade.owned. finish: what waits in them is cut before. */
+static gx_result gxp_list_owners(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count, int finish,
+                                 gx_blade_report *report) {
+    uint32_t k;
+    gx_result result = GX_OK;
+    blade->owned.count = blade->owned_starts.count = blade->sheet.count = 0;
+    for (k = 0; k < blade->owners.count && result == GX_OK; k++) {
+        const uint32_t old = blade->owners.data[k];
+        result = gxp_resume_owner(blade, k);
+        if (finish && blade->latest.count > 0) {
+            if (result == GX_OK) result = gxp_copy_front(blade->body, &blade->advanced, &blade->latest);
+            if (result == GX_OK) result = gxp_zip(blade, &blade->front, &blade->advanced);
+            if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
+            if (result == GX_OK) result = gxp_add_surface(blade, layer, old);
+        }
+        if (result == GX_OK) result = gxp_list_owned(blade, old, 1, blade->front.data, blade->front.count, edge, count);
+    }
+    return result == GX_OK ? gxp_push(blade->body, &blade->owned_starts, blade->owned.count) : result;
+}
+
+/* Where no owner's front is, the edge of the last move is the layer's. */
+static gx_result gxp_list_before(gx_blade *blade, uint32_t layer, const double *before, const double *edge,
+                                 uint32_t count) {
+    gx_result result = gxp_copy_front(blade->body, &blade->advanced, &blade->samples);
+    if (result == GX_OK) result = gxp_see_edge(blade, layer, before, count);
+    blade->owned_starts.count--;
+    if (result == GX_OK)
+        result = gxp_list_owned(blade, layer, 0, blade->samples.data, blade->samples.count, edge, count);
+    if (result == GX_OK) result = gxp_push(blade->body, &blade->owned_starts, blade->owned.count);
+    return result == GX_OK ? gxp_copy_front(blade->body, &blade->samples, &blade->advanced) : result;
+}
+
+/* The layer's front is made of several. Where it is not that of one of its owners, the gap between them is cut. */
+static gx_result gxp_unite_owners(gx_blade *blade, uint32_t layer) {
+    uint32_t k;
+    gx_result result = gxp_join_owned(blade);
+    for (k = 0; k < blade->owners.count && result == GX_OK; k++) {
+        result = gxp_close_owner(blade, k);
+        if (result == GX_OK) result = gxp_append_front(blade->body, &blade->cut, blade->strip.data, blade->strip.count);
+        if (result == GX_OK) result = gxp_add_surface(blade, layer, blade->owners.data[k]);
+    }
+    return result;
+}
+
+/* Counts the layers into which each old one has fallen. */
+static gx_result gxp_count_heirs(gx_blade *blade) {
+    const uint32_t count = blade->now.layers.count;
+    uint32_t layer, k;
+    gx_result result = gxp_start_words(blade->body, &blade->heirs, count);
+    if (result != GX_OK) return result;
+    blade->heirs.count = count;
+    memset(blade->heirs.data, 0, count * sizeof *blade->heirs.data);
+    for (layer = 0; layer < blade->near.layer_count && result == GX_OK; layer++) {
+        result = gxp_find_owners(blade, layer);
+        for (k = 0; k < blade->owners.count; k++) blade->heirs.data[blade->owners.data[k]]++;
+    }
+    return result;
+}
+
+/* Keeps of a front what is near to the layer, up to the next corners. */
+static gx_result gxp_trim_front(gx_blade *blade, uint32_t layer, gxp_front_list *front) {
+    uint32_t first = GXP_NONE, last = 0, i;
+    gx_result result = GX_OK;
+    for (i = 0; i < front->count && result == GX_OK; i++) {
+        gxp_front_vertex *v = &front->data[i];
+        gxp_sight sight;
+        double x[3];
+        result = gxp_front_position(blade, layer, 0, v, x);
+        if (result == GX_OK) result = gxp_seek(blade, layer, x, &sight);
+        if (result != GX_OK || sight.index == GXP_NONE) continue;
+        if (sight.square > 0.25 * v->size * v->size) v->distance = sqrt(sight.square);
+        if (sight.square > 2.25 * v->size * v->size) continue;
+        if (first == GXP_NONE) first = i;
+        last = i;
+    }
+    if (first == GXP_NONE || result != GX_OK) return result;
+    while (first > 0 && front->data[first].soft) first--;
+    while (last + 1 < front->count && (front->data[last].soft || first == last)) last++;
+    if (first == last) first--;
+    front->count = last - first + 1;
+    memmove(front->data, front->data + first, front->count * sizeof *front->data);
+    front->data[front->count - 1].gap = 1;
+    return GX_OK;
+}
+
+/* Keeps of the path what is near to the front. */
+static void gxp_trim_path(gx_blade *blade) {
+    uint32_t i, n = 0;
+    for (i = 0; i < blade->path.count; i++) {
+        const double *x = blade->path.data + 3 * (size_t)i;
+        gxp_relation r;
+        double nearest[3];
+        gxp_near_front(&blade->front, x, &r, nearest);
+        if (r.distance > blade->front.data[r.segment].size + blade->min_advance) continue;
+        memmove(blade->path.data + 3 * (size_t)n++, x, 3 * sizeof *x);
+    }
+    blade->path.count = n;
+}
+
+/* One of several heirs of a front keeps its own part of it. */
+static gx_result gxp_take_part(gx_blade *blade, uint32_t layer) {
+    uint32_t k, shared = 0;
+    gx_result result;
+    for (k = 0; k < blade->owners.count; k++) shared |= blade->heirs.data[blade->owners.data[k]] > 1;
+    if (!shared) return GX_OK;
+    result = gxp_trim_front(blade, layer, &blade->front);
+    if (result == GX_OK) result = gxp_trim_front(blade, layer, &blade->latest);
+    gxp_trim_path(blade);
+    return result;
+}
+
+/* Makes a new layer's front ready for a step: that of the layers that flow into it, and where none is, the edge of the
+   last move. blade.samples: how the layer sees the edge of the step. *begun: there is no such layer. */
+static gx_result gxp_begin_layer(gx_blade *blade, uint32_t layer, const double *before, const double *edge,
+                                 uint32_t count, gx_blade_report *report, int *begun) {
+    gx_result result = gxp_find_owners(blade, layer);
+    int uncovered = 0, many = blade->owners.count > 1;
+    blade->cut.count = blade->front.count = blade->latest.count = blade->path.count = 0;
+    *begun = result == GX_OK && blade->owners.count == 0;
+    if (result == GX_OK) result = gxp_see_edge(blade, layer, edge, count);
+    if (result == GX_OK) result = gxp_list_owners(blade, layer, edge, count, 0, report);
+    if (result == GX_OK && !*begun) uncovered = gxp_is_uncovered(blade);
+    if (result == GX_OK && !(*begun || uncovered || many)) return gxp_take_part(blade, layer);
+    if (result == GX_OK && !*begun) result = gxp_list_owners(blade, layer, edge, count, 1, report);
+    if (result == GX_OK && (*begun || gxp_is_uncovered(blade)))
+        result = gxp_list_before(blade, layer, before, edge, count);
+    if (result == GX_OK) result = gxp_unite_owners(blade, layer);
+    if (result == GX_OK && blade->front.count < 2)
+        result = gxp_append_front(blade->body, &blade->front, blade->owned.data, blade->owned_starts.data[1]);
+    return result == GX_OK ? gxp_take_part(blade, layer) : result;
 }
 
 /* Writes the layer at work to the state that the move makes. */
@@ -10578,6 +11079,10 @@ static gx_result gxp_keep_layer(gx_blade *blade) {
     layer.latest_count = blade->latest.count;
     if (result == GX_OK)
         result = gxp_append_front(blade->body, &then->vertices, blade->latest.data, blade->latest.count);
+    layer.seen = then->vertices.count;
+    layer.seen_count = blade->samples.count;
+    if (result == GX_OK)
+        result = gxp_append_front(blade->body, &then->vertices, blade->samples.data, blade->samples.count);
     layer.path = then->points.count;
     layer.path_count = blade->path.count;
     for (i = 0; i < blade->path.count && result == GX_OK; i++)
@@ -10590,6 +11095,51 @@ static gx_result gxp_keep_layer(gx_blade *blade) {
     return result;
 }
 
+/* No layer is near: keeps the place on the edge that is nearest to the body's box, and the material next to it. */
+static gx_result gxp_keep_far_place(gx_blade *blade, const double *edge, uint32_t count) {
+    static const double origin[3] = {0, 0, 0};
+    gx_body *body = blade->body;
+    const gxp_bounds *box = &body->tree.boxes[0];
+    const uint32_t parts = count < 32 ? 32 / (count - 1) : 1;
+    double least = HUGE_VAL, corners[4][3];
+    gxp_front_vertex v;
+    gxp_near near;
+    uint32_t i;
+    gx_result result;
+    memset(&v, 0, sizeof v);
+    for (i = 0; i <= parts * (count - 1); i++) {
+        double x[3], square;
+        gxp_edge_position(edge, count, (double)i / parts, x);
+        square = gxp_square_to_box(x, box->low, box->high);
+        if (square >= least) continue;
+        least = square;
+        v.along = (double)i / parts;
+        memcpy(v.position, x, sizeof x);
+    }
+    if (!(least < 64 * blade->largest * blade->largest)) return GX_OK;
+    result = gxp_find_nearest(body, v.position, NULL, NULL, &near);
+    if (result != GX_OK || near.slot == GXP_NONE) return result;
+    v.element = body->cells.data[near.slot].element;
+    v.size = blade->largest;
+    v.distance = sqrt(near.square);
+    gxp_cell_corners(body, &body->cells.data[near.slot], 1, origin, corners);
+    gxp_weigh(corners, near.weights, v.foot_at);
+    gxp_cell_corners(body, &body->cells.data[near.slot], 0, origin, corners);
+    gxp_weigh(corners, near.weights, v.foot);
+    memcpy(v.rest, v.foot, sizeof v.rest);
+    memcpy(v.extended, v.foot, sizeof v.extended);
+    blade->front.count = blade->latest.count = blade->path.count = blade->sheet.count = blade->samples.count = 0;
+    result = gxp_push_vertex(body, &blade->samples, &v);
+    return result == GX_OK ? gxp_keep_layer(blade) : result;
+}
+
+/* The middle of the deformed body's box. The tree is up to date. */
+static void gxp_body_middle(const gx_body *body, double middle[3]) {
+    const gxp_bounds *box = &body->tree.boxes[0];
+    int k;
+    for (k = 0; k < 3; k++) middle[k] = box->low[k] > box->high[k] ? 0 : 0.5 * (box->low[k] + box->high[k]);
+}
+
 /* Notes which cells belong to which layer, and where the edge is. */
 static gx_result gxp_keep_members(gx_blade *blade, const double *edge, uint32_t count) {
     gxp_blade_state *then = &blade->then;
@@ -10597,6 +11147,8 @@ static gx_result gxp_keep_members(gx_blade *blade, const double *edge, uint32_t 
     gx_result result = GX_OK;
     then->members.count = then->edge.count = 0;
     then->slot_count = blade->body->cells.count;
+    if (blade->near.layer_count == 0) result = gxp_keep_far_place(blade, edge, count);
+    gxp_body_middle(blade->body, then->middle);
     for (i = 0; i < blade->near.count && result == GX_OK; i++)
         result = gxp_push_key(blade->body, &then->members, blade->near.cells[i].slot, blade->near.cells[i].layer);
     if (result == GX_OK) result = gxp_sort_keys(blade->body, &then->members, 0, then->members.count);
@@ -10611,53 +11163,6 @@ static gx_result gxp_keep_members(gx_blade *blade, const double *edge, uint32_t 
 
 /* Coordinates of an edge are at most 2^GXP_EDGE_REACH: squares of distances are finite. */
 #define GXP_EDGE_REACH 110
-
-/* A strip reaches cells that are within this share of their size of it, as the body lies now: where strip and layer
-   are far from each other in space, none of it is meant for them. */
-#define GXP_STRIP_REACH 0.25
-
-/* Is the cell within reach of a strip, given by its corners in space? */
-static int gxp_is_in_reach(const gxp_close_cell *c, const double *corners, uint32_t triangles) {
-    uint32_t t;
-    for (t = 0; t < triangles; t++) {
-        const double *x = corners + 9 * (size_t)t;
-        if (gxp_is_near_triangle(c, x, x + 3, x + 6, GXP_STRIP_REACH * c->size)) return 1;
-    }
-    return 0;
-}
-
-/* Lists the slots of a layer that the strips of blade.cut may cut. */
-static gx_result gxp_list_scope(gx_blade *blade, uint32_t layer) {
-    const gxp_vicinity *near = &blade->near;
-    uint32_t i;
-    gx_result result = GX_OK;
-    blade->quads.count = 0;
-    for (i = 0; i < blade->cut.count && result == GX_OK; i++) {
-        double x[3];
-        result = gxp_front_position(blade, layer, 0, &blade->cut.data[i], x);
-        if (result == GX_OK) result = gxp_push_point(blade->body, &blade->quads, x);
-    }
-    for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++) {
-        const gxp_close_cell *c = &near->cells[GXP_SECOND(near->order.data[i])];
-        if (gxp_is_in_reach(c, blade->quads.data, blade->cut.count / 3))
-            result = gxp_push(blade->body, &blade->scope, c->slot);
-    }
-    return result;
-}
-
-/* Adds the strips of the layer at work to those of the move. */
-static gx_result gxp_add_surface(gx_blade *blade, uint32_t layer) {
-    gx_body *body = blade->body;
-    const uint32_t before = blade->scope.count;
-    uint32_t i;
-    gx_result result = blade->cut.count > 0 ? gxp_list_scope(blade, layer) : GX_OK;
-    if (result != GX_OK || blade->scope.count == before) return result;
-    result = gxp_push(body, &blade->surface_starts, before);
-    if (result == GX_OK) result = gxp_push(body, &blade->surface_starts, blade->corners.count);
-    for (i = 0; i < blade->cut.count && result == GX_OK; i++)
-        result = gxp_push_point(body, &blade->corners, blade->cut.data[i].rest);
-    return result;
-}
 
 /* Cuts the body by the surfaces of all layers at once. */
 static gx_result gxp_cut_surfaces(gx_blade *blade, uint32_t kind, gx_blade_report *report, gx_failure *failure) {
@@ -10701,32 +11206,26 @@ static gx_result gxp_check_start(gx_blade *blade, gx_failure *failure) {
     if (blade->starts_inside || blade->now.edge.count > 0) return GX_OK;
     for (i = 0; i < blade->front.count; i++)
         if (!(blade->front.data[i].distance > 0))
-            return gxp_fail(failure, GX_ERROR_ARGUMENT, "edge", (size_t)blade->front.data[i].along);
+            return gxp_fail(failure, GX_ERROR_ARGUMENT, "edge", (size_t)ceil(blade->front.data[i].along));
     return GX_OK;
 }
 
 /* Advances the fronts of all layers to the edge, and lists the strips. */
-static gx_result gxp_advance_layers(gx_blade *blade, const double *edge, uint32_t count, int finish,
-                                    gx_blade_report *report, gx_failure *failure) {
-    const double *before = blade->now.edge.count > 0 ? blade->now.edge.data : edge;
+static gx_result gxp_advance_layers(gx_blade *blade, const double *before, const double *edge, uint32_t count,
+                                    int finish, gx_blade_report *report, gx_failure *failure) {
     uint32_t layer;
     gx_result result = GX_OK;
-    blade->surface_starts.count = blade->corners.count = blade->scope.count = 0;
     blade->then.layers.count = blade->then.vertices.count = blade->then.points.count = 0;
+    result = gxp_count_heirs(blade);
     for (layer = 0; layer < blade->near.layer_count && result == GX_OK; layer++) {
         int begun;
-        result = gxp_begin_layer(blade, layer, &begun);
-        if (result == GX_OK && begun) {
-            result = gxp_see_edge(blade, layer, before, count);
-            if (result == GX_OK) result = gxp_copy_front(blade->body, &blade->front, &blade->samples);
-            if (result == GX_OK && gxp_check_start(blade, failure) != GX_OK) return GX_ERROR_ARGUMENT;
-        }
-        if (result == GX_OK) result = gxp_see_edge(blade, layer, edge, count);
+        result = gxp_begin_layer(blade, layer, before, edge, count, report, &begun);
+        if (result == GX_OK && begun && gxp_check_start(blade, failure) != GX_OK) return GX_ERROR_ARGUMENT;
         if (result == GX_OK) result = gxp_follow_edge(blade, finish, report);
-        if (result == GX_OK) result = gxp_add_surface(blade, layer);
+        if (result == GX_OK) result = gxp_add_surface(blade, layer, GXP_NONE);
         if (result == GX_OK) result = gxp_keep_layer(blade);
     }
-    report->layer_count = blade->near.layer_count;
+    if (blade->near.layer_count > report->layer_count) report->layer_count = blade->near.layer_count;
     return gxp_end(failure, result);
 }
 
@@ -10764,23 +11263,250 @@ static void gxp_clear_report(gx_blade_report *report) {
     report->cut.min_link_ratio = 1;
 }
 
+static int gxp_compare_places(const void *a, const void *b) {
+    const gxp_front_vertex *v = (const gxp_front_vertex *)a, *w = (const gxp_front_vertex *)b;
+    const double by[2][2] = {{v->along, w->along}, {v->distance, w->distance}};
+    int i;
+    for (i = 0; i < 2; i++)
+        if (by[i][0] < by[i][1] || by[i][0] > by[i][1]) return by[i][0] < by[i][1] ? -1 : 1;
+    return (v->element > w->element) - (v->element < w->element);
+}
+
+/* How near to a layer the edge was at the last move, m */
+static double gxp_least_distance(const gxp_blade_state *now) {
+    double least = HUGE_VAL;
+    uint32_t j, i;
+    for (j = 0; j < now->layers.count; j++)
+        for (i = 0; i < now->layers.data[j].seen_count; i++)
+            least = fmin(least, now->vertices.data[now->layers.data[j].seen + i].distance);
+    return least;
+}
+
+/* Drops places that have moved as others next to them, but for points of the edge. */
+static void gxp_thin_places(gx_blade *blade) {
+    gxp_front_list *places = &blade->places;
+    uint32_t i, n = 0;
+    for (i = 0; i < places->count; i++) {
+        const gxp_front_vertex *v = &places->data[i];
+        if (n > 0 && i + 1 < places->count && floor(v->along) < v->along &&
+            gxp_square_distance(v->rest, places->data[n - 1].rest) <= blade->tolerance * blade->tolerance)
+            continue;
+        places->data[n++] = *v;
+    }
+    places->count = n;
+}
+
+/* Lists the places of the edge of the last move at which layers saw it, and its points. A place has moved with the
+   material since: rest is by how much, distance from how far away that is known. */
+static gx_result gxp_list_places(gx_blade *blade) {
+    const gxp_blade_state *now = &blade->now;
+    const double least = gxp_least_distance(now);
+    uint32_t j, i, n = 0;
+    int k;
+    gx_result result = GX_OK;
+    gxp_front_vertex v;
+    blade->places.count = 0;
+    memset(&v, 0, sizeof v);
+    for (i = 0; i < now->edge.count && result == GX_OK; i++) {
+        v.along = i;
+        v.distance = HUGE_VAL;
+        result = gxp_push_vertex(blade->body, &blade->places, &v);
+    }
+    for (j = 0; j < now->layers.count && result == GX_OK; j++)
+        for (i = 0; i < now->layers.data[j].seen_count && result == GX_OK; i++) {
+            double x[3];
+            v = now->vertices.data[now->layers.data[j].seen + i];
+            if (v.distance > fmax(least, 0.25 * v.size)) continue;
+            memcpy(x, v.foot_at, sizeof x);
+            result = gxp_place_by(blade, j, 1, &v, v.foot, x);
+            for (k = 0; k < 3; k++) v.rest[k] = x[k] - v.foot_at[k];
+            if (gxp_dot(v.rest, v.rest) <= 1e-24 * v.size * v.size) v.rest[0] = v.rest[1] = v.rest[2] = 0;
+            if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->places, &v);
+        }
+    if (result != GX_OK) return result;
+    qsort(blade->places.data, blade->places.count, sizeof *blade->places.data, gxp_compare_places);
+    for (i = 1; i < blade->places.count; i++) { /* of several at one place, that of the nearest layer */
+        const gxp_front_vertex *last = &blade->places.data[n];
+        if (blade->places.data[i].along > last->along) blade->places.data[++n] = blade->places.data[i];
+    }
+    blade->places.count = n + 1;
+    return GX_OK;
+}
+
+/* Points of the edge at which no layer saw it have moved as the places next to them; if no layer did, as the body's
+   box. */
+static void gxp_carry_far_points(gx_blade *blade) {
+    gxp_front_list *places = &blade->places;
+    uint32_t i, near = GXP_NONE;
+    double way[3];
+    int k;
+    for (i = 0; i < places->count && near == GXP_NONE; i++)
+        if (places->data[i].distance < HUGE_VAL) near = i;
+    gxp_body_middle(blade->body, way);
+    for (k = 0; k < 3; k++) way[k] = near == GXP_NONE ? way[k] - blade->now.middle[k] : places->data[near].rest[k];
+    for (i = 0; i < places->count; i++)
+        if (places->data[i].distance < HUGE_VAL)
+            memcpy(way, places->data[i].rest, sizeof way);
+        else
+            memcpy(places->data[i].rest, way, sizeof way);
+}
+
+/* Lists the way of the edge: where the material has carried it to, and where it goes. */
+static gx_result gxp_carry_edge(gx_blade *blade, const double *edge, uint32_t count) {
+    const double *old = blade->now.edge.data;
+    uint32_t i;
+    int k;
+    gx_result result = gxp_refit_tree(blade->body);
+    if (result == GX_OK) result = gxp_list_places(blade);
+    blade->carried.count = blade->goal.count = 0;
+    if (result == GX_OK) gxp_carry_far_points(blade);
+    if (result == GX_OK) gxp_thin_places(blade);
+    for (i = 0; i < blade->places.count && result == GX_OK; i++) {
+        const gxp_front_vertex *v = &blade->places.data[i];
+        double x[3];
+        gxp_edge_position(old, count, v->along, x);
+        for (k = 0; k < 3; k++) x[k] += v->rest[k];
+        result = gxp_push_point(blade->body, &blade->carried, x);
+        gxp_edge_position(edge, count, v->along, x);
+        if (result == GX_OK) result = gxp_push_point(blade->body, &blade->goal, x);
+    }
+    return result;
+}
+
+/* How far the edge goes where the body is, squared: the body's box, where no layer has seen it yet */
+static gx_result gxp_measure_far(gx_blade *blade, const double *edge, uint32_t count, double *most) {
+    const double *before = blade->now.edge.data;
+    gxp_bounds box;
+    double along;
+    uint32_t i, q;
+    int n, k;
+    gx_result result = gxp_refit_tree(blade->body);
+    if (result != GX_OK) return result;
+    box = blade->body->tree.boxes[0];
+    blade->quads.count = 0;
+    for (i = 0; i + 1 < count && result == GX_OK; i++)
+        result = gxp_sweep_segment(blade, before + 3 * (size_t)i, edge + 3 * (size_t)i);
+    for (q = 0; q < blade->quads.count && result == GX_OK; q += 4) {
+        const double *x = blade->quads.data + 3 * (size_t)q;
+        int beyond = 0;
+        for (k = 0; k < 3; k++) {
+            beyond |= fmin(fmin(x[k], x[3 + k]), fmin(x[6 + k], x[9 + k])) > box.high[k] + blade->largest;
+            beyond |= fmax(fmax(x[k], x[3 + k]), fmax(x[6 + k], x[9 + k])) < box.low[k] - blade->largest;
+        }
+        for (n = 0; n < 4 && !beyond; n++)
+            *most = fmax(*most, gxp_onto_edge(n < 2 ? edge : before, count, x + 3 * n, &along));
+    }
+    return result;
+}
+
+/* In how many steps the edge goes to its new place: by at most an element each in space, or relative to the material if
+   that is less. */
+static gx_result gxp_count_steps(gx_blade *blade, const double *edge, uint32_t edge_count, uint32_t *steps) {
+    const uint32_t count = blade->goal.count;
+    double most = 0, relative = 0, along;
+    uint32_t i, known = 0;
+    const gx_result result = gxp_measure_far(blade, edge, edge_count, &most);
+    for (i = 0; i < count; i++) known += blade->places.data[i].distance < HUGE_VAL;
+    for (i = 0; i < count; i++)
+        if (known == 0 || blade->places.data[i].distance < HUGE_VAL)
+            relative =
+                fmax(relative, gxp_onto_edge(blade->goal.data, count, blade->carried.data + 3 * (size_t)i, &along));
+    *steps = 1 + (uint32_t)fmin(999, sqrt(fmin(most, relative)) / blade->step);
+    return result;
+}
+
+/* The way of the edge is straight in space. */
+static gx_result gxp_go_straight(gx_blade *blade, const double *before, const double *edge, uint32_t count) {
+    uint32_t i;
+    gx_result result = GX_OK;
+    blade->carried.count = blade->goal.count = 0;
+    for (i = 0; i < count && result == GX_OK; i++) {
+        result = gxp_push_point(blade->body, &blade->carried, before + 3 * (size_t)i);
+        if (result == GX_OK) result = gxp_push_point(blade->body, &blade->goal, edge + 3 * (size_t)i);
+    }
+    return result;
+}
+
+/* Finds the way of the edge, and in how many steps it goes. */
+static gx_result gxp_plan_way(gx_blade *blade, const double *edge, uint32_t count, uint32_t *steps) {
+    gx_result result;
+    *steps = 1;
+    if (blade->now.edge.count == 0) return gxp_go_straight(blade, edge, edge, count);
+    result = gxp_carry_edge(blade, edge, count);
+    if (result == GX_OK) result = gxp_count_steps(blade, edge, count, steps);
+    if (result != GX_OK || *steps > 1) return result;
+    return gxp_go_straight(blade, blade->now.edge.data, edge, count);
+}
+
+/* A place of the edge's way: share of it */
+static gx_result gxp_go_part(gx_blade *blade, double share, gxp_points *to) {
+    const double *a = blade->carried.data, *b = blade->goal.data;
+    uint32_t i;
+    gx_result result = GX_OK;
+    to->count = 0;
+    for (i = 0; i < blade->goal.count && result == GX_OK; i++, a += 3, b += 3) {
+        const double x[3] = {a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2])};
+        result = gxp_push_point(blade->body, to, share < 1 ? x : b);
+    }
+    return result;
+}
+
+/* A step of a move, from blade.from to blade.to: lists what is to be cut; blade.then is what comes of it. finish: all
+   that waits is to be cut. */
+static gx_result gxp_step_blade(gx_blade *blade, const gxp_words *scope, int finish, gx_blade_report *report,
+                                gx_failure *failure) {
+    const double *before = blade->from.data, *edge = blade->to.data;
+    const uint32_t count = blade->to.count;
+    gx_result result = gxp_find_layers(blade, before, edge, count, scope);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    return gxp_advance_layers(blade, before, edge, count, finish, report, failure);
+}
+
+static void gxp_swap_states(gxp_blade_state *a, gxp_blade_state *b) {
+    const gxp_blade_state c = *a;
+    *a = *b;
+    *b = c;
+}
+
+static void gxp_swap_points(gxp_points *a, gxp_points *b) {
+    const gxp_points c = *a;
+    *a = *b;
+    *b = c;
+}
+
+/* The steps of a move. *begun: the state before is blade.start. */
+static gx_result gxp_step_along(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope, int finish,
+                                int *begun, gx_blade_report *report, gx_failure *failure) {
+    uint32_t steps = 1, step;
+    gx_result result = gxp_plan_way(blade, edge, count, &steps);
+    if (result == GX_OK) result = gxp_go_part(blade, 0, &blade->from);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    for (step = 1;; step++) {
+        result = gxp_end(failure, gxp_go_part(blade, step < steps ? (double)step / steps : 1, &blade->to));
+        if (result == GX_OK) result = gxp_step_blade(blade, scope, finish && step == steps, report, failure);
+        if (result == GX_OK) result = gxp_end(failure, gxp_keep_members(blade, edge, count));
+        if (result != GX_OK || step == steps) return result;
+        if (step == 1) gxp_swap_states(&blade->start, &blade->now);
+        *begun = 1;
+        gxp_swap_states(&blade->now, &blade->then);
+        gxp_swap_points(&blade->from, &blade->to);
+    }
+}
+
 /* A move to the edge; finish: cuts all that waits. */
 static gx_result gxp_move_blade(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope, int finish,
                                 gx_blade_report *report, gx_failure *failure) {
-    const gxp_blade_state now = blade->now;
+    int begun = 0;
     gx_result result;
     gxp_clear_report(report);
-    result = gxp_find_layers(blade, edge, count, scope);
-    if (gxp_end(failure, result) != GX_OK) return result;
-    result = gxp_advance_layers(blade, edge, count, finish, report, failure);
-    if (result != GX_OK) return result;
-    result = gxp_keep_members(blade, edge, count);
-    if (gxp_end(failure, result) != GX_OK) return result;
-    result = gxp_cut_surfaces(blade, GX_SURFACE_SHEET, report, failure);
-    if (result != GX_OK) return result;
-    blade->now = blade->then;
-    blade->then = now;
-    return GX_OK;
+    blade->surface_starts.count = blade->corners.count = blade->scope.count = 0;
+    result = gxp_step_along(blade, edge, count, scope, finish, &begun, report, failure);
+    if (result == GX_OK) result = gxp_cut_surfaces(blade, GX_SURFACE_SHEET, report, failure);
+    if (result == GX_OK)
+        gxp_swap_states(&blade->now, &blade->then);
+    else if (begun)
+        gxp_swap_states(&blade->now, &blade->start);
+    return result;
 }
 
 GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t point_count,
@@ -10856,6 +11582,7 @@ GXFEM_API gx_result gx_blade_create(gx_body *body, const gx_blade_desc *desc, gx
     b->body = body;
     b->tolerance = desc->tolerance > 0 ? desc->tolerance : 0.01 * size;
     b->min_advance = desc->min_advance > 0 ? desc->min_advance : 0.5 * size;
+    b->step = size;
     b->max_samples = desc->max_samples > 0 ? desc->max_samples : 1000;
     b->starts_inside = desc->starts_inside != 0;
     for (place = &body->blades; *place != NULL;) place = &(*place)->next;
@@ -10890,7 +11617,14 @@ static void gxp_release_blade(gx_blade *b) {
     const gx_allocator *a = &body->config.allocator;
     gxp_release_state(body, &b->now);
     gxp_release_state(body, &b->then);
+    gxp_release_state(body, &b->start);
+    gxp_release_front(body, &b->places);
+    gxp_release_points(body, &b->carried);
+    gxp_release_points(body, &b->goal);
+    gxp_release_points(body, &b->from);
+    gxp_release_points(body, &b->to);
     gxp_release(a, b->near.cells, b->near.capacity * sizeof *b->near.cells);
+    gxp_release(a, b->near.lambdas, 12 * b->near.lambda_capacity * sizeof *b->near.lambdas);
     gxp_release_words(body, &b->near.of_slot);
     gxp_release_words(body, &b->near.of_copy);
     gxp_release_words(body, &b->near.parents);
@@ -10898,16 +11632,20 @@ static void gxp_release_blade(gx_blade *b) {
     gxp_release_words(body, &b->near.layer_start);
     gxp_release_front(body, &b->front);
     gxp_release_front(body, &b->latest);
+    gxp_release_front(body, &b->seen);
     gxp_release_front(body, &b->samples);
     gxp_release_front(body, &b->advanced);
     gxp_release_front(body, &b->strip);
     gxp_release_front(body, &b->cut);
+    gxp_release_front(body, &b->owned);
+    gxp_release_words(body, &b->owned_starts);
     gxp_release(a, b->relations, b->relation_capacity * sizeof *b->relations);
     gxp_release_points(body, &b->path);
     gxp_release_points(body, &b->sheet);
     gxp_release_points(body, &b->quads);
     gxp_release_points(body, &b->corners);
     gxp_release_words(body, &b->owners);
+    gxp_release_words(body, &b->heirs);
     gxp_release_words(body, &b->divided);
     gxp_release(a, b->halved.data, b->halved.capacity * sizeof *b->halved.data);
     gxp_release_words(body, &b->in_scope);
@@ -12137,6 +12875,7 @@ static void gxp_pass_blade_head(gxb_stream *s, gx_blade *blade, uint32_t n[GXP_B
     gxp_pass_word(s, &blade->max_samples);
     gxp_pass_word(s, &inside);
     gxp_pass_word(s, &blade->now.slot_count);
+    gxb_stream_pass(s, blade->now.middle, 3, sizeof(double));
     gxb_stream_pass(s, n, GXP_BLADE_LISTS, sizeof *n);
     blade->starts_inside = inside != 0;
 }
@@ -12145,14 +12884,22 @@ static void gxp_pass_blade(gxb_stream *s, gxp_blade_state *b) {
     uint32_t i;
     for (i = 0; i < b->vertices.count; i++) {
         gxp_front_vertex *v = &b->vertices.data[i];
+        uint32_t flags;
         gxb_stream_pass(s, v->rest, 3, sizeof *v->rest);
         gxb_stream_pass(s, v->extended, 3, sizeof *v->extended);
         gxb_stream_pass(s, v->position, 3, sizeof *v->position);
+        gxb_stream_pass(s, v->foot, 3, sizeof *v->foot);
+        gxb_stream_pass(s, v->foot_at, 3, sizeof *v->foot_at);
         gxb_stream_pass(s, v->ahead, 3, sizeof *v->ahead);
         gxb_stream_pass(s, &v->distance, 1, sizeof v->distance);
         gxb_stream_pass(s, &v->size, 1, sizeof v->size);
         gxb_stream_pass(s, &v->along, 1, sizeof v->along);
         gxp_pass_word(s, &v->element);
+        flags = (uint32_t)v->soft | (uint32_t)v->gap << 1 | (uint32_t)v->walled << 2;
+        gxp_pass_word(s, &flags);
+        v->soft = flags & 1;
+        v->gap = flags >> 1 & 1;
+        v->walled = flags >> 2 & 1;
         v->unused = 0;
     }
     gxb_stream_pass(s, b->points.data, 3 * (size_t)b->points.count, sizeof(double));
@@ -12186,11 +12933,12 @@ static int gxp_are_finite(const double *x, size_t count) {
     return 1;
 }
 
-static void gxp_check_vertex(gxb_stream *s, const gx_body *body, const gxp_blade_state *b, const gxp_front_vertex *v) {
-    gxp_require_true(s, v->element < body->mesh.element_count && v->along >= 0 && v->along <= b->edge.count &&
+static void gxp_check_vertex(gxb_stream *s, const gx_body *body, const gxp_front_vertex *v) {
+    gxp_require_true(s, v->element < body->mesh.element_count && v->along >= 0 && v->along <= UINT32_MAX &&
                             v->distance >= 0 && v->size >= 0);
     gxp_require_true(s, gxp_are_finite(v->rest, 3) && gxp_are_finite(v->extended, 3) &&
-                            gxp_are_finite(v->position, 3) && gxp_are_finite(v->ahead, 3) && gxp_is_finite(v->size));
+                            gxp_are_finite(v->position, 3) && gxp_are_finite(v->foot, 3) &&
+                            gxp_are_finite(v->foot_at, 3) && gxp_are_finite(v->ahead, 3) && gxp_is_finite(v->size));
 }
 
 static int gxp_is_range(uint32_t first, uint32_t count, uint32_t all) { return first <= all && count <= all - first; }
@@ -12201,14 +12949,15 @@ static void gxp_check_strokes(gxb_stream *s, const gx_body *body, const gx_blade
     uint32_t i;
     gxp_require_true(s, gxp_is_finite(blade->tolerance) && blade->tolerance > 0 && gxp_is_finite(blade->min_advance) &&
                             blade->min_advance > 0 && b->slot_count <= body->cells.count && b->edge.count != 1);
-    for (i = 0; i < b->vertices.count; i++) gxp_check_vertex(s, body, b, &b->vertices.data[i]);
+    for (i = 0; i < b->vertices.count; i++) gxp_check_vertex(s, body, &b->vertices.data[i]);
     gxp_require_true(s, gxp_are_finite(b->points.data, 3 * (size_t)b->points.count) &&
                             gxp_are_finite(b->edge.data, 3 * (size_t)b->edge.count));
     for (i = 0; i < b->layers.count; i++) {
         const gxp_layer *l = &b->layers.data[i];
-        gxp_require_true(s, l->front_count >= 2 && l->latest_count != 1 &&
+        gxp_require_true(s, l->front_count != 1 && l->latest_count != 1 &&
                                 gxp_is_range(l->front, l->front_count, b->vertices.count) &&
                                 gxp_is_range(l->latest, l->latest_count, b->vertices.count) &&
+                                gxp_is_range(l->seen, l->seen_count, b->vertices.count) &&
                                 gxp_is_range(l->path, l->path_count, b->points.count) &&
                                 gxp_is_range(l->sheet, l->sheet_count, b->points.count));
     }
@@ -12288,6 +13037,7 @@ static gx_result gxp_prepare_blades(gx_body *body, const gx_body *from, uint32_t
             memcpy(b->then.members.data, f->members.data, f->members.count * sizeof *f->members.data);
         if (f->edge.count > 0) memcpy(b->then.edge.data, f->edge.data, 3 * f->edge.count * sizeof(double));
         b->then.slot_count = f->slot_count;
+        memcpy(b->then.middle, f->middle, sizeof f->middle);
         b = b->next;
     }
     return result;
@@ -12575,9 +13325,11 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_BESIDE_WALL
 #undef GXP_ACROSS_WALL
 #undef GXP_FLAT_MAP
-#undef GXP_BESIDE
+#undef GXP_CAP
+#undef GXP_AIR
 #undef GXP_LEAST_ADVANCE
 #undef GXP_CUT_WIDTH
+#undef GXP_CROSSING
 #undef GXP_SHEET_TRIANGLES
 #undef GXP_STRIP_REACH
 #undef GXP_EDGE_REACH
