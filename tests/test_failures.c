@@ -750,6 +750,8 @@ START_TEST(tools) {
     {
         const uint64_t state = gx_body_state_hash(body);
         ck_assert_int_eq(gx_body_carve(body, &tool, &report, &failure), GX_ERROR_NOT_CLOSED);
+        ck_assert_str_eq(failure.field, "tool.triangles");
+        ck_assert_uint_eq(failure.surface, SIZE_MAX);
         ck_assert(gx_body_state_hash(body) == state);
         failure.field = unset;
     }
