@@ -1216,6 +1216,7 @@ typedef struct gxp_scratch {
     uint32_t scope_stamp; /* of the cells that a surface of the cut may touch */
     /* a cut, from step to step */
     gxp_words removed;    /* leaves that solids remove */
+    gxp_keys removed_of;  /* element, leaf of it that solids remove */
     gxp_words pinches;    /* nodes at which walls may break joints */
     gxp_words touched;    /* cells beside new walls and removed leaves, ascending */
     gxp_words new_cells;  /* into which these fell apart: their copies and integrals are to be found */
@@ -1446,7 +1447,7 @@ static const gxp_column gxp_lists[] = {
     GXP_LIST(tree.boxes, tree.box_capacity, sizeof(gxp_bounds)), GXP_WORDS(tree.marks),
     GXP_WORDS(tree.node_first), GXP_WORDS(tree.node_clusters), GXP_WORDS(tree.found), GXP_WORDS(tree.near),
     GXP_KEYS(tree.order), GXP_WORDS(tree.met),
-    GXP_WORDS(scratch.removed), GXP_WORDS(scratch.pinches), GXP_WORDS(scratch.touched), GXP_WORDS(scratch.new_cells),
+    GXP_WORDS(scratch.removed), GXP_KEYS(scratch.removed_of), GXP_WORDS(scratch.pinches), GXP_WORDS(scratch.touched), GXP_WORDS(scratch.new_cells),
     GXP_KEYS(scratch.links), GXP_WORDS(scratch.link_first), GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
     GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements),
     GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_cells),
@@ -3273,13 +3274,29 @@ static gx_result gxp_visit_winding(gx_body *body, uint32_t leaf, int32_t winding
     return gxp_push(body, &body->scratch.flooded, leaf);
 }
 
-/* Passes the winding number on to the neighbours of a leaf: to all of a leaf inside the solid, across the solid's
-   surface only from a leaf outside. */
+/* Passes the winding number 0 on from an element that no triangle has touched to its neighbours of that kind. */
+static gx_result gxp_spread_untouched(gx_body *body, uint32_t element, int scoped) {
+    uint32_t k;
+    gx_result result = GX_OK;
+    for (k = 0; k < 4 && result == GX_OK; k++) {
+        const uint32_t other = gxp_neighbour(body, element, k); /* the first leaf of that element too */
+        if (other != GXB_NONE && gxb_complex_leaf(body->complex, other)->facet_count == 0 &&
+            gxp_has_winding(body, other, scoped))
+            result = gxp_visit_winding(body, other, 0);
+    }
+    return result;
+}
+
+/* Passes the winding number on to the neighbours of a leaf: to all of a leaf inside the solid, from a leaf outside only
+   across the solid's surface and, where the seeds are many cells, to those that need no more facets for that. */
 static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_t leaf, int scoped) {
     gxb_complex *cx = body->complex;
     const int32_t winding = body->leaves.mark[leaf].winding;
+    const int many = s->given->scope_slots != NULL;
     uint32_t first, count = 0, i;
     gx_result result = GX_OK;
+    if (many && winding == 0 && gxb_complex_leaf(cx, leaf)->facet_count == 0)
+        return gxp_spread_untouched(body, leaf, scoped);
     if (winding != 0) result = gxb_complex_open_element(cx, gxb_complex_leaf(cx, leaf)->element);
     if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
@@ -3287,7 +3304,8 @@ static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_
         const int front = f->leaf[0] == leaf;
         int labelled;
         const int32_t step = gxp_winding_step(body, s, gxp_item(cx, first + i), &labelled);
-        if ((winding != 0 || labelled) && gxp_has_winding(body, f->leaf[front], scoped))
+        if ((winding != 0 || labelled || (many && f->face == GXB_NONE)) &&
+            gxp_has_winding(body, f->leaf[front], scoped))
             result = gxp_visit_winding(body, f->leaf[front], winding + (front ? step : -step));
     }
     return result;
@@ -4109,9 +4127,10 @@ static gx_result gxp_add_boundary_facet(gx_body *body, uint32_t element, uint32_
     return result;
 }
 
-/* Adds the facets of a leaf inside the element. Facets with the same cell on both sides cancel and are left out, unless
-   all is set. Facets in faces of the element are only listed, in facets. */
-static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, int all) {
+/* Adds the facets of a leaf inside the element. Those that cancel are left out: they have the same cell on both sides
+   or, where stamp is not 0, two leaves that are marked with it. Facets in faces of the element are only listed, in
+   facets. */
+static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, uint32_t stamp) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i;
     gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
@@ -4122,7 +4141,9 @@ static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, int all) {
         const uint32_t other = f->leaf[inward];
         if (f->face != GXB_NONE)
             result = gxp_push(body, &body->scratch.boundary.facets, facet << 1 | (uint32_t)inward);
-        else if (all || !gxp_is_kept(body, other) || body->leaves.data[other].cell != body->leaves.data[leaf].cell)
+        else if (stamp != 0
+                     ? body->leaves.mark[other].stamp != stamp
+                     : !gxp_is_kept(body, other) || body->leaves.data[other].cell != body->leaves.data[leaf].cell)
             result = gxp_add_boundary_facet(body, gxb_complex_leaf(cx, leaf)->element, facet, inward);
     }
     return result;
@@ -4378,17 +4399,28 @@ static gx_result gxp_integrate_element(gx_body *body, uint32_t element) {
     return result != GX_OK || done ? result : gxp_integrate_cell(body, rest, volume);
 }
 
-/* The volume that the cut removed, leaf by leaf, so that a thin slab keeps its digits. */
-static gx_result gxp_integrate_removed(gxp_cut *cut, const gxp_words *removed) {
+/* The volume that the cut removed, element by element, so that a thin slab keeps its digits */
+static gx_result gxp_integrate_removed(gxp_cut *cut) {
     gx_body *body = cut->body;
-    gx_result result = GX_OK;
+    gxp_scratch *scratch = &body->scratch;
+    gxp_keys *removed = &scratch->removed_of;
     uint32_t i;
-    for (i = 0; i < removed->count && result == GX_OK; i++) {
-        const uint32_t leaf = removed->data[i], element = gxb_complex_leaf(body->complex, leaf)->element;
+    gx_result result = GX_OK;
+    removed->count = 0;
+    if (scratch->removed.count > 0) scratch->stamp++;
+    for (i = 0; i < scratch->removed.count && result == GX_OK; i++) {
+        const uint32_t leaf = scratch->removed.data[i];
+        body->leaves.mark[leaf].stamp = scratch->stamp;
+        result = gxp_push_key(body, removed, gxb_complex_leaf(body->complex, leaf)->element, leaf);
+    }
+    if (result == GX_OK) result = gxp_sort_keys(body, removed, 0, removed->count);
+    for (i = 0; i < removed->count && result == GX_OK;) {
+        const uint32_t element = GXP_FIRST(removed->data[i]);
         gxi_moments2 m;
         unsigned k;
         gxp_clear_boundary(body, 1);
-        result = gxp_add_boundary_leaf(body, leaf, 1);
+        for (; i < removed->count && GXP_FIRST(removed->data[i]) == element && result == GX_OK; i++)
+            result = gxp_add_boundary_leaf(body, GXP_SECOND(removed->data[i]), scratch->stamp);
         if (result == GX_OK) result = gxp_boundary_moments(body, element, &k, &m);
         if (result == GX_OK) cut->report.removed_volume += 6 * m.volume * gxp_element_volume(body, element);
     }
@@ -4535,7 +4567,7 @@ static gx_result gxp_integrate(gxp_cut *cut) {
     const int weighed = cut->desc->sever_below > 0;
     double bound = 1;
     uint32_t i, before = GXP_NONE;
-    gx_result result = gxp_integrate_removed(cut, &scratch->removed);
+    gx_result result = gxp_integrate_removed(cut);
     scratch->narrow.count = 0;
     scratch->stamp++;
     for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++) {
