@@ -631,18 +631,20 @@ GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index);
    of an element at most. edge: point_count x 3, in space, m; as many points at each move until the blade is lifted, 2
    or more. scope: fragments that alone are cut, below gx_view.fragment_count; count 0: all. On an error body and blade
    are as they were. Errors: ARGUMENT (also: the first edge is inside the material and starts_inside is 0, index:
-   point), INDEX, NOT_FINITE, RANGE, LIMIT, MEMORY. */
+   point), INDEX, NOT_FINITE and RANGE (edge, or "displacement", index: copy), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t point_count,
                                   const uint32_t *scope_fragments, size_t scope_fragment_count,
                                   gx_blade_report *report /* or NULL */, gx_failure *failure /* or NULL */);
-/* Cuts what waits, and forgets fronts and edge: the next move begins anew. Errors: ARGUMENT, LIMIT, MEMORY. */
+/* Cuts what waits, and forgets fronts and edge: the next move begins anew. Errors: ARGUMENT, NOT_FINITE and RANGE
+   ("displacement", index: copy), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_blade_lift(gx_blade *blade, gx_blade_report *report /* or NULL */,
                                   gx_failure *failure /* or NULL */);
 
 /* Removes the material that a closed tool in space covers now (a drill, a punch), from each piece where it meets the
    tool. tool: vertices in space, m; kind and scope_slots are not read. Its triangles are divided where elements
    are smaller.
-   Errors: as gx_body_cut; a field of the tool reads "tool.vertices". */
+   Errors: as gx_body_cut; a field of the tool reads "tool.vertices"; NOT_FINITE and RANGE also of "displacement"
+   (index: copy). */
 GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_report *report /* or NULL */,
                                   gx_failure *failure /* or NULL */);
 
@@ -766,11 +768,13 @@ typedef struct gxp_mesh {
     /* node_count: GXP_NODE_PINCHED, GXP_EDGE_PINCHED */
     uint8_t *node_pinched;
     float *texture; /* node_count x 2, or NULL */
-    uint32_t element_count, element_capacity[4];
+    uint32_t element_count, element_capacity[5];
     uint32_t *node_elements; /* element_count x 4: elements around each node */
     gxp_box *boxes;
     uint32_t *box_elements;      /* element_count, in tree order */
     uint32_t *element_materials; /* element_count */
+    double *sizes;               /* element_count: cube roots of six times the volumes, m; NULL: no blade has asked */
+    double mean_size, largest_size;
     uint32_t box_count;
     uint32_t edge_count, edge_capacity[1];
     uint8_t *edge_pinched; /* edge_count: elements around it meet in the edge only */
@@ -1048,6 +1052,10 @@ typedef struct gxp_skin {
 
 /* --- blades --- */
 
+typedef struct gxp_bounds {
+    double low[3], high[3]; /* low above high: nothing is there */
+} gxp_bounds;
+
 /* A place on a blade's edge, as one layer sees it */
 typedef struct gxp_front_vertex {
     double rest[3];     /* material point; in the air at most an element's size away from the layer */
@@ -1099,6 +1107,7 @@ typedef struct gxp_blade_state { /* what lasts from move to move */
 
 typedef struct gxp_close_cell { /* a kept cell around the edge */
     uint32_t slot, layer;
+    uint32_t quad, unused;                 /* the first quad in whose box it is */
     double corners[4][3], low[3], high[3]; /* deformed */
     double middle[3], radius;              /* of a ball around the corners */
     double stretch;                        /* volume / volume at rest of its element; negative: inverted */
@@ -1108,13 +1117,21 @@ typedef struct gxp_close_cell { /* a kept cell around the edge */
     uint8_t is_divided;                    /* its element */
     uint8_t has_facets;
 } gxp_close_cell;
+typedef struct gxp_plate { /* a triangle, ready to be asked what is near it */
+    double x[3][3];
+    double normal[3], square;    /* of the normal's length; 0: all of the triangle is near its edges */
+    double over[3][3];           /* normals of its edges in its plane, inward */
+    double along[3][3], size[3]; /* edges, the squares of their lengths */
+} gxp_plate;
 typedef struct gxp_vicinity {
     gxp_close_cell *cells;
     uint32_t count, capacity;
     uint32_t layer_count;
     gxp_words of_slot;     /* by slot: index in cells, if that has the slot */
-    gxp_words of_copy;     /* by copy: index of a cell with that copy, if it has it */
-    gxp_words parents;     /* of cells, see gxp_find */
+    gxp_words of_copy;     /* by copy: 1 + rank of the first cell with it; 0 between moves */
+    gxp_words quad_start;  /* of each quad: the first rank of its cells */
+    gxp_words ranked;      /* indices in cells by quad: layers are numbered and equals ordered by rank */
+    gxp_words parents;     /* of ranks, see gxp_find */
     gxp_keys order;        /* place along the axis, index in cells: by layer, ascending */
     gxp_words layer_start; /* layer_count + 1, into order */
     int axis;
@@ -1139,15 +1156,19 @@ struct gx_blade {
     double step;                            /* m: the edge goes by no more at once */
     uint32_t max_samples;
     int starts_inside;
+    double slack;              /* m: how far cells may be outside of the tree's boxes now */
     gxp_blade_state now, then; /* then: what a step of a move makes */
     gxp_blade_state start;     /* what was now before the move, during the later steps of one */
     /* working memory of a move */
     gxp_vicinity near;
-    gxp_points quads;   /* 4 for each part of the strip that was swept; of a layer: corners of its strips, in space */
-    gxp_words found;    /* cells around a quad */
-    gxp_words in_scope; /* by fragment: 1 if it is in the scope */
-    gxp_words scope;    /* slots of each surface in turn */
-    gxp_points corners; /* 3 for each triangle of each surface in turn */
+    gxp_points quads;  /* 4 for each part of the strip that was swept */
+    gxp_plate *plates; /* of the quads, 2 each; of a layer: of its strips */
+    gxp_bounds *boxes; /* around each quad, wider by the largest element */
+    uint32_t plate_capacity, box_capacity;
+    gxp_words found;          /* cells in a box */
+    gxp_words in_scope;       /* by fragment: 1 if it is in the scope */
+    gxp_words scope;          /* slots of each surface in turn */
+    gxp_points corners;       /* 3 for each triangle of each surface in turn */
     gxp_words surface_starts; /* of each surface: in scope, in corners */
     gxp_words triangles;      /* 0, 1, 2 ... */
     gx_surface *surfaces;
@@ -1174,10 +1195,6 @@ struct gx_blade {
 
 /* --- a cache: boxes over the deformed cells --- */
 
-typedef struct gxp_bounds {
-    double low[3], high[3]; /* low above high: nothing is there */
-} gxp_bounds;
-
 /* Boxes over the deformed cells, see >>tree */
 typedef struct gxp_tree {
     uint32_t cluster_count; /* a power of two; 0: the tree is not made */
@@ -1195,6 +1212,7 @@ typedef struct gxp_tree {
     gxp_words found; /* slots of cells at a point, ascending */
     gxp_words near;  /* places in mesh.box_elements: of elements near points that are located together */
     gxp_keys order;  /* place on a curve, point */
+    gxp_words met;   /* of each box on the way down: the boxes that it meets of those that are walked together */
 } gxp_tree;
 enum {
     GXP_BOX_MOVED = 1, /* copies that it must contain have moved */
@@ -1219,6 +1237,7 @@ typedef struct gxp_scratch {
     uint32_t scope_stamp; /* of the cells that a surface of the cut may touch */
     /* a cut, from step to step */
     gxp_words removed;    /* leaves that solids remove */
+    gxp_keys removed_of;  /* element, leaf of it that solids remove */
     gxp_words pinches;    /* nodes at which walls may break joints */
     gxp_words touched;    /* cells beside new walls and removed leaves, ascending */
     gxp_words new_cells;  /* into which these fell apart: their copies and integrals are to be found */
@@ -1313,7 +1332,8 @@ static const gxp_column gxp_element_columns[] = {
     GXP_COLUMN(mesh, node_elements,     element_capacity, 0, 4 * sizeof(uint32_t), 0),
     GXP_COLUMN(mesh, boxes,             element_capacity, 1, sizeof(gxp_box), 0),
     GXP_COLUMN(mesh, box_elements,      element_capacity, 2, sizeof(uint32_t), 0),
-    GXP_COLUMN(mesh, element_materials, element_capacity, 3, sizeof(uint32_t), 0)};
+    GXP_COLUMN(mesh, element_materials, element_capacity, 3, sizeof(uint32_t), 0),
+    GXP_COLUMN(mesh, sizes,             element_capacity, 4, sizeof(double), GXP_LATER)};
 static const gxp_column gxp_edge_columns[] = {
     GXP_COLUMN(mesh, edge_pinched, edge_capacity, 0, sizeof(uint8_t), 0)};
 static const gxp_column gxp_material_columns[] = {
@@ -1340,7 +1360,12 @@ static const gxp_column gxp_copy_columns[] = {
     GXP_COLUMN(copies, history[2],   capacity,  9, 3 * sizeof(double), GXP_LATER),
     GXP_COLUMN(copies, history[3],   capacity, 10, 3 * sizeof(double), GXP_LATER),
     GXP_COLUMN(copies, seen,         capacity, 11, 3 * sizeof(double), GXP_LATER)};
-enum { GXP_TEXTURE_COLUMN = 3, GXP_FIRST_HISTORY = 7, GXP_SEEN_COLUMN = 11 }; /* places in the lists above */
+enum { /* places in the lists above */
+    GXP_TEXTURE_COLUMN = 3,
+    GXP_SIZE_COLUMN = 4,
+    GXP_FIRST_HISTORY = 7,
+    GXP_SEEN_COLUMN = 11
+};
 static const gxp_column gxp_surface_columns[] = {
     GXP_COLUMN(cuts, surfaces, surface_capacity, 0, sizeof(gxp_surface_record), GXP_TOPOLOGY)};
 static const gxp_column gxp_map_columns[] = {
@@ -1442,8 +1467,8 @@ static const gxp_column gxp_lists[] = {
     GXP_LIST(tree.own_boxes, tree.own_box_capacity, sizeof(gxp_bounds)),
     GXP_LIST(tree.boxes, tree.box_capacity, sizeof(gxp_bounds)), GXP_WORDS(tree.marks),
     GXP_WORDS(tree.node_first), GXP_WORDS(tree.node_clusters), GXP_WORDS(tree.found), GXP_WORDS(tree.near),
-    GXP_KEYS(tree.order),
-    GXP_WORDS(scratch.removed), GXP_WORDS(scratch.pinches), GXP_WORDS(scratch.touched), GXP_WORDS(scratch.new_cells),
+    GXP_KEYS(tree.order), GXP_WORDS(tree.met),
+    GXP_WORDS(scratch.removed), GXP_KEYS(scratch.removed_of), GXP_WORDS(scratch.pinches), GXP_WORDS(scratch.touched), GXP_WORDS(scratch.new_cells),
     GXP_KEYS(scratch.links), GXP_WORDS(scratch.link_first), GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
     GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements),
     GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_cells),
@@ -3270,13 +3295,29 @@ static gx_result gxp_visit_winding(gx_body *body, uint32_t leaf, int32_t winding
     return gxp_push(body, &body->scratch.flooded, leaf);
 }
 
-/* Passes the winding number on to the neighbours of a leaf: to all of a leaf inside the solid, across the solid's
-   surface only from a leaf outside. */
+/* Passes the winding number 0 on from an element that no triangle has touched to its neighbours of that kind. */
+static gx_result gxp_spread_untouched(gx_body *body, uint32_t element, int scoped) {
+    uint32_t k;
+    gx_result result = GX_OK;
+    for (k = 0; k < 4 && result == GX_OK; k++) {
+        const uint32_t other = gxp_neighbour(body, element, k); /* the first leaf of that element too */
+        if (other != GXB_NONE && gxb_complex_leaf(body->complex, other)->facet_count == 0 &&
+            gxp_has_winding(body, other, scoped))
+            result = gxp_visit_winding(body, other, 0);
+    }
+    return result;
+}
+
+/* Passes the winding number on to the neighbours of a leaf: to all of a leaf inside the solid, from a leaf outside only
+   across the solid's surface and, where the seeds are many cells, to those that need no more facets for that. */
 static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_t leaf, int scoped) {
     gxb_complex *cx = body->complex;
     const int32_t winding = body->leaves.mark[leaf].winding;
+    const int many = s->given->scope_slots != NULL;
     uint32_t first, count = 0, i;
     gx_result result = GX_OK;
+    if (many && winding == 0 && gxb_complex_leaf(cx, leaf)->facet_count == 0)
+        return gxp_spread_untouched(body, leaf, scoped);
     if (winding != 0) result = gxb_complex_open_element(cx, gxb_complex_leaf(cx, leaf)->element);
     if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
@@ -3284,7 +3325,8 @@ static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_
         const int front = f->leaf[0] == leaf;
         int labelled;
         const int32_t step = gxp_winding_step(body, s, gxp_item(cx, first + i), &labelled);
-        if ((winding != 0 || labelled) && gxp_has_winding(body, f->leaf[front], scoped))
+        if ((winding != 0 || labelled || (many && f->face == GXB_NONE)) &&
+            gxp_has_winding(body, f->leaf[front], scoped))
             result = gxp_visit_winding(body, f->leaf[front], winding + (front ? step : -step));
     }
     return result;
@@ -4106,9 +4148,10 @@ static gx_result gxp_add_boundary_facet(gx_body *body, uint32_t element, uint32_
     return result;
 }
 
-/* Adds the facets of a leaf inside the element. Facets with the same cell on both sides cancel and are left out, unless
-   all is set. Facets in faces of the element are only listed, in facets. */
-static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, int all) {
+/* Adds the facets of a leaf inside the element. Those that cancel are left out: they have the same cell on both sides
+   or, where stamp is not 0, two leaves that are marked with it. Facets in faces of the element are only listed, in
+   facets. */
+static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, uint32_t stamp) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i;
     gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
@@ -4119,7 +4162,9 @@ static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, int all) {
         const uint32_t other = f->leaf[inward];
         if (f->face != GXB_NONE)
             result = gxp_push(body, &body->scratch.boundary.facets, facet << 1 | (uint32_t)inward);
-        else if (all || !gxp_is_kept(body, other) || body->leaves.data[other].cell != body->leaves.data[leaf].cell)
+        else if (stamp != 0
+                     ? body->leaves.mark[other].stamp != stamp
+                     : !gxp_is_kept(body, other) || body->leaves.data[other].cell != body->leaves.data[leaf].cell)
             result = gxp_add_boundary_facet(body, gxb_complex_leaf(cx, leaf)->element, facet, inward);
     }
     return result;
@@ -4375,17 +4420,28 @@ static gx_result gxp_integrate_element(gx_body *body, uint32_t element) {
     return result != GX_OK || done ? result : gxp_integrate_cell(body, rest, volume);
 }
 
-/* The volume that the cut removed, leaf by leaf, so that a thin slab keeps its digits. */
-static gx_result gxp_integrate_removed(gxp_cut *cut, const gxp_words *removed) {
+/* The volume that the cut removed, element by element, so that a thin slab keeps its digits */
+static gx_result gxp_integrate_removed(gxp_cut *cut) {
     gx_body *body = cut->body;
-    gx_result result = GX_OK;
+    gxp_scratch *scratch = &body->scratch;
+    gxp_keys *removed = &scratch->removed_of;
     uint32_t i;
-    for (i = 0; i < removed->count && result == GX_OK; i++) {
-        const uint32_t leaf = removed->data[i], element = gxb_complex_leaf(body->complex, leaf)->element;
+    gx_result result = GX_OK;
+    removed->count = 0;
+    if (scratch->removed.count > 0) scratch->stamp++;
+    for (i = 0; i < scratch->removed.count && result == GX_OK; i++) {
+        const uint32_t leaf = scratch->removed.data[i];
+        body->leaves.mark[leaf].stamp = scratch->stamp;
+        result = gxp_push_key(body, removed, gxb_complex_leaf(body->complex, leaf)->element, leaf);
+    }
+    if (result == GX_OK) result = gxp_sort_keys(body, removed, 0, removed->count);
+    for (i = 0; i < removed->count && result == GX_OK;) {
+        const uint32_t element = GXP_FIRST(removed->data[i]);
         gxi_moments2 m;
         unsigned k;
         gxp_clear_boundary(body, 1);
-        result = gxp_add_boundary_leaf(body, leaf, 1);
+        for (; i < removed->count && GXP_FIRST(removed->data[i]) == element && result == GX_OK; i++)
+            result = gxp_add_boundary_leaf(body, GXP_SECOND(removed->data[i]), scratch->stamp);
         if (result == GX_OK) result = gxp_boundary_moments(body, element, &k, &m);
         if (result == GX_OK) cut->report.removed_volume += 6 * m.volume * gxp_element_volume(body, element);
     }
@@ -4532,7 +4588,7 @@ static gx_result gxp_integrate(gxp_cut *cut) {
     const int weighed = cut->desc->sever_below > 0;
     double bound = 1;
     uint32_t i, before = GXP_NONE;
-    gx_result result = gxp_integrate_removed(cut, &scratch->removed);
+    gx_result result = gxp_integrate_removed(cut);
     scratch->narrow.count = 0;
     scratch->stamp++;
     for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++) {
@@ -8153,7 +8209,8 @@ GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3],
  * between these. One pass over the copies finds those that have moved since the last refit. A cluster's box is the hull
  * of the copies of its nodes; it is found again where one of them has moved. Boxes of leaves are found again when a
  walk
- * enters the cluster.
+ * enters the cluster. All boxes are of where the copies were seen last (copies.seen). Who looks around may walk through
+ * boxes that are some slack out of date, in place of a refit.
  *
  * Cuts need no refit: a new copy is where the one is that it comes from, with the same row of copies.seen, and cells
  * only change to such copies. A rollback leaves older rows alone. The last copy, put in the place of a dead one, takes
@@ -8178,6 +8235,8 @@ static int gxp_is_near(double x) {
     return ((b >> 52) & 0x7ff) < 1023 + 128;
 }
 
+static inline double gxp_more(double a, double b) { return a > b ? a : b; }
+
 static void gxp_empty_bounds(gxp_bounds *box) {
     int k;
     for (k = 0; k < 3; k++) {
@@ -8194,16 +8253,14 @@ static void gxp_add_bounds(gxp_bounds *box, const gxp_bounds *other) {
     }
 }
 
-/* The box of one copy, with its margin */
+/* The box of one copy where it was seen last, with its margin */
 static void gxp_copy_bounds(const gx_body *body, uint32_t node, uint32_t copy, gxp_bounds *box) {
-    const double *u = body->copies.displacement + 3 * (size_t)copy;
-    double x[3];
+    const double *rest = body->mesh.positions + 3 * (size_t)node, *u = body->copies.seen + 3 * (size_t)copy;
     int k;
-    gxp_copy_position(body, node, copy, x);
     for (k = 0; k < 3; k++) {
-        const double margin = GXP_TREE_MARGIN * (body->tree.reach[k] + fabs(u[k]));
-        box->low[k] = x[k] - margin;
-        box->high[k] = x[k] + margin;
+        const double x = rest[k] + u[k], margin = GXP_TREE_MARGIN * (body->tree.reach[k] + fabs(u[k]));
+        box->low[k] = x - margin;
+        box->high[k] = x + margin;
     }
 }
 
@@ -8361,6 +8418,31 @@ static gx_result gxp_refit_tree(gx_body *body) {
     return GX_OK;
 }
 
+/* How far copies have moved since they were seen last: the largest coordinate, HUGE_VAL if one is not finite. Sums show
+   what is not finite, which comparisons may not. */
+static double gxp_drift(const gx_body *body) {
+    const double *u = body->copies.displacement, *seen = body->copies.seen;
+    double most[3] = {0, 0, 0}, sum[3] = {0, 0, 0};
+    uint32_t i;
+    int k;
+    for (i = 0; i < body->copies.count; i++, u += 3, seen += 3)
+        for (k = 0; k < 3; k++) {
+            const double way = fabs(u[k] - seen[k]);
+            most[k] = gxp_more(way, most[k]);
+            sum[k] += way;
+        }
+    return gxp_is_finite(sum[0] + sum[1] + sum[2]) ? gxp_more(most[0], gxp_more(most[1], most[2])) : HUGE_VAL;
+}
+
+/* Brings the boxes up to date where copies have moved farther than `most`. *slack: cells are at most so far outside of
+   their boxes. One pass over the copies. Errors: MEMORY, LIMIT. */
+static gx_result gxp_refit_loosely(gx_body *body, double most, double *slack) {
+    *slack = body->tree.cluster_count > 0 ? gxp_drift(body) * (1 + GXP_TREE_MARGIN) : HUGE_VAL;
+    if (*slack <= most) return GX_OK;
+    *slack = 0;
+    return gxp_refit_tree(body);
+}
+
 /* A copy that is out of range or not finite, GXP_NONE: there is none. The boxes are up to date. */
 static uint32_t gxp_wild_copy(gx_body *body) {
     uint32_t i;
@@ -8409,8 +8491,6 @@ static void gxp_fit_leaves(gx_body *body, uint32_t cluster) {
 
 /* --- walking through it --- */
 
-static inline double gxp_more(double a, double b) { return a > b ? a : b; }
-
 /* Above 0 where the boxes do not meet */
 static inline double gxp_gap(const gxp_bounds *a, const gxp_bounds *b) {
     const double x = gxp_more(a->low[0] - b->high[0], b->low[0] - a->high[0]),
@@ -8456,6 +8536,76 @@ static gx_result gxp_meet_box(gx_body *body, const gxp_bounds *given,
         }
     }
     return result;
+}
+
+/* A walk with many boxes at once: each box of the tree passes on those that it meets. Callers put it first in a struct
+   of their own. */
+typedef struct gxp_boxes_walk {
+    /* Called for each element whose box meets some of the boxes, within the slack: `count` of them, ascending. place:
+       in mesh.box_elements. Elements come in an order that is always the same. */
+    gx_result (*visit)(gx_body *body, struct gxp_boxes_walk *walk, uint32_t place, const uint32_t *met, uint32_t count);
+    const gxp_bounds *boxes;
+    double slack; /* as gxp_refit_loosely gave it */
+} gxp_boxes_walk;
+
+/* Appends to tree.met those of its last `count` boxes that meet a box of the tree. Returns their number; there is room.
+ */
+static uint32_t gxp_pass_met(gxp_tree *tree, const gxp_boxes_walk *walk, const gxp_bounds *box, uint32_t count) {
+    const uint32_t *from = tree->met.data + tree->met.count - count;
+    uint32_t *to = tree->met.data + tree->met.count, n = 0, i;
+    for (i = 0; i < count; i++) {
+        to[n] = from[i];
+        n += !(gxp_gap(&walk->boxes[from[i]], box) > walk->slack);
+    }
+    tree->met.count += n;
+    return n;
+}
+
+static gx_result gxp_meet_boxes_in_cluster(gx_body *body, gxp_boxes_walk *walk, uint32_t cluster, uint32_t count) {
+    gxp_tree *tree = &body->tree;
+    const uint32_t first = cluster * GXP_TREE_LEAVES;
+    uint32_t i, e;
+    gx_result result = GX_OK;
+    if (tree->marks.data[tree->cluster_count - 1 + cluster] & GXP_BOX_STALE) gxp_fit_leaves(body, cluster);
+    for (i = first; i < first + GXP_TREE_LEAVES && result == GX_OK; i++) {
+        const uint32_t in_leaf = gxp_pass_met(tree, walk, &tree->leaf_boxes[i], count);
+        for (e = tree->leaf_first.data[i]; e < tree->leaf_first.data[i + 1] && in_leaf > 0 && result == GX_OK; e++) {
+            const uint32_t met = gxp_pass_met(tree, walk, &tree->own_boxes[e], in_leaf);
+            if (met > 0) result = walk->visit(body, walk, e, tree->met.data + tree->met.count - met, met);
+            tree->met.count -= met;
+        }
+        tree->met.count -= in_leaf;
+    }
+    return result;
+}
+
+/* The part of the walk below a box of the tree, which meets the last `count` boxes of tree.met */
+static gx_result gxp_meet_boxes_below(gx_body *body, gxp_boxes_walk *walk, uint32_t box, uint32_t count) {
+    gxp_tree *tree = &body->tree;
+    uint32_t half;
+    gx_result result = GX_OK;
+    if (box >= tree->cluster_count - 1)
+        return gxp_meet_boxes_in_cluster(body, walk, box - (tree->cluster_count - 1), count);
+    for (half = 2; half > 0 && result == GX_OK; half--) {
+        const uint32_t met = gxp_pass_met(tree, walk, &tree->boxes[2 * box + half], count);
+        if (met > 0) result = gxp_meet_boxes_below(body, walk, 2 * box + half, met);
+        tree->met.count -= met;
+    }
+    return result;
+}
+
+static gx_result gxp_meet_boxes(gx_body *body, gxp_boxes_walk *walk, uint32_t count) {
+    gxp_tree *tree = &body->tree;
+    size_t levels = 4; /* the boxes, those of the root, a leaf's, an element's */
+    uint32_t i, met;
+    gx_result result;
+    for (i = 1; i < tree->cluster_count; i *= 2) levels++;
+    result = gxp_start_words(body, &tree->met, levels * count);
+    if (result != GX_OK) return result;
+    for (i = 0; i < count; i++) tree->met.data[i] = i;
+    tree->met.count = count;
+    met = gxp_pass_met(tree, walk, &tree->boxes[0], count);
+    return met > 0 ? gxp_meet_boxes_below(body, walk, 0, met) : GX_OK;
 }
 
 /* A walk to what is least by a measure. Callers put it first in a struct of their own. */
@@ -9488,19 +9638,6 @@ static gx_result gxp_copy_front(gx_body *body, gxp_front_list *to, const gxp_fro
     return gxp_append_front(body, to, from->data, from->count);
 }
 
-static gx_result gxp_list_slot(gx_body *body, void *user, uint32_t slot) {
-    return gxp_push(body, (gxp_words *)user, slot);
-}
-
-/* Lists the cells whose deformed elements' boxes meet a box. The tree is up to date. */
-static gx_result gxp_find_in_box(gx_body *body, const double low[3], const double high[3], gxp_words *found) {
-    gxp_bounds box;
-    memcpy(box.low, low, sizeof box.low);
-    memcpy(box.high, high, sizeof box.high);
-    found->count = 0;
-    return gxp_walk_box(body, &box, gxp_list_slot, found);
-}
-
 /* The near cell of a slot, or GXP_NONE */
 static uint32_t gxp_close_index(const gxp_vicinity *near, uint32_t slot) {
     const uint32_t index = slot < near->of_slot.count ? near->of_slot.data[slot] : GXP_NONE;
@@ -9640,12 +9777,83 @@ static gx_result gxp_sweep(gx_blade *blade, const double *before, const double *
     return result;
 }
 
+/* Triangles of less sine than 2^-20 at their first corner have no plane: what is near them is near their edges. */
+#define GXP_NO_PLANE 9.094947017729282e-13 /* 2^-40 */
+
+static void gxp_set_plate(gxp_plate *p, const double *a, const double *b, const double *c) {
+    const double *x[3] = {a, b, c};
+    int i, k;
+    for (i = 0; i < 3; i++) {
+        memcpy(p->x[i], x[i], sizeof p->x[i]);
+        for (k = 0; k < 3; k++) p->along[i][k] = x[(i + 1) % 3][k] - x[i][k];
+        p->size[i] = gxp_dot(p->along[i], p->along[i]);
+    }
+    gxp_cross(p->normal, p->along[0], p->along[1]);
+    p->square = gxp_dot(p->normal, p->normal);
+    if (!(p->square > GXP_NO_PLANE * p->size[0] * p->size[1])) p->square = 0;
+    for (i = 0; i < 3; i++) gxp_cross(p->over[i], p->normal, p->along[i]);
+}
+
+/* Is a ball within a distance of a triangle? least: radius + distance */
+static int gxp_is_near_plate(const gxp_plate *p, const double middle[3], double least) {
+    const double square = least * least;
+    double way[3][3];
+    int i, k, beyond = 0;
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 3; k++) way[i][k] = middle[k] - p->x[i][k];
+    for (k = 0; k < 3; k++) {
+        beyond |= way[0][k] < -least && way[1][k] < -least && way[2][k] < -least;
+        beyond |= way[0][k] > least && way[1][k] > least && way[2][k] > least;
+    }
+    if (beyond) return 0;
+    if (p->square > 0) {
+        const double height = gxp_dot(p->normal, way[0]);
+        if (height * height > square * p->square) return 0;
+        if (gxp_dot(p->over[0], way[0]) >= 0 && gxp_dot(p->over[1], way[1]) >= 0 && gxp_dot(p->over[2], way[2]) >= 0)
+            return 1;
+    }
+    for (i = 0; i < 3; i++) {
+        const double far = gxp_dot(way[i], way[i]), along = gxp_dot(way[i], p->along[i]);
+        if (far <= square) return 1;
+        if (along > 0 && along < p->size[i] && far * p->size[i] - along * along <= square * p->size[i]) return 1;
+    }
+    return 0;
+}
+
+static gx_result gxp_plates_room(gx_blade *blade, uint32_t count) {
+    const gx_allocator *a = &blade->body->config.allocator;
+    return gxp_reserve(a, &blade->plates, sizeof *blade->plates, 0, &blade->plate_capacity, count);
+}
+
+/* Prepares the two triangles of each quad, and the boxes in which cells are looked at. */
+static gx_result gxp_prepare_quads(gx_blade *blade) {
+    const uint32_t count = blade->quads.count / 4;
+    uint32_t q;
+    int k;
+    gx_result result = gxp_plates_room(blade, 2 * count);
+    if (result == GX_OK)
+        result = gxp_reserve(&blade->body->config.allocator, &blade->boxes, sizeof *blade->boxes, 0,
+                             &blade->box_capacity, count);
+    for (q = 0; q < count && result == GX_OK; q++) {
+        const double *x = blade->quads.data + 12 * (size_t)q;
+        gxp_set_plate(&blade->plates[2 * q], x, x + 3, x + 6);
+        gxp_set_plate(&blade->plates[2 * q + 1], x, x + 6, x + 9);
+        for (k = 0; k < 3; k++) {
+            const double of[4] = {x[k], x[3 + k], x[6 + k], x[9 + k]};
+            blade->boxes[q].low[k] = gxp_least(of) - blade->largest;
+            blade->boxes[q].high[k] = gxp_greatest(of) + blade->largest;
+        }
+    }
+    return result;
+}
+
 /* The deformed corners of a cell, and what contains them */
 static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
-    static const double origin[3] = {0, 0, 0};
     const gxp_cell *cell = &body->cells.data[c->slot];
+    double moved[12];
     int n, k;
-    gxp_cell_corners(body, cell, 1, origin, c->corners);
+    gxp_moved_corners(body, cell, moved);
+    memcpy(c->corners, moved, sizeof moved);
     for (k = 0; k < 3; k++) {
         const double x[4] = {c->corners[0][k], c->corners[1][k], c->corners[2][k], c->corners[3][k]};
         c->low[k] = gxp_least(x);
@@ -9653,79 +9861,96 @@ static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
         c->middle[k] = 0.25 * (x[0] + x[1] + x[2] + x[3]);
     }
     c->radius = 0;
-    for (n = 0; n < 4; n++) {
-        const double square = gxp_square_distance(c->middle, c->corners[n]);
-        if (square > c->radius) c->radius = square;
-    }
+    for (n = 0; n < 4; n++) c->radius = gxp_more(c->radius, gxp_square_distance(c->middle, c->corners[n]));
     c->radius = sqrt(c->radius);
     c->is_divided = (uint8_t)(gxb_complex_root(body->complex, cell->element) & 1);
     c->has_facets = 0;
-    c->stretch = gxp_stretch(body, c->slot);
-    c->size = cbrt(6 * gxp_element_volume(body, cell->element));
+    c->size = body->mesh.sizes[cell->element];
 }
 
-/* Is the ball around a cell within a distance of a triangle? */
-static int gxp_is_near_triangle(const gxp_close_cell *c, const double *x, const double *y, const double *z,
-                                double reach) {
-    const double least = c->radius + reach;
-    double at[3];
-    int k, beyond = 0;
-    for (k = 0; k < 3; k++) {
-        beyond |= x[k] > c->middle[k] + least && y[k] > c->middle[k] + least && z[k] > c->middle[k] + least;
-        beyond |= x[k] < c->middle[k] - least && y[k] < c->middle[k] - least && z[k] < c->middle[k] - least;
-    }
-    return !beyond && gxp_onto_triangle(c->middle, x, y, z, at) <= least * least;
-}
-
-/* Looks at a cell: it is near if it is within an element's size of the quad. quad NULL: wherever it is */
-static gx_result gxp_add_near(gx_blade *blade, uint32_t slot, const double *quad) {
+/* Appends a cell to the near ones. */
+static gx_result gxp_push_near(gx_blade *blade, const gxp_close_cell *c) {
     gxp_vicinity *near = &blade->near;
-    uint32_t index = gxp_close_index(near, slot);
-    gxp_close_cell *c;
-    if (index == GXP_NONE) {
-        const gx_result result = gxp_reserve(&blade->body->config.allocator, &near->cells, sizeof *near->cells,
-                                             near->count, &near->capacity, 1);
-        if (result != GX_OK) return result;
-        index = near->of_slot.data[slot] = near->count++;
-        memset(&near->cells[index], 0, sizeof near->cells[index]);
-        near->cells[index].slot = slot;
-        gxp_place_near(blade->body, &near->cells[index]);
-    }
-    c = &near->cells[index];
-    if (!c->is_near)
-        c->is_near = quad == NULL || gxp_is_near_triangle(c, quad, quad + 3, quad + 6, c->size) ||
-                     gxp_is_near_triangle(c, quad, quad + 6, quad + 9, c->size);
+    const gx_result result =
+        gxp_reserve(&blade->body->config.allocator, &near->cells, sizeof *near->cells, near->count, &near->capacity, 1);
+    if (result != GX_OK) return result;
+    near->of_slot.data[c->slot] = near->count;
+    near->cells[near->count] = *c;
+    near->cells[near->count++].stretch = gxp_stretch(blade->body, c->slot);
     return GX_OK;
 }
 
-/* Drops the cells that were looked at in vain. */
-static void gxp_keep_near(gxp_vicinity *near) {
-    uint32_t i, n = 0;
-    for (i = 0; i < near->count; i++) {
-        if (!near->cells[i].is_near) continue;
-        if (n < i) near->cells[n] = near->cells[i];
-        near->of_slot.data[near->cells[n].slot] = n;
-        n++;
+typedef struct gxp_vicinity_walk {
+    gxp_boxes_walk walk;
+    gx_blade *blade;
+    const gxp_words *scope; /* by fragment, 1 if it is in the scope; NULL: all are */
+} gxp_vicinity_walk;
+
+/* Looks at the cells of an element: they are near if they are within an element's size of a quad in whose box they
+   are. */
+static gx_result gxp_add_near_cells(gx_body *body, gxp_boxes_walk *walk, uint32_t place, const uint32_t *met,
+                                    uint32_t count) {
+    const gxp_vicinity_walk *own = (const gxp_vicinity_walk *)(const void *)walk;
+    gx_blade *blade = own->blade;
+    uint32_t slot, i;
+    gx_result result = GX_OK;
+    for (slot = body->mesh.box_elements[place]; slot != GXP_NONE && result == GX_OK;
+         slot = body->cells.data[slot].next) {
+        gxp_close_cell c;
+        gxp_bounds box;
+        if (!body->cells.data[slot].kept) continue;
+        if (own->scope != NULL && !own->scope->data[gxp_cell_fragment(body, slot)]) continue;
+        c.slot = slot;
+        gxp_place_near(body, &c);
+        memcpy(box.low, c.low, sizeof box.low);
+        memcpy(box.high, c.high, sizeof box.high);
+        for (i = 0, c.quad = GXP_NONE; i < count; i++) {
+            if (gxp_gap(&blade->boxes[met[i]], &box) > 0) continue;
+            if (c.quad == GXP_NONE) c.quad = met[i];
+            if (gxp_is_near_plate(&blade->plates[2 * met[i]], c.middle, c.radius + c.size) ||
+                gxp_is_near_plate(&blade->plates[2 * met[i] + 1], c.middle, c.radius + c.size))
+                break;
+        }
+        if (i < count) result = gxp_push_near(blade, &c);
     }
-    near->count = n;
+    return result;
 }
 
-/* Unites a near cell with those before it that share a copy. */
-static void gxp_join_near(gx_blade *blade, uint32_t index) {
+/* Ranks the near cells by their first quads; those of one quad in the order in which they were found. */
+static gx_result gxp_rank_near(gx_blade *blade) {
+    gxp_vicinity *near = &blade->near;
+    const uint32_t quads = blade->quads.count / 4 + 1; /* the last one for cells without */
+    uint32_t i, sum = 0;
+    gx_result result = gxp_start_words(blade->body, &near->quad_start, quads);
+    if (result == GX_OK) result = gxp_start_words(blade->body, &near->ranked, near->count);
+    if (result != GX_OK) return result;
+    memset(near->quad_start.data, 0, quads * sizeof *near->quad_start.data);
+    for (i = 0; i < near->count; i++) near->quad_start.data[near->cells[i].quad]++;
+    for (i = 0; i < quads; i++) {
+        const uint32_t count = near->quad_start.data[i];
+        near->quad_start.data[i] = sum;
+        sum += count;
+    }
+    for (i = 0; i < near->count; i++) near->ranked.data[near->quad_start.data[near->cells[i].quad]++] = i;
+    near->ranked.count = near->count;
+    return GX_OK;
+}
+
+/* Unites near cells that share a copy. */
+static void gxp_join_near(gx_blade *blade) {
     gxp_vicinity *near = &blade->near;
     const gx_body *body = blade->body;
-    const uint32_t *copies = body->cells.data[near->cells[index].slot].copies;
-    uint32_t k, n;
-    for (k = 0; k < 4; k++) {
-        const uint32_t first = near->of_copy.data[copies[k]];
-        int shared = 0;
-        for (n = 0; n < 4 && first < index; n++)
-            shared |= body->cells.data[near->cells[first].slot].copies[n] == copies[k];
-        if (shared)
-            gxp_unite(near->parents.data, first, index);
-        else
-            near->of_copy.data[copies[k]] = index;
+    uint32_t *first = near->of_copy.data, i, k;
+    for (i = 0; i < near->count; i++) {
+        const uint32_t *copies = body->cells.data[near->cells[near->ranked.data[i]].slot].copies;
+        for (k = 0; k < 4; k++)
+            if (first[copies[k]] == 0)
+                first[copies[k]] = i + 1;
+            else
+                gxp_unite(near->parents.data, first[copies[k]] - 1, i);
     }
+    for (i = 0; i < near->count; i++)
+        for (k = 0; k < 4; k++) first[body->cells.data[near->cells[i].slot].copies[k]] = 0;
 }
 
 /* Words by slot or copy, which keep what they have; new ones are 0. */
@@ -9744,15 +9969,18 @@ static gx_result gxp_number_layers(gx_blade *blade) {
     gxp_vicinity *near = &blade->near;
     gx_body *body = blade->body;
     uint32_t i;
-    gx_result result = gxp_extend_words(body, &near->of_copy, body->copies.count);
-    near->parents.count = 0;
-    for (i = 0; i < near->count && result == GX_OK; i++) result = gxp_push(body, &near->parents, i);
+    gx_result result = gxp_rank_near(blade);
+    if (result == GX_OK) result = gxp_extend_words(body, &near->of_copy, body->copies.count);
+    if (result == GX_OK) result = gxp_start_words(body, &near->parents, near->count);
     if (result != GX_OK) return result;
-    for (i = 0; i < near->count; i++) gxp_join_near(blade, i);
+    for (i = 0; i < near->count; i++) near->parents.data[i] = i;
+    near->parents.count = near->count;
+    gxp_join_near(blade);
     near->layer_count = 0;
     for (i = 0; i < near->count; i++) {
         const uint32_t root = gxp_find(near->parents.data, i);
-        near->cells[i].layer = root == i ? near->layer_count++ : near->cells[root].layer;
+        near->cells[near->ranked.data[i]].layer =
+            root == i ? near->layer_count++ : near->cells[near->ranked.data[root]].layer;
     }
     return GX_OK;
 }
@@ -9783,14 +10011,17 @@ static gx_result gxp_order_near(gx_blade *blade) {
         sum += count;
     }
     for (i = 0; i < near->count; i++) {
-        const double share = high > low ? (near->cells[i].low[near->axis] - low) / (high - low) : 0;
+        const double at = near->cells[near->ranked.data[i]].low[near->axis],
+                     share = high > low ? (at - low) / (high - low) : 0;
         near->order.data[near->order.count++] = (uint64_t)(4294967295.0 * share) << 32 | i;
     }
     result = gxp_sort_keys(body, &near->order, 0, near->count);
     if (result != GX_OK) return result;
     for (i = 0; i < near->count; i++) { /* by layer, stable */
-        const uint32_t cell = GXP_SECOND(near->order.data[i]);
-        near->order.data[near->count + near->layer_start.data[near->cells[cell].layer]++] = near->order.data[i];
+        const uint64_t key = near->order.data[i];
+        const uint32_t cell = near->ranked.data[GXP_SECOND(key)];
+        near->order.data[near->count + near->layer_start.data[near->cells[cell].layer]++] =
+            (key & 0xffffffff00000000u) | cell;
     }
     if (near->count > 0)
         memcpy(near->order.data, near->order.data + near->count, near->count * sizeof *near->order.data);
@@ -9799,28 +10030,32 @@ static gx_result gxp_order_near(gx_blade *blade) {
     return GX_OK;
 }
 
+/* Boxes of the tree that are out of date by less, in mean sizes of elements, are not fitted again for a blade. */
+#define GXP_NEAR_SLACK 0.75
+
+/* Brings the tree of boxes up to date for the blade. Blames a copy that is not finite or out of range. */
+static gx_result gxp_refit_near(gx_blade *blade, double most, gx_failure *failure) {
+    uint32_t wild;
+    const gx_result result = gxp_refit_loosely(blade->body, most * blade->body->mesh.mean_size, &blade->slack);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    wild = gxp_wild_copy(blade->body);
+    return wild == GXP_NONE ? GX_OK : gxp_check_copy(blade->body, wild, failure);
+}
+
 /* Finds the cells near the quads. scope: by fragment, 1 if it is in the scope; NULL: all are. */
 static gx_result gxp_find_near(gx_blade *blade, const gxp_words *scope) {
-    gxp_vicinity *near = &blade->near;
     gx_body *body = blade->body;
-    uint32_t q, i;
-    int k;
-    gx_result result = gxp_refit_tree(body);
-    if (result == GX_OK) result = gxp_extend_words(body, &near->of_slot, body->cells.count);
-    near->count = near->lambda_count = 0;
-    for (q = 0; q < blade->quads.count && result == GX_OK; q += 4) {
-        const double *x = blade->quads.data + 3 * (size_t)q;
-        double low[3], high[3];
-        for (k = 0; k < 3; k++) {
-            low[k] = fmin(fmin(x[k], x[3 + k]), fmin(x[6 + k], x[9 + k])) - blade->largest;
-            high[k] = fmax(fmax(x[k], x[3 + k]), fmax(x[6 + k], x[9 + k])) + blade->largest;
-        }
-        result = gxp_find_in_box(body, low, high, &blade->found);
-        for (i = 0; i < blade->found.count && result == GX_OK; i++)
-            if (scope == NULL || scope->data[gxp_cell_fragment(body, blade->found.data[i])])
-                result = gxp_add_near(blade, blade->found.data[i], x);
-    }
-    return result;
+    gxp_vicinity_walk own;
+    gx_result result = gxp_extend_words(body, &blade->near.of_slot, body->cells.count);
+    if (result == GX_OK) result = gxp_prepare_quads(blade);
+    blade->near.count = blade->near.lambda_count = 0;
+    if (result != GX_OK) return result;
+    own.walk.visit = gxp_add_near_cells;
+    own.walk.boxes = blade->boxes;
+    own.walk.slack = blade->slack;
+    own.blade = blade;
+    own.scope = scope;
+    return gxp_meet_boxes(body, &own.walk, blade->quads.count / 4);
 }
 
 /* Finds the near cells and their layers. */
@@ -9830,7 +10065,6 @@ static gx_result gxp_find_layers(gx_blade *blade, const double *before, const do
     int k;
     gx_result result = gxp_sweep(blade, before, edge, count);
     if (result == GX_OK) result = gxp_find_near(blade, scope);
-    gxp_keep_near(&blade->near);
     if (result == GX_OK) result = gxp_number_layers(blade);
     blade->near.axis = 0;
     for (k = 1; k < 3; k++)
@@ -10689,13 +10923,11 @@ static gx_result gxp_follow_edge(gx_blade *blade, int finish, gx_blade_report *r
    are far from each other in space, none of it is meant for them. */
 #define GXP_STRIP_REACH 0.25
 
-/* Is the cell within reach of a strip, given by its corners in space? */
-static int gxp_is_in_reach(const gxp_close_cell *c, const double *corners, uint32_t triangles) {
+/* Is the cell within reach of a strip? */
+static int gxp_is_in_reach(const gxp_close_cell *c, const gxp_plate *plates, uint32_t triangles) {
     uint32_t t;
-    for (t = 0; t < triangles; t++) {
-        const double *x = corners + 9 * (size_t)t;
-        if (gxp_is_near_triangle(c, x, x + 3, x + 6, GXP_STRIP_REACH * c->size)) return 1;
-    }
+    for (t = 0; t < triangles; t++)
+        if (gxp_is_near_plate(&plates[t], c->middle, c->radius + GXP_STRIP_REACH * c->size)) return 1;
     return 0;
 }
 
@@ -10703,19 +10935,19 @@ static int gxp_is_in_reach(const gxp_close_cell *c, const double *corners, uint3
    last move; GXP_NONE: all. */
 static gx_result gxp_list_scope(gx_blade *blade, uint32_t layer, uint32_t old) {
     const gxp_vicinity *near = &blade->near;
-    uint32_t i;
-    gx_result result = GX_OK;
-    blade->quads.count = 0;
-    for (i = 0; i < blade->cut.count && result == GX_OK; i++) {
-        double x[3];
-        result = gxp_front_position(blade, layer, 0, &blade->cut.data[i], x);
-        if (result == GX_OK) result = gxp_push_point(blade->body, &blade->quads, x);
+    const uint32_t triangles = blade->cut.count / 3;
+    uint32_t i, k;
+    gx_result result = gxp_plates_room(blade, triangles);
+    for (i = 0; i < triangles && result == GX_OK; i++) {
+        double x[3][3];
+        for (k = 0; k < 3 && result == GX_OK; k++)
+            result = gxp_front_position(blade, layer, 0, &blade->cut.data[3 * i + k], x[k]);
+        if (result == GX_OK) gxp_set_plate(&blade->plates[i], x[0], x[1], x[2]);
     }
     for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++) {
         const gxp_close_cell *c = &near->cells[GXP_SECOND(near->order.data[i])];
         if (old != GXP_NONE && gxp_old_layer(blade, c->slot) != old) continue;
-        if (gxp_is_in_reach(c, blade->quads.data, blade->cut.count / 3))
-            result = gxp_push(blade->body, &blade->scope, c->slot);
+        if (gxp_is_in_reach(c, blade->plates, triangles)) result = gxp_push(blade->body, &blade->scope, c->slot);
     }
     return result;
 }
@@ -11095,11 +11327,32 @@ static gx_result gxp_keep_layer(gx_blade *blade) {
     return result;
 }
 
+/* The box of the body's copies, in space. Those of removed material count too. */
+static void gxp_find_box(const gx_body *body, gxp_bounds *box) {
+    uint32_t i;
+    int k;
+    for (k = 0; k < 3; k++) box->low[k] = HUGE_VAL, box->high[k] = -HUGE_VAL;
+    for (i = 0; i < body->copies.count; i++)
+        for (k = 0; k < 3; k++) {
+            const double x = body->mesh.positions[3 * (size_t)body->copies.node[i] + (size_t)k] +
+                             body->copies.displacement[3 * (size_t)i + (size_t)k];
+            box->low[k] = x < box->low[k] ? x : box->low[k];
+            box->high[k] = x > box->high[k] ? x : box->high[k];
+        }
+}
+
+static void gxp_find_middle(const gx_body *body, double middle[3]) {
+    gxp_bounds box;
+    int k;
+    gxp_find_box(body, &box);
+    for (k = 0; k < 3; k++) middle[k] = box.low[k] > box.high[k] ? 0 : 0.5 * box.low[k] + 0.5 * box.high[k];
+}
+
 /* No layer is near: keeps the place on the edge that is nearest to the body's box, and the material next to it. */
 static gx_result gxp_keep_far_place(gx_blade *blade, const double *edge, uint32_t count) {
     static const double origin[3] = {0, 0, 0};
     gx_body *body = blade->body;
-    const gxp_bounds *box = &body->tree.boxes[0];
+    gxp_bounds box;
     const uint32_t parts = count < 32 ? 32 / (count - 1) : 1;
     double least = HUGE_VAL, corners[4][3];
     gxp_front_vertex v;
@@ -11107,17 +11360,19 @@ static gx_result gxp_keep_far_place(gx_blade *blade, const double *edge, uint32_
     uint32_t i;
     gx_result result;
     memset(&v, 0, sizeof v);
+    gxp_find_box(body, &box);
     for (i = 0; i <= parts * (count - 1); i++) {
         double x[3], square;
         gxp_edge_position(edge, count, (double)i / parts, x);
-        square = gxp_square_to_box(x, box->low, box->high);
+        square = gxp_square_to_box(x, box.low, box.high);
         if (square >= least) continue;
         least = square;
         v.along = (double)i / parts;
         memcpy(v.position, x, sizeof x);
     }
     if (!(least < 64 * blade->largest * blade->largest)) return GX_OK;
-    result = gxp_find_nearest(body, v.position, NULL, NULL, &near);
+    result = gxp_refit_tree(body);
+    if (result == GX_OK) result = gxp_find_nearest(body, v.position, NULL, NULL, &near);
     if (result != GX_OK || near.slot == GXP_NONE) return result;
     v.element = body->cells.data[near.slot].element;
     v.size = blade->largest;
@@ -11133,13 +11388,6 @@ static gx_result gxp_keep_far_place(gx_blade *blade, const double *edge, uint32_
     return result == GX_OK ? gxp_keep_layer(blade) : result;
 }
 
-/* The middle of the deformed body's box. The tree is up to date. */
-static void gxp_body_middle(const gx_body *body, double middle[3]) {
-    const gxp_bounds *box = &body->tree.boxes[0];
-    int k;
-    for (k = 0; k < 3; k++) middle[k] = box->low[k] > box->high[k] ? 0 : 0.5 * (box->low[k] + box->high[k]);
-}
-
 /* Notes which cells belong to which layer, and where the edge is. */
 static gx_result gxp_keep_members(gx_blade *blade, const double *edge, uint32_t count) {
     gxp_blade_state *then = &blade->then;
@@ -11148,7 +11396,10 @@ static gx_result gxp_keep_members(gx_blade *blade, const double *edge, uint32_t 
     then->members.count = then->edge.count = 0;
     then->slot_count = blade->body->cells.count;
     if (blade->near.layer_count == 0) result = gxp_keep_far_place(blade, edge, count);
-    gxp_body_middle(blade->body, then->middle);
+    if (blade->near.layer_count == 0)
+        gxp_find_middle(blade->body, then->middle);
+    else
+        memset(then->middle, 0, sizeof then->middle);
     for (i = 0; i < blade->near.count && result == GX_OK; i++)
         result = gxp_push_key(blade->body, &then->members, blade->near.cells[i].slot, blade->near.cells[i].layer);
     if (result == GX_OK) result = gxp_sort_keys(blade->body, &then->members, 0, then->members.count);
@@ -11342,7 +11593,7 @@ static void gxp_carry_far_points(gx_blade *blade) {
     int k;
     for (i = 0; i < places->count && near == GXP_NONE; i++)
         if (places->data[i].distance < HUGE_VAL) near = i;
-    gxp_body_middle(blade->body, way);
+    if (near == GXP_NONE) gxp_find_middle(blade->body, way);
     for (k = 0; k < 3; k++) way[k] = near == GXP_NONE ? way[k] - blade->now.middle[k] : places->data[near].rest[k];
     for (i = 0; i < places->count; i++)
         if (places->data[i].distance < HUGE_VAL)
@@ -11356,8 +11607,7 @@ static gx_result gxp_carry_edge(gx_blade *blade, const double *edge, uint32_t co
     const double *old = blade->now.edge.data;
     uint32_t i;
     int k;
-    gx_result result = gxp_refit_tree(blade->body);
-    if (result == GX_OK) result = gxp_list_places(blade);
+    gx_result result = gxp_list_places(blade);
     blade->carried.count = blade->goal.count = 0;
     if (result == GX_OK) gxp_carry_far_points(blade);
     if (result == GX_OK) gxp_thin_places(blade);
@@ -11373,25 +11623,23 @@ static gx_result gxp_carry_edge(gx_blade *blade, const double *edge, uint32_t co
     return result;
 }
 
-/* How far the edge goes where the body is, squared: the body's box, where no layer has seen it yet */
-static gx_result gxp_measure_far(gx_blade *blade, const double *edge, uint32_t count, double *most) {
-    const double *before = blade->now.edge.data;
-    gxp_bounds box;
+/* How far the edge goes in space, squared; in a box, or NULL: anywhere */
+static gx_result gxp_measure_way(gx_blade *blade, const double *before, const double *edge, uint32_t count,
+                                 const gxp_bounds *box, double *most) {
     double along;
     uint32_t i, q;
     int n, k;
-    gx_result result = gxp_refit_tree(blade->body);
-    if (result != GX_OK) return result;
-    box = blade->body->tree.boxes[0];
+    gx_result result = GX_OK;
+    *most = 0;
     blade->quads.count = 0;
     for (i = 0; i + 1 < count && result == GX_OK; i++)
         result = gxp_sweep_segment(blade, before + 3 * (size_t)i, edge + 3 * (size_t)i);
     for (q = 0; q < blade->quads.count && result == GX_OK; q += 4) {
         const double *x = blade->quads.data + 3 * (size_t)q;
         int beyond = 0;
-        for (k = 0; k < 3; k++) {
-            beyond |= fmin(fmin(x[k], x[3 + k]), fmin(x[6 + k], x[9 + k])) > box.high[k] + blade->largest;
-            beyond |= fmax(fmax(x[k], x[3 + k]), fmax(x[6 + k], x[9 + k])) < box.low[k] - blade->largest;
+        for (k = 0; k < 3 && box != NULL; k++) {
+            beyond |= fmin(fmin(x[k], x[3 + k]), fmin(x[6 + k], x[9 + k])) > box->high[k] + blade->largest;
+            beyond |= fmax(fmax(x[k], x[3 + k]), fmax(x[6 + k], x[9 + k])) < box->low[k] - blade->largest;
         }
         for (n = 0; n < 4 && !beyond; n++)
             *most = fmax(*most, gxp_onto_edge(n < 2 ? edge : before, count, x + 3 * n, &along));
@@ -11399,20 +11647,16 @@ static gx_result gxp_measure_far(gx_blade *blade, const double *edge, uint32_t c
     return result;
 }
 
-/* In how many steps the edge goes to its new place: by at most an element each in space, or relative to the material if
-   that is less. */
-static gx_result gxp_count_steps(gx_blade *blade, const double *edge, uint32_t edge_count, uint32_t *steps) {
+/* How far the edge goes relative to the material, squared: where a layer has seen it, or else anywhere */
+static double gxp_measure_relative(const gx_blade *blade) {
     const uint32_t count = blade->goal.count;
-    double most = 0, relative = 0, along;
+    double most = 0, along;
     uint32_t i, known = 0;
-    const gx_result result = gxp_measure_far(blade, edge, edge_count, &most);
     for (i = 0; i < count; i++) known += blade->places.data[i].distance < HUGE_VAL;
     for (i = 0; i < count; i++)
         if (known == 0 || blade->places.data[i].distance < HUGE_VAL)
-            relative =
-                fmax(relative, gxp_onto_edge(blade->goal.data, count, blade->carried.data + 3 * (size_t)i, &along));
-    *steps = 1 + (uint32_t)fmin(999, sqrt(fmin(most, relative)) / blade->step);
-    return result;
+            most = fmax(most, gxp_onto_edge(blade->goal.data, count, blade->carried.data + 3 * (size_t)i, &along));
+    return most;
 }
 
 /* The way of the edge is straight in space. */
@@ -11427,15 +11671,23 @@ static gx_result gxp_go_straight(gx_blade *blade, const double *before, const do
     return result;
 }
 
-/* Finds the way of the edge, and in how many steps it goes. */
+/* Finds the way of the edge, and in how many steps it goes: by at most an element each in space, or relative to the
+   material if that is less. */
 static gx_result gxp_plan_way(gx_blade *blade, const double *edge, uint32_t count, uint32_t *steps) {
-    gx_result result;
+    const double *before = blade->now.edge.count > 0 ? blade->now.edge.data : edge, square = blade->step * blade->step;
+    double most = 0;
+    gxp_bounds box;
+    gx_result result = gxp_measure_way(blade, before, edge, count, NULL, &most);
     *steps = 1;
-    if (blade->now.edge.count == 0) return gxp_go_straight(blade, edge, edge, count);
-    result = gxp_carry_edge(blade, edge, count);
-    if (result == GX_OK) result = gxp_count_steps(blade, edge, count, steps);
-    if (result != GX_OK || *steps > 1) return result;
-    return gxp_go_straight(blade, blade->now.edge.data, edge, count);
+    if (result == GX_OK && most > square) {
+        gxp_find_box(blade->body, &box);
+        result = gxp_measure_way(blade, before, edge, count, &box, &most);
+    }
+    if (result == GX_OK && most > square) {
+        result = gxp_carry_edge(blade, edge, count);
+        if (result == GX_OK) *steps = 1 + (uint32_t)fmin(999, sqrt(fmin(most, gxp_measure_relative(blade)) / square));
+    }
+    return result == GX_OK && *steps == 1 ? gxp_go_straight(blade, before, edge, count) : result;
 }
 
 /* A place of the edge's way: share of it */
@@ -11499,6 +11751,8 @@ static gx_result gxp_move_blade(gx_blade *blade, const double *edge, uint32_t co
     int begun = 0;
     gx_result result;
     gxp_clear_report(report);
+    result = gxp_refit_near(blade, GXP_NEAR_SLACK, failure);
+    if (result != GX_OK) return result;
     blade->surface_starts.count = blade->corners.count = blade->scope.count = 0;
     result = gxp_step_along(blade, edge, count, scope, finish, &begun, report, failure);
     if (result == GX_OK) result = gxp_cut_surfaces(blade, GX_SURFACE_SHEET, report, failure);
@@ -11551,17 +11805,23 @@ static gx_result gxp_check_blade(const gx_blade_desc *desc, gx_failure *failure)
     return desc->min_advance < 0 ? gxp_refuse(failure, "min_advance") : GX_OK;
 }
 
-/* Sizes of elements: the mean and the largest. Those that are removed count too. */
-static double gxp_mean_size(const gx_body *body, double *largest) {
+/* Measures the elements, once in a body's life. Those that are removed count too. */
+static gx_result gxp_measure_elements(gx_body *body) {
+    gxp_mesh *mesh = &body->mesh;
     double sum = 0;
     uint32_t e;
-    *largest = 0;
-    for (e = 0; e < body->mesh.element_count; e++) {
-        const double size = cbrt(6 * gxp_element_volume(body, e));
-        *largest = fmax(*largest, size);
-        sum += size;
+    gx_result result;
+    if (mesh->sizes != NULL) return GX_OK;
+    result = gxp_make_column(body, &gxp_element_columns[GXP_SIZE_COLUMN], mesh->element_count);
+    if (result != GX_OK) return result;
+    mesh->largest_size = 0;
+    for (e = 0; e < mesh->element_count; e++) {
+        mesh->sizes[e] = cbrt(6 * gxp_element_volume(body, e));
+        mesh->largest_size = fmax(mesh->largest_size, mesh->sizes[e]);
+        sum += mesh->sizes[e];
     }
-    return sum / body->mesh.element_count;
+    mesh->mean_size = sum / mesh->element_count;
+    return GX_OK;
 }
 
 GXFEM_API gx_result gx_blade_create(gx_body *body, const gx_blade_desc *desc, gx_blade **blade, gx_failure *failure) {
@@ -11575,10 +11835,12 @@ GXFEM_API gx_result gx_blade_create(gx_body *body, const gx_blade_desc *desc, gx
     if (blade == NULL) return gxp_refuse(failure, "blade");
     result = gxp_check_blade(desc, failure);
     if (result != GX_OK) return result;
-    b = (gx_blade *)gxp_allocate(&body->config.allocator, sizeof *b);
-    if (b == NULL) return gxp_end(failure, GX_ERROR_MEMORY);
+    result = gxp_measure_elements(body);
+    b = result == GX_OK ? (gx_blade *)gxp_allocate(&body->config.allocator, sizeof *b) : NULL;
+    if (b == NULL) return gxp_end(failure, result != GX_OK ? result : GX_ERROR_MEMORY);
     memset(b, 0, sizeof *b);
-    size = gxp_mean_size(body, &b->largest);
+    size = body->mesh.mean_size;
+    b->largest = body->mesh.largest_size;
     b->body = body;
     b->tolerance = desc->tolerance > 0 ? desc->tolerance : 0.01 * size;
     b->min_advance = desc->min_advance > 0 ? desc->min_advance : 0.5 * size;
@@ -11627,6 +11889,8 @@ static void gxp_release_blade(gx_blade *b) {
     gxp_release(a, b->near.lambdas, 12 * b->near.lambda_capacity * sizeof *b->near.lambdas);
     gxp_release_words(body, &b->near.of_slot);
     gxp_release_words(body, &b->near.of_copy);
+    gxp_release_words(body, &b->near.quad_start);
+    gxp_release_words(body, &b->near.ranked);
     gxp_release_words(body, &b->near.parents);
     gxp_release(a, b->near.order.data, b->near.order.capacity * sizeof *b->near.order.data);
     gxp_release_words(body, &b->near.layer_start);
@@ -11643,6 +11907,8 @@ static void gxp_release_blade(gx_blade *b) {
     gxp_release_points(body, &b->path);
     gxp_release_points(body, &b->sheet);
     gxp_release_points(body, &b->quads);
+    gxp_release(a, b->plates, b->plate_capacity * sizeof *b->plates);
+    gxp_release(a, b->boxes, b->box_capacity * sizeof *b->boxes);
     gxp_release_points(body, &b->corners);
     gxp_release_words(body, &b->owners);
     gxp_release_words(body, &b->heirs);
@@ -11809,12 +12075,24 @@ static gx_result gxp_refine_tool(gx_blade *blade, uint32_t layer) {
     return result;
 }
 
+static gx_result gxp_list_slot(gx_body *body, void *user, uint32_t slot) {
+    return gxp_push(body, (gxp_words *)user, slot);
+}
+
+/* Lists the cells whose deformed elements' boxes meet a box. The tree is up to date. */
+static gx_result gxp_find_in_box(gx_body *body, const double low[3], const double high[3], gxp_words *found) {
+    gxp_bounds box;
+    memcpy(box.low, low, sizeof box.low);
+    memcpy(box.high, high, sizeof box.high);
+    found->count = 0;
+    return gxp_walk_box(body, &box, gxp_list_slot, found);
+}
+
 /* Adds the cells that are inside the tool and not near its surface. */
 static gx_result gxp_add_covered(gx_blade *blade, const gx_surface *tool) {
     gx_body *body = blade->body;
     double low[3], high[3];
     size_t i;
-    int k;
     gx_result result;
     memcpy(low, tool->vertices, sizeof low);
     memcpy(high, tool->vertices, sizeof high);
@@ -11824,16 +12102,14 @@ static gx_result gxp_add_covered(gx_blade *blade, const gx_surface *tool) {
     }
     result = gxp_find_in_box(body, low, high, &blade->found);
     for (i = 0; i < blade->found.count && result == GX_OK; i++) {
-        static const double origin[3] = {0, 0, 0};
-        const uint32_t slot = blade->found.data[i];
-        double x[4][3], middle[3];
+        gxp_close_cell c;
         int on;
-        const uint32_t index = gxp_close_index(&blade->near, slot);
-        if (index != GXP_NONE && blade->near.cells[index].is_near) continue;
-        gxp_cell_corners(body, &body->cells.data[slot], 1, origin, x);
-        for (k = 0; k < 3; k++) middle[k] = 0.25 * (x[0][k] + x[1][k] + x[2][k] + x[3][k]);
-        if (gxb_winding_number(tool->vertices, tool->triangles, tool->triangle_count, middle, &on) != 0)
-            result = gxp_add_near(blade, slot, NULL);
+        c.slot = blade->found.data[i];
+        c.quad = blade->quads.count / 4;
+        if (gxp_close_index(&blade->near, c.slot) != GXP_NONE) continue;
+        gxp_place_near(body, &c);
+        if (gxb_winding_number(tool->vertices, tool->triangles, tool->triangle_count, c.middle, &on) != 0)
+            result = gxp_push_near(blade, &c);
     }
     return result;
 }
@@ -11851,7 +12127,6 @@ static gx_result gxp_find_tool_layers(gx_blade *blade, const gx_surface *tool) {
     }
     if (result == GX_OK) result = gxp_find_near(blade, NULL);
     if (result == GX_OK) result = gxp_add_covered(blade, tool);
-    gxp_keep_near(&blade->near);
     if (result == GX_OK) result = gxp_number_layers(blade);
     return result == GX_OK ? gxp_order_near(blade) : result;
 }
@@ -11911,7 +12186,9 @@ static gx_result gxp_add_tool(gx_blade *blade, uint32_t layer, const gx_surface 
 static gx_result gxp_carve_layers(gx_blade *blade, const gx_surface *tool, gx_blade_report *report,
                                   gx_failure *failure) {
     uint32_t layer;
-    gx_result result = gxp_find_tool_layers(blade, tool);
+    gx_result result = gxp_refit_near(blade, 0, failure);
+    if (result != GX_OK) return result;
+    result = gxp_find_tool_layers(blade, tool);
     blade->surface_starts.count = blade->corners.count = blade->scope.count = 0;
     for (layer = 0; layer < blade->near.layer_count && result == GX_OK; layer++) {
         result = gxp_see_tool(blade, layer, tool);
@@ -13324,6 +13601,8 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_BYTE_ORDER
 #undef GXP_BESIDE_WALL
 #undef GXP_ACROSS_WALL
+#undef GXP_NO_PLANE
+#undef GXP_NEAR_SLACK
 #undef GXP_FLAT_MAP
 #undef GXP_CAP
 #undef GXP_AIR

@@ -691,6 +691,13 @@ START_TEST(blades) {
     bad[4] = 1;
     bad[0] = -DBL_MAX;
     KEEPS(body, gx_blade_move(blade, bad, 2, NULL, 0, NULL, &failure), GX_ERROR_RANGE, "edge", 0);
+    view_of(body).displacement[3 * 7 + 1] = NAN;
+    KEEPS(body, gx_blade_move(blade, edge, 2, NULL, 0, NULL, &failure), GX_ERROR_NOT_FINITE, "displacement", 7);
+    KEEPS(body, gx_blade_lift(blade, NULL, &failure), GX_ERROR_NOT_FINITE, "displacement", 7);
+    view_of(body).displacement[3 * 7 + 1] = 1e39;
+    KEEPS(body, gx_blade_move(blade, edge, 2, NULL, 0, NULL, &failure), GX_ERROR_RANGE, "displacement", 7);
+    KEEPS(body, gx_blade_lift(blade, NULL, &failure), GX_ERROR_RANGE, "displacement", 7);
+    view_of(body).displacement[3 * 7 + 1] = 0;
     KEEPS(body, gx_blade_move(blade, edge, 2, NULL, 1, NULL, &failure), GX_ERROR_ARGUMENT, "scope_fragments", SIZE_MAX);
     KEEPS(body, gx_blade_move(blade, edge, 2, scope, 2, NULL, &failure), GX_ERROR_INDEX, "scope_fragments", 1);
     ck_assert_uint_eq(view_of(body).fragment_count, 1);
@@ -746,6 +753,11 @@ START_TEST(tools) {
     t[3 * 7] = 8;
     KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_INDEX, "tool.triangles", 7);
     t[3 * 7] = first;
+    view_of(body).displacement[3 * 9] = -INFINITY;
+    KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_NOT_FINITE, "displacement", 9);
+    view_of(body).displacement[3 * 9] = -1e39;
+    KEEPS(body, gx_body_carve(body, &tool, &report, &failure), GX_ERROR_RANGE, "displacement", 9);
+    view_of(body).displacement[3 * 9] = 0;
     tool.triangle_count = 11;
     {
         const uint64_t state = gx_body_state_hash(body);
