@@ -169,9 +169,11 @@ static void move_and_check(stage *s, gx_blade *blade, const double *edge, uint32
                            int move) {
     const uint32_t scope = (uint32_t)(s->view.fragment_count - 1);
     gx_blade_report report;
+    const double *before;
     ck_assert_int_eq(gxp_refit_near(blade, slack, NULL), GX_OK);
     if (scoped) ck_assert_int_eq(gxp_flag_scope(blade, &scope, 1, NULL), GX_OK);
-    ck_assert_int_eq(gxp_find_layers(blade, edge, count, scoped ? &blade->in_scope : NULL), GX_OK);
+    before = blade->now.edge.count > 0 ? blade->now.edge.data : edge;
+    ck_assert_int_eq(gxp_find_layers(blade, before, edge, count, scoped ? &blade->in_scope : NULL), GX_OK);
     check_near(blade, scoped ? &blade->in_scope : NULL, seed, move);
     check_layers(blade, seed);
     ck_assert_int_eq(gx_blade_move(blade, edge, count, &scope, (size_t)scoped, &report, &s->failure), GX_OK);
@@ -247,12 +249,12 @@ START_TEST(loose_boxes) {
     for (i = 0; i < 3 * s.view.copy_count; i++) s.view.displacement[i] = 0.7 * mean * (i % 2 ? 1 : -1);
     ck_assert_int_eq(gxp_refit_near(s.blade, slack, NULL), GX_OK);
     ck_assert(fabs(s.blade->slack - 0.7 * mean) < 1e-9 && s.body->copies.seen[0] == 0);
-    ck_assert_int_eq(gxp_find_layers(s.blade, edge, 2, NULL), GX_OK);
+    ck_assert_int_eq(gxp_find_layers(s.blade, edge, edge, 2, NULL), GX_OK);
     check_near(s.blade, NULL, 0, 0);
     s.view.displacement[7] += 0.06 * mean;
     ck_assert_int_eq(gxp_refit_near(s.blade, slack, NULL), GX_OK);
     ck_assert(s.blade->slack == 0 && s.body->copies.seen[7] == s.view.displacement[7]);
-    ck_assert_int_eq(gxp_find_layers(s.blade, edge, 2, NULL), GX_OK);
+    ck_assert_int_eq(gxp_find_layers(s.blade, edge, edge, 2, NULL), GX_OK);
     check_near(s.blade, NULL, 0, 1);
     s.view.displacement[8] += 0.01 * mean; /* others want exact boxes */
     ck_assert_int_eq(gxp_refit_loosely(s.body, 0, &loose), GX_OK);
