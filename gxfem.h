@@ -51,7 +51,8 @@
  *     then, under GXFEM_IMPLEMENTATION, in the order of a cut; functions call their own and earlier sections only:
  *     what a body is made of:    >>state >>columns
  *     tools:                     >>memory >>basics >>mesh >>search >>copies >>transaction >>complex >>numbering
- *     a cut:                     >>surfaces >>pinches >>arrange >>solids >>links >>cells >>components >>integrals >>cut
+ *     a cut:                     >>surfaces >>pinches >>arrange >>solids >>links >>cells >>components >>integrals
+ *                                >>specks >>cut
  *     a sheet's thickness:       >>solidify
  *     what is held and whole:    >>anchors >>regions >>grips >>map >>fragments >>motion
  *     a step:                    >>attached >>supports >>model >>step
@@ -602,7 +603,8 @@ GXFEM_API gx_result gx_body_place(const gx_body *body, uint32_t slot, const doub
    it meets the edge: pieces that lie over each other in space are different layers, and each remembers, in material
    coordinates, how far the edge has come in it (its front). A move cuts what lies between the fronts and the edge when
    a front has advanced far enough, or before its path bends away from a straight strip. A partly cut element has no
-   mechanical effect, so that waiting costs nothing. */
+   mechanical effect, so that waiting costs nothing. The path is known to a tolerance, so that pieces of less than a
+   thousandth of an element are not meant: they stay with the material beside them. */
 typedef struct gx_blade gx_blade; /* opaque; belongs to a body, which destroys it at last */
 
 typedef struct gx_blade_desc {
@@ -1256,6 +1258,8 @@ typedef struct gxp_scratch {
     gxp_words seeded;      /* by fragment: 1 if one of its leaves is a seed */
     gxp_words leaf_points; /* of a leaf; also of >>anchors, >>grips */
     /* >>cells, >>links */
+    gxp_keys glue;          /* leaf, leaf across a wall that stays in its cell, see >>specks; ascending */
+    gxp_words cluster;      /* cells that hang together, see >>specks */
     gxp_words wall_leaves;  /* on both sides of new walls */
     gxp_words cell_leaves;  /* of a cell that is divided */
     gxp_words part_leaves;  /* of one of its connected parts */
@@ -1470,7 +1474,8 @@ static const gxp_column gxp_lists[] = {
     GXP_KEYS(tree.order), GXP_WORDS(tree.met),
     GXP_WORDS(scratch.removed), GXP_KEYS(scratch.removed_of), GXP_WORDS(scratch.pinches), GXP_WORDS(scratch.touched),
     GXP_WORDS(scratch.new_cells),
-    GXP_KEYS(scratch.links), GXP_WORDS(scratch.link_first), GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
+    GXP_KEYS(scratch.links), GXP_KEYS(scratch.glue), GXP_WORDS(scratch.cluster), GXP_WORDS(scratch.link_first),
+    GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
     GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements),
     GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_cells),
     GXP_WORDS(scratch.seed_leaves), GXP_WORDS(scratch.flooded), GXP_WORDS(scratch.seeded),
@@ -3695,6 +3700,29 @@ static gx_result gxp_new_cell(gx_body *body, uint32_t like, uint32_t *slot) {
     return GX_OK;
 }
 
+/* Lists in scratch.part_leaves the leaves that stay with one across walls. */
+static gx_result gxp_follow_glue(gx_body *body, uint32_t leaf) {
+    gxp_scratch *scratch = &body->scratch;
+    uint32_t low = 0, high = scratch->glue.count;
+    gx_result result = GX_OK;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (GXP_FIRST(scratch->glue.data[middle]) < leaf)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    for (; low < scratch->glue.count && GXP_FIRST(scratch->glue.data[low]) == leaf && result == GX_OK; low++) {
+        const uint32_t other = GXP_SECOND(scratch->glue.data[low]);
+        if (body->leaves.mark[other].stamp == scratch->stamp ||
+            body->leaves.data[other].cell != body->leaves.data[leaf].cell)
+            continue;
+        body->leaves.mark[other].stamp = scratch->stamp;
+        result = gxp_push(body, &scratch->part_leaves, other);
+    }
+    return result;
+}
+
 /* Lists in scratch.part_leaves the leaves that open facets inside the element connect to the first one. Appends their
    links to scratch.links, for now with the leaf behind each. */
 static gx_result gxp_walk_leaves(gx_body *body, uint32_t start) {
@@ -3724,6 +3752,7 @@ static gx_result gxp_walk_leaves(gx_body *body, uint32_t start) {
                 result = gxp_push(body, &scratch->part_leaves, other);
             }
         }
+        if (scratch->glue.count > 0 && result == GX_OK) result = gxp_follow_glue(body, leaf);
     }
     return result;
 }
@@ -4449,6 +4478,116 @@ static gx_result gxp_integrate_removed(gxp_cut *cut) {
     return result;
 }
 
+/* >>specks: pieces that are too small to be meant ------------------------------------------------------------------ */
+/* In: the new cells of a cut, their links and volumes. Out: pairs of leaves across the cut's walls that must stay in
+   one cell so that no speck comes off; the cut is then made again. Touches scratch. For cuts by blades only, whose
+   sheets are known to a tolerance: a surface of the caller is cut exactly. */
+
+/* Cuts are made at most so many times. */
+#define GXP_SPECK_TRIES 4
+
+/* The cell of before the cut of which a new cell is a part */
+static uint32_t gxp_cut_from(const gx_body *body, uint32_t cell) {
+    while (cell >= body->undo.counts[GXP_CELLS]) cell = body->cells.parent[cell];
+    return cell;
+}
+
+static double gxp_cell_share(const gx_body *body, uint32_t cell) {
+    return fabs(body->cells.data[cell].volume) / gxp_element_volume(body, body->cells.data[cell].element);
+}
+
+/* Lists in scratch.cluster the cells that copies join to a cell, until they have too large a share of elements. *share:
+   theirs. */
+static gx_result gxp_list_cluster(gx_body *body, uint32_t start, double below, double *share) {
+    gxp_scratch *scratch = &body->scratch;
+    uint32_t done, j, cell;
+    int k;
+    gx_result result;
+    scratch->cluster.count = 0;
+    scratch->stamp++;
+    body->cells.stamp[start] = scratch->stamp;
+    result = gxp_push(body, &scratch->cluster, start);
+    *share = 0;
+    for (done = 0; done < scratch->cluster.count && *share < below && result == GX_OK; done++) {
+        const gxp_cell *c = &body->cells.data[scratch->cluster.data[done]];
+        *share += gxp_cell_share(body, scratch->cluster.data[done]);
+        for (k = 0; k < 4 && result == GX_OK; k++) {
+            const uint32_t copy = c->copies[k], node = body->copies.node[copy];
+            for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1] && result == GX_OK; j++) {
+                const uint32_t element = body->mesh.node_elements[j];
+                const int corner = gxp_local_node(body, element, node);
+                for (cell = element; cell != GXP_NONE && result == GX_OK; cell = body->cells.data[cell].next) {
+                    if (!body->cells.data[cell].kept || body->cells.stamp[cell] == scratch->stamp ||
+                        body->cells.data[cell].copies[corner] != copy)
+                        continue;
+                    body->cells.stamp[cell] = scratch->stamp;
+                    result = gxp_push(body, &scratch->cluster, cell);
+                }
+            }
+        }
+    }
+    return result;
+}
+
+/* Finds a leaf of a new cell of the cluster and one across a wall of this cut, of the largest cell that is there. */
+static gx_result gxp_find_neighbour(gx_body *body, uint32_t cell, uint32_t pair[2], double *largest) {
+    gxp_scratch *scratch = &body->scratch;
+    gxb_complex *cx = body->complex;
+    uint32_t leaf, first, count, i;
+    gx_result result = GX_OK;
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
+         leaf = body->leaves.data[leaf].next) {
+        result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
+        for (i = 0; i < count && result == GX_OK; i++) {
+            const gxb_facet *f = gxb_complex_facet(cx, gxp_item(cx, first + i));
+            const uint32_t other = f->leaf[f->leaf[0] == leaf];
+            uint32_t next;
+            if (f->face != GXB_NONE || !gxp_is_kept(body, other)) continue;
+            next = body->leaves.data[other].cell;
+            if (body->cells.stamp[next] == scratch->stamp || gxp_cut_from(body, next) != gxp_cut_from(body, cell) ||
+                !(gxp_cell_share(body, next) > *largest))
+                continue;
+            *largest = gxp_cell_share(body, next);
+            pair[0] = leaf;
+            pair[1] = other;
+        }
+    }
+    return result;
+}
+
+/* Lists the pair of leaves that holds a new cell, if it is of a speck. */
+static gx_result gxp_hold_speck(gx_body *body, uint32_t cell, double below, uint32_t *found) {
+    gxp_scratch *scratch = &body->scratch;
+    uint32_t pair[2] = {GXP_NONE, GXP_NONE}, i;
+    double share, largest = 0;
+    gx_result result = gxp_list_cluster(body, cell, below, &share);
+    if (result != GX_OK || !(share < below)) return result;
+    for (i = 0; i < scratch->cluster.count && result == GX_OK; i++)
+        result = gxp_find_neighbour(body, scratch->cluster.data[i], pair, &largest);
+    if (result != GX_OK || pair[0] == GXP_NONE) return result;
+    ++*found;
+    result = gxp_push_key(body, &scratch->glue, pair[0], pair[1]);
+    return result == GX_OK ? gxp_push_key(body, &scratch->glue, pair[1], pair[0]) : result;
+}
+
+/* Finds the specks of a cut. below: their shares of elements. *found: 0 if there are none. */
+static gx_result gxp_find_specks(gxp_cut *cut, double below, uint32_t *found) {
+    gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
+    uint32_t i, n = 0;
+    gx_result result = GX_OK;
+    *found = 0;
+    for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++)
+        if (gxp_cell_share(body, scratch->new_cells.data[i]) < below)
+            result = gxp_hold_speck(body, scratch->new_cells.data[i], below, found);
+    if (result == GX_OK) result = gxp_sort_keys(body, &scratch->glue, 0, scratch->glue.count);
+    for (i = 0; i < scratch->glue.count; i++)
+        if (i == 0 || scratch->glue.data[i] != scratch->glue.data[i - 1])
+            scratch->glue.data[n++] = scratch->glue.data[i];
+    scratch->glue.count = n;
+    return result;
+}
+
 /* >>cut: the driver ------------------------------------------------------------------------------------------------ */
 /* gx_body_cut: check, begin, arrange, enrich, integrate, then commit, or roll back on any error. The commit cannot
    fail. It drops dead copies, wakes the touched copies and marks model, skin, view and snapshot as stale. */
@@ -4714,31 +4853,50 @@ static gx_result gxp_tell_failure(gxp_cut *cut, gx_result result, gx_failure *fa
     return result;
 }
 
-GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report, gx_failure *failure) {
-    gxp_cut cut;
+/* From surfaces to integrals. Nothing is final yet. */
+static gx_result gxp_make_cut(gxp_cut *cut) {
+    gx_body *body = cut->body;
+    gx_cut_report *report = &cut->report;
     uint32_t first_facet;
     double start;
+    gx_result result;
+    memset(report, 0, sizeof *report);
+    report->min_link_ratio = 1;
+    gxp_begin(cut);
+    first_facet = gxb_complex_facet_count(body->complex);
+    start = gxp_seconds(body);
+    result = gxp_arrange(cut);
+    report->seconds_arrangement = gxp_seconds(body) - start;
+    if (result == GX_OK) result = gxp_enrich(cut);
+    report->seconds_enrichment = gxp_seconds(body) - start - report->seconds_arrangement;
+    if (result == GX_OK) result = gxp_integrate(cut);
+    report->seconds_integrals = gxp_seconds(body) - start - report->seconds_arrangement - report->seconds_enrichment;
+    return result == GX_OK ? gxp_note_for_skin(cut, first_facet) : result;
+}
+
+/* speck_below: pieces of less than this share of an element stay with the material beside them; 0: none does */
+static gx_result gxp_cut_body(gx_body *body, const gx_cut_desc *desc, double speck_below, gx_cut_report *report,
+                              gx_failure *failure) {
+    gxp_cut cut;
+    uint32_t found = 0, tries;
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (desc == NULL) return gxp_refuse(failure, "desc");
     memset(&cut, 0, sizeof cut);
     cut.body = body;
     cut.desc = desc;
-    cut.report.min_link_ratio = 1;
     gxp_end(&cut.failure, GX_OK);
     result = gxp_check_cut(&cut);
     if (result != GX_OK) return gxp_tell_failure(&cut, result, failure);
-    gxp_begin(&cut);
-    first_facet = gxb_complex_facet_count(body->complex);
-    start = gxp_seconds(body);
-    result = gxp_arrange(&cut);
-    cut.report.seconds_arrangement = gxp_seconds(body) - start;
-    if (result == GX_OK) result = gxp_enrich(&cut);
-    cut.report.seconds_enrichment = gxp_seconds(body) - start - cut.report.seconds_arrangement;
-    if (result == GX_OK) result = gxp_integrate(&cut);
-    cut.report.seconds_integrals =
-        gxp_seconds(body) - start - cut.report.seconds_arrangement - cut.report.seconds_enrichment;
-    if (result == GX_OK) result = gxp_note_for_skin(&cut, first_facet);
+    body->scratch.glue.count = 0;
+    for (tries = 1;; tries++) {
+        result = gxp_make_cut(&cut);
+        if (result == GX_OK && speck_below > 0 && tries < GXP_SPECK_TRIES)
+            result = gxp_find_specks(&cut, speck_below, &found);
+        if (result != GX_OK || found == 0 || tries == GXP_SPECK_TRIES) break;
+        gxp_rollback(&cut);
+    }
+    body->scratch.glue.count = 0;
     if (result != GX_OK) {
         gxp_rollback(&cut);
         return gxp_tell_failure(&cut, result, failure);
@@ -4748,6 +4906,10 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
     if (body->model.resumed != 0) body->model.resumed = gxp_hash_state(body, body->copies.count);
     if (report != NULL) *report = cut.report;
     return gxp_end(failure, GX_OK);
+}
+
+GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report, gx_failure *failure) {
+    return gxp_cut_body(body, desc, 0, report, failure);
 }
 
 /* >>solidify: a sheet made solid ----------------------------------------------------------------------------------- */
@@ -11416,6 +11578,9 @@ static gx_result gxp_keep_members(gx_blade *blade, const double *edge, uint32_t 
 /* Coordinates of an edge are at most 2^GXP_EDGE_REACH: squares of distances are finite. */
 #define GXP_EDGE_REACH 110
 
+/* A blade leaves no pieces of less than this share of an element. */
+#define GXP_BLADE_SPECK 1e-3
+
 /* Cuts the body by the surfaces of all layers at once. */
 static gx_result gxp_cut_surfaces(gx_blade *blade, uint32_t kind, gx_blade_report *report, gx_failure *failure) {
     gx_body *body = blade->body;
@@ -11446,7 +11611,7 @@ static gx_result gxp_cut_surfaces(gx_blade *blade, uint32_t kind, gx_blade_repor
     memset(&desc, 0, sizeof desc);
     desc.surfaces = blade->surfaces;
     desc.surface_count = count;
-    result = gx_body_cut(body, &desc, &report->cut, failure);
+    result = gxp_cut_body(body, &desc, kind == GX_SURFACE_SHEET ? GXP_BLADE_SPECK : 0, &report->cut, failure);
     if (result == GX_OK) return result;
     gxp_end(failure, result);
     return result == GX_ERROR_NOT_CLOSED ? gxp_fail(failure, result, "tool.triangles", SIZE_MAX) : result;
@@ -13562,7 +13727,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_PREFETCHES
 #undef GXP_NONE
 #undef GXP_SUPPORT
-#undef GXP_SPECK
+#undef GXP_BLADE_SPECK
 #undef GXP_SPECK_REACH
 #undef GXP_COLUMN
 #undef GXP_TABLE
@@ -13609,6 +13774,8 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_AIR
 #undef GXP_LEAST_ADVANCE
 #undef GXP_CUT_WIDTH
+#undef GXP_BLADE_SPECK
+#undef GXP_SPECK_TRIES
 #undef GXP_CROSSING
 #undef GXP_SHEET_TRIANGLES
 #undef GXP_STRIP_REACH

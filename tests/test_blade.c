@@ -83,7 +83,8 @@ END_TEST
 static const struct {
     const char *name;
     uint32_t cells;
-} scenes_of_other_sizes[] = {{"retreat", 8}, {"slow", 4}, {"held", 4}, {"side", 4}, {"side", 5}, {"sawing", 8}};
+} scenes_of_other_sizes[] = {{"retreat", 8}, {"retreat", 4}, {"slow", 4}, {"slow", 7},  {"arms", 6},
+                             {"held", 6},    {"side", 4},    {"side", 5}, {"sawing", 8}};
 enum { OTHER_SIZES = sizeof scenes_of_other_sizes / sizeof *scenes_of_other_sizes };
 
 START_TEST(other_sizes) {
@@ -482,6 +483,44 @@ START_TEST(lift_cuts_what_waits) {
     ck_assert(report.deviation == 0 && report.cut.min_link_ratio == 1);
     ck_assert(gx_body_state_hash(s.body) == state);
     stage_close(&s);
+}
+END_TEST
+
+/* A corner of less than a thousandth of an element comes off by a surface, and stays with a blade. */
+START_TEST(specks_stay) {
+    const double off = _i == 0 ? 0.05 : 0.3; /* cubes: of the corner */
+    stage s = open_block(2, 1), cut = open_block(2, 1);
+    const double v[9] = {off, 0, 0, 0, off, 0, 0, 0, off}, middle[3] = {off / 3, off / 3, off / 3};
+    double corners[9];
+    static const uint32_t triangle[3] = {0, 1, 2};
+    gx_surface sheet;
+    gx_cut_desc desc;
+    int i, k;
+    for (i = 0; i < 9; i++) corners[i] = middle[i % 3] + 20 * (v[i] - middle[i % 3]);
+    memset(&sheet, 0, sizeof sheet);
+    memset(&desc, 0, sizeof desc);
+    sheet.vertices = corners;
+    sheet.vertex_count = 3;
+    sheet.triangles = triangle;
+    sheet.triangle_count = 1;
+    desc.surfaces = &sheet;
+    desc.surface_count = 1;
+    ck_assert_int_eq(gx_body_cut(cut.body, &desc, NULL, NULL), GX_OK);
+    stage_look(&cut);
+    ck_assert_uint_eq(cut.view.fragment_count, 2);
+    for (k = 0; k <= 40; k++) { /* the edge goes along the plane, parallel to a side of the triangle */
+        const double share = 4.0 * k / 40 - 2;
+        double edge[6];
+        for (i = 0; i < 6; i++)
+            edge[i] = middle[i % 3] + share * (v[6 + i % 3] - middle[i % 3]) / off +
+                      (i < 3 ? -3 : 3) * (v[3 + i % 3] - v[i % 3]) / off;
+        stage_move_edge(&s, edge, 2);
+    }
+    stage_lift(&s);
+    check_stage(&s, (uint64_t)_i);
+    ck_assert_uint_eq(s.view.fragment_count, _i == 0 ? 1 : 2);
+    stage_close(&s);
+    stage_close(&cut);
 }
 END_TEST
 
@@ -1011,6 +1050,7 @@ int main(void) {
     tcase_add_test(tests, second_stroke);
     tcase_add_test(tests, several_strokes);
     tcase_add_test(tests, lift_cuts_what_waits);
+    tcase_add_loop_test(tests, specks_stay, 0, 2);
     tcase_add_test(tests, scope);
     tcase_add_test(tests, two_blades);
     tcase_add_test(tests, cut_between_moves);
