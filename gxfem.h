@@ -4565,7 +4565,7 @@ static gx_result gxp_hold_speck(gx_body *body, uint32_t cell, double below, uint
     for (i = 0; i < scratch->cluster.count && result == GX_OK; i++)
         result = gxp_find_neighbour(body, scratch->cluster.data[i], pair, &largest);
     if (result != GX_OK || pair[0] == GXP_NONE) return result;
-    ++*found;
+    *found += 1;
     result = gxp_push_key(body, &scratch->glue, pair[0], pair[1]);
     return result == GX_OK ? gxp_push_key(body, &scratch->glue, pair[1], pair[0]) : result;
 }
@@ -13727,7 +13727,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_PREFETCHES
 #undef GXP_NONE
 #undef GXP_SUPPORT
-#undef GXP_BLADE_SPECK
+#undef GXP_SPECK
 #undef GXP_SPECK_REACH
 #undef GXP_COLUMN
 #undef GXP_TABLE
