@@ -11379,7 +11379,7 @@ static gx_result gxp_count_heirs(gx_blade *blade) {
     gx_result result = gxp_start_words(blade->body, &blade->heirs, count);
     if (result != GX_OK) return result;
     blade->heirs.count = count;
-    memset(blade->heirs.data, 0, count * sizeof *blade->heirs.data);
+    for (k = 0; k < count; k++) blade->heirs.data[k] = 0;
     for (layer = 0; layer < blade->near.layer_count && result == GX_OK; layer++) {
         result = gxp_find_owners(blade, layer);
         for (k = 0; k < blade->owners.count; k++) blade->heirs.data[blade->owners.data[k]]++;
