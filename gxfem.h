@@ -12219,21 +12219,21 @@ static double gxp_plane_height(const gx_body *body, const gxb_plane_filter *plan
  */
 static gx_result gxp_add_leaf_spans(gx_body *body, const gxp_cell_part *part, uint32_t reference, double low,
                                     double high) {
-    gx_result result = GX_OK;
-    while (result == GX_OK && (reference & 1)) {
+    while (reference & 1) {
         const gxb_node *node = gxb_complex_tree_node(body->complex, reference >> 1);
         const gxb_plane_filter *plane = &gxb_complex_plane(body->complex, node->plane)->filter;
         const double touch = ldexp(part->touch * gxp_size(plane->n), gxb_complex_shift(body->complex)),
                      a = gxp_plane_height(body, plane, part->rest[0]), b = gxp_plane_height(body, plane, part->rest[1]);
         double front_low = low, front_high = high;
+        gx_result result = GX_OK;
         if (gxp_narrow(a + touch, b + touch, &front_low, &front_high))
             result = gxp_add_leaf_spans(body, part, node->child[0], front_low, front_high);
-        if (!gxp_narrow(touch - a, touch - b, &low, &high)) return result;
+        if (result != GX_OK || !gxp_narrow(touch - a, touch - b, &low, &high)) return result;
         reference = node->child[1];
     }
-    if (result != GX_OK || !gxp_is_kept(body, reference >> 1) || body->leaves.data[reference >> 1].cell != part->slot)
-        return result;
-    return gxp_push_span(part, low, high);
+    return gxp_is_kept(body, reference >> 1) && body->leaves.data[reference >> 1].cell == part->slot
+             ? gxp_push_span(part, low, high)
+             : GX_OK;
 }
 
 /* Narrows a range of a part of the edge to what is in the deformed element of a cell. *touch: next to nothing, as a
@@ -12333,7 +12333,7 @@ static gxp_span *gxp_span_at(const gx_blade *blade, uint32_t index) {
 /* Does a span go on where others of its layer have come to? */
 static int gxp_goes_on(const gxp_span *span, const gxp_span *reach) {
     if (span->segment == reach->segment) return span->low <= reach->high;
-    return span->segment == reach->segment + 1 && reach->high >= 1 && span->low <= 0;
+    return span->segment == reach->segment + 1 && reach->high >= 1; /* the point between the two is in the layer */
 }
 
 /* Sorts the spans by layer, and takes from each what is in those before it: so a layer has each place once. */
@@ -12347,7 +12347,7 @@ static gx_result gxp_join_spans(gx_blade *blade) {
     for (i = 0; i < blade->span_count && result == GX_OK; i++)
         result = gxp_push_key(blade->body, order, gxp_layer_of(&blade->near, blade->spans[i].slot), i);
     if (result == GX_OK) result = gxp_sort_keys(blade->body, order, 0, order->count);
-    for (i = 0; i < order->count && result == GX_OK; i++) {
+    for (i = 0; i < order->count; i++) {
         gxp_span *span = gxp_span_at(blade, i);
         span->begins =
             reach == NULL || GXP_FIRST(order->data[i]) != GXP_FIRST(order->data[i - 1]) || !gxp_goes_on(span, reach);
