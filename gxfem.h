@@ -546,9 +546,10 @@ typedef struct gx_hit {
     /* Of the skin. UINT32_MAX: the ray meets nothing, and the rest is 0; or a located point, which has none */
     uint32_t triangle;
     uint32_t fragment, element;
-    uint32_t surface; /* of the triangle; of a located point: 0 */
-    uint32_t cell;    /* below gx_view.cell_count */
-    uint32_t slot;    /* names the cell also after further cuts, see gx_body_place */
+    uint32_t surface;    /* of the triangle; of a located point: 0 */
+    uint32_t cell;       /* below gx_view.cell_count */
+    uint32_t slot;       /* names the cell also after further cuts, see gx_body_place */
+    uint32_t slot_count; /* gx_view.slot_count then: what is divided off the cell later has a slot from there on */
     /* of a ray: in lengths of direction. Of a located point: m, from the point of space; 0: that is in the cell */
     double distance;
     double position[3], material[3]; /* deformed, m; material coordinates, m */
@@ -560,10 +561,11 @@ typedef struct gx_hit {
 /* The point of a hit, for springs and contact. Keep the hit as long: the point may refer to it. If the ray met nothing,
    the point has count 0, which steps refuse. */
 GXFEM_API gxs_point gx_hit_point(const gx_hit *hit);
-/* Makes an anchor of a hit. Its position is exactly in the part of the body that was hit: the hit's material point, or,
-   where rounding has put that beside the part, the nearest point found on the way into it. Errors: ARGUMENT, EMPTY (the
-   ray met nothing), STALE (a cut has begun another epoch since the hit), INDEX, NOT_FINITE, RANGE, FLAT (the part is
-   too thin for points given by doubles), MEMORY, LIMIT. */
+/* Makes an anchor of a hit. Its position is exactly in the cell that was hit, or in what cuts have left of it since:
+   the hit's material point, or, where rounding or a cut has put that beside it, the nearest point found on the way into
+   it. So it is on the hit's side of all cuts, also of those that end in the body. Errors: ARGUMENT, EMPTY (the ray met
+   nothing, or the cell was removed), STALE (a cut has begun another epoch since the hit), INDEX, NOT_FINITE, RANGE,
+   FLAT (the cell is too thin for points given by doubles), MEMORY, LIMIT. */
 GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *anchor,
                                   gx_failure *failure /* or NULL */);
 /* Finds the nearest triangle on a ray, the first of equally near ones. Takes a pass over the copies, then no more than
@@ -5308,12 +5310,14 @@ static gx_result gxp_try_leaf(gx_body *body, uint32_t leaf, const double x[3], g
     return result;
 }
 
-/* Is the cell kept, and does it move all that moves the hit, if there is one? */
-static int gxp_moves_hit(const gxp_cell *cell, const gx_hit *hit) {
-    uint32_t i, k, found = 0;
-    for (i = 0; hit != NULL && i < hit->copy_count && i < GX_HIT_COPIES; i++)
-        for (k = 0; k < 4; k++) found += cell->copies[k] == hit->copies[i];
-    return cell->kept && (hit == NULL || found == hit->copy_count);
+/* Is the cell kept, and is it the one that was hit, or a part into which that was divided since? hit: NULL, or one
+   whose slot is in the cell's element and was there. Copies do not tell: cells on the sides of a sheet that ends beside
+   the element share them all. */
+static int gxp_is_hit(const gx_body *body, uint32_t slot, const gx_hit *hit) {
+    const int kept = body->cells.data[slot].kept != 0;
+    if (hit == NULL) return kept;
+    while (slot >= hit->slot_count) slot = body->cells.parent[slot];
+    return kept && slot == hit->slot;
 }
 
 /* Looks for a leaf of the right cell at x and some roundings around. Stands at x, if the leaf has it, or there. */
@@ -5327,7 +5331,7 @@ static gx_result gxp_try_near(gx_body *body, uint32_t element, const double x[3]
             uint32_t leaf = 0;
             gxp_neighbour_point(x, i, width, p);
             if (gxp_leaf_at(body, element, p, NULL, &leaf) != GX_OK || gxp_element_side(body, element, p) < 0 ||
-                !gxp_is_kept(body, leaf) || !gxp_moves_hit(&body->cells.data[body->leaves.data[leaf].cell], hit))
+                !gxp_is_kept(body, leaf) || !gxp_is_hit(body, body->leaves.data[leaf].cell, hit))
                 continue;
             result = gxp_find_inside(body, leaf, inside, &found);
             if (result == GX_OK && found && gxp_stand(body, leaf, x, x, inside, best))
@@ -5337,14 +5341,14 @@ static gx_result gxp_try_near(gx_body *body, uint32_t element, const double x[3]
 }
 
 /* Finds where an anchor can stand for a point of an element, at most best->moved from it. hit: in the cell that was
-   hit; NULL: in any cell that is left */
+   hit, or what is left of it; NULL: in any cell that is left */
 static gx_result gxp_find_footing(gx_body *body, uint32_t element, const double x[3], const gx_hit *hit,
                                   gxp_footing *best) {
     gx_result result = gxp_try_near(body, element, x, hit, best);
     const int near = best->found;
     uint32_t cell, leaf;
     for (cell = element; cell != GXP_NONE && result == GX_OK && !near; cell = body->cells.data[cell].next) {
-        if (!gxp_moves_hit(&body->cells.data[cell], hit)) continue;
+        if (!gxp_is_hit(body, cell, hit)) continue;
         for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
              leaf = body->leaves.data[leaf].next)
             result = gxp_try_leaf(body, leaf, x, best);
@@ -5386,6 +5390,7 @@ GXFEM_API gx_result gx_body_anchor(gx_body *body, uint32_t element, const double
 
 GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *anchor, gx_failure *failure) {
     gxp_footing best;
+    uint32_t slot;
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (hit == NULL) return gxp_refuse(failure, "hit");
@@ -5393,6 +5398,11 @@ GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *a
     if (hit->copy_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "hit", SIZE_MAX);
     if (hit->epoch != body->cuts.epoch) return gxp_fail(failure, GX_ERROR_STALE, "hit.epoch", SIZE_MAX);
     if (hit->element >= body->mesh.element_count) return gxp_fail(failure, GX_ERROR_INDEX, "hit.element", SIZE_MAX);
+    if (hit->slot >= body->cells.count || hit->slot >= hit->slot_count ||
+        body->cells.data[hit->slot].element != hit->element)
+        return gxp_fail(failure, GX_ERROR_INDEX, "hit.slot", SIZE_MAX);
+    for (slot = hit->element; slot != GXP_NONE && !gxp_is_hit(body, slot, hit);) slot = body->cells.data[slot].next;
+    if (slot == GXP_NONE) return gxp_fail(failure, GX_ERROR_EMPTY, "hit.slot", SIZE_MAX);
     result = gxb_complex_check_point(body->complex, hit->material);
     if (result != GX_OK) return gxp_fail(failure, result, "hit.material", SIZE_MAX);
     memset(&best, 0, sizeof best);
@@ -9269,6 +9279,7 @@ static void gxp_start_hit(gx_body *body, uint32_t slot, const double weights[4],
     hit->element = cell->element;
     hit->cell = body->view.indices.data[slot];
     hit->slot = slot;
+    hit->slot_count = body->cells.count;
     hit->epoch = body->cuts.epoch;
     for (n = 0; n < 4; n++)
         if (weights[n] > 0) {
@@ -9664,6 +9675,7 @@ static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double sh
     hit->element = s->element[triangle];
     hit->surface = s->surface[triangle];
     hit->slot = s->cell[triangle];
+    hit->slot_count = body->cells.count;
     hit->cell = body->view.indices.data[hit->slot];
     for (i = 0; i < 3; i++) {
         const size_t v = s->triangles[3 * (size_t)triangle + i];
