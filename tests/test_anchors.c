@@ -190,6 +190,7 @@ static void expect_point(gx_body *body, const workload *w, const gx_anchor *a, u
     double x[3] = {0, 0, 0}, moved[3], sum = 0;
     uint32_t i, k;
     (void)w;
+    memset(&point, 0, sizeof point);
     ck_assert_int_eq(gx_body_anchor_point(body, a, &point, moved, NULL), GX_OK);
     CHECK_SEED(point.count >= 1 && point.count <= 4 && point.epoch == view.epoch && point.copies == NULL, seed);
     for (k = 0; k < point.count; k++) {
@@ -307,7 +308,7 @@ START_TEST(hits_on_faces_of_cuts) {
     static cuts c;
     workload w = grid(1, 1, 1, 6);
     gx_body *body = body_of(&w);
-    gx_skin skin;
+    gx_skin skin = {0};
     double *x;
     int trial, made = 0;
     random_seed(seed);
@@ -546,7 +547,7 @@ START_TEST(steps_by_anchors) {
     gx_body *by_anchors, *by_copies = NULL;
     gx_anchor anchors[6];
     gxs_spring springs[2], of_points[2];
-    gxs_point points[2], point;
+    gxs_point points[2], point = {0};
     gxs_plane ground;
     gx_step_desc step = step_of(0.01), other;
     gx_view view;
@@ -696,7 +697,7 @@ START_TEST(copies_and_going_back) {
     gx_anchor anchors[50];
     gxs_point before[50], point;
     unsigned char *bytes;
-    size_t size, i;
+    size_t size = 0, i;
     random_seed(seed);
     memset(&c, 0, sizeof c);
     for (i = 0; i < 50; i++) {
@@ -766,6 +767,7 @@ START_TEST(far_small_and_flat) {
         double x[3], back[3] = {0, 0, 0};
         uint32_t j;
         int k;
+        memset(&point, 0, sizeof point);
         random_material(&w, element, x);
         ck_assert_int_eq(gx_body_anchor(body, element, x, &a, NULL), GX_OK);
         ck_assert_int_eq(gx_body_anchor_point(body, &a, &point, NULL, NULL), GX_OK);
