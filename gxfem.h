@@ -51,14 +51,14 @@
  *     then, under GXFEM_IMPLEMENTATION, in the order of a cut; functions call their own and earlier sections only:
  *     what a body is made of:    >>state >>columns
  *     tools:                     >>memory >>basics >>mesh >>search >>copies >>transaction >>complex >>numbering
- *     a cut:                     >>surfaces >>pinches >>arrange >>solids >>links >>cells >>components
- *                                >>integrals >>settle >>cut
+ *     a cut:                     >>surfaces >>pinches >>arrange >>solids >>links >>cells >>components >>integrals
+ *                                >>specks >>settle >>cut
  *     a sheet's thickness:       >>solidify
  *     what is held and whole:    >>anchors >>regions >>grips >>map >>fragments >>motion
  *     a step:                    >>attached >>supports >>model >>step
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
- *     a blade in space:          >>layers >>edges >>fronts >>strokes >>blade >>carve
+ *     a blade in space:          >>layers >>edges >>fronts >>strokes >>blade >>contacts >>carve
  *     beginning, end, bytes:     >>create >>hashes >>stream >>save
  *
  * Words. Facet: a polygon inside an element or in an element face, made by cuts. Wall: a facet that a sheet covers.
@@ -546,9 +546,10 @@ typedef struct gx_hit {
     /* Of the skin. UINT32_MAX: the ray meets nothing, and the rest is 0; or a located point, which has none */
     uint32_t triangle;
     uint32_t fragment, element;
-    uint32_t surface; /* of the triangle; of a located point: 0 */
-    uint32_t cell;    /* below gx_view.cell_count */
-    uint32_t slot;    /* names the cell also after further cuts, see gx_body_place */
+    uint32_t surface;    /* of the triangle; of a located point: 0 */
+    uint32_t cell;       /* below gx_view.cell_count */
+    uint32_t slot;       /* names the cell also after further cuts, see gx_body_place */
+    uint32_t slot_count; /* gx_view.slot_count then: what is divided off the cell later has a slot from there on */
     /* of a ray: in lengths of direction. Of a located point: m, from the point of space; 0: that is in the cell */
     double distance;
     double position[3], material[3]; /* deformed, m; material coordinates, m */
@@ -560,10 +561,11 @@ typedef struct gx_hit {
 /* The point of a hit, for springs and contact. Keep the hit as long: the point may refer to it. If the ray met nothing,
    the point has count 0, which steps refuse. */
 GXFEM_API gxs_point gx_hit_point(const gx_hit *hit);
-/* Makes an anchor of a hit. Its position is exactly in the part of the body that was hit: the hit's material point, or,
-   where rounding has put that beside the part, the nearest point found on the way into it. Errors: ARGUMENT, EMPTY (the
-   ray met nothing), STALE (a cut has begun another epoch since the hit), INDEX, NOT_FINITE, RANGE, FLAT (the part is
-   too thin for points given by doubles), MEMORY, LIMIT. */
+/* Makes an anchor of a hit. Its position is exactly in the cell that was hit, or in what cuts have left of it since:
+   the hit's material point, or, where rounding or a cut has put that beside it, the nearest point found on the way into
+   it. So it is on the hit's side of all cuts, also of those that end in the body. Errors: ARGUMENT, EMPTY (the ray met
+   nothing, or the cell was removed), STALE (a cut has begun another epoch since the hit), INDEX, NOT_FINITE, RANGE,
+   FLAT (the cell is too thin for points given by doubles), MEMORY, LIMIT. */
 GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *anchor,
                                   gx_failure *failure /* or NULL */);
 /* Finds the nearest triangle on a ray, the first of equally near ones. Takes a pass over the copies, then no more than
@@ -603,7 +605,8 @@ GXFEM_API gx_result gx_body_place(const gx_body *body, uint32_t slot, const doub
    it meets the edge: pieces that lie over each other in space are different layers, and each remembers, in material
    coordinates, how far the edge has come in it (its front). A move cuts what lies between the fronts and the edge when
    a front has advanced far enough, or before its path bends away from a straight strip. A partly cut element has no
-   mechanical effect, so that waiting costs nothing. */
+   mechanical effect, so that waiting costs nothing. The path is known to a tolerance, so that pieces of less than a
+   thousandth of an element are not meant: they stay with the material beside them. */
 typedef struct gx_blade gx_blade; /* opaque; belongs to a body, which destroys it at last */
 
 typedef struct gx_blade_desc {
@@ -628,22 +631,40 @@ GXFEM_API void gx_blade_destroy(gx_blade *blade); /* or NULL */
    are no more. After gx_body_restore the body has the blades of the other: those with the same index stay valid, those
    that the other lacks are lifted. */
 GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index);
-/* Moves the edge and cuts what it has passed since the last move, relative to the material. edge: point_count x 3, in
-   space, m; as many points at each move until the blade is lifted, 2 or more. scope: fragments that alone are cut,
-   below gx_view.fragment_count; count 0: all. On an error body and blade are as they were.
-   Errors: ARGUMENT (also: the first edge is inside the material and starts_inside is 0, index: point), INDEX,
-   NOT_FINITE, RANGE, LIMIT, MEMORY. */
+/* Moves the edge and cuts what it has passed since the last move, relative to the material. A long move goes in steps
+   of an element at most. edge: point_count x 3, in space, m; as many points at each move until the blade is lifted, 2
+   or more. scope: fragments that alone are cut, below gx_view.fragment_count; count 0: all. On an error body and blade
+   are as they were. Errors: ARGUMENT (also: the first edge is inside the material and starts_inside is 0, index:
+   point), INDEX, NOT_FINITE and RANGE (edge, or "displacement", index: copy), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t point_count,
                                   const uint32_t *scope_fragments, size_t scope_fragment_count,
                                   gx_blade_report *report /* or NULL */, gx_failure *failure /* or NULL */);
-/* Cuts what waits, and forgets fronts and edge: the next move begins anew. Errors: ARGUMENT, LIMIT, MEMORY. */
+/* Cuts what waits, and forgets fronts and edge: the next move begins anew. Errors: ARGUMENT, NOT_FINITE and RANGE
+   ("displacement", index: copy), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_blade_lift(gx_blade *blade, gx_blade_report *report /* or NULL */,
                                   gx_failure *failure /* or NULL */);
+
+/* A place of a blade's edge that is in the material: to push it, to make a sound, for the hand that holds the blade */
+typedef struct gx_blade_contact {
+    gx_hit hit;    /* the material there; position: the place; distance: 0 */
+    double along;  /* where on the edge: index of a point, + share of the way to the next */
+    double length; /* m: how much of the edge it stands for, half of that on each side of it */
+} gx_blade_contact;
+/* Finds what of the edge, where the last move left it, is in the body as it is now, which may have moved since. Nothing
+   of body or blade changes. Contacts of a piece are evenly spaced, about half an element apart, and come in the order
+   along the edge; their lengths add up to the length in that piece. Where pieces overlap each has its own contacts, and
+   where the edge lies in a wall the pieces on both sides have. contacts: room for capacity; after an error they mean
+   nothing. *count: how many there are, also after CAPACITY; 0 while the blade is lifted.
+   Errors: ARGUMENT, NOT_FINITE (a copy's displacement), RANGE (likewise: 2^128 or more), CAPACITY (capacity is below
+   *count), LIMIT, MEMORY. */
+GXFEM_API gx_result gx_blade_contacts(gx_blade *blade, gx_blade_contact *contacts, size_t capacity, size_t *count,
+                                      gx_failure *failure /* or NULL */);
 
 /* Removes the material that a closed tool in space covers now (a drill, a punch), from each piece where it meets the
    tool. tool: vertices in space, m; kind and scope_slots are not read. Its triangles are divided where elements
    are smaller.
-   Errors: as gx_body_cut; a field of the tool reads "tool.vertices". */
+   Errors: as gx_body_cut; a field of the tool reads "tool.vertices"; NOT_FINITE and RANGE also of "displacement"
+   (index: copy). */
 GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_report *report /* or NULL */,
                                   gx_failure *failure /* or NULL */);
 
@@ -767,11 +788,13 @@ typedef struct gxp_mesh {
     /* node_count: GXP_NODE_PINCHED, GXP_EDGE_PINCHED */
     uint8_t *node_pinched;
     float *texture; /* node_count x 2, or NULL */
-    uint32_t element_count, element_capacity[4];
+    uint32_t element_count, element_capacity[5];
     uint32_t *node_elements; /* element_count x 4: elements around each node */
     gxp_box *boxes;
     uint32_t *box_elements;      /* element_count, in tree order */
     uint32_t *element_materials; /* element_count */
+    double *sizes;               /* element_count: cube roots of six times the volumes, m; NULL: no blade has asked */
+    double mean_size, largest_size;
     uint32_t box_count;
     uint32_t edge_count, edge_capacity[1];
     uint8_t *edge_pinched; /* edge_count: elements around it meet in the edge only */
@@ -1057,17 +1080,26 @@ typedef struct gxp_skin {
 
 /* --- blades --- */
 
+typedef struct gxp_bounds {
+    double low[3], high[3]; /* low above high: nothing is there */
+} gxp_bounds;
+
 /* A place on a blade's edge, as one layer sees it */
 typedef struct gxp_front_vertex {
     double rest[3];     /* material point; in the air at most an element's size away from the layer */
     double extended[3]; /* the same by the extended map alone: in the air as far away as the edge is */
     double position[3]; /* in space, when it was seen */
+    double foot[3];     /* material point of the layer next to it; in the layer: rest */
+    double foot_at[3];  /* in space, when it was seen */
     double ahead[3];    /* in which direction the front came here, of length 1; 0: it began here */
     double distance;    /* from the layer, m; 0: inside */
     double size;        /* of the element, m */
     double along;       /* index of a point of the edge, + share of the way to the next */
     uint32_t element;   /* whose map it is */
-    uint32_t unused;    /* rows are saved as bytes */
+    uint8_t soft;       /* 1: says where the layer is on a straight line of the front; no corner of strips */
+    uint8_t gap;        /* 1: the front ends here, and goes on elsewhere */
+    uint8_t walled;     /* 1: in the air between walls of the layer; rest is on the nearer one */
+    uint8_t unused;
 } gxp_front_vertex;
 typedef struct gxp_front_list {
     gxp_front_vertex *data;
@@ -1084,6 +1116,7 @@ typedef struct gxp_layer {         /* words only: rows are saved as bytes */
     uint32_t latest, latest_count; /* vertices: how far the edge had come at the last move; waits to be cut */
     uint32_t path, path_count;     /* points: where the edge has been since the front was cut */
     uint32_t sheet, sheet_count;   /* points, 3 for each triangle: the last strips */
+    uint32_t seen, seen_count;     /* vertices: how it saw the edge at the last move */
 } gxp_layer;
 typedef struct gxp_layer_list {
     gxp_layer *data;
@@ -1097,27 +1130,42 @@ typedef struct gxp_blade_state { /* what lasts from move to move */
     gxp_keys members;    /* slot of a near cell, layer; ascending */
     uint32_t slot_count; /* of the body then */
     gxp_points edge;     /* none: the blade is lifted */
+    double middle[3];    /* of the deformed body's box then */
 } gxp_blade_state;
 
 typedef struct gxp_close_cell { /* a kept cell around the edge */
     uint32_t slot, layer;
+    uint32_t quad, unused;                 /* the first quad in whose box it is */
     double corners[4][3], low[3], high[3]; /* deformed */
     double middle[3], radius;              /* of a ball around the corners */
     double stretch;                        /* volume / volume at rest of its element; negative: inverted */
     double size;                           /* of its element, m */
-    int is_near;                           /* 0: looked at in vain */
+    uint32_t facets, facet_count;          /* of a divided element's cell: in lambdas, once they were asked for */
+    uint8_t is_near;                       /* 0: looked at in vain */
+    uint8_t is_divided;                    /* its element */
+    uint8_t has_facets;
 } gxp_close_cell;
+typedef struct gxp_plate { /* a triangle, ready to be asked what is near it */
+    double x[3][3];
+    double normal[3], square;    /* of the normal's length; 0: all of the triangle is near its edges */
+    double over[3][3];           /* normals of its edges in its plane, inward */
+    double along[3][3], size[3]; /* edges, the squares of their lengths */
+} gxp_plate;
 typedef struct gxp_vicinity {
     gxp_close_cell *cells;
     uint32_t count, capacity;
     uint32_t layer_count;
     gxp_words of_slot;     /* by slot: index in cells, if that has the slot */
-    gxp_words of_copy;     /* by copy: index of a cell with that copy, if it has it */
-    gxp_words parents;     /* of cells, see gxp_find */
+    gxp_words of_copy;     /* by copy: 1 + rank of the first cell with it; 0 between moves */
+    gxp_words quad_start;  /* of each quad: the first rank of its cells */
+    gxp_words ranked;      /* indices in cells by quad: layers are numbered and equals ordered by rank */
+    gxp_words parents;     /* of ranks, see gxp_find */
     gxp_keys order;        /* place along the axis, index in cells: by layer, ascending */
     gxp_words layer_start; /* layer_count + 1, into order */
     int axis;
-    double widest; /* of the cells along the axis */
+    double widest;   /* of the cells along the axis */
+    double *lambdas; /* count x 3 x 4: triangles that bound cells, by coordinates in their elements */
+    uint32_t lambda_count, lambda_capacity;
 } gxp_vicinity;
 
 /* Where a place on the edge lies by a layer's front */
@@ -1127,45 +1175,64 @@ typedef struct gxp_relation {
     uint32_t segment; /* of the front, the nearest */
     uint8_t ahead;    /* 1: the front advances there */
     uint8_t strays;   /* 1: the edge has left its cut through the side */
-    uint8_t beyond;   /* 1: past an end of the front */
 } gxp_relation;
+
+/* A part of a segment of the edge that is in a cell */
+typedef struct gxp_span {
+    double low, high; /* shares of the segment */
+    uint32_t slot, segment;
+    int begins; /* once spans are joined: it does not continue the one before it */
+} gxp_span;
 
 struct gx_blade {
     gx_body *body;
     gx_blade *next;                         /* of the body's */
     double tolerance, min_advance, largest; /* m; the largest size of elements */
+    double step;                            /* m: the edge goes by no more at once */
     uint32_t max_samples;
     int starts_inside;
-    gxp_blade_state now, then; /* then: what a move makes; it becomes now if the move succeeds */
+    double slack;              /* m: how far cells may be outside of the tree's boxes now */
+    gxp_blade_state now, then; /* then: what a step of a move makes */
+    gxp_blade_state start;     /* what was now before the move, during the later steps of one */
     /* working memory of a move */
     gxp_vicinity near;
-    gxp_points quads;   /* 4 for each part of the strip that was swept; of a layer: corners of its strips, in space */
-    gxp_words found;    /* cells around a quad */
-    gxp_words in_scope; /* by fragment: 1 if it is in the scope */
-    gxp_words scope;    /* slots of each surface in turn */
-    gxp_points corners; /* 3 for each triangle of each surface in turn */
+    gxp_points quads;  /* 4 for each part of the strip that was swept */
+    gxp_plate *plates; /* of the quads, 2 each; of a layer: of its strips */
+    gxp_bounds *boxes; /* around each quad, wider by the largest element */
+    uint32_t plate_capacity, box_capacity;
+    gxp_words found;          /* cells in a box */
+    gxp_words in_scope;       /* by fragment: 1 if it is in the scope */
+    gxp_words scope;          /* slots of each surface in turn */
+    gxp_points corners;       /* 3 for each triangle of each surface in turn */
     gxp_words surface_starts; /* of each surface: in scope, in corners */
     gxp_words triangles;      /* 0, 1, 2 ... */
     gx_surface *surfaces;
     uint32_t surface_capacity;
     /* of one layer at a move */
-    gxp_front_list front, latest, samples, advanced;
+    gxp_front_list front, latest, seen, samples, advanced;
     gxp_front_list strip, cut; /* 3 for each triangle: of one strip, of all */
     gxp_points path, sheet;
-    gxp_relation *relations; /* of the samples */
+    /* the edge at a move, with a point wherever a layer had seen it */
+    gxp_front_list places;    /* on the edge of the last move: along, ascending */
+    gxp_points carried, goal; /* where the material has carried the edge of the last move to; where it goes */
+    gxp_points from, to;      /* a step's way */
+    gxp_relation *relations;  /* of the samples */
     uint32_t relation_capacity;
-    uint32_t last_sight; /* a near cell: the next place on the edge is not far from it */
-    gxp_words needed;    /* by sample: 1 if it is not on a line with others */
-    gxp_words owners;    /* old layers that flow into it */
-    gxp_keys halved;     /* edges of a tool, two vertices each */
-    gxp_words divided;   /* triangles of a tool */
+    uint32_t last_sight;    /* a near cell: the next place on the edge is not far from it */
+    gxp_words needed;       /* by sample: 1 if it is not on a line with others */
+    gxp_words owners;       /* old layers that flow into it */
+    gxp_words heirs;        /* by old layer: new ones into which it flows */
+    gxp_front_list owned;   /* their fronts in turn, with places on the edge of now */
+    gxp_words owned_starts; /* owners + 1: of each in owned */
+    gxp_keys halved;        /* edges of a tool, two vertices each */
+    gxp_words divided;      /* triangles of a tool */
+    /* of the contacts */
+    gxp_span *spans; /* by segment, low and slot */
+    uint32_t span_count, span_capacity;
+    gxp_keys span_order; /* layer, index in spans */
 };
 
 /* --- a cache: boxes over the deformed cells --- */
-
-typedef struct gxp_bounds {
-    double low[3], high[3]; /* low above high: nothing is there */
-} gxp_bounds;
 
 /* Boxes over the deformed cells, see >>tree */
 typedef struct gxp_tree {
@@ -1184,6 +1251,7 @@ typedef struct gxp_tree {
     gxp_words found; /* slots of cells at a point, ascending */
     gxp_words near;  /* places in mesh.box_elements: of elements near points that are located together */
     gxp_keys order;  /* place on a curve, point */
+    gxp_words met;   /* of each box on the way down: the boxes that it meets of those that are walked together */
 } gxp_tree;
 enum {
     GXP_BOX_MOVED = 1, /* copies that it must contain have moved */
@@ -1208,6 +1276,7 @@ typedef struct gxp_scratch {
     uint32_t scope_stamp; /* of the cells that a surface of the cut may touch */
     /* a cut, from step to step */
     gxp_words removed;    /* leaves that solids remove */
+    gxp_keys removed_of;  /* element, leaf of it that solids remove */
     gxp_words pinches;    /* nodes at which walls may break joints */
     gxp_words touched;    /* cells beside new walls and removed leaves, ascending */
     gxp_words new_cells;  /* into which these fell apart: their copies and integrals are to be found */
@@ -1226,6 +1295,8 @@ typedef struct gxp_scratch {
     gxp_words seeded;      /* by fragment: 1 if one of its leaves is a seed */
     gxp_words leaf_points; /* of a leaf; also of >>anchors, >>grips */
     /* >>cells, >>links */
+    gxp_keys glue;          /* leaf, leaf across a wall that stays in its cell, see >>specks; ascending */
+    gxp_words cluster;      /* cells that hang together, see >>specks */
     gxp_words wall_leaves;  /* on both sides of new walls */
     gxp_words cell_leaves;  /* of a cell that is divided */
     gxp_words part_leaves;  /* of one of its connected parts */
@@ -1303,7 +1374,8 @@ static const gxp_column gxp_element_columns[] = {
     GXP_COLUMN(mesh, node_elements,     element_capacity, 0, 4 * sizeof(uint32_t), 0),
     GXP_COLUMN(mesh, boxes,             element_capacity, 1, sizeof(gxp_box), 0),
     GXP_COLUMN(mesh, box_elements,      element_capacity, 2, sizeof(uint32_t), 0),
-    GXP_COLUMN(mesh, element_materials, element_capacity, 3, sizeof(uint32_t), 0)};
+    GXP_COLUMN(mesh, element_materials, element_capacity, 3, sizeof(uint32_t), 0),
+    GXP_COLUMN(mesh, sizes,             element_capacity, 4, sizeof(double), GXP_LATER)};
 static const gxp_column gxp_edge_columns[] = {
     GXP_COLUMN(mesh, edge_pinched, edge_capacity, 0, sizeof(uint8_t), 0)};
 static const gxp_column gxp_material_columns[] = {
@@ -1332,7 +1404,12 @@ static const gxp_column gxp_copy_columns[] = {
     GXP_COLUMN(copies, history[2],   capacity,  9, 3 * sizeof(double), GXP_LATER),
     GXP_COLUMN(copies, history[3],   capacity, 10, 3 * sizeof(double), GXP_LATER),
     GXP_COLUMN(copies, seen,         capacity, 11, 3 * sizeof(double), GXP_LATER)};
-enum { GXP_TEXTURE_COLUMN = 3, GXP_FIRST_HISTORY = 7, GXP_SEEN_COLUMN = 11 }; /* places in the lists above */
+enum { /* places in the lists above */
+    GXP_TEXTURE_COLUMN = 3,
+    GXP_SIZE_COLUMN = 4,
+    GXP_FIRST_HISTORY = 7,
+    GXP_SEEN_COLUMN = 11
+};
 static const gxp_column gxp_surface_columns[] = {
     GXP_COLUMN(cuts, surfaces, surface_capacity, 0, sizeof(gxp_surface_record), GXP_TOPOLOGY)};
 static const gxp_column gxp_map_columns[] = {
@@ -1436,9 +1513,11 @@ static const gxp_column gxp_lists[] = {
     GXP_LIST(tree.own_boxes, tree.own_box_capacity, sizeof(gxp_bounds)),
     GXP_LIST(tree.boxes, tree.box_capacity, sizeof(gxp_bounds)), GXP_WORDS(tree.marks),
     GXP_WORDS(tree.node_first), GXP_WORDS(tree.node_clusters), GXP_WORDS(tree.found), GXP_WORDS(tree.near),
-    GXP_KEYS(tree.order),
-    GXP_WORDS(scratch.removed), GXP_WORDS(scratch.pinches), GXP_WORDS(scratch.touched), GXP_WORDS(scratch.new_cells),
-    GXP_KEYS(scratch.links), GXP_WORDS(scratch.link_first), GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
+    GXP_KEYS(tree.order), GXP_WORDS(tree.met),
+    GXP_WORDS(scratch.removed), GXP_KEYS(scratch.removed_of), GXP_WORDS(scratch.pinches), GXP_WORDS(scratch.touched),
+    GXP_WORDS(scratch.new_cells),
+    GXP_KEYS(scratch.links), GXP_KEYS(scratch.glue), GXP_WORDS(scratch.cluster), GXP_WORDS(scratch.link_first),
+    GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
     GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements),
     GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_cells),
     GXP_WORDS(scratch.seed_leaves), GXP_WORDS(scratch.flooded), GXP_WORDS(scratch.seeded),
@@ -2228,6 +2307,12 @@ static uint32_t gxp_cell_of_slot(const gx_body *body, uint32_t slot) {
 static uint32_t gxp_kept_cell(const gx_body *body, uint32_t slot) {
     const uint32_t cell = gxp_cell_of_slot(body, slot);
     return cell != GXP_NONE && body->cells.data[cell].kept ? cell : GXP_NONE;
+}
+
+/* The element of a slot: the first cell's slot is the first of its ancestors. */
+static uint32_t gxp_slot_element(const gx_body *body, uint32_t slot) {
+    while (body->slots.parent[slot] != slot) slot = body->slots.parent[slot];
+    return slot;
 }
 
 /* Adds a row for each new leaf of the complex. It starts in its parent's cell, outside the cell's list. */
@@ -3288,13 +3373,29 @@ static gx_result gxp_visit_winding(gx_body *body, uint32_t leaf, int32_t winding
     return gxp_push(body, &body->scratch.flooded, leaf);
 }
 
-/* Passes the winding number on to the neighbours of a leaf: to all of a leaf inside the solid, across the solid's
-   surface only from a leaf outside. */
+/* Passes the winding number 0 on from an element that no triangle has touched to its neighbours of that kind. */
+static gx_result gxp_spread_untouched(gx_body *body, uint32_t element, int scoped) {
+    uint32_t k;
+    gx_result result = GX_OK;
+    for (k = 0; k < 4 && result == GX_OK; k++) {
+        const uint32_t other = gxp_neighbour(body, element, k); /* the first leaf of that element too */
+        if (other != GXB_NONE && gxb_complex_leaf(body->complex, other)->facet_count == 0 &&
+            gxp_has_winding(body, other, scoped))
+            result = gxp_visit_winding(body, other, 0);
+    }
+    return result;
+}
+
+/* Passes the winding number on to the neighbours of a leaf: to all of a leaf inside the solid, from a leaf outside only
+   across the solid's surface and, where the seeds are many cells, to those that need no more facets for that. */
 static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_t leaf, int scoped) {
     gxb_complex *cx = body->complex;
     const int32_t winding = body->leaves.mark[leaf].winding;
+    const int many = s->given->scope_slots != NULL;
     uint32_t first, count = 0, i;
     gx_result result = GX_OK;
+    if (many && winding == 0 && gxb_complex_leaf(cx, leaf)->facet_count == 0)
+        return gxp_spread_untouched(body, leaf, scoped);
     if (winding != 0) result = gxb_complex_open_element(cx, gxb_complex_leaf(cx, leaf)->element);
     if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
@@ -3302,7 +3403,8 @@ static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_
         const int front = f->leaf[0] == leaf;
         int labelled;
         const int32_t step = gxp_winding_step(body, s, gxp_item(cx, first + i), &labelled);
-        if ((winding != 0 || labelled) && gxp_has_winding(body, f->leaf[front], scoped))
+        if ((winding != 0 || labelled || (many && f->face == GXB_NONE)) &&
+            gxp_has_winding(body, f->leaf[front], scoped))
             result = gxp_visit_winding(body, f->leaf[front], winding + (front ? step : -step));
     }
     return result;
@@ -3673,6 +3775,29 @@ static gx_result gxp_new_cell(gx_body *body, uint32_t like, uint32_t *cell) {
     return GX_OK;
 }
 
+/* Lists in scratch.part_leaves the leaves that stay with one across walls. */
+static gx_result gxp_follow_glue(gx_body *body, uint32_t leaf) {
+    gxp_scratch *scratch = &body->scratch;
+    uint32_t low = 0, high = scratch->glue.count;
+    gx_result result = GX_OK;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (GXP_FIRST(scratch->glue.data[middle]) < leaf)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    for (; low < scratch->glue.count && GXP_FIRST(scratch->glue.data[low]) == leaf && result == GX_OK; low++) {
+        const uint32_t other = GXP_SECOND(scratch->glue.data[low]);
+        if (body->leaves.mark[other].stamp == scratch->stamp ||
+            body->leaves.data[other].cell != body->leaves.data[leaf].cell)
+            continue;
+        body->leaves.mark[other].stamp = scratch->stamp;
+        result = gxp_push(body, &scratch->part_leaves, other);
+    }
+    return result;
+}
+
 /* Lists in scratch.part_leaves the leaves that open facets inside the element connect to the first one. Appends their
    links to scratch.links, for now with the leaf behind each. */
 static gx_result gxp_walk_leaves(gx_body *body, uint32_t start) {
@@ -3702,6 +3827,7 @@ static gx_result gxp_walk_leaves(gx_body *body, uint32_t start) {
                 result = gxp_push(body, &scratch->part_leaves, other);
             }
         }
+        if (scratch->glue.count > 0 && result == GX_OK) result = gxp_follow_glue(body, leaf);
     }
     return result;
 }
@@ -4127,9 +4253,10 @@ static gx_result gxp_add_boundary_facet(gx_body *body, uint32_t element, uint32_
     return result;
 }
 
-/* Adds the facets of a leaf inside the element. Facets with the same cell on both sides cancel and are left out, unless
-   all is set. Facets in faces of the element are only listed, in facets. */
-static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, int all) {
+/* Adds the facets of a leaf inside the element. Those that cancel are left out: they have the same cell on both sides
+   or, where stamp is not 0, two leaves that are marked with it. Facets in faces of the element are only listed, in
+   facets. */
+static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, uint32_t stamp) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i;
     gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
@@ -4140,7 +4267,9 @@ static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, int all) {
         const uint32_t other = f->leaf[inward];
         if (f->face != GXB_NONE)
             result = gxp_push(body, &body->scratch.boundary.facets, facet << 1 | (uint32_t)inward);
-        else if (all || !gxp_is_kept(body, other) || body->leaves.data[other].cell != body->leaves.data[leaf].cell)
+        else if (stamp != 0
+                     ? body->leaves.mark[other].stamp != stamp
+                     : !gxp_is_kept(body, other) || body->leaves.data[other].cell != body->leaves.data[leaf].cell)
             result = gxp_add_boundary_facet(body, gxb_complex_leaf(cx, leaf)->element, facet, inward);
     }
     return result;
@@ -4396,20 +4525,142 @@ static gx_result gxp_integrate_element(gx_body *body, uint32_t element) {
     return result != GX_OK || done ? result : gxp_integrate_cell(body, rest, volume);
 }
 
-/* The volume that the cut removed, leaf by leaf, so that a thin slab keeps its digits. */
-static gx_result gxp_integrate_removed(gxp_cut *cut, const gxp_words *removed) {
+/* The volume that the cut removed, element by element, so that a thin slab keeps its digits */
+static gx_result gxp_integrate_removed(gxp_cut *cut) {
     gx_body *body = cut->body;
-    gx_result result = GX_OK;
+    gxp_scratch *scratch = &body->scratch;
+    gxp_keys *removed = &scratch->removed_of;
     uint32_t i;
-    for (i = 0; i < removed->count && result == GX_OK; i++) {
-        const uint32_t leaf = removed->data[i], element = gxb_complex_leaf(body->complex, leaf)->element;
+    gx_result result = GX_OK;
+    removed->count = 0;
+    if (scratch->removed.count > 0) scratch->stamp++;
+    for (i = 0; i < scratch->removed.count && result == GX_OK; i++) {
+        const uint32_t leaf = scratch->removed.data[i];
+        body->leaves.mark[leaf].stamp = scratch->stamp;
+        result = gxp_push_key(body, removed, gxb_complex_leaf(body->complex, leaf)->element, leaf);
+    }
+    if (result == GX_OK) result = gxp_sort_keys(body, removed, 0, removed->count);
+    for (i = 0; i < removed->count && result == GX_OK;) {
+        const uint32_t element = GXP_FIRST(removed->data[i]);
         gxi_moments2 m;
         unsigned k;
         gxp_clear_boundary(body, 1);
-        result = gxp_add_boundary_leaf(body, leaf, 1);
+        for (; i < removed->count && GXP_FIRST(removed->data[i]) == element && result == GX_OK; i++)
+            result = gxp_add_boundary_leaf(body, GXP_SECOND(removed->data[i]), scratch->stamp);
         if (result == GX_OK) result = gxp_boundary_moments(body, element, &k, &m);
         if (result == GX_OK) cut->report.removed_volume += 6 * m.volume * gxp_element_volume(body, element);
     }
+    return result;
+}
+
+/* >>specks: pieces that are too small to be meant ------------------------------------------------------------------ */
+/* In: the new cells of a cut, their links and volumes. Out: pairs of leaves across the cut's walls that must stay in
+   one cell so that no speck comes off; the cut is then made again. Touches scratch. For cuts by blades only, whose
+   sheets are known to a tolerance: a surface of the caller is cut exactly. */
+
+/* Cuts are made at most so many times. */
+#define GXP_SPECK_TRIES 4
+
+/* The cell of before the cut of which a new cell is a part */
+static uint32_t gxp_cut_from(const gx_body *body, uint32_t cell) {
+    while (cell >= body->undo.counts[GXP_CELLS])
+        cell = gxp_cell_of_slot(body, body->slots.parent[body->cells.slot[cell]]);
+    return cell;
+}
+
+static double gxp_cell_share(const gx_body *body, uint32_t cell) {
+    return fabs(body->cells.data[cell].volume) / gxp_element_volume(body, body->cells.data[cell].element);
+}
+
+/* Lists in scratch.cluster the cells that copies join to a cell, until they have too large a share of elements. *share:
+   theirs. */
+static gx_result gxp_list_cluster(gx_body *body, uint32_t start, double below, double *share) {
+    gxp_scratch *scratch = &body->scratch;
+    uint32_t done, j, cell;
+    int k;
+    gx_result result;
+    scratch->cluster.count = 0;
+    scratch->stamp++;
+    body->cells.stamp[start] = scratch->stamp;
+    result = gxp_push(body, &scratch->cluster, start);
+    *share = 0;
+    for (done = 0; done < scratch->cluster.count && *share < below && result == GX_OK; done++) {
+        const gxp_cell *c = &body->cells.data[scratch->cluster.data[done]];
+        *share += gxp_cell_share(body, scratch->cluster.data[done]);
+        for (k = 0; k < 4 && result == GX_OK; k++) {
+            const uint32_t copy = c->copies[k], node = body->copies.node[copy];
+            for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1] && result == GX_OK; j++) {
+                const uint32_t element = body->mesh.node_elements[j];
+                const int corner = gxp_local_node(body, element, node);
+                for (cell = element; cell != GXP_NONE && result == GX_OK; cell = body->cells.data[cell].next) {
+                    if (!body->cells.data[cell].kept || body->cells.stamp[cell] == scratch->stamp ||
+                        body->cells.data[cell].copies[corner] != copy)
+                        continue;
+                    body->cells.stamp[cell] = scratch->stamp;
+                    result = gxp_push(body, &scratch->cluster, cell);
+                }
+            }
+        }
+    }
+    return result;
+}
+
+/* Finds a leaf of a new cell of the cluster and one across a wall of this cut, of the largest cell that is there. */
+static gx_result gxp_find_neighbour(gx_body *body, uint32_t cell, uint32_t pair[2], double *largest) {
+    gxp_scratch *scratch = &body->scratch;
+    gxb_complex *cx = body->complex;
+    uint32_t leaf, first, count, i;
+    gx_result result = GX_OK;
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
+         leaf = body->leaves.data[leaf].next) {
+        result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
+        for (i = 0; i < count && result == GX_OK; i++) {
+            const gxb_facet *f = gxb_complex_facet(cx, gxp_item(cx, first + i));
+            const uint32_t other = f->leaf[f->leaf[0] == leaf];
+            uint32_t next;
+            if (f->face != GXB_NONE || !gxp_is_kept(body, other)) continue;
+            next = body->leaves.data[other].cell;
+            if (body->cells.stamp[next] == scratch->stamp || gxp_cut_from(body, next) != gxp_cut_from(body, cell) ||
+                !(gxp_cell_share(body, next) > *largest))
+                continue;
+            *largest = gxp_cell_share(body, next);
+            pair[0] = leaf;
+            pair[1] = other;
+        }
+    }
+    return result;
+}
+
+/* Lists the pair of leaves that holds a new cell, if it is of a speck. */
+static gx_result gxp_hold_speck(gx_body *body, uint32_t cell, double below, uint32_t *found) {
+    gxp_scratch *scratch = &body->scratch;
+    uint32_t pair[2] = {GXP_NONE, GXP_NONE}, i;
+    double share, largest = 0;
+    gx_result result = gxp_list_cluster(body, cell, below, &share);
+    if (result != GX_OK || !(share < below)) return result;
+    for (i = 0; i < scratch->cluster.count && result == GX_OK; i++)
+        result = gxp_find_neighbour(body, scratch->cluster.data[i], pair, &largest);
+    if (result != GX_OK || pair[0] == GXP_NONE) return result;
+    *found += 1;
+    result = gxp_push_key(body, &scratch->glue, pair[0], pair[1]);
+    return result == GX_OK ? gxp_push_key(body, &scratch->glue, pair[1], pair[0]) : result;
+}
+
+/* Finds the specks of a cut. below: their shares of elements. *found: 0 if there are none. */
+static gx_result gxp_find_specks(gxp_cut *cut, double below, uint32_t *found) {
+    gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
+    uint32_t i, n = 0;
+    gx_result result = GX_OK;
+    *found = 0;
+    for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++)
+        if (gxp_cell_share(body, scratch->new_cells.data[i]) < below)
+            result = gxp_hold_speck(body, scratch->new_cells.data[i], below, found);
+    if (result == GX_OK) result = gxp_sort_keys(body, &scratch->glue, 0, scratch->glue.count);
+    for (i = 0; i < scratch->glue.count; i++)
+        if (i == 0 || scratch->glue.data[i] != scratch->glue.data[i - 1])
+            scratch->glue.data[n++] = scratch->glue.data[i];
+    scratch->glue.count = n;
     return result;
 }
 
@@ -4550,8 +4801,7 @@ static void gxp_settle(gx_body *body) {
     gxp_release(a, place, size);
 }
 
-/* >>cut: the driver
- * ------------------------------------------------------------------------------------------------ */
+/* >>cut: the driver ------------------------------------------------------------------------------------------------ */
 /* gx_body_cut: check, begin, arrange, enrich, integrate, then commit, or roll back on any error. The commit cannot
    fail. It drops dead copies, wakes the touched copies and marks model, skin, view and snapshot as stale. */
 
@@ -4659,8 +4909,8 @@ static gx_result gxp_integrate_new(gx_body *body, uint32_t cell, uint32_t *befor
     return gxp_integrate_element(body, element);
 }
 
-/* Prefetches the data that weighing the links of the next new cells will read: facets three cells ahead, their
-   loops two ahead, the edges of the next. */
+/* Prefetches the data that weighing the links of the next new cells will read: facets three cells ahead, their loops
+   two ahead, the edges of the next. */
 GXP_PREFETCHES void gxp_prefetch_links(const gx_body *body, uint32_t index) {
     const gxp_scratch *scratch = &body->scratch;
     const gxb_complex *cx = body->complex;
@@ -4683,15 +4933,15 @@ GXP_PREFETCHES void gxp_prefetch_links(const gx_body *body, uint32_t index) {
         }
 }
 
-/* Integrates the new cells. Unless links were weighed before to be severed, weighs them here, while their facets
-   are in the cache. */
+/* Integrates the new cells. Unless links were weighed before to be severed, weighs them here, while their facets are in
+   the cache. */
 static gx_result gxp_integrate(gxp_cut *cut) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
     const int weighed = cut->desc->sever_below > 0;
     double bound = 1;
     uint32_t i, before = GXP_NONE;
-    gx_result result = gxp_integrate_removed(cut, &scratch->removed);
+    gx_result result = gxp_integrate_removed(cut);
     scratch->narrow.count = 0;
     scratch->stamp++;
     for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++) {
@@ -4713,8 +4963,8 @@ static gx_result gxp_push_leaf_elements(gx_body *body, uint32_t facet) {
     return result;
 }
 
-/* Notes for the skin the elements in which the cut made facets or walls or changed a cell, and those whose copies
-   get new numbers when dead ones are dropped. An element noted in vain does no harm. */
+/* Notes for the skin the elements in which the cut made facets or walls or changed a cell, and those whose copies get
+   new numbers when dead ones are dropped. An element noted in vain does no harm. */
 static gx_result gxp_note_for_skin(gxp_cut *cut, uint32_t first_facet) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
@@ -4816,31 +5066,50 @@ static gx_result gxp_tell_failure(gxp_cut *cut, gx_result result, gx_failure *fa
     return result;
 }
 
-GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report, gx_failure *failure) {
-    gxp_cut cut;
+/* From surfaces to integrals. Nothing is final yet. */
+static gx_result gxp_make_cut(gxp_cut *cut) {
+    gx_body *body = cut->body;
+    gx_cut_report *report = &cut->report;
     uint32_t first_facet;
     double start;
+    gx_result result;
+    memset(report, 0, sizeof *report);
+    report->min_link_ratio = 1;
+    gxp_begin(cut);
+    first_facet = gxb_complex_facet_count(body->complex);
+    start = gxp_seconds(body);
+    result = gxp_arrange(cut);
+    report->seconds_arrangement = gxp_seconds(body) - start;
+    if (result == GX_OK) result = gxp_enrich(cut);
+    report->seconds_enrichment = gxp_seconds(body) - start - report->seconds_arrangement;
+    if (result == GX_OK) result = gxp_integrate(cut);
+    report->seconds_integrals = gxp_seconds(body) - start - report->seconds_arrangement - report->seconds_enrichment;
+    return result == GX_OK ? gxp_note_for_skin(cut, first_facet) : result;
+}
+
+/* speck_below: pieces of less than this share of an element stay with the material beside them; 0: none does */
+static gx_result gxp_cut_body(gx_body *body, const gx_cut_desc *desc, double speck_below, gx_cut_report *report,
+                              gx_failure *failure) {
+    gxp_cut cut;
+    uint32_t found = 0, tries;
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (desc == NULL) return gxp_refuse(failure, "desc");
     memset(&cut, 0, sizeof cut);
     cut.body = body;
     cut.desc = desc;
-    cut.report.min_link_ratio = 1;
     gxp_end(&cut.failure, GX_OK);
     result = gxp_check_cut(&cut);
     if (result != GX_OK) return gxp_tell_failure(&cut, result, failure);
-    gxp_begin(&cut);
-    first_facet = gxb_complex_facet_count(body->complex);
-    start = gxp_seconds(body);
-    result = gxp_arrange(&cut);
-    cut.report.seconds_arrangement = gxp_seconds(body) - start;
-    if (result == GX_OK) result = gxp_enrich(&cut);
-    cut.report.seconds_enrichment = gxp_seconds(body) - start - cut.report.seconds_arrangement;
-    if (result == GX_OK) result = gxp_integrate(&cut);
-    cut.report.seconds_integrals =
-        gxp_seconds(body) - start - cut.report.seconds_arrangement - cut.report.seconds_enrichment;
-    if (result == GX_OK) result = gxp_note_for_skin(&cut, first_facet);
+    body->scratch.glue.count = 0;
+    for (tries = 1;; tries++) {
+        result = gxp_make_cut(&cut);
+        if (result == GX_OK && speck_below > 0 && tries < GXP_SPECK_TRIES)
+            result = gxp_find_specks(&cut, speck_below, &found);
+        if (result != GX_OK || found == 0 || tries == GXP_SPECK_TRIES) break;
+        gxp_rollback(&cut);
+    }
+    body->scratch.glue.count = 0;
     if (result != GX_OK) {
         gxp_rollback(&cut);
         return gxp_tell_failure(&cut, result, failure);
@@ -4853,13 +5122,15 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
     return gxp_end(failure, GX_OK);
 }
 
-/* >>solidify: a sheet made solid
- * ----------------------------------------------------------------------------------- */
-/* In: a sheet and a thickness. Out: the closed surface between its two offsets (GXFEM section 4.1). Knows no body.
- */
+GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report, gx_failure *failure) {
+    return gxp_cut_body(body, desc, 0, report, failure);
+}
 
-/* Sums the area normals around each vertex of the sheet and scales each sum to half the thickness. Edges are
-   measured in units of the longest one's power of two, so that areas stay in range. */
+/* >>solidify: a sheet made solid ----------------------------------------------------------------------------------- */
+/* In: a sheet and a thickness. Out: the closed surface between its two offsets (GXFEM section 4.1). Knows no body. */
+
+/* Sums the area normals around each vertex of the sheet and scales each sum to half the thickness. Edges are measured
+   in units of the longest one's power of two, so that areas stay in range. */
 static void gxp_offset_vectors(const gx_surface *s, double half, double *normals) {
     double longest = 0;
     size_t i;
@@ -4985,11 +5256,10 @@ GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thicknes
     return GX_OK;
 }
 
-/* >>anchors: material points that survive cuts
- * --------------------------------------------------------------------- */
-/* In: a material point in an element, and another one towards which it holds its side. Out: the leaf and the cell
-   that have it now, exactly; anchors made such that they lie in a given part. Changes nothing but the complex's
-   exact numbers and lists. */
+/* >>anchors: material points that survive cuts --------------------------------------------------------------------- */
+/* In: a material point in an element, and another one towards which it holds its side. Out: the leaf and the cell that
+   have it now, exactly; anchors made such that they lie in a given part. Changes nothing but the complex's exact
+   numbers and lists. */
 
 /* The leaf that has a material point, kept or removed: see gxb_complex_leaf_at. toward: or NULL */
 static gx_result gxp_leaf_at(gx_body *body, uint32_t element, const double position[3], const double toward[3],
@@ -5000,8 +5270,8 @@ static gx_result gxp_leaf_at(gx_body *body, uint32_t element, const double posit
     return result;
 }
 
-/* The least side on which the point lies of the element's faces, exactly: 1 inside the element, 0 on its boundary,
-   -1 outside */
+/* The least side on which the point lies of the element's faces, exactly: 1 inside the element, 0 on its boundary, -1
+   outside */
 static int gxp_element_side(const gx_body *body, uint32_t element, const double x[3]) {
     const uint32_t *n = gxb_complex_element_nodes(body->complex, element);
     const double *p = body->mesh.positions;
@@ -5192,8 +5462,8 @@ typedef struct gxp_footing {
     int found;
 } gxp_footing;
 
-/* Stands at p, if that is in the closed leaf, exactly, and nearer to x than what was found so far. inside: of the
-   leaf. Returns 0 if p is not nearer. */
+/* Stands at p, if that is in the closed leaf, exactly, and nearer to x than what was found so far. inside: of the leaf.
+   Returns 0 if p is not nearer. */
 static int gxp_stand(gx_body *body, uint32_t leaf, const double x[3], const double p[3], const double inside[3],
                      gxp_footing *best) {
     const uint32_t element = gxb_complex_leaf(body->complex, leaf)->element;
@@ -5225,12 +5495,14 @@ static gx_result gxp_try_leaf(gx_body *body, uint32_t leaf, const double x[3], g
     return result;
 }
 
-/* Is the cell kept, and does it move all that moves the hit, if there is one? */
-static int gxp_moves_hit(const gxp_cell *cell, const gx_hit *hit) {
-    uint32_t i, k, found = 0;
-    for (i = 0; hit != NULL && i < hit->copy_count && i < GX_HIT_COPIES; i++)
-        for (k = 0; k < 4; k++) found += cell->copies[k] == hit->copies[i];
-    return cell->kept && (hit == NULL || found == hit->copy_count);
+/* Is the cell kept, and is it the one that was hit, or a part into which that was divided since? hit: NULL, or one
+   whose slot is in the cell's element and was there. Copies do not tell: cells on the sides of a sheet that ends beside
+   the element share them all. */
+static int gxp_is_hit(const gx_body *body, uint32_t cell, const gx_hit *hit) {
+    uint32_t slot = body->cells.slot[cell];
+    if (!body->cells.data[cell].kept) return 0;
+    while (hit != NULL && slot >= hit->slot_count) slot = body->slots.parent[slot];
+    return hit == NULL || slot == hit->slot;
 }
 
 /* Looks for a leaf of the right cell at x and some roundings around. Stands at x, if the leaf has it, or there. */
@@ -5244,7 +5516,7 @@ static gx_result gxp_try_near(gx_body *body, uint32_t element, const double x[3]
             uint32_t leaf = 0;
             gxp_neighbour_point(x, i, width, p);
             if (gxp_leaf_at(body, element, p, NULL, &leaf) != GX_OK || gxp_element_side(body, element, p) < 0 ||
-                !gxp_is_kept(body, leaf) || !gxp_moves_hit(&body->cells.data[body->leaves.data[leaf].cell], hit))
+                !gxp_is_kept(body, leaf) || !gxp_is_hit(body, body->leaves.data[leaf].cell, hit))
                 continue;
             result = gxp_find_inside(body, leaf, inside, &found);
             if (result == GX_OK && found && gxp_stand(body, leaf, x, x, inside, best))
@@ -5254,14 +5526,14 @@ static gx_result gxp_try_near(gx_body *body, uint32_t element, const double x[3]
 }
 
 /* Finds where an anchor can stand for a point of an element, at most best->moved from it. hit: in the cell that was
-   hit; NULL: in any cell that is left */
+   hit, or what is left of it; NULL: in any cell that is left */
 static gx_result gxp_find_footing(gx_body *body, uint32_t element, const double x[3], const gx_hit *hit,
                                   gxp_footing *best) {
     gx_result result = gxp_try_near(body, element, x, hit, best);
     const int near = best->found;
     uint32_t cell, leaf;
     for (cell = element; cell != GXP_NONE && result == GX_OK && !near; cell = body->cells.data[cell].next) {
-        if (!gxp_moves_hit(&body->cells.data[cell], hit)) continue;
+        if (!gxp_is_hit(body, cell, hit)) continue;
         for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
              leaf = body->leaves.data[leaf].next)
             result = gxp_try_leaf(body, leaf, x, best);
@@ -5303,6 +5575,7 @@ GXFEM_API gx_result gx_body_anchor(gx_body *body, uint32_t element, const double
 
 GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *anchor, gx_failure *failure) {
     gxp_footing best;
+    uint32_t cell;
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (hit == NULL) return gxp_refuse(failure, "hit");
@@ -5310,6 +5583,11 @@ GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *a
     if (hit->copy_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "hit", SIZE_MAX);
     if (hit->epoch != body->cuts.epoch) return gxp_fail(failure, GX_ERROR_STALE, "hit.epoch", SIZE_MAX);
     if (hit->element >= body->mesh.element_count) return gxp_fail(failure, GX_ERROR_INDEX, "hit.element", SIZE_MAX);
+    if (hit->slot >= body->slots.count || hit->slot >= hit->slot_count ||
+        gxp_slot_element(body, hit->slot) != hit->element)
+        return gxp_fail(failure, GX_ERROR_INDEX, "hit.slot", SIZE_MAX);
+    for (cell = hit->element; cell != GXP_NONE && !gxp_is_hit(body, cell, hit);) cell = body->cells.data[cell].next;
+    if (cell == GXP_NONE) return gxp_fail(failure, GX_ERROR_EMPTY, "hit.slot", SIZE_MAX);
     result = gxb_complex_check_point(body->complex, hit->material);
     if (result != GX_OK) return gxp_fail(failure, result, "hit.material", SIZE_MAX);
     memset(&best, 0, sizeof best);
@@ -5321,8 +5599,7 @@ GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *a
     return GX_OK;
 }
 
-/* >>regions: what is held
- * ------------------------------------------------------------------------------------------ */
+/* >>regions: what is held ------------------------------------------------------------------------------------------ */
 /* In: regions that are to be held, with all that they point to. Out: the body's copy of them, checked; the nodes in
    each. Touches the tables of regions and the lists of their nodes. */
 
@@ -5721,13 +5998,12 @@ static gx_result gxp_list_all_nodes(gx_body *body) {
     return result;
 }
 
-/* >>grips: held copies
- * --------------------------------------------------------------------------------------------- */
-/* In: regions and the nodes in them. Out: for each copy the first region that holds it, found anew after a cut or
-   when regions change. A copy is held if its node is in the region and one of its own cells has material there.
-   Most cells have the node as a corner, and material beside it. The others lie behind a wall. Whether a box or a
-   surface reaches them is what the complex tells when its triangles are inserted, in a transaction that is taken
-   back. Touches held flags and rest times of copies. */
+/* >>grips: held copies --------------------------------------------------------------------------------------------- */
+/* In: regions and the nodes in them. Out: for each copy the first region that holds it, found anew after a cut or when
+   regions change. A copy is held if its node is in the region and one of its own cells has material there. Most cells
+   have the node as a corner, and material beside it. The others lie behind a wall. Whether a box or a surface reaches
+   them is what the complex tells when its triangles are inserted, in a transaction that is taken back. Touches held
+   flags and rest times of copies. */
 
 /* Corners of a box by bits: 1, 2, 4 for its high side along each axis */
 static const uint32_t gxp_box_triangles[36] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
@@ -5803,8 +6079,7 @@ static int gxp_note_reached(void *user, uint32_t leaf) {
     return 0;
 }
 
-/* Stamps the leaves that the plane of a triangle divides, of those that it reached. It may cover a facet of others.
- */
+/* Stamps the leaves that the plane of a triangle divides, of those that it reached. It may cover a facet of others. */
 static gx_result gxp_stamp_reached(gx_body *body, uint32_t plane) {
     const gxp_words *reached = &body->holds.probe.reached;
     gx_result result = GX_OK;
@@ -5897,8 +6172,8 @@ static void gxp_point_from(gx_body *body, uint32_t point, uint32_t element, cons
     }
 }
 
-/* Does the leaf reach into the ball? Its points are rounded, so a leaf that only touches the ball may be taken
-   either way. */
+/* Does the leaf reach into the ball? Its points are rounded, so a leaf that only touches the ball may be taken either
+   way. */
 static gx_result gxp_leaf_in_ball(gx_body *body, uint32_t leaf, const gxp_region *r, int *inside) {
     gxb_complex *cx = body->complex;
     const uint32_t element = gxb_complex_leaf(cx, leaf)->element;
@@ -5958,8 +6233,8 @@ static gx_result gxp_has_corner(gx_body *body, uint32_t cell, uint32_t node, int
     return result;
 }
 
-/* Does a cell around a node in a region have material in the region? *reached: 1 if the region's surface has been
-   asked about for this element */
+/* Does a cell around a node in a region have material in the region? *reached: 1 if the region's surface has been asked
+   about for this element */
 static gx_result gxp_cell_in_region(gx_body *body, uint32_t cell, uint32_t node, const gxp_region *r, int *reached,
                                     int *inside) {
     uint32_t leaf;
@@ -5975,8 +6250,8 @@ static gx_result gxp_cell_in_region(gx_body *body, uint32_t cell, uint32_t node,
     return result;
 }
 
-/* Gives the copies of a node that a region holds to it, unless earlier regions have them. region_of NULL: only asks
-   if there is any. */
+/* Gives the copies of a node that a region holds to it, unless earlier regions have them. region_of NULL: only asks if
+   there is any. */
 static gx_result gxp_hold_node(gx_body *body, uint32_t region, uint32_t node, uint32_t *region_of, int *any) {
     const gxp_region *r = &body->holds.regions[region];
     uint32_t j, cell;
@@ -6122,11 +6397,10 @@ GXFEM_API gx_region gx_region_sphere(const double center[3], double radius) {
     return region;
 }
 
-/* >>map: from rest to space
- * ---------------------------------------------------------------------------------------- */
+/* >>map: from rest to space ---------------------------------------------------------------------------------------- */
 /* In: a material point, or a cell. Out: where it is, how fast its corners are. Nothing else in this file turns
-   displacements of copies into positions: copies that do more than move a cell's corners change this section, and
-   the integrals at >>motion, which rest on the map being affine within a cell. Touches nothing. */
+   displacements of copies into positions: copies that do more than move a cell's corners change this section, and the
+   integrals at >>motion, which rest on the map being affine within a cell. Touches nothing. */
 
 /* Where a point is: rest + sum of weight u over the copies of weight not 0, which stand first */
 static inline void gxp_map_point(const gx_body *body, const double rest[3], const uint32_t *copies,
@@ -6165,8 +6439,7 @@ static inline void gxp_copy_position(const gx_body *body, uint32_t node, uint32_
     x[2] = rest[2] + u[2];
 }
 
-/* Where the corners of a cell's element are, as its copies move them. These doubles are what locating takes as
- * exact.
+/* Where the corners of a cell's element are, as its copies move them. These doubles are what locating takes as exact.
  */
 static inline void gxp_moved_corners(const gx_body *body, const gxp_cell *cell, double x[12]) {
     const uint32_t *node = gxb_complex_element_nodes(body->complex, cell->element);
@@ -6194,10 +6467,9 @@ static void gxp_cell_velocities(const gx_body *body, const gxp_cell *cell, const
         for (k = 0; k < 3; k++) v[n][k] = body->copies.velocity[3 * (size_t)cell->copies[n] + (size_t)k] - mean[k];
 }
 
-/* >>fragments: sums, ids, changes, the view
- * ------------------------------------------------------------------------ */
-/* In: the numbering of fragments. Out: their volumes, masses, centres and inertia; ids that stay, by comparison
-   with the last snapshot. Touches the view's sums, the snapshot and the copies' labels. */
+/* >>fragments: sums, ids, changes, the view ------------------------------------------------------------------------ */
+/* In: the numbering of fragments. Out: their volumes, masses, centres and inertia; ids that stay, by comparison with
+   the last snapshot. Touches the view's sums, the snapshot and the copies' labels. */
 
 /* The place of entry ij in a mass block */
 static const uint8_t gxp_mass_at[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
@@ -6226,8 +6498,7 @@ static void gxp_mass_times(const gxp_cell *cell, double x[4][3], double mx[4][3]
         }
 }
 
-/* inertia += density * integral of (|x|^2 1 - x x^T) = sum_ij m_ij (x_i . x_j 1 - x_i x_j^T); mx: see
- * gxp_mass_times */
+/* inertia += density * integral of (|x|^2 1 - x x^T) = sum_ij m_ij (x_i . x_j 1 - x_i x_j^T); mx: see gxp_mass_times */
 static void gxp_add_inertia(double x[4][3], double mx[4][3], double inertia[6]) {
     int i;
     for (i = 0; i < 4; i++) {
@@ -6307,9 +6578,8 @@ static gx_result gxp_join_around_splits(gx_body *body) {
     return GX_OK;
 }
 
-/* Finds the fragment of each copy. Sheets remove nothing: if two old copies were connected, so are their
-   descendants. If each new copy is still connected with the one it comes from, around its node, no fragment has
-   fallen apart. */
+/* Finds the fragment of each copy. Sheets remove nothing: if two old copies were connected, so are their descendants.
+   If each new copy is still connected with the one it comes from, around its node, no fragment has fallen apart. */
 static gx_result gxp_update_labels(gx_body *body) {
     gxp_view *view = &body->view;
     const gxp_words *splits = &view->splits;
@@ -6392,8 +6662,8 @@ static gx_result gxp_snapshot_room(gx_body *body) {
     return result == GX_OK && snapshot->next_id > UINT32_MAX - body->view.fragment_count ? GX_ERROR_LIMIT : result;
 }
 
-/* Brings the snapshot up to date with the view. After an error labels and ids are as they were, so that no change
-   is lost. */
+/* Brings the snapshot up to date with the view. After an error labels and ids are as they were, so that no change is
+   lost. */
 static gx_result gxp_take_snapshot(gx_body *body) {
     const size_t now = body->view.fragment_count, before = body->snapshot.count,
                  bytes = (2 * now + 2 * before + 1) * sizeof(uint32_t);
@@ -6628,8 +6898,7 @@ GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t cap
     return result;
 }
 
-/* >>attached: anchors and regions of a step
- * ------------------------------------------------------------------------ */
+/* >>attached: anchors and regions of a step ------------------------------------------------------------------------ */
 /* In: anchors, and what a step has at them; poses of regions. Out: springs, contact points, forces and targets by
    copies, as the solver takes them. Touches working memory of a step only. */
 
@@ -6828,23 +7097,22 @@ static gx_result gxp_attach(gx_body *body, const gx_step_desc *desc, gxs_step_de
     return result == GX_OK ? gxp_attach_poses(body, desc, step, failure) : result;
 }
 
-/* >>supports: copies that only slivers carry follow others (RXFEM Eq. 22)
- * ------------------------------------------ */
+/* >>supports: copies that only slivers carry follow others (RXFEM Eq. 22) ------------------------------------------ */
 /* In: the elements with a small part. Out: constraints by which copies that next to nothing holds follow others.
    Touches the list of thin elements and the model's constraints.
-   A part is the cells of an element that the same four copies move; its share is its volume over the element's. A
-   copy is weak if every part around it has a share below follow_below: so little moves it that nothing else would
-   keep it from running away. It takes the increment of the field of a strong cell near it, that is, one without
-   weak copies. A fragment without a strong cell is thin everywhere. Its copies are then weak by comparison with its
-   fullest part; if that part has a share below speck_below, or no cell reaches speck_reach, the fragment is a speck
-   and moves as a point. All work is around thin elements, which are those with a part of so small a share. */
+   A part is the cells of an element that the same four copies move; its share is its volume over the element's. A copy
+   is weak if every part around it has a share below follow_below: so little moves it that nothing else would keep it
+   from running away. It takes the increment of the field of a strong cell near it, that is, one without weak copies. A
+   fragment without a strong cell is thin everywhere. Its copies are then weak by comparison with its fullest part; if
+   that part has a share below speck_below, or no cell reaches speck_reach, the fragment is a speck and moves as a
+   point. All work is around thin elements, which are those with a part of so small a share. */
 
 enum { GXP_FREE, GXP_FOLLOWS, GXP_FOLLOWS_POINT };
 
 typedef struct gxp_supports {
     uint8_t *weak; /* copy_count: GXP_FREE or how it follows */
-    /* copy_count: the cell whose field the copy follows, or whose first copy if it is part of a point; GXP_NONE:
-     * not known, or none */
+    /* copy_count: the cell whose field the copy follows, or whose first copy if it is part of a point; GXP_NONE: not
+     * known, or none */
     uint32_t *cell;
     uint32_t *queue; /* copy_count: copies that the search has met, in order */
     uint32_t *seen;  /* copy_count: the last search that has met the copy */
@@ -6948,8 +7216,8 @@ static double gxp_follow_weights(const gx_body *body, uint32_t copy, uint32_t ce
 }
 
 /* Finds the strong cell that a weak copy follows. It searches from cell to cell. Among the nearest strong cells it
-   takes the one whose field is extended least; if a copy as near already follows one, it takes that. Weak copies
-   that the search met before its last round follow the same cell. Returns 0, or, if the fragment has no strong
+   takes the one whose field is extended least; if a copy as near already follows one, it takes that. Weak copies that
+   the search met before its last round follow the same cell. Returns 0, or, if the fragment has no strong
    cell, the number of its copies, all of which the search has met. */
 static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *supports, uint32_t copy) {
     uint32_t begin, end, i, count = 1, best = GXP_NONE;
@@ -6985,9 +7253,9 @@ static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *supports, uint3
     return best == GXP_NONE ? count : 0;
 }
 
-/* How far a cell reaches within its element: the square root of the trace of its covariance in barycentric
-   coordinates over that of the element, which is 4 (1/10 - 1/16). The reach of a speck in a corner is about its
-   size; the reach of a layer, however thin, is about 1. */
+/* How far a cell reaches within its element: the square root of the trace of its covariance in barycentric coordinates
+   over that of the element, which is 4 (1/10 - 1/16). The reach of a speck in a corner is about its size; the reach of
+   a layer, however thin, is about 1. */
 static double gxp_cell_reach(const gxp_cell *cell) {
     double mass = 0, trace = 0;
     int i, k;
@@ -7091,11 +7359,10 @@ static gx_result gxp_make_constraints(gx_body *body) {
     return result;
 }
 
-/* >>model: the model that the solver takes
- * ------------------------------------------------------------------------- */
-/* In: cells, copies, held flags. Out: the solver's model, made anew or changed where cuts have been. The cells of
-   an element that move by the same four copies are one element of the model, a part. Touches the solver and the
-   model's arrays, which are there only while it is made. */
+/* >>model: the model that the solver takes ------------------------------------------------------------------------- */
+/* In: cells, copies, held flags. Out: the solver's model, made anew or changed where cuts have been. The cells of an
+   element that move by the same four copies are one element of the model, a part. Touches the solver and the model's
+   arrays, which are there only while it is made. */
 
 /* Adds a cell to the part with its copies, or begins a new part. first: the element's first part. */
 static void gxp_add_part(gx_body *body, const gxp_cell *cell, uint32_t first, const double gradients[12]) {
@@ -7173,8 +7440,8 @@ static gx_result gxp_make_model(gx_body *body, gxs_model *model, gx_failure *fai
     return GX_OK;
 }
 
-/* Applies the changes to the solver's model. After LIMIT, or EMPTY if no part is left, the model must be set whole,
-   and nothing has failed. After MEMORY it must be set whole too, but the call has failed. */
+/* Applies the changes to the solver's model. After LIMIT, or EMPTY if no part is left, the model must be set whole, and
+   nothing has failed. After MEMORY it must be set whole too, but the call has failed. */
 static gx_result gxp_change_model(gx_body *body, gx_failure *failure) {
     gxp_model *model = &body->model;
     size_t room = 0;
@@ -7226,8 +7493,7 @@ static void gxp_release_model(gx_body *body) {
     gxp_release_columns(body, gxp_model_lists, sizeof gxp_model_lists / sizeof *gxp_model_lists);
 }
 
-/* Brings the solver's model up to date after cuts and holds. The solver copies it, so that the arrays are released.
- */
+/* Brings the solver's model up to date after cuts and holds. The solver copies it, so that the arrays are released. */
 static gx_result gxp_update_model(gx_body *body, gx_failure *failure) {
     gxp_model *model = &body->model;
     gx_result result = gxp_update_held(body);
@@ -7265,8 +7531,7 @@ GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model, gx_failure *f
     return gxp_close(failure, result);
 }
 
-/* >>step: time steps
- * ----------------------------------------------------------------------------------------------- */
+/* >>step: time steps ----------------------------------------------------------------------------------------------- */
 /* In: a step's description. Out: displacement and velocity at its end, or the body as it was. Touches the state of
    copies, the history that BDF2 needs, and the solver. */
 
@@ -7384,8 +7649,7 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     return result;
 }
 
-/* >>corners: the skin: normals and textures
- * ------------------------------------------------------------------------ */
+/* >>corners: the skin: normals and textures ------------------------------------------------------------------------ */
 /* The visual surface takes four sections. This one: which corners of the outer surface are shaded as one, and which
    texture a cut face has. In: the mesh, the records of surfaces. Out: groups of corners. Touches the skin only. */
 
@@ -7467,8 +7731,8 @@ static gx_result gxp_join_faces(gx_body *body) {
     return GX_OK;
 }
 
-/* Groups the corners of outer faces. skin.groups: the group of each of the four nodes of an outer face (that of
-   node k is not used); skin.group_normals: the normal of each at rest, weighted by area, not of length 1. */
+/* Groups the corners of outer faces. skin.groups: the group of each of the four nodes of an outer face (that of node k
+   is not used); skin.group_normals: the normal of each at rest, weighted by area, not of length 1. */
 static gx_result gxp_group_corners(gx_body *body) {
     gxp_skin *s = &body->skin;
     uint32_t i, k;
@@ -8311,7 +8575,8 @@ GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3],
  * between these. One pass over the copies finds those that have moved since the last refit. A cluster's box is the hull
  * of the copies of its nodes; it is found again where one of them has moved. Boxes of leaves are found again when a
  walk
- * enters the cluster.
+ * enters the cluster. All boxes are of where the copies were seen last (copies.seen). Who looks around may walk through
+ * boxes that are some slack out of date, in place of a refit.
  *
  * Cuts need no refit: a new copy is where the one is that it comes from, with the same row of copies.seen, and cells
  * only change to such copies. A rollback leaves older rows alone. The last copy, put in the place of a dead one, takes
@@ -8336,6 +8601,8 @@ static int gxp_is_near(double x) {
     return ((b >> 52) & 0x7ff) < 1023 + 128;
 }
 
+static inline double gxp_more(double a, double b) { return a > b ? a : b; }
+
 static void gxp_empty_bounds(gxp_bounds *box) {
     int k;
     for (k = 0; k < 3; k++) {
@@ -8352,16 +8619,14 @@ static void gxp_add_bounds(gxp_bounds *box, const gxp_bounds *other) {
     }
 }
 
-/* The box of one copy, with its margin */
+/* The box of one copy where it was seen last, with its margin */
 static void gxp_copy_bounds(const gx_body *body, uint32_t node, uint32_t copy, gxp_bounds *box) {
-    const double *u = body->copies.displacement + 3 * (size_t)copy;
-    double x[3];
+    const double *rest = body->mesh.positions + 3 * (size_t)node, *u = body->copies.seen + 3 * (size_t)copy;
     int k;
-    gxp_copy_position(body, node, copy, x);
     for (k = 0; k < 3; k++) {
-        const double margin = GXP_TREE_MARGIN * (body->tree.reach[k] + fabs(u[k]));
-        box->low[k] = x[k] - margin;
-        box->high[k] = x[k] + margin;
+        const double x = rest[k] + u[k], margin = GXP_TREE_MARGIN * (body->tree.reach[k] + fabs(u[k]));
+        box->low[k] = x - margin;
+        box->high[k] = x + margin;
     }
 }
 
@@ -8519,6 +8784,31 @@ static gx_result gxp_refit_tree(gx_body *body) {
     return GX_OK;
 }
 
+/* How far copies have moved since they were seen last: the largest coordinate, HUGE_VAL if one is not finite. Sums show
+   what is not finite, which comparisons may not. */
+static double gxp_drift(const gx_body *body) {
+    const double *u = body->copies.displacement, *seen = body->copies.seen;
+    double most[3] = {0, 0, 0}, sum[3] = {0, 0, 0};
+    uint32_t i;
+    int k;
+    for (i = 0; i < body->copies.count; i++, u += 3, seen += 3)
+        for (k = 0; k < 3; k++) {
+            const double way = fabs(u[k] - seen[k]);
+            most[k] = gxp_more(way, most[k]);
+            sum[k] += way;
+        }
+    return gxp_is_finite(sum[0] + sum[1] + sum[2]) ? gxp_more(most[0], gxp_more(most[1], most[2])) : HUGE_VAL;
+}
+
+/* Brings the boxes up to date where copies have moved farther than `most`. *slack: cells are at most so far outside of
+   their boxes. One pass over the copies. Errors: MEMORY, LIMIT. */
+static gx_result gxp_refit_loosely(gx_body *body, double most, double *slack) {
+    *slack = body->tree.cluster_count > 0 ? gxp_drift(body) * (1 + GXP_TREE_MARGIN) : HUGE_VAL;
+    if (*slack <= most) return GX_OK;
+    *slack = 0;
+    return gxp_refit_tree(body);
+}
+
 /* A copy that is out of range or not finite, GXP_NONE: there is none. The boxes are up to date. */
 static uint32_t gxp_wild_copy(gx_body *body) {
     uint32_t i;
@@ -8567,8 +8857,6 @@ static void gxp_fit_leaves(gx_body *body, uint32_t cluster) {
 
 /* --- walking through it --- */
 
-static inline double gxp_more(double a, double b) { return a > b ? a : b; }
-
 /* Above 0 where the boxes do not meet */
 static inline double gxp_gap(const gxp_bounds *a, const gxp_bounds *b) {
     const double x = gxp_more(a->low[0] - b->high[0], b->low[0] - a->high[0]),
@@ -8614,6 +8902,76 @@ static gx_result gxp_meet_box(gx_body *body, const gxp_bounds *given,
         }
     }
     return result;
+}
+
+/* A walk with many boxes at once: each box of the tree passes on those that it meets. Callers put it first in a struct
+   of their own. */
+typedef struct gxp_boxes_walk {
+    /* Called for each element whose box meets some of the boxes, within the slack: `count` of them, ascending. place:
+       in mesh.box_elements. Elements come in an order that is always the same. */
+    gx_result (*visit)(gx_body *body, struct gxp_boxes_walk *walk, uint32_t place, const uint32_t *met, uint32_t count);
+    const gxp_bounds *boxes;
+    double slack; /* as gxp_refit_loosely gave it */
+} gxp_boxes_walk;
+
+/* Appends to tree.met those of its last `count` boxes that meet a box of the tree. Returns their number; there is room.
+ */
+static uint32_t gxp_pass_met(gxp_tree *tree, const gxp_boxes_walk *walk, const gxp_bounds *box, uint32_t count) {
+    const uint32_t *from = tree->met.data + tree->met.count - count;
+    uint32_t *to = tree->met.data + tree->met.count, n = 0, i;
+    for (i = 0; i < count; i++) {
+        to[n] = from[i];
+        n += !(gxp_gap(&walk->boxes[from[i]], box) > walk->slack);
+    }
+    tree->met.count += n;
+    return n;
+}
+
+static gx_result gxp_meet_boxes_in_cluster(gx_body *body, gxp_boxes_walk *walk, uint32_t cluster, uint32_t count) {
+    gxp_tree *tree = &body->tree;
+    const uint32_t first = cluster * GXP_TREE_LEAVES;
+    uint32_t i, e;
+    gx_result result = GX_OK;
+    if (tree->marks.data[tree->cluster_count - 1 + cluster] & GXP_BOX_STALE) gxp_fit_leaves(body, cluster);
+    for (i = first; i < first + GXP_TREE_LEAVES && result == GX_OK; i++) {
+        const uint32_t in_leaf = gxp_pass_met(tree, walk, &tree->leaf_boxes[i], count);
+        for (e = tree->leaf_first.data[i]; e < tree->leaf_first.data[i + 1] && in_leaf > 0 && result == GX_OK; e++) {
+            const uint32_t met = gxp_pass_met(tree, walk, &tree->own_boxes[e], in_leaf);
+            if (met > 0) result = walk->visit(body, walk, e, tree->met.data + tree->met.count - met, met);
+            tree->met.count -= met;
+        }
+        tree->met.count -= in_leaf;
+    }
+    return result;
+}
+
+/* The part of the walk below a box of the tree, which meets the last `count` boxes of tree.met */
+static gx_result gxp_meet_boxes_below(gx_body *body, gxp_boxes_walk *walk, uint32_t box, uint32_t count) {
+    gxp_tree *tree = &body->tree;
+    uint32_t half;
+    gx_result result = GX_OK;
+    if (box >= tree->cluster_count - 1)
+        return gxp_meet_boxes_in_cluster(body, walk, box - (tree->cluster_count - 1), count);
+    for (half = 2; half > 0 && result == GX_OK; half--) {
+        const uint32_t met = gxp_pass_met(tree, walk, &tree->boxes[2 * box + half], count);
+        if (met > 0) result = gxp_meet_boxes_below(body, walk, 2 * box + half, met);
+        tree->met.count -= met;
+    }
+    return result;
+}
+
+static gx_result gxp_meet_boxes(gx_body *body, gxp_boxes_walk *walk, uint32_t count) {
+    gxp_tree *tree = &body->tree;
+    size_t levels = 4; /* the boxes, those of the root, a leaf's, an element's */
+    uint32_t i, met;
+    gx_result result;
+    for (i = 1; i < tree->cluster_count; i *= 2) levels++;
+    result = gxp_start_words(body, &tree->met, levels * count);
+    if (result != GX_OK) return result;
+    for (i = 0; i < count; i++) tree->met.data[i] = i;
+    tree->met.count = count;
+    met = gxp_pass_met(tree, walk, &tree->boxes[0], count);
+    return met > 0 ? gxp_meet_boxes_below(body, walk, 0, met) : GX_OK;
 }
 
 /* A walk to what is least by a measure. Callers put it first in a struct of their own. */
@@ -9087,6 +9445,7 @@ static void gxp_start_hit(gx_body *body, uint32_t slot, const double weights[4],
     hit->element = cell->element;
     hit->cell = body->view.indices.data[slot];
     hit->slot = body->cells.slot[slot];
+    hit->slot_count = body->slots.count;
     hit->epoch = body->cuts.epoch;
     for (n = 0; n < 4; n++)
         if (weights[n] > 0) {
@@ -9484,6 +9843,7 @@ static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double sh
     hit->element = s->element[triangle];
     hit->surface = s->surface[triangle];
     hit->slot = body->cells.slot[s->cell[triangle]];
+    hit->slot_count = body->slots.count;
     hit->cell = body->view.indices.data[s->cell[triangle]];
     for (i = 0; i < 3; i++) {
         const size_t v = s->triangles[3 * (size_t)triangle + i];
@@ -9648,19 +10008,6 @@ static gx_result gxp_copy_front(gx_body *body, gxp_front_list *to, const gxp_fro
     return gxp_append_front(body, to, from->data, from->count);
 }
 
-static gx_result gxp_list_slot(gx_body *body, void *user, uint32_t slot) {
-    return gxp_push(body, (gxp_words *)user, slot);
-}
-
-/* Lists the cells whose deformed elements' boxes meet a box. The tree is up to date. */
-static gx_result gxp_find_in_box(gx_body *body, const double low[3], const double high[3], gxp_words *found) {
-    gxp_bounds box;
-    memcpy(box.low, low, sizeof box.low);
-    memcpy(box.high, high, sizeof box.high);
-    found->count = 0;
-    return gxp_walk_box(body, &box, gxp_list_slot, found);
-}
-
 /* The near cell of a slot, or GXP_NONE */
 static uint32_t gxp_close_index(const gxp_vicinity *near, uint32_t slot) {
     const uint32_t index = slot < near->of_slot.count ? near->of_slot.data[slot] : GXP_NONE;
@@ -9689,15 +10036,16 @@ static uint32_t gxp_old_layer(const gx_blade *blade, uint32_t cell) {
     return low < members->count && GXP_FIRST(members->data[low]) == slot ? GXP_SECOND(members->data[low]) : GXP_NONE;
 }
 
-/* Where a vertex of a front is now, as a layer has it: by a cell of its element that belongs to the layer, if there is
-   one, and that contains it. old: the layer is one of the last move's. */
-static gx_result gxp_front_position(gx_blade *blade, uint32_t layer, int old, const gxp_front_vertex *v, double x[3]) {
+/* Where a material point is now, as a layer has it: by a cell of a vertex' element that belongs to the layer, if there
+   is one, and that contains the vertex. old: the layer is one of the last move's. Returns x as it was if the element is
+   no more. */
+static gx_result gxp_place_by(gx_blade *blade, uint32_t layer, int old, const gxp_front_vertex *v,
+                              const double point[3], double x[3]) {
     static const double origin[3] = {0, 0, 0};
     gx_body *body = blade->body;
     uint32_t cell, best = GXP_NONE, most = 0, holder = GXP_NONE;
     double corners[4][3], weights[4];
     gx_result result = GX_OK;
-    memcpy(x, v->position, 3 * sizeof *x);
     if (body->cells.data[v->element].next != GXP_NONE) result = gxp_cell_at(body, v->element, v->rest, &holder);
     for (cell = v->element; cell != GXP_NONE; cell = body->cells.data[cell].next) {
         const uint32_t own = old ? gxp_old_layer(blade, cell) : gxp_layer_of(&blade->near, cell),
@@ -9708,10 +10056,16 @@ static gx_result gxp_front_position(gx_blade *blade, uint32_t layer, int old, co
     }
     if (best == GXP_NONE || result != GX_OK) return result;
     gxp_cell_corners(body, &body->cells.data[best], 0, origin, corners);
-    gxp_tet_weights(corners, v->extended, weights);
+    gxp_tet_weights(corners, point, weights);
     gxp_cell_corners(body, &body->cells.data[best], 1, origin, corners);
     gxp_weigh(corners, weights, x);
     return GX_OK;
+}
+
+/* Where a vertex of a front is now, as a layer has it */
+static gx_result gxp_front_position(gx_blade *blade, uint32_t layer, int old, const gxp_front_vertex *v, double x[3]) {
+    memcpy(x, v->position, 3 * sizeof *x);
+    return gxp_place_by(blade, layer, old, v, v->extended, x);
 }
 
 /* A place on the edge: index of its point, + share of the way to the next */
@@ -9725,6 +10079,20 @@ static void gxp_edge_position(const double *edge, uint32_t count, double along, 
     }
 }
 
+/* The place on the edge that is nearest to a point: *along. Returns the squared distance. */
+static double gxp_onto_edge(const double *edge, uint32_t count, const double x[3], double *along) {
+    double best = HUGE_VAL;
+    uint32_t i;
+    for (i = 0; i + 1 < count; i++) {
+        double share, nearest[3];
+        const double square = gxp_onto_segment(x, edge + 3 * (size_t)i, edge + 3 * (size_t)i + 3, &share, nearest);
+        if (square >= best) continue;
+        best = square;
+        *along = i + share;
+    }
+    return best;
+}
+
 static gx_result gxp_push_quad(gx_blade *blade, const double *a, const double *b, const double *c, const double *d) {
     gx_result result = gxp_push_point(blade->body, &blade->quads, a);
     if (result == GX_OK) result = gxp_push_point(blade->body, &blade->quads, b);
@@ -9732,15 +10100,20 @@ static gx_result gxp_push_quad(gx_blade *blade, const double *a, const double *b
     return result == GX_OK ? gxp_push_point(blade->body, &blade->quads, d) : result;
 }
 
-/* The part of the edge between two of its points, from the last move's place to the new one, in pieces of about twice
-   the largest element. Far ends are long pieces: no cell is there. */
+/* How many pieces of about twice the largest element a segment of the edge has. Far ends are long pieces: no cell is
+   there. */
+static uint32_t gxp_part_count(const gx_blade *blade, const double *ends) {
+    const double length = sqrt(gxp_square_distance(ends, ends + 3));
+    return length < 200 * blade->largest ? 1 + (uint32_t)(0.5 * length / blade->largest) : 100;
+}
+
+/* The part of the edge between two of its points, from the last move's place to the new one, piece by piece */
 static gx_result gxp_sweep_segment(gx_blade *blade, const double *before, const double *after) {
-    double from[4][3], length;
-    uint32_t parts, i;
+    double from[4][3];
+    const uint32_t parts = gxp_part_count(blade, after);
+    uint32_t i;
     int k, n;
     gx_result result = GX_OK;
-    length = sqrt(gxp_square_distance(after, after + 3));
-    parts = length < 200 * blade->largest ? 1 + (uint32_t)(0.5 * length / blade->largest) : 100;
     for (i = 0; i < parts && result == GX_OK; i++) {
         for (n = 0; n < 2; n++)
             for (k = 0; k < 3; k++) {
@@ -9753,11 +10126,10 @@ static gx_result gxp_sweep_segment(gx_blade *blade, const double *before, const 
     return result;
 }
 
-/* The strip that the edge may have swept since the fronts were cut: from the edge of the last move, and from the place
-   where each front is now */
-static gx_result gxp_sweep(gx_blade *blade, const double *edge, uint32_t count) {
+/* The strip that the edge may have swept since the fronts were cut: from the edge before, and from the place where each
+   front is now */
+static gx_result gxp_sweep(gx_blade *blade, const double *before, const double *edge, uint32_t count) {
     const gxp_blade_state *now = &blade->now;
-    const double *before = now->edge.count > 0 ? now->edge.data : edge;
     uint32_t i, j;
     gx_result result = GX_OK;
     blade->quads.count = 0;
@@ -9766,12 +10138,85 @@ static gx_result gxp_sweep(gx_blade *blade, const double *edge, uint32_t count) 
     for (j = 0; j < now->layers.count && result == GX_OK; j++) {
         const gxp_front_vertex *v = now->vertices.data + now->layers.data[j].front;
         for (i = 0; i + 1 < now->layers.data[j].front_count && result == GX_OK; i++) {
-            double x[4][3];
+            double x[4][3], along;
+            if (v[i].gap) continue;
             result = gxp_front_position(blade, j, 1, &v[i], x[0]);
             if (result == GX_OK) result = gxp_front_position(blade, j, 1, &v[i + 1], x[1]);
-            gxp_edge_position(edge, count, v[i + 1].along, x[2]);
-            gxp_edge_position(edge, count, v[i].along, x[3]);
+            gxp_onto_edge(edge, count, x[1], &along);
+            gxp_edge_position(edge, count, along, x[2]);
+            gxp_onto_edge(edge, count, x[0], &along);
+            gxp_edge_position(edge, count, along, x[3]);
             if (result == GX_OK) result = gxp_push_quad(blade, x[0], x[1], x[2], x[3]);
+        }
+    }
+    return result;
+}
+
+/* Triangles of less sine than 2^-20 at their first corner have no plane: what is near them is near their edges. */
+#define GXP_NO_PLANE 9.094947017729282e-13 /* 2^-40 */
+
+static void gxp_set_plate(gxp_plate *p, const double *a, const double *b, const double *c) {
+    const double *x[3] = {a, b, c};
+    int i, k;
+    for (i = 0; i < 3; i++) {
+        memcpy(p->x[i], x[i], sizeof p->x[i]);
+        for (k = 0; k < 3; k++) p->along[i][k] = x[(i + 1) % 3][k] - x[i][k];
+        p->size[i] = gxp_dot(p->along[i], p->along[i]);
+    }
+    gxp_cross(p->normal, p->along[0], p->along[1]);
+    p->square = gxp_dot(p->normal, p->normal);
+    if (!(p->square > GXP_NO_PLANE * p->size[0] * p->size[1])) p->square = 0;
+    for (i = 0; i < 3; i++) gxp_cross(p->over[i], p->normal, p->along[i]);
+}
+
+/* Is a ball within a distance of a triangle? least: radius + distance */
+static int gxp_is_near_plate(const gxp_plate *p, const double middle[3], double least) {
+    const double square = least * least;
+    double way[3][3];
+    int i, k, beyond = 0;
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 3; k++) way[i][k] = middle[k] - p->x[i][k];
+    for (k = 0; k < 3; k++) {
+        beyond |= way[0][k] < -least && way[1][k] < -least && way[2][k] < -least;
+        beyond |= way[0][k] > least && way[1][k] > least && way[2][k] > least;
+    }
+    if (beyond) return 0;
+    if (p->square > 0) {
+        const double height = gxp_dot(p->normal, way[0]);
+        if (height * height > square * p->square) return 0;
+        if (gxp_dot(p->over[0], way[0]) >= 0 && gxp_dot(p->over[1], way[1]) >= 0 && gxp_dot(p->over[2], way[2]) >= 0)
+            return 1;
+    }
+    for (i = 0; i < 3; i++) {
+        const double far = gxp_dot(way[i], way[i]), along = gxp_dot(way[i], p->along[i]);
+        if (far <= square) return 1;
+        if (along > 0 && along < p->size[i] && far * p->size[i] - along * along <= square * p->size[i]) return 1;
+    }
+    return 0;
+}
+
+static gx_result gxp_plates_room(gx_blade *blade, uint32_t count) {
+    const gx_allocator *a = &blade->body->config.allocator;
+    return gxp_reserve(a, &blade->plates, sizeof *blade->plates, 0, &blade->plate_capacity, count);
+}
+
+/* Prepares the two triangles of each quad, and the boxes in which cells are looked at. */
+static gx_result gxp_prepare_quads(gx_blade *blade) {
+    const uint32_t count = blade->quads.count / 4;
+    uint32_t q;
+    int k;
+    gx_result result = gxp_plates_room(blade, 2 * count);
+    if (result == GX_OK)
+        result = gxp_reserve(&blade->body->config.allocator, &blade->boxes, sizeof *blade->boxes, 0,
+                             &blade->box_capacity, count);
+    for (q = 0; q < count && result == GX_OK; q++) {
+        const double *x = blade->quads.data + 12 * (size_t)q;
+        gxp_set_plate(&blade->plates[2 * q], x, x + 3, x + 6);
+        gxp_set_plate(&blade->plates[2 * q + 1], x, x + 6, x + 9);
+        for (k = 0; k < 3; k++) {
+            const double of[4] = {x[k], x[3 + k], x[6 + k], x[9 + k]};
+            blade->boxes[q].low[k] = gxp_least(of) - blade->largest;
+            blade->boxes[q].high[k] = gxp_greatest(of) + blade->largest;
         }
     }
     return result;
@@ -9779,10 +10224,11 @@ static gx_result gxp_sweep(gx_blade *blade, const double *edge, uint32_t count) 
 
 /* The deformed corners of a cell, and what contains them */
 static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
-    static const double origin[3] = {0, 0, 0};
     const gxp_cell *cell = &body->cells.data[c->slot];
+    double moved[12];
     int n, k;
-    gxp_cell_corners(body, cell, 1, origin, c->corners);
+    gxp_moved_corners(body, cell, moved);
+    memcpy(c->corners, moved, sizeof moved);
     for (k = 0; k < 3; k++) {
         const double x[4] = {c->corners[0][k], c->corners[1][k], c->corners[2][k], c->corners[3][k]};
         c->low[k] = gxp_least(x);
@@ -9790,77 +10236,96 @@ static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
         c->middle[k] = 0.25 * (x[0] + x[1] + x[2] + x[3]);
     }
     c->radius = 0;
-    for (n = 0; n < 4; n++) {
-        const double square = gxp_square_distance(c->middle, c->corners[n]);
-        if (square > c->radius) c->radius = square;
-    }
+    for (n = 0; n < 4; n++) c->radius = gxp_more(c->radius, gxp_square_distance(c->middle, c->corners[n]));
     c->radius = sqrt(c->radius);
-    c->stretch = gxp_stretch(body, c->slot);
-    c->size = cbrt(6 * gxp_element_volume(body, cell->element));
+    c->is_divided = (uint8_t)(gxb_complex_root(body->complex, cell->element) & 1);
+    c->has_facets = 0;
+    c->size = body->mesh.sizes[cell->element];
 }
 
-/* Is the ball around a cell within a distance of a triangle? */
-static int gxp_is_near_triangle(const gxp_close_cell *c, const double *x, const double *y, const double *z,
-                                double reach) {
-    const double least = c->radius + reach;
-    double at[3];
-    int k, beyond = 0;
-    for (k = 0; k < 3; k++) {
-        beyond |= x[k] > c->middle[k] + least && y[k] > c->middle[k] + least && z[k] > c->middle[k] + least;
-        beyond |= x[k] < c->middle[k] - least && y[k] < c->middle[k] - least && z[k] < c->middle[k] - least;
-    }
-    return !beyond && gxp_onto_triangle(c->middle, x, y, z, at) <= least * least;
-}
-
-/* Looks at a cell: it is near if it is within an element's size of the quad. quad NULL: wherever it is */
-static gx_result gxp_add_near(gx_blade *blade, uint32_t slot, const double *quad) {
+/* Appends a cell to the near ones. */
+static gx_result gxp_push_near(gx_blade *blade, const gxp_close_cell *c) {
     gxp_vicinity *near = &blade->near;
-    uint32_t index = gxp_close_index(near, slot);
-    gxp_close_cell *c;
-    if (index == GXP_NONE) {
-        const gx_result result = gxp_reserve(&blade->body->config.allocator, &near->cells, sizeof *near->cells,
-                                             near->count, &near->capacity, 1);
-        if (result != GX_OK) return result;
-        index = near->of_slot.data[slot] = near->count++;
-        memset(&near->cells[index], 0, sizeof near->cells[index]);
-        near->cells[index].slot = slot;
-        gxp_place_near(blade->body, &near->cells[index]);
-    }
-    c = &near->cells[index];
-    if (!c->is_near)
-        c->is_near = quad == NULL || gxp_is_near_triangle(c, quad, quad + 3, quad + 6, c->size) ||
-                     gxp_is_near_triangle(c, quad, quad + 6, quad + 9, c->size);
+    const gx_result result =
+        gxp_reserve(&blade->body->config.allocator, &near->cells, sizeof *near->cells, near->count, &near->capacity, 1);
+    if (result != GX_OK) return result;
+    near->of_slot.data[c->slot] = near->count;
+    near->cells[near->count] = *c;
+    near->cells[near->count++].stretch = gxp_stretch(blade->body, c->slot);
     return GX_OK;
 }
 
-/* Drops the cells that were looked at in vain. */
-static void gxp_keep_near(gxp_vicinity *near) {
-    uint32_t i, n = 0;
-    for (i = 0; i < near->count; i++) {
-        if (!near->cells[i].is_near) continue;
-        if (n < i) near->cells[n] = near->cells[i];
-        near->of_slot.data[near->cells[n].slot] = n;
-        n++;
+typedef struct gxp_vicinity_walk {
+    gxp_boxes_walk walk;
+    gx_blade *blade;
+    const gxp_words *scope; /* by fragment, 1 if it is in the scope; NULL: all are */
+} gxp_vicinity_walk;
+
+/* Looks at the cells of an element: they are near if they are within an element's size of a quad in whose box they
+   are. */
+static gx_result gxp_add_near_cells(gx_body *body, gxp_boxes_walk *walk, uint32_t place, const uint32_t *met,
+                                    uint32_t count) {
+    const gxp_vicinity_walk *own = (const gxp_vicinity_walk *)(const void *)walk;
+    gx_blade *blade = own->blade;
+    uint32_t slot, i;
+    gx_result result = GX_OK;
+    for (slot = body->mesh.box_elements[place]; slot != GXP_NONE && result == GX_OK;
+         slot = body->cells.data[slot].next) {
+        gxp_close_cell c;
+        gxp_bounds box;
+        if (!body->cells.data[slot].kept) continue;
+        if (own->scope != NULL && !own->scope->data[gxp_cell_fragment(body, slot)]) continue;
+        c.slot = slot;
+        gxp_place_near(body, &c);
+        memcpy(box.low, c.low, sizeof box.low);
+        memcpy(box.high, c.high, sizeof box.high);
+        for (i = 0, c.quad = GXP_NONE; i < count; i++) {
+            if (gxp_gap(&blade->boxes[met[i]], &box) > 0) continue;
+            if (c.quad == GXP_NONE) c.quad = met[i];
+            if (gxp_is_near_plate(&blade->plates[2 * met[i]], c.middle, c.radius + c.size) ||
+                gxp_is_near_plate(&blade->plates[2 * met[i] + 1], c.middle, c.radius + c.size))
+                break;
+        }
+        if (i < count) result = gxp_push_near(blade, &c);
     }
-    near->count = n;
+    return result;
 }
 
-/* Unites a near cell with those before it that share a copy. */
-static void gxp_join_near(gx_blade *blade, uint32_t index) {
+/* Ranks the near cells by their first quads; those of one quad in the order in which they were found. */
+static gx_result gxp_rank_near(gx_blade *blade) {
+    gxp_vicinity *near = &blade->near;
+    const uint32_t quads = blade->quads.count / 4 + 1; /* the last one for cells without */
+    uint32_t i, sum = 0;
+    gx_result result = gxp_start_words(blade->body, &near->quad_start, quads);
+    if (result == GX_OK) result = gxp_start_words(blade->body, &near->ranked, near->count);
+    if (result != GX_OK) return result;
+    memset(near->quad_start.data, 0, quads * sizeof *near->quad_start.data);
+    for (i = 0; i < near->count; i++) near->quad_start.data[near->cells[i].quad]++;
+    for (i = 0; i < quads; i++) {
+        const uint32_t count = near->quad_start.data[i];
+        near->quad_start.data[i] = sum;
+        sum += count;
+    }
+    for (i = 0; i < near->count; i++) near->ranked.data[near->quad_start.data[near->cells[i].quad]++] = i;
+    near->ranked.count = near->count;
+    return GX_OK;
+}
+
+/* Unites near cells that share a copy. */
+static void gxp_join_near(gx_blade *blade) {
     gxp_vicinity *near = &blade->near;
     const gx_body *body = blade->body;
-    const uint32_t *copies = body->cells.data[near->cells[index].slot].copies;
-    uint32_t k, n;
-    for (k = 0; k < 4; k++) {
-        const uint32_t first = near->of_copy.data[copies[k]];
-        int shared = 0;
-        for (n = 0; n < 4 && first < index; n++)
-            shared |= body->cells.data[near->cells[first].slot].copies[n] == copies[k];
-        if (shared)
-            gxp_unite(near->parents.data, first, index);
-        else
-            near->of_copy.data[copies[k]] = index;
+    uint32_t *first = near->of_copy.data, i, k;
+    for (i = 0; i < near->count; i++) {
+        const uint32_t *copies = body->cells.data[near->cells[near->ranked.data[i]].slot].copies;
+        for (k = 0; k < 4; k++)
+            if (first[copies[k]] == 0)
+                first[copies[k]] = i + 1;
+            else
+                gxp_unite(near->parents.data, first[copies[k]] - 1, i);
     }
+    for (i = 0; i < near->count; i++)
+        for (k = 0; k < 4; k++) first[body->cells.data[near->cells[i].slot].copies[k]] = 0;
 }
 
 /* Words by slot or copy, which keep what they have; new ones are 0. */
@@ -9879,15 +10344,18 @@ static gx_result gxp_number_layers(gx_blade *blade) {
     gxp_vicinity *near = &blade->near;
     gx_body *body = blade->body;
     uint32_t i;
-    gx_result result = gxp_extend_words(body, &near->of_copy, body->copies.count);
-    near->parents.count = 0;
-    for (i = 0; i < near->count && result == GX_OK; i++) result = gxp_push(body, &near->parents, i);
+    gx_result result = gxp_rank_near(blade);
+    if (result == GX_OK) result = gxp_extend_words(body, &near->of_copy, body->copies.count);
+    if (result == GX_OK) result = gxp_start_words(body, &near->parents, near->count);
     if (result != GX_OK) return result;
-    for (i = 0; i < near->count; i++) gxp_join_near(blade, i);
+    for (i = 0; i < near->count; i++) near->parents.data[i] = i;
+    near->parents.count = near->count;
+    gxp_join_near(blade);
     near->layer_count = 0;
     for (i = 0; i < near->count; i++) {
         const uint32_t root = gxp_find(near->parents.data, i);
-        near->cells[i].layer = root == i ? near->layer_count++ : near->cells[root].layer;
+        near->cells[near->ranked.data[i]].layer =
+            root == i ? near->layer_count++ : near->cells[near->ranked.data[root]].layer;
     }
     return GX_OK;
 }
@@ -9918,14 +10386,17 @@ static gx_result gxp_order_near(gx_blade *blade) {
         sum += count;
     }
     for (i = 0; i < near->count; i++) {
-        const double share = high > low ? (near->cells[i].low[near->axis] - low) / (high - low) : 0;
+        const double at = near->cells[near->ranked.data[i]].low[near->axis],
+                     share = high > low ? (at - low) / (high - low) : 0;
         near->order.data[near->order.count++] = (uint64_t)(4294967295.0 * share) << 32 | i;
     }
     result = gxp_sort_keys(body, &near->order, 0, near->count);
     if (result != GX_OK) return result;
     for (i = 0; i < near->count; i++) { /* by layer, stable */
-        const uint32_t cell = GXP_SECOND(near->order.data[i]);
-        near->order.data[near->count + near->layer_start.data[near->cells[cell].layer]++] = near->order.data[i];
+        const uint64_t key = near->order.data[i];
+        const uint32_t cell = near->ranked.data[GXP_SECOND(key)];
+        near->order.data[near->count + near->layer_start.data[near->cells[cell].layer]++] =
+            (key & 0xffffffff00000000u) | cell;
     }
     if (near->count > 0)
         memcpy(near->order.data, near->order.data + near->count, near->count * sizeof *near->order.data);
@@ -9934,37 +10405,41 @@ static gx_result gxp_order_near(gx_blade *blade) {
     return GX_OK;
 }
 
+/* Boxes of the tree that are out of date by less, in mean sizes of elements, are not fitted again for a blade. */
+#define GXP_NEAR_SLACK 0.75
+
+/* Brings the tree of boxes up to date for the blade. Blames a copy that is not finite or out of range. */
+static gx_result gxp_refit_near(gx_blade *blade, double most, gx_failure *failure) {
+    uint32_t wild;
+    const gx_result result = gxp_refit_loosely(blade->body, most * blade->body->mesh.mean_size, &blade->slack);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    wild = gxp_wild_copy(blade->body);
+    return wild == GXP_NONE ? GX_OK : gxp_check_copy(blade->body, wild, failure);
+}
+
 /* Finds the cells near the quads. scope: by fragment, 1 if it is in the scope; NULL: all are. */
 static gx_result gxp_find_near(gx_blade *blade, const gxp_words *scope) {
-    gxp_vicinity *near = &blade->near;
     gx_body *body = blade->body;
-    uint32_t q, i;
-    int k;
-    gx_result result = gxp_refit_tree(body);
-    if (result == GX_OK) result = gxp_extend_words(body, &near->of_slot, body->cells.count);
-    near->count = 0;
-    for (q = 0; q < blade->quads.count && result == GX_OK; q += 4) {
-        const double *x = blade->quads.data + 3 * (size_t)q;
-        double low[3], high[3];
-        for (k = 0; k < 3; k++) {
-            low[k] = fmin(fmin(x[k], x[3 + k]), fmin(x[6 + k], x[9 + k])) - blade->largest;
-            high[k] = fmax(fmax(x[k], x[3 + k]), fmax(x[6 + k], x[9 + k])) + blade->largest;
-        }
-        result = gxp_find_in_box(body, low, high, &blade->found);
-        for (i = 0; i < blade->found.count && result == GX_OK; i++)
-            if (scope == NULL || scope->data[gxp_cell_fragment(body, blade->found.data[i])])
-                result = gxp_add_near(blade, blade->found.data[i], x);
-    }
-    return result;
+    gxp_vicinity_walk own;
+    gx_result result = gxp_extend_words(body, &blade->near.of_slot, body->cells.count);
+    if (result == GX_OK) result = gxp_prepare_quads(blade);
+    blade->near.count = blade->near.lambda_count = 0;
+    if (result != GX_OK) return result;
+    own.walk.visit = gxp_add_near_cells;
+    own.walk.boxes = blade->boxes;
+    own.walk.slack = blade->slack;
+    own.blade = blade;
+    own.scope = scope;
+    return gxp_meet_boxes(body, &own.walk, blade->quads.count / 4);
 }
 
 /* Finds the near cells and their layers. */
-static gx_result gxp_find_layers(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope) {
+static gx_result gxp_find_layers(gx_blade *blade, const double *before, const double *edge, uint32_t count,
+                                 const gxp_words *scope) {
     const double *last = edge + 3 * ((size_t)count - 1);
     int k;
-    gx_result result = gxp_sweep(blade, edge, count);
+    gx_result result = gxp_sweep(blade, before, edge, count);
     if (result == GX_OK) result = gxp_find_near(blade, scope);
-    gxp_keep_near(&blade->near);
     if (result == GX_OK) result = gxp_number_layers(blade);
     blade->near.axis = 0;
     for (k = 1; k < 3; k++)
@@ -9978,15 +10453,17 @@ static gx_result gxp_find_layers(gx_blade *blade, const double *edge, uint32_t c
 
 /* Cells of less volume, as a share of that at rest, map nothing back: other cells are near. */
 #define GXP_FLAT_MAP 1e-3
-/* A place within the element of a near cell, but in the part of another one, is taken to be this far off the cell, in
-   element sizes. */
-#define GXP_BESIDE 1e-3
+/* The parts of an edge near a layer end this far from it, in element sizes. */
+#define GXP_CAP 1.25
+/* In the air, places that are seen are at most this share of their distances from the layer apart. */
+#define GXP_AIR 0.5
 
 typedef struct gxp_sight { /* what a search for the nearest cell of a layer has found */
     uint32_t index;        /* of a near cell, GXP_NONE: none */
     double square;         /* of the distance, m2; 0: inside */
     double nearest[3];     /* in space */
     double weights[4];     /* of the place, by the corners of that cell */
+    int wall;              /* 1: the nearest point is on a wall of the cell */
 } gxp_sight;
 
 static double gxp_square_to_box(const double x[3], const double low[3], const double high[3]) {
@@ -9999,58 +10476,98 @@ static double gxp_square_to_box(const double x[3], const double low[3], const do
     return square;
 }
 
-/* A cell whose element contains the place: is the place in the cell's own part? */
-static gx_result gxp_seek_inside(gx_blade *blade, uint32_t index, const double x[3], const double weights[4],
-                                 gxp_sight *sight) {
+/* Is the place, of these weights in the cell's element, in the cell's own part? */
+static gx_result gxp_is_own_part(gx_body *body, const gxp_close_cell *c, const double weights[4], int *own) {
     static const double origin[3] = {0, 0, 0};
-    gx_body *body = blade->body;
-    const gxp_close_cell *c = &blade->near.cells[index];
     const gxp_cell *cell = &body->cells.data[c->slot];
-    const double beside = GXP_BESIDE * c->size;
+    double corners[4][3], rest[3];
     uint32_t holder = c->slot;
-    gx_result result = GX_OK;
-    if (body->cells.data[cell->element].next != GXP_NONE) {
-        double corners[4][3], rest[3];
-        gxp_cell_corners(body, cell, 0, origin, corners);
-        gxp_weigh(corners, weights, rest);
-        result = gxp_cell_at(body, cell->element, rest, &holder);
-    }
-    if (holder != c->slot && beside * beside >= sight->square) return result;
-    sight->index = index;
-    sight->square = holder == c->slot ? 0 : beside * beside;
-    memcpy(sight->nearest, x, sizeof sight->nearest);
-    memcpy(sight->weights, weights, sizeof sight->weights);
+    gx_result result;
+    *own = 1;
+    if (!c->is_divided) return GX_OK;
+    gxp_cell_corners(body, cell, 0, origin, corners);
+    gxp_weigh(corners, weights, rest);
+    result = gxp_cell_at(body, cell->element, rest, &holder);
+    *own = holder == c->slot;
     return result;
 }
 
-/* A cell whose element does not contain the place: is it nearer than what was found before? */
-static void gxp_seek_outside(const gx_blade *blade, uint32_t index, const double x[3], const double weights[4],
-                             gxp_sight *sight) {
-    const gxp_close_cell *c = &blade->near.cells[index];
-    int f;
-    if (c->stretch < GXP_FLAT_MAP) return; /* flat or inverted: outside is inside by its map */
-    for (f = 0; f < 4; f++) {
-        double nearest[3], square;
-        if (weights[f] >= 0) continue;
-        square = gxp_onto_triangle(x, c->corners[gxp_outward[f][0]], c->corners[gxp_outward[f][1]],
-                                   c->corners[gxp_outward[f][2]], nearest);
+/* Lists the triangles that bound the cell of a divided element. */
+static gx_result gxp_list_facets(gx_blade *blade, gxp_close_cell *c) {
+    gx_body *body = blade->body;
+    gxp_vicinity *near = &blade->near;
+    const gxp_boundary *boundary = &body->scratch.boundary;
+    uint32_t i;
+    gx_result result;
+    gxp_clear_boundary(body, 1);
+    result = gxp_bound_cell(body, c->slot);
+    if (result == GX_OK)
+        result = gxp_reserve(&body->config.allocator, &near->lambdas, 12 * sizeof *near->lambdas, near->lambda_count,
+                             &near->lambda_capacity, boundary->triangles.count / 3);
+    if (result != GX_OK) return result;
+    c->facets = near->lambda_count;
+    c->facet_count = boundary->triangles.count / 3;
+    c->has_facets = 1;
+    for (i = 0; i < boundary->triangles.count; i++)
+        memcpy(near->lambdas + 12 * (size_t)near->lambda_count + 4 * (size_t)i,
+               boundary->lambdas + 4 * (size_t)boundary->triangles.data[i], 4 * sizeof *near->lambdas);
+    near->lambda_count += c->facet_count;
+    return GX_OK;
+}
+
+/* A cell that does not contain the place: is its material nearer than what was found before? */
+static gx_result gxp_seek_outside(gx_blade *blade, uint32_t index, const double x[3], const double weights[4],
+                                  gxp_sight *sight) {
+    static const double own[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+    gxp_close_cell *c = &blade->near.cells[index];
+    uint32_t count = 4, i;
+    int n, k;
+    if (c->stretch < GXP_FLAT_MAP) return GX_OK; /* flat or inverted: outside is inside by its map */
+    if (c->is_divided && !c->has_facets) {
+        const gx_result result = gxp_list_facets(blade, c);
+        if (result != GX_OK) return result;
+    }
+    if (c->is_divided) count = c->facet_count;
+    for (i = 0; i < count; i++) {
+        const double *lambda[3];
+        double corner[3][3], nearest[3], square;
+        if (!c->is_divided && weights[i] >= 0) continue;
+        for (n = 0; n < 3; n++)
+            lambda[n] =
+                c->is_divided ? blade->near.lambdas + 12 * (size_t)(c->facets + i) + 4 * n : own[gxp_outward[i][n]];
+        for (n = 0; n < 3; n++)
+            for (k = 0; k < 3; k++)
+                corner[n][k] = lambda[n][0] * c->corners[0][k] + lambda[n][1] * c->corners[1][k] +
+                               lambda[n][2] * c->corners[2][k] + lambda[n][3] * c->corners[3][k];
+        square = gxp_onto_triangle(x, corner[0], corner[1], corner[2], nearest);
         if (square >= sight->square) continue;
         sight->index = index;
         sight->square = square;
+        sight->wall = 1;
+        for (n = 0; n < 4; n++)
+            if (!(lambda[0][n] > 0) && !(lambda[1][n] > 0) && !(lambda[2][n] > 0)) sight->wall = 0;
         memcpy(sight->nearest, nearest, sizeof nearest);
         memcpy(sight->weights, weights, sizeof sight->weights);
     }
+    return GX_OK;
 }
 
 static gx_result gxp_seek_at(gx_blade *blade, uint32_t index, const double x[3], gxp_sight *sight) {
     gxp_close_cell *c = &blade->near.cells[index];
     double weights[4];
+    int own = 0;
+    gx_result result = GX_OK;
     if (gxp_square_to_box(x, c->low, c->high) >= sight->square || fabs(c->stretch) < GXP_FLAT_MAP) return GX_OK;
     gxp_tet_weights(c->corners, x, weights);
     if (weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0 && weights[3] >= 0)
-        return gxp_seek_inside(blade, index, x, weights, sight);
-    gxp_seek_outside(blade, index, x, weights, sight);
-    return GX_OK;
+        result = gxp_is_own_part(blade->body, c, weights, &own);
+    if (!own && result == GX_OK) return gxp_seek_outside(blade, index, x, weights, sight);
+    sight->index = index;
+    sight->square = 0;
+    sight->wall = 0;
+    memcpy(sight->nearest, x, sizeof sight->nearest);
+    memcpy(sight->weights, weights, sizeof sight->weights);
+    return result;
 }
 
 /* Finds the cell of a layer that contains a place, or else the nearest one. */
@@ -10122,11 +10639,13 @@ static gx_result gxp_place_in_air(gx_blade *blade, uint32_t layer, const gxp_sig
                                   gxp_front_vertex *v) {
     const gxp_close_cell *c = &blade->near.cells[sight->index];
     double weights[4], surface[3], position[3], away;
-    const double share = v->distance > v->size ? v->size / v->distance : 1;
+    const double reach = GXP_CAP * v->size, share = v->distance > reach ? reach / v->distance : 1;
     int k, tries, inside = 1;
     gx_result result = GX_OK;
     gxp_tet_weights(blade->near.cells[sight->index].corners, sight->nearest, weights);
     gxp_weigh(corners, weights, surface);
+    memcpy(v->foot, surface, sizeof surface);
+    memcpy(v->foot_at, sight->nearest, sizeof v->foot_at);
     for (k = 0; k < 3; k++) position[k] = sight->nearest[k] + share * (v->position[k] - sight->nearest[k]);
     gxp_tet_weights(blade->near.cells[sight->index].corners, position, weights);
     gxp_weigh(corners, weights, v->rest);
@@ -10135,6 +10654,11 @@ static gx_result gxp_place_in_air(gx_blade *blade, uint32_t layer, const gxp_sig
         for (k = 0; k < 3; k++) v->rest[k] = surface[k] + 1.5 * c->size / away * (v->rest[k] - surface[k]);
     for (tries = 0; tries < 6 && inside && result == GX_OK; tries++) {
         result = gxp_is_in_layer(blade, layer, v->rest, &inside);
+        if (inside && sight->wall) {
+            memcpy(v->rest, surface, sizeof surface);
+            v->walled = 1;
+            break;
+        }
         for (k = 0; k < 3 && inside; k++) v->rest[k] = surface[k] + 0.4 * (v->rest[k] - surface[k]);
     }
     return result;
@@ -10158,11 +10682,15 @@ static gx_result gxp_see_place(gx_blade *blade, uint32_t layer, gxp_front_vertex
     if (sight.index == GXP_NONE) { /* every cell is flat or inverted */
         memcpy(v->rest, v->position, sizeof v->rest);
         memcpy(v->extended, v->position, sizeof v->extended);
+        memcpy(v->foot, v->position, sizeof v->foot);
+        memcpy(v->foot_at, v->position, sizeof v->foot_at);
         return GX_OK;
     }
     gxp_cell_corners(blade->body, &blade->body->cells.data[c->slot], 0, origin, corners);
     gxp_weigh(corners, sight.weights, v->extended);
     memcpy(v->rest, v->extended, sizeof v->rest);
+    memcpy(v->foot, v->rest, sizeof v->foot);
+    memcpy(v->foot_at, v->position, sizeof v->foot_at);
     return v->distance > 0 ? gxp_place_in_air(blade, layer, &sight, corners, v) : GX_OK;
 }
 
@@ -10175,13 +10703,14 @@ static gx_result gxp_see(gx_blade *blade, uint32_t layer, const double *edge, ui
     return gxp_see_place(blade, layer, v);
 }
 
-/* Are there places between two that must be seen? None, if the layer can't be there: its distance from a place is at
-   most that from another one and the way between them. */
+/* Are there places between two that must be seen? In the air the line between them must stay out of the layer: they
+   are near to each other beside their distances from it. */
 static int gxp_must_refine(const gx_blade *blade, const gxp_front_vertex *a, const gxp_front_vertex *b) {
     const double length = sqrt(gxp_square_distance(a->position, b->position));
     const double size = a->size < b->size ? a->size : b->size;
-    if (blade->samples.count >= blade->max_samples) return 0;
-    if (a->distance > 0 && b->distance > 0 && a->distance + b->distance > length) return 0;
+    if (blade->seen.count >= blade->max_samples) return 0;
+    if (a->distance > 0 && b->distance > 0)
+        return length > size * 0.125 && length > GXP_AIR * (a->distance + b->distance);
     return length > size * ((a->distance > 0) == (b->distance > 0) ? 0.5 : 0.125);
 }
 
@@ -10194,7 +10723,7 @@ static gx_result gxp_refine(gx_blade *blade, uint32_t layer, const double *edge,
     if (!gxp_must_refine(blade, a, b) || !(along > a->along && along < b->along)) return GX_OK;
     result = gxp_see(blade, layer, edge, count, along, &middle);
     if (result == GX_OK) result = gxp_refine(blade, layer, edge, count, a, &middle);
-    if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->samples, &middle);
+    if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->seen, &middle);
     return result == GX_OK ? gxp_refine(blade, layer, edge, count, &middle, b) : result;
 }
 
@@ -10214,22 +10743,78 @@ static void gxp_keep_bends(const gxp_front_vertex *v, uint32_t first, uint32_t l
     }
 }
 
-/* Drops the ends of the edge that are farther than an element's size from the layer, and places on lines. */
-static gx_result gxp_thin_samples(gx_blade *blade) {
+/* Flags the places that tell where the layer is: the first and the last of each stretch of the edge in the layer, the
+   middle one, and those next to it in the air. */
+static void gxp_keep_stretches(const gxp_front_vertex *v, uint32_t first, uint32_t last, uint32_t *keep) {
+    uint32_t i, j;
+    for (i = first; i <= last; i = j) {
+        for (j = i + 1; j <= last && (v[j].distance > 0) == (v[i].distance > 0); j++) {}
+        keep[i] |= 2;
+        keep[j - 1] |= 2;
+        keep[i + (j - i) / 2] |= 2;
+    }
+}
+
+/* Drops places on lines. */
+static gx_result gxp_thin_run(gx_blade *blade, uint32_t first) {
     gxp_front_vertex *v = blade->samples.data;
-    uint32_t first = 0, last = blade->samples.count - 1, count = 0, i;
+    const uint32_t last = blade->samples.count - 1;
+    uint32_t count = first, i, *needed;
     gx_result result = gxp_start_words(blade->body, &blade->needed, blade->samples.count);
     if (result != GX_OK) return result;
-    while (first < last && v[first + 1].distance > v[first + 1].size) first++;
-    while (last > first && v[last - 1].distance > v[last - 1].size) last--;
-    if (first >= last) first = 0, last = blade->samples.count - 1;
-    memset(blade->needed.data, 0, blade->samples.count * sizeof *blade->needed.data);
-    blade->needed.data[first] = blade->needed.data[last] = 1;
-    gxp_keep_bends(v, first, last, 0.5 * blade->tolerance, blade->needed.data);
-    for (i = first; i <= last; i++)
-        if (blade->needed.data[i]) v[count++] = v[i];
+    needed = blade->needed.data;
+    memset(needed, 0, blade->samples.count * sizeof *needed);
+    needed[first] = needed[last] = 1;
+    gxp_keep_bends(v, first, last, 0.5 * blade->tolerance, needed);
+    gxp_keep_stretches(v, first, last, needed);
+    for (i = first; i <= last; i++) {
+        if (!needed[i]) continue;
+        v[i].soft = needed[i] == 2;
+        v[count++] = v[i];
+    }
+    v[count - 1].gap = 1;
     blade->samples.count = count;
     return GX_OK;
+}
+
+/* Appends the place at which the part of the edge that is near the layer ends: between a place seen near it and the
+   next one, so far that the layer cannot be farther than GXP_CAP. */
+static gx_result gxp_push_cap(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count,
+                              const gxp_front_vertex *near, const gxp_front_vertex *far) {
+    const double length = sqrt(gxp_square_distance(near->position, far->position)),
+                 reach = fmax(GXP_CAP * near->size - near->distance, 0.25 * near->size);
+    gxp_front_vertex v = *far;
+    gx_result result = GX_OK;
+    if (reach < length)
+        result = gxp_see(blade, layer, edge, count, near->along + reach / length * (far->along - near->along), &v);
+    return result == GX_OK ? gxp_push_vertex(blade->body, &blade->samples, &v) : result;
+}
+
+/* Is a place of the edge within an element's size of the layer, or not much farther than the nearest one? */
+static int gxp_is_run(const gxp_front_vertex *v, double least) {
+    return v->distance <= fmax(v->size, least + 0.5 * v->size);
+}
+
+/* Lists in blade.samples the parts of the edge that are near the layer, each with an end in the air on both sides. */
+static gx_result gxp_list_runs(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count) {
+    const gxp_front_list *seen = &blade->seen;
+    double least = HUGE_VAL;
+    uint32_t i, j;
+    gx_result result = GX_OK;
+    blade->samples.count = 0;
+    for (i = 0; i < seen->count; i++) least = fmin(least, seen->data[i].distance);
+    for (i = 0; i < seen->count && result == GX_OK; i = j + 1) {
+        const uint32_t first = blade->samples.count;
+        j = i;
+        if (!gxp_is_run(&seen->data[i], least)) continue;
+        while (j + 1 < seen->count && gxp_is_run(&seen->data[j + 1], least)) j++;
+        if (i > 0) result = gxp_push_cap(blade, layer, edge, count, &seen->data[i], &seen->data[i - 1]);
+        if (result == GX_OK) result = gxp_append_front(blade->body, &blade->samples, seen->data + i, j - i + 1);
+        if (result == GX_OK && j + 1 < seen->count)
+            result = gxp_push_cap(blade, layer, edge, count, &seen->data[j], &seen->data[j + 1]);
+        if (result == GX_OK) result = gxp_thin_run(blade, first);
+    }
+    return result;
 }
 
 /* Lists in blade.samples how a layer sees the edge. */
@@ -10238,16 +10823,16 @@ static gx_result gxp_see_edge(gx_blade *blade, uint32_t layer, const double *edg
     uint32_t i;
     gx_result result;
     blade->last_sight = GXP_NONE;
-    blade->samples.count = 0;
+    blade->seen.count = 0;
     result = gxp_see(blade, layer, edge, count, 0, &before);
-    if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->samples, &before);
+    if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->seen, &before);
     for (i = 1; i < count && result == GX_OK; i++) {
         result = gxp_see(blade, layer, edge, count, (double)i, &v);
         if (result == GX_OK) result = gxp_refine(blade, layer, edge, count, &before, &v);
-        if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->samples, &v);
+        if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->seen, &v);
         before = v;
     }
-    return result == GX_OK ? gxp_thin_samples(blade) : result;
+    return result == GX_OK ? gxp_list_runs(blade, layer, edge, count) : result;
 }
 
 /* >>fronts: how far the edge has come in a layer ------------------------------------------------------------------- */
@@ -10259,6 +10844,8 @@ static gx_result gxp_see_edge(gx_blade *blade, uint32_t layer, const double *edg
    from its sheet, else the edge has left the cut through its side. */
 #define GXP_LEAST_ADVANCE 0.02
 #define GXP_CUT_WIDTH     0.15
+/* So far on the other side of the sheet does a track begin, in element sizes. */
+#define GXP_CROSSING 0.1
 /* Triangles of the last strips that a layer remembers. */
 #define GXP_SHEET_TRIANGLES 400u
 
@@ -10270,8 +10857,9 @@ static void gxp_near_front(const gxp_front_list *front, const double rest[3], gx
     r->share = 0;
     memcpy(nearest, front->data[0].rest, 3 * sizeof *nearest);
     for (i = 0; i + 1 < front->count; i++) {
+        const gxp_front_vertex *next = &front->data[i + (front->data[i].gap ? 0 : 1)];
         double share, at[3];
-        const double square = gxp_onto_segment(rest, front->data[i].rest, front->data[i + 1].rest, &share, at);
+        const double square = gxp_onto_segment(rest, front->data[i].rest, next->rest, &share, at);
         if (square >= best) continue;
         best = square;
         r->segment = i;
@@ -10301,17 +10889,6 @@ static double gxp_near_sheet(const gxp_points *sheet, const double rest[3], doub
         memcpy(nearest, at, sizeof at);
     }
     return sqrt(best);
-}
-
-/* Is the place past an end of the front, where the section of layer and sheet has become longer? */
-static int gxp_is_beyond(const gxp_front_list *front, const gxp_front_vertex *v, const gxp_relation *r) {
-    const uint32_t last = front->count - 1, end = r->share > 0 ? last : 0;
-    const double *x = front->data[end].rest, *next = front->data[end == 0 ? 1 : last - 1].rest;
-    double out = 0;
-    int k;
-    if (!(r->segment == 0 && r->share <= 0) && !(r->segment + 1 == last && r->share >= 1)) return 0;
-    for (k = 0; k < 3; k++) out += (v->rest[k] - x[k]) * (x[k] - next[k]);
-    return out > 0;
 }
 
 /* A place behind the front: is it in the cut, has it left that through the side, or is it beside the front, ahead of
@@ -10368,11 +10945,9 @@ static gx_result gxp_relate(gx_blade *blade, const gxp_front_vertex *v, gxp_rela
     if (gxp_front_direction(&blade->front, r, direction) && gxp_dot(direction, direction) > 0)
         r->ahead = gxp_dot(direction, way) > 0;
     if (v->distance > 0) {
-        if (!r->ahead && r->distance > 0) gxp_judge_air(blade, v, r);
+        if ((!r->ahead || v->walled) && r->distance > 0) gxp_judge_air(blade, v, r);
         return GX_OK;
     }
-    r->beyond = r->distance > 0 && gxp_is_beyond(&blade->front, v, r);
-    if (r->beyond) r->ahead = 1;
     if (!r->ahead) result = gxp_judge_behind(blade, v, r);
     if (r->distance < GXP_LEAST_ADVANCE * v->size && r->distance < 0.1 * blade->min_advance) r->ahead = 0;
     return result;
@@ -10381,7 +10956,6 @@ static gx_result gxp_relate(gx_blade *blade, const gxp_front_vertex *v, gxp_rela
 /* What the layer's edge does at a move */
 typedef struct gxp_advance {
     double most; /* the largest advance, m; of places inside, if there are any */
-    int wider;   /* the section has become longer than the front */
     int strays;
     int is_back; /* 1: all of the edge is in the air, and has come there through its own cut */
 } gxp_advance;
@@ -10453,13 +11027,16 @@ static gx_result gxp_advance_front(gx_blade *blade, gxp_advance *move) {
         result = gxp_relate(blade, v, &r[i]);
         if (in_air) r[i].ahead = !move->is_back && r[i].distance > 0;
         if (r[i].ahead && (in_air || !(v->distance > 0))) move->most = fmax(move->most, r[i].distance);
-        move->wider |= r[i].beyond;
         move->strays |= r[i].strays;
     }
     for (i = 0; i < samples->count && result == GX_OK; i = j) {
+        uint32_t start = blade->advanced.count;
         for (j = i; j < samples->count && r[j].ahead == r[i].ahead; j++) {}
         result = r[i].ahead ? gxp_append_front(blade->body, &blade->advanced, samples->data + i, j - i)
                             : gxp_stay(blade, r + i, j - i, i == 0, j == samples->count, &at);
+        if (blade->advanced.count == start) continue;
+        blade->advanced.data[start].soft = blade->advanced.data[blade->advanced.count - 1].soft = 0;
+        blade->advanced.data[blade->advanced.count - 1].gap = samples->data[j - 1].gap;
     }
     return result;
 }
@@ -10468,26 +11045,68 @@ static int gxp_same_rest(const gxp_front_vertex *a, const gxp_front_vertex *b) {
     return a->rest[0] == b->rest[0] && a->rest[1] == b->rest[1] && a->rest[2] == b->rest[2];
 }
 
-/* Lists in blade.strip the triangles between two fronts: the shorter diagonal comes first. Vertices that both have make
-   no triangle. */
-static gx_result gxp_zip(gx_blade *blade, const gxp_front_list *from, const gxp_front_list *to) {
-    uint32_t i = 0, j = 0, k;
+/* The next corner of a front after a vertex, or count */
+static uint32_t gxp_next_corner(const gxp_front_list *front, uint32_t i) {
+    for (i++; i < front->count && front->data[i].soft; i++) {}
+    return i;
+}
+
+/* The first gap of a front from a vertex on that overlaps a gap of another one, by places on the edge, or count */
+static uint32_t gxp_shared_gap(const gxp_front_list *front, uint32_t i, const gxp_front_list *other, uint32_t from,
+                               uint32_t *of_other) {
+    uint32_t j;
+    for (; i + 1 < front->count; i++) {
+        if (!front->data[i].gap) continue;
+        for (j = from; j + 1 < other->count; j++)
+            if (other->data[j].gap && other->data[j].along < front->data[i + 1].along &&
+                front->data[i].along < other->data[j + 1].along) {
+                *of_other = j;
+                return i;
+            }
+    }
+    *of_other = other->count - 1;
+    return front->count - 1;
+}
+
+/* Appends to blade.strip the triangles between two vertices of a front and two of another one: the shorter diagonal
+   comes first. Vertices that both have make no triangle. */
+static gx_result gxp_zip_runs(gx_blade *blade, const gxp_front_list *from, uint32_t i, uint32_t i_end,
+                              const gxp_front_list *to, uint32_t j, uint32_t j_end) {
+    uint32_t k, next_i = gxp_next_corner(from, i), next_j = gxp_next_corner(to, j);
     gx_result result = GX_OK;
-    blade->strip.count = 0;
-    while ((i + 1 < from->count || j + 1 < to->count) && result == GX_OK) {
+    while ((next_i <= i_end || next_j <= j_end) && result == GX_OK) {
         const gxp_front_vertex *corner[3];
-        const int by_from = i + 1 < from->count &&
-                            (j + 1 == to->count || gxp_square_distance(from->data[i + 1].rest, to->data[j].rest) <=
-                                                       gxp_square_distance(from->data[i].rest, to->data[j + 1].rest));
+        const int by_from =
+            next_i <= i_end && (next_j > j_end || gxp_square_distance(from->data[next_i].rest, to->data[j].rest) <=
+                                                      gxp_square_distance(from->data[i].rest, to->data[next_j].rest));
         corner[0] = &from->data[i];
-        corner[1] = by_from ? &from->data[i + 1] : &to->data[j + 1];
+        corner[1] = by_from ? &from->data[next_i] : &to->data[next_j];
         corner[2] = &to->data[j];
-        i += (uint32_t)by_from;
-        j += (uint32_t)!by_from;
+        if (by_from) {
+            i = next_i;
+            next_i = gxp_next_corner(from, i);
+        } else {
+            j = next_j;
+            next_j = gxp_next_corner(to, j);
+        }
         if (gxp_same_rest(corner[0], corner[1]) || gxp_same_rest(corner[1], corner[2]) ||
             gxp_same_rest(corner[0], corner[2]))
             continue;
         for (k = 0; k < 3 && result == GX_OK; k++) result = gxp_push_vertex(blade->body, &blade->strip, corner[k]);
+    }
+    return result;
+}
+
+/* Lists in blade.strip the triangles between two fronts. A gap that both have stays open. */
+static gx_result gxp_zip(gx_blade *blade, const gxp_front_list *from, const gxp_front_list *to) {
+    uint32_t i = 0, j = 0, i_end, j_end;
+    gx_result result = GX_OK;
+    blade->strip.count = 0;
+    while (i < from->count && j < to->count && result == GX_OK) {
+        i_end = gxp_shared_gap(from, i, to, j, &j_end);
+        result = gxp_zip_runs(blade, from, i, i_end, to, j, j_end);
+        i = i_end + 1;
+        j = j_end + 1;
     }
     return result;
 }
@@ -10570,28 +11189,47 @@ static gx_result gxp_begin_outside(gx_blade *blade) {
     return gxp_copy_front(blade->body, &blade->front, &blade->samples);
 }
 
-/* The edge has left its cut through the side: the front begins anew there, all of it a little on the other side of the
-   sheet, so that the next strip crosses it. Places still in the cut cross it the way that the farthest one has left. */
-static gx_result gxp_begin_track(gx_blade *blade) {
+/* A place of a track begins on the other side of the sheet from where the edge has left it. side: the way that the
+   farthest place has left */
+static void gxp_cross_sheet(const gx_blade *blade, const double side[3], gxp_front_vertex *v) {
+    double nearest[3], way[3];
+    const double distance = gxp_near_sheet(&blade->sheet, v->rest, nearest),
+                 across = fmax(2 * blade->tolerance, GXP_CROSSING * v->size);
+    int k;
+    memcpy(v->ahead, side, sizeof v->ahead);
+    for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
+    if (distance > 2 * blade->tolerance) gxp_unit(way, v->ahead);
+    for (k = 0; k < 3; k++) v->rest[k] = nearest[k] - across * v->ahead[k];
+}
+
+/* The edge has left its cut through the side: the front begins anew there, a little on the other side of the sheet, so
+   that the next strip crosses it. Places still in the cut cross it the way that the farthest one has left. goes_on:
+   places that were ahead are on the sheet's rim, and the front goes on there. */
+static gx_result gxp_begin_track(gx_blade *blade, int goes_on) {
+    const gxp_front_list *samples = &blade->samples;
+    const gxp_relation *r = blade->relations;
     double most = 0, side[3] = {0, 0, 0};
     uint32_t i;
     int k;
-    gx_result result = gxp_copy_front(blade->body, &blade->front, &blade->samples);
-    for (i = 0; i < blade->front.count; i++) {
-        const gxp_front_vertex *v = &blade->front.data[i];
+    gx_result result = GX_OK;
+    for (i = 0; i < samples->count; i++) {
+        const gxp_front_vertex *v = &samples->data[i];
         double nearest[3], way[3];
         const double distance = gxp_near_sheet(&blade->sheet, v->rest, nearest);
         for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
         if (!(v->distance > 0) && distance > most && gxp_unit(way, side)) most = distance;
     }
-    for (i = 0; i < blade->front.count; i++) {
-        gxp_front_vertex *v = &blade->front.data[i];
-        double nearest[3], way[3];
-        const double distance = gxp_near_sheet(&blade->sheet, v->rest, nearest);
-        memcpy(v->ahead, side, sizeof side);
-        for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
-        if (distance > 2 * blade->tolerance) gxp_unit(way, v->ahead);
-        for (k = 0; k < 3; k++) v->rest[k] = nearest[k] - 2 * blade->tolerance * v->ahead[k];
+    blade->front.count = 0;
+    for (i = 0; i < samples->count && result == GX_OK; i++) {
+        const int rim = goes_on && r[i].ahead;
+        gxp_front_vertex v = samples->data[i], crossing = v;
+        gxp_cross_sheet(blade, side, &crossing);
+        crossing.soft = v.soft = 0;
+        if (rim && i > 0 && !r[i - 1].ahead && !samples->data[i - 1].gap)
+            result = gxp_push_vertex(blade->body, &blade->front, &crossing);
+        if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->front, rim ? &v : &crossing);
+        if (result == GX_OK && rim && i + 1 < samples->count && !r[i + 1].ahead && !v.gap)
+            result = gxp_push_vertex(blade->body, &blade->front, &crossing);
     }
     blade->path.count = blade->latest.count = 0;
     return result;
@@ -10615,23 +11253,36 @@ static gx_result gxp_note_path(gx_blade *blade) {
     return result == GX_OK ? gxp_copy_front(blade->body, &blade->latest, &blade->advanced) : result;
 }
 
+/* Are front and edge farther than an element from the layer, and nothing waits? */
+static int gxp_has_left(const gx_blade *blade) {
+    uint32_t i;
+    if (blade->latest.count > 0) return 0;
+    for (i = 0; i < blade->front.count; i++)
+        if (!(blade->front.data[i].distance > blade->front.data[i].size)) return 0;
+    return gxp_is_away(blade);
+}
+
 /* Advances the front of the layer at work to the samples: cuts what must be cut, and lets the rest wait. finish: cuts
-   all. */
+   all. A front that has left the layer is no more. */
 static gx_result gxp_follow_edge(gx_blade *blade, int finish, gx_blade_report *report) {
     gxp_advance move;
     gx_result result = gxp_advance_front(blade, &move);
+    if (result == GX_OK && gxp_has_left(blade)) {
+        blade->front.count = 0;
+        return GX_OK;
+    }
     if (result == GX_OK && move.is_back) return gxp_is_away(blade) ? gxp_begin_outside(blade) : GX_OK;
     if (result == GX_OK && move.strays && !finish) {
         if (move.most > 0) {
             result = gxp_zip(blade, &blade->front, &blade->advanced);
             if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
         }
-        if (result == GX_OK) result = gxp_begin_track(blade);
+        if (result == GX_OK) result = gxp_begin_track(blade, move.most > 0);
         if (result == GX_OK) result = gxp_advance_front(blade, &move);
     }
     if (result != GX_OK || !(move.most > 0)) return result;
     result = gxp_zip(blade, &blade->front, &blade->advanced);
-    if (result == GX_OK && blade->latest.count > 0 && (move.wider || gxp_bend(blade) > blade->tolerance)) {
+    if (result == GX_OK && blade->latest.count > 0 && (gxp_is_away(blade) || gxp_bend(blade) > blade->tolerance)) {
         result = gxp_zip(blade, &blade->front, &blade->latest);
         if (result == GX_OK) result = gxp_copy_front(blade->body, &blade->advanced, &blade->latest);
         if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
@@ -10643,23 +11294,58 @@ static gx_result gxp_follow_edge(gx_blade *blade, int finish, gx_blade_report *r
                                                      : gxp_note_path(blade);
 }
 
+/* A strip reaches cells that are within this share of their size of it, as the body lies now: where strip and layer
+   are far from each other in space, none of it is meant for them. */
+#define GXP_STRIP_REACH 0.25
+
+/* Is the cell within reach of a strip? */
+static int gxp_is_in_reach(const gxp_close_cell *c, const gxp_plate *plates, uint32_t triangles) {
+    uint32_t t;
+    for (t = 0; t < triangles; t++)
+        if (gxp_is_near_plate(&plates[t], c->middle, c->radius + GXP_STRIP_REACH * c->size)) return 1;
+    return 0;
+}
+
+/* Lists the slots of a layer that the strips of blade.cut may cut. old: only those that belonged to this layer at the
+   last move; GXP_NONE: all. */
+static gx_result gxp_list_scope(gx_blade *blade, uint32_t layer, uint32_t old) {
+    const gxp_vicinity *near = &blade->near;
+    const uint32_t triangles = blade->cut.count / 3;
+    uint32_t i, k;
+    gx_result result = gxp_plates_room(blade, triangles);
+    for (i = 0; i < triangles && result == GX_OK; i++) {
+        double x[3][3];
+        for (k = 0; k < 3 && result == GX_OK; k++)
+            result = gxp_front_position(blade, layer, 0, &blade->cut.data[3 * i + k], x[k]);
+        if (result == GX_OK) gxp_set_plate(&blade->plates[i], x[0], x[1], x[2]);
+    }
+    for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++) {
+        const gxp_close_cell *c = &near->cells[GXP_SECOND(near->order.data[i])];
+        if (old != GXP_NONE && gxp_old_layer(blade, c->slot) != old) continue;
+        if (gxp_is_in_reach(c, blade->plates, triangles)) result = gxp_push(blade->body, &blade->scope, blade->body->cells.slot[c->slot]);
+    }
+    return result;
+}
+
+/* Adds the strips of the layer at work to those of the move. */
+static gx_result gxp_add_surface(gx_blade *blade, uint32_t layer, uint32_t old) {
+    gx_body *body = blade->body;
+    const uint32_t before = blade->scope.count;
+    uint32_t i;
+    gx_result result = blade->cut.count > 0 ? gxp_list_scope(blade, layer, old) : GX_OK;
+    if (blade->scope.count == before) blade->cut.count = 0;
+    if (result != GX_OK || blade->scope.count == before) return result;
+    result = gxp_push(body, &blade->surface_starts, before);
+    if (result == GX_OK) result = gxp_push(body, &blade->surface_starts, blade->corners.count);
+    for (i = 0; i < blade->cut.count && result == GX_OK; i++)
+        result = gxp_push_point(body, &blade->corners, blade->cut.data[i].rest);
+    blade->cut.count = 0;
+    return result;
+}
+
 /* >>strokes: what a blade remembers from move to move -------------------------------------------------------------- */
 /* In: the layers of the last move, those of now. Out: each new layer with the front of the old ones that flow into it.
    Touches the blade's working memory and the state that the move makes. */
-
-/* A front, path and sheet become those of the layer at work. */
-static gx_result gxp_resume_layer(gx_blade *blade, const gxp_layer *old) {
-    const gxp_blade_state *now = &blade->now;
-    uint32_t i;
-    gx_result result = gxp_append_front(blade->body, &blade->front, now->vertices.data + old->front, old->front_count);
-    if (result == GX_OK)
-        result = gxp_append_front(blade->body, &blade->latest, now->vertices.data + old->latest, old->latest_count);
-    for (i = 0; i < old->path_count && result == GX_OK; i++)
-        result = gxp_push_point(blade->body, &blade->path, now->points.data + 3 * (size_t)(old->path + i));
-    for (i = 0; i < old->sheet_count && result == GX_OK; i++)
-        result = gxp_push_point(blade->body, &blade->sheet, now->points.data + 3 * (size_t)(old->sheet + i));
-    return result;
-}
 
 /* Lists in blade.owners the old layers that flow into a new one. */
 static gx_result gxp_find_owners(gx_blade *blade, uint32_t layer) {
@@ -10671,77 +11357,319 @@ static gx_result gxp_find_owners(gx_blade *blade, uint32_t layer) {
         const uint32_t old = gxp_old_layer(blade, near->cells[GXP_SECOND(near->order.data[i])].slot);
         if (old == GXP_NONE || old == last) continue;
         last = old;
+        if (blade->now.layers.data[old].front_count == 0) continue;
         if (!gxp_contains(&blade->owners, old)) result = gxp_push(blade->body, &blade->owners, old);
     }
     return result;
 }
 
-/* The part of a front that is in the material or, if none is, within half an element of it, with a vertex on each side.
- *along: where it begins. Returns 0 if there is none. */
-static int gxp_inner_run(const gxp_front_vertex *v, uint32_t count, uint32_t *first, uint32_t *end, double *along) {
-    uint32_t i, j = count, n;
-    double reach = 0;
-    for (i = 0, n = 0; i < count; i++) n += !(v[i].distance > 0);
-    if (n == 0) reach = 0.5;
-    for (i = 0; i < count && v[i].distance > reach * v[i].size;) i++;
-    if (i == count) return 0;
-    while (v[j - 1].distance > reach * v[j - 1].size) j--;
-    *along = v[i].along;
-    *first = i > 0 ? i - 1 : 0;
-    *end = j < count ? j + 1 : count;
-    return 1;
+/* Appends a front to blade.owned, with the places on the edge that it is at now, ascending. */
+static gx_result gxp_list_owned(gx_blade *blade, uint32_t layer, int old, const gxp_front_vertex *vertices,
+                                uint32_t vertex_count, const double *edge, uint32_t count) {
+    double reached = 0;
+    uint32_t i;
+    gx_result result = gxp_push(blade->body, &blade->owned_starts, blade->owned.count);
+    for (i = 0; i < vertex_count && result == GX_OK; i++) {
+        gxp_front_vertex v = vertices[i];
+        double x[3];
+        result = gxp_front_position(blade, layer, old, &v, x);
+        gxp_onto_edge(edge, count, x, &v.along);
+        v.along = reached = fmax(reached, v.along);
+        if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->owned, &v);
+    }
+    return result;
 }
 
-/* Several layers have become one: the front takes from each what is in the material and a vertex in the air on each
-   side, in the order along the edge. So no part of a sheet's rim in the material is lost; between two runs the front
-   may go back and forth in the gap. What waits is looked at again. */
-static gx_result gxp_join_layers(gx_blade *blade) {
-    const gxp_blade_state *now = &blade->now;
-    double reached = -1;
-    uint32_t done, k, i, last = 0;
+/* Between two places on the edge: how far an owned front is from its layer, HUGE_VAL if it is not there */
+static double gxp_owned_distance(const gx_blade *blade, uint32_t owner, double from, double to) {
+    const gxp_front_vertex *v = blade->owned.data;
+    const uint32_t first = blade->owned_starts.data[owner], end = blade->owned_starts.data[owner + 1];
+    double share;
+    uint32_t i;
+    for (i = first; i + 1 < end; i++)
+        if (!v[i].gap && v[i].along <= from && v[i + 1].along >= to && v[i + 1].along > v[i].along) break;
+    if (i + 1 >= end) return HUGE_VAL;
+    if (!(v[i].distance > 0) || !(v[i + 1].distance > 0)) return 0;
+    share = (0.5 * (from + to) - v[i].along) / (v[i + 1].along - v[i].along);
+    return v[i].distance + share * (v[i + 1].distance - v[i].distance);
+}
+
+/* An owned front begins to be the layer's, or ends to be it, at a place on the edge: its vertices there, or a point of
+   it. */
+static gx_result gxp_push_owned_place(gx_blade *blade, uint32_t owner, double along) {
+    const gxp_front_vertex *v = blade->owned.data;
+    const uint32_t first = blade->owned_starts.data[owner], end = blade->owned_starts.data[owner + 1],
+                   before = blade->front.count;
+    gxp_front_vertex at;
+    double share;
+    uint32_t i;
+    int k;
     gx_result result = GX_OK;
-    for (done = 0; done < blade->owners.count && result == GX_OK; done++) {
-        double from = HUGE_VAL;
-        uint32_t best = GXP_NONE, best_first = 0, best_end = 0;
-        for (k = 0; k < blade->owners.count; k++) {
-            const gxp_layer *l = &now->layers.data[blade->owners.data[k]];
-            const gxp_front_vertex *v = now->vertices.data + l->front;
-            uint32_t first, end;
-            double along;
-            if (!gxp_inner_run(v, l->front_count, &first, &end, &along)) continue;
-            if (along < reached || (!(along > reached) && done > 0 && k <= last) || along >= from) continue;
-            from = along;
-            best = k;
-            best_first = first;
-            best_end = end;
-        }
-        if (best == GXP_NONE) break;
-        result = gxp_append_front(blade->body, &blade->front,
-                                  now->vertices.data + now->layers.data[blade->owners.data[best]].front + best_first,
-                                  best_end - best_first);
-        reached = from;
-        last = best;
+    for (i = first; i < end && result == GX_OK; i++) {
+        if (v[i].along < along || v[i].along > along) continue;
+        at = v[i];
+        at.soft = at.gap = 0;
+        result = gxp_push_vertex(blade->body, &blade->front, &at);
     }
-    for (k = 0; k < blade->owners.count && result == GX_OK; k++) {
-        const gxp_layer *l = &now->layers.data[blade->owners.data[k]];
-        for (i = 0; i < l->sheet_count && result == GX_OK; i++)
-            result = gxp_push_point(blade->body, &blade->sheet, now->points.data + 3 * (size_t)(l->sheet + i));
+    if (blade->front.count > before || result != GX_OK) return result;
+    for (i = first; i + 1 < end && v[i + 1].along <= along;) i++;
+    at = v[i];
+    share = (along - at.along) / (v[i + 1].along - at.along);
+    for (k = 0; k < 3; k++) {
+        at.rest[k] += share * (v[i + 1].rest[k] - at.rest[k]);
+        at.extended[k] += share * (v[i + 1].extended[k] - at.extended[k]);
+        at.position[k] += share * (v[i + 1].position[k] - at.position[k]);
+    }
+    at.distance += share * (v[i + 1].distance - at.distance);
+    at.along = along;
+    at.soft = at.gap = 0;
+    return gxp_push_vertex(blade->body, &blade->front, &at);
+}
+
+/* The owned front that is the layer's from one place on the edge to the next: that before, or the one nearest to its
+   own layer. The last one, if it is not an owner's, only where there is no other. */
+static uint32_t gxp_leading_owner(const gx_blade *blade, double from, double to, uint32_t before) {
+    uint32_t best = GXP_NONE, k;
+    double least = HUGE_VAL;
+    if (before < blade->owners.count) least = gxp_owned_distance(blade, before, from, to);
+    if (least < HUGE_VAL) best = before;
+    for (k = 0; k + 1 < blade->owned_starts.count; k++) {
+        const double distance = gxp_owned_distance(blade, k, from, to);
+        if (distance >= least || (k >= blade->owners.count && best != GXP_NONE)) continue;
+        least = distance;
+        best = k;
+    }
+    return best;
+}
+
+/* The next place on the edge at which one of the owned fronts has a vertex, HUGE_VAL if there is none */
+static double gxp_next_place(const gx_blade *blade, double after) {
+    double next = HUGE_VAL;
+    uint32_t i;
+    for (i = 0; i < blade->owned.count; i++) {
+        const double along = blade->owned.data[i].along;
+        if (along > after && along < next) next = along;
+    }
+    return next;
+}
+
+/* An owned front goes on from one place on the edge, exclusive, to another one. */
+static gx_result gxp_push_owned(gx_blade *blade, uint32_t owner, double from, double to) {
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (i = blade->owned_starts.data[owner]; i < blade->owned_starts.data[owner + 1] && result == GX_OK; i++) {
+        gxp_front_vertex v = blade->owned.data[i];
+        v.gap = 0;
+        if (v.along > from && v.along <= to) result = gxp_push_vertex(blade->body, &blade->front, &v);
     }
     return result;
 }
 
-/* Makes a new layer's front ready for the move. *begun: it has none of before. */
-static gx_result gxp_begin_layer(gx_blade *blade, uint32_t layer, int *begun) {
-    gx_result result = gxp_find_owners(blade, layer);
-    blade->front.count = blade->latest.count = blade->path.count = blade->sheet.count = blade->cut.count = 0;
-    *begun = 0;
-    if (result == GX_OK && blade->owners.count > 1) result = gxp_join_layers(blade);
-    if (result == GX_OK && blade->owners.count > 0 && blade->front.count < 2) {
-        blade->front.count = blade->sheet.count = 0;
-        result = gxp_resume_layer(blade, &blade->now.layers.data[blade->owners.data[0]]);
+/* The last vertex of the layer's front: the front ends there (gap 1), or another owner's begins. */
+static void gxp_end_lead(gxp_front_list *front, int gap) {
+    if (front->count == 0) return;
+    front->data[front->count - 1].soft = 0;
+    front->data[front->count - 1].gap = gap != 0;
+}
+
+/* Lists in blade.front, at each place on the edge, the owned front that is nearest to its layer there. */
+static gx_result gxp_join_owned(gx_blade *blade) {
+    double from, to;
+    uint32_t leader = GXP_NONE;
+    gx_result result = GX_OK;
+    blade->front.count = 0;
+    for (from = gxp_next_place(blade, -1); result == GX_OK && (to = gxp_next_place(blade, from)) < HUGE_VAL;
+         from = to) {
+        const uint32_t next = gxp_leading_owner(blade, from, to, leader);
+        if (next != leader) {
+            if (leader != GXP_NONE && blade->front.data[blade->front.count - 1].along < from)
+                result = gxp_push_owned_place(blade, leader, from);
+            gxp_end_lead(&blade->front, next == GXP_NONE);
+            if (next != GXP_NONE && result == GX_OK) result = gxp_push_owned_place(blade, next, from);
+            leader = next;
+        }
+        if (next != GXP_NONE && result == GX_OK) result = gxp_push_owned(blade, next, from, to);
     }
-    *begun = blade->owners.count == 0;
+    gxp_end_lead(&blade->front, 1);
     return result;
+}
+
+/* Lists in blade.strip what closes the gap between an owner's front and that of the layer it has flowed into. */
+static gx_result gxp_close_owner(gx_blade *blade, uint32_t owner) {
+    const gxp_front_vertex *v = blade->owned.data;
+    const uint32_t first = blade->owned_starts.data[owner], end = blade->owned_starts.data[owner + 1];
+    uint32_t i;
+    gx_result result;
+    blade->advanced.count = blade->latest.count = 0;
+    result = gxp_append_front(blade->body, &blade->latest, v + first, end - first);
+    for (i = 0; i < blade->front.count && result == GX_OK; i++)
+        if (blade->front.data[i].along >= v[first].along && blade->front.data[i].along <= v[end - 1].along)
+            result = gxp_push_vertex(blade->body, &blade->advanced, &blade->front.data[i]);
+    if (result == GX_OK) result = gxp_zip(blade, &blade->latest, &blade->advanced);
+    blade->latest.count = 0;
+    return result;
+}
+
+/* Is there a place of the edge in the layer, or next to it, at which no owned front is? */
+static int gxp_is_uncovered(const gx_blade *blade) {
+    uint32_t i, k;
+    for (i = 0; i < blade->samples.count; i++) {
+        const gxp_front_vertex *v = &blade->samples.data[i];
+        if (v->distance > 0.5 * v->size) continue;
+        for (k = 0; k < blade->owners.count; k++)
+            if (gxp_owned_distance(blade, k, v->along, v->along) < HUGE_VAL) break;
+        if (k == blade->owners.count) return 1;
+    }
+    return 0;
+}
+
+/* An owner's front, path and sheet become those of the layer at work. */
+static gx_result gxp_resume_owner(gx_blade *blade, uint32_t owner) {
+    const gxp_blade_state *now = &blade->now;
+    const gxp_layer *l = &now->layers.data[blade->owners.data[owner]];
+    uint32_t i;
+    gx_result result;
+    blade->front.count = blade->latest.count = blade->path.count = 0;
+    result = gxp_append_front(blade->body, &blade->front, now->vertices.data + l->front, l->front_count);
+    if (result == GX_OK)
+        result = gxp_append_front(blade->body, &blade->latest, now->vertices.data + l->latest, l->latest_count);
+    for (i = 0; i < l->path_count && result == GX_OK; i++)
+        result = gxp_push_point(blade->body, &blade->path, now->points.data + 3 * (size_t)(l->path + i));
+    for (i = 0; i < l->sheet_count && result == GX_OK; i++)
+        result = gxp_push_point(blade->body, &blade->sheet, now->points.data + 3 * (size_t)(l->sheet + i));
+    return result;
+}
+
+/* Lists the owners' fronts in blade.owned. finish: what waits in them is cut before. */
+static gx_result gxp_list_owners(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count, int finish,
+                                 gx_blade_report *report) {
+    uint32_t k;
+    gx_result result = GX_OK;
+    blade->owned.count = blade->owned_starts.count = blade->sheet.count = 0;
+    for (k = 0; k < blade->owners.count && result == GX_OK; k++) {
+        const uint32_t old = blade->owners.data[k];
+        result = gxp_resume_owner(blade, k);
+        if (finish && blade->latest.count > 0) {
+            if (result == GX_OK) result = gxp_copy_front(blade->body, &blade->advanced, &blade->latest);
+            if (result == GX_OK) result = gxp_zip(blade, &blade->front, &blade->advanced);
+            if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
+            if (result == GX_OK) result = gxp_add_surface(blade, layer, old);
+        }
+        if (result == GX_OK) result = gxp_list_owned(blade, old, 1, blade->front.data, blade->front.count, edge, count);
+    }
+    return result == GX_OK ? gxp_push(blade->body, &blade->owned_starts, blade->owned.count) : result;
+}
+
+/* Where no owner's front is, the edge of the last move is the layer's. */
+static gx_result gxp_list_before(gx_blade *blade, uint32_t layer, const double *before, const double *edge,
+                                 uint32_t count) {
+    gx_result result = gxp_copy_front(blade->body, &blade->advanced, &blade->samples);
+    if (result == GX_OK) result = gxp_see_edge(blade, layer, before, count);
+    blade->owned_starts.count--;
+    if (result == GX_OK)
+        result = gxp_list_owned(blade, layer, 0, blade->samples.data, blade->samples.count, edge, count);
+    if (result == GX_OK) result = gxp_push(blade->body, &blade->owned_starts, blade->owned.count);
+    return result == GX_OK ? gxp_copy_front(blade->body, &blade->samples, &blade->advanced) : result;
+}
+
+/* The layer's front is made of several. Where it is not that of one of its owners, the gap between them is cut. */
+static gx_result gxp_unite_owners(gx_blade *blade, uint32_t layer) {
+    uint32_t k;
+    gx_result result = gxp_join_owned(blade);
+    for (k = 0; k < blade->owners.count && result == GX_OK; k++) {
+        result = gxp_close_owner(blade, k);
+        if (result == GX_OK) result = gxp_append_front(blade->body, &blade->cut, blade->strip.data, blade->strip.count);
+        if (result == GX_OK) result = gxp_add_surface(blade, layer, blade->owners.data[k]);
+    }
+    return result;
+}
+
+/* Counts the layers into which each old one has fallen. */
+static gx_result gxp_count_heirs(gx_blade *blade) {
+    const uint32_t count = blade->now.layers.count;
+    uint32_t layer, k;
+    gx_result result = gxp_start_words(blade->body, &blade->heirs, count);
+    if (result != GX_OK) return result;
+    blade->heirs.count = count;
+    for (k = 0; k < count; k++) blade->heirs.data[k] = 0;
+    for (layer = 0; layer < blade->near.layer_count && result == GX_OK; layer++) {
+        result = gxp_find_owners(blade, layer);
+        for (k = 0; k < blade->owners.count; k++) blade->heirs.data[blade->owners.data[k]]++;
+    }
+    return result;
+}
+
+/* Keeps of a front what is near to the layer, up to the next corners. */
+static gx_result gxp_trim_front(gx_blade *blade, uint32_t layer, gxp_front_list *front) {
+    uint32_t first = GXP_NONE, last = 0, i;
+    gx_result result = GX_OK;
+    for (i = 0; i < front->count && result == GX_OK; i++) {
+        gxp_front_vertex *v = &front->data[i];
+        gxp_sight sight;
+        double x[3];
+        result = gxp_front_position(blade, layer, 0, v, x);
+        if (result == GX_OK) result = gxp_seek(blade, layer, x, &sight);
+        if (result != GX_OK || sight.index == GXP_NONE) continue;
+        if (sight.square > 0.25 * v->size * v->size) v->distance = sqrt(sight.square);
+        if (sight.square > 2.25 * v->size * v->size) continue;
+        if (first == GXP_NONE) first = i;
+        last = i;
+    }
+    if (first == GXP_NONE || result != GX_OK) return result;
+    while (first > 0 && front->data[first].soft) first--;
+    while (last + 1 < front->count && (front->data[last].soft || first == last)) last++;
+    if (first == last) first--;
+    front->count = last - first + 1;
+    memmove(front->data, front->data + first, front->count * sizeof *front->data);
+    front->data[front->count - 1].gap = 1;
+    return GX_OK;
+}
+
+/* Keeps of the path what is near to the front. */
+static void gxp_trim_path(gx_blade *blade) {
+    uint32_t i, n = 0;
+    for (i = 0; i < blade->path.count; i++) {
+        const double *x = blade->path.data + 3 * (size_t)i;
+        gxp_relation r;
+        double nearest[3];
+        gxp_near_front(&blade->front, x, &r, nearest);
+        if (r.distance > blade->front.data[r.segment].size + blade->min_advance) continue;
+        memmove(blade->path.data + 3 * (size_t)n++, x, 3 * sizeof *x);
+    }
+    blade->path.count = n;
+}
+
+/* One of several heirs of a front keeps its own part of it. */
+static gx_result gxp_take_part(gx_blade *blade, uint32_t layer) {
+    uint32_t k, shared = 0;
+    gx_result result;
+    for (k = 0; k < blade->owners.count; k++) shared |= blade->heirs.data[blade->owners.data[k]] > 1;
+    if (!shared) return GX_OK;
+    result = gxp_trim_front(blade, layer, &blade->front);
+    if (result == GX_OK) result = gxp_trim_front(blade, layer, &blade->latest);
+    gxp_trim_path(blade);
+    return result;
+}
+
+/* Makes a new layer's front ready for a step: that of the layers that flow into it, and where none is, the edge of the
+   last move. blade.samples: how the layer sees the edge of the step. *begun: there is no such layer. */
+static gx_result gxp_begin_layer(gx_blade *blade, uint32_t layer, const double *before, const double *edge,
+                                 uint32_t count, gx_blade_report *report, int *begun) {
+    gx_result result = gxp_find_owners(blade, layer);
+    int uncovered = 0, many = blade->owners.count > 1;
+    blade->cut.count = blade->front.count = blade->latest.count = blade->path.count = 0;
+    *begun = result == GX_OK && blade->owners.count == 0;
+    if (result == GX_OK) result = gxp_see_edge(blade, layer, edge, count);
+    if (result == GX_OK) result = gxp_list_owners(blade, layer, edge, count, 0, report);
+    if (result == GX_OK && !*begun) uncovered = gxp_is_uncovered(blade);
+    if (result == GX_OK && !(*begun || uncovered || many)) return gxp_take_part(blade, layer);
+    if (result == GX_OK && !*begun) result = gxp_list_owners(blade, layer, edge, count, 1, report);
+    if (result == GX_OK && (*begun || gxp_is_uncovered(blade)))
+        result = gxp_list_before(blade, layer, before, edge, count);
+    if (result == GX_OK) result = gxp_unite_owners(blade, layer);
+    if (result == GX_OK && blade->front.count < 2)
+        result = gxp_append_front(blade->body, &blade->front, blade->owned.data, blade->owned_starts.data[1]);
+    return result == GX_OK ? gxp_take_part(blade, layer) : result;
 }
 
 /* Writes the layer at work to the state that the move makes. */
@@ -10758,6 +11686,10 @@ static gx_result gxp_keep_layer(gx_blade *blade) {
     layer.latest_count = blade->latest.count;
     if (result == GX_OK)
         result = gxp_append_front(blade->body, &then->vertices, blade->latest.data, blade->latest.count);
+    layer.seen = then->vertices.count;
+    layer.seen_count = blade->samples.count;
+    if (result == GX_OK)
+        result = gxp_append_front(blade->body, &then->vertices, blade->samples.data, blade->samples.count);
     layer.path = then->points.count;
     layer.path_count = blade->path.count;
     for (i = 0; i < blade->path.count && result == GX_OK; i++)
@@ -10770,6 +11702,67 @@ static gx_result gxp_keep_layer(gx_blade *blade) {
     return result;
 }
 
+/* The box of the body's copies, in space. Those of removed material count too. */
+static void gxp_find_box(const gx_body *body, gxp_bounds *box) {
+    uint32_t i;
+    int k;
+    for (k = 0; k < 3; k++) box->low[k] = HUGE_VAL, box->high[k] = -HUGE_VAL;
+    for (i = 0; i < body->copies.count; i++)
+        for (k = 0; k < 3; k++) {
+            const double x = body->mesh.positions[3 * (size_t)body->copies.node[i] + (size_t)k] +
+                             body->copies.displacement[3 * (size_t)i + (size_t)k];
+            box->low[k] = x < box->low[k] ? x : box->low[k];
+            box->high[k] = x > box->high[k] ? x : box->high[k];
+        }
+}
+
+static void gxp_find_middle(const gx_body *body, double middle[3]) {
+    gxp_bounds box;
+    int k;
+    gxp_find_box(body, &box);
+    for (k = 0; k < 3; k++) middle[k] = box.low[k] > box.high[k] ? 0 : 0.5 * box.low[k] + 0.5 * box.high[k];
+}
+
+/* No layer is near: keeps the place on the edge that is nearest to the body's box, and the material next to it. */
+static gx_result gxp_keep_far_place(gx_blade *blade, const double *edge, uint32_t count) {
+    static const double origin[3] = {0, 0, 0};
+    gx_body *body = blade->body;
+    gxp_bounds box;
+    const uint32_t parts = count < 32 ? 32 / (count - 1) : 1;
+    double least = HUGE_VAL, corners[4][3];
+    gxp_front_vertex v;
+    gxp_near near;
+    uint32_t i;
+    gx_result result;
+    memset(&v, 0, sizeof v);
+    gxp_find_box(body, &box);
+    for (i = 0; i <= parts * (count - 1); i++) {
+        double x[3], square;
+        gxp_edge_position(edge, count, (double)i / parts, x);
+        square = gxp_square_to_box(x, box.low, box.high);
+        if (square >= least) continue;
+        least = square;
+        v.along = (double)i / parts;
+        memcpy(v.position, x, sizeof x);
+    }
+    if (!(least < 64 * blade->largest * blade->largest)) return GX_OK;
+    result = gxp_refit_tree(body);
+    if (result == GX_OK) result = gxp_find_nearest(body, v.position, NULL, NULL, &near);
+    if (result != GX_OK || near.slot == GXP_NONE) return result;
+    v.element = body->cells.data[near.slot].element;
+    v.size = blade->largest;
+    v.distance = sqrt(near.square);
+    gxp_cell_corners(body, &body->cells.data[near.slot], 1, origin, corners);
+    gxp_weigh(corners, near.weights, v.foot_at);
+    gxp_cell_corners(body, &body->cells.data[near.slot], 0, origin, corners);
+    gxp_weigh(corners, near.weights, v.foot);
+    memcpy(v.rest, v.foot, sizeof v.rest);
+    memcpy(v.extended, v.foot, sizeof v.extended);
+    blade->front.count = blade->latest.count = blade->path.count = blade->sheet.count = blade->samples.count = 0;
+    result = gxp_push_vertex(body, &blade->samples, &v);
+    return result == GX_OK ? gxp_keep_layer(blade) : result;
+}
+
 /* Notes which cells belong to which layer, and where the edge is. */
 static gx_result gxp_keep_members(gx_blade *blade, const double *edge, uint32_t count) {
     gxp_blade_state *then = &blade->then;
@@ -10777,6 +11770,11 @@ static gx_result gxp_keep_members(gx_blade *blade, const double *edge, uint32_t 
     gx_result result = GX_OK;
     then->members.count = then->edge.count = 0;
     then->slot_count = blade->body->slots.count;
+    if (blade->near.layer_count == 0) result = gxp_keep_far_place(blade, edge, count);
+    if (blade->near.layer_count == 0)
+        gxp_find_middle(blade->body, then->middle);
+    else
+        memset(then->middle, 0, sizeof then->middle);
     for (i = 0; i < blade->near.count && result == GX_OK; i++)
         result = gxp_push_key(blade->body, &then->members, blade->body->cells.slot[blade->near.cells[i].slot],
                               blade->near.cells[i].layer);
@@ -10793,52 +11791,8 @@ static gx_result gxp_keep_members(gx_blade *blade, const double *edge, uint32_t 
 /* Coordinates of an edge are at most 2^GXP_EDGE_REACH: squares of distances are finite. */
 #define GXP_EDGE_REACH 110
 
-/* A strip reaches cells that are within this share of their size of it, as the body lies now: where strip and layer
-   are far from each other in space, none of it is meant for them. */
-#define GXP_STRIP_REACH 0.25
-
-/* Is the cell within reach of a strip, given by its corners in space? */
-static int gxp_is_in_reach(const gxp_close_cell *c, const double *corners, uint32_t triangles) {
-    uint32_t t;
-    for (t = 0; t < triangles; t++) {
-        const double *x = corners + 9 * (size_t)t;
-        if (gxp_is_near_triangle(c, x, x + 3, x + 6, GXP_STRIP_REACH * c->size)) return 1;
-    }
-    return 0;
-}
-
-/* Lists the slots of a layer that the strips of blade.cut may cut. */
-static gx_result gxp_list_scope(gx_blade *blade, uint32_t layer) {
-    const gxp_vicinity *near = &blade->near;
-    uint32_t i;
-    gx_result result = GX_OK;
-    blade->quads.count = 0;
-    for (i = 0; i < blade->cut.count && result == GX_OK; i++) {
-        double x[3];
-        result = gxp_front_position(blade, layer, 0, &blade->cut.data[i], x);
-        if (result == GX_OK) result = gxp_push_point(blade->body, &blade->quads, x);
-    }
-    for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++) {
-        const gxp_close_cell *c = &near->cells[GXP_SECOND(near->order.data[i])];
-        if (gxp_is_in_reach(c, blade->quads.data, blade->cut.count / 3))
-            result = gxp_push(blade->body, &blade->scope, blade->body->cells.slot[c->slot]);
-    }
-    return result;
-}
-
-/* Adds the strips of the layer at work to those of the move. */
-static gx_result gxp_add_surface(gx_blade *blade, uint32_t layer) {
-    gx_body *body = blade->body;
-    const uint32_t before = blade->scope.count;
-    uint32_t i;
-    gx_result result = blade->cut.count > 0 ? gxp_list_scope(blade, layer) : GX_OK;
-    if (result != GX_OK || blade->scope.count == before) return result;
-    result = gxp_push(body, &blade->surface_starts, before);
-    if (result == GX_OK) result = gxp_push(body, &blade->surface_starts, blade->corners.count);
-    for (i = 0; i < blade->cut.count && result == GX_OK; i++)
-        result = gxp_push_point(body, &blade->corners, blade->cut.data[i].rest);
-    return result;
-}
+/* A blade leaves no pieces of less than this share of an element. */
+#define GXP_BLADE_SPECK 1e-3
 
 /* Cuts the body by the surfaces of all layers at once. */
 static gx_result gxp_cut_surfaces(gx_blade *blade, uint32_t kind, gx_blade_report *report, gx_failure *failure) {
@@ -10870,7 +11824,7 @@ static gx_result gxp_cut_surfaces(gx_blade *blade, uint32_t kind, gx_blade_repor
     memset(&desc, 0, sizeof desc);
     desc.surfaces = blade->surfaces;
     desc.surface_count = count;
-    result = gx_body_cut(body, &desc, &report->cut, failure);
+    result = gxp_cut_body(body, &desc, kind == GX_SURFACE_SHEET ? GXP_BLADE_SPECK : 0, &report->cut, failure);
     if (result == GX_OK) return result;
     gxp_end(failure, result);
     return result == GX_ERROR_NOT_CLOSED ? gxp_fail(failure, result, "tool.triangles", SIZE_MAX) : result;
@@ -10882,32 +11836,26 @@ static gx_result gxp_check_start(gx_blade *blade, gx_failure *failure) {
     if (blade->starts_inside || blade->now.edge.count > 0) return GX_OK;
     for (i = 0; i < blade->front.count; i++)
         if (!(blade->front.data[i].distance > 0))
-            return gxp_fail(failure, GX_ERROR_ARGUMENT, "edge", (size_t)blade->front.data[i].along);
+            return gxp_fail(failure, GX_ERROR_ARGUMENT, "edge", (size_t)ceil(blade->front.data[i].along));
     return GX_OK;
 }
 
 /* Advances the fronts of all layers to the edge, and lists the strips. */
-static gx_result gxp_advance_layers(gx_blade *blade, const double *edge, uint32_t count, int finish,
-                                    gx_blade_report *report, gx_failure *failure) {
-    const double *before = blade->now.edge.count > 0 ? blade->now.edge.data : edge;
+static gx_result gxp_advance_layers(gx_blade *blade, const double *before, const double *edge, uint32_t count,
+                                    int finish, gx_blade_report *report, gx_failure *failure) {
     uint32_t layer;
     gx_result result = GX_OK;
-    blade->surface_starts.count = blade->corners.count = blade->scope.count = 0;
     blade->then.layers.count = blade->then.vertices.count = blade->then.points.count = 0;
+    result = gxp_count_heirs(blade);
     for (layer = 0; layer < blade->near.layer_count && result == GX_OK; layer++) {
         int begun;
-        result = gxp_begin_layer(blade, layer, &begun);
-        if (result == GX_OK && begun) {
-            result = gxp_see_edge(blade, layer, before, count);
-            if (result == GX_OK) result = gxp_copy_front(blade->body, &blade->front, &blade->samples);
-            if (result == GX_OK && gxp_check_start(blade, failure) != GX_OK) return GX_ERROR_ARGUMENT;
-        }
-        if (result == GX_OK) result = gxp_see_edge(blade, layer, edge, count);
+        result = gxp_begin_layer(blade, layer, before, edge, count, report, &begun);
+        if (result == GX_OK && begun && gxp_check_start(blade, failure) != GX_OK) return GX_ERROR_ARGUMENT;
         if (result == GX_OK) result = gxp_follow_edge(blade, finish, report);
-        if (result == GX_OK) result = gxp_add_surface(blade, layer);
+        if (result == GX_OK) result = gxp_add_surface(blade, layer, GXP_NONE);
         if (result == GX_OK) result = gxp_keep_layer(blade);
     }
-    report->layer_count = blade->near.layer_count;
+    if (blade->near.layer_count > report->layer_count) report->layer_count = blade->near.layer_count;
     return gxp_end(failure, result);
 }
 
@@ -10945,23 +11893,253 @@ static void gxp_clear_report(gx_blade_report *report) {
     report->cut.min_link_ratio = 1;
 }
 
+static int gxp_compare_places(const void *a, const void *b) {
+    const gxp_front_vertex *v = (const gxp_front_vertex *)a, *w = (const gxp_front_vertex *)b;
+    const double by[2][2] = {{v->along, w->along}, {v->distance, w->distance}};
+    int i;
+    for (i = 0; i < 2; i++)
+        if (by[i][0] < by[i][1] || by[i][0] > by[i][1]) return by[i][0] < by[i][1] ? -1 : 1;
+    return (v->element > w->element) - (v->element < w->element);
+}
+
+/* How near to a layer the edge was at the last move, m */
+static double gxp_least_distance(const gxp_blade_state *now) {
+    double least = HUGE_VAL;
+    uint32_t j, i;
+    for (j = 0; j < now->layers.count; j++)
+        for (i = 0; i < now->layers.data[j].seen_count; i++)
+            least = fmin(least, now->vertices.data[now->layers.data[j].seen + i].distance);
+    return least;
+}
+
+/* Drops places that have moved as others next to them, but for points of the edge. */
+static void gxp_thin_places(gx_blade *blade) {
+    gxp_front_list *places = &blade->places;
+    uint32_t i, n = 0;
+    for (i = 0; i < places->count; i++) {
+        const gxp_front_vertex *v = &places->data[i];
+        if (n > 0 && i + 1 < places->count && floor(v->along) < v->along &&
+            gxp_square_distance(v->rest, places->data[n - 1].rest) <= blade->tolerance * blade->tolerance)
+            continue;
+        places->data[n++] = *v;
+    }
+    places->count = n;
+}
+
+/* Lists the places of the edge of the last move at which layers saw it, and its points. A place has moved with the
+   material since: rest is by how much, distance from how far away that is known. */
+static gx_result gxp_list_places(gx_blade *blade) {
+    const gxp_blade_state *now = &blade->now;
+    const double least = gxp_least_distance(now);
+    uint32_t j, i, n = 0;
+    int k;
+    gx_result result = GX_OK;
+    gxp_front_vertex v;
+    blade->places.count = 0;
+    memset(&v, 0, sizeof v);
+    for (i = 0; i < now->edge.count && result == GX_OK; i++) {
+        v.along = i;
+        v.distance = HUGE_VAL;
+        result = gxp_push_vertex(blade->body, &blade->places, &v);
+    }
+    for (j = 0; j < now->layers.count && result == GX_OK; j++)
+        for (i = 0; i < now->layers.data[j].seen_count && result == GX_OK; i++) {
+            double x[3];
+            v = now->vertices.data[now->layers.data[j].seen + i];
+            if (v.distance > fmax(least, 0.25 * v.size)) continue;
+            memcpy(x, v.foot_at, sizeof x);
+            result = gxp_place_by(blade, j, 1, &v, v.foot, x);
+            for (k = 0; k < 3; k++) v.rest[k] = x[k] - v.foot_at[k];
+            if (gxp_dot(v.rest, v.rest) <= 1e-24 * v.size * v.size) v.rest[0] = v.rest[1] = v.rest[2] = 0;
+            if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->places, &v);
+        }
+    if (result != GX_OK) return result;
+    qsort(blade->places.data, blade->places.count, sizeof *blade->places.data, gxp_compare_places);
+    for (i = 1; i < blade->places.count; i++) { /* of several at one place, that of the nearest layer */
+        const gxp_front_vertex *last = &blade->places.data[n];
+        if (blade->places.data[i].along > last->along) blade->places.data[++n] = blade->places.data[i];
+    }
+    blade->places.count = n + 1;
+    return GX_OK;
+}
+
+/* Points of the edge at which no layer saw it have moved as the places next to them; if no layer did, as the body's
+   box. */
+static void gxp_carry_far_points(gx_blade *blade) {
+    gxp_front_list *places = &blade->places;
+    uint32_t i, near = GXP_NONE;
+    double way[3];
+    int k;
+    for (i = 0; i < places->count && near == GXP_NONE; i++)
+        if (places->data[i].distance < HUGE_VAL) near = i;
+    if (near == GXP_NONE) gxp_find_middle(blade->body, way);
+    for (k = 0; k < 3; k++) way[k] = near == GXP_NONE ? way[k] - blade->now.middle[k] : places->data[near].rest[k];
+    for (i = 0; i < places->count; i++)
+        if (places->data[i].distance < HUGE_VAL)
+            memcpy(way, places->data[i].rest, sizeof way);
+        else
+            memcpy(places->data[i].rest, way, sizeof way);
+}
+
+/* Lists the way of the edge: where the material has carried it to, and where it goes. */
+static gx_result gxp_carry_edge(gx_blade *blade, const double *edge, uint32_t count) {
+    const double *old = blade->now.edge.data;
+    uint32_t i;
+    int k;
+    gx_result result = gxp_list_places(blade);
+    blade->carried.count = blade->goal.count = 0;
+    if (result == GX_OK) gxp_carry_far_points(blade);
+    if (result == GX_OK) gxp_thin_places(blade);
+    for (i = 0; i < blade->places.count && result == GX_OK; i++) {
+        const gxp_front_vertex *v = &blade->places.data[i];
+        double x[3];
+        gxp_edge_position(old, count, v->along, x);
+        for (k = 0; k < 3; k++) x[k] += v->rest[k];
+        result = gxp_push_point(blade->body, &blade->carried, x);
+        gxp_edge_position(edge, count, v->along, x);
+        if (result == GX_OK) result = gxp_push_point(blade->body, &blade->goal, x);
+    }
+    return result;
+}
+
+/* How far the edge goes in space, squared; in a box, or NULL: anywhere */
+static gx_result gxp_measure_way(gx_blade *blade, const double *before, const double *edge, uint32_t count,
+                                 const gxp_bounds *box, double *most) {
+    double along;
+    uint32_t i, q;
+    int n, k;
+    gx_result result = GX_OK;
+    *most = 0;
+    blade->quads.count = 0;
+    for (i = 0; i + 1 < count && result == GX_OK; i++)
+        result = gxp_sweep_segment(blade, before + 3 * (size_t)i, edge + 3 * (size_t)i);
+    for (q = 0; q < blade->quads.count && result == GX_OK; q += 4) {
+        const double *x = blade->quads.data + 3 * (size_t)q;
+        int beyond = 0;
+        for (k = 0; k < 3 && box != NULL; k++) {
+            beyond |= fmin(fmin(x[k], x[3 + k]), fmin(x[6 + k], x[9 + k])) > box->high[k] + blade->largest;
+            beyond |= fmax(fmax(x[k], x[3 + k]), fmax(x[6 + k], x[9 + k])) < box->low[k] - blade->largest;
+        }
+        for (n = 0; n < 4 && !beyond; n++)
+            *most = fmax(*most, gxp_onto_edge(n < 2 ? edge : before, count, x + 3 * n, &along));
+    }
+    return result;
+}
+
+/* How far the edge goes relative to the material, squared: where a layer has seen it, or else anywhere */
+static double gxp_measure_relative(const gx_blade *blade) {
+    const uint32_t count = blade->goal.count;
+    double most = 0, along;
+    uint32_t i, known = 0;
+    for (i = 0; i < count; i++) known += blade->places.data[i].distance < HUGE_VAL;
+    for (i = 0; i < count; i++)
+        if (known == 0 || blade->places.data[i].distance < HUGE_VAL)
+            most = fmax(most, gxp_onto_edge(blade->goal.data, count, blade->carried.data + 3 * (size_t)i, &along));
+    return most;
+}
+
+/* The way of the edge is straight in space. */
+static gx_result gxp_go_straight(gx_blade *blade, const double *before, const double *edge, uint32_t count) {
+    uint32_t i;
+    gx_result result = GX_OK;
+    blade->carried.count = blade->goal.count = 0;
+    for (i = 0; i < count && result == GX_OK; i++) {
+        result = gxp_push_point(blade->body, &blade->carried, before + 3 * (size_t)i);
+        if (result == GX_OK) result = gxp_push_point(blade->body, &blade->goal, edge + 3 * (size_t)i);
+    }
+    return result;
+}
+
+/* Finds the way of the edge, and in how many steps it goes: by at most an element each in space, or relative to the
+   material if that is less. */
+static gx_result gxp_plan_way(gx_blade *blade, const double *edge, uint32_t count, uint32_t *steps) {
+    const double *before = blade->now.edge.count > 0 ? blade->now.edge.data : edge, square = blade->step * blade->step;
+    double most = 0;
+    gxp_bounds box;
+    gx_result result = gxp_measure_way(blade, before, edge, count, NULL, &most);
+    *steps = 1;
+    if (result == GX_OK && most > square) {
+        gxp_find_box(blade->body, &box);
+        result = gxp_measure_way(blade, before, edge, count, &box, &most);
+    }
+    if (result == GX_OK && most > square) {
+        result = gxp_carry_edge(blade, edge, count);
+        if (result == GX_OK) *steps = 1 + (uint32_t)fmin(999, sqrt(fmin(most, gxp_measure_relative(blade)) / square));
+    }
+    return result == GX_OK && *steps == 1 ? gxp_go_straight(blade, before, edge, count) : result;
+}
+
+/* A place of the edge's way: share of it */
+static gx_result gxp_go_part(gx_blade *blade, double share, gxp_points *to) {
+    const double *a = blade->carried.data, *b = blade->goal.data;
+    uint32_t i;
+    gx_result result = GX_OK;
+    to->count = 0;
+    for (i = 0; i < blade->goal.count && result == GX_OK; i++, a += 3, b += 3) {
+        const double x[3] = {a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2])};
+        result = gxp_push_point(blade->body, to, share < 1 ? x : b);
+    }
+    return result;
+}
+
+/* A step of a move, from blade.from to blade.to: lists what is to be cut; blade.then is what comes of it. finish: all
+   that waits is to be cut. */
+static gx_result gxp_step_blade(gx_blade *blade, const gxp_words *scope, int finish, gx_blade_report *report,
+                                gx_failure *failure) {
+    const double *before = blade->from.data, *edge = blade->to.data;
+    const uint32_t count = blade->to.count;
+    gx_result result = gxp_find_layers(blade, before, edge, count, scope);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    return gxp_advance_layers(blade, before, edge, count, finish, report, failure);
+}
+
+static void gxp_swap_states(gxp_blade_state *a, gxp_blade_state *b) {
+    const gxp_blade_state c = *a;
+    *a = *b;
+    *b = c;
+}
+
+static void gxp_swap_points(gxp_points *a, gxp_points *b) {
+    const gxp_points c = *a;
+    *a = *b;
+    *b = c;
+}
+
+/* The steps of a move. *begun: the state before is blade.start. */
+static gx_result gxp_step_along(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope, int finish,
+                                int *begun, gx_blade_report *report, gx_failure *failure) {
+    uint32_t steps = 1, step;
+    gx_result result = gxp_plan_way(blade, edge, count, &steps);
+    if (result == GX_OK) result = gxp_go_part(blade, 0, &blade->from);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    for (step = 1;; step++) {
+        result = gxp_end(failure, gxp_go_part(blade, step < steps ? (double)step / steps : 1, &blade->to));
+        if (result == GX_OK) result = gxp_step_blade(blade, scope, finish && step == steps, report, failure);
+        if (result == GX_OK) result = gxp_end(failure, gxp_keep_members(blade, edge, count));
+        if (result != GX_OK || step == steps) return result;
+        if (step == 1) gxp_swap_states(&blade->start, &blade->now);
+        *begun = 1;
+        gxp_swap_states(&blade->now, &blade->then);
+        gxp_swap_points(&blade->from, &blade->to);
+    }
+}
+
 /* A move to the edge; finish: cuts all that waits. */
 static gx_result gxp_move_blade(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope, int finish,
                                 gx_blade_report *report, gx_failure *failure) {
-    const gxp_blade_state now = blade->now;
+    int begun = 0;
     gx_result result;
     gxp_clear_report(report);
-    result = gxp_find_layers(blade, edge, count, scope);
-    if (gxp_end(failure, result) != GX_OK) return result;
-    result = gxp_advance_layers(blade, edge, count, finish, report, failure);
+    result = gxp_refit_near(blade, GXP_NEAR_SLACK, failure);
     if (result != GX_OK) return result;
-    result = gxp_keep_members(blade, edge, count);
-    if (gxp_end(failure, result) != GX_OK) return result;
-    result = gxp_cut_surfaces(blade, GX_SURFACE_SHEET, report, failure);
-    if (result != GX_OK) return result;
-    blade->now = blade->then;
-    blade->then = now;
-    return GX_OK;
+    blade->surface_starts.count = blade->corners.count = blade->scope.count = 0;
+    result = gxp_step_along(blade, edge, count, scope, finish, &begun, report, failure);
+    if (result == GX_OK) result = gxp_cut_surfaces(blade, GX_SURFACE_SHEET, report, failure);
+    if (result == GX_OK)
+        gxp_swap_states(&blade->now, &blade->then);
+    else if (begun)
+        gxp_swap_states(&blade->now, &blade->start);
+    return result;
 }
 
 GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t point_count,
@@ -11006,17 +12184,23 @@ static gx_result gxp_check_blade(const gx_blade_desc *desc, gx_failure *failure)
     return desc->min_advance < 0 ? gxp_refuse(failure, "min_advance") : GX_OK;
 }
 
-/* Sizes of elements: the mean and the largest. Those that are removed count too. */
-static double gxp_mean_size(const gx_body *body, double *largest) {
+/* Measures the elements, once in a body's life. Those that are removed count too. */
+static gx_result gxp_measure_elements(gx_body *body) {
+    gxp_mesh *mesh = &body->mesh;
     double sum = 0;
     uint32_t e;
-    *largest = 0;
-    for (e = 0; e < body->mesh.element_count; e++) {
-        const double size = cbrt(6 * gxp_element_volume(body, e));
-        *largest = fmax(*largest, size);
-        sum += size;
+    gx_result result;
+    if (mesh->sizes != NULL) return GX_OK;
+    result = gxp_make_column(body, &gxp_element_columns[GXP_SIZE_COLUMN], mesh->element_count);
+    if (result != GX_OK) return result;
+    mesh->largest_size = 0;
+    for (e = 0; e < mesh->element_count; e++) {
+        mesh->sizes[e] = cbrt(6 * gxp_element_volume(body, e));
+        mesh->largest_size = fmax(mesh->largest_size, mesh->sizes[e]);
+        sum += mesh->sizes[e];
     }
-    return sum / body->mesh.element_count;
+    mesh->mean_size = sum / mesh->element_count;
+    return GX_OK;
 }
 
 GXFEM_API gx_result gx_blade_create(gx_body *body, const gx_blade_desc *desc, gx_blade **blade, gx_failure *failure) {
@@ -11030,13 +12214,16 @@ GXFEM_API gx_result gx_blade_create(gx_body *body, const gx_blade_desc *desc, gx
     if (blade == NULL) return gxp_refuse(failure, "blade");
     result = gxp_check_blade(desc, failure);
     if (result != GX_OK) return result;
-    b = (gx_blade *)gxp_allocate(&body->config.allocator, sizeof *b);
-    if (b == NULL) return gxp_end(failure, GX_ERROR_MEMORY);
+    result = gxp_measure_elements(body);
+    b = result == GX_OK ? (gx_blade *)gxp_allocate(&body->config.allocator, sizeof *b) : NULL;
+    if (b == NULL) return gxp_end(failure, result != GX_OK ? result : GX_ERROR_MEMORY);
     memset(b, 0, sizeof *b);
-    size = gxp_mean_size(body, &b->largest);
+    size = body->mesh.mean_size;
+    b->largest = body->mesh.largest_size;
     b->body = body;
     b->tolerance = desc->tolerance > 0 ? desc->tolerance : 0.01 * size;
     b->min_advance = desc->min_advance > 0 ? desc->min_advance : 0.5 * size;
+    b->step = size;
     b->max_samples = desc->max_samples > 0 ? desc->max_samples : 1000;
     b->starts_inside = desc->starts_inside != 0;
     for (place = &body->blades; *place != NULL;) place = &(*place)->next;
@@ -11071,24 +12258,39 @@ static void gxp_release_blade(gx_blade *b) {
     const gx_allocator *a = &body->config.allocator;
     gxp_release_state(body, &b->now);
     gxp_release_state(body, &b->then);
+    gxp_release_state(body, &b->start);
+    gxp_release_front(body, &b->places);
+    gxp_release_points(body, &b->carried);
+    gxp_release_points(body, &b->goal);
+    gxp_release_points(body, &b->from);
+    gxp_release_points(body, &b->to);
     gxp_release(a, b->near.cells, b->near.capacity * sizeof *b->near.cells);
+    gxp_release(a, b->near.lambdas, 12 * b->near.lambda_capacity * sizeof *b->near.lambdas);
     gxp_release_words(body, &b->near.of_slot);
     gxp_release_words(body, &b->near.of_copy);
+    gxp_release_words(body, &b->near.quad_start);
+    gxp_release_words(body, &b->near.ranked);
     gxp_release_words(body, &b->near.parents);
     gxp_release(a, b->near.order.data, b->near.order.capacity * sizeof *b->near.order.data);
     gxp_release_words(body, &b->near.layer_start);
     gxp_release_front(body, &b->front);
     gxp_release_front(body, &b->latest);
+    gxp_release_front(body, &b->seen);
     gxp_release_front(body, &b->samples);
     gxp_release_front(body, &b->advanced);
     gxp_release_front(body, &b->strip);
     gxp_release_front(body, &b->cut);
+    gxp_release_front(body, &b->owned);
+    gxp_release_words(body, &b->owned_starts);
     gxp_release(a, b->relations, b->relation_capacity * sizeof *b->relations);
     gxp_release_points(body, &b->path);
     gxp_release_points(body, &b->sheet);
     gxp_release_points(body, &b->quads);
+    gxp_release(a, b->plates, b->plate_capacity * sizeof *b->plates);
+    gxp_release(a, b->boxes, b->box_capacity * sizeof *b->boxes);
     gxp_release_points(body, &b->corners);
     gxp_release_words(body, &b->owners);
+    gxp_release_words(body, &b->heirs);
     gxp_release_words(body, &b->divided);
     gxp_release(a, b->halved.data, b->halved.capacity * sizeof *b->halved.data);
     gxp_release_words(body, &b->in_scope);
@@ -11098,6 +12300,8 @@ static void gxp_release_blade(gx_blade *b) {
     gxp_release_words(body, &b->surface_starts);
     gxp_release_words(body, &b->triangles);
     gxp_release(a, b->surfaces, b->surface_capacity * sizeof *b->surfaces);
+    gxp_release(a, b->spans, b->span_capacity * sizeof *b->spans);
+    gxp_release(a, b->span_order.data, b->span_order.capacity * sizeof *b->span_order.data);
     gxp_release(a, b, sizeof *b);
 }
 
@@ -11113,6 +12317,321 @@ GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index) {
     gx_blade *blade = body != NULL ? body->blades : NULL;
     for (; blade != NULL && index > 0; index--) blade = blade->next;
     return blade;
+}
+
+/* >>contacts: what of the edge is in the material ------------------------------------------------------------------ */
+/* In: the edge of a blade's last move, and the body as it is now. Out: the parts of the edge that are in cells (spans),
+   those of cells that hang together along the edge joined, and places on them as hits. Nothing is decided exactly here:
+   a place that is off a cell by next to nothing is in it, so that an edge in faces of elements is not lost between
+   them. Touches the blade's working memory, the view's lists and the tree. */
+
+/* Next to nothing: a share of the element's size, for what rounding makes of thin faces, and a share (2^-48) of the
+   largest coordinate, for what it makes of positions */
+#define GXP_TOUCH          1e-10
+#define GXP_TOUCH_ROUNDING 3.552713678800501e-15
+/* Sizes of deformed elements are the radii of balls around them: 0.8 to 0.9 for an edge of 1. Where the edge is in the
+   material for less than the first share of it, it passes by a corner. Contacts are the second one apart. */
+#define GXP_LEAST_CONTACT   1e-6
+#define GXP_CONTACT_SPACING 0.6
+
+/* A part of a segment of the edge */
+typedef struct gxp_edge_part {
+    gx_blade *blade;
+    const double *ends; /* of the segment: 2 x 3, m */
+    uint32_t segment;
+    double low, high; /* shares of the segment */
+    double x[2][3];   /* where these are, m */
+    double rounding;  /* of positions, at rest too, m */
+} gxp_edge_part;
+
+/* Its part in the element of a cell */
+typedef struct gxp_cell_part {
+    const gxp_edge_part *edge;
+    uint32_t slot;
+    double low, high;  /* shares of the segment */
+    double rest[2][3]; /* their material points */
+    double touch;      /* m, at rest */
+} gxp_cell_part;
+
+static double gxp_between(double a, double b, double share) { return share < 1 ? a + share * (b - a) : b; }
+
+/* Narrows a range to where a linear function, a at 0 and b at 1, is 0 or more. Returns 0 if nothing is left. */
+static int gxp_narrow(double a, double b, double *low, double *high) {
+    if (a < 0 && b < 0) return 0;
+    if (a < 0) *low = fmax(*low, a / (a - b));
+    if (b < 0) *high = fmin(*high, a / (a - b));
+    return *low <= *high;
+}
+
+/* Adds a span, in the order of segments, places and slots. A walk finds them nearly in order. */
+static gx_result gxp_push_span(const gxp_cell_part *part, double low, double high) {
+    gx_blade *blade = part->edge->blade;
+    uint32_t i = blade->span_count;
+    gxp_span own;
+    const gx_result result = gxp_reserve(&blade->body->config.allocator, &blade->spans, sizeof *blade->spans,
+                                         blade->span_count, &blade->span_capacity, 1);
+    if (result != GX_OK) return result;
+    own.low = gxp_between(part->low, part->high, low);
+    own.high = gxp_between(part->low, part->high, high);
+    own.slot = part->slot;
+    own.segment = part->edge->segment;
+    for (; i > 0; i--) {
+        const gxp_span *last = &blade->spans[i - 1];
+        if (last->segment < own.segment || last->low < own.low || (!(last->low > own.low) && last->slot <= own.slot))
+            break;
+        blade->spans[i] = *last;
+    }
+    blade->spans[i] = own;
+    blade->span_count++;
+    return GX_OK;
+}
+
+/* The height of a material point over a plane of the complex, times the length of that plane's normal in its frame */
+static double gxp_plane_height(const gx_body *body, const gxb_plane_filter *plane, const double rest[3]) {
+    const double *origin = gxb_complex_origin(body->complex);
+    double height = 0;
+    int k;
+    for (k = 0; k < 3; k++)
+        height += plane->n[k] * (ldexp(rest[k] - origin[k], gxb_complex_shift(body->complex)) - plane->base[k]);
+    return height;
+}
+
+/* Adds the spans that are in leaves of the cell below a reference to its element's tree. low, high: shares of the part.
+ */
+static gx_result gxp_add_leaf_spans(gx_body *body, const gxp_cell_part *part, uint32_t reference, double low,
+                                    double high) {
+    while (reference & 1) {
+        const gxb_node *node = gxb_complex_tree_node(body->complex, reference >> 1);
+        const gxb_plane_filter *plane = &gxb_complex_plane(body->complex, node->plane)->filter;
+        const double touch = ldexp(part->touch * gxp_size(plane->n), gxb_complex_shift(body->complex)),
+                     a = gxp_plane_height(body, plane, part->rest[0]), b = gxp_plane_height(body, plane, part->rest[1]);
+        double front_low = low, front_high = high;
+        gx_result result = GX_OK;
+        if (gxp_narrow(a + touch, b + touch, &front_low, &front_high))
+            result = gxp_add_leaf_spans(body, part, node->child[0], front_low, front_high);
+        if (result != GX_OK || !gxp_narrow(touch - a, touch - b, &low, &high)) return result;
+        reference = node->child[1];
+    }
+    return gxp_is_kept(body, reference >> 1) && body->leaves.data[reference >> 1].cell == part->slot
+             ? gxp_push_span(part, low, high)
+             : GX_OK;
+}
+
+/* Narrows a range of a part of the edge to what is in the deformed element of a cell. *touch: next to nothing, as a
+   share of its thickness. Returns 0 if nothing is left, or if the element is flat. */
+static int gxp_clip_to_element(const gxp_edge_part *edge, const gxp_cell *cell, double *low, double *high,
+                               double *touch) {
+    double corners[12], x[4][3], way[3], size = 0, off;
+    int n, k;
+    *touch = 0;
+    gxp_moved_corners(edge->blade->body, cell, corners);
+    for (k = 0; k < 3; k++) {
+        way[k] = edge->x[1][k] - edge->x[0][k];
+        for (n = 0; n < 4; n++) x[n][k] = corners[3 * n + k] - edge->x[0][k];
+    }
+    for (n = 1; n < 4; n++) size = fmax(size, sqrt(gxp_square_distance(x[n], x[0])));
+    off = GXP_TOUCH * size + edge->rounding;
+    for (k = 0; k < 4; k++) {
+        const double *a = x[gxp_outward[k][0]], *b = x[gxp_outward[k][1]], *c = x[gxp_outward[k][2]];
+        const double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+        double normal[3], height, margin, from, to;
+        gxp_cross(normal, u, v);
+        margin = off * gxp_size(normal);
+        height = gxp_dot(normal, x[k]) - gxp_dot(normal, a);
+        if (!(fabs(height) > margin)) return 0;
+        from = height > 0 ? -gxp_dot(normal, a) : gxp_dot(normal, a);
+        to = from + (height > 0 ? gxp_dot(normal, way) : -gxp_dot(normal, way));
+        if (!gxp_narrow(from + margin, to + margin, low, high)) return 0;
+        *touch = fmax(*touch, margin / fabs(height));
+    }
+    return 1;
+}
+
+/* Adds the spans of a part of the edge in a cell. */
+static gx_result gxp_meet_cell(gx_body *body, void *user, uint32_t slot) {
+    const gxp_edge_part *edge = (const gxp_edge_part *)user;
+    gx_blade *blade = edge->blade;
+    const gxp_cell *cell = &body->cells.data[slot];
+    const uint32_t before = blade->span_count;
+    gxp_cell_part part;
+    gxp_close_cell close;
+    double weights[4], point[3], low = 0, high = 1, touch;
+    int n;
+    gx_result result;
+    if (!gxp_clip_to_element(edge, cell, &low, &high, &touch)) return GX_OK;
+    part.edge = edge;
+    part.slot = slot;
+    part.low = gxp_between(edge->low, edge->high, low);
+    part.high = gxp_between(edge->low, edge->high, high);
+    part.touch = touch * gxp_element_size(body, cell->element);
+    for (n = 0; n < 2; n++) {
+        gxp_edge_position(edge->ends, 2, n == 0 ? part.low : part.high, point);
+        (void)gxp_pull_back(body, slot, point, weights, part.rest[n]);
+    }
+    result = gxp_add_leaf_spans(body, &part, gxb_complex_root(body->complex, cell->element), 0, 1);
+    if (result != GX_OK || blade->span_count == before || gxp_close_index(&blade->near, slot) != GXP_NONE)
+        return result;
+    close.slot = slot;
+    close.quad = 0; /* there are none */
+    gxp_place_near(body, &close);
+    return gxp_push_near(blade, &close);
+}
+
+/* Finds the spans of a segment of the edge, part by part. */
+static gx_result gxp_meet_segment(gx_blade *blade, uint32_t segment) {
+    const double *ends = blade->now.edge.data + 3 * (size_t)segment;
+    const uint32_t parts = gxp_part_count(blade, ends);
+    gxp_edge_part edge;
+    double most = 0;
+    uint32_t i;
+    int k;
+    gx_result result = GX_OK;
+    for (k = 0; k < 6; k++) most = fmax(most, fmax(fabs(ends[k]), blade->body->tree.reach[k % 3]));
+    edge.blade = blade;
+    edge.ends = ends;
+    edge.segment = segment;
+    edge.rounding = GXP_TOUCH_ROUNDING * most;
+    for (i = 0; i < parts && result == GX_OK; i++) {
+        gxp_bounds box;
+        edge.low = (double)i / parts;
+        edge.high = (double)(i + 1) / parts;
+        gxp_edge_position(ends, 2, edge.low, edge.x[0]);
+        gxp_edge_position(ends, 2, edge.high, edge.x[1]);
+        for (k = 0; k < 3; k++) {
+            box.low[k] = fmin(edge.x[0][k], edge.x[1][k]) - edge.rounding - GXP_TOUCH * blade->largest;
+            box.high[k] = fmax(edge.x[0][k], edge.x[1][k]) + edge.rounding + GXP_TOUCH * blade->largest;
+        }
+        result = gxp_walk_box(blade->body, &box, gxp_meet_cell, &edge);
+    }
+    return result;
+}
+
+/* A span by its place in the order of layers */
+static gxp_span *gxp_span_at(const gx_blade *blade, uint32_t index) {
+    return &blade->spans[GXP_SECOND(blade->span_order.data[index])];
+}
+
+/* Does a span go on where others of its layer have come to? */
+static int gxp_goes_on(const gxp_span *span, const gxp_span *reach) {
+    if (span->segment == reach->segment) return span->low <= reach->high;
+    return span->segment == reach->segment + 1 && reach->high >= 1; /* the point between the two is in the layer */
+}
+
+/* Sorts the spans by layer, and takes from each what is in those before it: so a layer has each place once. */
+static gx_result gxp_join_spans(gx_blade *blade) {
+    gxp_keys *order = &blade->span_order;
+    const gxp_span *reach = NULL;
+    uint32_t i;
+    gx_result result = gxp_number_layers(blade);
+    order->count = 0;
+    if (result == GX_OK) result = gxp_keys_room(blade->body, order, 2 * (size_t)blade->span_count);
+    for (i = 0; i < blade->span_count && result == GX_OK; i++)
+        result = gxp_push_key(blade->body, order, gxp_layer_of(&blade->near, blade->spans[i].slot), i);
+    if (result == GX_OK) result = gxp_sort_keys(blade->body, order, 0, order->count);
+    for (i = 0; i < order->count; i++) {
+        gxp_span *span = gxp_span_at(blade, i);
+        span->begins =
+            reach == NULL || GXP_FIRST(order->data[i]) != GXP_FIRST(order->data[i - 1]) || !gxp_goes_on(span, reach);
+        if (!span->begins && span->segment == reach->segment) span->low = reach->high;
+        if (span->high < span->low) span->high = span->low;
+        reach = span;
+    }
+    return result;
+}
+
+/* The hit of a place on the edge in a cell, or next to nothing off it */
+static void gxp_hit_on_edge(gx_body *body, uint32_t slot, const double point[3], gx_hit *hit) {
+    double weights[4], material[3], sum = 0;
+    int n;
+    (void)gxp_pull_back(body, slot, point, weights, material);
+    for (n = 0; n < 4; n++) sum += fmax(weights[n], 0);
+    for (n = 0; n < 4; n++) weights[n] /= sum;
+    gxp_start_hit(body, slot, weights, hit);
+    memcpy(hit->material, material, sizeof hit->material);
+    memcpy(hit->position, point, sizeof hit->position);
+}
+
+static double gxp_span_length(const gx_blade *blade, const gxp_span *span) {
+    const double *ends = blade->now.edge.data + 3 * (size_t)span->segment;
+    return (span->high - span->low) * sqrt(gxp_square_distance(ends, ends + 3));
+}
+
+/* How long a run of joined spans is, and into how many contacts it is divided */
+static double gxp_measure_run(const gx_blade *blade, uint32_t first, uint32_t end, size_t *parts) {
+    double length = 0, sum = 0;
+    uint32_t i;
+    for (i = first; i < end; i++) {
+        const gxp_span *span = gxp_span_at(blade, i);
+        const double own = gxp_span_length(blade, span);
+        length += own;
+        sum += own * blade->near.cells[gxp_close_index(&blade->near, span->slot)].radius;
+    }
+    *parts = 0;
+    if (!(length * length > GXP_LEAST_CONTACT * sum)) return length;
+    *parts = (size_t)(length * length / (GXP_CONTACT_SPACING * sum) + 0.5);
+    if (*parts == 0) *parts = 1;
+    return length;
+}
+
+/* The contact at a place in a run, m from its beginning. *at, *passed: the span in which the search begins and the
+   length of those before it; then those of the place */
+static void gxp_place_contact(gx_blade *blade, double place, uint32_t *at, double *passed, gx_blade_contact *contact) {
+    const gxp_span *span = gxp_span_at(blade, *at);
+    double share, point[3];
+    while (*passed + gxp_span_length(blade, span) < place) { /* the run is longer: sums are those of gxp_measure_run */
+        *passed += gxp_span_length(blade, span);
+        span = gxp_span_at(blade, ++*at);
+    }
+    share = fmin(span->low + (span->high - span->low) * ((place - *passed) / gxp_span_length(blade, span)), span->high);
+    gxp_edge_position(blade->now.edge.data + 3 * (size_t)span->segment, 2, share, point);
+    gxp_hit_on_edge(blade->body, span->slot, point, &contact->hit);
+    contact->along = span->segment + share;
+}
+
+/* Divides each run of joined spans into equal lengths, each with a contact in its middle. */
+static void gxp_place_contacts(gx_blade *blade, gx_blade_contact *contacts, size_t capacity, size_t *count) {
+    uint32_t first, end;
+    *count = 0;
+    for (first = 0; first < blade->span_order.count; first = end) {
+        double length, passed = 0;
+        size_t parts, i;
+        uint32_t at = first;
+        for (end = first + 1; end < blade->span_order.count && !gxp_span_at(blade, end)->begins;) end++;
+        length = gxp_measure_run(blade, first, end, &parts);
+        for (i = 0; i < parts && *count + i < capacity; i++) {
+            gx_blade_contact *contact = &contacts[*count + i];
+            contact->length = length / (double)parts;
+            gxp_place_contact(blade, ((double)i + 0.5) * contact->length, &at, &passed, contact);
+        }
+        *count += parts;
+    }
+}
+
+/* Finds all spans, joined by layer. */
+static gx_result gxp_find_spans(gx_blade *blade) {
+    uint32_t i;
+    gx_result result = gxp_extend_words(blade->body, &blade->near.of_slot, blade->body->cells.count);
+    for (i = 0; i + 1 < blade->now.edge.count && result == GX_OK; i++) result = gxp_meet_segment(blade, i);
+    return result == GX_OK ? gxp_join_spans(blade) : result;
+}
+
+GXFEM_API gx_result gx_blade_contacts(gx_blade *blade, gx_blade_contact *contacts, size_t capacity, size_t *count,
+                                      gx_failure *failure) {
+    gx_result result;
+    if (blade == NULL) return gxp_refuse(failure, "blade");
+    if (contacts == NULL && capacity > 0) return gxp_refuse(failure, "contacts");
+    if (count == NULL) return gxp_refuse(failure, "count");
+    if (blade->now.edge.count == 0) {
+        *count = 0;
+        return gxp_end(failure, GX_OK);
+    }
+    result = gxp_prepare_locate(blade->body, failure);
+    if (result != GX_OK && result != GX_ERROR_EMPTY) return result;
+    blade->near.count = blade->quads.count = blade->span_count = blade->span_order.count = 0;
+    if (result == GX_OK) result = gxp_find_spans(blade);
+    if (gxp_end(failure, result == GX_ERROR_EMPTY ? GX_OK : result) != GX_OK) return result;
+    gxp_place_contacts(blade, contacts, capacity, count);
+    return *count > capacity ? gxp_fail(failure, GX_ERROR_CAPACITY, "capacity", SIZE_MAX) : GX_OK;
 }
 
 /* >>carve: what a closed tool in space covers ---------------------------------------------------------------------- */
@@ -11252,12 +12771,24 @@ static gx_result gxp_refine_tool(gx_blade *blade, uint32_t layer) {
     return result;
 }
 
+static gx_result gxp_list_slot(gx_body *body, void *user, uint32_t slot) {
+    return gxp_push(body, (gxp_words *)user, slot);
+}
+
+/* Lists the cells whose deformed elements' boxes meet a box. The tree is up to date. */
+static gx_result gxp_find_in_box(gx_body *body, const double low[3], const double high[3], gxp_words *found) {
+    gxp_bounds box;
+    memcpy(box.low, low, sizeof box.low);
+    memcpy(box.high, high, sizeof box.high);
+    found->count = 0;
+    return gxp_walk_box(body, &box, gxp_list_slot, found);
+}
+
 /* Adds the cells that are inside the tool and not near its surface. */
 static gx_result gxp_add_covered(gx_blade *blade, const gx_surface *tool) {
     gx_body *body = blade->body;
     double low[3], high[3];
     size_t i;
-    int k;
     gx_result result;
     memcpy(low, tool->vertices, sizeof low);
     memcpy(high, tool->vertices, sizeof high);
@@ -11267,16 +12798,14 @@ static gx_result gxp_add_covered(gx_blade *blade, const gx_surface *tool) {
     }
     result = gxp_find_in_box(body, low, high, &blade->found);
     for (i = 0; i < blade->found.count && result == GX_OK; i++) {
-        static const double origin[3] = {0, 0, 0};
-        const uint32_t slot = blade->found.data[i];
-        double x[4][3], middle[3];
+        gxp_close_cell c;
         int on;
-        const uint32_t index = gxp_close_index(&blade->near, slot);
-        if (index != GXP_NONE && blade->near.cells[index].is_near) continue;
-        gxp_cell_corners(body, &body->cells.data[slot], 1, origin, x);
-        for (k = 0; k < 3; k++) middle[k] = 0.25 * (x[0][k] + x[1][k] + x[2][k] + x[3][k]);
-        if (gxb_winding_number(tool->vertices, tool->triangles, tool->triangle_count, middle, &on) != 0)
-            result = gxp_add_near(blade, slot, NULL);
+        c.slot = blade->found.data[i];
+        c.quad = blade->quads.count / 4;
+        if (gxp_close_index(&blade->near, c.slot) != GXP_NONE) continue;
+        gxp_place_near(body, &c);
+        if (gxb_winding_number(tool->vertices, tool->triangles, tool->triangle_count, c.middle, &on) != 0)
+            result = gxp_push_near(blade, &c);
     }
     return result;
 }
@@ -11294,7 +12823,6 @@ static gx_result gxp_find_tool_layers(gx_blade *blade, const gx_surface *tool) {
     }
     if (result == GX_OK) result = gxp_find_near(blade, NULL);
     if (result == GX_OK) result = gxp_add_covered(blade, tool);
-    gxp_keep_near(&blade->near);
     if (result == GX_OK) result = gxp_number_layers(blade);
     return result == GX_OK ? gxp_order_near(blade) : result;
 }
@@ -11354,7 +12882,9 @@ static gx_result gxp_add_tool(gx_blade *blade, uint32_t layer, const gx_surface 
 static gx_result gxp_carve_layers(gx_blade *blade, const gx_surface *tool, gx_blade_report *report,
                                   gx_failure *failure) {
     uint32_t layer;
-    gx_result result = gxp_find_tool_layers(blade, tool);
+    gx_result result = gxp_refit_near(blade, 0, failure);
+    if (result != GX_OK) return result;
+    result = gxp_find_tool_layers(blade, tool);
     blade->surface_starts.count = blade->corners.count = blade->scope.count = 0;
     for (layer = 0; layer < blade->near.layer_count && result == GX_OK; layer++) {
         result = gxp_see_tool(blade, layer, tool);
@@ -12326,6 +13856,7 @@ static void gxp_pass_blade_head(gxb_stream *s, gx_blade *blade, uint32_t n[GXP_B
     gxp_pass_word(s, &blade->max_samples);
     gxp_pass_word(s, &inside);
     gxp_pass_word(s, &blade->now.slot_count);
+    gxb_stream_pass(s, blade->now.middle, 3, sizeof(double));
     gxb_stream_pass(s, n, GXP_BLADE_LISTS, sizeof *n);
     blade->starts_inside = inside != 0;
 }
@@ -12334,14 +13865,22 @@ static void gxp_pass_blade(gxb_stream *s, gxp_blade_state *b) {
     uint32_t i;
     for (i = 0; i < b->vertices.count; i++) {
         gxp_front_vertex *v = &b->vertices.data[i];
+        uint32_t flags;
         gxb_stream_pass(s, v->rest, 3, sizeof *v->rest);
         gxb_stream_pass(s, v->extended, 3, sizeof *v->extended);
         gxb_stream_pass(s, v->position, 3, sizeof *v->position);
+        gxb_stream_pass(s, v->foot, 3, sizeof *v->foot);
+        gxb_stream_pass(s, v->foot_at, 3, sizeof *v->foot_at);
         gxb_stream_pass(s, v->ahead, 3, sizeof *v->ahead);
         gxb_stream_pass(s, &v->distance, 1, sizeof v->distance);
         gxb_stream_pass(s, &v->size, 1, sizeof v->size);
         gxb_stream_pass(s, &v->along, 1, sizeof v->along);
         gxp_pass_word(s, &v->element);
+        flags = (uint32_t)v->soft | (uint32_t)v->gap << 1 | (uint32_t)v->walled << 2;
+        gxp_pass_word(s, &flags);
+        v->soft = flags & 1;
+        v->gap = flags >> 1 & 1;
+        v->walled = flags >> 2 & 1;
         v->unused = 0;
     }
     gxb_stream_pass(s, b->points.data, 3 * (size_t)b->points.count, sizeof(double));
@@ -12375,11 +13914,12 @@ static int gxp_are_finite(const double *x, size_t count) {
     return 1;
 }
 
-static void gxp_check_vertex(gxb_stream *s, const gx_body *body, const gxp_blade_state *b, const gxp_front_vertex *v) {
-    gxp_require_true(s, v->element < body->mesh.element_count && v->along >= 0 && v->along <= b->edge.count &&
+static void gxp_check_vertex(gxb_stream *s, const gx_body *body, const gxp_front_vertex *v) {
+    gxp_require_true(s, v->element < body->mesh.element_count && v->along >= 0 && v->along <= UINT32_MAX &&
                             v->distance >= 0 && v->size >= 0);
     gxp_require_true(s, gxp_are_finite(v->rest, 3) && gxp_are_finite(v->extended, 3) &&
-                            gxp_are_finite(v->position, 3) && gxp_are_finite(v->ahead, 3) && gxp_is_finite(v->size));
+                            gxp_are_finite(v->position, 3) && gxp_are_finite(v->foot, 3) &&
+                            gxp_are_finite(v->foot_at, 3) && gxp_are_finite(v->ahead, 3) && gxp_is_finite(v->size));
 }
 
 static int gxp_is_range(uint32_t first, uint32_t count, uint32_t all) { return first <= all && count <= all - first; }
@@ -12390,14 +13930,15 @@ static void gxp_check_strokes(gxb_stream *s, const gx_body *body, const gx_blade
     uint32_t i;
     gxp_require_true(s, gxp_is_finite(blade->tolerance) && blade->tolerance > 0 && gxp_is_finite(blade->min_advance) &&
                             blade->min_advance > 0 && b->slot_count <= body->slots.count && b->edge.count != 1);
-    for (i = 0; i < b->vertices.count; i++) gxp_check_vertex(s, body, b, &b->vertices.data[i]);
+    for (i = 0; i < b->vertices.count; i++) gxp_check_vertex(s, body, &b->vertices.data[i]);
     gxp_require_true(s, gxp_are_finite(b->points.data, 3 * (size_t)b->points.count) &&
                             gxp_are_finite(b->edge.data, 3 * (size_t)b->edge.count));
     for (i = 0; i < b->layers.count; i++) {
         const gxp_layer *l = &b->layers.data[i];
-        gxp_require_true(s, l->front_count >= 2 && l->latest_count != 1 &&
+        gxp_require_true(s, l->front_count != 1 && l->latest_count != 1 &&
                                 gxp_is_range(l->front, l->front_count, b->vertices.count) &&
                                 gxp_is_range(l->latest, l->latest_count, b->vertices.count) &&
+                                gxp_is_range(l->seen, l->seen_count, b->vertices.count) &&
                                 gxp_is_range(l->path, l->path_count, b->points.count) &&
                                 gxp_is_range(l->sheet, l->sheet_count, b->points.count));
     }
@@ -12477,6 +14018,7 @@ static gx_result gxp_prepare_blades(gx_body *body, const gx_body *from, uint32_t
             memcpy(b->then.members.data, f->members.data, f->members.count * sizeof *f->members.data);
         if (f->edge.count > 0) memcpy(b->then.edge.data, f->edge.data, 3 * f->edge.count * sizeof(double));
         b->then.slot_count = f->slot_count;
+        memcpy(b->then.middle, f->middle, sizeof f->middle);
         b = b->next;
     }
     return result;
@@ -12764,12 +14306,22 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_BYTE_ORDER
 #undef GXP_BESIDE_WALL
 #undef GXP_ACROSS_WALL
+#undef GXP_NO_PLANE
+#undef GXP_NEAR_SLACK
 #undef GXP_FLAT_MAP
-#undef GXP_BESIDE
+#undef GXP_CAP
+#undef GXP_AIR
 #undef GXP_LEAST_ADVANCE
 #undef GXP_CUT_WIDTH
+#undef GXP_BLADE_SPECK
+#undef GXP_SPECK_TRIES
+#undef GXP_CROSSING
 #undef GXP_SHEET_TRIANGLES
 #undef GXP_STRIP_REACH
+#undef GXP_TOUCH
+#undef GXP_TOUCH_ROUNDING
+#undef GXP_LEAST_CONTACT
+#undef GXP_CONTACT_SPACING
 #undef GXP_EDGE_REACH
 #undef GXP_TOOL_TRIANGLES
 #ifdef GXFEM_SCALAR
