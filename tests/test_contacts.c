@@ -191,12 +191,11 @@ static double length_in(const gx_body *body, const double *edge, const answer *a
         const double *x = edge + 3 * (size_t)p->segment;
         const real way[3] = {(real)x[3] - x[0], (real)x[4] - x[1], (real)x[5] - x[2]};
         if (i == 0 || p->layer != p[-1].layer || p->segment != p[-1].segment) reach = 0;
-        for (c = 0; view->cell_slot[c] != p->slot;) c++;
+        for (c = 0; view->cell_slot[c] != body->cells.slot[p->slot];) c++;
         if (p->high > reach && (fragment == UINT32_MAX || view->cell_fragment[c] == fragment))
             sum += (p->high - fmaxl(p->low, reach)) * sqrtl(inner(way, way));
         reach = fmaxl(p->high, reach);
     }
-    (void)body;
     return (double)sum;
 }
 

@@ -370,6 +370,179 @@ START_TEST(copies_go_on) {
 }
 END_TEST
 
+/* ---- blades mid-stroke ---- */
+
+enum { CONTACTS = 512, HITS = 16, FRAMES = 12 };
+
+/* Bodies on which blades, tools and cuts act alike, while their pieces move */
+typedef struct crew {
+    gx_body *body[3]; /* the first settles at every cut, the second never; the third is made of the first mid-stroke */
+    int count;
+    uint64_t seed;
+    /* places in space that were hit before the last cut */
+    gx_hit hits[3][HITS];
+    size_t still_there;
+} crew;
+
+static void act_as(int body) { settles = body == 1 ? NEVER : ALWAYS; }
+
+/* Each fragment moves away from the middle, by the same bits in all bodies: by multiples of 2^-10. */
+static void tear_apart(crew *c, double by) {
+    int b, n, k;
+    for (b = 0; b < c->count; b++) {
+        const gx_view view = view_of(c->body[b]);
+        size_t i;
+        for (i = 0; i < view.cell_count; i++)
+            for (n = 0; n < 4; n++)
+                for (k = 0; k < 3; k++) {
+                    const double away = by * (view.fragment_center[3 * (size_t)view.cell_fragment[i] + (size_t)k] - 1);
+                    view.displacement[3 * (size_t)view.cell_copies[4 * i + (size_t)n] + (size_t)k] =
+                        floor(1024 * away) / 1024;
+                }
+    }
+}
+
+/* The edge of the first blade is along y, that of the second along z. Both advance along x. */
+static void move_blade(crew *c, size_t blade, double x, double height) {
+    const int axis = blade == 0 ? 1 : 2;
+    double edge[6];
+    int b, k;
+    for (k = 0; k < 2; k++) {
+        edge[3 * k] = x + 0.1 * k;
+        edge[3 * k + axis] = k ? 6 : -4;
+        edge[3 * k + 3 - axis] = height + 0.2 * k;
+    }
+    for (b = 0; b < c->count; b++) {
+        act_as(b);
+        ck_assert_int_eq(gx_blade_move(gx_body_blade(c->body[b], blade), edge, 2, NULL, 0, NULL, NULL), GX_OK);
+    }
+}
+
+/* Removes what an octahedron covers, in space or in material coordinates, or what random surfaces enclose. */
+static void remove_some(crew *c, workload *w) {
+    const int kind = random_below(3);
+    const double at[3] = {random_real(0, 2), random_real(0, 2), random_real(0, 2)};
+    strokes s;
+    strokes_tool tool;
+    gx_surface surface;
+    int b;
+    memset(&s, 0, sizeof s);
+    s.random = random_bits();
+    strokes_octahedron(&s, &tool, at, random_real(0.2, 0.7));
+    surface = strokes_surface(&tool, GX_SURFACE_SOLID);
+    if (kind == 0) add_random_cut(w, 1);
+    for (b = 0; b < c->count; b++) {
+        act_as(b);
+        if (kind == 0)
+            cut_by(c->body[b], w, w->surface_count - 1, 1);
+        else if (kind == 1)
+            ck_assert_int_eq(strokes_cut(c->body[b], &surface, NULL, 0, NULL), GX_OK);
+        else
+            ck_assert_int_eq(gx_body_carve(c->body[b], &surface, NULL, NULL), GX_OK);
+    }
+}
+
+/* How many contacts a blade has, how long they are, where they are on the edge and in the material */
+static void sum_contacts(gx_body *body, size_t blade, double sum[6]) {
+    gx_blade_contact contacts[CONTACTS];
+    const gx_view view = view_of(body);
+    size_t count = 0, i;
+    int k;
+    ck_assert_int_eq(gx_blade_contacts(gx_body_blade(body, blade), contacts, CONTACTS, &count, NULL), GX_OK);
+    memset(sum, 0, 6 * sizeof *sum);
+    for (i = 0; i < count; i++) {
+        const gx_hit *hit = &contacts[i].hit;
+        double x[3];
+        sum[0]++;
+        sum[1] += contacts[i].length;
+        sum[2] += contacts[i].along * contacts[i].length;
+        for (k = 0; k < 3; k++) sum[3 + k] += hit->material[k] * contacts[i].length;
+        ck_assert(hit->slot == view.cell_slot[hit->cell] && hit->element == view.cell_element[hit->cell]);
+        ck_assert_int_eq(gx_body_place(body, hit->slot, hit->material, x, NULL), GX_OK);
+        for (k = 0; k < 3; k++) ck_assert(fabs(x[k] - hit->position[k]) < 1e-9);
+    }
+}
+
+static void hit_places(crew *c) {
+    double at[3 * HITS];
+    int b, i;
+    for (i = 0; i < 3 * HITS; i++) at[i] = random_real(0, 2);
+    for (b = 0; b < c->count; b++) ck_assert_int_eq(gx_body_locate(c->body[b], at, HITS, c->hits[b], NULL), GX_OK);
+}
+
+/* What has been hit is there or gone in all bodies alike. */
+static void expect_same_hits(crew *c) {
+    int b, i, k;
+    for (i = 0; i < HITS; i++) {
+        gx_anchor anchor;
+        double x[3][3];
+        const gx_result result = gx_hit_anchor(c->body[1], &c->hits[1][i], &anchor, NULL);
+        c->still_there += result == GX_OK;
+        for (b = 0; b < c->count; b++) {
+            CHECK_SEED(gx_hit_anchor(c->body[b], &c->hits[b][i], &anchor, NULL) == result, c->seed);
+            if (result == GX_OK)
+                ck_assert_int_eq(gx_body_anchor_point(c->body[b], &anchor, NULL, x[b], NULL), GX_OK);
+            for (k = 0; k < 3 && result == GX_OK; k++) CHECK_SEED(fabs(x[b][k] - x[0][k]) < 1e-9, c->seed);
+        }
+    }
+}
+
+static void expect_same_crew(crew *c) {
+    double sum[3][6];
+    size_t blade;
+    int b, k;
+    expect_same(c->body[0], c->body[1], c->seed);
+    if (c->count == 3) CHECK_SEED(gx_body_state_hash(c->body[2]) == gx_body_state_hash(c->body[0]), c->seed);
+    for (blade = 0; blade < 2; blade++) {
+        for (b = 0; b < c->count; b++) sum_contacts(c->body[b], blade, sum[b]);
+        for (k = 0; k < 6; k++) {
+            CHECK_SEED(fabs(sum[1][k] - sum[0][k]) < 1e-9, c->seed);
+            if (c->count == 3) CHECK_SEED(!(sum[2][k] < sum[0][k]) && !(sum[2][k] > sum[0][k]), c->seed);
+        }
+    }
+}
+
+/* Two blades go through bodies whose pieces move apart, while tools take material at their fronts. Each cut moves the
+   rows of cells, leaves and points that blades, hits and contacts are about. Copies that are made mid-stroke go on. */
+START_TEST(blades_go_on) {
+    crew c;
+    workload w;
+    int b, frame;
+    memset(&c, 0, sizeof c);
+    c.seed = (uint64_t)_i + 1;
+    c.count = 2;
+    random_seed(c.seed * 1009);
+    w = grid(2, 2, 2, _i % 2 ? 6 : 5);
+    for (b = 0; b < 2; b++) {
+        gx_blade *blade;
+        c.body[b] = body_of(&w);
+        ck_assert_int_eq(gx_blade_create(c.body[b], NULL, &blade, NULL), GX_OK);
+        ck_assert_int_eq(gx_blade_create(c.body[b], NULL, &blade, NULL), GX_OK);
+    }
+    for (frame = 0; frame < FRAMES; frame++) {
+        hit_places(&c);
+        move_blade(&c, 0, -0.3 + 0.22 * frame, 0.93);
+        if (frame > 2) move_blade(&c, 1, -1 + 0.22 * frame, 0.87);
+        if (random_below(2)) remove_some(&c, &w);
+        expect_same_hits(&c);
+        if (view_of(c.body[1]).cell_count == 0) break;
+        if (random_below(2)) tear_apart(&c, random_real(0, 0.15));
+        if (frame == 4) {
+            if (_i % 3)
+                c.body[2] = read_back(c.body[0]);
+            else
+                ck_assert_int_eq(gx_body_clone(c.body[0], &c.body[2], NULL), GX_OK);
+            c.count = 3;
+        }
+        expect_same_crew(&c);
+    }
+    CHECK_SEED(c.body[0]->leaves.count < c.body[1]->leaves.count || frame < FRAMES, c.seed);
+    CHECK_SEED(c.still_there > 0, c.seed);
+    for (b = 0; b < c.count; b++) gx_body_destroy(c.body[b]);
+    wl_free(&w);
+}
+END_TEST
+
 /* ---- memory ---- */
 
 typedef struct memory {
@@ -398,7 +571,7 @@ static void never_fail(memory *m) {
     m->from_then_on = m->failed = 0;
 }
 
-static gx_body *worn_body(memory *m, strokes *s, uint32_t strokes) {
+static gx_body *worn_body(memory *m, strokes *s, uint32_t count) {
     gx_allocator a;
     gx_body *body = NULL;
     gx_skin skin;
@@ -412,7 +585,7 @@ static gx_body *worn_body(memory *m, strokes *s, uint32_t strokes) {
     s->total = 20;
     never_fail(m);
     ck_assert_int_eq(strokes_body(s->side, &a, NULL, &body), GX_OK);
-    for (i = 0; i < strokes; i++) {
+    for (i = 0; i < count; i++) {
         ck_assert_int_eq(strokes_apply(s, body, i, NULL), GX_OK);
         ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
     }
@@ -600,6 +773,7 @@ int main(void) {
     tcase_set_timeout(tests, 240);
     tcase_add_loop_test(tests, settled_bodies_are_the_same, 0, 200 / FEWER);
     tcase_add_loop_test(tests, copies_go_on, 0, 20 / FEWER);
+    tcase_add_loop_test(tests, blades_go_on, 0, 40 / FEWER);
     tcase_add_loop_test(tests, memory_runs_out, 0, 2);
     tcase_add_loop_test(tests, strokes_wear_nothing_out, 0, STROKES_KINDS);
     tcase_add_test(tests, names_begin_anew);
