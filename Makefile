@@ -60,6 +60,7 @@ help:
 	@echo "  frames         frames with a cut beside frames without one"
 	@echo "  skin           the visual surface: moved in each frame, updated after a cut"
 	@echo "  blade          blades in space through bodies that move: pieces, distance to known sheets, cost"
+	@echo "  strokes        thousands of strokes that take material: memory and time beside a body cut at once"
 	@echo "make amalgam     $(BUILD)/gxfem_all.h: the four headers in one"
 	@echo "make check-amalgam  compile tests of that header"
 	@echo "make install     the headers and gxfem.pc, for pkg-config; PREFIX=/usr/local, DESTDIR= (a stage)"
@@ -257,7 +258,7 @@ check-wasm:
 
 # ---- benches. Only their CSV goes to stdout. BENCH=--small: smaller ones, with a folder of their own for tables and charts
 
-benches = quadrature stepping space table2 conditioning failure scaling kernel smallest solver violent accuracy drift frames skin blade soak
+benches = quadrature stepping space table2 conditioning failure scaling kernel smallest solver violent accuracy drift frames skin blade strokes soak
 small = $(filter --small,$(BENCH))
 tables = $(BUILD)/bench$(if $(small),/small)
 # The compiler's own default: with -std=c99 gcc fuses no multiplications with additions, whatever -march says.
@@ -280,7 +281,7 @@ $(BUILD)/bench/solver: bench/solver.c $(wildcard bench/*.h) $(headers)
 	    $(shell pkg-config --libs CHOLMOD 2>/dev/null || echo -lcholmod) -lm
 
 # Frames are measured as users build: their table stands in the README.
-$(BUILD)/bench/frames $(BUILD)/bench/blade: BENCH_CFLAGS = -O2
+$(BUILD)/bench/frames $(BUILD)/bench/blade $(BUILD)/bench/strokes: BENCH_CFLAGS = -O2
 
 bench-solver:
 	@sh tests/install.sh bench >&2

@@ -9,7 +9,7 @@ tables=$1
 page=$2
 readme=$3
 
-for bench in quadrature stepping conditioning failure table2 table2_ratios scaling kernel smallest solver product violent accuracy drift frames skin blade; do
+for bench in quadrature stepping conditioning failure table2 table2_ratios scaling kernel smallest solver product violent accuracy drift frames skin blade strokes; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$(echo $bench | sed 's/_ratios//; s/product/solver/')" >&2; exit 2; }
 done
 for name in why speed; do
@@ -394,6 +394,13 @@ solver's model and multigrid where it has touched them, $(range frames 8 1) time
     echo
     blade
     echo
+    echo "## Thousands of strokes"
+    echo
+    text "Blocks of cubes, six elements each, from which tools take material. Freshly cut: a body cut at once by the union of all \
+tools; a carving refines its tools, so that no body is like it. us: for each element that a stroke touches."
+    echo
+    table strokes "| scene | cubes along an edge | strokes | kB | at most | freshly cut | leaves | freshly cut | same topology | us, first tenth | last tenth | freshly cut | median stroke, ms | longest | compactions | longest of these, ms |"
+    echo
     echo "## Booleans of closed surfaces"
     echo
     text "\"+\": evaluated after each operand, \"?\": surfaces that are not vouched for as simple. Times include components and \
@@ -427,7 +434,7 @@ judges."
     echo
     echo "| file in \`bench/\` | what it is |"
     echo "| --- | --- |"
-    echo "| \`quadrature.c\`, \`stepping.c\`, \`space.c\`, \`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`, \`solver.c\`, \`violent.c\`, \`kernel.c\`, \`smallest.sh\`, \`accuracy.c\`, \`drift.c\`, \`frames.c\`, \`skin.c\`, \`blade.c\` | the sections above, in this order but for Booleans |"
+    echo "| \`quadrature.c\`, \`stepping.c\`, \`space.c\`, \`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`, \`solver.c\`, \`violent.c\`, \`kernel.c\`, \`smallest.sh\`, \`accuracy.c\`, \`drift.c\`, \`frames.c\`, \`skin.c\`, \`blade.c\`, \`strokes.c\` | the sections above, in this order but for Booleans |"
     echo "| \`soak.c\` | 100,000 steps of bodies that are cut, kicked and dropped: no copy may run away |"
     echo "| \`rxfem.h\`, \`rxfem_rules.h\`, \`rxfem_model.h\` | RXFEM (Koschier, Bender, Thuerey 2017), written for the bench |"
     echo "| \`vna.h\`, \`literal.h\` | virtual nodes (element duplication); GXFEM's Algorithm 1 as published, a Boolean for each subdomain |"

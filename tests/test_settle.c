@@ -289,16 +289,19 @@ static workload twins_mesh(void) {
 START_TEST(settled_bodies_are_the_same) {
     twins t;
     gx_anchor anchors[ANCHORS];
+    gx_blade_desc desc;
     size_t count, k;
     int i, round;
     workload w;
     memset(&t, 0, sizeof t);
+    memset(&desc, 0, sizeof desc);
+    desc.starts_inside = 1;
     t.seed = (uint64_t)_i + 1;
     random_seed(t.seed);
     w = twins_mesh();
     for (i = 0; i < 2; i++) {
         t.body[i] = body_of(&w);
-        ck_assert_int_eq(gx_blade_create(t.body[i], NULL, &t.blade[i], NULL), GX_OK);
+        ck_assert_int_eq(gx_blade_create(t.body[i], &desc, &t.blade[i], NULL), GX_OK);
     }
     count = make_anchors(&t, anchors);
     for (round = 0; round < 6; round++) {
@@ -478,12 +481,13 @@ static void expect_same_hits(crew *c) {
         double x[3][3];
         const gx_result result = gx_hit_anchor(c->body[1], &c->hits[1][i], &anchor, NULL);
         c->still_there += result == GX_OK;
-        for (b = 0; b < c->count; b++) {
+        for (b = 0; b < c->count; b += 2) {
             CHECK_SEED(gx_hit_anchor(c->body[b], &c->hits[b][i], &anchor, NULL) == result, c->seed);
             if (result == GX_OK)
                 ck_assert_int_eq(gx_body_anchor_point(c->body[b], &anchor, NULL, x[b], NULL), GX_OK);
-            for (k = 0; k < 3 && result == GX_OK; k++) CHECK_SEED(fabs(x[b][k] - x[0][k]) < 1e-9, c->seed);
         }
+        for (k = 0; k < 3 && result == GX_OK && c->count == 3; k++)
+            CHECK_SEED(!(x[2][k] < x[0][k]) && !(x[2][k] > x[0][k]), c->seed);
     }
 }
 
@@ -492,7 +496,10 @@ static void expect_same_crew(crew *c) {
     size_t blade;
     int b, k;
     expect_same(c->body[0], c->body[1], c->seed);
-    if (c->count == 3) CHECK_SEED(gx_body_state_hash(c->body[2]) == gx_body_state_hash(c->body[0]), c->seed);
+    if (c->count == 3) {
+        (void)view_of(c->body[2]); /* as of the others: it gives fragments their ids */
+        CHECK_SEED(gx_body_state_hash(c->body[2]) == gx_body_state_hash(c->body[0]), c->seed);
+    }
     for (blade = 0; blade < 2; blade++) {
         for (b = 0; b < c->count; b++) sum_contacts(c->body[b], blade, sum[b]);
         for (k = 0; k < 6; k++) {
@@ -523,7 +530,7 @@ START_TEST(blades_go_on) {
         hit_places(&c);
         move_blade(&c, 0, -0.3 + 0.22 * frame, 0.93);
         if (frame > 2) move_blade(&c, 1, -1 + 0.22 * frame, 0.87);
-        if (random_below(2)) remove_some(&c, &w);
+        if (frame == 1 || random_below(2)) remove_some(&c, &w);
         expect_same_hits(&c);
         if (view_of(c.body[1]).cell_count == 0) break;
         if (random_below(2)) tear_apart(&c, random_real(0, 0.15));
