@@ -11021,16 +11021,35 @@ static gx_result gxp_begin_outside(gx_blade *blade) {
     return gxp_copy_front(blade->body, &blade->front, &blade->samples);
 }
 
+/* The place on the sheet at which the edge has left it: the nearest one, but for the rim of the sheet, which a track
+   would miss. way: from there to where the edge is. */
+static void gxp_leave_sheet(const gxp_front_list *front, const gxp_points *sheet, const double rest[3], double inward,
+                            double nearest[3], double way[3]) {
+    double direction[3], at[3], off;
+    gxp_relation r;
+    int k;
+    gxp_near_sheet(sheet, rest, nearest);
+    gxp_near_front(front, nearest, &r, at);
+    if (r.distance < inward && gxp_front_direction(front, &r, direction) && gxp_unit(direction, direction)) {
+        for (k = 0; k < 3; k++) at[k] -= inward * direction[k];
+        gxp_near_sheet(sheet, at, nearest);
+        for (k = 0; k < 3; k++) way[k] = rest[k] - nearest[k];
+        off = gxp_dot(way, direction);
+        for (k = 0; k < 3; k++) way[k] -= off * direction[k];
+        return;
+    }
+    for (k = 0; k < 3; k++) way[k] = rest[k] - nearest[k];
+}
+
 /* A place of a track begins on the other side of the sheet from where the edge has left it. side: the way that the
    farthest place has left */
 static void gxp_cross_sheet(const gx_blade *blade, const double side[3], gxp_front_vertex *v) {
     double nearest[3], way[3];
-    const double distance = gxp_near_sheet(&blade->sheet, v->rest, nearest),
-                 across = fmax(2 * blade->tolerance, GXP_CROSSING * v->size);
+    const double across = fmax(2 * blade->tolerance, GXP_CROSSING * v->size);
     int k;
+    gxp_leave_sheet(&blade->front, &blade->sheet, v->rest, across, nearest, way);
     memcpy(v->ahead, side, sizeof v->ahead);
-    for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
-    if (distance > 2 * blade->tolerance) gxp_unit(way, v->ahead);
+    if (gxp_dot(way, way) > 4 * blade->tolerance * blade->tolerance) gxp_unit(way, v->ahead);
     for (k = 0; k < 3; k++) v->rest[k] = nearest[k] - across * v->ahead[k];
 }
 
@@ -11042,29 +11061,29 @@ static gx_result gxp_begin_track(gx_blade *blade, int goes_on) {
     const gxp_relation *r = blade->relations;
     double most = 0, side[3] = {0, 0, 0};
     uint32_t i;
-    int k;
     gx_result result = GX_OK;
     for (i = 0; i < samples->count; i++) {
         const gxp_front_vertex *v = &samples->data[i];
         double nearest[3], way[3];
         const double distance = gxp_near_sheet(&blade->sheet, v->rest, nearest);
-        for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
-        if (!(v->distance > 0) && distance > most && gxp_unit(way, side)) most = distance;
+        if (v->distance > 0 || !(distance > most)) continue;
+        gxp_leave_sheet(&blade->front, &blade->sheet, v->rest, GXP_CROSSING * v->size, nearest, way);
+        if (gxp_unit(way, side)) most = distance;
     }
-    blade->front.count = 0;
+    blade->advanced.count = 0;
     for (i = 0; i < samples->count && result == GX_OK; i++) {
         const int rim = goes_on && r[i].ahead;
         gxp_front_vertex v = samples->data[i], crossing = v;
         gxp_cross_sheet(blade, side, &crossing);
         crossing.soft = v.soft = 0;
         if (rim && i > 0 && !r[i - 1].ahead && !samples->data[i - 1].gap)
-            result = gxp_push_vertex(blade->body, &blade->front, &crossing);
-        if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->front, rim ? &v : &crossing);
+            result = gxp_push_vertex(blade->body, &blade->advanced, &crossing);
+        if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->advanced, rim ? &v : &crossing);
         if (result == GX_OK && rim && i + 1 < samples->count && !r[i + 1].ahead && !v.gap)
-            result = gxp_push_vertex(blade->body, &blade->front, &crossing);
+            result = gxp_push_vertex(blade->body, &blade->advanced, &crossing);
     }
     blade->path.count = blade->latest.count = 0;
-    return result;
+    return result == GX_OK ? gxp_copy_front(blade->body, &blade->front, &blade->advanced) : result;
 }
 
 /* Remembers where the edge is, if it has come far enough since it was remembered last. */
@@ -11094,6 +11113,27 @@ static int gxp_has_left(const gx_blade *blade) {
     return gxp_is_away(blade);
 }
 
+/* Cuts what waits, and advances the front from there. */
+static gx_result gxp_cut_waiting(gx_blade *blade, gxp_advance *move, gx_blade_report *report) {
+    gx_result result = gxp_copy_front(blade->body, &blade->advanced, &blade->latest);
+    if (result == GX_OK) result = gxp_zip(blade, &blade->front, &blade->advanced);
+    if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
+    return result == GX_OK ? gxp_advance_front(blade, move) : result;
+}
+
+/* The edge has left the cut through its side: cuts as far as the front has come, and begins a track. */
+static gx_result gxp_leave_cut(gx_blade *blade, gxp_advance *move, gx_blade_report *report) {
+    gx_result result = GX_OK;
+    if (blade->latest.count > 0) result = gxp_cut_waiting(blade, move, report);
+    if (result != GX_OK || !move->strays) return result;
+    if (move->most > 0) {
+        result = gxp_zip(blade, &blade->front, &blade->advanced);
+        if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
+    }
+    if (result == GX_OK) result = gxp_begin_track(blade, move->most > 0);
+    return result == GX_OK ? gxp_advance_front(blade, move) : result;
+}
+
 /* Advances the front of the layer at work to the samples: cuts what must be cut, and lets the rest wait. finish: cuts
    all. A front that has left the layer is no more. */
 static gx_result gxp_follow_edge(gx_blade *blade, int finish, gx_blade_report *report) {
@@ -11104,21 +11144,11 @@ static gx_result gxp_follow_edge(gx_blade *blade, int finish, gx_blade_report *r
         return GX_OK;
     }
     if (result == GX_OK && move.is_back) return gxp_is_away(blade) ? gxp_begin_outside(blade) : GX_OK;
-    if (result == GX_OK && move.strays && !finish) {
-        if (move.most > 0) {
-            result = gxp_zip(blade, &blade->front, &blade->advanced);
-            if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
-        }
-        if (result == GX_OK) result = gxp_begin_track(blade, move.most > 0);
-        if (result == GX_OK) result = gxp_advance_front(blade, &move);
-    }
+    if (result == GX_OK && move.strays && !finish) result = gxp_leave_cut(blade, &move, report);
     if (result != GX_OK || !(move.most > 0)) return result;
     result = gxp_zip(blade, &blade->front, &blade->advanced);
     if (result == GX_OK && blade->latest.count > 0 && (gxp_is_away(blade) || gxp_bend(blade) > blade->tolerance)) {
-        result = gxp_zip(blade, &blade->front, &blade->latest);
-        if (result == GX_OK) result = gxp_copy_front(blade->body, &blade->advanced, &blade->latest);
-        if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
-        if (result == GX_OK) result = gxp_advance_front(blade, &move);
+        result = gxp_cut_waiting(blade, &move, report);
         if (result == GX_OK) result = gxp_zip(blade, &blade->front, &blade->advanced);
     }
     if (result != GX_OK || !(move.most > 0)) return result;
