@@ -1201,7 +1201,7 @@ struct gx_blade {
     gx_surface *surfaces;
     uint32_t surface_capacity;
     /* of one layer at a move */
-    gxp_front_list front, latest, seen, samples, advanced;
+    gxp_front_list front, latest, seen, samples, advanced, crossings;
     gxp_front_list strip, cut; /* 3 for each triangle: of one strip, of all */
     gxp_points path, sheet;
     /* the edge at a move, with a point wherever a layer had seen it */
@@ -11053,12 +11053,10 @@ static void gxp_cross_sheet(const gx_blade *blade, const double side[3], gxp_fro
     for (k = 0; k < 3; k++) v->rest[k] = nearest[k] - across * v->ahead[k];
 }
 
-/* The edge has left its cut through the side: the front begins anew there, a little on the other side of the sheet, so
-   that the next strip crosses it. Places still in the cut cross it the way that the farthest one has left. goes_on:
-   places that were ahead are on the sheet's rim, and the front goes on there. */
-static gx_result gxp_begin_track(gx_blade *blade, int goes_on) {
+/* Lists in blade.crossings where a track would begin at each of the samples. Places still in the cut cross the sheet the
+   way that the farthest one has left. */
+static gx_result gxp_list_crossings(gx_blade *blade) {
     const gxp_front_list *samples = &blade->samples;
-    const gxp_relation *r = blade->relations;
     double most = 0, side[3] = {0, 0, 0};
     uint32_t i;
     gx_result result = GX_OK;
@@ -11070,20 +11068,58 @@ static gx_result gxp_begin_track(gx_blade *blade, int goes_on) {
         gxp_leave_sheet(&blade->front, &blade->sheet, v->rest, GXP_CROSSING * v->size, nearest, way);
         if (gxp_unit(way, side)) most = distance;
     }
-    blade->advanced.count = 0;
+    blade->crossings.count = 0;
     for (i = 0; i < samples->count && result == GX_OK; i++) {
-        const int rim = goes_on && r[i].ahead;
-        gxp_front_vertex v = samples->data[i], crossing = v;
-        gxp_cross_sheet(blade, side, &crossing);
-        crossing.soft = v.soft = 0;
-        if (rim && i > 0 && !r[i - 1].ahead && !samples->data[i - 1].gap)
-            result = gxp_push_vertex(blade->body, &blade->advanced, &crossing);
-        if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->advanced, rim ? &v : &crossing);
-        if (result == GX_OK && rim && i + 1 < samples->count && !r[i + 1].ahead && !v.gap)
-            result = gxp_push_vertex(blade->body, &blade->advanced, &crossing);
+        gxp_front_vertex v = samples->data[i];
+        gxp_cross_sheet(blade, side, &v);
+        v.soft = 0;
+        result = gxp_push_vertex(blade->body, &blade->crossings, &v);
     }
-    blade->path.count = blade->latest.count = 0;
-    return result == GX_OK ? gxp_copy_front(blade->body, &blade->front, &blade->advanced) : result;
+    return result;
+}
+
+/* Appends the crossing of a sample to blade.latest, unless it is not next to one that is ahead. */
+static gx_result gxp_push_crossing(gx_blade *blade, uint32_t index) {
+    gxp_front_vertex v = blade->crossings.data[index];
+    v.gap = 0;
+    return blade->relations[index].ahead ? GX_OK : gxp_push_vertex(blade->body, &blade->latest, &v);
+}
+
+/* Inserts the crossings next to places that are ahead into blade.advanced: the strip up to the front goes on to where
+   the track begins. */
+static gx_result gxp_turn_front(gx_blade *blade) {
+    const gxp_front_list *samples = &blade->samples;
+    uint32_t i, n = 0;
+    gx_result result = GX_OK;
+    blade->latest.count = 0;
+    for (i = 0; i < samples->count && result == GX_OK; i++) {
+        const gxp_front_vertex *v = &samples->data[i];
+        if (!blade->relations[i].ahead) continue;
+        while (!gxp_same_rest(&blade->advanced.data[n], v) && result == GX_OK)
+            result = gxp_push_vertex(blade->body, &blade->latest, &blade->advanced.data[n++]);
+        if (i > 0 && !v[-1].gap && result == GX_OK) result = gxp_push_crossing(blade, i - 1);
+        if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->latest, &blade->advanced.data[n++]);
+        if (i + 1 < samples->count && !v->gap && result == GX_OK) result = gxp_push_crossing(blade, i + 1);
+    }
+    if (result == GX_OK)
+        result = gxp_append_front(blade->body, &blade->latest, blade->advanced.data + n, blade->advanced.count - n);
+    if (result == GX_OK) result = gxp_copy_front(blade->body, &blade->advanced, &blade->latest);
+    blade->latest.count = 0;
+    return result;
+}
+
+/* The edge has left its cut through the side: the front begins anew there, a little on the other side of the sheet, so
+   that the next strip crosses it. Places that were ahead are on the sheet's rim, and the front goes on there. */
+static gx_result gxp_begin_track(gx_blade *blade) {
+    uint32_t i;
+    gx_result result = GX_OK;
+    blade->front.count = blade->path.count = blade->latest.count = 0;
+    for (i = 0; i < blade->samples.count && result == GX_OK; i++) {
+        gxp_front_vertex v = blade->relations[i].ahead ? blade->samples.data[i] : blade->crossings.data[i];
+        v.soft = 0;
+        result = gxp_push_vertex(blade->body, &blade->front, &v);
+    }
+    return result;
 }
 
 /* Remembers where the edge is, if it has come far enough since it was remembered last. */
@@ -11126,11 +11162,11 @@ static gx_result gxp_leave_cut(gx_blade *blade, gxp_advance *move, gx_blade_repo
     gx_result result = GX_OK;
     if (blade->latest.count > 0) result = gxp_cut_waiting(blade, move, report);
     if (result != GX_OK || !move->strays) return result;
-    if (move->most > 0) {
-        result = gxp_zip(blade, &blade->front, &blade->advanced);
-        if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
-    }
-    if (result == GX_OK) result = gxp_begin_track(blade, move->most > 0);
+    result = gxp_list_crossings(blade);
+    if (result == GX_OK) result = gxp_turn_front(blade);
+    if (result == GX_OK) result = gxp_zip(blade, &blade->front, &blade->advanced);
+    if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
+    if (result == GX_OK) result = gxp_begin_track(blade);
     return result == GX_OK ? gxp_advance_front(blade, move) : result;
 }
 
@@ -12139,6 +12175,7 @@ static void gxp_release_blade(gx_blade *b) {
     gxp_release_front(body, &b->seen);
     gxp_release_front(body, &b->samples);
     gxp_release_front(body, &b->advanced);
+    gxp_release_front(body, &b->crossings);
     gxp_release_front(body, &b->strip);
     gxp_release_front(body, &b->cut);
     gxp_release_front(body, &b->owned);
