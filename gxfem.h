@@ -11111,12 +11111,14 @@ static gx_result gxp_turn_front(gx_blade *blade) {
 /* The edge has left its cut through the side: the front begins anew there, a little on the other side of the sheet, so
    that the next strip crosses it. Places that were ahead are on the sheet's rim, and the front goes on there. */
 static gx_result gxp_begin_track(gx_blade *blade) {
+    const gxp_relation *r = blade->relations;
+    const uint32_t count = blade->samples.count;
     uint32_t i;
     gx_result result = GX_OK;
     blade->front.count = blade->path.count = blade->latest.count = 0;
-    for (i = 0; i < blade->samples.count && result == GX_OK; i++) {
-        gxp_front_vertex v = blade->relations[i].ahead ? blade->samples.data[i] : blade->crossings.data[i];
-        v.soft = 0;
+    for (i = 0; i < count && result == GX_OK; i++) {
+        gxp_front_vertex v = r[i].ahead ? blade->samples.data[i] : blade->crossings.data[i];
+        if (i == 0 || !r[i - 1].ahead || i + 1 == count || !r[i + 1].ahead) v.soft = 0;
         result = gxp_push_vertex(blade->body, &blade->front, &v);
     }
     return result;
