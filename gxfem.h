@@ -1167,6 +1167,7 @@ typedef struct gxp_relation {
     uint32_t segment; /* of the front, the nearest */
     uint8_t ahead;    /* 1: the front advances there */
     uint8_t strays;   /* 1: the edge has left its cut through the side */
+    uint8_t doubtful; /* 1: ahead only because the cut's sheet is in the air there */
 } gxp_relation;
 
 /* A part of a segment of the edge that is in a cell */
@@ -10734,7 +10735,7 @@ static gx_result gxp_judge_behind(gx_blade *blade, const gxp_front_vertex *v, gx
     if (r->distance <= 2 * blade->tolerance || blade->sheet.count == 0) return GX_OK;
     if (gxp_near_sheet(&blade->sheet, v->rest, nearest) <= width) {
         result = gxp_find_rest_cell(blade->body, nearest, &slot);
-        r->ahead = slot == GXP_NONE; /* the sheet is in the air there: nothing is cut yet */
+        r->ahead = r->doubtful = slot == GXP_NONE; /* the sheet is in the air there: nothing is cut yet, or next to it */
         return result;
     }
     gxp_near_front(&blade->front, nearest, &of_sheet, at);
@@ -10839,6 +10840,15 @@ static gx_result gxp_came_back(gx_blade *blade, int *is_back) {
     return result;
 }
 
+/* Is a place that may be ahead next to one that is in the material, and behind for sure? */
+static int gxp_is_beside_behind(const gxp_front_list *samples, const gxp_relation *r, uint32_t index) {
+    uint32_t i;
+    for (i = index; i > 0 && r[i].doubtful && !samples->data[i - 1].gap;) i--;
+    if (!r[i].doubtful && !r[i].ahead && !(samples->data[i].distance > 0)) return 1;
+    for (i = index; i + 1 < samples->count && r[i].doubtful && !samples->data[i].gap;) i++;
+    return !r[i].doubtful && !r[i].ahead && !(samples->data[i].distance > 0);
+}
+
 /* Lists in blade.advanced the front as far as the samples have come: these where they are ahead, else its own
    vertices. */
 static gx_result gxp_advance_front(gx_blade *blade, gxp_advance *move) {
@@ -10858,6 +10868,10 @@ static gx_result gxp_advance_front(gx_blade *blade, gxp_advance *move) {
         const gxp_front_vertex *v = &samples->data[i];
         result = gxp_relate(blade, v, &r[i]);
         if (in_air) r[i].ahead = !move->is_back && r[i].distance > 0;
+    }
+    for (i = 0; i < samples->count && result == GX_OK; i++) {
+        const gxp_front_vertex *v = &samples->data[i];
+        if (r[i].doubtful && gxp_is_beside_behind(samples, r, i)) r[i].ahead = 0;
         if (r[i].ahead && (in_air || !(v->distance > 0))) move->most = fmax(move->most, r[i].distance);
         move->strays |= r[i].strays;
     }
@@ -11525,18 +11539,18 @@ static gx_result gxp_trim_front(gx_blade *blade, uint32_t layer, gxp_front_list 
     return GX_OK;
 }
 
-/* Keeps of the path what is near to the front. */
-static void gxp_trim_path(gx_blade *blade) {
+/* Keeps of the path what is in the layer. */
+static gx_result gxp_trim_path(gx_blade *blade, uint32_t layer) {
     uint32_t i, n = 0;
-    for (i = 0; i < blade->path.count; i++) {
+    int inside;
+    gx_result result = GX_OK;
+    for (i = 0; i < blade->path.count && result == GX_OK; i++) {
         const double *x = blade->path.data + 3 * (size_t)i;
-        gxp_relation r;
-        double nearest[3];
-        gxp_near_front(&blade->front, x, &r, nearest);
-        if (r.distance > blade->front.data[r.segment].size + blade->min_advance) continue;
-        memmove(blade->path.data + 3 * (size_t)n++, x, 3 * sizeof *x);
+        result = gxp_is_in_layer(blade, layer, x, &inside);
+        if (inside) memmove(blade->path.data + 3 * (size_t)n++, x, 3 * sizeof *x);
     }
     blade->path.count = n;
+    return result;
 }
 
 /* One of several heirs of a front keeps its own part of it. */
@@ -11547,8 +11561,7 @@ static gx_result gxp_take_part(gx_blade *blade, uint32_t layer) {
     if (!shared) return GX_OK;
     result = gxp_trim_front(blade, layer, &blade->front);
     if (result == GX_OK) result = gxp_trim_front(blade, layer, &blade->latest);
-    gxp_trim_path(blade);
-    return result;
+    return result == GX_OK ? gxp_trim_path(blade, layer) : result;
 }
 
 /* Makes a new layer's front ready for a step: that of the layers that flow into it, and where none is, the edge of the
