@@ -10735,7 +10735,7 @@ static gx_result gxp_judge_behind(gx_blade *blade, const gxp_front_vertex *v, gx
     if (r->distance <= 2 * blade->tolerance || blade->sheet.count == 0) return GX_OK;
     if (gxp_near_sheet(&blade->sheet, v->rest, nearest) <= width) {
         result = gxp_find_rest_cell(blade->body, nearest, &slot);
-        r->ahead = r->doubtful = slot == GXP_NONE; /* the sheet is in the air there: nothing is cut yet, or next to it */
+        r->ahead = r->doubtful = slot == GXP_NONE; /* the sheet is in the air there: nothing is cut, at least there */
         return result;
     }
     gxp_near_front(&blade->front, nearest, &of_sheet, at);
@@ -11067,8 +11067,8 @@ static void gxp_cross_sheet(const gx_blade *blade, const double side[3], gxp_fro
     for (k = 0; k < 3; k++) v->rest[k] = nearest[k] - across * v->ahead[k];
 }
 
-/* Lists in blade.crossings where a track would begin at each of the samples. Places still in the cut cross the sheet the
-   way that the farthest one has left. */
+/* Lists in blade.crossings where a track would begin at each of the samples. Places still in the cut cross the sheet
+   the way that the farthest one has left. */
 static gx_result gxp_list_crossings(gx_blade *blade) {
     const gxp_front_list *samples = &blade->samples;
     double most = 0, side[3] = {0, 0, 0};
