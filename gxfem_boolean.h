@@ -460,7 +460,7 @@ typedef struct gxb_complex { /* what is used most comes first: its addresses are
     uint32_t node_count, element_count, face_count, mesh_edge_count;
     uint32_t pool_live, mark_live;        /* words of lists in use, now and at begin */
     uint32_t removed_count, mark_removed; /* removed leaves, now and at begin */
-    uint64_t settled;                     /* items when gxb_complex_compact was called last; 0: never */
+    uint64_t settled;                     /* items when gxb_complex_compact was called last, or at first */
     gxb_label *labels;
     uint32_t label_count, label_capacity;
     /* marked facets, which were labelled or made walls since begin: 2 x facet, + 1 if this made it a wall */
@@ -3259,6 +3259,7 @@ GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator 
     cx->store.allocator = *allocator;
     cx->node_count = (uint32_t)mesh->node_count;
     cx->element_count = (uint32_t)mesh->element_count;
+    cx->settled = mesh->node_count;
     table = (uint32_t *)gxbp_allocate(allocator, gxbp_table_words(mesh->element_count) * sizeof *table);
     cx->elements = table;
     cx->pairs = (gxbp_pairs *)gxbp_allocate(allocator, sizeof *cx->pairs);

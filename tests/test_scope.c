@@ -227,7 +227,7 @@ START_TEST(a_piece_that_the_surface_does_not_touch) {
     view = view_of(body);
     ck_assert_uint_eq(view.fragment_count, 1);
     ck_assert(fabs(view.volume - 3) < 1e-12 || fabs(view.volume - 5) < 1e-12);
-    for (i = 0; i < scope.count; i++) ck_assert_uint_eq(gxp_kept_cell(body, scope.slot[i]), GXP_NONE);
+    for (i = 0; i < scope.count; i++) ck_assert_uint_eq(gxp_kept_cell(body, scope.slot[i]), GXB_NONE);
     /* slots of what is gone stand for nothing, and keep their parents */
     w.surfaces[1].solid = 0;
     add_axis_plane(&w, 1, 0.6);
