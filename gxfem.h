@@ -11404,7 +11404,8 @@ static gx_result gxp_list_scope(gx_blade *blade, uint32_t layer, uint32_t old) {
     for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++) {
         const gxp_close_cell *c = &near->cells[GXP_SECOND(near->order.data[i])];
         if (old != GXP_NONE && gxp_old_layer(blade, c->slot) != old) continue;
-        if (gxp_is_in_reach(c, blade->plates, triangles)) result = gxp_push(blade->body, &blade->scope, blade->body->cells.slot[c->slot]);
+        if (gxp_is_in_reach(c, blade->plates, triangles))
+            result = gxp_push(blade->body, &blade->scope, blade->body->cells.slot[c->slot]);
     }
     return result;
 }

@@ -131,8 +131,7 @@ static void expect_region(gx_body *body, const gx_region *r, const gx_view *view
     if (r->kind != GX_REGION_NODES) in = cells_in(body, &solid);
     for (i = 0; i < view->cell_count; i++)
         for (k = 0; k < 4; k++) {
-            const uint32_t copy = view->cell_copies[4 * i + k],
-                           cell = gxp_cell_of_slot(body, view->cell_slot[i]);
+            const uint32_t copy = view->cell_copies[4 * i + k], cell = gxp_cell_of_slot(body, view->cell_slot[i]);
             int corner = 0;
             if (!node[view->copy_node[copy]] || expected[copy] == 1) continue;
             if (in == NULL) ck_assert_int_eq(gxp_has_corner(body, cell, view->copy_node[copy], &corner), GX_OK);
