@@ -356,7 +356,6 @@ check-all: check
 	@$(MAKE) --no-print-directory check-amalgam
 	@$(MAKE) --no-print-directory check-package
 	@$(MAKE) --no-print-directory sanitize
-	@$(MAKE) --no-print-directory check-settled
 	@for cc in gcc clang; do \
 	    if command -v $$cc >/dev/null; then $(MAKE) --no-print-directory check CC=$$cc BUILD=$(BUILD)/$$cc || exit 1; fi; done
 	@$(MAKE) --no-print-directory flags
