@@ -775,15 +775,17 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("settle");
-    TCase *tests = tcase_create("settle");
+    TCase *tests = tcase_create("settle"), *blades = tcase_create("blades");
     tcase_set_timeout(tests, 240);
+    tcase_set_timeout(blades, 240);
     tcase_add_loop_test(tests, settled_bodies_are_the_same, 0, 200 / FEWER);
     tcase_add_loop_test(tests, copies_go_on, 0, 20 / FEWER);
-    tcase_add_loop_test(tests, blades_go_on, 0, 40 / FEWER);
     tcase_add_loop_test(tests, memory_runs_out, 0, 2);
     tcase_add_loop_test(tests, strokes_wear_nothing_out, 0, STROKES_KINDS);
     tcase_add_test(tests, names_begin_anew);
     tcase_add_test(tests, maps_go_with_their_surfaces);
+    tcase_add_loop_test(blades, blades_go_on, 0, 40 / FEWER);
     suite_add_tcase(suite, tests);
+    suite_add_tcase(suite, blades);
     return run_suite(suite);
 }
