@@ -1134,7 +1134,7 @@ typedef struct gxp_blade_state { /* what lasts from move to move */
 } gxp_blade_state;
 
 typedef struct gxp_close_cell { /* a kept cell around the edge */
-    uint32_t slot, layer;
+    uint32_t cell, layer;
     uint32_t quad, unused;                 /* the first quad in whose box it is */
     double corners[4][3], low[3], high[3]; /* deformed */
     double middle[3], radius;              /* of a ball around the corners */
@@ -1155,7 +1155,7 @@ typedef struct gxp_vicinity {
     gxp_close_cell *cells;
     uint32_t count, capacity;
     uint32_t layer_count;
-    gxp_words of_slot;     /* by slot: index in cells, if that has the slot */
+    gxp_words of_cell;     /* by cell of the body: its index in cells, if it is there */
     gxp_words of_copy;     /* by copy: 1 + rank of the first cell with it; 0 between moves */
     gxp_words quad_start;  /* of each quad: the first rank of its cells */
     gxp_words ranked;      /* indices in cells by quad: layers are numbered and equals ordered by rank */
@@ -1181,7 +1181,7 @@ typedef struct gxp_relation {
 /* A part of a segment of the edge that is in a cell */
 typedef struct gxp_span {
     double low, high; /* shares of the segment */
-    uint32_t slot, segment;
+    uint32_t cell, segment;
     int begins; /* once spans are joined: it does not continue the one before it */
 } gxp_span;
 
@@ -1228,7 +1228,7 @@ struct gx_blade {
     gxp_keys halved;        /* edges of a tool, two vertices each */
     gxp_words divided;      /* triangles of a tool */
     /* of the contacts */
-    gxp_span *spans; /* by segment, low and slot */
+    gxp_span *spans; /* by segment, low and cell */
     uint32_t span_count, span_capacity;
     gxp_keys span_order; /* layer, index in spans */
 };
@@ -1249,7 +1249,7 @@ typedef struct gxp_tree {
     double reach[3];         /* largest |coordinates| at rest */
     int wild;                /* a copy was out of range when the boxes were refitted */
     /* of a call */
-    gxp_words found; /* slots of cells at a point, ascending */
+    gxp_words found; /* cells at a point, ascending */
     gxp_words near;  /* places in mesh.box_elements: of elements near points that are located together */
     gxp_keys order;  /* place on a curve, point */
     gxp_words met;   /* of each box on the way down: the boxes that it meets of those that are walked together */
@@ -8829,12 +8829,12 @@ static uint32_t gxp_wild_copy(gx_body *body) {
 static void gxp_fit_element(const gx_body *body, uint32_t element, gxp_bounds *box) {
     const uint32_t *node = gxb_complex_element_nodes(body->complex, element);
     gxp_bounds own;
-    uint32_t slot;
+    uint32_t cell;
     int k;
     gxp_empty_bounds(box);
-    for (slot = element; slot != GXP_NONE; slot = body->cells.data[slot].next)
-        for (k = 0; k < 4 && body->cells.data[slot].kept; k++) {
-            gxp_copy_bounds(body, node[k], body->cells.data[slot].copies[k], &own);
+    for (cell = element; cell != GXP_NONE; cell = body->cells.data[cell].next)
+        for (k = 0; k < 4 && body->cells.data[cell].kept; k++) {
+            gxp_copy_bounds(body, node[k], body->cells.data[cell].copies[k], &own);
             gxp_add_bounds(box, &own);
         }
 }
@@ -9059,28 +9059,28 @@ static void gxp_cell_bounds(const gx_body *body, const gxp_cell *cell, gxp_bound
 
 typedef struct gxp_box_walk {
     gxp_bounds box;
-    gx_result (*visit)(gx_body *body, void *user, uint32_t slot);
+    gx_result (*visit)(gx_body *body, void *user, uint32_t cell);
     void *user;
 } gxp_box_walk;
 
 static inline gx_result gxp_visit_in_box(gx_body *body, void *user, uint32_t place) {
     const gxp_box_walk *walk = (const gxp_box_walk *)user;
-    uint32_t slot;
+    uint32_t cell;
     gx_result result = GX_OK;
-    for (slot = body->mesh.box_elements[place]; slot != GXP_NONE && result == GX_OK;
-         slot = body->cells.data[slot].next) {
+    for (cell = body->mesh.box_elements[place]; cell != GXP_NONE && result == GX_OK;
+         cell = body->cells.data[cell].next) {
         gxp_bounds box;
-        if (!body->cells.data[slot].kept) continue;
-        gxp_cell_bounds(body, &body->cells.data[slot], &box);
-        if (!(gxp_gap(&box, &walk->box) > 0)) result = walk->visit(body, walk->user, slot);
+        if (!body->cells.data[cell].kept) continue;
+        gxp_cell_bounds(body, &body->cells.data[cell], &box);
+        if (!(gxp_gap(&box, &walk->box) > 0)) result = walk->visit(body, walk->user, cell);
     }
     return result;
 }
 
-/* Calls visit(body, user, slot) for each kept cell whose deformed element's box meets the box, once. visit must not
+/* Calls visit(body, user, cell) for each kept cell whose deformed element's box meets the box, once. visit must not
    change cells. The walk ends with the first error. */
 static gx_result gxp_walk_box(gx_body *body, const gxp_bounds *box,
-                              gx_result (*visit)(gx_body *body, void *user, uint32_t slot), void *user) {
+                              gx_result (*visit)(gx_body *body, void *user, uint32_t cell), void *user) {
     gxp_box_walk walk;
     walk.box = *box;
     walk.visit = visit;
@@ -9090,63 +9090,62 @@ static gx_result gxp_walk_box(gx_body *body, const gxp_bounds *box,
 
 /* Is a leaf of the cell among those below a reference to its element's tree to which the planes lead the pulled-back
    point? From a plane that contains it both sides are followed. */
-static int gxp_leads_to(gx_body *body, gxb_pullback *back, uint32_t reference, uint32_t slot) {
-    const uint32_t element = body->cells.data[slot].element;
+static int gxp_leads_to(gx_body *body, gxb_pullback *back, uint32_t reference, uint32_t cell) {
+    const uint32_t element = body->cells.data[cell].element;
     while (reference & 1) {
         const gxb_node *node = gxb_complex_tree_node(body->complex, reference >> 1);
         const int side = gxb_complex_pullback_side(body->complex, back, element, node->plane);
-        if (side == 0 && gxp_leads_to(body, back, node->child[0], slot)) return 1;
+        if (side == 0 && gxp_leads_to(body, back, node->child[0], cell)) return 1;
         reference = node->child[side <= 0];
     }
-    return gxp_is_kept(body, reference >> 1) && body->leaves.data[reference >> 1].cell == slot;
+    return gxp_is_kept(body, reference >> 1) && body->leaves.data[reference >> 1].cell == cell;
 }
 
 /* Does the cell, or its boundary, contain a point of space? Exact for the corners that gxp_moved_corners gives. */
-static int gxp_contains_point(gx_body *body, uint32_t slot, const double point[3]) {
-    const gxp_cell *cell = &body->cells.data[slot];
+static int gxp_contains_point(gx_body *body, uint32_t cell, const double point[3]) {
+    const gxp_cell *c = &body->cells.data[cell];
     gxb_pullback back;
     double x[12];
-    gxp_moved_corners(body, cell, x);
+    gxp_moved_corners(body, c, x);
     if (gxb_pullback_misses(x, point)) return 0;
     gxb_pullback_set(&back, x, point);
-    return gxb_pullback_contains(&back) &&
-           gxp_leads_to(body, &back, gxb_complex_root(body->complex, cell->element), slot);
+    return gxb_pullback_contains(&back) && gxp_leads_to(body, &back, gxb_complex_root(body->complex, c->element), cell);
 }
 
 typedef struct gxp_point_walk {
     const double *point;
-    gxp_words *slots;
+    gxp_words *cells;
 } gxp_point_walk;
 
-/* Adds a slot to an ascending list. */
-static gx_result gxp_push_in_order(gx_body *body, gxp_words *slots, uint32_t slot) {
-    uint32_t i = slots->count;
-    const gx_result result = gxp_push(body, slots, slot);
+/* Adds a cell to an ascending list. */
+static gx_result gxp_push_in_order(gx_body *body, gxp_words *cells, uint32_t cell) {
+    uint32_t i = cells->count;
+    const gx_result result = gxp_push(body, cells, cell);
     if (result != GX_OK) return result;
-    for (; i > 0 && slots->data[i - 1] > slot; i--) slots->data[i] = slots->data[i - 1];
-    slots->data[i] = slot;
+    for (; i > 0 && cells->data[i - 1] > cell; i--) cells->data[i] = cells->data[i - 1];
+    cells->data[i] = cell;
     return GX_OK;
 }
 
 static gx_result gxp_visit_at_point(gx_body *body, void *user, uint32_t place) {
     const gxp_point_walk *walk = (const gxp_point_walk *)user;
-    uint32_t slot;
+    uint32_t cell;
     gx_result result = GX_OK;
-    for (slot = body->mesh.box_elements[place]; slot != GXP_NONE && result == GX_OK; slot = body->cells.data[slot].next)
-        if (body->cells.data[slot].kept && gxp_contains_point(body, slot, walk->point))
-            result = gxp_push_in_order(body, walk->slots, slot);
+    for (cell = body->mesh.box_elements[place]; cell != GXP_NONE && result == GX_OK; cell = body->cells.data[cell].next)
+        if (body->cells.data[cell].kept && gxp_contains_point(body, cell, walk->point))
+            result = gxp_push_in_order(body, walk->cells, cell);
     return result;
 }
 
-/* Lists the cells that contain a point of space, or have it on their boundary, ascending by slot. point: finite */
-static gx_result gxp_find_cells_at(gx_body *body, const double point[3], gxp_words *slots) {
+/* Lists the cells that contain a point of space, or have it on their boundary, ascending. point: finite */
+static gx_result gxp_find_cells_at(gx_body *body, const double point[3], gxp_words *cells) {
     gxp_point_walk walk;
     gxp_bounds box;
     memcpy(box.low, point, sizeof box.low);
     memcpy(box.high, point, sizeof box.high);
     walk.point = point;
-    walk.slots = slots;
-    slots->count = 0;
+    walk.cells = cells;
+    cells->count = 0;
     return gxp_meet_box(body, &box, gxp_visit_at_point, &walk);
 }
 
@@ -9166,14 +9165,14 @@ static void gxp_weigh_material(const double rest[12], const double weights[4], d
 
 /* Pulls a point of space back by the affine map of a cell's deformed element, also from outside of it. weights: of the
    cell's copies, 1 in sum. At rest the material point is the point, bit by bit. 0: the element is flat. */
-static int gxp_pull_back(const gx_body *body, uint32_t slot, const double point[3], double weights[4],
+static int gxp_pull_back(const gx_body *body, uint32_t cell, const double point[3], double weights[4],
                          double material[3]) {
-    const gxp_cell *cell = &body->cells.data[slot];
+    const gxp_cell *c = &body->cells.data[cell];
     gxb_pullback back;
     double x[12], rest[12];
     int i, still = 1;
-    gxp_moved_corners(body, cell, x);
-    gxp_element_positions(body, cell->element, rest);
+    gxp_moved_corners(body, c, x);
+    gxp_element_positions(body, c->element, rest);
     gxb_pullback_set(&back, x, point);
     if (!gxb_pullback_contains(&back) && gxb_pullback_orient(&back) == 0) return 0;
     gxb_pullback_weights(&back, weights);
@@ -9186,23 +9185,23 @@ static int gxp_pull_back(const gx_body *body, uint32_t slot, const double point[
 }
 
 /* Where a cell has a material point, also from outside of its element */
-static void gxp_image(const gx_body *body, uint32_t slot, const double material[3], double position[3]) {
-    const gxp_cell *cell = &body->cells.data[slot];
+static void gxp_image(const gx_body *body, uint32_t cell, const double material[3], double position[3]) {
+    const gxp_cell *c = &body->cells.data[cell];
     gxb_pullback back;
     double rest[12], weights[4];
-    gxp_element_positions(body, cell->element, rest);
+    gxp_element_positions(body, c->element, rest);
     gxb_pullback_set(&back, rest, material);
     (void)gxb_pullback_contains(&back);
     gxb_pullback_weights(&back, weights);
-    gxp_map_affine(body, cell, weights, material, position);
+    gxp_map_affine(body, c, weights, material, position);
 }
 
 /* The volume of a cell's deformed element as a share of that at rest, below 0 where it is inverted; in doubles */
-static double gxp_stretch(const gx_body *body, uint32_t slot) {
-    const gxp_cell *cell = &body->cells.data[slot];
+static double gxp_stretch(const gx_body *body, uint32_t cell) {
+    const gxp_cell *c = &body->cells.data[cell];
     double x[12];
-    gxp_moved_corners(body, cell, x);
-    return gxi_tet_volume(x) / gxp_element_volume(body, cell->element);
+    gxp_moved_corners(body, c, x);
+    return gxi_tet_volume(x) / gxp_element_volume(body, c->element);
 }
 
 /* >>nearest: the cell that is nearest to a point of space ---------------------------------------------------------- */
@@ -9212,7 +9211,7 @@ static double gxp_stretch(const gx_body *body, uint32_t slot) {
 
 /* The point of a cell's deformed material that is nearest to a point of space outside of it */
 typedef struct gxp_near {
-    uint32_t slot;     /* GXP_NONE: there is none */
+    uint32_t cell;     /* GXP_NONE: there is none */
     double square;     /* of the distance */
     double weights[4]; /* of the cell's copies: 0 or more, 1 in sum */
 } gxp_near;
@@ -9220,7 +9219,7 @@ typedef struct gxp_near {
 typedef struct gxp_near_walk {
     gxp_walk walk;
     const double *point;
-    int (*admits)(void *user, uint32_t slot); /* NULL: all cells are admitted */
+    int (*admits)(void *user, uint32_t cell); /* NULL: all cells are admitted */
     void *user;
     gxp_near near;
 } gxp_near_walk;
@@ -9305,15 +9304,15 @@ static double gxp_near_triangle(double p[3][3], double limit, double share[3]) {
 }
 
 /* Compares the nearest point of a triangle with what was found before. p: its corners less the point; lambda: their
-   coordinates in the cell's element. Of equally near cells the one with the lowest slot stays. */
-static void gxp_try_triangle(gxp_near_walk *own, uint32_t slot, double p[3][3], const double *const lambda[3]) {
+   coordinates in the cell's element. Of equally near cells the first one stays. */
+static void gxp_try_triangle(gxp_near_walk *own, uint32_t cell, double p[3][3], const double *const lambda[3]) {
     double share[3] = {0, 0, 0};
     const double square = gxp_near_triangle(p, own->walk.limit, share);
     int n;
     if (square > own->walk.limit ||
-        (own->near.slot != GXP_NONE && !(square < own->walk.limit) && slot >= own->near.slot))
+        (own->near.cell != GXP_NONE && !(square < own->walk.limit) && cell >= own->near.cell))
         return;
-    own->near.slot = slot;
+    own->near.cell = cell;
     own->near.square = own->walk.limit = square;
     for (n = 0; n < 4; n++)
         own->near.weights[n] = share[0] * lambda[0][n] + share[1] * lambda[1][n] + share[2] * lambda[2][n];
@@ -9335,7 +9334,7 @@ static int gxp_is_beside(double p[3][3], const double x[3]) {
 
 /* Tries the faces of an element that is all its cell's, but those that hide behind it. x: its moved corners less the
    point */
-static void gxp_try_faces(gxp_near_walk *own, uint32_t slot, double x[4][3]) {
+static void gxp_try_faces(gxp_near_walk *own, uint32_t cell, double x[4][3]) {
     static const double corner[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
     int k, i;
     for (k = 0; k < 4; k++) {
@@ -9345,38 +9344,38 @@ static void gxp_try_faces(gxp_near_walk *own, uint32_t slot, double x[4][3]) {
             lambda[i] = corner[gxp_outward[k][i]];
             memcpy(p[i], x[gxp_outward[k][i]], sizeof p[i]);
         }
-        if (!gxp_is_beside(p, x[k])) gxp_try_triangle(own, slot, p, lambda);
+        if (!gxp_is_beside(p, x[k])) gxp_try_triangle(own, cell, p, lambda);
     }
 }
 
 /* Adds the facets that bound a cell to the boundary, which has no triangles. Facets with the cell on both sides are
    left out: what is outside of the cell is nearer to others. */
-static gx_result gxp_bound_cell(gx_body *body, uint32_t slot) {
+static gx_result gxp_bound_cell(gx_body *body, uint32_t cell) {
     gxb_complex *cx = body->complex;
     uint32_t leaf, first, count, i;
     gx_result result = GX_OK;
-    for (leaf = body->cells.data[slot].first_leaf; leaf != GXP_NONE && result == GX_OK;
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
          leaf = body->leaves.data[leaf].next) {
         result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
         for (i = 0; i < count && result == GX_OK; i++) {
             const uint32_t facet = gxp_item(cx, first + i);
             const gxb_facet *f = gxb_complex_facet(cx, facet);
             const uint32_t other = f->leaf[f->leaf[0] == leaf];
-            if (gxp_is_kept(body, other) && body->leaves.data[other].cell == slot) continue;
-            result = gxp_add_boundary_facet(body, body->cells.data[slot].element, facet, 0);
+            if (gxp_is_kept(body, other) && body->leaves.data[other].cell == cell) continue;
+            result = gxp_add_boundary_facet(body, body->cells.data[cell].element, facet, 0);
         }
     }
     return result;
 }
 
 /* Tries the facets that bound a cell of a divided element. */
-static gx_result gxp_try_facets(gx_body *body, gxp_near_walk *own, uint32_t slot, double x[4][3]) {
+static gx_result gxp_try_facets(gx_body *body, gxp_near_walk *own, uint32_t cell, double x[4][3]) {
     const gxp_boundary *boundary = &body->scratch.boundary;
     uint32_t i;
     int k, j;
     gx_result result;
     gxp_clear_boundary(body, 1);
-    result = gxp_bound_cell(body, slot);
+    result = gxp_bound_cell(body, cell);
     for (i = 0; i < boundary->triangles.count && result == GX_OK; i += 3) {
         const double *lambda[3];
         double p[3][3];
@@ -9384,7 +9383,7 @@ static gx_result gxp_try_facets(gx_body *body, gxp_near_walk *own, uint32_t slot
             const double *l = lambda[k] = boundary->lambdas + 4 * (size_t)boundary->triangles.data[i + (uint32_t)k];
             for (j = 0; j < 3; j++) p[k][j] = l[0] * x[0][j] + l[1] * x[1][j] + l[2] * x[2][j] + l[3] * x[3][j];
         }
-        gxp_try_triangle(own, slot, p, lambda);
+        gxp_try_triangle(own, cell, p, lambda);
     }
     return result;
 }
@@ -9392,29 +9391,29 @@ static gx_result gxp_try_facets(gx_body *body, gxp_near_walk *own, uint32_t slot
 static gx_result gxp_visit_near(gx_body *body, gxp_walk *walk, uint32_t element) {
     gxp_near_walk *own = (gxp_near_walk *)(void *)walk;
     const int divided = (int)(gxb_complex_root(body->complex, element) & 1);
-    uint32_t slot;
+    uint32_t cell;
     gx_result result = GX_OK;
-    for (slot = element; slot != GXP_NONE && result == GX_OK; slot = body->cells.data[slot].next) {
-        const gxp_cell *cell = &body->cells.data[slot];
+    for (cell = element; cell != GXP_NONE && result == GX_OK; cell = body->cells.data[cell].next) {
+        const gxp_cell *c = &body->cells.data[cell];
         double x[4][3];
         gxp_bounds box;
-        if (!cell->kept || (own->admits != NULL && !own->admits(own->user, slot))) continue;
+        if (!c->kept || (own->admits != NULL && !own->admits(own->user, cell))) continue;
         if (divided) {
-            gxp_cell_bounds(body, cell, &box);
+            gxp_cell_bounds(body, c, &box);
             if (gxp_bound_distance(walk, &box) > walk->limit) continue;
         }
-        gxp_cell_corners(body, cell, 1, own->point, x);
+        gxp_cell_corners(body, c, 1, own->point, x);
         if (divided)
-            result = gxp_try_facets(body, own, slot, x);
+            result = gxp_try_facets(body, own, cell, x);
         else
-            gxp_try_faces(own, slot, x);
+            gxp_try_faces(own, cell, x);
     }
     return result;
 }
 
-/* Finds the cell nearest to a point of space, among those for which admits(user, slot) is not 0 (NULL: all), of equally
-   near ones that with the lowest slot. The point lies in none of them (gxp_find_cells_at). */
-static gx_result gxp_find_nearest(gx_body *body, const double point[3], int (*admits)(void *user, uint32_t slot),
+/* Finds the cell nearest to a point of space, among those for which admits(user, cell) is not 0 (NULL: all), of equally
+   near ones the first one. The point lies in none of them (gxp_find_cells_at). */
+static gx_result gxp_find_nearest(gx_body *body, const double point[3], int (*admits)(void *user, uint32_t cell),
                                   void *user, gxp_near *near) {
     gxp_near_walk own;
     gx_result result;
@@ -9425,7 +9424,7 @@ static gx_result gxp_find_nearest(gx_body *body, const double point[3], int (*ad
     own.admits = admits;
     own.user = user;
     memset(&own.near, 0, sizeof own.near);
-    own.near.slot = GXP_NONE;
+    own.near.cell = GXP_NONE;
     result = gxp_walk_tree(body, &own.walk);
     *near = own.near;
     return result;
@@ -9437,29 +9436,29 @@ static gx_result gxp_find_nearest(gx_body *body, const double point[3], int (*ad
 
 /* Sets all of a hit but distance, material and position. weights: of the cell's copies; the view, its indices and its
    fragments are up to date. */
-static void gxp_start_hit(gx_body *body, uint32_t slot, const double weights[4], gx_hit *hit) {
-    const gxp_cell *cell = &body->cells.data[slot];
+static void gxp_start_hit(gx_body *body, uint32_t cell, const double weights[4], gx_hit *hit) {
+    const gxp_cell *c = &body->cells.data[cell];
     int n;
     memset(hit, 0, sizeof *hit);
     hit->triangle = UINT32_MAX;
-    hit->fragment = gxp_cell_fragment(body, slot);
-    hit->element = cell->element;
-    hit->cell = body->view.indices.data[slot];
-    hit->slot = body->cells.slot[slot];
+    hit->fragment = gxp_cell_fragment(body, cell);
+    hit->element = c->element;
+    hit->cell = body->view.indices.data[cell];
+    hit->slot = body->cells.slot[cell];
     hit->slot_count = body->slots.count;
     hit->epoch = body->cuts.epoch;
     for (n = 0; n < 4; n++)
         if (weights[n] > 0) {
-            hit->copies[hit->copy_count] = cell->copies[n];
+            hit->copies[hit->copy_count] = c->copies[n];
             hit->weights[hit->copy_count++] = weights[n];
         }
 }
 
 /* The hit of a point that the cell contains */
-static void gxp_hit_inside(gx_body *body, uint32_t slot, const double point[3], gx_hit *hit) {
+static void gxp_hit_inside(gx_body *body, uint32_t cell, const double point[3], gx_hit *hit) {
     double weights[4], material[3];
-    (void)gxp_pull_back(body, slot, point, weights, material);
-    gxp_start_hit(body, slot, weights, hit);
+    (void)gxp_pull_back(body, cell, point, weights, material);
+    gxp_start_hit(body, cell, weights, hit);
     memcpy(hit->material, material, sizeof hit->material);
     memcpy(hit->position, point, sizeof hit->position);
 }
@@ -9467,7 +9466,7 @@ static void gxp_hit_inside(gx_body *body, uint32_t slot, const double point[3], 
 /* The hit of a point outside of all cells. Its distance is above 0 even where it rounds to 0. */
 static void gxp_hit_near(gx_body *body, const gxp_near *near, gx_hit *hit) {
     double rest[12];
-    gxp_start_hit(body, near->slot, near->weights, hit);
+    gxp_start_hit(body, near->cell, near->weights, hit);
     gxp_element_positions(body, hit->element, rest);
     gxp_weigh_material(rest, near->weights, hit->material);
     gxp_map_point(body, hit->material, hit->copies, hit->weights, hit->copy_count, hit->position);
@@ -9578,8 +9577,8 @@ static gx_result gxp_find_cells_near(gx_body *body, const double point[3]) {
     memcpy(box.low, point, sizeof box.low);
     memcpy(box.high, point, sizeof box.high);
     walk.point = point;
-    walk.slots = &body->tree.found;
-    walk.slots->count = 0;
+    walk.cells = &body->tree.found;
+    walk.cells->count = 0;
     for (i = 0; i < tree->near.count && result == GX_OK; i++)
         if (!(gxp_gap(&tree->own_boxes[tree->near.data[i]], &box) > 0))
             result = gxp_visit_at_point(body, &walk, tree->near.data[i]);
@@ -10009,15 +10008,15 @@ static gx_result gxp_copy_front(gx_body *body, gxp_front_list *to, const gxp_fro
     return gxp_append_front(body, to, from->data, from->count);
 }
 
-/* The near cell of a slot, or GXP_NONE */
-static uint32_t gxp_close_index(const gxp_vicinity *near, uint32_t slot) {
-    const uint32_t index = slot < near->of_slot.count ? near->of_slot.data[slot] : GXP_NONE;
-    return index < near->count && near->cells[index].slot == slot ? index : GXP_NONE;
+/* The index of a cell among the near ones, or GXP_NONE */
+static uint32_t gxp_close_index(const gxp_vicinity *near, uint32_t cell) {
+    const uint32_t index = cell < near->of_cell.count ? near->of_cell.data[cell] : GXP_NONE;
+    return index < near->count && near->cells[index].cell == cell ? index : GXP_NONE;
 }
 
-/* The layer of a slot, or GXP_NONE */
-static uint32_t gxp_layer_of(const gxp_vicinity *near, uint32_t slot) {
-    const uint32_t index = gxp_close_index(near, slot);
+/* The layer of a cell, or GXP_NONE */
+static uint32_t gxp_layer_of(const gxp_vicinity *near, uint32_t cell) {
+    const uint32_t index = gxp_close_index(near, cell);
     return index == GXP_NONE ? GXP_NONE : near->cells[index].layer;
 }
 
@@ -10225,10 +10224,10 @@ static gx_result gxp_prepare_quads(gx_blade *blade) {
 
 /* The deformed corners of a cell, and what contains them */
 static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
-    const gxp_cell *cell = &body->cells.data[c->slot];
+    const gxp_cell *row = &body->cells.data[c->cell];
     double moved[12];
     int n, k;
-    gxp_moved_corners(body, cell, moved);
+    gxp_moved_corners(body, row, moved);
     memcpy(c->corners, moved, sizeof moved);
     for (k = 0; k < 3; k++) {
         const double x[4] = {c->corners[0][k], c->corners[1][k], c->corners[2][k], c->corners[3][k]};
@@ -10239,9 +10238,9 @@ static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
     c->radius = 0;
     for (n = 0; n < 4; n++) c->radius = gxp_more(c->radius, gxp_square_distance(c->middle, c->corners[n]));
     c->radius = sqrt(c->radius);
-    c->is_divided = (uint8_t)(gxb_complex_root(body->complex, cell->element) & 1);
+    c->is_divided = (uint8_t)(gxb_complex_root(body->complex, row->element) & 1);
     c->has_facets = 0;
-    c->size = body->mesh.sizes[cell->element];
+    c->size = body->mesh.sizes[row->element];
 }
 
 /* Appends a cell to the near ones. */
@@ -10250,9 +10249,9 @@ static gx_result gxp_push_near(gx_blade *blade, const gxp_close_cell *c) {
     const gx_result result =
         gxp_reserve(&blade->body->config.allocator, &near->cells, sizeof *near->cells, near->count, &near->capacity, 1);
     if (result != GX_OK) return result;
-    near->of_slot.data[c->slot] = near->count;
+    near->of_cell.data[c->cell] = near->count;
     near->cells[near->count] = *c;
-    near->cells[near->count++].stretch = gxp_stretch(blade->body, c->slot);
+    near->cells[near->count++].stretch = gxp_stretch(blade->body, c->cell);
     return GX_OK;
 }
 
@@ -10268,15 +10267,15 @@ static gx_result gxp_add_near_cells(gx_body *body, gxp_boxes_walk *walk, uint32_
                                     uint32_t count) {
     const gxp_vicinity_walk *own = (const gxp_vicinity_walk *)(const void *)walk;
     gx_blade *blade = own->blade;
-    uint32_t slot, i;
+    uint32_t cell, i;
     gx_result result = GX_OK;
-    for (slot = body->mesh.box_elements[place]; slot != GXP_NONE && result == GX_OK;
-         slot = body->cells.data[slot].next) {
+    for (cell = body->mesh.box_elements[place]; cell != GXP_NONE && result == GX_OK;
+         cell = body->cells.data[cell].next) {
         gxp_close_cell c;
         gxp_bounds box;
-        if (!body->cells.data[slot].kept) continue;
-        if (own->scope != NULL && !own->scope->data[gxp_cell_fragment(body, slot)]) continue;
-        c.slot = slot;
+        if (!body->cells.data[cell].kept) continue;
+        if (own->scope != NULL && !own->scope->data[gxp_cell_fragment(body, cell)]) continue;
+        c.cell = cell;
         gxp_place_near(body, &c);
         memcpy(box.low, c.low, sizeof box.low);
         memcpy(box.high, c.high, sizeof box.high);
@@ -10318,7 +10317,7 @@ static void gxp_join_near(gx_blade *blade) {
     const gx_body *body = blade->body;
     uint32_t *first = near->of_copy.data, i, k;
     for (i = 0; i < near->count; i++) {
-        const uint32_t *copies = body->cells.data[near->cells[near->ranked.data[i]].slot].copies;
+        const uint32_t *copies = body->cells.data[near->cells[near->ranked.data[i]].cell].copies;
         for (k = 0; k < 4; k++)
             if (first[copies[k]] == 0)
                 first[copies[k]] = i + 1;
@@ -10326,10 +10325,10 @@ static void gxp_join_near(gx_blade *blade) {
                 gxp_unite(near->parents.data, first[copies[k]] - 1, i);
     }
     for (i = 0; i < near->count; i++)
-        for (k = 0; k < 4; k++) first[body->cells.data[near->cells[i].slot].copies[k]] = 0;
+        for (k = 0; k < 4; k++) first[body->cells.data[near->cells[i].cell].copies[k]] = 0;
 }
 
-/* Words by slot or copy, which keep what they have; new ones are 0. */
+/* Words by cell or copy, which keep what they have; new ones are 0. */
 static gx_result gxp_extend_words(gx_body *body, gxp_words *words, uint32_t count) {
     gx_result result;
     if (count <= words->count) return GX_OK;
@@ -10422,7 +10421,7 @@ static gx_result gxp_refit_near(gx_blade *blade, double most, gx_failure *failur
 static gx_result gxp_find_near(gx_blade *blade, const gxp_words *scope) {
     gx_body *body = blade->body;
     gxp_vicinity_walk own;
-    gx_result result = gxp_extend_words(body, &blade->near.of_slot, body->cells.count);
+    gx_result result = gxp_extend_words(body, &blade->near.of_cell, body->cells.count);
     if (result == GX_OK) result = gxp_prepare_quads(blade);
     blade->near.count = blade->near.lambda_count = 0;
     if (result != GX_OK) return result;
@@ -10480,16 +10479,16 @@ static double gxp_square_to_box(const double x[3], const double low[3], const do
 /* Is the place, of these weights in the cell's element, in the cell's own part? */
 static gx_result gxp_is_own_part(gx_body *body, const gxp_close_cell *c, const double weights[4], int *own) {
     static const double origin[3] = {0, 0, 0};
-    const gxp_cell *cell = &body->cells.data[c->slot];
+    const gxp_cell *row = &body->cells.data[c->cell];
     double corners[4][3], rest[3];
-    uint32_t holder = c->slot;
+    uint32_t holder = c->cell;
     gx_result result;
     *own = 1;
     if (!c->is_divided) return GX_OK;
-    gxp_cell_corners(body, cell, 0, origin, corners);
+    gxp_cell_corners(body, row, 0, origin, corners);
     gxp_weigh(corners, weights, rest);
-    result = gxp_cell_at(body, cell->element, rest, &holder);
-    *own = holder == c->slot;
+    result = gxp_cell_at(body, row->element, rest, &holder);
+    *own = holder == c->cell;
     return result;
 }
 
@@ -10501,7 +10500,7 @@ static gx_result gxp_list_facets(gx_blade *blade, gxp_close_cell *c) {
     uint32_t i;
     gx_result result;
     gxp_clear_boundary(body, 1);
-    result = gxp_bound_cell(body, c->slot);
+    result = gxp_bound_cell(body, c->cell);
     if (result == GX_OK)
         result = gxp_reserve(&body->config.allocator, &near->lambdas, 12 * sizeof *near->lambdas, near->lambda_count,
                              &near->lambda_capacity, boundary->triangles.count / 3);
@@ -10628,9 +10627,9 @@ static gx_result gxp_find_rest_cell(gx_body *body, const double rest[3], uint32_
 
 /* Is there material of the layer at a material point? */
 static gx_result gxp_is_in_layer(gx_blade *blade, uint32_t layer, const double rest[3], int *inside) {
-    uint32_t slot = GXP_NONE;
-    const gx_result result = gxp_find_rest_cell(blade->body, rest, &slot);
-    *inside = slot != GXP_NONE && gxp_layer_of(&blade->near, slot) == layer;
+    uint32_t cell = GXP_NONE;
+    const gx_result result = gxp_find_rest_cell(blade->body, rest, &cell);
+    *inside = cell != GXP_NONE && gxp_layer_of(&blade->near, cell) == layer;
     return result;
 }
 
@@ -10676,7 +10675,7 @@ static gx_result gxp_see_place(gx_blade *blade, uint32_t layer, gxp_front_vertex
     if (result != GX_OK) return result;
     c = &near->cells[sight.index != GXP_NONE ? sight.index
                                              : GXP_SECOND(near->order.data[near->layer_start.data[layer]])];
-    v->element = blade->body->cells.data[c->slot].element;
+    v->element = blade->body->cells.data[c->cell].element;
     v->size = c->size;
     v->distance = sqrt(sight.square);
     blade->last_sight = sight.index;
@@ -10687,7 +10686,7 @@ static gx_result gxp_see_place(gx_blade *blade, uint32_t layer, gxp_front_vertex
         memcpy(v->foot_at, v->position, sizeof v->foot_at);
         return GX_OK;
     }
-    gxp_cell_corners(blade->body, &blade->body->cells.data[c->slot], 0, origin, corners);
+    gxp_cell_corners(blade->body, &blade->body->cells.data[c->cell], 0, origin, corners);
     gxp_weigh(corners, sight.weights, v->extended);
     memcpy(v->rest, v->extended, sizeof v->rest);
     memcpy(v->foot, v->rest, sizeof v->foot);
@@ -10898,12 +10897,12 @@ static gx_result gxp_judge_behind(gx_blade *blade, const gxp_front_vertex *v, gx
     const double width = fmax(GXP_CUT_WIDTH * v->size, 2 * blade->tolerance);
     double nearest[3], at[3];
     gxp_relation of_sheet;
-    uint32_t slot = GXP_NONE;
+    uint32_t cell = GXP_NONE;
     gx_result result;
     if (r->distance <= 2 * blade->tolerance || blade->sheet.count == 0) return GX_OK;
     if (gxp_near_sheet(&blade->sheet, v->rest, nearest) <= width) {
-        result = gxp_find_rest_cell(blade->body, nearest, &slot);
-        r->ahead = r->doubtful = slot == GXP_NONE; /* the sheet is in the air there: nothing is cut, at least there */
+        result = gxp_find_rest_cell(blade->body, nearest, &cell);
+        r->ahead = r->doubtful = cell == GXP_NONE; /* the sheet is in the air there: nothing is cut, at least there */
         return result;
     }
     gxp_near_front(&blade->front, nearest, &of_sheet, at);
@@ -10992,15 +10991,15 @@ static gx_result gxp_came_back(gx_blade *blade, int *is_back) {
         const gxp_front_vertex *v = &blade->front.data[i];
         gxp_relation r;
         double nearest[3], step[3], place[3];
-        uint32_t slot = GXP_NONE;
+        uint32_t cell = GXP_NONE;
         int k;
         if (v->distance > 0) continue;
         gxp_near_front(&blade->samples, v->rest, &r, nearest);
         for (k = 0; k < 3; k++) step[k] = nearest[k] - v->rest[k];
         if (!gxp_unit(step, step)) continue;
         for (k = 0; k < 3; k++) place[k] = v->rest[k] + 2 * GXP_CUT_WIDTH * v->size * step[k];
-        result = gxp_find_rest_cell(blade->body, place, &slot);
-        if (slot == GXP_NONE) continue; /* at the surface: nothing is on the way */
+        result = gxp_find_rest_cell(blade->body, place, &cell);
+        if (cell == GXP_NONE) continue; /* at the surface: nothing is on the way */
         if (gxp_near_sheet(&blade->sheet, place, nearest) > GXP_CUT_WIDTH * v->size) return result;
         seen++;
     }
@@ -11403,9 +11402,9 @@ static gx_result gxp_list_scope(gx_blade *blade, uint32_t layer, uint32_t old) {
     }
     for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++) {
         const gxp_close_cell *c = &near->cells[GXP_SECOND(near->order.data[i])];
-        if (old != GXP_NONE && gxp_old_layer(blade, c->slot) != old) continue;
+        if (old != GXP_NONE && gxp_old_layer(blade, c->cell) != old) continue;
         if (gxp_is_in_reach(c, blade->plates, triangles))
-            result = gxp_push(blade->body, &blade->scope, blade->body->cells.slot[c->slot]);
+            result = gxp_push(blade->body, &blade->scope, blade->body->cells.slot[c->cell]);
     }
     return result;
 }
@@ -11437,7 +11436,7 @@ static gx_result gxp_find_owners(gx_blade *blade, uint32_t layer) {
     gx_result result = GX_OK;
     blade->owners.count = 0;
     for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++) {
-        const uint32_t old = gxp_old_layer(blade, near->cells[GXP_SECOND(near->order.data[i])].slot);
+        const uint32_t old = gxp_old_layer(blade, near->cells[GXP_SECOND(near->order.data[i])].cell);
         if (old == GXP_NONE || old == last) continue;
         last = old;
         if (blade->now.layers.data[old].front_count == 0) continue;
@@ -11830,13 +11829,13 @@ static gx_result gxp_keep_far_place(gx_blade *blade, const double *edge, uint32_
     if (!(least < 64 * blade->largest * blade->largest)) return GX_OK;
     result = gxp_refit_tree(body);
     if (result == GX_OK) result = gxp_find_nearest(body, v.position, NULL, NULL, &near);
-    if (result != GX_OK || near.slot == GXP_NONE) return result;
-    v.element = body->cells.data[near.slot].element;
+    if (result != GX_OK || near.cell == GXP_NONE) return result;
+    v.element = body->cells.data[near.cell].element;
     v.size = blade->largest;
     v.distance = sqrt(near.square);
-    gxp_cell_corners(body, &body->cells.data[near.slot], 1, origin, corners);
+    gxp_cell_corners(body, &body->cells.data[near.cell], 1, origin, corners);
     gxp_weigh(corners, near.weights, v.foot_at);
-    gxp_cell_corners(body, &body->cells.data[near.slot], 0, origin, corners);
+    gxp_cell_corners(body, &body->cells.data[near.cell], 0, origin, corners);
     gxp_weigh(corners, near.weights, v.foot);
     memcpy(v.rest, v.foot, sizeof v.rest);
     memcpy(v.extended, v.foot, sizeof v.extended);
@@ -11858,7 +11857,7 @@ static gx_result gxp_keep_members(gx_blade *blade, const double *edge, uint32_t 
     else
         memset(then->middle, 0, sizeof then->middle);
     for (i = 0; i < blade->near.count && result == GX_OK; i++)
-        result = gxp_push_key(blade->body, &then->members, blade->body->cells.slot[blade->near.cells[i].slot],
+        result = gxp_push_key(blade->body, &then->members, blade->body->cells.slot[blade->near.cells[i].cell],
                               blade->near.cells[i].layer);
     if (result == GX_OK) result = gxp_sort_keys(blade->body, &then->members, 0, then->members.count);
     for (i = 0; i < count && result == GX_OK; i++)
@@ -12348,7 +12347,7 @@ static void gxp_release_blade(gx_blade *b) {
     gxp_release_points(body, &b->to);
     gxp_release(a, b->near.cells, b->near.capacity * sizeof *b->near.cells);
     gxp_release(a, b->near.lambdas, 12 * b->near.lambda_capacity * sizeof *b->near.lambdas);
-    gxp_release_words(body, &b->near.of_slot);
+    gxp_release_words(body, &b->near.of_cell);
     gxp_release_words(body, &b->near.of_copy);
     gxp_release_words(body, &b->near.quad_start);
     gxp_release_words(body, &b->near.ranked);
@@ -12430,7 +12429,7 @@ typedef struct gxp_edge_part {
 /* Its part in the element of a cell */
 typedef struct gxp_cell_part {
     const gxp_edge_part *edge;
-    uint32_t slot;
+    uint32_t cell;
     double low, high;  /* shares of the segment */
     double rest[2][3]; /* their material points */
     double touch;      /* m, at rest */
@@ -12446,7 +12445,7 @@ static int gxp_narrow(double a, double b, double *low, double *high) {
     return *low <= *high;
 }
 
-/* Adds a span, in the order of segments, places and slots. A walk finds them nearly in order. */
+/* Adds a span, in the order of segments, places and cells. A walk finds them nearly in order. */
 static gx_result gxp_push_span(const gxp_cell_part *part, double low, double high) {
     gx_blade *blade = part->edge->blade;
     uint32_t i = blade->span_count;
@@ -12456,11 +12455,11 @@ static gx_result gxp_push_span(const gxp_cell_part *part, double low, double hig
     if (result != GX_OK) return result;
     own.low = gxp_between(part->low, part->high, low);
     own.high = gxp_between(part->low, part->high, high);
-    own.slot = part->slot;
+    own.cell = part->cell;
     own.segment = part->edge->segment;
     for (; i > 0; i--) {
         const gxp_span *last = &blade->spans[i - 1];
-        if (last->segment < own.segment || last->low < own.low || (!(last->low > own.low) && last->slot <= own.slot))
+        if (last->segment < own.segment || last->low < own.low || (!(last->low > own.low) && last->cell <= own.cell))
             break;
         blade->spans[i] = *last;
     }
@@ -12495,7 +12494,7 @@ static gx_result gxp_add_leaf_spans(gx_body *body, const gxp_cell_part *part, ui
         if (result != GX_OK || !gxp_narrow(touch - a, touch - b, &low, &high)) return result;
         reference = node->child[1];
     }
-    return gxp_is_kept(body, reference >> 1) && body->leaves.data[reference >> 1].cell == part->slot
+    return gxp_is_kept(body, reference >> 1) && body->leaves.data[reference >> 1].cell == part->cell
              ? gxp_push_span(part, low, high)
              : GX_OK;
 }
@@ -12531,30 +12530,30 @@ static int gxp_clip_to_element(const gxp_edge_part *edge, const gxp_cell *cell, 
 }
 
 /* Adds the spans of a part of the edge in a cell. */
-static gx_result gxp_meet_cell(gx_body *body, void *user, uint32_t slot) {
+static gx_result gxp_meet_cell(gx_body *body, void *user, uint32_t cell) {
     const gxp_edge_part *edge = (const gxp_edge_part *)user;
     gx_blade *blade = edge->blade;
-    const gxp_cell *cell = &body->cells.data[slot];
+    const gxp_cell *c = &body->cells.data[cell];
     const uint32_t before = blade->span_count;
     gxp_cell_part part;
     gxp_close_cell close;
     double weights[4], point[3], low = 0, high = 1, touch;
     int n;
     gx_result result;
-    if (!gxp_clip_to_element(edge, cell, &low, &high, &touch)) return GX_OK;
+    if (!gxp_clip_to_element(edge, c, &low, &high, &touch)) return GX_OK;
     part.edge = edge;
-    part.slot = slot;
+    part.cell = cell;
     part.low = gxp_between(edge->low, edge->high, low);
     part.high = gxp_between(edge->low, edge->high, high);
-    part.touch = touch * gxp_element_size(body, cell->element);
+    part.touch = touch * gxp_element_size(body, c->element);
     for (n = 0; n < 2; n++) {
         gxp_edge_position(edge->ends, 2, n == 0 ? part.low : part.high, point);
-        (void)gxp_pull_back(body, slot, point, weights, part.rest[n]);
+        (void)gxp_pull_back(body, cell, point, weights, part.rest[n]);
     }
-    result = gxp_add_leaf_spans(body, &part, gxb_complex_root(body->complex, cell->element), 0, 1);
-    if (result != GX_OK || blade->span_count == before || gxp_close_index(&blade->near, slot) != GXP_NONE)
+    result = gxp_add_leaf_spans(body, &part, gxb_complex_root(body->complex, c->element), 0, 1);
+    if (result != GX_OK || blade->span_count == before || gxp_close_index(&blade->near, cell) != GXP_NONE)
         return result;
-    close.slot = slot;
+    close.cell = cell;
     close.quad = 0; /* there are none */
     gxp_place_near(body, &close);
     return gxp_push_near(blade, &close);
@@ -12609,7 +12608,7 @@ static gx_result gxp_join_spans(gx_blade *blade) {
     order->count = 0;
     if (result == GX_OK) result = gxp_keys_room(blade->body, order, 2 * (size_t)blade->span_count);
     for (i = 0; i < blade->span_count && result == GX_OK; i++)
-        result = gxp_push_key(blade->body, order, gxp_layer_of(&blade->near, blade->spans[i].slot), i);
+        result = gxp_push_key(blade->body, order, gxp_layer_of(&blade->near, blade->spans[i].cell), i);
     if (result == GX_OK) result = gxp_sort_keys(blade->body, order, 0, order->count);
     for (i = 0; i < order->count; i++) {
         gxp_span *span = gxp_span_at(blade, i);
@@ -12623,13 +12622,13 @@ static gx_result gxp_join_spans(gx_blade *blade) {
 }
 
 /* The hit of a place on the edge in a cell, or next to nothing off it */
-static void gxp_hit_on_edge(gx_body *body, uint32_t slot, const double point[3], gx_hit *hit) {
+static void gxp_hit_on_edge(gx_body *body, uint32_t cell, const double point[3], gx_hit *hit) {
     double weights[4], material[3], sum = 0;
     int n;
-    (void)gxp_pull_back(body, slot, point, weights, material);
+    (void)gxp_pull_back(body, cell, point, weights, material);
     for (n = 0; n < 4; n++) sum += fmax(weights[n], 0);
     for (n = 0; n < 4; n++) weights[n] /= sum;
-    gxp_start_hit(body, slot, weights, hit);
+    gxp_start_hit(body, cell, weights, hit);
     memcpy(hit->material, material, sizeof hit->material);
     memcpy(hit->position, point, sizeof hit->position);
 }
@@ -12647,7 +12646,7 @@ static double gxp_measure_run(const gx_blade *blade, uint32_t first, uint32_t en
         const gxp_span *span = gxp_span_at(blade, i);
         const double own = gxp_span_length(blade, span);
         length += own;
-        sum += own * blade->near.cells[gxp_close_index(&blade->near, span->slot)].radius;
+        sum += own * blade->near.cells[gxp_close_index(&blade->near, span->cell)].radius;
     }
     *parts = 0;
     if (!(length * length > GXP_LEAST_CONTACT * sum)) return length;
@@ -12667,7 +12666,7 @@ static void gxp_place_contact(gx_blade *blade, double place, uint32_t *at, doubl
     }
     share = fmin(span->low + (span->high - span->low) * ((place - *passed) / gxp_span_length(blade, span)), span->high);
     gxp_edge_position(blade->now.edge.data + 3 * (size_t)span->segment, 2, share, point);
-    gxp_hit_on_edge(blade->body, span->slot, point, &contact->hit);
+    gxp_hit_on_edge(blade->body, span->cell, point, &contact->hit);
     contact->along = span->segment + share;
 }
 
@@ -12693,7 +12692,7 @@ static void gxp_place_contacts(gx_blade *blade, gx_blade_contact *contacts, size
 /* Finds all spans, joined by layer. */
 static gx_result gxp_find_spans(gx_blade *blade) {
     uint32_t i;
-    gx_result result = gxp_extend_words(blade->body, &blade->near.of_slot, blade->body->cells.count);
+    gx_result result = gxp_extend_words(blade->body, &blade->near.of_cell, blade->body->cells.count);
     for (i = 0; i + 1 < blade->now.edge.count && result == GX_OK; i++) result = gxp_meet_segment(blade, i);
     return result == GX_OK ? gxp_join_spans(blade) : result;
 }
@@ -12854,8 +12853,8 @@ static gx_result gxp_refine_tool(gx_blade *blade, uint32_t layer) {
     return result;
 }
 
-static gx_result gxp_list_slot(gx_body *body, void *user, uint32_t slot) {
-    return gxp_push(body, (gxp_words *)user, slot);
+static gx_result gxp_push_cell(gx_body *body, void *user, uint32_t cell) {
+    return gxp_push(body, (gxp_words *)user, cell);
 }
 
 /* Lists the cells whose deformed elements' boxes meet a box. The tree is up to date. */
@@ -12864,7 +12863,7 @@ static gx_result gxp_find_in_box(gx_body *body, const double low[3], const doubl
     memcpy(box.low, low, sizeof box.low);
     memcpy(box.high, high, sizeof box.high);
     found->count = 0;
-    return gxp_walk_box(body, &box, gxp_list_slot, found);
+    return gxp_walk_box(body, &box, gxp_push_cell, found);
 }
 
 /* Adds the cells that are inside the tool and not near its surface. */
@@ -12883,9 +12882,9 @@ static gx_result gxp_add_covered(gx_blade *blade, const gx_surface *tool) {
     for (i = 0; i < blade->found.count && result == GX_OK; i++) {
         gxp_close_cell c;
         int on;
-        c.slot = blade->found.data[i];
+        c.cell = blade->found.data[i];
         c.quad = blade->quads.count / 4;
-        if (gxp_close_index(&blade->near, c.slot) != GXP_NONE) continue;
+        if (gxp_close_index(&blade->near, c.cell) != GXP_NONE) continue;
         gxp_place_near(body, &c);
         if (gxb_winding_number(tool->vertices, tool->triangles, tool->triangle_count, c.middle, &on) != 0)
             result = gxp_push_near(blade, &c);
@@ -12956,7 +12955,7 @@ static gx_result gxp_add_tool(gx_blade *blade, uint32_t layer, const gx_surface 
     if (result == GX_OK) result = gxp_push(body, &blade->surface_starts, blade->scope.count);
     if (result == GX_OK) result = gxp_push(body, &blade->surface_starts, blade->corners.count);
     for (i = first; i < near->layer_start.data[layer + 1] && result == GX_OK; i++)
-        result = gxp_push(body, &blade->scope, body->cells.slot[near->cells[GXP_SECOND(near->order.data[i])].slot]);
+        result = gxp_push(body, &blade->scope, body->cells.slot[near->cells[GXP_SECOND(near->order.data[i])].cell]);
     for (i = 0; i < blade->triangles.count && result == GX_OK; i++)
         result = gxp_push_point(body, &blade->corners, blade->samples.data[blade->triangles.data[i]].rest);
     return result;

@@ -141,7 +141,7 @@ static void check_layers(const gx_blade *blade, uint64_t seed) {
     memset(layer_of, 0xff, body->copies.count * sizeof *layer_of);
     for (i = 0; i < near->count; i++)
         for (k = 0; k < 4; k++) {
-            uint32_t *layer = &layer_of[body->cells.data[near->cells[i].slot].copies[k]];
+            uint32_t *layer = &layer_of[body->cells.data[near->cells[i].cell].copies[k]];
             CHECK_SEED(*layer == UINT32_MAX || *layer == near->cells[i].layer, seed);
             *layer = near->cells[i].layer;
         }
@@ -152,7 +152,7 @@ static void check_layers(const gx_blade *blade, uint64_t seed) {
         changed = 0;
         for (i = 0; i < near->count; i++)
             for (k = 0; k < 4; k++) {
-                uint32_t *least = &layer_of[body->cells.data[near->cells[i].slot].copies[k]];
+                uint32_t *least = &layer_of[body->cells.data[near->cells[i].cell].copies[k]];
                 if (*least < group[i]) group[i] = *least, changed = 1;
                 if (*least > group[i]) *least = group[i], changed = 1;
             }
