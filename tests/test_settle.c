@@ -541,6 +541,7 @@ START_TEST(blades_go_on) {
             c.count = 3;
         }
         expect_same_crew(&c);
+        gx_body_destroy(read_back(c.body[0]));
     }
     CHECK_SEED(c.body[0]->leaves.count <= c.body[1]->leaves.count, c.seed);
     CHECK_SEED(c.still_there > 0, c.seed);
