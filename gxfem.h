@@ -11840,11 +11840,13 @@ static gx_result gxp_go_straight(gx_blade *blade, const double *before, const do
 /* Finds the way of the edge, and in how many steps it goes: by at most an element each in space, or relative to the
    material if that is less. */
 static gx_result gxp_plan_way(gx_blade *blade, const double *edge, uint32_t count, uint32_t *steps) {
-    const double *before = blade->now.edge.count > 0 ? blade->now.edge.data : edge, square = blade->step * blade->step;
+    const double *before = blade->now.edge.data, square = blade->step * blade->step;
     double most = 0;
     gxp_bounds box;
-    gx_result result = gxp_measure_way(blade, before, edge, count, NULL, &most);
+    gx_result result;
     *steps = 1;
+    if (blade->now.edge.count == 0) return gxp_go_straight(blade, edge, edge, count);
+    result = gxp_measure_way(blade, before, edge, count, NULL, &most);
     if (result == GX_OK && most > square) {
         gxp_find_box(blade->body, &box);
         result = gxp_measure_way(blade, before, edge, count, &box, &most);

@@ -208,42 +208,6 @@ END_TEST
 
 /* ---- relativity ---- */
 
-/* A rigid motion of an edge through a block: turned about the block's middle, then shifted */
-static void place_rigidly(const stage *s, double time, int back, const double from[3], double to[3]) {
-    static const double axis[3] = {0.6, 0, 0.8};
-    const double angle = 0.7 * sin(2 * time), middle = 0.5 * s->cells[0],
-                 shift[3] = {0.5 * sin(5 * time), (s->cells[0] + 6.0) * time, 0.4 * sin(4 * time)};
-    int k;
-    for (k = 0; k < 3; k++) to[k] = from[k] - middle - (back ? shift[k] : 0);
-    stage_turn(axis, back ? -angle : angle, to);
-    for (k = 0; k < 3; k++) to[k] += middle + (back ? 0 : shift[k]);
-}
-
-/* The blade through the still body, or the body through the still blade */
-static void pass_rigidly(stage *s, int body_moves, int frames) {
-    const double middle = 0.5 * s->cells[0],
-                 still[6] = {middle - STAGE_FAR, -3, middle - 0.4, middle + STAGE_FAR, -2.6, middle + 0.3};
-    double edge[6];
-    size_t c;
-    int i, k;
-    for (i = 0; i <= frames; i++) {
-        const double time = (double)i / frames;
-        memcpy(edge, still, sizeof edge);
-        if (!body_moves) {
-            place_rigidly(s, time, 0, still, edge);
-            place_rigidly(s, time, 0, still + 3, edge + 3);
-        }
-        for (c = 0; c < s->view.copy_count && body_moves; c++) {
-            const double *rest = s->rest + 3 * s->view.copy_node[c];
-            double x[3];
-            place_rigidly(s, time, 1, rest, x);
-            for (k = 0; k < 3; k++) s->view.displacement[3 * c + (size_t)k] = x[k] - rest[k];
-        }
-        stage_move_edge(s, edge, 2);
-    }
-    stage_lift(s);
-}
-
 /* The same pieces in both, and with 1, 2, 5 and 20 times as many frames, up to the blade's tolerance on the cut's
    area */
 START_TEST(relativity) {
@@ -251,13 +215,13 @@ START_TEST(relativity) {
     const uint32_t n = 5;
     stage first = open_block(n, 1);
     int i, body_moves;
-    pass_rigidly(&first, 0, 20);
+    stage_pass_rigidly(&first, 0, 20);
     check_fragments(&first, 2, 0);
     for (i = 0; i < 4; i++)
         for (body_moves = 0; body_moves < 2; body_moves++) {
             stage s = open_block(n, 1);
             double off;
-            pass_rigidly(&s, body_moves, 20 * factors[i]);
+            stage_pass_rigidly(&s, body_moves, 20 * factors[i]);
             check_fragments(&s, 2, (uint64_t)factors[i]);
             off = volume_difference(&first.view, &s.view);
             /* 20 frames know less of the path than 400 */
