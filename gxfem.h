@@ -58,7 +58,7 @@
  *     a step:                    >>attached >>supports >>model >>step
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
- *     a blade in space:          >>layers >>edges >>fronts >>strokes >>blade >>carve
+ *     a blade in space:          >>layers >>edges >>fronts >>strokes >>blade >>contacts >>carve
  *     beginning, end, bytes:     >>create >>hashes >>stream >>save
  *
  * Words. Facet: a polygon inside an element or in an element face, made by cuts. Wall: a facet that a sheet covers.
@@ -546,9 +546,10 @@ typedef struct gx_hit {
     /* Of the skin. UINT32_MAX: the ray meets nothing, and the rest is 0; or a located point, which has none */
     uint32_t triangle;
     uint32_t fragment, element;
-    uint32_t surface; /* of the triangle; of a located point: 0 */
-    uint32_t cell;    /* below gx_view.cell_count */
-    uint32_t slot;    /* names the cell also after further cuts, see gx_body_place */
+    uint32_t surface;    /* of the triangle; of a located point: 0 */
+    uint32_t cell;       /* below gx_view.cell_count */
+    uint32_t slot;       /* names the cell also after further cuts, see gx_body_place */
+    uint32_t slot_count; /* gx_view.slot_count then: what is divided off the cell later has a slot from there on */
     /* of a ray: in lengths of direction. Of a located point: m, from the point of space; 0: that is in the cell */
     double distance;
     double position[3], material[3]; /* deformed, m; material coordinates, m */
@@ -560,10 +561,11 @@ typedef struct gx_hit {
 /* The point of a hit, for springs and contact. Keep the hit as long: the point may refer to it. If the ray met nothing,
    the point has count 0, which steps refuse. */
 GXFEM_API gxs_point gx_hit_point(const gx_hit *hit);
-/* Makes an anchor of a hit. Its position is exactly in the part of the body that was hit: the hit's material point, or,
-   where rounding has put that beside the part, the nearest point found on the way into it. Errors: ARGUMENT, EMPTY (the
-   ray met nothing), STALE (a cut has begun another epoch since the hit), INDEX, NOT_FINITE, RANGE, FLAT (the part is
-   too thin for points given by doubles), MEMORY, LIMIT. */
+/* Makes an anchor of a hit. Its position is exactly in the cell that was hit, or in what cuts have left of it since:
+   the hit's material point, or, where rounding or a cut has put that beside it, the nearest point found on the way into
+   it. So it is on the hit's side of all cuts, also of those that end in the body. Errors: ARGUMENT, EMPTY (the ray met
+   nothing, or the cell was removed), STALE (a cut has begun another epoch since the hit), INDEX, NOT_FINITE, RANGE,
+   FLAT (the cell is too thin for points given by doubles), MEMORY, LIMIT. */
 GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *anchor,
                                   gx_failure *failure /* or NULL */);
 /* Finds the nearest triangle on a ray, the first of equally near ones. Takes a pass over the copies, then no more than
@@ -641,6 +643,22 @@ GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t po
    ("displacement", index: copy), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_blade_lift(gx_blade *blade, gx_blade_report *report /* or NULL */,
                                   gx_failure *failure /* or NULL */);
+
+/* A place of a blade's edge that is in the material: to push it, to make a sound, for the hand that holds the blade */
+typedef struct gx_blade_contact {
+    gx_hit hit;    /* the material there; position: the place; distance: 0 */
+    double along;  /* where on the edge: index of a point, + share of the way to the next */
+    double length; /* m: how much of the edge it stands for, half of that on each side of it */
+} gx_blade_contact;
+/* Finds what of the edge, where the last move left it, is in the body as it is now, which may have moved since. Nothing
+   of body or blade changes. Contacts of a piece are evenly spaced, about half an element apart, and come in the order
+   along the edge; their lengths add up to the length in that piece. Where pieces overlap each has its own contacts, and
+   where the edge lies in a wall the pieces on both sides have. contacts: room for capacity; after an error they mean
+   nothing. *count: how many there are, also after CAPACITY; 0 while the blade is lifted.
+   Errors: ARGUMENT, NOT_FINITE (a copy's displacement), RANGE (likewise: 2^128 or more), CAPACITY (capacity is below
+   *count), LIMIT, MEMORY. */
+GXFEM_API gx_result gx_blade_contacts(gx_blade *blade, gx_blade_contact *contacts, size_t capacity, size_t *count,
+                                      gx_failure *failure /* or NULL */);
 
 /* Removes the material that a closed tool in space covers now (a drill, a punch), from each piece where it meets the
    tool. tool: vertices in space, m; kind and scope_slots are not read. Its triangles are divided where elements
@@ -1151,6 +1169,13 @@ typedef struct gxp_relation {
     uint8_t strays;   /* 1: the edge has left its cut through the side */
 } gxp_relation;
 
+/* A part of a segment of the edge that is in a cell */
+typedef struct gxp_span {
+    double low, high; /* shares of the segment */
+    uint32_t slot, segment;
+    int begins; /* once spans are joined: it does not continue the one before it */
+} gxp_span;
+
 struct gx_blade {
     gx_body *body;
     gx_blade *next;                         /* of the body's */
@@ -1193,6 +1218,10 @@ struct gx_blade {
     gxp_words owned_starts; /* owners + 1: of each in owned */
     gxp_keys halved;        /* edges of a tool, two vertices each */
     gxp_words divided;      /* triangles of a tool */
+    /* of the contacts */
+    gxp_span *spans; /* by segment, low and slot */
+    uint32_t span_count, span_capacity;
+    gxp_keys span_order; /* layer, index in spans */
 };
 
 /* --- a cache: boxes over the deformed cells --- */
@@ -5281,12 +5310,14 @@ static gx_result gxp_try_leaf(gx_body *body, uint32_t leaf, const double x[3], g
     return result;
 }
 
-/* Is the cell kept, and does it move all that moves the hit, if there is one? */
-static int gxp_moves_hit(const gxp_cell *cell, const gx_hit *hit) {
-    uint32_t i, k, found = 0;
-    for (i = 0; hit != NULL && i < hit->copy_count && i < GX_HIT_COPIES; i++)
-        for (k = 0; k < 4; k++) found += cell->copies[k] == hit->copies[i];
-    return cell->kept && (hit == NULL || found == hit->copy_count);
+/* Is the cell kept, and is it the one that was hit, or a part into which that was divided since? hit: NULL, or one
+   whose slot is in the cell's element and was there. Copies do not tell: cells on the sides of a sheet that ends beside
+   the element share them all. */
+static int gxp_is_hit(const gx_body *body, uint32_t slot, const gx_hit *hit) {
+    const int kept = body->cells.data[slot].kept != 0;
+    if (hit == NULL) return kept;
+    while (slot >= hit->slot_count) slot = body->cells.parent[slot];
+    return kept && slot == hit->slot;
 }
 
 /* Looks for a leaf of the right cell at x and some roundings around. Stands at x, if the leaf has it, or there. */
@@ -5300,7 +5331,7 @@ static gx_result gxp_try_near(gx_body *body, uint32_t element, const double x[3]
             uint32_t leaf = 0;
             gxp_neighbour_point(x, i, width, p);
             if (gxp_leaf_at(body, element, p, NULL, &leaf) != GX_OK || gxp_element_side(body, element, p) < 0 ||
-                !gxp_is_kept(body, leaf) || !gxp_moves_hit(&body->cells.data[body->leaves.data[leaf].cell], hit))
+                !gxp_is_kept(body, leaf) || !gxp_is_hit(body, body->leaves.data[leaf].cell, hit))
                 continue;
             result = gxp_find_inside(body, leaf, inside, &found);
             if (result == GX_OK && found && gxp_stand(body, leaf, x, x, inside, best))
@@ -5310,14 +5341,14 @@ static gx_result gxp_try_near(gx_body *body, uint32_t element, const double x[3]
 }
 
 /* Finds where an anchor can stand for a point of an element, at most best->moved from it. hit: in the cell that was
-   hit; NULL: in any cell that is left */
+   hit, or what is left of it; NULL: in any cell that is left */
 static gx_result gxp_find_footing(gx_body *body, uint32_t element, const double x[3], const gx_hit *hit,
                                   gxp_footing *best) {
     gx_result result = gxp_try_near(body, element, x, hit, best);
     const int near = best->found;
     uint32_t cell, leaf;
     for (cell = element; cell != GXP_NONE && result == GX_OK && !near; cell = body->cells.data[cell].next) {
-        if (!gxp_moves_hit(&body->cells.data[cell], hit)) continue;
+        if (!gxp_is_hit(body, cell, hit)) continue;
         for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
              leaf = body->leaves.data[leaf].next)
             result = gxp_try_leaf(body, leaf, x, best);
@@ -5359,6 +5390,7 @@ GXFEM_API gx_result gx_body_anchor(gx_body *body, uint32_t element, const double
 
 GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *anchor, gx_failure *failure) {
     gxp_footing best;
+    uint32_t slot;
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (hit == NULL) return gxp_refuse(failure, "hit");
@@ -5366,6 +5398,11 @@ GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *a
     if (hit->copy_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "hit", SIZE_MAX);
     if (hit->epoch != body->cuts.epoch) return gxp_fail(failure, GX_ERROR_STALE, "hit.epoch", SIZE_MAX);
     if (hit->element >= body->mesh.element_count) return gxp_fail(failure, GX_ERROR_INDEX, "hit.element", SIZE_MAX);
+    if (hit->slot >= body->cells.count || hit->slot >= hit->slot_count ||
+        body->cells.data[hit->slot].element != hit->element)
+        return gxp_fail(failure, GX_ERROR_INDEX, "hit.slot", SIZE_MAX);
+    for (slot = hit->element; slot != GXP_NONE && !gxp_is_hit(body, slot, hit);) slot = body->cells.data[slot].next;
+    if (slot == GXP_NONE) return gxp_fail(failure, GX_ERROR_EMPTY, "hit.slot", SIZE_MAX);
     result = gxb_complex_check_point(body->complex, hit->material);
     if (result != GX_OK) return gxp_fail(failure, result, "hit.material", SIZE_MAX);
     memset(&best, 0, sizeof best);
@@ -9242,6 +9279,7 @@ static void gxp_start_hit(gx_body *body, uint32_t slot, const double weights[4],
     hit->element = cell->element;
     hit->cell = body->view.indices.data[slot];
     hit->slot = slot;
+    hit->slot_count = body->cells.count;
     hit->epoch = body->cuts.epoch;
     for (n = 0; n < 4; n++)
         if (weights[n] > 0) {
@@ -9637,6 +9675,7 @@ static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double sh
     hit->element = s->element[triangle];
     hit->surface = s->surface[triangle];
     hit->slot = s->cell[triangle];
+    hit->slot_count = body->cells.count;
     hit->cell = body->view.indices.data[hit->slot];
     for (i = 0; i < 3; i++) {
         const size_t v = s->triangles[3 * (size_t)triangle + i];
@@ -9893,15 +9932,20 @@ static gx_result gxp_push_quad(gx_blade *blade, const double *a, const double *b
     return result == GX_OK ? gxp_push_point(blade->body, &blade->quads, d) : result;
 }
 
-/* The part of the edge between two of its points, from the last move's place to the new one, in pieces of about twice
-   the largest element. Far ends are long pieces: no cell is there. */
+/* How many pieces of about twice the largest element a segment of the edge has. Far ends are long pieces: no cell is
+   there. */
+static uint32_t gxp_part_count(const gx_blade *blade, const double *ends) {
+    const double length = sqrt(gxp_square_distance(ends, ends + 3));
+    return length < 200 * blade->largest ? 1 + (uint32_t)(0.5 * length / blade->largest) : 100;
+}
+
+/* The part of the edge between two of its points, from the last move's place to the new one, piece by piece */
 static gx_result gxp_sweep_segment(gx_blade *blade, const double *before, const double *after) {
-    double from[4][3], length;
-    uint32_t parts, i;
+    double from[4][3];
+    const uint32_t parts = gxp_part_count(blade, after);
+    uint32_t i;
     int k, n;
     gx_result result = GX_OK;
-    length = sqrt(gxp_square_distance(after, after + 3));
-    parts = length < 200 * blade->largest ? 1 + (uint32_t)(0.5 * length / blade->largest) : 100;
     for (i = 0; i < parts && result == GX_OK; i++) {
         for (n = 0; n < 2; n++)
             for (k = 0; k < 3; k++) {
@@ -12089,6 +12133,8 @@ static void gxp_release_blade(gx_blade *b) {
     gxp_release_words(body, &b->surface_starts);
     gxp_release_words(body, &b->triangles);
     gxp_release(a, b->surfaces, b->surface_capacity * sizeof *b->surfaces);
+    gxp_release(a, b->spans, b->span_capacity * sizeof *b->spans);
+    gxp_release(a, b->span_order.data, b->span_order.capacity * sizeof *b->span_order.data);
     gxp_release(a, b, sizeof *b);
 }
 
@@ -12104,6 +12150,321 @@ GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index) {
     gx_blade *blade = body != NULL ? body->blades : NULL;
     for (; blade != NULL && index > 0; index--) blade = blade->next;
     return blade;
+}
+
+/* >>contacts: what of the edge is in the material ------------------------------------------------------------------ */
+/* In: the edge of a blade's last move, and the body as it is now. Out: the parts of the edge that are in cells (spans),
+   those of cells that hang together along the edge joined, and places on them as hits. Nothing is decided exactly here:
+   a place that is off a cell by next to nothing is in it, so that an edge in faces of elements is not lost between
+   them. Touches the blade's working memory, the view's lists and the tree. */
+
+/* Next to nothing: a share of the element's size, for what rounding makes of thin faces, and a share (2^-48) of the
+   largest coordinate, for what it makes of positions */
+#define GXP_TOUCH          1e-10
+#define GXP_TOUCH_ROUNDING 3.552713678800501e-15
+/* Sizes of deformed elements are the radii of balls around them: 0.8 to 0.9 for an edge of 1. Where the edge is in the
+   material for less than the first share of it, it passes by a corner. Contacts are the second one apart. */
+#define GXP_LEAST_CONTACT   1e-6
+#define GXP_CONTACT_SPACING 0.6
+
+/* A part of a segment of the edge */
+typedef struct gxp_edge_part {
+    gx_blade *blade;
+    const double *ends; /* of the segment: 2 x 3, m */
+    uint32_t segment;
+    double low, high; /* shares of the segment */
+    double x[2][3];   /* where these are, m */
+    double rounding;  /* of positions, at rest too, m */
+} gxp_edge_part;
+
+/* Its part in the element of a cell */
+typedef struct gxp_cell_part {
+    const gxp_edge_part *edge;
+    uint32_t slot;
+    double low, high;  /* shares of the segment */
+    double rest[2][3]; /* their material points */
+    double touch;      /* m, at rest */
+} gxp_cell_part;
+
+static double gxp_between(double a, double b, double share) { return share < 1 ? a + share * (b - a) : b; }
+
+/* Narrows a range to where a linear function, a at 0 and b at 1, is 0 or more. Returns 0 if nothing is left. */
+static int gxp_narrow(double a, double b, double *low, double *high) {
+    if (a < 0 && b < 0) return 0;
+    if (a < 0) *low = fmax(*low, a / (a - b));
+    if (b < 0) *high = fmin(*high, a / (a - b));
+    return *low <= *high;
+}
+
+/* Adds a span, in the order of segments, places and slots. A walk finds them nearly in order. */
+static gx_result gxp_push_span(const gxp_cell_part *part, double low, double high) {
+    gx_blade *blade = part->edge->blade;
+    uint32_t i = blade->span_count;
+    gxp_span own;
+    const gx_result result = gxp_reserve(&blade->body->config.allocator, &blade->spans, sizeof *blade->spans,
+                                         blade->span_count, &blade->span_capacity, 1);
+    if (result != GX_OK) return result;
+    own.low = gxp_between(part->low, part->high, low);
+    own.high = gxp_between(part->low, part->high, high);
+    own.slot = part->slot;
+    own.segment = part->edge->segment;
+    for (; i > 0; i--) {
+        const gxp_span *last = &blade->spans[i - 1];
+        if (last->segment < own.segment || last->low < own.low || (!(last->low > own.low) && last->slot <= own.slot))
+            break;
+        blade->spans[i] = *last;
+    }
+    blade->spans[i] = own;
+    blade->span_count++;
+    return GX_OK;
+}
+
+/* The height of a material point over a plane of the complex, times the length of that plane's normal in its frame */
+static double gxp_plane_height(const gx_body *body, const gxb_plane_filter *plane, const double rest[3]) {
+    const double *origin = gxb_complex_origin(body->complex);
+    double height = 0;
+    int k;
+    for (k = 0; k < 3; k++)
+        height += plane->n[k] * (ldexp(rest[k] - origin[k], gxb_complex_shift(body->complex)) - plane->base[k]);
+    return height;
+}
+
+/* Adds the spans that are in leaves of the cell below a reference to its element's tree. low, high: shares of the part.
+ */
+static gx_result gxp_add_leaf_spans(gx_body *body, const gxp_cell_part *part, uint32_t reference, double low,
+                                    double high) {
+    while (reference & 1) {
+        const gxb_node *node = gxb_complex_tree_node(body->complex, reference >> 1);
+        const gxb_plane_filter *plane = &gxb_complex_plane(body->complex, node->plane)->filter;
+        const double touch = ldexp(part->touch * gxp_size(plane->n), gxb_complex_shift(body->complex)),
+                     a = gxp_plane_height(body, plane, part->rest[0]), b = gxp_plane_height(body, plane, part->rest[1]);
+        double front_low = low, front_high = high;
+        gx_result result = GX_OK;
+        if (gxp_narrow(a + touch, b + touch, &front_low, &front_high))
+            result = gxp_add_leaf_spans(body, part, node->child[0], front_low, front_high);
+        if (result != GX_OK || !gxp_narrow(touch - a, touch - b, &low, &high)) return result;
+        reference = node->child[1];
+    }
+    return gxp_is_kept(body, reference >> 1) && body->leaves.data[reference >> 1].cell == part->slot
+             ? gxp_push_span(part, low, high)
+             : GX_OK;
+}
+
+/* Narrows a range of a part of the edge to what is in the deformed element of a cell. *touch: next to nothing, as a
+   share of its thickness. Returns 0 if nothing is left, or if the element is flat. */
+static int gxp_clip_to_element(const gxp_edge_part *edge, const gxp_cell *cell, double *low, double *high,
+                               double *touch) {
+    double corners[12], x[4][3], way[3], size = 0, off;
+    int n, k;
+    *touch = 0;
+    gxp_moved_corners(edge->blade->body, cell, corners);
+    for (k = 0; k < 3; k++) {
+        way[k] = edge->x[1][k] - edge->x[0][k];
+        for (n = 0; n < 4; n++) x[n][k] = corners[3 * n + k] - edge->x[0][k];
+    }
+    for (n = 1; n < 4; n++) size = fmax(size, sqrt(gxp_square_distance(x[n], x[0])));
+    off = GXP_TOUCH * size + edge->rounding;
+    for (k = 0; k < 4; k++) {
+        const double *a = x[gxp_outward[k][0]], *b = x[gxp_outward[k][1]], *c = x[gxp_outward[k][2]];
+        const double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+        double normal[3], height, margin, from, to;
+        gxp_cross(normal, u, v);
+        margin = off * gxp_size(normal);
+        height = gxp_dot(normal, x[k]) - gxp_dot(normal, a);
+        if (!(fabs(height) > margin)) return 0;
+        from = height > 0 ? -gxp_dot(normal, a) : gxp_dot(normal, a);
+        to = from + (height > 0 ? gxp_dot(normal, way) : -gxp_dot(normal, way));
+        if (!gxp_narrow(from + margin, to + margin, low, high)) return 0;
+        *touch = fmax(*touch, margin / fabs(height));
+    }
+    return 1;
+}
+
+/* Adds the spans of a part of the edge in a cell. */
+static gx_result gxp_meet_cell(gx_body *body, void *user, uint32_t slot) {
+    const gxp_edge_part *edge = (const gxp_edge_part *)user;
+    gx_blade *blade = edge->blade;
+    const gxp_cell *cell = &body->cells.data[slot];
+    const uint32_t before = blade->span_count;
+    gxp_cell_part part;
+    gxp_close_cell close;
+    double weights[4], point[3], low = 0, high = 1, touch;
+    int n;
+    gx_result result;
+    if (!gxp_clip_to_element(edge, cell, &low, &high, &touch)) return GX_OK;
+    part.edge = edge;
+    part.slot = slot;
+    part.low = gxp_between(edge->low, edge->high, low);
+    part.high = gxp_between(edge->low, edge->high, high);
+    part.touch = touch * gxp_element_size(body, cell->element);
+    for (n = 0; n < 2; n++) {
+        gxp_edge_position(edge->ends, 2, n == 0 ? part.low : part.high, point);
+        (void)gxp_pull_back(body, slot, point, weights, part.rest[n]);
+    }
+    result = gxp_add_leaf_spans(body, &part, gxb_complex_root(body->complex, cell->element), 0, 1);
+    if (result != GX_OK || blade->span_count == before || gxp_close_index(&blade->near, slot) != GXP_NONE)
+        return result;
+    close.slot = slot;
+    close.quad = 0; /* there are none */
+    gxp_place_near(body, &close);
+    return gxp_push_near(blade, &close);
+}
+
+/* Finds the spans of a segment of the edge, part by part. */
+static gx_result gxp_meet_segment(gx_blade *blade, uint32_t segment) {
+    const double *ends = blade->now.edge.data + 3 * (size_t)segment;
+    const uint32_t parts = gxp_part_count(blade, ends);
+    gxp_edge_part edge;
+    double most = 0;
+    uint32_t i;
+    int k;
+    gx_result result = GX_OK;
+    for (k = 0; k < 6; k++) most = fmax(most, fmax(fabs(ends[k]), blade->body->tree.reach[k % 3]));
+    edge.blade = blade;
+    edge.ends = ends;
+    edge.segment = segment;
+    edge.rounding = GXP_TOUCH_ROUNDING * most;
+    for (i = 0; i < parts && result == GX_OK; i++) {
+        gxp_bounds box;
+        edge.low = (double)i / parts;
+        edge.high = (double)(i + 1) / parts;
+        gxp_edge_position(ends, 2, edge.low, edge.x[0]);
+        gxp_edge_position(ends, 2, edge.high, edge.x[1]);
+        for (k = 0; k < 3; k++) {
+            box.low[k] = fmin(edge.x[0][k], edge.x[1][k]) - edge.rounding - GXP_TOUCH * blade->largest;
+            box.high[k] = fmax(edge.x[0][k], edge.x[1][k]) + edge.rounding + GXP_TOUCH * blade->largest;
+        }
+        result = gxp_walk_box(blade->body, &box, gxp_meet_cell, &edge);
+    }
+    return result;
+}
+
+/* A span by its place in the order of layers */
+static gxp_span *gxp_span_at(const gx_blade *blade, uint32_t index) {
+    return &blade->spans[GXP_SECOND(blade->span_order.data[index])];
+}
+
+/* Does a span go on where others of its layer have come to? */
+static int gxp_goes_on(const gxp_span *span, const gxp_span *reach) {
+    if (span->segment == reach->segment) return span->low <= reach->high;
+    return span->segment == reach->segment + 1 && reach->high >= 1; /* the point between the two is in the layer */
+}
+
+/* Sorts the spans by layer, and takes from each what is in those before it: so a layer has each place once. */
+static gx_result gxp_join_spans(gx_blade *blade) {
+    gxp_keys *order = &blade->span_order;
+    const gxp_span *reach = NULL;
+    uint32_t i;
+    gx_result result = gxp_number_layers(blade);
+    order->count = 0;
+    if (result == GX_OK) result = gxp_keys_room(blade->body, order, 2 * (size_t)blade->span_count);
+    for (i = 0; i < blade->span_count && result == GX_OK; i++)
+        result = gxp_push_key(blade->body, order, gxp_layer_of(&blade->near, blade->spans[i].slot), i);
+    if (result == GX_OK) result = gxp_sort_keys(blade->body, order, 0, order->count);
+    for (i = 0; i < order->count; i++) {
+        gxp_span *span = gxp_span_at(blade, i);
+        span->begins =
+            reach == NULL || GXP_FIRST(order->data[i]) != GXP_FIRST(order->data[i - 1]) || !gxp_goes_on(span, reach);
+        if (!span->begins && span->segment == reach->segment) span->low = reach->high;
+        if (span->high < span->low) span->high = span->low;
+        reach = span;
+    }
+    return result;
+}
+
+/* The hit of a place on the edge in a cell, or next to nothing off it */
+static void gxp_hit_on_edge(gx_body *body, uint32_t slot, const double point[3], gx_hit *hit) {
+    double weights[4], material[3], sum = 0;
+    int n;
+    (void)gxp_pull_back(body, slot, point, weights, material);
+    for (n = 0; n < 4; n++) sum += fmax(weights[n], 0);
+    for (n = 0; n < 4; n++) weights[n] /= sum;
+    gxp_start_hit(body, slot, weights, hit);
+    memcpy(hit->material, material, sizeof hit->material);
+    memcpy(hit->position, point, sizeof hit->position);
+}
+
+static double gxp_span_length(const gx_blade *blade, const gxp_span *span) {
+    const double *ends = blade->now.edge.data + 3 * (size_t)span->segment;
+    return (span->high - span->low) * sqrt(gxp_square_distance(ends, ends + 3));
+}
+
+/* How long a run of joined spans is, and into how many contacts it is divided */
+static double gxp_measure_run(const gx_blade *blade, uint32_t first, uint32_t end, size_t *parts) {
+    double length = 0, sum = 0;
+    uint32_t i;
+    for (i = first; i < end; i++) {
+        const gxp_span *span = gxp_span_at(blade, i);
+        const double own = gxp_span_length(blade, span);
+        length += own;
+        sum += own * blade->near.cells[gxp_close_index(&blade->near, span->slot)].radius;
+    }
+    *parts = 0;
+    if (!(length * length > GXP_LEAST_CONTACT * sum)) return length;
+    *parts = (size_t)(length * length / (GXP_CONTACT_SPACING * sum) + 0.5);
+    if (*parts == 0) *parts = 1;
+    return length;
+}
+
+/* The contact at a place in a run, m from its beginning. *at, *passed: the span in which the search begins and the
+   length of those before it; then those of the place */
+static void gxp_place_contact(gx_blade *blade, double place, uint32_t *at, double *passed, gx_blade_contact *contact) {
+    const gxp_span *span = gxp_span_at(blade, *at);
+    double share, point[3];
+    while (*passed + gxp_span_length(blade, span) < place) { /* the run is longer: sums are those of gxp_measure_run */
+        *passed += gxp_span_length(blade, span);
+        span = gxp_span_at(blade, ++*at);
+    }
+    share = fmin(span->low + (span->high - span->low) * ((place - *passed) / gxp_span_length(blade, span)), span->high);
+    gxp_edge_position(blade->now.edge.data + 3 * (size_t)span->segment, 2, share, point);
+    gxp_hit_on_edge(blade->body, span->slot, point, &contact->hit);
+    contact->along = span->segment + share;
+}
+
+/* Divides each run of joined spans into equal lengths, each with a contact in its middle. */
+static void gxp_place_contacts(gx_blade *blade, gx_blade_contact *contacts, size_t capacity, size_t *count) {
+    uint32_t first, end;
+    *count = 0;
+    for (first = 0; first < blade->span_order.count; first = end) {
+        double length, passed = 0;
+        size_t parts, i;
+        uint32_t at = first;
+        for (end = first + 1; end < blade->span_order.count && !gxp_span_at(blade, end)->begins;) end++;
+        length = gxp_measure_run(blade, first, end, &parts);
+        for (i = 0; i < parts && *count + i < capacity; i++) {
+            gx_blade_contact *contact = &contacts[*count + i];
+            contact->length = length / (double)parts;
+            gxp_place_contact(blade, ((double)i + 0.5) * contact->length, &at, &passed, contact);
+        }
+        *count += parts;
+    }
+}
+
+/* Finds all spans, joined by layer. */
+static gx_result gxp_find_spans(gx_blade *blade) {
+    uint32_t i;
+    gx_result result = gxp_extend_words(blade->body, &blade->near.of_slot, blade->body->cells.count);
+    for (i = 0; i + 1 < blade->now.edge.count && result == GX_OK; i++) result = gxp_meet_segment(blade, i);
+    return result == GX_OK ? gxp_join_spans(blade) : result;
+}
+
+GXFEM_API gx_result gx_blade_contacts(gx_blade *blade, gx_blade_contact *contacts, size_t capacity, size_t *count,
+                                      gx_failure *failure) {
+    gx_result result;
+    if (blade == NULL) return gxp_refuse(failure, "blade");
+    if (contacts == NULL && capacity > 0) return gxp_refuse(failure, "contacts");
+    if (count == NULL) return gxp_refuse(failure, "count");
+    if (blade->now.edge.count == 0) {
+        *count = 0;
+        return gxp_end(failure, GX_OK);
+    }
+    result = gxp_prepare_locate(blade->body, failure);
+    if (result != GX_OK && result != GX_ERROR_EMPTY) return result;
+    blade->near.count = blade->quads.count = blade->span_count = blade->span_order.count = 0;
+    if (result == GX_OK) result = gxp_find_spans(blade);
+    if (gxp_end(failure, result == GX_ERROR_EMPTY ? GX_OK : result) != GX_OK) return result;
+    gxp_place_contacts(blade, contacts, capacity, count);
+    return *count > capacity ? gxp_fail(failure, GX_ERROR_CAPACITY, "capacity", SIZE_MAX) : GX_OK;
 }
 
 /* >>carve: what a closed tool in space covers ---------------------------------------------------------------------- */
@@ -13781,6 +14142,10 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_CROSSING
 #undef GXP_SHEET_TRIANGLES
 #undef GXP_STRIP_REACH
+#undef GXP_TOUCH
+#undef GXP_TOUCH_ROUNDING
+#undef GXP_LEAST_CONTACT
+#undef GXP_CONTACT_SPACING
 #undef GXP_EDGE_REACH
 #undef GXP_TOOL_TRIANGLES
 #ifdef GXFEM_SCALAR

@@ -107,7 +107,7 @@ static inline void stage_open(stage *s, double young, double jitter, const gx_bl
     double *positions = (double *)malloc(nodes * 3 * sizeof *positions);
     uint32_t *corners = (uint32_t *)malloc(elements * 4 * sizeof *corners);
     gx_body_desc desc;
-    gx_region top = {2, 1, 0};
+    gx_region top = gx_region_half_space(2, 1, 0);
     memset(&desc, 0, sizeof desc);
     memset(&s->failure, 0, sizeof s->failure);
     stage_clear_tally(s);

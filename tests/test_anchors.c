@@ -190,6 +190,7 @@ static void expect_point(gx_body *body, const workload *w, const gx_anchor *a, u
     double x[3] = {0, 0, 0}, moved[3], sum = 0;
     uint32_t i, k;
     (void)w;
+    memset(&point, 0, sizeof point);
     ck_assert_int_eq(gx_body_anchor_point(body, a, &point, moved, NULL), GX_OK);
     CHECK_SEED(point.count >= 1 && point.count <= 4 && point.epoch == view.epoch && point.copies == NULL, seed);
     for (k = 0; k < point.count; k++) {
@@ -208,12 +209,12 @@ static void expect_point(gx_body *body, const workload *w, const gx_anchor *a, u
 
 /* ---- random lives ---- */
 
-/* The volume of the smallest cell that may have the hit */
+/* The volume of the smallest part of the cell that was hit */
 static double thinnest(gx_body *body, const gx_hit *hit) {
     double volume = 1;
     uint32_t cell;
     for (cell = hit->element; cell != GXB_NONE; cell = body->cells.data[cell].next)
-        if (gxp_moves_hit(&body->cells.data[cell], hit)) volume = fmin(volume, body->cells.data[cell].volume);
+        if (gxp_is_hit(body, cell, hit)) volume = fmin(volume, body->cells.data[cell].volume);
     return volume;
 }
 
@@ -248,7 +249,7 @@ static size_t live(uint64_t seed, int solids, size_t *thin) {
                     (*thin)++;
                     continue;
                 }
-                CHECK_SEED(a->element == hit.element, seed);
+                CHECK_SEED(gxp_anchor_cell(body, a) == hit.slot, seed);
                 for (j = 0; j < 3; j++) CHECK_SEED(fabs(a->position[j] - hit.material[j]) < 1e-12, seed);
             } else {
                 random_material(&w, element, x);
@@ -307,7 +308,7 @@ START_TEST(hits_on_faces_of_cuts) {
     static cuts c;
     workload w = grid(1, 1, 1, 6);
     gx_body *body = body_of(&w);
-    gx_skin skin;
+    gx_skin skin = {0};
     double *x;
     int trial, made = 0;
     random_seed(seed);
@@ -345,6 +346,97 @@ START_TEST(hits_on_faces_of_cuts) {
     }
     free(x);
     ck_assert_int_gt(made, 0);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Two cells of an element on the sides of a sheet that ends just beyond it share all copies. Both are found at a point
+   of the sheet, and each anchor belongs to its own. */
+START_TEST(hits_beside_a_slit) {
+    const double slit[3][3] = {{1.5, 0.9, 0.95}, {1.5, 1.55, 0.95}, {1.5, 1.55, 1.6}}, point[3] = {1.5, 1.375, 1.125};
+    workload w = grid(3, 3, 3, 6);
+    gx_body *body = body_of(&w);
+    wl_surface *s = wl_add_surface(&w, 0);
+    gx_hit hits[8];
+    size_t count = 0, i;
+    for (i = 0; i < 3; i++) wl_add_vertex(s, slit[i]);
+    wl_add_triangle(s, 0, 1, 2);
+    cut_by(body, &w, 0, 1);
+    ck_assert_uint_eq(view_of(body).copy_count, w.node_count);
+    ck_assert_int_eq(gx_body_locate_all(body, point, hits, 8, &count, NULL), GX_OK);
+    ck_assert_uint_eq(count, 2);
+    ck_assert(hits[0].element == hits[1].element && hits[0].slot != hits[1].slot);
+    for (i = 0; i < 2; i++) {
+        gx_anchor anchor;
+        ck_assert_int_eq(gx_hit_anchor(body, &hits[i], &anchor, NULL), GX_OK);
+        ck_assert_uint_eq(gxp_anchor_cell(body, &anchor), hits[i].slot);
+        ck_assert(anchor.position[0] == 1.5);
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Cuts that keep the copies divide the cell that was hit, and then remove a part of it. Older hits belong to the part
+   where they are, and then to what is left of the cell. Of a cell that is gone there is nothing. */
+START_TEST(hits_of_divided_cells) {
+    enum { POINTS = 200 };
+    static gx_hit hits[POINTS];
+    workload w = grid(3, 3, 3, 6);
+    gx_body *body = body_of(&w);
+    const uint64_t epoch = view_of(body).epoch;
+    const double p[3] = {1.5, 1.4, 1.3}, n[3] = {1, 0.2, -0.3};
+    gx_surface surfaces[2];
+    gx_cut_desc cut;
+    gx_hit middle, now;
+    uint32_t part = UINT32_MAX;
+    size_t i, in_part = 0;
+    random_seed(3);
+    memset(&cut, 0, sizeof cut);
+    ck_assert_int_eq(gx_body_locate(body, p, 1, &middle, NULL), GX_OK);
+    for (i = 0; i < POINTS;) {
+        const double x[3] = {random_real(1, 2), random_real(1, 2), random_real(1, 2)};
+        ck_assert_int_eq(gx_body_locate(body, x, 1, &hits[i], NULL), GX_OK);
+        i += hits[i].slot == middle.slot;
+    }
+    add_plane(&w, p, n, 9);
+    add_box(&w, 1, 0.5, 0.5, 0.5, 2.5, 2.5, 2.5);
+    for (i = 0; i < 2; i++) {
+        surfaces[i] = surface_of(&w.surfaces[i]);
+        surfaces[i].scope_slots = i == 0 ? &middle.slot : &part;
+        surfaces[i].scope_slot_count = 1;
+    }
+    cut.surfaces = surfaces;
+    cut.surface_count = 1;
+    ck_assert_int_eq(gx_body_cut(body, &cut, NULL, NULL), GX_OK);
+    for (i = 0; i < POINTS; i++) {
+        gx_anchor anchor;
+        ck_assert_int_eq(gx_body_locate(body, hits[i].position, 1, &now, NULL), GX_OK);
+        ck_assert(now.element == middle.element && now.epoch == epoch);
+        ck_assert_int_eq(gx_hit_anchor(body, &hits[i], &anchor, NULL), GX_OK);
+        ck_assert_uint_eq(gxp_anchor_cell(body, &anchor), now.slot);
+        if (now.slot != middle.slot) part = now.slot, in_part++;
+    }
+    ck_assert(in_part > 20 && in_part < POINTS - 20);
+    ck_assert_int_eq(gx_body_locate(body, p, 1, &middle, NULL), GX_OK);
+    cut.surfaces = &surfaces[1];
+    ck_assert_int_eq(gx_body_cut(body, &cut, NULL, NULL), GX_OK);
+    ck_assert(view_of(body).epoch == epoch);
+    for (i = 0; i < POINTS; i++) {
+        gx_anchor anchor;
+        ck_assert_int_eq(gx_hit_anchor(body, &hits[i], &anchor, NULL), GX_OK); /* what is left of the cell */
+        ck_assert_uint_eq(gxp_anchor_cell(body, &anchor), hits[i].slot);
+    }
+    now = hits[0];
+    now.slot = part;
+    now.slot_count = middle.slot_count; /* a hit of the part, before it was removed */
+    {
+        gx_anchor anchor;
+        gx_failure failure;
+        ck_assert_int_eq(gx_hit_anchor(body, &now, &anchor, &failure), GX_ERROR_EMPTY);
+        ck_assert_str_eq(failure.field, "hit.slot");
+    }
     gx_body_destroy(body);
     wl_free(&w);
 }
@@ -455,7 +547,7 @@ START_TEST(steps_by_anchors) {
     gx_body *by_anchors, *by_copies = NULL;
     gx_anchor anchors[6];
     gxs_spring springs[2], of_points[2];
-    gxs_point points[2], point;
+    gxs_point points[2], point = {0};
     gxs_plane ground;
     gx_step_desc step = step_of(0.01), other;
     gx_view view;
@@ -605,7 +697,7 @@ START_TEST(copies_and_going_back) {
     gx_anchor anchors[50];
     gxs_point before[50], point;
     unsigned char *bytes;
-    size_t size, i;
+    size_t size = 0, i;
     random_seed(seed);
     memset(&c, 0, sizeof c);
     for (i = 0; i < 50; i++) {
@@ -675,6 +767,7 @@ START_TEST(far_small_and_flat) {
         double x[3], back[3] = {0, 0, 0};
         uint32_t j;
         int k;
+        memset(&point, 0, sizeof point);
         random_material(&w, element, x);
         ck_assert_int_eq(gx_body_anchor(body, element, x, &a, NULL), GX_OK);
         ck_assert_int_eq(gx_body_anchor_point(body, &a, &point, NULL, NULL), GX_OK);
@@ -743,6 +836,14 @@ START_TEST(refused_anchors) {
     wrong = hit;
     wrong.element = 5;
     REFUSED(gx_hit_anchor(body, &wrong, &a, &failure), GX_ERROR_INDEX, "hit.element", SIZE_MAX);
+    wrong = hit;
+    wrong.slot = 77;
+    REFUSED(gx_hit_anchor(body, &wrong, &a, &failure), GX_ERROR_INDEX, "hit.slot", SIZE_MAX);
+    wrong.slot = (hit.element + 1) % 5; /* of another element */
+    REFUSED(gx_hit_anchor(body, &wrong, &a, &failure), GX_ERROR_INDEX, "hit.slot", SIZE_MAX);
+    wrong = hit;
+    wrong.slot_count = hit.slot;
+    REFUSED(gx_hit_anchor(body, &wrong, &a, &failure), GX_ERROR_INDEX, "hit.slot", SIZE_MAX);
     wrong = hit;
     wrong.material[0] = INFINITY;
     REFUSED(gx_hit_anchor(body, &wrong, &a, &failure), GX_ERROR_NOT_FINITE, "hit.material", SIZE_MAX);
@@ -859,6 +960,8 @@ static Suite *suite(void) {
     tcase_set_timeout(tests, getenv("GXFEM_ANCHORS") != NULL ? 7200 : 300);
     tcase_add_test(tests, each_on_its_own_side);
     ADD_SOME(tests, hits_on_faces_of_cuts, 10);
+    tcase_add_test(tests, hits_beside_a_slit);
+    tcase_add_test(tests, hits_of_divided_cells);
     tcase_add_test(tests, cuts_through_an_anchor);
     tcase_add_test(tests, a_pick_keeps_to_its_side);
     tcase_add_test(tests, steps_by_anchors);

@@ -657,6 +657,7 @@ START_TEST(blades) {
     const uint32_t scope[2] = {0, 1};
     gx_blade_desc desc;
     gx_blade *blade = NULL;
+    size_t count = 0;
     memset(&desc, 0, sizeof desc);
     REFUSED(gx_blade_create(NULL, NULL, &blade, &failure), GX_ERROR_ARGUMENT, "body", SIZE_MAX);
     KEEPS(body, gx_blade_create(body, NULL, NULL, &failure), GX_ERROR_ARGUMENT, "blade", SIZE_MAX);
@@ -674,6 +675,9 @@ START_TEST(blades) {
     DONE(gx_blade_create(body, &desc, &blade, &failure));
     REFUSED(gx_blade_move(NULL, edge, 2, NULL, 0, NULL, &failure), GX_ERROR_ARGUMENT, "blade", SIZE_MAX);
     REFUSED(gx_blade_lift(NULL, NULL, &failure), GX_ERROR_ARGUMENT, "blade", SIZE_MAX);
+    REFUSED(gx_blade_contacts(NULL, NULL, 0, &count, &failure), GX_ERROR_ARGUMENT, "blade", SIZE_MAX);
+    KEEPS(body, gx_blade_contacts(blade, NULL, 1, &count, &failure), GX_ERROR_ARGUMENT, "contacts", SIZE_MAX);
+    KEEPS(body, gx_blade_contacts(blade, NULL, 0, NULL, &failure), GX_ERROR_ARGUMENT, "count", SIZE_MAX);
     KEEPS(body, gx_blade_move(blade, NULL, 2, NULL, 0, NULL, &failure), GX_ERROR_ARGUMENT, "edge", SIZE_MAX);
     KEEPS(body, gx_blade_move(blade, edge, 1, NULL, 0, NULL, &failure), GX_ERROR_ARGUMENT, "point_count", SIZE_MAX);
     KEEPS(body, gx_blade_move(blade, edge, 0, NULL, 0, NULL, &failure), GX_ERROR_ARGUMENT, "point_count", SIZE_MAX);
@@ -702,6 +706,15 @@ START_TEST(blades) {
     KEEPS(body, gx_blade_move(blade, edge, 2, scope, 2, NULL, &failure), GX_ERROR_INDEX, "scope_fragments", 1);
     ck_assert_uint_eq(view_of(body).fragment_count, 1);
     bad[0] = -9;
+    bad[1] = bad[4] = 1;
+    DONE(gx_blade_move(blade, bad, 2, scope, 1, NULL, &failure));
+    KEEPS(body, gx_blade_contacts(blade, NULL, 0, &count, &failure), GX_ERROR_CAPACITY, "capacity", SIZE_MAX);
+    ck_assert_uint_gt(count, 2);
+    view_of(body).displacement[13] = NAN;
+    KEEPS(body, gx_blade_contacts(blade, NULL, 0, &count, &failure), GX_ERROR_NOT_FINITE, "displacement", 4);
+    view_of(body).displacement[13] = 1e39;
+    KEEPS(body, gx_blade_contacts(blade, NULL, 0, &count, &failure), GX_ERROR_RANGE, "displacement", 4);
+    view_of(body).displacement[13] = 0;
     bad[1] = bad[4] = 3;
     DONE(gx_blade_move(blade, bad, 2, scope, 1, NULL, &failure));
     DONE(gx_blade_lift(blade, NULL, &failure));

@@ -364,6 +364,14 @@ static gx_result blade_life(gx_body *body, int waits) {
 }
 static gx_result blade_that_moves(gx_body *body) { return blade_life(body, 0); }
 static gx_result blade_that_waits(gx_body *body) { return blade_life(body, 1); }
+/* Of a blade that is in the body already */
+static gx_result blade_contacts(gx_body *body) {
+    gx_blade_contact contacts[16];
+    size_t count = 0;
+    const gx_result result = gx_blade_contacts(gx_body_blade(body, 0), contacts, 16, &count, NULL);
+    ck_assert((result == GX_OK) == (count > 0));
+    return result;
+}
 static gx_result blade_in_scope(gx_body *body) {
     static const double before[6] = {-9, -0.4, 0.45, 9, -0.3, 0.55}, behind[6] = {-9, 1.3, 0.45, 9, 1.4, 0.55};
     static const uint32_t first = 0;
@@ -673,6 +681,7 @@ START_TEST(blades) {
     sweep("a blade with a scope", after_a_cut, blade_in_scope);
     sweep("a tool", nothing, carve);
     sweep("a tool in a cut body that has moved", held, carve);
+    sweep("contacts of a blade", with_a_blade, blade_contacts);
     sweep("a clone of a body with a blade", with_a_blade, clone);
     sweep("loading a body with a blade", with_a_blade, save_and_load);
     stride /= 10 * LARGE;

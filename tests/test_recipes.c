@@ -275,6 +275,41 @@ START_TEST(blade_begins_outside) {
 }
 END_TEST
 
+/* ---- Feel ---- */
+
+/* A blade goes along y through the block, which hangs: while it is in the material, that is pushed on and the hand
+   back, by no more than the resistance. */
+START_TEST(feel_the_blade) {
+    gx_body *body = make_hanging(6, NULL);
+    gx_blade *blade = NULL;
+    gx_step_desc step = step_of(1.0 / 60);
+    blade_feel feel;
+    double most = 0, longest = 0;
+    int frame, felt = 0;
+    memset(&feel, 0, sizeof feel);
+    feel.stiffness = 2e4;
+    feel.resistance = 40;
+    step.gravity[2] = 0;
+    OK(gx_blade_create(body, NULL, &blade, NULL));
+    for (frame = 0; frame <= 60; frame++) {
+        const double y = -0.3 + 0.03 * frame, edge[9] = {-0.5, y, 0.45, 0.4, y, 0.47, 1.5, y, 0.45};
+        OK(feel_frame(body, blade, step, edge, 3, &feel));
+        most = fmax(most, -feel.force[1]);
+        longest = fmax(longest, feel.length);
+        felt += feel.length > 0;
+        ck_assert(fabs(feel.force[1]) <= 1.05 * feel.resistance * feel.length);
+        if (y < -0.02) ck_assert(!(feel.length > 0) && !(fabs(feel.force[1]) > 0));
+        ck_assert(feel.length < 1.3);
+    }
+    ck_assert_int_gt(felt, 20);
+    ck_assert_int_lt(felt, 50);
+    ck_assert_msg(most > 10 && longest > 0.9, "%g N, %g m", most, longest);
+    ck_assert(!(feel.length > 0));
+    ck_assert_uint_eq(view_of(body).fragment_count, 2);
+    gx_body_destroy(body);
+}
+END_TEST
+
 /* ---- Hold ---- */
 
 START_TEST(hold) {
@@ -609,6 +644,7 @@ int main(void) {
     tcase_add_test(tc, drag);
     tcase_add_loop_test(tc, blade_in_space, 0, 2);
     tcase_add_test(tc, blade_begins_outside);
+    tcase_add_test(tc, feel_the_blade);
     tcase_add_test(tc, hold);
     tcase_add_test(tc, ground);
     tcase_add_test(tc, ground_after_cuts);
