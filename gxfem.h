@@ -13585,10 +13585,11 @@ static gx_result gxp_state_room(gx_body *body, const gxp_state_counts *n) {
     return result == GX_OK && n->history ? gxp_start_history(body, 2) : result;
 }
 
-/* Makes the solver forget its last step, as that of the other body has. */
+/* Makes the solver forget its last step, as that of the other body has. Both make a model that is changed by cuts, or
+   is to be, anew. */
 static void gxp_resume_in(gx_body *body, const gxs_scene *scene) {
     gxs_solver_resume(body->solver, scene);
-    if (body->model.updated) body->model.state = GXP_MODEL_STALE;
+    if (body->model.updated || body->model.state == GXP_MODEL_CHANGED) body->model.state = GXP_MODEL_STALE;
     body->model.resumed = gxp_hash_state(body, body->copies.count);
 }
 

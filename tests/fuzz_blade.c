@@ -24,7 +24,9 @@
 #endif
 #include "../gxfem.h"
 #define FUZZ_BYTES   256
+#ifndef FUZZ_SECONDS
 #define FUZZ_SECONDS 20
+#endif
 #define FUZZ_FOLDER  "build/fuzz_blade"
 #include "fuzz.h"
 #include "fuzz_blade_cases.h"
@@ -617,9 +619,8 @@ static void advance_stroke(case_bytes *b, stroke *s) {
 
 /* ---- moves ---- */
 
-static void check_refused_edge(const call *c, const outcome *o, const stroke *s) {
-    gx_result wild;
-    const size_t copy = wild_copy(&wild);
+/* copy: the first that is wild, and what it is refused with, before the move */
+static void check_refused_edge(const call *c, const outcome *o, const stroke *s, size_t copy, gx_result wild) {
     size_t i;
     for (i = 0; i < 3 * c->count; i++) {
         const double x = c->x[i / 3][i % 3];
@@ -663,6 +664,8 @@ static void check_report(const outcome *o) {
 static void move_blade(case_bytes *b, uint32_t which, uint32_t fail_code) {
     const uint32_t blade = which % w.blades, how = case_take(b);
     stroke *s = &w.strokes[blade], before;
+    gx_result wild;
+    const size_t copy = wild_copy(&wild);
     call c;
     outcome o;
     memset(&c, 0, sizeof c);
@@ -680,7 +683,7 @@ static void move_blade(case_bytes *b, uint32_t which, uint32_t fail_code) {
     if (how == 5) c.scope[0] = 9999, c.scope_count = 1;
     o = perform(&c, fail_code);
     count.moves++;
-    check_refused_edge(&c, &o, s);
+    check_refused_edge(&c, &o, s, copy, wild);
     if (o.result == GX_OK) {
         s->begun = 1;
         check_report(&o);
@@ -696,8 +699,8 @@ static void lift_blade(uint32_t which, uint32_t fail_code) {
     memset(&c, 0, sizeof c);
     c.kind = LIFT;
     c.blade = which % w.blades;
-    o = perform(&c, fail_code);
     wild_copy(&wild);
+    o = perform(&c, fail_code);
     if (!s->begun) wild = GX_OK;
     REQUIRE(o.result == wild, "lift: %d, field %s, index %zu, should be %d", (int)o.result, field_of(&o),
             o.failure.index, (int)wild);
@@ -875,8 +878,8 @@ static void carve(case_bytes *b, uint32_t fail_code) {
     c.triangle_count -= open;
     /* a tool is divided as finely as elements are thick: in flat ones that takes minutes */
     if (!is_in_range(&c) || w.mesh.is_flat) return;
-    o = perform(&c, fail_code);
     wild_copy(&wild);
+    o = perform(&c, fail_code);
     REQUIRE(o.result == wild || (open && o.result == GX_ERROR_NOT_CLOSED), "carve: %d, field %s, index %zu",
             (int)o.result, field_of(&o), o.failure.index);
     if (o.result != GX_OK) return;
