@@ -6,7 +6,8 @@
                   --trace                                                   prints each call
 
    With -DGXFEM_LINKED it does not contain the library. A case is a body and a list of calls. Two bodies are given the
-   same calls. The memory of one of them runs out now and then, and it is saved and loaded, cloned, and taken back.
+   same calls. The memory of one of them runs out now and then, and it is saved and loaded, cloned, and taken back. The
+   other one has a host's threads.
 
    Checks:
        results       a call succeeds, or is refused with the code, the field and the index that the documentation
@@ -23,11 +24,11 @@
 #define GXFEM_IMPLEMENTATION
 #endif
 #include "../gxfem.h"
-#define FUZZ_BYTES   256
+#define FUZZ_BYTES 256
 #ifndef FUZZ_SECONDS
 #define FUZZ_SECONDS 20
 #endif
-#define FUZZ_FOLDER  "build/fuzz_blade"
+#define FUZZ_FOLDER "build/fuzz_blade"
 #include "fuzz.h"
 #include "fuzz_blade_cases.h"
 #include "skin_check.h"
@@ -1012,6 +1013,12 @@ static void locate(case_bytes *b, uint32_t fail_code) {
 
 /* ---- cases ---- */
 
+/* The host's threads of the twin: the last job comes first */
+static void run_backwards(void *user, size_t count, void (*task)(void *context, size_t index), void *context) {
+    (void)user;
+    while (count > 0) task(context, --count);
+}
+
 static gx_body *create(memory *m) {
     gx_body_desc desc;
     gx_body *body = NULL;
@@ -1024,6 +1031,7 @@ static gx_body *create(memory *m) {
     desc.poisson = 0.4;
     desc.density = 1000;
     desc.allocator = allocator_of(m, w.grows);
+    if (m == &twins) desc.jobs.parallel_for = run_backwards;
     return gx_body_create(&desc, &body, NULL) == GX_OK ? body : NULL;
 }
 

@@ -850,6 +850,42 @@ START_TEST(degenerate_edges) {
 }
 END_TEST
 
+/* Edges whose ends are far away. Where rounding moves places between them by more than an element the blade misses the
+   body. */
+START_TEST(far_ends) {
+    stage s = open_block(3, 1);
+    const double far = _i == 0 ? 1e12 : _i == 1 ? 1e20 : 1e30;
+    int k;
+    for (k = 0; k <= 20; k++) {
+        const double y = -2 + 0.35 * k, edge[9] = {-far, y, 1.3, 1.4, y, 1.3, far, y, 1.3};
+        stage_move_edge(&s, edge, 3);
+    }
+    stage_lift(&s);
+    check_fragments(&s, _i == 0 ? 2 : 1, 0);
+    stage_close(&s);
+}
+END_TEST
+
+/* After a step that went wrong copies may be anywhere. The moves end soon, cut hardly anything, and keep the volume. */
+START_TEST(huge_displacements) {
+    stage s = open_block(3, 1);
+    const double sizes[3] = {1e6, 1e20, 1e30}, size = sizes[_i];
+    size_t most = 0, c;
+    int k;
+    for (k = 0; k < 6; k++) {
+        const double edge[6] = {-9, -2 + 0.4 * k, 1.3, 12, -2 + 0.5 * k, 1.4}, far[6] = {-9, k * size, 1.3, 9, 0.6, 1};
+        const size_t before = s.tally.triangles;
+        for (c = 0; c < 3 * s.view.copy_count && k >= 2; c++) s.view.displacement[c] = size * (stage_uniform(&s));
+        stage_move_edge(&s, k < 4 ? edge : far, 2);
+        if (s.tally.triangles - before > most) most = s.tally.triangles - before;
+    }
+    stage_lift(&s);
+    check_stage(&s, (uint64_t)_i);
+    ck_assert_msg(most < 300, "a move made %zu triangles", most);
+    stage_close(&s);
+}
+END_TEST
+
 /* Far from the body nothing happens. */
 START_TEST(nothing_near) {
     stage s = open_block(3, 1);
@@ -1028,6 +1064,8 @@ int main(void) {
     tcase_add_loop_test(tests, many_points, 0, 3);
     tcase_add_loop_test(tests, bent_edges, 0, 2);
     tcase_add_loop_test(tests, degenerate_edges, 0, 3);
+    tcase_add_loop_test(tests, far_ends, 0, 3);
+    tcase_add_loop_test(tests, huge_displacements, 0, 3);
     tcase_add_test(tests, nothing_near);
     tcase_add_test(tests, refused_moves);
     tcase_add_loop_test(tests, memory_runs_out, 0, 2);
