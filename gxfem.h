@@ -1168,6 +1168,7 @@ typedef struct gxp_relation {
     uint32_t segment; /* of the front, the nearest */
     uint8_t ahead;    /* 1: the front advances there */
     uint8_t strays;   /* 1: the edge has left its cut through the side */
+    uint8_t doubtful; /* 1: ahead only because the cut's sheet is in the air there */
 } gxp_relation;
 
 /* A part of a segment of the edge that is in a cell */
@@ -1202,7 +1203,7 @@ struct gx_blade {
     gx_surface *surfaces;
     uint32_t surface_capacity;
     /* of one layer at a move */
-    gxp_front_list front, latest, seen, samples, advanced;
+    gxp_front_list front, latest, seen, samples, advanced, crossings;
     gxp_front_list strip, cut; /* 3 for each triangle: of one strip, of all */
     gxp_points path, sheet;
     /* the edge at a move, with a point wherever a layer had seen it */
@@ -10738,7 +10739,7 @@ static gx_result gxp_judge_behind(gx_blade *blade, const gxp_front_vertex *v, gx
     if (r->distance <= 2 * blade->tolerance || blade->sheet.count == 0) return GX_OK;
     if (gxp_near_sheet(&blade->sheet, v->rest, nearest) <= width) {
         result = gxp_find_rest_cell(blade->body, nearest, &slot);
-        r->ahead = slot == GXP_NONE; /* the sheet is in the air there: nothing is cut yet */
+        r->ahead = r->doubtful = slot == GXP_NONE; /* the sheet is in the air there: nothing is cut, at least there */
         return result;
     }
     gxp_near_front(&blade->front, nearest, &of_sheet, at);
@@ -10843,6 +10844,15 @@ static gx_result gxp_came_back(gx_blade *blade, int *is_back) {
     return result;
 }
 
+/* Is a place that may be ahead next to one that is in the material, and behind for sure? */
+static int gxp_is_beside_behind(const gxp_front_list *samples, const gxp_relation *r, uint32_t index) {
+    uint32_t i;
+    for (i = index; i > 0 && r[i].doubtful && !samples->data[i - 1].gap;) i--;
+    if (!r[i].doubtful && !r[i].ahead && !(samples->data[i].distance > 0)) return 1;
+    for (i = index; i + 1 < samples->count && r[i].doubtful && !samples->data[i].gap;) i++;
+    return !r[i].doubtful && !r[i].ahead && !(samples->data[i].distance > 0);
+}
+
 /* Lists in blade.advanced the front as far as the samples have come: these where they are ahead, else its own
    vertices. */
 static gx_result gxp_advance_front(gx_blade *blade, gxp_advance *move) {
@@ -10862,6 +10872,10 @@ static gx_result gxp_advance_front(gx_blade *blade, gxp_advance *move) {
         const gxp_front_vertex *v = &samples->data[i];
         result = gxp_relate(blade, v, &r[i]);
         if (in_air) r[i].ahead = !move->is_back && r[i].distance > 0;
+    }
+    for (i = 0; i < samples->count && result == GX_OK; i++) {
+        const gxp_front_vertex *v = &samples->data[i];
+        if (r[i].doubtful && gxp_is_beside_behind(samples, r, i)) r[i].ahead = 0;
         if (r[i].ahead && (in_air || !(v->distance > 0))) move->most = fmax(move->most, r[i].distance);
         move->strays |= r[i].strays;
     }
@@ -11025,49 +11039,106 @@ static gx_result gxp_begin_outside(gx_blade *blade) {
     return gxp_copy_front(blade->body, &blade->front, &blade->samples);
 }
 
+/* The place on the sheet at which the edge has left it: the nearest one, but for the rim of the sheet, which a track
+   would miss. way: from there to where the edge is. */
+static void gxp_leave_sheet(const gxp_front_list *front, const gxp_points *sheet, const double rest[3], double inward,
+                            double nearest[3], double way[3]) {
+    double direction[3], at[3], off;
+    gxp_relation r;
+    int k;
+    gxp_near_sheet(sheet, rest, nearest);
+    gxp_near_front(front, nearest, &r, at);
+    if (r.distance < inward && gxp_front_direction(front, &r, direction) && gxp_unit(direction, direction)) {
+        for (k = 0; k < 3; k++) at[k] -= inward * direction[k];
+        gxp_near_sheet(sheet, at, nearest);
+        for (k = 0; k < 3; k++) way[k] = rest[k] - nearest[k];
+        off = gxp_dot(way, direction);
+        for (k = 0; k < 3; k++) way[k] -= off * direction[k];
+        return;
+    }
+    for (k = 0; k < 3; k++) way[k] = rest[k] - nearest[k];
+}
+
 /* A place of a track begins on the other side of the sheet from where the edge has left it. side: the way that the
    farthest place has left */
 static void gxp_cross_sheet(const gx_blade *blade, const double side[3], gxp_front_vertex *v) {
     double nearest[3], way[3];
-    const double distance = gxp_near_sheet(&blade->sheet, v->rest, nearest),
-                 across = fmax(2 * blade->tolerance, GXP_CROSSING * v->size);
+    const double across = fmax(2 * blade->tolerance, GXP_CROSSING * v->size);
     int k;
+    gxp_leave_sheet(&blade->front, &blade->sheet, v->rest, across, nearest, way);
     memcpy(v->ahead, side, sizeof v->ahead);
-    for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
-    if (distance > 2 * blade->tolerance) gxp_unit(way, v->ahead);
+    if (gxp_dot(way, way) > 4 * blade->tolerance * blade->tolerance) gxp_unit(way, v->ahead);
     for (k = 0; k < 3; k++) v->rest[k] = nearest[k] - across * v->ahead[k];
 }
 
-/* The edge has left its cut through the side: the front begins anew there, a little on the other side of the sheet, so
-   that the next strip crosses it. Places still in the cut cross it the way that the farthest one has left. goes_on:
-   places that were ahead are on the sheet's rim, and the front goes on there. */
-static gx_result gxp_begin_track(gx_blade *blade, int goes_on) {
+/* Lists in blade.crossings where a track would begin at each of the samples. Places still in the cut cross the sheet
+   the way that the farthest one has left. */
+static gx_result gxp_list_crossings(gx_blade *blade) {
     const gxp_front_list *samples = &blade->samples;
-    const gxp_relation *r = blade->relations;
     double most = 0, side[3] = {0, 0, 0};
     uint32_t i;
-    int k;
     gx_result result = GX_OK;
     for (i = 0; i < samples->count; i++) {
         const gxp_front_vertex *v = &samples->data[i];
         double nearest[3], way[3];
         const double distance = gxp_near_sheet(&blade->sheet, v->rest, nearest);
-        for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
-        if (!(v->distance > 0) && distance > most && gxp_unit(way, side)) most = distance;
+        if (v->distance > 0 || !(distance > most)) continue;
+        gxp_leave_sheet(&blade->front, &blade->sheet, v->rest, GXP_CROSSING * v->size, nearest, way);
+        if (gxp_unit(way, side)) most = distance;
     }
-    blade->front.count = 0;
+    blade->crossings.count = 0;
     for (i = 0; i < samples->count && result == GX_OK; i++) {
-        const int rim = goes_on && r[i].ahead;
-        gxp_front_vertex v = samples->data[i], crossing = v;
-        gxp_cross_sheet(blade, side, &crossing);
-        crossing.soft = v.soft = 0;
-        if (rim && i > 0 && !r[i - 1].ahead && !samples->data[i - 1].gap)
-            result = gxp_push_vertex(blade->body, &blade->front, &crossing);
-        if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->front, rim ? &v : &crossing);
-        if (result == GX_OK && rim && i + 1 < samples->count && !r[i + 1].ahead && !v.gap)
-            result = gxp_push_vertex(blade->body, &blade->front, &crossing);
+        gxp_front_vertex v = samples->data[i];
+        gxp_cross_sheet(blade, side, &v);
+        v.soft = 0;
+        result = gxp_push_vertex(blade->body, &blade->crossings, &v);
     }
-    blade->path.count = blade->latest.count = 0;
+    return result;
+}
+
+/* Appends the crossing of a sample to blade.latest, unless it is not next to one that is ahead. */
+static gx_result gxp_push_crossing(gx_blade *blade, uint32_t index) {
+    gxp_front_vertex v = blade->crossings.data[index];
+    v.gap = 0;
+    return blade->relations[index].ahead ? GX_OK : gxp_push_vertex(blade->body, &blade->latest, &v);
+}
+
+/* Inserts the crossings next to places that are ahead into blade.advanced: the strip up to the front goes on to where
+   the track begins. */
+static gx_result gxp_turn_front(gx_blade *blade) {
+    const gxp_front_list *samples = &blade->samples;
+    uint32_t i, n = 0;
+    gx_result result = GX_OK;
+    blade->latest.count = 0;
+    for (i = 0; i < samples->count && result == GX_OK; i++) {
+        const gxp_front_vertex *v = &samples->data[i];
+        if (!blade->relations[i].ahead) continue;
+        while (!gxp_same_rest(&blade->advanced.data[n], v) && result == GX_OK)
+            result = gxp_push_vertex(blade->body, &blade->latest, &blade->advanced.data[n++]);
+        if (i > 0 && !v[-1].gap && result == GX_OK) result = gxp_push_crossing(blade, i - 1);
+        if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->latest, &blade->advanced.data[n++]);
+        if (i + 1 < samples->count && !v->gap && result == GX_OK) result = gxp_push_crossing(blade, i + 1);
+    }
+    if (result == GX_OK)
+        result = gxp_append_front(blade->body, &blade->latest, blade->advanced.data + n, blade->advanced.count - n);
+    if (result == GX_OK) result = gxp_copy_front(blade->body, &blade->advanced, &blade->latest);
+    blade->latest.count = 0;
+    return result;
+}
+
+/* The edge has left its cut through the side: the front begins anew there, a little on the other side of the sheet, so
+   that the next strip crosses it. Places that were ahead are on the sheet's rim, and the front goes on there. */
+static gx_result gxp_begin_track(gx_blade *blade) {
+    const gxp_relation *r = blade->relations;
+    const uint32_t count = blade->samples.count;
+    uint32_t i;
+    gx_result result = GX_OK;
+    blade->front.count = blade->path.count = blade->latest.count = 0;
+    for (i = 0; i < count && result == GX_OK; i++) {
+        gxp_front_vertex v = r[i].ahead ? blade->samples.data[i] : blade->crossings.data[i];
+        if (i == 0 || !r[i - 1].ahead || i + 1 == count || !r[i + 1].ahead) v.soft = 0;
+        result = gxp_push_vertex(blade->body, &blade->front, &v);
+    }
     return result;
 }
 
@@ -11098,6 +11169,27 @@ static int gxp_has_left(const gx_blade *blade) {
     return gxp_is_away(blade);
 }
 
+/* Cuts what waits, and advances the front from there. */
+static gx_result gxp_cut_waiting(gx_blade *blade, gxp_advance *move, gx_blade_report *report) {
+    gx_result result = gxp_copy_front(blade->body, &blade->advanced, &blade->latest);
+    if (result == GX_OK) result = gxp_zip(blade, &blade->front, &blade->advanced);
+    if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
+    return result == GX_OK ? gxp_advance_front(blade, move) : result;
+}
+
+/* The edge has left the cut through its side: cuts as far as the front has come, and begins a track. */
+static gx_result gxp_leave_cut(gx_blade *blade, gxp_advance *move, gx_blade_report *report) {
+    gx_result result = GX_OK;
+    if (blade->latest.count > 0) result = gxp_cut_waiting(blade, move, report);
+    if (result != GX_OK || !move->strays) return result;
+    result = gxp_list_crossings(blade);
+    if (result == GX_OK) result = gxp_turn_front(blade);
+    if (result == GX_OK) result = gxp_zip(blade, &blade->front, &blade->advanced);
+    if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
+    if (result == GX_OK) result = gxp_begin_track(blade);
+    return result == GX_OK ? gxp_advance_front(blade, move) : result;
+}
+
 /* Advances the front of the layer at work to the samples: cuts what must be cut, and lets the rest wait. finish: cuts
    all. A front that has left the layer is no more. */
 static gx_result gxp_follow_edge(gx_blade *blade, int finish, gx_blade_report *report) {
@@ -11108,21 +11200,11 @@ static gx_result gxp_follow_edge(gx_blade *blade, int finish, gx_blade_report *r
         return GX_OK;
     }
     if (result == GX_OK && move.is_back) return gxp_is_away(blade) ? gxp_begin_outside(blade) : GX_OK;
-    if (result == GX_OK && move.strays && !finish) {
-        if (move.most > 0) {
-            result = gxp_zip(blade, &blade->front, &blade->advanced);
-            if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
-        }
-        if (result == GX_OK) result = gxp_begin_track(blade, move.most > 0);
-        if (result == GX_OK) result = gxp_advance_front(blade, &move);
-    }
+    if (result == GX_OK && move.strays && !finish) result = gxp_leave_cut(blade, &move, report);
     if (result != GX_OK || !(move.most > 0)) return result;
     result = gxp_zip(blade, &blade->front, &blade->advanced);
     if (result == GX_OK && blade->latest.count > 0 && (gxp_is_away(blade) || gxp_bend(blade) > blade->tolerance)) {
-        result = gxp_zip(blade, &blade->front, &blade->latest);
-        if (result == GX_OK) result = gxp_copy_front(blade->body, &blade->advanced, &blade->latest);
-        if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
-        if (result == GX_OK) result = gxp_advance_front(blade, &move);
+        result = gxp_cut_waiting(blade, &move, report);
         if (result == GX_OK) result = gxp_zip(blade, &blade->front, &blade->advanced);
     }
     if (result != GX_OK || !(move.most > 0)) return result;
@@ -11461,18 +11543,18 @@ static gx_result gxp_trim_front(gx_blade *blade, uint32_t layer, gxp_front_list 
     return GX_OK;
 }
 
-/* Keeps of the path what is near to the front. */
-static void gxp_trim_path(gx_blade *blade) {
+/* Keeps of the path what is in the layer. */
+static gx_result gxp_trim_path(gx_blade *blade, uint32_t layer) {
     uint32_t i, n = 0;
-    for (i = 0; i < blade->path.count; i++) {
+    int inside;
+    gx_result result = GX_OK;
+    for (i = 0; i < blade->path.count && result == GX_OK; i++) {
         const double *x = blade->path.data + 3 * (size_t)i;
-        gxp_relation r;
-        double nearest[3];
-        gxp_near_front(&blade->front, x, &r, nearest);
-        if (r.distance > blade->front.data[r.segment].size + blade->min_advance) continue;
-        memmove(blade->path.data + 3 * (size_t)n++, x, 3 * sizeof *x);
+        result = gxp_is_in_layer(blade, layer, x, &inside);
+        if (inside) memmove(blade->path.data + 3 * (size_t)n++, x, 3 * sizeof *x);
     }
     blade->path.count = n;
+    return result;
 }
 
 /* One of several heirs of a front keeps its own part of it. */
@@ -11483,8 +11565,7 @@ static gx_result gxp_take_part(gx_blade *blade, uint32_t layer) {
     if (!shared) return GX_OK;
     result = gxp_trim_front(blade, layer, &blade->front);
     if (result == GX_OK) result = gxp_trim_front(blade, layer, &blade->latest);
-    gxp_trim_path(blade);
-    return result;
+    return result == GX_OK ? gxp_trim_path(blade, layer) : result;
 }
 
 /* Makes a new layer's front ready for a step: that of the layers that flow into it, and where none is, the edge of the
@@ -12123,6 +12204,7 @@ static void gxp_release_blade(gx_blade *b) {
     gxp_release_front(body, &b->seen);
     gxp_release_front(body, &b->samples);
     gxp_release_front(body, &b->advanced);
+    gxp_release_front(body, &b->crossings);
     gxp_release_front(body, &b->strip);
     gxp_release_front(body, &b->cut);
     gxp_release_front(body, &b->owned);

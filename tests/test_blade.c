@@ -304,6 +304,26 @@ START_TEST(passes) {
 }
 END_TEST
 
+/* A block that swings as fast as the edge: this leaves its cut through the side, comes back to it and goes on at its
+   rim. Pieces may be cut out on the way, but the block never hangs together, and the cut is where the edge was. */
+START_TEST(swinging_passes) {
+    const int first = 71 + 8 * _i;
+    int seed;
+    for (seed = first; seed < first + 8; seed++) {
+        stage s = block_of(4, (uint64_t)seed);
+        stage_motion motion;
+        s.noise = 0.02;
+        stage_open(&s, 1e3, 0, NULL);
+        motion = stage_random_motion(&s, STAGE_SWINGING);
+        stage_random_pass(&s, &motion, 40);
+        check_stage(&s, (uint64_t)seed);
+        CHECK_SEED(s.view.fragment_count >= 2, (uint64_t)seed);
+        CHECK_SEED(s.tally.deviation <= 0.01, (uint64_t)seed);
+        stage_close(&s);
+    }
+}
+END_TEST
+
 /* The volume of all fragments but the two largest */
 static double specks(const gx_view *view) {
     double first = 0, second = 0, sum = 0;
@@ -1038,6 +1058,7 @@ int main(void) {
     const int first = only ? atoi(only) - 1 : 0;
     tcase_add_loop_test(tests, scenes, 0, STAGE_SCENES);
     tcase_add_loop_test(tests, other_sizes, 0, OTHER_SIZES);
+    tcase_add_loop_test(tests, swinging_passes, 0, 16 / FEWER);
     tcase_add_loop_test(tests, octopus, 0, 4);
     tcase_add_loop_test(tests, path_and_sheet, 0, REST_PASSES);
     tcase_add_loop_test(tests, other_meshes, 0, 2);
