@@ -36,6 +36,7 @@ help:
 	@echo "make sanitize    the tests under AddressSanitizer and UndefinedBehaviorSanitizer"
 	@echo "make check-settled  the tests with bodies that give back memory at every cut, not once in thousands"
 	@echo "make fuzz        random cases, checked by properties of any input; SEED=, CASES=, SECONDS= (0: no limit)"
+	@echo "make fuzz-blade  the same for blades in bodies that move"
 	@echo "make flags       exact predicates against rationals under each compiler and set of flags"
 	@echo "make hashes      the same cuts give the same topology under each compiler and set of flags"
 	@echo "make check-wasm  cuts, Booleans and random cases as WebAssembly, run by node, beside the native build; installs clang's"
@@ -140,8 +141,9 @@ run-gxcut run-gxboolean: run-%: $(BUILD)/%
 	@sh tests/test_$*.sh $(BUILD)/$*
 
 # Cases that once failed, and a few of each kind
-run-corpus: $(BUILD)/fuzz/fuzz
-	@$< tests/corpus/*
+run-corpus: $(BUILD)/fuzz/fuzz $(BUILD)/fuzz_blade/fuzz
+	@$(BUILD)/fuzz/fuzz tests/corpus/*
+	@$(BUILD)/fuzz_blade/fuzz tests/corpus_blade/*
 
 $(tests:%=run-%): run-%: $(BUILD)/tests/%
 	@$< >$<.log 2>&1; code=$$?; cat $<.log; exit $$code
@@ -185,17 +187,30 @@ sanitize-scenes:
 
 # By libFuzzer (with sanitizers) if clang has it, starting from the corpus, for SECONDS. Otherwise, or with SEED or CASES, a loop over
 # seeds.
-# A case that fails is written to $(BUILD)/fuzz and replays by itself: $(BUILD)/fuzz/fuzz FILE.
+# A case that fails is written to $(BUILD)/fuzz or $(BUILD)/fuzz_blade and replays by itself: $(BUILD)/fuzz/fuzz FILE.
 SECONDS = 60
 libfuzzer = clang -std=c99 -O1 -g -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all -DFUZZ_LIBFUZZER
+fuzz: source = fuzz
+fuzz-blade: source = fuzz_blade
+fuzz: corpus = corpus
+fuzz-blade: corpus = corpus_blade
+fuzz: longest = 128
+fuzz-blade: longest = 400
+fuzz fuzz-blade: folder = $(BUILD)/$(source)
 fuzz: $(BUILD)/fuzz/fuzz
-	@if [ -z "$(SEED)$(CASES)" ] && $(libfuzzer) tests/fuzz.c -o $(BUILD)/fuzz/libfuzzer -lm 2>/dev/null; then \
-	    mkdir -p $(BUILD)/fuzz/corpus && $(BUILD)/fuzz/libfuzzer -max_total_time=$(SECONDS) -max_len=128 -artifact_prefix=$(BUILD)/fuzz/ $(BUILD)/fuzz/corpus tests/corpus; \
-	else $(BUILD)/fuzz/fuzz --out=$(BUILD)/fuzz --seed=$(or $(SEED),1) --cases=$(or $(CASES),0) --seconds=$(if $(CASES),0,$(SECONDS)); fi
+fuzz-blade: $(BUILD)/fuzz_blade/fuzz
+fuzz fuzz-blade:
+	@if [ -z "$(SEED)$(CASES)" ] && $(libfuzzer) tests/$(source).c -o $(folder)/libfuzzer -lm 2>/dev/null; then \
+	    mkdir -p $(folder)/corpus && $(folder)/libfuzzer -max_total_time=$(SECONDS) -max_len=$(longest) -artifact_prefix=$(folder)/ $(folder)/corpus tests/$(corpus); \
+	else $< --out=$(folder) --seed=$(or $(SEED),1) --cases=$(or $(CASES),0) --seconds=$(if $(CASES),0,$(SECONDS)); fi
 
-$(BUILD)/fuzz/fuzz: tests/fuzz.c tests/fuzz_cases.h tests/boolean_oracle.h tests/oracle.h tests/rational.h gxfem_boolean.h
+$(BUILD)/fuzz/fuzz: tests/fuzz.c tests/fuzz.h tests/fuzz_cases.h tests/boolean_oracle.h tests/oracle.h tests/rational.h gxfem_boolean.h
 	@mkdir -p $(@D)
 	$(compile) -g $< -o $@ $(LDFLAGS) -lm
+
+$(BUILD)/fuzz_blade/fuzz: tests/fuzz_blade.c tests/fuzz.h tests/fuzz_blade_cases.h tests/skin_check.h $(BUILD)/gxfem.o
+	@mkdir -p $(@D)
+	$(linked) $< $(BUILD)/gxfem.o -o $@ $(LDFLAGS) -lm
 
 compile:
 	@sh tests/compile.sh $(BUILD)/compile
@@ -365,4 +380,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes check-settled compile amalgam check-amalgam install check-package coverage formatted lint format fuzz flags hashes check-wasm $(benches:%=bench-%) bench charts check-all clean
+.PHONY: help examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes check-settled compile amalgam check-amalgam install check-package coverage formatted lint format fuzz fuzz-blade flags hashes check-wasm $(benches:%=bench-%) bench charts check-all clean

@@ -632,10 +632,11 @@ GXFEM_API void gx_blade_destroy(gx_blade *blade); /* or NULL */
    that the other lacks are lifted. */
 GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index);
 /* Moves the edge and cuts what it has passed since the last move, relative to the material. A long move goes in steps
-   of an element at most. edge: point_count x 3, in space, m; as many points at each move until the blade is lifted, 2
-   or more. scope: fragments that alone are cut, below gx_view.fragment_count; count 0: all. On an error body and blade
-   are as they were. Errors: ARGUMENT (also: the first edge is inside the material and starts_inside is 0, index:
-   point), INDEX, NOT_FINITE and RANGE (edge, or "displacement", index: copy), LIMIT, MEMORY. */
+   of an element, 8 for each element of the body's length at most. edge: point_count x 3, in space, m; as many points at
+   each move until the blade is lifted, 2 or more; ends may be 10^12 elements away. scope: fragments that alone are cut,
+   below gx_view.fragment_count; count 0: all. On an error body and blade are as they were. Errors: ARGUMENT (also: the
+   first edge is inside the material and starts_inside is 0, index: point), INDEX, NOT_FINITE and RANGE (edge, or
+   "displacement", index: copy), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t point_count,
                                   const uint32_t *scope_fragments, size_t scope_fragment_count,
                                   gx_blade_report *report /* or NULL */, gx_failure *failure /* or NULL */);
@@ -10451,8 +10452,10 @@ static gx_result gxp_find_layers(gx_blade *blade, const double *before, const do
 /* In: a layer and the edge. Out: places on the edge with their material points: few where the layer is not, or where
    they lie on a line. In the air the map of the nearest cell is extended. Touches the blade's working memory. */
 
-/* Cells of less volume, as a share of that at rest, map nothing back: other cells are near. */
-#define GXP_FLAT_MAP 1e-3
+/* Cells of less volume, as a share of that at rest, map nothing back: other cells are near. Nor do those of more: where
+   displacements are huge, places next to each other come from anywhere in the material. */
+#define GXP_FLAT_MAP  1e-3
+#define GXP_BLOWN_MAP 1e3
 /* The parts of an edge near a layer end this far from it, in element sizes. */
 #define GXP_CAP 1.25
 /* In the air, places that are seen are at most this share of their distances from the layer apart. */
@@ -10557,7 +10560,8 @@ static gx_result gxp_seek_at(gx_blade *blade, uint32_t index, const double x[3],
     double weights[4];
     int own = 0;
     gx_result result = GX_OK;
-    if (gxp_square_to_box(x, c->low, c->high) >= sight->square || fabs(c->stretch) < GXP_FLAT_MAP) return GX_OK;
+    if (gxp_square_to_box(x, c->low, c->high) >= sight->square) return GX_OK;
+    if (fabs(c->stretch) < GXP_FLAT_MAP || fabs(c->stretch) > GXP_BLOWN_MAP) return GX_OK;
     gxp_tet_weights(c->corners, x, weights);
     if (weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0 && weights[3] >= 0)
         result = gxp_is_own_part(blade->body, c, weights, &own);
@@ -12131,21 +12135,31 @@ static gx_result gxp_go_straight(gx_blade *blade, const double *before, const do
     return result;
 }
 
+/* A move has at most so many steps, by the length of the body at rest: the way to huge displacements has no end. */
+static double gxp_most_steps(const gx_blade *blade) {
+    const gxp_box *all = &blade->body->mesh.boxes[0];
+    return fmin(1000, 16 + 8 * sqrt(gxp_square_distance(all->low, all->high)) / blade->step);
+}
+
 /* Finds the way of the edge, and in how many steps it goes: by at most an element each in space, or relative to the
    material if that is less. */
 static gx_result gxp_plan_way(gx_blade *blade, const double *edge, uint32_t count, uint32_t *steps) {
-    const double *before = blade->now.edge.count > 0 ? blade->now.edge.data : edge, square = blade->step * blade->step;
+    const double *before = blade->now.edge.data, square = blade->step * blade->step;
     double most = 0;
     gxp_bounds box;
-    gx_result result = gxp_measure_way(blade, before, edge, count, NULL, &most);
+    gx_result result;
     *steps = 1;
+    if (blade->now.edge.count == 0) return gxp_go_straight(blade, edge, edge, count);
+    result = gxp_measure_way(blade, before, edge, count, NULL, &most);
     if (result == GX_OK && most > square) {
         gxp_find_box(blade->body, &box);
         result = gxp_measure_way(blade, before, edge, count, &box, &most);
     }
     if (result == GX_OK && most > square) {
         result = gxp_carry_edge(blade, edge, count);
-        if (result == GX_OK) *steps = 1 + (uint32_t)fmin(999, sqrt(fmin(most, gxp_measure_relative(blade)) / square));
+        if (result == GX_OK)
+            *steps = (uint32_t)fmin(gxp_most_steps(blade),
+                                    1 + floor(sqrt(fmin(most, gxp_measure_relative(blade)) / square)));
     }
     return result == GX_OK && *steps == 1 ? gxp_go_straight(blade, before, edge, count) : result;
 }
@@ -13842,10 +13856,11 @@ static gx_result gxp_state_room(gx_body *body, const gxp_state_counts *n) {
     return result == GX_OK && n->history ? gxp_start_history(body, 2) : result;
 }
 
-/* Makes the solver forget its last step, as that of the other body has. */
+/* Makes the solver forget its last step, as that of the other body has. Both make a model that is changed by cuts, or
+   is to be, anew. */
 static void gxp_resume_in(gx_body *body, const gxs_scene *scene) {
     gxs_solver_resume(body->solver, scene);
-    if (body->model.updated) body->model.state = GXP_MODEL_STALE;
+    if (body->model.updated || body->model.state == GXP_MODEL_CHANGED) body->model.state = GXP_MODEL_STALE;
     body->model.resumed = gxp_hash_state(body, body->copies.count);
 }
 
@@ -14390,6 +14405,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_ACROSS_WALL
 #undef GXP_NO_PLANE
 #undef GXP_NEAR_SLACK
+#undef GXP_BLOWN_MAP
 #undef GXP_FLAT_MAP
 #undef GXP_CAP
 #undef GXP_AIR

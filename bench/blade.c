@@ -4,20 +4,25 @@
    make bench-blade builds it by -O2, as users do, and runs it. It prints CSV and writes it to build/bench/blade.csv,
    and a table to stderr. usage: blade [FILE [--small]]; --small: small blocks and few passes.
 
-   kind      a row
-   scene     a scene of blade.h on a block of 12^3 cubes
-   passes    random straight passes through blocks of 4^3 cubes that move, with noise: `fragments` of them, of
-             `expected`, gave exactly two pieces
-   error     edges that follow known sheets, over all seeds: distance of the walls to the sheet, in cubes. tolerance and
-             advance: of the blade, in cubes. calm: a tenth of a cube a frame at 60 frames, violent: a cube
-   cost      a pass through a block that moves calmly, with 60 and 600 frames
-   idle      moves far from the block beside a step
-   sample    a move that cuts nothing, with 1001 points of the edge beside 2
-   frame     a pass by steps, 60 frames: all but the step (blade, cut, solver's model, skin and its positions)
+   kind        a row
+   scene       a scene of blade.h on a block of 12^3 cubes
+   passes      random straight passes through blocks of 4^3 cubes that move, with noise: `fragments` of them, of
+               `expected`, gave exactly two pieces
+   error       edges that follow known sheets, over all seeds: distance of the walls to the sheet, in cubes. tolerance
+               and advance: of the blade, in cubes. calm: a tenth of a cube a frame at 60 frames, violent: a cube
+   relativity  the same path by a blade through a still body, and by a body past a still blade: max_error is how far
+               the section is from that of 800 frames, the mean over it, in cubes
+   cost        a pass through a block that moves calmly, with 60 and 600 frames
+   sample      a move that cuts nothing, with 1001 points of the edge beside 2; gx_body_locate of 1000 points there
+   idle        moves far from the block beside a step
+   frame       a pass by steps, 60 frames, by phase: the blade, the cuts that it makes, the solver's model, the skin and
+               its positions, the step; all: all but the step
+   carve       tools in a block that moves calmly
 
-   divided: elements that strips have touched, each as often as it was. leaves: that were added, for each of those.
-   link: the smallest share of a face that still joins two cells. median_ms and worst_ms: of a move, in `frame` of a
-   frame. share: of a step. */
+   divided: elements that strips or tools have touched, each as often as it was. leaves: that were added, for each of
+   those. link: the smallest share of a face that still joins two cells. median_ms, p95_ms and worst_ms: of a move, in
+   `frame` of a frame's part, in `carve` of a tool. share: of a step. ns: for each sample. volume_error: the largest,
+   as a share of the volume. */
 #define _POSIX_C_SOURCE 200112L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
@@ -35,8 +40,9 @@ typedef struct row {
     double tolerance, advance;
     double leaves, us, link, deviation;
     double most, rms; /* cubes */
-    double median, worst, step, share;
+    double median, p95, worst, step, share;
     double ns; /* for each sample */
+    double volume;
 } row;
 
 static int small;
@@ -80,14 +86,15 @@ static const char *number(char text[16], const char *format, double value) {
 static const char *whole(char text[16], size_t value) { return number(text, "%.0f", (double)value); }
 
 static void print_row(const row *r) {
-    char t[18][16];
-    csv_row("%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s", r->kind, r->name, whole(t[0], r->elements),
-            whole(t[1], (size_t)r->frames), number(t[2], "%g", r->tolerance), number(t[3], "%g", r->advance),
-            whole(t[4], r->fragments), whole(t[5], r->expected), whole(t[6], r->divided),
-            number(t[7], "%.2f", r->leaves), number(t[8], "%.1f", r->us), number(t[9], "%.1e", r->link),
-            number(t[10], "%.1e", r->deviation), number(t[11], "%.2e", r->most), number(t[12], "%.2e", r->rms),
-            number(t[13], "%.3f", r->median), number(t[14], "%.3f", r->worst), number(t[15], "%.3f", r->step),
-            number(t[16], "%.4f", r->share), number(t[17], "%.0f", r->ns));
+    char t[20][16];
+    csv_row("%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s", r->kind, r->name,
+            whole(t[0], r->elements), whole(t[1], (size_t)r->frames), number(t[2], "%g", r->tolerance),
+            number(t[3], "%g", r->advance), whole(t[4], r->fragments), whole(t[5], r->expected),
+            whole(t[6], r->divided), number(t[7], "%.2f", r->leaves), number(t[8], "%.1f", r->us),
+            number(t[9], "%.1e", r->link), number(t[10], "%.1e", r->deviation), number(t[11], "%.2e", r->most),
+            number(t[12], "%.2e", r->rms), number(t[13], "%.3f", r->median), number(t[14], "%.3f", r->p95),
+            number(t[15], "%.3f", r->worst), number(t[16], "%.3f", r->step), number(t[17], "%.4f", r->share),
+            number(t[18], "%.0f", r->ns), number(t[19], "%.1e", r->volume));
 }
 
 /* What the stage's moves have been; times of a move only where all were measured */
@@ -104,6 +111,7 @@ static row row_of(const char *kind, const char *name, const stage *s) {
     r.link = t->link;
     r.deviation = t->deviation;
     r.worst = 1e3 * t->slowest;
+    r.volume = t->volume;
     if (t->divided == 0) return r;
     r.us = 1e6 * t->seconds / (double)t->divided;
     r.leaves = ((double)gxb_complex_leaf_count(s->body->complex) - (double)s->view.element_count) / (double)t->divided;
@@ -118,7 +126,7 @@ static void put(const row *r, const char *line, ...) {
     vsnprintf(text, sizeof text, line, values);
     va_end(values);
     progress_clear();
-    fprintf(stderr, "%-7s %-10s %s\n", r->kind, r->name, text);
+    fprintf(stderr, "%-10s %-13s %s\n", r->kind, r->name, text);
 }
 
 /* ---- scenes and passes ---- */
@@ -176,8 +184,8 @@ static void measure_passes(const char *name, double noise, double squeeze, int c
 static void measure_error(const char *name, int kind, int frames, double tolerance, double advance) {
     const int seeds = small ? 2 : SEEDS;
     gx_blade_desc desc;
-    double most = 0, sum = 0, time = 0, deviation = 0;
-    size_t right = 0, moves = 0;
+    double most = 0, sum = 0, time = 0, deviation = 0, volume = 0;
+    size_t right = 0, moves = 0, divided = 0;
     row r;
     int seed;
     memset(&desc, 0, sizeof desc);
@@ -196,7 +204,9 @@ static void measure_error(const char *name, int kind, int frames, double toleran
         right += s.view.fragment_count == 2;
         time += s.tally.seconds;
         moves += s.tally.moves;
+        divided += s.tally.divided;
         deviation = fmax(deviation, s.tally.deviation);
+        volume = fmax(volume, s.tally.volume);
         if (seed == seeds) r = row_of("error", name, &s);
         stage_close(&s);
     }
@@ -209,10 +219,14 @@ static void measure_error(const char *name, int kind, int frames, double toleran
     r.most = most;
     r.rms = sqrt(sum / seeds);
     r.median = 1e3 * time / (double)moves;
-    r.divided = 0;
-    r.leaves = r.us = r.link = r.worst = 0;
-    put(&r, "%4d frames, tolerance %5g, advance %4g: off by %.1e at most, %.1e rms; %lu of %d right, %.2f ms a move",
-        frames, tolerance, advance, r.most, r.rms, (unsigned long)right, seeds, r.median);
+    r.divided = divided;
+    r.us = 1e6 * time / (double)divided;
+    r.volume = volume;
+    r.leaves = r.link = r.worst = 0;
+    put(&r,
+        "%4d frames, tolerance %5g, advance %4g: off by %.1e at most, %.1e rms; %lu of %d right, %.2f ms a move, "
+        "%.1f us an element",
+        frames, tolerance, advance, r.most, r.rms, (unsigned long)right, seeds, r.median, r.us);
 }
 
 static void measure_errors(void) {
@@ -221,11 +235,49 @@ static void measure_errors(void) {
     static const double tolerances[5] = {0.001, 0.003, 0.01, 0.03, 0.1}, advances[3] = {0.25, 1, 2};
     int kind, i;
     for (kind = STAGE_CALM; kind <= STAGE_VIOLENT; kind++) {
-        for (i = small; i < (small ? 2 : 5); i++) measure_error(names[kind], kind, frames[i], 0.01, 0.5);
-        for (i = 0; i < (small ? 1 : 5); i++)
-            if (tolerances[i] < 0.01 || tolerances[i] > 0.01) measure_error(names[kind], kind, 60, tolerances[i], 0.5);
+        for (i = 0; i < 5; i++)
+            if (!small || frames[i] == 60) measure_error(names[kind], kind, frames[i], 0.01, 0.5);
+        for (i = 0; i < 5; i++)
+            if (i != 2 && (!small || i % 4 == 0)) measure_error(names[kind], kind, 60, tolerances[i], 0.5);
         for (i = 0; i < (small ? 1 : 3); i++) measure_error(names[kind], kind, 60, 0.01, advances[i]);
     }
+}
+
+/* ---- relativity ---- */
+
+/* The volume of the larger piece, cubes */
+static double larger_piece(const stage *s) {
+    double most = 0;
+    size_t i;
+    for (i = 0; i < s->view.fragment_count; i++) most = fmax(most, s->view.fragment_volume[i]);
+    return most;
+}
+
+/* Returns the volume of the larger piece. reference: that of many frames; 0: this is it, and no row is put */
+static double measure_rigid_pass(uint32_t n, int body_moves, int frames, double reference) {
+    stage s = open_stage(n, 1, 0, NULL);
+    double piece;
+    row r;
+    stage_pass_rigidly(&s, body_moves, frames);
+    fail("relativity", &s);
+    piece = larger_piece(&s);
+    if (reference > 0) {
+        r = row_of("relativity", body_moves ? "body moves" : "blade moves", &s);
+        r.frames = frames;
+        r.expected = 2;
+        r.most = fabs(piece - reference) / ((double)n * n);
+        put(&r, "%4d frames: %lu of 2 fragments, %6.1f us an element, the section is off by %.1e", frames,
+            (unsigned long)r.fragments, r.us, r.most);
+    }
+    stage_close(&s);
+    return piece;
+}
+
+static void measure_relativity(uint32_t n) {
+    static const int factors[4] = {1, 2, 5, 20};
+    const double reference = measure_rigid_pass(n, 0, 800, 0);
+    int i;
+    for (i = 0; i < 8; i++) measure_rigid_pass(n, i % 2, 20 * factors[i / 2], reference);
 }
 
 /* ---- cost ---- */
@@ -314,6 +366,42 @@ static double still_move(uint32_t n, size_t points) {
     return median(times, MOVES);
 }
 
+/* Points in the middle of the block, located in one call: s for each */
+static double locate_points(uint32_t n) {
+    enum { TIMES = 21, MANY = 1000 };
+    static double points[3 * MANY];
+    static gx_hit hits[MANY];
+    stage s = open_stage(n, 1, 0, NULL);
+    const stage_motion m = stage_random_motion(&s, STAGE_CALM);
+    double times[TIMES];
+    int k, i;
+    for (k = 0; k < TIMES; k++) {
+        double start;
+        for (i = 0; i < MANY; i++) {
+            points[3 * i] = n * (double)i / MANY;
+            points[3 * i + 1] = 0.4 * n + 0.01 * k;
+            points[3 * i + 2] = 0.47 * n;
+        }
+        stage_pose(&s, &m, (double)k / TIMES);
+        check(gx_body_locate(s.body, points, 1, hits, NULL)); /* fits the boxes to the new pose */
+        start = seconds(NULL);
+        check(gx_body_locate(s.body, points, MANY, hits, NULL));
+        times[k] = (seconds(NULL) - start) / MANY;
+    }
+    stage_close(&s);
+    return median(times, TIMES);
+}
+
+static void measure_located(uint32_t n) {
+    row r;
+    memset(&r, 0, sizeof r);
+    r.kind = "sample";
+    r.name = "located";
+    r.elements = (size_t)n * n * n * 6;
+    r.ns = 1e9 * locate_points(n);
+    put(&r, "%7lu elements: %.0f ns for a point that is located", (unsigned long)r.elements, r.ns);
+}
+
 static void measure_sample(uint32_t n) {
     const double few = still_move(n, 2), many = still_move(n, POINTS);
     row r;
@@ -328,69 +416,200 @@ static void measure_sample(uint32_t n) {
 
 /* ---- frames ---- */
 
-static double draw(stage *s, double **positions) {
+enum { FRAMES = 60 };
+enum { BLADE, CUT, MODEL, SKIN, STEP, ALL, PHASES };
+
+/* ms of a frame's phases */
+typedef struct frame_times {
+    double of[PHASES][FRAMES + 1];
+} frame_times;
+
+static void make_model(stage *s, frame_times *t, int frame) {
     const double start = seconds(NULL);
     gxs_model model;
-    gx_skin skin;
     check(gx_body_model(s->body, &model, NULL));
+    t->of[MODEL][frame] = 1e3 * (seconds(NULL) - start);
+}
+
+static void draw(stage *s, double **positions, frame_times *t, int frame) {
+    const double start = seconds(NULL);
+    gx_skin skin;
     check(gx_body_skin(s->body, NULL, &skin, NULL));
     *positions = (double *)realloc(*positions, 3 * skin.vertex_count * sizeof **positions);
     if (*positions == NULL) check(GX_ERROR_MEMORY);
     check(gx_body_skin_positions(s->body, *positions, NULL));
-    return seconds(NULL) - start;
+    t->of[SKIN][frame] = 1e3 * (seconds(NULL) - start);
+}
+
+static void pass_by_steps(stage *s, uint32_t n, frame_times *t) {
+    double *positions = NULL;
+    int k;
+    s->swing = 6;
+    for (k = 0; k < 10; k++) step_ms(s);
+    make_model(s, t, 0);
+    draw(s, &positions, t, 0);
+    stage_clear_tally(s);
+    for (k = 0; k <= FRAMES; k++) {
+        const double share = (double)k / FRAMES, y = -2 + (n + 4.0) * share;
+        const stage_tally before = s->tally;
+        t->of[STEP][k] = step_ms(s);
+        stage_move(s, -2.0 * n, y, 0.45 * n, 3.0 * n, y + 0.7, 0.45 * n + 1.1);
+        fail("frame", s);
+        t->of[CUT][k] = 1e3 * (s->tally.cutting - before.cutting);
+        t->of[BLADE][k] = 1e3 * (s->tally.seconds - before.seconds) - t->of[CUT][k];
+        make_model(s, t, k);
+        draw(s, &positions, t, k);
+        t->of[ALL][k] = t->of[BLADE][k] + t->of[CUT][k] + t->of[MODEL][k] + t->of[SKIN][k];
+    }
+    free(positions);
 }
 
 static void measure_frames(uint32_t n) {
-    enum { FRAMES = 60 };
+    static const char *const names[PHASES] = {"blade", "cut", "model", "skin", "step", "all"};
+    static frame_times t;
     stage s = open_stage(n, 1, 0, NULL);
-    double times[FRAMES + 1], steps[FRAMES + 1], *positions = NULL;
-    row r;
-    int k;
-    s.swing = 6;
-    for (k = 0; k < 10; k++) step_ms(&s);
-    draw(&s, &positions);
-    stage_clear_tally(&s);
-    for (k = 0; k <= FRAMES; k++) {
-        const double share = (double)k / FRAMES, y = -2 + (n + 4.0) * share;
-        double before;
-        steps[k] = step_ms(&s);
-        before = s.tally.seconds;
-        stage_move(&s, -2.0 * n, y, 0.45 * n, 3.0 * n, y + 0.7, 0.45 * n + 1.1);
-        fail("frame", &s);
-        times[k] = 1e3 * (s.tally.seconds - before + draw(&s, &positions));
+    double step;
+    int i;
+    pass_by_steps(&s, n, &t);
+    step = median(t.of[STEP], FRAMES + 1);
+    for (i = 0; i < PHASES; i++) {
+        row r = row_of("frame", names[i], &s);
+        r.frames = FRAMES;
+        r.expected = 2;
+        r.median = median(t.of[i], FRAMES + 1); /* sorts them */
+        r.p95 = t.of[i][(FRAMES * 95 + 99) / 100];
+        r.worst = t.of[i][FRAMES];
+        r.step = step;
+        r.share = r.median / step;
+        if (i != ALL) r.us = r.leaves = 0;
+        put(&r, "%7lu elements: %7.3f ms a frame, one in 20 above %7.3f, worst %7.3f", (unsigned long)r.elements,
+            r.median, r.p95, r.worst);
     }
-    r = row_of("frame", "pass", &s);
-    r.frames = FRAMES;
-    r.expected = 2;
-    r.median = median(times, FRAMES + 1);
-    r.worst = times[FRAMES]; /* sorted */
-    r.step = median(steps, FRAMES + 1);
-    r.share = r.median / r.step;
-    put(&r, "%7lu elements: blade, cut, model and skin %.2f ms a frame, worst %.2f ms; a step %.1f ms",
-        (unsigned long)r.elements, r.median, r.worst, r.step);
-    free(positions);
     stage_close(&s);
 }
 
+/* ---- tools ---- */
+
+enum { TOOLS = 20, BALL = 12 };
+
+typedef struct tool {
+    double x[(BALL + 1) * BALL][3];
+    uint32_t t[2 * BALL * (BALL + 1)][3], vertices, triangles;
+} tool;
+
+static void add_tool_triangle(tool *t, uint32_t a, uint32_t b, uint32_t c) {
+    uint32_t *to = t->t[t->triangles];
+    if (a == b || b == c || c == a) return;
+    to[0] = a;
+    to[1] = b;
+    to[2] = c;
+    t->triangles++;
+}
+
+/* A ball, or one of few corners: a box; its middle at 0, of diameter 2 */
+static void make_tool(tool *t, uint32_t round, uint32_t tall) {
+    uint32_t i, j;
+    t->vertices = t->triangles = 0;
+    for (j = 0; j <= tall; j++)
+        for (i = 0; i < round; i++, t->vertices++) {
+            const double a = 6.283185307179586 * (i + 0.37) / round,
+                         b = tall > 1 ? 3.141592653589793 * j / tall : 0.785 + 1.571 * j;
+            t->x[t->vertices][0] = sin(b) * cos(a);
+            t->x[t->vertices][1] = sin(b) * sin(a);
+            t->x[t->vertices][2] = -cos(b);
+        }
+    for (j = 0; j < tall; j++)
+        for (i = 0; i < round; i++) {
+            const uint32_t a = tall > 1 && j == 0 ? 0 : j * round + i,
+                           b = tall > 1 && j == 0 ? 0 : j * round + (i + 1) % round, high = (j + 1) * round,
+                           c = tall > 1 && j + 1 == tall ? high : high + (i + 1) % round,
+                           d = tall > 1 && j + 1 == tall ? high : high + i;
+            add_tool_triangle(t, a, b, c);
+            add_tool_triangle(t, a, c, d);
+        }
+    for (i = 2; i < round && tall == 1; i++) { /* its floor and its ceiling */
+        add_tool_triangle(t, 0, i, i - 1);
+        add_tool_triangle(t, round, round + i - 1, round + i);
+    }
+}
+
+/* Carves by a tool of a radius, cubes, at a place of its own in the block each time. */
+static void measure_carve(const char *name, uint32_t n, uint32_t round, uint32_t tall, double radius) {
+    static tool made, placed;
+    stage s = open_stage(n, 1, 0, NULL);
+    const stage_motion m = stage_random_motion(&s, STAGE_CALM);
+    double times[TOOLS], all = 0, removed = 0;
+    size_t touched = 0;
+    row r;
+    int i;
+    make_tool(&made, round, tall);
+    for (i = 0; i < TOOLS; i++) {
+        const double at[3] = {n * (0.2 + 0.6 * (i % 4) / 3), n * (0.2 + 0.6 * (i / 4) / 4), n * 0.45};
+        gx_surface surface;
+        gx_cut_report report;
+        double start;
+        uint32_t v, k;
+        stage_pose(&s, &m, (double)i / TOOLS);
+        placed = made;
+        for (v = 0; v < placed.vertices; v++)
+            for (k = 0; k < 3; k++) placed.x[v][k] = at[k] + radius * made.x[v][k];
+        memset(&surface, 0, sizeof surface);
+        surface.vertices = placed.x[0];
+        surface.vertex_count = placed.vertices;
+        surface.triangles = placed.t[0];
+        surface.triangle_count = placed.triangles;
+        start = seconds(NULL);
+        check(gx_body_carve(s.body, &surface, &report, NULL));
+        times[i] = 1e3 * (seconds(NULL) - start);
+        all += times[i];
+        touched += report.touched_elements;
+        removed += report.removed_volume;
+        check(gx_body_view(s.body, &s.view, NULL));
+    }
+    r = row_of("carve", name, &s);
+    r.divided = touched;
+    r.us = 1e3 * all / (double)touched;
+    r.leaves = r.link = 0;
+    r.frames = TOOLS;
+    r.median = median(times, TOOLS);
+    r.worst = times[TOOLS - 1];
+    r.volume = fabs(s.view.volume + removed - s.volume) / s.volume;
+    put(&r, "%7lu elements: %lu divided by %d tools, %.1f us each; a tool %.2f ms, worst %.2f ms",
+        (unsigned long)r.elements, (unsigned long)r.divided, TOOLS, r.us, r.median, r.worst);
+    stage_close(&s);
+}
+
+/* ---- all ---- */
+
+static void measure_costs(void) {
+    static const uint32_t sizes[3] = {12, 26, 55}; /* 10,368, 105,456 and 998,250 elements */
+    const int count = small ? 1 : 2;
+    int i;
+    for (i = 0; i < (small ? 1 : 3); i++) measure_cost(small ? 8 : sizes[i], 60);
+    for (i = 0; i < count; i++) measure_cost(small ? 8 : sizes[i], 600);
+    for (i = 0; i < count; i++) measure_sample(small ? 8 : sizes[i]);
+    for (i = 0; i < count; i++) measure_located(small ? 8 : sizes[i]);
+    for (i = 0; i < count; i++) measure_idle(small ? 8 : sizes[i]);
+}
+
 int main(int argc, char **argv) {
-    static const uint32_t sizes[3] = {12, 19, 55}; /* 10,368, 41,154 and 998,250 elements */
     const char *path = csv_arguments(argc, argv, &small);
-    const int count = small ? 1 : 3;
     int i;
     csv_open(
         argv[0], path,
         "kind,name,elements,frames,tolerance,advance,fragments,expected,divided,leaves,us_per_divided,link,deviation,"
-        "max_error,rms_error,median_ms,worst_ms,step_ms,share,ns_per_sample");
+        "max_error,rms_error,median_ms,p95_ms,worst_ms,step_ms,share,ns_per_sample,volume_error");
     for (i = 0; i < STAGE_SCENES; i++) measure_scene(&stage_scenes[i]);
-    measure_passes("0.02", 0.02, 1, small ? 20 : 10000);
-    measure_passes("0.06", 0.06, 1, small ? 20 : 1000);
-    measure_passes("0.1", 0.1, 1, small ? 20 : 1000);
-    measure_passes("0.1 flat", 0.1, 0.2, small ? 20 : 1000);
+    measure_passes("0.02", 0.02, 1, small ? 20 : 2000);
+    measure_passes("0.06", 0.06, 1, small ? 20 : 500);
+    measure_passes("0.1", 0.1, 1, small ? 20 : 500);
+    measure_passes("0.1 flat", 0.1, 0.2, small ? 20 : 500);
     measure_errors();
-    for (i = 0; i < count; i++) measure_cost(small ? 8 : sizes[i], 60);
-    for (i = 0; i < (small ? 1 : 2); i++) measure_cost(small ? 8 : sizes[i], 600);
-    for (i = 0; i < (small ? 1 : 2); i++) measure_idle(small ? 8 : sizes[i]);
-    for (i = 0; i < (small ? 1 : 2); i++) measure_sample(small ? 8 : sizes[i]);
-    for (i = 0; i < (small ? 1 : 2); i++) measure_frames(small ? 8 : sizes[i]);
+    measure_relativity(small ? 5 : 8);
+    measure_costs();
+    measure_frames(small ? 8 : 19); /* 41,154 elements */
+    measure_carve("box", small ? 8 : 12, 4, 1, 1.3);
+    measure_carve("ball", small ? 8 : 12, BALL, BALL, 1.3);
+    if (!small) measure_carve("ball", 26, BALL, BALL, 1.3);
     return csv_close();
 }

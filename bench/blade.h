@@ -19,6 +19,7 @@ typedef struct stage_tally {
     double link;                      /* the smallest min_link_ratio */
     double volume;                    /* the largest relative error of the body's volume */
     double seconds, slowest;          /* of the moves; 0 without a clock */
+    double cutting;                   /* s: the part of it in which the body was cut */
 } stage_tally;
 
 typedef struct stage {
@@ -125,6 +126,7 @@ static inline void stage_open(stage *s, double young, double jitter, const gx_bl
     desc.young = young;
     desc.poisson = 0.4;
     desc.density = 1;
+    desc.clock = s->clock;
     gx_body_create(&desc, &s->body, &s->failure);
     top.value = s->origin[2] + s->scale * (n[2] - 0.01);
     if (stage_ok(s)) gx_body_hold(s->body, &top, 1, &s->failure);
@@ -195,6 +197,7 @@ static inline void stage_count_move(stage *s, const gx_blade_report *r, double t
     t->deviation = fmax(t->deviation, r->deviation);
     t->link = fmin(t->link, r->cut.min_link_ratio);
     t->seconds += time;
+    t->cutting += r->cut.seconds_arrangement + r->cut.seconds_enrichment + r->cut.seconds_integrals;
     t->slowest = fmax(t->slowest, time);
     stage_look(s);
 }
@@ -764,6 +767,44 @@ static inline void stage_cut_sheet(stage *s, const stage_sheet *sheet, uint32_t 
     stage_look(s);
     free(vertices);
     free(triangles);
+}
+
+/* ---- rigid motions ---- */
+
+/* Of an edge through a block: turned about the block's middle, then shifted; back: the other way round */
+static inline void stage_place_rigidly(const stage *s, double time, int back, const double from[3], double to[3]) {
+    static const double axis[3] = {0.6, 0, 0.8};
+    const double angle = 0.7 * sin(2 * time), middle = 0.5 * s->cells[0],
+                 shift[3] = {0.5 * sin(5 * time), (s->cells[0] + 6.0) * time, 0.4 * sin(4 * time)};
+    int k;
+    for (k = 0; k < 3; k++) to[k] = from[k] - middle - (back ? shift[k] : 0);
+    stage_turn(axis, back ? -angle : angle, to);
+    for (k = 0; k < 3; k++) to[k] += middle + (back ? 0 : shift[k]);
+}
+
+/* The blade through the still body, or the body through the still blade: the same path. Two pieces come of it. */
+static inline void stage_pass_rigidly(stage *s, int body_moves, int frames) {
+    const double middle = 0.5 * s->cells[0],
+                 still[6] = {middle - STAGE_FAR, -3, middle - 0.4, middle + STAGE_FAR, -2.6, middle + 0.3};
+    double edge[6];
+    size_t c;
+    int i, k;
+    for (i = 0; i <= frames; i++) {
+        const double time = (double)i / frames;
+        memcpy(edge, still, sizeof edge);
+        if (!body_moves) {
+            stage_place_rigidly(s, time, 0, still, edge);
+            stage_place_rigidly(s, time, 0, still + 3, edge + 3);
+        }
+        for (c = 0; c < s->view.copy_count && body_moves; c++) {
+            const double *rest = s->rest + 3 * s->view.copy_node[c];
+            double x[3];
+            stage_place_rigidly(s, time, 1, rest, x);
+            for (k = 0; k < 3; k++) s->view.displacement[3 * c + (size_t)k] = x[k] - rest[k];
+        }
+        stage_move_edge(s, edge, 2);
+    }
+    stage_lift(s);
 }
 
 /* ---- random passes ---- */

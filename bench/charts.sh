@@ -281,26 +281,23 @@ unset multiplot
 END
 }
 
-# How far the walls of a blade's cut are off known sheets: by the tolerance, and by the time of a move over numbers of frames
+# How far the walls of a blade's cut are off known sheets, over tolerances: by these, and by the time for each divided element
 blade() {
     echo 'set terminal svg size 1180,480 font "sans,12" background "white"'
     echo "set output '$charts/blade.svg'"
     for motion in calm swinging violent; do
-        echo "\$tolerance_$motion << EOD"
-        awk -F, -v motion=$motion '$1 == "error" && $2 == motion && $4 == 60 && $6 == 0.5 { print $5, $14, $15 }' "$tables/blade.csv" | sort -g
-        echo "EOD"
-        echo "\$frames_$motion << EOD"
-        awk -F, -v motion=$motion '$1 == "error" && $2 == motion && $5 == 0.01 && $6 == 0.5 { print $4 * $16, $14, $15 }' "$tables/blade.csv" | sort -g
+        echo "\$$motion << EOD"
+        awk -F, -v motion=$motion '$1 == "error" && $2 == motion && $4 == 60 && $6 == 0.5 { print $5, $11, $14, $15 }' "$tables/blade.csv" | sort -g
         echo "EOD"
     done
     cat <<END
 $styles
-set multiplot layout 1,2 title "A blade that follows a sheet of a moving body: distance of the cut's walls from it   ($(where blade))" font "sans,15"
+set multiplot layout 1,2 title "A blade that follows a sheet of a moving body, 60 frames: distance of the cut's walls from it   ($(where blade))" font "sans,15"
 set logscale xy; set grid back lc rgb "#dddddd"; set format x "10^{%L}"; set format y "10^{%L}"; set yrange [1e-4:1]
-set title "60 frames"; set xlabel "tolerance, edges of an element"; set ylabel "distance, edges of an element"; set key left top
-plot \$tolerance_calm using 1:2 with linespoints ls 1 title "calm, largest", \$tolerance_calm using 1:3 with linespoints ls 8 title "calm, root mean square", \$tolerance_swinging using 1:2 with linespoints ls 2 title "swinging, largest", \$tolerance_violent using 1:2 with linespoints ls 3 title "violent, largest", \$tolerance_violent using 1:3 with linespoints ls 4 title "violent, root mean square", x with lines ls 7 title "the tolerance"
-set title "20 to 240 frames, tolerance 0.01"; set xlabel "time of the whole pass, ms"; set ylabel ""; set format x "%g"; set key off
-plot \$frames_calm using 1:2 with linespoints ls 1, \$frames_calm using 1:3 with linespoints ls 8, \$frames_swinging using 1:2 with linespoints ls 2, \$frames_violent using 1:2 with linespoints ls 3, \$frames_violent using 1:3 with linespoints ls 4
+set xlabel "tolerance, edges of an element"; set ylabel "distance, edges of an element"; set xrange [5e-4:0.2]; set key left top
+plot \$calm using 1:3 with linespoints ls 1 title "calm, largest", \$calm using 1:4 with linespoints ls 8 title "calm, root mean square", \$swinging using 1:3 with linespoints ls 2 title "swinging, largest", \$violent using 1:3 with linespoints ls 3 title "violent, largest", \$violent using 1:4 with linespoints ls 4 title "violent, root mean square", x with lines ls 7 title "the tolerance"
+set xlabel "time for each divided element, us, over tolerances of 0.1 to 0.001"; set ylabel ""; set xrange [*:*]; set format x "%g"; set key off
+plot \$calm using 2:3 with linespoints ls 1, \$calm using 2:4 with linespoints ls 8, \$swinging using 2:3 with linespoints ls 2, \$violent using 2:3 with linespoints ls 3, \$violent using 2:4 with linespoints ls 4
 unset multiplot
 END
 }

@@ -241,11 +241,12 @@ heading() {
 }
 
 blade() {
-    text "Straight and bent edges in space through blocks of 12^3 cubes, six elements each, that move by steps. Elements count as \
-often as they were divided; leaves are what each of them added."
+    text "Edges in space through blocks that move meanwhile, built by \`-O2\`. The blocks of the scenes have 12^3 cubes, six elements \
+each, and move by steps. Elements count as often as they were divided; leaves are what each of them added. Overlap, sawing, retreats \
+and the like are in \`bench/blade.h\`. Volume: how far it is off at most, as a share."
     echo
-    heading scene fragments expected "elements divided" "leaves each" "us each" "smallest link"
-    blade_rows scene '$2 " | " $7 " | " $8 " | " $9 " | " $10 " | " $11 " | " $12'
+    heading scene fragments expected "elements divided" "leaves each" "us each" "smallest link" volume
+    blade_rows scene '$2 " | " $7 " | " $8 " | " $9 " | " $10 " | " $11 " | " $12 " | " ($22 == "" ? 0 : $22)'
     echo
     text "Random straight passes through blocks of 4^3 cubes that move, with noise at each node and frame; flat: squeezed to a \
 fifth, so that elements turn inside out."
@@ -257,14 +258,28 @@ fifth, so that elements turn inside out."
     echo
     echo "![Distance of a blade's cut from known sheets](charts/blade.svg)"
     echo
-    heading motion frames "tolerance, cubes" "least advance, cubes" "largest, cubes" "root mean square" "a move, ms"
-    blade_rows error '$2 " | " $4 " | " $5 " | " $6 " | " $14 " | " $15 " | " $16'
+    heading motion frames "tolerance, cubes" "least advance, cubes" "largest, cubes" "root mean square" "us an element" "a move, ms"
+    blade_rows error '$2 " | " $4 " | " $5 " | " $6 " | " $14 " | " $15 " | " $11 " | " $16'
     echo
-    heading cost elements frames "elements divided" "leaves each" "us each" "a move, ms" "worst, ms" "a step, ms" "ns a point"
-    awk -F, '$1 ~ /^(cost|idle|sample|frame)$/ {
-        name["cost"] = "a pass"; name["idle"] = "a move far from the body"; name["sample"] = "a move that cuts nothing"
-        name["frame"] = "a frame: blade, cut, model, skin"
-        print "| " name[$1] " | " $3 " | " $4 " | " $9 " | " $10 " | " $11 " | " $16 " | " $17 " | " $18 " | " $20 " |" }' "$tables/blade.csv"
+    text "The same path by a blade through a still block and by a block past a still blade: how far the section is from that of 800 \
+frames, the mean over it."
+    echo
+    heading "what moves" frames fragments expected "off, cubes" "us an element"
+    blade_rows relativity '$2 " | " $4 " | " $7 " | " $8 " | " $14 " | " $11'
+    echo
+    heading cost elements frames "elements divided" "leaves each" "us each" "a move, ms" "worst, ms" "a step, ms" "share of it" "ns a point"
+    awk -F, '$1 ~ /^(cost|idle|sample)$/ {
+        name["cost"] = "a pass"; name["idle"] = "a move far from the body"; name["sample"] = $2 == "located" ? "gx_body_locate" : "a move that cuts nothing"
+        print "| " name[$1] " | " $3 " | " $4 " | " $9 " | " $10 " | " $11 " | " $16 " | " $18 " | " $19 " | " $20 " | " $21 " |" }' "$tables/blade.csv"
+    echo
+    text "A pass of $(awk -F, '$1 == "frame" { print $4; exit }' "$tables/blade.csv") frames through \
+$(awk -F, '$1 == "frame" { print $3; exit }' "$tables/blade.csv") elements that swing by steps; all: all but the step."
+    echo
+    heading "part of a frame" "median, ms" "95 of 100 below, ms" "worst, ms" "share of a step"
+    blade_rows frame '$2 " | " $16 " | " $17 " | " $18 " | " $20'
+    echo
+    heading "tools that carve" elements "elements divided" "us each" "a tool, ms" "worst, ms" volume
+    blade_rows carve '$2 " | " $3 " | " $9 " | " $11 " | " $16 " | " $18 " | " ($22 == "" ? 0 : $22)'
 }
 
 # A paragraph

@@ -1,16 +1,11 @@
 /* fuzz.c - Booleans of surfaces and the cell complex on cases made from bytes. Each result is checked for properties
    that hold for any input.
 
-       fuzz FILE...                            replays cases
-       fuzz --seed=S --cases=N --seconds=T     random cases from seed S on, until N are done or T seconds have
-                                               passed (0: no such limit)
-            --out=FOLDER                       where a failing case is written (build/fuzz), as a file that replays
-                                               by itself
+       fuzz FILE... | --seed=S --cases=N --seconds=T --out=FOLDER     as fuzz.h says
             --oracle=K                         the exact oracle on one case in K (100)
 
-   With -DFUZZ_LIBFUZZER it has no main: libFuzzer calls LLVMFuzzerTestOneInput. With -DGXFEM_LINKED it does not
-   contain the library. The library may then be built under flags that would mislead the checks. Bytes are read from
-   the front, 0 after the last. The first says what is tested, the next how coordinates are made; operands follow
+   With -DGXFEM_LINKED it does not contain the library. The library may then be built under flags that would mislead the
+   checks. The first byte of a case says what is tested, the next how coordinates are made; operands follow
    (fuzz_cases.h).
 
    Checks:
@@ -32,77 +27,21 @@
 #endif
 #include "../gxfem_boolean.h"
 #include "boolean_oracle.h"
+#define FUZZ_BYTES   96
+#define FUZZ_SECONDS 60
+#define FUZZ_FOLDER  "build/fuzz"
+#include "fuzz.h"
 #include "fuzz_cases.h"
 
-#include <fcntl.h>
-#include <stdarg.h>
-#include <time.h>
-#include <unistd.h>
-#if defined(__wasi__) /* no signals, and no jump back: the first failure ends the program */
-typedef int jmp_buf[1];
-#define setjmp(buffer)         ((void)(buffer), 0)
-#define longjmp(buffer, value) exit(value)
-#else
-#include <setjmp.h>
-#include <signal.h>
-#include <sys/time.h>
-#endif
-
-/* ---- failures ---- */
-
-enum { CASE_SECONDS = 60, PARTS = 12, ORACLE_PLANES = 22 };
+enum { PARTS = 12, ORACLE_PLANES = 22 };
 
 static struct {
-    const uint8_t *bytes;
-    size_t size;
-    uint64_t seed;      /* of a random case */
-    int random, oracle; /* oracle: on one case in this number */
-    uint64_t number;
-    const char *folder;
-    jmp_buf back;
-} at;
+    uint64_t number; /* of cases so far */
+    uint64_t every;  /* the oracle is asked about one case in this number; 0: about none */
+    rat_mark start;  /* of numbers, before the case */
+} asked = {0, 100, {0}};
 
-static struct { uint64_t cases, evaluations, refused, oracles, complexes, provenances, defects, mended; } count;
-
-/* Calls only functions that a signal handler may call. */
-static void write_case(void) {
-    static const char digits[] = "0123456789abcdef";
-    char path[512];
-    size_t length = strlen(at.folder);
-    int i, file;
-    if (length > sizeof path - 32) return;
-    memcpy(path, at.folder, length);
-    memcpy(path + length, "/case-", 6);
-    for (i = 0; i < 16; i++) path[length + 6 + (size_t)i] = digits[at.seed >> (60 - 4 * i) & 15];
-    path[length + 22] = '\0';
-    file = creat(path, 0644);
-    if (file < 0 || write(file, at.bytes, at.size) != (ssize_t)at.size) return;
-    close(file);
-    if (write(2, path, length + 22) < 0 || write(2, "\n", 1) < 0) return;
-}
-
-static void fail(const char *format, ...) {
-    va_list list;
-    va_start(list, format);
-    if (at.random)
-        fprintf(stderr, "fuzz: seed %llu: ", (unsigned long long)at.seed);
-    else
-        fprintf(stderr, "fuzz: ");
-    vfprintf(stderr, format, list);
-    fprintf(stderr, "\n");
-    va_end(list);
-    if (at.random) write_case();
-#ifdef FUZZ_LIBFUZZER
-    abort();
-#else
-    longjmp(at.back, 1);
-#endif
-}
-
-#define REQUIRE(condition, ...)                                                                                        \
-    do {                                                                                                               \
-        if (!(condition)) fail(__VA_ARGS__);                                                                           \
-    } while (0)
+static struct { uint64_t evaluations, refused, oracles, complexes, provenances, defects, mended; } count;
 
 /* ---- one Boolean and its result ---- */
 
@@ -991,12 +930,9 @@ static void test_complex(test_case *c, int ask) {
 
 /* ---- cases ---- */
 
-static void run_case(const uint8_t *bytes, size_t size) {
+static void test_bytes(const uint8_t *bytes, size_t size) {
     static test_case c;
-    const int ask = at.oracle > 0 && at.number++ % (uint64_t)at.oracle == 0;
-    at.bytes = bytes;
-    at.size = size;
-    count.cases++;
+    const int ask = asked.every > 0 && asked.number++ % asked.every == 0;
     case_decode(bytes, size, &c);
     if (c.complex)
         test_complex(&c, ask);
@@ -1004,120 +940,25 @@ static void run_case(const uint8_t *bytes, size_t size) {
         test_boolean(&c, ask);
 }
 
-#ifdef FUZZ_LIBFUZZER
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    at.oracle = 100;
-    run_case(data, size);
-    return 0;
+static void begin_fuzz(void) {
+    asked.number = 0;
+    asked.start = rat_arena_mark();
 }
 
-#else
+static void drop_case(void) { rat_arena_release(asked.start); }
 
-#if defined(__wasi__)
-static void catch_signals(void) {}
-static void allow_a_case(void) {}
-#else
-static void on_signal(int number) {
-    static const char crash[] = "fuzz: a crash\n", slow[] = "fuzz: a case without end\n";
-    if (number == SIGVTALRM ? write(2, slow, sizeof slow - 1) < 0 : write(2, crash, sizeof crash - 1) < 0) _exit(2);
-    if (at.random) write_case();
-    _exit(2);
+static void end_fuzz(void) { rat_arena_free(); }
+
+static void print_counts(void) {
+    printf("%llu evaluations, %llu complexes, %llu operands refused, %llu provenances, %llu oracles, %llu defects, "
+           "%llu mended",
+           (unsigned long long)count.evaluations, (unsigned long long)count.complexes,
+           (unsigned long long)count.refused, (unsigned long long)count.provenances, (unsigned long long)count.oracles,
+           (unsigned long long)count.defects, (unsigned long long)count.mended);
 }
 
-/* Processor time, since other programs may take their share */
-static void allow_a_case(void) {
-    const struct itimerval limit = {{0, 0}, {CASE_SECONDS, 0}};
-    setitimer(ITIMER_VIRTUAL, &limit, NULL);
+static int take_option(const char *argument) {
+    if (strncmp(argument, "--oracle=", 9) != 0) return 0;
+    asked.every = strtoull(argument + 9, NULL, 10);
+    return 1;
 }
-
-static void catch_signals(void) {
-    signal(SIGSEGV, on_signal);
-    signal(SIGABRT, on_signal);
-    signal(SIGFPE, on_signal);
-    signal(SIGVTALRM, on_signal);
-}
-#endif
-
-static int run_seeds(uint64_t seed, uint64_t cases, long seconds) {
-    static uint8_t bytes[CASE_BYTES];
-    const time_t start = time(NULL);
-    const rat_mark start_of_numbers = rat_arena_mark();
-    volatile int failed = 0;
-    volatile uint64_t i;
-    at.random = 1;
-    for (i = 0; (cases == 0 || i < cases) && failed < 20; i++) {
-        if (i % 16 == 0) {
-            allow_a_case();
-            if (seconds > 0 && time(NULL) - start >= seconds) break;
-        }
-        at.seed = seed + i;
-        case_fill(at.seed, bytes);
-        if (setjmp(at.back)) {
-            failed++;
-            rat_arena_release(start_of_numbers);
-        } else
-            run_case(bytes, CASE_BYTES);
-    }
-    printf("%llu cases from seed %llu, %d failed; %llu evaluations, %llu complexes, %llu operands refused, %llu "
-           "provenances, %llu oracles, %llu defects, %llu mended, %ld s\n",
-           (unsigned long long)count.cases, (unsigned long long)seed, failed, (unsigned long long)count.evaluations,
-           (unsigned long long)count.complexes, (unsigned long long)count.refused,
-           (unsigned long long)count.provenances, (unsigned long long)count.oracles, (unsigned long long)count.defects,
-           (unsigned long long)count.mended, (long)(time(NULL) - start));
-    return failed != 0;
-}
-
-static int run_file(const char *path) {
-    static uint8_t bytes[1 << 16];
-    FILE *file = fopen(path, "rb");
-    size_t size;
-    if (file == NULL) {
-        fprintf(stderr, "fuzz: %s: cannot be read\n", path);
-        return 1;
-    }
-    size = fread(bytes, 1, sizeof bytes, file);
-    fclose(file);
-    at.random = 0;
-    at.number = 0;
-    allow_a_case();
-    if (setjmp(at.back)) {
-        fprintf(stderr, "fuzz: %s failed\n", path);
-        return 1;
-    }
-    run_case(bytes, size);
-    return 0;
-}
-
-int main(int argc, char **argv) {
-    unsigned long long seed = 1, cases = 0, seconds = 0;
-    int i, files = 0, failed = 0;
-    at.folder = "build/fuzz";
-    at.oracle = 100;
-    catch_signals();
-    for (i = 1; i < argc; i++) {
-        if (strncmp(argv[i], "--seed=", 7) == 0)
-            seed = strtoull(argv[i] + 7, NULL, 10);
-        else if (strncmp(argv[i], "--cases=", 8) == 0)
-            cases = strtoull(argv[i] + 8, NULL, 10);
-        else if (strncmp(argv[i], "--seconds=", 10) == 0)
-            seconds = strtoull(argv[i] + 10, NULL, 10);
-        else if (strncmp(argv[i], "--oracle=", 9) == 0)
-            at.oracle = atoi(argv[i] + 9);
-        else if (strncmp(argv[i], "--out=", 6) == 0)
-            at.folder = argv[i] + 6;
-        else {
-            failed += run_file(argv[i]);
-            files++;
-        }
-    }
-    if (files > 0)
-        printf("%d files, %d failed\n", files, failed);
-    else
-        failed = run_seeds(seed, cases == 0 && seconds == 0 ? 10000 : cases, (long)seconds);
-    rat_arena_free();
-    return failed != 0;
-}
-
-#endif

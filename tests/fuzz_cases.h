@@ -2,7 +2,7 @@
 
    Shapes lie on a lattice of a few steps, so that points, edges and planes coincide. A style then moves them: by
    rounding, by units of the last place, by powers of two, far away. This file reads the files of tests/corpus/, so
-   new kinds must come after the old ones. */
+   new kinds must come after the old ones. Include after fuzz.h. */
 #ifndef GXFEM_TESTS_FUZZ_CASES_H
 #define GXFEM_TESTS_FUZZ_CASES_H
 
@@ -45,16 +45,6 @@ typedef struct test_case {
     double nodes[8][3];
     uint32_t elements[6][4], node_count, element_count;
 } test_case;
-
-/* ---- bytes ---- */
-
-typedef struct case_bytes {
-    const uint8_t *data;
-    size_t size, at;
-} case_bytes;
-
-static inline uint32_t case_take(case_bytes *b) { return b->at < b->size ? b->data[b->at++] : 0; }
-static inline uint32_t case_below(case_bytes *b, uint32_t n) { return case_take(b) % n; }
 
 /* ---- meshes ---- */
 
@@ -564,20 +554,6 @@ static inline void case_decode(const uint8_t *data, size_t size, test_case *c) {
     for (operands = 1 + (head / 32 < 6 ? 1 : head / 32 - 5 + (head >> 3 & 1)) + (head / 32 == 7); operands > 0;
          operands--)
         case_operand_of(&b, c);
-}
-
-/* The bytes of a random case: splitmix64 */
-enum { CASE_BYTES = 96 };
-static inline void case_fill(uint64_t seed, uint8_t *bytes) {
-    uint64_t state = seed * UINT64_C(0xda942042e4dd58b5);
-    int i, k;
-    for (i = 0; i < CASE_BYTES; i += 8) {
-        uint64_t z = state += UINT64_C(0x9e3779b97f4a7c15);
-        z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-        z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-        z ^= z >> 31;
-        for (k = 0; k < 8; k++) bytes[i + k] = (uint8_t)(z >> 8 * k);
-    }
 }
 
 #endif /* GXFEM_TESTS_FUZZ_CASES_H */

@@ -208,42 +208,6 @@ END_TEST
 
 /* ---- relativity ---- */
 
-/* A rigid motion of an edge through a block: turned about the block's middle, then shifted */
-static void place_rigidly(const stage *s, double time, int back, const double from[3], double to[3]) {
-    static const double axis[3] = {0.6, 0, 0.8};
-    const double angle = 0.7 * sin(2 * time), middle = 0.5 * s->cells[0],
-                 shift[3] = {0.5 * sin(5 * time), (s->cells[0] + 6.0) * time, 0.4 * sin(4 * time)};
-    int k;
-    for (k = 0; k < 3; k++) to[k] = from[k] - middle - (back ? shift[k] : 0);
-    stage_turn(axis, back ? -angle : angle, to);
-    for (k = 0; k < 3; k++) to[k] += middle + (back ? 0 : shift[k]);
-}
-
-/* The blade through the still body, or the body through the still blade */
-static void pass_rigidly(stage *s, int body_moves, int frames) {
-    const double middle = 0.5 * s->cells[0],
-                 still[6] = {middle - STAGE_FAR, -3, middle - 0.4, middle + STAGE_FAR, -2.6, middle + 0.3};
-    double edge[6];
-    size_t c;
-    int i, k;
-    for (i = 0; i <= frames; i++) {
-        const double time = (double)i / frames;
-        memcpy(edge, still, sizeof edge);
-        if (!body_moves) {
-            place_rigidly(s, time, 0, still, edge);
-            place_rigidly(s, time, 0, still + 3, edge + 3);
-        }
-        for (c = 0; c < s->view.copy_count && body_moves; c++) {
-            const double *rest = s->rest + 3 * s->view.copy_node[c];
-            double x[3];
-            place_rigidly(s, time, 1, rest, x);
-            for (k = 0; k < 3; k++) s->view.displacement[3 * c + (size_t)k] = x[k] - rest[k];
-        }
-        stage_move_edge(s, edge, 2);
-    }
-    stage_lift(s);
-}
-
 /* The same pieces in both, and with 1, 2, 5 and 20 times as many frames, up to the blade's tolerance on the cut's
    area */
 START_TEST(relativity) {
@@ -251,13 +215,13 @@ START_TEST(relativity) {
     const uint32_t n = 5;
     stage first = open_block(n, 1);
     int i, body_moves;
-    pass_rigidly(&first, 0, 20);
+    stage_pass_rigidly(&first, 0, 20);
     check_fragments(&first, 2, 0);
     for (i = 0; i < 4; i++)
         for (body_moves = 0; body_moves < 2; body_moves++) {
             stage s = open_block(n, 1);
             double off;
-            pass_rigidly(&s, body_moves, 20 * factors[i]);
+            stage_pass_rigidly(&s, body_moves, 20 * factors[i]);
             check_fragments(&s, 2, (uint64_t)factors[i]);
             off = volume_difference(&first.view, &s.view);
             /* 20 frames know less of the path than 400 */
@@ -906,6 +870,42 @@ START_TEST(degenerate_edges) {
 }
 END_TEST
 
+/* Edges whose ends are far away. Where rounding moves places between them by more than an element the blade misses the
+   body. */
+START_TEST(far_ends) {
+    stage s = open_block(3, 1);
+    const double far = _i == 0 ? 1e12 : _i == 1 ? 1e20 : 1e30;
+    int k;
+    for (k = 0; k <= 20; k++) {
+        const double y = -2 + 0.35 * k, edge[9] = {-far, y, 1.3, 1.4, y, 1.3, far, y, 1.3};
+        stage_move_edge(&s, edge, 3);
+    }
+    stage_lift(&s);
+    check_fragments(&s, _i == 0 ? 2 : 1, 0);
+    stage_close(&s);
+}
+END_TEST
+
+/* After a step that went wrong copies may be anywhere. The moves end soon, cut hardly anything, and keep the volume. */
+START_TEST(huge_displacements) {
+    stage s = open_block(3, 1);
+    const double sizes[3] = {1e6, 1e20, 1e30}, size = sizes[_i];
+    size_t most = 0, c;
+    int k;
+    for (k = 0; k < 6; k++) {
+        const double edge[6] = {-9, -2 + 0.4 * k, 1.3, 12, -2 + 0.5 * k, 1.4}, far[6] = {-9, k * size, 1.3, 9, 0.6, 1};
+        const size_t before = s.tally.triangles;
+        for (c = 0; c < 3 * s.view.copy_count && k >= 2; c++) s.view.displacement[c] = size * (stage_uniform(&s));
+        stage_move_edge(&s, k < 4 ? edge : far, 2);
+        if (s.tally.triangles - before > most) most = s.tally.triangles - before;
+    }
+    stage_lift(&s);
+    check_stage(&s, (uint64_t)_i);
+    ck_assert_msg(most < 300, "a move made %zu triangles", most);
+    stage_close(&s);
+}
+END_TEST
+
 /* Far from the body nothing happens. */
 START_TEST(nothing_near) {
     stage s = open_block(3, 1);
@@ -1085,6 +1085,8 @@ int main(void) {
     tcase_add_loop_test(tests, many_points, 0, 3);
     tcase_add_loop_test(tests, bent_edges, 0, 2);
     tcase_add_loop_test(tests, degenerate_edges, 0, 3);
+    tcase_add_loop_test(tests, far_ends, 0, 3);
+    tcase_add_loop_test(tests, huge_displacements, 0, 3);
     tcase_add_test(tests, nothing_near);
     tcase_add_test(tests, refused_moves);
     tcase_add_loop_test(tests, memory_runs_out, 0, 2);

@@ -476,6 +476,33 @@ START_TEST(steps_go_on) {
 }
 END_TEST
 
+/* A cut that no step has seen when the body is saved: what is loaded makes the solver's model anew, and so does the
+   body. */
+START_TEST(cut_before_saving) {
+    const int by_bytes = _i % 2, earlier = _i / 2;
+    workload w = grid(4, 4, 4, 6);
+    gx_body *body, *copy;
+    gx_step_desc step;
+    random_seed((uint64_t)_i + 5);
+    body = body_of(&w);
+    add_axis_plane(&w, 0, 2.4);
+    add_axis_plane(&w, 1, 1.7);
+    if (earlier) cut_by(body, &w, 0, 1);
+    ck_assert_int_eq(hold_low(body, 0.5), GX_OK);
+    shake(body, 0.02);
+    memset(&step, 0, sizeof step);
+    step.dt = 0.01;
+    step.gravity[2] = -9.81;
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
+    cut_by(body, &w, 1, 1);
+    copy = twin_of(body, by_bytes);
+    expect_same_steps(body, copy, &step, 3, (uint64_t)_i);
+    gx_body_destroy(body);
+    gx_body_destroy(copy);
+    wl_free(&w);
+}
+END_TEST
+
 /* Saving, cloning or restoring wakes neither a body at rest nor its copy. */
 START_TEST(sleepers_sleep_on) {
     workload w = grid(2, 2, 2, 5);
@@ -1092,6 +1119,7 @@ int main(void) {
     tcase_add_loop_test(tests, far_and_small_bodies, 0, 6);
     tcase_add_loop_test(tests, pinched_bodies, 0, 2);
     tcase_add_loop_test(tests, steps_go_on, 0, 16);
+    tcase_add_loop_test(tests, cut_before_saving, 0, 4);
     tcase_add_test(tests, sleepers_sleep_on);
     tcase_add_loop_test(tests, rollback, 0, 4);
     tcase_add_test(tests, restoring_from_strangers);
