@@ -4667,8 +4667,8 @@ static gx_result gxp_find_specks(gxp_cut *cut, double below, uint32_t *found) {
 }
 
 /* >>settle: giving back what removed material has held ------------------------------------------------------------- */
-/* In: a body between cuts. Out: the same body after gxb_complex_compact. Touches indices of leaves and planes. Without
-   memory for it, the body stays as it was. */
+/* In: a cut that has been made. Out: once it is committed, the same body after gxb_complex_compact. All memory is taken
+   before; without it the cut fails. Touches rows of leaves and cells, indices of planes, maps. */
 
 static uint32_t *gxp_vertex_bucket(gxp_skin *s, const gxp_skin_key *key) {
     uint64_t h = gxp_mix((uint64_t)key->group[0] << 32 | key->group[1]) + key->point;
@@ -4782,25 +4782,39 @@ static void gxp_settle_maps(gx_body *body, unsigned char *shown) {
     cuts->map_count = n;
 }
 
-/* Once a body has cost enough since the last time. The order of all items stays, so that nothing else changes. */
-static void gxp_settle(gx_body *body) {
-    const gx_allocator *a = &body->config.allocator;
-    const size_t size = body->cells.count * sizeof(uint32_t) + body->cuts.surface_count;
-    gxb_renumbering r;
-    uint32_t *place;
-    if (!gxb_complex_is_sparse(body->complex) ||
-        (body->skin.made && gxp_words_room(body, &body->skin.dirty, body->mesh.element_count) != GX_OK))
-        return;
-    place = (uint32_t *)gxp_allocate(a, size);
-    if (place != NULL && gxb_complex_compact(body->complex, body->mesh.node_pinched, &r) == GX_OK) {
-        gxp_settle_leaves(body, &r);
-        gxp_settle_skin(body, &r);
-        gxb_complex_forget(body->complex, &r);
-        gxp_settle_maps(body, (unsigned char *)(place + body->cells.count));
-        gxp_settle_cells(body, place);
-        body->scratch.boundary.points.count = 0;
-    }
-    gxp_release(a, place, size);
+/* A compaction to come, planned while the cut can still be taken back */
+typedef struct gxp_settling {
+    gxb_renumbering renumbering;
+    uint32_t *place; /* NULL: there will be none */
+    size_t size;
+} gxp_settling;
+
+/* Plans a compaction, once a body has cost enough since the last one. What is beyond the limits stays as it is. */
+static gx_result gxp_plan_settling(gx_body *body, gxp_settling *s) {
+    gx_result result = GX_OK;
+    memset(s, 0, sizeof *s);
+    if (!gxb_complex_is_sparse(body->complex)) return GX_OK;
+    if (body->skin.made) result = gxp_words_room(body, &body->skin.dirty, body->mesh.element_count);
+    if (result == GX_OK) result = gxb_complex_survey(body->complex, body->mesh.node_pinched, &s->renumbering);
+    if (result != GX_OK) return result == GX_ERROR_LIMIT ? GX_OK : result;
+    s->size = body->cells.count * sizeof(uint32_t) + body->cuts.surface_count;
+    s->place = (uint32_t *)gxp_allocate(&body->config.allocator, s->size);
+    if (s->place != NULL) return GX_OK;
+    gxb_complex_forget(body->complex, &s->renumbering);
+    return GX_ERROR_MEMORY;
+}
+
+/* Carries it out. The order of all items stays, so that nothing else changes. */
+static void gxp_settle(gx_body *body, gxp_settling *s) {
+    if (s->place == NULL) return;
+    gxb_complex_compact(body->complex, &s->renumbering);
+    gxp_settle_leaves(body, &s->renumbering);
+    gxp_settle_skin(body, &s->renumbering);
+    gxb_complex_forget(body->complex, &s->renumbering);
+    gxp_settle_maps(body, (unsigned char *)(s->place + body->cells.count));
+    gxp_settle_cells(body, s->place);
+    body->scratch.boundary.points.count = 0;
+    gxp_release(&body->config.allocator, s->place, s->size);
 }
 
 /* >>cut: the driver ------------------------------------------------------------------------------------------------ */
@@ -5093,6 +5107,7 @@ static gx_result gxp_make_cut(gxp_cut *cut) {
 static gx_result gxp_cut_body(gx_body *body, const gx_cut_desc *desc, double speck_below, gx_cut_report *report,
                               gx_failure *failure) {
     gxp_cut cut;
+    gxp_settling settling;
     uint32_t found = 0, tries;
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
@@ -5112,13 +5127,14 @@ static gx_result gxp_cut_body(gx_body *body, const gx_cut_desc *desc, double spe
         gxp_rollback(&cut);
     }
     body->scratch.glue.count = 0;
+    if (result == GX_OK) result = gxp_plan_settling(body, &settling);
     if (result != GX_OK) {
         gxp_rollback(&cut);
         return gxp_tell_failure(&cut, result, failure);
     }
     gxp_wake_resumed(body, body->undo.counts[GXP_COPIES]);
     gxp_commit(&cut);
-    gxp_settle(body);
+    gxp_settle(body, &settling);
     if (body->model.resumed != 0) body->model.resumed = gxp_hash_state(body, body->copies.count);
     if (report != NULL) *report = cut.report;
     return gxp_end(failure, GX_OK);

@@ -37,7 +37,7 @@
  *                   transactions: begin, commit, rollback, reserve
  *                   division: add_point, add_plane, insert, open_element, cover_edge, cover_node, set_wall, set_removed
  *                   lists: gxb_leaf_resolve_facets, gxb_facet_resolve_edges
- *                   giving back what nothing needs: is_sparse, compact, forget
+ *                   giving back what nothing needs: is_sparse, survey, compact, forget
  *                   reading: gxb_complex_point and others
  *                   questions: gxb_complex_side, turn, compare, leaf_at, winding, barycentric, support,
  *                   barycentric_fine
@@ -539,7 +539,7 @@ GXFEM_API gx_result gxb_complex_open_element(gxb_complex *complex, uint32_t elem
 GXFEM_API gx_result gxb_leaf_resolve_facets(gxb_complex *complex, uint32_t leaf, uint32_t *first, uint32_t *count);
 GXFEM_API gx_result gxb_facet_resolve_edges(gxb_complex *complex, uint32_t facet, uint32_t *first, uint32_t *count);
 
-/* How gxb_complex_compact has numbered leaves and planes anew: new numbers by old ones; GXB_NONE: it is gone. Leaves
+/* How gxb_complex_compact numbers leaves and planes anew: new numbers by old ones; GXB_NONE: it is gone. Leaves
    that went have the number of the one that they are part of or, removed ones, that stands for them. */
 typedef struct gxb_renumbering {
     const uint32_t *leaves, *planes;
@@ -558,10 +558,14 @@ GXFEM_API int gxb_complex_is_sparse(const gxb_complex *complex);
    become one where open facets alone are between them, and no wall or removed leaf ends in the plane of these; so do
    facets between the same leaves, and edges. What stays gets new numbers in the same order. Facets of a mesh face
    between elements that triangles have touched, and edges of a mesh edge around such, are no longer listed as its
-   parts. pinned: node_count; elements with a node that is not 0 here keep all they have; NULL: none. No transaction may
-   be open. After an error the complex is as it was. renumbering: to be released by gxb_complex_forget. Errors: MEMORY,
+   parts.
+   gxb_complex_survey finds out what is to be done and takes the memory for it, also in a transaction, which it leaves
+   as it was. gxb_complex_compact does it, and cannot fail: after the survey and a commit, with nothing in between.
+   pinned: node_count; elements with a node that is not 0 here keep all they have; NULL: none. renumbering: to be
+   released by gxb_complex_forget, whether it was carried out or not; after an error it holds nothing. Errors: MEMORY,
    LIMIT. */
-GXFEM_API gx_result gxb_complex_compact(gxb_complex *complex, const uint8_t *pinned, gxb_renumbering *renumbering);
+GXFEM_API gx_result gxb_complex_survey(gxb_complex *complex, const uint8_t *pinned, gxb_renumbering *renumbering);
+GXFEM_API void gxb_complex_compact(gxb_complex *complex, gxb_renumbering *renumbering);
 GXFEM_API void gxb_complex_forget(gxb_complex *complex, gxb_renumbering *renumbering);
 
 /* Read access. Indices must be below the counts. Pointers are valid until the next call that changes or resolves. */
@@ -5465,7 +5469,7 @@ GXFEM_API int gxb_complex_pullback_side(gxb_complex *cx, gxb_pullback *back, uin
 }
 
 /* >>census: what a complex still needs ----------------------------------------------------------------------------- */
-/* In: a complex without a transaction. Out: marks on all that leaves that stay have need of; the facets of these leaves
+/* In: a complex. Out: marks on all that leaves that stay have need of; the facets of these leaves
    with their resolved loops. Nothing of the complex changes. */
 
 enum {                   /* of an element */
@@ -6290,9 +6294,9 @@ static void gxbp_restore_whole(gxbp_census *c) {
 }
 
 /* >>compact: giving back what nothing needs any more --------------------------------------------------------------- */
-/* In: a complex without a transaction. Out: the same complex without the leaves that were removed and what only they,
-   or edges and facets that are divided, had need of. Items keep their order. First a census is taken, and all memory;
-   then nothing can fail. */
+/* In: a complex. Out: the same complex without the leaves that were removed and what only they, or edges and facets
+   that are divided, had need of. Items keep their order. First a census is taken, and all memory; then nothing can
+   fail. */
 
 /* Numbers what stays. */
 static uint32_t gxbp_number(uint32_t *number, uint32_t count) {
@@ -6336,10 +6340,7 @@ static gx_result gxbp_take_room(gxbp_census *c) {
     if (c->list == NULL) return GX_ERROR_MEMORY;
     if (c->exact == 0) return GX_OK;
     c->numbers = (gxb_block *)gxbp_allocate(a, head + c->exact);
-    if (c->numbers == NULL) {
-        gxbp_release(a, c->list, c->pool * sizeof *c->list);
-        return GX_ERROR_MEMORY;
-    }
+    if (c->numbers == NULL) return GX_ERROR_MEMORY;
     c->numbers->next = NULL;
     c->numbers->size = head + c->exact;
     c->numbers->used = head;
@@ -6556,19 +6557,23 @@ static uint32_t gxbp_most_leaves(const gxb_complex *cx) {
 /* Room to plan an element's tree, for each of its leaves */
 #define GXBP_PLANS 32u
 
+/* The census itself is at the head of its block. */
+#define GXBP_CENSUS_WORDS ((sizeof(gxbp_census) + 15) / 16 * 4)
+
 static gx_result gxbp_open_census(gxbp_census *c, gxb_complex *cx) {
     const size_t elements = cx->element_count, leaves = cx->leaf_count, trees = cx->tree_count, edges = cx->edge_count,
                  facets = cx->facet_count, points = cx->store.point_count, plans = GXBP_PLANS * gxbp_most_leaves(cx);
     uint32_t *next;
     memset(c, 0, sizeof *c);
     c->cx = cx;
-    c->words = 3 * points + cx->store.plane_count + 5 * edges + 6 * facets + 6 * leaves + 1 + cx->label_count +
-               3 * elements + 2 * (size_t)cx->mesh_edge_count + cx->face_count + 4 * trees + 5 * plans;
+    c->words = GXBP_CENSUS_WORDS + 3 * points + cx->store.plane_count + 5 * edges + 6 * facets + 6 * leaves + 1 +
+               cx->label_count + 3 * elements + 2 * (size_t)cx->mesh_edge_count + cx->face_count + 4 * trees +
+               5 * plans;
     if (c->words > SIZE_MAX / sizeof *next || leaves + plans > UINT32_MAX / GXBP_KINDS) return GX_ERROR_LIMIT;
     c->block = (uint32_t *)gxbp_allocate(&cx->store.allocator, c->words * sizeof *next);
     if (c->block == NULL) return GX_ERROR_MEMORY;
     memset(c->block, 0xff, (c->words - 5 * plans) * sizeof *next);
-    next = c->block;
+    next = c->block + GXBP_CENSUS_WORDS;
     c->leaves = gxbp_take_words(&next, leaves);
     c->leaf_of = gxbp_take_words(&next, leaves);
     c->leaf_up = gxbp_take_words(&next, leaves);
@@ -6620,11 +6625,16 @@ static gx_result gxbp_take_census(gxbp_census *c, const uint8_t *pinned) {
     return gxbp_take_room(c);
 }
 
-/* Releases what only the census has needed. */
+/* Releases what the census has, but for its block: lists and numbers too, unless they have become the complex's. */
 static void gxbp_close_census(gxbp_census *c) {
     const gx_allocator *a = &c->cx->store.allocator;
     gxbp_release(a, c->loops, c->loop_room * sizeof *c->loops);
     gxbp_release(a, c->pieces, (c->piece_room + (size_t)1) * sizeof *c->pieces);
+    gxbp_release(a, c->list, c->pool * sizeof *c->list);
+    if (c->numbers != NULL) gxbp_release(a, c->numbers, c->numbers->size);
+    c->loops = c->list = NULL;
+    c->pieces = NULL;
+    c->numbers = NULL;
 }
 
 /* An array whose room is several times what it holds becomes smaller. Without memory for that it stays as it is. A
@@ -6690,9 +6700,8 @@ GXFEM_API int gxb_complex_is_sparse(const gxb_complex *cx) {
     return GXBP_IS_SPARSE(removed > 0 && items > (3 * removed > cx->leaf_count ? 2 : 4) * cx->settled + 16384);
 }
 
-GXFEM_API gx_result gxb_complex_compact(gxb_complex *cx, const uint8_t *pinned, gxb_renumbering *r) {
+GXFEM_API gx_result gxb_complex_survey(gxb_complex *cx, const uint8_t *pinned, gxb_renumbering *r) {
     gxbp_census c;
-    uint32_t i;
     gx_result result = gxbp_open_census(&c, cx);
     memset(r, 0, sizeof *r);
     if (result != GX_OK) return result;
@@ -6702,6 +6711,7 @@ GXFEM_API gx_result gxb_complex_compact(gxb_complex *cx, const uint8_t *pinned, 
         gxbp_release(&cx->store.allocator, c.block, c.words * sizeof *c.block);
         return result;
     }
+    memcpy(c.block, &c, sizeof c);
     r->leaf_count = cx->leaf_count;
     r->plane_count = cx->store.plane_count;
     r->leaves = c.leaves;
@@ -6710,14 +6720,21 @@ GXFEM_API gx_result gxb_complex_compact(gxb_complex *cx, const uint8_t *pinned, 
     r->changed = c.elements;
     r->memory = c.block;
     r->size = c.words * sizeof *c.block;
-    gxbp_settle(&c);
-    gxbp_close_census(&c);
-    for (i = 0; i < cx->element_count; i++) c.elements[i] = (c.elements[i] & GXBP_CHANGED) != 0;
-    r->renamed = gxbp_rename(&cx->store);
     return GX_OK;
 }
 
+GXFEM_API void gxb_complex_compact(gxb_complex *cx, gxb_renumbering *r) {
+    gxbp_census *c = (gxbp_census *)r->memory;
+    uint32_t i;
+    gxbp_settle(c);
+    c->list = NULL; /* the complex has them */
+    c->numbers = NULL;
+    for (i = 0; i < cx->element_count; i++) c->elements[i] = (c->elements[i] & GXBP_CHANGED) != 0;
+    r->renamed = gxbp_rename(&cx->store);
+}
+
 GXFEM_API void gxb_complex_forget(gxb_complex *cx, gxb_renumbering *r) {
+    if (r->memory != NULL) gxbp_close_census((gxbp_census *)r->memory);
     gxbp_release(&cx->store.allocator, r->memory, r->size);
     memset(r, 0, sizeof *r);
 }
@@ -13269,6 +13286,7 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_IS_SPARSE
 #undef GXBP_FAILS
 #undef GXBP_PLANS
+#undef GXBP_CENSUS_WORDS
 #undef GXBP_HAS_ROOM
 #undef GXBP_SPARE
 #undef GXBP_LARGEST
