@@ -12665,13 +12665,29 @@ static gx_result gxp_divide_triangle(gx_body *body, const uint32_t t[3], const u
     }
 }
 
+/* How often the edges of the tool may be halved: twice as often as the longest one must be, and some more. Beside edges
+   that stay long, as far from the layer, others may be halved for ever. */
+static uint32_t gxp_tool_rounds(const gx_blade *blade) {
+    const gxp_front_vertex *v = blade->samples.data;
+    double most = 1;
+    uint32_t i;
+    for (i = 0; i < blade->triangles.count; i++) {
+        const uint32_t a = blade->triangles.data[i], b = blade->triangles.data[i % 3 == 2 ? i - 2 : i + 1];
+        const double size = v[a].size < v[b].size ? v[a].size : v[b].size;
+        most = fmax(most, sqrt(gxp_square_distance(v[a].position, v[b].position)) / size);
+    }
+    return 8 + (uint32_t)(2 * log2(fmin(most, 1e100)));
+}
+
 /* Halves the edges of the tool until all that are near the layer are short. */
 static gx_result gxp_refine_tool(gx_blade *blade, uint32_t layer) {
     gx_body *body = blade->body;
     gxp_keys *halved = &blade->halved;
     gxp_words *divided = &blade->divided;
+    uint32_t rounds = gxp_tool_rounds(blade);
     gx_result result = gxp_list_long_edges(blade, halved);
-    while (result == GX_OK && halved->count > 0 && blade->triangles.count < 3 * GXP_TOOL_TRIANGLES) {
+    for (; result == GX_OK && halved->count > 0 && blade->triangles.count < 3 * GXP_TOOL_TRIANGLES && rounds > 0;
+         rounds--) {
         const uint32_t first = blade->samples.count;
         gxp_words swap;
         uint32_t i, k, n;
