@@ -11298,6 +11298,12 @@ static gx_result gxp_list_owned(gx_blade *blade, uint32_t layer, int old, const 
     return result;
 }
 
+/* How far a place between two is from the layer, HUGE_VAL where that is not known: all cells are inverted. */
+static double gxp_distance_between(const gxp_front_vertex *a, const gxp_front_vertex *b, double share) {
+    return a->distance < HUGE_VAL && b->distance < HUGE_VAL ? a->distance + share * (b->distance - a->distance)
+                                                            : HUGE_VAL;
+}
+
 /* Between two places on the edge: how far an owned front is from its layer, HUGE_VAL if it is not there */
 static double gxp_owned_distance(const gx_blade *blade, uint32_t owner, double from, double to) {
     const gxp_front_vertex *v = blade->owned.data;
@@ -11309,7 +11315,7 @@ static double gxp_owned_distance(const gx_blade *blade, uint32_t owner, double f
     if (i + 1 >= end) return HUGE_VAL;
     if (!(v[i].distance > 0) || !(v[i + 1].distance > 0)) return 0;
     share = (0.5 * (from + to) - v[i].along) / (v[i + 1].along - v[i].along);
-    return v[i].distance + share * (v[i + 1].distance - v[i].distance);
+    return gxp_distance_between(&v[i], &v[i + 1], share);
 }
 
 /* An owned front begins to be the layer's, or ends to be it, at a place on the edge: its vertices there, or a point of
@@ -11338,7 +11344,7 @@ static gx_result gxp_push_owned_place(gx_blade *blade, uint32_t owner, double al
         at.extended[k] += share * (v[i + 1].extended[k] - at.extended[k]);
         at.position[k] += share * (v[i + 1].position[k] - at.position[k]);
     }
-    at.distance += share * (v[i + 1].distance - at.distance);
+    at.distance = gxp_distance_between(&v[i], &v[i + 1], share);
     at.along = along;
     at.soft = at.gap = 0;
     return gxp_push_vertex(blade->body, &blade->front, &at);
