@@ -26,7 +26,7 @@
 #include "../gxfem.h"
 #define FUZZ_BYTES 256
 #ifndef FUZZ_SECONDS
-#define FUZZ_SECONDS 20
+#define FUZZ_SECONDS 60
 #endif
 #define FUZZ_FOLDER "build/fuzz_blade"
 #include "fuzz.h"
