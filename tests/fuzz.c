@@ -27,11 +27,11 @@
 #endif
 #include "../gxfem_boolean.h"
 #include "boolean_oracle.h"
-#define FUZZ_BYTES   96
+#include "fuzz_cases.h"
+#define FUZZ_BYTES   CASE_BYTES
 #define FUZZ_SECONDS 60
 #define FUZZ_FOLDER  "build/fuzz"
 #include "fuzz.h"
-#include "fuzz_cases.h"
 
 enum { PARTS = 12, ORACLE_PLANES = 22 };
 

@@ -1057,8 +1057,8 @@ int main(void) {
     const char *only = getenv("GXFEM_SEED");
     const int first = only ? atoi(only) - 1 : 0;
     tcase_add_loop_test(tests, scenes, 0, STAGE_SCENES);
-    tcase_add_loop_test(tests, other_sizes, 0, OTHER_SIZES);
-    tcase_add_loop_test(tests, swinging_passes, 0, 16 / FEWER);
+    tcase_add_loop_test(tests, other_sizes, 0, FEWER > 1 ? OTHER_SIZES / 2 : OTHER_SIZES);
+    tcase_add_loop_test(tests, swinging_passes, 0, 8 / FEWER);
     tcase_add_loop_test(tests, octopus, 0, 4);
     tcase_add_loop_test(tests, path_and_sheet, 0, REST_PASSES);
     tcase_add_loop_test(tests, other_meshes, 0, 2);
@@ -1082,7 +1082,7 @@ int main(void) {
     tcase_add_loop_test(tests, carving, 0, 2);
     tcase_add_loop_test(tests, carving_what_moves, first, only ? first + 1 : 6);
     tcase_add_loop_test(tests, sizes_and_places, 0, 5);
-    tcase_add_loop_test(tests, many_points, 0, 3);
+    tcase_add_loop_test(tests, many_points, 0, FEWER > 1 ? 1 : 3);
     tcase_add_loop_test(tests, bent_edges, 0, 2);
     tcase_add_loop_test(tests, degenerate_edges, 0, 3);
     tcase_add_loop_test(tests, far_ends, 0, 3);
