@@ -203,11 +203,11 @@ fuzz fuzz-blade:
 	    mkdir -p $(folder)/corpus && $(folder)/libfuzzer -max_total_time=$(SECONDS) -max_len=$(longest) -artifact_prefix=$(folder)/ $(folder)/corpus tests/$(corpus); \
 	else $< --out=$(folder) --seed=$(or $(SEED),1) --cases=$(or $(CASES),0) --seconds=$(if $(CASES),0,$(SECONDS)); fi
 
-$(BUILD)/fuzz/fuzz: tests/fuzz.c tests/fuzz.h tests/fuzz_cases.h tests/boolean_oracle.h tests/oracle.h tests/rational.h gxfem_boolean.h
+$(BUILD)/fuzz/fuzz: tests/fuzz.c tests/fuzz.h tests/scarce.h tests/case_bytes.h tests/fuzz_cases.h tests/boolean_oracle.h tests/oracle.h tests/rational.h gxfem_boolean.h
 	@mkdir -p $(@D)
 	$(compile) -g $< -o $@ $(LDFLAGS) -lm
 
-$(BUILD)/fuzz_blade/fuzz: tests/fuzz_blade.c tests/fuzz.h tests/fuzz_blade_cases.h tests/skin_check.h $(BUILD)/gxfem.o
+$(BUILD)/fuzz_blade/fuzz: tests/fuzz_blade.c tests/fuzz.h tests/scarce.h tests/case_bytes.h tests/fuzz_blade_cases.h tests/skin_check.h $(BUILD)/gxfem.o
 	@mkdir -p $(@D)
 	$(linked) $< $(BUILD)/gxfem.o -o $@ $(LDFLAGS) -lm
 

@@ -11482,6 +11482,12 @@ static gx_result gxp_list_owned(gx_blade *blade, uint32_t layer, int old, const 
     return result;
 }
 
+/* How far a place between two is from the layer, HUGE_VAL where that is not known: all cells are inverted. */
+static double gxp_distance_between(const gxp_front_vertex *a, const gxp_front_vertex *b, double share) {
+    return a->distance < HUGE_VAL && b->distance < HUGE_VAL ? a->distance + share * (b->distance - a->distance)
+                                                            : HUGE_VAL;
+}
+
 /* Between two places on the edge: how far an owned front is from its layer, HUGE_VAL if it is not there */
 static double gxp_owned_distance(const gx_blade *blade, uint32_t owner, double from, double to) {
     const gxp_front_vertex *v = blade->owned.data;
@@ -11493,7 +11499,7 @@ static double gxp_owned_distance(const gx_blade *blade, uint32_t owner, double f
     if (i + 1 >= end) return HUGE_VAL;
     if (!(v[i].distance > 0) || !(v[i + 1].distance > 0)) return 0;
     share = (0.5 * (from + to) - v[i].along) / (v[i + 1].along - v[i].along);
-    return v[i].distance + share * (v[i + 1].distance - v[i].distance);
+    return gxp_distance_between(&v[i], &v[i + 1], share);
 }
 
 /* An owned front begins to be the layer's, or ends to be it, at a place on the edge: its vertices there, or a point of
@@ -11522,7 +11528,7 @@ static gx_result gxp_push_owned_place(gx_blade *blade, uint32_t owner, double al
         at.extended[k] += share * (v[i + 1].extended[k] - at.extended[k]);
         at.position[k] += share * (v[i + 1].position[k] - at.position[k]);
     }
-    at.distance += share * (v[i + 1].distance - at.distance);
+    at.distance = gxp_distance_between(&v[i], &v[i + 1], share);
     at.along = along;
     at.soft = at.gap = 0;
     return gxp_push_vertex(blade->body, &blade->front, &at);
@@ -12850,13 +12856,29 @@ static gx_result gxp_divide_triangle(gx_body *body, const uint32_t t[3], const u
     }
 }
 
+/* How often the edges of the tool may be halved: twice as often as the longest one must be, and some more. Beside edges
+   that stay long, as far from the layer, others may be halved for ever. */
+static uint32_t gxp_tool_rounds(const gx_blade *blade) {
+    const gxp_front_vertex *v = blade->samples.data;
+    double most = 1;
+    uint32_t i;
+    for (i = 0; i < blade->triangles.count; i++) {
+        const uint32_t a = blade->triangles.data[i], b = blade->triangles.data[i % 3 == 2 ? i - 2 : i + 1];
+        const double size = v[a].size < v[b].size ? v[a].size : v[b].size;
+        most = fmax(most, sqrt(gxp_square_distance(v[a].position, v[b].position)) / size);
+    }
+    return 8 + (uint32_t)(2 * log2(fmin(most, 1e100)));
+}
+
 /* Halves the edges of the tool until all that are near the layer are short. */
 static gx_result gxp_refine_tool(gx_blade *blade, uint32_t layer) {
     gx_body *body = blade->body;
     gxp_keys *halved = &blade->halved;
     gxp_words *divided = &blade->divided;
+    uint32_t rounds = gxp_tool_rounds(blade);
     gx_result result = gxp_list_long_edges(blade, halved);
-    while (result == GX_OK && halved->count > 0 && blade->triangles.count < 3 * GXP_TOOL_TRIANGLES) {
+    for (; result == GX_OK && halved->count > 0 && blade->triangles.count < 3 * GXP_TOOL_TRIANGLES && rounds > 0;
+         rounds--) {
         const uint32_t first = blade->samples.count;
         gxp_words swap;
         uint32_t i, k, n;

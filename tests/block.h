@@ -1,8 +1,9 @@
 /* block.h - shared by the tests of gxfem_solve.h: random numbers, blocks of cubes as scenes, a material of the
-   caller's own, an allocator that fails. Include after gxfem_solve.h. */
+   caller's own, what fails without memory. Include after gxfem_solve.h. */
 #ifndef BLOCK_H
 #define BLOCK_H
 #include "runner.h"
+#include "scarce.h"
 #include "../bench/forms.h"
 #include <math.h>
 #include <stdio.h>
@@ -250,47 +251,20 @@ static inline void momentum(const scene *s, double *p) {
     free(mv);
 }
 
-typedef struct failing {
-    int left;       /* allocations until failure */
-    int forever;    /* fail once or from then on */
-    size_t balance; /* bytes not yet released */
-    int calls;
-} failing;
-
-static inline void *failing_allocate(void *user, size_t size) {
-    failing *f = (failing *)user;
-    void *memory;
-    f->calls++;
-    if (f->left == 0 || (f->left < 0 && f->forever)) {
-        f->left--;
-        return NULL;
-    }
-    f->left--;
-    memory = malloc(size);
-    ck_assert_ptr_nonnull(memory);
-    f->balance += size;
-    return memory;
-}
-
-static inline void failing_release(void *user, void *memory, size_t size) {
-    ((failing *)user)->balance -= size;
-    free(memory);
-}
-
-/* run(f, which) allocates by f and returns whether an allocation failed. The n-th one fails, once and from then on,
-   until none fails. */
-static inline void sweep_allocations(int (*run)(failing *f, int which), int which) {
-    int forever, n;
-    for (forever = 0; forever < 2; forever++)
+/* run(m, which) allocates by m and returns whether a call failed for it. The n-th allocation fails, once and from then
+   on, until none fails. */
+static inline void sweep_allocations(int (*run)(memory *m, int which), int which) {
+    int from_then_on;
+    size_t n;
+    for (from_then_on = 0; from_then_on < 2; from_then_on++)
         for (n = 0;; n++) {
-            failing f = {0, 0, 0, 0};
+            memory m = plenty();
             int failed;
-            f.left = n;
-            f.forever = forever;
-            failed = run(&f, which);
-            ck_assert_uint_eq(f.balance, 0);
+            fail_from(&m, n, from_then_on);
+            failed = run(&m, which);
+            ck_assert(is_whole(&m));
             if (!failed) break;
-            ck_assert_int_lt(n, 1000);
+            ck_assert_uint_lt(n, 1000);
         }
 }
 

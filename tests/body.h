@@ -5,6 +5,7 @@
 
 #include "workloads.h"
 #include "runner.h"
+#include "scarce.h"
 
 #define CHECK_SEED(condition, seed) ck_assert_msg(condition, "seed %llu: %s", (unsigned long long)(seed), #condition)
 
@@ -43,6 +44,18 @@ static inline gx_body *body_of(const workload *w) {
     gx_body_desc desc = desc_of(w);
     gx_body *body = NULL;
     gx_result result = gx_body_create(&desc, &body, NULL);
+    ck_assert_msg(result == GX_OK, "create: %s", gx_result_text(result));
+    return body;
+}
+
+/* A body in memory that may be made to run out */
+static inline gx_body *body_in(memory *m, const workload *w) {
+    gx_body_desc desc = desc_of(w);
+    gx_body *body = NULL;
+    gx_result result;
+    *m = plenty();
+    desc.allocator = allocator_of(m);
+    result = gx_body_create(&desc, &body, NULL);
     ck_assert_msg(result == GX_OK, "create: %s", gx_result_text(result));
     return body;
 }

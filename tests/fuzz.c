@@ -27,11 +27,12 @@
 #endif
 #include "../gxfem_boolean.h"
 #include "boolean_oracle.h"
-#define FUZZ_BYTES   96
+#include "scarce.h"
+#include "fuzz_cases.h"
+#define FUZZ_BYTES   CASE_BYTES
 #define FUZZ_SECONDS 60
 #define FUZZ_FOLDER  "build/fuzz"
 #include "fuzz.h"
-#include "fuzz_cases.h"
 
 enum { PARTS = 12, ORACLE_PLANES = 22 };
 
@@ -677,23 +678,6 @@ static void check_mending(scene *s, const answer *a) {
     for (k = 0; k < 2; k++) gxb_boolean_destroy(b[k]);
 }
 
-typedef struct short_memory {
-    uint64_t calls, fail_at;
-    size_t live;
-} short_memory;
-
-static void *take_memory(void *user, size_t size) {
-    short_memory *m = (short_memory *)user;
-    if (m->calls++ == m->fail_at) return NULL;
-    m->live += size;
-    return malloc(size);
-}
-
-static void give_memory(void *user, void *memory, size_t size) {
-    ((short_memory *)user)->live -= size;
-    free(memory);
-}
-
 static uint64_t allocations_of(const gxb_boolean *b) {
     gxb_statistics s;
     REQUIRE(gxb_boolean_statistics(b, &s, NULL) == GX_OK, "statistics");
@@ -702,7 +686,7 @@ static uint64_t allocations_of(const gxb_boolean *b) {
 
 /* One allocation fails somewhere: the call reports it and works when it is made again. */
 static void check_memory(const scene *s, const answer *a, int fine, uint64_t fail_at) {
-    short_memory m = {0, fail_at, 0};
+    memory m = plenty();
     gxb_boolean_desc desc;
     gxb_boolean_result r;
     gxb_components components;
@@ -712,9 +696,8 @@ static void check_memory(const scene *s, const answer *a, int fine, uint64_t fai
     size_t i;
     gx_result result;
     memset(&desc, 0, sizeof desc);
-    desc.allocator.allocate = take_memory;
-    desc.allocator.release = give_memory;
-    desc.allocator.user = &m;
+    fail_from(&m, (size_t)fail_at, 0);
+    desc.allocator = allocator_of(&m);
     while ((result = gxb_boolean_create(&desc, &b, NULL)) == GX_ERROR_MEMORY) {}
     if (result == GX_OK) result = gxb_boolean_set_fine(b, fine, NULL);
     for (i = 0; i < s->count && result == GX_OK; i++) {
@@ -729,7 +712,8 @@ static void check_memory(const scene *s, const answer *a, int fine, uint64_t fai
     again = check_result(b, s, &r);
     check_same("after a lack of memory", &again, a, fine);
     gxb_boolean_destroy(b);
-    REQUIRE(m.live == 0, "%zu bytes are left", m.live);
+    REQUIRE(m.blocks == NULL, "%zu bytes are left", bytes_alive(&m));
+    REQUIRE(!m.wrong && !m.overrun, "a block was released with another size, or written beyond its end");
 }
 
 /* 0: too large for the oracle */

@@ -13,7 +13,7 @@
        results       a call succeeds, or is refused with the code, the field and the index that the documentation
                      gives; then the state hash is as it was
        memory        a call whose memory runs out leaves the state hash as it was; made again, it does what it does to
-                     the other body. No block is lost, none is released with another size
+                     the other body. No block is lost, none is released with another size or written beyond its end
        sameness      both bodies have the same reports, topology and state, to the last bit
        view          cells by element; copies of their nodes, used, in one fragment each; slots that are new, with older
                      parents; fragments are sums of their cells
@@ -26,11 +26,12 @@
 #include "../gxfem.h"
 #define FUZZ_BYTES 256
 #ifndef FUZZ_SECONDS
-#define FUZZ_SECONDS 20
+#define FUZZ_SECONDS 60
 #endif
 #define FUZZ_FOLDER "build/fuzz_blade"
 #include "fuzz.h"
 #include "fuzz_blade_cases.h"
+#include "scarce.h"
 #include "skin_check.h"
 
 enum { POINTS = 6, BLADES = 4, NUMBERS = 40, CALLS = 64 };
@@ -42,83 +43,6 @@ static struct {
     uint64_t slowest_seed;
 } count;
 
-/* ---- memory that runs out ---- */
-
-typedef struct block { /* before each block */
-    struct block *next, **last;
-    size_t size;
-    void *unused;
-} block;
-
-typedef struct memory {
-    block *blocks;
-    size_t calls, fail_at; /* SIZE_MAX: none fails */
-    int from_then_on, failed, wrong;
-} memory;
-
-static memory own, twins;
-
-static void *take(void *user, size_t size) {
-    memory *m = (memory *)user;
-    const size_t call = m->calls++;
-    block *b;
-    if (call == m->fail_at || (m->from_then_on && call > m->fail_at)) {
-        m->failed = 1;
-        return NULL;
-    }
-    b = (block *)malloc(sizeof *b + size);
-    if (b == NULL) abort();
-    memset(b + 1, 0xa5, size); /* what is read before it is written shows */
-    b->size = size;
-    b->next = m->blocks;
-    b->last = &m->blocks;
-    if (b->next) b->next->last = &b->next;
-    m->blocks = b;
-    return b + 1;
-}
-
-static void give(void *user, void *memory_, size_t size) {
-    block *b = (block *)memory_ - 1;
-    if (b->size != size) ((memory *)user)->wrong = 1;
-    *b->last = b->next;
-    if (b->next) b->next->last = b->last;
-    free(b);
-}
-
-static void *grow(void *user, void *memory_, size_t size, size_t larger) {
-    void *moved = take(user, larger);
-    if (moved == NULL) return NULL;
-    memcpy(moved, memory_, size);
-    give(user, memory_, size);
-    return moved;
-}
-
-static void fail_from(memory *m, size_t n, int from_then_on) {
-    m->calls = 0;
-    m->fail_at = n;
-    m->from_then_on = from_then_on;
-    m->failed = 0;
-}
-static void never_fail(memory *m) { fail_from(m, SIZE_MAX, 0); }
-
-static void release_all(memory *m) {
-    while (m->blocks) {
-        block *b = m->blocks;
-        m->blocks = b->next;
-        free(b);
-    }
-}
-
-static gx_allocator allocator_of(memory *m, int grows) {
-    gx_allocator a;
-    memset(&a, 0, sizeof a);
-    a.allocate = take;
-    a.release = give;
-    a.user = m;
-    if (grows) a.reallocate = grow;
-    return a;
-}
-
 /* ---- what a case is about ---- */
 
 typedef struct stroke { /* of a blade */
@@ -127,11 +51,12 @@ typedef struct stroke { /* of a blade */
     int begun, starts_inside;
 } stroke;
 
+static memory own, twins; /* of the body, and of the other one */
+
 static struct {
     case_mesh mesh;
     gx_body *body, *twin, *mark, *twin_mark; /* marks: clones to go back to, or NULL */
     gx_view view;                            /* of body */
-    int grows;
     stroke strokes[BLADES], marked[BLADES];
     uint32_t blades, marked_blades;
     size_t last_slots;
@@ -912,7 +837,7 @@ static void replace(uint32_t how, uint32_t fail_code) {
     int tries;
     trace("%s\n", how % 2 ? "save and load" : "clone");
     memset(&desc, 0, sizeof desc);
-    desc.allocator = allocator_of(&own, w.grows);
+    desc.allocator = allocator_of(&own);
     for (tries = fail_code > 0 ? 0 : 1; tries < 2 && result == GX_ERROR_MEMORY; tries++) {
         if (tries == 0) fail_from(&own, fail_code / 2, fail_code % 2);
         result = how % 2 ? gx_body_load(w.bytes, size, &desc, &made, NULL) : gx_body_clone(w.body, &made, NULL);
@@ -1030,7 +955,7 @@ static gx_body *create(memory *m) {
     desc.young = 1e5;
     desc.poisson = 0.4;
     desc.density = 1000;
-    desc.allocator = allocator_of(m, w.grows);
+    desc.allocator = allocator_of(m);
     if (m == &twins) desc.jobs.parallel_for = run_backwards;
     return gx_body_create(&desc, &body, NULL) == GX_OK ? body : NULL;
 }
@@ -1070,6 +995,7 @@ static void end_case(void) {
     gx_body_destroy(w.twin_mark);
     REQUIRE(own.blocks == NULL && twins.blocks == NULL, "blocks are lost");
     REQUIRE(!own.wrong && !twins.wrong, "a block was released with another size");
+    REQUIRE(!own.overrun && !twins.overrun, "something was written behind a block");
 }
 
 static void drop_case(void) {
@@ -1088,14 +1014,11 @@ static void test_bytes(const uint8_t *bytes, size_t size) {
     b.size = size;
     b.at = 0;
     memset(&w, 0, sizeof w);
-    memset(&own, 0, sizeof own);
-    memset(&twins, 0, sizeof twins);
     w.bytes = room;
     w.room = length;
-    never_fail(&own);
-    never_fail(&twins);
+    own = twins = plenty();
     case_make_mesh(&b, &w.mesh);
-    w.grows = (int)(case_take(&b) % 2);
+    own.grows = twins.grows = (int)(case_take(&b) % 2);
     if (w.mesh.elements == 0) return;
     w.body = create(&own);
     w.twin = create(&twins);

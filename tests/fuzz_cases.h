@@ -2,7 +2,7 @@
 
    Shapes lie on a lattice of a few steps, so that points, edges and planes coincide. A style then moves them: by
    rounding, by units of the last place, by powers of two, far away. This file reads the files of tests/corpus/, so
-   new kinds must come after the old ones. Include after fuzz.h. */
+   new kinds must come after the old ones. */
 #ifndef GXFEM_TESTS_FUZZ_CASES_H
 #define GXFEM_TESTS_FUZZ_CASES_H
 
@@ -11,6 +11,9 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "case_bytes.h"
+
+enum { CASE_BYTES = 96 }; /* of a random case */
 enum { CASE_VERTICES = 160, CASE_TRIANGLES = 160, CASE_OPERANDS = 5, CASE_SHEETS = 8 };
 
 typedef struct case_mesh {

@@ -138,7 +138,7 @@ static void run_operands(const test_case *c, uint64_t seed, int moved) {
 static void run_case(uint64_t seed) {
     static test_case c;
     uint8_t bytes[CASE_BYTES];
-    case_fill(seed, bytes);
+    case_fill(seed, bytes, CASE_BYTES);
     bytes[0] &= 0xf8; /* a Boolean */
     bytes[1] = 0;     /* of lattice points */
     case_decode(bytes, CASE_BYTES, &c);

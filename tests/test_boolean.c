@@ -6,6 +6,7 @@
 #include "predicate_cases.h"
 
 #include "runner.h"
+#include "scarce.h"
 #include <stdio.h>
 
 static uint64_t current_seed;
@@ -526,24 +527,6 @@ START_TEST(triangles_without_area_have_no_outside) {
 END_TEST
 
 /* ==== the complex ==== */
-
-/* Memory that counts, and fails on demand. */
-typedef struct heap {
-    size_t bytes, calls, fail_at, fail_count;
-} heap;
-
-static void *heap_allocate(void *user, size_t size) {
-    heap *h = (heap *)user;
-    h->calls++;
-    if (h->fail_at != 0 && h->calls >= h->fail_at && h->calls - h->fail_at < h->fail_count) return NULL;
-    h->bytes += size;
-    return malloc(size);
-}
-
-static void heap_release(void *user, void *memory, size_t size) {
-    ((heap *)user)->bytes -= size;
-    free(memory);
-}
 
 enum { MAX_CUTS = 32, MAX_NODES = 16, MAX_ELEMENTS = 8 };
 
@@ -1119,15 +1102,11 @@ static void check_complex(gxb_complex *cx, const scene *s, const inserted *in, p
 }
 
 static void run_scene(const scene *s, pc_random *r) {
-    heap h = {0, 0, 0, 0};
-    gx_allocator allocator;
+    memory m = plenty();
+    const gx_allocator allocator = allocator_of(&m);
     gxb_complex *cx;
     inserted in;
     gx_result result;
-    allocator.allocate = heap_allocate;
-    allocator.release = heap_release;
-    allocator.user = &h;
-    allocator.reallocate = NULL;
     cx = open_scene(s, &allocator);
     gxb_complex_begin(cx);
     result = insert_all(cx, s, &in);
@@ -1135,7 +1114,7 @@ static void run_scene(const scene *s, pc_random *r) {
     gxb_complex_commit(cx);
     check_complex(cx, s, &in, r);
     gxb_complex_destroy(cx);
-    ck_assert_uint_eq(h.bytes, 0);
+    ck_assert(is_whole(&m));
 }
 
 /* ---- tests of the complex ---- */
@@ -1578,16 +1557,12 @@ END_TEST
    result at the next attempt */
 START_TEST(every_allocation_may_fail) {
     pc_random r = seeded((uint64_t)_i / 2 + 1);
-    heap h = {0, 0, 0, 0};
-    gx_allocator allocator;
+    memory m = plenty();
+    const gx_allocator allocator = allocator_of(&m);
     scene s;
     inserted in;
     size_t n, failures = 0;
     uint64_t good = 0;
-    allocator.allocate = heap_allocate;
-    allocator.release = heap_release;
-    allocator.user = &h;
-    allocator.reallocate = NULL;
     make_mesh(&s, &r, 6, 1, _i / 2 == 1 ? 1e6 : 0, 0.05);
     make_cuts(&s, &r, 6, 2, 1, _i / 2 == 1 ? 1e6 : 0);
     for (n = 0;; n++) {
@@ -1597,21 +1572,19 @@ START_TEST(every_allocation_may_fail) {
         uint64_t before;
         gx_result result;
         /* n = 0: none fails */
-        h.calls = 0;
-        h.fail_at = n;
-        h.fail_count = _i % 2 ? SIZE_MAX : 1;
+        fail_from(&m, n - 1, _i % 2 && n > 0);
         result = gxb_complex_create(&mesh, &allocator, &cx, &failure);
         if (result != GX_OK) {
             ck_assert_int_eq(result, GX_ERROR_MEMORY);
             ck_assert_ptr_null(cx);
-            assert_that(h.bytes == 0, "create leaks where allocation %lu fails", (unsigned long)n);
+            assert_that(is_whole(&m), "create leaks where allocation %lu fails", (unsigned long)n);
             failures++;
             continue;
         }
         before = hash_complex(cx, 1);
         gxb_complex_begin(cx);
         result = insert_all(cx, &s, &in);
-        if (n > 0 && h.calls < n) {
+        if (n > 0 && m.calls < n) {
             gxb_complex_destroy(cx);
             break;
         } /* all have failed */
@@ -1620,20 +1593,20 @@ START_TEST(every_allocation_may_fail) {
             failures++;
             gxb_complex_rollback(cx);
             assert_that(hash_complex(cx, 1) == before, "allocation %lu", (unsigned long)n);
-            h.fail_at = 0;
+            never_fail(&m);
             gxb_complex_begin(cx);
             result = insert_all(cx, &s, &in);
         }
         assert_that(result == GX_OK, "allocation %lu: %d", (unsigned long)n, (int)result);
         gxb_complex_commit(cx);
-        h.fail_at = 0;
+        never_fail(&m);
         if (n == 0) good = hash_complex(cx, 1);
         assert_that(hash_complex(cx, 1) == good, "allocation %lu: another result", (unsigned long)n);
         if (n % 16 == 1) check_complex(cx, &s, &in, &r);
         gxb_complex_destroy(cx);
-        assert_that(h.bytes == 0, "allocation %lu: a leak", (unsigned long)n);
+        assert_that(is_whole(&m), "allocation %lu: a leak", (unsigned long)n);
     }
-    ck_assert_uint_eq(h.bytes, 0);
+    ck_assert(is_whole(&m));
     ck_assert_uint_gt(failures, 10);
 }
 END_TEST
@@ -1686,20 +1659,16 @@ static void expect_mesh(const scene *s, gx_result want, size_t index) {
     const gxb_mesh mesh = mesh_of(s);
     gxb_complex *cx = NULL;
     gx_failure failure;
-    heap h = {0, 0, 0, 0};
-    gx_allocator allocator;
+    memory m = plenty();
+    const gx_allocator allocator = allocator_of(&m);
     gx_result result;
-    allocator.allocate = heap_allocate;
-    allocator.release = heap_release;
-    allocator.user = &h;
-    allocator.reallocate = NULL;
     result = gxb_complex_create(&mesh, &allocator, &cx, &failure);
     assert_that(result == want && failure.result == want, "result %d instead of %d", (int)result, (int)want);
     assert_that(want == GX_OK || cx == NULL, "a complex in spite of error %d", (int)want);
     assert_that(failure.index == index, "error %d: index %lu instead of %lu", (int)want, (unsigned long)failure.index,
                 (unsigned long)index);
     gxb_complex_destroy(cx);
-    ck_assert_uint_eq(h.bytes, 0);
+    ck_assert(is_whole(&m));
 }
 
 START_TEST(bad_meshes_are_named) {

@@ -743,65 +743,35 @@ START_TEST(too_little_room) {
 }
 END_TEST
 
-typedef struct failing {
-    size_t calls, fail_at; /* SIZE_MAX: none */
-    int from_then_on, failed;
-} failing;
-
-static void *fail_or_take(void *user, size_t size) {
-    failing *f = (failing *)user;
-    const size_t call = f->calls++;
-    if (call != f->fail_at && !(f->from_then_on && call > f->fail_at)) return malloc(size);
-    f->failed = 1;
-    return NULL;
-}
-static void give_back(void *user, void *memory, size_t size) {
-    (void)user;
-    (void)size;
-    free(memory);
-}
-
-static gx_body *body_on(failing *f, const workload *w) {
-    gx_body_desc desc = desc_of(w);
-    gx_body *body = NULL;
-    memset(f, 0, sizeof *f);
-    f->fail_at = SIZE_MAX;
-    desc.allocator.allocate = fail_or_take;
-    desc.allocator.release = give_back;
-    desc.allocator.user = f;
-    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
-    return body;
-}
-
 /* A call in a body that was just cloned, of which the n-th allocation fails. Returns 0 if there are less. */
-static int fails_at(gx_body *body, failing *f, size_t n, const contacts *expected) {
+static int fails_at(gx_body *body, memory *m, size_t n, int from_then_on, const contacts *expected) {
     static contacts own;
     gx_body *copy = cloned(body);
     gx_blade *blade = gx_body_blade(copy, 0);
     uint64_t state;
     gx_result result;
+    int failed;
     (void)view_of(copy);
     state = gx_body_state_hash(copy);
     memset(&own, 0, sizeof own);
-    f->calls = 0;
-    f->failed = 0;
-    f->fail_at = n;
+    fail_from(m, n, from_then_on);
     result = gx_blade_contacts(blade, own.at, MOST, &own.count, NULL);
-    f->fail_at = SIZE_MAX;
-    ck_assert_int_eq(result, f->failed ? GX_ERROR_MEMORY : GX_OK);
+    failed = m->failed;
+    never_fail(m);
+    ck_assert_int_eq(result, failed ? GX_ERROR_MEMORY : GX_OK);
     ck_assert(gx_body_state_hash(copy) == state);
     ck_assert(memcmp(contacts_of(blade), expected, sizeof *expected) == 0);
-    if (!f->failed) ck_assert(memcmp(&own, expected, sizeof *expected) == 0);
+    if (!failed) ck_assert(memcmp(&own, expected, sizeof *expected) == 0);
     gx_body_destroy(copy);
-    return f->failed;
+    return failed;
 }
 
 /* Each allocation fails in turn: the body is as it was, and the next call gives what it should. */
 START_TEST(memory_runs_out) {
     static contacts expected;
     workload w = grid(2, 2, 2, 5);
-    failing f;
-    gx_body *body = body_on(&f, &w);
+    memory m;
+    gx_body *body = body_in(&m, &w);
     gx_blade *blade = NULL;
     int k;
     for (k = 0; k < 4; k++) add_axis_plane(&w, 0, 0.3 + 0.5 * k); /* every element is cut */
@@ -812,12 +782,12 @@ START_TEST(memory_runs_out) {
         size_t n = 0;
         move_to(blade, edge, 3);
         expected = *contacts_of(blade);
-        f.from_then_on = _i;
-        while (fails_at(body, &f, n, &expected)) n++;
+        while (fails_at(body, &m, n, _i, &expected)) n++;
         ck_assert_uint_ge(n, k == 0 ? 8 : 12);
     }
     ck_assert_uint_gt(expected.count, 2);
     gx_body_destroy(body);
+    ck_assert(is_whole(&m));
     wl_free(&w);
 }
 END_TEST

@@ -2933,11 +2933,11 @@ END_TEST
 
 /* Creates a solver, then sets models with ties that grow, with steps of more and more springs and points. Returns
    whether an allocation failed. */
-static int run_with(failing *f, int which) {
+static int run_with(memory *m, int which) {
     gxs_solver_desc desc = solver_desc(which);
     gxs_solver *solver = NULL;
     int size, failed = 0;
-    desc.allocator.allocate = failing_allocate, desc.allocator.release = failing_release, desc.allocator.user = f;
+    desc.allocator = allocator_of(m);
     if (gxs_solver_create(&desc, &solver, NULL) != GX_OK) {
         ck_assert_ptr_null(solver);
         return 1;
@@ -2977,8 +2977,8 @@ static int run_with(failing *f, int which) {
                 } else
                     ck_assert_int_eq(result, GX_OK);
                 free(before);
-            } while (result == GX_ERROR_MEMORY && !f->forever && again++ == 0); /* the solver is still good */
-            ck_assert(f->forever || result == GX_OK);
+            } while (result == GX_ERROR_MEMORY && !m->from_then_on && again++ == 0); /* the solver is still good */
+            ck_assert(m->from_then_on || result == GX_OK);
             if (result != GX_OK && part == 0) break;
         }
         for (i = 0; i < 3 * s.model.copy_count; i++)
@@ -2996,15 +2996,16 @@ END_TEST
 /* Steps of no more springs and points than before allocate nothing. */
 START_TEST(steps_allocate_for_more_points_only) {
     gxs_solver_desc desc = solver_desc(_i);
-    failing f = {-1, 0, 0, 0};
+    memory m = plenty();
     gxs_solver *solver = NULL;
     gxs_step_desc step = step_make(0.033, -9.81);
     gxs_plane plane = plane_make(1e5, 0.5);
     gxs_point *points;
-    int frame, calls;
+    size_t calls;
+    int frame;
     scene s = scene_block(4, 4, 4, 0.5, 0, 0);
     points = points_of(&s, 0, s.model.copy_count);
-    desc.allocator.allocate = failing_allocate, desc.allocator.release = failing_release, desc.allocator.user = &f;
+    desc.allocator = allocator_of(&m);
     ck_assert_int_eq(gxs_solver_create(&desc, &solver, NULL), GX_OK);
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
     step.points = points;
@@ -3012,14 +3013,14 @@ START_TEST(steps_allocate_for_more_points_only) {
     step.plane_count = 1;
     step.point_count = s.model.copy_count;
     ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
-    calls = f.calls;
+    calls = m.calls;
     for (frame = 0; frame < 5; frame++) {
         step.point_count = s.model.copy_count - (size_t)(frame % 2 * 10);
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
     }
-    ck_assert_int_eq(f.calls, calls);
+    ck_assert_uint_eq(m.calls, calls);
     gxs_solver_destroy(solver);
-    ck_assert_uint_eq(f.balance, 0);
+    ck_assert(is_whole(&m));
     free(points);
     scene_free(&s);
 }

@@ -17,11 +17,11 @@ typedef struct piece {
     double mass, volumes;
 } piece;
 
-typedef struct memory { /* of the last snapshot */
+typedef struct record { /* of the last snapshot */
     piece pieces[MOST];
     size_t count;
     uint32_t largest; /* id so far */
-} memory;
+} record;
 
 static piece piece_of(const gx_view *v, size_t fragment) {
     piece p;
@@ -39,7 +39,7 @@ static piece piece_of(const gx_view *v, size_t fragment) {
 }
 
 /* Remembers the fragments and moves each by its index. */
-static void remember(memory *m, const gx_view *v) {
+static void remember(record *m, const gx_view *v) {
     size_t i, k;
     ck_assert_uint_lt(v->fragment_count, MOST);
     m->count = v->fragment_count;
@@ -74,7 +74,7 @@ static int is_listed(const gx_view *v, uint32_t id) {
     return count;
 }
 
-static void check_change(const memory *m, const gx_view *v, int touched, uint64_t seed) {
+static void check_change(const record *m, const gx_view *v, int touched, uint64_t seed) {
     static size_t origin[MOST], heaviest[MOST], pieces[MOST];
     uint32_t largest = m->largest;
     size_t i;
@@ -113,7 +113,7 @@ static void check_change(const memory *m, const gx_view *v, int touched, uint64_
    change nothing. */
 START_TEST(random_cuts) {
     const uint64_t seed = (uint64_t)_i + 1;
-    static memory m;
+    static record m;
     workload w;
     gx_body *body;
     int k, touched = 0;

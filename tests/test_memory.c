@@ -11,100 +11,10 @@
 #endif
 #include "../gxfem.h"
 #include "runner.h"
-
-/* ---- an allocator that fails ---- */
-
-typedef struct memory {
-    size_t bytes, blocks; /* alive */
-    size_t calls;
-    size_t fail_at; /* this call fails, SIZE_MAX: none does */
-    int from_then_on;
-    int grows;   /* blocks are made larger by the allocator */
-    int refuses; /* the next call fails, see runs_out */
-    /* did one fail? was a block released with another size? was something written behind one? */
-    int failed, wrong, overrun;
-} memory;
-
-/* Bytes before each block hold its size and keep alignment. Bytes behind it must not change. */
-enum { HEAD = 16, TAIL = 64 };
-
-static const unsigned char behind = 0xc3;
-
-static void *take(void *user, size_t size) {
-    memory *m = (memory *)user;
-    const size_t call = m->calls++;
-    char *block;
-    if (size == 0) m->wrong = 1;
-    if (m->refuses || call == m->fail_at || (m->from_then_on && call > m->fail_at)) {
-        m->refuses = 0;
-        m->failed = 1;
-        return NULL;
-    }
-    block = (char *)malloc(HEAD + size + TAIL);
-    if (block == NULL) abort();
-    memcpy(block, &size, sizeof size);
-    memset(block + HEAD, 0xa5, size); /* uninitialised memory shows */
-    memset(block + HEAD + size, behind, TAIL);
-    m->bytes += size;
-    m->blocks++;
-    return block + HEAD;
-}
-
-static void give(void *user, void *block, size_t size) {
-    memory *m = (memory *)user;
-    size_t taken, i;
-    if (block == NULL) {
-        m->wrong = 1;
-        return;
-    }
-    memcpy(&taken, (char *)block - HEAD, sizeof taken);
-    if (taken != size) m->wrong = 1;
-    for (i = 0; i < TAIL; i++)
-        if (((unsigned char *)block)[taken + i] != behind) m->overrun = 1;
-    m->bytes -= taken;
-    m->blocks--;
-    memset((char *)block - HEAD, 0x5a, taken + HEAD);
-    free((char *)block - HEAD);
-}
-
-/* Always moves the block, so that a kept old pointer shows */
-static void *grow(void *user, void *block, size_t size, size_t larger) {
-    memory *m = (memory *)user;
-    void *moved = take(user, larger);
-    if (block == NULL || (larger <= size && moved != NULL)) m->wrong = 1;
-    if (block == NULL || moved == NULL) return moved;
-    memcpy(moved, block, size);
-    give(user, block, size);
-    return moved;
-}
-
-/* test_tight.c: an array that has room asks too, which counts as a call. If that fails, the array asks for memory. */
-#ifdef TIGHT
-static memory *watched;
-
-static int runs_out(const gx_allocator *a) {
-    memory *m = watched;
-    size_t call;
-    if (m == NULL || a->user != m || m->refuses) return m != NULL && a->user == m;
-    call = m->calls++;
-    m->refuses = call == m->fail_at || (m->from_then_on && call > m->fail_at);
-    return m->refuses;
-}
-#endif
-
-static void fail_from(memory *m, size_t n, int from_then_on) {
-#ifdef TIGHT
-    watched = n == SIZE_MAX ? NULL : m;
-#endif
-    m->calls = 0;
-    m->fail_at = n;
-    m->from_then_on = from_then_on;
-    m->failed = 0;
-}
-static void never_fail(memory *m) { fail_from(m, SIZE_MAX, 0); }
+#include "scarce.h"
 
 static void check_empty(const memory *m, const char *what) {
-    ck_assert_msg(m->bytes == 0 && m->blocks == 0, "%s: %zu bytes in %zu blocks are lost", what, m->bytes, m->blocks);
+    ck_assert_msg(m->blocks == NULL, "%s: %zu bytes are lost", what, bytes_alive(m));
     ck_assert_msg(!m->wrong, "%s: a block was given back with another size", what);
     ck_assert_msg(!m->overrun, "%s: something was written behind a block", what);
 }
@@ -159,10 +69,7 @@ static gx_result create(memory *m, gx_body **body) {
     desc.poisson = 0.4;
     desc.density = 1000;
     desc.support_below = support_below;
-    allocator.allocate = take;
-    allocator.release = give;
-    allocator.user = m;
-    allocator.reallocate = m->grows ? grow : NULL;
+    allocator = allocator_of(m);
     desc.allocator = allocator;
     return gx_body_create(&desc, body, NULL);
 }
@@ -537,9 +444,8 @@ static void sweep_fresh(const char *what, const action *before, action act, cons
         gx_body *body;
         gx_result result;
         uint64_t state;
-        memset(&m, 0, sizeof m);
+        m = plenty();
         m.grows = from_then_on;
-        never_fail(&m);
         body = prepared(&m, before);
         state = gx_body_state_hash(body);
         fail_from(&m, n, from_then_on);
@@ -566,9 +472,8 @@ static void sweep_stubborn(const char *what, const action *before, action act, c
     gx_result result = GX_ERROR_MEMORY;
     uint64_t state;
     size_t n;
-    memset(&m, 0, sizeof m);
+    m = plenty();
     m.grows = 1;
-    never_fail(&m);
     body = prepared(&m, before);
     state = gx_body_state_hash(body);
     for (n = 0; result != GX_OK; n = next(n)) {
@@ -587,8 +492,7 @@ static void sweep(const char *what, const action *before, action act) {
     memory m;
     gx_body *body;
     outcome truth;
-    memset(&m, 0, sizeof m);
-    never_fail(&m);
+    m = plenty();
     body = prepared(&m, before);
     ck_assert_int_eq(act(body), GX_OK);
     truth = outcome_of(body);
@@ -623,7 +527,7 @@ START_TEST(creation) {
             memory m;
             gx_body *body = NULL;
             gx_result result;
-            memset(&m, 0, sizeof m);
+            m = plenty();
             fail_from(&m, n, from_then_on);
             result = create(&m, &body);
             if (m.failed) {
@@ -740,9 +644,8 @@ START_TEST(holding) {
         gx_view view;
         size_t n, i, count = 0;
         gx_result result = GX_ERROR_MEMORY;
-        memset(&m, 0, sizeof m);
+        m = plenty();
         memset(&view, 0, sizeof view);
-        never_fail(&m);
         body = prepared(&m, after_a_cut);
         for (n = 0; result != GX_OK; n++) {
             fail_from(&m, n, 0);
@@ -797,8 +700,7 @@ START_TEST(restoring) {
     memory m;
     int i;
     for (i = 0; i < 4; i++) {
-        memset(&m, 0, sizeof m);
-        never_fail(&m);
+        m = plenty();
         source = prepared(&m, sources[i]);
         if (i == 2) ck_assert_int_eq(step_bdf2(source), GX_OK);
         sweep("restoring", bodies[i], restore);
@@ -825,8 +727,7 @@ START_TEST(step_with_fewer_copies) {
     memory m;
     gx_body *body;
     gx_view view;
-    memset(&m, 0, sizeof m);
-    never_fail(&m);
+    m = plenty();
     body = prepared(&m, stepped_and_smaller);
     ck_assert_int_eq(gx_body_view(body, &view, NULL), GX_OK);
     ck_assert_uint_lt(view.copy_count, 8);
@@ -916,8 +817,7 @@ START_TEST(followers) {
     gx_body *body;
     gxs_model model;
     support_below = 0.2;
-    memset(&m, 0, sizeof m);
-    never_fail(&m);
+    m = plenty();
     body = prepared(&m, thin);
     ck_assert_int_eq(gx_body_model(body, &model, NULL), GX_OK);
     ck_assert_uint_gt(model.constraint_count, 0);
@@ -937,8 +837,7 @@ START_TEST(step_after_a_failed_model) {
     uint64_t state;
     int from_then_on;
     size_t n;
-    memset(&m, 0, sizeof m);
-    never_fail(&m);
+    m = plenty();
     body = prepared(&m, two_steps);
     state = gx_body_state_hash(body);
     gx_body_destroy(body);
@@ -967,11 +866,8 @@ START_TEST(solidifying) {
     double vertices[24];
     uint32_t triangles[48];
     size_t n, v = 99, t = 98;
-    memset(&m, 0, sizeof m);
-    a.allocate = take;
-    a.release = give;
-    a.user = &m;
-    a.reallocate = NULL;
+    m = plenty();
+    a = allocator_of(&m);
     for (n = 0; result != GX_OK; n++) {
         fail_from(&m, n, 0);
         result = gx_surface_solidify(&s, 0.1, vertices, &v, triangles, &t, &a, NULL);

@@ -1037,7 +1037,7 @@ START_TEST(hostile_bits) {
     gx_body *body = small_body(&w, _i % 4);
     bytes b = saved(body);
     size_t i, passed = 0;
-    for (i = HEAD_BYTES; i < b.size; i += FEWER) {
+    for (i = HEAD_BYTES; i < b.size; i += FEWER * FEWER) {
         const unsigned char flip = (unsigned char)(1u << (3 * i + 2 * (size_t)_i) % 8);
         b.data[i] ^= flip;
         seal(b);

@@ -1682,14 +1682,14 @@ END_TEST
 /* ---- memory ---- */
 
 /* Creates a solver and takes three steps, the model growing in between. Returns whether an allocation failed. */
-static int run_with(failing *f, int which) {
+static int run_with(memory *m, int which) {
     gxs_solver_desc desc;
     gxs_solver *solver = NULL;
     gxs_step_desc step = step_make(0.033, -9.81);
     int size, failed = 0;
     (void)which;
     memset(&desc, 0, sizeof desc);
-    desc.allocator.allocate = failing_allocate, desc.allocator.release = failing_release, desc.allocator.user = f;
+    desc.allocator = allocator_of(m);
     desc.preconditioner = GXS_MULTIGRID;
     if (gxs_solver_create(&desc, &solver, NULL) != GX_OK) {
         ck_assert_ptr_null(solver);
@@ -1702,7 +1702,7 @@ static int run_with(failing *f, int which) {
         if (result == GX_ERROR_MEMORY) {
             failed = 1;
             for (i = 0; i < 3 * s.model.copy_count; i++) ck_assert(s.displacement[i] == 0 && s.velocity[i] == 0);
-            if (!f->forever) /* the solver is still good */
+            if (!m->from_then_on) /* the solver is still good */
                 ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
         } else
             ck_assert_int_eq(result, GX_OK);
@@ -1717,24 +1717,25 @@ END_TEST
 
 START_TEST(steps_do_not_allocate) {
     gxs_solver_desc desc;
-    failing f = {-1, 0, 0, 0};
+    memory m = plenty();
     gxs_solver *solver = NULL;
     gxs_step_desc step = step_make(0.033, -9.81);
     scene s = scene_block(8, 8, 8, 0.5, 0, 0);
-    int frame, calls;
+    size_t calls;
+    int frame;
     memset(&desc, 0, sizeof desc);
-    desc.allocator.allocate = failing_allocate, desc.allocator.release = failing_release, desc.allocator.user = &f;
+    desc.allocator = allocator_of(&m);
     ck_assert_int_eq(gxs_solver_create(&desc, &solver, NULL), GX_OK);
     ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_ERROR_SEQUENCE);
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-    calls = f.calls;
+    calls = m.calls;
     for (frame = 0; frame < 5; frame++)
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
     ck_assert_int_eq(gxs_solver_linearise(solver, s.displacement, 1, 0, NULL), GX_OK);
     ck_assert_int_eq(gxs_solver_product(solver, s.displacement, s.forces, NULL), GX_OK);
-    ck_assert_int_eq(f.calls, calls);
+    ck_assert_uint_eq(m.calls, calls);
     gxs_solver_destroy(solver);
-    ck_assert_uint_eq(f.balance, 0);
+    ck_assert(is_whole(&m));
     desc.allocator.release = NULL;
     ck_assert_int_eq(gxs_solver_create(&desc, &solver, NULL), GX_ERROR_ARGUMENT);
     memset(&desc.allocator, 0, sizeof desc.allocator);

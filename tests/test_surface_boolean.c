@@ -6,6 +6,7 @@
 #include "../gxfem_boolean.h"
 #include "workloads.h"
 #include "runner.h"
+#include "scarce.h"
 
 #define CHECK_CASE(condition, ...) ck_assert_msg(condition, __VA_ARGS__)
 
@@ -1523,32 +1524,6 @@ END_TEST
 #define STRIDE 1
 #endif
 
-typedef struct memory {
-    size_t live, calls, fail_at;
-    int from_then_on;
-} memory;
-
-static void *take(void *user, size_t size) {
-    memory *m = (memory *)user;
-    const size_t call = m->calls++;
-    if (call == m->fail_at || (m->from_then_on && call > m->fail_at)) return NULL;
-    m->live += size;
-    return malloc(size);
-}
-
-static void give(void *user, void *block, size_t size) {
-    ((memory *)user)->live -= size;
-    free(block);
-}
-
-static void *grow(void *user, void *block, size_t size, size_t larger) {
-    void *moved = take(user, larger);
-    if (moved == NULL) return NULL;
-    memcpy(moved, block, size);
-    give(user, block, size);
-    return moved;
-}
-
 /* Create, and for each operand: add, evaluate, components, defects */
 static gx_result make_call(int i, const gxb_boolean_desc *desc, const gxb_operand *o, gxb_boolean **b) {
     gxb_boolean_result r;
@@ -1569,10 +1544,8 @@ static answer despite_failures(memory *m, const gxb_operand *o, int count, uint3
     answer a;
     int i;
     memset(&desc, 0, sizeof desc);
-    desc.allocator.allocate = take;
-    desc.allocator.release = give;
-    desc.allocator.user = m;
-    desc.allocator.reallocate = m->from_then_on ? grow : NULL;
+    m->grows = m->from_then_on;
+    desc.allocator = allocator_of(m);
     desc.memory_limit = (size_t)1 << 19; /* so little that each array is an allocation of its own */
     *failed = 0;
     for (i = -1; i < 4 * count; i++) {
@@ -1582,19 +1555,17 @@ static answer despite_failures(memory *m, const gxb_operand *o, int count, uint3
             ck_assert_int_eq(result, GX_ERROR_MEMORY);
             ck_assert(m->fail_at != SIZE_MAX);
             *failed = 1;
-            m->fail_at = SIZE_MAX;
-            m->from_then_on = 0;
+            never_fail(m);
         }
         if (i >= 0) continue;
         ck_assert_int_eq(gxb_boolean_set_triangulation(b, triangulation, NULL), GX_OK);
         ck_assert_int_eq(gxb_boolean_set_fine(b, mend, NULL), GX_OK);
         ck_assert_int_eq(gxb_boolean_set_mend(b, mend, NULL), GX_OK);
     }
-    m->fail_at = SIZE_MAX;
-    m->from_then_on = 0;
+    never_fail(m);
     a = read_answer(b);
     gxb_boolean_destroy(b);
-    ck_assert_uint_eq(m->live, 0);
+    ck_assert(is_whole(m));
     return a;
 }
 
@@ -1611,10 +1582,9 @@ START_TEST(memory_runs_out) {
     }
     for (i = 0; i < 2; i++)
         for (n = 0, failed = 1; failed; n += STRIDE) {
-            memory m = {0, 0, 0, 0};
+            memory m = plenty();
             answer a;
-            m.fail_at = n;
-            m.from_then_on = i;
+            fail_from(&m, n, i);
             a = despite_failures(&m, o, 3, GXB_COARSE, 0, &failed);
             check_answer("after a failure", &a, 2, 27 - 9 - 2);
             ck_assert_uint_lt(n, 5000 * STRIDE);
@@ -1626,7 +1596,7 @@ END_TEST
 /* Each allocation fails, once and from then on. The answers are those without a failure; triangles may
    come in another order. */
 static void sweep_failures(const char *name, const gxb_operand *o, int count, uint32_t triangulation, int mend) {
-    memory m = {0, 0, SIZE_MAX, 0};
+    memory m = plenty();
     int failed = 1, from_then_on;
     const answer truth = despite_failures(&m, o, count, triangulation, mend, &failed);
     static size_t sweeps;
@@ -1634,9 +1604,7 @@ static void sweep_failures(const char *name, const gxb_operand *o, int count, ui
     for (from_then_on = 0; from_then_on < 2; from_then_on++)
         for (n = 5 * sweeps++ % STRIDE, failed = 1; failed; n += FEWER * STRIDE) {
             answer a;
-            memset(&m, 0, sizeof m);
-            m.fail_at = n;
-            m.from_then_on = from_then_on;
+            fail_from(&m, n, from_then_on);
             a = despite_failures(&m, o, count, triangulation, mend, &failed);
             CHECK_CASE(a.euler == truth.euler && a.components == truth.components && a.triangles == truth.triangles &&
                            a.defects == truth.defects && fabs(a.volume - truth.volume) <= 1e-14 * truth.volume,
@@ -1876,7 +1844,7 @@ START_TEST(bad_input_is_refused) {
     s.vertices[10] = kept;
     ck_assert_int_eq(gxb_boolean_create(NULL, NULL, NULL), GX_ERROR_ARGUMENT);
     memset(&desc, 0, sizeof desc);
-    desc.allocator.allocate = take; /* and nothing to release it */
+    desc.allocator.allocate = scarce_take; /* and nothing to release it */
     ck_assert_int_eq(gxb_boolean_create(&desc, &b, NULL), GX_ERROR_ARGUMENT);
     ck_assert_int_eq(gxb_boolean_create(NULL, &b, NULL), GX_OK);
     ck_assert_int_eq(gxb_boolean_set_triangulation(b, 3, NULL), GX_ERROR_ARGUMENT);
