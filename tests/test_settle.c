@@ -552,41 +552,11 @@ END_TEST
 
 /* ---- memory ---- */
 
-typedef struct memory {
-    size_t bytes, calls, fail_at;
-    int from_then_on, failed;
-} memory;
-
-static void *take(void *user, size_t size) {
-    memory *m = (memory *)user;
-    const size_t call = m->calls++;
-    if (call == m->fail_at || (m->from_then_on && call > m->fail_at)) {
-        m->failed = 1;
-        return NULL;
-    }
-    m->bytes += size;
-    return malloc(size);
-}
-
-static void give(void *user, void *block, size_t size) {
-    ((memory *)user)->bytes -= size;
-    free(block);
-}
-
-static void never_fail(memory *m) {
-    m->fail_at = SIZE_MAX;
-    m->from_then_on = m->failed = 0;
-}
-
 static gx_body *worn_body(memory *m, strokes *s, uint32_t count) {
-    gx_allocator a;
+    const gx_allocator a = allocator_of(m);
     gx_body *body = NULL;
     gx_skin skin;
     uint32_t i;
-    memset(&a, 0, sizeof a);
-    a.allocate = take;
-    a.release = give;
-    a.user = m;
     memset(s, 0, sizeof *s);
     s->side = 2;
     s->total = 20;
@@ -602,14 +572,13 @@ static gx_body *worn_body(memory *m, strokes *s, uint32_t count) {
 /* Memory may run out wherever a cut asks for it, also for the compaction. Then the cut fails and nothing has changed;
    or it succeeds, and the body is what it should be. */
 START_TEST(memory_runs_out) {
-    memory m;
+    memory m = plenty();
     strokes s;
     gx_body *body;
     gx_skin skin;
     uint64_t now, then;
     size_t n, failures = 0;
     uint32_t leaves;
-    memset(&m, 0, sizeof m);
     settles = ALWAYS;
     body = worn_body(&m, &s, 7);
     now = hash_of(body);
@@ -617,15 +586,13 @@ START_TEST(memory_runs_out) {
     ck_assert_int_eq(strokes_apply(&s, body, 7, NULL), GX_OK);
     then = hash_of(body);
     gx_body_destroy(body);
-    ck_assert_uint_eq(m.bytes, 0);
+    ck_assert(is_whole(&m));
     for (n = 0;; n++) {
         uint64_t state;
         gx_result result;
         body = worn_body(&m, &s, 6);
         state = gx_body_state_hash(body);
-        m.calls = 0;
-        m.fail_at = n;
-        m.from_then_on = _i;
+        fail_from(&m, n, _i);
         result = strokes_apply(&s, body, 6, NULL);
         if (!m.failed) break;
         never_fail(&m);
@@ -642,9 +609,10 @@ START_TEST(memory_runs_out) {
         ck_assert(hash_of(body) == then);
         ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
         gx_body_destroy(body);
-        ck_assert_uint_eq(m.bytes, 0);
+        ck_assert(is_whole(&m));
     }
     gx_body_destroy(body);
+    ck_assert(is_whole(&m));
     ck_assert_uint_ge(failures, 5);
 }
 END_TEST
@@ -659,43 +627,37 @@ static size_t kept_leaves(const gx_body *body) {
 /* Hundreds of strokes: a body holds no more than twice what one does that is cut to the same shape at once, and each
    stroke goes through as few leaves. */
 START_TEST(strokes_wear_nothing_out) {
-    memory m, other;
+    memory m = plenty(), other = plenty();
+    const gx_allocator a = allocator_of(&m), b = allocator_of(&other);
     strokes s;
-    gx_allocator a;
     gx_body *body = NULL, *fresh = NULL;
-    size_t most = 0;
+    size_t bytes = 0, most = 0, least;
     uint32_t i;
     memset(&s, 0, sizeof s);
-    memset(&m, 0, sizeof m);
-    memset(&other, 0, sizeof other);
-    memset(&a, 0, sizeof a);
     settles = IN_USE;
     s.kind = _i;
     s.side = 4;
     s.total = _i == STROKES_CARVE ? 150 : 600;
-    never_fail(&m);
-    never_fail(&other);
-    a.allocate = take;
-    a.release = give;
-    a.user = &m;
     ck_assert_int_eq(strokes_body(s.side, &a, NULL, &body), GX_OK);
     for (i = 0; i < s.total; i++) {
         ck_assert_int_eq(strokes_apply(&s, body, i, NULL), GX_OK);
-        if (m.bytes > most) most = m.bytes;
+        bytes = bytes_alive(&m);
+        if (bytes > most) most = bytes;
     }
     if (_i != STROKES_CARVE) { /* which refines its tools */
-        a.user = &other;
-        ck_assert_int_eq(strokes_body(s.side, &a, NULL, &fresh), GX_OK);
+        ck_assert_int_eq(strokes_body(s.side, &b, NULL, &fresh), GX_OK);
         ck_assert_int_eq(strokes_cut_fresh(&s, fresh), GX_OK);
         ck_assert(hash_of(body) == hash_of(fresh));
-        ck_assert_msg(m.bytes <= 2 * other.bytes, "%zu bytes, freshly cut %zu", m.bytes, other.bytes);
-        ck_assert_msg(most <= 3 * other.bytes, "at most %zu bytes, freshly cut %zu", most, other.bytes);
+        least = bytes_alive(&other);
+        ck_assert_msg(bytes <= 2 * least, "%zu bytes, freshly cut %zu", bytes, least);
+        ck_assert_msg(most <= 3 * least, "at most %zu bytes, freshly cut %zu", most, least);
         ck_assert_uint_le(kept_leaves(body), 2 * kept_leaves(fresh));
         gx_body_destroy(fresh);
+        ck_assert(is_whole(&other));
     }
     gx_body_destroy(read_back(body));
     gx_body_destroy(body);
-    ck_assert_uint_eq(m.bytes, 0);
+    ck_assert(is_whole(&m));
 }
 END_TEST
 
