@@ -4727,9 +4727,8 @@ static void gxp_settle_cells(gx_body *body, uint32_t *place) {
     gxp_cell *data = body->cells.data;
     uint32_t i, n = 0;
     for (i = 0; i < body->cells.count; i++) place[i] = i < body->mesh.element_count || data[i].kept ? n++ : GXP_NONE;
-    for (i = 0; i < body->leaves.count; i++) {
-        const uint32_t cell = body->leaves.data[i].cell; /* the leaf that stands for removed ones may have had another
-                                                          */
+    for (i = 0; i < body->leaves.count; i++) { /* a hollow leaf may have been in a cell that goes */
+        const uint32_t cell = body->leaves.data[i].cell;
         body->leaves.data[i].cell = place[cell] == GXP_NONE ? data[cell].element : place[cell];
     }
     for (i = 0; i < body->skin.triangle_count; i++) {

@@ -5740,6 +5740,16 @@ enum { GXBP_NOTHING, GXBP_REMOVED, GXBP_SET, GXBP_PLAN, GXBP_KINDS };
 
 static uint32_t gxbp_kind(uint32_t tree) { return tree % GXBP_KINDS; }
 
+/* The old node (0), the front (1) or the back (2) of a node of the plan */
+static uint32_t gxbp_plan_part(const gxbp_census *c, uint32_t tree, uint32_t k) {
+    return c->plan[3 * (size_t)(tree / GXBP_KINDS) + k];
+}
+
+/* One of the two sets of a pair */
+static uint32_t gxbp_set_part(const gxbp_census *c, uint32_t set, uint32_t k) {
+    return c->pairs[2 * (size_t)(set - c->cx->leaf_count) + k];
+}
+
 /* A node in the place of an old one, or less if one of its trees is nothing, or removed and bounded by nothing */
 static uint32_t gxbp_plan_tree(gxbp_census *c, uint32_t node, uint32_t front, uint32_t behind) {
     uint32_t *own = c->plan + 3 * (size_t)c->plan_count;
@@ -5766,23 +5776,23 @@ static uint32_t gxbp_pair_sets(gxbp_census *c, uint32_t a, uint32_t b) {
 
 /* On which sides of the splitter the leaves of a set lie; 3 if that takes too many steps */
 static GXBP_COLD int gxbp_set_sides(gxbp_census *c, uint32_t set, const gxbp_splitter *splitter) {
-    const uint32_t *pair = c->pairs + 2 * (size_t)(set - c->cx->leaf_count);
     int sides;
     if (c->steps == 0) return 3;
     c->steps--;
     if (set < c->cx->leaf_count) return gxbp_leaf_sides(c->cx, set, splitter);
-    sides = gxbp_set_sides(c, pair[0], splitter);
-    return sides == 3 ? 3 : sides | gxbp_set_sides(c, pair[1], splitter);
+    sides = gxbp_set_sides(c, gxbp_set_part(c, set, 0), splitter);
+    return sides == 3 ? 3 : sides | gxbp_set_sides(c, gxbp_set_part(c, set, 1), splitter);
 }
 
 /* Has a leaf of the set a facet inside the element that lies in the plane? 1 if that takes too many steps */
 static GXBP_COLD int gxbp_set_touches(gxbp_census *c, uint32_t set, uint32_t plane) {
     const gxb_complex *cx = c->cx;
-    const uint32_t *pair = c->pairs + 2 * (size_t)(set - cx->leaf_count);
     uint32_t i;
     if (c->steps == 0) return 1;
     c->steps--;
-    if (set >= cx->leaf_count) return gxbp_set_touches(c, pair[0], plane) || gxbp_set_touches(c, pair[1], plane);
+    if (set >= cx->leaf_count)
+        return gxbp_set_touches(c, gxbp_set_part(c, set, 0), plane) ||
+               gxbp_set_touches(c, gxbp_set_part(c, set, 1), plane);
     for (i = 0; i < cx->leaves[set].facet_count; i++) {
         const gxb_facet *f = &cx->facets[cx->pool[cx->leaves[set].facets + i]];
         if (f->plane == plane && f->face == GXB_NONE) return 1;
@@ -5792,8 +5802,7 @@ static GXBP_COLD int gxbp_set_touches(gxbp_census *c, uint32_t set, uint32_t pla
 
 /* The parts of a tree in front of a plane and behind it. 0: the plane divides a leaf of it, or is another one again. */
 static GXBP_COLD int gxbp_part_tree(gxbp_census *c, uint32_t tree, uint32_t plane, uint32_t part[2]) {
-    const uint32_t *own = c->plan + 3 * (size_t)(tree / GXBP_KINDS);
-    uint32_t front[2], behind[2], k;
+    uint32_t front[2], behind[2], node, k;
     gxbp_splitter splitter;
     int sides;
     part[0] = part[1] = tree;
@@ -5809,19 +5818,21 @@ static GXBP_COLD int gxbp_part_tree(gxbp_census *c, uint32_t tree, uint32_t plan
         part[sides == 1] = GXBP_NOTHING;
         return sides != 3;
     }
-    if (c->cx->nodes[own[0]].plane == plane) {
-        part[0] = own[1];
-        part[1] = own[2];
+    node = gxbp_plan_part(c, tree, 0);
+    if (c->cx->nodes[node].plane == plane) {
+        for (k = 0; k < 2; k++) part[k] = gxbp_plan_part(c, tree, 1 + k);
         return 1;
     }
-    if (!gxbp_part_tree(c, own[1], plane, front) || !gxbp_part_tree(c, own[2], plane, behind)) return 0;
+    if (!gxbp_part_tree(c, gxbp_plan_part(c, tree, 1), plane, front) ||
+        !gxbp_part_tree(c, gxbp_plan_part(c, tree, 2), plane, behind))
+        return 0;
     for (k = 0; k < 2; k++) {
         const uint32_t rest = front[k] == GXBP_NOTHING  ? behind[k]
                             : behind[k] == GXBP_NOTHING ? front[k]
                                                         : GXBP_NOTHING;
-        part[k] = gxbp_plan_tree(c, own[0], front[k], behind[k]);
+        part[k] = gxbp_plan_tree(c, node, front[k], behind[k]);
         if (part[k] == GXBP_FAILS ||
-            (gxbp_kind(rest) == GXBP_SET && gxbp_set_touches(c, rest / GXBP_KINDS, c->cx->nodes[own[0]].plane)))
+            (gxbp_kind(rest) == GXBP_SET && gxbp_set_touches(c, rest / GXBP_KINDS, c->cx->nodes[node].plane)))
             return 0;
     }
     return 1;
@@ -5832,12 +5843,12 @@ static uint32_t gxbp_merge_trees(gxbp_census *c, uint32_t front, uint32_t behind
 /* Merges trees along the plane at the root of one of them: of the front one (first 0) or of the other. */
 static GXBP_COLD uint32_t gxbp_merge_along(gxbp_census *c, uint32_t first, uint32_t front, uint32_t behind,
                                            uint32_t plane) {
-    const uint32_t own = 3 * ((first ? behind : front) / GXBP_KINDS), node = c->plan[own];
+    const uint32_t own = first ? behind : front, node = gxbp_plan_part(c, own, 0);
     uint32_t part[2], merged[2], k;
     if (!gxbp_part_tree(c, first ? front : behind, c->cx->nodes[node].plane, part)) return GXBP_FAILS;
     for (k = 0; k < 2; k++) {
-        merged[k] = first ? gxbp_merge_trees(c, part[k], c->plan[own + 1 + k], plane)
-                          : gxbp_merge_trees(c, c->plan[own + 1 + k], part[k], plane);
+        const uint32_t tree = gxbp_plan_part(c, own, 1 + k);
+        merged[k] = first ? gxbp_merge_trees(c, part[k], tree, plane) : gxbp_merge_trees(c, tree, part[k], plane);
         if (merged[k] == GXBP_FAILS) return GXBP_FAILS;
     }
     return gxbp_plan_tree(c, node, merged[0], merged[1]);
@@ -5882,27 +5893,25 @@ static GXBP_COLD uint32_t gxbp_simplify(gxbp_census *c, uint32_t reference, int 
 }
 
 static GXBP_COLD uint32_t gxbp_count_plan(const gxbp_census *c, uint32_t tree) {
-    const uint32_t *own = c->plan + 3 * (size_t)(tree / GXBP_KINDS);
-    return gxbp_kind(tree) == GXBP_PLAN ? 1 + gxbp_count_plan(c, own[1]) + gxbp_count_plan(c, own[2]) : 0;
+    if (gxbp_kind(tree) != GXBP_PLAN) return 0;
+    return 1 + gxbp_count_plan(c, gxbp_plan_part(c, tree, 1)) + gxbp_count_plan(c, gxbp_plan_part(c, tree, 2));
 }
 
 static GXBP_COLD uint32_t gxbp_first_leaf(const gxbp_census *c, uint32_t set) {
-    const uint32_t *pair = c->pairs + 2 * (size_t)(set - c->cx->leaf_count);
     uint32_t a, b;
     if (set < c->cx->leaf_count) return set;
-    a = gxbp_first_leaf(c, pair[0]);
-    b = gxbp_first_leaf(c, pair[1]);
+    a = gxbp_first_leaf(c, gxbp_set_part(c, set, 0));
+    b = gxbp_first_leaf(c, gxbp_set_part(c, set, 1));
     return a < b ? a : b;
 }
 
 static GXBP_COLD void gxbp_give_set(gxbp_census *c, uint32_t set, uint32_t leaf) {
-    const uint32_t *pair = c->pairs + 2 * (size_t)(set - c->cx->leaf_count);
     if (set < c->cx->leaf_count) {
         c->leaf_of[set] = leaf;
         return;
     }
-    gxbp_give_set(c, pair[0], leaf);
-    gxbp_give_set(c, pair[1], leaf);
+    gxbp_give_set(c, gxbp_set_part(c, set, 0), leaf);
+    gxbp_give_set(c, gxbp_set_part(c, set, 1), leaf);
 }
 
 /* Writes a planned tree to the new trees. Returns its reference. */
@@ -5917,9 +5926,9 @@ static GXBP_COLD uint32_t gxbp_write_tree(gxbp_census *c, uint32_t tree, uint32_
     }
     if (gxbp_kind(tree) != GXBP_PLAN) return 2 * c->hollow[element];
     c->node_count++;
-    node[0] = c->cx->nodes[c->plan[3 * (size_t)index]].plane;
-    node[1] = gxbp_write_tree(c, c->plan[3 * (size_t)index + 1], element);
-    node[2] = gxbp_write_tree(c, c->plan[3 * (size_t)index + 2], element);
+    node[0] = c->cx->nodes[gxbp_plan_part(c, tree, 0)].plane;
+    node[1] = gxbp_write_tree(c, gxbp_plan_part(c, tree, 1), element);
+    node[2] = gxbp_write_tree(c, gxbp_plan_part(c, tree, 2), element);
     return 2 * n + 1;
 }
 
@@ -5941,9 +5950,10 @@ static GXBP_COLD int gxbp_is_border(const gxbp_census *c, uint32_t facet, uint32
 /* Does each facet on the border of the set lie in the plane of a node above, on its side? */
 static GXBP_COLD int gxbp_set_is_bounded(const gxbp_census *c, uint32_t set, const gxbp_descent *above) {
     const gxb_complex *cx = c->cx;
-    const uint32_t *pair = c->pairs + 2 * (size_t)(set - cx->leaf_count);
     uint32_t i, side;
-    if (set >= cx->leaf_count) return gxbp_set_is_bounded(c, pair[0], above) && gxbp_set_is_bounded(c, pair[1], above);
+    if (set >= cx->leaf_count)
+        return gxbp_set_is_bounded(c, gxbp_set_part(c, set, 0), above) &&
+               gxbp_set_is_bounded(c, gxbp_set_part(c, set, 1), above);
     for (i = 0; i < cx->leaves[set].facet_count; i++) {
         const uint32_t facet = cx->pool[cx->leaves[set].facets + i];
         const gxbp_descent *d = above;
@@ -5956,14 +5966,13 @@ static GXBP_COLD int gxbp_set_is_bounded(const gxbp_census *c, uint32_t set, con
 
 /* Planes may be equal and have different numbers. Then a facet may be left without a node of its plane above it. */
 static GXBP_COLD int gxbp_plan_is_sound(const gxbp_census *c, uint32_t tree, const gxbp_descent *up) {
-    const uint32_t *own = c->plan + 3 * (size_t)(tree / GXBP_KINDS);
     gxbp_descent below;
     if (gxbp_kind(tree) == GXBP_SET) return gxbp_set_is_bounded(c, tree / GXBP_KINDS, up);
     if (gxbp_kind(tree) != GXBP_PLAN) return 1;
     below.up = up;
-    below.plane = c->cx->nodes[own[0]].plane;
+    below.plane = c->cx->nodes[gxbp_plan_part(c, tree, 0)].plane;
     for (below.side = 0; below.side < 2; below.side++)
-        if (!gxbp_plan_is_sound(c, own[1 + below.side], &below)) return 0;
+        if (!gxbp_plan_is_sound(c, gxbp_plan_part(c, tree, 1 + below.side), &below)) return 0;
     return 1;
 }
 
@@ -6276,9 +6285,10 @@ static void gxbp_restore_whole(gxbp_census *c) {
     if (cx->face_count > 0) memcpy(c->face_first, cx->face_facet, cx->face_count * sizeof *c->face_first);
     if (cx->mesh_edge_count > 0) memcpy(c->edge_first, cx->mesh_edge, cx->mesh_edge_count * sizeof *c->edge_first);
     for (i = 0; i < cx->facet_count; i++) {
-        const uint32_t face = cx->facets[i].face, *sides = cx->face_elements + 2 * (size_t)face;
+        const uint32_t face = cx->facets[i].face, *sides;
         uint32_t whole = 0;
         if (!gxbp_is_alive(c, i) || face == GXB_NONE) continue;
+        sides = cx->face_elements + 2 * (size_t)face;
         for (j = 0; j < c->loop_count[i]; j++) {
             const uint32_t edge = c->loops[c->loop[i] + j] >> 1, *ends = c->ends + 2 * (size_t)edge;
             const gxb_edge *e = &cx->edges[edge];

@@ -1653,6 +1653,152 @@ START_TEST(many_transactions_conform) {
 }
 END_TEST
 
+/* ---- giving back what nothing needs ---- */
+
+typedef struct extent {
+    double *volume; /* of each leaf */
+    double wall[MAX_CUTS];
+} extent;
+
+/* Checks all leaves that have facets. Volumes of those that are kept, and the area of their labelled facets by label */
+static extent measure_kept(const model *m) {
+    gxb_complex *cx = m->cx;
+    extent x;
+    uint32_t leaf, first, count, i, edge_first, edge_count, l;
+    memset(&x, 0, sizeof x);
+    x.volume = (double *)calloc(cx->leaf_count, sizeof *x.volume);
+    for (leaf = 0; leaf < cx->leaf_count; leaf++) {
+        uint32_t *facets;
+        if (cx->leaves[leaf].facet_count == 0) continue;
+        x.volume[leaf] = check_leaf(m, leaf);
+        if (cx->leaves[leaf].removed) x.volume[leaf] = 0;
+        ck_assert_int_eq(gxb_leaf_resolve_facets(cx, leaf, &first, &count), GX_OK);
+        facets = copy_list(cx, first, count);
+        for (i = 0; i < count && !cx->leaves[leaf].removed; i++) {
+            double area[3] = {0, 0, 0}, volume = 0;
+            ck_assert_int_eq(gxb_facet_resolve_edges(cx, facets[i], &edge_first, &edge_count), GX_OK);
+            add_fan(m, cx->pool + edge_first, edge_count, area, &volume);
+            for (l = cx->facets[facets[i]].labels; l != GXB_NONE; l = cx->labels[l].next)
+                x.wall[cx->labels[l].triangle] += length3(area);
+        }
+        free(facets);
+    }
+    return x;
+}
+
+/* Each kept leaf hangs once in its element's tree. */
+static void check_kept_trees(const model *m) {
+    const gxb_complex *cx = m->cx;
+    uint32_t *seen = (uint32_t *)calloc(cx->leaf_count, sizeof *seen), i;
+    for (i = 0; i < cx->element_count; i++) check_tree(m, i, cx->root[i], seen);
+    for (i = 0; i < cx->leaf_count; i++)
+        assert_that(cx->leaves[i].removed ? seen[i] > 0 : seen[i] == 1, "leaf %u hangs %u times", i, seen[i]);
+    free(seen);
+}
+
+/* Given points are found again by their names. */
+static void find_points_again(const gxb_complex *cx, const scene *s, const uint32_t *names, inserted *in) {
+    uint32_t i, j;
+    for (i = 0; i < 3 * s->cut_count; i++) {
+        in->points[i] = GXB_NONE;
+        for (j = (uint32_t)s->node_count; j < cx->store.point_count; j++)
+            if (cx->store.points[j].name == names[i]) in->points[i] = j;
+    }
+}
+
+/* Compacts at the end of a transaction, after every failure that there may be and a survey in vain. Volumes and walls
+   of what is kept stay. */
+static void compact_and_compare(gxb_complex *cx, memory *own, const scene *s, inserted *in, const uint8_t *pinned) {
+    const rat_mark mark = rat_arena_mark();
+    model m = open_model(cx, s, in);
+    const extent old = measure_kept(&m);
+    const uint64_t hash = hash_complex(cx, 1);
+    extent now;
+    gxb_renumbering r;
+    double *sum;
+    uint32_t names[3 * MAX_CUTS], i, k, failures = 0;
+    size_t n;
+    int failed = 1;
+    close_model(&m);
+    for (n = 0; failed; n++) {
+        gx_result result;
+        fail_from(own, n, 0);
+        result = gxb_complex_survey(cx, pinned, &r);
+        failed = own->failed;
+        failures += result != GX_OK;
+        assert_that(result == GX_OK || (failed && result == GX_ERROR_MEMORY && r.memory == NULL), "allocation %lu: %d",
+                    (unsigned long)n, (int)result);
+        gxb_complex_forget(cx, &r);
+        assert_that(hash_complex(cx, 1) == hash, "a survey changes something");
+    }
+    never_fail(own);
+    ck_assert_uint_ge(failures, 4);
+    ck_assert_int_eq(gxb_complex_survey(cx, pinned, &r), GX_OK);
+    gxb_complex_commit(cx);
+    for (i = 0; i < 3 * s->cut_count; i++)
+        names[i] = in->points[i] < cx->store.point_count ? cx->store.points[in->points[i]].name : GXB_NONE;
+    sum = (double *)calloc(cx->leaf_count, sizeof *sum);
+    gxb_complex_compact(cx, &r);
+    find_points_again(cx, s, names, in);
+    m = open_model(cx, s, in);
+    now = measure_kept(&m);
+    check_neighbours(&m);
+    check_kept_trees(&m);
+    for (i = 0; i < r.leaf_count; i++) {
+        ck_assert_uint_lt(r.leaves[i], cx->leaf_count);
+        assert_that(r.leaf_of[i] == i || r.leaves[i] == r.leaves[r.leaf_of[i]], "leaf %u", i);
+        sum[r.leaves[i]] += old.volume[i];
+        for (k = 0; k < 4 && pinned != NULL; k++)
+            assert_that(!pinned[cx->elements[4 * (size_t)cx->leaves[r.leaves[i]].element + k]] || r.leaf_of[i] == i,
+                        "pinned leaf %u", i);
+    }
+    for (i = 0; i < cx->leaf_count; i++)
+        assert_that(fabs(sum[i] - now.volume[i]) < 1e-14, "leaf %u: %g, not %g", i, now.volume[i], sum[i]);
+    for (i = 0; i < s->cut_count; i++)
+        assert_that(fabs(old.wall[i] - now.wall[i]) < 1e-13, "wall %u: %g, not %g", i, now.wall[i], old.wall[i]);
+    gxb_complex_forget(cx, &r);
+    close_model(&m);
+    rat_arena_release(mark);
+    free(old.volume);
+    free(now.volume);
+    free(sum);
+}
+
+/* Cuts, removals and compactions in turn: what is kept stays what it is, and later cuts divide it as before. */
+START_TEST(worn_complexes_conform) {
+    pc_random r = seeded((uint64_t)_i + 1);
+    const uint8_t pinned[MAX_NODES] = {0, 1};
+    memory m = plenty();
+    const gx_allocator allocator = allocator_of(&m);
+    scene s, all;
+    inserted in;
+    gxb_complex *cx;
+    uint32_t c, i, leaves, fewer = 0;
+    make_mesh(&all, &r, 6, 1, 0, 0.05);
+    make_cuts(&all, &r, 12, _i % 3, 1, 0);
+    s = all;
+    cx = open_scene(&s, &allocator);
+    for (s.cut_count = 4; s.cut_count <= all.cut_count; s.cut_count += 4) {
+        const uint64_t before = hash_complex(cx, 1);
+        gxb_complex_begin(cx);
+        for (c = s.cut_count - 4; c < s.cut_count; c++) ck_assert_int_eq(insert_cut(cx, &s, &in, c), GX_OK);
+        gxb_complex_rollback(cx);
+        assert_that(hash_complex(cx, 1) == before, "rollback");
+        gxb_complex_begin(cx);
+        for (c = s.cut_count - 4; c < s.cut_count; c++) ck_assert_int_eq(insert_cut(cx, &s, &in, c), GX_OK);
+        for (i = 0; i < cx->leaf_count; i++)
+            if (pc_below(&r, 3) == 0) ck_assert_int_eq(gxb_complex_set_removed(cx, i), GX_OK);
+        leaves = cx->leaf_count;
+        compact_and_compare(cx, &m, &s, &in, _i % 4 == 3 ? pinned : NULL);
+        fewer += cx->leaf_count < leaves;
+        ck_assert(!gxb_complex_is_sparse(cx));
+    }
+    ck_assert_uint_gt(fewer, 0);
+    gxb_complex_destroy(cx);
+    ck_assert(is_whole(&m));
+}
+END_TEST
+
 /* ---- bad input ---- */
 
 static void expect_mesh(const scene *s, gx_result want, size_t index) {
@@ -1832,6 +1978,7 @@ static Suite *boolean_suite(void) {
     tcase_add_loop_test(complex, rollback_restores_everything, 0, 24);
     tcase_add_loop_test(complex, every_allocation_may_fail, 0, 4);
     tcase_add_test(complex, many_transactions_conform);
+    tcase_add_loop_test(complex, worn_complexes_conform, 0, 24);
     tcase_add_test(input, bad_meshes_are_named);
     tcase_add_test(input, huge_meshes_name_the_node);
     tcase_add_test(input, bad_triangles_are_named);
