@@ -257,6 +257,8 @@ typedef struct gx_cut_report {
 /* Cuts by all surfaces at once. Displacement and velocity are the same functions of material points before and after.
    On an error the body is exactly as it was; failure.surface is the surface, failure.index as named here. A field of a
    surface reads "surfaces.vertices".
+   Some cuts of a body that has lost material also give back the memory which that has held. Such a cut goes through
+   all that was cut before, 0.1 us for each leaf, facet, edge and point of it. Slots, ids, hits and anchors stay valid.
    Errors: ARGUMENT, EMPTY, INDEX (triangle, or place in a scope), NOT_FINITE (vertex), RANGE (vertex), NOT_CLOSED
    (triangle), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report /* or NULL */,

@@ -5553,10 +5553,11 @@ static void gxbp_mark_leaves(gxbp_census *c, const uint8_t *pinned) {
 
 /* Marks an undivided facet with its labels. */
 static void gxbp_mark_facet(gxbp_census *c, uint32_t facet) {
-    uint32_t l = c->cx->facets[facet].labels;
+    const gxb_facet *f = &c->cx->facets[facet];
+    uint32_t l = f->labels, i;
     if (c->facets[facet] != GXB_NONE) return;
     c->facets[facet] = 0;
-    c->loop_room += gxbp_count_loop(c->cx, facet);
+    for (i = 0; i < f->loop_count; i++) c->loop_room += gxbp_count_edges(c->cx, c->cx->pool[f->loop + i] >> 1);
     for (; l != GXB_NONE && c->labels[l] == GXB_NONE; l = c->cx->labels[l].next) c->labels[l] = 0;
 }
 

@@ -568,7 +568,7 @@ START_TEST(walks_for_other_sections) {
         }
         count = cells_at(body, p, slots);
         for (inside = 0; count > 0; count--) inside |= slots[count - 1] % 2 != 0;
-        CHECK_SEED(inside || (near.slot % 2 == 1 && fabs(sqrt(near.square) - least) < 1e-11), seed);
+        CHECK_SEED(inside || (near.cell % 2 == 1 && fabs(sqrt(near.square) - least) < 1e-11), seed);
         free(met);
     }
     gx_body_destroy(body);
