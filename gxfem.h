@@ -11466,10 +11466,43 @@ static gx_result gxp_find_owners(gx_blade *blade, uint32_t layer) {
     return result;
 }
 
+/* A vertex in the air is where an outermost cell would take it, which may be flat or inside out: on the edge, it keeps
+   its place beside the nearest vertex before it that is in material, or the first one, or the one nearest to it. seen:
+   the vertices with their places on the edge of the last move */
+static void gxp_place_air(gxp_front_vertex *v, const gxp_front_vertex *seen, uint32_t count, double end) {
+    uint32_t i, base = 0;
+    for (i = 1; i < count; i++)
+        if (v[i].distance < v[base].distance) base = i;
+    for (i = 0; i < count; i++)
+        if (v[i].distance > 0)
+            v[i].along = fmin(fmax(v[base].along + (seen[i].along - seen[base].along), 0), end);
+        else
+            base = i;
+}
+
+/* How much a vertex's place on the edge counts */
+static double gxp_place_weight(const gxp_front_vertex *v) { return v->distance > 0 ? 0.001 : 1; }
+
+/* Makes the places on the edge ascend, with the least change in squares: pools of neighbours get their mean. */
+static void gxp_sort_places(gxp_front_vertex *v, uint32_t count) {
+    uint32_t i, j, first;
+    for (i = 1; i < count; i++) {
+        double along = v[i].along, weight = gxp_place_weight(&v[i]);
+        for (first = i; first > 0 && v[first - 1].along > along; first = j) {
+            const double pool = v[first - 1].along;
+            double sum = 0;
+            for (j = first; j > 0 && !(v[j - 1].along < pool); j--) sum += gxp_place_weight(&v[j - 1]);
+            along = (weight * along + sum * pool) / (weight + sum);
+            weight += sum;
+        }
+        for (j = first; j <= i && first < i; j++) v[j].along = along;
+    }
+}
+
 /* Appends a front to blade.owned, with the places on the edge that it is at now, ascending. */
 static gx_result gxp_list_owned(gx_blade *blade, uint32_t layer, int old, const gxp_front_vertex *vertices,
                                 uint32_t vertex_count, const double *edge, uint32_t count) {
-    double reached = 0;
+    const uint32_t first = blade->owned.count;
     uint32_t i;
     gx_result result = gxp_push(blade->body, &blade->owned_starts, blade->owned.count);
     for (i = 0; i < vertex_count && result == GX_OK; i++) {
@@ -11477,9 +11510,11 @@ static gx_result gxp_list_owned(gx_blade *blade, uint32_t layer, int old, const 
         double x[3];
         result = gxp_front_position(blade, layer, old, &v, x);
         gxp_onto_edge(edge, count, x, &v.along);
-        v.along = reached = fmax(reached, v.along);
         if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->owned, &v);
     }
+    if (result != GX_OK) return result;
+    gxp_place_air(blade->owned.data + first, vertices, vertex_count, count - 1);
+    gxp_sort_places(blade->owned.data + first, vertex_count);
     return result;
 }
 

@@ -7,7 +7,7 @@
    kind        a row
    scene       a scene of blade.h on a block of 12^3 cubes
    passes      random straight passes through blocks of 4^3 cubes that move, with noise: `fragments` of them, of
-               `expected`, gave exactly two pieces
+               `expected`, gave exactly two pieces; bridged: gave one
    error       edges that follow known sheets, over all seeds: distance of the walls to the sheet, in cubes. tolerance
                and advance: of the blade, in cubes. calm: a tenth of a cube a frame at 60 frames, violent: a cube
    relativity  the same path by a blade through a still body, and by a body past a still blade: max_error is how far
@@ -35,7 +35,7 @@ enum { MOST_FRAMES = 601, SEEDS = 12, POINTS = 1001 };
 
 typedef struct row {
     const char *kind, *name;
-    size_t elements, fragments, expected, divided;
+    size_t elements, fragments, expected, divided, bridged;
     int frames;
     double tolerance, advance;
     double leaves, us, link, deviation;
@@ -86,15 +86,15 @@ static const char *number(char text[16], const char *format, double value) {
 static const char *whole(char text[16], size_t value) { return number(text, "%.0f", (double)value); }
 
 static void print_row(const row *r) {
-    char t[20][16];
-    csv_row("%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s", r->kind, r->name,
+    char t[21][16];
+    csv_row("%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s,%s", r->kind, r->name,
             whole(t[0], r->elements), whole(t[1], (size_t)r->frames), number(t[2], "%g", r->tolerance),
             number(t[3], "%g", r->advance), whole(t[4], r->fragments), whole(t[5], r->expected),
             whole(t[6], r->divided), number(t[7], "%.2f", r->leaves), number(t[8], "%.1f", r->us),
             number(t[9], "%.1e", r->link), number(t[10], "%.1e", r->deviation), number(t[11], "%.2e", r->most),
             number(t[12], "%.2e", r->rms), number(t[13], "%.3f", r->median), number(t[14], "%.3f", r->p95),
             number(t[15], "%.3f", r->worst), number(t[16], "%.3f", r->step), number(t[17], "%.4f", r->share),
-            number(t[18], "%.0f", r->ns), number(t[19], "%.1e", r->volume));
+            number(t[18], "%.0f", r->ns), number(t[19], "%.1e", r->volume), whole(t[20], r->bridged));
 }
 
 /* What the stage's moves have been; times of a move only where all were measured */
@@ -149,7 +149,7 @@ static void measure_scene(const stage_scene *scene) {
 
 static void measure_passes(const char *name, double noise, double squeeze, int count) {
     row r;
-    size_t right = 0, divided = 0, moves = 0;
+    size_t right = 0, bridged = 0, divided = 0, moves = 0;
     double link = 1, deviation = 0, time = 0;
     int seed;
     for (seed = 1; seed <= count; seed++) {
@@ -159,6 +159,7 @@ static void measure_passes(const char *name, double noise, double squeeze, int c
         stage_random_pass(&s, &m, 40);
         fail(name, &s);
         right += s.view.fragment_count == 2;
+        bridged += s.view.fragment_count < 2;
         divided += s.tally.divided;
         moves += s.tally.moves;
         time += s.tally.seconds;
@@ -170,13 +171,15 @@ static void measure_passes(const char *name, double noise, double squeeze, int c
     }
     r.fragments = right;
     r.expected = (size_t)count;
+    r.bridged = bridged;
     r.divided = divided;
     r.frames = (int)(moves / (size_t)count);
     r.link = link;
     r.deviation = deviation;
     r.us = 1e6 * time / (double)divided;
     r.leaves = r.worst = 0;
-    put(&r, "%5lu of %5lu right, link %.1e", (unsigned long)right, (unsigned long)count, link);
+    put(&r, "%5lu of %5lu right, %lu in one piece, link %.1e", (unsigned long)right, (unsigned long)count,
+        (unsigned long)bridged, link);
 }
 
 /* ---- errors ---- */
@@ -598,7 +601,7 @@ int main(int argc, char **argv) {
     csv_open(
         argv[0], path,
         "kind,name,elements,frames,tolerance,advance,fragments,expected,divided,leaves,us_per_divided,link,deviation,"
-        "max_error,rms_error,median_ms,p95_ms,worst_ms,step_ms,share,ns_per_sample,volume_error");
+        "max_error,rms_error,median_ms,p95_ms,worst_ms,step_ms,share,ns_per_sample,volume_error,bridged");
     for (i = 0; i < STAGE_SCENES; i++) measure_scene(&stage_scenes[i]);
     measure_passes("0.02", 0.02, 1, small ? 20 : 2000);
     measure_passes("0.06", 0.06, 1, small ? 20 : 500);

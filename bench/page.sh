@@ -251,8 +251,8 @@ and the like are in \`bench/blade.h\`. Volume: how far it is off at most, as a s
     text "Random straight passes through blocks of 4^3 cubes that move, with noise at each node and frame; flat: squeezed to a \
 fifth, so that elements turn inside out."
     echo
-    heading "noise, cubes" "two pieces" passes "smallest link"
-    blade_rows passes '$2 " | " $7 " | " $8 " | " $12'
+    heading "noise, cubes" passes "two pieces" "one piece" "smallest link"
+    blade_rows passes '$2 " | " $8 " | " $7 " | " ($23 == "" ? 0 : $23) " | " $12'
     echo
     text "Edges that follow known sheets in blocks of 8^3 cubes, all seeds: how far the walls of the cut are off."
     echo
