@@ -5828,9 +5828,11 @@ static GXBP_COLD int gxbp_part_tree(gxbp_census *c, uint32_t tree, uint32_t plan
         !gxbp_part_tree(c, gxbp_plan_part(c, tree, 2), plane, behind))
         return 0;
     for (k = 0; k < 2; k++) {
-        const uint32_t rest = front[k] == GXBP_NOTHING  ? behind[k]
-                            : behind[k] == GXBP_NOTHING ? front[k]
-                                                        : GXBP_NOTHING;
+        uint32_t rest = GXBP_NOTHING;
+        if (front[k] == GXBP_NOTHING)
+            rest = behind[k];
+        else if (behind[k] == GXBP_NOTHING)
+            rest = front[k];
         part[k] = gxbp_plan_tree(c, node, front[k], behind[k]);
         if (part[k] == GXBP_FAILS ||
             (gxbp_kind(rest) == GXBP_SET && gxbp_set_touches(c, rest / GXBP_KINDS, c->cx->nodes[node].plane)))
