@@ -34,7 +34,7 @@ help:
 	@echo "make format      lays out all C files by .clang-format; installs clang-format where it is missing"
 	@echo "make compile     the headers by every compiler and standard there is, C and C++"
 	@echo "make sanitize    the tests under AddressSanitizer and UndefinedBehaviorSanitizer"
-	@echo "make check-settled  the tests with bodies that give back memory at every cut, not once in thousands"
+	@echo "make check-settled  the tests with bodies that give back memory at every cut, not once in thousands; TESTS=: these only"
 	@echo "make fuzz        random cases, checked by properties of any input; SEED=, CASES=, SECONDS= (0: no limit)"
 	@echo "make fuzz-blade  the same for blades in bodies that move"
 	@echo "make flags       exact predicates against rationals under each compiler and set of flags"
@@ -175,10 +175,10 @@ sanitize:
 	    tests="$(filter-out test_baselines,$(tests))"
 
 # Every cut compacts, but for complexes of which a test wants to know the numbers later.
-settles = -O1 '-DGXBP_IS_SPARSE(sparse)=(cx->settled<UINT64_MAX/8)'
+settles = -O1 '-DGXBP_IS_SPARSE(sparse)=((sparse)||cx->settled<UINT64_MAX/8)'
 check-settled:
 	@sh tests/install.sh check
-	@$(MAKE) --no-print-directory -k -j$(JOBS) check-programs BUILD=$(BUILD)/settled CFLAGS="$(settles)" \
+	@$(MAKE) --no-print-directory -k -j$(JOBS) $(or $(TESTS:%=run-%),check-programs) BUILD=$(BUILD)/settled CFLAGS="$(settles)" \
 	    tests="$(filter-out test_baselines,$(tests))"
 
 sanitize-scenes:
