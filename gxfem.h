@@ -10101,6 +10101,7 @@ static void gxp_edge_position(const double *edge, uint32_t count, double along, 
 static double gxp_onto_edge(const double *edge, uint32_t count, const double x[3], double *along) {
     double best = HUGE_VAL;
     uint32_t i;
+    *along = 0; /* where all squares are beyond all numbers */
     for (i = 0; i + 1 < count; i++) {
         double share, nearest[3];
         const double square = gxp_onto_segment(x, edge + 3 * (size_t)i, edge + 3 * (size_t)i + 3, &share, nearest);

@@ -2408,16 +2408,11 @@ static void *gxbp_block_take(gxb_store *store, size_t size) {
     return (unsigned char *)block + block->used - size;
 }
 
-/* Keeps a copy of four numbers. NULL: no memory. The numbers are a cache, so most callers can go on without them. */
-static gxb_num *gxbp_keep_exact(gxb_store *store, const gxb_num c[4]) {
-    size_t total = 0;
-    gxb_num *copy;
-    gxb_limb *d;
+/* Copies four numbers, with their limbs behind them. */
+static gxb_num *gxbp_copy_exact(void *to, const gxb_num c[4]) {
+    gxb_num *copy = (gxb_num *)to;
+    gxb_limb *d = (gxb_limb *)(void *)(copy + 4);
     int k;
-    for (k = 0; k < 4; k++) total += c[k].n;
-    copy = (gxb_num *)gxbp_block_take(store, 4 * sizeof *copy + total * sizeof *d);
-    if (copy == NULL) return NULL;
-    d = (gxb_limb *)(void *)(copy + 4);
     for (k = 0; k < 4; k++) {
         copy[k] = c[k];
         copy[k].d = d;
@@ -2425,6 +2420,16 @@ static gxb_num *gxbp_keep_exact(gxb_store *store, const gxb_num c[4]) {
         d += c[k].n;
     }
     return copy;
+}
+
+/* Keeps a copy of four numbers. NULL: no memory. The numbers are a cache, so most callers can go on without them. */
+static gxb_num *gxbp_keep_exact(gxb_store *store, const gxb_num c[4]) {
+    size_t total = 0;
+    void *memory;
+    int k;
+    for (k = 0; k < 4; k++) total += c[k].n;
+    memory = gxbp_block_take(store, 4 * sizeof *c + total * sizeof(gxb_limb));
+    return memory != NULL ? gxbp_copy_exact(memory, c) : NULL;
 }
 
 /* (x - origin) * 2^shift, exact; GX_ERROR_RANGE outside of 2^-128 ... 2^128 */
@@ -6404,20 +6409,10 @@ static void gxbp_keep_lists(gxbp_census *c) {
 
 /* Moves exact numbers to the new block. */
 static gxb_num *gxbp_move_exact(gxbp_census *c, const gxb_num *exact) {
-    gxb_num *copy;
-    gxb_limb *d;
-    int k;
+    const size_t used = exact != NULL ? c->numbers->used : 0;
     if (exact == NULL) return NULL;
-    copy = (gxb_num *)(void *)((unsigned char *)c->numbers + c->numbers->used);
     c->numbers->used += gxbp_exact_size(exact);
-    d = (gxb_limb *)(void *)(copy + 4);
-    for (k = 0; k < 4; k++) {
-        copy[k] = exact[k];
-        copy[k].d = d;
-        memcpy(d, exact[k].d, exact[k].n * sizeof *d);
-        d += exact[k].n;
-    }
-    return copy;
+    return gxbp_copy_exact((unsigned char *)c->numbers + used, exact);
 }
 
 static void gxbp_move_line(const gxbp_census *c, uint32_t line[2], uint32_t explicit_line) {

@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "splitmix.h"
+
 /* What a stage's moves have been */
 typedef struct stage_tally {
     size_t moves, triangles, divided; /* elements that strips have touched, each as often as it was */
@@ -39,17 +41,10 @@ typedef struct stage {
     stage_tally tally;
 } stage;
 
-/* ---- random numbers: splitmix64 ---- */
-
-static inline uint64_t stage_bits(stage *s) {
-    uint64_t z = s->random += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-    return z ^ z >> 31;
-}
+/* ---- random numbers ---- */
 
 /* From -1 to 1 */
-static inline double stage_uniform(stage *s) { return ldexp((double)(stage_bits(s) >> 11), -52) - 1; }
+static inline double stage_uniform(stage *s) { return ldexp((double)(splitmix64(&s->random) >> 11), -52) - 1; }
 
 /* ---- the body ---- */
 
@@ -659,7 +654,7 @@ typedef struct stage_sheet {
 static inline stage_sheet stage_random_sheet(stage *s) {
     stage_sheet sheet;
     double n;
-    sheet.up = (int)(stage_bits(s) % 3);
+    sheet.up = (int)(splitmix64(&s->random) % 3);
     n = s->cells[sheet.up];
     sheet.height = n * (0.5 + 0.08 * stage_uniform(s));
     sheet.slope[0] = 0.15 * stage_uniform(s);

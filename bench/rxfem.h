@@ -29,6 +29,7 @@
 #define BENCH_RXFEM_H
 
 #include "rxfem_rules.h"
+#include "splitmix.h"
 
 #include <stdint.h>
 
@@ -488,13 +489,8 @@ static inline int rx_find_contacts(rx_body *b, const rx_grid *g, uint32_t first,
     return any;
 }
 
-/* splitmix64 */
-static inline double rx_random(uint64_t *state) {
-    uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
-    return (double)((z ^ (z >> 31)) >> 11) / 4503599627370496.0 - 1;
-}
+/* From -1 to 1 */
+static inline double rx_random(uint64_t *state) { return (double)(splitmix64(state) >> 11) / 4503599627370496.0 - 1; }
 
 /* Section 6, step 1: moves the vertices of degenerate triangles. */
 static inline void rx_perturb(rx_body *b, const rx_grid *g, uint32_t first, const unsigned char *degenerate,

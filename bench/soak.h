@@ -12,6 +12,7 @@
 
 #include "block.h"
 #include "forms.h"
+#include "splitmix.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -48,16 +49,11 @@ typedef struct life {
     size_t done;
 } life;
 
-/* ---- random numbers: splitmix64 ---- */
+/* ---- random numbers ---- */
 
 static uint64_t random_state;
 
-static double uniform(void) {
-    uint64_t z = random_state += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-    return ldexp((double)((z ^ z >> 31) >> 11), -53);
-}
+static double uniform(void) { return ldexp((double)(splitmix64(&random_state) >> 11), -53); }
 
 static int below(int n) { return (int)(uniform() * n); }
 

@@ -15,6 +15,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../examples/gxio.h"
+#include "splitmix.h"
+
 enum { STROKES_SHAVE, STROKES_SCRATCH, STROKES_PUNCH, STROKES_SLICE, STROKES_CARVE, STROKES_KINDS };
 static const char *const strokes_names[STROKES_KINDS] = {"shave", "scratch", "punch", "slice", "carve"};
 
@@ -32,13 +35,8 @@ typedef struct strokes {
     uint64_t random;
 } strokes;
 
-/* splitmix64 */
-static inline double strokes_uniform(strokes *s) {
-    uint64_t z = s->random += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-    return ldexp((double)((z ^ z >> 31) >> 11), -53);
-}
+/* From 0 to 1 */
+static inline double strokes_uniform(strokes *s) { return ldexp((double)(splitmix64(&s->random) >> 11), -53); }
 
 /* ---- tools ---- */
 
@@ -109,38 +107,25 @@ static inline void strokes_make(const strokes *scene, uint32_t stroke, strokes_t
 
 static inline gx_result strokes_body(uint32_t side, const gx_allocator *allocator, double (*clock)(void *user),
                                      gx_body **body) {
-    static const uint8_t six[6][4] = {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7},
-                                      {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}};
-    const size_t n = side, nodes = (n + 1) * (n + 1) * (n + 1), elements = 6 * n * n * n;
-    double *positions = (double *)malloc(3 * nodes * sizeof *positions);
-    uint32_t *element = (uint32_t *)malloc(4 * elements * sizeof *element);
+    size_t n[3];
+    gxio_mesh mesh;
     gx_body_desc desc;
     gx_result result = GX_ERROR_MEMORY;
-    size_t i, e = 0, t, k;
+    memset(&mesh, 0, sizeof mesh);
     memset(&desc, 0, sizeof desc);
-    for (i = 0; i < nodes && positions != NULL; i++) {
-        positions[3 * i] = (double)(i % (n + 1));
-        positions[3 * i + 1] = (double)(i / (n + 1) % (n + 1));
-        positions[3 * i + 2] = (double)(i / (n + 1) / (n + 1));
-    }
-    for (i = 0; i < n * n * n && element != NULL; i++)
-        for (t = 0; t < 6; t++, e++)
-            for (k = 0; k < 4; k++) {
-                const size_t c = six[t][k], x = i % n + (c & 1), y = i / n % n + (c >> 1 & 1), z = i / n / n + (c >> 2);
-                element[4 * e + k] = (uint32_t)((z * (n + 1) + y) * (n + 1) + x);
-            }
-    desc.positions = positions;
-    desc.node_count = nodes;
-    desc.elements = element;
-    desc.element_count = elements;
+    n[0] = n[1] = n[2] = side;
+    if (gxio_make_grid(&mesh, n, 6)) result = GX_OK;
+    desc.positions = mesh.positions;
+    desc.node_count = mesh.node_count;
+    desc.elements = mesh.elements;
+    desc.element_count = mesh.element_count;
     desc.young = 1e5;
     desc.poisson = 0.3;
     desc.density = 1000;
     desc.clock = clock;
     if (allocator != NULL) desc.allocator = *allocator;
-    if (positions != NULL && element != NULL) result = gx_body_create(&desc, body, NULL);
-    free(positions);
-    free(element);
+    if (result == GX_OK) result = gx_body_create(&desc, body, NULL);
+    gxio_mesh_release(&mesh);
     return result;
 }
 

@@ -3,22 +3,18 @@
 #ifndef GXFEM_TESTS_BODY_H
 #define GXFEM_TESTS_BODY_H
 
+#include "../bench/splitmix.h"
 #include "workloads.h"
 #include "runner.h"
 #include "scarce.h"
 
 #define CHECK_SEED(condition, seed) ck_assert_msg(condition, "seed %llu: %s", (unsigned long long)(seed), #condition)
 
-/* ---- random numbers: splitmix64 ---- */
+/* ---- random numbers ---- */
 
 static uint64_t random_state;
 
-static inline uint64_t random_bits(void) {
-    uint64_t z = random_state += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-    return z ^ z >> 31;
-}
+static inline uint64_t random_bits(void) { return splitmix64(&random_state); }
 static inline int random_below(int n) { return (int)(random_bits() % (uint64_t)n); }
 static inline double random_real(double low, double high) {
     return low + (high - low) * ldexp((double)(random_bits() >> 11), -53);
@@ -126,6 +122,71 @@ static inline uint64_t hash_of(gx_body *body) {
     uint64_t hash = gx_body_topology_hash(body, &failure);
     ck_assert_int_eq(failure.result, GX_OK);
     return hash;
+}
+
+/* ---- comparison of two bodies ---- */
+
+typedef struct sized_cell {
+    uint32_t element;
+    double volume;
+} sized_cell;
+
+static inline int by_cell_size(const void *a, const void *b) {
+    const sized_cell *p = (const sized_cell *)a, *q = (const sized_cell *)b;
+    if (p->element != q->element) return p->element < q->element ? -1 : 1;
+    return (p->volume > q->volume) - (p->volume < q->volume);
+}
+
+static inline sized_cell *sorted_cells(const gx_view *view, double scale) {
+    sized_cell *cells = (sized_cell *)oracle_memory(NULL, view->cell_count + 1, sizeof *cells);
+    size_t i;
+    for (i = 0; i < view->cell_count; i++) {
+        cells[i].element = view->cell_element[i];
+        cells[i].volume = view->cell_volume[i] / (scale * scale * scale);
+    }
+    qsort(cells, view->cell_count, sizeof *cells, by_cell_size);
+    return cells;
+}
+
+static inline sized_cell *sorted_fragments(const gx_view *view, double scale) {
+    sized_cell *f = (sized_cell *)oracle_memory(NULL, view->fragment_count + 1, sizeof *f);
+    size_t i;
+    for (i = 0; i < view->fragment_count; i++) {
+        f[i].element = 0;
+        f[i].volume = view->fragment_volume[i] / (scale * scale * scale);
+    }
+    qsort(f, view->fragment_count, sizeof *f, by_cell_size);
+    return f;
+}
+
+/* Same topology; volumes within `relative` of themselves or `absolute` of the body's. b is `scale` times as long as a.
+ */
+static inline void expect_same(gx_body *a, gx_body *b, double scale, double relative, double absolute, const char *what,
+                               uint64_t seed) {
+    gx_view p = view_of(a), q = view_of(b);
+    sized_cell *s, *t;
+    size_t i;
+    ck_assert_msg(p.cell_count == q.cell_count && p.copy_count == q.copy_count && p.fragment_count == q.fragment_count,
+                  "seed %llu, %s: %zu, %zu cells; %zu, %zu copies; %zu, %zu fragments", (unsigned long long)seed, what,
+                  p.cell_count, q.cell_count, p.copy_count, q.copy_count, p.fragment_count, q.fragment_count);
+    s = sorted_cells(&p, 1);
+    t = sorted_cells(&q, scale);
+    for (i = 0; i < p.cell_count; i++)
+        ck_assert_msg(s[i].element == t[i].element &&
+                          fabs(s[i].volume - t[i].volume) <= relative * s[i].volume + absolute * p.volume,
+                      "seed %llu, %s: cell of element %u, volume %.17g and %.17g", (unsigned long long)seed, what,
+                      s[i].element, s[i].volume, t[i].volume);
+    free(s);
+    free(t);
+    s = sorted_fragments(&p, 1);
+    t = sorted_fragments(&q, scale);
+    for (i = 0; i < p.fragment_count; i++)
+        ck_assert_msg(fabs(s[i].volume - t[i].volume) <= relative * s[i].volume + absolute * p.volume,
+                      "seed %llu, %s: fragment volume %.17g and %.17g", (unsigned long long)seed, what, s[i].volume,
+                      t[i].volume);
+    free(s);
+    free(t);
+    ck_assert_msg(hash_of(a) == hash_of(b), "seed %llu, %s: topology hashes differ", (unsigned long long)seed, what);
 }
 
 /* ---- scenes ---- */

@@ -2,6 +2,7 @@
 #ifndef GXFEM_TESTS_CASE_BYTES_H
 #define GXFEM_TESTS_CASE_BYTES_H
 
+#include "../bench/splitmix.h"
 #include <stddef.h>
 #include <stdint.h>
 
@@ -18,10 +19,7 @@ static inline void case_fill(uint64_t seed, uint8_t *bytes, int size) {
     uint64_t state = seed * UINT64_C(0xda942042e4dd58b5);
     int i, k;
     for (i = 0; i < size; i += 8) {
-        uint64_t z = state += UINT64_C(0x9e3779b97f4a7c15);
-        z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-        z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-        z ^= z >> 31;
+        const uint64_t z = splitmix64(&state);
         for (k = 0; k < 8; k++) bytes[i + k] = (uint8_t)(z >> 8 * k);
     }
 }

@@ -91,76 +91,6 @@ static void quarter_turn(workload *w) {
     }
 }
 
-/* ---- comparison of two bodies ---- */
-
-typedef struct sized {
-    uint32_t element;
-    double volume;
-} sized;
-
-static int by_size(const void *a, const void *b) {
-    const sized *p = (const sized *)a, *q = (const sized *)b;
-    if (p->element != q->element) return p->element < q->element ? -1 : 1;
-    return (p->volume > q->volume) - (p->volume < q->volume);
-}
-
-static int by_number(const void *a, const void *b) {
-    const double p = *(const double *)a, q = *(const double *)b;
-    return (p > q) - (p < q);
-}
-
-static sized *sorted_cells(const gx_view *view, double scale) {
-    sized *cells = (sized *)oracle_memory(NULL, view->cell_count + 1, sizeof *cells);
-    size_t i;
-    for (i = 0; i < view->cell_count; i++) {
-        cells[i].element = view->cell_element[i];
-        cells[i].volume = view->cell_volume[i] / (scale * scale * scale);
-    }
-    qsort(cells, view->cell_count, sizeof *cells, by_size);
-    return cells;
-}
-
-static sized *sorted_fragments(const gx_view *view, double scale) {
-    sized *f = (sized *)oracle_memory(NULL, view->fragment_count + 1, sizeof *f);
-    size_t i;
-    for (i = 0; i < view->fragment_count; i++) {
-        f[i].element = 0;
-        f[i].volume = view->fragment_volume[i] / (scale * scale * scale);
-    }
-    qsort(f, view->fragment_count, sizeof *f, by_size);
-    return f;
-}
-
-/* Same topology; volumes within `relative` of themselves or `absolute` of the body's. b is `scale` times as long as a.
- */
-static void expect_same(gx_body *a, gx_body *b, double scale, double relative, double absolute, const char *what,
-                        uint64_t seed) {
-    gx_view p = view_of(a), q = view_of(b);
-    sized *s, *t;
-    size_t i;
-    ck_assert_msg(p.cell_count == q.cell_count && p.copy_count == q.copy_count && p.fragment_count == q.fragment_count,
-                  "seed %llu, %s: %zu, %zu cells; %zu, %zu copies; %zu, %zu fragments", (unsigned long long)seed, what,
-                  p.cell_count, q.cell_count, p.copy_count, q.copy_count, p.fragment_count, q.fragment_count);
-    s = sorted_cells(&p, 1);
-    t = sorted_cells(&q, scale);
-    for (i = 0; i < p.cell_count; i++)
-        ck_assert_msg(s[i].element == t[i].element &&
-                          fabs(s[i].volume - t[i].volume) <= relative * s[i].volume + absolute * p.volume,
-                      "seed %llu, %s: cell of element %u, volume %.17g and %.17g", (unsigned long long)seed, what,
-                      s[i].element, s[i].volume, t[i].volume);
-    free(s);
-    free(t);
-    s = sorted_fragments(&p, 1);
-    t = sorted_fragments(&q, scale);
-    for (i = 0; i < p.fragment_count; i++)
-        ck_assert_msg(fabs(s[i].volume - t[i].volume) <= relative * s[i].volume + absolute * p.volume,
-                      "seed %llu, %s: fragment volume %.17g and %.17g", (unsigned long long)seed, what, s[i].volume,
-                      t[i].volume);
-    free(s);
-    free(t);
-    ck_assert_msg(hash_of(a) == hash_of(b), "seed %llu, %s: topology hashes differ", (unsigned long long)seed, what);
-}
-
 /* ---- the field at material points ---- */
 
 /* Is x strictly inside a leaf? Exact; adds a point to the complex. */
@@ -735,7 +665,7 @@ START_TEST(closed_sheets_make_cells) {
     body = cut_at_once(&w);
     view = view_of(body);
     {
-        sized *s = sorted_cells(&view, 1);
+        sized_cell *s = sorted_cells(&view, 1);
         double a = 0.0625 * 0.0625 * 0.0625, b = 0.125 * 0.125 * 0.125, d = 0.21875 * 0.21875 * 0.21875;
         ck_assert_double_eq_tol(s[0].volume, a, 1e-12 * a);
         ck_assert_double_eq_tol(s[1].volume, b - a, 1e-12 * a);
@@ -852,7 +782,7 @@ START_TEST(a_thousand_parallel_cuts) {
     wl_surface *s = wl_add_surface(&w, 0);
     gx_body *body;
     gx_view view;
-    sized *cells, *truth;
+    sized_cell *cells, *truth;
     double sum = 0;
     int i, k;
     for (i = 1; i <= n; i++) {
@@ -869,13 +799,13 @@ START_TEST(a_thousand_parallel_cuts) {
     ck_assert_uint_eq(view.cell_count, (size_t)n + 1);
     ck_assert_uint_eq(view.fragment_count, (size_t)n + 1);
     ck_assert_uint_eq(view.copy_count, 4 * ((size_t)n + 1));
-    truth = (sized *)oracle_memory(NULL, (size_t)n + 1, sizeof *truth);
+    truth = (sized_cell *)oracle_memory(NULL, (size_t)n + 1, sizeof *truth);
     for (i = 0; i <= n; i++) {
         double a = 1 - i / (n + 1.0), b = i == n ? 0 : 1 - (i + 1) / (n + 1.0);
         truth[i].element = 0;
         truth[i].volume = (a - b) * (a * a + a * b + b * b) / 6;
     }
-    qsort(truth, (size_t)n + 1, sizeof *truth, by_size);
+    qsort(truth, (size_t)n + 1, sizeof *truth, by_cell_size);
     cells = sorted_cells(&view, 1);
     for (i = 0; i <= n; i++) {
         ck_assert_msg(fabs(cells[i].volume - truth[i].volume) <= 1e-15, "%.17g, should be %.17g", cells[i].volume,
@@ -1018,7 +948,7 @@ START_TEST(slivers) {
             view = view_of(body);
             ck_assert_uint_eq(view.fragment_count, kind == 2 ? 3 : 2);
             {
-                sized *s = sorted_cells(&view, 1);
+                sized_cell *s = sorted_cells(&view, 1);
                 thin = s[0].volume;
                 free(s);
             }
@@ -1059,6 +989,11 @@ START_TEST(slivers_in_general_position) {
 }
 END_TEST
 
+static int by_number(const void *a, const void *b) {
+    const double p = *(const double *)a, q = *(const double *)b;
+    return (p > q) - (p < q);
+}
+
 /* Thin wedges beside an edge of an element. Their cones have coordinates that are 0, and so terms much smaller than
    their rounding. Volumes must agree with exact numbers. */
 START_TEST(wedges) {
@@ -1085,7 +1020,7 @@ START_TEST(wedges) {
         CHECK_SEED(view.cell_count == truth->cell_count, seed);
         qsort(truth->cell_volume, truth->cell_count, sizeof *truth->cell_volume, by_number);
         {
-            sized *cells = sorted_cells(&view, 1);
+            sized_cell *cells = sorted_cells(&view, 1);
             for (i = 0; i < view.cell_count; i++)
                 ck_assert_msg(fabs(cells[i].volume - truth->cell_volume[i]) <= 1e-11 * truth->cell_volume[i],
                               "seed %llu: cell of %.17g, should be %.17g", (unsigned long long)seed, cells[i].volume,

@@ -14,6 +14,7 @@
 #define GXFEM_INTEGRATE_IMPLEMENTATION
 #include "../gxfem_integrate.h"
 
+#include "../bench/splitmix.h"
 #include "runner.h"
 #include <float.h>
 #include <math.h>
@@ -30,14 +31,7 @@ static void seed_random(uint64_t seed) {
     random_state = seed * 0x9e3779b97f4a7c15u + 0x1234567u;
 }
 
-/* splitmix64 */
-static double random_unit(void) {
-    uint64_t z = random_state += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    z ^= z >> 31;
-    return (double)(z >> 11) / 9007199254740992.0;
-}
+static double random_unit(void) { return (double)(splitmix64(&random_state) >> 11) / 9007199254740992.0; }
 
 static double random_between(double a, double b) { return a + (b - a) * random_unit(); }
 

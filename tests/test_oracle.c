@@ -6,6 +6,7 @@
 #define GXFEM_IMPLEMENTATION
 #endif
 #include "../gxfem.h"
+#include "../bench/splitmix.h"
 #include "workloads.h"
 #include "runner.h"
 
@@ -14,12 +15,7 @@ enum { SCENES = 1600 / FEWER, PARTS = 10 };
 /* ---- random numbers: splitmix64 ---- */
 static uint64_t random_state;
 
-static uint64_t random_bits(void) {
-    uint64_t z = random_state += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-    return z ^ z >> 31;
-}
+static uint64_t random_bits(void) { return splitmix64(&random_state); }
 static int random_below(int n) { return (int)(random_bits() % (uint64_t)n); }
 static double random_real(double low, double high) {
     return low + (high - low) * ldexp((double)(random_bits() >> 11), -53);

@@ -4,6 +4,7 @@
    refused input. */
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../gxfem_boolean.h"
+#include "../bench/splitmix.h"
 #include "workloads.h"
 #include "runner.h"
 #include "scarce.h"
@@ -14,12 +15,7 @@
 
 static uint64_t random_state;
 
-static uint64_t random_bits(void) {
-    uint64_t z = random_state += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-    return z ^ z >> 31;
-}
+static uint64_t random_bits(void) { return splitmix64(&random_state); }
 static int random_below(int n) { return (int)(random_bits() % (uint64_t)n); }
 
 /* ---- operands and answers ---- */
