@@ -41,8 +41,8 @@
  *                   reading: gxb_complex_point and others
  *                   questions: gxb_complex_side, turn, compare, leaf_at, winding, barycentric, support,
  *                   barycentric_fine
- *                   points of moved elements: gxb_pullback_misses, set, contains, orient, weights;
- * gxb_complex_pullback_side
+ *                   points of moved elements: gxb_pullback_misses, set, contains, orient, weights,
+ *                   gxb_complex_pullback_side
  *     >>stream      a complex as bytes: gxb_stream_pass, has; gxb_complex_save, load
  *     >>boolean     exact, chainable Booleans of closed triangle surfaces: gxb_boolean_create, add, evaluate, destroy
  *                   options of a result: set_triangulation, set_fine, set_mend
