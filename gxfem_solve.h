@@ -37,14 +37,15 @@
  *   kernels:      >>svd stretches and rotations of F | >>material energies, stresses | >>tangent Hessian of one block |
  *                 >>element passes over one block
  *   chunks:       >>masses of parts of elements | >>order of elements | >>lanes of a chunk | >>chunks blocks, slots |
- *                 >>affine elements with affine copies | >>copies fixed, following, connected | >>followers constraints
- *                 between copies
- *   structure:    >>transfer between levels | >>levels their patterns | >>pattern of level 1 | >>hierarchy all levels |
- *                 >>lights copies with next to no mass | >>sharing of memory | >>system a model in the solver's form
- *   operator:     >>rule elements with affine copies | >>forces energies, forces | >>blocks 3x3 blocks | >>product
- * single precision | >>doubles double precision | >>linearise Hessians, block diagonal multigrid:    >>galerkin coarse
- * matrices | >>factor of the last level | >>assembly the assembled matrix |
- *                 >>smoother its step length | >>cycle the V-cycle
+ *                 >>affine elements with affine copies | >>copies fixed, following, connected |
+ *                 >>followers constraints between copies
+ *   structure:    >>transfer between levels | >>levels their patterns | >>nested level 1 of affine copies |
+ *                 >>pattern of level 1 | >>hierarchy all levels | >>lights copies with next to no mass |
+ *                 >>sharing of memory | >>system a model in the solver's form
+ *   operator:     >>rule elements with affine copies | >>forces energies, forces | >>blocks 3x3 blocks |
+ *                 >>product single precision | >>doubles double precision | >>linearise Hessians, block diagonal
+ *   multigrid:    >>galerkin coarse matrices | >>nesting those of affine copies | >>factor of the last level |
+ *                 >>assembly the assembled matrix | >>smoother its step length | >>cycle the V-cycle
  *   changes:      >>edits lanes that a cut changes | >>renewal copies and components | >>update levels, all of it
  *   steps:        >>components momentum | >>points springs, contact | >>cg conjugate gradients | >>ageing of coarse
  *                 matrices | >>sleep rest | >>balance residual, start | >>search lengths | >>integrators BDF,
@@ -277,7 +278,7 @@ typedef struct gxs_model {
      * an element has an affine copy, u = sum N_i (a_i + A_i (x - X_i)), with A = 0 for its other copies. So a sheet
      * thinner than its elements bends as it should. A hidden vector is no element's copy, is held if its copy is, and
      * follows and leads nothing; nor does an affine copy. A target of a held one is its A. Not with lumped_mass,
-     * GXS_MATRIX_ASSEMBLED and GXS_VOLUME_RATIO. Such models have no multigrid yet. */
+     * GXS_MATRIX_ASSEMBLED and GXS_VOLUME_RATIO. */
     const uint32_t *affine;
     double affine_length; /* m, above 0 where copies are affine: about an element's size */
 } gxs_model;
@@ -664,6 +665,11 @@ extern "C" {
  * hardly bend with them, and an exact solution two levels down saves two iterations in three. */
 #define GXSP_FACTOR_COST 3000
 #define GXSP_LEVELS      12
+
+/* Where copies are affine, level 1 is factored if that takes at most GXSP_NESTED_COST times as much; else its lattice
+ * is widened, up to GXSP_WIDEST times. */
+#define GXSP_NESTED_COST 10
+#define GXSP_WIDEST      8
 
 /* Block-Jacobi takes less time than multigrid where inertia's mean share of the Hessian's diagonal blocks is larger
  * than this: few iterations, as the share bounds the spectrum from below. Measured on blocks of 2,000 to 8,000
@@ -1415,6 +1421,10 @@ typedef struct gxsp_affine {
     double (*own)[6];      /* n: diagonal blocks of the elements here, packed, scaled */
     double (*full)[10][9]; /* group_count: blocks of the parts p <= q, in the order of gxs_element.mass, by rows */
     float (*root)[78];     /* group_count: W by rows, lower triangle: the inverse of the 12x12 block is W^T W */
+    uint32_t *hidden; /* by node of level 1: the first of its three hidden nodes, or GXSP_NONE. NULL: no multigrid */
+    float (*offset)[4][3]; /* group_count: (X_i - X_J) / length for each parent J */
+    double *block;         /* 9 per entry of level 1: what the elements here add */
+    double *entry;         /* factor of level 1, rows as in gxsp_factor */
 } gxsp_affine;
 
 /* A model in the solver's form, and all that its steps work with. One allocation of pool, as are its arrays. */
@@ -3561,7 +3571,11 @@ static void gxsp_affine_make(gxsp_system *system, gxsp_pool *scratch, const gxs_
     size_t e, count = 0;
     for (e = 0; e < model->element_count; e++)
         system->affine.count += (size_t)gxsp_is_affine(model, &model->elements[e]);
-    if (system->affine.count == 0) return;
+    if (system->affine.count == 0) { /* no element has them: they are copies without support */
+        system->affine.place = NULL;
+        system->affine.group_count = 0;
+        return;
+    }
     others = (gxs_element *)gxsp_take(scratch, model->element_count - system->affine.count, sizeof *others);
     elements = (uint32_t *)gxsp_take(scratch, system->affine.count, sizeof(uint32_t));
     if (scratch->failed) return;
@@ -3896,8 +3910,9 @@ static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GX
  * idea, one level up). Values between lattice points are linear on the six tetrahedra around a cell's diagonal:
  * at most four weights, exact for affine fields. */
 
-/* Rest positions in spacings of the first lattice: GXSP_SPACING edges of an average whole element. 0: there is none. */
-static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, float (*to)[3]) {
+/* Rest positions in spacings of the first lattice: GXSP_SPACING edges of an average whole element. Returns
+ * the spacing; 0: there is no lattice. */
+static double gxsp_find_places(const gxsp_system *system, const gxs_model *model, float (*to)[3]) {
     double volume = 0, spacing;
     size_t e, i, k, counted = 0;
     for (e = 0; e < model->element_count; e++) {
@@ -3913,12 +3928,12 @@ static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, f
     spacing = GXSP_SPACING * cbrt(5 * volume / (double)counted); /* five elements to a cube */
     for (i = 0; i < system->model.n; i++)
         for (k = 0; k < 3; k++) {
-            double place = (model->positions[3 * i + k] - model->positions[k]) / spacing;
+            double place = (system->model.positions[3 * i + k] - system->model.positions[k]) / spacing;
             if (!(fabs(place) < 1e6)) /* single precision could not hold it */
                 return 0;
             to[i][k] = (float)place + 0.31f; /* keeps lattice planes off those of the mesh */
         }
-    return 1;
+    return spacing;
 }
 
 /* Lattice cell, order of axes and weights at a place */
@@ -4275,8 +4290,130 @@ static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch) {
         factor->row[i] = entries - first; /* not negative: every row before has an entry */
         entries += 3 * (size_t)(3 * i - first) + 6;
     }
-    factor->entry = (float *)gxsp_take(&system->multigrid.pool, entries, sizeof(float));
+    if (system->affine.count > 0)
+        system->affine.entry = (double *)gxsp_take(&system->multigrid.pool, entries, sizeof(double));
+    else
+        factor->entry = (float *)gxsp_take(&system->multigrid.pool, entries, sizeof(float));
     factor->entry_count = entries;
+}
+
+/* >>nested: level 1 where copies are affine ------------------------------------------------------------------------ */
+
+/* In: the transfer of level 0 between copies. Out: coarse nodes that carry an affine motion as well, and what they add
+ * to the pattern of level 1. The space of affine copies is nested in itself: with the lattice's weights w_iJ,
+ *   a_i = sum w_iJ (b_J + B_J (X_i - X_J)),   A_i = sum w_iJ B_J.
+ * The columns of B_J are three further nodes of level 1, the hidden ones of J, where a child of J is affine. Copies
+ * that are not affine follow b_J only. */
+
+/* Parents of a vector on level 1 and their weights; at most 16. Returns how many. */
+static uint32_t gxsp_nested_parents(const gxsp_system *system, uint32_t vector, uint32_t *parents, float *weights) {
+    const gxsp_affine *affine = &system->affine;
+    const uint32_t place = affine->place[vector], part = place == GXSP_NONE ? 0 : place & 3,
+                   copy = part > 0 ? affine->member[place / 4][0] : vector;
+    uint32_t count = 0;
+    int k, a;
+    for (k = 0; k < 4; k++) {
+        const uint32_t parent = system->multigrid.levels[0].parent[copy][k];
+        const float weight = system->multigrid.levels[0].weight[copy][k];
+        if (parent == GXSP_NONE) continue;
+        parents[count] = part == 0 ? parent : affine->hidden[parent] + part - 1;
+        weights[count++] = weight;
+        for (a = 0; a < 3 && part == 0 && place != GXSP_NONE; a++) {
+            parents[count] = affine->hidden[parent] + (uint32_t)a;
+            weights[count++] = weight * affine->offset[place / 4][k][a];
+        }
+    }
+    return count;
+}
+
+/* Numbers the hidden nodes, which follow the count others, and finds the offsets of affine copies from their parents.
+ * place: n x 3, in spacings of the lattice; transfer: as gxsp_transfer_end has left it. Returns the number of nodes. */
+static uint32_t gxsp_nested_nodes(gxsp_system *system, float (*place)[3], const gxsp_transfer *transfer, double spacing,
+                                  uint32_t count) {
+    gxsp_affine *affine = &system->affine;
+    gxsp_level points; /* lattice points of the nodes */
+    uint32_t group, nodes = count;
+    int k, a;
+    memset(&points, 0, sizeof points);
+    affine->hidden = (uint32_t *)gxsp_take(&system->multigrid.pool, count, sizeof(uint32_t));
+    affine->offset = (float(*)[4][3])gxsp_take(&system->multigrid.pool, affine->group_count, sizeof *affine->offset);
+    points.place = (int32_t(*)[3])gxsp_take(&system->multigrid.pool, count, sizeof *points.place);
+    if (system->multigrid.pool.failed) return 0;
+    gxsp_transfer_places(&system->multigrid.levels[0], transfer, &points);
+    memset(affine->hidden, 0xff, count * sizeof *affine->hidden);
+    for (group = 0; group < affine->group_count; group++) {
+        const uint32_t copy = affine->member[group][0];
+        for (k = 0; k < 4; k++) {
+            const uint32_t parent = system->multigrid.levels[0].parent[copy][k];
+            if (parent == GXSP_NONE) continue;
+            if (affine->hidden[parent] == GXSP_NONE) {
+                affine->hidden[parent] = nodes;
+                nodes += 3;
+            }
+            for (a = 0; a < 3; a++)
+                affine->offset[group][k][a] =
+                    (float)(((double)place[copy][a] - points.place[parent][a]) * spacing / affine->length);
+        }
+    }
+    return nodes;
+}
+
+/* Adds the clusters that the elements join. */
+static void gxsp_nested_join(const gxsp_system *system, gxsp_transfer *transfer) {
+    uint32_t b;
+    int l, k;
+    for (b = 0; b < system->affine.block_count; b++)
+        for (l = 0; l < GXSP_LANES; l++)
+            for (k = 0; k < 6 && system->affine.blocks[b].rest.weight[l] > 0; k++)
+                gxsp_join_nodes(transfer, system->affine.blocks[b].vector[gxsp_edge_ends[k][0]][l],
+                                system->affine.blocks[b].vector[gxsp_edge_ends[k][1]][l]);
+}
+
+/* The coarse nodes around an element, without hidden ones: at most 16. Returns how many. */
+static uint32_t gxsp_nested_bases(const gxsp_system *system, const gxsp_affine_block *block, int l, uint32_t *bases) {
+    uint32_t count = 0, i, k;
+    for (k = 0; k < 16 && block->rest.weight[l] > 0; k++) {
+        const uint32_t parent = system->multigrid.levels[0].parent[block->vector[k / 4][l]][k % 4];
+        for (i = 0; i < count && bases[i] != parent; i++) {}
+        if (parent != GXSP_NONE && i == count) bases[count++] = parent;
+    }
+    return count;
+}
+
+static int gxsp_compare_keys(const void *a, const void *b) {
+    const uint64_t p = *(const uint64_t *)a, q = *(const uint64_t *)b;
+    return (p > q) - (p < q);
+}
+
+/* Lists the entries of a coarse node and another one, or itself, with their hidden nodes. */
+static void gxsp_nested_entries(const uint32_t *hidden, uint32_t p, uint32_t q, gxsp_list *list) {
+    const uint32_t some = hidden[p] == GXSP_NONE ? 1 : 4, others = hidden[q] == GXSP_NONE ? 1 : 4;
+    uint32_t i, j;
+    for (i = 0; i < some; i++)
+        for (j = 0; j < others; j++) {
+            const uint32_t a = i == 0 ? p : hidden[p] + i - 1, b = j == 0 ? q : hidden[q] + j - 1;
+            if (p != q || i < j) gxsp_list_add(list, a < b ? a : b, a < b ? b : a);
+        }
+}
+
+/* Lists the entries of level 1's matrix to which the elements add. */
+static void gxsp_nested_pattern(const gxsp_system *system, gxsp_pool *scratch, gxsp_list *list) {
+    const gxsp_affine *affine = &system->affine;
+    uint64_t *key = (uint64_t *)gxsp_take(scratch, (size_t)affine->block_count * GXSP_LANES * 136, sizeof *key);
+    uint32_t bases[16], b, i, j, count;
+    size_t k, keys = 0;
+    int l;
+    if (!key) return;
+    for (b = 0; b < affine->block_count; b++)
+        for (l = 0; l < GXSP_LANES; l++)
+            for (count = gxsp_nested_bases(system, &affine->blocks[b], l, bases), i = 0; i < count; i++)
+                for (j = i; j < count; j++)
+                    key[keys++] =
+                        bases[i] < bases[j] ? (uint64_t)bases[i] << 32 | bases[j] : (uint64_t)bases[j] << 32 | bases[i];
+    qsort(key, keys, sizeof *key, gxsp_compare_keys);
+    for (k = 0; k < keys; k++)
+        if (k == 0 || key[k] != key[k - 1])
+            gxsp_nested_entries(affine->hidden, (uint32_t)(key[k] >> 32), (uint32_t)key[k], list);
 }
 
 /* >>pattern: edges of chunks, pattern of level 1 and of the assembled matrix --------------------------------------- */
@@ -4530,6 +4667,7 @@ static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gx
     for (c = 0; c < system->mesh.chunk_count; c++)
         if (!before || gxsp_follows_dirty(system, &system->mesh.chunks[c], dirty))
             gxsp_list_pairs(system, &system->mesh.chunks[c], memory, before ? dirty : NULL, &list);
+    if (system->affine.count > 0) gxsp_nested_pattern(system, scratch, &list);
     if (!scratch->failed)
         gxsp_rows_make(&system->multigrid.pool, scratch, &system->multigrid.levels[1], list.pair, list.count);
 }
@@ -4620,9 +4758,10 @@ static void gxsp_levels_make(gxsp_system *system, gxsp_pool *scratch, const gxsp
 }
 
 /* The transfer of the model by a lattice. place: n x 3, in its spacings. Returns the number of level 1's nodes. */
-static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], gxsp_transfer *transfer) {
+static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], const uint8_t *left_out,
+                                    gxsp_transfer *transfer) {
     uint32_t c, e;
-    gxsp_transfer_begin(&system->multigrid.levels[0], place, system->model.fixed, transfer);
+    gxsp_transfer_begin(&system->multigrid.levels[0], place, left_out, transfer);
     for (c = 0; c < system->mesh.chunk_count; c++) {
         const uint32_t *copies = system->mesh.nodes + system->mesh.chunks[c].first_node;
         gxsp_list_edges(system, &system->mesh.chunks[c]);
@@ -4634,6 +4773,7 @@ static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], gxsp
         if (fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
             gxsp_join_nodes(transfer, system->model.followers[e / 4].copy,
                             system->model.followers[e / 4].master[e % 4]);
+    gxsp_nested_join(system, transfer);
     return gxsp_transfer_end(&system->multigrid.levels[0], transfer);
 }
 
@@ -4699,13 +4839,51 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (
     transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint64_t));
     transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
     if (scratch->failed) return;
-    count = gxsp_first_transfer(system, place, &transfer);
-    if (gxsp_thin_crowded(system, scratch, place)) count = gxsp_first_transfer(system, place, &transfer);
+    count = gxsp_first_transfer(system, place, system->model.fixed, &transfer);
+    if (gxsp_thin_crowded(system, scratch, place))
+        count = gxsp_first_transfer(system, place, system->model.fixed, &transfer);
     if (count == 0 || scratch->failed) return;
     gxsp_level_make(&system->multigrid.pool, fine + 1, count);
     if (system->multigrid.pool.failed) return;
     gxsp_transfer_places(fine, &transfer, fine + 1);
     gxsp_levels_make(system, scratch, NULL, NULL);
+}
+
+/* The same where copies are affine. Level 1 is factored, so its lattice is widened until that is cheap. */
+static void gxsp_nested_make(gxsp_system *system, gxsp_pool *scratch, float (*place)[3], double spacing) {
+    gxsp_level *next = &system->multigrid.levels[1];
+    float(*own)[3] = (float(*)[3])gxsp_take(scratch, system->model.n, sizeof *own);
+    uint8_t *left_out = (uint8_t *)gxsp_take(scratch, system->model.n, 1);
+    gxsp_transfer transfer;
+    gxsp_owned *mark;
+    uint32_t count, i;
+    float stretch;
+    gxsp_edges_make(system, scratch);
+    transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint64_t));
+    transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
+    mark = scratch->last;
+    for (i = 0; i < system->model.n && left_out; i++) left_out[i] = system->model.fixed[i] || gxsp_is_hidden(system, i);
+    for (stretch = 1;; stretch *= 1.25f) {
+        if (scratch->failed) return;
+        for (i = 0; i < 3 * system->model.n; i++) own[i / 3][i % 3] = place[i / 3][i % 3] / stretch;
+        count = gxsp_first_transfer(system, own, left_out, &transfer);
+        if (count == 0) return;
+        count = gxsp_nested_nodes(system, own, &transfer, (double)stretch * spacing, count);
+        if (system->multigrid.pool.failed) return;
+        gxsp_level_make(&system->multigrid.pool, next, count);
+        if (system->multigrid.pool.failed) return;
+        gxsp_pairs_make(system, scratch);
+        if (!scratch->failed) gxsp_first_pattern(system, scratch, NULL, NULL);
+        if (scratch->failed || system->multigrid.pool.failed) return;
+        if (stretch > GXSP_WIDEST || gxsp_factors(scratch, next, GXSP_NESTED_COST * system->model.n)) break;
+        gxsp_release_to(&system->multigrid.pool, NULL);
+        gxsp_release_to(scratch, mark);
+    }
+    gxsp_count_edges(system);
+    system->multigrid.level_count = 2;
+    next->block = (float *)gxsp_take(&system->multigrid.pool, gxsp_block_numbers(next), sizeof(float));
+    system->affine.block = (double *)gxsp_take(&system->multigrid.pool, gxsp_block_numbers(next), sizeof(double));
+    gxsp_factor_make(system, scratch);
 }
 
 /* >>lights: copies with next to no mass ---------------------------------------------------------------------------- */
@@ -4905,7 +5083,7 @@ static void gxsp_find_volumes(gxsp_system *system, gxsp_pool *scratch, const gxs
 
 /* A component is large enough for multigrid from this many copies on. */
 static uint32_t gxsp_large(const gxsp_system *system) {
-    return system->model.stiff ? GXSP_MULTIGRID_FROM_STIFF : GXSP_MULTIGRID_FROM;
+    return system->model.stiff || system->affine.count > 0 ? GXSP_MULTIGRID_FROM_STIFF : GXSP_MULTIGRID_FROM;
 }
 
 /* Is a component large enough for multigrid? All components take as many iterations as the slowest one. count:
@@ -4923,17 +5101,22 @@ static int gxsp_large_component(const gxsp_system *system, uint32_t *count) {
 static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model,
                                      gxs_preconditioner preconditioner, gxs_matrix matrix, uint32_t *forest) {
     float(*place)[3]; /* rest positions in spacings of the first lattice */
+    double spacing;
     const int multigrid =
-        model->positions && system->affine.count == 0 &&
+        model->positions &&
         (preconditioner == GXS_MULTIGRID || (preconditioner == GXS_AUTOMATIC && gxsp_large_component(system, forest)));
-    system->multigrid.chosen = model->positions && preconditioner == GXS_AUTOMATIC && system->affine.count == 0;
+    system->multigrid.chosen = model->positions && preconditioner == GXS_AUTOMATIC;
     if (preconditioner == GXS_VOLUME_RATIO) gxsp_find_volumes(system, scratch, model);
     system->multigrid.levels[0].n = (uint32_t)system->model.n;
     if (matrix == GXS_MATRIX_ASSEMBLED) gxsp_fine_make(system, scratch);
     if (!multigrid) return;
     gxsp_transfer_make(&system->pool, &system->multigrid.levels[0]);
     place = (float(*)[3])gxsp_take(scratch, system->model.n, sizeof *place);
-    if (!system->pool.failed && !scratch->failed && gxsp_find_places(system, model, place))
+    if (system->pool.failed || scratch->failed) return;
+    spacing = gxsp_find_places(system, model, place);
+    if (spacing > 0 && system->affine.count > 0)
+        gxsp_nested_make(system, scratch, place, spacing);
+    else if (spacing > 0)
         gxsp_multigrid_make(system, scratch, place);
 }
 
@@ -6687,6 +6870,174 @@ static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
         }
 }
 
+/* >>nesting: numbers of level 1 where copies are affine ------------------------------------------------------------ */
+
+/* In: tangents of elements with affine copies, level 1's matrix from chunks. Out: the factor of their sum, in double
+ * precision: bending is softer than the rounding and the shift of single precision. */
+
+/* Adds an element's Hessian between its coarse functions. rate: times scale */
+static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *block, int l, double rate) {
+    const gxsp_level *level = &system->multigrid.levels[1];
+    uint32_t node[64], parents[16], count = 0, c, d, k, n;
+    double share[64][16], gradient[4][64][3], value[4][64], flux[27];
+    float weights[16];
+    int p, m;
+    for (k = 0; k < 16; k++) {
+        n = block->vector[k][l] == GXSP_NONE ? 0 : gxsp_nested_parents(system, block->vector[k][l], parents, weights);
+        while (n-- > 0) {
+            for (c = 0; c < count && node[c] != parents[n]; c++) {}
+            if (c == count) {
+                memset(share[c], 0, sizeof share[c]);
+                node[count++] = parents[n];
+            }
+            share[c][k] += (double)weights[n];
+        }
+    }
+    for (p = 0; p < 4; p++)
+        for (c = 0; c < count; c++) gxsp_point_function(block, p, l, share[c], gradient[p][c], &value[p][c]);
+    for (p = 0; p < 4; p++)
+        for (d = 0; d < count; d++) {
+            gxsp_point_flux(block, p, l, gradient[p][d], flux);
+            for (c = 0; c < count; c++) {
+                double to[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0}, *entry;
+                if (node[c] > node[d]) continue;
+                entry = system->affine.block + 9 * (size_t)gxsp_find_entry(level, node[c], node[d]);
+                gxsp_point_couple(gradient[p][c], flux, to);
+                to[0] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
+                to[4] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
+                to[8] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
+                for (m = 0; m < 9; m++) entry[3 * (m % 3) + m / 3] += to[m];
+            }
+        }
+}
+
+/* Springs and contact between coarse functions, where level 1's matrix has an entry for them */
+static void gxsp_nested_term(gxsp_system *system, const gxsp_term *term) {
+    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    const gxsp_level *level = &system->multigrid.levels[1];
+    const gxsp_share *share = system->lasting->share + term->first;
+    uint32_t i, j, p, q, rows[16], columns[16], row_count, column_count;
+    float w[16], v[16];
+    int k;
+    for (i = 0; i < term->count; i++)
+        for (j = 0; j < term->count; j++) {
+            row_count = gxsp_nested_parents(system, share[i].copy, rows, w);
+            column_count = gxsp_nested_parents(system, share[j].copy, columns, v);
+            for (p = 0; p < row_count; p++)
+                for (q = 0; q < column_count; q++) {
+                    const double weight = (double)(share[i].weight * w[p]) * (double)(share[j].weight * v[q]);
+                    uint32_t entry;
+                    if (rows[p] > columns[q]) continue;
+                    entry = gxsp_find_entry(level, rows[p], columns[q]);
+                    if (level->column[entry] != columns[q]) continue;
+                    for (k = 0; k < 9; k++)
+                        system->affine.block[9 * (size_t)entry + (size_t)k] += weight * (double)term->hessian[full[k]];
+                }
+        }
+}
+
+/* Row i of the factor in double precision: see gxsp_factor_row */
+static double *gxsp_nested_row(const gxsp_system *system, uint32_t i) {
+    const gxsp_factor *factor = &system->multigrid.factor;
+    const uint32_t place = i / 3, r = i % 3;
+    return system->affine.entry + (factor->row[place] + r * (size_t)(3 * place - factor->first[place] + 1) + (r == 2));
+}
+
+/* a . b in four sums side by side */
+static double gxsp_double_dot(const double *a, const double *b, size_t count) {
+    double sum[4] = {0, 0, 0, 0};
+    size_t i, k;
+    for (i = 0; i + 4 <= count; i += 4)
+        for (k = 0; k < 4; k++) sum[k] += a[i + k] * b[i + k];
+    for (; i < count; i++) sum[0] += a[i] * b[i];
+    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
+}
+
+/* The sum of both matrices in the factor's envelope, then Cholesky; the diagonal is inverted. Functions that others
+ * make up have pivots of rounding: they are left out. place: n, scratch. 0: a number overflowed. */
+static int gxsp_nested_factor(gxsp_system *system, uint32_t *place) {
+    const gxsp_factor *factor = &system->multigrid.factor;
+    const gxsp_level *level = &system->multigrid.levels[1];
+    uint32_t i, j, k, r, c;
+    memset(system->affine.entry, 0, factor->entry_count * sizeof(double));
+    for (i = 0; i < level->n; i++) place[factor->order[i]] = i;
+    for (i = 0; i < level->n; i++)
+        for (k = level->start[i]; k < level->start[i + 1]; k++)
+            for (r = 0; r < 3; r++)
+                for (c = 0; c < 3; c++) {
+                    const uint32_t row = 3 * place[i] + r, column = 3 * place[level->column[k]] + c;
+                    const size_t number = 9 * (size_t)k + 3 * c + r;
+                    gxsp_nested_row(system, column <= row ? row : column)[column <= row ? column : row] =
+                        (double)level->block[number] + system->affine.block[number];
+                }
+    for (i = 0; i < factor->n; i++) {
+        const uint32_t first = factor->first[i / 3];
+        double *row = gxsp_nested_row(system, i), own = row[i];
+        for (j = first; j < i; j++) {
+            const uint32_t other = factor->first[j / 3], from = other > first ? other : first;
+            const double *left = gxsp_nested_row(system, j);
+            row[j] = (row[j] - gxsp_double_dot(row + from, left + from, j - from)) * left[j];
+        }
+        row[i] = own * (1 + 1e-12) - gxsp_double_dot(row + first, row + first, i - first);
+        row[i] = own < GXSP_TINY ? 0 : row[i] > 1e-10 * own ? 1 / sqrt(row[i]) : 0;
+        if (!gxsp_finite(row[i])) return 0;
+    }
+    return 1;
+}
+
+/* All numbers of level 1 beside those of chunks, and its factor. rate: times scale. 0: a number overflowed. */
+static int gxsp_nested_numbers(gxsp_system *system, double rate) {
+    const gxsp_affine *affine = &system->affine;
+    uint32_t b;
+    size_t t;
+    int l;
+    memset(affine->block, 0, gxsp_block_numbers(&system->multigrid.levels[1]) * sizeof(double));
+    for (b = 0; b < affine->block_count; b++)
+        for (l = 0; l < GXSP_LANES; l++)
+            if (affine->blocks[b].rest.weight[l] > 0) gxsp_nested_element(system, &affine->blocks[b], l, rate);
+    for (t = 0; t < system->lasting->count; t++) gxsp_nested_term(system, &system->lasting->term[t]);
+    return gxsp_nested_factor(system, system->multigrid.pairs.local);
+}
+
+/* x = the factor's answer to b on level 1 */
+static void gxsp_nested_solve(gxsp_system *system) {
+    const gxsp_factor *factor = &system->multigrid.factor;
+    gxsp_level *level = &system->multigrid.levels[1];
+    double *x = factor->x;
+    uint32_t i, j;
+    for (i = 0; i < factor->n; i++) {
+        const double *row = gxsp_nested_row(system, i);
+        const uint32_t first = factor->first[i / 3];
+        x[i] = ((double)level->b[factor->order[i / 3]][i % 3] - gxsp_double_dot(row + first, x + first, i - first)) *
+               row[i];
+    }
+    for (i = factor->n; i-- > 0;) {
+        const double *row = gxsp_nested_row(system, i);
+        x[i] *= row[i];
+        for (j = factor->first[i / 3]; j < i; j++) x[j] -= row[j] * x[i];
+    }
+    for (i = 0; i < factor->n; i++) level->x[factor->order[i / 3]][i % 3] = (float)x[i];
+}
+
+/* Between groups and hidden nodes: b of level 1 += transfer^T r, or, back, x of level 0 += transfer x. */
+static void gxsp_nested_transfer(gxsp_system *system, int back) {
+    const gxsp_affine *affine = &system->affine;
+    gxsp_level *fine = &system->multigrid.levels[0], *next = fine + 1;
+    uint32_t group;
+    int k, a;
+    for (group = 0; group < affine->group_count; group++)
+        for (k = 0; k < 4; k++) {
+            const uint32_t copy = affine->member[group][0], parent = fine->parent[copy][k];
+            const float weight = fine->weight[copy][k];
+            for (a = 0; a < 3 && parent != GXSP_NONE; a++) {
+                const uint32_t hidden = affine->hidden[parent] + (uint32_t)a, own = affine->member[group][a + 1];
+                const float offset = weight * affine->offset[group][k][a];
+                gxsp_add_four(offset, back ? next->x[hidden] : fine->r[copy], back ? fine->x[copy] : next->b[hidden]);
+                gxsp_add_four(weight, back ? next->x[hidden] : fine->r[own], back ? fine->x[own] : next->b[hidden]);
+            }
+        }
+}
+
 /* >>factor: the last level's Cholesky factor, and all numbers below level 0 ---------------------------------------- */
 
 /* In: level 1's matrix. Out: the matrices and inverse diagonals of all levels, the factor of the last one. 0 is
@@ -6856,8 +7207,12 @@ static int gxsp_coarse_numbers(gxsp_system *system, double rate) {
         if (system->model.lumped_mass) gxsp_coarse_lumped(system, system->model.scale * rate);
     }
     for (t = 0; t < system->lasting->count; t++)
-        if (!system->lasting->term[t].assembled) gxsp_coarse_term(system, &system->lasting->term[t]);
-    finite = gxsp_lower_numbers(system, NULL);
+        if (!system->lasting->term[t].assembled && system->affine.count == 0)
+            gxsp_coarse_term(system, &system->lasting->term[t]);
+    if (system->affine.count > 0)
+        finite = gxsp_invert_diagonal(fine + 1, NULL) && gxsp_nested_numbers(system, system->model.scale * rate);
+    else
+        finite = gxsp_lower_numbers(system, NULL);
     gxsp_return_memory(system);
     return finite;
 }
@@ -6995,6 +7350,24 @@ static int gxsp_invert_fine(gxsp_system *system) {
 /* In: the last linearisation and its block diagonal. Out: gxsp_smoother. Uses the search and product vectors. The
  * sweeps themselves are in >>cycle; the first one of level 0 is gxsp_scale in >>cg. */
 
+/* x = D^-1 y for the groups of affine copies. before += y . x as it was, after += y . x. */
+static void gxsp_scale_directions(const gxsp_system *system, gxsp_vector4 *y, gxsp_vector4 *x, double *before,
+                                  double *after) {
+    uint32_t group;
+    int k;
+    for (group = 0; group < system->affine.group_count; group++) {
+        const uint32_t *member = system->affine.member[group];
+        double from[12], to[12];
+        for (k = 0; k < 12; k++) from[k] = (double)y[member[k / 3]][k % 3];
+        gxsp_affine_apply(&system->affine, group, from, to);
+        for (k = 0; k < 12; k++) {
+            *before += from[k] * (double)x[member[k / 3]][k % 3];
+            *after += from[k] * to[k];
+            x[member[k / 3]][k % 3] = (float)to[k];
+        }
+    }
+}
+
 /* Largest eigenvalue of D^-1 (K + rate M) on copies that are not still, by the power method from a start that
  * favours none; 0 if nothing moves */
 static double gxsp_largest_eigenvalue(gxsp_system *system, double rate) {
@@ -7014,6 +7387,7 @@ static double gxsp_largest_eigenvalue(gxsp_system *system, double rate) {
         gxsp_product(system, rate, x, y);
         for (i = 0; i < system->model.n; i++) {
             float z[3];
+            if (gxsp_is_grouped(system, i)) continue;
             gxsp_apply_packed(system->vectors.diagonal + 6 * i, y[i], z);
             for (c = 0; c < 3; c++) {
                 before += (double)y[i][c] * (double)x[i][c];
@@ -7021,6 +7395,7 @@ static double gxsp_largest_eigenvalue(gxsp_system *system, double rate) {
                 x[i][c] = z[c];
             }
         }
+        gxsp_scale_directions(system, y, x, &before, &after);
         if (!(before > 0) || !(after > 0)) break;
         largest = after / before;
         scale = (float)(1 / sqrt(after));
@@ -7167,6 +7542,10 @@ static void gxsp_factor_solve(const gxsp_factor *factor, gxsp_level *level) {
 /* x = the multigrid's answer to b on levels[depth] and below. depth 0: only if level 0 is assembled */
 static void gxsp_cycle(gxsp_system *system, uint32_t depth) {
     gxsp_level *level = &system->multigrid.levels[depth];
+    if (system->affine.count > 0) {
+        gxsp_nested_solve(system);
+        return;
+    }
     if (depth + 1 == system->multigrid.level_count) {
         gxsp_factor_solve(&system->multigrid.factor, level);
         return;
@@ -7184,10 +7563,24 @@ static void gxsp_task_smooth(void *context, size_t index) {
     size_t i, end = gxsp_range(system, index, &i);
     for (; i < end; i++) {
         float y[3];
+        if (gxsp_is_grouped(system, i)) continue;
         gxsp_apply_packed(system->vectors.diagonal + 6 * i, system->vectors.product[i], y);
         system->vectors.scaled[i][0] += system->smoother.omega * y[0];
         system->vectors.scaled[i][1] += system->smoother.omega * y[1];
         system->vectors.scaled[i][2] += system->smoother.omega * y[2];
+    }
+}
+
+/* The same for the groups of affine copies */
+static void gxsp_smooth_groups(const gxsp_system *system) {
+    uint32_t group;
+    int k;
+    for (group = 0; group < system->affine.group_count; group++) {
+        const uint32_t *member = system->affine.member[group];
+        double from[12], to[12];
+        for (k = 0; k < 12; k++) from[k] = (double)system->vectors.product[member[k / 3]][k % 3];
+        gxsp_affine_apply(&system->affine, group, from, to);
+        for (k = 0; k < 12; k++) system->vectors.scaled[member[k / 3]][k % 3] += system->smoother.omega * (float)to[k];
     }
 }
 
@@ -7214,11 +7607,14 @@ static void gxsp_v_cycle(gxsp_system *system, double rate, double energy) {
         (void)gxsp_product_from(system, rate, system->vectors.residual, fine->x, fine->r);
     }
     gxsp_restrict(fine, fine + 1);
+    if (system->affine.count > 0) gxsp_nested_transfer(system, 0);
     gxsp_cycle(system, 1);
     gxsp_prolong(fine, fine + 1);
+    if (system->affine.count > 0) gxsp_nested_transfer(system, 1);
     (void)gxsp_product_from(system, rate, system->vectors.residual, fine->x, fine->r);
     memset(&pass, 0, sizeof pass);
     gxsp_over_ranges(system, gxsp_task_smooth, &pass, NULL, 0);
+    gxsp_smooth_groups(system);
 }
 
 /* >>edits: which lanes an update changes --------------------------------------------------------------------------- */
@@ -8337,6 +8733,7 @@ static void gxsp_task_scale(void *context, size_t index) {
 
 /* As gxsp_scale_copies, for the groups of affine copies, by their 12x12 blocks. Adds to sums. */
 static void gxsp_scale_groups(const gxsp_system *system, const double *r, double *sums) {
+    const double factor = system->multigrid.used ? (double)system->smoother.omega : 1;
     uint32_t group;
     int k;
     for (group = 0; group < system->affine.group_count; group++) {
@@ -8347,7 +8744,7 @@ static void gxsp_scale_groups(const gxsp_system *system, const double *r, double
         for (k = 0; k < 12; k++) {
             sums[0] += x[k] * z[k];
             sums[1] += z[k] * z[k];
-            system->vectors.scaled[member[k / 3]][k % 3] = (float)z[k];
+            system->vectors.scaled[member[k / 3]][k % 3] = (float)(factor * z[k]);
         }
     }
 }
@@ -8610,7 +9007,7 @@ static int gxsp_coarse_pays(gxsp_system *system, double rate) {
         double *sum = system->model.components[system->model.component[i]].sum; /* share, copies */
         const float *d = system->vectors.diagonal + 6 * i;
         const double compliance = (double)d[0] + (double)d[3] + (double)d[5],
-                     share = system->model.lumped[i] * compliance;
+                     share = gxsp_is_hidden(system, i) ? 0 : system->model.lumped[i] * compliance;
         if (system->state.still[i] || !(compliance > 0)) continue;
         sum[0] += share < 4 * bound / 3 ? share : 4 * bound / 3;
         sum[1] += 1;
@@ -10389,6 +10786,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_STIFF_POISSON
 #undef GXSP_FACTOR_COST
 #undef GXSP_LEVELS
+#undef GXSP_NESTED_COST
+#undef GXSP_WIDEST
 #undef GXSP_SHIFT
 #undef GXSP_STIFFNESS
 #undef GXSP_TINY
