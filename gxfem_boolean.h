@@ -7687,8 +7687,9 @@ typedef struct gxbp_tree {  /* boxes over groups of GXBP_LEAF sources, then over
 
 typedef struct gxbp_operand {
     uint32_t operation, rule;
-    uint32_t simple;  /* vouched for, or found */
-    uint32_t reached; /* a subtriangle has got a state in the evaluation at work */
+    uint32_t simple;   /* vouched for, or found */
+    uint32_t reached;  /* a subtriangle has got a state */
+    uint32_t narrowed; /* the last intersection up to this operand, the first operand aside; 0: there is none */
     uint32_t source, source_count;
     uint32_t bounds; /* of its leaves in gxb_boolean.bounds */
     uint32_t *order; /* sources in the order of the tree's leaves, in memory of its own */
@@ -7760,17 +7761,29 @@ typedef struct gxbp_mesh {
     uint32_t divided_count, divided_capacity;
 } gxbp_mesh;
 
-/* States: vectors of winding numbers. They live until an evaluation fails. */
+/* A winding number that is not 0 */
+typedef struct gxbp_operand_number {
+    uint32_t operand;
+    int32_t winding;
+} gxbp_operand_number;
+/* first, count: its numbers, by ascending operands. known: of how many operands inside takes account */
+typedef struct gxbp_state {
+    uint32_t first, count, hash, inside, known;
+} gxbp_state;
+
+/* States: vectors of winding numbers, of which most are 0. They live until an evaluation fails. */
 typedef struct gxbp_winding {
-    /* state x operand */
-    int32_t *numbers;
-    uint32_t number_count, number_capacity;
-    /* of each state: is it inside? */
-    uint32_t *inside;
-    uint32_t inside_count, inside_capacity;
+    /* of all states; behind them the draft, a vector at work */
+    gxbp_operand_number *numbers;
+    uint32_t number_count, number_capacity, draft_count;
+    gxbp_state *states;
+    uint32_t state_count, state_capacity;
     /* hash of states; listed: how many are in it */
     uint32_t *table;
     uint32_t table_size, listed;
+    /* for the caller's function: a vector with its zeros, which is 0 between calls */
+    int32_t *vector;
+    uint32_t vector_count, vector_capacity;
     gxbp_state_step steps[GXBP_STEPS]; /* the latest ones */
     uint32_t stated;                   /* operands that states count; 0: subtriangles have no states */
     uint32_t unreached;                /* operands of which no subtriangle has a state yet */
@@ -10917,7 +10930,8 @@ static GXBP_APART void gxbp_merge_points(gxb_boolean *b) {
 
 /* >>states: vectors of winding numbers ----------------------------------------------------------------------------- */
 /* In: a state and a change of winding numbers. Out: the state with them. A state is a vector of one number per operand,
-   stored once, with a flag: inside or not. Touches the states and their table only. */
+   stored once, without its zeros. So an operand that is added leaves all states as they are. Touches the states and
+   their table only. */
 
 static int gxbp_counts(uint32_t rule, int32_t winding) {
     switch (rule) {
@@ -10928,13 +10942,33 @@ static int gxbp_counts(uint32_t rule, int32_t winding) {
     }
 }
 
-static GXBP_COLD int gxbp_is_inside(const gxb_boolean *b, const int32_t *winding) {
+/* The caller's function on a state */
+static GXBP_COLD int gxbp_ask_inside(gxb_boolean *b, const gxbp_state *state) {
+    const gxbp_operand_number *numbers = b->winding.numbers + state->first;
+    const uint32_t n = b->in.operand_count;
     uint32_t i;
+    int inside;
+    if (n > b->winding.vector_count) {
+        if (!GXBP_ROOM(b, winding.vector, winding.vector, n - b->winding.vector_count)) return 0;
+        memset(b->winding.vector + b->winding.vector_count, 0, (n - b->winding.vector_count) * sizeof(int32_t));
+        b->winding.vector_count = n;
+    }
+    for (i = 0; i < state->count; i++) b->winding.vector[numbers[i].operand] = numbers[i].winding;
+    inside = b->options.inside(b->options.user, b->winding.vector, n) != 0;
+    for (i = 0; i < state->count; i++) b->winding.vector[numbers[i].operand] = 0;
+    return inside;
+}
+
+/* Operands with the number 0 change nothing, unless they are intersections. */
+static GXBP_COLD int gxbp_apply_operations(const gxb_boolean *b, const gxbp_state *state) {
+    const gxbp_operand_number *numbers = b->winding.numbers + state->first;
+    uint32_t k, next = 0;
     int inside = 0;
-    if (b->options.inside != NULL) return b->options.inside(b->options.user, winding, b->in.operand_count) != 0;
-    for (i = 0; i < b->in.operand_count; i++) {
+    for (k = 0; k < state->count; k++) {
+        const uint32_t i = numbers[k].operand;
         const gxbp_operand *o = &b->in.operands[i];
-        const int counts = o->operation == GXB_SPLIT ? 0 : gxbp_counts(o->rule, winding[i]);
+        const int counts = o->operation == GXB_SPLIT ? 0 : gxbp_counts(o->rule, numbers[k].winding);
+        if (i > next && b->in.operands[i - 1].narrowed >= next) inside = 0;
         switch (i == 0 && o->operation != GXB_SPLIT ? (uint32_t)GXB_UNION : o->operation) {
         case GXB_UNION: inside = inside || counts; break;
         case GXB_INTERSECTION: inside = inside && counts; break;
@@ -10942,78 +10976,117 @@ static GXBP_COLD int gxbp_is_inside(const gxb_boolean *b, const int32_t *winding
         case GXB_SYMMETRIC_DIFFERENCE: inside = inside != counts; break;
         default: break;
         }
+        next = i + 1;
     }
-    return inside;
+    return inside && (next == b->in.operand_count || b->in.operands[b->in.operand_count - 1].narrowed < next);
 }
 
-static uint32_t gxbp_hash_winding(const int32_t *winding, uint32_t count) {
-    uint32_t hash = count, i;
-    for (i = 0; i < count; i++) hash = gxbp_mix(hash, (uint32_t)winding[i]);
-    return hash;
+/* Is a state inside? An operand that is newer than the answer has the number 0. */
+static GXBP_COLD uint32_t gxbp_judge_state(gxb_boolean *b, uint32_t state) {
+    gxbp_state *s = &b->winding.states[state];
+    const uint32_t n = b->in.operand_count;
+    if (b->options.inside != NULL)
+        s->inside = (uint32_t)gxbp_ask_inside(b, s);
+    else if (s->known == 0)
+        s->inside = (uint32_t)gxbp_apply_operations(b, s);
+    else if (b->in.operands[n - 1].narrowed >= s->known)
+        s->inside = 0;
+    s->known = n;
+    return s->inside;
+}
+
+static uint32_t gxbp_is_inside(gxb_boolean *b, uint32_t state) {
+    return b->winding.states[state].known == b->in.operand_count ? b->winding.states[state].inside
+                                                                 : gxbp_judge_state(b, state);
 }
 
 enum { GXBP_FEW_STATES = 8 }; /* fewer are searched without a table */
 
 /* A table of all states, with room for one more */
 static GXBP_COLD int gxbp_list_states(gxb_boolean *b) {
-    const uint32_t n = b->in.operand_count;
     uint32_t size = b->winding.table_size == 0 ? 64 : b->winding.table_size, i, k;
-    while (2 * (b->winding.inside_count + 1) > size) size *= 2;
+    while (2 * (b->winding.state_count + 1) > size) size *= 2;
     if (size > b->winding.table_size && !gxbp_renew_table(b, &b->winding.table, &b->winding.table_size, size)) return 0;
     memset(b->winding.table, 0xff, (size_t)b->winding.table_size * sizeof *b->winding.table);
-    for (i = 0; i < b->winding.inside_count; i++) {
-        for (k = gxbp_hash_winding(b->winding.numbers + (size_t)i * n, n) & (size - 1); b->winding.table[k] != GXB_NONE;
-             k = (k + 1) & (size - 1)) {}
+    for (i = 0; i < b->winding.state_count; i++) {
+        for (k = b->winding.states[i].hash & (size - 1); b->winding.table[k] != GXB_NONE; k = (k + 1) & (size - 1)) {}
         b->winding.table[k] = i;
     }
-    b->winding.listed = b->winding.inside_count;
+    b->winding.listed = b->winding.state_count;
     return 1;
 }
 
-/* The state with the numbers that stand behind those of all states: a known one, or a new one. */
-static uint32_t gxbp_find_state(gxb_boolean *b) {
-    const uint32_t n = b->in.operand_count;
-    const int32_t *winding = b->winding.numbers + (size_t)b->winding.inside_count * n;
-    uint32_t k = 0;
-    if (!GXBP_ROOM(b, winding.inside, winding.inside, 1)) return 0;
-    if (b->winding.inside_count < GXBP_FEW_STATES) {
-        for (; k < b->winding.inside_count; k++)
-            if (memcmp(b->winding.numbers + (size_t)k * n, winding, n * sizeof *winding) == 0) return k;
-    } else {
-        if ((b->winding.listed < b->winding.inside_count ||
-             2 * (b->winding.inside_count + 1) > b->winding.table_size) &&
-            !gxbp_list_states(b))
-            return 0;
-        for (k = gxbp_hash_winding(winding, n) & (b->winding.table_size - 1); b->winding.table[k] != GXB_NONE;
-             k = (k + 1) & (b->winding.table_size - 1))
-            if (memcmp(b->winding.numbers + (size_t)b->winding.table[k] * n, winding, n * sizeof *winding) == 0)
-                return b->winding.table[k];
-        b->winding.table[k] = b->winding.inside_count;
-        b->winding.listed++;
-    }
-    b->winding.inside[b->winding.inside_count] = (uint32_t)gxbp_is_inside(b, winding);
-    return b->winding.inside_count++;
+/* Is this state the draft? */
+static int gxbp_is_draft(const gxb_boolean *b, uint32_t state, uint32_t hash) {
+    const gxbp_state *s = &b->winding.states[state];
+    return s->hash == hash && s->count == b->winding.draft_count &&
+           memcmp(b->winding.numbers + s->first, b->winding.numbers + b->winding.number_count,
+                  s->count * sizeof *b->winding.numbers) == 0;
 }
 
-/* Writes one more vector behind those of the states: a copy of a state's, or zeros (GXB_NONE). NULL: no memory. */
-static int32_t *gxbp_copy_winding(gxb_boolean *b, uint32_t state) {
-    const uint32_t n = b->in.operand_count;
-    int32_t *winding;
-    b->winding.number_count = b->winding.inside_count * n;
-    if (!GXBP_ROOM(b, winding.numbers, winding.number, n)) return NULL;
-    winding = b->winding.numbers + b->winding.number_count;
-    if (state == GXB_NONE)
-        memset(winding, 0, n * sizeof *winding);
-    else
-        memcpy(winding, b->winding.numbers + (size_t)state * n, n * sizeof *winding);
-    return winding;
+/* The state with the draft's numbers: a known one, or a new one. */
+static uint32_t gxbp_find_state(gxb_boolean *b) {
+    const gxbp_operand_number *draft = b->winding.numbers + b->winding.number_count;
+    gxbp_state *state;
+    uint32_t hash = 0, i, k = 0;
+    if (!GXBP_ROOM(b, winding.states, winding.state, 1)) return 0;
+    for (i = 0; i < b->winding.draft_count; i++) hash = gxbp_mix(hash + draft[i].operand, (uint32_t)draft[i].winding);
+    if (b->winding.state_count < GXBP_FEW_STATES) {
+        for (; k < b->winding.state_count; k++)
+            if (gxbp_is_draft(b, k, hash)) return k;
+    } else {
+        if ((b->winding.listed < b->winding.state_count ||
+             2 * (b->winding.state_count + 1) > b->winding.table_size) &&
+            !gxbp_list_states(b))
+            return 0;
+        for (k = hash & (b->winding.table_size - 1); b->winding.table[k] != GXB_NONE;
+             k = (k + 1) & (b->winding.table_size - 1))
+            if (gxbp_is_draft(b, b->winding.table[k], hash)) return b->winding.table[k];
+        b->winding.table[k] = b->winding.state_count;
+        b->winding.listed++;
+    }
+    state = &b->winding.states[b->winding.state_count];
+    state->first = b->winding.number_count;
+    state->count = b->winding.draft_count;
+    state->hash = hash;
+    state->inside = state->known = 0;
+    b->winding.number_count += b->winding.draft_count;
+    return b->winding.state_count++;
+}
+
+/* Begins a draft: a copy of a state, or all numbers 0 (GXB_NONE). 0: no memory. */
+static int gxbp_begin_draft(gxb_boolean *b, uint32_t state) {
+    const uint32_t count = state == GXB_NONE ? 0 : b->winding.states[state].count;
+    if (!GXBP_ROOM(b, winding.numbers, winding.number, (size_t)count + 1)) return 0;
+    if (count > 0)
+        memcpy(b->winding.numbers + b->winding.number_count, b->winding.numbers + b->winding.states[state].first,
+               count * sizeof *b->winding.numbers);
+    b->winding.draft_count = count;
+    return 1;
+}
+
+/* Adds to an operand's number in the draft. */
+static void gxbp_add_number(gxb_boolean *b, uint32_t operand, int change) {
+    gxbp_operand_number *draft;
+    uint32_t i = b->winding.draft_count;
+    if (change == 0 || !GXBP_ROOM(b, winding.numbers, winding.number, (size_t)i + 1)) return;
+    draft = b->winding.numbers + b->winding.number_count;
+    while (i > 0 && draft[i - 1].operand > operand) i--;
+    if (i > 0 && draft[i - 1].operand == operand) {
+        draft[i - 1].winding += change;
+        if (draft[i - 1].winding != 0) return;
+        memmove(draft + i - 1, draft + i, (b->winding.draft_count-- - i) * sizeof *draft);
+        return;
+    }
+    memmove(draft + i + 1, draft + i, (b->winding.draft_count++ - i) * sizeof *draft);
+    draft[i].operand = operand;
+    draft[i].winding = change;
 }
 
 static GXBP_APART uint32_t gxbp_new_step(gxb_boolean *b, gxbp_state_step *step, uint32_t from, uint32_t operand,
                                          int change) {
-    int32_t *winding = gxbp_copy_winding(b, from);
-    if (winding == NULL) return 0;
-    winding[operand] += change;
+    if (!gxbp_begin_draft(b, from)) return 0;
+    gxbp_add_number(b, operand, change);
     step->from = from;
     step->operand = operand;
     step->change = change;
@@ -11031,6 +11104,10 @@ static uint32_t gxbp_step_state(gxb_boolean *b, uint32_t from, uint32_t operand,
 /* In: a finished arrangement. Out: the state in front of each subtriangle. A ray gives the first state of a connected
    surface. Labels of edges give those of neighbours. In older states a new operand has the number 0 wherever its box
    does not reach. Touches the states of subtriangles and their vertices' names. */
+
+static int gxbp_winds(const gxb_boolean *b, uint32_t s) {
+    return b->in.operands[b->in.sources[s].operand].operation != GXB_SPLIT;
+}
 
 static uint32_t gxbp_root_plane(const gxb_boolean *b, uint32_t f) {
     return b->in.sources[b->mesh.subtriangles[f].source].plane;
@@ -11069,45 +11146,42 @@ static int gxbp_label_step(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
 /* The state in front of the subtriangle beyond edge k. */
 static uint32_t gxbp_state_beyond(gxb_boolean *b, uint32_t f, int k) {
     uint32_t list = b->mesh.subtriangles[f].labels[k];
-    int32_t *winding = NULL;
+    int begun = 0;
     for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->mesh.links[list].next) {
         const uint32_t t = b->mesh.links[list].value;
         const int change = gxbp_label_step(b, f, k, t);
         if (change == 0) continue;
-        if (winding == NULL && b->mesh.links[list].next == GXBP_BARE)
+        if (!begun && b->mesh.links[list].next == GXBP_BARE)
             return gxbp_step_state(b, b->mesh.subtriangles[f].state, b->in.sources[t].operand, change);
-        if (winding == NULL && (winding = gxbp_copy_winding(b, b->mesh.subtriangles[f].state)) == NULL) return 0;
-        winding[b->in.sources[t].operand] += change;
+        if (!begun && !gxbp_begin_draft(b, b->mesh.subtriangles[f].state)) return 0;
+        begun = 1;
+        gxbp_add_number(b, b->in.sources[t].operand, change);
     }
-    return winding == NULL ? b->mesh.subtriangles[f].state : gxbp_find_state(b);
+    return begun ? gxbp_find_state(b) : b->mesh.subtriangles[f].state;
 }
 
-/* Adds sign times the subtriangle's own surfaces. Behind it, the winding number is larger by one for each surface that
+/* Adds sign times the subtriangle's own surfaces to the draft. Behind it, the winding number is larger by one for each surface that
  * faces as its plane does. */
-static GXBP_COLD void gxbp_add_covers(const gxb_boolean *b, uint32_t f, int sign, int32_t *winding) {
+static GXBP_COLD void gxbp_add_covers(gxb_boolean *b, uint32_t f, int sign) {
     const uint32_t r = b->mesh.subtriangles[f].source;
     uint32_t c;
     if (b->mesh.subtriangles[f].covers == GXB_NONE) {
-        if (b->in.operands[b->in.sources[r].operand].operation != GXB_SPLIT) winding[b->in.sources[r].operand] += sign;
+        if (gxbp_winds(b, r)) gxbp_add_number(b, b->in.sources[r].operand, sign);
         return;
     }
     for (c = b->mesh.subtriangles[f].covers; c != GXB_NONE; c = b->mesh.links[c].next) {
         const uint32_t t = b->mesh.links[c].value;
-        if (b->in.operands[b->in.sources[t].operand].operation != GXB_SPLIT)
-            winding[b->in.sources[t].operand] += sign * gxbp_facing(b, r, t);
+        if (gxbp_winds(b, t)) gxbp_add_number(b, b->in.sources[t].operand, sign * gxbp_facing(b, r, t));
     }
 }
 
 static uint32_t gxbp_state_behind(gxb_boolean *b, uint32_t f) {
-    const uint32_t operand = b->in.sources[b->mesh.subtriangles[f].source].operand;
-    int32_t *winding;
+    const uint32_t s = b->mesh.subtriangles[f].source;
     if (b->mesh.subtriangles[f].covers == GXB_NONE)
-        return b->in.operands[operand].operation == GXB_SPLIT
-                 ? b->mesh.subtriangles[f].state
-                 : gxbp_step_state(b, b->mesh.subtriangles[f].state, operand, 1);
-    winding = gxbp_copy_winding(b, b->mesh.subtriangles[f].state);
-    if (winding == NULL) return 0;
-    gxbp_add_covers(b, f, 1, winding);
+        return gxbp_winds(b, s) ? gxbp_step_state(b, b->mesh.subtriangles[f].state, b->in.sources[s].operand, 1)
+                                : b->mesh.subtriangles[f].state;
+    if (!gxbp_begin_draft(b, b->mesh.subtriangles[f].state)) return 0;
+    gxbp_add_covers(b, f, 1);
     return gxbp_find_state(b);
 }
 
@@ -11118,7 +11192,7 @@ typedef struct gxbp_ray {
     gxb_ball ball;
     gxbp_box box; /* around the whole ray */
     uint32_t f;
-    int32_t *winding;
+    int32_t winding;  /* of the operand at work */
     int exact;        /* 1: probe has been computed */
     gxbp_probe probe; /* the sum of the corners' homogeneous coordinates */
 } gxbp_ray;
@@ -11179,7 +11253,7 @@ static void gxbp_cross_ray(gxb_boolean *b, gxbp_ray *ray, uint32_t s) {
     x[1] = q->x;
     x[2] = r->x;
     if (behind == 0) behind = gxbp_probe_orient(gxbp_exact_probe(b, ray), x);
-    if (behind == left) ray->winding[b->in.sources[s].operand] += left;
+    if (behind == left) ray->winding += left;
 }
 
 static GXBP_APART void gxbp_shoot(gxb_boolean *b, gxbp_ray *ray, const gxbp_operand *o, uint32_t l, uint32_t i) {
@@ -11207,8 +11281,8 @@ static GXBP_RARE void gxbp_cross_own(gxb_boolean *b, const gxbp_ray *ray) {
     const int nx = gxbp_normal_sign(&b->store, plane, 0);
     int side = gxbp_moved_side(b, plane);
     if (side == 0) side = nx;
-    if (nx * side < 0) gxbp_add_covers(b, ray->f, nx, ray->winding);
-    if (side < 0) gxbp_add_covers(b, ray->f, -1, ray->winding); /* from the state behind to the one in front */
+    if (nx * side < 0) gxbp_add_covers(b, ray->f, nx);
+    if (side < 0) gxbp_add_covers(b, ray->f, -1); /* from the state behind to the one in front */
 }
 
 /* The state in front of a subtriangle. state is right for the operands before first; GXB_NONE: all numbers are 0. */
@@ -11216,12 +11290,14 @@ static GXBP_APART uint32_t gxbp_state_by_ray(gxb_boolean *b, uint32_t f, uint32_
     gxbp_ray ray;
     uint32_t i;
     if (!gxbp_need_plane(b, b->mesh.subtriangles[f].source)) return 0;
-    ray.winding = gxbp_copy_winding(b, state);
-    if (ray.winding == NULL) return 0;
+    if (!gxbp_begin_draft(b, state)) return 0;
     gxbp_set_ray(b, &ray, f);
-    for (i = first; i < b->in.operand_count && b->error == GX_OK; i++)
-        if (b->in.operands[i].operation != GXB_SPLIT)
-            gxbp_shoot(b, &ray, &b->in.operands[i], b->in.operands[i].tree.levels - 1, 0);
+    for (i = first; i < b->in.operand_count && b->error == GX_OK; i++) {
+        if (b->in.operands[i].operation == GXB_SPLIT) continue;
+        ray.winding = 0;
+        gxbp_shoot(b, &ray, &b->in.operands[i], b->in.operands[i].tree.levels - 1, 0);
+        gxbp_add_number(b, i, ray.winding);
+    }
     /* else the subtriangle is of an older operand, and state contains its own surfaces */
     if (first == 0) gxbp_cross_own(b, &ray);
     return gxbp_find_state(b);
@@ -11305,16 +11381,11 @@ static void gxbp_note_reached(gxb_boolean *b, uint32_t s) {
     o->reached = 1;
 }
 
-static int gxbp_winds(const gxb_boolean *b, uint32_t s) {
-    return b->in.operands[b->in.sources[s].operand].operation != GXB_SPLIT;
-}
-
 /* Takes the state to an operand that has none yet. A triangle t of it crosses f in its edge k, and nothing else is
    there: four subtriangles meet in the edge, two of each source. The plane of one source separates the numbers of its
    own operand only. The subtriangle of t that gets a state goes to b->work.pending. */
 static void gxbp_reach_operand(gxb_boolean *b, uint32_t f, int k) {
     const uint32_t s = b->mesh.subtriangles[f].source, t = gxbp_crossing_source(b, f, k);
-    int32_t *winding;
     uint32_t g;
     int j, side, other;
     if (t == GXB_NONE || b->in.operands[b->in.sources[t].operand].reached || b->in.sources[t].flags & GXBP_FLAT) return;
@@ -11324,9 +11395,9 @@ static void gxbp_reach_operand(gxb_boolean *b, uint32_t f, int k) {
         return;
     side = gxbp_side_of_subtriangle(b, f, k, t);
     other = gxbp_side_of_subtriangle(b, g, j, s);
-    if (side == 0 || other == 0 || (winding = gxbp_copy_winding(b, b->mesh.subtriangles[f].state)) == NULL) return;
-    if (other < 0 && gxbp_winds(b, s)) winding[b->in.sources[s].operand]++;
-    if (side < 0 && gxbp_winds(b, t)) winding[b->in.sources[t].operand]--;
+    if (side == 0 || other == 0 || !gxbp_begin_draft(b, b->mesh.subtriangles[f].state)) return;
+    if (other < 0 && gxbp_winds(b, s)) gxbp_add_number(b, b->in.sources[s].operand, 1);
+    if (side < 0 && gxbp_winds(b, t)) gxbp_add_number(b, b->in.sources[t].operand, -1);
     b->mesh.subtriangles[g].state = gxbp_find_state(b);
     gxbp_note_reached(b, t);
     b->work.pending[b->work.pending_count++] = g;
@@ -11386,22 +11457,13 @@ static int gxbp_is_surface(const gxb_boolean *b, uint32_t f) {
 
 /* --- states of earlier evaluations: new operands get the number 0, which is right outside of their boxes --- */
 
-/* Appends a 0 for each new operand to all states. States keep their places. */
-static GXBP_APART int gxbp_lengthen_states(gxb_boolean *b) {
-    const uint32_t n = b->in.operand_count, m = b->winding.stated;
-    uint32_t i;
-    memset(b->winding.steps, 0, sizeof b->winding.steps);
-    if (m == 0) b->winding.inside_count = 0;
-    b->winding.number_count = b->winding.inside_count * m;
-    if (!GXBP_ROOM(b, winding.numbers, winding.number, (size_t)b->winding.inside_count * (n - m) + n)) return 0;
-    for (i = b->winding.inside_count; i-- > 0;) {
-        memmove(b->winding.numbers + (size_t)i * n, b->winding.numbers + (size_t)i * m, m * sizeof *b->winding.numbers);
-        memset(b->winding.numbers + (size_t)i * n + m, 0, (n - m) * sizeof *b->winding.numbers);
-    }
-    for (i = 0; i < b->winding.inside_count; i++)
-        b->winding.inside[i] = (uint32_t)gxbp_is_inside(b, b->winding.numbers + (size_t)i * n);
-    b->winding.listed = 0;
-    return 1;
+/* An operand that is an intersection leaves nothing outside of it. */
+static GXBP_APART void gxbp_note_intersections(gxb_boolean *b) {
+    uint32_t i = b->winding.stated;
+    for (; i < b->in.operand_count; i++)
+        b->in.operands[i].narrowed = i == 0                                               ? 0
+                                     : b->in.operands[i].operation == GXB_INTERSECTION ? i
+                                                                                         : b->in.operands[i - 1].narrowed;
 }
 
 /* An open state has this bit: it does not count the new operands yet. */
@@ -11448,20 +11510,19 @@ static GXBP_RARE void gxbp_open_states(gxb_boolean *b, const gxbp_box *box) {
 /* The state of open subtriangle f beyond edge k of g, which is not open: f's own numbers; for new operands those of g,
  * changed by the labels of the edge. */
 static uint32_t gxbp_close_state(gxb_boolean *b, uint32_t g, int k, uint32_t f) {
-    const uint32_t n = b->in.operand_count, m = b->winding.stated, own = b->mesh.subtriangles[f].state & ~GXBP_OPEN,
-                   from = b->mesh.subtriangles[g].state;
+    const uint32_t m = b->winding.stated, own = b->mesh.subtriangles[f].state & ~GXBP_OPEN;
+    const gxbp_state *from = &b->winding.states[b->mesh.subtriangles[g].state];
     uint32_t list = b->mesh.subtriangles[g].near[k] == f ? b->mesh.subtriangles[g].labels[k] : GXBP_BARE, i;
-    int32_t *winding = gxbp_copy_winding(b, own);
-    int differs = 0;
-    if (winding == NULL) return own;
-    for (i = m; i < n; i++) winding[i] = b->winding.numbers[(size_t)from * n + i];
+    if (!gxbp_begin_draft(b, own)) return own;
+    for (i = from->first; i < from->first + from->count; i++)
+        if (b->winding.numbers[i].operand >= m)
+            gxbp_add_number(b, b->winding.numbers[i].operand, b->winding.numbers[i].winding);
     for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->mesh.links[list].next) {
         const uint32_t t = b->mesh.links[list].value;
         if (!(t & GXBP_EDGE_LABEL) && b->in.sources[t].operand >= m)
-            winding[b->in.sources[t].operand] += gxbp_label_step(b, g, k, t);
+            gxbp_add_number(b, b->in.sources[t].operand, gxbp_label_step(b, g, k, t));
     }
-    for (i = m; i < n; i++) differs = differs || winding[i] != 0;
-    return differs ? gxbp_find_state(b) : own;
+    return b->winding.draft_count > b->winding.states[own].count ? gxbp_find_state(b) : own;
 }
 
 /* Closes the states of open subtriangles, from neighbour to neighbour */
@@ -11517,8 +11578,12 @@ static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
     uint32_t s, f;
     if (b->error != GX_OK) return;
     if (b->points.united || b->points.renamed) gxbp_rename_vertices(b);
-    if (!gxbp_lengthen_states(b)) return;
-    for (s = 0; s < b->in.operand_count; s++) b->in.operands[s].reached = s < b->winding.stated;
+    if (b->winding.stated == 0) {
+        memset(b->winding.steps, 0, sizeof b->winding.steps);
+        b->winding.state_count = b->winding.number_count = b->winding.listed = 0;
+    }
+    gxbp_note_intersections(b);
+    for (s = b->winding.stated; s < b->in.operand_count; s++) b->in.operands[s].reached = 0;
     b->winding.unreached = b->in.operand_count - b->winding.stated;
     if (b->winding.stated > 0) gxbp_close_states(b);
     b->work.pending_count = b->work.visit_count = 0;
@@ -11535,6 +11600,7 @@ static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
     for (f = 0; f < b->mesh.subtriangle_count; f++)
         if (b->mesh.subtriangles[f].state == GXB_NONE && b->error == GX_OK && gxbp_is_surface(b, f))
             gxbp_find_state_of(b, f);
+    for (s = b->winding.stated; s < b->in.operand_count; s++) b->in.operands[s].reached = 1;
     b->winding.stated = b->in.operand_count;
 }
 
@@ -11713,8 +11779,8 @@ static GXBP_APART void gxbp_extract(gxb_boolean *b) {
         if (!gxbp_is_surface(b, f)) continue;
         if (sub->covers != GXB_NONE || sub->state != state || b->in.sources[sub->source].operand != operand) {
             const uint32_t behind = gxbp_state_behind(b, f); /* may move the states */
-            back_in = b->winding.inside[behind] != 0;
-            front_in = b->winding.inside[sub->state] != 0;
+            back_in = gxbp_is_inside(b, behind) != 0;
+            front_in = gxbp_is_inside(b, sub->state) != 0;
             state = sub->covers == GXB_NONE ? sub->state : GXB_NONE;
             operand = b->in.sources[sub->source].operand;
         }
@@ -13010,7 +13076,8 @@ static const gxbp_array gxbp_boolean_arrays[] = {/* all that grow */
                                                  GXBP_ARRAY(gxb_boolean, work.room, work.room),
                                                  GXBP_ARRAY(gxb_boolean, work.ordered, work.ordered),
                                                  GXBP_ARRAY(gxb_boolean, winding.numbers, winding.number),
-                                                 GXBP_ARRAY(gxb_boolean, winding.inside, winding.inside),
+                                                 GXBP_ARRAY(gxb_boolean, winding.states, winding.state),
+                                                 GXBP_ARRAY(gxb_boolean, winding.vector, winding.vector),
                                                  GXBP_ARRAY(gxb_boolean, out.vertices, out.vertex),
                                                  GXBP_ARRAY(gxb_boolean, out.origins, out.origin),
                                                  GXBP_ARRAY(gxb_boolean, out.points, out.point),
