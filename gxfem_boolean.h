@@ -7715,6 +7715,9 @@ typedef struct gxbp_input {
     /* of trees */
     gxbp_box *boxes;
     uint32_t box_count, box_capacity;
+    /* a box for each operand; a box for each of these leaves */
+    gxbp_leaf_boxes *leaves, *groups;
+    uint32_t leaf_count, leaf_capacity, group_count, group_capacity;
 } gxbp_input;
 
 /* How points are found again: by coordinates, by definition, by equality. Lives as long as the Boolean. */
@@ -7724,16 +7727,21 @@ typedef struct gxbp_points {
     /* hash of points by coordinates or key */
     uint32_t *table;
     uint32_t table_size, table_used;
-    uint32_t merged_count; /* points before it have been compared with each other */
-    /* the computed ones of these, along a direction */
+    uint32_t merged_count; /* points before it are old: earlier evaluations compared them with each other */
+    /* the computed ones of these: runs, each in order along a direction. run: where each ends */
     struct gxbp_projected *projected;
     uint32_t projected_count, projected_capacity;
+    uint32_t run[32], run_count;
     double reach; /* the largest of their errors */
     /* united 1: points were united since the last evaluation; renamed 1: an input vertex ever got another name */
     uint32_t united, renamed;
+    /* old points and input vertices that got another name since the last evaluation */
+    uint32_t *dropped;
+    uint32_t dropped_count, dropped_capacity;
 } gxbp_points;
 
-/* Where sources meet. Lives until an evaluation fails; hits and dirty sources are used up by each evaluation. */
+/* Where sources meet. Lives until an evaluation fails; hits and dirty sources are used up by each evaluation. Once the
+ * dirty ones are divided, they are those that this evaluation divided, each flat by its root. */
 typedef struct gxbp_crossings {
     gxbp_segment *segments;
     uint32_t segment_count, segment_capacity;
@@ -7756,9 +7764,7 @@ typedef struct gxbp_mesh {
     uint32_t subtriangle_count, subtriangle_capacity;
     gxbp_link *links;
     uint32_t link_count, link_capacity;
-    /* sources that were divided, alone or as roots of flats */
-    uint32_t *divided;
-    uint32_t divided_count, divided_capacity;
+    uint32_t stated; /* subtriangles before it have states, if they need one */
 } gxbp_mesh;
 
 /* A winding number that is not 0 */
@@ -7853,6 +7859,9 @@ typedef struct gxbp_work {
     /* subtriangles that a constrained edge crosses, to be replaced */
     uint32_t *crossed;
     uint32_t crossed_count, crossed_capacity;
+    /* operands whose boxes meet a box */
+    uint32_t *found;
+    uint32_t found_count, found_capacity;
     /* subtriangles that got a state, or lost one: neighbours are still to come */
     uint32_t *pending;
     uint32_t pending_count, pending_capacity;
@@ -8106,6 +8115,9 @@ static GXBP_RARE void gxbp_unite(gxb_boolean *b, uint32_t keep, uint32_t drop) {
     b->points.vertices[drop].same = keep;
     b->points.united = 1;
     if (q->kind == GXB_EXPLICIT && q->def[0] == drop) b->points.renamed = 1;
+    if ((drop < b->points.merged_count || (q->kind == GXB_EXPLICIT && q->def[0] == drop)) &&
+        GXBP_ROOM(b, points.dropped, points.dropped, 1))
+        b->points.dropped[b->points.dropped_count++] = drop;
     if (p->kind == GXB_EXPLICIT || q->kind != GXB_EXPLICIT) return;
     p->kind = GXB_EXPLICIT;
     p->ball = q->ball;
@@ -8253,6 +8265,24 @@ static GXBP_APART void gxbp_sort_sources(const gxb_boolean *b, const gxbp_operan
     for (i = 0; i < o->source_count; i++) o->order[i] = (uint32_t)from[i];
 }
 
+static void gxbp_clear_leaf(gxbp_leaf_boxes *leaf) {
+    uint32_t x, k;
+    for (x = 0; x < GXBP_LEAF; x++)
+        for (k = 0; k < 3; k++) {
+            leaf->low[k][x] = (float)gxbp_power(126);
+            leaf->high[k][x] = -leaf->low[k][x];
+        }
+}
+
+/* Widens box x of a leaf. */
+static void gxbp_widen_leaf(gxbp_leaf_boxes *leaf, uint32_t x, const gxbp_box *box) {
+    uint32_t k;
+    for (k = 0; k < 3; k++) {
+        if (box->low[k] < leaf->low[k][x]) leaf->low[k][x] = box->low[k];
+        if (box->high[k] > leaf->high[k][x]) leaf->high[k][x] = box->high[k];
+    }
+}
+
 /* Boxes of leaf i's sources, and around them */
 static void gxbp_fill_leaf(gxb_boolean *b, const gxbp_operand *o, uint32_t i) {
     gxbp_leaf_boxes *leaf = &b->in.bounds[o->bounds + i];
@@ -8320,6 +8350,25 @@ static GXBP_APART gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
     return GX_OK;
 }
 
+static const gxbp_box *gxbp_operand_box(const gxb_boolean *b, uint32_t i) {
+    const gxbp_tree *t = &b->in.operands[i].tree;
+    return &b->in.boxes[t->first + t->level[t->levels - 1]];
+}
+
+/* Room for the boxes of one more operand */
+static int gxbp_operand_box_room(gxb_boolean *b) {
+    return GXBP_ROOM(b, in.leaves, in.leaf, 1) && GXBP_ROOM(b, in.groups, in.group, 1);
+}
+
+/* Lists the box of operand i, the last one. */
+static void gxbp_list_operand_box(gxb_boolean *b, uint32_t i) {
+    const uint32_t leaf = i / GXBP_LEAF;
+    if (i % GXBP_LEAF == 0) gxbp_clear_leaf(&b->in.leaves[b->in.leaf_count++]);
+    if (i % (GXBP_LEAF * GXBP_LEAF) == 0) gxbp_clear_leaf(&b->in.groups[b->in.group_count++]);
+    gxbp_widen_leaf(&b->in.leaves[leaf], i % GXBP_LEAF, gxbp_operand_box(b, i));
+    gxbp_widen_leaf(&b->in.groups[leaf / GXBP_LEAF], leaf % GXBP_LEAF, gxbp_operand_box(b, i));
+}
+
 /* Tests which boxes of a leaf meet a box, without branches, so that compilers vectorise it. Returns 0 if none does.
  */
 static uint32_t gxbp_test_leaf(const gxbp_leaf_boxes *leaf, const gxbp_box *box, uint32_t meets[GXBP_LEAF]) {
@@ -8340,6 +8389,23 @@ static gxbp_box gxbp_leaf_box(const gxbp_leaf_boxes *leaf, uint32_t x) {
         box.high[k] = leaf->high[k][x];
     }
     return box;
+}
+
+/* Lists the operands from first to before end whose boxes meet a box in b->work.found, in ascending order. */
+static GXBP_APART void gxbp_find_operands(gxb_boolean *b, const gxbp_box *box, uint32_t first, uint32_t end) {
+    uint32_t i, j, x, y, groups[GXBP_LEAF], leaf[GXBP_LEAF];
+    b->work.found_count = 0;
+    if (!GXBP_ROOM(b, work.found, work.found, end)) return;
+    for (i = first / (GXBP_LEAF * GXBP_LEAF); i * GXBP_LEAF * GXBP_LEAF < end; i++) {
+        if (!gxbp_test_leaf(&b->in.groups[i], box, groups)) continue;
+        for (x = 0; x < GXBP_LEAF && (i * GXBP_LEAF + x) * GXBP_LEAF < end; x++) {
+            if (!groups[x] || !gxbp_test_leaf(&b->in.leaves[i * GXBP_LEAF + x], box, leaf)) continue;
+            for (y = 0; y < GXBP_LEAF; y++) {
+                j = (i * GXBP_LEAF + x) * GXBP_LEAF + y;
+                if (leaf[y] && j >= first && j < end) b->work.found[b->work.found_count++] = j;
+            }
+        }
+    }
 }
 
 static int gxbp_boxes_meet(const gxb_boolean *b, const gxbp_tree *s, uint32_t l, uint32_t i, const gxbp_tree *t,
@@ -8568,7 +8634,7 @@ static inline void gxbp_reset_source(gxb_boolean *b, uint32_t s) {
     int k;
     for (k = 0; k < 3; k++) {
         t->edge[k] = GXB_NONE;
-        f->v[k] = t->point[k];
+        f->v[k] = b->points.renamed ? gxbp_same(b, t->point[k]) : t->point[k];
         f->near[k] = GXB_NONE;
         f->labels[k] = GXBP_BARE;
     }
@@ -8671,7 +8737,8 @@ static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operan
     gxbp_operand *added;
     gx_result result;
     uint32_t *work;
-    if (!GXBP_ROOM(b, in.operands, in.operand, 1) || !GXBP_ROOM(b, in.sources, in.source, sources) ||
+    if (!GXBP_ROOM(b, in.operands, in.operand, 1) || !gxbp_operand_box_room(b) ||
+        !GXBP_ROOM(b, in.sources, in.source, sources) ||
         !GXBP_ROOM(b, in.bounds, in.bound, leaves) ||
         !GXBP_ROOM(b, mesh.subtriangles, mesh.subtriangle, subtriangles) ||
         !GXBP_ROOM(b, points.vertices, points.vertex, points) || !gxbp_table_room(b, (uint32_t)o->vertex_count))
@@ -8693,7 +8760,7 @@ static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operan
         gxbp_release(&b->store.allocator, added->order, o->triangle_count * sizeof *added->order);
         return result;
     }
-    b->in.operand_count++;
+    gxbp_list_operand_box(b, b->in.operand_count++);
     gxbp_forget_degenerate(b, added->source);
     return GX_OK;
 }
@@ -9292,7 +9359,7 @@ static void gxbp_meet_operands(gxb_boolean *b, uint32_t i, uint32_t j) {
     gxbp_operand *o = &b->in.operands[i], *q = &b->in.operands[j];
     const uint32_t l = o->tree.levels - 1, m = q->tree.levels - 1, marks = b->crossings.marks;
     if (i == j && o->simple) return;
-    if (gxbp_boxes_meet(b, &o->tree, l, 0, &q->tree, m, 0)) gxbp_meet_boxes(b, o, l, 0, q, m, 0);
+    gxbp_meet_boxes(b, o, l, 0, q, m, 0);
     if (i == j) o->simple = b->crossings.marks == marks && b->error == GX_OK;
 }
 
@@ -9415,11 +9482,44 @@ static void gxbp_order_edge(gxb_boolean *b, uint32_t edge) {
     b->crossings.edge_point_count += count;
 }
 
+/* Sorts hits by edge; those of one edge keep their order. work: room for half of them */
+static void gxbp_sort_hits(gxbp_hit *h, uint32_t count, gxbp_hit *work) {
+    const uint32_t half = count / 2;
+    uint32_t i, j, k;
+    if (count < 2) return;
+    gxbp_sort_hits(h, half, work);
+    gxbp_sort_hits(h + half, count - half, work);
+    memcpy(work, h, half * sizeof *h);
+    for (i = 0, j = half, k = 0; i < half; k++) h[k] = j < count && h[j].edge < work[i].edge ? h[j++] : work[i++];
+}
+
+/* The hits begin with count ones of an edge. */
+static void gxbp_order_hits(gxb_boolean *b, const gxbp_hit *h, uint32_t count) {
+    uint32_t i;
+    b->work.ordered_count = 0;
+    if (!GXBP_ROOM(b, work.ordered, work.ordered, count)) return;
+    for (i = 0; i < count; i++) b->work.ordered[b->work.ordered_count++] = h[i].point;
+    gxbp_order_edge(b, h->edge);
+}
+
+/* A few hits, among many edges */
+static GXBP_COLD void gxbp_order_few_edges(gxb_boolean *b) {
+    const uint32_t n = b->crossings.hit_count;
+    gxbp_hit *h = b->crossings.hits;
+    uint32_t i, j;
+    gxbp_hit *work = (gxbp_hit *)gxbp_borrow(b, (n / 2 + 1) * sizeof *work);
+    if (work == NULL) return;
+    gxbp_sort_hits(h, n, work);
+    for (i = 0; i < n && b->error == GX_OK; i = j) {
+        for (j = i + 1; j < n && h[j].edge == h[i].edge; j++) {}
+        gxbp_order_hits(b, h + i, j - i);
+    }
+}
+
 /* A counting sort of the hits by edge, then each edge's points. */
-static GXBP_APART void gxbp_order_edges(gxb_boolean *b) {
+static GXBP_APART void gxbp_order_all_edges(gxb_boolean *b) {
     const size_t words = (size_t)b->crossings.edge_count + 1 + b->crossings.hit_count;
     uint32_t *first, *points, i;
-    if (b->error != GX_OK || b->crossings.hit_count == 0) return;
     first = (uint32_t *)gxbp_allocate(&b->store.allocator, words * sizeof *first);
     if (first == NULL) {
         gxbp_stop(b, GX_ERROR_MEMORY);
@@ -9439,6 +9539,14 @@ static GXBP_APART void gxbp_order_edges(gxb_boolean *b) {
         gxbp_order_edge(b, i);
     }
     gxbp_release(&b->store.allocator, first, words * sizeof *first);
+}
+
+static void gxbp_order_edges(gxb_boolean *b) {
+    if (b->error != GX_OK || b->crossings.hit_count == 0) return;
+    if (b->crossings.edge_count > 16 * (uint64_t)b->crossings.hit_count)
+        gxbp_order_few_edges(b);
+    else
+        gxbp_order_all_edges(b);
     b->crossings.hit_count = 0;
 }
 
@@ -10271,9 +10379,7 @@ static void gxbp_trace_segments(gxb_boolean *b, uint32_t s, uint32_t i) {
 }
 
 static void gxbp_note_divided(gxb_boolean *b, uint32_t s) {
-    if (b->in.sources[s].flags & GXBP_DIVIDED || !GXBP_ROOM(b, mesh.divided, mesh.divided, 1)) return;
     b->in.sources[s].flags |= GXBP_DIVIDED;
-    b->mesh.divided[b->mesh.divided_count++] = s;
 }
 
 /* --- dividing a source by chains: the generic small case --- */
@@ -10845,8 +10951,9 @@ static GXBP_COLD void gxbp_divide_flat(gxb_boolean *b, uint32_t r) {
     for (t = r; t != GXB_NONE && b->error == GX_OK; t = b->in.sources[t].next) gxbp_cover_subtriangles(b, r, t);
 }
 
+/* Of the dirty sources only those that were divided stay in the list, each flat by its root. */
 static GXBP_APART void gxbp_divide_dirty(gxb_boolean *b) {
-    uint32_t i;
+    uint32_t i, n = 0;
     for (i = 0; i < b->crossings.dirty_count && b->error == GX_OK; i++) {
         const uint32_t s = b->crossings.dirty[i], r = gxbp_root(b, s);
         if (!(b->in.sources[s].flags & GXBP_DIRTY)) continue;
@@ -10855,8 +10962,9 @@ static GXBP_APART void gxbp_divide_dirty(gxb_boolean *b) {
         else
             gxbp_divide_source(b, s);
         b->in.sources[s].flags &= ~(uint32_t)GXBP_DIRTY;
+        b->crossings.dirty[n++] = r;
     }
-    b->crossings.dirty_count = 0;
+    b->crossings.dirty_count = n;
 }
 
 /* >>merge: equal points that did not meet in a triangulation ------------------------------------------------------- */
@@ -10894,6 +11002,40 @@ static GXBP_APART void gxbp_sort_projected(gxbp_projected *p, uint32_t count, gx
     gxbp_merge_projected(p, count / 2, count, work);
 }
 
+static inline void gxbp_merge_pair(gxb_boolean *b, uint32_t p, uint32_t q) {
+    p = gxbp_same(b, p);
+    q = gxbp_same(b, q);
+    if (p != q && (p >= b->points.merged_count || q >= b->points.merged_count) && gxbp_points_equal(b, p, q))
+        gxbp_unite(b, p < q ? p : q, p < q ? q : p);
+}
+
+/* Compares the new points, from first on, with those of a run, from j to its end. Steps to the next one become longer
+ * where the run is the denser of the two. */
+static void gxbp_merge_with_run(gxb_boolean *b, uint32_t first, uint32_t j, uint32_t end) {
+    const gxbp_projected *p = b->points.projected;
+    const double reach = 8 * b->points.reach;
+    uint32_t i, k, step;
+    for (i = first; i < b->points.projected_count; i++) {
+        for (step = 1; step <= end - j && p[j + step - 1].t < p[i].t - reach; step *= 2) j += step;
+        for (; step > 0; step /= 2)
+            if (step <= end - j && p[j + step - 1].t < p[i].t - reach) j += step;
+        for (k = j; k < end && p[k].t <= p[i].t + reach; k++) gxbp_merge_pair(b, p[i].point, p[k].point);
+    }
+}
+
+/* Appends the points from first on as a run. Runs of similar size become one, so that there are few. */
+static void gxbp_append_run(gxb_boolean *b, uint32_t first, gxbp_projected *work) {
+    uint32_t n = b->points.run_count, end = b->points.projected_count;
+    for (; n > 0; n--) {
+        const uint32_t start = n > 1 ? b->points.run[n - 2] : 0;
+        if (first - start > 2 * (uint64_t)(end - first)) break;
+        gxbp_merge_projected(b->points.projected + start, first - start, end - start, work);
+        first = start;
+    }
+    b->points.run[n] = end;
+    b->points.run_count = n + 1;
+}
+
 /* Compares each new computed point with all points within both errors along a direction in which few points agree. The
  * older name stays, whatever the order of discovery. */
 static GXBP_APART void gxbp_merge_points(gxb_boolean *b) {
@@ -10917,13 +11059,12 @@ static GXBP_APART void gxbp_merge_points(gxb_boolean *b) {
         b->points.reach = gxbp_max(b->points.reach, x->error + 4 * GXBP_U * gxbp_max3(x->x));
     }
     gxbp_sort_projected(p + old, b->points.projected_count - old, work);
-    gxbp_merge_projected(p, old, b->points.projected_count, work);
-    for (i = 0; i < b->points.projected_count; i++)
-        for (j = i + 1; j < b->points.projected_count && p[j].t - p[i].t <= 8 * b->points.reach; j++) {
-            const uint32_t q = gxbp_same(b, p[i].point), r = gxbp_same(b, p[j].point);
-            if (q != r && (q >= b->points.merged_count || r >= b->points.merged_count) && gxbp_points_equal(b, q, r))
-                gxbp_unite(b, q < r ? q : r, q < r ? r : q);
-        }
+    for (i = 0; i < b->points.run_count; i++)
+        gxbp_merge_with_run(b, old, i > 0 ? b->points.run[i - 1] : 0, b->points.run[i]);
+    for (i = old; i < b->points.projected_count; i++)
+        for (j = i + 1; j < b->points.projected_count && p[j].t - p[i].t <= 8 * b->points.reach; j++)
+            gxbp_merge_pair(b, p[i].point, p[j].point);
+    gxbp_append_run(b, old, work);
     gxbp_release(&b->store.allocator, work, size);
     b->points.merged_count = b->points.vertex_count;
 }
@@ -11292,11 +11433,13 @@ static GXBP_APART uint32_t gxbp_state_by_ray(gxb_boolean *b, uint32_t f, uint32_
     if (!gxbp_need_plane(b, b->mesh.subtriangles[f].source)) return 0;
     if (!gxbp_begin_draft(b, state)) return 0;
     gxbp_set_ray(b, &ray, f);
-    for (i = first; i < b->in.operand_count && b->error == GX_OK; i++) {
-        if (b->in.operands[i].operation == GXB_SPLIT) continue;
+    gxbp_find_operands(b, &ray.box, first, b->in.operand_count);
+    for (i = 0; i < b->work.found_count && b->error == GX_OK; i++) {
+        const gxbp_operand *o = &b->in.operands[b->work.found[i]];
+        if (o->operation == GXB_SPLIT) continue;
         ray.winding = 0;
-        gxbp_shoot(b, &ray, &b->in.operands[i], b->in.operands[i].tree.levels - 1, 0);
-        gxbp_add_number(b, i, ray.winding);
+        gxbp_shoot(b, &ray, o, o->tree.levels - 1, 0);
+        gxbp_add_number(b, b->work.found[i], ray.winding);
     }
     /* else the subtriangle is of an older operand, and state contains its own surfaces */
     if (first == 0) gxbp_cross_own(b, &ray);
@@ -11305,16 +11448,64 @@ static GXBP_APART uint32_t gxbp_state_by_ray(gxb_boolean *b, uint32_t f, uint32_
 
 /* --- states spread from subtriangle to subtriangle --- */
 
-/* Gives vertices their final names after points were united: those of divided sources, or all if an input vertex was
- * renamed. */
+/* The first source of operands without states */
+static uint32_t gxbp_new_sources(const gxb_boolean *b) {
+    return b->winding.stated < b->in.operand_count ? b->in.operands[b->winding.stated].source : b->in.source_count;
+}
+
+static void gxbp_rename_subtriangle(gxb_boolean *b, uint32_t f) {
+    uint32_t k;
+    for (k = 0; k < 3; k++) b->mesh.subtriangles[f].v[k] = gxbp_same(b, b->mesh.subtriangles[f].v[k]);
+}
+
+static void gxbp_rename_source(gxb_boolean *b, uint32_t s) {
+    uint32_t f;
+    for (f = b->in.sources[s].subtriangle; f != GXB_NONE; f = b->mesh.subtriangles[f].next)
+        gxbp_rename_subtriangle(b, f);
+}
+
+/* Renames the vertices of sources (of their flats) that meet a box, below box i of level l of a tree. */
+static GXBP_RARE void gxbp_rename_below(gxb_boolean *b, const gxbp_operand *o, uint32_t l, uint32_t i,
+                                        const gxbp_box *box) {
+    uint32_t meets[GXBP_LEAF], c;
+    if (!gxbp_box_meets(box, &b->in.boxes[o->tree.first + o->tree.level[l] + i])) return;
+    if (l > 0) {
+        for (c = 2 * i; c < 2 * i + 2 && c < o->tree.size[l - 1]; c++) gxbp_rename_below(b, o, l - 1, c, box);
+        return;
+    }
+    gxbp_test_leaf(&b->in.bounds[o->bounds + i], box, meets);
+    for (c = 0; c < GXBP_LEAF; c++)
+        if (meets[c]) gxbp_rename_source(b, gxbp_root(b, o->order[i * GXBP_LEAF + c]));
+}
+
+/* Renames a dropped point wherever it is a vertex: in sources whose boxes hold it. */
+static GXBP_COLD void gxbp_rename_point(gxb_boolean *b, uint32_t point) {
+    const gxb_ball *x = &b->store.points[point].ball;
+    gxbp_box box;
+    uint32_t i;
+    int k;
+    for (k = 0; k < 3; k++) {
+        box.low[k] = gxbp_float_below(x->x[k] - 2 * x->error);
+        box.high[k] = gxbp_float_above(x->x[k] + 2 * x->error);
+    }
+    gxbp_find_operands(b, &box, 0, b->in.operand_count);
+    for (i = 0; i < b->work.found_count; i++) {
+        const gxbp_operand *o = &b->in.operands[b->work.found[i]];
+        gxbp_rename_below(b, o, o->tree.levels - 1, 0, &box);
+    }
+}
+
+/* Gives vertices their final names after points were united. A new point is a vertex only of sources that this
+ * evaluation has divided. */
 static GXBP_RARE void gxbp_rename_vertices(gxb_boolean *b) {
-    uint32_t f, i, k;
-    for (i = 0; i < b->mesh.divided_count && b->points.united && !b->points.renamed; i++)
-        for (f = b->in.sources[b->mesh.divided[i]].subtriangle; f != GXB_NONE; f = b->mesh.subtriangles[f].next)
-            for (k = 0; k < 3; k++) b->mesh.subtriangles[f].v[k] = gxbp_same(b, b->mesh.subtriangles[f].v[k]);
-    for (f = 0; f < b->mesh.subtriangle_count && b->points.renamed; f++)
-        for (k = 0; k < 3; k++) b->mesh.subtriangles[f].v[k] = gxbp_same(b, b->mesh.subtriangles[f].v[k]);
-    b->points.united = 0;
+    uint32_t i;
+    if (b->points.dropped_count > b->mesh.subtriangle_count / 64) {
+        for (i = 0; i < b->mesh.subtriangle_count; i++) gxbp_rename_subtriangle(b, i);
+    } else {
+        for (i = 0; i < b->crossings.dirty_count; i++) gxbp_rename_source(b, b->crossings.dirty[i]);
+        for (i = 0; i < b->points.dropped_count; i++) gxbp_rename_point(b, b->points.dropped[i]);
+    }
+    b->points.united = b->points.dropped_count = 0;
 }
 
 /* The subtriangle at the start of edge k of a source that is not in a flat. GXB_NONE: another surface meets it there.
@@ -11487,24 +11678,58 @@ static int gxbp_subtriangle_misses(const gxb_boolean *b, uint32_t f, const gxbp_
     return 1;
 }
 
-/* Opens the states of all subtriangles that may meet the box, and lists them in b->work.pending. The axis along which
-   the box is shortest is tested first. */
-static GXBP_RARE void gxbp_open_states(gxb_boolean *b, const gxbp_box *box) {
+/* Opens the states of a source's (root's) subtriangles that may meet the box, and lists them in b->work.pending. The
+   axis along which the box is shortest is tested first. */
+static void gxbp_open_source(gxb_boolean *b, uint32_t s, const gxbp_box *box, int axis) {
     uint32_t f;
-    int axis = 0, k;
-    for (k = 1; k < 3; k++)
-        if (box->high[k] - box->low[k] < box->high[axis] - box->low[axis]) axis = k;
-    for (f = 0; f < b->mesh.subtriangle_count; f++) {
+    for (f = b->in.sources[s].subtriangle; f != GXB_NONE; f = b->mesh.subtriangles[f].next) {
         if (b->mesh.subtriangles[f].source == GXB_NONE || b->mesh.subtriangles[f].state == GXB_NONE ||
-            gxbp_subtriangle_misses(b, f, box, axis))
-            continue;
-        if (gxbp_subtriangle_misses(b, f, box, (axis + 1) % 3) || gxbp_subtriangle_misses(b, f, box, (axis + 2) % 3) ||
-            gxbp_is_open(b, f))
+            gxbp_is_open(b, f) || gxbp_subtriangle_misses(b, f, box, axis) ||
+            gxbp_subtriangle_misses(b, f, box, (axis + 1) % 3) || gxbp_subtriangle_misses(b, f, box, (axis + 2) % 3))
             continue;
         if (!GXBP_ROOM(b, work.pending, work.pending, 1)) return;
         b->work.pending[b->work.pending_count++] = f;
         b->mesh.subtriangles[f].state |= GXBP_OPEN;
     }
+}
+
+/* Opens states in what lies below box i of level l of an operand's tree. A flat is marked dirty and listed in
+   b->work.visits, so that it is visited once. */
+static GXBP_RARE void gxbp_open_below(gxb_boolean *b, const gxbp_operand *o, uint32_t l, uint32_t i,
+                                      const gxbp_box *box, int axis) {
+    uint32_t meets[GXBP_LEAF], c;
+    if (!gxbp_box_meets(box, &b->in.boxes[o->tree.first + o->tree.level[l] + i])) return;
+    if (l > 0) {
+        for (c = 2 * i; c < 2 * i + 2 && c < o->tree.size[l - 1]; c++) gxbp_open_below(b, o, l - 1, c, box, axis);
+        return;
+    }
+    gxbp_test_leaf(&b->in.bounds[o->bounds + i], box, meets);
+    for (c = 0; c < GXBP_LEAF; c++) {
+        uint32_t s;
+        if (!meets[c]) continue;
+        s = gxbp_root(b, o->order[i * GXBP_LEAF + c]);
+        if (b->in.sources[s].flags & GXBP_FLAT) {
+            if (b->in.sources[s].flags & GXBP_DIRTY) continue;
+            b->in.sources[s].flags |= GXBP_DIRTY;
+            gxbp_push_visit(b, s);
+        }
+        gxbp_open_source(b, s, box, axis);
+    }
+}
+
+/* Opens the states of all subtriangles of older operands that may meet the box. */
+static void gxbp_open_states(gxb_boolean *b, const gxbp_box *box) {
+    uint32_t i;
+    int axis = 0, k;
+    for (k = 1; k < 3; k++)
+        if (box->high[k] - box->low[k] < box->high[axis] - box->low[axis]) axis = k;
+    b->work.visit_count = 0;
+    gxbp_find_operands(b, box, 0, b->winding.stated);
+    for (i = 0; i < b->work.found_count && b->error == GX_OK; i++) {
+        const gxbp_operand *o = &b->in.operands[b->work.found[i]];
+        gxbp_open_below(b, o, o->tree.levels - 1, 0, box, axis);
+    }
+    for (i = 0; i < b->work.visit_count; i++) b->in.sources[b->work.visits[i]].flags &= ~(uint32_t)GXBP_DIRTY;
 }
 
 /* The state of open subtriangle f beyond edge k of g, which is not open: f's own numbers; for new operands those of g,
@@ -11546,10 +11771,7 @@ static GXBP_COLD void gxbp_close_states(gxb_boolean *b) {
     uint32_t f, i, pass;
     int k;
     b->work.pending_count = 0;
-    for (i = b->winding.stated; i < b->in.operand_count; i++) {
-        const gxbp_tree *tree = &b->in.operands[i].tree;
-        gxbp_open_states(b, &b->in.boxes[tree->first + tree->level[tree->levels - 1]]);
-    }
+    for (i = b->winding.stated; i < b->in.operand_count; i++) gxbp_open_states(b, gxbp_operand_box(b, i));
     for (pass = 0; pass < 2; pass++)
         for (i = 0; i < b->work.pending_count && b->error == GX_OK; i++) {
             f = b->work.pending[i];
@@ -11577,8 +11799,9 @@ static void gxbp_find_state_of(gxb_boolean *b, uint32_t f) {
 static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
     uint32_t s, f;
     if (b->error != GX_OK) return;
-    if (b->points.united || b->points.renamed) gxbp_rename_vertices(b);
+    if (b->points.united) gxbp_rename_vertices(b);
     if (b->winding.stated == 0) {
+        b->mesh.stated = 0;
         memset(b->winding.steps, 0, sizeof b->winding.steps);
         b->winding.state_count = b->winding.number_count = b->winding.listed = 0;
     }
@@ -11590,18 +11813,19 @@ static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
     /* each source and each subtriangle is pushed at most once */
     if (!GXBP_ROOM(b, work.visits, work.visit, (size_t)b->in.source_count + b->mesh.subtriangle_count)) return;
     /* undivided sources first: their rays are cheap */
-    for (s = 0; s < b->in.source_count && b->error == GX_OK; s++) {
+    for (s = gxbp_new_sources(b); s < b->in.source_count && b->error == GX_OK; s++) {
         f = b->in.sources[s].subtriangle;
         if (b->in.sources[s].flags & GXBP_DIVIDED || f == GXB_NONE || b->mesh.subtriangles[f].state != GXB_NONE ||
             !gxbp_is_surface(b, f))
             continue;
         gxbp_find_state_of(b, f);
     }
-    for (f = 0; f < b->mesh.subtriangle_count; f++)
+    for (f = b->mesh.stated; f < b->mesh.subtriangle_count; f++)
         if (b->mesh.subtriangles[f].state == GXB_NONE && b->error == GX_OK && gxbp_is_surface(b, f))
             gxbp_find_state_of(b, f);
     for (s = b->winding.stated; s < b->in.operand_count; s++) b->in.operands[s].reached = 1;
     b->winding.stated = b->in.operand_count;
+    b->mesh.stated = b->mesh.subtriangle_count;
 }
 
 /* >>result: subtriangles between inside and outside ---------------------------------------------------------------- */
@@ -13055,6 +13279,10 @@ static const gxbp_array gxbp_boolean_arrays[] = {/* all that grow */
                                                  GXBP_ARRAY(gxb_boolean, in.sources, in.source),
                                                  GXBP_ARRAY(gxb_boolean, in.bounds, in.bound),
                                                  GXBP_ARRAY(gxb_boolean, in.boxes, in.box),
+                                                 GXBP_ARRAY(gxb_boolean, in.leaves, in.leaf),
+                                                 GXBP_ARRAY(gxb_boolean, in.groups, in.group),
+                                                 GXBP_ARRAY(gxb_boolean, points.dropped, points.dropped),
+                                                 GXBP_ARRAY(gxb_boolean, work.found, work.found),
                                                  GXBP_ARRAY(gxb_boolean, points.vertices, points.vertex),
                                                  GXBP_ARRAY(gxb_boolean, mesh.subtriangles, mesh.subtriangle),
                                                  GXBP_ARRAY(gxb_boolean, mesh.links, mesh.link),
@@ -13063,7 +13291,6 @@ static const gxbp_array gxbp_boolean_arrays[] = {/* all that grow */
                                                  GXBP_ARRAY(gxb_boolean, crossings.edge_points, crossings.edge_point),
                                                  GXBP_ARRAY(gxb_boolean, crossings.hits, crossings.hit),
                                                  GXBP_ARRAY(gxb_boolean, crossings.dirty, crossings.dirty),
-                                                 GXBP_ARRAY(gxb_boolean, mesh.divided, mesh.divided),
                                                  GXBP_ARRAY(gxb_boolean, points.projected, points.projected),
                                                  GXBP_ARRAY(gxb_boolean, work.rights, work.right),
                                                  GXBP_ARRAY(gxb_boolean, work.lefts, work.left),
@@ -13222,7 +13449,7 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
 static GXBP_COLD void gxbp_forget_arrangement(gxb_boolean *b) {
     uint32_t s;
     b->mesh.subtriangle_count = b->mesh.link_count = b->crossings.segment_count = b->crossings.edge_count =
-        b->crossings.edge_point_count = b->crossings.hit_count = b->crossings.dirty_count = b->mesh.divided_count = 0;
+        b->crossings.edge_point_count = b->crossings.hit_count = b->crossings.dirty_count = 0;
     b->crossings.arranged = b->crossings.segment_mark = b->winding.stated = 0;
     for (s = 0; s < b->in.source_count; s++) {
         b->in.sources[s].flags &= (uint32_t)GXBP_DEGENERATE;
@@ -13242,8 +13469,10 @@ static void gxbp_presize_planes(gxb_boolean *b) {
 static GXBP_APART void gxbp_arrange(gxb_boolean *b) {
     uint32_t i, j;
     gxbp_presize_planes(b);
-    for (i = b->crossings.arranged; i < b->in.operand_count; i++)
-        for (j = 0; j <= i && b->error == GX_OK; j++) gxbp_meet_operands(b, i, j);
+    for (i = b->crossings.arranged; i < b->in.operand_count; i++) {
+        gxbp_find_operands(b, gxbp_operand_box(b, i), 0, i + 1);
+        for (j = 0; j < b->work.found_count && b->error == GX_OK; j++) gxbp_meet_operands(b, i, b->work.found[j]);
+    }
     gxbp_order_edges(b);
     if (b->error == GX_OK) gxbp_divide_dirty(b);
     gxbp_merge_points(b);
@@ -13274,6 +13503,7 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *res
     gxbp_find_states(b);
     if (b->error == GX_OK) gxbp_extract(b);
     if (b->error == GX_OK && b->options.coarsen != NULL && b->out.triangle_count > 0) b->options.coarsen(b);
+    b->crossings.dirty_count = 0;
     gxbp_round_vertices(b);
     if (b->error == GX_OK && b->options.mend != NULL) b->options.mend(b);
     b->out.evaluated = b->error == GX_OK;
