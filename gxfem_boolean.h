@@ -764,6 +764,19 @@ typedef struct gxb_boolean_result {
     const uint8_t *triangle_reversed;                   /* triangle_count: 1 where it faces against that triangle */
 } gxb_boolean_result;
 
+/* count items from first on */
+typedef struct gxb_range {
+    size_t first, count;
+} gxb_range;
+
+/* Where a result differs from that of the evaluation before, in ascending order. */
+typedef struct gxb_changes {
+    const gxb_range *vertices;
+    size_t vertex_range_count;
+    const gxb_range *triangles;
+    size_t triangle_range_count;
+} gxb_changes;
+
 /* The connected components of a result's interior. Arrays are valid as long as those of the result. */
 typedef struct gxb_components {
     size_t count;
@@ -808,6 +821,12 @@ GXFEM_API gx_result gxb_boolean_set_fine(gxb_boolean *boolean, int fine, gx_fail
  * moves by at most 2 such units. The surface stays closed, input vertices stay, and so do components and their Euler
  * characteristics. */
 GXFEM_API gx_result gxb_boolean_set_mend(gxb_boolean *boolean, int mend, gx_failure *failure);
+/* 1: a result changes that of the evaluation before. Triangles and vertices that both have stay where they are, except
+ * that the last triangles take the places of those that have gone. There may be vertices that no triangle has. An
+ * evaluation then takes time for what is new, not for all there is; gxb_boolean_changes says what differs. Coarse or
+ * mended results, and those after a call of gxb_boolean_set_fine or an error, are made from nothing. 0 (the default):
+ * a result does not depend on evaluations before it. */
+GXFEM_API gx_result gxb_boolean_set_retained(gxb_boolean *boolean, int retained, gx_failure *failure);
 /* Copies an operand. Errors: ARGUMENT, EMPTY, INDEX (triangle), NOT_FINITE and RANGE (vertex), NOT_CLOSED (triangle),
  * LIMIT, MEMORY. */
 GXFEM_API gx_result gxb_boolean_add(gxb_boolean *boolean, const gxb_operand *operand, gx_failure *failure);
@@ -818,6 +837,9 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *boolean, gxb_boolean_resul
  * operand was added since), MEMORY, LIMIT. After an error the result is unchanged. */
 GXFEM_API gx_result gxb_boolean_components(gxb_boolean *boolean, gxb_components *components, gx_failure *failure);
 GXFEM_API gx_result gxb_boolean_defects(gxb_boolean *boolean, gxb_defects *defects, gx_failure *failure);
+/* What the latest evaluation changed in a retained result; all of it, where it was made from nothing. Valid as long as
+ * the result. Errors: ARGUMENT, SEQUENCE (no result, or an operand was added since), MEMORY, LIMIT. */
+GXFEM_API gx_result gxb_boolean_changes(gxb_boolean *boolean, gxb_changes *changes, gx_failure *failure);
 GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *boolean, gxb_statistics *statistics, gx_failure *failure);
 
 #ifdef __cplusplus
@@ -7735,7 +7757,7 @@ typedef struct gxbp_points {
     double reach; /* the largest of their errors */
     /* united 1: points were united since the last evaluation; renamed 1: an input vertex ever got another name */
     uint32_t united, renamed;
-    /* old points and input vertices that got another name since the last evaluation */
+    /* old points and input vertices that got another name or definition since the last evaluation */
     uint32_t *dropped;
     uint32_t dropped_count, dropped_capacity;
 } gxbp_points;
@@ -7765,6 +7787,9 @@ typedef struct gxbp_mesh {
     gxbp_link *links;
     uint32_t link_count, link_capacity;
     uint32_t stated; /* subtriangles before it have states, if they need one */
+    /* subtriangles of the last evaluation that this one divided, removed or gave another state */
+    uint32_t *changed;
+    uint32_t changed_count, changed_capacity;
 } gxbp_mesh;
 
 /* A winding number that is not 0 */
@@ -7829,14 +7854,43 @@ typedef struct gxbp_output {
     /* of half-edges, to mend: the surface is taken apart where it only touches itself */
     uint32_t *twins;
     uint32_t twin_count, twin_capacity;
+    /* of each subtriangle before shown_count, what the last evaluation judged: see gxbp_judge_subtriangle */
+    uint8_t *shown;
+    uint32_t shown_count, shown_capacity;
+    uint32_t judged;                   /* operands of that evaluation */
     int evaluated, measured, examined; /* 1: there is a result; its components, its defects are known */
     uint32_t mended_count;             /* defects that mending removed */
 } gxbp_output;
 
-/* What the caller chose. coarsen and mend are NULL unless requested: only the setters name these functions. */
+/* What keeps a result in its place, see >>retained. Lives until an evaluation fails. */
+typedef struct gxbp_kept {
+    int valid; /* 1: the result is that of the evaluation before, with its triangles in the places below */
+    int fine;  /* of its vertices */
+    /* of 2 x subtriangle, + 1 where it faces against its plane: its triangle; GXB_NONE: there is none */
+    uint32_t *places;
+    uint32_t place_count, place_capacity;
+    /* of each point: its vertex, or GXB_NONE */
+    uint32_t *vertices;
+    uint32_t vertex_count, vertex_capacity;
+    /* of each vertex: corners of triangles there */
+    uint32_t *uses;
+    uint32_t use_count, use_capacity;
+    /* vertices that no triangle has; triangles that have gone */
+    uint32_t *spare;
+    uint32_t spare_count, spare_capacity;
+    uint32_t *holes;
+    uint32_t hole_count, hole_capacity;
+    /* vertices and triangles that the evaluation wrote, some repeatedly; as ranges, when requested */
+    uint32_t *new_vertices, *new_triangles;
+    uint32_t new_vertex_count, new_vertex_capacity, new_triangle_count, new_triangle_capacity;
+    gxb_range *vertex_ranges, *triangle_ranges;
+    uint32_t vertex_range_count, vertex_range_capacity, triangle_range_count, triangle_range_capacity;
+} gxbp_kept;
+
+/* What the caller chose. coarsen, mend and patch are NULL unless requested: only the setters name these functions. */
 typedef struct gxbp_options {
     uint32_t fine, triangulation;
-    void (*coarsen)(gxb_boolean *b), (*mend)(gxb_boolean *b);
+    void (*coarsen)(gxb_boolean *b), (*mend)(gxb_boolean *b), (*patch)(gxb_boolean *b);
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
     void *user;
 } gxbp_options;
@@ -7900,6 +7954,7 @@ struct gxb_boolean { /* what is used most comes first: its addresses are short *
     gxbp_work work;
     gxbp_winding winding;
     gxbp_output out;
+    gxbp_kept kept;
 };
 
 /* >>arena: memory of a Boolean ------------------------------------------------------------------------------------- */
@@ -8123,6 +8178,8 @@ static GXBP_RARE void gxbp_unite(gxb_boolean *b, uint32_t keep, uint32_t drop) {
     p->ball = q->ball;
     p->exact = NULL;
     p->def[0] = q->def[0];
+    if (keep < b->points.merged_count && GXBP_ROOM(b, points.dropped, points.dropped, 1))
+        b->points.dropped[b->points.dropped_count++] = keep;
 }
 
 /* Defines a point as the intersection of a line and a plane or of three planes. A ball that is too large to filter by
@@ -10378,6 +10435,14 @@ static void gxbp_trace_segments(gxb_boolean *b, uint32_t s, uint32_t i) {
     }
 }
 
+/* Lists a source's subtriangles as changed, if there is a result that shows them. */
+static void gxbp_list_changed(gxb_boolean *b, uint32_t s) {
+    uint32_t f;
+    if (b->out.shown_count == 0) return;
+    for (f = b->in.sources[s].subtriangle; f != GXB_NONE; f = b->mesh.subtriangles[f].next)
+        if (GXBP_ROOM(b, mesh.changed, mesh.changed, 1)) b->mesh.changed[b->mesh.changed_count++] = f;
+}
+
 static void gxbp_note_divided(gxb_boolean *b, uint32_t s) {
     b->in.sources[s].flags |= GXBP_DIVIDED;
 }
@@ -10781,6 +10846,7 @@ static GXBP_APART void gxbp_divide_by_segments(gxb_boolean *b, uint32_t s, uint3
 static void gxbp_divide_source(gxb_boolean *b, uint32_t s) {
     uint32_t n;
     if (!gxbp_need_plane(b, s)) return;
+    gxbp_list_changed(b, s);
     gxbp_note_divided(b, s);
     n = gxbp_chain_segments(b, s);
     if (b->error != GX_OK) return;
@@ -10937,6 +11003,7 @@ static GXBP_COLD void gxbp_divide_flat(gxb_boolean *b, uint32_t r) {
     uint32_t t, f;
     if (!gxbp_need_plane(b, r)) return;
     for (t = r; t != GXB_NONE; t = b->in.sources[t].next) {
+        gxbp_list_changed(b, t);
         for (f = b->in.sources[t].subtriangle; f != GXB_NONE; f = b->mesh.subtriangles[f].next)
             b->mesh.subtriangles[f].source = GXB_NONE;
         b->in.sources[t].subtriangle = GXB_NONE;
@@ -11505,7 +11572,7 @@ static GXBP_RARE void gxbp_rename_vertices(gxb_boolean *b) {
         for (i = 0; i < b->crossings.dirty_count; i++) gxbp_rename_source(b, b->crossings.dirty[i]);
         for (i = 0; i < b->points.dropped_count; i++) gxbp_rename_point(b, b->points.dropped[i]);
     }
-    b->points.united = b->points.dropped_count = 0;
+    b->points.united = 0;
 }
 
 /* The subtriangle at the start of edge k of a source that is not in a flat. GXB_NONE: another surface meets it there.
@@ -11772,6 +11839,8 @@ static GXBP_COLD void gxbp_close_states(gxb_boolean *b) {
     int k;
     b->work.pending_count = 0;
     for (i = b->winding.stated; i < b->in.operand_count; i++) gxbp_open_states(b, gxbp_operand_box(b, i));
+    if (b->out.shown_count > 0 && GXBP_ROOM(b, mesh.changed, mesh.changed, b->work.pending_count))
+        for (i = 0; i < b->work.pending_count; i++) b->mesh.changed[b->mesh.changed_count++] = b->work.pending[i];
     for (pass = 0; pass < 2; pass++)
         for (i = 0; i < b->work.pending_count && b->error == GX_OK; i++) {
             f = b->work.pending[i];
@@ -11962,10 +12031,16 @@ static GXBP_APART int gxbp_more_triangles(gxb_boolean *b, size_t extra) {
            GXBP_ROOM(b, out.reversed, out.reversed, extra) && GXBP_ROOM(b, out.sources, out.triangle, extra);
 }
 
-/* reversed: the outside is behind the subtriangle's plane. */
+/* Names triangle i's source, and the subtriangle that it shows. reversed: the outside is behind the subtriangle's
+ * plane. */
+static inline void gxbp_name_triangle(gxb_boolean *b, uint32_t i, uint32_t f, int reversed, uint32_t source) {
+    gxbp_name_source(b, source, 3, &b->out.operands[i], &b->out.sources[i]);
+    b->out.subtriangles[i] = 2 * f + (uint32_t)reversed;
+    b->out.reversed[i] = reversed != (gxbp_facing(b, b->mesh.subtriangles[f].source, source) < 0);
+}
+
 static void gxbp_emit(gxb_boolean *b, uint32_t *vertex, uint32_t f, int reversed, uint32_t source) {
     const uint32_t n = b->out.corner_count, *v = b->mesh.subtriangles[f].v;
-    uint32_t i;
     if (!GXBP_ROOM(b, out.triangles, out.corner, 3) ||
         (b->out.triangle_count == b->out.triangle_capacity && !gxbp_more_triangles(b, 1)))
         return;
@@ -11973,11 +12048,10 @@ static void gxbp_emit(gxb_boolean *b, uint32_t *vertex, uint32_t f, int reversed
     b->out.triangles[n + 1] = gxbp_out_vertex(b, vertex, v[reversed ? 2 : 1]);
     b->out.triangles[n + 2] = gxbp_out_vertex(b, vertex, v[reversed ? 1 : 2]);
     b->out.corner_count += 3;
-    i = b->out.triangle_count++;
+    gxbp_name_triangle(b, b->out.triangle_count++, f, reversed, source);
     b->out.operand_count++;
-    gxbp_name_source(b, source, 3, &b->out.operands[i], &b->out.sources[i]);
-    b->out.subtriangles[b->out.subtriangle_count++] = 2 * f + (uint32_t)reversed;
-    b->out.reversed[b->out.reversed_count++] = reversed != (gxbp_facing(b, b->mesh.subtriangles[f].source, source) < 0);
+    b->out.subtriangle_count++;
+    b->out.reversed_count++;
 }
 
 static GXBP_APART void gxbp_set_triangle_count(gxb_boolean *b, uint32_t n) {
@@ -11985,12 +12059,70 @@ static GXBP_APART void gxbp_set_triangle_count(gxb_boolean *b, uint32_t n) {
     b->out.triangle_count = b->out.operand_count = b->out.subtriangle_count = b->out.reversed_count = n;
 }
 
+/* Is it inside in front of and behind a subtriangle that only its own source covers? For the last one judged. */
+typedef struct gxbp_judgement {
+    uint32_t state, operand;
+    int front, back;
+} gxbp_judgement;
+
+enum { GXBP_SHOWS = 1, GXBP_SHOWS_BACK = 2 };
+
+/* What a subtriangle shows in the result. GXBP_SHOWS: a triangle that faces as its plane does; GXBP_SHOWS_BACK: one
+ * that faces against it; a sheet shows both. */
+static inline uint32_t gxbp_judge_subtriangle(gxb_boolean *b, uint32_t f, gxbp_judgement *last) {
+    const gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
+    if (!gxbp_is_surface(b, f)) return 0;
+    if (sub->covers != GXB_NONE || sub->state != last->state || b->in.sources[sub->source].operand != last->operand) {
+        const uint32_t behind = gxbp_state_behind(b, f); /* may move the states */
+        last->back = gxbp_is_inside(b, behind) != 0;
+        last->front = gxbp_is_inside(b, sub->state) != 0;
+        last->state = sub->covers == GXB_NONE ? sub->state : GXB_NONE;
+        last->operand = b->in.sources[sub->source].operand;
+    }
+    if (last->front != last->back) return last->front ? GXBP_SHOWS_BACK : GXBP_SHOWS;
+    return last->front && gxbp_cover_of(b, f, 1) != GXB_NONE ? GXBP_SHOWS | GXBP_SHOWS_BACK : 0;
+}
+
+/* Room for what subtriangles show; those that are new show nothing yet. */
+static int gxbp_show_room(gxb_boolean *b) {
+    const uint32_t n = b->out.shown_count, added = b->mesh.subtriangle_count - n;
+    if (!GXBP_ROOM(b, out.shown, out.shown, added)) return 0;
+    memset(b->out.shown + n, 0, added);
+    b->out.shown_count = b->mesh.subtriangle_count;
+    return 1;
+}
+
+/* Does what an older evaluation judged hold, apart from what has changed? An intersection leaves nothing outside of it;
+ * what the caller's function says is not known. */
+static int gxbp_judgements_hold(const gxb_boolean *b) {
+    return b->out.shown_count > 0 && b->options.inside == NULL &&
+           b->in.operands[b->in.operand_count - 1].narrowed < b->out.judged;
+}
+
+/* Judges what has changed since the last evaluation. */
+static GXBP_COLD void gxbp_judge_changed(gxb_boolean *b) {
+    gxbp_judgement last = {GXB_NONE, GXB_NONE, 0, 0};
+    uint32_t i, f = b->out.shown_count;
+    if (!gxbp_show_room(b)) return;
+    for (i = 0; i < b->mesh.changed_count; i++)
+        b->out.shown[b->mesh.changed[i]] = (uint8_t)gxbp_judge_subtriangle(b, b->mesh.changed[i], &last);
+    for (; f < b->mesh.subtriangle_count; f++) b->out.shown[f] = (uint8_t)gxbp_judge_subtriangle(b, f, &last);
+}
+
+static void gxbp_emit_shown(gxb_boolean *b, uint32_t *vertex, uint32_t f, uint32_t shows) {
+    const int sheet = shows == (GXBP_SHOWS | GXBP_SHOWS_BACK);
+    const uint32_t source = gxbp_cover_of(b, f, sheet);
+    if (shows & GXBP_SHOWS) gxbp_emit(b, vertex, f, 0, source);
+    if (shows & GXBP_SHOWS_BACK) gxbp_emit(b, vertex, f, 1, source);
+}
+
 static GXBP_APART void gxbp_extract(gxb_boolean *b) {
-    uint32_t *vertex, f, state = GXB_NONE, operand = GXB_NONE; /* of the last subtriangle that only its own source
-                                                                  covers */
-    int front_in = 0, back_in = 0;
+    const int judged = gxbp_judgements_hold(b);
+    gxbp_judgement last = {GXB_NONE, GXB_NONE, 0, 0};
+    uint32_t *vertex, f;
+    if (judged) gxbp_judge_changed(b);
     vertex = (uint32_t *)gxbp_borrow(b, b->points.vertex_count * sizeof *vertex);
-    if (vertex == NULL) return;
+    if (vertex == NULL || !gxbp_show_room(b)) return;
     memset(vertex, 0xff, b->points.vertex_count * sizeof *vertex);
     gxbp_set_triangle_count(b, 0);
     b->out.point_count = b->out.vertex_count = b->out.origin_count = 0;
@@ -11998,24 +12130,11 @@ static GXBP_APART void gxbp_extract(gxb_boolean *b) {
         !GXBP_ROOM(b, out.triangles, out.corner, 3 * (size_t)(b->mesh.subtriangle_count / 2)))
         return;
     for (f = 0; f < b->mesh.subtriangle_count && b->error == GX_OK; f++) {
-        const gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
-        uint32_t source;
-        if (!gxbp_is_surface(b, f)) continue;
-        if (sub->covers != GXB_NONE || sub->state != state || b->in.sources[sub->source].operand != operand) {
-            const uint32_t behind = gxbp_state_behind(b, f); /* may move the states */
-            back_in = gxbp_is_inside(b, behind) != 0;
-            front_in = gxbp_is_inside(b, sub->state) != 0;
-            state = sub->covers == GXB_NONE ? sub->state : GXB_NONE;
-            operand = b->in.sources[sub->source].operand;
-        }
-        if (front_in != back_in) {
-            source = gxbp_cover_of(b, f, 0);
-            gxbp_emit(b, vertex, f, front_in, source);
-        } else if (front_in && (source = gxbp_cover_of(b, f, 1)) != GXB_NONE) {
-            gxbp_emit(b, vertex, f, 0, source);
-            gxbp_emit(b, vertex, f, 1, source);
-        }
+        if (!judged) b->out.shown[f] = (uint8_t)gxbp_judge_subtriangle(b, f, &last);
+        if (b->out.shown[f] != 0) gxbp_emit_shown(b, vertex, f, b->out.shown[f]);
     }
+    b->out.judged = b->in.operand_count;
+    b->kept.valid = 0;
 }
 
 static uint32_t gxbp_out_corner(const gxb_boolean *b, uint32_t t, uint32_t k) {
@@ -12059,15 +12178,17 @@ static GXBP_COLD void gxbp_drop_lonely(gxb_boolean *b, uint32_t *map) {
     }
 }
 
+static void gxbp_round_vertex(gxb_boolean *b, uint32_t i) {
+    gxbp_round_point(b, b->out.points[i], b->out.vertices + 3 * (size_t)i);
+    gxbp_describe_point(b, b->out.points[i], &b->out.origins[i]);
+}
+
 static GXBP_APART void gxbp_round_vertices(gxb_boolean *b) {
     uint32_t i;
     if (b->error != GX_OK || !GXBP_ROOM(b, out.vertices, out.vertex, 3 * (size_t)b->out.point_count) ||
         !GXBP_ROOM(b, out.origins, out.origin, b->out.point_count))
         return;
-    for (i = 0; i < b->out.point_count; i++) {
-        gxbp_round_point(b, b->out.points[i], b->out.vertices + 3 * (size_t)i);
-        gxbp_describe_point(b, b->out.points[i], &b->out.origins[i]);
-    }
+    for (i = 0; i < b->out.point_count; i++) gxbp_round_vertex(b, i);
     b->out.vertex_count = 3 * b->out.point_count;
     b->out.origin_count = b->out.point_count;
 }
@@ -12122,6 +12243,243 @@ static GXBP_APART void gxbp_find_defects(gxb_boolean *b) {
         if (GXBP_ROOM(b, out.defects, out.defect, 1)) b->out.defects[b->out.defect_count++] = t;
     }
     b->out.examined = b->error == GX_OK;
+}
+
+/* >>retained: a result that keeps its place ------------------------------------------------------------------------ */
+/* In: the subtriangles that an evaluation changed, and the result of the evaluation before. Out: the result, changed
+   where it differs, and what differs. Triangles stay where they are, unless they fill the place of one that has gone.
+   Vertices stay. Touches the output and what keeps it. */
+
+/* Appends to an array count words that are GXB_NONE. */
+#define GXBP_PAD(b, array, counter, count)                                                                             \
+    ((count) <= (b)->counter##_count ||                                                                                \
+     (GXBP_ROOM(b, array, counter, (count) - (b)->counter##_count) &&                                                  \
+      (memset((b)->array + (b)->counter##_count, 0xff, ((count) - (b)->counter##_count) * sizeof *(b)->array),         \
+       (b)->counter##_count = (count), 1)))
+
+static void gxbp_note_vertex(gxb_boolean *b, uint32_t v) {
+    if (GXBP_ROOM(b, kept.new_vertices, kept.new_vertex, 1)) b->kept.new_vertices[b->kept.new_vertex_count++] = v;
+}
+
+static void gxbp_note_triangle(gxb_boolean *b, uint32_t t) {
+    if (GXBP_ROOM(b, kept.new_triangles, kept.new_triangle, 1)) b->kept.new_triangles[b->kept.new_triangle_count++] = t;
+}
+
+/* The vertex of a point for one more corner */
+static uint32_t gxbp_keep_vertex(gxb_boolean *b, uint32_t point) {
+    uint32_t v = b->kept.vertices[point];
+    if (v == GXB_NONE) {
+        if (b->kept.spare_count > 0)
+            v = b->kept.spare[--b->kept.spare_count];
+        else {
+            if (!GXBP_ROOM(b, out.points, out.point, 1) || !GXBP_ROOM(b, kept.uses, kept.use, 1)) return 0;
+            v = b->out.point_count++;
+            b->kept.use_count++;
+        }
+        b->out.points[v] = point;
+        b->kept.uses[v] = 0;
+        b->kept.vertices[point] = v;
+        gxbp_note_vertex(b, v);
+    }
+    b->kept.uses[v]++;
+    return v;
+}
+
+/* A place for one more triangle: that of one that has gone, or the next. GXB_NONE: no memory. */
+static uint32_t gxbp_keep_place(gxb_boolean *b) {
+    if (b->kept.hole_count > 0) return b->kept.holes[--b->kept.hole_count];
+    if (!GXBP_ROOM(b, out.triangles, out.corner, 3) || !gxbp_more_triangles(b, 1)) return GXB_NONE;
+    gxbp_set_triangle_count(b, b->out.triangle_count + 1);
+    return b->out.triangle_count - 1;
+}
+
+static void gxbp_keep_triangle(gxb_boolean *b, uint32_t f, int reversed, uint32_t source) {
+    const uint32_t t = gxbp_keep_place(b), *v = b->mesh.subtriangles[f].v;
+    uint32_t k;
+    if (t == GXB_NONE) return;
+    for (k = 0; k < 3; k++) b->out.triangles[3 * t + k] = gxbp_keep_vertex(b, v[reversed && k > 0 ? 3 - k : k]);
+    gxbp_name_triangle(b, t, f, reversed, source);
+    b->kept.places[2 * f + (uint32_t)reversed] = t;
+    gxbp_note_triangle(b, t);
+}
+
+/* Takes a triangle out of the result. Its place is a hole. Vertices without triangles are noted, and sorted out later.
+ */
+static void gxbp_drop_triangle(gxb_boolean *b, uint32_t t) {
+    uint32_t k;
+    if (!GXBP_ROOM(b, kept.holes, kept.hole, 1)) return;
+    for (k = 0; k < 3; k++) {
+        const uint32_t v = b->out.triangles[3 * t + k];
+        if (--b->kept.uses[v] == 0) gxbp_note_vertex(b, v);
+    }
+    b->kept.places[b->out.subtriangles[t]] = GXB_NONE;
+    b->out.subtriangles[t] = GXB_NONE;
+    b->kept.holes[b->kept.hole_count++] = t;
+}
+
+/* Does triangle t have the corners of subtriangle f? */
+static int gxbp_still_shows(const gxb_boolean *b, uint32_t t, uint32_t f, int reversed) {
+    const gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
+    uint32_t k;
+    if (sub->source == GXB_NONE) return 0;
+    for (k = 0; k < 3; k++)
+        if (b->out.points[b->out.triangles[3 * t + k]] != sub->v[reversed && k > 0 ? 3 - k : k]) return 0;
+    return 1;
+}
+
+/* Takes out triangles of a subtriangle that has other corners now. */
+static void gxbp_drop_old(gxb_boolean *b, uint32_t f) {
+    int side;
+    for (side = 0; side < 2; side++) {
+        const uint32_t t = b->kept.places[2 * f + (uint32_t)side];
+        if (t != GXB_NONE && !gxbp_still_shows(b, t, f, side)) {
+            gxbp_drop_triangle(b, t);
+            b->out.shown[f] &= (uint8_t)~(side ? GXBP_SHOWS_BACK : GXBP_SHOWS);
+        }
+    }
+}
+
+/* Makes the result show what a subtriangle shows now. */
+static void gxbp_show_again(gxb_boolean *b, uint32_t f, gxbp_judgement *last) {
+    const uint32_t now = gxbp_judge_subtriangle(b, f, last), before = b->out.shown[f];
+    int side;
+    if (now == before) return;
+    for (side = 0; side < 2; side++) {
+        const uint32_t bit = side ? GXBP_SHOWS_BACK : GXBP_SHOWS;
+        if (before & ~now & bit) gxbp_drop_triangle(b, b->kept.places[2 * f + (uint32_t)side]);
+        if (now & ~before & bit)
+            gxbp_keep_triangle(b, f, side, gxbp_cover_of(b, f, now == (GXBP_SHOWS | GXBP_SHOWS_BACK)));
+    }
+    b->out.shown[f] = (uint8_t)now;
+}
+
+/* Points that have other names or definitions keep their vertices. */
+static GXBP_COLD void gxbp_rename_kept(gxb_boolean *b) {
+    uint32_t i;
+    for (i = 0; i < b->points.dropped_count; i++) {
+        const uint32_t old = b->points.dropped[i], point = gxbp_same(b, old), v = b->kept.vertices[old];
+        if (v == GXB_NONE) continue;
+        b->kept.vertices[old] = GXB_NONE;
+        b->kept.vertices[point] = v;
+        b->out.points[v] = point;
+        gxbp_note_vertex(b, v);
+    }
+}
+
+/* The last triangles fill the holes. */
+static void gxbp_fill_holes(gxb_boolean *b) {
+    uint32_t n = b->out.triangle_count, i;
+    for (i = 0; i < b->kept.hole_count; i++) {
+        const uint32_t t = b->kept.holes[i];
+        while (n > 0 && b->out.subtriangles[n - 1] == GXB_NONE) n--;
+        if (t >= n) continue;
+        memcpy(b->out.triangles + 3 * (size_t)t, b->out.triangles + 3 * (size_t)--n, 3 * sizeof *b->out.triangles);
+        gxbp_copy_origin(b, t, n);
+        b->kept.places[b->out.subtriangles[t]] = t;
+        gxbp_note_triangle(b, t);
+    }
+    b->kept.hole_count = 0;
+    gxbp_set_triangle_count(b, n);
+}
+
+/* Rounds new vertices; those without triangles become spare. */
+static void gxbp_finish_vertices(gxb_boolean *b) {
+    uint32_t i;
+    if (b->error != GX_OK || !GXBP_ROOM(b, out.vertices, out.vertex, 3 * (size_t)b->out.point_count - b->out.vertex_count) ||
+        !GXBP_ROOM(b, out.origins, out.origin, b->out.point_count - b->out.origin_count))
+        return;
+    for (i = 0; i < b->kept.new_vertex_count; i++) {
+        const uint32_t v = b->kept.new_vertices[i];
+        if (b->kept.uses[v] > 0)
+            gxbp_round_vertex(b, v);
+        else if (b->out.points[v] != GXB_NONE && GXBP_ROOM(b, kept.spare, kept.spare, 1)) {
+            b->kept.vertices[b->out.points[v]] = GXB_NONE;
+            b->out.points[v] = GXB_NONE;
+            b->kept.spare[b->kept.spare_count++] = v;
+        }
+    }
+    b->out.vertex_count = 3 * b->out.point_count;
+    b->out.origin_count = b->out.point_count;
+}
+
+/* There is no result to change, or its vertices were rounded in another way: the next one is made from nothing. */
+static void gxbp_begin_kept(gxb_boolean *b) {
+    gxbp_set_triangle_count(b, 0);
+    b->out.point_count = b->out.vertex_count = b->out.origin_count = b->out.shown_count = 0;
+    b->kept.place_count = b->kept.vertex_count = b->kept.use_count = b->kept.spare_count = b->kept.hole_count = 0;
+    b->kept.fine = gxbp_is_fine(b);
+}
+
+/* Changes the result of the last evaluation into that of this one. */
+static GXBP_COLD void gxbp_patch(gxb_boolean *b) {
+    gxbp_judgement last = {GXB_NONE, GXB_NONE, 0, 0};
+    uint32_t i, f;
+    int all;
+    if (!b->kept.valid || b->kept.fine != gxbp_is_fine(b)) gxbp_begin_kept(b);
+    all = !gxbp_judgements_hold(b);
+    f = all ? 0 : b->out.shown_count;
+    b->kept.valid = 0;
+    b->kept.new_vertex_count = b->kept.new_triangle_count = 0;
+    if (!gxbp_show_room(b) || !GXBP_PAD(b, kept.places, kept.place, 2 * (size_t)b->mesh.subtriangle_count) ||
+        !GXBP_PAD(b, kept.vertices, kept.vertex, b->points.vertex_count))
+        return;
+    gxbp_rename_kept(b);
+    for (i = 0; i < b->mesh.changed_count; i++) gxbp_drop_old(b, b->mesh.changed[i]);
+    for (i = 0; i < b->mesh.changed_count && b->error == GX_OK; i++) gxbp_show_again(b, b->mesh.changed[i], &last);
+    for (; f < b->mesh.subtriangle_count && b->error == GX_OK; f++) gxbp_show_again(b, f, &last);
+    gxbp_fill_holes(b);
+    gxbp_finish_vertices(b);
+    b->out.judged = b->in.operand_count;
+    b->kept.valid = b->error == GX_OK;
+}
+
+/* Sorts words; work: room for half of them */
+static void gxbp_sort_words(uint32_t *p, uint32_t count, uint32_t *work) {
+    const uint32_t half = count / 2;
+    uint32_t i, j, k;
+    if (count < 2) return;
+    gxbp_sort_words(p, half, work);
+    gxbp_sort_words(p + half, count - half, work);
+    memcpy(work, p, half * sizeof *p);
+    for (i = 0, j = half, k = 0; i < half; k++) p[k] = j < count && p[j] < work[i] ? p[j++] : work[i++];
+}
+
+/* Turns a list of indices into ranges below end. ranges: room for one for each of them. Returns their number. */
+static uint32_t gxbp_make_ranges(gxb_boolean *b, uint32_t *list, uint32_t count, uint32_t end, gxb_range *ranges) {
+    uint32_t *work = (uint32_t *)gxbp_borrow(b, count * sizeof *work), i, n = 0;
+    if (work == NULL) return 0;
+    gxbp_sort_words(list, count, work);
+    for (i = 0; i < count && list[i] < end; i++) {
+        if (i > 0 && list[i] == list[i - 1]) continue;
+        if (n > 0 && ranges[n - 1].first + ranges[n - 1].count == list[i]) {
+            ranges[n - 1].count++;
+            continue;
+        }
+        ranges[n].first = list[i];
+        ranges[n++].count = 1;
+    }
+    return n;
+}
+
+/* Ranges of what the last evaluation changed; all, if its result was made from nothing. */
+static GXBP_COLD void gxbp_find_changes(gxb_boolean *b) {
+    gxbp_kept *kept = &b->kept;
+    if (!kept->valid) kept->new_vertex_count = kept->new_triangle_count = 0;
+    if (!GXBP_ROOM(b, kept.vertex_ranges, kept.vertex_range, kept->new_vertex_count + 1) ||
+        !GXBP_ROOM(b, kept.triangle_ranges, kept.triangle_range, kept->new_triangle_count + 1))
+        return;
+    if (kept->valid) {
+        kept->vertex_range_count =
+            gxbp_make_ranges(b, kept->new_vertices, kept->new_vertex_count, b->out.point_count, kept->vertex_ranges);
+        kept->triangle_range_count = gxbp_make_ranges(b, kept->new_triangles, kept->new_triangle_count,
+                                                      b->out.triangle_count, kept->triangle_ranges);
+        return;
+    }
+    kept->vertex_range_count = b->out.point_count > 0;
+    kept->triangle_range_count = b->out.triangle_count > 0;
+    kept->vertex_ranges[0].first = kept->triangle_ranges[0].first = 0;
+    kept->vertex_ranges[0].count = b->out.point_count;
+    kept->triangle_ranges[0].count = b->out.triangle_count;
 }
 
 /* >>coarse: fewer triangles of the same surface -------------------------------------------------------------------- */
@@ -13318,7 +13676,18 @@ static const gxbp_array gxbp_boolean_arrays[] = {/* all that grow */
                                                  GXBP_ARRAY(gxb_boolean, out.reversed, out.reversed),
                                                  GXBP_ARRAY(gxb_boolean, out.sides, out.side),
                                                  GXBP_ARRAY(gxb_boolean, out.eulers, out.euler),
-                                                 GXBP_ARRAY(gxb_boolean, out.twins, out.twin)};
+                                                 GXBP_ARRAY(gxb_boolean, out.twins, out.twin),
+                                                 GXBP_ARRAY(gxb_boolean, out.shown, out.shown),
+                                                 GXBP_ARRAY(gxb_boolean, mesh.changed, mesh.changed),
+                                                 GXBP_ARRAY(gxb_boolean, kept.places, kept.place),
+                                                 GXBP_ARRAY(gxb_boolean, kept.vertices, kept.vertex),
+                                                 GXBP_ARRAY(gxb_boolean, kept.uses, kept.use),
+                                                 GXBP_ARRAY(gxb_boolean, kept.spare, kept.spare),
+                                                 GXBP_ARRAY(gxb_boolean, kept.holes, kept.hole),
+                                                 GXBP_ARRAY(gxb_boolean, kept.new_vertices, kept.new_vertex),
+                                                 GXBP_ARRAY(gxb_boolean, kept.new_triangles, kept.new_triangle),
+                                                 GXBP_ARRAY(gxb_boolean, kept.vertex_ranges, kept.vertex_range),
+                                                 GXBP_ARRAY(gxb_boolean, kept.triangle_ranges, kept.triangle_range)};
 
 static GXBP_COLD void gxbp_drop_boolean(gxb_boolean *b) {
     uint32_t i;
@@ -13392,6 +13761,12 @@ GXFEM_API gx_result gxb_boolean_set_mend(gxb_boolean *boolean, int mend, gx_fail
     return gxbp_end(failure, GX_OK);
 }
 
+GXFEM_API gx_result gxb_boolean_set_retained(gxb_boolean *boolean, int retained, gx_failure *failure) {
+    if (boolean == NULL) return gxbp_refuse(failure, "boolean");
+    boolean->options.patch = retained != 0 ? gxbp_patch : NULL;
+    return gxbp_end(failure, GX_OK);
+}
+
 static gx_result gxbp_check_operand(const gxb_boolean *b, const gxb_operand *o, gx_failure *failure) {
     size_t i;
     if (o->operation > GXB_SPLIT) return gxbp_refuse(failure, "operation");
@@ -13450,7 +13825,8 @@ static GXBP_COLD void gxbp_forget_arrangement(gxb_boolean *b) {
     uint32_t s;
     b->mesh.subtriangle_count = b->mesh.link_count = b->crossings.segment_count = b->crossings.edge_count =
         b->crossings.edge_point_count = b->crossings.hit_count = b->crossings.dirty_count = 0;
-    b->crossings.arranged = b->crossings.segment_mark = b->winding.stated = 0;
+    b->crossings.arranged = b->crossings.segment_mark = b->winding.stated = b->out.shown_count = 0;
+    b->kept.valid = 0;
     for (s = 0; s < b->in.source_count; s++) {
         b->in.sources[s].flags &= (uint32_t)GXBP_DEGENERATE;
         gxbp_reset_source(b, s);
@@ -13501,11 +13877,15 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *res
     b->out.mended_count = 0;
     gxbp_arrange(b);
     gxbp_find_states(b);
-    if (b->error == GX_OK) gxbp_extract(b);
-    if (b->error == GX_OK && b->options.coarsen != NULL && b->out.triangle_count > 0) b->options.coarsen(b);
-    b->crossings.dirty_count = 0;
-    gxbp_round_vertices(b);
-    if (b->error == GX_OK && b->options.mend != NULL) b->options.mend(b);
+    if (b->options.patch != NULL && b->options.coarsen == NULL && b->options.mend == NULL) {
+        if (b->error == GX_OK) b->options.patch(b);
+    } else {
+        if (b->error == GX_OK) gxbp_extract(b);
+        if (b->error == GX_OK && b->options.coarsen != NULL && b->out.triangle_count > 0) b->options.coarsen(b);
+        gxbp_round_vertices(b);
+        if (b->error == GX_OK && b->options.mend != NULL) b->options.mend(b);
+    }
+    b->crossings.dirty_count = b->points.dropped_count = b->mesh.changed_count = 0;
     b->out.evaluated = b->error == GX_OK;
     if (b->out.evaluated)
         gxbp_show_result(b, result);
@@ -13549,6 +13929,18 @@ GXFEM_API gx_result gxb_boolean_defects(gxb_boolean *b, gxb_defects *defects, gx
     defects->triangles = b->out.defects;
     defects->count = b->out.defect_count;
     defects->mended_count = b->out.mended_count;
+    return GX_OK;
+}
+
+GXFEM_API gx_result gxb_boolean_changes(gxb_boolean *b, gxb_changes *changes, gx_failure *failure) {
+    const gx_result asked = gxbp_begin_query(b, changes, "changes", failure);
+    if (asked != GX_OK) return asked;
+    gxbp_find_changes(b);
+    if (gxbp_end(failure, b->error) != GX_OK) return b->error;
+    changes->vertices = b->kept.vertex_ranges;
+    changes->vertex_range_count = b->kept.vertex_range_count;
+    changes->triangles = b->kept.triangle_ranges;
+    changes->triangle_range_count = b->kept.triangle_range_count;
     return GX_OK;
 }
 
@@ -13599,6 +13991,7 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_REMOVED
 #undef GXBP_RIM
 #undef GXBP_OPEN
+#undef GXBP_PAD
 #undef GXBP_VERTEX_ERROR
 #undef GXBP_VOLUME_ERROR
 #undef GXBP_MEND_REACH
