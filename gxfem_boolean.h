@@ -45,8 +45,8 @@
  *                   gxb_complex_pullback_side
  *     >>stream      a complex as bytes: gxb_stream_pass, has; gxb_complex_save, load
  *     >>boolean     exact, chainable Booleans of closed triangle surfaces: gxb_boolean_create, add, evaluate, destroy
- *                   options of a result: set_triangulation, set_fine, set_mend
- *                   more about a result: components, defects, statistics
+ *                   options of a result: set_triangulation, set_fine, set_mend, set_retained
+ *                   more about a result: components, defects, changes, statistics
  *
  * The implementation, under GXFEM_BOOLEAN_IMPLEMENTATION, from the bottom up. Of all:
  *     arithmetic      >>bits, >>exact (integers times powers of two), >>filter (doubles with bounds)
@@ -67,7 +67,7 @@
  *     triangulation   >>triangulate (points), >>constrain (edges), >>divide (one source), >>flats (sources that overlap
  *                     in one plane), >>merge (equal points)
  *     the result      >>states (vectors of winding numbers), >>winding (one for each subtriangle), >>result (triangles
- *                     and vertices), >>coarse (fewer triangles)
+ *                     and vertices), >>retained (one that keeps its place), >>coarse (fewer triangles)
  *     more about it   >>components (shells), >>volumes, >>containers (which shell lies in which), >>mend (defects)
  *     functions       >>api
  *
@@ -8795,8 +8795,7 @@ static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operan
     gx_result result;
     uint32_t *work;
     if (!GXBP_ROOM(b, in.operands, in.operand, 1) || !gxbp_operand_box_room(b) ||
-        !GXBP_ROOM(b, in.sources, in.source, sources) ||
-        !GXBP_ROOM(b, in.bounds, in.bound, leaves) ||
+        !GXBP_ROOM(b, in.sources, in.source, sources) || !GXBP_ROOM(b, in.bounds, in.bound, leaves) ||
         !GXBP_ROOM(b, mesh.subtriangles, mesh.subtriangle, subtriangles) ||
         !GXBP_ROOM(b, points.vertices, points.vertex, points) || !gxbp_table_room(b, (uint32_t)o->vertex_count))
         return b->error;
@@ -10443,9 +10442,7 @@ static void gxbp_list_changed(gxb_boolean *b, uint32_t s) {
         if (GXBP_ROOM(b, mesh.changed, mesh.changed, 1)) b->mesh.changed[b->mesh.changed_count++] = f;
 }
 
-static void gxbp_note_divided(gxb_boolean *b, uint32_t s) {
-    b->in.sources[s].flags |= GXBP_DIVIDED;
-}
+static void gxbp_note_divided(gxb_boolean *b, uint32_t s) { b->in.sources[s].flags |= GXBP_DIVIDED; }
 
 /* --- dividing a source by chains: the generic small case --- */
 
@@ -11204,6 +11201,7 @@ static GXBP_COLD uint32_t gxbp_judge_state(gxb_boolean *b, uint32_t state) {
 }
 
 static uint32_t gxbp_is_inside(gxb_boolean *b, uint32_t state) {
+    if (b->error != GX_OK) return 0;
     return b->winding.states[state].known == b->in.operand_count ? b->winding.states[state].inside
                                                                  : gxbp_judge_state(b, state);
 }
@@ -11243,8 +11241,7 @@ static uint32_t gxbp_find_state(gxb_boolean *b) {
         for (; k < b->winding.state_count; k++)
             if (gxbp_is_draft(b, k, hash)) return k;
     } else {
-        if ((b->winding.listed < b->winding.state_count ||
-             2 * (b->winding.state_count + 1) > b->winding.table_size) &&
+        if ((b->winding.listed < b->winding.state_count || 2 * (b->winding.state_count + 1) > b->winding.table_size) &&
             !gxbp_list_states(b))
             return 0;
         for (k = hash & (b->winding.table_size - 1); b->winding.table[k] != GXB_NONE;
@@ -11262,10 +11259,11 @@ static uint32_t gxbp_find_state(gxb_boolean *b) {
     return b->winding.state_count++;
 }
 
-/* Begins a draft: a copy of a state, or all numbers 0 (GXB_NONE). 0: no memory. */
+/* Begins a draft: a copy of a state, or all numbers 0 (GXB_NONE). 0: after an error, when there may be no such state.
+ */
 static int gxbp_begin_draft(gxb_boolean *b, uint32_t state) {
-    const uint32_t count = state == GXB_NONE ? 0 : b->winding.states[state].count;
-    if (!GXBP_ROOM(b, winding.numbers, winding.number, (size_t)count + 1)) return 0;
+    const uint32_t count = state == GXB_NONE || b->error != GX_OK ? 0 : b->winding.states[state].count;
+    if (b->error != GX_OK || !GXBP_ROOM(b, winding.numbers, winding.number, (size_t)count + 1)) return 0;
     if (count > 0)
         memcpy(b->winding.numbers + b->winding.number_count, b->winding.numbers + b->winding.states[state].first,
                count * sizeof *b->winding.numbers);
@@ -11273,11 +11271,20 @@ static int gxbp_begin_draft(gxb_boolean *b, uint32_t state) {
     return 1;
 }
 
+/* Room for one more number in the draft, which moves with the others if they move */
+static int gxbp_draft_room(gxb_boolean *b) {
+    int room;
+    b->winding.number_count += b->winding.draft_count;
+    room = GXBP_ROOM(b, winding.numbers, winding.number, 1);
+    b->winding.number_count -= b->winding.draft_count;
+    return room;
+}
+
 /* Adds to an operand's number in the draft. */
 static void gxbp_add_number(gxb_boolean *b, uint32_t operand, int change) {
     gxbp_operand_number *draft;
     uint32_t i = b->winding.draft_count;
-    if (change == 0 || !GXBP_ROOM(b, winding.numbers, winding.number, (size_t)i + 1)) return;
+    if (change == 0 || !gxbp_draft_room(b)) return;
     draft = b->winding.numbers + b->winding.number_count;
     while (i > 0 && draft[i - 1].operand > operand) i--;
     if (i > 0 && draft[i - 1].operand == operand) {
@@ -11368,8 +11375,8 @@ static uint32_t gxbp_state_beyond(gxb_boolean *b, uint32_t f, int k) {
     return begun ? gxbp_find_state(b) : b->mesh.subtriangles[f].state;
 }
 
-/* Adds sign times the subtriangle's own surfaces to the draft. Behind it, the winding number is larger by one for each surface that
- * faces as its plane does. */
+/* Adds sign times the subtriangle's own surfaces to the draft. Behind it, the winding number is larger by one for each
+ * surface that faces as its plane does. */
 static GXBP_COLD void gxbp_add_covers(gxb_boolean *b, uint32_t f, int sign) {
     const uint32_t r = b->mesh.subtriangles[f].source;
     uint32_t c;
@@ -11716,12 +11723,13 @@ static int gxbp_is_surface(const gxb_boolean *b, uint32_t f) {
 /* --- states of earlier evaluations: new operands get the number 0, which is right outside of their boxes --- */
 
 /* An operand that is an intersection leaves nothing outside of it. */
-static GXBP_APART void gxbp_note_intersections(gxb_boolean *b) {
+static void gxbp_note_intersections(gxb_boolean *b) {
     uint32_t i = b->winding.stated;
-    for (; i < b->in.operand_count; i++)
-        b->in.operands[i].narrowed = i == 0                                               ? 0
-                                     : b->in.operands[i].operation == GXB_INTERSECTION ? i
-                                                                                         : b->in.operands[i - 1].narrowed;
+    for (; i < b->in.operand_count; i++) {
+        gxbp_operand *o = &b->in.operands[i];
+        const uint32_t before = i > 0 ? b->in.operands[i - 1].narrowed : 0;
+        o->narrowed = i > 0 && o->operation == GXB_INTERSECTION ? i : before;
+    }
 }
 
 /* An open state has this bit: it does not count the new operands yet. */
@@ -12277,7 +12285,7 @@ static uint32_t gxbp_keep_vertex(gxb_boolean *b, uint32_t point) {
             b->kept.use_count++;
         }
         b->out.points[v] = point;
-        b->kept.uses[v] = 0;
+        b->kept.uses[v] = 0; /* a spare one has GXB_NONE */
         b->kept.vertices[point] = v;
         gxbp_note_vertex(b, v);
     }
@@ -12334,7 +12342,7 @@ static void gxbp_drop_old(gxb_boolean *b, uint32_t f) {
         const uint32_t t = b->kept.places[2 * f + (uint32_t)side];
         if (t != GXB_NONE && !gxbp_still_shows(b, t, f, side)) {
             gxbp_drop_triangle(b, t);
-            b->out.shown[f] &= (uint8_t)~(side ? GXBP_SHOWS_BACK : GXBP_SHOWS);
+            b->out.shown[f] &= (uint8_t) ~(side ? GXBP_SHOWS_BACK : GXBP_SHOWS);
         }
     }
 }
@@ -12384,17 +12392,19 @@ static void gxbp_fill_holes(gxb_boolean *b) {
 
 /* Rounds new vertices; those without triangles become spare. */
 static void gxbp_finish_vertices(gxb_boolean *b) {
+    const uint32_t added = b->out.point_count - b->out.origin_count;
     uint32_t i;
-    if (b->error != GX_OK || !GXBP_ROOM(b, out.vertices, out.vertex, 3 * (size_t)b->out.point_count - b->out.vertex_count) ||
-        !GXBP_ROOM(b, out.origins, out.origin, b->out.point_count - b->out.origin_count))
+    if (b->error != GX_OK || !GXBP_ROOM(b, out.vertices, out.vertex, 3 * (size_t)added) ||
+        !GXBP_ROOM(b, out.origins, out.origin, added))
         return;
     for (i = 0; i < b->kept.new_vertex_count; i++) {
         const uint32_t v = b->kept.new_vertices[i];
+        if (b->kept.uses[v] == GXB_NONE) continue;
         if (b->kept.uses[v] > 0)
             gxbp_round_vertex(b, v);
-        else if (b->out.points[v] != GXB_NONE && GXBP_ROOM(b, kept.spare, kept.spare, 1)) {
+        else if (GXBP_ROOM(b, kept.spare, kept.spare, 1)) {
             b->kept.vertices[b->out.points[v]] = GXB_NONE;
-            b->out.points[v] = GXB_NONE;
+            b->kept.uses[v] = GXB_NONE;
             b->kept.spare[b->kept.spare_count++] = v;
         }
     }
