@@ -12067,28 +12067,34 @@ static GXBP_APART void gxbp_set_triangle_count(gxb_boolean *b, uint32_t n) {
     b->out.triangle_count = b->out.operand_count = b->out.subtriangle_count = b->out.reversed_count = n;
 }
 
-/* Is it inside in front of and behind a subtriangle that only its own source covers? For the last one judged. */
+/* What a subtriangle shows in the result: a triangle that faces as its plane does, one that faces against it. A sheet
+ * shows both. GXBP_SHOWS_SHEETS: it is inside on both sides, where only sheets show. */
+enum { GXBP_SHOWS = 1, GXBP_SHOWS_BACK = 2, GXBP_SHOWS_SHEETS = 4 };
+
+/* Of the last subtriangle judged, if only its own source covers it; else state is GXB_NONE. */
 typedef struct gxbp_judgement {
-    uint32_t state, operand;
-    int front, back;
+    uint32_t state, operand, shows;
 } gxbp_judgement;
 
-enum { GXBP_SHOWS = 1, GXBP_SHOWS_BACK = 2 };
+static GXBP_APART void gxbp_judge_sides(gxb_boolean *b, uint32_t f, gxbp_judgement *last) {
+    const uint32_t behind = gxbp_state_behind(b, f); /* may move the states */
+    const gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
+    const uint32_t back = gxbp_is_inside(b, behind), front = gxbp_is_inside(b, sub->state);
+    last->state = sub->covers == GXB_NONE ? sub->state : GXB_NONE;
+    last->operand = b->in.sources[sub->source].operand;
+    if (front != 0)
+        last->shows = back != 0 ? GXBP_SHOWS_SHEETS : GXBP_SHOWS_BACK;
+    else
+        last->shows = back != 0 ? GXBP_SHOWS : 0;
+}
 
-/* What a subtriangle shows in the result. GXBP_SHOWS: a triangle that faces as its plane does; GXBP_SHOWS_BACK: one
- * that faces against it; a sheet shows both. */
 static inline uint32_t gxbp_judge_subtriangle(gxb_boolean *b, uint32_t f, gxbp_judgement *last) {
     const gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
     if (!gxbp_is_surface(b, f)) return 0;
-    if (sub->covers != GXB_NONE || sub->state != last->state || b->in.sources[sub->source].operand != last->operand) {
-        const uint32_t behind = gxbp_state_behind(b, f); /* may move the states */
-        last->back = gxbp_is_inside(b, behind) != 0;
-        last->front = gxbp_is_inside(b, sub->state) != 0;
-        last->state = sub->covers == GXB_NONE ? sub->state : GXB_NONE;
-        last->operand = b->in.sources[sub->source].operand;
-    }
-    if (last->front != last->back) return last->front ? GXBP_SHOWS_BACK : GXBP_SHOWS;
-    return last->front && gxbp_cover_of(b, f, 1) != GXB_NONE ? GXBP_SHOWS | GXBP_SHOWS_BACK : 0;
+    if (sub->covers != GXB_NONE || sub->state != last->state || b->in.sources[sub->source].operand != last->operand)
+        gxbp_judge_sides(b, f, last);
+    if (last->shows != GXBP_SHOWS_SHEETS) return last->shows;
+    return gxbp_cover_of(b, f, 1) != GXB_NONE ? GXBP_SHOWS | GXBP_SHOWS_BACK : 0;
 }
 
 /* Room for what subtriangles show; those that are new show nothing yet. */
@@ -12109,7 +12115,7 @@ static int gxbp_judgements_hold(const gxb_boolean *b) {
 
 /* Judges what has changed since the last evaluation. */
 static GXBP_COLD void gxbp_judge_changed(gxb_boolean *b) {
-    gxbp_judgement last = {GXB_NONE, GXB_NONE, 0, 0};
+    gxbp_judgement last = {GXB_NONE, GXB_NONE, 0};
     uint32_t i, f = b->out.shown_count;
     if (!gxbp_show_room(b)) return;
     for (i = 0; i < b->mesh.changed_count; i++)
@@ -12126,7 +12132,7 @@ static void gxbp_emit_shown(gxb_boolean *b, uint32_t *vertex, uint32_t f, uint32
 
 static GXBP_APART void gxbp_extract(gxb_boolean *b) {
     const int judged = gxbp_judgements_hold(b);
-    gxbp_judgement last = {GXB_NONE, GXB_NONE, 0, 0};
+    gxbp_judgement last = {GXB_NONE, GXB_NONE, 0};
     uint32_t *vertex, f;
     if (judged) gxbp_judge_changed(b);
     vertex = (uint32_t *)gxbp_borrow(b, b->points.vertex_count * sizeof *vertex);
@@ -12422,7 +12428,7 @@ static void gxbp_begin_kept(gxb_boolean *b) {
 
 /* Changes the result of the last evaluation into that of this one. */
 static GXBP_COLD void gxbp_patch(gxb_boolean *b) {
-    gxbp_judgement last = {GXB_NONE, GXB_NONE, 0, 0};
+    gxbp_judgement last = {GXB_NONE, GXB_NONE, 0};
     uint32_t i, f;
     int all;
     if (!b->kept.valid || b->kept.fine != gxbp_is_fine(b)) gxbp_begin_kept(b);
