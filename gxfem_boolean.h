@@ -9410,10 +9410,64 @@ static GXBP_APART void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, ui
                 gxbp_meet_boxes(b, o, l - down_s, c, q, m - down_t, d);
 }
 
+/* --- surfaces of which a point sees all cannot cross themselves --- */
+
+/* The mean of a surface's first corners; numbers that predicates could not take are 0. Any point would do. */
+static void gxbp_middle_of(const gxb_boolean *b, const gxbp_operand *o, double middle[3]) {
+    double largest = 0;
+    uint32_t s, k;
+    middle[0] = middle[1] = middle[2] = 0;
+    for (s = o->source; s < o->source + o->source_count; s++) {
+        const double *x = gxbp_corner_of(b, s, 0);
+        for (k = 0; k < 3; k++) middle[k] += x[k];
+        largest = gxbp_max(largest, gxbp_max3(x));
+    }
+    for (k = 0; k < 3; k++) {
+        middle[k] /= o->source_count;
+        if (gxbp_abs(middle[k]) < largest * gxbp_power(-40) || gxbp_abs(middle[k]) < gxbp_power(-127)) middle[k] = 0;
+    }
+}
+
+/* The side of edge p q on which c lies, all seen along x. c is moved in y, z by (h, h^2), h -> 0: the derivatives of the
+ * orientation decide. 0: the edge is parallel to x. */
+static int gxbp_moved_turn(const double *p, const double *q, const double *c) {
+    const int turn = gxb_orient2d(p + 1, q + 1, c + 1);
+    if (turn != 0) return turn;
+    return !gxbp_is_zero(gxbp_fence(p[2] - q[2])) ? gxbp_compare_doubles(p[2], q[2]) : gxbp_compare_doubles(q[1], p[1]);
+}
+
+/* Does the ray from c along x, moved, cross a triangle that turns as turn says, seen from its end? */
+static int gxbp_ray_crosses(const double *p, const double *q, const double *r, const double *c, int turn) {
+    int k;
+    for (k = 1; k < 3; k++)
+        if ((p[k] > c[k] && q[k] > c[k] && r[k] > c[k]) || (p[k] < c[k] && q[k] < c[k] && r[k] < c[k])) return 0;
+    return gxbp_moved_turn(p, q, c) == turn && gxbp_moved_turn(q, r, c) == turn && gxbp_moved_turn(r, p, c) == turn;
+}
+
+/* Does the middle of a closed surface see all of its triangles from the same side, and does the surface wind around it
+   once? Seen from there, triangles cover the directions evenly, as often as the surface winds, since none is seen from
+   its other side. So no two of them share a direction but in common edges and vertices, and the surface is simple. */
+static GXBP_APART int gxbp_is_star(const gxb_boolean *b, const gxbp_operand *o) {
+    double c[3];
+    uint32_t s, crossed = 0;
+    int side = 0;
+    if (o->operation == GXB_SPLIT) return 0;
+    gxbp_middle_of(b, o, c);
+    for (s = o->source; s < o->source + o->source_count; s++) {
+        const double *p = gxbp_corner_of(b, s, 0), *q = gxbp_corner_of(b, s, 1), *r = gxbp_corner_of(b, s, 2);
+        const int turn = gxb_orient3d(p, q, r, c);
+        if (turn == 0 || turn == -side) return 0;
+        side = turn;
+        crossed += (uint32_t)gxbp_ray_crosses(p, q, r, c, side);
+    }
+    return crossed == 1;
+}
+
 /* A surface that is found not to meet itself is simple. */
 static void gxbp_meet_operands(gxb_boolean *b, uint32_t i, uint32_t j) {
     gxbp_operand *o = &b->in.operands[i], *q = &b->in.operands[j];
     const uint32_t l = o->tree.levels - 1, m = q->tree.levels - 1, marks = b->crossings.marks;
+    if (i == j && !o->simple) o->simple = (uint32_t)gxbp_is_star(b, o);
     if (i == j && o->simple) return;
     gxbp_meet_boxes(b, o, l, 0, q, m, 0);
     if (i == j) o->simple = b->crossings.marks == marks && b->error == GX_OK;
