@@ -9428,8 +9428,8 @@ static void gxbp_middle_of(const gxb_boolean *b, const gxbp_operand *o, double m
     }
 }
 
-/* The side of edge p q on which c lies, all seen along x. c is moved in y, z by (h, h^2), h -> 0: the derivatives of the
- * orientation decide. 0: the edge is parallel to x. */
+/* The side of edge p q on which c lies, all seen along x. c is moved in y, z by (h, h^2), h -> 0: the derivatives of
+ * the orientation decide. 0: the edge is parallel to x. */
 static int gxbp_moved_turn(const double *p, const double *q, const double *c) {
     const int turn = gxb_orient2d(p + 1, q + 1, c + 1);
     if (turn != 0) return turn;
@@ -12277,9 +12277,11 @@ static GXBP_COLD int gxbp_faces_exactly(gxb_boolean *b, uint32_t plane, const do
 /* Sign of n.((q - p) x (r - p)) for a plane's normal n and rounded points, exact. The filter's bound is that of
    gxbp_rough_volume, with n for d0. */
 static int gxbp_faces(gxb_boolean *b, uint32_t plane, const double *p, const double *q, const double *r) {
-    const gxb_plane_filter *f = &b->store.planes[plane].filter;
+    const gxb_plane_filter *f;
     double u[3], v[3], m[3], E, N;
     int k, sign = 0;
+    if (plane == GXB_NONE) return 1; /* no memory for it */
+    f = &b->store.planes[plane].filter;
     /* else coordinates are not the frame's, and may be too large or too small to filter */
     if (b->store.shift == 0) {
         for (k = 0; k < 3; k++) {
@@ -13153,7 +13155,8 @@ static GXBP_COLD int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p,
 /* A ray from a triangle. It begins on the side on which the triangle's solid lies. On the other side of a sheet another
  * solid may begin. */
 static GXBP_COLD int gxbp_ray_from(gxb_boolean *b, gxbp_ray *ray, uint32_t t) {
-    const int turned = b->out.subtriangles[t] & 1 ? 1 : -1, moved = gxbp_moved_side(b, gxbp_out_plane(b, t));
+    const uint32_t plane = gxbp_out_plane(b, t);
+    const int turned = b->out.subtriangles[t] & 1 ? 1 : -1, moved = plane == GXB_NONE ? 0 : gxbp_moved_side(b, plane);
     gxbp_set_ray(b, ray, b->out.subtriangles[t] / 2);
     return moved == 0 ? 1 : moved * turned;
 }
