@@ -7,8 +7,9 @@
        VBD   [Chen, Liu, Yang, Yuksel 2024, Vertex Block Descent]: a Newton step for one copy after the other on
              backward Euler's potential with the library's energy; adaptive start; Chebyshev's method as published, or
              over sweeps forward and back, which have real eigenvalues
-   Mass is lumped. Materials: GXS_STABLE_NEO_HOOKEAN without damping of its own. Followers are refused. Vectors are four
-   floats a copy, the last one 0. Include after gxfem_solve.h. Out of memory ends the program. */
+   Mass is lumped. Materials: GXS_STABLE_NEO_HOOKEAN without damping of its own. Copies that follow others in the
+   library move freely here. Vectors are four floats a copy, the last one 0. Include after gxfem_solve.h. Out of memory
+   ends the program. */
 #ifndef GXFEM_BENCH_LOCAL_H
 #define GXFEM_BENCH_LOCAL_H
 
@@ -61,10 +62,6 @@ static inline void local_body_make(local_body *b, const gxs_model *model) {
     static const int row[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
     size_t i;
     int c, j;
-    if (model->constraint_count > 0) {
-        fprintf(stderr, "local.h: copies that follow others are not supported\n");
-        exit(1);
-    }
     b->count = model->copy_count;
     b->mass = (double *)local_memory(b->count, sizeof(double));
     b->fixed = (uint8_t *)local_memory(b->count, 1);
@@ -164,8 +161,7 @@ static inline uint32_t *local_corners(const gxs_model *model, uint32_t **first) 
     start = *first = (uint32_t *)local_memory(n + 1, sizeof *start);
     for (i = 0; i < 4 * model->element_count; i++) start[model->elements[i / 4].copy[i % 4]]++;
     for (i = 1; i <= n; i++) start[i] += start[i - 1];
-    for (i = 4 * model->element_count; i-- > 0;)
-        corners[--start[model->elements[i / 4].copy[i % 4]]] = (uint32_t)i;
+    for (i = 4 * model->element_count; i-- > 0;) corners[--start[model->elements[i / 4].copy[i % 4]]] = (uint32_t)i;
     start[n] = (uint32_t)(4 * model->element_count);
     return corners;
 }
@@ -252,8 +248,7 @@ LOCAL_INLINE void local_strain_make(const local_lanes *edges, const local_lanes 
     local_lanes square;
     int r, k;
     for (r = 0; r < 3; r++)
-        for (k = 0; k < 3; k++)
-            s->d[3 * r + k] = edges[r] * g[k] + edges[3 + r] * g[3 + k] + edges[6 + r] * g[6 + k];
+        for (k = 0; k < 3; k++) s->d[3 * r + k] = edges[r] * g[k] + edges[3 + r] * g[3 + k] + edges[6 + r] * g[6 + k];
     for (r = 0; r < 3; r++)
         for (k = 0; k < 3; k++) {
             const int r1 = (r + 1) % 3, r2 = (r + 2) % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
@@ -435,21 +430,21 @@ static inline void local_xpbd_step(local_xpbd *x, double dt, const double gravit
 typedef struct local_group {
     size_t first; /* row */
     uint32_t rows, count;
-    int32_t at[LOCAL_LANES];   /* 4 x copy; places behind count repeat the first */
-    float mass[LOCAL_LANES];   /* kg */
+    int32_t at[LOCAL_LANES]; /* 4 x copy; places behind count repeat the first */
+    float mass[LOCAL_LANES]; /* kg */
 } local_group;
 
 typedef struct local_vbd {
     local_body body;
     size_t groups;
     local_group *group;
-    int32_t *at;             /* rows x 3 x 16: 4 x copy of the other corners */
-    float *gradients;        /* rows x 9 x 16: of the other corners */
-    float *moduli;           /* rows x 2 x 16: weight x mu, weight x lambda, J; 0: no element */
-    float *target;           /* count x 4: where inertia and gravity alone would lead */
-    float *faster;           /* count x 4: velocity before the last step */
-    float *last, *before;    /* count x 4: Chebyshev's last two iterates */
-    int stepped;             /* faster is known */
+    int32_t *at;          /* rows x 3 x 16: 4 x copy of the other corners */
+    float *gradients;     /* rows x 9 x 16: of the other corners */
+    float *moduli;        /* rows x 2 x 16: weight x mu, weight x lambda, J; 0: no element */
+    float *target;        /* count x 4: where inertia and gravity alone would lead */
+    float *faster;        /* count x 4: velocity before the last step */
+    float *last, *before; /* count x 4: Chebyshev's last two iterates */
+    int stepped;          /* faster is known */
 } local_vbd;
 
 typedef struct local_vbd_desc {

@@ -1402,8 +1402,7 @@ START_TEST(local_energies) {
             f[p] = kept - h, down = local_xpbd_energy(&m, f, below, NULL);
             f[p] = kept;
             CHECK_SEED(fabs((up - down) / (2 * h) - stress[p]) < 1e-8, seed);
-            for (q = 0; q < 9; q++)
-                CHECK_SEED(fabs((above[q] - below[q]) / (2 * h) - hessian[9 * p + q]) < 1e-8, seed);
+            for (q = 0; q < 9; q++) CHECK_SEED(fabs((above[q] - below[q]) / (2 * h) - hessian[9 * p + q]) < 1e-8, seed);
         }
         for (p = 0; p < 9; p++) f[p] = (p % 4 == 0) + 1e-4 * f[p];
         energy = gxs_material_energy(&m, f);
