@@ -215,7 +215,7 @@ front() {
     echo "set output '$charts/front.svg'"
     panels='accordion 1e6,30000 50000;uncut 1e6,20000 30000;accordion 1e8,30000 50000;accordion 1e6,4000 5000'
     echo "$panels" | tr ';' '\n' | while IFS=, read -r scene unknowns; do
-        for kind in BDF1 BDF2 midpoint XPBD VBD "VBD; Chebyshev"; do
+        for kind in BDF1 BDF2 midpoint explicit XPBD VBD "VBD; Chebyshev"; do
             front_rows "$(block_name "$scene $unknowns $kind")" "$scene" "$unknowns" "$kind"
         done
     done
@@ -228,7 +228,7 @@ END
     echo "$panels" | tr ';' '\n' | while IFS=, read -r scene unknowns; do
         echo "set title '$scene, $(front_unknowns "$scene" "$unknowns") unknowns'; set key bottom left samplen 1.5 font ',10'"
         name() { block_name "$scene $unknowns $1"; }
-        echo "plot \$$(name BDF1) using 1:2 with points ls 2 title 'BDF1', \$$(name BDF2) using 1:2 with points ls 1 title 'BDF2', \$$(name midpoint) using 1:2 with points ls 8 title 'midpoint', \$$(name XPBD) using 1:2 with linespoints ls 3 title 'XPBD, 2 to 500 substeps', \$$(name VBD) using 1:2 with points ls 6 title 'VBD', \$$(name 'VBD; Chebyshev') using 1:2 with points ls 7 title 'VBD, Chebyshev'"
+        echo "plot \$$(name BDF1) using 1:2 with points ls 2 title 'BDF1', \$$(name BDF2) using 1:2 with points ls 1 title 'BDF2', \$$(name midpoint) using 1:2 with points ls 8 title 'midpoint', \$$(name explicit) using 1:2 with points ls 5 title 'explicit', \$$(name XPBD) using 1:2 with linespoints ls 3 title 'XPBD, 2 to 500 substeps', \$$(name VBD) using 1:2 with points ls 6 title 'VBD', \$$(name 'VBD; Chebyshev') using 1:2 with points ls 7 title 'VBD, Chebyshev'"
     done
     echo 'unset multiplot'
 }

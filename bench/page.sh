@@ -373,7 +373,7 @@ elements or copies side by side. The least time, in ms per simulated second, in 
 motion over 0.33 s (rms of ten moments), or of the balance at its end; in parentheses the error of the worst copy in that run, as a share \
 of the largest displacement. Each method is compared with the converged motion of its own mass. Runs in motion that create energy, \
 more than a tenth of the fall, or blow up: XPBD $(created XPBD), VBD $(created VBD), gxfem BDF1 $(created BDF1), BDF2 $(created BDF2), \
-midpoint $(created midpoint)."
+midpoint $(created midpoint), explicit $(created explicit)."
     echo
     local_solvers
     echo
