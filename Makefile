@@ -48,6 +48,7 @@ help:
 	@echo "make bench-NAME  one bench: CSV on stdout and in $(BUILD)/bench/, a table on stderr"
 	@echo "  quadrature     integrals over parts of cut elements beside RXFEM, adaptive and regular sampling"
 	@echo "  stepping       error of the motion against time, over all settings; other methods"
+	@echo "  front          time to reach an error beside local solvers that games use, XPBD and VBD, by size and stiffness"
 	@echo "  space          the same cuts under refinement beside conforming meshes: locking of thin slices"
 	@echo "  table2         scenes of GXFEM's Table 2 by RXFEM, virtual nodes and the literal Algorithm 1 too"
 	@echo "  conditioning   RXFEM's Fig. 14, and a corner piece"
@@ -282,7 +283,7 @@ check-wasm:
 
 # ---- benches. Only their CSV goes to stdout. BENCH=--small: smaller ones, with a folder of their own for tables and charts
 
-benches = quadrature stepping space table2 conditioning failure scaling kernel smallest solver violent accuracy drift frames skin blade strokes soak
+benches = quadrature stepping front space table2 conditioning failure scaling kernel smallest solver violent accuracy drift frames skin blade strokes soak
 small = $(filter --small,$(BENCH))
 tables = $(BUILD)/bench$(if $(small),/small)
 # The compiler's own default: with -std=c99 gcc fuses no multiplications with additions, whatever -march says.
