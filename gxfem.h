@@ -734,14 +734,14 @@ extern "C" {
 #endif
 
 /* COLD functions are seldom called: kept out of line and compiled for size. */
-#if defined(__GNUC__)
+#if defined(__GNUC__) || defined(__clang__)
 #define GXP_COLD              __attribute__((cold, noinline))
 #define GXP_PREFETCH(address) __builtin_prefetch(address)
 #define GXP_PREFETCHES                                                                                                 \
     static inline __attribute__((always_inline)) /* without it gcc takes such a function for pure and drops calls */
 #else
 #define GXP_COLD
-#define GXP_PREFETCH(address) ((void)0)
+#define GXP_PREFETCH(address) ((void)(address))
 #define GXP_PREFETCHES        static inline
 #endif
 

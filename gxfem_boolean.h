@@ -865,13 +865,13 @@ extern "C" {
 /* COLD and RARE functions are seldom called, and compiled for size. A RARE one may be inlined: where it has one caller,
    or where it is public and GXFEM_STATIC makes it inline. APART functions stay out of line: those with many callers,
    and each stage of the work, since one large function compiles slower than its parts. */
-#if defined(__GNUC__)
+#if defined(__GNUC__) || defined(__clang__)
 #define GXBP_FETCH(address) __builtin_prefetch(address)
 #define GXBP_COLD           __attribute__((cold, noinline))
 #define GXBP_RARE           __attribute__((cold))
 #define GXBP_APART          __attribute__((noinline))
 #else
-#define GXBP_FETCH(address) ((void)0)
+#define GXBP_FETCH(address) ((void)(address))
 #define GXBP_COLD
 #define GXBP_RARE
 #define GXBP_APART
@@ -901,7 +901,7 @@ static int gxbp_is_finite(double x) { return gxbp_exponent_bits(x) != 0x7ff; }
 static int gxbp_is_zero(double x) { return (gxbp_bits(x) << 1) == 0; }
 
 static double gxbp_abs(double x) {
-#if defined(__GNUC__)
+#if defined(__GNUC__) || defined(__clang__)
     return __builtin_fabs(x); /* one instruction, where bits would leave the registers of doubles and come back */
 #else
     return gxbp_double(gxbp_bits(x) & ~((uint64_t)1 << 63));

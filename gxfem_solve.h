@@ -745,20 +745,23 @@ extern "C" {
 /* Groups of elements are below this: gxsp_sort sorts by 30 bits. */
 #define GXSP_GROUPS ((uint32_t)1 << 30)
 
-/* Arrays of a block's passes never overlap. */
-#if !defined(__cplusplus)
-#define GXSP_RESTRICT restrict
-#elif defined(__GNUC__) || defined(_MSC_VER)
+/* Arrays of a block's passes never overlap. cl knows C's own word only if it is told the standard. */
+#if defined(__GNUC__) || defined(_MSC_VER)
 #define GXSP_RESTRICT __restrict
+#elif !defined(__cplusplus)
+#define GXSP_RESTRICT restrict
 #else
 #define GXSP_RESTRICT
 #endif
 
 /* INLINE: compilers must know the column numbers. Columns that might be equal are not vectorised. COLD: seldom called,
  * kept out of line and compiled for size. */
-#if defined(__GNUC__)
+#if defined(__GNUC__) || defined(__clang__)
 #define GXSP_COLD   __attribute__((cold, noinline))
 #define GXSP_INLINE static inline __attribute__((always_inline))
+#elif defined(_MSC_VER)
+#define GXSP_COLD   __declspec(noinline)
+#define GXSP_INLINE static __forceinline
 #else
 #define GXSP_COLD
 #define GXSP_INLINE static inline
@@ -770,6 +773,8 @@ extern "C" {
 #define GXSP_EACH(l, count) _Pragma("clang loop unroll(disable)") for (l = 0; l < (count); l++)
 #elif defined(__GNUC__)
 #define GXSP_EACH(l, count) _Pragma("GCC ivdep") for (l = 0; l < (count); l++)
+#elif defined(_MSC_VER)
+#define GXSP_EACH(l, count) __pragma(loop(ivdep)) for (l = 0; l < (count); l++)
 #else
 #define GXSP_EACH(l, count) for (l = 0; l < (count); l++)
 #endif
@@ -779,7 +784,7 @@ extern "C" {
 /* Vectors for code that compilers do not vectorise: shuffles of nodes' vectors and blocks, many sums at a time.
  * Shuffles of vectors longer than the machine's are compiled number by number. Hence vectors of eight floats with
  * AVX only. */
-#if defined(__GNUC__) && (defined(__clang__) || __GNUC__ >= 12) && !defined(GXFEM_SCALAR)
+#if (defined(__clang__) || (defined(__GNUC__) && __GNUC__ >= 12)) && !defined(GXFEM_SCALAR)
 #define GXSP_SHUFFLES
 typedef __attribute__((vector_size(8), aligned(4), may_alias)) float gxsp_two;
 typedef __attribute__((vector_size(16), aligned(4), may_alias)) float gxsp_four;
@@ -1679,7 +1684,7 @@ static void gxsp_over_ranges(gxsp_system *system, void (*task)(void *, size_t), 
 /* Prefetches memory that is read soon. A block is too long for processors to prefetch the next one in time. Always
  * inline: gcc takes a function that only prefetches for one without effect, and drops its calls. */
 GXSP_INLINE void gxsp_prefetch(const void *memory, size_t size) {
-#if defined(__GNUC__)
+#if defined(__GNUC__) || defined(__clang__)
     const char *line = (const char *)memory;
     size_t k;
     for (k = 0; k < size; k += 64) __builtin_prefetch(line + k);
