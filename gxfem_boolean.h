@@ -12325,7 +12325,7 @@ static GXBP_APART void gxbp_find_defects(gxb_boolean *b) {
     ((count) <= (b)->counter##_count ||                                                                                \
      (GXBP_ROOM(b, array, counter, (count) - (b)->counter##_count) &&                                                  \
       (memset((b)->array + (b)->counter##_count, 0xff, ((count) - (b)->counter##_count) * sizeof *(b)->array),         \
-       (b)->counter##_count = (count), 1)))
+       (b)->counter##_count = (uint32_t)(count), 1)))
 
 static void gxbp_note_vertex(gxb_boolean *b, uint32_t v) {
     if (GXBP_ROOM(b, kept.new_vertices, kept.new_vertex, 1)) b->kept.new_vertices[b->kept.new_vertex_count++] = v;
