@@ -398,7 +398,8 @@ typedef struct gxs_step_desc {
     double newton_tolerance;
     uint32_t cg_iterations; /* per Newton iteration, at most; 0: 1000 */
     /* reduction of the residual by each linear solve, below 1; 0: 1e-2, and 1e-3 with the midpoint rule, which does not
-     * damp the error */
+     * damp the error. Where copies are affine, reduction of the error, as the root of its energy: thin sheets bend long
+     * before the residual of their stretch is gone. */
     double cg_tolerance;
     const gxs_spring *springs; /* spring_count */
     size_t spring_count;
@@ -704,9 +705,13 @@ extern "C" {
 #define GXSP_LEVELS      12
 
 /* Where copies are affine, level 1 is factored if that takes at most GXSP_NESTED_COST times as much; else its lattice
- * is widened, up to GXSP_WIDEST times. */
-#define GXSP_NESTED_COST 10
+ * is widened, up to GXSP_WIDEST times. It starts from GXSP_NESTED_FROM of the usual spacing. */
+#define GXSP_NESTED_COST 12
+#define GXSP_NESTED_FROM 0.8f
 #define GXSP_WIDEST      8
+
+/* Iterations whose gain tells how far conjugate gradients are where copies are affine */
+#define GXSP_GAINS 3
 
 /* Block-Jacobi takes less time than multigrid where inertia's mean share of the Hessian's diagonal blocks is larger
  * than this: few iterations, as the share bounds the spectrum from below. Measured on blocks of 2,000 to 8,000
@@ -4936,7 +4941,7 @@ static void gxsp_nested_make(gxsp_system *system, gxsp_pool *scratch, float (*pl
     transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
     mark = scratch->last;
     for (i = 0; i < system->model.n && left_out; i++) left_out[i] = system->model.fixed[i] || gxsp_is_hidden(system, i);
-    for (stretch = 1;; stretch *= 1.25f) {
+    for (stretch = GXSP_NESTED_FROM;; stretch *= 1.25f) {
         if (scratch->failed) return;
         for (i = 0; i < 3 * system->model.n; i++) own[i / 3][i % 3] = place[i / 3][i % 3] / stretch;
         count = gxsp_first_transfer(system, own, left_out, &transfer);
@@ -8773,7 +8778,34 @@ static void gxsp_terms_make(const gxsp_problem *problem, const double *displacem
 /* The two measures of a vector r of forces, squared: r . D^-1 r (energy) and |D^-1 r|^2 (displacement) */
 typedef struct gxsp_norms {
     double energy, displacement;
+    double rest; /* displacement of what is not affine */
 } gxsp_norms;
+
+/* What the last iterations gained: half of it is the energy that the error has lost. Where copies are affine, this says
+ * more than the residual, in which the stiff stretch of a sheet hides how far it still has to bend. */
+typedef struct gxsp_gains {
+    double gain[2 * GXSP_GAINS], total; /* gain: the last ones in turn; total: of the guess and of all of them */
+    uint32_t count;
+} gxsp_gains;
+
+static void gxsp_note_gain(gxsp_gains *gains, double gain) {
+    gains->gain[gains->count++ % (2 * GXSP_GAINS)] = gain;
+    gains->total += gain;
+}
+
+/* Is the error's share of the energy below goal? The squared error of GXSP_GAINS iterations ago is what they gained and
+ * what is still to be gained, of which the iterations before them tell the rate (Hestenes and Stiefel, 1952; Strakos
+ * and Tichy, 2002). */
+static int gxsp_has_gained(const gxsp_gains *gains, double goal) {
+    double last = 0, before = 0, rest = 1;
+    uint32_t k;
+    if (gains->count < GXSP_GAINS) return 0;
+    for (k = 1; k <= GXSP_GAINS; k++) last += gains->gain[(gains->count - k) % (2 * GXSP_GAINS)];
+    for (k = GXSP_GAINS + 1; k <= 2 * GXSP_GAINS && k <= gains->count; k++)
+        before += gains->gain[(gains->count - k) % (2 * GXSP_GAINS)];
+    if (before > 0) rest = 1 - last / before > 0.05 ? 1 - last / before : 0.05;
+    return last <= goal * rest * gains->total;
+}
 
 static int gxsp_converged(const gxsp_norms *now, const gxsp_norms *first, double goal) {
     return now->energy <= goal * first->energy && now->displacement <= goal * first->displacement;
@@ -8829,6 +8861,7 @@ static gxsp_norms gxsp_norms_of(gxsp_system *system, void (*task)(void *, size_t
     gxsp_norms norms;
     double sums[2];
     gxsp_over_ranges(system, task, pass, sums, 2);
+    norms.rest = sums[1];
     gxsp_scale_groups(system, r, sums);
     norms.energy = sums[0], norms.displacement = sums[1];
     return norms;
@@ -8965,22 +8998,23 @@ static double gxsp_weigh_guess(gxsp_system *system, double rate, gxsp_vector4 *g
 
 /* Starts conjugate gradients at the best point of the plane of the last two steps' first directions. Where the
  * acceleration changes little from step to step, that is most of the solution. now: norms of the residual; returns
- * those of the new one. */
-static gxsp_norms gxsp_guess_direction(gxsp_system *system, double rate, gxsp_norms now) {
+ * those of the new one. gains: what the guess gained */
+static gxsp_norms gxsp_guess_direction(gxsp_system *system, double rate, gxsp_norms now, gxsp_gains *gains) {
     gxsp_vector4 *product = system->vectors.search;
-    double curvature, work, first, cross = 0, second = 0;
+    double curvature, work, further = 0, first, cross = 0, second = 0;
     curvature = gxsp_weigh_guess(system, rate, system->vectors.guess[0], NULL, product, &work, NULL);
     first = work / curvature;
     if (!(curvature > 0) || !gxsp_finite(work) || !gxsp_finite(curvature) || !gxsp_finite(first)) return now;
     if (system->state.guess_count > 1) {
-        double further, own = gxsp_weigh_guess(system, rate, system->vectors.guess[1], system->vectors.guess[0],
-                                               system->vectors.product, &further, &cross);
+        double own = gxsp_weigh_guess(system, rate, system->vectors.guess[1], system->vectors.guess[0],
+                                      system->vectors.product, &further, &cross);
         const double share = cross / curvature, rest = own - share * cross;
         second = (further - share * work) / rest;
         if (!(rest > GXSP_PARALLEL * own) || !gxsp_finite(own) || !gxsp_finite(share) || !gxsp_finite(second))
             second = 0;
         first -= second > 0 || second < 0 ? second * share : 0;
     }
+    gains->total = first * work + (second > 0 || second < 0 ? second * further : 0);
     now = gxsp_advance(system, first, system->vectors.guess[0], product);
     if (second > 0 || second < 0) now = gxsp_advance(system, second, system->vectors.guess[1], system->vectors.product);
     return now;
@@ -9026,16 +9060,18 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem) {
     const double goal = problem->cg_tolerance * problem->cg_tolerance, rate = problem->rate;
     const int start = problem->report.newton_iterations == 0;
     gxsp_norms first, now, guessed;
+    gxsp_gains gains;
     gxsp_pass pass;
     uint32_t iteration;
     int changed;
     double rho = 0;
     size_t i;
     problem->indefinite = 0;
+    memset(&gains, 0, sizeof gains);
     for (i = 0; i < 3 * system->model.n; i++) system->vectors.residual[i] *= system->model.scale;
     now = first = gxsp_scale(system, system->vectors.residual);
     memset(system->vectors.direction, 0, 3 * system->model.n * sizeof(double));
-    if (start && system->state.guess_count > 0) now = gxsp_guess_direction(system, rate, now);
+    if (start && system->state.guess_count > 0) now = gxsp_guess_direction(system, rate, now, &gains);
     guessed = now;
     if (!gxsp_converged(&now, &first, goal)) rho = gxsp_precondition_definite(system, rate, &now, &changed);
     memcpy(system->vectors.search, system->vectors.scaled, system->model.n * sizeof *system->vectors.search);
@@ -9050,6 +9086,10 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem) {
         }
         now = gxsp_advance(system, rho / curvature, system->vectors.search, system->vectors.product);
         problem->report.cg_iterations++;
+        gxsp_note_gain(&gains, rho * rho / curvature);
+        if (system->affine.count > 0 && system->multigrid.used && now.rest <= goal * first.displacement &&
+            gxsp_has_gained(&gains, goal))
+            break;
         if (gxsp_converged(&now, &first, goal) || gxsp_out_of_time(problem)) break;
         rho = gxsp_precondition_definite(system, rate, &now, &changed);
         pass.factor = changed ? 0 : rho / before;
@@ -11483,6 +11523,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_FACTOR_COST
 #undef GXSP_LEVELS
 #undef GXSP_NESTED_COST
+#undef GXSP_NESTED_FROM
+#undef GXSP_GAINS
 #undef GXSP_WIDEST
 #undef GXSP_SHIFT
 #undef GXSP_STIFFNESS
