@@ -710,6 +710,11 @@ extern "C" {
 #define GXSP_NESTED_FROM 0.8f
 #define GXSP_WIDEST      8
 
+/* Elements of affine copies: blocks of one task; and of one round, after which the results are summed, so that these
+ * take memory for one round only. Sums go by blocks, whatever the threads do. */
+#define GXSP_AFFINE_TASK  8
+#define GXSP_AFFINE_ROUND 64
+
 /* Iterations whose gain tells how far conjugate gradients are where copies are affine */
 #define GXSP_GAINS 3
 
@@ -1458,13 +1463,12 @@ typedef struct gxsp_affine {
     size_t count;  /* elements; 0: there are none */
     double length; /* m: hidden vectors are columns of A times this */
     gxsp_affine_block *blocks;
-    uint32_t block_count, group_count, touched_count;
+    uint32_t block_count, group_count;
+    uint32_t round;        /* first block of the round under way: see GXSP_AFFINE_ROUND */
     uint32_t *place;       /* n: 4 x group + part; GXSP_NONE: a copy that is not affine. NULL: there are no groups */
     uint32_t (*member)[4]; /* group_count: vectors of a group */
-    double (*slots)[3];    /* block_count x 16 x GXSP_LANES: results of passes */
-    uint32_t *touched;     /* touched_count: vectors that elements here have, ascending */
-    uint32_t *start;       /* touched_count + 1: into slot */
-    uint32_t *slot;        /* a vector's slots, ascending */
+    double (*slots)[3];    /* blocks of a round x 16 x GXSP_LANES: their results */
+    double (*sum)[3];      /* n: results of a product */
     double (*own)[6];      /* n: diagonal blocks of the elements here, packed, scaled */
     double (*full)[10][9]; /* group_count: blocks of the parts p <= q, in the order of gxs_element.mass, by rows */
     float (*root)[78];     /* group_count: W by rows, lower triangle: the inverse of the 12x12 block is W^T W */
@@ -3608,37 +3612,15 @@ static void gxsp_affine_blocks(gxsp_system *system, const gxs_model *model, cons
         }
 }
 
-/* Slots of the vectors that the elements have */
-static void gxsp_affine_slots(gxsp_system *system, gxsp_pool *scratch) {
+/* Memory for results of passes */
+static void gxsp_affine_results(gxsp_system *system) {
     gxsp_affine *affine = &system->affine;
-    const size_t room = (size_t)affine->block_count * 16 * GXSP_LANES;
-    uint32_t *count = (uint32_t *)gxsp_take(scratch, system->model.n + 1, sizeof(uint32_t)), i, t;
-    size_t s, slots = 0;
-    affine->slots = (double(*)[3])gxsp_take(&system->pool, room, sizeof *affine->slots);
+    const size_t blocks = affine->block_count < GXSP_AFFINE_ROUND ? affine->block_count : GXSP_AFFINE_ROUND;
+    affine->slots = (double(*)[3])gxsp_take(&system->pool, blocks * 16 * GXSP_LANES, sizeof *affine->slots);
+    affine->sum = (double(*)[3])gxsp_take(&system->pool, system->model.n, sizeof *affine->sum);
     affine->own = (double(*)[6])gxsp_take(&system->pool, system->model.n, sizeof *affine->own);
     affine->full = (double(*)[10][9])gxsp_take(&system->pool, affine->group_count, sizeof *affine->full);
     affine->root = (float(*)[78])gxsp_take(&system->pool, affine->group_count, sizeof *affine->root);
-    if (scratch->failed || system->pool.failed) return;
-    for (s = 0; s < room; s++) {
-        const uint32_t vector = affine->blocks[s / (16 * GXSP_LANES)].vector[s / GXSP_LANES % 16][s % GXSP_LANES];
-        if (vector == GXSP_NONE) continue;
-        affine->touched_count += count[vector]++ == 0;
-        slots++;
-    }
-    affine->touched = (uint32_t *)gxsp_take(&system->pool, affine->touched_count, sizeof(uint32_t));
-    affine->start = (uint32_t *)gxsp_take(&system->pool, (size_t)affine->touched_count + 1, sizeof(uint32_t));
-    affine->slot = (uint32_t *)gxsp_take(&system->pool, slots, sizeof(uint32_t));
-    if (system->pool.failed) return;
-    for (i = t = 0; i < system->model.n; i++)
-        if (count[i] > 0) {
-            affine->touched[t] = i;
-            affine->start[t + 1] = affine->start[t] + count[i];
-            count[i] = affine->start[t++];
-        }
-    for (s = 0; s < room; s++) {
-        const uint32_t vector = affine->blocks[s / (16 * GXSP_LANES)].vector[s / GXSP_LANES % 16][s % GXSP_LANES];
-        if (vector != GXSP_NONE) affine->slot[count[vector]++] = (uint32_t)s;
-    }
 }
 
 /* Divides the model's elements: those with an affine corner come here, `plain` gets the others. Both lists are in
@@ -3665,7 +3647,7 @@ static void gxsp_affine_make(gxsp_system *system, gxsp_pool *scratch, const gxs_
     plain->elements = others;
     plain->element_count = system->model.element_count = count;
     gxsp_affine_blocks(system, model, elements);
-    if (!system->pool.failed) gxsp_affine_slots(system, scratch);
+    if (!system->pool.failed) gxsp_affine_results(system);
 }
 
 /* Joins the vectors of a group. forest: n */
@@ -5286,9 +5268,6 @@ static void gxsp_drop_system(gxs_solver *solver) {
  * over i. At each of four points the passes of >>element serve. u there is sum N_j (a_j + w_j) / 2. A task writes its
  * own block and the slots of it. */
 
-/* Blocks of one task */
-#define GXSP_AFFINE_TASK 8
-
 /* Vectors of a block's elements: [3 vector + axis]; 0 where there is none */
 static void gxsp_affine_gather(const gxsp_affine_block *block, const double *x, gxsp_lanes *to) {
     int k, l, r;
@@ -5476,15 +5455,14 @@ static void gxsp_affine_product(const gxsp_pass *pass, const gxsp_affine_block *
 static void gxsp_affine_over(void *context, size_t index, int what) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     gxsp_affine *affine = &pass->system->affine;
-    const size_t end = (index + 1) * GXSP_AFFINE_TASK;
+    const size_t first = affine->round + index * GXSP_AFFINE_TASK, end = first + GXSP_AFFINE_TASK;
     gxsp_lanes x[48];
     size_t b;
     int k, l, r;
-    for (b = index * GXSP_AFFINE_TASK; b < end && b < affine->block_count; b++) {
+    for (b = first; b < end && b < affine->block_count; b++) {
         gxsp_affine_block *block = &affine->blocks[b];
-        double(*slots)[3] = affine->slots + b * 16 * GXSP_LANES;
+        double(*slots)[3] = affine->slots + (b - affine->round) * 16 * GXSP_LANES;
         if (block->still) {
-            memset(slots, 0, 16 * GXSP_LANES * sizeof *slots);
             memset(block->energies, 0, sizeof block->energies);
             block->collapsed = 0;
         } else if (what == 0)
@@ -5511,32 +5489,38 @@ static void gxsp_task_affine_state(void *context, size_t index) { gxsp_affine_ov
 static void gxsp_task_affine_tangents(void *context, size_t index) { gxsp_affine_over(context, index, 1); }
 static void gxsp_task_affine_product(void *context, size_t index) { gxsp_affine_over(context, index, 2); }
 
-static void gxsp_over_affine(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass) {
-    pass->system = system;
-    gxsp_parallel(system->jobs, (system->affine.block_count + GXSP_AFFINE_TASK - 1) / GXSP_AFFINE_TASK, task, pass);
+/* Adds the results of a round to those of vectors. */
+static void gxsp_affine_add(const gxsp_affine *affine, uint32_t end, double *sum) {
+    uint32_t b;
+    int k, l, r;
+    for (b = affine->round; b < end; b++) {
+        const gxsp_affine_block *block = &affine->blocks[b];
+        double(*slots)[3] = affine->slots + (b - affine->round) * 16 * GXSP_LANES;
+        for (k = 0; k < 16 && !block->still; k++)
+            for (l = 0; l < GXSP_LANES; l++)
+                for (r = 0; r < 3 && block->vector[k][l] != GXSP_NONE; r++)
+                    sum[3 * (size_t)block->vector[k][l] + (size_t)r] += slots[k * GXSP_LANES + l][r];
+    }
 }
 
-/* Sum over the slots of touched vector t */
-static void gxsp_affine_sum(const gxsp_affine *affine, uint32_t t, double *sum) {
-    uint32_t s;
-    sum[0] = sum[1] = sum[2] = 0;
-    for (s = affine->start[t]; s < affine->start[t + 1]; s++) {
-        const double *slot = affine->slots[affine->slot[s]];
-        sum[0] += slot[0], sum[1] += slot[1], sum[2] += slot[2];
+/* A pass over all blocks, round after round. sum: n x 3, to which results are added; NULL: there are none */
+static void gxsp_over_affine(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass, double *sum) {
+    gxsp_affine *affine = &system->affine;
+    pass->system = system;
+    for (affine->round = 0; affine->round < affine->block_count; affine->round += GXSP_AFFINE_ROUND) {
+        const uint32_t left = affine->block_count - affine->round,
+                       count = left < GXSP_AFFINE_ROUND ? left : GXSP_AFFINE_ROUND;
+        gxsp_parallel(system->jobs, (count + GXSP_AFFINE_TASK - 1) / GXSP_AFFINE_TASK, task, pass);
+        if (sum) gxsp_affine_add(affine, affine->round + count, sum);
     }
 }
 
 /* Adds forces and energies to those of chunks. */
 static void gxsp_affine_evaluate(gxsp_system *system, gxsp_pass *pass) {
     const gxsp_affine *affine = &system->affine;
-    uint32_t t, b;
+    uint32_t b;
     int k, l;
-    gxsp_over_affine(system, gxsp_task_affine_state, pass);
-    for (t = 0; t < affine->touched_count; t++) {
-        double sum[3], *to = pass->sum + 3 * (size_t)affine->touched[t];
-        gxsp_affine_sum(affine, t, sum);
-        for (k = 0; k < 3; k++) to[k] += sum[k];
-    }
+    gxsp_over_affine(system, gxsp_task_affine_state, pass, pass->sum);
     for (b = 0; b < affine->block_count; b++)
         for (l = 0; l < GXSP_LANES && affine->blocks[b].vector[0][l] != GXSP_NONE; l++)
             for (k = 0; k < 3; k++)
@@ -5545,21 +5529,16 @@ static void gxsp_affine_evaluate(gxsp_system *system, gxsp_pass *pass) {
 
 /* Adds the product of pass->x to pass->y, or takes it away if there is a pass->right. Returns x . product. */
 static double gxsp_affine_multiply(gxsp_system *system, gxsp_pass *pass) {
-    const gxsp_affine *affine = &system->affine;
-    double work = 0;
-    uint32_t t;
+    double work = 0, (*sum)[3] = system->affine.sum;
+    size_t i;
     int k;
-    gxsp_over_affine(system, gxsp_task_affine_product, pass);
-    for (t = 0; t < affine->touched_count; t++) {
-        const uint32_t vector = affine->touched[t];
-        double sum[3];
-        if (system->state.still[vector]) continue;
-        gxsp_affine_sum(affine, t, sum);
-        for (k = 0; k < 3; k++) {
-            work += (double)pass->x[vector][k] * sum[k];
-            pass->y[vector][k] += (float)(pass->right ? -sum[k] : sum[k]);
+    memset(sum, 0, system->model.n * sizeof *sum);
+    gxsp_over_affine(system, gxsp_task_affine_product, pass, sum[0]);
+    for (i = 0; i < system->model.n; i++)
+        for (k = 0; k < 3 && !system->state.still[i]; k++) {
+            work += (double)pass->x[i][k] * sum[i][k];
+            pass->y[i][k] += (float)(pass->right ? -sum[i][k] : sum[i][k]);
         }
-    }
     return work;
 }
 
@@ -6456,17 +6435,15 @@ static void gxsp_task_apply_sum(void *context, size_t index) {
 /* Adds the product of elements with affine copies to pass->sum. */
 static void gxsp_affine_apply_all(gxsp_system *system, gxsp_pass *pass) {
     const double unit = 1 / (system->model.scale * pass->factor);
-    uint32_t t, b;
+    double(*sum)[3] = system->affine.sum;
+    uint32_t b;
+    size_t i;
     int k;
     for (b = 0; b < system->affine.block_count; b++) system->affine.blocks[b].still = 0; /* what sleeps is included */
-    gxsp_over_affine(system, gxsp_task_affine_product, pass);
-    for (t = 0; t < system->affine.touched_count; t++) {
-        const uint32_t vector = system->affine.touched[t];
-        double sum[3];
-        gxsp_affine_sum(&system->affine, t, sum);
-        for (k = 0; k < 3 && !system->model.fixed[vector]; k++)
-            pass->sum[3 * (size_t)vector + (size_t)k] += unit * sum[k];
-    }
+    memset(sum, 0, system->model.n * sizeof *sum);
+    gxsp_over_affine(system, gxsp_task_affine_product, pass, sum[0]);
+    for (i = 0; i < system->model.n; i++)
+        for (k = 0; k < 3 && !system->model.fixed[i]; k++) pass->sum[3 * i + (size_t)k] += unit * sum[i][k];
     gxsp_mark_still_blocks(system);
 }
 
@@ -6673,7 +6650,7 @@ static int gxsp_linearise(gxsp_system *system, double rate, const double *from, 
     gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_linearise, &pass);
     gxsp_extra_diagonal(system);
     if (system->affine.count > 0) {
-        gxsp_over_affine(system, gxsp_task_affine_tangents, &pass);
+        gxsp_over_affine(system, gxsp_task_affine_tangents, &pass, NULL);
         gxsp_affine_diagonal(system, pass.rate);
     }
     gxsp_over_ranges(system, gxsp_task_diagonal, &pass, NULL, 0);
@@ -11224,7 +11201,7 @@ GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displ
     memset(system->state.chunk_still, 0, system->mesh.chunk_count); /* sleeping components are included */
     for (b = 0; b < system->affine.block_count; b++) system->affine.blocks[b].still = 0;
     gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_linearise, &pass);
-    gxsp_over_affine(system, gxsp_task_affine_tangents, &pass);
+    gxsp_over_affine(system, gxsp_task_affine_tangents, &pass, NULL);
     gxsp_mark_still(system);
     system->state.product_rate = gxsp_tangents_finite(system) ? rate : -1;
     return system->state.product_rate < 0 ? gxsp_fail(failure, GX_ERROR_RANGE, "displacement", SIZE_MAX) : GX_OK;
@@ -11558,6 +11535,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_COLUMNS
 #undef GXSP_SHUFFLES
 #undef GXSP_AFFINE_TASK
+#undef GXSP_AFFINE_ROUND
 #ifdef GXFEM_SCALAR
 #pragma clang attribute pop
 #endif
