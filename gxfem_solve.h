@@ -43,7 +43,8 @@
  *                 >>pattern of level 1 | >>hierarchy all levels | >>lights copies with next to no mass |
  *                 >>sharing of memory | >>system a model in the solver's form
  *   operator:     >>rule elements with affine copies | >>forces energies, forces | >>blocks 3x3 blocks |
- *                 >>product single precision | >>doubles double precision | >>linearise Hessians, block diagonal
+ *                 >>singles affine copies' products | >>product single precision | >>doubles double precision |
+ *                 >>linearise Hessians, block diagonal
  *   multigrid:    >>galerkin coarse matrices | >>nesting those of affine copies | >>factor of the last level |
  *                 >>assembly the assembled matrix | >>smoother its step length | >>cycle the V-cycle
  *   changes:      >>edits lanes that a cut changes | >>renewal copies and components | >>update levels, all of it
@@ -5474,10 +5475,7 @@ static void gxsp_affine_over(void *context, size_t index, int what) {
                 for (l = 0; l < GXSP_LANES; l++) {
                     const uint32_t vector = block->vector[k][l];
                     double in[3] = {0, 0, 0};
-                    if (vector != GXSP_NONE && pass->x)
-                        for (r = 0; r < 3; r++) in[r] = (double)pass->x[vector][r];
-                    else if (vector != GXSP_NONE)
-                        gxsp_copy_direction(pass, vector, in);
+                    if (vector != GXSP_NONE) gxsp_copy_direction(pass, vector, in);
                     for (r = 0; r < 3; r++) x[3 * k + r][l] = in[r];
                 }
             gxsp_affine_product(pass, block, x, slots);
@@ -5525,21 +5523,6 @@ static void gxsp_affine_evaluate(gxsp_system *system, gxsp_pass *pass) {
         for (l = 0; l < GXSP_LANES && affine->blocks[b].vector[0][l] != GXSP_NONE; l++)
             for (k = 0; k < 3; k++)
                 gxsp_lead_of(system, affine->blocks[b].vector[0][l])->energies[k] += affine->blocks[b].energies[k][l];
-}
-
-/* Adds the product of pass->x to pass->y, or takes it away if there is a pass->right. Returns x . product. */
-static double gxsp_affine_multiply(gxsp_system *system, gxsp_pass *pass) {
-    double work = 0, (*sum)[3] = system->affine.sum;
-    size_t i;
-    int k;
-    memset(sum, 0, system->model.n * sizeof *sum);
-    gxsp_over_affine(system, gxsp_task_affine_product, pass, sum[0]);
-    for (i = 0; i < system->model.n; i++)
-        for (k = 0; k < 3 && !system->state.still[i]; k++) {
-            work += (double)pass->x[i][k] * sum[i][k];
-            pass->y[i][k] += (float)(pass->right ? -sum[i][k] : sum[i][k]);
-        }
-    return work;
 }
 
 /* A function of an element, given by its share of each vector, at a point: gradient in the frame of V, and value */
@@ -6187,6 +6170,186 @@ static void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, float (*t
         for (k = 0; k < 9; k++) to[entry[l]][k] += block[k][l];
 }
 #endif
+
+/* >>singles: products of elements with affine copies --------------------------------------------------------------- */
+
+/* In: tangents, a vector. Out: their product as in >>rule, in single precision, for conjugate gradients. >>doubles has
+ * the other one. A task writes the results of its blocks side by side, in the memory of gxsp_affine.slots. */
+
+/* For products in single precision: 4 N_i at each point, and (X_j - X_i) / (4 length) of the edges */
+static void gxsp_affine_round(const gxsp_affine_block *block, gxsp_singles *GXSP_RESTRICT shape,
+                              gxsp_singles *GXSP_RESTRICT way) {
+    int k, l;
+    for (k = 0; k < 16; k++) GXSP_EACH_LANE(l) shape[k][l] = (float)(4 * block->shape[k / 4][k % 4][l]);
+    for (k = 0; k < 18; k++) GXSP_EACH_LANE(l) way[k][l] = (float)gxsp_affine_edge(block, k / 3, k % 3, l);
+}
+
+/* The edges at a corner, and the corners at their other ends */
+static const uint8_t gxsp_corner_edges[4][3] = {{0, 1, 2}, {0, 3, 4}, {1, 3, 5}, {2, 4, 5}};
+static const uint8_t gxsp_corner_others[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
+
+/* x of the vectors, with copies of the corners relative to corner 0, which goes to start */
+static void gxsp_singles_gather(const gxsp_affine_block *block, const gxsp_vector4 *x, gxsp_singles *GXSP_RESTRICT to,
+                                gxsp_singles *GXSP_RESTRICT start) {
+    static const uint16_t lanes[GXSP_LANES] = {0, 1, 2, 3, 4, 5, 6, 7};
+    static const gxsp_vector4 none = {0, 0, 0, 0};
+    gxsp_vector4 in[GXSP_LANES];
+    int k, l;
+    for (k = 0; k < 16; k++) {
+        for (l = 0; l < GXSP_LANES; l++)
+            memcpy(in[l], block->vector[k][l] == GXSP_NONE ? none : x[block->vector[k][l]], sizeof *in);
+        gxsp_gather_eight(lanes, (const gxsp_vector4 *)in, to[3 * k], to[3 * k + 1], to[3 * k + 2]);
+    }
+    memcpy(start, to, 3 * sizeof *to);
+    for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) to[k][l] -= start[k % 3][l];
+}
+
+/* As gxsp_affine_bend */
+static void gxsp_singles_bend(gxsp_singles *GXSP_RESTRICT way, gxsp_singles *GXSP_RESTRICT x,
+                              gxsp_singles *GXSP_RESTRICT e) {
+    int k, r, l;
+    for (k = 0; k < 6; k++) {
+        gxsp_singles *p = x + 12 + 9 * gxsp_edge_ends[k][0], *q = x + 12 + 9 * gxsp_edge_ends[k][1], *d = way + 3 * k;
+        for (r = 0; r < 3; r++) GXSP_EACH_LANE(l)
+        e[3 * k + r][l] = (p[r][l] - q[r][l]) * d[0][l] + (p[3 + r][l] - q[3 + r][l]) * d[1][l] +
+                          (p[6 + r][l] - q[6 + r][l]) * d[2][l];
+    }
+}
+
+/* As gxsp_affine_corners. shape: of the point */
+static void gxsp_singles_corners(gxsp_singles *GXSP_RESTRICT shape, gxsp_singles *GXSP_RESTRICT x,
+                                 gxsp_singles *GXSP_RESTRICT e, gxsp_singles *GXSP_RESTRICT w) {
+    int j, r, l;
+    for (j = 0; j < 4; j++) {
+        const uint8_t *edge = gxsp_corner_edges[j], *other = gxsp_corner_others[j];
+        for (r = 0; r < 3; r++) GXSP_EACH_LANE(l)
+        w[3 * j + r][l] = x[3 * j + r][l] + shape[other[0]][l] * e[3 * edge[0] + r][l] +
+                          shape[other[1]][l] * e[3 * edge[1] + r][l] + shape[other[2]][l] * e[3 * edge[2] + r][l];
+    }
+}
+
+/* Adds mass x the point's motion to forces on w. mass: rate x 1/8 of the point's. y: as in gxsp_affine_inertia, half
+ * of it: the other half is a force on w */
+static void gxsp_singles_inertia(gxsp_singles *GXSP_RESTRICT shape, const float *GXSP_RESTRICT mass,
+                                 gxsp_singles *GXSP_RESTRICT start, gxsp_singles *GXSP_RESTRICT x,
+                                 gxsp_singles *GXSP_RESTRICT w, gxsp_singles *GXSP_RESTRICT y,
+                                 gxsp_singles *GXSP_RESTRICT on_w) {
+    int r, j, l;
+    for (r = 0; r < 3; r++) {
+        gxsp_singles force;
+        GXSP_EACH_LANE(l)
+        force[l] = mass[l] *
+                   (start[r][l] +
+                    0.125f * (shape[0][l] * (x[r][l] + w[r][l]) + shape[1][l] * (x[3 + r][l] + w[3 + r][l]) +
+                              shape[2][l] * (x[6 + r][l] + w[6 + r][l]) + shape[3][l] * (x[9 + r][l] + w[9 + r][l])));
+        for (j = 0; j < 4; j++) GXSP_EACH_LANE(l) {
+                y[3 * j + r][l] += shape[j][l] * force[l];
+                on_w[3 * j + r][l] += shape[j][l] * force[l];
+            }
+    }
+}
+
+/* As gxsp_affine_collect */
+static void gxsp_singles_collect(gxsp_singles *GXSP_RESTRICT shape, gxsp_singles *GXSP_RESTRICT w,
+                                 gxsp_singles *GXSP_RESTRICT y, gxsp_singles *GXSP_RESTRICT e) {
+    int k, r, l;
+    for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) y[k][l] += w[k][l];
+    for (k = 0; k < 6; k++) {
+        const int i = gxsp_edge_ends[k][0], j = gxsp_edge_ends[k][1];
+        for (r = 0; r < 3; r++) GXSP_EACH_LANE(l)
+        e[3 * k + r][l] += shape[i][l] * w[3 * j + r][l] + shape[j][l] * w[3 * i + r][l];
+    }
+}
+
+/* As gxsp_affine_return */
+static void gxsp_singles_return(gxsp_singles *GXSP_RESTRICT way, gxsp_singles *GXSP_RESTRICT e,
+                                gxsp_singles *GXSP_RESTRICT y) {
+    int i, a, r, l;
+    for (i = 0; i < 4; i++) {
+        const uint8_t *edge = gxsp_corner_edges[i], *other = gxsp_corner_others[i];
+        const float sign[3] = {i < other[0] ? 1.0f : -1.0f, i < other[1] ? 1.0f : -1.0f, i < other[2] ? 1.0f : -1.0f};
+        for (a = 0; a < 3; a++)
+            for (r = 0; r < 3; r++) GXSP_EACH_LANE(l)
+        y[12 + 9 * i + 3 * a + r][l] = sign[0] * e[3 * edge[0] + r][l] * way[3 * edge[0] + a][l] +
+                                       sign[1] * e[3 * edge[1] + r][l] * way[3 * edge[1] + a][l] +
+                                       sign[2] * e[3 * edge[2] + r][l] * way[3 * edge[2] + a][l];
+    }
+}
+
+/* As gxsp_affine_product, in single precision. y: 48 */
+static void gxsp_singles_product(const gxsp_pass *pass, const gxsp_affine_block *block, gxsp_singles *y) {
+    gxsp_singles shape[16], way[18], x[48], start[3], bend[18], forces[18], w[12], from[12], to[12];
+    float mass[GXSP_LANES];
+    int p, k, l;
+    gxsp_affine_round(block, shape, way);
+    gxsp_singles_gather(block, pass->x, x, start);
+    gxsp_singles_bend(way, x, bend);
+    GXSP_EACH_LANE(l) mass[l] = (float)(0.125 * pass->rate * block->rest.mass[l]);
+    memset(y, 0, 12 * sizeof *y);
+    memset(forces, 0, sizeof forces);
+    for (p = 0; p < 4; p++) {
+        gxsp_singles_corners(shape + 4 * p, x, bend, w);
+        for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) from[k][l] = w[k][l] - w[k % 3][l];
+        memset(to, 0, sizeof to);
+        gxsp_kind_product(block->kind, &block->tangent[p], NULL, block->general ? &block->general[p] : NULL, 1, from,
+                          to);
+        if (pass->rate > 0) gxsp_singles_inertia(shape + 4 * p, mass, start, x, w, y, to);
+        gxsp_singles_collect(shape + 4 * p, to, y, forces);
+    }
+    gxsp_singles_return(way, forces, y);
+}
+
+/* Results of a block of the round under way */
+static gxsp_singles *gxsp_singles_slots(const gxsp_affine *affine, size_t block) {
+    return (gxsp_singles *)(void *)affine->slots + (block - affine->round) * 48;
+}
+
+static void gxsp_task_singles(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_affine *affine = &pass->system->affine;
+    const size_t first = affine->round + index * GXSP_AFFINE_TASK, end = first + GXSP_AFFINE_TASK;
+    size_t b;
+    for (b = first; b < end && b < affine->block_count; b++)
+        if (!affine->blocks[b].still) gxsp_singles_product(pass, &affine->blocks[b], gxsp_singles_slots(affine, b));
+}
+
+/* Adds the results of a round to those of vectors. */
+static void gxsp_singles_add(const gxsp_affine *affine, uint32_t end) {
+    uint32_t b;
+    int k, l;
+    for (b = affine->round; b < end; b++) {
+        const gxsp_affine_block *block = &affine->blocks[b];
+        gxsp_singles *from = gxsp_singles_slots(affine, b);
+        for (k = 0; k < 16 && !block->still; k++)
+            for (l = 0; l < GXSP_LANES; l++) {
+                double *to = affine->sum[block->vector[k][l] == GXSP_NONE ? 0 : block->vector[k][l]];
+                if (block->vector[k][l] == GXSP_NONE) continue;
+                to[0] += (double)from[3 * k][l], to[1] += (double)from[3 * k + 1][l],
+                    to[2] += (double)from[3 * k + 2][l];
+            }
+    }
+}
+
+/* Adds the product of pass->x to pass->y, or takes it away if there is a pass->right. Returns x . product. */
+static double gxsp_affine_multiply(gxsp_system *system, gxsp_pass *pass) {
+    gxsp_affine *affine = &system->affine;
+    double work = 0;
+    size_t i;
+    int k;
+    memset(affine->sum, 0, system->model.n * sizeof *affine->sum);
+    for (affine->round = 0; affine->round < affine->block_count; affine->round += GXSP_AFFINE_ROUND) {
+        const uint32_t left = affine->block_count - affine->round,
+                       count = left < GXSP_AFFINE_ROUND ? left : GXSP_AFFINE_ROUND;
+        gxsp_parallel(system->jobs, (count + GXSP_AFFINE_TASK - 1) / GXSP_AFFINE_TASK, gxsp_task_singles, pass);
+        gxsp_singles_add(affine, affine->round + count);
+    }
+    for (i = 0; i < system->model.n; i++)
+        for (k = 0; k < 3 && !system->state.still[i]; k++) {
+            work += (double)pass->x[i][k] * affine->sum[i][k];
+            pass->y[i][k] += (float)(pass->right ? -affine->sum[i][k] : affine->sum[i][k]);
+        }
+    return work;
+}
 
 /* >>product: the Hessian times a vector, in single precision ------------------------------------------------------- */
 
