@@ -46,10 +46,10 @@
  *                 >>smoother its step length | >>cycle the V-cycle
  *   changes:      >>edits lanes that a cut changes | >>renewal copies and components | >>update levels, all of it
  *   steps:        >>components momentum | >>points springs, contact | >>pairs two sides in contact | >>terms all that
- *                 acts at points | >>cg conjugate gradients | >>ageing of coarse matrices | >>sleep rest | >>balance
- * residual, start | >>search lengths | >>integrators BDF, midpoint | >>newton iterations, bound on E | >>midpoint
- * second half, end of a step entrance:     >>check what is given | >>api the public functions | >>single a material at
- * one F
+ *                 acts at points | >>cg conjugate gradients | >>ageing of coarse matrices | >>sleep rest |
+ *                 >>balance residual, start | >>search lengths | >>integrators BDF, midpoint | >>newton iterations,
+ *                 bound on E | >>midpoint second half, end of a step | >>leapfrog explicit steps
+ *   entrance:     >>check what is given | >>api the public functions | >>single a material at one F
  *
  * WORDS. Copy: a node's displacement for one connected set of cells. Component: copies joined by elements and
  * constraints. Lane, block, chunk: an element's place, eight lanes, 48 blocks. Slot: a copy's place in the results of
@@ -310,7 +310,7 @@ typedef struct gxs_solver_desc {
     gxs_matrix matrix;
 } gxs_solver_desc;
 
-/* How time is discretised. All are implicit and minimise a potential of the form of E above. */
+/* How time is discretised. All but GXS_EXPLICIT are implicit and minimise a potential of the form of E above. */
 typedef enum gxs_integrator {
     GXS_BDF1 = 0, /* backward Euler: first order, damps motion that it cannot resolve */
     GXS_BDF2,     /* second order, damps less; the first step is backward Euler */
@@ -320,7 +320,13 @@ typedef enum gxs_integrator {
     GXS_MIDPOINT,
     /* no inertia, velocities 0. dt 0: balance of forces; GX_ERROR_FREE if nothing holds a component. dt above 0: the
        mass over dt^2 holds every copy where it was, so that free components have an answer */
-    GXS_STATIC
+    GXS_STATIC,
+    /* leapfrog in substeps, for soft bodies in motion: second order, damps nothing. Mass is lumped; light copies get
+       0.3 % of the body's mass more. Forces are single precision. Stable neo-Hookean materials without damping, under
+       gravity and forces, without targets, springs, contact points, pairs or constraints. Any other step is backward
+       Euler: see gxs_step_report.substeps. So is one that would take more than 64 substeps of its own choice, one whose
+       elements are stretched too far for the substeps, and one in which energy would rise */
+    GXS_EXPLICIT
 } gxs_integrator;
 
 #define GXS_POINT_OWN  4  /* copies for which a point has room itself */
@@ -388,7 +394,8 @@ typedef struct gxs_step_desc {
     const double *targets;
     /* names the numbering of forces and targets: the model's, else GX_ERROR_STALE. Read if one of them is given */
     uint64_t epoch;
-    double mass_damping;        /* Rayleigh's alpha, 1/s, 0 or more: force -alpha M v */
+    double mass_damping; /* Rayleigh's alpha, 1/s, 0 or more: force -alpha M v */
+    uint32_t substeps;   /* GXS_EXPLICIT only: that many of dt; 0: as few as are cheap, for errors of about 1 % */
     uint32_t newton_iterations; /* at most; 0: 1 */
     /* stop at this residual (see gxs_step_report); 0: 1e-8, far below what one iteration leaves in motion */
     double newton_tolerance;
@@ -442,7 +449,8 @@ typedef struct gxs_step_report {
     gxs_stop stop;
     /* displacements solved for: three per copy that is awake, not held and follows nothing */
     size_t active_unknowns;
-    uint32_t newton_iterations; /* 0: the start was in balance to rounding */
+    uint32_t substeps;          /* of GXS_EXPLICIT; 0: the step was implicit */
+    uint32_t newton_iterations; /* 0: the start was in balance to rounding, or the step was explicit */
     uint32_t cg_iterations;     /* sum over Newton iterations */
     uint32_t line_search_steps; /* step lengths tried; sum over Newton iterations */
     /* |load - inertia - elastic| / (|load| + |inertia| + |elastic|) on copies that are not held; the larger of the two
@@ -478,7 +486,7 @@ typedef struct gxs_solver gxs_solver;
  * where they are. Both get the velocity of that motion. GX_ERROR_SEQUENCE: no model is set. GX_ERROR_DIVERGED and, with
  * GXS_STATIC, GX_ERROR_FREE leave displacement and velocity unchanged. A residual above newton_tolerance when the
  * iterations are used up is no error: see the report. Allocates (GX_ERROR_MEMORY) only if there are more springs,
- * contact points and pairs, or copies of them, than ever before. */
+ * contact points and pairs, or copies of them, than ever before, and in the first step of a model with GXS_EXPLICIT. */
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
                                     double *velocity, gxs_step_report *report, gx_failure *failure);
 /* Checks the parts of a step's description that need no solver: its numbers, springs, points, planes and pairs, and
@@ -657,6 +665,33 @@ extern "C" {
  * below this. */
 #define GXSP_PARALLEL 1e-5
 
+/* Explicit steps. Light copies get this share of the mass of all more: their own motion then allows substeps as long as
+ * that of whole elements. On an accordion of cut cubes it doubles them, and changes the motion by 7e-4. */
+#define GXSP_LEAP_MASS 0.003
+
+/* The factor on L: the power method ends a little below the largest eigenvalue. Should a step create energy all the
+ * same, the next factor, GXSP_LEAP_RAISE times as large, is tried, as many times as it takes to reach the last. */
+#define GXSP_LEAP_FACTOR 1.1
+#define GXSP_LEAP_RAISE  1.3
+#define GXSP_LEAP_LAST   2.2
+
+/* The degree of the filter at rest if substeps are not given: a product takes a third to a quarter of the time of
+ * forces, and longer filters lose accuracy. The highest degree. The most substeps that a step takes by itself. */
+#define GXSP_LEAP_DEGREE   3
+#define GXSP_LEAP_DEGREES  24
+#define GXSP_LEAP_SUBSTEPS 64
+
+/* Rows in a group of the stiffness bound; divides GXSP_RANGE */
+#define GXSP_LEAP_ROWS 4
+
+/* Iterations of the power method for the largest eigenvalue */
+#define GXSP_LEAP_POWERS 40
+
+/* Energy may rise above its limit by this share of the elastic and kinetic energy. The limit is that of the start; it
+ * nears the present energy by GXSP_LEAP_FORGET a step. */
+#define GXSP_LEAP_GAIN   0.03
+#define GXSP_LEAP_FORGET 0.1
+
 /* Spacing of the first lattice of the multigrid, in edges of an average element. */
 #define GXSP_SPACING 2.5
 
@@ -735,20 +770,23 @@ extern "C" {
 /* Groups of elements are below this: gxsp_sort sorts by 30 bits. */
 #define GXSP_GROUPS ((uint32_t)1 << 30)
 
-/* Arrays of a block's passes never overlap. */
-#if !defined(__cplusplus)
-#define GXSP_RESTRICT restrict
-#elif defined(__GNUC__) || defined(_MSC_VER)
+/* Arrays of a block's passes never overlap. cl knows C's own word only if it is told the standard. */
+#if defined(__GNUC__) || defined(_MSC_VER)
 #define GXSP_RESTRICT __restrict
+#elif !defined(__cplusplus)
+#define GXSP_RESTRICT restrict
 #else
 #define GXSP_RESTRICT
 #endif
 
 /* INLINE: compilers must know the column numbers. Columns that might be equal are not vectorised. COLD: seldom called,
  * kept out of line and compiled for size. */
-#if defined(__GNUC__)
+#if defined(__GNUC__) || defined(__clang__)
 #define GXSP_COLD   __attribute__((cold, noinline))
 #define GXSP_INLINE static inline __attribute__((always_inline))
+#elif defined(_MSC_VER)
+#define GXSP_COLD   __declspec(noinline)
+#define GXSP_INLINE static __forceinline
 #else
 #define GXSP_COLD
 #define GXSP_INLINE static inline
@@ -760,6 +798,8 @@ extern "C" {
 #define GXSP_EACH(l, count) _Pragma("clang loop unroll(disable)") for (l = 0; l < (count); l++)
 #elif defined(__GNUC__)
 #define GXSP_EACH(l, count) _Pragma("GCC ivdep") for (l = 0; l < (count); l++)
+#elif defined(_MSC_VER)
+#define GXSP_EACH(l, count) __pragma(loop(ivdep)) for (l = 0; l < (count); l++)
 #else
 #define GXSP_EACH(l, count) for (l = 0; l < (count); l++)
 #endif
@@ -769,7 +809,7 @@ extern "C" {
 /* Vectors for code that compilers do not vectorise: shuffles of nodes' vectors and blocks, many sums at a time.
  * Shuffles of vectors longer than the machine's are compiled number by number. Hence vectors of eight floats with
  * AVX only. */
-#if defined(__GNUC__) && (defined(__clang__) || __GNUC__ >= 12) && !defined(GXFEM_SCALAR)
+#if (defined(__clang__) || (defined(__GNUC__) && __GNUC__ >= 12)) && !defined(GXFEM_SCALAR)
 #define GXSP_SHUFFLES
 typedef __attribute__((vector_size(8), aligned(4), may_alias)) float gxsp_two;
 typedef __attribute__((vector_size(16), aligned(4), may_alias)) float gxsp_four;
@@ -1403,6 +1443,36 @@ typedef struct gxsp_history {
     uint32_t guess_count; /* valid guesses: 0, 1 or 2 */
 } gxsp_history;
 
+/* A block's elements in explicit steps. A lane without an element has zeros. */
+typedef struct gxsp_leap_block {
+    float gradient[9][GXSP_LANES];            /* of shape functions 1 ... 3, by rows, 1/m */
+    float mu[GXSP_LANES], lambda[GXSP_LANES]; /* weight x moduli, J */
+} gxsp_leap_block;
+
+/* What explicit steps need of the model, made by the first one; and their vectors. All arrays are in its own pool. */
+typedef struct gxsp_leap {
+    gxsp_pool pool;
+    int made;                /* for the present model */
+    int suits;               /* materials and copies allow explicit steps. Else nothing below is there */
+    gxsp_leap_block *blocks; /* block_count: those of the first chunk, then of the next */
+    size_t block_count;
+    uint32_t *first_block; /* chunk_count: of each chunk */
+    /* L, which bounds the stiffness: one number for a pair of copies, by groups of rows. order: n: copies of the rows.
+     * start: n / GXSP_LEAP_ROWS, rounded up, + 1; entry k of the group's row r is at GXSP_LEAP_ROWS (start + k) + r */
+    uint32_t *order, *start, *column;
+    float *entry;    /* N/m */
+    float *diagonal; /* n: N/m */
+    float *mass;     /* n: lumped, and more where copies are light, kg; 0: it is fixed */
+    float *inverse;  /* n: 1/mass, 0 where the step leaves the copy alone */
+    float *stiffest; /* chunk_count: largest modulus at the last forces, relative to that at rest */
+    /* n: accelerations; the last three of Chebyshev's recurrence, m/s2 */
+    gxsp_vector4 *start_of_filter, *last, *before, *next;
+    double top;    /* largest eigenvalue of M^-1 L, 1/s2 */
+    double factor; /* on L; 0: the first */
+    double limit;  /* of energy, J. Valid if limited */
+    int limited;   /* the last step was explicit */
+} gxsp_leap;
+
 /* A model in the solver's form, and all that its steps work with. One allocation of pool, as are its arrays. */
 typedef struct gxsp_system {
     gxsp_pool pool;
@@ -1415,6 +1485,7 @@ typedef struct gxsp_system {
     gxsp_smoother smoother;
     gxsp_vectors vectors;
     gxsp_history state;
+    gxsp_leap leap;
 } gxsp_system;
 
 /* The line search's trial displacement, n x 3. It lies in the residual's memory: nothing needs the residual while
@@ -1642,7 +1713,7 @@ static void gxsp_over_ranges(gxsp_system *system, void (*task)(void *, size_t), 
 /* Prefetches memory that is read soon. A block is too long for processors to prefetch the next one in time. Always
  * inline: gcc takes a function that only prefetches for one without effect, and drops its calls. */
 GXSP_INLINE void gxsp_prefetch(const void *memory, size_t size) {
-#if defined(__GNUC__)
+#if defined(__GNUC__) || defined(__clang__)
     const char *line = (const char *)memory;
     size_t k;
     for (k = 0; k < size; k += 64) __builtin_prefetch(line + k);
@@ -4686,6 +4757,7 @@ static void gxsp_system_destroy(gxsp_system *system) {
     gxsp_pool pool;
     if (!system) return;
     gxsp_release_to(&system->multigrid.pool, NULL);
+    gxsp_release_to(&system->leap.pool, NULL);
     pool = system->pool; /* the pool also holds the system itself */
     gxsp_release_to(&pool, NULL);
 }
@@ -7209,6 +7281,7 @@ static int gxsp_is_compact(gxsp_renewal *update) {
  * out: see the pools. */
 static int gxsp_update_system(gxsp_renewal *update) {
     gxsp_system *system = update->system;
+    system->leap.made = 0;
     gxsp_find_edits(update);
     gxsp_match_edits(update);
     if (update->scratch->failed) return 1;
@@ -9097,9 +9170,8 @@ static double gxsp_potential(const gxsp_problem *problem, const double *energies
     return energies[0] + energies[1] - work;
 }
 
-/* Writes the state out: all of it, or none if a number is not finite. residual and direction have the new velocity
- * and displacement here. */
-static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double *velocity) {
+/* The state at the end of an implicit step: velocity into residual, displacement into direction; and E there */
+static void gxsp_find_end(gxsp_problem *problem, const double *displacement, const double *velocity) {
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
     const int midpoint = step->integrator == GXS_MIDPOINT, bounded = midpoint && system->state.active > 0;
@@ -9117,13 +9189,22 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
             speeds[i] = problem->speed * (ends[i] - gxsp_mean(problem, displacement, i)) - (midpoint ? velocity[i] : 0);
     }
     problem->report.energy = gxsp_potential(problem, problem->energies, system->vectors.current);
+}
+
+/* Writes the state out, residual and direction: all of it, or none if a number is not finite. */
+static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double *velocity) {
+    gxsp_system *system = problem->system;
+    const gxs_step_desc *step = problem->step;
+    const int midpoint = step->integrator == GXS_MIDPOINT;
+    size_t i, count = 3 * system->model.n;
+    const double *speeds = system->vectors.residual, *ends = system->vectors.direction;
     if (gxsp_first_not_finite(speeds, count) < count || gxsp_first_not_finite(ends, count) < count ||
         !gxsp_finite(problem->report.energy))
         return GX_ERROR_DIVERGED;
     gxsp_report_pairs(problem, ends);
     memcpy(displacement, ends, count * sizeof(double));
     memcpy(velocity, speeds, count * sizeof(double));
-    if (midpoint) memcpy(system->vectors.current, ends, count * sizeof(double));
+    if (midpoint || problem->report.substeps > 0) memcpy(system->vectors.current, ends, count * sizeof(double));
     system->state.stepped = 1;
     system->state.base_known = !midpoint && gxsp_point_count(step) == 0;
     system->lasting->scene = problem->scene;
@@ -9146,6 +9227,600 @@ static void gxsp_report_springs(const gxsp_problem *problem) {
         gxsp_spring_pull(&step->springs[i], problem->system->vectors.current, &pull);
         memcpy(step->spring_forces + 3 * i, pull.force, sizeof pull.force);
     }
+}
+
+/* >>leapfrog: explicit steps --------------------------------------------------------------------------------------- */
+
+/* In: the step and the state at its start. Out: the state at its end in direction and residual, or nothing where
+ * the step must be implicit. Passes use the chunks' slots.
+ *
+ * Leapfrog takes substeps of h: u += h/2 v, v += h a(u), u += h/2 v. Alone it is stable for h^2 K <= 4 M. Here
+ * a = P M^-1 (f - dU/du) with a polynomial P in X = h^2 M^-1 L, where L >= K is the stiffness of a scalar field with
+ * the largest modulus of the material: one number for each pair of copies. With Chebyshev's T of degree d,
+ *
+ *     X P(X) = 2 - 2 T_d(1 - X / (2 d^2)),    P(0) = 1,
+ *
+ * is at most 4 for X up to 4 d^2. So h may be d times as long, and a product by L is far cheaper than forces are. P is
+ * symmetric and positive: this is leapfrog with the mass M P^-1, second order and reversible. Waves that are slow
+ * beside h keep their inertia to h^2 K / 12. A factor on L, from the moduli at the present strain, chooses d for each
+ * substep.
+ */
+
+/* The largest modulus of a lane's Hessian at rest, 3 lambda + 2 mu of small strain, times the weight, J. The block's
+ * moduli are those of [Smith 2018]. */
+static float gxsp_leap_modulus(const gxsp_leap_block *block, int lane) {
+    return 3 * block->lambda[lane] - 0.375f * block->mu[lane];
+}
+
+/* Are all elements stable neo-Hookean, undamped, and do no copies follow others? */
+static int gxsp_leap_suits(const gxsp_system *system) {
+    uint32_t c;
+    if (system->model.follower_count > 0 || system->model.damps) return 0;
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        if (system->mesh.chunks[c].kind != GXS_STABLE_NEO_HOOKEAN) return 0;
+    return 1;
+}
+
+/* Gradients and moduli of all blocks, and the copies of all lanes: 4 each; GXSP_NONE: no element. The caller's scratch
+ */
+static uint32_t *gxsp_leap_blocks_make(gxsp_system *system, gxsp_pool *scratch) {
+    gxsp_leap *leap = &system->leap;
+    uint32_t *copies, c, b, lane, count = 0;
+    int k;
+    leap->first_block = (uint32_t *)gxsp_take(&leap->pool, system->mesh.chunk_count, sizeof(uint32_t));
+    for (c = 0; c < system->mesh.chunk_count && !leap->pool.failed; c++) {
+        leap->first_block[c] = count;
+        count += system->mesh.chunks[c].block_count;
+    }
+    leap->block_count = count;
+    leap->blocks = (gxsp_leap_block *)gxsp_take(&leap->pool, count, sizeof *leap->blocks);
+    copies = (uint32_t *)gxsp_take(scratch, (size_t)count * GXSP_LANES, 4 * sizeof(uint32_t));
+    if (leap->pool.failed || scratch->failed) return NULL;
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        const gxsp_chunk *chunk = &system->mesh.chunks[c];
+        double positions[3 * 4 * GXSP_CHUNK + 1];
+        gxsp_lanes corners[12], made[9];
+        if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, positions);
+        for (b = 0; b < chunk->block_count; b++) {
+            gxsp_leap_block *to = &leap->blocks[leap->first_block[c] + b];
+            const gxsp_rest *rest = &chunk->rest[b];
+            gxsp_lanes *gradients = gxsp_block_gradients(chunk, b, positions, corners, made);
+            for (lane = 0; lane < GXSP_LANES; lane++) {
+                const gxsp_material *material = &system->model.materials[rest->material[lane]];
+                const int used = chunk->groups[b * GXSP_LANES + lane] != GXSP_NONE;
+                uint32_t *own = copies + 4 * ((size_t)(leap->first_block[c] + b) * GXSP_LANES + lane);
+                for (k = 0; k < 9; k++) to->gradient[k][lane] = (float)gradients[k][lane];
+                to->mu[lane] = (float)(rest->weight[lane] * material->mu);
+                to->lambda[lane] = (float)(rest->weight[lane] * material->lambda);
+                if (used) gxsp_lane_copies(system, chunk, b, (int)lane, own);
+                if (!used) own[0] = GXSP_NONE;
+            }
+        }
+    }
+    return copies;
+}
+
+/* Gradient of shape function 0 ... 3 of a lane, k: along an axis */
+static float gxsp_leap_gradient(const gxsp_leap_block *block, uint32_t lane, int corner, int k) {
+    return corner > 0 ? block->gradient[3 * (corner - 1) + k][lane]
+                      : -(block->gradient[k][lane] + block->gradient[3 + k][lane] + block->gradient[6 + k][lane]);
+}
+
+/* A row of L: the copies around copy i, and, if entry is not NULL, their numbers, from the lanes in which it is. mark:
+ * by copy, i + 1 if its place in the row is at. Returns how many there are. */
+static uint32_t gxsp_leap_row(const gxsp_leap *leap, const uint32_t *copies, const uint32_t *corners, uint32_t count,
+                              uint32_t i, uint32_t *mark, uint32_t *at, uint32_t *column, float *entry) {
+    uint32_t n = 0, c;
+    int k, m;
+    for (c = 0; c < count; c++) {
+        const uint32_t lane = corners[c] / 4;
+        const int own = (int)(corners[c] % 4);
+        const gxsp_leap_block *block = &leap->blocks[lane / GXSP_LANES];
+        const float modulus = gxsp_leap_modulus(block, (int)(lane % GXSP_LANES));
+        for (k = 0; k < 4; k++) {
+            const uint32_t j = copies[4 * (size_t)lane + (size_t)k];
+            if (mark[j] != i + 1) {
+                mark[j] = i + 1;
+                at[j] = n++;
+                if (entry) column[at[j]] = j, entry[at[j]] = 0;
+            }
+            for (m = 0; m < 3 && entry; m++)
+                entry[at[j]] += modulus * gxsp_leap_gradient(block, lane % GXSP_LANES, own, m) *
+                                gxsp_leap_gradient(block, lane % GXSP_LANES, k, m);
+        }
+    }
+    return n;
+}
+
+/* The order of rows: in each range by length, the longest first */
+static void gxsp_leap_order_rows(const gxsp_system *system, const uint32_t *length, uint32_t *order) {
+    size_t r, i, end;
+    for (r = 0; r < system->model.range_count; r++) {
+        uint32_t most = 0, next = 0;
+        size_t place, begin;
+        end = gxsp_range(system, r, &begin);
+        place = begin;
+        for (i = begin; i < end; i++) most = length[i] > most ? length[i] : most;
+        for (; place < end; most = next, next = 0)
+            for (i = begin; i < end; i++) {
+                if (length[i] == most) order[place++] = (uint32_t)i;
+                if (length[i] < most && length[i] > next) next = length[i];
+            }
+    }
+}
+
+/* L in groups of GXSP_LEAP_ROWS rows, as long as the longest of a group: one loop for all of them. Behind its end a row
+ * has zeros and names its own copy. copies: of all lanes */
+static void gxsp_leap_rows_make(gxsp_system *system, gxsp_pool *scratch, const uint32_t *copies) {
+    gxsp_leap *leap = &system->leap;
+    const size_t n = system->model.n, lanes = leap->block_count * GXSP_LANES,
+                 groups = (n + GXSP_LEAP_ROWS - 1) / GXSP_LEAP_ROWS;
+    uint32_t *first = (uint32_t *)gxsp_take(scratch, n + 2, sizeof(uint32_t));
+    uint32_t *corners = (uint32_t *)gxsp_take(scratch, 4 * lanes, sizeof(uint32_t));
+    uint32_t *mark = (uint32_t *)gxsp_take(scratch, 2 * n, sizeof(uint32_t));
+    uint32_t *length = (uint32_t *)gxsp_take(scratch, n, sizeof(uint32_t)), *columns, longest = 0, k;
+    float *entries;
+    size_t i;
+    leap->start = (uint32_t *)gxsp_take(&leap->pool, groups + 1, sizeof(uint32_t));
+    leap->order = (uint32_t *)gxsp_take(&leap->pool, n, sizeof(uint32_t));
+    leap->diagonal = (float *)gxsp_take(&leap->pool, n, sizeof(float));
+    if (scratch->failed || leap->pool.failed) return;
+    for (i = 0; i < 4 * lanes; i++)
+        if (copies[i / 4 * 4] != GXSP_NONE) first[copies[i] + 2]++;
+    for (i = 2; i < n + 2; i++) first[i] += first[i - 1];
+    for (i = 0; i < 4 * lanes; i++)
+        if (copies[i / 4 * 4] != GXSP_NONE) corners[first[copies[i] + 1]++] = (uint32_t)i;
+    for (i = 0; i < n; i++) {
+        length[i] = gxsp_leap_row(leap, copies, corners + first[i], first[i + 1] - first[i], (uint32_t)i, mark,
+                                  mark + n, NULL, NULL);
+        longest = length[i] > longest ? length[i] : longest;
+    }
+    gxsp_leap_order_rows(system, length, leap->order);
+    for (i = 0; i < n; i += GXSP_LEAP_ROWS)
+        leap->start[i / GXSP_LEAP_ROWS + 1] = leap->start[i / GXSP_LEAP_ROWS] + length[leap->order[i]];
+    leap->column = (uint32_t *)gxsp_take(&leap->pool, (size_t)leap->start[groups] * GXSP_LEAP_ROWS, sizeof(uint32_t));
+    leap->entry = (float *)gxsp_take(&leap->pool, (size_t)leap->start[groups] * GXSP_LEAP_ROWS, sizeof(float));
+    columns = (uint32_t *)gxsp_take(scratch, longest, sizeof(uint32_t));
+    entries = (float *)gxsp_take(scratch, longest, sizeof(float));
+    if (scratch->failed || leap->pool.failed) return;
+    memset(mark, 0, n * sizeof *mark);
+    for (i = 0; i < n; i++) {
+        const size_t group = i / GXSP_LEAP_ROWS, row = i % GXSP_LEAP_ROWS;
+        const uint32_t own = leap->order[i];
+        gxsp_leap_row(leap, copies, corners + first[own], first[own + 1] - first[own], own, mark, mark + n, columns,
+                      entries);
+        for (k = 0; k < leap->start[group + 1] - leap->start[group]; k++) {
+            const size_t at = (leap->start[group] + k) * (size_t)GXSP_LEAP_ROWS + row;
+            leap->column[at] = k < length[own] ? columns[k] : own;
+            leap->entry[at] = k < length[own] ? entries[k] : 0;
+        }
+        if (length[own] > 0) leap->diagonal[own] = entries[mark[n + own]];
+    }
+}
+
+/* Masses: the lumped ones, but at least bound x the diagonal of L. Light copies would demand short substeps; they get
+ * GXSP_LEAP_MASS of the mass of all copies more. So bound is where the sum of what they lack reaches that. */
+static void gxsp_leap_masses_make(gxsp_system *system) {
+    gxsp_leap *leap = &system->leap;
+    const size_t n = system->model.n;
+    double all = 0, low = 0, high = 0;
+    uint32_t i;
+    int k;
+    leap->mass = (float *)gxsp_take(&leap->pool, n, sizeof(float));
+    leap->inverse = (float *)gxsp_take(&leap->pool, n, sizeof(float));
+    if (leap->pool.failed) return;
+    for (i = 0; i < n; i++) {
+        const double diagonal = system->model.fixed[i] ? 0 : (double)leap->diagonal[i];
+        if (!(diagonal > 0)) continue;
+        all += system->model.lumped[i];
+        high = fmax(high, system->model.lumped[i] / diagonal);
+    }
+    for (k = 0; k < 40; k++) {
+        const double middle = 0.5 * (low + high);
+        double lacking = 0;
+        for (i = 0; i < n; i++)
+            if (!system->model.fixed[i])
+                lacking += fmax(0, middle * (double)leap->diagonal[i] - system->model.lumped[i]);
+        if (lacking > GXSP_LEAP_MASS * all)
+            high = middle;
+        else
+            low = middle;
+    }
+    for (i = 0; i < n; i++)
+        leap->mass[i] =
+            system->model.fixed[i] ? 0 : (float)fmax(system->model.lumped[i], low * (double)leap->diagonal[i]);
+}
+
+/* Rows of a group of L times a vector */
+GXSP_INLINE void gxsp_leap_group_product(const gxsp_leap *leap, size_t group, const gxsp_vector4 *x,
+                                         gxsp_vector4 *sums) {
+    const size_t end = leap->start[group + 1];
+    size_t k, r;
+#if defined(GXSP_SHUFFLES)
+    gxsp_four sum[GXSP_LEAP_ROWS] = {{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}};
+    for (k = leap->start[group]; k < end; k++)
+        for (r = 0; r < GXSP_LEAP_ROWS; r++)
+            sum[r] += leap->entry[GXSP_LEAP_ROWS * k + r] * *(const gxsp_four *)x[leap->column[GXSP_LEAP_ROWS * k + r]];
+    for (r = 0; r < GXSP_LEAP_ROWS; r++) *(gxsp_four *)sums[r] = sum[r];
+#else
+    int c;
+    memset(sums, 0, GXSP_LEAP_ROWS * sizeof *sums); /* the fourth number too */
+    for (k = leap->start[group]; k < end; k++)
+        for (r = 0; r < GXSP_LEAP_ROWS; r++)
+            for (c = 0; c < 3; c++)
+                sums[r][c] += leap->entry[GXSP_LEAP_ROWS * k + r] * x[leap->column[GXSP_LEAP_ROWS * k + r]][c];
+#endif
+}
+
+/* The largest eigenvalue of M^-1 L by the power method, from vectors that no symmetry of a mesh leaves out. It is
+ * reached from below: the factor on L covers the rest. */
+static void gxsp_leap_find_top(gxsp_system *system) {
+    gxsp_leap *leap = &system->leap;
+    gxsp_vector4 sums[GXSP_LEAP_ROWS];
+    uint32_t seed = 1;
+    size_t i;
+    int k, c;
+    for (i = 0; i < system->model.n; i++)
+        for (c = 0; c < 3; c++) {
+            seed = seed * 1664525u + 1013904223u;
+            leap->last[i][c] = leap->mass[i] > 0 ? (float)(seed >> 8) / 8388608.0f - 1 : 0;
+        }
+    for (k = 0; k < GXSP_LEAP_POWERS; k++) {
+        double before = 0, after = 0;
+        float scale;
+        for (i = 0; i < system->model.n; i++) {
+            const uint32_t own = leap->order[i];
+            const float mass = leap->mass[own], *from = leap->last[own];
+            float *to = leap->next[own];
+            if (i % GXSP_LEAP_ROWS == 0)
+                gxsp_leap_group_product(leap, i / GXSP_LEAP_ROWS, (const gxsp_vector4 *)leap->last, sums);
+            for (c = 0; c < 3; c++) {
+                to[c] = mass > 0 ? sums[i % GXSP_LEAP_ROWS][c] / mass : 0;
+                before += (double)mass * (double)from[c] * (double)from[c];
+                after += (double)mass * (double)to[c] * (double)to[c];
+            }
+        }
+        leap->top = before > 0 ? sqrt(after / before) : 0;
+        scale = leap->top > 0 ? (float)(1 / leap->top) : 0;
+        for (i = 0; i < system->model.n; i++)
+            for (c = 0; c < 3; c++) leap->last[i][c] = scale * leap->next[i][c];
+    }
+}
+
+/* All that explicit steps need of the model. Returns 0 if there is no memory. */
+static int gxsp_leap_make(gxsp_system *system) {
+    gxsp_leap *leap = &system->leap;
+    gxsp_pool scratch = gxsp_pool_make(&system->pool.allocator);
+    const uint32_t *copies;
+    gxsp_vector4 **vectors[4];
+    int k;
+    gxsp_release_to(&leap->pool, NULL);
+    memset(leap, 0, sizeof *leap);
+    leap->pool = gxsp_pool_make(&system->pool.allocator);
+    leap->suits = gxsp_leap_suits(system);
+    leap->made = 1;
+    if (!leap->suits) return 1;
+    copies = gxsp_leap_blocks_make(system, &scratch);
+    if (copies) gxsp_leap_rows_make(system, &scratch, copies);
+    if (copies && !scratch.failed && !leap->pool.failed) gxsp_leap_masses_make(system);
+    vectors[0] = &leap->start_of_filter, vectors[1] = &leap->last, vectors[2] = &leap->before, vectors[3] = &leap->next;
+    for (k = 0; k < 4; k++) *vectors[k] = (gxsp_vector4 *)gxsp_take(&leap->pool, system->model.n, sizeof(gxsp_vector4));
+    leap->stiffest = (float *)gxsp_take(&leap->pool, system->mesh.chunk_count, sizeof(float));
+    if (!copies || scratch.failed || leap->pool.failed) {
+        gxsp_release_to(&scratch, NULL);
+        gxsp_release_to(&leap->pool, NULL);
+        memset(leap, 0, sizeof *leap);
+        return 0;
+    }
+    gxsp_release_to(&scratch, NULL);
+    gxsp_leap_find_top(system);
+    return 1;
+}
+
+/* Forces of a block, dU/du, added to y; and the largest modulus of its Hessians relative to that at rest. With G the
+ * gradient of the displacement x, F = 1 + G, P = mu (1 - 1 / (Ic + 1)) F + (lambda (J - 1) - 3/4 mu) cof F, written so
+ * that nothing cancels near rest. The modulus is at most the sum of those of the terms of its derivative:
+ *     mu Ic / (Ic + 1) + 2 mu Ic / (Ic + 1)^2 + lambda |cof F|^2 + |lambda (J - 1) - 3/4 mu| |F|, |F| <= (3 + Ic) /
+ * sqrt 12
+ */
+static void gxsp_leap_force(const gxsp_leap_block *GXSP_RESTRICT b, gxsp_singles *GXSP_RESTRICT x,
+                            gxsp_singles *GXSP_RESTRICT y, float *GXSP_RESTRICT stiffest) {
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float g0 = b->gradient[0][l], g1 = b->gradient[1][l], g2 = b->gradient[2][l], g3 = b->gradient[3][l],
+                    g4 = b->gradient[4][l], g5 = b->gradient[5][l], g6 = b->gradient[6][l], g7 = b->gradient[7][l],
+                    g8 = b->gradient[8][l], mu = b->mu[l], lambda = b->lambda[l];
+        const float x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
+        const float p0 = x[3][l] - x0, p1 = x[4][l] - x1, p2 = x[5][l] - x2, q0 = x[6][l] - x0, q1 = x[7][l] - x1,
+                    q2 = x[8][l] - x2, r0 = x[9][l] - x0, r1 = x[10][l] - x1, r2 = x[11][l] - x2;
+        const float d0 = p0 * g0 + q0 * g3 + r0 * g6, d1 = p0 * g1 + q0 * g4 + r0 * g7,
+                    d2 = p0 * g2 + q0 * g5 + r0 * g8, d3 = p1 * g0 + q1 * g3 + r1 * g6,
+                    d4 = p1 * g1 + q1 * g4 + r1 * g7, d5 = p1 * g2 + q1 * g5 + r1 * g8,
+                    d6 = p2 * g0 + q2 * g3 + r2 * g6, d7 = p2 * g1 + q2 * g4 + r2 * g7,
+                    d8 = p2 * g2 + q2 * g5 + r2 * g8;
+        /* cofactors of G; those of F less 1 */
+        const float k0 = d4 * d8 - d5 * d7, k1 = d5 * d6 - d3 * d8, k2 = d3 * d7 - d4 * d6, k3 = d2 * d7 - d1 * d8,
+                    k4 = d0 * d8 - d2 * d6, k5 = d1 * d6 - d0 * d7, k6 = d1 * d5 - d2 * d4, k7 = d2 * d3 - d0 * d5,
+                    k8 = d0 * d4 - d1 * d3;
+        const float trace = d0 + d4 + d8;
+        const float c0 = trace - d0 + k0, c1 = k1 - d3, c2 = k2 - d6, c3 = k3 - d1, c4 = trace - d4 + k4, c5 = k5 - d7,
+                    c6 = k6 - d2, c7 = k7 - d5, c8 = trace - d8 + k8;
+        const float square = d0 * d0 + d1 * d1 + d2 * d2 + d3 * d3 + d4 * d4 + d5 * d5 + d6 * d6 + d7 * d7 + d8 * d8;
+        const float i = 2 * trace + square, j = trace + (k0 + k4 + k8) + (d0 * k0 + d1 * k1 + d2 * k2); /* Ic-3, J-1 */
+        const float inverse = 1 / (i + 4), growth = 0.25f * mu * i * inverse, rest = 0.75f * mu;
+        const float pressure = lambda * j, own = rest + growth, cofactor = pressure - rest, unit = growth + pressure;
+        const float s0 = own * d0 + cofactor * c0 + unit, s1 = own * d1 + cofactor * c1, s2 = own * d2 + cofactor * c2,
+                    s3 = own * d3 + cofactor * c3, s4 = own * d4 + cofactor * c4 + unit, s5 = own * d5 + cofactor * c5,
+                    s6 = own * d6 + cofactor * c6, s7 = own * d7 + cofactor * c7, s8 = own * d8 + cofactor * c8 + unit;
+        const float f0 = s0 * g0 + s1 * g1 + s2 * g2, f1 = s3 * g0 + s4 * g1 + s5 * g2,
+                    f2 = s6 * g0 + s7 * g1 + s8 * g2, f3 = s0 * g3 + s1 * g4 + s2 * g5,
+                    f4 = s3 * g3 + s4 * g4 + s5 * g5, f5 = s6 * g3 + s7 * g4 + s8 * g5,
+                    f6 = s0 * g6 + s1 * g7 + s2 * g8, f7 = s3 * g6 + s4 * g7 + s5 * g8,
+                    f8 = s6 * g6 + s7 * g7 + s8 * g8;
+        const float sides = (1 + c0) * (1 + c0) + (1 + c4) * (1 + c4) + (1 + c8) * (1 + c8) + c1 * c1 + c2 * c2 +
+                            c3 * c3 + c5 * c5 + c6 * c6 + c7 * c7;
+        const float steep = (cofactor > 0 ? cofactor : -cofactor) * (6 + i) * 0.2886752f;
+        const float modulus = own + 2 * mu * (3 + i) * inverse * inverse + lambda * sides + steep;
+        const float ratio = modulus / (2.4240382f * mu + 3 * lambda + 1e-30f);
+        stiffest[l] = ratio > stiffest[l] ? ratio : stiffest[l];
+        y[0][l] -= f0 + f3 + f6, y[1][l] -= f1 + f4 + f7, y[2][l] -= f2 + f5 + f8;
+        y[3][l] += f0, y[4][l] += f1, y[5][l] += f2, y[6][l] += f3, y[7][l] += f4, y[8][l] += f5, y[9][l] += f6,
+            y[10][l] += f7, y[11][l] += f8;
+    }
+}
+
+/* Forces of a chunk at pass->from into its slots, and its largest modulus. Displacements are taken relative to the
+ * chunk's first node before they are rounded: bodies may be far from where they were at rest. */
+static void gxsp_task_leap_force(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const gxsp_leap_block *blocks = system->leap.blocks + system->leap.first_block[index];
+    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
+    const double *origin = pass->from + 3 * (size_t)copies[0];
+    gxsp_vector4 in[4 * GXSP_CHUNK], out[4 * GXSP_CHUNK];
+    gxsp_singles from[12], to[12], stiffest;
+    uint32_t b, i;
+    int l;
+    system->leap.stiffest[index] = 0;
+    if (system->state.chunk_still[index]) return;
+    for (i = 0; i < chunk->node_count; i++) {
+        const double *x = pass->from + 3 * (size_t)copies[i];
+        gxsp_prefetch(pass->from + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *x);
+        in[i][0] = (float)(x[0] - origin[0]), in[i][1] = (float)(x[1] - origin[1]),
+        in[i][2] = (float)(x[2] - origin[2]);
+        in[i][3] = 0;
+    }
+    memset(out, 0, chunk->node_count * sizeof *out);
+    memset(to, 0, sizeof to);
+    memset(stiffest, 0, sizeof stiffest);
+    for (b = 0; b < chunk->block_count; b++) {
+        if (b + GXSP_TANGENTS_AHEAD < chunk->block_count)
+            gxsp_prefetch(&blocks[b + GXSP_TANGENTS_AHEAD], sizeof *blocks);
+        gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        gxsp_leap_force(&blocks[b], from, to, stiffest);
+        gxsp_block_scatter(chunk, b, to, out);
+    }
+    memcpy((gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node, out, chunk->node_count * sizeof *out);
+    for (l = 0; l < GXSP_LANES; l++)
+        if (stiffest[l] > system->leap.stiffest[index]) system->leap.stiffest[index] = stiffest[l];
+}
+
+/* Accelerations, before the filter: gravity, nodal forces and elastic ones over the mass; 0 where nothing moves */
+static void gxsp_task_leap_sum(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    const gxs_step_desc *step = pass->problem->step;
+    gxsp_vector4 *slots = (gxsp_vector4 *)(void *)system->vectors.slots;
+    size_t i, end = gxsp_range(system, index, &i);
+    int c;
+    for (; i < end; i++) {
+        const float inverse = system->leap.inverse[i];
+        float sum[3] = {0, 0, 0};
+        uint32_t s;
+        for (s = system->mesh.copy_start[i]; s < system->mesh.copy_start[i + 1]; s++) {
+            const float *from = slots[system->mesh.copy_slot[s]];
+            gxsp_prefetch(slots[system->mesh.copy_slot[s + GXSP_AHEAD]], sizeof *slots);
+            sum[0] += from[0], sum[1] += from[1], sum[2] += from[2];
+        }
+        for (c = 0; c < 3; c++) {
+            const float force = (step->forces ? (float)step->forces[3 * i + (size_t)c] : 0) - sum[c];
+            system->leap.start_of_filter[i][c] = inverse > 0 ? inverse * force + (float)step->gravity[c] : 0;
+        }
+    }
+}
+
+/* The next of Chebyshev's recurrence for (1 - T_k(y)) / (1 - y) times the accelerations z, y = 1 - factor M^-1 L:
+ * q_k+1 = 2 y q_k - q_k-1 + 2 z */
+static void gxsp_task_leap_filter(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_leap *leap = &pass->system->leap;
+    size_t i, r, end = gxsp_range(pass->system, index, &i);
+    gxsp_vector4 sums[GXSP_LEAP_ROWS];
+    int c;
+    for (; i < end; i += GXSP_LEAP_ROWS) {
+        gxsp_leap_group_product(leap, i / GXSP_LEAP_ROWS, (const gxsp_vector4 *)leap->last, sums);
+        for (r = 0; r < GXSP_LEAP_ROWS && i + r < end; r++) {
+            const uint32_t own = leap->order[i + r];
+            const float scale = (float)pass->factor * leap->inverse[own], *last = leap->last[own],
+                        *z = leap->start_of_filter[own], *before = leap->before[own];
+            float *next = leap->next[own];
+            for (c = 0; c < 4; c++) next[c] = 2 * (last[c] - scale * sums[r][c] + z[c]) - before[c];
+        }
+    }
+}
+
+/* v changes by a substep's acceleration, last x factor, and by damping; u moves by h v, or by h/2 v in the last
+ * substep (pass->exact). pass->rate: h; sum: v; direction: u */
+static void gxsp_task_leap_move(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    gxsp_system *system = pass->system;
+    const double h = pass->rate, damping = 0.5 * h * pass->problem->step->mass_damping,
+                 keep = (1 - damping) / (1 + damping), push = h * pass->factor / (1 + damping),
+                 move = pass->exact ? 0.5 * h : h;
+    size_t i, end = gxsp_range(system, index, &i), c;
+    for (; i < end; i++)
+        for (c = 3 * i; c < 3 * i + 3 && system->leap.inverse[i] > 0; c++) {
+            pass->sum[c] = keep * pass->sum[c] + push * (double)system->leap.last[i][c - 3 * i];
+            system->vectors.direction[c] += move * pass->sum[c];
+        }
+}
+
+/* The degree of the filter for a substep at this factor on L; 0: more than GXSP_LEAP_DEGREES */
+static uint32_t gxsp_leap_degree(const gxsp_leap *leap, double h, double factor) {
+    const double degree = ceil(0.5 * h * sqrt(factor * leap->top));
+    return degree <= 1 ? 1 : degree <= GXSP_LEAP_DEGREES ? (uint32_t)degree : 0;
+}
+
+/* Filters the accelerations; last x the result: those of the substep. */
+static double gxsp_leap_filter(gxsp_problem *problem, gxsp_pass *pass, double h, double factor, uint32_t degree) {
+    gxsp_leap *leap = &problem->system->leap;
+    uint32_t k;
+    memcpy(leap->last, leap->start_of_filter, problem->system->model.n * sizeof *leap->last);
+    if (degree > 1) memset(leap->before, 0, problem->system->model.n * sizeof *leap->before);
+    pass->factor = h * h * factor / (2.0 * degree * degree);
+    for (k = 1; k < degree; k++) {
+        gxsp_vector4 *oldest = leap->before;
+        gxsp_over_ranges(problem->system, gxsp_task_leap_filter, pass, NULL, 0);
+        leap->before = leap->last;
+        leap->last = leap->next;
+        leap->next = oldest;
+    }
+    return 1.0 / ((double)degree * degree);
+}
+
+/* A substep from the middle of its way, direction: forces, filter, and all of the way that is left to the middle of the
+ * next substep, or to the end. Returns 0 if the filter would be too long: an element is stretched far. */
+static int gxsp_leap_substep(gxsp_problem *problem, double h, int last, double *velocity) {
+    gxsp_system *system = problem->system;
+    double stiffest = 1, factor;
+    uint32_t degree, c;
+    gxsp_pass pass;
+    memset(&pass, 0, sizeof pass);
+    pass.system = system;
+    pass.problem = problem;
+    pass.from = system->vectors.direction;
+    pass.sum = velocity;
+    gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_leap_force, &pass);
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        stiffest = (double)system->leap.stiffest[c] > stiffest ? (double)system->leap.stiffest[c] : stiffest;
+    factor = system->leap.factor * stiffest;
+    degree = gxsp_leap_degree(&system->leap, h, factor);
+    if (degree == 0) return 0;
+    gxsp_over_ranges(system, gxsp_task_leap_sum, &pass, NULL, 0);
+    pass.factor = gxsp_leap_filter(problem, &pass, h, factor, degree);
+    pass.rate = h;
+    pass.exact = last;
+    gxsp_over_ranges(system, gxsp_task_leap_move, &pass, NULL, 0);
+    return 1;
+}
+
+/* Elastic, kinetic and potential energy with the masses of explicit steps, J; elastic: known. *size: elastic and
+ * kinetic energy, that of the mean velocity by a tenth */
+static double gxsp_leap_energy(const gxsp_problem *problem, double elastic, const double *u, const double *v,
+                               double *size) {
+    const gxsp_system *system = problem->system;
+    const gxs_step_desc *step = problem->step;
+    double kinetic = 0, work = 0, all = 0, momentum[3] = {0, 0, 0};
+    size_t i, c;
+    for (i = 0; i < system->model.n; i++) {
+        const double mass = system->leap.inverse[i] > 0 ? (double)system->leap.mass[i] : 0;
+        all += mass;
+        for (c = 0; c < 3 && mass > 0; c++) {
+            kinetic += 0.5 * mass * v[3 * i + c] * v[3 * i + c];
+            momentum[c] += mass * v[3 * i + c];
+            work += (mass * step->gravity[c] + (step->forces ? step->forces[3 * i + c] : 0)) * u[3 * i + c];
+        }
+    }
+    *size = elastic + kinetic - (all > 0 ? 0.5 * gxsp_dot(momentum, momentum, 1) / all : 0);
+    *size = fmax(*size, 0) + 0.1 * kinetic;
+    return elastic + kinetic - work;
+}
+
+/* Sum of the components' elastic energies at a displacement, from the state that the last step returned if that is it
+ */
+static double gxsp_leap_elastic(gxsp_problem *problem, const double *u, int known) {
+    gxsp_system *system = problem->system;
+    double sum = 0;
+    uint32_t p;
+    if (!known) gxsp_evaluate_elements(system, 0, u, NULL, 0, system->vectors.force);
+    for (p = 0; p < system->model.component_count; p++)
+        sum += known ? system->model.components[p].base_energy : system->model.components[p].energies[0];
+    return sum;
+}
+
+/* Substeps of a step: as asked, or as few as a filter of GXSP_LEAP_DEGREE serves at rest; 0: more than
+ * GXSP_LEAP_SUBSTEPS. */
+static uint32_t gxsp_leap_count(const gxsp_problem *problem) {
+    const gxs_step_desc *step = problem->step;
+    const double own =
+        step->dt * 0.5 * sqrt(problem->system->leap.factor * problem->system->leap.top) / GXSP_LEAP_DEGREE;
+    if (step->substeps > 0) return step->substeps;
+    return own <= GXSP_LEAP_SUBSTEPS ? (uint32_t)fmax(1, ceil(own)) : 0;
+}
+
+/* Can this step be explicit? Nothing but gravity, nodal forces and mass damping acts. */
+static int gxsp_leap_allowed(const gxsp_problem *problem) {
+    const gxs_step_desc *step = problem->step;
+    return step->integrator == GXS_EXPLICIT && problem->system->leap.suits && !step->targets &&
+           gxsp_point_count(step) == 0 && problem->system->state.active > 0 && 0.5 * step->dt * step->mass_damping < 1;
+}
+
+/* The explicit step: displacement into direction, velocity into residual. h: of a substep. Returns 0 if an element is
+ * stretched too far or a number is not finite. */
+static int gxsp_leap_try(gxsp_problem *problem, uint32_t substeps, const double *displacement, const double *velocity) {
+    const gxsp_system *system = problem->system;
+    const size_t count = 3 * system->model.n;
+    const double h = problem->step->dt / substeps;
+    double *u = system->vectors.direction, *v = system->vectors.residual;
+    uint32_t s;
+    size_t i;
+    for (i = 0; i < count; i++) {
+        v[i] = system->leap.inverse[i / 3] > 0 ? velocity[i] : 0;
+        u[i] = displacement[i] + 0.5 * h * v[i];
+    }
+    for (s = 0; s < substeps; s++)
+        if (!gxsp_leap_substep(problem, h, s + 1 == substeps, v)) return 0;
+    return gxsp_first_not_finite(u, count) == count && gxsp_first_not_finite(v, count) == count;
+}
+
+/* Tries the step, and again with a larger factor on L as long as energy is above its limit. The energy measured lacks
+ * what the filter adds to the inertia, so it rises and falls; above its limit it was created. Returns 0 where the step
+ * must be implicit, which damps. */
+static int gxsp_leap_step(gxsp_problem *problem, const double *displacement, const double *velocity) {
+    gxsp_system *system = problem->system;
+    gxsp_leap *leap = &system->leap;
+    const double *u = system->vectors.direction, *v = system->vectors.residual;
+    const int known =
+        system->state.base_known && memcmp(displacement, system->vectors.current, 3 * system->model.n * sizeof *u) == 0;
+    double energies[2] = {0, 0}, size, before, after, limit;
+    uint32_t p, substeps;
+    size_t i;
+    gxsp_choose_leads(problem);
+    for (i = 0; i < system->model.n; i++)
+        leap->inverse[i] = system->state.still[i] || !(leap->mass[i] > 0) ? 0 : 1 / leap->mass[i];
+    before = gxsp_leap_energy(problem, gxsp_leap_elastic(problem, displacement, known), displacement, velocity, &size);
+    limit = leap->limited && known ? fmax(leap->limit, before) : before;
+    leap->limited = 0;
+    for (;; leap->factor *= GXSP_LEAP_RAISE) {
+        if (!(leap->factor > 0)) leap->factor = GXSP_LEAP_FACTOR;
+        if ((substeps = gxsp_leap_count(problem)) == 0) return 0;
+        if (gxsp_leap_try(problem, substeps, displacement, velocity)) {
+            energies[0] = gxsp_leap_elastic(problem, u, 0);
+            after = gxsp_leap_energy(problem, energies[0], u, v, &size);
+            if (gxsp_finite(after) && after <= limit + GXSP_LEAP_GAIN * size) break;
+        }
+        if (leap->factor >= GXSP_LEAP_LAST) return 0;
+    }
+    leap->limit = fmax(after, limit + GXSP_LEAP_FORGET * (after - limit));
+    leap->limited = 1;
+    for (p = 0; p < system->model.component_count; p++)
+        system->model.components[p].before[0] = system->model.components[p].energies[0];
+    problem->report.substeps = substeps;
+    problem->report.stop = GXS_STOP_ITERATIONS;
+    problem->report.energy = gxsp_potential(problem, energies, u);
+    system->state.guess_count = 0;
+    return 1;
 }
 
 /* >>check: of what is given ---------------------------------------------------------------------------------------- */
@@ -9264,7 +9939,7 @@ static int gxsp_dt_fits(double dt) { return dt >= 1e-100 && dt <= 1e100; }
 static gx_result gxsp_check_times(const gxs_step_desc *step, gx_failure *failure) {
     const int history = step->integrator == GXS_BDF2 && step->previous_displacement;
     gx_result result;
-    if ((int)step->integrator < 0 || step->integrator > GXS_STATIC) return gxsp_refuse(failure, "integrator");
+    if ((int)step->integrator < 0 || step->integrator > GXS_EXPLICIT) return gxsp_refuse(failure, "integrator");
     if ((result = gxsp_check_size(step->dt, "dt", SIZE_MAX, failure)) != GX_OK ||
         (result = gxsp_check_finite(&step->previous_dt, 1, "previous_dt", SIZE_MAX, failure)) != GX_OK)
         return result;
@@ -9642,6 +10317,8 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene) {
     system->state.product_rate = -1;
     system->state.still_known = system->state.base_known = system->state.stepped = 0;
     system->state.guess_count = 0;
+    system->leap.factor = 0;
+    system->leap.limited = 0;
     system->smoother.omega = 0;
     system->smoother.cautious = system->smoother.next_cautious = 0;
     system->coarse.rate = -1;
@@ -9694,7 +10371,9 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     if ((result = gxs_step_check(step, n, solver->system->model.epoch, failure)) != GX_OK ||
         (result = gxsp_check_vectors(step, n, displacement, velocity, solver->system->model.held, failure)) != GX_OK)
         return result;
-    if (!gxsp_reserve_terms(&solver->lasting, step)) return gxsp_end(failure, GX_ERROR_MEMORY);
+    if (!gxsp_reserve_terms(&solver->lasting, step) ||
+        (step->integrator == GXS_EXPLICIT && !solver->system->leap.made && !gxsp_leap_make(solver->system)))
+        return gxsp_end(failure, GX_ERROR_MEMORY);
     memset(&problem, 0, sizeof problem);
     problem.system = solver->system;
     problem.system->state.product_rate = -1;
@@ -9707,9 +10386,12 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     gxsp_choose_sleepers(&problem, displacement, velocity);
     problem.system->state.failed = 1;
     if ((result = gxsp_check_free(&problem, failure)) != GX_OK) return result;
-    gxsp_begin(&problem, velocity);
     problem.report.active_unknowns = problem.system->state.active;
-    result = gxsp_minimise(&problem);
+    if (!gxsp_leap_allowed(&problem) || !gxsp_leap_step(&problem, displacement, velocity)) {
+        gxsp_begin(&problem, velocity);
+        result = gxsp_minimise(&problem);
+        if (result == GX_OK) gxsp_find_end(&problem, displacement, velocity);
+    }
     if (result == GX_OK) result = gxsp_finish(&problem, displacement, velocity);
     if (result != GX_OK) return gxsp_end(failure, result);
     problem.system->state.failed = 0;
@@ -9857,6 +10539,17 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_TANGENTS_AHEAD
 #undef GXSP_RESTS_AHEAD
 #undef GXSP_RANGE
+#undef GXSP_LEAP_MASS
+#undef GXSP_LEAP_FACTOR
+#undef GXSP_LEAP_DEGREE
+#undef GXSP_LEAP_DEGREES
+#undef GXSP_LEAP_SUBSTEPS
+#undef GXSP_LEAP_POWERS
+#undef GXSP_LEAP_GAIN
+#undef GXSP_LEAP_FORGET
+#undef GXSP_LEAP_RAISE
+#undef GXSP_LEAP_LAST
+#undef GXSP_LEAP_ROWS
 #undef GXSP_SPACING
 #undef GXSP_CROWDED
 #undef GXSP_AFFINE

@@ -614,6 +614,33 @@ START_TEST(workers_do_not_change_results) {
 }
 END_TEST
 
+/* Explicit steps know no pairs: they are backward Euler, bit by bit. */
+START_TEST(explicit_steps_with_pairs_are_implicit) {
+    const gxs_pair like = pair_like(1e8, 0.3);
+    double *first = NULL;
+    int run;
+    for (run = 0; run < 2; run++) {
+        stack t = stack_make(2, 0.1, -0.001, &like);
+        gxs_solver *solver = solver_make();
+        gxs_step_desc step = step_make(0.001, -9.81);
+        gxs_step_report report;
+        give_pairs(&step, &t);
+        step.integrator = run ? GXS_EXPLICIT : GXS_BDF1;
+        ck_assert_int_eq(advance(solver, &t.s.model, &step, t.s.displacement, t.s.velocity, &report, NULL), GX_OK);
+        ck_assert_uint_eq(report.substeps, 0);
+        ck_assert(sum_of(t.forces, t.count, 2) > 0);
+        if (!first) {
+            first = (double *)zeroed(6 * t.half, sizeof *first);
+            memcpy(first, t.s.displacement, 6 * t.half * sizeof *first);
+        }
+        ck_assert_int_eq(memcmp(first, t.s.displacement, 6 * t.half * sizeof *first), 0);
+        gxs_solver_destroy(solver);
+        stack_free(&t);
+    }
+    free(first);
+}
+END_TEST
+
 /* A step with more pairs than before. Returns whether an allocation failed; state, slips and forces are as before
    then. */
 static int run_with(memory *m, int which) {
@@ -729,6 +756,7 @@ static Suite *pair_suite(void) {
     tcase_add_test(pairs, slips_continue);
     tcase_add_test(pairs, stacks_sleep);
     tcase_add_loop_test(pairs, workers_do_not_change_results, 0, 2);
+    tcase_add_test(pairs, explicit_steps_with_pairs_are_implicit);
     tcase_add_test(pairs, every_allocation_may_fail);
     tcase_add_test(pairs, bad_input_is_named);
     tcase_set_timeout(pairs, 120);
