@@ -503,6 +503,34 @@ START_TEST(slips_continue) {
 }
 END_TEST
 
+/* The preconditioner that the solver chooses for the second step of two blocks */
+static gxs_preconditioner choice(double young, int paired) {
+    const gxs_pair like = pair_like(10 * young / 0.1, 0.3);
+    stack t = stack_make(8, 0.1, -1e-5, &like);
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = step_make(1.0 / 60, -9.81);
+    gxs_step_report report;
+    size_t i;
+    t.s.material->young = young;
+    for (i = 0; i < 81; i++) t.s.held[i] = 1, t.s.held[t.half + i] = !paired;
+    if (paired) give_pairs(&step, &t);
+    ck_assert_int_eq(gxs_solver_set_model(solver, &t.s.model, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_step(solver, &step, t.s.displacement, t.s.velocity, NULL, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_step(solver, &step, t.s.displacement, t.s.velocity, &report, NULL), GX_OK);
+    ck_assert(!paired || sum_of(t.forces, t.count, 2) > 0);
+    gxs_solver_destroy(solver);
+    stack_free(&t);
+    return report.preconditioner;
+}
+
+/* Coarse levels do little for pairs, so block-Jacobi serves longer. */
+START_TEST(pairs_choose_the_preconditioner) {
+    ck_assert_int_eq(choice(1e6, 0), GXS_MULTIGRID);
+    ck_assert_int_eq(choice(1e6, 1), GXS_BLOCK_JACOBI);
+    ck_assert_int_eq(choice(1e8, 1), GXS_MULTIGRID);
+}
+END_TEST
+
 /* ---- sleep ---- */
 
 /* A block on another one falls asleep though its pairs come and go from step to step. A knock wakes both; so does the
@@ -754,6 +782,7 @@ static Suite *pair_suite(void) {
     tcase_add_loop_test(pairs, collision_keeps_momentum, 0, 2);
     tcase_add_test(pairs, blocks_slide_and_stick);
     tcase_add_test(pairs, slips_continue);
+    tcase_add_test(pairs, pairs_choose_the_preconditioner);
     tcase_add_test(pairs, stacks_sleep);
     tcase_add_loop_test(pairs, workers_do_not_change_results, 0, 2);
     tcase_add_test(pairs, explicit_steps_with_pairs_are_implicit);
