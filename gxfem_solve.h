@@ -15,7 +15,7 @@
  *             1.0 / 6, {17, 8, 8, 8, 17, 8, 8, 17, 8, 17}, 0, 0};                   // m3; kg
  *         gxs_material material = {GXS_STABLE_NEO_HOOKEAN, 1e6, 0.4, 0, NULL, NULL};
  *         double displacement[12] = {0}, velocity[12] = {0};
- *         gxs_model model = {4, NULL, &element, 1, &material, 1, NULL, 0, NULL, 0, 0};
+ *         gxs_model model = {4, NULL, &element, 1, &material, 1, NULL, 0, NULL, 0, 0, NULL, 0};
  *         gxs_step_desc step = {0};
  *         gxs_solver *solver = NULL;
  *         gx_result result = gxs_solver_create(NULL, &solver, NULL);
@@ -37,13 +37,15 @@
  *   kernels:      >>svd stretches and rotations of F | >>material energies, stresses | >>tangent Hessian of one block |
  *                 >>element passes over one block
  *   chunks:       >>masses of parts of elements | >>order of elements | >>lanes of a chunk | >>chunks blocks, slots |
- *                 >>copies fixed, following, connected | >>followers constraints between copies
- *   structure:    >>transfer between levels | >>levels their patterns | >>pattern of level 1 | >>hierarchy all levels |
- *                 >>lights copies with next to no mass | >>sharing of memory | >>system a model in the solver's form
- *   operator:     >>forces energies, forces | >>blocks 3x3 blocks | >>product single precision | >>doubles double
- *                 precision | >>linearise Hessians, block diagonal
- *   multigrid:    >>galerkin coarse matrices | >>factor of the last level | >>assembly the assembled matrix |
- *                 >>smoother its step length | >>cycle the V-cycle
+ *                 >>affine elements with affine copies | >>copies fixed, following, connected |
+ *                 >>followers constraints between copies
+ *   structure:    >>transfer between levels | >>levels their patterns | >>nested level 1 of affine copies |
+ *                 >>pattern of level 1 | >>hierarchy all levels | >>lights copies with next to no mass |
+ *                 >>sharing of memory | >>system a model in the solver's form
+ *   operator:     >>rule elements with affine copies | >>forces energies, forces | >>blocks 3x3 blocks |
+ *                 >>product single precision | >>doubles double precision | >>linearise Hessians, block diagonal
+ *   multigrid:    >>galerkin coarse matrices | >>nesting those of affine copies | >>factor of the last level |
+ *                 >>assembly the assembled matrix | >>smoother its step length | >>cycle the V-cycle
  *   changes:      >>edits lanes that a cut changes | >>renewal copies and components | >>update levels, all of it
  *   steps:        >>components momentum | >>points springs, contact | >>pairs two sides in contact | >>terms all that
  *                 acts at points | >>cg conjugate gradients | >>ageing of coarse matrices | >>sleep rest |
@@ -253,6 +255,8 @@ typedef struct gxs_constraint {
     double weight[4];   /* 1 in sum if the copy is to follow translations */
 } gxs_constraint;
 
+#define GXS_NOT_AFFINE UINT32_MAX /* see gxs_model.affine */
+
 /* Borrowed for the time of a call. */
 typedef struct gxs_model {
     size_t copy_count;
@@ -270,6 +274,14 @@ typedef struct gxs_model {
     /* names this numbering of copies. Springs, contact points, forces and targets of a step name the numbering that
      * they use; another one is GX_ERROR_STALE. 0 everywhere is fine as long as copies keep their numbers */
     uint64_t epoch;
+    /* copy_count; NULL: none. For an affine copy i the index of the first of three vectors, hidden ones, that follow
+     * each other below copy_count: the columns of A_i times affine_length. GXS_NOT_AFFINE for every other entry. Where
+     * an element has an affine copy, u = sum N_i (a_i + A_i (x - X_i)), with A = 0 for its other copies. So a sheet
+     * thinner than its elements bends as it should. A hidden vector is no element's copy, is held if its copy is, and
+     * follows and leads nothing; nor does an affine copy. A target of a held one is its A. Not with lumped_mass,
+     * GXS_MATRIX_ASSEMBLED and GXS_VOLUME_RATIO. */
+    const uint32_t *affine;
+    double affine_length; /* m, above 0 where copies are affine: about an element's size */
 } gxs_model;
 
 /* The change that a cut makes to a model. Borrowed for the time of a call. */
@@ -323,8 +335,9 @@ typedef enum gxs_integrator {
     GXS_STATIC,
     /* leapfrog in substeps, for soft bodies in motion: second order, damps nothing. Mass is lumped; light copies get
        0.3 % of the body's mass more. Forces are single precision. Stable neo-Hookean materials without damping, under
-       gravity and forces, without targets, springs, contact points, pairs or constraints. Any other step is backward
-       Euler: see gxs_step_report.substeps. So is one that would take more than 64 substeps of its own choice, one whose
+       gravity and forces, without targets, springs, contact points, pairs, constraints or affine copies. Any other
+       step is backward Euler: see gxs_step_report.substeps. So is one that would take more than 64 substeps of its own
+       choice, one whose
        elements are stretched too far for the substeps, and one in which energy would rise */
     GXS_EXPLICIT
 } gxs_integrator;
@@ -372,7 +385,8 @@ typedef double (*gxs_contact_fn)(void *user, size_t point, const double *positio
  * get the same force, in opposite directions, so that pairs leave momentum alone. Where normal is along r they leave
  * angular momentum alone, too. Friction is Coulomb's: friction x the normal force at the step's start. It comes from
  * an elastic slip, which gxs_step_desc.pair_slips keeps: up to friction x force / stiffness, and at least
- * sticking_speed x dt, the sides stick. Not for GXS_MIDPOINT, which would gain energy. */
+ * sticking_speed x dt, the sides stick. Not for GXS_MIDPOINT, which would gain energy, nor, so far, for models with
+ * affine copies. */
 typedef struct gxs_pair {
     gxs_point point;
     double normal[3];      /* of length 1, from the other side to this one */
@@ -505,8 +519,8 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
  * group or element), or a constraint is not allowed (its index). GX_ERROR_LIMIT: the change does not fit. Either the
  * matrix is assembled, mass is lumped, GXS_VOLUME_RATIO is used, empty lanes exceed a quarter of the elements by two
  * chunks, GXS_AUTOMATIC would now choose otherwise, a copy is held that was not or the other way round, two old copies
- * (origins without + 1) are the same, no element is left, or an element that stays has lost a copy. After this and
- * GX_ERROR_MEMORY no model is set: set one. On other errors the old model stays. */
+ * (origins without + 1) are the same, no element is left, an element that stays has lost a copy, or the model has
+ * affine copies. After this and GX_ERROR_MEMORY no model is set: set one. On other errors the old model stays. */
 GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure);
 /* Sets to 0 the rest times of copies whose state has been written since the last step. Their components then wake even
  * if another model is set before the next step, or another solver takes that step. Vectors use the present numbering;
@@ -714,6 +728,11 @@ extern "C" {
  * hardly bend with them, and an exact solution two levels down saves two iterations in three. */
 #define GXSP_FACTOR_COST 3000
 #define GXSP_LEVELS      12
+
+/* Where copies are affine, level 1 is factored if that takes at most GXSP_NESTED_COST times as much; else its lattice
+ * is widened, up to GXSP_WIDEST times. */
+#define GXSP_NESTED_COST 10
+#define GXSP_WIDEST      8
 
 /* Block-Jacobi takes less time than multigrid where inertia's mean share of the Hessian's diagonal blocks is larger
  * than this: few iterations, as the share bounds the spectrum from below. Measured on blocks of 2,000 to 8,000
@@ -1450,6 +1469,43 @@ typedef struct gxsp_history {
     uint32_t guess_count; /* valid guesses: 0, 1 or 2 */
 } gxsp_history;
 
+/* Eight elements with affine copies, see >>rule. A lane without an element has no weight and no vectors. */
+typedef struct gxsp_affine_block {
+    gxsp_rest rest;                  /* weight and mass of one of the four points: a quarter of the element's */
+    gxsp_lanes gradient[9];          /* of shape functions 1 ... 3, by rows, 1/m */
+    gxsp_lanes edge[9];              /* (X_j - X_0) / (4 length), j = 1 ... 3 */
+    gxsp_lanes shape[4][4];          /* N_i at point p: [p][i] */
+    gxsp_lanes energies[3];          /* of the last pass, as in gxsp_partial */
+    gxsp_tangent tangent[4];         /* at each point; its mass is 0 */
+    gxsp_general *general;           /* 4; GXS_CUSTOM only, else NULL */
+    uint32_t vector[16][GXSP_LANES]; /* copies of the corners; at 4 + 3 i the hidden vectors of corner i, or GXSP_NONE
+                                      */
+    gxs_material_kind kind;
+    uint8_t still, collapsed; /* all its vectors are still; the last linearisation found an element collapsed */
+} gxsp_affine_block;
+
+/* Affine copies: what their elements and the multigrid need beside chunks and levels. All 0 where no copy is affine. A
+ * group is an affine copy with its three hidden vectors: parts 0 ... 3. */
+typedef struct gxsp_affine {
+    size_t count;  /* elements; 0: there are none */
+    double length; /* m: hidden vectors are columns of A times this */
+    gxsp_affine_block *blocks;
+    uint32_t block_count, group_count, touched_count;
+    uint32_t *place;       /* n: 4 x group + part; GXSP_NONE: a copy that is not affine. NULL: there are no groups */
+    uint32_t (*member)[4]; /* group_count: vectors of a group */
+    double (*slots)[3];    /* block_count x 16 x GXSP_LANES: results of passes */
+    uint32_t *touched;     /* touched_count: vectors that elements here have, ascending */
+    uint32_t *start;       /* touched_count + 1: into slot */
+    uint32_t *slot;        /* a vector's slots, ascending */
+    double (*own)[6];      /* n: diagonal blocks of the elements here, packed, scaled */
+    double (*full)[10][9]; /* group_count: blocks of the parts p <= q, in the order of gxs_element.mass, by rows */
+    float (*root)[78];     /* group_count: W by rows, lower triangle: the inverse of the 12x12 block is W^T W */
+    uint32_t *hidden; /* by node of level 1: the first of its three hidden nodes, or GXSP_NONE. NULL: no multigrid */
+    float (*offset)[4][3]; /* group_count: (X_i - X_J) / length for each parent J */
+    double *block;         /* 9 per entry of level 1: what the elements here add */
+    double *entry;         /* factor of level 1, rows as in gxsp_factor */
+} gxsp_affine;
+
 /* A block's elements in explicit steps. A lane without an element has zeros. */
 typedef struct gxsp_leap_block {
     float gradient[9][GXSP_LANES];            /* of shape functions 1 ... 3, by rows, 1/m */
@@ -1487,6 +1543,7 @@ typedef struct gxsp_system {
     gxsp_lasting *lasting; /* of the solver */
     gxsp_model model;
     gxsp_mesh mesh;
+    gxsp_affine affine;
     gxsp_multigrid multigrid;
     gxsp_coarse coarse;
     gxsp_smoother smoother;
@@ -2696,6 +2753,51 @@ static void gxsp_general_own(const gxsp_general *general, gxsp_singles *p, gxsp_
     for (k = 0; k < 6; k++) GXSP_EACH_LANE(l) own[k][l] += block[packed[k]][l];
 }
 
+/* Parameters of a block's materials */
+static void gxsp_block_parameters(const gxsp_material *materials, const gxsp_rest *rest, gxsp_state *s) {
+    int l;
+    for (l = 0; l < GXSP_LANES; l++) {
+        const gxsp_material *material = &materials[rest->material[l]];
+        s->mu[l] = material->mu;
+        s->lambda[l] = material->lambda;
+        s->material[l] = material;
+    }
+}
+
+/* Rotates P of elements by the rotation from their orientation at displacement gradients `from` to that at `to`. P
+ * stays where that is more than a right angle: such an element is tangled. */
+static void gxsp_rotate_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p) {
+    gxsp_svd svd[2];
+    int r, c, k, l;
+    gxsp_decompose(from, to, svd);
+    for (l = 0; l < GXSP_LANES; l++) {
+        double a[9], b[9], turn[9], stress[9], f[9], h[9];
+        for (r = 0; r < 3; r++)
+            for (c = 0; c < 3; c++) {
+                a[3 * r + c] = b[3 * r + c] = 0;
+                for (k = 0; k < 3; k++) {
+                    a[3 * r + c] += (double)(svd[0].u[3 * r + k][l] * svd[0].v[3 * c + k][l]);
+                    b[3 * r + c] += (double)(svd[1].u[3 * r + k][l] * svd[1].v[3 * c + k][l]);
+                }
+            }
+        for (k = 0; k < 9; k++) {
+            f[k] = from[k][l] + (k % 4 == 0 ? 1 : 0);
+            h[k] = to[k][l] + (k % 4 == 0 ? 1 : 0);
+        }
+        /* otherwise each step's load would have its own single-precision error, and no body would come to rest */
+        gxsp_polish_rotation(f, a);
+        gxsp_polish_rotation(h, b);
+        for (k = 0; k < 9; k++) {
+            turn[k] =
+                b[k / 3 * 3] * a[k % 3 * 3] + b[k / 3 * 3 + 1] * a[k % 3 * 3 + 1] + b[k / 3 * 3 + 2] * a[k % 3 * 3 + 2];
+            stress[k] = p[k][l];
+        }
+        for (k = 0; k < 9 && turn[0] + turn[4] + turn[8] > 1; k++)
+            p[k][l] = turn[k / 3 * 3] * stress[k % 3] + turn[k / 3 * 3 + 1] * stress[3 + k % 3] +
+                      turn[k / 3 * 3 + 2] * stress[6 + k % 3];
+    }
+}
+
 /* >>masses: an element's mass in its lane -------------------------------------------------------------------------- */
 
 /* In: gxs_element.mass. Out: the mass of a whole element, or mass, centre and covariance of a part of one. */
@@ -3382,6 +3484,242 @@ static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_
     gxsp_list_slots(system);
 }
 
+/* >>affine: elements with affine copies ---------------------------------------------------------------------------- */
+
+/* In: gxs_model.affine. Out: groups, and the elements with an affine corner in blocks of their own: chunks do not have
+ * them. Where no copy is affine, nothing here is made. */
+
+/* Edges of an element: pairs of its corners */
+static const uint8_t gxsp_edge_ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+
+static int gxsp_is_affine(const gxs_model *model, const gxs_element *element) {
+    int k;
+    for (k = 0; k < 4 && model->affine; k++)
+        if (model->affine[element->copy[k]] != GXS_NOT_AFFINE) return 1;
+    return 0;
+}
+
+/* Is a vector one of the hidden ones of an affine copy? A translation does not move those. */
+static inline int gxsp_is_hidden(const gxsp_system *system, size_t copy) {
+    const uint32_t *place = system->affine.place;
+    return place && place[copy] != GXSP_NONE && (place[copy] & 3) > 0;
+}
+
+static inline int gxsp_is_grouped(const gxsp_system *system, size_t copy) {
+    return system->affine.place && system->affine.place[copy] != GXSP_NONE;
+}
+
+/* Groups. Hidden vectors take over the rest position of their copy. */
+static void gxsp_groups_make(gxsp_system *system, const gxs_model *model) {
+    gxsp_affine *affine = &system->affine;
+    size_t i, k;
+    uint32_t group = 0;
+    for (i = 0; i < system->model.n; i++) affine->group_count += model->affine[i] != GXS_NOT_AFFINE;
+    if (affine->group_count == 0) return;
+    affine->length = model->affine_length;
+    affine->place = (uint32_t *)gxsp_take(&system->pool, system->model.n, sizeof(uint32_t));
+    affine->member = (uint32_t(*)[4])gxsp_take(&system->pool, affine->group_count, sizeof *affine->member);
+    if (system->pool.failed) return;
+    memset(affine->place, 0xff, system->model.n * sizeof *affine->place);
+    for (i = 0; i < system->model.n; i++) {
+        if (model->affine[i] == GXS_NOT_AFFINE) continue;
+        for (k = 0; k < 4; k++) {
+            const uint32_t vector = k == 0 ? (uint32_t)i : model->affine[i] + (uint32_t)k - 1;
+            affine->member[group][k] = vector;
+            affine->place[vector] = 4 * group + (uint32_t)k;
+            if (k > 0 && system->model.positions)
+                memcpy(system->model.positions + 3 * (size_t)vector, system->model.positions + 3 * i,
+                       3 * sizeof(double));
+        }
+        group++;
+    }
+}
+
+/* Shape functions at the four points of an element: x_p = c + L t_p, with L L^T the covariance of its mass. They
+ * integrate every quadratic exactly, with equal weights. shape: [p][i] */
+static void gxsp_four_points(const gxs_element *element, double shape[4][4]) {
+    static const int sign[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+    static const double whole[10] = {2, 1, 1, 1, 2, 1, 1, 2, 1, 2};
+    double centre[4], rounded[4], covariance[3][3], root[3][3];
+    const double *mass = element->mass;
+    double sum = gxsp_find_centre(mass, centre, rounded);
+    int i, j, p;
+    if (!(sum > 0)) sum = gxsp_find_centre(mass = whole, centre, rounded); /* no mass, but stiffness */
+    for (i = 0; i < 3; i++)
+        for (j = 0; j < 3; j++)
+            covariance[i][j] = mass[gxsp_packed_mass[i + 1][j + 1]] / sum - centre[i + 1] * centre[j + 1];
+    gxsp_factor3(covariance, root);
+    for (p = 0; p < 4; p++) {
+        shape[p][0] = 1;
+        for (i = 0; i < 3; i++) {
+            shape[p][i + 1] =
+                centre[i + 1] + sign[p][0] * root[i][0] + sign[p][1] * root[i][1] + sign[p][2] * root[i][2];
+            shape[p][0] -= shape[p][i + 1];
+        }
+    }
+}
+
+/* X_j - X_0 of corners 1 ... 3, from the gradients. 0: the element has no volume */
+static int gxsp_element_edges(const gxs_element *element, double edge[3][3]) {
+    double determinant = 0;
+    int i, k, finite = 1;
+    for (i = 0; i < 3; i++) {
+        const double *a = element->gradient[1 + (i + 1) % 3], *b = element->gradient[1 + (i + 2) % 3];
+        edge[i][0] = a[1] * b[2] - a[2] * b[1], edge[i][1] = a[2] * b[0] - a[0] * b[2],
+        edge[i][2] = a[0] * b[1] - a[1] * b[0];
+    }
+    for (k = 0; k < 3; k++) determinant += element->gradient[1][k] * edge[0][k];
+    if (!(fabs(determinant) >= DBL_MIN)) return 0;
+    for (k = 0; k < 9; k++) {
+        edge[k / 3][k % 3] /= determinant;
+        finite &= gxsp_finite(edge[k / 3][k % 3]);
+    }
+    return finite;
+}
+
+static void gxsp_affine_fill(gxsp_system *system, const gxs_element *element, gxsp_affine_block *block, int l) {
+    double edge[3][3], shape[4][4], rows[4];
+    int i, k;
+    if (!gxsp_element_edges(element, edge)) memset(edge, 0, sizeof edge); /* then it has no weight */
+    gxsp_four_points(element, shape);
+    for (k = 0; k < 9; k++) {
+        block->edge[k][l] = edge[k / 3][k % 3] / (4 * system->affine.length);
+        block->gradient[k][l] = element->gradient[1 + k / 3][k % 3];
+    }
+    for (k = 0; k < 16; k++) block->shape[k / 4][k % 4][l] = shape[k / 4][k % 4];
+    block->rest.weight[l] = 0.25 * element->weight;
+    block->rest.mass[l] = 0.25 * gxsp_find_centre(element->mass, rows, shape[0]);
+    block->rest.material[l] = element->material;
+    for (i = 0; i < 4; i++) {
+        const uint32_t copy = element->copy[i], place = system->affine.place[copy];
+        block->vector[i][l] = copy;
+        for (k = 0; k < 3; k++)
+            block->vector[4 + 3 * i + k][l] = place == GXSP_NONE ? GXSP_NONE : system->affine.member[place / 4][k + 1];
+    }
+}
+
+/* Row sums of the mass at hidden vectors, int rho N_i (x - X_i) / length: gravity acts on them by these */
+static void gxsp_affine_lump(gxsp_system *system, const gxsp_affine_block *block, int l) {
+    int i, j, k, p;
+    for (i = 0; i < 4; i++)
+        for (k = 0; k < 3 && block->vector[4 + 3 * i][l] != GXSP_NONE; k++) {
+            double sum = 0;
+            for (p = 0; p < 4; p++) {
+                double way = 0; /* (x - X_i) / (4 length) at the point */
+                for (j = 0; j < 4; j++)
+                    way += block->shape[p][j][l] * ((j > 0 ? block->edge[3 * (j - 1) + k][l] : 0) -
+                                                    (i > 0 ? block->edge[3 * (i - 1) + k][l] : 0));
+                sum += 4 * block->rest.mass[l] * block->shape[p][i][l] * way;
+            }
+            system->model.lumped[block->vector[4 + 3 * i + k][l]] += sum;
+        }
+}
+
+/* Blocks of the elements: those of one kind together. order: elements of each kind, in the caller's order */
+static void gxsp_affine_blocks(gxsp_system *system, const gxs_model *model, const uint32_t *elements) {
+    gxsp_affine *affine = &system->affine;
+    uint32_t e, first, b = 0, count[GXS_CUSTOM + 1] = {0, 0, 0, 0, 0};
+    int kind, l, k;
+    for (e = 0; e < affine->count; e++) count[model->materials[model->elements[elements[e]].material].kind]++;
+    for (kind = 0; kind <= GXS_CUSTOM; kind++) affine->block_count += (count[kind] + GXSP_LANES - 1) / GXSP_LANES;
+    affine->blocks = (gxsp_affine_block *)gxsp_take(&system->pool, affine->block_count, sizeof *affine->blocks);
+    if (system->pool.failed) return;
+    for (kind = 0; kind <= GXS_CUSTOM; kind++)
+        for (e = first = 0; first < count[kind]; b++) {
+            gxsp_affine_block *block = &affine->blocks[b];
+            block->kind = (gxs_material_kind)kind;
+            memset(block->vector, 0xff, sizeof block->vector);
+            if (kind == GXS_CUSTOM) block->general = (gxsp_general *)gxsp_take(&system->pool, 4, sizeof(gxsp_general));
+            for (l = 0; l < GXSP_LANES && first < count[kind]; l++, first++, e++) {
+                while ((int)model->materials[model->elements[elements[e]].material].kind != kind) e++;
+                gxsp_affine_fill(system, &model->elements[elements[e]], block, l);
+                gxsp_affine_lump(system, block, l);
+            }
+            for (k = l; k < GXSP_LANES; k++) /* a valid material of this kind */
+                block->rest.material[k] = block->rest.material[0];
+        }
+}
+
+/* Slots of the vectors that the elements have */
+static void gxsp_affine_slots(gxsp_system *system, gxsp_pool *scratch) {
+    gxsp_affine *affine = &system->affine;
+    const size_t room = (size_t)affine->block_count * 16 * GXSP_LANES;
+    uint32_t *count = (uint32_t *)gxsp_take(scratch, system->model.n + 1, sizeof(uint32_t)), i, t;
+    size_t s, slots = 0;
+    affine->slots = (double(*)[3])gxsp_take(&system->pool, room, sizeof *affine->slots);
+    affine->own = (double(*)[6])gxsp_take(&system->pool, system->model.n, sizeof *affine->own);
+    affine->full = (double(*)[10][9])gxsp_take(&system->pool, affine->group_count, sizeof *affine->full);
+    affine->root = (float(*)[78])gxsp_take(&system->pool, affine->group_count, sizeof *affine->root);
+    if (scratch->failed || system->pool.failed) return;
+    for (s = 0; s < room; s++) {
+        const uint32_t vector = affine->blocks[s / (16 * GXSP_LANES)].vector[s / GXSP_LANES % 16][s % GXSP_LANES];
+        if (vector == GXSP_NONE) continue;
+        affine->touched_count += count[vector]++ == 0;
+        slots++;
+    }
+    affine->touched = (uint32_t *)gxsp_take(&system->pool, affine->touched_count, sizeof(uint32_t));
+    affine->start = (uint32_t *)gxsp_take(&system->pool, (size_t)affine->touched_count + 1, sizeof(uint32_t));
+    affine->slot = (uint32_t *)gxsp_take(&system->pool, slots, sizeof(uint32_t));
+    if (system->pool.failed) return;
+    for (i = t = 0; i < system->model.n; i++)
+        if (count[i] > 0) {
+            affine->touched[t] = i;
+            affine->start[t + 1] = affine->start[t] + count[i];
+            count[i] = affine->start[t++];
+        }
+    for (s = 0; s < room; s++) {
+        const uint32_t vector = affine->blocks[s / (16 * GXSP_LANES)].vector[s / GXSP_LANES % 16][s % GXSP_LANES];
+        if (vector != GXSP_NONE) affine->slot[count[vector]++] = (uint32_t)s;
+    }
+}
+
+/* Divides the model's elements: those with an affine corner come here, `plain` gets the others. Both lists are in
+ * scratch. */
+static void gxsp_affine_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model, gxs_model *plain) {
+    gxs_element *others;
+    uint32_t *elements;
+    size_t e, count = 0;
+    for (e = 0; e < model->element_count; e++)
+        system->affine.count += (size_t)gxsp_is_affine(model, &model->elements[e]);
+    if (system->affine.count == 0) { /* no element has them: they are copies without support */
+        system->affine.place = NULL;
+        system->affine.group_count = 0;
+        return;
+    }
+    others = (gxs_element *)gxsp_take(scratch, model->element_count - system->affine.count, sizeof *others);
+    elements = (uint32_t *)gxsp_take(scratch, system->affine.count, sizeof(uint32_t));
+    if (scratch->failed) return;
+    for (e = 0; e < model->element_count; e++)
+        if (gxsp_is_affine(model, &model->elements[e]))
+            elements[e - count] = (uint32_t)e;
+        else
+            others[count++] = model->elements[e];
+    plain->elements = others;
+    plain->element_count = system->model.element_count = count;
+    gxsp_affine_blocks(system, model, elements);
+    if (!system->pool.failed) gxsp_affine_slots(system, scratch);
+}
+
+/* Joins the vectors of a group. forest: n */
+static void gxsp_join_groups(const gxsp_system *system, uint32_t *forest) {
+    uint32_t group, k;
+    for (group = 0; group < system->affine.group_count; group++)
+        for (k = 1; k < 4; k++) gxsp_join(forest, system->affine.member[group][0], system->affine.member[group][k]);
+}
+
+/* Marks the blocks whose vectors are all still. */
+static void gxsp_mark_still_blocks(gxsp_system *system) {
+    uint32_t b, k;
+    for (b = 0; b < system->affine.block_count; b++) {
+        gxsp_affine_block *block = &system->affine.blocks[b];
+        block->still = 1;
+        for (k = 0; k < 16 * GXSP_LANES; k++) {
+            const uint32_t vector = block->vector[k / GXSP_LANES][k % GXSP_LANES];
+            block->still &= vector == GXSP_NONE || system->state.still[vector];
+        }
+    }
+}
+
 /* >>copies: which copies move, which follow others, which belong together ------------------------------------------ */
 
 /* In: held copies, constraints and elements. Out: fixed copies, followers, components and the partial sums of
@@ -3409,6 +3747,9 @@ static void gxsp_find_fixed(gxsp_system *system, const gxs_model *model) {
             system->model.lumped[element->copy[k]] += rows[k];
         }
     }
+    for (i = 0; i < system->model.n; i++)
+        if (gxsp_is_hidden(system, i))
+            system->model.fixed[i] = system->model.fixed[system->affine.member[system->affine.place[i] / 4][0]];
     if (model->held)
         for (i = 0; i < system->model.n; i++)
             if (model->held[i]) system->model.held[i] = system->model.fixed[i] = 1;
@@ -3484,6 +3825,7 @@ static void gxsp_join_copies(const gxsp_system *system, const gxs_model *model, 
         for (k = 1; k < 4; k++)
             if (gxsp_supports(&model->elements[e], 0) || gxsp_supports(&model->elements[e], k))
                 gxsp_join(forest, model->elements[e].copy[0], model->elements[e].copy[k]);
+    gxsp_join_groups(system, forest);
     gxsp_join_followers(system, forest);
 }
 
@@ -3504,7 +3846,7 @@ static void gxsp_fill_components(gxsp_system *system) {
     uint32_t p;
     for (i = 0; i < system->model.n; i++) {
         gxsp_component *component = &system->model.components[system->model.component[i]];
-        component->mass += system->model.lumped[i];
+        component->mass += gxsp_is_hidden(system, i) ? 0 : system->model.lumped[i];
         component->state |= system->model.fixed[i] ? GXSP_HELD : 0;
     }
     for (i = 0; i < system->model.follower_count; i++) {
@@ -3567,6 +3909,7 @@ static void gxsp_mark_still(gxsp_system *system) {
             system->state.chunk_still[c] &=
                 system->state.still[system->mesh.nodes[system->mesh.chunks[c].first_node + k]];
     }
+    gxsp_mark_still_blocks(system);
 }
 
 /* The copies that move an element's corner, and their weights: its own copy, or its masters. Returns how many. */
@@ -3649,6 +3992,26 @@ static void gxsp_reduce_residual(const gxsp_system *system, const uint8_t *still
     }
 }
 
+/* Motion of a copy by a direction, times pass->factor: the direction's own, that of its masters if it follows them,
+ * 0 if it is fixed */
+static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GXSP_RESTRICT to) {
+    const gxsp_system *system = pass->system;
+    const double *from = pass->from + 3 * (size_t)copy;
+    double factor = system->model.fixed[copy] ? 0 : pass->factor;
+    int k, c;
+    if (!gxsp_follows(system, copy)) {
+        to[0] = factor * from[0], to[1] = factor * from[1], to[2] = factor * from[2];
+        return;
+    }
+    to[0] = to[1] = to[2] = 0;
+    for (k = 0; k < 4; k++) {
+        const gxsp_follower *follower = &system->model.followers[system->model.follower[copy]];
+        from = pass->from + 3 * (size_t)follower->master[k];
+        factor = system->model.fixed[follower->master[k]] ? 0 : pass->factor * follower->weight[k];
+        for (c = 0; c < 3; c++) to[c] += factor * from[c];
+    }
+}
+
 /* >>transfer: from one level of the multigrid to the next ---------------------------------------------------------- */
 
 /* In: places of a level's nodes in spacings of the next lattice, and which nodes are neighbours. Out: the next
@@ -3657,8 +4020,9 @@ static void gxsp_reduce_residual(const gxsp_system *system, const uint8_t *still
  * idea, one level up). Values between lattice points are linear on the six tetrahedra around a cell's diagonal:
  * at most four weights, exact for affine fields. */
 
-/* Rest positions in spacings of the first lattice: GXSP_SPACING edges of an average whole element. 0: there is none. */
-static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, float (*to)[3]) {
+/* Rest positions in spacings of the first lattice: GXSP_SPACING edges of an average whole element. Returns
+ * the spacing; 0: there is no lattice. */
+static double gxsp_find_places(const gxsp_system *system, const gxs_model *model, float (*to)[3]) {
     double volume = 0, spacing;
     size_t e, i, k, counted = 0;
     for (e = 0; e < model->element_count; e++) {
@@ -3674,12 +4038,12 @@ static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, f
     spacing = GXSP_SPACING * cbrt(5 * volume / (double)counted); /* five elements to a cube */
     for (i = 0; i < system->model.n; i++)
         for (k = 0; k < 3; k++) {
-            double place = (model->positions[3 * i + k] - model->positions[k]) / spacing;
+            double place = (system->model.positions[3 * i + k] - system->model.positions[k]) / spacing;
             if (!(fabs(place) < 1e6)) /* single precision could not hold it */
                 return 0;
             to[i][k] = (float)place + 0.31f; /* keeps lattice planes off those of the mesh */
         }
-    return 1;
+    return spacing;
 }
 
 /* Lattice cell, order of axes and weights at a place */
@@ -4036,8 +4400,130 @@ static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch) {
         factor->row[i] = entries - first; /* not negative: every row before has an entry */
         entries += 3 * (size_t)(3 * i - first) + 6;
     }
-    factor->entry = (float *)gxsp_take(&system->multigrid.pool, entries, sizeof(float));
+    if (system->affine.count > 0)
+        system->affine.entry = (double *)gxsp_take(&system->multigrid.pool, entries, sizeof(double));
+    else
+        factor->entry = (float *)gxsp_take(&system->multigrid.pool, entries, sizeof(float));
     factor->entry_count = entries;
+}
+
+/* >>nested: level 1 where copies are affine ------------------------------------------------------------------------ */
+
+/* In: the transfer of level 0 between copies. Out: coarse nodes that carry an affine motion as well, and what they add
+ * to the pattern of level 1. The space of affine copies is nested in itself: with the lattice's weights w_iJ,
+ *   a_i = sum w_iJ (b_J + B_J (X_i - X_J)),   A_i = sum w_iJ B_J.
+ * The columns of B_J are three further nodes of level 1, the hidden ones of J, where a child of J is affine. Copies
+ * that are not affine follow b_J only. */
+
+/* Parents of a vector on level 1 and their weights; at most 16. Returns how many. */
+static uint32_t gxsp_nested_parents(const gxsp_system *system, uint32_t vector, uint32_t *parents, float *weights) {
+    const gxsp_affine *affine = &system->affine;
+    const uint32_t place = affine->place[vector], part = place == GXSP_NONE ? 0 : place & 3,
+                   copy = part > 0 ? affine->member[place / 4][0] : vector;
+    uint32_t count = 0;
+    int k, a;
+    for (k = 0; k < 4; k++) {
+        const uint32_t parent = system->multigrid.levels[0].parent[copy][k];
+        const float weight = system->multigrid.levels[0].weight[copy][k];
+        if (parent == GXSP_NONE) continue;
+        parents[count] = part == 0 ? parent : affine->hidden[parent] + part - 1;
+        weights[count++] = weight;
+        for (a = 0; a < 3 && part == 0 && place != GXSP_NONE; a++) {
+            parents[count] = affine->hidden[parent] + (uint32_t)a;
+            weights[count++] = weight * affine->offset[place / 4][k][a];
+        }
+    }
+    return count;
+}
+
+/* Numbers the hidden nodes, which follow the count others, and finds the offsets of affine copies from their parents.
+ * place: n x 3, in spacings of the lattice; transfer: as gxsp_transfer_end has left it. Returns the number of nodes. */
+static uint32_t gxsp_nested_nodes(gxsp_system *system, float (*place)[3], const gxsp_transfer *transfer, double spacing,
+                                  uint32_t count) {
+    gxsp_affine *affine = &system->affine;
+    gxsp_level points; /* lattice points of the nodes */
+    uint32_t group, nodes = count;
+    int k, a;
+    memset(&points, 0, sizeof points);
+    affine->hidden = (uint32_t *)gxsp_take(&system->multigrid.pool, count, sizeof(uint32_t));
+    affine->offset = (float(*)[4][3])gxsp_take(&system->multigrid.pool, affine->group_count, sizeof *affine->offset);
+    points.place = (int32_t(*)[3])gxsp_take(&system->multigrid.pool, count, sizeof *points.place);
+    if (system->multigrid.pool.failed) return 0;
+    gxsp_transfer_places(&system->multigrid.levels[0], transfer, &points);
+    memset(affine->hidden, 0xff, count * sizeof *affine->hidden);
+    for (group = 0; group < affine->group_count; group++) {
+        const uint32_t copy = affine->member[group][0];
+        for (k = 0; k < 4; k++) {
+            const uint32_t parent = system->multigrid.levels[0].parent[copy][k];
+            if (parent == GXSP_NONE) continue;
+            if (affine->hidden[parent] == GXSP_NONE) {
+                affine->hidden[parent] = nodes;
+                nodes += 3;
+            }
+            for (a = 0; a < 3; a++)
+                affine->offset[group][k][a] =
+                    (float)(((double)place[copy][a] - points.place[parent][a]) * spacing / affine->length);
+        }
+    }
+    return nodes;
+}
+
+/* Adds the clusters that the elements join. */
+static void gxsp_nested_join(const gxsp_system *system, gxsp_transfer *transfer) {
+    uint32_t b;
+    int l, k;
+    for (b = 0; b < system->affine.block_count; b++)
+        for (l = 0; l < GXSP_LANES; l++)
+            for (k = 0; k < 6 && system->affine.blocks[b].rest.weight[l] > 0; k++)
+                gxsp_join_nodes(transfer, system->affine.blocks[b].vector[gxsp_edge_ends[k][0]][l],
+                                system->affine.blocks[b].vector[gxsp_edge_ends[k][1]][l]);
+}
+
+/* The coarse nodes around an element, without hidden ones: at most 16. Returns how many. */
+static uint32_t gxsp_nested_bases(const gxsp_system *system, const gxsp_affine_block *block, int l, uint32_t *bases) {
+    uint32_t count = 0, i, k;
+    for (k = 0; k < 16 && block->rest.weight[l] > 0; k++) {
+        const uint32_t parent = system->multigrid.levels[0].parent[block->vector[k / 4][l]][k % 4];
+        for (i = 0; i < count && bases[i] != parent; i++) {}
+        if (parent != GXSP_NONE && i == count) bases[count++] = parent;
+    }
+    return count;
+}
+
+static int gxsp_compare_keys(const void *a, const void *b) {
+    const uint64_t p = *(const uint64_t *)a, q = *(const uint64_t *)b;
+    return (p > q) - (p < q);
+}
+
+/* Lists the entries of a coarse node and another one, or itself, with their hidden nodes. */
+static void gxsp_nested_entries(const uint32_t *hidden, uint32_t p, uint32_t q, gxsp_list *list) {
+    const uint32_t some = hidden[p] == GXSP_NONE ? 1 : 4, others = hidden[q] == GXSP_NONE ? 1 : 4;
+    uint32_t i, j;
+    for (i = 0; i < some; i++)
+        for (j = 0; j < others; j++) {
+            const uint32_t a = i == 0 ? p : hidden[p] + i - 1, b = j == 0 ? q : hidden[q] + j - 1;
+            if (p != q || i < j) gxsp_list_add(list, a < b ? a : b, a < b ? b : a);
+        }
+}
+
+/* Lists the entries of level 1's matrix to which the elements add. */
+static void gxsp_nested_pattern(const gxsp_system *system, gxsp_pool *scratch, gxsp_list *list) {
+    const gxsp_affine *affine = &system->affine;
+    uint64_t *key = (uint64_t *)gxsp_take(scratch, (size_t)affine->block_count * GXSP_LANES * 136, sizeof *key);
+    uint32_t bases[16], b, i, j, count;
+    size_t k, keys = 0;
+    int l;
+    if (!key) return;
+    for (b = 0; b < affine->block_count; b++)
+        for (l = 0; l < GXSP_LANES; l++)
+            for (count = gxsp_nested_bases(system, &affine->blocks[b], l, bases), i = 0; i < count; i++)
+                for (j = i; j < count; j++)
+                    key[keys++] =
+                        bases[i] < bases[j] ? (uint64_t)bases[i] << 32 | bases[j] : (uint64_t)bases[j] << 32 | bases[i];
+    qsort(key, keys, sizeof *key, gxsp_compare_keys);
+    for (k = 0; k < keys; k++)
+        if (k == 0 || key[k] != key[k - 1])
+            gxsp_nested_entries(affine->hidden, (uint32_t)(key[k] >> 32), (uint32_t)key[k], list);
 }
 
 /* >>pattern: edges of chunks, pattern of level 1 and of the assembled matrix --------------------------------------- */
@@ -4291,6 +4777,7 @@ static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gx
     for (c = 0; c < system->mesh.chunk_count; c++)
         if (!before || gxsp_follows_dirty(system, &system->mesh.chunks[c], dirty))
             gxsp_list_pairs(system, &system->mesh.chunks[c], memory, before ? dirty : NULL, &list);
+    if (system->affine.count > 0) gxsp_nested_pattern(system, scratch, &list);
     if (!scratch->failed)
         gxsp_rows_make(&system->multigrid.pool, scratch, &system->multigrid.levels[1], list.pair, list.count);
 }
@@ -4381,9 +4868,10 @@ static void gxsp_levels_make(gxsp_system *system, gxsp_pool *scratch, const gxsp
 }
 
 /* The transfer of the model by a lattice. place: n x 3, in its spacings. Returns the number of level 1's nodes. */
-static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], gxsp_transfer *transfer) {
+static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], const uint8_t *left_out,
+                                    gxsp_transfer *transfer) {
     uint32_t c, e;
-    gxsp_transfer_begin(&system->multigrid.levels[0], place, system->model.fixed, transfer);
+    gxsp_transfer_begin(&system->multigrid.levels[0], place, left_out, transfer);
     for (c = 0; c < system->mesh.chunk_count; c++) {
         const uint32_t *copies = system->mesh.nodes + system->mesh.chunks[c].first_node;
         gxsp_list_edges(system, &system->mesh.chunks[c]);
@@ -4395,6 +4883,7 @@ static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], gxsp
         if (fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
             gxsp_join_nodes(transfer, system->model.followers[e / 4].copy,
                             system->model.followers[e / 4].master[e % 4]);
+    gxsp_nested_join(system, transfer);
     return gxsp_transfer_end(&system->multigrid.levels[0], transfer);
 }
 
@@ -4460,13 +4949,51 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (
     transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint64_t));
     transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
     if (scratch->failed) return;
-    count = gxsp_first_transfer(system, place, &transfer);
-    if (gxsp_thin_crowded(system, scratch, place)) count = gxsp_first_transfer(system, place, &transfer);
+    count = gxsp_first_transfer(system, place, system->model.fixed, &transfer);
+    if (gxsp_thin_crowded(system, scratch, place))
+        count = gxsp_first_transfer(system, place, system->model.fixed, &transfer);
     if (count == 0 || scratch->failed) return;
     gxsp_level_make(&system->multigrid.pool, fine + 1, count);
     if (system->multigrid.pool.failed) return;
     gxsp_transfer_places(fine, &transfer, fine + 1);
     gxsp_levels_make(system, scratch, NULL, NULL);
+}
+
+/* The same where copies are affine. Level 1 is factored, so its lattice is widened until that is cheap. */
+static void gxsp_nested_make(gxsp_system *system, gxsp_pool *scratch, float (*place)[3], double spacing) {
+    gxsp_level *next = &system->multigrid.levels[1];
+    float(*own)[3] = (float(*)[3])gxsp_take(scratch, system->model.n, sizeof *own);
+    uint8_t *left_out = (uint8_t *)gxsp_take(scratch, system->model.n, 1);
+    gxsp_transfer transfer;
+    gxsp_owned *mark;
+    uint32_t count, i;
+    float stretch;
+    gxsp_edges_make(system, scratch);
+    transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint64_t));
+    transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
+    mark = scratch->last;
+    for (i = 0; i < system->model.n && left_out; i++) left_out[i] = system->model.fixed[i] || gxsp_is_hidden(system, i);
+    for (stretch = 1;; stretch *= 1.25f) {
+        if (scratch->failed) return;
+        for (i = 0; i < 3 * system->model.n; i++) own[i / 3][i % 3] = place[i / 3][i % 3] / stretch;
+        count = gxsp_first_transfer(system, own, left_out, &transfer);
+        if (count == 0) return;
+        count = gxsp_nested_nodes(system, own, &transfer, (double)stretch * spacing, count);
+        if (system->multigrid.pool.failed) return;
+        gxsp_level_make(&system->multigrid.pool, next, count);
+        if (system->multigrid.pool.failed) return;
+        gxsp_pairs_make(system, scratch);
+        if (!scratch->failed) gxsp_first_pattern(system, scratch, NULL, NULL);
+        if (scratch->failed || system->multigrid.pool.failed) return;
+        if (stretch > GXSP_WIDEST || gxsp_factors(scratch, next, GXSP_NESTED_COST * system->model.n)) break;
+        gxsp_release_to(&system->multigrid.pool, NULL);
+        gxsp_release_to(scratch, mark);
+    }
+    gxsp_count_edges(system);
+    system->multigrid.level_count = 2;
+    next->block = (float *)gxsp_take(&system->multigrid.pool, gxsp_block_numbers(next), sizeof(float));
+    system->affine.block = (double *)gxsp_take(&system->multigrid.pool, gxsp_block_numbers(next), sizeof(double));
+    gxsp_factor_make(system, scratch);
 }
 
 /* >>lights: copies with next to no mass ---------------------------------------------------------------------------- */
@@ -4666,7 +5193,7 @@ static void gxsp_find_volumes(gxsp_system *system, gxsp_pool *scratch, const gxs
 
 /* A component is large enough for multigrid from this many copies on. */
 static uint32_t gxsp_large(const gxsp_system *system) {
-    return system->model.stiff ? GXSP_MULTIGRID_FROM_STIFF : GXSP_MULTIGRID_FROM;
+    return system->model.stiff || system->affine.count > 0 ? GXSP_MULTIGRID_FROM_STIFF : GXSP_MULTIGRID_FROM;
 }
 
 /* Is a component large enough for multigrid? All components take as many iterations as the slowest one. count:
@@ -4684,6 +5211,7 @@ static int gxsp_large_component(const gxsp_system *system, uint32_t *count) {
 static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model,
                                      gxs_preconditioner preconditioner, gxs_matrix matrix, uint32_t *forest) {
     float(*place)[3]; /* rest positions in spacings of the first lattice */
+    double spacing;
     const int multigrid =
         model->positions &&
         (preconditioner == GXS_MULTIGRID || (preconditioner == GXS_AUTOMATIC && gxsp_large_component(system, forest)));
@@ -4694,7 +5222,11 @@ static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, co
     if (!multigrid) return;
     gxsp_transfer_make(&system->pool, &system->multigrid.levels[0]);
     place = (float(*)[3])gxsp_take(scratch, system->model.n, sizeof *place);
-    if (!system->pool.failed && !scratch->failed && gxsp_find_places(system, model, place))
+    if (system->pool.failed || scratch->failed) return;
+    spacing = gxsp_find_places(system, model, place);
+    if (spacing > 0 && system->affine.count > 0)
+        gxsp_nested_make(system, scratch, place, spacing);
+    else if (spacing > 0)
         gxsp_multigrid_make(system, scratch, place);
 }
 
@@ -4703,6 +5235,7 @@ static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, co
 static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model,
                                 const gxs_solver *solver) {
     uint32_t i, *forest = (uint32_t *)gxsp_take(scratch, model->copy_count, sizeof(uint32_t));
+    gxs_model plain = *model; /* without the elements of affine copies */
     gxsp_owned *mark;
     size_t bad;
     system->model.n = model->copy_count;
@@ -4717,6 +5250,7 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     system->model.materials = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
     system->state.damped = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
     gxsp_copies_make(system, model->positions);
+    if (model->affine && !system->pool.failed) gxsp_groups_make(system, model);
     if (scratch->failed || system->pool.failed) return SIZE_MAX;
     for (i = 0; i < system->model.material_count; i++) {
         system->state.damped[i] = system->model.materials[i] = gxsp_material_make(&model->materials[i]);
@@ -4736,7 +5270,9 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     if (system->pool.failed) return SIZE_MAX;
     gxsp_fill_components(system);
     mark = scratch->last;
-    gxsp_chunks_make(system, scratch, model);
+    if (system->affine.group_count > 0) gxsp_affine_make(system, scratch, model, &plain);
+    if (scratch->failed || system->pool.failed) return SIZE_MAX;
+    gxsp_chunks_make(system, scratch, &plain);
     if (!scratch->failed && !system->pool.failed) gxsp_partials_make(system);
     if (!scratch->failed && !system->pool.failed) gxsp_list_lights(system, scratch, NULL);
     gxsp_release_to(scratch, mark);
@@ -4772,6 +5308,483 @@ static void gxsp_system_destroy(gxsp_system *system) {
 static void gxsp_drop_system(gxs_solver *solver) {
     gxsp_system_destroy(solver->system);
     solver->system = NULL;
+}
+
+/* >>rule: passes over elements with affine copies ------------------------------------------------------------------ */
+
+/* In: vectors over copies. Out: energies, forces, Hessians, products, diagonal blocks. The field of an element is
+ *   u = sum N_i (a_i + A_i (x - X_i)) = sum N_j a_j + sum 4 N_i N_j e_ij over pairs,   e_ij = (A_i - A_j)(X_j - X_i)
+ * / 4. So its gradient at a point is that of a linear element whose corners have moved by w_j = a_j + sum 4 N_i e_ij
+ * over i. At each of four points the passes of >>element serve. u there is sum N_j (a_j + w_j) / 2. A task writes its
+ * own block and the slots of it. */
+
+/* Blocks of one task */
+#define GXSP_AFFINE_TASK 8
+
+/* Vectors of a block's elements: [3 vector + axis]; 0 where there is none */
+static void gxsp_affine_gather(const gxsp_affine_block *block, const double *x, gxsp_lanes *to) {
+    int k, l, r;
+    for (k = 0; k < 16; k++)
+        for (l = 0; l < GXSP_LANES; l++)
+            for (r = 0; r < 3; r++)
+                to[3 * k + r][l] =
+                    block->vector[k][l] == GXSP_NONE ? 0 : x[3 * (size_t)block->vector[k][l] + (size_t)r];
+}
+
+static void gxsp_affine_scatter(gxsp_lanes *GXSP_RESTRICT from, double (*GXSP_RESTRICT slots)[3]) {
+    int k, l, r;
+    for (k = 0; k < 16; k++)
+        for (l = 0; l < GXSP_LANES; l++)
+            for (r = 0; r < 3; r++) slots[k * GXSP_LANES + l][r] = from[3 * k + r][l];
+}
+
+/* (X_j - X_i) / (4 length) of an edge, axis a */
+GXSP_INLINE double gxsp_affine_edge(const gxsp_affine_block *block, int edge, int a, int l) {
+    const int i = gxsp_edge_ends[edge][0], j = gxsp_edge_ends[edge][1];
+    return block->edge[3 * (j - 1) + a][l] - (i > 0 ? block->edge[3 * (i - 1) + a][l] : 0);
+}
+
+/* e_ij of the six edges: [3 edge + axis] */
+static void gxsp_affine_bend(const gxsp_affine_block *block, gxsp_lanes *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT e) {
+    int k, r, l;
+    for (k = 0; k < 6; k++) {
+        gxsp_lanes *p = x + 12 + 9 * gxsp_edge_ends[k][0], *q = x + 12 + 9 * gxsp_edge_ends[k][1];
+        gxsp_lanes way[3];
+        for (r = 0; r < 3; r++) GXSP_EACH_LANE(l) way[r][l] = gxsp_affine_edge(block, k, r, l);
+        for (r = 0; r < 3; r++) GXSP_EACH_LANE(l)
+        e[3 * k + r][l] = (p[r][l] - q[r][l]) * way[0][l] + (p[3 + r][l] - q[3 + r][l]) * way[1][l] +
+                          (p[6 + r][l] - q[6 + r][l]) * way[2][l];
+    }
+}
+
+/* w of the corners at a point */
+static void gxsp_affine_corners(const gxsp_affine_block *block, int point, gxsp_lanes *GXSP_RESTRICT x,
+                                gxsp_lanes *GXSP_RESTRICT e, gxsp_lanes *GXSP_RESTRICT w) {
+    int k, r, l;
+    memcpy(w, x, 12 * sizeof *w);
+    for (k = 0; k < 6; k++) {
+        const int i = gxsp_edge_ends[k][0], j = gxsp_edge_ends[k][1];
+        for (r = 0; r < 3; r++) GXSP_EACH_LANE(l) {
+                w[3 * j + r][l] += 4 * block->shape[point][i][l] * e[3 * k + r][l];
+                w[3 * i + r][l] += 4 * block->shape[point][j][l] * e[3 * k + r][l];
+            }
+    }
+}
+
+/* Forces on w at a point, to those on a and e */
+static void gxsp_affine_collect(const gxsp_affine_block *block, int point, gxsp_lanes *GXSP_RESTRICT w,
+                                gxsp_lanes *GXSP_RESTRICT y, gxsp_lanes *GXSP_RESTRICT e) {
+    int k, r, l;
+    for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) y[k][l] += w[k][l];
+    for (k = 0; k < 6; k++) {
+        const int i = gxsp_edge_ends[k][0], j = gxsp_edge_ends[k][1];
+        for (r = 0; r < 3; r++) GXSP_EACH_LANE(l)
+        e[3 * k + r][l] +=
+            4 * (block->shape[point][i][l] * w[3 * j + r][l] + block->shape[point][j][l] * w[3 * i + r][l]);
+    }
+}
+
+/* Forces on e, to those on hidden vectors */
+static void gxsp_affine_return(const gxsp_affine_block *block, gxsp_lanes *GXSP_RESTRICT e,
+                               gxsp_lanes *GXSP_RESTRICT y) {
+    int k, r, a, l;
+    for (k = 0; k < 6; k++) {
+        gxsp_lanes *p = y + 12 + 9 * gxsp_edge_ends[k][0], *q = y + 12 + 9 * gxsp_edge_ends[k][1];
+        for (a = 0; a < 3; a++)
+            for (r = 0; r < 3; r++) GXSP_EACH_LANE(l) {
+                    const double force = e[3 * k + r][l] * gxsp_affine_edge(block, k, a, l);
+                    p[3 * a + r][l] += force;
+                    q[3 * a + r][l] -= force;
+                }
+    }
+}
+
+/* Adds rate M x of a point to forces on a and e; energy += rate/2 x M x. */
+static void gxsp_affine_inertia(const gxsp_affine_block *block, int point, double rate, gxsp_lanes *GXSP_RESTRICT x,
+                                gxsp_lanes *GXSP_RESTRICT w, gxsp_lanes *GXSP_RESTRICT y, gxsp_lanes *GXSP_RESTRICT e,
+                                double *GXSP_RESTRICT energy) {
+    gxsp_lanes force;
+    int k, r, j, l;
+    for (r = 0; r < 3; r++) {
+        GXSP_EACH_LANE(l) {
+            const double at = 0.5 * (block->shape[point][0][l] * (x[r][l] + w[r][l]) +
+                                     block->shape[point][1][l] * (x[3 + r][l] + w[3 + r][l]) +
+                                     block->shape[point][2][l] * (x[6 + r][l] + w[6 + r][l]) +
+                                     block->shape[point][3][l] * (x[9 + r][l] + w[9 + r][l]));
+            force[l] = rate * block->rest.mass[l] * at;
+            energy[l] += 0.5 * force[l] * at;
+        }
+        for (j = 0; j < 4; j++) GXSP_EACH_LANE(l) y[3 * j + r][l] += block->shape[point][j][l] * force[l];
+        for (k = 0; k < 6; k++) GXSP_EACH_LANE(l)
+        e[3 * k + r][l] +=
+            4 * block->shape[point][gxsp_edge_ends[k][0]][l] * block->shape[point][gxsp_edge_ends[k][1]][l] * force[l];
+    }
+}
+
+/* Energies and forces of a block: see gxsp_task_state */
+static void gxsp_affine_state(const gxsp_pass *pass, gxsp_affine_block *block, double (*slots)[3]) {
+    const int led = pass->inertia || pass->rotated; /* never both */
+    gxsp_lanes x[48], other[48], bend[18], bend_other[18], y[48], forces[18], w[12], w_other[12], ahead[9];
+    gxsp_state s;
+    int p, k, l;
+    gxsp_affine_gather(block, pass->from, x);
+    gxsp_affine_bend(block, x, bend);
+    if (led) gxsp_affine_gather(block, pass->inertia ? pass->system->vectors.target : pass->rotated, other);
+    for (k = 0; k < 48 && pass->inertia; k++) GXSP_EACH_LANE(l) other[k][l] = x[k][l] - other[k][l];
+    if (led) gxsp_affine_bend(block, other, bend_other);
+    memset(y, 0, sizeof y);
+    memset(forces, 0, sizeof forces);
+    memset(block->energies, 0, sizeof block->energies);
+    for (p = 0; p < 4; p++) {
+        gxsp_lanes own[12];
+        gxsp_affine_corners(block, p, x, bend, w);
+        if (led) gxsp_affine_corners(block, p, other, bend_other, w_other);
+        gxsp_block_parameters(pass->materials, &block->rest, &s);
+        gxsp_block_gradient(block->gradient, w, s.g);
+        if (pass->rotated) gxsp_block_gradient(block->gradient, w_other, ahead);
+        if (pass->nudge && block->kind != GXS_LINEAR && block->kind != GXS_CUSTOM) gxsp_nudge(s.g);
+        gxsp_material_state(block->kind, &s);
+        if (pass->rotated && block->kind != GXS_LINEAR) gxsp_rotate_stress(s.g, ahead, s.p);
+        memset(own, 0, sizeof own);
+        gxsp_block_force(block->rest.weight, block->gradient, s.p, own);
+        gxsp_affine_collect(block, p, own, y, forces);
+        for (l = 0; l < GXSP_LANES; l++) {
+            block->energies[0][l] += block->rest.weight[l] * s.energy[l];
+            block->energies[2][l] += block->rest.weight[l] * s.size[l];
+        }
+        if (pass->inertia) gxsp_affine_inertia(block, p, pass->rate, other, w_other, y, forces, block->energies[1]);
+    }
+    for (l = 0; l < GXSP_LANES; l++) block->energies[2][l] += block->energies[1][l];
+    gxsp_affine_return(block, forces, y);
+    gxsp_affine_scatter(y, slots);
+}
+
+/* Hessian of a block at pass->from, point by point */
+static void gxsp_affine_tangents(const gxsp_pass *pass, gxsp_affine_block *block) {
+    gxsp_lanes x[48], bend[18], w[12];
+    gxsp_state s;
+    gxsp_svd svd;
+    int p;
+    block->collapsed = 0;
+    gxsp_affine_gather(block, pass->from, x);
+    gxsp_affine_bend(block, x, bend);
+    for (p = 0; p < 4; p++) {
+        gxsp_affine_corners(block, p, x, bend, w);
+        gxsp_block_parameters(pass->materials, &block->rest, &s);
+        gxsp_block_gradient(block->gradient, w, s.g);
+        block->collapsed |= (uint8_t)gxsp_tangent_begin(block->kind, &s, NULL, &svd);
+        gxsp_tangent_make(block->kind, &block->rest, block->gradient, pass->system->model.scale, pass->exact, &s, &svd,
+                          &block->tangent[p], block->general ? &block->general[p] : NULL);
+    }
+}
+
+/* The product of a block with x, into its slots. pass->rate: times scale */
+static void gxsp_affine_product(const gxsp_pass *pass, const gxsp_affine_block *block, gxsp_lanes *x,
+                                double (*slots)[3]) {
+    gxsp_lanes y[48], bend[18], forces[18], w[12], energy;
+    int p, k, l;
+    gxsp_affine_bend(block, x, bend);
+    memset(y, 0, sizeof y);
+    memset(forces, 0, sizeof forces);
+    GXSP_EACH_LANE(l) energy[l] = 0;
+    for (p = 0; p < 4; p++) {
+        gxsp_singles from[12], to[12];
+        gxsp_affine_corners(block, p, x, bend, w);
+        if (pass->rate > 0) gxsp_affine_inertia(block, p, pass->rate, x, w, y, forces, energy);
+        for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) {
+                from[k][l] = k < 3 ? 0 : (float)(w[k][l] - w[k % 3][l]);
+                to[k][l] = 0;
+            }
+        gxsp_kind_product(block->kind, &block->tangent[p], NULL, block->general ? &block->general[p] : NULL, 1, from,
+                          to);
+        for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) w[k][l] = (double)to[k][l];
+        gxsp_affine_collect(block, p, w, y, forces);
+    }
+    gxsp_affine_return(block, forces, y);
+    gxsp_affine_scatter(y, slots);
+}
+
+/* What a task does with its blocks */
+static void gxsp_affine_over(void *context, size_t index, int what) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    gxsp_affine *affine = &pass->system->affine;
+    const size_t end = (index + 1) * GXSP_AFFINE_TASK;
+    gxsp_lanes x[48];
+    size_t b;
+    int k, l, r;
+    for (b = index * GXSP_AFFINE_TASK; b < end && b < affine->block_count; b++) {
+        gxsp_affine_block *block = &affine->blocks[b];
+        double(*slots)[3] = affine->slots + b * 16 * GXSP_LANES;
+        if (block->still) {
+            memset(slots, 0, 16 * GXSP_LANES * sizeof *slots);
+            memset(block->energies, 0, sizeof block->energies);
+            block->collapsed = 0;
+        } else if (what == 0)
+            gxsp_affine_state(pass, block, slots);
+        else if (what == 1)
+            gxsp_affine_tangents(pass, block);
+        else {
+            for (k = 0; k < 16; k++)
+                for (l = 0; l < GXSP_LANES; l++) {
+                    const uint32_t vector = block->vector[k][l];
+                    double in[3] = {0, 0, 0};
+                    if (vector != GXSP_NONE && pass->x)
+                        for (r = 0; r < 3; r++) in[r] = (double)pass->x[vector][r];
+                    else if (vector != GXSP_NONE)
+                        gxsp_copy_direction(pass, vector, in);
+                    for (r = 0; r < 3; r++) x[3 * k + r][l] = in[r];
+                }
+            gxsp_affine_product(pass, block, x, slots);
+        }
+    }
+}
+
+static void gxsp_task_affine_state(void *context, size_t index) { gxsp_affine_over(context, index, 0); }
+static void gxsp_task_affine_tangents(void *context, size_t index) { gxsp_affine_over(context, index, 1); }
+static void gxsp_task_affine_product(void *context, size_t index) { gxsp_affine_over(context, index, 2); }
+
+static void gxsp_over_affine(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass) {
+    pass->system = system;
+    gxsp_parallel(system->jobs, (system->affine.block_count + GXSP_AFFINE_TASK - 1) / GXSP_AFFINE_TASK, task, pass);
+}
+
+/* Sum over the slots of touched vector t */
+static void gxsp_affine_sum(const gxsp_affine *affine, uint32_t t, double *sum) {
+    uint32_t s;
+    sum[0] = sum[1] = sum[2] = 0;
+    for (s = affine->start[t]; s < affine->start[t + 1]; s++) {
+        const double *slot = affine->slots[affine->slot[s]];
+        sum[0] += slot[0], sum[1] += slot[1], sum[2] += slot[2];
+    }
+}
+
+/* Adds forces and energies to those of chunks. */
+static void gxsp_affine_evaluate(gxsp_system *system, gxsp_pass *pass) {
+    const gxsp_affine *affine = &system->affine;
+    uint32_t t, b;
+    int k, l;
+    gxsp_over_affine(system, gxsp_task_affine_state, pass);
+    for (t = 0; t < affine->touched_count; t++) {
+        double sum[3], *to = pass->sum + 3 * (size_t)affine->touched[t];
+        gxsp_affine_sum(affine, t, sum);
+        for (k = 0; k < 3; k++) to[k] += sum[k];
+    }
+    for (b = 0; b < affine->block_count; b++)
+        for (l = 0; l < GXSP_LANES && affine->blocks[b].vector[0][l] != GXSP_NONE; l++)
+            for (k = 0; k < 3; k++)
+                gxsp_lead_of(system, affine->blocks[b].vector[0][l])->energies[k] += affine->blocks[b].energies[k][l];
+}
+
+/* Adds the product of pass->x to pass->y, or takes it away if there is a pass->right. Returns x . product. */
+static double gxsp_affine_multiply(gxsp_system *system, gxsp_pass *pass) {
+    const gxsp_affine *affine = &system->affine;
+    double work = 0;
+    uint32_t t;
+    int k;
+    gxsp_over_affine(system, gxsp_task_affine_product, pass);
+    for (t = 0; t < affine->touched_count; t++) {
+        const uint32_t vector = affine->touched[t];
+        double sum[3];
+        if (system->state.still[vector]) continue;
+        gxsp_affine_sum(affine, t, sum);
+        for (k = 0; k < 3; k++) {
+            work += (double)pass->x[vector][k] * sum[k];
+            pass->y[vector][k] += (float)(pass->right ? -sum[k] : sum[k]);
+        }
+    }
+    return work;
+}
+
+/* A function of an element, given by its share of each vector, at a point: gradient in the frame of V, and value */
+static void gxsp_point_function(const gxsp_affine_block *block, int point, int l, const double share[16],
+                                double gradient[3], double *value) {
+    const gxsp_tangent *tangent = &block->tangent[point];
+    double w[4];
+    int k, j, a;
+    for (j = 0; j < 4; j++) w[j] = share[j];
+    for (k = 0; k < 6; k++) {
+        const int i = gxsp_edge_ends[k][0];
+        double e = 0;
+        j = gxsp_edge_ends[k][1];
+        for (a = 0; a < 3; a++) e += (share[4 + 3 * i + a] - share[4 + 3 * j + a]) * gxsp_affine_edge(block, k, a, l);
+        w[j] += 4 * block->shape[point][i][l] * e;
+        w[i] += 4 * block->shape[point][j][l] * e;
+    }
+    for (j = 0, *value = 0; j < 4; j++) *value += 0.5 * block->shape[point][j][l] * (share[j] + w[j]);
+    for (a = 0; a < 3; a++) {
+        gradient[a] = 0;
+        for (j = 1; j < 4; j++) gradient[a] += (w[j] - w[0]) * (double)tangent->gradient[3 * (j - 1) + a][l];
+    }
+}
+
+/* flux[9 s + 3 r + m] = weight x dP_rm, in the frame of V, when dF is the gradient of a function in direction s */
+static void gxsp_point_flux(const gxsp_affine_block *block, int point, int l, const double gradient[3],
+                            double flux[27]) {
+    const gxsp_tangent *t = &block->tangent[point];
+    int s, r, m, n;
+    double u[9];
+    if (block->general) {
+        for (s = 0; s < 3; s++)
+            for (r = 0; r < 3; r++)
+                for (m = 0; m < 3; m++)
+                    for (n = 0, flux[9 * s + 3 * r + m] = 0; n < 3; n++)
+                        flux[9 * s + 3 * r + m] +=
+                            (double)block->general[point].hessian[gxsp_packed9(3 * r + m, 3 * s + n)][l] * gradient[n];
+        return;
+    }
+    {
+        const double a = (double)t->frame[0][l], b = (double)t->frame[1][l], c = (double)t->frame[2][l],
+                     d = (double)t->frame[3][l];
+        u[0] = 1 - (b * b + c * c), u[1] = a * b - c * d, u[2] = a * c + b * d;
+        u[3] = a * b + c * d, u[4] = 1 - (a * a + c * c), u[5] = b * c - a * d;
+        u[6] = a * c - b * d, u[7] = b * c + a * d, u[8] = 1 - (a * a + b * b);
+    }
+    for (s = 0; s < 3; s++) {
+        double f[9], p[9];
+        for (r = 0; r < 9; r++) f[r] = u[3 * s + r / 3] * gradient[r % 3];
+        for (r = 0; r < 3; r++) {
+            p[4 * r] = 0;
+            for (m = 0; m < 3; m++)
+                p[4 * r] += (double)t->stretch[gxsp_packed3(r < m ? r : m, r < m ? m : r)][l] * f[4 * m];
+            for (m = 0; m < 3; m++)
+                if (m != r)
+                    p[3 * r + m] =
+                        (double)t->even[3 - r - m][l] * f[3 * r + m] + (double)t->odd[3 - r - m][l] * f[3 * m + r];
+        }
+        for (r = 0; r < 3; r++)
+            for (m = 0; m < 3; m++)
+                flux[9 * s + 3 * r + m] = u[3 * r] * p[m] + u[3 * r + 1] * p[3 + m] + u[3 * r + 2] * p[6 + m];
+    }
+}
+
+/* to[3 r + s] += gradient . flux, the block in the row of one function and the column of another */
+static void gxsp_point_couple(const double gradient[3], const double flux[27], double to[9]) {
+    int k;
+    for (k = 0; k < 9; k++) {
+        const double *p = flux + 9 * (k % 3) + 3 * (k / 3);
+        to[k] += gradient[0] * p[0] + gradient[1] * p[1] + gradient[2] * p[2];
+    }
+}
+
+/* Diagonal blocks of one element's corner: of its copy, or of all parts of its group */
+static void gxsp_affine_corner_blocks(gxsp_system *system, const gxsp_affine_block *block, int l, int corner,
+                                      double rate) {
+    gxsp_affine *affine = &system->affine;
+    const uint32_t copy = block->vector[corner][l], place = affine->place[copy];
+    const int parts = place == GXSP_NONE ? 1 : 4;
+    double gradient[4][3], value[4], flux[27], plain[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0};
+    int p, a, b, k;
+    for (p = 0; p < 4; p++) {
+        for (a = 0; a < parts; a++) {
+            double share[16] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+            share[a == 0 ? corner : 4 + 3 * corner + a - 1] = 1;
+            gxsp_point_function(block, p, l, share, gradient[a], &value[a]);
+        }
+        for (b = 0; b < parts; b++) {
+            gxsp_point_flux(block, p, l, gradient[b], flux);
+            for (a = 0; a <= b; a++) {
+                double *to = parts == 1 ? plain : affine->full[place / 4][gxsp_packed_mass[a][b]];
+                const double mass = rate * block->rest.mass[l] * value[a] * value[b];
+                gxsp_point_couple(gradient[a], flux, to);
+                to[0] += mass, to[4] += mass, to[8] += mass;
+            }
+        }
+    }
+    for (k = 0; k < 6 && parts == 1; k++) {
+        static const int packed[6] = {0, 1, 2, 4, 5, 8};
+        affine->own[copy][k] += plain[packed[k]];
+    }
+}
+
+/* Springs and contact in the diagonal blocks of groups, and of copies that have no slot in a chunk */
+static void gxsp_affine_terms(gxsp_system *system) {
+    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    gxsp_affine *affine = &system->affine;
+    size_t t;
+    uint32_t i, j;
+    int k;
+    for (t = 0; t < system->lasting->count; t++) {
+        const gxsp_term *term = &system->lasting->term[t];
+        const gxsp_share *share = system->lasting->share + term->first;
+        for (i = 0; i < term->count; i++) {
+            const uint32_t p = share[i].copy, place = affine->place[p];
+            for (k = 0; k < 6 && place == GXSP_NONE && system->mesh.copy_start[p] == system->mesh.copy_start[p + 1];
+                 k++)
+                affine->own[p][k] += (double)(share[i].weight * share[i].weight * term->hessian[k]);
+            for (j = 0; j < term->count && place != GXSP_NONE; j++) {
+                const uint32_t other = affine->place[share[j].copy];
+                if (other == GXSP_NONE || other / 4 != place / 4 || (place & 3) > (other & 3)) continue;
+                for (k = 0; k < 9; k++)
+                    affine->full[place / 4][gxsp_packed_mass[place & 3][other & 3]][k] +=
+                        (double)(share[i].weight * share[j].weight * term->hessian[full[k]]);
+            }
+        }
+    }
+}
+
+/* W of a group: the inverse of its 12x12 block is W^T W, semi-definite in spite of rounding. 1e-7 of the diagonal is
+ * added, as in gxsp_invert3. */
+static void gxsp_affine_invert(const gxsp_system *system, uint32_t group) {
+    const gxsp_affine *affine = &system->affine;
+    double a[12][12], scale[12], w[12][12];
+    int i, j, k;
+    for (i = 0; i < 12; i++)
+        for (j = 0; j < 12; j++) {
+            const int p = i / 3 < j / 3 ? i / 3 : j / 3, q = i / 3 < j / 3 ? j / 3 : i / 3;
+            const double *from = affine->full[group][gxsp_packed_mass[p][q]];
+            a[i][j] = i / 3 <= j / 3 ? from[3 * (i % 3) + j % 3] : from[3 * (j % 3) + i % 3];
+        }
+    for (i = 0; i < 12; i++)
+        scale[i] = !system->state.still[affine->member[group][i / 3]] && a[i][i] > GXSP_TINY ? 1 / sqrt(a[i][i]) : 0;
+    memset(w, 0, sizeof w);
+    for (i = 0; i < 12; i++) { /* Cholesky of the block with a diagonal of 1 */
+        for (j = 0; j <= i; j++) {
+            double sum = i == j ? 1 + 1e-7 : a[i][j] * scale[i] * scale[j];
+            for (k = 0; k < j; k++) sum -= a[i][k] * a[j][k]; /* rows before have the factor in place of the block */
+            a[i][j] = i > j ? sum * a[j][j] : 1 / sqrt(sum > 1e-7 ? sum : 1e-7);
+        }
+    }
+    for (j = 0; j < 12; j++) /* inverse of the factor, whose diagonal is inverted already */
+        for (i = j; i < 12; i++) {
+            double sum = i == j ? 1 : 0;
+            for (k = j; k < i; k++) sum -= a[i][k] * w[k][j];
+            w[i][j] = sum * a[i][i];
+        }
+    for (i = 0; i < 12; i++)
+        for (j = 0; j <= i; j++) affine->root[group][i * (i + 1) / 2 + j] = (float)(w[i][j] * scale[j]);
+}
+
+/* Diagonal blocks from the tangents. rate: times scale */
+static void gxsp_affine_diagonal(gxsp_system *system, double rate) {
+    static const int packed[6] = {0, 1, 2, 4, 5, 8};
+    gxsp_affine *affine = &system->affine;
+    uint32_t b, group;
+    int l, k, p;
+    memset(affine->own, 0, system->model.n * sizeof *affine->own);
+    memset(affine->full, 0, affine->group_count * sizeof *affine->full);
+    for (b = 0; b < affine->block_count; b++)
+        for (l = 0; l < GXSP_LANES && affine->blocks[b].vector[0][l] != GXSP_NONE && !affine->blocks[b].still; l++)
+            for (k = 0; k < 4; k++)
+                if (!gxsp_follows(system, affine->blocks[b].vector[k][l]))
+                    gxsp_affine_corner_blocks(system, &affine->blocks[b], l, k, rate);
+    gxsp_affine_terms(system);
+    for (group = 0; group < affine->group_count; group++) {
+        for (p = 0; p < 4; p++)
+            for (k = 0; k < 6; k++)
+                affine->own[affine->member[group][p]][k] = affine->full[group][gxsp_packed_mass[p][p]][packed[k]];
+        gxsp_affine_invert(system, group);
+    }
+}
+
+/* z = D^-1 x of a group's twelve numbers */
+static void gxsp_affine_apply(const gxsp_affine *affine, uint32_t group, const double x[12], double z[12]) {
+    const float *root = affine->root[group];
+    double y[12];
+    int i, j;
+    for (i = 0; i < 12; i++)
+        for (j = 0, y[i] = 0; j <= i; j++) y[i] += (double)root[i * (i + 1) / 2 + j] * x[j];
+    for (j = 0; j < 12; j++)
+        for (i = j, z[j] = 0; i < 12; i++) z[j] += (double)root[i * (i + 1) / 2 + j] * y[i];
 }
 
 /* >>forces: energies and forces of chunks -------------------------------------------------------------------------- */
@@ -4864,17 +5877,6 @@ static gxsp_lanes *gxsp_block_gradients(const gxsp_chunk *chunk, uint32_t b, con
     return made;
 }
 
-/* Parameters of a block's materials */
-static void gxsp_block_parameters(const gxsp_material *materials, const gxsp_rest *rest, gxsp_state *s) {
-    int l;
-    for (l = 0; l < GXSP_LANES; l++) {
-        const gxsp_material *material = &materials[rest->material[l]];
-        s->mu[l] = material->mu;
-        s->lambda[l] = material->lambda;
-        s->material[l] = material;
-    }
-}
-
 /* Adds forces of a block to the chunk's slots, 3 doubles each, and sets them to 0. Forces on a corner that the next
  * block has too are kept for it. */
 static void gxsp_block_store(const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *GXSP_RESTRICT values,
@@ -4890,40 +5892,6 @@ static void gxsp_block_store(const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *GX
             to[2] += values[3 * i + 2][l];
         }
         for (k = 3 * i; k < 3 * i + 3; k++) GXSP_EACH_LANE(l) values[k][l] = 0;
-    }
-}
-
-/* Rotates P of elements by the rotation from their orientation at displacement gradients `from` to that at `to`. P
- * stays where that is more than a right angle: such an element is tangled. */
-static void gxsp_rotate_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p) {
-    gxsp_svd svd[2];
-    int r, c, k, l;
-    gxsp_decompose(from, to, svd);
-    for (l = 0; l < GXSP_LANES; l++) {
-        double a[9], b[9], turn[9], stress[9], f[9], h[9];
-        for (r = 0; r < 3; r++)
-            for (c = 0; c < 3; c++) {
-                a[3 * r + c] = b[3 * r + c] = 0;
-                for (k = 0; k < 3; k++) {
-                    a[3 * r + c] += (double)(svd[0].u[3 * r + k][l] * svd[0].v[3 * c + k][l]);
-                    b[3 * r + c] += (double)(svd[1].u[3 * r + k][l] * svd[1].v[3 * c + k][l]);
-                }
-            }
-        for (k = 0; k < 9; k++) {
-            f[k] = from[k][l] + (k % 4 == 0 ? 1 : 0);
-            h[k] = to[k][l] + (k % 4 == 0 ? 1 : 0);
-        }
-        /* otherwise each step's load would have its own single-precision error, and no body would come to rest */
-        gxsp_polish_rotation(f, a);
-        gxsp_polish_rotation(h, b);
-        for (k = 0; k < 9; k++) {
-            turn[k] =
-                b[k / 3 * 3] * a[k % 3 * 3] + b[k / 3 * 3 + 1] * a[k % 3 * 3 + 1] + b[k / 3 * 3 + 2] * a[k % 3 * 3 + 2];
-            stress[k] = p[k][l];
-        }
-        for (k = 0; k < 9 && turn[0] + turn[4] + turn[8] > 1; k++)
-            p[k][l] = turn[k / 3 * 3] * stress[k % 3] + turn[k / 3 * 3 + 1] * stress[3 + k % 3] +
-                      turn[k / 3 * 3 + 2] * stress[6 + k % 3];
     }
 }
 
@@ -5071,6 +6039,7 @@ static void gxsp_evaluate_elements(gxsp_system *system, double rate, const doubl
         for (k = 0; k < 3; k++)
             system->model.components[system->model.components[system->mesh.partials[p].component].lead].energies[k] +=
                 system->mesh.partials[p].energies[k];
+    if (system->affine.count > 0) gxsp_affine_evaluate(system, &pass);
     if (rate > 0 && system->model.lumped_mass) {
         size_t i;
         for (i = 0; i < 3 * system->model.n; i++)
@@ -5444,6 +6413,7 @@ static double gxsp_product_from(gxsp_system *system, double rate, const double *
     else {
         gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_product, &pass);
         gxsp_over_ranges(system, gxsp_task_product_sum, &pass, &work, 1);
+        if (system->affine.count > 0) work += gxsp_affine_multiply(system, &pass);
     }
     work += gxsp_add_terms(system->lasting, right ? -1.0f : 1.0f, x, y);
     gxsp_reduce(system, y);
@@ -5459,26 +6429,6 @@ static double gxsp_product(gxsp_system *system, double rate, gxsp_vector4 *x, gx
 
 /* In: the last linearisation and a direction. Out: the product, with what sleeps. Differences between an
  * element's corners are taken in double precision. */
-
-/* Motion of a copy by a direction, times pass->factor: the direction's own, that of its masters if it follows them,
- * 0 if it is fixed */
-static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GXSP_RESTRICT to) {
-    const gxsp_system *system = pass->system;
-    const double *from = pass->from + 3 * (size_t)copy;
-    double factor = system->model.fixed[copy] ? 0 : pass->factor;
-    int k, c;
-    if (!gxsp_follows(system, copy)) {
-        to[0] = factor * from[0], to[1] = factor * from[1], to[2] = factor * from[2];
-        return;
-    }
-    to[0] = to[1] = to[2] = 0;
-    for (k = 0; k < 4; k++) {
-        const gxsp_follower *follower = &system->model.followers[system->model.follower[copy]];
-        from = pass->from + 3 * (size_t)follower->master[k];
-        factor = system->model.fixed[follower->master[k]] ? 0 : pass->factor * follower->weight[k];
-        for (c = 0; c < 3; c++) to[c] += factor * from[c];
-    }
-}
 
 /* The first three of four doubles minus those of origin, in single precision */
 static inline void gxsp_narrow_four(const double *x, const double *origin, float *to) {
@@ -5555,6 +6505,23 @@ static void gxsp_task_apply_sum(void *context, size_t index) {
     }
 }
 
+/* Adds the product of elements with affine copies to pass->sum. */
+static void gxsp_affine_apply_all(gxsp_system *system, gxsp_pass *pass) {
+    const double unit = 1 / (system->model.scale * pass->factor);
+    uint32_t t, b;
+    int k;
+    for (b = 0; b < system->affine.block_count; b++) system->affine.blocks[b].still = 0; /* what sleeps is included */
+    gxsp_over_affine(system, gxsp_task_affine_product, pass);
+    for (t = 0; t < system->affine.touched_count; t++) {
+        const uint32_t vector = system->affine.touched[t];
+        double sum[3];
+        gxsp_affine_sum(&system->affine, t, sum);
+        for (k = 0; k < 3 && !system->model.fixed[vector]; k++)
+            pass->sum[3 * (size_t)vector + (size_t)k] += unit * sum[k];
+    }
+    gxsp_mark_still_blocks(system);
+}
+
 /* Are the Hessians and masses of all elements finite? */
 static int gxsp_tangents_finite(const gxsp_system *system) {
     uint32_t c;
@@ -5563,6 +6530,12 @@ static int gxsp_tangents_finite(const gxsp_system *system) {
         if (!gxsp_all_finite_single(chunk->tangents, chunk->block_count * sizeof *chunk->tangents) ||
             !gxsp_all_finite_single(chunk->generals,
                                     chunk->generals ? chunk->block_count * sizeof *chunk->generals : 0))
+            return 0;
+    }
+    for (c = 0; c < system->affine.block_count; c++) {
+        const gxsp_affine_block *block = &system->affine.blocks[c];
+        if (!gxsp_all_finite_single(block->tangent, sizeof block->tangent) ||
+            !gxsp_all_finite_single(block->general, block->general ? 4 * sizeof *block->general : 0))
             return 0;
     }
     return 1;
@@ -5693,6 +6666,8 @@ static void gxsp_task_diagonal(void *context, size_t index) {
             gxsp_prefetch(slots + 6 * (size_t)system->mesh.copy_slot[s + GXSP_AHEAD], 6 * sizeof *slots);
             for (k = 0; k < 6; k++) sum[k] += (double)slots[6 * (size_t)system->mesh.copy_slot[s] + (size_t)k];
         }
+        for (k = 0; system->affine.count > 0 && k < 6 && !system->state.still[i]; k++)
+            sum[k] += system->affine.own[i][k];
         for (k = 0; system->model.lumped_mass && k < 6; k++)
             sum[k] += k == 0 || k == 3 || k == 5 ? pass->rate * system->model.lumped[i] : 0;
         if (system->state.still[i] || sum[0] + sum[3] + sum[5] < GXSP_TINY) /* only coarser levels move such a copy */
@@ -5756,8 +6731,15 @@ static int gxsp_linearise(gxsp_system *system, double rate, const double *from, 
     pass.exact = exact;
     gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_linearise, &pass);
     gxsp_extra_diagonal(system);
+    if (system->affine.count > 0) {
+        gxsp_over_affine(system, gxsp_task_affine_tangents, &pass);
+        gxsp_affine_diagonal(system, pass.rate);
+    }
     gxsp_over_ranges(system, gxsp_task_diagonal, &pass, NULL, 0);
     *collapsed = 0;
+    for (i = 0; i < system->affine.block_count; i++) *collapsed |= system->affine.blocks[i].collapsed;
+    if (!gxsp_all_finite_single(system->affine.root, system->affine.group_count * sizeof *system->affine.root))
+        return 0;
     for (i = 0; i < system->mesh.chunk_count; i++) *collapsed |= system->state.chunk_collapsed[i];
     for (i = 0; i < 6 * system->model.n; i++)
         if (!gxsp_finite_single(system->vectors.diagonal[i])) return 0;
@@ -6092,6 +7074,174 @@ static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
         }
 }
 
+/* >>nesting: numbers of level 1 where copies are affine ------------------------------------------------------------ */
+
+/* In: tangents of elements with affine copies, level 1's matrix from chunks. Out: the factor of their sum, in double
+ * precision: bending is softer than the rounding and the shift of single precision. */
+
+/* Adds an element's Hessian between its coarse functions. rate: times scale */
+static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *block, int l, double rate) {
+    const gxsp_level *level = &system->multigrid.levels[1];
+    uint32_t node[64], parents[16], count = 0, c, d, k, n;
+    double share[64][16], gradient[4][64][3], value[4][64], flux[27];
+    float weights[16];
+    int p, m;
+    for (k = 0; k < 16; k++) {
+        n = block->vector[k][l] == GXSP_NONE ? 0 : gxsp_nested_parents(system, block->vector[k][l], parents, weights);
+        while (n-- > 0) {
+            for (c = 0; c < count && node[c] != parents[n]; c++) {}
+            if (c == count) {
+                memset(share[c], 0, sizeof share[c]);
+                node[count++] = parents[n];
+            }
+            share[c][k] += (double)weights[n];
+        }
+    }
+    for (p = 0; p < 4; p++)
+        for (c = 0; c < count; c++) gxsp_point_function(block, p, l, share[c], gradient[p][c], &value[p][c]);
+    for (p = 0; p < 4; p++)
+        for (d = 0; d < count; d++) {
+            gxsp_point_flux(block, p, l, gradient[p][d], flux);
+            for (c = 0; c < count; c++) {
+                double to[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0}, *entry;
+                if (node[c] > node[d]) continue;
+                entry = system->affine.block + 9 * (size_t)gxsp_find_entry(level, node[c], node[d]);
+                gxsp_point_couple(gradient[p][c], flux, to);
+                to[0] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
+                to[4] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
+                to[8] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
+                for (m = 0; m < 9; m++) entry[3 * (m % 3) + m / 3] += to[m];
+            }
+        }
+}
+
+/* Springs and contact between coarse functions, where level 1's matrix has an entry for them */
+static void gxsp_nested_term(gxsp_system *system, const gxsp_term *term) {
+    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    const gxsp_level *level = &system->multigrid.levels[1];
+    const gxsp_share *share = system->lasting->share + term->first;
+    uint32_t i, j, p, q, rows[16], columns[16], row_count, column_count;
+    float w[16], v[16];
+    int k;
+    for (i = 0; i < term->count; i++)
+        for (j = 0; j < term->count; j++) {
+            row_count = gxsp_nested_parents(system, share[i].copy, rows, w);
+            column_count = gxsp_nested_parents(system, share[j].copy, columns, v);
+            for (p = 0; p < row_count; p++)
+                for (q = 0; q < column_count; q++) {
+                    const double weight = (double)(share[i].weight * w[p]) * (double)(share[j].weight * v[q]);
+                    uint32_t entry;
+                    if (rows[p] > columns[q]) continue;
+                    entry = gxsp_find_entry(level, rows[p], columns[q]);
+                    if (level->column[entry] != columns[q]) continue;
+                    for (k = 0; k < 9; k++)
+                        system->affine.block[9 * (size_t)entry + (size_t)k] += weight * (double)term->hessian[full[k]];
+                }
+        }
+}
+
+/* Row i of the factor in double precision: see gxsp_factor_row */
+static double *gxsp_nested_row(const gxsp_system *system, uint32_t i) {
+    const gxsp_factor *factor = &system->multigrid.factor;
+    const uint32_t place = i / 3, r = i % 3;
+    return system->affine.entry + (factor->row[place] + r * (size_t)(3 * place - factor->first[place] + 1) + (r == 2));
+}
+
+/* a . b in four sums side by side */
+static double gxsp_double_dot(const double *a, const double *b, size_t count) {
+    double sum[4] = {0, 0, 0, 0};
+    size_t i, k;
+    for (i = 0; i + 4 <= count; i += 4)
+        for (k = 0; k < 4; k++) sum[k] += a[i + k] * b[i + k];
+    for (; i < count; i++) sum[0] += a[i] * b[i];
+    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
+}
+
+/* The sum of both matrices in the factor's envelope, then Cholesky; the diagonal is inverted. Functions that others
+ * make up have pivots of rounding: they are left out. place: n, scratch. 0: a number overflowed. */
+static int gxsp_nested_factor(gxsp_system *system, uint32_t *place) {
+    const gxsp_factor *factor = &system->multigrid.factor;
+    const gxsp_level *level = &system->multigrid.levels[1];
+    uint32_t i, j, k, r, c;
+    memset(system->affine.entry, 0, factor->entry_count * sizeof(double));
+    for (i = 0; i < level->n; i++) place[factor->order[i]] = i;
+    for (i = 0; i < level->n; i++)
+        for (k = level->start[i]; k < level->start[i + 1]; k++)
+            for (r = 0; r < 3; r++)
+                for (c = 0; c < 3; c++) {
+                    const uint32_t row = 3 * place[i] + r, column = 3 * place[level->column[k]] + c;
+                    const size_t number = 9 * (size_t)k + 3 * c + r;
+                    gxsp_nested_row(system, column <= row ? row : column)[column <= row ? column : row] =
+                        (double)level->block[number] + system->affine.block[number];
+                }
+    for (i = 0; i < factor->n; i++) {
+        const uint32_t first = factor->first[i / 3];
+        double *row = gxsp_nested_row(system, i), own = row[i];
+        for (j = first; j < i; j++) {
+            const uint32_t other = factor->first[j / 3], from = other > first ? other : first;
+            const double *left = gxsp_nested_row(system, j);
+            row[j] = (row[j] - gxsp_double_dot(row + from, left + from, j - from)) * left[j];
+        }
+        row[i] = own * (1 + 1e-12) - gxsp_double_dot(row + first, row + first, i - first);
+        row[i] = own < GXSP_TINY ? 0 : row[i] > 1e-10 * own ? 1 / sqrt(row[i]) : 0;
+        if (!gxsp_finite(row[i])) return 0;
+    }
+    return 1;
+}
+
+/* All numbers of level 1 beside those of chunks, and its factor. rate: times scale. 0: a number overflowed. */
+static int gxsp_nested_numbers(gxsp_system *system, double rate) {
+    const gxsp_affine *affine = &system->affine;
+    uint32_t b;
+    size_t t;
+    int l;
+    memset(affine->block, 0, gxsp_block_numbers(&system->multigrid.levels[1]) * sizeof(double));
+    for (b = 0; b < affine->block_count; b++)
+        for (l = 0; l < GXSP_LANES; l++)
+            if (affine->blocks[b].rest.weight[l] > 0) gxsp_nested_element(system, &affine->blocks[b], l, rate);
+    for (t = 0; t < system->lasting->count; t++) gxsp_nested_term(system, &system->lasting->term[t]);
+    return gxsp_nested_factor(system, system->multigrid.pairs.local);
+}
+
+/* x = the factor's answer to b on level 1 */
+static void gxsp_nested_solve(gxsp_system *system) {
+    const gxsp_factor *factor = &system->multigrid.factor;
+    gxsp_level *level = &system->multigrid.levels[1];
+    double *x = factor->x;
+    uint32_t i, j;
+    for (i = 0; i < factor->n; i++) {
+        const double *row = gxsp_nested_row(system, i);
+        const uint32_t first = factor->first[i / 3];
+        x[i] = ((double)level->b[factor->order[i / 3]][i % 3] - gxsp_double_dot(row + first, x + first, i - first)) *
+               row[i];
+    }
+    for (i = factor->n; i-- > 0;) {
+        const double *row = gxsp_nested_row(system, i);
+        x[i] *= row[i];
+        for (j = factor->first[i / 3]; j < i; j++) x[j] -= row[j] * x[i];
+    }
+    for (i = 0; i < factor->n; i++) level->x[factor->order[i / 3]][i % 3] = (float)x[i];
+}
+
+/* Between groups and hidden nodes: b of level 1 += transfer^T r, or, back, x of level 0 += transfer x. */
+static void gxsp_nested_transfer(gxsp_system *system, int back) {
+    const gxsp_affine *affine = &system->affine;
+    gxsp_level *fine = &system->multigrid.levels[0], *next = fine + 1;
+    uint32_t group;
+    int k, a;
+    for (group = 0; group < affine->group_count; group++)
+        for (k = 0; k < 4; k++) {
+            const uint32_t copy = affine->member[group][0], parent = fine->parent[copy][k];
+            const float weight = fine->weight[copy][k];
+            for (a = 0; a < 3 && parent != GXSP_NONE; a++) {
+                const uint32_t hidden = affine->hidden[parent] + (uint32_t)a, own = affine->member[group][a + 1];
+                const float offset = weight * affine->offset[group][k][a];
+                gxsp_add_four(offset, back ? next->x[hidden] : fine->r[copy], back ? fine->x[copy] : next->b[hidden]);
+                gxsp_add_four(weight, back ? next->x[hidden] : fine->r[own], back ? fine->x[own] : next->b[hidden]);
+            }
+        }
+}
+
 /* >>factor: the last level's Cholesky factor, and all numbers below level 0 ---------------------------------------- */
 
 /* In: level 1's matrix. Out: the matrices and inverse diagonals of all levels, the factor of the last one. 0 is
@@ -6261,8 +7411,12 @@ static int gxsp_coarse_numbers(gxsp_system *system, double rate) {
         if (system->model.lumped_mass) gxsp_coarse_lumped(system, system->model.scale * rate);
     }
     for (t = 0; t < system->lasting->count; t++)
-        if (!system->lasting->term[t].assembled) gxsp_coarse_term(system, &system->lasting->term[t]);
-    finite = gxsp_lower_numbers(system, NULL);
+        if (!system->lasting->term[t].assembled && system->affine.count == 0)
+            gxsp_coarse_term(system, &system->lasting->term[t]);
+    if (system->affine.count > 0)
+        finite = gxsp_invert_diagonal(fine + 1, NULL) && gxsp_nested_numbers(system, system->model.scale * rate);
+    else
+        finite = gxsp_lower_numbers(system, NULL);
     gxsp_return_memory(system);
     return finite;
 }
@@ -6401,6 +7555,24 @@ static int gxsp_invert_fine(gxsp_system *system) {
 /* In: the last linearisation and its block diagonal. Out: gxsp_smoother. Uses the search and product vectors. The
  * sweeps themselves are in >>cycle; the first one of level 0 is gxsp_scale in >>cg. */
 
+/* x = D^-1 y for the groups of affine copies. before += y . x as it was, after += y . x. */
+static void gxsp_scale_directions(const gxsp_system *system, gxsp_vector4 *y, gxsp_vector4 *x, double *before,
+                                  double *after) {
+    uint32_t group;
+    int k;
+    for (group = 0; group < system->affine.group_count; group++) {
+        const uint32_t *member = system->affine.member[group];
+        double from[12], to[12];
+        for (k = 0; k < 12; k++) from[k] = (double)y[member[k / 3]][k % 3];
+        gxsp_affine_apply(&system->affine, group, from, to);
+        for (k = 0; k < 12; k++) {
+            *before += from[k] * (double)x[member[k / 3]][k % 3];
+            *after += from[k] * to[k];
+            x[member[k / 3]][k % 3] = (float)to[k];
+        }
+    }
+}
+
 /* Largest eigenvalue of D^-1 (K + rate M) on copies that are not still, by the power method from a start that
  * favours none; 0 if nothing moves */
 static double gxsp_largest_eigenvalue(gxsp_system *system, double rate) {
@@ -6420,6 +7592,7 @@ static double gxsp_largest_eigenvalue(gxsp_system *system, double rate) {
         gxsp_product(system, rate, x, y);
         for (i = 0; i < system->model.n; i++) {
             float z[3];
+            if (gxsp_is_grouped(system, i)) continue;
             gxsp_apply_packed(system->vectors.diagonal + 6 * i, y[i], z);
             for (c = 0; c < 3; c++) {
                 before += (double)y[i][c] * (double)x[i][c];
@@ -6427,6 +7600,7 @@ static double gxsp_largest_eigenvalue(gxsp_system *system, double rate) {
                 x[i][c] = z[c];
             }
         }
+        gxsp_scale_directions(system, y, x, &before, &after);
         if (!(before > 0) || !(after > 0)) break;
         largest = after / before;
         scale = (float)(1 / sqrt(after));
@@ -6573,6 +7747,10 @@ static void gxsp_factor_solve(const gxsp_factor *factor, gxsp_level *level) {
 /* x = the multigrid's answer to b on levels[depth] and below. depth 0: only if level 0 is assembled */
 static void gxsp_cycle(gxsp_system *system, uint32_t depth) {
     gxsp_level *level = &system->multigrid.levels[depth];
+    if (system->affine.count > 0) {
+        gxsp_nested_solve(system);
+        return;
+    }
     if (depth + 1 == system->multigrid.level_count) {
         gxsp_factor_solve(&system->multigrid.factor, level);
         return;
@@ -6590,10 +7768,24 @@ static void gxsp_task_smooth(void *context, size_t index) {
     size_t i, end = gxsp_range(system, index, &i);
     for (; i < end; i++) {
         float y[3];
+        if (gxsp_is_grouped(system, i)) continue;
         gxsp_apply_packed(system->vectors.diagonal + 6 * i, system->vectors.product[i], y);
         system->vectors.scaled[i][0] += system->smoother.omega * y[0];
         system->vectors.scaled[i][1] += system->smoother.omega * y[1];
         system->vectors.scaled[i][2] += system->smoother.omega * y[2];
+    }
+}
+
+/* The same for the groups of affine copies */
+static void gxsp_smooth_groups(const gxsp_system *system) {
+    uint32_t group;
+    int k;
+    for (group = 0; group < system->affine.group_count; group++) {
+        const uint32_t *member = system->affine.member[group];
+        double from[12], to[12];
+        for (k = 0; k < 12; k++) from[k] = (double)system->vectors.product[member[k / 3]][k % 3];
+        gxsp_affine_apply(&system->affine, group, from, to);
+        for (k = 0; k < 12; k++) system->vectors.scaled[member[k / 3]][k % 3] += system->smoother.omega * (float)to[k];
     }
 }
 
@@ -6620,11 +7812,14 @@ static void gxsp_v_cycle(gxsp_system *system, double rate, double energy) {
         (void)gxsp_product_from(system, rate, system->vectors.residual, fine->x, fine->r);
     }
     gxsp_restrict(fine, fine + 1);
+    if (system->affine.count > 0) gxsp_nested_transfer(system, 0);
     gxsp_cycle(system, 1);
     gxsp_prolong(fine, fine + 1);
+    if (system->affine.count > 0) gxsp_nested_transfer(system, 1);
     (void)gxsp_product_from(system, rate, system->vectors.residual, fine->x, fine->r);
     memset(&pass, 0, sizeof pass);
     gxsp_over_ranges(system, gxsp_task_smooth, &pass, NULL, 0);
+    gxsp_smooth_groups(system);
 }
 
 /* >>edits: which lanes an update changes --------------------------------------------------------------------------- */
@@ -7270,7 +8465,7 @@ static void gxsp_renew_steps(gxsp_renewal *update) {
 
 /* Can the model's form take changes? */
 static int gxsp_is_flexible(const gxsp_system *system) {
-    return !system->multigrid.fine && !system->model.volume && !system->model.lumped_mass;
+    return !system->multigrid.fine && !system->model.volume && !system->model.lumped_mass && !system->affine.place;
 }
 
 /* Are the chunks still worth keeping, and is the choice of preconditioner still right? */
@@ -7366,7 +8561,8 @@ static void gxsp_remove_translations(gxsp_system *system, gxsp_vector4 *x) {
     }
     gxsp_average_components(system, 0);
     for (i = 0; i < system->model.n; i++)
-        for (r = 0; r < 3; r++) x[i][r] -= (float)system->model.components[system->model.component[i]].sum[r];
+        for (r = 0; r < 3 && !gxsp_is_hidden(system, i); r++)
+            x[i][r] -= (float)system->model.components[system->model.component[i]].sum[r];
 }
 
 /* Subtracts from x the momentum of every loose component. */
@@ -7380,7 +8576,8 @@ static void gxsp_remove_momentum(gxsp_system *system, double *x) {
     }
     gxsp_average_components(system, 0);
     for (i = 0; i < system->model.n; i++)
-        for (r = 0; r < 3; r++) x[3 * i + r] -= system->model.components[system->model.component[i]].sum[r];
+        for (r = 0; r < 3 && !gxsp_is_hidden(system, i); r++)
+            x[3 * i + r] -= system->model.components[system->model.component[i]].sum[r];
 }
 
 /* Translates every component of x that has no state but those ignored so that load = rate M (base + x - target) in
@@ -7394,12 +8591,13 @@ static void gxsp_balance_momentum(const gxsp_problem *problem, uint32_t ignored,
         const double rate = problem->rate * system->model.lumped[i], *from = system->vectors.target + 3 * i;
         double f[3];
         gxsp_load(problem, i, f);
+        if (gxsp_is_hidden(system, i)) memset(f, 0, sizeof f); /* a translation does no work there */
         for (r = 0; r < 3; r++) f[r] -= rate * (x[3 * i + r] + (base ? base[3 * i + r] : 0) - from[r]);
         gxsp_add_to_component(system, i, f[0], f[1], f[2]);
     }
     gxsp_average_components(system, ignored);
     for (i = 0; i < system->model.n; i++)
-        for (r = 0; r < 3; r++)
+        for (r = 0; r < 3 && !gxsp_is_hidden(system, i); r++)
             x[3 * i + r] += system->model.components[system->model.component[i]].sum[r] / problem->rate;
 }
 
@@ -7910,6 +9108,7 @@ static void gxsp_scale_copies(const gxsp_system *system, const double *r, size_t
         const double x = (double)d[0] * a + (double)d[1] * b + (double)d[2] * c,
                      y = (double)d[1] * a + (double)d[3] * b + (double)d[4] * c,
                      z = (double)d[2] * a + (double)d[4] * b + (double)d[5] * c;
+        if (gxsp_is_grouped(system, i)) continue; /* see gxsp_scale_groups */
         energy += x * a + y * b + z * c;
         displacement += x * x + y * y + z * z;
         system->vectors.scaled[i][0] = (float)(factor * x), system->vectors.scaled[i][1] = (float)(factor * y),
@@ -7925,11 +9124,30 @@ static void gxsp_task_scale(void *context, size_t index) {
     gxsp_scale_copies(pass->system, pass->from, first, end, pass->system->vectors.range_sum[index]);
 }
 
-/* Norms over all ranges, by a task that scales them */
-static gxsp_norms gxsp_norms_of(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass) {
+/* As gxsp_scale_copies, for the groups of affine copies, by their 12x12 blocks. Adds to sums. */
+static void gxsp_scale_groups(const gxsp_system *system, const double *r, double *sums) {
+    const double factor = system->multigrid.used ? (double)system->smoother.omega : 1;
+    uint32_t group;
+    int k;
+    for (group = 0; group < system->affine.group_count; group++) {
+        const uint32_t *member = system->affine.member[group];
+        double x[12], z[12];
+        for (k = 0; k < 12; k++) x[k] = r[3 * (size_t)member[k / 3] + (size_t)(k % 3)];
+        gxsp_affine_apply(&system->affine, group, x, z);
+        for (k = 0; k < 12; k++) {
+            sums[0] += x[k] * z[k];
+            sums[1] += z[k] * z[k];
+            system->vectors.scaled[member[k / 3]][k % 3] = (float)(factor * z[k]);
+        }
+    }
+}
+
+/* Norms over all ranges, by a task that scales r */
+static gxsp_norms gxsp_norms_of(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass, const double *r) {
     gxsp_norms norms;
     double sums[2];
     gxsp_over_ranges(system, task, pass, sums, 2);
+    gxsp_scale_groups(system, r, sums);
     norms.energy = sums[0], norms.displacement = sums[1];
     return norms;
 }
@@ -7938,7 +9156,7 @@ static gxsp_norms gxsp_scale(gxsp_system *system, const double *r) {
     gxsp_pass pass;
     memset(&pass, 0, sizeof pass);
     pass.from = r;
-    return gxsp_norms_of(system, gxsp_task_scale, &pass);
+    return gxsp_norms_of(system, gxsp_task_scale, &pass, r);
 }
 
 /* direction += factor x, residual -= factor y; then scales the residual. */
@@ -7961,7 +9179,7 @@ static gxsp_norms gxsp_advance(gxsp_system *system, double length, gxsp_vector4 
     pass.factor = length;
     pass.x = x;
     pass.y = y;
-    return gxsp_norms_of(system, gxsp_task_advance, &pass);
+    return gxsp_norms_of(system, gxsp_task_advance, &pass, system->vectors.residual);
 }
 
 /* Sums: residual . x, and x . y if there is a y */
@@ -8185,7 +9403,8 @@ static int gxsp_coarse_pays(gxsp_system *system, double rate) {
         double *sum = component->sum; /* share, copies */
         const float *d = system->vectors.diagonal + 6 * i;
         const double compliance = (double)d[0] + (double)d[3] + (double)d[5],
-                     share = system->model.lumped[i] * compliance, bound = bounds[component->paired];
+                     share = gxsp_is_hidden(system, i) ? 0 : system->model.lumped[i] * compliance,
+                     bound = bounds[component->paired];
         if (system->state.still[i] || !(compliance > 0)) continue;
         sum[0] += share < 4 * bound / 3 ? share : 4 * bound / 3;
         sum[1] += 1;
@@ -8523,6 +9742,13 @@ static double gxsp_balance(gxsp_problem *problem) {
     gxsp_add_reactions(system, &elastic);
     gxsp_reduce_residual(system, system->state.still, system->vectors.residual);
     residual = gxsp_scale(system, system->vectors.residual);
+    if (system->affine.count > 0) { /* by the blocks that measure load and inertia */
+        double own[2] = {0, 0};
+        size_t i;
+        for (i = 0; i < system->model.n; i++)
+            gxsp_add_norms(system->vectors.diagonal + 6 * i, system->vectors.residual + 3 * i, own);
+        residual.energy = own[0], residual.displacement = own[1];
+    }
     energy = sqrt(sums[0]) + sqrt(sums[2]) + sqrt(elastic.energy);
     displacement = sqrt(sums[1]) + sqrt(sums[3]) + sqrt(elastic.displacement);
     by_energy = energy > 0 ? sqrt(residual.energy) / energy : 0;
@@ -9088,6 +10314,11 @@ static void gxsp_guide_lights(const gxsp_system *system, double *x) {
     }
 }
 
+/* The drift of number i of a vector */
+static double gxsp_drift(const gxsp_system *system, size_t i) {
+    return gxsp_is_hidden(system, i / 3) ? 0 : system->model.components[system->model.component[i / 3]].drift[i % 3];
+}
+
 /* The second half of the midpoint rule from current: drift of loose components, and direction. Components on which
  * springs or contact act at its end are not loose. trial: that end. */
 static void gxsp_find_second_half(const gxsp_problem *problem) {
@@ -9105,9 +10336,7 @@ static void gxsp_find_second_half(const gxsp_problem *problem) {
     gxsp_guide_lights(system, system->vectors.direction);
     gxsp_remove_momentum(system, system->vectors.direction);
     for (i = 0; i < count; i++)
-        gxsp_trial(system)[i] =
-            system->vectors.current[i] +
-            (system->vectors.direction[i] + system->model.components[system->model.component[i / 3]].drift[i % 3]);
+        gxsp_trial(system)[i] = system->vectors.current[i] + (system->vectors.direction[i] + gxsp_drift(system, i));
     gxsp_touch_components_at(problem, gxsp_trial(system));
     for (i = 0; i < count; i++)
         system->vectors.direction[i] = system->model.components[system->model.component[i / 3]].state == 0
@@ -9154,8 +10383,8 @@ static void gxsp_bound_gain(gxsp_problem *problem) {
     for (trial = 0; trial < GXSP_GAIN_TRIALS && left > 0; trial++) {
         for (i = 0; i < count; i++)
             gxsp_trial(system)[i] =
-                system->vectors.current[i] + (system->model.components[system->model.component[i / 3]].drift[i % 3] +
-                                              gxsp_lead_of(system, i / 3)->length * system->vectors.direction[i]);
+                system->vectors.current[i] +
+                (gxsp_drift(system, i) + gxsp_lead_of(system, i / 3)->length * system->vectors.direction[i]);
         gxsp_evaluate(problem, gxsp_trial(system), 0, system->vectors.force);
         gxsp_find_gains(problem, gxsp_trial(system), 1);
         for (p = 0, left = 0; p < system->model.component_count; p++) {
@@ -9264,10 +10493,10 @@ static float gxsp_leap_modulus(const gxsp_leap_block *block, int lane) {
     return 3 * block->lambda[lane] - 0.375f * block->mu[lane];
 }
 
-/* Are all elements stable neo-Hookean, undamped, and do no copies follow others? */
+/* Are all elements stable neo-Hookean, undamped, and does no copy follow others or move affinely? */
 static int gxsp_leap_suits(const gxsp_system *system) {
     uint32_t c;
-    if (system->model.follower_count > 0 || system->model.damps) return 0;
+    if (system->model.follower_count > 0 || system->model.damps || system->affine.count > 0) return 0;
     for (c = 0; c < system->mesh.chunk_count; c++)
         if (system->mesh.chunks[c].kind != GXS_STABLE_NEO_HOOKEAN) return 0;
     return 1;
@@ -9919,6 +11148,50 @@ static gx_result gxsp_check_count(size_t count, size_t limit, const char *field,
     return count >= limit || count >= SIZE_MAX / 1024 ? gxsp_fail(failure, GX_ERROR_LIMIT, field, SIZE_MAX) : GX_OK;
 }
 
+/* Affine copies and their hidden vectors. owned: copy_count zeros, scratch: hidden 1, affine 2 */
+static gx_result gxsp_check_affine(const gxs_model *model, const gxs_solver *solver, uint8_t *owned,
+                                   gx_failure *failure) {
+    size_t i, k, any = 0;
+    for (i = 0; i < model->copy_count; i++) {
+        const uint32_t first = model->affine[i];
+        if (first == GXS_NOT_AFFINE) continue;
+        if (first >= model->copy_count || model->copy_count - first < 3)
+            return gxsp_fail(failure, GX_ERROR_INDEX, "affine", i);
+        for (any = k = 1; k < 4; k++) {
+            const size_t vector = (size_t)first + k - 1;
+            if (owned[vector]) return gxsp_fail(failure, GX_ERROR_ARGUMENT, "affine", i);
+            owned[vector] = 1;
+            if (model->held && !model->held[vector] != !model->held[i])
+                return gxsp_fail(failure, GX_ERROR_ARGUMENT, "held", vector);
+        }
+    }
+    if (!any) return GX_OK;
+    for (i = 0; i < model->copy_count; i++) {
+        if (model->affine[i] == GXS_NOT_AFFINE) continue;
+        if (owned[i]) return gxsp_fail(failure, GX_ERROR_ARGUMENT, "affine", i);
+        owned[i] = 2;
+    }
+    if (!gxsp_finite(model->affine_length)) return gxsp_fail(failure, GX_ERROR_NOT_FINITE, "affine_length", SIZE_MAX);
+    if (!(model->affine_length > 0)) return gxsp_fail(failure, GX_ERROR_ARGUMENT, "affine_length", SIZE_MAX);
+    if (model->lumped_mass) return gxsp_refuse(failure, "lumped_mass");
+    if (solver->matrix == GXS_MATRIX_ASSEMBLED) return gxsp_refuse(failure, "matrix");
+    if (solver->preconditioner == GXS_VOLUME_RATIO) return gxsp_refuse(failure, "preconditioner");
+    for (i = 0; i < model->constraint_count; i++)
+        for (k = 0; k < 5; k++)
+            if (owned[k < 4 ? model->constraints[i].master[k] : model->constraints[i].copy])
+                return gxsp_fail(failure, GX_ERROR_ARGUMENT, "constraints", i);
+    for (i = 0; i < model->element_count; i++) {
+        double edge[3][3];
+        for (k = 0; k < 4; k++)
+            if (owned[model->elements[i].copy[k]] == 1)
+                return gxsp_fail(failure, GX_ERROR_ARGUMENT, "elements.copy", i);
+        if (model->elements[i].weight > 0 && gxsp_is_affine(model, &model->elements[i]) &&
+            !gxsp_element_edges(&model->elements[i], edge))
+            return gxsp_fail(failure, GX_ERROR_FLAT, "elements.gradient", i);
+    }
+    return GX_OK;
+}
+
 static gx_result gxsp_check_model(const gxs_model *model, gx_failure *failure) {
     size_t e;
     gx_result result;
@@ -10186,6 +11459,12 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
     if (result != GX_OK) return result;
     pool = gxsp_pool_make(&solver->allocator);
     scratch = gxsp_pool_make(&solver->allocator);
+    if (model->affine) {
+        uint8_t *owned = (uint8_t *)gxsp_take(&scratch, model->copy_count, 1);
+        result = owned ? gxsp_check_affine(model, solver, owned, failure) : gxsp_end(failure, GX_ERROR_MEMORY);
+        gxsp_release_to(&scratch, NULL);
+        if (result != GX_OK) return result;
+    }
     system = (gxsp_system *)gxsp_take(&pool, 1, sizeof *system);
     if (!system) return gxsp_end(failure, GX_ERROR_MEMORY);
     system->pool = pool;
@@ -10259,6 +11538,7 @@ GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displ
     gx_failure ignored;
     gxsp_system *system;
     gxsp_pass pass;
+    uint32_t b;
     failure = failure ? failure : &ignored;
     gxsp_end(failure, GX_OK);
     if (!solver) return gxsp_refuse(failure, "solver");
@@ -10274,7 +11554,9 @@ GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displ
     pass.from = displacement;
     pass.exact = exact != 0;
     memset(system->state.chunk_still, 0, system->mesh.chunk_count); /* sleeping components are included */
+    for (b = 0; b < system->affine.block_count; b++) system->affine.blocks[b].still = 0;
     gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_linearise, &pass);
+    gxsp_over_affine(system, gxsp_task_affine_tangents, &pass);
     gxsp_mark_still(system);
     system->state.product_rate = gxsp_tangents_finite(system) ? rate : -1;
     return system->state.product_rate < 0 ? gxsp_fail(failure, GX_ERROR_RANGE, "displacement", SIZE_MAX) : GX_OK;
@@ -10302,6 +11584,7 @@ GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *directi
     if (!(pass.factor > 0)) return gxsp_check_vector(direction, system->model.n, "direction", failure);
     gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_apply, &pass);
     gxsp_over_ranges(system, gxsp_task_apply_sum, &pass, NULL, 0);
+    if (system->affine.count > 0) gxsp_affine_apply_all(system, &pass);
     gxsp_reduce_residual(system, system->model.fixed, product);
     return GX_OK;
 }
@@ -10383,6 +11666,7 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     if ((result = gxs_step_check(step, n, solver->system->model.epoch, failure)) != GX_OK ||
         (result = gxsp_check_vectors(step, n, displacement, velocity, solver->system->model.held, failure)) != GX_OK)
         return result;
+    if (step->pair_count > 0 && solver->system->affine.count > 0) return gxsp_refuse(failure, "pairs");
     if (!gxsp_reserve_terms(&solver->lasting, step) ||
         (step->integrator == GXS_EXPLICIT && !solver->system->leap.made && !gxsp_leap_make(solver->system)))
         return gxsp_end(failure, GX_ERROR_MEMORY);
@@ -10572,6 +11856,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_STIFF_POISSON
 #undef GXSP_FACTOR_COST
 #undef GXSP_LEVELS
+#undef GXSP_NESTED_COST
+#undef GXSP_WIDEST
 #undef GXSP_SHIFT
 #undef GXSP_STIFFNESS
 #undef GXSP_TINY
@@ -10604,6 +11890,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_IN
 #undef GXSP_COLUMNS
 #undef GXSP_SHUFFLES
+#undef GXSP_AFFINE_TASK
 #ifdef GXFEM_SCALAR
 #pragma clang attribute pop
 #endif
