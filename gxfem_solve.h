@@ -6319,7 +6319,7 @@ static void gxsp_singles_product(const gxsp_pass *pass, const gxsp_affine_block 
     float mass[GXSP_LANES];
     int p, k, l;
     gxsp_affine_round(block, shape, way);
-    gxsp_singles_gather(block, pass->x, x, start);
+    gxsp_singles_gather(block, (const gxsp_vector4 *)pass->x, x, start);
     gxsp_singles_bend(way, x, bend);
     GXSP_EACH_LANE(l) mass[l] = (float)(0.125 * pass->rate * block->rest.mass[l]);
     memset(y, 0, 12 * sizeof *y);
