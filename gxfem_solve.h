@@ -10860,8 +10860,11 @@ GXSP_INLINE void gxsp_leap_group_product(const gxsp_leap *leap, size_t group, co
 #if defined(GXSP_SHUFFLES)
     gxsp_four sum[GXSP_LEAP_ROWS] = {{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}};
     for (k = leap->start[group]; k < end; k++)
-        for (r = 0; r < GXSP_LEAP_ROWS; r++)
-            sum[r] += leap->entry[GXSP_LEAP_ROWS * k + r] * *(const gxsp_four *)x[leap->column[GXSP_LEAP_ROWS * k + r]];
+        for (r = 0; r < GXSP_LEAP_ROWS; r++) {
+            const float entry = leap->entry[GXSP_LEAP_ROWS * k + r];
+            const gxsp_four all = {entry, entry, entry, entry};
+            sum[r] += all * *(const gxsp_four *)x[leap->column[GXSP_LEAP_ROWS * k + r]];
+        }
     for (r = 0; r < GXSP_LEAP_ROWS; r++) *(gxsp_four *)sums[r] = sum[r];
 #else
     int c;
