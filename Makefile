@@ -19,7 +19,8 @@ scenes = $(filter-out embed gxcut gxboolean animation,$(examples))
 linked_examples = $(filter-out embed,$(examples))
 compile = $(CC) -std=c99 -g $(WARNINGS) $(CFLAGS)
 linked = $(compile) -DGXFEM_LINKED
-sanitizers = -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all
+# Nothing is inlined: compiling takes most of these tests' time.
+sanitizers = -O1 -fno-inline -g1 -fsanitize=address,undefined -fno-sanitize-recover=all
 
 help:
 	@echo "make demo        cuts a cube of 5 tetrahedra into 36 sticks, simulates it, writes a page that plays it (needs a C compiler only)"
@@ -41,12 +42,15 @@ help:
 	@echo "make hashes      the same cuts give the same topology under each compiler and set of flags"
 	@echo "make check-wasm  cuts, Booleans and random cases as WebAssembly, run by node, beside the native build; installs clang's"
 	@echo "                 parts for it and node where they are missing"
+	@echo "make platforms   the same on Windows (by wine), ARM and S/390 (by qemu), and by the rules of Microsoft's compiler; installs"
+	@echo "                 cross compilers and emulators where they are missing; CASES=100000: more random cases"
 	@echo "make bench       all benches anew (half an hour), then charts; BENCH=--small: minutes, and docs/ stays as it is"
 	@echo "make charts      docs/charts/, docs/BENCH.md, tables in README.md from what benches have measured; runs those"
 	@echo "                 that have not; installs gnuplot"
 	@echo "make bench-NAME  one bench: CSV on stdout and in $(BUILD)/bench/, a table on stderr"
 	@echo "  quadrature     integrals over parts of cut elements beside RXFEM, adaptive and regular sampling"
 	@echo "  stepping       error of the motion against time, over all settings; other methods"
+	@echo "  front          time to reach an error beside local solvers that games use, XPBD and VBD, by size and stiffness"
 	@echo "  space          the same cuts under refinement beside conforming meshes: locking of thin slices"
 	@echo "  table2         scenes of GXFEM's Table 2 by RXFEM, virtual nodes and the literal Algorithm 1 too"
 	@echo "  conditioning   RXFEM's Fig. 14, and a corner piece"
@@ -233,7 +237,7 @@ $(BUILD)/gxfem_all.h: gxfem_boolean.h gxfem_integrate.h gxfem_solve.h gxfem.h
 check-amalgam: amalgam
 	@mkdir -p $(BUILD)/amalgam
 	@for header in $(headers); do echo '#include "../gxfem_all.h"' >$(BUILD)/amalgam/$$header; done
-	@JOBS=$(JOBS) STANDARDS="$(or $(STANDARDS),c99 c17 c++11 c++17)" sh tests/compile.sh $(BUILD)/compile_amalgam $(BUILD)/amalgam
+	@JOBS=$(JOBS) COMPILERS="$(COMPILERS)" STANDARDS="$(or $(STANDARDS),c99 c17 c++11 c++17)" sh tests/compile.sh $(BUILD)/compile_amalgam $(BUILD)/amalgam
 
 PREFIX ?= /usr/local
 install:
@@ -275,13 +279,18 @@ flags:
 hashes:
 	@JOBS=$(JOBS) sh tests/hashes.sh $(BUILD)/hashes
 
+# What of it cannot be installed is left out.
+platforms:
+	@sh tests/install.sh platforms || true
+	@JOBS=$(JOBS) CC="$(CC)" sh tests/platforms.sh $(BUILD)/platforms
+
 check-wasm:
 	@sh tests/install.sh wasm
 	@JOBS=$(JOBS) sh tests/wasm.sh $(BUILD)/wasm
 
 # ---- benches. Only their CSV goes to stdout. BENCH=--small: smaller ones, with a folder of their own for tables and charts
 
-benches = quadrature stepping space table2 conditioning failure scaling kernel smallest solver violent accuracy drift frames skin blade strokes soak
+benches = quadrature stepping front space table2 conditioning failure scaling kernel smallest solver violent accuracy drift frames skin blade strokes soak
 small = $(filter --small,$(BENCH))
 tables = $(BUILD)/bench$(if $(small),/small)
 # The compiler's own default: with -std=c99 gcc fuses no multiplications with additions, whatever -march says.
@@ -375,8 +384,9 @@ check-all: check
 	    if command -v $$cc >/dev/null; then $(MAKE) --no-print-directory check CC=$$cc BUILD=$(BUILD)/$$cc || exit 1; fi; done
 	@$(MAKE) --no-print-directory flags
 	@$(MAKE) --no-print-directory hashes
+	@$(MAKE) --no-print-directory platforms
 
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes check-settled compile amalgam check-amalgam install check-package coverage formatted lint format fuzz fuzz-blade flags hashes check-wasm $(benches:%=bench-%) bench charts check-all clean
+.PHONY: help examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes check-settled compile amalgam check-amalgam install check-package coverage formatted lint format fuzz fuzz-blade flags hashes platforms check-wasm $(benches:%=bench-%) bench charts check-all clean

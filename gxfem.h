@@ -422,6 +422,7 @@ typedef struct gx_step_desc {
     double gravity[3]; /* m/s2 */
     /* GXS_BDF1 damps what swings: at dt = 1/60 s half of a free swing is gone after 5 s. GXS_BDF2 keeps it. */
     gxs_integrator integrator;
+    uint32_t substeps;          /* GXS_EXPLICIT only: that many of dt; 0: as few as are cheap */
     uint32_t newton_iterations; /* at most; 0: 1 */
     double newton_tolerance;    /* stop at this residual (see gxs_step_report); 0: 1e-8 */
     uint32_t cg_iterations;     /* per Newton iteration, at most; 0: 1000 */
@@ -734,14 +735,14 @@ extern "C" {
 #endif
 
 /* COLD functions are seldom called: kept out of line and compiled for size. */
-#if defined(__GNUC__)
+#if defined(__GNUC__) || defined(__clang__)
 #define GXP_COLD              __attribute__((cold, noinline))
 #define GXP_PREFETCH(address) __builtin_prefetch(address)
 #define GXP_PREFETCHES                                                                                                 \
     static inline __attribute__((always_inline)) /* without it gcc takes such a function for pure and drops calls */
 #else
 #define GXP_COLD
-#define GXP_PREFETCH(address) ((void)0)
+#define GXP_PREFETCH(address) ((void)(address))
 #define GXP_PREFETCHES        static inline
 #endif
 
@@ -7622,6 +7623,7 @@ static gx_result gxp_translate_step(gx_body *body, const gx_step_desc *desc, gxs
     gxp_translate_loads(desc, step);
     step->dt = desc->dt;
     step->integrator = desc->integrator;
+    step->substeps = desc->substeps;
     step->newton_iterations = desc->newton_iterations;
     step->newton_tolerance = desc->newton_tolerance;
     step->cg_iterations = desc->cg_iterations;

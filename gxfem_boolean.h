@@ -45,8 +45,8 @@
  *                   gxb_complex_pullback_side
  *     >>stream      a complex as bytes: gxb_stream_pass, has; gxb_complex_save, load
  *     >>boolean     exact, chainable Booleans of closed triangle surfaces: gxb_boolean_create, add, evaluate, destroy
- *                   options of a result: set_triangulation, set_fine, set_mend
- *                   more about a result: components, defects, statistics
+ *                   options of a result: set_triangulation, set_fine, set_mend, set_retained
+ *                   more about a result: components, defects, changes, statistics
  *
  * The implementation, under GXFEM_BOOLEAN_IMPLEMENTATION, from the bottom up. Of all:
  *     arithmetic      >>bits, >>exact (integers times powers of two), >>filter (doubles with bounds)
@@ -67,7 +67,7 @@
  *     triangulation   >>triangulate (points), >>constrain (edges), >>divide (one source), >>flats (sources that overlap
  *                     in one plane), >>merge (equal points)
  *     the result      >>states (vectors of winding numbers), >>winding (one for each subtriangle), >>result (triangles
- *                     and vertices), >>coarse (fewer triangles)
+ *                     and vertices), >>retained (one that keeps its place), >>coarse (fewer triangles)
  *     more about it   >>components (shells), >>volumes, >>containers (which shell lies in which), >>mend (defects)
  *     functions       >>api
  *
@@ -764,6 +764,19 @@ typedef struct gxb_boolean_result {
     const uint8_t *triangle_reversed;                   /* triangle_count: 1 where it faces against that triangle */
 } gxb_boolean_result;
 
+/* count items from first on */
+typedef struct gxb_range {
+    size_t first, count;
+} gxb_range;
+
+/* Where a result differs from that of the evaluation before, in ascending order. */
+typedef struct gxb_changes {
+    const gxb_range *vertices;
+    size_t vertex_range_count;
+    const gxb_range *triangles;
+    size_t triangle_range_count;
+} gxb_changes;
+
 /* The connected components of a result's interior. Arrays are valid as long as those of the result. */
 typedef struct gxb_components {
     size_t count;
@@ -808,6 +821,12 @@ GXFEM_API gx_result gxb_boolean_set_fine(gxb_boolean *boolean, int fine, gx_fail
  * moves by at most 2 such units. The surface stays closed, input vertices stay, and so do components and their Euler
  * characteristics. */
 GXFEM_API gx_result gxb_boolean_set_mend(gxb_boolean *boolean, int mend, gx_failure *failure);
+/* 1: a result changes that of the evaluation before. Triangles and vertices that both have stay where they are, except
+ * that the last triangles take the places of those that have gone. There may be vertices that no triangle has. An
+ * evaluation then takes time for what is new, not for all there is; gxb_boolean_changes says what differs. Coarse or
+ * mended results, and those after a call of gxb_boolean_set_fine or an error, are made from nothing. 0 (the default):
+ * a result does not depend on evaluations before it. */
+GXFEM_API gx_result gxb_boolean_set_retained(gxb_boolean *boolean, int retained, gx_failure *failure);
 /* Copies an operand. Errors: ARGUMENT, EMPTY, INDEX (triangle), NOT_FINITE and RANGE (vertex), NOT_CLOSED (triangle),
  * LIMIT, MEMORY. */
 GXFEM_API gx_result gxb_boolean_add(gxb_boolean *boolean, const gxb_operand *operand, gx_failure *failure);
@@ -818,6 +837,9 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *boolean, gxb_boolean_resul
  * operand was added since), MEMORY, LIMIT. After an error the result is unchanged. */
 GXFEM_API gx_result gxb_boolean_components(gxb_boolean *boolean, gxb_components *components, gx_failure *failure);
 GXFEM_API gx_result gxb_boolean_defects(gxb_boolean *boolean, gxb_defects *defects, gx_failure *failure);
+/* What the latest evaluation changed in a retained result; all of it, where it was made from nothing. Valid as long as
+ * the result. Errors: ARGUMENT, SEQUENCE (no result, or an operand was added since), MEMORY, LIMIT. */
+GXFEM_API gx_result gxb_boolean_changes(gxb_boolean *boolean, gxb_changes *changes, gx_failure *failure);
 GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *boolean, gxb_statistics *statistics, gx_failure *failure);
 
 #ifdef __cplusplus
@@ -843,13 +865,13 @@ extern "C" {
 /* COLD and RARE functions are seldom called, and compiled for size. A RARE one may be inlined: where it has one caller,
    or where it is public and GXFEM_STATIC makes it inline. APART functions stay out of line: those with many callers,
    and each stage of the work, since one large function compiles slower than its parts. */
-#if defined(__GNUC__)
+#if defined(__GNUC__) || defined(__clang__)
 #define GXBP_FETCH(address) __builtin_prefetch(address)
 #define GXBP_COLD           __attribute__((cold, noinline))
 #define GXBP_RARE           __attribute__((cold))
 #define GXBP_APART          __attribute__((noinline))
 #else
-#define GXBP_FETCH(address) ((void)0)
+#define GXBP_FETCH(address) ((void)(address))
 #define GXBP_COLD
 #define GXBP_RARE
 #define GXBP_APART
@@ -879,7 +901,7 @@ static int gxbp_is_finite(double x) { return gxbp_exponent_bits(x) != 0x7ff; }
 static int gxbp_is_zero(double x) { return (gxbp_bits(x) << 1) == 0; }
 
 static double gxbp_abs(double x) {
-#if defined(__GNUC__)
+#if defined(__GNUC__) || defined(__clang__)
     return __builtin_fabs(x); /* one instruction, where bits would leave the registers of doubles and come back */
 #else
     return gxbp_double(gxbp_bits(x) & ~((uint64_t)1 << 63));
@@ -7687,8 +7709,9 @@ typedef struct gxbp_tree {  /* boxes over groups of GXBP_LEAF sources, then over
 
 typedef struct gxbp_operand {
     uint32_t operation, rule;
-    uint32_t simple;  /* vouched for, or found */
-    uint32_t reached; /* a subtriangle has got a state in the evaluation at work */
+    uint32_t simple;   /* vouched for, or found */
+    uint32_t reached;  /* a subtriangle has got a state */
+    uint32_t narrowed; /* the last intersection up to this operand, the first operand aside; 0: there is none */
     uint32_t source, source_count;
     uint32_t bounds; /* of its leaves in gxb_boolean.bounds */
     uint32_t *order; /* sources in the order of the tree's leaves, in memory of its own */
@@ -7714,6 +7737,9 @@ typedef struct gxbp_input {
     /* of trees */
     gxbp_box *boxes;
     uint32_t box_count, box_capacity;
+    /* a box for each operand; a box for each of these leaves */
+    gxbp_leaf_boxes *leaves, *groups;
+    uint32_t leaf_count, leaf_capacity, group_count, group_capacity;
 } gxbp_input;
 
 /* How points are found again: by coordinates, by definition, by equality. Lives as long as the Boolean. */
@@ -7723,16 +7749,21 @@ typedef struct gxbp_points {
     /* hash of points by coordinates or key */
     uint32_t *table;
     uint32_t table_size, table_used;
-    uint32_t merged_count; /* points before it have been compared with each other */
-    /* the computed ones of these, along a direction */
+    uint32_t merged_count; /* points before it are old: earlier evaluations compared them with each other */
+    /* the computed ones of these: runs, each in order along a direction. run: where each ends */
     struct gxbp_projected *projected;
     uint32_t projected_count, projected_capacity;
+    uint32_t run[32], run_count;
     double reach; /* the largest of their errors */
     /* united 1: points were united since the last evaluation; renamed 1: an input vertex ever got another name */
     uint32_t united, renamed;
+    /* old points and input vertices that got another name or definition since the last evaluation */
+    uint32_t *dropped;
+    uint32_t dropped_count, dropped_capacity;
 } gxbp_points;
 
-/* Where sources meet. Lives until an evaluation fails; hits and dirty sources are used up by each evaluation. */
+/* Where sources meet. Lives until an evaluation fails; hits and dirty sources are used up by each evaluation. Once the
+ * dirty ones are divided, they are those that this evaluation divided, each flat by its root. */
 typedef struct gxbp_crossings {
     gxbp_segment *segments;
     uint32_t segment_count, segment_capacity;
@@ -7755,22 +7786,35 @@ typedef struct gxbp_mesh {
     uint32_t subtriangle_count, subtriangle_capacity;
     gxbp_link *links;
     uint32_t link_count, link_capacity;
-    /* sources that were divided, alone or as roots of flats */
-    uint32_t *divided;
-    uint32_t divided_count, divided_capacity;
+    uint32_t stated; /* subtriangles before it have states, if they need one */
+    /* subtriangles of the last evaluation that this one divided, removed or gave another state */
+    uint32_t *changed;
+    uint32_t changed_count, changed_capacity;
 } gxbp_mesh;
 
-/* States: vectors of winding numbers. They live until an evaluation fails. */
+/* A winding number that is not 0 */
+typedef struct gxbp_operand_number {
+    uint32_t operand;
+    int32_t winding;
+} gxbp_operand_number;
+/* first, count: its numbers, by ascending operands. known: of how many operands inside takes account */
+typedef struct gxbp_state {
+    uint32_t first, count, hash, inside, known;
+} gxbp_state;
+
+/* States: vectors of winding numbers, of which most are 0. They live until an evaluation fails. */
 typedef struct gxbp_winding {
-    /* state x operand */
-    int32_t *numbers;
-    uint32_t number_count, number_capacity;
-    /* of each state: is it inside? */
-    uint32_t *inside;
-    uint32_t inside_count, inside_capacity;
+    /* of all states; behind them the draft, a vector at work */
+    gxbp_operand_number *numbers;
+    uint32_t number_count, number_capacity, draft_count;
+    gxbp_state *states;
+    uint32_t state_count, state_capacity;
     /* hash of states; listed: how many are in it */
     uint32_t *table;
     uint32_t table_size, listed;
+    /* for the caller's function: a vector with its zeros, which is 0 between calls */
+    int32_t *vector;
+    uint32_t vector_count, vector_capacity;
     gxbp_state_step steps[GXBP_STEPS]; /* the latest ones */
     uint32_t stated;                   /* operands that states count; 0: subtriangles have no states */
     uint32_t unreached;                /* operands of which no subtriangle has a state yet */
@@ -7810,14 +7854,43 @@ typedef struct gxbp_output {
     /* of half-edges, to mend: the surface is taken apart where it only touches itself */
     uint32_t *twins;
     uint32_t twin_count, twin_capacity;
+    /* of each subtriangle before shown_count, what the last evaluation judged: see gxbp_judge_subtriangle */
+    uint8_t *shown;
+    uint32_t shown_count, shown_capacity;
+    uint32_t judged;                   /* operands of that evaluation */
     int evaluated, measured, examined; /* 1: there is a result; its components, its defects are known */
     uint32_t mended_count;             /* defects that mending removed */
 } gxbp_output;
 
-/* What the caller chose. coarsen and mend are NULL unless requested: only the setters name these functions. */
+/* What keeps a result in its place, see >>retained. Lives until an evaluation fails. */
+typedef struct gxbp_kept {
+    int valid; /* 1: the result is that of the evaluation before, with its triangles in the places below */
+    int fine;  /* of its vertices */
+    /* of 2 x subtriangle, + 1 where it faces against its plane: its triangle; GXB_NONE: there is none */
+    uint32_t *places;
+    uint32_t place_count, place_capacity;
+    /* of each point: its vertex, or GXB_NONE */
+    uint32_t *vertices;
+    uint32_t vertex_count, vertex_capacity;
+    /* of each vertex: corners of triangles there */
+    uint32_t *uses;
+    uint32_t use_count, use_capacity;
+    /* vertices that no triangle has; triangles that have gone */
+    uint32_t *spare;
+    uint32_t spare_count, spare_capacity;
+    uint32_t *holes;
+    uint32_t hole_count, hole_capacity;
+    /* vertices and triangles that the evaluation wrote, some repeatedly; as ranges, when requested */
+    uint32_t *new_vertices, *new_triangles;
+    uint32_t new_vertex_count, new_vertex_capacity, new_triangle_count, new_triangle_capacity;
+    gxb_range *vertex_ranges, *triangle_ranges;
+    uint32_t vertex_range_count, vertex_range_capacity, triangle_range_count, triangle_range_capacity;
+} gxbp_kept;
+
+/* What the caller chose. coarsen, mend and patch are NULL unless requested: only the setters name these functions. */
 typedef struct gxbp_options {
     uint32_t fine, triangulation;
-    void (*coarsen)(gxb_boolean *b), (*mend)(gxb_boolean *b);
+    void (*coarsen)(gxb_boolean *b), (*mend)(gxb_boolean *b), (*patch)(gxb_boolean *b);
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
     void *user;
 } gxbp_options;
@@ -7840,6 +7913,9 @@ typedef struct gxbp_work {
     /* subtriangles that a constrained edge crosses, to be replaced */
     uint32_t *crossed;
     uint32_t crossed_count, crossed_capacity;
+    /* operands whose boxes meet a box */
+    uint32_t *found;
+    uint32_t found_count, found_capacity;
     /* subtriangles that got a state, or lost one: neighbours are still to come */
     uint32_t *pending;
     uint32_t pending_count, pending_capacity;
@@ -7878,6 +7954,7 @@ struct gxb_boolean { /* what is used most comes first: its addresses are short *
     gxbp_work work;
     gxbp_winding winding;
     gxbp_output out;
+    gxbp_kept kept;
 };
 
 /* >>arena: memory of a Boolean ------------------------------------------------------------------------------------- */
@@ -8093,11 +8170,16 @@ static GXBP_RARE void gxbp_unite(gxb_boolean *b, uint32_t keep, uint32_t drop) {
     b->points.vertices[drop].same = keep;
     b->points.united = 1;
     if (q->kind == GXB_EXPLICIT && q->def[0] == drop) b->points.renamed = 1;
+    if ((drop < b->points.merged_count || (q->kind == GXB_EXPLICIT && q->def[0] == drop)) &&
+        GXBP_ROOM(b, points.dropped, points.dropped, 1))
+        b->points.dropped[b->points.dropped_count++] = drop;
     if (p->kind == GXB_EXPLICIT || q->kind != GXB_EXPLICIT) return;
     p->kind = GXB_EXPLICIT;
     p->ball = q->ball;
     p->exact = NULL;
     p->def[0] = q->def[0];
+    if (keep < b->points.merged_count && GXBP_ROOM(b, points.dropped, points.dropped, 1))
+        b->points.dropped[b->points.dropped_count++] = keep;
 }
 
 /* Defines a point as the intersection of a line and a plane or of three planes. A ball that is too large to filter by
@@ -8240,6 +8322,24 @@ static GXBP_APART void gxbp_sort_sources(const gxb_boolean *b, const gxbp_operan
     for (i = 0; i < o->source_count; i++) o->order[i] = (uint32_t)from[i];
 }
 
+static void gxbp_clear_leaf(gxbp_leaf_boxes *leaf) {
+    uint32_t x, k;
+    for (x = 0; x < GXBP_LEAF; x++)
+        for (k = 0; k < 3; k++) {
+            leaf->low[k][x] = (float)gxbp_power(126);
+            leaf->high[k][x] = -leaf->low[k][x];
+        }
+}
+
+/* Widens box x of a leaf. */
+static void gxbp_widen_leaf(gxbp_leaf_boxes *leaf, uint32_t x, const gxbp_box *box) {
+    uint32_t k;
+    for (k = 0; k < 3; k++) {
+        if (box->low[k] < leaf->low[k][x]) leaf->low[k][x] = box->low[k];
+        if (box->high[k] > leaf->high[k][x]) leaf->high[k][x] = box->high[k];
+    }
+}
+
 /* Boxes of leaf i's sources, and around them */
 static void gxbp_fill_leaf(gxb_boolean *b, const gxbp_operand *o, uint32_t i) {
     gxbp_leaf_boxes *leaf = &b->in.bounds[o->bounds + i];
@@ -8307,6 +8407,25 @@ static GXBP_APART gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
     return GX_OK;
 }
 
+static const gxbp_box *gxbp_operand_box(const gxb_boolean *b, uint32_t i) {
+    const gxbp_tree *t = &b->in.operands[i].tree;
+    return &b->in.boxes[t->first + t->level[t->levels - 1]];
+}
+
+/* Room for the boxes of one more operand */
+static int gxbp_operand_box_room(gxb_boolean *b) {
+    return GXBP_ROOM(b, in.leaves, in.leaf, 1) && GXBP_ROOM(b, in.groups, in.group, 1);
+}
+
+/* Lists the box of operand i, the last one. */
+static void gxbp_list_operand_box(gxb_boolean *b, uint32_t i) {
+    const uint32_t leaf = i / GXBP_LEAF;
+    if (i % GXBP_LEAF == 0) gxbp_clear_leaf(&b->in.leaves[b->in.leaf_count++]);
+    if (i % (GXBP_LEAF * GXBP_LEAF) == 0) gxbp_clear_leaf(&b->in.groups[b->in.group_count++]);
+    gxbp_widen_leaf(&b->in.leaves[leaf], i % GXBP_LEAF, gxbp_operand_box(b, i));
+    gxbp_widen_leaf(&b->in.groups[leaf / GXBP_LEAF], leaf % GXBP_LEAF, gxbp_operand_box(b, i));
+}
+
 /* Tests which boxes of a leaf meet a box, without branches, so that compilers vectorise it. Returns 0 if none does.
  */
 static uint32_t gxbp_test_leaf(const gxbp_leaf_boxes *leaf, const gxbp_box *box, uint32_t meets[GXBP_LEAF]) {
@@ -8327,6 +8446,23 @@ static gxbp_box gxbp_leaf_box(const gxbp_leaf_boxes *leaf, uint32_t x) {
         box.high[k] = leaf->high[k][x];
     }
     return box;
+}
+
+/* Lists the operands from first to before end whose boxes meet a box in b->work.found, in ascending order. */
+static GXBP_APART void gxbp_find_operands(gxb_boolean *b, const gxbp_box *box, uint32_t first, uint32_t end) {
+    uint32_t i, j, x, y, groups[GXBP_LEAF], leaf[GXBP_LEAF];
+    b->work.found_count = 0;
+    if (!GXBP_ROOM(b, work.found, work.found, end)) return;
+    for (i = first / (GXBP_LEAF * GXBP_LEAF); i * GXBP_LEAF * GXBP_LEAF < end; i++) {
+        if (!gxbp_test_leaf(&b->in.groups[i], box, groups)) continue;
+        for (x = 0; x < GXBP_LEAF && (i * GXBP_LEAF + x) * GXBP_LEAF < end; x++) {
+            if (!groups[x] || !gxbp_test_leaf(&b->in.leaves[i * GXBP_LEAF + x], box, leaf)) continue;
+            for (y = 0; y < GXBP_LEAF; y++) {
+                j = (i * GXBP_LEAF + x) * GXBP_LEAF + y;
+                if (leaf[y] && j >= first && j < end) b->work.found[b->work.found_count++] = j;
+            }
+        }
+    }
 }
 
 static int gxbp_boxes_meet(const gxb_boolean *b, const gxbp_tree *s, uint32_t l, uint32_t i, const gxbp_tree *t,
@@ -8555,7 +8691,7 @@ static inline void gxbp_reset_source(gxb_boolean *b, uint32_t s) {
     int k;
     for (k = 0; k < 3; k++) {
         t->edge[k] = GXB_NONE;
-        f->v[k] = t->point[k];
+        f->v[k] = b->points.renamed ? gxbp_same(b, t->point[k]) : t->point[k];
         f->near[k] = GXB_NONE;
         f->labels[k] = GXBP_BARE;
     }
@@ -8658,8 +8794,8 @@ static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operan
     gxbp_operand *added;
     gx_result result;
     uint32_t *work;
-    if (!GXBP_ROOM(b, in.operands, in.operand, 1) || !GXBP_ROOM(b, in.sources, in.source, sources) ||
-        !GXBP_ROOM(b, in.bounds, in.bound, leaves) ||
+    if (!GXBP_ROOM(b, in.operands, in.operand, 1) || !gxbp_operand_box_room(b) ||
+        !GXBP_ROOM(b, in.sources, in.source, sources) || !GXBP_ROOM(b, in.bounds, in.bound, leaves) ||
         !GXBP_ROOM(b, mesh.subtriangles, mesh.subtriangle, subtriangles) ||
         !GXBP_ROOM(b, points.vertices, points.vertex, points) || !gxbp_table_room(b, (uint32_t)o->vertex_count))
         return b->error;
@@ -8680,7 +8816,7 @@ static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operan
         gxbp_release(&b->store.allocator, added->order, o->triangle_count * sizeof *added->order);
         return result;
     }
-    b->in.operand_count++;
+    gxbp_list_operand_box(b, b->in.operand_count++);
     gxbp_forget_degenerate(b, added->source);
     return GX_OK;
 }
@@ -9274,12 +9410,66 @@ static GXBP_APART void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, ui
                 gxbp_meet_boxes(b, o, l - down_s, c, q, m - down_t, d);
 }
 
+/* --- surfaces of which a point sees all cannot cross themselves --- */
+
+/* The mean of a surface's first corners; numbers that predicates could not take are 0. Any point would do. */
+static void gxbp_middle_of(const gxb_boolean *b, const gxbp_operand *o, double middle[3]) {
+    double largest = 0;
+    uint32_t s, k;
+    middle[0] = middle[1] = middle[2] = 0;
+    for (s = o->source; s < o->source + o->source_count; s++) {
+        const double *x = gxbp_corner_of(b, s, 0);
+        for (k = 0; k < 3; k++) middle[k] += x[k];
+        largest = gxbp_max(largest, gxbp_max3(x));
+    }
+    for (k = 0; k < 3; k++) {
+        middle[k] /= o->source_count;
+        if (gxbp_abs(middle[k]) < largest * gxbp_power(-40) || gxbp_abs(middle[k]) < gxbp_power(-127)) middle[k] = 0;
+    }
+}
+
+/* The side of edge p q on which c lies, all seen along x. c is moved in y, z by (h, h^2), h -> 0: the derivatives of
+ * the orientation decide. 0: the edge is parallel to x. */
+static int gxbp_moved_turn(const double *p, const double *q, const double *c) {
+    const int turn = gxb_orient2d(p + 1, q + 1, c + 1);
+    if (turn != 0) return turn;
+    return !gxbp_is_zero(gxbp_fence(p[2] - q[2])) ? gxbp_compare_doubles(p[2], q[2]) : gxbp_compare_doubles(q[1], p[1]);
+}
+
+/* Does the ray from c along x, moved, cross a triangle that turns as turn says, seen from its end? */
+static int gxbp_ray_crosses(const double *p, const double *q, const double *r, const double *c, int turn) {
+    int k;
+    for (k = 1; k < 3; k++)
+        if ((p[k] > c[k] && q[k] > c[k] && r[k] > c[k]) || (p[k] < c[k] && q[k] < c[k] && r[k] < c[k])) return 0;
+    return gxbp_moved_turn(p, q, c) == turn && gxbp_moved_turn(q, r, c) == turn && gxbp_moved_turn(r, p, c) == turn;
+}
+
+/* Does the middle of a closed surface see all of its triangles from the same side, and does the surface wind around it
+   once? Seen from there, triangles cover the directions evenly, as often as the surface winds, since none is seen from
+   its other side. So no two of them share a direction but in common edges and vertices, and the surface is simple. */
+static GXBP_APART int gxbp_is_star(const gxb_boolean *b, const gxbp_operand *o) {
+    double c[3];
+    uint32_t s, crossed = 0;
+    int side = 0;
+    if (o->operation == GXB_SPLIT) return 0;
+    gxbp_middle_of(b, o, c);
+    for (s = o->source; s < o->source + o->source_count; s++) {
+        const double *p = gxbp_corner_of(b, s, 0), *q = gxbp_corner_of(b, s, 1), *r = gxbp_corner_of(b, s, 2);
+        const int turn = gxb_orient3d(p, q, r, c);
+        if (turn == 0 || turn == -side) return 0;
+        side = turn;
+        crossed += (uint32_t)gxbp_ray_crosses(p, q, r, c, side);
+    }
+    return crossed == 1;
+}
+
 /* A surface that is found not to meet itself is simple. */
 static void gxbp_meet_operands(gxb_boolean *b, uint32_t i, uint32_t j) {
     gxbp_operand *o = &b->in.operands[i], *q = &b->in.operands[j];
     const uint32_t l = o->tree.levels - 1, m = q->tree.levels - 1, marks = b->crossings.marks;
+    if (i == j && !o->simple) o->simple = (uint32_t)gxbp_is_star(b, o);
     if (i == j && o->simple) return;
-    if (gxbp_boxes_meet(b, &o->tree, l, 0, &q->tree, m, 0)) gxbp_meet_boxes(b, o, l, 0, q, m, 0);
+    gxbp_meet_boxes(b, o, l, 0, q, m, 0);
     if (i == j) o->simple = b->crossings.marks == marks && b->error == GX_OK;
 }
 
@@ -9402,11 +9592,44 @@ static void gxbp_order_edge(gxb_boolean *b, uint32_t edge) {
     b->crossings.edge_point_count += count;
 }
 
+/* Sorts hits by edge; those of one edge keep their order. work: room for half of them */
+static void gxbp_sort_hits(gxbp_hit *h, uint32_t count, gxbp_hit *work) {
+    const uint32_t half = count / 2;
+    uint32_t i, j, k;
+    if (count < 2) return;
+    gxbp_sort_hits(h, half, work);
+    gxbp_sort_hits(h + half, count - half, work);
+    memcpy(work, h, half * sizeof *h);
+    for (i = 0, j = half, k = 0; i < half; k++) h[k] = j < count && h[j].edge < work[i].edge ? h[j++] : work[i++];
+}
+
+/* The hits begin with count ones of an edge. */
+static void gxbp_order_hits(gxb_boolean *b, const gxbp_hit *h, uint32_t count) {
+    uint32_t i;
+    b->work.ordered_count = 0;
+    if (!GXBP_ROOM(b, work.ordered, work.ordered, count)) return;
+    for (i = 0; i < count; i++) b->work.ordered[b->work.ordered_count++] = h[i].point;
+    gxbp_order_edge(b, h->edge);
+}
+
+/* A few hits, among many edges */
+static GXBP_COLD void gxbp_order_few_edges(gxb_boolean *b) {
+    const uint32_t n = b->crossings.hit_count;
+    gxbp_hit *h = b->crossings.hits;
+    uint32_t i, j;
+    gxbp_hit *work = (gxbp_hit *)gxbp_borrow(b, (n / 2 + 1) * sizeof *work);
+    if (work == NULL) return;
+    gxbp_sort_hits(h, n, work);
+    for (i = 0; i < n && b->error == GX_OK; i = j) {
+        for (j = i + 1; j < n && h[j].edge == h[i].edge; j++) {}
+        gxbp_order_hits(b, h + i, j - i);
+    }
+}
+
 /* A counting sort of the hits by edge, then each edge's points. */
-static GXBP_APART void gxbp_order_edges(gxb_boolean *b) {
+static GXBP_APART void gxbp_order_all_edges(gxb_boolean *b) {
     const size_t words = (size_t)b->crossings.edge_count + 1 + b->crossings.hit_count;
     uint32_t *first, *points, i;
-    if (b->error != GX_OK || b->crossings.hit_count == 0) return;
     first = (uint32_t *)gxbp_allocate(&b->store.allocator, words * sizeof *first);
     if (first == NULL) {
         gxbp_stop(b, GX_ERROR_MEMORY);
@@ -9426,6 +9649,14 @@ static GXBP_APART void gxbp_order_edges(gxb_boolean *b) {
         gxbp_order_edge(b, i);
     }
     gxbp_release(&b->store.allocator, first, words * sizeof *first);
+}
+
+static void gxbp_order_edges(gxb_boolean *b) {
+    if (b->error != GX_OK || b->crossings.hit_count == 0) return;
+    if (b->crossings.edge_count > 16 * (uint64_t)b->crossings.hit_count)
+        gxbp_order_few_edges(b);
+    else
+        gxbp_order_all_edges(b);
     b->crossings.hit_count = 0;
 }
 
@@ -10257,11 +10488,15 @@ static void gxbp_trace_segments(gxb_boolean *b, uint32_t s, uint32_t i) {
     }
 }
 
-static void gxbp_note_divided(gxb_boolean *b, uint32_t s) {
-    if (b->in.sources[s].flags & GXBP_DIVIDED || !GXBP_ROOM(b, mesh.divided, mesh.divided, 1)) return;
-    b->in.sources[s].flags |= GXBP_DIVIDED;
-    b->mesh.divided[b->mesh.divided_count++] = s;
+/* Lists a source's subtriangles as changed, if there is a result that shows them. */
+static void gxbp_list_changed(gxb_boolean *b, uint32_t s) {
+    uint32_t f;
+    if (b->out.shown_count == 0) return;
+    for (f = b->in.sources[s].subtriangle; f != GXB_NONE; f = b->mesh.subtriangles[f].next)
+        if (GXBP_ROOM(b, mesh.changed, mesh.changed, 1)) b->mesh.changed[b->mesh.changed_count++] = f;
 }
+
+static void gxbp_note_divided(gxb_boolean *b, uint32_t s) { b->in.sources[s].flags |= GXBP_DIVIDED; }
 
 /* --- dividing a source by chains: the generic small case --- */
 
@@ -10662,6 +10897,7 @@ static GXBP_APART void gxbp_divide_by_segments(gxb_boolean *b, uint32_t s, uint3
 static void gxbp_divide_source(gxb_boolean *b, uint32_t s) {
     uint32_t n;
     if (!gxbp_need_plane(b, s)) return;
+    gxbp_list_changed(b, s);
     gxbp_note_divided(b, s);
     n = gxbp_chain_segments(b, s);
     if (b->error != GX_OK) return;
@@ -10818,6 +11054,7 @@ static GXBP_COLD void gxbp_divide_flat(gxb_boolean *b, uint32_t r) {
     uint32_t t, f;
     if (!gxbp_need_plane(b, r)) return;
     for (t = r; t != GXB_NONE; t = b->in.sources[t].next) {
+        gxbp_list_changed(b, t);
         for (f = b->in.sources[t].subtriangle; f != GXB_NONE; f = b->mesh.subtriangles[f].next)
             b->mesh.subtriangles[f].source = GXB_NONE;
         b->in.sources[t].subtriangle = GXB_NONE;
@@ -10832,8 +11069,9 @@ static GXBP_COLD void gxbp_divide_flat(gxb_boolean *b, uint32_t r) {
     for (t = r; t != GXB_NONE && b->error == GX_OK; t = b->in.sources[t].next) gxbp_cover_subtriangles(b, r, t);
 }
 
+/* Of the dirty sources only those that were divided stay in the list, each flat by its root. */
 static GXBP_APART void gxbp_divide_dirty(gxb_boolean *b) {
-    uint32_t i;
+    uint32_t i, n = 0;
     for (i = 0; i < b->crossings.dirty_count && b->error == GX_OK; i++) {
         const uint32_t s = b->crossings.dirty[i], r = gxbp_root(b, s);
         if (!(b->in.sources[s].flags & GXBP_DIRTY)) continue;
@@ -10842,8 +11080,9 @@ static GXBP_APART void gxbp_divide_dirty(gxb_boolean *b) {
         else
             gxbp_divide_source(b, s);
         b->in.sources[s].flags &= ~(uint32_t)GXBP_DIRTY;
+        b->crossings.dirty[n++] = r;
     }
-    b->crossings.dirty_count = 0;
+    b->crossings.dirty_count = n;
 }
 
 /* >>merge: equal points that did not meet in a triangulation ------------------------------------------------------- */
@@ -10881,6 +11120,40 @@ static GXBP_APART void gxbp_sort_projected(gxbp_projected *p, uint32_t count, gx
     gxbp_merge_projected(p, count / 2, count, work);
 }
 
+static inline void gxbp_merge_pair(gxb_boolean *b, uint32_t p, uint32_t q) {
+    p = gxbp_same(b, p);
+    q = gxbp_same(b, q);
+    if (p != q && (p >= b->points.merged_count || q >= b->points.merged_count) && gxbp_points_equal(b, p, q))
+        gxbp_unite(b, p < q ? p : q, p < q ? q : p);
+}
+
+/* Compares the new points, from first on, with those of a run, from j to its end. Steps to the next one become longer
+ * where the run is the denser of the two. */
+static void gxbp_merge_with_run(gxb_boolean *b, uint32_t first, uint32_t j, uint32_t end) {
+    const gxbp_projected *p = b->points.projected;
+    const double reach = 8 * b->points.reach;
+    uint32_t i, k, step;
+    for (i = first; i < b->points.projected_count; i++) {
+        for (step = 1; step <= end - j && p[j + step - 1].t < p[i].t - reach; step *= 2) j += step;
+        for (; step > 0; step /= 2)
+            if (step <= end - j && p[j + step - 1].t < p[i].t - reach) j += step;
+        for (k = j; k < end && p[k].t <= p[i].t + reach; k++) gxbp_merge_pair(b, p[i].point, p[k].point);
+    }
+}
+
+/* Appends the points from first on as a run. Runs of similar size become one, so that there are few. */
+static void gxbp_append_run(gxb_boolean *b, uint32_t first, gxbp_projected *work) {
+    uint32_t n = b->points.run_count, end = b->points.projected_count;
+    for (; n > 0; n--) {
+        const uint32_t start = n > 1 ? b->points.run[n - 2] : 0;
+        if (first - start > 2 * (uint64_t)(end - first)) break;
+        gxbp_merge_projected(b->points.projected + start, first - start, end - start, work);
+        first = start;
+    }
+    b->points.run[n] = end;
+    b->points.run_count = n + 1;
+}
+
 /* Compares each new computed point with all points within both errors along a direction in which few points agree. The
  * older name stays, whatever the order of discovery. */
 static GXBP_APART void gxbp_merge_points(gxb_boolean *b) {
@@ -10904,20 +11177,20 @@ static GXBP_APART void gxbp_merge_points(gxb_boolean *b) {
         b->points.reach = gxbp_max(b->points.reach, x->error + 4 * GXBP_U * gxbp_max3(x->x));
     }
     gxbp_sort_projected(p + old, b->points.projected_count - old, work);
-    gxbp_merge_projected(p, old, b->points.projected_count, work);
-    for (i = 0; i < b->points.projected_count; i++)
-        for (j = i + 1; j < b->points.projected_count && p[j].t - p[i].t <= 8 * b->points.reach; j++) {
-            const uint32_t q = gxbp_same(b, p[i].point), r = gxbp_same(b, p[j].point);
-            if (q != r && (q >= b->points.merged_count || r >= b->points.merged_count) && gxbp_points_equal(b, q, r))
-                gxbp_unite(b, q < r ? q : r, q < r ? r : q);
-        }
+    for (i = 0; i < b->points.run_count; i++)
+        gxbp_merge_with_run(b, old, i > 0 ? b->points.run[i - 1] : 0, b->points.run[i]);
+    for (i = old; i < b->points.projected_count; i++)
+        for (j = i + 1; j < b->points.projected_count && p[j].t - p[i].t <= 8 * b->points.reach; j++)
+            gxbp_merge_pair(b, p[i].point, p[j].point);
+    gxbp_append_run(b, old, work);
     gxbp_release(&b->store.allocator, work, size);
     b->points.merged_count = b->points.vertex_count;
 }
 
 /* >>states: vectors of winding numbers ----------------------------------------------------------------------------- */
 /* In: a state and a change of winding numbers. Out: the state with them. A state is a vector of one number per operand,
-   stored once, with a flag: inside or not. Touches the states and their table only. */
+   stored once, without its zeros. So an operand that is added leaves all states as they are. Touches the states and
+   their table only. */
 
 static int gxbp_counts(uint32_t rule, int32_t winding) {
     switch (rule) {
@@ -10928,13 +11201,33 @@ static int gxbp_counts(uint32_t rule, int32_t winding) {
     }
 }
 
-static GXBP_COLD int gxbp_is_inside(const gxb_boolean *b, const int32_t *winding) {
+/* The caller's function on a state */
+static GXBP_COLD int gxbp_ask_inside(gxb_boolean *b, const gxbp_state *state) {
+    const gxbp_operand_number *numbers = b->winding.numbers + state->first;
+    const uint32_t n = b->in.operand_count;
     uint32_t i;
+    int inside;
+    if (n > b->winding.vector_count) {
+        if (!GXBP_ROOM(b, winding.vector, winding.vector, n - b->winding.vector_count)) return 0;
+        memset(b->winding.vector + b->winding.vector_count, 0, (n - b->winding.vector_count) * sizeof(int32_t));
+        b->winding.vector_count = n;
+    }
+    for (i = 0; i < state->count; i++) b->winding.vector[numbers[i].operand] = numbers[i].winding;
+    inside = b->options.inside(b->options.user, b->winding.vector, n) != 0;
+    for (i = 0; i < state->count; i++) b->winding.vector[numbers[i].operand] = 0;
+    return inside;
+}
+
+/* Operands with the number 0 change nothing, unless they are intersections. */
+static GXBP_COLD int gxbp_apply_operations(const gxb_boolean *b, const gxbp_state *state) {
+    const gxbp_operand_number *numbers = b->winding.numbers + state->first;
+    uint32_t k, next = 0;
     int inside = 0;
-    if (b->options.inside != NULL) return b->options.inside(b->options.user, winding, b->in.operand_count) != 0;
-    for (i = 0; i < b->in.operand_count; i++) {
+    for (k = 0; k < state->count; k++) {
+        const uint32_t i = numbers[k].operand;
         const gxbp_operand *o = &b->in.operands[i];
-        const int counts = o->operation == GXB_SPLIT ? 0 : gxbp_counts(o->rule, winding[i]);
+        const int counts = o->operation == GXB_SPLIT ? 0 : gxbp_counts(o->rule, numbers[k].winding);
+        if (i > next && b->in.operands[i - 1].narrowed >= next) inside = 0;
         switch (i == 0 && o->operation != GXB_SPLIT ? (uint32_t)GXB_UNION : o->operation) {
         case GXB_UNION: inside = inside || counts; break;
         case GXB_INTERSECTION: inside = inside && counts; break;
@@ -10942,78 +11235,127 @@ static GXBP_COLD int gxbp_is_inside(const gxb_boolean *b, const int32_t *winding
         case GXB_SYMMETRIC_DIFFERENCE: inside = inside != counts; break;
         default: break;
         }
+        next = i + 1;
     }
-    return inside;
+    return inside && (next == b->in.operand_count || b->in.operands[b->in.operand_count - 1].narrowed < next);
 }
 
-static uint32_t gxbp_hash_winding(const int32_t *winding, uint32_t count) {
-    uint32_t hash = count, i;
-    for (i = 0; i < count; i++) hash = gxbp_mix(hash, (uint32_t)winding[i]);
-    return hash;
+/* Is a state inside? An operand that is newer than the answer has the number 0. */
+static GXBP_COLD uint32_t gxbp_judge_state(gxb_boolean *b, uint32_t state) {
+    gxbp_state *s = &b->winding.states[state];
+    const uint32_t n = b->in.operand_count;
+    if (b->options.inside != NULL)
+        s->inside = (uint32_t)gxbp_ask_inside(b, s);
+    else if (s->known == 0)
+        s->inside = (uint32_t)gxbp_apply_operations(b, s);
+    else if (b->in.operands[n - 1].narrowed >= s->known)
+        s->inside = 0;
+    s->known = n;
+    return s->inside;
+}
+
+static uint32_t gxbp_is_inside(gxb_boolean *b, uint32_t state) {
+    if (b->error != GX_OK) return 0;
+    return b->winding.states[state].known == b->in.operand_count ? b->winding.states[state].inside
+                                                                 : gxbp_judge_state(b, state);
 }
 
 enum { GXBP_FEW_STATES = 8 }; /* fewer are searched without a table */
 
 /* A table of all states, with room for one more */
 static GXBP_COLD int gxbp_list_states(gxb_boolean *b) {
-    const uint32_t n = b->in.operand_count;
     uint32_t size = b->winding.table_size == 0 ? 64 : b->winding.table_size, i, k;
-    while (2 * (b->winding.inside_count + 1) > size) size *= 2;
+    while (2 * (b->winding.state_count + 1) > size) size *= 2;
     if (size > b->winding.table_size && !gxbp_renew_table(b, &b->winding.table, &b->winding.table_size, size)) return 0;
     memset(b->winding.table, 0xff, (size_t)b->winding.table_size * sizeof *b->winding.table);
-    for (i = 0; i < b->winding.inside_count; i++) {
-        for (k = gxbp_hash_winding(b->winding.numbers + (size_t)i * n, n) & (size - 1); b->winding.table[k] != GXB_NONE;
-             k = (k + 1) & (size - 1)) {}
+    for (i = 0; i < b->winding.state_count; i++) {
+        for (k = b->winding.states[i].hash & (size - 1); b->winding.table[k] != GXB_NONE; k = (k + 1) & (size - 1)) {}
         b->winding.table[k] = i;
     }
-    b->winding.listed = b->winding.inside_count;
+    b->winding.listed = b->winding.state_count;
     return 1;
 }
 
-/* The state with the numbers that stand behind those of all states: a known one, or a new one. */
-static uint32_t gxbp_find_state(gxb_boolean *b) {
-    const uint32_t n = b->in.operand_count;
-    const int32_t *winding = b->winding.numbers + (size_t)b->winding.inside_count * n;
-    uint32_t k = 0;
-    if (!GXBP_ROOM(b, winding.inside, winding.inside, 1)) return 0;
-    if (b->winding.inside_count < GXBP_FEW_STATES) {
-        for (; k < b->winding.inside_count; k++)
-            if (memcmp(b->winding.numbers + (size_t)k * n, winding, n * sizeof *winding) == 0) return k;
-    } else {
-        if ((b->winding.listed < b->winding.inside_count ||
-             2 * (b->winding.inside_count + 1) > b->winding.table_size) &&
-            !gxbp_list_states(b))
-            return 0;
-        for (k = gxbp_hash_winding(winding, n) & (b->winding.table_size - 1); b->winding.table[k] != GXB_NONE;
-             k = (k + 1) & (b->winding.table_size - 1))
-            if (memcmp(b->winding.numbers + (size_t)b->winding.table[k] * n, winding, n * sizeof *winding) == 0)
-                return b->winding.table[k];
-        b->winding.table[k] = b->winding.inside_count;
-        b->winding.listed++;
-    }
-    b->winding.inside[b->winding.inside_count] = (uint32_t)gxbp_is_inside(b, winding);
-    return b->winding.inside_count++;
+/* Is this state the draft? */
+static int gxbp_is_draft(const gxb_boolean *b, uint32_t state, uint32_t hash) {
+    const gxbp_state *s = &b->winding.states[state];
+    return s->hash == hash && s->count == b->winding.draft_count &&
+           memcmp(b->winding.numbers + s->first, b->winding.numbers + b->winding.number_count,
+                  s->count * sizeof *b->winding.numbers) == 0;
 }
 
-/* Writes one more vector behind those of the states: a copy of a state's, or zeros (GXB_NONE). NULL: no memory. */
-static int32_t *gxbp_copy_winding(gxb_boolean *b, uint32_t state) {
-    const uint32_t n = b->in.operand_count;
-    int32_t *winding;
-    b->winding.number_count = b->winding.inside_count * n;
-    if (!GXBP_ROOM(b, winding.numbers, winding.number, n)) return NULL;
-    winding = b->winding.numbers + b->winding.number_count;
-    if (state == GXB_NONE)
-        memset(winding, 0, n * sizeof *winding);
-    else
-        memcpy(winding, b->winding.numbers + (size_t)state * n, n * sizeof *winding);
-    return winding;
+/* The state with the draft's numbers: a known one, or a new one. */
+static uint32_t gxbp_find_state(gxb_boolean *b) {
+    const gxbp_operand_number *draft = b->winding.numbers + b->winding.number_count;
+    gxbp_state *state;
+    uint32_t hash = 0, i, k = 0;
+    if (!GXBP_ROOM(b, winding.states, winding.state, 1)) return 0;
+    for (i = 0; i < b->winding.draft_count; i++) hash = gxbp_mix(hash + draft[i].operand, (uint32_t)draft[i].winding);
+    if (b->winding.state_count < GXBP_FEW_STATES) {
+        for (; k < b->winding.state_count; k++)
+            if (gxbp_is_draft(b, k, hash)) return k;
+    } else {
+        if ((b->winding.listed < b->winding.state_count || 2 * (b->winding.state_count + 1) > b->winding.table_size) &&
+            !gxbp_list_states(b))
+            return 0;
+        for (k = hash & (b->winding.table_size - 1); b->winding.table[k] != GXB_NONE;
+             k = (k + 1) & (b->winding.table_size - 1))
+            if (gxbp_is_draft(b, b->winding.table[k], hash)) return b->winding.table[k];
+        b->winding.table[k] = b->winding.state_count;
+        b->winding.listed++;
+    }
+    state = &b->winding.states[b->winding.state_count];
+    state->first = b->winding.number_count;
+    state->count = b->winding.draft_count;
+    state->hash = hash;
+    state->inside = state->known = 0;
+    b->winding.number_count += b->winding.draft_count;
+    return b->winding.state_count++;
+}
+
+/* Begins a draft: a copy of a state, or all numbers 0 (GXB_NONE). 0: after an error, when there may be no such state.
+ */
+static int gxbp_begin_draft(gxb_boolean *b, uint32_t state) {
+    const uint32_t count = state == GXB_NONE || b->error != GX_OK ? 0 : b->winding.states[state].count;
+    if (b->error != GX_OK || !GXBP_ROOM(b, winding.numbers, winding.number, (size_t)count + 1)) return 0;
+    if (count > 0)
+        memcpy(b->winding.numbers + b->winding.number_count, b->winding.numbers + b->winding.states[state].first,
+               count * sizeof *b->winding.numbers);
+    b->winding.draft_count = count;
+    return 1;
+}
+
+/* Room for one more number in the draft, which moves with the others if they move */
+static int gxbp_draft_room(gxb_boolean *b) {
+    int room;
+    b->winding.number_count += b->winding.draft_count;
+    room = GXBP_ROOM(b, winding.numbers, winding.number, 1);
+    b->winding.number_count -= b->winding.draft_count;
+    return room;
+}
+
+/* Adds to an operand's number in the draft. */
+static void gxbp_add_number(gxb_boolean *b, uint32_t operand, int change) {
+    gxbp_operand_number *draft;
+    uint32_t i = b->winding.draft_count;
+    if (change == 0 || !gxbp_draft_room(b)) return;
+    draft = b->winding.numbers + b->winding.number_count;
+    while (i > 0 && draft[i - 1].operand > operand) i--;
+    if (i > 0 && draft[i - 1].operand == operand) {
+        draft[i - 1].winding += change;
+        if (draft[i - 1].winding != 0) return;
+        memmove(draft + i - 1, draft + i, (b->winding.draft_count-- - i) * sizeof *draft);
+        return;
+    }
+    memmove(draft + i + 1, draft + i, (b->winding.draft_count++ - i) * sizeof *draft);
+    draft[i].operand = operand;
+    draft[i].winding = change;
 }
 
 static GXBP_APART uint32_t gxbp_new_step(gxb_boolean *b, gxbp_state_step *step, uint32_t from, uint32_t operand,
                                          int change) {
-    int32_t *winding = gxbp_copy_winding(b, from);
-    if (winding == NULL) return 0;
-    winding[operand] += change;
+    if (!gxbp_begin_draft(b, from)) return 0;
+    gxbp_add_number(b, operand, change);
     step->from = from;
     step->operand = operand;
     step->change = change;
@@ -11031,6 +11373,10 @@ static uint32_t gxbp_step_state(gxb_boolean *b, uint32_t from, uint32_t operand,
 /* In: a finished arrangement. Out: the state in front of each subtriangle. A ray gives the first state of a connected
    surface. Labels of edges give those of neighbours. In older states a new operand has the number 0 wherever its box
    does not reach. Touches the states of subtriangles and their vertices' names. */
+
+static int gxbp_winds(const gxb_boolean *b, uint32_t s) {
+    return b->in.operands[b->in.sources[s].operand].operation != GXB_SPLIT;
+}
 
 static uint32_t gxbp_root_plane(const gxb_boolean *b, uint32_t f) {
     return b->in.sources[b->mesh.subtriangles[f].source].plane;
@@ -11069,45 +11415,42 @@ static int gxbp_label_step(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
 /* The state in front of the subtriangle beyond edge k. */
 static uint32_t gxbp_state_beyond(gxb_boolean *b, uint32_t f, int k) {
     uint32_t list = b->mesh.subtriangles[f].labels[k];
-    int32_t *winding = NULL;
+    int begun = 0;
     for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->mesh.links[list].next) {
         const uint32_t t = b->mesh.links[list].value;
         const int change = gxbp_label_step(b, f, k, t);
         if (change == 0) continue;
-        if (winding == NULL && b->mesh.links[list].next == GXBP_BARE)
+        if (!begun && b->mesh.links[list].next == GXBP_BARE)
             return gxbp_step_state(b, b->mesh.subtriangles[f].state, b->in.sources[t].operand, change);
-        if (winding == NULL && (winding = gxbp_copy_winding(b, b->mesh.subtriangles[f].state)) == NULL) return 0;
-        winding[b->in.sources[t].operand] += change;
+        if (!begun && !gxbp_begin_draft(b, b->mesh.subtriangles[f].state)) return 0;
+        begun = 1;
+        gxbp_add_number(b, b->in.sources[t].operand, change);
     }
-    return winding == NULL ? b->mesh.subtriangles[f].state : gxbp_find_state(b);
+    return begun ? gxbp_find_state(b) : b->mesh.subtriangles[f].state;
 }
 
-/* Adds sign times the subtriangle's own surfaces. Behind it, the winding number is larger by one for each surface that
- * faces as its plane does. */
-static GXBP_COLD void gxbp_add_covers(const gxb_boolean *b, uint32_t f, int sign, int32_t *winding) {
+/* Adds sign times the subtriangle's own surfaces to the draft. Behind it, the winding number is larger by one for each
+ * surface that faces as its plane does. */
+static GXBP_COLD void gxbp_add_covers(gxb_boolean *b, uint32_t f, int sign) {
     const uint32_t r = b->mesh.subtriangles[f].source;
     uint32_t c;
     if (b->mesh.subtriangles[f].covers == GXB_NONE) {
-        if (b->in.operands[b->in.sources[r].operand].operation != GXB_SPLIT) winding[b->in.sources[r].operand] += sign;
+        if (gxbp_winds(b, r)) gxbp_add_number(b, b->in.sources[r].operand, sign);
         return;
     }
     for (c = b->mesh.subtriangles[f].covers; c != GXB_NONE; c = b->mesh.links[c].next) {
         const uint32_t t = b->mesh.links[c].value;
-        if (b->in.operands[b->in.sources[t].operand].operation != GXB_SPLIT)
-            winding[b->in.sources[t].operand] += sign * gxbp_facing(b, r, t);
+        if (gxbp_winds(b, t)) gxbp_add_number(b, b->in.sources[t].operand, sign * gxbp_facing(b, r, t));
     }
 }
 
 static uint32_t gxbp_state_behind(gxb_boolean *b, uint32_t f) {
-    const uint32_t operand = b->in.sources[b->mesh.subtriangles[f].source].operand;
-    int32_t *winding;
+    const uint32_t s = b->mesh.subtriangles[f].source;
     if (b->mesh.subtriangles[f].covers == GXB_NONE)
-        return b->in.operands[operand].operation == GXB_SPLIT
-                 ? b->mesh.subtriangles[f].state
-                 : gxbp_step_state(b, b->mesh.subtriangles[f].state, operand, 1);
-    winding = gxbp_copy_winding(b, b->mesh.subtriangles[f].state);
-    if (winding == NULL) return 0;
-    gxbp_add_covers(b, f, 1, winding);
+        return gxbp_winds(b, s) ? gxbp_step_state(b, b->mesh.subtriangles[f].state, b->in.sources[s].operand, 1)
+                                : b->mesh.subtriangles[f].state;
+    if (!gxbp_begin_draft(b, b->mesh.subtriangles[f].state)) return 0;
+    gxbp_add_covers(b, f, 1);
     return gxbp_find_state(b);
 }
 
@@ -11118,7 +11461,7 @@ typedef struct gxbp_ray {
     gxb_ball ball;
     gxbp_box box; /* around the whole ray */
     uint32_t f;
-    int32_t *winding;
+    int32_t winding;  /* of the operand at work */
     int exact;        /* 1: probe has been computed */
     gxbp_probe probe; /* the sum of the corners' homogeneous coordinates */
 } gxbp_ray;
@@ -11179,7 +11522,7 @@ static void gxbp_cross_ray(gxb_boolean *b, gxbp_ray *ray, uint32_t s) {
     x[1] = q->x;
     x[2] = r->x;
     if (behind == 0) behind = gxbp_probe_orient(gxbp_exact_probe(b, ray), x);
-    if (behind == left) ray->winding[b->in.sources[s].operand] += left;
+    if (behind == left) ray->winding += left;
 }
 
 static GXBP_APART void gxbp_shoot(gxb_boolean *b, gxbp_ray *ray, const gxbp_operand *o, uint32_t l, uint32_t i) {
@@ -11207,8 +11550,8 @@ static GXBP_RARE void gxbp_cross_own(gxb_boolean *b, const gxbp_ray *ray) {
     const int nx = gxbp_normal_sign(&b->store, plane, 0);
     int side = gxbp_moved_side(b, plane);
     if (side == 0) side = nx;
-    if (nx * side < 0) gxbp_add_covers(b, ray->f, nx, ray->winding);
-    if (side < 0) gxbp_add_covers(b, ray->f, -1, ray->winding); /* from the state behind to the one in front */
+    if (nx * side < 0) gxbp_add_covers(b, ray->f, nx);
+    if (side < 0) gxbp_add_covers(b, ray->f, -1); /* from the state behind to the one in front */
 }
 
 /* The state in front of a subtriangle. state is right for the operands before first; GXB_NONE: all numbers are 0. */
@@ -11216,12 +11559,16 @@ static GXBP_APART uint32_t gxbp_state_by_ray(gxb_boolean *b, uint32_t f, uint32_
     gxbp_ray ray;
     uint32_t i;
     if (!gxbp_need_plane(b, b->mesh.subtriangles[f].source)) return 0;
-    ray.winding = gxbp_copy_winding(b, state);
-    if (ray.winding == NULL) return 0;
+    if (!gxbp_begin_draft(b, state)) return 0;
     gxbp_set_ray(b, &ray, f);
-    for (i = first; i < b->in.operand_count && b->error == GX_OK; i++)
-        if (b->in.operands[i].operation != GXB_SPLIT)
-            gxbp_shoot(b, &ray, &b->in.operands[i], b->in.operands[i].tree.levels - 1, 0);
+    gxbp_find_operands(b, &ray.box, first, b->in.operand_count);
+    for (i = 0; i < b->work.found_count && b->error == GX_OK; i++) {
+        const gxbp_operand *o = &b->in.operands[b->work.found[i]];
+        if (o->operation == GXB_SPLIT) continue;
+        ray.winding = 0;
+        gxbp_shoot(b, &ray, o, o->tree.levels - 1, 0);
+        gxbp_add_number(b, b->work.found[i], ray.winding);
+    }
     /* else the subtriangle is of an older operand, and state contains its own surfaces */
     if (first == 0) gxbp_cross_own(b, &ray);
     return gxbp_find_state(b);
@@ -11229,15 +11576,63 @@ static GXBP_APART uint32_t gxbp_state_by_ray(gxb_boolean *b, uint32_t f, uint32_
 
 /* --- states spread from subtriangle to subtriangle --- */
 
-/* Gives vertices their final names after points were united: those of divided sources, or all if an input vertex was
- * renamed. */
+/* The first source of operands without states */
+static uint32_t gxbp_new_sources(const gxb_boolean *b) {
+    return b->winding.stated < b->in.operand_count ? b->in.operands[b->winding.stated].source : b->in.source_count;
+}
+
+static void gxbp_rename_subtriangle(gxb_boolean *b, uint32_t f) {
+    uint32_t k;
+    for (k = 0; k < 3; k++) b->mesh.subtriangles[f].v[k] = gxbp_same(b, b->mesh.subtriangles[f].v[k]);
+}
+
+static void gxbp_rename_source(gxb_boolean *b, uint32_t s) {
+    uint32_t f;
+    for (f = b->in.sources[s].subtriangle; f != GXB_NONE; f = b->mesh.subtriangles[f].next)
+        gxbp_rename_subtriangle(b, f);
+}
+
+/* Renames the vertices of sources (of their flats) that meet a box, below box i of level l of a tree. */
+static GXBP_RARE void gxbp_rename_below(gxb_boolean *b, const gxbp_operand *o, uint32_t l, uint32_t i,
+                                        const gxbp_box *box) {
+    uint32_t meets[GXBP_LEAF], c;
+    if (!gxbp_box_meets(box, &b->in.boxes[o->tree.first + o->tree.level[l] + i])) return;
+    if (l > 0) {
+        for (c = 2 * i; c < 2 * i + 2 && c < o->tree.size[l - 1]; c++) gxbp_rename_below(b, o, l - 1, c, box);
+        return;
+    }
+    gxbp_test_leaf(&b->in.bounds[o->bounds + i], box, meets);
+    for (c = 0; c < GXBP_LEAF; c++)
+        if (meets[c]) gxbp_rename_source(b, gxbp_root(b, o->order[i * GXBP_LEAF + c]));
+}
+
+/* Renames a dropped point wherever it is a vertex: in sources whose boxes hold it. */
+static GXBP_COLD void gxbp_rename_point(gxb_boolean *b, uint32_t point) {
+    const gxb_ball *x = &b->store.points[point].ball;
+    gxbp_box box;
+    uint32_t i;
+    int k;
+    for (k = 0; k < 3; k++) {
+        box.low[k] = gxbp_float_below(x->x[k] - 2 * x->error);
+        box.high[k] = gxbp_float_above(x->x[k] + 2 * x->error);
+    }
+    gxbp_find_operands(b, &box, 0, b->in.operand_count);
+    for (i = 0; i < b->work.found_count; i++) {
+        const gxbp_operand *o = &b->in.operands[b->work.found[i]];
+        gxbp_rename_below(b, o, o->tree.levels - 1, 0, &box);
+    }
+}
+
+/* Gives vertices their final names after points were united. A new point is a vertex only of sources that this
+ * evaluation has divided. */
 static GXBP_RARE void gxbp_rename_vertices(gxb_boolean *b) {
-    uint32_t f, i, k;
-    for (i = 0; i < b->mesh.divided_count && b->points.united && !b->points.renamed; i++)
-        for (f = b->in.sources[b->mesh.divided[i]].subtriangle; f != GXB_NONE; f = b->mesh.subtriangles[f].next)
-            for (k = 0; k < 3; k++) b->mesh.subtriangles[f].v[k] = gxbp_same(b, b->mesh.subtriangles[f].v[k]);
-    for (f = 0; f < b->mesh.subtriangle_count && b->points.renamed; f++)
-        for (k = 0; k < 3; k++) b->mesh.subtriangles[f].v[k] = gxbp_same(b, b->mesh.subtriangles[f].v[k]);
+    uint32_t i;
+    if (b->points.dropped_count > b->mesh.subtriangle_count / 64) {
+        for (i = 0; i < b->mesh.subtriangle_count; i++) gxbp_rename_subtriangle(b, i);
+    } else {
+        for (i = 0; i < b->crossings.dirty_count; i++) gxbp_rename_source(b, b->crossings.dirty[i]);
+        for (i = 0; i < b->points.dropped_count; i++) gxbp_rename_point(b, b->points.dropped[i]);
+    }
     b->points.united = 0;
 }
 
@@ -11305,16 +11700,11 @@ static void gxbp_note_reached(gxb_boolean *b, uint32_t s) {
     o->reached = 1;
 }
 
-static int gxbp_winds(const gxb_boolean *b, uint32_t s) {
-    return b->in.operands[b->in.sources[s].operand].operation != GXB_SPLIT;
-}
-
 /* Takes the state to an operand that has none yet. A triangle t of it crosses f in its edge k, and nothing else is
    there: four subtriangles meet in the edge, two of each source. The plane of one source separates the numbers of its
    own operand only. The subtriangle of t that gets a state goes to b->work.pending. */
 static void gxbp_reach_operand(gxb_boolean *b, uint32_t f, int k) {
     const uint32_t s = b->mesh.subtriangles[f].source, t = gxbp_crossing_source(b, f, k);
-    int32_t *winding;
     uint32_t g;
     int j, side, other;
     if (t == GXB_NONE || b->in.operands[b->in.sources[t].operand].reached || b->in.sources[t].flags & GXBP_FLAT) return;
@@ -11324,9 +11714,9 @@ static void gxbp_reach_operand(gxb_boolean *b, uint32_t f, int k) {
         return;
     side = gxbp_side_of_subtriangle(b, f, k, t);
     other = gxbp_side_of_subtriangle(b, g, j, s);
-    if (side == 0 || other == 0 || (winding = gxbp_copy_winding(b, b->mesh.subtriangles[f].state)) == NULL) return;
-    if (other < 0 && gxbp_winds(b, s)) winding[b->in.sources[s].operand]++;
-    if (side < 0 && gxbp_winds(b, t)) winding[b->in.sources[t].operand]--;
+    if (side == 0 || other == 0 || !gxbp_begin_draft(b, b->mesh.subtriangles[f].state)) return;
+    if (other < 0 && gxbp_winds(b, s)) gxbp_add_number(b, b->in.sources[s].operand, 1);
+    if (side < 0 && gxbp_winds(b, t)) gxbp_add_number(b, b->in.sources[t].operand, -1);
     b->mesh.subtriangles[g].state = gxbp_find_state(b);
     gxbp_note_reached(b, t);
     b->work.pending[b->work.pending_count++] = g;
@@ -11386,22 +11776,14 @@ static int gxbp_is_surface(const gxb_boolean *b, uint32_t f) {
 
 /* --- states of earlier evaluations: new operands get the number 0, which is right outside of their boxes --- */
 
-/* Appends a 0 for each new operand to all states. States keep their places. */
-static GXBP_APART int gxbp_lengthen_states(gxb_boolean *b) {
-    const uint32_t n = b->in.operand_count, m = b->winding.stated;
-    uint32_t i;
-    memset(b->winding.steps, 0, sizeof b->winding.steps);
-    if (m == 0) b->winding.inside_count = 0;
-    b->winding.number_count = b->winding.inside_count * m;
-    if (!GXBP_ROOM(b, winding.numbers, winding.number, (size_t)b->winding.inside_count * (n - m) + n)) return 0;
-    for (i = b->winding.inside_count; i-- > 0;) {
-        memmove(b->winding.numbers + (size_t)i * n, b->winding.numbers + (size_t)i * m, m * sizeof *b->winding.numbers);
-        memset(b->winding.numbers + (size_t)i * n + m, 0, (n - m) * sizeof *b->winding.numbers);
+/* An operand that is an intersection leaves nothing outside of it. */
+static void gxbp_note_intersections(gxb_boolean *b) {
+    uint32_t i = b->winding.stated;
+    for (; i < b->in.operand_count; i++) {
+        gxbp_operand *o = &b->in.operands[i];
+        const uint32_t before = i > 0 ? b->in.operands[i - 1].narrowed : 0;
+        o->narrowed = i > 0 && o->operation == GXB_INTERSECTION ? i : before;
     }
-    for (i = 0; i < b->winding.inside_count; i++)
-        b->winding.inside[i] = (uint32_t)gxbp_is_inside(b, b->winding.numbers + (size_t)i * n);
-    b->winding.listed = 0;
-    return 1;
 }
 
 /* An open state has this bit: it does not count the new operands yet. */
@@ -11425,19 +11807,14 @@ static int gxbp_subtriangle_misses(const gxb_boolean *b, uint32_t f, const gxbp_
     return 1;
 }
 
-/* Opens the states of all subtriangles that may meet the box, and lists them in b->work.pending. The axis along which
-   the box is shortest is tested first. */
-static GXBP_RARE void gxbp_open_states(gxb_boolean *b, const gxbp_box *box) {
+/* Opens the states of a source's (root's) subtriangles that may meet the box, and lists them in b->work.pending. The
+   axis along which the box is shortest is tested first. */
+static void gxbp_open_source(gxb_boolean *b, uint32_t s, const gxbp_box *box, int axis) {
     uint32_t f;
-    int axis = 0, k;
-    for (k = 1; k < 3; k++)
-        if (box->high[k] - box->low[k] < box->high[axis] - box->low[axis]) axis = k;
-    for (f = 0; f < b->mesh.subtriangle_count; f++) {
+    for (f = b->in.sources[s].subtriangle; f != GXB_NONE; f = b->mesh.subtriangles[f].next) {
         if (b->mesh.subtriangles[f].source == GXB_NONE || b->mesh.subtriangles[f].state == GXB_NONE ||
-            gxbp_subtriangle_misses(b, f, box, axis))
-            continue;
-        if (gxbp_subtriangle_misses(b, f, box, (axis + 1) % 3) || gxbp_subtriangle_misses(b, f, box, (axis + 2) % 3) ||
-            gxbp_is_open(b, f))
+            gxbp_is_open(b, f) || gxbp_subtriangle_misses(b, f, box, axis) ||
+            gxbp_subtriangle_misses(b, f, box, (axis + 1) % 3) || gxbp_subtriangle_misses(b, f, box, (axis + 2) % 3))
             continue;
         if (!GXBP_ROOM(b, work.pending, work.pending, 1)) return;
         b->work.pending[b->work.pending_count++] = f;
@@ -11445,23 +11822,61 @@ static GXBP_RARE void gxbp_open_states(gxb_boolean *b, const gxbp_box *box) {
     }
 }
 
+/* Opens states in what lies below box i of level l of an operand's tree. A flat is marked dirty and listed in
+   b->work.visits, so that it is visited once. */
+static GXBP_RARE void gxbp_open_below(gxb_boolean *b, const gxbp_operand *o, uint32_t l, uint32_t i,
+                                      const gxbp_box *box, int axis) {
+    uint32_t meets[GXBP_LEAF], c;
+    if (!gxbp_box_meets(box, &b->in.boxes[o->tree.first + o->tree.level[l] + i])) return;
+    if (l > 0) {
+        for (c = 2 * i; c < 2 * i + 2 && c < o->tree.size[l - 1]; c++) gxbp_open_below(b, o, l - 1, c, box, axis);
+        return;
+    }
+    gxbp_test_leaf(&b->in.bounds[o->bounds + i], box, meets);
+    for (c = 0; c < GXBP_LEAF; c++) {
+        uint32_t s;
+        if (!meets[c]) continue;
+        s = gxbp_root(b, o->order[i * GXBP_LEAF + c]);
+        if (b->in.sources[s].flags & GXBP_FLAT) {
+            if (b->in.sources[s].flags & GXBP_DIRTY) continue;
+            b->in.sources[s].flags |= GXBP_DIRTY;
+            gxbp_push_visit(b, s);
+        }
+        gxbp_open_source(b, s, box, axis);
+    }
+}
+
+/* Opens the states of all subtriangles of older operands that may meet the box. */
+static void gxbp_open_states(gxb_boolean *b, const gxbp_box *box) {
+    uint32_t i;
+    int axis = 0, k;
+    for (k = 1; k < 3; k++)
+        if (box->high[k] - box->low[k] < box->high[axis] - box->low[axis]) axis = k;
+    b->work.visit_count = 0;
+    gxbp_find_operands(b, box, 0, b->winding.stated);
+    for (i = 0; i < b->work.found_count && b->error == GX_OK; i++) {
+        const gxbp_operand *o = &b->in.operands[b->work.found[i]];
+        gxbp_open_below(b, o, o->tree.levels - 1, 0, box, axis);
+    }
+    for (i = 0; i < b->work.visit_count; i++) b->in.sources[b->work.visits[i]].flags &= ~(uint32_t)GXBP_DIRTY;
+}
+
 /* The state of open subtriangle f beyond edge k of g, which is not open: f's own numbers; for new operands those of g,
  * changed by the labels of the edge. */
 static uint32_t gxbp_close_state(gxb_boolean *b, uint32_t g, int k, uint32_t f) {
-    const uint32_t n = b->in.operand_count, m = b->winding.stated, own = b->mesh.subtriangles[f].state & ~GXBP_OPEN,
-                   from = b->mesh.subtriangles[g].state;
+    const uint32_t m = b->winding.stated, own = b->mesh.subtriangles[f].state & ~GXBP_OPEN;
+    const gxbp_state *from = &b->winding.states[b->mesh.subtriangles[g].state];
     uint32_t list = b->mesh.subtriangles[g].near[k] == f ? b->mesh.subtriangles[g].labels[k] : GXBP_BARE, i;
-    int32_t *winding = gxbp_copy_winding(b, own);
-    int differs = 0;
-    if (winding == NULL) return own;
-    for (i = m; i < n; i++) winding[i] = b->winding.numbers[(size_t)from * n + i];
+    if (!gxbp_begin_draft(b, own)) return own;
+    for (i = from->first; i < from->first + from->count; i++)
+        if (b->winding.numbers[i].operand >= m)
+            gxbp_add_number(b, b->winding.numbers[i].operand, b->winding.numbers[i].winding);
     for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->mesh.links[list].next) {
         const uint32_t t = b->mesh.links[list].value;
         if (!(t & GXBP_EDGE_LABEL) && b->in.sources[t].operand >= m)
-            winding[b->in.sources[t].operand] += gxbp_label_step(b, g, k, t);
+            gxbp_add_number(b, b->in.sources[t].operand, gxbp_label_step(b, g, k, t));
     }
-    for (i = m; i < n; i++) differs = differs || winding[i] != 0;
-    return differs ? gxbp_find_state(b) : own;
+    return b->winding.draft_count > b->winding.states[own].count ? gxbp_find_state(b) : own;
 }
 
 /* Closes the states of open subtriangles, from neighbour to neighbour */
@@ -11485,10 +11900,9 @@ static GXBP_COLD void gxbp_close_states(gxb_boolean *b) {
     uint32_t f, i, pass;
     int k;
     b->work.pending_count = 0;
-    for (i = b->winding.stated; i < b->in.operand_count; i++) {
-        const gxbp_tree *tree = &b->in.operands[i].tree;
-        gxbp_open_states(b, &b->in.boxes[tree->first + tree->level[tree->levels - 1]]);
-    }
+    for (i = b->winding.stated; i < b->in.operand_count; i++) gxbp_open_states(b, gxbp_operand_box(b, i));
+    if (b->out.shown_count > 0 && GXBP_ROOM(b, mesh.changed, mesh.changed, b->work.pending_count))
+        for (i = 0; i < b->work.pending_count; i++) b->mesh.changed[b->mesh.changed_count++] = b->work.pending[i];
     for (pass = 0; pass < 2; pass++)
         for (i = 0; i < b->work.pending_count && b->error == GX_OK; i++) {
             f = b->work.pending[i];
@@ -11516,26 +11930,33 @@ static void gxbp_find_state_of(gxb_boolean *b, uint32_t f) {
 static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
     uint32_t s, f;
     if (b->error != GX_OK) return;
-    if (b->points.united || b->points.renamed) gxbp_rename_vertices(b);
-    if (!gxbp_lengthen_states(b)) return;
-    for (s = 0; s < b->in.operand_count; s++) b->in.operands[s].reached = s < b->winding.stated;
+    if (b->points.united) gxbp_rename_vertices(b);
+    if (b->winding.stated == 0) {
+        b->mesh.stated = 0;
+        memset(b->winding.steps, 0, sizeof b->winding.steps);
+        b->winding.state_count = b->winding.number_count = b->winding.listed = 0;
+    }
+    gxbp_note_intersections(b);
+    for (s = b->winding.stated; s < b->in.operand_count; s++) b->in.operands[s].reached = 0;
     b->winding.unreached = b->in.operand_count - b->winding.stated;
     if (b->winding.stated > 0) gxbp_close_states(b);
     b->work.pending_count = b->work.visit_count = 0;
     /* each source and each subtriangle is pushed at most once */
     if (!GXBP_ROOM(b, work.visits, work.visit, (size_t)b->in.source_count + b->mesh.subtriangle_count)) return;
     /* undivided sources first: their rays are cheap */
-    for (s = 0; s < b->in.source_count && b->error == GX_OK; s++) {
+    for (s = gxbp_new_sources(b); s < b->in.source_count && b->error == GX_OK; s++) {
         f = b->in.sources[s].subtriangle;
         if (b->in.sources[s].flags & GXBP_DIVIDED || f == GXB_NONE || b->mesh.subtriangles[f].state != GXB_NONE ||
             !gxbp_is_surface(b, f))
             continue;
         gxbp_find_state_of(b, f);
     }
-    for (f = 0; f < b->mesh.subtriangle_count; f++)
+    for (f = b->mesh.stated; f < b->mesh.subtriangle_count; f++)
         if (b->mesh.subtriangles[f].state == GXB_NONE && b->error == GX_OK && gxbp_is_surface(b, f))
             gxbp_find_state_of(b, f);
+    for (s = b->winding.stated; s < b->in.operand_count; s++) b->in.operands[s].reached = 1;
     b->winding.stated = b->in.operand_count;
+    b->mesh.stated = b->mesh.subtriangle_count;
 }
 
 /* >>result: subtriangles between inside and outside ---------------------------------------------------------------- */
@@ -11672,10 +12093,16 @@ static GXBP_APART int gxbp_more_triangles(gxb_boolean *b, size_t extra) {
            GXBP_ROOM(b, out.reversed, out.reversed, extra) && GXBP_ROOM(b, out.sources, out.triangle, extra);
 }
 
-/* reversed: the outside is behind the subtriangle's plane. */
+/* Names triangle i's source, and the subtriangle that it shows. reversed: the outside is behind the subtriangle's
+ * plane. */
+static inline void gxbp_name_triangle(gxb_boolean *b, uint32_t i, uint32_t f, int reversed, uint32_t source) {
+    gxbp_name_source(b, source, 3, &b->out.operands[i], &b->out.sources[i]);
+    b->out.subtriangles[i] = 2 * f + (uint32_t)reversed;
+    b->out.reversed[i] = reversed != (gxbp_facing(b, b->mesh.subtriangles[f].source, source) < 0);
+}
+
 static void gxbp_emit(gxb_boolean *b, uint32_t *vertex, uint32_t f, int reversed, uint32_t source) {
     const uint32_t n = b->out.corner_count, *v = b->mesh.subtriangles[f].v;
-    uint32_t i;
     if (!GXBP_ROOM(b, out.triangles, out.corner, 3) ||
         (b->out.triangle_count == b->out.triangle_capacity && !gxbp_more_triangles(b, 1)))
         return;
@@ -11683,11 +12110,10 @@ static void gxbp_emit(gxb_boolean *b, uint32_t *vertex, uint32_t f, int reversed
     b->out.triangles[n + 1] = gxbp_out_vertex(b, vertex, v[reversed ? 2 : 1]);
     b->out.triangles[n + 2] = gxbp_out_vertex(b, vertex, v[reversed ? 1 : 2]);
     b->out.corner_count += 3;
-    i = b->out.triangle_count++;
+    gxbp_name_triangle(b, b->out.triangle_count++, f, reversed, source);
     b->out.operand_count++;
-    gxbp_name_source(b, source, 3, &b->out.operands[i], &b->out.sources[i]);
-    b->out.subtriangles[b->out.subtriangle_count++] = 2 * f + (uint32_t)reversed;
-    b->out.reversed[b->out.reversed_count++] = reversed != (gxbp_facing(b, b->mesh.subtriangles[f].source, source) < 0);
+    b->out.subtriangle_count++;
+    b->out.reversed_count++;
 }
 
 static GXBP_APART void gxbp_set_triangle_count(gxb_boolean *b, uint32_t n) {
@@ -11695,12 +12121,76 @@ static GXBP_APART void gxbp_set_triangle_count(gxb_boolean *b, uint32_t n) {
     b->out.triangle_count = b->out.operand_count = b->out.subtriangle_count = b->out.reversed_count = n;
 }
 
+/* What a subtriangle shows in the result: a triangle that faces as its plane does, one that faces against it. A sheet
+ * shows both. GXBP_SHOWS_SHEETS: it is inside on both sides, where only sheets show. */
+enum { GXBP_SHOWS = 1, GXBP_SHOWS_BACK = 2, GXBP_SHOWS_SHEETS = 4 };
+
+/* Of the last subtriangle judged, if only its own source covers it; else state is GXB_NONE. */
+typedef struct gxbp_judgement {
+    uint32_t state, operand, shows;
+} gxbp_judgement;
+
+static GXBP_APART void gxbp_judge_sides(gxb_boolean *b, uint32_t f, gxbp_judgement *last) {
+    const uint32_t behind = gxbp_state_behind(b, f); /* may move the states */
+    const gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
+    const uint32_t back = gxbp_is_inside(b, behind), front = gxbp_is_inside(b, sub->state);
+    last->state = sub->covers == GXB_NONE ? sub->state : GXB_NONE;
+    last->operand = b->in.sources[sub->source].operand;
+    if (front != 0)
+        last->shows = back != 0 ? GXBP_SHOWS_SHEETS : GXBP_SHOWS_BACK;
+    else
+        last->shows = back != 0 ? GXBP_SHOWS : 0;
+}
+
+static inline uint32_t gxbp_judge_subtriangle(gxb_boolean *b, uint32_t f, gxbp_judgement *last) {
+    const gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
+    if (!gxbp_is_surface(b, f)) return 0;
+    if (sub->covers != GXB_NONE || sub->state != last->state || b->in.sources[sub->source].operand != last->operand)
+        gxbp_judge_sides(b, f, last);
+    if (last->shows != GXBP_SHOWS_SHEETS) return last->shows;
+    return gxbp_cover_of(b, f, 1) != GXB_NONE ? GXBP_SHOWS | GXBP_SHOWS_BACK : 0;
+}
+
+/* Room for what subtriangles show; those that are new show nothing yet. */
+static int gxbp_show_room(gxb_boolean *b) {
+    const uint32_t n = b->out.shown_count, added = b->mesh.subtriangle_count - n;
+    if (!GXBP_ROOM(b, out.shown, out.shown, added)) return 0;
+    memset(b->out.shown + n, 0, added);
+    b->out.shown_count = b->mesh.subtriangle_count;
+    return 1;
+}
+
+/* Does what an older evaluation judged hold, apart from what has changed? An intersection leaves nothing outside of it;
+ * what the caller's function says is not known. */
+static int gxbp_judgements_hold(const gxb_boolean *b) {
+    return b->out.shown_count > 0 && b->options.inside == NULL &&
+           b->in.operands[b->in.operand_count - 1].narrowed < b->out.judged;
+}
+
+/* Judges what has changed since the last evaluation. */
+static GXBP_COLD void gxbp_judge_changed(gxb_boolean *b) {
+    gxbp_judgement last = {GXB_NONE, GXB_NONE, 0};
+    uint32_t i, f = b->out.shown_count;
+    if (!gxbp_show_room(b)) return;
+    for (i = 0; i < b->mesh.changed_count; i++)
+        b->out.shown[b->mesh.changed[i]] = (uint8_t)gxbp_judge_subtriangle(b, b->mesh.changed[i], &last);
+    for (; f < b->mesh.subtriangle_count; f++) b->out.shown[f] = (uint8_t)gxbp_judge_subtriangle(b, f, &last);
+}
+
+static void gxbp_emit_shown(gxb_boolean *b, uint32_t *vertex, uint32_t f, uint32_t shows) {
+    const int sheet = shows == (GXBP_SHOWS | GXBP_SHOWS_BACK);
+    const uint32_t source = gxbp_cover_of(b, f, sheet);
+    if (shows & GXBP_SHOWS) gxbp_emit(b, vertex, f, 0, source);
+    if (shows & GXBP_SHOWS_BACK) gxbp_emit(b, vertex, f, 1, source);
+}
+
 static GXBP_APART void gxbp_extract(gxb_boolean *b) {
-    uint32_t *vertex, f, state = GXB_NONE, operand = GXB_NONE; /* of the last subtriangle that only its own source
-                                                                  covers */
-    int front_in = 0, back_in = 0;
+    const int judged = gxbp_judgements_hold(b);
+    gxbp_judgement last = {GXB_NONE, GXB_NONE, 0};
+    uint32_t *vertex, f;
+    if (judged) gxbp_judge_changed(b);
     vertex = (uint32_t *)gxbp_borrow(b, b->points.vertex_count * sizeof *vertex);
-    if (vertex == NULL) return;
+    if (vertex == NULL || !gxbp_show_room(b)) return;
     memset(vertex, 0xff, b->points.vertex_count * sizeof *vertex);
     gxbp_set_triangle_count(b, 0);
     b->out.point_count = b->out.vertex_count = b->out.origin_count = 0;
@@ -11708,24 +12198,11 @@ static GXBP_APART void gxbp_extract(gxb_boolean *b) {
         !GXBP_ROOM(b, out.triangles, out.corner, 3 * (size_t)(b->mesh.subtriangle_count / 2)))
         return;
     for (f = 0; f < b->mesh.subtriangle_count && b->error == GX_OK; f++) {
-        const gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
-        uint32_t source;
-        if (!gxbp_is_surface(b, f)) continue;
-        if (sub->covers != GXB_NONE || sub->state != state || b->in.sources[sub->source].operand != operand) {
-            const uint32_t behind = gxbp_state_behind(b, f); /* may move the states */
-            back_in = b->winding.inside[behind] != 0;
-            front_in = b->winding.inside[sub->state] != 0;
-            state = sub->covers == GXB_NONE ? sub->state : GXB_NONE;
-            operand = b->in.sources[sub->source].operand;
-        }
-        if (front_in != back_in) {
-            source = gxbp_cover_of(b, f, 0);
-            gxbp_emit(b, vertex, f, front_in, source);
-        } else if (front_in && (source = gxbp_cover_of(b, f, 1)) != GXB_NONE) {
-            gxbp_emit(b, vertex, f, 0, source);
-            gxbp_emit(b, vertex, f, 1, source);
-        }
+        if (!judged) b->out.shown[f] = (uint8_t)gxbp_judge_subtriangle(b, f, &last);
+        if (b->out.shown[f] != 0) gxbp_emit_shown(b, vertex, f, b->out.shown[f]);
     }
+    b->out.judged = b->in.operand_count;
+    b->kept.valid = 0;
 }
 
 static uint32_t gxbp_out_corner(const gxb_boolean *b, uint32_t t, uint32_t k) {
@@ -11769,15 +12246,17 @@ static GXBP_COLD void gxbp_drop_lonely(gxb_boolean *b, uint32_t *map) {
     }
 }
 
+static void gxbp_round_vertex(gxb_boolean *b, uint32_t i) {
+    gxbp_round_point(b, b->out.points[i], b->out.vertices + 3 * (size_t)i);
+    gxbp_describe_point(b, b->out.points[i], &b->out.origins[i]);
+}
+
 static GXBP_APART void gxbp_round_vertices(gxb_boolean *b) {
     uint32_t i;
     if (b->error != GX_OK || !GXBP_ROOM(b, out.vertices, out.vertex, 3 * (size_t)b->out.point_count) ||
         !GXBP_ROOM(b, out.origins, out.origin, b->out.point_count))
         return;
-    for (i = 0; i < b->out.point_count; i++) {
-        gxbp_round_point(b, b->out.points[i], b->out.vertices + 3 * (size_t)i);
-        gxbp_describe_point(b, b->out.points[i], &b->out.origins[i]);
-    }
+    for (i = 0; i < b->out.point_count; i++) gxbp_round_vertex(b, i);
     b->out.vertex_count = 3 * b->out.point_count;
     b->out.origin_count = b->out.point_count;
 }
@@ -11798,9 +12277,11 @@ static GXBP_COLD int gxbp_faces_exactly(gxb_boolean *b, uint32_t plane, const do
 /* Sign of n.((q - p) x (r - p)) for a plane's normal n and rounded points, exact. The filter's bound is that of
    gxbp_rough_volume, with n for d0. */
 static int gxbp_faces(gxb_boolean *b, uint32_t plane, const double *p, const double *q, const double *r) {
-    const gxb_plane_filter *f = &b->store.planes[plane].filter;
+    const gxb_plane_filter *f;
     double u[3], v[3], m[3], E, N;
     int k, sign = 0;
+    if (plane == GXB_NONE) return 1; /* no memory for it */
+    f = &b->store.planes[plane].filter;
     /* else coordinates are not the frame's, and may be too large or too small to filter */
     if (b->store.shift == 0) {
         for (k = 0; k < 3; k++) {
@@ -11832,6 +12313,245 @@ static GXBP_APART void gxbp_find_defects(gxb_boolean *b) {
         if (GXBP_ROOM(b, out.defects, out.defect, 1)) b->out.defects[b->out.defect_count++] = t;
     }
     b->out.examined = b->error == GX_OK;
+}
+
+/* >>retained: a result that keeps its place ------------------------------------------------------------------------ */
+/* In: the subtriangles that an evaluation changed, and the result of the evaluation before. Out: the result, changed
+   where it differs, and what differs. Triangles stay where they are, unless they fill the place of one that has gone.
+   Vertices stay. Touches the output and what keeps it. */
+
+/* Appends to an array count words that are GXB_NONE. */
+#define GXBP_PAD(b, array, counter, count)                                                                             \
+    ((count) <= (b)->counter##_count ||                                                                                \
+     (GXBP_ROOM(b, array, counter, (count) - (b)->counter##_count) &&                                                  \
+      (memset((b)->array + (b)->counter##_count, 0xff, ((count) - (b)->counter##_count) * sizeof *(b)->array),         \
+       (b)->counter##_count = (uint32_t)(count), 1)))
+
+static void gxbp_note_vertex(gxb_boolean *b, uint32_t v) {
+    if (GXBP_ROOM(b, kept.new_vertices, kept.new_vertex, 1)) b->kept.new_vertices[b->kept.new_vertex_count++] = v;
+}
+
+static void gxbp_note_triangle(gxb_boolean *b, uint32_t t) {
+    if (GXBP_ROOM(b, kept.new_triangles, kept.new_triangle, 1)) b->kept.new_triangles[b->kept.new_triangle_count++] = t;
+}
+
+/* The vertex of a point for one more corner */
+static uint32_t gxbp_keep_vertex(gxb_boolean *b, uint32_t point) {
+    uint32_t v = b->kept.vertices[point];
+    if (v == GXB_NONE) {
+        if (b->kept.spare_count > 0)
+            v = b->kept.spare[--b->kept.spare_count];
+        else {
+            if (!GXBP_ROOM(b, out.points, out.point, 1) || !GXBP_ROOM(b, kept.uses, kept.use, 1)) return 0;
+            v = b->out.point_count++;
+            b->kept.use_count++;
+        }
+        b->out.points[v] = point;
+        b->kept.uses[v] = 0; /* a spare one has GXB_NONE */
+        b->kept.vertices[point] = v;
+        gxbp_note_vertex(b, v);
+    }
+    b->kept.uses[v]++;
+    return v;
+}
+
+/* A place for one more triangle: that of one that has gone, or the next. GXB_NONE: no memory. */
+static uint32_t gxbp_keep_place(gxb_boolean *b) {
+    if (b->kept.hole_count > 0) return b->kept.holes[--b->kept.hole_count];
+    if (!GXBP_ROOM(b, out.triangles, out.corner, 3) || !gxbp_more_triangles(b, 1)) return GXB_NONE;
+    gxbp_set_triangle_count(b, b->out.triangle_count + 1);
+    return b->out.triangle_count - 1;
+}
+
+static void gxbp_keep_triangle(gxb_boolean *b, uint32_t f, int reversed, uint32_t source) {
+    const uint32_t t = gxbp_keep_place(b), *v = b->mesh.subtriangles[f].v;
+    uint32_t k;
+    if (t == GXB_NONE) return;
+    for (k = 0; k < 3; k++) b->out.triangles[3 * t + k] = gxbp_keep_vertex(b, v[reversed && k > 0 ? 3 - k : k]);
+    gxbp_name_triangle(b, t, f, reversed, source);
+    b->kept.places[2 * f + (uint32_t)reversed] = t;
+    gxbp_note_triangle(b, t);
+}
+
+/* Takes a triangle out of the result. Its place is a hole. Vertices without triangles are noted, and sorted out later.
+ */
+static void gxbp_drop_triangle(gxb_boolean *b, uint32_t t) {
+    uint32_t k;
+    if (!GXBP_ROOM(b, kept.holes, kept.hole, 1)) return;
+    for (k = 0; k < 3; k++) {
+        const uint32_t v = b->out.triangles[3 * t + k];
+        if (--b->kept.uses[v] == 0) gxbp_note_vertex(b, v);
+    }
+    b->kept.places[b->out.subtriangles[t]] = GXB_NONE;
+    b->out.subtriangles[t] = GXB_NONE;
+    b->kept.holes[b->kept.hole_count++] = t;
+}
+
+/* Does triangle t have the corners of subtriangle f? */
+static int gxbp_still_shows(const gxb_boolean *b, uint32_t t, uint32_t f, int reversed) {
+    const gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
+    uint32_t k;
+    if (sub->source == GXB_NONE) return 0;
+    for (k = 0; k < 3; k++)
+        if (b->out.points[b->out.triangles[3 * t + k]] != sub->v[reversed && k > 0 ? 3 - k : k]) return 0;
+    return 1;
+}
+
+/* Takes out triangles of a subtriangle that has other corners now. */
+static void gxbp_drop_old(gxb_boolean *b, uint32_t f) {
+    int side;
+    for (side = 0; side < 2; side++) {
+        const uint32_t t = b->kept.places[2 * f + (uint32_t)side];
+        if (t != GXB_NONE && !gxbp_still_shows(b, t, f, side)) {
+            gxbp_drop_triangle(b, t);
+            b->out.shown[f] &= (uint8_t) ~(side ? GXBP_SHOWS_BACK : GXBP_SHOWS);
+        }
+    }
+}
+
+/* Makes the result show what a subtriangle shows now. */
+static void gxbp_show_again(gxb_boolean *b, uint32_t f, gxbp_judgement *last) {
+    const uint32_t now = gxbp_judge_subtriangle(b, f, last), before = b->out.shown[f];
+    int side;
+    if (now == before) return;
+    for (side = 0; side < 2; side++) {
+        const uint32_t bit = side ? GXBP_SHOWS_BACK : GXBP_SHOWS;
+        if (before & ~now & bit) gxbp_drop_triangle(b, b->kept.places[2 * f + (uint32_t)side]);
+        if (now & ~before & bit)
+            gxbp_keep_triangle(b, f, side, gxbp_cover_of(b, f, now == (GXBP_SHOWS | GXBP_SHOWS_BACK)));
+    }
+    b->out.shown[f] = (uint8_t)now;
+}
+
+/* Points that have other names or definitions keep their vertices. */
+static GXBP_COLD void gxbp_rename_kept(gxb_boolean *b) {
+    uint32_t i;
+    for (i = 0; i < b->points.dropped_count; i++) {
+        const uint32_t old = b->points.dropped[i], point = gxbp_same(b, old), v = b->kept.vertices[old];
+        if (v == GXB_NONE) continue;
+        b->kept.vertices[old] = GXB_NONE;
+        b->kept.vertices[point] = v;
+        b->out.points[v] = point;
+        gxbp_note_vertex(b, v);
+    }
+}
+
+/* The last triangles fill the holes. */
+static void gxbp_fill_holes(gxb_boolean *b) {
+    uint32_t n = b->out.triangle_count, i;
+    for (i = 0; i < b->kept.hole_count; i++) {
+        const uint32_t t = b->kept.holes[i];
+        while (n > 0 && b->out.subtriangles[n - 1] == GXB_NONE) n--;
+        if (t >= n) continue;
+        memcpy(b->out.triangles + 3 * (size_t)t, b->out.triangles + 3 * (size_t)--n, 3 * sizeof *b->out.triangles);
+        gxbp_copy_origin(b, t, n);
+        b->kept.places[b->out.subtriangles[t]] = t;
+        gxbp_note_triangle(b, t);
+    }
+    b->kept.hole_count = 0;
+    gxbp_set_triangle_count(b, n);
+}
+
+/* Rounds new vertices; those without triangles become spare. */
+static void gxbp_finish_vertices(gxb_boolean *b) {
+    const uint32_t added = b->out.point_count - b->out.origin_count;
+    uint32_t i;
+    if (b->error != GX_OK || !GXBP_ROOM(b, out.vertices, out.vertex, 3 * (size_t)added) ||
+        !GXBP_ROOM(b, out.origins, out.origin, added))
+        return;
+    for (i = 0; i < b->kept.new_vertex_count; i++) {
+        const uint32_t v = b->kept.new_vertices[i];
+        if (b->kept.uses[v] == GXB_NONE) continue;
+        if (b->kept.uses[v] > 0)
+            gxbp_round_vertex(b, v);
+        else if (GXBP_ROOM(b, kept.spare, kept.spare, 1)) {
+            b->kept.vertices[b->out.points[v]] = GXB_NONE;
+            b->kept.uses[v] = GXB_NONE;
+            b->kept.spare[b->kept.spare_count++] = v;
+        }
+    }
+    b->out.vertex_count = 3 * b->out.point_count;
+    b->out.origin_count = b->out.point_count;
+}
+
+/* There is no result to change, or its vertices were rounded in another way: the next one is made from nothing. */
+static void gxbp_begin_kept(gxb_boolean *b) {
+    gxbp_set_triangle_count(b, 0);
+    b->out.point_count = b->out.vertex_count = b->out.origin_count = b->out.shown_count = 0;
+    b->kept.place_count = b->kept.vertex_count = b->kept.use_count = b->kept.spare_count = b->kept.hole_count = 0;
+    b->kept.fine = gxbp_is_fine(b);
+}
+
+/* Changes the result of the last evaluation into that of this one. */
+static GXBP_COLD void gxbp_patch(gxb_boolean *b) {
+    gxbp_judgement last = {GXB_NONE, GXB_NONE, 0};
+    uint32_t i, f;
+    int all;
+    if (!b->kept.valid || b->kept.fine != gxbp_is_fine(b)) gxbp_begin_kept(b);
+    all = !gxbp_judgements_hold(b);
+    f = all ? 0 : b->out.shown_count;
+    b->kept.valid = 0;
+    b->kept.new_vertex_count = b->kept.new_triangle_count = 0;
+    if (!gxbp_show_room(b) || !GXBP_PAD(b, kept.places, kept.place, 2 * (size_t)b->mesh.subtriangle_count) ||
+        !GXBP_PAD(b, kept.vertices, kept.vertex, b->points.vertex_count))
+        return;
+    gxbp_rename_kept(b);
+    for (i = 0; i < b->mesh.changed_count; i++) gxbp_drop_old(b, b->mesh.changed[i]);
+    for (i = 0; i < b->mesh.changed_count && b->error == GX_OK; i++) gxbp_show_again(b, b->mesh.changed[i], &last);
+    for (; f < b->mesh.subtriangle_count && b->error == GX_OK; f++) gxbp_show_again(b, f, &last);
+    gxbp_fill_holes(b);
+    gxbp_finish_vertices(b);
+    b->out.judged = b->in.operand_count;
+    b->kept.valid = b->error == GX_OK;
+}
+
+/* Sorts words; work: room for half of them */
+static void gxbp_sort_words(uint32_t *p, uint32_t count, uint32_t *work) {
+    const uint32_t half = count / 2;
+    uint32_t i, j, k;
+    if (count < 2) return;
+    gxbp_sort_words(p, half, work);
+    gxbp_sort_words(p + half, count - half, work);
+    memcpy(work, p, half * sizeof *p);
+    for (i = 0, j = half, k = 0; i < half; k++) p[k] = j < count && p[j] < work[i] ? p[j++] : work[i++];
+}
+
+/* Turns a list of indices into ranges below end. ranges: room for one for each of them. Returns their number. */
+static uint32_t gxbp_make_ranges(gxb_boolean *b, uint32_t *list, uint32_t count, uint32_t end, gxb_range *ranges) {
+    uint32_t *work = (uint32_t *)gxbp_borrow(b, count * sizeof *work), i, n = 0;
+    if (work == NULL) return 0;
+    gxbp_sort_words(list, count, work);
+    for (i = 0; i < count && list[i] < end; i++) {
+        if (i > 0 && list[i] == list[i - 1]) continue;
+        if (n > 0 && ranges[n - 1].first + ranges[n - 1].count == list[i]) {
+            ranges[n - 1].count++;
+            continue;
+        }
+        ranges[n].first = list[i];
+        ranges[n++].count = 1;
+    }
+    return n;
+}
+
+/* Ranges of what the last evaluation changed; all, if its result was made from nothing. */
+static GXBP_COLD void gxbp_find_changes(gxb_boolean *b) {
+    gxbp_kept *kept = &b->kept;
+    if (!kept->valid) kept->new_vertex_count = kept->new_triangle_count = 0;
+    if (!GXBP_ROOM(b, kept.vertex_ranges, kept.vertex_range, kept->new_vertex_count + 1) ||
+        !GXBP_ROOM(b, kept.triangle_ranges, kept.triangle_range, kept->new_triangle_count + 1))
+        return;
+    if (kept->valid) {
+        kept->vertex_range_count =
+            gxbp_make_ranges(b, kept->new_vertices, kept->new_vertex_count, b->out.point_count, kept->vertex_ranges);
+        kept->triangle_range_count = gxbp_make_ranges(b, kept->new_triangles, kept->new_triangle_count,
+                                                      b->out.triangle_count, kept->triangle_ranges);
+        return;
+    }
+    kept->vertex_range_count = b->out.point_count > 0;
+    kept->triangle_range_count = b->out.triangle_count > 0;
+    kept->vertex_ranges[0].first = kept->triangle_ranges[0].first = 0;
+    kept->vertex_ranges[0].count = b->out.point_count;
+    kept->triangle_ranges[0].count = b->out.triangle_count;
 }
 
 /* >>coarse: fewer triangles of the same surface -------------------------------------------------------------------- */
@@ -12435,7 +13155,8 @@ static GXBP_COLD int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p,
 /* A ray from a triangle. It begins on the side on which the triangle's solid lies. On the other side of a sheet another
  * solid may begin. */
 static GXBP_COLD int gxbp_ray_from(gxb_boolean *b, gxbp_ray *ray, uint32_t t) {
-    const int turned = b->out.subtriangles[t] & 1 ? 1 : -1, moved = gxbp_moved_side(b, gxbp_out_plane(b, t));
+    const uint32_t plane = gxbp_out_plane(b, t);
+    const int turned = b->out.subtriangles[t] & 1 ? 1 : -1, moved = plane == GXB_NONE ? 0 : gxbp_moved_side(b, plane);
     gxbp_set_ray(b, ray, b->out.subtriangles[t] / 2);
     return moved == 0 ? 1 : moved * turned;
 }
@@ -12989,6 +13710,10 @@ static const gxbp_array gxbp_boolean_arrays[] = {/* all that grow */
                                                  GXBP_ARRAY(gxb_boolean, in.sources, in.source),
                                                  GXBP_ARRAY(gxb_boolean, in.bounds, in.bound),
                                                  GXBP_ARRAY(gxb_boolean, in.boxes, in.box),
+                                                 GXBP_ARRAY(gxb_boolean, in.leaves, in.leaf),
+                                                 GXBP_ARRAY(gxb_boolean, in.groups, in.group),
+                                                 GXBP_ARRAY(gxb_boolean, points.dropped, points.dropped),
+                                                 GXBP_ARRAY(gxb_boolean, work.found, work.found),
                                                  GXBP_ARRAY(gxb_boolean, points.vertices, points.vertex),
                                                  GXBP_ARRAY(gxb_boolean, mesh.subtriangles, mesh.subtriangle),
                                                  GXBP_ARRAY(gxb_boolean, mesh.links, mesh.link),
@@ -12997,7 +13722,6 @@ static const gxbp_array gxbp_boolean_arrays[] = {/* all that grow */
                                                  GXBP_ARRAY(gxb_boolean, crossings.edge_points, crossings.edge_point),
                                                  GXBP_ARRAY(gxb_boolean, crossings.hits, crossings.hit),
                                                  GXBP_ARRAY(gxb_boolean, crossings.dirty, crossings.dirty),
-                                                 GXBP_ARRAY(gxb_boolean, mesh.divided, mesh.divided),
                                                  GXBP_ARRAY(gxb_boolean, points.projected, points.projected),
                                                  GXBP_ARRAY(gxb_boolean, work.rights, work.right),
                                                  GXBP_ARRAY(gxb_boolean, work.lefts, work.left),
@@ -13010,7 +13734,8 @@ static const gxbp_array gxbp_boolean_arrays[] = {/* all that grow */
                                                  GXBP_ARRAY(gxb_boolean, work.room, work.room),
                                                  GXBP_ARRAY(gxb_boolean, work.ordered, work.ordered),
                                                  GXBP_ARRAY(gxb_boolean, winding.numbers, winding.number),
-                                                 GXBP_ARRAY(gxb_boolean, winding.inside, winding.inside),
+                                                 GXBP_ARRAY(gxb_boolean, winding.states, winding.state),
+                                                 GXBP_ARRAY(gxb_boolean, winding.vector, winding.vector),
                                                  GXBP_ARRAY(gxb_boolean, out.vertices, out.vertex),
                                                  GXBP_ARRAY(gxb_boolean, out.origins, out.origin),
                                                  GXBP_ARRAY(gxb_boolean, out.points, out.point),
@@ -13024,7 +13749,18 @@ static const gxbp_array gxbp_boolean_arrays[] = {/* all that grow */
                                                  GXBP_ARRAY(gxb_boolean, out.reversed, out.reversed),
                                                  GXBP_ARRAY(gxb_boolean, out.sides, out.side),
                                                  GXBP_ARRAY(gxb_boolean, out.eulers, out.euler),
-                                                 GXBP_ARRAY(gxb_boolean, out.twins, out.twin)};
+                                                 GXBP_ARRAY(gxb_boolean, out.twins, out.twin),
+                                                 GXBP_ARRAY(gxb_boolean, out.shown, out.shown),
+                                                 GXBP_ARRAY(gxb_boolean, mesh.changed, mesh.changed),
+                                                 GXBP_ARRAY(gxb_boolean, kept.places, kept.place),
+                                                 GXBP_ARRAY(gxb_boolean, kept.vertices, kept.vertex),
+                                                 GXBP_ARRAY(gxb_boolean, kept.uses, kept.use),
+                                                 GXBP_ARRAY(gxb_boolean, kept.spare, kept.spare),
+                                                 GXBP_ARRAY(gxb_boolean, kept.holes, kept.hole),
+                                                 GXBP_ARRAY(gxb_boolean, kept.new_vertices, kept.new_vertex),
+                                                 GXBP_ARRAY(gxb_boolean, kept.new_triangles, kept.new_triangle),
+                                                 GXBP_ARRAY(gxb_boolean, kept.vertex_ranges, kept.vertex_range),
+                                                 GXBP_ARRAY(gxb_boolean, kept.triangle_ranges, kept.triangle_range)};
 
 static GXBP_COLD void gxbp_drop_boolean(gxb_boolean *b) {
     uint32_t i;
@@ -13098,6 +13834,12 @@ GXFEM_API gx_result gxb_boolean_set_mend(gxb_boolean *boolean, int mend, gx_fail
     return gxbp_end(failure, GX_OK);
 }
 
+GXFEM_API gx_result gxb_boolean_set_retained(gxb_boolean *boolean, int retained, gx_failure *failure) {
+    if (boolean == NULL) return gxbp_refuse(failure, "boolean");
+    boolean->options.patch = retained != 0 ? gxbp_patch : NULL;
+    return gxbp_end(failure, GX_OK);
+}
+
 static gx_result gxbp_check_operand(const gxb_boolean *b, const gxb_operand *o, gx_failure *failure) {
     size_t i;
     if (o->operation > GXB_SPLIT) return gxbp_refuse(failure, "operation");
@@ -13155,8 +13897,9 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
 static GXBP_COLD void gxbp_forget_arrangement(gxb_boolean *b) {
     uint32_t s;
     b->mesh.subtriangle_count = b->mesh.link_count = b->crossings.segment_count = b->crossings.edge_count =
-        b->crossings.edge_point_count = b->crossings.hit_count = b->crossings.dirty_count = b->mesh.divided_count = 0;
-    b->crossings.arranged = b->crossings.segment_mark = b->winding.stated = 0;
+        b->crossings.edge_point_count = b->crossings.hit_count = b->crossings.dirty_count = 0;
+    b->crossings.arranged = b->crossings.segment_mark = b->winding.stated = b->out.shown_count = 0;
+    b->kept.valid = 0;
     for (s = 0; s < b->in.source_count; s++) {
         b->in.sources[s].flags &= (uint32_t)GXBP_DEGENERATE;
         gxbp_reset_source(b, s);
@@ -13175,8 +13918,10 @@ static void gxbp_presize_planes(gxb_boolean *b) {
 static GXBP_APART void gxbp_arrange(gxb_boolean *b) {
     uint32_t i, j;
     gxbp_presize_planes(b);
-    for (i = b->crossings.arranged; i < b->in.operand_count; i++)
-        for (j = 0; j <= i && b->error == GX_OK; j++) gxbp_meet_operands(b, i, j);
+    for (i = b->crossings.arranged; i < b->in.operand_count; i++) {
+        gxbp_find_operands(b, gxbp_operand_box(b, i), 0, i + 1);
+        for (j = 0; j < b->work.found_count && b->error == GX_OK; j++) gxbp_meet_operands(b, i, b->work.found[j]);
+    }
     gxbp_order_edges(b);
     if (b->error == GX_OK) gxbp_divide_dirty(b);
     gxbp_merge_points(b);
@@ -13205,10 +13950,15 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *res
     b->out.mended_count = 0;
     gxbp_arrange(b);
     gxbp_find_states(b);
-    if (b->error == GX_OK) gxbp_extract(b);
-    if (b->error == GX_OK && b->options.coarsen != NULL && b->out.triangle_count > 0) b->options.coarsen(b);
-    gxbp_round_vertices(b);
-    if (b->error == GX_OK && b->options.mend != NULL) b->options.mend(b);
+    if (b->options.patch != NULL && b->options.coarsen == NULL && b->options.mend == NULL) {
+        if (b->error == GX_OK) b->options.patch(b);
+    } else {
+        if (b->error == GX_OK) gxbp_extract(b);
+        if (b->error == GX_OK && b->options.coarsen != NULL && b->out.triangle_count > 0) b->options.coarsen(b);
+        gxbp_round_vertices(b);
+        if (b->error == GX_OK && b->options.mend != NULL) b->options.mend(b);
+    }
+    b->crossings.dirty_count = b->points.dropped_count = b->mesh.changed_count = 0;
     b->out.evaluated = b->error == GX_OK;
     if (b->out.evaluated)
         gxbp_show_result(b, result);
@@ -13252,6 +14002,18 @@ GXFEM_API gx_result gxb_boolean_defects(gxb_boolean *b, gxb_defects *defects, gx
     defects->triangles = b->out.defects;
     defects->count = b->out.defect_count;
     defects->mended_count = b->out.mended_count;
+    return GX_OK;
+}
+
+GXFEM_API gx_result gxb_boolean_changes(gxb_boolean *b, gxb_changes *changes, gx_failure *failure) {
+    const gx_result asked = gxbp_begin_query(b, changes, "changes", failure);
+    if (asked != GX_OK) return asked;
+    gxbp_find_changes(b);
+    if (gxbp_end(failure, b->error) != GX_OK) return b->error;
+    changes->vertices = b->kept.vertex_ranges;
+    changes->vertex_range_count = b->kept.vertex_range_count;
+    changes->triangles = b->kept.triangle_ranges;
+    changes->triangle_range_count = b->kept.triangle_range_count;
     return GX_OK;
 }
 
@@ -13302,6 +14064,7 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_REMOVED
 #undef GXBP_RIM
 #undef GXBP_OPEN
+#undef GXBP_PAD
 #undef GXBP_VERTEX_ERROR
 #undef GXBP_VOLUME_ERROR
 #undef GXBP_MEND_REACH

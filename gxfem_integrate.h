@@ -363,7 +363,7 @@ extern "C" {
 #define GXIP_LAMBDA_MAX 65536.0
 
 /* COLD functions are seldom called: kept out of line and compiled for size. */
-#if defined(__GNUC__)
+#if defined(__GNUC__) || defined(__clang__)
 #define GXIP_COLD __attribute__((cold, noinline))
 #else
 #define GXIP_COLD

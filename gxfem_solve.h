@@ -15,7 +15,7 @@
  *             1.0 / 6, {17, 8, 8, 8, 17, 8, 8, 17, 8, 17}, 0, 0};                   // m3; kg
  *         gxs_material material = {GXS_STABLE_NEO_HOOKEAN, 1e6, 0.4, 0, NULL, NULL};
  *         double displacement[12] = {0}, velocity[12] = {0};
- *         gxs_model model = {4, NULL, &element, 1, &material, 1, NULL, 0, NULL, 0, 0};
+ *         gxs_model model = {4, NULL, &element, 1, &material, 1, NULL, 0, NULL, 0, 0, NULL, 0};
  *         gxs_step_desc step = {0};
  *         gxs_solver *solver = NULL;
  *         gx_result result = gxs_solver_create(NULL, &solver, NULL);
@@ -37,17 +37,20 @@
  *   kernels:      >>svd stretches and rotations of F | >>material energies, stresses | >>tangent Hessian of one block |
  *                 >>element passes over one block
  *   chunks:       >>masses of parts of elements | >>order of elements | >>lanes of a chunk | >>chunks blocks, slots |
- *                 >>copies fixed, following, connected | >>followers constraints between copies
- *   structure:    >>transfer between levels | >>levels their patterns | >>pattern of level 1 | >>hierarchy all levels |
- *                 >>lights copies with next to no mass | >>sharing of memory | >>system a model in the solver's form
- *   operator:     >>forces energies, forces | >>blocks 3x3 blocks | >>product single precision | >>doubles double
- *                 precision | >>linearise Hessians, block diagonal
- *   multigrid:    >>galerkin coarse matrices | >>factor of the last level | >>assembly the assembled matrix |
- *                 >>smoother its step length | >>cycle the V-cycle
+ *                 >>affine elements with affine copies | >>copies fixed, following, connected |
+ *                 >>followers constraints between copies
+ *   structure:    >>transfer between levels | >>levels their patterns | >>nested level 1 of affine copies |
+ *                 >>pattern of level 1 | >>hierarchy all levels | >>lights copies with next to no mass |
+ *                 >>sharing of memory | >>system a model in the solver's form
+ *   operator:     >>rule elements with affine copies | >>forces energies, forces | >>blocks 3x3 blocks |
+ *                 >>product single precision | >>doubles double precision | >>linearise Hessians, block diagonal
+ *   multigrid:    >>galerkin coarse matrices | >>nesting those of affine copies | >>factor of the last level |
+ *                 >>assembly the assembled matrix | >>smoother its step length | >>cycle the V-cycle
  *   changes:      >>edits lanes that a cut changes | >>renewal copies and components | >>update levels, all of it
  *   steps:        >>components momentum | >>points springs, contact | >>cg conjugate gradients | >>ageing of coarse
  *                 matrices | >>sleep rest | >>balance residual, start | >>search lengths | >>integrators BDF,
- *                 midpoint | >>newton iterations, bound on E | >>midpoint second half, end of a step
+ *                 midpoint | >>newton iterations, bound on E | >>midpoint second half, end of a step | >>leapfrog
+ *                 explicit steps
  *   entrance:     >>check what is given | >>api the public functions | >>single a material at one F
  *
  * WORDS. Copy: a node's displacement for one connected set of cells. Component: copies joined by elements and
@@ -252,6 +255,8 @@ typedef struct gxs_constraint {
     double weight[4];   /* 1 in sum if the copy is to follow translations */
 } gxs_constraint;
 
+#define GXS_NOT_AFFINE UINT32_MAX /* see gxs_model.affine */
+
 /* Borrowed for the time of a call. */
 typedef struct gxs_model {
     size_t copy_count;
@@ -269,6 +274,14 @@ typedef struct gxs_model {
     /* names this numbering of copies. Springs, contact points, forces and targets of a step name the numbering that
      * they use; another one is GX_ERROR_STALE. 0 everywhere is fine as long as copies keep their numbers */
     uint64_t epoch;
+    /* copy_count; NULL: none. For an affine copy i the index of the first of three vectors, hidden ones, that follow
+     * each other below copy_count: the columns of A_i times affine_length. GXS_NOT_AFFINE for every other entry. Where
+     * an element has an affine copy, u = sum N_i (a_i + A_i (x - X_i)), with A = 0 for its other copies. So a sheet
+     * thinner than its elements bends as it should. A hidden vector is no element's copy, is held if its copy is, and
+     * follows and leads nothing; nor does an affine copy. A target of a held one is its A. Not with lumped_mass,
+     * GXS_MATRIX_ASSEMBLED and GXS_VOLUME_RATIO. */
+    const uint32_t *affine;
+    double affine_length; /* m, above 0 where copies are affine: about an element's size */
 } gxs_model;
 
 /* The change that a cut makes to a model. Borrowed for the time of a call. */
@@ -309,7 +322,7 @@ typedef struct gxs_solver_desc {
     gxs_matrix matrix;
 } gxs_solver_desc;
 
-/* How time is discretised. All are implicit and minimise a potential of the form of E above. */
+/* How time is discretised. All but GXS_EXPLICIT are implicit and minimise a potential of the form of E above. */
 typedef enum gxs_integrator {
     GXS_BDF1 = 0, /* backward Euler: first order, damps motion that it cannot resolve */
     GXS_BDF2,     /* second order, damps less; the first step is backward Euler */
@@ -319,7 +332,14 @@ typedef enum gxs_integrator {
     GXS_MIDPOINT,
     /* no inertia, velocities 0. dt 0: balance of forces; GX_ERROR_FREE if nothing holds a component. dt above 0: the
        mass over dt^2 holds every copy where it was, so that free components have an answer */
-    GXS_STATIC
+    GXS_STATIC,
+    /* leapfrog in substeps, for soft bodies in motion: second order, damps nothing. Mass is lumped; light copies get
+       0.3 % of the body's mass more. Forces are single precision. Stable neo-Hookean materials without damping, under
+       gravity and forces, without targets, springs, contact points, constraints or affine copies. Any other step is
+       backward Euler:
+       see gxs_step_report.substeps. So is one that would take more than 64 substeps of its own choice, one whose
+       elements are stretched too far for the substeps, and one in which energy would rise */
+    GXS_EXPLICIT
 } gxs_integrator;
 
 #define GXS_POINT_OWN  4  /* copies for which a point has room itself */
@@ -371,7 +391,8 @@ typedef struct gxs_step_desc {
     const double *targets;
     /* names the numbering of forces and targets: the model's, else GX_ERROR_STALE. Read if one of them is given */
     uint64_t epoch;
-    double mass_damping;        /* Rayleigh's alpha, 1/s, 0 or more: force -alpha M v */
+    double mass_damping; /* Rayleigh's alpha, 1/s, 0 or more: force -alpha M v */
+    uint32_t substeps;   /* GXS_EXPLICIT only: that many of dt; 0: as few as are cheap, for errors of about 1 % */
     uint32_t newton_iterations; /* at most; 0: 1 */
     /* stop at this residual (see gxs_step_report); 0: 1e-8, far below what one iteration leaves in motion */
     double newton_tolerance;
@@ -416,7 +437,8 @@ typedef struct gxs_step_report {
     gxs_stop stop;
     /* displacements solved for: three per copy that is awake, not held and follows nothing */
     size_t active_unknowns;
-    uint32_t newton_iterations; /* 0: the start was in balance to rounding */
+    uint32_t substeps;          /* of GXS_EXPLICIT; 0: the step was implicit */
+    uint32_t newton_iterations; /* 0: the start was in balance to rounding, or the step was explicit */
     uint32_t cg_iterations;     /* sum over Newton iterations */
     uint32_t line_search_steps; /* step lengths tried; sum over Newton iterations */
     /* |load - inertia - elastic| / (|load| + |inertia| + |elastic|) on copies that are not held; the larger of the two
@@ -452,7 +474,7 @@ typedef struct gxs_solver gxs_solver;
  * where they are. Both get the velocity of that motion. GX_ERROR_SEQUENCE: no model is set. GX_ERROR_DIVERGED and, with
  * GXS_STATIC, GX_ERROR_FREE leave displacement and velocity unchanged. A residual above newton_tolerance when the
  * iterations are used up is no error: see the report. Allocates (GX_ERROR_MEMORY) only if there are more springs and
- * contact points, or copies of them, than ever before. */
+ * contact points, or copies of them, than ever before, and in the first step of a model with GXS_EXPLICIT. */
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
                                     double *velocity, gxs_step_report *report, gx_failure *failure);
 /* Checks the parts of a step's description that need no solver: its numbers, springs, points and planes, and whether
@@ -471,8 +493,8 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
  * group or element), or a constraint is not allowed (its index). GX_ERROR_LIMIT: the change does not fit. Either the
  * matrix is assembled, mass is lumped, GXS_VOLUME_RATIO is used, empty lanes exceed a quarter of the elements by two
  * chunks, GXS_AUTOMATIC would now choose otherwise, a copy is held that was not or the other way round, two old copies
- * (origins without + 1) are the same, no element is left, or an element that stays has lost a copy. After this and
- * GX_ERROR_MEMORY no model is set: set one. On other errors the old model stays. */
+ * (origins without + 1) are the same, no element is left, an element that stays has lost a copy, or the model has
+ * affine copies. After this and GX_ERROR_MEMORY no model is set: set one. On other errors the old model stays. */
 GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure);
 /* Sets to 0 the rest times of copies whose state has been written since the last step. Their components then wake even
  * if another model is set before the next step, or another solver takes that step. Vectors use the present numbering;
@@ -631,6 +653,33 @@ extern "C" {
  * below this. */
 #define GXSP_PARALLEL 1e-5
 
+/* Explicit steps. Light copies get this share of the mass of all more: their own motion then allows substeps as long as
+ * that of whole elements. On an accordion of cut cubes it doubles them, and changes the motion by 7e-4. */
+#define GXSP_LEAP_MASS 0.003
+
+/* The factor on L: the power method ends a little below the largest eigenvalue. Should a step create energy all the
+ * same, the next factor, GXSP_LEAP_RAISE times as large, is tried, as many times as it takes to reach the last. */
+#define GXSP_LEAP_FACTOR 1.1
+#define GXSP_LEAP_RAISE  1.3
+#define GXSP_LEAP_LAST   2.2
+
+/* The degree of the filter at rest if substeps are not given: a product takes a third to a quarter of the time of
+ * forces, and longer filters lose accuracy. The highest degree. The most substeps that a step takes by itself. */
+#define GXSP_LEAP_DEGREE   3
+#define GXSP_LEAP_DEGREES  24
+#define GXSP_LEAP_SUBSTEPS 64
+
+/* Rows in a group of the stiffness bound; divides GXSP_RANGE */
+#define GXSP_LEAP_ROWS 4
+
+/* Iterations of the power method for the largest eigenvalue */
+#define GXSP_LEAP_POWERS 40
+
+/* Energy may rise above its limit by this share of the elastic and kinetic energy. The limit is that of the start; it
+ * nears the present energy by GXSP_LEAP_FORGET a step. */
+#define GXSP_LEAP_GAIN   0.03
+#define GXSP_LEAP_FORGET 0.1
+
 /* Spacing of the first lattice of the multigrid, in edges of an average element. */
 #define GXSP_SPACING 2.5
 
@@ -653,6 +702,11 @@ extern "C" {
  * hardly bend with them, and an exact solution two levels down saves two iterations in three. */
 #define GXSP_FACTOR_COST 3000
 #define GXSP_LEVELS      12
+
+/* Where copies are affine, level 1 is factored if that takes at most GXSP_NESTED_COST times as much; else its lattice
+ * is widened, up to GXSP_WIDEST times. */
+#define GXSP_NESTED_COST 10
+#define GXSP_WIDEST      8
 
 /* Block-Jacobi takes less time than multigrid where inertia's mean share of the Hessian's diagonal blocks is larger
  * than this: few iterations, as the share bounds the spectrum from below. Measured on blocks of 2,000 to 8,000
@@ -709,20 +763,23 @@ extern "C" {
 /* Groups of elements are below this: gxsp_sort sorts by 30 bits. */
 #define GXSP_GROUPS ((uint32_t)1 << 30)
 
-/* Arrays of a block's passes never overlap. */
-#if !defined(__cplusplus)
-#define GXSP_RESTRICT restrict
-#elif defined(__GNUC__) || defined(_MSC_VER)
+/* Arrays of a block's passes never overlap. cl knows C's own word only if it is told the standard. */
+#if defined(__GNUC__) || defined(_MSC_VER)
 #define GXSP_RESTRICT __restrict
+#elif !defined(__cplusplus)
+#define GXSP_RESTRICT restrict
 #else
 #define GXSP_RESTRICT
 #endif
 
 /* INLINE: compilers must know the column numbers. Columns that might be equal are not vectorised. COLD: seldom called,
  * kept out of line and compiled for size. */
-#if defined(__GNUC__)
+#if defined(__GNUC__) || defined(__clang__)
 #define GXSP_COLD   __attribute__((cold, noinline))
 #define GXSP_INLINE static inline __attribute__((always_inline))
+#elif defined(_MSC_VER)
+#define GXSP_COLD   __declspec(noinline)
+#define GXSP_INLINE static __forceinline
 #else
 #define GXSP_COLD
 #define GXSP_INLINE static inline
@@ -734,6 +791,8 @@ extern "C" {
 #define GXSP_EACH(l, count) _Pragma("clang loop unroll(disable)") for (l = 0; l < (count); l++)
 #elif defined(__GNUC__)
 #define GXSP_EACH(l, count) _Pragma("GCC ivdep") for (l = 0; l < (count); l++)
+#elif defined(_MSC_VER)
+#define GXSP_EACH(l, count) __pragma(loop(ivdep)) for (l = 0; l < (count); l++)
 #else
 #define GXSP_EACH(l, count) for (l = 0; l < (count); l++)
 #endif
@@ -743,7 +802,7 @@ extern "C" {
 /* Vectors for code that compilers do not vectorise: shuffles of nodes' vectors and blocks, many sums at a time.
  * Shuffles of vectors longer than the machine's are compiled number by number. Hence vectors of eight floats with
  * AVX only. */
-#if defined(__GNUC__) && (defined(__clang__) || __GNUC__ >= 12) && !defined(GXFEM_SCALAR)
+#if (defined(__clang__) || (defined(__GNUC__) && __GNUC__ >= 12)) && !defined(GXFEM_SCALAR)
 #define GXSP_SHUFFLES
 typedef __attribute__((vector_size(8), aligned(4), may_alias)) float gxsp_two;
 typedef __attribute__((vector_size(16), aligned(4), may_alias)) float gxsp_four;
@@ -1373,6 +1432,73 @@ typedef struct gxsp_history {
     uint32_t guess_count; /* valid guesses: 0, 1 or 2 */
 } gxsp_history;
 
+/* Eight elements with affine copies, see >>rule. A lane without an element has no weight and no vectors. */
+typedef struct gxsp_affine_block {
+    gxsp_rest rest;                  /* weight and mass of one of the four points: a quarter of the element's */
+    gxsp_lanes gradient[9];          /* of shape functions 1 ... 3, by rows, 1/m */
+    gxsp_lanes edge[9];              /* (X_j - X_0) / (4 length), j = 1 ... 3 */
+    gxsp_lanes shape[4][4];          /* N_i at point p: [p][i] */
+    gxsp_lanes energies[3];          /* of the last pass, as in gxsp_partial */
+    gxsp_tangent tangent[4];         /* at each point; its mass is 0 */
+    gxsp_general *general;           /* 4; GXS_CUSTOM only, else NULL */
+    uint32_t vector[16][GXSP_LANES]; /* copies of the corners; at 4 + 3 i the hidden vectors of corner i, or GXSP_NONE
+                                      */
+    gxs_material_kind kind;
+    uint8_t still, collapsed; /* all its vectors are still; the last linearisation found an element collapsed */
+} gxsp_affine_block;
+
+/* Affine copies: what their elements and the multigrid need beside chunks and levels. All 0 where no copy is affine. A
+ * group is an affine copy with its three hidden vectors: parts 0 ... 3. */
+typedef struct gxsp_affine {
+    size_t count;  /* elements; 0: there are none */
+    double length; /* m: hidden vectors are columns of A times this */
+    gxsp_affine_block *blocks;
+    uint32_t block_count, group_count, touched_count;
+    uint32_t *place;       /* n: 4 x group + part; GXSP_NONE: a copy that is not affine. NULL: there are no groups */
+    uint32_t (*member)[4]; /* group_count: vectors of a group */
+    double (*slots)[3];    /* block_count x 16 x GXSP_LANES: results of passes */
+    uint32_t *touched;     /* touched_count: vectors that elements here have, ascending */
+    uint32_t *start;       /* touched_count + 1: into slot */
+    uint32_t *slot;        /* a vector's slots, ascending */
+    double (*own)[6];      /* n: diagonal blocks of the elements here, packed, scaled */
+    double (*full)[10][9]; /* group_count: blocks of the parts p <= q, in the order of gxs_element.mass, by rows */
+    float (*root)[78];     /* group_count: W by rows, lower triangle: the inverse of the 12x12 block is W^T W */
+    uint32_t *hidden; /* by node of level 1: the first of its three hidden nodes, or GXSP_NONE. NULL: no multigrid */
+    float (*offset)[4][3]; /* group_count: (X_i - X_J) / length for each parent J */
+    double *block;         /* 9 per entry of level 1: what the elements here add */
+    double *entry;         /* factor of level 1, rows as in gxsp_factor */
+} gxsp_affine;
+
+/* A block's elements in explicit steps. A lane without an element has zeros. */
+typedef struct gxsp_leap_block {
+    float gradient[9][GXSP_LANES];            /* of shape functions 1 ... 3, by rows, 1/m */
+    float mu[GXSP_LANES], lambda[GXSP_LANES]; /* weight x moduli, J */
+} gxsp_leap_block;
+
+/* What explicit steps need of the model, made by the first one; and their vectors. All arrays are in its own pool. */
+typedef struct gxsp_leap {
+    gxsp_pool pool;
+    int made;                /* for the present model */
+    int suits;               /* materials and copies allow explicit steps. Else nothing below is there */
+    gxsp_leap_block *blocks; /* block_count: those of the first chunk, then of the next */
+    size_t block_count;
+    uint32_t *first_block; /* chunk_count: of each chunk */
+    /* L, which bounds the stiffness: one number for a pair of copies, by groups of rows. order: n: copies of the rows.
+     * start: n / GXSP_LEAP_ROWS, rounded up, + 1; entry k of the group's row r is at GXSP_LEAP_ROWS (start + k) + r */
+    uint32_t *order, *start, *column;
+    float *entry;    /* N/m */
+    float *diagonal; /* n: N/m */
+    float *mass;     /* n: lumped, and more where copies are light, kg; 0: it is fixed */
+    float *inverse;  /* n: 1/mass, 0 where the step leaves the copy alone */
+    float *stiffest; /* chunk_count: largest modulus at the last forces, relative to that at rest */
+    /* n: accelerations; the last three of Chebyshev's recurrence, m/s2 */
+    gxsp_vector4 *start_of_filter, *last, *before, *next;
+    double top;    /* largest eigenvalue of M^-1 L, 1/s2 */
+    double factor; /* on L; 0: the first */
+    double limit;  /* of energy, J. Valid if limited */
+    int limited;   /* the last step was explicit */
+} gxsp_leap;
+
 /* A model in the solver's form, and all that its steps work with. One allocation of pool, as are its arrays. */
 typedef struct gxsp_system {
     gxsp_pool pool;
@@ -1380,11 +1506,13 @@ typedef struct gxsp_system {
     gxsp_lasting *lasting; /* of the solver */
     gxsp_model model;
     gxsp_mesh mesh;
+    gxsp_affine affine;
     gxsp_multigrid multigrid;
     gxsp_coarse coarse;
     gxsp_smoother smoother;
     gxsp_vectors vectors;
     gxsp_history state;
+    gxsp_leap leap;
 } gxsp_system;
 
 /* The line search's trial displacement, n x 3. It lies in the residual's memory: nothing needs the residual while
@@ -1612,7 +1740,7 @@ static void gxsp_over_ranges(gxsp_system *system, void (*task)(void *, size_t), 
 /* Prefetches memory that is read soon. A block is too long for processors to prefetch the next one in time. Always
  * inline: gcc takes a function that only prefetches for one without effect, and drops its calls. */
 GXSP_INLINE void gxsp_prefetch(const void *memory, size_t size) {
-#if defined(__GNUC__)
+#if defined(__GNUC__) || defined(__clang__)
     const char *line = (const char *)memory;
     size_t k;
     for (k = 0; k < size; k += 64) __builtin_prefetch(line + k);
@@ -2588,6 +2716,51 @@ static void gxsp_general_own(const gxsp_general *general, gxsp_singles *p, gxsp_
     for (k = 0; k < 6; k++) GXSP_EACH_LANE(l) own[k][l] += block[packed[k]][l];
 }
 
+/* Parameters of a block's materials */
+static void gxsp_block_parameters(const gxsp_material *materials, const gxsp_rest *rest, gxsp_state *s) {
+    int l;
+    for (l = 0; l < GXSP_LANES; l++) {
+        const gxsp_material *material = &materials[rest->material[l]];
+        s->mu[l] = material->mu;
+        s->lambda[l] = material->lambda;
+        s->material[l] = material;
+    }
+}
+
+/* Rotates P of elements by the rotation from their orientation at displacement gradients `from` to that at `to`. P
+ * stays where that is more than a right angle: such an element is tangled. */
+static void gxsp_rotate_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p) {
+    gxsp_svd svd[2];
+    int r, c, k, l;
+    gxsp_decompose(from, to, svd);
+    for (l = 0; l < GXSP_LANES; l++) {
+        double a[9], b[9], turn[9], stress[9], f[9], h[9];
+        for (r = 0; r < 3; r++)
+            for (c = 0; c < 3; c++) {
+                a[3 * r + c] = b[3 * r + c] = 0;
+                for (k = 0; k < 3; k++) {
+                    a[3 * r + c] += (double)(svd[0].u[3 * r + k][l] * svd[0].v[3 * c + k][l]);
+                    b[3 * r + c] += (double)(svd[1].u[3 * r + k][l] * svd[1].v[3 * c + k][l]);
+                }
+            }
+        for (k = 0; k < 9; k++) {
+            f[k] = from[k][l] + (k % 4 == 0 ? 1 : 0);
+            h[k] = to[k][l] + (k % 4 == 0 ? 1 : 0);
+        }
+        /* otherwise each step's load would have its own single-precision error, and no body would come to rest */
+        gxsp_polish_rotation(f, a);
+        gxsp_polish_rotation(h, b);
+        for (k = 0; k < 9; k++) {
+            turn[k] =
+                b[k / 3 * 3] * a[k % 3 * 3] + b[k / 3 * 3 + 1] * a[k % 3 * 3 + 1] + b[k / 3 * 3 + 2] * a[k % 3 * 3 + 2];
+            stress[k] = p[k][l];
+        }
+        for (k = 0; k < 9 && turn[0] + turn[4] + turn[8] > 1; k++)
+            p[k][l] = turn[k / 3 * 3] * stress[k % 3] + turn[k / 3 * 3 + 1] * stress[3 + k % 3] +
+                      turn[k / 3 * 3 + 2] * stress[6 + k % 3];
+    }
+}
+
 /* >>masses: an element's mass in its lane -------------------------------------------------------------------------- */
 
 /* In: gxs_element.mass. Out: the mass of a whole element, or mass, centre and covariance of a part of one. */
@@ -3274,6 +3447,242 @@ static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_
     gxsp_list_slots(system);
 }
 
+/* >>affine: elements with affine copies ---------------------------------------------------------------------------- */
+
+/* In: gxs_model.affine. Out: groups, and the elements with an affine corner in blocks of their own: chunks do not have
+ * them. Where no copy is affine, nothing here is made. */
+
+/* Edges of an element: pairs of its corners */
+static const uint8_t gxsp_edge_ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+
+static int gxsp_is_affine(const gxs_model *model, const gxs_element *element) {
+    int k;
+    for (k = 0; k < 4 && model->affine; k++)
+        if (model->affine[element->copy[k]] != GXS_NOT_AFFINE) return 1;
+    return 0;
+}
+
+/* Is a vector one of the hidden ones of an affine copy? A translation does not move those. */
+static inline int gxsp_is_hidden(const gxsp_system *system, size_t copy) {
+    const uint32_t *place = system->affine.place;
+    return place && place[copy] != GXSP_NONE && (place[copy] & 3) > 0;
+}
+
+static inline int gxsp_is_grouped(const gxsp_system *system, size_t copy) {
+    return system->affine.place && system->affine.place[copy] != GXSP_NONE;
+}
+
+/* Groups. Hidden vectors take over the rest position of their copy. */
+static void gxsp_groups_make(gxsp_system *system, const gxs_model *model) {
+    gxsp_affine *affine = &system->affine;
+    size_t i, k;
+    uint32_t group = 0;
+    for (i = 0; i < system->model.n; i++) affine->group_count += model->affine[i] != GXS_NOT_AFFINE;
+    if (affine->group_count == 0) return;
+    affine->length = model->affine_length;
+    affine->place = (uint32_t *)gxsp_take(&system->pool, system->model.n, sizeof(uint32_t));
+    affine->member = (uint32_t(*)[4])gxsp_take(&system->pool, affine->group_count, sizeof *affine->member);
+    if (system->pool.failed) return;
+    memset(affine->place, 0xff, system->model.n * sizeof *affine->place);
+    for (i = 0; i < system->model.n; i++) {
+        if (model->affine[i] == GXS_NOT_AFFINE) continue;
+        for (k = 0; k < 4; k++) {
+            const uint32_t vector = k == 0 ? (uint32_t)i : model->affine[i] + (uint32_t)k - 1;
+            affine->member[group][k] = vector;
+            affine->place[vector] = 4 * group + (uint32_t)k;
+            if (k > 0 && system->model.positions)
+                memcpy(system->model.positions + 3 * (size_t)vector, system->model.positions + 3 * i,
+                       3 * sizeof(double));
+        }
+        group++;
+    }
+}
+
+/* Shape functions at the four points of an element: x_p = c + L t_p, with L L^T the covariance of its mass. They
+ * integrate every quadratic exactly, with equal weights. shape: [p][i] */
+static void gxsp_four_points(const gxs_element *element, double shape[4][4]) {
+    static const int sign[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+    static const double whole[10] = {2, 1, 1, 1, 2, 1, 1, 2, 1, 2};
+    double centre[4], rounded[4], covariance[3][3], root[3][3];
+    const double *mass = element->mass;
+    double sum = gxsp_find_centre(mass, centre, rounded);
+    int i, j, p;
+    if (!(sum > 0)) sum = gxsp_find_centre(mass = whole, centre, rounded); /* no mass, but stiffness */
+    for (i = 0; i < 3; i++)
+        for (j = 0; j < 3; j++)
+            covariance[i][j] = mass[gxsp_packed_mass[i + 1][j + 1]] / sum - centre[i + 1] * centre[j + 1];
+    gxsp_factor3(covariance, root);
+    for (p = 0; p < 4; p++) {
+        shape[p][0] = 1;
+        for (i = 0; i < 3; i++) {
+            shape[p][i + 1] =
+                centre[i + 1] + sign[p][0] * root[i][0] + sign[p][1] * root[i][1] + sign[p][2] * root[i][2];
+            shape[p][0] -= shape[p][i + 1];
+        }
+    }
+}
+
+/* X_j - X_0 of corners 1 ... 3, from the gradients. 0: the element has no volume */
+static int gxsp_element_edges(const gxs_element *element, double edge[3][3]) {
+    double determinant = 0;
+    int i, k, finite = 1;
+    for (i = 0; i < 3; i++) {
+        const double *a = element->gradient[1 + (i + 1) % 3], *b = element->gradient[1 + (i + 2) % 3];
+        edge[i][0] = a[1] * b[2] - a[2] * b[1], edge[i][1] = a[2] * b[0] - a[0] * b[2],
+        edge[i][2] = a[0] * b[1] - a[1] * b[0];
+    }
+    for (k = 0; k < 3; k++) determinant += element->gradient[1][k] * edge[0][k];
+    if (!(fabs(determinant) >= DBL_MIN)) return 0;
+    for (k = 0; k < 9; k++) {
+        edge[k / 3][k % 3] /= determinant;
+        finite &= gxsp_finite(edge[k / 3][k % 3]);
+    }
+    return finite;
+}
+
+static void gxsp_affine_fill(gxsp_system *system, const gxs_element *element, gxsp_affine_block *block, int l) {
+    double edge[3][3], shape[4][4], rows[4];
+    int i, k;
+    if (!gxsp_element_edges(element, edge)) memset(edge, 0, sizeof edge); /* then it has no weight */
+    gxsp_four_points(element, shape);
+    for (k = 0; k < 9; k++) {
+        block->edge[k][l] = edge[k / 3][k % 3] / (4 * system->affine.length);
+        block->gradient[k][l] = element->gradient[1 + k / 3][k % 3];
+    }
+    for (k = 0; k < 16; k++) block->shape[k / 4][k % 4][l] = shape[k / 4][k % 4];
+    block->rest.weight[l] = 0.25 * element->weight;
+    block->rest.mass[l] = 0.25 * gxsp_find_centre(element->mass, rows, shape[0]);
+    block->rest.material[l] = element->material;
+    for (i = 0; i < 4; i++) {
+        const uint32_t copy = element->copy[i], place = system->affine.place[copy];
+        block->vector[i][l] = copy;
+        for (k = 0; k < 3; k++)
+            block->vector[4 + 3 * i + k][l] = place == GXSP_NONE ? GXSP_NONE : system->affine.member[place / 4][k + 1];
+    }
+}
+
+/* Row sums of the mass at hidden vectors, int rho N_i (x - X_i) / length: gravity acts on them by these */
+static void gxsp_affine_lump(gxsp_system *system, const gxsp_affine_block *block, int l) {
+    int i, j, k, p;
+    for (i = 0; i < 4; i++)
+        for (k = 0; k < 3 && block->vector[4 + 3 * i][l] != GXSP_NONE; k++) {
+            double sum = 0;
+            for (p = 0; p < 4; p++) {
+                double way = 0; /* (x - X_i) / (4 length) at the point */
+                for (j = 0; j < 4; j++)
+                    way += block->shape[p][j][l] * ((j > 0 ? block->edge[3 * (j - 1) + k][l] : 0) -
+                                                    (i > 0 ? block->edge[3 * (i - 1) + k][l] : 0));
+                sum += 4 * block->rest.mass[l] * block->shape[p][i][l] * way;
+            }
+            system->model.lumped[block->vector[4 + 3 * i + k][l]] += sum;
+        }
+}
+
+/* Blocks of the elements: those of one kind together. order: elements of each kind, in the caller's order */
+static void gxsp_affine_blocks(gxsp_system *system, const gxs_model *model, const uint32_t *elements) {
+    gxsp_affine *affine = &system->affine;
+    uint32_t e, first, b = 0, count[GXS_CUSTOM + 1] = {0, 0, 0, 0, 0};
+    int kind, l, k;
+    for (e = 0; e < affine->count; e++) count[model->materials[model->elements[elements[e]].material].kind]++;
+    for (kind = 0; kind <= GXS_CUSTOM; kind++) affine->block_count += (count[kind] + GXSP_LANES - 1) / GXSP_LANES;
+    affine->blocks = (gxsp_affine_block *)gxsp_take(&system->pool, affine->block_count, sizeof *affine->blocks);
+    if (system->pool.failed) return;
+    for (kind = 0; kind <= GXS_CUSTOM; kind++)
+        for (e = first = 0; first < count[kind]; b++) {
+            gxsp_affine_block *block = &affine->blocks[b];
+            block->kind = (gxs_material_kind)kind;
+            memset(block->vector, 0xff, sizeof block->vector);
+            if (kind == GXS_CUSTOM) block->general = (gxsp_general *)gxsp_take(&system->pool, 4, sizeof(gxsp_general));
+            for (l = 0; l < GXSP_LANES && first < count[kind]; l++, first++, e++) {
+                while ((int)model->materials[model->elements[elements[e]].material].kind != kind) e++;
+                gxsp_affine_fill(system, &model->elements[elements[e]], block, l);
+                gxsp_affine_lump(system, block, l);
+            }
+            for (k = l; k < GXSP_LANES; k++) /* a valid material of this kind */
+                block->rest.material[k] = block->rest.material[0];
+        }
+}
+
+/* Slots of the vectors that the elements have */
+static void gxsp_affine_slots(gxsp_system *system, gxsp_pool *scratch) {
+    gxsp_affine *affine = &system->affine;
+    const size_t room = (size_t)affine->block_count * 16 * GXSP_LANES;
+    uint32_t *count = (uint32_t *)gxsp_take(scratch, system->model.n + 1, sizeof(uint32_t)), i, t;
+    size_t s, slots = 0;
+    affine->slots = (double(*)[3])gxsp_take(&system->pool, room, sizeof *affine->slots);
+    affine->own = (double(*)[6])gxsp_take(&system->pool, system->model.n, sizeof *affine->own);
+    affine->full = (double(*)[10][9])gxsp_take(&system->pool, affine->group_count, sizeof *affine->full);
+    affine->root = (float(*)[78])gxsp_take(&system->pool, affine->group_count, sizeof *affine->root);
+    if (scratch->failed || system->pool.failed) return;
+    for (s = 0; s < room; s++) {
+        const uint32_t vector = affine->blocks[s / (16 * GXSP_LANES)].vector[s / GXSP_LANES % 16][s % GXSP_LANES];
+        if (vector == GXSP_NONE) continue;
+        affine->touched_count += count[vector]++ == 0;
+        slots++;
+    }
+    affine->touched = (uint32_t *)gxsp_take(&system->pool, affine->touched_count, sizeof(uint32_t));
+    affine->start = (uint32_t *)gxsp_take(&system->pool, (size_t)affine->touched_count + 1, sizeof(uint32_t));
+    affine->slot = (uint32_t *)gxsp_take(&system->pool, slots, sizeof(uint32_t));
+    if (system->pool.failed) return;
+    for (i = t = 0; i < system->model.n; i++)
+        if (count[i] > 0) {
+            affine->touched[t] = i;
+            affine->start[t + 1] = affine->start[t] + count[i];
+            count[i] = affine->start[t++];
+        }
+    for (s = 0; s < room; s++) {
+        const uint32_t vector = affine->blocks[s / (16 * GXSP_LANES)].vector[s / GXSP_LANES % 16][s % GXSP_LANES];
+        if (vector != GXSP_NONE) affine->slot[count[vector]++] = (uint32_t)s;
+    }
+}
+
+/* Divides the model's elements: those with an affine corner come here, `plain` gets the others. Both lists are in
+ * scratch. */
+static void gxsp_affine_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model, gxs_model *plain) {
+    gxs_element *others;
+    uint32_t *elements;
+    size_t e, count = 0;
+    for (e = 0; e < model->element_count; e++)
+        system->affine.count += (size_t)gxsp_is_affine(model, &model->elements[e]);
+    if (system->affine.count == 0) { /* no element has them: they are copies without support */
+        system->affine.place = NULL;
+        system->affine.group_count = 0;
+        return;
+    }
+    others = (gxs_element *)gxsp_take(scratch, model->element_count - system->affine.count, sizeof *others);
+    elements = (uint32_t *)gxsp_take(scratch, system->affine.count, sizeof(uint32_t));
+    if (scratch->failed) return;
+    for (e = 0; e < model->element_count; e++)
+        if (gxsp_is_affine(model, &model->elements[e]))
+            elements[e - count] = (uint32_t)e;
+        else
+            others[count++] = model->elements[e];
+    plain->elements = others;
+    plain->element_count = system->model.element_count = count;
+    gxsp_affine_blocks(system, model, elements);
+    if (!system->pool.failed) gxsp_affine_slots(system, scratch);
+}
+
+/* Joins the vectors of a group. forest: n */
+static void gxsp_join_groups(const gxsp_system *system, uint32_t *forest) {
+    uint32_t group, k;
+    for (group = 0; group < system->affine.group_count; group++)
+        for (k = 1; k < 4; k++) gxsp_join(forest, system->affine.member[group][0], system->affine.member[group][k]);
+}
+
+/* Marks the blocks whose vectors are all still. */
+static void gxsp_mark_still_blocks(gxsp_system *system) {
+    uint32_t b, k;
+    for (b = 0; b < system->affine.block_count; b++) {
+        gxsp_affine_block *block = &system->affine.blocks[b];
+        block->still = 1;
+        for (k = 0; k < 16 * GXSP_LANES; k++) {
+            const uint32_t vector = block->vector[k / GXSP_LANES][k % GXSP_LANES];
+            block->still &= vector == GXSP_NONE || system->state.still[vector];
+        }
+    }
+}
+
 /* >>copies: which copies move, which follow others, which belong together ------------------------------------------ */
 
 /* In: held copies, constraints and elements. Out: fixed copies, followers, components and the partial sums of
@@ -3301,6 +3710,9 @@ static void gxsp_find_fixed(gxsp_system *system, const gxs_model *model) {
             system->model.lumped[element->copy[k]] += rows[k];
         }
     }
+    for (i = 0; i < system->model.n; i++)
+        if (gxsp_is_hidden(system, i))
+            system->model.fixed[i] = system->model.fixed[system->affine.member[system->affine.place[i] / 4][0]];
     if (model->held)
         for (i = 0; i < system->model.n; i++)
             if (model->held[i]) system->model.held[i] = system->model.fixed[i] = 1;
@@ -3376,6 +3788,7 @@ static void gxsp_join_copies(const gxsp_system *system, const gxs_model *model, 
         for (k = 1; k < 4; k++)
             if (gxsp_supports(&model->elements[e], 0) || gxsp_supports(&model->elements[e], k))
                 gxsp_join(forest, model->elements[e].copy[0], model->elements[e].copy[k]);
+    gxsp_join_groups(system, forest);
     gxsp_join_followers(system, forest);
 }
 
@@ -3396,7 +3809,7 @@ static void gxsp_fill_components(gxsp_system *system) {
     uint32_t p;
     for (i = 0; i < system->model.n; i++) {
         gxsp_component *component = &system->model.components[system->model.component[i]];
-        component->mass += system->model.lumped[i];
+        component->mass += gxsp_is_hidden(system, i) ? 0 : system->model.lumped[i];
         component->state |= system->model.fixed[i] ? GXSP_HELD : 0;
     }
     for (i = 0; i < system->model.follower_count; i++) {
@@ -3459,6 +3872,7 @@ static void gxsp_mark_still(gxsp_system *system) {
             system->state.chunk_still[c] &=
                 system->state.still[system->mesh.nodes[system->mesh.chunks[c].first_node + k]];
     }
+    gxsp_mark_still_blocks(system);
 }
 
 /* The copies that move an element's corner, and their weights: its own copy, or its masters. Returns how many. */
@@ -3541,6 +3955,26 @@ static void gxsp_reduce_residual(const gxsp_system *system, const uint8_t *still
     }
 }
 
+/* Motion of a copy by a direction, times pass->factor: the direction's own, that of its masters if it follows them,
+ * 0 if it is fixed */
+static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GXSP_RESTRICT to) {
+    const gxsp_system *system = pass->system;
+    const double *from = pass->from + 3 * (size_t)copy;
+    double factor = system->model.fixed[copy] ? 0 : pass->factor;
+    int k, c;
+    if (!gxsp_follows(system, copy)) {
+        to[0] = factor * from[0], to[1] = factor * from[1], to[2] = factor * from[2];
+        return;
+    }
+    to[0] = to[1] = to[2] = 0;
+    for (k = 0; k < 4; k++) {
+        const gxsp_follower *follower = &system->model.followers[system->model.follower[copy]];
+        from = pass->from + 3 * (size_t)follower->master[k];
+        factor = system->model.fixed[follower->master[k]] ? 0 : pass->factor * follower->weight[k];
+        for (c = 0; c < 3; c++) to[c] += factor * from[c];
+    }
+}
+
 /* >>transfer: from one level of the multigrid to the next ---------------------------------------------------------- */
 
 /* In: places of a level's nodes in spacings of the next lattice, and which nodes are neighbours. Out: the next
@@ -3549,8 +3983,9 @@ static void gxsp_reduce_residual(const gxsp_system *system, const uint8_t *still
  * idea, one level up). Values between lattice points are linear on the six tetrahedra around a cell's diagonal:
  * at most four weights, exact for affine fields. */
 
-/* Rest positions in spacings of the first lattice: GXSP_SPACING edges of an average whole element. 0: there is none. */
-static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, float (*to)[3]) {
+/* Rest positions in spacings of the first lattice: GXSP_SPACING edges of an average whole element. Returns
+ * the spacing; 0: there is no lattice. */
+static double gxsp_find_places(const gxsp_system *system, const gxs_model *model, float (*to)[3]) {
     double volume = 0, spacing;
     size_t e, i, k, counted = 0;
     for (e = 0; e < model->element_count; e++) {
@@ -3566,12 +4001,12 @@ static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, f
     spacing = GXSP_SPACING * cbrt(5 * volume / (double)counted); /* five elements to a cube */
     for (i = 0; i < system->model.n; i++)
         for (k = 0; k < 3; k++) {
-            double place = (model->positions[3 * i + k] - model->positions[k]) / spacing;
+            double place = (system->model.positions[3 * i + k] - system->model.positions[k]) / spacing;
             if (!(fabs(place) < 1e6)) /* single precision could not hold it */
                 return 0;
             to[i][k] = (float)place + 0.31f; /* keeps lattice planes off those of the mesh */
         }
-    return 1;
+    return spacing;
 }
 
 /* Lattice cell, order of axes and weights at a place */
@@ -3928,8 +4363,130 @@ static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch) {
         factor->row[i] = entries - first; /* not negative: every row before has an entry */
         entries += 3 * (size_t)(3 * i - first) + 6;
     }
-    factor->entry = (float *)gxsp_take(&system->multigrid.pool, entries, sizeof(float));
+    if (system->affine.count > 0)
+        system->affine.entry = (double *)gxsp_take(&system->multigrid.pool, entries, sizeof(double));
+    else
+        factor->entry = (float *)gxsp_take(&system->multigrid.pool, entries, sizeof(float));
     factor->entry_count = entries;
+}
+
+/* >>nested: level 1 where copies are affine ------------------------------------------------------------------------ */
+
+/* In: the transfer of level 0 between copies. Out: coarse nodes that carry an affine motion as well, and what they add
+ * to the pattern of level 1. The space of affine copies is nested in itself: with the lattice's weights w_iJ,
+ *   a_i = sum w_iJ (b_J + B_J (X_i - X_J)),   A_i = sum w_iJ B_J.
+ * The columns of B_J are three further nodes of level 1, the hidden ones of J, where a child of J is affine. Copies
+ * that are not affine follow b_J only. */
+
+/* Parents of a vector on level 1 and their weights; at most 16. Returns how many. */
+static uint32_t gxsp_nested_parents(const gxsp_system *system, uint32_t vector, uint32_t *parents, float *weights) {
+    const gxsp_affine *affine = &system->affine;
+    const uint32_t place = affine->place[vector], part = place == GXSP_NONE ? 0 : place & 3,
+                   copy = part > 0 ? affine->member[place / 4][0] : vector;
+    uint32_t count = 0;
+    int k, a;
+    for (k = 0; k < 4; k++) {
+        const uint32_t parent = system->multigrid.levels[0].parent[copy][k];
+        const float weight = system->multigrid.levels[0].weight[copy][k];
+        if (parent == GXSP_NONE) continue;
+        parents[count] = part == 0 ? parent : affine->hidden[parent] + part - 1;
+        weights[count++] = weight;
+        for (a = 0; a < 3 && part == 0 && place != GXSP_NONE; a++) {
+            parents[count] = affine->hidden[parent] + (uint32_t)a;
+            weights[count++] = weight * affine->offset[place / 4][k][a];
+        }
+    }
+    return count;
+}
+
+/* Numbers the hidden nodes, which follow the count others, and finds the offsets of affine copies from their parents.
+ * place: n x 3, in spacings of the lattice; transfer: as gxsp_transfer_end has left it. Returns the number of nodes. */
+static uint32_t gxsp_nested_nodes(gxsp_system *system, float (*place)[3], const gxsp_transfer *transfer, double spacing,
+                                  uint32_t count) {
+    gxsp_affine *affine = &system->affine;
+    gxsp_level points; /* lattice points of the nodes */
+    uint32_t group, nodes = count;
+    int k, a;
+    memset(&points, 0, sizeof points);
+    affine->hidden = (uint32_t *)gxsp_take(&system->multigrid.pool, count, sizeof(uint32_t));
+    affine->offset = (float(*)[4][3])gxsp_take(&system->multigrid.pool, affine->group_count, sizeof *affine->offset);
+    points.place = (int32_t(*)[3])gxsp_take(&system->multigrid.pool, count, sizeof *points.place);
+    if (system->multigrid.pool.failed) return 0;
+    gxsp_transfer_places(&system->multigrid.levels[0], transfer, &points);
+    memset(affine->hidden, 0xff, count * sizeof *affine->hidden);
+    for (group = 0; group < affine->group_count; group++) {
+        const uint32_t copy = affine->member[group][0];
+        for (k = 0; k < 4; k++) {
+            const uint32_t parent = system->multigrid.levels[0].parent[copy][k];
+            if (parent == GXSP_NONE) continue;
+            if (affine->hidden[parent] == GXSP_NONE) {
+                affine->hidden[parent] = nodes;
+                nodes += 3;
+            }
+            for (a = 0; a < 3; a++)
+                affine->offset[group][k][a] =
+                    (float)(((double)place[copy][a] - points.place[parent][a]) * spacing / affine->length);
+        }
+    }
+    return nodes;
+}
+
+/* Adds the clusters that the elements join. */
+static void gxsp_nested_join(const gxsp_system *system, gxsp_transfer *transfer) {
+    uint32_t b;
+    int l, k;
+    for (b = 0; b < system->affine.block_count; b++)
+        for (l = 0; l < GXSP_LANES; l++)
+            for (k = 0; k < 6 && system->affine.blocks[b].rest.weight[l] > 0; k++)
+                gxsp_join_nodes(transfer, system->affine.blocks[b].vector[gxsp_edge_ends[k][0]][l],
+                                system->affine.blocks[b].vector[gxsp_edge_ends[k][1]][l]);
+}
+
+/* The coarse nodes around an element, without hidden ones: at most 16. Returns how many. */
+static uint32_t gxsp_nested_bases(const gxsp_system *system, const gxsp_affine_block *block, int l, uint32_t *bases) {
+    uint32_t count = 0, i, k;
+    for (k = 0; k < 16 && block->rest.weight[l] > 0; k++) {
+        const uint32_t parent = system->multigrid.levels[0].parent[block->vector[k / 4][l]][k % 4];
+        for (i = 0; i < count && bases[i] != parent; i++) {}
+        if (parent != GXSP_NONE && i == count) bases[count++] = parent;
+    }
+    return count;
+}
+
+static int gxsp_compare_keys(const void *a, const void *b) {
+    const uint64_t p = *(const uint64_t *)a, q = *(const uint64_t *)b;
+    return (p > q) - (p < q);
+}
+
+/* Lists the entries of a coarse node and another one, or itself, with their hidden nodes. */
+static void gxsp_nested_entries(const uint32_t *hidden, uint32_t p, uint32_t q, gxsp_list *list) {
+    const uint32_t some = hidden[p] == GXSP_NONE ? 1 : 4, others = hidden[q] == GXSP_NONE ? 1 : 4;
+    uint32_t i, j;
+    for (i = 0; i < some; i++)
+        for (j = 0; j < others; j++) {
+            const uint32_t a = i == 0 ? p : hidden[p] + i - 1, b = j == 0 ? q : hidden[q] + j - 1;
+            if (p != q || i < j) gxsp_list_add(list, a < b ? a : b, a < b ? b : a);
+        }
+}
+
+/* Lists the entries of level 1's matrix to which the elements add. */
+static void gxsp_nested_pattern(const gxsp_system *system, gxsp_pool *scratch, gxsp_list *list) {
+    const gxsp_affine *affine = &system->affine;
+    uint64_t *key = (uint64_t *)gxsp_take(scratch, (size_t)affine->block_count * GXSP_LANES * 136, sizeof *key);
+    uint32_t bases[16], b, i, j, count;
+    size_t k, keys = 0;
+    int l;
+    if (!key) return;
+    for (b = 0; b < affine->block_count; b++)
+        for (l = 0; l < GXSP_LANES; l++)
+            for (count = gxsp_nested_bases(system, &affine->blocks[b], l, bases), i = 0; i < count; i++)
+                for (j = i; j < count; j++)
+                    key[keys++] =
+                        bases[i] < bases[j] ? (uint64_t)bases[i] << 32 | bases[j] : (uint64_t)bases[j] << 32 | bases[i];
+    qsort(key, keys, sizeof *key, gxsp_compare_keys);
+    for (k = 0; k < keys; k++)
+        if (k == 0 || key[k] != key[k - 1])
+            gxsp_nested_entries(affine->hidden, (uint32_t)(key[k] >> 32), (uint32_t)key[k], list);
 }
 
 /* >>pattern: edges of chunks, pattern of level 1 and of the assembled matrix --------------------------------------- */
@@ -4183,6 +4740,7 @@ static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gx
     for (c = 0; c < system->mesh.chunk_count; c++)
         if (!before || gxsp_follows_dirty(system, &system->mesh.chunks[c], dirty))
             gxsp_list_pairs(system, &system->mesh.chunks[c], memory, before ? dirty : NULL, &list);
+    if (system->affine.count > 0) gxsp_nested_pattern(system, scratch, &list);
     if (!scratch->failed)
         gxsp_rows_make(&system->multigrid.pool, scratch, &system->multigrid.levels[1], list.pair, list.count);
 }
@@ -4273,9 +4831,10 @@ static void gxsp_levels_make(gxsp_system *system, gxsp_pool *scratch, const gxsp
 }
 
 /* The transfer of the model by a lattice. place: n x 3, in its spacings. Returns the number of level 1's nodes. */
-static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], gxsp_transfer *transfer) {
+static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], const uint8_t *left_out,
+                                    gxsp_transfer *transfer) {
     uint32_t c, e;
-    gxsp_transfer_begin(&system->multigrid.levels[0], place, system->model.fixed, transfer);
+    gxsp_transfer_begin(&system->multigrid.levels[0], place, left_out, transfer);
     for (c = 0; c < system->mesh.chunk_count; c++) {
         const uint32_t *copies = system->mesh.nodes + system->mesh.chunks[c].first_node;
         gxsp_list_edges(system, &system->mesh.chunks[c]);
@@ -4287,6 +4846,7 @@ static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], gxsp
         if (fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
             gxsp_join_nodes(transfer, system->model.followers[e / 4].copy,
                             system->model.followers[e / 4].master[e % 4]);
+    gxsp_nested_join(system, transfer);
     return gxsp_transfer_end(&system->multigrid.levels[0], transfer);
 }
 
@@ -4352,13 +4912,51 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (
     transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint64_t));
     transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
     if (scratch->failed) return;
-    count = gxsp_first_transfer(system, place, &transfer);
-    if (gxsp_thin_crowded(system, scratch, place)) count = gxsp_first_transfer(system, place, &transfer);
+    count = gxsp_first_transfer(system, place, system->model.fixed, &transfer);
+    if (gxsp_thin_crowded(system, scratch, place))
+        count = gxsp_first_transfer(system, place, system->model.fixed, &transfer);
     if (count == 0 || scratch->failed) return;
     gxsp_level_make(&system->multigrid.pool, fine + 1, count);
     if (system->multigrid.pool.failed) return;
     gxsp_transfer_places(fine, &transfer, fine + 1);
     gxsp_levels_make(system, scratch, NULL, NULL);
+}
+
+/* The same where copies are affine. Level 1 is factored, so its lattice is widened until that is cheap. */
+static void gxsp_nested_make(gxsp_system *system, gxsp_pool *scratch, float (*place)[3], double spacing) {
+    gxsp_level *next = &system->multigrid.levels[1];
+    float(*own)[3] = (float(*)[3])gxsp_take(scratch, system->model.n, sizeof *own);
+    uint8_t *left_out = (uint8_t *)gxsp_take(scratch, system->model.n, 1);
+    gxsp_transfer transfer;
+    gxsp_owned *mark;
+    uint32_t count, i;
+    float stretch;
+    gxsp_edges_make(system, scratch);
+    transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint64_t));
+    transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
+    mark = scratch->last;
+    for (i = 0; i < system->model.n && left_out; i++) left_out[i] = system->model.fixed[i] || gxsp_is_hidden(system, i);
+    for (stretch = 1;; stretch *= 1.25f) {
+        if (scratch->failed) return;
+        for (i = 0; i < 3 * system->model.n; i++) own[i / 3][i % 3] = place[i / 3][i % 3] / stretch;
+        count = gxsp_first_transfer(system, own, left_out, &transfer);
+        if (count == 0) return;
+        count = gxsp_nested_nodes(system, own, &transfer, (double)stretch * spacing, count);
+        if (system->multigrid.pool.failed) return;
+        gxsp_level_make(&system->multigrid.pool, next, count);
+        if (system->multigrid.pool.failed) return;
+        gxsp_pairs_make(system, scratch);
+        if (!scratch->failed) gxsp_first_pattern(system, scratch, NULL, NULL);
+        if (scratch->failed || system->multigrid.pool.failed) return;
+        if (stretch > GXSP_WIDEST || gxsp_factors(scratch, next, GXSP_NESTED_COST * system->model.n)) break;
+        gxsp_release_to(&system->multigrid.pool, NULL);
+        gxsp_release_to(scratch, mark);
+    }
+    gxsp_count_edges(system);
+    system->multigrid.level_count = 2;
+    next->block = (float *)gxsp_take(&system->multigrid.pool, gxsp_block_numbers(next), sizeof(float));
+    system->affine.block = (double *)gxsp_take(&system->multigrid.pool, gxsp_block_numbers(next), sizeof(double));
+    gxsp_factor_make(system, scratch);
 }
 
 /* >>lights: copies with next to no mass ---------------------------------------------------------------------------- */
@@ -4558,7 +5156,7 @@ static void gxsp_find_volumes(gxsp_system *system, gxsp_pool *scratch, const gxs
 
 /* A component is large enough for multigrid from this many copies on. */
 static uint32_t gxsp_large(const gxsp_system *system) {
-    return system->model.stiff ? GXSP_MULTIGRID_FROM_STIFF : GXSP_MULTIGRID_FROM;
+    return system->model.stiff || system->affine.count > 0 ? GXSP_MULTIGRID_FROM_STIFF : GXSP_MULTIGRID_FROM;
 }
 
 /* Is a component large enough for multigrid? All components take as many iterations as the slowest one. count:
@@ -4576,6 +5174,7 @@ static int gxsp_large_component(const gxsp_system *system, uint32_t *count) {
 static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model,
                                      gxs_preconditioner preconditioner, gxs_matrix matrix, uint32_t *forest) {
     float(*place)[3]; /* rest positions in spacings of the first lattice */
+    double spacing;
     const int multigrid =
         model->positions &&
         (preconditioner == GXS_MULTIGRID || (preconditioner == GXS_AUTOMATIC && gxsp_large_component(system, forest)));
@@ -4586,7 +5185,11 @@ static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, co
     if (!multigrid) return;
     gxsp_transfer_make(&system->pool, &system->multigrid.levels[0]);
     place = (float(*)[3])gxsp_take(scratch, system->model.n, sizeof *place);
-    if (!system->pool.failed && !scratch->failed && gxsp_find_places(system, model, place))
+    if (system->pool.failed || scratch->failed) return;
+    spacing = gxsp_find_places(system, model, place);
+    if (spacing > 0 && system->affine.count > 0)
+        gxsp_nested_make(system, scratch, place, spacing);
+    else if (spacing > 0)
         gxsp_multigrid_make(system, scratch, place);
 }
 
@@ -4595,6 +5198,7 @@ static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, co
 static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model,
                                 const gxs_solver *solver) {
     uint32_t i, *forest = (uint32_t *)gxsp_take(scratch, model->copy_count, sizeof(uint32_t));
+    gxs_model plain = *model; /* without the elements of affine copies */
     gxsp_owned *mark;
     size_t bad;
     system->model.n = model->copy_count;
@@ -4609,6 +5213,7 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     system->model.materials = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
     system->state.damped = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
     gxsp_copies_make(system, model->positions);
+    if (model->affine && !system->pool.failed) gxsp_groups_make(system, model);
     if (scratch->failed || system->pool.failed) return SIZE_MAX;
     for (i = 0; i < system->model.material_count; i++) {
         system->state.damped[i] = system->model.materials[i] = gxsp_material_make(&model->materials[i]);
@@ -4628,7 +5233,9 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     if (system->pool.failed) return SIZE_MAX;
     gxsp_fill_components(system);
     mark = scratch->last;
-    gxsp_chunks_make(system, scratch, model);
+    if (system->affine.group_count > 0) gxsp_affine_make(system, scratch, model, &plain);
+    if (scratch->failed || system->pool.failed) return SIZE_MAX;
+    gxsp_chunks_make(system, scratch, &plain);
     if (!scratch->failed && !system->pool.failed) gxsp_partials_make(system);
     if (!scratch->failed && !system->pool.failed) gxsp_list_lights(system, scratch, NULL);
     gxsp_release_to(scratch, mark);
@@ -4656,6 +5263,7 @@ static void gxsp_system_destroy(gxsp_system *system) {
     gxsp_pool pool;
     if (!system) return;
     gxsp_release_to(&system->multigrid.pool, NULL);
+    gxsp_release_to(&system->leap.pool, NULL);
     pool = system->pool; /* the pool also holds the system itself */
     gxsp_release_to(&pool, NULL);
 }
@@ -4663,6 +5271,483 @@ static void gxsp_system_destroy(gxsp_system *system) {
 static void gxsp_drop_system(gxs_solver *solver) {
     gxsp_system_destroy(solver->system);
     solver->system = NULL;
+}
+
+/* >>rule: passes over elements with affine copies ------------------------------------------------------------------ */
+
+/* In: vectors over copies. Out: energies, forces, Hessians, products, diagonal blocks. The field of an element is
+ *   u = sum N_i (a_i + A_i (x - X_i)) = sum N_j a_j + sum 4 N_i N_j e_ij over pairs,   e_ij = (A_i - A_j)(X_j - X_i)
+ * / 4. So its gradient at a point is that of a linear element whose corners have moved by w_j = a_j + sum 4 N_i e_ij
+ * over i. At each of four points the passes of >>element serve. u there is sum N_j (a_j + w_j) / 2. A task writes its
+ * own block and the slots of it. */
+
+/* Blocks of one task */
+#define GXSP_AFFINE_TASK 8
+
+/* Vectors of a block's elements: [3 vector + axis]; 0 where there is none */
+static void gxsp_affine_gather(const gxsp_affine_block *block, const double *x, gxsp_lanes *to) {
+    int k, l, r;
+    for (k = 0; k < 16; k++)
+        for (l = 0; l < GXSP_LANES; l++)
+            for (r = 0; r < 3; r++)
+                to[3 * k + r][l] =
+                    block->vector[k][l] == GXSP_NONE ? 0 : x[3 * (size_t)block->vector[k][l] + (size_t)r];
+}
+
+static void gxsp_affine_scatter(gxsp_lanes *GXSP_RESTRICT from, double (*GXSP_RESTRICT slots)[3]) {
+    int k, l, r;
+    for (k = 0; k < 16; k++)
+        for (l = 0; l < GXSP_LANES; l++)
+            for (r = 0; r < 3; r++) slots[k * GXSP_LANES + l][r] = from[3 * k + r][l];
+}
+
+/* (X_j - X_i) / (4 length) of an edge, axis a */
+GXSP_INLINE double gxsp_affine_edge(const gxsp_affine_block *block, int edge, int a, int l) {
+    const int i = gxsp_edge_ends[edge][0], j = gxsp_edge_ends[edge][1];
+    return block->edge[3 * (j - 1) + a][l] - (i > 0 ? block->edge[3 * (i - 1) + a][l] : 0);
+}
+
+/* e_ij of the six edges: [3 edge + axis] */
+static void gxsp_affine_bend(const gxsp_affine_block *block, gxsp_lanes *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT e) {
+    int k, r, l;
+    for (k = 0; k < 6; k++) {
+        gxsp_lanes *p = x + 12 + 9 * gxsp_edge_ends[k][0], *q = x + 12 + 9 * gxsp_edge_ends[k][1];
+        gxsp_lanes way[3];
+        for (r = 0; r < 3; r++) GXSP_EACH_LANE(l) way[r][l] = gxsp_affine_edge(block, k, r, l);
+        for (r = 0; r < 3; r++) GXSP_EACH_LANE(l)
+        e[3 * k + r][l] = (p[r][l] - q[r][l]) * way[0][l] + (p[3 + r][l] - q[3 + r][l]) * way[1][l] +
+                          (p[6 + r][l] - q[6 + r][l]) * way[2][l];
+    }
+}
+
+/* w of the corners at a point */
+static void gxsp_affine_corners(const gxsp_affine_block *block, int point, gxsp_lanes *GXSP_RESTRICT x,
+                                gxsp_lanes *GXSP_RESTRICT e, gxsp_lanes *GXSP_RESTRICT w) {
+    int k, r, l;
+    memcpy(w, x, 12 * sizeof *w);
+    for (k = 0; k < 6; k++) {
+        const int i = gxsp_edge_ends[k][0], j = gxsp_edge_ends[k][1];
+        for (r = 0; r < 3; r++) GXSP_EACH_LANE(l) {
+                w[3 * j + r][l] += 4 * block->shape[point][i][l] * e[3 * k + r][l];
+                w[3 * i + r][l] += 4 * block->shape[point][j][l] * e[3 * k + r][l];
+            }
+    }
+}
+
+/* Forces on w at a point, to those on a and e */
+static void gxsp_affine_collect(const gxsp_affine_block *block, int point, gxsp_lanes *GXSP_RESTRICT w,
+                                gxsp_lanes *GXSP_RESTRICT y, gxsp_lanes *GXSP_RESTRICT e) {
+    int k, r, l;
+    for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) y[k][l] += w[k][l];
+    for (k = 0; k < 6; k++) {
+        const int i = gxsp_edge_ends[k][0], j = gxsp_edge_ends[k][1];
+        for (r = 0; r < 3; r++) GXSP_EACH_LANE(l)
+        e[3 * k + r][l] +=
+            4 * (block->shape[point][i][l] * w[3 * j + r][l] + block->shape[point][j][l] * w[3 * i + r][l]);
+    }
+}
+
+/* Forces on e, to those on hidden vectors */
+static void gxsp_affine_return(const gxsp_affine_block *block, gxsp_lanes *GXSP_RESTRICT e,
+                               gxsp_lanes *GXSP_RESTRICT y) {
+    int k, r, a, l;
+    for (k = 0; k < 6; k++) {
+        gxsp_lanes *p = y + 12 + 9 * gxsp_edge_ends[k][0], *q = y + 12 + 9 * gxsp_edge_ends[k][1];
+        for (a = 0; a < 3; a++)
+            for (r = 0; r < 3; r++) GXSP_EACH_LANE(l) {
+                    const double force = e[3 * k + r][l] * gxsp_affine_edge(block, k, a, l);
+                    p[3 * a + r][l] += force;
+                    q[3 * a + r][l] -= force;
+                }
+    }
+}
+
+/* Adds rate M x of a point to forces on a and e; energy += rate/2 x M x. */
+static void gxsp_affine_inertia(const gxsp_affine_block *block, int point, double rate, gxsp_lanes *GXSP_RESTRICT x,
+                                gxsp_lanes *GXSP_RESTRICT w, gxsp_lanes *GXSP_RESTRICT y, gxsp_lanes *GXSP_RESTRICT e,
+                                double *GXSP_RESTRICT energy) {
+    gxsp_lanes force;
+    int k, r, j, l;
+    for (r = 0; r < 3; r++) {
+        GXSP_EACH_LANE(l) {
+            const double at = 0.5 * (block->shape[point][0][l] * (x[r][l] + w[r][l]) +
+                                     block->shape[point][1][l] * (x[3 + r][l] + w[3 + r][l]) +
+                                     block->shape[point][2][l] * (x[6 + r][l] + w[6 + r][l]) +
+                                     block->shape[point][3][l] * (x[9 + r][l] + w[9 + r][l]));
+            force[l] = rate * block->rest.mass[l] * at;
+            energy[l] += 0.5 * force[l] * at;
+        }
+        for (j = 0; j < 4; j++) GXSP_EACH_LANE(l) y[3 * j + r][l] += block->shape[point][j][l] * force[l];
+        for (k = 0; k < 6; k++) GXSP_EACH_LANE(l)
+        e[3 * k + r][l] +=
+            4 * block->shape[point][gxsp_edge_ends[k][0]][l] * block->shape[point][gxsp_edge_ends[k][1]][l] * force[l];
+    }
+}
+
+/* Energies and forces of a block: see gxsp_task_state */
+static void gxsp_affine_state(const gxsp_pass *pass, gxsp_affine_block *block, double (*slots)[3]) {
+    const int led = pass->inertia || pass->rotated; /* never both */
+    gxsp_lanes x[48], other[48], bend[18], bend_other[18], y[48], forces[18], w[12], w_other[12], ahead[9];
+    gxsp_state s;
+    int p, k, l;
+    gxsp_affine_gather(block, pass->from, x);
+    gxsp_affine_bend(block, x, bend);
+    if (led) gxsp_affine_gather(block, pass->inertia ? pass->system->vectors.target : pass->rotated, other);
+    for (k = 0; k < 48 && pass->inertia; k++) GXSP_EACH_LANE(l) other[k][l] = x[k][l] - other[k][l];
+    if (led) gxsp_affine_bend(block, other, bend_other);
+    memset(y, 0, sizeof y);
+    memset(forces, 0, sizeof forces);
+    memset(block->energies, 0, sizeof block->energies);
+    for (p = 0; p < 4; p++) {
+        gxsp_lanes own[12];
+        gxsp_affine_corners(block, p, x, bend, w);
+        if (led) gxsp_affine_corners(block, p, other, bend_other, w_other);
+        gxsp_block_parameters(pass->materials, &block->rest, &s);
+        gxsp_block_gradient(block->gradient, w, s.g);
+        if (pass->rotated) gxsp_block_gradient(block->gradient, w_other, ahead);
+        if (pass->nudge && block->kind != GXS_LINEAR && block->kind != GXS_CUSTOM) gxsp_nudge(s.g);
+        gxsp_material_state(block->kind, &s);
+        if (pass->rotated && block->kind != GXS_LINEAR) gxsp_rotate_stress(s.g, ahead, s.p);
+        memset(own, 0, sizeof own);
+        gxsp_block_force(block->rest.weight, block->gradient, s.p, own);
+        gxsp_affine_collect(block, p, own, y, forces);
+        for (l = 0; l < GXSP_LANES; l++) {
+            block->energies[0][l] += block->rest.weight[l] * s.energy[l];
+            block->energies[2][l] += block->rest.weight[l] * s.size[l];
+        }
+        if (pass->inertia) gxsp_affine_inertia(block, p, pass->rate, other, w_other, y, forces, block->energies[1]);
+    }
+    for (l = 0; l < GXSP_LANES; l++) block->energies[2][l] += block->energies[1][l];
+    gxsp_affine_return(block, forces, y);
+    gxsp_affine_scatter(y, slots);
+}
+
+/* Hessian of a block at pass->from, point by point */
+static void gxsp_affine_tangents(const gxsp_pass *pass, gxsp_affine_block *block) {
+    gxsp_lanes x[48], bend[18], w[12];
+    gxsp_state s;
+    gxsp_svd svd;
+    int p;
+    block->collapsed = 0;
+    gxsp_affine_gather(block, pass->from, x);
+    gxsp_affine_bend(block, x, bend);
+    for (p = 0; p < 4; p++) {
+        gxsp_affine_corners(block, p, x, bend, w);
+        gxsp_block_parameters(pass->materials, &block->rest, &s);
+        gxsp_block_gradient(block->gradient, w, s.g);
+        block->collapsed |= (uint8_t)gxsp_tangent_begin(block->kind, &s, NULL, &svd);
+        gxsp_tangent_make(block->kind, &block->rest, block->gradient, pass->system->model.scale, pass->exact, &s, &svd,
+                          &block->tangent[p], block->general ? &block->general[p] : NULL);
+    }
+}
+
+/* The product of a block with x, into its slots. pass->rate: times scale */
+static void gxsp_affine_product(const gxsp_pass *pass, const gxsp_affine_block *block, gxsp_lanes *x,
+                                double (*slots)[3]) {
+    gxsp_lanes y[48], bend[18], forces[18], w[12], energy;
+    int p, k, l;
+    gxsp_affine_bend(block, x, bend);
+    memset(y, 0, sizeof y);
+    memset(forces, 0, sizeof forces);
+    GXSP_EACH_LANE(l) energy[l] = 0;
+    for (p = 0; p < 4; p++) {
+        gxsp_singles from[12], to[12];
+        gxsp_affine_corners(block, p, x, bend, w);
+        if (pass->rate > 0) gxsp_affine_inertia(block, p, pass->rate, x, w, y, forces, energy);
+        for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) {
+                from[k][l] = k < 3 ? 0 : (float)(w[k][l] - w[k % 3][l]);
+                to[k][l] = 0;
+            }
+        gxsp_kind_product(block->kind, &block->tangent[p], NULL, block->general ? &block->general[p] : NULL, 1, from,
+                          to);
+        for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) w[k][l] = (double)to[k][l];
+        gxsp_affine_collect(block, p, w, y, forces);
+    }
+    gxsp_affine_return(block, forces, y);
+    gxsp_affine_scatter(y, slots);
+}
+
+/* What a task does with its blocks */
+static void gxsp_affine_over(void *context, size_t index, int what) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    gxsp_affine *affine = &pass->system->affine;
+    const size_t end = (index + 1) * GXSP_AFFINE_TASK;
+    gxsp_lanes x[48];
+    size_t b;
+    int k, l, r;
+    for (b = index * GXSP_AFFINE_TASK; b < end && b < affine->block_count; b++) {
+        gxsp_affine_block *block = &affine->blocks[b];
+        double(*slots)[3] = affine->slots + b * 16 * GXSP_LANES;
+        if (block->still) {
+            memset(slots, 0, 16 * GXSP_LANES * sizeof *slots);
+            memset(block->energies, 0, sizeof block->energies);
+            block->collapsed = 0;
+        } else if (what == 0)
+            gxsp_affine_state(pass, block, slots);
+        else if (what == 1)
+            gxsp_affine_tangents(pass, block);
+        else {
+            for (k = 0; k < 16; k++)
+                for (l = 0; l < GXSP_LANES; l++) {
+                    const uint32_t vector = block->vector[k][l];
+                    double in[3] = {0, 0, 0};
+                    if (vector != GXSP_NONE && pass->x)
+                        for (r = 0; r < 3; r++) in[r] = (double)pass->x[vector][r];
+                    else if (vector != GXSP_NONE)
+                        gxsp_copy_direction(pass, vector, in);
+                    for (r = 0; r < 3; r++) x[3 * k + r][l] = in[r];
+                }
+            gxsp_affine_product(pass, block, x, slots);
+        }
+    }
+}
+
+static void gxsp_task_affine_state(void *context, size_t index) { gxsp_affine_over(context, index, 0); }
+static void gxsp_task_affine_tangents(void *context, size_t index) { gxsp_affine_over(context, index, 1); }
+static void gxsp_task_affine_product(void *context, size_t index) { gxsp_affine_over(context, index, 2); }
+
+static void gxsp_over_affine(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass) {
+    pass->system = system;
+    gxsp_parallel(system->jobs, (system->affine.block_count + GXSP_AFFINE_TASK - 1) / GXSP_AFFINE_TASK, task, pass);
+}
+
+/* Sum over the slots of touched vector t */
+static void gxsp_affine_sum(const gxsp_affine *affine, uint32_t t, double *sum) {
+    uint32_t s;
+    sum[0] = sum[1] = sum[2] = 0;
+    for (s = affine->start[t]; s < affine->start[t + 1]; s++) {
+        const double *slot = affine->slots[affine->slot[s]];
+        sum[0] += slot[0], sum[1] += slot[1], sum[2] += slot[2];
+    }
+}
+
+/* Adds forces and energies to those of chunks. */
+static void gxsp_affine_evaluate(gxsp_system *system, gxsp_pass *pass) {
+    const gxsp_affine *affine = &system->affine;
+    uint32_t t, b;
+    int k, l;
+    gxsp_over_affine(system, gxsp_task_affine_state, pass);
+    for (t = 0; t < affine->touched_count; t++) {
+        double sum[3], *to = pass->sum + 3 * (size_t)affine->touched[t];
+        gxsp_affine_sum(affine, t, sum);
+        for (k = 0; k < 3; k++) to[k] += sum[k];
+    }
+    for (b = 0; b < affine->block_count; b++)
+        for (l = 0; l < GXSP_LANES && affine->blocks[b].vector[0][l] != GXSP_NONE; l++)
+            for (k = 0; k < 3; k++)
+                gxsp_lead_of(system, affine->blocks[b].vector[0][l])->energies[k] += affine->blocks[b].energies[k][l];
+}
+
+/* Adds the product of pass->x to pass->y, or takes it away if there is a pass->right. Returns x . product. */
+static double gxsp_affine_multiply(gxsp_system *system, gxsp_pass *pass) {
+    const gxsp_affine *affine = &system->affine;
+    double work = 0;
+    uint32_t t;
+    int k;
+    gxsp_over_affine(system, gxsp_task_affine_product, pass);
+    for (t = 0; t < affine->touched_count; t++) {
+        const uint32_t vector = affine->touched[t];
+        double sum[3];
+        if (system->state.still[vector]) continue;
+        gxsp_affine_sum(affine, t, sum);
+        for (k = 0; k < 3; k++) {
+            work += (double)pass->x[vector][k] * sum[k];
+            pass->y[vector][k] += (float)(pass->right ? -sum[k] : sum[k]);
+        }
+    }
+    return work;
+}
+
+/* A function of an element, given by its share of each vector, at a point: gradient in the frame of V, and value */
+static void gxsp_point_function(const gxsp_affine_block *block, int point, int l, const double share[16],
+                                double gradient[3], double *value) {
+    const gxsp_tangent *tangent = &block->tangent[point];
+    double w[4];
+    int k, j, a;
+    for (j = 0; j < 4; j++) w[j] = share[j];
+    for (k = 0; k < 6; k++) {
+        const int i = gxsp_edge_ends[k][0];
+        double e = 0;
+        j = gxsp_edge_ends[k][1];
+        for (a = 0; a < 3; a++) e += (share[4 + 3 * i + a] - share[4 + 3 * j + a]) * gxsp_affine_edge(block, k, a, l);
+        w[j] += 4 * block->shape[point][i][l] * e;
+        w[i] += 4 * block->shape[point][j][l] * e;
+    }
+    for (j = 0, *value = 0; j < 4; j++) *value += 0.5 * block->shape[point][j][l] * (share[j] + w[j]);
+    for (a = 0; a < 3; a++) {
+        gradient[a] = 0;
+        for (j = 1; j < 4; j++) gradient[a] += (w[j] - w[0]) * (double)tangent->gradient[3 * (j - 1) + a][l];
+    }
+}
+
+/* flux[9 s + 3 r + m] = weight x dP_rm, in the frame of V, when dF is the gradient of a function in direction s */
+static void gxsp_point_flux(const gxsp_affine_block *block, int point, int l, const double gradient[3],
+                            double flux[27]) {
+    const gxsp_tangent *t = &block->tangent[point];
+    int s, r, m, n;
+    double u[9];
+    if (block->general) {
+        for (s = 0; s < 3; s++)
+            for (r = 0; r < 3; r++)
+                for (m = 0; m < 3; m++)
+                    for (n = 0, flux[9 * s + 3 * r + m] = 0; n < 3; n++)
+                        flux[9 * s + 3 * r + m] +=
+                            (double)block->general[point].hessian[gxsp_packed9(3 * r + m, 3 * s + n)][l] * gradient[n];
+        return;
+    }
+    {
+        const double a = (double)t->frame[0][l], b = (double)t->frame[1][l], c = (double)t->frame[2][l],
+                     d = (double)t->frame[3][l];
+        u[0] = 1 - (b * b + c * c), u[1] = a * b - c * d, u[2] = a * c + b * d;
+        u[3] = a * b + c * d, u[4] = 1 - (a * a + c * c), u[5] = b * c - a * d;
+        u[6] = a * c - b * d, u[7] = b * c + a * d, u[8] = 1 - (a * a + b * b);
+    }
+    for (s = 0; s < 3; s++) {
+        double f[9], p[9];
+        for (r = 0; r < 9; r++) f[r] = u[3 * s + r / 3] * gradient[r % 3];
+        for (r = 0; r < 3; r++) {
+            p[4 * r] = 0;
+            for (m = 0; m < 3; m++)
+                p[4 * r] += (double)t->stretch[gxsp_packed3(r < m ? r : m, r < m ? m : r)][l] * f[4 * m];
+            for (m = 0; m < 3; m++)
+                if (m != r)
+                    p[3 * r + m] =
+                        (double)t->even[3 - r - m][l] * f[3 * r + m] + (double)t->odd[3 - r - m][l] * f[3 * m + r];
+        }
+        for (r = 0; r < 3; r++)
+            for (m = 0; m < 3; m++)
+                flux[9 * s + 3 * r + m] = u[3 * r] * p[m] + u[3 * r + 1] * p[3 + m] + u[3 * r + 2] * p[6 + m];
+    }
+}
+
+/* to[3 r + s] += gradient . flux, the block in the row of one function and the column of another */
+static void gxsp_point_couple(const double gradient[3], const double flux[27], double to[9]) {
+    int k;
+    for (k = 0; k < 9; k++) {
+        const double *p = flux + 9 * (k % 3) + 3 * (k / 3);
+        to[k] += gradient[0] * p[0] + gradient[1] * p[1] + gradient[2] * p[2];
+    }
+}
+
+/* Diagonal blocks of one element's corner: of its copy, or of all parts of its group */
+static void gxsp_affine_corner_blocks(gxsp_system *system, const gxsp_affine_block *block, int l, int corner,
+                                      double rate) {
+    gxsp_affine *affine = &system->affine;
+    const uint32_t copy = block->vector[corner][l], place = affine->place[copy];
+    const int parts = place == GXSP_NONE ? 1 : 4;
+    double gradient[4][3], value[4], flux[27], plain[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0};
+    int p, a, b, k;
+    for (p = 0; p < 4; p++) {
+        for (a = 0; a < parts; a++) {
+            double share[16] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+            share[a == 0 ? corner : 4 + 3 * corner + a - 1] = 1;
+            gxsp_point_function(block, p, l, share, gradient[a], &value[a]);
+        }
+        for (b = 0; b < parts; b++) {
+            gxsp_point_flux(block, p, l, gradient[b], flux);
+            for (a = 0; a <= b; a++) {
+                double *to = parts == 1 ? plain : affine->full[place / 4][gxsp_packed_mass[a][b]];
+                const double mass = rate * block->rest.mass[l] * value[a] * value[b];
+                gxsp_point_couple(gradient[a], flux, to);
+                to[0] += mass, to[4] += mass, to[8] += mass;
+            }
+        }
+    }
+    for (k = 0; k < 6 && parts == 1; k++) {
+        static const int packed[6] = {0, 1, 2, 4, 5, 8};
+        affine->own[copy][k] += plain[packed[k]];
+    }
+}
+
+/* Springs and contact in the diagonal blocks of groups, and of copies that have no slot in a chunk */
+static void gxsp_affine_terms(gxsp_system *system) {
+    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    gxsp_affine *affine = &system->affine;
+    size_t t;
+    uint32_t i, j;
+    int k;
+    for (t = 0; t < system->lasting->count; t++) {
+        const gxsp_term *term = &system->lasting->term[t];
+        const gxsp_share *share = system->lasting->share + term->first;
+        for (i = 0; i < term->count; i++) {
+            const uint32_t p = share[i].copy, place = affine->place[p];
+            for (k = 0; k < 6 && place == GXSP_NONE && system->mesh.copy_start[p] == system->mesh.copy_start[p + 1];
+                 k++)
+                affine->own[p][k] += (double)(share[i].weight * share[i].weight * term->hessian[k]);
+            for (j = 0; j < term->count && place != GXSP_NONE; j++) {
+                const uint32_t other = affine->place[share[j].copy];
+                if (other == GXSP_NONE || other / 4 != place / 4 || (place & 3) > (other & 3)) continue;
+                for (k = 0; k < 9; k++)
+                    affine->full[place / 4][gxsp_packed_mass[place & 3][other & 3]][k] +=
+                        (double)(share[i].weight * share[j].weight * term->hessian[full[k]]);
+            }
+        }
+    }
+}
+
+/* W of a group: the inverse of its 12x12 block is W^T W, semi-definite in spite of rounding. 1e-7 of the diagonal is
+ * added, as in gxsp_invert3. */
+static void gxsp_affine_invert(const gxsp_system *system, uint32_t group) {
+    const gxsp_affine *affine = &system->affine;
+    double a[12][12], scale[12], w[12][12];
+    int i, j, k;
+    for (i = 0; i < 12; i++)
+        for (j = 0; j < 12; j++) {
+            const int p = i / 3 < j / 3 ? i / 3 : j / 3, q = i / 3 < j / 3 ? j / 3 : i / 3;
+            const double *from = affine->full[group][gxsp_packed_mass[p][q]];
+            a[i][j] = i / 3 <= j / 3 ? from[3 * (i % 3) + j % 3] : from[3 * (j % 3) + i % 3];
+        }
+    for (i = 0; i < 12; i++)
+        scale[i] = !system->state.still[affine->member[group][i / 3]] && a[i][i] > GXSP_TINY ? 1 / sqrt(a[i][i]) : 0;
+    memset(w, 0, sizeof w);
+    for (i = 0; i < 12; i++) { /* Cholesky of the block with a diagonal of 1 */
+        for (j = 0; j <= i; j++) {
+            double sum = i == j ? 1 + 1e-7 : a[i][j] * scale[i] * scale[j];
+            for (k = 0; k < j; k++) sum -= a[i][k] * a[j][k]; /* rows before have the factor in place of the block */
+            a[i][j] = i > j ? sum * a[j][j] : 1 / sqrt(sum > 1e-7 ? sum : 1e-7);
+        }
+    }
+    for (j = 0; j < 12; j++) /* inverse of the factor, whose diagonal is inverted already */
+        for (i = j; i < 12; i++) {
+            double sum = i == j ? 1 : 0;
+            for (k = j; k < i; k++) sum -= a[i][k] * w[k][j];
+            w[i][j] = sum * a[i][i];
+        }
+    for (i = 0; i < 12; i++)
+        for (j = 0; j <= i; j++) affine->root[group][i * (i + 1) / 2 + j] = (float)(w[i][j] * scale[j]);
+}
+
+/* Diagonal blocks from the tangents. rate: times scale */
+static void gxsp_affine_diagonal(gxsp_system *system, double rate) {
+    static const int packed[6] = {0, 1, 2, 4, 5, 8};
+    gxsp_affine *affine = &system->affine;
+    uint32_t b, group;
+    int l, k, p;
+    memset(affine->own, 0, system->model.n * sizeof *affine->own);
+    memset(affine->full, 0, affine->group_count * sizeof *affine->full);
+    for (b = 0; b < affine->block_count; b++)
+        for (l = 0; l < GXSP_LANES && affine->blocks[b].vector[0][l] != GXSP_NONE && !affine->blocks[b].still; l++)
+            for (k = 0; k < 4; k++)
+                if (!gxsp_follows(system, affine->blocks[b].vector[k][l]))
+                    gxsp_affine_corner_blocks(system, &affine->blocks[b], l, k, rate);
+    gxsp_affine_terms(system);
+    for (group = 0; group < affine->group_count; group++) {
+        for (p = 0; p < 4; p++)
+            for (k = 0; k < 6; k++)
+                affine->own[affine->member[group][p]][k] = affine->full[group][gxsp_packed_mass[p][p]][packed[k]];
+        gxsp_affine_invert(system, group);
+    }
+}
+
+/* z = D^-1 x of a group's twelve numbers */
+static void gxsp_affine_apply(const gxsp_affine *affine, uint32_t group, const double x[12], double z[12]) {
+    const float *root = affine->root[group];
+    double y[12];
+    int i, j;
+    for (i = 0; i < 12; i++)
+        for (j = 0, y[i] = 0; j <= i; j++) y[i] += (double)root[i * (i + 1) / 2 + j] * x[j];
+    for (j = 0; j < 12; j++)
+        for (i = j, z[j] = 0; i < 12; i++) z[j] += (double)root[i * (i + 1) / 2 + j] * y[i];
 }
 
 /* >>forces: energies and forces of chunks -------------------------------------------------------------------------- */
@@ -4755,17 +5840,6 @@ static gxsp_lanes *gxsp_block_gradients(const gxsp_chunk *chunk, uint32_t b, con
     return made;
 }
 
-/* Parameters of a block's materials */
-static void gxsp_block_parameters(const gxsp_material *materials, const gxsp_rest *rest, gxsp_state *s) {
-    int l;
-    for (l = 0; l < GXSP_LANES; l++) {
-        const gxsp_material *material = &materials[rest->material[l]];
-        s->mu[l] = material->mu;
-        s->lambda[l] = material->lambda;
-        s->material[l] = material;
-    }
-}
-
 /* Adds forces of a block to the chunk's slots, 3 doubles each, and sets them to 0. Forces on a corner that the next
  * block has too are kept for it. */
 static void gxsp_block_store(const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *GXSP_RESTRICT values,
@@ -4781,40 +5855,6 @@ static void gxsp_block_store(const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *GX
             to[2] += values[3 * i + 2][l];
         }
         for (k = 3 * i; k < 3 * i + 3; k++) GXSP_EACH_LANE(l) values[k][l] = 0;
-    }
-}
-
-/* Rotates P of elements by the rotation from their orientation at displacement gradients `from` to that at `to`. P
- * stays where that is more than a right angle: such an element is tangled. */
-static void gxsp_rotate_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p) {
-    gxsp_svd svd[2];
-    int r, c, k, l;
-    gxsp_decompose(from, to, svd);
-    for (l = 0; l < GXSP_LANES; l++) {
-        double a[9], b[9], turn[9], stress[9], f[9], h[9];
-        for (r = 0; r < 3; r++)
-            for (c = 0; c < 3; c++) {
-                a[3 * r + c] = b[3 * r + c] = 0;
-                for (k = 0; k < 3; k++) {
-                    a[3 * r + c] += (double)(svd[0].u[3 * r + k][l] * svd[0].v[3 * c + k][l]);
-                    b[3 * r + c] += (double)(svd[1].u[3 * r + k][l] * svd[1].v[3 * c + k][l]);
-                }
-            }
-        for (k = 0; k < 9; k++) {
-            f[k] = from[k][l] + (k % 4 == 0 ? 1 : 0);
-            h[k] = to[k][l] + (k % 4 == 0 ? 1 : 0);
-        }
-        /* otherwise each step's load would have its own single-precision error, and no body would come to rest */
-        gxsp_polish_rotation(f, a);
-        gxsp_polish_rotation(h, b);
-        for (k = 0; k < 9; k++) {
-            turn[k] =
-                b[k / 3 * 3] * a[k % 3 * 3] + b[k / 3 * 3 + 1] * a[k % 3 * 3 + 1] + b[k / 3 * 3 + 2] * a[k % 3 * 3 + 2];
-            stress[k] = p[k][l];
-        }
-        for (k = 0; k < 9 && turn[0] + turn[4] + turn[8] > 1; k++)
-            p[k][l] = turn[k / 3 * 3] * stress[k % 3] + turn[k / 3 * 3 + 1] * stress[3 + k % 3] +
-                      turn[k / 3 * 3 + 2] * stress[6 + k % 3];
     }
 }
 
@@ -4962,6 +6002,7 @@ static void gxsp_evaluate_elements(gxsp_system *system, double rate, const doubl
         for (k = 0; k < 3; k++)
             system->model.components[system->model.components[system->mesh.partials[p].component].lead].energies[k] +=
                 system->mesh.partials[p].energies[k];
+    if (system->affine.count > 0) gxsp_affine_evaluate(system, &pass);
     if (rate > 0 && system->model.lumped_mass) {
         size_t i;
         for (i = 0; i < 3 * system->model.n; i++)
@@ -5315,6 +6356,7 @@ static double gxsp_product_from(gxsp_system *system, double rate, const double *
     else {
         gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_product, &pass);
         gxsp_over_ranges(system, gxsp_task_product_sum, &pass, &work, 1);
+        if (system->affine.count > 0) work += gxsp_affine_multiply(system, &pass);
     }
     work += gxsp_add_terms(system->lasting, right ? -1.0f : 1.0f, x, y);
     gxsp_reduce(system, y);
@@ -5330,26 +6372,6 @@ static double gxsp_product(gxsp_system *system, double rate, gxsp_vector4 *x, gx
 
 /* In: the last linearisation and a direction. Out: the product, with what sleeps. Differences between an
  * element's corners are taken in double precision. */
-
-/* Motion of a copy by a direction, times pass->factor: the direction's own, that of its masters if it follows them,
- * 0 if it is fixed */
-static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GXSP_RESTRICT to) {
-    const gxsp_system *system = pass->system;
-    const double *from = pass->from + 3 * (size_t)copy;
-    double factor = system->model.fixed[copy] ? 0 : pass->factor;
-    int k, c;
-    if (!gxsp_follows(system, copy)) {
-        to[0] = factor * from[0], to[1] = factor * from[1], to[2] = factor * from[2];
-        return;
-    }
-    to[0] = to[1] = to[2] = 0;
-    for (k = 0; k < 4; k++) {
-        const gxsp_follower *follower = &system->model.followers[system->model.follower[copy]];
-        from = pass->from + 3 * (size_t)follower->master[k];
-        factor = system->model.fixed[follower->master[k]] ? 0 : pass->factor * follower->weight[k];
-        for (c = 0; c < 3; c++) to[c] += factor * from[c];
-    }
-}
 
 /* The first three of four doubles minus those of origin, in single precision */
 static inline void gxsp_narrow_four(const double *x, const double *origin, float *to) {
@@ -5426,6 +6448,23 @@ static void gxsp_task_apply_sum(void *context, size_t index) {
     }
 }
 
+/* Adds the product of elements with affine copies to pass->sum. */
+static void gxsp_affine_apply_all(gxsp_system *system, gxsp_pass *pass) {
+    const double unit = 1 / (system->model.scale * pass->factor);
+    uint32_t t, b;
+    int k;
+    for (b = 0; b < system->affine.block_count; b++) system->affine.blocks[b].still = 0; /* what sleeps is included */
+    gxsp_over_affine(system, gxsp_task_affine_product, pass);
+    for (t = 0; t < system->affine.touched_count; t++) {
+        const uint32_t vector = system->affine.touched[t];
+        double sum[3];
+        gxsp_affine_sum(&system->affine, t, sum);
+        for (k = 0; k < 3 && !system->model.fixed[vector]; k++)
+            pass->sum[3 * (size_t)vector + (size_t)k] += unit * sum[k];
+    }
+    gxsp_mark_still_blocks(system);
+}
+
 /* Are the Hessians and masses of all elements finite? */
 static int gxsp_tangents_finite(const gxsp_system *system) {
     uint32_t c;
@@ -5434,6 +6473,12 @@ static int gxsp_tangents_finite(const gxsp_system *system) {
         if (!gxsp_all_finite_single(chunk->tangents, chunk->block_count * sizeof *chunk->tangents) ||
             !gxsp_all_finite_single(chunk->generals,
                                     chunk->generals ? chunk->block_count * sizeof *chunk->generals : 0))
+            return 0;
+    }
+    for (c = 0; c < system->affine.block_count; c++) {
+        const gxsp_affine_block *block = &system->affine.blocks[c];
+        if (!gxsp_all_finite_single(block->tangent, sizeof block->tangent) ||
+            !gxsp_all_finite_single(block->general, block->general ? 4 * sizeof *block->general : 0))
             return 0;
     }
     return 1;
@@ -5564,6 +6609,8 @@ static void gxsp_task_diagonal(void *context, size_t index) {
             gxsp_prefetch(slots + 6 * (size_t)system->mesh.copy_slot[s + GXSP_AHEAD], 6 * sizeof *slots);
             for (k = 0; k < 6; k++) sum[k] += (double)slots[6 * (size_t)system->mesh.copy_slot[s] + (size_t)k];
         }
+        for (k = 0; system->affine.count > 0 && k < 6 && !system->state.still[i]; k++)
+            sum[k] += system->affine.own[i][k];
         for (k = 0; system->model.lumped_mass && k < 6; k++)
             sum[k] += k == 0 || k == 3 || k == 5 ? pass->rate * system->model.lumped[i] : 0;
         if (system->state.still[i] || sum[0] + sum[3] + sum[5] < GXSP_TINY) /* only coarser levels move such a copy */
@@ -5620,8 +6667,15 @@ static int gxsp_linearise(gxsp_system *system, double rate, const double *from, 
     pass.exact = exact;
     gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_linearise, &pass);
     gxsp_extra_diagonal(system);
+    if (system->affine.count > 0) {
+        gxsp_over_affine(system, gxsp_task_affine_tangents, &pass);
+        gxsp_affine_diagonal(system, pass.rate);
+    }
     gxsp_over_ranges(system, gxsp_task_diagonal, &pass, NULL, 0);
     *collapsed = 0;
+    for (i = 0; i < system->affine.block_count; i++) *collapsed |= system->affine.blocks[i].collapsed;
+    if (!gxsp_all_finite_single(system->affine.root, system->affine.group_count * sizeof *system->affine.root))
+        return 0;
     for (i = 0; i < system->mesh.chunk_count; i++) *collapsed |= system->state.chunk_collapsed[i];
     for (i = 0; i < 6 * system->model.n; i++)
         if (!gxsp_finite_single(system->vectors.diagonal[i])) return 0;
@@ -5890,6 +6944,174 @@ static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
         }
 }
 
+/* >>nesting: numbers of level 1 where copies are affine ------------------------------------------------------------ */
+
+/* In: tangents of elements with affine copies, level 1's matrix from chunks. Out: the factor of their sum, in double
+ * precision: bending is softer than the rounding and the shift of single precision. */
+
+/* Adds an element's Hessian between its coarse functions. rate: times scale */
+static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *block, int l, double rate) {
+    const gxsp_level *level = &system->multigrid.levels[1];
+    uint32_t node[64], parents[16], count = 0, c, d, k, n;
+    double share[64][16], gradient[4][64][3], value[4][64], flux[27];
+    float weights[16];
+    int p, m;
+    for (k = 0; k < 16; k++) {
+        n = block->vector[k][l] == GXSP_NONE ? 0 : gxsp_nested_parents(system, block->vector[k][l], parents, weights);
+        while (n-- > 0) {
+            for (c = 0; c < count && node[c] != parents[n]; c++) {}
+            if (c == count) {
+                memset(share[c], 0, sizeof share[c]);
+                node[count++] = parents[n];
+            }
+            share[c][k] += (double)weights[n];
+        }
+    }
+    for (p = 0; p < 4; p++)
+        for (c = 0; c < count; c++) gxsp_point_function(block, p, l, share[c], gradient[p][c], &value[p][c]);
+    for (p = 0; p < 4; p++)
+        for (d = 0; d < count; d++) {
+            gxsp_point_flux(block, p, l, gradient[p][d], flux);
+            for (c = 0; c < count; c++) {
+                double to[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0}, *entry;
+                if (node[c] > node[d]) continue;
+                entry = system->affine.block + 9 * (size_t)gxsp_find_entry(level, node[c], node[d]);
+                gxsp_point_couple(gradient[p][c], flux, to);
+                to[0] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
+                to[4] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
+                to[8] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
+                for (m = 0; m < 9; m++) entry[3 * (m % 3) + m / 3] += to[m];
+            }
+        }
+}
+
+/* Springs and contact between coarse functions, where level 1's matrix has an entry for them */
+static void gxsp_nested_term(gxsp_system *system, const gxsp_term *term) {
+    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    const gxsp_level *level = &system->multigrid.levels[1];
+    const gxsp_share *share = system->lasting->share + term->first;
+    uint32_t i, j, p, q, rows[16], columns[16], row_count, column_count;
+    float w[16], v[16];
+    int k;
+    for (i = 0; i < term->count; i++)
+        for (j = 0; j < term->count; j++) {
+            row_count = gxsp_nested_parents(system, share[i].copy, rows, w);
+            column_count = gxsp_nested_parents(system, share[j].copy, columns, v);
+            for (p = 0; p < row_count; p++)
+                for (q = 0; q < column_count; q++) {
+                    const double weight = (double)(share[i].weight * w[p]) * (double)(share[j].weight * v[q]);
+                    uint32_t entry;
+                    if (rows[p] > columns[q]) continue;
+                    entry = gxsp_find_entry(level, rows[p], columns[q]);
+                    if (level->column[entry] != columns[q]) continue;
+                    for (k = 0; k < 9; k++)
+                        system->affine.block[9 * (size_t)entry + (size_t)k] += weight * (double)term->hessian[full[k]];
+                }
+        }
+}
+
+/* Row i of the factor in double precision: see gxsp_factor_row */
+static double *gxsp_nested_row(const gxsp_system *system, uint32_t i) {
+    const gxsp_factor *factor = &system->multigrid.factor;
+    const uint32_t place = i / 3, r = i % 3;
+    return system->affine.entry + (factor->row[place] + r * (size_t)(3 * place - factor->first[place] + 1) + (r == 2));
+}
+
+/* a . b in four sums side by side */
+static double gxsp_double_dot(const double *a, const double *b, size_t count) {
+    double sum[4] = {0, 0, 0, 0};
+    size_t i, k;
+    for (i = 0; i + 4 <= count; i += 4)
+        for (k = 0; k < 4; k++) sum[k] += a[i + k] * b[i + k];
+    for (; i < count; i++) sum[0] += a[i] * b[i];
+    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
+}
+
+/* The sum of both matrices in the factor's envelope, then Cholesky; the diagonal is inverted. Functions that others
+ * make up have pivots of rounding: they are left out. place: n, scratch. 0: a number overflowed. */
+static int gxsp_nested_factor(gxsp_system *system, uint32_t *place) {
+    const gxsp_factor *factor = &system->multigrid.factor;
+    const gxsp_level *level = &system->multigrid.levels[1];
+    uint32_t i, j, k, r, c;
+    memset(system->affine.entry, 0, factor->entry_count * sizeof(double));
+    for (i = 0; i < level->n; i++) place[factor->order[i]] = i;
+    for (i = 0; i < level->n; i++)
+        for (k = level->start[i]; k < level->start[i + 1]; k++)
+            for (r = 0; r < 3; r++)
+                for (c = 0; c < 3; c++) {
+                    const uint32_t row = 3 * place[i] + r, column = 3 * place[level->column[k]] + c;
+                    const size_t number = 9 * (size_t)k + 3 * c + r;
+                    gxsp_nested_row(system, column <= row ? row : column)[column <= row ? column : row] =
+                        (double)level->block[number] + system->affine.block[number];
+                }
+    for (i = 0; i < factor->n; i++) {
+        const uint32_t first = factor->first[i / 3];
+        double *row = gxsp_nested_row(system, i), own = row[i];
+        for (j = first; j < i; j++) {
+            const uint32_t other = factor->first[j / 3], from = other > first ? other : first;
+            const double *left = gxsp_nested_row(system, j);
+            row[j] = (row[j] - gxsp_double_dot(row + from, left + from, j - from)) * left[j];
+        }
+        row[i] = own * (1 + 1e-12) - gxsp_double_dot(row + first, row + first, i - first);
+        row[i] = own < GXSP_TINY ? 0 : row[i] > 1e-10 * own ? 1 / sqrt(row[i]) : 0;
+        if (!gxsp_finite(row[i])) return 0;
+    }
+    return 1;
+}
+
+/* All numbers of level 1 beside those of chunks, and its factor. rate: times scale. 0: a number overflowed. */
+static int gxsp_nested_numbers(gxsp_system *system, double rate) {
+    const gxsp_affine *affine = &system->affine;
+    uint32_t b;
+    size_t t;
+    int l;
+    memset(affine->block, 0, gxsp_block_numbers(&system->multigrid.levels[1]) * sizeof(double));
+    for (b = 0; b < affine->block_count; b++)
+        for (l = 0; l < GXSP_LANES; l++)
+            if (affine->blocks[b].rest.weight[l] > 0) gxsp_nested_element(system, &affine->blocks[b], l, rate);
+    for (t = 0; t < system->lasting->count; t++) gxsp_nested_term(system, &system->lasting->term[t]);
+    return gxsp_nested_factor(system, system->multigrid.pairs.local);
+}
+
+/* x = the factor's answer to b on level 1 */
+static void gxsp_nested_solve(gxsp_system *system) {
+    const gxsp_factor *factor = &system->multigrid.factor;
+    gxsp_level *level = &system->multigrid.levels[1];
+    double *x = factor->x;
+    uint32_t i, j;
+    for (i = 0; i < factor->n; i++) {
+        const double *row = gxsp_nested_row(system, i);
+        const uint32_t first = factor->first[i / 3];
+        x[i] = ((double)level->b[factor->order[i / 3]][i % 3] - gxsp_double_dot(row + first, x + first, i - first)) *
+               row[i];
+    }
+    for (i = factor->n; i-- > 0;) {
+        const double *row = gxsp_nested_row(system, i);
+        x[i] *= row[i];
+        for (j = factor->first[i / 3]; j < i; j++) x[j] -= row[j] * x[i];
+    }
+    for (i = 0; i < factor->n; i++) level->x[factor->order[i / 3]][i % 3] = (float)x[i];
+}
+
+/* Between groups and hidden nodes: b of level 1 += transfer^T r, or, back, x of level 0 += transfer x. */
+static void gxsp_nested_transfer(gxsp_system *system, int back) {
+    const gxsp_affine *affine = &system->affine;
+    gxsp_level *fine = &system->multigrid.levels[0], *next = fine + 1;
+    uint32_t group;
+    int k, a;
+    for (group = 0; group < affine->group_count; group++)
+        for (k = 0; k < 4; k++) {
+            const uint32_t copy = affine->member[group][0], parent = fine->parent[copy][k];
+            const float weight = fine->weight[copy][k];
+            for (a = 0; a < 3 && parent != GXSP_NONE; a++) {
+                const uint32_t hidden = affine->hidden[parent] + (uint32_t)a, own = affine->member[group][a + 1];
+                const float offset = weight * affine->offset[group][k][a];
+                gxsp_add_four(offset, back ? next->x[hidden] : fine->r[copy], back ? fine->x[copy] : next->b[hidden]);
+                gxsp_add_four(weight, back ? next->x[hidden] : fine->r[own], back ? fine->x[own] : next->b[hidden]);
+            }
+        }
+}
+
 /* >>factor: the last level's Cholesky factor, and all numbers below level 0 ---------------------------------------- */
 
 /* In: level 1's matrix. Out: the matrices and inverse diagonals of all levels, the factor of the last one. 0 is
@@ -6059,8 +7281,12 @@ static int gxsp_coarse_numbers(gxsp_system *system, double rate) {
         if (system->model.lumped_mass) gxsp_coarse_lumped(system, system->model.scale * rate);
     }
     for (t = 0; t < system->lasting->count; t++)
-        if (!system->lasting->term[t].assembled) gxsp_coarse_term(system, &system->lasting->term[t]);
-    finite = gxsp_lower_numbers(system, NULL);
+        if (!system->lasting->term[t].assembled && system->affine.count == 0)
+            gxsp_coarse_term(system, &system->lasting->term[t]);
+    if (system->affine.count > 0)
+        finite = gxsp_invert_diagonal(fine + 1, NULL) && gxsp_nested_numbers(system, system->model.scale * rate);
+    else
+        finite = gxsp_lower_numbers(system, NULL);
     gxsp_return_memory(system);
     return finite;
 }
@@ -6198,6 +7424,24 @@ static int gxsp_invert_fine(gxsp_system *system) {
 /* In: the last linearisation and its block diagonal. Out: gxsp_smoother. Uses the search and product vectors. The
  * sweeps themselves are in >>cycle; the first one of level 0 is gxsp_scale in >>cg. */
 
+/* x = D^-1 y for the groups of affine copies. before += y . x as it was, after += y . x. */
+static void gxsp_scale_directions(const gxsp_system *system, gxsp_vector4 *y, gxsp_vector4 *x, double *before,
+                                  double *after) {
+    uint32_t group;
+    int k;
+    for (group = 0; group < system->affine.group_count; group++) {
+        const uint32_t *member = system->affine.member[group];
+        double from[12], to[12];
+        for (k = 0; k < 12; k++) from[k] = (double)y[member[k / 3]][k % 3];
+        gxsp_affine_apply(&system->affine, group, from, to);
+        for (k = 0; k < 12; k++) {
+            *before += from[k] * (double)x[member[k / 3]][k % 3];
+            *after += from[k] * to[k];
+            x[member[k / 3]][k % 3] = (float)to[k];
+        }
+    }
+}
+
 /* Largest eigenvalue of D^-1 (K + rate M) on copies that are not still, by the power method from a start that
  * favours none; 0 if nothing moves */
 static double gxsp_largest_eigenvalue(gxsp_system *system, double rate) {
@@ -6217,6 +7461,7 @@ static double gxsp_largest_eigenvalue(gxsp_system *system, double rate) {
         gxsp_product(system, rate, x, y);
         for (i = 0; i < system->model.n; i++) {
             float z[3];
+            if (gxsp_is_grouped(system, i)) continue;
             gxsp_apply_packed(system->vectors.diagonal + 6 * i, y[i], z);
             for (c = 0; c < 3; c++) {
                 before += (double)y[i][c] * (double)x[i][c];
@@ -6224,6 +7469,7 @@ static double gxsp_largest_eigenvalue(gxsp_system *system, double rate) {
                 x[i][c] = z[c];
             }
         }
+        gxsp_scale_directions(system, y, x, &before, &after);
         if (!(before > 0) || !(after > 0)) break;
         largest = after / before;
         scale = (float)(1 / sqrt(after));
@@ -6370,6 +7616,10 @@ static void gxsp_factor_solve(const gxsp_factor *factor, gxsp_level *level) {
 /* x = the multigrid's answer to b on levels[depth] and below. depth 0: only if level 0 is assembled */
 static void gxsp_cycle(gxsp_system *system, uint32_t depth) {
     gxsp_level *level = &system->multigrid.levels[depth];
+    if (system->affine.count > 0) {
+        gxsp_nested_solve(system);
+        return;
+    }
     if (depth + 1 == system->multigrid.level_count) {
         gxsp_factor_solve(&system->multigrid.factor, level);
         return;
@@ -6387,10 +7637,24 @@ static void gxsp_task_smooth(void *context, size_t index) {
     size_t i, end = gxsp_range(system, index, &i);
     for (; i < end; i++) {
         float y[3];
+        if (gxsp_is_grouped(system, i)) continue;
         gxsp_apply_packed(system->vectors.diagonal + 6 * i, system->vectors.product[i], y);
         system->vectors.scaled[i][0] += system->smoother.omega * y[0];
         system->vectors.scaled[i][1] += system->smoother.omega * y[1];
         system->vectors.scaled[i][2] += system->smoother.omega * y[2];
+    }
+}
+
+/* The same for the groups of affine copies */
+static void gxsp_smooth_groups(const gxsp_system *system) {
+    uint32_t group;
+    int k;
+    for (group = 0; group < system->affine.group_count; group++) {
+        const uint32_t *member = system->affine.member[group];
+        double from[12], to[12];
+        for (k = 0; k < 12; k++) from[k] = (double)system->vectors.product[member[k / 3]][k % 3];
+        gxsp_affine_apply(&system->affine, group, from, to);
+        for (k = 0; k < 12; k++) system->vectors.scaled[member[k / 3]][k % 3] += system->smoother.omega * (float)to[k];
     }
 }
 
@@ -6417,11 +7681,14 @@ static void gxsp_v_cycle(gxsp_system *system, double rate, double energy) {
         (void)gxsp_product_from(system, rate, system->vectors.residual, fine->x, fine->r);
     }
     gxsp_restrict(fine, fine + 1);
+    if (system->affine.count > 0) gxsp_nested_transfer(system, 0);
     gxsp_cycle(system, 1);
     gxsp_prolong(fine, fine + 1);
+    if (system->affine.count > 0) gxsp_nested_transfer(system, 1);
     (void)gxsp_product_from(system, rate, system->vectors.residual, fine->x, fine->r);
     memset(&pass, 0, sizeof pass);
     gxsp_over_ranges(system, gxsp_task_smooth, &pass, NULL, 0);
+    gxsp_smooth_groups(system);
 }
 
 /* >>edits: which lanes an update changes --------------------------------------------------------------------------- */
@@ -7067,7 +8334,7 @@ static void gxsp_renew_steps(gxsp_renewal *update) {
 
 /* Can the model's form take changes? */
 static int gxsp_is_flexible(const gxsp_system *system) {
-    return !system->multigrid.fine && !system->model.volume && !system->model.lumped_mass;
+    return !system->multigrid.fine && !system->model.volume && !system->model.lumped_mass && !system->affine.place;
 }
 
 /* Are the chunks still worth keeping, and is the choice of preconditioner still right? */
@@ -7085,6 +8352,7 @@ static int gxsp_is_compact(gxsp_renewal *update) {
  * out: see the pools. */
 static int gxsp_update_system(gxsp_renewal *update) {
     gxsp_system *system = update->system;
+    system->leap.made = 0;
     gxsp_find_edits(update);
     gxsp_match_edits(update);
     if (update->scratch->failed) return 1;
@@ -7162,7 +8430,8 @@ static void gxsp_remove_translations(gxsp_system *system, gxsp_vector4 *x) {
     }
     gxsp_average_components(system, 0);
     for (i = 0; i < system->model.n; i++)
-        for (r = 0; r < 3; r++) x[i][r] -= (float)system->model.components[system->model.component[i]].sum[r];
+        for (r = 0; r < 3 && !gxsp_is_hidden(system, i); r++)
+            x[i][r] -= (float)system->model.components[system->model.component[i]].sum[r];
 }
 
 /* Subtracts from x the momentum of every loose component. */
@@ -7176,7 +8445,8 @@ static void gxsp_remove_momentum(gxsp_system *system, double *x) {
     }
     gxsp_average_components(system, 0);
     for (i = 0; i < system->model.n; i++)
-        for (r = 0; r < 3; r++) x[3 * i + r] -= system->model.components[system->model.component[i]].sum[r];
+        for (r = 0; r < 3 && !gxsp_is_hidden(system, i); r++)
+            x[3 * i + r] -= system->model.components[system->model.component[i]].sum[r];
 }
 
 /* Translates every component of x that has no state but those ignored so that load = rate M (base + x - target) in
@@ -7190,12 +8460,13 @@ static void gxsp_balance_momentum(const gxsp_problem *problem, uint32_t ignored,
         const double rate = problem->rate * system->model.lumped[i], *from = system->vectors.target + 3 * i;
         double f[3];
         gxsp_load(problem, i, f);
+        if (gxsp_is_hidden(system, i)) memset(f, 0, sizeof f); /* a translation does no work there */
         for (r = 0; r < 3; r++) f[r] -= rate * (x[3 * i + r] + (base ? base[3 * i + r] : 0) - from[r]);
         gxsp_add_to_component(system, i, f[0], f[1], f[2]);
     }
     gxsp_average_components(system, ignored);
     for (i = 0; i < system->model.n; i++)
-        for (r = 0; r < 3; r++)
+        for (r = 0; r < 3 && !gxsp_is_hidden(system, i); r++)
             x[3 * i + r] += system->model.components[system->model.component[i]].sum[r] / problem->rate;
 }
 
@@ -7519,6 +8790,7 @@ static void gxsp_scale_copies(const gxsp_system *system, const double *r, size_t
         const double x = (double)d[0] * a + (double)d[1] * b + (double)d[2] * c,
                      y = (double)d[1] * a + (double)d[3] * b + (double)d[4] * c,
                      z = (double)d[2] * a + (double)d[4] * b + (double)d[5] * c;
+        if (gxsp_is_grouped(system, i)) continue; /* see gxsp_scale_groups */
         energy += x * a + y * b + z * c;
         displacement += x * x + y * y + z * z;
         system->vectors.scaled[i][0] = (float)(factor * x), system->vectors.scaled[i][1] = (float)(factor * y),
@@ -7534,11 +8806,30 @@ static void gxsp_task_scale(void *context, size_t index) {
     gxsp_scale_copies(pass->system, pass->from, first, end, pass->system->vectors.range_sum[index]);
 }
 
-/* Norms over all ranges, by a task that scales them */
-static gxsp_norms gxsp_norms_of(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass) {
+/* As gxsp_scale_copies, for the groups of affine copies, by their 12x12 blocks. Adds to sums. */
+static void gxsp_scale_groups(const gxsp_system *system, const double *r, double *sums) {
+    const double factor = system->multigrid.used ? (double)system->smoother.omega : 1;
+    uint32_t group;
+    int k;
+    for (group = 0; group < system->affine.group_count; group++) {
+        const uint32_t *member = system->affine.member[group];
+        double x[12], z[12];
+        for (k = 0; k < 12; k++) x[k] = r[3 * (size_t)member[k / 3] + (size_t)(k % 3)];
+        gxsp_affine_apply(&system->affine, group, x, z);
+        for (k = 0; k < 12; k++) {
+            sums[0] += x[k] * z[k];
+            sums[1] += z[k] * z[k];
+            system->vectors.scaled[member[k / 3]][k % 3] = (float)(factor * z[k]);
+        }
+    }
+}
+
+/* Norms over all ranges, by a task that scales r */
+static gxsp_norms gxsp_norms_of(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass, const double *r) {
     gxsp_norms norms;
     double sums[2];
     gxsp_over_ranges(system, task, pass, sums, 2);
+    gxsp_scale_groups(system, r, sums);
     norms.energy = sums[0], norms.displacement = sums[1];
     return norms;
 }
@@ -7547,7 +8838,7 @@ static gxsp_norms gxsp_scale(gxsp_system *system, const double *r) {
     gxsp_pass pass;
     memset(&pass, 0, sizeof pass);
     pass.from = r;
-    return gxsp_norms_of(system, gxsp_task_scale, &pass);
+    return gxsp_norms_of(system, gxsp_task_scale, &pass, r);
 }
 
 /* direction += factor x, residual -= factor y; then scales the residual. */
@@ -7570,7 +8861,7 @@ static gxsp_norms gxsp_advance(gxsp_system *system, double length, gxsp_vector4 
     pass.factor = length;
     pass.x = x;
     pass.y = y;
-    return gxsp_norms_of(system, gxsp_task_advance, &pass);
+    return gxsp_norms_of(system, gxsp_task_advance, &pass, system->vectors.residual);
 }
 
 /* Sums: residual . x, and x . y if there is a y */
@@ -7791,7 +9082,7 @@ static int gxsp_coarse_pays(gxsp_system *system, double rate) {
         double *sum = system->model.components[system->model.component[i]].sum; /* share, copies */
         const float *d = system->vectors.diagonal + 6 * i;
         const double compliance = (double)d[0] + (double)d[3] + (double)d[5],
-                     share = system->model.lumped[i] * compliance;
+                     share = gxsp_is_hidden(system, i) ? 0 : system->model.lumped[i] * compliance;
         if (system->state.still[i] || !(compliance > 0)) continue;
         sum[0] += share < 4 * bound / 3 ? share : 4 * bound / 3;
         sum[1] += 1;
@@ -8113,6 +9404,13 @@ static double gxsp_balance(gxsp_problem *problem) {
     gxsp_add_reactions(system, &elastic);
     gxsp_reduce_residual(system, system->state.still, system->vectors.residual);
     residual = gxsp_scale(system, system->vectors.residual);
+    if (system->affine.count > 0) { /* by the blocks that measure load and inertia */
+        double own[2] = {0, 0};
+        size_t i;
+        for (i = 0; i < system->model.n; i++)
+            gxsp_add_norms(system->vectors.diagonal + 6 * i, system->vectors.residual + 3 * i, own);
+        residual.energy = own[0], residual.displacement = own[1];
+    }
     energy = sqrt(sums[0]) + sqrt(sums[2]) + sqrt(elastic.energy);
     displacement = sqrt(sums[1]) + sqrt(sums[3]) + sqrt(elastic.displacement);
     by_energy = energy > 0 ? sqrt(residual.energy) / energy : 0;
@@ -8678,6 +9976,11 @@ static void gxsp_guide_lights(const gxsp_system *system, double *x) {
     }
 }
 
+/* The drift of number i of a vector */
+static double gxsp_drift(const gxsp_system *system, size_t i) {
+    return gxsp_is_hidden(system, i / 3) ? 0 : system->model.components[system->model.component[i / 3]].drift[i % 3];
+}
+
 /* The second half of the midpoint rule from current: drift of loose components, and direction. Components on which
  * springs or contact act at its end are not loose. trial: that end. */
 static void gxsp_find_second_half(const gxsp_problem *problem) {
@@ -8695,9 +9998,7 @@ static void gxsp_find_second_half(const gxsp_problem *problem) {
     gxsp_guide_lights(system, system->vectors.direction);
     gxsp_remove_momentum(system, system->vectors.direction);
     for (i = 0; i < count; i++)
-        gxsp_trial(system)[i] =
-            system->vectors.current[i] +
-            (system->vectors.direction[i] + system->model.components[system->model.component[i / 3]].drift[i % 3]);
+        gxsp_trial(system)[i] = system->vectors.current[i] + (system->vectors.direction[i] + gxsp_drift(system, i));
     gxsp_touch_components_at(problem, gxsp_trial(system));
     for (i = 0; i < count; i++)
         system->vectors.direction[i] = system->model.components[system->model.component[i / 3]].state == 0
@@ -8744,8 +10045,8 @@ static void gxsp_bound_gain(gxsp_problem *problem) {
     for (trial = 0; trial < GXSP_GAIN_TRIALS && left > 0; trial++) {
         for (i = 0; i < count; i++)
             gxsp_trial(system)[i] =
-                system->vectors.current[i] + (system->model.components[system->model.component[i / 3]].drift[i % 3] +
-                                              gxsp_lead_of(system, i / 3)->length * system->vectors.direction[i]);
+                system->vectors.current[i] +
+                (gxsp_drift(system, i) + gxsp_lead_of(system, i / 3)->length * system->vectors.direction[i]);
         gxsp_evaluate(problem, gxsp_trial(system), 0, system->vectors.force);
         gxsp_find_gains(problem, gxsp_trial(system), 1);
         for (p = 0, left = 0; p < system->model.component_count; p++) {
@@ -8772,9 +10073,8 @@ static double gxsp_potential(const gxsp_problem *problem, const double *energies
     return energies[0] + energies[1] - work;
 }
 
-/* Writes the state out: all of it, or none if a number is not finite. residual and direction have the new velocity
- * and displacement here. */
-static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double *velocity) {
+/* The state at the end of an implicit step: velocity into residual, displacement into direction; and E there */
+static void gxsp_find_end(gxsp_problem *problem, const double *displacement, const double *velocity) {
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
     const int midpoint = step->integrator == GXS_MIDPOINT, bounded = midpoint && system->state.active > 0;
@@ -8792,12 +10092,21 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
             speeds[i] = problem->speed * (ends[i] - gxsp_mean(problem, displacement, i)) - (midpoint ? velocity[i] : 0);
     }
     problem->report.energy = gxsp_potential(problem, problem->energies, system->vectors.current);
+}
+
+/* Writes the state out, residual and direction: all of it, or none if a number is not finite. */
+static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double *velocity) {
+    gxsp_system *system = problem->system;
+    const gxs_step_desc *step = problem->step;
+    const int midpoint = step->integrator == GXS_MIDPOINT;
+    size_t i, count = 3 * system->model.n;
+    const double *speeds = system->vectors.residual, *ends = system->vectors.direction;
     if (gxsp_first_not_finite(speeds, count) < count || gxsp_first_not_finite(ends, count) < count ||
         !gxsp_finite(problem->report.energy))
         return GX_ERROR_DIVERGED;
     memcpy(displacement, ends, count * sizeof(double));
     memcpy(velocity, speeds, count * sizeof(double));
-    if (midpoint) memcpy(system->vectors.current, ends, count * sizeof(double));
+    if (midpoint || problem->report.substeps > 0) memcpy(system->vectors.current, ends, count * sizeof(double));
     system->state.stepped = 1;
     system->state.base_known = !midpoint && step->spring_count + step->point_count == 0;
     system->lasting->scene = problem->scene;
@@ -8819,6 +10128,601 @@ static void gxsp_report_springs(const gxsp_problem *problem) {
         gxsp_spring_pull(&step->springs[i], problem->system->vectors.current, &pull);
         memcpy(step->spring_forces + 3 * i, pull.force, sizeof pull.force);
     }
+}
+
+/* >>leapfrog: explicit steps --------------------------------------------------------------------------------------- */
+
+/* In: the step and the state at its start. Out: the state at its end in direction and residual, or nothing where
+ * the step must be implicit. Passes use the chunks' slots.
+ *
+ * Leapfrog takes substeps of h: u += h/2 v, v += h a(u), u += h/2 v. Alone it is stable for h^2 K <= 4 M. Here
+ * a = P M^-1 (f - dU/du) with a polynomial P in X = h^2 M^-1 L, where L >= K is the stiffness of a scalar field with
+ * the largest modulus of the material: one number for each pair of copies. With Chebyshev's T of degree d,
+ *
+ *     X P(X) = 2 - 2 T_d(1 - X / (2 d^2)),    P(0) = 1,
+ *
+ * is at most 4 for X up to 4 d^2. So h may be d times as long, and a product by L is far cheaper than forces are. P is
+ * symmetric and positive: this is leapfrog with the mass M P^-1, second order and reversible. Waves that are slow
+ * beside h keep their inertia to h^2 K / 12. A factor on L, from the moduli at the present strain, chooses d for each
+ * substep.
+ */
+
+/* The largest modulus of a lane's Hessian at rest, 3 lambda + 2 mu of small strain, times the weight, J. The block's
+ * moduli are those of [Smith 2018]. */
+static float gxsp_leap_modulus(const gxsp_leap_block *block, int lane) {
+    return 3 * block->lambda[lane] - 0.375f * block->mu[lane];
+}
+
+/* Are all elements stable neo-Hookean, undamped, and does no copy follow others or move affinely? */
+static int gxsp_leap_suits(const gxsp_system *system) {
+    uint32_t c;
+    if (system->model.follower_count > 0 || system->model.damps || system->affine.count > 0) return 0;
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        if (system->mesh.chunks[c].kind != GXS_STABLE_NEO_HOOKEAN) return 0;
+    return 1;
+}
+
+/* Gradients and moduli of all blocks, and the copies of all lanes: 4 each; GXSP_NONE: no element. The caller's scratch
+ */
+static uint32_t *gxsp_leap_blocks_make(gxsp_system *system, gxsp_pool *scratch) {
+    gxsp_leap *leap = &system->leap;
+    uint32_t *copies, c, b, lane, count = 0;
+    int k;
+    leap->first_block = (uint32_t *)gxsp_take(&leap->pool, system->mesh.chunk_count, sizeof(uint32_t));
+    for (c = 0; c < system->mesh.chunk_count && !leap->pool.failed; c++) {
+        leap->first_block[c] = count;
+        count += system->mesh.chunks[c].block_count;
+    }
+    leap->block_count = count;
+    leap->blocks = (gxsp_leap_block *)gxsp_take(&leap->pool, count, sizeof *leap->blocks);
+    copies = (uint32_t *)gxsp_take(scratch, (size_t)count * GXSP_LANES, 4 * sizeof(uint32_t));
+    if (leap->pool.failed || scratch->failed) return NULL;
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        const gxsp_chunk *chunk = &system->mesh.chunks[c];
+        double positions[3 * 4 * GXSP_CHUNK + 1];
+        gxsp_lanes corners[12], made[9];
+        if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, positions);
+        for (b = 0; b < chunk->block_count; b++) {
+            gxsp_leap_block *to = &leap->blocks[leap->first_block[c] + b];
+            const gxsp_rest *rest = &chunk->rest[b];
+            gxsp_lanes *gradients = gxsp_block_gradients(chunk, b, positions, corners, made);
+            for (lane = 0; lane < GXSP_LANES; lane++) {
+                const gxsp_material *material = &system->model.materials[rest->material[lane]];
+                const int used = chunk->groups[b * GXSP_LANES + lane] != GXSP_NONE;
+                uint32_t *own = copies + 4 * ((size_t)(leap->first_block[c] + b) * GXSP_LANES + lane);
+                for (k = 0; k < 9; k++) to->gradient[k][lane] = (float)gradients[k][lane];
+                to->mu[lane] = (float)(rest->weight[lane] * material->mu);
+                to->lambda[lane] = (float)(rest->weight[lane] * material->lambda);
+                if (used) gxsp_lane_copies(system, chunk, b, (int)lane, own);
+                if (!used) own[0] = GXSP_NONE;
+            }
+        }
+    }
+    return copies;
+}
+
+/* Gradient of shape function 0 ... 3 of a lane, k: along an axis */
+static float gxsp_leap_gradient(const gxsp_leap_block *block, uint32_t lane, int corner, int k) {
+    return corner > 0 ? block->gradient[3 * (corner - 1) + k][lane]
+                      : -(block->gradient[k][lane] + block->gradient[3 + k][lane] + block->gradient[6 + k][lane]);
+}
+
+/* A row of L: the copies around copy i, and, if entry is not NULL, their numbers, from the lanes in which it is. mark:
+ * by copy, i + 1 if its place in the row is at. Returns how many there are. */
+static uint32_t gxsp_leap_row(const gxsp_leap *leap, const uint32_t *copies, const uint32_t *corners, uint32_t count,
+                              uint32_t i, uint32_t *mark, uint32_t *at, uint32_t *column, float *entry) {
+    uint32_t n = 0, c;
+    int k, m;
+    for (c = 0; c < count; c++) {
+        const uint32_t lane = corners[c] / 4;
+        const int own = (int)(corners[c] % 4);
+        const gxsp_leap_block *block = &leap->blocks[lane / GXSP_LANES];
+        const float modulus = gxsp_leap_modulus(block, (int)(lane % GXSP_LANES));
+        for (k = 0; k < 4; k++) {
+            const uint32_t j = copies[4 * (size_t)lane + (size_t)k];
+            if (mark[j] != i + 1) {
+                mark[j] = i + 1;
+                at[j] = n++;
+                if (entry) column[at[j]] = j, entry[at[j]] = 0;
+            }
+            for (m = 0; m < 3 && entry; m++)
+                entry[at[j]] += modulus * gxsp_leap_gradient(block, lane % GXSP_LANES, own, m) *
+                                gxsp_leap_gradient(block, lane % GXSP_LANES, k, m);
+        }
+    }
+    return n;
+}
+
+/* The order of rows: in each range by length, the longest first */
+static void gxsp_leap_order_rows(const gxsp_system *system, const uint32_t *length, uint32_t *order) {
+    size_t r, i, end;
+    for (r = 0; r < system->model.range_count; r++) {
+        uint32_t most = 0, next = 0;
+        size_t place, begin;
+        end = gxsp_range(system, r, &begin);
+        place = begin;
+        for (i = begin; i < end; i++) most = length[i] > most ? length[i] : most;
+        for (; place < end; most = next, next = 0)
+            for (i = begin; i < end; i++) {
+                if (length[i] == most) order[place++] = (uint32_t)i;
+                if (length[i] < most && length[i] > next) next = length[i];
+            }
+    }
+}
+
+/* L in groups of GXSP_LEAP_ROWS rows, as long as the longest of a group: one loop for all of them. Behind its end a row
+ * has zeros and names its own copy. copies: of all lanes */
+static void gxsp_leap_rows_make(gxsp_system *system, gxsp_pool *scratch, const uint32_t *copies) {
+    gxsp_leap *leap = &system->leap;
+    const size_t n = system->model.n, lanes = leap->block_count * GXSP_LANES,
+                 groups = (n + GXSP_LEAP_ROWS - 1) / GXSP_LEAP_ROWS;
+    uint32_t *first = (uint32_t *)gxsp_take(scratch, n + 2, sizeof(uint32_t));
+    uint32_t *corners = (uint32_t *)gxsp_take(scratch, 4 * lanes, sizeof(uint32_t));
+    uint32_t *mark = (uint32_t *)gxsp_take(scratch, 2 * n, sizeof(uint32_t));
+    uint32_t *length = (uint32_t *)gxsp_take(scratch, n, sizeof(uint32_t)), *columns, longest = 0, k;
+    float *entries;
+    size_t i;
+    leap->start = (uint32_t *)gxsp_take(&leap->pool, groups + 1, sizeof(uint32_t));
+    leap->order = (uint32_t *)gxsp_take(&leap->pool, n, sizeof(uint32_t));
+    leap->diagonal = (float *)gxsp_take(&leap->pool, n, sizeof(float));
+    if (scratch->failed || leap->pool.failed) return;
+    for (i = 0; i < 4 * lanes; i++)
+        if (copies[i / 4 * 4] != GXSP_NONE) first[copies[i] + 2]++;
+    for (i = 2; i < n + 2; i++) first[i] += first[i - 1];
+    for (i = 0; i < 4 * lanes; i++)
+        if (copies[i / 4 * 4] != GXSP_NONE) corners[first[copies[i] + 1]++] = (uint32_t)i;
+    for (i = 0; i < n; i++) {
+        length[i] = gxsp_leap_row(leap, copies, corners + first[i], first[i + 1] - first[i], (uint32_t)i, mark,
+                                  mark + n, NULL, NULL);
+        longest = length[i] > longest ? length[i] : longest;
+    }
+    gxsp_leap_order_rows(system, length, leap->order);
+    for (i = 0; i < n; i += GXSP_LEAP_ROWS)
+        leap->start[i / GXSP_LEAP_ROWS + 1] = leap->start[i / GXSP_LEAP_ROWS] + length[leap->order[i]];
+    leap->column = (uint32_t *)gxsp_take(&leap->pool, (size_t)leap->start[groups] * GXSP_LEAP_ROWS, sizeof(uint32_t));
+    leap->entry = (float *)gxsp_take(&leap->pool, (size_t)leap->start[groups] * GXSP_LEAP_ROWS, sizeof(float));
+    columns = (uint32_t *)gxsp_take(scratch, longest, sizeof(uint32_t));
+    entries = (float *)gxsp_take(scratch, longest, sizeof(float));
+    if (scratch->failed || leap->pool.failed) return;
+    memset(mark, 0, n * sizeof *mark);
+    for (i = 0; i < n; i++) {
+        const size_t group = i / GXSP_LEAP_ROWS, row = i % GXSP_LEAP_ROWS;
+        const uint32_t own = leap->order[i];
+        gxsp_leap_row(leap, copies, corners + first[own], first[own + 1] - first[own], own, mark, mark + n, columns,
+                      entries);
+        for (k = 0; k < leap->start[group + 1] - leap->start[group]; k++) {
+            const size_t at = (leap->start[group] + k) * (size_t)GXSP_LEAP_ROWS + row;
+            leap->column[at] = k < length[own] ? columns[k] : own;
+            leap->entry[at] = k < length[own] ? entries[k] : 0;
+        }
+        if (length[own] > 0) leap->diagonal[own] = entries[mark[n + own]];
+    }
+}
+
+/* Masses: the lumped ones, but at least bound x the diagonal of L. Light copies would demand short substeps; they get
+ * GXSP_LEAP_MASS of the mass of all copies more. So bound is where the sum of what they lack reaches that. */
+static void gxsp_leap_masses_make(gxsp_system *system) {
+    gxsp_leap *leap = &system->leap;
+    const size_t n = system->model.n;
+    double all = 0, low = 0, high = 0;
+    uint32_t i;
+    int k;
+    leap->mass = (float *)gxsp_take(&leap->pool, n, sizeof(float));
+    leap->inverse = (float *)gxsp_take(&leap->pool, n, sizeof(float));
+    if (leap->pool.failed) return;
+    for (i = 0; i < n; i++) {
+        const double diagonal = system->model.fixed[i] ? 0 : (double)leap->diagonal[i];
+        if (!(diagonal > 0)) continue;
+        all += system->model.lumped[i];
+        high = fmax(high, system->model.lumped[i] / diagonal);
+    }
+    for (k = 0; k < 40; k++) {
+        const double middle = 0.5 * (low + high);
+        double lacking = 0;
+        for (i = 0; i < n; i++)
+            if (!system->model.fixed[i])
+                lacking += fmax(0, middle * (double)leap->diagonal[i] - system->model.lumped[i]);
+        if (lacking > GXSP_LEAP_MASS * all)
+            high = middle;
+        else
+            low = middle;
+    }
+    for (i = 0; i < n; i++)
+        leap->mass[i] =
+            system->model.fixed[i] ? 0 : (float)fmax(system->model.lumped[i], low * (double)leap->diagonal[i]);
+}
+
+/* Rows of a group of L times a vector */
+GXSP_INLINE void gxsp_leap_group_product(const gxsp_leap *leap, size_t group, const gxsp_vector4 *x,
+                                         gxsp_vector4 *sums) {
+    const size_t end = leap->start[group + 1];
+    size_t k, r;
+#if defined(GXSP_SHUFFLES)
+    gxsp_four sum[GXSP_LEAP_ROWS] = {{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}};
+    for (k = leap->start[group]; k < end; k++)
+        for (r = 0; r < GXSP_LEAP_ROWS; r++)
+            sum[r] += leap->entry[GXSP_LEAP_ROWS * k + r] * *(const gxsp_four *)x[leap->column[GXSP_LEAP_ROWS * k + r]];
+    for (r = 0; r < GXSP_LEAP_ROWS; r++) *(gxsp_four *)sums[r] = sum[r];
+#else
+    int c;
+    memset(sums, 0, GXSP_LEAP_ROWS * sizeof *sums); /* the fourth number too */
+    for (k = leap->start[group]; k < end; k++)
+        for (r = 0; r < GXSP_LEAP_ROWS; r++)
+            for (c = 0; c < 3; c++)
+                sums[r][c] += leap->entry[GXSP_LEAP_ROWS * k + r] * x[leap->column[GXSP_LEAP_ROWS * k + r]][c];
+#endif
+}
+
+/* The largest eigenvalue of M^-1 L by the power method, from vectors that no symmetry of a mesh leaves out. It is
+ * reached from below: the factor on L covers the rest. */
+static void gxsp_leap_find_top(gxsp_system *system) {
+    gxsp_leap *leap = &system->leap;
+    gxsp_vector4 sums[GXSP_LEAP_ROWS];
+    uint32_t seed = 1;
+    size_t i;
+    int k, c;
+    for (i = 0; i < system->model.n; i++)
+        for (c = 0; c < 3; c++) {
+            seed = seed * 1664525u + 1013904223u;
+            leap->last[i][c] = leap->mass[i] > 0 ? (float)(seed >> 8) / 8388608.0f - 1 : 0;
+        }
+    for (k = 0; k < GXSP_LEAP_POWERS; k++) {
+        double before = 0, after = 0;
+        float scale;
+        for (i = 0; i < system->model.n; i++) {
+            const uint32_t own = leap->order[i];
+            const float mass = leap->mass[own], *from = leap->last[own];
+            float *to = leap->next[own];
+            if (i % GXSP_LEAP_ROWS == 0)
+                gxsp_leap_group_product(leap, i / GXSP_LEAP_ROWS, (const gxsp_vector4 *)leap->last, sums);
+            for (c = 0; c < 3; c++) {
+                to[c] = mass > 0 ? sums[i % GXSP_LEAP_ROWS][c] / mass : 0;
+                before += (double)mass * (double)from[c] * (double)from[c];
+                after += (double)mass * (double)to[c] * (double)to[c];
+            }
+        }
+        leap->top = before > 0 ? sqrt(after / before) : 0;
+        scale = leap->top > 0 ? (float)(1 / leap->top) : 0;
+        for (i = 0; i < system->model.n; i++)
+            for (c = 0; c < 3; c++) leap->last[i][c] = scale * leap->next[i][c];
+    }
+}
+
+/* All that explicit steps need of the model. Returns 0 if there is no memory. */
+static int gxsp_leap_make(gxsp_system *system) {
+    gxsp_leap *leap = &system->leap;
+    gxsp_pool scratch = gxsp_pool_make(&system->pool.allocator);
+    const uint32_t *copies;
+    gxsp_vector4 **vectors[4];
+    int k;
+    gxsp_release_to(&leap->pool, NULL);
+    memset(leap, 0, sizeof *leap);
+    leap->pool = gxsp_pool_make(&system->pool.allocator);
+    leap->suits = gxsp_leap_suits(system);
+    leap->made = 1;
+    if (!leap->suits) return 1;
+    copies = gxsp_leap_blocks_make(system, &scratch);
+    if (copies) gxsp_leap_rows_make(system, &scratch, copies);
+    if (copies && !scratch.failed && !leap->pool.failed) gxsp_leap_masses_make(system);
+    vectors[0] = &leap->start_of_filter, vectors[1] = &leap->last, vectors[2] = &leap->before, vectors[3] = &leap->next;
+    for (k = 0; k < 4; k++) *vectors[k] = (gxsp_vector4 *)gxsp_take(&leap->pool, system->model.n, sizeof(gxsp_vector4));
+    leap->stiffest = (float *)gxsp_take(&leap->pool, system->mesh.chunk_count, sizeof(float));
+    if (!copies || scratch.failed || leap->pool.failed) {
+        gxsp_release_to(&scratch, NULL);
+        gxsp_release_to(&leap->pool, NULL);
+        memset(leap, 0, sizeof *leap);
+        return 0;
+    }
+    gxsp_release_to(&scratch, NULL);
+    gxsp_leap_find_top(system);
+    return 1;
+}
+
+/* Forces of a block, dU/du, added to y; and the largest modulus of its Hessians relative to that at rest. With G the
+ * gradient of the displacement x, F = 1 + G, P = mu (1 - 1 / (Ic + 1)) F + (lambda (J - 1) - 3/4 mu) cof F, written so
+ * that nothing cancels near rest. The modulus is at most the sum of those of the terms of its derivative:
+ *     mu Ic / (Ic + 1) + 2 mu Ic / (Ic + 1)^2 + lambda |cof F|^2 + |lambda (J - 1) - 3/4 mu| |F|, |F| <= (3 + Ic) /
+ * sqrt 12
+ */
+static void gxsp_leap_force(const gxsp_leap_block *GXSP_RESTRICT b, gxsp_singles *GXSP_RESTRICT x,
+                            gxsp_singles *GXSP_RESTRICT y, float *GXSP_RESTRICT stiffest) {
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float g0 = b->gradient[0][l], g1 = b->gradient[1][l], g2 = b->gradient[2][l], g3 = b->gradient[3][l],
+                    g4 = b->gradient[4][l], g5 = b->gradient[5][l], g6 = b->gradient[6][l], g7 = b->gradient[7][l],
+                    g8 = b->gradient[8][l], mu = b->mu[l], lambda = b->lambda[l];
+        const float x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
+        const float p0 = x[3][l] - x0, p1 = x[4][l] - x1, p2 = x[5][l] - x2, q0 = x[6][l] - x0, q1 = x[7][l] - x1,
+                    q2 = x[8][l] - x2, r0 = x[9][l] - x0, r1 = x[10][l] - x1, r2 = x[11][l] - x2;
+        const float d0 = p0 * g0 + q0 * g3 + r0 * g6, d1 = p0 * g1 + q0 * g4 + r0 * g7,
+                    d2 = p0 * g2 + q0 * g5 + r0 * g8, d3 = p1 * g0 + q1 * g3 + r1 * g6,
+                    d4 = p1 * g1 + q1 * g4 + r1 * g7, d5 = p1 * g2 + q1 * g5 + r1 * g8,
+                    d6 = p2 * g0 + q2 * g3 + r2 * g6, d7 = p2 * g1 + q2 * g4 + r2 * g7,
+                    d8 = p2 * g2 + q2 * g5 + r2 * g8;
+        /* cofactors of G; those of F less 1 */
+        const float k0 = d4 * d8 - d5 * d7, k1 = d5 * d6 - d3 * d8, k2 = d3 * d7 - d4 * d6, k3 = d2 * d7 - d1 * d8,
+                    k4 = d0 * d8 - d2 * d6, k5 = d1 * d6 - d0 * d7, k6 = d1 * d5 - d2 * d4, k7 = d2 * d3 - d0 * d5,
+                    k8 = d0 * d4 - d1 * d3;
+        const float trace = d0 + d4 + d8;
+        const float c0 = trace - d0 + k0, c1 = k1 - d3, c2 = k2 - d6, c3 = k3 - d1, c4 = trace - d4 + k4, c5 = k5 - d7,
+                    c6 = k6 - d2, c7 = k7 - d5, c8 = trace - d8 + k8;
+        const float square = d0 * d0 + d1 * d1 + d2 * d2 + d3 * d3 + d4 * d4 + d5 * d5 + d6 * d6 + d7 * d7 + d8 * d8;
+        const float i = 2 * trace + square, j = trace + (k0 + k4 + k8) + (d0 * k0 + d1 * k1 + d2 * k2); /* Ic-3, J-1 */
+        const float inverse = 1 / (i + 4), growth = 0.25f * mu * i * inverse, rest = 0.75f * mu;
+        const float pressure = lambda * j, own = rest + growth, cofactor = pressure - rest, unit = growth + pressure;
+        const float s0 = own * d0 + cofactor * c0 + unit, s1 = own * d1 + cofactor * c1, s2 = own * d2 + cofactor * c2,
+                    s3 = own * d3 + cofactor * c3, s4 = own * d4 + cofactor * c4 + unit, s5 = own * d5 + cofactor * c5,
+                    s6 = own * d6 + cofactor * c6, s7 = own * d7 + cofactor * c7, s8 = own * d8 + cofactor * c8 + unit;
+        const float f0 = s0 * g0 + s1 * g1 + s2 * g2, f1 = s3 * g0 + s4 * g1 + s5 * g2,
+                    f2 = s6 * g0 + s7 * g1 + s8 * g2, f3 = s0 * g3 + s1 * g4 + s2 * g5,
+                    f4 = s3 * g3 + s4 * g4 + s5 * g5, f5 = s6 * g3 + s7 * g4 + s8 * g5,
+                    f6 = s0 * g6 + s1 * g7 + s2 * g8, f7 = s3 * g6 + s4 * g7 + s5 * g8,
+                    f8 = s6 * g6 + s7 * g7 + s8 * g8;
+        const float sides = (1 + c0) * (1 + c0) + (1 + c4) * (1 + c4) + (1 + c8) * (1 + c8) + c1 * c1 + c2 * c2 +
+                            c3 * c3 + c5 * c5 + c6 * c6 + c7 * c7;
+        const float steep = (cofactor > 0 ? cofactor : -cofactor) * (6 + i) * 0.2886752f;
+        const float modulus = own + 2 * mu * (3 + i) * inverse * inverse + lambda * sides + steep;
+        const float ratio = modulus / (2.4240382f * mu + 3 * lambda + 1e-30f);
+        stiffest[l] = ratio > stiffest[l] ? ratio : stiffest[l];
+        y[0][l] -= f0 + f3 + f6, y[1][l] -= f1 + f4 + f7, y[2][l] -= f2 + f5 + f8;
+        y[3][l] += f0, y[4][l] += f1, y[5][l] += f2, y[6][l] += f3, y[7][l] += f4, y[8][l] += f5, y[9][l] += f6,
+            y[10][l] += f7, y[11][l] += f8;
+    }
+}
+
+/* Forces of a chunk at pass->from into its slots, and its largest modulus. Displacements are taken relative to the
+ * chunk's first node before they are rounded: bodies may be far from where they were at rest. */
+static void gxsp_task_leap_force(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const gxsp_leap_block *blocks = system->leap.blocks + system->leap.first_block[index];
+    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
+    const double *origin = pass->from + 3 * (size_t)copies[0];
+    gxsp_vector4 in[4 * GXSP_CHUNK], out[4 * GXSP_CHUNK];
+    gxsp_singles from[12], to[12], stiffest;
+    uint32_t b, i;
+    int l;
+    system->leap.stiffest[index] = 0;
+    if (system->state.chunk_still[index]) return;
+    for (i = 0; i < chunk->node_count; i++) {
+        const double *x = pass->from + 3 * (size_t)copies[i];
+        gxsp_prefetch(pass->from + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *x);
+        in[i][0] = (float)(x[0] - origin[0]), in[i][1] = (float)(x[1] - origin[1]),
+        in[i][2] = (float)(x[2] - origin[2]);
+        in[i][3] = 0;
+    }
+    memset(out, 0, chunk->node_count * sizeof *out);
+    memset(to, 0, sizeof to);
+    memset(stiffest, 0, sizeof stiffest);
+    for (b = 0; b < chunk->block_count; b++) {
+        if (b + GXSP_TANGENTS_AHEAD < chunk->block_count)
+            gxsp_prefetch(&blocks[b + GXSP_TANGENTS_AHEAD], sizeof *blocks);
+        gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        gxsp_leap_force(&blocks[b], from, to, stiffest);
+        gxsp_block_scatter(chunk, b, to, out);
+    }
+    memcpy((gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node, out, chunk->node_count * sizeof *out);
+    for (l = 0; l < GXSP_LANES; l++)
+        if (stiffest[l] > system->leap.stiffest[index]) system->leap.stiffest[index] = stiffest[l];
+}
+
+/* Accelerations, before the filter: gravity, nodal forces and elastic ones over the mass; 0 where nothing moves */
+static void gxsp_task_leap_sum(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    const gxs_step_desc *step = pass->problem->step;
+    gxsp_vector4 *slots = (gxsp_vector4 *)(void *)system->vectors.slots;
+    size_t i, end = gxsp_range(system, index, &i);
+    int c;
+    for (; i < end; i++) {
+        const float inverse = system->leap.inverse[i];
+        float sum[3] = {0, 0, 0};
+        uint32_t s;
+        for (s = system->mesh.copy_start[i]; s < system->mesh.copy_start[i + 1]; s++) {
+            const float *from = slots[system->mesh.copy_slot[s]];
+            gxsp_prefetch(slots[system->mesh.copy_slot[s + GXSP_AHEAD]], sizeof *slots);
+            sum[0] += from[0], sum[1] += from[1], sum[2] += from[2];
+        }
+        for (c = 0; c < 3; c++) {
+            const float force = (step->forces ? (float)step->forces[3 * i + (size_t)c] : 0) - sum[c];
+            system->leap.start_of_filter[i][c] = inverse > 0 ? inverse * force + (float)step->gravity[c] : 0;
+        }
+    }
+}
+
+/* The next of Chebyshev's recurrence for (1 - T_k(y)) / (1 - y) times the accelerations z, y = 1 - factor M^-1 L:
+ * q_k+1 = 2 y q_k - q_k-1 + 2 z */
+static void gxsp_task_leap_filter(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_leap *leap = &pass->system->leap;
+    size_t i, r, end = gxsp_range(pass->system, index, &i);
+    gxsp_vector4 sums[GXSP_LEAP_ROWS];
+    int c;
+    for (; i < end; i += GXSP_LEAP_ROWS) {
+        gxsp_leap_group_product(leap, i / GXSP_LEAP_ROWS, (const gxsp_vector4 *)leap->last, sums);
+        for (r = 0; r < GXSP_LEAP_ROWS && i + r < end; r++) {
+            const uint32_t own = leap->order[i + r];
+            const float scale = (float)pass->factor * leap->inverse[own], *last = leap->last[own],
+                        *z = leap->start_of_filter[own], *before = leap->before[own];
+            float *next = leap->next[own];
+            for (c = 0; c < 4; c++) next[c] = 2 * (last[c] - scale * sums[r][c] + z[c]) - before[c];
+        }
+    }
+}
+
+/* v changes by a substep's acceleration, last x factor, and by damping; u moves by h v, or by h/2 v in the last
+ * substep (pass->exact). pass->rate: h; sum: v; direction: u */
+static void gxsp_task_leap_move(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    gxsp_system *system = pass->system;
+    const double h = pass->rate, damping = 0.5 * h * pass->problem->step->mass_damping,
+                 keep = (1 - damping) / (1 + damping), push = h * pass->factor / (1 + damping),
+                 move = pass->exact ? 0.5 * h : h;
+    size_t i, end = gxsp_range(system, index, &i), c;
+    for (; i < end; i++)
+        for (c = 3 * i; c < 3 * i + 3 && system->leap.inverse[i] > 0; c++) {
+            pass->sum[c] = keep * pass->sum[c] + push * (double)system->leap.last[i][c - 3 * i];
+            system->vectors.direction[c] += move * pass->sum[c];
+        }
+}
+
+/* The degree of the filter for a substep at this factor on L; 0: more than GXSP_LEAP_DEGREES */
+static uint32_t gxsp_leap_degree(const gxsp_leap *leap, double h, double factor) {
+    const double degree = ceil(0.5 * h * sqrt(factor * leap->top));
+    return degree <= 1 ? 1 : degree <= GXSP_LEAP_DEGREES ? (uint32_t)degree : 0;
+}
+
+/* Filters the accelerations; last x the result: those of the substep. */
+static double gxsp_leap_filter(gxsp_problem *problem, gxsp_pass *pass, double h, double factor, uint32_t degree) {
+    gxsp_leap *leap = &problem->system->leap;
+    uint32_t k;
+    memcpy(leap->last, leap->start_of_filter, problem->system->model.n * sizeof *leap->last);
+    if (degree > 1) memset(leap->before, 0, problem->system->model.n * sizeof *leap->before);
+    pass->factor = h * h * factor / (2.0 * degree * degree);
+    for (k = 1; k < degree; k++) {
+        gxsp_vector4 *oldest = leap->before;
+        gxsp_over_ranges(problem->system, gxsp_task_leap_filter, pass, NULL, 0);
+        leap->before = leap->last;
+        leap->last = leap->next;
+        leap->next = oldest;
+    }
+    return 1.0 / ((double)degree * degree);
+}
+
+/* A substep from the middle of its way, direction: forces, filter, and all of the way that is left to the middle of the
+ * next substep, or to the end. Returns 0 if the filter would be too long: an element is stretched far. */
+static int gxsp_leap_substep(gxsp_problem *problem, double h, int last, double *velocity) {
+    gxsp_system *system = problem->system;
+    double stiffest = 1, factor;
+    uint32_t degree, c;
+    gxsp_pass pass;
+    memset(&pass, 0, sizeof pass);
+    pass.system = system;
+    pass.problem = problem;
+    pass.from = system->vectors.direction;
+    pass.sum = velocity;
+    gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_leap_force, &pass);
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        stiffest = (double)system->leap.stiffest[c] > stiffest ? (double)system->leap.stiffest[c] : stiffest;
+    factor = system->leap.factor * stiffest;
+    degree = gxsp_leap_degree(&system->leap, h, factor);
+    if (degree == 0) return 0;
+    gxsp_over_ranges(system, gxsp_task_leap_sum, &pass, NULL, 0);
+    pass.factor = gxsp_leap_filter(problem, &pass, h, factor, degree);
+    pass.rate = h;
+    pass.exact = last;
+    gxsp_over_ranges(system, gxsp_task_leap_move, &pass, NULL, 0);
+    return 1;
+}
+
+/* Elastic, kinetic and potential energy with the masses of explicit steps, J; elastic: known. *size: elastic and
+ * kinetic energy, that of the mean velocity by a tenth */
+static double gxsp_leap_energy(const gxsp_problem *problem, double elastic, const double *u, const double *v,
+                               double *size) {
+    const gxsp_system *system = problem->system;
+    const gxs_step_desc *step = problem->step;
+    double kinetic = 0, work = 0, all = 0, momentum[3] = {0, 0, 0};
+    size_t i, c;
+    for (i = 0; i < system->model.n; i++) {
+        const double mass = system->leap.inverse[i] > 0 ? (double)system->leap.mass[i] : 0;
+        all += mass;
+        for (c = 0; c < 3 && mass > 0; c++) {
+            kinetic += 0.5 * mass * v[3 * i + c] * v[3 * i + c];
+            momentum[c] += mass * v[3 * i + c];
+            work += (mass * step->gravity[c] + (step->forces ? step->forces[3 * i + c] : 0)) * u[3 * i + c];
+        }
+    }
+    *size = elastic + kinetic - (all > 0 ? 0.5 * gxsp_dot(momentum, momentum, 1) / all : 0);
+    *size = fmax(*size, 0) + 0.1 * kinetic;
+    return elastic + kinetic - work;
+}
+
+/* Sum of the components' elastic energies at a displacement, from the state that the last step returned if that is it
+ */
+static double gxsp_leap_elastic(gxsp_problem *problem, const double *u, int known) {
+    gxsp_system *system = problem->system;
+    double sum = 0;
+    uint32_t p;
+    if (!known) gxsp_evaluate_elements(system, 0, u, NULL, 0, system->vectors.force);
+    for (p = 0; p < system->model.component_count; p++)
+        sum += known ? system->model.components[p].base_energy : system->model.components[p].energies[0];
+    return sum;
+}
+
+/* Substeps of a step: as asked, or as few as a filter of GXSP_LEAP_DEGREE serves at rest; 0: more than
+ * GXSP_LEAP_SUBSTEPS. */
+static uint32_t gxsp_leap_count(const gxsp_problem *problem) {
+    const gxs_step_desc *step = problem->step;
+    const double own =
+        step->dt * 0.5 * sqrt(problem->system->leap.factor * problem->system->leap.top) / GXSP_LEAP_DEGREE;
+    if (step->substeps > 0) return step->substeps;
+    return own <= GXSP_LEAP_SUBSTEPS ? (uint32_t)fmax(1, ceil(own)) : 0;
+}
+
+/* Can this step be explicit? Nothing but gravity, nodal forces and mass damping acts. */
+static int gxsp_leap_allowed(const gxsp_problem *problem) {
+    const gxs_step_desc *step = problem->step;
+    return step->integrator == GXS_EXPLICIT && problem->system->leap.suits && !step->targets &&
+           step->spring_count + step->point_count == 0 && problem->system->state.active > 0 &&
+           0.5 * step->dt * step->mass_damping < 1;
+}
+
+/* The explicit step: displacement into direction, velocity into residual. h: of a substep. Returns 0 if an element is
+ * stretched too far or a number is not finite. */
+static int gxsp_leap_try(gxsp_problem *problem, uint32_t substeps, const double *displacement, const double *velocity) {
+    const gxsp_system *system = problem->system;
+    const size_t count = 3 * system->model.n;
+    const double h = problem->step->dt / substeps;
+    double *u = system->vectors.direction, *v = system->vectors.residual;
+    uint32_t s;
+    size_t i;
+    for (i = 0; i < count; i++) {
+        v[i] = system->leap.inverse[i / 3] > 0 ? velocity[i] : 0;
+        u[i] = displacement[i] + 0.5 * h * v[i];
+    }
+    for (s = 0; s < substeps; s++)
+        if (!gxsp_leap_substep(problem, h, s + 1 == substeps, v)) return 0;
+    return gxsp_first_not_finite(u, count) == count && gxsp_first_not_finite(v, count) == count;
+}
+
+/* Tries the step, and again with a larger factor on L as long as energy is above its limit. The energy measured lacks
+ * what the filter adds to the inertia, so it rises and falls; above its limit it was created. Returns 0 where the step
+ * must be implicit, which damps. */
+static int gxsp_leap_step(gxsp_problem *problem, const double *displacement, const double *velocity) {
+    gxsp_system *system = problem->system;
+    gxsp_leap *leap = &system->leap;
+    const double *u = system->vectors.direction, *v = system->vectors.residual;
+    const int known =
+        system->state.base_known && memcmp(displacement, system->vectors.current, 3 * system->model.n * sizeof *u) == 0;
+    double energies[2] = {0, 0}, size, before, after, limit;
+    uint32_t p, substeps;
+    size_t i;
+    gxsp_choose_leads(problem);
+    for (i = 0; i < system->model.n; i++)
+        leap->inverse[i] = system->state.still[i] || !(leap->mass[i] > 0) ? 0 : 1 / leap->mass[i];
+    before = gxsp_leap_energy(problem, gxsp_leap_elastic(problem, displacement, known), displacement, velocity, &size);
+    limit = leap->limited && known ? fmax(leap->limit, before) : before;
+    leap->limited = 0;
+    for (;; leap->factor *= GXSP_LEAP_RAISE) {
+        if (!(leap->factor > 0)) leap->factor = GXSP_LEAP_FACTOR;
+        if ((substeps = gxsp_leap_count(problem)) == 0) return 0;
+        if (gxsp_leap_try(problem, substeps, displacement, velocity)) {
+            energies[0] = gxsp_leap_elastic(problem, u, 0);
+            after = gxsp_leap_energy(problem, energies[0], u, v, &size);
+            if (gxsp_finite(after) && after <= limit + GXSP_LEAP_GAIN * size) break;
+        }
+        if (leap->factor >= GXSP_LEAP_LAST) return 0;
+    }
+    leap->limit = fmax(after, limit + GXSP_LEAP_FORGET * (after - limit));
+    leap->limited = 1;
+    for (p = 0; p < system->model.component_count; p++)
+        system->model.components[p].before[0] = system->model.components[p].energies[0];
+    problem->report.substeps = substeps;
+    problem->report.stop = GXS_STOP_ITERATIONS;
+    problem->report.energy = gxsp_potential(problem, energies, u);
+    system->state.guess_count = 0;
+    return 1;
 }
 
 /* >>check: of what is given ---------------------------------------------------------------------------------------- */
@@ -8905,6 +10809,50 @@ static gx_result gxsp_check_count(size_t count, size_t limit, const char *field,
     return count >= limit || count >= SIZE_MAX / 1024 ? gxsp_fail(failure, GX_ERROR_LIMIT, field, SIZE_MAX) : GX_OK;
 }
 
+/* Affine copies and their hidden vectors. owned: copy_count zeros, scratch: hidden 1, affine 2 */
+static gx_result gxsp_check_affine(const gxs_model *model, const gxs_solver *solver, uint8_t *owned,
+                                   gx_failure *failure) {
+    size_t i, k, any = 0;
+    for (i = 0; i < model->copy_count; i++) {
+        const uint32_t first = model->affine[i];
+        if (first == GXS_NOT_AFFINE) continue;
+        if (first >= model->copy_count || model->copy_count - first < 3)
+            return gxsp_fail(failure, GX_ERROR_INDEX, "affine", i);
+        for (any = k = 1; k < 4; k++) {
+            const size_t vector = (size_t)first + k - 1;
+            if (owned[vector]) return gxsp_fail(failure, GX_ERROR_ARGUMENT, "affine", i);
+            owned[vector] = 1;
+            if (model->held && !model->held[vector] != !model->held[i])
+                return gxsp_fail(failure, GX_ERROR_ARGUMENT, "held", vector);
+        }
+    }
+    if (!any) return GX_OK;
+    for (i = 0; i < model->copy_count; i++) {
+        if (model->affine[i] == GXS_NOT_AFFINE) continue;
+        if (owned[i]) return gxsp_fail(failure, GX_ERROR_ARGUMENT, "affine", i);
+        owned[i] = 2;
+    }
+    if (!gxsp_finite(model->affine_length)) return gxsp_fail(failure, GX_ERROR_NOT_FINITE, "affine_length", SIZE_MAX);
+    if (!(model->affine_length > 0)) return gxsp_fail(failure, GX_ERROR_ARGUMENT, "affine_length", SIZE_MAX);
+    if (model->lumped_mass) return gxsp_refuse(failure, "lumped_mass");
+    if (solver->matrix == GXS_MATRIX_ASSEMBLED) return gxsp_refuse(failure, "matrix");
+    if (solver->preconditioner == GXS_VOLUME_RATIO) return gxsp_refuse(failure, "preconditioner");
+    for (i = 0; i < model->constraint_count; i++)
+        for (k = 0; k < 5; k++)
+            if (owned[k < 4 ? model->constraints[i].master[k] : model->constraints[i].copy])
+                return gxsp_fail(failure, GX_ERROR_ARGUMENT, "constraints", i);
+    for (i = 0; i < model->element_count; i++) {
+        double edge[3][3];
+        for (k = 0; k < 4; k++)
+            if (owned[model->elements[i].copy[k]] == 1)
+                return gxsp_fail(failure, GX_ERROR_ARGUMENT, "elements.copy", i);
+        if (model->elements[i].weight > 0 && gxsp_is_affine(model, &model->elements[i]) &&
+            !gxsp_element_edges(&model->elements[i], edge))
+            return gxsp_fail(failure, GX_ERROR_FLAT, "elements.gradient", i);
+    }
+    return GX_OK;
+}
+
 static gx_result gxsp_check_model(const gxs_model *model, gx_failure *failure) {
     size_t e;
     gx_result result;
@@ -8937,7 +10885,7 @@ static int gxsp_dt_fits(double dt) { return dt >= 1e-100 && dt <= 1e100; }
 static gx_result gxsp_check_times(const gxs_step_desc *step, gx_failure *failure) {
     const int history = step->integrator == GXS_BDF2 && step->previous_displacement;
     gx_result result;
-    if ((int)step->integrator < 0 || step->integrator > GXS_STATIC) return gxsp_refuse(failure, "integrator");
+    if ((int)step->integrator < 0 || step->integrator > GXS_EXPLICIT) return gxsp_refuse(failure, "integrator");
     if ((result = gxsp_check_size(step->dt, "dt", SIZE_MAX, failure)) != GX_OK ||
         (result = gxsp_check_finite(&step->previous_dt, 1, "previous_dt", SIZE_MAX, failure)) != GX_OK)
         return result;
@@ -9139,6 +11087,12 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
     if (result != GX_OK) return result;
     pool = gxsp_pool_make(&solver->allocator);
     scratch = gxsp_pool_make(&solver->allocator);
+    if (model->affine) {
+        uint8_t *owned = (uint8_t *)gxsp_take(&scratch, model->copy_count, 1);
+        result = owned ? gxsp_check_affine(model, solver, owned, failure) : gxsp_end(failure, GX_ERROR_MEMORY);
+        gxsp_release_to(&scratch, NULL);
+        if (result != GX_OK) return result;
+    }
     system = (gxsp_system *)gxsp_take(&pool, 1, sizeof *system);
     if (!system) return gxsp_end(failure, GX_ERROR_MEMORY);
     system->pool = pool;
@@ -9212,6 +11166,7 @@ GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displ
     gx_failure ignored;
     gxsp_system *system;
     gxsp_pass pass;
+    uint32_t b;
     failure = failure ? failure : &ignored;
     gxsp_end(failure, GX_OK);
     if (!solver) return gxsp_refuse(failure, "solver");
@@ -9227,7 +11182,9 @@ GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displ
     pass.from = displacement;
     pass.exact = exact != 0;
     memset(system->state.chunk_still, 0, system->mesh.chunk_count); /* sleeping components are included */
+    for (b = 0; b < system->affine.block_count; b++) system->affine.blocks[b].still = 0;
     gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_linearise, &pass);
+    gxsp_over_affine(system, gxsp_task_affine_tangents, &pass);
     gxsp_mark_still(system);
     system->state.product_rate = gxsp_tangents_finite(system) ? rate : -1;
     return system->state.product_rate < 0 ? gxsp_fail(failure, GX_ERROR_RANGE, "displacement", SIZE_MAX) : GX_OK;
@@ -9255,6 +11212,7 @@ GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *directi
     if (!(pass.factor > 0)) return gxsp_check_vector(direction, system->model.n, "direction", failure);
     gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_apply, &pass);
     gxsp_over_ranges(system, gxsp_task_apply_sum, &pass, NULL, 0);
+    if (system->affine.count > 0) gxsp_affine_apply_all(system, &pass);
     gxsp_reduce_residual(system, system->model.fixed, product);
     return GX_OK;
 }
@@ -9282,6 +11240,8 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene) {
     system->state.product_rate = -1;
     system->state.still_known = system->state.base_known = system->state.stepped = 0;
     system->state.guess_count = 0;
+    system->leap.factor = 0;
+    system->leap.limited = 0;
     system->smoother.omega = 0;
     system->smoother.cautious = system->smoother.next_cautious = 0;
     system->coarse.rate = -1;
@@ -9333,7 +11293,9 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     if ((result = gxs_step_check(step, n, solver->system->model.epoch, failure)) != GX_OK ||
         (result = gxsp_check_vectors(step, n, displacement, velocity, solver->system->model.held, failure)) != GX_OK)
         return result;
-    if (!gxsp_reserve_terms(&solver->lasting, step)) return gxsp_end(failure, GX_ERROR_MEMORY);
+    if (!gxsp_reserve_terms(&solver->lasting, step) ||
+        (step->integrator == GXS_EXPLICIT && !solver->system->leap.made && !gxsp_leap_make(solver->system)))
+        return gxsp_end(failure, GX_ERROR_MEMORY);
     memset(&problem, 0, sizeof problem);
     problem.system = solver->system;
     problem.system->state.product_rate = -1;
@@ -9346,9 +11308,12 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     gxsp_choose_sleepers(&problem, displacement, velocity);
     problem.system->state.failed = 1;
     if ((result = gxsp_check_free(&problem, failure)) != GX_OK) return result;
-    gxsp_begin(&problem, velocity);
     problem.report.active_unknowns = problem.system->state.active;
-    result = gxsp_minimise(&problem);
+    if (!gxsp_leap_allowed(&problem) || !gxsp_leap_step(&problem, displacement, velocity)) {
+        gxsp_begin(&problem, velocity);
+        result = gxsp_minimise(&problem);
+        if (result == GX_OK) gxsp_find_end(&problem, displacement, velocity);
+    }
     if (result == GX_OK) result = gxsp_finish(&problem, displacement, velocity);
     if (result != GX_OK) return gxsp_end(failure, result);
     problem.system->state.failed = 0;
@@ -9496,6 +11461,17 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_TANGENTS_AHEAD
 #undef GXSP_RESTS_AHEAD
 #undef GXSP_RANGE
+#undef GXSP_LEAP_MASS
+#undef GXSP_LEAP_FACTOR
+#undef GXSP_LEAP_DEGREE
+#undef GXSP_LEAP_DEGREES
+#undef GXSP_LEAP_SUBSTEPS
+#undef GXSP_LEAP_POWERS
+#undef GXSP_LEAP_GAIN
+#undef GXSP_LEAP_FORGET
+#undef GXSP_LEAP_RAISE
+#undef GXSP_LEAP_LAST
+#undef GXSP_LEAP_ROWS
 #undef GXSP_SPACING
 #undef GXSP_CROWDED
 #undef GXSP_AFFINE
@@ -9506,6 +11482,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_STIFF_POISSON
 #undef GXSP_FACTOR_COST
 #undef GXSP_LEVELS
+#undef GXSP_NESTED_COST
+#undef GXSP_WIDEST
 #undef GXSP_SHIFT
 #undef GXSP_STIFFNESS
 #undef GXSP_TINY
@@ -9537,6 +11515,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_IN
 #undef GXSP_COLUMNS
 #undef GXSP_SHUFFLES
+#undef GXSP_AFFINE_TASK
 #ifdef GXFEM_SCALAR
 #pragma clang attribute pop
 #endif

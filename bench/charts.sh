@@ -12,7 +12,7 @@ mkdir -p "$charts" || exit 2
 # where BENCH: when its table was made, and on what
 where() { echo "$(date -r "$tables/$1.csv" +%Y-%m-%d), $(uname -m | tr _ -), one thread"; }
 
-for bench in quadrature conditioning stepping space scaling blade; do
+for bench in quadrature conditioning stepping front space scaling blade; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$bench" >&2; exit 2; }
 done
 
@@ -200,6 +200,41 @@ END
     echo 'unset multiplot'
 }
 
+# front_rows BLOCK SCENE UNKNOWNS METHOD: time and error of its runs in motion, by time, as a gnuplot data block. UNKNOWNS: least and most
+front_rows() {
+    echo "\$$1 << EOD"
+    awk -F, -v scene="$2" -v least="${3% *}" -v most="${3#* }" -v method="$4" '
+        $1 == scene && $2 == "motion" && $3 + 0 >= least + 0 && $3 + 0 <= most + 0 && $4 == method && $9 != "" { print $9 / 1000, $10 }' \
+        "$tables/front.csv" | sort -g
+    echo "EOD"
+}
+
+# Error of the motion against time beside local solvers; a panel for each of four scenes
+front() {
+    echo 'set terminal svg size 1180,900 font "sans,12" background "white"'
+    echo "set output '$charts/front.svg'"
+    panels='accordion 1e6,30000 50000;uncut 1e6,20000 30000;accordion 1e8,30000 50000;accordion 1e6,4000 5000'
+    echo "$panels" | tr ';' '\n' | while IFS=, read -r scene unknowns; do
+        for kind in BDF1 BDF2 midpoint explicit XPBD VBD "VBD; Chebyshev"; do
+            front_rows "$(block_name "$scene $unknowns $kind")" "$scene" "$unknowns" "$kind"
+        done
+    done
+    cat <<END
+$styles
+set multiplot layout 2,2 title "Error of the motion over 0.33 s beside local solvers   ($(where front))" font "sans,15"
+set logscale xy; set grid back lc rgb "#dddddd"; set format y "10^{%L}"
+set xlabel "computing time, s per simulated second"; set ylabel "error, share of the motion"; set yrange [1e-4:3]
+END
+    echo "$panels" | tr ';' '\n' | while IFS=, read -r scene unknowns; do
+        echo "set title '$scene, $(front_unknowns "$scene" "$unknowns") unknowns'; set key bottom left samplen 1.5 font ',10'"
+        name() { block_name "$scene $unknowns $1"; }
+        echo "plot \$$(name BDF1) using 1:2 with points ls 2 title 'BDF1', \$$(name BDF2) using 1:2 with points ls 1 title 'BDF2', \$$(name midpoint) using 1:2 with points ls 8 title 'midpoint', \$$(name explicit) using 1:2 with points ls 5 title 'explicit', \$$(name XPBD) using 1:2 with linespoints ls 3 title 'XPBD, 2 to 500 substeps', \$$(name VBD) using 1:2 with points ls 6 title 'VBD', \$$(name 'VBD; Chebyshev') using 1:2 with points ls 7 title 'VBD, Chebyshev'"
+    done
+    echo 'unset multiplot'
+}
+
+front_unknowns() { awk -F, -v scene="$1" -v least="${2% *}" -v most="${2#* }" '$1 == scene && $3 + 0 >= least + 0 && $3 + 0 <= most + 0 { print $3; exit }' "$tables/front.csv"; }
+
 # Element deletion's part of a plot; where it leaves nothing, its name says so.
 deletion_of() {
     if grep -q "^$1,deletion; BDF2,.*no element is left" "$tables/stepping.csv"; then
@@ -302,5 +337,5 @@ unset multiplot
 END
 }
 
-panels | gnuplot && triangles | gnuplot && conditioning | gnuplot && stepping | gnuplot && stepping_cuts | gnuplot && space | gnuplot && scaling | gnuplot && blade | gnuplot || exit 1
-echo "wrote $charts/quadrature.svg, quadrature_triangles.svg, conditioning.svg, stepping.svg, stepping_cuts.svg, space.svg, scaling.svg, blade.svg"
+panels | gnuplot && triangles | gnuplot && conditioning | gnuplot && stepping | gnuplot && stepping_cuts | gnuplot && front | gnuplot && space | gnuplot && scaling | gnuplot && blade | gnuplot || exit 1
+echo "wrote $charts/quadrature.svg, quadrature_triangles.svg, conditioning.svg, stepping.svg, stepping_cuts.svg, front.svg, space.svg, scaling.svg, blade.svg"

@@ -34,7 +34,16 @@
 #include <string.h>
 #include <time.h>
 #ifdef _WIN32
+#ifndef WIN32_LEAN_AND_MEAN
+#define WIN32_LEAN_AND_MEAN
+#endif
+#ifndef NOMINMAX
+#define NOMINMAX
+#endif
 #include <direct.h>
+#include <windows.h>
+#undef near /* words of segmented memory */
+#undef far
 #else
 #include <sys/stat.h>
 #include <sys/types.h>
@@ -1805,15 +1814,21 @@ static inline int gxio_writer_open(gxio_writer *writer, const char *path, gxio_e
     return writer->stream ? 1 : gxio_fail(error, path, 0, "cannot be written: %s", strerror(errno));
 }
 
+/* Gives a file another name, which another file may have until then. At each instant one of the two has it. */
+static inline int gxio_replace(const char *from, const char *to) {
+#ifdef _WIN32
+    return MoveFileExA(from, to, MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH) != 0;
+#else
+    return rename(from, to) == 0;
+#endif
+}
+
 /* Closes the file and gives it its name; if `good` is 0 or anything fails, removes it. */
 static inline int gxio_writer_close(gxio_writer *writer, int good, gxio_error *error) {
     int complete = good && !ferror(writer->stream);
     errno = 0;
     if (fclose(writer->stream) != 0) complete = 0;
-#ifdef _WIN32
-    if (complete) remove(writer->path); /* rename does not replace there */
-#endif
-    if (complete && rename(writer->temporary, writer->path) == 0) return 1;
+    if (complete && gxio_replace(writer->temporary, writer->path)) return 1;
     gxio_fail(error, writer->path, 0, "cannot be written: %s", errno ? strerror(errno) : "the disk may be full");
     remove(writer->temporary);
     return 0;
@@ -2161,7 +2176,14 @@ static inline int gxio_page_close(gxio_page *page, int good, gxio_error *error) 
 /* Seconds from some fixed instant; user is ignored (the signature is gx_body_desc's). */
 static inline double gxio_seconds(void *user) {
     (void)user;
-#if defined(CLOCK_MONOTONIC)
+#if defined(_WIN32)
+    {
+        LARGE_INTEGER now, frequency;
+        QueryPerformanceFrequency(&frequency);
+        QueryPerformanceCounter(&now);
+        return (double)now.QuadPart / (double)frequency.QuadPart;
+    }
+#elif defined(CLOCK_MONOTONIC)
     {
         struct timespec now;
         clock_gettime(CLOCK_MONOTONIC, &now);

@@ -93,7 +93,7 @@ known_standards() {
 output_of() { case $1 in c99 | c++11) echo "-c -o $2" ;; *) echo "-fsyntax-only" ;; esac; }
 
 # level_of STANDARD FILE: some warnings need the optimiser, in one standard only
-level_of() { case $1:$2 in c99:together | c99:static | c++11:together | c++11:static) echo -O2 ;; *) echo -O0 ;; esac; }
+level_of() { case $1:$2 in c99:together | c++11:together) echo -O2 ;; *) echo -O0 ;; esac; }
 
 # What a shared library is compiled with: names are hidden unless GXFEM_API shows them.
 flags_of() { [ "$1" != exported ] || echo "-fPIC -fvisibility=hidden"; }

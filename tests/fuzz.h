@@ -19,7 +19,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#ifdef _WIN32
+#include <io.h>
+#include <sys/stat.h>
+#else
 #include <unistd.h>
+#endif
 #if defined(__wasi__) /* no signals, and no jump back: the first failure ends the program */
 typedef int jmp_buf[1];
 #define setjmp(buffer)         ((void)(buffer), 0)
@@ -27,7 +32,9 @@ typedef int jmp_buf[1];
 #else
 #include <setjmp.h>
 #include <signal.h>
+#ifndef _WIN32
 #include <sys/time.h>
+#endif
 #endif
 
 #include "case_bytes.h"
@@ -62,8 +69,12 @@ static void write_case(void) {
     memcpy(path + length, "/case-", 6);
     for (i = 0; i < 16; i++) path[length + 6 + (size_t)i] = digits[at.seed >> (60 - 4 * i) & 15];
     path[length + 22] = '\0';
+#ifdef _WIN32
+    file = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_BINARY, S_IREAD | S_IWRITE);
+#else
     file = creat(path, 0644);
-    if (file < 0 || write(file, at.bytes, at.size) != (ssize_t)at.size) return;
+#endif
+    if (file < 0 || write(file, at.bytes, (unsigned)at.size) != (int)at.size) return;
     close(file);
     if (write(2, path, length + 22) < 0 || write(2, "\n", 1) < 0) return;
 }
@@ -115,11 +126,23 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
 static void catch_signals(void) {}
 static void allow_a_case(void) {}
 #else
-static void on_signal(int number) {
-    static const char crash[] = "fuzz: a crash\n", slow[] = "fuzz: a case without end\n";
-    if (number == SIGVTALRM ? write(2, slow, sizeof slow - 1) < 0 : write(2, crash, sizeof crash - 1) < 0) _exit(2);
-    if (at.random) write_case();
+static void say_and_end(const char *what) {
+    if (write(2, what, (unsigned)strlen(what)) >= 0 && at.random) write_case();
     _exit(2);
+}
+
+static void on_signal(int number) {
+    (void)number;
+    say_and_end("fuzz: a crash\n");
+}
+
+#ifdef _WIN32 /* no timer of the processor's time: a case without end runs on */
+static void allow_a_case(void) {}
+static void catch_slow_cases(void) {}
+#else
+static void on_timer(int number) {
+    (void)number;
+    say_and_end("fuzz: a case without end\n");
 }
 
 /* Processor time, since other programs may take their share */
@@ -128,11 +151,14 @@ static void allow_a_case(void) {
     setitimer(ITIMER_VIRTUAL, &limit, NULL);
 }
 
+static void catch_slow_cases(void) { signal(SIGVTALRM, on_timer); }
+#endif
+
 static void catch_signals(void) {
     signal(SIGSEGV, on_signal);
     signal(SIGABRT, on_signal);
     signal(SIGFPE, on_signal);
-    signal(SIGVTALRM, on_signal);
+    catch_slow_cases();
 }
 #endif
 

@@ -16,10 +16,17 @@ enum { CASES = 400 };
 
 static uint64_t hash = UINT64_C(14695981039346656037);
 
-static void mix(const void *data, size_t size) {
-    const unsigned char *bytes = (const unsigned char *)data;
+/* The bytes of a number, the lowest first whatever the machine's order is */
+static uint64_t hash_number(uint64_t h, uint64_t number, size_t bytes) {
     size_t i;
-    for (i = 0; i < size; i++) hash = (hash ^ bytes[i]) * UINT64_C(1099511628211);
+    for (i = 0; i < bytes; i++) h = (h ^ (number >> 8 * i & 255)) * UINT64_C(1099511628211);
+    return h;
+}
+
+static uint64_t hash_double(uint64_t h, double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return hash_number(h, bits, sizeof bits);
 }
 
 static uint64_t scramble(uint64_t z) {
@@ -41,23 +48,18 @@ static void place(case_mesh *m, uint64_t seed) {
         }
 }
 
-static uint64_t hash_bytes(uint64_t h, const void *data, size_t size) {
-    const unsigned char *bytes = (const unsigned char *)data;
-    size_t i;
-    for (i = 0; i < size; i++) h = (h ^ bytes[i]) * UINT64_C(1099511628211);
-    return h;
-}
-
 /* A triangle by its origin and its component, without its corners. A flat polygon has several triangulations, and
    the order of boxes decides between them; boxes are sorted by rounded numbers. */
 static uint64_t hash_triangle(const gxb_boolean_result *r, const gxb_components *c, size_t t, size_t operands) {
     const uint32_t component = c->triangle[t];
     uint64_t h = UINT64_C(14695981039346656037);
-    h = hash_bytes(h, &r->triangle_operand[t], sizeof *r->triangle_operand);
-    h = hash_bytes(h, &r->triangle_source[t], sizeof *r->triangle_source);
-    h = hash_bytes(h, &r->triangle_reversed[t], sizeof *r->triangle_reversed);
-    h = hash_bytes(h, &c->euler[component], sizeof *c->euler);
-    return hash_bytes(h, c->side + component * operands, operands);
+    size_t i;
+    h = hash_number(h, r->triangle_operand[t], sizeof *r->triangle_operand);
+    h = hash_number(h, r->triangle_source[t], sizeof *r->triangle_source);
+    h = hash_number(h, r->triangle_reversed[t], sizeof *r->triangle_reversed);
+    h = hash_number(h, (uint64_t)c->euler[component], sizeof *c->euler);
+    for (i = 0; i < operands; i++) h = hash_number(h, c->side[component * operands + i], 1);
+    return h;
 }
 
 /* Sums, since triangles and vertices may be in another order */
@@ -65,9 +67,11 @@ static void hash_result(const gxb_boolean_result *r, const gxb_components *c, si
     uint64_t sum = c->count;
     size_t i;
     for (i = 0; i < r->triangle_count; i++) sum += scramble(hash_triangle(r, c, i, operands));
-    for (i = 0; i < r->vertex_count; i++)
-        sum += scramble(hash_bytes(1, r->vertices + 3 * i, 3 * sizeof(double)) + r->vertex_origin[i].kind);
-    mix(&sum, sizeof sum);
+    for (i = 0; i < r->vertex_count; i++) {
+        const double *x = r->vertices + 3 * i;
+        sum += scramble(hash_double(hash_double(hash_double(1, x[0]), x[1]), x[2]) + r->vertex_origin[i].kind);
+    }
+    hash = hash_number(hash, sum, sizeof sum);
 }
 
 /* Two sheets of 5 x 5 squares, one above the other, closed around: enough triangles to be sorted, at thirds,
@@ -125,11 +129,11 @@ static void run_operands(const test_case *c, uint64_t seed, int moved) {
         o.rule = c->operand[i].rule;
         result = (int)gxb_boolean_add(b, &o, NULL);
         operands += result == GX_OK;
-        mix(&result, sizeof result);
+        hash = hash_number(hash, (uint64_t)result, sizeof result);
         if (operands == 0) continue;
         result = (int)gxb_boolean_evaluate(b, &r, NULL);
         if (result == GX_OK) result = (int)gxb_boolean_components(b, &parts, NULL);
-        mix(&result, sizeof result);
+        hash = hash_number(hash, (uint64_t)result, sizeof result);
         if (result == GX_OK) hash_result(&r, &parts, operands);
     }
     gxb_boolean_destroy(b);

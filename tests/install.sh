@@ -6,6 +6,7 @@
 #     bench   SuiteSparse, the direct solver in the benches
 #     charts  gnuplot, for charts
 #     wasm    clang with its parts for WebAssembly, and node, which runs it
+#     platforms  cross compilers for Windows, ARM and S/390, and emulators that run their programs
 #     format  clang-format 14
 #     page    Chromium and node, for the page that the demo makes
 #     animation  the same, and img2webp, for the README's animated picture
@@ -50,6 +51,8 @@ have() {
     bench) header cholmod.h || header suitesparse/cholmod.h ;;
     charts) has gnuplot ;;
     wasm) has node && links_wasm ;;
+    platforms) has x86_64-w64-mingw32-gcc i686-w64-mingw32-gcc wine aarch64-linux-gnu-gcc arm-linux-gnueabihf-gcc s390x-linux-gnu-gcc \
+        qemu-aarch64-static qemu-arm-static qemu-s390x-static ;;
     format) has clang-format ;;
     page) has node && has_browser ;;
     animation) has node && has_browser && has img2webp ;;
@@ -76,6 +79,7 @@ packages() {
     charts:apt-get) echo gnuplot-nox ;;
     charts:*) echo gnuplot ;;
     wasm:apt-get) wasm_packages ;;
+    platforms:apt-get) echo gcc-mingw-w64 wine wine64 qemu-user-static gcc-aarch64-linux-gnu gcc-arm-linux-gnueabihf gcc-s390x-linux-gnu ;;
     format:apt-get|format:brew) echo clang-format ;;
     format:*) echo clang-tools-extra ;;
     page:apt-get|page:dnf|page:pacman) echo chromium nodejs ;;
@@ -104,7 +108,7 @@ install() {
     esac
 }
 
-[ $# -gt 0 ] || { echo "usage: $0 check|cxx|bench|charts|wasm|format|cmake|page|animation|pictures..." >&2; exit 2; }
+[ $# -gt 0 ] || { echo "usage: $0 check|cxx|bench|charts|wasm|platforms|format|cmake|page|animation|pictures..." >&2; exit 2; }
 missing=
 for group in "$@"; do have "$group" || missing="$missing $group"; done
 [ -n "$missing" ] || exit 0

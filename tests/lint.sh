@@ -220,7 +220,7 @@ rule_prefixes() {
 }
 
 # A leading underscore, two in a row. Names that compilers provide may be used.
-provided='__cplusplus|__SIZEOF_INT128__|__extension__|__int128|__GNUC__|__clang__|_MSC_VER|__restrict|_Pragma|__attribute__'
+provided='__cplusplus|__SIZEOF_INT128__|__extension__|__int128|__GNUC__|__clang__|_MSC_VER|__restrict|_Pragma|__attribute__|__declspec|__forceinline|__pragma'
 provided="$provided|__asm__|__clang_major__|__SSE2_MATH__|__AVX__|__aarch64__|__arm__|__ARM_FP|__riscv_flen|__s390x__"
 provided="$provided|__powerpc64__|__wasm__|__wasm_simd128__|__builtin_shufflevector|__builtin_convertvector"
 provided="$provided|__builtin_prefetch|__builtin_fabs"

@@ -1,8 +1,8 @@
 /* test_baselines.c - the methods with which benches compare the library: bench/dense.h, part.h, rxfem.h and its
-   parts, sampling.h, parts.h. Each must be as good as intended, otherwise the comparison means nothing.
+   parts, sampling.h, parts.h, local.h. Each must be as good as intended, otherwise the comparison means nothing.
 
-   Truth: part.h against rationals and the oracle; then rules against part.h, and enrichments against the library's
-   copies. */
+   Truth: part.h against rationals and the oracle; then rules against part.h, enrichments against the library's copies,
+   local solvers against its converged steps. */
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "../bench/forms.h"
@@ -10,6 +10,7 @@
 #include "../bench/rxfem_model.h"
 #include "../bench/sampling.h"
 #include "../bench/parts.h"
+#include "../bench/local.h"
 #include "body.h"
 #include "oracle.h"
 
@@ -1311,6 +1312,239 @@ START_TEST(deleted_elements) {
 }
 END_TEST
 
+/* ---- local.h ---- */
+
+static const double swing_gravity[3] = {2, 1, -9.81};
+
+/* A cut bar, held where x is near 0: the model that the library's steps and the local methods move */
+static gx_body *hanging_bar(gxs_model *model) {
+    static const double p[3] = {0.9, 0.52, 0.47}, normal[3] = {0.1, 0.05, 1}, beside[3] = {0.9, 0.52, 0.71};
+    const gx_region root = gx_region_half_space(0, -1, 1e-6);
+    workload w = grid(3, 2, 1, 5);
+    gx_body *body;
+    add_plane(&w, p, normal, 9);
+    add_plane(&w, beside, normal, 9);
+    body = cut_in_sequence(&w);
+    ck_assert_int_eq(gx_body_hold(body, &root, 1, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_model(body, model, NULL), GX_OK);
+    model->lumped_mass = 1;
+    wl_free(&w);
+    return body;
+}
+
+/* Converged steps of the library with a material; u: copy_count x 3, from rest */
+static void converged(const gxs_model *given, const gxs_material *material, gxs_integrator integrator, double dt,
+                      size_t steps, double *u) {
+    gxs_material *materials = (gxs_material *)dense_memory(NULL, given->material_count, sizeof *materials);
+    double *v = (double *)dense_memory(NULL, 3 * given->copy_count, sizeof(double));
+    gxs_model model = *given;
+    gxs_solver *solver;
+    gxs_step_desc step;
+    size_t i;
+    for (i = 0; i < model.material_count; i++) materials[i] = material ? *material : given->materials[i];
+    model.materials = materials;
+    memset(&step, 0, sizeof step);
+    memset(u, 0, 3 * model.copy_count * sizeof *u);
+    memset(v, 0, 3 * model.copy_count * sizeof *v);
+    step.dt = dt;
+    memcpy(step.gravity, swing_gravity, sizeof step.gravity);
+    step.integrator = integrator;
+    step.newton_iterations = 50;
+    step.newton_tolerance = 1e-10;
+    step.cg_tolerance = 1e-6;
+    ck_assert_int_eq(gxs_solver_create(NULL, &solver, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
+    for (i = 0; i < steps; i++) ck_assert_int_eq(gxs_solver_step(solver, &step, u, v, NULL, NULL), GX_OK);
+    gxs_solver_destroy(solver);
+    free(materials);
+    free(v);
+}
+
+/* The largest difference of any copy as a share of the largest displacement */
+static double local_difference(const local_body *b, const double *u) {
+    double worst = 0, largest = 0;
+    size_t i, k;
+    for (i = 0; i < b->count; i++)
+        for (k = 0; k < 3; k++) {
+            worst = fmax(worst, fabs((double)b->u[4 * i + k] - u[3 * i + k]));
+            largest = fmax(largest, fabs(u[3 * i + k]));
+        }
+    ck_assert_double_gt(largest, 1e-3);
+    return worst / largest;
+}
+
+/* Young's modulus and Poisson's ratio of the bar, with XPBD's energy */
+static gxs_material xpbd_material(const gxs_model *model) {
+    gxs_material m = model->materials[0];
+    m.kind = GXS_CUSTOM;
+    m.energy = local_xpbd_energy;
+    m.user = (void *)(uintptr_t)&model->materials[0];
+    return m;
+}
+
+/* XPBD's energy: derivatives against differences; near rest it is the library's material. */
+START_TEST(local_energies) {
+    gxs_material m;
+    uint64_t seed;
+    memset(&m, 0, sizeof m);
+    m.young = 1;
+    m.poisson = 0.4;
+    for (seed = 1; seed <= SEEDS; seed++) {
+        double f[9], stress[9], hessian[81], above[9], below[9], up, down, energy;
+        const double h = 1e-5;
+        int p, q;
+        random_seed(seed);
+        fill_random(f, 9);
+        local_xpbd_energy(&m, f, stress, hessian);
+        for (p = 0; p < 9; p++) {
+            const double kept = f[p];
+            f[p] = kept + h, up = local_xpbd_energy(&m, f, above, NULL);
+            f[p] = kept - h, down = local_xpbd_energy(&m, f, below, NULL);
+            f[p] = kept;
+            CHECK_SEED(fabs((up - down) / (2 * h) - stress[p]) < 1e-8, seed);
+            for (q = 0; q < 9; q++) CHECK_SEED(fabs((above[q] - below[q]) / (2 * h) - hessian[9 * p + q]) < 1e-8, seed);
+        }
+        for (p = 0; p < 9; p++) f[p] = (p % 4 == 0) + 1e-4 * f[p];
+        energy = gxs_material_energy(&m, f);
+        CHECK_SEED(fabs(local_xpbd_energy(&m, f, NULL, NULL) - energy) < 1e-3 * energy, seed);
+    }
+}
+END_TEST
+
+/* No two elements of a block share a copy that moves; no two copies of a group share an element. */
+START_TEST(local_colors) {
+    gxs_model model;
+    gx_body *body = hanging_bar(&model);
+    local_xpbd x;
+    local_vbd v;
+    size_t *seen = (size_t *)dense_memory(NULL, model.copy_count, sizeof *seen), i, k, moved = 0, swept = 0;
+    local_xpbd_make(&x, &model);
+    local_vbd_make(&v, &model);
+    memset(seen, 0, model.copy_count * sizeof *seen);
+    for (i = 0; i < x.blocks; i++)
+        for (k = 0; k < 4 * LOCAL_LANES; k++) {
+            const size_t copy = (size_t)x.at[4 * LOCAL_LANES * i + k] / 4;
+            if (copy == model.copy_count || x.body.fixed[copy]) continue;
+            ck_assert_uint_ne(seen[copy], i + 1);
+            seen[copy] = i + 1;
+            moved++;
+        }
+    for (i = 0; i < model.element_count; i++)
+        for (k = 0; k < 4; k++) moved -= !x.body.fixed[model.elements[i].copy[k]];
+    ck_assert_uint_eq(moved, 0);
+    memset(seen, 0, model.copy_count * sizeof *seen);
+    for (i = 0; i < v.groups; i++)
+        for (k = 0; k < v.group[i].count; k++) seen[v.group[i].at[k] / 4] = i + 1;
+    for (i = 0; i < model.copy_count; i++) swept += seen[i] > 0, swept -= !v.body.fixed[i];
+    ck_assert_uint_eq(swept, 0);
+    for (i = 0; i < model.element_count; i++)
+        for (k = 0; k < 16; k++) {
+            const uint32_t a = model.elements[i].copy[k / 4], b = model.elements[i].copy[k % 4];
+            if (a != b && seen[a] > 0) ck_assert_uint_ne(seen[a], seen[b]);
+        }
+    local_xpbd_free(&x);
+    local_vbd_free(&v);
+    free(seen);
+    gx_body_destroy(body);
+}
+END_TEST
+
+/* The difference of five steps of VBD from the library's backward Euler, as converged() made it */
+static double vbd_difference(const gxs_model *model, double dt, int iterations, double rho, int symmetric,
+                             const double *u) {
+    local_vbd_desc desc;
+    local_vbd v;
+    double worst;
+    int k;
+    memset(&desc, 0, sizeof desc);
+    desc.dt = dt;
+    memcpy(desc.gravity, swing_gravity, sizeof desc.gravity);
+    desc.iterations = iterations;
+    desc.rho = rho;
+    desc.symmetric = symmetric;
+    local_vbd_make(&v, model);
+    for (k = 0; k < 5; k++) local_vbd_step(&v, &desc);
+    worst = local_difference(&v.body, u);
+    local_vbd_free(&v);
+    return worst;
+}
+
+/* VBD to the end is the library's backward Euler to the end, with and without Chebyshev's method. Where sweeps converge
+   slowly, that is nearer after as many sweeps forward and back. */
+START_TEST(vbd_converges) {
+    gxs_model model;
+    gx_body *body = hanging_bar(&model);
+    double *u = (double *)dense_memory(NULL, 3 * model.copy_count, sizeof(double)), plain, fast;
+    converged(&model, NULL, GXS_BDF1, 0.01, 5, u);
+    ck_assert_double_lt(vbd_difference(&model, 0.01, 400, 0, 0, u), 1e-5);
+    ck_assert_double_lt(vbd_difference(&model, 0.01, 400, 0, 1, u), 1e-5);
+    ck_assert_double_lt(vbd_difference(&model, 0.01, 400, 0.7, 0, u), 1e-5);
+    ck_assert_double_lt(vbd_difference(&model, 0.01, 400, 0.7, 1, u), 1e-5);
+    converged(&model, NULL, GXS_BDF1, 0.05, 5, u);
+    plain = vbd_difference(&model, 0.05, 100, 0, 1, u);
+    fast = vbd_difference(&model, 0.05, 100, 0.98, 1, u);
+    ck_assert_msg(fast < plain / 3 && plain > 1e-4, "%.2e, by Chebyshev %.2e", plain, fast);
+    free(u);
+    gx_body_destroy(body);
+}
+END_TEST
+
+/* XPBD's motion goes to that of its energy in proportion to its substeps. */
+START_TEST(xpbd_converges) {
+    gxs_model model;
+    gx_body *body = hanging_bar(&model);
+    const gxs_material material = xpbd_material(&model);
+    double *u = (double *)dense_memory(NULL, 3 * model.copy_count, sizeof(double)), error[3];
+    int i;
+    converged(&model, &material, GXS_MIDPOINT, 0.05 / 400, 400, u);
+    for (i = 0; i < 3; i++) {
+        local_xpbd x;
+        local_xpbd_make(&x, &model);
+        local_xpbd_step(&x, 0.05, swing_gravity, 0, 25 << 2 * i);
+        error[i] = local_difference(&x.body, u);
+        local_xpbd_free(&x);
+    }
+    ck_assert_msg(error[1] < error[0] / 3 && error[2] < error[1] / 3 && error[2] < 5e-3, "%.2e %.2e %.2e", error[0],
+                  error[1], error[2]);
+    free(u);
+    gx_body_destroy(body);
+}
+END_TEST
+
+/* With damping of the mass both come to rest in the balance of their energy. */
+START_TEST(local_balance) {
+    gxs_model model;
+    gx_body *body = hanging_bar(&model);
+    const gxs_material material = xpbd_material(&model);
+    double *u = (double *)dense_memory(NULL, 3 * model.copy_count, sizeof(double)), worst;
+    local_vbd_desc desc;
+    local_xpbd x;
+    local_vbd v;
+    int i;
+    memset(&desc, 0, sizeof desc);
+    desc.dt = 0.02;
+    memcpy(desc.gravity, swing_gravity, sizeof desc.gravity);
+    desc.damping = 4;
+    desc.iterations = 50;
+    local_xpbd_make(&x, &model);
+    local_vbd_make(&v, &model);
+    for (i = 0; i < 400; i++) {
+        local_xpbd_step(&x, desc.dt, desc.gravity, desc.damping, 20);
+        local_vbd_step(&v, &desc);
+    }
+    converged(&model, &material, GXS_STATIC, 0, 1, u);
+    worst = local_difference(&x.body, u);
+    ck_assert_msg(worst < 3e-3, "XPBD: %.2e", worst); /* single precision: more substeps are worse */
+    converged(&model, NULL, GXS_STATIC, 0, 1, u);
+    worst = local_difference(&v.body, u);
+    ck_assert_msg(worst < 1e-3, "VBD: %.2e", worst);
+    local_xpbd_free(&x);
+    local_vbd_free(&v);
+    free(u);
+    gx_body_destroy(body);
+}
+END_TEST
+
 static TCase *add_case(Suite *suite, const char *name) {
     TCase *list = tcase_create(name);
     tcase_add_checked_fixture(list, make_rules, free_rules);
@@ -1360,5 +1594,11 @@ int main(void) {
     tcase_add_test(list, rules_in_parts);
     tcase_add_test(list, rxfem_in_parts);
     tcase_add_test(list, deleted_elements);
+    list = add_case(suite, "local");
+    tcase_add_test(list, local_energies);
+    tcase_add_test(list, local_colors);
+    tcase_add_test(list, vbd_converges);
+    tcase_add_test(list, xpbd_converges);
+    tcase_add_test(list, local_balance);
     return run_suite(suite);
 }

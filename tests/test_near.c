@@ -8,7 +8,7 @@
 #include "body.h"
 #include "../bench/blade.h"
 
-enum { SEEDS = 12, MOVES = 20 };
+enum { SEEDS = 4, MOVES = 20 };
 
 static const double slack = 0.75; /* GXP_NEAR_SLACK */
 

@@ -275,6 +275,47 @@ START_TEST(blade_begins_outside) {
 }
 END_TEST
 
+/* ---- Drill ---- */
+
+/* Along each axis, and askew. At rest the hole is the prism, to the last digits; through a body that swings it goes
+ * too.
+ */
+START_TEST(drill_a_hole) {
+    static const double axes[4][3] = {{0, 0, -1}, {0, 1, 0}, {-1, 0, 0}, {0.48, -0.6, 0.64}};
+    const double *axis = axes[_i], radius = 0.1, middle[3] = {0.52, 0.47, 0.51},
+                 back[3] = {-axis[0], -axis[1], -axis[2]};
+    double removed, sum = 0, tip[3], start[3];
+    gx_body *body = make_hanging(5, NULL);
+    gx_skin skin;
+    gx_hit hit;
+    int frame, k;
+    for (frame = 0; frame <= 10; frame++) {
+        for (k = 0; k < 3; k++) tip[k] = middle[k] + (1.2 - 0.1 * frame) * axis[k];
+        OK(drill(body, tip, axis, radius, 0.15, &removed));
+        ck_assert(frame == 0 ? !(removed > 0) : removed >= 0);
+        sum += removed;
+    }
+    ck_assert(fabs(view_of(body).volume + sum - 1) < 1e-12);
+    for (k = 0; k < 3; k++)
+        if (fabs(axis[k]) > 0.9) ck_assert(fabs(sum - fabs((axis[k] > 0) - tip[k]) * 3 * radius * radius) < 1e-12);
+    OK(drill(body, tip, axis, radius, 0.15, &removed));
+    ck_assert(removed < 1e-40); /* what rounding leaves */
+    for (frame = 0; frame < 16; frame++) {
+        advance(body, 1);
+        for (k = 0; k < 3; k++) tip[k] = middle[k] + (0.2 - 0.1 * frame) * axis[k];
+        OK(drill(body, tip, axis, radius, 0.15, &removed));
+        sum += removed;
+    }
+    ck_assert_uint_eq(view_of(body).fragment_count, 1);
+    ck_assert(fabs(view_of(body).volume + sum - 1) < 1e-12);
+    for (k = 0; k < 3; k++) start[k] = middle[k] + 3 * axis[k];
+    OK(gx_body_skin(body, NULL, &skin, NULL));
+    OK(gx_body_pick(body, start, back, &hit, NULL));
+    ck_assert_uint_eq(hit.copy_count, 0); /* one sees through it */
+    gx_body_destroy(body);
+}
+END_TEST
+
 /* ---- Feel ---- */
 
 /* A blade goes along y through the block, which hangs: while it is in the material, that is pushed on and the hand
@@ -644,6 +685,7 @@ int main(void) {
     tcase_add_test(tc, drag);
     tcase_add_loop_test(tc, blade_in_space, 0, 2);
     tcase_add_test(tc, blade_begins_outside);
+    tcase_add_loop_test(tc, drill_a_hole, 0, 4);
     tcase_add_test(tc, feel_the_blade);
     tcase_add_test(tc, hold);
     tcase_add_test(tc, ground);

@@ -590,7 +590,7 @@ START_TEST(strokes_wear_nothing_out) {
     settles = IN_USE;
     s.kind = _i;
     s.side = 4;
-    s.total = (_i == STROKES_CARVE ? 150 : 600) / (FEWER > 1 ? 3 : 1);
+    s.total = (_i == STROKES_CARVE ? 100 : 300) / (FEWER > 1 ? 2 : 1);
     ck_assert_int_eq(strokes_body(s.side, &a, NULL, &body), GX_OK);
     for (i = 0; i < s.total; i++) {
         ck_assert_int_eq(strokes_apply(&s, body, i, NULL), GX_OK);

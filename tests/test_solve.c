@@ -1472,7 +1472,7 @@ START_TEST(bad_input_is_named) {
     attempt_with(a.step.cg_tolerance = 1, GX_ERROR_ARGUMENT, "cg_tolerance", SIZE_MAX);
     attempt_with(a.step.mass_damping = -1, GX_ERROR_ARGUMENT, "mass_damping", SIZE_MAX);
     attempt_with(a.step.mass_damping = nan, GX_ERROR_NOT_FINITE, "mass_damping", SIZE_MAX);
-    attempt_with(a.step.integrator = (gxs_integrator)(GXS_STATIC + 1), GX_ERROR_ARGUMENT, "integrator", SIZE_MAX);
+    attempt_with(a.step.integrator = (gxs_integrator)(GXS_EXPLICIT + 1), GX_ERROR_ARGUMENT, "integrator", SIZE_MAX);
     attempt_with(a.step.integrator = GXS_BDF2; a.step.previous_displacement = a.s.forces;
                  a.step.previous_dt = 1, GX_ERROR_ARGUMENT, "previous_velocity", SIZE_MAX);
     attempt_with(a.step.integrator = GXS_BDF2; a.step.previous_displacement = a.step.previous_velocity = a.s.forces,

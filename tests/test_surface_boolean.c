@@ -1513,6 +1513,98 @@ START_TEST(rounded_sticks_are_mended) {
 }
 END_TEST
 
+/* ---- surfaces that are not vouched for ---- */
+
+/* A prism over a star polygon with five corners, from corner to corner by step: 1 a pentagon, 2 a pentagram. */
+static wl_surface star_prism(uint32_t step) {
+    wl_surface s;
+    uint32_t i;
+    memset(&s, 0, sizeof s);
+    for (i = 0; i < 12; i++) {
+        const double turn = 2 * 3.14159265358979323846 * (i % 6) / 5, z = i < 6 ? -1 : 1;
+        const double x[3] = {i % 6 == 5 ? 0 : cos(turn), i % 6 == 5 ? 0 : sin(turn), z};
+        wl_add_vertex(&s, x);
+    }
+    for (i = 0; i < 5; i++) {
+        const uint32_t j = (i + step) % 5;
+        wl_add_triangle(&s, 5, j, i);
+        wl_add_triangle(&s, 11, i + 6, j + 6);
+        wl_add_triangle(&s, i, j, j + 6);
+        wl_add_triangle(&s, i, j + 6, i + 6);
+    }
+    return s;
+}
+
+/* A ball around 0 */
+static void add_ball(wl_surface *s, double radius) {
+    static const double zero[3] = {0, 0, 0};
+    wl_surface ball = ball_of(zero, radius, 9, 6);
+    const uint32_t first = (uint32_t)s->vertex_count;
+    size_t i;
+    for (i = 0; i < ball.vertex_count; i++) wl_add_vertex(s, ball.vertices + 3 * i);
+    for (i = 0; i < ball.triangle_count; i++)
+        wl_add_triangle(s, first + ball.triangles[3 * i], first + ball.triangles[3 * i + 1],
+                        first + ball.triangles[3 * i + 2]);
+    surface_free(&ball);
+}
+
+/* Was the surface found simple? As a sheet it is searched for crossings; as a closed surface it may be a star. */
+static int found_simple(const wl_surface *s, uint32_t operation, int *star, double *volume) {
+    gxb_operand o = operand_of(s, operation);
+    gxb_boolean *b = boolean_of(&o, 1, GXB_DIVIDED, 1, 0);
+    gxb_boolean_result r;
+    int simple;
+    *star = gxbp_is_star(b, &b->in.operands[0]);
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
+    simple = (int)b->in.operands[0].simple;
+    if (operation != GXB_SPLIT) *volume = components_of(b).total_volume;
+    gxb_boolean_destroy(b);
+    return simple;
+}
+
+static int check_star(const wl_surface *s, double *volume) {
+    int star, never;
+    const int searched = found_simple(s, GXB_SPLIT, &never, volume), found = found_simple(s, GXB_UNION, &star, volume);
+    ck_assert(!never && found == searched && (!star || searched));
+    return star;
+}
+
+/* What the middle of a surface sees all of does not cross itself, if the surface winds around it once. */
+START_TEST(stars_are_simple) {
+    int i, stars = 0, cases = 300;
+    double volume, pentagon = 0;
+    wl_surface s = star_prism(1);
+    ck_assert(check_star(&s, &pentagon));
+    surface_free(&s);
+    s = star_prism(2);
+    ck_assert(!check_star(&s, &volume)); /* seen from its middle, but it winds twice */
+    ck_assert(volume > 0 && volume < pentagon);
+    surface_free(&s);
+    random_state = 37;
+    for (i = 0; i < cases; i++) {
+        size_t v, k, n;
+        memset(&s, 0, sizeof s);
+        add_ball(&s, 1);
+        for (v = 0; v < s.vertex_count; v++) {
+            const double factor = i % 3 == 0 ? 1 + 0.5 * random_below(1000) / 1000.0 : 1;
+            for (k = 0; k < 3; k++) s.vertices[3 * v + k] *= factor;
+        }
+        for (n = i % 3 == 1 ? 1 + (size_t)random_below(3) : 0; n > 0; n--) { /* moves some out of their order */
+            double *x = s.vertices + 3 * (size_t)random_below((int)s.vertex_count);
+            for (k = 0; k < 3; k++) x[k] = (random_below(201) - 100) / 100.0;
+        }
+        if (i % 3 == 2) add_ball(&s, random_below(2) ? 1 : 0.5); /* the same again, or one inside */
+        for (v = 0; i % 2 == 1 && v < s.triangle_count; v++)
+            swap_bytes(&s.triangles[3 * v], &s.triangles[3 * v + 1], sizeof *s.triangles);
+        k = (size_t)check_star(&s, &volume);
+        ck_assert(i % 3 == 1 || k == (i % 3 == 0));
+        stars += (int)k;
+        surface_free(&s);
+    }
+    ck_assert(stars > cases / 3 && stars < cases);
+}
+END_TEST
+
 /* ---- memory and bad input ---- */
 
 /* Of the allocations each so many-th fails. */
@@ -1909,6 +2001,7 @@ int main(void) {
     tcase_add_loop_test(tests, walls_of_a_few_units, 0, 30);
     tcase_add_test(tests, rounded_sticks_are_mended);
     tcase_add_loop_test(tests, crossings_around_islands, 0, 200 / FEWER);
+    tcase_add_test(tests, stars_are_simple);
     tcase_add_test(tests, memory_limit);
     tcase_add_loop_test(tests, sizes_are_numbers_or_refused, 0, 17);
     tcase_add_test(tests, small_coordinates_are_numbers_or_refused);

@@ -13,30 +13,9 @@ wasm="$clang --target=wasm32-wasi --sysroot=${SYSROOT:-/usr} -std=c99 -w -I."
 stack=-Wl,-z,stack-size=4194304         # wasm-ld's default of 64 kB is too small: there are frames of 82 kB
 mkdir -p "$dir" || exit 1
 rm -rf "${dir:?}"/*
-printf '#define GXFEM_IMPLEMENTATION\n#include "gxfem.h"\n' >"$dir/library.c"
+. tests/topology.sh
 
 node_run() { node --no-warnings tests/run_wasi.mjs "$@"; }
-
-topology() { # FILE COMMAND...: its topology hash
-    report=$1
-    shift
-    "$@" --frames 0 --quiet --report "$report" >/dev/null && sed -n 's/.*"topology_hash": *"\([0-9a-f]*\)".*/\1/p' "$report"
-}
-
-cuts() { # FILE COMMAND...
-    file=$1
-    shift
-    topology "$file" "$@" cube5 --sheet plane:0.3333,0.5,0.5,1,0,0 --sheet plane:0.5,0.6667,0.5,0,1,0 --sheet plane:0.5,0.5,0.5,1,1,1
-    topology "$file" "$@" grid:2,2,2,6 --sheet plane:1,1,1,1,0,0 --sheet plane:1,1,0.75,0,0.5,1 --solid box:0.5,0.25,0.125,1.5,1,1.75
-    topology "$file" "$@" grid:3,2,2,5 --solid box:0.9,0.9,0.9,2.1,2.1,2.1 --sheet plane:1.5,1,1,1,0.25,0.125
-}
-
-# Its counts are compared too, but not its time.
-random() { "$@" --out="$dir" --cases="$cases" | sed 's/, [0-9]* s$//'; }
-
-outcome() { # FILE GXCUT HASH_BOOLEAN FUZZ: commands
-    { cuts "$1.json" $2; $3; random $4; } >"$1.out" 2>"$1.err"
-}
 
 # Programs are built without the library's flags, so that errors are the library's.
 programs() {
@@ -82,21 +61,8 @@ first() { native; one O2 -O2; one O3 -O3; }
 second() { one O2_simd -O2 -msimd128; one O3_simd -O3 -msimd128; vectors; }
 if [ "$jobs" -gt 1 ]; then first & second & wait; else first; second; fi
 
-passed=0
-failed=0
-judge() { # NAME WHAT CONDITION...
-    name=$1 what=$2
-    shift 2
-    if "$@"; then passed=$((passed + 1)); echo "passed   $what"; return; fi
-    failed=$((failed + 1))
-    echo "FAILED   $what"
-    for file in "$dir/$name.out" "$dir/$name.err"; do if [ -s "$file" ]; then cat "$file"; fi; done
-}
-whole() { [ "$(grep -c . "$dir/$1.out")" -eq 5 ] && grep -q ' 0 failed;' "$dir/$1.out"; }
-same() { whole "$1" && cmp -s "$dir/native.out" "$dir/$1.out"; }
 judge native "native: $(sed -n 5p "$dir/native.out" 2>/dev/null | cut -d ';' -f 1)" whole native
 for name in O2 O2_simd O3 O3_simd; do judge $name "WebAssembly, $name: the same" same $name; done
 judge made "WebAssembly, O2_simd: objects are made" grep -q '^made$' "$dir/made.out"
 judge vectors "WebAssembly, O2_simd, with vectors in all functions: $forced" grep -q "^$forced\$" "$dir/vectors.out"
-echo "$passed passed, $failed failed"
-[ $failed -eq 0 ]
+verdict

@@ -1,0 +1,365 @@
+/* test_chains.c - chains of Booleans with every step evaluated. Three Booleans hold the same operands: one whose result
+   is retained, one whose result is made anew in each step, and one made of all operands at once. The first two show the
+   same triangles. All three have the same vertices to the last bit and the same components. A copy that only the
+   reported ranges change stays equal to the retained result. Operands are those of the fuzzer, on one lattice, with
+   repetitions. Some steps run out of memory, are read off coarsely, or in another precision. */
+#define GXFEM_BOOLEAN_IMPLEMENTATION
+#include "../gxfem_boolean.h"
+#include "fuzz_cases.h"
+#include "runner.h"
+#include "scarce.h"
+
+#include <math.h>
+
+enum { CHAIN = 16, CHAINS = 600 };
+
+static int same_bits(const void *a, const void *b, size_t size) { return size == 0 || memcmp(a, b, size) == 0; }
+
+/* ---- chains ---- */
+
+typedef struct chain {
+    case_operand operand[CHAIN];
+    size_t count;
+    uint64_t state;
+    int by_function; /* a function of all winding numbers decides */
+    int failed;      /* memory ran out: the retained Boolean has arranged all operands at once */
+} chain;
+
+static uint32_t chance(chain *c, uint32_t n) { return (uint32_t)(splitmix64(&c->state) % n); }
+
+/* Inside an odd number of operands */
+static int odd_sum(void *user, const int32_t *winding, size_t count) {
+    size_t i;
+    uint32_t sum = 0;
+    (void)user;
+    for (i = 0; i < count; i++) sum += winding[i] != 0;
+    return sum % 2 != 0;
+}
+
+static void make_chain(chain *c, uint64_t seed) {
+    static test_case made;
+    uint8_t bytes[256];
+    uint32_t style, length, i;
+    c->failed = 0;
+    c->count = 0;
+    c->state = seed;
+    style = chance(c, CASE_STYLES);
+    length = 3 + chance(c, CHAIN - 3);
+    c->by_function = chance(c, 8) == 0;
+    while (c->count < length) {
+        case_fill(splitmix64(&c->state), bytes, sizeof bytes);
+        bytes[0] = (uint8_t)(7 << 5 | (bytes[0] & 8));
+        bytes[1] = (uint8_t)style;
+        case_decode(bytes, sizeof bytes, &made);
+        for (i = 0; i < made.operands && c->count < length; i++) {
+            const int again = c->count > 0 && chance(c, 4) == 0;
+            c->operand[c->count] = again ? c->operand[chance(c, (uint32_t)c->count)] : made.operand[i];
+            /* few intersections, which leave little */
+            if (c->operand[c->count].operation == GXB_INTERSECTION && chance(c, 3) > 0)
+                c->operand[c->count].operation = GXB_UNION;
+            if (again) c->operand[c->count].operation = chance(c, 2) ? GXB_DIFFERENCE : GXB_UNION;
+            c->count++;
+        }
+    }
+}
+
+static gxb_boolean *start(const chain *c, int retained, memory *m) {
+    gxb_boolean_desc desc;
+    gxb_boolean *b = NULL;
+    memset(&desc, 0, sizeof desc);
+    if (c->by_function) desc.inside = odd_sum;
+    if (m != NULL) desc.allocator = allocator_of(m);
+    ck_assert_int_eq(gxb_boolean_create(&desc, &b, NULL), GX_OK);
+    ck_assert_int_eq(gxb_boolean_set_fine(b, 1, NULL), GX_OK);
+    ck_assert_int_eq(gxb_boolean_set_retained(b, retained, NULL), GX_OK);
+    return b;
+}
+
+static gx_result add(gxb_boolean *b, const case_operand *operand) {
+    gxb_operand o;
+    memset(&o, 0, sizeof o);
+    o.vertices = &operand->mesh.x[0][0];
+    o.vertex_count = operand->mesh.vertices;
+    o.triangles = &operand->mesh.t[0][0];
+    o.triangle_count = operand->mesh.triangles;
+    o.operation = operand->operation;
+    o.rule = operand->rule;
+    return gxb_boolean_add(b, &o, NULL);
+}
+
+/* ---- results in an order of their own ---- */
+
+typedef struct corner {
+    double x[3];
+} corner;
+typedef struct facet { /* the least corner first */
+    corner corner[3];
+    uint32_t operand, source, reversed, none; /* none: 0, so that facets are equal in all bytes */
+} facet;
+typedef struct part {
+    double volume;
+    int32_t euler;
+} part;
+typedef struct picture {
+    corner *corners; /* each once */
+    facet *facets;
+    part *parts;
+    size_t corner_count, facet_count, part_count;
+} picture;
+
+static int by_bytes(const void *a, const void *b, size_t size) { return memcmp(a, b, size); }
+static int by_corner(const void *a, const void *b) { return by_bytes(a, b, sizeof(corner)); }
+static int by_facet(const void *a, const void *b) { return by_bytes(a, b, sizeof(facet)); }
+static int by_part(const void *a, const void *b) {
+    const part *p = (const part *)a, *q = (const part *)b;
+    if (p->euler != q->euler) return p->euler < q->euler ? -1 : 1;
+    return p->volume < q->volume ? -1 : p->volume > q->volume;
+}
+
+static facet facet_of(const gxb_boolean_result *r, size_t t) {
+    facet f;
+    size_t least = 0, k;
+    corner x[3];
+    memset(&f, 0, sizeof f);
+    for (k = 0; k < 3; k++) {
+        ck_assert_uint_lt(r->triangles[3 * t + k], r->vertex_count);
+        memcpy(x[k].x, r->vertices + 3 * (size_t)r->triangles[3 * t + k], sizeof x[k].x);
+        if (by_corner(&x[k], &x[least]) < 0) least = k;
+    }
+    for (k = 0; k < 3; k++) f.corner[k] = x[(least + k) % 3];
+    f.operand = r->triangle_operand[t];
+    f.source = r->triangle_source[t];
+    f.reversed = r->triangle_reversed[t];
+    return f;
+}
+
+static picture picture_of(gxb_boolean *b, const gxb_boolean_result *r) {
+    gxb_components c;
+    picture p;
+    size_t i, k, n = 0;
+    memset(&p, 0, sizeof p);
+    ck_assert_int_eq(gxb_boolean_components(b, &c, NULL), GX_OK);
+    p.corners = (corner *)malloc((3 * r->triangle_count + 1) * sizeof *p.corners);
+    p.facets = (facet *)malloc((r->triangle_count + 1) * sizeof *p.facets);
+    p.parts = (part *)malloc((c.count + 1) * sizeof *p.parts);
+    for (i = 0; i < r->triangle_count; i++) {
+        p.facets[i] = facet_of(r, i);
+        for (k = 0; k < 3; k++) p.corners[3 * i + k] = p.facets[i].corner[k];
+    }
+    qsort(p.corners, 3 * r->triangle_count, sizeof *p.corners, by_corner);
+    for (i = 0; i < 3 * r->triangle_count; i++)
+        if (n == 0 || by_corner(&p.corners[i], &p.corners[n - 1]) != 0) p.corners[n++] = p.corners[i];
+    p.corner_count = n;
+    p.facet_count = r->triangle_count;
+    qsort(p.facets, p.facet_count, sizeof *p.facets, by_facet);
+    for (i = 0; i < c.count; i++) {
+        p.parts[i].volume = c.volume[i];
+        p.parts[i].euler = c.euler[i];
+    }
+    p.part_count = c.count;
+    qsort(p.parts, p.part_count, sizeof *p.parts, by_part);
+    return p;
+}
+
+static void drop_picture(picture *p) {
+    free(p->corners);
+    free(p->facets);
+    free(p->parts);
+}
+
+/* Triangulations depend on the order of operands; corners and components do not. */
+static void check_same(const picture *p, const picture *q, int facets, uint64_t seed, size_t step) {
+    size_t i;
+    ck_assert_msg(
+        p->corner_count == q->corner_count && same_bits(p->corners, q->corners, p->corner_count * sizeof *p->corners),
+        "seed %llu, step %zu: %zu corners, or %zu", (unsigned long long)seed, step, p->corner_count, q->corner_count);
+    ck_assert_msg(p->facet_count == q->facet_count, "seed %llu, step %zu: %zu triangles, or %zu",
+                  (unsigned long long)seed, step, p->facet_count, q->facet_count);
+    ck_assert_msg(!facets || same_bits(p->facets, q->facets, p->facet_count * sizeof *p->facets),
+                  "seed %llu, step %zu: other triangles", (unsigned long long)seed, step);
+    ck_assert_msg(p->part_count == q->part_count, "seed %llu, step %zu: %zu components, or %zu",
+                  (unsigned long long)seed, step, p->part_count, q->part_count);
+    for (i = 0; i < p->part_count; i++)
+        ck_assert_msg(p->parts[i].euler == q->parts[i].euler &&
+                          fabs(p->parts[i].volume - q->parts[i].volume) <= 1e-12 * p->parts[i].volume,
+                      "seed %llu, step %zu: component %zu", (unsigned long long)seed, step, i);
+}
+
+/* ---- a copy that follows the reported ranges ---- */
+
+typedef struct copy {
+    double *vertices;
+    gxb_origin *origins;
+    uint32_t *triangles, *operands, *sources;
+    uint8_t *reversed;
+} copy;
+
+static void *enlarged(void *memory, size_t bytes) {
+    void *larger = realloc(memory, bytes + 1);
+    ck_assert(larger != NULL);
+    return larger;
+}
+
+#define COPY_RANGE(to, from, width, range)                                                                             \
+    memcpy((to) + (width) * (range).first, (from) + (width) * (range).first, (width) * (range).count * sizeof *(to))
+
+static void check_ranges(const gxb_range *range, size_t count, size_t end) {
+    size_t i;
+    for (i = 0; i < count; i++) {
+        ck_assert_uint_gt(range[i].count, 0);
+        ck_assert_uint_le(range[i].first + range[i].count, end);
+        ck_assert(i == 0 || range[i].first > range[i - 1].first + range[i - 1].count);
+    }
+}
+
+/* A vertex that no triangle has may keep what it was. */
+static void follow(copy *c, gxb_boolean *b, const gxb_boolean_result *r) {
+    gxb_changes changes;
+    size_t i, k;
+    ck_assert_int_eq(gxb_boolean_changes(b, &changes, NULL), GX_OK);
+    check_ranges(changes.vertices, changes.vertex_range_count, r->vertex_count);
+    check_ranges(changes.triangles, changes.triangle_range_count, r->triangle_count);
+    c->vertices = (double *)enlarged(c->vertices, 3 * r->vertex_count * sizeof *c->vertices);
+    c->origins = (gxb_origin *)enlarged(c->origins, r->vertex_count * sizeof *c->origins);
+    c->triangles = (uint32_t *)enlarged(c->triangles, 3 * r->triangle_count * sizeof *c->triangles);
+    c->operands = (uint32_t *)enlarged(c->operands, r->triangle_count * sizeof *c->operands);
+    c->sources = (uint32_t *)enlarged(c->sources, r->triangle_count * sizeof *c->sources);
+    c->reversed = (uint8_t *)enlarged(c->reversed, r->triangle_count);
+    for (i = 0; i < changes.vertex_range_count; i++) {
+        COPY_RANGE(c->vertices, r->vertices, 3, changes.vertices[i]);
+        COPY_RANGE(c->origins, r->vertex_origin, 1, changes.vertices[i]);
+    }
+    for (i = 0; i < changes.triangle_range_count; i++) {
+        COPY_RANGE(c->triangles, r->triangles, 3, changes.triangles[i]);
+        COPY_RANGE(c->operands, r->triangle_operand, 1, changes.triangles[i]);
+        COPY_RANGE(c->sources, r->triangle_source, 1, changes.triangles[i]);
+        COPY_RANGE(c->reversed, r->triangle_reversed, 1, changes.triangles[i]);
+    }
+    ck_assert(same_bits(c->triangles, r->triangles, 3 * r->triangle_count * sizeof *c->triangles));
+    ck_assert(same_bits(c->operands, r->triangle_operand, r->triangle_count * sizeof *c->operands));
+    ck_assert(same_bits(c->sources, r->triangle_source, r->triangle_count * sizeof *c->sources));
+    ck_assert(same_bits(c->reversed, r->triangle_reversed, r->triangle_count));
+    for (i = 0; i < 3 * r->triangle_count; i++) {
+        k = r->triangles[i];
+        ck_assert(same_bits(c->vertices + 3 * k, r->vertices + 3 * k, 3 * sizeof *c->vertices));
+        ck_assert(same_bits(&c->origins[k], &r->vertex_origin[k], sizeof *c->origins));
+    }
+}
+
+static void drop_copy(copy *c) {
+    free(c->vertices);
+    free(c->origins);
+    free(c->triangles);
+    free(c->operands);
+    free(c->sources);
+    free(c->reversed);
+}
+
+/* ---- the chains ---- */
+
+/* Evaluates. Memory may run out on the way; the second time there is enough. */
+static void evaluate(chain *c, gxb_boolean *b, gxb_boolean_result *r, memory *m) {
+    const size_t fail_at = chance(c, 4) == 0 ? chance(c, 12) : SIZE_MAX;
+    gx_result result;
+    if (fail_at != SIZE_MAX) fail_from(m, fail_at, 0);
+    result = gxb_boolean_evaluate(b, r, NULL);
+    never_fail(m);
+    if (result == GX_ERROR_MEMORY) {
+        ck_assert_uint_ne(fail_at, SIZE_MAX);
+        c->failed = 1;
+        result = gxb_boolean_evaluate(b, r, NULL);
+    }
+    ck_assert_int_eq(result, GX_OK);
+}
+
+/* Reads the retained result off in another way, now and then. */
+static void look_elsewhere(chain *c, gxb_boolean *b) {
+    gxb_boolean_result r;
+    switch (chance(c, 16)) {
+    case 0:
+        ck_assert_int_eq(gxb_boolean_set_triangulation(b, 1 + chance(c, 2), NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_set_triangulation(b, GXB_DIVIDED, NULL), GX_OK);
+        break;
+    case 1:
+        ck_assert_int_eq(gxb_boolean_set_fine(b, 0, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_set_fine(b, 1, NULL), GX_OK);
+        break;
+    case 2: ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK); break; /* nothing is new */
+    default: break;
+    }
+}
+
+static void check_step(chain *c, gxb_boolean *retained, gxb_boolean *anew, copy *mirror, memory *m, uint64_t seed,
+                       size_t step) {
+    gxb_boolean *fresh = start(c, 0, NULL);
+    gxb_boolean_result r;
+    picture p[3];
+    size_t i;
+    for (i = 0; i <= step; i++) (void)add(fresh, &c->operand[i]);
+    evaluate(c, retained, &r, m);
+    follow(mirror, retained, &r);
+    p[0] = picture_of(retained, &r);
+    ck_assert_int_eq(gxb_boolean_evaluate(anew, &r, NULL), GX_OK);
+    p[1] = picture_of(anew, &r);
+    ck_assert_int_eq(gxb_boolean_evaluate(fresh, &r, NULL), GX_OK);
+    p[2] = picture_of(fresh, &r);
+    if (!c->failed) check_same(&p[0], &p[1], 1, seed, step);
+    check_same(&p[0], &p[2], 0, seed, step);
+    for (i = 0; i < 3; i++) drop_picture(&p[i]);
+    gxb_boolean_destroy(fresh);
+    look_elsewhere(c, retained);
+}
+
+static void check_chain(uint64_t seed) {
+    static chain c;
+    memory m = plenty();
+    copy mirror;
+    gxb_boolean *retained, *anew;
+    size_t step, added = 0;
+    make_chain(&c, seed);
+    memset(&mirror, 0, sizeof mirror);
+    retained = start(&c, 1, &m);
+    anew = start(&c, 0, NULL);
+    for (step = 0; step < c.count; step++) {
+        const gx_result result = add(retained, &c.operand[step]);
+        ck_assert_int_eq(add(anew, &c.operand[step]), result);
+        added += result == GX_OK;
+        if (added > 0 && chance(&c, 5) > 0) check_step(&c, retained, anew, &mirror, &m, seed, step);
+    }
+    drop_copy(&mirror);
+    gxb_boolean_destroy(retained);
+    gxb_boolean_destroy(anew);
+    ck_assert(m.blocks == NULL && !m.wrong && !m.overrun);
+}
+
+static uint64_t seeds[2]; /* given by the caller: the first, and the end */
+
+START_TEST(given_chains) {
+    uint64_t seed;
+    for (seed = seeds[0]; seed < seeds[1]; seed++) check_chain(seed);
+}
+END_TEST
+
+START_TEST(retained_results_are_those_of_a_fresh_boolean) {
+    int i;
+    for (i = 0; i < CHAINS / 10 / FEWER; i++) check_chain((uint64_t)(CHAINS / 10 * _i + i));
+}
+END_TEST
+
+/* test_chains [FIRST END]: the chains of these seeds */
+int main(int argc, char **argv) {
+    Suite *suite = suite_create("chains");
+    TCase *tests = tcase_create("chains");
+    tcase_set_timeout(tests, 300);
+    if (argc == 3) {
+        seeds[0] = strtoull(argv[1], NULL, 10);
+        seeds[1] = strtoull(argv[2], NULL, 10);
+        tcase_set_timeout(tests, 0);
+        tcase_add_test(tests, given_chains);
+    } else
+        tcase_add_loop_test(tests, retained_results_are_those_of_a_fresh_boolean, 0, 10);
+    suite_add_tcase(suite, tests);
+    return run_suite(suite);
+}

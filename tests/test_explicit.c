@@ -1,0 +1,422 @@
+/* test_explicit.c - explicit steps (GXS_EXPLICIT): their order and limit, energy, free fall, where steps are implicit
+   instead, cuts, jobs and memory. Truth: converged implicit steps with the same lumped mass. */
+#define GXFEM_SOLVE_IMPLEMENTATION
+#include "../gxfem_solve.h"
+
+#include "block.h"
+
+/* A bar of cubes of 0.25 m, held on its left */
+static scene hanging_bar(double young) {
+    scene s;
+    seed(7);
+    s = scene_block(5, 2, 2, 0.25, 0.05, 0);
+    s.material->young = young;
+    s.model.lumped_mass = 1;
+    scene_hold_left(&s);
+    return s;
+}
+
+static gxs_step_desc explicit_step(double dt, uint32_t substeps) {
+    gxs_step_desc step = step_make(dt, -9.81);
+    step.integrator = GXS_EXPLICIT;
+    step.substeps = substeps;
+    return step;
+}
+
+/* Steps from the scene's state; returns how many were explicit. */
+static int move(scene *s, const gxs_step_desc *step, int steps, gxs_step_report *last) {
+    gxs_solver *solver = solver_make();
+    gxs_step_report report;
+    int i, count = 0;
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s->model, NULL), GX_OK);
+    for (i = 0; i < steps; i++) {
+        ck_assert_int_eq(gxs_solver_step(solver, step, s->displacement, s->velocity, &report, NULL), GX_OK);
+        count += report.substeps > 0;
+    }
+    if (last) *last = report;
+    gxs_solver_destroy(solver);
+    return count;
+}
+
+/* The largest difference of any copy as a share of the largest displacement */
+static double difference(const scene *s, const double *u) {
+    double worst = 0, largest = 0;
+    size_t i;
+    for (i = 0; i < 3 * s->model.copy_count; i++) {
+        worst = fmax(worst, fabs(s->displacement[i] - u[i]));
+        largest = fmax(largest, fabs(u[i]));
+    }
+    ck_assert(largest > 1e-3);
+    return worst / largest;
+}
+
+/* Kinetic, elastic and potential energy with lumped mass, J */
+static double energy_of(const scene *s) {
+    const size_t count = 3 * s->model.copy_count;
+    double sum = form_energy(&s->model, s->displacement), *mass = (double *)zeroed(count, sizeof(double));
+    size_t i;
+    for (i = 0; i < count; i++) s->forces[i] = 1;
+    form_mass_product(&s->model, s->forces, mass);
+    for (i = 0; i < count; i++) sum += 0.5 * mass[i] * s->velocity[i] * s->velocity[i];
+    for (i = 2; i < count; i += 3) sum += 9.81 * mass[i] * s->displacement[i];
+    free(mass);
+    return sum;
+}
+
+/* The end of many substeps is that of converged midpoint steps but for the mass added; with fewer the error is of
+   second order, with and without a filter. */
+START_TEST(converges_with_order_two) {
+    scene truth = hanging_bar(2e5), fine = hanging_bar(2e5);
+    gxs_step_desc step = step_make(0.1 / 400, -9.81);
+    gxs_step_report report;
+    double error[4];
+    int i;
+    step.integrator = GXS_MIDPOINT;
+    step.newton_iterations = 20;
+    step.newton_tolerance = 1e-10;
+    step.cg_tolerance = 1e-6;
+    move(&truth, &step, 400, NULL);
+    step = explicit_step(0.1, 1600);
+    ck_assert_int_eq(move(&fine, &step, 1, &report), 1);
+    ck_assert_uint_eq(report.substeps, 1600);
+    ck_assert_uint_eq(report.newton_iterations, 0);
+    error[0] = difference(&fine, truth.displacement);
+    assert_that(error[0] < 5e-3, "%g", error[0]);
+    for (i = 0; i < 4; i++) { /* from a filter of degree 4 or so to none */
+        scene s = hanging_bar(2e5);
+        step = explicit_step(0.1, 12u << i);
+        ck_assert_int_eq(move(&s, &step, 1, &report), 1);
+        error[i] = difference(&s, fine.displacement);
+        scene_free(&s);
+    }
+    for (i = 1; i < 4; i++)
+        assert_that(error[i] < error[i - 1] / 2.5, "%g %g %g %g", error[0], error[1], error[2], error[3]);
+    assert_that(error[3] < 2e-3, "%g", error[3]);
+    scene_free(&truth);
+    scene_free(&fine);
+}
+END_TEST
+
+/* A bar that swings for three seconds: steps stay explicit, no energy is created, little is lost. */
+START_TEST(energy_is_not_created) {
+    scene s = hanging_bar(2e5);
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = explicit_step(1.0 / 60, (uint32_t)_i);
+    double most = -1e300, size = 0, energy = 0;
+    int frame, implicit = 0;
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+    for (frame = 0; frame < 180; frame++) {
+        gxs_step_report report;
+        ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+        implicit += report.substeps == 0;
+        energy = energy_of(&s);
+        most = fmax(most, energy);
+        size = fmax(size, form_energy(&s.model, s.displacement));
+    }
+    assert_that(implicit == 0, "%d implicit", implicit);
+    assert_that(most < 5e-3 * size, "%g of %g", most, size);
+    assert_that(energy > -0.1 * size, "%g of %g", energy, size);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
+/* A free body falls by g t^2 / 2, far from where it was at rest, and does not deform. Damped, it approaches g / alpha.
+ */
+START_TEST(free_fall) {
+    scene s = hanging_bar(2e5);
+    gxs_step_desc step = explicit_step(0.1, 0);
+    size_t i;
+    memset(s.held, 0, s.model.copy_count);
+    for (i = 0; i < s.model.copy_count; i++) s.displacement[3 * i] = 1e4, s.velocity[3 * i + 1] = 3;
+    ck_assert_int_eq(move(&s, &step, 10, NULL), 10);
+    for (i = 0; i < s.model.copy_count; i++) {
+        ck_assert(fabs(s.displacement[3 * i] - 1e4) < 1e-5);
+        ck_assert(fabs(s.displacement[3 * i + 1] - 3) < 1e-5);
+        ck_assert(fabs(s.displacement[3 * i + 2] + 0.5 * 9.81) < 1e-5);
+        ck_assert(fabs(s.velocity[3 * i + 2] + 9.81) < 1e-5);
+    }
+    step.mass_damping = 5;
+    ck_assert_int_eq(move(&s, &step, 40, NULL), 40);
+    for (i = 0; i < s.model.copy_count; i++) ck_assert(fabs(s.velocity[3 * i + 2] + 9.81 / 5) < 1e-5);
+    scene_free(&s);
+}
+END_TEST
+
+/* A spinning free body keeps its spin: the energy that it has, and the mean velocity of its copies */
+START_TEST(spin_is_kept) {
+    scene s = hanging_bar(2e5);
+    gxs_step_desc step = explicit_step(1.0 / 60, 0);
+    double *mass = (double *)zeroed(3 * s.model.copy_count, sizeof(double)), spin[2] = {0, 0};
+    size_t i;
+    int k;
+    step.gravity[2] = 0;
+    memset(s.held, 0, s.model.copy_count);
+    for (i = 0; i < s.model.copy_count; i++) {
+        s.velocity[3 * i] = -2 * (s.rest[3 * i + 1] - 0.25);
+        s.velocity[3 * i + 1] = 2 * (s.rest[3 * i] - 0.625);
+    }
+    for (k = 0; k < 2; k++) {
+        form_mass_product(&s.model, s.velocity, mass);
+        for (i = 0; i < s.model.copy_count; i++)
+            spin[k] += (s.rest[3 * i] + s.displacement[3 * i]) * mass[3 * i + 1] -
+                       (s.rest[3 * i + 1] + s.displacement[3 * i + 1]) * mass[3 * i];
+        if (k == 0) ck_assert_int_eq(move(&s, &step, 60, NULL), 60);
+    }
+    assert_that(fabs(spin[1] - spin[0]) < 0.02 * spin[0], "%g %g", spin[0], spin[1]);
+    free(mass);
+    scene_free(&s);
+}
+END_TEST
+
+/* What a step of GXS_EXPLICIT that must be implicit is made of, one thing at a time */
+typedef struct obstacle {
+    scene s;
+    gxs_step_desc step;
+    gxs_constraint constraint;
+    gxs_spring spring;
+    double *targets;
+} obstacle;
+
+enum { STIFF, KIND, DAMPED, FOLLOWING, PULLED, TARGETED, OBSTACLES };
+
+static void obstacle_make(obstacle *o, int kind) {
+    memset(o, 0, sizeof *o);
+    o->s = hanging_bar(kind == STIFF ? 1e12 : 2e5);
+    o->step = explicit_step(0.02, 0);
+    if (kind == KIND) o->s.material->kind = GXS_FIXED_COROTATED;
+    if (kind == DAMPED) o->s.material->damping = 0.01;
+    o->constraint.copy = (uint32_t)o->s.model.copy_count - 1;
+    o->constraint.master[0] = o->constraint.copy - 1;
+    o->constraint.weight[0] = 1;
+    if (kind == FOLLOWING) o->s.model.constraints = &o->constraint, o->s.model.constraint_count = 1;
+    o->spring.point.count = 1;
+    o->spring.point.copy[0] = 20;
+    o->spring.point.weight[0] = 1;
+    o->spring.stiffness = 10;
+    if (kind == PULLED) o->step.springs = &o->spring, o->step.spring_count = 1;
+    o->targets = (double *)zeroed(3 * o->s.model.copy_count, sizeof(double));
+    if (kind == TARGETED) o->step.targets = o->targets;
+}
+
+static void obstacle_free(obstacle *o) {
+    free(o->targets);
+    scene_free(&o->s);
+}
+
+/* Then the step is backward Euler's, bit by bit. */
+START_TEST(other_steps_are_backward_euler) {
+    obstacle a, b;
+    gxs_step_report report;
+    obstacle_make(&a, _i);
+    obstacle_make(&b, _i);
+    b.step.integrator = GXS_BDF1;
+    ck_assert_int_eq(move(&a.s, &a.step, 3, &report), 0);
+    ck_assert_uint_eq(report.substeps, 0);
+    ck_assert_uint_gt(report.newton_iterations, 0);
+    move(&b.s, &b.step, 3, NULL);
+    ck_assert_mem_eq(a.s.displacement, b.s.displacement, 3 * a.s.model.copy_count * sizeof(double));
+    ck_assert_mem_eq(a.s.velocity, b.s.velocity, 3 * a.s.model.copy_count * sizeof(double));
+    obstacle_free(&a);
+    obstacle_free(&b);
+}
+END_TEST
+
+/* From any start, with any number of substeps: an explicit step creates next to no energy, an implicit one not much,
+   and all is finite. */
+START_TEST(violent_starts_do_not_blow_up) {
+    static const uint32_t substeps[3] = {0, 3, 40};
+    scene s = hanging_bar(_i % 2 ? 2e5 : 2e3);
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = explicit_step(0.033, substeps[_i % 3]);
+    double start, energy, size;
+    size_t i;
+    int frame;
+    seed((uint64_t)_i);
+    for (i = 0; i < 3 * s.model.copy_count; i++)
+        if (!s.held[i / 3]) {
+            s.displacement[i] = _i % 4 == 0 && i % 3 == 2 ? -2 * s.rest[i] : 0.4 * uniform();
+            s.velocity[i] = 20 * uniform();
+        }
+    start = energy_of(&s);
+    size = fabs(start) + form_energy(&s.model, s.displacement);
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+    for (frame = 0; frame < 60; frame++) {
+        gxs_step_report report;
+        ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+        for (i = 0; i < 3 * s.model.copy_count; i++)
+            ck_assert(finite_bits(s.displacement[i]) && finite_bits(s.velocity[i]));
+        energy = energy_of(&s);
+        assert_that(energy < start + (report.substeps > 0 ? 0.05 : 0.6) * size, "frame %d: %g of %g", frame, energy,
+                    start);
+        if (report.substeps == 0) start = energy;
+    }
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
+/* After a change of integrator and back each step is that of the same state in a fresh solver, to rounding. */
+START_TEST(steps_mix) {
+    scene s = hanging_bar(2e5), fresh = hanging_bar(2e5);
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = explicit_step(1.0 / 60, 8);
+    const size_t bytes = 3 * s.model.copy_count * sizeof(double);
+    int i;
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+    for (i = 0; i < 12; i++) {
+        step.integrator = i % 3 == 1 ? GXS_BDF1 : GXS_EXPLICIT;
+        step.newton_iterations = 10;
+        step.cg_tolerance = 1e-5;
+        memcpy(fresh.displacement, s.displacement, bytes);
+        memcpy(fresh.velocity, s.velocity, bytes);
+        ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+        move(&fresh, &step, 1, NULL);
+        ck_assert(difference(&s, fresh.displacement) < 1e-6);
+    }
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+    scene_free(&fresh);
+}
+END_TEST
+
+/* Elements are taken away: the changed model takes the same explicit steps as the model set anew, to rounding. */
+START_TEST(updates_are_followed) {
+    scene s = hanging_bar(2e5), other = hanging_bar(2e5);
+    gxs_solver *solvers[2];
+    gxs_step_desc step = explicit_step(1.0 / 60, 8);
+    gxs_change change;
+    uint32_t *origins = (uint32_t *)zeroed(s.model.copy_count, sizeof *origins), groups[5] = {3, 17, 40, 41, 60};
+    size_t i, k, left = 0;
+    int frame;
+    for (i = 0; i < s.model.element_count; i++) s.elements[i].group = (uint32_t)i;
+    s.model.lumped_mass = other.model.lumped_mass = 0; /* else it is set anew anyway */
+    for (k = 0; k < 2; k++) solvers[k] = solver_make();
+    ck_assert_int_eq(gxs_solver_set_model(solvers[0], &s.model, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_step(solvers[0], &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+    memcpy(other.displacement, s.displacement, 3 * s.model.copy_count * sizeof(double));
+    memcpy(other.velocity, s.velocity, 3 * s.model.copy_count * sizeof(double));
+    for (i = 0; i < s.model.copy_count; i++) origins[i] = 2 * (uint32_t)i;
+    memset(&change, 0, sizeof change);
+    change.copy_count = s.model.copy_count;
+    change.origins = origins;
+    change.held = s.held;
+    change.groups = groups;
+    change.group_count = 5;
+    ck_assert_int_eq(gxs_solver_update(solvers[0], &change, NULL), GX_OK);
+    for (i = 0; i < s.model.element_count; i++) {
+        for (k = 0; k < 5 && groups[k] != i; k++) {}
+        if (k == 5) other.elements[left++] = s.elements[i];
+    }
+    other.model.element_count = left;
+    ck_assert_int_eq(gxs_solver_set_model(solvers[1], &other.model, NULL), GX_OK);
+    for (frame = 0; frame < 20; frame++) {
+        gxs_step_report report;
+        ck_assert_int_eq(gxs_solver_step(solvers[0], &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+        ck_assert_uint_eq(report.substeps, 8);
+        ck_assert_int_eq(gxs_solver_step(solvers[1], &step, other.displacement, other.velocity, NULL, NULL), GX_OK);
+        assert_that(difference(&s, other.displacement) < 1e-4, "%g", difference(&s, other.displacement));
+    }
+    for (k = 0; k < 2; k++) gxs_solver_destroy(solvers[k]);
+    free(origins);
+    scene_free(&s);
+    scene_free(&other);
+}
+END_TEST
+
+static void backwards(void *user, size_t count, void (*task)(void *, size_t), void *context) {
+    (void)user;
+    while (count-- > 0) task(context, count);
+}
+
+START_TEST(jobs_do_not_change_bits) {
+    double *end[2];
+    size_t count = 0;
+    int run;
+    for (run = 0; run < 2; run++) {
+        scene s;
+        gxs_solver_desc desc;
+        gxs_solver *solver = NULL;
+        gxs_step_desc step = explicit_step(1.0 / 60, 0);
+        int i;
+        seed(3);
+        s = scene_block(12, 8, 8, 0.1, 0.1, 0); /* several chunks and ranges */
+        scene_hold_left(&s);
+        for (i = 0; i < (int)s.model.copy_count; i++) s.velocity[3 * i + 1] = s.rest[3 * i];
+        memset(&desc, 0, sizeof desc);
+        if (run) desc.jobs.parallel_for = backwards;
+        ck_assert_int_eq(gxs_solver_create(&desc, &solver, NULL), GX_OK);
+        ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+        for (i = 0; i < 5; i++) {
+            gxs_step_report report;
+            ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+            ck_assert_uint_gt(report.substeps, 0);
+        }
+        count = 3 * s.model.copy_count;
+        end[run] = (double *)zeroed(count, sizeof(double));
+        memcpy(end[run], s.displacement, count * sizeof(double));
+        gxs_solver_destroy(solver);
+        scene_free(&s);
+    }
+    ck_assert_mem_eq(end[0], end[1], count * sizeof(double));
+    free(end[0]);
+    free(end[1]);
+}
+END_TEST
+
+/* A step that fails for want of memory leaves the state alone; the solver is still good. Later ones allocate nothing.
+ */
+static int run_with(memory *m, int which) {
+    gxs_solver_desc desc;
+    gxs_solver *solver = NULL;
+    gxs_step_desc step = explicit_step(0.01, 0);
+    scene s = hanging_bar(2e5);
+    gx_result result;
+    size_t i, calls;
+    int failed = 0;
+    (void)which;
+    memset(&desc, 0, sizeof desc);
+    desc.allocator = allocator_of(m);
+    result = gxs_solver_create(&desc, &solver, NULL);
+    if (result == GX_OK) result = gxs_solver_set_model(solver, &s.model, NULL);
+    if (result == GX_OK) {
+        result = gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL);
+        for (i = 0; i < 3 * s.model.copy_count && result != GX_OK; i++)
+            ck_assert(s.displacement[i] == 0 && s.velocity[i] == 0);
+        if (result == GX_ERROR_MEMORY && !m->from_then_on)
+            ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+        calls = m->calls;
+        if (result == GX_OK || !m->from_then_on) {
+            ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+            ck_assert_uint_eq(m->calls, calls);
+        }
+    }
+    if (result != GX_OK) {
+        ck_assert_int_eq(result, GX_ERROR_MEMORY);
+        failed = 1;
+    }
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+    return failed;
+}
+
+START_TEST(every_allocation_may_fail) { sweep_allocations(run_with, 0); }
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("explicit");
+    TCase *list = tcase_create("explicit");
+    tcase_set_timeout(list, 60);
+    tcase_add_test(list, converges_with_order_two);
+    tcase_add_loop_test(list, energy_is_not_created, 4, 9);
+    tcase_add_test(list, free_fall);
+    tcase_add_test(list, spin_is_kept);
+    tcase_add_loop_test(list, other_steps_are_backward_euler, 0, OBSTACLES);
+    tcase_add_loop_test(list, violent_starts_do_not_blow_up, 0, 12);
+    tcase_add_test(list, steps_mix);
+    tcase_add_test(list, updates_are_followed);
+    tcase_add_test(list, jobs_do_not_change_bits);
+    tcase_add_test(list, every_allocation_may_fail);
+    suite_add_tcase(suite, list);
+    return run_suite(suite);
+}
