@@ -1172,7 +1172,6 @@ typedef struct gxp_close_cell { /* a kept cell around the edge */
     double stretch;                        /* volume / volume at rest of its element; negative: inverted */
     double size;                           /* of its element, m */
     uint32_t facets, facet_count;          /* of a divided element's cell: in lambdas, once they were asked for */
-    uint8_t is_near;                       /* 0: looked at in vain */
     uint8_t is_divided, has_facets;        /* its element is */
 } gxp_close_cell;
 typedef struct gxp_plate { /* a triangle, ready to be asked what is near it */
@@ -1244,13 +1243,12 @@ struct gx_blade {
     gxp_front_list strip, cut; /* 3 for each triangle: of one strip, of all */
     gxp_points path, sheet;
     /* the edge at a move, with a point wherever a layer had seen it */
-    gxp_front_list places;    /* on the edge of the last move: along, ascending */
-    gxp_points carried, goal; /* where the material has carried the edge of the last move to; where it goes */
-    gxp_points from, to;      /* a step's way */
-    gxp_relation *relations;  /* of the samples */
-    uint32_t relation_capacity;
-    uint32_t last_sight;    /* a near cell: the next place on the edge is not far from it */
-    uint32_t steps;         /* of the move */
+    gxp_front_list places;             /* on the edge of the last move: along, ascending */
+    gxp_points carried, goal;          /* where the material has carried the edge of the last move to; where it goes */
+    gxp_points from, to;               /* a step's way */
+    gxp_relation *relations;           /* of the samples */
+    uint32_t relation_capacity, steps; /* steps: of the move */
+    uint32_t last_sight;               /* a near cell: the next place on the edge is not far from it */
     double advance, room;   /* m, of all layers: the largest advance; the way of the edge before one is left */
     gxp_bead_list followed; /* where beads come to at a move */
     gxp_words needed;       /* by sample: 1 if it is not on a line with others */
