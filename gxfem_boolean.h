@@ -3659,9 +3659,15 @@ static uint32_t gxbp_facet_signs(gxb_complex *cx, uint32_t facet, const gxbp_spl
     return signs;
 }
 
+/* On which sides of the plane the facet has points: bit 1 in front, bit 2 behind */
 static int gxbp_facet_sides(gxb_complex *cx, uint32_t facet, const gxbp_splitter *splitter) {
-    uint32_t edges;
-    return (int)(gxbp_facet_signs(cx, facet, splitter, &edges) & 3);
+    const uint32_t *loop = cx->pool + cx->facets[facet].loop, *end = loop + cx->facets[facet].loop_count;
+    int sides = 0;
+    for (; loop < end && sides != 3; loop++) {
+        const int sign = gxbp_sign(&cx->store, gxbp_edge_start(cx, *loop), splitter->plane, splitter->slot);
+        sides |= sign > 0 ? 1 : sign < 0 ? 2 : 0;
+    }
+    return sides;
 }
 
 /* A facet's loop while it is divided, in complex.loop. zero: where the two points in the plane start edges. sign: the
@@ -4202,9 +4208,10 @@ static gx_result gxbp_cover_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t leaf
    above others of its spine if its plane has all of their leaves on one side or the other. A node with nothing on
    one side is dropped. No leaf changes. */
 
-/* The spine goes on at child[side]; off: the reference at the other child */
+/* The spine goes on at child[side]; off: the reference at the other child; sides: on which sides of the plane in question
+   that has points */
 typedef struct gxbp_spine_node {
-    uint32_t node, side, off;
+    uint32_t node, side, off, sides;
 } gxbp_spine_node;
 typedef struct gxbp_step {
     uint32_t node, child[2];
@@ -4217,12 +4224,13 @@ typedef struct gxbp_plan {
 } gxbp_plan;
 
 /* Is the tree far higher than a balanced one with as many leaves? While a tree doubles, this is checked eight times if
-   most of it is a spine, else once: rebalancing seldom helps what is no spine. */
+   most of it is a spine, else once; from 128 leaves on once while it grows by a factor of eight. Rebalancing seldom
+   helps what is no spine, and goes through all leaves. */
 static int gxbp_is_slack(uint32_t height, uint32_t leaves) {
     uint32_t bits = 0, checks;
     while (leaves >> bits > 1) bits++;
     checks = height > 2 * bits + leaves / 8 + 4 ? 3 : 0;
-    return height > 2 * bits + 4 && (leaves & ((1u << bits >> checks) - 1)) == 0;
+    return height > 2 * bits + 4 && (checks > 0 || bits < 7 || bits % 3 == 0) && (leaves & ((1u << bits >> checks) - 1)) == 0;
 }
 
 static uint32_t gxbp_depth(const gxb_complex *cx, uint32_t node) {
@@ -4273,6 +4281,25 @@ static uint32_t gxbp_plan_spine(gxbp_plan *plan, const gxbp_spine_node *spine, u
     return end;
 }
 
+/* Finds on which side of the plane each tree off the spine lies. 0: the plane passes through one of them. Small trees are
+   asked first: where the plane passes through many, as on a convex surface, one of them tells. */
+static int gxbp_spine_sides(gxb_complex *cx, gxbp_spine_node *spine, uint32_t count, const gxbp_splitter *splitter) {
+    uint64_t most = 1, largest = 1;
+    uint32_t i;
+    for (i = 0; i < count; i++) {
+        const uint32_t leaves = gxbp_leaves_below(cx, spine[i].off);
+        if (leaves > largest) largest = leaves;
+        spine[i].sides = 0;
+    }
+    for (; most < 16 * largest; most *= 16)
+        for (i = 0; i < count; i++) {
+            if (spine[i].sides != 0 || gxbp_leaves_below(cx, spine[i].off) > most) continue;
+            spine[i].sides = (uint32_t)gxbp_sides_below(cx, spine[i].off, splitter);
+            if (spine[i].sides == 3) return 0;
+        }
+    return 1;
+}
+
 /* Sorts the nodes above spine[middle] by the side of its plane on which their leaves lie. Those on the spine's own side
    come last; *own is their number. 0: the plane passes through one of them. spare: room for middle nodes */
 static int gxbp_part_spine(gxb_complex *cx, gxbp_spine_node *spine, uint32_t middle, gxbp_spine_node *spare,
@@ -4285,14 +4312,12 @@ static int gxbp_part_spine(gxb_complex *cx, gxbp_spine_node *spine, uint32_t mid
     splitter.slot = 1;
     gxbp_forget_signs(&cx->store, 1);
     *own = 0;
-    for (i = 0; i < middle; i++) {
-        const int sides = gxbp_sides_below(cx, spine[i].off, &splitter);
-        if (sides == 3) return 0;
-        if ((sides == 1) == (side == 0))
+    if (!gxbp_spine_sides(cx, spine, middle, &splitter)) return 0;
+    for (i = 0; i < middle; i++)
+        if ((spine[i].sides == 1) == (side == 0))
             spare[(*own)++] = spine[i];
         else
             spare[middle - ++n] = spine[i];
-    }
     for (i = 0; i < n; i++) spine[i] = spare[middle - 1 - i];
     memcpy(spine + n, spare, *own * sizeof *spine);
     return 1;
