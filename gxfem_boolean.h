@@ -11316,6 +11316,13 @@ static GXBP_COLD uint32_t gxbp_judge_state(gxb_boolean *b, uint32_t state) {
     return s->inside;
 }
 
+/* The caller's function may answer otherwise at each evaluation, so it is asked anew. */
+static void gxbp_forget_answers(gxb_boolean *b) {
+    uint32_t i;
+    if (b->options.inside == NULL) return;
+    for (i = 0; i < b->winding.state_count; i++) b->winding.states[i].known = 0;
+}
+
 static uint32_t gxbp_is_inside(gxb_boolean *b, uint32_t state) {
     if (b->error != GX_OK) return 0;
     return b->winding.states[state].known == b->in.operand_count ? b->winding.states[state].inside
@@ -14012,6 +14019,7 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *res
     b->out.mended_count = 0;
     gxbp_arrange(b);
     gxbp_find_states(b);
+    gxbp_forget_answers(b);
     if (b->options.patch != NULL && b->options.coarsen == NULL && b->options.mend == NULL) {
         if (b->error == GX_OK) b->options.patch(b);
     } else {

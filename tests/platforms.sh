@@ -12,6 +12,8 @@ cases=${CASES:-2000}
 mkdir -p "$dir" || exit 1
 rm -rf "${dir:?}"/*
 . tests/topology.sh
+WINEDEBUG=-all # it runs programs of the console only
+export WINEDEBUG
 
 # NAME | COMPILER AND FLAGS | WHAT RUNS ITS PROGRAMS (none: they are its own; -: nothing) | WHAT IT IS
 table() {

@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-enum { CHAIN = 16, CHAINS = 600 };
+enum { CHAIN = 16, CHAINS = 240 };
 
 static int same_bits(const void *a, const void *b, size_t size) { return size == 0 || memcmp(a, b, size) == 0; }
 
