@@ -4208,8 +4208,8 @@ static gx_result gxbp_cover_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t leaf
    above others of its spine if its plane has all of their leaves on one side or the other. A node with nothing on
    one side is dropped. No leaf changes. */
 
-/* The spine goes on at child[side]; off: the reference at the other child; sides: on which sides of the plane in question
-   that has points */
+/* The spine goes on at child[side]; off: the reference at the other child; sides: on which sides of the plane in
+   question that has points */
 typedef struct gxbp_spine_node {
     uint32_t node, side, off, sides;
 } gxbp_spine_node;
@@ -4230,7 +4230,8 @@ static int gxbp_is_slack(uint32_t height, uint32_t leaves) {
     uint32_t bits = 0, checks;
     while (leaves >> bits > 1) bits++;
     checks = height > 2 * bits + leaves / 8 + 4 ? 3 : 0;
-    return height > 2 * bits + 4 && (checks > 0 || bits < 7 || bits % 3 == 0) && (leaves & ((1u << bits >> checks) - 1)) == 0;
+    return height > 2 * bits + 4 && (checks > 0 || bits < 7 || bits % 3 == 0) &&
+           (leaves & ((1u << bits >> checks) - 1)) == 0;
 }
 
 static uint32_t gxbp_depth(const gxb_complex *cx, uint32_t node) {
@@ -4281,8 +4282,8 @@ static uint32_t gxbp_plan_spine(gxbp_plan *plan, const gxbp_spine_node *spine, u
     return end;
 }
 
-/* Finds on which side of the plane each tree off the spine lies. 0: the plane passes through one of them. Small trees are
-   asked first: where the plane passes through many, as on a convex surface, one of them tells. */
+/* Finds on which side of the plane each tree off the spine lies. 0: the plane passes through one of them. Small trees
+   are asked first: where the plane passes through many, as on a convex surface, one of them tells. */
 static int gxbp_spine_sides(gxb_complex *cx, gxbp_spine_node *spine, uint32_t count, const gxbp_splitter *splitter) {
     uint64_t most = 1, largest = 1;
     uint32_t i;
@@ -4661,8 +4662,7 @@ static gx_result gxbp_descend(gxb_complex *cx, gxb_triangle *t, const gxbp_task 
     if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, tasks, task, 2);
     if (result != GX_OK) return result;
     sides = plane == t->plane ? 0 : gxbp_corner_sides(cx, task->first, task->count, plane);
-    if (sides == 0 && node >= cx->mark[GXBP_NODES])
-        return gxbp_cover_parts(cx, t, task, cx->nodes[node].facet, permit);
+    if (sides == 0 && node >= cx->mark[GXBP_NODES]) return gxbp_cover_parts(cx, t, task, cx->nodes[node].facet, permit);
     if (sides == 0 || sides == 1) gxbp_push_task(cx, node, 0, task->first, task->count, task->coplanar | (sides == 0));
     if (sides == 0 || sides == 2) gxbp_push_task(cx, node, 1, task->first, task->count, task->coplanar | (sides == 0));
     if (sides == 3) {
