@@ -43,7 +43,8 @@
  *                 >>pattern of level 1 | >>hierarchy all levels | >>lights copies with next to no mass |
  *                 >>sharing of memory | >>system a model in the solver's form
  *   operator:     >>rule elements with affine copies | >>forces energies, forces | >>blocks 3x3 blocks |
- *                 >>product single precision | >>doubles double precision | >>linearise Hessians, block diagonal
+ *                 >>singles affine copies' products | >>product single precision | >>doubles double precision |
+ *                 >>linearise Hessians, block diagonal
  *   multigrid:    >>galerkin coarse matrices | >>nesting those of affine copies | >>factor of the last level |
  *                 >>assembly the assembled matrix | >>smoother its step length | >>cycle the V-cycle
  *   changes:      >>edits lanes that a cut changes | >>renewal copies and components | >>update levels, all of it
@@ -415,7 +416,8 @@ typedef struct gxs_step_desc {
     double newton_tolerance;
     uint32_t cg_iterations; /* per Newton iteration, at most; 0: 1000 */
     /* reduction of the residual by each linear solve, below 1; 0: 1e-2, and 1e-3 with the midpoint rule, which does not
-     * damp the error */
+     * damp the error. Where copies are affine, reduction of the error, as the root of its energy: thin sheets bend long
+     * before the residual of their stretch is gone. */
     double cg_tolerance;
     const gxs_spring *springs; /* spring_count */
     size_t spring_count;
@@ -730,9 +732,18 @@ extern "C" {
 #define GXSP_LEVELS      12
 
 /* Where copies are affine, level 1 is factored if that takes at most GXSP_NESTED_COST times as much; else its lattice
- * is widened, up to GXSP_WIDEST times. */
-#define GXSP_NESTED_COST 10
+ * is widened, up to GXSP_WIDEST times. It starts from GXSP_NESTED_FROM of the usual spacing. */
+#define GXSP_NESTED_COST 12
+#define GXSP_NESTED_FROM 0.8f
 #define GXSP_WIDEST      8
+
+/* Elements of affine copies: blocks of one task; and of one round, after which the results are summed, so that these
+ * take memory for one round only. Sums go by blocks, whatever the threads do. */
+#define GXSP_AFFINE_TASK  8
+#define GXSP_AFFINE_ROUND 64
+
+/* Iterations whose gain tells how far conjugate gradients are where copies are affine */
+#define GXSP_GAINS 3
 
 /* Block-Jacobi takes less time than multigrid where inertia's mean share of the Hessian's diagonal blocks is larger
  * than this: few iterations, as the share bounds the spectrum from below. Measured on blocks of 2,000 to 8,000
@@ -1490,13 +1501,12 @@ typedef struct gxsp_affine {
     size_t count;  /* elements; 0: there are none */
     double length; /* m: hidden vectors are columns of A times this */
     gxsp_affine_block *blocks;
-    uint32_t block_count, group_count, touched_count;
+    uint32_t block_count, group_count;
+    uint32_t round;        /* first block of the round under way: see GXSP_AFFINE_ROUND */
     uint32_t *place;       /* n: 4 x group + part; GXSP_NONE: a copy that is not affine. NULL: there are no groups */
     uint32_t (*member)[4]; /* group_count: vectors of a group */
-    double (*slots)[3];    /* block_count x 16 x GXSP_LANES: results of passes */
-    uint32_t *touched;     /* touched_count: vectors that elements here have, ascending */
-    uint32_t *start;       /* touched_count + 1: into slot */
-    uint32_t *slot;        /* a vector's slots, ascending */
+    double (*slots)[3];    /* blocks of a round x 16 x GXSP_LANES: their results */
+    double (*sum)[3];      /* n: results of a product */
     double (*own)[6];      /* n: diagonal blocks of the elements here, packed, scaled */
     double (*full)[10][9]; /* group_count: blocks of the parts p <= q, in the order of gxs_element.mass, by rows */
     float (*root)[78];     /* group_count: W by rows, lower triangle: the inverse of the 12x12 block is W^T W */
@@ -3640,37 +3650,15 @@ static void gxsp_affine_blocks(gxsp_system *system, const gxs_model *model, cons
         }
 }
 
-/* Slots of the vectors that the elements have */
-static void gxsp_affine_slots(gxsp_system *system, gxsp_pool *scratch) {
+/* Memory for results of passes */
+static void gxsp_affine_results(gxsp_system *system) {
     gxsp_affine *affine = &system->affine;
-    const size_t room = (size_t)affine->block_count * 16 * GXSP_LANES;
-    uint32_t *count = (uint32_t *)gxsp_take(scratch, system->model.n + 1, sizeof(uint32_t)), i, t;
-    size_t s, slots = 0;
-    affine->slots = (double(*)[3])gxsp_take(&system->pool, room, sizeof *affine->slots);
+    const size_t blocks = affine->block_count < GXSP_AFFINE_ROUND ? affine->block_count : GXSP_AFFINE_ROUND;
+    affine->slots = (double(*)[3])gxsp_take(&system->pool, blocks * 16 * GXSP_LANES, sizeof *affine->slots);
+    affine->sum = (double(*)[3])gxsp_take(&system->pool, system->model.n, sizeof *affine->sum);
     affine->own = (double(*)[6])gxsp_take(&system->pool, system->model.n, sizeof *affine->own);
     affine->full = (double(*)[10][9])gxsp_take(&system->pool, affine->group_count, sizeof *affine->full);
     affine->root = (float(*)[78])gxsp_take(&system->pool, affine->group_count, sizeof *affine->root);
-    if (scratch->failed || system->pool.failed) return;
-    for (s = 0; s < room; s++) {
-        const uint32_t vector = affine->blocks[s / (16 * GXSP_LANES)].vector[s / GXSP_LANES % 16][s % GXSP_LANES];
-        if (vector == GXSP_NONE) continue;
-        affine->touched_count += count[vector]++ == 0;
-        slots++;
-    }
-    affine->touched = (uint32_t *)gxsp_take(&system->pool, affine->touched_count, sizeof(uint32_t));
-    affine->start = (uint32_t *)gxsp_take(&system->pool, (size_t)affine->touched_count + 1, sizeof(uint32_t));
-    affine->slot = (uint32_t *)gxsp_take(&system->pool, slots, sizeof(uint32_t));
-    if (system->pool.failed) return;
-    for (i = t = 0; i < system->model.n; i++)
-        if (count[i] > 0) {
-            affine->touched[t] = i;
-            affine->start[t + 1] = affine->start[t] + count[i];
-            count[i] = affine->start[t++];
-        }
-    for (s = 0; s < room; s++) {
-        const uint32_t vector = affine->blocks[s / (16 * GXSP_LANES)].vector[s / GXSP_LANES % 16][s % GXSP_LANES];
-        if (vector != GXSP_NONE) affine->slot[count[vector]++] = (uint32_t)s;
-    }
 }
 
 /* Divides the model's elements: those with an affine corner come here, `plain` gets the others. Both lists are in
@@ -3697,7 +3685,7 @@ static void gxsp_affine_make(gxsp_system *system, gxsp_pool *scratch, const gxs_
     plain->elements = others;
     plain->element_count = system->model.element_count = count;
     gxsp_affine_blocks(system, model, elements);
-    if (!system->pool.failed) gxsp_affine_slots(system, scratch);
+    if (!system->pool.failed) gxsp_affine_results(system);
 }
 
 /* Joins the vectors of a group. forest: n */
@@ -4973,7 +4961,7 @@ static void gxsp_nested_make(gxsp_system *system, gxsp_pool *scratch, float (*pl
     transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
     mark = scratch->last;
     for (i = 0; i < system->model.n && left_out; i++) left_out[i] = system->model.fixed[i] || gxsp_is_hidden(system, i);
-    for (stretch = 1;; stretch *= 1.25f) {
+    for (stretch = GXSP_NESTED_FROM;; stretch *= 1.25f) {
         if (scratch->failed) return;
         for (i = 0; i < 3 * system->model.n; i++) own[i / 3][i % 3] = place[i / 3][i % 3] / stretch;
         count = gxsp_first_transfer(system, own, left_out, &transfer);
@@ -5318,9 +5306,6 @@ static void gxsp_drop_system(gxs_solver *solver) {
  * over i. At each of four points the passes of >>element serve. u there is sum N_j (a_j + w_j) / 2. A task writes its
  * own block and the slots of it. */
 
-/* Blocks of one task */
-#define GXSP_AFFINE_TASK 8
-
 /* Vectors of a block's elements: [3 vector + axis]; 0 where there is none */
 static void gxsp_affine_gather(const gxsp_affine_block *block, const double *x, gxsp_lanes *to) {
     int k, l, r;
@@ -5508,15 +5493,14 @@ static void gxsp_affine_product(const gxsp_pass *pass, const gxsp_affine_block *
 static void gxsp_affine_over(void *context, size_t index, int what) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     gxsp_affine *affine = &pass->system->affine;
-    const size_t end = (index + 1) * GXSP_AFFINE_TASK;
+    const size_t first = affine->round + index * GXSP_AFFINE_TASK, end = first + GXSP_AFFINE_TASK;
     gxsp_lanes x[48];
     size_t b;
     int k, l, r;
-    for (b = index * GXSP_AFFINE_TASK; b < end && b < affine->block_count; b++) {
+    for (b = first; b < end && b < affine->block_count; b++) {
         gxsp_affine_block *block = &affine->blocks[b];
-        double(*slots)[3] = affine->slots + b * 16 * GXSP_LANES;
+        double(*slots)[3] = affine->slots + (b - affine->round) * 16 * GXSP_LANES;
         if (block->still) {
-            memset(slots, 0, 16 * GXSP_LANES * sizeof *slots);
             memset(block->energies, 0, sizeof block->energies);
             block->collapsed = 0;
         } else if (what == 0)
@@ -5528,10 +5512,7 @@ static void gxsp_affine_over(void *context, size_t index, int what) {
                 for (l = 0; l < GXSP_LANES; l++) {
                     const uint32_t vector = block->vector[k][l];
                     double in[3] = {0, 0, 0};
-                    if (vector != GXSP_NONE && pass->x)
-                        for (r = 0; r < 3; r++) in[r] = (double)pass->x[vector][r];
-                    else if (vector != GXSP_NONE)
-                        gxsp_copy_direction(pass, vector, in);
+                    if (vector != GXSP_NONE) gxsp_copy_direction(pass, vector, in);
                     for (r = 0; r < 3; r++) x[3 * k + r][l] = in[r];
                 }
             gxsp_affine_product(pass, block, x, slots);
@@ -5543,56 +5524,42 @@ static void gxsp_task_affine_state(void *context, size_t index) { gxsp_affine_ov
 static void gxsp_task_affine_tangents(void *context, size_t index) { gxsp_affine_over(context, index, 1); }
 static void gxsp_task_affine_product(void *context, size_t index) { gxsp_affine_over(context, index, 2); }
 
-static void gxsp_over_affine(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass) {
-    pass->system = system;
-    gxsp_parallel(system->jobs, (system->affine.block_count + GXSP_AFFINE_TASK - 1) / GXSP_AFFINE_TASK, task, pass);
+/* Adds the results of a round to those of vectors. */
+static void gxsp_affine_add(const gxsp_affine *affine, uint32_t end, double *sum) {
+    uint32_t b;
+    int k, l, r;
+    for (b = affine->round; b < end; b++) {
+        const gxsp_affine_block *block = &affine->blocks[b];
+        double(*slots)[3] = affine->slots + (b - affine->round) * 16 * GXSP_LANES;
+        for (k = 0; k < 16 && !block->still; k++)
+            for (l = 0; l < GXSP_LANES; l++)
+                for (r = 0; r < 3 && block->vector[k][l] != GXSP_NONE; r++)
+                    sum[3 * (size_t)block->vector[k][l] + (size_t)r] += slots[k * GXSP_LANES + l][r];
+    }
 }
 
-/* Sum over the slots of touched vector t */
-static void gxsp_affine_sum(const gxsp_affine *affine, uint32_t t, double *sum) {
-    uint32_t s;
-    sum[0] = sum[1] = sum[2] = 0;
-    for (s = affine->start[t]; s < affine->start[t + 1]; s++) {
-        const double *slot = affine->slots[affine->slot[s]];
-        sum[0] += slot[0], sum[1] += slot[1], sum[2] += slot[2];
+/* A pass over all blocks, round after round. sum: n x 3, to which results are added; NULL: there are none */
+static void gxsp_over_affine(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass, double *sum) {
+    gxsp_affine *affine = &system->affine;
+    pass->system = system;
+    for (affine->round = 0; affine->round < affine->block_count; affine->round += GXSP_AFFINE_ROUND) {
+        const uint32_t left = affine->block_count - affine->round,
+                       count = left < GXSP_AFFINE_ROUND ? left : GXSP_AFFINE_ROUND;
+        gxsp_parallel(system->jobs, (count + GXSP_AFFINE_TASK - 1) / GXSP_AFFINE_TASK, task, pass);
+        if (sum) gxsp_affine_add(affine, affine->round + count, sum);
     }
 }
 
 /* Adds forces and energies to those of chunks. */
 static void gxsp_affine_evaluate(gxsp_system *system, gxsp_pass *pass) {
     const gxsp_affine *affine = &system->affine;
-    uint32_t t, b;
+    uint32_t b;
     int k, l;
-    gxsp_over_affine(system, gxsp_task_affine_state, pass);
-    for (t = 0; t < affine->touched_count; t++) {
-        double sum[3], *to = pass->sum + 3 * (size_t)affine->touched[t];
-        gxsp_affine_sum(affine, t, sum);
-        for (k = 0; k < 3; k++) to[k] += sum[k];
-    }
+    gxsp_over_affine(system, gxsp_task_affine_state, pass, pass->sum);
     for (b = 0; b < affine->block_count; b++)
         for (l = 0; l < GXSP_LANES && affine->blocks[b].vector[0][l] != GXSP_NONE; l++)
             for (k = 0; k < 3; k++)
                 gxsp_lead_of(system, affine->blocks[b].vector[0][l])->energies[k] += affine->blocks[b].energies[k][l];
-}
-
-/* Adds the product of pass->x to pass->y, or takes it away if there is a pass->right. Returns x . product. */
-static double gxsp_affine_multiply(gxsp_system *system, gxsp_pass *pass) {
-    const gxsp_affine *affine = &system->affine;
-    double work = 0;
-    uint32_t t;
-    int k;
-    gxsp_over_affine(system, gxsp_task_affine_product, pass);
-    for (t = 0; t < affine->touched_count; t++) {
-        const uint32_t vector = affine->touched[t];
-        double sum[3];
-        if (system->state.still[vector]) continue;
-        gxsp_affine_sum(affine, t, sum);
-        for (k = 0; k < 3; k++) {
-            work += (double)pass->x[vector][k] * sum[k];
-            pass->y[vector][k] += (float)(pass->right ? -sum[k] : sum[k]);
-        }
-    }
-    return work;
 }
 
 /* A function of an element, given by its share of each vector, at a point: gradient in the frame of V, and value */
@@ -6241,6 +6208,186 @@ static void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, float (*t
 }
 #endif
 
+/* >>singles: products of elements with affine copies --------------------------------------------------------------- */
+
+/* In: tangents, a vector. Out: their product as in >>rule, in single precision, for conjugate gradients. >>doubles has
+ * the other one. A task writes the results of its blocks side by side, in the memory of gxsp_affine.slots. */
+
+/* For products in single precision: 4 N_i at each point, and (X_j - X_i) / (4 length) of the edges */
+static void gxsp_affine_round(const gxsp_affine_block *block, gxsp_singles *GXSP_RESTRICT shape,
+                              gxsp_singles *GXSP_RESTRICT way) {
+    int k, l;
+    for (k = 0; k < 16; k++) GXSP_EACH_LANE(l) shape[k][l] = (float)(4 * block->shape[k / 4][k % 4][l]);
+    for (k = 0; k < 18; k++) GXSP_EACH_LANE(l) way[k][l] = (float)gxsp_affine_edge(block, k / 3, k % 3, l);
+}
+
+/* The edges at a corner, and the corners at their other ends */
+static const uint8_t gxsp_corner_edges[4][3] = {{0, 1, 2}, {0, 3, 4}, {1, 3, 5}, {2, 4, 5}};
+static const uint8_t gxsp_corner_others[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
+
+/* x of the vectors, with copies of the corners relative to corner 0, which goes to start */
+static void gxsp_singles_gather(const gxsp_affine_block *block, const gxsp_vector4 *x, gxsp_singles *GXSP_RESTRICT to,
+                                gxsp_singles *GXSP_RESTRICT start) {
+    static const uint16_t lanes[GXSP_LANES] = {0, 1, 2, 3, 4, 5, 6, 7};
+    static const gxsp_vector4 none = {0, 0, 0, 0};
+    gxsp_vector4 in[GXSP_LANES];
+    int k, l;
+    for (k = 0; k < 16; k++) {
+        for (l = 0; l < GXSP_LANES; l++)
+            memcpy(in[l], block->vector[k][l] == GXSP_NONE ? none : x[block->vector[k][l]], sizeof *in);
+        gxsp_gather_eight(lanes, (const gxsp_vector4 *)in, to[3 * k], to[3 * k + 1], to[3 * k + 2]);
+    }
+    memcpy(start, to, 3 * sizeof *to);
+    for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) to[k][l] -= start[k % 3][l];
+}
+
+/* As gxsp_affine_bend */
+static void gxsp_singles_bend(gxsp_singles *GXSP_RESTRICT way, gxsp_singles *GXSP_RESTRICT x,
+                              gxsp_singles *GXSP_RESTRICT e) {
+    int k, r, l;
+    for (k = 0; k < 6; k++) {
+        gxsp_singles *p = x + 12 + 9 * gxsp_edge_ends[k][0], *q = x + 12 + 9 * gxsp_edge_ends[k][1], *d = way + 3 * k;
+        for (r = 0; r < 3; r++) GXSP_EACH_LANE(l)
+        e[3 * k + r][l] = (p[r][l] - q[r][l]) * d[0][l] + (p[3 + r][l] - q[3 + r][l]) * d[1][l] +
+                          (p[6 + r][l] - q[6 + r][l]) * d[2][l];
+    }
+}
+
+/* As gxsp_affine_corners. shape: of the point */
+static void gxsp_singles_corners(gxsp_singles *GXSP_RESTRICT shape, gxsp_singles *GXSP_RESTRICT x,
+                                 gxsp_singles *GXSP_RESTRICT e, gxsp_singles *GXSP_RESTRICT w) {
+    int j, r, l;
+    for (j = 0; j < 4; j++) {
+        const uint8_t *edge = gxsp_corner_edges[j], *other = gxsp_corner_others[j];
+        for (r = 0; r < 3; r++) GXSP_EACH_LANE(l)
+        w[3 * j + r][l] = x[3 * j + r][l] + shape[other[0]][l] * e[3 * edge[0] + r][l] +
+                          shape[other[1]][l] * e[3 * edge[1] + r][l] + shape[other[2]][l] * e[3 * edge[2] + r][l];
+    }
+}
+
+/* Adds mass x the point's motion to forces on w. mass: rate x 1/8 of the point's. y: as in gxsp_affine_inertia, half
+ * of it: the other half is a force on w */
+static void gxsp_singles_inertia(gxsp_singles *GXSP_RESTRICT shape, const float *GXSP_RESTRICT mass,
+                                 gxsp_singles *GXSP_RESTRICT start, gxsp_singles *GXSP_RESTRICT x,
+                                 gxsp_singles *GXSP_RESTRICT w, gxsp_singles *GXSP_RESTRICT y,
+                                 gxsp_singles *GXSP_RESTRICT on_w) {
+    int r, j, l;
+    for (r = 0; r < 3; r++) {
+        gxsp_singles force;
+        GXSP_EACH_LANE(l)
+        force[l] = mass[l] *
+                   (start[r][l] +
+                    0.125f * (shape[0][l] * (x[r][l] + w[r][l]) + shape[1][l] * (x[3 + r][l] + w[3 + r][l]) +
+                              shape[2][l] * (x[6 + r][l] + w[6 + r][l]) + shape[3][l] * (x[9 + r][l] + w[9 + r][l])));
+        for (j = 0; j < 4; j++) GXSP_EACH_LANE(l) {
+                y[3 * j + r][l] += shape[j][l] * force[l];
+                on_w[3 * j + r][l] += shape[j][l] * force[l];
+            }
+    }
+}
+
+/* As gxsp_affine_collect */
+static void gxsp_singles_collect(gxsp_singles *GXSP_RESTRICT shape, gxsp_singles *GXSP_RESTRICT w,
+                                 gxsp_singles *GXSP_RESTRICT y, gxsp_singles *GXSP_RESTRICT e) {
+    int k, r, l;
+    for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) y[k][l] += w[k][l];
+    for (k = 0; k < 6; k++) {
+        const int i = gxsp_edge_ends[k][0], j = gxsp_edge_ends[k][1];
+        for (r = 0; r < 3; r++) GXSP_EACH_LANE(l)
+        e[3 * k + r][l] += shape[i][l] * w[3 * j + r][l] + shape[j][l] * w[3 * i + r][l];
+    }
+}
+
+/* As gxsp_affine_return */
+static void gxsp_singles_return(gxsp_singles *GXSP_RESTRICT way, gxsp_singles *GXSP_RESTRICT e,
+                                gxsp_singles *GXSP_RESTRICT y) {
+    int i, a, r, l;
+    for (i = 0; i < 4; i++) {
+        const uint8_t *edge = gxsp_corner_edges[i], *other = gxsp_corner_others[i];
+        const float sign[3] = {i < other[0] ? 1.0f : -1.0f, i < other[1] ? 1.0f : -1.0f, i < other[2] ? 1.0f : -1.0f};
+        for (a = 0; a < 3; a++)
+            for (r = 0; r < 3; r++) GXSP_EACH_LANE(l)
+        y[12 + 9 * i + 3 * a + r][l] = sign[0] * e[3 * edge[0] + r][l] * way[3 * edge[0] + a][l] +
+                                       sign[1] * e[3 * edge[1] + r][l] * way[3 * edge[1] + a][l] +
+                                       sign[2] * e[3 * edge[2] + r][l] * way[3 * edge[2] + a][l];
+    }
+}
+
+/* As gxsp_affine_product, in single precision. y: 48 */
+static void gxsp_singles_product(const gxsp_pass *pass, const gxsp_affine_block *block, gxsp_singles *y) {
+    gxsp_singles shape[16], way[18], x[48], start[3], bend[18], forces[18], w[12], from[12], to[12];
+    float mass[GXSP_LANES];
+    int p, k, l;
+    gxsp_affine_round(block, shape, way);
+    gxsp_singles_gather(block, pass->x, x, start);
+    gxsp_singles_bend(way, x, bend);
+    GXSP_EACH_LANE(l) mass[l] = (float)(0.125 * pass->rate * block->rest.mass[l]);
+    memset(y, 0, 12 * sizeof *y);
+    memset(forces, 0, sizeof forces);
+    for (p = 0; p < 4; p++) {
+        gxsp_singles_corners(shape + 4 * p, x, bend, w);
+        for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) from[k][l] = w[k][l] - w[k % 3][l];
+        memset(to, 0, sizeof to);
+        gxsp_kind_product(block->kind, &block->tangent[p], NULL, block->general ? &block->general[p] : NULL, 1, from,
+                          to);
+        if (pass->rate > 0) gxsp_singles_inertia(shape + 4 * p, mass, start, x, w, y, to);
+        gxsp_singles_collect(shape + 4 * p, to, y, forces);
+    }
+    gxsp_singles_return(way, forces, y);
+}
+
+/* Results of a block of the round under way */
+static gxsp_singles *gxsp_singles_slots(const gxsp_affine *affine, size_t block) {
+    return (gxsp_singles *)(void *)affine->slots + (block - affine->round) * 48;
+}
+
+static void gxsp_task_singles(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_affine *affine = &pass->system->affine;
+    const size_t first = affine->round + index * GXSP_AFFINE_TASK, end = first + GXSP_AFFINE_TASK;
+    size_t b;
+    for (b = first; b < end && b < affine->block_count; b++)
+        if (!affine->blocks[b].still) gxsp_singles_product(pass, &affine->blocks[b], gxsp_singles_slots(affine, b));
+}
+
+/* Adds the results of a round to those of vectors. */
+static void gxsp_singles_add(const gxsp_affine *affine, uint32_t end) {
+    uint32_t b;
+    int k, l;
+    for (b = affine->round; b < end; b++) {
+        const gxsp_affine_block *block = &affine->blocks[b];
+        gxsp_singles *from = gxsp_singles_slots(affine, b);
+        for (k = 0; k < 16 && !block->still; k++)
+            for (l = 0; l < GXSP_LANES; l++) {
+                double *to = affine->sum[block->vector[k][l] == GXSP_NONE ? 0 : block->vector[k][l]];
+                if (block->vector[k][l] == GXSP_NONE) continue;
+                to[0] += (double)from[3 * k][l], to[1] += (double)from[3 * k + 1][l],
+                    to[2] += (double)from[3 * k + 2][l];
+            }
+    }
+}
+
+/* Adds the product of pass->x to pass->y, or takes it away if there is a pass->right. Returns x . product. */
+static double gxsp_affine_multiply(gxsp_system *system, gxsp_pass *pass) {
+    gxsp_affine *affine = &system->affine;
+    double work = 0;
+    size_t i;
+    int k;
+    memset(affine->sum, 0, system->model.n * sizeof *affine->sum);
+    for (affine->round = 0; affine->round < affine->block_count; affine->round += GXSP_AFFINE_ROUND) {
+        const uint32_t left = affine->block_count - affine->round,
+                       count = left < GXSP_AFFINE_ROUND ? left : GXSP_AFFINE_ROUND;
+        gxsp_parallel(system->jobs, (count + GXSP_AFFINE_TASK - 1) / GXSP_AFFINE_TASK, gxsp_task_singles, pass);
+        gxsp_singles_add(affine, affine->round + count);
+    }
+    for (i = 0; i < system->model.n; i++)
+        for (k = 0; k < 3 && !system->state.still[i]; k++) {
+            work += (double)pass->x[i][k] * affine->sum[i][k];
+            pass->y[i][k] += (float)(pass->right ? -affine->sum[i][k] : affine->sum[i][k]);
+        }
+    return work;
+}
+
 /* >>product: the Hessian times a vector, in single precision ------------------------------------------------------- */
 
 /* In: the last linearisation and a vector. Out: the product on copies that follow nothing; what sleeps counts as
@@ -6508,17 +6655,15 @@ static void gxsp_task_apply_sum(void *context, size_t index) {
 /* Adds the product of elements with affine copies to pass->sum. */
 static void gxsp_affine_apply_all(gxsp_system *system, gxsp_pass *pass) {
     const double unit = 1 / (system->model.scale * pass->factor);
-    uint32_t t, b;
+    double(*sum)[3] = system->affine.sum;
+    uint32_t b;
+    size_t i;
     int k;
     for (b = 0; b < system->affine.block_count; b++) system->affine.blocks[b].still = 0; /* what sleeps is included */
-    gxsp_over_affine(system, gxsp_task_affine_product, pass);
-    for (t = 0; t < system->affine.touched_count; t++) {
-        const uint32_t vector = system->affine.touched[t];
-        double sum[3];
-        gxsp_affine_sum(&system->affine, t, sum);
-        for (k = 0; k < 3 && !system->model.fixed[vector]; k++)
-            pass->sum[3 * (size_t)vector + (size_t)k] += unit * sum[k];
-    }
+    memset(sum, 0, system->model.n * sizeof *sum);
+    gxsp_over_affine(system, gxsp_task_affine_product, pass, sum[0]);
+    for (i = 0; i < system->model.n; i++)
+        for (k = 0; k < 3 && !system->model.fixed[i]; k++) pass->sum[3 * i + (size_t)k] += unit * sum[i][k];
     gxsp_mark_still_blocks(system);
 }
 
@@ -6732,7 +6877,7 @@ static int gxsp_linearise(gxsp_system *system, double rate, const double *from, 
     gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_linearise, &pass);
     gxsp_extra_diagonal(system);
     if (system->affine.count > 0) {
-        gxsp_over_affine(system, gxsp_task_affine_tangents, &pass);
+        gxsp_over_affine(system, gxsp_task_affine_tangents, &pass, NULL);
         gxsp_affine_diagonal(system, pass.rate);
     }
     gxsp_over_ranges(system, gxsp_task_diagonal, &pass, NULL, 0);
@@ -9091,7 +9236,34 @@ static void gxsp_terms_make(const gxsp_problem *problem, const double *displacem
 /* The two measures of a vector r of forces, squared: r . D^-1 r (energy) and |D^-1 r|^2 (displacement) */
 typedef struct gxsp_norms {
     double energy, displacement;
+    double rest; /* displacement of what is not affine */
 } gxsp_norms;
+
+/* What the last iterations gained: half of it is the energy that the error has lost. Where copies are affine, this says
+ * more than the residual, in which the stiff stretch of a sheet hides how far it still has to bend. */
+typedef struct gxsp_gains {
+    double gain[2 * GXSP_GAINS], total; /* gain: the last ones in turn; total: of the guess and of all of them */
+    uint32_t count;
+} gxsp_gains;
+
+static void gxsp_note_gain(gxsp_gains *gains, double gain) {
+    gains->gain[gains->count++ % (2 * GXSP_GAINS)] = gain;
+    gains->total += gain;
+}
+
+/* Is the error's share of the energy below goal? The squared error of GXSP_GAINS iterations ago is what they gained and
+ * what is still to be gained, of which the iterations before them tell the rate (Hestenes and Stiefel, 1952; Strakos
+ * and Tichy, 2002). */
+static int gxsp_has_gained(const gxsp_gains *gains, double goal) {
+    double last = 0, before = 0, rest = 1;
+    uint32_t k;
+    if (gains->count < GXSP_GAINS) return 0;
+    for (k = 1; k <= GXSP_GAINS; k++) last += gains->gain[(gains->count - k) % (2 * GXSP_GAINS)];
+    for (k = GXSP_GAINS + 1; k <= 2 * GXSP_GAINS && k <= gains->count; k++)
+        before += gains->gain[(gains->count - k) % (2 * GXSP_GAINS)];
+    if (before > 0) rest = 1 - last / before > 0.05 ? 1 - last / before : 0.05;
+    return last <= goal * rest * gains->total;
+}
 
 static int gxsp_converged(const gxsp_norms *now, const gxsp_norms *first, double goal) {
     return now->energy <= goal * first->energy && now->displacement <= goal * first->displacement;
@@ -9147,6 +9319,7 @@ static gxsp_norms gxsp_norms_of(gxsp_system *system, void (*task)(void *, size_t
     gxsp_norms norms;
     double sums[2];
     gxsp_over_ranges(system, task, pass, sums, 2);
+    norms.rest = sums[1];
     gxsp_scale_groups(system, r, sums);
     norms.energy = sums[0], norms.displacement = sums[1];
     return norms;
@@ -9283,22 +9456,23 @@ static double gxsp_weigh_guess(gxsp_system *system, double rate, gxsp_vector4 *g
 
 /* Starts conjugate gradients at the best point of the plane of the last two steps' first directions. Where the
  * acceleration changes little from step to step, that is most of the solution. now: norms of the residual; returns
- * those of the new one. */
-static gxsp_norms gxsp_guess_direction(gxsp_system *system, double rate, gxsp_norms now) {
+ * those of the new one. gains: what the guess gained */
+static gxsp_norms gxsp_guess_direction(gxsp_system *system, double rate, gxsp_norms now, gxsp_gains *gains) {
     gxsp_vector4 *product = system->vectors.search;
-    double curvature, work, first, cross = 0, second = 0;
+    double curvature, work, further = 0, first, cross = 0, second = 0;
     curvature = gxsp_weigh_guess(system, rate, system->vectors.guess[0], NULL, product, &work, NULL);
     first = work / curvature;
     if (!(curvature > 0) || !gxsp_finite(work) || !gxsp_finite(curvature) || !gxsp_finite(first)) return now;
     if (system->state.guess_count > 1) {
-        double further, own = gxsp_weigh_guess(system, rate, system->vectors.guess[1], system->vectors.guess[0],
-                                               system->vectors.product, &further, &cross);
+        double own = gxsp_weigh_guess(system, rate, system->vectors.guess[1], system->vectors.guess[0],
+                                      system->vectors.product, &further, &cross);
         const double share = cross / curvature, rest = own - share * cross;
         second = (further - share * work) / rest;
         if (!(rest > GXSP_PARALLEL * own) || !gxsp_finite(own) || !gxsp_finite(share) || !gxsp_finite(second))
             second = 0;
         first -= second > 0 || second < 0 ? second * share : 0;
     }
+    gains->total = first * work + (second > 0 || second < 0 ? second * further : 0);
     now = gxsp_advance(system, first, system->vectors.guess[0], product);
     if (second > 0 || second < 0) now = gxsp_advance(system, second, system->vectors.guess[1], system->vectors.product);
     return now;
@@ -9344,16 +9518,18 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem) {
     const double goal = problem->cg_tolerance * problem->cg_tolerance, rate = problem->rate;
     const int start = problem->report.newton_iterations == 0;
     gxsp_norms first, now, guessed;
+    gxsp_gains gains;
     gxsp_pass pass;
     uint32_t iteration;
     int changed;
     double rho = 0;
     size_t i;
     problem->indefinite = 0;
+    memset(&gains, 0, sizeof gains);
     for (i = 0; i < 3 * system->model.n; i++) system->vectors.residual[i] *= system->model.scale;
     now = first = gxsp_scale(system, system->vectors.residual);
     memset(system->vectors.direction, 0, 3 * system->model.n * sizeof(double));
-    if (start && system->state.guess_count > 0) now = gxsp_guess_direction(system, rate, now);
+    if (start && system->state.guess_count > 0) now = gxsp_guess_direction(system, rate, now, &gains);
     guessed = now;
     if (!gxsp_converged(&now, &first, goal)) rho = gxsp_precondition_definite(system, rate, &now, &changed);
     memcpy(system->vectors.search, system->vectors.scaled, system->model.n * sizeof *system->vectors.search);
@@ -9368,6 +9544,10 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem) {
         }
         now = gxsp_advance(system, rho / curvature, system->vectors.search, system->vectors.product);
         problem->report.cg_iterations++;
+        gxsp_note_gain(&gains, rho * rho / curvature);
+        if (system->affine.count > 0 && system->multigrid.used && now.rest <= goal * first.displacement &&
+            gxsp_has_gained(&gains, goal))
+            break;
         if (gxsp_converged(&now, &first, goal) || gxsp_out_of_time(problem)) break;
         rho = gxsp_precondition_definite(system, rate, &now, &changed);
         pass.factor = changed ? 0 : rho / before;
@@ -11556,7 +11736,7 @@ GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displ
     memset(system->state.chunk_still, 0, system->mesh.chunk_count); /* sleeping components are included */
     for (b = 0; b < system->affine.block_count; b++) system->affine.blocks[b].still = 0;
     gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_linearise, &pass);
-    gxsp_over_affine(system, gxsp_task_affine_tangents, &pass);
+    gxsp_over_affine(system, gxsp_task_affine_tangents, &pass, NULL);
     gxsp_mark_still(system);
     system->state.product_rate = gxsp_tangents_finite(system) ? rate : -1;
     return system->state.product_rate < 0 ? gxsp_fail(failure, GX_ERROR_RANGE, "displacement", SIZE_MAX) : GX_OK;
@@ -11857,6 +12037,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_FACTOR_COST
 #undef GXSP_LEVELS
 #undef GXSP_NESTED_COST
+#undef GXSP_NESTED_FROM
+#undef GXSP_GAINS
 #undef GXSP_WIDEST
 #undef GXSP_SHIFT
 #undef GXSP_STIFFNESS
@@ -11891,6 +12073,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_COLUMNS
 #undef GXSP_SHUFFLES
 #undef GXSP_AFFINE_TASK
+#undef GXSP_AFFINE_ROUND
 #ifdef GXFEM_SCALAR
 #pragma clang attribute pop
 #endif
