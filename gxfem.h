@@ -4370,8 +4370,9 @@ static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, g
 /* Moments whose terms cancel to less than this share are summed in exact numbers: doubles lose 3 digits there. */
 #define GXP_CANCELLATION 1e-3
 
-/* The size of the terms in the volumes of the cones from vertex k to the triangles: of a x b . c, which takes on the
-   errors of the corners, and of a . (b - a) x (c - a), by which the volumes are computed. */
+/* The size of the terms in the volumes of the cones from vertex k to the triangles, a . (b - a) x (c - a). The errors
+   of the corners weigh as much and no more: the triangles close a surface, up to faces through k, and share their
+   corners. So the error of a corner moves the volume by its product with the area of the triangles around it. */
 static double gxp_cone_volumes(const gx_body *body, unsigned k) {
     const gxp_boundary *boundary = &body->scratch.boundary;
     unsigned axes[3], d;
@@ -4384,8 +4385,8 @@ static double gxp_cone_volumes(const gx_body *body, unsigned k) {
         const double *c = boundary->lambdas + 4 * (size_t)boundary->triangles.data[t + 2];
         for (d = 0; d < 3; d++) {
             const unsigned x = axes[d], y = axes[(d + 1) % 3], z = axes[(d + 2) % 3];
-            sum += a[x] * (b[y] * c[z] + b[z] * c[y] + fabs(b[y] - a[y]) * fabs(c[z] - a[z]) +
-                           fabs(b[z] - a[z]) * fabs(c[y] - a[y]));
+            sum +=
+                (a[x] + b[x] + c[x]) * (fabs(b[y] - a[y]) * fabs(c[z] - a[z]) + fabs(b[z] - a[z]) * fabs(c[y] - a[y]));
         }
     }
     return sum / 6;

@@ -353,7 +353,8 @@ typedef struct gxb_edge {
 typedef struct gxb_facet { /* a convex polygon */
     uint32_t plane;
     /* in complex.pool: edge * 2 + (1 if walked backwards), counter-clockwise about the normal; the count of a divided
-     * facet is 0 */
+     * facet is 0. One that was made and divided since begin has in loop the plane that divided it: the first child lies
+     * in front. */
     uint32_t loop, loop_count : 31;
     uint32_t wall : 1; /* 1: material on its two sides is separated */
     uint32_t leaf[2];  /* in front (where the normal points), behind; GXB_NONE outside the mesh */
@@ -382,6 +383,7 @@ typedef struct gxb_node {     /* of an element's tree of planes */
     uint32_t plane, child[2]; /* front, behind: leaf * 2 or node * 2 + 1 */
     uint32_t parent;          /* node, GXB_NONE: the element's root */
     uint32_t leaves;          /* below it */
+    uint32_t facet;           /* that its plane made. Of nodes older than the transaction it says nothing. */
 } gxb_node;
 
 /* Memory for exact numbers. A block never moves. */
@@ -3498,7 +3500,7 @@ static uint32_t gxbp_count_list(const gxb_complex *cx, const gxb_leaf *l) {
     uint32_t i, count = 0;
     for (i = 0; i < l->facet_count; i++) {
         const gxb_facet *f = &cx->facets[cx->pool[l->facets + i]];
-        GXBP_FETCH(cx->pool + f->loop);
+        if (f->child == GXB_NONE) GXBP_FETCH(cx->pool + f->loop);
         count += f->child == GXB_NONE ? 1 : gxbp_count_facets(cx, cx->pool[l->facets + i]);
     }
     return count;
@@ -3657,9 +3659,15 @@ static uint32_t gxbp_facet_signs(gxb_complex *cx, uint32_t facet, const gxbp_spl
     return signs;
 }
 
+/* On which sides of the plane the facet has points: bit 1 in front, bit 2 behind */
 static int gxbp_facet_sides(gxb_complex *cx, uint32_t facet, const gxbp_splitter *splitter) {
-    uint32_t edges;
-    return (int)(gxbp_facet_signs(cx, facet, splitter, &edges) & 3);
+    const uint32_t *loop = cx->pool + cx->facets[facet].loop, *end = loop + cx->facets[facet].loop_count;
+    int sides = 0;
+    for (; loop < end && sides != 3; loop++) {
+        const int sign = gxbp_sign(&cx->store, gxbp_edge_start(cx, *loop), splitter->plane, splitter->slot);
+        sides |= sign > 0 ? 1 : sign < 0 ? 2 : 0;
+    }
+    return sides;
 }
 
 /* A facet's loop while it is divided, in complex.loop. zero: where the two points in the plane start edges. sign: the
@@ -3749,7 +3757,7 @@ static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_spl
               : 1u;
     gxbp_save(cx, GXBP_FACETS, facet);
     cx->facets[facet].child = child;
-    cx->facets[facet].loop_count = 0;
+    gxbp_set_loop(&cx->facets[facet], splitter->plane, 0);
     cx->facets[child] = f;
     cx->facets[child + 1] = f;
     /* arc 0 runs from zero[0] to zero[1] and is closed backwards along the edge, arc 1 is the rest, closed forwards */
@@ -4200,9 +4208,10 @@ static gx_result gxbp_cover_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t leaf
    above others of its spine if its plane has all of their leaves on one side or the other. A node with nothing on
    one side is dropped. No leaf changes. */
 
-/* The spine goes on at child[side]; off: the reference at the other child */
+/* The spine goes on at child[side]; off: the reference at the other child; sides: on which sides of the plane in
+   question that has points */
 typedef struct gxbp_spine_node {
-    uint32_t node, side, off;
+    uint32_t node, side, off, sides;
 } gxbp_spine_node;
 typedef struct gxbp_step {
     uint32_t node, child[2];
@@ -4215,12 +4224,14 @@ typedef struct gxbp_plan {
 } gxbp_plan;
 
 /* Is the tree far higher than a balanced one with as many leaves? While a tree doubles, this is checked eight times if
-   most of it is a spine, else once: rebalancing seldom helps what is no spine. */
+   most of it is a spine, else once; from 128 leaves on once while it grows by a factor of eight. Rebalancing seldom
+   helps what is no spine, and goes through all leaves. */
 static int gxbp_is_slack(uint32_t height, uint32_t leaves) {
     uint32_t bits = 0, checks;
     while (leaves >> bits > 1) bits++;
     checks = height > 2 * bits + leaves / 8 + 4 ? 3 : 0;
-    return height > 2 * bits + 4 && (leaves & ((1u << bits >> checks) - 1)) == 0;
+    return height > 2 * bits + 4 && (checks > 0 || bits < 7 || bits % 3 == 0) &&
+           (leaves & ((1u << bits >> checks) - 1)) == 0;
 }
 
 static uint32_t gxbp_depth(const gxb_complex *cx, uint32_t node) {
@@ -4271,6 +4282,25 @@ static uint32_t gxbp_plan_spine(gxbp_plan *plan, const gxbp_spine_node *spine, u
     return end;
 }
 
+/* Finds on which side of the plane each tree off the spine lies. 0: the plane passes through one of them. Small trees
+   are asked first: where the plane passes through many, as on a convex surface, one of them tells. */
+static int gxbp_spine_sides(gxb_complex *cx, gxbp_spine_node *spine, uint32_t count, const gxbp_splitter *splitter) {
+    uint64_t most = 1, largest = 1;
+    uint32_t i;
+    for (i = 0; i < count; i++) {
+        const uint32_t leaves = gxbp_leaves_below(cx, spine[i].off);
+        if (leaves > largest) largest = leaves;
+        spine[i].sides = 0;
+    }
+    for (; most < 16 * largest; most *= 16)
+        for (i = 0; i < count; i++) {
+            if (spine[i].sides != 0 || gxbp_leaves_below(cx, spine[i].off) > most) continue;
+            spine[i].sides = (uint32_t)gxbp_sides_below(cx, spine[i].off, splitter);
+            if (spine[i].sides == 3) return 0;
+        }
+    return 1;
+}
+
 /* Sorts the nodes above spine[middle] by the side of its plane on which their leaves lie. Those on the spine's own side
    come last; *own is their number. 0: the plane passes through one of them. spare: room for middle nodes */
 static int gxbp_part_spine(gxb_complex *cx, gxbp_spine_node *spine, uint32_t middle, gxbp_spine_node *spare,
@@ -4283,14 +4313,12 @@ static int gxbp_part_spine(gxb_complex *cx, gxbp_spine_node *spine, uint32_t mid
     splitter.slot = 1;
     gxbp_forget_signs(&cx->store, 1);
     *own = 0;
-    for (i = 0; i < middle; i++) {
-        const int sides = gxbp_sides_below(cx, spine[i].off, &splitter);
-        if (sides == 3) return 0;
-        if ((sides == 1) == (side == 0))
+    if (!gxbp_spine_sides(cx, spine, middle, &splitter)) return 0;
+    for (i = 0; i < middle; i++)
+        if ((spine[i].sides == 1) == (side == 0))
             spare[(*own)++] = spine[i];
         else
             spare[middle - ++n] = spine[i];
-    }
     for (i = 0; i < n; i++) spine[i] = spare[middle - 1 - i];
     memcpy(spine + n, spare, *own * sizeof *spine);
     return 1;
@@ -4419,6 +4447,7 @@ static uint32_t gxbp_part_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_splitt
     n->child[1] = 2 * (cx->leaf_count - 1);
     n->parent = task->parent;
     n->leaves = 1;
+    n->facet = middle;
     if (task->parent == GXBP_IN_ROOT)
         gxbp_save(cx, GXBP_ROOTS, cx->leaves[leaf].element);
     else
@@ -4596,14 +4625,44 @@ static GXBP_APART void gxbp_push_task(gxb_complex *cx, uint32_t parent, uint32_t
     task->coplanar = coplanar;
 }
 
-/* Sends the polygon of the task down the tree by one node. */
-static gx_result gxbp_descend(gxb_complex *cx, gxb_triangle *t, const gxbp_task *task, uint32_t node) {
+/* Which leaves a triangle may reach; NULL: all */
+typedef struct gxbp_permit {
+    int (*allowed)(void *user, uint32_t leaf);
+    void *user;
+} gxbp_permit;
+
+static int gxbp_may_reach(const gxb_complex *cx, const gxbp_permit *permit, uint32_t leaf) {
+    return !cx->leaves[leaf].removed && (permit->allowed == NULL || permit->allowed(permit->user, leaf));
+}
+
+/* Covers the parts of a facet in the triangle's plane, down the tree of its parts. The facet has been made since begin.
+   The polygon is the triangle's part there. Its way is short where a plane carries thousands of triangles. */
+static gx_result gxbp_cover_parts(gxb_complex *cx, gxb_triangle *t, const gxbp_task *task, uint32_t facet,
+                                  const gxbp_permit *permit) {
+    const gxb_facet f = cx->facets[facet];
+    gx_result result = GX_OK;
+    int sides;
+    if (f.child == GXB_NONE)
+        return gxbp_may_reach(cx, permit, f.leaf[0]) || gxbp_may_reach(cx, permit, f.leaf[1])
+                 ? gxbp_cover_facet(cx, t, facet, 7)
+                 : GX_OK;
+    sides = gxbp_corner_sides(cx, task->first, task->count, f.loop);
+    if (sides & 1) result = gxbp_cover_parts(cx, t, task, f.child, permit);
+    if (sides & 2 && result == GX_OK) result = gxbp_cover_parts(cx, t, task, f.child + 1, permit);
+    return result;
+}
+
+/* Sends the polygon of the task down the tree by one node. Where it lies in the plane of one that was made since begin,
+   the facet of that node leads to all that it covers. */
+static gx_result gxbp_descend(gxb_complex *cx, gxb_triangle *t, const gxbp_task *task, uint32_t node,
+                              const gxbp_permit *permit) {
     const uint32_t plane = cx->nodes[node].plane;
     gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, corners, corner, 2 * (size_t)task->count + 8);
     int sides;
     if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, tasks, task, 2);
     if (result != GX_OK) return result;
     sides = plane == t->plane ? 0 : gxbp_corner_sides(cx, task->first, task->count, plane);
+    if (sides == 0 && node >= cx->mark[GXBP_NODES]) return gxbp_cover_parts(cx, t, task, cx->nodes[node].facet, permit);
     if (sides == 0 || sides == 1) gxbp_push_task(cx, node, 0, task->first, task->count, task->coplanar | (sides == 0));
     if (sides == 0 || sides == 2) gxbp_push_task(cx, node, 1, task->first, task->count, task->coplanar | (sides == 0));
     if (sides == 3) {
@@ -4776,9 +4835,12 @@ static int gxbp_misses_plane(gxb_complex *cx, const gxb_triangle *t, uint32_t el
 
 GXFEM_API gx_result gxb_complex_insert(gxb_complex *cx, gxb_triangle *t, uint32_t element,
                                        int (*allowed)(void *user, uint32_t leaf), void *user) {
+    gxbp_permit permit;
     gxbp_task task;
     gx_result result;
     int sign[4];
+    permit.allowed = allowed;
+    permit.user = user;
     if (cx->root[element] == 2 * element && cx->leaves[element].removed) return GX_OK;
     if (cx->sign_plane != t->plane) {
         cx->sign_plane = t->plane;
@@ -4795,8 +4857,8 @@ GXFEM_API gx_result gxb_complex_insert(gxb_complex *cx, gxb_triangle *t, uint32_
         task = cx->tasks[--cx->task_count];
         reference = *gxbp_reference(cx, &task, element);
         if (reference & 1)
-            result = gxbp_descend(cx, t, &task, reference >> 1);
-        else if (cx->leaves[reference >> 1].removed || (allowed != NULL && !allowed(user, reference >> 1)))
+            result = gxbp_descend(cx, t, &task, reference >> 1, &permit);
+        else if (!gxbp_may_reach(cx, &permit, reference >> 1))
             continue;
         else if (task.coplanar)
             result = gxbp_cover_leaf(cx, t, reference >> 1);

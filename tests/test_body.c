@@ -2504,6 +2504,62 @@ START_TEST(cost_of_many_triangles) {
 }
 END_TEST
 
+/* A box whose sides are divided into n x n uneven squares of two triangles each: lattice points, so that each side is
+   exactly flat */
+static void add_divided_box(workload *w, int solid, uint32_t n) {
+    wl_surface *s = wl_add_surface(w, solid);
+    uint32_t side, i, j;
+    for (side = 0; side < 6; side++) {
+        const uint32_t axis = side % 3, top = side / 3, first = (uint32_t)s->vertex_count;
+        for (j = 0; j <= n; j++)
+            for (i = 0; i <= n; i++) {
+                const int inner = i > 0 && j > 0 && i < n && j < n;
+                double x[3];
+                x[axis] = top ? 0.3125 : 0.0625;
+                x[(axis + 1) % 3] = 0.0625 + 0.25 * (i + (inner ? (i * 5 + j * 3) % 8 / 16.0 : 0)) / n;
+                x[(axis + 2) % 3] = 0.0625 + 0.25 * (j + (inner ? (i * 3 + j * 7) % 8 / 16.0 : 0)) / n;
+                wl_add_vertex(s, x);
+            }
+        for (j = 0; j < n; j++)
+            for (i = 0; i < n; i++) {
+                const uint32_t a = first + j * (n + 1) + i, b = a + n + 1;
+                wl_add_triangle(s, a, top ? a + 1 : b + 1, top ? b + 1 : a + 1);
+                wl_add_triangle(s, a, top ? b + 1 : b, top ? b : b + 1);
+            }
+    }
+}
+
+/* Thousands of triangles in one plane: all of it is covered, in proportion to their number. */
+START_TEST(many_triangles_in_one_plane) {
+    static const double box = 1.0 / 64, whole = 1.0 / 6;
+    uint64_t calls[2];
+    int i, solid;
+    for (solid = 0; solid < 2; solid++)
+        for (i = 0; i < 2; i++) {
+            workload w = corner_tet();
+            gx_body *body = body_of(&w);
+            gx_cut_report report;
+            gx_view view;
+            add_divided_box(&w, solid, i == 0 ? 6 : 12);
+            report = cut_by(body, &w, 0, 1);
+            calls[i] = body->complex->store.filter_calls;
+            view = view_of(body);
+            ck_assert_uint_eq(view.cell_count, solid ? 1 : 2);
+            ck_assert_double_eq_tol(view.volume, solid ? whole - box : whole, 1e-14);
+            ck_assert_double_eq_tol(report.removed_volume, solid ? box : 0, 1e-15);
+            if (i == 0) check_skin(body, (uint64_t)solid);
+            if (i == 0 && !solid) { /* again: all of it is there, in facets that are older than this cut */
+                report = cut_by(body, &w, 0, 1);
+                ck_assert_uint_eq(report.created_cells, 0);
+                ck_assert_uint_eq(view_of(body).cell_count, 2);
+            }
+            gx_body_destroy(body);
+            wl_free(&w);
+            if (i == 1) ck_assert_msg(calls[1] < 8 * calls[0], "%.0f and %.0f", (double)calls[0], (double)calls[1]);
+        }
+}
+END_TEST
+
 /* ---- bad input ---- */
 
 static void expect_no_body(gx_body_desc *desc, gx_result expected, const char *field, size_t index, int line) {
@@ -3070,6 +3126,7 @@ int main(void) {
     tcase_add_loop_test(tests, cap_in_large_and_small_elements, 0, 3);
     tcase_add_test(tests, ball_in_one_element);
     tcase_add_test(tests, cost_of_many_triangles);
+    tcase_add_test(tests, many_triangles_in_one_plane);
     tcase_add_loop_test(tests, skin_encloses_the_volume, first, last);
     tcase_add_test(tests, skin_tells_cut_faces);
     tcase_add_test(tests, bad_bodies);
