@@ -1,13 +1,14 @@
 /* gxboolean: Booleans of closed triangle surfaces, and their splitting by sheets, with gxfem_boolean.h alone.
 
-   gxboolean SURFACE [--union|--intersection|--difference|--symmetric|--split SURFACE]... [options]; `gxboolean --help`
-   says the rest. Exit codes: 0 done; 1 the kernel refused a surface or failed; 2 usage error, or a file that can't be
-   read or written. On 1 and 2 one line on stderr says what, where and why.
+   gxboolean SURFACE [--union|--intersection|--difference|--symmetric|--split SURFACE]... [options], or, as a runner of
+   the Open Boolean Benchmark, gxboolean --request FILE --result FILE [options]; `gxboolean --help` says the rest. Exit
+   codes: 0 done; 1 the kernel refused a surface or failed; 2 usage error, or a file that can't be read or written. On 1
+   and 2 one line on stderr says what, where and why.
 
    contents
      >>settings    the command line
      >>kernel      operands in, result out
-     >>output      a table, a file */
+     >>output      a table, a file, a benchmark's results */
 #include "gxio.h"
 
 #ifndef GXFEM_LINKED /* make examples compiles the library once for all */
@@ -15,6 +16,7 @@
 #endif
 #include "../gxfem_boolean.h"
 #include "gxfailure.h"
+#include "gxrunner.h"
 
 enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_MISUSED = 2 };
 
@@ -24,7 +26,8 @@ typedef struct settings {
     const char **surfaces; /* count, as given */
     uint32_t *operations;  /* count, GXB_UNION ... */
     size_t count;
-    const char *out; /* NULL: no file */
+    const char *out;                       /* NULL: no file */
+    const char *request, *result, *ending; /* of a benchmark; NULL: none */
     uint32_t rule;
     uint32_t triangulation;
     int fine, mend;
@@ -33,6 +36,7 @@ typedef struct settings {
 
 static const char usage[] =
     "usage: gxboolean SURFACE [OPERATION SURFACE]... [options]\n"
+    "       gxboolean --request FILE.json --result FILE.json [options]\n"
     "\n"
     "Combines closed triangle surfaces exactly, one after the other; prints volume and Euler characteristic of each "
     "component.\n"
@@ -49,13 +53,21 @@ static const char usage[] =
     "  --merged            the same of faces beside each other in one plane\n"
     "  --fine              vertices are the doubles nearest to the exact points\n"
     "  --mend              the same, and triangles that this turns over are mended\n"
-    "  --out FILE          writes the result as FILE.off, or as FILE.obj with an object per component\n"
+    "  --out FILE          writes the result as FILE.off, FILE.stl, or as FILE.obj with an object per component\n"
+    "  --request FILE, --result FILE\n"
+    "                      runs the operations of a request of the Open Boolean Benchmark, says in the result how they "
+    "went\n"
+    "  --format NAME       of the surfaces that a request makes: off (default), obj or stl\n"
     "  --help              this text\n";
 
 /* GXB_UNION ... */
 static const char *const operations[] = {"--union", "--intersection", "--difference", "--symmetric", "--split"};
 /* GXB_NONZERO ... */
 static const char *const rules[] = {"nonzero", "positive", "negative", "odd"};
+/* What else takes a value */
+static const char *const valued[] = {"--rule", "--out", "--request", "--result", "--format"};
+static const char *const formats[] = {"off", "obj", "stl"};
+static const char *const endings[] = {".off", ".obj", ".stl"};
 
 /* Where a word stands in a list; the list's length if it does not. */
 static uint32_t find_word(const char *word, const char *const *list, uint32_t count) {
@@ -82,18 +94,47 @@ static int take_flag(settings *set, const char *name) {
 
 static int take_value(settings *set, const char *name, const char *value, gxio_error *error) {
     const uint32_t operation = find_word(name, operations, 5);
+    uint32_t format;
     if (operation < 5) {
         if (set->count == 0) return gxio_fail(error, name, 0, "comes before the first surface");
         set->operations[set->count] = operation;
         set->surfaces[set->count++] = value;
-    } else if (strcmp(name, "--rule") == 0) {
+        return 1;
+    }
+    switch (find_word(name, valued, 5)) {
+    case 0:
         set->rule = find_word(value, rules, 4);
-        if (set->rule == 4)
-            return gxio_fail(error, name, 0, "'%s' is none of nonzero, positive, negative and odd", value);
-    } else if (!gxio_ends_with(value, ".off") && !gxio_ends_with(value, ".obj")) {
-        return gxio_fail(error, name, 0, "'%s' does not end in .off or .obj", value);
-    } else
+        return set->rule < 4 ? 1
+                             : gxio_fail(error, name, 0, "'%s' is none of nonzero, positive, negative and odd", value);
+    case 1:
         set->out = value;
+        return gxio_is_surface_name(value)
+                 ? 1
+                 : gxio_fail(error, name, 0, "'%s' does not end in .off, .obj or .stl", value);
+    case 2: set->request = value; return 1;
+    case 3: set->result = value; return 1;
+    default:
+        format = find_word(value, formats, 3);
+        if (format == 3) return gxio_fail(error, name, 0, "'%s' is none of off, obj and stl", value);
+        set->ending = endings[format];
+        return 1;
+    }
+}
+
+/* A request, or surfaces, and no option of the other */
+static int check_purpose(const settings *set, gxio_error *error) {
+    if (set->help) return 1;
+    if (!set->request && !set->result) {
+        if (set->ending)
+            return gxio_fail(error, "--format", 0, "belongs to --request; --out has its format by its name");
+        if (set->count > 0) return 1;
+        return gxio_fail(error, "usage", 0, "gxboolean SURFACE [OPERATION SURFACE]..., see gxboolean --help");
+    }
+    if (!set->request || !set->result)
+        return gxio_fail(error, set->request ? "--request" : "--result", 0,
+                         "needs the other of --request and --result");
+    if (set->count > 0 || set->out)
+        return gxio_fail(error, "--request", 0, "names all surfaces: none may stand beside it, nor --out");
     return 1;
 }
 
@@ -106,30 +147,16 @@ static int take_arguments(settings *set, int argc, char **argv, gxio_error *erro
             set->operations[set->count] = GXB_UNION;
             set->surfaces[set->count++] = name;
         } else if (!take_flag(set, name)) {
-            if (find_word(name, operations, 5) == 5 && strcmp(name, "--rule") != 0 && strcmp(name, "--out") != 0)
+            if (find_word(name, operations, 5) == 5 && find_word(name, valued, 5) == 5)
                 return gxio_fail(error, name, 0, "unknown option, see gxboolean --help");
             if (++i == argc || strncmp(argv[i], "--", 2) == 0) return gxio_fail(error, name, 0, "needs a value");
             if (!take_value(set, name, argv[i], error)) return 0;
         }
     }
-    return set->help || set->count > 0
-             ? 1
-             : gxio_fail(error, "usage", 0, "gxboolean SURFACE [OPERATION SURFACE]..., see gxboolean --help");
+    return check_purpose(set, error);
 }
 
 /* ---------------------------------------------------------------------------------------------- >>kernel */
-
-static const char *text_of(gx_result result) {
-    switch (result) {
-    case GX_ERROR_MEMORY: return "out of memory";
-    case GX_ERROR_NOT_FINITE: return "a coordinate is not finite";
-    case GX_ERROR_RANGE: return "a number is too large or too small";
-    case GX_ERROR_EMPTY: return "there are no triangles";
-    case GX_ERROR_NOT_CLOSED: return "the surface is not closed, or its triangles are not oriented alike";
-    case GX_ERROR_LIMIT: return "there are too many triangles";
-    default: return "the kernel failed";
-    }
-}
 
 /* Reads a surface and gives it to the Boolean, which copies it. first: the first surface, across which planes go;
  * empty: this is it. */
@@ -153,7 +180,7 @@ static int add_surface(const settings *set, size_t i, gxb_boolean *boolean, gxio
     operand.rule = set->rule;
     if (gxb_boolean_add(boolean, &operand, &failure) != GX_OK) {
         const int known = failure.result == GX_ERROR_NOT_CLOSED && failure.index < surface.triangle_count;
-        const char *cause = text_of(failure.result);
+        const char *cause = gxfailure_of_surfaces(failure.result);
         gxio_fail(error, set->surfaces[i], known ? surface.triangle_lines[failure.index] : 0, "%s",
                   known ? cause : gxfailure_say(&failure, cause).text);
     }
@@ -194,7 +221,7 @@ static int combine(const settings *set, gxb_boolean **boolean, answer *a, gxio_e
     gxio_surface_release(&first);
     if (failed == GX_OK && code == EXIT_DONE) failed = ask(*boolean, a, &failure);
     if (failed == GX_OK) return code;
-    gxio_fail(error, "Boolean", 0, "%s", gxfailure_say(&failure, text_of(failed)).text);
+    gxio_fail(error, "Boolean", 0, "%s", gxfailure_say(&failure, gxfailure_of_surfaces(failed)).text);
     return EXIT_FAILED;
 }
 
@@ -216,37 +243,33 @@ static void print_table(const answer *a) {
                (unsigned long)a->defects.mended_count);
 }
 
-static void write_off(FILE *stream, const gxb_boolean_result *r) {
-    size_t i;
-    fprintf(stream, "OFF\n%lu %lu 0\n", (unsigned long)r->vertex_count, (unsigned long)r->triangle_count);
-    for (i = 0; i < r->vertex_count; i++)
-        fprintf(stream, "%.17g %.17g %.17g\n", r->vertices[3 * i], r->vertices[3 * i + 1], r->vertices[3 * i + 2]);
-    for (i = 0; i < r->triangle_count; i++)
-        fprintf(stream, "3 %lu %lu %lu\n", (unsigned long)r->triangles[3 * i], (unsigned long)r->triangles[3 * i + 1],
-                (unsigned long)r->triangles[3 * i + 2]);
-}
-
-static void write_obj(FILE *stream, const gxb_boolean_result *r, const gxb_components *components) {
-    size_t i, c;
-    for (i = 0; i < r->vertex_count; i++)
-        fprintf(stream, "v %.17g %.17g %.17g\n", r->vertices[3 * i], r->vertices[3 * i + 1], r->vertices[3 * i + 2]);
-    for (c = 0; c < components->count; c++) {
-        fprintf(stream, "o component_%lu\n", (unsigned long)c);
-        for (i = 0; i < r->triangle_count; i++)
-            if (components->triangle[i] == c)
-                fprintf(stream, "f %lu %lu %lu\n", r->triangles[3 * i] + 1ul, r->triangles[3 * i + 1] + 1ul,
-                        r->triangles[3 * i + 2] + 1ul);
-    }
-}
-
 static int write_answer(const char *path, const answer *a, gxio_error *error) {
-    gxio_writer writer;
-    if (!gxio_writer_open(&writer, path, error)) return EXIT_MISUSED;
-    if (gxio_ends_with(path, ".obj"))
-        write_obj(writer.stream, &a->result, &a->components);
-    else
-        write_off(writer.stream, &a->result);
-    return gxio_writer_close(&writer, 1, error) ? EXIT_DONE : EXIT_MISUSED;
+    gxio_shell shell;
+    memset(&shell, 0, sizeof shell);
+    shell.vertices = a->result.vertices;
+    shell.vertex_count = a->result.vertex_count;
+    shell.triangles = a->result.triangles;
+    shell.triangle_count = a->result.triangle_count;
+    shell.component = a->components.triangle;
+    shell.component_count = a->components.count;
+    return gxio_write_surface(path, &shell, error) ? EXIT_DONE : EXIT_MISUSED;
+}
+
+/* Runs a request of the Open Boolean Benchmark. */
+static int serve(const settings *set, gxio_error *error) {
+    gxrunner_options options;
+    options.request = set->request;
+    options.result = set->result;
+    options.ending = set->ending ? set->ending : ".off";
+    options.rule = set->rule;
+    options.triangulation = set->triangulation;
+    options.fine = set->fine;
+    options.mend = set->mend;
+    switch (gxrunner_serve(&options, error)) {
+    case GXRUNNER_DONE: return EXIT_DONE;
+    case GXRUNNER_FAILED: gxio_fail(error, set->result, 0, "not all operations succeeded"); return EXIT_FAILED;
+    default: return EXIT_MISUSED;
+    }
 }
 
 int main(int argc, char **argv) {
@@ -261,10 +284,10 @@ int main(int argc, char **argv) {
     if (!set.surfaces || !set.operations)
         gxio_fail(&error, "arguments", 0, "out of memory");
     else if (take_arguments(&set, argc, argv, &error))
-        code = set.help ? EXIT_DONE : combine(&set, &boolean, &found, &error);
+        code = set.help ? EXIT_DONE : set.request ? serve(&set, &error) : combine(&set, &boolean, &found, &error);
     if (code == EXIT_DONE && set.help)
         fputs(usage, stdout);
-    else if (code == EXIT_DONE) {
+    else if (code == EXIT_DONE && !set.request) {
         if (set.out) code = write_answer(set.out, &found, &error);
         if (code == EXIT_DONE) print_table(&found);
     }
