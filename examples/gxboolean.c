@@ -8,7 +8,8 @@
    contents
      >>settings    the command line
      >>kernel      operands in, result out
-     >>output      a table, a file, a benchmark's results */
+     >>output      a table, a file
+     >>requests    what the Open Boolean Benchmark asks for */
 #include "gxio.h"
 
 #ifndef GXFEM_LINKED /* make examples compiles the library once for all */
@@ -158,6 +159,25 @@ static int take_arguments(settings *set, int argc, char **argv, gxio_error *erro
 
 /* ---------------------------------------------------------------------------------------------- >>kernel */
 
+static gxb_operand operand_of(const gxio_surface *surface) {
+    gxb_operand operand;
+    memset(&operand, 0, sizeof operand);
+    operand.vertices = surface->vertices;
+    operand.vertex_count = surface->vertex_count;
+    operand.triangles = surface->triangles;
+    operand.triangle_count = surface->triangle_count;
+    return operand;
+}
+
+/* Creates a Boolean with the options of the command line. desc may be NULL. */
+static gx_result create_boolean(const settings *set, const gxb_boolean_desc *desc, gxb_boolean **boolean,
+                                gx_failure *failure) {
+    gx_result result = gxb_boolean_create(desc, boolean, failure);
+    if (result == GX_OK) result = gxb_boolean_set_triangulation(*boolean, set->triangulation, failure);
+    if (result == GX_OK) result = gxb_boolean_set_fine(*boolean, set->fine, failure);
+    return result == GX_OK ? gxb_boolean_set_mend(*boolean, set->mend, failure) : result;
+}
+
 /* Reads a surface and gives it to the Boolean, which copies it. first: the first surface, across which planes go;
  * empty: this is it. */
 static int add_surface(const settings *set, size_t i, gxb_boolean *boolean, gxio_surface *first, gxio_error *error) {
@@ -171,11 +191,7 @@ static int add_surface(const settings *set, size_t i, gxb_boolean *boolean, gxio
         return EXIT_MISUSED;
     }
     if (!gxio_surface_load(set->surfaces[i], &body, &surface, error)) return EXIT_MISUSED;
-    memset(&operand, 0, sizeof operand);
-    operand.vertices = surface.vertices;
-    operand.vertex_count = surface.vertex_count;
-    operand.triangles = surface.triangles;
-    operand.triangle_count = surface.triangle_count;
+    operand = operand_of(&surface);
     operand.operation = set->operations[i];
     operand.rule = set->rule;
     if (gxb_boolean_add(boolean, &operand, &failure) != GX_OK) {
@@ -209,13 +225,8 @@ static int combine(const settings *set, gxb_boolean **boolean, answer *a, gxio_e
     size_t i;
     int code = EXIT_DONE;
     gx_failure failure;
-    gx_result failed = gxb_boolean_create(NULL, boolean, &failure);
+    gx_result failed = create_boolean(set, NULL, boolean, &failure);
     memset(&first, 0, sizeof first);
-    if (failed == GX_OK) {
-        gxb_boolean_set_triangulation(*boolean, set->triangulation, NULL);
-        gxb_boolean_set_fine(*boolean, set->fine, NULL);
-        gxb_boolean_set_mend(*boolean, set->mend, NULL);
-    }
     for (i = 0; i < set->count && failed == GX_OK && code == EXIT_DONE; i++)
         code = add_surface(set, i, *boolean, &first, error);
     gxio_surface_release(&first);
@@ -255,17 +266,251 @@ static int write_answer(const char *path, const answer *a, gxio_error *error) {
     return gxio_write_surface(path, &shell, error) ? EXIT_DONE : EXIT_MISUSED;
 }
 
+/* --------------------------------------------------------------------------------------------- >>requests */
+/* Solids of a request are exact: only what is written is rounded. So a solid is an expression of files' surfaces. A
+   chain starts with a surface and combines it with further surfaces one by one: one Boolean is kept for all of it, and
+   computes what is new. Any other expression gets a Boolean of its surfaces, and is evaluated point by point. */
+
+typedef struct solid {
+    int is_chain;         /* or a file */
+    size_t before;        /* of a chain: the solid that it extends */
+    size_t first;         /* of a chain: the argument that is that solid */
+    gxb_boolean *boolean; /* of a chain that is extended later; else of the latest solid */
+} solid;
+
+/* What the engine has of a run */
+typedef struct expressions {
+    solid *solids;
+    size_t *leaves; /* solids of files, by operand */
+    size_t expressed;
+    unsigned char *needed, *inside; /* by solid */
+    uint32_t rule;
+    gxb_boolean_result found;
+    /* the surface that is written: vertices that a triangle has */
+    double *vertices;
+    uint32_t *triangles, *number;
+} expressions;
+
+static expressions *expressions_of(const gxrunner_run *run) { return (expressions *)run->native; }
+
+static const settings *settings_of(const gxrunner_run *run) { return (const settings *)run->engine->settings; }
+
+static int is_file(const gxrunner_run *run, size_t i) { return run->solids[i].operation == GXRUNNER_LOAD; }
+
+/* Does solid i extend a chain by files? Unions and intersections may take the chain as any of their arguments. */
+static void find_chain(gxrunner_run *run, size_t i) {
+    const gxrunner_solid *s = &run->solids[i];
+    solid *own = &expressions_of(run)->solids[i];
+    size_t k, others = 0;
+    own->is_chain = s->operation == GXRUNNER_LOAD;
+    if (s->arg_count == 0) return;
+    for (k = 0; k < s->arg_count; k++)
+        if (!is_file(run, s->args[k])) {
+            others++;
+            own->first = k;
+        }
+    own->before = s->args[own->first];
+    own->is_chain = others <= 1 && (own->first == 0 || s->operation != GXRUNNER_DIFFERENCE) &&
+                    expressions_of(run)->solids[own->before].is_chain;
+}
+
+static int start_run(gxrunner_run *run, gxrunner_outcome *o) {
+    expressions *e = (expressions *)calloc(1, sizeof *e);
+    size_t i;
+    run->native = e;
+    if (e) {
+        e->rule = settings_of(run)->rule;
+        e->solids = (solid *)calloc(run->count + 1, sizeof *e->solids);
+        e->leaves = (size_t *)gxio_array(run->count + 1, sizeof *e->leaves);
+        e->needed = (unsigned char *)malloc(run->count + 1);
+        e->inside = (unsigned char *)malloc(run->count + 1);
+    }
+    if (!e || !e->solids || !e->leaves || !e->needed || !e->inside) {
+        o->status = "crash";
+        return gxio_fail(&o->error, "request", 0, "out of memory");
+    }
+    for (i = 0; i < run->count; i++) find_chain(run, i);
+    return 1;
+}
+
+static void stop_run(gxrunner_run *run) {
+    expressions *e = expressions_of(run);
+    size_t i;
+    for (i = 0; e->solids && i < run->count; i++) gxb_boolean_destroy(e->solids[i].boolean);
+    free(e->solids);
+    free(e->leaves);
+    free(e->needed);
+    free(e->inside);
+    free(e->vertices);
+    free(e->triangles);
+    free(e->number);
+    free(e);
+}
+
+static gx_result add_file(const gxrunner_run *run, gxb_boolean *boolean, size_t file, uint32_t operation,
+                          gx_failure *failure) {
+    gxb_operand operand = operand_of(&run->solids[file].surface);
+    operand.operation = operation;
+    operand.rule = expressions_of(run)->rule;
+    return gxb_boolean_add(boolean, &operand, failure);
+}
+
+/* Adds what solid i adds to its chain. */
+static gx_result extend_chain(const gxrunner_run *run, gxb_boolean *boolean, size_t i, gx_failure *failure) {
+    /* by GXRUNNER_UNION ... */
+    static const uint32_t kernel[] = {GXB_UNION, GXB_INTERSECTION, GXB_DIFFERENCE};
+    const gxrunner_solid *s = &run->solids[i];
+    const size_t first = expressions_of(run)->solids[i].first;
+    gx_result result = GX_OK;
+    size_t k;
+    if (is_file(run, i)) return add_file(run, boolean, i, GXB_UNION, failure);
+    for (k = 0; k < s->arg_count && result == GX_OK; k++)
+        if (k != first) result = add_file(run, boolean, s->args[k], kernel[s->operation], failure);
+    return result;
+}
+
+/* The Boolean of a chain: the one that the solid before has left, or one of all its surfaces */
+static gx_result open_chain(gxrunner_run *run, size_t i, gx_failure *failure) {
+    expressions *e = expressions_of(run);
+    solid *own = &e->solids[i], *before = &e->solids[own->before];
+    gx_result result;
+    size_t at, count = 0;
+    if (before->boolean) { /* solids that need it later start anew */
+        own->boolean = before->boolean;
+        before->boolean = NULL;
+        return extend_chain(run, own->boolean, i, failure);
+    }
+    for (at = i; !is_file(run, at); at = e->solids[at].before) e->leaves[count++] = at;
+    e->leaves[count++] = at;
+    result = create_boolean(settings_of(run), NULL, &own->boolean, failure);
+    if (result == GX_OK && run->solids[i].last_use > i) result = gxb_boolean_set_retained(own->boolean, 1, failure);
+    while (count > 0 && result == GX_OK) result = extend_chain(run, own->boolean, e->leaves[--count], failure);
+    return result;
+}
+
+static int counts_as_inside(int32_t winding, uint32_t rule) {
+    switch (rule) {
+    case GXB_POSITIVE: return winding > 0;
+    case GXB_NEGATIVE: return winding < 0;
+    case GXB_ODD: return winding & 1;
+    default: return winding != 0;
+    }
+}
+
+/* Is a point with these winding numbers inside the expressed solid? */
+static int is_inside(void *user, const int32_t *winding, size_t operand_count) {
+    const gxrunner_run *run = (const gxrunner_run *)user;
+    const expressions *e = expressions_of(run);
+    size_t i, k;
+    for (i = 0; i < operand_count; i++) e->inside[e->leaves[i]] = (unsigned char)counts_as_inside(winding[i], e->rule);
+    for (i = 0; i <= e->expressed; i++) {
+        const gxrunner_solid *s = &run->solids[i];
+        int inside;
+        if (!e->needed[i] || is_file(run, i)) continue;
+        inside = e->inside[s->args[0]];
+        for (k = 1; k < s->arg_count; k++) {
+            const int other = e->inside[s->args[k]];
+            if (s->operation == GXRUNNER_UNION)
+                inside = inside || other;
+            else
+                inside = inside && other == (s->operation == GXRUNNER_INTERSECTION);
+        }
+        e->inside[i] = (unsigned char)inside;
+    }
+    return e->inside[e->expressed];
+}
+
+static gx_result open_expression(gxrunner_run *run, size_t i, gx_failure *failure) {
+    expressions *e = expressions_of(run);
+    gxb_boolean_desc desc;
+    gx_result result;
+    size_t at, k, count = 0;
+    memset(e->needed, 0, run->count);
+    e->needed[i] = 1;
+    for (at = i + 1; at-- > 0;) {
+        if (!e->needed[at]) continue;
+        if (is_file(run, at)) e->leaves[count++] = at;
+        for (k = 0; k < run->solids[at].arg_count; k++) e->needed[run->solids[at].args[k]] = 1;
+    }
+    e->expressed = i;
+    memset(&desc, 0, sizeof desc);
+    desc.inside = is_inside;
+    desc.user = run;
+    result = create_boolean(settings_of(run), &desc, &e->solids[i].boolean, failure);
+    for (k = 0; k < count && result == GX_OK; k++)
+        result = add_file(run, e->solids[i].boolean, e->leaves[k], GXB_UNION, failure);
+    return result;
+}
+
+static const char *status_of(gx_result result) {
+    switch (result) {
+    case GX_ERROR_NOT_CLOSED:
+    case GX_ERROR_NOT_FINITE:
+    case GX_ERROR_RANGE:
+    case GX_ERROR_EMPTY: return "invalid_input";
+    case GX_ERROR_LIMIT: return "unsupported";
+    default: return "crash";
+    }
+}
+
+static int combine_solids(gxrunner_run *run, size_t i, gxrunner_outcome *o) {
+    expressions *e = expressions_of(run);
+    gx_failure failure;
+    gx_result result = e->solids[i].is_chain ? open_chain(run, i, &failure) : open_expression(run, i, &failure);
+    if (result == GX_OK) result = gxb_boolean_evaluate(e->solids[i].boolean, &e->found, &failure);
+    if (result == GX_OK) return 1;
+    o->status = status_of(result);
+    return gxio_fail(&o->error, "Boolean", 0, "%s", gxfailure_say(&failure, gxfailure_of_surfaces(result)).text);
+}
+
+/* A retained result may have vertices that no triangle has; the written surface has none of them. */
+static int output_solid(gxrunner_run *run, size_t i, gxio_shell *shell, gxrunner_outcome *o) {
+    expressions *e = expressions_of(run);
+    const gxb_boolean_result *found = &e->found;
+    const size_t corners = 3 * found->triangle_count;
+    size_t k, count = 0;
+    free(e->vertices);
+    free(e->triangles);
+    free(e->number);
+    e->vertices = (double *)gxio_array(found->vertex_count + 1, 3 * sizeof(double));
+    e->triangles = (uint32_t *)gxio_array(corners + 1, sizeof(uint32_t));
+    e->number = (uint32_t *)calloc(found->vertex_count + 1, sizeof(uint32_t));
+    if (!e->vertices || !e->triangles || !e->number) {
+        o->status = "crash";
+        return gxio_fail(&o->error, "result", 0, "out of memory");
+    }
+    for (k = 0; k < corners; k++) e->number[found->triangles[k]] = 1;
+    for (k = 0; k < found->vertex_count; k++) {
+        if (!e->number[k]) continue;
+        memcpy(e->vertices + 3 * count, found->vertices + 3 * k, 3 * sizeof(double));
+        e->number[k] = (uint32_t)count++;
+    }
+    for (k = 0; k < corners; k++) e->triangles[k] = e->number[found->triangles[k]];
+    shell->vertices = e->vertices;
+    shell->vertex_count = count;
+    shell->triangles = e->triangles;
+    shell->triangle_count = found->triangle_count;
+    if (!e->solids[i].is_chain || run->solids[i].last_use == i) {
+        gxb_boolean_destroy(e->solids[i].boolean);
+        e->solids[i].boolean = NULL;
+    }
+    return 1;
+}
+
 /* Runs a request of the Open Boolean Benchmark. */
-static int serve(const settings *set, gxio_error *error) {
+static int serve(settings *set, gxio_error *error) {
     gxrunner_options options;
+    gxrunner_engine engine;
     options.request = set->request;
     options.result = set->result;
     options.ending = set->ending ? set->ending : ".off";
-    options.rule = set->rule;
-    options.triangulation = set->triangulation;
-    options.fine = set->fine;
-    options.mend = set->mend;
-    switch (gxrunner_serve(&options, error)) {
+    engine.settings = set;
+    engine.start = start_run;
+    engine.stop = stop_run;
+    engine.load = NULL;
+    engine.combine = combine_solids;
+    engine.output = output_solid;
+    switch (gxrunner_serve(&options, &engine, error)) {
     case GXRUNNER_DONE: return EXIT_DONE;
     case GXRUNNER_FAILED: gxio_fail(error, set->result, 0, "not all operations succeeded"); return EXIT_FAILED;
     default: return EXIT_MISUSED;
