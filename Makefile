@@ -60,6 +60,7 @@ help:
 	@echo "  failure        hard cases: which method is right, wrong, refuses, diverges, crashes"
 	@echo "  scaling        cost of a cut and a step, memory and unknowns against elements, cuts and triangles; MESH=FILE: that body too"
 	@echo "  kernel         Booleans of closed surfaces; DATA=FOLDER: also of the OFF files there"
+	@echo "  open           workloads like the Open Boolean Benchmark's beside manifold and CGAL; LIMIT=, RUNNERS=; installs CGAL and npm"
 	@echo "  smallest       the smallest program with the kernel: time to compile and size, with and without GXFEM_STATIC"
 	@echo "  solver         time steps by preconditioner, beside CHOLMOD (installs SuiteSparse where it is missing)"
 	@echo "  violent        starts at which Newton's method is known to fail: inverted, flattened, collapsed bodies"
@@ -297,7 +298,7 @@ check-wasm:
 
 # ---- benches. Only their CSV goes to stdout. BENCH=--small: smaller ones, with a folder of their own for tables and charts
 
-benches = quadrature stepping front space table2 conditioning failure scaling kernel smallest solver violent accuracy drift frames skin blade strokes soak
+benches = quadrature stepping front space table2 conditioning failure scaling kernel open smallest solver violent accuracy drift frames skin blade strokes soak
 small = $(filter --small,$(BENCH))
 tables = $(BUILD)/bench$(if $(small),/small)
 # The compiler's own default: with -std=c99 gcc fuses no multiplications with additions, whatever -march says.
@@ -311,7 +312,7 @@ $(filter-out %/solver,$(bench_programs)): $(BUILD)/bench/%: bench/%.c $(wildcard
 	@mkdir -p $(@D)
 	@$(CC) $(bench_standard) $(WARNINGS) $(BENCH_CFLAGS) $< -o $@ $(LDFLAGS) -lm
 
-$(BUILD)/bench/space $(BUILD)/bench/scaling: examples/gxio.h
+$(BUILD)/bench/space $(BUILD)/bench/scaling $(BUILD)/bench/open: examples/gxio.h examples/gxjson.h
 $(BUILD)/bench/kernel: tests/workloads.h tests/oracle.h tests/rational.h
 
 $(BUILD)/bench/solver: bench/solver.c $(wildcard bench/*.h) $(headers)
@@ -332,10 +333,20 @@ bench-kernel: $(BUILD)/bench/kernel
 	@mkdir -p $(tables)
 	@$< $(tables)/kernel.csv $(DATA)
 
+# Other kernels are optional: they need a C++ compiler, CGAL, and node with npm, or manifold known to pkg-config. RUNNERS=gxfem: none
+bench-open: $(BUILD)/bench/open $(BUILD)/bench/gxboolean
+	@[ -n "$(RUNNERS)" ] || sh tests/install.sh open >&2 || true
+	@mkdir -p $(tables)
+	@RUNNERS="$(RUNNERS)" sh bench/open.sh $(BUILD) $(tables)/open.csv $(BENCH)
+
+$(BUILD)/bench/gxboolean: examples/gxboolean.c $(headers) $(wildcard examples/*.h)
+	@mkdir -p $(@D)
+	@$(CC) $(bench_standard) $(WARNINGS) $(BENCH_CFLAGS) -DGXFEM_STATIC -I. $< -o $@ $(LDFLAGS) -lm
+
 bench-smallest:
 	@CC="$(CC)" sh bench/smallest.sh $(tables)
 
-plain_benches = $(filter-out bench-solver bench-kernel bench-smallest bench-table2 bench-stepping,$(benches:%=bench-%))
+plain_benches = $(filter-out bench-solver bench-kernel bench-open bench-smallest bench-table2 bench-stepping,$(benches:%=bench-%))
 $(plain_benches): bench-%: $(BUILD)/bench/%
 	@mkdir -p $(tables)
 	@$< $(tables)/$*.csv $(BENCH) $(if $(filter scaling,$*),$(MESH))
