@@ -364,10 +364,12 @@ static void write_all(const char *folder, int small) {
     if (small) return;
     write_dome(folder, "dome_250", 250, 64);
     write_dome(folder, "dome_1000", 1000, 64);
+    write_spheres(folder, "spheres_500", 11, 0, 0);
     write_spheres(folder, "spheres_131k", 181, 0, 0);
     write_spheres(folder, "bumpy_131k", 181, 0.1, 0);
     write_spheres(folder, "crossing_131k", 181, 0, 1);
     write_spheres(folder, "spheres_524k", 362, 0, 0);
+    write_spheres(folder, "spheres_2m", 708, 0, 0);
 }
 
 /* ----- volumes */
