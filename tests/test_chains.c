@@ -348,6 +348,11 @@ START_TEST(retained_results_are_those_of_a_fresh_boolean) {
 }
 END_TEST
 
+/* Chains that once failed: a triangle stays when the other side of a sheet appears behind it, and bears the sheet's
+ * name. */
+START_TEST(chains_that_failed) { check_chain(1000824); }
+END_TEST
+
 /* test_chains [FIRST END]: the chains of these seeds */
 int main(int argc, char **argv) {
     Suite *suite = suite_create("chains");
@@ -358,8 +363,10 @@ int main(int argc, char **argv) {
         seeds[1] = strtoull(argv[2], NULL, 10);
         tcase_set_timeout(tests, 0);
         tcase_add_test(tests, given_chains);
-    } else
+    } else {
         tcase_add_loop_test(tests, retained_results_are_those_of_a_fresh_boolean, 0, 10);
+        tcase_add_test(tests, chains_that_failed);
+    }
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }
