@@ -75,6 +75,8 @@ help:
 	@echo "make check-amalgam  compile tests of that header"
 	@echo "make install     the headers and gxfem.pc, for pkg-config; PREFIX=/usr/local, DESTDIR= (a stage)"
 	@echo "make check-package  installs into $(BUILD)/package and uses that: by CMake, if it is there, and by pkg-config"
+	@echo "make web         a page on which one slices a jelly, in $(BUILD)/web; any file server shows it (needs clang's parts for WebAssembly)"
+	@echo "make check-web   opens it in headless Chromium: slices, pulls, undoes; installs Chromium and node where they are missing"
 	@echo "make lib         a shared library of all that is public, $(library); docs/EMBEDDING.md says what for"
 	@echo "make bindings    what other languages declare of it, out of the headers: Python, C#, tests/bindings/abi.txt (needs python3)"
 	@echo "make check-bindings  tests these; installs numpy and mono's C# compiler where they are missing"
@@ -123,6 +125,32 @@ demo: $(BUILD)/demo/gxcut
 check-page: demo
 	@if sh tests/install.sh page; then node tests/check_page.mjs $(BUILD)/demo/demo.html 36 $(BUILD)/check-page; \
 	else echo "left out: no chromium"; fi
+
+# ---- the page on which one slices a jelly
+
+web_files = index.html page.js worker.js player.js jelly.wasm jelly-simd.wasm
+web: $(web_files:%=$(BUILD)/web/%)
+	@echo "look      serve $(BUILD)/web, for example: python3 -m http.server -d $(BUILD)/web"
+
+$(BUILD)/web/%: examples/web/%
+	@mkdir -p $(@D)
+	@cp $< $@
+
+$(BUILD)/web/player.js: examples/player.js
+	@mkdir -p $(@D)
+	@cp $< $@
+
+web_clang = $(or $(CLANG),clang) --target=wasm32-wasi --sysroot=$(or $(SYSROOT),/usr) -std=c99 -O2 $(WARNINGS) -I. -mexec-model=reactor
+web_link = -Wl,-z,stack-size=262144 -Wl,--stack-first -Wl,--strip-all -lm
+$(BUILD)/web/jelly.wasm: web_vectors =
+$(BUILD)/web/jelly-simd.wasm: web_vectors = -msimd128
+$(BUILD)/web/jelly.wasm $(BUILD)/web/jelly-simd.wasm: examples/web/jelly.c examples/gxshape.h $(headers)
+	@sh tests/install.sh wasm
+	@mkdir -p $(@D)
+	$(web_clang) $(web_vectors) $< -o $@ $(web_link)
+
+check-web: web
+	@if sh tests/install.sh page; then node tests/check_web.mjs $(BUILD)/web $(BUILD)/check-web; else echo "left out: no chromium"; fi
 
 # ---- the shared library, and what other languages see of it
 
@@ -433,4 +461,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help lib bindings check-bindings examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes check-settled compile amalgam check-amalgam install check-package coverage formatted lint format fuzz fuzz-blade flags hashes platforms check-wasm $(benches:%=bench-%) bench charts check-all clean
+.PHONY: help web check-web lib bindings check-bindings examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes check-settled compile amalgam check-amalgam install check-package coverage formatted lint format fuzz fuzz-blade flags hashes platforms check-wasm $(benches:%=bench-%) bench charts check-all clean
