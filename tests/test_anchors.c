@@ -737,9 +737,18 @@ START_TEST(copies_and_going_back) {
 }
 END_TEST
 
-/* Far from the origin, and of any size; an element as flat as a sheet of paper. */
+/* Turns a point about two axes, so that no axis stays one. */
+static void turn(double x[3]) {
+    const double y = 0.8 * x[1] - 0.6 * x[2], z = 0.6 * x[1] + 0.8 * x[2], first = x[0];
+    x[0] = (5 * first - 12 * z) / 13;
+    x[1] = y;
+    x[2] = (12 * first + 5 * z) / 13;
+}
+
+/* Far from the origin, and of any size; an element as flat as a sheet of paper, along the axes and across them, where
+   the terms of its volume cancel. */
 START_TEST(far_small_and_flat) {
-    static const double sizes[6] = {1, 1e-6, 1e6, 1e-29, 1e29, 1}, offsets[6] = {1e8, 0.3, 12345678.9, 0, 0, 0};
+    static const double sizes[7] = {1, 1e-6, 1e6, 1e-29, 1e29, 1, 1}, offsets[7] = {1e8, 0.3, 12345678.9, 0, 0, 0, 0};
     const double h = sizes[_i], o = offsets[_i];
     static cuts c;
     workload w = grid(2, 2, 1, 5);
@@ -751,6 +760,8 @@ START_TEST(far_small_and_flat) {
     for (i = 0; i < w.node_count; i++) {
         int k;
         if (_i == 5) w.positions[3 * i + 2] *= 1e-9;
+        if (_i == 6) w.positions[3 * i + 2] *= 1e-7;
+        if (_i == 6) turn(w.positions + 3 * i);
         for (k = 0; k < 3; k++) w.positions[3 * i + (size_t)k] = o + h * w.positions[3 * i + (size_t)k];
     }
     body = body_of(&w);
@@ -972,7 +983,7 @@ static Suite *suite(void) {
     tcase_add_test(tests, steps_by_anchors);
     tcase_add_test(tests, lost_anchors_do_nothing);
     ADD_SOME(tests, copies_and_going_back, 10);
-    tcase_add_loop_test(tests, far_small_and_flat, 0, 6);
+    tcase_add_loop_test(tests, far_small_and_flat, 0, 7);
     tcase_add_test(tests, refused_anchors);
     tcase_add_test(tests, refused_steps);
     suite_add_tcase(s, tests);
