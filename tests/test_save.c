@@ -689,6 +689,57 @@ START_TEST(restoring_from_near_strangers) {
 }
 END_TEST
 
+/* Between bodies that hold other regions, nodes or anchors, of the same counts and of others: their own are held. */
+START_TEST(restoring_what_is_held) {
+    enum { SETS = 8 };
+    static const uint32_t nodes[3][2] = {{0, 1}, {0, 2}, {1, 2}}, three[3] = {0, 1, 2};
+    workload w = grid(2, 1, 1, 6);
+    gx_body *bodies[SETS];
+    gx_step_desc step;
+    int i, j;
+    memset(&step, 0, sizeof step);
+    step.dt = 0.01;
+    step.gravity[2] = -1;
+    for (i = 0; i < SETS; i++) {
+        gx_region regions[2] = {gx_region_half_space(2, -1, 0.5), gx_region_half_space(0, -1, 0.5)};
+        gx_anchor anchors[2];
+        bodies[i] = body_of(&w);
+        for (j = 0; j < 2; j++) { /* near a node of the first element */
+            double x[3] = {0, 0, 0};
+            int n, k;
+            for (n = 0; n < 4; n++)
+                for (k = 0; k < 3; k++)
+                    x[k] += w.positions[3 * w.elements[n] + (size_t)k] * (n == (j == 0 ? 0 : i % 2 + 1) ? 0.7 : 0.1);
+            ck_assert_int_eq(gx_body_anchor(bodies[i], 0, x, &anchors[j], NULL), GX_OK);
+        }
+        if (i >= 2) memset(regions, 0, sizeof regions);
+        if (i >= 2) regions[0].kind = i < 5 ? GX_REGION_NODES : GX_REGION_ANCHORS;
+        if (i >= 2 && i < 5) {
+            regions[0].nodes = i == 4 ? three : nodes[i - 2];
+            regions[0].node_count = i == 4 ? 3 : 2;
+        } else if (i >= 5) {
+            regions[0].anchors = anchors;
+            regions[0].anchor_count = 2;
+        }
+        ck_assert_int_eq(gx_body_hold(bodies[i], regions, i == 7 ? 0 : i == 1 ? 2 : 1, NULL), GX_OK);
+        shake(bodies[i], 0.01);
+    }
+    for (i = 0; i < SETS; i++)
+        for (j = 0; j < SETS; j++) {
+            gx_body *clone = clone_of(bodies[i]), *goal = clone_of(bodies[j]);
+            shake(clone, 0.01);
+            ck_assert_int_eq(gx_body_step(clone, &step, NULL, NULL), GX_OK);
+            ck_assert_int_eq(gx_body_restore(clone, goal, NULL), GX_OK);
+            expect_equal(clone, goal, (uint64_t)(SETS * i + j));
+            expect_same_steps(clone, goal, &step, 2, (uint64_t)(SETS * i + j));
+            gx_body_destroy(clone);
+            gx_body_destroy(goal);
+        }
+    for (i = 0; i < SETS; i++) gx_body_destroy(bodies[i]);
+    wl_free(&w);
+}
+END_TEST
+
 /* The fragments that a view has reported as removed, and what it said of the others, go with the body. */
 START_TEST(removed_fragments_are_kept) {
     workload w = grid(2, 1, 1, 5);
@@ -1305,6 +1356,7 @@ int main(void) {
     tcase_add_loop_test(tests, rollback, 0, 4);
     tcase_add_test(tests, restoring_from_strangers);
     tcase_add_test(tests, restoring_from_near_strangers);
+    tcase_add_test(tests, restoring_what_is_held);
     tcase_add_test(tests, removed_fragments_are_kept);
     tcase_add_test(tests, epochs_go_with_the_copies);
     tcase_add_test(tests, copies_stand_alone);
