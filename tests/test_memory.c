@@ -10,7 +10,6 @@
 #define GXFEM_IMPLEMENTATION
 #endif
 #include "../gxfem.h"
-#include <stdio.h>
 #include "runner.h"
 #include "scarce.h"
 
@@ -893,15 +892,40 @@ typedef struct stroke {
     const action *before;
     double min_advance;
     int count;
-    double y[MOST_MOVES], z[MOST_MOVES], shift[MOST_MOVES]; /* of the edge, along x; of the body along y before a move */
+    double y[MOST_MOVES], z[MOST_MOVES]; /* of the edge, which lies along x */
+    double shift[MOST_MOVES];            /* of the body along y, before a move */
 } stroke;
 
 static const action in_a_slit[] = {cut_slit, NULL};
 static const stroke strokes[] = {
-    {"down both arms", in_a_slit, 0.7, 11, {0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5}, {7.7, 6.8, 6.1, 5.6, 5.0, 4.3, 3.6, 3.2, 2.4, 1.3, -0.7}, {0}},
-    {"up into both arms", in_a_slit, 0.7, 11, {0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5}, {-0.7, 0.4, 1.6, 2.3, 2.8, 3.3, 4.0, 4.6, 5.5, 6.4, 7.8}, {0}},
-    {"out of its cut through the side", nothing, 0.7, 8, {0.5, 0.5, 0.5, 0.5, 0.8, 0.9, 1.2, 1.8}, {7.6, 6.7, 6.0, 5.3, 5.3, 4.9, 4.9, 4.9}, {0}},
-    {"in a body that is shifted", nothing, 0, 5, {0.5, 0.5, 2.9, 2.9, 2.9}, {7.6, 5.1, 3.6, 1.4, -0.9}, {0, 0, 2.4, 0, 0}},
+    {"down both arms",
+     in_a_slit,
+     0.7,
+     11,
+     {0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5},
+     {7.7, 6.8, 6.1, 5.6, 5.0, 4.3, 3.6, 3.2, 2.4, 1.3, -0.7},
+     {0}},
+    {"up into both arms",
+     in_a_slit,
+     0.7,
+     11,
+     {0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5},
+     {-0.7, 0.4, 1.6, 2.3, 2.8, 3.3, 4.0, 4.6, 5.5, 6.4, 7.8},
+     {0}},
+    {"out of its cut through the side",
+     nothing,
+     0.7,
+     8,
+     {0.5, 0.5, 0.5, 0.5, 0.8, 0.9, 1.2, 1.8},
+     {7.6, 6.7, 6.0, 5.3, 5.3, 4.9, 4.9, 4.9},
+     {0}},
+    {"in a body that is shifted",
+     nothing,
+     0,
+     5,
+     {0.5, 0.5, 2.9, 2.9, 2.9},
+     {7.6, 5.1, 3.6, 1.4, -0.9},
+     {0, 0, 2.4, 0, 0}},
 };
 enum { STROKES = sizeof strokes / sizeof *strokes };
 
@@ -953,7 +977,6 @@ START_TEST(memory_of_strokes) {
         never_fail(&m);
         ck_assert_int_eq(move_along(plain, s, k), GX_OK);
         ck_assert_msg(gx_body_state_hash(body) == gx_body_state_hash(plain), "%s, move %d: another state", s->what, k);
-        { gxp_blade_state *st=&plain->blades->now; gx_view v; gx_body_view(plain,&v,NULL);gx_body_view(body,&v,NULL); fprintf(stderr,"%s move %d asks %zu layers %u fr %zu\n", s->what,k,n,st->layers.count, v.fragment_count);}
     }
     ck_assert_uint_gt(failures, 50);
     gx_body_destroy(body);
