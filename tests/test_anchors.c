@@ -903,6 +903,31 @@ START_TEST(refused_anchors) {
 }
 END_TEST
 
+/* An element between two planes with no double between them: nothing can stand inside it. */
+START_TEST(nowhere_to_stand) {
+    static double positions[12] = {0, 0, 1, 1, 0, 1, 0, 1, 1, 0.25, 0.25, 1 + 2.220446049250313e-16};
+    static uint32_t elements[4] = {0, 1, 2, 3};
+    static const double x[3] = {0.25, 0.25, 1};
+    workload w = wl_empty();
+    gx_body *body;
+    gx_anchor a;
+    gx_failure failure;
+    gx_hit hit;
+    uint64_t state;
+    w.positions = positions;
+    w.elements = elements;
+    w.node_count = 4;
+    w.element_count = 1;
+    body = body_of(&w);
+    state = gx_body_state_hash(body);
+    REFUSED(gx_body_anchor(body, 0, x, &a, &failure), GX_ERROR_FLAT, "material", SIZE_MAX);
+    ck_assert_int_eq(gx_body_locate(body, x, 1, &hit, NULL), GX_OK);
+    ck_assert_uint_eq(hit.element, 0);
+    REFUSED(gx_hit_anchor(body, &hit, &a, &failure), GX_ERROR_FLAT, "hit.material", SIZE_MAX);
+    gx_body_destroy(body);
+}
+END_TEST
+
 START_TEST(refused_steps) {
     workload w = grid(1, 1, 1, 5);
     gx_body *body;
@@ -985,6 +1010,7 @@ static Suite *suite(void) {
     ADD_SOME(tests, copies_and_going_back, 10);
     tcase_add_loop_test(tests, far_small_and_flat, 0, 7);
     tcase_add_test(tests, refused_anchors);
+    tcase_add_test(tests, nowhere_to_stand);
     tcase_add_test(tests, refused_steps);
     suite_add_tcase(s, tests);
     return s;

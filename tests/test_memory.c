@@ -693,13 +693,15 @@ START_TEST(copies) {
 }
 END_TEST
 
-/* To a body with other cuts, to one with another state only, to one with more room than before */
+/* To a body with other cuts, to one with another state only, to one with more room than before, to one with blades */
 START_TEST(restoring) {
-    static const action *const sources[4] = {nothing, moved, moved, moved}, *const bodies[4] = {moved, after_a_cut,
-                                                                                                moved, unmoved};
+    static const action with_blades[] = {cut_sheet, blade_inside, blade_inside, NULL};
+    static const action *const sources[5] = {nothing, moved, moved, moved, with_blades}, *const bodies[5] = {
+                                                                                             moved, after_a_cut, moved,
+                                                                                             unmoved, after_a_cut};
     memory m;
     int i;
-    for (i = 0; i < 4; i++) {
+    for (i = 0; i < 5; i++) {
         m = plenty();
         source = prepared(&m, sources[i]);
         if (i == 2) ck_assert_int_eq(step_bdf2(source), GX_OK);
