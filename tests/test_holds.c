@@ -272,9 +272,9 @@ START_TEST(what_regions_hold) {
 }
 END_TEST
 
-/* A ball whose square is no double holds all, one whose square is 0 the node that it is around. */
+/* A ball whose square is no double holds all, one whose square is next to nothing the node that it is around. */
 START_TEST(balls_beyond_doubles) {
-    static const double at[3] = {0, 0, 0}, radius[2] = {1e200, 1e-200};
+    static const double at[3] = {0, 0, 0}, radius[2] = {1e200, 1e-145};
     workload w = grid(2, 1, 1, 5);
     gx_body *body = body_of(&w);
     const gx_region ball = gx_region_sphere(at, radius[_i]);
