@@ -304,7 +304,8 @@ typedef struct gx_view {
     size_t copy_count;
     const uint32_t *copy_node; /* copy_count */
     const uint8_t *copy_held;  /* copy_count, 1: held by a region (gx_body_hold) */
-    /* copy_count: the first of the regions that hold the copy, which moves it; UINT32_MAX: none */
+    /* copy_count: the first of the regions that hold the copy, which moves it; UINT32_MAX: none. Or NULL: no region
+       holds anything */
     const uint32_t *copy_region;
     /* Names this numbering of copies. A cut that creates or removes copies begins a new one; other cuts keep it. 0: no
        cut has begun one yet. Bodies that were cut alike have the same epoch, others have different ones. */

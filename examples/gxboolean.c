@@ -32,6 +32,7 @@ typedef struct settings {
     uint32_t rule;
     uint32_t triangulation;
     int fine, mend;
+    int last_only;
     int help;
 } settings;
 
@@ -59,6 +60,7 @@ static const char usage[] =
     "                      runs the operations of a request of the Open Boolean Benchmark, says in the result how they "
     "went\n"
     "  --format NAME       of the surfaces that a request makes: off (default), obj or stl\n"
+    "  --last-only         writes no surface that a later operation of the request takes\n"
     "  --help              this text\n";
 
 /* GXB_UNION ... */
@@ -86,6 +88,8 @@ static int take_flag(settings *set, const char *name) {
         set->fine = 1;
     else if (strcmp(name, "--mend") == 0)
         set->mend = 1;
+    else if (strcmp(name, "--last-only") == 0)
+        set->last_only = 1;
     else if (strcmp(name, "--help") == 0)
         set->help = 1;
     else
@@ -126,6 +130,7 @@ static int take_value(settings *set, const char *name, const char *value, gxio_e
 static int check_purpose(const settings *set, gxio_error *error) {
     if (set->help) return 1;
     if (!set->request && !set->result) {
+        if (set->last_only) return gxio_fail(error, "--last-only", 0, "belongs to --request");
         if (set->ending)
             return gxio_fail(error, "--format", 0, "belongs to --request; --out has its format by its name");
         if (set->count > 0) return 1;
@@ -275,13 +280,14 @@ typedef struct solid {
     int is_chain;         /* or a file */
     size_t before;        /* of a chain: the solid that it extends */
     size_t first;         /* of a chain: the argument that is that solid */
-    gxb_boolean *boolean; /* of a chain that is extended later; else of the latest solid */
+    gxb_boolean *boolean; /* of a chain that is extended later, and of the latest solid */
 } solid;
 
 /* What the engine has of a run */
 typedef struct expressions {
     solid *solids;
     size_t *leaves; /* solids of files, by operand */
+    size_t latest;  /* the solid of which `found` is the result */
     size_t expressed;
     unsigned char *needed, *inside; /* by solid */
     uint32_t rule;
@@ -457,6 +463,11 @@ static int combine_solids(gxrunner_run *run, size_t i, gxrunner_outcome *o) {
     expressions *e = expressions_of(run);
     gx_failure failure;
     gx_result result = e->solids[i].is_chain ? open_chain(run, i, &failure) : open_expression(run, i, &failure);
+    if (!e->solids[e->latest].is_chain || run->solids[e->latest].last_use <= i) {
+        gxb_boolean_destroy(e->solids[e->latest].boolean);
+        e->solids[e->latest].boolean = NULL;
+    }
+    e->latest = i;
     if (result == GX_OK) result = gxb_boolean_evaluate(e->solids[i].boolean, &e->found, &failure);
     if (result == GX_OK) return 1;
     o->status = status_of(result);
@@ -469,6 +480,7 @@ static int output_solid(gxrunner_run *run, size_t i, gxio_shell *shell, gxrunner
     const gxb_boolean_result *found = &e->found;
     const size_t corners = 3 * found->triangle_count;
     size_t k, count = 0;
+    (void)i; /* the latest */
     free(e->vertices);
     free(e->triangles);
     free(e->number);
@@ -490,10 +502,6 @@ static int output_solid(gxrunner_run *run, size_t i, gxio_shell *shell, gxrunner
     shell->vertex_count = count;
     shell->triangles = e->triangles;
     shell->triangle_count = found->triangle_count;
-    if (!e->solids[i].is_chain || run->solids[i].last_use == i) {
-        gxb_boolean_destroy(e->solids[i].boolean);
-        e->solids[i].boolean = NULL;
-    }
     return 1;
 }
 
@@ -504,6 +512,7 @@ static int serve(settings *set, gxio_error *error) {
     options.request = set->request;
     options.result = set->result;
     options.ending = set->ending ? set->ending : ".off";
+    options.last_only = set->last_only;
     engine.settings = set;
     engine.start = start_run;
     engine.stop = stop_run;

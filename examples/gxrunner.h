@@ -16,6 +16,7 @@
 typedef struct gxrunner_options {
     const char *request, *result;
     const char *ending; /* of written surfaces: ".off", ".obj" or ".stl" */
+    int last_only;      /* writes no solid that a later operation takes; the contract wants all */
 } gxrunner_options;
 
 /* --------------------------------------------------------------------------------------------- >>request */
@@ -206,7 +207,8 @@ static inline int gxrunner_operate(gxrunner_run *run, size_t i, gxrunner_outcome
     int good;
     memset(o, 0, sizeof *o);
     o->status = "success";
-    good = gxrunner_make(run, i, o) && gxrunner_write_solid(run, i, o);
+    good = gxrunner_make(run, i, o);
+    if (good && !(run->options->last_only && run->solids[i].last_use > i)) good = gxrunner_write_solid(run, i, o);
     o->total = gxio_seconds(NULL) - start;
     return good;
 }
@@ -277,7 +279,7 @@ static inline void gxrunner_say_outcome(gxrunner_text *t, const gxrunner_outcome
         gxrunner_say_time(t, "export_ms", o->output);
     }
     gxrunner_say(t, ", \"file\": ");
-    gxrunner_say_string(t, strcmp(o->status, "success") == 0 ? o->file : "");
+    gxrunner_say_string(t, *o->error.text ? "" : o->file);
     if (*o->error.text) {
         gxrunner_say(t, ", \"error\": ");
         gxrunner_say_string(t, o->error.text);

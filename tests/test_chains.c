@@ -348,6 +348,11 @@ START_TEST(retained_results_are_those_of_a_fresh_boolean) {
 }
 END_TEST
 
+/* Chains that once failed: a triangle stays when the other side of a sheet appears behind it, and bears the sheet's
+ * name. */
+START_TEST(chains_that_failed) { check_chain(1000824); }
+END_TEST
+
 static int is_all(const gxb_range *ranges, size_t count, size_t all) {
     return count == (all > 0) && (all == 0 || (ranges[0].first == 0 && ranges[0].count == all));
 }
@@ -405,6 +410,7 @@ int main(int argc, char **argv) {
         tcase_add_test(tests, given_chains);
     } else {
         tcase_add_loop_test(tests, retained_results_are_those_of_a_fresh_boolean, 0, 10);
+        tcase_add_test(tests, chains_that_failed);
         tcase_add_loop_test(anew, all_is_new_that_is_made_from_nothing, 0, 8);
     }
     suite_add_tcase(suite, tests);

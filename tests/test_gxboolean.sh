@@ -107,8 +107,10 @@ done
 gives "as solid 12" "-6:25" box_0.off --difference box_1.off --difference box_2.off --union box_3.off
 for solid in 9 10; do check "solid $solid is empty" "$(sed -n 2p one/op_$solid.off | grep -v '^0 0 0$')"; done
 
-"$program" --request request.json --result result.json --merged --mend --format stl >stdout 2>stderr
-gives "solid 6 as .stl" "-8:20" one/op_6.stl
+rm -r one && mkdir one
+"$program" --request request.json --result result.json --merged --mend --format stl --last-only >stdout 2>stderr
+check "last only" "$([ "$(cd one && echo *)" = "op_10.stl op_11.stl op_13.stl op_14.stl op_16.stl op_9.stl" ] || ls one)"
+gives "solid 11 as .stl" "-4:22" one/op_11.stl
 "$program" box_0.off --difference box_1.off --out drilled.stl >stdout && gives "another as .stl" "0:24" drilled.stl
 
 # misread LINE PATTERN TEXT: a request of this text is refused in this line
@@ -135,6 +137,7 @@ refuses "request alone" 2 "--request: needs the other" --request request.json
 refuses "result alone" 2 "--result: needs the other" --result out.off
 refuses "request and surface" 2 "--request: names all surfaces" --request request.json --result out.off box_0.off
 refuses "request and file" 2 "--request: names all surfaces" --request request.json --result out.off --out out.off
+refuses "last alone" 2 "--last-only: belongs to --request" box_0.off --last-only
 refuses "format alone" 2 "--format: belongs to --request" box_0.off --format off
 refuses "unknown format" 2 "--format: 'ply' is none of" --request request.json --result out.off --format ply
 
