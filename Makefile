@@ -19,8 +19,11 @@ scenes = $(filter-out embed gxcut gxboolean animation,$(examples))
 linked_examples = $(filter-out embed,$(examples))
 compile = $(CC) -std=c99 -g $(WARNINGS) $(CFLAGS)
 linked = $(compile) -DGXFEM_LINKED
-# Nothing is inlined: compiling takes most of these tests' time.
-sanitizers = -O1 -fno-inline -g1 -fsanitize=address,undefined -fno-sanitize-recover=all
+# Compiling takes most of these tests' time: only what runs long is optimised, and nothing is inlined.
+sanitizers = -O1 -fno-inline $(unoptimised_sanitizers)
+unoptimised_sanitizers = -g1 -fsanitize=address,undefined -fno-sanitize-recover=all
+long_tests = test_tight test_forces test_solve test_surface_boolean test_boolean test_steps test_save test_blade test_memory test_settle \
+    test_affine test_updates test_oracle test_near
 
 help:
 	@echo "make demo        cuts a cube of 5 tetrahedra into 36 sticks, simulates it, writes a page that plays it (needs a C compiler only)"
@@ -57,6 +60,7 @@ help:
 	@echo "  failure        hard cases: which method is right, wrong, refuses, diverges, crashes"
 	@echo "  scaling        cost of a cut and a step, memory and unknowns against elements, cuts and triangles; MESH=FILE: that body too"
 	@echo "  kernel         Booleans of closed surfaces; DATA=FOLDER: also of the OFF files there"
+	@echo "  open           workloads like the Open Boolean Benchmark's beside manifold and CGAL; LIMIT=, RUNNERS=; installs CGAL and npm"
 	@echo "  smallest       the smallest program with the kernel: time to compile and size, with and without GXFEM_STATIC"
 	@echo "  solver         time steps by preconditioner, beside CHOLMOD (installs SuiteSparse where it is missing)"
 	@echo "  violent        starts at which Newton's method is known to fail: inverted, flattened, collapsed bodies"
@@ -71,6 +75,11 @@ help:
 	@echo "make check-amalgam  compile tests of that header"
 	@echo "make install     the headers and gxfem.pc, for pkg-config; PREFIX=/usr/local, DESTDIR= (a stage)"
 	@echo "make check-package  installs into $(BUILD)/package and uses that: by CMake, if it is there, and by pkg-config"
+	@echo "make web         a page on which one slices a jelly, in $(BUILD)/web; any file server shows it (needs clang's parts for WebAssembly)"
+	@echo "make check-web   opens it in headless Chromium: slices, pulls, undoes; installs Chromium and node where they are missing"
+	@echo "make lib         a shared library of all that is public, $(library); docs/EMBEDDING.md says what for"
+	@echo "make bindings    what other languages declare of it, out of the headers: Python, C#, tests/bindings/abi.txt (needs python3)"
+	@echo "make check-bindings  tests these; installs numpy and mono's C# compiler where they are missing"
 	@echo "make coverage    lines and branches of the headers that make check reaches: $(BUILD)/coverage/; needs gcc and gcov;"
 	@echo "                 tests/unreached.txt says why others are not"
 	@echo "make clean       removes $(BUILD)/"
@@ -116,6 +125,54 @@ demo: $(BUILD)/demo/gxcut
 check-page: demo
 	@if sh tests/install.sh page; then node tests/check_page.mjs $(BUILD)/demo/demo.html 36 $(BUILD)/check-page; \
 	else echo "left out: no chromium"; fi
+
+# ---- the page on which one slices a jelly
+
+web_files = index.html page.js worker.js player.js jelly.wasm jelly-simd.wasm
+web: $(web_files:%=$(BUILD)/web/%)
+	@echo "look      serve $(BUILD)/web, for example: python3 -m http.server -d $(BUILD)/web"
+
+$(BUILD)/web/%: examples/web/%
+	@mkdir -p $(@D)
+	@cp $< $@
+
+$(BUILD)/web/player.js: examples/player.js
+	@mkdir -p $(@D)
+	@cp $< $@
+
+web_clang = $(or $(CLANG),clang) --target=wasm32-wasi --sysroot=$(or $(SYSROOT),/usr) -std=c99 -O2 $(WARNINGS) -I. -mexec-model=reactor
+web_link = -Wl,-z,stack-size=262144 -Wl,--stack-first -Wl,--strip-all -lm
+$(BUILD)/web/jelly.wasm: web_vectors =
+$(BUILD)/web/jelly-simd.wasm: web_vectors = -msimd128
+$(BUILD)/web/jelly.wasm $(BUILD)/web/jelly-simd.wasm: examples/web/jelly.c examples/gxshape.h $(headers)
+	@sh tests/install.sh wasm
+	@mkdir -p $(@D)
+	$(web_clang) $(web_vectors) $< -o $@ $(web_link)
+
+check-web: web
+	@if sh tests/install.sh page; then node tests/check_web.mjs $(BUILD)/web $(BUILD)/check-web; else echo "left out: no chromium"; fi
+
+# ---- the shared library, and what other languages see of it
+
+target := $(shell $(CC) -dumpmachine 2>/dev/null)
+windows_target = $(or $(findstring mingw,$(target)),$(findstring windows,$(target)))
+library = $(BUILD)/$(if $(windows_target),gxfem.dll,$(if $(findstring darwin,$(target)),libgxfem.dylib,libgxfem.so))
+exported = $(if $(windows_target),__declspec(dllexport),__attribute__((visibility("default"))))
+
+lib: $(library)
+
+$(library): $(headers)
+	@mkdir -p $(@D)
+	printf '#define GXFEM_API $(exported)\n#define GXFEM_IMPLEMENTATION\n#include "gxfem.h"\n' | \
+	    $(compile) -shared $(if $(windows_target),,-fPIC -fvisibility=hidden) -I. -x c - -o $@ $(LDFLAGS) -lm
+
+bindings:
+	@for kind in abi:tests/bindings/abi.txt python:examples/python/gxfem_declarations.py csharp:examples/csharp/Gxfem.cs; do \
+	    sh examples/python/declare.sh $${kind%%:*} >$${kind#*:}.part && mv $${kind#*:}.part $${kind#*:} || exit 1; done
+
+check-bindings: lib
+	@sh tests/install.sh bindings || true
+	@CC="$(CC)" sh tests/bindings.sh $(BUILD) $(library)
 
 # ---- scenes. Without gnuplot only the chart is missing.
 
@@ -172,11 +229,15 @@ $(BUILD)/recipes.h: docs/RECIPES.md tests/recipes.awk
 	@mkdir -p $(@D)
 	awk -f tests/recipes.awk $< >$@
 
-# All tests except those of the benches' baselines
+# All tests except those of the benches' baselines. Under -fno-inline, clang 14 reports temporary structs of tests with exact numbers as
+# used out of their scope; the short tests are not compiled so.
 sanitize:
 	@sh tests/install.sh check
-	@CK_TIMEOUT_MULTIPLIER=10 $(MAKE) --no-print-directory -k -j$(JOBS) check-programs BUILD=$(BUILD)/sanitize CFLAGS="$(sanitizers)" \
-	    tests="$(filter-out test_baselines,$(tests))"
+	@export CK_TIMEOUT_MULTIPLIER=10; code=0; \
+	$(MAKE) --no-print-directory -k -j$(JOBS) check-programs BUILD=$(BUILD)/sanitize CFLAGS="$(sanitizers)" tests="$(long_tests)" || code=1; \
+	$(MAKE) --no-print-directory -k -j$(JOBS) $(patsubst %,run-%,$(filter-out test_baselines $(long_tests),$(tests))) \
+	    BUILD=$(BUILD)/sanitize CFLAGS="$(unoptimised_sanitizers)" || code=1; \
+	exit $$code
 
 # Every cut compacts, but for complexes of which a test wants to know the numbers later.
 settles = -O1 '-DGXBP_IS_SPARSE(sparse)=((sparse)||cx->settled<UINT64_MAX/8)'
@@ -290,7 +351,7 @@ check-wasm:
 
 # ---- benches. Only their CSV goes to stdout. BENCH=--small: smaller ones, with a folder of their own for tables and charts
 
-benches = quadrature stepping front space table2 conditioning failure scaling kernel smallest solver violent accuracy drift frames skin blade strokes soak
+benches = quadrature stepping front space table2 conditioning failure scaling kernel open smallest solver violent accuracy drift frames skin blade strokes soak
 small = $(filter --small,$(BENCH))
 tables = $(BUILD)/bench$(if $(small),/small)
 # The compiler's own default: with -std=c99 gcc fuses no multiplications with additions, whatever -march says.
@@ -304,7 +365,7 @@ $(filter-out %/solver,$(bench_programs)): $(BUILD)/bench/%: bench/%.c $(wildcard
 	@mkdir -p $(@D)
 	@$(CC) $(bench_standard) $(WARNINGS) $(BENCH_CFLAGS) $< -o $@ $(LDFLAGS) -lm
 
-$(BUILD)/bench/space $(BUILD)/bench/scaling: examples/gxio.h
+$(BUILD)/bench/space $(BUILD)/bench/scaling $(BUILD)/bench/open: examples/gxio.h examples/gxjson.h
 $(BUILD)/bench/kernel: tests/workloads.h tests/oracle.h tests/rational.h
 
 $(BUILD)/bench/solver: bench/solver.c $(wildcard bench/*.h) $(headers)
@@ -325,10 +386,20 @@ bench-kernel: $(BUILD)/bench/kernel
 	@mkdir -p $(tables)
 	@$< $(tables)/kernel.csv $(DATA)
 
+# Other kernels are optional: they need a C++ compiler, CGAL, and node with npm, or manifold known to pkg-config. RUNNERS=gxfem: none
+bench-open: $(BUILD)/bench/open $(BUILD)/bench/gxboolean
+	@[ -n "$(RUNNERS)" ] || sh tests/install.sh open >&2 || true
+	@mkdir -p $(tables)
+	@RUNNERS="$(RUNNERS)" sh bench/open.sh $(BUILD) $(tables)/open.csv $(BENCH)
+
+$(BUILD)/bench/gxboolean: examples/gxboolean.c $(headers) $(wildcard examples/*.h)
+	@mkdir -p $(@D)
+	@$(CC) $(bench_standard) $(WARNINGS) $(BENCH_CFLAGS) -DGXFEM_STATIC -I. $< -o $@ $(LDFLAGS) -lm
+
 bench-smallest:
 	@CC="$(CC)" sh bench/smallest.sh $(tables)
 
-plain_benches = $(filter-out bench-solver bench-kernel bench-smallest bench-table2 bench-stepping,$(benches:%=bench-%))
+plain_benches = $(filter-out bench-solver bench-kernel bench-open bench-smallest bench-table2 bench-stepping,$(benches:%=bench-%))
 $(plain_benches): bench-%: $(BUILD)/bench/%
 	@mkdir -p $(tables)
 	@$< $(tables)/$*.csv $(BENCH) $(if $(filter scaling,$*),$(MESH))
@@ -379,6 +450,7 @@ check-all: check
 	@$(MAKE) --no-print-directory compile
 	@$(MAKE) --no-print-directory check-amalgam
 	@$(MAKE) --no-print-directory check-package
+	@$(MAKE) --no-print-directory check-bindings
 	@$(MAKE) --no-print-directory sanitize
 	@for cc in gcc clang; do \
 	    if command -v $$cc >/dev/null; then $(MAKE) --no-print-directory check CC=$$cc BUILD=$(BUILD)/$$cc || exit 1; fi; done
@@ -389,4 +461,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes check-settled compile amalgam check-amalgam install check-package coverage formatted lint format fuzz fuzz-blade flags hashes platforms check-wasm $(benches:%=bench-%) bench charts check-all clean
+.PHONY: help web check-web lib bindings check-bindings examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes check-settled compile amalgam check-amalgam install check-package coverage formatted lint format fuzz fuzz-blade flags hashes platforms check-wasm $(benches:%=bench-%) bench charts check-all clean

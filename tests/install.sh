@@ -5,11 +5,13 @@
 #     cxx     a C++ compiler, for the compile tests
 #     bench   SuiteSparse, the direct solver in the benches
 #     charts  gnuplot, for charts
+#     open    CGAL and npm, for other kernels in the benches
 #     wasm    clang with its parts for WebAssembly, and node, which runs it
 #     platforms  cross compilers for Windows, ARM and S/390, and emulators that run their programs
 #     format  clang-format 14
 #     page    Chromium and node, for the page that the demo makes
 #     animation  the same, and img2webp, for the README's animated picture
+#     bindings  python3 with numpy, and mono's C# compiler, for the tests of bindings
 #     cmake   CMake, for the test of the installed package
 #     pictures  f3d, and a virtual display if there is no other, for pictures of scenes
 set -u
@@ -50,12 +52,14 @@ have() {
     cxx) has g++ || has clang++ || has c++ ;;
     bench) header cholmod.h || header suitesparse/cholmod.h ;;
     charts) has gnuplot ;;
+    open) has node npm && printf '#include <CGAL/version.h>\n' | "${CXX:-c++}" -x c++ -E - >/dev/null 2>&1 ;;
     wasm) has node && links_wasm ;;
     platforms) has x86_64-w64-mingw32-gcc i686-w64-mingw32-gcc wine aarch64-linux-gnu-gcc arm-linux-gnueabihf-gcc s390x-linux-gnu-gcc \
         qemu-aarch64-static qemu-arm-static qemu-s390x-static ;;
     format) has clang-format ;;
     page) has node && has_browser ;;
     animation) has node && has_browser && has img2webp ;;
+    bindings) has mcs && { python3 -c 'import numpy' || /usr/bin/python3 -c 'import numpy'; } 2>/dev/null ;;
     cmake) has cmake ;;
     pictures) has f3d && { [ -n "${DISPLAY:-}" ] || has xvfb-run; } ;;
     *) echo "$0: no group '$1'" >&2; exit 2 ;;
@@ -77,6 +81,10 @@ packages() {
     bench:pacman) echo suitesparse ;;
     bench:brew) echo suite-sparse pkg-config ;;
     charts:apt-get) echo gnuplot-nox ;;
+    open:apt-get) echo g++ libcgal-dev nodejs npm ;;
+    open:dnf) echo gcc-c++ CGAL-devel nodejs npm ;;
+    open:pacman) echo gcc cgal nodejs npm ;;
+    open:brew) echo cgal node ;;
     charts:*) echo gnuplot ;;
     wasm:apt-get) wasm_packages ;;
     platforms:apt-get) echo gcc-mingw-w64 wine wine64 qemu-user-static gcc-aarch64-linux-gnu gcc-arm-linux-gnueabihf gcc-s390x-linux-gnu ;;
@@ -88,6 +96,10 @@ packages() {
     animation:dnf) echo chromium nodejs libwebp-tools ;;
     animation:pacman) echo chromium nodejs libwebp ;;
     animation:brew) echo chromium node webp ;;
+    bindings:apt-get) echo python3-numpy mono-mcs ;;
+    bindings:dnf) echo python3-numpy mono-core ;;
+    bindings:pacman) echo python-numpy mono ;;
+    bindings:brew) echo numpy mono ;;
     cmake:*) echo cmake ;;
     pictures:apt-get) echo f3d xvfb xauth ;;
     pictures:dnf) echo f3d xorg-x11-server-Xvfb ;;
