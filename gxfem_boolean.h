@@ -353,8 +353,7 @@ typedef struct gxb_edge {
 typedef struct gxb_facet { /* a convex polygon */
     uint32_t plane;
     /* in complex.pool: edge * 2 + (1 if walked backwards), counter-clockwise about the normal; the count of a divided
-     * facet is 0. One that was made and divided since begin has in loop the plane that divided it: the first child lies
-     * in front. */
+     * facet is 0. One inside an element then has in loop the plane that divided it: the first child lies in front. */
     uint32_t loop, loop_count : 31;
     uint32_t wall : 1; /* 1: material on its two sides is separated */
     uint32_t leaf[2];  /* in front (where the normal points), behind; GXB_NONE outside the mesh */
@@ -383,7 +382,7 @@ typedef struct gxb_node {     /* of an element's tree of planes */
     uint32_t plane, child[2]; /* front, behind: leaf * 2 or node * 2 + 1 */
     uint32_t parent;          /* node, GXB_NONE: the element's root */
     uint32_t leaves;          /* below it */
-    uint32_t facet;           /* that its plane made. Of nodes older than the transaction it says nothing. */
+    uint32_t facet;           /* that its plane made, with its parts; GXB_NONE: see gxb_complex_compact */
 } gxb_node;
 
 /* Memory for exact numbers. A block never moves. */
@@ -2912,7 +2911,7 @@ static GXBP_COLD void gxbp_compact_pool(gxb_complex *cx) {
     if (pool == NULL) return;
     for (i = 0; i < cx->facet_count; i++) {
         gxb_facet *f = &cx->facets[i];
-        gxbp_move_list(cx, pool, &used, &f->loop, f->loop_count);
+        if (f->loop_count > 0) gxbp_move_list(cx, pool, &used, &f->loop, f->loop_count);
     }
     for (i = 0; i < cx->leaf_count; i++)
         gxbp_move_list(cx, pool, &used, &cx->leaves[i].facets, cx->leaves[i].facet_count);
@@ -4635,8 +4634,8 @@ static int gxbp_may_reach(const gxb_complex *cx, const gxbp_permit *permit, uint
     return !cx->leaves[leaf].removed && (permit->allowed == NULL || permit->allowed(permit->user, leaf));
 }
 
-/* Covers the parts of a facet in the triangle's plane, down the tree of its parts. The facet has been made since begin.
-   The polygon is the triangle's part there. Its way is short where a plane carries thousands of triangles. */
+/* Covers the parts of a node's facet in the triangle's plane, down the tree of its parts. The polygon is the triangle's
+   part there. Its way is short where a plane carries thousands of triangles. */
 static gx_result gxbp_cover_parts(gxb_complex *cx, gxb_triangle *t, const gxbp_task *task, uint32_t facet,
                                   const gxbp_permit *permit) {
     const gxb_facet f = cx->facets[facet];
@@ -4652,8 +4651,8 @@ static gx_result gxbp_cover_parts(gxb_complex *cx, gxb_triangle *t, const gxbp_t
     return result;
 }
 
-/* Sends the polygon of the task down the tree by one node. Where it lies in the plane of one that was made since begin,
-   the facet of that node leads to all that it covers. */
+/* Sends the polygon of the task down the tree by one node. Where it lies in the node's plane, the node's facet
+   leads to all that it covers. */
 static gx_result gxbp_descend(gxb_complex *cx, gxb_triangle *t, const gxbp_task *task, uint32_t node,
                               const gxbp_permit *permit) {
     const uint32_t plane = cx->nodes[node].plane;
@@ -4662,7 +4661,8 @@ static gx_result gxbp_descend(gxb_complex *cx, gxb_triangle *t, const gxbp_task 
     if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, tasks, task, 2);
     if (result != GX_OK) return result;
     sides = plane == t->plane ? 0 : gxbp_corner_sides(cx, task->first, task->count, plane);
-    if (sides == 0 && node >= cx->mark[GXBP_NODES]) return gxbp_cover_parts(cx, t, task, cx->nodes[node].facet, permit);
+    if (sides == 0 && cx->nodes[node].facet != GXB_NONE)
+        return gxbp_cover_parts(cx, t, task, cx->nodes[node].facet, permit);
     if (sides == 0 || sides == 1) gxbp_push_task(cx, node, 0, task->first, task->count, task->coplanar | (sides == 0));
     if (sides == 0 || sides == 2) gxbp_push_task(cx, node, 1, task->first, task->count, task->coplanar | (sides == 0));
     if (sides == 3) {
@@ -6617,6 +6617,7 @@ static void gxbp_keep_trees(gxbp_census *c, uint32_t leaves) {
     for (i = 0; i < cx->tree_count; i++) {
         const uint32_t *n = c->nodes + 3 * (size_t)i;
         cx->nodes[i].plane = c->planes[n[0]];
+        cx->nodes[i].facet = GXB_NONE;
         for (k = 0; k < 2; k++) cx->nodes[i].child[k] = gxbp_new_reference(c, n[1 + k]);
     }
     for (i = 0; i < cx->element_count; i++) cx->root[i] = gxbp_new_reference(c, c->roots[i]);
@@ -7001,6 +7002,9 @@ static GXBP_COLD void gxbp_pass_edges(gxb_complex *cx, gxb_stream *s) {
     }
 }
 
+/* Is it a facet inside an element that was divided? Then it knows the plane that did it. */
+static int gxbp_is_parted(const gxb_facet *f) { return f->child < GXB_UNLISTED && f->face == GXB_NONE; }
+
 static GXBP_COLD void gxbp_pass_facets(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
     for (i = 0; i < cx->facet_count; i++) {
@@ -7013,6 +7017,7 @@ static GXBP_COLD void gxbp_pass_facets(gxb_complex *cx, gxb_stream *s) {
         gxbp_pass_word(s, &f->face);
         f->wall = gxbp_pass_bit(s, f->wall) & 1;
         gxbp_pass_list(cx, s, &first, &count);
+        if (count == 0 && gxbp_is_parted(f)) gxbp_pass_word(s, &first);
         gxbp_set_loop(f, first, count);
     }
 }
@@ -7038,6 +7043,7 @@ static GXBP_COLD void gxbp_pass_rest(gxb_complex *cx, gxb_stream *s) {
     for (i = 0; i < cx->tree_count; i++) {
         gxbp_pass_word(s, &cx->nodes[i].plane);
         gxb_stream_pass(s, cx->nodes[i].child, 2, sizeof *cx->nodes[i].child);
+        gxbp_pass_word(s, &cx->nodes[i].facet);
     }
     for (i = 0; i < cx->label_count; i++) {
         gxbp_pass_word(s, &cx->labels[i].triangle);
@@ -7059,7 +7065,7 @@ static const gxbp_saved gxbp_saved_arrays[] = {/* the first begins with the node
                                                {GXBP_ARRAY(gxb_complex, edges, edge), 28, 0},
                                                {GXBP_ARRAY(gxb_complex, facets, facet), 32, 0},
                                                {GXBP_ARRAY(gxb_complex, leaves, leaf), 16, 0},
-                                               {GXBP_ARRAY(gxb_complex, nodes, tree), 12, 0},
+                                               {GXBP_ARRAY(gxb_complex, nodes, tree), 16, 0},
                                                {GXBP_ARRAY(gxb_complex, labels, label), 12, 0}};
 enum { GXBP_COUNTS = sizeof gxbp_saved_arrays / sizeof *gxbp_saved_arrays };
 
@@ -7159,6 +7165,7 @@ static void gxbp_check_indices(gxb_complex *cx, gxb_stream *s) {
                 f->leaf[0] != f->leaf[1] && gxbp_below(f->labels, cx->label_count) &&
                 gxbp_below(f->face, cx->face_count);
         for (j = 0; j < f->loop_count; j++) good &= cx->pool[f->loop + j] >> 1 < cx->edge_count;
+        if (gxbp_is_parted(f)) good &= f->loop_count == 0 && f->loop < cx->store.plane_count;
     }
     for (i = 0; i < cx->leaf_count; i++) {
         const gxb_leaf *l = &cx->leaves[i];
@@ -7276,6 +7283,7 @@ typedef struct gxbp_checker {
     uint32_t *point;      /* point_count: of the leaf at work */
     uint32_t *point_mark; /* point_count: round in which the point was met */
     uint32_t *edge_depth, *facet_depth, *node_depth;
+    uint32_t *facet_up, *facet_root; /* what it is half of (GXB_NONE: nothing), and the first of these */
     uint32_t *queue, hung;       /* nodes that hang in a tree, each behind the one above it */
     uint32_t *node_up, *leaf_up; /* 2 x node above + side; GXB_NONE: it is a root */
     uint32_t *node_element;
@@ -7382,6 +7390,37 @@ static int gxbp_facet_is_between(const gxb_complex *cx, const gxb_facet *f) {
     return 1;
 }
 
+/* Do the facet's points lie on its sides of all planes that divided what it is part of? */
+static void gxbp_check_parting(gxbp_checker *c, uint32_t facet) {
+    gxb_complex *cx = c->cx;
+    uint32_t i, part = facet, up = c->facet_up[facet];
+    for (; up != GXB_NONE && c->s->result == GX_OK; part = up, up = c->facet_up[up]) {
+        const gxb_facet *f = &cx->facets[up];
+        const int side = part == f->child ? 1 : -1;
+        int off = 0;
+        for (i = 0; i < c->count; i++) {
+            const int sign = gxb_complex_side(cx, gxbp_edge_start(cx, c->edge[i]), f->loop) * side;
+            gxbp_require_true(c->s, sign >= 0);
+            off |= sign;
+        }
+        gxbp_require_true(c->s, off);
+    }
+}
+
+/* Of each facet, what it is a part of */
+static void gxbp_trace_facets(gxbp_checker *c) {
+    uint32_t i, k;
+    for (i = 0; i < c->cx->facet_count; i++) {
+        c->facet_up[i] = GXB_NONE;
+        c->facet_root[i] = i;
+    }
+    for (i = 0; i < c->cx->facet_count; i++) /* parts come behind what they are parts of */
+        for (k = 0; k < 2 && c->cx->facets[i].child < GXB_UNLISTED; k++) {
+            c->facet_up[c->cx->facets[i].child + k] = i;
+            c->facet_root[c->cx->facets[i].child + k] = c->facet_root[i];
+        }
+}
+
 static void gxbp_check_facets(gxbp_checker *c) {
     gxb_complex *cx = c->cx;
     uint32_t i;
@@ -7393,6 +7432,7 @@ static void gxbp_check_facets(gxbp_checker *c) {
         if (f->child != GXB_NONE || c->s->result != GX_OK) continue;
         gxbp_require_true(c->s, gxbp_facet_is_between(cx, f));
         if (c->s->result == GX_OK && (f->loop_count > 0 || !gxbp_is_spent(cx, i))) gxbp_check_polygon(c, i);
+        if (c->s->result == GX_OK && f->face == GXB_NONE) gxbp_check_parting(c, i);
     }
 }
 
@@ -7518,7 +7558,11 @@ static void gxbp_check_tree(gxbp_checker *c) {
     for (i = 0; i < c->hung && c->s->result == GX_OK; i++) {
         const uint32_t node = c->queue[i];
         const gxb_node *n = &cx->nodes[node];
-        gxbp_require_true(c->s, n->plane < cx->store.plane_count && !cx->store.planes[n->plane].along_axis);
+        gxbp_require_true(c->s, n->plane < cx->store.plane_count && !cx->store.planes[n->plane].along_axis &&
+                                    gxbp_below(n->facet, cx->facet_count));
+        if (c->s->result == GX_OK && n->facet != GXB_NONE)
+            gxbp_require_true(c->s, c->facet_depth[n->facet] == 0 && cx->facets[n->facet].face == GXB_NONE &&
+                                        cx->facets[n->facet].plane == n->plane);
         for (k = 0; k < 2 && c->s->result == GX_OK; k++)
             gxbp_hang(c, n->child[k], 2 * node + k, c->node_element[node], c->node_depth[node] + 1);
     }
@@ -7541,12 +7585,16 @@ static int gxbp_lies_beside(gxbp_checker *c, uint32_t plane, int side, int *off)
     return 1;
 }
 
-/* Is the facet's plane that of a node above the leaf, which lies on its side as it does on the facet's? */
-static int gxbp_is_above(const gxbp_checker *c, uint32_t leaf, const gxb_facet *f) {
+/* Is the facet's plane that of a node above the leaf, which lies on its side as it does on the facet's? Is it a part of
+   the node's facet, if that is known? */
+static int gxbp_is_above(const gxbp_checker *c, uint32_t leaf, uint32_t facet) {
+    const gxb_facet *f = &c->cx->facets[facet];
     const uint32_t side = f->leaf[0] == leaf ? 0 : 1;
     uint32_t up;
-    for (up = c->leaf_up[leaf]; up != GXB_NONE; up = c->node_up[up >> 1])
-        if (c->cx->nodes[up >> 1].plane == f->plane && (up & 1) == side) return 1;
+    for (up = c->leaf_up[leaf]; up != GXB_NONE; up = c->node_up[up >> 1]) {
+        const gxb_node *n = &c->cx->nodes[up >> 1];
+        if (n->plane == f->plane && (up & 1) == side) return n->facet == GXB_NONE || n->facet == c->facet_root[facet];
+    }
     return 0;
 }
 
@@ -7577,7 +7625,7 @@ static void gxbp_check_open_leaf(gxbp_checker *c, uint32_t leaf) {
     for (i = 0; i < c->facets && c->s->result == GX_OK; i++) {
         const gxb_facet *f = &cx->facets[c->facet[i]];
         gxbp_require_true(c->s, gxbp_lies_beside(c, f->plane, f->leaf[0] == leaf ? 1 : -1, &off) && off);
-        gxbp_require_true(c->s, f->face != GXB_NONE || gxbp_is_above(c, leaf, f));
+        gxbp_require_true(c->s, f->face != GXB_NONE || gxbp_is_above(c, leaf, c->facet[i]));
     }
     for (i = 0; i < 6; i++)
         gxbp_require_true(c->s, cx->mesh_edge[cx->element_edges[6 * (size_t)l.element + i]] != GXB_NONE);
@@ -7619,6 +7667,7 @@ static void gxbp_run_checks(gxbp_checker *c) {
                      c->edge_depth);
     gxbp_check_trees(c->s, cx->facet_count > 0 ? &cx->facets->child : NULL, sizeof *cx->facets, cx->facet_count,
                      c->facet_depth);
+    if (c->s->result == GX_OK) gxbp_trace_facets(c);
     if (c->s->result == GX_OK) gxbp_check_tree(c);
     if (c->s->result == GX_OK) gxbp_check_edges(cx, c->s, c->edge_depth);
     if (c->s->result == GX_OK) gxbp_check_facets(c);
@@ -7628,7 +7677,7 @@ static void gxbp_run_checks(gxbp_checker *c) {
 
 static GXBP_COLD void gxbp_check(gxb_complex *cx, gxb_stream *s) {
     const size_t e = cx->edge_count, f = cx->facet_count, n = cx->tree_count, l = cx->leaf_count;
-    const size_t words = 7 * e + 4 * f + 2 * (size_t)cx->store.point_count + 4 * n + l + 1;
+    const size_t words = 7 * e + 6 * f + 2 * (size_t)cx->store.point_count + 4 * n + l + 1;
     gxbp_checker c;
     uint32_t *block;
     memset(&c, 0, sizeof c);
@@ -7652,7 +7701,9 @@ static GXBP_COLD void gxbp_check(gxb_complex *cx, gxb_stream *s) {
     c.facet_mark = c.edge_depth + e;
     c.facet = c.facet_mark + 2 * f;
     c.facet_depth = c.facet + f;
-    c.node_depth = c.facet_depth + f;
+    c.facet_up = c.facet_depth + f;
+    c.facet_root = c.facet_up + f;
+    c.node_depth = c.facet_root + f;
     c.node_up = c.node_depth + n;
     c.node_element = c.node_up + n;
     c.leaf_up = c.node_element + n;
