@@ -559,7 +559,7 @@ GXFEM_API int gxb_complex_is_sparse(const gxb_complex *complex);
    become one where open facets alone are between them, and no wall or removed leaf ends in the plane of these; so do
    facets between the same leaves, and edges. What stays gets new numbers in the same order. Facets of a mesh face
    between elements that triangles have touched, and edges of a mesh edge around such, are no longer listed as its
-   parts.
+   parts. Nodes no longer lead to the parts of their facets: triangles in their planes then ask the facets of each leaf.
    gxb_complex_survey finds out what is to be done and takes the memory for it, also in a transaction, which it leaves
    as it was. gxb_complex_compact does it, and cannot fail: after the survey and a commit, with nothing in between.
    pinned: node_count; elements with a node that is not 0 here keep all they have; NULL: none. renumbering: to be
@@ -7284,8 +7284,8 @@ typedef struct gxbp_checker {
     uint32_t *point_mark; /* point_count: round in which the point was met */
     uint32_t *edge_depth, *facet_depth, *node_depth;
     uint32_t *facet_up, *facet_root; /* what it is half of (GXB_NONE: nothing), and the first of these */
-    uint32_t *queue, hung;       /* nodes that hang in a tree, each behind the one above it */
-    uint32_t *node_up, *leaf_up; /* 2 x node above + side; GXB_NONE: it is a root */
+    uint32_t *queue, hung;           /* nodes that hang in a tree, each behind the one above it */
+    uint32_t *node_up, *leaf_up;     /* 2 x node above + side; GXB_NONE: it is a root */
     uint32_t *node_element;
     uint32_t count, corners, facets, points, round, loose; /* loose: edges in border without their opposite */
 } gxbp_checker;

@@ -1251,6 +1251,8 @@ static uint64_t hash_complex(const gxb_complex *cx, int geometry) {
                 f->wall);
         if (f->child == GXB_NONE)
             for (j = 0; j < f->loop_count; j++) h = mix(h, cx->pool[f->loop + j]);
+        else if (f->face == GXB_NONE)
+            h = mix(h, f->loop); /* the plane that divided it */
     }
     for (i = 0; i < cx->leaf_count; i++) {
         const gxb_leaf *l = &cx->leaves[i];
@@ -1258,7 +1260,7 @@ static uint64_t hash_complex(const gxb_complex *cx, int geometry) {
         for (j = 0; j < l->facet_count; j++) h = mix(h, cx->pool[l->facets + j]);
     }
     for (i = 0; i < cx->tree_count; i++)
-        h = mix(mix(mix(h, cx->nodes[i].plane), cx->nodes[i].child[0]), cx->nodes[i].child[1]);
+        h = mix(mix(mix(mix(h, cx->nodes[i].plane), cx->nodes[i].child[0]), cx->nodes[i].child[1]), cx->nodes[i].facet);
     for (i = 0; i < cx->label_count; i++)
         h = mix(mix(mix(h, cx->labels[i].triangle), (uint32_t)cx->labels[i].orientation), cx->labels[i].next);
     for (i = 0; i < cx->element_count; i++) h = mix(h, cx->root[i]);
@@ -1549,6 +1551,91 @@ START_TEST(rollback_restores_everything) {
     cx = open_scene(&s, NULL);
     ck_assert_int_eq(insert_all(cx, &s, &twice), GX_OK);
     assert_that(hash_complex(cx, 1) == after, "a rolled back cut left a trace");
+    gxb_complex_destroy(cx);
+}
+END_TEST
+
+/* Triangles in few planes, a lattice in each: many share a plane, overlap, touch or are the same. */
+static void make_coplanar_cuts(scene *s, pc_random *r) {
+    static const int normals[3][3] = {{0, 0, 1}, {1, 1, 1}, {1, -1, 0}};
+    uint32_t c, j, k;
+    s->cut_count = MAX_CUTS;
+    for (c = 0; c < s->cut_count; c++) {
+        const uint32_t plane = pc_below(r, 3);
+        const int *n = normals[plane];
+        int x[3][3], u[3], v[3];
+        for (j = 0; j < 3; j++) {
+            x[j][0] = (int)pc_below(r, 16);
+            x[j][1] = (int)pc_below(r, 16);
+            x[j][2] = n[2] == 0 ? (int)pc_below(r, 16) : 0;
+            if (plane == 1) x[j][2] = 20 - x[j][0] - x[j][1];
+            if (plane == 0) x[j][2] = 5;
+            if (plane == 2) x[j][1] = x[j][0] + 1;
+        }
+        for (k = 0; k < 3; k++) {
+            u[k] = x[1][k] - x[0][k];
+            v[k] = x[2][k] - x[0][k];
+            for (j = 0; j < 3; j++) s->cuts[c][j][k] = x[j][k] / 16.0;
+        }
+        if (u[0] * v[1] == u[1] * v[0] && u[1] * v[2] == u[2] * v[1] && u[2] * v[0] == u[0] * v[2]) c--;
+    }
+}
+
+/* The complex again, from what is saved of it; the bytes are not trusted. */
+static gxb_complex *saved_and_loaded(gxb_complex *cx, const scene *s) {
+    static unsigned char bytes[1 << 20];
+    gxb_complex *copy = open_scene(s, NULL);
+    gxb_stream out, in;
+    memset(&out, 0, sizeof out);
+    out.out = bytes;
+    out.size = sizeof bytes;
+    gxb_complex_save(cx, &out);
+    ck_assert_int_eq(out.result, GX_OK);
+    memset(&in, 0, sizeof in);
+    in.in = bytes;
+    in.size = out.at;
+    ck_assert_int_eq(gxb_complex_load(copy, &in, 0), GX_OK);
+    ck_assert_uint_eq(in.at, out.at);
+    gxb_complex_commit(copy);
+    return copy;
+}
+
+/* The same cuts in one commit or in several, with some that are taken back in between, and with what was saved and
+   loaded in between: the same complex. */
+START_TEST(groups_of_cuts_leave_no_trace) {
+    pc_random r = seeded((uint64_t)_i + 1);
+    scene s;
+    inserted in, once;
+    gxb_complex *cx, *copy;
+    uint64_t whole, before;
+    uint32_t c, i, end, past;
+    make_mesh(&s, &r, _i % 2 ? 6 : 1, 1, 0, _i % 4 == 3 ? 0.05 : 0);
+    make_coplanar_cuts(&s, &r);
+    cx = open_scene(&s, NULL);
+    ck_assert_int_eq(insert_all(cx, &s, &once), GX_OK);
+    whole = hash_complex(cx, 1);
+    if (_i < 4) check_complex(cx, &s, &once, &r);
+    gxb_complex_destroy(cx);
+    cx = open_scene(&s, NULL);
+    for (c = 0; c < s.cut_count; c = end) {
+        end = c + 1 + pc_below(&r, 8);
+        if (end > s.cut_count) end = s.cut_count;
+        before = hash_complex(cx, 1);
+        gxb_complex_begin(cx);
+        past = pc_below(&r, 2) ? c + pc_below(&r, s.cut_count - c) : c;
+        for (i = past; i-- > c;) ck_assert_int_eq(insert_cut(cx, &s, &in, i), GX_OK);
+        gxb_complex_rollback(cx);
+        assert_that(hash_complex(cx, 1) == before, "rollback, cut %u", c);
+        if (pc_below(&r, 3) == 0) {
+            copy = saved_and_loaded(cx, &s);
+            gxb_complex_destroy(cx);
+            cx = copy;
+        }
+        gxb_complex_begin(cx);
+        for (i = c; i < end; i++) ck_assert_int_eq(insert_cut(cx, &s, &in, i), GX_OK);
+        gxb_complex_commit(cx);
+    }
+    assert_that(hash_complex(cx, 1) == whole, "another complex");
     gxb_complex_destroy(cx);
 }
 END_TEST
@@ -1975,6 +2062,7 @@ static Suite *boolean_suite(void) {
     tcase_add_loop_test(complex, coincident_cuts_share_their_facets, 0, 4);
     tcase_add_test(complex, refused_and_removed_leaves_stay_whole);
     tcase_add_loop_test(complex, rollback_restores_everything, 0, 24);
+    tcase_add_loop_test(complex, groups_of_cuts_leave_no_trace, 0, 12);
     tcase_add_loop_test(complex, every_allocation_may_fail, 0, 4);
     tcase_add_test(complex, many_transactions_conform);
     tcase_add_loop_test(complex, worn_complexes_conform, 0, 24);

@@ -879,7 +879,7 @@ START_TEST(foreign_bytes) {
     { /* older versions, and one yet to come */
         uint32_t version, now;
         memcpy(&now, b.data + 8, sizeof now);
-        ck_assert_uint_eq(now, 7);
+        ck_assert_uint_eq(now, 8);
         for (version = 0; version <= now; version++) {
             const uint32_t wrong = version < now ? version : now + 1;
             memcpy(b.data + 8, &wrong, sizeof wrong);
@@ -1204,6 +1204,34 @@ static void expect_bad_word(gx_body *body, uint32_t *at, uint32_t wrong, const c
     expect_damage(body, at, &wrong, sizeof wrong, what);
 }
 
+/* What leads from a node of the division tree to the parts of its facet is checked. */
+START_TEST(damaged_facets) {
+    workload w = wl_through(0.1);
+    gx_body *body = cut_at_once(&w);
+    gxb_complex *cx = body->complex;
+    uint32_t i, parted = 0;
+    for (i = 0; i < cx->tree_count && parted < 8; i++) {
+        gxb_node *n = &cx->nodes[i];
+        gxb_facet *f = &cx->facets[n->facet];
+        ck_assert_uint_lt(n->facet, cx->facet_count);
+        ck_assert_uint_eq(f->plane, n->plane);
+        if (f->child == GXB_NONE) continue;
+        parted++;
+        expect_bad_word(body, &n->facet, cx->facet_count, "a facet that is not");
+        expect_bad_word(body, &n->facet, f->child, "a part for the whole");
+        expect_bad_word(body, &n->facet, cx->nodes[i == 0 ? 1 : 0].facet, "another node's facet");
+        expect_bad_word(body, &n->facet, cx->face_facet[cx->element_faces[4 * (size_t)cx->leaves[f->leaf[0]].element]],
+                        "a facet of a face");
+        expect_bad_word(body, &f->loop, cx->store.plane_count, "a plane that is not");
+        expect_bad_word(body, &f->loop, f->plane, "a plane that divides nothing");
+        expect_bad_word(body, &f->loop, cx->facets[cx->face_facet[0]].plane, "a plane that did not divide it");
+    }
+    ck_assert_uint_gt(parted, 0);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* Each number that a move relies on is checked when a blade is loaded. */
 START_TEST(damaged_blades) {
     workload w;
@@ -1367,6 +1395,7 @@ int main(void) {
     tcase_add_loop_test(tests, hostile_bits, 0, 4);
     ADD_SOME(tests, hostile_words, 16);
     tcase_add_loop_test(tests, hostile_mixtures, 0, 4);
+    tcase_add_test(tests, damaged_facets);
     tcase_add_test(blades, damaged_blades);
     tcase_add_loop_test(blades, hostile_blades, 0, 2);
     tcase_add_test(blades, restoring_blades);
