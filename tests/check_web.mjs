@@ -204,7 +204,7 @@ async function checkMemory(page) {
 mkdirSync(directory, {recursive: true});
 const loaded = ["index.html", "page.js", "worker.js", "player.js", "jelly-simd.wasm"]
     .reduce((sum, name) => sum + brotliCompressSync(readFileSync(join(folder, name))).length, 0);
-check("what the page loads has at most 256,000 bytes by brotli", loaded <= 256000, loaded);
+check("what the page loads has at most 250,000 bytes by brotli", loaded <= 250000, loaded);
 console.log(`the page loads ${loaded} bytes, by brotli`);
 const page = await openPage(address, {width, height});
 check("the body is there", await until(page, "page.ready && page.frames > 3"), await page.evaluate("page.trouble"));
