@@ -12,7 +12,7 @@ mkdir -p "$charts" || exit 2
 # where BENCH: when its table was made, and on what
 where() { echo "$(date -r "$tables/$1.csv" +%Y-%m-%d), $(uname -m | tr _ -), one thread"; }
 
-for bench in quadrature conditioning stepping front space scaling blade; do
+for bench in quadrature conditioning stepping front space scaling blade open; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$bench" >&2; exit 2; }
 done
 
@@ -337,5 +337,32 @@ unset multiplot
 END
 }
 
-panels | gnuplot && triangles | gnuplot && conditioning | gnuplot && stepping | gnuplot && stepping_cuts | gnuplot && front | gnuplot && space | gnuplot && scaling | gnuplot && blade | gnuplot || exit 1
-echo "wrote $charts/quadrature.svg, quadrature_triangles.svg, conditioning.svg, stepping.svg, stepping_cuts.svg, front.svg, space.svg, scaling.svg, blade.svg"
+# open_rows RUNNER WORKLOADS BLOCK X: of the workloads whose names match, what they took by an expression X, as a data block
+open_rows() {
+    echo "\$$(block_name "$3 $1") << EOD"
+    awk -F, -v runner="$1" -v match_name="$2" '$2 == runner && $1 ~ match_name && $5 == "success" { print '"$4"', $7 / 1000 }' "$tables/open.csv" | sort -g
+    echo "EOD"
+}
+
+# Chains and single Booleans beside other kernels
+open() {
+    echo 'set terminal svg size 1180,480 font "sans,12" background "white"'
+    echo "set output '$charts/open.svg'"
+    for runner in gxfem manifold manifold-wasm CGAL; do
+        open_rows $runner '^dome_' dome 'substr($1, 6)'
+        open_rows $runner '^spheres_' spheres '$4'
+    done
+    cat <<END
+$styles
+set multiplot layout 1,2 title "Booleans beside other kernels, from meshes to the result   ($(where open))" font "sans,15"
+set logscale xy; set grid back lc rgb "#dddddd"; set ylabel "s"; set key left top; set format y "10^{%L}"
+set title "a dome less capsules, evaluated after each"; set xlabel "capsules"
+plot \$dome_gxfem with linespoints ls 1 title "gxfem", \$dome_manifold with linespoints ls 3 title "manifold", \$dome_manifold_wasm with linespoints ls 4 title "manifold, WebAssembly", \$dome_CGAL with linespoints ls 5 title "CGAL, corefinement"
+set title "a sphere less a moved copy"; set xlabel "triangles of both"; set format x "10^{%L}"; set ylabel ""
+plot \$spheres_gxfem with linespoints ls 1 title "gxfem", \$spheres_manifold with linespoints ls 3 title "manifold", \$spheres_manifold_wasm with linespoints ls 4 title "manifold, WebAssembly", \$spheres_CGAL with linespoints ls 5 title "CGAL, corefinement"
+unset multiplot
+END
+}
+
+panels | gnuplot && triangles | gnuplot && conditioning | gnuplot && stepping | gnuplot && stepping_cuts | gnuplot && front | gnuplot && space | gnuplot && scaling | gnuplot && blade | gnuplot && open | gnuplot || exit 1
+echo "wrote $charts/quadrature.svg, quadrature_triangles.svg, conditioning.svg, stepping.svg, stepping_cuts.svg, front.svg, space.svg, scaling.svg, blade.svg, open.svg"

@@ -9,7 +9,7 @@ tables=$1
 page=$2
 readme=$3
 
-for bench in quadrature stepping front conditioning failure table2 table2_ratios scaling kernel smallest solver product violent accuracy drift frames skin blade strokes; do
+for bench in quadrature stepping front conditioning failure table2 table2_ratios scaling kernel open smallest solver product violent accuracy drift frames skin blade strokes; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$(echo $bench | sed 's/_ratios//; s/product/solver/')" >&2; exit 2; }
 done
 for name in why speed; do
@@ -39,6 +39,33 @@ failure() {
 # When the oldest table was made
 measured() {
     for table in "$tables"/*.csv; do date -r "$table" +%Y-%m-%d; done | sort | head -n 1
+}
+
+# open.csv: a row for each workload, milliseconds of each runner, and how many times ours. What is wrong is said.
+open_table() {
+    awk -F, '
+        NR == 1 { next }
+        !($1 in input) { input[$1] = $4; count[$1] = $3; volume[$1] = $12; rows[++n] = $1 }
+        !($2 in known) { known[$2] = 1; runners[++m] = $2 }
+        { status[$1, $2] = $5; ms[$1, $2] = $7; triangles[$1, $2] = $9; got[$1, $2] = $11 }
+        function say(row, runner,    off) {
+            if (!((row, runner) in status)) return "-"
+            if (status[row, runner] != "success") return status[row, runner]
+            off = got[row, runner] - volume[row]
+            text = sprintf("%.4g", ms[row, runner])
+            if (runner != runners[1] && ms[row, runners[1]] > 0) text = text sprintf(", %.3g x", ms[row, runner] / ms[row, runners[1]])
+            if (volume[row] == 0 && triangles[row, runner] > 0) return text "; leaves " triangles[row, runner] " triangles"
+            if (off > 1e-3 * (volume[row] + 1) || -off > 1e-3 * (volume[row] + 1)) return text "; volume " got[row, runner]
+            return text
+        }
+        END {
+            printf("| workload | operations | triangles in | volume by rays |"); for (j = 1; j <= m; j++) printf(" %s, ms |", runners[j]); print ""
+            printf("| --- | ---: | ---: | ---: |"); for (j = 1; j <= m; j++) printf(" ---: |"); print ""
+            for (i = 1; i <= n; i++) {
+                printf("| %s | %s | %s | %.6g |", rows[i], count[rows[i]], input[rows[i]], volume[rows[i]])
+                for (j = 1; j <= m; j++) printf(" %s |", say(rows[i], runners[j])); print ""
+            }
+        }' "$tables/open.csv"
 }
 
 # A CSV file as a table, under the header given
@@ -476,6 +503,17 @@ their volumes; surface: the time without them."
     echo
     table kernel "| workload | median, us | least, us | triangles | components | volume | signs by filter | exact | allocations | peak, bytes | surface, us |"
     echo
+    echo "![chains and single Booleans beside other kernels](charts/open.svg)"
+    echo
+    text "Workloads like the Open Boolean Benchmark's, in its frame (\`gxboolean --request\`), one thread each: from meshes to the \
+result, evaluated after every operation, without reading and writing files. manifold is built with its own release flags, and its \
+WebAssembly build compiles itself in the first call; CGAL's corefinement has exact constructions. cubes: 1000 unions, then 1000 \
+differences that leave nothing; turned: the same, turned, each cube moved by up to 1e-3 of its edge; csg: 60 bumpy spheres, united or \
+taken away; terrain: a block less 224 tools; dome_N: a dome less N capsules. A time limit of 120 s. Volumes are compared with those \
+that parallel rays through the input give."
+    echo
+    open_table
+    echo
     text "The smallest program with the kernel, a tetrahedron less another, alone and with GXFEM_STATIC: time of the processor to \
 compile it, and its size, stripped."
     echo
@@ -502,12 +540,13 @@ judges."
     echo
     echo "| file in \`bench/\` | what it is |"
     echo "| --- | --- |"
-    echo "| \`quadrature.c\`, \`stepping.c\`, \`space.c\`, \`front.c\`, \`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`, \`solver.c\`, \`violent.c\`, \`kernel.c\`, \`smallest.sh\`, \`accuracy.c\`, \`drift.c\`, \`frames.c\`, \`skin.c\`, \`blade.c\`, \`strokes.c\` | the sections above, in this order but for Booleans |"
+    echo "| \`quadrature.c\`, \`stepping.c\`, \`space.c\`, \`front.c\`, \`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`, \`solver.c\`, \`violent.c\`, \`kernel.c\`, \`open.c\`, \`smallest.sh\`, \`accuracy.c\`, \`drift.c\`, \`frames.c\`, \`skin.c\`, \`blade.c\`, \`strokes.c\` | the sections above, in this order but for Booleans |"
     echo "| \`soak.c\` | 100,000 steps of bodies that are cut, kicked and dropped: no copy may run away |"
     echo "| \`rxfem.h\`, \`rxfem_rules.h\`, \`rxfem_model.h\` | RXFEM (Koschier, Bender, Thuerey 2017), written for the bench |"
     echo "| \`vna.h\`, \`literal.h\` | virtual nodes (element duplication); GXFEM's Algorithm 1 as published, a Boolean for each subdomain |"
     echo "| \`local.h\` | XPBD and VBD |
 | \`sampling.h\`, \`parts.h\` | integrals by points; element deletion |"
+    echo "| \`open.sh\`, \`open_cgal.cc\`, \`open_manifold.cc\`, \`open_manifold.mjs\` | CGAL and manifold as runners of the Open Boolean Benchmark |"
     echo "| \`hard.h\`, \`least.h\` | the hard cases; the least number of unknowns |"
     echo "| \`charts.sh\`, \`page.sh\` | charts; this page and two parts of the README |"
 } >"$page" || exit 2

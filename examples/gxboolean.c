@@ -1,13 +1,15 @@
 /* gxboolean: Booleans of closed triangle surfaces, and their splitting by sheets, with gxfem_boolean.h alone.
 
-   gxboolean SURFACE [--union|--intersection|--difference|--symmetric|--split SURFACE]... [options]; `gxboolean --help`
-   says the rest. Exit codes: 0 done; 1 the kernel refused a surface or failed; 2 usage error, or a file that can't be
-   read or written. On 1 and 2 one line on stderr says what, where and why.
+   gxboolean SURFACE [--union|--intersection|--difference|--symmetric|--split SURFACE]... [options], or, as a runner of
+   the Open Boolean Benchmark, gxboolean --request FILE --result FILE [options]; `gxboolean --help` says the rest. Exit
+   codes: 0 done; 1 the kernel refused a surface or failed; 2 usage error, or a file that can't be read or written. On 1
+   and 2 one line on stderr says what, where and why.
 
    contents
      >>settings    the command line
      >>kernel      operands in, result out
-     >>output      a table, a file */
+     >>output      a table, a file
+     >>requests    what the Open Boolean Benchmark asks for */
 #include "gxio.h"
 
 #ifndef GXFEM_LINKED /* make examples compiles the library once for all */
@@ -15,6 +17,7 @@
 #endif
 #include "../gxfem_boolean.h"
 #include "gxfailure.h"
+#include "gxrunner.h"
 
 enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_MISUSED = 2 };
 
@@ -24,15 +27,18 @@ typedef struct settings {
     const char **surfaces; /* count, as given */
     uint32_t *operations;  /* count, GXB_UNION ... */
     size_t count;
-    const char *out; /* NULL: no file */
+    const char *out;                       /* NULL: no file */
+    const char *request, *result, *ending; /* of a benchmark; NULL: none */
     uint32_t rule;
     uint32_t triangulation;
     int fine, mend;
+    int last_only;
     int help;
 } settings;
 
 static const char usage[] =
     "usage: gxboolean SURFACE [OPERATION SURFACE]... [options]\n"
+    "       gxboolean --request FILE.json --result FILE.json [options]\n"
     "\n"
     "Combines closed triangle surfaces exactly, one after the other; prints volume and Euler characteristic of each "
     "component.\n"
@@ -49,13 +55,22 @@ static const char usage[] =
     "  --merged            the same of faces beside each other in one plane\n"
     "  --fine              vertices are the doubles nearest to the exact points\n"
     "  --mend              the same, and triangles that this turns over are mended\n"
-    "  --out FILE          writes the result as FILE.off, or as FILE.obj with an object per component\n"
+    "  --out FILE          writes the result as FILE.off, FILE.stl, or as FILE.obj with an object per component\n"
+    "  --request FILE, --result FILE\n"
+    "                      runs the operations of a request of the Open Boolean Benchmark, says in the result how they "
+    "went\n"
+    "  --format NAME       of the surfaces that a request makes: off (default), obj or stl\n"
+    "  --last-only         writes no surface that a later operation of the request takes\n"
     "  --help              this text\n";
 
 /* GXB_UNION ... */
 static const char *const operations[] = {"--union", "--intersection", "--difference", "--symmetric", "--split"};
 /* GXB_NONZERO ... */
 static const char *const rules[] = {"nonzero", "positive", "negative", "odd"};
+/* What else takes a value */
+static const char *const valued[] = {"--rule", "--out", "--request", "--result", "--format"};
+static const char *const formats[] = {"off", "obj", "stl"};
+static const char *const endings[] = {".off", ".obj", ".stl"};
 
 /* Where a word stands in a list; the list's length if it does not. */
 static uint32_t find_word(const char *word, const char *const *list, uint32_t count) {
@@ -73,6 +88,8 @@ static int take_flag(settings *set, const char *name) {
         set->fine = 1;
     else if (strcmp(name, "--mend") == 0)
         set->mend = 1;
+    else if (strcmp(name, "--last-only") == 0)
+        set->last_only = 1;
     else if (strcmp(name, "--help") == 0)
         set->help = 1;
     else
@@ -82,18 +99,48 @@ static int take_flag(settings *set, const char *name) {
 
 static int take_value(settings *set, const char *name, const char *value, gxio_error *error) {
     const uint32_t operation = find_word(name, operations, 5);
+    uint32_t format;
     if (operation < 5) {
         if (set->count == 0) return gxio_fail(error, name, 0, "comes before the first surface");
         set->operations[set->count] = operation;
         set->surfaces[set->count++] = value;
-    } else if (strcmp(name, "--rule") == 0) {
+        return 1;
+    }
+    switch (find_word(name, valued, 5)) {
+    case 0:
         set->rule = find_word(value, rules, 4);
-        if (set->rule == 4)
-            return gxio_fail(error, name, 0, "'%s' is none of nonzero, positive, negative and odd", value);
-    } else if (!gxio_ends_with(value, ".off") && !gxio_ends_with(value, ".obj")) {
-        return gxio_fail(error, name, 0, "'%s' does not end in .off or .obj", value);
-    } else
+        return set->rule < 4 ? 1
+                             : gxio_fail(error, name, 0, "'%s' is none of nonzero, positive, negative and odd", value);
+    case 1:
         set->out = value;
+        return gxio_is_surface_name(value)
+                 ? 1
+                 : gxio_fail(error, name, 0, "'%s' does not end in .off, .obj or .stl", value);
+    case 2: set->request = value; return 1;
+    case 3: set->result = value; return 1;
+    default:
+        format = find_word(value, formats, 3);
+        if (format == 3) return gxio_fail(error, name, 0, "'%s' is none of off, obj and stl", value);
+        set->ending = endings[format];
+        return 1;
+    }
+}
+
+/* A request, or surfaces, and no option of the other */
+static int check_purpose(const settings *set, gxio_error *error) {
+    if (set->help) return 1;
+    if (!set->request && !set->result) {
+        if (set->last_only) return gxio_fail(error, "--last-only", 0, "belongs to --request");
+        if (set->ending)
+            return gxio_fail(error, "--format", 0, "belongs to --request; --out has its format by its name");
+        if (set->count > 0) return 1;
+        return gxio_fail(error, "usage", 0, "gxboolean SURFACE [OPERATION SURFACE]..., see gxboolean --help");
+    }
+    if (!set->request || !set->result)
+        return gxio_fail(error, set->request ? "--request" : "--result", 0,
+                         "needs the other of --request and --result");
+    if (set->count > 0 || set->out)
+        return gxio_fail(error, "--request", 0, "names all surfaces: none may stand beside it, nor --out");
     return 1;
 }
 
@@ -106,29 +153,34 @@ static int take_arguments(settings *set, int argc, char **argv, gxio_error *erro
             set->operations[set->count] = GXB_UNION;
             set->surfaces[set->count++] = name;
         } else if (!take_flag(set, name)) {
-            if (find_word(name, operations, 5) == 5 && strcmp(name, "--rule") != 0 && strcmp(name, "--out") != 0)
+            if (find_word(name, operations, 5) == 5 && find_word(name, valued, 5) == 5)
                 return gxio_fail(error, name, 0, "unknown option, see gxboolean --help");
             if (++i == argc || strncmp(argv[i], "--", 2) == 0) return gxio_fail(error, name, 0, "needs a value");
             if (!take_value(set, name, argv[i], error)) return 0;
         }
     }
-    return set->help || set->count > 0
-             ? 1
-             : gxio_fail(error, "usage", 0, "gxboolean SURFACE [OPERATION SURFACE]..., see gxboolean --help");
+    return check_purpose(set, error);
 }
 
 /* ---------------------------------------------------------------------------------------------- >>kernel */
 
-static const char *text_of(gx_result result) {
-    switch (result) {
-    case GX_ERROR_MEMORY: return "out of memory";
-    case GX_ERROR_NOT_FINITE: return "a coordinate is not finite";
-    case GX_ERROR_RANGE: return "a number is too large or too small";
-    case GX_ERROR_EMPTY: return "there are no triangles";
-    case GX_ERROR_NOT_CLOSED: return "the surface is not closed, or its triangles are not oriented alike";
-    case GX_ERROR_LIMIT: return "there are too many triangles";
-    default: return "the kernel failed";
-    }
+static gxb_operand operand_of(const gxio_surface *surface) {
+    gxb_operand operand;
+    memset(&operand, 0, sizeof operand);
+    operand.vertices = surface->vertices;
+    operand.vertex_count = surface->vertex_count;
+    operand.triangles = surface->triangles;
+    operand.triangle_count = surface->triangle_count;
+    return operand;
+}
+
+/* Creates a Boolean with the options of the command line. desc may be NULL. */
+static gx_result create_boolean(const settings *set, const gxb_boolean_desc *desc, gxb_boolean **boolean,
+                                gx_failure *failure) {
+    gx_result result = gxb_boolean_create(desc, boolean, failure);
+    if (result == GX_OK) result = gxb_boolean_set_triangulation(*boolean, set->triangulation, failure);
+    if (result == GX_OK) result = gxb_boolean_set_fine(*boolean, set->fine, failure);
+    return result == GX_OK ? gxb_boolean_set_mend(*boolean, set->mend, failure) : result;
 }
 
 /* Reads a surface and gives it to the Boolean, which copies it. first: the first surface, across which planes go;
@@ -144,16 +196,12 @@ static int add_surface(const settings *set, size_t i, gxb_boolean *boolean, gxio
         return EXIT_MISUSED;
     }
     if (!gxio_surface_load(set->surfaces[i], &body, &surface, error)) return EXIT_MISUSED;
-    memset(&operand, 0, sizeof operand);
-    operand.vertices = surface.vertices;
-    operand.vertex_count = surface.vertex_count;
-    operand.triangles = surface.triangles;
-    operand.triangle_count = surface.triangle_count;
+    operand = operand_of(&surface);
     operand.operation = set->operations[i];
     operand.rule = set->rule;
     if (gxb_boolean_add(boolean, &operand, &failure) != GX_OK) {
         const int known = failure.result == GX_ERROR_NOT_CLOSED && failure.index < surface.triangle_count;
-        const char *cause = text_of(failure.result);
+        const char *cause = gxfailure_of_surfaces(failure.result);
         gxio_fail(error, set->surfaces[i], known ? surface.triangle_lines[failure.index] : 0, "%s",
                   known ? cause : gxfailure_say(&failure, cause).text);
     }
@@ -182,19 +230,14 @@ static int combine(const settings *set, gxb_boolean **boolean, answer *a, gxio_e
     size_t i;
     int code = EXIT_DONE;
     gx_failure failure;
-    gx_result failed = gxb_boolean_create(NULL, boolean, &failure);
+    gx_result failed = create_boolean(set, NULL, boolean, &failure);
     memset(&first, 0, sizeof first);
-    if (failed == GX_OK) {
-        gxb_boolean_set_triangulation(*boolean, set->triangulation, NULL);
-        gxb_boolean_set_fine(*boolean, set->fine, NULL);
-        gxb_boolean_set_mend(*boolean, set->mend, NULL);
-    }
     for (i = 0; i < set->count && failed == GX_OK && code == EXIT_DONE; i++)
         code = add_surface(set, i, *boolean, &first, error);
     gxio_surface_release(&first);
     if (failed == GX_OK && code == EXIT_DONE) failed = ask(*boolean, a, &failure);
     if (failed == GX_OK) return code;
-    gxio_fail(error, "Boolean", 0, "%s", gxfailure_say(&failure, text_of(failed)).text);
+    gxio_fail(error, "Boolean", 0, "%s", gxfailure_say(&failure, gxfailure_of_surfaces(failed)).text);
     return EXIT_FAILED;
 }
 
@@ -216,37 +259,271 @@ static void print_table(const answer *a) {
                (unsigned long)a->defects.mended_count);
 }
 
-static void write_off(FILE *stream, const gxb_boolean_result *r) {
-    size_t i;
-    fprintf(stream, "OFF\n%lu %lu 0\n", (unsigned long)r->vertex_count, (unsigned long)r->triangle_count);
-    for (i = 0; i < r->vertex_count; i++)
-        fprintf(stream, "%.17g %.17g %.17g\n", r->vertices[3 * i], r->vertices[3 * i + 1], r->vertices[3 * i + 2]);
-    for (i = 0; i < r->triangle_count; i++)
-        fprintf(stream, "3 %lu %lu %lu\n", (unsigned long)r->triangles[3 * i], (unsigned long)r->triangles[3 * i + 1],
-                (unsigned long)r->triangles[3 * i + 2]);
+static int write_answer(const char *path, const answer *a, gxio_error *error) {
+    gxio_shell shell;
+    memset(&shell, 0, sizeof shell);
+    shell.vertices = a->result.vertices;
+    shell.vertex_count = a->result.vertex_count;
+    shell.triangles = a->result.triangles;
+    shell.triangle_count = a->result.triangle_count;
+    shell.component = a->components.triangle;
+    shell.component_count = a->components.count;
+    return gxio_write_surface(path, &shell, error) ? EXIT_DONE : EXIT_MISUSED;
 }
 
-static void write_obj(FILE *stream, const gxb_boolean_result *r, const gxb_components *components) {
-    size_t i, c;
-    for (i = 0; i < r->vertex_count; i++)
-        fprintf(stream, "v %.17g %.17g %.17g\n", r->vertices[3 * i], r->vertices[3 * i + 1], r->vertices[3 * i + 2]);
-    for (c = 0; c < components->count; c++) {
-        fprintf(stream, "o component_%lu\n", (unsigned long)c);
-        for (i = 0; i < r->triangle_count; i++)
-            if (components->triangle[i] == c)
-                fprintf(stream, "f %lu %lu %lu\n", r->triangles[3 * i] + 1ul, r->triangles[3 * i + 1] + 1ul,
-                        r->triangles[3 * i + 2] + 1ul);
+/* --------------------------------------------------------------------------------------------- >>requests */
+/* Solids of a request are exact: only what is written is rounded. So a solid is an expression of files' surfaces. A
+   chain starts with a surface and combines it with further surfaces one by one: one Boolean is kept for all of it, and
+   computes what is new. Any other expression gets a Boolean of its surfaces, and is evaluated point by point. */
+
+typedef struct solid {
+    int is_chain;         /* or a file */
+    size_t before;        /* of a chain: the solid that it extends */
+    size_t first;         /* of a chain: the argument that is that solid */
+    gxb_boolean *boolean; /* of a chain that is extended later, and of the latest solid */
+} solid;
+
+/* What the engine has of a run */
+typedef struct expressions {
+    solid *solids;
+    size_t *leaves; /* solids of files, by operand */
+    size_t latest;  /* the solid of which `found` is the result */
+    size_t expressed;
+    unsigned char *needed, *inside; /* by solid */
+    uint32_t rule;
+    gxb_boolean_result found;
+    /* the surface that is written: vertices that a triangle has */
+    double *vertices;
+    uint32_t *triangles, *number;
+} expressions;
+
+static expressions *expressions_of(const gxrunner_run *run) { return (expressions *)run->native; }
+
+static const settings *settings_of(const gxrunner_run *run) { return (const settings *)run->engine->settings; }
+
+static int is_file(const gxrunner_run *run, size_t i) { return run->solids[i].operation == GXRUNNER_LOAD; }
+
+/* Does solid i extend a chain by files? Unions and intersections may take the chain as any of their arguments. */
+static void find_chain(gxrunner_run *run, size_t i) {
+    const gxrunner_solid *s = &run->solids[i];
+    solid *own = &expressions_of(run)->solids[i];
+    size_t k, others = 0;
+    own->is_chain = s->operation == GXRUNNER_LOAD;
+    if (s->arg_count == 0) return;
+    for (k = 0; k < s->arg_count; k++)
+        if (!is_file(run, s->args[k])) {
+            others++;
+            own->first = k;
+        }
+    own->before = s->args[own->first];
+    own->is_chain = others <= 1 && (own->first == 0 || s->operation != GXRUNNER_DIFFERENCE) &&
+                    expressions_of(run)->solids[own->before].is_chain;
+}
+
+static int start_run(gxrunner_run *run, gxrunner_outcome *o) {
+    expressions *e = (expressions *)calloc(1, sizeof *e);
+    size_t i;
+    run->native = e;
+    if (e) {
+        e->rule = settings_of(run)->rule;
+        e->solids = (solid *)calloc(run->count + 1, sizeof *e->solids);
+        e->leaves = (size_t *)gxio_array(run->count + 1, sizeof *e->leaves);
+        e->needed = (unsigned char *)malloc(run->count + 1);
+        e->inside = (unsigned char *)malloc(run->count + 1);
+    }
+    if (!e || !e->solids || !e->leaves || !e->needed || !e->inside) {
+        o->status = "crash";
+        return gxio_fail(&o->error, "request", 0, "out of memory");
+    }
+    for (i = 0; i < run->count; i++) find_chain(run, i);
+    return 1;
+}
+
+static void stop_run(gxrunner_run *run) {
+    expressions *e = expressions_of(run);
+    size_t i;
+    for (i = 0; e->solids && i < run->count; i++) gxb_boolean_destroy(e->solids[i].boolean);
+    free(e->solids);
+    free(e->leaves);
+    free(e->needed);
+    free(e->inside);
+    free(e->vertices);
+    free(e->triangles);
+    free(e->number);
+    free(e);
+}
+
+static gx_result add_file(const gxrunner_run *run, gxb_boolean *boolean, size_t file, uint32_t operation,
+                          gx_failure *failure) {
+    gxb_operand operand = operand_of(&run->solids[file].surface);
+    operand.operation = operation;
+    operand.rule = expressions_of(run)->rule;
+    return gxb_boolean_add(boolean, &operand, failure);
+}
+
+/* Adds what solid i adds to its chain. */
+static gx_result extend_chain(const gxrunner_run *run, gxb_boolean *boolean, size_t i, gx_failure *failure) {
+    /* by GXRUNNER_UNION ... */
+    static const uint32_t kernel[] = {GXB_UNION, GXB_INTERSECTION, GXB_DIFFERENCE};
+    const gxrunner_solid *s = &run->solids[i];
+    const size_t first = expressions_of(run)->solids[i].first;
+    gx_result result = GX_OK;
+    size_t k;
+    if (is_file(run, i)) return add_file(run, boolean, i, GXB_UNION, failure);
+    for (k = 0; k < s->arg_count && result == GX_OK; k++)
+        if (k != first) result = add_file(run, boolean, s->args[k], kernel[s->operation], failure);
+    return result;
+}
+
+/* The Boolean of a chain: the one that the solid before has left, or one of all its surfaces */
+static gx_result open_chain(gxrunner_run *run, size_t i, gx_failure *failure) {
+    expressions *e = expressions_of(run);
+    solid *own = &e->solids[i], *before = &e->solids[own->before];
+    gx_result result;
+    size_t at, count = 0;
+    if (before->boolean) { /* solids that need it later start anew */
+        own->boolean = before->boolean;
+        before->boolean = NULL;
+        return extend_chain(run, own->boolean, i, failure);
+    }
+    for (at = i; !is_file(run, at); at = e->solids[at].before) e->leaves[count++] = at;
+    e->leaves[count++] = at;
+    result = create_boolean(settings_of(run), NULL, &own->boolean, failure);
+    if (result == GX_OK && run->solids[i].last_use > i) result = gxb_boolean_set_retained(own->boolean, 1, failure);
+    while (count > 0 && result == GX_OK) result = extend_chain(run, own->boolean, e->leaves[--count], failure);
+    return result;
+}
+
+static int counts_as_inside(int32_t winding, uint32_t rule) {
+    switch (rule) {
+    case GXB_POSITIVE: return winding > 0;
+    case GXB_NEGATIVE: return winding < 0;
+    case GXB_ODD: return winding & 1;
+    default: return winding != 0;
     }
 }
 
-static int write_answer(const char *path, const answer *a, gxio_error *error) {
-    gxio_writer writer;
-    if (!gxio_writer_open(&writer, path, error)) return EXIT_MISUSED;
-    if (gxio_ends_with(path, ".obj"))
-        write_obj(writer.stream, &a->result, &a->components);
-    else
-        write_off(writer.stream, &a->result);
-    return gxio_writer_close(&writer, 1, error) ? EXIT_DONE : EXIT_MISUSED;
+/* Is a point with these winding numbers inside the expressed solid? */
+static int is_inside(void *user, const int32_t *winding, size_t operand_count) {
+    const gxrunner_run *run = (const gxrunner_run *)user;
+    const expressions *e = expressions_of(run);
+    size_t i, k;
+    for (i = 0; i < operand_count; i++) e->inside[e->leaves[i]] = (unsigned char)counts_as_inside(winding[i], e->rule);
+    for (i = 0; i <= e->expressed; i++) {
+        const gxrunner_solid *s = &run->solids[i];
+        int inside;
+        if (!e->needed[i] || is_file(run, i)) continue;
+        inside = e->inside[s->args[0]];
+        for (k = 1; k < s->arg_count; k++) {
+            const int other = e->inside[s->args[k]];
+            if (s->operation == GXRUNNER_UNION)
+                inside = inside || other;
+            else
+                inside = inside && other == (s->operation == GXRUNNER_INTERSECTION);
+        }
+        e->inside[i] = (unsigned char)inside;
+    }
+    return e->inside[e->expressed];
+}
+
+static gx_result open_expression(gxrunner_run *run, size_t i, gx_failure *failure) {
+    expressions *e = expressions_of(run);
+    gxb_boolean_desc desc;
+    gx_result result;
+    size_t at, k, count = 0;
+    memset(e->needed, 0, run->count);
+    e->needed[i] = 1;
+    for (at = i + 1; at-- > 0;) {
+        if (!e->needed[at]) continue;
+        if (is_file(run, at)) e->leaves[count++] = at;
+        for (k = 0; k < run->solids[at].arg_count; k++) e->needed[run->solids[at].args[k]] = 1;
+    }
+    e->expressed = i;
+    memset(&desc, 0, sizeof desc);
+    desc.inside = is_inside;
+    desc.user = run;
+    result = create_boolean(settings_of(run), &desc, &e->solids[i].boolean, failure);
+    for (k = 0; k < count && result == GX_OK; k++)
+        result = add_file(run, e->solids[i].boolean, e->leaves[k], GXB_UNION, failure);
+    return result;
+}
+
+static const char *status_of(gx_result result) {
+    switch (result) {
+    case GX_ERROR_NOT_CLOSED:
+    case GX_ERROR_NOT_FINITE:
+    case GX_ERROR_RANGE:
+    case GX_ERROR_EMPTY: return "invalid_input";
+    case GX_ERROR_LIMIT: return "unsupported";
+    default: return "crash";
+    }
+}
+
+static int combine_solids(gxrunner_run *run, size_t i, gxrunner_outcome *o) {
+    expressions *e = expressions_of(run);
+    gx_failure failure;
+    gx_result result = e->solids[i].is_chain ? open_chain(run, i, &failure) : open_expression(run, i, &failure);
+    if (!e->solids[e->latest].is_chain || run->solids[e->latest].last_use <= i) {
+        gxb_boolean_destroy(e->solids[e->latest].boolean);
+        e->solids[e->latest].boolean = NULL;
+    }
+    e->latest = i;
+    if (result == GX_OK) result = gxb_boolean_evaluate(e->solids[i].boolean, &e->found, &failure);
+    if (result == GX_OK) return 1;
+    o->status = status_of(result);
+    return gxio_fail(&o->error, "Boolean", 0, "%s", gxfailure_say(&failure, gxfailure_of_surfaces(result)).text);
+}
+
+/* A retained result may have vertices that no triangle has; the written surface has none of them. */
+static int output_solid(gxrunner_run *run, size_t i, gxio_shell *shell, gxrunner_outcome *o) {
+    expressions *e = expressions_of(run);
+    const gxb_boolean_result *found = &e->found;
+    const size_t corners = 3 * found->triangle_count;
+    size_t k, count = 0;
+    (void)i; /* the latest */
+    free(e->vertices);
+    free(e->triangles);
+    free(e->number);
+    e->vertices = (double *)gxio_array(found->vertex_count + 1, 3 * sizeof(double));
+    e->triangles = (uint32_t *)gxio_array(corners + 1, sizeof(uint32_t));
+    e->number = (uint32_t *)calloc(found->vertex_count + 1, sizeof(uint32_t));
+    if (!e->vertices || !e->triangles || !e->number) {
+        o->status = "crash";
+        return gxio_fail(&o->error, "result", 0, "out of memory");
+    }
+    for (k = 0; k < corners; k++) e->number[found->triangles[k]] = 1;
+    for (k = 0; k < found->vertex_count; k++) {
+        if (!e->number[k]) continue;
+        memcpy(e->vertices + 3 * count, found->vertices + 3 * k, 3 * sizeof(double));
+        e->number[k] = (uint32_t)count++;
+    }
+    for (k = 0; k < corners; k++) e->triangles[k] = e->number[found->triangles[k]];
+    shell->vertices = e->vertices;
+    shell->vertex_count = count;
+    shell->triangles = e->triangles;
+    shell->triangle_count = found->triangle_count;
+    return 1;
+}
+
+/* Runs a request of the Open Boolean Benchmark. */
+static int serve(settings *set, gxio_error *error) {
+    gxrunner_options options;
+    gxrunner_engine engine;
+    options.request = set->request;
+    options.result = set->result;
+    options.ending = set->ending ? set->ending : ".off";
+    options.last_only = set->last_only;
+    engine.settings = set;
+    engine.start = start_run;
+    engine.stop = stop_run;
+    engine.load = NULL;
+    engine.combine = combine_solids;
+    engine.output = output_solid;
+    switch (gxrunner_serve(&options, &engine, error)) {
+    case GXRUNNER_DONE: return EXIT_DONE;
+    case GXRUNNER_FAILED: gxio_fail(error, set->result, 0, "not all operations succeeded"); return EXIT_FAILED;
+    default: return EXIT_MISUSED;
+    }
 }
 
 int main(int argc, char **argv) {
@@ -261,10 +538,10 @@ int main(int argc, char **argv) {
     if (!set.surfaces || !set.operations)
         gxio_fail(&error, "arguments", 0, "out of memory");
     else if (take_arguments(&set, argc, argv, &error))
-        code = set.help ? EXIT_DONE : combine(&set, &boolean, &found, &error);
+        code = set.help ? EXIT_DONE : set.request ? serve(&set, &error) : combine(&set, &boolean, &found, &error);
     if (code == EXIT_DONE && set.help)
         fputs(usage, stdout);
-    else if (code == EXIT_DONE) {
+    else if (code == EXIT_DONE && !set.request) {
         if (set.out) code = write_answer(set.out, &found, &error);
         if (code == EXIT_DONE) print_table(&found);
     }

@@ -24,4 +24,17 @@ static inline gxfailure_text gxfailure_say(const gx_failure *failure, const char
     return said;
 }
 
+/* What a Boolean's result says of its surfaces */
+static inline const char *gxfailure_of_surfaces(gx_result result) {
+    switch (result) {
+    case GX_ERROR_MEMORY: return "out of memory";
+    case GX_ERROR_NOT_FINITE: return "a coordinate is not finite";
+    case GX_ERROR_RANGE: return "a number is too large or too small";
+    case GX_ERROR_EMPTY: return "there are no triangles";
+    case GX_ERROR_NOT_CLOSED: return "the surface is not closed, or its triangles are not oriented alike";
+    case GX_ERROR_LIMIT: return "there are too many triangles";
+    default: return "the kernel failed";
+    }
+}
+
 #endif /* GXFAILURE_H */

@@ -11,6 +11,7 @@
      >>surface     triangle surfaces: .obj, .off, .stl, .vtk, generated plane:..., box:..., wave:...
      >>blade       the edge of a blade, frame by frame
      >>writer      files that are either complete or not there
+     >>shells      a triangle surface as .off, .obj or .stl
      >>frames      triangles with fragment ids as .vtu or .obj, and the .pvd collection of a run
      >>page        frames as one .html file that a browser plays
      >>clock       seconds, directories
@@ -1832,6 +1833,115 @@ static inline int gxio_writer_close(gxio_writer *writer, int good, gxio_error *e
     gxio_fail(error, writer->path, 0, "cannot be written: %s", errno ? strerror(errno) : "the disk may be full");
     remove(writer->temporary);
     return 0;
+}
+
+/* -------------------------------------------------------------------------------------------- >>shells */
+
+/* A triangle surface to be written. Nothing is owned. */
+typedef struct gxio_shell {
+    const double *vertices; /* vertex_count x 3 */
+    size_t vertex_count;
+    const uint32_t *triangles; /* triangle_count x 3 */
+    size_t triangle_count;
+    const uint32_t *component; /* triangle_count, < component_count; NULL: unknown */
+    size_t component_count;
+} gxio_shell;
+
+static inline void gxio_put_off(FILE *stream, const gxio_shell *s) {
+    size_t i;
+    fprintf(stream, "OFF\n%lu %lu 0\n", (unsigned long)s->vertex_count, (unsigned long)s->triangle_count);
+    for (i = 0; i < 3 * s->vertex_count; i += 3)
+        fprintf(stream, "%.17g %.17g %.17g\n", s->vertices[i], s->vertices[i + 1], s->vertices[i + 2]);
+    for (i = 0; i < 3 * s->triangle_count; i += 3)
+        fprintf(stream, "3 %lu %lu %lu\n", (unsigned long)s->triangles[i], (unsigned long)s->triangles[i + 1],
+                (unsigned long)s->triangles[i + 2]);
+}
+
+static inline void gxio_put_obj_face(FILE *stream, const uint32_t *corners) {
+    fprintf(stream, "f %lu %lu %lu\n", corners[0] + 1ul, corners[1] + 1ul, corners[2] + 1ul);
+}
+
+/* An object per component, if components are known. Returns 0 if there is no memory for their order. */
+static inline int gxio_put_obj(FILE *stream, const gxio_shell *s) {
+    size_t i, c, *start = NULL, *order = NULL;
+    for (i = 0; i < 3 * s->vertex_count; i += 3)
+        fprintf(stream, "v %.17g %.17g %.17g\n", s->vertices[i], s->vertices[i + 1], s->vertices[i + 2]);
+    if (!s->component) {
+        for (i = 0; i < s->triangle_count; i++) gxio_put_obj_face(stream, s->triangles + 3 * i);
+        return 1;
+    }
+    start = (size_t *)calloc(s->component_count + 2, sizeof *start);
+    order = (size_t *)gxio_array(s->triangle_count + 1, sizeof *order);
+    if (start && order) {
+        for (i = 0; i < s->triangle_count; i++) start[s->component[i] + 2]++;
+        for (c = 2; c < s->component_count + 2; c++) start[c] += start[c - 1];
+        for (i = 0; i < s->triangle_count; i++) order[start[s->component[i] + 1]++] = i;
+        for (c = 0; c < s->component_count; c++) {
+            fprintf(stream, "o component_%lu\n", (unsigned long)c);
+            for (i = start[c]; i < start[c + 1]; i++) gxio_put_obj_face(stream, s->triangles + 3 * order[i]);
+        }
+    }
+    c = start && order;
+    free(start);
+    free(order);
+    return (int)c;
+}
+
+static inline void gxio_put_word(unsigned char *bytes, uint32_t word) {
+    int i;
+    for (i = 0; i < 4; i++) bytes[i] = (unsigned char)(word >> 8 * i);
+}
+
+/* Binary STL: single precision, least significant byte first */
+static inline void gxio_put_stl(FILE *stream, const gxio_shell *s) {
+    unsigned char bytes[84];
+    size_t t;
+    int i, k;
+    memset(bytes, 0, sizeof bytes);
+    gxio_put_word(bytes + 80, (uint32_t)s->triangle_count);
+    fwrite(bytes, 1, 84, stream);
+    for (t = 0; t < s->triangle_count; t++) {
+        const double *x[3];
+        double u[3], v[3], n[3], length;
+        float number[12];
+        for (i = 0; i < 3; i++) x[i] = s->vertices + 3 * (size_t)s->triangles[3 * t + (size_t)i];
+        for (k = 0; k < 3; k++) {
+            u[k] = x[1][k] - x[0][k];
+            v[k] = x[2][k] - x[0][k];
+        }
+        for (k = 0; k < 3; k++) n[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+        length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        for (k = 0; k < 3; k++) {
+            number[k] = (float)(length > 0 ? n[k] / length : 0);
+            for (i = 0; i < 3; i++) number[3 + 3 * i + k] = (float)x[i][k];
+        }
+        memset(bytes, 0, 50);
+        for (i = 0; i < 12; i++) {
+            uint32_t word;
+            memcpy(&word, &number[i], 4);
+            gxio_put_word(bytes + 4 * i, word);
+        }
+        fwrite(bytes, 1, 50, stream);
+    }
+}
+
+static inline int gxio_is_surface_name(const char *path) {
+    return gxio_ends_with(path, ".off") || gxio_ends_with(path, ".obj") || gxio_ends_with(path, ".stl");
+}
+
+/* Writes FILE.off, FILE.obj or FILE.stl. */
+static inline int gxio_write_surface(const char *path, const gxio_shell *s, gxio_error *error) {
+    gxio_writer writer;
+    int good = 1;
+    if (!gxio_writer_open(&writer, path, error)) return 0;
+    if (gxio_ends_with(path, ".obj"))
+        good = gxio_put_obj(writer.stream, s);
+    else if (gxio_ends_with(path, ".stl"))
+        gxio_put_stl(writer.stream, s);
+    else
+        gxio_put_off(writer.stream, s);
+    if (gxio_writer_close(&writer, good, error)) return 1;
+    return good ? 0 : gxio_fail(error, path, 0, "out of memory");
 }
 
 /* --------------------------------------------------------------------------------------------- >>frames */

@@ -5,6 +5,7 @@
 #     cxx     a C++ compiler, for the compile tests
 #     bench   SuiteSparse, the direct solver in the benches
 #     charts  gnuplot, for charts
+#     open    CGAL and npm, for other kernels in the benches
 #     wasm    clang with its parts for WebAssembly, and node, which runs it
 #     platforms  cross compilers for Windows, ARM and S/390, and emulators that run their programs
 #     format  clang-format 14
@@ -50,6 +51,7 @@ have() {
     cxx) has g++ || has clang++ || has c++ ;;
     bench) header cholmod.h || header suitesparse/cholmod.h ;;
     charts) has gnuplot ;;
+    open) has node npm && printf '#include <CGAL/version.h>\n' | "${CXX:-c++}" -x c++ -E - >/dev/null 2>&1 ;;
     wasm) has node && links_wasm ;;
     platforms) has x86_64-w64-mingw32-gcc i686-w64-mingw32-gcc wine aarch64-linux-gnu-gcc arm-linux-gnueabihf-gcc s390x-linux-gnu-gcc \
         qemu-aarch64-static qemu-arm-static qemu-s390x-static ;;
@@ -77,6 +79,10 @@ packages() {
     bench:pacman) echo suitesparse ;;
     bench:brew) echo suite-sparse pkg-config ;;
     charts:apt-get) echo gnuplot-nox ;;
+    open:apt-get) echo g++ libcgal-dev nodejs npm ;;
+    open:dnf) echo gcc-c++ CGAL-devel nodejs npm ;;
+    open:pacman) echo gcc cgal nodejs npm ;;
+    open:brew) echo cgal node ;;
     charts:*) echo gnuplot ;;
     wasm:apt-get) wasm_packages ;;
     platforms:apt-get) echo gcc-mingw-w64 wine wine64 qemu-user-static gcc-aarch64-linux-gnu gcc-arm-linux-gnueabihf gcc-s390x-linux-gnu ;;
