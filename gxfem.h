@@ -10898,6 +10898,8 @@ static gx_result gxp_see_edge(gx_blade *blade, uint32_t layer, const double *edg
    from its sheet, else the edge has left the cut through its side. */
 #define GXP_LEAST_ADVANCE 0.02
 #define GXP_CUT_WIDTH     0.15
+/* A material point on the layer's surface that is no farther from the sheet is on a wall of the cut. */
+#define GXP_ON_SHEET 1e-6
 /* So far on the other side of the sheet does a track begin, in element sizes. */
 #define GXP_CROSSING 0.1
 /* Triangles of the last strips that a layer remembers. */
@@ -10987,6 +10989,14 @@ static void gxp_judge_air(const gx_blade *blade, const gxp_front_vertex *v, gxp_
     r->ahead = distance > GXP_CUT_WIDTH * v->size && distance > 2 * blade->tolerance;
 }
 
+/* Is a place in the air next to this layer's own cut: between its walls, or before their rims? There the maps of the
+   two sides, extended, lead away from each other, and tell nothing of where the edge is by the front. */
+static int gxp_is_in_open_cut(const gx_blade *blade, const gxp_front_vertex *v) {
+    double nearest[3];
+    return v->distance > 0 && v->distance <= v->size &&
+           gxp_near_sheet(&blade->sheet, v->foot, nearest) <= GXP_ON_SHEET * v->size;
+}
+
 /* Where a place on the edge lies by the front. A front in the air follows the edge: nothing is cut yet. */
 static gx_result gxp_relate(gx_blade *blade, const gxp_front_vertex *v, gxp_relation *r) {
     double nearest[3], direction[3], way[3];
@@ -11000,6 +11010,7 @@ static gx_result gxp_relate(gx_blade *blade, const gxp_front_vertex *v, gxp_rela
         r->ahead = gxp_dot(direction, way) > 0;
     if (v->distance > 0) {
         if ((!r->ahead || v->walled) && r->distance > 0) gxp_judge_air(blade, v, r);
+        if (r->ahead && gxp_is_in_open_cut(blade, v)) r->ahead = 0;
         return GX_OK;
     }
     if (!r->ahead) result = gxp_judge_behind(blade, v, r);
@@ -11088,7 +11099,7 @@ static gx_result gxp_advance_front(gx_blade *blade, gxp_advance *move) {
     for (i = 0; i < samples->count && result == GX_OK; i++) {
         const gxp_front_vertex *v = &samples->data[i];
         result = gxp_relate(blade, v, &r[i]);
-        if (in_air) r[i].ahead = !move->is_back && r[i].distance > 0;
+        if (in_air) r[i].ahead = !move->is_back && r[i].distance > 0 && !gxp_is_in_open_cut(blade, v);
     }
     for (i = 0; i < samples->count && result == GX_OK; i++) {
         const gxp_front_vertex *v = &samples->data[i];
