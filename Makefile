@@ -75,6 +75,11 @@ help:
 	@echo "make check-amalgam  compile tests of that header"
 	@echo "make install     the headers and gxfem.pc, for pkg-config; PREFIX=/usr/local, DESTDIR= (a stage)"
 	@echo "make check-package  installs into $(BUILD)/package and uses that: by CMake, if it is there, and by pkg-config"
+	@echo "make web         a page on which one slices a jelly, in $(BUILD)/web; any file server shows it (needs clang's parts for WebAssembly)"
+	@echo "make check-web   opens it in headless Chromium: slices, pulls, undoes; installs Chromium and node where they are missing"
+	@echo "make lib         a shared library of all that is public, $(library); docs/EMBEDDING.md says what for"
+	@echo "make bindings    what other languages declare of it, out of the headers: Python, C#, tests/bindings/abi.txt (needs python3)"
+	@echo "make check-bindings  tests these; installs numpy and mono's C# compiler where they are missing"
 	@echo "make coverage    lines and branches of the headers that make check reaches: $(BUILD)/coverage/; needs gcc and gcov;"
 	@echo "                 tests/unreached.txt says why others are not"
 	@echo "make clean       removes $(BUILD)/"
@@ -120,6 +125,54 @@ demo: $(BUILD)/demo/gxcut
 check-page: demo
 	@if sh tests/install.sh page; then node tests/check_page.mjs $(BUILD)/demo/demo.html 36 $(BUILD)/check-page; \
 	else echo "left out: no chromium"; fi
+
+# ---- the page on which one slices a jelly
+
+web_files = index.html page.js worker.js player.js jelly.wasm jelly-simd.wasm
+web: $(web_files:%=$(BUILD)/web/%)
+	@echo "look      serve $(BUILD)/web, for example: python3 -m http.server -d $(BUILD)/web"
+
+$(BUILD)/web/%: examples/web/%
+	@mkdir -p $(@D)
+	@cp $< $@
+
+$(BUILD)/web/player.js: examples/player.js
+	@mkdir -p $(@D)
+	@cp $< $@
+
+web_clang = $(or $(CLANG),clang) --target=wasm32-wasi --sysroot=$(or $(SYSROOT),/usr) -std=c99 -O2 $(WARNINGS) -I. -mexec-model=reactor
+web_link = -Wl,-z,stack-size=262144 -Wl,--stack-first -Wl,--strip-all -lm
+$(BUILD)/web/jelly.wasm: web_vectors =
+$(BUILD)/web/jelly-simd.wasm: web_vectors = -msimd128
+$(BUILD)/web/jelly.wasm $(BUILD)/web/jelly-simd.wasm: examples/web/jelly.c examples/gxshape.h $(headers)
+	@sh tests/install.sh wasm
+	@mkdir -p $(@D)
+	$(web_clang) $(web_vectors) $< -o $@ $(web_link)
+
+check-web: web
+	@if sh tests/install.sh page; then node tests/check_web.mjs $(BUILD)/web $(BUILD)/check-web; else echo "left out: no chromium"; fi
+
+# ---- the shared library, and what other languages see of it
+
+target := $(shell $(CC) -dumpmachine 2>/dev/null)
+windows_target = $(or $(findstring mingw,$(target)),$(findstring windows,$(target)))
+library = $(BUILD)/$(if $(windows_target),gxfem.dll,$(if $(findstring darwin,$(target)),libgxfem.dylib,libgxfem.so))
+exported = $(if $(windows_target),__declspec(dllexport),__attribute__((visibility("default"))))
+
+lib: $(library)
+
+$(library): $(headers)
+	@mkdir -p $(@D)
+	printf '#define GXFEM_API $(exported)\n#define GXFEM_IMPLEMENTATION\n#include "gxfem.h"\n' | \
+	    $(compile) -shared $(if $(windows_target),,-fPIC -fvisibility=hidden) -I. -x c - -o $@ $(LDFLAGS) -lm
+
+bindings:
+	@for kind in abi:tests/bindings/abi.txt python:examples/python/gxfem_declarations.py csharp:examples/csharp/Gxfem.cs; do \
+	    sh examples/python/declare.sh $${kind%%:*} >$${kind#*:}.part && mv $${kind#*:}.part $${kind#*:} || exit 1; done
+
+check-bindings: lib
+	@sh tests/install.sh bindings || true
+	@CC="$(CC)" sh tests/bindings.sh $(BUILD) $(library)
 
 # ---- scenes. Without gnuplot only the chart is missing.
 
@@ -397,6 +450,7 @@ check-all: check
 	@$(MAKE) --no-print-directory compile
 	@$(MAKE) --no-print-directory check-amalgam
 	@$(MAKE) --no-print-directory check-package
+	@$(MAKE) --no-print-directory check-bindings
 	@$(MAKE) --no-print-directory sanitize
 	@for cc in gcc clang; do \
 	    if command -v $$cc >/dev/null; then $(MAKE) --no-print-directory check CC=$$cc BUILD=$(BUILD)/$$cc || exit 1; fi; done
@@ -407,4 +461,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes check-settled compile amalgam check-amalgam install check-package coverage formatted lint format fuzz fuzz-blade flags hashes platforms check-wasm $(benches:%=bench-%) bench charts check-all clean
+.PHONY: help web check-web lib bindings check-bindings examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes check-settled compile amalgam check-amalgam install check-package coverage formatted lint format fuzz fuzz-blade flags hashes platforms check-wasm $(benches:%=bench-%) bench charts check-all clean

@@ -304,7 +304,8 @@ typedef struct gx_view {
     size_t copy_count;
     const uint32_t *copy_node; /* copy_count */
     const uint8_t *copy_held;  /* copy_count, 1: held by a region (gx_body_hold) */
-    /* copy_count: the first of the regions that hold the copy, which moves it; UINT32_MAX: none */
+    /* copy_count: the first of the regions that hold the copy, which moves it; UINT32_MAX: none. Or NULL: no region
+       holds anything */
     const uint32_t *copy_region;
     /* Names this numbering of copies. A cut that creates or removes copies begins a new one; other cuts keep it. 0: no
        cut has begun one yet. Bodies that were cut alike have the same epoch, others have different ones. */
@@ -5933,7 +5934,7 @@ static int gxp_is_in_ball(const double x[3], const double center[3], double radi
         square += (x[k] - center[k]) * (x[k] - center[k]);
         size += x[k] * x[k] + center[k] * center[k];
     }
-    if (fabs(square - radius * radius) > 1e-14 * size && gxp_is_finite(size) && size > 1e-280)
+    if (fabs(square - radius * radius) > 1e-14 * size && size > 1e-280) /* not where the size is infinite, or NaN */
         return square < radius * radius;
     return gxp_exact_ball_side(x, center, radius) < 0;
 }

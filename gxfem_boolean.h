@@ -12416,16 +12416,23 @@ static void gxbp_drop_old(gxb_boolean *b, uint32_t f) {
     }
 }
 
-/* Makes the result show what a subtriangle shows now. */
+/* Makes the result show what a subtriangle shows now. A triangle that stays bears another name where the other side has
+   appeared or gone: a sheet's, or a closed surface's. */
 static void gxbp_show_again(gxb_boolean *b, uint32_t f, gxbp_judgement *last) {
     const uint32_t now = gxbp_judge_subtriangle(b, f, last), before = b->out.shown[f];
+    uint32_t source;
     int side;
     if (now == before) return;
+    source = gxbp_cover_of(b, f, now == (GXBP_SHOWS | GXBP_SHOWS_BACK));
     for (side = 0; side < 2; side++) {
-        const uint32_t bit = side ? GXBP_SHOWS_BACK : GXBP_SHOWS;
-        if (before & ~now & bit) gxbp_drop_triangle(b, b->kept.places[2 * f + (uint32_t)side]);
-        if (now & ~before & bit)
-            gxbp_keep_triangle(b, f, side, gxbp_cover_of(b, f, now == (GXBP_SHOWS | GXBP_SHOWS_BACK)));
+        const uint32_t bit = side ? GXBP_SHOWS_BACK : GXBP_SHOWS, t = b->kept.places[2 * f + (uint32_t)side];
+        if (now & before & bit) {
+            gxbp_name_triangle(b, t, f, side, source);
+            gxbp_note_triangle(b, t);
+        } else if (before & bit)
+            gxbp_drop_triangle(b, t);
+        else if (now & bit)
+            gxbp_keep_triangle(b, f, side, source);
     }
     b->out.shown[f] = (uint8_t)now;
 }

@@ -849,6 +849,7 @@ extern "C" {
 #define GXSP_SHUFFLES
 typedef __attribute__((vector_size(8), aligned(4), may_alias)) float gxsp_two;
 typedef __attribute__((vector_size(16), aligned(4), may_alias)) float gxsp_four;
+typedef __attribute__((vector_size(16), aligned(8), may_alias)) double gxsp_two_doubles;
 typedef __attribute__((vector_size(32), aligned(8), may_alias)) double gxsp_four_doubles;
 #if defined(__AVX__)
 typedef __attribute__((vector_size(32), aligned(4), may_alias)) float gxsp_eight;
@@ -5790,9 +5791,19 @@ static void gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, 
     to[3 * i] = 0;
 }
 
+#if defined(GXSP_SHUFFLES) && !defined(__AVX__)
+/* Three numbers of each of two nodes to three arrays */
+static inline void gxsp_load_two(const double *x, const double *y, double *to0, double *to1, double *to2) {
+    const gxsp_two_doubles a = *(const gxsp_two_doubles *)x, b = *(const gxsp_two_doubles *)y;
+    *(gxsp_two_doubles *)to0 = __builtin_shufflevector(a, b, 0, 2);
+    *(gxsp_two_doubles *)to1 = __builtin_shufflevector(a, b, 1, 3);
+    to2[0] = x[2], to2[1] = y[2];
+}
+#endif
+
 /* Three numbers of each of four nodes to three arrays. The last node's are followed by one more. */
 static inline void gxsp_load_four(const uint16_t *node, const double *x, double *to0, double *to1, double *to2) {
-#if defined(GXSP_SHUFFLES)
+#if defined(GXSP_SHUFFLES) && defined(__AVX__)
     const gxsp_four_doubles a = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[0]),
                             b = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[1]),
                             c = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[2]),
@@ -5804,6 +5815,9 @@ static inline void gxsp_load_four(const uint16_t *node, const double *x, double 
     *(gxsp_four_doubles *)to0 = __builtin_shufflevector(p, q, 0, 1, 4, 5);
     *(gxsp_four_doubles *)to1 = __builtin_shufflevector(r, s, 0, 1, 4, 5);
     *(gxsp_four_doubles *)to2 = __builtin_shufflevector(p, q, 2, 3, 6, 7);
+#elif defined(GXSP_SHUFFLES)
+    gxsp_load_two(x + 3 * (size_t)node[0], x + 3 * (size_t)node[1], to0, to1, to2);
+    gxsp_load_two(x + 3 * (size_t)node[2], x + 3 * (size_t)node[3], to0 + 2, to1 + 2, to2 + 2);
 #else
     int l;
     for (l = 0; l < 4; l++)

@@ -355,7 +355,7 @@ open() {
     cat <<END
 $styles
 set multiplot layout 1,2 title "Booleans beside other kernels, from meshes to the result   ($(where open))" font "sans,15"
-set logscale xy; set grid back lc rgb "#dddddd"; set ylabel "s"; set key left top; set format y "10^{%L}"
+set logscale xy; set grid back lc rgb "#dddddd"; set ylabel "s"; set key bottom right; set format y "10^{%L}"
 set title "a dome less capsules, evaluated after each"; set xlabel "capsules"
 plot \$dome_gxfem with linespoints ls 1 title "gxfem", \$dome_manifold with linespoints ls 3 title "manifold", \$dome_manifold_wasm with linespoints ls 4 title "manifold, WebAssembly", \$dome_CGAL with linespoints ls 5 title "CGAL, corefinement"
 set title "a sphere less a moved copy"; set xlabel "triangles of both"; set format x "10^{%L}"; set ylabel ""

@@ -62,7 +62,7 @@ class Connection {
     }
 }
 
-// Opens a file.
+// Opens a file, or a page by its address (http:).
 //     options      width, height; scale: pixels of the screen for one of the page; dark: the user prefers dark;
 //                  before: a script that runs before those of the page
 //     page.errors  what went wrong on the page so far
@@ -133,7 +133,7 @@ export async function openPage(path, {width = 960, height = 640, scale = 1, dark
     await send("Emulation.setEmulatedMedia", {features: [scheme]});
     if (before) await send("Page.addScriptToEvaluateOnNewDocument", {source: before});
     const loaded = new Promise(done => connection.listeners.push(method => method === "Page.loadEventFired" && done()));
-    await send("Page.navigate", {url: pathToFileURL(resolve(path)).href});
+    await send("Page.navigate", {url: /^https?:/.test(path) ? path : pathToFileURL(resolve(path)).href});
     await loaded;
     return page;
 }

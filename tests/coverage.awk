@@ -38,6 +38,14 @@ function fits(row, name, text, branch, ways, part, n, i, stands_in_part) {
     return !stands_in_part || index(part[int(branch / 2) + 1], row_text[row]) > 0
 }
 
+# A piece of the line that names this branch (from 0) of so many, or this line (ways is 0)
+function piece(text, branch, ways, part) {
+    if (divide(text, ways, part) > 0 && index(text, part[int(branch / 2) + 1])) text = part[int(branch / 2) + 1]
+    sub(/ \| .*/, "", text)
+    gsub(/^ +| +$/, "", text)
+    return text
+}
+
 # Notes a line, or a branch of a line that is reached
 function miss(kind, header, n, what, branch, ways, name, text, row, where) {
     name = of[header, n]
@@ -47,7 +55,11 @@ function miss(kind, header, n, what, branch, ways, name, text, row, where) {
     missed[kind, name]++
     all_missed[kind]++
     if (row <= rows) used[row, row_functions[row] == "*" ? "*" : name] = 1
-    else nameless[++nameless_count] = where
+    else {
+        nameless[++nameless_count] = where
+        if (!(name " | " piece(text, branch, ways) in proposed)) print name " | " piece(text, branch, ways) " | " >(folder "/rows.txt")
+        proposed[name " | " piece(text, branch, ways)] = 1
+    }
     print where (row <= rows ? "   [" row_why[row] "]" : "") >(folder "/unreached.txt")
 }
 
@@ -129,6 +141,7 @@ BEGIN {
 
 END {
     printf "" >(folder "/unreached.txt")
+    printf "" >(folder "/rows.txt")
     printf "%-20s %8s %8s %7s   %8s %8s %7s\n", "", "lines", "reached", "%", "branches", "reached", "%" >(folder "/coverage.txt")
     for (i = 1; i <= header_count; i++) add_up(headers[i])
     tell("all", all_lines, all_reached, all_ways, all_taken)

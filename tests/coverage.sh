@@ -6,6 +6,7 @@
 #                         coverage.txt   the table that is printed
 #                         functions.txt  per function, what is not reached, most first
 #                         unreached.txt  each line and branch that is not reached, and why
+#                         rows.txt       rows for those that have none, without their reasons
 #     LINES, BRANCHES   fails below these percentages (98, 92)
 #     GCOV              gcov of the compiler that was used (gcov)
 #     REASONS           why something is not reached (tests/unreached.txt)

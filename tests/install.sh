@@ -11,6 +11,7 @@
 #     format  clang-format 14
 #     page    Chromium and node, for the page that the demo makes
 #     animation  the same, and img2webp, for the README's animated picture
+#     bindings  python3 with numpy, and mono's C# compiler, for the tests of bindings
 #     cmake   CMake, for the test of the installed package
 #     pictures  f3d, and a virtual display if there is no other, for pictures of scenes
 set -u
@@ -58,6 +59,7 @@ have() {
     format) has clang-format ;;
     page) has node && has_browser ;;
     animation) has node && has_browser && has img2webp ;;
+    bindings) has mcs && { python3 -c 'import numpy' || /usr/bin/python3 -c 'import numpy'; } 2>/dev/null ;;
     cmake) has cmake ;;
     pictures) has f3d && { [ -n "${DISPLAY:-}" ] || has xvfb-run; } ;;
     *) echo "$0: no group '$1'" >&2; exit 2 ;;
@@ -94,6 +96,10 @@ packages() {
     animation:dnf) echo chromium nodejs libwebp-tools ;;
     animation:pacman) echo chromium nodejs libwebp ;;
     animation:brew) echo chromium node webp ;;
+    bindings:apt-get) echo python3-numpy mono-mcs ;;
+    bindings:dnf) echo python3-numpy mono-core ;;
+    bindings:pacman) echo python-numpy mono ;;
+    bindings:brew) echo numpy mono ;;
     cmake:*) echo cmake ;;
     pictures:apt-get) echo f3d xvfb xauth ;;
     pictures:dnf) echo f3d xorg-x11-server-Xvfb ;;

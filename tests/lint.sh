@@ -496,7 +496,7 @@ rule_words() {
 
 rule_unfinished() {
     # shellcheck disable=SC2046
-    grep -nE '\b(TODO|FIXME|XXX|HACK)\b' $headers examples/* CMakeLists.txt Makefile $(prose) /dev/null
+    grep -nE '\b(TODO|FIXME|XXX|HACK)\b' $headers $(find examples -type f) CMakeLists.txt Makefile $(prose) /dev/null
 }
 
 rule_readme() {

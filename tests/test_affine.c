@@ -441,7 +441,9 @@ START_TEST(bad_input_is_named) {
     sheet made = sheet_make(2, 1, 0.4, 0.2, 0, GXS_LINEAR);
     gxs_solver *solver = solver_make();
     gx_failure failure;
+    gxs_constraint constraint;
     const uint32_t first = made.affine[0];
+    uint32_t corner;
     made.s.model.affine_length = 0;
     ck_assert_int_eq(gxs_solver_set_model(solver, &made.s.model, &failure), GX_ERROR_ARGUMENT);
     ck_assert_str_eq(failure.field, "affine_length");
@@ -460,9 +462,96 @@ START_TEST(bad_input_is_named) {
     ck_assert_int_eq(gxs_solver_set_model(solver, &made.s.model, &failure), GX_ERROR_ARGUMENT);
     ck_assert_str_eq(failure.field, "lumped_mass");
     made.s.model.lumped_mass = 0;
+    made.s.model.affine_length = NAN;
+    ck_assert_int_eq(gxs_solver_set_model(solver, &made.s.model, &failure), GX_ERROR_NOT_FINITE);
+    ck_assert_str_eq(failure.field, "affine_length");
+    made.s.model.affine_length = 1;
+    made.affine[first] = first + 3; /* a vector of a group has one of its own */
+    ck_assert_int_eq(gxs_solver_set_model(solver, &made.s.model, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_str_eq(failure.field, "affine");
+    made.affine[first] = GXS_NOT_AFFINE;
+    memset(&constraint, 0, sizeof constraint);
+    constraint.copy = 1;
+    constraint.master[1] = 2;
+    constraint.master[2] = 3;
+    constraint.master[3] = 4;
+    constraint.weight[0] = 1;
+    made.s.model.constraints = &constraint;
+    made.s.model.constraint_count = 1;
+    ck_assert_int_eq(gxs_solver_set_model(solver, &made.s.model, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_str_eq(failure.field, "constraints");
+    made.s.model.constraint_count = 0;
+    corner = made.s.elements[0].copy[0];
+    made.s.elements[0].copy[0] = first;
+    ck_assert_int_eq(gxs_solver_set_model(solver, &made.s.model, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_str_eq(failure.field, "elements.copy");
+    made.s.elements[0].copy[0] = corner;
+    for (corner = 0; corner < 2; corner++) { /* assembled, by volumes */
+        gxs_solver_desc desc;
+        gxs_solver *other = NULL;
+        memset(&desc, 0, sizeof desc);
+        if (corner == 0) desc.matrix = GXS_MATRIX_ASSEMBLED;
+        if (corner == 1) desc.preconditioner = GXS_VOLUME_RATIO;
+        ck_assert_int_eq(gxs_solver_create(&desc, &other, NULL), GX_OK);
+        ck_assert_int_eq(gxs_solver_set_model(other, &made.s.model, &failure), GX_ERROR_ARGUMENT);
+        ck_assert_str_eq(failure.field, corner == 0 ? "matrix" : "preconditioner");
+        gxs_solver_destroy(other);
+    }
     ck_assert_int_eq(gxs_solver_set_model(solver, &made.s.model, &failure), GX_OK);
     gxs_solver_destroy(solver);
     sheet_free(&made);
+}
+END_TEST
+
+/* Springs pull at groups of affine copies. By multigrid the sheet comes to rest where it does by the blocks alone. */
+START_TEST(springs_pull_at_sheets) {
+    static const gxs_preconditioner ways[2] = {GXS_MULTIGRID, GXS_BLOCK_JACOBI};
+    double *found[2], most = 0, off = 0;
+    size_t i, way, n = 0;
+    for (way = 0; way < 2; way++) {
+        sheet made = sheet_make(6, 2, 0.37, 0.2, 0, GXS_LINEAR);
+        const uint32_t end = (uint32_t)made.nodes - 1, middle = end / 2, *affine = made.affine;
+        const uint32_t copies[8] = {end,     affine[end],     affine[end] + 1, affine[end] + 2,
+                                    end - 1, affine[end - 1], middle,          affine[middle] + 2};
+        const double weights[8] = {0.5, 0.1, -0.05, 0.2, 0.4, 0.3, 0.1, 0.01};
+        gxs_solver_desc desc;
+        gxs_solver *solver = NULL;
+        gxs_step_desc step = step_make(0, -1);
+        gxs_step_report report;
+        gxs_spring springs[2];
+        memset(&desc, 0, sizeof desc);
+        desc.preconditioner = ways[way];
+        ck_assert_int_eq(gxs_solver_create(&desc, &solver, NULL), GX_OK);
+        memset(springs, 0, sizeof springs);
+        for (i = 0; i < 2; i++) {
+            springs[i].point.count = 4 << i;
+            springs[i].point.copies = copies;
+            springs[i].point.weights = weights;
+            springs[i].stiffness = 300;
+            springs[i].target[i] = 0.02;
+        }
+        step.springs = springs;
+        step.spring_count = 2;
+        step.integrator = GXS_STATIC;
+        step.cg_iterations = 20000;
+        step.cg_tolerance = 1e-6;
+        hold_left(&made);
+        ck_assert_int_eq(advance(solver, &made.s.model, &step, made.s.displacement, made.s.velocity, &report, NULL),
+                         GX_OK);
+        ck_assert_int_eq(report.preconditioner, ways[way]);
+        n = 3 * made.s.model.copy_count;
+        found[way] = (double *)zeroed(n, sizeof(double));
+        memcpy(found[way], made.s.displacement, n * sizeof(double));
+        gxs_solver_destroy(solver);
+        sheet_free(&made);
+    }
+    for (i = 0; i < n; i++) {
+        most = fmax(most, fabs(found[1][i]));
+        off = fmax(off, fabs(found[0][i] - found[1][i]));
+    }
+    assert_that(most > 1e-6 && off < 1e-3 * most, "off by %g of %g", off, most);
+    free(found[0]);
+    free(found[1]);
 }
 END_TEST
 
@@ -550,6 +639,7 @@ int main(void) {
     tcase_add_loop_test(all, multigrid_moves_sheets, 0, 3);
     tcase_add_test(all, none_is_none);
     tcase_add_test(all, bad_input_is_named);
+    tcase_add_test(all, springs_pull_at_sheets);
     tcase_add_loop_test(all, every_allocation_may_fail, 0, KINDS);
     tcase_set_timeout(all, 120);
     suite_add_tcase(suite, all);

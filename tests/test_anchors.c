@@ -737,9 +737,18 @@ START_TEST(copies_and_going_back) {
 }
 END_TEST
 
-/* Far from the origin, and of any size; an element as flat as a sheet of paper. */
+/* Turns a point about two axes, so that no axis stays one. */
+static void turn(double x[3]) {
+    const double y = 0.8 * x[1] - 0.6 * x[2], z = 0.6 * x[1] + 0.8 * x[2], first = x[0];
+    x[0] = (5 * first - 12 * z) / 13;
+    x[1] = y;
+    x[2] = (12 * first + 5 * z) / 13;
+}
+
+/* Far from the origin, and of any size; an element as flat as a sheet of paper, along the axes and across them, where
+   the terms of its volume cancel. */
 START_TEST(far_small_and_flat) {
-    static const double sizes[6] = {1, 1e-6, 1e6, 1e-29, 1e29, 1}, offsets[6] = {1e8, 0.3, 12345678.9, 0, 0, 0};
+    static const double sizes[7] = {1, 1e-6, 1e6, 1e-29, 1e29, 1, 1}, offsets[7] = {1e8, 0.3, 12345678.9, 0, 0, 0, 0};
     const double h = sizes[_i], o = offsets[_i];
     static cuts c;
     workload w = grid(2, 2, 1, 5);
@@ -751,6 +760,8 @@ START_TEST(far_small_and_flat) {
     for (i = 0; i < w.node_count; i++) {
         int k;
         if (_i == 5) w.positions[3 * i + 2] *= 1e-9;
+        if (_i == 6) w.positions[3 * i + 2] *= 1e-7;
+        if (_i == 6) turn(w.positions + 3 * i);
         for (k = 0; k < 3; k++) w.positions[3 * i + (size_t)k] = o + h * w.positions[3 * i + (size_t)k];
     }
     body = body_of(&w);
@@ -892,6 +903,31 @@ START_TEST(refused_anchors) {
 }
 END_TEST
 
+/* An element between two planes with no double between them: nothing can stand inside it. */
+START_TEST(nowhere_to_stand) {
+    static double positions[12] = {0, 0, 1, 1, 0, 1, 0, 1, 1, 0.25, 0.25, 1 + 2.220446049250313e-16};
+    static uint32_t elements[4] = {0, 1, 2, 3};
+    static const double x[3] = {0.25, 0.25, 1};
+    workload w = wl_empty();
+    gx_body *body;
+    gx_anchor a;
+    gx_failure failure;
+    gx_hit hit;
+    uint64_t state;
+    w.positions = positions;
+    w.elements = elements;
+    w.node_count = 4;
+    w.element_count = 1;
+    body = body_of(&w);
+    state = gx_body_state_hash(body);
+    REFUSED(gx_body_anchor(body, 0, x, &a, &failure), GX_ERROR_FLAT, "material", SIZE_MAX);
+    ck_assert_int_eq(gx_body_locate(body, x, 1, &hit, NULL), GX_OK);
+    ck_assert_uint_eq(hit.element, 0);
+    REFUSED(gx_hit_anchor(body, &hit, &a, &failure), GX_ERROR_FLAT, "hit.material", SIZE_MAX);
+    gx_body_destroy(body);
+}
+END_TEST
+
 START_TEST(refused_steps) {
     workload w = grid(1, 1, 1, 5);
     gx_body *body;
@@ -972,8 +1008,9 @@ static Suite *suite(void) {
     tcase_add_test(tests, steps_by_anchors);
     tcase_add_test(tests, lost_anchors_do_nothing);
     ADD_SOME(tests, copies_and_going_back, 10);
-    tcase_add_loop_test(tests, far_small_and_flat, 0, 6);
+    tcase_add_loop_test(tests, far_small_and_flat, 0, 7);
     tcase_add_test(tests, refused_anchors);
+    tcase_add_test(tests, nowhere_to_stand);
     tcase_add_test(tests, refused_steps);
     suite_add_tcase(s, tests);
     return s;

@@ -680,6 +680,27 @@ START_TEST(copies_go_on) {
 }
 END_TEST
 
+/* A tool far larger than the body takes all of it, also where its surface is far away. */
+START_TEST(tool_around_all) {
+    static const double low[3] = {-9, -8, -7}, high[3] = {12, 11, 13};
+    workload w = grid(3, 3, 3, 5);
+    gx_body *body = body_of(&w);
+    gx_surface tool;
+    gx_cut_report report;
+    gx_view view = view_of(body);
+    size_t i;
+    for (i = 0; i < 3 * view.copy_count; i++) view.displacement[i] = 0.25;
+    wl_add_aligned_box(wl_add_surface(&w, 1), low, high);
+    tool = surface_of(&w.surfaces[0]);
+    ck_assert_int_eq(gx_body_carve(body, &tool, &report, NULL), GX_OK);
+    ck_assert_double_eq_tol(report.removed_volume, 27, 1e-12);
+    view = view_of(body);
+    ck_assert_uint_eq(view.copy_count, 0);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* Blades by index: in the order of their creation */
 START_TEST(blades_of_a_body) {
     stage s = open_block(2, 1);
@@ -1050,6 +1071,7 @@ int main(void) {
     tcase_add_loop_test(tests, restored_between_moves, 0, 2);
     tcase_add_loop_test(tests, copies_go_on, 0, 2);
     tcase_add_test(tests, blades_of_a_body);
+    tcase_add_test(tests, tool_around_all);
     tcase_add_loop_test(tests, carving, 0, 2);
     tcase_add_loop_test(tests, carving_what_moves, first, only ? first + 1 : 6);
     tcase_add_loop_test(tests, sizes_and_places, 0, 5);

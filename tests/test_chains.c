@@ -348,18 +348,72 @@ START_TEST(retained_results_are_those_of_a_fresh_boolean) {
 }
 END_TEST
 
+/* Chains that once failed: a triangle stays when the other side of a sheet appears behind it, and bears the sheet's
+ * name. */
+START_TEST(chains_that_failed) { check_chain(1000824); }
+END_TEST
+
+static int is_all(const gxb_range *ranges, size_t count, size_t all) {
+    return count == (all > 0) && (all == 0 || (ranges[0].first == 0 && ranges[0].count == all));
+}
+
+/* All of a result that is made from nothing has changed: of one that is not retained, or mended. Memory runs out too.
+ */
+START_TEST(all_is_new_that_is_made_from_nothing) {
+    static chain c;
+    memory m = plenty();
+    copy mirror;
+    gxb_boolean *b;
+    gxb_boolean_result r;
+    gxb_changes changes;
+    size_t step, added = 0;
+    make_chain(&c, 1000 + (uint64_t)_i);
+    memset(&mirror, 0, sizeof mirror);
+    b = start(&c, 0, &m);
+    ck_assert_int_eq(gxb_boolean_set_retained(NULL, 1, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_boolean_changes(b, &changes, NULL), GX_ERROR_SEQUENCE);
+    for (step = 0; step < c.count; step++) {
+        const int retained = step % 4 < 2, mend = step % 2;
+        gx_result result = GX_ERROR_MEMORY;
+        size_t n;
+        added += add(b, &c.operand[step]) == GX_OK;
+        if (added == 0) continue;
+        ck_assert_int_eq(gxb_boolean_set_retained(b, retained, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_set_mend(b, mend, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
+        for (n = 0; result != GX_OK; n++) {
+            fail_from(&m, n, 1);
+            result = gxb_boolean_changes(b, &changes, NULL);
+            ck_assert(result == GX_OK || result == GX_ERROR_MEMORY);
+        }
+        never_fail(&m);
+        follow(&mirror, b, &r);
+        if (retained && !mend) continue;
+        ck_assert(is_all(changes.vertices, changes.vertex_range_count, r.vertex_count));
+        ck_assert(is_all(changes.triangles, changes.triangle_range_count, r.triangle_count));
+    }
+    drop_copy(&mirror);
+    gxb_boolean_destroy(b);
+    ck_assert(m.blocks == NULL && !m.wrong && !m.overrun);
+}
+END_TEST
+
 /* test_chains [FIRST END]: the chains of these seeds */
 int main(int argc, char **argv) {
     Suite *suite = suite_create("chains");
-    TCase *tests = tcase_create("chains");
+    TCase *tests = tcase_create("chains"), *anew = tcase_create("anew");
     tcase_set_timeout(tests, 300);
     if (argc == 3) {
         seeds[0] = strtoull(argv[1], NULL, 10);
         seeds[1] = strtoull(argv[2], NULL, 10);
         tcase_set_timeout(tests, 0);
         tcase_add_test(tests, given_chains);
-    } else
+    } else {
         tcase_add_loop_test(tests, retained_results_are_those_of_a_fresh_boolean, 0, 10);
+        tcase_add_test(tests, chains_that_failed);
+        tcase_add_loop_test(anew, all_is_new_that_is_made_from_nothing, 0, 8);
+    }
     suite_add_tcase(suite, tests);
+    suite_add_tcase(suite, anew);
     return run_suite(suite);
 }

@@ -68,6 +68,9 @@ verdict 'a row behind one that fits more' 1 'names what is reached, or not there
 verdict 'a row without a reason' 1 'not FUNCTION | TEXT | REASON: * | return 3' 's/ | any function//'
 verdict 'too few lines' 1 'fewer than 90 % of the lines are reached' '' 90
 verdict 'too few branches' 1 'fewer than 60 % of the branches are reached' '' 10 60
+verdict 'nothing is named' 1 'gxfem.h:7: gxp_second: line not reached: return 3;' d
+sed 's/$/a reason/' "$work/rows.txt" >"$work/right"
+verdict 'the rows that are proposed fit, one each' 0 'not reached: 1 lines, and 4 branches of others'
 
 echo "coverage can fail: $passed passed, $failed failed"
 [ $failed -eq 0 ]

@@ -272,6 +272,22 @@ START_TEST(what_regions_hold) {
 }
 END_TEST
 
+/* A ball whose square is no double holds all, one whose square is next to nothing the node that it is around. */
+START_TEST(balls_beyond_doubles) {
+    static const double at[3] = {0, 0, 0}, radius[2] = {1e200, 1e-145};
+    workload w = grid(2, 1, 1, 5);
+    gx_body *body = body_of(&w);
+    const gx_region ball = gx_region_sphere(at, radius[_i]);
+    gx_view view;
+    size_t i;
+    ck_assert_int_eq(gx_body_hold(body, &ball, 1, NULL), GX_OK);
+    view = view_of(body);
+    for (i = 0; i < view.copy_count; i++) ck_assert_uint_eq(view.copy_held[i], _i == 0 || view.copy_node[i] == 0);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* Boxes that end exactly in walls: what lies beyond is free. */
 START_TEST(boxes_beside_walls) {
     const double low[3] = {-0.25, -0.25, -0.25}, high[3] = {0.25, 1.25, 1.25};
@@ -694,6 +710,7 @@ static Suite *suite(void) {
     TCase *tests = tcase_create("holds");
     tcase_set_timeout(tests, 300);
     ADD_SOME(tests, what_regions_hold, 150);
+    tcase_add_loop_test(tests, balls_beyond_doubles, 0, 2);
     tcase_add_loop_test(tests, boxes_beside_walls, 0, 2);
     ADD_SOME(tests, anchors_that_hold, 30);
     tcase_add_test(tests, poses_move_what_is_held);

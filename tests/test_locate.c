@@ -816,6 +816,57 @@ START_TEST(nothing_is_left) {
     KEEPS(gx_body_pick(body, p, up, &hit, &failure), GX_OK, NULL, SIZE_MAX);
     ck_assert_uint_eq(hit.triangle, UINT32_MAX);
     gx_body_destroy(body);
+    body = body_of(&w); /* nothing is left before the first boxes are made */
+    cut_by(body, &w, 1, 1);
+    KEEPS(gx_body_locate(body, p, 1, &hit, &failure), GX_ERROR_EMPTY, "body", SIZE_MAX);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A displacement that is not finite goes with the material that a cut removes. */
+START_TEST(a_cut_removes_what_is_not_finite) {
+    static const double bad[4] = {NAN, INFINITY, -INFINITY, 1e300};
+    workload w = grid(2, 1, 1, 5);
+    gx_body *body = body_of(&w);
+    const gx_view view = view_of(body);
+    const double p[3] = {0.2, 0.3, 0.4};
+    gx_hit hit;
+    add_box(&w, 1, -1, -1, -1, 1.25, 2, 2);
+    view.displacement[0] = bad[_i];
+    KEEPS(gx_body_locate(body, p, 1, &hit, &failure), _i < 3 ? GX_ERROR_NOT_FINITE : GX_ERROR_RANGE, "displacement", 0);
+    cut_by(body, &w, 0, 1);
+    ck_assert_int_eq(gx_body_locate(body, p, 1, &hit, NULL), GX_OK);
+    ck_assert_double_eq_tol(hit.distance, 1.05, 1e-15);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Where more elements lie over each other than a group of points lists, each point looks for itself. */
+START_TEST(points_in_a_crowd) {
+    enum { POINTS = 40 };
+    workload w = grid(6, 5, 5, 5);
+    gx_body *body = body_of(&w);
+    const gx_view view = view_of(body);
+    double points[3 * POINTS];
+    gx_hit together[POINTS], alone;
+    uint32_t i, k;
+    random_seed(11);
+    for (i = 0; i < view.copy_count; i++)
+        for (k = 0; k < 3; k++) {
+            const double rest = w.positions[3 * (size_t)view.copy_node[i] + k];
+            view.displacement[3 * i + k] = 0.01 * (rest + random_real(-3, 3)) - rest;
+        }
+    for (i = 0; i < 3 * POINTS; i++) points[i] = random_real(-0.02, 0.07);
+    memset(together, 0, sizeof together);
+    memset(&alone, 0, sizeof alone);
+    ck_assert_int_eq(gx_body_locate(body, points, POINTS, together, NULL), GX_OK);
+    for (i = 0; i < POINTS; i++) {
+        ck_assert_int_eq(gx_body_locate(body, points + 3 * i, 1, &alone, NULL), GX_OK);
+        ck_assert_msg(memcmp(&alone, &together[i], sizeof alone) == 0, "point %u differs", i);
+    }
+    gx_body_destroy(body);
     wl_free(&w);
 }
 END_TEST
@@ -858,6 +909,8 @@ int main(void) {
     tcase_add_loop_test(tests, picks_beside_what_is_not_finite, 0, 8);
     tcase_add_test(tests, refusals);
     tcase_add_test(tests, nothing_is_left);
+    tcase_add_loop_test(tests, a_cut_removes_what_is_not_finite, 0, 4);
+    tcase_add_test(tests, points_in_a_crowd);
     tcase_add_test(tests, hits_make_points);
     suite_add_tcase(suite, tests);
     return run_suite(suite);

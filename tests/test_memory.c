@@ -693,13 +693,15 @@ START_TEST(copies) {
 }
 END_TEST
 
-/* To a body with other cuts, to one with another state only, to one with more room than before */
+/* To a body with other cuts, to one with another state only, to one with more room than before, to one with blades */
 START_TEST(restoring) {
-    static const action *const sources[4] = {nothing, moved, moved, moved}, *const bodies[4] = {moved, after_a_cut,
-                                                                                                moved, unmoved};
+    static const action with_blades[] = {cut_sheet, blade_inside, blade_inside, NULL};
+    static const action *const sources[5] = {nothing, moved, moved, moved, with_blades}, *const bodies[5] = {
+                                                                                             moved, after_a_cut, moved,
+                                                                                             unmoved, after_a_cut};
     memory m;
     int i;
-    for (i = 0; i < 4; i++) {
+    for (i = 0; i < 5; i++) {
         m = plenty();
         source = prepared(&m, sources[i]);
         if (i == 2) ck_assert_int_eq(step_bdf2(source), GX_OK);
@@ -856,6 +858,136 @@ START_TEST(step_after_a_failed_model) {
 }
 END_TEST
 
+/* ---- strokes ---- */
+
+/* A tower of cubes, each of five elements */
+enum { STOREYS = 7, TOWER_NODES = 4 * (STOREYS + 1) };
+static const mesh *tower(void) {
+    static double x[3 * TOWER_NODES];
+    static uint32_t elements[20 * STOREYS];
+    static const mesh m = {x, TOWER_NODES, elements, 5 * STOREYS};
+    static const uint32_t mirror[8] = {1, 0, 3, 2, 5, 4, 7, 6};
+    uint32_t i, k;
+    for (i = 0; i < TOWER_NODES; i++) {
+        x[3 * i] = i % 2;
+        x[3 * i + 1] = i / 2 % 2;
+        x[3 * i + 2] = i / 4;
+    }
+    for (i = 0; i < STOREYS; i++)
+        for (k = 0; k < 20; k++) {
+            const uint32_t odd = k % 4 > 1 ? k ^ 1 : k; /* a mirrored element has two of its nodes exchanged */
+            elements[20 * i + k] = 4 * i + (i % 2 ? mirror[five[odd]] : five[k]);
+        }
+    return &m;
+}
+
+/* Parts the upper half of the tower into two arms. */
+static gx_result cut_slit(gx_body *body) {
+    static const double slit[9] = {0.45, -9, 2.1, 0.47, 9, 2.1, 0.46, 0.5, 99};
+    gx_surface s = sheet(slit);
+    return cut(body, &s, 1, 0, 0);
+}
+
+enum { MOST_MOVES = 12 };
+typedef struct stroke {
+    const char *what;
+    const action *before;
+    double min_advance;
+    int count;
+    double y[MOST_MOVES], z[MOST_MOVES]; /* of the edge, which lies along x */
+    double shift[MOST_MOVES];            /* of the body along y, before a move */
+} stroke;
+
+static const action in_a_slit[] = {cut_slit, NULL};
+static const stroke strokes[] = {
+    {"down both arms",
+     in_a_slit,
+     0.7,
+     11,
+     {0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5},
+     {7.7, 6.8, 6.1, 5.6, 5.0, 4.3, 3.6, 3.2, 2.4, 1.3, -0.7},
+     {0}},
+    {"up into both arms",
+     in_a_slit,
+     0.7,
+     11,
+     {0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5},
+     {-0.7, 0.4, 1.6, 2.3, 2.8, 3.3, 4.0, 4.6, 5.5, 6.4, 7.8},
+     {0}},
+    {"out of its cut through the side",
+     nothing,
+     0.7,
+     8,
+     {0.5, 0.5, 0.5, 0.5, 0.8, 0.9, 1.2, 1.8},
+     {7.6, 6.7, 6.0, 5.3, 5.3, 4.9, 4.9, 4.9},
+     {0}},
+    {"in a body that is shifted",
+     nothing,
+     0,
+     5,
+     {0.5, 0.5, 2.9, 2.9, 2.9},
+     {7.6, 5.1, 3.6, 1.4, -0.9},
+     {0, 0, 2.4, 0, 0}},
+};
+enum { STROKES = sizeof strokes / sizeof *strokes };
+
+static void shift_body(gx_body *body, double y) {
+    gx_view view;
+    size_t i;
+    if (!(y > 0)) return;
+    ck_assert_int_eq(gx_body_view(body, &view, NULL), GX_OK);
+    for (i = 0; i < view.copy_count; i++) view.displacement[3 * i + 1] += y;
+}
+
+static gx_result move_along(gx_body *body, const stroke *s, int k) {
+    const double edge[6] = {-9, s->y[k], s->z[k], 9, s->y[k] + 0.03, s->z[k] + 0.05};
+    gx_blade *blade = gx_body_blade(body, 0);
+    return k == s->count ? gx_blade_lift(blade, NULL, NULL) : gx_blade_move(blade, edge, 2, NULL, 0, NULL, NULL);
+}
+
+/* At each move of a stroke memory runs out again and again, at ever later allocations. The body is as it was, and the
+   blade goes on as if nothing had been. */
+START_TEST(memory_of_strokes) {
+    const stroke *s = &strokes[_i];
+    memory m = plenty(), other = plenty();
+    gx_body *body, *plain;
+    gx_blade_desc desc;
+    gx_blade *blade;
+    size_t failures = 0;
+    int k;
+    memset(&desc, 0, sizeof desc);
+    desc.min_advance = s->min_advance;
+    mesh_of_bodies = tower();
+    body = prepared(&m, s->before);
+    plain = prepared(&other, s->before);
+    ck_assert_int_eq(gx_blade_create(body, &desc, &blade, NULL), GX_OK);
+    ck_assert_int_eq(gx_blade_create(plain, &desc, &blade, NULL), GX_OK);
+    for (k = 0; k <= s->count; k++) {
+        gx_result result = GX_ERROR_MEMORY;
+        uint64_t state;
+        size_t n;
+        shift_body(body, s->shift[k]);
+        shift_body(plain, s->shift[k]);
+        state = gx_body_state_hash(body);
+        for (n = 0; result != GX_OK; n++) {
+            fail_from(&m, n, n % 2 == 1);
+            result = move_along(body, s, k);
+            if (result == GX_OK) break;
+            check_failure(result, state, body, s->what, n, n % 2 == 1);
+            failures++;
+        }
+        never_fail(&m);
+        ck_assert_int_eq(move_along(plain, s, k), GX_OK);
+        ck_assert_msg(gx_body_state_hash(body) == gx_body_state_hash(plain), "%s, move %d: another state", s->what, k);
+    }
+    ck_assert_uint_gt(failures, 50);
+    gx_body_destroy(body);
+    gx_body_destroy(plain);
+    check_empty(&m, s->what);
+    mesh_of_bodies = &cube_mesh;
+}
+END_TEST
+
 START_TEST(solidifying) {
     static const double square[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
     static const uint32_t two[6] = {0, 1, 2, 0, 2, 3};
@@ -883,8 +1015,9 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("memory");
-    TCase *tests = tcase_create("memory");
+    TCase *tests = tcase_create("memory"), *strokes_ = tcase_create("strokes");
     tcase_set_timeout(tests, 120);
+    tcase_set_timeout(strokes_, 120);
     tcase_add_test(tests, creation);
     tcase_add_test(tests, first_cut);
     tcase_add_test(tests, partial_cut);
@@ -908,7 +1041,9 @@ int main(void) {
     tcase_add_test(tests, cut_of_a_pinch);
     tcase_add_test(tests, followers);
     tcase_add_test(tests, step_after_a_failed_model);
+    tcase_add_loop_test(strokes_, memory_of_strokes, 0, STROKES);
     tcase_add_test(tests, solidifying);
     suite_add_tcase(suite, tests);
+    suite_add_tcase(suite, strokes_);
     return run_suite(suite);
 }

@@ -689,6 +689,57 @@ START_TEST(restoring_from_near_strangers) {
 }
 END_TEST
 
+/* Between bodies that hold other regions, nodes or anchors, of the same counts and of others: their own are held. */
+START_TEST(restoring_what_is_held) {
+    enum { SETS = 8 };
+    static const uint32_t nodes[3][2] = {{0, 1}, {0, 2}, {1, 2}}, three[3] = {0, 1, 2};
+    workload w = grid(2, 1, 1, 6);
+    gx_body *bodies[SETS];
+    gx_step_desc step;
+    int i, j;
+    memset(&step, 0, sizeof step);
+    step.dt = 0.01;
+    step.gravity[2] = -1;
+    for (i = 0; i < SETS; i++) {
+        gx_region regions[2] = {gx_region_half_space(2, -1, 0.5), gx_region_half_space(0, -1, 0.5)};
+        gx_anchor anchors[2];
+        bodies[i] = body_of(&w);
+        for (j = 0; j < 2; j++) { /* near a node of the first element */
+            double x[3] = {0, 0, 0};
+            int n, k;
+            for (n = 0; n < 4; n++)
+                for (k = 0; k < 3; k++)
+                    x[k] += w.positions[3 * w.elements[n] + (size_t)k] * (n == (j == 0 ? 0 : i % 2 + 1) ? 0.7 : 0.1);
+            ck_assert_int_eq(gx_body_anchor(bodies[i], 0, x, &anchors[j], NULL), GX_OK);
+        }
+        if (i >= 2) memset(regions, 0, sizeof regions);
+        if (i >= 2) regions[0].kind = i < 5 ? GX_REGION_NODES : GX_REGION_ANCHORS;
+        if (i >= 2 && i < 5) {
+            regions[0].nodes = i == 4 ? three : nodes[i - 2];
+            regions[0].node_count = i == 4 ? 3 : 2;
+        } else if (i >= 5) {
+            regions[0].anchors = anchors;
+            regions[0].anchor_count = 2;
+        }
+        ck_assert_int_eq(gx_body_hold(bodies[i], regions, i == 7 ? 0 : i == 1 ? 2 : 1, NULL), GX_OK);
+        shake(bodies[i], 0.01);
+    }
+    for (i = 0; i < SETS; i++)
+        for (j = 0; j < SETS; j++) {
+            gx_body *clone = clone_of(bodies[i]), *goal = clone_of(bodies[j]);
+            shake(clone, 0.01);
+            ck_assert_int_eq(gx_body_step(clone, &step, NULL, NULL), GX_OK);
+            ck_assert_int_eq(gx_body_restore(clone, goal, NULL), GX_OK);
+            expect_equal(clone, goal, (uint64_t)(SETS * i + j));
+            expect_same_steps(clone, goal, &step, 2, (uint64_t)(SETS * i + j));
+            gx_body_destroy(clone);
+            gx_body_destroy(goal);
+        }
+    for (i = 0; i < SETS; i++) gx_body_destroy(bodies[i]);
+    wl_free(&w);
+}
+END_TEST
+
 /* The fragments that a view has reported as removed, and what it said of the others, go with the body. */
 START_TEST(removed_fragments_are_kept) {
     workload w = grid(2, 1, 1, 5);
@@ -1110,10 +1161,191 @@ START_TEST(hostile_mixtures) {
 }
 END_TEST
 
+/* ---- blades ---- */
+
+static gx_result move_across(gx_blade *blade, double y) {
+    const double edge[6] = {-9, y, 0.2, 9, y + 0.1, 0.25};
+    return gx_blade_move(blade, edge, 2, NULL, 0, NULL, NULL);
+}
+
+/* A body with a blade that has cut a part of it; behind that, what waits to be cut */
+static gx_body *body_with_blade(workload *w) {
+    gx_body *body = small_body(w, SEEN);
+    gx_blade_desc desc;
+    gx_blade *blade = NULL;
+    int i;
+    memset(&desc, 0, sizeof desc);
+    desc.min_advance = 0.1;
+    ck_assert_int_eq(gx_blade_create(body, &desc, &blade, NULL), GX_OK);
+    for (i = 0; i < 12; i++) ck_assert_int_eq(move_across(blade, -0.3 + 0.06 * i), GX_OK);
+    ck_assert(blade->now.vertices.count > 0 && blade->now.points.count > 0 && blade->now.members.count > 1);
+    ck_assert(blade->now.layers.count > 0 && blade->now.layers.data[0].front_count > 0);
+    return body;
+}
+
+/* Saves the body as it is, with a number that cannot be; puts it right again. */
+static void expect_damage(gx_body *body, void *at, const void *wrong, size_t size, const char *what) {
+    unsigned char right[16];
+    bytes b;
+    gx_body *other = NULL;
+    gx_result result;
+    memcpy(right, at, size);
+    memcpy(at, wrong, size);
+    b = saved(body);
+    memcpy(at, right, size);
+    result = gx_body_load(b.data, b.size, NULL, &other, NULL);
+    ck_assert_msg(result == GX_ERROR_DAMAGED && other == NULL, "%s: %s", what, gx_result_text(result));
+    free(b.data);
+}
+static void expect_bad_number(gx_body *body, double *at, double wrong, const char *what) {
+    expect_damage(body, at, &wrong, sizeof wrong, what);
+}
+static void expect_bad_word(gx_body *body, uint32_t *at, uint32_t wrong, const char *what) {
+    expect_damage(body, at, &wrong, sizeof wrong, what);
+}
+
+/* Each number that a move relies on is checked when a blade is loaded. */
+START_TEST(damaged_blades) {
+    workload w;
+    gx_body *body = body_with_blade(&w), *twin;
+    gx_blade *blade = body->blades;
+    gxp_blade_state *now = &blade->now;
+    gxp_front_vertex *v = &now->vertices.data[now->vertices.count / 2];
+    gxp_layer *layer = &now->layers.data[0];
+    double *const places[6] = {v->rest, v->extended, v->position, v->foot, v->foot_at, v->ahead};
+    double *const sizes[3] = {&v->along, &v->distance, &v->size}, *const lengths[2] = {&blade->tolerance,
+                                                                                       &blade->min_advance};
+    uint32_t *const counts[5] = {&layer->front_count, &layer->latest_count, &layer->seen_count, &layer->path_count,
+                                 &layer->sheet_count},
+                    *const firsts[5] = {&layer->front, &layer->latest, &layer->seen, &layer->path, &layer->sheet};
+    uint64_t key;
+    int i, k;
+    for (i = 0; i < 6; i++)
+        for (k = 0; k < 3; k++) expect_bad_number(body, places[i] + k, k == 1 ? NAN : HUGE_VAL, "a place");
+    for (i = 0; i < 3; i++) expect_bad_number(body, sizes[i], -1, "a place's size");
+    for (i = 0; i < 3; i++) expect_bad_number(body, sizes[i], NAN, "a place's size");
+    expect_bad_number(body, &v->along, 1e10, "a place on the edge");
+    expect_bad_number(body, &v->size, HUGE_VAL, "a place's size");
+    expect_bad_word(body, &v->element, body->mesh.element_count, "an element");
+    for (i = 0; i < 2; i++)
+        for (k = 0; k < 4; k++)
+            expect_bad_number(body, lengths[i], k == 0 ? 0 : k == 1 ? -1 : k == 2 ? NAN : HUGE_VAL, "a length");
+    expect_bad_number(body, &now->points.data[4], NAN, "a point");
+    expect_bad_number(body, &now->edge.data[2], HUGE_VAL, "the edge");
+    for (i = 0; i < 5; i++) {
+        const uint32_t all = i < 3 ? now->vertices.count : now->points.count;
+        expect_bad_word(body, firsts[i], all + 1, "a list's begin");
+        expect_bad_word(body, counts[i], all - *firsts[i] + 1, "a list's length");
+        expect_bad_word(body, counts[i], UINT32_MAX, "a list's length");
+        if (i < 2) expect_bad_word(body, counts[i], 1, "a front of one place");
+    }
+    expect_bad_word(body, &now->edge.count, 1, "an edge of one point");
+    expect_bad_word(body, &now->slot_count, body->slots.count + 1, "slots");
+    key = now->members.data[1];
+    expect_damage(body, &now->members.data[0], &key, sizeof key, "cells in two layers");
+    key = (uint64_t)now->slot_count << 32;
+    expect_damage(body, &now->members.data[now->members.count - 1], &key, sizeof key, "a cell that is not");
+    key = now->members.data[0] | UINT32_MAX;
+    expect_damage(body, &now->members.data[0], &key, sizeof key, "a layer that is not");
+    twin = twin_of(body, 1); /* all is right again */
+    for (i = 0; i < 16; i++) {
+        ck_assert_int_eq(move_across(blade, 0.4 + 0.06 * i), GX_OK);
+        ck_assert_int_eq(move_across(twin->blades, 0.4 + 0.06 * i), GX_OK);
+        ck_assert(gx_body_state_hash(body) == gx_body_state_hash(twin));
+    }
+    gx_body_destroy(body);
+    gx_body_destroy(twin);
+    wl_free(&w);
+}
+END_TEST
+
+/* Bits and words of what a blade remembers are changed at random: an error, or a blade that can be moved and lifted. */
+START_TEST(hostile_blades) {
+    workload w;
+    gx_body *body = body_with_blade(&w), *without;
+    bytes b = saved(body), shorter;
+    size_t first, passed = 0;
+    int round;
+    random_seed((uint64_t)_i + 1);
+    without = twin_of(body, 1);
+    gx_blade_destroy(without->blades);
+    shorter = saved(without);
+    first = shorter.size; /* blades come last */
+    ck_assert_uint_lt(first, b.size);
+    for (round = 0; round < 600 / FEWER; round++) {
+        const size_t at = first + 4 * (size_t)random_below((int)((b.size - first) / 4));
+        uint32_t word, changed;
+        gx_body *other = NULL;
+        gx_result result;
+        memcpy(&word, b.data + at, 4);
+        changed = random_below(2) ? word ^ 1u << random_below(32) : (uint32_t)random_below(40);
+        memcpy(b.data + at, &changed, 4);
+        seal(b);
+        result = gx_body_load(b.data, b.size, NULL, &other, NULL);
+        ck_assert_msg(result == GX_OK || result == GX_ERROR_DAMAGED, "a word at %zu: %s", at, gx_result_text(result));
+        if (result == GX_OK) {
+            gx_blade *blade = gx_body_blade(other, 0);
+            gx_blade_contact contacts[8];
+            size_t count;
+            passed++;
+            (void)gx_blade_contacts(blade, contacts, 8, &count, NULL);
+            (void)move_across(blade, 0.4);
+            (void)move_across(blade, 0.5);
+            (void)gx_blade_lift(blade, NULL, NULL);
+        }
+        gx_body_destroy(other);
+        memcpy(b.data + at, &word, 4);
+    }
+    ck_assert_uint_gt(passed, 0);
+    free(b.data);
+    free(shorter.data);
+    gx_body_destroy(body);
+    gx_body_destroy(without);
+    wl_free(&w);
+}
+END_TEST
+
+/* A body has as many blades as the one that it becomes, or more: those are lifted. */
+START_TEST(restoring_blades) {
+    workload w;
+    gx_body *body = body_with_blade(&w), *bare = NULL, *two;
+    gx_blade *blade = NULL, *second = NULL;
+    const uint64_t state = gx_body_state_hash(body);
+    int i;
+    bare = twin_of(body, 1);
+    gx_blade_destroy(gx_body_blade(bare, 0));
+    two = clone_of(bare);
+    ck_assert_int_eq(gx_blade_create(two, NULL, &blade, NULL), GX_OK);
+    ck_assert_int_eq(gx_blade_create(two, NULL, &second, NULL), GX_OK);
+    for (i = 0; i < 4; i++) ck_assert_int_eq(move_across(second, -0.3 + 0.2 * i), GX_OK);
+    ck_assert_int_eq(gx_body_restore(bare, body, NULL), GX_OK);
+    ck_assert(gx_body_blade(bare, 0) != NULL && gx_body_blade(bare, 1) == NULL);
+    ck_assert(gx_body_state_hash(bare) == state);
+    ck_assert_int_eq(gx_body_restore(two, body, NULL), GX_OK);
+    ck_assert(gx_body_blade(two, 0) == blade && gx_body_blade(two, 1) == second);
+    for (i = 0; i < 16; i++) {
+        const double y = 0.4 + 0.06 * i;
+        ck_assert_int_eq(move_across(gx_body_blade(body, 0), y), GX_OK);
+        ck_assert_int_eq(move_across(gx_body_blade(bare, 0), y), GX_OK);
+        ck_assert_int_eq(move_across(blade, y), GX_OK);
+        ck_assert(hash_of(bare) == hash_of(body) && hash_of(two) == hash_of(body));
+        ck_assert(gx_body_state_hash(bare) == gx_body_state_hash(body));
+    }
+    ck_assert_uint_eq(second->now.edge.count, 0);
+    ck_assert_int_eq(move_across(second, -0.3), GX_OK); /* begins anew: cuts nothing on the way */
+    ck_assert(hash_of(two) == hash_of(body));
+    gx_body_destroy(body);
+    gx_body_destroy(bare);
+    gx_body_destroy(two);
+    wl_free(&w);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("save");
-    TCase *tests = tcase_create("save");
+    TCase *tests = tcase_create("save"), *blades = tcase_create("blades");
     tcase_set_timeout(tests, 240);
+    tcase_set_timeout(blades, 240);
     tcase_add_loop_test(tests, random_bodies, 0, 80 / FEWER);
     tcase_add_loop_test(tests, many_triangles_in_an_element, 0, 3);
     tcase_add_loop_test(tests, far_and_small_bodies, 0, 6);
@@ -1124,6 +1356,7 @@ int main(void) {
     tcase_add_loop_test(tests, rollback, 0, 4);
     tcase_add_test(tests, restoring_from_strangers);
     tcase_add_test(tests, restoring_from_near_strangers);
+    tcase_add_test(tests, restoring_what_is_held);
     tcase_add_test(tests, removed_fragments_are_kept);
     tcase_add_test(tests, epochs_go_with_the_copies);
     tcase_add_test(tests, copies_stand_alone);
@@ -1134,6 +1367,10 @@ int main(void) {
     tcase_add_loop_test(tests, hostile_bits, 0, 4);
     ADD_SOME(tests, hostile_words, 16);
     tcase_add_loop_test(tests, hostile_mixtures, 0, 4);
+    tcase_add_test(blades, damaged_blades);
+    tcase_add_loop_test(blades, hostile_blades, 0, 2);
+    tcase_add_test(blades, restoring_blades);
     suite_add_tcase(suite, tests);
+    suite_add_tcase(suite, blades);
     return run_suite(suite);
 }

@@ -1,0 +1,122 @@
+/* worker.js: runs the body of a page (jelly.c) in a thread of its own: strokes, pulls, a step for each frame.
+
+   Messages in: {files, plain} first: folder of the modules; plain: the one without vectors. Then
+     {make: kind, young}   a new body      {undo: true}    goes back to before the last stroke
+     {stroke: [6 numbers], first, last}    the blade's edge, two points in space; first: a stroke begins, last: it ends
+     {grab: [6 numbers]}, {pull: [3 numbers]}, {release: true}     a hand: ray; point
+     {pause: flag}, {gravity: m/s2}        {seen: true}    the page has shown the last frame
+   Messages out: {ready, simd}; {grabbed: point or null}; {trouble: text};
+     {frame: {mesh or null, positions, normals}, numbers: {fragments, elements, unknowns, step, cut, marks, memory}} */
+"use strict";
+
+let lib = null;          /* exports of the module */
+let mesh = true;         /* the page lacks the present triangles */
+let waiting = false;     /* the page has not shown the last frame */
+let paused = false, gravity = 9.81;
+const strokes = [];      /* edges that are to be moved through the body */
+const times = {step: 0, cut: 0};
+
+/* A module of two instructions with vectors: engines without them refuse it. */
+const vectors = Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11);
+
+const numbers = () => new Float64Array(lib.memory.buffer, lib.jelly_numbers(), 16);
+
+function text(at) {
+    const bytes = new Uint8Array(lib.memory.buffer, at), end = bytes.indexOf(0);
+    return new TextDecoder().decode(bytes.slice(0, end));
+}
+
+/* Says what a call was refused for. */
+function good(result) {
+    if (result !== 0) postMessage({trouble: text(lib.jelly_error_text(result))});
+    return result === 0;
+}
+
+async function start(files, plain) {
+    const simd = !plain && WebAssembly.validate(vectors);
+    const response = await fetch(files + (simd ? "jelly-simd.wasm" : "jelly.wasm"));
+    if (!response.ok) throw new Error("jelly.wasm: " + response.status);
+    const {instance} = await WebAssembly.instantiate(await response.arrayBuffer(), {});
+    lib = instance.exports;
+    lib._initialize?.();
+    postMessage({ready: true, simd});
+    tick();
+}
+
+function stroke({stroke: edge, first, last}) {
+    const begin = performance.now();
+    if (first) good(lib.jelly_mark());
+    numbers().set(edge);
+    good(lib.jelly_stroke(last ? 1 : 0));
+    if (numbers()[6] === 1) {
+        mesh = true;
+        times.cut = performance.now() - begin;
+    }
+}
+
+function copy(kind, at, count) { return new kind(lib.memory.buffer, at, count).slice(); }
+
+/* Numbers for life of the fragments of triangles */
+function fragments(count) {
+    const ids = lib.jelly_ids(), all = numbers()[0];
+    const id = new Uint32Array(lib.memory.buffer, ids, all);
+    return copy(Uint32Array, lib.jelly_fragments(), count).map(f => id[f]);
+}
+
+function show() {
+    const vertices = 3 * lib.jelly_vertex_count(), count = lib.jelly_triangle_count();
+    const frame = {mesh: null};
+    if (!good(lib.jelly_draw())) return;
+    frame.positions = copy(Float32Array, lib.jelly_positions(), vertices);
+    frame.normals = copy(Float32Array, lib.jelly_normals(), vertices);
+    if (mesh)
+        frame.mesh = {triangles: copy(Uint32Array, lib.jelly_triangles(), 3 * count), fragments: fragments(count),
+                      surfaces: copy(Uint32Array, lib.jelly_surfaces(), count)};
+    mesh = false;
+    lib.jelly_ids();
+    const [pieces, elements, unknowns] = numbers();
+    postMessage({frame, numbers: {fragments: pieces, elements, unknowns, step: times.step, cut: times.cut,
+                                  marks: lib.jelly_mark_count(), memory: lib.memory.buffer.byteLength}},
+                [frame.positions.buffer, frame.normals.buffer]);
+    waiting = true;
+}
+
+/* A frame: strokes, a step, a picture. Where steps take longer than frames, time goes slower. */
+let made = false;
+function tick() {
+    const begin = performance.now();
+    if (made) {
+        while (strokes.length > 0) stroke(strokes.shift());
+        if (!paused) {
+            const stepping = performance.now();
+            numbers().set([1 / 60, gravity]);
+            good(lib.jelly_step());
+            times.step = performance.now() - stepping;
+        }
+        if (!waiting) show();
+    }
+    setTimeout(tick, Math.max(0, 1000 / 60 - (performance.now() - begin)));
+}
+
+onmessage = ({data}) => {
+    if (data.files !== undefined) start(data.files, data.plain).catch(error => postMessage({trouble: error.message}));
+    else if (data.make !== undefined) {
+        strokes.length = 0;
+        made = good(lib.jelly_new(data.make, data.young));
+        mesh = true;
+    } else if (data.stroke) strokes.push(data);
+    else if (data.grab) {
+        numbers().set(data.grab);
+        good(lib.jelly_grab());
+        postMessage({grabbed: numbers()[6] === 1 ? [...numbers().slice(0, 3)] : null});
+    } else if (data.pull) {
+        numbers().set(data.pull);
+        lib.jelly_pull();
+    } else if (data.release) lib.jelly_release();
+    else if (data.undo) {
+        good(lib.jelly_undo());
+        mesh = true;
+    } else if (data.pause !== undefined) paused = data.pause;
+    else if (data.gravity !== undefined) gravity = data.gravity;
+    else if (data.seen) waiting = false;
+};

@@ -1,0 +1,231 @@
+// Opens the page of examples/web in headless Chromium, served as files: slices, pulls, throws, goes back.
+// usage: node tests/check_web.mjs FOLDER DIRECTORY
+//     FOLDER     the page, as `make web` builds it
+//     DIRECTORY  of the pictures
+import {mkdirSync, readFileSync, writeFileSync} from "node:fs";
+import {createServer} from "node:http";
+import {extname, join, normalize} from "node:path";
+import {brotliCompressSync} from "node:zlib";
+import {decodePng, openPage} from "./chromium.mjs";
+
+const [folder, directory] = process.argv.slice(2);
+const width = 960, height = 700;
+let passed = 0, failed = 0;
+
+function check(name, good, found = "") {
+    if (good) passed++;
+    else failed++;
+    if (!good) console.log("FAILED " + name, found);
+}
+
+// A plain file server
+const types = {".html": "text/html", ".js": "text/javascript", ".wasm": "application/wasm"};
+const server = createServer((request, response) => {
+    const path = normalize(request.url.split("?")[0]).replace(/\/$/, "/index.html");
+    try {
+        const bytes = readFileSync(join(folder, path));
+        response.writeHead(200, {"Content-Type": types[extname(path)] ?? "application/octet-stream"}).end(bytes);
+    } catch {
+        response.writeHead(404).end();
+    }
+});
+await new Promise(done => server.listen(0, "127.0.0.1", done));
+const address = `http://127.0.0.1:${server.address().port}/`;
+
+// Waits until an expression of the page is true.
+async function until(page, expression, seconds = 30) {
+    for (const end = Date.now() + 1000 * seconds; Date.now() < end;) {
+        if (await page.evaluate(expression).catch(() => false)) return true;
+        await new Promise(done => setTimeout(done, 50));
+    }
+    return false;
+}
+
+// Lets the body move for a number of frames.
+const frames = (page, count) => page.evaluate("page.frames").then(at => until(page, `page.frames >= ${at + count}`, 120));
+const numbers = page => page.evaluate("page.numbers");
+
+async function look(page, name) {
+    await page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))");
+    const png = await page.screenshot();
+    if (name) writeFileSync(`${directory}/${name}.png`, png);
+    return decodePng(png);
+}
+
+const distance = (a, b) => Math.hypot(...a.map((x, k) => x - b[k]));
+
+// Connected regions of at least `least` pixels that have the flat colours of fragments
+async function regions(page, least = 400) {
+    await page.evaluate("page.viewer.flat = true; page.viewer.draw()");
+    const colours = await page.evaluate("[...new Set(triangles.fragments)].map(f => [gxFragmentColour(f, 0), gxFragmentColour(f, 1)])");
+    const picture = await look(page);
+    await page.evaluate("page.viewer.flat = false; page.viewer.draw()");
+    const of = new Int32Array(width * height).fill(-1);
+    for (let y = 80; y < height - 70; y++)
+        for (let x = 0; x < width; x++)
+            of[y * width + x] = colours.findIndex(pair => pair.some(bytes => distance(picture.pixel(x, y), bytes) <= 3));
+    let count = 0;
+    for (let start = 0; start < of.length; start++) {
+        if (of[start] < 0) continue;
+        const piece = of[start], stack = [start];
+        let size = 0;
+        of[start] = -1;
+        while (stack.length > 0) {
+            const i = stack.pop();
+            size++;
+            for (const next of [i - 1, i + 1, i - width, i + width])
+                if (of[next] === piece) {
+                    of[next] = -1;
+                    stack.push(next);
+                }
+        }
+        count += size >= least;
+    }
+    return count;
+}
+
+// Share of the pixels that differ
+function difference(a, b) {
+    let count = 0;
+    for (let y = 80; y < height - 70; y++) for (let x = 0; x < width; x++) count += distance(a.pixel(x, y), b.pixel(x, y)) > 12;
+    return count / (width * height);
+}
+
+async function stroke(page, from, to) {
+    const button = {button: "left", buttons: 1, clickCount: 1}, steps = 12;
+    await page.mouse("mousePressed", ...from, button);
+    for (let i = 1; i <= steps; i++) await page.mouse("mouseMoved", ...from.map((x, k) => x + (to[k] - x) * i / steps), button);
+    await page.mouse("mouseReleased", ...to, button);
+}
+
+async function checkSlices(page) {
+    const first = await look(page, "first");
+    check("something is drawn", difference(first, {pixel: () => first.pixel(5, 400)}) > 0.05);
+    check("one piece", (await numbers(page)).fragments === 1);
+    check("nothing to go back to", await page.evaluate("document.getElementById('undo').disabled"));
+    await page.evaluate("page.viewer.camera.yaw = 0; page.viewer.camera.pitch = 0.05");
+    await stroke(page, [150, 350], [810, 330]);
+    check("a stroke across gives two pieces", await until(page, "page.numbers.fragments === 2"), await numbers(page));
+    await frames(page, 15);
+    check("the lower one falls", await regions(page) === 2, await regions(page));
+    await look(page, "across");
+    await stroke(page, [480, 100], [485, 620]);
+    check("a stroke down gives four", await until(page, "page.numbers.fragments === 4"), await numbers(page));
+    await frames(page, 5);
+    await look(page, "four");
+    await page.evaluate("document.getElementById('undo').click()");
+    check("undo brings two back", await until(page, "page.numbers.fragments === 2"), await numbers(page));
+    await page.key("u", "u");
+    check("U brings one back", await until(page, "page.numbers.fragments === 1"), await numbers(page));
+    check("it is one region", await frames(page, 2) && await regions(page) === 1, await regions(page));
+}
+
+async function checkHand(page) {
+    await page.key("n", "n");
+    await until(page, "page.numbers.fragments === 1");
+    await frames(page, 120);
+    await page.key("h", "h");
+    check("H chooses the hand", await page.evaluate("page.tool") === "hand");
+    const before = await look(page), button = {button: "left", buttons: 1, clickCount: 1};
+    await page.mouse("mousePressed", 480, 420, button);
+    check("the hand takes hold", await until(page, "page.grabbed !== null", 5));
+    for (let i = 1; i <= 10; i++) await page.mouse("mouseMoved", 480 + 20 * i, 420, button);
+    await frames(page, 20);
+    const pulled = await look(page, "pulled");
+    check("pulling moves it", difference(before, pulled) > 0.01, difference(before, pulled));
+    await page.mouse("mouseReleased", 680, 420, button);
+    check("letting go ends the hold", await page.evaluate("page.grabbed === null"));
+    await frames(page, 120);
+    const back = await look(page);
+    check("and it swings back", difference(before, back) < 0.5 * difference(before, pulled), difference(before, back));
+    await page.key("k", "k");
+}
+
+async function checkGround(page) {
+    await page.key("n", "n");
+    await until(page, "page.numbers.fragments === 1");
+    await page.key("Enter");
+    check("Enter slices across", await until(page, "page.numbers.fragments === 2"), await numbers(page));
+    await frames(page, 120);
+    check("what has fallen lies on the ground", await page.evaluate("Math.min(...page.viewer.frame.positions.filter((x, i) => i % 3 === 2))") > -0.15);
+    await look(page, "fallen");
+    await page.key(" ", " ");
+    const still = await look(page);
+    await new Promise(done => setTimeout(done, 300));
+    check("space pauses", difference(still, await look(page)) === 0);
+    await page.key(" ", " ");
+}
+
+async function checkView(page) {
+    const straight = await look(page);
+    await page.drag([480, 350], [600, 330], {button: "right", buttons: 2});
+    check("the right button turns", difference(straight, await look(page)) > 0.02);
+    const zoom = await page.evaluate("page.viewer.camera.zoom");
+    await page.mouse("mouseWheel", 480, 350, {deltaX: 0, deltaY: -300});
+    check("the wheel zooms", await page.evaluate("page.viewer.camera.zoom") > 1.2 * zoom);
+    await page.touch("touchStart", [[400, 300], [500, 300]]);
+    await page.touch("touchMove", [[350, 300], [550, 300]]);
+    await page.touch("touchEnd", []);
+    check("two fingers zoom", await page.evaluate("page.viewer.camera.zoom") > 1.5 * zoom);
+    await page.key("w", "w");
+    check("W changes the lines", await page.evaluate("page.viewer.lines") !== "edges");
+}
+
+async function checkTouch(page) {
+    await page.key("n", "n");
+    await until(page, "page.numbers.fragments === 1");
+    await page.touch("touchStart", [[120, 360]]);
+    for (let i = 1; i <= 12; i++) await page.touch("touchMove", [[120 + 60 * i, 360]]);
+    await page.touch("touchEnd", []);
+    check("a finger slices", await until(page, "page.numbers.fragments === 2"), await numbers(page));
+}
+
+async function checkShapes(page) {
+    for (let shape = 1; shape < 4; shape++) {
+        const meshes = await page.evaluate("page.meshes");
+        await page.evaluate(`(s => { s.value = ${shape}; s.onchange(); })(document.getElementById("shape"))`);
+        check(`shape ${shape} is drawn`, await until(page, `page.meshes > ${meshes} && page.numbers.fragments === 1`) && await frames(page, 20));
+        await look(page, `shape_${shape}`);
+        check(`shape ${shape} has no trouble`, await page.evaluate("page.trouble") === "", await page.evaluate("page.trouble"));
+    }
+}
+
+async function checkMemory(page) {
+    await page.evaluate(`(s => { s.value = 0; s.onchange(); })(document.getElementById("shape"))`);
+    await frames(page, 100);
+    const before = (await numbers(page)).memory, start = Date.now(), at = await page.evaluate("page.frames");
+    await frames(page, 600);
+    const rate = 1000 * (await page.evaluate("page.frames") - at) / (Date.now() - start);
+    check("600 frames take no more memory", (await numbers(page)).memory === before, (await numbers(page)).memory - before);
+    const {step, elements} = await numbers(page);
+    console.log(`${elements} elements: ${rate.toFixed(0)} frames a second, drawn in software; a step ${step.toFixed(1)} ms`);
+}
+
+mkdirSync(directory, {recursive: true});
+const loaded = ["index.html", "page.js", "worker.js", "player.js", "jelly-simd.wasm"]
+    .reduce((sum, name) => sum + brotliCompressSync(readFileSync(join(folder, name))).length, 0);
+check("what the page loads has at most 256,000 bytes by brotli", loaded <= 256000, loaded);
+console.log(`the page loads ${loaded} bytes, by brotli`);
+const page = await openPage(address, {width, height});
+check("the body is there", await until(page, "page.ready && page.frames > 3"), await page.evaluate("page.trouble"));
+await checkSlices(page);
+await checkHand(page);
+await checkGround(page);
+await checkView(page);
+await checkTouch(page);
+await checkShapes(page);
+await checkMemory(page);
+check("nothing went wrong", page.errors.length === 0, page.errors);
+check("nothing came from elsewhere", page.requests.every(url => url.startsWith(address) || url.startsWith("data:")), page.requests);
+await page.close();
+
+// Where vectors are missing, the other module runs.
+const plain = await openPage(address + "?plain", {width, height});
+check("without vectors", await until(plain, "page.ready && page.frames > 3") &&
+      await plain.evaluate("document.getElementById('engine').textContent") === "WebAssembly");
+await plain.key("Enter");
+check("it slices, too", await until(plain, "page.numbers.fragments === 2"), await numbers(plain));
+await plain.close();
+server.close();
+console.log(`check-web: ${passed} passed, ${failed} failed`);
+process.exit(failed === 0 ? 0 : 1);
