@@ -14972,6 +14972,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_AIR
 #undef GXP_LEAST_ADVANCE
 #undef GXP_CUT_WIDTH
+#undef GXP_ON_SHEET
 #undef GXP_BLADE_SPECK
 #undef GXP_SPECK_TRIES
 #undef GXP_CROSSING
