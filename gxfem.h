@@ -11262,8 +11262,18 @@ static int gxp_is_away(const gx_blade *blade) {
     return 1;
 }
 
-/* The edge has come back out of its cut: the front begins anew in the air. */
-static gx_result gxp_begin_outside(gx_blade *blade) {
+/* Cuts what waits, and advances the front from there. */
+static gx_result gxp_cut_waiting(gx_blade *blade, gxp_advance *move, gx_blade_report *report) {
+    gx_result result = gxp_copy_front(blade->body, &blade->advanced, &blade->latest);
+    if (result == GX_OK) result = gxp_zip(blade, &blade->front, &blade->advanced);
+    if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
+    return result == GX_OK ? gxp_advance_front(blade, move) : result;
+}
+
+/* The edge has come back out of its cut: what waits is cut, and the front begins anew in the air. */
+static gx_result gxp_begin_outside(gx_blade *blade, gxp_advance *move, gx_blade_report *report) {
+    const gx_result result = blade->latest.count > 0 ? gxp_cut_waiting(blade, move, report) : GX_OK;
+    if (result != GX_OK) return result;
     blade->path.count = blade->latest.count = blade->sheet.count = 0;
     return gxp_copy_front(blade->body, &blade->front, &blade->samples);
 }
@@ -11398,14 +11408,6 @@ static int gxp_has_left(const gx_blade *blade) {
     return gxp_is_away(blade);
 }
 
-/* Cuts what waits, and advances the front from there. */
-static gx_result gxp_cut_waiting(gx_blade *blade, gxp_advance *move, gx_blade_report *report) {
-    gx_result result = gxp_copy_front(blade->body, &blade->advanced, &blade->latest);
-    if (result == GX_OK) result = gxp_zip(blade, &blade->front, &blade->advanced);
-    if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
-    return result == GX_OK ? gxp_advance_front(blade, move) : result;
-}
-
 /* The edge has left the cut through its side: cuts as far as the front has come, and begins a track. */
 static gx_result gxp_leave_cut(gx_blade *blade, gxp_advance *move, gx_blade_report *report) {
     gx_result result = GX_OK;
@@ -11428,7 +11430,7 @@ static gx_result gxp_follow_edge(gx_blade *blade, int finish, gx_blade_report *r
         blade->front.count = 0;
         return GX_OK;
     }
-    if (result == GX_OK && move.is_back) return gxp_is_away(blade) ? gxp_begin_outside(blade) : GX_OK;
+    if (result == GX_OK && move.is_back) return gxp_is_away(blade) ? gxp_begin_outside(blade, &move, report) : GX_OK;
     if (result == GX_OK && move.strays && !finish) result = gxp_leave_cut(blade, &move, report);
     if (result != GX_OK || !(move.most > 0)) return result;
     result = gxp_zip(blade, &blade->front, &blade->advanced);
