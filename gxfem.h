@@ -12553,6 +12553,7 @@ static gx_result gxp_plan_way(gx_blade *blade, const double *edge, uint32_t coun
     gx_result result;
     *steps = 1;
     if (blade->now.edge.count == 0) return gxp_go_straight(blade, edge, edge, count);
+    if (gxp_measure_edge(blade, edge, count) <= blade->step) return gxp_go_straight(blade, before, edge, count);
     result = gxp_measure_way(blade, before, edge, count, NULL, &most);
     if (result == GX_OK && most > square) {
         gxp_find_box(blade->body, &box);
@@ -12610,6 +12611,22 @@ static void gxp_keep_step(gx_blade *blade, int *begun) {
     gxp_swap_states(&blade->now, &blade->then);
 }
 
+/* After the last of several steps: what the layers saw has places on the user's edge, not on blade.goal. */
+static void gxp_renumber_seen(gx_blade *blade) {
+    const gxp_blade_state *then = &blade->then;
+    const gxp_front_vertex *places = blade->places.data;
+    const uint32_t last = blade->places.count - 1;
+    uint32_t j, i;
+    for (j = 0; j < then->layers.count; j++)
+        for (i = 0; i < then->layers.data[j].seen_count; i++) {
+            gxp_front_vertex *v = &then->vertices.data[then->layers.data[j].seen + i];
+            const double floored = floor(v->along);
+            const uint32_t at = floored < last ? (uint32_t)floored : last;
+            v->along = at < last ? places[at].along + (v->along - floored) * (places[at + 1].along - places[at].along)
+                                 : places[last].along;
+        }
+}
+
 /* The steps of a move. *begun: the state before is blade.start. */
 static gx_result gxp_step_along(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope, int finish,
                                 int *begun, gx_blade_report *report, gx_failure *failure) {
@@ -12621,6 +12638,7 @@ static gx_result gxp_step_along(gx_blade *blade, const double *edge, uint32_t co
     for (step = 1;; step++) {
         result = gxp_end(failure, gxp_go_part(blade, step < steps ? (double)step / steps : 1, &blade->to));
         if (result == GX_OK) result = gxp_step_blade(blade, scope, finish && step == steps, report, failure);
+        if (result == GX_OK && steps > 1 && step == steps) gxp_renumber_seen(blade);
         if (result == GX_OK) result = gxp_end(failure, gxp_keep_members(blade, edge, count));
         if (result != GX_OK || step == steps) return result;
         gxp_keep_step(blade, begun);
