@@ -7,6 +7,7 @@
 #     charts  gnuplot, for charts
 #     open    CGAL and npm, for other kernels in the benches
 #     wasm    clang with its parts for WebAssembly, and node, which runs it
+#     web     the same of clang 16 or later, for the page
 #     platforms  cross compilers for Windows, ARM and S/390, and emulators that run their programs
 #     format  clang-format 14
 #     page    Chromium and node, for the page that the demo makes
@@ -36,6 +37,19 @@ links_wasm() {
     return $code
 }
 
+# Does a clang of 16 or later?
+links_web() {
+    for version in 21 20 19 18 17 16; do
+        has "clang-$version" || continue
+        object=$(mktemp) || return 1
+        echo 'int main(void) { return 0; }' | "clang-$version" --target=wasm32-wasi --sysroot=/usr -x c - -o "$object" -lm >/dev/null 2>&1
+        code=$?
+        rm -f "$object"
+        [ $code -ne 0 ] || return 0
+    done
+    return 1
+}
+
 # The version of its parts is clang's own.
 wasm_packages() {
     has clang || echo clang
@@ -54,6 +68,7 @@ have() {
     charts) has gnuplot ;;
     open) has node npm && printf '#include <CGAL/version.h>\n' | "${CXX:-c++}" -x c++ -E - >/dev/null 2>&1 ;;
     wasm) has node && links_wasm ;;
+    web) has node && links_web ;;
     platforms) has x86_64-w64-mingw32-gcc i686-w64-mingw32-gcc wine aarch64-linux-gnu-gcc arm-linux-gnueabihf-gcc s390x-linux-gnu-gcc \
         qemu-aarch64-static qemu-arm-static qemu-s390x-static ;;
     format) has clang-format ;;
@@ -87,6 +102,7 @@ packages() {
     open:brew) echo cgal node ;;
     charts:*) echo gnuplot ;;
     wasm:apt-get) wasm_packages ;;
+    web:apt-get) echo nodejs clang-16 lld-16 wasi-libc libclang-rt-16-dev-wasm32 ;;
     platforms:apt-get) echo gcc-mingw-w64 wine wine64 qemu-user-static gcc-aarch64-linux-gnu gcc-arm-linux-gnueabihf gcc-s390x-linux-gnu ;;
     format:apt-get|format:brew) echo clang-format ;;
     format:*) echo clang-tools-extra ;;
