@@ -11500,8 +11500,8 @@ static gx_result gxp_add_surface(gx_blade *blade, uint32_t layer, uint32_t old) 
  * copies.struck and the blade's working memory.
  *
  * The strip between two moves that are worked out is straight. A move between them may be left out if the edge is on
- * that strip, to half the tolerance: each bead has come straight from where it was, so that no place between is farther
- * ahead. When a bead has not, the last move that was left out is worked out first, with the body as it was then
+ * that strip, to a quarter of the tolerance: each bead has come straight from where it was, so that no place between
+ * is farther ahead. When a bead has not, the last move that was left out is worked out first, with the body as it was then
  * (copies.struck, which cuts keep up to date). In all, edge and body move by less than an element while moves are left
  * out, which one move may do at once. So a blade that is moved more often does what it would do if moved less often,
  * but never less often than its path bends.
