@@ -11501,10 +11501,10 @@ static gx_result gxp_add_surface(gx_blade *blade, uint32_t layer, uint32_t old) 
  *
  * The strip between two moves that are worked out is straight. A move between them may be left out if the edge is on
  * that strip, to a quarter of the tolerance: each bead has come straight from where it was, so that no place between
- * is farther ahead. When a bead has not, the last move that was left out is worked out first, with the body as it was then
- * (copies.struck, which cuts keep up to date). In all, edge and body move by less than an element while moves are left
- * out, which one move may do at once. So a blade that is moved more often does what it would do if moved less often,
- * but never less often than its path bends.
+ * is farther ahead. When a bead has not, the last move that was left out is worked out first, with the body as it was
+ * then (copies.struck, which cuts keep up to date). In all, edge and body move by less than an element while moves are
+ * left out, which one move may do at once. So a blade that is moved more often does what it would do if moved less
+ * often, but never less often than its path bends.
  *
  * One blade of a body at a time leaves out moves: the others' places of the body are not remembered. */
 
@@ -14458,22 +14458,23 @@ static void gxp_check_strokes(gxb_stream *s, const gx_body *body, const gx_blade
                                 (i == 0 || b->members.data[i - 1] < b->members.data[i]));
 }
 
-/* What moves that are left out rely on: one blade of a body leaves them out */
+/* What moves that are left out rely on: one blade of a body leaves them out. After a cut, beads are not used. */
 static void gxp_check_glance(gxb_stream *s, const gx_body *body, const gx_blade *blade) {
     const gxp_glance *g = &blade->now.glance;
     const gx_blade *other;
     uint32_t i;
     for (other = body->blades; other != blade; other = other->next)
         gxp_require_true(s, !(g->ready && other->now.glance.ready));
-    gxp_require_true(s, g->ready <= 1 && (!g->ready || (body->copies.struck != NULL && blade->now.edge.count > 0)));
+    gxp_require_true(s, g->ready <= 1 && (!g->ready || blade->now.edge.count > 0));
+    gxp_require_true(s, !g->ready || body->copies.struck != NULL || body->copies.count == 0);
     gxp_require_true(s, g->edge.count == 0 || (g->ready && g->edge.count == blade->now.edge.count));
     gxp_require_true(s, g->beads.count == 0 || g->ready);
     gxp_require_true(s, gxp_are_finite(g->edge.data, 3 * (size_t)g->edge.count) && g->travelled >= 0 && g->room >= 0 &&
                             g->course >= 0);
     for (i = 0; i < g->beads.count; i++)
         gxp_require_true(s, g->beads.data[i].along >= 0 && g->beads.data[i].along <= blade->now.edge.count &&
-                                g->beads.data[i].cell < body->cells.count &&
-                                body->cells.data[g->beads.data[i].cell].kept);
+                                (g->cut != body->cuts.hash || (g->beads.data[i].cell < body->cells.count &&
+                                                               body->cells.data[g->beads.data[i].cell].kept)));
 }
 
 /* Room for what a blade remembers, with these counts */
