@@ -58,8 +58,8 @@
  *     a step:                    >>attached >>supports >>model >>step
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
- *     a blade in space:          >>layers >>edges >>fronts >>strokes >>blade >>contacts >>carve
- *     beginning, end, bytes:     >>create >>hashes >>stream >>save
+ *     a blade in space:          >>layers >>edges >>fronts >>glances >>strokes >>blade >>contacts >>carve
+ *     beginning, end, bytes:     >>create >>hashes >>stream >>scabbard >>save
  *
  * Words. Facet: a polygon inside an element or in an element face, made by cuts. Wall: a facet that a sheet covers.
  * Cell: a connected part of one element after cutting (GXFEM Eq. 20). Link: all facets of the face between two elements
@@ -636,7 +636,8 @@ GXFEM_API void gx_blade_destroy(gx_blade *blade); /* or NULL */
    that the other lacks are lifted. */
 GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index);
 /* Moves the edge and cuts what it has passed since the last move, relative to the material. A long move goes in steps
-   of an element, 8 for each element of the body's length at most. edge: point_count x 3, in space, m; as many points at
+   of an element, 8 for each element of the body's length at most. A move that changes little is remembered and worked
+   out later, before the path bends: more frames cost little more. edge: point_count x 3, in space, m; as many points at
    each move until the blade is lifted, 2 or more; ends may be 10^12 elements away. scope: fragments that alone are cut,
    below gx_view.fragment_count; count 0: all. On an error body and blade are as they were. Errors: ARGUMENT (also: the
    first edge is inside the material and starts_inside is 0, index: point), INDEX, NOT_FINITE and RANGE (edge, or
@@ -854,7 +855,7 @@ typedef struct gxp_leaves { /* beside the leaves of the complex */
 } gxp_leaves;
 
 typedef struct gxp_copies {
-    uint32_t count, capacity[12];
+    uint32_t count, capacity[13];
     uint32_t *node;
     double *displacement, *velocity; /* x 3 */
     double *rest_time;               /* s */
@@ -864,6 +865,7 @@ typedef struct gxp_copies {
     /* displacement and velocity a step ago, x 3, and room for those of now; from the first BDF2 step on */
     double *history[4];
     double *seen;       /* displacement when the tree was last refitted, x 3; from the first use of the tree on */
+    double *struck;     /* displacement at the last move of the blade that may leave out moves, x 3 */
     double previous_dt; /* s, of the step that history[0] and [1] are from; 0: there is none */
 } gxp_copies;
 
@@ -1128,6 +1130,30 @@ typedef struct gxp_layer_list {
     uint32_t count, capacity;
 } gxp_layer_list;
 
+/* A place on the edge that is followed from cell to cell while moves are left out. Lines from rest along axis + a slope
+   less than radius from this one pass all that it has come to, to a quarter of the tolerance. */
+typedef struct gxp_bead {
+    double along;            /* index of a point of the edge, + share of the way to the next */
+    double rest[3];          /* where it was in the material at the last move that was worked out, m */
+    double axis[3];          /* of length 1 */
+    double slope[3];         /* across axis */
+    double radius, farthest; /* farthest: along axis, m; 0: it has not left rest */
+    uint32_t cell, unused;   /* whose map it has */
+} gxp_bead;
+typedef struct gxp_bead_list {
+    gxp_bead *data;
+    uint32_t count, capacity;
+} gxp_bead_list;
+
+typedef struct gxp_glance { /* what a blade needs to leave out moves, see >>glances */
+    uint32_t ready;         /* 1: copies.struck is where the copies were at the blade's last move. Of one blade only */
+    gxp_bead_list beads;
+    gxp_points edge; /* of the last move, which was left out; none: it was worked out */
+    /* m: how far copies may have moved since a move was worked out; how far edge and copies may; how far beads may */
+    double travelled, room, course;
+    uint64_t cut; /* cuts.hash: the cells of beads are those of then */
+} gxp_glance;
+
 typedef struct gxp_blade_state { /* what lasts from move to move */
     gxp_front_list vertices;
     gxp_points points;
@@ -1136,6 +1162,7 @@ typedef struct gxp_blade_state { /* what lasts from move to move */
     uint32_t slot_count; /* of the body then */
     gxp_points edge;     /* none: the blade is lifted */
     double middle[3];    /* of the deformed body's box then */
+    gxp_glance glance;
 } gxp_blade_state;
 
 typedef struct gxp_close_cell { /* a kept cell around the edge */
@@ -1146,9 +1173,7 @@ typedef struct gxp_close_cell { /* a kept cell around the edge */
     double stretch;                        /* volume / volume at rest of its element; negative: inverted */
     double size;                           /* of its element, m */
     uint32_t facets, facet_count;          /* of a divided element's cell: in lambdas, once they were asked for */
-    uint8_t is_near;                       /* 0: looked at in vain */
-    uint8_t is_divided;                    /* its element */
-    uint8_t has_facets;
+    uint8_t is_divided, has_facets;        /* its element is */
 } gxp_close_cell;
 typedef struct gxp_plate { /* a triangle, ready to be asked what is near it */
     double x[3][3];
@@ -1219,12 +1244,14 @@ struct gx_blade {
     gxp_front_list strip, cut; /* 3 for each triangle: of one strip, of all */
     gxp_points path, sheet;
     /* the edge at a move, with a point wherever a layer had seen it */
-    gxp_front_list places;    /* on the edge of the last move: along, ascending */
-    gxp_points carried, goal; /* where the material has carried the edge of the last move to; where it goes */
-    gxp_points from, to;      /* a step's way */
-    gxp_relation *relations;  /* of the samples */
-    uint32_t relation_capacity;
-    uint32_t last_sight;    /* a near cell: the next place on the edge is not far from it */
+    gxp_front_list places;             /* on the edge of the last move: along, ascending */
+    gxp_points carried, goal;          /* where the material has carried the edge of the last move to; where it goes */
+    gxp_points from, to;               /* a step's way */
+    gxp_relation *relations;           /* of the samples */
+    uint32_t relation_capacity, steps; /* steps: of the move */
+    uint32_t last_sight;               /* a near cell: the next place on the edge is not far from it */
+    double advance, room;   /* m, of all layers: the largest advance; the way of the edge before one is left */
+    gxp_bead_list followed; /* where beads come to at a move */
     gxp_words needed;       /* by sample: 1 if it is not on a line with others */
     gxp_words owners;       /* old layers that flow into it */
     gxp_words heirs;        /* by old layer: new ones into which it flows */
@@ -1352,7 +1379,8 @@ enum {
     GXP_HISTORY = 4,  /* saved and hashed if the last step was one of BDF2 */
     GXP_UNDONE = 8,   /* rows are put back when a cut fails */
     GXP_CLEARED = 16, /* new rows are 0 */
-    GXP_LATER = 32    /* NULL until it is needed */
+    GXP_LATER = 32,   /* NULL until it is needed */
+    GXP_STROKE = 64   /* saved and hashed while a blade may leave out moves */
 };
 
 /* Offsets in gx_body: of the pointer, of the number of entries that there is room for; bytes of an entry */
@@ -1409,12 +1437,14 @@ static const gxp_column gxp_copy_columns[] = {
     GXP_COLUMN(copies, history[1],   capacity,  8, 3 * sizeof(double), GXP_HISTORY | GXP_LATER),
     GXP_COLUMN(copies, history[2],   capacity,  9, 3 * sizeof(double), GXP_LATER),
     GXP_COLUMN(copies, history[3],   capacity, 10, 3 * sizeof(double), GXP_LATER),
-    GXP_COLUMN(copies, seen,         capacity, 11, 3 * sizeof(double), GXP_LATER)};
+    GXP_COLUMN(copies, seen,         capacity, 11, 3 * sizeof(double), GXP_LATER),
+    GXP_COLUMN(copies, struck,       capacity, 12, 3 * sizeof(double), GXP_STROKE | GXP_LATER)};
 enum { /* places in the lists above */
     GXP_TEXTURE_COLUMN = 3,
     GXP_SIZE_COLUMN = 4,
     GXP_FIRST_HISTORY = 7,
-    GXP_SEEN_COLUMN = 11
+    GXP_SEEN_COLUMN = 11,
+    GXP_STRUCK_COLUMN = 12
 };
 static const gxp_column gxp_surface_columns[] = {
     GXP_COLUMN(cuts, surfaces, surface_capacity, 0, sizeof(gxp_surface_record), GXP_TOPOLOGY)};
@@ -10870,6 +10900,8 @@ static gx_result gxp_see_edge(gx_blade *blade, uint32_t layer, const double *edg
    from its sheet, else the edge has left the cut through its side. */
 #define GXP_LEAST_ADVANCE 0.02
 #define GXP_CUT_WIDTH     0.15
+/* A material point on the layer's surface that is no farther from the sheet is on a wall of the cut. */
+#define GXP_ON_SHEET 1e-6
 /* So far on the other side of the sheet does a track begin, in element sizes. */
 #define GXP_CROSSING 0.1
 /* Triangles of the last strips that a layer remembers. */
@@ -10959,6 +10991,14 @@ static void gxp_judge_air(const gx_blade *blade, const gxp_front_vertex *v, gxp_
     r->ahead = distance > GXP_CUT_WIDTH * v->size && distance > 2 * blade->tolerance;
 }
 
+/* Is a place in the air next to this layer's own cut: between its walls, or before their rims? There the maps of the
+   two sides, extended, lead away from each other, and tell nothing of where the edge is by the front. */
+static int gxp_is_in_open_cut(const gx_blade *blade, const gxp_front_vertex *v) {
+    double nearest[3];
+    return v->distance > 0 && v->distance <= v->size &&
+           gxp_near_sheet(&blade->sheet, v->foot, nearest) <= GXP_ON_SHEET * v->size;
+}
+
 /* Where a place on the edge lies by the front. A front in the air follows the edge: nothing is cut yet. */
 static gx_result gxp_relate(gx_blade *blade, const gxp_front_vertex *v, gxp_relation *r) {
     double nearest[3], direction[3], way[3];
@@ -10972,6 +11012,7 @@ static gx_result gxp_relate(gx_blade *blade, const gxp_front_vertex *v, gxp_rela
         r->ahead = gxp_dot(direction, way) > 0;
     if (v->distance > 0) {
         if ((!r->ahead || v->walled) && r->distance > 0) gxp_judge_air(blade, v, r);
+        if (r->ahead && gxp_is_in_open_cut(blade, v)) r->ahead = 0;
         return GX_OK;
     }
     if (!r->ahead) result = gxp_judge_behind(blade, v, r);
@@ -11060,7 +11101,7 @@ static gx_result gxp_advance_front(gx_blade *blade, gxp_advance *move) {
     for (i = 0; i < samples->count && result == GX_OK; i++) {
         const gxp_front_vertex *v = &samples->data[i];
         result = gxp_relate(blade, v, &r[i]);
-        if (in_air) r[i].ahead = !move->is_back && r[i].distance > 0;
+        if (in_air) r[i].ahead = !move->is_back && r[i].distance > 0 && !gxp_is_in_open_cut(blade, v);
     }
     for (i = 0; i < samples->count && result == GX_OK; i++) {
         const gxp_front_vertex *v = &samples->data[i];
@@ -11222,8 +11263,18 @@ static int gxp_is_away(const gx_blade *blade) {
     return 1;
 }
 
-/* The edge has come back out of its cut: the front begins anew in the air. */
-static gx_result gxp_begin_outside(gx_blade *blade) {
+/* Cuts what waits, and advances the front from there. */
+static gx_result gxp_cut_waiting(gx_blade *blade, gxp_advance *move, gx_blade_report *report) {
+    gx_result result = gxp_copy_front(blade->body, &blade->advanced, &blade->latest);
+    if (result == GX_OK) result = gxp_zip(blade, &blade->front, &blade->advanced);
+    if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
+    return result == GX_OK ? gxp_advance_front(blade, move) : result;
+}
+
+/* The edge has come back out of its cut: what waits is cut, and the front begins anew in the air. */
+static gx_result gxp_begin_outside(gx_blade *blade, gxp_advance *move, gx_blade_report *report) {
+    const gx_result result = blade->latest.count > 0 ? gxp_cut_waiting(blade, move, report) : GX_OK;
+    if (result != GX_OK) return result;
     blade->path.count = blade->latest.count = blade->sheet.count = 0;
     return gxp_copy_front(blade->body, &blade->front, &blade->samples);
 }
@@ -11358,14 +11409,6 @@ static int gxp_has_left(const gx_blade *blade) {
     return gxp_is_away(blade);
 }
 
-/* Cuts what waits, and advances the front from there. */
-static gx_result gxp_cut_waiting(gx_blade *blade, gxp_advance *move, gx_blade_report *report) {
-    gx_result result = gxp_copy_front(blade->body, &blade->advanced, &blade->latest);
-    if (result == GX_OK) result = gxp_zip(blade, &blade->front, &blade->advanced);
-    if (result == GX_OK) result = gxp_cut_strip(blade, &blade->advanced, report);
-    return result == GX_OK ? gxp_advance_front(blade, move) : result;
-}
-
 /* The edge has left the cut through its side: cuts as far as the front has come, and begins a track. */
 static gx_result gxp_leave_cut(gx_blade *blade, gxp_advance *move, gx_blade_report *report) {
     gx_result result = GX_OK;
@@ -11388,7 +11431,7 @@ static gx_result gxp_follow_edge(gx_blade *blade, int finish, gx_blade_report *r
         blade->front.count = 0;
         return GX_OK;
     }
-    if (result == GX_OK && move.is_back) return gxp_is_away(blade) ? gxp_begin_outside(blade) : GX_OK;
+    if (result == GX_OK && move.is_back) return gxp_is_away(blade) ? gxp_begin_outside(blade, &move, report) : GX_OK;
     if (result == GX_OK && move.strays && !finish) result = gxp_leave_cut(blade, &move, report);
     if (result != GX_OK || !(move.most > 0)) return result;
     result = gxp_zip(blade, &blade->front, &blade->advanced);
@@ -11397,6 +11440,7 @@ static gx_result gxp_follow_edge(gx_blade *blade, int finish, gx_blade_report *r
         if (result == GX_OK) result = gxp_zip(blade, &blade->front, &blade->advanced);
     }
     if (result != GX_OK || !(move.most > 0)) return result;
+    blade->advance = fmax(blade->advance, move.most);
     return finish || move.most >= blade->min_advance ? gxp_cut_strip(blade, &blade->advanced, report)
                                                      : gxp_note_path(blade);
 }
@@ -11449,6 +11493,289 @@ static gx_result gxp_add_surface(gx_blade *blade, uint32_t layer, uint32_t old) 
         result = gxp_push_point(body, &blade->corners, blade->cut.data[i].rest);
     blade->cut.count = 0;
     return result;
+}
+
+/* >>glances: moves that are left out ------------------------------------------------------------------------------- */
+/* In: a blade's edge, the body as it is now, beads: places on the edge that follow the material. Out: whether a move
+ * changes so little that it need not be worked out: then only edge and body are remembered. Touches the beads,
+ * copies.struck and the blade's working memory.
+ *
+ * The strip between two moves that are worked out is straight. A move between them may be left out if the edge is on
+ * that strip, to a quarter of the tolerance: each bead has come straight from where it was, so that no place between
+ * is farther ahead. When a bead has not, the last move that was left out is worked out first, with the body as it was
+ * then (copies.struck, which cuts keep up to date). In all, edge and body move by less than an element while moves are
+ * left out, which one move may do at once. So a blade that is moved more often does what it would do if moved less
+ * often, but never less often than its path bends.
+ *
+ * One blade of a body at a time leaves out moves: the others' places of the body are not remembered. */
+
+/* Shares. Beads are places within the first of an element's size of the layer. A bead is off its way by less than the
+   second of the tolerance. Edge and copies move by less than the third of the mean size, in all. A bead comes less far
+   than the fourth of the least advance that is cut, and of half the mean size; and no move is worked out because of
+   what waits before the edge has come as far as the last of these. */
+#define GXP_BEAD_REACH   0.5
+#define GXP_BEAD_OFF     0.25
+#define GXP_GLANCE_ROOM  0.75
+#define GXP_BEAD_COURSE  1.0
+#define GXP_LEAST_GLANCE 0.125
+
+/* A bead goes through so many cells at most at a move. One that is off its cell by less than the second, in weights,
+   stays there. */
+#define GXP_BEAD_FACES 8
+#define GXP_BEAD_TOUCH 1e-9
+
+typedef enum gxp_verdict {                      /* what a move is */
+                           GXP_GLANCE_AWAY,     /* nothing is known of it */
+                           GXP_GLANCE_BENT,     /* a bead has not come straight, or too far */
+                           GXP_GLANCE_STRAIGHT, /* all have, but the move is to be worked out */
+                           GXP_GLANCE_LITTLE    /* it may be left out */
+} gxp_verdict;
+
+/* The cell across a face of a cell: one that has the copies of the face, GXP_NONE: there is none */
+static uint32_t gxp_cell_across(const gx_body *body, uint32_t cell, uint32_t face) {
+    const gxp_cell *row = &body->cells.data[cell];
+    uint32_t next = gxp_neighbour(body, row->element, face), i, k;
+    for (; next != GXP_NONE; next = body->cells.data[next].next) {
+        const uint32_t *own = body->cells.data[next].copies;
+        uint32_t shared = 0;
+        for (i = 0; i < 4; i++)
+            for (k = 0; k < 4; k++) shared += i != face && own[k] == row->copies[i];
+        if (body->cells.data[next].kept && shared == 3) break;
+    }
+    return next;
+}
+
+/* The material point of a place in space, by the map of a cell that is walked to from *cell, which is next to it */
+static void gxp_follow_place(const gx_body *body, const double x[3], uint32_t *cell, double rest[3]) {
+    static const double origin[3] = {0, 0, 0};
+    double corners[4][3], weights[4];
+    uint32_t next = *cell, face, k;
+    int faces;
+    for (faces = 0; next != GXP_NONE && faces < GXP_BEAD_FACES; faces++) {
+        *cell = next;
+        gxp_cell_corners(body, &body->cells.data[next], 1, origin, corners);
+        gxp_tet_weights(corners, x, weights);
+        for (face = 0, k = 1; k < 4; k++)
+            if (weights[k] < weights[face]) face = k;
+        next = weights[face] < -GXP_BEAD_TOUCH ? gxp_cell_across(body, next, face) : GXP_NONE;
+    }
+    gxp_cell_corners(body, &body->cells.data[*cell], 0, origin, corners);
+    gxp_weigh(corners, weights, rest);
+}
+
+/* A cell of the layer at work that has the element of a place, GXP_NONE: there is none */
+static gx_result gxp_bead_cell(gx_blade *blade, uint32_t layer, const gxp_front_vertex *v, uint32_t *found) {
+    gx_body *body = blade->body;
+    uint32_t cell, holder = GXP_NONE;
+    gx_result result = GX_OK;
+    *found = GXP_NONE;
+    if (body->cells.data[v->element].next != GXP_NONE) result = gxp_cell_at(body, v->element, v->extended, &holder);
+    for (cell = v->element; cell != GXP_NONE; cell = body->cells.data[cell].next)
+        if (body->cells.data[cell].kept && gxp_layer_of(&blade->near, cell) == layer &&
+            (*found == GXP_NONE || cell == holder))
+            *found = cell;
+    return result;
+}
+
+/* Makes beads of the places of blade.seen in the layer and next to it. */
+static gx_result gxp_list_beads(gx_blade *blade, uint32_t layer) {
+    gx_body *body = blade->body;
+    gxp_bead_list *beads = &blade->then.glance.beads;
+    uint32_t i;
+    gx_result result = gxp_reserve(&body->config.allocator, &beads->data, sizeof *beads->data, beads->count,
+                                   &beads->capacity, blade->seen.count);
+    for (i = 0; i < blade->seen.count && result == GX_OK; i++) {
+        const gxp_front_vertex *v = &blade->seen.data[i];
+        gxp_bead bead;
+        memset(&bead, 0, sizeof bead);
+        if (v->distance > GXP_BEAD_REACH * v->size) continue;
+        result = gxp_bead_cell(blade, layer, v, &bead.cell);
+        if (bead.cell == GXP_NONE) continue;
+        bead.along = v->along;
+        gxp_follow_place(body, v->position, &bead.cell, bead.rest);
+        beads->data[beads->count++] = bead;
+    }
+    return result;
+}
+
+static double gxp_length(const double a[3]) { return sqrt(gxp_dot(a, a)); }
+
+/* Two disks of directions: a smaller one that is in both. Returns 0 if there is none. way: from the first's middle to
+   the second's */
+static int gxp_narrow_course(gxp_bead *bead, const double way[3], double radius) {
+    const double off = gxp_length(way);
+    double share, common;
+    int k;
+    if (off + bead->radius <= radius) return 1;
+    share = 1;
+    common = radius;
+    if (!(off + radius <= bead->radius)) {
+        common = 0.5 * (bead->radius + radius - off);
+        if (!(common > 0)) return 0;
+        share = 0.5 * (off - radius + bead->radius) / off;
+    }
+    for (k = 0; k < 3; k++) bead->slope[k] += share * way[k];
+    bead->radius = common;
+    return 1;
+}
+
+/* A bead comes to a material point. Has it come straight, to `off` at most? */
+static int gxp_comes_straight(gxp_bead *bead, const double rest[3], double off) {
+    double way[3], way_off[3], along;
+    int k;
+    for (k = 0; k < 3; k++) way[k] = rest[k] - bead->rest[k];
+    if (!(bead->farthest > 0)) {
+        const double length = gxp_length(way);
+        if (length <= off) return 1;
+        for (k = 0; k < 3; k++) bead->axis[k] = way[k] / length;
+        bead->radius = off / length;
+        bead->farthest = length;
+        return gxp_is_finite(length);
+    }
+    along = gxp_dot(way, bead->axis);
+    if (!(along >= bead->farthest - off && along > 0)) return 0;
+    for (k = 0; k < 3; k++) way_off[k] = way[k] / along - bead->axis[k] - bead->slope[k];
+    if (!(gxp_length(way_off) <= bead->radius)) return 0;
+    bead->farthest = fmax(bead->farthest, along);
+    return gxp_narrow_course(bead, way_off, off / along);
+}
+
+/* Lists in blade.followed where the beads come to. */
+static gx_result gxp_follow_beads(gx_blade *blade, const double *edge, uint32_t count, gxp_verdict *verdict) {
+    gx_body *body = blade->body;
+    const gxp_glance *glance = &blade->now.glance;
+    gxp_bead_list *to = &blade->followed;
+    uint32_t i;
+    const gx_result result =
+        gxp_reserve(&body->config.allocator, &to->data, sizeof *to->data, 0, &to->capacity, glance->beads.count);
+    if (result != GX_OK) return result;
+    to->count = glance->beads.count;
+    for (i = 0; i < to->count && *verdict != GXP_GLANCE_BENT; i++) {
+        double x[3], rest[3], square;
+        to->data[i] = glance->beads.data[i];
+        gxp_edge_position(edge, count, to->data[i].along, x);
+        gxp_follow_place(body, x, &to->data[i].cell, rest);
+        square = gxp_square_distance(rest, to->data[i].rest);
+        if (!(square <= glance->course * glance->course)) *verdict = GXP_GLANCE_STRAIGHT;
+        if (!(square <= 4 * glance->course * glance->course) ||
+            !gxp_comes_straight(&to->data[i], rest, GXP_BEAD_OFF * blade->tolerance))
+            *verdict = GXP_GLANCE_BENT;
+    }
+    return GX_OK;
+}
+
+/* How far a copy has moved since the last move, m; HUGE_VAL if that is not known. Sums show what is not finite. */
+static double gxp_measure_motion(const gx_body *body) {
+    const double *u = body->copies.displacement, *struck = body->copies.struck;
+    double most = 0, sum = 0;
+    uint32_t i;
+    for (i = 0; i < body->copies.count; i++, u += 3, struck += 3) {
+        const double square = gxp_square_distance(u, struck);
+        most = gxp_more(square, most);
+        sum += square;
+    }
+    return gxp_is_finite(sum) ? sqrt(most) : HUGE_VAL;
+}
+
+/* How far a point of the edge has come in space since a move was worked out, m */
+static double gxp_measure_edge(const gx_blade *blade, const double *edge, uint32_t count) {
+    double most = 0;
+    uint32_t i;
+    for (i = 0; i < count; i++)
+        most = fmax(most, gxp_square_distance(edge + 3 * (size_t)i, blade->now.edge.data + 3 * (size_t)i));
+    return sqrt(most);
+}
+
+/* Judges a move: may it be left out? *motion: how far copies have moved since the last one */
+static gx_result gxp_judge_move(gx_blade *blade, const double *edge, uint32_t count, double *motion,
+                                gxp_verdict *verdict) {
+    const gxp_glance *glance = &blade->now.glance;
+    double way;
+    *verdict = GXP_GLANCE_AWAY;
+    if (!glance->ready || glance->cut != blade->body->cuts.hash) return GX_OK;
+    *motion = gxp_measure_motion(blade->body);
+    way = glance->travelled + *motion + gxp_measure_edge(blade, edge, count);
+    *verdict = way <= glance->room ? GXP_GLANCE_LITTLE : GXP_GLANCE_STRAIGHT;
+    if (!(way <= 2 * blade->step)) *verdict = GXP_GLANCE_BENT;
+    return gxp_follow_beads(blade, edge, count, verdict);
+}
+
+static void gxp_note_struck(gx_body *body) {
+    if (body->copies.count > 0)
+        memcpy(body->copies.struck, body->copies.displacement, 3 * (size_t)body->copies.count * sizeof(double));
+}
+
+/* Leaves out a move: remembers where edge, beads and body are. */
+static gx_result gxp_leave_out(gx_blade *blade, const double *edge, uint32_t count, double motion) {
+    gxp_glance *glance = &blade->now.glance;
+    const gxp_bead_list beads = glance->beads;
+    const gx_result result = gxp_reserve(&blade->body->config.allocator, &glance->edge.data,
+                                         3 * sizeof *glance->edge.data, 0, &glance->edge.capacity, count);
+    if (result != GX_OK) return result;
+    memcpy(glance->edge.data, edge, 3 * (size_t)count * sizeof *edge);
+    glance->edge.count = count;
+    glance->travelled += motion;
+    glance->beads = blade->followed;
+    blade->followed = beads;
+    gxp_note_struck(blade->body);
+    return GX_OK;
+}
+
+static void gxp_end_glances(gxp_glance *glance) {
+    glance->ready = 0;
+    glance->edge.count = glance->beads.count = 0;
+    glance->travelled = glance->room = glance->course = 0;
+    glance->cut = 0;
+}
+
+/* May the blade leave out moves from here on? No other one of the body does. */
+static int gxp_is_free(const gx_blade *blade) {
+    const gx_blade *other;
+    for (other = blade->body->blades; other != NULL; other = other->next)
+        if (other != blade && other->now.glance.ready) return 0;
+    return 1;
+}
+
+/* Makes copies.struck, unless it is there. */
+static gx_result gxp_start_struck(gx_body *body) {
+    return body->copies.struck != NULL
+             ? GX_OK
+             : gxp_grow_column(body, &gxp_copy_columns[GXP_STRUCK_COLUMN], 0, body->copies.count);
+}
+
+/* After a move that was worked out and cut nothing: the next ones may be left out. */
+static gx_result gxp_get_ready(gx_blade *blade) {
+    gx_body *body = blade->body;
+    gxp_glance *glance = &blade->then.glance;
+    const double least = GXP_LEAST_GLANCE * fmin(blade->min_advance, 0.5 * blade->step),
+                 most = GXP_BEAD_COURSE * fmin(blade->min_advance, 0.5 * blade->step);
+    gx_result result;
+    glance->edge.count = 0;
+    result = gxp_start_struck(body);
+    if (result != GX_OK) return result;
+    glance->ready = 1;
+    glance->travelled = 0;
+    glance->room = fmax(fmin(blade->room, GXP_GLANCE_ROOM * blade->step), least);
+    glance->course = fmin(fmax(blade->min_advance - blade->advance, least), most);
+    glance->cut = body->cuts.hash;
+    gxp_note_struck(body);
+    return GX_OK;
+}
+
+/* Copies change places between where they are and where they were at the last move. */
+static void gxp_swap_struck(gx_body *body) {
+    double *u = body->copies.displacement, *struck = body->copies.struck;
+    size_t i;
+    for (i = 0; i < 3 * (size_t)body->copies.count; i++) {
+        const double x = u[i];
+        u[i] = struck[i];
+        struck[i] = x;
+    }
+}
+
+/* Where the last move left the edge */
+static const gxp_points *gxp_last_edge(const gx_blade *blade) {
+    return blade->now.glance.edge.count > 0 ? &blade->now.glance.edge : &blade->now.edge;
 }
 
 /* >>strokes: what a blade remembers from move to move -------------------------------------------------------------- */
@@ -11808,6 +12135,7 @@ static gx_result gxp_begin_layer(gx_blade *blade, uint32_t layer, const double *
     blade->cut.count = blade->front.count = blade->latest.count = blade->path.count = 0;
     *begun = result == GX_OK && blade->owners.count == 0;
     if (result == GX_OK) result = gxp_see_edge(blade, layer, edge, count);
+    if (result == GX_OK) result = gxp_list_beads(blade, layer);
     if (result == GX_OK) result = gxp_list_owners(blade, layer, edge, count, 0, report);
     if (result == GX_OK && !*begun) uncovered = gxp_is_uncovered(blade);
     if (result == GX_OK && !(*begun || uncovered || many)) return gxp_take_part(blade, layer);
@@ -11818,6 +12146,15 @@ static gx_result gxp_begin_layer(gx_blade *blade, uint32_t layer, const double *
     if (result == GX_OK && blade->front.count < 2)
         result = gxp_append_front(blade->body, &blade->front, blade->owned.data, blade->owned_starts.data[1]);
     return result == GX_OK ? gxp_take_part(blade, layer) : result;
+}
+
+/* How far the edge can go before it is farther than an element from the layer at work */
+static double gxp_way_out(const gx_blade *blade) {
+    double most = 0;
+    uint32_t i;
+    for (i = 0; i < blade->samples.count; i++)
+        most = fmax(most, blade->samples.data[i].size - blade->samples.data[i].distance);
+    return most;
 }
 
 /* Writes the layer at work to the state that the move makes. */
@@ -11832,6 +12169,7 @@ static gx_result gxp_keep_layer(gx_blade *blade) {
     if (result == GX_OK) result = gxp_append_front(blade->body, &then->vertices, blade->front.data, blade->front.count);
     layer.latest = then->vertices.count;
     layer.latest_count = blade->latest.count;
+    if (blade->latest.count > 0) blade->room = fmin(blade->room, gxp_way_out(blade));
     if (result == GX_OK)
         result = gxp_append_front(blade->body, &then->vertices, blade->latest.data, blade->latest.count);
     layer.seen = then->vertices.count;
@@ -11994,6 +12332,9 @@ static gx_result gxp_advance_layers(gx_blade *blade, const double *before, const
     uint32_t layer;
     gx_result result = GX_OK;
     blade->then.layers.count = blade->then.vertices.count = blade->then.points.count = 0;
+    blade->then.glance.beads.count = 0;
+    blade->advance = 0;
+    blade->room = HUGE_VAL;
     result = gxp_count_heirs(blade);
     for (layer = 0; layer < blade->near.layer_count && result == GX_OK; layer++) {
         int begun;
@@ -12213,6 +12554,7 @@ static gx_result gxp_plan_way(gx_blade *blade, const double *edge, uint32_t coun
     gx_result result;
     *steps = 1;
     if (blade->now.edge.count == 0) return gxp_go_straight(blade, edge, edge, count);
+    if (gxp_measure_edge(blade, edge, count) <= blade->step) return gxp_go_straight(blade, before, edge, count);
     result = gxp_measure_way(blade, before, edge, count, NULL, &most);
     if (result == GX_OK && most > square) {
         gxp_find_box(blade->body, &box);
@@ -12263,6 +12605,29 @@ static void gxp_swap_points(gxp_points *a, gxp_points *b) {
     *b = c;
 }
 
+/* The state that a step has made is that of now; the one before the move is blade.start. */
+static void gxp_keep_step(gx_blade *blade, int *begun) {
+    if (!*begun) gxp_swap_states(&blade->start, &blade->now);
+    *begun = 1;
+    gxp_swap_states(&blade->now, &blade->then);
+}
+
+/* After the last of several steps: what the layers saw has places on the user's edge, not on blade.goal. */
+static void gxp_renumber_seen(gx_blade *blade) {
+    const gxp_blade_state *then = &blade->then;
+    const gxp_front_vertex *places = blade->places.data;
+    const uint32_t last = blade->places.count - 1;
+    uint32_t j, i;
+    for (j = 0; j < then->layers.count; j++)
+        for (i = 0; i < then->layers.data[j].seen_count; i++) {
+            gxp_front_vertex *v = &then->vertices.data[then->layers.data[j].seen + i];
+            const double floored = floor(v->along);
+            const uint32_t at = floored < last ? (uint32_t)floored : last;
+            v->along = at < last ? places[at].along + (v->along - floored) * (places[at + 1].along - places[at].along)
+                                 : places[last].along;
+        }
+}
+
 /* The steps of a move. *begun: the state before is blade.start. */
 static gx_result gxp_step_along(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope, int finish,
                                 int *begun, gx_blade_report *report, gx_failure *failure) {
@@ -12270,34 +12635,68 @@ static gx_result gxp_step_along(gx_blade *blade, const double *edge, uint32_t co
     gx_result result = gxp_plan_way(blade, edge, count, &steps);
     if (result == GX_OK) result = gxp_go_part(blade, 0, &blade->from);
     if (gxp_end(failure, result) != GX_OK) return result;
+    blade->steps = steps;
     for (step = 1;; step++) {
         result = gxp_end(failure, gxp_go_part(blade, step < steps ? (double)step / steps : 1, &blade->to));
         if (result == GX_OK) result = gxp_step_blade(blade, scope, finish && step == steps, report, failure);
+        if (result == GX_OK && steps > 1 && step == steps) gxp_renumber_seen(blade);
         if (result == GX_OK) result = gxp_end(failure, gxp_keep_members(blade, edge, count));
         if (result != GX_OK || step == steps) return result;
-        if (step == 1) gxp_swap_states(&blade->start, &blade->now);
-        *begun = 1;
-        gxp_swap_states(&blade->now, &blade->then);
+        gxp_keep_step(blade, begun);
         gxp_swap_points(&blade->from, &blade->to);
     }
 }
 
-/* A move to the edge; finish: cuts all that waits. */
-static gx_result gxp_move_blade(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope, int finish,
-                                gx_blade_report *report, gx_failure *failure) {
-    int begun = 0;
+/* Works out the move that was left out last, with the body as it was then: the first steps of the present move. */
+static gx_result gxp_make_up(gx_blade *blade, int *begun, gx_blade_report *report, gx_failure *failure) {
+    const gxp_points *edge = &blade->now.glance.edge;
     gx_result result;
-    gxp_clear_report(report);
+    gxp_swap_struck(blade->body);
     result = gxp_refit_near(blade, GXP_NEAR_SLACK, failure);
-    if (result != GX_OK) return result;
+    if (result == GX_OK) result = gxp_step_along(blade, edge->data, edge->count, NULL, 0, begun, report, failure);
+    gxp_swap_struck(blade->body);
+    if (result == GX_OK) gxp_keep_step(blade, begun);
+    return result;
+}
+
+/* Works out a move. make_up: also the last one, which was left out. */
+static gx_result gxp_work_out(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope, int finish,
+                              int make_up, gx_blade_report *report, gx_failure *failure) {
+    int begun = 0;
+    gx_result result = GX_OK;
     blade->surface_starts.count = blade->corners.count = blade->scope.count = 0;
-    result = gxp_step_along(blade, edge, count, scope, finish, &begun, report, failure);
+    if (make_up) result = gxp_make_up(blade, &begun, report, failure);
+    if (result == GX_OK) result = gxp_refit_near(blade, GXP_NEAR_SLACK, failure);
+    if (result == GX_OK) result = gxp_step_along(blade, edge, count, scope, finish, &begun, report, failure);
+    if (result == GX_OK) {
+        if (!finish && scope == NULL && blade->steps == 1 && blade->surface_starts.count == 0 && gxp_is_free(blade))
+            result = gxp_end(failure, gxp_get_ready(blade));
+        else
+            gxp_end_glances(&blade->then.glance);
+    }
     if (result == GX_OK) result = gxp_cut_surfaces(blade, GX_SURFACE_SHEET, report, failure);
     if (result == GX_OK)
         gxp_swap_states(&blade->now, &blade->then);
     else if (begun)
         gxp_swap_states(&blade->now, &blade->start);
     return result;
+}
+
+/* A move to the edge; finish: cuts all that waits. */
+static gx_result gxp_move_blade(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope, int finish,
+                                gx_blade_report *report, gx_failure *failure) {
+    double motion = 0;
+    gxp_verdict verdict;
+    gx_result result = gxp_end(failure, gxp_judge_move(blade, edge, count, &motion, &verdict));
+    gxp_clear_report(report);
+    if (result != GX_OK) return result;
+    if (verdict == GXP_GLANCE_LITTLE && !finish && scope == NULL) {
+        report->layer_count = blade->now.members.count > 0 ? blade->now.layers.count : 0;
+        return gxp_end(failure, gxp_leave_out(blade, edge, count, motion));
+    }
+    return gxp_work_out(blade, edge, count, scope, finish,
+                        blade->now.glance.edge.count > 0 && (verdict <= GXP_GLANCE_BENT || scope != NULL), report,
+                        failure);
 }
 
 GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t point_count,
@@ -12320,15 +12719,17 @@ GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t po
 static void gxp_forget(gxp_blade_state *state) {
     state->edge.count = state->layers.count = state->members.count = 0;
     state->vertices.count = state->points.count = state->slot_count = 0;
+    gxp_end_glances(&state->glance);
 }
 
 GXFEM_API gx_result gx_blade_lift(gx_blade *blade, gx_blade_report *report, gx_failure *failure) {
+    const gxp_points *edge;
     gx_blade_report own;
     gx_result result = GX_OK;
     if (blade == NULL) return gxp_refuse(failure, "blade");
+    edge = gxp_last_edge(blade);
     gxp_clear_report(&own);
-    if (blade->now.edge.count > 0)
-        result = gxp_move_blade(blade, blade->now.edge.data, blade->now.edge.count, NULL, 1, &own, failure);
+    if (edge->count > 0) result = gxp_move_blade(blade, edge->data, edge->count, NULL, 1, &own, failure);
     if (result != GX_OK) return result;
     gxp_forget(&blade->now);
     if (report != NULL) *report = own;
@@ -12396,6 +12797,8 @@ static void gxp_release_state(gx_body *body, gxp_blade_state *s) {
     gxp_release(a, s->layers.data, s->layers.capacity * sizeof *s->layers.data);
     gxp_release(a, s->members.data, s->members.capacity * sizeof *s->members.data);
     gxp_release(a, s->edge.data, 3 * s->edge.capacity * sizeof *s->edge.data);
+    gxp_release(a, s->glance.beads.data, s->glance.beads.capacity * sizeof *s->glance.beads.data);
+    gxp_release(a, s->glance.edge.data, 3 * s->glance.edge.capacity * sizeof *s->glance.edge.data);
 }
 
 static void gxp_release_words(gx_body *body, gxp_words *words) {
@@ -12417,6 +12820,7 @@ static void gxp_release_blade(gx_blade *b) {
     gxp_release_state(body, &b->now);
     gxp_release_state(body, &b->then);
     gxp_release_state(body, &b->start);
+    gxp_release(a, b->followed.data, b->followed.capacity * sizeof *b->followed.data);
     gxp_release_front(body, &b->places);
     gxp_release_points(body, &b->carried);
     gxp_release_points(body, &b->goal);
@@ -12638,7 +13042,7 @@ static gx_result gxp_meet_cell(gx_body *body, void *user, uint32_t cell) {
 
 /* Finds the spans of a segment of the edge, part by part. */
 static gx_result gxp_meet_segment(gx_blade *blade, uint32_t segment) {
-    const double *ends = blade->now.edge.data + 3 * (size_t)segment;
+    const double *ends = gxp_last_edge(blade)->data + 3 * (size_t)segment;
     const uint32_t parts = gxp_part_count(blade, ends);
     gxp_edge_part edge;
     double most = 0;
@@ -12711,7 +13115,7 @@ static void gxp_hit_on_edge(gx_body *body, uint32_t cell, const double point[3],
 }
 
 static double gxp_span_length(const gx_blade *blade, const gxp_span *span) {
-    const double *ends = blade->now.edge.data + 3 * (size_t)span->segment;
+    const double *ends = gxp_last_edge(blade)->data + 3 * (size_t)span->segment;
     return (span->high - span->low) * sqrt(gxp_square_distance(ends, ends + 3));
 }
 
@@ -12742,7 +13146,7 @@ static void gxp_place_contact(gx_blade *blade, double place, uint32_t *at, doubl
         span = gxp_span_at(blade, ++*at);
     }
     share = fmin(span->low + (span->high - span->low) * ((place - *passed) / gxp_span_length(blade, span)), span->high);
-    gxp_edge_position(blade->now.edge.data + 3 * (size_t)span->segment, 2, share, point);
+    gxp_edge_position(gxp_last_edge(blade)->data + 3 * (size_t)span->segment, 2, share, point);
     gxp_hit_on_edge(blade->body, span->cell, point, &contact->hit);
     contact->along = span->segment + share;
 }
@@ -13491,11 +13895,27 @@ static uint64_t gxp_hash_blade(uint64_t hash, const gxp_blade_state *b) {
     hash = gxp_hash_doubles(hash, b->points.data, 3 * (size_t)b->points.count);
     hash = gxp_hash_bytes(hash, (const unsigned char *)b->layers.data, b->layers.count * sizeof *b->layers.data);
     for (i = 0; i < b->members.count; i++) hash = gxp_mix(hash ^ b->members.data[i]);
-    return gxp_hash_doubles(gxp_mix(hash ^ b->slot_count), b->edge.data, 3 * (size_t)b->edge.count);
+    hash = gxp_hash_doubles(gxp_mix(hash ^ b->slot_count), b->edge.data, 3 * (size_t)b->edge.count);
+    if (!b->glance.ready) return hash;
+    for (i = 0; i < b->glance.beads.count; i++) {
+        const gxp_bead *bead = &b->glance.beads.data[i];
+        hash = gxp_hash_bytes(hash, (const unsigned char *)bead, sizeof *bead);
+    }
+    hash = gxp_hash_doubles(hash, &b->glance.travelled, 1);
+    return gxp_hash_doubles(hash, b->glance.edge.data, 3 * (size_t)b->glance.edge.count);
+}
+
+/* Does a blade of the body leave out moves? */
+static int gxp_has_glances(const gx_body *body) {
+    const gx_blade *blade;
+    for (blade = body->blades; blade != NULL; blade = blade->next)
+        if (blade->now.glance.ready) return 1;
+    return 0;
 }
 
 GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
-    const uint32_t use = GXP_TOPOLOGY | GXP_STATE | (body->copies.previous_dt > 0 ? (uint32_t)GXP_HISTORY : 0);
+    const uint32_t use = GXP_TOPOLOGY | GXP_STATE | (body->copies.previous_dt > 0 ? (uint32_t)GXP_HISTORY : 0) |
+                         (gxp_has_glances(body) ? (uint32_t)GXP_STROKE : 0);
     uint64_t hash = gxp_mix(body->cuts.epoch ^ (uint64_t)body->snapshot.next_id << 32);
     const gx_blade *blade;
     uint32_t t, i;
@@ -13905,33 +14325,316 @@ static void gxp_load_topology(gxb_stream *s, gx_body *body, int trusted) {
     body->view.labels_known = 0;
 }
 
+/* >>scabbard: blades as bytes -------------------------------------------------------------------------------------- */
+/* In: a body's blades, or bytes. Out: bytes, or blades that go on as the others do. Touches blade.now, and blade.then
+   where a body takes over the blades of another. */
+
+/* One blade: what it remembers. n: the counts of its lists, which have room for them if it is read. */
+enum {
+    GXP_BLADE_VERTICES,
+    GXP_BLADE_POINTS,
+    GXP_BLADE_LAYERS,
+    GXP_BLADE_MEMBERS,
+    GXP_BLADE_EDGE,
+    GXP_BLADE_BEADS,
+    GXP_BLADE_GLANCE,
+    GXP_BLADE_LISTS
+};
+
+static void gxp_pass_blade_head(gxb_stream *s, gx_blade *blade, uint32_t n[GXP_BLADE_LISTS]) {
+    uint32_t inside = (uint32_t)blade->starts_inside;
+    gxb_stream_pass(s, &blade->tolerance, 1, sizeof blade->tolerance);
+    gxb_stream_pass(s, &blade->min_advance, 1, sizeof blade->min_advance);
+    gxp_pass_word(s, &blade->max_samples);
+    gxp_pass_word(s, &inside);
+    gxp_pass_word(s, &blade->now.slot_count);
+    gxb_stream_pass(s, blade->now.middle, 3, sizeof(double));
+    gxp_pass_word(s, &blade->now.glance.ready);
+    gxb_stream_pass(s, &blade->now.glance.travelled, 1, sizeof(double));
+    gxb_stream_pass(s, &blade->now.glance.room, 1, sizeof(double));
+    gxb_stream_pass(s, &blade->now.glance.course, 1, sizeof(double));
+    gxb_stream_pass(s, &blade->now.glance.cut, 1, sizeof(uint64_t));
+    gxb_stream_pass(s, n, GXP_BLADE_LISTS, sizeof *n);
+    blade->starts_inside = inside != 0;
+}
+
+static void gxp_pass_blade(gxb_stream *s, gxp_blade_state *b) {
+    uint32_t i;
+    for (i = 0; i < b->vertices.count; i++) {
+        gxp_front_vertex *v = &b->vertices.data[i];
+        uint32_t flags;
+        gxb_stream_pass(s, v->rest, 3, sizeof *v->rest);
+        gxb_stream_pass(s, v->extended, 3, sizeof *v->extended);
+        gxb_stream_pass(s, v->position, 3, sizeof *v->position);
+        gxb_stream_pass(s, v->foot, 3, sizeof *v->foot);
+        gxb_stream_pass(s, v->foot_at, 3, sizeof *v->foot_at);
+        gxb_stream_pass(s, v->ahead, 3, sizeof *v->ahead);
+        gxb_stream_pass(s, &v->distance, 1, sizeof v->distance);
+        gxb_stream_pass(s, &v->size, 1, sizeof v->size);
+        gxb_stream_pass(s, &v->along, 1, sizeof v->along);
+        gxp_pass_word(s, &v->element);
+        flags = (uint32_t)v->soft | (uint32_t)v->gap << 1 | (uint32_t)v->walled << 2;
+        gxp_pass_word(s, &flags);
+        v->soft = flags & 1;
+        v->gap = flags >> 1 & 1;
+        v->walled = flags >> 2 & 1;
+        v->unused = 0;
+    }
+    gxb_stream_pass(s, b->points.data, 3 * (size_t)b->points.count, sizeof(double));
+    gxb_stream_pass(s, b->layers.data, sizeof(gxp_layer) / sizeof(uint32_t) * (size_t)b->layers.count,
+                    sizeof(uint32_t));
+    gxb_stream_pass(s, b->members.data, b->members.count, sizeof(uint64_t));
+    gxb_stream_pass(s, b->edge.data, 3 * (size_t)b->edge.count, sizeof(double));
+    for (i = 0; i < b->glance.beads.count; i++) {
+        gxp_bead *bead = &b->glance.beads.data[i];
+        gxb_stream_pass(s, &bead->along, 1, sizeof bead->along);
+        gxb_stream_pass(s, bead->rest, 3, sizeof *bead->rest);
+        gxb_stream_pass(s, bead->axis, 3, sizeof *bead->axis);
+        gxb_stream_pass(s, bead->slope, 3, sizeof *bead->slope);
+        gxb_stream_pass(s, &bead->radius, 1, sizeof bead->radius);
+        gxb_stream_pass(s, &bead->farthest, 1, sizeof bead->farthest);
+        gxp_pass_word(s, &bead->cell);
+        bead->unused = 0;
+    }
+    gxb_stream_pass(s, b->glance.edge.data, 3 * (size_t)b->glance.edge.count, sizeof(double));
+}
+
+static void gxp_save_blades(gxb_stream *s, gx_body *body) {
+    uint32_t count = 0;
+    gx_blade *b;
+    for (b = body->blades; b != NULL; b = b->next) count++;
+    gxp_pass_word(s, &count);
+    for (b = body->blades; b != NULL; b = b->next) {
+        uint32_t n[GXP_BLADE_LISTS];
+        n[GXP_BLADE_VERTICES] = b->now.vertices.count;
+        n[GXP_BLADE_POINTS] = b->now.points.count;
+        n[GXP_BLADE_LAYERS] = b->now.layers.count;
+        n[GXP_BLADE_MEMBERS] = b->now.members.count;
+        n[GXP_BLADE_EDGE] = b->now.edge.count;
+        n[GXP_BLADE_BEADS] = b->now.glance.beads.count;
+        n[GXP_BLADE_GLANCE] = b->now.glance.edge.count;
+        gxp_pass_blade_head(s, b, n);
+        gxp_pass_blade(s, &b->now);
+    }
+}
+
+static int gxp_are_finite(const double *x, size_t count) {
+    size_t i;
+    for (i = 0; i < count; i++)
+        if (!gxp_is_finite(x[i])) return 0;
+    return 1;
+}
+
+static void gxp_check_vertex(gxb_stream *s, const gx_body *body, const gxp_front_vertex *v) {
+    gxp_require_true(s, v->element < body->mesh.element_count && v->along >= 0 && v->along <= UINT32_MAX &&
+                            v->distance >= 0 && v->size >= 0);
+    gxp_require_true(s, gxp_are_finite(v->rest, 3) && gxp_are_finite(v->extended, 3) &&
+                            gxp_are_finite(v->position, 3) && gxp_are_finite(v->foot, 3) &&
+                            gxp_are_finite(v->foot_at, 3) && gxp_are_finite(v->ahead, 3) && gxp_is_finite(v->size));
+}
+
+static int gxp_is_range(uint32_t first, uint32_t count, uint32_t all) { return first <= all && count <= all - first; }
+
+/* What a move relies on: ranges within their lists, members in order */
+static void gxp_check_strokes(gxb_stream *s, const gx_body *body, const gx_blade *blade) {
+    const gxp_blade_state *b = &blade->now;
+    uint32_t i;
+    gxp_require_true(s, gxp_is_finite(blade->tolerance) && blade->tolerance > 0 && gxp_is_finite(blade->min_advance) &&
+                            blade->min_advance > 0 && b->slot_count <= body->slots.count && b->edge.count != 1);
+    for (i = 0; i < b->vertices.count; i++) gxp_check_vertex(s, body, &b->vertices.data[i]);
+    gxp_require_true(s, gxp_are_finite(b->points.data, 3 * (size_t)b->points.count) &&
+                            gxp_are_finite(b->edge.data, 3 * (size_t)b->edge.count));
+    for (i = 0; i < b->layers.count; i++) {
+        const gxp_layer *l = &b->layers.data[i];
+        gxp_require_true(s, l->front_count != 1 && l->latest_count != 1 &&
+                                gxp_is_range(l->front, l->front_count, b->vertices.count) &&
+                                gxp_is_range(l->latest, l->latest_count, b->vertices.count) &&
+                                gxp_is_range(l->seen, l->seen_count, b->vertices.count) &&
+                                gxp_is_range(l->path, l->path_count, b->points.count) &&
+                                gxp_is_range(l->sheet, l->sheet_count, b->points.count));
+    }
+    for (i = 0; i < b->members.count; i++)
+        gxp_require_true(s, GXP_FIRST(b->members.data[i]) < b->slot_count &&
+                                GXP_SECOND(b->members.data[i]) < b->layers.count &&
+                                (i == 0 || b->members.data[i - 1] < b->members.data[i]));
+}
+
+/* What moves that are left out rely on: one blade of a body leaves them out. After a cut, beads are not used. */
+static void gxp_check_glance(gxb_stream *s, const gx_body *body, const gx_blade *blade) {
+    const gxp_glance *g = &blade->now.glance;
+    const gx_blade *other;
+    uint32_t i;
+    for (other = body->blades; other != blade; other = other->next)
+        gxp_require_true(s, !(g->ready && other->now.glance.ready));
+    gxp_require_true(s, g->ready <= 1 && (!g->ready || blade->now.edge.count > 0));
+    gxp_require_true(s, !g->ready || body->copies.struck != NULL || body->copies.count == 0);
+    gxp_require_true(s, g->edge.count == 0 || (g->ready && g->edge.count == blade->now.edge.count));
+    gxp_require_true(s, g->beads.count == 0 || g->ready);
+    gxp_require_true(s, gxp_are_finite(g->edge.data, 3 * (size_t)g->edge.count) && g->travelled >= 0 && g->room >= 0 &&
+                            g->course >= 0);
+    for (i = 0; i < g->beads.count; i++)
+        gxp_require_true(s, g->beads.data[i].along >= 0 && g->beads.data[i].along <= blade->now.edge.count &&
+                                (g->cut != body->cuts.hash || (g->beads.data[i].cell < body->cells.count &&
+                                                               body->cells.data[g->beads.data[i].cell].kept)));
+}
+
+/* Room for what a blade remembers, with these counts */
+static gx_result gxp_blade_room(gx_body *body, gxp_blade_state *b, const uint32_t n[GXP_BLADE_LISTS]) {
+    const gx_allocator *a = &body->config.allocator;
+    gx_result result =
+        gxp_reserve(a, &b->vertices.data, sizeof *b->vertices.data, 0, &b->vertices.capacity, n[GXP_BLADE_VERTICES]);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &b->points.data, 3 * sizeof(double), 0, &b->points.capacity, n[GXP_BLADE_POINTS]);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &b->layers.data, sizeof *b->layers.data, 0, &b->layers.capacity, n[GXP_BLADE_LAYERS]);
+    if (result == GX_OK)
+        result =
+            gxp_reserve(a, &b->members.data, sizeof *b->members.data, 0, &b->members.capacity, n[GXP_BLADE_MEMBERS]);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &b->edge.data, 3 * sizeof(double), 0, &b->edge.capacity, n[GXP_BLADE_EDGE]);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &b->glance.beads.data, sizeof *b->glance.beads.data, 0, &b->glance.beads.capacity,
+                             n[GXP_BLADE_BEADS]);
+    if (result == GX_OK)
+        result =
+            gxp_reserve(a, &b->glance.edge.data, 3 * sizeof(double), 0, &b->glance.edge.capacity, n[GXP_BLADE_GLANCE]);
+    if (result != GX_OK) return result;
+    b->vertices.count = n[GXP_BLADE_VERTICES];
+    b->points.count = n[GXP_BLADE_POINTS];
+    b->layers.count = n[GXP_BLADE_LAYERS];
+    b->members.count = n[GXP_BLADE_MEMBERS];
+    b->edge.count = n[GXP_BLADE_EDGE];
+    b->glance.beads.count = n[GXP_BLADE_BEADS];
+    b->glance.edge.count = n[GXP_BLADE_GLANCE];
+    return GX_OK;
+}
+
+static void gxp_load_blade(gxb_stream *s, gx_body *body, int trusted) {
+    uint32_t n[GXP_BLADE_LISTS], i;
+    gx_blade *b = NULL;
+    gxp_require(s, gx_blade_create(body, NULL, &b, NULL));
+    if (s->result != GX_OK) return;
+    gxp_pass_blade_head(s, b, n);
+    for (i = 0; i < GXP_BLADE_LISTS; i++) gxp_require_true(s, gxb_stream_has(s, n[i], sizeof(uint64_t)));
+    if (s->result == GX_OK) gxp_require(s, gxp_blade_room(body, &b->now, n));
+    if (s->result == GX_OK) gxp_pass_blade(s, &b->now);
+    if (s->result == GX_OK && !trusted) gxp_check_strokes(s, body, b);
+    if (s->result == GX_OK && !trusted) gxp_check_glance(s, body, b);
+}
+
+static void gxp_load_blades(gxb_stream *s, gx_body *body, int trusted) {
+    uint32_t count = 0, i;
+    gxp_pass_word(s, &count);
+    for (i = 0; i < count && s->result == GX_OK; i++) gxp_load_blade(s, body, trusted);
+}
+
+/* Copies what a blade needs to leave out moves; there is room. */
+static void gxp_copy_glance(gxp_glance *to, const gxp_glance *from) {
+    if (from->beads.count > 0) memcpy(to->beads.data, from->beads.data, from->beads.count * sizeof *from->beads.data);
+    if (from->edge.count > 0) memcpy(to->edge.data, from->edge.data, 3 * (size_t)from->edge.count * sizeof(double));
+    to->ready = from->ready;
+    to->travelled = from->travelled;
+    to->room = from->room;
+    to->course = from->course;
+    to->cut = from->cut;
+}
+
+/* Makes ready that the body's blades become those of another: as many, and what these remember in `then`. made: how
+   many it added. */
+static gx_result gxp_prepare_blades(gx_body *body, const gx_body *from, uint32_t *made) {
+    const gx_blade *source;
+    gx_blade *b = body->blades;
+    gx_result result = GX_OK;
+    *made = 0;
+    for (source = from->blades; source != NULL && result == GX_OK; source = source->next) {
+        const gxp_blade_state *f = &source->now;
+        uint32_t n[GXP_BLADE_LISTS];
+        n[GXP_BLADE_VERTICES] = f->vertices.count;
+        n[GXP_BLADE_POINTS] = f->points.count;
+        n[GXP_BLADE_LAYERS] = f->layers.count;
+        n[GXP_BLADE_MEMBERS] = f->members.count;
+        n[GXP_BLADE_EDGE] = f->edge.count;
+        n[GXP_BLADE_BEADS] = f->glance.beads.count;
+        n[GXP_BLADE_GLANCE] = f->glance.edge.count;
+        if (b == NULL) {
+            result = gx_blade_create(body, NULL, &b, NULL);
+            *made += result == GX_OK;
+        }
+        if (result == GX_OK) result = gxp_blade_room(body, &b->then, n);
+        if (result != GX_OK) break;
+        if (f->vertices.count > 0)
+            memcpy(b->then.vertices.data, f->vertices.data, f->vertices.count * sizeof *f->vertices.data);
+        if (f->points.count > 0) memcpy(b->then.points.data, f->points.data, 3 * f->points.count * sizeof(double));
+        if (f->layers.count > 0) memcpy(b->then.layers.data, f->layers.data, f->layers.count * sizeof *f->layers.data);
+        if (f->members.count > 0)
+            memcpy(b->then.members.data, f->members.data, f->members.count * sizeof *f->members.data);
+        if (f->edge.count > 0) memcpy(b->then.edge.data, f->edge.data, 3 * f->edge.count * sizeof(double));
+        gxp_copy_glance(&b->then.glance, &f->glance);
+        b->then.slot_count = f->slot_count;
+        memcpy(b->then.middle, f->middle, sizeof f->middle);
+        b = b->next;
+    }
+    return result;
+}
+
+/* The body's blades become those of another, as they were made ready. Those that it lacks are lifted. */
+static void gxp_take_blades(gx_body *body, const gx_body *from) {
+    const gx_blade *source = from->blades;
+    gx_blade *b;
+    for (b = body->blades; b != NULL; b = b->next) {
+        const gxp_blade_state now = b->now;
+        if (source == NULL) {
+            gxp_forget(&b->now);
+            continue;
+        }
+        b->now = b->then;
+        b->then = now;
+        b->tolerance = source->tolerance;
+        b->min_advance = source->min_advance;
+        b->max_samples = source->max_samples;
+        b->starts_inside = source->starts_inside;
+        source = source->next;
+    }
+}
+
+/* Takes back blades that were added last. */
+static void gxp_drop_blades(gx_body *body, uint32_t count) {
+    uint32_t all = 0;
+    gx_blade *b;
+    for (b = body->blades; b != NULL; b = b->next) all++;
+    for (; count > 0; count--, all--) gx_blade_destroy(gx_body_blade(body, all - 1));
+}
+
 /* >>save: state; save, load, clone, restore ------------------------------------------------------------------------ */
 /* In: a body, or bytes. Out: bytes, or a body that goes on as the other does. On an error the body is as it was. */
 
-/* The row counts of the state, and whether there is a history */
+/* The row counts of the state, whether there is a history, and whether a blade leaves out moves */
 typedef struct gxp_state_counts {
-    uint32_t rows[GXP_TABLES], history;
+    uint32_t rows[GXP_TABLES], history, struck;
 } gxp_state_counts;
 
 static uint32_t gxp_state_use(const gxp_state_counts *n) {
-    return GXP_STATE | (n->history ? (uint32_t)GXP_HISTORY : 0);
+    return GXP_STATE | (n->history ? (uint32_t)GXP_HISTORY : 0) | (n->struck ? (uint32_t)GXP_STROKE : 0);
 }
 
 static void gxp_pass_state_counts(gxb_stream *s, gxp_state_counts *n) {
     gxp_pass_counts(s, GXP_STATE, n->rows);
     gxp_pass_word(s, &n->history);
+    gxp_pass_word(s, &n->struck);
 }
 
 static gxp_state_counts gxp_count_state(const gx_body *body) {
     gxp_state_counts n;
     gxp_count_rows(body, n.rows);
     n.history = body->copies.previous_dt > 0;
+    n.struck = (uint32_t)gxp_has_glances(body);
     return n;
 }
 
 /* Room for a state with these counts; the present one stays. */
 static gx_result gxp_state_room(gx_body *body, const gxp_state_counts *n) {
-    const gx_result result = gxp_rows_room(body, gxp_state_use(n), n->rows);
+    gx_result result = gxp_rows_room(body, gxp_state_use(n), n->rows);
+    if (result == GX_OK && n->struck) result = gxp_start_struck(body);
     return result == GX_OK && n->history ? gxp_start_history(body, 2) : result;
 }
 
@@ -14016,216 +14719,10 @@ static void gxp_load_state(gxb_stream *s, gx_body *body, int trusted) {
     gxp_state_counts n;
     gxp_pass_state_counts(s, &n);
     gxp_check_counts(s, GXP_STATE, n.rows);
-    gxp_require_true(s, n.rows[GXP_COPIES] == body->copies.count && n.history <= 1);
+    gxp_require_true(s, n.rows[GXP_COPIES] == body->copies.count && n.history <= 1 && n.struck <= 1);
     if (s->result == GX_OK) gxp_require(s, gxp_state_room(body, &n));
     if (s->result == GX_OK) gxp_pass_state(s, body, &n);
     if (s->result == GX_OK && !trusted) gxp_check_state(s, body, &n);
-}
-
-/* One blade: what it remembers. n: the counts of its lists, which have room for them if it is read. */
-enum { GXP_BLADE_VERTICES, GXP_BLADE_POINTS, GXP_BLADE_LAYERS, GXP_BLADE_MEMBERS, GXP_BLADE_EDGE, GXP_BLADE_LISTS };
-
-static void gxp_pass_blade_head(gxb_stream *s, gx_blade *blade, uint32_t n[GXP_BLADE_LISTS]) {
-    uint32_t inside = (uint32_t)blade->starts_inside;
-    gxb_stream_pass(s, &blade->tolerance, 1, sizeof blade->tolerance);
-    gxb_stream_pass(s, &blade->min_advance, 1, sizeof blade->min_advance);
-    gxp_pass_word(s, &blade->max_samples);
-    gxp_pass_word(s, &inside);
-    gxp_pass_word(s, &blade->now.slot_count);
-    gxb_stream_pass(s, blade->now.middle, 3, sizeof(double));
-    gxb_stream_pass(s, n, GXP_BLADE_LISTS, sizeof *n);
-    blade->starts_inside = inside != 0;
-}
-
-static void gxp_pass_blade(gxb_stream *s, gxp_blade_state *b) {
-    uint32_t i;
-    for (i = 0; i < b->vertices.count; i++) {
-        gxp_front_vertex *v = &b->vertices.data[i];
-        uint32_t flags;
-        gxb_stream_pass(s, v->rest, 3, sizeof *v->rest);
-        gxb_stream_pass(s, v->extended, 3, sizeof *v->extended);
-        gxb_stream_pass(s, v->position, 3, sizeof *v->position);
-        gxb_stream_pass(s, v->foot, 3, sizeof *v->foot);
-        gxb_stream_pass(s, v->foot_at, 3, sizeof *v->foot_at);
-        gxb_stream_pass(s, v->ahead, 3, sizeof *v->ahead);
-        gxb_stream_pass(s, &v->distance, 1, sizeof v->distance);
-        gxb_stream_pass(s, &v->size, 1, sizeof v->size);
-        gxb_stream_pass(s, &v->along, 1, sizeof v->along);
-        gxp_pass_word(s, &v->element);
-        flags = (uint32_t)v->soft | (uint32_t)v->gap << 1 | (uint32_t)v->walled << 2;
-        gxp_pass_word(s, &flags);
-        v->soft = flags & 1;
-        v->gap = flags >> 1 & 1;
-        v->walled = flags >> 2 & 1;
-        v->unused = 0;
-    }
-    gxb_stream_pass(s, b->points.data, 3 * (size_t)b->points.count, sizeof(double));
-    gxb_stream_pass(s, b->layers.data, sizeof(gxp_layer) / sizeof(uint32_t) * (size_t)b->layers.count,
-                    sizeof(uint32_t));
-    gxb_stream_pass(s, b->members.data, b->members.count, sizeof(uint64_t));
-    gxb_stream_pass(s, b->edge.data, 3 * (size_t)b->edge.count, sizeof(double));
-}
-
-static void gxp_save_blades(gxb_stream *s, gx_body *body) {
-    uint32_t count = 0;
-    gx_blade *b;
-    for (b = body->blades; b != NULL; b = b->next) count++;
-    gxp_pass_word(s, &count);
-    for (b = body->blades; b != NULL; b = b->next) {
-        uint32_t n[GXP_BLADE_LISTS];
-        n[GXP_BLADE_VERTICES] = b->now.vertices.count;
-        n[GXP_BLADE_POINTS] = b->now.points.count;
-        n[GXP_BLADE_LAYERS] = b->now.layers.count;
-        n[GXP_BLADE_MEMBERS] = b->now.members.count;
-        n[GXP_BLADE_EDGE] = b->now.edge.count;
-        gxp_pass_blade_head(s, b, n);
-        gxp_pass_blade(s, &b->now);
-    }
-}
-
-static int gxp_are_finite(const double *x, size_t count) {
-    size_t i;
-    for (i = 0; i < count; i++)
-        if (!gxp_is_finite(x[i])) return 0;
-    return 1;
-}
-
-static void gxp_check_vertex(gxb_stream *s, const gx_body *body, const gxp_front_vertex *v) {
-    gxp_require_true(s, v->element < body->mesh.element_count && v->along >= 0 && v->along <= UINT32_MAX &&
-                            v->distance >= 0 && v->size >= 0);
-    gxp_require_true(s, gxp_are_finite(v->rest, 3) && gxp_are_finite(v->extended, 3) &&
-                            gxp_are_finite(v->position, 3) && gxp_are_finite(v->foot, 3) &&
-                            gxp_are_finite(v->foot_at, 3) && gxp_are_finite(v->ahead, 3) && gxp_is_finite(v->size));
-}
-
-static int gxp_is_range(uint32_t first, uint32_t count, uint32_t all) { return first <= all && count <= all - first; }
-
-/* What a move relies on: ranges within their lists, members in order */
-static void gxp_check_strokes(gxb_stream *s, const gx_body *body, const gx_blade *blade) {
-    const gxp_blade_state *b = &blade->now;
-    uint32_t i;
-    gxp_require_true(s, gxp_is_finite(blade->tolerance) && blade->tolerance > 0 && gxp_is_finite(blade->min_advance) &&
-                            blade->min_advance > 0 && b->slot_count <= body->slots.count && b->edge.count != 1);
-    for (i = 0; i < b->vertices.count; i++) gxp_check_vertex(s, body, &b->vertices.data[i]);
-    gxp_require_true(s, gxp_are_finite(b->points.data, 3 * (size_t)b->points.count) &&
-                            gxp_are_finite(b->edge.data, 3 * (size_t)b->edge.count));
-    for (i = 0; i < b->layers.count; i++) {
-        const gxp_layer *l = &b->layers.data[i];
-        gxp_require_true(s, l->front_count != 1 && l->latest_count != 1 &&
-                                gxp_is_range(l->front, l->front_count, b->vertices.count) &&
-                                gxp_is_range(l->latest, l->latest_count, b->vertices.count) &&
-                                gxp_is_range(l->seen, l->seen_count, b->vertices.count) &&
-                                gxp_is_range(l->path, l->path_count, b->points.count) &&
-                                gxp_is_range(l->sheet, l->sheet_count, b->points.count));
-    }
-    for (i = 0; i < b->members.count; i++)
-        gxp_require_true(s, GXP_FIRST(b->members.data[i]) < b->slot_count &&
-                                GXP_SECOND(b->members.data[i]) < b->layers.count &&
-                                (i == 0 || b->members.data[i - 1] < b->members.data[i]));
-}
-
-/* Room for what a blade remembers, with these counts */
-static gx_result gxp_blade_room(gx_body *body, gxp_blade_state *b, const uint32_t n[GXP_BLADE_LISTS]) {
-    const gx_allocator *a = &body->config.allocator;
-    gx_result result =
-        gxp_reserve(a, &b->vertices.data, sizeof *b->vertices.data, 0, &b->vertices.capacity, n[GXP_BLADE_VERTICES]);
-    if (result == GX_OK)
-        result = gxp_reserve(a, &b->points.data, 3 * sizeof(double), 0, &b->points.capacity, n[GXP_BLADE_POINTS]);
-    if (result == GX_OK)
-        result = gxp_reserve(a, &b->layers.data, sizeof *b->layers.data, 0, &b->layers.capacity, n[GXP_BLADE_LAYERS]);
-    if (result == GX_OK)
-        result =
-            gxp_reserve(a, &b->members.data, sizeof *b->members.data, 0, &b->members.capacity, n[GXP_BLADE_MEMBERS]);
-    if (result == GX_OK)
-        result = gxp_reserve(a, &b->edge.data, 3 * sizeof(double), 0, &b->edge.capacity, n[GXP_BLADE_EDGE]);
-    if (result != GX_OK) return result;
-    b->vertices.count = n[GXP_BLADE_VERTICES];
-    b->points.count = n[GXP_BLADE_POINTS];
-    b->layers.count = n[GXP_BLADE_LAYERS];
-    b->members.count = n[GXP_BLADE_MEMBERS];
-    b->edge.count = n[GXP_BLADE_EDGE];
-    return GX_OK;
-}
-
-static void gxp_load_blade(gxb_stream *s, gx_body *body, int trusted) {
-    uint32_t n[GXP_BLADE_LISTS], i;
-    gx_blade *b = NULL;
-    gxp_require(s, gx_blade_create(body, NULL, &b, NULL));
-    if (s->result != GX_OK) return;
-    gxp_pass_blade_head(s, b, n);
-    for (i = 0; i < GXP_BLADE_LISTS; i++) gxp_require_true(s, gxb_stream_has(s, n[i], sizeof(uint64_t)));
-    if (s->result == GX_OK) gxp_require(s, gxp_blade_room(body, &b->now, n));
-    if (s->result == GX_OK) gxp_pass_blade(s, &b->now);
-    if (s->result == GX_OK && !trusted) gxp_check_strokes(s, body, b);
-}
-
-static void gxp_load_blades(gxb_stream *s, gx_body *body, int trusted) {
-    uint32_t count = 0, i;
-    gxp_pass_word(s, &count);
-    for (i = 0; i < count && s->result == GX_OK; i++) gxp_load_blade(s, body, trusted);
-}
-
-/* Makes ready that the body's blades become those of another: as many, and what these remember in `then`. made: how
-   many it added. */
-static gx_result gxp_prepare_blades(gx_body *body, const gx_body *from, uint32_t *made) {
-    const gx_blade *source;
-    gx_blade *b = body->blades;
-    gx_result result = GX_OK;
-    *made = 0;
-    for (source = from->blades; source != NULL && result == GX_OK; source = source->next) {
-        const gxp_blade_state *f = &source->now;
-        uint32_t n[GXP_BLADE_LISTS];
-        n[GXP_BLADE_VERTICES] = f->vertices.count;
-        n[GXP_BLADE_POINTS] = f->points.count;
-        n[GXP_BLADE_LAYERS] = f->layers.count;
-        n[GXP_BLADE_MEMBERS] = f->members.count;
-        n[GXP_BLADE_EDGE] = f->edge.count;
-        if (b == NULL) {
-            result = gx_blade_create(body, NULL, &b, NULL);
-            *made += result == GX_OK;
-        }
-        if (result == GX_OK) result = gxp_blade_room(body, &b->then, n);
-        if (result != GX_OK) break;
-        if (f->vertices.count > 0)
-            memcpy(b->then.vertices.data, f->vertices.data, f->vertices.count * sizeof *f->vertices.data);
-        if (f->points.count > 0) memcpy(b->then.points.data, f->points.data, 3 * f->points.count * sizeof(double));
-        if (f->layers.count > 0) memcpy(b->then.layers.data, f->layers.data, f->layers.count * sizeof *f->layers.data);
-        if (f->members.count > 0)
-            memcpy(b->then.members.data, f->members.data, f->members.count * sizeof *f->members.data);
-        if (f->edge.count > 0) memcpy(b->then.edge.data, f->edge.data, 3 * f->edge.count * sizeof(double));
-        b->then.slot_count = f->slot_count;
-        memcpy(b->then.middle, f->middle, sizeof f->middle);
-        b = b->next;
-    }
-    return result;
-}
-
-/* The body's blades become those of another, as they were made ready. Those that it lacks are lifted. */
-static void gxp_take_blades(gx_body *body, const gx_body *from) {
-    const gx_blade *source = from->blades;
-    gx_blade *b;
-    for (b = body->blades; b != NULL; b = b->next) {
-        const gxp_blade_state now = b->now;
-        if (source == NULL) {
-            gxp_forget(&b->now);
-            continue;
-        }
-        b->now = b->then;
-        b->then = now;
-        b->tolerance = source->tolerance;
-        b->min_advance = source->min_advance;
-        b->max_samples = source->max_samples;
-        b->starts_inside = source->starts_inside;
-        source = source->next;
-    }
-}
-
-/* Takes back blades that were added last. */
-static void gxp_drop_blades(gx_body *body, uint32_t count) {
-    uint32_t all = 0;
-    gx_blade *b;
-    for (b = body->blades; b != NULL; b = b->next) all++;
-    for (; count > 0; count--, all--) gx_blade_destroy(gx_body_blade(body, all - 1));
 }
 
 static void gxp_write(gxb_stream *s, gx_body *body) {
@@ -14483,6 +14980,13 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_BESIDE_WALL
 #undef GXP_ACROSS_WALL
 #undef GXP_NO_PLANE
+#undef GXP_BEAD_REACH
+#undef GXP_BEAD_OFF
+#undef GXP_GLANCE_ROOM
+#undef GXP_BEAD_COURSE
+#undef GXP_LEAST_GLANCE
+#undef GXP_BEAD_FACES
+#undef GXP_BEAD_TOUCH
 #undef GXP_NEAR_SLACK
 #undef GXP_BLOWN_MAP
 #undef GXP_FLAT_MAP
@@ -14490,6 +14994,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_AIR
 #undef GXP_LEAST_ADVANCE
 #undef GXP_CUT_WIDTH
+#undef GXP_ON_SHEET
 #undef GXP_BLADE_SPECK
 #undef GXP_SPECK_TRIES
 #undef GXP_CROSSING

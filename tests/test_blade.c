@@ -680,6 +680,130 @@ START_TEST(copies_go_on) {
 }
 END_TEST
 
+/* ---- moves that are left out: each goes less far than what waits ---- */
+
+static void move_finely(stage *s, double from, double to, double z) {
+    const int frames = (int)(fabs(to - from) / 0.01);
+    int k;
+    for (k = 0; k <= frames; k++) move_at(s, from + (to - from) * k / frames, z);
+}
+
+/* How many pieces come of a plane across y: two behind the edge's way, and one where it has not been */
+static void check_way(stage *s, double y, size_t expected) {
+    workload w = wl_empty();
+    add_axis_plane(&w, 1, y);
+    cut_by(s->body, &w, 0, 1);
+    wl_free(&w);
+    stage_look(s);
+    check_fragments(s, expected, 0);
+}
+
+/* The edge is lifted, or drawn back at once, or to where it came from and in again: as far as it has been all is cut,
+   and no farther. In the block the edge is at y + 0.15 to y + 0.25. */
+START_TEST(fine_thrusts) {
+    const double y = 2.4137;
+    stage s = open_block(4, 1);
+    move_finely(&s, -1, y, 1.8);
+    if (_i / 2 == 1) move_at(&s, -2, 1.8);
+    if (_i / 2 == 2) {
+        move_finely(&s, y, 2.1, 1.8);
+        move_finely(&s, 2.1, 2.3, 1.8);
+    }
+    stage_lift(&s);
+    check_fragments(&s, 1, 0);
+    check_way(&s, y + (_i % 2 == 0 ? 0.13 : 0.27), _i % 2 == 0 ? 3 : 2);
+    stage_close(&s);
+}
+END_TEST
+
+/* Copies that are made while moves are left out, and the body gone back to one of them, go on to the same bits. */
+START_TEST(fine_copies) {
+    enum { FROM = 60, COPIES = 9, TO = 110 };
+    gx_body *copies[COPIES];
+    stage s = open_block(3, 5);
+    stage_motion motion = stage_random_motion(&s, STAGE_CALM);
+    int i, k, made = 0;
+    for (k = 0; k <= TO; k++) {
+        const double share = k / 200.0, y = -1.5 + 6 * share, edge[6] = {-9, y, 1.2, 12, y + 0.4, 1.7};
+        if (k >= FROM && made < COPIES) {
+            copies[made] = NULL;
+            if (made % 2 == 0)
+                ck_assert_int_eq(gx_body_clone(s.body, &copies[made], NULL), GX_OK);
+            else
+                copies[made] = saved_and_loaded(s.body);
+            ck_assert(gx_body_state_hash(copies[made]) == gx_body_state_hash(s.body));
+            made++;
+        }
+        stage_pose(&s, &motion, share);
+        stage_move_edge(&s, edge, 2);
+        for (i = 0; i < made; i++) {
+            stage other = s;
+            other.body = copies[i];
+            other.view = view_of(copies[i]);
+            other.blade = gx_body_blade(copies[i], 0);
+            stage_pose(&other, &motion, share);
+            stage_move_edge(&other, edge, 2);
+            ck_assert_msg(gx_body_state_hash(copies[i]) == gx_body_state_hash(s.body), "copy %d differs at move %d", i,
+                          k);
+        }
+        if (k == FROM + COPIES + 4) { /* the body itself is another one's copy from here on */
+            ck_assert_int_eq(gx_body_restore(s.body, copies[3], NULL), GX_OK);
+            ck_assert(gx_body_state_hash(s.body) == gx_body_state_hash(copies[3]));
+            stage_look(&s);
+        }
+    }
+    check_stage(&s, 5);
+    for (i = 0; i < COPIES; i++) gx_body_destroy(copies[i]);
+    stage_close(&s);
+}
+END_TEST
+
+/* While moves are left out another cut comes: across the edge's way, or material on it is removed. */
+START_TEST(fine_cut_between) {
+    static const double low[3] = {-1, 1.9, 1.4}, high[3] = {3.1, 3.4, 3.3};
+    stage s = open_block(5, 1);
+    move_finely(&s, -1, 2.6, 2.2);
+    if (_i == 0)
+        stage_cut_plane(&s, 2.41);
+    else
+        remove_box(&s, low, high);
+    stage_look(&s);
+    check_fragments(&s, _i == 0 ? 2 : 1, 0);
+    move_finely(&s, 2.61, 6, 2.2);
+    stage_lift(&s);
+    check_fragments(&s, _i == 0 ? 4 : 2, 0);
+    stage_close(&s);
+}
+END_TEST
+
+/* Two blades in fine moves: one of them at a time leaves out moves. The first is destroyed before the second's next
+   pass. */
+START_TEST(fine_blades) {
+    stage s = open_block(3, 1);
+    gx_blade *other = NULL;
+    int k;
+    ck_assert_int_eq(gx_blade_create(s.body, NULL, &other, NULL), GX_OK);
+    for (k = 0; k <= 300; k++) {
+        const double way = -1 + 5.0 * k / 300, edge[6] = {1.3, -9, way, 1.6, 12, way + 0.2};
+        move_at(&s, way, 1.2);
+        ck_assert_int_eq(gx_blade_move(other, edge, 2, NULL, 0, NULL, &s.failure), GX_OK);
+        stage_look(&s);
+    }
+    stage_lift(&s);
+    ck_assert_int_eq(gx_blade_lift(other, NULL, NULL), GX_OK);
+    stage_look(&s);
+    check_fragments(&s, 4, 0);
+    gx_blade_destroy(s.blade);
+    for (k = 0; k <= 300; k++) {
+        const double way = -1 + 5.0 * k / 300, edge[6] = {-9, way, 2.1, 12, way + 0.3, 2.2};
+        ck_assert_int_eq(gx_blade_move(other, edge, 2, NULL, 0, NULL, &s.failure), GX_OK);
+    }
+    stage_look(&s);
+    check_fragments(&s, 6, 0);
+    stage_close(&s);
+}
+END_TEST
+
 /* A tool far larger than the body takes all of it, also where its surface is far away. */
 START_TEST(tool_around_all) {
     static const double low[3] = {-9, -8, -7}, high[3] = {12, 11, 13};
@@ -978,15 +1102,15 @@ START_TEST(refused_moves) {
 }
 END_TEST
 
-static gx_result move_far(gx_blade *blade, int k) {
-    const double y = -1.6 + 0.8 * k, edge[6] = {-9, y, 0.9, 11, y + 0.3, 1.2};
+static gx_result move_far(gx_blade *blade, int k, int of) {
+    const double y = -1.6 + 4.8 * k / of, edge[6] = {-9, y, 0.9, 11, y + 0.3, 1.2};
     return gx_blade_move(blade, edge, 2, NULL, 0, NULL, NULL);
 }
 
 /* At each move of a stroke, every allocation fails in turn: the body is as it was, and the blade goes on as if nothing
-   had been. */
+   had been. Few moves that cut, or more, of which most are left out */
 START_TEST(memory_runs_out) {
-    enum { MOVES = 6 };
+    const int count = _i / 2 == 0 ? 6 : 60 / FEWER;
     workload w = grid(2, 2, 2, 5);
     memory own, other;
     gx_body *body = body_in(&own, &w), *plain = body_in(&other, &w);
@@ -995,20 +1119,20 @@ START_TEST(memory_runs_out) {
     int k;
     ck_assert_int_eq(gx_blade_create(body, NULL, &blade, NULL), GX_OK);
     ck_assert_int_eq(gx_blade_create(plain, NULL, &plain_blade, NULL), GX_OK);
-    for (k = 0; k <= MOVES; k++) {
+    for (k = 0; k <= count; k++) {
         gx_result result = GX_ERROR_MEMORY;
         const uint64_t state = gx_body_state_hash(body);
         size_t n;
         for (n = 0; result != GX_OK; n++) {
-            fail_from(&own, n, _i);
-            result = k < MOVES ? move_far(blade, k) : gx_blade_lift(blade, NULL, NULL);
+            fail_from(&own, n, _i % 2);
+            result = k < count ? move_far(blade, k, count) : gx_blade_lift(blade, NULL, NULL);
             if (result == GX_OK) break;
             failures++;
             ck_assert_int_eq(result, GX_ERROR_MEMORY);
             ck_assert_msg(gx_body_state_hash(body) == state, "move %d, allocation %zu: the body has changed", k, n);
         }
         never_fail(&own);
-        ck_assert_int_eq(k < MOVES ? move_far(plain_blade, k) : gx_blade_lift(plain_blade, NULL, NULL), GX_OK);
+        ck_assert_int_eq(k < count ? move_far(plain_blade, k, count) : gx_blade_lift(plain_blade, NULL, NULL), GX_OK);
         ck_assert_msg(hash_of(body) == hash_of(plain), "move %d: other cells", k);
         ck_assert_msg(gx_body_state_hash(body) == gx_body_state_hash(plain), "move %d: another state", k);
     }
@@ -1070,6 +1194,10 @@ int main(void) {
     tcase_add_loop_test(tests, removal_between_moves, 0, 3);
     tcase_add_loop_test(tests, restored_between_moves, 0, 2);
     tcase_add_loop_test(tests, copies_go_on, 0, 2);
+    tcase_add_loop_test(tests, fine_thrusts, 0, 6);
+    tcase_add_test(tests, fine_copies);
+    tcase_add_loop_test(tests, fine_cut_between, 0, 2);
+    tcase_add_test(tests, fine_blades);
     tcase_add_test(tests, blades_of_a_body);
     tcase_add_test(tests, tool_around_all);
     tcase_add_loop_test(tests, carving, 0, 2);
@@ -1082,7 +1210,7 @@ int main(void) {
     tcase_add_loop_test(tests, huge_displacements, 0, 3);
     tcase_add_test(tests, nothing_near);
     tcase_add_test(tests, refused_moves);
-    tcase_add_loop_test(tests, memory_runs_out, 0, 2);
+    tcase_add_loop_test(tests, memory_runs_out, 0, 4);
     tcase_add_test(tests, same_bits);
     tcase_add_loop_test(some, passes, 0, PASSES_AT_ONCE);
     return run_suite(suite);
