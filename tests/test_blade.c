@@ -758,20 +758,32 @@ START_TEST(fine_copies) {
 }
 END_TEST
 
-/* While moves are left out another cut comes: across the edge's way, or material on it is removed. */
+/* While moves are left out another cut comes: across the edge's way, or material on it is removed, or all. What the
+   blade remembers can be saved then, and loaded. */
 START_TEST(fine_cut_between) {
-    static const double low[3] = {-1, 1.9, 1.4}, high[3] = {3.1, 3.4, 3.3};
+    static const double low[2][3] = {{-1, 1.9, 1.4}, {-1, -1, -1}}, high[2][3] = {{3.1, 3.4, 3.3}, {6, 6, 6}};
     stage s = open_block(5, 1);
+    int k;
     move_finely(&s, -1, 2.6, 2.2);
     if (_i == 0)
         stage_cut_plane(&s, 2.41);
     else
-        remove_box(&s, low, high);
-    stage_look(&s);
-    check_fragments(&s, _i == 0 ? 2 : 1, 0);
-    move_finely(&s, 2.61, 6, 2.2);
-    stage_lift(&s);
-    check_fragments(&s, _i == 0 ? 4 : 2, 0);
+        remove_box(&s, low[_i - 1], high[_i - 1]);
+    gx_body_destroy(saved_and_loaded(s.body));
+    if (_i == 2) {
+        const double edge[6] = {-9, 2.6, 2.2, 15, 2.9, 2.3};
+        for (k = 0; k < 3; k++) {
+            ck_assert_int_eq(gx_blade_move(s.blade, edge, 2, NULL, 0, NULL, NULL), GX_OK);
+            gx_body_destroy(saved_and_loaded(s.body));
+        }
+        ck_assert_uint_eq(s.view.fragment_count, 0);
+    } else {
+        stage_look(&s);
+        check_fragments(&s, _i == 0 ? 2 : 1, 0);
+        move_finely(&s, 2.61, 6, 2.2);
+        stage_lift(&s);
+        check_fragments(&s, _i == 0 ? 4 : 2, 0);
+    }
     stage_close(&s);
 }
 END_TEST
@@ -1196,7 +1208,7 @@ int main(void) {
     tcase_add_loop_test(tests, copies_go_on, 0, 2);
     tcase_add_loop_test(tests, fine_thrusts, 0, 6);
     tcase_add_test(tests, fine_copies);
-    tcase_add_loop_test(tests, fine_cut_between, 0, 2);
+    tcase_add_loop_test(tests, fine_cut_between, 0, 3);
     tcase_add_test(tests, fine_blades);
     tcase_add_test(tests, blades_of_a_body);
     tcase_add_test(tests, tool_around_all);
