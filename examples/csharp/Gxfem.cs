@@ -600,6 +600,7 @@ namespace Gxfem {
         public fixed uint child[2];
         public uint parent;
         public uint leaves;
+        public uint facet;
     }
 
     [StructLayout(LayoutKind.Sequential)]

@@ -856,6 +856,7 @@ gxb_node._fields_ = [
     ('child', c_uint32 * 2),
     ('parent', c_uint32),
     ('leaves', c_uint32),
+    ('facet', c_uint32),
 ]
 
 gxb_block._fields_ = [
