@@ -2,9 +2,7 @@
    Where it is not installed, open_manifold.mjs runs its WebAssembly build.
 
        open_manifold --request FILE --result FILE */
-#include "../examples/gxio.h"
-
-#include "../examples/gxrunner.h"
+#include "open_runner.h"
 
 #include <manifold/manifold.h>
 #include <vector>
@@ -68,18 +66,6 @@ static int output(gxrunner_run *run, size_t i, gxio_shell *shell, gxrunner_outco
 }
 
 int main(int argc, char **argv) {
-    gxrunner_options options = {NULL, NULL, ".off", 1};
     const gxrunner_engine engine = {NULL, start, stop, load, combine, output};
-    gxio_error error;
-    for (int i = 1; i + 1 < argc; i += 2) {
-        if (strcmp(argv[i], "--request") == 0) options.request = argv[i + 1];
-        if (strcmp(argv[i], "--result") == 0) options.result = argv[i + 1];
-    }
-    if (!options.request || !options.result) {
-        fprintf(stderr, "usage: open_manifold --request FILE --result FILE\n");
-        return 2;
-    }
-    const int code = gxrunner_serve(&options, &engine, &error);
-    if (code == GXRUNNER_MISUSED) fprintf(stderr, "open_manifold: %s\n", error.text);
-    return code;
+    return open_run("open_manifold", &engine, argc, argv);
 }

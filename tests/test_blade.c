@@ -532,15 +532,16 @@ START_TEST(scope) {
 }
 END_TEST
 
-/* Two blades cross in one body, move by move in turn; then one is destroyed, and the other goes on. */
-START_TEST(two_blades) {
-    stage s = open_block(5, 1);
+/* Two blades cross in a block, move by move in turn; then one is destroyed, and the other goes on. Their ways go from
+   low to high; they are about at `place`, and the other at last at `last`. */
+static void cross_blades(int cubes, int moves, double low, double high, double place, double last) {
+    stage s = open_block(cubes, 1);
     gx_blade *other = NULL;
     int k;
     ck_assert_int_eq(gx_blade_create(s.body, NULL, &other, NULL), GX_OK);
-    for (k = 0; k <= 40; k++) {
-        const double way = -2 + 9 * k / 40.0, edge[6] = {2.3, -9, way, 2.6, 15, way + 0.2};
-        move_at(&s, way, 2.2);
+    for (k = 0; k <= moves; k++) {
+        const double way = low + (high - low) * k / moves, edge[6] = {place + 0.1, -9, way, place + 0.4, 15, way + 0.2};
+        move_at(&s, way, place);
         ck_assert_int_eq(gx_blade_move(other, edge, 2, NULL, 0, NULL, &s.failure), GX_OK);
         stage_look(&s);
     }
@@ -549,14 +550,16 @@ START_TEST(two_blades) {
     stage_look(&s);
     check_fragments(&s, 4, 0);
     gx_blade_destroy(s.blade);
-    for (k = 0; k <= 40; k++) {
-        const double way = -2 + 9 * k / 40.0, edge[6] = {-9, way, 1.1, 15, way + 0.3, 1.2};
+    for (k = 0; k <= moves; k++) {
+        const double way = low + (high - low) * k / moves, edge[6] = {-9, way, last, 15, way + 0.3, last + 0.1};
         ck_assert_int_eq(gx_blade_move(other, edge, 2, NULL, 0, NULL, &s.failure), GX_OK);
     }
     stage_look(&s);
     check_fragments(&s, 6, 0);
     stage_close(&s); /* the body destroys the blade that is left */
 }
+
+START_TEST(two_blades) { cross_blades(5, 40, -2, 7, 2.2, 1.1); }
 END_TEST
 
 /* While the blade is in the middle, a plane cuts the body across it. */
@@ -788,32 +791,8 @@ START_TEST(fine_cut_between) {
 }
 END_TEST
 
-/* Two blades in fine moves: one of them at a time leaves out moves. The first is destroyed before the second's next
-   pass. */
-START_TEST(fine_blades) {
-    stage s = open_block(3, 1);
-    gx_blade *other = NULL;
-    int k;
-    ck_assert_int_eq(gx_blade_create(s.body, NULL, &other, NULL), GX_OK);
-    for (k = 0; k <= 300; k++) {
-        const double way = -1 + 5.0 * k / 300, edge[6] = {1.3, -9, way, 1.6, 12, way + 0.2};
-        move_at(&s, way, 1.2);
-        ck_assert_int_eq(gx_blade_move(other, edge, 2, NULL, 0, NULL, &s.failure), GX_OK);
-        stage_look(&s);
-    }
-    stage_lift(&s);
-    ck_assert_int_eq(gx_blade_lift(other, NULL, NULL), GX_OK);
-    stage_look(&s);
-    check_fragments(&s, 4, 0);
-    gx_blade_destroy(s.blade);
-    for (k = 0; k <= 300; k++) {
-        const double way = -1 + 5.0 * k / 300, edge[6] = {-9, way, 2.1, 12, way + 0.3, 2.2};
-        ck_assert_int_eq(gx_blade_move(other, edge, 2, NULL, 0, NULL, &s.failure), GX_OK);
-    }
-    stage_look(&s);
-    check_fragments(&s, 6, 0);
-    stage_close(&s);
-}
+/* In fine moves one blade at a time leaves out moves. */
+START_TEST(fine_blades) { cross_blades(3, 300, -1, 4, 1.2, 2.1); }
 END_TEST
 
 /* A tool far larger than the body takes all of it, also where its surface is far away. */
