@@ -33,9 +33,11 @@ hashes() { # binary
     hash_of "$1" grid:2,2,2,5 --sheet "$dir/sheet0.obj" --solid box:0.5,0.25,0.125,1.5,1,1.75 --sheet plane:1,1,1,1,0,0
 }
 
-# The checks of random cases, built without the library's flags, since they compute with doubles too
-checks() { # compiler, -m32 or nothing
-    "$@" -std=c99 -O1 -w -DGXFEM_LINKED -c tests/fuzz.c -o "$dir/fuzz_$*.o" 2>/dev/null
+# The programs, built without the library's flags, since they compute with doubles too: errors are the library's
+programs() { # compiler, -m32 or nothing
+    for program in examples/gxcut tests/hash_boolean tests/fuzz; do
+        "$@" -std=c99 -O1 -w -I. -DGXFEM_LINKED -c $program.c -o "$dir/$(basename $program)_$*.o" 2>/dev/null
+    done
 }
 
 random() { "$1" tests/corpus/* && "$1" --out="$dir" --cases="$cases"; } # binary
@@ -47,14 +49,14 @@ one() {
     printf '#include <errno.h>\n#include <stdint.h>\n#include <stdio.h>\nint main(void) { return 0; }\n' >"$file.c"
     "$@" -w "$file.c" -o "$file.probe" -lm >"$file.log" 2>&1 || return 0
     printf '#define GXFEM_IMPLEMENTATION\n#include "gxfem.h"\n' >"$file.c"
-    plain=$1 # the flags that are left for linking the checks
+    plain=$1 # the flags that are left for linking the programs
     case "$*" in *-m32*) plain="$1 -m32" ;; esac
-    "$@" -w -I. -c "$file.c" -o "$file.o" >>"$file.log" 2>&1 &&
-        "$@" -w -I. -DGXFEM_LINKED examples/gxcut.c "$file.o" -o "$file.gxcut" -lm >>"$file.log" 2>&1 &&
-        "$@" -w -I. -DGXFEM_LINKED tests/hash_boolean.c "$file.o" -o "$file.boolean" -lm >>"$file.log" 2>&1 &&
-        $plain "$dir/fuzz_$plain.o" "$file.o" -o "$file.fuzz" -lm >>"$file.log" 2>&1 || { echo "failed" >"$file"; return; }
+    "$@" -w -I. -c "$file.c" -o "$file.o" >>"$file.log" 2>&1 || { echo "failed" >"$file"; return; }
+    for program in gxcut hash_boolean fuzz; do
+        $plain "$dir/${program}_$plain.o" "$file.o" -o "$file.$program" -lm >>"$file.log" 2>&1 || { echo "failed" >"$file"; return; }
+    done
     report=$file.json
-    { hashes "$file.gxcut"; "$file.boolean" && random "$file.fuzz" >>"$file.log" 2>&1 || echo "failed"; } | tr '\n' ' ' >"$file"
+    { hashes "$file.gxcut"; "$file.hash_boolean" && random "$file.fuzz" >>"$file.log" 2>&1 || echo "failed"; } | tr '\n' ' ' >"$file"
 }
 
 count=0
@@ -92,7 +94,7 @@ if [ "$x86" = 1 ]; then # flush-to-zero and denormals-are-zero from the first in
     try gcc -std=c99 -O2 -include "$dir/flush.h"
     try clang -std=c99 -O2 -include "$dir/flush.h"
 fi
-for cc in gcc clang; do checks $cc; checks $cc -m32; done
+for cc in gcc clang; do programs $cc & programs $cc -m32; wait; done
 for worker in $(seq "$jobs"); do each "$worker" & done
 wait
 for i in $(seq $count); do
