@@ -69,9 +69,9 @@
  * Exact: the set of cells and their links, hence copies and fragments. Decisions are signs of polynomials in the given
  * coordinates (gxfem_boolean.h). Rounded once, to doubles: volumes, masses and vertices.
  *
- * Not there yet: contact between fragments; surfaces given in the deformed state (a moving edge is: gx_blade);
- * unknowns within a partly cut element (a sheet that ends inside an element separates nothing there until another sheet
- * completes it).
+ * Not there yet: a search for contact between fragments; surfaces given in the deformed state (a moving edge is:
+ * gx_blade); unknowns within a partly cut element (a sheet that ends inside an element separates nothing there until
+ * another sheet completes it).
  *
  * Limits: fewer than 2^28 elements a body (2^24 where pointers have 32 bits), fewer than 2^30 cells and 2^30 copies
  * for steps, some 1.4e9 of each other kind of object, 5e8 vertices and triangles a surface (GX_ERROR_LIMIT). A body's
