@@ -69,9 +69,9 @@
  * Exact: the set of cells and their links, hence copies and fragments. Decisions are signs of polynomials in the given
  * coordinates (gxfem_boolean.h). Rounded once, to doubles: volumes, masses and vertices.
  *
- * Not there yet: contact between fragments; surfaces given in the deformed state (a moving edge is: gx_blade);
- * unknowns within a partly cut element (a sheet that ends inside an element separates nothing there until another sheet
- * completes it).
+ * Not there yet: a search for contact between fragments; surfaces given in the deformed state (a moving edge is:
+ * gx_blade); unknowns within a partly cut element (a sheet that ends inside an element separates nothing there until
+ * another sheet completes it).
  *
  * Limits: fewer than 2^28 elements a body (2^24 where pointers have 32 bits), fewer than 2^30 cells and 2^30 copies
  * for steps, some 1.4e9 of each other kind of object, 5e8 vertices and triangles a surface (GX_ERROR_LIMIT). A body's
@@ -417,7 +417,8 @@ GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t
 /* A time step. Zero but for dt: implicit Euler, one Newton iteration, nothing but inertia and elasticity. Arrays are by
    copy, as in gx_view. Points, forces and targets name copies: they have the epoch of the view, skin or hit that they
    come from, and are refused (GX_ERROR_STALE) after a cut that began another one. Anchors in their place are good after
-   any cut; one that has lost its material does nothing, and its spring's force is 0 (see gx_body_lost_anchors). */
+   any cut; one that has lost its material does nothing, and the force of its spring or pair is 0 (see
+   gx_body_lost_anchors). */
 typedef struct gx_step_desc {
     double dt;         /* s, above 0; GXS_STATIC: 0 or more */
     double gravity[3]; /* m/s2 */
@@ -451,6 +452,14 @@ typedef struct gx_step_desc {
     size_t plane_count;
     gxs_contact_fn contact; /* energy of a contact point; NULL: none */
     void *contact_user;
+    /* pair_count: pieces, or parts of one, that press on each other (see gxs_pair). The caller finds them */
+    const gxs_pair *pairs;
+    size_t pair_count;
+    /* pair_count x 2: the side that a normal points to, then the other; in place of points, not read then; or NULL */
+    const gx_anchor *pair_anchors;
+    /* pair_count x 3, m: read and written, see gxs_step_desc; those of lost anchors stay. NULL: friction creeps */
+    double *pair_slips;
+    double *pair_forces;         /* pair_count x 3: receives the force on the first side, N; or NULL */
     double sleep_speed;          /* m/s: slower fragments fall asleep (see gxs_step_desc); 0: none */
     double sleep_time;           /* s, for how long they must be slower; 0: 0.5 */
     double (*clock)(void *user); /* s; NULL: the body's */
@@ -465,10 +474,10 @@ typedef gxs_step_report gx_step_report;
    compared with its fullest part. It moves as a point if that part is smaller than support_below of its element.
    Where support_below is 0, it moves as a point if that part is smaller than 1e-9 or if no part reaches a tenth as far
    as its element.
-   failure.index: a spring, point, plane, anchor, region or copy. The fields "displacement" and "velocity" are those of
-   gx_view. Errors: ARGUMENT, NOT_FINITE, INDEX, LIMIT, MEMORY, STALE (copies of another epoch), RANGE (a number is too
-   large or too small; as for FLAT, an element if field is NULL), FLAT (an element, see gx_body_model), DIVERGED, FREE
-   (GXS_STATIC; a copy of a component that nothing holds). */
+   failure.index: a spring, point, plane, pair, anchor, region or copy. The fields "displacement" and "velocity" are
+   those of gx_view. Errors: ARGUMENT, NOT_FINITE, INDEX, LIMIT, MEMORY, STALE (copies of another epoch), RANGE (a
+   number is too large or too small; as for FLAT, an element if field is NULL), FLAT (an element, see gx_body_model),
+   DIVERGED, FREE (GXS_STATIC; a copy of a component that nothing holds). */
 GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report /* or NULL */,
                                  gx_failure *failure /* or NULL */);
 
@@ -983,8 +992,7 @@ typedef struct gxp_view { /* the body as gx_view tells it */
 
 /* The fragments when gx_body_view was called last. Changes of fragments are told by comparison with it. */
 typedef struct gxp_snapshot {
-    uint32_t count, capacity[3];
-    uint32_t *id, *origin, *change;
+    uint32_t count, capacity[3], *id, *origin, *change;
     gxp_words removed; /* ids */
     uint32_t next_id;
     uint32_t stale; /* a cut has been since */
@@ -1016,9 +1024,10 @@ typedef struct gxp_model {
 typedef struct gxp_attached { /* of a step: what it has at anchors and regions, by copies */
     gxs_spring *springs;
     gxs_point *points;
-    double *forces;  /* copies x 3, N: all that are given */
-    double *targets; /* copies x 3, m: of held copies */
-    uint32_t spring_capacity, point_capacity, force_capacity, target_capacity;
+    gxs_pair *pairs;
+    gxp_words sides;                    /* pairs x 8: copies of their two sides */
+    double *forces, *targets, *weights; /* copies x 3: all that are given, N; of held copies, m. Of sides */
+    uint32_t spring_capacity, point_capacity, pair_capacity, weight_capacity, force_capacity, target_capacity;
 } gxp_attached;
 
 /* The key of a vertex of the skin: the name of a point of the complex, four names in ascending order, a group. On the
@@ -1534,6 +1543,9 @@ static const gxp_column gxp_lists[] = {
     GXP_WORDS(model.changed), GXP_WORDS(model.thin),
     GXP_LIST(attached.springs, attached.spring_capacity, sizeof(gxs_spring)),
     GXP_LIST(attached.points, attached.point_capacity, sizeof(gxs_point)),
+    GXP_LIST(attached.pairs, attached.pair_capacity, sizeof(gxs_pair)),
+    GXP_WORDS(attached.sides),
+    GXP_LIST(attached.weights, attached.weight_capacity, sizeof(double)),
     GXP_LIST(attached.forces, attached.force_capacity, 3 * sizeof(double)),
     GXP_LIST(attached.targets, attached.target_capacity, 3 * sizeof(double)),
     GXP_WORDS(skin.dirty), GXP_WORDS(skin.first), GXP_LIST(skin.slots, skin.slot_capacity, sizeof(gxp_skin_slot)),
@@ -7050,6 +7062,61 @@ static gx_result gxp_attach_points(gx_body *body, const gx_step_desc *desc, gxs_
     return result;
 }
 
+/* The point of a pair: anchor's position relative to that of other. copies, weights: room for 8, used by the point.
+   Returns 0 if the material of one is gone. */
+static int gxp_place_pair(gx_body *body, const gx_anchor *anchor, const gx_anchor *other, uint32_t *copies,
+                          double *weights, gxs_point *point) {
+    gxs_point side[2];
+    const int there = gxp_place_anchor(body, anchor, &side[0]), beside = gxp_place_anchor(body, other, &side[1]);
+    uint32_t k;
+    int i;
+    *point = side[0];
+    if (!there || !beside) { /* of weight 0: it pulls at nothing */
+        memset(point->weight, 0, sizeof point->weight);
+        return 0;
+    }
+    point->count = 0;
+    for (i = 0; i < 2; i++)
+        for (k = 0; k < side[i].count; k++) {
+            copies[point->count] = side[i].copy[k];
+            weights[point->count++] = i == 0 ? side[i].weight[k] : -side[i].weight[k];
+        }
+    for (i = 0; i < 3; i++) point->position[i] -= side[1].position[i];
+    point->copies = copies;
+    point->weights = weights;
+    return 1;
+}
+
+static gx_result gxp_attach_pairs(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step, gx_failure *failure) {
+    static const char *const names[3] = {"pair_anchors.element", "pair_anchors.position", "pair_anchors.toward"};
+    gxp_attached *attached = &body->attached;
+    gx_result result;
+    size_t i;
+    if (desc->pair_anchors == NULL || desc->pairs == NULL) return GX_OK;
+    result = gxp_attached_room(body, &attached->pairs, sizeof *attached->pairs, &attached->pair_capacity,
+                               desc->pair_count, "pair_count", failure);
+    if (result == GX_OK)
+        result = gxp_attached_room(body, &attached->sides.data, sizeof(uint32_t), &attached->sides.capacity,
+                                   8 * desc->pair_count, "pair_count", failure);
+    if (result == GX_OK)
+        result = gxp_attached_room(body, &attached->weights, sizeof(double), &attached->weight_capacity,
+                                   8 * desc->pair_count, "pair_count", failure);
+    for (i = 0; i < desc->pair_count && result == GX_OK; i++) {
+        const gx_anchor *anchor = &desc->pair_anchors[2 * i];
+        gxs_pair *pair = &attached->pairs[i];
+        *pair = desc->pairs[i];
+        result = gxp_check_anchor(body, anchor, names, 2 * i, failure);
+        if (result == GX_OK) result = gxp_check_anchor(body, anchor + 1, names, 2 * i + 1, failure);
+        if (result == GX_OK &&
+            !gxp_place_pair(body, anchor, anchor + 1, attached->sides.data + 8 * i, attached->weights + 8 * i,
+                            &pair->point) &&
+            gxp_is_finite(pair->stiffness) && pair->stiffness > 0)
+            pair->stiffness = 0;
+    }
+    step->pairs = attached->pairs;
+    return result;
+}
+
 static gx_result gxp_check_forces(const gx_body *body, const gx_step_desc *desc, gx_failure *failure) {
     static const char *const names[3] = {"force_anchors.element", "force_anchors.position", "force_anchors.toward"};
     gx_result result = GX_OK;
@@ -7141,6 +7208,7 @@ static gx_result gxp_attach_poses(gx_body *body, const gx_step_desc *desc, gxs_s
 static gx_result gxp_attach(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step, gx_failure *failure) {
     gx_result result = gxp_attach_springs(body, desc, step, failure);
     if (result == GX_OK) result = gxp_attach_points(body, desc, step, failure);
+    if (result == GX_OK) result = gxp_attach_pairs(body, desc, step, failure);
     if (result != GX_OK || (desc->force_count == 0 && desc->region_poses == NULL)) return result;
     if ((desc->forces != NULL || desc->targets != NULL) && desc->epoch != body->cuts.epoch)
         return gxp_fail(failure, GX_ERROR_STALE, "epoch", SIZE_MAX);
@@ -7613,6 +7681,10 @@ static void gxp_translate_loads(const gx_step_desc *desc, gxs_step_desc *step) {
     step->plane_count = desc->plane_count;
     step->contact = desc->contact;
     step->contact_user = desc->contact_user;
+    step->pairs = desc->pairs;
+    step->pair_count = desc->pair_count;
+    step->pair_slips = desc->pair_slips;
+    step->pair_forces = desc->pair_forces;
 }
 
 /* The step as the solver takes it: the only place where one description becomes the other. The body adds its rest
@@ -7666,11 +7738,12 @@ static gx_result gxp_step(gx_body *body, const gxs_step_desc *step, gx_step_repo
 /* A step of a body of which nothing is left. Lost anchors name copy 0, which is not there. */
 static gx_result gxp_check_empty_step(const gx_body *body, const gx_step_desc *desc, const gxs_step_desc *step,
                                       gx_failure *failure) {
-    const uint32_t named = desc->spring_anchors != NULL || desc->point_anchors != NULL;
+    const uint32_t named = desc->spring_anchors != NULL || desc->point_anchors != NULL || desc->pair_anchors != NULL;
     const gx_result result = gxs_step_check(step, body->copies.count + named, body->cuts.epoch, failure);
     size_t i;
     for (i = 0; i < 3 * step->spring_count && step->spring_forces != NULL && result == GX_OK; i++)
         step->spring_forces[i] = 0;
+    for (i = 0; i < 3 * step->pair_count && step->pair_forces != NULL && result == GX_OK; i++) step->pair_forces[i] = 0;
     return result;
 }
 

@@ -934,6 +934,7 @@ START_TEST(refused_steps) {
     const double inside[3] = {0.5, 0.5, 0.5};
     gx_anchor good, bad[2];
     gxs_spring springs[2];
+    gxs_pair pair;
     gx_step_desc step = step_of(0.01), with;
     double push[6] = {1, 2, 3, 4, 5, 6}, forces[3 * 64];
     gx_failure failure;
@@ -976,6 +977,27 @@ START_TEST(refused_steps) {
     bad[1].position[1] = INFINITY;
     REFUSED(gx_body_step(body, &with, NULL, &failure), GX_ERROR_NOT_FINITE, "point_anchors.position", 1);
     with = step;
+    with.pair_anchors = bad;
+    with.pair_count = 1;
+    REFUSED(gx_body_step(body, &with, NULL, &failure), GX_ERROR_ARGUMENT, "pairs", SIZE_MAX);
+    memset(&pair, 0, sizeof pair);
+    with.pairs = &pair;
+    REFUSED(gx_body_step(body, &with, NULL, &failure), GX_ERROR_NOT_FINITE, "pair_anchors.position", 1);
+    bad[0].element = 5;
+    REFUSED(gx_body_step(body, &with, NULL, &failure), GX_ERROR_INDEX, "pair_anchors.element", 0);
+    bad[0] = bad[1] = good;
+    REFUSED(gx_body_step(body, &with, NULL, &failure), GX_ERROR_ARGUMENT, "pairs.normal", 0);
+    pair.normal[1] = 1;
+    pair.stiffness = -1;
+    REFUSED(gx_body_step(body, &with, NULL, &failure), GX_ERROR_ARGUMENT, "pairs.stiffness", 0);
+    with.pair_count = (size_t)1 << 40;
+    if (sizeof(size_t) > 4) REFUSED(gx_body_step(body, &with, NULL, &failure), GX_ERROR_LIMIT, "pair_count", SIZE_MAX);
+    pair.stiffness = 0;
+    with.pair_count = 1;
+    with.integrator = GXS_MIDPOINT;
+    REFUSED(gx_body_step(body, &with, NULL, &failure), GX_ERROR_ARGUMENT, "pairs", SIZE_MAX);
+    bad[1].position[1] = INFINITY;
+    with = step;
     with.force_count = 2;
     REFUSED(gx_body_step(body, &with, NULL, &failure), GX_ERROR_ARGUMENT, "force_anchors", SIZE_MAX);
     with.force_anchors = bad;
@@ -991,6 +1013,224 @@ START_TEST(refused_steps) {
     with.epoch = view_of(body).epoch;
     ck_assert_int_eq(gx_body_step(body, &with, NULL, &failure), GX_OK);
     gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- pairs ---- */
+
+enum { MOST_PAIRS = 96 };
+
+/* Pairs between the two faces of the plane z = 1, on which faces of a mesh of cubes lie */
+typedef struct closed {
+    gxs_pair pairs[MOST_PAIRS];
+    gx_anchor anchors[2 * MOST_PAIRS]; /* above, below */
+    double slips[3 * MOST_PAIRS], forces[3 * MOST_PAIRS];
+    size_t count;
+} closed;
+
+/* The corners of an element on the plane, where there are three; returns the side of the fourth, 0: there are not */
+static int face_of(const workload *w, size_t element, uint32_t corner[3]) {
+    int k, count = 0, side = 0;
+    for (k = 0; k < 4; k++) {
+        const uint32_t node = w->elements[4 * element + (size_t)k];
+        const double z = w->positions[3 * (size_t)node + 2];
+        if (z > 1) side++;
+        if (z < 1) side--;
+        if (z > 1 || z < 1) continue;
+        if (count < 3) corner[count] = node;
+        count++;
+    }
+    return count == 3 ? side : 0;
+}
+
+/* Three samples for each triangle, each nearer to a corner: they give each corner a third of the triangle's load. */
+static void add_pairs(gx_body *body, const workload *w, size_t above, double stiffness, closed *all) {
+    uint32_t corner[3], own[3];
+    size_t below;
+    int near, k, c;
+    if (face_of(w, above, corner) <= 0) return;
+    for (near = 0; near < 3; near++) {
+        double x[3] = {0, 0, 0};
+        gxs_pair *pair = &all->pairs[all->count];
+        int found = 0;
+        ck_assert_uint_lt(all->count, MOST_PAIRS);
+        for (k = 0; k < 3; k++)
+            for (c = 0; c < 3; c++)
+                x[c] += w->positions[3 * (size_t)corner[k] + (size_t)c] * (k == near ? 2.0 / 3 : 1.0 / 6);
+        x[2] = 1;
+        memset(pair, 0, sizeof *pair);
+        pair->normal[2] = 1;
+        pair->stiffness = stiffness / 6;
+        pair->friction = 0.5;
+        ck_assert_int_eq(gx_body_anchor(body, (uint32_t)above, x, &all->anchors[2 * all->count], NULL), GX_OK);
+        for (below = 0; below < w->element_count && !found; below++)
+            found = face_of(w, below, own) < 0 &&
+                    gx_body_anchor(body, (uint32_t)below, x, &all->anchors[2 * all->count + 1], NULL) == GX_OK;
+        ck_assert(found);
+        all->count++;
+    }
+}
+
+/* A bar of 2 x 2 x 2 cubes, cut at z = 1, with its ends held */
+static gx_body *closed_bar(memory *m, workload *w, double stiffness, closed *all) {
+    gx_region ends[2];
+    gx_material material;
+    gx_body_desc desc;
+    gx_body *body = NULL;
+    size_t i;
+    *w = grid(2, 2, 2, 6);
+    add_axis_plane(w, 2, 1);
+    desc = desc_of(w);
+    memset(&material, 0, sizeof material);
+    material.elastic.kind = GXS_LINEAR;
+    material.elastic.young = desc.young;
+    material.density = desc.density;
+    desc.materials = &material;
+    desc.material_count = 1;
+    if (m != NULL) desc.allocator = allocator_of(m);
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+    cut_by(body, w, 0, 1);
+    ck_assert_uint_eq(view_of(body).fragment_count, 2);
+    ends[0] = gx_region_half_space(2, -1, 0.5);
+    ends[1] = gx_region_half_space(2, 1, 1.5);
+    ck_assert_int_eq(gx_body_hold(body, ends, 2, NULL), GX_OK);
+    memset(all, 0, sizeof *all);
+    for (i = 0; i < w->element_count; i++) add_pairs(body, w, i, stiffness, all);
+    ck_assert_uint_eq(all->count, 24);
+    return body;
+}
+
+/* At rest, with the upper end pushed down */
+static gx_step_desc press(closed *all, double poses[24], double pushed) {
+    static const double stay[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    gx_step_desc step = step_of(0);
+    memcpy(poses, stay, sizeof stay);
+    memcpy(poses + 12, stay, sizeof stay);
+    poses[23] = -pushed;
+    step.integrator = GXS_STATIC;
+    step.region_poses = poses;
+    step.newton_iterations = 50;
+    step.newton_tolerance = 1e-9;
+    step.cg_tolerance = 1e-4;
+    step.cg_iterations = 5000;
+    step.pairs = all->pairs;
+    step.pair_count = all->count;
+    step.pair_anchors = all->anchors;
+    step.pair_slips = all->slips;
+    step.pair_forces = all->forces;
+    return step;
+}
+
+static double pressing(const closed *all) {
+    double sum = 0;
+    size_t i;
+    for (i = 0; i < all->count; i++) sum += all->forces[3 * i + 2];
+    return sum;
+}
+
+/* A closed cut carries load in series with its pairs: 1 / (1 + h / (c L)) of the uncut bar's, for a stiffness per area
+   of c E / h. Anchors and points give the same bits; anchors outlive a further cut, points do not. */
+START_TEST(pairs_close_a_cut) {
+    static const double factors[3] = {1, 10, 100};
+    const double young = 1e6, pushed = 1e-5, whole = young * 4 * pushed / 2, c = factors[_i];
+    workload w;
+    closed *all = (closed *)oracle_memory(NULL, 2, sizeof *all), *twin = all + 1;
+    gx_body *body = closed_bar(NULL, &w, c * young, all), *other = NULL;
+    double poses[24];
+    uint32_t copies[MOST_PAIRS][8];
+    double weights[MOST_PAIRS][8];
+    gx_step_desc step, by_points;
+    gx_failure failure;
+    size_t i;
+    uint64_t rest;
+    ck_assert_int_eq(gx_body_clone(body, &other, NULL), GX_OK);
+    step = press(all, poses, 0);
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK); /* nothing presses: a cut at rest stays so */
+    for (i = 0; i < 3 * view_of(body).copy_count; i++) ck_assert(view_of(body).displacement[i] == 0);
+    ck_assert(pressing(all) == 0);
+    *twin = *all;
+    step = press(all, poses, pushed);
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
+    ck_assert_msg(fabs(pressing(all) / whole * (1 + 1 / (c * 2)) - 1) < 2e-4, "c = %g: %g of %g", c, pressing(all),
+                  whole);
+    for (i = 0; i < twin->count; i++) {
+        gxs_point side[2], *point = &twin->pairs[i].point;
+        uint32_t s, k;
+        memset(point, 0, sizeof *point);
+        for (s = 0; s < 2; s++) {
+            ck_assert_int_eq(gx_body_anchor_point(other, &all->anchors[2 * i + s], &side[s], NULL, NULL), GX_OK);
+            for (k = 0; k < side[s].count; k++) {
+                copies[i][point->count] = side[s].copy[k];
+                weights[i][point->count++] = s == 0 ? side[s].weight[k] : -side[s].weight[k];
+            }
+        }
+        point->copies = copies[i];
+        point->weights = weights[i];
+        point->epoch = side[0].epoch;
+    }
+    by_points = press(twin, poses, pushed);
+    by_points.pair_anchors = NULL;
+    ck_assert_int_eq(gx_body_step(other, &by_points, NULL, NULL), GX_OK);
+    ck_assert(gx_body_state_hash(body) == gx_body_state_hash(other));
+    ck_assert(memcmp(all->forces, twin->forces, sizeof all->forces) == 0);
+    add_axis_plane(&w, 0, 0.3); /* through the pairs, from end to end */
+    cut_by(body, &w, 1, 1);
+    ck_assert_uint_eq(view_of(body).fragment_count, 4);
+    rest = gx_body_state_hash(body);
+    by_points.pair_slips = NULL;
+    ck_assert_int_eq(gx_body_step(body, &by_points, NULL, &failure), GX_ERROR_STALE);
+    ck_assert_str_eq(failure.field, "pairs.point.epoch");
+    ck_assert(gx_body_state_hash(body) == rest);
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
+    ck_assert_msg(fabs(pressing(all) / whole * (1 + 1 / (c * 2)) - 1) < 0.01, "cut: %g of %g", pressing(all), whole);
+    memcpy(twin->slips, all->slips, sizeof all->slips);
+    add_box(&w, 1, -1, -1, 0.9, 3, 3, 1.4); /* the upper faces go */
+    cut_by(body, &w, 2, 1);
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
+    for (i = 0; i < 3 * all->count; i++) ck_assert(all->forces[i] == 0);
+    ck_assert(memcmp(all->slips, twin->slips, sizeof all->slips) == 0);
+    add_box(&w, 1, -1, -1, -1, 3, 3, 3); /* all goes */
+    cut_by(body, &w, 3, 1);
+    memset(all->forces, 1, sizeof all->forces);
+    step.region_poses = NULL;
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
+    for (i = 0; i < 3 * all->count; i++) ck_assert(all->forces[i] == 0);
+    ck_assert(memcmp(all->slips, twin->slips, sizeof all->slips) == 0);
+    gx_body_destroy(body);
+    gx_body_destroy(other);
+    free(all);
+    wl_free(&w);
+}
+END_TEST
+
+/* A step with pairs that runs out of memory leaves the body as it was, and may be taken again. */
+START_TEST(pairs_without_memory) {
+    workload w;
+    memory m = plenty();
+    closed all, before;
+    double poses[24];
+    gx_step_desc step;
+    gx_result result = GX_ERROR_MEMORY;
+    gx_body *body = closed_bar(&m, &w, 1e7, &all);
+    const uint64_t state = gx_body_state_hash(body);
+    size_t n;
+    step = press(&all, poses, 1e-5);
+    before = all;
+    for (n = 0; result != GX_OK; n++) {
+        ck_assert_uint_lt(n, 10000);
+        fail_from(&m, n, _i);
+        result = gx_body_step(body, &step, NULL, NULL);
+        ck_assert(result == GX_OK ? !m.failed || _i == 0 : result == GX_ERROR_MEMORY);
+        if (result == GX_OK) break;
+        never_fail(&m);
+        ck_assert(gx_body_state_hash(body) == state);
+        ck_assert(memcmp(before.slips, all.slips, sizeof all.slips) == 0);
+    }
+    ck_assert_uint_gt(n, 2);
+    never_fail(&m);
+    gx_body_destroy(body);
+    ck_assert(is_whole(&m));
     wl_free(&w);
 }
 END_TEST
@@ -1012,6 +1252,8 @@ static Suite *suite(void) {
     tcase_add_test(tests, refused_anchors);
     tcase_add_test(tests, nowhere_to_stand);
     tcase_add_test(tests, refused_steps);
+    tcase_add_loop_test(tests, pairs_close_a_cut, 0, 3);
+    tcase_add_loop_test(tests, pairs_without_memory, 0, 2);
     suite_add_tcase(s, tests);
     return s;
 }

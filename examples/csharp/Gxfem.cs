@@ -413,6 +413,11 @@ namespace Gxfem {
         public UIntPtr plane_count;
         public IntPtr contact;
         public IntPtr contact_user;
+        public IntPtr pairs;
+        public UIntPtr pair_count;
+        public IntPtr pair_anchors;
+        public IntPtr pair_slips;
+        public IntPtr pair_forces;
         public double sleep_speed;
         public double sleep_time;
         public IntPtr clock;
