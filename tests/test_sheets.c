@@ -328,6 +328,499 @@ START_TEST(rigid_motions_are_exact) {
 }
 END_TEST
 
+/* ---- steps ---- */
+
+/* The largest drop of material points at x = length, by fragment */
+static void find_tips(gx_body *body, double length, double *tips) {
+    gx_skin skin;
+    double *x;
+    size_t i;
+    int k;
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
+    x = (double *)oracle_memory(NULL, 3 * skin.vertex_count + 1, sizeof *x);
+    ck_assert_int_eq(gx_body_skin_positions(body, x, NULL), GX_OK);
+    for (i = 0; i < 3 * skin.triangle_count; i++) {
+        const uint32_t v = skin.triangles[i], f = skin.triangle_fragment[i / 3];
+        if (skin.vertex_rest[3 * (size_t)v] < length - 1e-9) continue;
+        for (k = 2; k < 3; k++)
+            tips[f] = fmax(tips[f], skin.vertex_rest[3 * (size_t)v + 2] - x[3 * (size_t)v + 2]);
+    }
+    free(x);
+}
+
+static double drop_of(int affine, double low, double thick, double young) {
+    workload w = grid(8, 2, 1, 5);
+    gx_body_desc desc = desc_of(&w);
+    gx_body *body = NULL;
+    gx_step_desc step = step_of(0, -1e-3);
+    gx_view view;
+    double tips[4] = {0, 0, 0, 0};
+    size_t f;
+    desc.affine_below = affine;
+    desc.young = young;
+    desc.poisson = 0;
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+    add_axis_plane(&w, 2, low);
+    add_axis_plane(&w, 2, low + thick);
+    cut_by(body, &w, 0, 2);
+    hold_left(body);
+    step.integrator = GXS_STATIC;
+    step.newton_iterations = 10;
+    step.newton_tolerance = 1e-9;
+    step.cg_tolerance = 1e-6;
+    step.cg_iterations = 20000;
+    advance(body, &step);
+    view = view_of(body);
+    find_tips(body, 8, tips);
+    for (f = 0; !(fabs(view.fragment_volume[f] - 16 * thick) < 1e-9); f++) {}
+    gx_body_destroy(body);
+    wl_free(&w);
+    return tips[f];
+}
+
+/* A slice cut out of a body hangs as a beam does, wherever in the layer it lies; without affine copies it is stiff. */
+START_TEST(slices_hang_as_beams) {
+    static const double thick[3] = {0.5, 0.2, 0.1}, least[3] = {0.95, 0.93, 0.9};
+    const double t = thick[_i % 3], low = _i < 3 ? 0.45 : _i < 6 ? 0.07 : 0.83 - t;
+    const double beam = 1000 * 1e-3 * t * pow(8, 4) / (8 * 1e6 * t * t * t / 12);
+    const double stiffer = beam / 0.1; /* so stiff that it drops by a tenth of a unit, and theory holds */
+    const double with = drop_of(1, low, t, 1e6 * stiffer) * stiffer, without = drop_of(0, low, t, 1e6 * stiffer) * stiffer;
+    ck_assert_msg(with > least[_i % 3] * beam && with < 1.03 * beam, "%d: %g of %g", _i, with / beam, beam);
+    ck_assert_msg(without < 0.5 * with, "%d: %g of %g", _i, without / beam, beam);
+}
+END_TEST
+
+/* Free sheets under gravity, each integrator: momenta are those of free fall. */
+START_TEST(flung_sheets_keep_their_momentum) {
+    static const gxs_integrator integrators[4] = {GXS_BDF1, GXS_BDF2, GXS_MIDPOINT, GXS_EXPLICIT};
+    workload w = grid(4, 3, 1, 5);
+    gx_body *body = sheet_body(&w, 1);
+    gx_step_desc step = step_of(0.01, -10);
+    gx_motion before[4], after[4];
+    gx_view view;
+    uint32_t f;
+    int round, k;
+    random_seed((uint64_t)_i);
+    add_axis_plane(&w, 2, 0.37);
+    add_axis_plane(&w, 2, 0.6);
+    cut_by(body, &w, 0, 2);
+    step.integrator = integrators[_i];
+    step.newton_iterations = 3;
+    view = view_of(body);
+    ck_assert_uint_eq(view.fragment_count, 3);
+    shake(body, 0.02);
+    ck_assert_int_eq(gx_body_motion(body, before, 4, NULL), GX_OK);
+    for (round = 0; round < 5; round++) advance(body, &step);
+    ck_assert_int_eq(gx_body_motion(body, after, 4, NULL), GX_OK);
+    for (f = 0; f < 3; f++)
+        for (k = 0; k < 3; k++)
+            ck_assert_msg(fabs(after[f].velocity[k] - before[f].velocity[k] + (k == 2 ? 0.5 : 0)) < 1e-6,
+                          "%d: %.12g %.12g", _i, after[f].velocity[k], before[f].velocity[k]);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A stiff spring takes its point to the target, at an anchor and at a vertex of the skin; a pushed anchor moves as one
+   that springs pull with that force. So points of affine copies are where gx_body_anchor_point has them. */
+START_TEST(points_move_with_affine_copies) {
+    workload w = grid(4, 2, 1, 5);
+    gx_body *body = sheet_body(&w, 1), *pushed;
+    gx_step_desc step = step_of(0, 0);
+    const double material[3] = {3.3, 1.2, 0.45};
+    gx_anchor anchor;
+    gxs_spring springs[2];
+    gx_anchor anchors[2];
+    gx_skin skin;
+    gx_view view;
+    double force[6], at[3], rest[3], *x;
+    uint32_t element = 0, vertex = 0;
+    int k, round;
+    add_axis_plane(&w, 2, 0.37);
+    add_axis_plane(&w, 2, 0.6);
+    cut_by(body, &w, 0, 2);
+    hold_left(body);
+    while (gx_body_anchor(body, element, material, &anchor, NULL) != GX_OK) element++;
+    ck_assert_int_eq(gx_body_clone(body, &pushed, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_anchor_point(body, &anchor, NULL, rest, NULL), GX_OK);
+    memset(springs, 0, sizeof springs);
+    for (k = 0; k < 3; k++) springs[0].target[k] = rest[k] + (k == 2 ? 0.3 : 0.1);
+    springs[0].stiffness = 1e9;
+    anchors[0] = anchor;
+    step.integrator = GXS_STATIC;
+    step.newton_iterations = 100;
+    step.newton_tolerance = 1e-10;
+    step.cg_tolerance = 1e-6;
+    step.cg_iterations = 20000;
+    step.springs = springs;
+    step.spring_count = 1;
+    step.spring_anchors = anchors;
+    step.spring_forces = force;
+    advance(body, &step);
+    ck_assert_int_eq(gx_body_anchor_point(body, &anchor, NULL, at, NULL), GX_OK);
+    for (k = 0; k < 3; k++) {
+        ck_assert_msg(fabs(at[k] - springs[0].target[k]) < 1e-4, "%g %g", at[k], springs[0].target[k]);
+        ck_assert(fabs(force[k] - 1e9 * (springs[0].target[k] - at[k])) <= 1e-5 * (1 + fabs(force[2])));
+    }
+    step.spring_count = 0;
+    step.force_anchors = &anchor;
+    step.anchor_forces = force;
+    step.force_count = 1;
+    advance(pushed, &step);
+    ck_assert_int_eq(gx_body_anchor_point(pushed, &anchor, NULL, at, NULL), GX_OK);
+    for (k = 0; k < 3; k++) ck_assert_msg(fabs(at[k] - springs[0].target[k]) < 1e-3, "%g %g", at[k], springs[0].target[k]);
+    step.force_count = 0;
+    step.spring_anchors = NULL;
+    for (round = 0; round < 2; round++) {
+        ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
+        x = (double *)oracle_memory(NULL, 3 * skin.vertex_count, sizeof *x);
+        if (round == 0) { /* a vertex within an element: several affine copies move it */
+            view = view_of(body);
+            for (vertex = 0; !(skin.vertex_weights[4 * vertex] < 0.8 && skin.vertex_rest[3 * vertex] > 2 &&
+                               view.copy_affine[skin.vertex_copies[4 * vertex]]);
+                 vertex++)
+                ck_assert_uint_lt(vertex, skin.vertex_count);
+            springs[0].point = gx_skin_point(&skin, vertex);
+            for (k = 0; k < 3; k++) springs[0].target[k] = skin.vertex_rest[3 * vertex + (uint32_t)k] + 0.2;
+            step.spring_count = 1;
+            advance(body, &step);
+        } else {
+            ck_assert_int_eq(gx_body_skin_positions(body, x, NULL), GX_OK);
+            for (k = 0; k < 3; k++)
+                ck_assert_msg(fabs(x[3 * vertex + (uint32_t)k] - springs[0].target[k]) < 1e-4, "%g",
+                              x[3 * vertex + (uint32_t)k]);
+        }
+        free(x);
+    }
+    gx_body_destroy(body);
+    gx_body_destroy(pushed);
+    wl_free(&w);
+}
+END_TEST
+
+/* A plane stops a falling sheet at the positions of the skin. */
+START_TEST(planes_stop_sheets) {
+    workload w = grid(4, 3, 1, 5);
+    gx_body *body = sheet_body(&w, 1);
+    gx_step_desc step = step_of(0.01, -10);
+    gxs_plane plane;
+    gxs_point *points;
+    gx_skin skin;
+    double *x, lowest = 1;
+    size_t i;
+    int frame;
+    add_axis_plane(&w, 2, 0.37);
+    cut_by(body, &w, 0, 1);
+    memset(&plane, 0, sizeof plane);
+    plane.normal[2] = 1;
+    plane.offset = -0.2;
+    plane.stiffness = 1e6;
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
+    points = (gxs_point *)oracle_memory(NULL, skin.vertex_count, sizeof *points);
+    x = (double *)oracle_memory(NULL, 3 * skin.vertex_count, sizeof *x);
+    for (i = 0; i < skin.vertex_count; i++) points[i] = gx_skin_point(&skin, (uint32_t)i);
+    step.points = points;
+    step.point_count = skin.vertex_count;
+    step.planes = &plane;
+    step.plane_count = 1;
+    step.newton_iterations = 3;
+    for (frame = 0; frame < 40; frame++) advance(body, &step);
+    ck_assert_int_eq(gx_body_skin_positions(body, x, NULL), GX_OK);
+    for (i = 0; i < skin.vertex_count; i++) lowest = fmin(lowest, x[3 * i + 2]);
+    ck_assert_msg(lowest > -0.25 && lowest < -0.1, "%g", lowest);
+    free(points);
+    free(x);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* What a region holds goes where its pose puts it, as a rigid body; where it has none it stays. */
+START_TEST(poses_turn_affine_copies) {
+    const double c = cos(0.4), s = sin(0.4);
+    const double pose[12] = {c, 0, s, 0.3, 0, 1, 0, -0.1, -s, 0, c, 0.2};
+    workload w = grid(3, 3, 1, 5);
+    gx_body *body = sheet_body(&w, 1);
+    gx_step_desc step = step_of(0.05, -10);
+    gx_view view;
+    size_t i;
+    int k, a, frame, seen = 0;
+    hold_left(body);
+    for (frame = 0; frame < 2; frame++) {
+        step.region_poses = frame == 0 ? pose : NULL;
+        advance(body, &step);
+        view = view_of(body);
+        for (i = 0; i < view.copy_count; i++)
+            for (k = 0; k < 9 && view.copy_held[i]; k++) {
+                a = k / 3;
+                ck_assert(fabs(view.affine[9 * i + (size_t)k] - (pose[4 * (k % 3) + a] - (a == k % 3))) < 1e-12);
+                seen++;
+            }
+    }
+    ck_assert_int_eq(seen, 2 * 8 * 9);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- states ---- */
+
+static void cut_into_sheets(gx_body *body, workload *w) {
+    add_axis_plane(w, 2, 0.37);
+    add_axis_plane(w, 2, 0.6);
+    cut_by(body, w, w->surface_count - 2, 2);
+}
+
+static void expect_same_motion(gx_body *a, gx_body *b) {
+    const gx_view p = view_of(a), q = view_of(b);
+    ck_assert_uint_eq(p.copy_count, q.copy_count);
+    ck_assert(memcmp(p.displacement, q.displacement, 3 * p.copy_count * sizeof(double)) == 0);
+    ck_assert(memcmp(p.velocity, q.velocity, 3 * p.copy_count * sizeof(double)) == 0);
+    ck_assert(memcmp(p.affine, q.affine, 9 * p.copy_count * sizeof(double)) == 0);
+    ck_assert(memcmp(p.affine_rate, q.affine_rate, 9 * p.copy_count * sizeof(double)) == 0);
+    ck_assert(memcmp(p.copy_affine, q.copy_affine, p.copy_count) == 0);
+    ck_assert_uint_eq(gx_body_state_hash(a), gx_body_state_hash(b));
+}
+
+/* A saved, a cloned and a restored body go on as the first does, bit by bit, also through a cut of affine copies. */
+START_TEST(copies_go_on_alike) {
+    static const gxs_integrator integrators[2] = {GXS_BDF1, GXS_BDF2};
+    workload w = grid(5, 3, 1, 5);
+    gx_body *body = sheet_body(&w, 1), *loaded, *cloned, *restored, *other;
+    gx_body_desc none;
+    gx_step_desc step = step_of(0.01, -10);
+    void *memory;
+    size_t size;
+    int round;
+    memset(&none, 0, sizeof none);
+    step.integrator = integrators[_i];
+    hold_left(body);
+    cut_into_sheets(body, &w);
+    restored = sheet_body(&w, 1);
+    cut_by(restored, &w, 0, 2);
+    other = sheet_body(&w, 0);
+    for (round = 0; round < 3; round++) advance(body, &step);
+    ck_assert_int_eq(gx_body_save(body, NULL, 0, &size, NULL), GX_OK);
+    memory = oracle_memory(NULL, size, 1);
+    ck_assert_int_eq(gx_body_save(body, memory, size, &size, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_load(memory, size, &none, &loaded, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_clone(body, &cloned, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_restore(restored, body, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_restore(other, body, NULL), GX_OK);
+    add_axis_plane(&w, 1, 1.3);
+    for (round = 0; round < 4; round++) {
+        gx_body *bodies[5];
+        int i;
+        bodies[0] = body;
+        bodies[1] = loaded;
+        bodies[2] = cloned;
+        bodies[3] = restored;
+        bodies[4] = other;
+        for (i = 0; i < 5; i++) {
+            if (round == 2) cut_by(bodies[i], &w, 2, 1);
+            advance(bodies[i], &step);
+            expect_same_motion(bodies[0], bodies[i]);
+        }
+    }
+    ck_assert_int_eq(gx_body_restore(body, loaded, NULL), GX_OK);
+    expect_same_motion(body, loaded);
+    free(memory);
+    gx_body_destroy(body);
+    gx_body_destroy(loaded);
+    gx_body_destroy(cloned);
+    gx_body_destroy(restored);
+    gx_body_destroy(other);
+    wl_free(&w);
+}
+END_TEST
+
+/* Where no copy becomes affine, steps are those of a body without the feature, bit by bit. */
+START_TEST(none_is_none) {
+    workload w = grid(4, 4, 4, 5);
+    gx_body *off = sheet_body(&w, 0), *on = sheet_body(&w, 1);
+    gx_step_desc step = step_of(0.01, -10);
+    gx_view p, q;
+    int round;
+    add_axis_plane(&w, 2, 2.02);
+    cut_by(off, &w, 0, 1);
+    cut_by(on, &w, 0, 1);
+    for (round = 0; round < 3; round++) {
+        advance(off, &step);
+        advance(on, &step);
+    }
+    p = view_of(off);
+    q = view_of(on);
+    ck_assert_uint_eq(affine_count(on), 0);
+    ck_assert(p.copy_affine == NULL && p.affine == NULL && p.affine_rate == NULL && q.copy_affine != NULL);
+    ck_assert(memcmp(p.displacement, q.displacement, 3 * p.copy_count * sizeof(double)) == 0);
+    ck_assert(memcmp(p.velocity, q.velocity, 3 * p.copy_count * sizeof(double)) == 0);
+    gx_body_destroy(off);
+    gx_body_destroy(on);
+    wl_free(&w);
+}
+END_TEST
+
+/* Random cuts of sheets that move, with slivers, chips and specks of them: steps end, nothing runs away. */
+START_TEST(cut_sheets_stay_together) {
+    workload w = grid(5, 3, 1, _i % 2 ? 6 : 5);
+    gx_body *body = sheet_body(&w, 1);
+    gx_step_desc step = step_of(0.01, -10);
+    gx_motion *motions;
+    gx_view view;
+    double energy = 0, most = 0, volume = 0;
+    size_t f;
+    int round;
+    random_seed((uint64_t)_i);
+    step.newton_iterations = 2;
+    hold_left(body);
+    for (round = 0; round < 12; round++) {
+        if (round % 2 == 0) {
+            add_random_cut(&w, 1);
+            cut_by(body, &w, w.surface_count - 1, 1);
+        }
+        advance(body, &step);
+    }
+    view = view_of(body);
+    motions = (gx_motion *)oracle_memory(NULL, view.fragment_count + 1, sizeof *motions);
+    ck_assert_int_eq(gx_body_motion(body, motions, view.fragment_count, NULL), GX_OK);
+    for (f = 0; f < view.fragment_count; f++) {
+        energy += motions[f].energy;
+        most = fmax(most, fabs(motions[f].center[2]));
+        volume += view.fragment_volume[f];
+    }
+    ck_assert(affine_count(body) > 0);
+    ck_assert(fabs(volume - view.volume) < 1e-9);
+    /* free fall for 0.12 s: 0.072 m, 1.2 m/s */
+    ck_assert_msg(most < 1.2, "seed %d: %g", _i, most);
+    ck_assert_msg(energy < 0.55 * view.mass * 1.2 * 1.2, "seed %d: %g of %g", _i, energy, view.mass);
+    free(motions);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- failure ---- */
+
+/* Creates, holds, cuts, steps, looks, saves. Returns 1 if memory ran out, and then body and hash are as before. */
+static int work(memory *m, const workload *w, int which) {
+    gx_body *body = sheet_body_in(m, w, 1), *other = NULL;
+    const gx_region left = gx_region_half_space(0, -1, 1e-9);
+    gx_step_desc step = step_of(0.01, -10);
+    gx_surface surfaces[2];
+    gx_cut_desc cut;
+    gx_motion motions[8];
+    gxs_point point;
+    gxs_spring spring;
+    gx_anchor anchor;
+    const double material[3] = {1.6, 0.3, 0.5};
+    uint64_t hash;
+    gx_result result = body == NULL ? GX_ERROR_MEMORY : GX_OK;
+    int stage;
+    memset(&cut, 0, sizeof cut);
+    memset(&spring, 0, sizeof spring);
+    surfaces[0] = surface_of(&w->surfaces[0]);
+    surfaces[1] = surface_of(&w->surfaces[1]);
+    cut.surfaces = surfaces;
+    cut.surface_count = 2;
+    step.integrator = which ? GXS_BDF2 : GXS_BDF1;
+    for (stage = 0; stage < 8 && result == GX_OK; stage++) {
+        hash = gx_body_state_hash(body);
+        switch (stage) {
+        case 0: result = gx_body_hold(body, &left, 1, NULL); break;
+        case 1: result = gx_body_cut(body, &cut, NULL, NULL); break;
+        case 2: result = gx_body_motion(body, motions, 8, NULL); break;
+        case 3: {
+            uint32_t e = 0;
+            while (result == GX_OK && gx_body_anchor(body, e, material, &anchor, NULL) == GX_ERROR_EMPTY) e++;
+            result = gx_body_anchor(body, e, material, &anchor, NULL);
+            if (result == GX_OK) result = gx_body_anchor_point(body, &anchor, &point, NULL, NULL);
+            break;
+        }
+        case 4:
+        case 5:
+            spring.point = point;
+            spring.stiffness = 10;
+            step.springs = &spring;
+            step.spring_count = 1;
+            step.force_anchors = &anchor;
+            step.anchor_forces = material;
+            step.force_count = 1;
+            result = gx_body_step(body, &step, NULL, NULL);
+            break;
+        case 6: result = gx_body_clone(body, &other, NULL); break;
+        default: gx_body_destroy(other); other = NULL;
+        }
+        if (result != GX_OK) {
+            ck_assert_int_eq(result, GX_ERROR_MEMORY);
+            ck_assert_uint_eq(gx_body_state_hash(body), hash);
+        }
+    }
+    gx_body_destroy(other);
+    gx_body_destroy(body);
+    return result != GX_OK;
+}
+
+START_TEST(every_allocation_may_fail) {
+    workload w = grid(2, 1, 1, 5);
+    int from_then_on;
+    size_t n;
+    add_axis_plane(&w, 2, 0.37);
+    add_axis_plane(&w, 2, 0.6);
+    for (from_then_on = 0; from_then_on < 2; from_then_on++)
+        for (n = 0;; n++) {
+            memory m = plenty();
+            int failed;
+            fail_from(&m, n, from_then_on);
+            failed = work(&m, &w, _i);
+            ck_assert(is_whole(&m));
+            if (!failed) break;
+            ck_assert_uint_lt(n, 3000);
+        }
+    wl_free(&w);
+}
+END_TEST
+
+/* What is not there yet says so; bad thicknesses are named. */
+START_TEST(refusals_are_named) {
+    static const double bad[3] = {-1, 1e9, HUGE_VAL};
+    workload w = grid(2, 2, 1, 5);
+    gx_body_desc desc = desc_of(&w);
+    gx_body *body = sheet_body(&w, 1);
+    const double origin[3] = {0.5, 0.5, 5}, down[3] = {0, 0, -1}, edge[6] = {0, 0, 5, 1, 0, 5};
+    gx_failure failure;
+    gx_surface tool;
+    gx_blade *blade;
+    gx_hit hit;
+    gx_skin skin;
+    size_t count;
+    uint64_t hash;
+    int i;
+    for (i = 0; i < 3; i++) {
+        gx_body *none;
+        desc.affine_below = bad[i];
+        ck_assert_int_eq(gx_body_create(&desc, &none, &failure), i < 2 ? GX_ERROR_ARGUMENT : GX_ERROR_NOT_FINITE);
+        ck_assert_str_eq(failure.field, "affine_below");
+    }
+    add_box(&w, 1, 0.2, 0.2, 0.2, 0.5, 0.5, 2);
+    tool = surface_of(&w.surfaces[0]);
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
+    ck_assert_int_eq(gx_blade_create(body, NULL, &blade, NULL), GX_OK);
+    hash = gx_body_state_hash(body);
+    for (i = 0; i < 5; i++) {
+        gx_result result = i == 0   ? gx_body_pick(body, origin, down, &hit, &failure)
+                         : i == 1   ? gx_body_locate(body, origin, 1, &hit, &failure)
+                         : i == 2   ? gx_body_locate_all(body, origin, &hit, 1, &count, &failure)
+                         : i == 3   ? gx_body_carve(body, &tool, NULL, &failure)
+                                    : gx_blade_move(blade, edge, 2, NULL, 0, NULL, &failure);
+        ck_assert_int_eq(result, GX_ERROR_ARGUMENT);
+        ck_assert_str_eq(failure.field, "affine_below");
+        ck_assert_uint_eq(gx_body_state_hash(body), hash);
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("sheets");
     TCase *tcase = tcase_create("which");
@@ -338,6 +831,16 @@ int main(void) {
     tcase_add_loop_test(tcase, nothing_moves, 0, 4);
     tcase_add_loop_test(tcase, fields_are_as_defined, 0, 12);
     tcase_add_test(tcase, rigid_motions_are_exact);
+    tcase_add_loop_test(tcase, slices_hang_as_beams, 0, 9);
+    tcase_add_loop_test(tcase, flung_sheets_keep_their_momentum, 0, 4);
+    tcase_add_test(tcase, points_move_with_affine_copies);
+    tcase_add_test(tcase, planes_stop_sheets);
+    tcase_add_test(tcase, poses_turn_affine_copies);
+    tcase_add_loop_test(tcase, copies_go_on_alike, 0, 2);
+    tcase_add_test(tcase, none_is_none);
+    ADD_SOME(tcase, cut_sheets_stay_together, 24);
+    tcase_add_loop_test(tcase, every_allocation_may_fail, 0, 2);
+    tcase_add_test(tcase, refusals_are_named);
     suite_add_tcase(suite, tcase);
     return run_suite(suite);
 }
