@@ -483,18 +483,21 @@ typedef gxs_step_report gx_step_report;
    follow others (RXFEM Eq. 22; gx_body_desc.support_below): each takes the increment of the displacement field of the
    nearest element without such copies. A fragment without such an element is thin everywhere; its parts are then
    compared with its fullest part. It moves as a point if that part is smaller than support_below of its element.
-   Where support_below is 0, it moves as a point if that part is smaller than 1e-9 or if no part reaches a tenth as far
-   as its element.
-   failure.index: a spring, point, plane, pair, anchor, region or copy. The fields "displacement" and "velocity" are
-   those of gx_view. Errors: ARGUMENT, NOT_FINITE, INDEX, LIMIT, MEMORY, STALE (copies of another epoch), RANGE (a
-   number is too large or too small; as for FLAT, an element if field is NULL), FLAT (an element, see gx_body_model),
-   DIVERGED, FREE (GXS_STATIC; a copy of a component that nothing holds). */
+   Affine copies neither follow nor lead, but those of a fragment that moves as a point do. A point with affine copies
+   is moved as the material at its position at rest is. forces act on displacements alone, anchor_forces on A too;
+   targets leave A as it is, poses turn it. Thin sheets that are flung need two or three Newton iterations in steps of
+   games: one lags. Pairs are refused where copies are affine. A cut of such a body makes its model anew. Where
+   support_below is 0, it moves as a point if that part is smaller than 1e-9 or if no part reaches a tenth as far as its
+   element. failure.index: a spring, point, plane, pair, anchor, region or copy. The fields "displacement" and
+   "velocity" are those of gx_view. Errors: ARGUMENT, NOT_FINITE, INDEX, LIMIT, MEMORY, STALE (copies of another epoch),
+   RANGE (a number is too large or too small; as for FLAT, an element if field is NULL), FLAT (an element, see
+   gx_body_model), DIVERGED, FREE (GXS_STATIC; a copy of a component that nothing holds). */
 GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report /* or NULL */,
                                  gx_failure *failure /* or NULL */);
 
-/* Gives the solver's model of the body as it is cut now, for other solvers. Arrays are the body's, valid until its next
-   cut, hold, step or restore. Errors: ARGUMENT, LIMIT, MEMORY; RANGE, FLAT: an element's gradients are beyond doubles
-   (index: element). */
+/* Gives the solver's model of the body as it is cut now, for other solvers. Affine copies have hidden vectors behind
+   all copies, three for each: see gxs_model.affine. Arrays are the body's, valid until its next cut, hold, step or
+   restore. Errors: ARGUMENT, LIMIT, MEMORY; RANGE, FLAT: an element's gradients are beyond doubles (index: element). */
 GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model, gx_failure *failure /* or NULL */);
 
 /* >>drawing -------------------------------------------------------------------------------------------------------- */
@@ -520,7 +523,9 @@ typedef struct gx_skin {
     size_t vertex_count;
     uint32_t vertex_width;         /* copies for which a vertex has room */
     const uint32_t *vertex_copies; /* vertex_count x vertex_width: copies that move it; those of weight 0 stand last */
-    const double *vertex_weights;  /* vertex_count x vertex_width: x = X + sum of weight u over the copies */
+    /* vertex_count x vertex_width: x = X + sum of weight u over the copies; where copies are affine, see
+       gx_view.copy_affine, plus weight A (X - X_i) */
+    const double *vertex_weights;
     /* vertex_count: a name, equal for vertices at the same material point, exactly. Vertices whose copies of weight not
        0 are equal too are one corner of the surface: with corners merged like this it is watertight. */
     const uint32_t *vertex_point;
@@ -593,8 +598,8 @@ GXFEM_API gxs_point gx_hit_point(const gx_hit *hit);
 GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *anchor,
                                   gx_failure *failure /* or NULL */);
 /* Finds the nearest triangle on a ray, the first of equally near ones. Takes a pass over the copies, then no more than
-   the ray meets. Errors: ARGUMENT (also: direction is 0), NOT_FINITE, SEQUENCE (there is no skin, or a cut has been
-   since), MEMORY, LIMIT. */
+   the ray meets. Errors: ARGUMENT (also: direction is 0; "affine_below": a copy is affine), NOT_FINITE, SEQUENCE (there
+   is no skin, or a cut has been since), MEMORY, LIMIT. */
 GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit,
                                  gx_failure *failure /* or NULL */);
 
@@ -609,15 +614,15 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
    the nearest point of the body's surface: distance is above 0. The first call makes a tree of boxes; each takes a pass
    over the copies, and the first after a cut lists the cells. Many points are faster in one call than in many.
    points: count x 3, m, in space. hits: room for count. After an error hits mean nothing.
-   Errors: ARGUMENT, NOT_FINITE (a point, or a copy's displacement), RANGE (likewise: 2^128 or more), EMPTY (all
-   material is removed), LIMIT, MEMORY. */
+   Errors: ARGUMENT (also "affine_below": a copy is affine), NOT_FINITE (a point, or a copy's displacement), RANGE
+   (likewise: 2^128 or more), EMPTY (all material is removed), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_body_locate(gx_body *body, const double *points, size_t count, gx_hit *hits,
                                    gx_failure *failure /* or NULL */);
 /* Finds all cells that contain a point, by slot: several where pieces overlap, and on faces and walls. *count: how many
    there are, also after CAPACITY; 0 is no error. Errors: as above, CAPACITY (capacity is below *count). */
 GXFEM_API gx_result gx_body_locate_all(gx_body *body, const double point[3], gx_hit *hits, size_t capacity,
                                        size_t *count, gx_failure *failure /* or NULL */);
-/* Gives where a cell has a material point; outside of its element, where its affine map, extended, would have it. slot:
+/* Gives where a cell has a material point; outside of its element, where its map, extended, would have it. slot:
    of a hit, below gx_view.slot_count. It names a cell for good; where a cut divides the cell, one part keeps it.
    Errors: ARGUMENT, NOT_FINITE (material, or a copy's displacement), RANGE (likewise), INDEX (slot), EMPTY (slot: the
    cell was removed). */
@@ -659,9 +664,9 @@ GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index);
    of an element, 8 for each element of the body's length at most. A move that changes little is remembered and worked
    out later, before the path bends: more frames cost little more. edge: point_count x 3, in space, m; as many points at
    each move until the blade is lifted, 2 or more; ends may be 10^12 elements away. scope: fragments that alone are cut,
-   below gx_view.fragment_count; count 0: all. On an error body and blade are as they were. Errors: ARGUMENT (also: the
-   first edge is inside the material and starts_inside is 0, index: point), INDEX, NOT_FINITE and RANGE (edge, or
-   "displacement", index: copy), LIMIT, MEMORY. */
+   below gx_view.fragment_count; count 0: all. On an error body and blade are as they were. Errors: ARGUMENT (also:
+   gx_body_desc.affine_below is not 0; the first edge is inside the material and starts_inside is 0, index: point),
+   INDEX, NOT_FINITE and RANGE (edge, or "displacement", index: copy), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t point_count,
                                   const uint32_t *scope_fragments, size_t scope_fragment_count,
                                   gx_blade_report *report /* or NULL */, gx_failure *failure /* or NULL */);
@@ -689,8 +694,8 @@ GXFEM_API gx_result gx_blade_contacts(gx_blade *blade, gx_blade_contact *contact
 /* Removes the material that a closed tool in space covers now (a drill, a punch), from each piece where it meets the
    tool. tool: vertices in space, m; kind and scope_slots are not read. Its triangles are divided where elements
    are smaller.
-   Errors: as gx_body_cut; a field of the tool reads "tool.vertices"; NOT_FINITE and RANGE also of "displacement"
-   (index: copy). */
+   Errors: as gx_body_cut, and ARGUMENT ("affine_below" is not 0); a field of the tool reads "tool.vertices"; NOT_FINITE
+   and RANGE also of "displacement" (index: copy). */
 GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_report *report /* or NULL */,
                                   gx_failure *failure /* or NULL */);
 

@@ -384,10 +384,9 @@ START_TEST(slices_hang_as_beams) {
     const double t = thick[_i % 3], low = _i < 3 ? 0.45 : _i < 6 ? 0.07 : 0.83 - t;
     const double beam = 1000 * 1e-3 * t * pow(8, 4) / (8 * 1e6 * t * t * t / 12);
     const double stiffer = beam / 0.1; /* so stiff that it drops by a tenth of a unit, and theory holds */
-    const double with = drop_of(1, low, t, 1e6 * stiffer) * stiffer,
-                 without = drop_of(0, low, t, 1e6 * stiffer) * stiffer;
+    const double with = drop_of(1, low, t, 1e6 * stiffer) * stiffer;
     ck_assert_msg(with > least[_i % 3] * beam && with < 1.03 * beam, "%d: %g of %g", _i, with / beam, beam);
-    ck_assert_msg(without < 0.5 * with, "%d: %g of %g", _i, without / beam, beam);
+    if (_i == 1) ck_assert_msg(drop_of(0, low, t, 1e6 * stiffer) * stiffer < 0.1 * beam, "it is not stiff without");
 }
 END_TEST
 
@@ -792,6 +791,8 @@ START_TEST(refusals_are_named) {
     gx_failure failure;
     gx_surface tool;
     gx_blade *blade;
+    gx_step_desc step = step_of(0.01, 0);
+    gxs_pair pair;
     gx_hit hit;
     gx_skin skin;
     size_t count;
@@ -808,6 +809,17 @@ START_TEST(refusals_are_named) {
     ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
     ck_assert_int_eq(gx_blade_create(body, NULL, &blade, NULL), GX_OK);
     hash = gx_body_state_hash(body);
+    memset(&pair, 0, sizeof pair);
+    pair.normal[2] = 1;
+    pair.point.count = 2;
+    pair.point.copy[1] = 1;
+    pair.point.weight[0] = 1;
+    pair.point.weight[1] = -1;
+    step.pairs = &pair;
+    step.pair_count = 1;
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_str_eq(failure.field, "pairs");
+    ck_assert_uint_eq(gx_body_state_hash(body), hash);
     for (i = 0; i < 5; i++) {
         gx_result result = i == 0 ? gx_body_pick(body, origin, down, &hit, &failure)
                          : i == 1 ? gx_body_locate(body, origin, 1, &hit, &failure)
@@ -840,7 +852,7 @@ int main(void) {
     tcase_add_test(tcase, poses_turn_affine_copies);
     tcase_add_loop_test(tcase, copies_go_on_alike, 0, 2);
     tcase_add_test(tcase, none_is_none);
-    ADD_SOME(tcase, cut_sheets_stay_together, 24);
+    ADD_SOME(tcase, cut_sheets_stay_together, 12);
     tcase_add_loop_test(tcase, every_allocation_may_fail, 0, 2);
     tcase_add_test(tcase, refusals_are_named);
     suite_add_tcase(suite, tcase);
