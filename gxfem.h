@@ -3336,11 +3336,11 @@ static gx_result gxp_insert_surface(gxp_cut *cut, gxp_surface *s, int scoped) {
     scratch->order.count = 0;
     result = gxp_keys_room(body, &scratch->order, 2 * (size_t)count); /* sorting takes as much again */
     for (i = 0; i < count && result == GX_OK; i++) {
-        const uint64_t random = gxp_mix(i);
+        const uint64_t random = gxp_mix(scratch->order.count); /* triangles without area change no other's round */
         uint32_t round = GXP_LAST_ROUND, place;
-        while (round > 16 && !(random >> 3 * (GXP_LAST_ROUND - round) & 7)) round--;
-        before += round < GXP_LAST_ROUND && !s->flat[i];
         if (s->flat[i]) continue;
+        while (round > 16 && !(random >> 3 * (GXP_LAST_ROUND - round) & 7)) round--;
+        before += round < GXP_LAST_ROUND;
         place = gxp_curve_place(body, s->given->vertices + 3 * (size_t)s->given->triangles[3 * (size_t)i]);
         result = gxp_push_key(body, &scratch->order, round << 27 | place, i);
     }

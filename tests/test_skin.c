@@ -682,7 +682,7 @@ START_TEST(texture_of_flat_triangles) {
     gx_surface surface;
     gx_cut_desc cut;
     double area[2] = {0, 0};
-    size_t i;
+    size_t count[2], i;
     int way, k;
     memset(&surface, 0, sizeof surface);
     memset(&cut, 0, sizeof cut);
@@ -710,6 +710,7 @@ START_TEST(texture_of_flat_triangles) {
         for (i = 0; way && i < 6 * QUADS; i++) triangles[i] = triangles[i / 6 * 9 + i % 6];
         ck_assert_int_eq(gx_body_cut(body, &cut, NULL, NULL), GX_OK);
         skin = skin_of(body, NULL);
+        count[way] = skin.triangle_count;
         for (i = 0; i < skin.triangle_count; i++)
             if (skin.triangle_surface[i] == 1) area[way] += rest_area(&skin, i);
         for (i = 0; i < 3 * skin.triangle_count; i++) {
@@ -720,6 +721,7 @@ START_TEST(texture_of_flat_triangles) {
         }
         gx_body_destroy(body);
     }
+    ck_assert_uint_eq(count[0], count[1]);
     ck_assert_double_eq_tol(area[0], 8, 1e-12); /* both faces of the cut */
     ck_assert_double_eq_tol(area[1], 8, 1e-12);
     wl_free(&w);
