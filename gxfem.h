@@ -49,7 +49,7 @@
  *     >>hashing    of the topology, of the state
  *     >>saving     save and load, clone and restore
  *     then, under GXFEM_IMPLEMENTATION, in the order of a cut; functions call their own and earlier sections only:
- *     what a body is made of:    >>state >>columns
+ *     what a body is made of:    >>state >>body >>columns
  *     tools:                     >>memory >>basics >>mesh >>search >>copies >>transaction >>complex >>numbering
  *     a cut:                     >>surfaces >>pinches >>arrange >>solids >>links >>cells >>components >>integrals
  *                                >>specks >>settle >>cut
@@ -646,7 +646,7 @@ GXFEM_API void gx_blade_destroy(gx_blade *blade); /* or NULL */
 GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index);
 /* Moves the edge and cuts what it has passed since the last move, relative to the material. A long move goes in steps
    of an element, 8 for each element of the body's length at most. A move that changes little is remembered and worked
-   out later, before the path bends: more frames cost little more. edge: point_count x 3, in space, m; as many points at
+   out later, before the path bends. edge: point_count x 3, in space, m; as many points at
    each move until the blade is lifted, 2 or more; ends may be 10^12 elements away. scope: fragments that alone are cut,
    below gx_view.fragment_count; count 0: all. On an error body and blade are as they were. Errors: ARGUMENT (also: the
    first edge is inside the material and starts_inside is 0, index: point), INDEX, NOT_FINITE and RANGE (edge, or
@@ -758,8 +758,8 @@ extern "C" {
 
 /* >>state: the body, divided by how long its parts live ------------------------------------------------------------ */
 
-/* The types of everything that a body owns: settings and mesh, from creation to destruction; cells, leaves, copies and
-   records of surfaces, made by cuts; the undo log of a cut; caches; working memory of a call. No function is here. */
+/* The types of what a body owns: settings and mesh, from creation to destruction; cells, leaves, copies and records of
+   surfaces, made by cuts; the undo log of a cut; caches. No function is here. */
 
 #define GXP_NONE UINT32_MAX
 /* Shares of an element, where gx_body_desc.support_below is 0. Copies that no part above GXP_SUPPORT carries follow
@@ -992,7 +992,8 @@ typedef struct gxp_view { /* the body as gx_view tells it */
 
 /* The fragments when gx_body_view was called last. Changes of fragments are told by comparison with it. */
 typedef struct gxp_snapshot {
-    uint32_t count, capacity[3], *id, *origin, *change;
+    uint32_t count, capacity[3];
+    uint32_t *id, *origin, *change;
     gxp_words removed; /* ids */
     uint32_t next_id;
     uint32_t stale; /* a cut has been since */
@@ -1025,8 +1026,10 @@ typedef struct gxp_attached { /* of a step: what it has at anchors and regions, 
     gxs_spring *springs;
     gxs_point *points;
     gxs_pair *pairs;
-    gxp_words sides;                    /* pairs x 8: copies of their two sides */
-    double *forces, *targets, *weights; /* copies x 3: all that are given, N; of held copies, m. Of sides */
+    gxp_words sides; /* pairs x 8: copies of their two sides */
+    double *weights; /* pairs x 8: of these copies */
+    double *forces;  /* copies x 3, N: all that are given */
+    double *targets; /* copies x 3, m: of held copies */
     uint32_t spring_capacity, point_capacity, pair_capacity, weight_capacity, force_capacity, target_capacity;
 } gxp_attached;
 
@@ -1094,7 +1097,10 @@ typedef struct gxp_skin {
     uint32_t normal_capacity, position_capacity;
 } gxp_skin;
 
-/* --- blades --- */
+/* >>body: blades, working memory, the body ------------------------------------------------------------------------- */
+
+/* Types that end those of >>state: what a blade remembers, from its creation to its destruction, and works with; the
+   tree of boxes; working memory of a call; the body, of all these. No function is here. */
 
 typedef struct gxp_bounds {
     double low[3], high[3]; /* low above high: nothing is there */
