@@ -101,8 +101,8 @@ $(BUILD)/gxfem.o: $(headers)
 	printf '#define GXFEM_IMPLEMENTATION\n#include "gxfem.h"\n' | $(compile) -I. -x c -c - -o $@
 
 # The page that plays frames, as C. It is committed, so that examples need nothing but a C compiler.
-examples/player.h: examples/player.html examples/player.js examples/player.sh
-	sh examples/player.sh examples/player.html examples/player.js >$@.part && mv $@.part $@
+examples/player.h: examples/player.html examples/player.css examples/player.js examples/player.sh
+	sh examples/player.sh examples/player.html examples/player.css examples/player.js >$@.part && mv $@.part $@
 
 # Sticks along z: five planes across x, five across y. The foot of the cube is held in its stretched place; the rest springs back.
 sixths = 0.16666666666666666 0.33333333333333331 0.5 0.66666666666666663 0.83333333333333337
@@ -128,7 +128,7 @@ check-page: demo
 
 # ---- the page on which one slices a jelly
 
-web_files = index.html page.js worker.js player.js jelly.wasm jelly-simd.wasm
+web_files = index.html page.js worker.js player.css player.js jelly.wasm jelly-simd.wasm
 web: $(web_files:%=$(BUILD)/web/%)
 	@echo "look      serve $(BUILD)/web, for example: python3 -m http.server -d $(BUILD)/web"
 
@@ -136,7 +136,7 @@ $(BUILD)/web/%: examples/web/%
 	@mkdir -p $(@D)
 	@cp $< $@
 
-$(BUILD)/web/player.js: examples/player.js
+$(BUILD)/web/player.css $(BUILD)/web/player.js: $(BUILD)/web/%: examples/%
 	@mkdir -p $(@D)
 	@cp $< $@
 
@@ -226,7 +226,7 @@ $(BUILD)/tests/test_tight_boolean: tests/test_surface_boolean.c
 
 # The recipes' test includes the snippets of the page.
 $(BUILD)/tests/test_recipes: $(BUILD)/recipes.h
-$(BUILD)/tests/test_recipes: compile += -I$(BUILD) -pthread
+$(BUILD)/tests/test_recipes: compile += -I$(BUILD) -DRECIPES_FOLDER='"$(BUILD)"' -pthread
 $(BUILD)/recipes.h: docs/RECIPES.md tests/recipes.awk
 	@mkdir -p $(@D)
 	awk -f tests/recipes.awk $< >$@

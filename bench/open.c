@@ -13,6 +13,7 @@
        terrain  a block with a rough top less tools along winding paths, one by one
        dome     a dome less capsules that stick in it, one by one
        spheres  a sphere less a moved copy
+       bumpy    the same with waves on the sphere
        crossing a surface that crosses itself less a moved copy
 
    The volume beside which answers stand is computed here, from the request alone, by parallel rays: where a ray crosses

@@ -19,7 +19,7 @@ function check(name, good, found = "") {
 }
 
 // A plain file server
-const types = {".html": "text/html", ".js": "text/javascript", ".wasm": "application/wasm"};
+const types = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".wasm": "application/wasm"};
 const server = createServer((request, response) => {
     const path = normalize(request.url.split("?")[0]).replace(/\/$/, "/index.html");
     try {

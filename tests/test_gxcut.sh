@@ -314,10 +314,12 @@ page_lines >lines
 check "two meshes, two frames each" "$([ "$(cut -d ' ' -f 1 lines | tr '\n' ' ')" = "mesh frame frame mesh frame frame " ] || cat lines)"
 check "12 triangles uncut, then 36 fragments with cut faces" "$(awk '/^mesh/ && ++n == 1 && ($3 != 12 || $4 != 1 || $5 != 0) ||
     /^mesh/ && n == 2 && ($4 != 36 || $5 < 120) || /^frame/ && $3 != 1 { print }' lines)"
-awk -v script="$source/examples/player.js" '/^<script src=/ { print "<script>"; while ((getline line <script) > 0) print line
-    print "</script>"; next } { print }' "$source/examples/player.html" >player
+awk -v folder="$source/examples/" 'function put(tag, file,    line) { print "<" tag ">"; while ((getline line <(folder file)) > 0) print line
+        print "</" tag ">" }
+    /^<link rel="stylesheet"/ { put("style", "player.css"); next }
+    /^<script src=/ { put("script", "player.js"); next } { print }' "$source/examples/player.html" >player
 grep -Ev '^(gxfem-frames|title|up|mesh|frame) ' page.html | cmp -s - player
-check "the page is the player and its frames" "$([ $? -eq 0 ] || echo 'differs: is player.h older than player.html or player.js?')"
+check "the page is the player and its frames" "$([ $? -eq 0 ] || echo 'differs: is player.h older than what it is made from?')"
 check "loads nothing" "$(grep -nE 'https?:|src=|href=|url\(|@import|import *\(|fetch *\(|XMLHttpRequest' page.html | cut -c 1-80)"
 mesh 'a<"b.mesh' 0 "1 2 3 4 0"
 runs "page of a name with <" 'a<"b.mesh' --frames 1 --format html --out page.html

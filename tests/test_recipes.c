@@ -486,7 +486,7 @@ END_TEST
 /* ---- Undo and save ---- */
 
 START_TEST(undo_and_save) {
-    static const char path[] = "build/test_recipes.saved";
+    static const char path[] = RECIPES_FOLDER "/test_recipes.saved"; /* the Makefile says where */
     gx_body *body = make_hanging(4, NULL), *before = NULL, *loaded = NULL;
     uint64_t hash, topology;
     int i;

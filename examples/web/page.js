@@ -200,7 +200,7 @@ function draw() {
 function say(numbers) {
     page.numbers = numbers;
     const {fragments, elements, unknowns, step, cut, marks} = numbers;
-    at("numbers").textContent = `${fragments} ${fragments === 1 ? "piece" : "pieces"}, ${elements.toLocaleString("en")} elements, ` +
+    at("counts").textContent = `${fragments} ${fragments === 1 ? "piece" : "pieces"}, ${elements.toLocaleString("en")} elements, ` +
         `${unknowns.toLocaleString("en")} unknowns; step ${step.toFixed(1)} ms, cut ${cut.toFixed(1)} ms`;
     at("undo").disabled = marks === 0;
 }
