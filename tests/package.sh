@@ -57,7 +57,7 @@ holds() {
 # The tests that CMake builds, without those that take long
 short_tests() {
     targets="embed two_units"
-    if cmake --build "$work/build" --target help | grep -q test_pairs; then targets="$targets test_pairs"; fi
+    if cmake --build "$work/build" --target help | grep -q test_recipes; then targets="$targets test_recipes"; fi
     # shellcheck disable=SC2086
     cmake --build "$work/build" -j "$jobs" --target $targets || return 1
     (cd "$work/build" && ctest --output-on-failure -R "^($(echo "$targets" | tr ' ' '|'))\$")
