@@ -113,8 +113,8 @@
  * 2012: Stomakhin, Howes, Schroeder, Teran, Energetically Consistent Invertible Elasticity, SCA 2012.
  *
  * MACROS. GXFEM_SOLVE_IMPLEMENTATION or GXFEM_IMPLEMENTATION: the code comes here. GXFEM_STATIC: all static.
- * GXFEM_INTRINSICS: vectors by the intrinsics of SSE2 or 64-bit NEON, from the compiler's own headers, in place of
- * vector extensions; cl, which has no extensions, takes them unless GXFEM_NO_INTRINSICS is defined.
+ * GXFEM_INTRINSICS: intrinsics, from the compiler's own headers, in place of extensions: vectors of SSE2 or 64-bit
+ * NEON, products of 64-bit integers. cl, which has no extensions, takes them unless GXFEM_NO_INTRINSICS is defined.
  */
 #ifndef GXFEM_SOLVE_INCLUDED
 #define GXFEM_SOLVE_INCLUDED
@@ -124,6 +124,11 @@
 #define GXFEM_SHARED_INCLUDED
 #include <stddef.h>
 #include <stdint.h>
+
+/* cl has neither vectors nor integers of 128 bits of its own: it takes intrinsics, from the compiler's headers. */
+#if defined(_MSC_VER) && !defined(__clang__) && !defined(GXFEM_NO_INTRINSICS) && !defined(GXFEM_INTRINSICS)
+#define GXFEM_INTRINSICS
+#endif
 
 /* With -msimd128 clang before 16 moves a load that fills a vector behind stores to the same address: the headers'
    functions are compiled without vectors then (GXFEM_SCALAR), and not inlined where there are some. */
@@ -584,10 +589,6 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #include <stdlib.h>
 #include <string.h>
 
-/* cl has no vectors of its own. */
-#if defined(_MSC_VER) && !defined(__clang__) && !defined(GXFEM_NO_INTRINSICS)
-#define GXFEM_INTRINSICS
-#endif
 #if defined(GXFEM_INTRINSICS) && (defined(__SSE2__) || defined(_M_X64))
 #include <emmintrin.h>
 #elif defined(GXFEM_INTRINSICS) && (defined(__aarch64__) || defined(_M_ARM64))
@@ -1908,6 +1909,10 @@ GXSP_INLINE void gxsp_prefetch(const void *memory, size_t size) {
     const char *line = (const char *)memory;
     size_t k;
     for (k = 0; k < size; k += 64) __builtin_prefetch(line + k);
+#elif defined(GXFEM_INTRINSICS) && defined(_M_X64)
+    const char *line = (const char *)memory;
+    size_t k;
+    for (k = 0; k < size; k += 64) _mm_prefetch(line + k, _MM_HINT_T0);
 #else
     (void)memory;
     (void)size;

@@ -1,8 +1,8 @@
 /* exchange.c - bodies that are saved on one machine and go on on another. platforms.sh runs it on both.
 
        exchange write FILE   cuts a block, moves it, saves it
-       exchange read FILE    loads it, cuts it again, and prints hashes of what came; then moves it, and prints where to,
-                             to four digits: each machine adds in its own order */
+       exchange read FILE    loads it, cuts it again, and prints hashes of what came; then moves it, and prints where
+   to, to four digits: each machine adds in its own order */
 #include "../gxfem.h"
 #include "../bench/block.h"
 

@@ -1,7 +1,8 @@
-/* malloc.h of Microsoft's library, as far as clang's headers of intrinsics use it */
-#ifndef TEST_MALLOC_H
-#define TEST_MALLOC_H
+/* What of Microsoft's malloc.h clang's headers of intrinsics use, for platforms.sh */
+#ifndef MICROSOFT_MALLOC_H
+#define MICROSOFT_MALLOC_H
 #include <stddef.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -10,4 +11,5 @@ void _aligned_free(void *memory);
 #ifdef __cplusplus
 }
 #endif
+
 #endif
