@@ -224,14 +224,15 @@ GXFEM_API void gx_body_destroy(gx_body *body); /* or NULL */
 /* >>cutting -------------------------------------------------------------------------------------------------------- */
 
 /* A sheet separates the material on its two sides. It may be open, closed or curved, cross itself, be non-manifold. A
-   solid is closed and consistently oriented; it removes the material around which it winds. */
-enum { GX_SURFACE_SHEET = 0, GX_SURFACE_SOLID = 1 };
+   solid is closed and consistently oriented; it removes the material around which it winds. A solid that keeps removes
+   all other material; of several in one cut, what lies in all of them stays. */
+enum { GX_SURFACE_SHEET = 0, GX_SURFACE_SOLID = 1, GX_SURFACE_KEEP = 2 };
 typedef struct gx_surface {
     const double *vertices; /* vertex_count x 3, material coordinates, m */
     size_t vertex_count;
     const uint32_t *triangles; /* triangle_count x 3 */
     size_t triangle_count;
-    uint32_t kind;        /* GX_SURFACE_SHEET or GX_SURFACE_SOLID */
+    uint32_t kind;        /* GX_SURFACE_ */
     const float *texture; /* vertex_count x 2: texture coordinates of the faces that it cuts; NULL: all 0 */
     /* The surface cuts only the cells of these slots (gx_view.cell_slot), whatever the cut's scope is. All surfaces of
        a cut see the cells of before the cut. A slot whose cell was removed stands for nothing. NULL: the cut's scope */
@@ -2803,7 +2804,7 @@ static void gxp_surface_free(gx_body *body, gxp_surface *s) {
 }
 
 static gx_result gxp_check_surface_arrays(const gx_surface *s, gx_failure *failure) {
-    if (s->kind > GX_SURFACE_SOLID) return gxp_refuse(failure, "surfaces.kind");
+    if (s->kind > GX_SURFACE_KEEP) return gxp_refuse(failure, "surfaces.kind");
     if (s->vertex_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "surfaces.vertex_count", SIZE_MAX);
     if (s->triangle_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "surfaces.triangle_count", SIZE_MAX);
     if (s->vertices == NULL) return gxp_refuse(failure, "surfaces.vertices");
@@ -2993,7 +2994,7 @@ static gx_result gxp_surface_open(gxp_cut *cut, gxp_surface *s, const gx_surface
     result = gxp_merge_vertices(body, s);
     if (result != GX_OK) return result;
     gxp_sort_edges(s);
-    return given->kind == GX_SURFACE_SOLID ? gxp_check_closed(cut, s) : GX_OK;
+    return given->kind != GX_SURFACE_SHEET ? gxp_check_closed(cut, s) : GX_OK;
 }
 
 /* >>pinches: elements that meet in a node or an edge only ---------------------------------------------------------- */
@@ -3540,7 +3541,26 @@ static gx_result gxp_find_windings(gx_body *body, const gxp_surface *s, int scop
     return result;
 }
 
-/* Appends to scratch.removed the leaves around which the solid winds. All surfaces of the cut are in the complex. */
+/* Does the solid wind around the leaf? Its flood, the last one, has met all such leaves. */
+static int gxp_is_wound(const gx_body *body, uint32_t leaf) {
+    return body->leaves.mark[leaf].stamp == body->scratch.stamp && body->leaves.mark[leaf].winding != 0;
+}
+
+/* Appends to scratch.removed the leaves around which a solid that keeps does not wind. Their elements get facets: what
+   lies behind these is touched. */
+static gx_result gxp_find_outside(gx_body *body, int scoped) {
+    gx_result result = GX_OK;
+    uint32_t leaf;
+    for (leaf = 0; leaf < body->leaves.count && result == GX_OK; leaf++) {
+        if (!gxp_has_winding(body, leaf, scoped) || gxp_is_wound(body, leaf)) continue;
+        result = gxb_complex_open_element(body->complex, gxb_complex_leaf(body->complex, leaf)->element);
+        if (result == GX_OK) result = gxp_push(body, &body->scratch.removed, leaf);
+    }
+    return result;
+}
+
+/* Appends to scratch.removed the leaves around which the solid winds or, if it keeps these, the others. All surfaces of
+   the cut are in the complex. */
 static gx_result gxp_find_solid(gxp_cut *cut, const gxp_surface *s) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
@@ -3551,9 +3571,10 @@ static gx_result gxp_find_solid(gxp_cut *cut, const gxp_surface *s) {
     if (result == GX_OK)
         result = s->given->scope_slots != NULL ? gxp_seed_slots(body, s->given) : gxp_seed_untouched(cut);
     if (result == GX_OK) result = gxp_find_windings(body, s, scoped);
+    if (result == GX_OK && s->given->kind == GX_SURFACE_KEEP) return gxp_find_outside(body, scoped);
     if (result == GX_OK) result = gxp_words_room(body, &scratch->removed, scratch->flooded.count);
     for (i = 0; i < scratch->flooded.count && result == GX_OK; i++)
-        if (body->leaves.mark[scratch->flooded.data[i]].winding != 0)
+        if (gxp_is_wound(body, scratch->flooded.data[i]))
             result = gxp_push(body, &scratch->removed, scratch->flooded.data[i]);
     return result;
 }
@@ -4939,7 +4960,7 @@ static gx_result gxp_arrange_surfaces(gxp_cut *cut, gxp_surface *surfaces) {
     }
     if (result == GX_OK) result = gxp_follow_leaves(cut->body);
     for (i = 0; i < count && result == GX_OK; i++)
-        if (surfaces[i].given->kind == GX_SURFACE_SOLID) result = gxp_find_solid(cut, &surfaces[i]);
+        if (surfaces[i].given->kind != GX_SURFACE_SHEET) result = gxp_find_solid(cut, &surfaces[i]);
     return result;
 }
 

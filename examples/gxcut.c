@@ -82,7 +82,17 @@ typedef struct run {
 } run;
 
 /* What an option takes. The last four may be given more than once or, the flag, take nothing. */
-enum { TAKES_TEXT, TAKES_NUMBER, TAKES_COUNT, TAKES_VECTOR, TAKES_NOTHING, TAKES_SHEET, TAKES_SOLID, TAKES_REGION };
+enum {
+    TAKES_TEXT,
+    TAKES_NUMBER,
+    TAKES_COUNT,
+    TAKES_VECTOR,
+    TAKES_NOTHING,
+    TAKES_SHEET,
+    TAKES_SOLID,
+    TAKES_KEEP,
+    TAKES_REGION
+};
 
 typedef struct option {
     const char *name;
@@ -118,6 +128,7 @@ static const char usage[] =
     "\n"
     "  --sheet CUT         separates what lies on its two sides\n"
     "  --solid CUT         closed: removes what lies inside\n"
+    "  --keep CUT          closed: removes what lies outside\n"
     "  --thickness E       makes each sheet a solid of this thickness, m\n"
     "  --cut-at FRAME      cuts before this frame's step (0)\n"
     "  --blade FILE        a blade that cuts while the body steps, from that frame on. The file has a line for each\n"
@@ -193,6 +204,7 @@ static const char *store(settings *set, const option *o, const char *value) {
         return gxio_argument_list(value, (double *)o->target, 3, 3) == 3 ? NULL : "is not three finite numbers X,Y,Z";
     case TAKES_SHEET: add_cut(set, value, GX_SURFACE_SHEET); return NULL;
     case TAKES_SOLID: add_cut(set, value, GX_SURFACE_SOLID); return NULL;
+    case TAKES_KEEP: add_cut(set, value, GX_SURFACE_KEEP); return NULL;
     default:
         return parse_region(value, &set->regions[set->region_count++])
                  ? NULL
@@ -232,6 +244,7 @@ static int take_argument(settings *set, option *options, int argc, char **argv, 
 static int take_arguments(settings *set, int argc, char **argv, gxio_error *error) {
     option options[] = {{"--sheet", TAKES_SHEET, NULL, 0},
                         {"--solid", TAKES_SOLID, NULL, 0},
+                        {"--keep", TAKES_KEEP, NULL, 0},
                         {"--thickness", TAKES_NUMBER, &set->thickness, 0},
                         {"--cut-at", TAKES_COUNT, &set->cut_at, 0},
                         {"--blade", TAKES_TEXT, &set->blade, 0},

@@ -274,6 +274,9 @@ has "uncut" min_link_ratio 1
 runs "box out of a grid" grid:2,2,2 --solid box:0.5,0.5,0.5,1.5,1.5,1.5 --frames 0 --report r.json
 near "box out of a grid" volume 7
 has "box out of a grid" fragments 1
+runs "box kept of a grid" grid:2,2,2 --keep box:0.5,0.5,0.5,1.5,1.5,1.5 --frames 0 --report r.json
+near "box kept of a grid" volume 1
+has "box kept of a grid" fragments 1
 runs "thick sheet" cube5 --sheet plane:0.5,0.5,0.5,1,0,0 --thickness 0.25 --frames 0 --report r.json
 near "thick sheet" volume 0.75
 has "thick sheet" fragments 2

@@ -867,6 +867,7 @@ namespace Gxfem {
     public static class Native {
         public const uint GX_SURFACE_SHEET = 0;
         public const uint GX_SURFACE_SOLID = 1;
+        public const uint GX_SURFACE_KEEP = 2;
         public const uint GX_FRAGMENT_UNCHANGED = 0;
         public const uint GX_FRAGMENT_TOUCHED = 1;
         public const uint GX_FRAGMENT_SPLIT = 2;
