@@ -217,7 +217,7 @@ typedef struct gx_surface {
    two corners. Elements that the surfaces neither meet nor wind around are not made. One of cells, edge and unknowns is
    given, the others are 0. */
 typedef struct gx_shape {
-    /* surface_count. Each is closed and oriented alike, of any number of parts, and may cross itself. A part that looks
+    /* surface_count. Each is closed and oriented alike, of any number of parts, and may cross itself. A part that faces
        inward, inside of another part of the same surface, is a cavity. kind and scope_slots are not read */
     const gx_surface *surfaces;
     size_t surface_count;
@@ -13708,8 +13708,7 @@ GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_
     return result;
 }
 
-/* >>grid: a grid of elements around a shape -------------------------------------------------------------------------
- */
+/* >>grid: a grid of elements around a shape ------------------------------------------------------------------------ */
 /* In: closed surfaces and a resolution. Out: nodes and elements: all that the surfaces meet or wind around, and next to
    none else. The cubes' corners and middles are a body-centred lattice; an element lies between the middles of two
    cubes and two corners of the face between them. Exact winding numbers of nodes tell which elements are inside, so far
@@ -14112,7 +14111,8 @@ static gx_result gxp_name_shape(gx_failure *failure, gx_result result) {
                                            {"surfaces.triangle_count", "shape.surfaces.triangle_count"},
                                            {"surfaces.texture", "shape.surfaces.texture"}};
     size_t i;
-    for (i = 0; i < sizeof names / sizeof *names && failure != NULL && failure->field != NULL; i++)
+    if (result == GX_OK || failure == NULL || failure->field == NULL) return result;
+    for (i = 0; i < sizeof names / sizeof *names; i++)
         if (strcmp(failure->field, names[i][0]) == 0) {
             failure->field = names[i][1];
             break;
@@ -15743,6 +15743,8 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_CONTACT_SPACING
 #undef GXP_EDGE_REACH
 #undef GXP_TOOL_TRIANGLES
+#undef GXP_GRID_CUBES
+#undef GXP_GRID_MARGIN
 #ifdef GXFEM_SCALAR
 #pragma clang attribute pop
 #endif
