@@ -258,6 +258,27 @@ namespace Gxfem {
     }
 
     [StructLayout(LayoutKind.Sequential)]
+    public unsafe struct gx_surface {
+        public IntPtr vertices;
+        public UIntPtr vertex_count;
+        public IntPtr triangles;
+        public UIntPtr triangle_count;
+        public uint kind;
+        public IntPtr texture;
+        public IntPtr scope_slots;
+        public UIntPtr scope_slot_count;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    public unsafe struct gx_shape {
+        public IntPtr surfaces;
+        public UIntPtr surface_count;
+        public uint cells;
+        public double edge;
+        public UIntPtr unknowns;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
     public unsafe struct gx_body_desc {
         public IntPtr positions;
         public UIntPtr node_count;
@@ -275,18 +296,7 @@ namespace Gxfem {
         public IntPtr clock;
         public IntPtr clock_user;
         public gx_jobs jobs;
-    }
-
-    [StructLayout(LayoutKind.Sequential)]
-    public unsafe struct gx_surface {
-        public IntPtr vertices;
-        public UIntPtr vertex_count;
-        public IntPtr triangles;
-        public UIntPtr triangle_count;
-        public uint kind;
-        public IntPtr texture;
-        public IntPtr scope_slots;
-        public UIntPtr scope_slot_count;
+        public IntPtr shape;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -348,6 +358,8 @@ namespace Gxfem {
         public IntPtr removed_ids;
         public double volume;
         public double mass;
+        public IntPtr positions;
+        public IntPtr elements;
     }
 
     [StructLayout(LayoutKind.Sequential)]

@@ -154,11 +154,15 @@ class gx_material(Structure):
     pass
 
 
-class gx_body_desc(Structure):
+class gx_surface(Structure):
     pass
 
 
-class gx_surface(Structure):
+class gx_shape(Structure):
+    pass
+
+
+class gx_body_desc(Structure):
     pass
 
 
@@ -535,6 +539,25 @@ gx_material._fields_ = [
     ('density', c_double),
 ]
 
+gx_surface._fields_ = [
+    ('vertices', POINTER(c_double)),
+    ('vertex_count', c_size_t),
+    ('triangles', POINTER(c_uint32)),
+    ('triangle_count', c_size_t),
+    ('kind', c_uint32),
+    ('texture', POINTER(c_float)),
+    ('scope_slots', POINTER(c_uint32)),
+    ('scope_slot_count', c_size_t),
+]
+
+gx_shape._fields_ = [
+    ('surfaces', POINTER(gx_surface)),
+    ('surface_count', c_size_t),
+    ('cells', c_uint32),
+    ('edge', c_double),
+    ('unknowns', c_size_t),
+]
+
 gx_body_desc._fields_ = [
     ('positions', POINTER(c_double)),
     ('node_count', c_size_t),
@@ -552,17 +575,7 @@ gx_body_desc._fields_ = [
     ('clock', CFUNCTYPE(c_double, c_void_p)),
     ('clock_user', c_void_p),
     ('jobs', gx_jobs),
-]
-
-gx_surface._fields_ = [
-    ('vertices', POINTER(c_double)),
-    ('vertex_count', c_size_t),
-    ('triangles', POINTER(c_uint32)),
-    ('triangle_count', c_size_t),
-    ('kind', c_uint32),
-    ('texture', POINTER(c_float)),
-    ('scope_slots', POINTER(c_uint32)),
-    ('scope_slot_count', c_size_t),
+    ('shape', POINTER(gx_shape)),
 ]
 
 gx_cut_desc._fields_ = [
@@ -621,6 +634,8 @@ gx_view._fields_ = [
     ('removed_ids', POINTER(c_uint32)),
     ('volume', c_double),
     ('mass', c_double),
+    ('positions', POINTER(c_double)),
+    ('elements', POINTER(c_uint32)),
 ]
 
 gx_motion._fields_ = [
