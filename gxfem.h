@@ -13843,8 +13843,7 @@ static void gxp_cross_line(gxp_grid *grid, const double *a, const double *b, con
         else
             high = middle;
     }
-    if (low == 0) return;
-    line[0] = first + 2 * (low - 1);
+    line[0] = first + 2 * (low - 1); /* the first node of a line is beside all surfaces */
     grid->winding[gxp_grid_node(grid, line)] += side;
     line[0] = first;
 }
@@ -13933,10 +13932,9 @@ static void gxp_mark_elements(gxp_grid *grid, const gxp_search *search, const do
     for (k = 0; k < 3; k++) gxp_grid_range(grid, k, search->low[k], search->high[k], range[k]);
     for (axis = 0; axis < 3; axis++) {
         for (k = 0; k < 3; k++) {
-            const uint32_t reach = k == axis ? 3 : 2, last = grid->size[k] - (k == axis ? 2 : 1);
+            const uint32_t reach = k == axis ? 3 : 2;
             low[k] = range[k][0] > reach ? (range[k][0] - reach + 1) / 2 : 0;
             high[k] = (range[k][1] - (k == axis && range[k][1] > 0)) / 2;
-            if (high[k] > last) high[k] = last;
         }
         for (cube[2] = low[2]; cube[2] <= high[2]; cube[2]++)
             for (cube[1] = low[1]; cube[1] <= high[1]; cube[1]++)
@@ -13996,7 +13994,7 @@ static void gxp_list_elements(gxp_grid *grid, uint32_t *elements, const uint8_t 
         for (cube[1] = 0; cube[1] < grid->size[1]; cube[1]++)
             for (cube[0] = 0; cube[0] < grid->size[0]; cube[0]++, i++)
                 for (bit = 0; bit < 12 && grid->made[i] != 0; bit++) {
-                    if (!(grid->made[i] >> bit & 1) || cube[bit / 4] + 1 == grid->size[bit / 4]) continue;
+                    if (!(grid->made[i] >> bit & 1)) continue;
                     if (lacking != NULL && lacking[before++]) {
                         grid->made[i] = (uint16_t)(grid->made[i] & ~(1u << bit));
                         continue;
@@ -14037,7 +14035,7 @@ static gx_result gxp_meet_budget(gxp_grid *grid, size_t unknowns, const gx_cut_d
     gx_result result;
     for (;;) {
         result = gxp_make_grid(grid, gxp_edge_of_cells(grid, cells), cut, failure);
-        if (result != GX_OK && (result != GX_ERROR_LIMIT || enough == 0)) return result;
+        if (result != GX_OK && result != GX_ERROR_LIMIT) return result;
         if (result == GX_OK && 3 * (size_t)grid->node_count <= unknowns) {
             if (many == cells + 1) return GX_OK;
             enough = cells;
@@ -14068,8 +14066,6 @@ static gx_result gxp_choose_grid(gxp_grid *grid, const gx_body_desc *desc, const
         shape->unknowns > 0
             ? gxp_meet_budget(grid, shape->unknowns, cut, failure)
             : gxp_make_grid(grid, shape->cells > 0 ? gxp_edge_of_cells(grid, shape->cells) : shape->edge, cut, failure);
-    if (result == GX_OK && grid->element_count == 0)
-        result = gxp_fail(failure, GX_ERROR_EMPTY, "shape.surfaces", SIZE_MAX);
     if (result != GX_OK) gxp_grid_free(grid);
     return result;
 }

@@ -117,6 +117,11 @@ static gx_result cut_solid(gx_body *body) {
     gx_surface s = solid();
     return cut(body, &s, 1, 0, 0);
 }
+static gx_result cut_keep(gx_body *body) {
+    gx_surface s = solid();
+    s.kind = GX_SURFACE_KEEP;
+    return cut(body, &s, 1, 0, 0);
+}
 static gx_result cut_scoped(gx_body *body) {
     gx_surface s = sheet(sheet_b);
     return cut(body, &s, 1, 0, 1);
@@ -559,7 +564,10 @@ START_TEST(cut_of_many_triangles) {
 }
 END_TEST
 
-START_TEST(solid_cut) { sweep("a solid", nothing, cut_solid); }
+START_TEST(solid_cut) {
+    sweep("a solid", nothing, cut_solid);
+    sweep("a solid that keeps", nothing, cut_keep);
+}
 END_TEST
 
 START_TEST(cut_of_a_cut_body) {

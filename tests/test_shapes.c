@@ -711,6 +711,9 @@ START_TEST(refused_shapes) {
     REFUSED_SHAPE(s->triangle_count = 11, GX_ERROR_NOT_CLOSED, "shape.surfaces.triangles", failure.index, 1);
     ck_assert_uint_lt(failure.index, 11);
     s->triangle_count = 12;
+    surfaces[0].vertex_count = 0;
+    REFUSED_SHAPE(s->triangle_count = 12, GX_ERROR_EMPTY, "shape.surfaces.vertex_count", SIZE_MAX, 0);
+    surfaces[0].vertex_count = 8;
     REFUSED_SHAPE(desc.positions = x, GX_ERROR_ARGUMENT, "positions", SIZE_MAX, SIZE_MAX);
     desc.positions = NULL;
     REFUSED_SHAPE(desc.elements = t, GX_ERROR_ARGUMENT, "elements", SIZE_MAX, SIZE_MAX);
@@ -743,8 +746,9 @@ START_TEST(memory_runs_out) {
     gx_shape shape = shape_of(surfaces, &w);
     gx_body_desc desc = desc_of_shape(&shape);
     size_t n;
-    shape.cells = 2;
-    for (n = 0;; n += 1 + n / 40) {
+    shape.cells = _i == 0 ? 2 : 0;
+    shape.unknowns = _i == 0 ? 0 : 300;
+    for (n = 0;; n += 2 * FEWER + 1) {
         memory m = plenty();
         gx_failure failure;
         gx_body *body = NULL;
