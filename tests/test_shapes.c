@@ -615,6 +615,46 @@ START_TEST(slivers_stay) {
 }
 END_TEST
 
+/* A plate thinner than its elements, held along one side: with affine copies it bends, without it hardly does. Its
+   volume is the same. */
+START_TEST(thin_shapes_bend) {
+    workload w = wl_empty();
+    gx_surface surfaces[WL_SURFACES];
+    gx_shape shape;
+    gx_body_desc desc;
+    const gx_region side = gx_region_half_space(0, -1, 0.3);
+    gx_step_desc rest;
+    double sag[2];
+    int k;
+    memset(&rest, 0, sizeof rest);
+    rest.integrator = GXS_STATIC;
+    rest.gravity[2] = -9.81;
+    rest.newton_iterations = 50;
+    rest.cg_iterations = 5000;
+    add_bar(wl_add_surface(&w, 1), 0, 0, 0.031, 2, 0.8, 0.081);
+    shape = shape_of(surfaces, &w);
+    shape.cells = 8;
+    desc = desc_of_shape(&shape);
+    desc.young = 5e8;
+    for (k = 0; k < 2; k++) {
+        gx_body *body = NULL;
+        gx_view view;
+        size_t i;
+        desc.affine_below = k ? 0.5 : 0;
+        ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+        ck_assert_int_eq(gx_body_hold(body, &side, 1, NULL), GX_OK);
+        ck_assert_int_eq(gx_body_step(body, &rest, NULL, NULL), GX_OK);
+        view = view_of(body);
+        ck_assert(fabs(view.volume - 0.08) < 1e-13);
+        ck_assert((view.copy_affine != NULL) == (k == 1));
+        for (i = 0, sag[k] = 0; i < view.copy_count; i++) sag[k] = fmin(sag[k], view.displacement[3 * i + 2]);
+        gx_body_destroy(body);
+    }
+    ck_assert_msg(sag[0] < 0 && sag[1] < 1.5 * sag[0], "sags by %g and by %g", sag[0], sag[1]);
+    wl_free(&w);
+}
+END_TEST
+
 /* ---- resolution, refusals, memory ---- */
 
 START_TEST(budgets_and_edges) {
@@ -780,6 +820,7 @@ static Suite *suite(void) {
     ADD_SOME(tests, cut_saved_and_cloned, 8);
     tcase_add_test(tests, blade_and_drill);
     tcase_add_loop_test(tests, slivers_stay, 0, 3);
+    tcase_add_test(tests, thin_shapes_bend);
     tcase_add_test(tests, budgets_and_edges);
     tcase_add_test(tests, refused_shapes);
     tcase_add_loop_test(tests, memory_runs_out, 0, 2);
