@@ -49,6 +49,7 @@ typedef struct setting {
     int count; /* XPBD and GXS_EXPLICIT: substeps, VBD: iterations */
     double rho;
     int lumped;
+    double quality; /* above 0: the error asked for, in place of all this */
 } setting;
 
 typedef struct scene_kind {
@@ -79,52 +80,55 @@ static const scene_kind scene_kinds[] = {{"accordion 1e6", BLOCK_ACCORDION, 19, 
 
 enum { SCENES = sizeof scene_kinds / sizeof scene_kinds[0] };
 
-static const setting settings[] = {{METHOD_OURS, "BDF1", 1, GXS_BDF1, 0, 0, 0, 0, 0, 0},
-                                   {METHOD_OURS, "BDF1", 1, GXS_BDF1, 1e-1, 0, 0, 0, 0, 0},
-                                   {METHOD_OURS, "BDF2", 1, GXS_BDF2, 0, 0, 0, 0, 0, 0},
-                                   {METHOD_OURS, "BDF2", 1, GXS_BDF2, 1e-1, 0, 0, 0, 0, 0},
-                                   {METHOD_OURS, "BDF2", 1, GXS_BDF2, 0, 2, 0, 0, 0, 0},
-                                   {METHOD_OURS, "BDF2", 2, GXS_BDF2, 0, 0, 0, 0, 0, 0},
-                                   {METHOD_OURS, "BDF2", 4, GXS_BDF2, 0, 0, 0, 0, 0, 0},
-                                   {METHOD_OURS, "BDF2", 8, GXS_BDF2, 0, 0, 0, 0, 0, 0},
-                                   {METHOD_OURS, "midpoint", 1, GXS_MIDPOINT, 1e-1, 0, 0, 0, 0, 0},
-                                   {METHOD_OURS, "midpoint", 1, GXS_MIDPOINT, 0, 0, 0, 0, 0, 0},
-                                   {METHOD_OURS, "midpoint", 2, GXS_MIDPOINT, 1e-2, 0, 0, 0, 0, 0},
-                                   {METHOD_OURS, "midpoint", 2, GXS_MIDPOINT, 0, 0, 0, 0, 0, 0},
-                                   {METHOD_OURS, "midpoint", 4, GXS_MIDPOINT, 1e-2, 0, 0, 0, 0, 0},
-                                   {METHOD_OURS, "midpoint", 4, GXS_MIDPOINT, 0, 0, 0, 0, 0, 0},
-                                   {METHOD_OURS, "midpoint", 8, GXS_MIDPOINT, 1e-2, 0, 0, 0, 0, 0},
-                                   {METHOD_OURS, "midpoint", 8, GXS_MIDPOINT, 0, 0, 0, 0, 0, 0},
-                                   {METHOD_OURS, "midpoint", 16, GXS_MIDPOINT, 1e-2, 0, 0, 0, 0, 0},
-                                   {METHOD_OURS, "explicit", 1, GXS_EXPLICIT, 0, 0, 0, 0, 0, 1},
-                                   {METHOD_OURS, "explicit", 1, GXS_EXPLICIT, 0, 0, 0, 5, 0, 1},
-                                   {METHOD_OURS, "explicit", 1, GXS_EXPLICIT, 0, 0, 0, 7, 0, 1},
-                                   {METHOD_OURS, "explicit", 1, GXS_EXPLICIT, 0, 0, 0, 10, 0, 1},
-                                   {METHOD_OURS, "explicit", 1, GXS_EXPLICIT, 0, 0, 0, 12, 0, 1},
-                                   {METHOD_OURS, "explicit", 1, GXS_EXPLICIT, 0, 0, 0, 15, 0, 1},
-                                   {METHOD_OURS, "explicit", 1, GXS_EXPLICIT, 0, 0, 0, 20, 0, 1},
-                                   {METHOD_OURS, "explicit", 1, GXS_EXPLICIT, 0, 0, 0, 30, 0, 1},
-                                   {METHOD_OURS, "explicit", 1, GXS_EXPLICIT, 0, 0, 0, 50, 0, 1},
-                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 2, 0, 0},
-                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 5, 0, 0},
-                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 8, 0, 0},
-                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 10, 0, 0},
-                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 15, 0, 0},
-                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 20, 0, 0},
-                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 30, 0, 0},
-                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 50, 0, 0},
-                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 100, 0, 0},
-                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 200, 0, 0},
-                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 500, 0, 0},
-                                   {METHOD_VBD, "VBD", 1, GXS_BDF1, 0, 0, 0, 5, 0, 0},
-                                   {METHOD_VBD, "VBD", 1, GXS_BDF1, 0, 0, 0, 20, 0, 0},
-                                   {METHOD_VBD, "VBD", 1, GXS_BDF1, 0, 0, 0, 100, 0, 0},
-                                   {METHOD_VBD, "VBD", 8, GXS_BDF1, 0, 0, 0, 1, 0, 0},
-                                   {METHOD_VBD, "VBD", 8, GXS_BDF1, 0, 0, 0, 5, 0, 0},
-                                   {METHOD_VBD, "VBD", 32, GXS_BDF1, 0, 0, 0, 1, 0, 0},
-                                   {METHOD_VBD, "VBD; Chebyshev", 1, GXS_BDF1, 0, 0, 0, 20, 0.9, 0},
-                                   {METHOD_VBD, "VBD; Chebyshev", 1, GXS_BDF1, 0, 0, 0, 100, 0.99, 0},
-                                   {METHOD_VBD, "VBD; Chebyshev", 2, GXS_BDF1, 0, 0, 0, 50, 0.99, 0}};
+static const setting settings[] = {{METHOD_OURS, "BDF1", 1, GXS_BDF1, 0, 0, 0, 0, 0, 0, 0},
+                                   {METHOD_OURS, "BDF1", 1, GXS_BDF1, 1e-1, 0, 0, 0, 0, 0, 0},
+                                   {METHOD_OURS, "BDF2", 1, GXS_BDF2, 0, 0, 0, 0, 0, 0, 0},
+                                   {METHOD_OURS, "BDF2", 1, GXS_BDF2, 1e-1, 0, 0, 0, 0, 0, 0},
+                                   {METHOD_OURS, "BDF2", 1, GXS_BDF2, 0, 2, 0, 0, 0, 0, 0},
+                                   {METHOD_OURS, "BDF2", 2, GXS_BDF2, 0, 0, 0, 0, 0, 0, 0},
+                                   {METHOD_OURS, "BDF2", 4, GXS_BDF2, 0, 0, 0, 0, 0, 0, 0},
+                                   {METHOD_OURS, "BDF2", 8, GXS_BDF2, 0, 0, 0, 0, 0, 0, 0},
+                                   {METHOD_OURS, "midpoint", 1, GXS_MIDPOINT, 1e-1, 0, 0, 0, 0, 0, 0},
+                                   {METHOD_OURS, "midpoint", 1, GXS_MIDPOINT, 0, 0, 0, 0, 0, 0, 0},
+                                   {METHOD_OURS, "midpoint", 2, GXS_MIDPOINT, 1e-2, 0, 0, 0, 0, 0, 0},
+                                   {METHOD_OURS, "midpoint", 2, GXS_MIDPOINT, 0, 0, 0, 0, 0, 0, 0},
+                                   {METHOD_OURS, "midpoint", 4, GXS_MIDPOINT, 1e-2, 0, 0, 0, 0, 0, 0},
+                                   {METHOD_OURS, "midpoint", 4, GXS_MIDPOINT, 0, 0, 0, 0, 0, 0, 0},
+                                   {METHOD_OURS, "midpoint", 8, GXS_MIDPOINT, 1e-2, 0, 0, 0, 0, 0, 0},
+                                   {METHOD_OURS, "midpoint", 8, GXS_MIDPOINT, 0, 0, 0, 0, 0, 0, 0},
+                                   {METHOD_OURS, "midpoint", 16, GXS_MIDPOINT, 1e-2, 0, 0, 0, 0, 0, 0},
+                                   {METHOD_OURS, "quality", 1, GXS_BDF1, 0, 0, 0, 0, 0, 1, 0.1},
+                                   {METHOD_OURS, "quality", 1, GXS_BDF1, 0, 0, 0, 0, 0, 1, 0.03},
+                                   {METHOD_OURS, "quality", 1, GXS_BDF1, 0, 0, 0, 0, 0, 1, 0.01},
+                                   {METHOD_OURS, "explicit", 1, GXS_EXPLICIT, 0, 0, 0, 0, 0, 1, 0},
+                                   {METHOD_OURS, "explicit", 1, GXS_EXPLICIT, 0, 0, 0, 5, 0, 1, 0},
+                                   {METHOD_OURS, "explicit", 1, GXS_EXPLICIT, 0, 0, 0, 7, 0, 1, 0},
+                                   {METHOD_OURS, "explicit", 1, GXS_EXPLICIT, 0, 0, 0, 10, 0, 1, 0},
+                                   {METHOD_OURS, "explicit", 1, GXS_EXPLICIT, 0, 0, 0, 12, 0, 1, 0},
+                                   {METHOD_OURS, "explicit", 1, GXS_EXPLICIT, 0, 0, 0, 15, 0, 1, 0},
+                                   {METHOD_OURS, "explicit", 1, GXS_EXPLICIT, 0, 0, 0, 20, 0, 1, 0},
+                                   {METHOD_OURS, "explicit", 1, GXS_EXPLICIT, 0, 0, 0, 30, 0, 1, 0},
+                                   {METHOD_OURS, "explicit", 1, GXS_EXPLICIT, 0, 0, 0, 50, 0, 1, 0},
+                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 2, 0, 0, 0},
+                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 5, 0, 0, 0},
+                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 8, 0, 0, 0},
+                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 10, 0, 0, 0},
+                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 15, 0, 0, 0},
+                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 20, 0, 0, 0},
+                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 30, 0, 0, 0},
+                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 50, 0, 0, 0},
+                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 100, 0, 0, 0},
+                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 200, 0, 0, 0},
+                                   {METHOD_XPBD, "XPBD", 1, GXS_BDF1, 0, 0, 0, 500, 0, 0, 0},
+                                   {METHOD_VBD, "VBD", 1, GXS_BDF1, 0, 0, 0, 5, 0, 0, 0},
+                                   {METHOD_VBD, "VBD", 1, GXS_BDF1, 0, 0, 0, 20, 0, 0, 0},
+                                   {METHOD_VBD, "VBD", 1, GXS_BDF1, 0, 0, 0, 100, 0, 0, 0},
+                                   {METHOD_VBD, "VBD", 8, GXS_BDF1, 0, 0, 0, 1, 0, 0, 0},
+                                   {METHOD_VBD, "VBD", 8, GXS_BDF1, 0, 0, 0, 5, 0, 0, 0},
+                                   {METHOD_VBD, "VBD", 32, GXS_BDF1, 0, 0, 0, 1, 0, 0, 0},
+                                   {METHOD_VBD, "VBD; Chebyshev", 1, GXS_BDF1, 0, 0, 0, 20, 0.9, 0, 0},
+                                   {METHOD_VBD, "VBD; Chebyshev", 1, GXS_BDF1, 0, 0, 0, 100, 0.99, 0, 0},
+                                   {METHOD_VBD, "VBD; Chebyshev", 2, GXS_BDF1, 0, 0, 0, 50, 0.99, 0, 0}};
 
 enum { SETTINGS = sizeof settings / sizeof settings[0] };
 
@@ -297,6 +301,7 @@ static int is_lumped(const setting *how) { return how->kind != METHOD_OURS || ho
 
 static void mover_make(mover *m, const scene *s, const setting *how) {
     gxs_model model = s->model;
+    int k;
     memset(m, 0, sizeof *m);
     m->scene = s;
     m->how = how;
@@ -317,8 +322,12 @@ static void mover_make(mover *m, const scene *s, const setting *how) {
     m->step.newton_tolerance = how->newton_tolerance;
     m->step.mass_damping = s->kind->damping;
     m->step.substeps = (uint32_t)how->count;
-    if (how->integrator == GXS_EXPLICIT) { /* it makes what explicit steps need of the model: once, as set_model does */
-        must(gxs_solver_step(m->solver, &m->step, m->u, m->v, NULL, NULL), "step");
+    m->step.quality = how->quality;
+    if (how->integrator == GXS_EXPLICIT || how->quality > 0) {
+        /* they make what explicit steps need of the model: once, as set_model does */
+        const gxs_scene none = {{0, 0, 0}, 0, 0, 0};
+        for (k = 0; k < 2; k++) must(gxs_solver_step(m->solver, &m->step, m->u, m->v, NULL, NULL), "step");
+        gxs_solver_resume(m->solver, &none);
         memset(m->u, 0, 3 * s->count * sizeof *m->u);
         memset(m->v, 0, 3 * s->count * sizeof *m->v);
     }
@@ -415,7 +424,7 @@ static outcome run(const scene *s, const setting *how, int repeats) {
 /* The motion by small steps, or the balance; also the most that potential energy falls */
 static void find_reference(scene *s, int lumped) {
     const int rests = s->kind->damping > 0;
-    setting fine = {METHOD_OURS, "", 1, GXS_MIDPOINT, 1e-3, 20, 1e-7, 0, 0, 0};
+    setting fine = {METHOD_OURS, "", 1, GXS_MIDPOINT, 1e-3, 20, 1e-7, 0, 0, 0, 0};
     mover m;
     double potential;
     int k;
