@@ -483,10 +483,10 @@ typedef struct gxs_step_report {
     gxs_stop stop;
     /* displacements solved for: three per copy that is awake, not held and follows nothing */
     size_t active_unknowns;
-    uint32_t substeps;          /* of GXS_EXPLICIT; 0: the step was implicit */
-    uint32_t parts;             /* steps taken: 1 without quality; their iterations and seconds are summed */
-    gxs_integrator integrator;  /* of the last of them */
-    double error;               /* with quality: the estimate of what was asked for; 0: nothing is known of the motion */
+    uint32_t substeps;         /* of GXS_EXPLICIT; 0: the step was implicit */
+    uint32_t parts;            /* steps taken: 1 without quality; their iterations and seconds are summed */
+    gxs_integrator integrator; /* of the last of them */
+    double error;              /* with quality: the estimate of what was asked for; 0: nothing is known of the motion */
     uint32_t newton_iterations; /* 0: the start was in balance to rounding, or the step was explicit */
     uint32_t cg_iterations;     /* sum over Newton iterations */
     uint32_t line_search_steps; /* step lengths tried; sum over Newton iterations */
@@ -724,8 +724,8 @@ extern "C" {
 #define GXSP_LEAP_DEGREES  24
 #define GXSP_LEAP_SUBSTEPS 64
 
-/* Steps by the error asked for. Of a motion of frequency w the midpoint rule's error after the time GXSP_QUALITY_TIME, s,
- * is GXSP_QUALITY_MIDPOINT (w h)^2 (w time + GXSP_QUALITY_MORE), BDF2's likewise, and backward Euler's
+/* Steps by the error asked for. Of a motion of frequency w the midpoint rule's error after the time GXSP_QUALITY_TIME,
+ * s, is GXSP_QUALITY_MIDPOINT (w h)^2 (w time + GXSP_QUALITY_MORE), BDF2's likewise, and backward Euler's
  * GXSP_QUALITY_EULER w h: fits to bench/front.c, within a factor of two on most of its bodies. Errors of up to
  * GXSP_QUALITY_COARSE begin with four implicit steps, larger ones with two. */
 #define GXSP_QUALITY_TIME     0.33
@@ -740,15 +740,15 @@ extern "C" {
 #define GXSP_QUALITY_DEGREE   5
 #define GXSP_QUALITY_SUBSTEPS 256
 
-/* What an implicit step takes, and the rest of a step, in evaluations of explicit forces: measured on bodies of 1,000 to
- * 24,000 unknowns, from 35 to 60. And what a product of the filter takes. */
+/* What an implicit step takes, and the rest of a step, in evaluations of explicit forces: measured on bodies of 1,000
+ * to 24,000 unknowns, from 35 to 60. And what a product of the filter takes. */
 #define GXSP_WORK_IMPLICIT 50.0
 #define GXSP_WORK_STEP     10.0
 #define GXSP_WORK_PRODUCT  0.3
 
-/* The frequency is measured in each implicit step, in each of the first explicit steps, then in one of as many. What was
- * measured is forgotten by 1 / e after four radians, and by GXSP_QUALITY_FORGET powers of e at most from one measure to
- * the next: a motion that turns has no speed for a while. */
+/* The frequency is measured in each implicit step, in each of the first explicit steps, then in one of as many. What
+ * was measured is forgotten by 1 / e after four radians, and by GXSP_QUALITY_FORGET powers of e at most from one
+ * measure to the next: a motion that turns has no speed for a while. */
 #define GXSP_QUALITY_EACH   4
 #define GXSP_QUALITY_FORGET 2.0
 #define GXSP_QUALITY_SLACK  1.2
@@ -11641,7 +11641,8 @@ static gx_result gxsp_check_step(const gxs_step_desc *step, gx_failure *failure)
         (result = gxsp_check_array(step->planes, step->plane_count, "planes", failure)) != GX_OK ||
         (result = gxsp_check_array(step->pairs, step->pair_count, "pairs", failure)) != GX_OK)
         return result;
-    if (step->pair_count > 0 && step->integrator == GXS_MIDPOINT && !(step->quality > 0)) return gxsp_refuse(failure, "pairs");
+    if (step->pair_count > 0 && step->integrator == GXS_MIDPOINT && !(step->quality > 0))
+        return gxsp_refuse(failure, "pairs");
     if (step->budget_seconds > 0 && !step->clock) return gxsp_refuse(failure, "clock");
     if (step->sleep_speed > 0 && !step->rest_times) return gxsp_refuse(failure, "rest_times");
     if (step->spring_count >= SIZE_MAX / 1024) return gxsp_fail(failure, GX_ERROR_LIMIT, "spring_count", SIZE_MAX);
@@ -11889,8 +11890,8 @@ static gx_result gxsp_step_once(gxs_solver *solver, const gxs_step_desc *step, d
     problem.system->state.failed = 0;
     gxsp_report_springs(&problem);
     problem.report.parts = 1;
-    problem.report.integrator = step->integrator == GXS_EXPLICIT && problem.report.substeps == 0 ? GXS_BDF1
-                                                                                                 : step->integrator;
+    problem.report.integrator =
+        step->integrator == GXS_EXPLICIT && problem.report.substeps == 0 ? GXS_BDF1 : step->integrator;
     problem.report.seconds = gxsp_now(&problem) - problem.start;
     *report = problem.report;
     return GX_OK;
@@ -12017,16 +12018,15 @@ static double gxsp_quality_time(const gxs_step_desc *step) {
     return step->mass_damping > 0 ? fmin(GXSP_QUALITY_TIME, 2 / step->mass_damping) : GXSP_QUALITY_TIME;
 }
 
-/* The implicit steps for an error, a power of two. They are the midpoint rule's, or BDF2's where sides touch each other,
- * where thin parts follow others (there each change of the midpoint rule's step costs motion), and where vibrations
- * hide that the midpoint rule would keep forever. Motion that would take more
- * than GXS_PARTS steps of a radian is damped by backward Euler; so is motion whose share of the displacement is below
- * the error, and what mass damping ends within a step (brief: the share of the step that it lasts). */
+/* The implicit steps for an error, a power of two. They are the midpoint rule's, or BDF2's where sides touch each
+ * other, where thin parts follow others (there each change of the midpoint rule's step costs motion), and where
+ * vibrations hide that the midpoint rule would keep forever. Motion that would take more than GXS_PARTS steps of a
+ * radian is damped by backward Euler; so is motion whose share of the displacement is below the error, and what mass
+ * damping ends within a step (brief: the share of the step that it lasts). */
 static gxsp_plan gxsp_plan_implicit(const gxs_solver *solver, const gxs_step_desc *step, double error) {
     const gxsp_tempo *tempo = &solver->lasting.tempo;
     const double w = gxsp_tempo_frequency(tempo), radians = w * step->dt,
-                 later = w * gxsp_quality_time(step) + GXSP_QUALITY_MORE,
-                 share = w > 0 ? gxsp_tempo_share(tempo) : 0,
+                 later = w * gxsp_quality_time(step) + GXSP_QUALITY_MORE, share = w > 0 ? gxsp_tempo_share(tempo) : 0,
                  brief = step->mass_damping * step->dt > 2 ? 2 / (step->mass_damping * step->dt) : 1,
                  euler = GXSP_QUALITY_EULER * radians * share * brief;
     const int lags = step->pair_count > 0 || solver->system->model.follower_count > 0 || tempo->hidden,
@@ -12038,7 +12038,9 @@ static gxsp_plan gxsp_plan_implicit(const gxs_solver *solver, const gxs_step_des
     if (radians > GXS_PARTS || share * brief <= error) parts = 1;
     if (tempo->measures == 0) parts = error > GXSP_QUALITY_COARSE ? 2 : 4;
     for (plan.parts = 1; plan.parts < GXS_PARTS && plan.parts * GXSP_QUALITY_SLACK < parts;) plan.parts *= 2;
-    plan.integrator = tempo->measures > 0 && (damps || radians > plan.parts) ? GXS_BDF1 : lags ? GXS_BDF2 : GXS_MIDPOINT;
+    plan.integrator = tempo->measures > 0 && (damps || radians > plan.parts) ? GXS_BDF1
+                    : lags                                                   ? GXS_BDF2
+                                                                             : GXS_MIDPOINT;
     plan.error = plan.integrator == GXS_BDF1 ? fmin(euler / plan.parts, share) : second / plan.parts / plan.parts;
     plan.cg_tolerance = plan.parts == 1 && !lags ? 1e-1 : 1e-2;
     if (plan.parts > 8) plan.cg_tolerance *= 64.0 / plan.parts / plan.parts;
@@ -12046,16 +12048,15 @@ static gxsp_plan gxsp_plan_implicit(const gxs_solver *solver, const gxs_step_des
     return plan;
 }
 
-/* The explicit step for an error; work 0: it cannot be explicit. The filter adds h^2 L / 12 to the inertia, so that L in
- * place of the body's stiffness gives the error, and its masses have an error of their own. */
+/* The explicit step for an error; work 0: it cannot be explicit. The filter adds h^2 L / 12 to the inertia, so that L
+ * in place of the body's stiffness gives the error, and its masses have an error of their own. */
 static gxsp_plan gxsp_plan_explicit(const gxs_solver *solver, const gxs_step_desc *step, double error) {
     const gxsp_leap *leap = &solver->system->leap;
     const gxsp_tempo *tempo = &solver->lasting.tempo;
     const double factor = leap->factor > 0 ? leap->factor : GXSP_LEAP_FACTOR, w = gxsp_tempo_frequency(tempo),
                  limit = 0.5 * step->dt * sqrt(factor * leap->top), /* substeps without a filter */
-                 degrees = fmax(1, GXSP_QUALITY_DEGREE - (double)tempo->refused),
-                 later = w * gxsp_quality_time(step) + GXSP_QUALITY_MORE,
-                 share = w > 0 ? gxsp_tempo_share(tempo) : 1,
+        degrees = fmax(1, GXSP_QUALITY_DEGREE - (double)tempo->refused),
+                 later = w * gxsp_quality_time(step) + GXSP_QUALITY_MORE, share = w > 0 ? gxsp_tempo_share(tempo) : 1,
                  all = tempo->resist[1] > 0 ? GXSP_QUALITY_MIDPOINT * tempo->resist[0] / tempo->resist[1] * step->dt *
                                                   step->dt * later * share
                                             : error * limit * limit / (GXSP_LEAP_DEGREE * GXSP_LEAP_DEGREE),
@@ -12145,8 +12146,8 @@ static gx_result gxsp_take_part(gxs_solver *solver, gxs_step_desc *part, const g
 /* All parts of a step, one after the other. The way that is measured is the last radian, in whole parts, or the last
  * part if nothing is known. */
 static gx_result gxsp_take_parts(gxs_solver *solver, const gxs_step_desc *step, const gxsp_plan *plan,
-                                 gxsp_parts *parts, double *displacement, double *velocity,
-                                 gxs_step_report *report, gx_failure *failure) {
+                                 gxsp_parts *parts, double *displacement, double *velocity, gxs_step_report *report,
+                                 gx_failure *failure) {
     gxs_step_desc part = *step;
     gx_result result = GX_OK;
     const double w = gxsp_tempo_frequency(&solver->lasting.tempo),
@@ -12167,10 +12168,11 @@ static gx_result gxsp_take_parts(gxs_solver *solver, const gxs_step_desc *step, 
         gxs_step_report own;
         if (k + way - 1 <= plan->parts) memcpy(parts->from, displacement, 3 * solver->system->model.n * sizeof(double));
         for (i = 0; i < 3 * solver->system->model.n && step->targets; i++)
-            parts->target[i] = k == plan->parts ? step->targets[i]
-                             : solver->system->model.fixed[i / 3]
-                                 ? parts->displacement[i] + (step->targets[i] - parts->displacement[i]) * k / plan->parts
-                                 : 0;
+            parts->target[i] =
+                k == plan->parts ? step->targets[i]
+                : solver->system->model.fixed[i / 3]
+                    ? parts->displacement[i] + (step->targets[i] - parts->displacement[i]) * k / plan->parts
+                    : 0;
         if (step->budget_seconds > 0) part.budget_seconds = fmax(step->budget_seconds - report->seconds, 1e-9);
         result = gxsp_take_part(solver, &part, parts, displacement, velocity, &own, failure);
         if (result == GX_OK) gxsp_report_add(report, &own);

@@ -405,8 +405,8 @@ START_TEST(quality_is_reached) {
 }
 END_TEST
 
-/* From violent starts, stiff or soft, coarse or fine, with a budget or not: all is finite, and no more energy is created
-   than the midpoint rule may. */
+/* From violent starts, stiff or soft, coarse or fine, with a budget or not: all is finite, and no more energy is
+   created than the midpoint rule may. */
 START_TEST(quality_does_not_blow_up) {
     static const double young[4] = {2e3, 2e5, 2e8, 2e11};
     scene s = hanging_bar(young[_i % 4]);
