@@ -499,6 +499,38 @@ START_TEST(quality_keeps_to_a_budget) {
 }
 END_TEST
 
+/* Two copies of the free end push each other apart: no part is the midpoint rule's, and the gap opens. */
+START_TEST(quality_takes_pairs) {
+    scene s = hanging_bar(2e7);
+    gxs_step_desc step = quality_step(0.02, 0.03);
+    gxs_step_report report;
+    gxs_pair pair;
+    double force[3], gap;
+    const uint32_t last = (uint32_t)s.model.copy_count - 1;
+    int k;
+    memset(&pair, 0, sizeof pair);
+    pair.point.count = 2;
+    pair.point.copy[0] = last;
+    pair.point.copy[1] = last - 1;
+    pair.point.weight[0] = 1;
+    pair.point.weight[1] = -1;
+    for (k = 0; k < 3; k++) pair.point.position[k] = s.rest[3 * last + k] - s.rest[3 * (last - 1) + k];
+    pair.normal[0] = 1;
+    pair.offset = pair.point.position[0] + 0.05;
+    pair.stiffness = 1e6;
+    step.pairs = &pair;
+    step.pair_count = 1;
+    step.pair_forces = force;
+    move(&s, &step, 10, &report);
+    ck_assert_int_ne(report.integrator, GXS_MIDPOINT);
+    ck_assert_uint_eq(report.substeps, 0);
+    gap = s.displacement[3 * last] - s.displacement[3 * (last - 1)];
+    assert_that(gap > 1e-3 && gap < 0.051, "%g", gap);
+    ck_assert(fabs(force[0] - 1e6 * (0.05 - gap)) < 1e-6 * 1e5);
+    scene_free(&s);
+}
+END_TEST
+
 /* What is not read does not matter; what is wrong is refused. */
 START_TEST(quality_stands_in_place_of_other_numbers) {
     scene a = hanging_bar(2e7), b = hanging_bar(2e7);
@@ -615,6 +647,7 @@ int main(void) {
     tcase_add_test(list, quality_at_rest_takes_one_step);
     tcase_add_test(list, quality_moves_held_copies);
     tcase_add_test(list, quality_keeps_to_a_budget);
+    tcase_add_test(list, quality_takes_pairs);
     tcase_add_test(list, quality_stands_in_place_of_other_numbers);
     tcase_add_test(list, quality_resumes);
     tcase_add_loop_test(list, every_allocation_may_fail, 0, 2);

@@ -360,8 +360,8 @@ static void expect_same_steps(gx_body *a, gx_body *b, const gx_step_desc *step, 
     }
 }
 
-/* Integrators, quality, materials, springs, contact, at a size for which multigrid is used. Some steps, a save or a clone in
-   the middle, a cut and more steps. */
+/* Integrators, quality, materials, springs, contact, at a size for which multigrid is used. Some steps, a save or a
+   clone in the middle, a cut and more steps. */
 START_TEST(steps_go_on) {
     static const gxs_integrator integrators[4] = {GXS_BDF1, GXS_BDF2, GXS_MIDPOINT, GXS_STATIC};
     const uint64_t seed = (uint64_t)_i;
