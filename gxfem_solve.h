@@ -746,12 +746,16 @@ extern "C" {
 #define GXSP_WORK_STEP     10.0
 #define GXSP_WORK_PRODUCT  0.3
 
-/* The frequency is measured in each implicit step, in each of the first explicit steps, then in one of as many. What
- * was measured is forgotten by 1 / e after four radians, and by GXSP_QUALITY_FORGET powers of e at most from one
- * measure to the next: a motion that turns has no speed for a while. */
+/* The frequency is measured in each implicit step, in each of the GXSP_QUALITY_FIRST first explicit steps, then in one
+ * of GXSP_QUALITY_EACH. What was measured is forgotten by 1 / e after four radians, and by GXSP_QUALITY_FORGET powers
+ * of e at most from one measure to the next: a motion that turns has no speed for a while. */
 #define GXSP_QUALITY_EACH   4
+#define GXSP_QUALITY_FIRST  2
 #define GXSP_QUALITY_FORGET 2.0
 #define GXSP_QUALITY_SLACK  1.2
+
+/* Steps that are implicit after explicit ones have been refused with filters of each length */
+#define GXSP_QUALITY_WAIT 30
 
 /* Kinetic energy of so many times that of the mean velocity is that of vibrations that steps do not follow. */
 #define GXSP_QUALITY_HIDDEN 4.0
@@ -1517,7 +1521,7 @@ typedef struct gxsp_tempo {
     uint32_t steps;    /* since the last measure */
     uint32_t refused;  /* explicit steps that were refused; those to come have shorter filters */
     uint32_t waiting;  /* steps that are implicit because of that */
-    uint32_t age;      /* steps of this model: the first is not worth what explicit steps need of it */
+    uint32_t age;      /* steps of this model: the first after a change is not worth what explicit steps need of it */
     int leaps;         /* the last step could be explicit */
     int hidden;        /* most kinetic energy is in vibrations that the last way averaged out */
     double pace;       /* s for an evaluation of explicit forces; 0: not known */
@@ -12057,9 +12061,10 @@ static gxsp_plan gxsp_plan_explicit(const gxs_solver *solver, const gxs_step_des
                  limit = 0.5 * step->dt * sqrt(factor * leap->top), /* substeps without a filter */
         degrees = fmax(1, GXSP_QUALITY_DEGREE - (double)tempo->refused),
                  later = w * gxsp_quality_time(step) + GXSP_QUALITY_MORE, share = w > 0 ? gxsp_tempo_share(tempo) : 1,
-                 all = tempo->resist[1] > 0 ? GXSP_QUALITY_MIDPOINT * tempo->resist[0] / tempo->resist[1] * step->dt *
-                                                  step->dt * later * share
-                                            : error * limit * limit / (GXSP_LEAP_DEGREE * GXSP_LEAP_DEGREE),
+                 all = tempo->resist[1] > 0
+                         ? GXSP_QUALITY_MIDPOINT * tempo->resist[0] / tempo->resist[1] * step->dt * step->dt * later *
+                               share
+                         : GXSP_QUALITY_COARSE * limit * limit / (GXSP_LEAP_DEGREE * GXSP_LEAP_DEGREE),
                  substeps = ceil(fmin(fmax(sqrt(all / error), limit / degrees), limit));
     gxsp_plan plan;
     uint32_t degree;
@@ -12092,7 +12097,7 @@ static gxsp_plan gxsp_plan_make(gxs_solver *solver, const gxs_step_desc *step, i
     gxsp_plan plan;
     double error;
     int leaps = tempo->waiting == 0;
-    if (tempo->age == 0 || gxsp_point_count(step) > 0 || step->targets) leaps = 0;
+    if ((tempo->age == 0 && tempo->measures > 0) || gxsp_point_count(step) > 0 || step->targets) leaps = 0;
     if (leaps && !solver->system->leap.made && !gxsp_leap_make(solver->system)) *memory = 0, leaps = 0;
     tempo->age += tempo->age < 1;
     tempo->leaps = leaps;
@@ -12206,11 +12211,11 @@ static gx_result gxsp_step_by_quality(gxs_solver *solver, const gxs_step_desc *s
     if (!memory) return gxsp_end(failure, GX_ERROR_MEMORY);
     gxsp_parts_copy(&parts, step, n, 0, displacement, velocity);
     result = gxsp_take_parts(solver, step, &plan, &parts, displacement, velocity, report, failure);
-    if (result == GX_OK && plan.integrator == GXS_EXPLICIT && report->substeps == 0 && report->active_unknowns > 0) {
+    while (result == GX_OK && plan.integrator == GXS_EXPLICIT && report->substeps == 0 && report->active_unknowns > 0) {
         gxsp_parts_copy(&parts, step, n, 1, displacement, velocity);
         tempo->refused++;
-        tempo->waiting = tempo->refused * GXSP_QUALITY_EACH;
-        plan = gxsp_plan_implicit(solver, step, step->quality);
+        if (tempo->refused >= GXSP_QUALITY_DEGREE) tempo->waiting = GXSP_QUALITY_WAIT;
+        plan = gxsp_plan_for(solver, step, step->quality, tempo->waiting == 0);
         result = gxsp_take_parts(solver, step, &plan, &parts, displacement, velocity, report, failure);
     }
     if (result != GX_OK) {
@@ -12221,7 +12226,8 @@ static gx_result gxsp_step_by_quality(gxs_solver *solver, const gxs_step_desc *s
     report->error = tempo->measures > 0 ? plan.error : 0;
     if (report->seconds > 0) tempo->pace = report->seconds / plan.work;
     if (report->active_unknowns == 0) return GX_OK;
-    if (plan.integrator != GXS_EXPLICIT || tempo->measures < GXSP_QUALITY_EACH || tempo->steps + 1 >= GXSP_QUALITY_EACH)
+    if (plan.integrator != GXS_EXPLICIT || tempo->measures < GXSP_QUALITY_FIRST ||
+        tempo->steps + 1 >= GXSP_QUALITY_EACH)
         gxsp_measure(solver, step, &plan, &parts, displacement, velocity);
     else
         tempo->steps++;
@@ -12592,6 +12598,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_QUALITY_DEGREE
 #undef GXSP_QUALITY_SUBSTEPS
 #undef GXSP_QUALITY_EACH
+#undef GXSP_QUALITY_FIRST
+#undef GXSP_QUALITY_WAIT
 #undef GXSP_QUALITY_FORGET
 #undef GXSP_QUALITY_SLACK
 #undef GXSP_QUALITY_HIDDEN
