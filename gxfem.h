@@ -507,6 +507,9 @@ typedef struct gx_step_desc {
     double (*clock)(void *user); /* s; NULL: the body's */
     void *clock_user;
     double budget_seconds; /* no iteration begins after this time; 0: no limit. Needs a clock */
+    /* above 0: the error of the motion asked for, as a share of it, .03 say, in place of integrator, substeps and the
+       numbers of Newton's method and CG: the step is divided as the motion demands (see gxs_step_desc) */
+    double quality;
 } gx_step_desc;
 typedef gxs_step_report gx_step_report;
 /* Takes one time step (GXFEM Eq. 10). On an error the body is as it was.
@@ -8386,7 +8389,7 @@ static void gxp_translate_loads(const gx_step_desc *desc, gxs_step_desc *step) {
 /* The step as the solver takes it: the only place where one description becomes the other. The body adds its rest
    times, its history and, where the description has none, its clock. */
 static gx_result gxp_translate_step(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step) {
-    const int history = desc->integrator == GXS_BDF2, own_clock = desc->clock == NULL;
+    const int history = desc->integrator == GXS_BDF2 && !(desc->quality > 0), own_clock = desc->clock == NULL;
     memset(step, 0, sizeof *step);
     gxp_translate_loads(desc, step);
     step->dt = desc->dt;
@@ -8399,6 +8402,7 @@ static gx_result gxp_translate_step(gx_body *body, const gx_step_desc *desc, gxs
     step->sleep_speed = desc->sleep_speed;
     step->sleep_time = desc->sleep_time;
     step->budget_seconds = desc->budget_seconds;
+    step->quality = desc->quality;
     step->clock = own_clock ? body->config.clock : desc->clock;
     step->clock_user = own_clock ? body->config.clock_user : desc->clock_user;
     step->rest_times = body->copies.rest_time;
@@ -8489,7 +8493,7 @@ static gx_result gxp_step_affine(gx_body *body, const gxs_step_desc *given, gx_s
 static gx_result gxp_step(gx_body *body, const gxs_step_desc *step, gx_step_report *report, gx_failure *failure) {
     gxp_copies *copies = &body->copies;
     const size_t bytes = 3 * (size_t)copies->count * sizeof(double);
-    const int history = step->integrator == GXS_BDF2;
+    const int history = step->integrator == GXS_BDF2 && !(step->quality > 0);
     const gxp_column *columns = gxp_copy_columns + GXP_FIRST_HISTORY;
     gx_result result;
     int i;

@@ -679,6 +679,22 @@ START_TEST(stepping) {
 }
 END_TEST
 
+static gx_result step_by_quality(gx_body *body) {
+    gx_step_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.dt = 0.01;
+    desc.gravity[2] = -9.81;
+    desc.quality = 0.03;
+    return gx_body_step(body, &desc, NULL, NULL);
+}
+
+START_TEST(stepping_by_quality) {
+    static const action stepped[] = {step_by_quality, NULL};
+    sweep("a first step by quality", nothing, step_by_quality);
+    sweep("a further step by quality", stepped, step_by_quality);
+}
+END_TEST
+
 static gx_result step_bdf2(gx_body *body) {
     gx_step_desc desc;
     memset(&desc, 0, sizeof desc);
@@ -1040,6 +1056,7 @@ int main(void) {
     tcase_add_test(tests, points_and_rays);
     tcase_add_test(tests, holding);
     tcase_add_test(tests, stepping);
+    tcase_add_test(tests, stepping_by_quality);
     tcase_add_test(tests, motions);
     tcase_add_test(tests, copies);
     tcase_add_test(tests, restoring);

@@ -216,6 +216,7 @@ namespace Gxfem {
         public IntPtr clock;
         public IntPtr clock_user;
         public double budget_seconds;
+        public double quality;
     }
 
     public enum gxs_stop {
@@ -231,6 +232,9 @@ namespace Gxfem {
         public gxs_stop stop;
         public UIntPtr active_unknowns;
         public uint substeps;
+        public uint parts;
+        public gxs_integrator integrator;
+        public double error;
         public uint newton_iterations;
         public uint cg_iterations;
         public uint line_search_steps;
@@ -439,6 +443,7 @@ namespace Gxfem {
         public IntPtr clock;
         public IntPtr clock_user;
         public double budget_seconds;
+        public double quality;
     }
 
     [StructLayout(LayoutKind.Sequential)]

@@ -509,12 +509,16 @@ gxs_step_desc._fields_ = [
     ('clock', CFUNCTYPE(c_double, c_void_p)),
     ('clock_user', c_void_p),
     ('budget_seconds', c_double),
+    ('quality', c_double),
 ]
 
 gxs_step_report._fields_ = [
     ('stop', c_int),
     ('active_unknowns', c_size_t),
     ('substeps', c_uint32),
+    ('parts', c_uint32),
+    ('integrator', c_int),
+    ('error', c_double),
     ('newton_iterations', c_uint32),
     ('cg_iterations', c_uint32),
     ('line_search_steps', c_uint32),
@@ -711,6 +715,7 @@ gx_step_desc._fields_ = [
     ('clock', CFUNCTYPE(c_double, c_void_p)),
     ('clock_user', c_void_p),
     ('budget_seconds', c_double),
+    ('quality', c_double),
 ]
 
 gx_step_report = gxs_step_report
