@@ -71,7 +71,8 @@
  * Exact: the set of cells and their links, hence copies and fragments. Decisions are signs of polynomials in the given
  * coordinates (gxfem_boolean.h). Rounded once, to doubles: volumes, masses and vertices.
  *
- * Not there yet: a search for contact between fragments; surfaces given in the deformed state (a moving edge is:
+ * Not there yet: contact with the host's bodies but by points (gx_step_desc.contact; pieces of a body touch each other:
+ * gx_body_contact); surfaces given in the deformed state (a moving edge is:
  * gx_blade); unknowns within a partly cut element (a sheet that ends inside an element separates nothing there until
  * another sheet completes it).
  *
@@ -528,7 +529,8 @@ typedef struct gx_contact {
 } gx_contact;
 /* Lists them. contacts: room for capacity. *count: how many there are, also after CAPACITY; 0 before the first step and
    after a step that failed.
-   Errors: ARGUMENT, CAPACITY (capacity is below *count), SEQUENCE (contact is off, or a cut has been since the step). */
+   Errors: ARGUMENT, CAPACITY (capacity is below *count), SEQUENCE (contact is off, or a cut has been since the step).
+ */
 GXFEM_API gx_result gx_body_contacts(const gx_body *body, gx_contact *contacts, size_t capacity, size_t *count,
                                      gx_failure *failure /* or NULL */);
 
@@ -1377,8 +1379,8 @@ typedef struct gxp_touch_surface { /* facets by fragment, then as they lie in sp
 
 typedef struct gxp_touch_pair { /* of a step */
     uint32_t vertex, facet;
-    double share[3];  /* of the facet's corners: the place that the vertex touches */
-    double normal[3]; /* of the facet, in space, of length 1 */
+    double share[3];             /* of the facet's corners: the place that the vertex touches */
+    double normal[3];            /* of the facet, in space, of length 1 */
     double gap, approach, score; /* m; m/s; m2: the smallest is taken */
 } gxp_touch_pair;
 
@@ -1393,16 +1395,16 @@ typedef struct gxp_touch {
     uint64_t hash; /* cuts.hash */
     /* of a step */
     gxp_touch_pair *pairs;
-    double *moved;       /* vertices x 9: position and velocity in space, outward normal */
-    double *facing;      /* facets x 3: normals in space, of length 1, or 0 */
-    gxp_bounds *boxes;   /* a complete binary tree over the facets, GXP_TOUCH_LEAF in each of its leaves */
-    gxp_words sides;     /* pairs x GXP_TOUCH_COPIES: copies of their points */
-    double *weights;     /* likewise */
+    double *moved;          /* vertices x 9: position and velocity in space, outward normal */
+    double *facing;         /* facets x 3: normals in space, of length 1, or 0 */
+    gxp_bounds *boxes;      /* a complete binary tree over the facets, GXP_TOUCH_LEAF in each of its leaves */
+    gxp_words sides;        /* pairs x GXP_TOUCH_COPIES: copies of their points */
+    double *weights;        /* likewise */
     double *slips, *forces; /* all pairs of the step x 3 */
     gxp_keys order;
-    gxp_words ranked; /* facets along a curve; then vertices that a cut has made */
-    uint32_t leaf_count; /* a power of two */
-    uint32_t given;      /* pairs of the caller, which stand first */
+    gxp_words ranked;     /* facets along a curve; then vertices that a cut has made */
+    uint32_t leaf_count;  /* a power of two */
+    uint32_t given;       /* pairs of the caller, which stand first */
     uint32_t found, kept; /* pairs of contact: of this step; of the last one that succeeded */
     uint32_t pair_capacity, moved_capacity, facing_capacity, box_capacity, weight_capacity, slip_capacity,
         force_capacity;
@@ -10020,12 +10022,13 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
 
 /* >>touch: the surface of contact ---------------------------------------------------------------------------------- */
 /* In: the cells, the state of the surface before a cut. Out: samples and facets, with the state that the material had.
-   Touches what a step with contact works with; the skin that the caller sees stays as it is.
- *
- * The surface is made from nothing after each cut, so that it depends on the body alone, not on its history: a skin of
- * its own, of which samples and facets are copied. */
+   Touches what a step with contact works with; the skin that the caller sees stays as it is. */
 
-#define GXP_TOUCH_CREASE 0.7 /* rad: where the surface bends by more, each side has samples with a normal of its own */
+/* The surface is made from nothing after each cut, so that it depends on the body alone, not on its history: a skin of
+   its own, of which samples and facets are copied. */
+
+/* Where the surface bends by more, rad, each side has samples with a normal of its own. */
+#define GXP_TOUCH_CREASE 0.7
 #define GXP_TOUCH_LEAF   4u
 
 /* Releases the arrays of body.skin. */
@@ -10259,17 +10262,20 @@ static gx_result gxp_step_surface(gx_body *body, gxp_touch_surface **surface) {
 
 /* >>meeting: pairs of a step --------------------------------------------------------------------------------------- */
 /* In: the surface, where its material is and how fast. Out: the pairs that a step gets beside the caller's, and, after
-   the step, what their vertices press with. Touches what a step with contact works with.
- *
- * A vertex touches at most one facet, in whose frame all is told: the gap is the vertex's height above the facet's
- * plane. Pairs stay what they are within the step, so that its energy is well defined. A pair without load, in front of
- * its facet, is there in time for what comes near within the step. */
+   the step, what their vertices press with. Touches what a step with contact works with. */
 
-#define GXP_TOUCH_FACING 0.5   /* cosine: facets that face a vertex less do not meet it */
-#define GXP_TOUCH_NEAR   0.02  /* sizes of an element: gaps below it, at the step's end, have a pair */
-#define GXP_TOUCH_BESIDE 0.002 /* likewise: how far beside a facet a vertex may be; and a share of the gap: */
+/* A vertex touches at most one facet, in whose frame all is told: the gap is the vertex's height above the facet's
+   plane. Pairs stay what they are within the step, so that its energy is well defined. A pair without load, in front of
+   its facet, is there in time for what comes near within the step. */
+
+/* A cosine: facets that face a vertex less do not meet it. */
+#define GXP_TOUCH_FACING 0.5
+/* In sizes of an element: gaps that have a pair if the step may make them smaller; how far beside a facet a vertex may
+   be, with a share of its gap; how far behind a facet at rest is a piece's own thickness */
+#define GXP_TOUCH_NEAR   0.02
+#define GXP_TOUCH_BESIDE 0.002
 #define GXP_TOUCH_SLANT  0.1
-#define GXP_TOUCH_BEHIND 1e-9 /* likewise: behind a facet at rest by more is a piece's own thickness */
+#define GXP_TOUCH_BEHIND 1e-9
 
 /* Position, velocity and normal of all vertices, normals of facets */
 static void gxp_move_surface(gx_body *body, const gxp_touch_surface *s) {
@@ -10382,8 +10388,7 @@ static int gxp_meets(const gx_body *body, const gxp_touch_surface *s, double dt,
     pair->gap = gxp_dot(d, n);
     height = gxp_dot(y, n);
     along = sqrt(fmax(0, gxp_dot(y, y) - height * height));
-    if (!(pair->gap > -reach * facing) ||
-        !(pair->gap - dt * fmax(0, pair->approach) < GXP_TOUCH_NEAR * v->size) ||
+    if (!(pair->gap > -reach * facing) || !(pair->gap - dt * fmax(0, pair->approach) < GXP_TOUCH_NEAR * v->size) ||
         !(along <= GXP_TOUCH_BESIDE * v->size + GXP_TOUCH_SLANT * fabs(height)))
         return 0;
     pair->score = (along * along + pair->gap * pair->gap) / (facing * facing);
@@ -10401,8 +10406,8 @@ static void gxp_try_facet(const gx_body *body, const gxp_touch_surface *s, doubl
 /* Finds the facet that a vertex meets. best: its vertex is set, its facet is GXP_NONE and stays so if there is none. */
 static void gxp_seek_facet(const gx_body *body, const gxp_touch_surface *s, double dt, gxp_touch_pair *best) {
     const gxp_touch *t = &body->touch;
-    const double slack = (t->desc.depth * (1 + GXP_TOUCH_SLANT) + GXP_TOUCH_NEAR + GXP_TOUCH_BESIDE) *
-                         s->vertices[best->vertex].size;
+    const double slack =
+        (t->desc.depth * (1 + GXP_TOUCH_SLANT) + GXP_TOUCH_NEAR + GXP_TOUCH_BESIDE) * s->vertices[best->vertex].size;
     uint32_t stack[64], count = 0, i;
     gxp_bounds way;
     int k;

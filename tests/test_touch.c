@@ -72,7 +72,8 @@ static double distance_to(const gx_skin *skin, const double *x, uint32_t fragmen
                 double square = 0;
                 for (k = 0; k < 3; k++) {
                     const double q = (i * x[3 * v[0] + (uint32_t)k] + j * x[3 * v[1] + (uint32_t)k] +
-                                      (32 - i - j) * x[3 * v[2] + (uint32_t)k]) / 32;
+                                      (32 - i - j) * x[3 * v[2] + (uint32_t)k]) /
+                                     32;
                     square += (q - p[k]) * (q - p[k]);
                 }
                 best = fmin(best, square);
@@ -225,7 +226,7 @@ START_TEST(rests_from_the_cut_on) {
     for (i = 0, before = start, start = 0; i < view.copy_count; i++) start = fmin(start, view.displacement[3 * i + 2]);
     above = view.fragment_center[2] > view.fragment_center[5] ? 0 : 1;
     weight = view.fragment_mass[above] * 9.81;
-    force = force_of(body, &count) ;
+    force = force_of(body, &count);
     if (getenv("GXFEM_VERBOSE"))
         printf("%d: sank %g to %g, kinetic %g J, force %g weight %g, %zu contacts, overlap %g\n", _i, before, start,
                fastest, force, weight, count, overlap_of(body));
