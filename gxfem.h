@@ -10539,7 +10539,7 @@ static gx_result gxp_join_pairs(gx_body *body, const gxp_touch_surface *s, doubl
     if (result != GX_OK) return result;
     t->given = (uint32_t)given;
     if (own) memcpy(attached->pairs, step->pairs, given * sizeof *attached->pairs);
-    memset(t->slips, 0, 3 * given * sizeof *t->slips);
+    if (given > 0) memset(t->slips, 0, 3 * given * sizeof *t->slips);
     if (given > 0 && step->pair_slips != NULL) memcpy(t->slips, step->pair_slips, 3 * given * sizeof *t->slips);
     for (i = 0; i < t->found; i++) gxp_set_pair(body, s, i, dt, &attached->pairs[given + i]);
     step->pairs = attached->pairs;
