@@ -53,7 +53,7 @@
  *     what a body is made of:    >>state >>body >>columns
  *     tools:                     >>memory >>basics >>mesh >>search >>copies >>transaction >>complex >>numbering
  *     a cut:                     >>surfaces >>pinches >>arrange >>solids >>links >>cells >>components >>integrals
- *                                >>specks >>settle >>cut
+ *                                >>sheets >>specks >>settle >>cut
  *     a sheet's thickness:       >>solidify
  *     what is held and whole:    >>anchors >>regions >>grips >>map >>fragments >>motion
  *     what acts on it:           >>attached >>supports >>model
@@ -71,10 +71,9 @@
  * Exact: the set of cells and their links, hence copies and fragments. Decisions are signs of polynomials in the given
  * coordinates (gxfem_boolean.h). Rounded once, to doubles: volumes, masses and vertices.
  *
- * Not there yet: contact with the host's bodies but by points (gx_step_desc.contact; pieces of a body touch each other:
- * gx_body_contact); surfaces given in the deformed state (a moving edge is:
- * gx_blade); unknowns within a partly cut element (a sheet that ends inside an element separates nothing there until
- * another sheet completes it).
+ * Not there yet: contact with the host's bodies but by points (pieces of a body touch each other: gx_body_contact);
+ * surfaces given in the deformed state (a moving edge is: gx_blade); unknowns within a partly cut element (a sheet that
+ * ends inside an element separates nothing there until another sheet completes it).
  *
  * Limits: fewer than 2^28 elements a body (2^24 where pointers have 32 bits), fewer than 2^30 cells and 2^30 copies
  * for steps, some 1.4e9 of each other kind of object, 5e8 vertices and triangles a surface (GX_ERROR_LIMIT). A body's
@@ -212,6 +211,11 @@ typedef struct gx_body_desc {
     /* A share of an element, below 1. A copy follows others if all parts of elements around it are smaller (see
        gx_body_step). 0: 1e-3. 1e-300: none follow, and slivers may be flung away. */
     double support_below;
+    /* In thicknesses of elements, 0 ... 1000. Where material is thinner, its copies carry an affine motion each (are
+       affine), so that sheets bend as they should. Creation and cuts find it, the latter among what they touch; an
+       affine copy stays so. A layer of cubes of five or six elements has a thickness of 0.94; 1 is a good value.
+       0: none, at no cost. Other values: no blades, no gx_body_carve and no pairs yet */
+    double affine_below;
     gx_allocator allocator;      /* zero: malloc, free, realloc */
     double (*clock)(void *user); /* seconds, for the reports' timings and the steps' budgets; NULL: timings are 0 */
     void *clock_user;
@@ -336,6 +340,12 @@ typedef struct gx_view {
     size_t removed_count;
     const uint32_t *removed_ids; /* removed_count: ids of fragments that the change removed entirely */
     double volume, mass;         /* of the body, m3 and kg */
+    /* copy_count, 1: the copy is affine (gx_body_desc.affine_below). A cell moves a material point X by the sum of
+       N_i (a_i + A_i (X - X_i)) over its copies, with a the displacement, X_i at the copy's node, A = 0 where a copy is
+       not affine. NULL, like the next two, where affine_below is 0 */
+    const uint8_t *copy_affine;
+    const double *affine;      /* copy_count x 9: the columns of A, without unit. Only steps and restores change it */
+    const double *affine_rate; /* copy_count x 9, 1/s */
 } gx_view;
 /* Brings the view up to date. Errors: ARGUMENT, MEMORY, LIMIT (no ids left). */
 GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view, gx_failure *failure /* or NULL */);
@@ -480,18 +490,21 @@ typedef gxs_step_report gx_step_report;
    follow others (RXFEM Eq. 22; gx_body_desc.support_below): each takes the increment of the displacement field of the
    nearest element without such copies. A fragment without such an element is thin everywhere; its parts are then
    compared with its fullest part. It moves as a point if that part is smaller than support_below of its element.
-   Where support_below is 0, it moves as a point if that part is smaller than 1e-9 or if no part reaches a tenth as far
-   as its element.
-   failure.index: a spring, point, plane, pair, anchor, region or copy. The fields "displacement" and "velocity" are
-   those of gx_view. Errors: ARGUMENT, NOT_FINITE, INDEX, LIMIT, MEMORY, STALE (copies of another epoch), RANGE (a
-   number is too large or too small; as for FLAT, an element if field is NULL), FLAT (an element, see gx_body_model),
-   DIVERGED, FREE (GXS_STATIC; a copy of a component that nothing holds). */
+   Affine copies neither follow nor lead, but those of a fragment that moves as a point do. A point with affine copies
+   is moved as the material at its position at rest is. forces act on displacements alone, anchor_forces on A too;
+   targets leave A as it is, poses turn it. Thin sheets that are flung need two or three Newton iterations in steps of
+   games: one lags. Pairs are refused where copies are affine. A cut of such a body makes its model anew. Where
+   support_below is 0, it moves as a point if that part is smaller than 1e-9 or if no part reaches a tenth as far as its
+   element. failure.index: a spring, point, plane, pair, anchor, region or copy. The fields "displacement" and
+   "velocity" are those of gx_view. Errors: ARGUMENT, NOT_FINITE, INDEX, LIMIT, MEMORY, STALE (copies of another epoch),
+   RANGE (a number is too large or too small; as for FLAT, an element if field is NULL), FLAT (an element, see
+   gx_body_model), DIVERGED, FREE (GXS_STATIC; a copy of a component that nothing holds). */
 GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report /* or NULL */,
                                  gx_failure *failure /* or NULL */);
 
-/* Gives the solver's model of the body as it is cut now, for other solvers. Arrays are the body's, valid until its next
-   cut, hold, step or restore. Errors: ARGUMENT, LIMIT, MEMORY; RANGE, FLAT: an element's gradients are beyond doubles
-   (index: element). */
+/* Gives the solver's model of the body as it is cut now, for other solvers. Affine copies have hidden vectors behind
+   all copies, three for each: see gxs_model.affine. Arrays are the body's, valid until its next cut, hold, step or
+   restore. Errors: ARGUMENT, LIMIT, MEMORY; RANGE, FLAT: an element's gradients are beyond doubles (index: element). */
 GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model, gx_failure *failure /* or NULL */);
 
 /* >>touching: pieces that press on each other ---------------------------------------------------------------------- */
@@ -515,7 +528,7 @@ typedef struct gx_contact_desc {
 /* Switches contact on for later steps, or off (NULL). It forgets the slips of friction. Steps with contact refuse
    GXS_MIDPOINT ("integrator"). Contact is not saved, and neither clone nor restore copies it: a body that was loaded,
    or made by gx_body_clone, has none, and gx_body_restore leaves it on or off as it is and forgets the slips.
-   Errors: ARGUMENT, NOT_FINITE. */
+   Errors: ARGUMENT (also: gx_body_desc.affine_below is not 0), NOT_FINITE. */
 GXFEM_API gx_result gx_body_contact(gx_body *body, const gx_contact_desc *desc /* or NULL: off */,
                                     gx_failure *failure /* or NULL */);
 
@@ -557,7 +570,9 @@ typedef struct gx_skin {
     size_t vertex_count;
     uint32_t vertex_width;         /* copies for which a vertex has room */
     const uint32_t *vertex_copies; /* vertex_count x vertex_width: copies that move it; those of weight 0 stand last */
-    const double *vertex_weights;  /* vertex_count x vertex_width: x = X + sum of weight u over the copies */
+    /* vertex_count x vertex_width: x = X + sum of weight u over the copies; where copies are affine, see
+       gx_view.copy_affine, plus weight A (X - X_i) */
+    const double *vertex_weights;
     /* vertex_count: a name, equal for vertices at the same material point, exactly. Vertices whose copies of weight not
        0 are equal too are one corner of the surface: with corners merged like this it is watertight. */
     const uint32_t *vertex_point;
@@ -639,7 +654,9 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
 
 /* A cell of an uncut element fills its deformed element. A cell of a cut one fills the part that is its own. Corners
    are where rest + displacement, rounded once, puts them; which cells contain a point is decided exactly by that. Faces
-   and walls belong to the cells on both their sides. Inverted elements contain points as others do, flat ones none. */
+   and walls belong to the cells on both their sides. Inverted elements contain points as others do, flat ones none.
+   Cells with affine copies (gx_body_desc.affine_below) have curved faces: points are pulled back to rounding, and lie
+   where that puts them; the surface that is nearest has flat triangles between its vertices, as the skin has. */
 
 /* Finds the material at points of space: of the cells that contain a point the one with the lowest slot. hit.material
    is within 2^-48 of the element's size of the exact place, and hit.position is the point. Where no cell contains it,
@@ -654,7 +671,7 @@ GXFEM_API gx_result gx_body_locate(gx_body *body, const double *points, size_t c
    there are, also after CAPACITY; 0 is no error. Errors: as above, CAPACITY (capacity is below *count). */
 GXFEM_API gx_result gx_body_locate_all(gx_body *body, const double point[3], gx_hit *hits, size_t capacity,
                                        size_t *count, gx_failure *failure /* or NULL */);
-/* Gives where a cell has a material point; outside of its element, where its affine map, extended, would have it. slot:
+/* Gives where a cell has a material point; outside of its element, where its map, extended, would have it. slot:
    of a hit, below gx_view.slot_count. It names a cell for good; where a cut divides the cell, one part keeps it.
    Errors: ARGUMENT, NOT_FINITE (material, or a copy's displacement), RANGE (likewise), INDEX (slot), EMPTY (slot: the
    cell was removed). */
@@ -696,9 +713,9 @@ GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index);
    of an element, 8 for each element of the body's length at most. A move that changes little is remembered and worked
    out later, before the path bends. edge: point_count x 3, in space, m; as many points at
    each move until the blade is lifted, 2 or more; ends may be 10^12 elements away. scope: fragments that alone are cut,
-   below gx_view.fragment_count; count 0: all. On an error body and blade are as they were. Errors: ARGUMENT (also: the
-   first edge is inside the material and starts_inside is 0, index: point), INDEX, NOT_FINITE and RANGE (edge, or
-   "displacement", index: copy), LIMIT, MEMORY. */
+   below gx_view.fragment_count; count 0: all. On an error body and blade are as they were. Errors: ARGUMENT (also:
+   gx_body_desc.affine_below is not 0; the first edge is inside the material and starts_inside is 0, index: point),
+   INDEX, NOT_FINITE and RANGE (edge, or "displacement", index: copy), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t point_count,
                                   const uint32_t *scope_fragments, size_t scope_fragment_count,
                                   gx_blade_report *report /* or NULL */, gx_failure *failure /* or NULL */);
@@ -726,8 +743,8 @@ GXFEM_API gx_result gx_blade_contacts(gx_blade *blade, gx_blade_contact *contact
 /* Removes the material that a closed tool in space covers now (a drill, a punch), from each piece where it meets the
    tool. tool: vertices in space, m; kind and scope_slots are not read. Its triangles are divided where elements
    are smaller.
-   Errors: as gx_body_cut; a field of the tool reads "tool.vertices"; NOT_FINITE and RANGE also of "displacement"
-   (index: copy). */
+   Errors: as gx_body_cut, and ARGUMENT ("affine_below" is not 0); a field of the tool reads "tool.vertices"; NOT_FINITE
+   and RANGE also of "displacement" (index: copy). */
 GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_report *report /* or NULL */,
                                   gx_failure *failure /* or NULL */);
 
@@ -836,6 +853,7 @@ typedef struct gxp_config {
     void *clock_user;
     double support_below;                          /* as given */
     double follow_below, speck_below, speck_reach; /* see >>supports */
+    double affine_below;                           /* see >>sheets */
 } gxp_config;
 
 typedef struct gxp_box { /* tree node; count 0: children first, first+1 */
@@ -858,6 +876,7 @@ typedef struct gxp_mesh {
     uint32_t *element_materials; /* element_count */
     double *sizes;               /* element_count: cube roots of six times the volumes, m; NULL: no blade has asked */
     double mean_size, largest_size;
+    double affine_length; /* m, about an element's size; 0 where affine_below is 0 */
     uint32_t box_count;
     uint32_t edge_count, edge_capacity[1];
     uint8_t *edge_pinched; /* edge_count: elements around it meet in the edge only */
@@ -912,7 +931,7 @@ typedef struct gxp_leaves { /* beside the leaves of the complex */
 } gxp_leaves;
 
 typedef struct gxp_copies {
-    uint32_t count, capacity[13];
+    uint32_t count, capacity[18];
     uint32_t *node;
     double *displacement, *velocity; /* x 3 */
     double *rest_time;               /* s */
@@ -924,6 +943,11 @@ typedef struct gxp_copies {
     double *seen;       /* displacement when the tree was last refitted, x 3; from the first use of the tree on */
     double *struck;     /* displacement at the last move of the blade that may leave out moves, x 3 */
     double previous_dt; /* s, of the step that history[0] and [1] are from; 0: there is none */
+    /* There where affine_below is above 0: is the copy affine? The columns of its A and of A's rate, 0 if it is not;
+       both a step ago, if history[0] and [1] are */
+    uint8_t *affine;
+    double *linear, *linear_rate, *linear_history[2]; /* x 9 */
+    int bends;                                        /* a copy is affine, or was when the flags were read */
 } gxp_copies;
 
 typedef struct gxp_surface_record {
@@ -1047,6 +1071,20 @@ typedef struct gxp_snapshot {
     uint32_t stale; /* a cut has been since */
 } gxp_snapshot;
 
+/* Affine copies as the solver's model has them. Their hidden vectors stand behind all copies, three for each. */
+typedef struct gxp_hidden {
+    gxp_words copies; /* affine copies of the model, ascending. Those of specks are none: a speck moves as a point */
+    gxp_words first;  /* vectors of the model: gxs_model.affine; empty if copies is */
+    uint8_t *held;    /* vectors of the model */
+    uint8_t *plain;   /* by copy, while the model is made: 1: part of a speck */
+    uint32_t held_capacity, plain_capacity;
+    double *state; /* of a step: displacement, velocity, both a step ago, x 3 and by vector, then rest times */
+    uint32_t state_capacity;
+    gxp_words span_copies; /* of a step: spans of its springs and points, one after the other */
+    double *span_weights;
+    uint32_t span_capacity;
+} gxp_hidden;
+
 /* The solver's model agrees with the body, or did before the last cuts, or must be made whole. */
 typedef enum gxp_model_state { GXP_MODEL_KNOWN, GXP_MODEL_CHANGED, GXP_MODEL_STALE } gxp_model_state;
 
@@ -1080,6 +1118,12 @@ typedef struct gxp_attached { /* of a step: what it has at anchors and regions, 
     double *targets; /* copies x 3, m: of held copies */
     uint32_t spring_capacity, point_capacity, pair_capacity, weight_capacity, force_capacity, target_capacity;
 } gxp_attached;
+
+/* Material around a copy or cell: integrals over cells, without density, and over the elements they are in */
+typedef struct gxp_bulk {
+    double volume, first[3], second[6]; /* m3, m4, m5: of 1, x, x x^T, less the mesh's lower corner */
+    double whole, shape[6];             /* of whole elements: volume, volume x covariance */
+} gxp_bulk;
 
 /* The key of a vertex of the skin: the name of a point of the complex, four names in ascending order, a group. On the
    outer surface the names are slots and the group is 0. On a face of a cut they are copies; the group is the surface
@@ -1411,9 +1455,6 @@ typedef struct gxp_touch {
 } gxp_touch;
 #define GXP_TOUCH_COPIES 16u /* of a pair at most: those of a vertex and of a facet's corners */
 
-/* --- working memory of one call. No contents last to the next call; the memory stays, so that a cut as large as the
-   last one allocates nothing. --- */
-
 /* The boundary of a cell or leaf, as triangles in barycentric coordinates of its element */
 typedef struct gxp_boundary {
     gxp_words points; /* of the complex */
@@ -1462,6 +1503,13 @@ typedef struct gxp_scratch {
     gxp_words face_facets;     /* of an element's face */
     /* >>integrals, >>vertices */
     gxp_boundary boundary;
+    /* >>sheets */
+    gxp_words sheet_cells; /* that may have become thin */
+    gxp_words bulk_of;     /* by copy: its place in bulks, or GXP_NONE */
+    gxp_words bulk_met;    /* by copy: the last walk that has met it */
+    gxp_words bent;        /* copies that become affine; some more than once */
+    gxp_bulk *bulks;
+    uint32_t bulk_count, bulk_capacity;
 } gxp_scratch;
 
 /* Divided by lifetime. Each array is listed in gxp_tables or gxp_lists, by which it grows and is released. */
@@ -1480,6 +1528,7 @@ struct gx_body {
     gxp_view view;
     gxp_snapshot snapshot;
     gxp_model model;
+    gxp_hidden hidden;
     gxp_attached attached;
     gxp_skin skin;
     gx_blade *blades; /* list through next */
@@ -1501,7 +1550,8 @@ enum {
     GXP_UNDONE = 8,   /* rows are put back when a cut fails */
     GXP_CLEARED = 16, /* new rows are 0 */
     GXP_LATER = 32,   /* NULL until it is needed */
-    GXP_STROKE = 64   /* saved and hashed while a blade may leave out moves */
+    GXP_STROKE = 64,  /* saved and hashed while a blade may leave out moves */
+    GXP_AFFINE = 128  /* saved and hashed if the body can have affine copies */
 };
 
 /* Offsets in gx_body: of the pointer, of the number of entries that there is room for; bytes of an entry */
@@ -1559,13 +1609,20 @@ static const gxp_column gxp_copy_columns[] = {
     GXP_COLUMN(copies, history[2],   capacity,  9, 3 * sizeof(double), GXP_LATER),
     GXP_COLUMN(copies, history[3],   capacity, 10, 3 * sizeof(double), GXP_LATER),
     GXP_COLUMN(copies, seen,         capacity, 11, 3 * sizeof(double), GXP_LATER),
-    GXP_COLUMN(copies, struck,       capacity, 12, 3 * sizeof(double), GXP_STROKE | GXP_LATER)};
+    GXP_COLUMN(copies, struck,       capacity, 12, 3 * sizeof(double), GXP_STROKE | GXP_LATER),
+    GXP_COLUMN(copies, affine,       capacity, 13, sizeof(uint8_t), GXP_AFFINE | GXP_LATER),
+    GXP_COLUMN(copies, linear,       capacity, 14, 9 * sizeof(double), GXP_AFFINE | GXP_LATER),
+    GXP_COLUMN(copies, linear_rate,  capacity, 15, 9 * sizeof(double), GXP_AFFINE | GXP_LATER),
+    GXP_COLUMN(copies, linear_history[0], capacity, 16, 9 * sizeof(double), GXP_AFFINE | GXP_LATER),
+    GXP_COLUMN(copies, linear_history[1], capacity, 17, 9 * sizeof(double), GXP_AFFINE | GXP_LATER)};
 enum { /* places in the lists above */
     GXP_TEXTURE_COLUMN = 3,
     GXP_SIZE_COLUMN = 4,
     GXP_FIRST_HISTORY = 7,
     GXP_SEEN_COLUMN = 11,
-    GXP_STRUCK_COLUMN = 12
+    GXP_STRUCK_COLUMN = 12,
+    GXP_FIRST_AFFINE = 13,
+    GXP_AFFINE_COLUMNS = 5
 };
 static const gxp_column gxp_surface_columns[] = {
     GXP_COLUMN(cuts, surfaces, surface_capacity, 0, sizeof(gxp_surface_record), GXP_TOPOLOGY)};
@@ -1653,6 +1710,10 @@ static const gxp_column gxp_lists[] = {
     GXP_WORDS(view.indices), GXP_WORDS(view.copy_fragment), GXP_WORDS(view.fragment_number),
     GXP_WORDS(view.splits), GXP_WORDS(view.split_cells), GXP_WORDS(view.split_parents),
     GXP_WORDS(model.changed), GXP_WORDS(model.thin),
+    GXP_WORDS(hidden.copies), GXP_WORDS(hidden.first), GXP_LIST(hidden.held, hidden.held_capacity, 1),
+    GXP_LIST(hidden.plain, hidden.plain_capacity, 1),
+    GXP_LIST(hidden.state, hidden.state_capacity, sizeof(double)), GXP_WORDS(hidden.span_copies),
+    GXP_LIST(hidden.span_weights, hidden.span_capacity, sizeof(double)),
     GXP_LIST(attached.springs, attached.spring_capacity, sizeof(gxs_spring)),
     GXP_LIST(attached.points, attached.point_capacity, sizeof(gxs_point)),
     GXP_LIST(attached.pairs, attached.pair_capacity, sizeof(gxs_pair)),
@@ -1699,7 +1760,9 @@ static const gxp_column gxp_lists[] = {
     GXP_WORDS(scratch.taken), GXP_WORDS(scratch.face_facets),
     GXP_WORDS(scratch.boundary.points), GXP_WORDS(scratch.boundary.slots), GXP_WORDS(scratch.boundary.triangles),
     GXP_WORDS(scratch.boundary.facets),
-    GXP_LIST(scratch.boundary.lambdas, scratch.boundary.lambda_capacity, 4 * sizeof(double))};
+    GXP_LIST(scratch.boundary.lambdas, scratch.boundary.lambda_capacity, 4 * sizeof(double)),
+    GXP_WORDS(scratch.sheet_cells), GXP_WORDS(scratch.bulk_of), GXP_WORDS(scratch.bulk_met), GXP_WORDS(scratch.bent),
+    GXP_LIST(scratch.bulks, scratch.bulk_capacity, sizeof(gxp_bulk))};
 /* clang-format on */
 
 /* >>memory: allocation, growing arrays ----------------------------------------------------------------------------- */
@@ -2458,6 +2521,34 @@ static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_
 /* The copy of a node that moves the cell */
 static uint32_t gxp_copy_of(const gx_body *body, uint32_t cell, uint32_t node) {
     return body->cells.data[cell].copies[gxp_local_node(body, body->cells.data[cell].element, node)];
+}
+
+/* Walks through the cells that a copy moves. */
+typedef struct gxp_around {
+    uint32_t copy, at, cell;
+} gxp_around;
+
+static gxp_around gxp_around_copy(const gx_body *body, uint32_t copy) {
+    gxp_around around;
+    around.copy = copy;
+    around.at = body->mesh.node_start[body->copies.node[copy]];
+    around.cell = GXP_NONE;
+    return around;
+}
+
+/* The next cell. Returns 0 if there are no more. */
+static int gxp_next_around(const gx_body *body, gxp_around *around) {
+    const uint32_t copy = around->copy, end = body->mesh.node_start[body->copies.node[copy] + 1];
+    for (;;) {
+        const gxp_cell *cell;
+        if (around->cell != GXP_NONE) around->cell = body->cells.data[around->cell].next;
+        if (around->cell == GXP_NONE && around->at == end) return 0;
+        if (around->cell == GXP_NONE) around->cell = body->mesh.node_elements[around->at++];
+        cell = &body->cells.data[around->cell];
+        if (cell->kept &&
+            (cell->copies[0] == copy || cell->copies[1] == copy || cell->copies[2] == copy || cell->copies[3] == copy))
+            return 1;
+    }
 }
 
 /* The cell of a slot, or GXP_NONE if its row is gone. */
@@ -4726,6 +4817,238 @@ static gx_result gxp_integrate_removed(gxp_cut *cut) {
     return result;
 }
 
+/* >>sheets: what is thinner than its elements ---------------------------------------------------------------------- */
+/* In: the cells of a cut, with their copies and masses. Out: the copies that become affine. A cell is thin if in some
+   direction the material around it varies less, and in another one does not, than affine_below elements in a row would:
+   a chip that is small in all directions does not bend. That material is counted copy by copy, over the copies of all
+   cells that share a copy with the cell, so that a slice beside a thick part is not thin. It is compared with the
+   elements themselves, so that a plate of flat elements is as thin as one of cubes. Touches working memory; a commit
+   flags the copies. */
+
+/* Variance of elements in a row, as a multiple of the mean variance of one. Unit cubes of five or six elements have
+   1/24 along each axis, and a layer of them 1/12 across. So a layer has a thickness of sqrt(2 / 2.25) = 0.94, off the
+   usual 1 by enough that rounding does not decide. */
+#define GXP_ELEMENT_SPREAD 2.25
+
+/* sum += factor x x^T */
+static void gxp_add_square(const double x[3], double factor, double sum[6]) {
+    sum[0] += factor * x[0] * x[0];
+    sum[1] += factor * x[0] * x[1];
+    sum[2] += factor * x[0] * x[2];
+    sum[3] += factor * x[1] * x[1];
+    sum[4] += factor * x[1] * x[2];
+    sum[5] += factor * x[2] * x[2];
+}
+
+static void gxp_add_bulk(const gxp_bulk *from, gxp_bulk *sum) {
+    int k;
+    sum->volume += from->volume;
+    sum->whole += from->whole;
+    for (k = 0; k < 3; k++) sum->first[k] += from->first[k];
+    for (k = 0; k < 6; k++) {
+        sum->second[k] += from->second[k];
+        sum->shape[k] += from->shape[k];
+    }
+}
+
+/* Adds a cell and its element. sum_ij m_ij x_i x_j^T from the mass block: its diagonal less what pairs of corners lack.
+ */
+static void gxp_add_cell_bulk(const gx_body *body, const gxp_cell *cell, gxp_bulk *bulk) {
+    static const uint8_t at[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+    const double density = gxp_density(body, cell->element), whole = gxp_element_volume(body, cell->element);
+    const double *low = body->mesh.boxes[0].low;
+    double x[12], middle[3];
+    int i, j, k;
+    gxp_element_positions(body, cell->element, x);
+    for (k = 0; k < 3; k++) {
+        middle[k] = (x[k] + x[3 + k] + x[6 + k] + x[9 + k]) / 4;
+        for (i = 0; i < 4; i++) x[3 * i + k] -= low[k];
+        middle[k] -= low[k];
+    }
+    for (i = 0; i < 4; i++) {
+        double mean[3] = {0, 0, 0}, way[3];
+        for (j = 0; j < 4; j++) {
+            const double share = cell->mass[at[i][j]] / density;
+            bulk->volume += share;
+            for (k = 0; k < 3; k++) mean[k] += share * x[3 * j + k];
+        }
+        for (k = 0; k < 3; k++) {
+            bulk->first[k] += mean[k];
+            way[k] = x[3 * i + k] - middle[k];
+        }
+        bulk->second[0] += x[3 * i] * mean[0];
+        bulk->second[1] += x[3 * i] * mean[1];
+        bulk->second[2] += x[3 * i] * mean[2];
+        bulk->second[3] += x[3 * i + 1] * mean[1];
+        bulk->second[4] += x[3 * i + 1] * mean[2];
+        bulk->second[5] += x[3 * i + 2] * mean[2];
+        gxp_add_square(way, whole / 20, bulk->shape);
+    }
+    bulk->whole += whole;
+}
+
+static int gxp_is_definite(const double a[6]) {
+    const double minor = a[0] * a[3] - a[1] * a[1];
+    return a[0] > 0 && minor > 0 && minor * a[5] - a[0] * a[4] * a[4] + 2 * a[1] * a[2] * a[4] - a[3] * a[2] * a[2] > 0;
+}
+
+/* 1: thinner than `below` elements in a row, in some direction; 2: in all directions; 0: in none */
+static int gxp_thinness(const gxp_bulk *bulk, double below) {
+    static const uint8_t row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
+    double more[6], less[6];
+    int k;
+    if (!(bulk->volume > 0) || !(bulk->whole > 0)) return 0;
+    for (k = 0; k < 6; k++) {
+        more[k] = bulk->second[k] / bulk->volume -
+                  bulk->first[row[k]] / bulk->volume * (bulk->first[column[k]] / bulk->volume) -
+                  GXP_ELEMENT_SPREAD * below * below * bulk->shape[k] / bulk->whole;
+        less[k] = -more[k];
+    }
+    return gxp_is_definite(more) ? 0 : gxp_is_definite(less) ? 2 : 1;
+}
+
+/* *bulk: what is around a copy. It is found once in a call; the pointer is good until the next call. */
+static gx_result gxp_copy_bulk(gx_body *body, uint32_t copy, const gxp_bulk **bulk) {
+    gxp_scratch *scratch = &body->scratch;
+    gxp_around around = gxp_around_copy(body, copy);
+    if (scratch->bulk_of.data[copy] == GXP_NONE) {
+        const gx_result result = gxp_reserve(&body->config.allocator, &scratch->bulks, sizeof *scratch->bulks,
+                                             scratch->bulk_count, &scratch->bulk_capacity, 1);
+        if (result != GX_OK) return result;
+        memset(&scratch->bulks[scratch->bulk_count], 0, sizeof *scratch->bulks);
+        while (gxp_next_around(body, &around))
+            gxp_add_cell_bulk(body, &body->cells.data[around.cell], &scratch->bulks[scratch->bulk_count]);
+        scratch->bulk_of.data[copy] = scratch->bulk_count++;
+    }
+    *bulk = &scratch->bulks[scratch->bulk_of.data[copy]];
+    return GX_OK;
+}
+
+/* What is around all copies of the cells that share a copy with the cell. walk: names it in bulk_met */
+static gx_result gxp_cell_bulk(gx_body *body, uint32_t cell, uint32_t walk, gxp_bulk *sum) {
+    uint32_t *met = body->scratch.bulk_met.data;
+    gx_result result = GX_OK;
+    int i, k;
+    memset(sum, 0, sizeof *sum);
+    for (i = 0; i < 4; i++) {
+        gxp_around around = gxp_around_copy(body, body->cells.data[cell].copies[i]);
+        while (result == GX_OK && gxp_next_around(body, &around))
+            for (k = 0; k < 4 && result == GX_OK; k++) {
+                const uint32_t copy = body->cells.data[around.cell].copies[k];
+                const gxp_bulk *bulk;
+                if (met[copy] == walk) continue;
+                met[copy] = walk;
+                result = gxp_copy_bulk(body, copy, &bulk);
+                if (result == GX_OK) gxp_add_bulk(bulk, sum);
+            }
+    }
+    return result;
+}
+
+/* Adds the copies of a cell to scratch.bent if it is thin. What is around each of its copies must be thin too: that is
+   soon known. */
+static gx_result gxp_judge_cell(gx_body *body, uint32_t cell, uint32_t walk) {
+    const uint32_t *copies = body->cells.data[cell].copies;
+    const uint8_t *affine = body->copies.affine;
+    gx_result result = GX_OK;
+    gxp_bulk sum;
+    int k, thin = !(affine[copies[0]] & affine[copies[1]] & affine[copies[2]] & affine[copies[3]]);
+    for (k = 0; k < 4 && thin && result == GX_OK; k++) {
+        const gxp_bulk *bulk;
+        result = gxp_copy_bulk(body, copies[k], &bulk);
+        thin = result == GX_OK && gxp_thinness(bulk, body->config.affine_below) != 0;
+    }
+    if (!thin || result != GX_OK) return result;
+    result = gxp_cell_bulk(body, cell, walk, &sum);
+    if (result != GX_OK || gxp_thinness(&sum, body->config.affine_below) != 1) return result;
+    for (k = 0; k < 4 && result == GX_OK; k++)
+        if (!affine[copies[k]]) result = gxp_push(body, &body->scratch.bent, copies[k]);
+    return result;
+}
+
+/* Nothing has been looked at yet. */
+static gx_result gxp_start_sheets(gx_body *body) {
+    gxp_scratch *scratch = &body->scratch;
+    const uint32_t count = body->copies.count;
+    gx_result result = gxp_start_words(body, &scratch->bulk_of, count);
+    if (result == GX_OK) result = gxp_start_words(body, &scratch->bulk_met, count);
+    scratch->bent.count = scratch->sheet_cells.count = scratch->bulk_count = 0;
+    if (result != GX_OK || count == 0) return result;
+    memset(scratch->bulk_of.data, 0xff, count * sizeof(uint32_t));
+    memset(scratch->bulk_met.data, 0, count * sizeof(uint32_t));
+    scratch->stamp++;
+    return GX_OK;
+}
+
+/* Lists the cells around the copies of a cell. */
+static gx_result gxp_list_near(gx_body *body, uint32_t cell) {
+    uint32_t *met = body->scratch.bulk_met.data;
+    gx_result result = GX_OK;
+    int k;
+    for (k = 0; k < 4 && body->cells.data[cell].kept; k++) {
+        const uint32_t copy = body->cells.data[cell].copies[k];
+        gxp_around around = gxp_around_copy(body, copy);
+        if (met[copy] != 0) continue;
+        met[copy] = 1;
+        while (result == GX_OK && gxp_next_around(body, &around))
+            result = gxp_visit_cell(body, around.cell, &body->scratch.sheet_cells);
+    }
+    return result;
+}
+
+static gx_result gxp_judge_cells(gx_body *body) {
+    const gxp_words *cells = &body->scratch.sheet_cells;
+    gx_result result = GX_OK;
+    uint32_t i;
+    for (i = 0; i < cells->count && result == GX_OK; i++) result = gxp_judge_cell(body, cells->data[i], i + 2);
+    return result;
+}
+
+/* Finds the copies that become affine by a cut: of the cells that it made or changed, and of those beside them. */
+static gx_result gxp_find_sheets(gx_body *body) {
+    const gxp_words *made = &body->scratch.new_cells, *changed = &body->undo.cells.rows;
+    uint32_t i;
+    gx_result result;
+    body->scratch.bent.count = 0;
+    if (!(body->config.affine_below > 0)) return GX_OK;
+    result = gxp_start_sheets(body);
+    for (i = 0; i < made->count && result == GX_OK; i++) result = gxp_list_near(body, made->data[i]);
+    for (i = 0; i < changed->count && result == GX_OK; i++) result = gxp_list_near(body, changed->data[i]);
+    return result == GX_OK ? gxp_judge_cells(body) : result;
+}
+
+/* The copies that were found become affine. Their A and its rate are 0, so nothing moves. */
+static void gxp_flag_sheets(gx_body *body) {
+    uint32_t i;
+    for (i = 0; i < body->scratch.bent.count; i++) body->copies.affine[body->scratch.bent.data[i]] = 1;
+    if (body->scratch.bent.count > 0) body->copies.bends = 1;
+}
+
+/* After other flags were read: is a copy affine? Then the model is to be made with these. */
+static void gxp_find_bends(gx_body *body) {
+    uint32_t i;
+    body->copies.bends = 0;
+    for (i = 0; i < body->copies.count && body->copies.affine != NULL; i++)
+        if (body->copies.affine[i] != 0) body->copies.bends = 1;
+    if (body->copies.bends) body->model.state = GXP_MODEL_STALE;
+}
+
+/* Finds and flags the thin cells of a new body. */
+static gx_result gxp_first_sheets(gx_body *body) {
+    uint32_t i;
+    gx_result result;
+    if (!(body->config.affine_below > 0)) return GX_OK;
+    body->mesh.affine_length = 0;
+    for (i = 0; i < body->mesh.element_count; i++) body->mesh.affine_length += gxp_element_volume(body, i);
+    body->mesh.affine_length = cbrt(6 * body->mesh.affine_length / body->mesh.element_count);
+    result = gxp_start_sheets(body);
+    for (i = 0; i < body->cells.count && result == GX_OK; i++)
+        result = gxp_visit_cell(body, i, &body->scratch.sheet_cells);
+    if (result == GX_OK) result = gxp_judge_cells(body);
+    if (result == GX_OK) gxp_flag_sheets(body);
+    return result;
+}
+
 /* >>specks: pieces that are too small to be meant ------------------------------------------------------------------ */
 /* In: the new cells of a cut, their links and volumes. Out: pairs of leaves across the cut's walls that must stay in
    one cell so that no speck comes off; the cut is then made again. Touches scratch. For cuts by blades only, whose
@@ -5203,11 +5526,13 @@ static void gxp_touch_copies(gx_body *body, const gxp_cell *cell) {
     }
 }
 
-/* Notes the elements of the model that have changed. Without memory for that, the model is made whole. */
+/* Notes the elements of the model that have changed. Without memory for that, the model is made whole; so it is where
+   copies are affine. */
 static void gxp_note_changed(gx_body *body) {
     const gxp_words *changed = &body->undo.cells.rows, *made = &body->scratch.new_cells;
     gx_result result = GX_OK;
     uint32_t i;
+    if (body->copies.bends) body->model.state = GXP_MODEL_STALE;
     if (body->model.state == GXP_MODEL_STALE) return;
     for (i = 0; i < changed->count && result == GX_OK; i++)
         result = gxp_push(body, &body->model.changed, body->cells.data[changed->data[i]].element);
@@ -5221,6 +5546,7 @@ static void gxp_commit(gxp_cut *cut) {
     gxp_view *view = &body->view;
     gxp_scratch *scratch = &body->scratch;
     uint32_t i;
+    gxp_flag_sheets(body);
     gxp_note_changed(body);
     for (i = 0; i < scratch->new_cells.count; i++)
         gxp_touch_copies(body, &body->cells.data[scratch->new_cells.data[i]]);
@@ -5270,6 +5596,7 @@ static gx_result gxp_make_cut(gxp_cut *cut) {
     report->seconds_enrichment = gxp_seconds(body) - start - report->seconds_arrangement;
     if (result == GX_OK) result = gxp_integrate(cut);
     report->seconds_integrals = gxp_seconds(body) - start - report->seconds_arrangement - report->seconds_enrichment;
+    if (result == GX_OK) result = gxp_find_sheets(body);
     return result == GX_OK ? gxp_note_for_skin(cut, first_facet) : result;
 }
 
@@ -6587,8 +6914,17 @@ GXFEM_API gx_region gx_region_sphere(const double center[3], double radius) {
 
 /* >>map: from rest to space ---------------------------------------------------------------------------------------- */
 /* In: a material point, or a cell. Out: where it is, how fast its corners are. Nothing else in this file turns
-   displacements of copies into positions: copies that do more than move a cell's corners change this section, and the
-   integrals at >>motion, which rest on the map being affine within a cell. Touches nothing. */
+   displacements of copies into positions, but for >>tree, >>locate and what follows there, which take maps to be affine
+   within a cell and refuse bodies with affine copies. Touches nothing. */
+
+/* sum += weight A (x - X) of an affine copy; x: a material point. linear: a body's copies.linear or linear_rate */
+static void gxp_add_linear(const gx_body *body, const double *linear, uint32_t copy, double weight, const double x[3],
+                           double sum[3]) {
+    const double *node = body->mesh.positions + 3 * (size_t)body->copies.node[copy], *a = linear + 9 * (size_t)copy;
+    int k;
+    for (k = 0; k < 3; k++)
+        sum[k] += weight * (a[k] * (x[0] - node[0]) + a[3 + k] * (x[1] - node[1]) + a[6 + k] * (x[2] - node[2]));
+}
 
 /* Where a point is: rest + sum of weight u over the copies of weight not 0, which stand first */
 static inline void gxp_map_point(const gx_body *body, const double rest[3], const uint32_t *copies,
@@ -6605,6 +6941,9 @@ static inline void gxp_map_point(const gx_body *body, const double rest[3], cons
     position[0] = x;
     position[1] = y;
     position[2] = z;
+    for (n = 0; n < count && weights[n] > 0 && body->copies.bends; n++)
+        if (body->copies.affine[copies[n]])
+            gxp_add_linear(body, body->copies.linear, copies[n], weights[n], rest, position);
 }
 
 /* x of the cell's nodes from a centre, at rest or, moved, with the displacement of its copies */
@@ -6637,7 +6976,7 @@ static inline void gxp_moved_corners(const gx_body *body, const gxp_cell *cell, 
     gxp_copy_position(body, node[3], cell->copies[3], x + 9);
 }
 
-/* Where the cell's affine map has a material point: weights are its barycentric coordinates in the element */
+/* Where the cell's map has a material point: weights are its barycentric coordinates in the element */
 static void gxp_map_affine(const gx_body *body, const gxp_cell *cell, const double weights[4], const double rest[3],
                            double position[3]) {
     int n, k;
@@ -6646,6 +6985,9 @@ static void gxp_map_affine(const gx_body *body, const gxp_cell *cell, const doub
         for (n = 0; n < 4; n++)
             position[k] += weights[n] * body->copies.displacement[3 * (size_t)cell->copies[n] + (size_t)k];
     }
+    for (n = 0; n < 4 && body->copies.bends; n++)
+        if (body->copies.affine[cell->copies[n]])
+            gxp_add_linear(body, body->copies.linear, cell->copies[n], weights[n], rest, position);
 }
 
 /* The velocities of the cell's copies, less a mean */
@@ -6934,6 +7276,9 @@ GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view, gx_failure *failu
     view->removed_ids = body->snapshot.removed.data;
     view->volume = own->body_volume;
     view->mass = own->body_mass;
+    view->copy_affine = body->copies.affine;
+    view->affine = body->copies.linear;
+    view->affine_rate = body->copies.linear_rate;
     return GX_OK;
 }
 
@@ -7007,6 +7352,72 @@ static void gxp_add_rotation(const gxp_cell *cell, double x[4][3], double v[4][3
         }
 }
 
+/* Four points of a cell and their shares of the copies, which integrate all quadratics over the cell with a quarter of
+   its mass each: c + L (1,1,1), (1,-1,-1), (-1,1,-1), (-1,-1,1), with c its centre and L L^T its covariance, in
+   barycentric coordinates. */
+static void gxp_four_points(const double mass[10], double whole, double share[4][4]) {
+    static const int sign[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+    double root[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, center[4];
+    int i, j, k;
+    for (i = 0; i < 4; i++) center[i] = gxp_mass_row(mass, i) / whole;
+    for (i = 0; i < 3; i++)
+        for (j = 0; j <= i; j++) {
+            double sum = mass[gxp_mass_at[i + 1][j + 1]] / whole - center[i + 1] * center[j + 1];
+            for (k = 0; k < j; k++) sum -= root[i][k] * root[j][k];
+            if (i == j)
+                root[i][i] = sum > 0 ? sqrt(sum) : 0;
+            else
+                root[i][j] = root[j][j] > 0 ? sum / root[j][j] : 0;
+        }
+    for (k = 0; k < 4; k++) {
+        share[k][0] = 1;
+        for (i = 1; i < 4; i++) {
+            share[k][i] = center[i];
+            for (j = 0; j < i; j++) share[k][i] += sign[k][j] * root[i - 1][j];
+            share[k][0] -= share[k][i];
+        }
+    }
+}
+
+/* What moves in a cell: its mass block and its corners, x from a centre, v less a mean. In a cell with affine copies,
+   four points as heavy as each other take the corners' places: then all sums over the block are those of the rule by
+   which the solver integrates. Centre and momentum are exact. */
+static void gxp_moving_cell(const gx_body *body, const gxp_cell *cell, const double center[3], const double mean[3],
+                            gxp_cell *block, double x[4][3], double v[4][3]) {
+    const gxp_copies *copies = &body->copies;
+    double rest[12], share[4][4], whole = 0;
+    int i, k, n, bends = 0;
+    memcpy(block->mass, cell->mass, sizeof block->mass);
+    for (n = 0; n < 4; n++) whole += gxp_mass_row(cell->mass, n);
+    for (n = 0; n < 4 && copies->bends && whole > 0; n++) bends |= copies->affine[cell->copies[n]];
+    if (!bends) {
+        gxp_cell_corners(body, cell, 1, center, x);
+        gxp_cell_velocities(body, cell, mean, v);
+        return;
+    }
+    gxp_four_points(cell->mass, whole, share);
+    gxp_element_positions(body, cell->element, rest);
+    memset(block->mass, 0, sizeof block->mass);
+    for (i = 0; i < 4; i++) {
+        double point[3] = {0, 0, 0};
+        block->mass[gxp_mass_at[i][i]] = whole / 4;
+        for (k = 0; k < 3; k++) {
+            x[i][k] = -center[k];
+            v[i][k] = -mean[k];
+            for (n = 0; n < 4; n++) {
+                const size_t at = 3 * (size_t)cell->copies[n] + (size_t)k;
+                point[k] += share[i][n] * rest[3 * n + k];
+                x[i][k] += share[i][n] * (rest[3 * n + k] + copies->displacement[at]);
+                v[i][k] += share[i][n] * copies->velocity[at];
+            }
+        }
+        for (n = 0; n < 4; n++) {
+            gxp_add_linear(body, copies->linear, cell->copies[n], share[i][n], point, x[i]);
+            gxp_add_linear(body, copies->linear_rate, cell->copies[n], share[i][n], point, v[i]);
+        }
+    }
+}
+
 /* Mass, centre and velocity of all fragments */
 static void gxp_find_centers(const gx_body *body, gx_motion *motions) {
     const gxp_view *view = &body->view;
@@ -7018,11 +7429,11 @@ static void gxp_find_centers(const gx_body *body, gx_motion *motions) {
         const gxp_cell *cell = &body->cells.data[view->cell[i]];
         gx_motion *motion = &motions[view->fragment[i]];
         double x[4][3], v[4][3];
-        gxp_cell_corners(body, cell, 1, zero, x);
-        gxp_cell_velocities(body, cell, zero, v);
+        gxp_cell block;
+        gxp_moving_cell(body, cell, zero, zero, &block, x, v);
         for (k = 0; k < 4; k++) motion->mass += gxp_mass_row(cell->mass, k);
-        gxp_add_first_moment(cell, x, motion->center);
-        gxp_add_first_moment(cell, v, motion->velocity);
+        gxp_add_first_moment(&block, x, motion->center);
+        gxp_add_first_moment(&block, v, motion->velocity);
     }
     for (i = 0; i < view->fragment_count; i++)
         for (k = 0; k < 3 && motions[i].mass > 0; k++) {
@@ -7072,9 +7483,9 @@ GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t cap
         const gxp_cell *cell = &body->cells.data[body->view.cell[i]];
         const uint32_t f = body->view.fragment[i];
         double x[4][3], v[4][3];
-        gxp_cell_corners(body, cell, 1, motions[f].center, x);
-        gxp_cell_velocities(body, cell, motions[f].velocity, v);
-        gxp_add_rotation(cell, x, v, &motions[f], momentum[f]);
+        gxp_cell block;
+        gxp_moving_cell(body, cell, motions[f].center, motions[f].velocity, &block, x, v);
+        gxp_add_rotation(&block, x, v, &motions[f], momentum[f]);
     }
     for (i = 0; i < body->view.fragment_count; i++) {
         gxp_spin(motions[i].inertia, momentum[i], motions[i].angular_velocity);
@@ -7089,6 +7500,57 @@ GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t cap
 /* >>attached: anchors and regions of a step ------------------------------------------------------------------------ */
 /* In: anchors, and what a step has at them; poses of regions. Out: springs, contact points, forces and targets by
    copies, as the solver takes them. Touches working memory of a step only. */
+
+/* The number of vectors of the solver's model: copies, and three hidden ones for each that is affine there */
+static size_t gxp_vector_count(const gx_body *body) {
+    return (size_t)body->copies.count + 3 * (size_t)body->hidden.copies.count;
+}
+
+/* Room for a point's span with hidden vectors; 0: the point stays as it is, or the solver refuses it. */
+static size_t gxp_span_room(const gxs_point *point) {
+    const int whole = point->count <= GXS_POINT_OWN ? point->copies == NULL || point->weights != NULL
+                                                    : point->copies != NULL && point->weights != NULL;
+    return whole && point->count <= GXS_POINT_MOST ? 4 * (size_t)point->count : 0;
+}
+
+/* Writes the point's span with the hidden vectors of its affine copies, whose weights are N_i (x - X_i) over
+   affine_length: then the point is moved by the sum of N_i (a_i + A_i (x - X_i)). copies, weights: room for
+   gxp_span_room. The point refers to them, unless none of its copies is affine. */
+static void gxp_expand_point(const gx_body *body, gxs_point *point, uint32_t *copies, double *weights) {
+    const uint32_t *from = point->copies != NULL ? point->copies : point->copy, *first = body->hidden.first.data;
+    const double *weight = point->copies != NULL ? point->weights : point->weight;
+    const size_t room = gxp_span_room(point);
+    uint32_t i, count = 0;
+    int k, affine = 0;
+    if (room == 0 || body->hidden.copies.count == 0 || point->epoch != body->cuts.epoch) return;
+    for (i = 0; i < point->count; i++) affine |= from[i] >= body->copies.count || first[from[i]] != GXS_NOT_AFFINE;
+    if (!affine) return;
+    for (i = 0; i < point->count; i++) { /* a hidden vector is no copy: the solver refuses what is beyond them */
+        copies[i] = from[i] < body->copies.count ? from[i] : UINT32_MAX;
+        weights[i] = weight[i];
+    }
+    for (i = 0, count = point->count; i < point->count; i++) {
+        const double *x = body->mesh.positions;
+        if (copies[i] == UINT32_MAX || first[copies[i]] == GXS_NOT_AFFINE) continue;
+        x += 3 * (size_t)body->copies.node[copies[i]];
+        for (k = 0; k < 3; k++) {
+            copies[count] = first[copies[i]] + (uint32_t)k;
+            weights[count++] = weights[i] * (point->position[k] - x[k]) / body->mesh.affine_length;
+        }
+    }
+    point->copies = copies;
+    point->weights = weights;
+    point->count = count;
+}
+
+/* The same with the next place in the spans of a step; there is room. */
+static void gxp_expand_next(gx_body *body, gxs_point *point) {
+    gxp_words *copies = &body->hidden.span_copies;
+    const size_t room = gxp_span_room(point);
+    if (room == 0) return;
+    gxp_expand_point(body, point, copies->data + copies->count, body->hidden.span_weights + copies->count);
+    copies->count += (uint32_t)room;
+}
 
 /* The copies that move an anchor, which was checked. Returns 0 if its material is gone: the point then names a copy
    with a weight of 0, so that nothing moves it and it pulls at nothing. */
@@ -7261,6 +7723,8 @@ static gx_result gxp_check_forces(const gx_body *body, const gx_step_desc *desc,
 static gx_result gxp_attach_forces(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step, gx_failure *failure) {
     gxp_attached *attached = &body->attached;
     const size_t count = 3 * (size_t)body->copies.count;
+    uint32_t copies[4 * GXS_POINT_OWN];
+    double weights[4 * GXS_POINT_OWN];
     gxs_point point;
     gx_result result;
     size_t i;
@@ -7270,15 +7734,17 @@ static gx_result gxp_attach_forces(gx_body *body, const gx_step_desc *desc, gxs_
     result = gxp_check_forces(body, desc, failure);
     if (result != GX_OK) return result;
     result = gxp_reserve(&body->config.allocator, &attached->forces, 3 * sizeof(double), 0, &attached->force_capacity,
-                         (size_t)body->copies.count + 1);
+                         gxp_vector_count(body) + 1);
     if (gxp_end(failure, result) != GX_OK) return result;
     for (i = 0; i < count; i++) attached->forces[i] = desc->forces != NULL ? desc->forces[i] : 0;
+    for (; i < 3 * gxp_vector_count(body); i++) attached->forces[i] = 0;
     for (i = 0; i < desc->force_count; i++) {
         if (!gxp_place_anchor(body, &desc->force_anchors[i], &point)) continue;
+        gxp_expand_point(body, &point, copies, weights);
         for (j = 0; j < point.count; j++)
             for (k = 0; k < 3; k++)
-                attached->forces[3 * (size_t)point.copy[j] + (size_t)k] +=
-                    point.weight[j] * desc->anchor_forces[3 * i + (size_t)k];
+                attached->forces[3 * (size_t)(point.copies != NULL ? copies[j] : point.copy[j]) + (size_t)k] +=
+                    (point.copies != NULL ? weights[j] : point.weight[j]) * desc->anchor_forces[3 * i + (size_t)k];
     }
     step->forces = attached->forces;
     return GX_OK;
@@ -7319,13 +7785,93 @@ static gx_result gxp_attach_poses(gx_body *body, const gx_step_desc *desc, gxs_s
         if (!gxp_is_finite(desc->region_poses[i]))
             return gxp_fail(failure, GX_ERROR_NOT_FINITE, "region_poses", i / 12);
     result = gxp_reserve(&body->config.allocator, &attached->targets, 3 * sizeof(double), 0, &attached->target_capacity,
-                         (size_t)body->copies.count + 1);
+                         gxp_vector_count(body) + 1);
     if (gxp_end(failure, result) != GX_OK) return result;
     memset(attached->targets, 0, 3 * (size_t)body->copies.count * sizeof *attached->targets);
     for (c = 0; c < body->copies.count; c++)
         if (body->copies.held[c]) gxp_pose_copy(body, desc, c, attached->targets + 3 * (size_t)c);
     step->targets = attached->targets;
     return GX_OK;
+}
+
+/* Rewrites the spans of the step's points so that they include the hidden vectors of affine copies. */
+static gx_result gxp_expand_points(gx_body *body, gxs_step_desc *step) {
+    gxp_attached *attached = &body->attached;
+    gxp_hidden *hidden = &body->hidden;
+    const size_t springs = step->spring_count, points = step->point_count;
+    size_t room = 0, i;
+    gx_result result = GX_OK;
+    if (springs > INT32_MAX || points > INT32_MAX) return GX_OK; /* the solver refuses these */
+    for (i = 0; i < springs && step->springs != NULL; i++) room += gxp_span_room(&step->springs[i].point);
+    for (i = 0; i < points && step->points != NULL; i++) room += gxp_span_room(&step->points[i]);
+    result = gxp_start_words(body, &hidden->span_copies, room);
+    if (result == GX_OK)
+        result = gxp_reserve(&body->config.allocator, &hidden->span_weights, sizeof(double), 0, &hidden->span_capacity,
+                             room);
+    if (result == GX_OK && step->springs != NULL && step->springs != attached->springs)
+        result = gxp_reserve(&body->config.allocator, &attached->springs, sizeof *attached->springs, 0,
+                             &attached->spring_capacity, springs);
+    if (result == GX_OK && step->points != NULL && step->points != attached->points)
+        result = gxp_reserve(&body->config.allocator, &attached->points, sizeof *attached->points, 0,
+                             &attached->point_capacity, points);
+    if (result != GX_OK) return result;
+    for (i = 0; i < springs && step->springs != NULL; i++) {
+        if (step->springs != attached->springs) attached->springs[i] = step->springs[i];
+        gxp_expand_next(body, &attached->springs[i].point);
+    }
+    for (i = 0; i < points && step->points != NULL; i++) {
+        if (step->points != attached->points) attached->points[i] = step->points[i];
+        gxp_expand_next(body, &attached->points[i]);
+    }
+    if (step->springs != NULL) step->springs = attached->springs;
+    if (step->points != NULL) step->points = attached->points;
+    return GX_OK;
+}
+
+/* Forces and targets by vector of the model. Nothing pushes hidden vectors but forces at anchors; those of held copies
+   go where a pose has them, or stay. */
+static gx_result gxp_expand_arrays(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step) {
+    gxp_attached *attached = &body->attached;
+    const size_t n = body->copies.count, vectors = gxp_vector_count(body);
+    gx_result result = GX_OK;
+    size_t i;
+    int k;
+    if (step->forces != NULL && step->forces != attached->forces) {
+        result = gxp_reserve(&body->config.allocator, &attached->forces, 3 * sizeof(double), 0,
+                             &attached->force_capacity, vectors);
+        if (result != GX_OK) return result;
+        memcpy(attached->forces, step->forces, 3 * n * sizeof(double));
+        memset(attached->forces + 3 * n, 0, 3 * (vectors - n) * sizeof(double));
+        step->forces = attached->forces;
+    }
+    if (step->targets == NULL) return GX_OK;
+    if (step->targets != attached->targets) {
+        result = gxp_reserve(&body->config.allocator, &attached->targets, 3 * sizeof(double), 0,
+                             &attached->target_capacity, vectors);
+        if (result != GX_OK) return result;
+        memcpy(attached->targets, step->targets, 3 * n * sizeof(double));
+        step->targets = attached->targets;
+    }
+    for (i = 0; i < body->hidden.copies.count; i++) {
+        const uint32_t copy = body->hidden.copies.data[i];
+        const double *pose = desc->region_poses != NULL && body->copies.held[copy]
+                               ? desc->region_poses + 12 * (size_t)body->holds.region_of.data[copy]
+                               : NULL;
+        double *to = attached->targets + 3 * (n + 3 * i);
+        for (k = 0; k < 9; k++)
+            to[k] = body->mesh.affine_length * (pose != NULL && !gxp_is_no_pose(pose)
+                                                    ? pose[4 * (k % 3) + k / 3] - (k % 3 == k / 3)
+                                                    : body->copies.linear[9 * (size_t)copy + (size_t)k]);
+    }
+    return GX_OK;
+}
+
+/* What the step has, for a model with hidden vectors. Arrays of another numbering are not read: the solver refuses
+   them. */
+static gx_result gxp_expand(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step) {
+    const gx_result result = gxp_expand_points(body, step);
+    if (result != GX_OK || step->epoch != body->cuts.epoch) return result;
+    return gxp_expand_arrays(body, desc, step);
 }
 
 /* Arrays by copy are read only if they have the present numbering. */
@@ -7362,34 +7908,6 @@ typedef struct gxp_supports {
     uint32_t *seen;  /* copy_count: the last search that has met the copy */
     uint32_t search;
 } gxp_supports;
-
-/* Walks through the cells that a copy moves. */
-typedef struct gxp_around {
-    uint32_t copy, at, cell;
-} gxp_around;
-
-static gxp_around gxp_around_copy(const gx_body *body, uint32_t copy) {
-    gxp_around around;
-    around.copy = copy;
-    around.at = body->mesh.node_start[body->copies.node[copy]];
-    around.cell = GXP_NONE;
-    return around;
-}
-
-/* The next cell. Returns 0 if there are no more. */
-static int gxp_next_around(const gx_body *body, gxp_around *around) {
-    const uint32_t copy = around->copy, end = body->mesh.node_start[body->copies.node[copy] + 1];
-    for (;;) {
-        const gxp_cell *cell;
-        if (around->cell != GXP_NONE) around->cell = body->cells.data[around->cell].next;
-        if (around->cell == GXP_NONE && around->at == end) return 0;
-        if (around->cell == GXP_NONE) around->cell = body->mesh.node_elements[around->at++];
-        cell = &body->cells.data[around->cell];
-        if (cell->kept &&
-            (cell->copies[0] == copy || cell->copies[1] == copy || cell->copies[2] == copy || cell->copies[3] == copy))
-            return 1;
-    }
-}
 
 /* The share of the part that the cell belongs to */
 static double gxp_part_share(const gx_body *body, uint32_t cell) {
@@ -7563,8 +8081,25 @@ static uint32_t gxp_find_supports(const gx_body *body, gxp_supports *supports) {
     return count;
 }
 
+/* Copies of a speck move as a point, so in the model none of them is affine. Other affine copies neither follow nor
+   lead: sheets are to bend, and a sliver of one is carried by the cells beside it. Returns 1 if the copy follows. */
+static int gxp_may_follow(gx_body *body, const gxp_supports *supports, uint32_t copy) {
+    const uint32_t *master = body->cells.data[supports->cell[copy]].copies;
+    uint8_t *affine = body->copies.affine, *plain = body->hidden.plain;
+    int k;
+    if (!body->copies.bends) return 1;
+    if (supports->weak[copy] == GXP_FOLLOWS_POINT) {
+        for (k = 0; k < 4; k++) plain[master[k]] = 1;
+        plain[copy] = 1;
+        return 1;
+    }
+    return !(affine[copy] | affine[master[0]] | affine[master[1]] | affine[master[2]] | affine[master[3]]);
+}
+
 static void gxp_add_constraint(gx_body *body, const gxp_supports *supports, uint32_t copy) {
-    gxs_constraint *constraint = &body->model.constraints[body->model.constraint_count++];
+    gxs_constraint *constraint = &body->model.constraints[body->model.constraint_count];
+    if (!gxp_may_follow(body, supports, copy)) return;
+    body->model.constraint_count++;
     constraint->copy = copy;
     memcpy(constraint->master, body->cells.data[supports->cell[copy]].copies, sizeof constraint->master);
     memset(constraint->weight, 0, sizeof constraint->weight);
@@ -7652,32 +8187,66 @@ static gx_result gxp_make_parts(gx_body *body, gx_failure *failure) {
     return result;
 }
 
+/* Affine copies and constraints */
+static gx_result gxp_make_affine(gx_body *body) {
+    gxp_hidden *hidden = &body->hidden;
+    const uint32_t n = body->copies.count;
+    uint32_t i, k;
+    gx_result result;
+    hidden->copies.count = hidden->first.count = 0;
+    if (!body->copies.bends) return gxp_make_constraints(body);
+    result = gxp_reserve(&body->config.allocator, &hidden->plain, 1, 0, &hidden->plain_capacity, n);
+    if (result != GX_OK) return result;
+    if (n > 0) memset(hidden->plain, 0, n);
+    result = gxp_make_constraints(body);
+    for (i = 0; i < n && result == GX_OK; i++)
+        if (body->copies.affine[i] && !hidden->plain[i]) result = gxp_push(body, &hidden->copies, i);
+    if (result == GX_OK) result = gxp_start_words(body, &hidden->first, gxp_vector_count(body));
+    if (result == GX_OK)
+        result =
+            gxp_reserve(&body->config.allocator, &hidden->held, 1, 0, &hidden->held_capacity, gxp_vector_count(body));
+    if (result != GX_OK) hidden->copies.count = 0;
+    if (hidden->copies.count == 0) return result;
+    hidden->first.count = (uint32_t)gxp_vector_count(body);
+    memset(hidden->first.data, 0xff, hidden->first.count * sizeof *hidden->first.data);
+    memcpy(hidden->held, body->copies.held, n);
+    for (i = 0; i < hidden->copies.count; i++) {
+        hidden->first.data[hidden->copies.data[i]] = n + 3 * i;
+        for (k = 0; k < 3; k++) hidden->held[n + 3 * i + k] = body->copies.held[hidden->copies.data[i]];
+    }
+    return GX_OK;
+}
+
 /* The whole model. Its arrays are the body's. */
 static gx_result gxp_make_model(gx_body *body, gxs_model *model, gx_failure *failure) {
     const gx_allocator *a = &body->config.allocator;
     uint32_t i;
     gx_result result = gxp_make_parts(body, failure);
     if (result == GX_OK) result = gxp_list_thin(body, 1);
-    if (result == GX_OK) result = gxp_make_constraints(body);
+    if (result == GX_OK) result = gxp_make_affine(body);
     if (result == GX_OK)
-        result =
-            gxp_reserve(a, &body->model.rest, 3 * sizeof(double), 0, &body->model.rest_capacity, body->copies.count);
+        result = gxp_reserve(a, &body->model.rest, 3 * sizeof(double), 0, &body->model.rest_capacity,
+                             gxp_vector_count(body));
     if (result == GX_OK)
         result = gxp_reserve(a, &body->model.elastic, sizeof *body->model.elastic, 0, &body->model.elastic_capacity,
                              body->mesh.material_count);
     if (result != GX_OK) return result;
-    for (i = 0; i < body->copies.count; i++)
-        memcpy(body->model.rest + 3 * (size_t)i, body->mesh.positions + 3 * (size_t)body->copies.node[i],
+    for (i = 0; i < gxp_vector_count(body); i++) {
+        const uint32_t copy = i < body->copies.count ? i : body->hidden.copies.data[(i - body->copies.count) / 3];
+        memcpy(body->model.rest + 3 * (size_t)i, body->mesh.positions + 3 * (size_t)body->copies.node[copy],
                3 * sizeof(double));
+    }
     for (i = 0; i < body->mesh.material_count; i++) body->model.elastic[i] = body->mesh.materials[i].elastic;
     memset(model, 0, sizeof *model);
-    model->copy_count = body->copies.count;
+    model->copy_count = gxp_vector_count(body);
     model->positions = body->model.rest;
     model->elements = body->model.parts;
     model->element_count = body->model.part_count;
     model->materials = body->model.elastic;
     model->material_count = body->mesh.material_count;
-    model->held = body->copies.held;
+    model->held = body->hidden.copies.count > 0 ? body->hidden.held : body->copies.held;
+    model->affine = body->hidden.copies.count > 0 ? body->hidden.first.data : NULL;
+    model->affine_length = body->mesh.affine_length;
     model->constraints = body->model.constraints;
     model->constraint_count = body->model.constraint_count;
     model->epoch = body->cuts.epoch;
@@ -8756,6 +9325,34 @@ static void gxp_copy_bounds(const gx_body *body, uint32_t node, uint32_t copy, g
     }
 }
 
+/* Adds where an affine copy takes a corner of an element of its node: X_i + a + A (X - X_i). In an element positions
+   are means of what its copies give, and what a copy gives is within the hull of what it gives at the corners. */
+static void gxp_add_image(const gx_body *body, uint32_t copy, uint32_t corner, gxp_bounds *box) {
+    gxp_bounds image;
+    double way[3] = {0, 0, 0};
+    int k;
+    gxp_copy_bounds(body, body->copies.node[copy], copy, &image);
+    gxp_add_linear(body, body->copies.linear, copy, 1, body->mesh.positions + 3 * (size_t)corner, way);
+    for (k = 0; k < 3; k++) {
+        const double margin = GXP_TREE_MARGIN * fabs(way[k]);
+        image.low[k] += way[k] - margin;
+        image.high[k] += way[k] + margin;
+    }
+    gxp_add_bounds(box, &image);
+}
+
+/* The box of all that a copy gives: its own place, and in the elements around its node, if it is affine */
+static void gxp_reach_bounds(const gx_body *body, uint32_t copy, gxp_bounds *box) {
+    const uint32_t node = body->copies.node[copy];
+    uint32_t i;
+    int k;
+    gxp_copy_bounds(body, node, copy, box);
+    if (!body->copies.bends || !body->copies.affine[copy]) return;
+    for (i = body->mesh.node_start[node]; i < body->mesh.node_start[node + 1]; i++)
+        for (k = 0; k < 4; k++)
+            gxp_add_image(body, copy, gxb_complex_element_nodes(body->complex, body->mesh.node_elements[i])[k], box);
+}
+
 /* --- making it --- */
 
 /* The first leaves of the halves, halves of halves and so on of `leaves` leaves over the elements in mesh.box_elements,
@@ -8852,7 +9449,7 @@ static int gxp_mark_moved(gx_body *body) {
     int moved = 0;
     for (i = 0; i < body->copies.count; i++, u += 3, seen += 3) {
         const uint32_t node = body->copies.node[i];
-        if (memcmp(u, seen, 3 * sizeof *u) == 0) continue;
+        if (memcmp(u, seen, 3 * sizeof *u) == 0 && !(body->copies.bends && body->copies.affine[i])) continue;
         memcpy(seen, u, 3 * sizeof *u);
         moved = 1;
         for (j = tree->node_first.data[node]; j < tree->node_first.data[node + 1]; j++)
@@ -8874,7 +9471,7 @@ static void gxp_fit_clusters(gx_body *body) {
     for (i = 0; i < body->copies.count; i++) {
         const uint32_t node = body->copies.node[i];
         gxp_bounds own;
-        gxp_copy_bounds(body, node, i, &own);
+        gxp_reach_bounds(body, i, &own);
         for (k = 0; k < 3; k++) tree->wild |= !gxp_is_near(own.low[k]) || !gxp_is_near(own.high[k]);
         for (j = tree->node_first.data[node]; j < tree->node_first.data[node + 1]; j++)
             if (marks[tree->node_clusters.data[j]] & GXP_BOX_MOVED)
@@ -8942,7 +9539,7 @@ static uint32_t gxp_wild_copy(gx_body *body) {
     if (!body->tree.wild) return GXP_NONE;
     for (i = 0; i < body->copies.count; i++) {
         gxp_bounds own;
-        gxp_copy_bounds(body, body->copies.node[i], i, &own);
+        gxp_reach_bounds(body, i, &own);
         for (k = 0; k < 3; k++)
             if (!gxp_is_near(own.low[k]) || !gxp_is_near(own.high[k])) return i;
     }
@@ -8955,12 +9552,15 @@ static void gxp_fit_element(const gx_body *body, uint32_t element, gxp_bounds *b
     const uint32_t *node = gxb_complex_element_nodes(body->complex, element);
     gxp_bounds own;
     uint32_t cell;
-    int k;
+    int k, n;
     gxp_empty_bounds(box);
     for (cell = element; cell != GXP_NONE; cell = body->cells.data[cell].next)
         for (k = 0; k < 4 && body->cells.data[cell].kept; k++) {
-            gxp_copy_bounds(body, node[k], body->cells.data[cell].copies[k], &own);
+            const uint32_t copy = body->cells.data[cell].copies[k];
+            gxp_copy_bounds(body, node[k], copy, &own);
             gxp_add_bounds(box, &own);
+            for (n = 0; n < 4 && body->copies.bends && body->copies.affine[copy]; n++)
+                gxp_add_image(body, copy, node[n], box);
         }
 }
 
@@ -9169,8 +9769,16 @@ static gx_result gxp_walk_tree(gx_body *body, gxp_walk *walk) {
 
 /* --- cells by their deformed elements --- */
 
+/* Is a copy of the cell affine? Then its map is quadratic. */
+static int gxp_is_bent(const gx_body *body, const gxp_cell *cell) {
+    int n, bent = 0;
+    for (n = 0; n < 4 && body->copies.bends; n++) bent |= body->copies.affine[cell->copies[n]];
+    return bent;
+}
+
 /* The box of a cell's deformed element */
-static void gxp_cell_bounds(const gx_body *body, const gxp_cell *cell, gxp_bounds *box) {
+static void gxp_cell_bounds(const gx_body *body, uint32_t element, const gxp_cell *cell, gxp_bounds *box) {
+    const uint32_t *node = gxb_complex_element_nodes(body->complex, element);
     double x[12];
     int n, k;
     gxp_moved_corners(body, cell, x);
@@ -9180,6 +9788,9 @@ static void gxp_cell_bounds(const gx_body *body, const gxp_cell *cell, gxp_bound
             box->low[k] = x[3 * n + k] < box->low[k] ? x[3 * n + k] : box->low[k];
             box->high[k] = x[3 * n + k] > box->high[k] ? x[3 * n + k] : box->high[k];
         }
+    for (n = 0; n < 4 && body->copies.bends; n++)
+        for (k = 0; k < 4 && body->copies.affine[cell->copies[n]]; k++)
+            gxp_add_image(body, cell->copies[n], node[k], box);
 }
 
 typedef struct gxp_box_walk {
@@ -9196,7 +9807,7 @@ static inline gx_result gxp_visit_in_box(gx_body *body, void *user, uint32_t pla
          cell = body->cells.data[cell].next) {
         gxp_bounds box;
         if (!body->cells.data[cell].kept) continue;
-        gxp_cell_bounds(body, &body->cells.data[cell], &box);
+        gxp_cell_bounds(body, body->mesh.box_elements[place], &body->cells.data[cell], &box);
         if (!(gxp_gap(&box, &walk->box) > 0)) result = walk->visit(body, walk->user, cell);
     }
     return result;
@@ -9226,11 +9837,119 @@ static int gxp_leads_to(gx_body *body, gxb_pullback *back, uint32_t reference, u
     return gxp_is_kept(body, reference >> 1) && body->leaves.data[reference >> 1].cell == cell;
 }
 
-/* Does the cell, or its boundary, contain a point of space? Exact for the corners that gxp_moved_corners gives. */
+/* The material point with these barycentric coordinates; exactly a node, or in a coordinate plane, where they say so */
+static void gxp_weigh_material(const double rest[12], const double weights[4], double material[3]) {
+    int n, k, most = 0;
+    for (n = 1; n < 4; n++)
+        if (fabs(weights[n]) > fabs(weights[most])) most = n;
+    for (k = 0; k < 3; k++) {
+        double sum = 0;
+        for (n = 0; n < 4; n++) sum += weights[n] * (rest[3 * n + k] - rest[3 * most + k]);
+        material[k] = rest[3 * most + k] + sum;
+    }
+}
+
+/* Steps of Newton's method, which doubles the digits with each; a step below this share of the element is the last. */
+#define GXP_UNBEND_STEPS 24
+#define GXP_UNBEND_SMALL 1.4210854715202004e-14
+
+/* How far a bent cell's map is from a point at barycentric coordinates, and its derivatives by the last three of these.
+   The map is sum of N_i (X_i + a_i + A_i (X - X_i)). */
+static void gxp_bent_residual(const gx_body *body, const gxp_cell *c, const double rest[12], const double weights[4],
+                              const double material[3], const double point[3], double off[3], double slope[3][3]) {
+    double image[4][3];
+    int n, i, k;
+    memset(slope, 0, 9 * sizeof slope[0][0]);
+    memset(image, 0, sizeof image);
+    for (n = 0; n < 4; n++) {
+        const double *u = body->copies.displacement + 3 * (size_t)c->copies[n], *own = rest + 3 * n;
+        if (body->copies.affine[c->copies[n]]) {
+            gxp_add_linear(body, body->copies.linear, c->copies[n], 1, material, image[n]);
+            for (i = 0; i < 3; i++) { /* A by the way from corner 0 to corner i + 1, added to its column */
+                const double way[3] = {own[0] + rest[3 * i + 3] - rest[0], own[1] + rest[3 * i + 4] - rest[1],
+                                       own[2] + rest[3 * i + 5] - rest[2]};
+                gxp_add_linear(body, body->copies.linear, c->copies[n], weights[n], way, slope[i]);
+            }
+        }
+        for (k = 0; k < 3; k++) image[n][k] += own[k] + u[k];
+    }
+    for (k = 0; k < 3; k++) {
+        off[k] = weights[0] * (image[0][k] - point[k]);
+        for (i = 0; i < 3; i++) {
+            off[k] += weights[i + 1] * (image[i + 1][k] - point[k]);
+            slope[i][k] += image[i + 1][k] - image[0][k];
+        }
+    }
+}
+
+static void gxp_cross(double r[3], const double a[3], const double b[3]) {
+    r[0] = a[1] * b[2] - a[2] * b[1];
+    r[1] = a[2] * b[0] - a[0] * b[2];
+    r[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* Pulls a point of space back by the map of a bent cell, to rounding, from coordinates to begin with. 0: it is nowhere
+   near there. */
+static int gxp_unbend(const gx_body *body, const gxp_cell *c, const double point[3], double weights[4],
+                      double material[3]) {
+    double rest[12], off[3], slope[3][3], normal[3][3];
+    int step, i;
+    gxp_element_positions(body, c->element, rest);
+    for (step = 0; step < GXP_UNBEND_STEPS; step++) {
+        double volume, most = 0;
+        gxp_weigh_material(rest, weights, material);
+        gxp_bent_residual(body, c, rest, weights, material, point, off, slope);
+        for (i = 0; i < 3; i++) gxp_cross(normal[i], slope[(i + 1) % 3], slope[(i + 2) % 3]);
+        volume = gxp_dot(slope[0], normal[0]);
+        if (!(fabs(volume) > 0)) return 0;
+        for (i = 0; i < 3; i++) {
+            const double change = -gxp_dot(off, normal[i]) / volume;
+            weights[i + 1] += change;
+            most = fmax(most, fabs(change));
+        }
+        weights[0] = 1 - weights[1] - weights[2] - weights[3];
+        if (!(most < 1e3)) return 0;
+        if (most < GXP_UNBEND_SMALL) {
+            gxp_weigh_material(rest, weights, material);
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Pulls a point of space back by the map of a bent cell that contains it: coordinates and material point. 0: none was
+   found in the cell. Begins at the place that the cell's corners alone would give the point, then in the middle. */
+static int gxp_find_in_bent(gx_body *body, uint32_t cell, const double point[3], double weights[4],
+                            double material[3]) {
+    const gxp_cell *c = &body->cells.data[cell];
+    gxb_pullback back;
+    double x[12], rest[12];
+    int from, n;
+    gxp_element_positions(body, c->element, rest);
+    for (from = 0; from < 2; from++) {
+        gxp_moved_corners(body, c, x);
+        gxb_pullback_set(&back, x, point);
+        if (from == 0 && (gxb_pullback_contains(&back) || gxb_pullback_orient(&back) != 0))
+            gxb_pullback_weights(&back, weights);
+        else
+            for (n = 0; n < 4; n++) weights[n] = 0.25;
+        if (!gxp_unbend(body, c, point, weights, material)) continue;
+        if (gxb_pullback_misses(rest, material)) continue;
+        gxb_pullback_set(&back, rest, material);
+        if (gxb_pullback_contains(&back) &&
+            gxp_leads_to(body, &back, gxb_complex_root(body->complex, c->element), cell))
+            return 1;
+    }
+    return 0;
+}
+
+/* Does the cell, or its boundary, contain a point of space? Exact for the corners that gxp_moved_corners gives; a bent
+   cell contains what it contains at rest once rounded there. */
 static int gxp_contains_point(gx_body *body, uint32_t cell, const double point[3]) {
     const gxp_cell *c = &body->cells.data[cell];
     gxb_pullback back;
-    double x[12];
+    double x[12], weights[4], material[3];
+    if (gxp_is_bent(body, c)) return gxp_find_in_bent(body, cell, point, weights, material);
     gxp_moved_corners(body, c, x);
     if (gxb_pullback_misses(x, point)) return 0;
     gxb_pullback_set(&back, x, point);
@@ -9275,18 +9994,6 @@ static gx_result gxp_find_cells_at(gx_body *body, const double point[3], gxp_wor
 }
 
 /* --- the maps of a cell --- */
-
-/* The material point with these barycentric coordinates; exactly a node, or in a coordinate plane, where they say so */
-static void gxp_weigh_material(const double rest[12], const double weights[4], double material[3]) {
-    int n, k, most = 0;
-    for (n = 1; n < 4; n++)
-        if (fabs(weights[n]) > fabs(weights[most])) most = n;
-    for (k = 0; k < 3; k++) {
-        double sum = 0;
-        for (n = 0; n < 4; n++) sum += weights[n] * (rest[3 * n + k] - rest[3 * most + k]);
-        material[k] = rest[3 * most + k] + sum;
-    }
-}
 
 /* Pulls a point of space back by the affine map of a cell's deformed element, also from outside of it. weights: of the
    cell's copies, 1 in sum. At rest the material point is the point, bit by bit. 0: the element is flat. */
@@ -9365,12 +10072,6 @@ static double gxp_bound_distance(const gxp_walk *walk, const gxp_bounds *box) {
 
 /* Rounding of what follows is far below this share (2^-46) of the sizes of the terms. */
 #define GXP_NEAR_ROUNDING 1.4210854715202004e-14
-
-static void gxp_cross(double r[3], const double a[3], const double b[3]) {
-    r[0] = a[1] * b[2] - a[2] * b[1];
-    r[1] = a[2] * b[0] - a[0] * b[2];
-    r[2] = a[0] * b[1] - a[1] * b[0];
-}
 
 /* If a point of the segment from corner i to corner j is nearer to the origin than *square: sets that and the shares.
  */
@@ -9458,8 +10159,8 @@ static int gxp_is_beside(double p[3][3], const double x[3]) {
 }
 
 /* Tries the faces of an element that is all its cell's, but those that hide behind it. x: its moved corners less the
-   point */
-static void gxp_try_faces(gxp_near_walk *own, uint32_t cell, double x[4][3]) {
+   point. hides: 0 where faces are bent, which may hide less than flat ones */
+static void gxp_try_faces(gxp_near_walk *own, uint32_t cell, double x[4][3], int hides) {
     static const double corner[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
     int k, i;
     for (k = 0; k < 4; k++) {
@@ -9469,7 +10170,7 @@ static void gxp_try_faces(gxp_near_walk *own, uint32_t cell, double x[4][3]) {
             lambda[i] = corner[gxp_outward[k][i]];
             memcpy(p[i], x[gxp_outward[k][i]], sizeof p[i]);
         }
-        if (!gxp_is_beside(p, x[k])) gxp_try_triangle(own, cell, p, lambda);
+        if (!hides || !gxp_is_beside(p, x[k])) gxp_try_triangle(own, cell, p, lambda);
     }
 }
 
@@ -9493,9 +10194,22 @@ static gx_result gxp_bound_cell(gx_body *body, uint32_t cell) {
     return result;
 }
 
+/* Adds what affine copies move a point of the cell by, beside their own displacements. */
+static void gxp_add_bend(const gx_body *body, const gxp_cell *c, const double weights[4], double position[3]) {
+    double rest[12], material[3];
+    int n;
+    gxp_element_positions(body, c->element, rest);
+    gxp_weigh_material(rest, weights, material);
+    for (n = 0; n < 4; n++)
+        if (body->copies.affine[c->copies[n]])
+            gxp_add_linear(body, body->copies.linear, c->copies[n], weights[n], material, position);
+}
+
 /* Tries the facets that bound a cell of a divided element. */
 static gx_result gxp_try_facets(gx_body *body, gxp_near_walk *own, uint32_t cell, double x[4][3]) {
     const gxp_boundary *boundary = &body->scratch.boundary;
+    const gxp_cell *c = &body->cells.data[cell];
+    const int bent = gxp_is_bent(body, c);
     uint32_t i;
     int k, j;
     gx_result result;
@@ -9507,6 +10221,7 @@ static gx_result gxp_try_facets(gx_body *body, gxp_near_walk *own, uint32_t cell
         for (k = 0; k < 3; k++) {
             const double *l = lambda[k] = boundary->lambdas + 4 * (size_t)boundary->triangles.data[i + (uint32_t)k];
             for (j = 0; j < 3; j++) p[k][j] = l[0] * x[0][j] + l[1] * x[1][j] + l[2] * x[2][j] + l[3] * x[3][j];
+            if (bent) gxp_add_bend(body, c, l, p[k]);
         }
         gxp_try_triangle(own, cell, p, lambda);
     }
@@ -9524,14 +10239,14 @@ static gx_result gxp_visit_near(gx_body *body, gxp_walk *walk, uint32_t element)
         gxp_bounds box;
         if (!c->kept || (own->admits != NULL && !own->admits(own->user, cell))) continue;
         if (divided) {
-            gxp_cell_bounds(body, c, &box);
+            gxp_cell_bounds(body, element, c, &box);
             if (gxp_bound_distance(walk, &box) > walk->limit) continue;
         }
         gxp_cell_corners(body, c, 1, own->point, x);
         if (divided)
             result = gxp_try_facets(body, own, cell, x);
         else
-            gxp_try_faces(own, cell, x);
+            gxp_try_faces(own, cell, x, !gxp_is_bent(body, c));
     }
     return result;
 }
@@ -9582,7 +10297,10 @@ static void gxp_start_hit(gx_body *body, uint32_t cell, const double weights[4],
 /* The hit of a point that the cell contains */
 static void gxp_hit_inside(gx_body *body, uint32_t cell, const double point[3], gx_hit *hit) {
     double weights[4], material[3];
-    (void)gxp_pull_back(body, cell, point, weights, material);
+    if (gxp_is_bent(body, &body->cells.data[cell]))
+        (void)gxp_find_in_bent(body, cell, point, weights, material);
+    else
+        (void)gxp_pull_back(body, cell, point, weights, material);
     gxp_start_hit(body, cell, weights, hit);
     memcpy(hit->material, material, sizeof hit->material);
     memcpy(hit->position, point, sizeof hit->position);
@@ -10555,6 +11273,7 @@ static gx_result gxp_attach_contact(gx_body *body, gxs_step_desc *step, gxp_touc
     const double dt = gxp_is_finite(step->dt) && step->dt > 0 ? step->dt : 0;
     gx_result result;
     body->touch.kept = 0;
+    if (body->copies.affine != NULL) return gxp_refuse(failure, "affine_below"); /* pairs have no affine copies */
     if (step->integrator == GXS_MIDPOINT) return gxp_refuse(failure, "integrator");
     if (step->pair_count > 0 && step->pairs == NULL) return gxp_refuse(failure, "pairs");
     result = gxp_step_surface(body, surface);
@@ -10611,6 +11330,7 @@ GXFEM_API gx_result gx_body_contact(gx_body *body, const gx_contact_desc *desc, 
     double numbers[5];
     int i;
     if (body == NULL) return gxp_refuse(failure, "body");
+    if (desc != NULL && body->copies.affine != NULL) return gxp_refuse(failure, "affine_below");
     memset(&own, 0, sizeof own);
     if (desc != NULL) own = *desc;
     numbers[0] = own.stiffness;
@@ -10727,6 +11447,79 @@ static gx_result gxp_translate_step(gx_body *body, const gx_step_desc *desc, gxs
     return GX_OK;
 }
 
+/* The hidden vectors of the model's affine copies: A times affine_length */
+static void gxp_hide(const gx_body *body, const double *linear, double *vectors) {
+    size_t i, k;
+    for (i = 0; i < body->hidden.copies.count; i++)
+        for (k = 0; k < 9; k++)
+            vectors[9 * i + k] = body->mesh.affine_length * linear[9 * (size_t)body->hidden.copies.data[i] + k];
+}
+
+static void gxp_unhide(const gx_body *body, const double *vectors, double *linear) {
+    size_t i, k;
+    for (i = 0; i < body->hidden.copies.count; i++)
+        for (k = 0; k < 9; k++)
+            linear[9 * (size_t)body->hidden.copies.data[i] + k] = vectors[9 * i + k] / body->mesh.affine_length;
+}
+
+/* A step of a model with hidden vectors: in vectors of their own, which become the state if it succeeds. What is left
+   of the motion of copies that are affine, but not in the model, is dropped: a speck moves as a point. */
+static gx_result gxp_step_affine(gx_body *body, const gxs_step_desc *given, gx_step_report *report,
+                                 gx_failure *failure) {
+    gxp_copies *copies = &body->copies;
+    const size_t n = copies->count, vectors = gxp_vector_count(body), bytes = 3 * n * sizeof(double);
+    const int history = given->previous_displacement != NULL;
+    gxs_step_desc step = *given;
+    gx_failure own;
+    double *u, *v, *before, *rest;
+    size_t i, k;
+    gx_result result = vectors > INT32_MAX / 16
+                         ? GX_ERROR_LIMIT
+                         : gxp_reserve(&body->config.allocator, &body->hidden.state, sizeof(double), 0,
+                                       &body->hidden.state_capacity, 13 * vectors);
+    if (result != GX_OK) return gxp_end(failure, result);
+    u = body->hidden.state;
+    v = u + 3 * vectors;
+    before = v + 3 * vectors;
+    rest = before + 6 * vectors;
+    memcpy(u, copies->displacement, bytes);
+    memcpy(v, copies->velocity, bytes);
+    memcpy(rest, copies->rest_time, n * sizeof *rest);
+    gxp_hide(body, copies->linear, u + 3 * n);
+    gxp_hide(body, copies->linear_rate, v + 3 * n);
+    for (i = n; i < vectors; i++) rest[i] = rest[body->hidden.copies.data[(i - n) / 3]];
+    if (history) {
+        memcpy(before, copies->history[0], bytes);
+        memcpy(before + 3 * vectors, copies->history[1], bytes);
+        gxp_hide(body, copies->linear_history[0], before + 3 * n);
+        gxp_hide(body, copies->linear_history[1], before + 3 * vectors + 3 * n);
+        step.previous_displacement = before;
+        step.previous_velocity = before + 3 * vectors;
+    }
+    step.rest_times = rest;
+    gxp_end(&own, GX_OK);
+    result = gxs_solver_step(body->solver, &step, u, v, report, &own);
+    memcpy(copies->rest_time, rest, n * sizeof *rest);
+    if (result != GX_OK) {
+        if (own.index != SIZE_MAX && own.field != NULL && own.index >= n && own.index < vectors &&
+            (strcmp(own.field, "displacement") == 0 || strcmp(own.field, "velocity") == 0))
+            own.index = body->hidden.copies.data[(own.index - n) / 3];
+        if (failure != NULL) *failure = own;
+        return result;
+    }
+    if (given->integrator == GXS_BDF2) {
+        memcpy(copies->linear_history[0], copies->linear, 9 * n * sizeof(double));
+        memcpy(copies->linear_history[1], copies->linear_rate, 9 * n * sizeof(double));
+    }
+    memcpy(copies->displacement, u, bytes);
+    memcpy(copies->velocity, v, bytes);
+    gxp_unhide(body, u + 3 * n, copies->linear);
+    gxp_unhide(body, v + 3 * n, copies->linear_rate);
+    for (i = 0; i < n; i++)
+        for (k = 0; k < 9 && body->hidden.first.data[i] == GXS_NOT_AFFINE; k++) copies->linear_rate[9 * i + k] = 0;
+    return GX_OK;
+}
+
 /* Takes the step and keeps the state that the next step of BDF2 needs. */
 static gx_result gxp_step(gx_body *body, const gxs_step_desc *step, gx_step_report *report, gx_failure *failure) {
     gxp_copies *copies = &body->copies;
@@ -10739,7 +11532,12 @@ static gx_result gxp_step(gx_body *body, const gxs_step_desc *step, gx_step_repo
         memcpy(copies->history[2], copies->displacement, bytes);
         memcpy(copies->history[3], copies->velocity, bytes);
     }
-    result = gxs_solver_step(body->solver, step, copies->displacement, copies->velocity, report, failure);
+    if (body->hidden.copies.count > 0)
+        result = gxp_step_affine(body, step, report, failure);
+    else {
+        result = gxs_solver_step(body->solver, step, copies->displacement, copies->velocity, report, failure);
+        if (result == GX_OK && copies->bends) memset(copies->linear_rate, 0, 9 * copies->count * sizeof(double));
+    }
     if (result != GX_OK) return result;
     copies->previous_dt = history ? step->dt : 0;
     for (i = 0; i < 2 && history; i++) gxp_swap_columns(body, &columns[i], &columns[i + 2]);
@@ -10773,6 +11571,7 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     result = gxp_translate_step(body, desc, &step);
     if (gxp_end(failure, result) == GX_OK) result = gxp_attach(body, desc, &step, failure);
     if (result == GX_OK && body->touch.on) result = gxp_attach_contact(body, &step, &surface, failure);
+    if (result == GX_OK && body->hidden.copies.count > 0) result = gxp_end(failure, gxp_expand(body, desc, &step));
     if (result != GX_OK) return result;
     if (body->model.empty) {
         result = gxp_check_empty_step(body, desc, &step, failure);
@@ -13548,6 +14347,7 @@ GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t po
     gx_blade_report own;
     gx_result result;
     if (blade == NULL) return gxp_refuse(failure, "blade");
+    if (blade->body->copies.affine != NULL) return gxp_refuse(failure, "affine_below"); /* layers see affine maps */
     if (scope_fragment_count > 0 && scope_fragments == NULL) return gxp_refuse(failure, "scope_fragments");
     result = gxp_check_edge(blade, edge, point_count, failure);
     if (result == GX_OK && scope_fragment_count > 0)
@@ -14342,6 +15142,7 @@ GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (tool == NULL) return gxp_refuse(failure, "tool");
+    if (body->copies.affine != NULL) return gxp_refuse(failure, "affine_below"); /* see gx_blade_move */
     result = gxp_check_tool(tool, failure);
     if (result == GX_OK) result = gx_blade_create(body, NULL, &blade, failure);
     if (result != GX_OK) return result;
@@ -14360,6 +15161,8 @@ GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_
    ... 2^GXP_WEIGHT: the inertia of 2^28 of them is below 2^940. */
 #define GXP_REACH  100
 #define GXP_WEIGHT 700
+
+#define GXP_AFFINE_MOST 1e3 /* of affine_below: all is thinner than that */
 
 /* Blames a node that is too far out, or all if the body is too small. */
 static gx_result gxp_check_size(const gx_body_desc *desc, gx_failure *failure) {
@@ -14433,6 +15236,15 @@ static void gxp_make_first_copies(gx_body *body) {
     memset(copies->before, 0, copies->count * sizeof *copies->before);
 }
 
+/* Columns of affine copies, all 0 */
+static gx_result gxp_make_affine_columns(gx_body *body) {
+    gx_result result = GX_OK;
+    int i;
+    for (i = 0; i < GXP_AFFINE_COLUMNS && result == GX_OK && body->config.affine_below > 0; i++)
+        result = gxp_make_column(body, &gxp_copy_columns[GXP_FIRST_AFFINE + i], body->mesh.node_count);
+    return result;
+}
+
 /* Makes the arrays of fixed size and the first rows of those that grow. */
 static gx_result gxp_make_tables(gx_body *body, const gx_body_desc *desc) {
     const size_t nodes = body->mesh.node_count;
@@ -14494,9 +15306,14 @@ static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc, gx_failu
     if (result != GX_OK) return result;
     gxp_make_first_copies(body);
     gxp_build_boxes(body);
+    result = gxp_make_affine_columns(body);
+    if (result == GX_OK) result = gxp_first_sheets(body);
+    if (result != GX_OK) return result;
     body->view.stale = 1;
     body->model.state = GXP_MODEL_STALE;
     body->cuts.hash = gxp_hash_mesh(body);
+    if (body->config.affine_below > 0)
+        body->cuts.hash = gxp_hash_doubles(body->cuts.hash, &body->config.affine_below, 1);
     return gxp_first_snapshot(body);
 }
 
@@ -14554,6 +15371,8 @@ static gx_result gxp_check_body_desc(const gx_body_desc *desc, gx_failure *failu
     if (!gxb_is_allocator(&desc->allocator)) return gxp_refuse(failure, "allocator");
     if (!gxp_is_finite(desc->support_below)) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "support_below", SIZE_MAX);
     if (desc->support_below < 0 || desc->support_below >= 1) return gxp_refuse(failure, "support_below");
+    if (!gxp_is_finite(desc->affine_below)) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "affine_below", SIZE_MAX);
+    if (desc->affine_below < 0 || desc->affine_below > GXP_AFFINE_MOST) return gxp_refuse(failure, "affine_below");
     for (i = 0; i < 2 * desc->node_count && desc->texture != NULL; i++)
         if (!gxp_is_finite((double)desc->texture[i])) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "texture", i / 2);
     return gxp_check_materials(desc, failure);
@@ -14566,6 +15385,7 @@ static void gxp_set_config(gxp_config *config, const gx_body_desc *desc) {
     config->clock = desc->clock;
     config->clock_user = desc->clock_user;
     config->support_below = desc->support_below;
+    config->affine_below = desc->affine_below;
     config->follow_below = desc->support_below > 0 ? desc->support_below : GXP_SUPPORT;
     config->speck_below = desc->support_below > 0 ? desc->support_below : GXP_SPECK;
     config->speck_reach = desc->support_below > 0 ? 0 : GXP_SPECK_REACH;
@@ -14758,7 +15578,8 @@ static int gxp_has_glances(const gx_body *body) {
 
 GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
     const uint32_t use = GXP_TOPOLOGY | GXP_STATE | (body->copies.previous_dt > 0 ? (uint32_t)GXP_HISTORY : 0) |
-                         (gxp_has_glances(body) ? (uint32_t)GXP_STROKE : 0);
+                         (gxp_has_glances(body) ? (uint32_t)GXP_STROKE : 0) |
+                         (body->copies.affine != NULL ? (uint32_t)GXP_AFFINE : 0);
     uint64_t hash = gxp_mix(body->cuts.epoch ^ (uint64_t)body->snapshot.next_id << 32);
     const gx_blade *blade;
     uint32_t t, i;
@@ -14815,7 +15636,7 @@ static void gxp_require_true(gxb_stream *s, int holds) {
 }
 static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
 
-#define GXP_SAVE_VERSION 8u /* raised by every change of the format */
+#define GXP_SAVE_VERSION 9u /* raised by every change of the format */
 #define GXP_BYTE_ORDER   0x01020304u
 
 typedef struct gxp_head {
@@ -14872,7 +15693,7 @@ static void gxp_pass_material(gxb_stream *s, gx_material *m) {
 
 typedef struct gxp_saved_mesh {
     uint32_t node_count, element_count, material_count;
-    double support_below;
+    double support_below, affine_below;
     uint32_t textured; /* 1: there is a texture */
     double *positions;
     float *texture;
@@ -14886,6 +15707,7 @@ static void gxp_pass_sizes(gxb_stream *s, gxp_saved_mesh *mesh) {
     gxp_pass_word(s, &mesh->material_count);
     gxp_pass_word(s, &mesh->textured);
     gxb_stream_pass(s, &mesh->support_below, 1, sizeof mesh->support_below);
+    gxb_stream_pass(s, &mesh->affine_below, 1, sizeof mesh->affine_below);
 }
 
 static void gxp_pass_mesh(gxb_stream *s, gxp_saved_mesh *mesh) {
@@ -14903,6 +15725,7 @@ static void gxp_save_mesh(gxb_stream *s, gx_body *body) {
     mesh.element_count = body->mesh.element_count;
     mesh.material_count = body->mesh.material_count;
     mesh.support_below = body->config.support_below;
+    mesh.affine_below = body->config.affine_below;
     mesh.positions = body->mesh.positions;
     mesh.elements = (uint32_t *)gxb_complex_element_nodes(body->complex, 0); /* only written from here */
     mesh.texture = body->mesh.texture;
@@ -14950,6 +15773,7 @@ static void gxp_create_again(gxb_stream *s, const gx_body_desc *given, gxp_saved
     desc.element_materials = mesh->element_materials;
     desc.texture = mesh->textured ? mesh->texture : NULL;
     desc.support_below = mesh->support_below;
+    desc.affine_below = mesh->affine_below;
     result = gx_body_create(&desc, body, NULL);
     gxp_require(s, result == GX_OK || result == GX_ERROR_MEMORY || result == GX_ERROR_LIMIT ||
                            result == GX_ERROR_CONFIGURATION
@@ -15454,10 +16278,12 @@ static void gxp_drop_blades(gx_body *body, uint32_t count) {
 /* The row counts of the state, whether there is a history, and whether a blade leaves out moves */
 typedef struct gxp_state_counts {
     uint32_t rows[GXP_TABLES], history, struck;
+    int affine; /* there may be affine copies: the saved mesh tells */
 } gxp_state_counts;
 
 static uint32_t gxp_state_use(const gxp_state_counts *n) {
-    return GXP_STATE | (n->history ? (uint32_t)GXP_HISTORY : 0) | (n->struck ? (uint32_t)GXP_STROKE : 0);
+    return GXP_STATE | (n->history ? (uint32_t)GXP_HISTORY : 0) | (n->struck ? (uint32_t)GXP_STROKE : 0) |
+           (n->affine ? (uint32_t)GXP_AFFINE : 0);
 }
 
 static void gxp_pass_state_counts(gxb_stream *s, gxp_state_counts *n) {
@@ -15471,6 +16297,7 @@ static gxp_state_counts gxp_count_state(const gx_body *body) {
     gxp_count_rows(body, n.rows);
     n.history = body->copies.previous_dt > 0;
     n.struck = (uint32_t)gxp_has_glances(body);
+    n.affine = body->copies.affine != NULL;
     return n;
 }
 
@@ -15501,7 +16328,9 @@ static void gxp_pass_state(gxb_stream *s, gx_body *body, const gxp_state_counts 
     gxb_stream_pass(s, &scene.planes, 1, sizeof scene.planes);
     gxb_stream_pass(s, &scene.forces, 1, sizeof scene.forces);
     gxb_stream_pass(s, &scene.springs, 1, sizeof scene.springs);
-    if (s->in != NULL) gxp_resume_in(body, &scene);
+    if (s->in == NULL) return;
+    gxp_find_bends(body);
+    gxp_resume_in(body, &scene);
 }
 
 static void gxp_save_state(gxb_stream *s, gx_body *body) {
@@ -15547,7 +16376,9 @@ static void gxp_check_state(gxb_stream *s, gx_body *body, const gxp_state_counts
     gxp_require_true(s, snapshot->next_id >= 1 && snapshot->stale <= 1);
     gxp_require_true(s, gxp_is_finite(dt) && (n->history ? dt > 0 : !(dt > 0 || dt < 0)));
     gxp_check_regions(s, body);
-    for (i = 0; i < body->copies.count; i++) gxp_require_true(s, body->copies.label[i] >> 1 < snapshot->count);
+    for (i = 0; i < body->copies.count; i++)
+        gxp_require_true(s,
+                         body->copies.label[i] >> 1 < snapshot->count && (!n->affine || body->copies.affine[i] <= 1));
     for (i = 0; i < snapshot->count; i++)
         gxp_require_true(s, snapshot->id[i] - 1 < snapshot->next_id - 1 &&
                                 snapshot->origin[i] - 1 < snapshot->next_id - 1 &&
@@ -15560,8 +16391,9 @@ static void gxp_check_state(gxb_stream *s, gx_body *body, const gxp_state_counts
 
 static void gxp_load_state(gxb_stream *s, gx_body *body, int trusted) {
     gxp_state_counts n;
+    n.affine = body->copies.affine != NULL;
     gxp_pass_state_counts(s, &n);
-    gxp_check_counts(s, GXP_STATE, n.rows);
+    gxp_check_counts(s, gxp_state_use(&n), n.rows);
     gxp_require_true(s, n.rows[GXP_COPIES] == body->copies.count && n.history <= 1 && n.struck <= 1);
     if (s->result == GX_OK) gxp_require(s, gxp_state_room(body, &n));
     if (s->result == GX_OK) gxp_pass_state(s, body, &n);
@@ -15824,6 +16656,9 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_RAY_MARGIN
 #undef GXP_REACH
 #undef GXP_WEIGHT
+#undef GXP_AFFINE_MOST
+#undef GXP_UNBEND_STEPS
+#undef GXP_UNBEND_SMALL
 #undef GXP_LAST_ROUND
 #undef GXP_EXPECTED
 #undef GXP_CANCELLATION
@@ -15831,6 +16666,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_REST
 #undef GXP_WEIGHT_LOSS
 #undef GXP_ROUNDING
+#undef GXP_ELEMENT_SPREAD
 #undef GXP_OFF
 #undef GXP_NO_INERTIA
 #undef GXP_SAVE_VERSION

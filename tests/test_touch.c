@@ -536,6 +536,23 @@ START_TEST(refusals) {
         }
     ck_assert_int_eq(gx_body_contact(NULL, &desc, &failure), GX_ERROR_ARGUMENT);
     ck_assert_str_eq(failure.field, "body");
+    {
+        gx_body_desc thin = desc_of(&w);
+        gx_body *other = NULL;
+        thin.affine_below = 0.5;
+        desc = contact_desc(0);
+        ck_assert_int_eq(gx_body_create(&thin, &other, NULL), GX_OK);
+        ck_assert_int_eq(gx_body_contact(other, &desc, &failure), GX_ERROR_ARGUMENT);
+        ck_assert_str_eq(failure.field, "affine_below");
+        ck_assert_int_eq(gx_body_contact(body, &desc, NULL), GX_OK);
+        ck_assert_int_eq(gx_body_restore(body, other, NULL), GX_OK); /* contact stays on */
+        ck_assert_int_eq(gx_body_step(body, &step, NULL, &failure), GX_ERROR_ARGUMENT);
+        ck_assert_str_eq(failure.field, "affine_below");
+        gx_body_destroy(other);
+        gx_body_destroy(body);
+        wl_free(&w);
+        body = cut_cube(&w, 2, up, 1.5);
+    }
     ck_assert_int_eq(gx_body_contacts(NULL, &contact, 1, &count, &failure), GX_ERROR_ARGUMENT);
     ck_assert_str_eq(failure.field, "body");
     ck_assert_int_eq(gx_body_contacts(body, &contact, 1, NULL, &failure), GX_ERROR_ARGUMENT);
