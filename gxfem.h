@@ -43,6 +43,7 @@
  *     >>viewing    cells, copies, fragments, motion
  *     >>anchoring  material points that survive cuts
  *     >>stepping   held regions, time steps
+ *     >>touching   contact of pieces
  *     >>drawing    the visual surface, rays
  *     >>locating   points of space: what material is there; where material is
  *     >>slicing    blades in space
@@ -55,9 +56,10 @@
  *                                >>sheets >>specks >>settle >>cut
  *     a sheet's thickness:       >>solidify
  *     what is held and whole:    >>anchors >>regions >>grips >>map >>fragments >>motion
- *     a step:                    >>attached >>supports >>model >>step
+ *     what acts on it:           >>attached >>supports >>model
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
+ *     a step, with contact:      >>touch >>meeting >>step
  *     a blade in space:          >>layers >>edges >>fronts >>glances >>strokes >>blade >>contacts >>carve
  *     beginning, end, bytes:     >>grid >>create >>hashes >>stream >>scabbard >>save
  *
@@ -69,9 +71,9 @@
  * Exact: the set of cells and their links, hence copies and fragments. Decisions are signs of polynomials in the given
  * coordinates (gxfem_boolean.h). Rounded once, to doubles: volumes, masses and vertices.
  *
- * Not there yet: a search for contact between fragments; surfaces given in the deformed state (a moving edge is:
- * gx_blade); unknowns within a partly cut element (a sheet that ends inside an element separates nothing there until
- * another sheet completes it).
+ * Not there yet: contact with the host's bodies but by points (pieces of a body touch each other: gx_body_contact);
+ * surfaces given in the deformed state (a moving edge is: gx_blade); unknowns within a partly cut element (a sheet that
+ * ends inside an element separates nothing there until another sheet completes it).
  *
  * Limits: fewer than 2^28 elements a body (2^24 where pointers have 32 bits), fewer than 2^30 cells and 2^30 copies
  * for steps, some 1.4e9 of each other kind of object, 5e8 vertices and triangles a surface (GX_ERROR_LIMIT). A body's
@@ -533,6 +535,47 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
    all copies, three for each: see gxs_model.affine. Arrays are the body's, valid until its next cut, hold, step or
    restore. Errors: ARGUMENT, LIMIT, MEMORY; RANGE, FLAT: an element's gradients are beyond doubles (index: element). */
 GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model, gx_failure *failure /* or NULL */);
+
+/* >>touching: pieces that press on each other ---------------------------------------------------------------------- */
+
+/* Contact of the body's pieces with each other, and of a piece with itself: lips of a cut, folds. Each step looks for
+   vertices of the surface that are in front of, or a little behind, a facet that faces them, and joins the two by a
+   pair (see gxs_pair) of stiffness c E A / (2 h): A is the vertex's share of the surface, h the size of its element, E
+   the smaller of the two moduli. A closed cut then carries load like a layer of thickness h / c. Nothing is pushed at
+   once: pieces that overlap when contact begins, or that are found late, press as they did before, and come apart at
+   the speed `recovery`. What a piece pressed with, and the slip of its friction, stay with the material through cuts.
+   A piece's own thickness is no contact: a facet is left out if it was near at rest and the vertex did not face it
+   then, or was behind it. */
+typedef struct gx_contact_desc {
+    double stiffness;      /* c; 0: 10. Iterations of a step grow with its root */
+    double friction;       /* Coulomb's coefficient, 0 or more */
+    double sticking_speed; /* m/s; 0: 1e-3 */
+    double recovery;       /* m/s: of pieces that overlap; 0: two elements' sizes each second */
+    double depth;          /* overlap up to which it is seen, in sizes of an element; 0: 0.5 */
+    uint32_t max_pairs;    /* of a step, which is refused beyond: GX_ERROR_LIMIT; 0: no limit but memory */
+} gx_contact_desc;
+/* Switches contact on for later steps, or off (NULL). It forgets the slips of friction. Steps with contact refuse
+   GXS_MIDPOINT ("integrator") and "quality". Contact is not saved, and neither clone nor restore copies it: a body that
+   was loaded, or made by gx_body_clone, has none, and gx_body_restore leaves it on or off as it is and forgets the
+   slips.
+   Errors: ARGUMENT (also: gx_body_desc.affine_below is not 0), NOT_FINITE. */
+GXFEM_API gx_result gx_body_contact(gx_body *body, const gx_contact_desc *desc /* or NULL: off */,
+                                    gx_failure *failure /* or NULL */);
+
+/* A place where a piece pressed on another one, or on itself, at the end of the last step */
+typedef struct gx_contact {
+    uint32_t fragment, other; /* below gx_view.fragment_count; equal: of one piece */
+    double position[3];       /* on the surface of fragment, in space, m */
+    double normal[3];         /* from other to fragment, of length 1 */
+    double force[3];          /* on fragment, N */
+    double depth;             /* of the position in other, m; below 0: in front of it */
+} gx_contact;
+/* Lists them. contacts: room for capacity. *count: how many there are, also after CAPACITY; 0 before the first step and
+   after a step that failed.
+   Errors: ARGUMENT, CAPACITY (capacity is below *count), SEQUENCE (contact is off, or a cut has been since the step).
+ */
+GXFEM_API gx_result gx_body_contacts(const gx_body *body, gx_contact *contacts, size_t capacity, size_t *count,
+                                     gx_failure *failure /* or NULL */);
 
 /* >>drawing -------------------------------------------------------------------------------------------------------- */
 
@@ -1385,6 +1428,63 @@ enum {
     GXP_BOX_STALE = 2  /* of a cluster: its leaves' boxes are older than its own */
 };
 
+/* --- contact: see >>touch --- */
+
+typedef struct gxp_touch_vertex { /* of the surface: a sample */
+    uint32_t copies[4], element, fragment;
+    double weights[4]; /* of the copies that move it */
+    double rest[3];    /* m */
+    double normal[3];  /* outward, of length 1, at rest */
+    double area, size; /* m2: its share of the surface; m: of its element */
+    double young;      /* Pa */
+    double pressed;    /* m: depth by which its pair pressed at the end of the last step; 0: it had none */
+    double slip[3];    /* m: elastic, of its friction */
+} gxp_touch_vertex;
+
+typedef struct gxp_touch_facet {
+    uint32_t vertex[3], element, fragment;
+} gxp_touch_facet;
+
+typedef struct gxp_touch_surface { /* facets by fragment, then as they lie in space at rest */
+    gxp_touch_vertex *vertices;
+    gxp_touch_facet *facets;
+    uint32_t vertex_count, facet_count, vertex_capacity, facet_capacity;
+} gxp_touch_surface;
+
+typedef struct gxp_touch_pair { /* of a step */
+    uint32_t vertex, facet;
+    double share[3];             /* of the facet's corners: the place that the vertex touches */
+    double normal[3];            /* of the facet, in space, of length 1 */
+    double gap, approach, score; /* m; m/s; m2: the smallest is taken */
+} gxp_touch_pair;
+
+typedef struct gxp_touch {
+    int on;
+    gx_contact_desc desc; /* without zeros that stand for something */
+    /* The surface that holds the state, and one that a step makes anew after a cut. It takes the first one's place when
+       the step has succeeded. */
+    gxp_touch_surface surfaces[2];
+    uint32_t current;
+    int made;      /* surfaces[current] is of the cuts whose hash is `hash` */
+    uint64_t hash; /* cuts.hash */
+    /* of a step */
+    gxp_touch_pair *pairs;
+    double *moved;          /* vertices x 9: position and velocity in space, outward normal */
+    double *facing;         /* facets x 3: normals in space, of length 1, or 0 */
+    gxp_bounds *boxes;      /* a complete binary tree over the facets, GXP_TOUCH_LEAF in each of its leaves */
+    gxp_words sides;        /* pairs x GXP_TOUCH_COPIES: copies of their points */
+    double *weights;        /* likewise */
+    double *slips, *forces; /* all pairs of the step x 3 */
+    gxp_keys order;
+    gxp_words ranked;     /* facets along a curve; then vertices that a cut has made */
+    uint32_t leaf_count;  /* a power of two */
+    uint32_t given;       /* pairs of the caller, which stand first */
+    uint32_t found, kept; /* pairs of contact: of this step; of the last one that succeeded */
+    uint32_t pair_capacity, moved_capacity, facing_capacity, box_capacity, weight_capacity, slip_capacity,
+        force_capacity;
+} gxp_touch;
+#define GXP_TOUCH_COPIES 16u /* of a pair at most: those of a vertex and of a facet's corners */
+
 /* The boundary of a cell or leaf, as triangles in barycentric coordinates of its element */
 typedef struct gxp_boundary {
     gxp_words points; /* of the complex */
@@ -1464,6 +1564,7 @@ struct gx_body {
     gxp_skin skin;
     gx_blade *blades; /* list through next */
     gxp_tree tree;
+    gxp_touch touch;
     gxp_scratch scratch;
 };
 
@@ -1665,6 +1766,18 @@ static const gxp_column gxp_lists[] = {
     GXP_LIST(tree.boxes, tree.box_capacity, sizeof(gxp_bounds)), GXP_WORDS(tree.marks),
     GXP_WORDS(tree.node_first), GXP_WORDS(tree.node_clusters), GXP_WORDS(tree.found), GXP_WORDS(tree.near),
     GXP_KEYS(tree.order), GXP_WORDS(tree.met),
+    GXP_LIST(touch.surfaces[0].vertices, touch.surfaces[0].vertex_capacity, sizeof(gxp_touch_vertex)),
+    GXP_LIST(touch.surfaces[0].facets, touch.surfaces[0].facet_capacity, sizeof(gxp_touch_facet)),
+    GXP_LIST(touch.surfaces[1].vertices, touch.surfaces[1].vertex_capacity, sizeof(gxp_touch_vertex)),
+    GXP_LIST(touch.surfaces[1].facets, touch.surfaces[1].facet_capacity, sizeof(gxp_touch_facet)),
+    GXP_LIST(touch.pairs, touch.pair_capacity, sizeof(gxp_touch_pair)),
+    GXP_LIST(touch.moved, touch.moved_capacity, 9 * sizeof(double)),
+    GXP_LIST(touch.facing, touch.facing_capacity, 3 * sizeof(double)),
+    GXP_LIST(touch.boxes, touch.box_capacity, sizeof(gxp_bounds)), GXP_WORDS(touch.sides),
+    GXP_LIST(touch.weights, touch.weight_capacity, sizeof(double)),
+    GXP_LIST(touch.slips, touch.slip_capacity, 3 * sizeof(double)),
+    GXP_LIST(touch.forces, touch.force_capacity, 3 * sizeof(double)),
+    GXP_KEYS(touch.order), GXP_WORDS(touch.ranked),
     GXP_WORDS(scratch.removed), GXP_KEYS(scratch.removed_of), GXP_WORDS(scratch.pinches), GXP_WORDS(scratch.touched),
     GXP_WORDS(scratch.new_cells),
     GXP_KEYS(scratch.links), GXP_KEYS(scratch.glue), GXP_WORDS(scratch.cluster), GXP_WORDS(scratch.link_first),
@@ -8350,210 +8463,6 @@ GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model, gx_failure *f
     return gxp_close(failure, result);
 }
 
-/* >>step: time steps ----------------------------------------------------------------------------------------------- */
-/* In: a step's description. Out: displacement and velocity at its end, or the body as it was. Touches the state of
-   copies, the history that BDF2 needs, and the solver. */
-
-/* Makes the first `count` columns of BDF2's history, unless they are there. */
-static gx_result gxp_start_history(gx_body *body, uint32_t count) {
-    uint32_t i;
-    gx_result result = GX_OK;
-    for (i = 0; i < count && result == GX_OK; i++)
-        if (body->copies.history[i] == NULL)
-            result = gxp_grow_column(body, &gxp_copy_columns[GXP_FIRST_HISTORY + i], 0, body->copies.count);
-    return result;
-}
-
-/* What acts on the body, as the solver takes it */
-static void gxp_translate_loads(const gx_step_desc *desc, gxs_step_desc *step) {
-    memcpy(step->gravity, desc->gravity, sizeof step->gravity);
-    step->mass_damping = desc->mass_damping;
-    step->forces = desc->forces;
-    step->targets = desc->targets;
-    step->epoch = desc->epoch;
-    step->springs = desc->springs;
-    step->spring_count = desc->spring_count;
-    step->spring_forces = desc->spring_forces;
-    step->points = desc->points;
-    step->point_count = desc->point_count;
-    step->planes = desc->planes;
-    step->plane_count = desc->plane_count;
-    step->contact = desc->contact;
-    step->contact_user = desc->contact_user;
-    step->pairs = desc->pairs;
-    step->pair_count = desc->pair_count;
-    step->pair_slips = desc->pair_slips;
-    step->pair_forces = desc->pair_forces;
-}
-
-/* The step as the solver takes it: the only place where one description becomes the other. The body adds its rest
-   times, its history and, where the description has none, its clock. */
-static gx_result gxp_translate_step(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step) {
-    const int history = desc->integrator == GXS_BDF2 && !(desc->quality > 0), own_clock = desc->clock == NULL;
-    memset(step, 0, sizeof *step);
-    gxp_translate_loads(desc, step);
-    step->dt = desc->dt;
-    step->integrator = desc->integrator;
-    step->substeps = desc->substeps;
-    step->newton_iterations = desc->newton_iterations;
-    step->newton_tolerance = desc->newton_tolerance;
-    step->cg_iterations = desc->cg_iterations;
-    step->cg_tolerance = desc->cg_tolerance;
-    step->sleep_speed = desc->sleep_speed;
-    step->sleep_time = desc->sleep_time;
-    step->budget_seconds = desc->budget_seconds;
-    step->quality = desc->quality;
-    step->clock = own_clock ? body->config.clock : desc->clock;
-    step->clock_user = own_clock ? body->config.clock_user : desc->clock_user;
-    step->rest_times = body->copies.rest_time;
-    if (history) {
-        const gx_result result = gxp_start_history(body, 4);
-        if (result != GX_OK) return result;
-    }
-    step->previous_displacement = history && body->copies.previous_dt > 0 ? body->copies.history[0] : NULL;
-    step->previous_velocity = body->copies.history[1];
-    step->previous_dt = body->copies.previous_dt;
-    return GX_OK;
-}
-
-/* The hidden vectors of the model's affine copies: A times affine_length */
-static void gxp_hide(const gx_body *body, const double *linear, double *vectors) {
-    size_t i, k;
-    for (i = 0; i < body->hidden.copies.count; i++)
-        for (k = 0; k < 9; k++)
-            vectors[9 * i + k] = body->mesh.affine_length * linear[9 * (size_t)body->hidden.copies.data[i] + k];
-}
-
-static void gxp_unhide(const gx_body *body, const double *vectors, double *linear) {
-    size_t i, k;
-    for (i = 0; i < body->hidden.copies.count; i++)
-        for (k = 0; k < 9; k++)
-            linear[9 * (size_t)body->hidden.copies.data[i] + k] = vectors[9 * i + k] / body->mesh.affine_length;
-}
-
-/* A step of a model with hidden vectors: in vectors of their own, which become the state if it succeeds. What is left
-   of the motion of copies that are affine, but not in the model, is dropped: a speck moves as a point. */
-static gx_result gxp_step_affine(gx_body *body, const gxs_step_desc *given, gx_step_report *report,
-                                 gx_failure *failure) {
-    gxp_copies *copies = &body->copies;
-    const size_t n = copies->count, vectors = gxp_vector_count(body), bytes = 3 * n * sizeof(double);
-    const int history = given->previous_displacement != NULL;
-    gxs_step_desc step = *given;
-    gx_failure own;
-    double *u, *v, *before, *rest;
-    size_t i, k;
-    gx_result result = vectors > INT32_MAX / 16
-                         ? GX_ERROR_LIMIT
-                         : gxp_reserve(&body->config.allocator, &body->hidden.state, sizeof(double), 0,
-                                       &body->hidden.state_capacity, 13 * vectors);
-    if (result != GX_OK) return gxp_end(failure, result);
-    u = body->hidden.state;
-    v = u + 3 * vectors;
-    before = v + 3 * vectors;
-    rest = before + 6 * vectors;
-    memcpy(u, copies->displacement, bytes);
-    memcpy(v, copies->velocity, bytes);
-    memcpy(rest, copies->rest_time, n * sizeof *rest);
-    gxp_hide(body, copies->linear, u + 3 * n);
-    gxp_hide(body, copies->linear_rate, v + 3 * n);
-    for (i = n; i < vectors; i++) rest[i] = rest[body->hidden.copies.data[(i - n) / 3]];
-    if (history) {
-        memcpy(before, copies->history[0], bytes);
-        memcpy(before + 3 * vectors, copies->history[1], bytes);
-        gxp_hide(body, copies->linear_history[0], before + 3 * n);
-        gxp_hide(body, copies->linear_history[1], before + 3 * vectors + 3 * n);
-        step.previous_displacement = before;
-        step.previous_velocity = before + 3 * vectors;
-    }
-    step.rest_times = rest;
-    gxp_end(&own, GX_OK);
-    result = gxs_solver_step(body->solver, &step, u, v, report, &own);
-    memcpy(copies->rest_time, rest, n * sizeof *rest);
-    if (result != GX_OK) {
-        if (own.index != SIZE_MAX && own.field != NULL && own.index >= n && own.index < vectors &&
-            (strcmp(own.field, "displacement") == 0 || strcmp(own.field, "velocity") == 0))
-            own.index = body->hidden.copies.data[(own.index - n) / 3];
-        if (failure != NULL) *failure = own;
-        return result;
-    }
-    if (given->integrator == GXS_BDF2) {
-        memcpy(copies->linear_history[0], copies->linear, 9 * n * sizeof(double));
-        memcpy(copies->linear_history[1], copies->linear_rate, 9 * n * sizeof(double));
-    }
-    memcpy(copies->displacement, u, bytes);
-    memcpy(copies->velocity, v, bytes);
-    gxp_unhide(body, u + 3 * n, copies->linear);
-    gxp_unhide(body, v + 3 * n, copies->linear_rate);
-    for (i = 0; i < n; i++)
-        for (k = 0; k < 9 && body->hidden.first.data[i] == GXS_NOT_AFFINE; k++) copies->linear_rate[9 * i + k] = 0;
-    return GX_OK;
-}
-
-/* Takes the step and keeps the state that the next step of BDF2 needs. */
-static gx_result gxp_step(gx_body *body, const gxs_step_desc *step, gx_step_report *report, gx_failure *failure) {
-    gxp_copies *copies = &body->copies;
-    const size_t bytes = 3 * (size_t)copies->count * sizeof(double);
-    const int history = step->integrator == GXS_BDF2 && !(step->quality > 0);
-    const gxp_column *columns = gxp_copy_columns + GXP_FIRST_HISTORY;
-    gx_result result;
-    int i;
-    if (history) {
-        memcpy(copies->history[2], copies->displacement, bytes);
-        memcpy(copies->history[3], copies->velocity, bytes);
-    }
-    if (body->hidden.copies.count > 0)
-        result = gxp_step_affine(body, step, report, failure);
-    else {
-        result = gxs_solver_step(body->solver, step, copies->displacement, copies->velocity, report, failure);
-        if (result == GX_OK && copies->bends) memset(copies->linear_rate, 0, 9 * copies->count * sizeof(double));
-    }
-    if (result != GX_OK) return result;
-    copies->previous_dt = history ? step->dt : 0;
-    for (i = 0; i < 2 && history; i++) gxp_swap_columns(body, &columns[i], &columns[i + 2]);
-    return GX_OK;
-}
-
-/* A step of a body of which nothing is left. Lost anchors name copy 0, which is not there. */
-static gx_result gxp_check_empty_step(const gx_body *body, const gx_step_desc *desc, const gxs_step_desc *step,
-                                      gx_failure *failure) {
-    const uint32_t named = desc->spring_anchors != NULL || desc->point_anchors != NULL || desc->pair_anchors != NULL;
-    const gx_result result = gxs_step_check(step, body->copies.count + named, body->cuts.epoch, failure);
-    size_t i;
-    for (i = 0; i < 3 * step->spring_count && step->spring_forces != NULL && result == GX_OK; i++)
-        step->spring_forces[i] = 0;
-    for (i = 0; i < 3 * step->pair_count && step->pair_forces != NULL && result == GX_OK; i++) step->pair_forces[i] = 0;
-    return result;
-}
-
-GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report, gx_failure *failure) {
-    const double start = body != NULL ? gxp_seconds(body) : 0;
-    gxs_step_desc step;
-    gx_failure refused;
-    gx_result result;
-    if (body == NULL) return gxp_refuse(failure, "body");
-    if (desc == NULL) return gxp_refuse(failure, "desc");
-    gxp_wake_resumed(body, body->copies.count);
-    gxp_end(&refused, GX_OK);
-    result = gxp_update_model(body, &refused);
-    if (result != GX_OK) return gxp_fail(failure, result, NULL, refused.index);
-    result = gxp_translate_step(body, desc, &step);
-    if (gxp_end(failure, result) == GX_OK) result = gxp_attach(body, desc, &step, failure);
-    if (result == GX_OK && body->hidden.copies.count > 0) result = gxp_end(failure, gxp_expand(body, desc, &step));
-    if (result != GX_OK) return result;
-    if (body->model.empty) {
-        result = gxp_check_empty_step(body, desc, &step, failure);
-        if (result == GX_OK && report != NULL) {
-            memset(report, 0, sizeof *report);
-            report->stop = GXS_STOP_ASLEEP;
-        }
-        return result;
-    }
-    result = gxp_step(body, &step, report, failure);
-    if (result == GX_OK) body->model.resumed = 0;
-    if (result == GX_OK && report != NULL) report->seconds = gxp_seconds(body) - start;
-    return result;
-}
-
 /* >>corners: the skin: normals and textures ------------------------------------------------------------------------ */
 /* The visual surface takes four sections. This one: which corners of the outer surface are shaded as one, and which
    texture a cut face has. In: the mesh, the records of surfaces. Out: groups of corners. Touches the skin only. */
@@ -10946,6 +10855,859 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
     hit->distance = ray.walk.limit;
     gxp_fill_hit(body, ray.found, ray.share, hit);
     return GX_OK;
+}
+
+/* >>touch: the surface of contact ---------------------------------------------------------------------------------- */
+/* In: the cells, the state of the surface before a cut. Out: samples and facets, with the state that the material had.
+   Touches what a step with contact works with; the skin that the caller sees stays as it is. */
+
+/* The surface is made from nothing after each cut, so that it depends on the body alone, not on its history: a skin of
+   its own, of which samples and facets are copied. */
+
+/* Where the surface bends by more, rad, each side has samples with a normal of its own. */
+#define GXP_TOUCH_CREASE 0.7
+#define GXP_TOUCH_LEAF   4u
+
+/* Releases the arrays of body.skin. */
+static void gxp_release_skin(gx_body *body) {
+    const size_t first = offsetof(gx_body, skin), end = first + sizeof body->skin;
+    const gxp_table *vertices = &gxp_tables[GXP_SKIN_VERTICES], *triangles = &gxp_tables[GXP_SKIN_TRIANGLES];
+    size_t i;
+    gxp_release_columns(body, vertices->columns, vertices->column_count);
+    gxp_release_columns(body, triangles->columns, triangles->column_count);
+    for (i = 0; i < sizeof gxp_lists / sizeof *gxp_lists; i++)
+        if (gxp_lists[i].array >= first && gxp_lists[i].array < end) gxp_release_columns(body, &gxp_lists[i], 1);
+}
+
+/* Ten bits of a number in [0, 1], each in every third place */
+static uint32_t gxp_spread_bits(double x) {
+    const uint32_t bits = (uint32_t)(1023 * (x > 0 ? x < 1 ? x : 1 : 0));
+    uint32_t spread = 0;
+    int i;
+    for (i = 0; i < 10; i++) spread |= (bits >> i & 1) << 3 * i;
+    return spread;
+}
+
+/* Lists the triangles of body.skin by fragment, then along a curve through space at rest: touch.ranked[second of
+   touch.order[i]] is the i-th. */
+static gx_result gxp_order_facets(gx_body *body) {
+    const gxp_skin *s = &body->skin;
+    gxp_keys *order = &body->touch.order;
+    gxp_words *ranked = &body->touch.ranked;
+    double low[3] = {GXP_TREE_BEYOND, GXP_TREE_BEYOND, GXP_TREE_BEYOND}, size = 0;
+    gx_result result = gxp_start_words(body, ranked, s->triangle_count);
+    uint32_t i;
+    int k;
+    order->count = 0;
+    if (result == GX_OK) result = gxp_keys_room(body, order, 2 * (size_t)s->triangle_count);
+    if (result != GX_OK) return result;
+    for (i = 0; i < s->vertex_count; i++)
+        for (k = 0; k < 3; k++) low[k] = fmin(low[k], s->rest[3 * (size_t)i + (size_t)k]);
+    for (i = 0; i < s->vertex_count; i++)
+        for (k = 0; k < 3; k++) size = fmax(size, s->rest[3 * (size_t)i + (size_t)k] - low[k]);
+    for (i = 0; i < s->triangle_count; i++) {
+        const double *x = s->rest + 3 * (size_t)s->triangles[3 * (size_t)i];
+        uint32_t place = 0;
+        for (k = 0; k < 3 && size > 0; k++) place |= gxp_spread_bits((x[k] - low[k]) / size) << k;
+        order->data[order->count++] = (uint64_t)place << 32 | i;
+    }
+    result = gxp_sort_keys(body, order, 0, order->count);
+    for (i = 0; i < order->count && result == GX_OK; i++) {
+        const uint32_t t = GXP_SECOND(order->data[i]);
+        ranked->data[ranked->count++] = t;
+        order->data[i] = (uint64_t)s->fragment[t] << 32 | i;
+    }
+    return result == GX_OK ? gxp_sort_keys(body, order, 0, order->count) : result;
+}
+
+static void gxp_copy_sample(const gxp_skin *s, uint32_t i, gxp_touch_vertex *v) {
+    double n[3];
+    int k;
+    memset(v, 0, sizeof *v);
+    memcpy(v->copies, s->copies + 4 * (size_t)i, sizeof v->copies);
+    memcpy(v->weights, s->weights + 4 * (size_t)i, sizeof v->weights);
+    memcpy(v->rest, s->rest + 3 * (size_t)i, sizeof v->rest);
+    for (k = 0; k < 3; k++) n[k] = (double)s->normal[3 * (size_t)i + (size_t)k];
+    (void)gxp_unit(n, v->normal);
+    v->element = GXP_NONE;
+}
+
+/* A facet, which gives its corners a third of its area */
+static void gxp_copy_facet(const gx_body *body, uint32_t t, gxp_touch_surface *to, gxp_touch_facet *facet) {
+    const gxp_skin *s = &body->skin;
+    double n[3];
+    int k;
+    memcpy(facet->vertex, s->triangles + 3 * (size_t)t, sizeof facet->vertex);
+    facet->element = s->element[t];
+    facet->fragment = s->fragment[t];
+    gxp_triangle_normal(s->rest, facet->vertex, n);
+    for (k = 0; k < 3; k++) {
+        gxp_touch_vertex *v = &to->vertices[facet->vertex[k]];
+        v->area += gxp_size(n) / 6;
+        if (v->element != GXP_NONE) continue;
+        v->element = facet->element;
+        v->fragment = facet->fragment;
+        v->size = cbrt(6 * gxp_element_volume(body, v->element));
+        v->young = body->mesh.materials[body->mesh.element_materials[v->element]].elastic.young;
+    }
+}
+
+/* Copies what contact needs of body.skin. */
+static gx_result gxp_copy_samples(gx_body *body, gxp_touch_surface *to) {
+    const gx_allocator *a = &body->config.allocator;
+    const gxp_skin *s = &body->skin;
+    uint32_t i;
+    gx_result result = gxp_order_facets(body);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &to->vertices, sizeof *to->vertices, 0, &to->vertex_capacity, s->vertex_count);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &to->facets, sizeof *to->facets, 0, &to->facet_capacity, s->triangle_count);
+    if (result != GX_OK) return result;
+    to->vertex_count = s->vertex_count;
+    to->facet_count = s->triangle_count;
+    for (i = 0; i < to->vertex_count; i++) gxp_copy_sample(s, i, &to->vertices[i]);
+    for (i = 0; i < to->facet_count; i++)
+        gxp_copy_facet(body, body->touch.ranked.data[GXP_SECOND(body->touch.order.data[i])], to, &to->facets[i]);
+    return GX_OK;
+}
+
+/* Makes a surface anew, without state. */
+static gx_result gxp_make_surface(gx_body *body, gxp_touch_surface *to) {
+    const gxp_skin own = body->skin;
+    gx_skin_desc desc;
+    gx_result result;
+    memset(&body->skin, 0, sizeof body->skin);
+    desc.crease_angle = GXP_TOUCH_CREASE;
+    desc.smooth_cuts = 1;
+    result = gxp_restart_skin(body, &desc);
+    if (result == GX_OK) result = gxp_remake_elements(body);
+    if (result == GX_OK) result = gxp_mark_fragments(body);
+    if (result == GX_OK) result = gxp_copy_samples(body, to);
+    gxp_release_skin(body);
+    body->skin = own;
+    return result;
+}
+
+/* The vertex of a surface at the same place with the most similar normal; GXP_NONE: there is none. order: its vertices,
+   by hashes of their places */
+static uint32_t gxp_same_sample(const gxp_touch_surface *s, const gxp_keys *order, const gxp_touch_vertex *v) {
+    const uint32_t hash = (uint32_t)gxp_hash_doubles(0, v->rest, 3);
+    uint32_t first = 0, end = order->count, found = GXP_NONE;
+    double best = 0.5; /* sides of a sheet have opposite normals */
+    while (first < end) {
+        const uint32_t middle = first + (end - first) / 2;
+        if (GXP_FIRST(order->data[middle]) < hash)
+            first = middle + 1;
+        else
+            end = middle;
+    }
+    for (; first < order->count && GXP_FIRST(order->data[first]) == hash; first++) {
+        const gxp_touch_vertex *w = &s->vertices[GXP_SECOND(order->data[first])];
+        const double cosine = gxp_dot(v->normal, w->normal);
+        if (memcmp(v->rest, w->rest, sizeof v->rest) != 0 || !(cosine > best)) continue;
+        best = cosine;
+        found = GXP_SECOND(order->data[first]);
+    }
+    return found;
+}
+
+/* Interpolates the state of a vertex that a cut has put on a facet of its element. order: facets by element */
+static void gxp_state_on_facet(const gxp_touch_surface *s, const gxp_keys *order, gxp_touch_vertex *v) {
+    double best = 1e-12 * v->size * v->size;
+    uint32_t i;
+    int n, k;
+    for (i = 0; i < order->count; i++) {
+        const gxp_touch_facet *f = &s->facets[GXP_SECOND(order->data[i])];
+        double p[3][3], share[3] = {0, 0, 0}, square;
+        if (gxp_dot(v->normal, s->vertices[f->vertex[0]].normal) < 0.5) continue;
+        for (n = 0; n < 3; n++)
+            for (k = 0; k < 3; k++) p[n][k] = s->vertices[f->vertex[n]].rest[k] - v->rest[k];
+        square = gxp_near_triangle(p, best, share);
+        if (!(square < best)) continue;
+        best = square;
+        v->pressed = v->slip[0] = v->slip[1] = v->slip[2] = 0;
+        for (n = 0; n < 3; n++) {
+            v->pressed += share[n] * s->vertices[f->vertex[n]].pressed;
+            for (k = 0; k < 3; k++) v->slip[k] += share[n] * s->vertices[f->vertex[n]].slip[k];
+        }
+    }
+}
+
+/* The facets of an element: a part of `order`, which is sorted by elements. Nothing of it is owned. */
+static gxp_keys gxp_facets_of(const gxp_keys *order, uint32_t element) {
+    gxp_keys part;
+    uint32_t first = 0, end = order->count;
+    while (first < end) {
+        const uint32_t middle = first + (end - first) / 2;
+        if (GXP_FIRST(order->data[middle]) < element)
+            first = middle + 1;
+        else
+            end = middle;
+    }
+    for (end = first; end < order->count && GXP_FIRST(order->data[end]) == element;) end++;
+    part.data = order->data != NULL ? order->data + first : NULL;
+    part.count = part.capacity = end - first;
+    return part;
+}
+
+/* The state of the material goes from one surface to another. Vertices that are in both keep theirs, bit for bit. */
+static gx_result gxp_carry_state(gx_body *body, const gxp_touch_surface *from, gxp_touch_surface *to) {
+    gxp_keys *order = &body->touch.order;
+    gxp_words *fresh = &body->touch.ranked;
+    gx_result result = gxp_start_words(body, fresh, to->vertex_count);
+    uint32_t i, loaded = 0;
+    for (i = 0; i < from->vertex_count; i++) loaded |= from->vertices[i].pressed > 0;
+    if (!loaded) return result;
+    order->count = 0;
+    if (result == GX_OK) result = gxp_keys_room(body, order, 2 * ((size_t)from->vertex_count + from->facet_count));
+    if (result != GX_OK) return result;
+    for (i = 0; i < from->vertex_count; i++)
+        order->data[order->count++] = gxp_hash_doubles(0, from->vertices[i].rest, 3) << 32 | i;
+    result = gxp_sort_keys(body, order, 0, order->count);
+    for (i = 0; i < to->vertex_count && result == GX_OK; i++) {
+        const uint32_t same = gxp_same_sample(from, order, &to->vertices[i]);
+        if (same == GXP_NONE) {
+            fresh->data[fresh->count++] = i;
+            continue;
+        }
+        to->vertices[i].pressed = from->vertices[same].pressed;
+        memcpy(to->vertices[i].slip, from->vertices[same].slip, sizeof to->vertices[i].slip);
+    }
+    order->count = 0;
+    for (i = 0; i < from->facet_count && result == GX_OK; i++)
+        order->data[order->count++] = (uint64_t)from->facets[i].element << 32 | i;
+    if (result == GX_OK) result = gxp_sort_keys(body, order, 0, order->count);
+    for (i = 0; i < fresh->count && result == GX_OK; i++) {
+        gxp_touch_vertex *v = &to->vertices[fresh->data[i]];
+        const gxp_keys facets = gxp_facets_of(order, v->element);
+        gxp_state_on_facet(from, &facets, v);
+    }
+    return result;
+}
+
+/* The surface of a step: the one that is there, or another, made anew after a cut */
+static gx_result gxp_step_surface(gx_body *body, gxp_touch_surface **surface) {
+    gxp_touch *t = &body->touch;
+    gxp_touch_surface *own = &t->surfaces[t->current], *other = &t->surfaces[1 - t->current];
+    gx_result result;
+    *surface = own;
+    if (t->made && t->hash == body->cuts.hash) return GX_OK;
+    *surface = other;
+    result = gxp_make_surface(body, other);
+    return result == GX_OK && t->made ? gxp_carry_state(body, own, other) : result;
+}
+
+/* >>meeting: pairs of a step --------------------------------------------------------------------------------------- */
+/* In: the surface, where its material is and how fast. Out: the pairs that a step gets beside the caller's, and, after
+   the step, what their vertices press with. Touches what a step with contact works with. */
+
+/* A vertex touches at most one facet, in whose frame all is told: the gap is the vertex's height above the facet's
+   plane. Pairs stay what they are within the step, so that its energy is well defined. A pair without load, in front of
+   its facet, is there in time for what comes near within the step. */
+
+/* A cosine: facets that face a vertex less do not meet it. */
+#define GXP_TOUCH_FACING 0.5
+/* In sizes of an element: gaps that have a pair if the step may make them smaller; how far beside a facet a vertex may
+   be, with a share of its gap; how far behind a facet at rest is a piece's own thickness */
+#define GXP_TOUCH_NEAR   0.02
+#define GXP_TOUCH_BESIDE 0.002
+#define GXP_TOUCH_SLANT  0.1
+#define GXP_TOUCH_BEHIND 1e-9
+
+/* Position, velocity and normal of all vertices, normals of facets */
+static void gxp_move_surface(gx_body *body, const gxp_touch_surface *s) {
+    double *moved = body->touch.moved;
+    uint32_t i;
+    int n, k;
+    for (i = 0; i < s->vertex_count; i++) {
+        const gxp_touch_vertex *v = &s->vertices[i];
+        double *x = moved + 9 * (size_t)i;
+        gxp_map_point(body, v->rest, v->copies, v->weights, 4, x);
+        for (k = 3; k < 9; k++) x[k] = 0;
+        for (n = 0; n < 4 && v->weights[n] > 0; n++)
+            for (k = 0; k < 3; k++)
+                x[3 + k] += v->weights[n] * body->copies.velocity[3 * (size_t)v->copies[n] + (size_t)k];
+    }
+    for (i = 0; i < s->facet_count; i++) {
+        static const uint32_t corner[3] = {0, 1, 2};
+        double x[9], n_area[3], *unit = body->touch.facing + 3 * (size_t)i;
+        for (n = 0; n < 3; n++) memcpy(x + 3 * n, moved + 9 * (size_t)s->facets[i].vertex[n], 3 * sizeof *x);
+        gxp_triangle_normal(x, corner, n_area);
+        unit[0] = unit[1] = unit[2] = 0;
+        (void)gxp_unit(n_area, unit);
+        for (n = 0; n < 3; n++)
+            for (k = 0; k < 3; k++) moved[9 * (size_t)s->facets[i].vertex[n] + 6 + (size_t)k] += n_area[k];
+    }
+    for (i = 0; i < s->vertex_count; i++) {
+        double unit[3] = {0, 0, 0};
+        (void)gxp_unit(moved + 9 * (size_t)i + 6, unit);
+        memcpy(moved + 9 * (size_t)i + 6, unit, sizeof unit);
+    }
+}
+
+/* Adds the way of a vertex within the step to a box. */
+static void gxp_add_way(const double *moved, double dt, gxp_bounds *box) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        const double from = moved[k], to = moved[k] + dt * moved[3 + k];
+        const double low = from < to ? from : to, high = from < to ? to : from;
+        box->low[k] = low < box->low[k] ? low : box->low[k];
+        box->high[k] = high > box->high[k] ? high : box->high[k];
+    }
+}
+
+/* Fits the boxes to the ways of the facets. */
+static void gxp_fit_facets(gx_body *body, const gxp_touch_surface *s, double dt) {
+    gxp_touch *t = &body->touch;
+    uint32_t i, j;
+    int n;
+    for (i = 2 * t->leaf_count - 1; i-- > 0;) {
+        gxp_empty_bounds(&t->boxes[i]);
+        if (i + 1 < t->leaf_count) {
+            gxp_add_bounds(&t->boxes[i], &t->boxes[2 * i + 1]);
+            gxp_add_bounds(&t->boxes[i], &t->boxes[2 * i + 2]);
+            continue;
+        }
+        for (j = GXP_TOUCH_LEAF * (i + 1 - t->leaf_count);
+             j < GXP_TOUCH_LEAF * (i + 2 - t->leaf_count) && j < s->facet_count; j++)
+            for (n = 0; n < 3; n++) gxp_add_way(t->moved + 9 * (size_t)s->facets[j].vertex[n], dt, &t->boxes[i]);
+    }
+}
+
+/* Is what is between a vertex and a facet the piece itself? They were near each other at rest, and did not face each
+   other, or the vertex was behind the facet. */
+static int gxp_is_thickness(const gxp_touch_surface *s, const gxp_touch_vertex *v, const gxp_touch_facet *f,
+                            const double share[3], double reach) {
+    static const uint32_t corner[3] = {0, 1, 2};
+    double x[9], d[3], n[3], unit[3];
+    int i, k;
+    for (i = 0; i < 3; i++) memcpy(x + 3 * i, s->vertices[f->vertex[i]].rest, 3 * sizeof *x);
+    for (k = 0; k < 3; k++) {
+        d[k] = v->rest[k];
+        for (i = 0; i < 3; i++) d[k] -= share[i] * x[3 * i + k];
+    }
+    if (gxp_dot(d, d) > 4 * reach * reach) return 0;
+    gxp_triangle_normal(x, corner, n);
+    return !gxp_unit(n, unit) || gxp_dot(v->normal, unit) > -GXP_TOUCH_FACING ||
+           gxp_dot(d, unit) < -GXP_TOUCH_BEHIND * v->size;
+}
+
+/* Does a vertex meet a facet within the step? pair: its vertex and facet are set; receives all else. Where the two come
+   near each other, the place is the one where the vertex will be when the gap is closed. */
+static int gxp_meets(const gx_body *body, const gxp_touch_surface *s, double dt, gxp_touch_pair *pair) {
+    const gxp_touch *t = &body->touch;
+    const gxp_touch_vertex *v = &s->vertices[pair->vertex];
+    const gxp_touch_facet *f = &s->facets[pair->facet];
+    const double *x = t->moved + 9 * (size_t)pair->vertex, *n = t->facing + 3 * (size_t)pair->facet;
+    const double facing = -gxp_dot(x + 6, n), *corner[3];
+    const double reach = t->desc.depth * fmin(v->size, s->vertices[f->vertex[0]].size);
+    double p[3][3], y[3], d[3], height, time = 0, along;
+    int i, k;
+    if (!(facing > GXP_TOUCH_FACING)) return 0;
+    for (i = 0; i < 3; i++) {
+        if (f->vertex[i] == pair->vertex) return 0;
+        corner[i] = t->moved + 9 * (size_t)f->vertex[i];
+    }
+    for (pair->approach = height = 0, k = 0; k < 3; k++) {
+        pair->approach -= n[k] * (x[3 + k] - (corner[0][3 + k] + corner[1][3 + k] + corner[2][3 + k]) / 3);
+        height += n[k] * (x[k] - corner[0][k]);
+    }
+    if (height > 0 && pair->approach > 0) time = height < dt * pair->approach ? height / pair->approach : dt;
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 3; k++) p[i][k] = corner[i][k] - x[k] + time * (corner[i][3 + k] - x[3 + k]);
+    pair->share[0] = pair->share[1] = pair->share[2] = 0;
+    (void)gxp_near_triangle(p, GXP_TREE_ALL, pair->share);
+    for (k = 0; k < 3; k++) {
+        y[k] = pair->share[0] * p[0][k] + pair->share[1] * p[1][k] + pair->share[2] * p[2][k];
+        d[k] = x[k] - pair->share[0] * corner[0][k] - pair->share[1] * corner[1][k] - pair->share[2] * corner[2][k];
+        pair->normal[k] = n[k];
+    }
+    pair->gap = gxp_dot(d, n);
+    height = gxp_dot(y, n);
+    along = sqrt(fmax(0, gxp_dot(y, y) - height * height));
+    if (!(pair->gap > -reach * facing) || !(pair->gap - dt * fmax(0, pair->approach) < GXP_TOUCH_NEAR * v->size) ||
+        !(along <= GXP_TOUCH_BESIDE * v->size + GXP_TOUCH_SLANT * fabs(height)))
+        return 0;
+    pair->score = (along * along + pair->gap * pair->gap) / (facing * facing);
+    return v->fragment != f->fragment || !gxp_is_thickness(s, v, f, pair->share, reach);
+}
+
+/* Tries one facet; of equal ones the first stays. */
+static void gxp_try_facet(const gx_body *body, const gxp_touch_surface *s, double dt, uint32_t facet,
+                          gxp_touch_pair *best) {
+    gxp_touch_pair pair = *best;
+    pair.facet = facet;
+    if (gxp_meets(body, s, dt, &pair) && (best->facet == GXP_NONE || pair.score < best->score)) *best = pair;
+}
+
+/* Finds the facet that a vertex meets. best: its vertex is set, its facet is GXP_NONE and stays so if there is none. */
+static void gxp_seek_facet(const gx_body *body, const gxp_touch_surface *s, double dt, gxp_touch_pair *best) {
+    const gxp_touch *t = &body->touch;
+    const double slack =
+        (t->desc.depth * (1 + GXP_TOUCH_SLANT) + GXP_TOUCH_NEAR + GXP_TOUCH_BESIDE) * s->vertices[best->vertex].size;
+    uint32_t stack[64], count = 0, i;
+    gxp_bounds way;
+    int k;
+    gxp_empty_bounds(&way);
+    gxp_add_way(t->moved + 9 * (size_t)best->vertex, dt, &way);
+    stack[count++] = 0;
+    while (count > 0) {
+        const uint32_t box = stack[--count];
+        const gxp_bounds *b = &t->boxes[box];
+        int apart = 0;
+        for (k = 0; k < 3; k++) apart |= b->low[k] - slack > way.high[k] || b->high[k] + slack < way.low[k];
+        if (apart) continue;
+        if (box + 1 < t->leaf_count) {
+            stack[count++] = 2 * box + 2;
+            stack[count++] = 2 * box + 1;
+            continue;
+        }
+        for (i = GXP_TOUCH_LEAF * (box + 1 - t->leaf_count);
+             i < GXP_TOUCH_LEAF * (box + 2 - t->leaf_count) && i < s->facet_count; i++)
+            gxp_try_facet(body, s, dt, i, best);
+    }
+}
+
+/* Lists the pairs of all vertices. */
+static gx_result gxp_seek_pairs(gx_body *body, const gxp_touch_surface *s, double dt, gx_failure *failure) {
+    gxp_touch *t = &body->touch;
+    gx_result result = GX_OK;
+    uint32_t i;
+    t->found = 0;
+    for (i = 0; i < s->vertex_count && result == GX_OK && s->facet_count > 0; i++) {
+        gxp_touch_pair best;
+        if (!(s->vertices[i].area > 0)) continue;
+        memset(&best, 0, sizeof best);
+        best.vertex = i;
+        best.facet = GXP_NONE;
+        gxp_seek_facet(body, s, dt, &best);
+        if (best.facet == GXP_NONE) continue;
+        if (t->desc.max_pairs > 0 && t->found >= t->desc.max_pairs)
+            return gxp_fail(failure, GX_ERROR_LIMIT, "max_pairs", SIZE_MAX);
+        result = gxp_reserve(&body->config.allocator, &t->pairs, sizeof *t->pairs, t->found, &t->pair_capacity, 1);
+        if (result == GX_OK) t->pairs[t->found++] = best;
+    }
+    return gxp_end(failure, result);
+}
+
+/* Room for what a step with that surface needs before it knows its pairs */
+static gx_result gxp_surface_room(gx_body *body, const gxp_touch_surface *s) {
+    const gx_allocator *a = &body->config.allocator;
+    gxp_touch *t = &body->touch;
+    gx_result result = gxp_reserve(a, &t->moved, 9 * sizeof(double), 0, &t->moved_capacity, s->vertex_count);
+    for (t->leaf_count = 1; GXP_TOUCH_LEAF * (size_t)t->leaf_count < s->facet_count;) t->leaf_count *= 2;
+    if (result == GX_OK)
+        result = gxp_reserve(a, &t->facing, 3 * sizeof(double), 0, &t->facing_capacity, s->facet_count);
+    return result == GX_OK ? gxp_reserve(a, &t->boxes, sizeof *t->boxes, 0, &t->box_capacity, 2 * t->leaf_count)
+                           : result;
+}
+
+/* Adds a share of a copy's motion to a point. */
+static void gxp_add_share(gxs_point *point, uint32_t *copies, double *weights, uint32_t copy, double weight) {
+    uint32_t i;
+    for (i = 0; i < point->count && copies[i] != copy;) i++;
+    if (i == point->count) {
+        copies[point->count] = copy;
+        weights[point->count++] = 0;
+    }
+    weights[i] += weight;
+}
+
+/* The point of a pair: its vertex, relative to the place on the facet. Returns 0 if nothing moves it. */
+static int gxp_meeting_point(const gxp_touch_surface *s, const gxp_touch_pair *pair, uint32_t *copies, double *weights,
+                             gxs_point *point) {
+    const gxp_touch_vertex *v = &s->vertices[pair->vertex];
+    const gxp_touch_facet *f = &s->facets[pair->facet];
+    double moves = 0;
+    uint32_t m;
+    int i, k;
+    memcpy(point->position, v->rest, sizeof point->position);
+    for (i = 0; i < 4 && v->weights[i] > 0; i++) gxp_add_share(point, copies, weights, v->copies[i], v->weights[i]);
+    for (i = 0; i < 3; i++) {
+        const gxp_touch_vertex *w = &s->vertices[f->vertex[i]];
+        if (!(pair->share[i] > 0)) continue;
+        for (k = 0; k < 3; k++) point->position[k] -= pair->share[i] * w->rest[k];
+        for (k = 0; k < 4 && w->weights[k] > 0; k++)
+            gxp_add_share(point, copies, weights, w->copies[k], -pair->share[i] * w->weights[k]);
+    }
+    for (m = 0; m < point->count; m++) moves += fabs(weights[m]);
+    point->copies = copies;
+    point->weights = weights;
+    return moves > 1e-9;
+}
+
+/* A pair as the solver takes it. It begins with the force with which the vertex pressed before. */
+static void gxp_set_pair(gx_body *body, const gxp_touch_surface *s, uint32_t i, double dt, gxs_pair *to) {
+    const gxp_touch *t = &body->touch;
+    const gxp_touch_pair *pair = &t->pairs[i];
+    const gxp_touch_vertex *v = &s->vertices[pair->vertex], *w = &s->vertices[s->facets[pair->facet].vertex[0]];
+    const double recovery = t->desc.recovery > 0 ? t->desc.recovery : 2 * v->size;
+    memset(to, 0, sizeof *to);
+    to->point.epoch = body->cuts.epoch;
+    memcpy(to->normal, pair->normal, sizeof to->normal);
+    to->stiffness = 0.5 * t->desc.stiffness * fmin(v->young, w->young) * v->area / v->size;
+    if (!gxp_meeting_point(s, pair, t->sides.data + GXP_TOUCH_COPIES * (size_t)i,
+                           t->weights + GXP_TOUCH_COPIES * (size_t)i, &to->point))
+        to->stiffness = 0;
+    to->offset = fmin(0, fmin(0, pair->gap + v->pressed) + dt * (recovery + fmax(0, pair->approach)));
+    to->friction = t->desc.friction;
+    to->sticking_speed = t->desc.sticking_speed;
+    memcpy(t->slips + 3 * (t->given + (size_t)i), v->slip, sizeof v->slip);
+}
+
+/* Puts the pairs of contact behind the caller's. */
+static gx_result gxp_join_pairs(gx_body *body, const gxp_touch_surface *s, double dt, gxs_step_desc *step) {
+    const gx_allocator *a = &body->config.allocator;
+    gxp_touch *t = &body->touch;
+    gxp_attached *attached = &body->attached;
+    const size_t given = step->pair_count, all = given + t->found;
+    const size_t copies = GXP_TOUCH_COPIES * (size_t)t->found;
+    const int own = given > 0 && step->pairs != attached->pairs;
+    gx_result result = all > INT32_MAX ? GX_ERROR_LIMIT : GX_OK;
+    uint32_t i;
+    if (result == GX_OK)
+        result = gxp_reserve(a, &attached->pairs, sizeof *attached->pairs, own ? 0 : given, &attached->pair_capacity,
+                             own ? all : t->found);
+    t->sides.count = 0;
+    if (result == GX_OK) result = gxp_words_room(body, &t->sides, copies);
+    if (result == GX_OK) result = gxp_reserve(a, &t->weights, sizeof(double), 0, &t->weight_capacity, copies);
+    if (result == GX_OK) result = gxp_reserve(a, &t->slips, 3 * sizeof(double), 0, &t->slip_capacity, all);
+    if (result == GX_OK) result = gxp_reserve(a, &t->forces, 3 * sizeof(double), 0, &t->force_capacity, all);
+    if (result != GX_OK) return result;
+    t->given = (uint32_t)given;
+    if (own) memcpy(attached->pairs, step->pairs, given * sizeof *attached->pairs);
+    if (given > 0) memset(t->slips, 0, 3 * given * sizeof *t->slips);
+    if (given > 0 && step->pair_slips != NULL) memcpy(t->slips, step->pair_slips, 3 * given * sizeof *t->slips);
+    for (i = 0; i < t->found; i++) gxp_set_pair(body, s, i, dt, &attached->pairs[given + i]);
+    step->pairs = attached->pairs;
+    step->pair_count = all;
+    step->pair_slips = t->slips;
+    step->pair_forces = t->forces;
+    return GX_OK;
+}
+
+/* Adds the pairs of contact to a step. surface: receives the one that they are of */
+static gx_result gxp_attach_contact(gx_body *body, gxs_step_desc *step, gxp_touch_surface **surface,
+                                    gx_failure *failure) {
+    const double dt = gxp_is_finite(step->dt) && step->dt > 0 ? step->dt : 0;
+    gx_result result;
+    body->touch.kept = 0;
+    if (body->copies.affine != NULL) return gxp_refuse(failure, "affine_below"); /* pairs have no affine copies */
+    if (step->quality > 0) return gxp_refuse(failure, "quality");                /* its parts would not search again */
+    if (step->integrator == GXS_MIDPOINT) return gxp_refuse(failure, "integrator");
+    if (step->pair_count > 0 && step->pairs == NULL) return gxp_refuse(failure, "pairs");
+    result = gxp_step_surface(body, surface);
+    if (result == GX_OK) result = gxp_surface_room(body, *surface);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    gxp_move_surface(body, *surface);
+    gxp_fit_facets(body, *surface, dt);
+    result = gxp_seek_pairs(body, *surface, dt, failure);
+    return result == GX_OK ? gxp_end(failure, gxp_join_pairs(body, *surface, dt, step)) : result;
+}
+
+/* How far a pair's vertex is in front of its facet now */
+static double gxp_gap_now(const gx_body *body, const gxs_pair *pair) {
+    double r[3] = {pair->point.position[0], pair->point.position[1], pair->point.position[2]};
+    uint32_t i;
+    int k;
+    for (i = 0; i < pair->point.count; i++)
+        for (k = 0; k < 3; k++)
+            r[k] += pair->point.weights[i] * body->copies.displacement[3 * (size_t)pair->point.copies[i] + (size_t)k];
+    return gxp_dot(r, pair->normal);
+}
+
+/* After a step: the caller's pairs get their slips and forces, vertices what they press with. */
+static void gxp_keep_contact(gx_body *body, const gx_step_desc *desc, gxp_touch_surface *surface) {
+    gxp_touch *t = &body->touch;
+    uint32_t i;
+    if (t->given > 0 && desc->pair_slips != NULL)
+        memcpy(desc->pair_slips, t->slips, 3 * (size_t)t->given * sizeof(double));
+    if (t->given > 0 && desc->pair_forces != NULL)
+        memcpy(desc->pair_forces, t->forces, 3 * (size_t)t->given * sizeof(double));
+    for (i = 0; i < surface->vertex_count; i++) {
+        gxp_touch_vertex *v = &surface->vertices[i];
+        v->pressed = v->slip[0] = v->slip[1] = v->slip[2] = 0;
+    }
+    for (i = 0; i < t->found; i++) {
+        const gxs_pair *pair = &body->attached.pairs[t->given + i];
+        gxp_touch_vertex *v = &surface->vertices[t->pairs[i].vertex];
+        t->pairs[i].gap = gxp_gap_now(body, pair);
+        v->pressed = pair->stiffness > 0 ? fmax(0, pair->offset - t->pairs[i].gap) : 0;
+        memcpy(v->slip, t->slips + 3 * ((size_t)t->given + i), sizeof v->slip);
+    }
+    t->current = surface == &t->surfaces[0] ? 0 : 1;
+    t->made = 1;
+    t->hash = body->cuts.hash;
+    t->kept = t->found;
+}
+
+/* Forgets the surface and its state, not that contact is on. */
+static void gxp_forget_contact(gx_body *body) { body->touch.made = 0; }
+
+GXFEM_API gx_result gx_body_contact(gx_body *body, const gx_contact_desc *desc, gx_failure *failure) {
+    static const char *const names[5] = {"stiffness", "friction", "sticking_speed", "recovery", "depth"};
+    gx_contact_desc own;
+    double numbers[5];
+    int i;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (desc != NULL && body->copies.affine != NULL) return gxp_refuse(failure, "affine_below");
+    memset(&own, 0, sizeof own);
+    if (desc != NULL) own = *desc;
+    numbers[0] = own.stiffness;
+    numbers[1] = own.friction;
+    numbers[2] = own.sticking_speed;
+    numbers[3] = own.recovery;
+    numbers[4] = own.depth;
+    for (i = 0; i < 5; i++) {
+        if (!gxp_is_finite(numbers[i])) return gxp_fail(failure, GX_ERROR_NOT_FINITE, names[i], SIZE_MAX);
+        if (numbers[i] < 0) return gxp_refuse(failure, names[i]);
+    }
+    if (!(own.stiffness > 0)) own.stiffness = 10;
+    if (!(own.depth > 0)) own.depth = 0.5;
+    body->touch.desc = own;
+    body->touch.on = desc != NULL;
+    gxp_forget_contact(body);
+    return gxp_end(failure, GX_OK);
+}
+
+GXFEM_API gx_result gx_body_contacts(const gx_body *body, gx_contact *contacts, size_t capacity, size_t *count,
+                                     gx_failure *failure) {
+    const gxp_touch *t;
+    const gxp_touch_surface *s;
+    size_t all = 0;
+    uint32_t i;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (count == NULL) return gxp_refuse(failure, "count");
+    if (contacts == NULL && capacity > 0) return gxp_refuse(failure, "contacts");
+    *count = 0;
+    t = &body->touch;
+    s = &t->surfaces[t->current];
+    if (!t->on || (t->made && t->hash != body->cuts.hash))
+        return gxp_fail(failure, GX_ERROR_SEQUENCE, t->on ? "gx_body_step" : "gx_body_contact", SIZE_MAX);
+    for (i = 0; i < t->kept && t->made; i++) {
+        const gxp_touch_vertex *v = &s->vertices[t->pairs[i].vertex];
+        if (!(v->pressed > 0)) continue;
+        if (all < capacity) {
+            gx_contact *c = &contacts[all];
+            c->fragment = v->fragment;
+            c->other = s->facets[t->pairs[i].facet].fragment;
+            gxp_map_point(body, v->rest, v->copies, v->weights, 4, c->position);
+            memcpy(c->normal, t->pairs[i].normal, sizeof c->normal);
+            memcpy(c->force, t->forces + 3 * ((size_t)t->given + i), sizeof c->force);
+            c->depth = -t->pairs[i].gap;
+        }
+        all++;
+    }
+    *count = all;
+    return all > capacity ? gxp_fail(failure, GX_ERROR_CAPACITY, "capacity", SIZE_MAX) : gxp_end(failure, GX_OK);
+}
+
+/* >>step: time steps ----------------------------------------------------------------------------------------------- */
+/* In: a step's description. Out: displacement and velocity at its end, or the body as it was. Touches the state of
+   copies, the history that BDF2 needs, and the solver. */
+
+/* Makes the first `count` columns of BDF2's history, unless they are there. */
+static gx_result gxp_start_history(gx_body *body, uint32_t count) {
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (i = 0; i < count && result == GX_OK; i++)
+        if (body->copies.history[i] == NULL)
+            result = gxp_grow_column(body, &gxp_copy_columns[GXP_FIRST_HISTORY + i], 0, body->copies.count);
+    return result;
+}
+
+/* What acts on the body, as the solver takes it */
+static void gxp_translate_loads(const gx_step_desc *desc, gxs_step_desc *step) {
+    memcpy(step->gravity, desc->gravity, sizeof step->gravity);
+    step->mass_damping = desc->mass_damping;
+    step->forces = desc->forces;
+    step->targets = desc->targets;
+    step->epoch = desc->epoch;
+    step->springs = desc->springs;
+    step->spring_count = desc->spring_count;
+    step->spring_forces = desc->spring_forces;
+    step->points = desc->points;
+    step->point_count = desc->point_count;
+    step->planes = desc->planes;
+    step->plane_count = desc->plane_count;
+    step->contact = desc->contact;
+    step->contact_user = desc->contact_user;
+    step->pairs = desc->pairs;
+    step->pair_count = desc->pair_count;
+    step->pair_slips = desc->pair_slips;
+    step->pair_forces = desc->pair_forces;
+}
+
+/* The step as the solver takes it: the only place where one description becomes the other. The body adds its rest
+   times, its history and, where the description has none, its clock. */
+static gx_result gxp_translate_step(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step) {
+    const int history = desc->integrator == GXS_BDF2 && !(desc->quality > 0), own_clock = desc->clock == NULL;
+    memset(step, 0, sizeof *step);
+    gxp_translate_loads(desc, step);
+    step->dt = desc->dt;
+    step->integrator = desc->integrator;
+    step->substeps = desc->substeps;
+    step->newton_iterations = desc->newton_iterations;
+    step->newton_tolerance = desc->newton_tolerance;
+    step->cg_iterations = desc->cg_iterations;
+    step->cg_tolerance = desc->cg_tolerance;
+    step->sleep_speed = desc->sleep_speed;
+    step->sleep_time = desc->sleep_time;
+    step->budget_seconds = desc->budget_seconds;
+    step->quality = desc->quality;
+    step->clock = own_clock ? body->config.clock : desc->clock;
+    step->clock_user = own_clock ? body->config.clock_user : desc->clock_user;
+    step->rest_times = body->copies.rest_time;
+    if (history) {
+        const gx_result result = gxp_start_history(body, 4);
+        if (result != GX_OK) return result;
+    }
+    step->previous_displacement = history && body->copies.previous_dt > 0 ? body->copies.history[0] : NULL;
+    step->previous_velocity = body->copies.history[1];
+    step->previous_dt = body->copies.previous_dt;
+    return GX_OK;
+}
+
+/* The hidden vectors of the model's affine copies: A times affine_length */
+static void gxp_hide(const gx_body *body, const double *linear, double *vectors) {
+    size_t i, k;
+    for (i = 0; i < body->hidden.copies.count; i++)
+        for (k = 0; k < 9; k++)
+            vectors[9 * i + k] = body->mesh.affine_length * linear[9 * (size_t)body->hidden.copies.data[i] + k];
+}
+
+static void gxp_unhide(const gx_body *body, const double *vectors, double *linear) {
+    size_t i, k;
+    for (i = 0; i < body->hidden.copies.count; i++)
+        for (k = 0; k < 9; k++)
+            linear[9 * (size_t)body->hidden.copies.data[i] + k] = vectors[9 * i + k] / body->mesh.affine_length;
+}
+
+/* A step of a model with hidden vectors: in vectors of their own, which become the state if it succeeds. What is left
+   of the motion of copies that are affine, but not in the model, is dropped: a speck moves as a point. */
+static gx_result gxp_step_affine(gx_body *body, const gxs_step_desc *given, gx_step_report *report,
+                                 gx_failure *failure) {
+    gxp_copies *copies = &body->copies;
+    const size_t n = copies->count, vectors = gxp_vector_count(body), bytes = 3 * n * sizeof(double);
+    const int history = given->previous_displacement != NULL;
+    gxs_step_desc step = *given;
+    gx_failure own;
+    double *u, *v, *before, *rest;
+    size_t i, k;
+    gx_result result = vectors > INT32_MAX / 16
+                         ? GX_ERROR_LIMIT
+                         : gxp_reserve(&body->config.allocator, &body->hidden.state, sizeof(double), 0,
+                                       &body->hidden.state_capacity, 13 * vectors);
+    if (result != GX_OK) return gxp_end(failure, result);
+    u = body->hidden.state;
+    v = u + 3 * vectors;
+    before = v + 3 * vectors;
+    rest = before + 6 * vectors;
+    memcpy(u, copies->displacement, bytes);
+    memcpy(v, copies->velocity, bytes);
+    memcpy(rest, copies->rest_time, n * sizeof *rest);
+    gxp_hide(body, copies->linear, u + 3 * n);
+    gxp_hide(body, copies->linear_rate, v + 3 * n);
+    for (i = n; i < vectors; i++) rest[i] = rest[body->hidden.copies.data[(i - n) / 3]];
+    if (history) {
+        memcpy(before, copies->history[0], bytes);
+        memcpy(before + 3 * vectors, copies->history[1], bytes);
+        gxp_hide(body, copies->linear_history[0], before + 3 * n);
+        gxp_hide(body, copies->linear_history[1], before + 3 * vectors + 3 * n);
+        step.previous_displacement = before;
+        step.previous_velocity = before + 3 * vectors;
+    }
+    step.rest_times = rest;
+    gxp_end(&own, GX_OK);
+    result = gxs_solver_step(body->solver, &step, u, v, report, &own);
+    memcpy(copies->rest_time, rest, n * sizeof *rest);
+    if (result != GX_OK) {
+        if (own.index != SIZE_MAX && own.field != NULL && own.index >= n && own.index < vectors &&
+            (strcmp(own.field, "displacement") == 0 || strcmp(own.field, "velocity") == 0))
+            own.index = body->hidden.copies.data[(own.index - n) / 3];
+        if (failure != NULL) *failure = own;
+        return result;
+    }
+    if (given->integrator == GXS_BDF2 && !(given->quality > 0)) {
+        memcpy(copies->linear_history[0], copies->linear, 9 * n * sizeof(double));
+        memcpy(copies->linear_history[1], copies->linear_rate, 9 * n * sizeof(double));
+    }
+    memcpy(copies->displacement, u, bytes);
+    memcpy(copies->velocity, v, bytes);
+    gxp_unhide(body, u + 3 * n, copies->linear);
+    gxp_unhide(body, v + 3 * n, copies->linear_rate);
+    for (i = 0; i < n; i++)
+        for (k = 0; k < 9 && body->hidden.first.data[i] == GXS_NOT_AFFINE; k++) copies->linear_rate[9 * i + k] = 0;
+    return GX_OK;
+}
+
+/* Takes the step and keeps the state that the next step of BDF2 needs. */
+static gx_result gxp_step(gx_body *body, const gxs_step_desc *step, gx_step_report *report, gx_failure *failure) {
+    gxp_copies *copies = &body->copies;
+    const size_t bytes = 3 * (size_t)copies->count * sizeof(double);
+    const int history = step->integrator == GXS_BDF2 && !(step->quality > 0);
+    const gxp_column *columns = gxp_copy_columns + GXP_FIRST_HISTORY;
+    gx_result result;
+    int i;
+    if (history) {
+        memcpy(copies->history[2], copies->displacement, bytes);
+        memcpy(copies->history[3], copies->velocity, bytes);
+    }
+    if (body->hidden.copies.count > 0)
+        result = gxp_step_affine(body, step, report, failure);
+    else {
+        result = gxs_solver_step(body->solver, step, copies->displacement, copies->velocity, report, failure);
+        if (result == GX_OK && copies->bends) memset(copies->linear_rate, 0, 9 * copies->count * sizeof(double));
+    }
+    if (result != GX_OK) return result;
+    copies->previous_dt = history ? step->dt : 0;
+    for (i = 0; i < 2 && history; i++) gxp_swap_columns(body, &columns[i], &columns[i + 2]);
+    return GX_OK;
+}
+
+/* A step of a body of which nothing is left. Lost anchors name copy 0, which is not there. */
+static gx_result gxp_check_empty_step(const gx_body *body, const gx_step_desc *desc, const gxs_step_desc *step,
+                                      gx_failure *failure) {
+    const uint32_t named = desc->spring_anchors != NULL || desc->point_anchors != NULL || desc->pair_anchors != NULL;
+    const gx_result result = gxs_step_check(step, body->copies.count + named, body->cuts.epoch, failure);
+    size_t i;
+    for (i = 0; i < 3 * step->spring_count && step->spring_forces != NULL && result == GX_OK; i++)
+        step->spring_forces[i] = 0;
+    for (i = 0; i < 3 * step->pair_count && step->pair_forces != NULL && result == GX_OK; i++) step->pair_forces[i] = 0;
+    return result;
+}
+
+GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report, gx_failure *failure) {
+    const double start = body != NULL ? gxp_seconds(body) : 0;
+    gxs_step_desc step;
+    gxp_touch_surface *surface = NULL;
+    gx_failure refused;
+    gx_result result;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (desc == NULL) return gxp_refuse(failure, "desc");
+    gxp_wake_resumed(body, body->copies.count);
+    gxp_end(&refused, GX_OK);
+    result = gxp_update_model(body, &refused);
+    if (result != GX_OK) return gxp_fail(failure, result, NULL, refused.index);
+    result = gxp_translate_step(body, desc, &step);
+    if (gxp_end(failure, result) == GX_OK) result = gxp_attach(body, desc, &step, failure);
+    if (result == GX_OK && body->touch.on) result = gxp_attach_contact(body, &step, &surface, failure);
+    if (result == GX_OK && body->hidden.copies.count > 0) result = gxp_end(failure, gxp_expand(body, desc, &step));
+    if (result != GX_OK) return result;
+    if (body->model.empty) {
+        result = gxp_check_empty_step(body, desc, &step, failure);
+        if (result == GX_OK && surface != NULL) gxp_keep_contact(body, desc, surface);
+        if (result == GX_OK && report != NULL) {
+            memset(report, 0, sizeof *report);
+            report->stop = GXS_STOP_ASLEEP;
+        }
+        return result;
+    }
+    result = gxp_step(body, &step, report, failure);
+    if (result == GX_OK && surface != NULL) gxp_keep_contact(body, desc, surface);
+    if (result == GX_OK) body->model.resumed = 0;
+    if (result == GX_OK && report != NULL) report->seconds = gxp_seconds(body) - start;
+    return result;
 }
 
 /* >>layers: the cells around a blade, and how they hang together --------------------------------------------------- */
@@ -16482,11 +17244,15 @@ static gx_result gxp_restore_all(gx_body *body, gx_body *from) {
 }
 
 GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *failure) {
+    gx_contact_desc contact;
     uint32_t made;
+    int on;
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (from == NULL) return gxp_refuse(failure, "from");
     if (body == from) return gxp_end(failure, GX_OK);
+    on = body->touch.on;
+    contact = body->touch.desc;
     result = gxp_prepare_blades(body, from, &made);
     if (result == GX_OK)
         result = body->cuts.hash == from->cuts.hash && body->copies.count == from->copies.count &&
@@ -16494,9 +17260,12 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
                          body->leaves.count == from->leaves.count && gxp_same_materials(body, from)
                    ? gxp_restore_state(body, from)
                    : gxp_restore_all(body, from);
-    if (result == GX_OK)
+    if (result == GX_OK) {
         gxp_take_blades(body, from);
-    else
+        body->touch.on = on;
+        body->touch.desc = contact;
+        gxp_forget_contact(body);
+    } else
         gxp_drop_blades(body, made);
     return gxp_end(failure, result);
 }
@@ -16521,6 +17290,14 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_LINK_FACET
 #undef GXP_LINK_FACE
 #undef GXP_SEARCH_MARGIN
+#undef GXP_TOUCH_CREASE
+#undef GXP_TOUCH_LEAF
+#undef GXP_TOUCH_FACING
+#undef GXP_TOUCH_NEAR
+#undef GXP_TOUCH_BESIDE
+#undef GXP_TOUCH_SLANT
+#undef GXP_TOUCH_BEHIND
+#undef GXP_TOUCH_COPIES
 #undef GXP_TREE_LEAVES
 #undef GXP_TREE_LEAF
 #undef GXP_TREE_MARGIN

@@ -537,6 +537,25 @@ static void counted_for(void *user, size_t count, void (*task)(void *context, si
     pool_for(user, count, task, context);
 }
 
+/* What lies on a body that is held stays there. */
+START_TEST(contact) {
+    const gx_region bottom = gx_region_half_space(2, -1, 1e-9);
+    gx_body *body = make_body(4, NULL);
+    gx_motion before[2], after[2];
+    size_t count, i;
+    OK(gx_body_hold(body, &bottom, 1, NULL));
+    OK(let_pieces_touch(body));
+    cut_through(body, 2, 0.53);
+    OK(gx_body_motion(body, before, 2, NULL));
+    advance(body, 60);
+    OK(gx_body_motion(body, after, 2, NULL));
+    ck_assert_int_eq(gx_body_contacts(body, NULL, 0, &count, NULL), GX_ERROR_CAPACITY);
+    ck_assert_uint_gt(count, 10);
+    for (i = 0; i < 2; i++) ck_assert_double_lt(fabs(after[i].center[2] - before[i].center[2]), 0.05);
+    gx_body_destroy(body);
+}
+END_TEST
+
 START_TEST(threads) {
     gx_body *alone = make_hanging(12, NULL), *together;
     pool p;
@@ -768,6 +787,7 @@ int main(void) {
     tcase_add_test(tc, thin_slices);
     tcase_add_test(tc, ground);
     tcase_add_test(tc, ground_after_cuts);
+    tcase_add_test(tc, contact);
     tcase_add_test(tc, threads);
     tcase_add_test(tc, undo_and_save);
     tcase_add_loop_test(tc, integrator, 0, 3);

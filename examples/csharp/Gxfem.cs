@@ -447,6 +447,26 @@ namespace Gxfem {
     }
 
     [StructLayout(LayoutKind.Sequential)]
+    public unsafe struct gx_contact_desc {
+        public double stiffness;
+        public double friction;
+        public double sticking_speed;
+        public double recovery;
+        public double depth;
+        public uint max_pairs;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    public unsafe struct gx_contact {
+        public uint fragment;
+        public uint other;
+        public fixed double position[3];
+        public fixed double normal[3];
+        public fixed double force[3];
+        public double depth;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
     public unsafe struct gx_skin_desc {
         public double crease_angle;
         public int smooth_cuts;
@@ -949,6 +969,12 @@ namespace Gxfem {
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern gx_result gx_body_clone(IntPtr body, IntPtr clone, IntPtr failure);
+
+        [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
+        public static extern gx_result gx_body_contact(IntPtr body, IntPtr desc, IntPtr failure);
+
+        [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
+        public static extern gx_result gx_body_contacts(IntPtr body, IntPtr contacts, UIntPtr capacity, IntPtr count, IntPtr failure);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern gx_result gx_body_create(IntPtr desc, IntPtr body, IntPtr failure);

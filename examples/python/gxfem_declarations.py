@@ -194,6 +194,14 @@ class gx_step_desc(Structure):
     pass
 
 
+class gx_contact_desc(Structure):
+    pass
+
+
+class gx_contact(Structure):
+    pass
+
+
 class gx_skin_desc(Structure):
     pass
 
@@ -720,6 +728,24 @@ gx_step_desc._fields_ = [
 
 gx_step_report = gxs_step_report
 
+gx_contact_desc._fields_ = [
+    ('stiffness', c_double),
+    ('friction', c_double),
+    ('sticking_speed', c_double),
+    ('recovery', c_double),
+    ('depth', c_double),
+    ('max_pairs', c_uint32),
+]
+
+gx_contact._fields_ = [
+    ('fragment', c_uint32),
+    ('other', c_uint32),
+    ('position', c_double * 3),
+    ('normal', c_double * 3),
+    ('force', c_double * 3),
+    ('depth', c_double),
+]
+
 gx_skin_desc._fields_ = [
     ('crease_angle', c_double),
     ('smooth_cuts', c_int),
@@ -1137,6 +1163,8 @@ FUNCTIONS = {
     'gx_body_blade': (POINTER(gx_blade), [POINTER(gx_body), c_size_t]),
     'gx_body_carve': (c_int, [POINTER(gx_body), POINTER(gx_surface), POINTER(gx_cut_report), POINTER(gx_failure)]),
     'gx_body_clone': (c_int, [POINTER(gx_body), POINTER(POINTER(gx_body)), POINTER(gx_failure)]),
+    'gx_body_contact': (c_int, [POINTER(gx_body), POINTER(gx_contact_desc), POINTER(gx_failure)]),
+    'gx_body_contacts': (c_int, [POINTER(gx_body), POINTER(gx_contact), c_size_t, POINTER(c_size_t), POINTER(gx_failure)]),
     'gx_body_create': (c_int, [POINTER(gx_body_desc), POINTER(POINTER(gx_body)), POINTER(gx_failure)]),
     'gx_body_cut': (c_int, [POINTER(gx_body), POINTER(gx_cut_desc), POINTER(gx_cut_report), POINTER(gx_failure)]),
     'gx_body_destroy': (None, [POINTER(gx_body)]),

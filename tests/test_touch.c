@@ -1,0 +1,734 @@
+/* test_touch.c - pieces that press on each other. The search is compared with all vertices against all facets; how far
+   pieces are in each other is measured by locating points of the skin, not by what contact knows. */
+#define GXFEM_IMPLEMENTATION
+#include "../gxfem.h"
+#include "body.h"
+
+static gx_contact_desc contact_desc(double friction) {
+    gx_contact_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.friction = friction;
+    return desc;
+}
+
+static void switch_on(gx_body *body, double friction) {
+    const gx_contact_desc desc = contact_desc(friction);
+    ck_assert_int_eq(gx_body_contact(body, &desc, NULL), GX_OK);
+}
+
+static gx_step_desc falling(double dt) {
+    gx_step_desc step;
+    memset(&step, 0, sizeof step);
+    step.dt = dt;
+    step.gravity[2] = -9.81;
+    return step;
+}
+
+static gx_step_report take(gx_body *body, const gx_step_desc *step) {
+    gx_step_report report;
+    gx_failure failure;
+    const gx_result result = gx_body_step(body, step, &report, &failure);
+    ck_assert_msg(result == GX_OK, "step: %s, %s", gx_result_text(result), failure.field ? failure.field : "");
+    return report;
+}
+
+static void hold_below(gx_body *body, double z) {
+    const gx_region region = gx_region_half_space(2, -1, z);
+    ck_assert_int_eq(gx_body_hold(body, &region, 1, NULL), GX_OK);
+}
+
+/* The motion of the copies of the fragment whose centre is highest (above 1) or of all others (above 0) */
+static void move_pieces(gx_body *body, int above, const double shift[3], const double speed[3]) {
+    const gx_view view = view_of(body);
+    size_t i, highest = 0, k, c;
+    for (i = 1; i < view.fragment_count; i++)
+        if (view.fragment_center[3 * i + 2] > view.fragment_center[3 * highest + 2]) highest = i;
+    for (i = 0; i < view.copy_count; i++) {
+        for (c = 0; c < view.cell_count; c++)
+            for (k = 0; k < 4; k++)
+                if (view.cell_copies[4 * c + k] == i) goto found;
+        continue;
+    found:
+        if ((view.cell_fragment[c] == highest) != above) continue;
+        for (k = 0; k < 3; k++) {
+            view.displacement[3 * i + k] += shift[k];
+            view.velocity[3 * i + k] += speed[k];
+        }
+    }
+}
+
+/* ---- measures that share nothing with contact ---- */
+
+/* The distance of a point to the skin of a fragment, by samples of its triangles */
+static double distance_to(const gx_skin *skin, const double *x, uint32_t fragment, const double p[3]) {
+    double best = 1e300;
+    size_t t;
+    int i, j, k;
+    for (t = 0; t < skin->triangle_count; t++) {
+        const uint32_t *v = skin->triangles + 3 * t;
+        if (skin->triangle_fragment[t] != fragment) continue;
+        for (i = 0; i <= 32; i++)
+            for (j = 0; i + j <= 32; j++) {
+                double square = 0;
+                for (k = 0; k < 3; k++) {
+                    const double q = (i * x[3 * v[0] + (uint32_t)k] + j * x[3 * v[1] + (uint32_t)k] +
+                                      (32 - i - j) * x[3 * v[2] + (uint32_t)k]) /
+                                     32;
+                    square += (q - p[k]) * (q - p[k]);
+                }
+                best = fmin(best, square);
+            }
+    }
+    return sqrt(best);
+}
+
+/* How far vertices of the skin are in other fragments, at most, but for what rounding makes of faces at zero gap */
+static double overlap_of(gx_body *body) {
+    gx_skin skin;
+    double *x, deepest = 0;
+    size_t i, t;
+    uint32_t *fragment;
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
+    x = (double *)oracle_memory(NULL, 3 * skin.vertex_count + 1, sizeof *x);
+    fragment = (uint32_t *)oracle_memory(NULL, skin.vertex_count + 1, sizeof *fragment);
+    ck_assert_int_eq(gx_body_skin_positions(body, x, NULL), GX_OK);
+    for (t = 0; t < 3 * skin.triangle_count; t++) fragment[skin.triangles[t]] = skin.triangle_fragment[t / 3];
+    for (i = 0; i < skin.vertex_count; i++) {
+        gx_hit hits[64];
+        size_t count, h;
+        ck_assert_int_eq(gx_body_locate_all(body, x + 3 * i, hits, 64, &count, NULL), GX_OK);
+        for (h = 0; h < count; h++)
+            if (hits[h].fragment != fragment[i]) {
+                deepest = fmax(deepest, distance_to(&skin, x, hits[h].fragment, x + 3 * i));
+                break;
+            }
+    }
+    free(x);
+    free(fragment);
+    return deepest;
+}
+
+static double momentum_of(gx_body *body, double momentum[3]) {
+    gx_motion motions[64];
+    const gx_view view = view_of(body);
+    double energy = 0;
+    size_t i;
+    int k;
+    ck_assert_int_eq(gx_body_motion(body, motions, 64, NULL), GX_OK);
+    momentum[0] = momentum[1] = momentum[2] = 0;
+    for (i = 0; i < view.fragment_count; i++) {
+        for (k = 0; k < 3; k++) momentum[k] += motions[i].mass * motions[i].velocity[k];
+        energy += motions[i].energy;
+    }
+    return energy;
+}
+
+/* What goes through all contacts along the third axis */
+static double force_of(gx_body *body, size_t *count) {
+    static gx_contact contacts[4096];
+    double sum = 0;
+    size_t i;
+    ck_assert_int_eq(gx_body_contacts(body, contacts, 4096, count, NULL), GX_OK);
+    for (i = 0; i < *count; i++) sum += fabs(contacts[i].force[2]);
+    return sum;
+}
+
+static gx_body *cut_cube(workload *w, size_t n, const double normal[3], double height) {
+    const double p[3] = {0.5 * (double)n, 0.5 * (double)n, height};
+    *w = grid(n, n, n, 6);
+    add_plane(w, p, normal, 4 * (double)n);
+    return cut_at_once(w);
+}
+
+/* ---- the search ---- */
+
+/* Random poses of random pieces: each vertex meets the same facet as by trying all. */
+START_TEST(search_is_exhaustive) {
+    const uint64_t seed = (uint64_t)_i + 1;
+    workload w = grid(3, 3, 3, 6);
+    gx_body *body;
+    gxp_touch_surface *surface;
+    gxs_step_desc none;
+    gx_view view;
+    size_t i, met = 0;
+    uint32_t v, f;
+    int round;
+    random_seed(seed);
+    for (round = 0; round < 3; round++) {
+        const double p[3] = {random_real(0, 3), random_real(0, 3), random_real(0, 3)},
+                     n[3] = {random_real(-1, 1), random_real(-1, 1), random_real(0.1, 1)};
+        add_plane(&w, p, n, 12);
+    }
+    body = cut_in_sequence(&w);
+    switch_on(body, 0);
+    for (round = 0; round < 3; round++) {
+        const double dt = random_below(3) == 0 ? 0 : 0.02;
+        view = view_of(body);
+        for (i = 0; i < 3 * view.copy_count; i++) { /* pieces as wholes, and each copy a little */
+            const uint32_t piece = gxp_find(body->view.copy_fragment.data, (uint32_t)(i / 3));
+            view.displacement[i] = 0.3 * sin((double)(7 * piece + i % 3 + 31 * seed)) + random_real(-0.1, 0.1);
+            view.velocity[i] = 3 * cos((double)(5 * piece + i % 3)) + random_real(-0.3, 0.3);
+        }
+        memset(&none, 0, sizeof none);
+        none.dt = dt;
+        ck_assert_int_eq(gxp_attach_contact(body, &none, &surface, NULL), GX_OK);
+        for (v = 0, i = 0; v < surface->vertex_count; v++) {
+            gxp_touch_pair best;
+            memset(&best, 0, sizeof best);
+            best.vertex = v;
+            best.facet = GXB_NONE;
+            for (f = 0; f < surface->facet_count; f++) gxp_try_facet(body, surface, dt, f, &best);
+            if (best.facet == GXB_NONE) continue;
+            CHECK_SEED(i < body->touch.found, seed);
+            CHECK_SEED(memcmp(&best, &body->touch.pairs[i], sizeof best) == 0, seed);
+            i++;
+        }
+        CHECK_SEED(i == body->touch.found, seed);
+        met += i;
+    }
+    ck_assert_uint_gt(met, 20);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- at rest ---- */
+
+/* A cut cube: what is above rests on what is below from the frame of the cut. Flat, and tilted with friction */
+START_TEST(rests_from_the_cut_on) {
+    static const double normals[3][3] = {{0, 0, 1}, {0.2, 0.13, 1}, {0.2, -0.1, 1}};
+    workload w = grid(3, 3, 3, 6);
+    const double p[3] = {1.5, 1.5, _i == 0 ? 1.5 : 1.4};
+    gx_body *body = body_of(&w);
+    gx_step_desc step = falling(1.0 / 60);
+    double before, fastest = 0, start, weight, force, momentum[3];
+    gx_view view;
+    size_t i, count, above;
+    int frame;
+    switch_on(body, _i == 0 ? 0 : 0.6);
+    hold_below(body, 0.1);
+    step.integrator = GXS_STATIC; /* comes to rest under its weight */
+    step.newton_iterations = 20;
+    step.cg_tolerance = 1e-6;
+    for (frame = 0; frame < 10; frame++) take(body, &step);
+    view = view_of(body);
+    for (i = 0, start = 0; i < view.copy_count; i++) start = fmin(start, view.displacement[3 * i + 2]);
+    add_plane(&w, p, normals[_i], 12);
+    cut_by(body, &w, 0, 1);
+    step = falling(1.0 / 60);
+    step.newton_iterations = 2;
+    for (frame = 0; frame < 90; frame++) {
+        take(body, &step);
+        fastest = fmax(fastest, momentum_of(body, momentum));
+    }
+    view = view_of(body);
+    ck_assert_uint_eq(view.fragment_count, 2);
+    for (i = 0, before = start, start = 0; i < view.copy_count; i++) start = fmin(start, view.displacement[3 * i + 2]);
+    above = view.fragment_center[2] > view.fragment_center[5] ? 0 : 1;
+    weight = view.fragment_mass[above] * 9.81;
+    force = force_of(body, &count);
+    if (getenv("GXFEM_VERBOSE"))
+        printf("%d: sank %g to %g, kinetic %g J, force %g weight %g, %zu contacts, overlap %g\n", _i, before, start,
+               fastest, force, weight, count, overlap_of(body));
+    ck_assert_double_lt(overlap_of(body), 0.05);
+    ck_assert_double_lt(fabs(start - before), 0.05);
+    ck_assert_double_lt(momentum_of(body, momentum), 1e-3 * weight);
+    if (_i == 0) ck_assert_double_lt(fabs(force - weight), 0.02 * weight);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A closed flat cut is a layer of thickness h / c: 1 / (1 + h / (c L)) of the uncut bar's load. */
+START_TEST(a_closed_cut_carries) {
+    const double c = _i == 0 ? 10 : _i == 1 ? 30 : 100;
+    const gx_region ends[2] = {gx_region_half_space(2, -1, 0.1), gx_region_half_space(2, 1, 3.9)};
+    const double pushed = 4e-5, whole = 1e6 * 4 * pushed / 4, expected = 1 / (1 + 1 / (c * 4)); /* h = 1 */
+    workload w = grid(2, 2, 4, 6);
+    gx_body_desc desc = desc_of(&w);
+    gx_body *body = NULL;
+    gx_contact_desc contact = contact_desc(0.5);
+    gx_step_desc step;
+    double poses[24], carried;
+    size_t count;
+    int k;
+    desc.poisson = 0;
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+    contact.stiffness = c;
+    ck_assert_int_eq(gx_body_contact(body, &contact, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_hold(body, ends, 2, NULL), GX_OK);
+    add_axis_plane(&w, 2, 2);
+    cut_by(body, &w, 0, 1);
+    memset(&step, 0, sizeof step);
+    memset(poses, 0, sizeof poses);
+    for (k = 0; k < 3; k++) poses[5 * k] = poses[12 + 5 * k] = 1;
+    poses[12 + 11] = -pushed;
+    step.dt = 0.1;
+    step.integrator = GXS_STATIC;
+    step.region_poses = poses;
+    step.newton_iterations = 30;
+    step.cg_tolerance = 1e-8;
+    for (k = 0; k < 3; k++) take(body, &step);
+    carried = force_of(body, &count) / whole;
+    if (getenv("GXFEM_VERBOSE")) printf("c %g: %.5f of uncut, expected %.5f\n", c, carried, expected);
+    ck_assert_double_lt(fabs(carried / expected - 1), 2e-3);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- in motion ---- */
+
+/* One block falls on another, both free: momentum stays, energy does not grow. */
+START_TEST(blocks_collide) {
+    static const double up[3] = {0, 0, 1}, shift[3] = {0.37, 0.21, 0.15}, still[3] = {0, 0, 0};
+    const double speed[3] = {0, 0, _i == 0 ? -3 : -12};
+    workload w;
+    gx_body *body = cut_cube(&w, 3, up, 1.5);
+    gx_step_desc step;
+    double start, before[3], after[3], most = 0, deepest = 0;
+    int frame, touched = 0;
+    memset(&step, 0, sizeof step);
+    step.dt = 0.01;
+    step.newton_iterations = 3;
+    step.newton_tolerance = 1e-10;
+    step.cg_tolerance = 1e-6;
+    switch_on(body, 0.3);
+    move_pieces(body, 1, shift, speed);
+    move_pieces(body, 0, still, still);
+    start = momentum_of(body, before);
+    for (frame = 0; frame < 40; frame++) {
+        size_t count;
+        take(body, &step);
+        most = fmax(most, momentum_of(body, after));
+        (void)force_of(body, &count);
+        touched += count > 0;
+        if (frame % 8 == 7) deepest = fmax(deepest, overlap_of(body));
+    }
+    if (getenv("GXFEM_VERBOSE"))
+        printf("%g m/s: %d frames of contact, overlap %g, kinetic %g of %g, momentum %g %g\n", speed[2], touched,
+               deepest, most, start, before[2], after[2]);
+    ck_assert_int_gt(touched, 2);
+    ck_assert_double_lt(fabs(after[2] - before[2]), 1e-6 * fabs(before[2]));
+    ck_assert_double_lt(fabs(after[0]) + fabs(after[1]), 1e-6 * fabs(before[2]));
+    ck_assert_double_le(most, start * (1 + 1e-9));
+    ck_assert_double_lt(deepest, 0.3);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Pieces that overlap at the start come apart, no faster than they may. */
+START_TEST(overlaps_come_apart) {
+    static const double up[3] = {0, 0, 1}, still[3] = {0, 0, 0};
+    const double depth = _i == 0 ? 0.05 : _i == 1 ? 0.2 : 0.45, shift[3] = {0.1, 0.05, -depth};
+    workload w;
+    gx_body *body = cut_cube(&w, 3, up, 1.5);
+    gx_step_desc step;
+    double fastest = 0, deepest;
+    int frame;
+    memset(&step, 0, sizeof step);
+    step.dt = 0.01;
+    switch_on(body, 0);
+    move_pieces(body, 1, shift, still);
+    for (frame = 0; frame < 100; frame++) {
+        gx_motion motions[2];
+        take(body, &step);
+        ck_assert_int_eq(gx_body_motion(body, motions, 2, NULL), GX_OK);
+        fastest = fmax(fastest, fmax(fabs(motions[0].velocity[2]), fabs(motions[1].velocity[2])));
+    }
+    deepest = overlap_of(body);
+    if (getenv("GXFEM_VERBOSE")) printf("overlap %g: fastest %g m/s, %g left\n", depth, fastest, deepest);
+    ck_assert_double_lt(deepest, 1e-3);
+    ck_assert_double_lt(fastest, 4); /* twice the speed of recovery: two elements a second */
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A block slides on a slope that is held, or sticks to it. */
+START_TEST(friction_on_a_slope) {
+    static const double up[3] = {0, 0, 1}, speed[3] = {0, 0, 0};
+    const double angle = 0.35, mu = _i == 0 ? 0.2 : _i == 1 ? 1.05 * tan(0.35) : 0;
+    const double shift[3] = {0, 0, 0};
+    workload w = grid(4, 3, 3, 6);
+    const double p[3] = {2, 1.5, 1.02};
+    gx_body *body;
+    gx_step_desc step = falling(0.01);
+    gx_motion before[2], motion[2];
+    double expected, got;
+    size_t above;
+    gx_view view;
+    int frame;
+    add_plane(&w, p, up, 12);
+    body = cut_at_once(&w);
+    switch_on(body, mu);
+    hold_below(body, 1.01); /* the rest of what is below follows: it is a thin layer */
+    move_pieces(body, 1, shift, speed);
+    for (frame = 0; frame < 40; frame++) take(body, &step); /* settles */
+    for (frame = _i < 2 ? 1 : 100; frame <= 100; frame++) { /* then the slope rises slowly: an elastic block sways */
+        step.gravity[0] = 9.81 * sin(angle * frame / 100);
+        step.gravity[2] = -9.81 * cos(angle * frame / 100);
+        take(body, &step);
+    }
+    view = view_of(body);
+    above = view.fragment_center[2] > view.fragment_center[5] ? 0 : 1;
+    if (_i == 1) /* its feet slip a little one after the other, as the load moves to the lower edge */
+        for (frame = 0; frame < 100; frame++) take(body, &step);
+    ck_assert_int_eq(gx_body_motion(body, before, 2, NULL), GX_OK);
+    for (frame = 0; frame < 40; frame++) take(body, &step);
+    ck_assert_int_eq(gx_body_motion(body, motion, 2, NULL), GX_OK);
+    got = (motion[above].velocity[0] - before[above].velocity[0]) / (40 * step.dt);
+    expected = 9.81 * (sin(angle) - mu * cos(angle));
+    if (getenv("GXFEM_VERBOSE"))
+        printf("mu %g: acceleration %g, expected %g, speed %g, way %g\n", mu, got, expected, motion[above].velocity[0],
+               motion[above].center[0] - before[above].center[0]);
+    if (_i == 1)
+        ck_assert_double_lt(fabs(motion[above].center[0] - before[above].center[0]), 1e-3);
+    else
+        ck_assert_double_lt(fabs(got - expected), 0.01 * 9.81 * sin(angle));
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A cut through a loaded contact leaves its force. */
+START_TEST(cuts_through_contact) {
+    static const double up[3] = {0, 0, 1};
+    workload w;
+    gx_body *body = cut_cube(&w, 3, up, 1.5);
+    gx_step_desc step = falling(1.0 / 60);
+    double before, after;
+    size_t count, more;
+    int frame;
+    switch_on(body, 0.4);
+    hold_below(body, 0.1);
+    step.newton_iterations = 2;
+    for (frame = 0; frame < 120; frame++) take(body, &step);
+    before = force_of(body, &count);
+    add_axis_plane(&w, 0, 1.3);
+    cut_by(body, &w, 1, 1);
+    {
+        gx_contact none;
+        gx_failure failure;
+        size_t all;
+        ck_assert_int_eq(gx_body_contacts(body, &none, 1, &all, &failure), GX_ERROR_SEQUENCE);
+        ck_assert_str_eq(failure.field, "gx_body_step");
+    }
+    take(body, &step);
+    after = force_of(body, &more);
+    if (getenv("GXFEM_VERBOSE")) printf("cut: %g to %g N, %zu to %zu contacts\n", before, after, count, more);
+    ck_assert_double_lt(fabs(after - before), 0.01 * before);
+    ck_assert_uint_gt(more, count);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- what is no contact ---- */
+
+/* An uncut body that is pressed together by half, or twisted, has no pair, and its steps the same bits as without. */
+START_TEST(a_body_is_not_its_own_contact) {
+    workload w = grid(2, 2, 4, 6);
+    gx_body *body[2];
+    gx_step_desc step;
+    double poses[24];
+    const gx_region ends[2] = {gx_region_half_space(2, -1, 0.1), gx_region_half_space(2, 1, 3.9)};
+    int i, k, frame;
+    memset(&step, 0, sizeof step);
+    step.dt = 0.02;
+    step.newton_iterations = 3;
+    step.region_poses = poses;
+    for (i = 0; i < 2; i++) {
+        body[i] = body_of(&w);
+        ck_assert_int_eq(gx_body_hold(body[i], ends, 2, NULL), GX_OK);
+    }
+    switch_on(body[0], 0.5);
+    for (frame = 1; frame <= 25; frame++) {
+        const double turn = _i == 1 ? 0.06 * frame : 0, s = sin(turn), c = cos(turn);
+        memset(poses, 0, sizeof poses);
+        for (k = 0; k < 3; k++) poses[5 * k] = poses[12 + 5 * k] = 1;
+        poses[12] = poses[17] = c;
+        poses[13] = -s;
+        poses[16] = s;
+        poses[15] = 1 - c + s;
+        poses[19] = 1 - c - s;
+        if (_i == 0) poses[23] = -0.08 * frame;
+        for (i = 0; i < 2; i++) take(body[i], &step);
+        ck_assert_uint_eq(body[0]->touch.found, 0);
+        ck_assert(gx_body_state_hash(body[0]) == gx_body_state_hash(body[1]));
+    }
+    for (i = 0; i < 2; i++) gx_body_destroy(body[i]);
+    wl_free(&w);
+}
+END_TEST
+
+/* The lips of a cut that ends in the body are pressed together: they meet, though they are of one fragment. */
+START_TEST(lips_meet) {
+    workload w = grid(4, 2, 4, 6);
+    gx_body *body;
+    gx_step_desc step;
+    double poses[24], closed;
+    const gx_region ends[2] = {gx_region_half_space(2, -1, 0.1), gx_region_half_space(2, 1, 3.9)};
+    size_t count;
+    int k, frame;
+    wl_surface *s = wl_add_surface(&w, 0);
+    const double a[3] = {-1, -1, 2.1}, b[3] = {2.5, -1, 2.1}, c[3] = {2.5, 3, 2.1}, d[3] = {-1, 3, 2.1};
+    wl_add_quad(s, a, b, c, d);
+    body = cut_at_once(&w);
+    ck_assert_uint_eq(view_of(body).fragment_count, 1);
+    switch_on(body, 0.5);
+    ck_assert_int_eq(gx_body_hold(body, ends, 2, NULL), GX_OK);
+    memset(&step, 0, sizeof step);
+    memset(poses, 0, sizeof poses);
+    for (k = 0; k < 3; k++) poses[5 * k] = poses[12 + 5 * k] = 1;
+    step.dt = 0.02;
+    step.newton_iterations = 3;
+    step.region_poses = poses;
+    for (frame = 1; frame <= 20; frame++) {
+        poses[23] = -0.01 * frame;
+        take(body, &step);
+    }
+    closed = force_of(body, &count);
+    if (getenv("GXFEM_VERBOSE")) printf("lips: %zu contacts, %g N\n", count, closed);
+    ck_assert_uint_gt(count, 10);
+    ck_assert_double_gt(closed, 1e4); /* 5 % of 1e6 Pa on 2 x 2 m2 would be 2e5 on both sides */
+    {
+        static gx_contact contacts[4096];
+        size_t i;
+        ck_assert_int_eq(gx_body_contacts(body, contacts, 4096, &count, NULL), GX_OK);
+        for (i = 0; i < count; i++) {
+            ck_assert(contacts[i].fragment == contacts[i].other);
+            ck_assert_double_lt(contacts[i].depth, 0.05);
+        }
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- refusals, memory ---- */
+
+START_TEST(refusals) {
+    static const double up[3] = {0, 0, 1};
+    static const char *const names[5] = {"stiffness", "friction", "sticking_speed", "recovery", "depth"};
+    workload w;
+    gx_body *body = cut_cube(&w, 2, up, 1.5);
+    gx_contact_desc desc;
+    gx_step_desc step = falling(0.01);
+    gx_failure failure;
+    gx_contact contact;
+    size_t count;
+    uint64_t state;
+    int i, bad;
+    for (i = 0; i < 5; i++)
+        for (bad = 0; bad < 2; bad++) {
+            double *numbers[5];
+            desc = contact_desc(0);
+            numbers[0] = &desc.stiffness;
+            numbers[1] = &desc.friction;
+            numbers[2] = &desc.sticking_speed;
+            numbers[3] = &desc.recovery;
+            numbers[4] = &desc.depth;
+            *numbers[i] = bad ? HUGE_VAL : -1;
+            ck_assert_int_eq(gx_body_contact(body, &desc, &failure), bad ? GX_ERROR_NOT_FINITE : GX_ERROR_ARGUMENT);
+            ck_assert_str_eq(failure.field, names[i]);
+        }
+    ck_assert_int_eq(gx_body_contact(NULL, &desc, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_str_eq(failure.field, "body");
+    {
+        gx_body_desc thin = desc_of(&w);
+        gx_body *other = NULL;
+        thin.affine_below = 0.5;
+        desc = contact_desc(0);
+        ck_assert_int_eq(gx_body_create(&thin, &other, NULL), GX_OK);
+        ck_assert_int_eq(gx_body_contact(other, &desc, &failure), GX_ERROR_ARGUMENT);
+        ck_assert_str_eq(failure.field, "affine_below");
+        ck_assert_int_eq(gx_body_contact(body, &desc, NULL), GX_OK);
+        ck_assert_int_eq(gx_body_restore(body, other, NULL), GX_OK); /* contact stays on */
+        ck_assert_int_eq(gx_body_step(body, &step, NULL, &failure), GX_ERROR_ARGUMENT);
+        ck_assert_str_eq(failure.field, "affine_below");
+        gx_body_destroy(other);
+        gx_body_destroy(body);
+        wl_free(&w);
+        body = cut_cube(&w, 2, up, 1.5);
+    }
+    ck_assert_int_eq(gx_body_contacts(NULL, &contact, 1, &count, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_str_eq(failure.field, "body");
+    ck_assert_int_eq(gx_body_contacts(body, &contact, 1, NULL, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_str_eq(failure.field, "count");
+    ck_assert_int_eq(gx_body_contacts(body, NULL, 1, &count, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_str_eq(failure.field, "contacts");
+    ck_assert_int_eq(gx_body_contacts(body, &contact, 1, &count, &failure), GX_ERROR_SEQUENCE);
+    ck_assert_str_eq(failure.field, "gx_body_contact");
+    desc = contact_desc(0);
+    desc.max_pairs = 3;
+    ck_assert_int_eq(gx_body_contact(body, &desc, &failure), GX_OK);
+    state = gx_body_state_hash(body);
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, &failure), GX_ERROR_LIMIT);
+    ck_assert_str_eq(failure.field, "max_pairs");
+    step.integrator = GXS_MIDPOINT;
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_str_eq(failure.field, "integrator");
+    step.quality = 0.1;
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_str_eq(failure.field, "quality");
+    step.quality = 0;
+    ck_assert(gx_body_state_hash(body) == state);
+    switch_on(body, 0);
+    hold_below(body, 0.1);
+    step.integrator = GXS_BDF1;
+    step.pair_count = 1;
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_str_eq(failure.field, "pairs");
+    step.pair_count = 0;
+    ck_assert_int_eq(gx_body_contacts(body, NULL, 0, &count, &failure), GX_OK);
+    ck_assert_uint_eq(count, 0);
+    take(body, &step);
+    ck_assert_int_eq(gx_body_contacts(body, NULL, 0, &count, &failure), GX_ERROR_CAPACITY);
+    ck_assert_uint_gt(count, 4);
+    ck_assert_int_eq(gx_body_contact(body, NULL, &failure), GX_OK);
+    take(body, &step);
+    ck_assert_int_eq(gx_body_contacts(body, NULL, 0, &count, &failure), GX_ERROR_SEQUENCE);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Pairs of the caller stand beside those of contact: the same as by anchors without contact. */
+START_TEST(beside_the_callers_pairs) {
+    static const double up[3] = {0, 0, 1}, apart[3] = {0, 0, 2}, still[3] = {0, 0, 0};
+    workload w;
+    gx_body *body[2];
+    gxs_pair pair;
+    gx_anchor anchors[2];
+    gx_step_desc step = falling(0.01);
+    double slips[2][3] = {{0, 0, 0}, {0, 0, 0}}, forces[2][3];
+    const double x[2][3] = {{1.2, 1.3, 1.7}, {1.2, 1.3, 1.2}};
+    gx_hit hit;
+    int i, k, frame;
+    memset(&pair, 0, sizeof pair);
+    pair.normal[2] = 1;
+    pair.offset = 2.6;
+    pair.stiffness = 1e4;
+    pair.friction = 0.3;
+    step.pairs = &pair;
+    step.pair_count = 1;
+    step.pair_anchors = anchors;
+    step.gravity[0] = 1;
+    for (i = 0; i < 2; i++) {
+        body[i] = cut_cube(&w, 2, up, 1.5);
+        for (k = 0; k < 2; k++) {
+            ck_assert_int_eq(gx_body_locate(body[i], x[k], 1, &hit, NULL), GX_OK);
+            ck_assert_int_eq(gx_hit_anchor(body[i], &hit, &anchors[k], NULL), GX_OK);
+        }
+        move_pieces(body[i], 1, apart, still);
+        hold_below(body[i], 0.1);
+        if (i == 0) switch_on(body[i], 0.5);
+        step.pair_slips = slips[i];
+        step.pair_forces = forces[i];
+        for (frame = 0; frame < 5; frame++) take(body[i], &step);
+        if (i == 0) wl_free(&w);
+    }
+    ck_assert_double_gt(forces[0][2], 0);
+    ck_assert(memcmp(forces[0], forces[1], sizeof forces[0]) == 0);
+    ck_assert(memcmp(slips[0], slips[1], sizeof slips[0]) == 0);
+    ck_assert(gx_body_state_hash(body[0]) == gx_body_state_hash(body[1]));
+    for (i = 0; i < 2; i++) gx_body_destroy(body[i]);
+    wl_free(&w);
+}
+END_TEST
+
+/* A step after a cut that runs out of memory leaves all as it was, and gives the same when it is taken again. */
+START_TEST(without_memory) {
+    workload w = grid(2, 2, 2, 6);
+    memory m;
+    gx_body *body[2];
+    gx_step_desc step = falling(0.01);
+    size_t n, count[2];
+    int i;
+    gx_result result = GX_ERROR_MEMORY;
+    add_axis_plane(&w, 2, 1.3);
+    add_axis_plane(&w, 0, 1.1);
+    for (i = 0; i < 2; i++) {
+        body[i] = i == 0 ? body_in(&m, &w) : body_of(&w);
+        cut_by(body[i], &w, 0, 1);
+        hold_below(body[i], 0.1);
+        switch_on(body[i], 0.5);
+        for (n = 0; n < 5; n++) take(body[i], &step);
+        cut_by(body[i], &w, 1, 1);
+    }
+    for (n = 0; result != GX_OK; n++) {
+        const uint64_t state = gx_body_state_hash(body[0]);
+        ck_assert_uint_lt(n, 10000);
+        fail_from(&m, n, _i);
+        result = gx_body_step(body[0], &step, NULL, NULL);
+        never_fail(&m);
+        ck_assert(result == GX_OK || (result == GX_ERROR_MEMORY && gx_body_state_hash(body[0]) == state));
+    }
+    ck_assert_uint_gt(n, 10);
+    take(body[1], &step);
+    for (i = 0; i < 2; i++) (void)force_of(body[i], &count[i]);
+    ck_assert_uint_eq(count[0], count[1]);
+    {
+        const gx_view view[2] = {view_of(body[0]), view_of(body[1])};
+        for (n = 0; n < 3 * view[0].copy_count; n++)
+            ck_assert_double_lt(fabs(view[0].displacement[n] - view[1].displacement[n]), 1e-4);
+    }
+    gx_body_destroy(body[0]);
+    ck_assert(is_whole(&m));
+    gx_body_destroy(body[1]);
+    wl_free(&w);
+}
+END_TEST
+
+/* A body that is put back to what it was has contact still, with other copies than before. */
+START_TEST(after_going_back) {
+    static const double up[3] = {0, 0, 1};
+    workload w;
+    gx_body *body = cut_cube(&w, 3, up, 1.5), *clone = NULL, *again;
+    gx_step_desc step = falling(0.01);
+    int frame;
+    hold_below(body, 0.1);
+    ck_assert_int_eq(gx_body_clone(body, &clone, NULL), GX_OK);
+    switch_on(body, 0.5);
+    for (frame = 0; frame < 10; frame++) take(body, &step);
+    add_axis_plane(&w, 0, 1.3);
+    cut_by(body, &w, 1, 1);
+    for (frame = 0; frame < 3; frame++) take(body, &step);
+    ck_assert_int_eq(gx_body_restore(body, clone, NULL), GX_OK);
+    again = clone;
+    switch_on(again, 0.5);
+    for (frame = 0; frame < 5; frame++) {
+        take(body, &step);
+        take(again, &step);
+        ck_assert(gx_body_state_hash(body) == gx_body_state_hash(again));
+    }
+    gx_body_destroy(body);
+    gx_body_destroy(again);
+    wl_free(&w);
+}
+END_TEST
+
+static Suite *suite(void) {
+    Suite *s = suite_create("touch");
+    TCase *tests = tcase_create("touch");
+    tcase_set_timeout(tests, 300);
+    ADD_SOME(tests, search_is_exhaustive, 8);
+    tcase_add_loop_test(tests, rests_from_the_cut_on, 0, 2);
+    tcase_add_loop_test(tests, a_closed_cut_carries, 0, 3);
+    tcase_add_loop_test(tests, blocks_collide, 0, 2);
+    tcase_add_loop_test(tests, overlaps_come_apart, 0, 3);
+    tcase_add_loop_test(tests, friction_on_a_slope, 0, 3);
+    tcase_add_test(tests, cuts_through_contact);
+    tcase_add_loop_test(tests, a_body_is_not_its_own_contact, 0, 2);
+    tcase_add_test(tests, lips_meet);
+    tcase_add_test(tests, refusals);
+    tcase_add_test(tests, beside_the_callers_pairs);
+    tcase_add_loop_test(tests, without_memory, 0, 2);
+    tcase_add_test(tests, after_going_back);
+    suite_add_tcase(s, tests);
+    return s;
+}
+
+int main(void) { return run_suite(suite()); }
