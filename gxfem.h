@@ -1187,9 +1187,15 @@ typedef struct gxp_close_cell { /* a kept cell around the edge */
     double middle[3], radius;              /* of a ball around the corners */
     double stretch;                        /* volume / volume at rest of its element; negative: inverted */
     double size;                           /* of its element, m */
-    uint32_t facets, facet_count;          /* of a divided element's cell: in lambdas, once they were asked for */
-    uint8_t is_divided, has_facets;        /* its element is */
+    uint32_t facets, facet_count;          /* of a divided element's cell, once they were asked for */
+    double heights[4];                     /* of the corners over the faces opposite to them, likewise, m */
+    uint8_t is_divided;                    /* its element is */
+    uint8_t has_facets, has_heights;
 } gxp_close_cell;
+typedef struct gxp_close_facet { /* a triangle that bounds a cell of a divided element */
+    double corners[3][3];        /* deformed */
+    uint32_t face, unused;       /* of its element; 4: it is a wall */
+} gxp_close_facet;
 typedef struct gxp_plate { /* a triangle, ready to be asked what is near it */
     double x[3][3];
     double normal[3], square;    /* of the normal's length; 0: all of the triangle is near its edges */
@@ -1208,9 +1214,9 @@ typedef struct gxp_vicinity {
     gxp_keys order;        /* place along the axis, index in cells: by layer, ascending */
     gxp_words layer_start; /* layer_count + 1, into order */
     int axis;
-    double widest;   /* of the cells along the axis */
-    double *lambdas; /* count x 3 x 4: triangles that bound cells, by coordinates in their elements */
-    uint32_t lambda_count, lambda_capacity;
+    double widest; /* of the cells along the axis */
+    gxp_close_facet *facets;
+    uint32_t facet_count, facet_capacity;
 } gxp_vicinity;
 
 /* Where a place on the edge lies by a layer's front */
@@ -10371,7 +10377,7 @@ static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
     for (n = 0; n < 4; n++) c->radius = gxp_more(c->radius, gxp_square_distance(c->middle, c->corners[n]));
     c->radius = sqrt(c->radius);
     c->is_divided = (uint8_t)(gxb_complex_root(body->complex, row->element) & 1);
-    c->has_facets = 0;
+    c->has_facets = c->has_heights = 0;
     c->size = body->mesh.sizes[row->element];
 }
 
@@ -10555,7 +10561,7 @@ static gx_result gxp_find_near(gx_blade *blade, const gxp_words *scope) {
     gxp_vicinity_walk own;
     gx_result result = gxp_extend_words(body, &blade->near.of_cell, body->cells.count);
     if (result == GX_OK) result = gxp_prepare_quads(blade);
-    blade->near.count = blade->near.lambda_count = 0;
+    blade->near.count = blade->near.facet_count = 0;
     if (result != GX_OK) return result;
     own.walk.visit = gxp_add_near_cells;
     own.walk.boxes = blade->boxes;
@@ -10626,95 +10632,141 @@ static gx_result gxp_is_own_part(gx_body *body, const gxp_close_cell *c, const d
     return result;
 }
 
+/* On which face of its element is a triangle that bounds a cell? 4: on none, it is a wall. */
+static uint32_t gxp_facet_face(const double *lambda[3]) {
+    uint32_t face = 0;
+    while (face < 4 && (lambda[0][face] > 0 || lambda[1][face] > 0 || lambda[2][face] > 0)) face++;
+    return face;
+}
+
 /* Lists the triangles that bound the cell of a divided element. */
 static gx_result gxp_list_facets(gx_blade *blade, gxp_close_cell *c) {
     gx_body *body = blade->body;
     gxp_vicinity *near = &blade->near;
     const gxp_boundary *boundary = &body->scratch.boundary;
+    gxp_close_facet *facet;
     uint32_t i;
+    int n, k;
     gx_result result;
     gxp_clear_boundary(body, 1);
     result = gxp_bound_cell(body, c->cell);
     if (result == GX_OK)
-        result = gxp_reserve(&body->config.allocator, &near->lambdas, 12 * sizeof *near->lambdas, near->lambda_count,
-                             &near->lambda_capacity, boundary->triangles.count / 3);
+        result = gxp_reserve(&body->config.allocator, &near->facets, sizeof *near->facets, near->facet_count,
+                             &near->facet_capacity, boundary->triangles.count / 3);
     if (result != GX_OK) return result;
-    c->facets = near->lambda_count;
+    c->facets = near->facet_count;
     c->facet_count = boundary->triangles.count / 3;
     c->has_facets = 1;
-    for (i = 0; i < boundary->triangles.count; i++)
-        memcpy(near->lambdas + 12 * (size_t)near->lambda_count + 4 * (size_t)i,
-               boundary->lambdas + 4 * (size_t)boundary->triangles.data[i], 4 * sizeof *near->lambdas);
-    near->lambda_count += c->facet_count;
+    near->facet_count += c->facet_count;
+    for (i = 0, facet = near->facets + c->facets; i < c->facet_count; i++, facet++) {
+        const double *lambda[3];
+        for (n = 0; n < 3; n++) {
+            const double *l = lambda[n] = boundary->lambdas + 4 * (size_t)boundary->triangles.data[3 * i + (uint32_t)n];
+            for (k = 0; k < 3; k++)
+                facet->corners[n][k] = l[0] * c->corners[0][k] + l[1] * c->corners[1][k] + l[2] * c->corners[2][k] +
+                                       l[3] * c->corners[3][k];
+        }
+        facet->face = gxp_facet_face(lambda);
+    }
     return GX_OK;
 }
 
-/* A cell that does not contain the place: is its material nearer than what was found before? */
-static gx_result gxp_seek_outside(gx_blade *blade, uint32_t index, const double x[3], const double weights[4],
-                                  gxp_sight *sight) {
-    static const double own[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+/* How high each corner is over the face opposite to it */
+static void gxp_measure_heights(gxp_close_cell *c) {
+    int i, k;
+    for (i = 0; i < 4; i++) {
+        const double *a = c->corners[gxp_outward[i][0]], *b = c->corners[gxp_outward[i][1]],
+                     *d = c->corners[gxp_outward[i][2]];
+        double u[3], v[3], w[3], normal[3];
+        for (k = 0; k < 3; k++) {
+            u[k] = b[k] - a[k];
+            v[k] = d[k] - a[k];
+            w[k] = c->corners[i][k] - a[k];
+        }
+        gxp_cross(normal, u, v);
+        c->heights[i] = fabs(gxp_dot(normal, w)) / sqrt(gxp_dot(normal, normal));
+    }
+    c->has_heights = 1;
+}
+
+/* A square of a distance that is smaller than another one by more than this factor is so for sure. */
+#define GXP_SURELY 0.999999
+
+/* A triangle that bounds a cell: is it nearer to the place than what was found before? face: see gxp_close_facet */
+static void gxp_seek_triangle(uint32_t index, const double x[3], const double weights[4], const double *a,
+                              const double *b, const double *c, uint32_t face, gxp_sight *sight) {
+    double nearest[3];
+    const double square = gxp_onto_triangle(x, a, b, c, nearest);
+    if (square >= sight->square) return;
+    sight->index = index;
+    sight->square = square;
+    sight->wall = face == 4;
+    memcpy(sight->nearest, nearest, sizeof nearest);
+    memcpy(sight->weights, weights, sizeof sight->weights);
+}
+
+/* A cell that does not contain the place: is its material nearer than what was found before? The nearest point of its
+   surface is on a wall, or on a face whose outer side the place is on. */
+static gx_result gxp_seek_outside(gx_blade *blade, uint32_t index, const double x[3], gxp_sight *sight) {
     gxp_close_cell *c = &blade->near.cells[index];
-    uint32_t count = 4, i;
-    int n, k;
-    if (c->stretch < GXP_FLAT_MAP) return GX_OK; /* flat or inverted: outside is inside by its map */
+    double weights[4], beyond[5];
+    uint32_t i;
+    if (gxp_square_to_box(x, c->low, c->high) >= sight->square) return GX_OK;
+    if (c->stretch < GXP_FLAT_MAP || c->stretch > GXP_BLOWN_MAP) return GX_OK; /* inverted: outside is inside */
+    gxp_tet_weights(c->corners, x, weights);
+    if (!c->has_heights) gxp_measure_heights(c);
+    beyond[4] = 0;
+    for (i = 0; i < 4; i++) {
+        const double off = weights[i] * c->heights[i];
+        beyond[i] = weights[i] < 0 ? GXP_SURELY * off * off : HUGE_VAL;
+        if (weights[i] < 0 && beyond[i] >= sight->square) return GX_OK;
+    }
     if (c->is_divided && !c->has_facets) {
         const gx_result result = gxp_list_facets(blade, c);
         if (result != GX_OK) return result;
     }
-    if (c->is_divided) count = c->facet_count;
-    for (i = 0; i < count; i++) {
-        const double *lambda[3];
-        double corner[3][3], nearest[3], square;
-        if (!c->is_divided && weights[i] >= 0) continue;
-        for (n = 0; n < 3; n++)
-            lambda[n] =
-                c->is_divided ? blade->near.lambdas + 12 * (size_t)(c->facets + i) + 4 * n : own[gxp_outward[i][n]];
-        for (n = 0; n < 3; n++)
-            for (k = 0; k < 3; k++)
-                corner[n][k] = lambda[n][0] * c->corners[0][k] + lambda[n][1] * c->corners[1][k] +
-                               lambda[n][2] * c->corners[2][k] + lambda[n][3] * c->corners[3][k];
-        square = gxp_onto_triangle(x, corner[0], corner[1], corner[2], nearest);
-        if (square >= sight->square) continue;
-        sight->index = index;
-        sight->square = square;
-        sight->wall = 1;
-        for (n = 0; n < 4; n++)
-            if (!(lambda[0][n] > 0) && !(lambda[1][n] > 0) && !(lambda[2][n] > 0)) sight->wall = 0;
-        memcpy(sight->nearest, nearest, sizeof nearest);
-        memcpy(sight->weights, weights, sizeof sight->weights);
+    for (i = 0; i < 4 && !c->is_divided; i++)
+        if (beyond[i] < sight->square)
+            gxp_seek_triangle(index, x, weights, c->corners[gxp_outward[i][0]], c->corners[gxp_outward[i][1]],
+                              c->corners[gxp_outward[i][2]], i, sight);
+    for (i = 0; i < c->facet_count && c->is_divided; i++) {
+        const gxp_close_facet *f = &blade->near.facets[c->facets + i];
+        if (beyond[f->face] < sight->square)
+            gxp_seek_triangle(index, x, weights, f->corners[0], f->corners[1], f->corners[2], f->face, sight);
     }
     return GX_OK;
 }
 
-static gx_result gxp_seek_at(gx_blade *blade, uint32_t index, const double x[3], gxp_sight *sight) {
+/* Does a cell contain the place? Then it is found. */
+static gx_result gxp_seek_inside(gx_blade *blade, uint32_t index, const double x[3], gxp_sight *sight) {
     gxp_close_cell *c = &blade->near.cells[index];
     double weights[4];
     int own = 0;
     gx_result result = GX_OK;
-    if (gxp_square_to_box(x, c->low, c->high) >= sight->square) return GX_OK;
+    if (gxp_square_to_box(x, c->low, c->high) > 0) return GX_OK;
     if (fabs(c->stretch) < GXP_FLAT_MAP || fabs(c->stretch) > GXP_BLOWN_MAP) return GX_OK;
     gxp_tet_weights(c->corners, x, weights);
     if (weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0 && weights[3] >= 0)
         result = gxp_is_own_part(blade->body, c, weights, &own);
-    if (!own && result == GX_OK) return gxp_seek_outside(blade, index, x, weights, sight);
+    if (!own || result != GX_OK) return result;
     sight->index = index;
     sight->square = 0;
     sight->wall = 0;
     memcpy(sight->nearest, x, sizeof sight->nearest);
     memcpy(sight->weights, weights, sizeof sight->weights);
-    return result;
+    return GX_OK;
 }
 
 /* Finds the cell of a layer that contains a place, or else the nearest one. */
 static gx_result gxp_seek(gx_blade *blade, uint32_t layer, const double x[3], gxp_sight *sight) {
     const gxp_vicinity *near = &blade->near;
     const double along = x[near->axis];
+    const int go_on = blade->last_sight < near->count && near->cells[blade->last_sight].layer == layer;
     uint32_t low = near->layer_start.data[layer], high = near->layer_start.data[layer + 1], first = low, end = high, i;
     gx_result result = GX_OK;
     sight->index = GXP_NONE;
     sight->square = HUGE_VAL;
-    if (blade->last_sight < near->count && near->cells[blade->last_sight].layer == layer)
-        result = gxp_seek_at(blade, blade->last_sight, x, sight);
+    if (go_on) result = gxp_seek_inside(blade, blade->last_sight, x, sight);
     while (low < high) {
         const uint32_t middle = low + (high - low) / 2;
         if (near->cells[GXP_SECOND(near->order.data[middle])].low[near->axis] <= along)
@@ -10724,15 +10776,21 @@ static gx_result gxp_seek(gx_blade *blade, uint32_t layer, const double x[3], gx
     }
     for (i = low; i > first && result == GX_OK && sight->square > 0; i--) {
         const uint32_t index = GXP_SECOND(near->order.data[i - 1]);
+        if (along - near->cells[index].low[near->axis] > near->widest) break;
+        result = gxp_seek_inside(blade, index, x, sight);
+    }
+    if (go_on && result == GX_OK && sight->square > 0) result = gxp_seek_outside(blade, blade->last_sight, x, sight);
+    for (i = low; i > first && result == GX_OK && sight->square > 0; i--) {
+        const uint32_t index = GXP_SECOND(near->order.data[i - 1]);
         const double off = along - near->cells[index].low[near->axis] - near->widest;
         if (off > 0 && off * off >= sight->square) break;
-        result = gxp_seek_at(blade, index, x, sight);
+        result = gxp_seek_outside(blade, index, x, sight);
     }
     for (i = low; i < end && result == GX_OK && sight->square > 0; i++) {
         const uint32_t index = GXP_SECOND(near->order.data[i]);
         const double off = near->cells[index].low[near->axis] - along;
         if (off * off >= sight->square) break;
-        result = gxp_seek_at(blade, index, x, sight);
+        result = gxp_seek_outside(blade, index, x, sight);
     }
     return result;
 }
@@ -12906,7 +12964,7 @@ static void gxp_release_blade(gx_blade *b) {
     gxp_release_points(body, &b->from);
     gxp_release_points(body, &b->to);
     gxp_release(a, b->near.cells, b->near.capacity * sizeof *b->near.cells);
-    gxp_release(a, b->near.lambdas, 12 * b->near.lambda_capacity * sizeof *b->near.lambdas);
+    gxp_release(a, b->near.facets, b->near.facet_capacity * sizeof *b->near.facets);
     gxp_release_words(body, &b->near.of_cell);
     gxp_release_words(body, &b->near.of_copy);
     gxp_release_words(body, &b->near.quad_start);
@@ -15070,6 +15128,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_BLOWN_MAP
 #undef GXP_FLAT_MAP
 #undef GXP_CAP
+#undef GXP_SURELY
 #undef GXP_AIR
 #undef GXP_LEAST_ADVANCE
 #undef GXP_CUT_WIDTH
