@@ -58,7 +58,7 @@
  *     a step:                    >>attached >>supports >>model >>step
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
- *     a blade in space:          >>layers >>edges >>fronts >>glances >>strokes >>blade >>contacts >>carve
+ *     a blade in space:          >>layers >>edges >>fronts >>glances >>strokes >>ways >>blade >>contacts >>carve
  *     beginning, end, bytes:     >>create >>hashes >>stream >>scabbard >>save
  *
  * Words. Facet: a polygon inside an element or in an element face, made by cuts. Wall: a facet that a sheet covers.
@@ -11577,9 +11577,9 @@ static gx_result gxp_follow_edge(gx_blade *blade, int finish, gx_blade_report *r
         if (result == GX_OK) result = gxp_zip(blade, &blade->front, &blade->advanced);
     }
     if (result != GX_OK || !(move.most > 0)) return result;
+    if (finish || move.most >= blade->min_advance) return gxp_cut_strip(blade, &blade->advanced, report);
     blade->advance = fmax(blade->advance, move.most);
-    return finish || move.most >= blade->min_advance ? gxp_cut_strip(blade, &blade->advanced, report)
-                                                     : gxp_note_path(blade);
+    return gxp_note_path(blade);
 }
 
 /* A strip reaches cells that are within this share of their size of it, as the body lies now: where strip and layer
@@ -11880,23 +11880,62 @@ static gx_result gxp_start_struck(gx_body *body) {
              : gxp_grow_column(body, &gxp_copy_columns[GXP_STRUCK_COLUMN], 0, body->copies.count);
 }
 
-/* After a move that was worked out and cut nothing: the next ones may be left out. */
+/* After a move that is worked out the next ones may be left out, from gxp_be_ready on. */
 static gx_result gxp_get_ready(gx_blade *blade) {
-    gx_body *body = blade->body;
     gxp_glance *glance = &blade->then.glance;
     const double least = GXP_LEAST_GLANCE * fmin(blade->min_advance, 0.5 * blade->step),
                  most = GXP_BEAD_COURSE * fmin(blade->min_advance, 0.5 * blade->step);
-    gx_result result;
+    const gx_result result = gxp_start_struck(blade->body);
     glance->edge.count = 0;
-    result = gxp_start_struck(body);
     if (result != GX_OK) return result;
     glance->ready = 1;
     glance->travelled = 0;
     glance->room = fmax(fmin(blade->room, GXP_GLANCE_ROOM * blade->step), least);
     glance->course = fmin(fmax(blade->min_advance - blade->advance, least), most);
-    glance->cut = body->cuts.hash;
-    gxp_note_struck(body);
+    glance->cut = blade->body->cuts.hash;
     return GX_OK;
+}
+
+/* Cells have other names after a cut: until then beads have those of their elements in place of them. */
+static void gxp_note_bead_elements(gx_blade *blade) {
+    const gxp_bead_list *beads = &blade->then.glance.beads;
+    uint32_t i;
+    for (i = 0; i < beads->count; i++) beads->data[i].cell = blade->body->cells.data[beads->data[i].cell].element;
+}
+
+/* After the cut: the cell of a bead is that which has its place, or else any of its element's. */
+static void gxp_place_beads(gx_blade *blade) {
+    gx_body *body = blade->body;
+    gxp_bead_list *beads = &blade->then.glance.beads;
+    uint32_t i, n = 0;
+    for (i = 0; i < beads->count; i++) {
+        gxp_bead *bead = &beads->data[n];
+        uint32_t cell, holder = GXP_NONE;
+        *bead = beads->data[i];
+        cell = bead->cell;
+        if (body->cells.data[cell].next == GXP_NONE || gxp_cell_at(body, cell, bead->rest, &holder) != GX_OK)
+            holder = GXP_NONE;
+        while (holder == GXP_NONE && cell != GXP_NONE && !body->cells.data[cell].kept)
+            cell = body->cells.data[cell].next;
+        bead->cell = holder != GXP_NONE ? holder : cell;
+        n += bead->cell != GXP_NONE;
+    }
+    beads->count = n;
+}
+
+/* The blade is ready, with the body as it is now. */
+static void gxp_be_ready(gx_blade *blade) {
+    blade->then.glance.cut = blade->body->cuts.hash;
+    gxp_note_struck(blade->body);
+}
+
+/* Leaves out a move if that may be. */
+static gx_result gxp_try_leaving_out(gx_blade *blade, const double *edge, uint32_t count, int *left_out) {
+    double motion = 0;
+    gxp_verdict verdict = GXP_GLANCE_AWAY;
+    const gx_result result = gxp_judge_move(blade, edge, count, &motion, &verdict);
+    *left_out = result == GX_OK && verdict == GXP_GLANCE_LITTLE;
+    return *left_out ? gxp_leave_out(blade, edge, count, motion) : result;
 }
 
 /* Copies change places between where they are and where they were at the last move. */
@@ -12407,117 +12446,9 @@ static gx_result gxp_keep_members(gx_blade *blade, const double *edge, uint32_t 
     return result;
 }
 
-/* >>blade: the blade's moves --------------------------------------------------------------------------------------- */
-/* gx_blade_move: find the layers, advance their fronts, cut the strips in one transaction, keep the new state. On any
-   error nothing of body or blade has changed. */
-
-/* Coordinates of an edge are at most 2^GXP_EDGE_REACH: squares of distances are finite. */
-#define GXP_EDGE_REACH 110
-
-/* A blade leaves no pieces of less than this share of an element. */
-#define GXP_BLADE_SPECK 1e-3
-
-/* Cuts the body by the surfaces of all layers at once. */
-static gx_result gxp_cut_surfaces(gx_blade *blade, uint32_t kind, gx_blade_report *report, gx_failure *failure) {
-    gx_body *body = blade->body;
-    const uint32_t count = blade->surface_starts.count / 2;
-    uint32_t i;
-    gx_cut_desc desc;
-    gx_result result = gxp_start_words(body, &blade->triangles, blade->corners.count);
-    if (result == GX_OK)
-        result = gxp_reserve(&body->config.allocator, &blade->surfaces, sizeof *blade->surfaces, 0,
-                             &blade->surface_capacity, count);
-    if (result != GX_OK || count == 0) return gxp_end(failure, result);
-    for (i = 0; i < blade->corners.count; i++) blade->triangles.data[i] = i;
-    for (i = 0; i < count; i++) {
-        gx_surface *s = &blade->surfaces[i];
-        const uint32_t *start = blade->surface_starts.data + 2 * (size_t)i;
-        const uint32_t slots_end = i + 1 < count ? start[2] : blade->scope.count,
-                       corners_end = i + 1 < count ? start[3] : blade->corners.count;
-        memset(s, 0, sizeof *s);
-        s->kind = kind;
-        s->scope_slots = blade->scope.data + start[0];
-        s->scope_slot_count = slots_end - start[0];
-        s->vertices = blade->corners.data + 3 * (size_t)start[1];
-        s->vertex_count = corners_end - start[1];
-        s->triangles = blade->triangles.data;
-        s->triangle_count = s->vertex_count / 3;
-        report->triangle_count += s->triangle_count;
-    }
-    memset(&desc, 0, sizeof desc);
-    desc.surfaces = blade->surfaces;
-    desc.surface_count = count;
-    result = gxp_cut_body(body, &desc, kind == GX_SURFACE_SHEET ? GXP_BLADE_SPECK : 0, &report->cut, failure);
-    if (result == GX_OK) return result;
-    gxp_end(failure, result);
-    return result == GX_ERROR_NOT_CLOSED ? gxp_fail(failure, result, "tool.triangles", SIZE_MAX) : result;
-}
-
-/* Blames a point of a blade's first edge that is in the material, unless it may be. */
-static gx_result gxp_check_start(gx_blade *blade, gx_failure *failure) {
-    uint32_t i;
-    if (blade->starts_inside || blade->now.edge.count > 0) return GX_OK;
-    for (i = 0; i < blade->front.count; i++)
-        if (!(blade->front.data[i].distance > 0))
-            return gxp_fail(failure, GX_ERROR_ARGUMENT, "edge", (size_t)ceil(blade->front.data[i].along));
-    return GX_OK;
-}
-
-/* Advances the fronts of all layers to the edge, and lists the strips. */
-static gx_result gxp_advance_layers(gx_blade *blade, const double *before, const double *edge, uint32_t count,
-                                    int finish, gx_blade_report *report, gx_failure *failure) {
-    uint32_t layer;
-    gx_result result = GX_OK;
-    blade->then.layers.count = blade->then.vertices.count = blade->then.points.count = 0;
-    blade->then.glance.beads.count = 0;
-    blade->advance = 0;
-    blade->room = HUGE_VAL;
-    result = gxp_count_heirs(blade);
-    for (layer = 0; layer < blade->near.layer_count && result == GX_OK; layer++) {
-        int begun;
-        result = gxp_begin_layer(blade, layer, before, edge, count, report, &begun);
-        if (result == GX_OK && begun && gxp_check_start(blade, failure) != GX_OK) return GX_ERROR_ARGUMENT;
-        if (result == GX_OK) result = gxp_follow_edge(blade, finish, report);
-        if (result == GX_OK) result = gxp_add_surface(blade, layer, GXP_NONE);
-        if (result == GX_OK) result = gxp_keep_layer(blade);
-    }
-    if (blade->near.layer_count > report->layer_count) report->layer_count = blade->near.layer_count;
-    return gxp_end(failure, result);
-}
-
-/* Flags the fragments of a scope in blade.in_scope. */
-static gx_result gxp_flag_scope(gx_blade *blade, const uint32_t *fragments, size_t count, gx_failure *failure) {
-    gx_body *body = blade->body;
-    size_t i;
-    gx_result result = gxp_update_view(body);
-    if (result == GX_OK) result = gxp_start_words(body, &blade->in_scope, body->view.fragment_count);
-    if (gxp_end(failure, result) != GX_OK) return result;
-    blade->in_scope.count = body->view.fragment_count;
-    memset(blade->in_scope.data, 0, blade->in_scope.count * sizeof *blade->in_scope.data);
-    for (i = 0; i < count; i++) {
-        if (fragments[i] >= body->view.fragment_count) return gxp_fail(failure, GX_ERROR_INDEX, "scope_fragments", i);
-        blade->in_scope.data[fragments[i]] = 1;
-    }
-    return GX_OK;
-}
-
-static gx_result gxp_check_edge(const gx_blade *blade, const double *edge, size_t count, gx_failure *failure) {
-    size_t i;
-    if (edge == NULL) return gxp_refuse(failure, "edge");
-    if (count < 2) return gxp_refuse(failure, "point_count");
-    if (count > INT32_MAX / 4) return gxp_fail(failure, GX_ERROR_LIMIT, "point_count", SIZE_MAX);
-    if (blade->now.edge.count > 0 && blade->now.edge.count != count) return gxp_refuse(failure, "point_count");
-    for (i = 0; i < 3 * count; i++) {
-        if (!gxp_is_finite(edge[i])) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "edge", i / 3);
-        if (fabs(edge[i]) > ldexp(1, GXP_EDGE_REACH)) return gxp_fail(failure, GX_ERROR_RANGE, "edge", i / 3);
-    }
-    return GX_OK;
-}
-
-static void gxp_clear_report(gx_blade_report *report) {
-    memset(report, 0, sizeof *report);
-    report->cut.min_link_ratio = 1;
-}
+/* >>ways: where the edge goes between two moves -------------------------------------------------------------------- */
+/* In: the edge of the last move, and the new one. Out: the way between them, from where the material has carried the
+   old edge to, and in how many steps the edge goes it. Touches the blade's working memory. */
 
 static int gxp_compare_places(const void *a, const void *b) {
     const gxp_front_vertex *v = (const gxp_front_vertex *)a, *w = (const gxp_front_vertex *)b;
@@ -12719,6 +12650,118 @@ static gx_result gxp_go_part(gx_blade *blade, double share, gxp_points *to) {
     return result;
 }
 
+/* >>blade: the blade's moves --------------------------------------------------------------------------------------- */
+/* gx_blade_move: find the layers, advance their fronts, cut the strips in one transaction, keep the new state. On any
+   error nothing of body or blade has changed. */
+
+/* Coordinates of an edge are at most 2^GXP_EDGE_REACH: squares of distances are finite. */
+#define GXP_EDGE_REACH 110
+
+/* A blade leaves no pieces of less than this share of an element. */
+#define GXP_BLADE_SPECK 1e-3
+
+/* Cuts the body by the surfaces of all layers at once. */
+static gx_result gxp_cut_surfaces(gx_blade *blade, uint32_t kind, gx_blade_report *report, gx_failure *failure) {
+    gx_body *body = blade->body;
+    const uint32_t count = blade->surface_starts.count / 2;
+    uint32_t i;
+    gx_cut_desc desc;
+    gx_result result = gxp_start_words(body, &blade->triangles, blade->corners.count);
+    if (result == GX_OK)
+        result = gxp_reserve(&body->config.allocator, &blade->surfaces, sizeof *blade->surfaces, 0,
+                             &blade->surface_capacity, count);
+    if (result != GX_OK || count == 0) return gxp_end(failure, result);
+    for (i = 0; i < blade->corners.count; i++) blade->triangles.data[i] = i;
+    for (i = 0; i < count; i++) {
+        gx_surface *s = &blade->surfaces[i];
+        const uint32_t *start = blade->surface_starts.data + 2 * (size_t)i;
+        const uint32_t slots_end = i + 1 < count ? start[2] : blade->scope.count,
+                       corners_end = i + 1 < count ? start[3] : blade->corners.count;
+        memset(s, 0, sizeof *s);
+        s->kind = kind;
+        s->scope_slots = blade->scope.data + start[0];
+        s->scope_slot_count = slots_end - start[0];
+        s->vertices = blade->corners.data + 3 * (size_t)start[1];
+        s->vertex_count = corners_end - start[1];
+        s->triangles = blade->triangles.data;
+        s->triangle_count = s->vertex_count / 3;
+        report->triangle_count += s->triangle_count;
+    }
+    memset(&desc, 0, sizeof desc);
+    desc.surfaces = blade->surfaces;
+    desc.surface_count = count;
+    result = gxp_cut_body(body, &desc, kind == GX_SURFACE_SHEET ? GXP_BLADE_SPECK : 0, &report->cut, failure);
+    if (result == GX_OK) return result;
+    gxp_end(failure, result);
+    return result == GX_ERROR_NOT_CLOSED ? gxp_fail(failure, result, "tool.triangles", SIZE_MAX) : result;
+}
+
+/* Blames a point of a blade's first edge that is in the material, unless it may be. */
+static gx_result gxp_check_start(gx_blade *blade, gx_failure *failure) {
+    uint32_t i;
+    if (blade->starts_inside || blade->now.edge.count > 0) return GX_OK;
+    for (i = 0; i < blade->front.count; i++)
+        if (!(blade->front.data[i].distance > 0))
+            return gxp_fail(failure, GX_ERROR_ARGUMENT, "edge", (size_t)ceil(blade->front.data[i].along));
+    return GX_OK;
+}
+
+/* Advances the fronts of all layers to the edge, and lists the strips. */
+static gx_result gxp_advance_layers(gx_blade *blade, const double *before, const double *edge, uint32_t count,
+                                    int finish, gx_blade_report *report, gx_failure *failure) {
+    uint32_t layer;
+    gx_result result = GX_OK;
+    blade->then.layers.count = blade->then.vertices.count = blade->then.points.count = 0;
+    blade->then.glance.beads.count = 0;
+    blade->advance = 0;
+    blade->room = HUGE_VAL;
+    result = gxp_count_heirs(blade);
+    for (layer = 0; layer < blade->near.layer_count && result == GX_OK; layer++) {
+        int begun;
+        result = gxp_begin_layer(blade, layer, before, edge, count, report, &begun);
+        if (result == GX_OK && begun && gxp_check_start(blade, failure) != GX_OK) return GX_ERROR_ARGUMENT;
+        if (result == GX_OK) result = gxp_follow_edge(blade, finish, report);
+        if (result == GX_OK) result = gxp_add_surface(blade, layer, GXP_NONE);
+        if (result == GX_OK) result = gxp_keep_layer(blade);
+    }
+    if (blade->near.layer_count > report->layer_count) report->layer_count = blade->near.layer_count;
+    return gxp_end(failure, result);
+}
+
+/* Flags the fragments of a scope in blade.in_scope. */
+static gx_result gxp_flag_scope(gx_blade *blade, const uint32_t *fragments, size_t count, gx_failure *failure) {
+    gx_body *body = blade->body;
+    size_t i;
+    gx_result result = gxp_update_view(body);
+    if (result == GX_OK) result = gxp_start_words(body, &blade->in_scope, body->view.fragment_count);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    blade->in_scope.count = body->view.fragment_count;
+    memset(blade->in_scope.data, 0, blade->in_scope.count * sizeof *blade->in_scope.data);
+    for (i = 0; i < count; i++) {
+        if (fragments[i] >= body->view.fragment_count) return gxp_fail(failure, GX_ERROR_INDEX, "scope_fragments", i);
+        blade->in_scope.data[fragments[i]] = 1;
+    }
+    return GX_OK;
+}
+
+static gx_result gxp_check_edge(const gx_blade *blade, const double *edge, size_t count, gx_failure *failure) {
+    size_t i;
+    if (edge == NULL) return gxp_refuse(failure, "edge");
+    if (count < 2) return gxp_refuse(failure, "point_count");
+    if (count > INT32_MAX / 4) return gxp_fail(failure, GX_ERROR_LIMIT, "point_count", SIZE_MAX);
+    if (blade->now.edge.count > 0 && blade->now.edge.count != count) return gxp_refuse(failure, "point_count");
+    for (i = 0; i < 3 * count; i++) {
+        if (!gxp_is_finite(edge[i])) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "edge", i / 3);
+        if (fabs(edge[i]) > ldexp(1, GXP_EDGE_REACH)) return gxp_fail(failure, GX_ERROR_RANGE, "edge", i / 3);
+    }
+    return GX_OK;
+}
+
+static void gxp_clear_report(gx_blade_report *report) {
+    memset(report, 0, sizeof *report);
+    report->cut.min_link_ratio = 1;
+}
+
 /* A step of a move, from blade.from to blade.to: lists what is to be cut; blade.then is what comes of it. finish: all
    that waits is to be cut. */
 static gx_result gxp_step_blade(gx_blade *blade, const gxp_words *scope, int finish, gx_blade_report *report,
@@ -12784,6 +12827,9 @@ static gx_result gxp_step_along(gx_blade *blade, const double *edge, uint32_t co
     }
 }
 
+/* May moves be left out after one that was worked out just now? It has had one step. */
+static int gxp_may_get_ready(const gx_blade *blade) { return blade->steps == 1 && gxp_is_free(blade); }
+
 /* Works out the move that was left out last, with the body as it was then: the first steps of the present move. */
 static gx_result gxp_make_up(gx_blade *blade, int *begun, gx_blade_report *report, gx_failure *failure) {
     const gxp_points *edge = &blade->now.glance.edge;
@@ -12792,26 +12838,45 @@ static gx_result gxp_make_up(gx_blade *blade, int *begun, gx_blade_report *repor
     result = gxp_refit_near(blade, GXP_NEAR_SLACK, failure);
     if (result == GX_OK) result = gxp_step_along(blade, edge->data, edge->count, NULL, 0, begun, report, failure);
     gxp_swap_struck(blade->body);
+    if (result != GX_OK) return result;
+    if (gxp_may_get_ready(blade) && blade->surface_starts.count == 0)
+        result = gxp_end(failure, gxp_get_ready(blade));
+    else
+        gxp_end_glances(&blade->then.glance);
     if (result == GX_OK) gxp_keep_step(blade, begun);
     return result;
 }
 
-/* Works out a move. make_up: also the last one, which was left out. */
+/* Works out what blade.then has the beginning of: cuts. ready: moves may be left out after it. */
+static gx_result gxp_finish_move(gx_blade *blade, int ready, gx_blade_report *report, gx_failure *failure) {
+    const int cuts = blade->surface_starts.count > 0;
+    gx_result result = GX_OK;
+    if (ready)
+        result = gxp_end(failure, gxp_get_ready(blade));
+    else
+        gxp_end_glances(&blade->then.glance);
+    if (result == GX_OK && ready && cuts) gxp_note_bead_elements(blade);
+    if (result == GX_OK) result = gxp_cut_surfaces(blade, GX_SURFACE_SHEET, report, failure);
+    if (result == GX_OK && ready && cuts) gxp_place_beads(blade);
+    if (result == GX_OK && ready) gxp_be_ready(blade);
+    return result;
+}
+
+/* Works out a move. make_up: also the last one, which was left out; then the present one may be left out in its turn.
+ */
 static gx_result gxp_work_out(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope, int finish,
                               int make_up, gx_blade_report *report, gx_failure *failure) {
-    int begun = 0;
+    int begun = 0, left_out = 0;
+    const int usual = !finish && scope == NULL;
     gx_result result = GX_OK;
     blade->surface_starts.count = blade->corners.count = blade->scope.count = 0;
     if (make_up) result = gxp_make_up(blade, &begun, report, failure);
+    if (result == GX_OK && make_up && usual)
+        result = gxp_end(failure, gxp_try_leaving_out(blade, edge, count, &left_out));
+    if (result == GX_OK && left_out) return GX_OK;
     if (result == GX_OK) result = gxp_refit_near(blade, GXP_NEAR_SLACK, failure);
     if (result == GX_OK) result = gxp_step_along(blade, edge, count, scope, finish, &begun, report, failure);
-    if (result == GX_OK) {
-        if (!finish && scope == NULL && blade->steps == 1 && blade->surface_starts.count == 0 && gxp_is_free(blade))
-            result = gxp_end(failure, gxp_get_ready(blade));
-        else
-            gxp_end_glances(&blade->then.glance);
-    }
-    if (result == GX_OK) result = gxp_cut_surfaces(blade, GX_SURFACE_SHEET, report, failure);
+    if (result == GX_OK) result = gxp_finish_move(blade, usual && gxp_may_get_ready(blade), report, failure);
     if (result == GX_OK)
         gxp_swap_states(&blade->now, &blade->then);
     else if (begun)

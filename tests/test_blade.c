@@ -719,6 +719,28 @@ START_TEST(fine_thrusts) {
 }
 END_TEST
 
+/* The move after one that has cut may be left out: a small thrust there counts too, be it lifted or drawn back at once. */
+START_TEST(thrusts_after_cuts) {
+    const double y = 2.4137;
+    stage s = open_block(4, 1);
+    size_t triangles = 0;
+    int k;
+    for (k = 0; k <= 6; k++) {
+        triangles = s.tally.triangles;
+        move_at(&s, y - 0.3 - 0.6 * (6 - k), 1.8);
+    }
+    ck_assert_uint_gt(s.tally.triangles, triangles);
+    triangles = s.tally.triangles;
+    move_at(&s, y, 1.8);
+    ck_assert_uint_eq(s.tally.triangles, triangles);
+    if (_i / 2 == 1) move_at(&s, -2, 1.8);
+    stage_lift(&s);
+    check_fragments(&s, 1, 0);
+    check_way(&s, y + (_i % 2 == 0 ? 0.13 : 0.27), _i % 2 == 0 ? 3 : 2);
+    stage_close(&s);
+}
+END_TEST
+
 /* Copies that are made while moves are left out, and the body gone back to one of them, go on to the same bits. */
 START_TEST(fine_copies) {
     enum { FROM = 60, COPIES = 9, TO = 110 };
@@ -1186,6 +1208,7 @@ int main(void) {
     tcase_add_loop_test(tests, restored_between_moves, 0, 2);
     tcase_add_loop_test(tests, copies_go_on, 0, 2);
     tcase_add_loop_test(tests, fine_thrusts, 0, 6);
+    tcase_add_loop_test(tests, thrusts_after_cuts, 0, 4);
     tcase_add_test(tests, fine_copies);
     tcase_add_loop_test(tests, fine_cut_between, 0, 3);
     tcase_add_test(tests, fine_blades);
