@@ -719,7 +719,8 @@ START_TEST(fine_thrusts) {
 }
 END_TEST
 
-/* The move after one that has cut may be left out: a small thrust there counts too, be it lifted or drawn back at once. */
+/* The move after one that has cut may be left out: a small thrust there counts too, be it lifted or drawn back at once.
+ */
 START_TEST(thrusts_after_cuts) {
     const double y = 2.4137;
     stage s = open_block(4, 1);
