@@ -619,7 +619,8 @@ GXFEM_API gx_result gx_body_place(const gx_body *body, uint32_t slot, const doub
    coordinates, how far the edge has come in it (its front). A move cuts what lies between the fronts and the edge when
    a front has advanced far enough, or before its path bends away from a straight strip. A partly cut element has no
    mechanical effect, so that waiting costs nothing. The path is known to a tolerance, so that pieces of less than a
-   thousandth of an element are not meant: they stay with the material beside them. */
+   thousandth of an element are not meant, nor are sheets that are thinner than the tolerance: they stay with the
+   material beside them. */
 typedef struct gx_blade gx_blade; /* opaque; belongs to a body, which destroys it at last */
 
 typedef struct gx_blade_desc {
@@ -1351,6 +1352,7 @@ typedef struct gxp_scratch {
     /* >>cells, >>links */
     gxp_keys glue;          /* leaf, leaf across a wall that stays in its cell, see >>specks; ascending */
     gxp_words cluster;      /* cells that hang together, see >>specks */
+    gxp_keys seams;         /* leaf of one of these, leaf across a wall of the cut */
     gxp_words wall_leaves;  /* on both sides of new walls */
     gxp_words cell_leaves;  /* of a cell that is divided */
     gxp_words part_leaves;  /* of one of its connected parts */
@@ -1576,8 +1578,8 @@ static const gxp_column gxp_lists[] = {
     GXP_KEYS(tree.order), GXP_WORDS(tree.met),
     GXP_WORDS(scratch.removed), GXP_KEYS(scratch.removed_of), GXP_WORDS(scratch.pinches), GXP_WORDS(scratch.touched),
     GXP_WORDS(scratch.new_cells),
-    GXP_KEYS(scratch.links), GXP_KEYS(scratch.glue), GXP_WORDS(scratch.cluster), GXP_WORDS(scratch.link_first),
-    GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
+    GXP_KEYS(scratch.links), GXP_KEYS(scratch.glue), GXP_KEYS(scratch.seams), GXP_WORDS(scratch.cluster),
+    GXP_WORDS(scratch.link_first), GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
     GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements),
     GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_cells),
     GXP_WORDS(scratch.seed_leaves), GXP_WORDS(scratch.flooded), GXP_WORDS(scratch.seeded),
@@ -1988,6 +1990,12 @@ static uint64_t gxp_hash_texture(uint64_t hash, const float *texture, size_t cou
 }
 
 static double gxp_dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static void gxp_cross(double r[3], const double a[3], const double b[3]) {
+    r[0] = a[1] * b[2] - a[2] * b[1];
+    r[1] = a[2] * b[0] - a[0] * b[2];
+    r[2] = a[0] * b[1] - a[1] * b[0];
+}
 
 /* Scales n, of any length, to length 1. Returns 0 and leaves unit alone if n is zero or not finite. */
 static int gxp_unit(const double n[3], double unit[3]) {
@@ -4616,8 +4624,9 @@ static gx_result gxp_integrate_removed(gxp_cut *cut) {
 
 /* >>specks: pieces that are too small to be meant ------------------------------------------------------------------ */
 /* In: the new cells of a cut, their links and volumes. Out: pairs of leaves across the cut's walls that must stay in
-   one cell so that no speck comes off; the cut is then made again. Touches scratch. For cuts by blades only, whose
-   sheets are known to a tolerance: a surface of the caller is cut exactly. */
+   one cell so that no speck comes off, and no flake, which is thinner than the tolerance; the cut is then made again.
+   Touches scratch. For cuts by blades only, whose sheets are known to a tolerance: a surface of the caller is cut
+   exactly. */
 
 /* Cuts are made at most so many times. */
 #define GXP_SPECK_TRIES 4
@@ -4633,9 +4642,30 @@ static double gxp_cell_share(const gx_body *body, uint32_t cell) {
     return fabs(body->cells.data[cell].volume) / gxp_element_volume(body, body->cells.data[cell].element);
 }
 
-/* Lists in scratch.cluster the cells that copies join to a cell, until they have too large a share of elements. *share:
-   theirs. */
-static gx_result gxp_list_cluster(gx_body *body, uint32_t start, double below, double *share) {
+/* What pieces of a cut are not meant */
+typedef struct gxp_not_meant {
+    double share;     /* those of less, as a share of an element, summed over their elements */
+    double thickness; /* m: those that are thinner between their walls, and smaller than an element */
+} gxp_not_meant;
+
+/* A piece's cells, as they are listed */
+typedef struct gxp_piece {
+    double share; /* of elements, summed */
+    int is_thin;  /* none of its cells is too thick for a flake */
+} gxp_piece;
+
+/* No section of an element is larger than this square of its size, unless it is a sliver. */
+#define GXP_SECTION 2
+
+/* Adds a cell to a piece. */
+static void gxp_add_to_piece(const gx_body *body, uint32_t cell, const gxp_not_meant *least, gxp_piece *piece) {
+    const double share = gxp_cell_share(body, cell), volume = gxp_element_volume(body, body->cells.data[cell].element);
+    piece->share += share;
+    piece->is_thin &= piece->share < 1 && share * cbrt(volume) < GXP_SECTION * cbrt(36.0) * least->thickness;
+}
+
+/* Lists in scratch.cluster the cells that copies join to a cell, until they are more than a speck, and no flake. */
+static gx_result gxp_list_cluster(gx_body *body, uint32_t start, const gxp_not_meant *least, gxp_piece *piece) {
     gxp_scratch *scratch = &body->scratch;
     uint32_t done, j, cell;
     int k;
@@ -4644,10 +4674,12 @@ static gx_result gxp_list_cluster(gx_body *body, uint32_t start, double below, d
     scratch->stamp++;
     body->cells.stamp[start] = scratch->stamp;
     result = gxp_push(body, &scratch->cluster, start);
-    *share = 0;
-    for (done = 0; done < scratch->cluster.count && *share < below && result == GX_OK; done++) {
+    piece->share = 0;
+    piece->is_thin = least->thickness > 0;
+    for (done = 0; done < scratch->cluster.count && result == GX_OK; done++) {
         const gxp_cell *c = &body->cells.data[scratch->cluster.data[done]];
-        *share += gxp_cell_share(body, scratch->cluster.data[done]);
+        gxp_add_to_piece(body, scratch->cluster.data[done], least, piece);
+        if (!(piece->share < least->share || piece->is_thin)) break;
         for (k = 0; k < 4 && result == GX_OK; k++) {
             const uint32_t copy = c->copies[k], node = body->copies.node[copy];
             for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1] && result == GX_OK; j++) {
@@ -4666,8 +4698,64 @@ static gx_result gxp_list_cluster(gx_body *body, uint32_t start, double below, d
     return result;
 }
 
-/* Finds a leaf of a new cell of the cluster and one across a wall of this cut, of the largest cell that is there. */
-static gx_result gxp_find_neighbour(gx_body *body, uint32_t cell, uint32_t pair[2], double *largest) {
+/* The area of a triangle, its corners by their coordinates in the element with these corners */
+static double gxp_triangle_area(const double corners[12], const double *a, const double *b, const double *c) {
+    double u[3] = {0, 0, 0}, v[3] = {0, 0, 0}, n[3];
+    int i, k;
+    for (i = 0; i < 4; i++)
+        for (k = 0; k < 3; k++) {
+            u[k] += (b[i] - a[i]) * corners[3 * i + k];
+            v[k] += (c[i] - a[i]) * corners[3 * i + k];
+        }
+    gxp_cross(n, u, v);
+    return 0.5 * sqrt(gxp_dot(n, n));
+}
+
+/* Adds the area of a cell's walls. */
+static gx_result gxp_add_walls(gx_body *body, uint32_t cell, double *area) {
+    const gxp_boundary *boundary = &body->scratch.boundary;
+    gxb_complex *cx = body->complex;
+    const uint32_t element = body->cells.data[cell].element;
+    double corners[12];
+    uint32_t leaf, first, count, i;
+    gx_result result = GX_OK;
+    gxp_element_positions(body, element, corners);
+    gxp_clear_boundary(body, 1);
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
+         leaf = body->leaves.data[leaf].next) {
+        result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
+        for (i = 0; i < count && result == GX_OK; i++) {
+            const uint32_t facet = gxp_item(cx, first + i);
+            const gxb_facet *f = gxb_complex_facet(cx, facet);
+            const uint32_t other = f->leaf[f->leaf[0] == leaf];
+            if (f->face != GXB_NONE || (gxp_is_kept(body, other) && body->leaves.data[other].cell == cell)) continue;
+            result = gxp_add_boundary_facet(body, element, facet, 0);
+        }
+    }
+    for (i = 0; i < boundary->triangles.count && result == GX_OK; i += 3) {
+        const uint32_t *t = boundary->triangles.data + i;
+        *area += gxp_triangle_area(corners, boundary->lambdas + 4 * (size_t)t[0], boundary->lambdas + 4 * (size_t)t[1],
+                                   boundary->lambdas + 4 * (size_t)t[2]);
+    }
+    return result;
+}
+
+/* Are the cells of the cluster, which are all of a piece, a flake? */
+static gx_result gxp_is_flake(gx_body *body, double thickness, int *flake) {
+    const gxp_words *cluster = &body->scratch.cluster;
+    double area = 0, volume = 0;
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (i = 0; i < cluster->count && result == GX_OK; i++) {
+        volume += fabs(body->cells.data[cluster->data[i]].volume);
+        result = gxp_add_walls(body, cluster->data[i], &area);
+    }
+    *flake = volume < 0.5 * thickness * area;
+    return result;
+}
+
+/* Lists in scratch.seams the leaves of a new cell of the cluster, each with one across a wall of this cut. */
+static gx_result gxp_list_seams(gx_body *body, uint32_t cell) {
     gxp_scratch *scratch = &body->scratch;
     gxb_complex *cx = body->complex;
     uint32_t leaf, first, count, i;
@@ -4681,42 +4769,88 @@ static gx_result gxp_find_neighbour(gx_body *body, uint32_t cell, uint32_t pair[
             uint32_t next;
             if (f->face != GXB_NONE || !gxp_is_kept(body, other)) continue;
             next = body->leaves.data[other].cell;
-            if (body->cells.stamp[next] == scratch->stamp || gxp_cut_from(body, next) != gxp_cut_from(body, cell) ||
-                !(gxp_cell_share(body, next) > *largest))
-                continue;
-            *largest = gxp_cell_share(body, next);
-            pair[0] = leaf;
-            pair[1] = other;
+            if (body->cells.stamp[next] != scratch->stamp && gxp_cut_from(body, next) == gxp_cut_from(body, cell))
+                result = gxp_push_key(body, &scratch->seams, leaf, other);
         }
     }
     return result;
 }
 
-/* Lists the pair of leaves that holds a new cell, if it is of a speck. */
-static gx_result gxp_hold_speck(gx_body *body, uint32_t cell, double below, uint32_t *found) {
-    gxp_scratch *scratch = &body->scratch;
-    uint32_t pair[2] = {GXP_NONE, GXP_NONE}, i;
-    double share, largest = 0;
-    gx_result result = gxp_list_cluster(body, cell, below, &share);
-    if (result != GX_OK || !(share < below)) return result;
-    for (i = 0; i < scratch->cluster.count && result == GX_OK; i++)
-        result = gxp_find_neighbour(body, scratch->cluster.data[i], pair, &largest);
-    if (result != GX_OK || pair[0] == GXP_NONE) return result;
-    *found += 1;
-    result = gxp_push_key(body, &scratch->glue, pair[0], pair[1]);
-    return result == GX_OK ? gxp_push_key(body, &scratch->glue, pair[1], pair[0]) : result;
+static int gxp_share_copy(const gx_body *body, uint32_t a, uint32_t b) {
+    const uint32_t *c = body->cells.data[a].copies, *d = body->cells.data[b].copies;
+    int i, k, shared = a == b;
+    for (i = 0; i < 4; i++)
+        for (k = 0; k < 4; k++) shared |= c[i] == d[k];
+    return shared;
 }
 
-/* Finds the specks of a cut. below: their shares of elements. *found: 0 if there are none. */
-static gx_result gxp_find_specks(gxp_cut *cut, double below, uint32_t *found) {
+/* The cell on the far side of a seam */
+static uint32_t gxp_across_seam(const gx_body *body, uint32_t seam) {
+    return body->leaves.data[GXP_SECOND(body->scratch.seams.data[seam])].cell;
+}
+
+static void gxp_swap_keys(gxp_keys *keys, uint32_t i, uint32_t k) {
+    const uint64_t key = keys->data[i];
+    keys->data[i] = keys->data[k];
+    keys->data[k] = key;
+}
+
+/* Glues the seams to the largest cell that is across one, and to those that hang together with it along the piece:
+   never two sides, which would be a bridge. */
+static gx_result gxp_glue_seams(gx_body *body) {
+    gxp_scratch *scratch = &body->scratch;
+    const uint32_t count = scratch->seams.count;
+    uint32_t i, done = 0, listed = 1, best = 0;
+    gx_result result = GX_OK;
+    for (i = 1; i < count; i++)
+        if (gxp_cell_share(body, gxp_across_seam(body, i)) > gxp_cell_share(body, gxp_across_seam(body, best)))
+            best = i;
+    gxp_swap_keys(&scratch->seams, 0, best);
+    for (; done < listed; done++) /* those that are glued come first */
+        for (i = listed; i < count; i++)
+            if (gxp_share_copy(body, gxp_across_seam(body, done), gxp_across_seam(body, i)))
+                gxp_swap_keys(&scratch->seams, i, listed++);
+    for (i = 0; i < listed && result == GX_OK; i++) {
+        const uint32_t leaf = GXP_FIRST(scratch->seams.data[i]), other = GXP_SECOND(scratch->seams.data[i]);
+        result = gxp_push_key(body, &scratch->glue, leaf, other);
+        if (result == GX_OK) result = gxp_push_key(body, &scratch->glue, other, leaf);
+    }
+    return result;
+}
+
+/* Lists the leaves that hold the piece of a new cell, if it is a speck or a flake. */
+static gx_result gxp_hold_piece(gx_body *body, uint32_t cell, const gxp_not_meant *least, uint32_t *found) {
+    gxp_scratch *scratch = &body->scratch;
+    gxp_piece piece;
+    int held = 1;
+    uint32_t i;
+    gx_result result = gxp_list_cluster(body, cell, least, &piece);
+    if (result != GX_OK) return result;
+    if (!(piece.share < least->share)) held = piece.is_thin;
+    if (held && !(piece.share < least->share)) result = gxp_is_flake(body, least->thickness, &held);
+    scratch->seams.count = 0;
+    for (i = 0; i < scratch->cluster.count && held && result == GX_OK; i++)
+        result = gxp_list_seams(body, scratch->cluster.data[i]);
+    if (result != GX_OK || scratch->seams.count == 0) return result;
+    *found += 1;
+    return gxp_glue_seams(body);
+}
+
+/* Finds the specks and flakes of a cut. *found: 0 if there are none. A piece is looked at once. */
+static gx_result gxp_find_specks(gxp_cut *cut, const gxp_not_meant *least, uint32_t *found) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
+    const uint32_t before = scratch->stamp;
     uint32_t i, n = 0;
     gx_result result = GX_OK;
     *found = 0;
-    for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++)
-        if (gxp_cell_share(body, scratch->new_cells.data[i]) < below)
-            result = gxp_hold_speck(body, scratch->new_cells.data[i], below, found);
+    for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++) {
+        const uint32_t cell = scratch->new_cells.data[i];
+        gxp_piece piece = {0, 1};
+        gxp_add_to_piece(body, cell, least, &piece);
+        if (body->cells.stamp[cell] <= before && (piece.share < least->share || piece.is_thin))
+            result = gxp_hold_piece(body, cell, least, found);
+    }
     if (result == GX_OK) result = gxp_sort_keys(body, &scratch->glue, 0, scratch->glue.count);
     for (i = 0; i < scratch->glue.count; i++)
         if (i == 0 || scratch->glue.data[i] != scratch->glue.data[i - 1])
@@ -5161,8 +5295,8 @@ static gx_result gxp_make_cut(gxp_cut *cut) {
     return result == GX_OK ? gxp_note_for_skin(cut, first_facet) : result;
 }
 
-/* speck_below: pieces of less than this share of an element stay with the material beside them; 0: none does */
-static gx_result gxp_cut_body(gx_body *body, const gx_cut_desc *desc, double speck_below, gx_cut_report *report,
+/* least: which pieces stay with the material beside them; NULL: none does */
+static gx_result gxp_cut_body(gx_body *body, const gx_cut_desc *desc, const gxp_not_meant *least, gx_cut_report *report,
                               gx_failure *failure) {
     gxp_cut cut;
     gxp_settling settling;
@@ -5179,8 +5313,7 @@ static gx_result gxp_cut_body(gx_body *body, const gx_cut_desc *desc, double spe
     body->scratch.glue.count = 0;
     for (tries = 1;; tries++) {
         result = gxp_make_cut(&cut);
-        if (result == GX_OK && speck_below > 0 && tries < GXP_SPECK_TRIES)
-            result = gxp_find_specks(&cut, speck_below, &found);
+        if (result == GX_OK && least != NULL && tries < GXP_SPECK_TRIES) result = gxp_find_specks(&cut, least, &found);
         if (result != GX_OK || found == 0 || tries == GXP_SPECK_TRIES) break;
         gxp_rollback(&cut);
     }
@@ -5199,7 +5332,7 @@ static gx_result gxp_cut_body(gx_body *body, const gx_cut_desc *desc, double spe
 }
 
 GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report, gx_failure *failure) {
-    return gxp_cut_body(body, desc, 0, report, failure);
+    return gxp_cut_body(body, desc, NULL, report, failure);
 }
 
 /* >>solidify: a sheet made solid ----------------------------------------------------------------------------------- */
@@ -9378,12 +9511,6 @@ static double gxp_bound_distance(const gxp_walk *walk, const gxp_bounds *box) {
 /* Rounding of what follows is far below this share (2^-46) of the sizes of the terms. */
 #define GXP_NEAR_ROUNDING 1.4210854715202004e-14
 
-static void gxp_cross(double r[3], const double a[3], const double b[3]) {
-    r[0] = a[1] * b[2] - a[2] * b[1];
-    r[1] = a[2] * b[0] - a[0] * b[2];
-    r[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 /* If a point of the segment from corner i to corner j is nearer to the origin than *square: sets that and the shares.
  */
 static void gxp_near_segment(double p[3][3], int i, int j, double share[3], double *square) {
@@ -11205,7 +11332,7 @@ static gx_result gxp_came_back(gx_blade *blade, int *is_back) {
         result = gxp_find_rest_cell(blade->body, place, &cell);
         if (cell == GXP_NONE) continue; /* at the surface: nothing is on the way */
         if (gxp_near_sheet(&blade->sheet, place, nearest) > GXP_CUT_WIDTH * v->size) return result;
-        seen++;
+        seen += !(gxp_dot(step, v->ahead) > 0.5); /* onwards: the sheet is ahead of its front, where that is in folds */
     }
     *is_back = seen > 0;
     return result;
@@ -12666,6 +12793,7 @@ static gx_result gxp_cut_surfaces(gx_blade *blade, uint32_t kind, gx_blade_repor
     const uint32_t count = blade->surface_starts.count / 2;
     uint32_t i;
     gx_cut_desc desc;
+    gxp_not_meant least;
     gx_result result = gxp_start_words(body, &blade->triangles, blade->corners.count);
     if (result == GX_OK)
         result = gxp_reserve(&body->config.allocator, &blade->surfaces, sizeof *blade->surfaces, 0,
@@ -12690,7 +12818,9 @@ static gx_result gxp_cut_surfaces(gx_blade *blade, uint32_t kind, gx_blade_repor
     memset(&desc, 0, sizeof desc);
     desc.surfaces = blade->surfaces;
     desc.surface_count = count;
-    result = gxp_cut_body(body, &desc, kind == GX_SURFACE_SHEET ? GXP_BLADE_SPECK : 0, &report->cut, failure);
+    least.share = GXP_BLADE_SPECK;
+    least.thickness = blade->tolerance;
+    result = gxp_cut_body(body, &desc, kind == GX_SURFACE_SHEET ? &least : NULL, &report->cut, failure);
     if (result == GX_OK) return result;
     gxp_end(failure, result);
     return result == GX_ERROR_NOT_CLOSED ? gxp_fail(failure, result, "tool.triangles", SIZE_MAX) : result;
@@ -15200,6 +15330,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_ON_SHEET
 #undef GXP_BLADE_SPECK
 #undef GXP_SPECK_TRIES
+#undef GXP_SECTION
 #undef GXP_CROSSING
 #undef GXP_SHEET_TRIANGLES
 #undef GXP_STRIP_REACH
