@@ -12273,17 +12273,30 @@ static gx_result gxp_join_owned(gx_blade *blade) {
     return result;
 }
 
+/* The part of the layer's front that is beside an owner's, between places on the edge: from a corner to a corner, since
+   strips go from corner to corner, and soft places are off the line between these by rounding. */
+static void gxp_find_beside(const gxp_front_list *front, double from, double to, uint32_t *first, uint32_t *last) {
+    const gxp_front_vertex *v = front->data;
+    uint32_t i = 0, j = front->count;
+    while (i < front->count && v[i].along < from) i++;
+    while (j > 0 && v[j - 1].along > to) j--;
+    while (i > 0 && !v[i - 1].gap && (i == front->count || v[i].soft || v[i].along > from)) i--;
+    while (j < front->count && (j == 0 || (!v[j - 1].gap && (v[j - 1].soft || v[j - 1].along < to)))) j++;
+    *first = i;
+    *last = j;
+}
+
 /* Lists in blade.strip what closes the gap between an owner's front and that of the layer it has flowed into. */
 static gx_result gxp_close_owner(gx_blade *blade, uint32_t owner) {
     const gxp_front_vertex *v = blade->owned.data;
     const uint32_t first = blade->owned_starts.data[owner], end = blade->owned_starts.data[owner + 1];
-    uint32_t i;
+    uint32_t i, from, to;
     gx_result result;
     blade->advanced.count = blade->latest.count = 0;
     result = gxp_append_front(blade->body, &blade->latest, v + first, end - first);
-    for (i = 0; i < blade->front.count && result == GX_OK; i++)
-        if (blade->front.data[i].along >= v[first].along && blade->front.data[i].along <= v[end - 1].along)
-            result = gxp_push_vertex(blade->body, &blade->advanced, &blade->front.data[i]);
+    gxp_find_beside(&blade->front, v[first].along, v[end - 1].along, &from, &to);
+    for (i = from; i < to && result == GX_OK; i++)
+        result = gxp_push_vertex(blade->body, &blade->advanced, &blade->front.data[i]);
     if (result == GX_OK) result = gxp_zip(blade, &blade->latest, &blade->advanced);
     blade->latest.count = 0;
     return result;

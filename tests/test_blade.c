@@ -871,6 +871,43 @@ START_TEST(tool_around_all) {
 }
 END_TEST
 
+/* Down two arms of coarse elements into the root that they share: layers flow into one anywhere in an element. A crack
+   of rounding's width between the strips of the layers and those of the one that they become leaves an element whole.
+ */
+START_TEST(layers_become_one) {
+    static const double slit[9] = {0.45, -9, 2.1, 0.47, 9, 2.1, 0.46, 0.5, 99};
+    const double stride = (_i / 8 + 1) * 0.25, begin = 7.1 + 0.1 * (_i % 8);
+    workload w = grid(1, 1, 7, 5);
+    gx_body *body;
+    gx_blade *blade = NULL;
+    gx_blade_desc desc;
+    wl_surface *sheet = wl_add_surface(&w, 0);
+    gx_view view;
+    int way, i;
+    for (i = 0; i < 3; i++) wl_add_vertex(sheet, slit + 3 * i);
+    wl_add_triangle(sheet, 0, 1, 2);
+    memset(&desc, 0, sizeof desc);
+    desc.min_advance = _i % 2 ? 0.7 : 0;
+    for (way = 0; way < 2; way++) { /* and up out of the root */
+        body = body_of(&w);
+        cut_by(body, &w, 0, 1);
+        ck_assert_int_eq(gx_blade_create(body, &desc, &blade, NULL), GX_OK);
+        for (i = 0; stride * i < 9; i++) {
+            const double down = begin - stride * i, z = way ? 7 - down : down,
+                         edge[6] = {-9, 0.5, z, 9, 0.53, z + 0.05};
+            ck_assert_int_eq(gx_blade_move(blade, edge, 2, NULL, 0, NULL, NULL), GX_OK);
+        }
+        ck_assert_int_eq(gx_blade_lift(blade, NULL, NULL), GX_OK);
+        view = view_of(body);
+        ck_assert_msg(view.fragment_count == 2, "%g from %g, way %d: %zu fragments", stride, begin, way,
+                      view.fragment_count);
+        ck_assert(fabs(view.volume - 7) < 1e-12 && view.fragment_volume[0] > 3);
+        gx_body_destroy(body);
+    }
+    wl_free(&w);
+}
+END_TEST
+
 /* Blades by index: in the order of their creation */
 START_TEST(blades_of_a_body) {
     stage s = open_block(2, 1);
@@ -1246,6 +1283,7 @@ int main(void) {
     tcase_add_test(tests, fine_copies);
     tcase_add_loop_test(tests, fine_cut_between, 0, 3);
     tcase_add_test(tests, fine_blades);
+    tcase_add_loop_test(tests, layers_become_one, 0, 40);
     tcase_add_test(tests, blades_of_a_body);
     tcase_add_test(tests, tool_around_all);
     tcase_add_loop_test(tests, carving, 0, 2);
