@@ -52,7 +52,7 @@
  *     what a body is made of:    >>state >>body >>columns
  *     tools:                     >>memory >>basics >>mesh >>search >>copies >>transaction >>complex >>numbering
  *     a cut:                     >>surfaces >>pinches >>arrange >>solids >>links >>cells >>components >>integrals
- *                                >>specks >>settle >>cut
+ *                                >>sheets >>specks >>settle >>cut
  *     a sheet's thickness:       >>solidify
  *     what is held and whole:    >>anchors >>regions >>grips >>map >>fragments >>motion
  *     a step:                    >>attached >>supports >>model >>step
@@ -92,6 +92,11 @@
 #define GXFEM_SHARED_INCLUDED
 #include <stddef.h>
 #include <stdint.h>
+
+/* cl has neither vectors nor integers of 128 bits of its own: it takes intrinsics, from the compiler's headers. */
+#if defined(_MSC_VER) && !defined(__clang__) && !defined(GXFEM_NO_INTRINSICS) && !defined(GXFEM_INTRINSICS)
+#define GXFEM_INTRINSICS
+#endif
 
 /* With -msimd128 clang before 16 moves a load that fills a vector behind stores to the same address: the headers'
    functions are compiled without vectors then (GXFEM_SCALAR), and not inlined where there are some. */
@@ -204,6 +209,11 @@ typedef struct gx_body_desc {
     /* A share of an element, below 1. A copy follows others if all parts of elements around it are smaller (see
        gx_body_step). 0: 1e-3. 1e-300: none follow, and slivers may be flung away. */
     double support_below;
+    /* In thicknesses of elements, 0 ... 1000. Where material is thinner, its copies carry an affine motion each (are
+       affine), so that sheets bend as they should. Creation and cuts find it, the latter among what they touch; an
+       affine copy stays so. A layer of cubes of five or six elements has a thickness of 0.94; 1 is a good value.
+       0: none, at no cost. Other values: no blades, no gx_body_carve, no gx_body_pick and no gx_body_locate yet */
+    double affine_below;
     gx_allocator allocator;      /* zero: malloc, free, realloc */
     double (*clock)(void *user); /* seconds, for the reports' timings and the steps' budgets; NULL: timings are 0 */
     void *clock_user;
@@ -328,6 +338,12 @@ typedef struct gx_view {
     size_t removed_count;
     const uint32_t *removed_ids; /* removed_count: ids of fragments that the change removed entirely */
     double volume, mass;         /* of the body, m3 and kg */
+    /* copy_count, 1: the copy is affine (gx_body_desc.affine_below). A cell moves a material point X by the sum of
+       N_i (a_i + A_i (X - X_i)) over its copies, with a the displacement, X_i at the copy's node, A = 0 where a copy is
+       not affine. NULL, like the next two, where affine_below is 0 */
+    const uint8_t *copy_affine;
+    const double *affine;      /* copy_count x 9: the columns of A, without unit. Only steps and restores change it */
+    const double *affine_rate; /* copy_count x 9, 1/s */
 } gx_view;
 /* Brings the view up to date. Errors: ARGUMENT, MEMORY, LIMIT (no ids left). */
 GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view, gx_failure *failure /* or NULL */);
@@ -472,18 +488,21 @@ typedef gxs_step_report gx_step_report;
    follow others (RXFEM Eq. 22; gx_body_desc.support_below): each takes the increment of the displacement field of the
    nearest element without such copies. A fragment without such an element is thin everywhere; its parts are then
    compared with its fullest part. It moves as a point if that part is smaller than support_below of its element.
-   Where support_below is 0, it moves as a point if that part is smaller than 1e-9 or if no part reaches a tenth as far
-   as its element.
-   failure.index: a spring, point, plane, pair, anchor, region or copy. The fields "displacement" and "velocity" are
-   those of gx_view. Errors: ARGUMENT, NOT_FINITE, INDEX, LIMIT, MEMORY, STALE (copies of another epoch), RANGE (a
-   number is too large or too small; as for FLAT, an element if field is NULL), FLAT (an element, see gx_body_model),
-   DIVERGED, FREE (GXS_STATIC; a copy of a component that nothing holds). */
+   Affine copies neither follow nor lead, but those of a fragment that moves as a point do. A point with affine copies
+   is moved as the material at its position at rest is. forces act on displacements alone, anchor_forces on A too;
+   targets leave A as it is, poses turn it. Thin sheets that are flung need two or three Newton iterations in steps of
+   games: one lags. Pairs are refused where copies are affine. A cut of such a body makes its model anew. Where
+   support_below is 0, it moves as a point if that part is smaller than 1e-9 or if no part reaches a tenth as far as its
+   element. failure.index: a spring, point, plane, pair, anchor, region or copy. The fields "displacement" and
+   "velocity" are those of gx_view. Errors: ARGUMENT, NOT_FINITE, INDEX, LIMIT, MEMORY, STALE (copies of another epoch),
+   RANGE (a number is too large or too small; as for FLAT, an element if field is NULL), FLAT (an element, see
+   gx_body_model), DIVERGED, FREE (GXS_STATIC; a copy of a component that nothing holds). */
 GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report /* or NULL */,
                                  gx_failure *failure /* or NULL */);
 
-/* Gives the solver's model of the body as it is cut now, for other solvers. Arrays are the body's, valid until its next
-   cut, hold, step or restore. Errors: ARGUMENT, LIMIT, MEMORY; RANGE, FLAT: an element's gradients are beyond doubles
-   (index: element). */
+/* Gives the solver's model of the body as it is cut now, for other solvers. Affine copies have hidden vectors behind
+   all copies, three for each: see gxs_model.affine. Arrays are the body's, valid until its next cut, hold, step or
+   restore. Errors: ARGUMENT, LIMIT, MEMORY; RANGE, FLAT: an element's gradients are beyond doubles (index: element). */
 GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model, gx_failure *failure /* or NULL */);
 
 /* >>drawing -------------------------------------------------------------------------------------------------------- */
@@ -509,7 +528,9 @@ typedef struct gx_skin {
     size_t vertex_count;
     uint32_t vertex_width;         /* copies for which a vertex has room */
     const uint32_t *vertex_copies; /* vertex_count x vertex_width: copies that move it; those of weight 0 stand last */
-    const double *vertex_weights;  /* vertex_count x vertex_width: x = X + sum of weight u over the copies */
+    /* vertex_count x vertex_width: x = X + sum of weight u over the copies; where copies are affine, see
+       gx_view.copy_affine, plus weight A (X - X_i) */
+    const double *vertex_weights;
     /* vertex_count: a name, equal for vertices at the same material point, exactly. Vertices whose copies of weight not
        0 are equal too are one corner of the surface: with corners merged like this it is watertight. */
     const uint32_t *vertex_point;
@@ -582,8 +603,8 @@ GXFEM_API gxs_point gx_hit_point(const gx_hit *hit);
 GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *anchor,
                                   gx_failure *failure /* or NULL */);
 /* Finds the nearest triangle on a ray, the first of equally near ones. Takes a pass over the copies, then no more than
-   the ray meets. Errors: ARGUMENT (also: direction is 0), NOT_FINITE, SEQUENCE (there is no skin, or a cut has been
-   since), MEMORY, LIMIT. */
+   the ray meets. Errors: ARGUMENT (also: direction is 0; "affine_below": a copy is affine), NOT_FINITE, SEQUENCE (there
+   is no skin, or a cut has been since), MEMORY, LIMIT. */
 GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit,
                                  gx_failure *failure /* or NULL */);
 
@@ -598,15 +619,15 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
    the nearest point of the body's surface: distance is above 0. The first call makes a tree of boxes; each takes a pass
    over the copies, and the first after a cut lists the cells. Many points are faster in one call than in many.
    points: count x 3, m, in space. hits: room for count. After an error hits mean nothing.
-   Errors: ARGUMENT, NOT_FINITE (a point, or a copy's displacement), RANGE (likewise: 2^128 or more), EMPTY (all
-   material is removed), LIMIT, MEMORY. */
+   Errors: ARGUMENT (also "affine_below": a copy is affine), NOT_FINITE (a point, or a copy's displacement), RANGE
+   (likewise: 2^128 or more), EMPTY (all material is removed), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_body_locate(gx_body *body, const double *points, size_t count, gx_hit *hits,
                                    gx_failure *failure /* or NULL */);
 /* Finds all cells that contain a point, by slot: several where pieces overlap, and on faces and walls. *count: how many
    there are, also after CAPACITY; 0 is no error. Errors: as above, CAPACITY (capacity is below *count). */
 GXFEM_API gx_result gx_body_locate_all(gx_body *body, const double point[3], gx_hit *hits, size_t capacity,
                                        size_t *count, gx_failure *failure /* or NULL */);
-/* Gives where a cell has a material point; outside of its element, where its affine map, extended, would have it. slot:
+/* Gives where a cell has a material point; outside of its element, where its map, extended, would have it. slot:
    of a hit, below gx_view.slot_count. It names a cell for good; where a cut divides the cell, one part keeps it.
    Errors: ARGUMENT, NOT_FINITE (material, or a copy's displacement), RANGE (likewise), INDEX (slot), EMPTY (slot: the
    cell was removed). */
@@ -649,9 +670,9 @@ GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index);
    of an element, 8 for each element of the body's length at most. A move that changes little is remembered and worked
    out later, before the path bends. edge: point_count x 3, in space, m; as many points at
    each move until the blade is lifted, 2 or more; ends may be 10^12 elements away. scope: fragments that alone are cut,
-   below gx_view.fragment_count; count 0: all. On an error body and blade are as they were. Errors: ARGUMENT (also: the
-   first edge is inside the material and starts_inside is 0, index: point), INDEX, NOT_FINITE and RANGE (edge, or
-   "displacement", index: copy), LIMIT, MEMORY. */
+   below gx_view.fragment_count; count 0: all. On an error body and blade are as they were. Errors: ARGUMENT (also:
+   gx_body_desc.affine_below is not 0; the first edge is inside the material and starts_inside is 0, index: point),
+   INDEX, NOT_FINITE and RANGE (edge, or "displacement", index: copy), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t point_count,
                                   const uint32_t *scope_fragments, size_t scope_fragment_count,
                                   gx_blade_report *report /* or NULL */, gx_failure *failure /* or NULL */);
@@ -679,8 +700,8 @@ GXFEM_API gx_result gx_blade_contacts(gx_blade *blade, gx_blade_contact *contact
 /* Removes the material that a closed tool in space covers now (a drill, a punch), from each piece where it meets the
    tool. tool: vertices in space, m; kind and scope_slots are not read. Its triangles are divided where elements
    are smaller.
-   Errors: as gx_body_cut; a field of the tool reads "tool.vertices"; NOT_FINITE and RANGE also of "displacement"
-   (index: copy). */
+   Errors: as gx_body_cut, and ARGUMENT ("affine_below" is not 0); a field of the tool reads "tool.vertices"; NOT_FINITE
+   and RANGE also of "displacement" (index: copy). */
 GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_report *report /* or NULL */,
                                   gx_failure *failure /* or NULL */);
 
@@ -789,6 +810,7 @@ typedef struct gxp_config {
     void *clock_user;
     double support_below;                          /* as given */
     double follow_below, speck_below, speck_reach; /* see >>supports */
+    double affine_below;                           /* see >>sheets */
 } gxp_config;
 
 typedef struct gxp_box { /* tree node; count 0: children first, first+1 */
@@ -811,6 +833,7 @@ typedef struct gxp_mesh {
     uint32_t *element_materials; /* element_count */
     double *sizes;               /* element_count: cube roots of six times the volumes, m; NULL: no blade has asked */
     double mean_size, largest_size;
+    double affine_length; /* m, about an element's size; 0 where affine_below is 0 */
     uint32_t box_count;
     uint32_t edge_count, edge_capacity[1];
     uint8_t *edge_pinched; /* edge_count: elements around it meet in the edge only */
@@ -865,7 +888,7 @@ typedef struct gxp_leaves { /* beside the leaves of the complex */
 } gxp_leaves;
 
 typedef struct gxp_copies {
-    uint32_t count, capacity[13];
+    uint32_t count, capacity[18];
     uint32_t *node;
     double *displacement, *velocity; /* x 3 */
     double *rest_time;               /* s */
@@ -877,6 +900,11 @@ typedef struct gxp_copies {
     double *seen;       /* displacement when the tree was last refitted, x 3; from the first use of the tree on */
     double *struck;     /* displacement at the last move of the blade that may leave out moves, x 3 */
     double previous_dt; /* s, of the step that history[0] and [1] are from; 0: there is none */
+    /* There where affine_below is above 0: is the copy affine? The columns of its A and of A's rate, 0 if it is not;
+       both a step ago, if history[0] and [1] are */
+    uint8_t *affine;
+    double *linear, *linear_rate, *linear_history[2]; /* x 9 */
+    int bends;                                        /* a copy is affine, or was when the flags were read */
 } gxp_copies;
 
 typedef struct gxp_surface_record {
@@ -1000,6 +1028,20 @@ typedef struct gxp_snapshot {
     uint32_t stale; /* a cut has been since */
 } gxp_snapshot;
 
+/* Affine copies as the solver's model has them. Their hidden vectors stand behind all copies, three for each. */
+typedef struct gxp_hidden {
+    gxp_words copies; /* affine copies of the model, ascending. Those of specks are none: a speck moves as a point */
+    gxp_words first;  /* vectors of the model: gxs_model.affine; empty if copies is */
+    uint8_t *held;    /* vectors of the model */
+    uint8_t *plain;   /* by copy, while the model is made: 1: part of a speck */
+    uint32_t held_capacity, plain_capacity;
+    double *state; /* of a step: displacement, velocity, both a step ago, x 3 and by vector, then rest times */
+    uint32_t state_capacity;
+    gxp_words span_copies; /* of a step: spans of its springs and points, one after the other */
+    double *span_weights;
+    uint32_t span_capacity;
+} gxp_hidden;
+
 /* The solver's model agrees with the body, or did before the last cuts, or must be made whole. */
 typedef enum gxp_model_state { GXP_MODEL_KNOWN, GXP_MODEL_CHANGED, GXP_MODEL_STALE } gxp_model_state;
 
@@ -1033,6 +1075,12 @@ typedef struct gxp_attached { /* of a step: what it has at anchors and regions, 
     double *targets; /* copies x 3, m: of held copies */
     uint32_t spring_capacity, point_capacity, pair_capacity, weight_capacity, force_capacity, target_capacity;
 } gxp_attached;
+
+/* Material around a copy or cell: integrals over cells, without density, and over the elements they are in */
+typedef struct gxp_bulk {
+    double volume, first[3], second[6]; /* m3, m4, m5: of 1, x, x x^T, less the mesh's lower corner */
+    double whole, shape[6];             /* of whole elements: volume, volume x covariance */
+} gxp_bulk;
 
 /* The key of a vertex of the skin: the name of a point of the complex, four names in ascending order, a group. On the
    outer surface the names are slots and the group is 0. On a face of a cut they are copies; the group is the surface
@@ -1313,9 +1361,6 @@ enum {
     GXP_BOX_STALE = 2  /* of a cluster: its leaves' boxes are older than its own */
 };
 
-/* --- working memory of one call. No contents last to the next call; the memory stays, so that a cut as large as the
-   last one allocates nothing. --- */
-
 /* The boundary of a cell or leaf, as triangles in barycentric coordinates of its element */
 typedef struct gxp_boundary {
     gxp_words points; /* of the complex */
@@ -1365,6 +1410,13 @@ typedef struct gxp_scratch {
     gxp_words face_facets;     /* of an element's face */
     /* >>integrals, >>vertices */
     gxp_boundary boundary;
+    /* >>sheets */
+    gxp_words sheet_cells; /* that may have become thin */
+    gxp_words bulk_of;     /* by copy: its place in bulks, or GXP_NONE */
+    gxp_words bulk_met;    /* by copy: the last walk that has met it */
+    gxp_words bent;        /* copies that become affine; some more than once */
+    gxp_bulk *bulks;
+    uint32_t bulk_count, bulk_capacity;
 } gxp_scratch;
 
 /* Divided by lifetime. Each array is listed in gxp_tables or gxp_lists, by which it grows and is released. */
@@ -1383,6 +1435,7 @@ struct gx_body {
     gxp_view view;
     gxp_snapshot snapshot;
     gxp_model model;
+    gxp_hidden hidden;
     gxp_attached attached;
     gxp_skin skin;
     gx_blade *blades; /* list through next */
@@ -1403,7 +1456,8 @@ enum {
     GXP_UNDONE = 8,   /* rows are put back when a cut fails */
     GXP_CLEARED = 16, /* new rows are 0 */
     GXP_LATER = 32,   /* NULL until it is needed */
-    GXP_STROKE = 64   /* saved and hashed while a blade may leave out moves */
+    GXP_STROKE = 64,  /* saved and hashed while a blade may leave out moves */
+    GXP_AFFINE = 128  /* saved and hashed if the body can have affine copies */
 };
 
 /* Offsets in gx_body: of the pointer, of the number of entries that there is room for; bytes of an entry */
@@ -1461,13 +1515,20 @@ static const gxp_column gxp_copy_columns[] = {
     GXP_COLUMN(copies, history[2],   capacity,  9, 3 * sizeof(double), GXP_LATER),
     GXP_COLUMN(copies, history[3],   capacity, 10, 3 * sizeof(double), GXP_LATER),
     GXP_COLUMN(copies, seen,         capacity, 11, 3 * sizeof(double), GXP_LATER),
-    GXP_COLUMN(copies, struck,       capacity, 12, 3 * sizeof(double), GXP_STROKE | GXP_LATER)};
+    GXP_COLUMN(copies, struck,       capacity, 12, 3 * sizeof(double), GXP_STROKE | GXP_LATER),
+    GXP_COLUMN(copies, affine,       capacity, 13, sizeof(uint8_t), GXP_AFFINE | GXP_LATER),
+    GXP_COLUMN(copies, linear,       capacity, 14, 9 * sizeof(double), GXP_AFFINE | GXP_LATER),
+    GXP_COLUMN(copies, linear_rate,  capacity, 15, 9 * sizeof(double), GXP_AFFINE | GXP_LATER),
+    GXP_COLUMN(copies, linear_history[0], capacity, 16, 9 * sizeof(double), GXP_AFFINE | GXP_LATER),
+    GXP_COLUMN(copies, linear_history[1], capacity, 17, 9 * sizeof(double), GXP_AFFINE | GXP_LATER)};
 enum { /* places in the lists above */
     GXP_TEXTURE_COLUMN = 3,
     GXP_SIZE_COLUMN = 4,
     GXP_FIRST_HISTORY = 7,
     GXP_SEEN_COLUMN = 11,
-    GXP_STRUCK_COLUMN = 12
+    GXP_STRUCK_COLUMN = 12,
+    GXP_FIRST_AFFINE = 13,
+    GXP_AFFINE_COLUMNS = 5
 };
 static const gxp_column gxp_surface_columns[] = {
     GXP_COLUMN(cuts, surfaces, surface_capacity, 0, sizeof(gxp_surface_record), GXP_TOPOLOGY)};
@@ -1555,6 +1616,10 @@ static const gxp_column gxp_lists[] = {
     GXP_WORDS(view.indices), GXP_WORDS(view.copy_fragment), GXP_WORDS(view.fragment_number),
     GXP_WORDS(view.splits), GXP_WORDS(view.split_cells), GXP_WORDS(view.split_parents),
     GXP_WORDS(model.changed), GXP_WORDS(model.thin),
+    GXP_WORDS(hidden.copies), GXP_WORDS(hidden.first), GXP_LIST(hidden.held, hidden.held_capacity, 1),
+    GXP_LIST(hidden.plain, hidden.plain_capacity, 1),
+    GXP_LIST(hidden.state, hidden.state_capacity, sizeof(double)), GXP_WORDS(hidden.span_copies),
+    GXP_LIST(hidden.span_weights, hidden.span_capacity, sizeof(double)),
     GXP_LIST(attached.springs, attached.spring_capacity, sizeof(gxs_spring)),
     GXP_LIST(attached.points, attached.point_capacity, sizeof(gxs_point)),
     GXP_LIST(attached.pairs, attached.pair_capacity, sizeof(gxs_pair)),
@@ -1589,7 +1654,9 @@ static const gxp_column gxp_lists[] = {
     GXP_WORDS(scratch.taken), GXP_WORDS(scratch.face_facets),
     GXP_WORDS(scratch.boundary.points), GXP_WORDS(scratch.boundary.slots), GXP_WORDS(scratch.boundary.triangles),
     GXP_WORDS(scratch.boundary.facets),
-    GXP_LIST(scratch.boundary.lambdas, scratch.boundary.lambda_capacity, 4 * sizeof(double))};
+    GXP_LIST(scratch.boundary.lambdas, scratch.boundary.lambda_capacity, 4 * sizeof(double)),
+    GXP_WORDS(scratch.sheet_cells), GXP_WORDS(scratch.bulk_of), GXP_WORDS(scratch.bulk_met), GXP_WORDS(scratch.bent),
+    GXP_LIST(scratch.bulks, scratch.bulk_capacity, sizeof(gxp_bulk))};
 /* clang-format on */
 
 /* >>memory: allocation, growing arrays ----------------------------------------------------------------------------- */
@@ -2354,6 +2421,34 @@ static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_
 /* The copy of a node that moves the cell */
 static uint32_t gxp_copy_of(const gx_body *body, uint32_t cell, uint32_t node) {
     return body->cells.data[cell].copies[gxp_local_node(body, body->cells.data[cell].element, node)];
+}
+
+/* Walks through the cells that a copy moves. */
+typedef struct gxp_around {
+    uint32_t copy, at, cell;
+} gxp_around;
+
+static gxp_around gxp_around_copy(const gx_body *body, uint32_t copy) {
+    gxp_around around;
+    around.copy = copy;
+    around.at = body->mesh.node_start[body->copies.node[copy]];
+    around.cell = GXP_NONE;
+    return around;
+}
+
+/* The next cell. Returns 0 if there are no more. */
+static int gxp_next_around(const gx_body *body, gxp_around *around) {
+    const uint32_t copy = around->copy, end = body->mesh.node_start[body->copies.node[copy] + 1];
+    for (;;) {
+        const gxp_cell *cell;
+        if (around->cell != GXP_NONE) around->cell = body->cells.data[around->cell].next;
+        if (around->cell == GXP_NONE && around->at == end) return 0;
+        if (around->cell == GXP_NONE) around->cell = body->mesh.node_elements[around->at++];
+        cell = &body->cells.data[around->cell];
+        if (cell->kept &&
+            (cell->copies[0] == copy || cell->copies[1] == copy || cell->copies[2] == copy || cell->copies[3] == copy))
+            return 1;
+    }
 }
 
 /* The cell of a slot, or GXP_NONE if its row is gone. */
@@ -4622,6 +4717,238 @@ static gx_result gxp_integrate_removed(gxp_cut *cut) {
     return result;
 }
 
+/* >>sheets: what is thinner than its elements ---------------------------------------------------------------------- */
+/* In: the cells of a cut, with their copies and masses. Out: the copies that become affine. A cell is thin if in some
+   direction the material around it varies less, and in another one does not, than affine_below elements in a row would:
+   a chip that is small in all directions does not bend. That material is counted copy by copy, over the copies of all
+   cells that share a copy with the cell, so that a slice beside a thick part is not thin. It is compared with the
+   elements themselves, so that a plate of flat elements is as thin as one of cubes. Touches working memory; a commit
+   flags the copies. */
+
+/* Variance of elements in a row, as a multiple of the mean variance of one. Unit cubes of five or six elements have
+   1/24 along each axis, and a layer of them 1/12 across. So a layer has a thickness of sqrt(2 / 2.25) = 0.94, off the
+   usual 1 by enough that rounding does not decide. */
+#define GXP_ELEMENT_SPREAD 2.25
+
+/* sum += factor x x^T */
+static void gxp_add_square(const double x[3], double factor, double sum[6]) {
+    sum[0] += factor * x[0] * x[0];
+    sum[1] += factor * x[0] * x[1];
+    sum[2] += factor * x[0] * x[2];
+    sum[3] += factor * x[1] * x[1];
+    sum[4] += factor * x[1] * x[2];
+    sum[5] += factor * x[2] * x[2];
+}
+
+static void gxp_add_bulk(const gxp_bulk *from, gxp_bulk *sum) {
+    int k;
+    sum->volume += from->volume;
+    sum->whole += from->whole;
+    for (k = 0; k < 3; k++) sum->first[k] += from->first[k];
+    for (k = 0; k < 6; k++) {
+        sum->second[k] += from->second[k];
+        sum->shape[k] += from->shape[k];
+    }
+}
+
+/* Adds a cell and its element. sum_ij m_ij x_i x_j^T from the mass block: its diagonal less what pairs of corners lack.
+ */
+static void gxp_add_cell_bulk(const gx_body *body, const gxp_cell *cell, gxp_bulk *bulk) {
+    static const uint8_t at[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+    const double density = gxp_density(body, cell->element), whole = gxp_element_volume(body, cell->element);
+    const double *low = body->mesh.boxes[0].low;
+    double x[12], middle[3];
+    int i, j, k;
+    gxp_element_positions(body, cell->element, x);
+    for (k = 0; k < 3; k++) {
+        middle[k] = (x[k] + x[3 + k] + x[6 + k] + x[9 + k]) / 4;
+        for (i = 0; i < 4; i++) x[3 * i + k] -= low[k];
+        middle[k] -= low[k];
+    }
+    for (i = 0; i < 4; i++) {
+        double mean[3] = {0, 0, 0}, way[3];
+        for (j = 0; j < 4; j++) {
+            const double share = cell->mass[at[i][j]] / density;
+            bulk->volume += share;
+            for (k = 0; k < 3; k++) mean[k] += share * x[3 * j + k];
+        }
+        for (k = 0; k < 3; k++) {
+            bulk->first[k] += mean[k];
+            way[k] = x[3 * i + k] - middle[k];
+        }
+        bulk->second[0] += x[3 * i] * mean[0];
+        bulk->second[1] += x[3 * i] * mean[1];
+        bulk->second[2] += x[3 * i] * mean[2];
+        bulk->second[3] += x[3 * i + 1] * mean[1];
+        bulk->second[4] += x[3 * i + 1] * mean[2];
+        bulk->second[5] += x[3 * i + 2] * mean[2];
+        gxp_add_square(way, whole / 20, bulk->shape);
+    }
+    bulk->whole += whole;
+}
+
+static int gxp_is_definite(const double a[6]) {
+    const double minor = a[0] * a[3] - a[1] * a[1];
+    return a[0] > 0 && minor > 0 && minor * a[5] - a[0] * a[4] * a[4] + 2 * a[1] * a[2] * a[4] - a[3] * a[2] * a[2] > 0;
+}
+
+/* 1: thinner than `below` elements in a row, in some direction; 2: in all directions; 0: in none */
+static int gxp_thinness(const gxp_bulk *bulk, double below) {
+    static const uint8_t row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
+    double more[6], less[6];
+    int k;
+    if (!(bulk->volume > 0) || !(bulk->whole > 0)) return 0;
+    for (k = 0; k < 6; k++) {
+        more[k] = bulk->second[k] / bulk->volume -
+                  bulk->first[row[k]] / bulk->volume * (bulk->first[column[k]] / bulk->volume) -
+                  GXP_ELEMENT_SPREAD * below * below * bulk->shape[k] / bulk->whole;
+        less[k] = -more[k];
+    }
+    return gxp_is_definite(more) ? 0 : gxp_is_definite(less) ? 2 : 1;
+}
+
+/* *bulk: what is around a copy. It is found once in a call; the pointer is good until the next call. */
+static gx_result gxp_copy_bulk(gx_body *body, uint32_t copy, const gxp_bulk **bulk) {
+    gxp_scratch *scratch = &body->scratch;
+    gxp_around around = gxp_around_copy(body, copy);
+    if (scratch->bulk_of.data[copy] == GXP_NONE) {
+        const gx_result result = gxp_reserve(&body->config.allocator, &scratch->bulks, sizeof *scratch->bulks,
+                                             scratch->bulk_count, &scratch->bulk_capacity, 1);
+        if (result != GX_OK) return result;
+        memset(&scratch->bulks[scratch->bulk_count], 0, sizeof *scratch->bulks);
+        while (gxp_next_around(body, &around))
+            gxp_add_cell_bulk(body, &body->cells.data[around.cell], &scratch->bulks[scratch->bulk_count]);
+        scratch->bulk_of.data[copy] = scratch->bulk_count++;
+    }
+    *bulk = &scratch->bulks[scratch->bulk_of.data[copy]];
+    return GX_OK;
+}
+
+/* What is around all copies of the cells that share a copy with the cell. walk: names it in bulk_met */
+static gx_result gxp_cell_bulk(gx_body *body, uint32_t cell, uint32_t walk, gxp_bulk *sum) {
+    uint32_t *met = body->scratch.bulk_met.data;
+    gx_result result = GX_OK;
+    int i, k;
+    memset(sum, 0, sizeof *sum);
+    for (i = 0; i < 4; i++) {
+        gxp_around around = gxp_around_copy(body, body->cells.data[cell].copies[i]);
+        while (result == GX_OK && gxp_next_around(body, &around))
+            for (k = 0; k < 4 && result == GX_OK; k++) {
+                const uint32_t copy = body->cells.data[around.cell].copies[k];
+                const gxp_bulk *bulk;
+                if (met[copy] == walk) continue;
+                met[copy] = walk;
+                result = gxp_copy_bulk(body, copy, &bulk);
+                if (result == GX_OK) gxp_add_bulk(bulk, sum);
+            }
+    }
+    return result;
+}
+
+/* Adds the copies of a cell to scratch.bent if it is thin. What is around each of its copies must be thin too: that is
+   soon known. */
+static gx_result gxp_judge_cell(gx_body *body, uint32_t cell, uint32_t walk) {
+    const uint32_t *copies = body->cells.data[cell].copies;
+    const uint8_t *affine = body->copies.affine;
+    gx_result result = GX_OK;
+    gxp_bulk sum;
+    int k, thin = !(affine[copies[0]] & affine[copies[1]] & affine[copies[2]] & affine[copies[3]]);
+    for (k = 0; k < 4 && thin && result == GX_OK; k++) {
+        const gxp_bulk *bulk;
+        result = gxp_copy_bulk(body, copies[k], &bulk);
+        thin = result == GX_OK && gxp_thinness(bulk, body->config.affine_below) != 0;
+    }
+    if (!thin || result != GX_OK) return result;
+    result = gxp_cell_bulk(body, cell, walk, &sum);
+    if (result != GX_OK || gxp_thinness(&sum, body->config.affine_below) != 1) return result;
+    for (k = 0; k < 4 && result == GX_OK; k++)
+        if (!affine[copies[k]]) result = gxp_push(body, &body->scratch.bent, copies[k]);
+    return result;
+}
+
+/* Nothing has been looked at yet. */
+static gx_result gxp_start_sheets(gx_body *body) {
+    gxp_scratch *scratch = &body->scratch;
+    const uint32_t count = body->copies.count;
+    gx_result result = gxp_start_words(body, &scratch->bulk_of, count);
+    if (result == GX_OK) result = gxp_start_words(body, &scratch->bulk_met, count);
+    scratch->bent.count = scratch->sheet_cells.count = scratch->bulk_count = 0;
+    if (result != GX_OK || count == 0) return result;
+    memset(scratch->bulk_of.data, 0xff, count * sizeof(uint32_t));
+    memset(scratch->bulk_met.data, 0, count * sizeof(uint32_t));
+    scratch->stamp++;
+    return GX_OK;
+}
+
+/* Lists the cells around the copies of a cell. */
+static gx_result gxp_list_near(gx_body *body, uint32_t cell) {
+    uint32_t *met = body->scratch.bulk_met.data;
+    gx_result result = GX_OK;
+    int k;
+    for (k = 0; k < 4 && body->cells.data[cell].kept; k++) {
+        const uint32_t copy = body->cells.data[cell].copies[k];
+        gxp_around around = gxp_around_copy(body, copy);
+        if (met[copy] != 0) continue;
+        met[copy] = 1;
+        while (result == GX_OK && gxp_next_around(body, &around))
+            result = gxp_visit_cell(body, around.cell, &body->scratch.sheet_cells);
+    }
+    return result;
+}
+
+static gx_result gxp_judge_cells(gx_body *body) {
+    const gxp_words *cells = &body->scratch.sheet_cells;
+    gx_result result = GX_OK;
+    uint32_t i;
+    for (i = 0; i < cells->count && result == GX_OK; i++) result = gxp_judge_cell(body, cells->data[i], i + 2);
+    return result;
+}
+
+/* Finds the copies that become affine by a cut: of the cells that it made or changed, and of those beside them. */
+static gx_result gxp_find_sheets(gx_body *body) {
+    const gxp_words *made = &body->scratch.new_cells, *changed = &body->undo.cells.rows;
+    uint32_t i;
+    gx_result result;
+    body->scratch.bent.count = 0;
+    if (!(body->config.affine_below > 0)) return GX_OK;
+    result = gxp_start_sheets(body);
+    for (i = 0; i < made->count && result == GX_OK; i++) result = gxp_list_near(body, made->data[i]);
+    for (i = 0; i < changed->count && result == GX_OK; i++) result = gxp_list_near(body, changed->data[i]);
+    return result == GX_OK ? gxp_judge_cells(body) : result;
+}
+
+/* The copies that were found become affine. Their A and its rate are 0, so nothing moves. */
+static void gxp_flag_sheets(gx_body *body) {
+    uint32_t i;
+    for (i = 0; i < body->scratch.bent.count; i++) body->copies.affine[body->scratch.bent.data[i]] = 1;
+    if (body->scratch.bent.count > 0) body->copies.bends = 1;
+}
+
+/* After other flags were read: is a copy affine? Then the model is to be made with these. */
+static void gxp_find_bends(gx_body *body) {
+    uint32_t i;
+    body->copies.bends = 0;
+    for (i = 0; i < body->copies.count && body->copies.affine != NULL; i++)
+        if (body->copies.affine[i] != 0) body->copies.bends = 1;
+    if (body->copies.bends) body->model.state = GXP_MODEL_STALE;
+}
+
+/* Finds and flags the thin cells of a new body. */
+static gx_result gxp_first_sheets(gx_body *body) {
+    uint32_t i;
+    gx_result result;
+    if (!(body->config.affine_below > 0)) return GX_OK;
+    body->mesh.affine_length = 0;
+    for (i = 0; i < body->mesh.element_count; i++) body->mesh.affine_length += gxp_element_volume(body, i);
+    body->mesh.affine_length = cbrt(6 * body->mesh.affine_length / body->mesh.element_count);
+    result = gxp_start_sheets(body);
+    for (i = 0; i < body->cells.count && result == GX_OK; i++)
+        result = gxp_visit_cell(body, i, &body->scratch.sheet_cells);
+    if (result == GX_OK) result = gxp_judge_cells(body);
+    if (result == GX_OK) gxp_flag_sheets(body);
+    return result;
+}
+
 /* >>specks: pieces that are too small to be meant ------------------------------------------------------------------ */
 /* In: the new cells of a cut, their links and volumes. Out: pairs of leaves across the cut's walls that must stay in
    one cell so that no speck comes off, and no flake, which is thinner than the tolerance; the cut is then made again.
@@ -5225,11 +5552,13 @@ static void gxp_touch_copies(gx_body *body, const gxp_cell *cell) {
     }
 }
 
-/* Notes the elements of the model that have changed. Without memory for that, the model is made whole. */
+/* Notes the elements of the model that have changed. Without memory for that, the model is made whole; so it is where
+   copies are affine. */
 static void gxp_note_changed(gx_body *body) {
     const gxp_words *changed = &body->undo.cells.rows, *made = &body->scratch.new_cells;
     gx_result result = GX_OK;
     uint32_t i;
+    if (body->copies.bends) body->model.state = GXP_MODEL_STALE;
     if (body->model.state == GXP_MODEL_STALE) return;
     for (i = 0; i < changed->count && result == GX_OK; i++)
         result = gxp_push(body, &body->model.changed, body->cells.data[changed->data[i]].element);
@@ -5243,6 +5572,7 @@ static void gxp_commit(gxp_cut *cut) {
     gxp_view *view = &body->view;
     gxp_scratch *scratch = &body->scratch;
     uint32_t i;
+    gxp_flag_sheets(body);
     gxp_note_changed(body);
     for (i = 0; i < scratch->new_cells.count; i++)
         gxp_touch_copies(body, &body->cells.data[scratch->new_cells.data[i]]);
@@ -5292,6 +5622,7 @@ static gx_result gxp_make_cut(gxp_cut *cut) {
     report->seconds_enrichment = gxp_seconds(body) - start - report->seconds_arrangement;
     if (result == GX_OK) result = gxp_integrate(cut);
     report->seconds_integrals = gxp_seconds(body) - start - report->seconds_arrangement - report->seconds_enrichment;
+    if (result == GX_OK) result = gxp_find_sheets(body);
     return result == GX_OK ? gxp_note_for_skin(cut, first_facet) : result;
 }
 
@@ -6608,8 +6939,17 @@ GXFEM_API gx_region gx_region_sphere(const double center[3], double radius) {
 
 /* >>map: from rest to space ---------------------------------------------------------------------------------------- */
 /* In: a material point, or a cell. Out: where it is, how fast its corners are. Nothing else in this file turns
-   displacements of copies into positions: copies that do more than move a cell's corners change this section, and the
-   integrals at >>motion, which rest on the map being affine within a cell. Touches nothing. */
+   displacements of copies into positions, but for >>tree, >>locate and what follows there, which take maps to be affine
+   within a cell and refuse bodies with affine copies. Touches nothing. */
+
+/* sum += weight A (x - X) of an affine copy; x: a material point. linear: a body's copies.linear or linear_rate */
+static void gxp_add_linear(const gx_body *body, const double *linear, uint32_t copy, double weight, const double x[3],
+                           double sum[3]) {
+    const double *node = body->mesh.positions + 3 * (size_t)body->copies.node[copy], *a = linear + 9 * (size_t)copy;
+    int k;
+    for (k = 0; k < 3; k++)
+        sum[k] += weight * (a[k] * (x[0] - node[0]) + a[3 + k] * (x[1] - node[1]) + a[6 + k] * (x[2] - node[2]));
+}
 
 /* Where a point is: rest + sum of weight u over the copies of weight not 0, which stand first */
 static inline void gxp_map_point(const gx_body *body, const double rest[3], const uint32_t *copies,
@@ -6626,6 +6966,9 @@ static inline void gxp_map_point(const gx_body *body, const double rest[3], cons
     position[0] = x;
     position[1] = y;
     position[2] = z;
+    for (n = 0; n < count && weights[n] > 0 && body->copies.bends; n++)
+        if (body->copies.affine[copies[n]])
+            gxp_add_linear(body, body->copies.linear, copies[n], weights[n], rest, position);
 }
 
 /* x of the cell's nodes from a centre, at rest or, moved, with the displacement of its copies */
@@ -6658,7 +7001,7 @@ static inline void gxp_moved_corners(const gx_body *body, const gxp_cell *cell, 
     gxp_copy_position(body, node[3], cell->copies[3], x + 9);
 }
 
-/* Where the cell's affine map has a material point: weights are its barycentric coordinates in the element */
+/* Where the cell's map has a material point: weights are its barycentric coordinates in the element */
 static void gxp_map_affine(const gx_body *body, const gxp_cell *cell, const double weights[4], const double rest[3],
                            double position[3]) {
     int n, k;
@@ -6667,6 +7010,9 @@ static void gxp_map_affine(const gx_body *body, const gxp_cell *cell, const doub
         for (n = 0; n < 4; n++)
             position[k] += weights[n] * body->copies.displacement[3 * (size_t)cell->copies[n] + (size_t)k];
     }
+    for (n = 0; n < 4 && body->copies.bends; n++)
+        if (body->copies.affine[cell->copies[n]])
+            gxp_add_linear(body, body->copies.linear, cell->copies[n], weights[n], rest, position);
 }
 
 /* The velocities of the cell's copies, less a mean */
@@ -6955,6 +7301,9 @@ GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view, gx_failure *failu
     view->removed_ids = body->snapshot.removed.data;
     view->volume = own->body_volume;
     view->mass = own->body_mass;
+    view->copy_affine = body->copies.affine;
+    view->affine = body->copies.linear;
+    view->affine_rate = body->copies.linear_rate;
     return GX_OK;
 }
 
@@ -7028,6 +7377,72 @@ static void gxp_add_rotation(const gxp_cell *cell, double x[4][3], double v[4][3
         }
 }
 
+/* Four points of a cell and their shares of the copies, which integrate all quadratics over the cell with a quarter of
+   its mass each: c + L (1,1,1), (1,-1,-1), (-1,1,-1), (-1,-1,1), with c its centre and L L^T its covariance, in
+   barycentric coordinates. */
+static void gxp_four_points(const double mass[10], double whole, double share[4][4]) {
+    static const int sign[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+    double root[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, center[4];
+    int i, j, k;
+    for (i = 0; i < 4; i++) center[i] = gxp_mass_row(mass, i) / whole;
+    for (i = 0; i < 3; i++)
+        for (j = 0; j <= i; j++) {
+            double sum = mass[gxp_mass_at[i + 1][j + 1]] / whole - center[i + 1] * center[j + 1];
+            for (k = 0; k < j; k++) sum -= root[i][k] * root[j][k];
+            if (i == j)
+                root[i][i] = sum > 0 ? sqrt(sum) : 0;
+            else
+                root[i][j] = root[j][j] > 0 ? sum / root[j][j] : 0;
+        }
+    for (k = 0; k < 4; k++) {
+        share[k][0] = 1;
+        for (i = 1; i < 4; i++) {
+            share[k][i] = center[i];
+            for (j = 0; j < i; j++) share[k][i] += sign[k][j] * root[i - 1][j];
+            share[k][0] -= share[k][i];
+        }
+    }
+}
+
+/* What moves in a cell: its mass block and its corners, x from a centre, v less a mean. In a cell with affine copies,
+   four points as heavy as each other take the corners' places: then all sums over the block are those of the rule by
+   which the solver integrates. Centre and momentum are exact. */
+static void gxp_moving_cell(const gx_body *body, const gxp_cell *cell, const double center[3], const double mean[3],
+                            gxp_cell *block, double x[4][3], double v[4][3]) {
+    const gxp_copies *copies = &body->copies;
+    double rest[12], share[4][4], whole = 0;
+    int i, k, n, bends = 0;
+    memcpy(block->mass, cell->mass, sizeof block->mass);
+    for (n = 0; n < 4; n++) whole += gxp_mass_row(cell->mass, n);
+    for (n = 0; n < 4 && copies->bends && whole > 0; n++) bends |= copies->affine[cell->copies[n]];
+    if (!bends) {
+        gxp_cell_corners(body, cell, 1, center, x);
+        gxp_cell_velocities(body, cell, mean, v);
+        return;
+    }
+    gxp_four_points(cell->mass, whole, share);
+    gxp_element_positions(body, cell->element, rest);
+    memset(block->mass, 0, sizeof block->mass);
+    for (i = 0; i < 4; i++) {
+        double point[3] = {0, 0, 0};
+        block->mass[gxp_mass_at[i][i]] = whole / 4;
+        for (k = 0; k < 3; k++) {
+            x[i][k] = -center[k];
+            v[i][k] = -mean[k];
+            for (n = 0; n < 4; n++) {
+                const size_t at = 3 * (size_t)cell->copies[n] + (size_t)k;
+                point[k] += share[i][n] * rest[3 * n + k];
+                x[i][k] += share[i][n] * (rest[3 * n + k] + copies->displacement[at]);
+                v[i][k] += share[i][n] * copies->velocity[at];
+            }
+        }
+        for (n = 0; n < 4; n++) {
+            gxp_add_linear(body, copies->linear, cell->copies[n], share[i][n], point, x[i]);
+            gxp_add_linear(body, copies->linear_rate, cell->copies[n], share[i][n], point, v[i]);
+        }
+    }
+}
+
 /* Mass, centre and velocity of all fragments */
 static void gxp_find_centers(const gx_body *body, gx_motion *motions) {
     const gxp_view *view = &body->view;
@@ -7039,11 +7454,11 @@ static void gxp_find_centers(const gx_body *body, gx_motion *motions) {
         const gxp_cell *cell = &body->cells.data[view->cell[i]];
         gx_motion *motion = &motions[view->fragment[i]];
         double x[4][3], v[4][3];
-        gxp_cell_corners(body, cell, 1, zero, x);
-        gxp_cell_velocities(body, cell, zero, v);
+        gxp_cell block;
+        gxp_moving_cell(body, cell, zero, zero, &block, x, v);
         for (k = 0; k < 4; k++) motion->mass += gxp_mass_row(cell->mass, k);
-        gxp_add_first_moment(cell, x, motion->center);
-        gxp_add_first_moment(cell, v, motion->velocity);
+        gxp_add_first_moment(&block, x, motion->center);
+        gxp_add_first_moment(&block, v, motion->velocity);
     }
     for (i = 0; i < view->fragment_count; i++)
         for (k = 0; k < 3 && motions[i].mass > 0; k++) {
@@ -7093,9 +7508,9 @@ GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t cap
         const gxp_cell *cell = &body->cells.data[body->view.cell[i]];
         const uint32_t f = body->view.fragment[i];
         double x[4][3], v[4][3];
-        gxp_cell_corners(body, cell, 1, motions[f].center, x);
-        gxp_cell_velocities(body, cell, motions[f].velocity, v);
-        gxp_add_rotation(cell, x, v, &motions[f], momentum[f]);
+        gxp_cell block;
+        gxp_moving_cell(body, cell, motions[f].center, motions[f].velocity, &block, x, v);
+        gxp_add_rotation(&block, x, v, &motions[f], momentum[f]);
     }
     for (i = 0; i < body->view.fragment_count; i++) {
         gxp_spin(motions[i].inertia, momentum[i], motions[i].angular_velocity);
@@ -7110,6 +7525,57 @@ GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t cap
 /* >>attached: anchors and regions of a step ------------------------------------------------------------------------ */
 /* In: anchors, and what a step has at them; poses of regions. Out: springs, contact points, forces and targets by
    copies, as the solver takes them. Touches working memory of a step only. */
+
+/* The number of vectors of the solver's model: copies, and three hidden ones for each that is affine there */
+static size_t gxp_vector_count(const gx_body *body) {
+    return (size_t)body->copies.count + 3 * (size_t)body->hidden.copies.count;
+}
+
+/* Room for a point's span with hidden vectors; 0: the point stays as it is, or the solver refuses it. */
+static size_t gxp_span_room(const gxs_point *point) {
+    const int whole = point->count <= GXS_POINT_OWN ? point->copies == NULL || point->weights != NULL
+                                                    : point->copies != NULL && point->weights != NULL;
+    return whole && point->count <= GXS_POINT_MOST ? 4 * (size_t)point->count : 0;
+}
+
+/* Writes the point's span with the hidden vectors of its affine copies, whose weights are N_i (x - X_i) over
+   affine_length: then the point is moved by the sum of N_i (a_i + A_i (x - X_i)). copies, weights: room for
+   gxp_span_room. The point refers to them, unless none of its copies is affine. */
+static void gxp_expand_point(const gx_body *body, gxs_point *point, uint32_t *copies, double *weights) {
+    const uint32_t *from = point->copies != NULL ? point->copies : point->copy, *first = body->hidden.first.data;
+    const double *weight = point->copies != NULL ? point->weights : point->weight;
+    const size_t room = gxp_span_room(point);
+    uint32_t i, count = 0;
+    int k, affine = 0;
+    if (room == 0 || body->hidden.copies.count == 0 || point->epoch != body->cuts.epoch) return;
+    for (i = 0; i < point->count; i++) affine |= from[i] >= body->copies.count || first[from[i]] != GXS_NOT_AFFINE;
+    if (!affine) return;
+    for (i = 0; i < point->count; i++) { /* a hidden vector is no copy: the solver refuses what is beyond them */
+        copies[i] = from[i] < body->copies.count ? from[i] : UINT32_MAX;
+        weights[i] = weight[i];
+    }
+    for (i = 0, count = point->count; i < point->count; i++) {
+        const double *x = body->mesh.positions;
+        if (copies[i] == UINT32_MAX || first[copies[i]] == GXS_NOT_AFFINE) continue;
+        x += 3 * (size_t)body->copies.node[copies[i]];
+        for (k = 0; k < 3; k++) {
+            copies[count] = first[copies[i]] + (uint32_t)k;
+            weights[count++] = weights[i] * (point->position[k] - x[k]) / body->mesh.affine_length;
+        }
+    }
+    point->copies = copies;
+    point->weights = weights;
+    point->count = count;
+}
+
+/* The same with the next place in the spans of a step; there is room. */
+static void gxp_expand_next(gx_body *body, gxs_point *point) {
+    gxp_words *copies = &body->hidden.span_copies;
+    const size_t room = gxp_span_room(point);
+    if (room == 0) return;
+    gxp_expand_point(body, point, copies->data + copies->count, body->hidden.span_weights + copies->count);
+    copies->count += (uint32_t)room;
+}
 
 /* The copies that move an anchor, which was checked. Returns 0 if its material is gone: the point then names a copy
    with a weight of 0, so that nothing moves it and it pulls at nothing. */
@@ -7282,6 +7748,8 @@ static gx_result gxp_check_forces(const gx_body *body, const gx_step_desc *desc,
 static gx_result gxp_attach_forces(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step, gx_failure *failure) {
     gxp_attached *attached = &body->attached;
     const size_t count = 3 * (size_t)body->copies.count;
+    uint32_t copies[4 * GXS_POINT_OWN];
+    double weights[4 * GXS_POINT_OWN];
     gxs_point point;
     gx_result result;
     size_t i;
@@ -7291,15 +7759,17 @@ static gx_result gxp_attach_forces(gx_body *body, const gx_step_desc *desc, gxs_
     result = gxp_check_forces(body, desc, failure);
     if (result != GX_OK) return result;
     result = gxp_reserve(&body->config.allocator, &attached->forces, 3 * sizeof(double), 0, &attached->force_capacity,
-                         (size_t)body->copies.count + 1);
+                         gxp_vector_count(body) + 1);
     if (gxp_end(failure, result) != GX_OK) return result;
     for (i = 0; i < count; i++) attached->forces[i] = desc->forces != NULL ? desc->forces[i] : 0;
+    for (; i < 3 * gxp_vector_count(body); i++) attached->forces[i] = 0;
     for (i = 0; i < desc->force_count; i++) {
         if (!gxp_place_anchor(body, &desc->force_anchors[i], &point)) continue;
+        gxp_expand_point(body, &point, copies, weights);
         for (j = 0; j < point.count; j++)
             for (k = 0; k < 3; k++)
-                attached->forces[3 * (size_t)point.copy[j] + (size_t)k] +=
-                    point.weight[j] * desc->anchor_forces[3 * i + (size_t)k];
+                attached->forces[3 * (size_t)(point.copies != NULL ? copies[j] : point.copy[j]) + (size_t)k] +=
+                    (point.copies != NULL ? weights[j] : point.weight[j]) * desc->anchor_forces[3 * i + (size_t)k];
     }
     step->forces = attached->forces;
     return GX_OK;
@@ -7340,13 +7810,93 @@ static gx_result gxp_attach_poses(gx_body *body, const gx_step_desc *desc, gxs_s
         if (!gxp_is_finite(desc->region_poses[i]))
             return gxp_fail(failure, GX_ERROR_NOT_FINITE, "region_poses", i / 12);
     result = gxp_reserve(&body->config.allocator, &attached->targets, 3 * sizeof(double), 0, &attached->target_capacity,
-                         (size_t)body->copies.count + 1);
+                         gxp_vector_count(body) + 1);
     if (gxp_end(failure, result) != GX_OK) return result;
     memset(attached->targets, 0, 3 * (size_t)body->copies.count * sizeof *attached->targets);
     for (c = 0; c < body->copies.count; c++)
         if (body->copies.held[c]) gxp_pose_copy(body, desc, c, attached->targets + 3 * (size_t)c);
     step->targets = attached->targets;
     return GX_OK;
+}
+
+/* Rewrites the spans of the step's points so that they include the hidden vectors of affine copies. */
+static gx_result gxp_expand_points(gx_body *body, gxs_step_desc *step) {
+    gxp_attached *attached = &body->attached;
+    gxp_hidden *hidden = &body->hidden;
+    const size_t springs = step->spring_count, points = step->point_count;
+    size_t room = 0, i;
+    gx_result result = GX_OK;
+    if (springs > INT32_MAX || points > INT32_MAX) return GX_OK; /* the solver refuses these */
+    for (i = 0; i < springs && step->springs != NULL; i++) room += gxp_span_room(&step->springs[i].point);
+    for (i = 0; i < points && step->points != NULL; i++) room += gxp_span_room(&step->points[i]);
+    result = gxp_start_words(body, &hidden->span_copies, room);
+    if (result == GX_OK)
+        result = gxp_reserve(&body->config.allocator, &hidden->span_weights, sizeof(double), 0, &hidden->span_capacity,
+                             room);
+    if (result == GX_OK && step->springs != NULL && step->springs != attached->springs)
+        result = gxp_reserve(&body->config.allocator, &attached->springs, sizeof *attached->springs, 0,
+                             &attached->spring_capacity, springs);
+    if (result == GX_OK && step->points != NULL && step->points != attached->points)
+        result = gxp_reserve(&body->config.allocator, &attached->points, sizeof *attached->points, 0,
+                             &attached->point_capacity, points);
+    if (result != GX_OK) return result;
+    for (i = 0; i < springs && step->springs != NULL; i++) {
+        if (step->springs != attached->springs) attached->springs[i] = step->springs[i];
+        gxp_expand_next(body, &attached->springs[i].point);
+    }
+    for (i = 0; i < points && step->points != NULL; i++) {
+        if (step->points != attached->points) attached->points[i] = step->points[i];
+        gxp_expand_next(body, &attached->points[i]);
+    }
+    if (step->springs != NULL) step->springs = attached->springs;
+    if (step->points != NULL) step->points = attached->points;
+    return GX_OK;
+}
+
+/* Forces and targets by vector of the model. Nothing pushes hidden vectors but forces at anchors; those of held copies
+   go where a pose has them, or stay. */
+static gx_result gxp_expand_arrays(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step) {
+    gxp_attached *attached = &body->attached;
+    const size_t n = body->copies.count, vectors = gxp_vector_count(body);
+    gx_result result = GX_OK;
+    size_t i;
+    int k;
+    if (step->forces != NULL && step->forces != attached->forces) {
+        result = gxp_reserve(&body->config.allocator, &attached->forces, 3 * sizeof(double), 0,
+                             &attached->force_capacity, vectors);
+        if (result != GX_OK) return result;
+        memcpy(attached->forces, step->forces, 3 * n * sizeof(double));
+        memset(attached->forces + 3 * n, 0, 3 * (vectors - n) * sizeof(double));
+        step->forces = attached->forces;
+    }
+    if (step->targets == NULL) return GX_OK;
+    if (step->targets != attached->targets) {
+        result = gxp_reserve(&body->config.allocator, &attached->targets, 3 * sizeof(double), 0,
+                             &attached->target_capacity, vectors);
+        if (result != GX_OK) return result;
+        memcpy(attached->targets, step->targets, 3 * n * sizeof(double));
+        step->targets = attached->targets;
+    }
+    for (i = 0; i < body->hidden.copies.count; i++) {
+        const uint32_t copy = body->hidden.copies.data[i];
+        const double *pose = desc->region_poses != NULL && body->copies.held[copy]
+                               ? desc->region_poses + 12 * (size_t)body->holds.region_of.data[copy]
+                               : NULL;
+        double *to = attached->targets + 3 * (n + 3 * i);
+        for (k = 0; k < 9; k++)
+            to[k] = body->mesh.affine_length * (pose != NULL && !gxp_is_no_pose(pose)
+                                                    ? pose[4 * (k % 3) + k / 3] - (k % 3 == k / 3)
+                                                    : body->copies.linear[9 * (size_t)copy + (size_t)k]);
+    }
+    return GX_OK;
+}
+
+/* What the step has, for a model with hidden vectors. Arrays of another numbering are not read: the solver refuses
+   them. */
+static gx_result gxp_expand(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step) {
+    const gx_result result = gxp_expand_points(body, step);
+    if (result != GX_OK || step->epoch != body->cuts.epoch) return result;
+    return gxp_expand_arrays(body, desc, step);
 }
 
 /* Arrays by copy are read only if they have the present numbering. */
@@ -7383,34 +7933,6 @@ typedef struct gxp_supports {
     uint32_t *seen;  /* copy_count: the last search that has met the copy */
     uint32_t search;
 } gxp_supports;
-
-/* Walks through the cells that a copy moves. */
-typedef struct gxp_around {
-    uint32_t copy, at, cell;
-} gxp_around;
-
-static gxp_around gxp_around_copy(const gx_body *body, uint32_t copy) {
-    gxp_around around;
-    around.copy = copy;
-    around.at = body->mesh.node_start[body->copies.node[copy]];
-    around.cell = GXP_NONE;
-    return around;
-}
-
-/* The next cell. Returns 0 if there are no more. */
-static int gxp_next_around(const gx_body *body, gxp_around *around) {
-    const uint32_t copy = around->copy, end = body->mesh.node_start[body->copies.node[copy] + 1];
-    for (;;) {
-        const gxp_cell *cell;
-        if (around->cell != GXP_NONE) around->cell = body->cells.data[around->cell].next;
-        if (around->cell == GXP_NONE && around->at == end) return 0;
-        if (around->cell == GXP_NONE) around->cell = body->mesh.node_elements[around->at++];
-        cell = &body->cells.data[around->cell];
-        if (cell->kept &&
-            (cell->copies[0] == copy || cell->copies[1] == copy || cell->copies[2] == copy || cell->copies[3] == copy))
-            return 1;
-    }
-}
 
 /* The share of the part that the cell belongs to */
 static double gxp_part_share(const gx_body *body, uint32_t cell) {
@@ -7584,8 +8106,25 @@ static uint32_t gxp_find_supports(const gx_body *body, gxp_supports *supports) {
     return count;
 }
 
+/* Copies of a speck move as a point, so in the model none of them is affine. Other affine copies neither follow nor
+   lead: sheets are to bend, and a sliver of one is carried by the cells beside it. Returns 1 if the copy follows. */
+static int gxp_may_follow(gx_body *body, const gxp_supports *supports, uint32_t copy) {
+    const uint32_t *master = body->cells.data[supports->cell[copy]].copies;
+    uint8_t *affine = body->copies.affine, *plain = body->hidden.plain;
+    int k;
+    if (!body->copies.bends) return 1;
+    if (supports->weak[copy] == GXP_FOLLOWS_POINT) {
+        for (k = 0; k < 4; k++) plain[master[k]] = 1;
+        plain[copy] = 1;
+        return 1;
+    }
+    return !(affine[copy] | affine[master[0]] | affine[master[1]] | affine[master[2]] | affine[master[3]]);
+}
+
 static void gxp_add_constraint(gx_body *body, const gxp_supports *supports, uint32_t copy) {
-    gxs_constraint *constraint = &body->model.constraints[body->model.constraint_count++];
+    gxs_constraint *constraint = &body->model.constraints[body->model.constraint_count];
+    if (!gxp_may_follow(body, supports, copy)) return;
+    body->model.constraint_count++;
     constraint->copy = copy;
     memcpy(constraint->master, body->cells.data[supports->cell[copy]].copies, sizeof constraint->master);
     memset(constraint->weight, 0, sizeof constraint->weight);
@@ -7673,32 +8212,66 @@ static gx_result gxp_make_parts(gx_body *body, gx_failure *failure) {
     return result;
 }
 
+/* Affine copies and constraints */
+static gx_result gxp_make_affine(gx_body *body) {
+    gxp_hidden *hidden = &body->hidden;
+    const uint32_t n = body->copies.count;
+    uint32_t i, k;
+    gx_result result;
+    hidden->copies.count = hidden->first.count = 0;
+    if (!body->copies.bends) return gxp_make_constraints(body);
+    result = gxp_reserve(&body->config.allocator, &hidden->plain, 1, 0, &hidden->plain_capacity, n);
+    if (result != GX_OK) return result;
+    if (n > 0) memset(hidden->plain, 0, n);
+    result = gxp_make_constraints(body);
+    for (i = 0; i < n && result == GX_OK; i++)
+        if (body->copies.affine[i] && !hidden->plain[i]) result = gxp_push(body, &hidden->copies, i);
+    if (result == GX_OK) result = gxp_start_words(body, &hidden->first, gxp_vector_count(body));
+    if (result == GX_OK)
+        result =
+            gxp_reserve(&body->config.allocator, &hidden->held, 1, 0, &hidden->held_capacity, gxp_vector_count(body));
+    if (result != GX_OK) hidden->copies.count = 0;
+    if (hidden->copies.count == 0) return result;
+    hidden->first.count = (uint32_t)gxp_vector_count(body);
+    memset(hidden->first.data, 0xff, hidden->first.count * sizeof *hidden->first.data);
+    memcpy(hidden->held, body->copies.held, n);
+    for (i = 0; i < hidden->copies.count; i++) {
+        hidden->first.data[hidden->copies.data[i]] = n + 3 * i;
+        for (k = 0; k < 3; k++) hidden->held[n + 3 * i + k] = body->copies.held[hidden->copies.data[i]];
+    }
+    return GX_OK;
+}
+
 /* The whole model. Its arrays are the body's. */
 static gx_result gxp_make_model(gx_body *body, gxs_model *model, gx_failure *failure) {
     const gx_allocator *a = &body->config.allocator;
     uint32_t i;
     gx_result result = gxp_make_parts(body, failure);
     if (result == GX_OK) result = gxp_list_thin(body, 1);
-    if (result == GX_OK) result = gxp_make_constraints(body);
+    if (result == GX_OK) result = gxp_make_affine(body);
     if (result == GX_OK)
-        result =
-            gxp_reserve(a, &body->model.rest, 3 * sizeof(double), 0, &body->model.rest_capacity, body->copies.count);
+        result = gxp_reserve(a, &body->model.rest, 3 * sizeof(double), 0, &body->model.rest_capacity,
+                             gxp_vector_count(body));
     if (result == GX_OK)
         result = gxp_reserve(a, &body->model.elastic, sizeof *body->model.elastic, 0, &body->model.elastic_capacity,
                              body->mesh.material_count);
     if (result != GX_OK) return result;
-    for (i = 0; i < body->copies.count; i++)
-        memcpy(body->model.rest + 3 * (size_t)i, body->mesh.positions + 3 * (size_t)body->copies.node[i],
+    for (i = 0; i < gxp_vector_count(body); i++) {
+        const uint32_t copy = i < body->copies.count ? i : body->hidden.copies.data[(i - body->copies.count) / 3];
+        memcpy(body->model.rest + 3 * (size_t)i, body->mesh.positions + 3 * (size_t)body->copies.node[copy],
                3 * sizeof(double));
+    }
     for (i = 0; i < body->mesh.material_count; i++) body->model.elastic[i] = body->mesh.materials[i].elastic;
     memset(model, 0, sizeof *model);
-    model->copy_count = body->copies.count;
+    model->copy_count = gxp_vector_count(body);
     model->positions = body->model.rest;
     model->elements = body->model.parts;
     model->element_count = body->model.part_count;
     model->materials = body->model.elastic;
     model->material_count = body->mesh.material_count;
-    model->held = body->copies.held;
+    model->held = body->hidden.copies.count > 0 ? body->hidden.held : body->copies.held;
+    model->affine = body->hidden.copies.count > 0 ? body->hidden.first.data : NULL;
+    model->affine_length = body->mesh.affine_length;
     model->constraints = body->model.constraints;
     model->constraint_count = body->model.constraint_count;
     model->epoch = body->cuts.epoch;
@@ -7861,6 +8434,79 @@ static gx_result gxp_translate_step(gx_body *body, const gx_step_desc *desc, gxs
     return GX_OK;
 }
 
+/* The hidden vectors of the model's affine copies: A times affine_length */
+static void gxp_hide(const gx_body *body, const double *linear, double *vectors) {
+    size_t i, k;
+    for (i = 0; i < body->hidden.copies.count; i++)
+        for (k = 0; k < 9; k++)
+            vectors[9 * i + k] = body->mesh.affine_length * linear[9 * (size_t)body->hidden.copies.data[i] + k];
+}
+
+static void gxp_unhide(const gx_body *body, const double *vectors, double *linear) {
+    size_t i, k;
+    for (i = 0; i < body->hidden.copies.count; i++)
+        for (k = 0; k < 9; k++)
+            linear[9 * (size_t)body->hidden.copies.data[i] + k] = vectors[9 * i + k] / body->mesh.affine_length;
+}
+
+/* A step of a model with hidden vectors: in vectors of their own, which become the state if it succeeds. What is left
+   of the motion of copies that are affine, but not in the model, is dropped: a speck moves as a point. */
+static gx_result gxp_step_affine(gx_body *body, const gxs_step_desc *given, gx_step_report *report,
+                                 gx_failure *failure) {
+    gxp_copies *copies = &body->copies;
+    const size_t n = copies->count, vectors = gxp_vector_count(body), bytes = 3 * n * sizeof(double);
+    const int history = given->previous_displacement != NULL;
+    gxs_step_desc step = *given;
+    gx_failure own;
+    double *u, *v, *before, *rest;
+    size_t i, k;
+    gx_result result = vectors > INT32_MAX / 16
+                         ? GX_ERROR_LIMIT
+                         : gxp_reserve(&body->config.allocator, &body->hidden.state, sizeof(double), 0,
+                                       &body->hidden.state_capacity, 13 * vectors);
+    if (result != GX_OK) return gxp_end(failure, result);
+    u = body->hidden.state;
+    v = u + 3 * vectors;
+    before = v + 3 * vectors;
+    rest = before + 6 * vectors;
+    memcpy(u, copies->displacement, bytes);
+    memcpy(v, copies->velocity, bytes);
+    memcpy(rest, copies->rest_time, n * sizeof *rest);
+    gxp_hide(body, copies->linear, u + 3 * n);
+    gxp_hide(body, copies->linear_rate, v + 3 * n);
+    for (i = n; i < vectors; i++) rest[i] = rest[body->hidden.copies.data[(i - n) / 3]];
+    if (history) {
+        memcpy(before, copies->history[0], bytes);
+        memcpy(before + 3 * vectors, copies->history[1], bytes);
+        gxp_hide(body, copies->linear_history[0], before + 3 * n);
+        gxp_hide(body, copies->linear_history[1], before + 3 * vectors + 3 * n);
+        step.previous_displacement = before;
+        step.previous_velocity = before + 3 * vectors;
+    }
+    step.rest_times = rest;
+    gxp_end(&own, GX_OK);
+    result = gxs_solver_step(body->solver, &step, u, v, report, &own);
+    memcpy(copies->rest_time, rest, n * sizeof *rest);
+    if (result != GX_OK) {
+        if (own.index != SIZE_MAX && own.field != NULL && own.index >= n && own.index < vectors &&
+            (strcmp(own.field, "displacement") == 0 || strcmp(own.field, "velocity") == 0))
+            own.index = body->hidden.copies.data[(own.index - n) / 3];
+        if (failure != NULL) *failure = own;
+        return result;
+    }
+    if (given->integrator == GXS_BDF2) {
+        memcpy(copies->linear_history[0], copies->linear, 9 * n * sizeof(double));
+        memcpy(copies->linear_history[1], copies->linear_rate, 9 * n * sizeof(double));
+    }
+    memcpy(copies->displacement, u, bytes);
+    memcpy(copies->velocity, v, bytes);
+    gxp_unhide(body, u + 3 * n, copies->linear);
+    gxp_unhide(body, v + 3 * n, copies->linear_rate);
+    for (i = 0; i < n; i++)
+        for (k = 0; k < 9 && body->hidden.first.data[i] == GXS_NOT_AFFINE; k++) copies->linear_rate[9 * i + k] = 0;
+    return GX_OK;
+}
+
 /* Takes the step and keeps the state that the next step of BDF2 needs. */
 static gx_result gxp_step(gx_body *body, const gxs_step_desc *step, gx_step_report *report, gx_failure *failure) {
     gxp_copies *copies = &body->copies;
@@ -7873,7 +8519,12 @@ static gx_result gxp_step(gx_body *body, const gxs_step_desc *step, gx_step_repo
         memcpy(copies->history[2], copies->displacement, bytes);
         memcpy(copies->history[3], copies->velocity, bytes);
     }
-    result = gxs_solver_step(body->solver, step, copies->displacement, copies->velocity, report, failure);
+    if (body->hidden.copies.count > 0)
+        result = gxp_step_affine(body, step, report, failure);
+    else {
+        result = gxs_solver_step(body->solver, step, copies->displacement, copies->velocity, report, failure);
+        if (result == GX_OK && copies->bends) memset(copies->linear_rate, 0, 9 * copies->count * sizeof(double));
+    }
     if (result != GX_OK) return result;
     copies->previous_dt = history ? step->dt : 0;
     for (i = 0; i < 2 && history; i++) gxp_swap_columns(body, &columns[i], &columns[i + 2]);
@@ -7905,6 +8556,7 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     if (result != GX_OK) return gxp_fail(failure, result, NULL, refused.index);
     result = gxp_translate_step(body, desc, &step);
     if (gxp_end(failure, result) == GX_OK) result = gxp_attach(body, desc, &step, failure);
+    if (result == GX_OK && body->hidden.copies.count > 0) result = gxp_end(failure, gxp_expand(body, desc, &step));
     if (result != GX_OK) return result;
     if (body->model.empty) {
         result = gxp_check_empty_step(body, desc, &step, failure);
@@ -9904,6 +10556,7 @@ GXFEM_API gx_result gx_body_locate(gx_body *body, const double *points, size_t c
     if (points == NULL && count > 0) return gxp_refuse(failure, "points");
     if (hits == NULL && count > 0) return gxp_refuse(failure, "hits");
     if (count > INT32_MAX / 4) return gxp_fail(failure, GX_ERROR_LIMIT, "count", SIZE_MAX);
+    if (body->copies.bends) return gxp_refuse(failure, "affine_below"); /* maps are not affine */
     result = gxp_check_points(points, count, "points", 1, failure);
     if (result == GX_OK) result = gxp_prepare_locate(body, failure);
     if (result != GX_OK) return result;
@@ -9922,6 +10575,7 @@ GXFEM_API gx_result gx_body_locate_all(gx_body *body, const double point[3], gx_
     if (point == NULL) return gxp_refuse(failure, "point");
     if (hits == NULL && capacity > 0) return gxp_refuse(failure, "hits");
     if (count == NULL) return gxp_refuse(failure, "count");
+    if (body->copies.bends) return gxp_refuse(failure, "affine_below");
     result = gxp_check_points(point, 1, "point", 0, failure);
     if (result == GX_OK) result = gxp_prepare_locate(body, failure);
     if (result != GX_OK) return result;
@@ -10142,6 +10796,7 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
     if (result != GX_OK) return result;
     if (hit == NULL) return gxp_refuse(failure, "hit");
     if (!gxp_has_skin(body)) return gxp_fail(failure, GX_ERROR_SEQUENCE, "gx_body_skin", SIZE_MAX);
+    if (body->copies.bends) return gxp_refuse(failure, "affine_below"); /* boxes are of moved corners */
     result = gxp_update_view(body);
     if (result == GX_OK) result = gxp_list_indices(body);
     if (result == GX_OK) result = gxp_refit_tree(body);
@@ -13050,6 +13705,7 @@ GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t po
     gx_blade_report own;
     gx_result result;
     if (blade == NULL) return gxp_refuse(failure, "blade");
+    if (blade->body->copies.affine != NULL) return gxp_refuse(failure, "affine_below"); /* layers see affine maps */
     if (scope_fragment_count > 0 && scope_fragments == NULL) return gxp_refuse(failure, "scope_fragments");
     result = gxp_check_edge(blade, edge, point_count, failure);
     if (result == GX_OK && scope_fragment_count > 0)
@@ -13844,6 +14500,7 @@ GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (tool == NULL) return gxp_refuse(failure, "tool");
+    if (body->copies.affine != NULL) return gxp_refuse(failure, "affine_below"); /* see gx_blade_move */
     result = gxp_check_tool(tool, failure);
     if (result == GX_OK) result = gx_blade_create(body, NULL, &blade, failure);
     if (result != GX_OK) return result;
@@ -13862,6 +14519,8 @@ GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_
    ... 2^GXP_WEIGHT: the inertia of 2^28 of them is below 2^940. */
 #define GXP_REACH  100
 #define GXP_WEIGHT 700
+
+#define GXP_AFFINE_MOST 1e3 /* of affine_below: all is thinner than that */
 
 /* Blames a node that is too far out, or all if the body is too small. */
 static gx_result gxp_check_size(const gx_body_desc *desc, gx_failure *failure) {
@@ -13935,6 +14594,15 @@ static void gxp_make_first_copies(gx_body *body) {
     memset(copies->before, 0, copies->count * sizeof *copies->before);
 }
 
+/* Columns of affine copies, all 0 */
+static gx_result gxp_make_affine_columns(gx_body *body) {
+    gx_result result = GX_OK;
+    int i;
+    for (i = 0; i < GXP_AFFINE_COLUMNS && result == GX_OK && body->config.affine_below > 0; i++)
+        result = gxp_make_column(body, &gxp_copy_columns[GXP_FIRST_AFFINE + i], body->mesh.node_count);
+    return result;
+}
+
 /* Makes the arrays of fixed size and the first rows of those that grow. */
 static gx_result gxp_make_tables(gx_body *body, const gx_body_desc *desc) {
     const size_t nodes = body->mesh.node_count;
@@ -13996,9 +14664,14 @@ static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc, gx_failu
     if (result != GX_OK) return result;
     gxp_make_first_copies(body);
     gxp_build_boxes(body);
+    result = gxp_make_affine_columns(body);
+    if (result == GX_OK) result = gxp_first_sheets(body);
+    if (result != GX_OK) return result;
     body->view.stale = 1;
     body->model.state = GXP_MODEL_STALE;
     body->cuts.hash = gxp_hash_mesh(body);
+    if (body->config.affine_below > 0)
+        body->cuts.hash = gxp_hash_doubles(body->cuts.hash, &body->config.affine_below, 1);
     return gxp_first_snapshot(body);
 }
 
@@ -14056,6 +14729,8 @@ static gx_result gxp_check_body_desc(const gx_body_desc *desc, gx_failure *failu
     if (!gxb_is_allocator(&desc->allocator)) return gxp_refuse(failure, "allocator");
     if (!gxp_is_finite(desc->support_below)) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "support_below", SIZE_MAX);
     if (desc->support_below < 0 || desc->support_below >= 1) return gxp_refuse(failure, "support_below");
+    if (!gxp_is_finite(desc->affine_below)) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "affine_below", SIZE_MAX);
+    if (desc->affine_below < 0 || desc->affine_below > GXP_AFFINE_MOST) return gxp_refuse(failure, "affine_below");
     for (i = 0; i < 2 * desc->node_count && desc->texture != NULL; i++)
         if (!gxp_is_finite((double)desc->texture[i])) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "texture", i / 2);
     return gxp_check_materials(desc, failure);
@@ -14068,6 +14743,7 @@ static void gxp_set_config(gxp_config *config, const gx_body_desc *desc) {
     config->clock = desc->clock;
     config->clock_user = desc->clock_user;
     config->support_below = desc->support_below;
+    config->affine_below = desc->affine_below;
     config->follow_below = desc->support_below > 0 ? desc->support_below : GXP_SUPPORT;
     config->speck_below = desc->support_below > 0 ? desc->support_below : GXP_SPECK;
     config->speck_reach = desc->support_below > 0 ? 0 : GXP_SPECK_REACH;
@@ -14260,7 +14936,8 @@ static int gxp_has_glances(const gx_body *body) {
 
 GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
     const uint32_t use = GXP_TOPOLOGY | GXP_STATE | (body->copies.previous_dt > 0 ? (uint32_t)GXP_HISTORY : 0) |
-                         (gxp_has_glances(body) ? (uint32_t)GXP_STROKE : 0);
+                         (gxp_has_glances(body) ? (uint32_t)GXP_STROKE : 0) |
+                         (body->copies.affine != NULL ? (uint32_t)GXP_AFFINE : 0);
     uint64_t hash = gxp_mix(body->cuts.epoch ^ (uint64_t)body->snapshot.next_id << 32);
     const gx_blade *blade;
     uint32_t t, i;
@@ -14317,7 +14994,7 @@ static void gxp_require_true(gxb_stream *s, int holds) {
 }
 static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
 
-#define GXP_SAVE_VERSION 8u /* raised by every change of the format */
+#define GXP_SAVE_VERSION 9u /* raised by every change of the format */
 #define GXP_BYTE_ORDER   0x01020304u
 
 typedef struct gxp_head {
@@ -14374,7 +15051,7 @@ static void gxp_pass_material(gxb_stream *s, gx_material *m) {
 
 typedef struct gxp_saved_mesh {
     uint32_t node_count, element_count, material_count;
-    double support_below;
+    double support_below, affine_below;
     uint32_t textured; /* 1: there is a texture */
     double *positions;
     float *texture;
@@ -14388,6 +15065,7 @@ static void gxp_pass_sizes(gxb_stream *s, gxp_saved_mesh *mesh) {
     gxp_pass_word(s, &mesh->material_count);
     gxp_pass_word(s, &mesh->textured);
     gxb_stream_pass(s, &mesh->support_below, 1, sizeof mesh->support_below);
+    gxb_stream_pass(s, &mesh->affine_below, 1, sizeof mesh->affine_below);
 }
 
 static void gxp_pass_mesh(gxb_stream *s, gxp_saved_mesh *mesh) {
@@ -14405,6 +15083,7 @@ static void gxp_save_mesh(gxb_stream *s, gx_body *body) {
     mesh.element_count = body->mesh.element_count;
     mesh.material_count = body->mesh.material_count;
     mesh.support_below = body->config.support_below;
+    mesh.affine_below = body->config.affine_below;
     mesh.positions = body->mesh.positions;
     mesh.elements = (uint32_t *)gxb_complex_element_nodes(body->complex, 0); /* only written from here */
     mesh.texture = body->mesh.texture;
@@ -14452,6 +15131,7 @@ static void gxp_create_again(gxb_stream *s, const gx_body_desc *given, gxp_saved
     desc.element_materials = mesh->element_materials;
     desc.texture = mesh->textured ? mesh->texture : NULL;
     desc.support_below = mesh->support_below;
+    desc.affine_below = mesh->affine_below;
     result = gx_body_create(&desc, body, NULL);
     gxp_require(s, result == GX_OK || result == GX_ERROR_MEMORY || result == GX_ERROR_LIMIT ||
                            result == GX_ERROR_CONFIGURATION
@@ -14956,10 +15636,12 @@ static void gxp_drop_blades(gx_body *body, uint32_t count) {
 /* The row counts of the state, whether there is a history, and whether a blade leaves out moves */
 typedef struct gxp_state_counts {
     uint32_t rows[GXP_TABLES], history, struck;
+    int affine; /* there may be affine copies: the saved mesh tells */
 } gxp_state_counts;
 
 static uint32_t gxp_state_use(const gxp_state_counts *n) {
-    return GXP_STATE | (n->history ? (uint32_t)GXP_HISTORY : 0) | (n->struck ? (uint32_t)GXP_STROKE : 0);
+    return GXP_STATE | (n->history ? (uint32_t)GXP_HISTORY : 0) | (n->struck ? (uint32_t)GXP_STROKE : 0) |
+           (n->affine ? (uint32_t)GXP_AFFINE : 0);
 }
 
 static void gxp_pass_state_counts(gxb_stream *s, gxp_state_counts *n) {
@@ -14973,6 +15655,7 @@ static gxp_state_counts gxp_count_state(const gx_body *body) {
     gxp_count_rows(body, n.rows);
     n.history = body->copies.previous_dt > 0;
     n.struck = (uint32_t)gxp_has_glances(body);
+    n.affine = body->copies.affine != NULL;
     return n;
 }
 
@@ -15003,7 +15686,9 @@ static void gxp_pass_state(gxb_stream *s, gx_body *body, const gxp_state_counts 
     gxb_stream_pass(s, &scene.planes, 1, sizeof scene.planes);
     gxb_stream_pass(s, &scene.forces, 1, sizeof scene.forces);
     gxb_stream_pass(s, &scene.springs, 1, sizeof scene.springs);
-    if (s->in != NULL) gxp_resume_in(body, &scene);
+    if (s->in == NULL) return;
+    gxp_find_bends(body);
+    gxp_resume_in(body, &scene);
 }
 
 static void gxp_save_state(gxb_stream *s, gx_body *body) {
@@ -15049,7 +15734,9 @@ static void gxp_check_state(gxb_stream *s, gx_body *body, const gxp_state_counts
     gxp_require_true(s, snapshot->next_id >= 1 && snapshot->stale <= 1);
     gxp_require_true(s, gxp_is_finite(dt) && (n->history ? dt > 0 : !(dt > 0 || dt < 0)));
     gxp_check_regions(s, body);
-    for (i = 0; i < body->copies.count; i++) gxp_require_true(s, body->copies.label[i] >> 1 < snapshot->count);
+    for (i = 0; i < body->copies.count; i++)
+        gxp_require_true(s,
+                         body->copies.label[i] >> 1 < snapshot->count && (!n->affine || body->copies.affine[i] <= 1));
     for (i = 0; i < snapshot->count; i++)
         gxp_require_true(s, snapshot->id[i] - 1 < snapshot->next_id - 1 &&
                                 snapshot->origin[i] - 1 < snapshot->next_id - 1 &&
@@ -15062,8 +15749,9 @@ static void gxp_check_state(gxb_stream *s, gx_body *body, const gxp_state_counts
 
 static void gxp_load_state(gxb_stream *s, gx_body *body, int trusted) {
     gxp_state_counts n;
+    n.affine = body->copies.affine != NULL;
     gxp_pass_state_counts(s, &n);
-    gxp_check_counts(s, GXP_STATE, n.rows);
+    gxp_check_counts(s, gxp_state_use(&n), n.rows);
     gxp_require_true(s, n.rows[GXP_COPIES] == body->copies.count && n.history <= 1 && n.struck <= 1);
     if (s->result == GX_OK) gxp_require(s, gxp_state_room(body, &n));
     if (s->result == GX_OK) gxp_pass_state(s, body, &n);
@@ -15311,6 +15999,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_RAY_MARGIN
 #undef GXP_REACH
 #undef GXP_WEIGHT
+#undef GXP_AFFINE_MOST
 #undef GXP_LAST_ROUND
 #undef GXP_EXPECTED
 #undef GXP_CANCELLATION
@@ -15318,6 +16007,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_REST
 #undef GXP_WEIGHT_LOSS
 #undef GXP_ROUNDING
+#undef GXP_ELEMENT_SPREAD
 #undef GXP_OFF
 #undef GXP_NO_INERTIA
 #undef GXP_SAVE_VERSION

@@ -118,6 +118,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* cl has neither vectors nor integers of 128 bits of its own: it takes intrinsics, from the compiler's headers. */
+#if defined(_MSC_VER) && !defined(__clang__) && !defined(GXFEM_NO_INTRINSICS) && !defined(GXFEM_INTRINSICS)
+#define GXFEM_INTRINSICS
+#endif
+
 /* With -msimd128 clang before 16 moves a load that fills a vector behind stores to the same address: the headers'
    functions are compiled without vectors then (GXFEM_SCALAR), and not inlined where there are some. */
 #if defined(__wasm_simd128__) && defined(__clang__) && __clang_major__ < 16
@@ -209,7 +214,8 @@ extern "C" {
    after it is overwritten. A trial at creation (15 to 120 ns) tests this; GX_ERROR_CONFIGURATION says that it failed.
    Predicates of coordinates need no object and run without a trial. */
 
-#if defined(__SIZEOF_INT128__) && !defined(GXB_LIMB32)
+#if !defined(GXB_LIMB32) &&                                                                                            \
+    (defined(__SIZEOF_INT128__) || (defined(GXFEM_INTRINSICS) && (defined(_M_X64) || defined(_M_ARM64))))
 typedef uint64_t gxb_limb;
 #define GXB_LIMB_BITS 64
 #define GXB_NUM_LIMBS 168
@@ -855,6 +861,9 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *boolean, gxb_stati
 #define GXFEM_BOOLEAN_IMPLEMENTED
 #include <stdlib.h>
 #include <string.h>
+#if defined(GXFEM_INTRINSICS) && defined(_MSC_VER)
+#include <intrin.h>
+#endif
 
 #ifdef __cplusplus
 extern "C" {
@@ -923,11 +932,41 @@ static int gxbp_exponent(double x) {
 /* In: doubles and exact numbers. Out: exact numbers, their signs and roundings. Their limbs are in the caller's
    memory: nothing is allocated. */
 
-#if GXB_LIMB_BITS == 64
+/* GXBP_INT128: integers of 128 bits may be used anywhere; with GXFEM_INTRINSICS they only take cl's instruction's
+ * place. */
+#if defined(__SIZEOF_INT128__) && !defined(GXB_LIMB32)
 __extension__ typedef unsigned __int128 gxbp_wide;
-#else
-typedef uint64_t gxbp_wide;
+#if !defined(GXFEM_INTRINSICS)
+#define GXBP_INT128
 #endif
+#endif
+
+/* x y + a + b: returns the low limb, the high one to *high */
+static inline gxb_limb gxbp_multiply(gxb_limb x, gxb_limb y, gxb_limb a, gxb_limb b, gxb_limb *high) {
+#if defined(GXBP_INT128)
+    const gxbp_wide t = (gxbp_wide)x * y + a + b;
+    *high = (gxb_limb)(t >> 64);
+    return (gxb_limb)t;
+#elif GXB_LIMB_BITS == 64
+    gxb_limb low, top;
+#if defined(_M_X64)
+    low = _umul128(x, y, &top);
+#elif defined(_M_ARM64)
+    low = x * y, top = __umulh(x, y);
+#else
+    low = x * y;
+    top = (gxb_limb)((gxbp_wide)x * y >> 64);
+#endif
+    low += a, top += low < a;
+    low += b, top += low < b;
+    *high = top;
+    return low;
+#else
+    const uint64_t t = (uint64_t)x * y + a + b;
+    *high = (gxb_limb)(t >> 32);
+    return (gxb_limb)t;
+#endif
+}
 
 /* Takes zero limbs off both ends; a number without limbs is 0. */
 static void gxbp_num_trim(gxb_num *r) {
@@ -1007,9 +1046,9 @@ static void gxbp_num_add_magnitude(gxb_num *r, const gxb_num *a, const gxb_num *
     gxbp_num_place(r, a, a->exp < b->exp ? a->exp : b->exp, (top_a > top_b ? top_a : top_b) + 1);
     d = r->d + (b->exp - r->exp);
     for (i = 0; i < b->n; i++) {
-        const gxbp_wide sum = (gxbp_wide)d[i] + b->d[i] + carry;
-        d[i] = (gxb_limb)sum;
-        carry = (gxb_limb)(sum >> GXB_LIMB_BITS);
+        const gxb_limb x = (gxb_limb)(d[i] + carry), sum = (gxb_limb)(x + b->d[i]);
+        carry = (gxb_limb)((x < carry) | (sum < x));
+        d[i] = sum;
     }
     for (; carry != 0; i++) carry = ++d[i] == 0;
 }
@@ -1066,21 +1105,13 @@ static GXBP_APART void gxbp_num_product(gxb_num *r, const gxb_num *a, const gxb_
         r->exp = 0;
         return;
     }
-    for (j = 0; j < b->n; j++) {
-        const gxbp_wide t = (gxbp_wide)a->d[0] * b->d[j] + carry;
-        r->d[j] = (gxb_limb)t;
-        carry = (gxb_limb)(t >> GXB_LIMB_BITS);
-    }
+    for (j = 0; j < b->n; j++) r->d[j] = gxbp_multiply(a->d[0], b->d[j], 0, carry, &carry);
     r->d[b->n] = carry;
     for (i = 1; i < a->n; i++) {
         const gxb_limb x = a->d[i];
         gxb_limb *d = r->d + i;
         carry = 0;
-        for (j = 0; j < b->n; j++) {
-            const gxbp_wide t = (gxbp_wide)x * b->d[j] + d[j] + carry;
-            d[j] = (gxb_limb)t;
-            carry = (gxb_limb)(t >> GXB_LIMB_BITS);
-        }
+        for (j = 0; j < b->n; j++) d[j] = gxbp_multiply(x, b->d[j], d[j], carry, &carry);
         d[b->n] = carry;
     }
     if (r->d[0] == 0 || r->d[r->n - 1] == 0) gxbp_num_trim(r);
@@ -1475,7 +1506,7 @@ static GXBP_APART int gxbp_filter_range(const double *const *x, int count, int d
 /* A short exact stage returns this where coordinates are too far apart for it. */
 #define GXBP_UNKNOWN 2
 
-#if GXB_LIMB_BITS == 64
+#if defined(GXBP_INT128)
 __extension__ typedef __int128 gxbp_signed_wide;
 
 /* Writes the coordinates of count points as integers below 2^61 of one unit. 0: the smallest coordinate needs a finer
@@ -14162,6 +14193,7 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_REGISTER
 #undef GXBP_NO_BALL_EXPONENT
 #undef GXBP_U
+#undef GXBP_INT128
 #undef GXBP_TINY
 #undef GXBP_NO_BALL
 #undef GXBP_UNKNOWN

@@ -79,6 +79,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* cl has neither vectors nor integers of 128 bits of its own: it takes intrinsics, from the compiler's headers. */
+#if defined(_MSC_VER) && !defined(__clang__) && !defined(GXFEM_NO_INTRINSICS) && !defined(GXFEM_INTRINSICS)
+#define GXFEM_INTRINSICS
+#endif
+
 /* With -msimd128 clang before 16 moves a load that fills a vector behind stores to the same address: the headers'
    functions are compiled without vectors then (GXFEM_SCALAR), and not inlined where there are some. */
 #if defined(__wasm_simd128__) && defined(__clang__) && __clang_major__ < 16

@@ -113,6 +113,8 @@
  * 2012: Stomakhin, Howes, Schroeder, Teran, Energetically Consistent Invertible Elasticity, SCA 2012.
  *
  * MACROS. GXFEM_SOLVE_IMPLEMENTATION or GXFEM_IMPLEMENTATION: the code comes here. GXFEM_STATIC: all static.
+ * GXFEM_INTRINSICS: intrinsics, from the compiler's own headers, in place of extensions: vectors of SSE2 or 64-bit
+ * NEON, products of 64-bit integers. cl, which has no extensions, takes them unless GXFEM_NO_INTRINSICS is defined.
  */
 #ifndef GXFEM_SOLVE_INCLUDED
 #define GXFEM_SOLVE_INCLUDED
@@ -122,6 +124,11 @@
 #define GXFEM_SHARED_INCLUDED
 #include <stddef.h>
 #include <stdint.h>
+
+/* cl has neither vectors nor integers of 128 bits of its own: it takes intrinsics, from the compiler's headers. */
+#if defined(_MSC_VER) && !defined(__clang__) && !defined(GXFEM_NO_INTRINSICS) && !defined(GXFEM_INTRINSICS)
+#define GXFEM_INTRINSICS
+#endif
 
 /* With -msimd128 clang before 16 moves a load that fills a vector behind stores to the same address: the headers'
    functions are compiled without vectors then (GXFEM_SCALAR), and not inlined where there are some. */
@@ -582,6 +589,12 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #include <stdlib.h>
 #include <string.h>
 
+#if defined(GXFEM_INTRINSICS) && (defined(__SSE2__) || defined(_M_X64))
+#include <emmintrin.h>
+#elif defined(GXFEM_INTRINSICS) && (defined(__aarch64__) || defined(_M_ARM64))
+#include <arm_neon.h>
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -842,19 +855,123 @@ extern "C" {
 #define GXSP_EACH_LANE(l)   GXSP_EACH(l, GXSP_LANES)
 #define GXSP_EACH_OF_TWO(l) GXSP_EACH(l, 2 * GXSP_LANES)
 
-/* Vectors for code that compilers do not vectorise: shuffles of nodes' vectors and blocks, many sums at a time.
- * Shuffles of vectors longer than the machine's are compiled number by number. Hence vectors of eight floats with
- * AVX only. */
-#if (defined(__clang__) || (defined(__GNUC__) && __GNUC__ >= 12)) && !defined(GXFEM_SCALAR)
+/* clang-format off */
+/* Vectors for code that compilers do not vectorise: shuffles of nodes' vectors and blocks, many sums at a time. They
+ * come from the compiler's own extensions, or from intrinsics of SSE2 or NEON. Elsewhere GXSP_SHUFFLES is not defined,
+ * and plain C takes their place. Macros, since compilers warn of functions that take vectors the target lacks.
+ *   FILLED     declares a vector of four equal numbers; with x87 the number itself would become a long double, by
+ *              which no vector can be multiplied
+ *   ZIP_LOW    a0 b0 a1 b1;  ZIP_HIGH: a2 b2 a3 b3
+ *   JOIN_LOW   a0 a1 b0 b1;  JOIN_HIGH: a2 a3 b2 b3
+ *   HALVES     a[i] a[j] b[k] b[l]
+ *   ADD_LOW    adds the first two numbers to those at to;  ADD_HIGH: the last two
+ *   EVENS      x0 y0 of two pairs of doubles;  ODDS: x1 y1
+ *   NARROW     four doubles less four others, as floats
+ *   DOUBLES    how many doubles a gxsp_doubles holds
+ * Shuffles of vectors longer than the machine's are compiled number by number. Hence vectors of eight floats with AVX
+ * only. */
+#if defined(GXFEM_SCALAR)
+#elif defined(GXFEM_INTRINSICS) && (defined(__SSE2__) || defined(_M_X64))
 #define GXSP_SHUFFLES
+#define GXSP_DOUBLES                  2
+typedef __m128 gxsp_four;
+typedef __m128d gxsp_pair;
+typedef __m128d gxsp_doubles;
+#define GXSP_LOAD(x)                  _mm_loadu_ps(x)
+#define GXSP_STORE(to, a)             _mm_storeu_ps(to, a)
+#define GXSP_FILLED(a, number)        const gxsp_four a = _mm_set1_ps(number)
+#define GXSP_PLUS(a, b)               _mm_add_ps(a, b)
+#define GXSP_TIMES(a, b)              _mm_mul_ps(a, b)
+#define GXSP_ZIP_LOW(a, b)            _mm_unpacklo_ps(a, b)
+#define GXSP_ZIP_HIGH(a, b)           _mm_unpackhi_ps(a, b)
+#define GXSP_JOIN_LOW(a, b)           _mm_movelh_ps(a, b)
+#define GXSP_JOIN_HIGH(a, b)          _mm_movehl_ps(b, a)
+#define GXSP_HALVES(a, b, i, j, k, l) _mm_shuffle_ps(a, b, _MM_SHUFFLE(l, k, j, i))
+#define GXSP_ADD_LOW(to, a)                                                                                            \
+    _mm_storel_pi((__m64 *)(void *)(to),                                                                               \
+                  _mm_add_ps(a, _mm_loadl_pi(_mm_setzero_ps(), (const __m64 *)(const void *)(to))))
+#define GXSP_ADD_HIGH(to, a)                                                                                           \
+    _mm_storeh_pi((__m64 *)(void *)(to),                                                                               \
+                  _mm_add_ps(a, _mm_loadh_pi(_mm_setzero_ps(), (const __m64 *)(const void *)(to))))
+#define GXSP_LOAD_PAIR(x)      _mm_loadu_pd(x)
+#define GXSP_STORE_PAIR(to, x) _mm_storeu_pd(to, x)
+#define GXSP_EVENS(x, y)       _mm_unpacklo_pd(x, y)
+#define GXSP_ODDS(x, y)        _mm_unpackhi_pd(x, y)
+#define GXSP_NARROW(x, y)                                                                                              \
+    _mm_movelh_ps(_mm_cvtpd_ps(_mm_sub_pd(_mm_loadu_pd(x), _mm_loadu_pd(y))),                                          \
+                  _mm_cvtpd_ps(_mm_sub_pd(_mm_loadu_pd((x) + 2), _mm_loadu_pd((y) + 2))))
+#define GXSP_NO_DOUBLES             _mm_setzero_pd()
+#define GXSP_LOAD_DOUBLES(x)        _mm_loadu_pd(x)
+#define GXSP_WIDEN(a)               _mm_cvtps_pd(_mm_loadl_pi(_mm_setzero_ps(), (const __m64 *)(const void *)(a)))
+#define GXSP_ADD_PRODUCT(sum, x, y) ((sum) = _mm_add_pd(sum, _mm_mul_pd(x, y)))
+#define GXSP_SUM_DOUBLES(x)         _mm_cvtsd_f64(_mm_add_sd(x, _mm_unpackhi_pd(x, x)))
+#elif defined(GXFEM_INTRINSICS) && (defined(__aarch64__) || defined(_M_ARM64))
+#define GXSP_SHUFFLES
+#define GXSP_DOUBLES           2
+typedef float32x4_t gxsp_four;
+typedef float64x2_t gxsp_pair;
+typedef float64x2_t gxsp_doubles;
+#define GXSP_LOAD(x)           vld1q_f32(x)
+#define GXSP_STORE(to, a)      vst1q_f32(to, a)
+#define GXSP_FILLED(a, number) const gxsp_four a = vdupq_n_f32(number)
+#define GXSP_PLUS(a, b)        vaddq_f32(a, b)
+#define GXSP_TIMES(a, b)       vmulq_f32(a, b)
+#define GXSP_ZIP_LOW(a, b)     vzip1q_f32(a, b)
+#define GXSP_ZIP_HIGH(a, b)    vzip2q_f32(a, b)
+#define GXSP_JOIN_LOW(a, b)    vcombine_f32(vget_low_f32(a), vget_low_f32(b))
+#define GXSP_JOIN_HIGH(a, b)   vcombine_f32(vget_high_f32(a), vget_high_f32(b))
+#define GXSP_HALVES(a, b, i, j, k, l)                                                                                  \
+    vcopyq_laneq_f32(vcopyq_laneq_f32(vcopyq_laneq_f32(vdupq_laneq_f32(a, i), 1, a, j), 2, b, k), 3, b, l)
+#define GXSP_ADD_LOW(to, a)    vst1_f32(to, vadd_f32(vld1_f32(to), vget_low_f32(a)))
+#define GXSP_ADD_HIGH(to, a)   vst1_f32(to, vadd_f32(vld1_f32(to), vget_high_f32(a)))
+#define GXSP_LOAD_PAIR(x)      vld1q_f64(x)
+#define GXSP_STORE_PAIR(to, x) vst1q_f64(to, x)
+#define GXSP_EVENS(x, y)       vzip1q_f64(x, y)
+#define GXSP_ODDS(x, y)        vzip2q_f64(x, y)
+#define GXSP_NARROW(x, y)                                                                                              \
+    vcombine_f32(vcvt_f32_f64(vsubq_f64(vld1q_f64(x), vld1q_f64(y))),                                                  \
+                 vcvt_f32_f64(vsubq_f64(vld1q_f64((x) + 2), vld1q_f64((y) + 2))))
+#define GXSP_NO_DOUBLES             vdupq_n_f64(0)
+#define GXSP_LOAD_DOUBLES(x)        vld1q_f64(x)
+#define GXSP_WIDEN(a)               vcvt_f64_f32(vld1_f32(a))
+#define GXSP_ADD_PRODUCT(sum, x, y) ((sum) = vfmaq_f64(sum, x, y))
+#define GXSP_SUM_DOUBLES(x)         vaddvq_f64(x)
+#elif (defined(__clang__) || (defined(__GNUC__) && __GNUC__ >= 12)) && !defined(GXFEM_INTRINSICS)
+#define GXSP_SHUFFLES
+#define GXSP_DOUBLES 4
 typedef __attribute__((vector_size(8), aligned(4), may_alias)) float gxsp_two;
 typedef __attribute__((vector_size(16), aligned(4), may_alias)) float gxsp_four;
-typedef __attribute__((vector_size(16), aligned(8), may_alias)) double gxsp_two_doubles;
-typedef __attribute__((vector_size(32), aligned(8), may_alias)) double gxsp_four_doubles;
+typedef __attribute__((vector_size(16), aligned(8), may_alias)) double gxsp_pair;
+typedef __attribute__((vector_size(32), aligned(8), may_alias)) double gxsp_doubles;
 #if defined(__AVX__)
+#define GXSP_AVX
 typedef __attribute__((vector_size(32), aligned(4), may_alias)) float gxsp_eight;
 #endif
+#define GXSP_LOAD(x)                  (*(const gxsp_four *)(x))
+#define GXSP_STORE(to, a)             (*(gxsp_four *)(to) = (a))
+#define GXSP_FILLED(a, number)        const gxsp_four a = {number, number, number, number}
+#define GXSP_PLUS(a, b)               ((a) + (b))
+#define GXSP_TIMES(a, b)              ((a) * (b))
+#define GXSP_ZIP_LOW(a, b)            __builtin_shufflevector(a, b, 0, 4, 1, 5)
+#define GXSP_ZIP_HIGH(a, b)           __builtin_shufflevector(a, b, 2, 6, 3, 7)
+#define GXSP_JOIN_LOW(a, b)           __builtin_shufflevector(a, b, 0, 1, 4, 5)
+#define GXSP_JOIN_HIGH(a, b)          __builtin_shufflevector(a, b, 2, 3, 6, 7)
+#define GXSP_HALVES(a, b, i, j, k, l) __builtin_shufflevector(a, b, i, j, 4 + (k), 4 + (l))
+#define GXSP_ADD_LOW(to, a)           (*(gxsp_two *)(to) += __builtin_shufflevector(a, a, 0, 1))
+#define GXSP_ADD_HIGH(to, a)          (*(gxsp_two *)(to) += __builtin_shufflevector(a, a, 2, 3))
+#define GXSP_LOAD_PAIR(x)             (*(const gxsp_pair *)(x))
+#define GXSP_STORE_PAIR(to, x)        (*(gxsp_pair *)(to) = (x))
+#define GXSP_EVENS(x, y)              __builtin_shufflevector(x, y, 0, 2)
+#define GXSP_ODDS(x, y)               __builtin_shufflevector(x, y, 1, 3)
+#define GXSP_NARROW(x, y)                                                                                              \
+    __builtin_convertvector(*(const gxsp_doubles *)(x) - *(const gxsp_doubles *)(y), gxsp_four)
+#define GXSP_NO_DOUBLES             {0, 0, 0, 0}
+#define GXSP_LOAD_DOUBLES(x)        (*(const gxsp_doubles *)(x))
+#define GXSP_WIDEN(a)               __builtin_convertvector(*(const gxsp_four *)(a), gxsp_doubles)
+#define GXSP_ADD_PRODUCT(sum, x, y) ((sum) += (x) * (y))
+#define GXSP_SUM_DOUBLES(x)         (((x)[0] + (x)[2]) + ((x)[1] + (x)[3]))
 #endif
+/* clang-format on */
 
 /* One number per element of a block */
 typedef double gxsp_lanes[GXSP_LANES];
@@ -1792,6 +1909,10 @@ GXSP_INLINE void gxsp_prefetch(const void *memory, size_t size) {
     const char *line = (const char *)memory;
     size_t k;
     for (k = 0; k < size; k += 64) __builtin_prefetch(line + k);
+#elif defined(GXFEM_INTRINSICS) && defined(_M_X64)
+    const char *line = (const char *)memory;
+    size_t k;
+    for (k = 0; k < size; k += 64) _mm_prefetch(line + k, _MM_HINT_T0);
 #else
     (void)memory;
     (void)size;
@@ -5791,30 +5912,28 @@ static void gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, 
     to[3 * i] = 0;
 }
 
-#if defined(GXSP_SHUFFLES) && !defined(__AVX__)
+#if defined(GXSP_SHUFFLES) && !defined(GXSP_AVX)
 /* Three numbers of each of two nodes to three arrays */
 static inline void gxsp_load_two(const double *x, const double *y, double *to0, double *to1, double *to2) {
-    const gxsp_two_doubles a = *(const gxsp_two_doubles *)x, b = *(const gxsp_two_doubles *)y;
-    *(gxsp_two_doubles *)to0 = __builtin_shufflevector(a, b, 0, 2);
-    *(gxsp_two_doubles *)to1 = __builtin_shufflevector(a, b, 1, 3);
+    const gxsp_pair a = GXSP_LOAD_PAIR(x), b = GXSP_LOAD_PAIR(y);
+    GXSP_STORE_PAIR(to0, GXSP_EVENS(a, b));
+    GXSP_STORE_PAIR(to1, GXSP_ODDS(a, b));
     to2[0] = x[2], to2[1] = y[2];
 }
 #endif
 
 /* Three numbers of each of four nodes to three arrays. The last node's are followed by one more. */
 static inline void gxsp_load_four(const uint16_t *node, const double *x, double *to0, double *to1, double *to2) {
-#if defined(GXSP_SHUFFLES) && defined(__AVX__)
-    const gxsp_four_doubles a = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[0]),
-                            b = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[1]),
-                            c = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[2]),
-                            d = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[3]);
-    const gxsp_four_doubles p = __builtin_shufflevector(a, b, 0, 4, 2, 6),
-                            q = __builtin_shufflevector(c, d, 0, 4, 2, 6);
-    const gxsp_four_doubles r = __builtin_shufflevector(a, b, 1, 5, 3, 7),
-                            s = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-    *(gxsp_four_doubles *)to0 = __builtin_shufflevector(p, q, 0, 1, 4, 5);
-    *(gxsp_four_doubles *)to1 = __builtin_shufflevector(r, s, 0, 1, 4, 5);
-    *(gxsp_four_doubles *)to2 = __builtin_shufflevector(p, q, 2, 3, 6, 7);
+#if defined(GXSP_AVX)
+    const gxsp_doubles a = *(const gxsp_doubles *)(x + 3 * (size_t)node[0]),
+                       b = *(const gxsp_doubles *)(x + 3 * (size_t)node[1]),
+                       c = *(const gxsp_doubles *)(x + 3 * (size_t)node[2]),
+                       d = *(const gxsp_doubles *)(x + 3 * (size_t)node[3]);
+    const gxsp_doubles p = __builtin_shufflevector(a, b, 0, 4, 2, 6), q = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+    const gxsp_doubles r = __builtin_shufflevector(a, b, 1, 5, 3, 7), s = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    *(gxsp_doubles *)to0 = __builtin_shufflevector(p, q, 0, 1, 4, 5);
+    *(gxsp_doubles *)to1 = __builtin_shufflevector(r, s, 0, 1, 4, 5);
+    *(gxsp_doubles *)to2 = __builtin_shufflevector(p, q, 2, 3, 6, 7);
 #elif defined(GXSP_SHUFFLES)
     gxsp_load_two(x + 3 * (size_t)node[0], x + 3 * (size_t)node[1], to0, to1, to2);
     gxsp_load_two(x + 3 * (size_t)node[2], x + 3 * (size_t)node[3], to0 + 2, to1 + 2, to2 + 2);
@@ -6041,13 +6160,14 @@ static void gxsp_evaluate_elements(gxsp_system *system, double rate, const doubl
 
 /* Stores whole vectors: processors cannot forward narrower stores to the wide loads that soon follow. */
 static inline void gxsp_transpose_block(const float *GXSP_RESTRICT a, float *GXSP_RESTRICT transposed) {
-#if defined(GXSP_SHUFFLES) && defined(__AVX__)
+#if defined(GXSP_AVX)
     const gxsp_eight all = *(const gxsp_eight *)a;
     *(gxsp_eight *)transposed = __builtin_shufflevector(all, all, 0, 3, 6, 1, 4, 7, 2, 5);
 #elif defined(GXSP_SHUFFLES)
-    const gxsp_four low = *(const gxsp_four *)a, high = *(const gxsp_four *)(a + 4);
-    *(gxsp_four *)transposed = __builtin_shufflevector(low, high, 0, 3, 6, 1);
-    *(gxsp_four *)(transposed + 4) = __builtin_shufflevector(low, high, 4, 7, 2, 5);
+    const gxsp_four low = GXSP_LOAD(a), high = GXSP_LOAD(a + 4);
+    const gxsp_four p = GXSP_HALVES(high, low, 2, 2, 1, 1), q = GXSP_HALVES(low, high, 2, 2, 1, 1);
+    GXSP_STORE(transposed, GXSP_HALVES(low, p, 0, 3, 0, 2));
+    GXSP_STORE(transposed + 4, GXSP_HALVES(high, q, 0, 3, 0, 2));
 #else
     transposed[0] = a[0], transposed[1] = a[3], transposed[2] = a[6], transposed[3] = a[1];
     transposed[4] = a[4], transposed[5] = a[7], transposed[6] = a[2], transposed[7] = a[5];
@@ -6074,9 +6194,8 @@ static void gxsp_add_scaled(float a, const float *GXSP_RESTRICT x, float *GXSP_R
 /* y += a x for four numbers */
 static inline void gxsp_add_four(float a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y) {
 #if defined(GXSP_SHUFFLES)
-    /* with x87, a alone would become a long double, by which no vector can be multiplied */
-    const gxsp_four all = {a, a, a, a};
-    *(gxsp_four *)y += all * *(const gxsp_four *)x;
+    GXSP_FILLED(all, a);
+    GXSP_STORE(y, GXSP_PLUS(GXSP_LOAD(y), GXSP_TIMES(all, GXSP_LOAD(x))));
 #else
     int k;
     for (k = 0; k < 4; k++) y[k] += a * x[k];
@@ -6109,7 +6228,7 @@ static void gxsp_apply_packed(const float *d, const float *x, float *y) {
 
 #if defined(GXSP_SHUFFLES)
 /* Four nodes' vectors to three components side by side and back */
-#if defined(__AVX__)
+#if defined(GXSP_AVX)
 /* All eight lanes at once: narrower stores would not be forwarded to the loads that soon follow. */
 static inline void gxsp_gather_eight(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2) {
     const gxsp_four a = *(const gxsp_four *)x[node[0]], b = *(const gxsp_four *)x[node[1]],
@@ -6130,13 +6249,13 @@ static inline void gxsp_gather_eight(const uint16_t *node, const gxsp_vector4 *x
 }
 #else
 static inline void gxsp_gather_four(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2) {
-    const gxsp_four a = *(const gxsp_four *)x[node[0]], b = *(const gxsp_four *)x[node[1]],
-                    c = *(const gxsp_four *)x[node[2]], d = *(const gxsp_four *)x[node[3]];
-    const gxsp_four p = __builtin_shufflevector(a, b, 0, 4, 1, 5), q = __builtin_shufflevector(c, d, 0, 4, 1, 5);
-    const gxsp_four r = __builtin_shufflevector(a, b, 2, 6, 3, 7), s = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-    *(gxsp_four *)to0 = __builtin_shufflevector(p, q, 0, 1, 4, 5);
-    *(gxsp_four *)to1 = __builtin_shufflevector(p, q, 2, 3, 6, 7);
-    *(gxsp_four *)to2 = __builtin_shufflevector(r, s, 0, 1, 4, 5);
+    const gxsp_four a = GXSP_LOAD(x[node[0]]), b = GXSP_LOAD(x[node[1]]), c = GXSP_LOAD(x[node[2]]),
+                    d = GXSP_LOAD(x[node[3]]);
+    const gxsp_four p = GXSP_ZIP_LOW(a, b), q = GXSP_ZIP_LOW(c, d);
+    const gxsp_four r = GXSP_ZIP_HIGH(a, b), s = GXSP_ZIP_HIGH(c, d);
+    GXSP_STORE(to0, GXSP_JOIN_LOW(p, q));
+    GXSP_STORE(to1, GXSP_JOIN_HIGH(p, q));
+    GXSP_STORE(to2, GXSP_JOIN_LOW(r, s));
 }
 
 /* Compilers shuffle vectors longer than the machine's number by number. */
@@ -6148,38 +6267,38 @@ static inline void gxsp_gather_eight(const uint16_t *node, const gxsp_vector4 *x
 
 static inline void gxsp_scatter_four(const uint16_t *node, const float *from0, const float *from1, const float *from2,
                                      gxsp_vector4 *y) {
-    const gxsp_four p = *(const gxsp_four *)from0, q = *(const gxsp_four *)from1, r = *(const gxsp_four *)from2;
-    const gxsp_four low = __builtin_shufflevector(p, q, 0, 4, 1, 5), high = __builtin_shufflevector(p, q, 2, 6, 3, 7);
-    *(gxsp_four *)y[node[0]] += __builtin_shufflevector(low, r, 0, 1, 4, 4);
-    *(gxsp_four *)y[node[1]] += __builtin_shufflevector(low, r, 2, 3, 5, 5);
-    *(gxsp_four *)y[node[2]] += __builtin_shufflevector(high, r, 0, 1, 6, 6);
-    *(gxsp_four *)y[node[3]] += __builtin_shufflevector(high, r, 2, 3, 7, 7);
+    const gxsp_four p = GXSP_LOAD(from0), q = GXSP_LOAD(from1), r = GXSP_LOAD(from2);
+    const gxsp_four low = GXSP_ZIP_LOW(p, q), high = GXSP_ZIP_HIGH(p, q);
+    GXSP_STORE(y[node[0]], GXSP_PLUS(GXSP_LOAD(y[node[0]]), GXSP_HALVES(low, r, 0, 1, 0, 0)));
+    GXSP_STORE(y[node[1]], GXSP_PLUS(GXSP_LOAD(y[node[1]]), GXSP_HALVES(low, r, 2, 3, 1, 1)));
+    GXSP_STORE(y[node[2]], GXSP_PLUS(GXSP_LOAD(y[node[2]]), GXSP_HALVES(high, r, 0, 1, 2, 2)));
+    GXSP_STORE(y[node[3]], GXSP_PLUS(GXSP_LOAD(y[node[3]]), GXSP_HALVES(high, r, 2, 3, 3, 3)));
 }
 
 static inline void gxsp_transpose_four(const float *a, const float *b, const float *c, const float *d,
                                        gxsp_four *transposed) {
-    const gxsp_four p = *(const gxsp_four *)a, q = *(const gxsp_four *)b, r = *(const gxsp_four *)c,
-                    s = *(const gxsp_four *)d;
-    const gxsp_four low = __builtin_shufflevector(p, q, 0, 4, 1, 5), high = __builtin_shufflevector(p, q, 2, 6, 3, 7);
-    const gxsp_four next = __builtin_shufflevector(r, s, 0, 4, 1, 5), last = __builtin_shufflevector(r, s, 2, 6, 3, 7);
-    transposed[0] = __builtin_shufflevector(low, next, 0, 1, 4, 5);
-    transposed[1] = __builtin_shufflevector(low, next, 2, 3, 6, 7);
-    transposed[2] = __builtin_shufflevector(high, last, 0, 1, 4, 5);
-    transposed[3] = __builtin_shufflevector(high, last, 2, 3, 6, 7);
+    const gxsp_four p = GXSP_LOAD(a), q = GXSP_LOAD(b), r = GXSP_LOAD(c), s = GXSP_LOAD(d);
+    const gxsp_four low = GXSP_ZIP_LOW(p, q), high = GXSP_ZIP_HIGH(p, q);
+    const gxsp_four next = GXSP_ZIP_LOW(r, s), last = GXSP_ZIP_HIGH(r, s);
+    transposed[0] = GXSP_JOIN_LOW(low, next);
+    transposed[1] = GXSP_JOIN_HIGH(low, next);
+    transposed[2] = GXSP_JOIN_LOW(high, last);
+    transposed[3] = GXSP_JOIN_HIGH(high, last);
 }
 
 /* Six numbers of each of four lanes to those of their nodes, six side by side */
 static inline void gxsp_scatter_six(const uint16_t *node, gxsp_singles *from, int lane, float *y) {
-    const gxsp_four p = *(const gxsp_four *)(from[4] + lane), q = *(const gxsp_four *)(from[5] + lane);
-    const gxsp_four low = __builtin_shufflevector(p, q, 0, 4, 1, 5), high = __builtin_shufflevector(p, q, 2, 6, 3, 7);
+    const gxsp_four p = GXSP_LOAD(from[4] + lane), q = GXSP_LOAD(from[5] + lane);
+    const gxsp_four low = GXSP_ZIP_LOW(p, q), high = GXSP_ZIP_HIGH(p, q);
     gxsp_four first[4];
     int k;
     gxsp_transpose_four(from[0] + lane, from[1] + lane, from[2] + lane, from[3] + lane, first);
-    for (k = 0; k < 4; k++) *(gxsp_four *)(y + 6 * (size_t)node[k]) += first[k];
-    *(gxsp_two *)(y + 6 * (size_t)node[0] + 4) += __builtin_shufflevector(low, low, 0, 1);
-    *(gxsp_two *)(y + 6 * (size_t)node[1] + 4) += __builtin_shufflevector(low, low, 2, 3);
-    *(gxsp_two *)(y + 6 * (size_t)node[2] + 4) += __builtin_shufflevector(high, high, 0, 1);
-    *(gxsp_two *)(y + 6 * (size_t)node[3] + 4) += __builtin_shufflevector(high, high, 2, 3);
+    for (k = 0; k < 4; k++)
+        GXSP_STORE(y + 6 * (size_t)node[k], GXSP_PLUS(GXSP_LOAD(y + 6 * (size_t)node[k]), first[k]));
+    GXSP_ADD_LOW(y + 6 * (size_t)node[0] + 4, low);
+    GXSP_ADD_HIGH(y + 6 * (size_t)node[1] + 4, low);
+    GXSP_ADD_LOW(y + 6 * (size_t)node[2] + 4, high);
+    GXSP_ADD_HIGH(y + 6 * (size_t)node[3] + 4, high);
 }
 
 /* Each lane's nine numbers to those of its entry */
@@ -6191,8 +6310,8 @@ static inline void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, fl
         gxsp_transpose_four(block[4] + l, block[5] + l, block[6] + l, block[7] + l, second);
         for (k = 0; k < 4; k++) {
             float *sum = to[entry[l + k]];
-            *(gxsp_four *)sum += first[k];
-            *(gxsp_four *)(sum + 4) += second[k];
+            GXSP_STORE(sum, GXSP_PLUS(GXSP_LOAD(sum), first[k]));
+            GXSP_STORE(sum + 4, GXSP_PLUS(GXSP_LOAD(sum + 4), second[k]));
             sum[8] += block[8][l + k];
         }
     }
@@ -6594,8 +6713,7 @@ static double gxsp_product(gxsp_system *system, double rate, gxsp_vector4 *x, gx
 /* The first three of four doubles minus those of origin, in single precision */
 static inline void gxsp_narrow_four(const double *x, const double *origin, float *to) {
 #if defined(GXSP_SHUFFLES)
-    *(gxsp_four *)to =
-        __builtin_convertvector(*(const gxsp_four_doubles *)x - *(const gxsp_four_doubles *)origin, gxsp_four);
+    GXSP_STORE(to, GXSP_NARROW(x, origin));
 #else
     int k;
     for (k = 0; k < 3; k++) to[k] = (float)(x[k] - origin[k]);
@@ -7452,23 +7570,18 @@ static void gxsp_nine_dots(const double *GXSP_RESTRICT a, size_t n, const float 
                            double *GXSP_RESTRICT dots) {
     size_t k = 0;
 #if defined(GXSP_SHUFFLES)
-    gxsp_four_doubles s0 = {0, 0, 0, 0}, s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0, s8 = s0;
-    for (; k + 4 <= count; k += 4) {
-        const gxsp_four_doubles x = __builtin_convertvector(*(const gxsp_four *)(b[0] + k), gxsp_four_doubles);
-        const gxsp_four_doubles y = __builtin_convertvector(*(const gxsp_four *)(b[1] + k), gxsp_four_doubles);
-        const gxsp_four_doubles z = __builtin_convertvector(*(const gxsp_four *)(b[2] + k), gxsp_four_doubles);
-        const gxsp_four_doubles p = *(const gxsp_four_doubles *)(a + k), q = *(const gxsp_four_doubles *)(a + n + k),
-                                r = *(const gxsp_four_doubles *)(a + 2 * n + k);
-        s0 += p * x, s1 += p * y, s2 += p * z;
-        s3 += q * x, s4 += q * y, s5 += q * z;
-        s6 += r * x, s7 += r * y, s8 += r * z;
+    gxsp_doubles s0 = GXSP_NO_DOUBLES, s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0, s8 = s0;
+    for (; k + GXSP_DOUBLES <= count; k += GXSP_DOUBLES) {
+        const gxsp_doubles x = GXSP_WIDEN(b[0] + k), y = GXSP_WIDEN(b[1] + k), z = GXSP_WIDEN(b[2] + k);
+        const gxsp_doubles p = GXSP_LOAD_DOUBLES(a + k), q = GXSP_LOAD_DOUBLES(a + n + k),
+                           r = GXSP_LOAD_DOUBLES(a + 2 * n + k);
+        GXSP_ADD_PRODUCT(s0, p, x), GXSP_ADD_PRODUCT(s1, p, y), GXSP_ADD_PRODUCT(s2, p, z);
+        GXSP_ADD_PRODUCT(s3, q, x), GXSP_ADD_PRODUCT(s4, q, y), GXSP_ADD_PRODUCT(s5, q, z);
+        GXSP_ADD_PRODUCT(s6, r, x), GXSP_ADD_PRODUCT(s7, r, y), GXSP_ADD_PRODUCT(s8, r, z);
     }
-    dots[0] = (s0[0] + s0[2]) + (s0[1] + s0[3]), dots[1] = (s1[0] + s1[2]) + (s1[1] + s1[3]),
-    dots[2] = (s2[0] + s2[2]) + (s2[1] + s2[3]);
-    dots[3] = (s3[0] + s3[2]) + (s3[1] + s3[3]), dots[4] = (s4[0] + s4[2]) + (s4[1] + s4[3]),
-    dots[5] = (s5[0] + s5[2]) + (s5[1] + s5[3]);
-    dots[6] = (s6[0] + s6[2]) + (s6[1] + s6[3]), dots[7] = (s7[0] + s7[2]) + (s7[1] + s7[3]),
-    dots[8] = (s8[0] + s8[2]) + (s8[1] + s8[3]);
+    dots[0] = GXSP_SUM_DOUBLES(s0), dots[1] = GXSP_SUM_DOUBLES(s1), dots[2] = GXSP_SUM_DOUBLES(s2);
+    dots[3] = GXSP_SUM_DOUBLES(s3), dots[4] = GXSP_SUM_DOUBLES(s4), dots[5] = GXSP_SUM_DOUBLES(s5);
+    dots[6] = GXSP_SUM_DOUBLES(s6), dots[7] = GXSP_SUM_DOUBLES(s7), dots[8] = GXSP_SUM_DOUBLES(s8);
 #else
     memset(dots, 0, 9 * sizeof *dots);
 #endif
@@ -10872,14 +10985,16 @@ GXSP_INLINE void gxsp_leap_group_product(const gxsp_leap *leap, size_t group, co
     const size_t end = leap->start[group + 1];
     size_t k, r;
 #if defined(GXSP_SHUFFLES)
-    gxsp_four sum[GXSP_LEAP_ROWS] = {{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}};
+    GXSP_FILLED(zero, 0);
+    gxsp_four sum[GXSP_LEAP_ROWS];
+    for (r = 0; r < GXSP_LEAP_ROWS; r++) sum[r] = zero;
     for (k = leap->start[group]; k < end; k++)
         for (r = 0; r < GXSP_LEAP_ROWS; r++) {
             const float entry = leap->entry[GXSP_LEAP_ROWS * k + r];
-            const gxsp_four all = {entry, entry, entry, entry};
-            sum[r] += all * *(const gxsp_four *)x[leap->column[GXSP_LEAP_ROWS * k + r]];
+            GXSP_FILLED(all, entry);
+            sum[r] = GXSP_PLUS(sum[r], GXSP_TIMES(all, GXSP_LOAD(x[leap->column[GXSP_LEAP_ROWS * k + r]])));
         }
-    for (r = 0; r < GXSP_LEAP_ROWS; r++) *(gxsp_four *)sums[r] = sum[r];
+    for (r = 0; r < GXSP_LEAP_ROWS; r++) GXSP_STORE(sums[r], sum[r]);
 #else
     int c;
     memset(sums, 0, GXSP_LEAP_ROWS * sizeof *sums); /* the fourth number too */
@@ -12089,6 +12204,30 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_IN
 #undef GXSP_COLUMNS
 #undef GXSP_SHUFFLES
+#undef GXSP_AVX
+#undef GXSP_DOUBLES
+#undef GXSP_LOAD
+#undef GXSP_STORE
+#undef GXSP_FILLED
+#undef GXSP_PLUS
+#undef GXSP_TIMES
+#undef GXSP_ZIP_LOW
+#undef GXSP_ZIP_HIGH
+#undef GXSP_JOIN_LOW
+#undef GXSP_JOIN_HIGH
+#undef GXSP_HALVES
+#undef GXSP_ADD_LOW
+#undef GXSP_ADD_HIGH
+#undef GXSP_LOAD_PAIR
+#undef GXSP_STORE_PAIR
+#undef GXSP_EVENS
+#undef GXSP_ODDS
+#undef GXSP_NARROW
+#undef GXSP_NO_DOUBLES
+#undef GXSP_LOAD_DOUBLES
+#undef GXSP_WIDEN
+#undef GXSP_ADD_PRODUCT
+#undef GXSP_SUM_DOUBLES
 #undef GXSP_AFFINE_TASK
 #undef GXSP_AFFINE_ROUND
 #ifdef GXFEM_SCALAR

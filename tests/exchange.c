@@ -1,7 +1,8 @@
 /* exchange.c - bodies that are saved on one machine and go on on another. platforms.sh runs it on both.
 
        exchange write FILE   cuts a block, moves it, saves it
-       exchange read FILE    loads it, cuts it again, and prints hashes of what came */
+       exchange read FILE    loads it, cuts it again, and prints hashes of what came; then moves it, and prints where
+   to, to four digits: each machine adds in its own order */
 #include "../gxfem.h"
 #include "../bench/block.h"
 
@@ -86,6 +87,28 @@ static void print_hash(const char *name, uint64_t hash) {
     printf("%s %08lx%08lx\n", name, (unsigned long)(hash >> 32), (unsigned long)(hash & 0xffffffff));
 }
 
+/* Hangs by a side for a third of a second */
+static gx_result swing(gx_body *body) {
+    const gx_region side = gx_region_half_space(0, -1, 0.1);
+    gx_step_desc step;
+    gx_view view;
+    gx_result result = gx_body_hold(body, &side, 1, NULL);
+    double sum[3] = {0, 0, 0};
+    size_t i;
+    int k;
+    memset(&step, 0, sizeof step);
+    step.dt = 1.0 / 60;
+    step.gravity[2] = -9.81;
+    step.newton_iterations = 20;
+    for (k = 0; k < 20 && result == GX_OK; k++) result = gx_body_step(body, &step, NULL, NULL);
+    if (result == GX_OK) result = gx_body_view(body, &view, NULL);
+    if (result != GX_OK) return result;
+    for (i = 0; i < view.copy_count; i++)
+        for (k = 0; k < 3; k++) sum[k] += view.displacement[3 * i + (size_t)k] * view.displacement[3 * i + (size_t)k];
+    printf("moved %.4g %.4g %.4g\n", sum[0], sum[1], sum[2]);
+    return GX_OK;
+}
+
 static int read_file(const char *path) {
     static unsigned char bytes[1 << 22];
     gx_body *body = NULL;
@@ -102,6 +125,8 @@ static int read_file(const char *path) {
     result = cut(body, 1);
     if (result != GX_OK) return fail("a cut", result);
     print_hash("cut", gx_body_topology_hash(body, NULL));
+    result = swing(body);
+    if (result != GX_OK) return fail("steps", result);
     gx_body_destroy(body);
     return 0;
 }

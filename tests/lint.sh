@@ -223,7 +223,8 @@ rule_prefixes() {
 provided='__cplusplus|__SIZEOF_INT128__|__extension__|__int128|__GNUC__|__clang__|_MSC_VER|__restrict|_Pragma|__attribute__|__declspec|__forceinline|__pragma'
 provided="$provided|__asm__|__clang_major__|__SSE2_MATH__|__AVX__|__aarch64__|__arm__|__ARM_FP|__riscv_flen|__s390x__"
 provided="$provided|__powerpc64__|__wasm__|__wasm_simd128__|__builtin_shufflevector|__builtin_convertvector"
-provided="$provided|__builtin_prefetch|__builtin_fabs"
+provided="$provided|__builtin_prefetch|__builtin_fabs|_M_X64|_M_ARM64|__SSE2__|__m64|__m128d?|_mm_[a-z0-9_]+"
+provided="$provided|_MM_SHUFFLE|_MM_HINT_T0|_umul128|__umulh"
 rule_reserved() {
     for header in $headers; do
         sed 's/##[A-Za-z0-9_]*//g' "$work/$header.code" | grep -noE '\b(_[A-Za-z0-9_]*|[A-Za-z0-9_]*__[A-Za-z0-9_]*)\b' |
@@ -236,7 +237,11 @@ rule_includes() {
         ours='^$'
         [ $header = gxfem.h ] && ours='"gxfem_(boolean|integrate|solve)\.h"'
         grep -nE '^ *# *include' "$work/$header.code" | grep -vE "$ours" | sed "s/^/$header:/" |
-            grep -vE '<(assert|ctype|errno|float|limits|math|stdarg|stddef|stdint|stdio|stdlib|string)\.h>'
+            grep -vE '<(assert|ctype|errno|float|limits|math|stdarg|stddef|stdint|stdio|stdlib|string)\.h>' |
+            grep -vE ':#include <(intrin|emmintrin|arm_neon)\.h>'
+        # compilers' own headers, of intrinsics: behind their switch only
+        awk -v header=$header '/# *include <(intrin|emmintrin|arm_neon)\.h>/ && before !~ /GXFEM_INTRINSICS/ { print header ":" FNR ":" $0 }
+            { before = $0 }' "$work/$header.code"
     done
 }
 

@@ -19,9 +19,11 @@ export WINEDEBUG
 table() {
     cat <<'END'
 native|${CC:-cc}||this machine
+native-intrinsics|${CC:-cc} -DGXFEM_INTRINSICS||this machine, vectors by intrinsics
 windows-x64|x86_64-w64-mingw32-gcc -static|wine|Windows, x86-64, by mingw-w64
 windows-x86|i686-w64-mingw32-gcc -static|-|Windows, i686, by mingw-w64
 aarch64|aarch64-linux-gnu-gcc -static|qemu-aarch64-static|ARM, 64 bits
+aarch64-intrinsics|aarch64-linux-gnu-gcc -static -DGXFEM_INTRINSICS|qemu-aarch64-static|ARM, 64 bits, vectors by intrinsics
 armhf|arm-linux-gnueabihf-gcc -static|qemu-arm-static|ARM, 32 bits
 s390x|s390x-linux-gnu-gcc -static|qemu-s390x-static|S/390, the highest byte first
 END
@@ -73,7 +75,7 @@ worker() { # NUMBER: every jobs-th platform
         at=$((at + 1))
         [ $((at % jobs)) -eq "$1" ] || continue
         wanted "$name" || continue
-        [ "$name" = native ] && compiler=$CC
+        case $name in native*) compiler=$CC${compiler#*\}} ;; esac
         one "$name" "$compiler" "$runner" </dev/null
     done <"$dir/table"
 }

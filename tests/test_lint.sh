@@ -143,6 +143,8 @@ edit gxfem_solve.h 's/<string.h>/"gxfem_boolean.h"/'
 expect "a lower header includes another" '"gxfem_boolean.h"' includes
 edit gxfem.h 's/<string.h>/<unistd.h>/'
 expect "a header that is not C's" "unistd.h" includes
+edit gxfem.h 's/<string.h>/<emmintrin.h>/'
+expect "intrinsics without their switch" "emmintrin.h" includes
 
 edit gxfem.h 's/    return sum;/    printf("sum");&/'
 expect "output" "gxfem.h:43" output

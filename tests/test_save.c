@@ -879,7 +879,7 @@ START_TEST(foreign_bytes) {
     { /* older versions, and one yet to come */
         uint32_t version, now;
         memcpy(&now, b.data + 8, sizeof now);
-        ck_assert_uint_eq(now, 8);
+        ck_assert_uint_eq(now, 9);
         for (version = 0; version <= now; version++) {
             const uint32_t wrong = version < now ? version : now + 1;
             memcpy(b.data + 8, &wrong, sizeof wrong);
@@ -1287,6 +1287,37 @@ START_TEST(damaged_blades) {
 }
 END_TEST
 
+/* So is what it needs to leave out moves. */
+START_TEST(damaged_glances) {
+    workload w;
+    gx_body *body = body_with_blade(&w);
+    gx_blade *blade = body->blades, *second = NULL;
+    gxp_glance *g = &blade->now.glance;
+    gx_blade_desc desc;
+    double *const lengths[3] = {&g->travelled, &g->room, &g->course};
+    int i, k;
+    for (i = 0; i < 40 && !(g->ready && g->edge.count > 0 && g->beads.count > 0); i++)
+        ck_assert_int_eq(move_across(blade, 0.36 + 1e-4 * i), GX_OK);
+    ck_assert(g->ready && g->edge.count > 0 && g->beads.count > 0 && g->cut == body->cuts.hash);
+    expect_bad_word(body, &g->ready, 2, "neither ready nor not");
+    expect_bad_word(body, &g->ready, 0, "an edge of a blade that is not ready");
+    expect_bad_word(body, &g->edge.count, g->edge.count - 1, "an edge with a point less");
+    expect_bad_number(body, &g->edge.data[1], NAN, "an edge");
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 2; k++) expect_bad_number(body, lengths[i], k == 0 ? -1 : NAN, "a length");
+    expect_bad_number(body, &g->beads.data[0].along, -1, "a bead on the edge");
+    expect_bad_number(body, &g->beads.data[0].along, 1e10, "a bead on the edge");
+    expect_bad_word(body, &g->beads.data[0].cell, body->cells.count, "a bead's cell");
+    memset(&desc, 0, sizeof desc);
+    ck_assert_int_eq(gx_blade_create(body, &desc, &second, NULL), GX_OK);
+    expect_bad_word(body, &second->now.glance.ready, 1, "two blades that are ready");
+    gx_blade_destroy(blade);
+    expect_bad_word(body, &second->now.glance.ready, 1, "a lifted blade that is ready");
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* Bits and words of what a blade remembers are changed at random: an error, or a blade that can be moved and lifted. */
 START_TEST(hostile_blades) {
     workload w;
@@ -1397,6 +1428,7 @@ int main(void) {
     tcase_add_loop_test(tests, hostile_mixtures, 0, 4);
     tcase_add_test(tests, damaged_facets);
     tcase_add_test(blades, damaged_blades);
+    tcase_add_test(blades, damaged_glances);
     tcase_add_loop_test(blades, hostile_blades, 0, 2);
     tcase_add_test(blades, restoring_blades);
     suite_add_tcase(suite, tests);

@@ -271,6 +271,7 @@ namespace Gxfem {
         public IntPtr element_materials;
         public IntPtr texture;
         public double support_below;
+        public double affine_below;
         public gx_allocator allocator;
         public IntPtr clock;
         public IntPtr clock_user;
@@ -348,6 +349,9 @@ namespace Gxfem {
         public IntPtr removed_ids;
         public double volume;
         public double mass;
+        public IntPtr copy_affine;
+        public IntPtr affine;
+        public IntPtr affine_rate;
     }
 
     [StructLayout(LayoutKind.Sequential)]

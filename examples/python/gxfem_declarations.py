@@ -547,6 +547,7 @@ gx_body_desc._fields_ = [
     ('element_materials', POINTER(c_uint32)),
     ('texture', POINTER(c_float)),
     ('support_below', c_double),
+    ('affine_below', c_double),
     ('allocator', gx_allocator),
     ('clock', CFUNCTYPE(c_double, c_void_p)),
     ('clock_user', c_void_p),
@@ -620,6 +621,9 @@ gx_view._fields_ = [
     ('removed_ids', POINTER(c_uint32)),
     ('volume', c_double),
     ('mass', c_double),
+    ('copy_affine', POINTER(c_uint8)),
+    ('affine', POINTER(c_double)),
+    ('affine_rate', POINTER(c_double)),
 ]
 
 gx_motion._fields_ = [

@@ -11,6 +11,7 @@ double copysign(double x, double sign);
 double cos(double x);
 double exp(double x);
 double fabs(double x);
+float fabsf(float x);
 double floor(double x);
 double fmax(double x, double y);
 double fmin(double x, double y);

@@ -1,0 +1,860 @@
+/* test_sheets.c - tests of bodies with affine copies (gx_body_desc.affine_below): which copies become affine, that
+   nothing moves when they do, that thin pieces bend, motions, points, saving, memory, refusals. */
+#define GXFEM_IMPLEMENTATION
+#include "../gxfem.h"
+
+#include "body.h"
+
+static gx_body *sheet_body_in(memory *m, const workload *w, double affine_below) {
+    gx_body_desc desc = desc_of(w);
+    gx_body *body = NULL;
+    gx_result result;
+    desc.affine_below = affine_below;
+    desc.poisson = 0.3;
+    if (m != NULL) desc.allocator = allocator_of(m);
+    result = gx_body_create(&desc, &body, NULL);
+    ck_assert_msg(result == GX_OK || m != NULL, "create: %s", gx_result_text(result));
+    return body;
+}
+
+static gx_body *sheet_body(const workload *w, double affine_below) { return sheet_body_in(NULL, w, affine_below); }
+
+static size_t affine_count(gx_body *body) {
+    const gx_view view = view_of(body);
+    size_t i, count = 0;
+    for (i = 0; i < view.copy_count && view.copy_affine != NULL; i++) count += view.copy_affine[i];
+    return count;
+}
+
+/* Flings the body and writes random numbers to its state, those of affine copies included. */
+static void shake(gx_body *body, double size) {
+    const gx_view view = view_of(body);
+    size_t i;
+    for (i = 0; i < 3 * view.copy_count; i++) {
+        view.displacement[i] = random_real(-size, size);
+        view.velocity[i] = random_real(-1, 1);
+    }
+    for (i = 0; i < 9 * view.copy_count && view.affine != NULL; i++)
+        if (view.copy_affine[i / 9]) {
+            body->copies.linear[i] = random_real(-size, size);
+            body->copies.linear_rate[i] = random_real(-1, 1);
+        }
+}
+
+static gx_step_desc step_of(double dt, double gravity) {
+    gx_step_desc step;
+    memset(&step, 0, sizeof step);
+    step.dt = dt;
+    step.gravity[2] = gravity;
+    return step;
+}
+
+static void advance(gx_body *body, const gx_step_desc *step) {
+    gx_failure failure;
+    const gx_result result = gx_body_step(body, step, NULL, &failure);
+    ck_assert_msg(result == GX_OK, "step: %s, %s %zu", gx_result_text(result), failure.field ? failure.field : "",
+                  failure.index);
+}
+
+static void hold_left(gx_body *body) {
+    const gx_region left = gx_region_half_space(0, -1, 1e-9);
+    ck_assert_int_eq(gx_body_hold(body, &left, 1, NULL), GX_OK);
+}
+
+/* ---- which copies ---- */
+
+/* A plane through a thick body leaves two thick bodies. */
+START_TEST(a_thick_body_has_none) {
+    int round;
+    random_seed((uint64_t)_i);
+    for (round = 0; round < 4; round++) {
+        workload w = grid(6, 6, 6, round % 2 ? 6 : 5);
+        gx_body *body = sheet_body(&w, 1);
+        double p[3], n[3];
+        int k;
+        ck_assert_uint_eq(affine_count(body), 0);
+        for (k = 0; k < 3; k++) {
+            p[k] = random_real(2.5, 3.5);
+            n[k] = k == _i % 3 ? 1 : random_real(-0.1, 0.1);
+        }
+        if (_i < 3) {
+            add_axis_plane(&w, _i, 2 + round / 2 + (round % 2 ? 1e-3 : -0.05));
+        } else
+            add_plane(&w, p, n, 40);
+        cut_by(body, &w, 0, 1);
+        ck_assert_msg(affine_count(body) == 0, "%d.%d: %zu", _i, round, affine_count(body));
+        gx_body_destroy(body);
+        wl_free(&w);
+    }
+}
+END_TEST
+
+/* Bodies of one layer are thin from the start, of cubes or flat; those of more layers are not. */
+START_TEST(layers_are_thin) {
+    static const double height[4] = {1, 0.2, 1, 0.2};
+    workload w = grid(6, 6, _i < 2 ? 1 : 3, 5);
+    gx_body *body;
+    size_t i;
+    for (i = 0; i < w.node_count; i++) w.positions[3 * i + 2] *= height[_i];
+    body = sheet_body(&w, 1);
+    ck_assert_uint_eq(affine_count(body), _i < 2 ? w.node_count : 0);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Slices of a body: all of their copies, in any placement, and none of the rest. */
+START_TEST(slices_are_thin) {
+    const double low = 2.3 + 0.1 * _i, thick = _i % 2 ? 0.5 : 0.1;
+    workload w = grid(8, 8, 6, 5);
+    gx_body *body = sheet_body(&w, 1);
+    gx_view view;
+    uint32_t sheet = 0;
+    size_t i;
+    int k;
+    add_axis_plane(&w, 2, low);
+    add_axis_plane(&w, 2, low + thick);
+    cut_by(body, &w, 0, 2);
+    view = view_of(body);
+    ck_assert_uint_eq(view.fragment_count, 3);
+    while (!(fabs(view.fragment_volume[sheet] - 64 * thick) < 1e-6)) sheet++;
+    for (i = 0; i < view.cell_count; i++)
+        for (k = 0; k < 4; k++)
+            ck_assert_msg(view.copy_affine[view.cell_copies[4 * i + (size_t)k]] == (view.cell_fragment[i] == sheet),
+                          "cell %zu of %u", i, view.cell_fragment[i]);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- nothing moves ---- */
+
+/* Where material points of a body are: every cell's centre of its element's nodes, nudged, by slot */
+static void place_all(gx_body *body, double *positions) {
+    const gx_view view = view_of(body);
+    size_t i;
+    int n, k;
+    for (i = 0; i < view.cell_count; i++) {
+        const uint32_t *node = gxb_complex_element_nodes(body->complex, view.cell_element[i]);
+        double x[3] = {0, 0, 0};
+        for (n = 0; n < 4; n++)
+            for (k = 0; k < 3; k++)
+                x[k] += (0.1 + 0.3 * (n == 1) + 0.2 * (n == 2) + 0.1 * (n == 3)) *
+                        body->mesh.positions[3 * (size_t)node[n] + (size_t)k];
+        ck_assert_int_eq(gx_body_place(body, view.cell_slot[i], x, positions + 3 * view.cell_slot[i], NULL), GX_OK);
+    }
+}
+
+/* Copies become affine, and affine copies are divided: material points stay where they are, bit by bit, and so do
+   centres, momenta and energies, but for rounding. */
+START_TEST(nothing_moves) {
+    workload w = grid(5, 4, 3, 5);
+    gx_body *body;
+    gx_motion before[64], after[64];
+    double *then, *now, sum[2][7];
+    gx_view view;
+    size_t slots, i, f;
+    int cut, k;
+    random_seed((uint64_t)_i);
+    body = sheet_body(&w, 1);
+    add_axis_plane(&w, 2, 1.4);
+    add_axis_plane(&w, 2, 1.7);
+    add_axis_plane(&w, 1, 1.7);
+    add_random_plane(&w, 40);
+    add_random_plane(&w, 40);
+    for (cut = 0; cut < 4; cut++) {
+        shake(body, 0.3);
+        view = view_of(body);
+        slots = view.slot_count;
+        then = (double *)oracle_memory(NULL, 3 * slots, sizeof *then);
+        place_all(body, then);
+        ck_assert_int_eq(gx_body_motion(body, before, 64, NULL), GX_OK);
+        memset(sum, 0, sizeof sum);
+        for (f = 0; f < view.fragment_count; f++)
+            for (k = 0; k < 3; k++) {
+                sum[0][k] += before[f].mass * before[f].center[k];
+                sum[0][3 + k] += before[f].mass * before[f].velocity[k];
+            }
+        cut_by(body, &w, cut == 0 ? 0 : (size_t)cut + 1, cut == 0 ? 2 : 1);
+        view = view_of(body);
+        ck_assert(view.fragment_count <= 64);
+        now = (double *)oracle_memory(NULL, 3 * view.slot_count, sizeof *now);
+        place_all(body, now);
+        for (i = 0; i < view.cell_count; i++)
+            if (view.cell_slot[i] < slots)
+                ck_assert(memcmp(then + 3 * view.cell_slot[i], now + 3 * view.cell_slot[i], 3 * sizeof *now) == 0);
+        ck_assert_int_eq(gx_body_motion(body, after, 64, NULL), GX_OK);
+        for (f = 0; f < view.fragment_count; f++)
+            for (k = 0; k < 3; k++) {
+                sum[1][k] += after[f].mass * after[f].center[k];
+                sum[1][3 + k] += after[f].mass * after[f].velocity[k];
+            }
+        for (k = 0; k < 6; k++)
+            ck_assert_msg(fabs(sum[1][k] - sum[0][k]) < 1e-9 * view.mass, "seed %d cut %d: %.17g %.17g", _i, cut,
+                          sum[0][k], sum[1][k]);
+        ck_assert(affine_count(body) > 0);
+        free(then);
+        free(now);
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* The skin and the motions of random cut bodies by the slow oracle: the definition of the field, and integrals by the
+   mass blocks, since x - X_i = sum_j N_j (X_j - X_i). */
+START_TEST(fields_are_as_defined) {
+    workload w = grid(4, 3, 3, _i % 2 ? 6 : 5);
+    gx_body *body;
+    gx_view view;
+    gx_skin skin;
+    gx_motion *motions;
+    double *positions, *sums;
+    size_t i;
+    int cut, j, k, n, a;
+    random_seed((uint64_t)_i);
+    body = sheet_body(&w, 1);
+    for (cut = 0; cut < 4; cut++) {
+        if (cut == 1)
+            add_axis_plane(&w, 2, 1.1 + 0.1 * (_i % 5));
+        else
+            add_random_cut(&w, 1);
+        cut_by(body, &w, w.surface_count - 1, 1);
+    }
+    shake(body, 0.2);
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
+    positions = (double *)oracle_memory(NULL, 3 * skin.vertex_count + 1, sizeof *positions);
+    ck_assert_int_eq(gx_body_skin_positions(body, positions, NULL), GX_OK);
+    view = view_of(body);
+    for (i = 0; i < skin.vertex_count; i++) {
+        const double *x = skin.vertex_rest + 3 * i;
+        for (k = 0; k < 3; k++) {
+            double at = x[k];
+            for (n = 0; n < 4; n++) {
+                const size_t c = skin.vertex_copies[4 * i + (size_t)n];
+                const double *node = body->mesh.positions + 3 * (size_t)view.copy_node[c],
+                             weight = skin.vertex_weights[4 * i + (size_t)n];
+                at += weight * view.displacement[3 * c + (size_t)k];
+                for (a = 0; a < 3; a++)
+                    at += weight * view.affine[9 * c + 3 * (size_t)a + (size_t)k] * (x[a] - node[a]);
+            }
+            ck_assert_msg(fabs(at - positions[3 * i + (size_t)k]) < 1e-12, "seed %d", _i);
+        }
+    }
+    motions = (gx_motion *)oracle_memory(NULL, view.fragment_count + 1, sizeof *motions);
+    sums = (double *)oracle_memory(NULL, 6 * view.fragment_count + 1, sizeof *sums);
+    memset(sums, 0, 6 * view.fragment_count * sizeof *sums);
+    ck_assert_int_eq(gx_body_motion(body, motions, view.fragment_count, NULL), GX_OK);
+    for (i = 0; i < view.cell_count; i++) {
+        const gxp_cell *cell = &body->cells.data[body->view.cell[i]];
+        for (n = 0; n < 4; n++)
+            for (j = 0; j < 4; j++) {
+                const size_t c = view.cell_copies[4 * i + (size_t)n], d = view.cell_copies[4 * i + (size_t)j];
+                const double *p = body->mesh.positions + 3 * (size_t)view.copy_node[c],
+                             *q = body->mesh.positions + 3 * (size_t)view.copy_node[d],
+                             mass = cell->mass[gxp_mass_at[n][j]];
+                for (k = 0; k < 3; k++) {
+                    double *sum = sums + 6 * (size_t)view.cell_fragment[i] + k;
+                    sum[0] += mass * (p[k] + view.displacement[3 * c + (size_t)k]);
+                    sum[3] += mass * view.velocity[3 * c + (size_t)k];
+                    for (a = 0; a < 3; a++) {
+                        sum[0] += mass * view.affine[9 * c + 3 * (size_t)a + (size_t)k] * (q[a] - p[a]);
+                        sum[3] += mass * view.affine_rate[9 * c + 3 * (size_t)a + (size_t)k] * (q[a] - p[a]);
+                    }
+                }
+            }
+    }
+    for (i = 0; i < view.fragment_count; i++)
+        for (k = 0; k < 3; k++) {
+            const double mass = view.fragment_mass[i];
+            ck_assert_msg(fabs(motions[i].mass - mass) <= 1e-12 * mass, "seed %d", _i);
+            ck_assert_msg(fabs(motions[i].center[k] - sums[6 * i + (size_t)k] / mass) < 1e-9, "seed %d: %g", _i, mass);
+            ck_assert_msg(fabs(motions[i].velocity[k] - sums[6 * i + 3 + (size_t)k] / mass) < 1e-9, "seed %d: %g", _i,
+                          mass);
+        }
+    free(motions);
+    free(sums);
+    free(positions);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A sheet that turns as a rigid body does: velocity, spin, inertia and energy in closed form. */
+START_TEST(rigid_motions_are_exact) {
+    const double spin[3] = {0.3, -0.5, 0.7}, go[3] = {1, 2, -1}, c = cos(0.7), s = sin(0.7);
+    const double turn[3][3] = {{c, 0, s}, {0, 1, 0}, {-s, 0, c}};
+    workload w = grid(4, 3, 1, 5);
+    gx_body *body = sheet_body(&w, 1);
+    gx_view view = view_of(body);
+    gx_motion m;
+    double inertia[3] = {0, 0, 0}, energy = 0;
+    size_t i;
+    int k, a;
+    ck_assert_uint_eq(affine_count(body), view.copy_count);
+    for (i = 0; i < view.copy_count; i++) {
+        const double *x = body->mesh.positions + 3 * (size_t)view.copy_node[i];
+        double y[3];
+        for (k = 0; k < 3; k++) {
+            y[k] = turn[k][0] * x[0] + turn[k][1] * x[1] + turn[k][2] * x[2];
+            view.displacement[3 * i + (size_t)k] = y[k] - x[k];
+            for (a = 0; a < 3; a++) body->copies.linear[9 * i + (size_t)(3 * a + k)] = turn[k][a] - (a == k);
+        }
+        for (k = 0; k < 3; k++) {
+            const int p = (k + 1) % 3, q = (k + 2) % 3;
+            view.velocity[3 * i + (size_t)k] = go[k] + spin[p] * y[q] - spin[q] * y[p];
+            for (a = 0; a < 3; a++)
+                body->copies.linear_rate[9 * i + (size_t)(3 * a + k)] = spin[p] * turn[q][a] - spin[q] * turn[p][a];
+        }
+    }
+    ck_assert_int_eq(gx_body_motion(body, &m, 1, NULL), GX_OK);
+    for (k = 0; k < 3; k++) {
+        const int p = (k + 1) % 3, q = (k + 2) % 3;
+        const double v = go[k] + spin[p] * m.center[q] - spin[q] * m.center[p];
+        ck_assert(fabs(m.velocity[k] - v) < 1e-12);
+        ck_assert(fabs(m.angular_velocity[k] - spin[k]) < 1e-12);
+        energy += 0.5 * m.mass * v * v;
+    }
+    inertia[0] = m.mass * (9 + 1) / 12.0; /* of the box at rest: 4 x 3 x 1 */
+    inertia[1] = m.mass * (16 + 1) / 12.0;
+    inertia[2] = m.mass * (16 + 9) / 12.0;
+    for (k = 0; k < 3; k++) {
+        const double w0 = turn[0][k] * spin[0] + turn[1][k] * spin[1] + turn[2][k] * spin[2];
+        energy += 0.5 * inertia[k] * w0 * w0;
+    }
+    ck_assert_msg(fabs(m.inertia[3] - inertia[1]) < 1e-9 * inertia[1], "%g %g", m.inertia[3], inertia[1]);
+    ck_assert_msg(fabs(m.energy - energy) < 1e-9 * energy, "%g %g", m.energy, energy);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- steps ---- */
+
+/* The largest drop of material points at x = length, by fragment */
+static void find_tips(gx_body *body, double length, double *tips) {
+    gx_skin skin;
+    double *x;
+    size_t i;
+    int k;
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
+    x = (double *)oracle_memory(NULL, 3 * skin.vertex_count + 1, sizeof *x);
+    ck_assert_int_eq(gx_body_skin_positions(body, x, NULL), GX_OK);
+    for (i = 0; i < 3 * skin.triangle_count; i++) {
+        const uint32_t v = skin.triangles[i], f = skin.triangle_fragment[i / 3];
+        if (skin.vertex_rest[3 * (size_t)v] < length - 1e-9) continue;
+        for (k = 2; k < 3; k++) tips[f] = fmax(tips[f], skin.vertex_rest[3 * (size_t)v + 2] - x[3 * (size_t)v + 2]);
+    }
+    free(x);
+}
+
+static double drop_of(int affine, double low, double thick, double young) {
+    workload w = grid(8, 2, 1, 5);
+    gx_body_desc desc = desc_of(&w);
+    gx_body *body = NULL;
+    gx_step_desc step = step_of(0, -1e-3);
+    gx_view view;
+    double tips[4] = {0, 0, 0, 0};
+    size_t f;
+    desc.affine_below = affine;
+    desc.young = young;
+    desc.poisson = 0;
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+    add_axis_plane(&w, 2, low);
+    add_axis_plane(&w, 2, low + thick);
+    cut_by(body, &w, 0, 2);
+    hold_left(body);
+    step.integrator = GXS_STATIC;
+    step.newton_iterations = 10;
+    step.newton_tolerance = 1e-9;
+    step.cg_tolerance = 1e-6;
+    step.cg_iterations = 20000;
+    advance(body, &step);
+    view = view_of(body);
+    find_tips(body, 8, tips);
+    for (f = 0; !(fabs(view.fragment_volume[f] - 16 * thick) < 1e-9); f++) {}
+    gx_body_destroy(body);
+    wl_free(&w);
+    return tips[f];
+}
+
+/* A slice cut out of a body hangs as a beam does, wherever in the layer it lies; without affine copies it is stiff. */
+START_TEST(slices_hang_as_beams) {
+    static const double thick[3] = {0.5, 0.2, 0.1}, least[3] = {0.95, 0.93, 0.9};
+    const double t = thick[_i % 3], low = _i < 3 ? 0.45 : _i < 6 ? 0.07 : 0.83 - t;
+    const double beam = 1000 * 1e-3 * t * pow(8, 4) / (8 * 1e6 * t * t * t / 12);
+    const double stiffer = beam / 0.1; /* so stiff that it drops by a tenth of a unit, and theory holds */
+    const double with = drop_of(1, low, t, 1e6 * stiffer) * stiffer;
+    ck_assert_msg(with > least[_i % 3] * beam && with < 1.03 * beam, "%d: %g of %g", _i, with / beam, beam);
+    if (_i == 1) ck_assert_msg(drop_of(0, low, t, 1e6 * stiffer) * stiffer < 0.1 * beam, "it is not stiff without");
+}
+END_TEST
+
+/* Free sheets under gravity, each integrator: momenta are those of free fall. */
+START_TEST(flung_sheets_keep_their_momentum) {
+    static const gxs_integrator integrators[4] = {GXS_BDF1, GXS_BDF2, GXS_MIDPOINT, GXS_EXPLICIT};
+    workload w = grid(4, 3, 1, 5);
+    gx_body *body = sheet_body(&w, 1);
+    gx_step_desc step = step_of(0.01, -10);
+    gx_motion before[4], after[4];
+    gx_view view;
+    uint32_t f;
+    int round, k;
+    random_seed((uint64_t)_i);
+    add_axis_plane(&w, 2, 0.37);
+    add_axis_plane(&w, 2, 0.6);
+    cut_by(body, &w, 0, 2);
+    step.integrator = integrators[_i];
+    step.newton_iterations = 3;
+    view = view_of(body);
+    ck_assert_uint_eq(view.fragment_count, 3);
+    shake(body, 0.02);
+    ck_assert_int_eq(gx_body_motion(body, before, 4, NULL), GX_OK);
+    for (round = 0; round < 5; round++) advance(body, &step);
+    ck_assert_int_eq(gx_body_motion(body, after, 4, NULL), GX_OK);
+    for (f = 0; f < 3; f++)
+        for (k = 0; k < 3; k++)
+            ck_assert_msg(fabs(after[f].velocity[k] - before[f].velocity[k] + (k == 2 ? 0.5 : 0)) < 1e-6,
+                          "%d: %.12g %.12g", _i, after[f].velocity[k], before[f].velocity[k]);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A stiff spring takes its point to the target, at an anchor and at a vertex of the skin; a pushed anchor moves as one
+   that springs pull with that force. So points of affine copies are where gx_body_anchor_point has them. */
+START_TEST(points_move_with_affine_copies) {
+    workload w = grid(4, 2, 1, 5);
+    gx_body *body = sheet_body(&w, 1), *pushed;
+    gx_step_desc step = step_of(0, 0);
+    const double material[3] = {3.3, 1.2, 0.45};
+    gx_anchor anchor;
+    gxs_spring springs[2];
+    gx_anchor anchors[2];
+    gx_skin skin;
+    gx_view view;
+    double force[6], at[3], rest[3], *x;
+    uint32_t element = 0, vertex = 0;
+    int k, round;
+    add_axis_plane(&w, 2, 0.37);
+    add_axis_plane(&w, 2, 0.6);
+    cut_by(body, &w, 0, 2);
+    hold_left(body);
+    while (gx_body_anchor(body, element, material, &anchor, NULL) != GX_OK) element++;
+    ck_assert_int_eq(gx_body_clone(body, &pushed, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_anchor_point(body, &anchor, NULL, rest, NULL), GX_OK);
+    memset(springs, 0, sizeof springs);
+    for (k = 0; k < 3; k++) springs[0].target[k] = rest[k] + (k == 2 ? 0.3 : 0.1);
+    springs[0].stiffness = 1e9;
+    anchors[0] = anchor;
+    step.integrator = GXS_STATIC;
+    step.newton_iterations = 100;
+    step.newton_tolerance = 1e-10;
+    step.cg_tolerance = 1e-6;
+    step.cg_iterations = 20000;
+    step.springs = springs;
+    step.spring_count = 1;
+    step.spring_anchors = anchors;
+    step.spring_forces = force;
+    advance(body, &step);
+    ck_assert_int_eq(gx_body_anchor_point(body, &anchor, NULL, at, NULL), GX_OK);
+    for (k = 0; k < 3; k++) {
+        ck_assert_msg(fabs(at[k] - springs[0].target[k]) < 1e-4, "%g %g", at[k], springs[0].target[k]);
+        ck_assert(fabs(force[k] - 1e9 * (springs[0].target[k] - at[k])) <= 1e-5 * (1 + fabs(force[2])));
+    }
+    step.spring_count = 0;
+    step.force_anchors = &anchor;
+    step.anchor_forces = force;
+    step.force_count = 1;
+    advance(pushed, &step);
+    ck_assert_int_eq(gx_body_anchor_point(pushed, &anchor, NULL, at, NULL), GX_OK);
+    for (k = 0; k < 3; k++)
+        ck_assert_msg(fabs(at[k] - springs[0].target[k]) < 1e-3, "%g %g", at[k], springs[0].target[k]);
+    step.force_count = 0;
+    step.spring_anchors = NULL;
+    for (round = 0; round < 2; round++) {
+        ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
+        x = (double *)oracle_memory(NULL, 3 * skin.vertex_count, sizeof *x);
+        if (round == 0) { /* a vertex within an element: several affine copies move it */
+            view = view_of(body);
+            for (vertex = 0; !(skin.vertex_weights[4 * vertex] < 0.8 && skin.vertex_rest[3 * vertex] > 2 &&
+                               view.copy_affine[skin.vertex_copies[4 * vertex]]);
+                 vertex++)
+                ck_assert_uint_lt(vertex, skin.vertex_count);
+            springs[0].point = gx_skin_point(&skin, vertex);
+            for (k = 0; k < 3; k++) springs[0].target[k] = skin.vertex_rest[3 * vertex + (uint32_t)k] + 0.2;
+            step.spring_count = 1;
+            advance(body, &step);
+        } else {
+            ck_assert_int_eq(gx_body_skin_positions(body, x, NULL), GX_OK);
+            for (k = 0; k < 3; k++)
+                ck_assert_msg(fabs(x[3 * vertex + (uint32_t)k] - springs[0].target[k]) < 1e-4, "%g",
+                              x[3 * vertex + (uint32_t)k]);
+        }
+        free(x);
+    }
+    gx_body_destroy(body);
+    gx_body_destroy(pushed);
+    wl_free(&w);
+}
+END_TEST
+
+/* A plane stops a falling sheet at the positions of the skin. */
+START_TEST(planes_stop_sheets) {
+    workload w = grid(4, 3, 1, 5);
+    gx_body *body = sheet_body(&w, 1);
+    gx_step_desc step = step_of(0.01, -10);
+    gxs_plane plane;
+    gxs_point *points;
+    gx_skin skin;
+    double *x, lowest = 1;
+    size_t i;
+    int frame;
+    add_axis_plane(&w, 2, 0.37);
+    cut_by(body, &w, 0, 1);
+    memset(&plane, 0, sizeof plane);
+    plane.normal[2] = 1;
+    plane.offset = -0.2;
+    plane.stiffness = 1e6;
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
+    points = (gxs_point *)oracle_memory(NULL, skin.vertex_count, sizeof *points);
+    x = (double *)oracle_memory(NULL, 3 * skin.vertex_count, sizeof *x);
+    for (i = 0; i < skin.vertex_count; i++) points[i] = gx_skin_point(&skin, (uint32_t)i);
+    step.points = points;
+    step.point_count = skin.vertex_count;
+    step.planes = &plane;
+    step.plane_count = 1;
+    step.newton_iterations = 3;
+    for (frame = 0; frame < 40; frame++) advance(body, &step);
+    ck_assert_int_eq(gx_body_skin_positions(body, x, NULL), GX_OK);
+    for (i = 0; i < skin.vertex_count; i++) lowest = fmin(lowest, x[3 * i + 2]);
+    ck_assert_msg(lowest > -0.25 && lowest < -0.1, "%g", lowest);
+    free(points);
+    free(x);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* What a region holds goes where its pose puts it, as a rigid body; where it has none it stays. */
+START_TEST(poses_turn_affine_copies) {
+    const double c = cos(0.4), s = sin(0.4);
+    const double pose[12] = {c, 0, s, 0.3, 0, 1, 0, -0.1, -s, 0, c, 0.2};
+    workload w = grid(3, 3, 1, 5);
+    gx_body *body = sheet_body(&w, 1);
+    gx_step_desc step = step_of(0.05, -10);
+    gx_view view;
+    size_t i;
+    int k, a, frame, seen = 0;
+    hold_left(body);
+    for (frame = 0; frame < 2; frame++) {
+        step.region_poses = frame == 0 ? pose : NULL;
+        advance(body, &step);
+        view = view_of(body);
+        for (i = 0; i < view.copy_count; i++)
+            for (k = 0; k < 9 && view.copy_held[i]; k++) {
+                a = k / 3;
+                ck_assert(fabs(view.affine[9 * i + (size_t)k] - (pose[4 * (k % 3) + a] - (a == k % 3))) < 1e-12);
+                seen++;
+            }
+    }
+    ck_assert_int_eq(seen, 2 * 8 * 9);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- states ---- */
+
+static void cut_into_sheets(gx_body *body, workload *w) {
+    add_axis_plane(w, 2, 0.37);
+    add_axis_plane(w, 2, 0.6);
+    cut_by(body, w, w->surface_count - 2, 2);
+}
+
+static void expect_same_motion(gx_body *a, gx_body *b) {
+    const gx_view p = view_of(a), q = view_of(b);
+    ck_assert_uint_eq(p.copy_count, q.copy_count);
+    ck_assert(memcmp(p.displacement, q.displacement, 3 * p.copy_count * sizeof(double)) == 0);
+    ck_assert(memcmp(p.velocity, q.velocity, 3 * p.copy_count * sizeof(double)) == 0);
+    ck_assert(memcmp(p.affine, q.affine, 9 * p.copy_count * sizeof(double)) == 0);
+    ck_assert(memcmp(p.affine_rate, q.affine_rate, 9 * p.copy_count * sizeof(double)) == 0);
+    ck_assert(memcmp(p.copy_affine, q.copy_affine, p.copy_count) == 0);
+    ck_assert_uint_eq(gx_body_state_hash(a), gx_body_state_hash(b));
+}
+
+/* A saved, a cloned and a restored body go on as the first does, bit by bit, also through a cut of affine copies. */
+START_TEST(copies_go_on_alike) {
+    static const gxs_integrator integrators[2] = {GXS_BDF1, GXS_BDF2};
+    workload w = grid(5, 3, 1, 5);
+    gx_body *body = sheet_body(&w, 1), *loaded, *cloned, *restored, *other;
+    gx_body_desc none;
+    gx_step_desc step = step_of(0.01, -10);
+    void *memory;
+    size_t size;
+    int round;
+    memset(&none, 0, sizeof none);
+    step.integrator = integrators[_i];
+    hold_left(body);
+    cut_into_sheets(body, &w);
+    restored = sheet_body(&w, 1);
+    cut_by(restored, &w, 0, 2);
+    other = sheet_body(&w, 0);
+    for (round = 0; round < 3; round++) advance(body, &step);
+    ck_assert_int_eq(gx_body_save(body, NULL, 0, &size, NULL), GX_OK);
+    memory = oracle_memory(NULL, size, 1);
+    ck_assert_int_eq(gx_body_save(body, memory, size, &size, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_load(memory, size, &none, &loaded, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_clone(body, &cloned, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_restore(restored, body, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_restore(other, body, NULL), GX_OK);
+    add_axis_plane(&w, 1, 1.3);
+    for (round = 0; round < 4; round++) {
+        gx_body *bodies[5];
+        int i;
+        bodies[0] = body;
+        bodies[1] = loaded;
+        bodies[2] = cloned;
+        bodies[3] = restored;
+        bodies[4] = other;
+        for (i = 0; i < 5; i++) {
+            if (round == 2) cut_by(bodies[i], &w, 2, 1);
+            advance(bodies[i], &step);
+            expect_same_motion(bodies[0], bodies[i]);
+        }
+    }
+    ck_assert_int_eq(gx_body_restore(body, loaded, NULL), GX_OK);
+    expect_same_motion(body, loaded);
+    free(memory);
+    gx_body_destroy(body);
+    gx_body_destroy(loaded);
+    gx_body_destroy(cloned);
+    gx_body_destroy(restored);
+    gx_body_destroy(other);
+    wl_free(&w);
+}
+END_TEST
+
+/* Where no copy becomes affine, steps are those of a body without the feature, bit by bit. */
+START_TEST(none_is_none) {
+    workload w = grid(4, 4, 4, 5);
+    gx_body *off = sheet_body(&w, 0), *on = sheet_body(&w, 1);
+    gx_step_desc step = step_of(0.01, -10);
+    gx_view p, q;
+    int round;
+    add_axis_plane(&w, 2, 2.02);
+    cut_by(off, &w, 0, 1);
+    cut_by(on, &w, 0, 1);
+    for (round = 0; round < 3; round++) {
+        advance(off, &step);
+        advance(on, &step);
+    }
+    p = view_of(off);
+    q = view_of(on);
+    ck_assert_uint_eq(affine_count(on), 0);
+    ck_assert(p.copy_affine == NULL && p.affine == NULL && p.affine_rate == NULL && q.copy_affine != NULL);
+    ck_assert(memcmp(p.displacement, q.displacement, 3 * p.copy_count * sizeof(double)) == 0);
+    ck_assert(memcmp(p.velocity, q.velocity, 3 * p.copy_count * sizeof(double)) == 0);
+    gx_body_destroy(off);
+    gx_body_destroy(on);
+    wl_free(&w);
+}
+END_TEST
+
+/* Random cuts of sheets that move, with slivers, chips and specks of them: steps end, nothing runs away. */
+START_TEST(cut_sheets_stay_together) {
+    workload w = grid(5, 3, 1, _i % 2 ? 6 : 5);
+    gx_body *body = sheet_body(&w, 1);
+    gx_step_desc step = step_of(0.01, -10);
+    gx_motion *motions;
+    gx_view view;
+    double energy = 0, most = 0, volume = 0;
+    size_t f;
+    int round;
+    random_seed((uint64_t)_i);
+    step.newton_iterations = 2;
+    hold_left(body);
+    for (round = 0; round < 12; round++) {
+        if (round % 2 == 0) {
+            add_random_cut(&w, 1);
+            cut_by(body, &w, w.surface_count - 1, 1);
+        }
+        advance(body, &step);
+    }
+    view = view_of(body);
+    motions = (gx_motion *)oracle_memory(NULL, view.fragment_count + 1, sizeof *motions);
+    ck_assert_int_eq(gx_body_motion(body, motions, view.fragment_count, NULL), GX_OK);
+    for (f = 0; f < view.fragment_count; f++) {
+        energy += motions[f].energy;
+        most = fmax(most, fabs(motions[f].center[2]));
+        volume += view.fragment_volume[f];
+    }
+    ck_assert(affine_count(body) > 0);
+    ck_assert(fabs(volume - view.volume) < 1e-9);
+    /* free fall for 0.12 s: 0.072 m, 1.2 m/s */
+    ck_assert_msg(most < 1.2, "seed %d: %g", _i, most);
+    ck_assert_msg(energy < 0.55 * view.mass * 1.2 * 1.2, "seed %d: %g of %g", _i, energy, view.mass);
+    free(motions);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- failure ---- */
+
+/* Creates, holds, cuts, steps, looks, saves. Returns 1 if memory ran out, and then body and hash are as before. */
+static int work(memory *m, const workload *w, int which) {
+    gx_body *body = sheet_body_in(m, w, 1), *other = NULL;
+    const gx_region left = gx_region_half_space(0, -1, 1e-9);
+    gx_step_desc step = step_of(0.01, -10);
+    gx_surface surfaces[2];
+    gx_cut_desc cut;
+    gx_motion motions[8];
+    gxs_point point;
+    gxs_spring spring;
+    gx_anchor anchor;
+    const double material[3] = {1.6, 0.3, 0.5};
+    uint64_t hash;
+    gx_result result = body == NULL ? GX_ERROR_MEMORY : GX_OK;
+    int stage;
+    memset(&cut, 0, sizeof cut);
+    memset(&spring, 0, sizeof spring);
+    surfaces[0] = surface_of(&w->surfaces[0]);
+    surfaces[1] = surface_of(&w->surfaces[1]);
+    cut.surfaces = surfaces;
+    cut.surface_count = 2;
+    step.integrator = which ? GXS_BDF2 : GXS_BDF1;
+    for (stage = 0; stage < 8 && result == GX_OK; stage++) {
+        hash = gx_body_state_hash(body);
+        switch (stage) {
+        case 0: result = gx_body_hold(body, &left, 1, NULL); break;
+        case 1: result = gx_body_cut(body, &cut, NULL, NULL); break;
+        case 2: result = gx_body_motion(body, motions, 8, NULL); break;
+        case 3: {
+            uint32_t e = 0;
+            while (result == GX_OK && gx_body_anchor(body, e, material, &anchor, NULL) == GX_ERROR_EMPTY) e++;
+            result = gx_body_anchor(body, e, material, &anchor, NULL);
+            if (result == GX_OK) result = gx_body_anchor_point(body, &anchor, &point, NULL, NULL);
+            break;
+        }
+        case 4:
+        case 5:
+            spring.point = point;
+            spring.stiffness = 10;
+            step.springs = &spring;
+            step.spring_count = 1;
+            step.force_anchors = &anchor;
+            step.anchor_forces = material;
+            step.force_count = 1;
+            result = gx_body_step(body, &step, NULL, NULL);
+            break;
+        case 6: result = gx_body_clone(body, &other, NULL); break;
+        default: gx_body_destroy(other); other = NULL;
+        }
+        if (result != GX_OK) {
+            ck_assert_int_eq(result, GX_ERROR_MEMORY);
+            ck_assert_uint_eq(gx_body_state_hash(body), hash);
+        }
+    }
+    gx_body_destroy(other);
+    gx_body_destroy(body);
+    return result != GX_OK;
+}
+
+START_TEST(every_allocation_may_fail) {
+    workload w = grid(2, 1, 1, 5);
+    int from_then_on;
+    size_t n;
+    add_axis_plane(&w, 2, 0.37);
+    add_axis_plane(&w, 2, 0.6);
+    for (from_then_on = 0; from_then_on < 2; from_then_on++)
+        for (n = 0;; n++) {
+            memory m = plenty();
+            int failed;
+            fail_from(&m, n, from_then_on);
+            failed = work(&m, &w, _i);
+            ck_assert(is_whole(&m));
+            if (!failed) break;
+            ck_assert_uint_lt(n, 3000);
+        }
+    wl_free(&w);
+}
+END_TEST
+
+/* What is not there yet says so; bad thicknesses are named. */
+START_TEST(refusals_are_named) {
+    static const double bad[3] = {-1, 1e9, HUGE_VAL};
+    workload w = grid(2, 2, 1, 5);
+    gx_body_desc desc = desc_of(&w);
+    gx_body *body = sheet_body(&w, 1);
+    const double origin[3] = {0.5, 0.5, 5}, down[3] = {0, 0, -1}, edge[6] = {0, 0, 5, 1, 0, 5};
+    gx_failure failure;
+    gx_surface tool;
+    gx_blade *blade;
+    gx_step_desc step = step_of(0.01, 0);
+    gxs_pair pair;
+    gx_hit hit;
+    gx_skin skin;
+    size_t count;
+    uint64_t hash;
+    int i;
+    for (i = 0; i < 3; i++) {
+        gx_body *none;
+        desc.affine_below = bad[i];
+        ck_assert_int_eq(gx_body_create(&desc, &none, &failure), i < 2 ? GX_ERROR_ARGUMENT : GX_ERROR_NOT_FINITE);
+        ck_assert_str_eq(failure.field, "affine_below");
+    }
+    add_box(&w, 1, 0.2, 0.2, 0.2, 0.5, 0.5, 2);
+    tool = surface_of(&w.surfaces[0]);
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
+    ck_assert_int_eq(gx_blade_create(body, NULL, &blade, NULL), GX_OK);
+    hash = gx_body_state_hash(body);
+    memset(&pair, 0, sizeof pair);
+    pair.normal[2] = 1;
+    pair.point.count = 2;
+    pair.point.copy[1] = 1;
+    pair.point.weight[0] = 1;
+    pair.point.weight[1] = -1;
+    step.pairs = &pair;
+    step.pair_count = 1;
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_str_eq(failure.field, "pairs");
+    ck_assert_uint_eq(gx_body_state_hash(body), hash);
+    for (i = 0; i < 5; i++) {
+        gx_result result = i == 0 ? gx_body_pick(body, origin, down, &hit, &failure)
+                         : i == 1 ? gx_body_locate(body, origin, 1, &hit, &failure)
+                         : i == 2 ? gx_body_locate_all(body, origin, &hit, 1, &count, &failure)
+                         : i == 3 ? gx_body_carve(body, &tool, NULL, &failure)
+                                  : gx_blade_move(blade, edge, 2, NULL, 0, NULL, &failure);
+        ck_assert_int_eq(result, GX_ERROR_ARGUMENT);
+        ck_assert_str_eq(failure.field, "affine_below");
+        ck_assert_uint_eq(gx_body_state_hash(body), hash);
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("sheets");
+    TCase *tcase = tcase_create("which");
+    tcase_set_timeout(tcase, 300);
+    tcase_add_loop_test(tcase, a_thick_body_has_none, 0, 9);
+    tcase_add_loop_test(tcase, layers_are_thin, 0, 4);
+    tcase_add_loop_test(tcase, slices_are_thin, 0, 8);
+    tcase_add_loop_test(tcase, nothing_moves, 0, 4);
+    tcase_add_loop_test(tcase, fields_are_as_defined, 0, 12);
+    tcase_add_test(tcase, rigid_motions_are_exact);
+    tcase_add_loop_test(tcase, slices_hang_as_beams, 0, 9);
+    tcase_add_loop_test(tcase, flung_sheets_keep_their_momentum, 0, 4);
+    tcase_add_test(tcase, points_move_with_affine_copies);
+    tcase_add_test(tcase, planes_stop_sheets);
+    tcase_add_test(tcase, poses_turn_affine_copies);
+    tcase_add_loop_test(tcase, copies_go_on_alike, 0, 2);
+    tcase_add_test(tcase, none_is_none);
+    ADD_SOME(tcase, cut_sheets_stay_together, 12);
+    tcase_add_loop_test(tcase, every_allocation_may_fail, 0, 2);
+    tcase_add_test(tcase, refusals_are_named);
+    suite_add_tcase(suite, tcase);
+    return run_suite(suite);
+}
