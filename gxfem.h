@@ -212,7 +212,7 @@ typedef struct gx_body_desc {
     /* In thicknesses of elements, 0 ... 1000. Where material is thinner, its copies carry an affine motion each (are
        affine), so that sheets bend as they should. Creation and cuts find it, the latter among what they touch; an
        affine copy stays so. A layer of cubes of five or six elements has a thickness of 0.94; 1 is a good value.
-       0: none, at no cost. Other values: no blades, no gx_body_carve, no gx_body_pick and no gx_body_locate yet */
+       0: none, at no cost. Other values: no blades, no gx_body_carve and no pairs yet */
     double affine_below;
     gx_allocator allocator;      /* zero: malloc, free, realloc */
     double (*clock)(void *user); /* seconds, for the reports' timings and the steps' budgets; NULL: timings are 0 */
@@ -603,8 +603,8 @@ GXFEM_API gxs_point gx_hit_point(const gx_hit *hit);
 GXFEM_API gx_result gx_hit_anchor(gx_body *body, const gx_hit *hit, gx_anchor *anchor,
                                   gx_failure *failure /* or NULL */);
 /* Finds the nearest triangle on a ray, the first of equally near ones. Takes a pass over the copies, then no more than
-   the ray meets. Errors: ARGUMENT (also: direction is 0; "affine_below": a copy is affine), NOT_FINITE, SEQUENCE (there
-   is no skin, or a cut has been since), MEMORY, LIMIT. */
+   the ray meets. Errors: ARGUMENT (also: direction is 0), NOT_FINITE, SEQUENCE (there is no skin, or a cut has been
+   since), MEMORY, LIMIT. */
 GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit,
                                  gx_failure *failure /* or NULL */);
 
@@ -612,15 +612,17 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
 
 /* A cell of an uncut element fills its deformed element. A cell of a cut one fills the part that is its own. Corners
    are where rest + displacement, rounded once, puts them; which cells contain a point is decided exactly by that. Faces
-   and walls belong to the cells on both their sides. Inverted elements contain points as others do, flat ones none. */
+   and walls belong to the cells on both their sides. Inverted elements contain points as others do, flat ones none.
+   Cells with affine copies (gx_body_desc.affine_below) have curved faces: points are pulled back to rounding, and lie
+   where that puts them; the surface that is nearest has flat triangles between its vertices, as the skin has. */
 
 /* Finds the material at points of space: of the cells that contain a point the one with the lowest slot. hit.material
    is within 2^-48 of the element's size of the exact place, and hit.position is the point. Where no cell contains it,
    the nearest point of the body's surface: distance is above 0. The first call makes a tree of boxes; each takes a pass
    over the copies, and the first after a cut lists the cells. Many points are faster in one call than in many.
    points: count x 3, m, in space. hits: room for count. After an error hits mean nothing.
-   Errors: ARGUMENT (also "affine_below": a copy is affine), NOT_FINITE (a point, or a copy's displacement), RANGE
-   (likewise: 2^128 or more), EMPTY (all material is removed), LIMIT, MEMORY. */
+   Errors: ARGUMENT, NOT_FINITE (a point, or a copy's displacement), RANGE (likewise: 2^128 or more), EMPTY (all
+   material is removed), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_body_locate(gx_body *body, const double *points, size_t count, gx_hit *hits,
                                    gx_failure *failure /* or NULL */);
 /* Finds all cells that contain a point, by slot: several where pieces overlap, and on faces and walls. *count: how many
@@ -9553,6 +9555,34 @@ static void gxp_copy_bounds(const gx_body *body, uint32_t node, uint32_t copy, g
     }
 }
 
+/* Adds where an affine copy takes a corner of an element of its node: X_i + a + A (X - X_i). In an element positions
+   are means of what its copies give, and what a copy gives is within the hull of what it gives at the corners. */
+static void gxp_add_image(const gx_body *body, uint32_t copy, uint32_t corner, gxp_bounds *box) {
+    gxp_bounds image;
+    double way[3] = {0, 0, 0};
+    int k;
+    gxp_copy_bounds(body, body->copies.node[copy], copy, &image);
+    gxp_add_linear(body, body->copies.linear, copy, 1, body->mesh.positions + 3 * (size_t)corner, way);
+    for (k = 0; k < 3; k++) {
+        const double margin = GXP_TREE_MARGIN * fabs(way[k]);
+        image.low[k] += way[k] - margin;
+        image.high[k] += way[k] + margin;
+    }
+    gxp_add_bounds(box, &image);
+}
+
+/* The box of all that a copy gives: its own place, and in the elements around its node, if it is affine */
+static void gxp_reach_bounds(const gx_body *body, uint32_t copy, gxp_bounds *box) {
+    const uint32_t node = body->copies.node[copy];
+    uint32_t i;
+    int k;
+    gxp_copy_bounds(body, node, copy, box);
+    if (!body->copies.bends || !body->copies.affine[copy]) return;
+    for (i = body->mesh.node_start[node]; i < body->mesh.node_start[node + 1]; i++)
+        for (k = 0; k < 4; k++)
+            gxp_add_image(body, copy, gxb_complex_element_nodes(body->complex, body->mesh.node_elements[i])[k], box);
+}
+
 /* --- making it --- */
 
 /* The first leaves of the halves, halves of halves and so on of `leaves` leaves over the elements in mesh.box_elements,
@@ -9649,7 +9679,7 @@ static int gxp_mark_moved(gx_body *body) {
     int moved = 0;
     for (i = 0; i < body->copies.count; i++, u += 3, seen += 3) {
         const uint32_t node = body->copies.node[i];
-        if (memcmp(u, seen, 3 * sizeof *u) == 0) continue;
+        if (memcmp(u, seen, 3 * sizeof *u) == 0 && !(body->copies.bends && body->copies.affine[i])) continue;
         memcpy(seen, u, 3 * sizeof *u);
         moved = 1;
         for (j = tree->node_first.data[node]; j < tree->node_first.data[node + 1]; j++)
@@ -9671,7 +9701,7 @@ static void gxp_fit_clusters(gx_body *body) {
     for (i = 0; i < body->copies.count; i++) {
         const uint32_t node = body->copies.node[i];
         gxp_bounds own;
-        gxp_copy_bounds(body, node, i, &own);
+        gxp_reach_bounds(body, i, &own);
         for (k = 0; k < 3; k++) tree->wild |= !gxp_is_near(own.low[k]) || !gxp_is_near(own.high[k]);
         for (j = tree->node_first.data[node]; j < tree->node_first.data[node + 1]; j++)
             if (marks[tree->node_clusters.data[j]] & GXP_BOX_MOVED)
@@ -9739,7 +9769,7 @@ static uint32_t gxp_wild_copy(gx_body *body) {
     if (!body->tree.wild) return GXP_NONE;
     for (i = 0; i < body->copies.count; i++) {
         gxp_bounds own;
-        gxp_copy_bounds(body, body->copies.node[i], i, &own);
+        gxp_reach_bounds(body, i, &own);
         for (k = 0; k < 3; k++)
             if (!gxp_is_near(own.low[k]) || !gxp_is_near(own.high[k])) return i;
     }
@@ -9752,12 +9782,15 @@ static void gxp_fit_element(const gx_body *body, uint32_t element, gxp_bounds *b
     const uint32_t *node = gxb_complex_element_nodes(body->complex, element);
     gxp_bounds own;
     uint32_t cell;
-    int k;
+    int k, n;
     gxp_empty_bounds(box);
     for (cell = element; cell != GXP_NONE; cell = body->cells.data[cell].next)
         for (k = 0; k < 4 && body->cells.data[cell].kept; k++) {
-            gxp_copy_bounds(body, node[k], body->cells.data[cell].copies[k], &own);
+            const uint32_t copy = body->cells.data[cell].copies[k];
+            gxp_copy_bounds(body, node[k], copy, &own);
             gxp_add_bounds(box, &own);
+            for (n = 0; n < 4 && body->copies.bends && body->copies.affine[copy]; n++)
+                gxp_add_image(body, copy, node[n], box);
         }
 }
 
@@ -9966,8 +9999,16 @@ static gx_result gxp_walk_tree(gx_body *body, gxp_walk *walk) {
 
 /* --- cells by their deformed elements --- */
 
+/* Is a copy of the cell affine? Then its map is quadratic. */
+static int gxp_is_bent(const gx_body *body, const gxp_cell *cell) {
+    int n, bent = 0;
+    for (n = 0; n < 4 && body->copies.bends; n++) bent |= body->copies.affine[cell->copies[n]];
+    return bent;
+}
+
 /* The box of a cell's deformed element */
-static void gxp_cell_bounds(const gx_body *body, const gxp_cell *cell, gxp_bounds *box) {
+static void gxp_cell_bounds(const gx_body *body, uint32_t element, const gxp_cell *cell, gxp_bounds *box) {
+    const uint32_t *node = gxb_complex_element_nodes(body->complex, element);
     double x[12];
     int n, k;
     gxp_moved_corners(body, cell, x);
@@ -9977,6 +10018,9 @@ static void gxp_cell_bounds(const gx_body *body, const gxp_cell *cell, gxp_bound
             box->low[k] = x[3 * n + k] < box->low[k] ? x[3 * n + k] : box->low[k];
             box->high[k] = x[3 * n + k] > box->high[k] ? x[3 * n + k] : box->high[k];
         }
+    for (n = 0; n < 4 && body->copies.bends; n++)
+        for (k = 0; k < 4 && body->copies.affine[cell->copies[n]]; k++)
+            gxp_add_image(body, cell->copies[n], node[k], box);
 }
 
 typedef struct gxp_box_walk {
@@ -9993,7 +10037,7 @@ static inline gx_result gxp_visit_in_box(gx_body *body, void *user, uint32_t pla
          cell = body->cells.data[cell].next) {
         gxp_bounds box;
         if (!body->cells.data[cell].kept) continue;
-        gxp_cell_bounds(body, &body->cells.data[cell], &box);
+        gxp_cell_bounds(body, body->mesh.box_elements[place], &body->cells.data[cell], &box);
         if (!(gxp_gap(&box, &walk->box) > 0)) result = walk->visit(body, walk->user, cell);
     }
     return result;
@@ -10023,11 +10067,119 @@ static int gxp_leads_to(gx_body *body, gxb_pullback *back, uint32_t reference, u
     return gxp_is_kept(body, reference >> 1) && body->leaves.data[reference >> 1].cell == cell;
 }
 
-/* Does the cell, or its boundary, contain a point of space? Exact for the corners that gxp_moved_corners gives. */
+/* The material point with these barycentric coordinates; exactly a node, or in a coordinate plane, where they say so */
+static void gxp_weigh_material(const double rest[12], const double weights[4], double material[3]) {
+    int n, k, most = 0;
+    for (n = 1; n < 4; n++)
+        if (fabs(weights[n]) > fabs(weights[most])) most = n;
+    for (k = 0; k < 3; k++) {
+        double sum = 0;
+        for (n = 0; n < 4; n++) sum += weights[n] * (rest[3 * n + k] - rest[3 * most + k]);
+        material[k] = rest[3 * most + k] + sum;
+    }
+}
+
+/* Steps of Newton's method, which doubles the digits with each; a step below this share of the element is the last. */
+#define GXP_UNBEND_STEPS 24
+#define GXP_UNBEND_SMALL 1.4210854715202004e-14
+
+/* How far a bent cell's map is from a point at barycentric coordinates, and its derivatives by the last three of these.
+   The map is sum of N_i (X_i + a_i + A_i (X - X_i)). */
+static void gxp_bent_residual(const gx_body *body, const gxp_cell *c, const double rest[12], const double weights[4],
+                              const double material[3], const double point[3], double off[3], double slope[3][3]) {
+    double image[4][3];
+    int n, i, k;
+    memset(slope, 0, 9 * sizeof slope[0][0]);
+    memset(image, 0, sizeof image);
+    for (n = 0; n < 4; n++) {
+        const double *u = body->copies.displacement + 3 * (size_t)c->copies[n], *own = rest + 3 * n;
+        if (body->copies.affine[c->copies[n]]) {
+            gxp_add_linear(body, body->copies.linear, c->copies[n], 1, material, image[n]);
+            for (i = 0; i < 3; i++) { /* A by the way from corner 0 to corner i + 1, added to its column */
+                const double way[3] = {own[0] + rest[3 * i + 3] - rest[0], own[1] + rest[3 * i + 4] - rest[1],
+                                       own[2] + rest[3 * i + 5] - rest[2]};
+                gxp_add_linear(body, body->copies.linear, c->copies[n], weights[n], way, slope[i]);
+            }
+        }
+        for (k = 0; k < 3; k++) image[n][k] += own[k] + u[k];
+    }
+    for (k = 0; k < 3; k++) {
+        off[k] = weights[0] * (image[0][k] - point[k]);
+        for (i = 0; i < 3; i++) {
+            off[k] += weights[i + 1] * (image[i + 1][k] - point[k]);
+            slope[i][k] += image[i + 1][k] - image[0][k];
+        }
+    }
+}
+
+static void gxp_cross(double r[3], const double a[3], const double b[3]) {
+    r[0] = a[1] * b[2] - a[2] * b[1];
+    r[1] = a[2] * b[0] - a[0] * b[2];
+    r[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* Pulls a point of space back by the map of a bent cell, to rounding, from coordinates to begin with. 0: it is nowhere
+   near there. */
+static int gxp_unbend(const gx_body *body, const gxp_cell *c, const double point[3], double weights[4],
+                      double material[3]) {
+    double rest[12], off[3], slope[3][3], normal[3][3];
+    int step, i;
+    gxp_element_positions(body, c->element, rest);
+    for (step = 0; step < GXP_UNBEND_STEPS; step++) {
+        double volume, most = 0;
+        gxp_weigh_material(rest, weights, material);
+        gxp_bent_residual(body, c, rest, weights, material, point, off, slope);
+        for (i = 0; i < 3; i++) gxp_cross(normal[i], slope[(i + 1) % 3], slope[(i + 2) % 3]);
+        volume = gxp_dot(slope[0], normal[0]);
+        if (!(fabs(volume) > 0)) return 0;
+        for (i = 0; i < 3; i++) {
+            const double change = -gxp_dot(off, normal[i]) / volume;
+            weights[i + 1] += change;
+            most = fmax(most, fabs(change));
+        }
+        weights[0] = 1 - weights[1] - weights[2] - weights[3];
+        if (!(most < 1e3)) return 0;
+        if (most < GXP_UNBEND_SMALL) {
+            gxp_weigh_material(rest, weights, material);
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Pulls a point of space back by the map of a bent cell that contains it: coordinates and material point. 0: none was
+   found in the cell. Begins at the place that the cell's corners alone would give the point, then in the middle. */
+static int gxp_find_in_bent(gx_body *body, uint32_t cell, const double point[3], double weights[4],
+                            double material[3]) {
+    const gxp_cell *c = &body->cells.data[cell];
+    gxb_pullback back;
+    double x[12], rest[12];
+    int from, n;
+    gxp_element_positions(body, c->element, rest);
+    for (from = 0; from < 2; from++) {
+        gxp_moved_corners(body, c, x);
+        gxb_pullback_set(&back, x, point);
+        if (from == 0 && (gxb_pullback_contains(&back) || gxb_pullback_orient(&back) != 0))
+            gxb_pullback_weights(&back, weights);
+        else
+            for (n = 0; n < 4; n++) weights[n] = 0.25;
+        if (!gxp_unbend(body, c, point, weights, material)) continue;
+        if (gxb_pullback_misses(rest, material)) continue;
+        gxb_pullback_set(&back, rest, material);
+        if (gxb_pullback_contains(&back) &&
+            gxp_leads_to(body, &back, gxb_complex_root(body->complex, c->element), cell))
+            return 1;
+    }
+    return 0;
+}
+
+/* Does the cell, or its boundary, contain a point of space? Exact for the corners that gxp_moved_corners gives; a bent
+   cell contains what it contains at rest once rounded there. */
 static int gxp_contains_point(gx_body *body, uint32_t cell, const double point[3]) {
     const gxp_cell *c = &body->cells.data[cell];
     gxb_pullback back;
-    double x[12];
+    double x[12], weights[4], material[3];
+    if (gxp_is_bent(body, c)) return gxp_find_in_bent(body, cell, point, weights, material);
     gxp_moved_corners(body, c, x);
     if (gxb_pullback_misses(x, point)) return 0;
     gxb_pullback_set(&back, x, point);
@@ -10072,18 +10224,6 @@ static gx_result gxp_find_cells_at(gx_body *body, const double point[3], gxp_wor
 }
 
 /* --- the maps of a cell --- */
-
-/* The material point with these barycentric coordinates; exactly a node, or in a coordinate plane, where they say so */
-static void gxp_weigh_material(const double rest[12], const double weights[4], double material[3]) {
-    int n, k, most = 0;
-    for (n = 1; n < 4; n++)
-        if (fabs(weights[n]) > fabs(weights[most])) most = n;
-    for (k = 0; k < 3; k++) {
-        double sum = 0;
-        for (n = 0; n < 4; n++) sum += weights[n] * (rest[3 * n + k] - rest[3 * most + k]);
-        material[k] = rest[3 * most + k] + sum;
-    }
-}
 
 /* Pulls a point of space back by the affine map of a cell's deformed element, also from outside of it. weights: of the
    cell's copies, 1 in sum. At rest the material point is the point, bit by bit. 0: the element is flat. */
@@ -10249,8 +10389,8 @@ static int gxp_is_beside(double p[3][3], const double x[3]) {
 }
 
 /* Tries the faces of an element that is all its cell's, but those that hide behind it. x: its moved corners less the
-   point */
-static void gxp_try_faces(gxp_near_walk *own, uint32_t cell, double x[4][3]) {
+   point. hides: 0 where faces are bent, which may hide less than flat ones */
+static void gxp_try_faces(gxp_near_walk *own, uint32_t cell, double x[4][3], int hides) {
     static const double corner[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
     int k, i;
     for (k = 0; k < 4; k++) {
@@ -10260,7 +10400,7 @@ static void gxp_try_faces(gxp_near_walk *own, uint32_t cell, double x[4][3]) {
             lambda[i] = corner[gxp_outward[k][i]];
             memcpy(p[i], x[gxp_outward[k][i]], sizeof p[i]);
         }
-        if (!gxp_is_beside(p, x[k])) gxp_try_triangle(own, cell, p, lambda);
+        if (!hides || !gxp_is_beside(p, x[k])) gxp_try_triangle(own, cell, p, lambda);
     }
 }
 
@@ -10284,9 +10424,22 @@ static gx_result gxp_bound_cell(gx_body *body, uint32_t cell) {
     return result;
 }
 
+/* Adds what affine copies move a point of the cell by, beside their own displacements. */
+static void gxp_add_bend(const gx_body *body, const gxp_cell *c, const double weights[4], double position[3]) {
+    double rest[12], material[3];
+    int n;
+    gxp_element_positions(body, c->element, rest);
+    gxp_weigh_material(rest, weights, material);
+    for (n = 0; n < 4; n++)
+        if (body->copies.affine[c->copies[n]])
+            gxp_add_linear(body, body->copies.linear, c->copies[n], weights[n], material, position);
+}
+
 /* Tries the facets that bound a cell of a divided element. */
 static gx_result gxp_try_facets(gx_body *body, gxp_near_walk *own, uint32_t cell, double x[4][3]) {
     const gxp_boundary *boundary = &body->scratch.boundary;
+    const gxp_cell *c = &body->cells.data[cell];
+    const int bent = gxp_is_bent(body, c);
     uint32_t i;
     int k, j;
     gx_result result;
@@ -10298,6 +10451,7 @@ static gx_result gxp_try_facets(gx_body *body, gxp_near_walk *own, uint32_t cell
         for (k = 0; k < 3; k++) {
             const double *l = lambda[k] = boundary->lambdas + 4 * (size_t)boundary->triangles.data[i + (uint32_t)k];
             for (j = 0; j < 3; j++) p[k][j] = l[0] * x[0][j] + l[1] * x[1][j] + l[2] * x[2][j] + l[3] * x[3][j];
+            if (bent) gxp_add_bend(body, c, l, p[k]);
         }
         gxp_try_triangle(own, cell, p, lambda);
     }
@@ -10315,14 +10469,14 @@ static gx_result gxp_visit_near(gx_body *body, gxp_walk *walk, uint32_t element)
         gxp_bounds box;
         if (!c->kept || (own->admits != NULL && !own->admits(own->user, cell))) continue;
         if (divided) {
-            gxp_cell_bounds(body, c, &box);
+            gxp_cell_bounds(body, element, c, &box);
             if (gxp_bound_distance(walk, &box) > walk->limit) continue;
         }
         gxp_cell_corners(body, c, 1, own->point, x);
         if (divided)
             result = gxp_try_facets(body, own, cell, x);
         else
-            gxp_try_faces(own, cell, x);
+            gxp_try_faces(own, cell, x, !gxp_is_bent(body, c));
     }
     return result;
 }
@@ -10373,7 +10527,10 @@ static void gxp_start_hit(gx_body *body, uint32_t cell, const double weights[4],
 /* The hit of a point that the cell contains */
 static void gxp_hit_inside(gx_body *body, uint32_t cell, const double point[3], gx_hit *hit) {
     double weights[4], material[3];
-    (void)gxp_pull_back(body, cell, point, weights, material);
+    if (gxp_is_bent(body, &body->cells.data[cell]))
+        (void)gxp_find_in_bent(body, cell, point, weights, material);
+    else
+        (void)gxp_pull_back(body, cell, point, weights, material);
     gxp_start_hit(body, cell, weights, hit);
     memcpy(hit->material, material, sizeof hit->material);
     memcpy(hit->position, point, sizeof hit->position);
@@ -10556,7 +10713,6 @@ GXFEM_API gx_result gx_body_locate(gx_body *body, const double *points, size_t c
     if (points == NULL && count > 0) return gxp_refuse(failure, "points");
     if (hits == NULL && count > 0) return gxp_refuse(failure, "hits");
     if (count > INT32_MAX / 4) return gxp_fail(failure, GX_ERROR_LIMIT, "count", SIZE_MAX);
-    if (body->copies.bends) return gxp_refuse(failure, "affine_below"); /* maps are not affine */
     result = gxp_check_points(points, count, "points", 1, failure);
     if (result == GX_OK) result = gxp_prepare_locate(body, failure);
     if (result != GX_OK) return result;
@@ -10575,7 +10731,6 @@ GXFEM_API gx_result gx_body_locate_all(gx_body *body, const double point[3], gx_
     if (point == NULL) return gxp_refuse(failure, "point");
     if (hits == NULL && capacity > 0) return gxp_refuse(failure, "hits");
     if (count == NULL) return gxp_refuse(failure, "count");
-    if (body->copies.bends) return gxp_refuse(failure, "affine_below");
     result = gxp_check_points(point, 1, "point", 0, failure);
     if (result == GX_OK) result = gxp_prepare_locate(body, failure);
     if (result != GX_OK) return result;
@@ -10796,7 +10951,6 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
     if (result != GX_OK) return result;
     if (hit == NULL) return gxp_refuse(failure, "hit");
     if (!gxp_has_skin(body)) return gxp_fail(failure, GX_ERROR_SEQUENCE, "gx_body_skin", SIZE_MAX);
-    if (body->copies.bends) return gxp_refuse(failure, "affine_below"); /* boxes are of moved corners */
     result = gxp_update_view(body);
     if (result == GX_OK) result = gxp_list_indices(body);
     if (result == GX_OK) result = gxp_refit_tree(body);
@@ -16000,6 +16154,8 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_REACH
 #undef GXP_WEIGHT
 #undef GXP_AFFINE_MOST
+#undef GXP_UNBEND_STEPS
+#undef GXP_UNBEND_SMALL
 #undef GXP_LAST_ROUND
 #undef GXP_EXPECTED
 #undef GXP_CANCELLATION

@@ -41,7 +41,7 @@ typedef struct settings {
     size_t region_count;
     double thickness;   /* m; 0: sheets stay sheets */
     gx_blade_desc edge; /* of the blade */
-    double dt, young, poisson, density, gravity[3], stretch[3];
+    double dt, young, poisson, density, affine, gravity[3], stretch[3];
     uint32_t frames, newton, cut_at;
     int quiet, help;
 } settings;
@@ -133,6 +133,7 @@ static const char usage[] =
     "  --young P           Young's modulus, Pa (1e6)\n"
     "  --poisson X         Poisson's ratio (0.4)\n"
     "  --density D         kg/m3 (1000)\n"
+    "  --affine T          material thinner than T elements bends by its thickness (0: none; 1 is a good value)\n"
     "  --gravity X,Y,Z     m/s2 (0,0,-9.81)\n"
     "  --fix 'AXIS<V'      holds the material with x, y or z below V; 'AXIS>V': above\n"
     "  --fix box:X0,Y0,Z0,X1,Y1,Z1, --fix sphere:X,Y,Z,RADIUS\n"
@@ -244,6 +245,7 @@ static int take_arguments(settings *set, int argc, char **argv, gxio_error *erro
                         {"--young", TAKES_NUMBER, &set->young, 0},
                         {"--poisson", TAKES_NUMBER, &set->poisson, 0},
                         {"--density", TAKES_NUMBER, &set->density, 0},
+                        {"--affine", TAKES_NUMBER, &set->affine, 0},
                         {"--gravity", TAKES_VECTOR, set->gravity, 0},
                         {"--fix", TAKES_REGION, NULL, 0},
                         {"--stretch", TAKES_VECTOR, set->stretch, 0},
@@ -460,6 +462,7 @@ static int build(run *r) {
     desc.young = r->set.young;
     desc.poisson = r->set.poisson;
     desc.density = r->set.density;
+    desc.affine_below = r->set.affine;
     desc.clock = gxio_seconds;
     result = gx_body_create(&desc, &r->body, &failure);
     if (result != GX_OK) return refuse_mesh(r, &failure);

@@ -19,7 +19,7 @@
 
 /* ---- scenes ---- */
 
-static gx_body *make_body(uint32_t cells, const gx_jobs *jobs) {
+static gx_body *make_body_by(gx_result (*make)(gx_body_desc, gx_body **), uint32_t cells, const gx_jobs *jobs) {
     gx_body_desc desc;
     block_mesh mesh;
     gx_body *body = NULL;
@@ -33,10 +33,14 @@ static gx_body *make_body(uint32_t cells, const gx_jobs *jobs) {
     desc.poisson = 0.4;
     desc.density = 1000;
     if (jobs) desc.jobs = *jobs;
-    OK(gx_body_create(&desc, &body, NULL));
+    OK(make(desc, &body));
     block_free_mesh(&mesh);
     return body;
 }
+
+static gx_result make_plain(gx_body_desc desc, gx_body **body) { return gx_body_create(&desc, body, NULL); }
+
+static gx_body *make_body(uint32_t cells, const gx_jobs *jobs) { return make_body_by(make_plain, cells, jobs); }
 
 static gx_body *make_hanging(uint32_t cells, const gx_jobs *jobs) {
     const gx_region top = gx_region_half_space(2, 1, 1 - 1e-9);
@@ -393,6 +397,38 @@ START_TEST(hold) {
 }
 END_TEST
 
+/* ---- Thin slices ---- */
+
+/* How far the end of a slice of a tenth of an element sags, of which the other end is held */
+static double sag(gx_result (*make)(gx_body_desc, gx_body **)) {
+    const gx_region left = gx_region_half_space(0, -1, 0.05);
+    gx_body *body = make_body_by(make, 4, NULL);
+    gx_step_desc step = step_of(0);
+    gx_anchor end;
+    double place[3], material[3] = {0.97, 0.5, 0.4125};
+    uint32_t element = 0;
+    ck_assert_uint_eq(view_of(body).copy_affine ? view_of(body).copy_affine[0] : 0, 0); /* thick as yet */
+    cut_through(body, 2, 0.4);
+    cut_through(body, 2, 0.425);
+    OK(gx_body_hold(body, &left, 1, NULL));
+    while (gx_body_anchor(body, element, material, &end, NULL) != GX_OK) element++;
+    step.integrator = GXS_STATIC;
+    step.gravity[2] = -0.01; /* small: the slice stays nearly straight */
+    step.newton_iterations = 40;
+    step.cg_iterations = 20000;
+    step.cg_tolerance = 1e-6;
+    OK(gx_body_step(body, &step, NULL, NULL));
+    OK(gx_body_anchor_point(body, &end, NULL, place, NULL));
+    gx_body_destroy(body);
+    return material[2] - place[2];
+}
+
+START_TEST(thin_slices) {
+    const double stiff = sag(make_plain), bends = sag(make_sliceable);
+    ck_assert_msg(stiff > 0 && bends > 30 * stiff, "%g, %g", stiff, bends);
+}
+END_TEST
+
 /* ---- Ground ---- */
 
 /* Two seconds on the ground, which slopes. Returns the mean height of what was lowest. */
@@ -688,6 +724,7 @@ int main(void) {
     tcase_add_loop_test(tc, drill_a_hole, 0, 4);
     tcase_add_test(tc, feel_the_blade);
     tcase_add_test(tc, hold);
+    tcase_add_test(tc, thin_slices);
     tcase_add_test(tc, ground);
     tcase_add_test(tc, ground_after_cuts);
     tcase_add_test(tc, threads);
