@@ -10112,12 +10112,6 @@ static void gxp_bent_residual(const gx_body *body, const gxp_cell *c, const doub
     }
 }
 
-static void gxp_cross(double r[3], const double a[3], const double b[3]) {
-    r[0] = a[1] * b[2] - a[2] * b[1];
-    r[1] = a[2] * b[0] - a[0] * b[2];
-    r[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 /* Pulls a point of space back by the map of a bent cell, to rounding, from coordinates to begin with. 0: it is nowhere
    near there. */
 static int gxp_unbend(const gx_body *body, const gxp_cell *c, const double point[3], double weights[4],
