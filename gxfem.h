@@ -59,7 +59,7 @@
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
  *     a blade in space:          >>layers >>edges >>fronts >>glances >>strokes >>ways >>blade >>contacts >>carve
- *     beginning, end, bytes:     >>create >>hashes >>stream >>scabbard >>save
+ *     beginning, end, bytes:     >>grid >>create >>hashes >>stream >>scabbard >>save
  *
  * Words. Facet: a polygon inside an element or in an element face, made by cuts. Wall: a facet that a sheet covers.
  * Cell: a connected part of one element after cutting (GXFEM Eq. 20). Link: all facets of the face between two elements
@@ -194,6 +194,38 @@ typedef struct gx_material {
     double density; /* kg/m3, > 0 */
 } gx_material;
 
+/* A sheet separates the material on its two sides. It may be open, closed or curved, cross itself, be non-manifold. A
+   solid is closed and consistently oriented; it removes the material around which it winds. A solid that keeps removes
+   all other material; of several in one cut, what lies in all of them stays. */
+enum { GX_SURFACE_SHEET = 0, GX_SURFACE_SOLID = 1, GX_SURFACE_KEEP = 2 };
+typedef struct gx_surface {
+    const double *vertices; /* vertex_count x 3, material coordinates, m */
+    size_t vertex_count;
+    const uint32_t *triangles; /* triangle_count x 3 */
+    size_t triangle_count;
+    uint32_t kind;        /* GX_SURFACE_ */
+    const float *texture; /* vertex_count x 2: texture coordinates of the faces that it cuts; NULL: all 0 */
+    /* The surface cuts only the cells of these slots (gx_view.cell_slot), whatever the cut's scope is. All surfaces of
+       a cut see the cells of before the cut. A slot whose cell was removed stands for nothing. NULL: the cut's scope */
+    const uint32_t *scope_slots; /* scope_slot_count, below gx_view.slot_count */
+    size_t scope_slot_count;
+} gx_surface;
+
+/* A shape in place of a mesh: the body is all that its surfaces wind around, carved exactly out of a grid. Its volume
+   is theirs to rounding, its skin is their triangles (divided at the grid's elements), its mass and inertia follow. The
+   grid has cubes with a node at each corner and in each middle, and 12 tetrahedra for a cube: each has two middles and
+   two corners. Elements that the surfaces neither meet nor wind around are not made. One of cells, edge and unknowns is
+   given, the others are 0. */
+typedef struct gx_shape {
+    /* surface_count. Each is closed and oriented alike, of any number of parts, and may cross itself. A part that faces
+       inward, inside of another part of the same surface, is a cavity. kind and scope_slots are not read */
+    const gx_surface *surfaces;
+    size_t surface_count;
+    uint32_t cells;  /* cubes along the longest side of the box around all surfaces */
+    double edge;     /* m: of a cube */
+    size_t unknowns; /* the finest grid of whole cells whose elements have at most this many: 3 for each node */
+} gx_shape;
+
 typedef struct gx_body_desc {
     const double *positions; /* node_count x 3, material coordinates, m */
     size_t node_count;
@@ -218,31 +250,22 @@ typedef struct gx_body_desc {
     double (*clock)(void *user); /* seconds, for the reports' timings and the steps' budgets; NULL: timings are 0 */
     void *clock_user;
     gx_jobs jobs; /* the host's threads, for the steps; zero: none */
+    /* NULL: the mesh above. Else positions, elements, element_materials and texture are NULL, their counts 0, and the
+       body is as a cut has left it: gx_view.epoch is not 0, and surface n of the shape is surface n of the body's cuts,
+       for the skin and its texture. */
+    const gx_shape *shape;
 } gx_body_desc;
 /* Creates a body. The arrays of the description are copied. failure.index is a node, element or material.
    Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (a node is too far out, an element too heavy or too light, or,
    index SIZE_MAX, the body is too small), INVERTED, FLAT (exactly, or in doubles), OVERLAP, LIMIT, MEMORY,
-   CONFIGURATION. */
+   CONFIGURATION. Of a shape, failure.surface and index name surface and vertex or triangle: as gx_body_cut, and EMPTY
+   (it winds around nothing), LIMIT (the grid has too many cubes; or "shape.unknowns": no grid has so few), RANGE (the
+   grid is too fine for coordinates so far from the origin). */
 GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **body, gx_failure *failure /* or NULL */);
 GXFEM_API void gx_body_destroy(gx_body *body); /* or NULL */
 
 /* >>cutting -------------------------------------------------------------------------------------------------------- */
 
-/* A sheet separates the material on its two sides. It may be open, closed or curved, cross itself, be non-manifold. A
-   solid is closed and consistently oriented; it removes the material around which it winds. */
-enum { GX_SURFACE_SHEET = 0, GX_SURFACE_SOLID = 1 };
-typedef struct gx_surface {
-    const double *vertices; /* vertex_count x 3, material coordinates, m */
-    size_t vertex_count;
-    const uint32_t *triangles; /* triangle_count x 3 */
-    size_t triangle_count;
-    uint32_t kind;        /* GX_SURFACE_SHEET or GX_SURFACE_SOLID */
-    const float *texture; /* vertex_count x 2: texture coordinates of the faces that it cuts; NULL: all 0 */
-    /* The surface cuts only the cells of these slots (gx_view.cell_slot), whatever the cut's scope is. All surfaces of
-       a cut see the cells of before the cut. A slot whose cell was removed stands for nothing. NULL: the cut's scope */
-    const uint32_t *scope_slots; /* scope_slot_count, below gx_view.slot_count */
-    size_t scope_slot_count;
-} gx_surface;
 typedef struct gx_cut_desc {
     const gx_surface *surfaces;
     size_t surface_count;
@@ -344,6 +367,9 @@ typedef struct gx_view {
     const uint8_t *copy_affine;
     const double *affine;      /* copy_count x 9: the columns of A, without unit. Only steps and restores change it */
     const double *affine_rate; /* copy_count x 9, 1/s */
+    /* The mesh, as it was given or made for a shape. Both stay until the body's destruction or restore */
+    const double *positions;  /* node_count x 3, material coordinates, m */
+    const uint32_t *elements; /* element_count x 4 */
 } gx_view;
 /* Brings the view up to date. Errors: ARGUMENT, MEMORY, LIMIT (no ids left). */
 GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view, gx_failure *failure /* or NULL */);
@@ -481,6 +507,9 @@ typedef struct gx_step_desc {
     double (*clock)(void *user); /* s; NULL: the body's */
     void *clock_user;
     double budget_seconds; /* no iteration begins after this time; 0: no limit. Needs a clock */
+    /* above 0: the error of the motion asked for, as a share of it, .03 say, in place of integrator, substeps and the
+       numbers of Newton's method and CG: the step is divided as the motion demands (see gxs_step_desc) */
+    double quality;
 } gx_step_desc;
 typedef gxs_step_report gx_step_report;
 /* Takes one time step (GXFEM Eq. 10). On an error the body is as it was.
@@ -1395,6 +1424,7 @@ typedef struct gxp_scratch {
     gxp_words seed_leaves; /* where the flood starts */
     gxp_words flooded;     /* leaves whose winding number is known */
     gxp_words seeded;      /* by fragment: 1 if one of its leaves is a seed */
+    gxp_words wound;       /* leaves around which the surfaces of a shape wind */
     gxp_words leaf_points; /* of a leaf; also of >>anchors, >>grips */
     /* >>cells, >>links */
     gxp_keys glue;          /* leaf, leaf across a wall that stays in its cell, see >>specks; ascending */
@@ -1649,7 +1679,7 @@ static const gxp_column gxp_lists[] = {
     GXP_WORDS(scratch.link_first), GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
     GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements),
     GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_cells),
-    GXP_WORDS(scratch.seed_leaves), GXP_WORDS(scratch.flooded), GXP_WORDS(scratch.seeded),
+    GXP_WORDS(scratch.seed_leaves), GXP_WORDS(scratch.flooded), GXP_WORDS(scratch.seeded), GXP_WORDS(scratch.wound),
     GXP_WORDS(scratch.leaf_points), GXP_WORDS(scratch.wall_leaves), GXP_WORDS(scratch.cell_leaves),
     GXP_WORDS(scratch.part_leaves), GXP_WORDS(scratch.facet_points),
     GXP_KEYS(scratch.pairs), GXP_WORDS(scratch.subdomains), GXP_WORDS(scratch.subdomain_cells),
@@ -2355,15 +2385,12 @@ static double gxp_greatest(const double x[4]) {
     return a > b ? a : b;
 }
 
-/* May the triangle meet the element? It does not if a plane separates them: one across a coordinate axis, the
-   triangle's own, or one through an edge of the triangle beyond which the element's section lies. */
-static int gxp_triangle_near_element(const gx_body *body, const gxp_search *s, uint32_t element) {
-    const uint32_t *node = gxb_complex_element_nodes(body->complex, element);
-    double x[3][4];
+/* May the triangle meet the tetrahedron? It does not if a plane separates them: one across a coordinate axis, the
+   triangle's own, or one through an edge of the triangle beyond which the tetrahedron's section lies. x: coordinates of
+   its nodes, by axis; then from the triangle's base, times unit. */
+static int gxp_triangle_near_tet(const gxp_search *s, double x[3][4]) {
     gxp_heights over, along;
     int i, n, beyond = 0;
-    for (n = 0; n < 4; n++)
-        for (i = 0; i < 3; i++) x[i][n] = body->mesh.positions[3 * (size_t)node[n] + (size_t)i];
     for (i = 0; i < 3; i++) {
         beyond |= gxp_greatest(x[i]) < s->low[i];
         beyond |= gxp_least(x[i]) > s->high[i];
@@ -2380,6 +2407,15 @@ static int gxp_triangle_near_element(const gx_body *body, const gxp_search *s, u
             return 0;
     }
     return 1;
+}
+
+static int gxp_triangle_near_element(const gx_body *body, const gxp_search *s, uint32_t element) {
+    const uint32_t *node = gxb_complex_element_nodes(body->complex, element);
+    double x[3][4];
+    int i, n;
+    for (n = 0; n < 4; n++)
+        for (i = 0; i < 3; i++) x[i][n] = body->mesh.positions[3 * (size_t)node[n] + (size_t)i];
+    return gxp_triangle_near_tet(s, x);
 }
 
 /* Finds the elements that the triangle may meet. Elements in boxes that it may meet are listed first, so that their
@@ -2516,6 +2552,7 @@ static void gxp_wake_resumed(gx_body *body, size_t copies) {
 typedef struct gxp_cut {
     gx_body *body;
     const gx_cut_desc *desc;
+    int shapes;                /* 1: the surfaces are a shape's; what lies in none of them goes, not in one */
     const gx_surface *stamped; /* whose slots bear the scope's stamp; NULL: the cells of the cut's scope do */
     gx_cut_report report;
     gx_failure failure;
@@ -2909,7 +2946,7 @@ static void gxp_surface_free(gx_body *body, gxp_surface *s) {
 }
 
 static gx_result gxp_check_surface_arrays(const gx_surface *s, gx_failure *failure) {
-    if (s->kind > GX_SURFACE_SOLID) return gxp_refuse(failure, "surfaces.kind");
+    if (s->kind > GX_SURFACE_KEEP) return gxp_refuse(failure, "surfaces.kind");
     if (s->vertex_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "surfaces.vertex_count", SIZE_MAX);
     if (s->triangle_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "surfaces.triangle_count", SIZE_MAX);
     if (s->vertices == NULL) return gxp_refuse(failure, "surfaces.vertices");
@@ -3099,7 +3136,7 @@ static gx_result gxp_surface_open(gxp_cut *cut, gxp_surface *s, const gx_surface
     result = gxp_merge_vertices(body, s);
     if (result != GX_OK) return result;
     gxp_sort_edges(s);
-    return given->kind == GX_SURFACE_SOLID ? gxp_check_closed(cut, s) : GX_OK;
+    return given->kind != GX_SURFACE_SHEET ? gxp_check_closed(cut, s) : GX_OK;
 }
 
 /* >>pinches: elements that meet in a node or an edge only ---------------------------------------------------------- */
@@ -3646,7 +3683,26 @@ static gx_result gxp_find_windings(gx_body *body, const gxp_surface *s, int scop
     return result;
 }
 
-/* Appends to scratch.removed the leaves around which the solid winds. All surfaces of the cut are in the complex. */
+/* Does the solid wind around the leaf? Its flood, the last one, has met all such leaves. */
+static int gxp_is_wound(const gx_body *body, uint32_t leaf) {
+    return body->leaves.mark[leaf].stamp == body->scratch.stamp && body->leaves.mark[leaf].winding != 0;
+}
+
+/* Appends to scratch.removed the leaves around which a solid that keeps does not wind. Their elements get facets: what
+   lies behind these is touched. */
+static gx_result gxp_find_outside(gx_body *body, int scoped) {
+    gx_result result = GX_OK;
+    uint32_t leaf;
+    for (leaf = 0; leaf < body->leaves.count && result == GX_OK; leaf++) {
+        if (!gxp_has_winding(body, leaf, scoped) || gxp_is_wound(body, leaf)) continue;
+        result = gxb_complex_open_element(body->complex, gxb_complex_leaf(body->complex, leaf)->element);
+        if (result == GX_OK) result = gxp_push(body, &body->scratch.removed, leaf);
+    }
+    return result;
+}
+
+/* Appends to scratch.removed the leaves around which the solid winds or, if it keeps these, the others. All surfaces of
+   the cut are in the complex. */
 static gx_result gxp_find_solid(gxp_cut *cut, const gxp_surface *s) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
@@ -3657,10 +3713,62 @@ static gx_result gxp_find_solid(gxp_cut *cut, const gxp_surface *s) {
     if (result == GX_OK)
         result = s->given->scope_slots != NULL ? gxp_seed_slots(body, s->given) : gxp_seed_untouched(cut);
     if (result == GX_OK) result = gxp_find_windings(body, s, scoped);
+    if (result == GX_OK && s->given->kind == GX_SURFACE_KEEP) return gxp_find_outside(body, scoped);
     if (result == GX_OK) result = gxp_words_room(body, &scratch->removed, scratch->flooded.count);
     for (i = 0; i < scratch->flooded.count && result == GX_OK; i++)
-        if (body->leaves.mark[scratch->flooded.data[i]].winding != 0)
+        if (gxp_is_wound(body, scratch->flooded.data[i]))
             result = gxp_push(body, &scratch->removed, scratch->flooded.data[i]);
+    return result;
+}
+
+/* Appends the leaves on both sides of the undivided facets that make up a facet and that the surface covers. */
+static gx_result gxp_push_covered(gx_body *body, const gxp_surface *s, uint32_t facet, gxp_words *leaves) {
+    const uint32_t child = gxb_complex_facet(body->complex, facet)->child;
+    gx_result result;
+    int covered;
+    if (child != GXB_NONE) {
+        result = gxp_push_covered(body, s, child, leaves);
+        return result == GX_OK ? gxp_push_covered(body, s, child + 1, leaves) : result;
+    }
+    (void)gxp_winding_step(body, s, facet, &covered);
+    return covered ? gxp_push_leaves_beside(body, facet, leaves) : GX_OK;
+}
+
+/* Lists the leaves beside one of the cut's surfaces. */
+static gx_result gxp_list_covered(gx_body *body, const gxp_surface *s, gxp_words *leaves) {
+    const uint32_t count = gxb_complex_marked_count(body->complex);
+    uint32_t i;
+    gx_result result = GX_OK;
+    leaves->count = 0;
+    for (i = 0; i < count && result == GX_OK; i++)
+        result = gxp_push_covered(body, s, gxb_complex_marked_facet(body->complex, i), leaves);
+    return result;
+}
+
+/* Appends to scratch.removed the leaves that lie in none of a shape's surfaces. */
+static gx_result gxp_find_shape(gxp_cut *cut, const gxp_surface *surfaces) {
+    gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
+    gx_result result = gxp_start_words(body, &scratch->wound, body->leaves.count);
+    uint32_t i, leaf;
+    size_t s;
+    for (s = 0; s < cut->desc->surface_count && result == GX_OK; s++) {
+        result = gxp_list_covered(body, &surfaces[s], &scratch->seed_leaves);
+        if (result == GX_OK) result = gxp_seed_untouched(cut);
+        if (result == GX_OK) result = gxp_find_windings(body, &surfaces[s], 0);
+        for (i = 0; i < scratch->flooded.count && result == GX_OK; i++)
+            if (gxp_is_wound(body, scratch->flooded.data[i]))
+                result = gxp_push(body, &scratch->wound, scratch->flooded.data[i]);
+    }
+    gxp_sort_unique(&scratch->wound);
+    for (leaf = i = 0; leaf < body->leaves.count && result == GX_OK; leaf++) {
+        if (i < scratch->wound.count && scratch->wound.data[i] == leaf) {
+            i++;
+            continue;
+        }
+        result = gxb_complex_open_element(body->complex, gxb_complex_leaf(body->complex, leaf)->element);
+        if (result == GX_OK) result = gxp_push(body, &scratch->removed, leaf);
+    }
     return result;
 }
 
@@ -5402,8 +5510,9 @@ static gx_result gxp_arrange_surfaces(gxp_cut *cut, gxp_surface *surfaces) {
         if (result == GX_OK) result = gxp_insert_surface(cut, &surfaces[i], scoped);
     }
     if (result == GX_OK) result = gxp_follow_leaves(cut->body);
+    if (cut->shapes && result == GX_OK) return gxp_find_shape(cut, surfaces);
     for (i = 0; i < count && result == GX_OK; i++)
-        if (surfaces[i].given->kind == GX_SURFACE_SOLID) result = gxp_find_solid(cut, &surfaces[i]);
+        if (surfaces[i].given->kind != GX_SURFACE_SHEET) result = gxp_find_solid(cut, &surfaces[i]);
     return result;
 }
 
@@ -5629,39 +5738,46 @@ static gx_result gxp_make_cut(gxp_cut *cut) {
 }
 
 /* least: which pieces stay with the material beside them; NULL: none does */
+static gx_result gxp_run_cut(gxp_cut *cut, const gxp_not_meant *least, gx_failure *failure) {
+    gx_body *body = cut->body;
+    gxp_settling settling;
+    uint32_t found = 0, tries;
+    gx_result result;
+    gxp_end(&cut->failure, GX_OK);
+    result = gxp_check_cut(cut);
+    if (result != GX_OK) return gxp_tell_failure(cut, result, failure);
+    body->scratch.glue.count = 0;
+    for (tries = 1;; tries++) {
+        result = gxp_make_cut(cut);
+        if (result == GX_OK && least != NULL && tries < GXP_SPECK_TRIES) result = gxp_find_specks(cut, least, &found);
+        if (result != GX_OK || found == 0 || tries == GXP_SPECK_TRIES) break;
+        gxp_rollback(cut);
+    }
+    body->scratch.glue.count = 0;
+    if (result == GX_OK) result = gxp_plan_settling(body, &settling);
+    if (result != GX_OK) {
+        gxp_rollback(cut);
+        return gxp_tell_failure(cut, result, failure);
+    }
+    gxp_wake_resumed(body, body->undo.counts[GXP_COPIES]);
+    gxp_commit(cut);
+    gxp_settle(body, &settling);
+    if (body->model.resumed != 0) body->model.resumed = gxp_hash_state(body, body->copies.count);
+    return gxp_end(failure, GX_OK);
+}
+
 static gx_result gxp_cut_body(gx_body *body, const gx_cut_desc *desc, const gxp_not_meant *least, gx_cut_report *report,
                               gx_failure *failure) {
     gxp_cut cut;
-    gxp_settling settling;
-    uint32_t found = 0, tries;
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (desc == NULL) return gxp_refuse(failure, "desc");
     memset(&cut, 0, sizeof cut);
     cut.body = body;
     cut.desc = desc;
-    gxp_end(&cut.failure, GX_OK);
-    result = gxp_check_cut(&cut);
-    if (result != GX_OK) return gxp_tell_failure(&cut, result, failure);
-    body->scratch.glue.count = 0;
-    for (tries = 1;; tries++) {
-        result = gxp_make_cut(&cut);
-        if (result == GX_OK && least != NULL && tries < GXP_SPECK_TRIES) result = gxp_find_specks(&cut, least, &found);
-        if (result != GX_OK || found == 0 || tries == GXP_SPECK_TRIES) break;
-        gxp_rollback(&cut);
-    }
-    body->scratch.glue.count = 0;
-    if (result == GX_OK) result = gxp_plan_settling(body, &settling);
-    if (result != GX_OK) {
-        gxp_rollback(&cut);
-        return gxp_tell_failure(&cut, result, failure);
-    }
-    gxp_wake_resumed(body, body->undo.counts[GXP_COPIES]);
-    gxp_commit(&cut);
-    gxp_settle(body, &settling);
-    if (body->model.resumed != 0) body->model.resumed = gxp_hash_state(body, body->copies.count);
-    if (report != NULL) *report = cut.report;
-    return gxp_end(failure, GX_OK);
+    result = gxp_run_cut(&cut, least, failure);
+    if (result == GX_OK && report != NULL) *report = cut.report;
+    return result;
 }
 
 GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report, gx_failure *failure) {
@@ -7306,6 +7422,8 @@ GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view, gx_failure *failu
     view->copy_affine = body->copies.affine;
     view->affine = body->copies.linear;
     view->affine_rate = body->copies.linear_rate;
+    view->positions = body->mesh.positions;
+    view->elements = gxb_complex_element_nodes(body->complex, 0);
     return GX_OK;
 }
 
@@ -8410,7 +8528,7 @@ static void gxp_translate_loads(const gx_step_desc *desc, gxs_step_desc *step) {
 /* The step as the solver takes it: the only place where one description becomes the other. The body adds its rest
    times, its history and, where the description has none, its clock. */
 static gx_result gxp_translate_step(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step) {
-    const int history = desc->integrator == GXS_BDF2, own_clock = desc->clock == NULL;
+    const int history = desc->integrator == GXS_BDF2 && !(desc->quality > 0), own_clock = desc->clock == NULL;
     memset(step, 0, sizeof *step);
     gxp_translate_loads(desc, step);
     step->dt = desc->dt;
@@ -8423,6 +8541,7 @@ static gx_result gxp_translate_step(gx_body *body, const gx_step_desc *desc, gxs
     step->sleep_speed = desc->sleep_speed;
     step->sleep_time = desc->sleep_time;
     step->budget_seconds = desc->budget_seconds;
+    step->quality = desc->quality;
     step->clock = own_clock ? body->config.clock : desc->clock;
     step->clock_user = own_clock ? body->config.clock_user : desc->clock_user;
     step->rest_times = body->copies.rest_time;
@@ -8513,7 +8632,7 @@ static gx_result gxp_step_affine(gx_body *body, const gxs_step_desc *given, gx_s
 static gx_result gxp_step(gx_body *body, const gxs_step_desc *step, gx_step_report *report, gx_failure *failure) {
     gxp_copies *copies = &body->copies;
     const size_t bytes = 3 * (size_t)copies->count * sizeof(double);
-    const int history = step->integrator == GXS_BDF2;
+    const int history = step->integrator == GXS_BDF2 && !(step->quality > 0);
     const gxp_column *columns = gxp_copy_columns + GXP_FIRST_HISTORY;
     gx_result result;
     int i;
@@ -14659,14 +14778,452 @@ GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_
     return result;
 }
 
-/* >>create: create and destroy ------------------------------------------------------------------------------------- */
-/* In: a description. Out: a body with one cell for each element and one copy for each node that an element uses. After
-   an error everything made so far is destroyed. */
+/* >>grid: a grid of elements around a shape ------------------------------------------------------------------------ */
+/* In: closed surfaces and a resolution. Out: nodes and elements: all that the surfaces meet or wind around, and next to
+   none else. The cubes' corners and middles are a body-centred lattice; an element lies between the middles of two
+   cubes and two corners of the face between them. Exact winding numbers of nodes tell which elements are inside, so far
+   as the surfaces do not come near them; those that they come near are found as a cut finds elements, and made. */
 
 /* Coordinates are at most 2^GXP_REACH, the longest side is at least 2^-GXP_REACH. Masses of elements are 2^-GXP_WEIGHT
    ... 2^GXP_WEIGHT: the inertia of 2^28 of them is below 2^940. */
 #define GXP_REACH  100
 #define GXP_WEIGHT 700
+
+/* Nodes are named by their place in the arrays below: corners of cubes first, then middles. */
+typedef struct gxp_grid {
+    const gx_allocator *allocator;
+    gxp_box all;             /* around the surfaces */
+    double half, start[3];   /* m: half the edge of a cube; the lowest corner. Both have few bits: sums are exact */
+    double unit;             /* a power of two, by which all is of about unit size */
+    uint32_t size[3];        /* cubes by axis, one more than the surfaces reach on each side */
+    uint32_t cubes, corners; /* their products */
+    int32_t *winding;        /* by node: sums while a surface is counted; then the node's number */
+    uint8_t *inside;         /* by node: 1 if a surface winds around it */
+    uint16_t *made;          /* by cube: bits of its elements that are made, 4 x axis + quarter: see gxp_grid_element */
+    uint32_t node_count, element_count;
+} gxp_grid;
+
+/* Larger grids would take more memory for their nodes than bodies can use for elements. */
+#define GXP_GRID_CUBES 1e8
+/* The surfaces stay that share of a cube within the grid's, so that no sliver of a further layer is made. */
+#define GXP_GRID_MARGIN 0.0625
+
+static void gxp_grid_free(gxp_grid *grid) {
+    const size_t nodes = (size_t)grid->corners + grid->cubes;
+    gxp_release(grid->allocator, grid->winding, nodes * sizeof *grid->winding);
+    gxp_release(grid->allocator, grid->inside, nodes);
+    gxp_release(grid->allocator, grid->made, grid->cubes * sizeof *grid->made);
+    grid->winding = NULL;
+    grid->inside = NULL;
+    grid->made = NULL;
+}
+
+/* A positive number with 12 bits, not below x by more than its rounding */
+static double gxp_few_bits(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    bits = (bits + 0x1ffffffffffu) & ~(uint64_t)0x1ffffffffffu;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+/* Places the grid around the surfaces, its cubes with edges of about h. */
+static gx_result gxp_place_grid(gxp_grid *grid, double h, gx_failure *failure) {
+    double far = 0, cubes = 1;
+    int k, exponent;
+    grid->half = gxp_few_bits(0.5 * h);
+    for (k = 0; k < 3; k++) {
+        const double layers = ceil((grid->all.high[k] - grid->all.low[k]) / (2 * grid->half) + 2 * GXP_GRID_MARGIN) + 2;
+        cubes *= layers;
+        if (!(cubes <= GXP_GRID_CUBES)) return gxp_fail(failure, GX_ERROR_LIMIT, "shape", SIZE_MAX);
+        grid->size[k] = (uint32_t)layers;
+        far = fmax(far, fmax(fabs(grid->all.low[k]), fabs(grid->all.high[k])) + layers * grid->half);
+    }
+    (void)frexp(far, &exponent);
+    if (!(grid->half > ldexp(far, -36))) return gxp_fail(failure, GX_ERROR_RANGE, "shape", SIZE_MAX);
+    for (k = 0; k < 3; k++) {
+        const double middle = 0.5 * grid->all.low[k] + 0.5 * grid->all.high[k];
+        grid->start[k] = ldexp(floor(ldexp(middle - grid->size[k] * grid->half, 40 - exponent)), exponent - 40);
+    }
+    grid->unit = ldexp(1, -exponent);
+    grid->cubes = grid->size[0] * grid->size[1] * grid->size[2];
+    grid->corners = (grid->size[0] + 1) * (grid->size[1] + 1) * (grid->size[2] + 1);
+    return GX_OK;
+}
+
+static gx_result gxp_open_grid(gxp_grid *grid) {
+    const size_t nodes = (size_t)grid->corners + grid->cubes;
+    grid->winding = (int32_t *)gxp_allocate(grid->allocator, nodes * sizeof *grid->winding);
+    grid->inside = (uint8_t *)gxp_allocate(grid->allocator, nodes);
+    grid->made = (uint16_t *)gxp_allocate(grid->allocator, grid->cubes * sizeof *grid->made);
+    if (grid->winding == NULL || grid->inside == NULL || grid->made == NULL) return GX_ERROR_MEMORY;
+    memset(grid->winding, 0, nodes * sizeof *grid->winding);
+    memset(grid->inside, 0, nodes);
+    memset(grid->made, 0, grid->cubes * sizeof *grid->made);
+    return GX_OK;
+}
+
+/* The coordinate of what is that many halves of a cube from the grid's lowest corner */
+static double gxp_grid_at(const gxp_grid *grid, int axis, uint32_t halves) {
+    return grid->start[axis] + grid->half * halves;
+}
+
+/* The node at these halves, which are all even or all odd */
+static uint32_t gxp_grid_node(const gxp_grid *grid, const uint32_t halves[3]) {
+    const uint32_t odd = halves[0] & 1, more = 1 - odd;
+    return odd * grid->corners + halves[0] / 2 +
+           (grid->size[0] + more) * (halves[1] / 2 + (grid->size[1] + more) * (halves[2] / 2));
+}
+
+/* One of the four elements across the face of a cube at its upper end along an axis, as halves of its nodes */
+static void gxp_grid_element(const uint32_t cube[3], int axis, int quarter, uint32_t halves[4][3]) {
+    static const uint8_t corner[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    int n;
+    for (n = 0; n < 4; n++) {
+        halves[n][axis] = 2 * cube[axis] + (n == 0 ? 1 : n == 1 ? 3 : 2);
+        halves[n][u] = 2 * cube[u] + (n < 2 ? 1u : 2u * corner[quarter + n - 2][0]);
+        halves[n][v] = 2 * cube[v] + (n < 2 ? 1u : 2u * corner[quarter + n - 2][1]);
+    }
+}
+
+/* The side of the edge from a to b in the projection along x on which p is; p is moved by (h, h^2), h -> 0, so that it
+   is on no edge. As rays in gxb_winding_number */
+static int gxp_line_side(const double *a, const double *b, const double *p) {
+    const int sign = gxb_orient2d(a + 1, b + 1, p + 1);
+    if (sign != 0) return sign;
+    return a[2] != b[2] ? (a[2] > b[2] ? 1 : -1) : b[1] > a[1] ? 1 : b[1] < a[1] ? -1 : 0;
+}
+
+/* Counts the crossing of a triangle with a line of nodes along x. line: halves of its first node */
+static void gxp_cross_line(gxp_grid *grid, const double *a, const double *b, const double *c, uint32_t line[3]) {
+    const uint32_t first = line[0] & 1;
+    uint32_t low = 0, high = grid->size[0] + 1 - first;
+    double p[3];
+    int side;
+    p[1] = gxp_grid_at(grid, 1, line[1]);
+    p[2] = gxp_grid_at(grid, 2, line[2]);
+    side = gxp_line_side(a, b, p);
+    if (side == 0 || gxp_line_side(b, c, p) != side || gxp_line_side(c, a, p) != side) return;
+    while (low < high) { /* nodes from which a ray along x crosses come before those from which none does */
+        const uint32_t middle = low + (high - low) / 2;
+        p[0] = gxp_grid_at(grid, 0, first + 2 * middle);
+        if (gxb_orient3d(a, b, c, p) == side)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    line[0] = first + 2 * (low - 1); /* the first node of a line is beside all surfaces */
+    grid->winding[gxp_grid_node(grid, line)] += side;
+    line[0] = first;
+}
+
+/* The places along an axis between two coordinates, in halves of a cube, with the first beyond each. Coordinates are at
+   most 2^36 halves: these are rounded by far less than 2^-6. */
+static void gxp_grid_range(const gxp_grid *grid, int axis, double low, double high, uint32_t range[2]) {
+    const double last = 2.0 * grid->size[axis], slack = 0.015625;
+    const double from = floor((low - grid->start[axis]) / grid->half - slack);
+    const double to = ceil((high - grid->start[axis]) / grid->half + slack);
+    range[0] = from > 0 ? (uint32_t)from : 0;
+    range[1] = to < last ? (uint32_t)to : (uint32_t)last;
+}
+
+/* Counts the crossings of a triangle with all lines of nodes along x. */
+static void gxp_cross_lines(gxp_grid *grid, const gxp_search *search, const double *const p[3]) {
+    uint32_t y[2], z[2], line[3];
+    gxp_grid_range(grid, 1, search->low[1], search->high[1], y);
+    gxp_grid_range(grid, 2, search->low[2], search->high[2], z);
+    for (line[2] = z[0]; line[2] <= z[1]; line[2]++)
+        for (line[1] = y[0] + ((y[0] ^ line[2]) & 1); line[1] <= y[1]; line[1] += 2) {
+            line[0] = line[2] & 1;
+            gxp_cross_line(grid, p[0], p[1], p[2], line);
+        }
+}
+
+/* Marks the nodes around which a surface winds, whose crossings are counted: the sum of those from a node on. */
+static void gxp_sum_lines(gxp_grid *grid) {
+    uint32_t first = 0, odd, line, i;
+    for (odd = 0; odd < 2; odd++) {
+        const uint32_t count = grid->size[0] + 1 - odd, lines = (odd ? grid->cubes : grid->corners) / count;
+        for (line = 0; line < lines; line++, first += count) {
+            int32_t winding = 0;
+            for (i = first + count; i-- > first;) {
+                winding += grid->winding[i];
+                grid->winding[i] = 0;
+                if (winding != 0) grid->inside[i] = 1;
+            }
+        }
+    }
+}
+
+/* Does a face of the tetrahedron have all corners of the triangle beyond it? With the tests of gxp_triangle_near_tet,
+   these are all planes that can separate the two. x: as that has left it, from the triangle's base. */
+static int gxp_triangle_beyond_face(const gxp_search *s, const double *const p[3], double x[3][4]) {
+    double e[2][3], d[3], normal[3];
+    int face, n, k;
+    for (face = 0; face < 4; face++) {
+        const uint8_t *out = gxp_outward[face];
+        int beyond = 1;
+        double scale;
+        for (n = 0; n < 2; n++)
+            for (k = 0; k < 3; k++) e[n][k] = x[k][out[n + 1]] - x[k][out[0]];
+        scale = gxp_search_axis(e[0], e[1], normal);
+        for (n = 0; n < 3 && beyond; n++) {
+            gxp_search_vector(s, p[n], d);
+            for (k = 0; k < 3; k++) d[k] -= x[k][out[0]];
+            beyond = gxp_dot(normal, d) > GXP_SEARCH_MARGIN * scale * s->far;
+        }
+        if (beyond) return 1;
+    }
+    return 0;
+}
+
+/* Marks the elements across the upper face of a cube, along an axis, that the triangle may meet. */
+static void gxp_mark_face(gxp_grid *grid, const gxp_search *search, const double *const p[3], const uint32_t cube[3],
+                          int axis) {
+    uint16_t *made = &grid->made[cube[0] + grid->size[0] * (cube[1] + grid->size[1] * cube[2])];
+    uint32_t halves[4][3];
+    double x[3][4];
+    int quarter, n, k;
+    for (quarter = 0; quarter < 4; quarter++) {
+        gxp_grid_element(cube, axis, quarter, halves);
+        for (n = 0; n < 4; n++)
+            for (k = 0; k < 3; k++) x[k][n] = gxp_grid_at(grid, k, halves[n][k]);
+        if (gxp_triangle_near_tet(search, x) && !gxp_triangle_beyond_face(search, p, x))
+            *made |= (uint16_t)(1u << (4 * axis + quarter));
+    }
+}
+
+/* Marks the elements that the triangle may meet: of an axis those between two middles along it and, along the other
+   axes, in the cubes that it reaches. */
+static void gxp_mark_elements(gxp_grid *grid, const gxp_search *search, const double *const p[3]) {
+    uint32_t range[3][2], low[3], high[3], cube[3];
+    int axis, k;
+    for (k = 0; k < 3; k++) gxp_grid_range(grid, k, search->low[k], search->high[k], range[k]);
+    for (axis = 0; axis < 3; axis++) {
+        for (k = 0; k < 3; k++) {
+            const uint32_t reach = k == axis ? 3 : 2;
+            low[k] = range[k][0] > reach ? (range[k][0] - reach + 1) / 2 : 0;
+            high[k] = (range[k][1] - (k == axis && range[k][1] > 0)) / 2;
+        }
+        for (cube[2] = low[2]; cube[2] <= high[2]; cube[2]++)
+            for (cube[1] = low[1]; cube[1] <= high[1]; cube[1]++)
+                for (cube[0] = low[0]; cube[0] <= high[0]; cube[0]++) {
+                    gxp_box box;
+                    for (k = 0; k < 3; k++) {
+                        box.low[k] = gxp_grid_at(grid, k, 2 * cube[k]);
+                        box.high[k] = gxp_grid_at(grid, k, 2 * cube[k] + (k == axis ? 4 : 2));
+                    }
+                    if (gxp_triangle_near_box(search, &box)) gxp_mark_face(grid, search, p, cube, axis);
+                }
+    }
+}
+
+static void gxp_enter_surface(gxp_grid *grid, const gx_surface *s) {
+    gxp_search search;
+    size_t t;
+    int k;
+    for (t = 0; t < s->triangle_count; t++) {
+        const double *p[3];
+        for (k = 0; k < 3; k++) p[k] = s->vertices + 3 * (size_t)s->triangles[3 * t + (size_t)k];
+        gxp_search_init(&search, p, grid->unit, &grid->all);
+        gxp_cross_lines(grid, &search, p);
+        gxp_mark_elements(grid, &search, p);
+    }
+    gxp_sum_lines(grid);
+}
+
+/* Makes all elements of a cube whose middle is inside: what the surfaces do not come near has it as a node. */
+static void gxp_make_inner(gxp_grid *grid) {
+    uint32_t i;
+    for (i = 0; i < grid->cubes; i++)
+        if (grid->inside[grid->corners + i]) grid->made[i] = 0xfff;
+}
+
+/* Numbers the nodes of an element that is made in the order in which they are met. */
+static void gxp_number_nodes(gxp_grid *grid, const uint32_t cube[3], int axis, int quarter, uint32_t nodes[4]) {
+    uint32_t halves[4][3];
+    int n;
+    gxp_grid_element(cube, axis, quarter, halves);
+    for (n = 0; n < 4; n++) {
+        int32_t *number = &grid->winding[gxp_grid_node(grid, halves[n])];
+        if (*number < 0) *number = (int32_t)grid->node_count++;
+        nodes[n] = (uint32_t)*number;
+    }
+}
+
+/* Walks through the elements that are made, cube by cube. Counts them and their nodes, which get numbers. elements:
+   written unless NULL. lacking: NULL, or for each element of the same walk before, 1 if it is not to be made */
+static void gxp_list_elements(gxp_grid *grid, uint32_t *elements, const uint8_t *lacking) {
+    uint32_t cube[3], nodes[4];
+    size_t i = 0, before = 0;
+    int bit;
+    memset(grid->winding, 0xff, ((size_t)grid->corners + grid->cubes) * sizeof *grid->winding);
+    grid->node_count = grid->element_count = 0;
+    for (cube[2] = 0; cube[2] < grid->size[2]; cube[2]++)
+        for (cube[1] = 0; cube[1] < grid->size[1]; cube[1]++)
+            for (cube[0] = 0; cube[0] < grid->size[0]; cube[0]++, i++)
+                for (bit = 0; bit < 12 && grid->made[i] != 0; bit++) {
+                    if (!(grid->made[i] >> bit & 1)) continue;
+                    if (lacking != NULL && lacking[before++]) {
+                        grid->made[i] = (uint16_t)(grid->made[i] & ~(1u << bit));
+                        continue;
+                    }
+                    gxp_number_nodes(grid, cube, bit / 4, bit % 4, nodes);
+                    if (elements != NULL) memcpy(elements + 4 * (size_t)grid->element_count, nodes, sizeof nodes);
+                    grid->element_count++;
+                }
+}
+
+/* Makes a grid with edges of about h of the surfaces: which elements are made. gxp_grid_free frees it, also after an
+   error. */
+static gx_result gxp_make_grid(gxp_grid *grid, double h, const gx_cut_desc *cut, gx_failure *failure) {
+    size_t i;
+    gx_result result = gxp_place_grid(grid, h, failure);
+    if (result != GX_OK) return result;
+    result = gxp_open_grid(grid);
+    for (i = 0; i < cut->surface_count && result == GX_OK; i++) gxp_enter_surface(grid, &cut->surfaces[i]);
+    if (result == GX_OK) {
+        gxp_make_inner(grid);
+        gxp_list_elements(grid, NULL, NULL);
+    }
+    return gxp_end(failure, result);
+}
+
+/* The edge of cubes of which so many stand along the longest side */
+static double gxp_edge_of_cells(const gxp_grid *grid, uint32_t cells) {
+    double longest = 0;
+    int k;
+    for (k = 0; k < 3; k++) longest = fmax(longest, grid->all.high[k] - grid->all.low[k]);
+    return longest / (cells - 2 * GXP_GRID_MARGIN);
+}
+
+/* Finds the most cells along the longest side with which the nodes have no more unknowns than allowed: a grid of twice
+   as many has about eight times the nodes. Makes that grid. */
+static gx_result gxp_meet_budget(gxp_grid *grid, size_t unknowns, const gx_cut_desc *cut, gx_failure *failure) {
+    uint32_t enough = 0, many = 0, cells = 1;
+    gx_result result;
+    for (;;) {
+        result = gxp_make_grid(grid, gxp_edge_of_cells(grid, cells), cut, failure);
+        if (result != GX_OK && result != GX_ERROR_LIMIT) return result;
+        if (result == GX_OK && 3 * (size_t)grid->node_count <= unknowns) {
+            if (many == cells + 1) return GX_OK;
+            enough = cells;
+        } else
+            many = cells;
+        gxp_grid_free(grid);
+        if (enough == 0) return gxp_fail(failure, GX_ERROR_LIMIT, "shape.unknowns", SIZE_MAX);
+        cells = many == 0 ? 2 * enough : many == enough + 1 ? enough : enough + (many - enough) / 2;
+    }
+}
+
+static gx_result gxp_choose_grid(gxp_grid *grid, const gx_body_desc *desc, const gx_cut_desc *cut,
+                                 gx_failure *failure) {
+    const gx_shape *shape = desc->shape;
+    const gx_surface *s;
+    size_t i;
+    gx_result result;
+    memset(grid, 0, sizeof *grid);
+    grid->allocator = &desc->allocator;
+    memcpy(grid->all.low, cut->surfaces[0].vertices, sizeof grid->all.low);
+    memcpy(grid->all.high, cut->surfaces[0].vertices, sizeof grid->all.high);
+    for (s = cut->surfaces; s < cut->surfaces + cut->surface_count; s++)
+        for (i = 0; i < 3 * s->vertex_count; i++) {
+            grid->all.low[i % 3] = fmin(grid->all.low[i % 3], s->vertices[i]);
+            grid->all.high[i % 3] = fmax(grid->all.high[i % 3], s->vertices[i]);
+        }
+    result =
+        shape->unknowns > 0
+            ? gxp_meet_budget(grid, shape->unknowns, cut, failure)
+            : gxp_make_grid(grid, shape->cells > 0 ? gxp_edge_of_cells(grid, shape->cells) : shape->edge, cut, failure);
+    if (result != GX_OK) gxp_grid_free(grid);
+    return result;
+}
+
+/* Takes the elements without cells out of the grid: the surfaces only touch them. *lacks: 1 if there were some */
+static gx_result gxp_drop_elements(gxp_grid *grid, const gx_body *body, int *lacks) {
+    uint8_t *lacking = (uint8_t *)gxp_allocate(grid->allocator, grid->element_count);
+    const uint32_t count = grid->element_count;
+    uint32_t i;
+    if (lacking == NULL) return GX_ERROR_MEMORY;
+    *lacks = 0;
+    memset(lacking, 1, count);
+    for (i = 0; i < body->view.count; i++) lacking[body->view.element[i]] = 0;
+    for (i = 0; i < count && !*lacks; i++) *lacks = lacking[i];
+    if (*lacks) gxp_list_elements(grid, NULL, lacking);
+    gxp_release(grid->allocator, lacking, count);
+    return GX_OK;
+}
+
+/* Writes the grid's nodes and elements. */
+static void gxp_fill_grid(gxp_grid *grid, double *positions, uint32_t *elements) {
+    uint32_t halves[3], odd, k;
+    gxp_list_elements(grid, elements, NULL);
+    for (odd = 0; odd < 2; odd++)
+        for (halves[2] = odd; halves[2] <= 2 * grid->size[2]; halves[2] += 2)
+            for (halves[1] = odd; halves[1] <= 2 * grid->size[1]; halves[1] += 2)
+                for (halves[0] = odd; halves[0] <= 2 * grid->size[0]; halves[0] += 2) {
+                    const int32_t number = grid->winding[gxp_grid_node(grid, halves)];
+                    for (k = 0; k < 3 && number >= 0; k++)
+                        positions[3 * (size_t)number + k] = gxp_grid_at(grid, (int)k, halves[k]);
+                }
+}
+
+/* What the checks of a cut's surfaces name, as members of the description */
+static gx_result gxp_name_shape(gx_failure *failure, gx_result result) {
+    static const char *const names[][2] = {{"surfaces.vertices", "shape.surfaces.vertices"},
+                                           {"surfaces.triangles", "shape.surfaces.triangles"},
+                                           {"surfaces.vertex_count", "shape.surfaces.vertex_count"},
+                                           {"surfaces.triangle_count", "shape.surfaces.triangle_count"},
+                                           {"surfaces.texture", "shape.surfaces.texture"}};
+    size_t i;
+    if (result == GX_OK || failure == NULL || failure->field == NULL) return result;
+    for (i = 0; i < sizeof names / sizeof *names; i++)
+        if (strcmp(failure->field, names[i][0]) == 0) {
+            failure->field = names[i][1];
+            break;
+        }
+    return result;
+}
+
+static gx_result gxp_check_shape_surface(const gx_surface *s, gx_failure *failure) {
+    const double most = ldexp(1, GXP_REACH);
+    gx_surface plain = *s;
+    size_t i;
+    gx_result result;
+    plain.kind = GX_SURFACE_KEEP;
+    result = gxp_check_surface_arrays(&plain, failure);
+    for (i = 0; i < 3 * s->vertex_count && result == GX_OK; i++) {
+        if (!gxp_is_finite(s->vertices[i]))
+            result = gxp_fail(failure, GX_ERROR_NOT_FINITE, "surfaces.vertices", i / 3);
+        else if (fabs(s->vertices[i]) > most)
+            result = gxp_fail(failure, GX_ERROR_RANGE, "surfaces.vertices", i / 3);
+    }
+    for (i = 0; i < 3 * s->triangle_count && result == GX_OK; i++)
+        if (s->triangles[i] >= s->vertex_count) result = gxp_fail(failure, GX_ERROR_INDEX, "surfaces.triangles", i / 3);
+    return gxp_name_shape(failure, result);
+}
+
+/* All but whether the surfaces are closed, which the cut checks */
+static gx_result gxp_check_shape(const gx_body_desc *desc, gx_failure *failure) {
+    const gx_shape *shape = desc->shape;
+    size_t i;
+    gx_result result = GX_OK;
+    if (shape->surfaces == NULL) return gxp_refuse(failure, "shape.surfaces");
+    if (shape->surface_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "shape.surface_count", SIZE_MAX);
+    if (!gxp_is_finite(shape->edge)) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "shape.edge", SIZE_MAX);
+    if (shape->edge < 0) return gxp_refuse(failure, "shape.edge");
+    if ((shape->cells > 0) + (shape->edge > 0) + (shape->unknowns > 0) != 1) return gxp_refuse(failure, "shape.cells");
+    for (i = 0; i < shape->surface_count && result == GX_OK; i++) {
+        result = gxp_check_shape_surface(&shape->surfaces[i], failure);
+        if (result != GX_OK && failure != NULL) failure->surface = i;
+    }
+    return result;
+}
+
+/* >>create: create and destroy ------------------------------------------------------------------------------------- */
+/* In: a description. Out: a body with one cell for each element and one copy for each node that an element uses. After
+   an error everything made so far is destroyed. */
 
 #define GXP_AFFINE_MOST 1e3 /* of affine_below: all is thinner than that */
 
@@ -14879,6 +15436,12 @@ static gx_result gxp_check_body_desc(const gx_body_desc *desc, gx_failure *failu
     if (desc->support_below < 0 || desc->support_below >= 1) return gxp_refuse(failure, "support_below");
     if (!gxp_is_finite(desc->affine_below)) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "affine_below", SIZE_MAX);
     if (desc->affine_below < 0 || desc->affine_below > GXP_AFFINE_MOST) return gxp_refuse(failure, "affine_below");
+    if (desc->shape != NULL) {
+        if (desc->positions != NULL || desc->node_count > 0) return gxp_refuse(failure, "positions");
+        if (desc->elements != NULL || desc->element_count > 0) return gxp_refuse(failure, "elements");
+        if (desc->element_materials != NULL) return gxp_refuse(failure, "element_materials");
+        if (desc->texture != NULL) return gxp_refuse(failure, "texture");
+    }
     for (i = 0; i < 2 * desc->node_count && desc->texture != NULL; i++)
         if (!gxp_is_finite((double)desc->texture[i])) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "texture", i / 2);
     return gxp_check_materials(desc, failure);
@@ -14911,14 +15474,11 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_release(&a, body, sizeof *body);
 }
 
-GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_failure *failure) {
+/* Creates a body of a mesh. The description is checked. */
+static gx_result gxp_create_of_mesh(const gx_body_desc *desc, gx_body **out, gx_failure *failure) {
     gx_body *body;
     gxb_mesh mesh;
     gx_result result;
-    if (desc == NULL) return gxp_refuse(failure, "desc");
-    if (out == NULL) return gxp_refuse(failure, "body");
-    result = gxp_check_body_desc(desc, failure);
-    if (result != GX_OK) return result;
     body = (gx_body *)gxp_allocate(&desc->allocator, sizeof *body);
     if (body == NULL) return gxp_end(failure, GX_ERROR_MEMORY);
     memset(body, 0, sizeof *body);
@@ -14943,6 +15503,99 @@ GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_f
     }
     *out = body;
     return GX_OK;
+}
+
+/* Leaves of a body of a grid what the shape's surfaces wind around. It begins as a body without a past view. */
+static gx_result gxp_carve_shape(gx_body *body, const gx_cut_desc *desc, gx_failure *failure) {
+    gxp_cut cut;
+    gx_result result;
+    memset(&cut, 0, sizeof cut);
+    cut.body = body;
+    cut.desc = desc;
+    cut.shapes = 1;
+    result = gxp_run_cut(&cut, NULL, failure);
+    if (result != GX_OK) return gxp_name_shape(failure, result);
+    result = gxp_first_snapshot(body);
+    if (result == GX_OK && body->view.count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "shape.surfaces", SIZE_MAX);
+    return gxp_end(failure, result);
+}
+
+/* Makes a body of a grid and carves the shape out of it. */
+static gx_result gxp_create_of_grid(const gx_body_desc *desc, gxp_grid *grid, const gx_cut_desc *cut, gx_body **body,
+                                    gx_failure *failure) {
+    const gx_allocator *a = &desc->allocator;
+    gx_body_desc meshed = *desc;
+    double *positions = (double *)gxp_allocate(a, 3 * (size_t)grid->node_count * sizeof *positions);
+    uint32_t *elements = (uint32_t *)gxp_allocate(a, 4 * (size_t)grid->element_count * sizeof *elements);
+    gx_result result = GX_ERROR_MEMORY;
+    if (positions != NULL && elements != NULL) {
+        gxp_fill_grid(grid, positions, elements);
+        meshed.shape = NULL;
+        meshed.positions = positions;
+        meshed.node_count = grid->node_count;
+        meshed.elements = elements;
+        meshed.element_count = grid->element_count;
+        result = gxp_create_of_mesh(&meshed, body, failure);
+    } else
+        gxp_end(failure, result);
+    gxp_release(a, positions, 3 * (size_t)grid->node_count * sizeof *positions);
+    gxp_release(a, elements, 4 * (size_t)grid->element_count * sizeof *elements);
+    return result == GX_OK ? gxp_carve_shape(*body, cut, failure) : result;
+}
+
+/* Chooses the grid. Where surfaces only touch elements, these turn out to be empty, and the body is made without. */
+static gx_result gxp_create_carved(const gx_body_desc *desc, const gx_cut_desc *cut, gx_body **out,
+                                   gx_failure *failure) {
+    gx_body *body = NULL;
+    gxp_grid grid;
+    int lacks = 0;
+    gx_result result = gxp_choose_grid(&grid, desc, cut, failure);
+    if (result != GX_OK) return result;
+    do {
+        gx_body_destroy(body);
+        body = NULL;
+        result = gxp_create_of_grid(desc, &grid, cut, &body, failure);
+        if (result == GX_OK) result = gxp_end(failure, gxp_drop_elements(&grid, body, &lacks));
+    } while (result == GX_OK && lacks);
+    gxp_grid_free(&grid);
+    if (result == GX_OK)
+        *out = body;
+    else
+        gx_body_destroy(body);
+    return result;
+}
+
+/* Creates a body of a shape. Its surfaces cut at once, as solids that keep. */
+static gx_result gxp_create_of_shape(const gx_body_desc *desc, gx_body **out, gx_failure *failure) {
+    const size_t count = desc->shape->surface_count;
+    gx_surface *surfaces;
+    gx_cut_desc cut;
+    size_t i;
+    gx_result result = gxp_check_shape(desc, failure);
+    if (result != GX_OK) return result;
+    surfaces = (gx_surface *)gxp_allocate(&desc->allocator, count * sizeof *surfaces);
+    if (surfaces == NULL) return gxp_end(failure, GX_ERROR_MEMORY);
+    memcpy(surfaces, desc->shape->surfaces, count * sizeof *surfaces);
+    for (i = 0; i < count; i++) {
+        surfaces[i].kind = GX_SURFACE_KEEP;
+        surfaces[i].scope_slots = NULL;
+        surfaces[i].scope_slot_count = 0;
+    }
+    memset(&cut, 0, sizeof cut);
+    cut.surfaces = surfaces;
+    cut.surface_count = count;
+    result = gxp_create_carved(desc, &cut, out, failure);
+    gxp_release(&desc->allocator, surfaces, count * sizeof *surfaces);
+    return result;
+}
+
+GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_failure *failure) {
+    gx_result result;
+    if (desc == NULL) return gxp_refuse(failure, "desc");
+    if (out == NULL) return gxp_refuse(failure, "body");
+    result = gxp_check_body_desc(desc, failure);
+    if (result != GX_OK) return result;
+    return desc->shape != NULL ? gxp_create_of_shape(desc, out, failure) : gxp_create_of_mesh(desc, out, failure);
 }
 
 /* >>hashes: of the topology, of the state -------------------------------------------------------------------------- */
@@ -16193,6 +16846,8 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_CONTACT_SPACING
 #undef GXP_EDGE_REACH
 #undef GXP_TOOL_TRIANGLES
+#undef GXP_GRID_CUBES
+#undef GXP_GRID_MARGIN
 #ifdef GXFEM_SCALAR
 #pragma clang attribute pop
 #endif

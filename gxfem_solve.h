@@ -52,7 +52,8 @@
  *                 acts at points | >>cg conjugate gradients | >>ageing of coarse matrices | >>sleep rest |
  *                 >>balance residual, start | >>search lengths | >>integrators BDF, midpoint | >>newton iterations,
  *                 bound on E | >>midpoint second half, end of a step | >>leapfrog explicit steps
- *   entrance:     >>check what is given | >>api the public functions | >>single a material at one F
+ *   entrance:     >>check what is given | >>quality steps by the error asked for | >>api the public functions |
+ *                 >>single a material at one F
  *
  * WORDS. Copy: a node's displacement for one connected set of cells. Component: copies joined by elements and
  * constraints. Lane, block, chunk: an element's place, eight lanes, 48 blocks. Slot: a copy's place in the results of
@@ -457,7 +458,17 @@ typedef struct gxs_step_desc {
     /* no iteration begins after this time, and the step ends with what it has; 0: no limit. Results then depend on the
      * machine */
     double budget_seconds;
+    /* above 0: the error asked for, in place of integrator, substeps, Newton's and CG's numbers and previous_..., which
+     * are not read; 0: those hold. The step is then divided into as many as the motion demands, explicit or implicit.
+     * The error is that of the displacement after a third of a second of such motion, as a share of the motion (root
+     * of the mean square by mass), beside exact time steps of the same elements: about, see gxs_step_report.error.
+     * What more than GXS_PARTS steps would have to follow is damped. Held copies go to their targets on straight
+     * lines. With budget_seconds the error is larger where this one takes longer. */
+    double quality;
 } gxs_step_desc;
+
+/* Steps at most into which gxs_step_desc.quality divides one */
+#define GXS_PARTS 32
 
 /* Why a step ended */
 typedef enum gxs_stop {
@@ -472,7 +483,10 @@ typedef struct gxs_step_report {
     gxs_stop stop;
     /* displacements solved for: three per copy that is awake, not held and follows nothing */
     size_t active_unknowns;
-    uint32_t substeps;          /* of GXS_EXPLICIT; 0: the step was implicit */
+    uint32_t substeps;         /* of GXS_EXPLICIT; 0: the step was implicit */
+    uint32_t parts;            /* steps taken: 1 without quality; their iterations and seconds are summed */
+    gxs_integrator integrator; /* of the last of them */
+    double error;              /* with quality: the estimate of what was asked for; 0: nothing is known of the motion */
     uint32_t newton_iterations; /* 0: the start was in balance to rounding, or the step was explicit */
     uint32_t cg_iterations;     /* sum over Newton iterations */
     uint32_t line_search_steps; /* step lengths tried; sum over Newton iterations */
@@ -709,6 +723,42 @@ extern "C" {
 #define GXSP_LEAP_DEGREE   3
 #define GXSP_LEAP_DEGREES  24
 #define GXSP_LEAP_SUBSTEPS 64
+
+/* Steps by the error asked for. Of a motion of frequency w the midpoint rule's error after the time GXSP_QUALITY_TIME,
+ * s, is GXSP_QUALITY_MIDPOINT (w h)^2 (w time + GXSP_QUALITY_MORE), BDF2's likewise, and backward Euler's
+ * GXSP_QUALITY_EULER w h: fits to bench/front.c, within a factor of two on most of its bodies. Errors of up to
+ * GXSP_QUALITY_COARSE begin with four implicit steps, larger ones with two. */
+#define GXSP_QUALITY_TIME     0.33
+#define GXSP_QUALITY_MIDPOINT 0.0275
+#define GXSP_QUALITY_BDF2     0.3
+#define GXSP_QUALITY_MORE     3.0
+#define GXSP_QUALITY_EULER    0.4
+#define GXSP_QUALITY_COARSE   0.03
+
+/* The highest degree of the filter at rest, and the most substeps, that quality chooses. Longer filters save nothing:
+ * what substeps save, products cost. */
+#define GXSP_QUALITY_DEGREE   5
+#define GXSP_QUALITY_SUBSTEPS 256
+
+/* What an implicit step takes, and the rest of a step, in evaluations of explicit forces: measured on bodies of 1,000
+ * to 24,000 unknowns, from 35 to 60. And what a product of the filter takes. */
+#define GXSP_WORK_IMPLICIT 50.0
+#define GXSP_WORK_STEP     10.0
+#define GXSP_WORK_PRODUCT  0.3
+
+/* The frequency is measured in each implicit step, in each of the GXSP_QUALITY_FIRST first explicit steps, then in one
+ * of GXSP_QUALITY_EACH. What was measured is forgotten by 1 / e after four radians, and by GXSP_QUALITY_FORGET powers
+ * of e at most from one measure to the next: a motion that turns has no speed for a while. */
+#define GXSP_QUALITY_EACH   4
+#define GXSP_QUALITY_FIRST  2
+#define GXSP_QUALITY_FORGET 2.0
+#define GXSP_QUALITY_SLACK  1.2
+
+/* Steps that are implicit after explicit ones have been refused with filters of each length */
+#define GXSP_QUALITY_WAIT 30
+
+/* Kinetic energy of so many times that of the mean velocity is that of vibrations that steps do not follow. */
+#define GXSP_QUALITY_HIDDEN 4.0
 
 /* Rows in a group of the stiffness bound; divides GXSP_RANGE */
 #define GXSP_LEAP_ROWS 4
@@ -1460,11 +1510,33 @@ typedef struct gxsp_term {
 } gxsp_term;
 
 /* What the solver keeps from model to model */
+/* How the body moves, for steps by quality: sums over steps, older ones by less */
+typedef struct gxsp_tempo {
+    double work;       /* of the change of elastic forces on a way, over the square of its time, J/s2 */
+    double motion;     /* the square of the way's mean velocity, by mass, J */
+    double weight;     /* of how many ways that is the sum */
+    double resist[2];  /* likewise, of the stiffness of the explicit filter; motion on those ways */
+    double stored;     /* elastic energy at the last measure, J */
+    uint32_t measures; /* since the solver was made or resumed */
+    uint32_t steps;    /* since the last measure */
+    uint32_t refused;  /* explicit steps that were refused; those to come have shorter filters */
+    uint32_t waiting;  /* steps that are implicit because of that */
+    uint32_t age;      /* steps of this model: the first after a change is not worth what explicit steps need of it */
+    int leaps;         /* the last step could be explicit */
+    int hidden;        /* most kinetic energy is in vibrations that the last way averaged out */
+    double pace;       /* s for an evaluation of explicit forces; 0: not known */
+    double before_dt;  /* s, of the last part, by BDF2; 0: it was another one, or the model has changed */
+    uint64_t end;      /* hash of the displacement at its end */
+} gxsp_tempo;
+
 typedef struct gxsp_lasting {
-    gxsp_pool pool;    /* of term and share */
+    gxsp_pool pool;    /* of term, share and parts */
     gxsp_term *term;   /* of the present linearisation */
     gxsp_share *share; /* of all terms, one after the other */
     size_t count, room, share_count, share_room;
+    double *parts; /* part_room: what steps by quality keep of the start, see gxsp_parts */
+    size_t part_room;
+    gxsp_tempo tempo;
     gxs_scene scene; /* of the step before */
 } gxsp_lasting;
 
@@ -11556,8 +11628,10 @@ static gx_result gxsp_check_sizes(const gxs_step_desc *step, gx_failure *failure
         (result = gxsp_check_size(step->mass_damping, "mass_damping", SIZE_MAX, failure)) != GX_OK ||
         (result = gxsp_check_size(step->sleep_speed, "sleep_speed", SIZE_MAX, failure)) != GX_OK ||
         (result = gxsp_check_size(step->sleep_time, "sleep_time", SIZE_MAX, failure)) != GX_OK ||
-        (result = gxsp_check_size(step->budget_seconds, "budget_seconds", SIZE_MAX, failure)) != GX_OK)
+        (result = gxsp_check_size(step->budget_seconds, "budget_seconds", SIZE_MAX, failure)) != GX_OK ||
+        (result = gxsp_check_size(step->quality, "quality", SIZE_MAX, failure)) != GX_OK)
         return result;
+    if (step->quality > 0 && step->integrator == GXS_STATIC) return gxsp_refuse(failure, "quality");
     return step->cg_tolerance >= 1 ? gxsp_refuse(failure, "cg_tolerance") : GX_OK;
 }
 
@@ -11571,7 +11645,8 @@ static gx_result gxsp_check_step(const gxs_step_desc *step, gx_failure *failure)
         (result = gxsp_check_array(step->planes, step->plane_count, "planes", failure)) != GX_OK ||
         (result = gxsp_check_array(step->pairs, step->pair_count, "pairs", failure)) != GX_OK)
         return result;
-    if (step->pair_count > 0 && step->integrator == GXS_MIDPOINT) return gxsp_refuse(failure, "pairs");
+    if (step->pair_count > 0 && step->integrator == GXS_MIDPOINT && !(step->quality > 0))
+        return gxsp_refuse(failure, "pairs");
     if (step->budget_seconds > 0 && !step->clock) return gxsp_refuse(failure, "clock");
     if (step->sleep_speed > 0 && !step->rest_times) return gxsp_refuse(failure, "rest_times");
     if (step->spring_count >= SIZE_MAX / 1024) return gxsp_fail(failure, GX_ERROR_LIMIT, "spring_count", SIZE_MAX);
@@ -11753,6 +11828,412 @@ static gx_result gxsp_check_free(const gxsp_problem *problem, gx_failure *failur
     return GX_OK;
 }
 
+/* >>quality: steps by the error asked for -------------------------------------------------------------------------- */
+
+/* In: a step's description with an error in place of an integrator. Out: as of a step. One step is divided into several
+ * of >>newton and >>midpoint, or is one of >>leapfrog: whichever promises the error for less work. Touches gxsp_tempo.
+ *
+ * How fast the body moves is measured on the way of a step, from u0 to u1, by the forces at its ends:
+ *
+ *     w^2 = (u1 - u0) . (f(u1) - f(u0)) / |u1 - u0|_M^2,
+ *
+ * as sums over steps. Motion within a step is averaged out, so parts that flutter count for little. A vibration of
+ * amplitude A about an elastic displacement D errs by A / sqrt(A^2 + D^2) of what a vibration without D would: what has
+ * come to rest needs no short steps. A is the way of a step over w dt, or that way itself where the step is longer than
+ * a radian; D^2 = 2 U / w^2. */
+
+/* Memory for the terms of a step */
+static int gxsp_reserve_terms(gxsp_lasting *lasting, const gxs_step_desc *step) {
+    const size_t count = gxsp_point_count(step);
+    size_t shares = 0, i;
+    for (i = 0; i < count; i++) shares += gxsp_point_of(step, i)->count;
+    lasting->pool.failed = 0;
+    if (count > lasting->room) {
+        gxsp_term *larger = (gxsp_term *)gxsp_grow(&lasting->pool, lasting->term, 0, count, sizeof *larger);
+        if (!larger) return 0;
+        lasting->term = larger;
+        lasting->room = count;
+    }
+    if (shares > lasting->share_room) {
+        gxsp_share *larger = (gxsp_share *)gxsp_grow(&lasting->pool, lasting->share, 0, shares, sizeof *larger);
+        if (!larger) return 0;
+        lasting->share = larger;
+        lasting->share_room = shares;
+    }
+    return 1;
+}
+
+/* One step of an integrator. The description has been checked. */
+static gx_result gxsp_step_once(gxs_solver *solver, const gxs_step_desc *step, double *displacement, double *velocity,
+                                gxs_step_report *report, gx_failure *failure) {
+    gxsp_problem problem;
+    gx_result result;
+    if (!gxsp_reserve_terms(&solver->lasting, step) ||
+        (step->integrator == GXS_EXPLICIT && !solver->system->leap.made && !gxsp_leap_make(solver->system)))
+        return gxsp_end(failure, GX_ERROR_MEMORY);
+    memset(&problem, 0, sizeof problem);
+    problem.system = solver->system;
+    problem.system->state.product_rate = -1;
+    problem.step = step;
+    problem.given = displacement;
+    problem.cg_iterations = step->cg_iterations ? step->cg_iterations : 1000;
+    problem.cg_tolerance = step->cg_tolerance > 0 ? step->cg_tolerance : step->integrator == GXS_MIDPOINT ? 1e-3 : 1e-2;
+    problem.start = gxsp_now(&problem);
+    gxsp_choose_integrator(&problem);
+    gxsp_choose_sleepers(&problem, displacement, velocity);
+    problem.system->state.failed = 1;
+    if ((result = gxsp_check_free(&problem, failure)) != GX_OK) return result;
+    problem.report.active_unknowns = problem.system->state.active;
+    if (!gxsp_leap_allowed(&problem) || !gxsp_leap_step(&problem, displacement, velocity)) {
+        gxsp_begin(&problem, velocity);
+        result = gxsp_minimise(&problem);
+        if (result == GX_OK) gxsp_find_end(&problem, displacement, velocity);
+    }
+    if (result == GX_OK) result = gxsp_finish(&problem, displacement, velocity);
+    if (result != GX_OK) return gxsp_end(failure, result);
+    problem.system->state.failed = 0;
+    gxsp_report_springs(&problem);
+    problem.report.parts = 1;
+    problem.report.integrator =
+        step->integrator == GXS_EXPLICIT && problem.report.substeps == 0 ? GXS_BDF1 : step->integrator;
+    problem.report.seconds = gxsp_now(&problem) - problem.start;
+    *report = problem.report;
+    return GX_OK;
+}
+
+/* What a step by quality is made of */
+typedef struct gxsp_plan {
+    gxs_integrator integrator;
+    uint32_t parts, substeps;
+    double cg_tolerance;
+    double error, work; /* expected; work in evaluations of explicit forces */
+} gxsp_plan;
+
+/* What is kept of a step's start, n copies and so many pairs: in one array, by this order. One takes forces after the
+ * last part. */
+typedef struct gxsp_parts {
+    double *displacement, *velocity, *target, *rest_times, *slips;
+    double *before, *now; /* displacement and velocity at the start of the last part and of this one; BDF2 only */
+    double *from;         /* where the way begins on which motion is measured */
+    double seconds;       /* that the way took */
+} gxsp_parts;
+
+static int gxsp_parts_reserve(gxs_solver *solver, const gxs_step_desc *step, gxsp_parts *parts) {
+    gxsp_lasting *lasting = &solver->lasting;
+    const size_t n = solver->system->model.n, count = 25 * n + 3 * step->pair_count;
+    lasting->pool.failed = 0;
+    if (count > lasting->part_room) {
+        double *larger = (double *)gxsp_grow(&lasting->pool, lasting->parts, 0, count, sizeof *larger);
+        if (!larger) return 0;
+        lasting->parts = larger;
+        lasting->part_room = count;
+        lasting->tempo.before_dt = 0;
+    }
+    parts->before = lasting->parts;
+    parts->now = parts->before + 6 * n;
+    parts->from = parts->now + 6 * n;
+    parts->displacement = parts->from + 3 * n;
+    parts->velocity = parts->displacement + 3 * n;
+    parts->target = parts->velocity + 3 * n;
+    parts->rest_times = parts->target + 3 * n;
+    parts->slips = parts->rest_times + n;
+    return 1;
+}
+
+/* Keeps the state at the start, or with `back` restores it. */
+static void gxsp_parts_copy(const gxsp_parts *parts, const gxs_step_desc *step, size_t n, int back,
+                            double *displacement, double *velocity) {
+    double *kept[4], *own[4];
+    const size_t count[4] = {3 * n, 3 * n, n, 3 * step->pair_count};
+    int k;
+    kept[0] = parts->displacement, kept[1] = parts->velocity, kept[2] = parts->rest_times, kept[3] = parts->slips;
+    own[0] = displacement, own[1] = velocity;
+    own[2] = step->sleep_speed > 0 ? step->rest_times : NULL;
+    own[3] = step->pair_slips;
+    for (k = 0; k < 4; k++)
+        if (own[k] && count[k] > 0) memcpy(back ? own[k] : kept[k], back ? kept[k] : own[k], count[k] * sizeof(double));
+}
+
+/* Frequency of the motion, rad/s; 0: not known, or nothing resists */
+static double gxsp_tempo_frequency(const gxsp_tempo *tempo) {
+    return tempo->motion > 0 && tempo->work > 0 ? sqrt(tempo->work / tempo->motion) : 0;
+}
+
+/* The share of the motion in what is displaced, 0 ... 1 */
+static double gxsp_tempo_share(const gxsp_tempo *tempo) {
+    const double way = tempo->motion / tempo->weight, rest = 2 * fmax(0, tempo->stored);
+    return way > 0 ? sqrt(way / (way + rest)) : 0;
+}
+
+/* The work of L on a way, J */
+static double gxsp_leap_resistance(const gxsp_system *system, const double *from, const double *displacement) {
+    const gxsp_leap *leap = &system->leap;
+    gxsp_vector4 sums[GXSP_LEAP_ROWS];
+    double sum = 0;
+    size_t i, r, c;
+    for (i = 0; i < system->model.n; i++) {
+        for (c = 0; c < 3; c++)
+            leap->last[i][c] = system->state.still[i] ? 0 : (float)(displacement[3 * i + c] - from[3 * i + c]);
+        leap->last[i][3] = 0;
+    }
+    for (i = 0; i < system->model.n; i += GXSP_LEAP_ROWS) {
+        gxsp_leap_group_product(leap, i / GXSP_LEAP_ROWS, (const gxsp_vector4 *)leap->last, sums);
+        for (r = 0; r < GXSP_LEAP_ROWS && i + r < system->model.n; r++)
+            for (c = 0; c < 3; c++) sum += (double)leap->last[leap->order[i + r]][c] * (double)sums[r][c];
+    }
+    return sum;
+}
+
+/* Adds a way to the sums. seconds: that it took, of a step of dt; from: its start; forces: 3n numbers to write to */
+static void gxsp_tempo_measure(gxs_solver *solver, double dt, double seconds, const double *from,
+                               const double *displacement, const double *velocity, double *forces) {
+    gxsp_system *system = solver->system;
+    gxsp_tempo *tempo = &solver->lasting.tempo;
+    const double radians = gxsp_tempo_frequency(tempo) * dt * (tempo->steps + 1), each = 1 / (seconds * seconds),
+                 keep = exp(-fmin(0.25 * radians, GXSP_QUALITY_FORGET));
+    double work = 0, motion = 0, stored = 0, kinetic = 0;
+    uint32_t p;
+    size_t i;
+    gxsp_evaluate_elements(system, 0, from, NULL, 0, forces);
+    gxsp_evaluate_elements(system, 0, displacement, NULL, 0, system->vectors.force);
+    for (p = 0; p < system->model.component_count; p++) stored += system->model.components[p].energies[0];
+    for (i = 0; i < 3 * system->model.n; i++) {
+        const double way = system->state.still[i / 3] ? 0 : displacement[i] - from[i];
+        work += each * way * (system->vectors.force[i] - forces[i]);
+        motion += each * system->model.lumped[i / 3] * way * way;
+        if (!system->state.still[i / 3]) kinetic += system->model.lumped[i / 3] * velocity[i] * velocity[i];
+    }
+    tempo->steps = 0;
+    if (!gxsp_finite(work) || !gxsp_finite(motion) || !gxsp_finite(stored)) return;
+    if (tempo->leaps && system->leap.suits) {
+        tempo->resist[0] = keep * tempo->resist[0] + each * gxsp_leap_resistance(system, from, displacement);
+        tempo->resist[1] = keep * tempo->resist[1] + motion;
+    }
+    tempo->work = keep * tempo->work + work;
+    tempo->motion = keep * tempo->motion + motion;
+    tempo->weight = keep * tempo->weight + 1;
+    tempo->stored = stored;
+    tempo->hidden = kinetic > GXSP_QUALITY_HIDDEN * tempo->motion / tempo->weight;
+    tempo->measures++;
+}
+
+/* Time in which errors add up */
+static double gxsp_quality_time(const gxs_step_desc *step) {
+    return step->mass_damping > 0 ? fmin(GXSP_QUALITY_TIME, 2 / step->mass_damping) : GXSP_QUALITY_TIME;
+}
+
+/* The implicit steps for an error, a power of two. They are the midpoint rule's, or BDF2's where sides touch each
+ * other, where thin parts follow others (there each change of the midpoint rule's step costs motion), and where
+ * vibrations hide that the midpoint rule would keep forever. Motion that would take more than GXS_PARTS steps of a
+ * radian is damped by backward Euler; so is motion whose share of the displacement is below the error, and what mass
+ * damping ends within a step (brief: the share of the step that it lasts). */
+static gxsp_plan gxsp_plan_implicit(const gxs_solver *solver, const gxs_step_desc *step, double error) {
+    const gxsp_tempo *tempo = &solver->lasting.tempo;
+    const double w = gxsp_tempo_frequency(tempo), radians = w * step->dt,
+                 later = w * gxsp_quality_time(step) + GXSP_QUALITY_MORE, share = w > 0 ? gxsp_tempo_share(tempo) : 0,
+                 brief = step->mass_damping * step->dt > 2 ? 2 / (step->mass_damping * step->dt) : 1,
+                 euler = GXSP_QUALITY_EULER * radians * share * brief;
+    const int lags = step->pair_count > 0 || solver->system->model.follower_count > 0 || tempo->hidden,
+              damps = brief < 1 || radians > GXS_PARTS || share <= error;
+    const double second = (lags ? GXSP_QUALITY_BDF2 : GXSP_QUALITY_MIDPOINT) * radians * radians * later * share;
+    double parts = damps ? euler / error : sqrt(second / error);
+    gxsp_plan plan;
+    memset(&plan, 0, sizeof plan);
+    if (radians > GXS_PARTS || share * brief <= error) parts = 1;
+    if (tempo->measures == 0) parts = error > GXSP_QUALITY_COARSE ? 2 : 4;
+    for (plan.parts = 1; plan.parts < GXS_PARTS && plan.parts * GXSP_QUALITY_SLACK < parts;) plan.parts *= 2;
+    plan.integrator = tempo->measures > 0 && (damps || radians > plan.parts) ? GXS_BDF1
+                    : lags                                                   ? GXS_BDF2
+                                                                             : GXS_MIDPOINT;
+    plan.error = plan.integrator == GXS_BDF1 ? fmin(euler / plan.parts, share) : second / plan.parts / plan.parts;
+    plan.cg_tolerance = plan.parts == 1 && !lags ? 1e-1 : 1e-2;
+    if (plan.parts > 8) plan.cg_tolerance *= 64.0 / plan.parts / plan.parts;
+    plan.work = GXSP_WORK_IMPLICIT * plan.parts + GXSP_WORK_STEP;
+    return plan;
+}
+
+/* The explicit step for an error; work 0: it cannot be explicit. The filter adds h^2 L / 12 to the inertia, so that L
+ * in place of the body's stiffness gives the error, and its masses have an error of their own. */
+static gxsp_plan gxsp_plan_explicit(const gxs_solver *solver, const gxs_step_desc *step, double error) {
+    const gxsp_leap *leap = &solver->system->leap;
+    const gxsp_tempo *tempo = &solver->lasting.tempo;
+    const double factor = leap->factor > 0 ? leap->factor : GXSP_LEAP_FACTOR, w = gxsp_tempo_frequency(tempo),
+                 limit = 0.5 * step->dt * sqrt(factor * leap->top), /* substeps without a filter */
+        degrees = fmax(1, GXSP_QUALITY_DEGREE - (double)tempo->refused),
+                 later = w * gxsp_quality_time(step) + GXSP_QUALITY_MORE, share = w > 0 ? gxsp_tempo_share(tempo) : 1,
+                 all = tempo->resist[1] > 0
+                         ? GXSP_QUALITY_MIDPOINT * tempo->resist[0] / tempo->resist[1] * step->dt * step->dt * later *
+                               share
+                         : GXSP_QUALITY_COARSE * limit * limit / (GXSP_LEAP_DEGREE * GXSP_LEAP_DEGREE),
+                 substeps = ceil(fmin(fmax(sqrt(all / error), limit / degrees), limit));
+    gxsp_plan plan;
+    uint32_t degree;
+    memset(&plan, 0, sizeof plan);
+    if (!leap->suits || step->targets || gxsp_point_count(step) > 0 || !(0.5 * step->dt * step->mass_damping < 1) ||
+        !(substeps <= GXSP_QUALITY_SUBSTEPS))
+        return plan;
+    plan.integrator = GXS_EXPLICIT;
+    plan.parts = 1;
+    plan.substeps = substeps < 1 ? 1 : (uint32_t)substeps;
+    degree = gxsp_leap_degree(leap, step->dt / plan.substeps, factor);
+    plan.error = GXSP_LEAP_MASS * later * share / 6;
+    if (degree > 1) plan.error += all / plan.substeps / plan.substeps * (1 - 1.0 / degree / degree);
+    plan.work = degree > 0 ? plan.substeps * (1 + GXSP_WORK_PRODUCT * (degree - 1.0)) + GXSP_WORK_STEP : 0;
+    return plan;
+}
+
+/* What takes less work for this error. leaps: explicit steps may be taken */
+static gxsp_plan gxsp_plan_for(const gxs_solver *solver, const gxs_step_desc *step, double error, int leaps) {
+    gxsp_plan plan = gxsp_plan_implicit(solver, step, error), other;
+    if (!leaps) return plan;
+    other = gxsp_plan_explicit(solver, step, error);
+    return other.work > 0 && other.work < plan.work ? other : plan;
+}
+
+/* A plan for the error asked for, or for the least that fits into the time. *memory: there was none for explicit steps
+ */
+static gxsp_plan gxsp_plan_make(gxs_solver *solver, const gxs_step_desc *step, int *memory) {
+    gxsp_tempo *tempo = &solver->lasting.tempo;
+    gxsp_plan plan;
+    double error;
+    int leaps = tempo->waiting == 0;
+    if ((tempo->age == 0 && tempo->measures > 0) || gxsp_point_count(step) > 0 || step->targets) leaps = 0;
+    if (leaps && !solver->system->leap.made && !gxsp_leap_make(solver->system)) *memory = 0, leaps = 0;
+    tempo->age += tempo->age < 1;
+    tempo->leaps = leaps;
+    plan = gxsp_plan_for(solver, step, step->quality, leaps);
+    for (error = step->quality; step->budget_seconds > 0 && error < 1e3; error *= 2) {
+        const gxsp_plan other = gxsp_plan_for(solver, step, error, leaps);
+        if (other.work < plan.work) plan = other;
+        if (plan.work * tempo->pace <= step->budget_seconds) break;
+    }
+    if (step->budget_seconds > 0 && plan.work * tempo->pace > step->budget_seconds && plan.integrator == GXS_MIDPOINT)
+        plan.integrator = GXS_BDF1;
+    if (tempo->waiting > 0) tempo->waiting--;
+    return plan;
+}
+
+/* Adds what a part reports. */
+static void gxsp_report_add(gxs_step_report *sum, const gxs_step_report *part) {
+    const gxs_step_report before = *sum;
+    *sum = *part;
+    sum->parts += before.parts;
+    sum->newton_iterations += before.newton_iterations;
+    sum->cg_iterations += before.cg_iterations;
+    sum->line_search_steps += before.line_search_steps;
+    sum->residual = fmax(part->residual, before.residual);
+    sum->seconds += before.seconds;
+    sum->seconds_linearise += before.seconds_linearise;
+    sum->seconds_prepare += before.seconds_prepare;
+    sum->seconds_solve += before.seconds_solve;
+}
+
+/* One part, by BDF2 with the part before */
+static gx_result gxsp_take_part(gxs_solver *solver, gxs_step_desc *part, const gxsp_parts *parts, double *displacement,
+                                double *velocity, gxs_step_report *report, gx_failure *failure) {
+    gxsp_tempo *tempo = &solver->lasting.tempo;
+    const size_t count = 3 * solver->system->model.n;
+    const int history = part->integrator == GXS_BDF2;
+    gx_result result;
+    if (history) {
+        memcpy(parts->now, displacement, count * sizeof(double));
+        memcpy(parts->now + count, velocity, count * sizeof(double));
+    }
+    part->previous_displacement = history && tempo->before_dt > 0 ? parts->before : NULL;
+    part->previous_velocity = parts->before + count;
+    part->previous_dt = tempo->before_dt;
+    result = gxsp_step_once(solver, part, displacement, velocity, report, failure);
+    if (history) memcpy(parts->before, parts->now, 2 * count * sizeof(double));
+    tempo->before_dt = history && result == GX_OK ? part->dt : 0;
+    return result;
+}
+
+/* All parts of a step, one after the other. The way that is measured is the last radian, in whole parts, or the last
+ * part if nothing is known. */
+static gx_result gxsp_take_parts(gxs_solver *solver, const gxs_step_desc *step, const gxsp_plan *plan,
+                                 gxsp_parts *parts, double *displacement, double *velocity, gxs_step_report *report,
+                                 gx_failure *failure) {
+    gxs_step_desc part = *step;
+    gx_result result = GX_OK;
+    const double w = gxsp_tempo_frequency(&solver->lasting.tempo),
+                 way = solver->lasting.tempo.measures == 0 ? 1 : ceil(fmin(1, 1 / (w * step->dt)) * plan->parts);
+    uint32_t k;
+    size_t i;
+    part.quality = 0;
+    part.dt = step->dt / plan->parts;
+    part.integrator = plan->integrator;
+    part.substeps = plan->substeps;
+    part.cg_tolerance = plan->cg_tolerance;
+    part.newton_iterations = 1;
+    parts->seconds = way * step->dt / plan->parts;
+    part.newton_tolerance = 0;
+    if (step->targets) part.targets = parts->target;
+    memset(report, 0, sizeof *report);
+    for (k = 1; k <= plan->parts && result == GX_OK; k++) {
+        gxs_step_report own;
+        if (k + way - 1 <= plan->parts) memcpy(parts->from, displacement, 3 * solver->system->model.n * sizeof(double));
+        for (i = 0; i < 3 * solver->system->model.n && step->targets; i++)
+            parts->target[i] =
+                k == plan->parts ? step->targets[i]
+                : solver->system->model.fixed[i / 3]
+                    ? parts->displacement[i] + (step->targets[i] - parts->displacement[i]) * k / plan->parts
+                    : 0;
+        if (step->budget_seconds > 0) part.budget_seconds = fmax(step->budget_seconds - report->seconds, 1e-9);
+        result = gxsp_take_part(solver, &part, parts, displacement, velocity, &own, failure);
+        if (result == GX_OK) gxsp_report_add(report, &own);
+    }
+    return result;
+}
+
+/* Measures the way. That of an explicit step of more than a radian is that of a radian at its last velocity. */
+static void gxsp_measure(gxs_solver *solver, const gxs_step_desc *step, const gxsp_plan *plan, gxsp_parts *parts,
+                         const double *displacement, const double *velocity) {
+    const double w = gxsp_tempo_frequency(&solver->lasting.tempo);
+    size_t i;
+    if (plan->integrator == GXS_EXPLICIT && w * step->dt > 1) {
+        parts->seconds = 1 / w;
+        for (i = 0; i < 3 * solver->system->model.n; i++) parts->from[i] = displacement[i] - velocity[i] / w;
+    }
+    gxsp_tempo_measure(solver, step->dt, parts->seconds, parts->from, displacement, velocity, parts->target);
+}
+
+static gx_result gxsp_step_by_quality(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
+                                      double *velocity, gxs_step_report *report, gx_failure *failure) {
+    const size_t n = solver->system->model.n;
+    gxsp_tempo *tempo = &solver->lasting.tempo;
+    gxsp_parts parts;
+    gxsp_plan plan;
+    gx_result result;
+    int memory = 1;
+    if (!gxsp_parts_reserve(solver, step, &parts)) return gxsp_end(failure, GX_ERROR_MEMORY);
+    if (tempo->end != gxsp_hash(1, displacement, 3 * n)) tempo->before_dt = 0;
+    plan = gxsp_plan_make(solver, step, &memory);
+    if (!memory) return gxsp_end(failure, GX_ERROR_MEMORY);
+    gxsp_parts_copy(&parts, step, n, 0, displacement, velocity);
+    result = gxsp_take_parts(solver, step, &plan, &parts, displacement, velocity, report, failure);
+    while (result == GX_OK && plan.integrator == GXS_EXPLICIT && report->substeps == 0 && report->active_unknowns > 0) {
+        gxsp_parts_copy(&parts, step, n, 1, displacement, velocity);
+        tempo->refused++;
+        if (tempo->refused >= GXSP_QUALITY_DEGREE) tempo->waiting = GXSP_QUALITY_WAIT;
+        plan = gxsp_plan_for(solver, step, step->quality, tempo->waiting == 0);
+        result = gxsp_take_parts(solver, step, &plan, &parts, displacement, velocity, report, failure);
+    }
+    if (result != GX_OK) {
+        gxsp_parts_copy(&parts, step, n, 1, displacement, velocity);
+        return result;
+    }
+    tempo->end = gxsp_hash(1, displacement, 3 * n);
+    report->error = tempo->measures > 0 ? plan.error : 0;
+    if (report->seconds > 0) tempo->pace = report->seconds / plan.work;
+    if (report->active_unknowns == 0) return GX_OK;
+    if (plan.integrator != GXS_EXPLICIT || tempo->measures < GXSP_QUALITY_FIRST ||
+        tempo->steps + 1 >= GXSP_QUALITY_EACH)
+        gxsp_measure(solver, step, &plan, &parts, displacement, velocity);
+    else
+        tempo->steps++;
+    return GX_OK;
+}
+
 /* >>api: the public functions -------------------------------------------------------------------------------------- */
 
 /* Each checks what it is given, then calls the sections above. Memory of the solver itself is of the allocator,
@@ -11797,6 +12278,8 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
     }
     gxsp_system_destroy(solver->system);
     solver->system = system;
+    solver->lasting.tempo.age = 0;
+    solver->lasting.tempo.before_dt = 0;
     return GX_OK;
 }
 
@@ -11818,6 +12301,8 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
         return failure->result;
     }
     scratch = gxsp_pool_make(&solver->allocator);
+    solver->lasting.tempo.age = 0;
+    solver->lasting.tempo.before_dt = 0;
     system->state.product_rate = -1;
     memset(&update, 0, sizeof update);
     update.system = system;
@@ -11919,6 +12404,7 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene) {
     gxsp_system *system = solver->system;
     uint32_t p;
     solver->lasting.scene = *scene;
+    memset(&solver->lasting.tempo, 0, sizeof solver->lasting.tempo);
     if (system && system->mesh.roots_known) gxsp_drop_system(solver);
     if (!solver->system) return;
     system->state.product_rate = -1;
@@ -11943,30 +12429,9 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene) {
     }
 }
 
-/* Memory for the terms of a step */
-static int gxsp_reserve_terms(gxsp_lasting *lasting, const gxs_step_desc *step) {
-    const size_t count = gxsp_point_count(step);
-    size_t shares = 0, i;
-    for (i = 0; i < count; i++) shares += gxsp_point_of(step, i)->count;
-    lasting->pool.failed = 0;
-    if (count > lasting->room) {
-        gxsp_term *larger = (gxsp_term *)gxsp_grow(&lasting->pool, lasting->term, 0, count, sizeof *larger);
-        if (!larger) return 0;
-        lasting->term = larger;
-        lasting->room = count;
-    }
-    if (shares > lasting->share_room) {
-        gxsp_share *larger = (gxsp_share *)gxsp_grow(&lasting->pool, lasting->share, 0, shares, sizeof *larger);
-        if (!larger) return 0;
-        lasting->share = larger;
-        lasting->share_room = shares;
-    }
-    return 1;
-}
-
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
                                     double *velocity, gxs_step_report *report, gx_failure *failure) {
-    gxsp_problem problem;
+    gxs_step_report own;
     gx_failure ignored;
     gx_result result;
     size_t n;
@@ -11979,34 +12444,10 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
         (result = gxsp_check_vectors(step, n, displacement, velocity, solver->system->model.held, failure)) != GX_OK)
         return result;
     if (step->pair_count > 0 && solver->system->affine.count > 0) return gxsp_refuse(failure, "pairs");
-    if (!gxsp_reserve_terms(&solver->lasting, step) ||
-        (step->integrator == GXS_EXPLICIT && !solver->system->leap.made && !gxsp_leap_make(solver->system)))
-        return gxsp_end(failure, GX_ERROR_MEMORY);
-    memset(&problem, 0, sizeof problem);
-    problem.system = solver->system;
-    problem.system->state.product_rate = -1;
-    problem.step = step;
-    problem.given = displacement;
-    problem.cg_iterations = step->cg_iterations ? step->cg_iterations : 1000;
-    problem.cg_tolerance = step->cg_tolerance > 0 ? step->cg_tolerance : step->integrator == GXS_MIDPOINT ? 1e-3 : 1e-2;
-    problem.start = gxsp_now(&problem);
-    gxsp_choose_integrator(&problem);
-    gxsp_choose_sleepers(&problem, displacement, velocity);
-    problem.system->state.failed = 1;
-    if ((result = gxsp_check_free(&problem, failure)) != GX_OK) return result;
-    problem.report.active_unknowns = problem.system->state.active;
-    if (!gxsp_leap_allowed(&problem) || !gxsp_leap_step(&problem, displacement, velocity)) {
-        gxsp_begin(&problem, velocity);
-        result = gxsp_minimise(&problem);
-        if (result == GX_OK) gxsp_find_end(&problem, displacement, velocity);
-    }
-    if (result == GX_OK) result = gxsp_finish(&problem, displacement, velocity);
-    if (result != GX_OK) return gxsp_end(failure, result);
-    problem.system->state.failed = 0;
-    gxsp_report_springs(&problem);
-    problem.report.seconds = gxsp_now(&problem) - problem.start;
-    if (report) *report = problem.report;
-    return GX_OK;
+    result = (step->quality > 0 ? gxsp_step_by_quality : gxsp_step_once)(solver, step, displacement, velocity, &own,
+                                                                         failure);
+    if (result == GX_OK && report) *report = own;
+    return result;
 }
 
 /* NULL: all zero, which is right */
@@ -12148,6 +12589,23 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_RESTS_AHEAD
 #undef GXSP_RANGE
 #undef GXSP_LEAP_MASS
+#undef GXSP_QUALITY_TIME
+#undef GXSP_QUALITY_MIDPOINT
+#undef GXSP_QUALITY_BDF2
+#undef GXSP_QUALITY_MORE
+#undef GXSP_QUALITY_EULER
+#undef GXSP_QUALITY_COARSE
+#undef GXSP_QUALITY_DEGREE
+#undef GXSP_QUALITY_SUBSTEPS
+#undef GXSP_QUALITY_EACH
+#undef GXSP_QUALITY_FIRST
+#undef GXSP_QUALITY_WAIT
+#undef GXSP_QUALITY_FORGET
+#undef GXSP_QUALITY_SLACK
+#undef GXSP_QUALITY_HIDDEN
+#undef GXSP_WORK_IMPLICIT
+#undef GXSP_WORK_STEP
+#undef GXSP_WORK_PRODUCT
 #undef GXSP_LEAP_FACTOR
 #undef GXSP_LEAP_DEGREE
 #undef GXSP_LEAP_DEGREES

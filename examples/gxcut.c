@@ -33,16 +33,16 @@ enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_MISUSED = 2 };
 /* -------------------------------------------------------------------------------------------- >>settings */
 
 typedef struct settings {
-    const char *mesh, *blade, *out, *format, *report;
+    const char *mesh, *shape, *blade, *out, *format, *report;
     const char **cuts; /* cut_count, as given */
-    uint32_t *kinds;   /* cut_count, GX_SURFACE_SHEET or _SOLID */
+    uint32_t *kinds;   /* cut_count, GX_SURFACE_ */
     size_t cut_count;
     gx_region *regions; /* region_count */
     size_t region_count;
     double thickness;   /* m; 0: sheets stay sheets */
     gx_blade_desc edge; /* of the blade */
     double dt, young, poisson, density, affine, gravity[3], stretch[3];
-    uint32_t frames, newton, cut_at;
+    uint32_t frames, newton, cut_at, cells;
     int quiet, help;
 } settings;
 
@@ -60,6 +60,7 @@ typedef struct strokes {
 typedef struct run {
     settings set;
     gxio_mesh mesh;
+    gxio_surface shape;
     gxio_surface *cuts; /* cut_count */
     gxio_blade edges;
     gx_body *body;
@@ -82,7 +83,17 @@ typedef struct run {
 } run;
 
 /* What an option takes. The last four may be given more than once or, the flag, take nothing. */
-enum { TAKES_TEXT, TAKES_NUMBER, TAKES_COUNT, TAKES_VECTOR, TAKES_NOTHING, TAKES_SHEET, TAKES_SOLID, TAKES_REGION };
+enum {
+    TAKES_TEXT,
+    TAKES_NUMBER,
+    TAKES_COUNT,
+    TAKES_VECTOR,
+    TAKES_NOTHING,
+    TAKES_SHEET,
+    TAKES_SOLID,
+    TAKES_KEEP,
+    TAKES_REGION
+};
 
 typedef struct option {
     const char *name;
@@ -93,6 +104,7 @@ typedef struct option {
 
 static const char usage[] =
     "usage: gxcut MESH [--sheet CUT]... [--solid CUT]... [options]\n"
+    "       gxcut --shape CUT [--cells N] [--sheet CUT]... [options]\n"
     "\n"
     "Cuts a tetrahedral mesh exactly, steps it in time and writes a surface per frame.\n"
     "\n"
@@ -116,8 +128,11 @@ static const char usage[] =
     "                                axis closest to it; RESOLUTION (16) strips per wavelength\n"
     "       box:X0,Y0,Z0,X1,Y1,Z1    closed box\n"
     "\n"
+    "  --shape CUT         in place of MESH: the body is all inside of a closed surface, carved out of a grid\n"
+    "  --cells N           cubes of the grid along the shape's longest side (16)\n"
     "  --sheet CUT         separates what lies on its two sides\n"
     "  --solid CUT         closed: removes what lies inside\n"
+    "  --keep CUT          closed: removes what lies outside\n"
     "  --thickness E       makes each sheet a solid of this thickness, m\n"
     "  --cut-at FRAME      cuts before this frame's step (0)\n"
     "  --blade FILE        a blade that cuts while the body steps, from that frame on. The file has a line for each\n"
@@ -194,6 +209,7 @@ static const char *store(settings *set, const option *o, const char *value) {
         return gxio_argument_list(value, (double *)o->target, 3, 3) == 3 ? NULL : "is not three finite numbers X,Y,Z";
     case TAKES_SHEET: add_cut(set, value, GX_SURFACE_SHEET); return NULL;
     case TAKES_SOLID: add_cut(set, value, GX_SURFACE_SOLID); return NULL;
+    case TAKES_KEEP: add_cut(set, value, GX_SURFACE_KEEP); return NULL;
     default:
         return parse_region(value, &set->regions[set->region_count++])
                  ? NULL
@@ -231,8 +247,11 @@ static int take_argument(settings *set, option *options, int argc, char **argv, 
 }
 
 static int take_arguments(settings *set, int argc, char **argv, gxio_error *error) {
-    option options[] = {{"--sheet", TAKES_SHEET, NULL, 0},
+    option options[] = {{"--shape", TAKES_TEXT, &set->shape, 0},
+                        {"--cells", TAKES_COUNT, &set->cells, 0},
+                        {"--sheet", TAKES_SHEET, NULL, 0},
                         {"--solid", TAKES_SOLID, NULL, 0},
+                        {"--keep", TAKES_KEEP, NULL, 0},
                         {"--thickness", TAKES_NUMBER, &set->thickness, 0},
                         {"--cut-at", TAKES_COUNT, &set->cut_at, 0},
                         {"--blade", TAKES_TEXT, &set->blade, 0},
@@ -270,7 +289,9 @@ static int take_arguments(settings *set, int argc, char **argv, gxio_error *erro
 static int is_format(const settings *set, const char *format) { return strcmp(set->format, format) == 0; }
 
 static int check_settings(const settings *set, gxio_error *error) {
-    if (!set->mesh)
+    if (set->mesh && set->shape) return misused(error, "--shape", "stands in place of a mesh");
+    if (!set->cells) return misused(error, "--cells", "must be at least 1");
+    if (!set->mesh && !set->shape)
         return misused(error, "usage", "gxcut MESH [--sheet CUT]... [--solid CUT]... [options], see gxcut --help");
     if (!(set->dt > 0.0)) return misused(error, "--dt", "must be above 0");
     if (!(set->young > 0.0)) return misused(error, "--young", "must be above 0");
@@ -300,6 +321,7 @@ static int parse_settings(settings *set, int argc, char **argv, gxio_error *erro
     set->stretch[0] = set->stretch[1] = set->stretch[2] = 1.0;
     set->frames = 60;
     set->newton = 1;
+    set->cells = 16;
     set->cuts = (const char **)gxio_array(room, sizeof *set->cuts);
     set->kinds = (uint32_t *)gxio_array(room, sizeof *set->kinds);
     set->regions = (gx_region *)gxio_array(room, sizeof *set->regions);
@@ -409,14 +431,34 @@ static int thicken(run *r, size_t i) {
     return EXIT_DONE;
 }
 
+/* The mesh, or the surface of the shape in its place; and the box around it */
+static int load_body(run *r, gxio_box *box) {
+    size_t i;
+    if (!r->set.shape) {
+        if (!gxio_mesh_load(r->set.mesh, &r->mesh, &r->error)) return 0;
+        gxio_mesh_bounds(&r->mesh, box->low, box->high);
+        return 1;
+    }
+    for (i = 0; i < 3; i++) {
+        box->low[i] = 0.0;
+        box->high[i] = 1.0;
+    }
+    if (!gxio_surface_load(r->set.shape, box, &r->shape, &r->error)) return 0;
+    for (i = 0; i < 3 * r->shape.vertex_count; i++) {
+        const double x = r->shape.vertices[i];
+        if (i < 3 || x < box->low[i % 3]) box->low[i % 3] = x;
+        if (i < 3 || x > box->high[i % 3]) box->high[i % 3] = x;
+    }
+    return 1;
+}
+
 static int load(run *r) {
     gxio_box body;
     size_t i;
     int code = EXIT_DONE;
-    if (!gxio_mesh_load(r->set.mesh, &r->mesh, &r->error)) return complain(r, EXIT_MISUSED);
+    if (!load_body(r, &body)) return complain(r, EXIT_MISUSED);
     r->cuts = (gxio_surface *)calloc(r->set.cut_count + 1, sizeof *r->cuts);
     if (!r->cuts) return lack_memory(r, "cuts");
-    gxio_mesh_bounds(&r->mesh, body.low, body.high);
     for (i = 0; i < r->set.cut_count; i++)
         if (!gxio_surface_load(r->set.cuts[i], &body, &r->cuts[i], &r->error)) return complain(r, EXIT_MISUSED);
     for (i = 0; i < r->set.cut_count && code == EXIT_DONE && r->set.thickness > 0.0; i++)
@@ -449,23 +491,60 @@ static int make_blade(run *r) {
     return EXIT_DONE;
 }
 
+/* The body of the shape, and its grid as the mesh */
+static int build_shape(run *r, gx_body_desc *desc) {
+    gx_surface surface;
+    gx_shape shape;
+    gx_failure failure;
+    memset(&surface, 0, sizeof surface);
+    memset(&shape, 0, sizeof shape);
+    surface.vertices = r->shape.vertices;
+    surface.vertex_count = r->shape.vertex_count;
+    surface.triangles = r->shape.triangles;
+    surface.triangle_count = r->shape.triangle_count;
+    shape.surfaces = &surface;
+    shape.surface_count = 1;
+    shape.cells = r->set.cells;
+    desc->shape = &shape;
+    if (gx_body_create(desc, &r->body, &failure) != GX_OK) {
+        fail(r, r->set.shape, &failure);
+        return failure.field ? EXIT_MISUSED : EXIT_FAILED;
+    }
+    if (gx_body_view(r->body, &r->view, &failure) != GX_OK) return fail(r, "body", &failure);
+    r->mesh.positions = (double *)gxio_array(r->view.node_count, 3 * sizeof(double));
+    r->mesh.elements = (uint32_t *)gxio_array(r->view.element_count, 4 * sizeof(uint32_t));
+    if (!r->mesh.positions || !r->mesh.elements) return lack_memory(r, r->set.shape);
+    memcpy(r->mesh.positions, r->view.positions, r->view.node_count * 3 * sizeof(double));
+    memcpy(r->mesh.elements, r->view.elements, r->view.element_count * 4 * sizeof(uint32_t));
+    r->mesh.node_count = r->view.node_count;
+    r->mesh.element_count = r->view.element_count;
+    return EXIT_DONE;
+}
+
+/* The body of the mesh */
+static int build_mesh(run *r, gx_body_desc *desc) {
+    gx_failure failure;
+    desc->positions = r->mesh.positions;
+    desc->node_count = r->mesh.node_count;
+    desc->elements = r->mesh.elements;
+    desc->element_count = r->mesh.element_count;
+    return gx_body_create(desc, &r->body, &failure) == GX_OK ? EXIT_DONE : refuse_mesh(r, &failure);
+}
+
 /* The body, stretched, then held: what is held stays where the stretch put it. */
 static int build(run *r) {
     gx_body_desc desc;
     gx_failure failure;
     gx_result result;
+    int code;
     memset(&desc, 0, sizeof desc);
-    desc.positions = r->mesh.positions;
-    desc.node_count = r->mesh.node_count;
-    desc.elements = r->mesh.elements;
-    desc.element_count = r->mesh.element_count;
     desc.young = r->set.young;
     desc.poisson = r->set.poisson;
     desc.density = r->set.density;
     desc.affine_below = r->set.affine;
     desc.clock = gxio_seconds;
-    result = gx_body_create(&desc, &r->body, &failure);
-    if (result != GX_OK) return refuse_mesh(r, &failure);
+    code = r->set.shape ? build_shape(r, &desc) : build_mesh(r, &desc);
+    if (code != EXIT_DONE) return code;
     result = stretch(r, &failure);
     if (result != GX_OK) return fail(r, "body", &failure);
     if (r->set.region_count) result = gx_body_hold(r->body, r->set.regions, r->set.region_count, &failure);
@@ -536,7 +615,8 @@ static void find_up(const run *r, double up[3]) {
 static int write_to_page(run *r, const gxio_triangles *t, uint32_t frame) {
     double up[3];
     find_up(r, up);
-    if (!r->has_page && !gxio_page_open(&r->page, r->set.out, r->set.mesh, up, &r->error)) return 0;
+    if (!r->has_page && !gxio_page_open(&r->page, r->set.out, r->set.mesh ? r->set.mesh : r->set.shape, up, &r->error))
+        return 0;
     r->has_page = 1;
     if (!r->has_mesh) gxio_page_mesh(&r->page, t, r->view.fragment_id);
     r->has_mesh = 1;
@@ -847,8 +927,8 @@ static void summarise_blade(const strokes *s) {
 
 static void summarise(const run *r) {
     const gx_view *view = &r->view;
-    printf("mesh      %s: %lu nodes, %lu elements\n", r->set.mesh, (unsigned long)view->node_count,
-           (unsigned long)view->element_count);
+    printf("mesh      %s: %lu nodes, %lu elements\n", r->set.mesh ? r->set.mesh : r->set.shape,
+           (unsigned long)view->node_count, (unsigned long)view->element_count);
     if (r->has_cut)
         printf("cuts      %lu: %lu elements touched, smallest link %.3g of its face, removed volume %.6g m3\n",
                (unsigned long)r->set.cut_count, (unsigned long)r->cut.touched_elements, r->cut.min_link_ratio,
@@ -876,6 +956,7 @@ static void release(run *r) {
     free(r->skin_normals);
     gx_body_destroy(r->body);
     gxio_mesh_release(&r->mesh);
+    gxio_surface_release(&r->shape);
     free((void *)r->set.cuts);
     free(r->set.kinds);
     free(r->set.regions);

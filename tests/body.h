@@ -63,7 +63,7 @@ static inline gx_surface surface_of(const wl_surface *s) {
     surface.vertex_count = s->vertex_count;
     surface.triangles = s->triangles;
     surface.triangle_count = s->triangle_count;
-    surface.kind = s->solid ? GX_SURFACE_SOLID : GX_SURFACE_SHEET;
+    surface.kind = s->solid == 0 ? GX_SURFACE_SHEET : s->solid == 1 ? GX_SURFACE_SOLID : GX_SURFACE_KEEP;
     return surface;
 }
 

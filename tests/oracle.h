@@ -44,7 +44,7 @@ typedef struct oracle_surface {
     const double *vertices;    /* x 3 */
     const uint32_t *triangles; /* triangle_count x 3 */
     size_t triangle_count;
-    int solid; /* 1: removes where its winding number is not 0; 0: a sheet */
+    int solid; /* 1: removes where its winding number is not 0; 2: where it is 0; 0: a sheet */
 } oracle_surface;
 
 /* ---- sets of planes ---- */
@@ -715,7 +715,8 @@ static inline void oracle_remove(oracle *o, const oracle_surface *surfaces, size
         if (p->region != i) continue;
         inside = oracle_contact_of(o, p, &nothing);
         for (s = 0; s < surface_count && !p->removed; s++)
-            if (surfaces[s].solid && oracle_winding(o, s, inside.center) != 0) p->removed = 1;
+            if (surfaces[s].solid && (oracle_winding(o, s, inside.center) != 0) == (surfaces[s].solid == 1))
+                p->removed = 1;
         rat_arena_release(mark);
     }
     free(region);

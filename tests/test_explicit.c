@@ -1,5 +1,6 @@
 /* test_explicit.c - explicit steps (GXS_EXPLICIT): their order and limit, energy, free fall, where steps are implicit
-   instead, cuts, jobs and memory. Truth: converged implicit steps with the same lumped mass. */
+   instead, cuts, jobs and memory; and steps by the error asked for (gxs_step_desc.quality), which take them or implicit
+   ones. Truth: converged implicit steps with the same lumped mass. */
 #define GXFEM_SOLVE_IMPLEMENTATION
 #include "../gxfem_solve.h"
 
@@ -364,17 +365,235 @@ START_TEST(jobs_do_not_change_bits) {
 }
 END_TEST
 
-/* A step that fails for want of memory leaves the state alone; the solver is still good. Later ones allocate nothing.
- */
+/* ---- steps by the error asked for ---- */
+
+static gxs_step_desc quality_step(double dt, double error) {
+    gxs_step_desc step = step_make(dt, -9.81);
+    step.quality = error;
+    return step;
+}
+
+/* Softer and stiffer bars reach the error asked for within a factor of three; less error takes no fewer parts or
+   substeps. Truth: converged midpoint steps. */
+START_TEST(quality_is_reached) {
+    static const double errors[3] = {0.1, 0.03, 0.01}, young[3] = {2e5, 2e7, 2e8};
+    scene truth = hanging_bar(young[_i]);
+    gxs_step_desc step = step_make(0.33 / 2560, -9.81);
+    uint32_t before = 0;
+    int k;
+    truth.model.lumped_mass = 1;
+    step.integrator = GXS_MIDPOINT;
+    step.newton_iterations = 20;
+    step.newton_tolerance = 1e-9;
+    step.cg_tolerance = 1e-6;
+    move(&truth, &step, 2560, NULL);
+    for (k = 0; k < 3; k++) {
+        scene s = hanging_bar(young[_i]);
+        gxs_step_report report;
+        double error;
+        step = quality_step(0.033, errors[k]);
+        move(&s, &step, 10, &report);
+        error = difference(&s, truth.displacement);
+        assert_that(error < 3 * errors[k], "%g: %g with %u %u, estimated %g", errors[k], error, report.parts,
+                    report.substeps, report.error);
+        ck_assert(report.error > 0);
+        ck_assert_uint_ge(report.parts * 1000 + report.substeps, before);
+        before = report.parts * 1000 + report.substeps;
+        scene_free(&s);
+    }
+    scene_free(&truth);
+}
+END_TEST
+
+/* From violent starts, stiff or soft, coarse or fine, with a budget or not: all is finite, and no more energy is
+   created than the midpoint rule may. */
+START_TEST(quality_does_not_blow_up) {
+    static const double young[4] = {2e3, 2e5, 2e8, 2e11};
+    scene s = hanging_bar(young[_i % 4]);
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = quality_step(0.033, _i % 3 ? 0.03 : 1);
+    double start, energy, size;
+    size_t i;
+    int frame;
+    seed((uint64_t)_i);
+    for (i = 0; i < 3 * s.model.copy_count; i++)
+        if (!s.held[i / 3]) {
+            s.displacement[i] = _i % 4 == 0 && i % 3 == 2 ? -2 * s.rest[i] : 0.2 * uniform();
+            s.velocity[i] = 20 * uniform();
+        }
+    start = energy_of(&s);
+    size = fabs(start) + form_energy(&s.model, s.displacement);
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+    for (frame = 0; frame < 30; frame++) {
+        ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+        for (i = 0; i < 3 * s.model.copy_count; i++)
+            ck_assert(finite_bits(s.displacement[i]) && finite_bits(s.velocity[i]));
+        energy = energy_of(&s);
+        assert_that(energy < start + 0.6 * size, "frame %d: %g of %g", frame, energy, start);
+    }
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
+/* A damped bar that has come to rest takes one part. */
+START_TEST(quality_at_rest_takes_one_step) {
+    scene s = hanging_bar(2e9);
+    gxs_step_desc step = quality_step(1.0 / 60, 0.03);
+    gxs_step_report report;
+    step.mass_damping = 20;
+    move(&s, &step, 120, &report);
+    ck_assert_uint_eq(report.parts, 1);
+    ck_assert_uint_eq(report.substeps, 0);
+    ck_assert(report.error < 0.03);
+    scene_free(&s);
+}
+END_TEST
+
+/* Held copies end at their targets, and go there along a straight line: a translated bar does not deform much. */
+START_TEST(quality_moves_held_copies) {
+    scene s = hanging_bar(2e7);
+    double *targets = (double *)zeroed(3 * s.model.copy_count, sizeof(double));
+    gxs_step_desc step = quality_step(0.033, 0.01);
+    gxs_step_report report;
+    size_t i;
+    step.gravity[2] = 0;
+    for (i = 0; i < s.model.copy_count; i++) targets[3 * i] = 0.033;
+    for (i = 0; i < 3 * s.model.copy_count; i++) s.velocity[i] = i % 3 == 0 ? 1 : 0;
+    step.targets = targets;
+    move(&s, &step, 1, &report);
+    ck_assert_uint_gt(report.parts, 1);
+    for (i = 0; i < 3 * s.model.copy_count; i++) {
+        if (s.held[i / 3]) ck_assert(fabs(s.displacement[i] - targets[i]) < 1e-15);
+        ck_assert(fabs(s.displacement[i] - targets[i]) < 1e-4);
+        ck_assert(fabs(s.velocity[i] - (i % 3 == 0 ? 1 : 0)) < 0.05);
+    }
+    free(targets);
+    scene_free(&s);
+}
+END_TEST
+
+/* A budget makes steps coarser. The clock runs by a millisecond a call. */
+static double ticking(void *user) { return *(double *)user += 1e-3; }
+
+START_TEST(quality_keeps_to_a_budget) {
+    scene s = hanging_bar(2e9);
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = quality_step(0.033, 1e-3);
+    gxs_step_report report;
+    double now = 0;
+    int i, unlimited = 0;
+    step.clock = ticking;
+    step.clock_user = &now;
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+    for (i = 0; i < 12; i++) {
+        if (i == 6) step.budget_seconds = 0.02;
+        ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+        if (i == 5) unlimited = (int)report.parts;
+        if (i > 6) ck_assert(report.error >= 1e-3 || report.parts == 1);
+    }
+    ck_assert_int_gt(unlimited, 4);
+    ck_assert_int_lt((int)report.parts, unlimited);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
+/* Two copies of the free end push each other apart: no part is the midpoint rule's, and the gap opens. */
+START_TEST(quality_takes_pairs) {
+    scene s = hanging_bar(2e7);
+    gxs_step_desc step = quality_step(0.02, 0.03);
+    gxs_step_report report;
+    gxs_pair pair;
+    double force[3], gap;
+    const uint32_t last = (uint32_t)s.model.copy_count - 1;
+    int k;
+    memset(&pair, 0, sizeof pair);
+    pair.point.count = 2;
+    pair.point.copy[0] = last;
+    pair.point.copy[1] = last - 1;
+    pair.point.weight[0] = 1;
+    pair.point.weight[1] = -1;
+    for (k = 0; k < 3; k++) pair.point.position[k] = s.rest[3 * last + k] - s.rest[3 * (last - 1) + k];
+    pair.normal[0] = 1;
+    pair.offset = pair.point.position[0] + 0.05;
+    pair.stiffness = 1e6;
+    step.pairs = &pair;
+    step.pair_count = 1;
+    step.pair_forces = force;
+    move(&s, &step, 10, &report);
+    ck_assert_int_ne(report.integrator, GXS_MIDPOINT);
+    ck_assert_uint_eq(report.substeps, 0);
+    gap = s.displacement[3 * last] - s.displacement[3 * (last - 1)];
+    assert_that(gap > 1e-3 && gap < 0.051, "%g", gap);
+    ck_assert(fabs(force[0] - 1e6 * (0.05 - gap)) < 1e-6 * 1e5);
+    scene_free(&s);
+}
+END_TEST
+
+/* What is not read does not matter; what is wrong is refused. */
+START_TEST(quality_stands_in_place_of_other_numbers) {
+    scene a = hanging_bar(2e7), b = hanging_bar(2e7);
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = quality_step(0.02, 0.03);
+    gx_failure failure;
+    move(&a, &step, 5, NULL);
+    step.integrator = GXS_BDF1;
+    step.substeps = 7;
+    step.newton_iterations = 9;
+    step.cg_tolerance = 0.5;
+    move(&b, &step, 5, NULL);
+    ck_assert_mem_eq(a.displacement, b.displacement, 3 * a.model.copy_count * sizeof(double));
+    ck_assert_int_eq(gxs_solver_set_model(solver, &a.model, NULL), GX_OK);
+    step.quality = -1;
+    ck_assert_int_eq(gxs_solver_step(solver, &step, a.displacement, a.velocity, NULL, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_str_eq(failure.field, "quality");
+    step.quality = 0.1;
+    step.integrator = GXS_STATIC;
+    ck_assert_int_eq(gxs_solver_step(solver, &step, a.displacement, a.velocity, NULL, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_str_eq(failure.field, "quality");
+    gxs_solver_destroy(solver);
+    scene_free(&a);
+    scene_free(&b);
+}
+END_TEST
+
+/* Resumed, a solver takes the steps of a fresh one, bit by bit. */
+START_TEST(quality_resumes) {
+    scene a = hanging_bar(2e7), b = hanging_bar(2e7);
+    const size_t bytes = 3 * a.model.copy_count * sizeof(double);
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = quality_step(0.02, 0.03);
+    gxs_scene none;
+    int i;
+    memset(&none, 0, sizeof none);
+    ck_assert_int_eq(gxs_solver_set_model(solver, &a.model, NULL), GX_OK);
+    for (i = 0; i < 6; i++)
+        ck_assert_int_eq(gxs_solver_step(solver, &step, a.displacement, a.velocity, NULL, NULL), GX_OK);
+    memcpy(b.displacement, a.displacement, bytes);
+    memcpy(b.velocity, a.velocity, bytes);
+    gxs_solver_resume(solver, &none);
+    for (i = 0; i < 4; i++)
+        ck_assert_int_eq(gxs_solver_step(solver, &step, a.displacement, a.velocity, NULL, NULL), GX_OK);
+    move(&b, &step, 4, NULL);
+    ck_assert_mem_eq(a.displacement, b.displacement, bytes);
+    ck_assert_mem_eq(a.velocity, b.velocity, bytes);
+    gxs_solver_destroy(solver);
+    scene_free(&a);
+    scene_free(&b);
+}
+END_TEST
+
+/* A step that fails for want of memory leaves the state alone; the solver is still good. Later ones allocate nothing:
+   `which` says after how many more, as the second step by quality makes what explicit ones need. */
 static int run_with(memory *m, int which) {
     gxs_solver_desc desc;
     gxs_solver *solver = NULL;
-    gxs_step_desc step = explicit_step(0.01, 0);
+    gxs_step_desc step = which ? quality_step(0.01, 0.03) : explicit_step(0.01, 0);
     scene s = hanging_bar(2e5);
     gx_result result;
     size_t i, calls;
-    int failed = 0;
-    (void)which;
+    int failed = 0, k;
     memset(&desc, 0, sizeof desc);
     desc.allocator = allocator_of(m);
     result = gxs_solver_create(&desc, &solver, NULL);
@@ -383,7 +602,14 @@ static int run_with(memory *m, int which) {
         result = gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL);
         for (i = 0; i < 3 * s.model.copy_count && result != GX_OK; i++)
             ck_assert(s.displacement[i] == 0 && s.velocity[i] == 0);
-        if (result == GX_ERROR_MEMORY && !m->from_then_on)
+        for (k = 0; k < which && result == GX_OK; k++) {
+            double *kept = (double *)zeroed(3 * s.model.copy_count, sizeof(double));
+            memcpy(kept, s.displacement, 3 * s.model.copy_count * sizeof(double));
+            result = gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL);
+            if (result != GX_OK) ck_assert_mem_eq(kept, s.displacement, 3 * s.model.copy_count * sizeof(double));
+            free(kept);
+        }
+        for (k = 0; k < 1 + which && result == GX_ERROR_MEMORY && !m->from_then_on; k++)
             ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
         calls = m->calls;
         if (result == GX_OK || !m->from_then_on) {
@@ -400,7 +626,7 @@ static int run_with(memory *m, int which) {
     return failed;
 }
 
-START_TEST(every_allocation_may_fail) { sweep_allocations(run_with, 0); }
+START_TEST(every_allocation_may_fail) { sweep_allocations(run_with, _i); }
 END_TEST
 
 int main(void) {
@@ -416,7 +642,15 @@ int main(void) {
     tcase_add_test(list, steps_mix);
     tcase_add_test(list, updates_are_followed);
     tcase_add_test(list, jobs_do_not_change_bits);
-    tcase_add_test(list, every_allocation_may_fail);
+    tcase_add_loop_test(list, quality_is_reached, 0, 3);
+    tcase_add_loop_test(list, quality_does_not_blow_up, 0, 12);
+    tcase_add_test(list, quality_at_rest_takes_one_step);
+    tcase_add_test(list, quality_moves_held_copies);
+    tcase_add_test(list, quality_keeps_to_a_budget);
+    tcase_add_test(list, quality_takes_pairs);
+    tcase_add_test(list, quality_stands_in_place_of_other_numbers);
+    tcase_add_test(list, quality_resumes);
+    tcase_add_loop_test(list, every_allocation_may_fail, 0, 2);
     suite_add_tcase(suite, list);
     return run_suite(suite);
 }

@@ -275,6 +275,15 @@ has "uncut" min_link_ratio 1
 runs "box out of a grid" grid:2,2,2 --solid box:0.5,0.5,0.5,1.5,1.5,1.5 --frames 0 --report r.json
 near "box out of a grid" volume 7
 has "box out of a grid" fragments 1
+runs "box as a shape" --shape box:0.5,0.5,0.5,1.5,1,1.25 --cells 5 --sheet plane:1,0.75,0.9,1,0.2,0.1 --frames 2 --report r.json
+near "box as a shape" volume 0.375
+has "box as a shape" fragments 2
+refuses "shape and mesh" 2 "--shape" cube5 --shape box:0,0,0,1,1,1
+refuses "shape that is open" 2 "plane:0.5,0.5,0.5,1,0,0: shape.surfaces.triangles .*closed" --shape plane:0.5,0.5,0.5,1,0,0
+refuses "shape of no cells" 2 "--cells" --shape box:0,0,0,1,1,1 --cells 0
+runs "box kept of a grid" grid:2,2,2 --keep box:0.5,0.5,0.5,1.5,1.5,1.5 --frames 0 --report r.json
+near "box kept of a grid" volume 1
+has "box kept of a grid" fragments 1
 runs "thick sheet" cube5 --sheet plane:0.5,0.5,0.5,1,0,0 --thickness 0.25 --frames 0 --report r.json
 near "thick sheet" volume 0.75
 has "thick sheet" fragments 2

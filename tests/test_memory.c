@@ -117,6 +117,11 @@ static gx_result cut_solid(gx_body *body) {
     gx_surface s = solid();
     return cut(body, &s, 1, 0, 0);
 }
+static gx_result cut_keep(gx_body *body) {
+    gx_surface s = solid();
+    s.kind = GX_SURFACE_KEEP;
+    return cut(body, &s, 1, 0, 0);
+}
 static gx_result cut_scoped(gx_body *body) {
     gx_surface s = sheet(sheet_b);
     return cut(body, &s, 1, 0, 1);
@@ -559,7 +564,10 @@ START_TEST(cut_of_many_triangles) {
 }
 END_TEST
 
-START_TEST(solid_cut) { sweep("a solid", nothing, cut_solid); }
+START_TEST(solid_cut) {
+    sweep("a solid", nothing, cut_solid);
+    sweep("a solid that keeps", nothing, cut_keep);
+}
 END_TEST
 
 START_TEST(cut_of_a_cut_body) {
@@ -668,6 +676,22 @@ START_TEST(stepping) {
     sweep("a further step", held, step);
     sweep("a step with anchors", after_a_cut, anchored_step);
     sweep("a further step with anchors", held, anchored_step);
+}
+END_TEST
+
+static gx_result step_by_quality(gx_body *body) {
+    gx_step_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.dt = 0.01;
+    desc.gravity[2] = -9.81;
+    desc.quality = 0.03;
+    return gx_body_step(body, &desc, NULL, NULL);
+}
+
+START_TEST(stepping_by_quality) {
+    static const action stepped[] = {step_by_quality, NULL};
+    sweep("a first step by quality", nothing, step_by_quality);
+    sweep("a further step by quality", stepped, step_by_quality);
 }
 END_TEST
 
@@ -1032,6 +1056,7 @@ int main(void) {
     tcase_add_test(tests, points_and_rays);
     tcase_add_test(tests, holding);
     tcase_add_test(tests, stepping);
+    tcase_add_test(tests, stepping_by_quality);
     tcase_add_test(tests, motions);
     tcase_add_test(tests, copies);
     tcase_add_test(tests, restoring);

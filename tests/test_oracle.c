@@ -265,6 +265,16 @@ static void add_random_cut(workload *w) {
     }
 }
 
+/* The first solids keep what is inside of them. */
+static void keep_solids(workload *w, size_t most) {
+    size_t i;
+    for (i = 0; i < w->surface_count && most > 0; i++)
+        if (w->surfaces[i].solid) {
+            w->surfaces[i].solid = 2;
+            most--;
+        }
+}
+
 static workload random_scene(uint64_t seed) {
     workload w;
     int cuts;
@@ -272,6 +282,7 @@ static workload random_scene(uint64_t seed) {
     cuts = 1 + random_below(3);
     random_mesh(&w);
     while (cuts-- > 0) add_random_cut(&w);
+    if (seed % 3 == 2) keep_solids(&w, seed % 9 == 2 ? w.surface_count : 1);
     return w;
 }
 
@@ -347,7 +358,7 @@ static void cut(gx_body *body, const workload *w, const ordering *o, uint64_t se
         surfaces[i].vertex_count = s->vertex_count;
         surfaces[i].triangles = s->triangles;
         surfaces[i].triangle_count = s->triangle_count;
-        surfaces[i].kind = s->solid ? GX_SURFACE_SOLID : GX_SURFACE_SHEET;
+        surfaces[i].kind = s->solid == 0 ? GX_SURFACE_SHEET : s->solid == 1 ? GX_SURFACE_SOLID : GX_SURFACE_KEEP;
     }
     for (i = 0; i < calls; i++) {
         gx_cut_desc desc;

@@ -70,6 +70,46 @@ static gx_view view_of(gx_body *body) {
 
 static void cut_through(gx_body *body, uint32_t axis, double at) { OK(block_cut_rectangle(body, axis, at, -0.1, 1.1)); }
 
+/* ---- Shape ---- */
+
+/* A cube with a seam: the corners of its last face are vertices of their own. */
+START_TEST(model) {
+    static const uint32_t triangles[36] = {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5,  0, 5,  4,
+                                           1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 8, 9, 10, 8, 10, 11};
+    static const double x[36] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1,
+                                 1, 1, 1, 0, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 1, 1};
+    float texture[24];
+    gx_body *body = NULL;
+    gx_failure failure;
+    gx_skin skin;
+    gx_view view;
+    size_t i;
+    int k;
+    for (i = 0; i < 12; i++)
+        for (k = 0; k < 2; k++) texture[2 * i + (size_t)k] = (float)(x[3 * i + (size_t)k + 1] + (i < 8 ? 0 : 10));
+    OK(body_of_model(x, texture, 12, triangles, 12, 5, &body, &failure));
+    view = view_of(body);
+    ck_assert(fabs(view.volume - 1) < 1e-14);
+    ck_assert_uint_eq(view.fragment_count, 1);
+    OK(gx_body_skin(body, NULL, &skin, NULL));
+    for (i = 0; i < skin.triangle_count; i++) ck_assert_uint_eq(skin.triangle_surface[i], 1);
+    for (i = 0; i < skin.vertex_count; i++) /* y, z; on the face with the seam 10 more */
+        if (fabs(skin.vertex_normal[3 * i] + 1) < 1e-6)
+            for (k = 0; k < 2; k++)
+                ck_assert(fabs((double)skin.vertex_texture[2 * i + (size_t)k] -
+                               skin.vertex_rest[3 * i + (size_t)k + 1] - 10) < 1e-5);
+    advance(body, 3);
+    cut_through(body, 2, 0.4711);
+    OK(gx_body_skin(body, NULL, &skin, NULL));
+    for (i = k = 0; i < skin.triangle_count; i++) k += skin.triangle_surface[i] == 2;
+    ck_assert_int_gt(k, 0);
+    gx_body_destroy(body);
+    ck_assert_int_eq(body_of_model(x, NULL, 12, triangles, 11, 5, &body, &failure), GX_ERROR_NOT_CLOSED);
+    ck_assert_str_eq(failure.field, "shape.surfaces.triangles");
+    ck_assert(failure.index < 11);
+}
+END_TEST
+
 /* ---- Draw ---- */
 
 static unsigned char *buffers[4];
@@ -716,6 +756,7 @@ int main(void) {
     Suite *suite = suite_create("recipes");
     TCase *tc = tcase_create("snippets of docs/RECIPES.md");
     tcase_set_timeout(tc, 60);
+    tcase_add_test(tc, model);
     tcase_add_test(tc, draw);
     tcase_add_test(tc, marks);
     tcase_add_test(tc, drag);

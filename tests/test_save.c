@@ -360,12 +360,13 @@ static void expect_same_steps(gx_body *a, gx_body *b, const gx_step_desc *step, 
     }
 }
 
-/* Integrators, materials, springs, contact, at a size for which multigrid is used. Some steps, a save or a clone in
-   the middle, a cut and more steps. */
+/* Integrators, quality, materials, springs, contact, at a size for which multigrid is used. Some steps, a save or a
+   clone in the middle, a cut and more steps. */
 START_TEST(steps_go_on) {
     static const gxs_integrator integrators[4] = {GXS_BDF1, GXS_BDF2, GXS_MIDPOINT, GXS_STATIC};
     const uint64_t seed = (uint64_t)_i;
-    const int variant = _i % 4, by_bytes = _i / 4 % 2, custom_material = _i / 8;
+    const int by_quality = _i >= 16, variant = by_quality ? 1 : _i % 4, by_bytes = by_quality ? _i % 2 : _i / 4 % 2,
+              custom_material = by_quality ? 0 : _i / 8;
     custom user = {1e5, 0};
     gx_material materials[2];
     workload w = grid(5, 5, 6, 5);
@@ -411,6 +412,7 @@ START_TEST(steps_go_on) {
     step.gravity[2] = -9.81;
     step.integrator = integrators[variant];
     if (variant == 3) step.dt = 0;
+    if (by_quality) step.quality = 0.03;
     spring.point.count = point.count = 4;
     for (k = 0; k < 4; k++) {
         spring.point.copy[k] = point.copy[k] = (uint32_t)(200 + k);
@@ -1409,7 +1411,7 @@ int main(void) {
     tcase_add_loop_test(tests, many_triangles_in_an_element, 0, 3);
     tcase_add_loop_test(tests, far_and_small_bodies, 0, 6);
     tcase_add_loop_test(tests, pinched_bodies, 0, 2);
-    tcase_add_loop_test(tests, steps_go_on, 0, 16);
+    tcase_add_loop_test(tests, steps_go_on, 0, 18);
     tcase_add_loop_test(tests, cut_before_saving, 0, 4);
     tcase_add_test(tests, sleepers_sleep_on);
     tcase_add_loop_test(tests, rollback, 0, 4);

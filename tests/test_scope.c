@@ -185,7 +185,7 @@ START_TEST(solids_remove_in_their_scope_only) {
     body = random_body(&w, 3);
     other = clone_of(body);
     for (k = 0; k < 3; k++) f.origin[k] = random_real(0, 2);
-    wl_add_box(wl_add_surface(&w, 1), &f, random_real(0.1, 3), random_real(0.1, 3), random_real(0.1, 3));
+    wl_add_box(wl_add_surface(&w, 1 + _i % 2), &f, random_real(0.1, 3), random_real(0.1, 3), random_real(0.1, 3));
     view = view_of(body);
     count = view.slot_count;
     ck_assert_uint_le(count, 4096);

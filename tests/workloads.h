@@ -23,7 +23,7 @@ typedef struct wl_surface {
     /* x 3 */
     uint32_t *triangles;
     size_t triangle_count;
-    int solid;
+    int solid; /* as of oracle_surface */
 } wl_surface;
 
 typedef struct workload {

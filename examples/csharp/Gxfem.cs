@@ -216,6 +216,7 @@ namespace Gxfem {
         public IntPtr clock;
         public IntPtr clock_user;
         public double budget_seconds;
+        public double quality;
     }
 
     public enum gxs_stop {
@@ -231,6 +232,9 @@ namespace Gxfem {
         public gxs_stop stop;
         public UIntPtr active_unknowns;
         public uint substeps;
+        public uint parts;
+        public gxs_integrator integrator;
+        public double error;
         public uint newton_iterations;
         public uint cg_iterations;
         public uint line_search_steps;
@@ -258,6 +262,27 @@ namespace Gxfem {
     }
 
     [StructLayout(LayoutKind.Sequential)]
+    public unsafe struct gx_surface {
+        public IntPtr vertices;
+        public UIntPtr vertex_count;
+        public IntPtr triangles;
+        public UIntPtr triangle_count;
+        public uint kind;
+        public IntPtr texture;
+        public IntPtr scope_slots;
+        public UIntPtr scope_slot_count;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    public unsafe struct gx_shape {
+        public IntPtr surfaces;
+        public UIntPtr surface_count;
+        public uint cells;
+        public double edge;
+        public UIntPtr unknowns;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
     public unsafe struct gx_body_desc {
         public IntPtr positions;
         public UIntPtr node_count;
@@ -276,18 +301,7 @@ namespace Gxfem {
         public IntPtr clock;
         public IntPtr clock_user;
         public gx_jobs jobs;
-    }
-
-    [StructLayout(LayoutKind.Sequential)]
-    public unsafe struct gx_surface {
-        public IntPtr vertices;
-        public UIntPtr vertex_count;
-        public IntPtr triangles;
-        public UIntPtr triangle_count;
-        public uint kind;
-        public IntPtr texture;
-        public IntPtr scope_slots;
-        public UIntPtr scope_slot_count;
+        public IntPtr shape;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -352,6 +366,8 @@ namespace Gxfem {
         public IntPtr copy_affine;
         public IntPtr affine;
         public IntPtr affine_rate;
+        public IntPtr positions;
+        public IntPtr elements;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -427,6 +443,7 @@ namespace Gxfem {
         public IntPtr clock;
         public IntPtr clock_user;
         public double budget_seconds;
+        public double quality;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -871,6 +888,7 @@ namespace Gxfem {
     public static class Native {
         public const uint GX_SURFACE_SHEET = 0;
         public const uint GX_SURFACE_SOLID = 1;
+        public const uint GX_SURFACE_KEEP = 2;
         public const uint GX_FRAGMENT_UNCHANGED = 0;
         public const uint GX_FRAGMENT_TOUCHED = 1;
         public const uint GX_FRAGMENT_SPLIT = 2;

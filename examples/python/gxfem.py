@@ -178,11 +178,13 @@ class Body:
         """holds what is in the regions now, and after later cuts; none: releases all"""
         _call(native.gx_body_hold, self._body, (native.gx_region * max(1, len(regions)))(*regions), len(regions))
 
-    def cut(self, *sheets, solids=(), fragments=()):
-        """Cuts by open or closed sheets, and removes what is in closed solids, all at once. Each: (vertices n x 3, triangles m x 3).
+    def cut(self, *sheets, solids=(), keeps=(), fragments=()):
+        """Cuts by open or closed sheets, and removes what is in closed solids, or outside of those that keep, all at once. Each:
+        (vertices n x 3, triangles m x 3).
         fragments: those that alone are cut. Returns the report's numbers."""
         keep = []
-        surfaces = [_surface(s, native.GX_SURFACE_SHEET, keep) for s in sheets] + [_surface(s, native.GX_SURFACE_SOLID, keep) for s in solids]
+        kinds = (native.GX_SURFACE_SHEET, sheets), (native.GX_SURFACE_SOLID, solids), (native.GX_SURFACE_KEEP, keeps)
+        surfaces = [_surface(s, kind, keep) for kind, given in kinds for s in given]
         scope = _array(fragments, numpy.uint32)
         desc = native.gx_cut_desc(surfaces=(native.gx_surface * max(1, len(surfaces)))(*surfaces), surface_count=len(surfaces),
                                   scope_fragments=_indices(scope), scope_fragment_count=len(scope))

@@ -45,6 +45,7 @@ GXS_STOP_ROUNDING = 3
 GXS_STOP_ASLEEP = 4
 GX_SURFACE_SHEET = 0
 GX_SURFACE_SOLID = 1
+GX_SURFACE_KEEP = 2
 GX_FRAGMENT_UNCHANGED = 0
 GX_FRAGMENT_TOUCHED = 1
 GX_FRAGMENT_SPLIT = 2
@@ -153,11 +154,15 @@ class gx_material(Structure):
     pass
 
 
-class gx_body_desc(Structure):
+class gx_surface(Structure):
     pass
 
 
-class gx_surface(Structure):
+class gx_shape(Structure):
+    pass
+
+
+class gx_body_desc(Structure):
     pass
 
 
@@ -504,12 +509,16 @@ gxs_step_desc._fields_ = [
     ('clock', CFUNCTYPE(c_double, c_void_p)),
     ('clock_user', c_void_p),
     ('budget_seconds', c_double),
+    ('quality', c_double),
 ]
 
 gxs_step_report._fields_ = [
     ('stop', c_int),
     ('active_unknowns', c_size_t),
     ('substeps', c_uint32),
+    ('parts', c_uint32),
+    ('integrator', c_int),
+    ('error', c_double),
     ('newton_iterations', c_uint32),
     ('cg_iterations', c_uint32),
     ('line_search_steps', c_uint32),
@@ -534,6 +543,25 @@ gx_material._fields_ = [
     ('density', c_double),
 ]
 
+gx_surface._fields_ = [
+    ('vertices', POINTER(c_double)),
+    ('vertex_count', c_size_t),
+    ('triangles', POINTER(c_uint32)),
+    ('triangle_count', c_size_t),
+    ('kind', c_uint32),
+    ('texture', POINTER(c_float)),
+    ('scope_slots', POINTER(c_uint32)),
+    ('scope_slot_count', c_size_t),
+]
+
+gx_shape._fields_ = [
+    ('surfaces', POINTER(gx_surface)),
+    ('surface_count', c_size_t),
+    ('cells', c_uint32),
+    ('edge', c_double),
+    ('unknowns', c_size_t),
+]
+
 gx_body_desc._fields_ = [
     ('positions', POINTER(c_double)),
     ('node_count', c_size_t),
@@ -552,17 +580,7 @@ gx_body_desc._fields_ = [
     ('clock', CFUNCTYPE(c_double, c_void_p)),
     ('clock_user', c_void_p),
     ('jobs', gx_jobs),
-]
-
-gx_surface._fields_ = [
-    ('vertices', POINTER(c_double)),
-    ('vertex_count', c_size_t),
-    ('triangles', POINTER(c_uint32)),
-    ('triangle_count', c_size_t),
-    ('kind', c_uint32),
-    ('texture', POINTER(c_float)),
-    ('scope_slots', POINTER(c_uint32)),
-    ('scope_slot_count', c_size_t),
+    ('shape', POINTER(gx_shape)),
 ]
 
 gx_cut_desc._fields_ = [
@@ -624,6 +642,8 @@ gx_view._fields_ = [
     ('copy_affine', POINTER(c_uint8)),
     ('affine', POINTER(c_double)),
     ('affine_rate', POINTER(c_double)),
+    ('positions', POINTER(c_double)),
+    ('elements', POINTER(c_uint32)),
 ]
 
 gx_motion._fields_ = [
@@ -695,6 +715,7 @@ gx_step_desc._fields_ = [
     ('clock', CFUNCTYPE(c_double, c_void_p)),
     ('clock_user', c_void_p),
     ('budget_seconds', c_double),
+    ('quality', c_double),
 ]
 
 gx_step_report = gxs_step_report
