@@ -60,7 +60,7 @@
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
  *     a step, with contact:      >>touch >>meeting >>step
- *     a blade in space:          >>layers >>edges >>fronts >>glances >>strokes >>blade >>contacts >>carve
+ *     a blade in space:          >>layers >>edges >>fronts >>glances >>strokes >>ways >>blade >>contacts >>carve
  *     beginning, end, bytes:     >>grid >>create >>hashes >>stream >>scabbard >>save
  *
  * Words. Facet: a polygon inside an element or in an element face, made by cuts. Wall: a facet that a sheet covers.
@@ -714,7 +714,8 @@ GXFEM_API gx_result gx_body_place(const gx_body *body, uint32_t slot, const doub
    coordinates, how far the edge has come in it (its front). A move cuts what lies between the fronts and the edge when
    a front has advanced far enough, or before its path bends away from a straight strip. A partly cut element has no
    mechanical effect, so that waiting costs nothing. The path is known to a tolerance, so that pieces of less than a
-   thousandth of an element are not meant: they stay with the material beside them. */
+   thousandth of an element are not meant, nor are sheets that are thinner than the tolerance: they stay with the
+   material beside them. */
 typedef struct gx_blade gx_blade; /* opaque; belongs to a body, which destroys it at last */
 
 typedef struct gx_blade_desc {
@@ -1309,9 +1310,15 @@ typedef struct gxp_close_cell { /* a kept cell around the edge */
     double middle[3], radius;              /* of a ball around the corners */
     double stretch;                        /* volume / volume at rest of its element; negative: inverted */
     double size;                           /* of its element, m */
-    uint32_t facets, facet_count;          /* of a divided element's cell: in lambdas, once they were asked for */
-    uint8_t is_divided, has_facets;        /* its element is */
+    uint32_t facets, facet_count;          /* of a divided element's cell, once they were asked for */
+    double heights[4];                     /* of the corners over the faces opposite to them, likewise, m */
+    uint8_t is_divided;                    /* its element is */
+    uint8_t has_facets, has_heights;
 } gxp_close_cell;
+typedef struct gxp_close_facet { /* a triangle that bounds a cell of a divided element */
+    double corners[3][3];        /* deformed */
+    uint32_t face, unused;       /* of its element; 4: it is a wall */
+} gxp_close_facet;
 typedef struct gxp_plate { /* a triangle, ready to be asked what is near it */
     double x[3][3];
     double normal[3], square;    /* of the normal's length; 0: all of the triangle is near its edges */
@@ -1330,9 +1337,9 @@ typedef struct gxp_vicinity {
     gxp_keys order;        /* place along the axis, index in cells: by layer, ascending */
     gxp_words layer_start; /* layer_count + 1, into order */
     int axis;
-    double widest;   /* of the cells along the axis */
-    double *lambdas; /* count x 3 x 4: triangles that bound cells, by coordinates in their elements */
-    uint32_t lambda_count, lambda_capacity;
+    double widest; /* of the cells along the axis */
+    gxp_close_facet *facets;
+    uint32_t facet_count, facet_capacity;
 } gxp_vicinity;
 
 /* Where a place on the edge lies by a layer's front */
@@ -1522,6 +1529,7 @@ typedef struct gxp_scratch {
     /* >>cells, >>links */
     gxp_keys glue;          /* leaf, leaf across a wall that stays in its cell, see >>specks; ascending */
     gxp_words cluster;      /* cells that hang together, see >>specks */
+    gxp_keys seams;         /* leaf of one of these, leaf across a wall of the cut */
     gxp_words wall_leaves;  /* on both sides of new walls */
     gxp_words cell_leaves;  /* of a cell that is divided */
     gxp_words part_leaves;  /* of one of its connected parts */
@@ -1780,8 +1788,8 @@ static const gxp_column gxp_lists[] = {
     GXP_KEYS(touch.order), GXP_WORDS(touch.ranked),
     GXP_WORDS(scratch.removed), GXP_KEYS(scratch.removed_of), GXP_WORDS(scratch.pinches), GXP_WORDS(scratch.touched),
     GXP_WORDS(scratch.new_cells),
-    GXP_KEYS(scratch.links), GXP_KEYS(scratch.glue), GXP_WORDS(scratch.cluster), GXP_WORDS(scratch.link_first),
-    GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
+    GXP_KEYS(scratch.links), GXP_KEYS(scratch.glue), GXP_KEYS(scratch.seams), GXP_WORDS(scratch.cluster),
+    GXP_WORDS(scratch.link_first), GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
     GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements),
     GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_cells),
     GXP_WORDS(scratch.seed_leaves), GXP_WORDS(scratch.flooded), GXP_WORDS(scratch.seeded), GXP_WORDS(scratch.wound),
@@ -2194,6 +2202,12 @@ static uint64_t gxp_hash_texture(uint64_t hash, const float *texture, size_t cou
 }
 
 static double gxp_dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static void gxp_cross(double r[3], const double a[3], const double b[3]) {
+    r[0] = a[1] * b[2] - a[2] * b[1];
+    r[1] = a[2] * b[0] - a[0] * b[2];
+    r[2] = a[0] * b[1] - a[1] * b[0];
+}
 
 /* Scales n, of any length, to length 1. Returns 0 and leaves unit alone if n is zero or not finite. */
 static int gxp_unit(const double n[3], double unit[3]) {
@@ -5160,8 +5174,9 @@ static gx_result gxp_first_sheets(gx_body *body) {
 
 /* >>specks: pieces that are too small to be meant ------------------------------------------------------------------ */
 /* In: the new cells of a cut, their links and volumes. Out: pairs of leaves across the cut's walls that must stay in
-   one cell so that no speck comes off; the cut is then made again. Touches scratch. For cuts by blades only, whose
-   sheets are known to a tolerance: a surface of the caller is cut exactly. */
+   one cell so that no speck comes off, and no flake, which is thinner than the tolerance; the cut is then made again.
+   Touches scratch. For cuts by blades only, whose sheets are known to a tolerance: a surface of the caller is cut
+   exactly. */
 
 /* Cuts are made at most so many times. */
 #define GXP_SPECK_TRIES 4
@@ -5177,9 +5192,30 @@ static double gxp_cell_share(const gx_body *body, uint32_t cell) {
     return fabs(body->cells.data[cell].volume) / gxp_element_volume(body, body->cells.data[cell].element);
 }
 
-/* Lists in scratch.cluster the cells that copies join to a cell, until they have too large a share of elements. *share:
-   theirs. */
-static gx_result gxp_list_cluster(gx_body *body, uint32_t start, double below, double *share) {
+/* What pieces of a cut are not meant */
+typedef struct gxp_not_meant {
+    double share;     /* those of less, as a share of an element, summed over their elements */
+    double thickness; /* m: those that are thinner between their walls, and smaller than an element */
+} gxp_not_meant;
+
+/* A piece's cells, as they are listed */
+typedef struct gxp_piece {
+    double share; /* of elements, summed */
+    int is_thin;  /* none of its cells is too thick for a flake */
+} gxp_piece;
+
+/* No section of an element is larger than this square of its size, unless it is a sliver. */
+#define GXP_SECTION 2
+
+/* Adds a cell to a piece. */
+static void gxp_add_to_piece(const gx_body *body, uint32_t cell, const gxp_not_meant *least, gxp_piece *piece) {
+    const double share = gxp_cell_share(body, cell), volume = gxp_element_volume(body, body->cells.data[cell].element);
+    piece->share += share;
+    piece->is_thin &= piece->share < 1 && share * cbrt(volume) < GXP_SECTION * cbrt(36.0) * least->thickness;
+}
+
+/* Lists in scratch.cluster the cells that copies join to a cell, until they are more than a speck, and no flake. */
+static gx_result gxp_list_cluster(gx_body *body, uint32_t start, const gxp_not_meant *least, gxp_piece *piece) {
     gxp_scratch *scratch = &body->scratch;
     uint32_t done, j, cell;
     int k;
@@ -5188,10 +5224,12 @@ static gx_result gxp_list_cluster(gx_body *body, uint32_t start, double below, d
     scratch->stamp++;
     body->cells.stamp[start] = scratch->stamp;
     result = gxp_push(body, &scratch->cluster, start);
-    *share = 0;
-    for (done = 0; done < scratch->cluster.count && *share < below && result == GX_OK; done++) {
+    piece->share = 0;
+    piece->is_thin = least->thickness > 0;
+    for (done = 0; done < scratch->cluster.count && result == GX_OK; done++) {
         const gxp_cell *c = &body->cells.data[scratch->cluster.data[done]];
-        *share += gxp_cell_share(body, scratch->cluster.data[done]);
+        gxp_add_to_piece(body, scratch->cluster.data[done], least, piece);
+        if (!(piece->share < least->share || piece->is_thin)) break;
         for (k = 0; k < 4 && result == GX_OK; k++) {
             const uint32_t copy = c->copies[k], node = body->copies.node[copy];
             for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1] && result == GX_OK; j++) {
@@ -5210,8 +5248,64 @@ static gx_result gxp_list_cluster(gx_body *body, uint32_t start, double below, d
     return result;
 }
 
-/* Finds a leaf of a new cell of the cluster and one across a wall of this cut, of the largest cell that is there. */
-static gx_result gxp_find_neighbour(gx_body *body, uint32_t cell, uint32_t pair[2], double *largest) {
+/* The area of a triangle, its corners by their coordinates in the element with these corners */
+static double gxp_triangle_area(const double corners[12], const double *a, const double *b, const double *c) {
+    double u[3] = {0, 0, 0}, v[3] = {0, 0, 0}, n[3];
+    int i, k;
+    for (i = 0; i < 4; i++)
+        for (k = 0; k < 3; k++) {
+            u[k] += (b[i] - a[i]) * corners[3 * i + k];
+            v[k] += (c[i] - a[i]) * corners[3 * i + k];
+        }
+    gxp_cross(n, u, v);
+    return 0.5 * sqrt(gxp_dot(n, n));
+}
+
+/* Adds the area of a cell's walls. */
+static gx_result gxp_add_walls(gx_body *body, uint32_t cell, double *area) {
+    const gxp_boundary *boundary = &body->scratch.boundary;
+    gxb_complex *cx = body->complex;
+    const uint32_t element = body->cells.data[cell].element;
+    double corners[12];
+    uint32_t leaf, first, count, i;
+    gx_result result = GX_OK;
+    gxp_element_positions(body, element, corners);
+    gxp_clear_boundary(body, 1);
+    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
+         leaf = body->leaves.data[leaf].next) {
+        result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
+        for (i = 0; i < count && result == GX_OK; i++) {
+            const uint32_t facet = gxp_item(cx, first + i);
+            const gxb_facet *f = gxb_complex_facet(cx, facet);
+            const uint32_t other = f->leaf[f->leaf[0] == leaf];
+            if (f->face != GXB_NONE || (gxp_is_kept(body, other) && body->leaves.data[other].cell == cell)) continue;
+            result = gxp_add_boundary_facet(body, element, facet, 0);
+        }
+    }
+    for (i = 0; i < boundary->triangles.count && result == GX_OK; i += 3) {
+        const uint32_t *t = boundary->triangles.data + i;
+        *area += gxp_triangle_area(corners, boundary->lambdas + 4 * (size_t)t[0], boundary->lambdas + 4 * (size_t)t[1],
+                                   boundary->lambdas + 4 * (size_t)t[2]);
+    }
+    return result;
+}
+
+/* Are the cells of the cluster, which are all of a piece, a flake? */
+static gx_result gxp_is_flake(gx_body *body, double thickness, int *flake) {
+    const gxp_words *cluster = &body->scratch.cluster;
+    double area = 0, volume = 0;
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (i = 0; i < cluster->count && result == GX_OK; i++) {
+        volume += fabs(body->cells.data[cluster->data[i]].volume);
+        result = gxp_add_walls(body, cluster->data[i], &area);
+    }
+    *flake = volume < 0.5 * thickness * area;
+    return result;
+}
+
+/* Lists in scratch.seams the leaves of a new cell of the cluster, each with one across a wall of this cut. */
+static gx_result gxp_list_seams(gx_body *body, uint32_t cell) {
     gxp_scratch *scratch = &body->scratch;
     gxb_complex *cx = body->complex;
     uint32_t leaf, first, count, i;
@@ -5225,42 +5319,88 @@ static gx_result gxp_find_neighbour(gx_body *body, uint32_t cell, uint32_t pair[
             uint32_t next;
             if (f->face != GXB_NONE || !gxp_is_kept(body, other)) continue;
             next = body->leaves.data[other].cell;
-            if (body->cells.stamp[next] == scratch->stamp || gxp_cut_from(body, next) != gxp_cut_from(body, cell) ||
-                !(gxp_cell_share(body, next) > *largest))
-                continue;
-            *largest = gxp_cell_share(body, next);
-            pair[0] = leaf;
-            pair[1] = other;
+            if (body->cells.stamp[next] != scratch->stamp && gxp_cut_from(body, next) == gxp_cut_from(body, cell))
+                result = gxp_push_key(body, &scratch->seams, leaf, other);
         }
     }
     return result;
 }
 
-/* Lists the pair of leaves that holds a new cell, if it is of a speck. */
-static gx_result gxp_hold_speck(gx_body *body, uint32_t cell, double below, uint32_t *found) {
-    gxp_scratch *scratch = &body->scratch;
-    uint32_t pair[2] = {GXP_NONE, GXP_NONE}, i;
-    double share, largest = 0;
-    gx_result result = gxp_list_cluster(body, cell, below, &share);
-    if (result != GX_OK || !(share < below)) return result;
-    for (i = 0; i < scratch->cluster.count && result == GX_OK; i++)
-        result = gxp_find_neighbour(body, scratch->cluster.data[i], pair, &largest);
-    if (result != GX_OK || pair[0] == GXP_NONE) return result;
-    *found += 1;
-    result = gxp_push_key(body, &scratch->glue, pair[0], pair[1]);
-    return result == GX_OK ? gxp_push_key(body, &scratch->glue, pair[1], pair[0]) : result;
+static int gxp_share_copy(const gx_body *body, uint32_t a, uint32_t b) {
+    const uint32_t *c = body->cells.data[a].copies, *d = body->cells.data[b].copies;
+    int i, k, shared = a == b;
+    for (i = 0; i < 4; i++)
+        for (k = 0; k < 4; k++) shared |= c[i] == d[k];
+    return shared;
 }
 
-/* Finds the specks of a cut. below: their shares of elements. *found: 0 if there are none. */
-static gx_result gxp_find_specks(gxp_cut *cut, double below, uint32_t *found) {
+/* The cell on the far side of a seam */
+static uint32_t gxp_across_seam(const gx_body *body, uint32_t seam) {
+    return body->leaves.data[GXP_SECOND(body->scratch.seams.data[seam])].cell;
+}
+
+static void gxp_swap_keys(gxp_keys *keys, uint32_t i, uint32_t k) {
+    const uint64_t key = keys->data[i];
+    keys->data[i] = keys->data[k];
+    keys->data[k] = key;
+}
+
+/* Glues the seams to the largest cell that is across one, and to those that hang together with it along the piece:
+   never two sides, which would be a bridge. */
+static gx_result gxp_glue_seams(gx_body *body) {
+    gxp_scratch *scratch = &body->scratch;
+    const uint32_t count = scratch->seams.count;
+    uint32_t i, done = 0, listed = 1, best = 0;
+    gx_result result = GX_OK;
+    for (i = 1; i < count; i++)
+        if (gxp_cell_share(body, gxp_across_seam(body, i)) > gxp_cell_share(body, gxp_across_seam(body, best)))
+            best = i;
+    gxp_swap_keys(&scratch->seams, 0, best);
+    for (; done < listed; done++) /* those that are glued come first */
+        for (i = listed; i < count; i++)
+            if (gxp_share_copy(body, gxp_across_seam(body, done), gxp_across_seam(body, i)))
+                gxp_swap_keys(&scratch->seams, i, listed++);
+    for (i = 0; i < listed && result == GX_OK; i++) {
+        const uint32_t leaf = GXP_FIRST(scratch->seams.data[i]), other = GXP_SECOND(scratch->seams.data[i]);
+        result = gxp_push_key(body, &scratch->glue, leaf, other);
+        if (result == GX_OK) result = gxp_push_key(body, &scratch->glue, other, leaf);
+    }
+    return result;
+}
+
+/* Lists the leaves that hold the piece of a new cell, if it is a speck or a flake. */
+static gx_result gxp_hold_piece(gx_body *body, uint32_t cell, const gxp_not_meant *least, uint32_t *found) {
+    gxp_scratch *scratch = &body->scratch;
+    gxp_piece piece;
+    int held = 1;
+    uint32_t i;
+    gx_result result = gxp_list_cluster(body, cell, least, &piece);
+    if (result != GX_OK) return result;
+    if (!(piece.share < least->share)) held = piece.is_thin;
+    if (held && !(piece.share < least->share)) result = gxp_is_flake(body, least->thickness, &held);
+    scratch->seams.count = 0;
+    for (i = 0; i < scratch->cluster.count && held && result == GX_OK; i++)
+        result = gxp_list_seams(body, scratch->cluster.data[i]);
+    if (result != GX_OK || scratch->seams.count == 0) return result;
+    *found += 1;
+    return gxp_glue_seams(body);
+}
+
+/* Finds the specks and flakes of a cut. *found: 0 if there are none. A piece is looked at once. */
+static gx_result gxp_find_specks(gxp_cut *cut, const gxp_not_meant *least, uint32_t *found) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
+    const uint32_t before = scratch->stamp;
     uint32_t i, n = 0;
     gx_result result = GX_OK;
     *found = 0;
-    for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++)
-        if (gxp_cell_share(body, scratch->new_cells.data[i]) < below)
-            result = gxp_hold_speck(body, scratch->new_cells.data[i], below, found);
+    for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++) {
+        const uint32_t cell = scratch->new_cells.data[i];
+        gxp_piece piece = {0, 1};
+        gxp_add_to_piece(body, cell, least, &piece);
+        if (body->cells.stamp[cell] <= before && (piece.share < least->share || piece.is_thin))
+            result = gxp_hold_piece(body, cell, least, found);
+    }
     if (result == GX_OK) result = gxp_sort_keys(body, &scratch->glue, 0, scratch->glue.count);
     for (i = 0; i < scratch->glue.count; i++)
         if (i == 0 || scratch->glue.data[i] != scratch->glue.data[i - 1])
@@ -5710,8 +5850,8 @@ static gx_result gxp_make_cut(gxp_cut *cut) {
     return result == GX_OK ? gxp_note_for_skin(cut, first_facet) : result;
 }
 
-/* speck_below: pieces of less than this share of an element stay with the material beside them; 0: none does */
-static gx_result gxp_run_cut(gxp_cut *cut, double speck_below, gx_failure *failure) {
+/* least: which pieces stay with the material beside them; NULL: none does */
+static gx_result gxp_run_cut(gxp_cut *cut, const gxp_not_meant *least, gx_failure *failure) {
     gx_body *body = cut->body;
     gxp_settling settling;
     uint32_t found = 0, tries;
@@ -5722,8 +5862,7 @@ static gx_result gxp_run_cut(gxp_cut *cut, double speck_below, gx_failure *failu
     body->scratch.glue.count = 0;
     for (tries = 1;; tries++) {
         result = gxp_make_cut(cut);
-        if (result == GX_OK && speck_below > 0 && tries < GXP_SPECK_TRIES)
-            result = gxp_find_specks(cut, speck_below, &found);
+        if (result == GX_OK && least != NULL && tries < GXP_SPECK_TRIES) result = gxp_find_specks(cut, least, &found);
         if (result != GX_OK || found == 0 || tries == GXP_SPECK_TRIES) break;
         gxp_rollback(cut);
     }
@@ -5740,7 +5879,7 @@ static gx_result gxp_run_cut(gxp_cut *cut, double speck_below, gx_failure *failu
     return gxp_end(failure, GX_OK);
 }
 
-static gx_result gxp_cut_body(gx_body *body, const gx_cut_desc *desc, double speck_below, gx_cut_report *report,
+static gx_result gxp_cut_body(gx_body *body, const gx_cut_desc *desc, const gxp_not_meant *least, gx_cut_report *report,
                               gx_failure *failure) {
     gxp_cut cut;
     gx_result result;
@@ -5749,13 +5888,13 @@ static gx_result gxp_cut_body(gx_body *body, const gx_cut_desc *desc, double spe
     memset(&cut, 0, sizeof cut);
     cut.body = body;
     cut.desc = desc;
-    result = gxp_run_cut(&cut, speck_below, failure);
+    result = gxp_run_cut(&cut, least, failure);
     if (result == GX_OK && report != NULL) *report = cut.report;
     return result;
 }
 
 GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report, gx_failure *failure) {
-    return gxp_cut_body(body, desc, 0, report, failure);
+    return gxp_cut_body(body, desc, NULL, report, failure);
 }
 
 /* >>solidify: a sheet made solid ----------------------------------------------------------------------------------- */
@@ -10001,12 +10140,6 @@ static void gxp_bent_residual(const gx_body *body, const gxp_cell *c, const doub
     }
 }
 
-static void gxp_cross(double r[3], const double a[3], const double b[3]) {
-    r[0] = a[1] * b[2] - a[2] * b[1];
-    r[1] = a[2] * b[0] - a[0] * b[2];
-    r[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 /* Pulls a point of space back by the map of a bent cell, to rounding, from coordinates to begin with. 0: it is nowhere
    near there. */
 static int gxp_unbend(const gx_body *body, const gxp_cell *c, const double point[3], double weights[4],
@@ -12055,7 +12188,7 @@ static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
     for (n = 0; n < 4; n++) c->radius = gxp_more(c->radius, gxp_square_distance(c->middle, c->corners[n]));
     c->radius = sqrt(c->radius);
     c->is_divided = (uint8_t)(gxb_complex_root(body->complex, row->element) & 1);
-    c->has_facets = 0;
+    c->has_facets = c->has_heights = 0;
     c->size = body->mesh.sizes[row->element];
 }
 
@@ -12239,7 +12372,7 @@ static gx_result gxp_find_near(gx_blade *blade, const gxp_words *scope) {
     gxp_vicinity_walk own;
     gx_result result = gxp_extend_words(body, &blade->near.of_cell, body->cells.count);
     if (result == GX_OK) result = gxp_prepare_quads(blade);
-    blade->near.count = blade->near.lambda_count = 0;
+    blade->near.count = blade->near.facet_count = 0;
     if (result != GX_OK) return result;
     own.walk.visit = gxp_add_near_cells;
     own.walk.boxes = blade->boxes;
@@ -12310,95 +12443,141 @@ static gx_result gxp_is_own_part(gx_body *body, const gxp_close_cell *c, const d
     return result;
 }
 
+/* On which face of its element is a triangle that bounds a cell? 4: on none, it is a wall. */
+static uint32_t gxp_facet_face(const double *lambda[3]) {
+    uint32_t face = 0;
+    while (face < 4 && (lambda[0][face] > 0 || lambda[1][face] > 0 || lambda[2][face] > 0)) face++;
+    return face;
+}
+
 /* Lists the triangles that bound the cell of a divided element. */
 static gx_result gxp_list_facets(gx_blade *blade, gxp_close_cell *c) {
     gx_body *body = blade->body;
     gxp_vicinity *near = &blade->near;
     const gxp_boundary *boundary = &body->scratch.boundary;
+    gxp_close_facet *facet;
     uint32_t i;
+    int n, k;
     gx_result result;
     gxp_clear_boundary(body, 1);
     result = gxp_bound_cell(body, c->cell);
     if (result == GX_OK)
-        result = gxp_reserve(&body->config.allocator, &near->lambdas, 12 * sizeof *near->lambdas, near->lambda_count,
-                             &near->lambda_capacity, boundary->triangles.count / 3);
+        result = gxp_reserve(&body->config.allocator, &near->facets, sizeof *near->facets, near->facet_count,
+                             &near->facet_capacity, boundary->triangles.count / 3);
     if (result != GX_OK) return result;
-    c->facets = near->lambda_count;
+    c->facets = near->facet_count;
     c->facet_count = boundary->triangles.count / 3;
     c->has_facets = 1;
-    for (i = 0; i < boundary->triangles.count; i++)
-        memcpy(near->lambdas + 12 * (size_t)near->lambda_count + 4 * (size_t)i,
-               boundary->lambdas + 4 * (size_t)boundary->triangles.data[i], 4 * sizeof *near->lambdas);
-    near->lambda_count += c->facet_count;
+    near->facet_count += c->facet_count;
+    for (i = 0, facet = near->facets + c->facets; i < c->facet_count; i++, facet++) {
+        const double *lambda[3];
+        for (n = 0; n < 3; n++) {
+            const double *l = lambda[n] = boundary->lambdas + 4 * (size_t)boundary->triangles.data[3 * i + (uint32_t)n];
+            for (k = 0; k < 3; k++)
+                facet->corners[n][k] = l[0] * c->corners[0][k] + l[1] * c->corners[1][k] + l[2] * c->corners[2][k] +
+                                       l[3] * c->corners[3][k];
+        }
+        facet->face = gxp_facet_face(lambda);
+    }
     return GX_OK;
 }
 
-/* A cell that does not contain the place: is its material nearer than what was found before? */
-static gx_result gxp_seek_outside(gx_blade *blade, uint32_t index, const double x[3], const double weights[4],
-                                  gxp_sight *sight) {
-    static const double own[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+/* How high each corner is over the face opposite to it */
+static void gxp_measure_heights(gxp_close_cell *c) {
+    int i, k;
+    for (i = 0; i < 4; i++) {
+        const double *a = c->corners[gxp_outward[i][0]], *b = c->corners[gxp_outward[i][1]],
+                     *d = c->corners[gxp_outward[i][2]];
+        double u[3], v[3], w[3], normal[3];
+        for (k = 0; k < 3; k++) {
+            u[k] = b[k] - a[k];
+            v[k] = d[k] - a[k];
+            w[k] = c->corners[i][k] - a[k];
+        }
+        gxp_cross(normal, u, v);
+        c->heights[i] = fabs(gxp_dot(normal, w)) / sqrt(gxp_dot(normal, normal));
+    }
+    c->has_heights = 1;
+}
+
+/* A square of a distance that is smaller than another one by more than this factor is so for sure. */
+#define GXP_SURELY 0.999999
+
+/* A triangle that bounds a cell: is it nearer to the place than what was found before? face: see gxp_close_facet */
+static void gxp_seek_triangle(uint32_t index, const double x[3], const double weights[4], const double *a,
+                              const double *b, const double *c, uint32_t face, gxp_sight *sight) {
+    double nearest[3];
+    const double square = gxp_onto_triangle(x, a, b, c, nearest);
+    if (square >= sight->square) return;
+    sight->index = index;
+    sight->square = square;
+    sight->wall = face == 4;
+    memcpy(sight->nearest, nearest, sizeof nearest);
+    memcpy(sight->weights, weights, sizeof sight->weights);
+}
+
+/* A cell that does not contain the place: is its material nearer than what was found before? The nearest point of its
+   surface is on a wall, or on a face whose outer side the place is on. */
+static gx_result gxp_seek_outside(gx_blade *blade, uint32_t index, const double x[3], gxp_sight *sight) {
     gxp_close_cell *c = &blade->near.cells[index];
-    uint32_t count = 4, i;
-    int n, k;
-    if (c->stretch < GXP_FLAT_MAP) return GX_OK; /* flat or inverted: outside is inside by its map */
+    double weights[4], beyond[5];
+    uint32_t i;
+    if (gxp_square_to_box(x, c->low, c->high) >= sight->square) return GX_OK;
+    if (c->stretch < GXP_FLAT_MAP || c->stretch > GXP_BLOWN_MAP) return GX_OK; /* inverted: outside is inside */
+    gxp_tet_weights(c->corners, x, weights);
+    if (!c->has_heights) gxp_measure_heights(c);
+    beyond[4] = 0;
+    for (i = 0; i < 4; i++) {
+        const double off = weights[i] * c->heights[i];
+        beyond[i] = weights[i] < 0 ? GXP_SURELY * off * off : HUGE_VAL;
+        if (weights[i] < 0 && beyond[i] >= sight->square) return GX_OK;
+    }
     if (c->is_divided && !c->has_facets) {
         const gx_result result = gxp_list_facets(blade, c);
         if (result != GX_OK) return result;
     }
-    if (c->is_divided) count = c->facet_count;
-    for (i = 0; i < count; i++) {
-        const double *lambda[3];
-        double corner[3][3], nearest[3], square;
-        if (!c->is_divided && weights[i] >= 0) continue;
-        for (n = 0; n < 3; n++)
-            lambda[n] =
-                c->is_divided ? blade->near.lambdas + 12 * (size_t)(c->facets + i) + 4 * n : own[gxp_outward[i][n]];
-        for (n = 0; n < 3; n++)
-            for (k = 0; k < 3; k++)
-                corner[n][k] = lambda[n][0] * c->corners[0][k] + lambda[n][1] * c->corners[1][k] +
-                               lambda[n][2] * c->corners[2][k] + lambda[n][3] * c->corners[3][k];
-        square = gxp_onto_triangle(x, corner[0], corner[1], corner[2], nearest);
-        if (square >= sight->square) continue;
-        sight->index = index;
-        sight->square = square;
-        sight->wall = 1;
-        for (n = 0; n < 4; n++)
-            if (!(lambda[0][n] > 0) && !(lambda[1][n] > 0) && !(lambda[2][n] > 0)) sight->wall = 0;
-        memcpy(sight->nearest, nearest, sizeof nearest);
-        memcpy(sight->weights, weights, sizeof sight->weights);
+    for (i = 0; i < 4 && !c->is_divided; i++)
+        if (beyond[i] < sight->square)
+            gxp_seek_triangle(index, x, weights, c->corners[gxp_outward[i][0]], c->corners[gxp_outward[i][1]],
+                              c->corners[gxp_outward[i][2]], i, sight);
+    for (i = 0; i < c->facet_count && c->is_divided; i++) {
+        const gxp_close_facet *f = &blade->near.facets[c->facets + i];
+        if (beyond[f->face] < sight->square)
+            gxp_seek_triangle(index, x, weights, f->corners[0], f->corners[1], f->corners[2], f->face, sight);
     }
     return GX_OK;
 }
 
-static gx_result gxp_seek_at(gx_blade *blade, uint32_t index, const double x[3], gxp_sight *sight) {
+/* Does a cell contain the place? Then it is found. */
+static gx_result gxp_seek_inside(gx_blade *blade, uint32_t index, const double x[3], gxp_sight *sight) {
     gxp_close_cell *c = &blade->near.cells[index];
     double weights[4];
     int own = 0;
     gx_result result = GX_OK;
-    if (gxp_square_to_box(x, c->low, c->high) >= sight->square) return GX_OK;
+    if (gxp_square_to_box(x, c->low, c->high) > 0) return GX_OK;
     if (fabs(c->stretch) < GXP_FLAT_MAP || fabs(c->stretch) > GXP_BLOWN_MAP) return GX_OK;
     gxp_tet_weights(c->corners, x, weights);
     if (weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0 && weights[3] >= 0)
         result = gxp_is_own_part(blade->body, c, weights, &own);
-    if (!own && result == GX_OK) return gxp_seek_outside(blade, index, x, weights, sight);
+    if (!own || result != GX_OK) return result;
     sight->index = index;
     sight->square = 0;
     sight->wall = 0;
     memcpy(sight->nearest, x, sizeof sight->nearest);
     memcpy(sight->weights, weights, sizeof sight->weights);
-    return result;
+    return GX_OK;
 }
 
 /* Finds the cell of a layer that contains a place, or else the nearest one. */
 static gx_result gxp_seek(gx_blade *blade, uint32_t layer, const double x[3], gxp_sight *sight) {
     const gxp_vicinity *near = &blade->near;
     const double along = x[near->axis];
+    const int go_on = blade->last_sight < near->count && near->cells[blade->last_sight].layer == layer;
     uint32_t low = near->layer_start.data[layer], high = near->layer_start.data[layer + 1], first = low, end = high, i;
     gx_result result = GX_OK;
     sight->index = GXP_NONE;
     sight->square = HUGE_VAL;
-    if (blade->last_sight < near->count && near->cells[blade->last_sight].layer == layer)
-        result = gxp_seek_at(blade, blade->last_sight, x, sight);
+    if (go_on) result = gxp_seek_inside(blade, blade->last_sight, x, sight);
     while (low < high) {
         const uint32_t middle = low + (high - low) / 2;
         if (near->cells[GXP_SECOND(near->order.data[middle])].low[near->axis] <= along)
@@ -12408,15 +12587,21 @@ static gx_result gxp_seek(gx_blade *blade, uint32_t layer, const double x[3], gx
     }
     for (i = low; i > first && result == GX_OK && sight->square > 0; i--) {
         const uint32_t index = GXP_SECOND(near->order.data[i - 1]);
+        if (along - near->cells[index].low[near->axis] > near->widest) break;
+        result = gxp_seek_inside(blade, index, x, sight);
+    }
+    if (go_on && result == GX_OK && sight->square > 0) result = gxp_seek_outside(blade, blade->last_sight, x, sight);
+    for (i = low; i > first && result == GX_OK && sight->square > 0; i--) {
+        const uint32_t index = GXP_SECOND(near->order.data[i - 1]);
         const double off = along - near->cells[index].low[near->axis] - near->widest;
         if (off > 0 && off * off >= sight->square) break;
-        result = gxp_seek_at(blade, index, x, sight);
+        result = gxp_seek_outside(blade, index, x, sight);
     }
     for (i = low; i < end && result == GX_OK && sight->square > 0; i++) {
         const uint32_t index = GXP_SECOND(near->order.data[i]);
         const double off = near->cells[index].low[near->axis] - along;
         if (off * off >= sight->square) break;
-        result = gxp_seek_at(blade, index, x, sight);
+        result = gxp_seek_outside(blade, index, x, sight);
     }
     return result;
 }
@@ -12831,7 +13016,7 @@ static gx_result gxp_came_back(gx_blade *blade, int *is_back) {
         result = gxp_find_rest_cell(blade->body, place, &cell);
         if (cell == GXP_NONE) continue; /* at the surface: nothing is on the way */
         if (gxp_near_sheet(&blade->sheet, place, nearest) > GXP_CUT_WIDTH * v->size) return result;
-        seen++;
+        seen += !(gxp_dot(step, v->ahead) > 0.5); /* onwards: the sheet is ahead of its front, where that is in folds */
     }
     *is_back = seen > 0;
     return result;
@@ -13203,9 +13388,9 @@ static gx_result gxp_follow_edge(gx_blade *blade, int finish, gx_blade_report *r
         if (result == GX_OK) result = gxp_zip(blade, &blade->front, &blade->advanced);
     }
     if (result != GX_OK || !(move.most > 0)) return result;
+    if (finish || move.most >= blade->min_advance) return gxp_cut_strip(blade, &blade->advanced, report);
     blade->advance = fmax(blade->advance, move.most);
-    return finish || move.most >= blade->min_advance ? gxp_cut_strip(blade, &blade->advanced, report)
-                                                     : gxp_note_path(blade);
+    return gxp_note_path(blade);
 }
 
 /* A strip reaches cells that are within this share of their size of it, as the body lies now: where strip and layer
@@ -13506,23 +13691,62 @@ static gx_result gxp_start_struck(gx_body *body) {
              : gxp_grow_column(body, &gxp_copy_columns[GXP_STRUCK_COLUMN], 0, body->copies.count);
 }
 
-/* After a move that was worked out and cut nothing: the next ones may be left out. */
+/* After a move that is worked out the next ones may be left out, from gxp_be_ready on. */
 static gx_result gxp_get_ready(gx_blade *blade) {
-    gx_body *body = blade->body;
     gxp_glance *glance = &blade->then.glance;
     const double least = GXP_LEAST_GLANCE * fmin(blade->min_advance, 0.5 * blade->step),
                  most = GXP_BEAD_COURSE * fmin(blade->min_advance, 0.5 * blade->step);
-    gx_result result;
+    const gx_result result = gxp_start_struck(blade->body);
     glance->edge.count = 0;
-    result = gxp_start_struck(body);
     if (result != GX_OK) return result;
     glance->ready = 1;
     glance->travelled = 0;
     glance->room = fmax(fmin(blade->room, GXP_GLANCE_ROOM * blade->step), least);
     glance->course = fmin(fmax(blade->min_advance - blade->advance, least), most);
-    glance->cut = body->cuts.hash;
-    gxp_note_struck(body);
+    glance->cut = blade->body->cuts.hash;
     return GX_OK;
+}
+
+/* Cells have other names after a cut: until then beads have those of their elements in place of them. */
+static void gxp_note_bead_elements(gx_blade *blade) {
+    const gxp_bead_list *beads = &blade->then.glance.beads;
+    uint32_t i;
+    for (i = 0; i < beads->count; i++) beads->data[i].cell = blade->body->cells.data[beads->data[i].cell].element;
+}
+
+/* After the cut: the cell of a bead is that which has its place, or else any of its element's. */
+static void gxp_place_beads(gx_blade *blade) {
+    gx_body *body = blade->body;
+    gxp_bead_list *beads = &blade->then.glance.beads;
+    uint32_t i, n = 0;
+    for (i = 0; i < beads->count; i++) {
+        gxp_bead *bead = &beads->data[n];
+        uint32_t cell, holder = GXP_NONE;
+        *bead = beads->data[i];
+        cell = bead->cell;
+        if (body->cells.data[cell].next == GXP_NONE || gxp_cell_at(body, cell, bead->rest, &holder) != GX_OK)
+            holder = GXP_NONE;
+        while (holder == GXP_NONE && cell != GXP_NONE && !body->cells.data[cell].kept)
+            cell = body->cells.data[cell].next;
+        bead->cell = holder != GXP_NONE ? holder : cell;
+        n += bead->cell != GXP_NONE;
+    }
+    beads->count = n;
+}
+
+/* The blade is ready, with the body as it is now. */
+static void gxp_be_ready(gx_blade *blade) {
+    blade->then.glance.cut = blade->body->cuts.hash;
+    gxp_note_struck(blade->body);
+}
+
+/* Leaves out a move if that may be. */
+static gx_result gxp_try_leaving_out(gx_blade *blade, const double *edge, uint32_t count, int *left_out) {
+    double motion = 0;
+    gxp_verdict verdict = GXP_GLANCE_AWAY;
+    const gx_result result = gxp_judge_move(blade, edge, count, &motion, &verdict);
+    *left_out = result == GX_OK && verdict == GXP_GLANCE_LITTLE;
+    return *left_out ? gxp_leave_out(blade, edge, count, motion) : result;
 }
 
 /* Copies change places between where they are and where they were at the last move. */
@@ -13733,17 +13957,30 @@ static gx_result gxp_join_owned(gx_blade *blade) {
     return result;
 }
 
+/* The part of the layer's front that is beside an owner's, between places on the edge: from a corner to a corner, since
+   strips go from corner to corner, and soft places are off the line between these by rounding. */
+static void gxp_find_beside(const gxp_front_list *front, double from, double to, uint32_t *first, uint32_t *last) {
+    const gxp_front_vertex *v = front->data;
+    uint32_t i = 0, j = front->count;
+    while (i < front->count && v[i].along < from) i++;
+    while (j > 0 && v[j - 1].along > to) j--;
+    while (i > 0 && !v[i - 1].gap && (i == front->count || v[i].soft || v[i].along > from)) i--;
+    while (j < front->count && (j == 0 || (!v[j - 1].gap && (v[j - 1].soft || v[j - 1].along < to)))) j++;
+    *first = i;
+    *last = j;
+}
+
 /* Lists in blade.strip what closes the gap between an owner's front and that of the layer it has flowed into. */
 static gx_result gxp_close_owner(gx_blade *blade, uint32_t owner) {
     const gxp_front_vertex *v = blade->owned.data;
     const uint32_t first = blade->owned_starts.data[owner], end = blade->owned_starts.data[owner + 1];
-    uint32_t i;
+    uint32_t i, from, to;
     gx_result result;
     blade->advanced.count = blade->latest.count = 0;
     result = gxp_append_front(blade->body, &blade->latest, v + first, end - first);
-    for (i = 0; i < blade->front.count && result == GX_OK; i++)
-        if (blade->front.data[i].along >= v[first].along && blade->front.data[i].along <= v[end - 1].along)
-            result = gxp_push_vertex(blade->body, &blade->advanced, &blade->front.data[i]);
+    gxp_find_beside(&blade->front, v[first].along, v[end - 1].along, &from, &to);
+    for (i = from; i < to && result == GX_OK; i++)
+        result = gxp_push_vertex(blade->body, &blade->advanced, &blade->front.data[i]);
     if (result == GX_OK) result = gxp_zip(blade, &blade->latest, &blade->advanced);
     blade->latest.count = 0;
     return result;
@@ -14033,117 +14270,9 @@ static gx_result gxp_keep_members(gx_blade *blade, const double *edge, uint32_t 
     return result;
 }
 
-/* >>blade: the blade's moves --------------------------------------------------------------------------------------- */
-/* gx_blade_move: find the layers, advance their fronts, cut the strips in one transaction, keep the new state. On any
-   error nothing of body or blade has changed. */
-
-/* Coordinates of an edge are at most 2^GXP_EDGE_REACH: squares of distances are finite. */
-#define GXP_EDGE_REACH 110
-
-/* A blade leaves no pieces of less than this share of an element. */
-#define GXP_BLADE_SPECK 1e-3
-
-/* Cuts the body by the surfaces of all layers at once. */
-static gx_result gxp_cut_surfaces(gx_blade *blade, uint32_t kind, gx_blade_report *report, gx_failure *failure) {
-    gx_body *body = blade->body;
-    const uint32_t count = blade->surface_starts.count / 2;
-    uint32_t i;
-    gx_cut_desc desc;
-    gx_result result = gxp_start_words(body, &blade->triangles, blade->corners.count);
-    if (result == GX_OK)
-        result = gxp_reserve(&body->config.allocator, &blade->surfaces, sizeof *blade->surfaces, 0,
-                             &blade->surface_capacity, count);
-    if (result != GX_OK || count == 0) return gxp_end(failure, result);
-    for (i = 0; i < blade->corners.count; i++) blade->triangles.data[i] = i;
-    for (i = 0; i < count; i++) {
-        gx_surface *s = &blade->surfaces[i];
-        const uint32_t *start = blade->surface_starts.data + 2 * (size_t)i;
-        const uint32_t slots_end = i + 1 < count ? start[2] : blade->scope.count,
-                       corners_end = i + 1 < count ? start[3] : blade->corners.count;
-        memset(s, 0, sizeof *s);
-        s->kind = kind;
-        s->scope_slots = blade->scope.data + start[0];
-        s->scope_slot_count = slots_end - start[0];
-        s->vertices = blade->corners.data + 3 * (size_t)start[1];
-        s->vertex_count = corners_end - start[1];
-        s->triangles = blade->triangles.data;
-        s->triangle_count = s->vertex_count / 3;
-        report->triangle_count += s->triangle_count;
-    }
-    memset(&desc, 0, sizeof desc);
-    desc.surfaces = blade->surfaces;
-    desc.surface_count = count;
-    result = gxp_cut_body(body, &desc, kind == GX_SURFACE_SHEET ? GXP_BLADE_SPECK : 0, &report->cut, failure);
-    if (result == GX_OK) return result;
-    gxp_end(failure, result);
-    return result == GX_ERROR_NOT_CLOSED ? gxp_fail(failure, result, "tool.triangles", SIZE_MAX) : result;
-}
-
-/* Blames a point of a blade's first edge that is in the material, unless it may be. */
-static gx_result gxp_check_start(gx_blade *blade, gx_failure *failure) {
-    uint32_t i;
-    if (blade->starts_inside || blade->now.edge.count > 0) return GX_OK;
-    for (i = 0; i < blade->front.count; i++)
-        if (!(blade->front.data[i].distance > 0))
-            return gxp_fail(failure, GX_ERROR_ARGUMENT, "edge", (size_t)ceil(blade->front.data[i].along));
-    return GX_OK;
-}
-
-/* Advances the fronts of all layers to the edge, and lists the strips. */
-static gx_result gxp_advance_layers(gx_blade *blade, const double *before, const double *edge, uint32_t count,
-                                    int finish, gx_blade_report *report, gx_failure *failure) {
-    uint32_t layer;
-    gx_result result = GX_OK;
-    blade->then.layers.count = blade->then.vertices.count = blade->then.points.count = 0;
-    blade->then.glance.beads.count = 0;
-    blade->advance = 0;
-    blade->room = HUGE_VAL;
-    result = gxp_count_heirs(blade);
-    for (layer = 0; layer < blade->near.layer_count && result == GX_OK; layer++) {
-        int begun;
-        result = gxp_begin_layer(blade, layer, before, edge, count, report, &begun);
-        if (result == GX_OK && begun && gxp_check_start(blade, failure) != GX_OK) return GX_ERROR_ARGUMENT;
-        if (result == GX_OK) result = gxp_follow_edge(blade, finish, report);
-        if (result == GX_OK) result = gxp_add_surface(blade, layer, GXP_NONE);
-        if (result == GX_OK) result = gxp_keep_layer(blade);
-    }
-    if (blade->near.layer_count > report->layer_count) report->layer_count = blade->near.layer_count;
-    return gxp_end(failure, result);
-}
-
-/* Flags the fragments of a scope in blade.in_scope. */
-static gx_result gxp_flag_scope(gx_blade *blade, const uint32_t *fragments, size_t count, gx_failure *failure) {
-    gx_body *body = blade->body;
-    size_t i;
-    gx_result result = gxp_update_view(body);
-    if (result == GX_OK) result = gxp_start_words(body, &blade->in_scope, body->view.fragment_count);
-    if (gxp_end(failure, result) != GX_OK) return result;
-    blade->in_scope.count = body->view.fragment_count;
-    memset(blade->in_scope.data, 0, blade->in_scope.count * sizeof *blade->in_scope.data);
-    for (i = 0; i < count; i++) {
-        if (fragments[i] >= body->view.fragment_count) return gxp_fail(failure, GX_ERROR_INDEX, "scope_fragments", i);
-        blade->in_scope.data[fragments[i]] = 1;
-    }
-    return GX_OK;
-}
-
-static gx_result gxp_check_edge(const gx_blade *blade, const double *edge, size_t count, gx_failure *failure) {
-    size_t i;
-    if (edge == NULL) return gxp_refuse(failure, "edge");
-    if (count < 2) return gxp_refuse(failure, "point_count");
-    if (count > INT32_MAX / 4) return gxp_fail(failure, GX_ERROR_LIMIT, "point_count", SIZE_MAX);
-    if (blade->now.edge.count > 0 && blade->now.edge.count != count) return gxp_refuse(failure, "point_count");
-    for (i = 0; i < 3 * count; i++) {
-        if (!gxp_is_finite(edge[i])) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "edge", i / 3);
-        if (fabs(edge[i]) > ldexp(1, GXP_EDGE_REACH)) return gxp_fail(failure, GX_ERROR_RANGE, "edge", i / 3);
-    }
-    return GX_OK;
-}
-
-static void gxp_clear_report(gx_blade_report *report) {
-    memset(report, 0, sizeof *report);
-    report->cut.min_link_ratio = 1;
-}
+/* >>ways: where the edge goes between two moves -------------------------------------------------------------------- */
+/* In: the edge of the last move, and the new one. Out: the way between them, from where the material has carried the
+   old edge to, and in how many steps the edge goes it. Touches the blade's working memory. */
 
 static int gxp_compare_places(const void *a, const void *b) {
     const gxp_front_vertex *v = (const gxp_front_vertex *)a, *w = (const gxp_front_vertex *)b;
@@ -14345,6 +14474,121 @@ static gx_result gxp_go_part(gx_blade *blade, double share, gxp_points *to) {
     return result;
 }
 
+/* >>blade: the blade's moves --------------------------------------------------------------------------------------- */
+/* gx_blade_move: find the layers, advance their fronts, cut the strips in one transaction, keep the new state. On any
+   error nothing of body or blade has changed. */
+
+/* Coordinates of an edge are at most 2^GXP_EDGE_REACH: squares of distances are finite. */
+#define GXP_EDGE_REACH 110
+
+/* A blade leaves no pieces of less than this share of an element. */
+#define GXP_BLADE_SPECK 1e-3
+
+/* Cuts the body by the surfaces of all layers at once. */
+static gx_result gxp_cut_surfaces(gx_blade *blade, uint32_t kind, gx_blade_report *report, gx_failure *failure) {
+    gx_body *body = blade->body;
+    const uint32_t count = blade->surface_starts.count / 2;
+    uint32_t i;
+    gx_cut_desc desc;
+    gxp_not_meant least;
+    gx_result result = gxp_start_words(body, &blade->triangles, blade->corners.count);
+    if (result == GX_OK)
+        result = gxp_reserve(&body->config.allocator, &blade->surfaces, sizeof *blade->surfaces, 0,
+                             &blade->surface_capacity, count);
+    if (result != GX_OK || count == 0) return gxp_end(failure, result);
+    for (i = 0; i < blade->corners.count; i++) blade->triangles.data[i] = i;
+    for (i = 0; i < count; i++) {
+        gx_surface *s = &blade->surfaces[i];
+        const uint32_t *start = blade->surface_starts.data + 2 * (size_t)i;
+        const uint32_t slots_end = i + 1 < count ? start[2] : blade->scope.count,
+                       corners_end = i + 1 < count ? start[3] : blade->corners.count;
+        memset(s, 0, sizeof *s);
+        s->kind = kind;
+        s->scope_slots = blade->scope.data + start[0];
+        s->scope_slot_count = slots_end - start[0];
+        s->vertices = blade->corners.data + 3 * (size_t)start[1];
+        s->vertex_count = corners_end - start[1];
+        s->triangles = blade->triangles.data;
+        s->triangle_count = s->vertex_count / 3;
+        report->triangle_count += s->triangle_count;
+    }
+    memset(&desc, 0, sizeof desc);
+    desc.surfaces = blade->surfaces;
+    desc.surface_count = count;
+    least.share = GXP_BLADE_SPECK;
+    least.thickness = blade->tolerance;
+    result = gxp_cut_body(body, &desc, kind == GX_SURFACE_SHEET ? &least : NULL, &report->cut, failure);
+    if (result == GX_OK) return result;
+    gxp_end(failure, result);
+    return result == GX_ERROR_NOT_CLOSED ? gxp_fail(failure, result, "tool.triangles", SIZE_MAX) : result;
+}
+
+/* Blames a point of a blade's first edge that is in the material, unless it may be. */
+static gx_result gxp_check_start(gx_blade *blade, gx_failure *failure) {
+    uint32_t i;
+    if (blade->starts_inside || blade->now.edge.count > 0) return GX_OK;
+    for (i = 0; i < blade->front.count; i++)
+        if (!(blade->front.data[i].distance > 0))
+            return gxp_fail(failure, GX_ERROR_ARGUMENT, "edge", (size_t)ceil(blade->front.data[i].along));
+    return GX_OK;
+}
+
+/* Advances the fronts of all layers to the edge, and lists the strips. */
+static gx_result gxp_advance_layers(gx_blade *blade, const double *before, const double *edge, uint32_t count,
+                                    int finish, gx_blade_report *report, gx_failure *failure) {
+    uint32_t layer;
+    gx_result result = GX_OK;
+    blade->then.layers.count = blade->then.vertices.count = blade->then.points.count = 0;
+    blade->then.glance.beads.count = 0;
+    blade->advance = 0;
+    blade->room = HUGE_VAL;
+    result = gxp_count_heirs(blade);
+    for (layer = 0; layer < blade->near.layer_count && result == GX_OK; layer++) {
+        int begun;
+        result = gxp_begin_layer(blade, layer, before, edge, count, report, &begun);
+        if (result == GX_OK && begun && gxp_check_start(blade, failure) != GX_OK) return GX_ERROR_ARGUMENT;
+        if (result == GX_OK) result = gxp_follow_edge(blade, finish, report);
+        if (result == GX_OK) result = gxp_add_surface(blade, layer, GXP_NONE);
+        if (result == GX_OK) result = gxp_keep_layer(blade);
+    }
+    if (blade->near.layer_count > report->layer_count) report->layer_count = blade->near.layer_count;
+    return gxp_end(failure, result);
+}
+
+/* Flags the fragments of a scope in blade.in_scope. */
+static gx_result gxp_flag_scope(gx_blade *blade, const uint32_t *fragments, size_t count, gx_failure *failure) {
+    gx_body *body = blade->body;
+    size_t i;
+    gx_result result = gxp_update_view(body);
+    if (result == GX_OK) result = gxp_start_words(body, &blade->in_scope, body->view.fragment_count);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    blade->in_scope.count = body->view.fragment_count;
+    memset(blade->in_scope.data, 0, blade->in_scope.count * sizeof *blade->in_scope.data);
+    for (i = 0; i < count; i++) {
+        if (fragments[i] >= body->view.fragment_count) return gxp_fail(failure, GX_ERROR_INDEX, "scope_fragments", i);
+        blade->in_scope.data[fragments[i]] = 1;
+    }
+    return GX_OK;
+}
+
+static gx_result gxp_check_edge(const gx_blade *blade, const double *edge, size_t count, gx_failure *failure) {
+    size_t i;
+    if (edge == NULL) return gxp_refuse(failure, "edge");
+    if (count < 2) return gxp_refuse(failure, "point_count");
+    if (count > INT32_MAX / 4) return gxp_fail(failure, GX_ERROR_LIMIT, "point_count", SIZE_MAX);
+    if (blade->now.edge.count > 0 && blade->now.edge.count != count) return gxp_refuse(failure, "point_count");
+    for (i = 0; i < 3 * count; i++) {
+        if (!gxp_is_finite(edge[i])) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "edge", i / 3);
+        if (fabs(edge[i]) > ldexp(1, GXP_EDGE_REACH)) return gxp_fail(failure, GX_ERROR_RANGE, "edge", i / 3);
+    }
+    return GX_OK;
+}
+
+static void gxp_clear_report(gx_blade_report *report) {
+    memset(report, 0, sizeof *report);
+    report->cut.min_link_ratio = 1;
+}
+
 /* A step of a move, from blade.from to blade.to: lists what is to be cut; blade.then is what comes of it. finish: all
    that waits is to be cut. */
 static gx_result gxp_step_blade(gx_blade *blade, const gxp_words *scope, int finish, gx_blade_report *report,
@@ -14410,6 +14654,9 @@ static gx_result gxp_step_along(gx_blade *blade, const double *edge, uint32_t co
     }
 }
 
+/* May moves be left out after one that was worked out just now? It has had one step. */
+static int gxp_may_get_ready(const gx_blade *blade) { return blade->steps == 1 && gxp_is_free(blade); }
+
 /* Works out the move that was left out last, with the body as it was then: the first steps of the present move. */
 static gx_result gxp_make_up(gx_blade *blade, int *begun, gx_blade_report *report, gx_failure *failure) {
     const gxp_points *edge = &blade->now.glance.edge;
@@ -14418,26 +14665,45 @@ static gx_result gxp_make_up(gx_blade *blade, int *begun, gx_blade_report *repor
     result = gxp_refit_near(blade, GXP_NEAR_SLACK, failure);
     if (result == GX_OK) result = gxp_step_along(blade, edge->data, edge->count, NULL, 0, begun, report, failure);
     gxp_swap_struck(blade->body);
+    if (result != GX_OK) return result;
+    if (gxp_may_get_ready(blade) && blade->surface_starts.count == 0)
+        result = gxp_end(failure, gxp_get_ready(blade));
+    else
+        gxp_end_glances(&blade->then.glance);
     if (result == GX_OK) gxp_keep_step(blade, begun);
     return result;
 }
 
-/* Works out a move. make_up: also the last one, which was left out. */
+/* Works out what blade.then has the beginning of: cuts. ready: moves may be left out after it. */
+static gx_result gxp_finish_move(gx_blade *blade, int ready, gx_blade_report *report, gx_failure *failure) {
+    const int cuts = blade->surface_starts.count > 0;
+    gx_result result = GX_OK;
+    if (ready)
+        result = gxp_end(failure, gxp_get_ready(blade));
+    else
+        gxp_end_glances(&blade->then.glance);
+    if (result == GX_OK && ready && cuts) gxp_note_bead_elements(blade);
+    if (result == GX_OK) result = gxp_cut_surfaces(blade, GX_SURFACE_SHEET, report, failure);
+    if (result == GX_OK && ready && cuts) gxp_place_beads(blade);
+    if (result == GX_OK && ready) gxp_be_ready(blade);
+    return result;
+}
+
+/* Works out a move. make_up: also the last one, which was left out; then the present one may be left out in its turn.
+ */
 static gx_result gxp_work_out(gx_blade *blade, const double *edge, uint32_t count, const gxp_words *scope, int finish,
                               int make_up, gx_blade_report *report, gx_failure *failure) {
-    int begun = 0;
+    int begun = 0, left_out = 0;
+    const int usual = !finish && scope == NULL;
     gx_result result = GX_OK;
     blade->surface_starts.count = blade->corners.count = blade->scope.count = 0;
     if (make_up) result = gxp_make_up(blade, &begun, report, failure);
+    if (result == GX_OK && make_up && usual)
+        result = gxp_end(failure, gxp_try_leaving_out(blade, edge, count, &left_out));
+    if (result == GX_OK && left_out) return GX_OK;
     if (result == GX_OK) result = gxp_refit_near(blade, GXP_NEAR_SLACK, failure);
     if (result == GX_OK) result = gxp_step_along(blade, edge, count, scope, finish, &begun, report, failure);
-    if (result == GX_OK) {
-        if (!finish && scope == NULL && blade->steps == 1 && blade->surface_starts.count == 0 && gxp_is_free(blade))
-            result = gxp_end(failure, gxp_get_ready(blade));
-        else
-            gxp_end_glances(&blade->then.glance);
-    }
-    if (result == GX_OK) result = gxp_cut_surfaces(blade, GX_SURFACE_SHEET, report, failure);
+    if (result == GX_OK) result = gxp_finish_move(blade, usual && gxp_may_get_ready(blade), report, failure);
     if (result == GX_OK)
         gxp_swap_states(&blade->now, &blade->then);
     else if (begun)
@@ -14591,7 +14857,7 @@ static void gxp_release_blade(gx_blade *b) {
     gxp_release_points(body, &b->from);
     gxp_release_points(body, &b->to);
     gxp_release(a, b->near.cells, b->near.capacity * sizeof *b->near.cells);
-    gxp_release(a, b->near.lambdas, 12 * b->near.lambda_capacity * sizeof *b->near.lambdas);
+    gxp_release(a, b->near.facets, b->near.facet_capacity * sizeof *b->near.facets);
     gxp_release_words(body, &b->near.of_cell);
     gxp_release_words(body, &b->near.of_copy);
     gxp_release_words(body, &b->near.quad_start);
@@ -16009,7 +16275,7 @@ static gx_result gxp_carve_shape(gx_body *body, const gx_cut_desc *desc, gx_fail
     cut.body = body;
     cut.desc = desc;
     cut.shapes = 1;
-    result = gxp_run_cut(&cut, 0, failure);
+    result = gxp_run_cut(&cut, NULL, failure);
     if (result != GX_OK) return gxp_name_shape(failure, result);
     result = gxp_first_snapshot(body);
     if (result == GX_OK && body->view.count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "shape.surfaces", SIZE_MAX);
@@ -17340,12 +17606,14 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_BLOWN_MAP
 #undef GXP_FLAT_MAP
 #undef GXP_CAP
+#undef GXP_SURELY
 #undef GXP_AIR
 #undef GXP_LEAST_ADVANCE
 #undef GXP_CUT_WIDTH
 #undef GXP_ON_SHEET
 #undef GXP_BLADE_SPECK
 #undef GXP_SPECK_TRIES
+#undef GXP_SECTION
 #undef GXP_CROSSING
 #undef GXP_SHEET_TRIANGLES
 #undef GXP_STRIP_REACH
