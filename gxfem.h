@@ -5261,16 +5261,12 @@ static double gxp_triangle_area(const double corners[12], const double *a, const
     return 0.5 * sqrt(gxp_dot(n, n));
 }
 
-/* Adds the area of a cell's walls. */
-static gx_result gxp_add_walls(gx_body *body, uint32_t cell, double *area) {
-    const gxp_boundary *boundary = &body->scratch.boundary;
+/* Adds the facets that bound a cell to the boundary, which has no triangles; without faces, those in its element's
+   faces are left out. So are facets with the cell on both sides. */
+static gx_result gxp_bound_cell(gx_body *body, uint32_t cell, int faces) {
     gxb_complex *cx = body->complex;
-    const uint32_t element = body->cells.data[cell].element;
-    double corners[12];
     uint32_t leaf, first, count, i;
     gx_result result = GX_OK;
-    gxp_element_positions(body, element, corners);
-    gxp_clear_boundary(body, 1);
     for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
          leaf = body->leaves.data[leaf].next) {
         result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
@@ -5278,10 +5274,23 @@ static gx_result gxp_add_walls(gx_body *body, uint32_t cell, double *area) {
             const uint32_t facet = gxp_item(cx, first + i);
             const gxb_facet *f = gxb_complex_facet(cx, facet);
             const uint32_t other = f->leaf[f->leaf[0] == leaf];
-            if (f->face != GXB_NONE || (gxp_is_kept(body, other) && body->leaves.data[other].cell == cell)) continue;
-            result = gxp_add_boundary_facet(body, element, facet, 0);
+            if (f->face != GXB_NONE && !faces) continue;
+            if (gxp_is_kept(body, other) && body->leaves.data[other].cell == cell) continue;
+            result = gxp_add_boundary_facet(body, body->cells.data[cell].element, facet, 0);
         }
     }
+    return result;
+}
+
+/* Adds the area of a cell's walls. */
+static gx_result gxp_add_walls(gx_body *body, uint32_t cell, double *area) {
+    const gxp_boundary *boundary = &body->scratch.boundary;
+    double corners[12];
+    uint32_t i;
+    gx_result result;
+    gxp_element_positions(body, body->cells.data[cell].element, corners);
+    gxp_clear_boundary(body, 1);
+    result = gxp_bound_cell(body, cell, 0);
     for (i = 0; i < boundary->triangles.count && result == GX_OK; i += 3) {
         const uint32_t *t = boundary->triangles.data + i;
         *area += gxp_triangle_area(corners, boundary->lambdas + 4 * (size_t)t[0], boundary->lambdas + 4 * (size_t)t[1],
@@ -10426,26 +10435,6 @@ static void gxp_try_faces(gxp_near_walk *own, uint32_t cell, double x[4][3], int
     }
 }
 
-/* Adds the facets that bound a cell to the boundary, which has no triangles. Facets with the cell on both sides are
-   left out: what is outside of the cell is nearer to others. */
-static gx_result gxp_bound_cell(gx_body *body, uint32_t cell) {
-    gxb_complex *cx = body->complex;
-    uint32_t leaf, first, count, i;
-    gx_result result = GX_OK;
-    for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
-         leaf = body->leaves.data[leaf].next) {
-        result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
-        for (i = 0; i < count && result == GX_OK; i++) {
-            const uint32_t facet = gxp_item(cx, first + i);
-            const gxb_facet *f = gxb_complex_facet(cx, facet);
-            const uint32_t other = f->leaf[f->leaf[0] == leaf];
-            if (gxp_is_kept(body, other) && body->leaves.data[other].cell == cell) continue;
-            result = gxp_add_boundary_facet(body, body->cells.data[cell].element, facet, 0);
-        }
-    }
-    return result;
-}
-
 /* Adds what affine copies move a point of the cell by, beside their own displacements. */
 static void gxp_add_bend(const gx_body *body, const gxp_cell *c, const double weights[4], double position[3]) {
     double rest[12], material[3];
@@ -10466,7 +10455,7 @@ static gx_result gxp_try_facets(gx_body *body, gxp_near_walk *own, uint32_t cell
     int k, j;
     gx_result result;
     gxp_clear_boundary(body, 1);
-    result = gxp_bound_cell(body, cell);
+    result = gxp_bound_cell(body, cell, 1);
     for (i = 0; i < boundary->triangles.count && result == GX_OK; i += 3) {
         const double *lambda[3];
         double p[3][3];
@@ -12460,7 +12449,7 @@ static gx_result gxp_list_facets(gx_blade *blade, gxp_close_cell *c) {
     int n, k;
     gx_result result;
     gxp_clear_boundary(body, 1);
-    result = gxp_bound_cell(body, c->cell);
+    result = gxp_bound_cell(body, c->cell, 1);
     if (result == GX_OK)
         result = gxp_reserve(&body->config.allocator, &near->facets, sizeof *near->facets, near->facet_count,
                              &near->facet_capacity, boundary->triangles.count / 3);
