@@ -5786,12 +5786,13 @@ static void gxp_touch_copies(gx_body *body, const gxp_cell *cell) {
 }
 
 /* Notes the elements of the model that have changed. Without memory for that, the model is made whole; so it is where
-   copies are affine. */
+   copies are affine, and where the body was saved, loaded, cloned or restored since its last step, so that both bodies
+   then have the same model. */
 static void gxp_note_changed(gx_body *body) {
     const gxp_words *changed = &body->undo.cells.rows, *made = &body->scratch.new_cells;
     gx_result result = GX_OK;
     uint32_t i;
-    if (body->copies.bends) body->model.state = GXP_MODEL_STALE;
+    if (body->copies.bends || body->model.resumed != 0) body->model.state = GXP_MODEL_STALE;
     if (body->model.state == GXP_MODEL_STALE) return;
     for (i = 0; i < changed->count && result == GX_OK; i++)
         result = gxp_push(body, &body->model.changed, body->cells.data[changed->data[i]].element);
