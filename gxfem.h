@@ -246,7 +246,7 @@ typedef struct gx_body_desc {
     /* In thicknesses of elements, 0 ... 1000. Where material is thinner, its copies carry an affine motion each (are
        affine), so that sheets bend as they should. Creation and cuts find it, the latter among what they touch; an
        affine copy stays so. A layer of cubes of five or six elements has a thickness of 0.94; 1 is a good value.
-       0: none, at no cost. Other values: no blades, no gx_body_carve and no pairs yet */
+       0: none, at no cost. Other values: no blades, no gx_body_carve, no gx_body_contact and no pairs yet */
     double affine_below;
     gx_allocator allocator;      /* zero: malloc, free, realloc */
     double (*clock)(void *user); /* seconds, for the reports' timings and the steps' budgets; NULL: timings are 0 */
@@ -7180,8 +7180,8 @@ GXFEM_API gx_region gx_region_sphere(const double center[3], double radius) {
 
 /* >>map: from rest to space ---------------------------------------------------------------------------------------- */
 /* In: a material point, or a cell. Out: where it is, how fast its corners are. Nothing else in this file turns
-   displacements of copies into positions, but for >>tree, >>locate and what follows there, which take maps to be affine
-   within a cell and refuse bodies with affine copies. Touches nothing. */
+   displacements of copies into positions, but for >>tree, >>locate and what follows there. Blades take a cell's map to
+   be affine, and refuse bodies that may have affine copies. Touches nothing. */
 
 /* sum += weight A (x - X) of an affine copy; x: a material point. linear: a body's copies.linear or linear_rate */
 static void gxp_add_linear(const gx_body *body, const double *linear, uint32_t copy, double weight, const double x[3],
