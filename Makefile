@@ -23,7 +23,7 @@ linked = $(compile) -DGXFEM_LINKED
 sanitizers = -O1 -fno-inline $(unoptimised_sanitizers)
 unoptimised_sanitizers = -g1 -fsanitize=address,undefined -fno-sanitize-recover=all
 long_tests = test_tight test_forces test_solve test_surface_boolean test_boolean test_steps test_save test_blade test_memory test_settle \
-    test_affine test_updates test_oracle test_near
+    test_affine test_updates test_oracle test_near test_sheets test_shapes test_touch
 
 help:
 	@echo "make demo        cuts a cube of 5 tetrahedra into 36 sticks, simulates it, writes a page that plays it (needs a C compiler only)"

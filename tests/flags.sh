@@ -115,7 +115,7 @@ for compiler in gcc clang; do
         fi
     done
     configuration "$compiler limb32" "" $compiler -std=c99 -O2 -DGXB_LIMB32
-    configuration "$compiler intrinsics" "" $compiler -std=c99 -O2 -DGXFEM_INTRINSICS
+    [ "$compiler" = clang ] || configuration "$compiler intrinsics" "" $compiler -std=c99 -O2 -DGXFEM_INTRINSICS
     configuration "$compiler limb32 fast-math" "" $compiler -std=gnu99 -Ofast -DGXB_LIMB32
     configuration "$compiler m32" "" $compiler -std=c99 -O2 -m32
     configuration "$compiler m32 fast-math" "" $compiler -std=gnu99 -O3 -ffast-math -m32

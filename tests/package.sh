@@ -65,7 +65,7 @@ short_tests() {
 
 if has cmake; then
     prefix=$work/by_cmake
-    try "cmake configures" cmake -S "$root" -B "$work/build" -DCMAKE_INSTALL_PREFIX="$prefix"
+    try "cmake configures" cmake -S "$root" -B "$work/build" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_INSTALL_PREFIX="$prefix"
     try "cmake's short tests" short_tests
     try "cmake installs" cmake -P "$work/build/cmake_install.cmake"
     try "cmake installs the headers" holds "$prefix"

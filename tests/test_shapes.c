@@ -813,10 +813,10 @@ static Suite *suite(void) {
     Suite *s = suite_create("shapes");
     TCase *tests = tcase_create("shapes");
     tcase_set_timeout(tests, 300);
-    tcase_add_loop_test(tests, volumes_and_skins, 0, 3 * SHAPES);
-    tcase_add_loop_test(tests, the_grid_cut_by_hand, 0, SHAPES);
+    ADD_SOME(tests, volumes_and_skins, 3 * SHAPES);
+    ADD_SOME(tests, the_grid_cut_by_hand, SHAPES);
     ADD_SOME(tests, as_the_oracle_has_it, 40);
-    tcase_add_loop_test(tests, surfaces_that_overlap, 0, 8);
+    ADD_SOME(tests, surfaces_that_overlap, 8);
     ADD_SOME(tests, cut_saved_and_cloned, 8);
     tcase_add_test(tests, blade_and_drill);
     tcase_add_loop_test(tests, slivers_stay, 0, 3);

@@ -985,14 +985,14 @@ int main(void) {
     Suite *suite = suite_create("sheets");
     TCase *tcase = tcase_create("which");
     tcase_set_timeout(tcase, 300);
-    tcase_add_loop_test(tcase, a_thick_body_has_none, 0, 9);
+    ADD_SOME(tcase, a_thick_body_has_none, 9);
     tcase_add_loop_test(tcase, layers_are_thin, 0, 4);
-    tcase_add_loop_test(tcase, slices_are_thin, 0, 8);
+    ADD_SOME(tcase, slices_are_thin, 8);
     tcase_add_loop_test(tcase, nothing_moves, 0, 4);
-    tcase_add_loop_test(tcase, fields_are_as_defined, 0, 12);
+    ADD_SOME(tcase, fields_are_as_defined, 12);
     tcase_add_test(tcase, rigid_motions_are_exact);
-    tcase_add_loop_test(tcase, slices_hang_as_beams, 0, 9);
-    tcase_add_loop_test(tcase, flung_sheets_keep_their_momentum, 0, 4);
+    ADD_SOME(tcase, slices_hang_as_beams, 9);
+    ADD_SOME(tcase, flung_sheets_keep_their_momentum, 4);
     tcase_add_test(tcase, points_move_with_affine_copies);
     tcase_add_test(tcase, planes_stop_sheets);
     tcase_add_test(tcase, poses_turn_affine_copies);
@@ -1001,7 +1001,7 @@ int main(void) {
     ADD_SOME(tcase, cut_sheets_stay_together, 12);
     tcase_add_loop_test(tcase, every_allocation_may_fail, 0, 2);
     tcase_add_test(tcase, rays_meet_what_is_drawn);
-    tcase_add_loop_test(tcase, located_points_are_placed_there, 0, 4);
+    ADD_SOME(tcase, located_points_are_placed_there, 4);
     tcase_add_loop_test(tcase, nearest_points_of_bent_bodies, 0, 2);
     tcase_add_test(tcase, refusals_are_named);
     suite_add_tcase(suite, tcase);
