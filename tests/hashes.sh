@@ -81,8 +81,8 @@ for cc in gcc clang; do
     try $cc -std=c99 -O0
     try $cc -std=c99 -O2
     try $cc -std=gnu99 -O3 -ffast-math
-    try $cc -std=c99 -O2 -DGXB_LIMB32
-    [ $cc = clang ] || try $cc -std=c99 -O2 -DGXFEM_INTRINSICS
+    try $cc -std=c99 -O1 -DGXB_LIMB32
+    [ $cc = clang ] || try $cc -std=c99 -O1 -DGXFEM_INTRINSICS
     if [ "$x86" = 1 ]; then
         if [ "${fma:-0}" != 0 ]; then try $cc -std=gnu99 -Ofast -march=native; fi
         if [ $cc = gcc ]; then try $cc -std=c99 -O2 -mfpmath=387; fi

@@ -9,17 +9,17 @@
    (-DFEWER=4). */
 #if defined(FEWER)
 #elif defined(__SANITIZE_ADDRESS__)
-#define FEWER 4
+#define FEWER 6
 #elif defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(memory_sanitizer) || __has_feature(undefined_behavior_sanitizer)
-#define FEWER 4
+#define FEWER 6
 #endif
 #endif
 #ifndef FEWER
 #define FEWER 1
 #endif
 
-/* Adds a test for each of 0 ... count - 1, or for every fifth: coprime to what cases are combined of */
+/* Adds a test for each of 0 ... count - 1, or for every seventh: coprime to what cases are combined of */
 #define ADD_SOME(tcase, test, count)                                                                                   \
     do {                                                                                                               \
         int some_;                                                                                                     \
