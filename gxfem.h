@@ -519,15 +519,16 @@ typedef gxs_step_report gx_step_report;
    follow others (RXFEM Eq. 22; gx_body_desc.support_below): each takes the increment of the displacement field of the
    nearest element without such copies. A fragment without such an element is thin everywhere; its parts are then
    compared with its fullest part. It moves as a point if that part is smaller than support_below of its element.
+   Where support_below is 0, it moves as a point if that part is smaller than 1e-9 or if no part reaches a tenth as far
+   as its element.
    Affine copies neither follow nor lead, but those of a fragment that moves as a point do. A point with affine copies
    is moved as the material at its position at rest is. forces act on displacements alone, anchor_forces on A too;
    targets leave A as it is, poses turn it. Thin sheets that are flung need two or three Newton iterations in steps of
-   games: one lags. Pairs are refused where copies are affine. A cut of such a body makes its model anew. Where
-   support_below is 0, it moves as a point if that part is smaller than 1e-9 or if no part reaches a tenth as far as its
-   element. failure.index: a spring, point, plane, pair, anchor, region or copy. The fields "displacement" and
-   "velocity" are those of gx_view. Errors: ARGUMENT, NOT_FINITE, INDEX, LIMIT, MEMORY, STALE (copies of another epoch),
-   RANGE (a number is too large or too small; as for FLAT, an element if field is NULL), FLAT (an element, see
-   gx_body_model), DIVERGED, FREE (GXS_STATIC; a copy of a component that nothing holds). */
+   games: one lags. Pairs are refused where copies are affine. A cut of such a body makes its model anew.
+   failure.index: a spring, point, plane, pair, anchor, region or copy. The fields "displacement" and "velocity" are
+   those of gx_view. Errors: ARGUMENT, NOT_FINITE, INDEX, LIMIT, MEMORY, STALE (copies of another epoch), RANGE (a
+   number is too large or too small; as for FLAT, an element if field is NULL), FLAT (an element, see gx_body_model),
+   DIVERGED, FREE (GXS_STATIC; a copy of a component that nothing holds). */
 GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report /* or NULL */,
                                  gx_failure *failure /* or NULL */);
 
@@ -962,7 +963,7 @@ typedef struct gxp_leaves { /* beside the leaves of the complex */
 } gxp_leaves;
 
 typedef struct gxp_copies {
-    uint32_t count, capacity[18];
+    uint32_t count, capacity[19];
     uint32_t *node;
     double *displacement, *velocity; /* x 3 */
     double *rest_time;               /* s */
@@ -978,6 +979,7 @@ typedef struct gxp_copies {
        both a step ago, if history[0] and [1] are */
     uint8_t *affine;
     double *linear, *linear_rate, *linear_history[2]; /* x 9 */
+    double *linear_seen;                              /* A when the tree was last refitted, as seen */
     int bends;                                        /* a copy is affine, or was when the flags were read */
 } gxp_copies;
 
@@ -1653,7 +1655,8 @@ static const gxp_column gxp_copy_columns[] = {
     GXP_COLUMN(copies, linear,       capacity, 14, 9 * sizeof(double), GXP_AFFINE | GXP_LATER),
     GXP_COLUMN(copies, linear_rate,  capacity, 15, 9 * sizeof(double), GXP_AFFINE | GXP_LATER),
     GXP_COLUMN(copies, linear_history[0], capacity, 16, 9 * sizeof(double), GXP_AFFINE | GXP_LATER),
-    GXP_COLUMN(copies, linear_history[1], capacity, 17, 9 * sizeof(double), GXP_AFFINE | GXP_LATER)};
+    GXP_COLUMN(copies, linear_history[1], capacity, 17, 9 * sizeof(double), GXP_AFFINE | GXP_LATER),
+    GXP_COLUMN(copies, linear_seen,  capacity, 18, 9 * sizeof(double), GXP_LATER)};
 enum { /* places in the lists above */
     GXP_TEXTURE_COLUMN = 3,
     GXP_SIZE_COLUMN = 4,
@@ -1661,7 +1664,8 @@ enum { /* places in the lists above */
     GXP_SEEN_COLUMN = 11,
     GXP_STRUCK_COLUMN = 12,
     GXP_FIRST_AFFINE = 13,
-    GXP_AFFINE_COLUMNS = 5
+    GXP_AFFINE_COLUMNS = 5,
+    GXP_LINEAR_SEEN_COLUMN = 18
 };
 static const gxp_column gxp_surface_columns[] = {
     GXP_COLUMN(cuts, surfaces, surface_capacity, 0, sizeof(gxp_surface_record), GXP_TOPOLOGY)};
@@ -2054,6 +2058,19 @@ static void gxp_sort_few_keys(uint64_t *key, uint32_t count) {
         for (j = i; j > 0 && key[j - 1] > k; j--) key[j] = key[j - 1];
         key[j] = k;
     }
+}
+
+/* The first of ascending keys that is not below a key; their count if all are */
+static uint32_t gxp_first_key(const gxp_keys *keys, uint64_t key) {
+    uint32_t low = 0, high = keys->count;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (keys->data[middle] < key)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
 }
 
 /* Sorts keys from ... to-1, ascending. Few keys are sorted by insertion, many by digits of 8 bits from the lowest on;
@@ -3801,16 +3818,18 @@ static int gxp_is_wound(const gx_body *body, uint32_t leaf) {
     return body->leaves.mark[leaf].stamp == body->scratch.stamp && body->leaves.mark[leaf].winding != 0;
 }
 
-/* Appends to scratch.removed the leaves around which a solid that keeps does not wind. Their elements get facets: what
-   lies behind these is touched. */
+/* Appends a leaf that goes to scratch.removed. Its element gets facets: what lies behind these is touched. */
+static gx_result gxp_push_outside(gx_body *body, uint32_t leaf) {
+    const gx_result result = gxb_complex_open_element(body->complex, gxb_complex_leaf(body->complex, leaf)->element);
+    return result == GX_OK ? gxp_push(body, &body->scratch.removed, leaf) : result;
+}
+
+/* Appends to scratch.removed the leaves around which a solid that keeps does not wind. */
 static gx_result gxp_find_outside(gx_body *body, int scoped) {
     gx_result result = GX_OK;
     uint32_t leaf;
-    for (leaf = 0; leaf < body->leaves.count && result == GX_OK; leaf++) {
-        if (!gxp_has_winding(body, leaf, scoped) || gxp_is_wound(body, leaf)) continue;
-        result = gxb_complex_open_element(body->complex, gxb_complex_leaf(body->complex, leaf)->element);
-        if (result == GX_OK) result = gxp_push(body, &body->scratch.removed, leaf);
-    }
+    for (leaf = 0; leaf < body->leaves.count && result == GX_OK; leaf++)
+        if (gxp_has_winding(body, leaf, scoped) && !gxp_is_wound(body, leaf)) result = gxp_push_outside(body, leaf);
     return result;
 }
 
@@ -3874,14 +3893,11 @@ static gx_result gxp_find_shape(gxp_cut *cut, const gxp_surface *surfaces) {
                 result = gxp_push(body, &scratch->wound, scratch->flooded.data[i]);
     }
     gxp_sort_unique(&scratch->wound);
-    for (leaf = i = 0; leaf < body->leaves.count && result == GX_OK; leaf++) {
-        if (i < scratch->wound.count && scratch->wound.data[i] == leaf) {
+    for (leaf = i = 0; leaf < body->leaves.count && result == GX_OK; leaf++)
+        if (i < scratch->wound.count && scratch->wound.data[i] == leaf)
             i++;
-            continue;
-        }
-        result = gxb_complex_open_element(body->complex, gxb_complex_leaf(body->complex, leaf)->element);
-        if (result == GX_OK) result = gxp_push(body, &scratch->removed, leaf);
-    }
+        else
+            result = gxp_push_outside(body, leaf);
     return result;
 }
 
@@ -4164,17 +4180,10 @@ static gx_result gxp_new_cell(gx_body *body, uint32_t like, uint32_t *cell) {
 /* Lists in scratch.part_leaves the leaves that stay with one across walls. */
 static gx_result gxp_follow_glue(gx_body *body, uint32_t leaf) {
     gxp_scratch *scratch = &body->scratch;
-    uint32_t low = 0, high = scratch->glue.count;
+    uint32_t i = gxp_first_key(&scratch->glue, (uint64_t)leaf << 32);
     gx_result result = GX_OK;
-    while (low < high) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (GXP_FIRST(scratch->glue.data[middle]) < leaf)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    for (; low < scratch->glue.count && GXP_FIRST(scratch->glue.data[low]) == leaf && result == GX_OK; low++) {
-        const uint32_t other = GXP_SECOND(scratch->glue.data[low]);
+    for (; i < scratch->glue.count && GXP_FIRST(scratch->glue.data[i]) == leaf && result == GX_OK; i++) {
+        const uint32_t other = GXP_SECOND(scratch->glue.data[i]);
         if (body->leaves.mark[other].stamp == scratch->stamp ||
             body->leaves.data[other].cell != body->leaves.data[leaf].cell)
             continue;
@@ -7192,6 +7201,22 @@ static void gxp_add_linear(const gx_body *body, const double *linear, uint32_t c
         sum[k] += weight * (a[k] * (x[0] - node[0]) + a[3 + k] * (x[1] - node[1]) + a[6 + k] * (x[2] - node[2]));
 }
 
+/* Adds what affine ones of the copies that move a material point give it beside their displacements. */
+static void gxp_add_bend(const gx_body *body, const uint32_t *copies, const double *weights, uint32_t count,
+                         const double rest[3], double position[3]) {
+    uint32_t n;
+    for (n = 0; n < count; n++)
+        if (body->copies.affine[copies[n]])
+            gxp_add_linear(body, body->copies.linear, copies[n], weights[n], rest, position);
+}
+
+/* Is a copy of the cell affine? Then its map is quadratic. */
+static int gxp_is_bent(const gx_body *body, const gxp_cell *cell) {
+    int n, bent = 0;
+    for (n = 0; n < 4 && body->copies.bends; n++) bent |= body->copies.affine[cell->copies[n]];
+    return bent;
+}
+
 /* Where a point is: rest + sum of weight u over the copies of weight not 0, which stand first */
 static inline void gxp_map_point(const gx_body *body, const double rest[3], const uint32_t *copies,
                                  const double *weights, uint32_t count, double position[3]) {
@@ -7207,9 +7232,7 @@ static inline void gxp_map_point(const gx_body *body, const double rest[3], cons
     position[0] = x;
     position[1] = y;
     position[2] = z;
-    for (n = 0; n < count && weights[n] > 0 && body->copies.bends; n++)
-        if (body->copies.affine[copies[n]])
-            gxp_add_linear(body, body->copies.linear, copies[n], weights[n], rest, position);
+    if (body->copies.bends) gxp_add_bend(body, copies, weights, n, rest, position);
 }
 
 /* x of the cell's nodes from a centre, at rest or, moved, with the displacement of its copies */
@@ -7251,9 +7274,7 @@ static void gxp_map_affine(const gx_body *body, const gxp_cell *cell, const doub
         for (n = 0; n < 4; n++)
             position[k] += weights[n] * body->copies.displacement[3 * (size_t)cell->copies[n] + (size_t)k];
     }
-    for (n = 0; n < 4 && body->copies.bends; n++)
-        if (body->copies.affine[cell->copies[n]])
-            gxp_add_linear(body, body->copies.linear, cell->copies[n], weights[n], rest, position);
+    if (body->copies.bends) gxp_add_bend(body, cell->copies, weights, 4, rest, position);
 }
 
 /* The velocities of the cell's copies, less a mean */
@@ -7654,11 +7675,10 @@ static void gxp_moving_cell(const gx_body *body, const gxp_cell *cell, const dou
                             gxp_cell *block, double x[4][3], double v[4][3]) {
     const gxp_copies *copies = &body->copies;
     double rest[12], share[4][4], whole = 0;
-    int i, k, n, bends = 0;
+    int i, k, n;
     memcpy(block->mass, cell->mass, sizeof block->mass);
     for (n = 0; n < 4; n++) whole += gxp_mass_row(cell->mass, n);
-    for (n = 0; n < 4 && copies->bends && whole > 0; n++) bends |= copies->affine[cell->copies[n]];
-    if (!bends) {
+    if (!(whole > 0) || !gxp_is_bent(body, cell)) {
         gxp_cell_corners(body, cell, 1, center, x);
         gxp_cell_velocities(body, cell, mean, v);
         return;
@@ -9600,7 +9620,7 @@ static void gxp_add_image(const gx_body *body, uint32_t copy, uint32_t corner, g
     double way[3] = {0, 0, 0};
     int k;
     gxp_copy_bounds(body, body->copies.node[copy], copy, &image);
-    gxp_add_linear(body, body->copies.linear, copy, 1, body->mesh.positions + 3 * (size_t)corner, way);
+    gxp_add_linear(body, body->copies.linear_seen, copy, 1, body->mesh.positions + 3 * (size_t)corner, way);
     for (k = 0; k < 3; k++) {
         const double margin = GXP_TREE_MARGIN * fabs(way[k]);
         image.low[k] += way[k] - margin;
@@ -9682,6 +9702,8 @@ static GXP_COLD gx_result gxp_make_tree(gx_body *body) {
     while (body->mesh.element_count > (uint64_t)clusters * GXP_TREE_LEAVES * GXP_TREE_LEAF) clusters *= 2;
     leaves = clusters * GXP_TREE_LEAVES;
     result = gxp_grow_column(body, &gxp_copy_columns[GXP_SEEN_COLUMN], 0, body->copies.count);
+    if (result == GX_OK && body->copies.affine != NULL)
+        result = gxp_grow_column(body, &gxp_copy_columns[GXP_LINEAR_SEEN_COLUMN], 0, body->copies.count);
     if (result == GX_OK) result = gxp_start_words(body, &tree->leaf_first, (size_t)leaves + 1);
     if (result == GX_OK)
         result = gxp_reserve(a, &tree->leaf_boxes, sizeof *tree->leaf_boxes, 0, &tree->leaf_box_capacity, leaves);
@@ -9699,6 +9721,8 @@ static GXP_COLD gx_result gxp_make_tree(gx_body *body) {
     for (k = 0; k < 3; k++) tree->reach[k] = fmax(fabs(body->mesh.boxes[0].low[k]), fabs(body->mesh.boxes[0].high[k]));
     if (body->copies.count > 0)
         memcpy(body->copies.seen, body->copies.displacement, 3 * (size_t)body->copies.count * sizeof(double));
+    if (body->copies.count > 0 && body->copies.affine != NULL)
+        memcpy(body->copies.linear_seen, body->copies.linear, 9 * (size_t)body->copies.count * sizeof(double));
     for (i = 0; i < 2 * clusters - 1; i++) tree->marks.data[i] = GXP_BOX_MOVED;
     tree->marks.count = 2 * clusters - 1;
     tree->cluster_count = clusters;
@@ -9717,8 +9741,12 @@ static int gxp_mark_moved(gx_body *body) {
     int moved = 0;
     for (i = 0; i < body->copies.count; i++, u += 3, seen += 3) {
         const uint32_t node = body->copies.node[i];
-        if (memcmp(u, seen, 3 * sizeof *u) == 0 && !(body->copies.bends && body->copies.affine[i])) continue;
+        const int bends = body->copies.bends && body->copies.affine[i];
+        const double *a = bends ? body->copies.linear + 9 * (size_t)i : NULL;
+        double *seen_a = bends ? body->copies.linear_seen + 9 * (size_t)i : NULL;
+        if (memcmp(u, seen, 3 * sizeof *u) == 0 && !(bends && memcmp(a, seen_a, 9 * sizeof *a) != 0)) continue;
         memcpy(seen, u, 3 * sizeof *u);
+        if (bends) memcpy(seen_a, a, 9 * sizeof *a);
         moved = 1;
         for (j = tree->node_first.data[node]; j < tree->node_first.data[node + 1]; j++)
             marks[tree->node_clusters.data[j]] |= GXP_BOX_MOVED;
@@ -10036,13 +10064,6 @@ static gx_result gxp_walk_tree(gx_body *body, gxp_walk *walk) {
  * Other sections may use gxp_walk_box, gxp_find_cells_at, gxp_contains_point, gxp_pull_back, gxp_image, gxp_stretch. */
 
 /* --- cells by their deformed elements --- */
-
-/* Is a copy of the cell affine? Then its map is quadratic. */
-static int gxp_is_bent(const gx_body *body, const gxp_cell *cell) {
-    int n, bent = 0;
-    for (n = 0; n < 4 && body->copies.bends; n++) bent |= body->copies.affine[cell->copies[n]];
-    return bent;
-}
 
 /* The box of a cell's deformed element */
 static void gxp_cell_bounds(const gx_body *body, uint32_t element, const gxp_cell *cell, gxp_bounds *box) {
@@ -10436,25 +10457,16 @@ static void gxp_try_faces(gxp_near_walk *own, uint32_t cell, double x[4][3], int
     }
 }
 
-/* Adds what affine copies move a point of the cell by, beside their own displacements. */
-static void gxp_add_bend(const gx_body *body, const gxp_cell *c, const double weights[4], double position[3]) {
-    double rest[12], material[3];
-    int n;
-    gxp_element_positions(body, c->element, rest);
-    gxp_weigh_material(rest, weights, material);
-    for (n = 0; n < 4; n++)
-        if (body->copies.affine[c->copies[n]])
-            gxp_add_linear(body, body->copies.linear, c->copies[n], weights[n], material, position);
-}
-
 /* Tries the facets that bound a cell of a divided element. */
 static gx_result gxp_try_facets(gx_body *body, gxp_near_walk *own, uint32_t cell, double x[4][3]) {
     const gxp_boundary *boundary = &body->scratch.boundary;
     const gxp_cell *c = &body->cells.data[cell];
     const int bent = gxp_is_bent(body, c);
+    double rest[12], material[3];
     uint32_t i;
     int k, j;
     gx_result result;
+    gxp_element_positions(body, c->element, rest);
     gxp_clear_boundary(body, 1);
     result = gxp_bound_cell(body, cell, 1);
     for (i = 0; i < boundary->triangles.count && result == GX_OK; i += 3) {
@@ -10463,7 +10475,10 @@ static gx_result gxp_try_facets(gx_body *body, gxp_near_walk *own, uint32_t cell
         for (k = 0; k < 3; k++) {
             const double *l = lambda[k] = boundary->lambdas + 4 * (size_t)boundary->triangles.data[i + (uint32_t)k];
             for (j = 0; j < 3; j++) p[k][j] = l[0] * x[0][j] + l[1] * x[1][j] + l[2] * x[2][j] + l[3] * x[3][j];
-            if (bent) gxp_add_bend(body, c, l, p[k]);
+            if (bent) {
+                gxp_weigh_material(rest, l, material);
+                gxp_add_bend(body, c->copies, l, 4, material, p[k]);
+            }
         }
         gxp_try_triangle(own, cell, p, lambda);
     }
@@ -11002,38 +11017,20 @@ static void gxp_release_skin(gx_body *body) {
         if (gxp_lists[i].array >= first && gxp_lists[i].array < end) gxp_release_columns(body, &gxp_lists[i], 1);
 }
 
-/* Ten bits of a number in [0, 1], each in every third place */
-static uint32_t gxp_spread_bits(double x) {
-    const uint32_t bits = (uint32_t)(1023 * (x > 0 ? x < 1 ? x : 1 : 0));
-    uint32_t spread = 0;
-    int i;
-    for (i = 0; i < 10; i++) spread |= (bits >> i & 1) << 3 * i;
-    return spread;
-}
-
 /* Lists the triangles of body.skin by fragment, then along a curve through space at rest: touch.ranked[second of
    touch.order[i]] is the i-th. */
 static gx_result gxp_order_facets(gx_body *body) {
     const gxp_skin *s = &body->skin;
     gxp_keys *order = &body->touch.order;
     gxp_words *ranked = &body->touch.ranked;
-    double low[3] = {GXP_TREE_BEYOND, GXP_TREE_BEYOND, GXP_TREE_BEYOND}, size = 0;
     gx_result result = gxp_start_words(body, ranked, s->triangle_count);
     uint32_t i;
-    int k;
     order->count = 0;
     if (result == GX_OK) result = gxp_keys_room(body, order, 2 * (size_t)s->triangle_count);
     if (result != GX_OK) return result;
-    for (i = 0; i < s->vertex_count; i++)
-        for (k = 0; k < 3; k++) low[k] = fmin(low[k], s->rest[3 * (size_t)i + (size_t)k]);
-    for (i = 0; i < s->vertex_count; i++)
-        for (k = 0; k < 3; k++) size = fmax(size, s->rest[3 * (size_t)i + (size_t)k] - low[k]);
-    for (i = 0; i < s->triangle_count; i++) {
-        const double *x = s->rest + 3 * (size_t)s->triangles[3 * (size_t)i];
-        uint32_t place = 0;
-        for (k = 0; k < 3 && size > 0; k++) place |= gxp_spread_bits((x[k] - low[k]) / size) << k;
-        order->data[order->count++] = (uint64_t)place << 32 | i;
-    }
+    for (i = 0; i < s->triangle_count; i++)
+        order->data[order->count++] =
+            (uint64_t)gxp_curve_place(body, s->rest + 3 * (size_t)s->triangles[3 * (size_t)i]) << 32 | i;
     result = gxp_sort_keys(body, order, 0, order->count);
     for (i = 0; i < order->count && result == GX_OK; i++) {
         const uint32_t t = GXP_SECOND(order->data[i]);
@@ -11115,15 +11112,8 @@ static gx_result gxp_make_surface(gx_body *body, gxp_touch_surface *to) {
    by hashes of their places */
 static uint32_t gxp_same_sample(const gxp_touch_surface *s, const gxp_keys *order, const gxp_touch_vertex *v) {
     const uint32_t hash = (uint32_t)gxp_hash_doubles(0, v->rest, 3);
-    uint32_t first = 0, end = order->count, found = GXP_NONE;
+    uint32_t first = gxp_first_key(order, (uint64_t)hash << 32), found = GXP_NONE;
     double best = 0.5; /* sides of a sheet have opposite normals */
-    while (first < end) {
-        const uint32_t middle = first + (end - first) / 2;
-        if (GXP_FIRST(order->data[middle]) < hash)
-            first = middle + 1;
-        else
-            end = middle;
-    }
     for (; first < order->count && GXP_FIRST(order->data[first]) == hash; first++) {
         const gxp_touch_vertex *w = &s->vertices[GXP_SECOND(order->data[first])];
         const double cosine = gxp_dot(v->normal, w->normal);
@@ -11159,14 +11149,8 @@ static void gxp_state_on_facet(const gxp_touch_surface *s, const gxp_keys *order
 /* The facets of an element: a part of `order`, which is sorted by elements. Nothing of it is owned. */
 static gxp_keys gxp_facets_of(const gxp_keys *order, uint32_t element) {
     gxp_keys part;
-    uint32_t first = 0, end = order->count;
-    while (first < end) {
-        const uint32_t middle = first + (end - first) / 2;
-        if (GXP_FIRST(order->data[middle]) < element)
-            first = middle + 1;
-        else
-            end = middle;
-    }
+    const uint32_t first = gxp_first_key(order, (uint64_t)element << 32);
+    uint32_t end;
     for (end = first; end < order->count && GXP_FIRST(order->data[end]) == element;) end++;
     part.data = order->data != NULL ? order->data + first : NULL;
     part.count = part.capacity = end - first;
@@ -11962,16 +11946,10 @@ static uint32_t gxp_layer_of(const gxp_vicinity *near, uint32_t cell) {
 static uint32_t gxp_old_layer(const gx_blade *blade, uint32_t cell) {
     const gxp_keys *members = &blade->now.members;
     const uint32_t *parent = blade->body->slots.parent;
-    uint32_t low = 0, high = members->count, slot = blade->body->cells.slot[cell];
+    uint32_t slot = blade->body->cells.slot[cell], i;
     while (slot >= blade->now.slot_count && parent[slot] != slot) slot = parent[slot];
-    while (low < high) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (GXP_FIRST(members->data[middle]) < slot)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < members->count && GXP_FIRST(members->data[low]) == slot ? GXP_SECOND(members->data[low]) : GXP_NONE;
+    i = gxp_first_key(members, (uint64_t)slot << 32);
+    return i < members->count && GXP_FIRST(members->data[i]) == slot ? GXP_SECOND(members->data[i]) : GXP_NONE;
 }
 
 /* Where a material point is now, as a layer has it: by a cell of a vertex' element that belongs to the layer, if there
@@ -15278,15 +15256,8 @@ static gx_result gxp_list_long_edges(gx_blade *blade, gxp_keys *halved) {
 /* The vertex in the middle of an edge, if it is halved; GXP_NONE: it is not */
 static uint32_t gxp_middle_vertex(const gxp_keys *halved, uint32_t first, uint32_t a, uint32_t b) {
     const uint64_t key = gxp_edge_key(a, b);
-    uint32_t low = 0, high = halved->count;
-    while (low < high) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (halved->data[middle] < key)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < halved->count && halved->data[low] == key ? first + low : GXP_NONE;
+    const uint32_t i = gxp_first_key(halved, key);
+    return i < halved->count && halved->data[i] == key ? first + i : GXP_NONE;
 }
 
 static gx_result gxp_push_triangle(gx_body *body, gxp_words *out, uint32_t a, uint32_t b, uint32_t c) {

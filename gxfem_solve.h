@@ -1509,7 +1509,6 @@ typedef struct gxsp_term {
     float spread; /* of a pair: sum of its weights' sizes; 0: not a pair */
 } gxsp_term;
 
-/* What the solver keeps from model to model */
 /* How the body moves, for steps by quality: sums over steps, older ones by less */
 typedef struct gxsp_tempo {
     double work;       /* of the change of elastic forces on a way, over the square of its time, J/s2 */
@@ -1529,6 +1528,7 @@ typedef struct gxsp_tempo {
     uint64_t end;      /* hash of the displacement at its end */
 } gxsp_tempo;
 
+/* What the solver keeps from model to model */
 typedef struct gxsp_lasting {
     gxsp_pool pool;    /* of term, share and parts */
     gxsp_term *term;   /* of the present linearisation */
