@@ -52,8 +52,8 @@
  *     then, under GXFEM_IMPLEMENTATION, in the order of a cut; functions call their own and earlier sections only:
  *     what a body is made of:    >>state >>body >>columns
  *     tools:                     >>memory >>basics >>mesh >>search >>copies >>transaction >>complex >>numbering
- *     a cut:                     >>surfaces >>pinches >>arrange >>solids >>links >>cells >>components >>integrals
- *                                >>sheets >>specks >>settle >>cut
+ *     a cut:                     >>surfaces >>pinches >>arrange >>solids >>materials >>links >>cells >>components
+ *                                >>integrals >>sheets >>specks >>settle >>cut
  *     a sheet's thickness:       >>solidify
  *     what is held and whole:    >>anchors >>regions >>grips >>map >>fragments >>motion
  *     what acts on it:           >>attached >>supports >>model
@@ -383,8 +383,8 @@ typedef struct gx_view {
     const double *affine;      /* copy_count x 9: the columns of A, without unit. Only steps and restores change it */
     const double *affine_rate; /* copy_count x 9, 1/s */
     /* The mesh, as it was given or made for a shape. Both stay until the body's destruction or restore */
-    const double *positions;  /* node_count x 3, material coordinates, m */
-    const uint32_t *elements; /* element_count x 4 */
+    const double *positions;       /* node_count x 3, material coordinates, m */
+    const uint32_t *elements;      /* element_count x 4 */
     const uint32_t *cell_material; /* cell_count; NULL: the body has one material only */
 } gx_view;
 /* Brings the view up to date. Errors: ARGUMENT, MEMORY, LIMIT (no ids left). */
@@ -1820,8 +1820,9 @@ static const gxp_column gxp_lists[] = {
     GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_cells),
     GXP_WORDS(scratch.seed_leaves), GXP_WORDS(scratch.flooded), GXP_WORDS(scratch.seeded), GXP_WORDS(scratch.wound),
     GXP_WORDS(scratch.leaf_points),
-    GXP_KEYS(scratch.given_to), GXP_WORDS(scratch.remade), GXP_KEYS(scratch.interfaces), GXP_WORDS(scratch.wall_leaves), GXP_WORDS(scratch.cell_leaves),
-    GXP_WORDS(scratch.part_leaves), GXP_WORDS(scratch.facet_points),
+    GXP_KEYS(scratch.given_to), GXP_WORDS(scratch.remade), GXP_KEYS(scratch.interfaces),
+    GXP_WORDS(scratch.wall_leaves), GXP_WORDS(scratch.cell_leaves), GXP_WORDS(scratch.part_leaves),
+    GXP_WORDS(scratch.facet_points),
     GXP_KEYS(scratch.pairs), GXP_WORDS(scratch.subdomains), GXP_WORDS(scratch.subdomain_cells),
     GXP_WORDS(scratch.taken), GXP_WORDS(scratch.face_facets),
     GXP_WORDS(scratch.boundary.points), GXP_WORDS(scratch.boundary.slots), GXP_WORDS(scratch.boundary.triangles),
@@ -3880,8 +3881,8 @@ static gx_result gxp_note_given(gx_body *body, const gxp_surface *s) {
     return result;
 }
 
-/* Finds the leaves around which a closed surface winds. Appends to scratch.removed those that a solid removes: these or,
-   if it keeps these, the others; or notes their material. All surfaces of the cut are in the complex. */
+/* Finds the leaves around which a closed surface winds. Appends to scratch.removed those that a solid removes: these
+   or, if it keeps these, the others; or notes their material. All surfaces of the cut are in the complex. */
 static gx_result gxp_find_solid(gxp_cut *cut, const gxp_surface *s) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
@@ -6087,8 +6088,7 @@ static void gxp_commit(gxp_cut *cut) {
     gxp_note_changed(body);
     for (i = 0; i < scratch->new_cells.count; i++)
         gxp_touch_copies(body, &body->cells.data[scratch->new_cells.data[i]]);
-    for (i = 0; i < scratch->remade.count; i++)
-        gxp_touch_copies(body, &body->cells.data[scratch->remade.data[i]]);
+    for (i = 0; i < scratch->remade.count; i++) gxp_touch_copies(body, &body->cells.data[scratch->remade.data[i]]);
     for (i = 0; i < scratch->touched.count; i++) {
         gxp_cell *cell = &body->cells.data[scratch->touched.data[i]];
         if (cell->kept) continue;
@@ -8699,8 +8699,8 @@ static gx_result gxp_make_constraints(gx_body *body) {
 
 /* >>model: the model that the solver takes ------------------------------------------------------------------------- */
 /* In: cells, copies, held flags. Out: the solver's model, made anew or changed where cuts have been. The cells of an
-   element that are of one material and move by the same four copies are one element of the model, a part. Touches the solver and the model's
-   arrays, which are there only while it is made. */
+   element that are of one material and move by the same four copies are one element of the model, a part. Touches the
+   solver and the model's arrays, which are there only while it is made. */
 
 /* Adds a cell to the part with its copies and material, or begins a new part. first: the element's first part. */
 static void gxp_add_part(gx_body *body, const gxp_cell *cell, uint32_t first, const double gradients[12]) {
@@ -15780,7 +15780,6 @@ GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_
    cubes and two corners of the face between them. Exact winding numbers of nodes tell which elements are inside, so far
    as the surfaces do not come near them; those that they come near are found as a cut finds elements, and made. */
 
-
 /* Nodes are named by their place in the arrays below: corners of cubes first, then middles. */
 typedef struct gxp_grid {
     const gx_allocator *allocator;
@@ -17834,6 +17833,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_BYTE_ORDER
 #undef GXP_BESIDE_WALL
 #undef GXP_ACROSS_WALL
+#undef GXP_BESIDE_OPEN
 #undef GXP_NO_PLANE
 #undef GXP_BEAD_REACH
 #undef GXP_BEAD_OFF

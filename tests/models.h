@@ -5,8 +5,8 @@
 #include "workloads.h"
 
 /* A ball, whose radius varies with the direction, as rings of triangles between two poles, about a place */
-static inline void add_blob(wl_surface *s, const double place[3], double radius, double waves, double depth, uint32_t rings,
-                     int inward) {
+static inline void add_blob(wl_surface *s, const double place[3], double radius, double waves, double depth,
+                            uint32_t rings, int inward) {
     const uint32_t around = 2 * rings, first = (uint32_t)s->vertex_count;
     const uint32_t south = first + (rings - 1) * around, north = south + 1;
     uint32_t i, j;
@@ -60,8 +60,7 @@ static inline exact_moments moments_of_surfaces(const wl_surface *s, size_t coun
     for (i = 0; i < count; i++)
         for (t = 0; t < s[i].triangle_count; t++) {
             big p[3][3], c[3], d;
-            for (n = 0; n < 3; n++)
-                big_difference(s[i].vertices + 3 * s[i].triangles[3 * t + (size_t)n], about, p[n]);
+            for (n = 0; n < 3; n++) big_difference(s[i].vertices + 3 * s[i].triangles[3 * t + (size_t)n], about, p[n]);
             d = big_det3(p[0], p[1], p[2]);
             sum[0] = big_add(sum[0], d);
             for (k = 0; k < 3; k++) {

@@ -183,7 +183,8 @@ static void expect_truth(gx_body *body, const workload *w, const oracle *truth, 
                 count[truth->cell_material[i]]--;
             }
         for (m = 0; m < MATERIALS; m++)
-            ck_assert_msg((!cells || count[m] == 0) && fabs(own[m] - exact[m]) <= 1e-10 * exact[m] + 1e-14 * view.volume,
+            ck_assert_msg((!cells || count[m] == 0) &&
+                              fabs(own[m] - exact[m]) <= 1e-10 * exact[m] + 1e-14 * view.volume,
                           "seed %llu: element %zu, material %zu: %.17g, should be %.17g", (unsigned long long)seed, e,
                           m, own[m], exact[m]);
     }
@@ -376,7 +377,8 @@ static double skin_area(gx_body *body, uint32_t surface, uint32_t material) {
     for (t = 0; t < skin.triangle_count; t++) {
         const uint32_t *v = skin.triangles + 3 * t;
         if (skin.triangle_surface[t] == surface && skin.triangle_material[t] == material)
-            area += triangle_area(skin.vertex_rest + 3 * v[0], skin.vertex_rest + 3 * v[1], skin.vertex_rest + 3 * v[2]);
+            area +=
+                triangle_area(skin.vertex_rest + 3 * v[0], skin.vertex_rest + 3 * v[1], skin.vertex_rest + 3 * v[2]);
     }
     return area;
 }
