@@ -160,6 +160,18 @@ static void add_random_region(workload *w, int material, int special) {
     }
 }
 
+/* Planes, large ones and such that end inside; boxes that separate or remove what is in them */
+static void add_some_cut(workload *w, int special) {
+    double p[3];
+    random_point(w, p);
+    switch (random_below(4)) {
+    case 0: add_random_plane(w, 40); break;
+    case 1: add_random_plane(w, random_real(0.05, 0.5)); break;
+    case 2: add_axis_plane(w, random_below(3), special ? random_below(5) / 4.0 : random_real(0, 1)); break;
+    default: add_box(w, random_below(2), p[0] - 0.2, p[1] - 0.3, p[2] - 0.1, p[0] + 0.1, p[1] + 0.3, p[2] + 0.2);
+    }
+}
+
 /* Volumes of cells by element and material, of fragments; copies by node */
 static void expect_truth(gx_body *body, const workload *w, const oracle *truth, int cells, uint64_t seed) {
     const gx_view view = view_of(body);
@@ -222,7 +234,7 @@ START_TEST(as_the_oracle_has_it) {
         if (random_below(regions + cuts) < regions)
             add_random_region(&w, 1 + random_below(MATERIALS - 1), random_below(2)), regions--;
         else
-            add_random_cut(&w, 1), cuts--;
+            add_some_cut(&w, random_below(2)), cuts--;
     truth = wl_oracle(&w);
     if (truth->cell_count > 0) {
         body = mixed_body(&w);
@@ -706,8 +718,8 @@ static Suite *suite(void) {
     Suite *s = suite_create("materials");
     TCase *tests = tcase_create("materials");
     tcase_set_timeout(tests, 300);
-    ADD_SOME(tests, as_the_oracle_has_it, 60);
-    ADD_SOME(tests, released_or_cut_along, 40);
+    ADD_SOME(tests, as_the_oracle_has_it, 150);
+    ADD_SOME(tests, released_or_cut_along, 100);
     tcase_add_loop_test(tests, masses_of_an_organ, 0, 2);
     tcase_add_test(tests, skins_of_an_organ);
     tcase_add_test(tests, peeled_in_two_goes);
