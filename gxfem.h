@@ -251,7 +251,7 @@ typedef struct gx_body_desc {
     /* In thicknesses of elements, 0 ... 1000. Where material is thinner, its copies carry an affine motion each (are
        affine), so that sheets bend as they should. Creation and cuts find it, the latter among what they touch; an
        affine copy stays so. A layer of cubes of five or six elements has a thickness of 0.94; 1 is a good value.
-       0: none, at no cost. Other values: no blades, no gx_body_carve, no gx_body_contact and no pairs yet */
+       0: none, at no cost. Other values: no gx_body_contact and no pairs yet */
     double affine_below;
     gx_allocator allocator;      /* zero: malloc, free, realloc */
     double (*clock)(void *user); /* seconds, for the reports' timings and the steps' budgets; NULL: timings are 0 */
@@ -760,8 +760,8 @@ GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index);
    out later, before the path bends. edge: point_count x 3, in space, m; as many points at
    each move until the blade is lifted, 2 or more; ends may be 10^12 elements away. scope: fragments that alone are cut,
    below gx_view.fragment_count; count 0: all. On an error body and blade are as they were. Errors: ARGUMENT (also:
-   gx_body_desc.affine_below is not 0; the first edge is inside the material and starts_inside is 0, index: point),
-   INDEX, NOT_FINITE and RANGE (edge, or "displacement", index: copy), LIMIT, MEMORY. */
+   the first edge is inside the material and starts_inside is 0, index: point), INDEX, NOT_FINITE and RANGE (edge, or
+   "displacement", index: copy), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t point_count,
                                   const uint32_t *scope_fragments, size_t scope_fragment_count,
                                   gx_blade_report *report /* or NULL */, gx_failure *failure /* or NULL */);
@@ -789,8 +789,8 @@ GXFEM_API gx_result gx_blade_contacts(gx_blade *blade, gx_blade_contact *contact
 /* Removes the material that a closed tool in space covers now (a drill, a punch), from each piece where it meets the
    tool. tool: vertices in space, m; kind and scope_slots are not read. Its triangles are divided where elements
    are smaller.
-   Errors: as gx_body_cut, and ARGUMENT ("affine_below" is not 0); a field of the tool reads "tool.vertices"; NOT_FINITE
-   and RANGE also of "displacement" (index: copy). */
+   Errors: as gx_body_cut; a field of the tool reads "tool.vertices"; NOT_FINITE and RANGE also of "displacement"
+   (index: copy). */
 GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_report *report /* or NULL */,
                                   gx_failure *failure /* or NULL */);
 
@@ -1331,6 +1331,7 @@ typedef struct gxp_close_cell { /* a kept cell around the edge */
     uint32_t facets, facet_count;          /* of a divided element's cell, once they were asked for */
     double heights[4];                     /* of the corners over the faces opposite to them, likewise, m */
     uint8_t is_divided;                    /* its element is */
+    uint8_t is_bent;                       /* its map is quadratic: corners alone do not tell it */
     uint8_t has_facets, has_heights;
 } gxp_close_cell;
 typedef struct gxp_close_facet { /* a triangle that bounds a cell of a divided element */
@@ -7459,8 +7460,7 @@ GXFEM_API gx_region gx_region_sphere(const double center[3], double radius) {
 
 /* >>map: from rest to space ---------------------------------------------------------------------------------------- */
 /* In: a material point, or a cell. Out: where it is, how fast its corners are. Nothing else in this file turns
-   displacements of copies into positions, but for >>tree, >>locate and what follows there. Blades take a cell's map to
-   be affine, and refuse bodies that may have affine copies. Touches nothing. */
+   displacements of copies into positions, but for >>tree, >>locate and what follows there. Touches nothing. */
 
 /* sum += weight A (x - X) of an affine copy; x: a material point. linear: a body's copies.linear or linear_rate */
 static void gxp_add_linear(const gx_body *body, const double *linear, uint32_t copy, double weight, const double x[3],
@@ -10551,14 +10551,67 @@ static gx_result gxp_find_cells_at(gx_body *body, const double point[3], gxp_wor
 
 /* --- the maps of a cell --- */
 
-/* Pulls a point of space back by the affine map of a cell's deformed element, also from outside of it. weights: of the
-   cell's copies, 1 in sum. At rest the material point is the point, bit by bit. 0: the element is flat. */
+/* Outside of its element, the map of a bent cell goes on as the affine map that touches it next to there: at the same
+   coordinates with those below 0 left out. So it has no folds of its own where nothing is. */
+static void gxp_touch_bent(const gx_body *body, const gxp_cell *c, const double weights[4], const double point[3],
+                           double inside[4], double off[3], double slope[3][3]) {
+    double rest[12], material[3], sum = 0;
+    int n;
+    for (n = 0; n < 4; n++) sum += inside[n] = fmax(weights[n], 0);
+    for (n = 0; n < 4; n++) inside[n] /= sum;
+    gxp_element_positions(body, c->element, rest);
+    gxp_weigh_material(rest, inside, material);
+    gxp_bent_residual(body, c, rest, inside, material, point, off, slope);
+}
+
+/* Where a bent cell's map has a place, also outside of its element. weights: 1 in sum */
+static void gxp_image_of_bent(const gx_body *body, const gxp_cell *c, const double weights[4], double x[3]) {
+    static const double origin[3] = {0, 0, 0};
+    double inside[4], slope[3][3];
+    int i, k;
+    gxp_touch_bent(body, c, weights, origin, inside, x, slope);
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 3; k++) x[k] += (weights[i + 1] - inside[i + 1]) * slope[i][k];
+}
+
+/* The place that a bent cell's map has at a point of space, also outside of its element: in doubles, by Newton's
+   method. Where that finds none, the place by the last map that touches. 0: there is none, the cell is flat. */
+static int gxp_place_in_bent(const gx_body *body, const gxp_cell *c, const double point[3], double weights[4]) {
+    double inside[4], off[3], slope[3][3], normal[3][3];
+    int step, i;
+    for (i = 0; i < 4; i++) weights[i] = 0.25;
+    for (step = 0; step < GXP_UNBEND_STEPS; step++) {
+        double volume, most = 0;
+        gxp_touch_bent(body, c, weights, point, inside, off, slope);
+        for (i = 0; i < 3; i++) gxp_cross(normal[i], slope[(i + 1) % 3], slope[(i + 2) % 3]);
+        volume = gxp_dot(slope[0], normal[0]);
+        if (!(fabs(volume) > 0)) return 0;
+        for (i = 1; i < 4; i++) {
+            const double next = inside[i] - gxp_dot(off, normal[i - 1]) / volume;
+            most = fmax(most, fabs(next - weights[i]));
+            weights[i] = next;
+        }
+        weights[0] = 1 - weights[1] - weights[2] - weights[3];
+        if (!(most > GXP_UNBEND_SMALL) || !(most < 1e9)) break;
+    }
+    return gxp_is_finite(weights[0]);
+}
+
+/* Pulls a point of space back by the map of a cell's deformed element, also from outside of it. weights: of the cell's
+   copies, 1 in sum. At rest the material point is the point, bit by bit, unless the cell is bent. 0: the element is
+   flat. */
 static int gxp_pull_back(const gx_body *body, uint32_t cell, const double point[3], double weights[4],
                          double material[3]) {
     const gxp_cell *c = &body->cells.data[cell];
     gxb_pullback back;
     double x[12], rest[12];
     int i, still = 1;
+    if (gxp_is_bent(body, c)) {
+        if (!gxp_place_in_bent(body, c, point, weights)) return 0;
+        gxp_element_positions(body, c->element, rest);
+        gxp_weigh_material(rest, weights, material);
+        return 1;
+    }
     gxp_moved_corners(body, c, x);
     gxp_element_positions(body, c->element, rest);
     gxb_pullback_set(&back, x, point);
@@ -10584,10 +10637,18 @@ static void gxp_image(const gx_body *body, uint32_t cell, const double material[
     gxp_map_affine(body, c, weights, material, position);
 }
 
-/* The volume of a cell's deformed element as a share of that at rest, below 0 where it is inverted; in doubles */
+/* The volume of a cell's deformed element as a share of that at rest, below 0 where it is inverted; in doubles. Of a
+   bent cell that of the map which touches in the middle. */
 static double gxp_stretch(const gx_body *body, uint32_t cell) {
+    static const double middle[4] = {0.25, 0.25, 0.25, 0.25}, origin[3] = {0, 0, 0};
     const gxp_cell *c = &body->cells.data[cell];
     double x[12];
+    if (gxp_is_bent(body, c)) {
+        double inside[4], off[3], slope[3][3], normal[3];
+        gxp_touch_bent(body, c, middle, origin, inside, off, slope);
+        gxp_cross(normal, slope[1], slope[2]);
+        return gxp_dot(slope[0], normal) / (6 * gxp_element_volume(body, c->element));
+    }
     gxp_moved_corners(body, c, x);
     return gxi_tet_volume(x) / gxp_element_volume(body, c->element);
 }
@@ -12177,6 +12238,27 @@ static void gxp_weigh(double corners[4][3], const double weights[4], double p[3]
     }
 }
 
+/* Where a cell's map has a place, also outside of its element */
+static void gxp_image_by(const gx_body *body, const gxp_cell *cell, const double weights[4], double x[3]) {
+    static const double origin[3] = {0, 0, 0};
+    double corners[4][3];
+    if (gxp_is_bent(body, cell)) {
+        gxp_image_of_bent(body, cell, weights, x);
+        return;
+    }
+    gxp_cell_corners(body, cell, 1, origin, corners);
+    gxp_weigh(corners, weights, x);
+}
+
+/* The place that a cell's map has at a point of space, also outside of its element; not a number: the cell is flat */
+static void gxp_place_by_map(const gx_body *body, const gxp_cell *cell, const double x[3], double weights[4]) {
+    static const double origin[3] = {0, 0, 0};
+    double corners[4][3];
+    if (gxp_is_bent(body, cell) && gxp_place_in_bent(body, cell, x, weights)) return;
+    gxp_cell_corners(body, cell, 1, origin, corners);
+    gxp_tet_weights(corners, x, weights);
+}
+
 static gx_result gxp_push_vertex(gx_body *body, gxp_front_list *list, const gxp_front_vertex *vertex) {
     const gx_result result =
         gxp_reserve(&body->config.allocator, &list->data, sizeof *list->data, list->count, &list->capacity, 1);
@@ -12246,8 +12328,7 @@ static gx_result gxp_place_by(gx_blade *blade, uint32_t layer, int old, const gx
     if (best == GXP_NONE || result != GX_OK) return result;
     gxp_cell_corners(body, &body->cells.data[best], 0, origin, corners);
     gxp_tet_weights(corners, point, weights);
-    gxp_cell_corners(body, &body->cells.data[best], 1, origin, corners);
-    gxp_weigh(corners, weights, x);
+    gxp_image_by(body, &body->cells.data[best], weights, x);
     return GX_OK;
 }
 
@@ -12412,6 +12493,28 @@ static gx_result gxp_prepare_quads(gx_blade *blade) {
     return result;
 }
 
+/* What contains a bent cell is larger than what contains its corners. */
+static void gxp_contain_bent(const gx_body *body, gxp_close_cell *c) {
+    const gxp_cell *row = &body->cells.data[c->cell];
+    gxp_bounds box;
+    int k;
+    gxp_cell_bounds(body, row->element, row, &box);
+    for (k = 0; k < 3; k++) {
+        c->low[k] = box.low[k];
+        c->high[k] = box.high[k];
+        c->middle[k] = 0.5 * box.low[k] + 0.5 * box.high[k];
+    }
+    c->radius = sqrt(gxp_square_distance(c->middle, c->high));
+}
+
+/* The place that a near cell's map has at a point of space */
+static void gxp_near_weights(const gx_body *body, gxp_close_cell *c, const double x[3], double weights[4]) {
+    if (c->is_bent)
+        gxp_place_by_map(body, &body->cells.data[c->cell], x, weights);
+    else
+        gxp_tet_weights(c->corners, x, weights);
+}
+
 /* The deformed corners of a cell, and what contains them */
 static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
     const gxp_cell *row = &body->cells.data[c->cell];
@@ -12428,6 +12531,8 @@ static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
     c->radius = 0;
     for (n = 0; n < 4; n++) c->radius = gxp_more(c->radius, gxp_square_distance(c->middle, c->corners[n]));
     c->radius = sqrt(c->radius);
+    c->is_bent = (uint8_t)gxp_is_bent(body, row);
+    if (c->is_bent) gxp_contain_bent(body, c);
     c->is_divided = (uint8_t)(gxb_complex_root(body->complex, row->element) & 1);
     c->has_facets = c->has_heights = 0;
     c->size = body->mesh.sizes[row->element];
@@ -12717,6 +12822,7 @@ static gx_result gxp_list_facets(gx_blade *blade, gxp_close_cell *c) {
             for (k = 0; k < 3; k++)
                 facet->corners[n][k] = l[0] * c->corners[0][k] + l[1] * c->corners[1][k] + l[2] * c->corners[2][k] +
                                        l[3] * c->corners[3][k];
+            if (c->is_bent) gxp_image_of_bent(body, &body->cells.data[c->cell], l, facet->corners[n]);
         }
         facet->face = gxp_facet_face(lambda);
     }
@@ -12765,11 +12871,11 @@ static gx_result gxp_seek_outside(gx_blade *blade, uint32_t index, const double 
     uint32_t i;
     if (gxp_square_to_box(x, c->low, c->high) >= sight->square) return GX_OK;
     if (c->stretch < GXP_FLAT_MAP || c->stretch > GXP_BLOWN_MAP) return GX_OK; /* inverted: outside is inside */
-    gxp_tet_weights(c->corners, x, weights);
+    gxp_near_weights(blade->body, c, x, weights);
     if (!c->has_heights) gxp_measure_heights(c);
     beyond[4] = 0;
     for (i = 0; i < 4; i++) {
-        const double off = weights[i] * c->heights[i];
+        const double off = c->is_bent ? 0 : weights[i] * c->heights[i]; /* a curved face is at any distance */
         beyond[i] = weights[i] < 0 ? GXP_SURELY * off * off : HUGE_VAL;
         if (weights[i] < 0 && beyond[i] >= sight->square) return GX_OK;
     }
@@ -12797,7 +12903,7 @@ static gx_result gxp_seek_inside(gx_blade *blade, uint32_t index, const double x
     gx_result result = GX_OK;
     if (gxp_square_to_box(x, c->low, c->high) > 0) return GX_OK;
     if (fabs(c->stretch) < GXP_FLAT_MAP || fabs(c->stretch) > GXP_BLOWN_MAP) return GX_OK;
-    gxp_tet_weights(c->corners, x, weights);
+    gxp_near_weights(blade->body, c, x, weights);
     if (weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0 && weights[3] >= 0)
         result = gxp_is_own_part(blade->body, c, weights, &own);
     if (!own || result != GX_OK) return result;
@@ -12882,17 +12988,17 @@ static gx_result gxp_is_in_layer(gx_blade *blade, uint32_t layer, const double r
    surface. It moves towards that one while there is material of the layer: the map extended is not the layer's. */
 static gx_result gxp_place_in_air(gx_blade *blade, uint32_t layer, const gxp_sight *sight, double corners[4][3],
                                   gxp_front_vertex *v) {
-    const gxp_close_cell *c = &blade->near.cells[sight->index];
+    gxp_close_cell *c = &blade->near.cells[sight->index];
     double weights[4], surface[3], position[3], away;
     const double reach = GXP_CAP * v->size, share = v->distance > reach ? reach / v->distance : 1;
     int k, tries, inside = 1;
     gx_result result = GX_OK;
-    gxp_tet_weights(blade->near.cells[sight->index].corners, sight->nearest, weights);
+    gxp_near_weights(blade->body, c, sight->nearest, weights);
     gxp_weigh(corners, weights, surface);
     memcpy(v->foot, surface, sizeof surface);
     memcpy(v->foot_at, sight->nearest, sizeof v->foot_at);
     for (k = 0; k < 3; k++) position[k] = sight->nearest[k] + share * (v->position[k] - sight->nearest[k]);
-    gxp_tet_weights(blade->near.cells[sight->index].corners, position, weights);
+    gxp_near_weights(blade->body, c, position, weights);
     gxp_weigh(corners, weights, v->rest);
     away = sqrt(gxp_square_distance(v->rest, surface));
     if (away > 1.5 * c->size)
@@ -13742,8 +13848,7 @@ static void gxp_follow_place(const gx_body *body, const double x[3], uint32_t *c
     int faces;
     for (faces = 0; next != GXP_NONE && faces < GXP_BEAD_FACES; faces++) {
         *cell = next;
-        gxp_cell_corners(body, &body->cells.data[next], 1, origin, corners);
-        gxp_tet_weights(corners, x, weights);
+        gxp_place_by_map(body, &body->cells.data[next], x, weights);
         for (face = 0, k = 1; k < 4; k++)
             if (weights[k] < weights[face]) face = k;
         next = weights[face] < -GXP_BEAD_TOUCH ? gxp_cell_across(body, next, face) : GXP_NONE;
@@ -14479,8 +14584,7 @@ static gx_result gxp_keep_far_place(gx_blade *blade, const double *edge, uint32_
     v.element = body->cells.data[near.cell].element;
     v.size = blade->largest;
     v.distance = sqrt(near.square);
-    gxp_cell_corners(body, &body->cells.data[near.cell], 1, origin, corners);
-    gxp_weigh(corners, near.weights, v.foot_at);
+    gxp_image_by(body, &body->cells.data[near.cell], near.weights, v.foot_at);
     gxp_cell_corners(body, &body->cells.data[near.cell], 0, origin, corners);
     gxp_weigh(corners, near.weights, v.foot);
     memcpy(v.rest, v.foot, sizeof v.rest);
@@ -14895,17 +14999,33 @@ static gx_result gxp_step_along(gx_blade *blade, const double *edge, uint32_t co
     }
 }
 
-/* May moves be left out after one that was worked out just now? It has had one step. */
-static int gxp_may_get_ready(const gx_blade *blade) { return blade->steps == 1 && gxp_is_free(blade); }
+/* May moves be left out after one that was worked out just now? It has had one step. Where copies are affine, none are:
+   copies.struck has no A. */
+static int gxp_may_get_ready(const gx_blade *blade) {
+    return blade->steps == 1 && blade->body->copies.bends == 0 && gxp_is_free(blade);
+}
 
-/* Works out the move that was left out last, with the body as it was then: the first steps of the present move. */
+/* No A is the one that boxes of the tree were made for. */
+static void gxp_forget_seen_bends(gx_body *body) {
+    uint32_t i;
+    for (i = 0; i < body->copies.count; i++)
+        if (body->copies.affine[i]) body->copies.linear_seen[9 * (size_t)i] = HUGE_VAL;
+}
+
+/* Works out the move that was left out last, with the body as it was then: the first steps of the present move. No copy
+   was affine then. */
 static gx_result gxp_make_up(gx_blade *blade, int *begun, gx_blade_report *report, gx_failure *failure) {
     const gxp_points *edge = &blade->now.glance.edge;
+    gxp_copies *copies = &blade->body->copies;
+    const int bends = copies->bends;
     gx_result result;
     gxp_swap_struck(blade->body);
+    copies->bends = 0;
     result = gxp_refit_near(blade, GXP_NEAR_SLACK, failure);
     if (result == GX_OK) result = gxp_step_along(blade, edge->data, edge->count, NULL, 0, begun, report, failure);
     gxp_swap_struck(blade->body);
+    copies->bends = bends;
+    if (bends) gxp_forget_seen_bends(blade->body);
     if (result != GX_OK) return result;
     if (gxp_may_get_ready(blade) && blade->surface_starts.count == 0)
         result = gxp_end(failure, gxp_get_ready(blade));
@@ -14926,7 +15046,10 @@ static gx_result gxp_finish_move(gx_blade *blade, int ready, gx_blade_report *re
     if (result == GX_OK && ready && cuts) gxp_note_bead_elements(blade);
     if (result == GX_OK) result = gxp_cut_surfaces(blade, GX_SURFACE_SHEET, report, failure);
     if (result == GX_OK && ready && cuts) gxp_place_beads(blade);
-    if (result == GX_OK && ready) gxp_be_ready(blade);
+    if (result == GX_OK && ready && blade->body->copies.bends)
+        gxp_end_glances(&blade->then.glance); /* the cut has made copies affine */
+    else if (result == GX_OK && ready)
+        gxp_be_ready(blade);
     return result;
 }
 
@@ -14975,7 +15098,6 @@ GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t po
     gx_blade_report own;
     gx_result result;
     if (blade == NULL) return gxp_refuse(failure, "blade");
-    if (blade->body->copies.affine != NULL) return gxp_refuse(failure, "affine_below"); /* layers see affine maps */
     if (scope_fragment_count > 0 && scope_fragments == NULL) return gxp_refuse(failure, "scope_fragments");
     result = gxp_check_edge(blade, edge, point_count, failure);
     if (result == GX_OK && scope_fragment_count > 0)
@@ -15281,6 +15403,53 @@ static int gxp_clip_to_element(const gxp_edge_part *edge, const gxp_cell *cell, 
     return 1;
 }
 
+/* Adds the spans of a cell's part of the edge, of which low, high and touch (as a share of an element) are known. */
+static gx_result gxp_add_cell_part(gx_body *body, gxp_cell_part *part, double touch) {
+    const uint32_t element = body->cells.data[part->cell].element;
+    part->touch = touch * gxp_element_size(body, element);
+    return gxp_add_leaf_spans(body, part, gxb_complex_root(body->complex, element), 0, 1);
+}
+
+/* In a bent cell a straight part of the edge is curved: it is halved until its chord is off by less than this share of
+   the element, at most so often. The chord stands for it, and next to nothing is as much. */
+#define GXP_CHORD_OFF    1e-3
+#define GXP_CHORD_HALVES 6
+
+/* Adds the spans of a part of the edge in a bent cell. low, high: shares of the part; w: the places of their points.
+ */
+static gx_result gxp_meet_bent(gx_body *body, gxp_cell_part *part, double low, double high, double w[2][4],
+                               int halves) {
+    const gxp_edge_part *edge = part->edge;
+    const gxp_cell *c = &body->cells.data[part->cell];
+    const double middle = 0.5 * low + 0.5 * high;
+    double halved[3][4], x[3], rest[12], from = 0, to = 1, off = 0, weights[4];
+    int n, k, beyond = 0;
+    memcpy(halved[0], w[0], sizeof halved[0]);
+    memcpy(halved[2], w[1], sizeof halved[2]);
+    gxp_edge_position(edge->x[0], 2, middle, x);
+    if (!gxp_place_in_bent(body, c, x, halved[1])) return GX_OK;
+    for (k = 0; k < 4; k++) {
+        off = fmax(off, fabs(halved[1][k] - 0.5 * w[0][k] - 0.5 * w[1][k]));
+        beyond |= fmax(fmax(w[0][k], w[1][k]), halved[1][k]) < -GXP_CHORD_OFF;
+    }
+    if (beyond && halves > 1) return GX_OK;
+    if (off > GXP_CHORD_OFF && halves < GXP_CHORD_HALVES) {
+        const gx_result result = gxp_meet_bent(body, part, low, middle, halved, halves + 1);
+        return result == GX_OK ? gxp_meet_bent(body, part, middle, high, halved + 1, halves + 1) : result;
+    }
+    for (k = 0; k < 4; k++)
+        if (!gxp_narrow(w[0][k] + GXP_CHORD_OFF, w[1][k] + GXP_CHORD_OFF, &from, &to)) return GX_OK;
+    gxp_element_positions(body, c->element, rest);
+    for (n = 0; n < 2; n++) {
+        const double share = n == 0 ? from : to;
+        for (k = 0; k < 4; k++) weights[k] = w[0][k] + share * (w[1][k] - w[0][k]);
+        gxp_weigh_material(rest, weights, part->rest[n]);
+    }
+    part->low = gxp_between(edge->low, edge->high, gxp_between(low, high, from));
+    part->high = gxp_between(edge->low, edge->high, gxp_between(low, high, to));
+    return gxp_add_cell_part(body, part, GXP_CHORD_OFF);
+}
+
 /* Adds the spans of a part of the edge in a cell. */
 static gx_result gxp_meet_cell(gx_body *body, void *user, uint32_t cell) {
     const gxp_edge_part *edge = (const gxp_edge_part *)user;
@@ -15289,20 +15458,25 @@ static gx_result gxp_meet_cell(gx_body *body, void *user, uint32_t cell) {
     const uint32_t before = blade->span_count;
     gxp_cell_part part;
     gxp_close_cell close;
-    double weights[4], point[3], low = 0, high = 1, touch;
+    double weights[2][4], point[3], low = 0, high = 1, touch;
     int n;
     gx_result result;
-    if (!gxp_clip_to_element(edge, c, &low, &high, &touch)) return GX_OK;
     part.edge = edge;
     part.cell = cell;
-    part.low = gxp_between(edge->low, edge->high, low);
-    part.high = gxp_between(edge->low, edge->high, high);
-    part.touch = touch * gxp_element_size(body, c->element);
-    for (n = 0; n < 2; n++) {
-        gxp_edge_position(edge->ends, 2, n == 0 ? part.low : part.high, point);
-        (void)gxp_pull_back(body, cell, point, weights, part.rest[n]);
+    if (gxp_is_bent(body, c)) {
+        for (n = 0; n < 2; n++)
+            if (!gxp_place_in_bent(body, c, edge->x[n], weights[n])) return GX_OK;
+        result = gxp_meet_bent(body, &part, 0, 1, weights, 0);
+    } else {
+        if (!gxp_clip_to_element(edge, c, &low, &high, &touch)) return GX_OK;
+        part.low = gxp_between(edge->low, edge->high, low);
+        part.high = gxp_between(edge->low, edge->high, high);
+        for (n = 0; n < 2; n++) {
+            gxp_edge_position(edge->ends, 2, n == 0 ? part.low : part.high, point);
+            (void)gxp_pull_back(body, cell, point, weights[0], part.rest[n]);
+        }
+        result = gxp_add_cell_part(body, &part, touch);
     }
-    result = gxp_add_leaf_spans(body, &part, gxb_complex_root(body->complex, c->element), 0, 1);
     if (result != GX_OK || blade->span_count == before || gxp_close_index(&blade->near, cell) != GXP_NONE)
         return result;
     close.cell = cell;
@@ -15763,7 +15937,6 @@ GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (tool == NULL) return gxp_refuse(failure, "tool");
-    if (body->copies.affine != NULL) return gxp_refuse(failure, "affine_below"); /* see gx_blade_move */
     result = gxp_check_tool(tool, failure);
     if (result == GX_OK) result = gx_blade_create(body, NULL, &blade, failure);
     if (result != GX_OK) return result;
@@ -17849,6 +18022,8 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_SURELY
 #undef GXP_AIR
 #undef GXP_LEAST_ADVANCE
+#undef GXP_CHORD_HALVES
+#undef GXP_CHORD_OFF
 #undef GXP_CUT_WIDTH
 #undef GXP_ON_SHEET
 #undef GXP_BLADE_SPECK
