@@ -43,7 +43,7 @@
  *                 >>pattern of level 1 | >>hierarchy all levels | >>lights copies with next to no mass |
  *                 >>sharing of memory | >>system a model in the solver's form
  *   operator:     >>rule elements with affine copies | >>forces energies, forces | >>blocks 3x3 blocks |
- *                 >>singles affine copies' products | >>product single precision | >>doubles double precision |
+ *                 >>strains forces and Hessians in single precision | >>singles affine copies' products | >>product single precision | >>doubles double precision |
  *                 >>linearise Hessians, block diagonal
  *   multigrid:    >>galerkin coarse matrices | >>nesting those of affine copies | >>factor of the last level |
  *                 >>assembly the assembled matrix | >>smoother its step length | >>cycle the V-cycle
@@ -51,7 +51,8 @@
  *   steps:        >>components momentum | >>points springs, contact | >>pairs two sides in contact | >>terms all that
  *                 acts at points | >>cg conjugate gradients | >>ageing of coarse matrices | >>sleep rest |
  *                 >>balance residual, start | >>search lengths | >>integrators BDF, midpoint | >>newton iterations,
- *                 bound on E | >>midpoint second half, end of a step | >>leapfrog explicit steps
+ *                 bound on E | >>midpoint second half, end of a step | >>leapfrog explicit steps | >>quick steps of a
+ *                 few iterations
  *   entrance:     >>check what is given | >>quality steps by the error asked for | >>api the public functions |
  *                 >>single a material at one F
  *
@@ -420,7 +421,15 @@ typedef struct gxs_step_desc {
     double mass_damping; /* Rayleigh's alpha, 1/s, 0 or more: force -alpha M v */
     uint32_t substeps;   /* GXS_EXPLICIT only: that many of dt; 0: as few as are cheap, for errors of about 1 % */
     uint32_t newton_iterations; /* at most; 0: 1 */
-    uint32_t quick; /* above 0: quick step */
+    /* above 0: a quick step of BDF1, BDF2 or the midpoint rule, for about a third of the time of a usual one: so many
+     * iterations of conjugate gradients at most (2 or 3 are enough in soft bodies) from where inertia leads, with the
+     * Hessian there and the preconditioner of earlier steps. No line search, no measure of balance:
+     * newton_iterations, newton_tolerance and cg_iterations are not read. A component whose energy would rise is slowed
+     * down. Mass is lumped, forces are single precision. Stable neo-Hookean materials without damping, under gravity and
+     * forces, without targets, springs, contact points, pairs, constraints or affine copies; not with
+     * GXS_MATRIX_ASSEMBLED or GXS_VOLUME_RATIO. Any other step is a usual one, as is one that would gain too much energy:
+     * see gxs_step_report.quick */
+    uint32_t quick;
     /* stop at this residual (see gxs_step_report); 0: 1e-8, far below what one iteration leaves in motion */
     double newton_tolerance;
     uint32_t cg_iterations; /* per Newton iteration, at most; 0: 1000 */
@@ -459,8 +468,8 @@ typedef struct gxs_step_desc {
     /* no iteration begins after this time, and the step ends with what it has; 0: no limit. Results then depend on the
      * machine */
     double budget_seconds;
-    /* above 0: the error asked for, in place of integrator, substeps, Newton's and CG's numbers and previous_..., which
-     * are not read; 0: those hold. The step is then divided into as many as the motion demands, explicit or implicit.
+    /* above 0: the error asked for, in place of integrator, substeps, quick, Newton's and CG's numbers and previous_...,
+     * which are not read; 0: those hold. The step is then divided into as many as the motion demands, explicit or implicit.
      * The error is that of the displacement after a third of a second of such motion, as a share of the motion (root
      * of the mean square by mass), beside exact time steps of the same elements: about, see gxs_step_report.error.
      * What more than GXS_PARTS steps would have to follow is damped. Held copies go to their targets on straight
@@ -485,18 +494,19 @@ typedef struct gxs_step_report {
     /* displacements solved for: three per copy that is awake, not held and follows nothing */
     size_t active_unknowns;
     uint32_t substeps;         /* of GXS_EXPLICIT; 0: the step was implicit */
-    uint32_t quick;            /* not 0: the step was quick */
+    uint32_t quick;            /* not 0: the step was quick (with quality: the last of them). Then there is no residual */
     uint32_t parts;            /* steps taken: 1 without quality; their iterations and seconds are summed */
     gxs_integrator integrator; /* of the last of them */
     double error;              /* with quality: the estimate of what was asked for; 0: nothing is known of the motion */
-    uint32_t newton_iterations; /* 0: the start was in balance to rounding, or the step was explicit */
+    uint32_t newton_iterations; /* 0: the start was in balance to rounding, or the step was explicit or quick */
     uint32_t cg_iterations;     /* sum over Newton iterations */
     uint32_t line_search_steps; /* step lengths tried; sum over Newton iterations */
     /* |load - inertia - elastic| / (|load| + |inertia| + |elastic|) on copies that are not held; the larger of the two
      * measures (see above) */
     double residual;
     /* E at the end, J, without sleeping components and up to a constant, the load on held copies. With the midpoint
-     * rule this and the residual are those at half the step */
+     * rule this and the residual are those at half the step. Quick steps: the sum of elastic, kinetic and potential
+     * energy */
     double energy;
     gxs_preconditioner preconditioner; /* in the last linear solve; GXS_AUTOMATIC: there was none */
     double seconds;           /* of the step; gx_body_step includes the renewal of the solver's model after a cut */
@@ -525,7 +535,8 @@ typedef struct gxs_solver gxs_solver;
  * where they are. Both get the velocity of that motion. GX_ERROR_SEQUENCE: no model is set. GX_ERROR_DIVERGED and, with
  * GXS_STATIC, GX_ERROR_FREE leave displacement and velocity unchanged. A residual above newton_tolerance when the
  * iterations are used up is no error: see the report. Allocates (GX_ERROR_MEMORY) only if there are more springs,
- * contact points and pairs, or copies of them, than ever before, and in the first step of a model with GXS_EXPLICIT. */
+ * contact points and pairs, or copies of them, than ever before, and in the first step of a model with GXS_EXPLICIT or
+ * quick. */
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
                                     double *velocity, gxs_step_report *report, gx_failure *failure);
 /* Checks the parts of a step's description that need no solver: its numbers, springs, points, planes and pairs, and
@@ -6484,7 +6495,7 @@ static void gxsp_block_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles
  * strain, unless NULL, receives what products need, in place of the modulus; scale: of the operator
  */
 GXSP_INLINE void gxsp_leap_force(const gxsp_leap_block *GXSP_RESTRICT b, gxsp_singles *GXSP_RESTRICT x,
-                                 gxsp_singles *GXSP_RESTRICT y, float *GXSP_RESTRICT stiffest, float scale,
+                                 gxsp_singles *GXSP_RESTRICT y, float *GXSP_RESTRICT stiffest, int keep, float scale,
                                  gxsp_strain *GXSP_RESTRICT strain) {
     int l;
     GXSP_EACH_LANE(l) {
@@ -6518,7 +6529,7 @@ GXSP_INLINE void gxsp_leap_force(const gxsp_leap_block *GXSP_RESTRICT b, gxsp_si
                     f4 = s3 * g3 + s4 * g4 + s5 * g5, f5 = s6 * g3 + s7 * g4 + s8 * g5,
                     f6 = s0 * g6 + s1 * g7 + s2 * g8, f7 = s3 * g6 + s4 * g7 + s5 * g8,
                     f8 = s6 * g6 + s7 * g7 + s8 * g8;
-        if (strain) {
+        if (keep) {
             const float times = scale * mu, push = scale * lambda;
             strain->gradient[0][l] = d0, strain->gradient[1][l] = d1, strain->gradient[2][l] = d2;
             strain->gradient[3][l] = d3, strain->gradient[4][l] = d4, strain->gradient[5][l] = d5;
@@ -6528,7 +6539,7 @@ GXSP_INLINE void gxsp_leap_force(const gxsp_leap_block *GXSP_RESTRICT b, gxsp_si
             strain->sides[l] = push;
             strain->turn[l] = push * j - 0.75f * times;
         }
-        if (!strain) {
+        if (!keep) {
             const float sides = (1 + c0) * (1 + c0) + (1 + c4) * (1 + c4) + (1 + c8) * (1 + c8) + c1 * c1 + c2 * c2 +
                                 c3 * c3 + c5 * c5 + c6 * c6 + c7 * c7;
             const float steep = (cofactor > 0 ? cofactor : -cofactor) * (6 + i) * 0.2886752f;
@@ -6576,7 +6587,7 @@ static void gxsp_task_leap_force(void *context, size_t index) {
         if (b + GXSP_TANGENTS_AHEAD < chunk->block_count)
             gxsp_prefetch(&blocks[b + GXSP_TANGENTS_AHEAD], sizeof *blocks);
         gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
-        gxsp_leap_force(&blocks[b], from, to, stiffest, 0, NULL);
+        gxsp_leap_force(&blocks[b], from, to, stiffest, 0, 0, NULL);
         gxsp_block_scatter(chunk, b, to, out);
     }
     memcpy((gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node, out, chunk->node_count * sizeof *out);
@@ -6602,7 +6613,7 @@ static void gxsp_task_strain_force(void *context, size_t index) {
         if (b + GXSP_TANGENTS_AHEAD < chunk->block_count)
             gxsp_prefetch(&system->leap.blocks[first + b + GXSP_TANGENTS_AHEAD], sizeof *system->leap.blocks);
         gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
-        gxsp_leap_force(&system->leap.blocks[first + b], from, to, NULL, scale, &system->leap.strains[first + b]);
+        gxsp_leap_force(&system->leap.blocks[first + b], from, to, NULL, 1, scale, &system->leap.strains[first + b]);
         gxsp_block_scatter(chunk, b, to, out);
     }
 }
@@ -10108,7 +10119,8 @@ static int gxsp_prepare(gxsp_problem *problem) {
         gxsp_assemble(system, system->model.scale * problem->rate);
         if (!gxsp_invert_fine(system)) return 0;
     }
-    system->multigrid.used = system->multigrid.level_count > 0 && gxsp_coarse_pays(system, problem->rate);
+    system->multigrid.used = system->multigrid.level_count > 0 &&
+                             (system->state.quick || gxsp_coarse_pays(system, problem->rate));
     if (!system->multigrid.used) return 1;
     if (!system->multigrid.fine) gxsp_choose_omega(system, problem->rate);
     other = system->coarse.rate < problem->rate || system->coarse.rate > problem->rate ||
@@ -11739,22 +11751,26 @@ static void gxsp_quick_elastic(gxsp_system *system, const double *from) {
         system->model.components[system->mesh.partials[p].component].gain += system->mesh.partials[p].energies[0];
 }
 
-/* Of all components: momentum / mass into sum, kinetic energy about that into low, and gain += kinetic energy minus
- * the work of the load. A held component has no mean. */
+/* Of all components: momentum / mass into sum, kinetic energy about that into low, gain += kinetic energy minus the work
+ * of the load, and the size of what rounds into rounding. A held component has no mean. */
 static void gxsp_quick_kinetic(const gxsp_problem *problem, const double *u, const double *v) {
     gxsp_system *system = problem->system;
     uint32_t p;
     size_t i;
     gxsp_clear_components(system);
-    for (p = 0; p < system->model.component_count; p++) system->model.components[p].low = 0;
+    for (p = 0; p < system->model.component_count; p++)
+        system->model.components[p].low = system->model.components[p].rounding = 0;
     for (i = 0; i < system->model.n; i++) {
         gxsp_component *component = &system->model.components[system->model.component[i]];
         const double mass = system->state.still[i] ? 0 : system->model.lumped[i], *speed = v + 3 * i;
-        double load[3];
+        double load[3], kinetic, work;
         gxsp_load(problem, i, load);
         gxsp_add_to_component(system, i, mass * speed[0], mass * speed[1], mass * speed[2]);
-        component->low += 0.5 * mass * gxsp_dot(speed, speed, 1);
-        component->gain -= gxsp_dot(load, u + 3 * i, 1);
+        kinetic = 0.5 * mass * gxsp_dot(speed, speed, 1);
+        work = gxsp_dot(load, u + 3 * i, 1);
+        component->low += kinetic;
+        component->gain -= work;
+        component->rounding += kinetic + fabs(work);
     }
     gxsp_average_components(system, 0);
     for (p = 0; p < system->model.component_count; p++) {
@@ -11796,7 +11812,7 @@ static int gxsp_quick_solve(gxsp_problem *problem) {
     if (system->leap.served == 0 || system->leap.served >= GXSP_QUICK_AGE ||
         (system->multigrid.used && (system->coarse.worn || gxsp_coarse_ends(system) ||
                                     system->coarse.rate < problem->rate || system->coarse.rate > problem->rate))) {
-        if (!gxsp_linearise_all(problem)) return 0;
+        if (!gxsp_linearise_all(problem) || problem->collapsed) return 0;
         system->leap.served = 0;
     }
     system->leap.served++;
@@ -11826,11 +11842,13 @@ static int gxsp_quick_settle(gxsp_problem *problem, const double *u, double *v) 
     gxsp_quick_kinetic(problem, u, v);
     for (p = 0; p < system->model.component_count; p++) {
         gxsp_component *component = &system->model.components[p];
-        const double risen = component->gain - component->limit;
+        const double risen = component->gain - component->limit,
+                     unsure = 1e-12 * component->rounding + 1e-6 * component->elastic;
         component->length = 1;
-        component->slack = risen < 0 ? -(1 - GXSP_LEAP_FORGET) * risen : 0;
+        component->slack = risen < 0 ? -(1 - GXSP_LEAP_FORGET) * risen : -risen;
         if (!gxsp_finite(risen)) return 0;
-        if (!(risen > 0)) continue;
+        if (risen <= unsure) continue;
+        component->slack = 0;
         if (risen > GXSP_QUICK_CUT * component->low) return 0;
         component->length = sqrt(1 - risen / component->low);
         any = 1;
@@ -11843,6 +11861,15 @@ static int gxsp_quick_settle(gxsp_problem *problem, const double *u, double *v) 
     return 1;
 }
 
+/* Energy of all components at the end, J */
+static double gxsp_quick_total(const gxsp_system *system) {
+    double sum = 0;
+    uint32_t p;
+    for (p = 0; p < system->model.component_count; p++)
+        sum += fmin(system->model.components[p].gain, system->model.components[p].limit);
+    return sum;
+}
+
 /* The quick step: displacement into direction, velocity into residual. Returns 0 where the step must be a usual one. */
 static int gxsp_quick_step(gxsp_problem *problem, const double *displacement, const double *velocity) {
     gxsp_system *system = problem->system;
@@ -11853,7 +11880,6 @@ static int gxsp_quick_step(gxsp_problem *problem, const double *displacement, co
     system->state.quick = 1;
     gxsp_choose_leads(problem);
     gxsp_quick_limit(problem, displacement, velocity);
-    system->leap.known = 0;
     gxsp_begin(problem, velocity);
     problem->cg_iterations = problem->step->quick;
     done = gxsp_quick_solve(problem);
@@ -11867,15 +11893,12 @@ static int gxsp_quick_step(gxsp_problem *problem, const double *displacement, co
     done = done && gxsp_quick_settle(problem, ends, speeds);
     system->state.quick = 0;
     if (!done) {
-        const gxs_step_report none = problem->report;
-        memset(&problem->report, 0, sizeof problem->report);
-        problem->report.active_unknowns = none.active_unknowns;
         problem->cg_iterations = problem->step->cg_iterations ? problem->step->cg_iterations : 1000;
-        system->leap.served = 0;
+        problem->report.stop = GXS_STOP_BALANCE;
         return 0;
     }
-    system->leap.known = 1;
-    problem->report.stop = GXS_STOP_ITERATIONS;
+    if (problem->report.stop != GXS_STOP_SECONDS) problem->report.stop = GXS_STOP_ITERATIONS;
+    problem->report.energy = gxsp_quick_total(system);
     problem->report.quick = 1;
     return 1;
 }
@@ -12595,6 +12618,7 @@ static gx_result gxsp_take_parts(gxs_solver *solver, const gxs_step_desc *step, 
     uint32_t k;
     size_t i;
     part.quality = 0;
+    part.quick = 0;
     part.dt = step->dt / plan->parts;
     part.integrator = plan->integrator;
     part.substeps = plan->substeps;
