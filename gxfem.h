@@ -510,8 +510,8 @@ typedef struct gx_step_desc {
     double (*clock)(void *user); /* s; NULL: the body's */
     void *clock_user;
     double budget_seconds; /* no iteration begins after this time; 0: no limit. Needs a clock */
-    /* above 0: the error of the motion asked for, as a share of it, .03 say, in place of integrator, substeps, quick and
-       the numbers of Newton's method and CG: the step is divided as the motion demands (see gxs_step_desc) */
+    /* above 0: the error of the motion asked for, as a share of it, .03 say, in place of integrator, substeps, quick
+       and the numbers of Newton's method and CG: the step is divided as the motion demands (see gxs_step_desc) */
     double quality;
 } gx_step_desc;
 typedef gxs_step_report gx_step_report;

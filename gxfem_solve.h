@@ -43,7 +43,8 @@
  *                 >>pattern of level 1 | >>hierarchy all levels | >>lights copies with next to no mass |
  *                 >>sharing of memory | >>system a model in the solver's form
  *   operator:     >>rule elements with affine copies | >>forces energies, forces | >>blocks 3x3 blocks |
- *                 >>strains forces and Hessians in single precision | >>singles affine copies' products | >>product single precision | >>doubles double precision |
+ *                 >>strains forces and Hessians in single precision | >>singles affine copies' products | >>product
+ * single precision | >>doubles double precision |
  *                 >>linearise Hessians, block diagonal
  *   multigrid:    >>galerkin coarse matrices | >>nesting those of affine copies | >>factor of the last level |
  *                 >>assembly the assembled matrix | >>smoother its step length | >>cycle the V-cycle
@@ -425,10 +426,10 @@ typedef struct gxs_step_desc {
      * iterations of conjugate gradients at most (2 or 3 are enough in soft bodies) from where inertia leads, with the
      * Hessian there and the preconditioner of earlier steps. No line search, no measure of balance:
      * newton_iterations, newton_tolerance and cg_iterations are not read. A component whose energy would rise is slowed
-     * down. Mass is lumped, forces are single precision. Stable neo-Hookean materials without damping, under gravity and
-     * forces, without targets, springs, contact points, pairs, constraints or affine copies; not with
-     * GXS_MATRIX_ASSEMBLED or GXS_VOLUME_RATIO. Any other step is a usual one, as is one that would gain too much energy:
-     * see gxs_step_report.quick */
+     * down. Mass is lumped, forces are single precision. Stable neo-Hookean materials without damping, under gravity
+     * and forces, without targets, springs, contact points, pairs, constraints or affine copies; not with
+     * GXS_MATRIX_ASSEMBLED or GXS_VOLUME_RATIO. Any other step is a usual one, as is one that would gain too much
+     * energy: see gxs_step_report.quick */
     uint32_t quick;
     /* stop at this residual (see gxs_step_report); 0: 1e-8, far below what one iteration leaves in motion */
     double newton_tolerance;
@@ -468,12 +469,12 @@ typedef struct gxs_step_desc {
     /* no iteration begins after this time, and the step ends with what it has; 0: no limit. Results then depend on the
      * machine */
     double budget_seconds;
-    /* above 0: the error asked for, in place of integrator, substeps, quick, Newton's and CG's numbers and previous_...,
-     * which are not read; 0: those hold. The step is then divided into as many as the motion demands, explicit or implicit.
-     * The error is that of the displacement after a third of a second of such motion, as a share of the motion (root
-     * of the mean square by mass), beside exact time steps of the same elements: about, see gxs_step_report.error.
-     * What more than GXS_PARTS steps would have to follow is damped. Held copies go to their targets on straight
-     * lines. With budget_seconds the error is larger where this one takes longer. */
+    /* above 0: the error asked for, in place of integrator, substeps, quick, Newton's and CG's numbers and
+     * previous_..., which are not read; 0: those hold. The step is then divided into as many as the motion demands,
+     * explicit or implicit. The error is that of the displacement after a third of a second of such motion, as a share
+     * of the motion (root of the mean square by mass), beside exact time steps of the same elements: about, see
+     * gxs_step_report.error. What more than GXS_PARTS steps would have to follow is damped. Held copies go to their
+     * targets on straight lines. With budget_seconds the error is larger where this one takes longer. */
     double quality;
 } gxs_step_desc;
 
@@ -493,9 +494,9 @@ typedef struct gxs_step_report {
     gxs_stop stop;
     /* displacements solved for: three per copy that is awake, not held and follows nothing */
     size_t active_unknowns;
-    uint32_t substeps;         /* of GXS_EXPLICIT; 0: the step was implicit */
-    uint32_t quick;            /* not 0: the step was quick (with quality: the last of them). Then there is no residual */
-    uint32_t parts;            /* steps taken: 1 without quality; their iterations and seconds are summed */
+    uint32_t substeps; /* of GXS_EXPLICIT; 0: the step was implicit */
+    uint32_t quick;    /* not 0: the step was quick (with quality: the last of them). Then there is no residual */
+    uint32_t parts;    /* steps taken: 1 without quality; their iterations and seconds are summed */
     gxs_integrator integrator; /* of the last of them */
     double error;              /* with quality: the estimate of what was asked for; 0: nothing is known of the motion */
     uint32_t newton_iterations; /* 0: the start was in balance to rounding, or the step was explicit or quick */
@@ -1485,10 +1486,11 @@ typedef struct gxsp_component {
     double limit, ended;
     /* midpoint rule: E at base; E at the middle without drift and E at a trial, both minus base; J */
     double base, low, gain;
-    double elastic, slack; /* quick steps: elastic energy at the end of the last one, and what E is below its limit; J */
-    double drift[3];    /* midpoint rule: translation of the second half, which is not shortened, m */
-    double slope, work; /* dE/dlength of the direction, and the load's work along it; J */
-    double left;        /* work of the linear solve's remaining residual along the direction; J */
+    double elastic, slack; /* quick steps: elastic energy at the end of the last one, and what E is below its limit; J
+                            */
+    double drift[3];       /* midpoint rule: translation of the second half, which is not shortened, m */
+    double slope, work;    /* dE/dlength of the direction, and the load's work along it; J */
+    double left;           /* work of the linear solve's remaining residual along the direction; J */
     double rounding;    /* size of the rounding of positions and of the load's terms, in units in the last place; J */
     double length;      /* step length, as a share of the direction */
     int settled;        /* its length is found. A chunk whose components are all settled is not evaluated again */
@@ -3745,9 +3747,7 @@ static int gxsp_is_affine(const gxs_model *model, const gxs_element *element) {
 
 /* Is a vector one of the hidden ones of an affine copy? A translation does not move those. */
 /* Is the mass that of each copy's row, for the model or for the step at work? */
-static inline int gxsp_is_lumped(const gxsp_system *system) {
-    return system->model.lumped_mass || system->state.quick;
-}
+static inline int gxsp_is_lumped(const gxsp_system *system) { return system->model.lumped_mass || system->state.quick; }
 
 static inline int gxsp_is_hidden(const gxsp_system *system, size_t copy) {
     const uint32_t *place = system->affine.place;
@@ -6481,7 +6481,7 @@ static void gxsp_block_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles
     }
 }
 
-/* >>strains: forces, Hessians and energies of stable neo-Hookean elements, in single precision ---------------------- */
+/* >>strains: forces, Hessians and energies of stable neo-Hookean elements, in single precision --------------------- */
 
 /* In: a displacement. Out: forces in the chunks' slots, the strains that products need, or energies of components.
  * >>leapfrog and >>quick use it. The Hessian is exact: nothing is decomposed or projected, so that a strain costs no
@@ -6562,7 +6562,8 @@ static void gxsp_leap_load(const gxsp_system *system, const gxsp_chunk *chunk, c
     for (i = 0; i < chunk->node_count; i++) {
         const double *x = from + 3 * (size_t)copies[i];
         gxsp_prefetch(from + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *x);
-        to[i][0] = (float)(x[0] - origin[0]), to[i][1] = (float)(x[1] - origin[1]), to[i][2] = (float)(x[2] - origin[2]);
+        to[i][0] = (float)(x[0] - origin[0]), to[i][1] = (float)(x[1] - origin[1]),
+        to[i][2] = (float)(x[2] - origin[2]);
         to[i][3] = 0;
     }
 }
@@ -6628,9 +6629,9 @@ static void gxsp_strain_product(const gxsp_leap_block *GXSP_RESTRICT b, const gx
         const float g0 = b->gradient[0][l], g1 = b->gradient[1][l], g2 = b->gradient[2][l], g3 = b->gradient[3][l],
                     g4 = b->gradient[4][l], g5 = b->gradient[5][l], g6 = b->gradient[6][l], g7 = b->gradient[7][l],
                     g8 = b->gradient[8][l], own = s->own[l], turn = s->turn[l];
-        const float f0 = 1 + s->gradient[0][l], f1 = s->gradient[1][l], f2 = s->gradient[2][l],
-                    f3 = s->gradient[3][l], f4 = 1 + s->gradient[4][l], f5 = s->gradient[5][l],
-                    f6 = s->gradient[6][l], f7 = s->gradient[7][l], f8 = 1 + s->gradient[8][l];
+        const float f0 = 1 + s->gradient[0][l], f1 = s->gradient[1][l], f2 = s->gradient[2][l], f3 = s->gradient[3][l],
+                    f4 = 1 + s->gradient[4][l], f5 = s->gradient[5][l], f6 = s->gradient[6][l], f7 = s->gradient[7][l],
+                    f8 = 1 + s->gradient[8][l];
         const float x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
         const float p0 = x[3][l] - x0, p1 = x[4][l] - x1, p2 = x[5][l] - x2, q0 = x[6][l] - x0, q1 = x[7][l] - x1,
                     q2 = x[8][l] - x2, r0 = x[9][l] - x0, r1 = x[10][l] - x1, r2 = x[11][l] - x2;
@@ -6647,10 +6648,10 @@ static void gxsp_strain_product(const gxsp_leap_block *GXSP_RESTRICT b, const gx
                     t4 = f0 * d8 + d0 * f8 - f2 * d6 - d2 * f6, t5 = f1 * d6 + d1 * f6 - f0 * d7 - d0 * f7,
                     t6 = f1 * d5 + d1 * f5 - f2 * d4 - d2 * f4, t7 = f2 * d3 + d2 * f3 - f0 * d5 - d0 * f5,
                     t8 = f0 * d4 + d0 * f4 - f1 * d3 - d1 * f3;
-        const float m = s->along[l] * (f0 * d0 + f1 * d1 + f2 * d2 + f3 * d3 + f4 * d4 + f5 * d5 + f6 * d6 + f7 * d7 +
-                                       f8 * d8),
-                    n = s->sides[l] * (c0 * d0 + c1 * d1 + c2 * d2 + c3 * d3 + c4 * d4 + c5 * d5 + c6 * d6 + c7 * d7 +
-                                       c8 * d8);
+        const float m = s->along[l] *
+                        (f0 * d0 + f1 * d1 + f2 * d2 + f3 * d3 + f4 * d4 + f5 * d5 + f6 * d6 + f7 * d7 + f8 * d8),
+                    n = s->sides[l] *
+                        (c0 * d0 + c1 * d1 + c2 * d2 + c3 * d3 + c4 * d4 + c5 * d5 + c6 * d6 + c7 * d7 + c8 * d8);
         const float s0 = own * d0 + m * f0 + n * c0 + turn * t0, s1 = own * d1 + m * f1 + n * c1 + turn * t1,
                     s2 = own * d2 + m * f2 + n * c2 + turn * t2, s3 = own * d3 + m * f3 + n * c3 + turn * t3,
                     s4 = own * d4 + m * f4 + n * c4 + turn * t4, s5 = own * d5 + m * f5 + n * c5 + turn * t5,
@@ -10119,8 +10120,8 @@ static int gxsp_prepare(gxsp_problem *problem) {
         gxsp_assemble(system, system->model.scale * problem->rate);
         if (!gxsp_invert_fine(system)) return 0;
     }
-    system->multigrid.used = system->multigrid.level_count > 0 &&
-                             (system->state.quick || gxsp_coarse_pays(system, problem->rate));
+    system->multigrid.used =
+        system->multigrid.level_count > 0 && (system->state.quick || gxsp_coarse_pays(system, problem->rate));
     if (!system->multigrid.used) return 1;
     if (!system->multigrid.fine) gxsp_choose_omega(system, problem->rate);
     other = system->coarse.rate < problem->rate || system->coarse.rate > problem->rate ||
@@ -11141,7 +11142,8 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
     gxsp_report_pairs(problem, ends);
     memcpy(displacement, ends, count * sizeof(double));
     memcpy(velocity, speeds, count * sizeof(double));
-    if (midpoint || problem->report.substeps > 0 || problem->report.quick) memcpy(system->vectors.current, ends, count * sizeof(double));
+    if (midpoint || problem->report.substeps > 0 || problem->report.quick)
+        memcpy(system->vectors.current, ends, count * sizeof(double));
     system->state.stepped = 1;
     system->state.base_known = !midpoint && !problem->report.quick && gxsp_point_count(step) == 0;
     system->leap.known = problem->report.quick != 0;
@@ -11684,7 +11686,7 @@ static int gxsp_leap_step(gxsp_problem *problem, const double *displacement, con
     return 1;
 }
 
-/* >>quick: steps of a few iterations -------------------------------------------------------------------------------- */
+/* >>quick: steps of a few iterations ------------------------------------------------------------------------------- */
 
 /* In: the step and the state at its start. Out: the state at its end in direction and residual, or nothing where the
  * step must be a usual one.
@@ -11732,9 +11734,9 @@ static void gxsp_task_quick_balance(void *context, size_t index) {
         gxsp_load(pass->problem, i, load);
         for (c = 0; c < 3; c++)
             system->vectors.residual[3 * i + c] =
-                system->state.still[i] ? 0
-                                       : load[c] - (double)sum[c] -
-                                             inertia * (pass->from[3 * i + c] - system->vectors.target[3 * i + c]);
+                system->state.still[i]
+                    ? 0
+                    : load[c] - (double)sum[c] - inertia * (pass->from[3 * i + c] - system->vectors.target[3 * i + c]);
     }
 }
 
@@ -11751,8 +11753,8 @@ static void gxsp_quick_elastic(gxsp_system *system, const double *from) {
         system->model.components[system->mesh.partials[p].component].gain += system->mesh.partials[p].energies[0];
 }
 
-/* Of all components: momentum / mass into sum, kinetic energy about that into low, gain += kinetic energy minus the work
- * of the load, and the size of what rounds into rounding. A held component has no mean. */
+/* Of all components: momentum / mass into sum, kinetic energy about that into low, gain += kinetic energy minus the
+ * work of the load, and the size of what rounds into rounding. A held component has no mean. */
 static void gxsp_quick_kinetic(const gxsp_problem *problem, const double *u, const double *v) {
     gxsp_system *system = problem->system;
     uint32_t p;
@@ -11796,7 +11798,8 @@ static void gxsp_quick_limit(const gxsp_problem *problem, const double *displace
     }
 }
 
-/* The solve: current from where inertia leads. 0: a number is not finite, or the exact Hessian is indefinite at once. */
+/* The solve: current from where inertia leads. 0: a number is not finite, or the exact Hessian is indefinite at once.
+ */
 static int gxsp_quick_solve(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     gxsp_pass pass;
@@ -11885,10 +11888,11 @@ static int gxsp_quick_step(gxsp_problem *problem, const double *displacement, co
     done = gxsp_quick_solve(problem);
     for (i = 0; i < count && done; i++) {
         const int still = system->state.still[i / 3];
-        ends[i] = still      ? displacement[i]
-                : midpoint   ? 2 * system->vectors.current[i] - displacement[i]
-                             : system->vectors.current[i];
-        speeds[i] = still ? 0 : problem->speed * (ends[i] - gxsp_mean(problem, displacement, i)) - (midpoint ? velocity[i] : 0);
+        ends[i] = still    ? displacement[i]
+                : midpoint ? 2 * system->vectors.current[i] - displacement[i]
+                           : system->vectors.current[i];
+        speeds[i] =
+            still ? 0 : problem->speed * (ends[i] - gxsp_mean(problem, displacement, i)) - (midpoint ? velocity[i] : 0);
     }
     done = done && gxsp_quick_settle(problem, ends, speeds);
     system->state.quick = 0;
@@ -13073,6 +13077,10 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_LEAP_POWERS
 #undef GXSP_LEAP_GAIN
 #undef GXSP_LEAP_FORGET
+#undef GXSP_LEAP_BLOCKS
+#undef GXSP_LEAP_ALL
+#undef GXSP_QUICK_AGE
+#undef GXSP_QUICK_CUT
 #undef GXSP_LEAP_RAISE
 #undef GXSP_LEAP_LAST
 #undef GXSP_LEAP_ROWS

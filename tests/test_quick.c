@@ -1,6 +1,6 @@
-/* test_quick.c - quick steps (gxs_step_desc.quick): their forces, Hessians and energies beside the material's own, their
-   order, energy, momentum, what they leave to usual steps, cuts, jobs, memory and resuming. Truth: converged implicit
-   steps with the same lumped mass. */
+/* test_quick.c - quick steps (gxs_step_desc.quick): their forces, Hessians and energies beside the material's own,
+   their order, energy, momentum, what they leave to usual steps, cuts, jobs, memory and resuming. Truth: converged
+   implicit steps with the same lumped mass. */
 #define GXFEM_SOLVE_IMPLEMENTATION
 #include "../gxfem_solve.h"
 
@@ -51,8 +51,7 @@ static void corners_of(const lane_case *c, const double *f, double *x) {
     memset(x, 0, 12 * sizeof *x);
     for (k = 0; k < 3; k++) /* u_k = G e_k, and e_k is column k of gradients^-1 */
         for (i = 0; i < 3; i++)
-            for (j = 0; j < 3; j++)
-                x[3 + 3 * k + i] += (f[3 * i + j] - (i == j ? 1 : 0)) * inverse[3 * j + k] / det;
+            for (j = 0; j < 3; j++) x[3 + 3 * k + i] += (f[3 * i + j] - (i == j ? 1 : 0)) * inverse[3 * j + k] / det;
 }
 
 /* Forces on the corners, dU/du, of a stress */
@@ -85,10 +84,12 @@ static void expect_lane(gxsp_singles *forces, int lane, const double *truth, dou
 }
 
 /* The largest force that strains of about 1 would make */
-static double scale_of(const lane_case *c) { return 40 * c->weight * c->material.young / (1 - 2 * c->material.poisson); }
+static double scale_of(const lane_case *c) {
+    return 40 * c->weight * c->material.young / (1 - 2 * c->material.poisson);
+}
 
-/* Forces, products by differences of stresses, and energies, at strains of 1e-4 to 0.7, elements turned inside out among
-   them */
+/* Forces, products by differences of stresses, and energies, at strains of 1e-4 to 0.7, elements turned inside out
+   among them */
 START_TEST(strains_agree_with_the_material) {
     lane_case lanes[LANES];
     gxsp_leap_block block;
@@ -260,8 +261,8 @@ START_TEST(midpoint_is_of_order_two) {
         error[i] = difference(&s, truth.displacement);
         scene_free(&s);
     }
-    assert_that(error[0] < 0.1 && error[1] < error[0] / 2.5 && error[2] < error[1] / 2.5, "%g %g %g", error[0], error[1],
-                error[2]);
+    assert_that(error[0] < 0.1 && error[1] < error[0] / 2.5 && error[2] < error[1] / 2.5, "%g %g %g", error[0],
+                error[1], error[2]);
     scene_free(&truth);
 }
 END_TEST
@@ -289,13 +290,15 @@ START_TEST(energy_is_not_created) {
         step.previous_dt = step.dt;
         usual += !report.quick;
         energy = energy_of(&s);
-        if (report.quick) assert_that(fabs(report.energy - energy) < 1e-3 * size + 1e-3, "%g %g", report.energy, energy);
+        if (report.quick)
+            assert_that(fabs(report.energy - energy) < 1e-3 * size + 1e-3, "%g %g", report.energy, energy);
         most = fmax(most, energy);
         size = fmax(size, form_energy(&s.model, s.displacement));
     }
     assert_that(usual == 0, "%d usual", usual);
     assert_that(most < 5e-3 * size, "%g of %g", most, size);
-    if (step.integrator == GXS_MIDPOINT && iterations == 3) assert_that(energy > -0.25 * size, "%g of %g", energy, size);
+    if (step.integrator == GXS_MIDPOINT && iterations == 3)
+        assert_that(energy > -0.25 * size, "%g of %g", energy, size);
     gxs_solver_destroy(solver);
     free(history);
     scene_free(&s);
@@ -403,7 +406,8 @@ END_TEST
 START_TEST(pieces_do_not_share_energy) {
     scene s = hanging_bar(2e5);
     gxs_step_desc step = quick_step(1.0 / 60, 2);
-    double before[3] = {0, 0, 0}, after[3] = {0, 0, 0}, *mass = (double *)zeroed(3 * s.model.copy_count, sizeof(double));
+    double before[3] = {0, 0, 0}, after[3] = {0, 0, 0},
+           *mass = (double *)zeroed(3 * s.model.copy_count, sizeof(double));
     size_t i;
     int k;
     memset(s.held, 0, s.model.copy_count);
@@ -597,7 +601,8 @@ START_TEST(resumes) {
 }
 END_TEST
 
-/* A step that fails for want of memory leaves the state alone; the solver is still good. Later ones allocate nothing. */
+/* A step that fails for want of memory leaves the state alone; the solver is still good. Later ones allocate nothing.
+ */
 static int run_with(memory *m, int which) {
     gxs_solver_desc desc;
     gxs_solver *solver = NULL;
