@@ -272,12 +272,16 @@ END_TEST
 START_TEST(energy_is_not_created) {
     const uint32_t iterations = (uint32_t)(_i % 3) + 1;
     scene s = hanging_bar(2e5);
-    gxs_solver *solver = solver_make();
+    gxs_solver_desc kind;
+    gxs_solver *solver = NULL;
     gxs_step_desc step = quick_step(1.0 / 60, iterations);
     double most = -1e300, size = 0, energy = 0, *history = (double *)zeroed(12 * s.model.copy_count, sizeof(double));
     const size_t count = 3 * s.model.copy_count;
     int frame, usual = 0;
     step.integrator = (gxs_integrator)(_i / 3);
+    memset(&kind, 0, sizeof kind);
+    kind.preconditioner = _i % 3 ? GXS_MULTIGRID : GXS_BLOCK_JACOBI;
+    ck_assert_int_eq(gxs_solver_create(&kind, &solver, NULL), GX_OK);
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
     for (frame = 0; frame < FRAMES; frame++) {
         gxs_step_report report;
@@ -396,6 +400,53 @@ START_TEST(violent_starts_do_not_blow_up) {
         assert_that(energy < start + (report.quick ? 1e-4 : 0.6) * size, "frame %d: %g of %g", frame, energy, start);
         if (!report.quick) start = energy;
     }
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
+/* Collapsed elements have no force, and no finite number may be lost on the way: such steps are usual ones, and fail
+   where those do. */
+START_TEST(hopeless_steps_are_usual) {
+    scene s = hanging_bar(2e5);
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = quick_step(0.033, 2);
+    gxs_step_report report;
+    size_t i;
+    step.gravity[2] = 0;
+    for (i = 0; i < 3 * s.model.copy_count; i++) {
+        if (_i == 0 && !s.held[i / 3]) s.displacement[i] = 1 - s.rest[i];
+        if (_i == 1 && !s.held[i / 3]) s.velocity[i] = i % 2 ? 1e300 : -1e300;
+        if (_i == 2 && !s.held[i / 3]) s.velocity[i] = i % 2 ? 1e30 : -1e30;
+    }
+    if (_i == 1) step.dt = 1e10;
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL),
+                     _i == 0 ? GX_OK : GX_ERROR_DIVERGED);
+    if (_i == 0) ck_assert(report.quick == 0 && report.newton_iterations == 1);
+    if (_i == 1) ck_assert(fabs(s.velocity[3 * s.model.copy_count - 1]) > 9e299);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
+static double ticking(void *user) { return *(double *)user += 0.4; }
+
+/* No iteration begins when the time is over. */
+START_TEST(budgets_are_kept) {
+    scene s = hanging_bar(2e5);
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = quick_step(1.0 / 60, 50);
+    gxs_step_report report;
+    double now = 0;
+    step.clock = ticking;
+    step.clock_user = &now;
+    step.budget_seconds = 1e-3;
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+    ck_assert_uint_eq(report.quick, 1);
+    ck_assert_uint_eq(report.cg_iterations, 1);
+    ck_assert_int_eq(report.stop, GXS_STOP_SECONDS);
     gxs_solver_destroy(solver);
     scene_free(&s);
 }
@@ -647,6 +698,8 @@ int main(void) {
     tcase_add_test(list, free_fall);
     tcase_add_loop_test(list, other_steps_are_usual, 0, OBSTACLES);
     tcase_add_loop_test(list, violent_starts_do_not_blow_up, 0, 21);
+    tcase_add_loop_test(list, hopeless_steps_are_usual, 0, 3);
+    tcase_add_test(list, budgets_are_kept);
     tcase_add_test(list, pieces_do_not_share_energy);
     tcase_add_test(list, steps_mix);
     tcase_add_test(list, updates_are_followed);
