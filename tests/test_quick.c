@@ -6,11 +6,7 @@
 
 #include "block.h"
 
-#ifdef FEWER
-#define FRAMES 40
-#else
-#define FRAMES 180
-#endif
+enum { FRAMES = 180 / FEWER };
 
 /* ---- one block of elements ---- */
 
