@@ -483,6 +483,7 @@ typedef struct gx_step_desc {
     /* GXS_BDF1 damps what swings: at dt = 1/60 s half of a free swing is gone after 5 s. GXS_BDF2 keeps it. */
     gxs_integrator integrator;
     uint32_t substeps;          /* GXS_EXPLICIT only: that many of dt; 0: as few as are cheap */
+    uint32_t quick;             /* above 0: quick steps of so many iterations, 2 or 3, say (see gxs_step_desc) */
     uint32_t newton_iterations; /* at most; 0: 1 */
     double newton_tolerance;    /* stop at this residual (see gxs_step_report); 0: 1e-8 */
     uint32_t cg_iterations;     /* per Newton iteration, at most; 0: 1000 */
@@ -523,8 +524,8 @@ typedef struct gx_step_desc {
     double (*clock)(void *user); /* s; NULL: the body's */
     void *clock_user;
     double budget_seconds; /* no iteration begins after this time; 0: no limit. Needs a clock */
-    /* above 0: the error of the motion asked for, as a share of it, .03 say, in place of integrator, substeps and the
-       numbers of Newton's method and CG: the step is divided as the motion demands (see gxs_step_desc) */
+    /* above 0: the error of the motion asked for, as a share of it, .03 say, in place of integrator, substeps, quick
+       and the numbers of Newton's method and CG: the step is divided as the motion demands (see gxs_step_desc) */
     double quality;
 } gx_step_desc;
 typedef gxs_step_report gx_step_report;
@@ -11988,6 +11989,7 @@ static gx_result gxp_translate_step(gx_body *body, const gx_step_desc *desc, gxs
     step->dt = desc->dt;
     step->integrator = desc->integrator;
     step->substeps = desc->substeps;
+    step->quick = desc->quick;
     step->newton_iterations = desc->newton_iterations;
     step->newton_tolerance = desc->newton_tolerance;
     step->cg_iterations = desc->cg_iterations;

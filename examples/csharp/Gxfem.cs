@@ -194,6 +194,7 @@ namespace Gxfem {
         public double mass_damping;
         public uint substeps;
         public uint newton_iterations;
+        public uint quick;
         public double newton_tolerance;
         public uint cg_iterations;
         public double cg_tolerance;
@@ -232,6 +233,7 @@ namespace Gxfem {
         public gxs_stop stop;
         public UIntPtr active_unknowns;
         public uint substeps;
+        public uint quick;
         public uint parts;
         public gxs_integrator integrator;
         public double error;
@@ -414,6 +416,7 @@ namespace Gxfem {
         public fixed double gravity[3];
         public gxs_integrator integrator;
         public uint substeps;
+        public uint quick;
         public uint newton_iterations;
         public double newton_tolerance;
         public uint cg_iterations;
