@@ -745,6 +745,9 @@ typedef struct gxb_boolean_desc {
      */
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
     void *user;
+    /* The host's threads; zero: none. Results are the same, to the last bit. With threads, work takes up to 40 bytes
+       more for each triangle. Each task takes less than 8 kB of stack. */
+    gx_jobs jobs;
 } gxb_boolean_desc;
 
 enum {
@@ -8037,6 +8040,7 @@ typedef struct gxbp_options {
     void (*coarsen)(gxb_boolean *b), (*mend)(gxb_boolean *b), (*patch)(gxb_boolean *b);
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
     void *user;
+    gx_jobs jobs;
 } gxbp_options;
 
 /* Memory: where it comes from, and how much of it there is. */
@@ -8212,6 +8216,35 @@ static uint32_t gxbp_new_link(gxb_boolean *b, uint32_t value, uint32_t next) {
     b->mesh.links[b->mesh.link_count].value = value;
     b->mesh.links[b->mesh.link_count].next = next;
     return b->mesh.link_count++;
+}
+
+/* >>parts: loops whose parts may run on the host's threads --------------------------------------------------------- */
+/* In: a loop, cut into parts whose number does not depend on threads, and a task for each part. Out: all tasks done. A
+   task writes only what no other task of the loop reads or writes. It allocates nothing and keeps nothing in caches, so
+   it decides by filters only; what they leave open is done after the loop, by the caller, in the loop's order. */
+
+#ifndef GXBP_PART
+#define GXBP_PART 2048u /* items of a part: some ten microseconds; fewer in tests/test_threads.c */
+#endif
+
+static int gxbp_has_jobs(const gxb_boolean *b) { return b->options.jobs.parallel_for != NULL; }
+
+static size_t gxbp_part_count(size_t items) { return (items + GXBP_PART - 1) / GXBP_PART; }
+
+/* Items from first to before *end: those of a part */
+static uint32_t gxbp_part_first(size_t part, uint32_t items, uint32_t *end) {
+    const uint32_t first = (uint32_t)(part * GXBP_PART);
+    *end = items - first < GXBP_PART ? items : first + GXBP_PART;
+    return first;
+}
+
+static void gxbp_each_part(const gxb_boolean *b, size_t count, void (*task)(void *context, size_t part),
+                           void *context) {
+    size_t i;
+    if (gxbp_has_jobs(b) && count > 1)
+        b->options.jobs.parallel_for(b->options.jobs.user, count, task, context);
+    else
+        for (i = 0; i < count; i++) task(context, i);
 }
 
 /* >>keys: points found by coordinates or by definition ------------------------------------------------------------- */
@@ -8404,14 +8437,30 @@ static void gxbp_extent(const gxb_boolean *b, uint32_t s, double low[3], double 
     }
 }
 
-static gxbp_box gxbp_box_of(const gxb_boolean *b, uint32_t s) {
+/* An operand as the caller gave it, of which nothing is checked but its indices; scale takes it into the frame. */
+typedef struct gxbp_raw {
+    const gxb_operand *operand;
+    double scale;
+} gxbp_raw;
+
+/* Corner k of triangle t. The scale is a power of two: exact, as in gxbp_scale, but for the sign of a zero. */
+static inline void gxbp_given_corner(const gxbp_raw *given, size_t t, size_t k, double x[3]) {
+    const double *p = given->operand->vertices + 3 * (size_t)given->operand->triangles[3 * t + k];
+    x[0] = p[0] * given->scale;
+    x[1] = p[1] * given->scale;
+    x[2] = p[2] * given->scale;
+}
+
+static inline gxbp_box gxbp_box_of(const gxbp_raw *given, size_t t) {
     gxbp_box box;
-    double low[3], high[3];
+    double p[3], q[3], r[3];
     int k;
-    gxbp_extent(b, s, low, high);
+    gxbp_given_corner(given, t, 0, p);
+    gxbp_given_corner(given, t, 1, q);
+    gxbp_given_corner(given, t, 2, r);
     for (k = 0; k < 3; k++) {
-        box.low[k] = gxbp_float_below(low[k]);
-        box.high[k] = gxbp_float_above(high[k]);
+        box.low[k] = gxbp_float_below(gxbp_min(gxbp_min(p[k], q[k]), r[k]));
+        box.high[k] = gxbp_float_above(gxbp_max(gxbp_max(p[k], q[k]), r[k]));
     }
     return box;
 }
@@ -8433,14 +8482,14 @@ static uint32_t gxbp_spread(uint32_t x) {
 static uint32_t gxbp_lattice(double t) { return t > 0 ? t < 1023 ? (uint32_t)t : 1023 : 0; }
 
 /* Sorts the sources along a Z-order curve by their first corners; work: two words of 64 bits each. */
-static GXBP_APART void gxbp_sort_sources(const gxb_boolean *b, const gxbp_operand *o, uint64_t *work) {
+static GXBP_APART void gxbp_sort_sources(const gxbp_operand *o, const gxbp_raw *given, uint64_t *work) {
     uint64_t *from = work, *to = work + o->source_count, *swap;
-    double low[3], high[3], scale[3];
+    double low[3], high[3], scale[3], x[3];
     uint32_t i, pass, k;
-    memcpy(low, gxbp_corner_of(b, o->source, 0), sizeof low);
+    gxbp_given_corner(given, 0, 0, low);
     memcpy(high, low, sizeof high);
     for (i = 1; i < o->source_count; i++) {
-        const double *x = gxbp_corner_of(b, o->source + i, 0);
+        gxbp_given_corner(given, i, 0, x);
         for (k = 0; k < 3; k++) {
             low[k] = gxbp_min(x[k], low[k]);
             high[k] = gxbp_max(x[k], high[k]);
@@ -8448,8 +8497,8 @@ static GXBP_APART void gxbp_sort_sources(const gxb_boolean *b, const gxbp_operan
     }
     for (k = 0; k < 3; k++) scale[k] = high[k] > low[k] ? 1023 / (high[k] - low[k]) : 0;
     for (i = 0; i < o->source_count; i++) {
-        const double *x = gxbp_corner_of(b, o->source + i, 0);
         uint32_t key = 0;
+        gxbp_given_corner(given, i, 0, x);
         for (k = 0; k < 3; k++) key |= gxbp_spread(gxbp_lattice((x[k] - low[k]) * scale[k])) << k;
         from[i] = (uint64_t)key << 32 | (o->source + i);
     }
@@ -8485,14 +8534,14 @@ static void gxbp_widen_leaf(gxbp_leaf_boxes *leaf, uint32_t x, const gxbp_box *b
 }
 
 /* Boxes of leaf i's sources, and around them */
-static void gxbp_fill_leaf(gxb_boolean *b, const gxbp_operand *o, uint32_t i) {
+static void gxbp_fill_leaf(gxb_boolean *b, const gxbp_operand *o, const gxbp_raw *given, uint32_t i) {
     gxbp_leaf_boxes *leaf = &b->in.bounds[o->bounds + i];
     gxbp_box *around = &b->in.boxes[o->tree.first + i];
     uint32_t x, k;
     for (x = 0; x < GXBP_LEAF; x++) {
         gxbp_box box;
         if (i * GXBP_LEAF + x < o->source_count) {
-            box = gxbp_box_of(b, o->order[i * GXBP_LEAF + x]);
+            box = gxbp_box_of(given, o->order[i * GXBP_LEAF + x] - o->source);
             if (x == 0)
                 *around = box;
             else
@@ -8509,10 +8558,15 @@ static void gxbp_fill_leaf(gxb_boolean *b, const gxbp_operand *o, uint32_t i) {
     }
 }
 
-static void gxbp_fill_tree(gxb_boolean *b, const gxbp_operand *o) {
+/* Fills the tree. keys: two words of 64 bits for each source */
+static GXBP_APART void gxbp_fill_tree(gxb_boolean *b, const gxbp_operand *o, const gxbp_raw *given, uint64_t *keys) {
     const gxbp_tree *t = &o->tree;
     uint32_t i, l;
-    for (i = 0; i < t->size[0]; i++) gxbp_fill_leaf(b, o, i);
+    if (o->source_count > 4 * GXBP_LEAF)
+        gxbp_sort_sources(o, given, keys);
+    else
+        for (i = 0; i < o->source_count; i++) o->order[i] = o->source + i;
+    for (i = 0; i < t->size[0]; i++) gxbp_fill_leaf(b, o, given, i);
     for (l = 1; l < t->levels; l++)
         for (i = 0; i < t->size[l - 1]; i++) {
             gxbp_box *box = &b->in.boxes[t->first + t->level[l] + i / 2];
@@ -8524,18 +8578,12 @@ static void gxbp_fill_tree(gxb_boolean *b, const gxbp_operand *o) {
         }
 }
 
-static GXBP_APART gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
+/* A tree without boxes yet. Room for the leaves' is there. */
+static gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
     gxbp_tree *t = &o->tree;
-    uint32_t size = (o->source_count + GXBP_LEAF - 1) / GXBP_LEAF, total = 0, i;
-    const size_t words = o->source_count;
-    o->order = (uint32_t *)gxbp_allocate(&b->store.allocator, words * sizeof *o->order);
+    uint32_t size = (o->source_count + GXBP_LEAF - 1) / GXBP_LEAF, total = 0;
+    o->order = (uint32_t *)gxbp_allocate(&b->store.allocator, o->source_count * sizeof *o->order);
     if (o->order == NULL) return GX_ERROR_MEMORY;
-    if (o->source_count > 4 * GXBP_LEAF) {
-        uint64_t *work = (uint64_t *)gxbp_borrow(b, 2 * words * sizeof *work);
-        if (work == NULL) return b->error;
-        gxbp_sort_sources(b, o, work);
-    } else
-        for (i = 0; i < o->source_count; i++) o->order[i] = o->source + i;
     o->bounds = b->in.bound_count;
     b->in.bound_count += size;
     for (t->levels = 0;; size = (size + 1) / 2) {
@@ -8545,9 +8593,8 @@ static GXBP_APART gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
         if (size == 1) break;
     }
     t->first = b->in.box_count;
-    if (!GXBP_ROOM(b, in.boxes, in.box, total)) return GX_ERROR_MEMORY;
+    if (!GXBP_ROOM(b, in.boxes, in.box, total)) return b->error;
     b->in.box_count += total;
-    gxbp_fill_tree(b, o);
     return GX_OK;
 }
 
@@ -8828,10 +8875,10 @@ static int gxbp_has_area(const double *p, const double *q, const double *r) {
     return gxbp_has_area_exactly(p, q, r);
 }
 
-/* Resets a source to one subtriangle, which is appended. The caller has made room for it. */
-static inline void gxbp_reset_source(gxb_boolean *b, uint32_t s) {
+/* Makes a source of one subtriangle, number first. */
+static inline void gxbp_make_whole(gxb_boolean *b, uint32_t s, uint32_t first) {
     gxbp_source *t = &b->in.sources[s];
-    gxbp_subtriangle *f = &b->mesh.subtriangles[b->mesh.subtriangle_count];
+    gxbp_subtriangle *f = &b->mesh.subtriangles[first];
     int k;
     for (k = 0; k < 3; k++) {
         t->edge[k] = GXB_NONE;
@@ -8843,20 +8890,7 @@ static inline void gxbp_reset_source(gxb_boolean *b, uint32_t s) {
     t->root = s;
     f->source = t->flags & GXBP_DEGENERATE ? GXB_NONE : s;
     f->next = f->covers = f->state = GXB_NONE;
-    t->subtriangle = b->mesh.subtriangle_count++;
-}
-
-static void gxbp_fill_source(gxb_boolean *b, uint32_t s, uint32_t operand, const uint32_t *twin, uint32_t first) {
-    gxbp_source *t = &b->in.sources[s];
-    const gxb_cpoint *x = b->store.points;
-    int k;
-    for (k = 0; k < 3; k++) t->twin[k] = twin[k] == GXB_NONE ? GXB_NONE : twin[k] + 3 * first;
-    t->plane = GXB_NONE;
-    t->operand = operand;
-    t->flags = gxbp_has_area(x[t->point[0]].ball.x, x[t->point[1]].ball.x, x[t->point[2]].ball.x)
-                 ? 0
-                 : (uint32_t)GXBP_DEGENERATE;
-    gxbp_reset_source(b, s);
+    t->subtriangle = first;
 }
 
 /* A triangle without area is nobody's neighbour. */
@@ -8897,30 +8931,110 @@ static gx_result gxbp_read_points(gxb_boolean *b, const gxb_operand *o, uint32_t
     return GX_OK;
 }
 
-static GXBP_APART gx_result gxbp_read_triangles(gxb_boolean *b, const gxb_operand *o, uint32_t *work, size_t *bad) {
-    uint32_t *points = work, *local = points + o->vertex_count, *joined = local + o->vertex_count;
-    uint32_t *twin = joined + 3 * o->triangle_count, open, first = b->in.source_count;
-    const uint32_t *triangles = o->triangles;
+/* An operand that is being read, and the memory of its stages */
+typedef struct gxbp_reading {
+    gxb_boolean *b;
+    gxbp_raw given;
+    gxbp_operand *added;
+    uint64_t *keys;                  /* two for each triangle, to sort them */
+    uint32_t *points, *local;        /* of each vertex, see gxbp_read_points */
+    uint32_t *joined, *twin, *room;  /* 3 words for each triangle; the same; gxbp_twin_room */
+    uint32_t subtriangle, open;      /* the first subtriangle; a half-edge at the rim, or GXB_NONE */
     int distinct;
-    gx_result result = gxbp_read_points(b, o, points, local, &distinct, bad);
-    size_t h;
-    if (result != GX_OK) return result;
-    if (!distinct) {
-        for (h = 0; h < 3 * o->triangle_count; h++) joined[h] = local[o->triangles[h]];
-        triangles = joined;
+    gx_result result;
+    size_t bad;
+} gxbp_reading;
+
+/* The sources of one part, each with one subtriangle */
+static void gxbp_fill_sources(void *context, size_t part) {
+    const gxbp_reading *r = (const gxbp_reading *)context;
+    gxb_boolean *b = r->b;
+    const gxb_cpoint *x = b->store.points;
+    uint32_t end, h = gxbp_part_first(part, r->added->source_count, &end), k;
+    for (; h < end; h++) {
+        const uint32_t s = r->added->source + h;
+        gxbp_source *t = &b->in.sources[s];
+        for (k = 0; k < 3; k++) {
+            const uint32_t twin = r->twin[3 * h + k];
+            t->point[k] = r->points[r->given.operand->triangles[3 * h + k]];
+            t->twin[k] = twin == GXB_NONE ? GXB_NONE : twin + 3 * r->added->source;
+        }
+        t->plane = GXB_NONE;
+        t->operand = b->in.operand_count;
+        t->flags = gxbp_has_area(x[t->point[0]].ball.x, x[t->point[1]].ball.x, x[t->point[2]].ball.x)
+                     ? 0
+                     : (uint32_t)GXBP_DEGENERATE;
+        gxbp_make_whole(b, s, r->subtriangle + h);
     }
-    gxbp_find_twins(triangles, o->triangle_count, (uint32_t)o->vertex_count, twin, &open, twin + 3 * o->triangle_count);
-    if (open != GXB_NONE && o->operation != GXB_SPLIT) {
-        *bad = open / 3;
+}
+
+static void gxbp_pair_half_edges(gxbp_reading *r, const uint32_t *triangles) {
+    const gxb_operand *o = r->given.operand;
+    gxbp_find_twins(triangles, o->triangle_count, (uint32_t)o->vertex_count, r->twin, &r->open, r->room);
+}
+
+/* Stages that need nothing of each other: points; half-edges, as if no two vertices were at one place; the tree. What
+   is wrong with a vertex is found by the first one. */
+static void gxbp_read_stage(void *context, size_t stage) {
+    gxbp_reading *r = (gxbp_reading *)context;
+    if (stage == 0)
+        r->result = gxbp_read_points(r->b, r->given.operand, r->points, r->local, &r->distinct, &r->bad);
+    else if (stage == 1)
+        gxbp_pair_half_edges(r, r->given.operand->triangles);
+    else
+        gxbp_fill_tree(r->b, r->added, &r->given, r->keys);
+}
+
+static GXBP_APART gx_result gxbp_read_triangles(gxbp_reading *r) {
+    gxb_boolean *b = r->b;
+    const gxb_operand *o = r->given.operand;
+    const size_t parts = gxbp_part_count(o->triangle_count);
+    const int together = gxbp_has_jobs(b) && parts > 1;
+    size_t h;
+    if (together)
+        gxbp_each_part(b, 3, gxbp_read_stage, r);
+    else
+        gxbp_read_stage(r, 0);
+    if (r->result != GX_OK) return r->result;
+    if (!r->distinct) {
+        for (h = 0; h < 3 * o->triangle_count; h++) r->joined[h] = r->local[o->triangles[h]];
+        gxbp_pair_half_edges(r, r->joined);
+    } else if (!together)
+        gxbp_read_stage(r, 1);
+    if (r->open != GXB_NONE && o->operation != GXB_SPLIT) {
+        r->bad = r->open / 3;
         return GX_ERROR_NOT_CLOSED;
     }
-    for (h = 0; h < o->triangle_count; h++) {
-        gxbp_source *t = &b->in.sources[b->in.source_count];
-        int k;
-        for (k = 0; k < 3; k++) t->point[k] = points[triangles[3 * h + (size_t)k]];
-        gxbp_fill_source(b, b->in.source_count, b->in.operand_count, twin + 3 * h, first);
-        b->in.source_count++;
-    }
+    if (b->points.renamed) /* points' names are looked up, which shortens the ways to them */
+        for (h = 0; h < parts; h++) gxbp_fill_sources(r, h);
+    else
+        gxbp_each_part(b, parts, gxbp_fill_sources, r);
+    b->in.source_count += (uint32_t)o->triangle_count;
+    b->mesh.subtriangle_count += (uint32_t)o->triangle_count;
+    if (!together) gxbp_read_stage(r, 2);
+    return GX_OK;
+}
+
+/* Lends memory to the stages. The keys come last if stages follow each other, where twins are no longer needed. */
+static gx_result gxbp_begin_reading(gxb_boolean *b, const gxb_operand *o, gxbp_operand *added, gxbp_reading *r) {
+    const size_t triangles = o->triangle_count, vertices = o->vertex_count,
+                 apart = gxbp_has_jobs(b) && gxbp_part_count(triangles) > 1 ? 4 * triangles : 0;
+    uint32_t *work = (uint32_t *)gxbp_borrow(b, (apart + 2 * vertices + 6 * triangles + gxbp_twin_room(vertices)) *
+                                                    sizeof *work);
+    if (work == NULL) return b->error;
+    memset(r, 0, sizeof *r);
+    r->b = b;
+    r->given.operand = o;
+    r->given.scale = gxbp_power(b->store.shift);
+    r->added = added;
+    r->keys = (uint64_t *)(void *)work;
+    r->points = work + apart;
+    r->local = r->points + vertices;
+    r->joined = r->local + vertices;
+    r->twin = r->joined + 3 * triangles;
+    r->room = r->twin + 3 * triangles;
+    r->subtriangle = b->mesh.subtriangle_count;
+    r->bad = SIZE_MAX;
     return GX_OK;
 }
 
@@ -8930,23 +9044,24 @@ static size_t gxbp_presize(const gxb_boolean *b, size_t count, size_t thirds) {
     return b->in.operand_count > 0 ? count : count + thirds * count / 3;
 }
 
-static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_t *bad) {
-    const size_t words = 2 * o->vertex_count + 6 * o->triangle_count + gxbp_twin_room(o->vertex_count);
+static gx_result gxbp_operand_room(gxb_boolean *b, const gxb_operand *o) {
     const size_t sources = gxbp_presize(b, o->triangle_count, 1), subtriangles = gxbp_presize(b, o->triangle_count, 3),
                  points = gxbp_presize(b, o->vertex_count, 3);
     const size_t leaves = gxbp_presize(b, (o->triangle_count + GXBP_LEAF - 1) / GXBP_LEAF, 1);
-    gxbp_operand *added;
-    gx_result result;
-    uint32_t *work;
     if (!GXBP_ROOM(b, in.operands, in.operand, 1) || !gxbp_operand_box_room(b) ||
         !GXBP_ROOM(b, in.sources, in.source, sources) || !GXBP_ROOM(b, in.bounds, in.bound, leaves) ||
         !GXBP_ROOM(b, mesh.subtriangles, mesh.subtriangle, subtriangles) ||
         !GXBP_ROOM(b, points.vertices, points.vertex, points) || !gxbp_table_room(b, (uint32_t)o->vertex_count))
         return b->error;
-    result = GXBP_RESERVE(&b->store.allocator, &b->store, points, point, points);
+    return GXBP_RESERVE(&b->store.allocator, &b->store, points, point, points);
+}
+
+static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_t *bad) {
+    gxbp_operand *added;
+    gxbp_reading reading;
+    gx_result result = gxbp_operand_room(b, o);
     if (result != GX_OK) return result;
-    work = (uint32_t *)gxbp_borrow(b, words * sizeof *work);
-    if (work == NULL) return b->error;
+    reading.bad = SIZE_MAX;
     added = &b->in.operands[b->in.operand_count];
     memset(added, 0, sizeof *added);
     added->operation = o->operation;
@@ -8954,9 +9069,11 @@ static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operan
     added->simple = o->simple;
     added->source = b->in.source_count;
     added->source_count = (uint32_t)o->triangle_count;
-    result = gxbp_read_triangles(b, o, work, bad);
+    result = gxbp_begin_reading(b, o, added, &reading);
     if (result == GX_OK) result = gxbp_make_tree(b, added);
+    if (result == GX_OK) result = gxbp_read_triangles(&reading);
     if (result != GX_OK) {
+        *bad = reading.bad;
         gxbp_release(&b->store.allocator, added->order, o->triangle_count * sizeof *added->order);
         return result;
     }
@@ -13955,6 +14072,7 @@ GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean
     b->budget.limit = desc->memory_limit;
     b->options.inside = desc->inside;
     b->options.user = desc->user;
+    b->options.jobs = desc->jobs;
     b->store.allocator.allocate = gxbp_count_allocate;
     b->store.allocator.release = gxbp_count_release;
     if (desc->allocator.allocate == NULL || desc->allocator.reallocate != NULL)
@@ -14060,7 +14178,7 @@ static GXBP_COLD void gxbp_forget_arrangement(gxb_boolean *b) {
     b->kept.valid = 0;
     for (s = 0; s < b->in.source_count; s++) {
         b->in.sources[s].flags &= (uint32_t)GXBP_DEGENERATE;
-        gxbp_reset_source(b, s);
+        gxbp_make_whole(b, s, b->mesh.subtriangle_count++);
     }
 }
 
@@ -14213,6 +14331,7 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_LOOSE
 #undef GXBP_BARE
 #undef GXBP_ARENA
+#undef GXBP_PART
 #undef GXBP_IS_SPARSE
 #undef GXBP_FAILS
 #undef GXBP_PLANS
