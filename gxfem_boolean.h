@@ -8086,6 +8086,11 @@ typedef struct gxbp_work {
     uint32_t fan_vertex_count, fan_vertex_capacity;
     uint32_t *fan_triangles;
     uint32_t fan_triangle_count, fan_triangle_capacity;
+    /* >>encounters: pairs of boxes, x 2; pairs of sources */
+    uint32_t *box_pairs;
+    uint32_t box_pair_count, box_pair_capacity;
+    struct gxbp_encounter *encounters;
+    uint32_t encounter_count, encounter_capacity;
     uint32_t plane;             /* of the triangulation at work */
     uint32_t stamp, head_stamp; /* of vertices in the triangulation at work, of those with heads */
 } gxbp_work;
@@ -9419,10 +9424,9 @@ static inline void gxbp_record_crossing(gxb_boolean *b, uint32_t s, int k, uint3
     gxbp_found(b, m, point);
 }
 
-/* sign[x][y]: orientation of (p[0], p[y + 1], q[x + 1], q[0]). The differences and products are shared: see
- * gxbp_cross_size for the bound. */
-static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const double *const p[3], int sign[2][2]) {
-    const double *corner[4];
+/* sign[x][y]: orientation of (p[0], p[y + 1], q[x + 1], q[0]); 0: the filter leaves it open. The differences and
+ * products are shared: see gxbp_cross_size for the bound. Returns 1 if none is left open. */
+static int gxbp_orient_pairs_by_filter(const double *const q[3], const double *const p[3], int sign[2][2]) {
     double w[3], u[2][3], v[3], m[3], size[3];
     int x, y, k;
     for (k = 0; k < 3; k++) {
@@ -9438,7 +9442,18 @@ static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const do
                 32 * GXBP_U * (gxbp_abs(a[0]) * size[0] + gxbp_abs(a[1]) * size[1] + gxbp_abs(a[2]) * size[2]) +
                 GXBP_TINY;
             sign[x][y] = gxbp_filter_sign(a[0] * m[0] + a[1] * m[1] + a[2] * m[2], bound);
-            b->store.filter_calls++;
+        }
+    }
+    return sign[0][0] * sign[0][1] * sign[1][0] * sign[1][1] != 0;
+}
+
+static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const double *const p[3], int sign[2][2]) {
+    const double *corner[4];
+    int x, y;
+    b->store.filter_calls += 4;
+    if (gxbp_orient_pairs_by_filter(q, p, sign)) return;
+    for (y = 0; y < 2; y++)
+        for (x = 0; x < 2; x++) {
             if (sign[x][y] != 0) continue;
             b->store.exact_calls++;
             corner[0] = p[0];
@@ -9447,28 +9462,32 @@ static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const do
             corner[3] = q[0];
             sign[x][y] = gxbp_orient3d_exact(corner);
         }
-    }
 }
 
 /* The lone corner: the one that is alone on its side */
 static int gxbp_lone_corner(const int side[3]) { return side[1] == side[2] ? 0 : side[0] == side[2] ? 1 : 2; }
 
-/* No corner lies in the other's plane. Two edges of each triangle cross that plane, those at its lone corner. Where one
-   crosses follows from its orientations with the two edges of the other triangle. Four orientations serve both
-   triangles. The common segment's direction u in s leads from the edge that leaves the lone corner to the one that
-   comes back. The lone corner is to its left, so the corner's side_s is the sign of |n_t n_s u|. For t's direction w
-   its side_t is the sign of |n_s n_t w|. So u and w agree where the lone corners' sides differ. One end of the common
-   segment is the start of both. */
-static void gxbp_meet_across(gxb_boolean *b, uint32_t s, uint32_t t, const int side_s[3], const int side_t[3],
-                             gxbp_meeting *m) {
-    const int i = gxbp_lone_corner(side_s), j = gxbp_lone_corner(side_t);
-    const double *p[3], *q[3];
-    int sign[2][2], y[2], k, x;
+/* Corners of two triangles from their lone corners i and j on */
+static void gxbp_list_corners(const gxb_boolean *b, uint32_t s, int i, uint32_t t, int j, const double *q[3],
+                              const double *p[3]) {
+    int k;
     for (k = 0; k < 3; k++) {
         q[k] = gxbp_corner_of(b, s, (i + k) % 3);
         p[k] = gxbp_corner_of(b, t, (j + k) % 3);
     }
-    gxbp_orient_pairs(b, q, p, sign);
+}
+
+/* The points in which two triangles meet that lie across each other's planes: no corner lies in the other's plane. sign:
+   see gxbp_orient_pairs, of corners in the order of gxbp_list_corners. Two edges of each triangle cross that plane,
+   those at its lone corner. Where one crosses follows from its orientations with the two edges of the other triangle.
+   Four orientations serve both triangles. The common segment's direction u in s leads from the edge that leaves the lone
+   corner to the one that comes back. The lone corner is to its left, so the corner's side_s is the sign of
+   |n_t n_s u|. For t's direction w its side_t is the sign of |n_s n_t w|. So u and w agree where the lone corners' sides
+   differ. One end of the common segment is the start of both. */
+static void gxbp_meet_across(gxb_boolean *b, uint32_t s, uint32_t t, const int side_s[3], const int side_t[3],
+                             int sign[2][2], gxbp_meeting *m) {
+    const int i = gxbp_lone_corner(side_s), j = gxbp_lone_corner(side_t);
+    int y[2], k, x;
     for (k = 0; k < 3; k++) {
         if (k == (i + 1) % 3) continue;
         x = k != i;
@@ -9626,49 +9645,19 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
     gxbp_sides(b, s, b->in.sources[t].plane, 1, side_s);
     if (gxbp_all_on_one_side(side_s)) return;
     m.count = m.left = 0;
-    if (side_s[0] * side_s[1] * side_s[2] != 0 && side_t[0] * side_t[1] * side_t[2] != 0)
-        gxbp_meet_across(b, s, t, side_s, side_t, &m);
-    else {
+    if (side_s[0] * side_s[1] * side_s[2] != 0 && side_t[0] * side_t[1] * side_t[2] != 0) {
+        const double *q[3], *p[3];
+        int sign[2][2];
+        gxbp_list_corners(b, s, gxbp_lone_corner(side_s), t, gxbp_lone_corner(side_t), q, p);
+        gxbp_orient_pairs(b, q, p, sign);
+        gxbp_meet_across(b, s, t, side_s, side_t, sign, &m);
+    } else {
         for (k = 0; k < 3; k++) common += gxbp_is_corner(b, t, b->in.sources[s].point[k]);
         if (common == 1 && (gxbp_touches_by_corner(side_s) || gxbp_touches_by_corner(side_t))) return;
         gxbp_meet_one_way(b, s, t, side_s, &m);
         gxbp_meet_one_way(b, t, s, side_t, &m);
     }
     gxbp_record_meeting(b, s, t, &m);
-}
-
-static GXBP_APART void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, uint32_t i, const gxbp_operand *q,
-                                        uint32_t j) {
-    uint32_t first[GXBP_LEAF], second[GXBP_LEAF], x, y;
-    gxbp_test_leaf(&b->in.bounds[o->bounds + i], &b->in.boxes[q->tree.first + j], first);
-    for (x = 0; x < GXBP_LEAF; x++) {
-        gxbp_box box;
-        if (!first[x] || b->in.sources[o->order[i * GXBP_LEAF + x]].flags & GXBP_DEGENERATE) continue;
-        box = gxbp_leaf_box(&b->in.bounds[o->bounds + i], x);
-        if (!gxbp_test_leaf(&b->in.bounds[q->bounds + j], &box, second)) continue;
-        for (y = o == q && i == j ? x + 1 : 0; y < GXBP_LEAF; y++) {
-            if (!second[y] || b->in.sources[q->order[j * GXBP_LEAF + y]].flags & GXBP_DEGENERATE) continue;
-            gxbp_meet(b, o->order[i * GXBP_LEAF + x], q->order[j * GXBP_LEAF + y]);
-        }
-    }
-}
-
-/* Box i of level l of one tree meets box j of level m of the other. Goes down to the boxes within the one of the higher
- * level, or within both. The depth of the recursion is the higher level. */
-static GXBP_APART void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, uint32_t l, uint32_t i,
-                                       const gxbp_operand *q, uint32_t m, uint32_t j) {
-    const gxbp_tree *s = &o->tree, *t = &q->tree;
-    const uint32_t down_s = l >= m, down_t = m >= l;
-    uint32_t c, d;
-    if (b->error != GX_OK) return;
-    if (l == 0 && m == 0) {
-        gxbp_meet_leaves(b, o, i, q, j);
-        return;
-    }
-    for (c = i << down_s; c < (i + 1) << down_s && c < s->size[l - down_s]; c++)
-        for (d = o == q && c > j << down_t ? c : j << down_t; d < (j + 1) << down_t && d < t->size[m - down_t]; d++)
-            if (gxbp_boxes_meet(b, s, l - down_s, c, t, m - down_t, d))
-                gxbp_meet_boxes(b, o, l - down_s, c, q, m - down_t, d);
 }
 
 /* --- surfaces of which a point sees all cannot cross themselves --- */
@@ -9724,13 +9713,275 @@ static GXBP_APART int gxbp_is_star(const gxb_boolean *b, const gxbp_operand *o) 
     return crossed == 1;
 }
 
+/* >>encounters: pairs of triangles whose boxes meet ---------------------------------------------------------------- */
+/* In: the trees of two operands. Out: all pairs of their sources whose boxes overlap, given to gxbp_meet. With the
+   host's threads, pairs of boxes are searched side by side, and each pair of sources is judged there as far as filters
+   go. The pairs are then met in the order in which they would be without threads. Touches what >>meet does. */
+
+/* What tasks found out about a pair. BESIDE: all of t is on one side of s's plane. APART: they do not meet, and
+   nothing else is known. ACROSS: they meet, each across the other's plane, and the signs are behind the judgement: those
+   of the corners of s, of t, and of gxbp_orient_pairs; 1 where one is positive. */
+enum { GXBP_PAIR_OPEN, GXBP_PAIR_BESIDE, GXBP_PAIR_APART, GXBP_PAIR_ACROSS, GXBP_JUDGEMENT_BITS = 2 };
+typedef struct gxbp_encounter {
+    uint32_t s, t, judged;
+} gxbp_encounter;
+
+/* Where a walk through two trees puts what it finds: pairs of boxes of level floor or below it, or pairs of sources */
+typedef struct gxbp_finds {
+    uint32_t floor;
+    int boxes;            /* 1: pairs of boxes, in b->work.box_pairs; else pairs of sources, in the list */
+    gxbp_encounter *list; /* capacity */
+    uint32_t count, capacity;
+    int full;
+    uint64_t filter_calls;
+} gxbp_finds;
+enum {
+    GXBP_FLOOR = 3,            /* of pairs of boxes: 64 sources in each */
+    GXBP_TASK_BOXES = 16,      /* pairs of boxes for a task */
+    GXBP_TASK_ENCOUNTERS = 2048, /* of a task: if there are more, the rest is left to the caller */
+    GXBP_TASKS = 32            /* at a time */
+};
+
+static void gxbp_source_filter(const gxb_boolean *b, uint32_t s, gxb_plane_filter *f) {
+    const gxbp_source *source = &b->in.sources[s];
+    const gxb_ball *p = &b->store.points[source->point[0]].ball;
+    double u[3], v[3], eu, ev;
+    if (source->plane != GXB_NONE) {
+        *f = b->store.planes[source->plane].filter;
+        return;
+    }
+    eu = gxbp_filter_difference(u, p, &b->store.points[source->point[1]].ball);
+    ev = gxbp_filter_difference(v, p, &b->store.points[source->point[2]].ball);
+    gxbp_filter_plane(f, p, u, eu, v, ev);
+}
+
+/* Sides of a source's corners by the filter, 0 where it leaves them open. Returns how many are not. */
+static int gxbp_sides_by_filter(const gxb_boolean *b, uint32_t s, const gxb_plane_filter *f, int side[3]) {
+    int k, known = 0;
+    for (k = 0; k < 3; k++) {
+        double bound;
+        const double value = gxbp_filter_side(&b->store.points[b->in.sources[s].point[k]].ball, f, &bound);
+        side[k] = gxbp_filter_sign(value, bound);
+        known += side[k] != 0;
+    }
+    return known;
+}
+
+/* Do the edges at a lone corner, on this side, pass beside the other triangle? sign: by the edge, then by the other
+   triangle's edge */
+static int gxbp_passes_beside(int side, int sign[2][2]) {
+    return (-side * sign[0][0] < 0 || side * sign[0][1] < 0) && (-side * sign[1][0] < 0 || side * sign[1][1] < 0);
+}
+
+/* What gxbp_meet would do with a pair, as far as filters tell. f: of s's plane */
+static uint32_t gxbp_judge_pair(const gxb_boolean *b, uint32_t s, uint32_t t, const gxb_plane_filter *f,
+                                gxbp_finds *finds) {
+    gxb_plane_filter g;
+    const double *q[3], *p[3];
+    int side_s[3], side_t[3], sign[2][2], turned[2][2], i, j, k;
+    const int known = gxbp_sides_by_filter(b, t, f, side_t);
+    uint32_t judged = GXBP_PAIR_ACROSS, bit = 1u << GXBP_JUDGEMENT_BITS;
+    finds->filter_calls += 3;
+    if (gxbp_all_on_one_side(side_t)) return GXBP_PAIR_BESIDE;
+    if (b->in.sources[s].operand == b->in.sources[t].operand && gxbp_are_neighbours(b, s, t))
+        return known > 0 ? GXBP_PAIR_APART : GXBP_PAIR_OPEN;
+    if (known < 3) return GXBP_PAIR_OPEN;
+    gxbp_source_filter(b, t, &g);
+    finds->filter_calls += 3;
+    k = gxbp_sides_by_filter(b, s, &g, side_s);
+    if (gxbp_all_on_one_side(side_s)) return GXBP_PAIR_APART;
+    if (k < 3) return GXBP_PAIR_OPEN;
+    i = gxbp_lone_corner(side_s);
+    j = gxbp_lone_corner(side_t);
+    gxbp_list_corners(b, s, i, t, j, q, p);
+    finds->filter_calls += 4;
+    if (!gxbp_orient_pairs_by_filter(q, p, sign)) return GXBP_PAIR_OPEN;
+    for (k = 0; k < 4; k++) turned[k % 2][k / 2] = sign[k / 2][k % 2];
+    if (gxbp_passes_beside(side_s[i], sign) && gxbp_passes_beside(side_t[j], turned)) return GXBP_PAIR_APART;
+    for (k = 0; k < 3; k++, bit *= 2) judged |= side_s[k] > 0 ? bit : 0;
+    for (k = 0; k < 3; k++, bit *= 2) judged |= side_t[k] > 0 ? bit : 0;
+    for (k = 0; k < 4; k++, bit *= 2) judged |= sign[k / 2][k % 2] > 0 ? bit : 0;
+    return judged;
+}
+
+/* Does with a pair what gxbp_meet does, in fewer steps where it is judged. */
+static void gxbp_meet_judged(gxb_boolean *b, const gxbp_encounter *e) {
+    int side_s[3], side_t[3], sign[2][2], k;
+    uint32_t kind = e->judged & 3, bits = e->judged >> GXBP_JUDGEMENT_BITS;
+    gxbp_meeting m;
+    if (kind == GXBP_PAIR_OPEN) {
+        gxbp_meet(b, e->s, e->t);
+        return;
+    }
+    if (b->error != GX_OK || !gxbp_need_plane(b, e->s) || kind == GXBP_PAIR_BESIDE || !gxbp_need_plane(b, e->t) ||
+        kind == GXBP_PAIR_APART)
+        return;
+    for (k = 0; k < 3; k++, bits /= 2) side_s[k] = bits & 1 ? 1 : -1;
+    for (k = 0; k < 3; k++, bits /= 2) side_t[k] = bits & 1 ? 1 : -1;
+    for (k = 0; k < 4; k++, bits /= 2) sign[k / 2][k % 2] = bits & 1 ? 1 : -1;
+    m.count = m.left = 0;
+    gxbp_meet_across(b, e->s, e->t, side_s, side_t, sign, &m);
+    gxbp_record_meeting(b, e->s, e->t, &m);
+}
+
+static void gxbp_find_encounter(const gxb_boolean *b, gxbp_finds *finds, uint32_t s, uint32_t t, gxb_plane_filter *f,
+                                int *filtered) {
+    gxbp_encounter *e = &finds->list[finds->count];
+    if (finds->count == finds->capacity) {
+        finds->full = 1;
+        return;
+    }
+    if (!*filtered) gxbp_source_filter(b, s, f);
+    *filtered = 1;
+    e->s = s;
+    e->t = t;
+    e->judged = gxbp_judge_pair(b, s, t, f, finds);
+    finds->count++;
+}
+
+/* finds NULL: the pairs of two leaves meet; else they are listed there. */
+static GXBP_APART void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, uint32_t i, const gxbp_operand *q,
+                                        uint32_t j, gxbp_finds *finds) {
+    uint32_t first[GXBP_LEAF], second[GXBP_LEAF], x, y;
+    gxbp_test_leaf(&b->in.bounds[o->bounds + i], &b->in.boxes[q->tree.first + j], first);
+    for (x = 0; x < GXBP_LEAF; x++) {
+        const uint32_t s = o->order[i * GXBP_LEAF + x];
+        gxb_plane_filter f;
+        int filtered = 0;
+        gxbp_box box;
+        if (!first[x] || b->in.sources[s].flags & GXBP_DEGENERATE) continue;
+        box = gxbp_leaf_box(&b->in.bounds[o->bounds + i], x);
+        if (!gxbp_test_leaf(&b->in.bounds[q->bounds + j], &box, second)) continue;
+        for (y = o == q && i == j ? x + 1 : 0; y < GXBP_LEAF; y++) {
+            if (!second[y] || b->in.sources[q->order[j * GXBP_LEAF + y]].flags & GXBP_DEGENERATE) continue;
+            if (finds == NULL)
+                gxbp_meet(b, s, q->order[j * GXBP_LEAF + y]);
+            else
+                gxbp_find_encounter(b, finds, s, q->order[j * GXBP_LEAF + y], &f, &filtered);
+        }
+    }
+}
+
+static void gxbp_list_box_pair(gxb_boolean *b, uint32_t i, uint32_t j) {
+    if (!GXBP_ROOM(b, work.box_pairs, work.box_pair, 2)) return;
+    b->work.box_pairs[b->work.box_pair_count++] = i;
+    b->work.box_pairs[b->work.box_pair_count++] = j;
+}
+
+/* Box i of level l of one tree meets box j of level m of the other. Goes down to the boxes within the one of the higher
+ * level, or within both. The depth of the recursion is the higher level. finds NULL: all pairs of sources meet */
+static GXBP_APART void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, uint32_t l, uint32_t i,
+                                       const gxbp_operand *q, uint32_t m, uint32_t j, gxbp_finds *finds) {
+    const gxbp_tree *s = &o->tree, *t = &q->tree;
+    const uint32_t down_s = l >= m, down_t = m >= l;
+    uint32_t c, d;
+    if (b->error != GX_OK || (finds != NULL && finds->full)) return;
+    if (finds != NULL && finds->boxes && l <= finds->floor && m <= finds->floor) {
+        gxbp_list_box_pair(b, i, j);
+        return;
+    }
+    if (l == 0 && m == 0) {
+        gxbp_meet_leaves(b, o, i, q, j, finds);
+        return;
+    }
+    for (c = i << down_s; c < (i + 1) << down_s && c < s->size[l - down_s]; c++)
+        for (d = o == q && c > j << down_t ? c : j << down_t; d < (j + 1) << down_t && d < t->size[m - down_t]; d++)
+            if (gxbp_boxes_meet(b, s, l - down_s, c, t, m - down_t, d))
+                gxbp_meet_boxes(b, o, l - down_s, c, q, m - down_t, d, finds);
+}
+
+/* --- the same on the host's threads --- */
+
+/* Two operands, the levels of their pairs of boxes, and up to GXBP_TASKS tasks, with pairs from first on. done: how many
+   of its pairs of boxes a task has searched to the end */
+typedef struct gxbp_search {
+    gxb_boolean *b;
+    const gxbp_operand *o, *q;
+    uint32_t l, m, first;
+    gxbp_finds finds[GXBP_TASKS];
+    uint32_t done[GXBP_TASKS];
+} gxbp_search;
+
+/* Pairs of boxes of a task, in b->work.box_pairs; *end: behind the last one */
+static uint32_t gxbp_first_pair(const gxbp_search *search, size_t task, uint32_t *end) {
+    const uint32_t count = search->b->work.box_pair_count / 2,
+                   first = search->first + (uint32_t)task * (uint32_t)GXBP_TASK_BOXES;
+    *end = count - first < (uint32_t)GXBP_TASK_BOXES ? count : first + (uint32_t)GXBP_TASK_BOXES;
+    return first;
+}
+
+static void gxbp_meet_pair(const gxbp_search *search, uint32_t pair, gxbp_finds *finds) {
+    const uint32_t *boxes = search->b->work.box_pairs + 2 * (size_t)pair;
+    gxbp_meet_boxes(search->b, search->o, search->l, boxes[0], search->q, search->m, boxes[1], finds);
+}
+
+static void gxbp_search_boxes(void *context, size_t task) {
+    gxbp_search *search = (gxbp_search *)context;
+    gxbp_finds finds = search->finds[task]; /* not beside those of other threads */
+    uint32_t end, i = gxbp_first_pair(search, task, &end), known;
+    for (search->done[task] = 0; i < end; i++) {
+        known = finds.count;
+        gxbp_meet_pair(search, i, &finds);
+        if (finds.full) {
+            finds.count = known;
+            break;
+        }
+        search->done[task]++;
+    }
+    search->finds[task] = finds;
+}
+
+/* Meets what a task has found, then what it has left. */
+static void gxbp_meet_found(const gxbp_search *search, size_t task) {
+    gxb_boolean *b = search->b;
+    const gxbp_finds *finds = &search->finds[task];
+    uint32_t end, i = gxbp_first_pair(search, task, &end) + search->done[task], k;
+    b->store.filter_calls += finds->filter_calls;
+    for (k = 0; k < finds->count && b->error == GX_OK; k++) gxbp_meet_judged(b, &finds->list[k]);
+    for (; i < end && b->error == GX_OK; i++) gxbp_meet_pair(search, i, NULL);
+}
+
+static GXBP_COLD void gxbp_meet_by_parts(gxb_boolean *b, const gxbp_operand *o, uint32_t l, const gxbp_operand *q,
+                                         uint32_t m) {
+    const uint32_t floor = GXBP_FLOOR;
+    gxbp_search search;
+    gxbp_finds finds;
+    uint32_t count, k;
+    memset(&finds, 0, sizeof finds);
+    finds.floor = floor;
+    finds.boxes = 1;
+    b->work.box_pair_count = b->work.encounter_count = 0;
+    gxbp_meet_boxes(b, o, l, 0, q, m, 0, &finds);
+    if (!GXBP_ROOM(b, work.encounters, work.encounter, GXBP_TASKS * GXBP_TASK_ENCOUNTERS)) return;
+    search.b = b;
+    search.o = o;
+    search.q = q;
+    search.l = l < floor ? l : floor;
+    search.m = m < floor ? m : floor;
+    for (search.first = 0; search.first < b->work.box_pair_count / 2 && b->error == GX_OK;
+         search.first += (uint32_t)(GXBP_TASKS * GXBP_TASK_BOXES)) {
+        count = (b->work.box_pair_count / 2 - search.first + (uint32_t)GXBP_TASK_BOXES - 1) / (uint32_t)GXBP_TASK_BOXES;
+        if (count > (uint32_t)GXBP_TASKS) count = GXBP_TASKS;
+        for (k = 0; k < count; k++) {
+            memset(&search.finds[k], 0, sizeof *search.finds);
+            search.finds[k].list = b->work.encounters + k * (uint32_t)GXBP_TASK_ENCOUNTERS;
+            search.finds[k].capacity = GXBP_TASK_ENCOUNTERS;
+        }
+        gxbp_each_part(b, count, gxbp_search_boxes, &search);
+        for (k = 0; k < count; k++) gxbp_meet_found(&search, k);
+    }
+}
+
 /* A surface that is found not to meet itself is simple. */
 static void gxbp_meet_operands(gxb_boolean *b, uint32_t i, uint32_t j) {
     gxbp_operand *o = &b->in.operands[i], *q = &b->in.operands[j];
     const uint32_t l = o->tree.levels - 1, m = q->tree.levels - 1, marks = b->crossings.marks;
     if (i == j && !o->simple) o->simple = (uint32_t)gxbp_is_star(b, o);
     if (i == j && o->simple) return;
-    gxbp_meet_boxes(b, o, l, 0, q, m, 0);
+    if (gxbp_has_jobs(b) && gxbp_part_count((size_t)o->source_count + q->source_count) > 1)
+        gxbp_meet_by_parts(b, o, l, q, m);
+    else
+        gxbp_meet_boxes(b, o, l, 0, q, m, 0, NULL);
     if (i == j) o->simple = b->crossings.marks == marks && b->error == GX_OK;
 }
 
@@ -12519,12 +12770,60 @@ static void gxbp_round_vertex(gxb_boolean *b, uint32_t i) {
     gxbp_describe_point(b, b->out.points[i], &b->out.origins[i]);
 }
 
+/* Is a vertex rounded and described without exact numbers or names that are looked up? */
+static int gxbp_rounds_simply(const gxb_boolean *b, uint32_t point) {
+    const gxb_cpoint *p = &b->store.points[point];
+    const uint32_t *key = b->points.vertices[point].key;
+    if (p->kind == GXB_EXPLICIT) return 1;
+    if (gxbp_is_fine(b) || p->ball.error > GXBP_VERTEX_ERROR * gxbp_max3(p->ball.x)) return 0;
+    return key[0] != GXB_FROM_THREE_TRIANGLES ||
+           !((b->in.sources[key[1]].flags | b->in.sources[key[2]].flags | b->in.sources[key[3]].flags) & GXBP_FLAT);
+}
+
+/* left: of each part, how many vertices were not rounded */
+typedef struct gxbp_rounding {
+    gxb_boolean *b;
+    uint32_t *left;
+} gxbp_rounding;
+
+static void gxbp_round_part(void *context, size_t part) {
+    const gxbp_rounding *r = (const gxbp_rounding *)context;
+    uint32_t end, i = gxbp_part_first(part, r->b->out.point_count, &end), left = 0;
+    for (; i < end; i++)
+        if (gxbp_rounds_simply(r->b, r->b->out.points[i]))
+            gxbp_round_vertex(r->b, i);
+        else
+            left++;
+    r->left[part] = left;
+}
+
+static GXBP_COLD void gxbp_round_by_parts(gxb_boolean *b) {
+    const size_t parts = gxbp_part_count(b->out.point_count);
+    gxbp_rounding r;
+    size_t part;
+    r.b = b;
+    r.left = (uint32_t *)gxbp_borrow(b, parts * sizeof *r.left);
+    if (r.left == NULL) return;
+    gxbp_each_part(b, parts, gxbp_round_part, &r);
+    for (part = 0; part < parts; part++) {
+        uint32_t end, i = gxbp_part_first(part, b->out.point_count, &end);
+        for (; i < end && r.left[part] > 0; i++) {
+            if (gxbp_rounds_simply(b, b->out.points[i])) continue;
+            gxbp_round_vertex(b, i);
+            r.left[part]--;
+        }
+    }
+}
+
 static GXBP_APART void gxbp_round_vertices(gxb_boolean *b) {
     uint32_t i;
     if (b->error != GX_OK || !GXBP_ROOM(b, out.vertices, out.vertex, 3 * (size_t)b->out.point_count) ||
         !GXBP_ROOM(b, out.origins, out.origin, b->out.point_count))
         return;
-    for (i = 0; i < b->out.point_count; i++) gxbp_round_vertex(b, i);
+    if (gxbp_has_jobs(b) && gxbp_part_count(b->out.point_count) > 1)
+        gxbp_round_by_parts(b);
+    else
+        for (i = 0; i < b->out.point_count; i++) gxbp_round_vertex(b, i);
     b->out.vertex_count = 3 * b->out.point_count;
     b->out.origin_count = b->out.point_count;
 }
@@ -13359,9 +13658,49 @@ static void gxbp_sum_volumes(const gxb_boolean *b, const uint32_t *parent, doubl
     for (t = 0; t < b->out.triangle_count; t++) {
         const uint32_t root = parent[t];
         const gxb_ball *o = &b->store.points[gxbp_out_corner(b, root, 0)].ball;
-        volume[root] += gxbp_rough_volume(b, t, o);
+        volume[root] += gxbp_fence(gxbp_rough_volume(b, t, o)); /* fenced: as in gxbp_sum_volumes_by_parts */
         error[root] += 2 * (largest > 0 ? largest : gxbp_rough_error(b, t, o));
     }
+}
+
+/* terms: of each triangle, and behind them their bounds */
+typedef struct gxbp_volume_terms {
+    const gxb_boolean *b;
+    const uint32_t *parent;
+    double *terms;
+} gxbp_volume_terms;
+
+static void gxbp_find_volume_terms(void *context, size_t part) {
+    const gxbp_volume_terms *v = (const gxbp_volume_terms *)context;
+    const uint32_t count = v->b->out.triangle_count;
+    uint32_t end, t = gxbp_part_first(part, count, &end);
+    for (; t < end; t++) {
+        const gxb_ball *o = &v->b->store.points[gxbp_out_corner(v->b, v->parent[t], 0)].ball;
+        v->terms[t] = gxbp_rough_volume(v->b, t, o);
+        v->terms[count + t] = gxbp_rough_error(v->b, t, o);
+    }
+}
+
+/* The same sums, in the same order, of terms that the host's threads find; terms: room for two for each triangle */
+static GXBP_COLD void gxbp_sum_volumes_by_parts(const gxb_boolean *b, const uint32_t *parent, double *volume,
+                                                double *error, double *terms) {
+    const uint32_t count = b->out.triangle_count;
+    gxbp_volume_terms v;
+    uint32_t t;
+    v.b = b;
+    v.parent = parent;
+    v.terms = terms;
+    gxbp_each_part(b, gxbp_part_count(count), gxbp_find_volume_terms, &v);
+    for (t = 0; t < count; t++) volume[t] = error[t] = 0;
+    for (t = 0; t < count; t++) {
+        volume[parent[t]] += terms[t];
+        error[parent[t]] += 2 * terms[count + t];
+    }
+}
+
+/* Are terms of volumes found by parts? */
+static int gxbp_has_volume_parts(const gxb_boolean *b) {
+    return gxbp_has_jobs(b) && gxbp_part_count(b->out.triangle_count) > 1;
 }
 
 static int gxbp_any_is_rough(const gxb_boolean *b, const uint32_t *parent, const double *volume, const double *error) {
@@ -13400,11 +13739,15 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent
     gxbp_release(&b->store.allocator, fines.vertices, bytes);
 }
 
-/* Six times the volumes of the sets in volume[root], in the frame's units. One bound for all triangles costs less; it
+/* Six times the volumes of the sets in volume[root], in the frame's units. Behind error there is room for two doubles
+ * for each triangle, if terms are found by parts. One bound for all triangles costs less; it
  * is too large for many. */
 static GXBP_APART void gxbp_measure_shells(gxb_boolean *b, const uint32_t *parent, double *volume, double *error) {
     const int few = b->out.triangle_count <= GXBP_FEW_TRIANGLES;
-    gxbp_sum_volumes(b, parent, volume, error, few ? gxbp_largest_rough_error(b) : 0);
+    if (gxbp_has_volume_parts(b) && !few)
+        gxbp_sum_volumes_by_parts(b, parent, volume, error, error + b->out.triangle_count);
+    else
+        gxbp_sum_volumes(b, parent, volume, error, few ? gxbp_largest_rough_error(b) : 0);
     if (!gxbp_any_is_rough(b, parent, volume, error)) return;
     if (few) gxbp_sum_volumes(b, parent, volume, error, 0);
     gxbp_refine_volumes(b, parent, volume, error, 0);
@@ -13684,7 +14027,7 @@ static void gxbp_scale_volumes(gxb_boolean *b) {
 /* parent: sets of triangles; work: room for a word per triangle; corners: see gxbp_count_corners */
 static void gxbp_measure_components(gxb_boolean *b, uint32_t *parent, uint32_t *work, const int32_t *corners) {
     const size_t count = b->out.triangle_count;
-    double *volume = (double *)gxbp_borrow(b, 2 * count * sizeof *volume);
+    double *volume = (double *)gxbp_borrow(b, (gxbp_has_volume_parts(b) ? 4 : 2) * count * sizeof *volume);
     if (volume == NULL) return;
     gxbp_flatten_sets(parent, b->out.triangle_count);
     gxbp_measure_shells(b, parent, volume, volume + count);
@@ -14005,6 +14348,8 @@ static const gxbp_array gxbp_boolean_arrays[] = {/* all that grow */
                                                  GXBP_ARRAY(gxb_boolean, work.fan_vertices, work.fan_vertex),
                                                  GXBP_ARRAY(gxb_boolean, work.fan_triangles, work.fan_triangle),
                                                  GXBP_ARRAY(gxb_boolean, work.segment_ends, work.segment_end),
+                                                 GXBP_ARRAY(gxb_boolean, work.box_pairs, work.box_pair),
+                                                 GXBP_ARRAY(gxb_boolean, work.encounters, work.encounter),
                                                  GXBP_ARRAY(gxb_boolean, work.pending, work.pending),
                                                  GXBP_ARRAY(gxb_boolean, work.room, work.room),
                                                  GXBP_ARRAY(gxb_boolean, work.ordered, work.ordered),
