@@ -8284,14 +8284,20 @@ static GXBP_COLD int gxbp_renew_table(gxb_boolean *b, uint32_t **table, uint32_t
     return 1;
 }
 
+enum { GXBP_AHEAD = 8 }; /* points whose places in the table are fetched while others are entered; a power of two */
+
 /* Enters the first count points, except those of frames, in the table. */
 static GXBP_RARE void gxbp_list_points(gxb_boolean *b, uint32_t count) {
     const uint32_t last = b->points.table_size - 1;
-    uint32_t i, k;
+    uint32_t places[GXBP_AHEAD], i, k, ahead = 0;
     memset(b->points.table, 0xff, (size_t)b->points.table_size * sizeof *b->points.table);
     for (i = b->points.table_used = 0; i < count; i++) {
+        for (; ahead < count && ahead < i + GXBP_AHEAD; ahead++) {
+            places[ahead % GXBP_AHEAD] = gxbp_hash_point(b, ahead) & last;
+            GXBP_FETCH(&b->points.table[places[ahead % GXBP_AHEAD]]);
+        }
         if (b->points.vertices[i].key[0] == GXB_FROM_VERTEX && b->points.vertices[i].key[1] == GXB_NONE) continue;
-        for (k = gxbp_hash_point(b, i) & last; b->points.table[k] != GXB_NONE; k = (k + 1) & last) {}
+        for (k = places[i % GXBP_AHEAD]; b->points.table[k] != GXB_NONE; k = (k + 1) & last) {}
         b->points.table[k] = i;
         b->points.table_used++;
     }
@@ -8703,9 +8709,10 @@ static gx_result gxbp_choose_scale(gxb_boolean *b, const gxb_operand *operand, s
     return GX_ERROR_RANGE;
 }
 
-static uint32_t gxbp_input_point(gxb_boolean *b, const double y[3], uint32_t operand, uint32_t index) {
+/* hash: of its place */
+static uint32_t gxbp_input_point(gxb_boolean *b, const double y[3], uint32_t hash, uint32_t operand, uint32_t index) {
     uint32_t k, id;
-    for (k = gxbp_hash_place(y) & (b->points.table_size - 1); b->points.table[k] != GXB_NONE;
+    for (k = hash & (b->points.table_size - 1); b->points.table[k] != GXB_NONE;
          k = (k + 1) & (b->points.table_size - 1)) {
         const uint32_t p = b->points.table[k];
         if (b->points.vertices[p].key[0] == GXB_FROM_VERTEX && memcmp(b->store.points[p].ball.x, y, 3 * sizeof *y) == 0)
@@ -8916,17 +8923,22 @@ static void gxbp_forget_degenerate(gxb_boolean *b, uint32_t first) {
  * one place, local is i. */
 static gx_result gxbp_read_points(gxb_boolean *b, const gxb_operand *o, uint32_t *points, uint32_t *local,
                                   int *distinct, size_t *bad) {
-    size_t i;
+    double places[GXBP_AHEAD][3];
+    uint32_t hashes[GXBP_AHEAD];
+    size_t i, ahead = 0;
     *distinct = 1;
     for (i = 0; i < o->vertex_count; i++) {
-        double y[3];
         gxbp_vertex *v;
-        const gx_result result = gxbp_scale(b, o->vertices + 3 * i, y);
-        if (result != GX_OK) {
-            *bad = i;
-            return result;
+        for (; ahead < o->vertex_count && ahead < i + GXBP_AHEAD; ahead++) { /* fetched while others are entered */
+            const gx_result result = gxbp_scale(b, o->vertices + 3 * ahead, places[ahead % GXBP_AHEAD]);
+            if (result != GX_OK) {
+                *bad = ahead;
+                return result;
+            }
+            hashes[ahead % GXBP_AHEAD] = gxbp_hash_place(places[ahead % GXBP_AHEAD]);
+            GXBP_FETCH(&b->points.table[hashes[ahead % GXBP_AHEAD] & (b->points.table_size - 1)]);
         }
-        points[i] = gxbp_input_point(b, y, b->in.operand_count, (uint32_t)i);
+        points[i] = gxbp_input_point(b, places[i % GXBP_AHEAD], hashes[i % GXBP_AHEAD], b->in.operand_count, (uint32_t)i);
         if (points[i] == GXB_NONE) return b->error;
         v = &b->points.vertices[points[i]]; /* vertices at one place are one: the first of them */
         if (v->head >= i || points[v->head] != points[i]) v->head = (uint32_t)i;
@@ -13603,7 +13615,7 @@ static double gxbp_volume_error(double D, double e, double N, double E) {
 }
 
 /* Six times the volume of the tetrahedron from o to a triangle of the result, d0 . n */
-static double gxbp_rough_volume(const gxb_boolean *b, uint32_t t, const gxb_ball *o) {
+static inline double gxbp_rough_volume(const gxb_boolean *b, uint32_t t, const gxb_ball *o) {
     const gxb_ball *x = &b->store.points[gxbp_out_corner(b, t, 0)].ball;
     double d0[3], d1[3], d2[3], n[3];
     gxbp_difference(d0, o, x);
@@ -13614,7 +13626,7 @@ static double gxbp_rough_volume(const gxb_boolean *b, uint32_t t, const gxb_ball
 }
 
 /* A bound of its error */
-static double gxbp_rough_error(const gxb_boolean *b, uint32_t t, const gxb_ball *o) {
+static inline double gxbp_rough_error(const gxb_boolean *b, uint32_t t, const gxb_ball *o) {
     const gxb_ball *x = &b->store.points[gxbp_out_corner(b, t, 0)].ball;
     double d0[3], d1[3], d2[3], n[3];
     const double e = gxbp_filter_difference(d0, o, x),
@@ -13650,57 +13662,52 @@ static double gxbp_largest_rough_error(const gxb_boolean *b) {
 
 static int gxbp_is_rough(double volume, double error) { return error > GXBP_VOLUME_ERROR * gxbp_abs(volume); }
 
-/* Sums over the sets in volume[root] and error[root]; largest: a bound for all triangles, or 0: each has its own */
-static void gxbp_sum_volumes(const gxb_boolean *b, const uint32_t *parent, double *volume, double *error,
-                             double largest) {
-    uint32_t t;
-    for (t = 0; t < b->out.triangle_count; t++) volume[t] = error[t] = 0;
-    for (t = 0; t < b->out.triangle_count; t++) {
-        const uint32_t root = parent[t];
-        const gxb_ball *o = &b->store.points[gxbp_out_corner(b, root, 0)].ball;
-        volume[root] += gxbp_fence(gxbp_rough_volume(b, t, o)); /* fenced: as in gxbp_sum_volumes_by_parts */
-        error[root] += 2 * (largest > 0 ? largest : gxbp_rough_error(b, t, o));
-    }
-}
-
-/* terms: of each triangle, and behind them their bounds */
-typedef struct gxbp_volume_terms {
-    const gxb_boolean *b;
+/* Sums over the sets. Terms and their bounds are found by parts, and added in the order of triangles. */
+typedef struct gxbp_volume_sums {
+    gxb_boolean *b;
     const uint32_t *parent;
-    double *terms;
-} gxbp_volume_terms;
+    double *volume, *error; /* in [root]: the sums */
+    double *terms;          /* 2 for each triangle of all parts, or of one */
+    double largest;         /* a bound for all triangles; 0: each has its own */
+} gxbp_volume_sums;
 
-static void gxbp_find_volume_terms(void *context, size_t part) {
-    const gxbp_volume_terms *v = (const gxbp_volume_terms *)context;
-    const uint32_t count = v->b->out.triangle_count;
-    uint32_t end, t = gxbp_part_first(part, count, &end);
-    for (; t < end; t++) {
-        const gxb_ball *o = &v->b->store.points[gxbp_out_corner(v->b, v->parent[t], 0)].ball;
-        v->terms[t] = gxbp_rough_volume(v->b, t, o);
-        v->terms[count + t] = gxbp_rough_error(v->b, t, o);
-    }
-}
-
-/* The same sums, in the same order, of terms that the host's threads find; terms: room for two for each triangle */
-static GXBP_COLD void gxbp_sum_volumes_by_parts(const gxb_boolean *b, const uint32_t *parent, double *volume,
-                                                double *error, double *terms) {
-    const uint32_t count = b->out.triangle_count;
-    gxbp_volume_terms v;
-    uint32_t t;
-    v.b = b;
-    v.parent = parent;
-    v.terms = terms;
-    gxbp_each_part(b, gxbp_part_count(count), gxbp_find_volume_terms, &v);
-    for (t = 0; t < count; t++) volume[t] = error[t] = 0;
-    for (t = 0; t < count; t++) {
-        volume[parent[t]] += terms[t];
-        error[parent[t]] += 2 * terms[count + t];
-    }
-}
-
-/* Are terms of volumes found by parts? */
 static int gxbp_has_volume_parts(const gxb_boolean *b) {
     return gxbp_has_jobs(b) && gxbp_part_count(b->out.triangle_count) > 1;
+}
+
+static double *gxbp_terms_of(const gxbp_volume_sums *v, size_t part) {
+    return v->terms + (gxbp_has_volume_parts(v->b) ? 2 * part * GXBP_PART : 0);
+}
+
+static void gxbp_find_volume_terms(void *context, size_t part) {
+    const gxbp_volume_sums *v = (const gxbp_volume_sums *)context;
+    double *term = gxbp_terms_of(v, part);
+    uint32_t end, t = gxbp_part_first(part, v->b->out.triangle_count, &end);
+    for (; t < end; t++) {
+        const gxb_ball *o = &v->b->store.points[gxbp_out_corner(v->b, v->parent[t], 0)].ball;
+        const double value = gxbp_rough_volume(v->b, t, o); /* both first: then they share what they read */
+        const double error = v->largest > 0 ? v->largest : gxbp_rough_error(v->b, t, o);
+        *term++ = value;
+        *term++ = 2 * error;
+    }
+}
+
+static void gxbp_sum_volumes(gxbp_volume_sums *v) {
+    const uint32_t count = v->b->out.triangle_count;
+    const size_t parts = gxbp_part_count(count);
+    const int all = gxbp_has_volume_parts(v->b);
+    uint32_t t, end;
+    size_t part;
+    if (all) gxbp_each_part(v->b, parts, gxbp_find_volume_terms, v);
+    for (t = 0; t < count; t++) v->volume[t] = v->error[t] = 0;
+    for (part = 0; part < parts; part++) {
+        const double *term = gxbp_terms_of(v, part);
+        if (!all) gxbp_find_volume_terms(v, part);
+        for (t = gxbp_part_first(part, count, &end); t < end; t++) {
+            v->volume[v->parent[t]] += *term++;
+            v->error[v->parent[t]] += *term++;
+        }
+    }
 }
 
 static int gxbp_any_is_rough(const gxb_boolean *b, const uint32_t *parent, const double *volume, const double *error) {
@@ -13739,17 +13746,28 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent
     gxbp_release(&b->store.allocator, fines.vertices, bytes);
 }
 
-/* Six times the volumes of the sets in volume[root], in the frame's units. Behind error there is room for two doubles
- * for each triangle, if terms are found by parts. One bound for all triangles costs less; it
- * is too large for many. */
-static GXBP_APART void gxbp_measure_shells(gxb_boolean *b, const uint32_t *parent, double *volume, double *error) {
+/* Doubles that measuring shells takes: 2 for each triangle and the terms */
+static size_t gxbp_volume_room(const gxb_boolean *b) {
+    const size_t count = b->out.triangle_count;
+    return 2 * count + 2 * (gxbp_has_volume_parts(b) || count < GXBP_PART ? count : GXBP_PART);
+}
+
+/* Six times the volumes of the sets in volume[root], in the frame's units. One bound for all triangles costs less; it
+ * is too large for many. terms: see gxbp_volume_room */
+static GXBP_APART void gxbp_measure_shells(gxb_boolean *b, const uint32_t *parent, double *volume, double *error,
+                                           double *terms) {
     const int few = b->out.triangle_count <= GXBP_FEW_TRIANGLES;
-    if (gxbp_has_volume_parts(b) && !few)
-        gxbp_sum_volumes_by_parts(b, parent, volume, error, error + b->out.triangle_count);
-    else
-        gxbp_sum_volumes(b, parent, volume, error, few ? gxbp_largest_rough_error(b) : 0);
+    gxbp_volume_sums v;
+    v.b = b;
+    v.parent = parent;
+    v.volume = volume;
+    v.error = error;
+    v.terms = terms;
+    v.largest = few ? gxbp_largest_rough_error(b) : 0;
+    gxbp_sum_volumes(&v);
     if (!gxbp_any_is_rough(b, parent, volume, error)) return;
-    if (few) gxbp_sum_volumes(b, parent, volume, error, 0);
+    v.largest = 0;
+    if (few) gxbp_sum_volumes(&v);
     gxbp_refine_volumes(b, parent, volume, error, 0);
 }
 
@@ -14027,10 +14045,10 @@ static void gxbp_scale_volumes(gxb_boolean *b) {
 /* parent: sets of triangles; work: room for a word per triangle; corners: see gxbp_count_corners */
 static void gxbp_measure_components(gxb_boolean *b, uint32_t *parent, uint32_t *work, const int32_t *corners) {
     const size_t count = b->out.triangle_count;
-    double *volume = (double *)gxbp_borrow(b, (gxbp_has_volume_parts(b) ? 4 : 2) * count * sizeof *volume);
+    double *volume = (double *)gxbp_borrow(b, gxbp_volume_room(b) * sizeof *volume);
     if (volume == NULL) return;
     gxbp_flatten_sets(parent, b->out.triangle_count);
-    gxbp_measure_shells(b, parent, volume, volume + count);
+    gxbp_measure_shells(b, parent, volume, volume + count, volume + 2 * count);
     gxbp_join_cavities(b, parent, volume, volume + count, (int32_t *)work);
     gxbp_number_components(b, parent, volume, work);
     gxbp_scale_volumes(b);
