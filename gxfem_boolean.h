@@ -11894,8 +11894,13 @@ static GXBP_APART uint32_t gxbp_new_step(gxb_boolean *b, gxbp_state_step *step, 
     return step->to;
 }
 
+/* The place of a step among the latest ones */
+static gxbp_state_step *gxbp_step_place(gxb_boolean *b, uint32_t from, uint32_t operand, int change) {
+    return &b->winding.steps[(2 * (from + 5 * operand) + (change > 0)) % GXBP_STEPS];
+}
+
 static uint32_t gxbp_step_state(gxb_boolean *b, uint32_t from, uint32_t operand, int change) {
-    gxbp_state_step *step = &b->winding.steps[(2 * (from + 5 * operand) + (change > 0)) % GXBP_STEPS];
+    gxbp_state_step *step = gxbp_step_place(b, from, operand, change);
     if (step->change == change && step->from == from && step->operand == operand) return step->to;
     return gxbp_new_step(b, step, from, operand, change);
 }
@@ -11913,16 +11918,14 @@ static uint32_t gxbp_root_plane(const gxb_boolean *b, uint32_t f) {
     return b->in.sources[b->mesh.subtriangles[f].source].plane;
 }
 
-/* The side of t's plane on which subtriangle f lies, whose edge k is in that plane. If the filter does not settle the
-   apex, any corner of the source serves: its side times its orientation with the edge is the same for all points. */
-static int gxbp_side_of_subtriangle(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
+/* gxbp_side_of_subtriangle; 0: the filter does not settle it */
+static inline int gxbp_side_of_subtriangle_by_filter(const gxb_boolean *b, uint32_t f, int k, uint32_t t) {
     const gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
     const gxb_plane_filter *filter = &b->store.planes[b->in.sources[t].plane].filter;
     const gxb_cplane *plane = &b->store.planes[gxbp_root_plane(b, f)];
     const gxb_cpoint *x = b->store.points;
     double bound, value = gxbp_filter_side(&x[sub->v[(k + 2) % 3]].ball, filter, &bound);
     int side = gxbp_filter_sign(value, bound), i;
-    b->store.filter_calls++;
     for (i = 0; i < 3 && side == 0; i++) {
         const uint32_t corner = b->in.sources[sub->source].point[i];
         value = gxbp_filter_side(&x[corner].ball, filter, &bound);
@@ -11930,7 +11933,15 @@ static int gxbp_side_of_subtriangle(gxb_boolean *b, uint32_t f, int k, uint32_t 
                gxbp_filter_turn(&x[sub->v[k]].ball, &x[sub->v[(k + 1) % 3]].ball, &x[corner].ball,
                                 (int)(plane->axis + 1) % 3, (int)(plane->axis + 2) % 3);
     }
-    return side != 0 ? side : gxbp_side_of_source(b, sub->v[(k + 2) % 3], t);
+    return side;
+}
+
+/* The side of t's plane on which subtriangle f lies, whose edge k is in that plane. If the filter does not settle the
+   apex, any corner of the source serves: its side times its orientation with the edge is the same for all points. */
+static int gxbp_side_of_subtriangle(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
+    const int side = gxbp_side_of_subtriangle_by_filter(b, f, k, t);
+    b->store.filter_calls++;
+    return side != 0 ? side : gxbp_side_of_source(b, b->mesh.subtriangles[f].v[(k + 2) % 3], t);
 }
 
 /* How a label of edge k changes the winding number of its operand: if the labelling triangle t has a part in front of
@@ -12449,13 +12460,211 @@ static GXBP_COLD void gxbp_close_states(gxb_boolean *b) {
         }
 }
 
+/* >>floods: states spread by threads, and all of it in order -------------------------------------------------------- */
+/* In: a finished arrangement, and the states of the evaluation before. Out: a state for each subtriangle. With the
+   host's threads, the states of large operands spread side by side, one task for each: a task writes to its own
+   operand's sources and subtriangles. Where the filter settles no sign, or a state is not known yet, the task waits.
+   The caller answers between two rounds. Touches what >>winding does. */
+
+enum {
+    GXBP_FLOOD_STACK = 256, /* subtriangles of one source to visit; with more, the caller goes on */
+    GXBP_FLOOD_ROUNDS = 64  /* after these, too */
+};
+#define GXBP_NO_ANSWER (GXB_NONE - 1)
+typedef struct gxbp_flood {
+    gxb_boolean *b;
+    uint32_t *queue; /* a subtriangle of each source that was reached */
+    uint32_t count, next;
+    uint32_t stack[GXBP_FLOOD_STACK], stack_count; /* in the source of queue[next] */
+    uint32_t answer;                               /* the state beyond edge k of stack[stack_count - 1] */
+    int k, entered, waiting, stuck;                /* entered: the stack is that of queue[next] */
+    uint64_t filter_calls;
+} gxbp_flood;
+
+/* gxbp_label_step; 2: the filter does not settle it */
+static int gxbp_label_step_by_filter(gxbp_flood *flood, uint32_t f, int k, uint32_t t) {
+    const gxb_boolean *b = flood->b;
+    const gxb_plane_filter *plane;
+    int i, side, open = 0;
+    if (t & GXBP_EDGE_LABEL || b->in.operands[b->in.sources[t].operand].operation == GXB_SPLIT) return 0;
+    plane = &b->store.planes[gxbp_root_plane(b, f)].filter;
+    for (i = 0; i < 3; i++) {
+        double bound;
+        const double value = gxbp_filter_side(&b->store.points[b->in.sources[t].point[i]].ball, plane, &bound);
+        flood->filter_calls++;
+        if (value > bound) break;
+        open |= !(value < -bound);
+    }
+    if (i == 3) return open ? 2 : 0;
+    flood->filter_calls++;
+    side = gxbp_side_of_subtriangle_by_filter(b, f, k, t);
+    return side != 0 ? side : 2;
+}
+
+/* gxbp_state_beyond, if it is known; else GXBP_NO_ANSWER */
+static uint32_t gxbp_known_state_beyond(gxbp_flood *flood, uint32_t f, int k) {
+    const gxb_boolean *b = flood->b;
+    const uint32_t from = b->mesh.subtriangles[f].state;
+    const gxbp_state_step *step;
+    uint32_t list = b->mesh.subtriangles[f].labels[k], operand;
+    int change;
+    if (list == GXBP_LOOSE || list == GXBP_BARE) return from;
+    if (b->mesh.links[list].next != GXBP_BARE) return GXBP_NO_ANSWER;
+    change = gxbp_label_step_by_filter(flood, f, k, b->mesh.links[list].value);
+    if (change == 0) return from;
+    if (change == 2) return GXBP_NO_ANSWER;
+    operand = b->in.sources[b->mesh.links[list].value].operand;
+    step = gxbp_step_place(flood->b, from, operand, change);
+    return step->change == change && step->from == from && step->operand == operand ? step->to : GXBP_NO_ANSWER;
+}
+
+/* As gxbp_spread_within. 0: the flood waits, or is stuck. */
+static int gxbp_flood_within(gxbp_flood *flood) {
+    gxbp_subtriangle *sub = flood->b->mesh.subtriangles;
+    while (flood->stack_count > 0) {
+        const uint32_t f = flood->stack[--flood->stack_count];
+        for (; flood->k < 3; flood->k++) {
+            const uint32_t near = sub[f].near[flood->k];
+            uint32_t state;
+            if (near == GXB_NONE || sub[near].state != GXB_NONE) continue;
+            state = flood->answer != GXBP_NO_ANSWER ? flood->answer : gxbp_known_state_beyond(flood, f, flood->k);
+            flood->answer = GXBP_NO_ANSWER;
+            flood->waiting = state == GXBP_NO_ANSWER;
+            flood->stuck = flood->stack_count + 1 >= GXBP_FLOOD_STACK;
+            if (flood->waiting || flood->stuck) {
+                flood->stack[flood->stack_count++] = f;
+                return 0;
+            }
+            sub[near].state = state;
+            flood->stack[flood->stack_count++] = near;
+        }
+        flood->k = 0;
+    }
+    return 1;
+}
+
+/* As gxbp_spread_state */
+static void gxbp_flood_across(gxbp_flood *flood, uint32_t s) {
+    gxb_boolean *b = flood->b;
+    uint32_t k;
+    for (k = 0; k < 3; k++) {
+        const uint32_t twin = b->in.sources[s].twin[k];
+        uint32_t g;
+        if (twin == GXB_NONE || b->in.sources[twin / 3].flags & (GXBP_REACHED | GXBP_FLAT)) continue;
+        g = gxbp_across_rim(b, s, k);
+        if (g == GXB_NONE) continue;
+        b->mesh.subtriangles[g].state = b->mesh.subtriangles[gxbp_rim_subtriangle(b, s, k)].state;
+        b->in.sources[twin / 3].flags |= GXBP_REACHED;
+        flood->queue[flood->count++] = g;
+    }
+}
+
+static void gxbp_run_flood(void *context, size_t i) {
+    gxbp_flood *flood = &((gxbp_flood *)context)[i];
+    gxb_boolean *b = flood->b;
+    flood->waiting = 0;
+    for (; flood->next < flood->count && !flood->stuck; flood->next++) {
+        const uint32_t f = flood->queue[flood->next], s = b->mesh.subtriangles[f].source;
+        if (b->in.sources[s].flags & GXBP_DIVIDED) {
+            if (!flood->entered) {
+                flood->entered = 1;
+                flood->k = 0;
+                flood->stack_count = 1;
+                flood->stack[0] = f;
+            }
+            if (!gxbp_flood_within(flood)) return;
+            flood->entered = 0;
+        }
+        gxbp_flood_across(flood, s);
+    }
+}
+
+/* Answers floods that wait. Returns how many did. */
+static size_t gxbp_answer_floods(gxb_boolean *b, gxbp_flood *floods, size_t count) {
+    size_t i, answered = 0;
+    for (i = 0; i < count && b->error == GX_OK; i++) {
+        if (!floods[i].waiting || floods[i].stuck) continue;
+        floods[i].answer = gxbp_state_beyond(b, floods[i].stack[floods[i].stack_count - 1], floods[i].k);
+        answered++;
+    }
+    return answered;
+}
+
+/* Spreads states from where they are new. */
+static void gxbp_spread_pending(gxb_boolean *b) {
+    while (b->work.pending_count > 0 && b->error == GX_OK)
+        gxbp_spread_state(b, b->work.pending[--b->work.pending_count]);
+}
+
+/* Goes on where a flood has ended too early. The source at which it is comes first: its neighbours read its states. */
+static void gxbp_finish_flood(gxb_boolean *b, gxbp_flood *flood) {
+    uint32_t i;
+    b->store.filter_calls += flood->filter_calls;
+    b->work.visit_count = 0;
+    if (flood->entered)
+        for (i = 0; i < flood->stack_count && b->error == GX_OK; i++) gxbp_spread_within(b, flood->stack[i]);
+    for (i = flood->next; i < flood->count && b->error == GX_OK; i++) gxbp_spread_state(b, flood->queue[i]);
+    gxbp_spread_pending(b);
+}
+
+/* The first source of an operand that is neither divided nor in a flat; GXB_NONE: there is none */
+static uint32_t gxbp_first_whole(const gxb_boolean *b, const gxbp_operand *o) {
+    uint32_t s;
+    for (s = o->source; s < o->source + o->source_count; s++)
+        if (!(b->in.sources[s].flags & (GXBP_DIVIDED | GXBP_FLAT | GXBP_DEGENERATE))) return s;
+    return GXB_NONE;
+}
+
+static size_t gxbp_begin_floods(gxb_boolean *b, gxbp_flood *floods, uint32_t *queue) {
+    size_t count = 0;
+    uint32_t i;
+    for (i = b->winding.stated; i < b->in.operand_count; i++) {
+        const gxbp_operand *o = &b->in.operands[i];
+        const uint32_t s = o->source_count < GXBP_PART ? GXB_NONE : gxbp_first_whole(b, o);
+        gxbp_flood *flood = &floods[count];
+        if (s == GXB_NONE || b->error != GX_OK) continue;
+        memset(flood, 0, sizeof *flood);
+        flood->b = b;
+        flood->answer = GXBP_NO_ANSWER;
+        flood->queue = queue;
+        flood->queue[flood->count++] = b->in.sources[s].subtriangle;
+        gxbp_note_reached(b, s);
+        b->in.sources[s].flags |= GXBP_REACHED;
+        b->mesh.subtriangles[queue[0]].state = gxbp_state_by_ray(b, queue[0], GXB_NONE, 0);
+        queue += o->source_count;
+        count++;
+    }
+    return count;
+}
+
+/* Spreads states in large new operands, if there are at least two. */
+static GXBP_COLD void gxbp_flood_operands(gxb_boolean *b) {
+    size_t count = 0, sources = 0, i;
+    uint32_t n, rounds;
+    gxbp_flood *floods;
+    for (n = b->winding.stated; n < b->in.operand_count; n++)
+        if (b->in.operands[n].source_count >= GXBP_PART) {
+            count++;
+            sources += b->in.operands[n].source_count;
+        }
+    if (count < 2) return;
+    floods = (gxbp_flood *)gxbp_borrow(b, count * sizeof *floods + sources * sizeof(uint32_t));
+    if (floods == NULL) return;
+    count = gxbp_begin_floods(b, floods, (uint32_t *)(void *)(floods + count));
+    for (rounds = 0; rounds < (uint32_t)GXBP_FLOOD_ROUNDS && b->error == GX_OK; rounds++) {
+        gxbp_each_part(b, count, gxbp_run_flood, floods);
+        if (gxbp_answer_floods(b, floods, count) == 0) break;
+    }
+    for (i = 0; i < count; i++) gxbp_finish_flood(b, &floods[i]);
+}
+
 /* Finds a state by a ray and spreads it to all subtriangles that can be reached. */
 static void gxbp_find_state_of(gxb_boolean *b, uint32_t f) {
     gxbp_note_reached(b, b->mesh.subtriangles[f].source);
     b->mesh.subtriangles[f].state = gxbp_state_by_ray(b, f, GXB_NONE, 0);
     if (!GXBP_ROOM(b, work.pending, work.pending, 1)) return;
-    for (b->work.pending[b->work.pending_count++] = f; b->work.pending_count > 0 && b->error == GX_OK;)
-        gxbp_spread_state(b, b->work.pending[--b->work.pending_count]);
+    b->work.pending[b->work.pending_count++] = f;
+    gxbp_spread_pending(b);
 }
 
 static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
@@ -12474,6 +12683,7 @@ static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
     b->work.pending_count = b->work.visit_count = 0;
     /* each source and each subtriangle is pushed at most once */
     if (!GXBP_ROOM(b, work.visits, work.visit, (size_t)b->in.source_count + b->mesh.subtriangle_count)) return;
+    if (gxbp_has_jobs(b)) gxbp_flood_operands(b);
     /* undivided sources first: their rays are cheap */
     for (s = gxbp_new_sources(b); s < b->in.source_count && b->error == GX_OK; s++) {
         f = b->in.sources[s].subtriangle;
@@ -14706,6 +14916,7 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_REMOVED
 #undef GXBP_RIM
 #undef GXBP_OPEN
+#undef GXBP_NO_ANSWER
 #undef GXBP_PAD
 #undef GXBP_VERTEX_ERROR
 #undef GXBP_VOLUME_ERROR
