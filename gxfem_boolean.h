@@ -61,15 +61,16 @@
  *     bytes           >>save, >>check (what was read), >>load
  *
  * Of Booleans, in the order of the work:
- *     the object      >>arrangement (its types and struct), >>arena (memory), >>keys (points by definition)
+ *     the object      >>arrangement (its types and struct), >>arena (memory), >>parts (loops by threads), >>keys
+ *                     (points by definition)
  *     an operand      >>boxes (a tree of boxes), >>operands (reading one), >>sides (planes of its triangles)
- *     intersection    >>meet (two triangles), >>edges (points on edges in order)
+ *     intersection    >>meet (two triangles), >>encounters (all pairs), >>edges (points on edges in order)
  *     triangulation   >>triangulate (points), >>constrain (edges), >>divide (one source), >>flats (sources that overlap
  *                     in one plane), >>merge (equal points)
- *     the result      >>states (vectors of winding numbers), >>winding (one for each subtriangle), >>result (triangles
- *                     and vertices), >>retained (one that keeps its place), >>coarse (fewer triangles)
- *     more about it   >>components (shells), >>volumes, >>containers (which shell lies in which), >>mend (defects)
- *     functions       >>api
+ *     the result      >>states (vectors of winding numbers), >>winding (one for each subtriangle), >>floods (by
+ *                     threads), >>result (triangles and vertices), >>retained (one that keeps its place), >>coarse
+ * (fewer triangles) more about it   >>components (shells), >>volumes, >>containers (which shell lies in which), >>mend
+ * (defects) functions       >>api
  *
  * How the complex works. Each element of the mesh starts as one convex leaf, bounded by four facets, which it shares
  * with its neighbours. A triangle is clipped down the element's tree of planes (a binary space partition); each leaf
@@ -745,8 +746,8 @@ typedef struct gxb_boolean_desc {
      */
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
     void *user;
-    /* The host's threads; zero: none. Results are the same, to the last bit. With threads, work takes up to 40 bytes
-       more for each triangle. Each task takes less than 8 kB of stack. */
+    /* The host's threads; zero: none. Results are the same, to the last bit. Of two large operands, work takes 40
+       bytes more for each triangle, and 800 kB. A task takes less than 16 kB of stack. */
     gx_jobs jobs;
 } gxb_boolean_desc;
 
@@ -8938,7 +8939,8 @@ static gx_result gxbp_read_points(gxb_boolean *b, const gxb_operand *o, uint32_t
             hashes[ahead % GXBP_AHEAD] = gxbp_hash_place(places[ahead % GXBP_AHEAD]);
             GXBP_FETCH(&b->points.table[hashes[ahead % GXBP_AHEAD] & (b->points.table_size - 1)]);
         }
-        points[i] = gxbp_input_point(b, places[i % GXBP_AHEAD], hashes[i % GXBP_AHEAD], b->in.operand_count, (uint32_t)i);
+        points[i] =
+            gxbp_input_point(b, places[i % GXBP_AHEAD], hashes[i % GXBP_AHEAD], b->in.operand_count, (uint32_t)i);
         if (points[i] == GXB_NONE) return b->error;
         v = &b->points.vertices[points[i]]; /* vertices at one place are one: the first of them */
         if (v->head >= i || points[v->head] != points[i]) v->head = (uint32_t)i;
@@ -8953,10 +8955,10 @@ typedef struct gxbp_reading {
     gxb_boolean *b;
     gxbp_raw given;
     gxbp_operand *added;
-    uint64_t *keys;                  /* two for each triangle, to sort them */
-    uint32_t *points, *local;        /* of each vertex, see gxbp_read_points */
-    uint32_t *joined, *twin, *room;  /* 3 words for each triangle; the same; gxbp_twin_room */
-    uint32_t subtriangle, open;      /* the first subtriangle; a half-edge at the rim, or GXB_NONE */
+    uint64_t *keys;                 /* two for each triangle, to sort them */
+    uint32_t *points, *local;       /* of each vertex, see gxbp_read_points */
+    uint32_t *joined, *twin, *room; /* 3 words for each triangle; the same; gxbp_twin_room */
+    uint32_t subtriangle, open;     /* the first subtriangle; a half-edge at the rim, or GXB_NONE */
     int distinct;
     gx_result result;
     size_t bad;
@@ -9036,8 +9038,8 @@ static GXBP_APART gx_result gxbp_read_triangles(gxbp_reading *r) {
 static gx_result gxbp_begin_reading(gxb_boolean *b, const gxb_operand *o, gxbp_operand *added, gxbp_reading *r) {
     const size_t triangles = o->triangle_count, vertices = o->vertex_count,
                  apart = gxbp_has_jobs(b) && gxbp_part_count(triangles) > 1 ? 4 * triangles : 0;
-    uint32_t *work = (uint32_t *)gxbp_borrow(b, (apart + 2 * vertices + 6 * triangles + gxbp_twin_room(vertices)) *
-                                                    sizeof *work);
+    uint32_t *work =
+        (uint32_t *)gxbp_borrow(b, (apart + 2 * vertices + 6 * triangles + gxbp_twin_room(vertices)) * sizeof *work);
     if (work == NULL) return b->error;
     memset(r, 0, sizeof *r);
     r->b = b;
@@ -9489,13 +9491,13 @@ static void gxbp_list_corners(const gxb_boolean *b, uint32_t s, int i, uint32_t 
     }
 }
 
-/* The points in which two triangles meet that lie across each other's planes: no corner lies in the other's plane. sign:
-   see gxbp_orient_pairs, of corners in the order of gxbp_list_corners. Two edges of each triangle cross that plane,
-   those at its lone corner. Where one crosses follows from its orientations with the two edges of the other triangle.
-   Four orientations serve both triangles. The common segment's direction u in s leads from the edge that leaves the lone
-   corner to the one that comes back. The lone corner is to its left, so the corner's side_s is the sign of
-   |n_t n_s u|. For t's direction w its side_t is the sign of |n_s n_t w|. So u and w agree where the lone corners' sides
-   differ. One end of the common segment is the start of both. */
+/* The points in which two triangles meet that lie across each other's planes: no corner lies in the other's plane.
+   sign: see gxbp_orient_pairs, of corners in the order of gxbp_list_corners. Two edges of each triangle cross that
+   plane, those at its lone corner. Where one crosses follows from its orientations with the two edges of the other
+   triangle. Four orientations serve both triangles. The common segment's direction u in s leads from the edge that
+   leaves the lone corner to the one that comes back. The lone corner is to its left, so the corner's side_s is the sign
+   of |n_t n_s u|. For t's direction w its side_t is the sign of |n_s n_t w|. So u and w agree where the lone corners'
+   sides differ. One end of the common segment is the start of both. */
 static void gxbp_meet_across(gxb_boolean *b, uint32_t s, uint32_t t, const int side_s[3], const int side_t[3],
                              int sign[2][2], gxbp_meeting *m) {
     const int i = gxbp_lone_corner(side_s), j = gxbp_lone_corner(side_t);
@@ -9731,8 +9733,8 @@ static GXBP_APART int gxbp_is_star(const gxb_boolean *b, const gxbp_operand *o) 
    go. The pairs are then met in the order in which they would be without threads. Touches what >>meet does. */
 
 /* What tasks found out about a pair. BESIDE: all of t is on one side of s's plane. APART: they do not meet, and
-   nothing else is known. ACROSS: they meet, each across the other's plane, and the signs are behind the judgement: those
-   of the corners of s, of t, and of gxbp_orient_pairs; 1 where one is positive. */
+   nothing else is known. ACROSS: they meet, each across the other's plane, and the signs are behind the judgement:
+   those of the corners of s, of t, and of gxbp_orient_pairs; 1 where one is positive. */
 enum { GXBP_PAIR_OPEN, GXBP_PAIR_BESIDE, GXBP_PAIR_APART, GXBP_PAIR_ACROSS, GXBP_JUDGEMENT_BITS = 2 };
 typedef struct gxbp_encounter {
     uint32_t s, t, judged;
@@ -9748,10 +9750,10 @@ typedef struct gxbp_finds {
     uint64_t filter_calls;
 } gxbp_finds;
 enum {
-    GXBP_FLOOR = 3,            /* of pairs of boxes: 64 sources in each */
-    GXBP_TASK_BOXES = 16,      /* pairs of boxes for a task */
-    GXBP_TASK_ENCOUNTERS = 2048, /* of a task: if there are more, the rest is left to the caller */
-    GXBP_TASKS = 32            /* at a time */
+    GXBP_FLOOR = 3,                   /* of pairs of boxes: 64 sources in each */
+    GXBP_TASK_BOXES = 16,             /* pairs of boxes for a task */
+    GXBP_TASK_ENCOUNTERS = GXBP_PART, /* of a task: if there are more, the rest is left to the caller */
+    GXBP_TASKS = 32                   /* at a time */
 };
 
 static void gxbp_source_filter(const gxb_boolean *b, uint32_t s, gxb_plane_filter *f) {
@@ -9857,11 +9859,13 @@ static GXBP_APART void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, u
     uint32_t first[GXBP_LEAF], second[GXBP_LEAF], x, y;
     gxbp_test_leaf(&b->in.bounds[o->bounds + i], &b->in.boxes[q->tree.first + j], first);
     for (x = 0; x < GXBP_LEAF; x++) {
-        const uint32_t s = o->order[i * GXBP_LEAF + x];
         gxb_plane_filter f;
         int filtered = 0;
         gxbp_box box;
-        if (!first[x] || b->in.sources[s].flags & GXBP_DEGENERATE) continue;
+        uint32_t s;
+        if (!first[x]) continue;
+        s = o->order[i * GXBP_LEAF + x];
+        if (b->in.sources[s].flags & GXBP_DEGENERATE) continue;
         box = gxbp_leaf_box(&b->in.bounds[o->bounds + i], x);
         if (!gxbp_test_leaf(&b->in.bounds[q->bounds + j], &box, second)) continue;
         for (y = o == q && i == j ? x + 1 : 0; y < GXBP_LEAF; y++) {
@@ -9904,8 +9908,8 @@ static GXBP_APART void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, ui
 
 /* --- the same on the host's threads --- */
 
-/* Two operands, the levels of their pairs of boxes, and up to GXBP_TASKS tasks, with pairs from first on. done: how many
-   of its pairs of boxes a task has searched to the end */
+/* Two operands, the levels of their pairs of boxes, and up to GXBP_TASKS tasks, with pairs from first on. done: how
+   many of its pairs of boxes a task has searched to the end */
 typedef struct gxbp_search {
     gxb_boolean *b;
     const gxbp_operand *o, *q;
@@ -11955,7 +11959,7 @@ static int gxbp_label_step(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
 }
 
 /* The state in front of the subtriangle beyond edge k. */
-static uint32_t gxbp_state_beyond(gxb_boolean *b, uint32_t f, int k) {
+static inline uint32_t gxbp_state_beyond(gxb_boolean *b, uint32_t f, int k) {
     uint32_t list = b->mesh.subtriangles[f].labels[k];
     int begun = 0;
     for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->mesh.links[list].next) {
@@ -12268,7 +12272,7 @@ static void gxbp_reach_operand(gxb_boolean *b, uint32_t f, int k) {
 static void gxbp_add_visit(gxb_boolean *b, uint32_t f) { b->work.visits[b->work.visit_count++] = f; }
 
 /* Spreads the state to all subtriangles of f's triangulation that can be reached. */
-static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
+static inline void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
     const uint32_t base = b->work.visit_count, flat = b->in.sources[b->mesh.subtriangles[f].source].flags & GXBP_FLAT;
     gxbp_add_visit(b, f);
     while (b->work.visit_count > base && b->error == GX_OK) {
@@ -12288,7 +12292,7 @@ static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
 
 /* Spreads a state within a source, then across its edges to sources without states. The order is breadth-first, so that
  * many cache misses overlap. */
-static void gxbp_spread_state(gxb_boolean *b, uint32_t first) {
+static inline void gxbp_spread_state(gxb_boolean *b, uint32_t first) {
     uint32_t i;
     b->work.visit_count = 0;
     gxbp_add_visit(b, first);
@@ -12460,15 +12464,15 @@ static GXBP_COLD void gxbp_close_states(gxb_boolean *b) {
         }
 }
 
-/* >>floods: states spread by threads, and all of it in order -------------------------------------------------------- */
+/* >>floods: states spread by threads ------------------------------------------------------------------------------- */
 /* In: a finished arrangement, and the states of the evaluation before. Out: a state for each subtriangle. With the
    host's threads, the states of large operands spread side by side, one task for each: a task writes to its own
    operand's sources and subtriangles. Where the filter settles no sign, or a state is not known yet, the task waits.
    The caller answers between two rounds. Touches what >>winding does. */
 
 enum {
-    GXBP_FLOOD_STACK = 256, /* subtriangles of one source to visit; with more, the caller goes on */
-    GXBP_FLOOD_ROUNDS = 64  /* after these, too */
+    GXBP_FLOOD_STACK = GXBP_PART / 8, /* subtriangles of one source to visit; with more, the caller goes on */
+    GXBP_FLOOD_ROUNDS = 64            /* after these, too */
 };
 #define GXBP_NO_ANSWER (GXB_NONE - 1)
 typedef struct gxbp_flood {
@@ -12580,7 +12584,7 @@ static void gxbp_run_flood(void *context, size_t i) {
 }
 
 /* Answers floods that wait. Returns how many did. */
-static size_t gxbp_answer_floods(gxb_boolean *b, gxbp_flood *floods, size_t count) {
+static GXBP_COLD size_t gxbp_answer_floods(gxb_boolean *b, gxbp_flood *floods, size_t count) {
     size_t i, answered = 0;
     for (i = 0; i < count && b->error == GX_OK; i++) {
         if (!floods[i].waiting || floods[i].stuck) continue;
@@ -12597,13 +12601,14 @@ static void gxbp_spread_pending(gxb_boolean *b) {
 }
 
 /* Goes on where a flood has ended too early. The source at which it is comes first: its neighbours read its states. */
-static void gxbp_finish_flood(gxb_boolean *b, gxbp_flood *flood) {
+static GXBP_COLD void gxbp_finish_flood(gxb_boolean *b, gxbp_flood *flood) {
     uint32_t i;
     b->store.filter_calls += flood->filter_calls;
     b->work.visit_count = 0;
     if (flood->entered)
         for (i = 0; i < flood->stack_count && b->error == GX_OK; i++) gxbp_spread_within(b, flood->stack[i]);
-    for (i = flood->next; i < flood->count && b->error == GX_OK; i++) gxbp_spread_state(b, flood->queue[i]);
+    for (i = flood->next; i < flood->count && GXBP_ROOM(b, work.pending, work.pending, 1); i++)
+        b->work.pending[b->work.pending_count++] = flood->queue[i];
     gxbp_spread_pending(b);
 }
 
