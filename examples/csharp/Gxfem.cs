@@ -837,6 +837,7 @@ namespace Gxfem {
         public UIntPtr memory_limit;
         public IntPtr inside;
         public IntPtr user;
+        public gx_jobs jobs;
     }
 
     [StructLayout(LayoutKind.Sequential)]

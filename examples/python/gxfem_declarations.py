@@ -1093,6 +1093,7 @@ gxb_boolean_desc._fields_ = [
     ('memory_limit', c_size_t),
     ('inside', CFUNCTYPE(c_int, c_void_p, POINTER(c_int32), c_size_t)),
     ('user', c_void_p),
+    ('jobs', gx_jobs),
 ]
 
 gxb_origin._fields_ = [
