@@ -227,6 +227,7 @@ $(BUILD)/tests/test_tight_boolean: tests/test_surface_boolean.c
 # The recipes' test includes the snippets of the page.
 $(BUILD)/tests/test_recipes: $(BUILD)/recipes.h
 $(BUILD)/tests/test_recipes: compile += -I$(BUILD) -DRECIPES_FOLDER='"$(BUILD)"' -pthread
+$(BUILD)/tests/test_stack: compile += -pthread
 $(BUILD)/recipes.h: docs/RECIPES.md tests/recipes.awk
 	@mkdir -p $(@D)
 	awk -f tests/recipes.awk $< >$@
