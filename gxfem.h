@@ -4732,26 +4732,19 @@ static void gxp_fine_coordinates(gx_body *body, uint32_t element, uint32_t point
     gxb_complex_barycentric_fine(body->complex, body->scratch.boundary.points.data[point], element, points[point].c);
 }
 
-/* Moments of the boundary in the frame with origin k, from coordinates with 180 bits. */
-static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, gxi_moments2 *m) {
-    gxp_boundary *boundary = &body->scratch.boundary;
-    const size_t size = boundary->points.count * sizeof(gxp_fine_point);
-    gxp_fine_point *points = (gxp_fine_point *)gxp_allocate(&body->config.allocator, size);
+/* Moments of the boundary's triangles, from the coordinates of its points along three axes */
+static GXP_APART void gxp_fine_sum(const gxp_boundary *boundary, gxp_fine_point *points, const unsigned *axes,
+                                   gxi_moments2 *m) {
     gxp_fine_sums sums;
-    unsigned axes[3];
     uint32_t i, t;
     int a, c;
-    if (points == NULL) return GX_ERROR_MEMORY;
     for (i = 0; i < 10; i++) {
         sums.c[i].sign = sums.c[i].exp = 0;
         sums.c[i].n = 0;
         sums.c[i].d = sums.limbs[i];
     }
-    for (i = 0; i < boundary->points.count; i++) points[i].c[0].d = NULL;
-    gxi_part_axes(k, axes);
     for (t = 0; t + 2 < boundary->triangles.count; t += 3) {
         gxb_num *p[3][3];
-        for (a = 0; a < 3; a++) gxp_fine_coordinates(body, element, boundary->triangles.data[t + (uint32_t)a], points);
         for (a = 0; a < 3; a++)
             for (c = 0; c < 3; c++) p[a][c] = &points[boundary->triangles.data[t + (uint32_t)a]].c[axes[c]];
         gxp_fine_add(&sums, p);
@@ -4759,6 +4752,21 @@ static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, g
     m->volume = gxb_num_to_double(&sums.c[0]) / 6;
     for (a = 0; a < 3; a++) m->first[a] = gxb_num_to_double(&sums.c[1 + a]) / 24;
     for (a = 0; a < 6; a++) m->second[a] = gxb_num_to_double(&sums.c[4 + a]) / 120;
+}
+
+/* Moments of the boundary in the frame with origin k, from coordinates with 180 bits. */
+static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, gxi_moments2 *m) {
+    const gxp_boundary *boundary = &body->scratch.boundary;
+    const size_t size = boundary->points.count * sizeof(gxp_fine_point);
+    gxp_fine_point *points = (gxp_fine_point *)gxp_allocate(&body->config.allocator, size);
+    unsigned axes[3];
+    uint32_t i;
+    if (points == NULL) return GX_ERROR_MEMORY;
+    for (i = 0; i < boundary->points.count; i++) points[i].c[0].d = NULL;
+    for (i = 0; i < boundary->triangles.count; i++)
+        gxp_fine_coordinates(body, element, boundary->triangles.data[i], points);
+    gxi_part_axes(k, axes);
+    gxp_fine_sum(boundary, points, axes, m);
     gxp_release(&body->config.allocator, points, size);
     return GX_OK;
 }
