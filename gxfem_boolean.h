@@ -14237,6 +14237,7 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_TINY
 #undef GXBP_NO_BALL
 #undef GXBP_UNKNOWN
+#undef GXBP_LIMBS
 #undef GXBP_RESERVE
 #undef GXBP_ARRAY
 #undef GXBP_UNDO_ITEM

@@ -93,7 +93,7 @@
  * it out until something touches it.
  *
  * WHAT IT DOES NOT DO. No cutting and no meshes: it sees elements of four copies. No search for contacts between
- * components: give points, planes, pairs and your own forces. No threads of its own: see gx_jobs; a task takes up to 90
+ * components: give points, planes, pairs and your own forces. No threads of its own: see gx_jobs; a task takes up to 32
  * kB of stack.
  *
  * LIMITS. poisson in [0, 0.5); beyond 0.49999 the Hessian's single precision shows. Copies and elements below 2^30.
@@ -629,7 +629,8 @@ extern "C" {
 
 /* Passes copy the nodes of a chunk to the stack where there are no more than this: meshes of cubes have 125 to 165, cut
  * into pieces of an element's size 300. Other chunks, of elements that share few nodes, are read copy by copy. */
-#define GXSP_NEAR 320
+#define GXSP_NEAR         320
+#define GXSP_NEAR_NUMBERS (3 * GXSP_NEAR + 1)
 
 /* A residual below this (about 50 units in the last place) is rounding: no iteration can lower it. */
 #define GXSP_ROUNDING 1e-14
@@ -5993,7 +5994,7 @@ GXSP_INLINE void gxsp_prefetch_block(const gxsp_system *system, size_t index, ui
 }
 
 /* Numbers of a chunk's nodes: x 3, and one more, which vectors read */
-typedef double gxsp_near[3 * GXSP_NEAR + 1];
+typedef double gxsp_near[GXSP_NEAR_NUMBERS];
 
 /* x of a chunk's nodes. Returns to; NULL: there is no room for so many nodes */
 static const double *gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *x,
@@ -12672,6 +12673,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_CHUNK_BLOCKS
 #undef GXSP_CHUNK
 #undef GXSP_NEAR
+#undef GXSP_NEAR_NUMBERS
 #undef GXSP_EACH_LANE
 #undef GXSP_RESTRICT
 #undef GXSP_COLD
