@@ -19,6 +19,9 @@ scenes = $(filter-out embed gxcut gxboolean animation,$(examples))
 linked_examples = $(filter-out embed,$(examples))
 compile = $(CC) -std=c99 -g $(WARNINGS) $(CFLAGS)
 linked = $(compile) -DGXFEM_LINKED
+# No frame of the library is larger than 16 kB; a sanitizer's are.
+small_frames = $(if $(findstring sanitize,$(CFLAGS)),,$(if $(findstring clang,$(CC)),-Wframe-larger-than=16384 \
+    -Werror=frame-larger-than,-Werror=frame-larger-than=16384))
 # Compiling takes most of these tests' time: only what runs long is optimised, and nothing is inlined.
 sanitizers = -O1 -fno-inline $(unoptimised_sanitizers)
 unoptimised_sanitizers = -g1 -fsanitize=address,undefined -fno-sanitize-recover=all
@@ -98,7 +101,7 @@ $(linked_examples:%=$(BUILD)/%): $(BUILD)/%: examples/%.c $(BUILD)/gxfem.o $(hea
 
 $(BUILD)/gxfem.o: $(headers)
 	@mkdir -p $(@D)
-	printf '#define GXFEM_IMPLEMENTATION\n#include "gxfem.h"\n' | $(compile) -I. -x c -c - -o $@
+	printf '#define GXFEM_IMPLEMENTATION\n#include "gxfem.h"\n' | $(compile) $(small_frames) -I. -x c -c - -o $@
 
 # The page that plays frames, as C. It is committed, so that examples need nothing but a C compiler.
 examples/player.h: examples/player.html examples/player.css examples/player.js examples/player.sh
@@ -143,7 +146,7 @@ $(BUILD)/web/player.css $(BUILD)/web/player.js: $(BUILD)/web/%: examples/%
 # From clang 16 on vectors are right (gxfem_boolean.h): a step then takes half the time.
 newest_clang = $(shell for c in clang-21 clang-20 clang-19 clang-18 clang-17 clang-16 clang; do command -v $$c >/dev/null && echo $$c && break; done)
 web_clang = $(or $(CLANG),$(newest_clang)) --target=wasm32-wasi --sysroot=$(or $(SYSROOT),/usr) -std=c99 -O2 $(WARNINGS) -I. -mexec-model=reactor
-web_link = -Wl,-z,stack-size=262144 -Wl,--stack-first -Wl,--strip-all -lm
+web_link = -Wl,-z,stack-size=65536 -Wl,--stack-first -Wl,--strip-all -lm
 $(BUILD)/web/jelly.wasm: web_vectors =
 $(BUILD)/web/jelly-simd.wasm: web_vectors = -msimd128
 $(BUILD)/web/jelly.wasm $(BUILD)/web/jelly-simd.wasm: examples/web/jelly.c examples/gxshape.h $(headers)
@@ -227,6 +230,7 @@ $(BUILD)/tests/test_tight_boolean: tests/test_surface_boolean.c
 # The recipes' test includes the snippets of the page.
 $(BUILD)/tests/test_recipes: $(BUILD)/recipes.h
 $(BUILD)/tests/test_recipes: compile += -I$(BUILD) -DRECIPES_FOLDER='"$(BUILD)"' -pthread
+$(BUILD)/tests/test_stack: compile += -pthread
 $(BUILD)/recipes.h: docs/RECIPES.md tests/recipes.awk
 	@mkdir -p $(@D)
 	awk -f tests/recipes.awk $< >$@

@@ -81,6 +81,8 @@
  * 2^-700 ... 2^700. So all volumes, masses, centres and inertia are finite, those of whole bodies are normal numbers,
  * and floats hold the skin. Divided by the body's size, coordinates of bodies and cuts are 0 or 2^-128 ... 2^128 in
  * absolute value (GX_ERROR_RANGE). One thread at a time may use a body. There is no global state, no output, no clock.
+ * A call takes less than 48 kB of stack, besides that of the caller's own functions. gx_body_load takes more where one
+ * edge, face or element was divided over and over: 50 bytes for each time in a row.
  *
  * References: GXFEM = Ton-That, Kry, Andrews: Generalized eXtended Finite Element Method for Deformable Cutting via
  * Boolean Operations (2024). RXFEM = Koschier, Bender, Thuerey: Robust eXtended Finite Elements for Complex Cutting of
@@ -856,14 +858,21 @@ extern "C" {
 #pragma clang attribute push(__attribute__((target("no-simd128"))), apply_to = function)
 #endif
 
-/* COLD functions are seldom called: kept out of line and compiled for size. */
+/* COLD functions are seldom called: kept out of line and compiled for size. APART: out of line, so that their arrays
+   are not in the frame of what calls them. */
 #if defined(__GNUC__) || defined(__clang__)
 #define GXP_COLD              __attribute__((cold, noinline))
+#define GXP_APART             __attribute__((noinline))
 #define GXP_PREFETCH(address) __builtin_prefetch(address)
 #define GXP_PREFETCHES                                                                                                 \
     static inline __attribute__((always_inline)) /* without it gcc takes such a function for pure and drops calls */
 #else
 #define GXP_COLD
+#if defined(_MSC_VER)
+#define GXP_APART __declspec(noinline)
+#else
+#define GXP_APART
+#endif
 #define GXP_PREFETCH(address) ((void)(address))
 #define GXP_PREFETCHES        static inline
 #endif
@@ -4132,6 +4141,22 @@ static gx_result gxp_rough_area(gxb_complex *cx, uint32_t facet, double *area, d
     return result;
 }
 
+/* sum += (b - o) x (a - o) in the plane of two barycentric coordinates */
+static GXP_APART void gxp_fine_cross(gxb_num *sum, const gxp_fine_point *a, const gxp_fine_point *b,
+                                     const gxp_fine_point *o, const unsigned *axes) {
+    GXB_NUM(x);
+    GXB_NUM(y);
+    GXB_NUM(z);
+    GXB_NUM(w);
+    gxb_num_sub(&x, &b->c[axes[1]], &o->c[axes[1]]);
+    gxb_num_sub(&y, &b->c[axes[2]], &o->c[axes[2]]);
+    gxb_num_sub(&z, &a->c[axes[1]], &o->c[axes[1]]);
+    gxb_num_sub(&w, &a->c[axes[2]], &o->c[axes[2]]);
+    z.sign = -z.sign;
+    gxp_num_add_product(sum, &x, &w);
+    gxp_num_add_product(sum, &y, &z);
+}
+
 /* The polygon of scratch.facet_points as a share of the face opposite to node k, in numbers of any size: its area in
    the plane of two barycentric coordinates, where the face has area 1. */
 static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
@@ -4140,32 +4165,15 @@ static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
     uint32_t i;
     int c;
     GXB_NUM(sum);
-    GXB_NUM(one);
     gxi_part_axes(k, axes);
-    gxb_num_set(&one, 1.0, 0);
     for (i = 0; i < 3; i++)
         for (c = 0; c < 4; c++) p[i].c[c].d = p[i].limbs[c];
     for (i = 0; i < body->scratch.facet_points.count; i++) {
         /* a: this point, b: the one before */
         gxp_fine_point *const a = &p[1 + i % 2], *const b = &p[1 + (i + 1) % 2];
-        GXB_NUM(x);
-        GXB_NUM(y);
-        GXB_NUM(z);
-        GXB_NUM(w);
-        GXB_NUM(s);
-        GXB_NUM(t);
-        GXB_NUM(d);
         gxb_complex_barycentric_fine(body->complex, body->scratch.facet_points.data[i], element,
                                      i == 0 ? p[0].c : a->c);
-        if (i < 2) continue;
-        gxb_num_sub(&x, &b->c[axes[1]], &p[0].c[axes[1]]);
-        gxb_num_sub(&y, &b->c[axes[2]], &p[0].c[axes[2]]);
-        gxb_num_sub(&z, &a->c[axes[1]], &p[0].c[axes[1]]);
-        gxb_num_sub(&w, &a->c[axes[2]], &p[0].c[axes[2]]);
-        gxb_num_mul(&s, &x, &w);
-        gxb_num_mul(&t, &y, &z);
-        gxb_num_sub(&d, &s, &t);
-        gxp_num_add_product(&sum, &d, &one);
+        if (i >= 2) gxp_fine_cross(&sum, a, b, &p[0], axes);
     }
     return fabs(gxb_num_to_double(&sum));
 }
@@ -4905,7 +4913,7 @@ typedef struct gxp_fine_sums {
     gxb_limb limbs[10][GXB_NUM_LIMBS];
 } gxp_fine_sums;
 /* det(a, b, c) */
-static void gxp_fine_determinant(gxb_num *det, gxb_num *p[3][3]) {
+static GXP_APART void gxp_fine_determinant(gxb_num *det, gxb_num *p[3][3]) {
     static const int cyclic[3][2] = {{1, 2}, {2, 0}, {0, 1}};
     int k;
     det->sign = det->exp = 0;
@@ -4923,7 +4931,7 @@ static void gxp_fine_determinant(gxb_num *det, gxb_num *p[3][3]) {
 
 /* Adds the cone from the origin to a triangle. With D = det(a,b,c), s = a+b+c: D, D s_i, D (s_i s_j + a_i a_j + b_i b_j
    + c_i c_j). */
-static void gxp_fine_add(gxp_fine_sums *sums, gxb_num *p[3][3]) {
+static GXP_APART void gxp_fine_add(gxp_fine_sums *sums, gxb_num *p[3][3]) {
     gxb_limb limbs[3][GXB_NUM_LIMBS];
     gxb_num s[3];
     int i, j, k, slot = 4;
@@ -4956,26 +4964,19 @@ static void gxp_fine_coordinates(gx_body *body, uint32_t element, uint32_t point
     gxb_complex_barycentric_fine(body->complex, body->scratch.boundary.points.data[point], element, points[point].c);
 }
 
-/* Moments of the boundary in the frame with origin k, from coordinates with 180 bits. */
-static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, gxi_moments2 *m) {
-    gxp_boundary *boundary = &body->scratch.boundary;
-    const size_t size = boundary->points.count * sizeof(gxp_fine_point);
-    gxp_fine_point *points = (gxp_fine_point *)gxp_allocate(&body->config.allocator, size);
+/* Moments of the boundary's triangles, from the coordinates of its points along three axes */
+static GXP_APART void gxp_fine_sum(const gxp_boundary *boundary, gxp_fine_point *points, const unsigned *axes,
+                                   gxi_moments2 *m) {
     gxp_fine_sums sums;
-    unsigned axes[3];
     uint32_t i, t;
     int a, c;
-    if (points == NULL) return GX_ERROR_MEMORY;
     for (i = 0; i < 10; i++) {
         sums.c[i].sign = sums.c[i].exp = 0;
         sums.c[i].n = 0;
         sums.c[i].d = sums.limbs[i];
     }
-    for (i = 0; i < boundary->points.count; i++) points[i].c[0].d = NULL;
-    gxi_part_axes(k, axes);
     for (t = 0; t + 2 < boundary->triangles.count; t += 3) {
         gxb_num *p[3][3];
-        for (a = 0; a < 3; a++) gxp_fine_coordinates(body, element, boundary->triangles.data[t + (uint32_t)a], points);
         for (a = 0; a < 3; a++)
             for (c = 0; c < 3; c++) p[a][c] = &points[boundary->triangles.data[t + (uint32_t)a]].c[axes[c]];
         gxp_fine_add(&sums, p);
@@ -4983,6 +4984,21 @@ static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, g
     m->volume = gxb_num_to_double(&sums.c[0]) / 6;
     for (a = 0; a < 3; a++) m->first[a] = gxb_num_to_double(&sums.c[1 + a]) / 24;
     for (a = 0; a < 6; a++) m->second[a] = gxb_num_to_double(&sums.c[4 + a]) / 120;
+}
+
+/* Moments of the boundary in the frame with origin k, from coordinates with 180 bits. */
+static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, gxi_moments2 *m) {
+    const gxp_boundary *boundary = &body->scratch.boundary;
+    const size_t size = boundary->points.count * sizeof(gxp_fine_point);
+    gxp_fine_point *points = (gxp_fine_point *)gxp_allocate(&body->config.allocator, size);
+    unsigned axes[3];
+    uint32_t i;
+    if (points == NULL) return GX_ERROR_MEMORY;
+    for (i = 0; i < boundary->points.count; i++) points[i].c[0].d = NULL;
+    for (i = 0; i < boundary->triangles.count; i++)
+        gxp_fine_coordinates(body, element, boundary->triangles.data[i], points);
+    gxi_part_axes(k, axes);
+    gxp_fine_sum(boundary, points, axes, m);
     gxp_release(&body->config.allocator, points, size);
     return GX_OK;
 }
@@ -6369,7 +6385,7 @@ static uint32_t gxp_anchor_cell(gx_body *body, const gx_anchor *anchor) {
 
 /* det(b - a, c - a, d - a) of x = a b c d, exact */
 static GXP_COLD void gxp_exact_determinant(const double *const x[4], gxb_num *r) {
-    gxb_limb limbs[9][GXB_NUM_LIMBS];
+    gxb_limb limbs[9][GXB_NUM_LIMBS / 4]; /* differences of doubles have a fifth of the longest number's bits */
     gxb_num e[9];
     int i, k;
     GXB_NUM(p);
@@ -17951,6 +17967,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 }
 
 #undef GXP_COLD
+#undef GXP_APART
 #undef GXP_PREFETCH
 #undef GXP_PREFETCHES
 #undef GXP_NONE

@@ -95,7 +95,7 @@
  * it out until something touches it.
  *
  * WHAT IT DOES NOT DO. No cutting and no meshes: it sees elements of four copies. No search for contacts between
- * components: give points, planes, pairs and your own forces. No threads of its own: see gx_jobs; a task takes up to 90
+ * components: give points, planes, pairs and your own forces. No threads of its own: see gx_jobs; a task takes up to 32
  * kB of stack.
  *
  * LIMITS. poisson in [0, 0.5); beyond 0.49999 the Hessian's single precision shows. Copies and elements below 2^30.
@@ -641,6 +641,11 @@ extern "C" {
 #define GXSP_CHUNK_BLOCKS 48
 #define GXSP_CHUNK        (GXSP_CHUNK_BLOCKS * GXSP_LANES)
 
+/* Passes copy the nodes of a chunk to the stack where there are no more than this: meshes of cubes have 125 to 165, cut
+ * into pieces of an element's size 300. Other chunks, of elements that share few nodes, are read copy by copy. */
+#define GXSP_NEAR         320
+#define GXSP_NEAR_NUMBERS (3 * GXSP_NEAR + 1)
+
 /* A residual below this (about 50 units in the last place) is rounding: no iteration can lower it. */
 #define GXSP_ROUNDING 1e-14
 
@@ -903,15 +908,19 @@ extern "C" {
 #endif
 
 /* INLINE: compilers must know the column numbers. Columns that might be equal are not vectorised. COLD: seldom called,
- * kept out of line and compiled for size. */
+ * kept out of line and compiled for size. APART: kept out of line, so that its arrays are not in the frame of what
+ * calls it: a frame has at most 16 kB. */
 #if defined(__GNUC__) || defined(__clang__)
 #define GXSP_COLD   __attribute__((cold, noinline))
+#define GXSP_APART  __attribute__((noinline))
 #define GXSP_INLINE static inline __attribute__((always_inline))
 #elif defined(_MSC_VER)
 #define GXSP_COLD   __declspec(noinline)
+#define GXSP_APART  __declspec(noinline)
 #define GXSP_INLINE static __forceinline
 #else
 #define GXSP_COLD
+#define GXSP_APART
 #define GXSP_INLINE static inline
 #endif
 
@@ -3520,7 +3529,7 @@ static uint32_t gxsp_place_strips(gxsp_layout *layout, uint32_t blocks, uint32_t
 }
 
 /* The lane of each element of a chunk. nodes: of the elements; neighbours follow each other */
-static void gxsp_assign_lanes(gxsp_layout *layout, uint32_t (*nodes)[4], uint32_t count, uint32_t blocks) {
+static GXSP_APART void gxsp_assign_lanes(gxsp_layout *layout, uint32_t (*nodes)[4], uint32_t count, uint32_t blocks) {
     uint32_t lane, length, first = 0;
     layout->nodes = nodes;
     layout->count = count;
@@ -3566,8 +3575,8 @@ static int gxsp_lane_supports(const gxsp_chunk *chunk, uint32_t lane, int k) {
 }
 
 /* Puts elements of a chunk into their lanes. elements: sorted; nodes: theirs, numbered in the chunk */
-static void gxsp_fill_chunk(const gxsp_chunk *chunk, const gxs_model *model, const gxsp_sorted *elements,
-                            uint32_t (*nodes)[4], uint32_t count) {
+static GXSP_APART void gxsp_fill_chunk(const gxsp_chunk *chunk, const gxs_model *model, const gxsp_sorted *elements,
+                                       uint32_t (*nodes)[4], uint32_t count) {
     gxsp_layout layout;
     uint32_t placed[GXSP_CHUNK][4], lane;
     int k;
@@ -5645,46 +5654,58 @@ static void gxsp_affine_inertia(const gxsp_affine_block *block, int point, doubl
     }
 }
 
-/* Energies and forces of a block: see gxsp_task_state */
-static void gxsp_affine_state(const gxsp_pass *pass, gxsp_affine_block *block, double (*slots)[3]) {
-    const int led = pass->inertia || pass->rotated; /* never both */
-    gxsp_lanes x[48], other[48], bend[18], bend_other[18], y[48], forces[18], w[12], w_other[12], ahead[9];
+/* What the points of a block share: x and what is subtracted from it or ahead of it, with their bends, and the sums of
+ * forces on vectors and bends */
+typedef struct gxsp_affine_sums {
+    gxsp_lanes x[48], other[48], bend[18], bend_other[18], y[48], forces[18];
+} gxsp_affine_sums;
+
+/* The share of one point in energies and forces of a block */
+static GXSP_APART void gxsp_affine_point(const gxsp_pass *pass, gxsp_affine_block *block, int p,
+                                         gxsp_affine_sums *sums) {
+    gxsp_lanes w[12], w_other[12], ahead[9], own[12];
     gxsp_state s;
-    int p, k, l;
-    gxsp_affine_gather(block, pass->from, x);
-    gxsp_affine_bend(block, x, bend);
-    if (led) gxsp_affine_gather(block, pass->inertia ? pass->system->vectors.target : pass->rotated, other);
-    for (k = 0; k < 48 && pass->inertia; k++) GXSP_EACH_LANE(l) other[k][l] = x[k][l] - other[k][l];
-    if (led) gxsp_affine_bend(block, other, bend_other);
-    memset(y, 0, sizeof y);
-    memset(forces, 0, sizeof forces);
-    memset(block->energies, 0, sizeof block->energies);
-    for (p = 0; p < 4; p++) {
-        gxsp_lanes own[12];
-        gxsp_affine_corners(block, p, x, bend, w);
-        if (led) gxsp_affine_corners(block, p, other, bend_other, w_other);
-        gxsp_block_parameters(pass->materials, &block->rest, &s);
-        gxsp_block_gradient(block->gradient, w, s.g);
-        if (pass->rotated) gxsp_block_gradient(block->gradient, w_other, ahead);
-        if (pass->nudge && block->kind != GXS_LINEAR && block->kind != GXS_CUSTOM) gxsp_nudge(s.g);
-        gxsp_material_state(block->kind, &s);
-        if (pass->rotated && block->kind != GXS_LINEAR) gxsp_rotate_stress(s.g, ahead, s.p);
-        memset(own, 0, sizeof own);
-        gxsp_block_force(block->rest.weight, block->gradient, s.p, own);
-        gxsp_affine_collect(block, p, own, y, forces);
-        for (l = 0; l < GXSP_LANES; l++) {
-            block->energies[0][l] += block->rest.weight[l] * s.energy[l];
-            block->energies[2][l] += block->rest.weight[l] * s.size[l];
-        }
-        if (pass->inertia) gxsp_affine_inertia(block, p, pass->rate, other, w_other, y, forces, block->energies[1]);
+    int l;
+    gxsp_affine_corners(block, p, sums->x, sums->bend, w);
+    if (pass->inertia || pass->rotated) gxsp_affine_corners(block, p, sums->other, sums->bend_other, w_other);
+    gxsp_block_parameters(pass->materials, &block->rest, &s);
+    gxsp_block_gradient(block->gradient, w, s.g);
+    if (pass->rotated) gxsp_block_gradient(block->gradient, w_other, ahead);
+    if (pass->nudge && block->kind != GXS_LINEAR && block->kind != GXS_CUSTOM) gxsp_nudge(s.g);
+    gxsp_material_state(block->kind, &s);
+    if (pass->rotated && block->kind != GXS_LINEAR) gxsp_rotate_stress(s.g, ahead, s.p);
+    memset(own, 0, sizeof own);
+    gxsp_block_force(block->rest.weight, block->gradient, s.p, own);
+    gxsp_affine_collect(block, p, own, sums->y, sums->forces);
+    for (l = 0; l < GXSP_LANES; l++) {
+        block->energies[0][l] += block->rest.weight[l] * s.energy[l];
+        block->energies[2][l] += block->rest.weight[l] * s.size[l];
     }
+    if (pass->inertia)
+        gxsp_affine_inertia(block, p, pass->rate, sums->other, w_other, sums->y, sums->forces, block->energies[1]);
+}
+
+/* Energies and forces of a block: see gxsp_task_state */
+static GXSP_APART void gxsp_affine_state(const gxsp_pass *pass, gxsp_affine_block *block, double (*slots)[3]) {
+    const int led = pass->inertia || pass->rotated; /* never both */
+    gxsp_affine_sums sums;
+    int p, k, l;
+    gxsp_affine_gather(block, pass->from, sums.x);
+    gxsp_affine_bend(block, sums.x, sums.bend);
+    if (led) gxsp_affine_gather(block, pass->inertia ? pass->system->vectors.target : pass->rotated, sums.other);
+    for (k = 0; k < 48 && pass->inertia; k++) GXSP_EACH_LANE(l) sums.other[k][l] = sums.x[k][l] - sums.other[k][l];
+    if (led) gxsp_affine_bend(block, sums.other, sums.bend_other);
+    memset(sums.y, 0, sizeof sums.y);
+    memset(sums.forces, 0, sizeof sums.forces);
+    memset(block->energies, 0, sizeof block->energies);
+    for (p = 0; p < 4; p++) gxsp_affine_point(pass, block, p, &sums);
     for (l = 0; l < GXSP_LANES; l++) block->energies[2][l] += block->energies[1][l];
-    gxsp_affine_return(block, forces, y);
-    gxsp_affine_scatter(y, slots);
+    gxsp_affine_return(block, sums.forces, sums.y);
+    gxsp_affine_scatter(sums.y, slots);
 }
 
 /* Hessian of a block at pass->from, point by point */
-static void gxsp_affine_tangents(const gxsp_pass *pass, gxsp_affine_block *block) {
+static GXSP_APART void gxsp_affine_tangents(const gxsp_pass *pass, gxsp_affine_block *block) {
     gxsp_lanes x[48], bend[18], w[12];
     gxsp_state s;
     gxsp_svd svd;
@@ -5703,8 +5724,8 @@ static void gxsp_affine_tangents(const gxsp_pass *pass, gxsp_affine_block *block
 }
 
 /* The product of a block with x, into its slots. pass->rate: times scale */
-static void gxsp_affine_product(const gxsp_pass *pass, const gxsp_affine_block *block, gxsp_lanes *x,
-                                double (*slots)[3]) {
+static GXSP_APART void gxsp_affine_product(const gxsp_pass *pass, const gxsp_affine_block *block, gxsp_lanes *x,
+                                           double (*slots)[3]) {
     gxsp_lanes y[48], bend[18], forces[18], w[12], energy;
     int p, k, l;
     gxsp_affine_bend(block, x, bend);
@@ -6017,16 +6038,21 @@ GXSP_INLINE void gxsp_prefetch_block(const gxsp_system *system, size_t index, ui
     if (chunk->moments) gxsp_prefetch(&chunk->moments[b], sizeof *chunk->moments);
 }
 
-/* x of a chunk's nodes: x 3, and one more number, which vectors read */
-static void gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *x,
-                            double *GXSP_RESTRICT to) {
+/* Numbers of a chunk's nodes: x 3, and one more, which vectors read */
+typedef double gxsp_near[GXSP_NEAR_NUMBERS];
+
+/* x of a chunk's nodes. Returns to; NULL: there is no room for so many nodes */
+static const double *gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *x,
+                                     double *GXSP_RESTRICT to) {
     const uint32_t *copies = system->mesh.nodes + chunk->first_node;
     size_t i, c;
+    if (chunk->node_count > GXSP_NEAR) return NULL;
     for (i = 0; i < chunk->node_count; i++) {
         gxsp_prefetch(x + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *x);
         for (c = 0; c < 3; c++) to[3 * i + c] = x[3 * (size_t)copies[i] + c];
     }
     to[3 * i] = 0;
+    return to;
 }
 
 #if defined(GXSP_SHUFFLES) && !defined(GXSP_AVX)
@@ -6063,8 +6089,8 @@ static inline void gxsp_load_four(const uint16_t *node, const double *x, double 
 
 /* x of a block's corners from that of the chunk's nodes. A corner that has not changed since the block before keeps
  * its values. */
-static void gxsp_block_load(const gxsp_chunk *chunk, uint32_t b, const double *GXSP_RESTRICT x,
-                            gxsp_lanes *GXSP_RESTRICT corners) {
+static void gxsp_block_load_near(const gxsp_chunk *chunk, uint32_t b, const double *GXSP_RESTRICT x,
+                                 gxsp_lanes *GXSP_RESTRICT corners) {
     const gxsp_corners *corner = &chunk->corners[b];
     int i, l;
     for (i = 0; i < 4; i++)
@@ -6084,12 +6110,21 @@ static void gxsp_block_load_copies(const gxsp_system *system, const gxsp_chunk *
         }
 }
 
-/* Shape function gradients of a block. rest: positions of the chunk's nodes; corners: of the block's, kept from
- * block to block as in gxsp_block_load */
-static gxsp_lanes *gxsp_block_gradients(const gxsp_chunk *chunk, uint32_t b, const double *rest, gxsp_lanes *corners,
-                                        gxsp_lanes *made) {
+/* The same from what gxsp_chunk_load has returned for x */
+static inline void gxsp_block_load(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, const double *near,
+                                   const double *x, gxsp_lanes *corners) {
+    if (near)
+        gxsp_block_load_near(chunk, b, near, corners);
+    else
+        gxsp_block_load_copies(system, chunk, b, x, corners);
+}
+
+/* Shape function gradients of a block. rest: positions of the chunk's nodes (gxsp_chunk_load); corners: of the
+ * block's, kept from block to block as in gxsp_block_load_near */
+static gxsp_lanes *gxsp_block_gradients(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b,
+                                        const double *rest, gxsp_lanes *corners, gxsp_lanes *made) {
     if (chunk->gradients) return chunk->gradients[b].entry;
-    gxsp_block_load(chunk, b, rest, corners);
+    gxsp_block_load(system, chunk, b, rest, system->model.positions, corners);
     gxsp_gradients_make(chunk->rest[b].weight, corners, made);
     return made;
 }
@@ -6164,32 +6199,25 @@ static void gxsp_add_energies(const gxsp_system *system, const gxsp_chunk *chunk
     }
 }
 
-/* Energies of a chunk at pass->from, component by component, and elastic + inertial forces */
-static void gxsp_task_state(void *context, size_t index) {
-    const gxsp_pass *pass = (const gxsp_pass *)context;
+/* Energies and forces of a chunk's blocks, into its partial sums and slots, which are 0. positions, state: what
+ * gxsp_chunk_load has returned for positions and pass->from */
+static GXSP_APART void gxsp_blocks_state(const gxsp_pass *pass, size_t index, const double *positions,
+                                         const double *state) {
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     double *slots = &system->vectors.slots[chunk->first_node][0];
+    const int inertia = pass->inertia && gxsp_accelerates(system, chunk, pass->from);
     uint32_t b;
-    int k, l, inertia;
-    double positions[3 * 4 * GXSP_CHUNK + 1], state[3 * 4 * GXSP_CHUNK + 1];
+    int k, l;
     gxsp_lanes corners[12], x[12], other[12], forces[12], made[9];
-    if (gxsp_chunk_settled(system, chunk)) return;
-    for (b = 0; b < chunk->partial_count; b++)
-        memset(system->mesh.partials[chunk->first_partial + b].energies, 0, sizeof system->mesh.partials->energies);
-    memset(slots, 0, 3 * (size_t)chunk->node_count * sizeof *slots);
-    if (system->state.chunk_still[index]) return;
-    inertia = pass->inertia && gxsp_accelerates(system, chunk, pass->from);
-    gxsp_chunk_load(system, chunk, pass->from, state);
-    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, positions);
     memset(forces, 0, sizeof forces);
     for (b = 0; b < chunk->block_count; b++) {
         const gxsp_rest *rest = &chunk->rest[b];
         gxsp_lanes ahead[9], led[12], energies[3], *gradients;
         gxsp_state s;
         gxsp_prefetch_block(system, index, b, GXSP_RESTS_AHEAD, 0);
-        gxsp_block_load(chunk, b, state, x);
-        gradients = gxsp_block_gradients(chunk, b, positions, corners, made);
+        gxsp_block_load(system, chunk, b, state, pass->from, x);
+        gradients = gxsp_block_gradients(system, chunk, b, positions, corners, made);
         if (inertia || pass->rotated) /* never both: rotated stresses come without inertia */
             gxsp_block_load_copies(system, chunk, b, inertia ? system->vectors.target : pass->rotated, other);
         gxsp_block_parameters(pass->materials, rest, &s);
@@ -6212,6 +6240,23 @@ static void gxsp_task_state(void *context, size_t index) {
         gxsp_add_energies(system, chunk, b, energies);
         gxsp_block_store(chunk, b, forces, slots);
     }
+}
+
+/* Energies of a chunk at pass->from, component by component, and elastic + inertial forces */
+static void gxsp_task_state(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const double *rest = NULL;
+    gxsp_near positions, state;
+    uint32_t p;
+    if (gxsp_chunk_settled(system, chunk)) return;
+    for (p = 0; p < chunk->partial_count; p++)
+        memset(system->mesh.partials[chunk->first_partial + p].energies, 0, sizeof system->mesh.partials->energies);
+    memset(system->vectors.slots[chunk->first_node], 0, chunk->node_count * sizeof *system->vectors.slots);
+    if (system->state.chunk_still[index]) return;
+    if (!chunk->gradients) rest = gxsp_chunk_load(system, chunk, system->model.positions, positions);
+    gxsp_blocks_state(pass, index, rest, gxsp_chunk_load(system, chunk, pass->from, state));
 }
 
 /* sum = sum over the slots of each copy, 3 doubles each */
@@ -6481,6 +6526,16 @@ static void gxsp_block_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles
     }
 }
 
+/* As gxsp_block_gather, from x of all copies */
+static GXSP_COLD void gxsp_block_gather_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b,
+                                               const gxsp_vector4 *x, gxsp_singles *to) {
+    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
+    int i, l, c;
+    for (i = 0; i < 4; i++)
+        for (l = 0; l < GXSP_LANES && chunk->changed[b] >> i & 1; l++)
+            for (c = 0; c < 3; c++) to[3 * i + c][l] = x[copies[chunk->corners[b].node[i][l]]][c];
+}
+
 /* >>strains: forces, Hessians and energies of stable neo-Hookean elements, in single precision --------------------- */
 
 /* In: a displacement. Out: forces in the chunks' slots, the strains that products need, or energies of components.
@@ -6553,19 +6608,47 @@ GXSP_INLINE void gxsp_leap_force(const gxsp_leap_block *GXSP_RESTRICT b, gxsp_si
     }
 }
 
-/* x of a chunk's nodes relative to its first one, before they are rounded: bodies may be far from where they were at
- * rest. */
-static void gxsp_leap_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *from, gxsp_vector4 *to) {
-    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
-    const double *origin = from + 3 * (size_t)copies[0];
+/* x of a copy relative to an origin, in single precision */
+static inline void gxsp_leap_place(const double *x, const double *origin, float *to) {
+    to[0] = (float)(x[0] - origin[0]), to[1] = (float)(x[1] - origin[1]), to[2] = (float)(x[2] - origin[2]);
+}
+
+/* pass->from of a chunk's nodes relative to its first one, before they are rounded: bodies may be far from where they
+ * were at rest. Returns to; NULL: there is no room for so many nodes */
+static const gxsp_vector4 *gxsp_leap_load(const gxsp_pass *pass, const gxsp_chunk *chunk, gxsp_vector4 *to) {
+    const uint32_t *copies = pass->system->mesh.nodes + chunk->first_node;
+    const double *origin = pass->from + 3 * (size_t)copies[0];
     uint32_t i;
+    if (chunk->node_count > GXSP_NEAR) return NULL;
     for (i = 0; i < chunk->node_count; i++) {
-        const double *x = from + 3 * (size_t)copies[i];
-        gxsp_prefetch(from + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *x);
-        to[i][0] = (float)(x[0] - origin[0]), to[i][1] = (float)(x[1] - origin[1]),
-        to[i][2] = (float)(x[2] - origin[2]);
+        gxsp_prefetch(pass->from + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *pass->from);
+        gxsp_leap_place(pass->from + 3 * (size_t)copies[i], origin, to[i]);
         to[i][3] = 0;
     }
+    return (const gxsp_vector4 *)to;
+}
+
+/* As gxsp_block_gather, from pass->from of all copies relative to that of the chunk's first node */
+static GXSP_COLD void gxsp_leap_gather_copies(const gxsp_pass *pass, const gxsp_chunk *chunk, uint32_t b,
+                                              gxsp_singles *to) {
+    const uint32_t *copies = pass->system->mesh.nodes + chunk->first_node;
+    int i, l, c;
+    for (i = 0; i < 4; i++)
+        for (l = 0; l < GXSP_LANES && chunk->changed[b] >> i & 1; l++) {
+            float place[3];
+            gxsp_leap_place(pass->from + 3 * (size_t)copies[chunk->corners[b].node[i][l]],
+                            pass->from + 3 * (size_t)copies[0], place);
+            for (c = 0; c < 3; c++) to[3 * i + c][l] = place[c];
+        }
+}
+
+/* pass->from at a block's corners. near: what gxsp_leap_load has returned */
+static inline void gxsp_leap_gather(const gxsp_pass *pass, const gxsp_chunk *chunk, uint32_t b,
+                                    const gxsp_vector4 *near, gxsp_singles *to) {
+    if (near)
+        gxsp_block_gather(chunk, b, near, to);
+    else
+        gxsp_leap_gather_copies(pass, chunk, b, to);
 }
 
 /* Forces of a chunk at pass->from into its slots, and its largest modulus */
@@ -6574,24 +6657,24 @@ static void gxsp_task_leap_force(void *context, size_t index) {
     const gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     const gxsp_leap_block *blocks = system->leap.blocks + system->leap.first_block[index];
-    gxsp_vector4 in[4 * GXSP_CHUNK], out[4 * GXSP_CHUNK];
+    const gxsp_vector4 *near;
+    gxsp_vector4 in[GXSP_NEAR], *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
     gxsp_singles from[12], to[12], stiffest;
     uint32_t b;
     int l;
     system->leap.stiffest[index] = 0;
     if (system->state.chunk_still[index]) return;
-    gxsp_leap_load(system, chunk, pass->from, in);
+    near = gxsp_leap_load(pass, chunk, in);
     memset(out, 0, chunk->node_count * sizeof *out);
     memset(to, 0, sizeof to);
     memset(stiffest, 0, sizeof stiffest);
     for (b = 0; b < chunk->block_count; b++) {
         if (b + GXSP_TANGENTS_AHEAD < chunk->block_count)
             gxsp_prefetch(&blocks[b + GXSP_TANGENTS_AHEAD], sizeof *blocks);
-        gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        gxsp_leap_gather(pass, chunk, b, near, from);
         gxsp_leap_force(&blocks[b], from, to, stiffest, 0, 0, NULL);
         gxsp_block_scatter(chunk, b, to, out);
     }
-    memcpy((gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node, out, chunk->node_count * sizeof *out);
     for (l = 0; l < GXSP_LANES; l++)
         if (stiffest[l] > system->leap.stiffest[index]) system->leap.stiffest[index] = stiffest[l];
 }
@@ -6603,17 +6686,18 @@ static void gxsp_task_strain_force(void *context, size_t index) {
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     const size_t first = system->leap.first_block[index];
     const float scale = (float)system->model.scale;
-    gxsp_vector4 in[4 * GXSP_CHUNK], *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
+    const gxsp_vector4 *near;
+    gxsp_vector4 in[GXSP_NEAR], *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
     gxsp_singles from[12], to[12];
     uint32_t b;
     if (system->state.chunk_still[index]) return;
-    gxsp_leap_load(system, chunk, pass->from, in);
+    near = gxsp_leap_load(pass, chunk, in);
     memset(out, 0, chunk->node_count * sizeof *out);
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; b++) {
         if (b + GXSP_TANGENTS_AHEAD < chunk->block_count)
             gxsp_prefetch(&system->leap.blocks[first + b + GXSP_TANGENTS_AHEAD], sizeof *system->leap.blocks);
-        gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        gxsp_leap_gather(pass, chunk, b, near, from);
         gxsp_leap_force(&system->leap.blocks[first + b], from, to, NULL, 1, scale, &system->leap.strains[first + b]);
         gxsp_block_scatter(chunk, b, to, out);
     }
@@ -6676,11 +6760,12 @@ static void gxsp_task_strain_product(void *context, size_t index) {
     const uint32_t *copies = system->mesh.nodes + chunk->first_node;
     const gxsp_leap_block *blocks = system->leap.blocks + system->leap.first_block[index];
     const gxsp_strain *strains = system->leap.strains + system->leap.first_block[index];
-    gxsp_vector4 in[4 * GXSP_CHUNK], *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
+    const int near = chunk->node_count <= GXSP_NEAR;
+    gxsp_vector4 in[GXSP_NEAR], *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
     gxsp_singles from[12], to[12];
     uint32_t b, i;
     if (system->state.chunk_still[index]) return;
-    for (i = 0; i < chunk->node_count; i++) {
+    for (i = 0; i < chunk->node_count && near; i++) {
         gxsp_prefetch(pass->x[copies[i + GXSP_AHEAD]], sizeof *pass->x);
         memcpy(in[i], pass->x[copies[i]], sizeof *in);
     }
@@ -6691,7 +6776,10 @@ static void gxsp_task_strain_product(void *context, size_t index) {
             gxsp_prefetch(blocks[b + GXSP_TANGENTS_AHEAD].gradient, sizeof blocks->gradient);
             gxsp_prefetch(&strains[b + GXSP_TANGENTS_AHEAD], sizeof *strains);
         }
-        gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        if (near)
+            gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        else
+            gxsp_block_gather_copies(system, chunk, b, (const gxsp_vector4 *)pass->x, from);
         gxsp_strain_product(&blocks[b], &strains[b], from, to);
         gxsp_block_scatter(chunk, b, to, out);
     }
@@ -6729,7 +6817,8 @@ static void gxsp_task_strain_energy(void *context, size_t index) {
     const gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     const gxsp_leap_block *blocks = system->leap.blocks + system->leap.first_block[index];
-    gxsp_vector4 in[4 * GXSP_CHUNK];
+    const gxsp_vector4 *near;
+    gxsp_vector4 in[GXSP_NEAR];
     gxsp_lanes energies[3];
     gxsp_singles from[12];
     uint32_t b;
@@ -6737,11 +6826,11 @@ static void gxsp_task_strain_energy(void *context, size_t index) {
     for (b = 0; b < chunk->partial_count; b++)
         memset(system->mesh.partials[chunk->first_partial + b].energies, 0, sizeof system->mesh.partials->energies);
     if (system->state.chunk_still[index]) return;
-    gxsp_leap_load(system, chunk, pass->from, in);
+    near = gxsp_leap_load(pass, chunk, in);
     for (b = 0; b < chunk->block_count; b++) {
         if (b + GXSP_TANGENTS_AHEAD < chunk->block_count)
             gxsp_prefetch(&blocks[b + GXSP_TANGENTS_AHEAD], sizeof *blocks);
-        gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        gxsp_leap_gather(pass, chunk, b, near, from);
         gxsp_strain_energy(&blocks[b], from, energies[0]);
         gxsp_add_energies(system, chunk, b, energies);
     }
@@ -6937,12 +7026,13 @@ static void gxsp_task_product(void *context, size_t index) {
     const gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     const uint32_t *copies = system->mesh.nodes + chunk->first_node;
-    gxsp_vector4 in[4 * GXSP_CHUNK]; /* not the chunks' own memory: stays in the cache */
+    const int near = chunk->node_count <= GXSP_NEAR;
+    gxsp_vector4 in[GXSP_NEAR]; /* not the chunks' own memory: stays in the cache */
     gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
     gxsp_singles from[12], to[12];
     uint32_t b, i;
     if (system->state.chunk_still[index]) return;
-    for (i = 0; i < chunk->node_count; i++) {
+    for (i = 0; i < chunk->node_count && near; i++) {
         gxsp_prefetch(pass->x[copies[i + GXSP_AHEAD]], sizeof *pass->x);
         memcpy(in[i], pass->x[copies[i]], sizeof *in);
     }
@@ -6950,7 +7040,10 @@ static void gxsp_task_product(void *context, size_t index) {
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; b++) {
         gxsp_prefetch_block(system, index, b, GXSP_TANGENTS_AHEAD, 1);
-        gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        if (near)
+            gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        else
+            gxsp_block_gather_copies(system, chunk, b, (const gxsp_vector4 *)pass->x, from);
         gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_moments(chunk, b), gxsp_block_general(chunk, b),
                           0, from, to);
         gxsp_block_scatter(chunk, b, to, out);
@@ -7122,23 +7215,43 @@ static void gxsp_block_gather_doubles(const gxsp_chunk *chunk, uint32_t b, const
     }
 }
 
+/* The same, from the direction of all copies: see gxsp_copy_direction */
+static GXSP_COLD void gxsp_block_gather_direction(const gxsp_pass *pass, const gxsp_chunk *chunk, uint32_t b,
+                                                  gxsp_singles *to) {
+    const uint32_t *copies = pass->system->mesh.nodes + chunk->first_node;
+    const gxsp_corners *corner = &chunk->corners[b];
+    int i, l, c;
+    for (l = 0; l < GXSP_LANES; l++) {
+        double origin[3] = {0, 0, 0}, x[3];
+        for (i = 0; i < 4; i++) {
+            gxsp_copy_direction(pass, copies[corner->node[i][l]], x);
+            for (c = 0; c < 3; c++) to[3 * i + c][l] = (float)(x[c] - origin[c]);
+            if (i == 0) memcpy(origin, x, sizeof origin);
+        }
+    }
+}
+
 /* The product of pass->from, times pass->factor, into the chunk's slots, 4 floats each */
 static void gxsp_task_apply(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     const uint32_t *copies = system->mesh.nodes + chunk->first_node;
-    double in[3 * 4 * GXSP_CHUNK + 1]; /* one more than is read as numbers */
+    const int near = chunk->node_count <= GXSP_NEAR;
+    gxsp_near in;
     gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
     gxsp_singles from[12], to[12];
     uint32_t b, i;
-    for (i = 0; i < chunk->node_count; i++) gxsp_copy_direction(pass, copies[i], in + 3 * (size_t)i);
+    for (i = 0; i < chunk->node_count && near; i++) gxsp_copy_direction(pass, copies[i], in + 3 * (size_t)i);
     in[3 * (size_t)i] = 0;
     memset(out, 0, chunk->node_count * sizeof *out);
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; b++) {
         gxsp_prefetch_block(system, index, b, GXSP_TANGENTS_AHEAD, 1);
-        gxsp_block_gather_doubles(chunk, b, in, from);
+        if (near)
+            gxsp_block_gather_doubles(chunk, b, in, from);
+        else
+            gxsp_block_gather_direction(pass, chunk, b, from);
         gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_moments(chunk, b), gxsp_block_general(chunk, b),
                           1, from, to);
         gxsp_block_scatter(chunk, b, to, out);
@@ -7239,33 +7352,28 @@ static void gxsp_diagonal_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_sing
     }
 }
 
-/* Hessian of a chunk at pass->from, and its diagonal blocks into the slots */
-static void gxsp_task_linearise(void *context, size_t index) {
-    const gxsp_pass *pass = (const gxsp_pass *)context;
+/* Hessians of a chunk's blocks, and their diagonal blocks into the slots, which are 0. positions, state: as in
+ * gxsp_blocks_state */
+static GXSP_APART void gxsp_blocks_linearise(const gxsp_pass *pass, size_t index, const double *positions,
+                                             const double *state) {
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     float *slots = (float *)(void *)system->vectors.slots[chunk->first_node];
-    double positions[3 * 4 * GXSP_CHUNK + 1], state[3 * 4 * GXSP_CHUNK + 1];
     gxsp_lanes corners[12], x[12], made[2][9], *gradients[2];
     gxsp_singles own[24];
     const double rate = system->state.quick ? 0 : pass->rate; /* lumped mass is added to the sums */
     uint32_t b, k, blocks;
     int l;
-    system->state.chunk_collapsed[index] = 0;
-    if (system->state.chunk_still[index]) return;
-    memset(slots, 0, 6 * (size_t)chunk->node_count * sizeof *slots);
     memset(own, 0, sizeof own);
-    gxsp_chunk_load(system, chunk, pass->from, state);
-    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, positions);
     for (b = 0; b < chunk->block_count; b += blocks) { /* two at a time */
         gxsp_state s[2];
         gxsp_svd svd[2];
         blocks = b + 1 < chunk->block_count ? 2 : 1;
         for (k = 0; k < blocks; k++) {
             gxsp_prefetch_block(system, index, b + k, GXSP_RESTS_AHEAD, 0);
-            gxsp_block_load(chunk, b + k, state, x);
+            gxsp_block_load(system, chunk, b + k, state, pass->from, x);
             gxsp_block_parameters(pass->materials, &chunk->rest[b + k], &s[k]);
-            gradients[k] = gxsp_block_gradients(chunk, b + k, positions, corners, made[k]);
+            gradients[k] = gxsp_block_gradients(system, chunk, b + k, positions, corners, made[k]);
             gxsp_block_gradient(gradients[k], x, s[k].g);
         }
         system->state.chunk_collapsed[index] |=
@@ -7280,6 +7388,20 @@ static void gxsp_task_linearise(void *context, size_t index) {
             gxsp_diagonal_scatter(chunk, b + k, own, slots);
         }
     }
+}
+
+/* Hessian of a chunk at pass->from, and its diagonal blocks into the slots */
+static void gxsp_task_linearise(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const double *rest = NULL;
+    gxsp_near positions, state;
+    system->state.chunk_collapsed[index] = 0;
+    if (system->state.chunk_still[index]) return;
+    memset(system->vectors.slots[chunk->first_node], 0, chunk->node_count * sizeof *system->vectors.slots);
+    if (!chunk->gradients) rest = gxsp_chunk_load(system, chunk, system->model.positions, positions);
+    gxsp_blocks_linearise(pass, index, rest, gxsp_chunk_load(system, chunk, pass->from, state));
 }
 
 /* Inverse of a positive semi-definite 3x3, packed, in place, as W^T W with W the inverse Cholesky factor. So it is
@@ -7745,7 +7867,7 @@ static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
 static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *block, int l, double rate) {
     const gxsp_level *level = &system->multigrid.levels[1];
     uint32_t node[64], parents[16], count = 0, c, d, k, n;
-    double share[64][16], gradient[4][64][3], value[4][64], flux[27];
+    double share[64][16], gradient[64][3], value[64], flux[27];
     float weights[16];
     int p, m;
     for (k = 0; k < 16; k++) {
@@ -7759,22 +7881,22 @@ static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *bl
             share[c][k] += (double)weights[n];
         }
     }
-    for (p = 0; p < 4; p++)
-        for (c = 0; c < count; c++) gxsp_point_function(block, p, l, share[c], gradient[p][c], &value[p][c]);
-    for (p = 0; p < 4; p++)
+    for (p = 0; p < 4; p++) {
+        for (c = 0; c < count; c++) gxsp_point_function(block, p, l, share[c], gradient[c], &value[c]);
         for (d = 0; d < count; d++) {
-            gxsp_point_flux(block, p, l, gradient[p][d], flux);
+            gxsp_point_flux(block, p, l, gradient[d], flux);
             for (c = 0; c < count; c++) {
                 double to[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0}, *entry;
                 if (node[c] > node[d]) continue;
                 entry = system->affine.block + 9 * (size_t)gxsp_find_entry(level, node[c], node[d]);
-                gxsp_point_couple(gradient[p][c], flux, to);
-                to[0] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
-                to[4] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
-                to[8] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
+                gxsp_point_couple(gradient[c], flux, to);
+                to[0] += rate * block->rest.mass[l] * value[c] * value[d];
+                to[4] += rate * block->rest.mass[l] * value[c] * value[d];
+                to[8] += rate * block->rest.mass[l] * value[c] * value[d];
                 for (m = 0; m < 9; m++) entry[3 * (m % 3) + m / 3] += to[m];
             }
         }
+    }
 }
 
 /* Springs and contact between coarse functions, where level 1's matrix has an entry for them */
@@ -11218,13 +11340,14 @@ static uint32_t *gxsp_leap_blocks_make(gxsp_system *system, gxsp_pool *scratch) 
     if (leap->pool.failed || scratch->failed) return NULL;
     for (c = 0; c < system->mesh.chunk_count; c++) {
         const gxsp_chunk *chunk = &system->mesh.chunks[c];
-        double positions[3 * 4 * GXSP_CHUNK + 1];
+        const double *positions = NULL;
+        gxsp_near near;
         gxsp_lanes corners[12], made[9];
-        if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, positions);
+        if (!chunk->gradients) positions = gxsp_chunk_load(system, chunk, system->model.positions, near);
         for (b = 0; b < chunk->block_count; b++) {
             gxsp_leap_block *to = &leap->blocks[leap->first_block[c] + b];
             const gxsp_rest *rest = &chunk->rest[b];
-            gxsp_lanes *gradients = gxsp_block_gradients(chunk, b, positions, corners, made);
+            gxsp_lanes *gradients = gxsp_block_gradients(system, chunk, b, positions, corners, made);
             for (lane = 0; lane < GXSP_LANES; lane++) {
                 const gxsp_material *material = &system->model.materials[rest->material[lane]];
                 const int used = chunk->groups[b * GXSP_LANES + lane] != GXSP_NONE;
@@ -13028,9 +13151,12 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_LANES
 #undef GXSP_CHUNK_BLOCKS
 #undef GXSP_CHUNK
+#undef GXSP_NEAR
+#undef GXSP_NEAR_NUMBERS
 #undef GXSP_EACH_LANE
 #undef GXSP_RESTRICT
 #undef GXSP_COLD
+#undef GXSP_APART
 #undef GXSP_INLINE
 #undef GXSP_ROUNDING
 #undef GXSP_ABSURD
