@@ -149,6 +149,7 @@ START_TEST(search_is_exhaustive) {
     gx_body *body;
     gxp_touch_surface *surface;
     gxs_step_desc none;
+    const gx_step_desc given = falling(1);
     gx_view view;
     size_t i, met = 0;
     uint32_t v, f;
@@ -171,12 +172,10 @@ START_TEST(search_is_exhaustive) {
         }
         memset(&none, 0, sizeof none);
         none.dt = dt;
-        ck_assert_int_eq(gxp_attach_contact(body, &none, &surface, NULL), GX_OK);
+        ck_assert_int_eq(gxp_attach_contact(body, &given, &none, &surface, NULL), GX_OK);
         for (v = 0, i = 0; v < surface->vertex_count; v++) {
             gxp_touch_pair best;
-            memset(&best, 0, sizeof best);
-            best.vertex = v;
-            best.facet = GXB_NONE;
+            best = gxp_no_pair(v);
             for (f = 0; f < surface->facet_count; f++) gxp_try_facet(body, surface, dt, f, &best);
             if (best.facet == GXB_NONE) continue;
             CHECK_SEED(i < body->touch.found, seed);
