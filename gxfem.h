@@ -464,7 +464,7 @@ enum {
     GX_COLLIDER_SPHERE,    /* size[0]: radius */
     GX_COLLIDER_CAPSULE,   /* size[0]: radius; size[1]: half the length of its axis, which is along z */
     GX_COLLIDER_BOX,       /* size: half the length of its edges along each axis */
-    GX_COLLIDER_DISTANCE   /* distance() says where it is */
+    GX_COLLIDER_DISTANCE   /* distance() says where it is; size[0]: its smallest radius, for samples; 0: not known */
 };
 /* Signed distance of a point from the surface of a collider, m, below 0 inside, in the collider's own frame; normal:
    receives its gradient there, outward, of any length but 0. Never larger than the true distance. Called on the thread
@@ -585,8 +585,8 @@ GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model, gx_failure *f
    A piece's own thickness is no contact: a facet is left out if it was near at rest and the vertex did not face it
    then, or was behind it.
    Pieces press on the caller's rigid bodies as well: see gx_step_desc.colliders. Samples are the vertices of the
-   surface and, where a collider is deeper in a facet than in its corners, a place of the facet. Each is joined to the
-   tangent plane of the collider there, by c E A / h. A collider that is inside a piece is seen at any depth. */
+   surface; facets on which the distance from a collider bends have more of them. Each is joined to the tangent plane of
+   the collider there, by c E A / h. A collider that is inside a piece is seen at any depth. */
 typedef struct gx_contact_desc {
     double stiffness;      /* c; 0: 10. Iterations of a step grow with its root */
     double friction;       /* Coulomb's coefficient, 0 or more */
@@ -1498,6 +1498,7 @@ typedef struct gxp_touch_state {
     uint32_t sample, other; /* other: a collider's id; GXP_NONE: the body itself */
     double pressed;         /* m: depth */
     double slip[3];         /* m: elastic, of its friction */
+    double rest[3];         /* m: of a facet, which has many, the place */
 } gxp_touch_state;
 
 typedef struct gxp_touch_surface { /* facets by fragment, then as they lie in space at rest */
@@ -1511,16 +1512,22 @@ typedef struct gxp_touch_surface { /* facets by fragment, then as they lie in sp
 
 typedef struct gxp_touch_pair {  /* of a step */
     uint32_t sample;             /* see gxp_touch_state */
+    uint32_t parts;              /* of a facet's edges */
     uint32_t facet;              /* that a vertex touches; GXP_NONE: it is a collider, or nothing any more */
     uint32_t collider, other;    /* place among the step's colliders, id; GXP_NONE: none */
     double share[3];             /* of the corners of that facet; of a sample that is a facet, those of its own */
     double normal[3];            /* of the other side, in space, of length 1 */
     double gap, approach, score; /* m; m/s; m2: the smallest is taken */
     double gap_before;           /* m: after the step, what gap was before */
-    double area;                 /* m2: of the sample */
+    double area, rest[3];        /* m2, m: of the sample */
     double pressed, slip[3];     /* m: of its state */
     double place[3], way[3];     /* m: of the collider's point at the step's start; its way within the step */
 } gxp_touch_pair;
+
+typedef struct gxp_touch_beside { /* a sample that may come near a collider */
+    uint32_t collider, parts;     /* parts above 1: it is a facet, whose edges are divided */
+    double area;                  /* m2: of the facet, or of what this entry adds to a vertex */
+} gxp_touch_beside;
 
 typedef struct gxp_touch_known { /* a collider of the last step */
     uint32_t id, unused;
@@ -1543,7 +1550,8 @@ typedef struct gxp_touch {
     uint32_t collider_count;
     gxp_keys named;    /* id, place of a collider; ascending */
     gxp_words changed; /* of each collider: 1 if it moves or is not as it was in the last step */
-    gxp_keys beside;   /* sample, collider: what may touch; ascending */
+    gxp_touch_beside *beside;
+    uint32_t beside_capacity;
     gxp_touch_pair *pairs;
     double *moved;          /* vertices x 9: position and velocity in space, outward normal */
     double *facing;         /* facets x 3: normals in space, of length 1, or 0 */
@@ -1551,11 +1559,12 @@ typedef struct gxp_touch {
     gxp_words sides;        /* pairs x GXP_TOUCH_COPIES: copies of their points */
     double *weights;        /* likewise */
     double *slips, *forces; /* all pairs of the step x 3 */
-    gxp_keys order;
-    gxp_words ranked;     /* facets along a curve; then vertices that a cut has made */
-    uint32_t leaf_count;  /* a power of two */
-    uint32_t given;       /* pairs of the caller, which stand first */
-    uint32_t found, kept; /* pairs of contact: of this step; of the last one that succeeded */
+    gxp_keys order;         /* facets; places of vertices; samples beside colliders */
+    gxp_keys placed;        /* facets by element */
+    gxp_words ranked;       /* facets along a curve */
+    uint32_t leaf_count;    /* a power of two */
+    uint32_t given;         /* pairs of the caller, which stand first */
+    uint32_t found, kept;   /* pairs of contact: of this step; of the last one that succeeded */
     uint32_t pair_capacity, moved_capacity, facing_capacity, box_capacity, weight_capacity, slip_capacity,
         force_capacity;
 } gxp_touch;
@@ -1860,7 +1869,7 @@ static const gxp_column gxp_lists[] = {
     GXP_LIST(touch.slips, touch.slip_capacity, 3 * sizeof(double)),
     GXP_LIST(touch.forces, touch.force_capacity, 3 * sizeof(double)),
     GXP_KEYS(touch.order), GXP_WORDS(touch.ranked), GXP_KEYS(touch.named), GXP_WORDS(touch.changed),
-    GXP_KEYS(touch.beside),
+    GXP_LIST(touch.beside, touch.beside_capacity, sizeof(gxp_touch_beside)), GXP_KEYS(touch.placed),
     GXP_WORDS(scratch.removed), GXP_KEYS(scratch.removed_of), GXP_WORDS(scratch.pinches), GXP_WORDS(scratch.touched),
     GXP_WORDS(scratch.new_cells),
     GXP_KEYS(scratch.links), GXP_KEYS(scratch.glue), GXP_KEYS(scratch.seams), GXP_WORDS(scratch.cluster),
@@ -11233,28 +11242,40 @@ static uint32_t gxp_facet_at(const gxp_touch_surface *s, const gxp_keys *order, 
     return found;
 }
 
-/* Adds a share of the states of a sample to those of the last sample of another surface. */
-static gx_result gxp_add_states(gx_body *body, const gxp_touch_surface *from, uint32_t sample, double share,
+/* Room for another state; it is the last one. */
+static gx_result gxp_push_state(gx_body *body, gxp_touch_surface *to, const gxp_touch_state *state, uint32_t sample) {
+    const gx_result result =
+        gxp_reserve(&body->config.allocator, &to->states, sizeof *to->states, to->state_count, &to->state_capacity, 1);
+    if (result != GX_OK) return result;
+    to->states[to->state_count] = *state;
+    to->states[to->state_count++].sample = sample;
+    return GX_OK;
+}
+
+/* Adds a share of the states of a vertex to those of the last vertex of another surface. */
+static gx_result gxp_add_states(gx_body *body, const gxp_touch_surface *from, uint32_t vertex, double share,
                                 gxp_touch_surface *to, uint32_t last) {
-    uint32_t i = gxp_first_state(from, sample), at;
+    uint32_t i = gxp_first_state(from, vertex), at;
     int k;
-    gx_result result = GX_OK;
-    for (; i < from->state_count && from->states[i].sample == sample && share > 0 && result == GX_OK; i++) {
+    for (; i < from->state_count && from->states[i].sample == vertex && share > 0; i++) {
         const gxp_touch_state *state = &from->states[i];
-        for (at = to->state_count; at > 0 && to->states[at - 1].sample == last;)
-            if (to->states[--at].other == state->other) goto found;
-        result = gxp_reserve(&body->config.allocator, &to->states, sizeof *to->states, to->state_count,
-                             &to->state_capacity, 1);
-        if (result != GX_OK) return result;
-        at = to->state_count++;
-        memset(&to->states[at], 0, sizeof *to->states);
-        to->states[at].sample = last;
-        to->states[at].other = state->other;
-    found:
-        to->states[at].pressed += share * state->pressed;
-        for (k = 0; k < 3; k++) to->states[at].slip[k] += share * state->slip[k];
+        for (at = to->state_count;
+             at > 0 && to->states[at - 1].sample == last && to->states[at - 1].other != state->other;)
+            at--;
+        if (at == 0 || to->states[at - 1].sample != last) {
+            gxp_touch_state none;
+            gx_result result;
+            memset(&none, 0, sizeof none);
+            none.other = state->other;
+            memcpy(none.rest, to->vertices[last].rest, sizeof none.rest);
+            result = gxp_push_state(body, to, &none, last);
+            if (result != GX_OK) return result;
+            at = to->state_count;
+        }
+        to->states[at - 1].pressed += share * state->pressed;
+        for (k = 0; k < 3; k++) to->states[at - 1].slip[k] += share * state->slip[k];
     }
-    return result;
+    return GX_OK;
 }
 
 /* The facets of an element: a part of `order`, which is sorted by elements. Nothing of it is owned. */
@@ -11293,10 +11314,10 @@ static gx_result gxp_carry_vertices(gx_body *body, const gxp_touch_surface *from
     return result;
 }
 
-/* Facets get the states of those on which they lie. */
+/* Facets get the states of those on which they lie: all of them, since a sample takes the nearest. */
 static gx_result gxp_carry_facets(gx_body *body, const gxp_touch_surface *from, const gxp_keys *elements,
                                   gxp_touch_surface *to) {
-    uint32_t i;
+    uint32_t i, n;
     gx_result result = GX_OK;
     if (gxp_first_state(from, from->vertex_count) == from->state_count) return result;
     for (i = 0; i < to->facet_count && result == GX_OK; i++) {
@@ -11309,15 +11330,17 @@ static gx_result gxp_carry_facets(gx_body *body, const gxp_touch_surface *from, 
         for (k = 0; k < 3; k++)
             center[k] = (v->rest[k] + to->vertices[f->vertex[1]].rest[k] + to->vertices[f->vertex[2]].rest[k]) / 3;
         facet = gxp_facet_at(from, &facets, center, v->normal, v->size, share);
-        if (facet != GXP_NONE)
-            result = gxp_add_states(body, from, from->vertex_count + facet, 1, to, to->vertex_count + i);
+        if (facet == GXP_NONE) continue;
+        for (n = gxp_first_state(from, from->vertex_count + facet);
+             n < from->state_count && from->states[n].sample == from->vertex_count + facet && result == GX_OK; n++)
+            result = gxp_push_state(body, to, &from->states[n], to->vertex_count + i);
     }
     return result;
 }
 
 /* The state of the material goes from one surface to another. */
 static gx_result gxp_carry_states(gx_body *body, const gxp_touch_surface *from, gxp_touch_surface *to) {
-    gxp_keys *places = &body->touch.order, *elements = &body->touch.beside;
+    gxp_keys *places = &body->touch.order, *elements = &body->touch.placed;
     gx_result result = GX_OK;
     uint32_t i;
     to->state_count = places->count = elements->count = 0;
@@ -11354,13 +11377,13 @@ static gx_result gxp_step_surface(gx_body *body, gxp_touch_surface **surface) {
 
 /* Steps by the distance to a collider on the way of a sample; a way that needs more passes it closely */
 #define GXP_TOUCH_ADVANCES 16
-/* Steps to the deepest place of a facet, and halvings in each of them */
-#define GXP_TOUCH_DESCENTS 6
-#define GXP_TOUCH_HALVINGS 10
-/* In sizes of an element: gaps that have a pair if the step may make them smaller; how much deeper than its corners a
-   facet is where its sample has all of its area */
-#define GXP_TOUCH_NEAR   0.02
-#define GXP_TOUCH_DENTED 0.05
+/* Samples of facets on which the distance bends: so many to the length of what a collider has, at most so many parts of
+   an edge. A cosine: normals of a collider that bend less are as good as one */
+#define GXP_TOUCH_FINE  4
+#define GXP_TOUCH_PARTS 24u
+#define GXP_TOUCH_FLAT  0.995
+/* In sizes of an element: gaps that have a pair if the step may make them smaller */
+#define GXP_TOUCH_NEAR 0.02
 
 /* Signed distance from the origin's surroundings along which p is measured: a ball of that radius */
 static double gxp_ball_distance(const double p[3], double radius, double normal[3]) {
@@ -11429,195 +11452,143 @@ static void gxp_from_collider(const gx_collider *c, const double own[3], double 
     for (k = 0; k < 3; k++) x[k] = gxp_dot(c->pose + 4 * k, own);
 }
 
-/* A sample beside a collider, in the collider's frame: a vertex, or the corners of a facet */
-typedef struct gxp_touch_probe {
-    const gx_collider *collider;
-    int count;           /* of corners: 1 or 3 */
-    double at[3][3];     /* m, at the step's start */
-    double motion[3][3]; /* m/s, relative to the collider */
-    double fastest;      /* m/s */
-    double size;         /* m: of the element */
-    /* where it was looked at last */
-    double share[3];        /* of the corners: the deepest place */
-    double distance, least; /* m: there; of the corner that is deepest */
-    double normal[3], time; /* of the collider there; s */
-    int wild;               /* 1: the caller's distance is not a number */
-} gxp_touch_probe;
+/* A sample beside a collider, in the collider's frame */
+typedef struct gxp_approach {
+    double at[3], motion[3]; /* m, at the step's start; m/s, relative to the collider */
+    double normal[3];        /* of the collider where they are nearest */
+    double distance, time;   /* m: there; s: then */
+    int wild;                /* 1: the caller's distance is not a number */
+} gxp_approach;
 
-/* corners: 9 numbers each as in gxp_touch.moved */
-static void gxp_make_probe(const gx_collider *c, const double *const corners[3], int count, double size,
-                           gxp_touch_probe *probe) {
-    int i, k;
-    memset(probe, 0, sizeof *probe);
-    probe->collider = c;
-    probe->count = count;
-    probe->size = size;
-    for (i = 0; i < count; i++) {
-        double x[3], v[3];
-        gxp_collider_velocity(c, corners[i], v);
-        for (k = 0; k < 3; k++) {
-            x[k] = corners[i][k] - c->pose[4 * k + 3];
-            v[k] = corners[i][3 + k] - v[k];
-        }
-        gxp_to_collider(c, x, probe->at[i]);
-        gxp_to_collider(c, v, probe->motion[i]);
-        probe->fastest = fmax(probe->fastest, sqrt(gxp_dot(v, v)));
+/* x: position and velocity in space */
+static gxp_approach gxp_make_approach(const gx_collider *c, const double x[6]) {
+    gxp_approach a;
+    double d[3], v[3];
+    int k;
+    memset(&a, 0, sizeof a);
+    gxp_collider_velocity(c, x, v);
+    for (k = 0; k < 3; k++) {
+        d[k] = x[k] - c->pose[4 * k + 3];
+        v[k] = x[3 + k] - v[k];
     }
-}
-
-/* The place with that share of each corner at a time */
-static void gxp_probe_place(const gxp_touch_probe *probe, const double share[3], double time, double p[3]) {
-    int i, k;
-    for (k = 0; k < 3; k++)
-        for (i = 0, p[k] = 0; i < probe->count; i++) p[k] += share[i] * (probe->at[i][k] + time * probe->motion[i][k]);
-}
-
-static double gxp_probe_distance(gxp_touch_probe *probe, const double share[3], double time, double normal[3]) {
-    double p[3], d;
-    gxp_probe_place(probe, share, time, p);
-    d = gxp_collider_distance(probe->collider, p, normal);
-    probe->wild |= !gxp_is_finite(d);
-    return d;
-}
-
-/* Goes from the deepest corner of a facet to its deepest place: towards the corner to which the distance falls most, to
-   where it rises again [Frank and Wolfe 1956]. For convex colliders; for others it finds a place that is deep. */
-static void gxp_descend(gxp_touch_probe *probe) {
-    int round, i, half;
-    for (round = 0; round < GXP_TOUCH_DESCENTS && !probe->wild; round++) {
-        double steepest = -1e-6 * probe->size, p[3], low = 0, high = 1, share[3], normal[3], d;
-        int toward = -1;
-        gxp_probe_place(probe, probe->share, probe->time, p);
-        for (i = 0; i < 3; i++) {
-            const double way[3] = {probe->at[i][0] + probe->time * probe->motion[i][0] - p[0],
-                                   probe->at[i][1] + probe->time * probe->motion[i][1] - p[1],
-                                   probe->at[i][2] + probe->time * probe->motion[i][2] - p[2]};
-            const double slope = gxp_dot(probe->normal, way);
-            if (!(slope < steepest)) continue;
-            steepest = slope;
-            toward = i;
-        }
-        if (toward < 0) return;
-        for (half = 0; half < GXP_TOUCH_HALVINGS; half++) {
-            const double middle = 0.5 * (low + high);
-            double slope = 0;
-            for (i = 0; i < 3; i++) share[i] = (1 - middle) * probe->share[i] + (i == toward ? middle : 0);
-            (void)gxp_probe_distance(probe, share, probe->time, normal);
-            for (i = 0; i < 3; i++)
-                slope += normal[i] * (probe->at[toward][i] + probe->time * probe->motion[toward][i] - p[i]);
-            if (slope < 0)
-                low = middle;
-            else
-                high = middle;
-        }
-        for (i = 0; i < 3; i++) share[i] = (1 - low) * probe->share[i] + (i == toward ? low : 0);
-        d = gxp_probe_distance(probe, share, probe->time, normal);
-        if (!(d < probe->distance)) return;
-        probe->distance = d;
-        memcpy(probe->share, share, sizeof share);
-        memcpy(probe->normal, normal, sizeof normal);
-    }
-}
-
-/* Looks at the sample as it is at a time: its deepest place. */
-static void gxp_look(gxp_touch_probe *probe, double time) {
-    int i, deepest = 0;
-    probe->time = time;
-    for (i = 0; i < probe->count; i++) {
-        double share[3] = {0, 0, 0}, normal[3], d;
-        share[i] = 1;
-        d = gxp_probe_distance(probe, share, time, normal);
-        if (i > 0 && !(d < probe->least)) continue;
-        deepest = i;
-        probe->least = probe->distance = d;
-        memcpy(probe->normal, normal, sizeof normal);
-    }
-    probe->share[0] = probe->share[1] = probe->share[2] = 0;
-    probe->share[deepest] = 1;
-    if (probe->count > 1) gxp_descend(probe);
+    gxp_to_collider(c, d, a.at);
+    gxp_to_collider(c, v, a.motion);
+    return a;
 }
 
 /* Does the sample come near its collider within dt? Goes along its way by steps no longer than the distance. */
-static int gxp_comes_near(gxp_touch_probe *probe, double dt) {
-    double time = 0;
-    int i;
+static int gxp_comes_near(const gx_collider *c, double size, double dt, gxp_approach *a) {
+    const double speed = sqrt(gxp_dot(a->motion, a->motion));
+    int i, k;
     for (i = 0; i < GXP_TOUCH_ADVANCES; i++) {
-        gxp_look(probe, time);
-        if (probe->wild) return 0;
-        if (probe->distance < GXP_TOUCH_NEAR * probe->size) return gxp_dot(probe->normal, probe->normal) > 0;
-        if (!(probe->distance <= probe->fastest * (dt - time))) return 0;
-        time += probe->distance / probe->fastest;
+        double p[3];
+        for (k = 0; k < 3; k++) p[k] = a->at[k] + a->time * a->motion[k];
+        a->distance = gxp_collider_distance(c, p, a->normal);
+        if (!gxp_is_finite(a->distance)) {
+            a->wild = 1;
+            return 0;
+        }
+        if (a->distance < GXP_TOUCH_NEAR * size) return gxp_dot(a->normal, a->normal) > 0;
+        if (!(a->distance <= speed * (dt - a->time))) return 0;
+        a->time += a->distance / speed;
     }
     return 0;
 }
 
-/* The pair of a sample that comes near: the tangent plane of the collider where the two meet, moving with the
-   collider. */
-static void gxp_meet_collider(const gxp_touch_probe *probe, const double *const corners[3], double dt,
-                              gxp_touch_pair *pair) {
-    double x[3] = {0, 0, 0}, motion[3] = {0, 0, 0};
-    int i, k;
-    memcpy(pair->share, probe->share, sizeof pair->share);
-    for (i = 0; i < probe->count; i++)
-        for (k = 0; k < 3; k++) {
-            x[k] += probe->share[i] * corners[i][k];
-            motion[k] += probe->share[i] * probe->motion[i][k];
-        }
-    pair->approach = -gxp_dot(probe->normal, motion);
-    pair->gap = probe->distance + probe->time * pair->approach;
-    gxp_from_collider(probe->collider, probe->normal, pair->normal);
-    for (k = 0; k < 3; k++) pair->place[k] = x[k] - pair->gap * pair->normal[k];
-    gxp_collider_velocity(probe->collider, pair->place, pair->way);
-    for (k = 0; k < 3; k++) pair->way[k] *= dt;
-}
-
-/* Does a sample meet a collider within the step? pair: sample and collider are set; receives all else. *wild: 1: the
-   caller's distance is not a number */
-static int gxp_meets_collider(const gx_body *body, const gxp_touch_surface *s, double dt, gxp_touch_pair *pair,
+/* Does a sample meet a collider within the step? It then gets the tangent plane of the collider where the two meet,
+   moving with the collider. x: position and velocity of the sample. pair: sample, collider, share and area are set;
+   receives all else. *wild: 1: the caller's distance is not a number */
+static int gxp_meets_collider(const gx_body *body, const double x[6], double size, double dt, gxp_touch_pair *pair,
                               int *wild) {
-    const gxp_touch *t = &body->touch;
-    const gx_collider *c = &t->colliders[pair->collider];
-    const int facet = pair->sample >= s->vertex_count;
-    const double *corners[3];
-    gxp_touch_probe probe;
-    double normal[3];
+    const gx_collider *c = &body->touch.colliders[pair->collider];
+    gxp_approach a = gxp_make_approach(c, x);
     int k;
-    pair->facet = GXP_NONE;
     pair->other = c->id;
-    for (k = 0; k < 3; k++)
-        corners[k] =
-            t->moved + 9 * (size_t)(facet ? s->facets[pair->sample - s->vertex_count].vertex[k] : pair->sample);
-    gxp_make_probe(c, corners, facet ? 3 : 1,
-                   s->vertices[facet ? s->facets[pair->sample - s->vertex_count].vertex[0] : pair->sample].size,
-                   &probe);
-    if (!gxp_comes_near(&probe, dt)) {
-        *wild |= probe.wild;
+    if (!gxp_comes_near(c, size, dt, &a)) {
+        *wild |= a.wild;
         return 0;
     }
-    gxp_meet_collider(&probe, corners, dt, pair);
-    if (facet) {
-        static const uint32_t corner[3] = {0, 1, 2};
-        double x[9];
-        const double dent = (probe.least - probe.distance) / (GXP_TOUCH_DENTED * probe.size);
-        for (k = 0; k < 3; k++)
-            memcpy(x + 3 * k, s->vertices[s->facets[pair->sample - s->vertex_count].vertex[k]].rest, 3 * sizeof *x);
-        gxp_triangle_normal(x, corner, normal);
-        pair->area = 0.5 * sqrt(gxp_dot(normal, normal)) * fmin(1, dent);
-    } else
-        pair->area = s->vertices[pair->sample].area;
-    return pair->area > 0;
+    pair->approach = -gxp_dot(a.normal, a.motion);
+    pair->gap = a.distance + a.time * pair->approach;
+    gxp_from_collider(c, a.normal, pair->normal);
+    for (k = 0; k < 3; k++) pair->place[k] = x[k] - pair->gap * pair->normal[k];
+    gxp_collider_velocity(c, pair->place, pair->way);
+    for (k = 0; k < 3; k++) pair->way[k] *= dt;
+    return 1;
 }
 
-/* Lists the samples of a facet for the search of pairs with a collider. */
-static gx_result gxp_list_samples(gx_body *body, const gxp_touch_surface *s, uint32_t facet, uint32_t collider) {
-    gxp_keys *beside = &body->touch.beside;
-    const gx_result result = gxp_keys_room(body, beside, 4);
+/* The length, m, of what a collider may have between samples, at most; an element's size if it is not known */
+static double gxp_collider_feature(const gx_collider *c, double size) {
+    double least = size;
     int k;
+    if (c->kind == GX_COLLIDER_SPHERE || c->kind == GX_COLLIDER_CAPSULE) return c->size[0];
+    for (k = 0; k < 3 && c->kind == GX_COLLIDER_BOX; k++) least = fmin(least, 2 * c->size[k]);
+    return c->kind == GX_COLLIDER_DISTANCE && c->size[0] > 0 ? c->size[0] : least;
+}
+
+/* Into how many parts the edges of a facet are divided for samples beside a collider: 1 where the distance is as good
+   as linear on it, so that its corners tell all. 0: it does not come near. */
+static uint32_t gxp_facet_parts(const gx_body *body, const gxp_touch_surface *s, double dt, uint32_t facet,
+                                const gx_collider *c, int *wild) {
+    const gxp_touch_facet *f = &s->facets[facet];
+    const double size = s->vertices[f->vertex[0]].size;
+    double normal[3][3], center[3] = {0, 0, 0}, reach = 0, nearest = HUGE_VAL, longest = 0, parts;
+    gxp_approach corner[3];
+    int i, k, bent = 0;
+    for (i = 0; i < 3; i++) {
+        corner[i] = gxp_make_approach(c, body->touch.moved + 9 * (size_t)f->vertex[i]);
+        for (k = 0; k < 3; k++) center[k] += corner[i].at[k] / 3;
+    }
+    for (i = 0; i < 3; i++) {
+        const double *a = corner[i].at, *b = corner[(i + 1) % 3].at, *v = corner[i].motion;
+        const double out[3] = {a[0] - center[0], a[1] - center[1], a[2] - center[2]};
+        const double edge[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+        const double d = gxp_collider_distance(c, a, normal[i]);
+        *wild |= !gxp_is_finite(d);
+        nearest = fmin(nearest, d);
+        reach = fmax(reach, sqrt(gxp_dot(out, out)) + dt * sqrt(gxp_dot(v, v)));
+        longest = fmax(longest, sqrt(gxp_dot(edge, edge)));
+    }
+    for (i = 0; i < 3; i++) bent |= gxp_dot(normal[i], normal[(i + 1) % 3]) < GXP_TOUCH_FLAT;
+    if (*wild || !bent) return 1;
+    if (nearest > GXP_TOUCH_NEAR * size && gxp_collider_distance(c, center, normal[0]) > reach + GXP_TOUCH_NEAR * size)
+        return 0;
+    parts = ceil(GXP_TOUCH_FINE * longest / fmax(gxp_collider_feature(c, size), 1e-3 * size));
+    return parts < GXP_TOUCH_PARTS ? (uint32_t)fmax(1, parts) : GXP_TOUCH_PARTS;
+}
+
+/* Lists a sample for the search of pairs with a collider. */
+static gx_result gxp_list_sample(gx_body *body, uint32_t sample, uint32_t collider, uint32_t parts, double area) {
+    gxp_touch *t = &body->touch;
+    gx_result result =
+        gxp_reserve(&body->config.allocator, &t->beside, sizeof *t->beside, t->order.count, &t->beside_capacity, 1);
+    if (result == GX_OK) result = gxp_keys_room(body, &t->order, 1);
     if (result != GX_OK) return result;
-    for (k = 0; k < 3; k++) beside->data[beside->count++] = (uint64_t)s->facets[facet].vertex[k] << 32 | collider;
-    if (body->touch.colliders[collider].kind != GX_COLLIDER_PLANE)
-        beside->data[beside->count++] = (uint64_t)(s->vertex_count + facet) << 32 | collider;
+    t->beside[t->order.count].collider = collider;
+    t->beside[t->order.count].parts = parts;
+    t->beside[t->order.count].area = area;
+    t->order.data[t->order.count] = (uint64_t)sample << 32 | t->order.count;
+    t->order.count++;
     return GX_OK;
+}
+
+/* Lists the samples of a facet: its corners, each with a third of its area, or the facet, which has many. */
+static gx_result gxp_list_samples(gx_body *body, const gxp_touch_surface *s, double dt, uint32_t facet,
+                                  uint32_t collider, int *wild) {
+    static const uint32_t corner[3] = {0, 1, 2};
+    const gxp_touch_facet *f = &s->facets[facet];
+    const gx_collider *c = &body->touch.colliders[collider];
+    const uint32_t parts = c->kind == GX_COLLIDER_PLANE ? 1 : gxp_facet_parts(body, s, dt, facet, c, wild);
+    double x[9], n[3], area;
+    gx_result result = GX_OK;
+    int k;
+    for (k = 0; k < 3; k++) memcpy(x + 3 * k, s->vertices[f->vertex[k]].rest, 3 * sizeof *x);
+    gxp_triangle_normal(x, corner, n);
+    area = 0.5 * sqrt(gxp_dot(n, n));
+    if (parts > 1) return gxp_list_sample(body, s->vertex_count + facet, collider, parts, area);
+    for (k = 0; k < 3 && parts == 1 && result == GX_OK; k++)
+        result = gxp_list_sample(body, f->vertex[k], collider, 1, area / 3);
+    return result;
 }
 
 /* Lists the samples in boxes that a collider may come near to within the step. */
@@ -11654,33 +11625,29 @@ static gx_result gxp_list_beside(gx_body *body, const gxp_touch_surface *s, doub
         }
         for (i = GXP_TOUCH_LEAF * (box + 1 - t->leaf_count);
              i < GXP_TOUCH_LEAF * (box + 2 - t->leaf_count) && i < s->facet_count && result == GX_OK; i++)
-            result = gxp_list_samples(body, s, i, collider);
+            result = gxp_list_samples(body, s, dt, i, collider, wild);
     }
     return result;
 }
 
-/* Lists the samples beside colliders, each once for each of these, by sample. */
+/* Lists the samples beside colliders by sample: touch.order, second: place in touch.beside. */
 static gx_result gxp_list_all_beside(gx_body *body, const gxp_touch_surface *s, double dt, gx_failure *failure) {
-    gxp_keys *beside = &body->touch.beside;
     gx_result result = GX_OK;
-    uint32_t i, count = 0;
-    beside->count = 0;
+    uint32_t i;
+    body->touch.order.count = 0;
     for (i = 0; i < body->touch.collider_count && s->facet_count > 0 && result == GX_OK; i++) {
         int wild = 0;
         result = gxp_list_beside(body, s, dt, i, &wild);
         if (wild) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "colliders.distance", i);
     }
-    if (result == GX_OK) result = gxp_sort_keys(body, beside, 0, beside->count);
-    for (i = 0; i < beside->count && result == GX_OK; i++)
-        if (count == 0 || beside->data[count - 1] != beside->data[i]) beside->data[count++] = beside->data[i];
-    beside->count = count;
+    if (result == GX_OK) result = gxp_sort_keys(body, &body->touch.order, 0, body->touch.order.count);
     return gxp_end(failure, result);
 }
 
 static gx_result gxp_check_collider(const gx_collider *c, size_t index, gx_failure *failure) {
     static const char *const names[5] = {"colliders.size", "colliders.pose", "colliders.velocity", "colliders.spin",
                                          "colliders.friction"};
-    static const int sizes[5] = {0, 1, 2, 3, 0}; /* by kind: numbers of size that are read */
+    static const int sizes[5] = {0, 1, 2, 3, 1}; /* by kind: numbers of size that are read */
     const double *const numbers[5] = {c->size, c->pose, c->velocity, c->spin, &c->friction};
     const int counts[5] = {c->kind < 5 ? sizes[c->kind] : 0, 12, 3, 3, 1};
     double turned[3];
@@ -11784,10 +11751,11 @@ static int gxp_has_changed(const gxp_touch *t, uint32_t id) {
 
 /* A cosine: facets that face a vertex less do not meet it. */
 #define GXP_TOUCH_FACING 0.5
-/* In sizes of an element: how far beside a facet a vertex may be, with a share of its gap; how far behind a facet at
-   rest is a piece's own thickness */
+/* In sizes of an element: how far beside a facet a vertex may be, with a share of its gap; from how far a sample of a
+   facet takes the state of another one; how far behind a facet at rest is a piece's own thickness */
 #define GXP_TOUCH_BESIDE 0.002
 #define GXP_TOUCH_SLANT  0.1
+#define GXP_TOUCH_SAME   0.25
 #define GXP_TOUCH_BEHIND 1e-9
 
 /* Position, velocity and normal of all vertices, normals of facets */
@@ -11953,50 +11921,122 @@ static gxp_touch_pair gxp_no_pair(uint32_t sample) {
     return pair;
 }
 
+/* The vertex by whose element a sample is measured */
+static const gxp_touch_vertex *gxp_sample_vertex(const gxp_touch_surface *s, uint32_t sample) {
+    return &s->vertices[sample < s->vertex_count ? sample : s->facets[sample - s->vertex_count].vertex[0]];
+}
+
+/* What a pair's sample pressed with before. A facet has many samples: the nearest one counts, which after a cut need
+   not be where it was. */
+static void gxp_recall_state(const gxp_touch_surface *s, gxp_touch_pair *pair) {
+    const double size = gxp_sample_vertex(s, pair->sample)->size;
+    double best = GXP_TOUCH_SAME * size * GXP_TOUCH_SAME * size;
+    uint32_t i;
+    for (i = gxp_first_state(s, pair->sample); i < s->state_count && s->states[i].sample == pair->sample; i++) {
+        const gxp_touch_state *state = &s->states[i];
+        const double d[3] = {state->rest[0] - pair->rest[0], state->rest[1] - pair->rest[1],
+                             state->rest[2] - pair->rest[2]};
+        const double square = pair->sample < s->vertex_count ? 0 : gxp_dot(d, d);
+        if (state->other != pair->other || !(square < best)) continue;
+        best = square;
+        pair->pressed = state->pressed;
+        memcpy(pair->slip, state->slip, sizeof pair->slip);
+        if (!(best > 0)) return;
+    }
+}
+
 /* Lists a pair with what its sample pressed with. */
 static gx_result gxp_list_pair(gx_body *body, const gxp_touch_surface *s, const gxp_touch_pair *pair,
                                gx_failure *failure) {
     gxp_touch *t = &body->touch;
     gx_result result;
-    uint32_t i;
     if (t->desc.max_pairs > 0 && t->found >= t->desc.max_pairs)
         return gxp_fail(failure, GX_ERROR_LIMIT, "max_pairs", SIZE_MAX);
     result = gxp_reserve(&body->config.allocator, &t->pairs, sizeof *t->pairs, t->found, &t->pair_capacity, 1);
     if (result != GX_OK) return gxp_end(failure, result);
     t->pairs[t->found] = *pair;
-    for (i = gxp_first_state(s, pair->sample); i < s->state_count && s->states[i].sample == pair->sample; i++)
-        if (s->states[i].other == pair->other) {
-            t->pairs[t->found].pressed = s->states[i].pressed;
-            memcpy(t->pairs[t->found].slip, s->states[i].slip, sizeof pair->slip);
-        }
-    t->found++;
+    gxp_recall_state(s, &t->pairs[t->found++]);
     return GX_OK;
 }
 
-/* Lists the pairs of a sample with colliders: those that the list `beside` has for it from *next on. Where it has
-   pressed on one that has left, a pair without stiffness wakes what rested on it. first: of the sample's pairs */
-static gx_result gxp_seek_colliders(gx_body *body, const gxp_touch_surface *s, double dt, uint32_t sample,
-                                    uint32_t *next, gx_failure *failure) {
+/* Lists the pair of a vertex with a collider, if they meet. */
+static gx_result gxp_seek_at_vertex(gx_body *body, const gxp_touch_surface *s, double dt, gxp_touch_pair *pair,
+                                    gx_failure *failure) {
+    const gxp_touch_vertex *v = &s->vertices[pair->sample];
+    int wild = 0;
+    memcpy(pair->rest, v->rest, sizeof pair->rest);
+    if (gxp_meets_collider(body, body->touch.moved + 9 * (size_t)pair->sample, v->size, dt, pair, &wild))
+        return gxp_list_pair(body, s, pair, failure);
+    return wild ? gxp_fail(failure, GX_ERROR_NOT_FINITE, "colliders.distance", pair->collider) : GX_OK;
+}
+
+/* Lists the pairs of a facet with a collider: at the corners of all parts, each with its share of the area. */
+static gx_result gxp_seek_on_facet(gx_body *body, const gxp_touch_surface *s, double dt, double area,
+                                   gxp_touch_pair *pair, gx_failure *failure) {
+    const gxp_touch_facet *f = &s->facets[pair->sample - s->vertex_count];
+    const uint32_t parts = pair->parts;
+    uint32_t i, j, m;
+    gx_result result = GX_OK;
+    for (i = 0; i <= parts; i++)
+        for (j = 0; i + j <= parts && result == GX_OK; j++) {
+            const int rims = (i == 0) + (j == 0) + (i + j == parts);
+            double x[6] = {0, 0, 0, 0, 0, 0};
+            int n, wild = 0;
+            pair->share[0] = (double)(parts - i - j) / parts;
+            pair->share[1] = (double)i / parts;
+            pair->share[2] = (double)j / parts;
+            pair->area = area * (rims == 0 ? 6 : rims == 1 ? 3 : 1) / (3.0 * parts * parts);
+            pair->rest[0] = pair->rest[1] = pair->rest[2] = 0;
+            for (n = 0; n < 3; n++) {
+                for (m = 0; m < 6; m++) x[m] += pair->share[n] * body->touch.moved[9 * (size_t)f->vertex[n] + m];
+                for (m = 0; m < 3; m++) pair->rest[m] += pair->share[n] * s->vertices[f->vertex[n]].rest[m];
+            }
+            if (gxp_meets_collider(body, x, s->vertices[f->vertex[0]].size, dt, pair, &wild))
+                result = gxp_list_pair(body, s, pair, failure);
+            if (wild) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "colliders.distance", pair->collider);
+        }
+    return result;
+}
+
+/* Where a sample has pressed on a collider that has left, a pair without stiffness wakes what rested on it. first: of
+   the sample's pairs */
+static gx_result gxp_wake_left(gx_body *body, const gxp_touch_surface *s, uint32_t sample, uint32_t first,
+                               gx_failure *failure) {
     gxp_touch *t = &body->touch;
-    const uint32_t first = t->found;
     uint32_t i, j;
     gx_result result = GX_OK;
-    for (; *next < t->beside.count && GXP_FIRST(t->beside.data[*next]) == sample && result == GX_OK; (*next)++) {
-        gxp_touch_pair pair = gxp_no_pair(sample);
-        int wild = 0;
-        pair.collider = GXP_SECOND(t->beside.data[*next]);
-        if (gxp_meets_collider(body, s, dt, &pair, &wild)) result = gxp_list_pair(body, s, &pair, failure);
-        if (wild) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "colliders.distance", pair.collider);
-    }
     for (i = gxp_first_state(s, sample); i < s->state_count && s->states[i].sample == sample && result == GX_OK; i++) {
         gxp_touch_pair lost = gxp_no_pair(sample);
         if (s->states[i].other == GXP_NONE || !gxp_has_changed(t, s->states[i].other)) continue;
         for (j = first; j < t->found && t->pairs[j].other != s->states[i].other;) j++;
         if (j < t->found) continue;
         lost.share[0] = lost.normal[0] = 1;
+        lost.other = s->states[i].other; /* once */
         result = gxp_list_pair(body, s, &lost, failure);
     }
     return result;
+}
+
+/* Lists the pairs of a sample with colliders: those that touch.order has for it from *next on. */
+static gx_result gxp_seek_colliders(gx_body *body, const gxp_touch_surface *s, double dt, uint32_t sample,
+                                    uint32_t *next, gx_failure *failure) {
+    gxp_touch *t = &body->touch;
+    const uint32_t first = t->found;
+    gx_result result = GX_OK;
+    while (*next < t->order.count && GXP_FIRST(t->order.data[*next]) == sample && result == GX_OK) {
+        gxp_touch_pair pair = gxp_no_pair(sample);
+        double area = 0;
+        pair.collider = t->beside[GXP_SECOND(t->order.data[*next])].collider;
+        pair.parts = t->beside[GXP_SECOND(t->order.data[*next])].parts;
+        for (; *next < t->order.count && GXP_FIRST(t->order.data[*next]) == sample &&
+               t->beside[GXP_SECOND(t->order.data[*next])].collider == pair.collider;
+             (*next)++)
+            area += t->beside[GXP_SECOND(t->order.data[*next])].area;
+        pair.area = area;
+        result = sample < s->vertex_count ? gxp_seek_at_vertex(body, s, dt, &pair, failure)
+                                          : gxp_seek_on_facet(body, s, dt, area, &pair, failure);
+    }
+    return result == GX_OK ? gxp_wake_left(body, s, sample, first, failure) : result;
 }
 
 /* Lists the pairs of all samples. */
@@ -12010,10 +12050,10 @@ static gx_result gxp_seek_pairs(gx_body *body, const gxp_touch_surface *s, doubl
         gxp_touch_pair best = gxp_no_pair(i);
         if (s->vertices[i].area > 0) gxp_seek_facet(body, s, dt, &best);
         if (best.facet != GXP_NONE) result = gxp_list_pair(body, s, &best, failure);
-        if (result == GX_OK && (t->beside.count > 0 || i < state_end))
+        if (result == GX_OK && (t->order.count > 0 || i < state_end))
             result = gxp_seek_colliders(body, s, dt, i, &next, failure);
     }
-    for (; i < s->vertex_count + s->facet_count && (next < t->beside.count || i < state_end) && result == GX_OK; i++)
+    for (; i < s->vertex_count + s->facet_count && (next < t->order.count || i < state_end) && result == GX_OK; i++)
         result = gxp_seek_colliders(body, s, dt, i, &next, failure);
     return result;
 }
@@ -12048,11 +12088,6 @@ static void gxp_add_place(const gxp_touch_vertex *v, double share, gxs_point *po
     for (k = 0; k < 3; k++) point->position[k] += share * v->rest[k];
     for (k = 0; k < 4 && v->weights[k] > 0; k++)
         gxp_add_share(point, copies, weights, v->copies[k], share * v->weights[k]);
-}
-
-/* The vertex by whose element a sample is measured */
-static const gxp_touch_vertex *gxp_sample_vertex(const gxp_touch_surface *s, uint32_t sample) {
-    return &s->vertices[sample < s->vertex_count ? sample : s->facets[sample - s->vertex_count].vertex[0]];
 }
 
 /* The point of a pair: its sample, relative to the place on the facet, or to that of the collider at the step's end.
@@ -12260,6 +12295,7 @@ static void gxp_keep_contact(gx_body *body, const gx_step_desc *desc, gxp_touch_
         state.other = pair->other;
         state.pressed = pair->pressed;
         memcpy(state.slip, pair->slip, sizeof state.slip);
+        memcpy(state.rest, pair->rest, sizeof state.rest);
         surface->states[surface->state_count++] = state;
     }
     gxp_report_loads(body, desc);
@@ -18264,11 +18300,12 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_TOUCH_FACING
 #undef GXP_TOUCH_NEAR
 #undef GXP_TOUCH_ADVANCES
-#undef GXP_TOUCH_DESCENTS
-#undef GXP_TOUCH_HALVINGS
-#undef GXP_TOUCH_DENTED
+#undef GXP_TOUCH_FINE
+#undef GXP_TOUCH_PARTS
+#undef GXP_TOUCH_FLAT
 #undef GXP_TOUCH_BESIDE
 #undef GXP_TOUCH_SLANT
+#undef GXP_TOUCH_SAME
 #undef GXP_TOUCH_BEHIND
 #undef GXP_TOUCH_COPIES
 #undef GXP_TREE_LEAVES
