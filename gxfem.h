@@ -59,7 +59,7 @@
  *     what acts on it:           >>attached >>supports >>model
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
- *     a step, with contact:      >>touch >>meeting >>step
+ *     a step, with contact:      >>touch >>colliders >>meeting >>pressing >>step
  *     a blade in space:          >>layers >>edges >>fronts >>glances >>strokes >>ways >>blade >>contacts >>carve
  *     beginning, end, bytes:     >>grid >>create >>hashes >>stream >>scabbard >>save
  *
@@ -71,9 +71,9 @@
  * Exact: the set of cells and their links, hence copies and fragments. Decisions are signs of polynomials in the given
  * coordinates (gxfem_boolean.h). Rounded once, to doubles: volumes, masses and vertices.
  *
- * Not there yet: contact with the host's bodies but by points (pieces of a body touch each other: gx_body_contact);
- * surfaces given in the deformed state (a moving edge is: gx_blade); unknowns within a partly cut element (a sheet that
- * ends inside an element separates nothing there until another sheet completes it).
+ * Not there yet: contact of two bodies of the library (pieces of one touch each other and the host's rigid bodies:
+ * gx_body_contact); surfaces given in the deformed state (a moving edge is: gx_blade); unknowns within a partly cut
+ * element (a sheet that ends inside an element separates nothing there until another sheet completes it).
  *
  * Limits: fewer than 2^28 elements a body (2^24 where pointers have 32 bits), fewer than 2^30 cells and 2^30 copies
  * for steps, some 1.4e9 of each other kind of object, 5e8 vertices and triangles a surface (GX_ERROR_LIMIT). A body's
@@ -11370,8 +11370,7 @@ static gx_result gxp_step_surface(gx_body *body, gxp_touch_surface **surface) {
     return result == GX_OK && t->made ? gxp_carry_states(body, own, other) : result;
 }
 
-/* >>colliders: where pieces meet bodies of the caller's -------------------------------------------------------------
- */
+/* >>colliders: where pieces meet rigid bodies ---------------------------------------------------------------------- */
 /* In: colliders, the surface of contact and how it moves. Out: the tangent planes of colliders that samples meet within
    a step. Touches lists of a step. */
 
@@ -11385,11 +11384,11 @@ static gx_result gxp_step_surface(gx_body *body, gxp_touch_surface **surface) {
 /* In sizes of an element: gaps that have a pair if the step may make them smaller */
 #define GXP_TOUCH_NEAR 0.02
 
-/* Signed distance from the origin's surroundings along which p is measured: a ball of that radius */
+/* Signed distance from a ball around the origin */
 static double gxp_ball_distance(const double p[3], double radius, double normal[3]) {
     const double far = sqrt(gxp_dot(p, p));
-    normal[0] = normal[1] = 0;
-    normal[2] = 1;
+    normal[0] = 1; /* across a capsule's axis */
+    normal[1] = normal[2] = 0;
     if (far > 0) (void)gxp_unit(p, normal);
     return far - radius;
 }
@@ -11742,8 +11741,8 @@ static int gxp_has_changed(const gxp_touch *t, uint32_t id) {
 }
 
 /* >>meeting: pairs of a step --------------------------------------------------------------------------------------- */
-/* In: the surface, where its material is and how fast. Out: the pairs that a step gets beside the caller's, and, after
-   the step, what their vertices press with. Touches what a step with contact works with. */
+/* In: the surface, where its material is and how fast. Out: the pairs that a step gets beside the caller's. Touches
+   what a step with contact works with. */
 
 /* A vertex touches at most one facet, in whose frame all is told: the gap is the vertex's height above the facet's
    plane. Pairs stay what they are within the step, so that its energy is well defined. A pair without load, in front of
@@ -12057,6 +12056,10 @@ static gx_result gxp_seek_pairs(gx_body *body, const gxp_touch_surface *s, doubl
         result = gxp_seek_colliders(body, s, dt, i, &next, failure);
     return result;
 }
+
+/* >>pressing: what pairs do ---------------------------------------------------------------------------------------- */
+/* In: the pairs of a step. Out: the same as the solver takes them; after the step, what samples press with, and what
+   the caller learns of it. Touches what a step with contact works with. */
 
 /* Room for what a step with that surface needs before it knows its pairs */
 static gx_result gxp_surface_room(gx_body *body, const gxp_touch_surface *s) {

@@ -387,17 +387,21 @@ END_TEST
 /* Small and fast colliders do not go through a body between two steps, nor between its vertices. */
 START_TEST(fast_ones_are_caught) {
     workload w = grid(3, 3, 3, 6);
-    gx_body *body = body_of(&w);
+    gx_body_desc desc = desc_of(&w);
+    gx_body *body = NULL;
     gx_collider c = _i == 0 ? collider_of(1, GX_COLLIDER_SPHERE, 0.3, 0, 0, 1.6, 1.4, 4)
                   : _i == 1 ? collider_of(1, GX_COLLIDER_CAPSULE, 0.1, 0.6, 0, 1.6, 1.4, 5)
                             : collider_of(1, GX_COLLIDER_BOX, 0.3, 0.3, 0.1, 1.6, 1.4, 4);
     gx_step_desc step = falling(0.01);
     double deepest = -1;
     int frame;
+    desc.density = 20;
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
     switch_on(body);
     step.gravity[2] = 0;
     step.newton_iterations = 5;
     step.dt = 0.03;
+    if (_i == 1) turn(&c, 1, 1.3);
     c.velocity[2] = -10; /* 0.3 of an element in each step */
     step.colliders = &c;
     step.collider_count = 1;
@@ -461,16 +465,19 @@ START_TEST(cut_on_colliders) {
     step.colliders = colliders;
     step.collider_count = 5;
     step.collider_loads = loads;
-    for (frame = 0; frame < 150; frame++) take(body, &step);
+    step.dt = 0.1; /* to rest */
+    for (frame = 0; frame < 40; frame++) take(body, &step);
+    step.dt = 1.0 / 60;
+    for (frame = 0; frame < 5; frame++) take(body, &step);
     for (i = 0; i < 5; i++) before += loads[i].force[2];
-    add_axis_plane(&w, 2, 1.3);
     add_axis_plane(&w, 0, 0.45);
+    add_axis_plane(&w, 1, 2.5);
     cut_by(body, &w, 0, 2);
     take(body, &step);
     for (i = 0; i < 5; i++) after += loads[i].force[2];
     if (getenv("GXFEM_VERBOSE")) printf("cut on colliders: %g to %g N\n", before, after);
     ck_assert_double_lt(before, -0.99 * 27000 * 9.81);
-    ck_assert_double_lt(fabs(after - before), 0.01 * fabs(before));
+    ck_assert_double_lt(fabs(after - before), 0.02 * fabs(before));
     gx_body_destroy(body);
     wl_free(&w);
 }

@@ -191,6 +191,157 @@ START_TEST(search_is_exhaustive) {
 }
 END_TEST
 
+static double slanted(void *user, const double p[3], double normal[3]) {
+    (void)user;
+    normal[0] = 0.6;
+    normal[1] = 0;
+    normal[2] = 0.8;
+    return 0.6 * p[0] + 0.8 * p[2];
+}
+
+static gx_collider random_collider(uint32_t id, uint32_t kind) {
+    gx_collider c;
+    double q[4], square = 0;
+    int k;
+    memset(&c, 0, sizeof c);
+    c.id = id;
+    c.kind = kind;
+    c.distance = slanted;
+    for (k = 0; k < 3; k++) {
+        c.size[k] = random_real(0.1, 1.5);
+        c.pose[4 * k + 3] = random_real(-0.5, 3.5);
+        c.velocity[k] = random_real(-5, 5);
+        c.spin[k] = random_real(-2, 2);
+    }
+    for (k = 0; k < 4; k++) {
+        q[k] = random_real(-1, 1);
+        square += q[k] * q[k];
+    }
+    for (k = 0; k < 4; k++) q[k] /= sqrt(square);
+    for (k = 0; k < 3; k++) { /* of a quaternion */
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        c.pose[5 * k] = 1 - 2 * (q[i] * q[i] + q[j] * q[j]);
+        c.pose[4 * k + i] = 2 * (q[k] * q[i] - q[3] * q[j]);
+        c.pose[4 * k + j] = 2 * (q[k] * q[j] + q[3] * q[i]);
+    }
+    return c;
+}
+
+/* Distances of colliders: the foot is on the surface, no other point of it is nearer, the normal is the gradient. */
+START_TEST(distances_of_colliders) {
+    int round, other, k;
+    random_seed((uint64_t)_i + 1);
+    for (round = 0; round < 100; round++) {
+        const gx_collider c = random_collider(0, (uint32_t)_i);
+        double p[3], n[3], foot[3], none[3], d, ahead;
+        for (k = 0; k < 3; k++) p[k] = random_below(4) == 0 ? 0 : random_real(-2, 2);
+        d = gxp_collider_distance(&c, p, n);
+        ck_assert_double_lt(fabs(gxp_dot(n, n) - 1), 1e-12);
+        for (k = 0; k < 3; k++) foot[k] = p[k] - d * n[k];
+        ck_assert_double_lt(fabs(gxp_collider_distance(&c, foot, none)), 1e-12);
+        for (k = 0; k < 3; k++) foot[k] = p[k] + 1e-6 * n[k];
+        ahead = gxp_collider_distance(&c, foot, none);
+        ck_assert_double_lt(fabs(ahead - d - 1e-6), 1e-9);
+        for (other = 0; other < 50; other++) { /* other points of the surface */
+            double q[3], m[3], e, square = 0;
+            for (k = 0; k < 3; k++) q[k] = random_real(-3, 3);
+            e = gxp_collider_distance(&c, q, m);
+            for (k = 0; k < 3; k++) square += (q[k] - e * m[k] - p[k]) * (q[k] - e * m[k] - p[k]);
+            ck_assert_double_ge(sqrt(square), fabs(d) - 1e-12);
+        }
+    }
+}
+END_TEST
+
+/* Samples that meet colliders: the same as by trying all facets and vertices, and none is missed on facets that are
+   left out. */
+START_TEST(colliders_are_found) {
+    const uint64_t seed = (uint64_t)_i + 1;
+    workload w = grid(3, 3, 3, 6);
+    gx_collider colliders[4];
+    gx_step_desc given = falling(0.02);
+    gxs_step_desc none;
+    gxp_touch_surface *surface;
+    gx_body *body;
+    gx_view view;
+    uint32_t i, c, f, met = 0, listed = 0;
+    int round, wild = 0;
+    random_seed(seed);
+    for (round = 0; round < 2; round++) {
+        const double p[3] = {random_real(0, 3), random_real(0, 3), random_real(0, 3)},
+                     n[3] = {random_real(-1, 1), random_real(-1, 1), random_real(0.1, 1)};
+        add_plane(&w, p, n, 12);
+    }
+    body = cut_in_sequence(&w);
+    switch_on(body, 0);
+    view = view_of(body);
+    for (i = 0; i < 3 * view.copy_count; i++) {
+        view.displacement[i] = random_real(-0.1, 0.1);
+        view.velocity[i] = random_real(-3, 3);
+    }
+    for (i = 0; i < 4; i++) colliders[i] = random_collider(90 - i, i == 0 ? 0 : (uint32_t)random_below(5));
+    memset(&none, 0, sizeof none);
+    none.dt = given.dt;
+    given.colliders = colliders;
+    given.collider_count = 4;
+    ck_assert_int_eq(gxp_attach_contact(body, &given, &none, &surface, NULL), GX_OK);
+    for (c = 0; c < 4; c++) {
+        double *areas = (double *)oracle_memory(NULL, surface->vertex_count + 1, sizeof *areas);
+        for (i = 0; i < surface->vertex_count; i++) areas[i] = 0;
+        for (f = 0; f < surface->facet_count; f++) {
+            const gxp_touch_facet *facet = &surface->facets[f];
+            const double size = surface->vertices[facet->vertex[0]].size;
+            const uint32_t parts = colliders[c].kind == GX_COLLIDER_PLANE
+                                     ? 1
+                                     : gxp_facet_parts(body, surface, none.dt, f, &colliders[c], &wild);
+            const uint32_t fine = parts > 1 ? parts : 12;
+            uint32_t a, b, m;
+            double x[9], n[3];
+            for (a = 0; a <= fine; a++)
+                for (b = 0; a + b <= fine && parts != 1; b++) {
+                    gxp_touch_pair pair = gxp_no_pair(surface->vertex_count + f);
+                    double at[6] = {0, 0, 0, 0, 0, 0};
+                    const double share[3] = {(double)(fine - a - b) / fine, (double)a / fine, (double)b / fine};
+                    pair.collider = c;
+                    for (i = 0; i < 3; i++)
+                        for (m = 0; m < 6; m++) at[m] += share[i] * body->touch.moved[9 * (size_t)facet->vertex[i] + m];
+                    if (!gxp_meets_collider(body, at, size, none.dt, &pair, &wild)) continue;
+                    CHECK_SEED(parts > 1, seed);
+                    for (i = 0; i < body->touch.found; i++)
+                        if (body->touch.pairs[i].sample == pair.sample && body->touch.pairs[i].collider == c &&
+                            memcmp(body->touch.pairs[i].share, share, sizeof share) == 0)
+                            break;
+                    CHECK_SEED(i < body->touch.found, seed);
+                    met++;
+                }
+            for (i = 0; i < 3; i++) memcpy(x + 3 * i, surface->vertices[facet->vertex[i]].rest, 3 * sizeof *x);
+            {
+                static const uint32_t corner[3] = {0, 1, 2};
+                gxp_triangle_normal(x, corner, n);
+            }
+            for (i = 0; i < 3 && parts == 1; i++) areas[facet->vertex[i]] += sqrt(gxp_dot(n, n)) / 6;
+        }
+        for (f = 0; f < surface->vertex_count; f++) {
+            gxp_touch_pair pair = gxp_no_pair(f);
+            pair.collider = c;
+            if (!(areas[f] > 0) || !gxp_meets_collider(body, body->touch.moved + 9 * (size_t)f,
+                                                       surface->vertices[f].size, none.dt, &pair, &wild))
+                continue;
+            for (i = 0; i < body->touch.found; i++)
+                if (body->touch.pairs[i].sample == f && body->touch.pairs[i].collider == c) break;
+            CHECK_SEED(i < body->touch.found, seed);
+            CHECK_SEED(fabs(body->touch.pairs[i].area - areas[f]) <= 1e-12 * areas[f], seed);
+            met++;
+        }
+        free(areas);
+    }
+    for (i = 0; i < body->touch.found; i++) listed += body->touch.pairs[i].collider != GXB_NONE;
+    CHECK_SEED(listed == met, seed);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* ---- at rest ---- */
 
 /* A cut cube: what is above rests on what is below from the frame of the cut. Flat, and tilted with friction */
@@ -638,29 +789,43 @@ START_TEST(beside_the_callers_pairs) {
 }
 END_TEST
 
-/* A step after a cut that runs out of memory leaves all as it was, and gives the same when it is taken again. */
+/* A step that runs out of memory leaves all as it was. Taken again it gives the same bits, if contact is all that was
+   new to it (cases 2, 3); after a cut the solver's model is made whole, and the same to the solver's tolerance. */
 START_TEST(without_memory) {
     workload w = grid(2, 2, 2, 6);
     memory m;
     gx_body *body[2];
+    gx_collider colliders[2];
     gx_step_desc step = falling(0.01);
     size_t n, count[2];
     int i;
     gx_result result = GX_ERROR_MEMORY;
+    random_seed(5);
+    colliders[0] = random_collider(8, GX_COLLIDER_PLANE);
+    colliders[1] = random_collider(3, GX_COLLIDER_SPHERE);
+    memset(colliders[0].pose, 0, sizeof colliders[0].pose);
+    for (i = 0; i < 3; i++) colliders[0].pose[5 * i] = 1;
+    colliders[1].size[0] = 0.4;
+    colliders[1].pose[3] = 2.3;
+    colliders[1].pose[7] = 0.8;
+    colliders[1].pose[11] = 1.6;
     add_axis_plane(&w, 2, 1.3);
     add_axis_plane(&w, 0, 1.1);
     for (i = 0; i < 2; i++) {
         body[i] = i == 0 ? body_in(&m, &w) : body_of(&w);
         cut_by(body[i], &w, 0, 1);
         hold_below(body[i], 0.1);
-        switch_on(body[i], 0.5);
+        if (_i < 2) switch_on(body[i], 0.5);
         for (n = 0; n < 5; n++) take(body[i], &step);
-        cut_by(body[i], &w, 1, 1);
+        if (_i < 2) cut_by(body[i], &w, 1, 1);
+        if (_i >= 2) switch_on(body[i], 0.5);
     }
+    step.colliders = colliders;
+    step.collider_count = 2;
     for (n = 0; result != GX_OK; n++) {
         const uint64_t state = gx_body_state_hash(body[0]);
         ck_assert_uint_lt(n, 10000);
-        fail_from(&m, n, _i);
+        fail_from(&m, n, _i % 2);
         result = gx_body_step(body[0], &step, NULL, NULL);
         never_fail(&m);
         ck_assert(result == GX_OK || (result == GX_ERROR_MEMORY && gx_body_state_hash(body[0]) == state));
@@ -672,7 +837,7 @@ START_TEST(without_memory) {
     {
         const gx_view view[2] = {view_of(body[0]), view_of(body[1])};
         for (n = 0; n < 3 * view[0].copy_count; n++)
-            ck_assert_double_lt(fabs(view[0].displacement[n] - view[1].displacement[n]), 1e-4);
+            ck_assert_double_le(fabs(view[0].displacement[n] - view[1].displacement[n]), _i < 2 ? 1e-4 : 0);
     }
     gx_body_destroy(body[0]);
     ck_assert(is_whole(&m));
@@ -714,6 +879,8 @@ static Suite *suite(void) {
     TCase *tests = tcase_create("touch");
     tcase_set_timeout(tests, 300);
     ADD_SOME(tests, search_is_exhaustive, 8);
+    tcase_add_loop_test(tests, distances_of_colliders, 0, 5);
+    ADD_SOME(tests, colliders_are_found, 8);
     ADD_SOME(tests, rests_from_the_cut_on, 2);
     ADD_SOME(tests, a_closed_cut_carries, 3);
     ADD_SOME(tests, blocks_collide, 2);
@@ -724,7 +891,7 @@ static Suite *suite(void) {
     tcase_add_test(tests, lips_meet);
     tcase_add_test(tests, refusals);
     tcase_add_test(tests, beside_the_callers_pairs);
-    tcase_add_loop_test(tests, without_memory, 0, 2);
+    tcase_add_loop_test(tests, without_memory, 0, 4);
     tcase_add_test(tests, after_going_back);
     suite_add_tcase(s, tests);
     return s;
