@@ -284,8 +284,12 @@ START_TEST(slides_or_sticks) {
     gx_collider plane = collider_of(0, GX_COLLIDER_PLANE, 0, 0, 0, 0, 0, -0.005);
     gx_step_desc step = falling(0.01);
     gx_motion before, after;
+    gx_contact_desc desc;
     int frame;
-    switch_on(body);
+    memset(&desc, 0, sizeof desc);
+    desc.sticking_speed = 1e-3;
+    desc.recovery = 2;
+    ck_assert_int_eq(gx_body_contact(body, &desc, NULL), GX_OK);
     plane.friction = mu;
     step.colliders = &plane;
     step.collider_count = 1;
@@ -539,11 +543,20 @@ START_TEST(asleep_on_colliders) {
 }
 END_TEST
 
+/* Not a number: anywhere; in its normal; at some heights; at heights between corners; where it only comes to */
 static double wrong(void *user, const double p[3], double normal[3]) {
-    const double nan = HUGE_VAL - HUGE_VAL;
-    normal[0] = normal[1] = 0;
-    normal[2] = *(const int *)user == 1 ? nan : 1;
-    return *(const int *)user == 0 ? nan : *(const int *)user == 2 && p[2] < 0.5 && p[2] > -0.5 ? HUGE_VAL : p[2];
+    const double nan = HUGE_VAL - HUGE_VAL, far = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+    const int kind = *(const int *)user;
+    int k;
+    for (k = 0; k < 3; k++) normal[k] = kind == 3 ? p[k] : k == 2;
+    if (kind == 1) normal[1] = nan;
+    switch (kind) {
+    case 0: return nan;
+    case 2: return p[2] < 0.5 && p[2] > -0.5 ? HUGE_VAL : p[2];
+    case 3: return p[2] > 0.1 && p[2] < 0.2 ? nan : far - 0.3;
+    case 4: return p[2] > -0.1 && p[2] < 0.1 ? nan : p[2];
+    default: return p[2];
+    }
 }
 
 START_TEST(refusals) {
@@ -592,11 +605,15 @@ START_TEST(refusals) {
         ck_assert_uint_eq(failure.index, 1);
         ck_assert(gx_body_state_hash(body) == state);
     }
-    for (kind = 0; kind < 3; kind++) {
+    for (kind = 0; kind < 5; kind++) {
         colliders[0] = good;
         colliders[1] = collider_of(8, GX_COLLIDER_DISTANCE, 0, 0, 0, 0, 0, 0);
         colliders[1].distance = wrong;
         colliders[1].user = &kind;
+        if (kind == 4) { /* reaches the body within the step */
+            colliders[1].pose[11] = -0.5;
+            colliders[1].velocity[2] = 100;
+        }
         ck_assert_int_eq(gx_body_step(body, &step, NULL, &failure), GX_ERROR_NOT_FINITE);
         ck_assert_str_eq(failure.field, "colliders.distance");
         ck_assert_uint_eq(failure.index, 1);
