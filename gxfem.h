@@ -596,9 +596,7 @@ typedef struct gx_contact_desc {
     uint32_t max_pairs;    /* of a step, which is refused beyond: GX_ERROR_LIMIT; 0: no limit but memory */
 } gx_contact_desc;
 /* Switches contact on for later steps, or off (NULL). It forgets the slips of friction. Steps with contact refuse
-   GXS_MIDPOINT ("integrator") and "quality". Contact is not saved, and neither clone nor restore copies it: a body that
-   was loaded, or made by gx_body_clone, has none, and gx_body_restore leaves it on or off as it is and forgets the
-   slips.
+   GXS_MIDPOINT ("integrator") and "quality". Contact is saved, cloned and restored with what presses and sticks.
    Errors: ARGUMENT (also: gx_body_desc.affine_below is not 0), NOT_FINITE. */
 GXFEM_API gx_result gx_body_contact(gx_body *body, const gx_contact_desc *desc /* or NULL: off */,
                                     gx_failure *failure /* or NULL */);
@@ -835,14 +833,14 @@ GXFEM_API const char *gx_result_text(gx_result result);
 /* >>saving --------------------------------------------------------------------------------------------------------- */
 
 /* A body as bytes or as another body, with all that it is: mesh, materials, cuts, displacement, velocity, rest times,
-   the history of BDF2, held regions, ids of fragments and their changes. Further cuts give the same cells, and further
-   steps the same bits in the same program. For that, saving, cloning and restoring make the solvers of all bodies
-   concerned start anew: the next step makes its preconditioner and takes no guess from the last. Sleeping copies go on
-   sleeping. Pointers are not saved. */
+   the history of BDF2, held regions, contact, ids of fragments and their changes. Further cuts give the same cells, and
+   further steps the same bits in the same program. For that, saving, cloning and restoring make the solvers of all
+   bodies concerned start anew: the next step makes its preconditioner and takes no guess from the last. Sleeping copies
+   go on sleeping. Pointers are not saved. */
 
 /* Writes the body to memory, which has room for capacity bytes. *size: receives how many bytes it takes, also after
    CAPACITY. memory NULL: computes *size only. Fields have fixed widths, in the machine's byte order, which the bytes
-   tell. Errors: ARGUMENT, CAPACITY (capacity is below *size). */
+   tell. Errors: ARGUMENT, CAPACITY (capacity is below *size); with contact MEMORY, LIMIT. */
 GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, size_t *size,
                                  gx_failure *failure /* or NULL */);
 /* Reads a body. Bytes from anywhere do no harm: a checksum detects accidental damage, and everything that a body relies
@@ -1543,6 +1541,7 @@ typedef struct gxp_touch {
     uint32_t current;
     int made;               /* surfaces[current] is of the cuts whose hash is `hash` */
     uint64_t hash;          /* cuts.hash */
+    uint64_t pressed;       /* hash of the states after the last step; 0: nothing pressed */
     gxp_touch_known *known; /* ascending ids */
     uint32_t known_count, known_capacity;
     /* of a step */
@@ -11166,7 +11165,6 @@ static gx_result gxp_copy_samples(gx_body *body, gxp_touch_surface *to) {
     if (result != GX_OK) return result;
     to->vertex_count = s->vertex_count;
     to->facet_count = s->triangle_count;
-    to->state_count = 0;
     to->largest = 0;
     for (i = 0; i < to->vertex_count; i++) gxp_copy_sample(s, i, &to->vertices[i]);
     for (i = 0; i < to->facet_count; i++)
@@ -11366,8 +11364,23 @@ static gx_result gxp_step_surface(gx_body *body, gxp_touch_surface **surface) {
     *surface = own;
     if (t->made && t->hash == body->cuts.hash) return GX_OK;
     *surface = other;
+    other->state_count = 0;
     result = gxp_make_surface(body, other);
     return result == GX_OK && t->made ? gxp_carry_states(body, own, other) : result;
+}
+
+/* Makes the surface of the present cuts hold the state, as the next step would: for saving. */
+static gx_result gxp_refresh_contact(gx_body *body) {
+    gxp_touch *t = &body->touch;
+    gxp_touch_surface *surface;
+    gx_result result;
+    if (!t->on || !t->made || t->hash == body->cuts.hash) return GX_OK;
+    result = gxp_step_surface(body, &surface);
+    if (result != GX_OK) return result;
+    t->current = 1 - t->current;
+    t->hash = body->cuts.hash;
+    t->kept = 0;
+    return GX_OK;
 }
 
 /* >>colliders: where pieces meet rigid bodies ---------------------------------------------------------------------- */
@@ -12112,6 +12125,7 @@ static int gxp_meeting_point(const gxp_touch_surface *s, const gxp_touch_pair *p
             gxp_add_place(&s->vertices[s->facets[pair->facet].vertex[i]], -pair->share[i], point, copies, weights);
     for (k = 0; k < 3; k++) point->position[k] -= pair->place[k] + pair->way[k];
     for (m = 0; m < point->count; m++) moves += fabs(weights[m]);
+    for (m = 0; m < point->count && !(moves > 1e-9); m++) weights[m] = 0; /* it was rounding */
     point->copies = copies;
     point->weights = weights;
     return moves > 1e-9;
@@ -12274,6 +12288,18 @@ static void gxp_report_loads(const gx_body *body, const gx_step_desc *desc) {
     }
 }
 
+/* Hash of what samples press with; 0: nothing does */
+static uint64_t gxp_hash_states(const gxp_touch_surface *s) {
+    uint64_t hash = 1;
+    uint32_t i;
+    for (i = 0; i < s->state_count; i++) {
+        hash = gxp_hash_words(hash, &s->states[i].sample, 1);
+        hash = gxp_hash_words(hash, &s->states[i].other, 1);
+        hash = gxp_hash_doubles(gxp_hash_doubles(hash, &s->states[i].pressed, 1), s->states[i].slip, 3);
+    }
+    return s->state_count > 0 ? hash | 1 : 0;
+}
+
 /* After a step: the caller's pairs get their slips and forces, samples what they press with. */
 static void gxp_keep_contact(gx_body *body, const gx_step_desc *desc, gxp_touch_surface *surface) {
     gxp_touch *t = &body->touch;
@@ -12301,6 +12327,7 @@ static void gxp_keep_contact(gx_body *body, const gx_step_desc *desc, gxp_touch_
         memcpy(state.rest, pair->rest, sizeof state.rest);
         surface->states[surface->state_count++] = state;
     }
+    t->pressed = gxp_hash_states(surface);
     gxp_report_loads(body, desc);
     gxp_know_colliders(t);
     t->current = surface == &t->surfaces[0] ? 0 : 1;
@@ -12313,6 +12340,7 @@ static void gxp_keep_contact(gx_body *body, const gx_step_desc *desc, gxp_touch_
 static void gxp_forget_contact(gx_body *body) {
     body->touch.made = 0;
     body->touch.known_count = 0;
+    body->touch.pressed = 0;
 }
 
 GXFEM_API gx_result gx_body_contact(gx_body *body, const gx_contact_desc *desc, gx_failure *failure) {
@@ -17257,7 +17285,7 @@ GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
     for (i = 0; i < gxb_complex_leaf_count(body->complex); i++)
         hash = gxp_mix(hash ^ gxb_complex_leaf(body->complex, i)->removed);
     for (blade = body->blades; blade != NULL; blade = blade->next) hash = gxp_hash_blade(hash, &blade->now);
-    return hash;
+    return body->touch.pressed != 0 ? gxp_mix(hash ^ body->touch.pressed) : hash;
 }
 
 GXFEM_API const char *gx_result_text(gx_result result) {
@@ -17299,7 +17327,7 @@ static void gxp_require_true(gxb_stream *s, int holds) {
 }
 static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
 
-#define GXP_SAVE_VERSION 9u /* raised by every change of the format */
+#define GXP_SAVE_VERSION 10u /* raised by every change of the format */
 #define GXP_BYTE_ORDER   0x01020304u
 
 typedef struct gxp_head {
@@ -17941,7 +17969,8 @@ static void gxp_drop_blades(gx_body *body, uint32_t count) {
 /* The row counts of the state, whether there is a history, and whether a blade leaves out moves */
 typedef struct gxp_state_counts {
     uint32_t rows[GXP_TABLES], history, struck;
-    int affine; /* there may be affine copies: the saved mesh tells */
+    uint32_t contact, pressing, known; /* 1: contact is on; its states; the colliders of the last step */
+    int affine;                        /* there may be affine copies: the saved mesh tells */
 } gxp_state_counts;
 
 static uint32_t gxp_state_use(const gxp_state_counts *n) {
@@ -17953,6 +17982,9 @@ static void gxp_pass_state_counts(gxb_stream *s, gxp_state_counts *n) {
     gxp_pass_counts(s, GXP_STATE, n->rows);
     gxp_pass_word(s, &n->history);
     gxp_pass_word(s, &n->struck);
+    gxp_pass_word(s, &n->contact);
+    gxp_pass_word(s, &n->pressing);
+    gxp_pass_word(s, &n->known);
 }
 
 static gxp_state_counts gxp_count_state(const gx_body *body) {
@@ -17961,13 +17993,76 @@ static gxp_state_counts gxp_count_state(const gx_body *body) {
     n.history = body->copies.previous_dt > 0;
     n.struck = (uint32_t)gxp_has_glances(body);
     n.affine = body->copies.affine != NULL;
+    n.contact = (uint32_t)body->touch.on;
+    n.pressing = body->touch.on && body->touch.made ? body->touch.surfaces[body->touch.current].state_count : 0;
+    n.known = body->touch.on ? body->touch.known_count : 0;
     return n;
+}
+
+/* The surface that gets the states of contact when they are read: the present one if it is of the present cuts */
+static uint32_t gxp_arriving_surface(const gx_body *body) {
+    const gxp_touch *t = &body->touch;
+    return t->made && t->hash == body->cuts.hash ? t->current : 1 - t->current;
+}
+
+/* Room for the state of contact; the present one stays. */
+static gx_result gxp_contact_room(gx_body *body, const gxp_state_counts *n) {
+    const gx_allocator *a = &body->config.allocator;
+    gxp_touch *t = &body->touch;
+    gxp_touch_surface *to = &t->surfaces[gxp_arriving_surface(body)];
+    gx_result result = gxp_reserve(a, &to->states, sizeof *to->states, to->state_count, &to->state_capacity,
+                                   n->pressing > to->state_count ? n->pressing - to->state_count : 0);
+    return result == GX_OK ? gxp_reserve(a, &t->known, sizeof *t->known, t->known_count, &t->known_capacity,
+                                         n->known > t->known_count ? n->known - t->known_count : 0)
+                           : result;
+}
+
+/* Writes the state of contact, or reads it if there is room. When reading, a surface that is not of the present cuts is
+   still to be made, if something presses. */
+static void gxp_pass_contact(gxb_stream *s, gx_body *body, const gxp_state_counts *n) {
+    gxp_touch *t = &body->touch;
+    gx_contact_desc *desc = &t->desc;
+    gxp_touch_surface *to;
+    uint32_t i;
+    if (s->in != NULL) {
+        const uint32_t arriving = gxp_arriving_surface(body);
+        t->made = n->contact && (n->pressing > 0 || arriving == t->current);
+        t->current = arriving;
+        t->hash = body->cuts.hash;
+        t->on = (int)n->contact;
+        t->known_count = n->known;
+        t->surfaces[arriving].state_count = n->pressing;
+        t->kept = 0;
+        t->pressed = 0;
+    }
+    if (!n->contact) return;
+    to = &t->surfaces[t->current];
+    gxb_stream_pass(s, &desc->stiffness, 1, sizeof(double));
+    gxb_stream_pass(s, &desc->friction, 1, sizeof(double));
+    gxb_stream_pass(s, &desc->sticking_speed, 1, sizeof(double));
+    gxb_stream_pass(s, &desc->recovery, 1, sizeof(double));
+    gxb_stream_pass(s, &desc->depth, 1, sizeof(double));
+    gxp_pass_word(s, &desc->max_pairs);
+    gxb_stream_pass(s, &t->pressed, 1, sizeof t->pressed);
+    for (i = 0; i < n->known; i++) {
+        gxp_pass_word(s, &t->known[i].id);
+        gxb_stream_pass(s, &t->known[i].hash, 1, sizeof t->known[i].hash);
+    }
+    for (i = 0; i < n->pressing; i++) {
+        gxp_touch_state *state = &to->states[i];
+        gxp_pass_word(s, &state->sample);
+        gxp_pass_word(s, &state->other);
+        gxb_stream_pass(s, &state->pressed, 1, sizeof(double));
+        gxb_stream_pass(s, state->slip, 3, sizeof(double));
+        gxb_stream_pass(s, state->rest, 3, sizeof(double));
+    }
 }
 
 /* Room for a state with these counts; the present one stays. */
 static gx_result gxp_state_room(gx_body *body, const gxp_state_counts *n) {
     gx_result result = gxp_rows_room(body, gxp_state_use(n), n->rows);
     if (result == GX_OK && n->struck) result = gxp_start_struck(body);
+    if (result == GX_OK) result = gxp_contact_room(body, n);
     return result == GX_OK && n->history ? gxp_start_history(body, 2) : result;
 }
 
@@ -17991,6 +18086,7 @@ static void gxp_pass_state(gxb_stream *s, gx_body *body, const gxp_state_counts 
     gxb_stream_pass(s, &scene.planes, 1, sizeof scene.planes);
     gxb_stream_pass(s, &scene.forces, 1, sizeof scene.forces);
     gxb_stream_pass(s, &scene.springs, 1, sizeof scene.springs);
+    gxp_pass_contact(s, body, n);
     if (s->in == NULL) return;
     gxp_find_bends(body);
     gxp_resume_in(body, &scene);
@@ -18052,15 +18148,48 @@ static void gxp_check_state(gxb_stream *s, gx_body *body, const gxp_state_counts
     gxp_require_true(s, snapshot->stale || body->view.fragment_count == snapshot->count);
 }
 
+/* Are contact's numbers such that a step made them? Those of samples are checked when the surface is there. */
+static void gxp_check_contact(gxb_stream *s, const gx_body *body, const gxp_state_counts *n) {
+    const gxp_touch *t = &body->touch;
+    const gxp_touch_surface *own = &t->surfaces[t->current];
+    const double numbers[5] = {t->desc.stiffness, t->desc.friction, t->desc.sticking_speed, t->desc.recovery,
+                               t->desc.depth};
+    uint32_t i;
+    int k;
+    if (!n->contact) return;
+    gxp_require_true(s, body->copies.affine == NULL && numbers[0] > 0 && numbers[4] > 0);
+    for (i = 0; i < 5; i++) gxp_require_true(s, gxp_is_finite(numbers[i]) && numbers[i] >= 0);
+    for (i = 1; i < n->known; i++) gxp_require_true(s, t->known[i - 1].id < t->known[i].id);
+    for (i = 0; i < n->pressing; i++) {
+        const gxp_touch_state *state = &own->states[i];
+        gxp_require_true(s, i == 0 || own->states[i - 1].sample <= state->sample);
+        gxp_require_true(s, gxp_is_finite(state->pressed) && state->pressed >= 0);
+        for (k = 0; k < 3; k++) gxp_require_true(s, gxp_is_finite(state->slip[k]) && gxp_is_finite(state->rest[k]));
+    }
+}
+
+/* Makes the surface of contact of a body that was read, if something presses there. */
+static void gxp_load_contact(gxb_stream *s, gx_body *body, const gxp_state_counts *n) {
+    gxp_touch_surface *own = &body->touch.surfaces[body->touch.current];
+    if (n->pressing == 0) return;
+    gxp_require(s, gxp_make_surface(body, own));
+    gxp_require_true(s, own->states[n->pressing - 1].sample < own->vertex_count + own->facet_count);
+}
+
 static void gxp_load_state(gxb_stream *s, gx_body *body, int trusted) {
     gxp_state_counts n;
     n.affine = body->copies.affine != NULL;
     gxp_pass_state_counts(s, &n);
     gxp_check_counts(s, gxp_state_use(&n), n.rows);
-    gxp_require_true(s, n.rows[GXP_COPIES] == body->copies.count && n.history <= 1 && n.struck <= 1);
+    gxp_require_true(s, n.rows[GXP_COPIES] == body->copies.count && n.history <= 1 && n.struck <= 1 && n.contact <= 1 &&
+                            (n.contact || (n.pressing == 0 && n.known == 0)));
+    gxb_stream_has(s, n.pressing, 2 * sizeof(uint32_t) + 7 * sizeof(double));
+    gxb_stream_has(s, n.known, sizeof(uint32_t) + sizeof(uint64_t));
     if (s->result == GX_OK) gxp_require(s, gxp_state_room(body, &n));
     if (s->result == GX_OK) gxp_pass_state(s, body, &n);
     if (s->result == GX_OK && !trusted) gxp_check_state(s, body, &n);
+    if (s->result == GX_OK && !trusted) gxp_check_contact(s, body, &n);
+    if (s->result == GX_OK) gxp_load_contact(s, body, &n);
 }
 
 static void gxp_write(gxb_stream *s, gx_body *body) {
@@ -18082,9 +18211,11 @@ GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, s
     gxb_stream s;
     size_t start;
     gxp_head head;
+    gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (size == NULL) return gxp_refuse(failure, "size");
-    gxp_end(failure, GX_OK);
+    result = gxp_refresh_contact(body);
+    if (gxp_end(failure, result) != GX_OK) return result;
     gxp_note_written(body);
     memset(&s, 0, sizeof s);
     gxp_pass_head(&s, &head);
@@ -18204,12 +18335,17 @@ static int gxp_same_regions(const gx_body *a, const gx_body *b) {
 
 /* Copies the state of a body with the same cells and copies. */
 static gx_result gxp_restore_state(gx_body *body, gx_body *from) {
-    gxp_state_counts n = gxp_count_state(from);
     const int same_held = gxp_same_regions(body, from);
+    gxp_state_counts n;
     gxb_stream s;
     unsigned char *bytes;
     size_t size;
-    gx_result result = gxp_state_room(body, &n);
+    gx_result result = gxp_refresh_contact(from);
+    if (result != GX_OK) return result;
+    n = gxp_count_state(from);
+    result = gxp_state_room(body, &n);
+    if (result == GX_OK && n.pressing > 0 && gxp_arriving_surface(body) != body->touch.current)
+        result = gxp_make_surface(body, &body->touch.surfaces[1 - body->touch.current]);
     if (result != GX_OK) return result;
     gxp_note_written(from);
     memset(&s, 0, sizeof s);
@@ -18252,15 +18388,11 @@ static gx_result gxp_restore_all(gx_body *body, gx_body *from) {
 }
 
 GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *failure) {
-    gx_contact_desc contact;
     uint32_t made;
-    int on;
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (from == NULL) return gxp_refuse(failure, "from");
     if (body == from) return gxp_end(failure, GX_OK);
-    on = body->touch.on;
-    contact = body->touch.desc;
     result = gxp_prepare_blades(body, from, &made);
     if (result == GX_OK)
         result = body->cuts.hash == from->cuts.hash && body->copies.count == from->copies.count &&
@@ -18268,12 +18400,9 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
                          body->leaves.count == from->leaves.count && gxp_same_materials(body, from)
                    ? gxp_restore_state(body, from)
                    : gxp_restore_all(body, from);
-    if (result == GX_OK) {
+    if (result == GX_OK)
         gxp_take_blades(body, from);
-        body->touch.on = on;
-        body->touch.desc = contact;
-        gxp_forget_contact(body);
-    } else
+    else
         gxp_drop_blades(body, made);
     return gxp_end(failure, result);
 }

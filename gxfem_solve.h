@@ -10845,9 +10845,12 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
     gxsp_report_pairs(problem, ends);
     memcpy(displacement, ends, count * sizeof(double));
     memcpy(velocity, speeds, count * sizeof(double));
-    if (midpoint || problem->report.substeps > 0) memcpy(system->vectors.current, ends, count * sizeof(double));
+    /* followers, which current has moved with their masters by each direction, are rounded otherwise in ends */
+    if (midpoint || problem->report.substeps > 0 || system->model.follower_count > 0)
+        memcpy(system->vectors.current, ends, count * sizeof(double));
     system->state.stepped = 1;
-    system->state.base_known = !midpoint && gxsp_point_count(step) == 0;
+    system->state.base_known = !midpoint && gxsp_point_count(step) == 0 &&
+                               (system->model.follower_count == 0 || problem->report.substeps > 0);
     system->lasting->scene = problem->scene;
     for (i = 0; i < system->model.component_count; i++) {
         system->model.components[i].forces[0] = system->model.components[i].forces[1];
