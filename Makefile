@@ -365,7 +365,7 @@ bench-programs: $(bench_programs)
 
 $(filter-out %/solver,$(bench_programs)): $(BUILD)/bench/%: bench/%.c $(wildcard bench/*.h) $(headers)
 	@mkdir -p $(@D)
-	@$(CC) $(bench_standard) $(WARNINGS) $(BENCH_CFLAGS) $< -o $@ $(LDFLAGS) -lm
+	@$(CC) $(bench_standard) $(WARNINGS) $(BENCH_CFLAGS) -pthread $< -o $@ $(LDFLAGS) -lm
 
 $(BUILD)/bench/space $(BUILD)/bench/scaling $(BUILD)/bench/open: examples/gxio.h examples/gxjson.h
 $(BUILD)/bench/kernel: tests/workloads.h tests/oracle.h tests/rational.h

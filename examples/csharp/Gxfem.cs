@@ -196,6 +196,7 @@ namespace Gxfem {
         public double mass_damping;
         public uint substeps;
         public uint newton_iterations;
+        public uint quick;
         public double newton_tolerance;
         public uint cg_iterations;
         public double cg_tolerance;
@@ -234,6 +235,7 @@ namespace Gxfem {
         public gxs_stop stop;
         public UIntPtr active_unknowns;
         public uint substeps;
+        public uint quick;
         public uint parts;
         public gxs_integrator integrator;
         public double error;
@@ -273,6 +275,7 @@ namespace Gxfem {
         public IntPtr texture;
         public IntPtr scope_slots;
         public UIntPtr scope_slot_count;
+        public uint material;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -315,6 +318,8 @@ namespace Gxfem {
         public IntPtr scope_cells;
         public UIntPtr scope_cell_count;
         public double sever_below;
+        public IntPtr release;
+        public UIntPtr release_count;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -370,6 +375,7 @@ namespace Gxfem {
         public IntPtr affine_rate;
         public IntPtr positions;
         public IntPtr elements;
+        public IntPtr cell_material;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -433,6 +439,7 @@ namespace Gxfem {
         public fixed double gravity[3];
         public gxs_integrator integrator;
         public uint substeps;
+        public uint quick;
         public uint newton_iterations;
         public double newton_tolerance;
         public uint cg_iterations;
@@ -857,6 +864,7 @@ namespace Gxfem {
         public UIntPtr memory_limit;
         public IntPtr inside;
         public IntPtr user;
+        public gx_jobs jobs;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -938,6 +946,7 @@ namespace Gxfem {
         public const uint GX_SURFACE_SHEET = 0;
         public const uint GX_SURFACE_SOLID = 1;
         public const uint GX_SURFACE_KEEP = 2;
+        public const uint GX_SURFACE_MATERIAL = 3;
         public const uint GX_FRAGMENT_UNCHANGED = 0;
         public const uint GX_FRAGMENT_TOUCHED = 1;
         public const uint GX_FRAGMENT_SPLIT = 2;
@@ -1305,7 +1314,7 @@ namespace Gxfem {
         public static extern uint gxb_complex_support(IntPtr complex, uint point, uint element);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
-        public static extern gx_result gxb_complex_survey(IntPtr complex, IntPtr pinned, IntPtr renumbering);
+        public static extern gx_result gxb_complex_survey(IntPtr complex, IntPtr pinned, IntPtr kinds, IntPtr renumbering);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern IntPtr gxb_complex_tree_node(IntPtr complex, uint node);
