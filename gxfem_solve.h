@@ -390,6 +390,11 @@ typedef struct gxs_plane {
  * semi-definite, 00 01 02 11 12 22, or NULL. Called on the thread of the step only. */
 typedef double (*gxs_contact_fn)(void *user, size_t point, const double *position, double *force, double *hessian);
 
+/* Of a pair */
+enum {
+    GXS_PAIR_OUTSIDE = 1, /* the other side is outside the model */
+    GXS_PAIR_WAKES = 2    /* components that it joins are awake in this step: the other side has moved */
+};
 /* Keeps two material points, or a point and a triangle, from going through each other: a point of relative position
  * r. Its weights are 0 in sum: those of one side, and minus those of the other. Its position is that of one side at
  * rest minus that of the other, m. Energy stiffness/2 depth^2 where depth = offset - normal . r is above 0. Both sides
@@ -397,9 +402,13 @@ typedef double (*gxs_contact_fn)(void *user, size_t point, const double *positio
  * angular momentum alone, too. Friction is Coulomb's: friction x the normal force at the step's start. It comes from
  * an elastic slip, which gxs_step_desc.pair_slips keeps: up to friction x force / stiffness, and at least
  * sticking_speed x dt, the sides stick. Not for GXS_MIDPOINT, which would gain energy, nor, so far, for models with
- * affine copies. */
+ * affine copies. The other side may be outside the model, as a rigid body is: then weights are 1 in sum, position is
+ * that of the point at rest minus the place of the other side at the step's end, and way is how far that place has
+ * gone within the step. */
 typedef struct gxs_pair {
     gxs_point point;
+    uint32_t flags;        /* GXS_PAIR_, or 0 */
+    double way[3];         /* m; GXS_PAIR_OUTSIDE only */
     double normal[3];      /* of length 1, from the other side to this one */
     double offset;         /* m */
     double stiffness;      /* N/m, 0 or more */
@@ -9587,6 +9596,7 @@ static gxsp_grip gxsp_pair_grip(const gxsp_problem *problem, size_t i, const dou
     gxsp_grip grip;
     int c;
     gxsp_point_position(&pair->point, problem->given, before);
+    for (c = 0; c < 3 && (pair->flags & GXS_PAIR_OUTSIDE); c++) before[c] += pair->way[c];
     depth = pair->offset - gxsp_dot(pair->normal, before, 1);
     elastic = depth > 0 ? pair->friction * depth : 0;
     grip.load = pair->stiffness * elastic;
@@ -9852,7 +9862,9 @@ static void gxsp_terms_make(const gxsp_problem *problem, const double *displacem
             share->copy = gxsp_copies(point)[n];
             share->weight = (float)gxsp_weights(point)[n];
         }
-        if (next > problem->step->spring_count + problem->step->point_count) {
+        if (next > problem->step->spring_count + problem->step->point_count &&
+            !(problem->step->pairs[next - 1 - problem->step->spring_count - problem->step->point_count].flags &
+              GXS_PAIR_OUTSIDE)) {
             gxsp_balance_shares(lasting->share + term->first, gxsp_weights(point), point->count);
             for (n = 0; n < point->count; n++) term->spread += fabsf(lasting->share[term->first + n].weight);
         }
@@ -10388,6 +10400,14 @@ static int gxsp_is_written(const gxsp_system *system, size_t copy, const double 
            (system->state.stepped && gxsp_differs(displacement, system->vectors.current + 3 * copy));
 }
 
+/* Wakes the components that a pair joins to something outside that has moved. */
+static void gxsp_wake_paired(gxsp_system *system, const gxs_pair *pair) {
+    uint32_t k;
+    for (k = 0; k < pair->point.count && (pair->flags & GXS_PAIR_WAKES); k++)
+        if (fabs(gxsp_weights(&pair->point)[k]) > 0)
+            system->model.components[system->model.component[gxsp_copies(&pair->point)[k]]].woken = 1;
+}
+
 /* Wakes the components that a change touches. */
 static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement, const double *velocity) {
     gxsp_system *system = problem->system;
@@ -10406,6 +10426,7 @@ static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement,
                            (springs && (component->has_spring[0] || component->has_spring[1])) ||
                            component->has_pair[0] > component->has_pair[1];
     }
+    for (i = 0; i < step->pair_count; i++) gxsp_wake_paired(system, &step->pairs[i]);
     for (i = 0; i < system->model.n; i++) {
         gxsp_component *component = &system->model.components[system->model.component[i]];
         if (step->targets && system->model.held[i] && gxsp_differs(step->targets + 3 * i, displacement + 3 * i))
@@ -11264,10 +11285,12 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
     gxsp_report_pairs(problem, ends);
     memcpy(displacement, ends, count * sizeof(double));
     memcpy(velocity, speeds, count * sizeof(double));
-    if (midpoint || problem->report.substeps > 0 || problem->report.quick)
+    /* followers, which current has moved with their masters by each direction, are rounded otherwise in ends */
+    if (midpoint || problem->report.substeps > 0 || problem->report.quick || system->model.follower_count > 0)
         memcpy(system->vectors.current, ends, count * sizeof(double));
     system->state.stepped = 1;
-    system->state.base_known = !midpoint && !problem->report.quick && gxsp_point_count(step) == 0;
+    system->state.base_known = !midpoint && !problem->report.quick && gxsp_point_count(step) == 0 &&
+                               (system->model.follower_count == 0 || problem->report.substeps > 0);
     system->leap.known = problem->report.quick != 0;
     system->lasting->scene = problem->scene;
     for (i = 0; i < system->model.component_count; i++) {
@@ -12281,15 +12304,18 @@ static gx_result gxsp_check_plane(const gxs_plane *plane, size_t index, gx_failu
              : GX_OK;
 }
 
-/* A pair of a step. Weights are 0 in sum up to the rounding of those who made them. */
+/* A pair of a step. Weights are 0 in sum, or 1, up to the rounding of those who made them. */
 static gx_result gxsp_check_pair(const gxs_step_desc *step, size_t index, size_t n, gx_failure *failure) {
     static const char *const names[6] = {"pairs.point.count",  "pairs.point.copy",    "pairs.point.weight",
                                          "pairs.point.copies", "pairs.point.weights", "pairs.point.position"};
     const gxs_pair *pair = &step->pairs[index];
-    double sum = 0, size = 0;
+    double sum = pair->flags & GXS_PAIR_OUTSIDE ? -1 : 0, size = 0;
     uint32_t k;
     gx_result result;
+    if (pair->flags > (GXS_PAIR_OUTSIDE | GXS_PAIR_WAKES))
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, "pairs.flags", index);
     if ((result = gxsp_check_point(&pair->point, n, names, index, failure)) != GX_OK ||
+        (result = gxsp_check_finite(pair->way, 3, "pairs.way", index, failure)) != GX_OK ||
         (result = gxsp_check_finite(pair->normal, 3, "pairs.normal", index, failure)) != GX_OK ||
         (result = gxsp_check_finite(&pair->offset, 1, "pairs.offset", index, failure)) != GX_OK ||
         (result = gxsp_check_size(pair->stiffness, "pairs.stiffness", index, failure)) != GX_OK ||
@@ -12301,7 +12327,7 @@ static gx_result gxsp_check_pair(const gxs_step_desc *step, size_t index, size_t
         size += fabs(gxsp_weights(&pair->point)[k]);
     }
     if (size > 1e30) return gxsp_fail(failure, GX_ERROR_RANGE, names[pair->point.copies ? 4 : 2], index);
-    if (fabs(sum) > 1e-12 * size)
+    if (fabs(sum) > (pair->flags & GXS_PAIR_OUTSIDE ? 1e-9 : 1e-12) * size)
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, names[pair->point.copies ? 4 : 2], index);
     if (fabs(gxsp_dot(pair->normal, pair->normal, 1) - 1) > 1e-6)
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, "pairs.normal", index);
