@@ -47,7 +47,8 @@
  *                 >>linearise Hessians, block diagonal
  *   multigrid:    >>galerkin coarse matrices | >>nesting those of affine copies | >>factor of the last level |
  *                 >>assembly the assembled matrix | >>smoother its step length | >>cycle the V-cycle
- *   changes:      >>edits lanes that a cut changes | >>renewal copies and components | >>update levels, all of it
+ *   changes:      >>edits lanes that a cut changes | >>affine-edits those of affine copies |
+ *                 >>renewal copies and components | >>update levels, all of it
  *   steps:        >>components momentum | >>points springs, contact | >>pairs two sides in contact | >>terms all that
  *                 acts at points | >>cg conjugate gradients | >>ageing of coarse matrices | >>sleep rest |
  *                 >>balance residual, start | >>search lengths | >>integrators BDF, midpoint | >>newton iterations,
@@ -8602,8 +8603,7 @@ static int gxsp_renew_nodes(gxsp_renewal *update) {
     return 1;
 }
 
-/* >>affine-edits: elements with affine copies in an update ----------------------------------------------------------
- */
+/* >>affine-edits: elements with affine copies in an update --------------------------------------------------------- */
 
 /* In: a gxs_change, copies in their new numbering. Out: groups, and the blocks of elements with affine copies. An
  * element takes any free lane of its kind: blocks have no nodes of their own, so that its place does not matter. */
