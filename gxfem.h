@@ -52,8 +52,8 @@
  *     then, under GXFEM_IMPLEMENTATION, in the order of a cut; functions call their own and earlier sections only:
  *     what a body is made of:    >>state >>body >>columns
  *     tools:                     >>memory >>basics >>mesh >>search >>copies >>transaction >>complex >>numbering
- *     a cut:                     >>surfaces >>pinches >>arrange >>solids >>links >>cells >>components >>integrals
- *                                >>sheets >>specks >>settle >>cut
+ *     a cut:                     >>surfaces >>pinches >>arrange >>solids >>materials >>links >>cells >>components
+ *                                >>integrals >>sheets >>specks >>settle >>cut
  *     a sheet's thickness:       >>solidify
  *     what is held and whole:    >>anchors >>regions >>grips >>map >>fragments >>motion
  *     what acts on it:           >>attached >>supports >>model
@@ -198,8 +198,11 @@ typedef struct gx_material {
 
 /* A sheet separates the material on its two sides. It may be open, closed or curved, cross itself, be non-manifold. A
    solid is closed and consistently oriented; it removes the material around which it winds. A solid that keeps removes
-   all other material; of several in one cut, what lies in all of them stays. */
-enum { GX_SURFACE_SHEET = 0, GX_SURFACE_SOLID = 1, GX_SURFACE_KEEP = 2 };
+   all other material; of several in one cut, what lies in all of them stays. A surface of material is closed like a
+   solid. What it winds around is of that material from then on; of several in one cut the last one counts. Where two
+   materials adjoin is an interface: nothing is cut there, and cells on its two sides move by the same copies. A sheet
+   that coincides with an interface, and gx_cut_desc.release, separate them. */
+enum { GX_SURFACE_SHEET = 0, GX_SURFACE_SOLID = 1, GX_SURFACE_KEEP = 2, GX_SURFACE_MATERIAL = 3 };
 typedef struct gx_surface {
     const double *vertices; /* vertex_count x 3, material coordinates, m */
     size_t vertex_count;
@@ -211,6 +214,7 @@ typedef struct gx_surface {
        a cut see the cells of before the cut. A slot whose cell was removed stands for nothing. NULL: the cut's scope */
     const uint32_t *scope_slots; /* scope_slot_count, below gx_view.slot_count */
     size_t scope_slot_count;
+    uint32_t material; /* of GX_SURFACE_MATERIAL and in a shape: an index below gx_body_desc.material_count */
 } gx_surface;
 
 /* A shape in place of a mesh: the body is all that its surfaces wind around, carved exactly out of a grid. Its volume
@@ -220,7 +224,8 @@ typedef struct gx_surface {
    given, the others are 0. */
 typedef struct gx_shape {
     /* surface_count. Each is closed and oriented alike, of any number of parts, and may cross itself. A part that faces
-       inward, inside of another part of the same surface, is a cavity. kind and scope_slots are not read */
+       inward, inside of another part of the same surface, is a cavity. Where they overlap, or one lies in another, the
+       material is that of the last one: first flesh, then the bone in it. kind and scope_slots are not read */
     const gx_surface *surfaces;
     size_t surface_count;
     uint32_t cells;  /* cubes along the longest side of the box around all surfaces */
@@ -277,8 +282,16 @@ typedef struct gx_cut_desc {
     size_t scope_fragment_count;
     const uint32_t *scope_cells; /* and these cells: indices below gx_view.cell_count */
     size_t scope_cell_count;
-    double sever_below; /* 0 ... 1: links of touched cells with a smaller share of their face are severed; 0: none */
+    /* 0 ... 1: links of touched cells with a smaller share of their face are severed; 0: none. Links of cells that have
+       an interface in their element are not */
+    double sever_below;
+    /* release_count x 2: pairs of materials, the second or both GX_ANY_MATERIAL: what adjoins there comes apart,
+       within the cut's scope, where both sides are in it. It does so after the surfaces have given materials. With
+       pairs, a cut may have no surfaces */
+    const uint32_t *release;
+    size_t release_count;
 } gx_cut_desc;
+#define GX_ANY_MATERIAL UINT32_MAX /* but the one of the other side */
 typedef struct gx_cut_report {
     size_t touched_elements, created_cells, removed_cells, created_copies, removed_copies;
     size_t ignored_triangles; /* of zero area */
@@ -294,7 +307,7 @@ typedef struct gx_cut_report {
    surface reads "surfaces.vertices".
    Some cuts of a body that has lost material also give back the memory which that has held. Such a cut goes through
    all that was cut before, 0.1 us for each leaf, facet, edge and point of it. Slots, ids, hits and anchors stay valid.
-   Errors: ARGUMENT, EMPTY, INDEX (triangle, or place in a scope), NOT_FINITE (vertex), RANGE (vertex), NOT_CLOSED
+   Errors: ARGUMENT, EMPTY, INDEX (triangle, place in a scope, pair), NOT_FINITE (vertex), RANGE (vertex), NOT_CLOSED
    (triangle), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report /* or NULL */,
                                 gx_failure *failure /* or NULL */);
@@ -370,8 +383,9 @@ typedef struct gx_view {
     const double *affine;      /* copy_count x 9: the columns of A, without unit. Only steps and restores change it */
     const double *affine_rate; /* copy_count x 9, 1/s */
     /* The mesh, as it was given or made for a shape. Both stay until the body's destruction or restore */
-    const double *positions;  /* node_count x 3, material coordinates, m */
-    const uint32_t *elements; /* element_count x 4 */
+    const double *positions;       /* node_count x 3, material coordinates, m */
+    const uint32_t *elements;      /* element_count x 4 */
+    const uint32_t *cell_material; /* cell_count; NULL: the body has one material only */
 } gx_view;
 /* Brings the view up to date. Errors: ARGUMENT, MEMORY, LIMIT (no ids left). */
 GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view, gx_failure *failure /* or NULL */);
@@ -614,7 +628,7 @@ typedef struct gx_skin {
     const uint32_t *triangles;         /* triangle_count x 3, counter-clockwise from outside */
     const uint32_t *triangle_fragment; /* triangle_count */
     const uint32_t *triangle_element;  /* triangle_count */
-    const uint32_t *triangle_material; /* triangle_count, that of the element (gx_body_desc.element_materials) */
+    const uint32_t *triangle_material; /* triangle_count, that of the cell (gx_view.cell_material) */
     /* triangle_count: GX_SKIN_OUTER; 1 + n: face of the n-th surface that cut the body, counted over all its cuts (the
        first, if several coincide); GX_SKIN_SEVERED: a severed link */
     const uint32_t *triangle_surface;
@@ -927,7 +941,8 @@ typedef struct gxp_cell { /* without gaps between its members: rows are saved as
     uint32_t copies[4];
     uint32_t first_leaf; /* list through gxp_leaf.next; GXP_NONE: removed */
     uint32_t next;       /* next cell of the element, GXP_NONE: last */
-    uint32_t kept;
+    uint32_t kept : 1;
+    uint32_t material : 31;
     double volume;   /* m3 */
     double mass[10]; /* kg, order of gxs_element.mass */
 } gxp_cell;
@@ -1078,8 +1093,9 @@ typedef struct gxp_undo {
 
 typedef struct gxp_view { /* the body as gx_view tells it */
     int stale;            /* a cut has been since the lists were made */
-    uint32_t count, capacity[6];
+    uint32_t count, capacity[7];
     uint32_t *cell, *slot, *fragment, *element, *copies; /* of each kept cell; copies x 4 */
+    uint32_t *material;                                  /* likewise; NULL: the body has one only */
     double *volume;
     gxp_words indices;         /* by cell: the index of a kept one in these lists; empty until somebody asks */
     gxp_words copy_fragment;   /* of each copy: a parent among copies, see gxp_find; the root stands for its fragment */
@@ -1529,6 +1545,10 @@ typedef struct gxp_scratch {
     gxp_words seeded;      /* by fragment: 1 if one of its leaves is a seed */
     gxp_words wound;       /* leaves around which the surfaces of a shape wind */
     gxp_words leaf_points; /* of a leaf; also of >>anchors, >>grips */
+    /* >>materials */
+    gxp_keys given_to;   /* leaf, surface that gives it a material; ascending. Then: leaf, its new material */
+    gxp_words remade;    /* cells of whole elements that have another material, and nothing else */
+    gxp_keys interfaces; /* place among new cells, cell across an interface (leaf, while cells are divided) */
     /* >>cells, >>links */
     gxp_keys glue;          /* leaf, leaf across a wall that stays in its cell, see >>specks; ascending */
     gxp_words cluster;      /* cells that hang together, see >>specks */
@@ -1666,7 +1686,8 @@ enum { /* places in the lists above */
     GXP_STRUCK_COLUMN = 12,
     GXP_FIRST_AFFINE = 13,
     GXP_AFFINE_COLUMNS = 5,
-    GXP_LINEAR_SEEN_COLUMN = 18
+    GXP_LINEAR_SEEN_COLUMN = 18,
+    GXP_VIEWED_MATERIALS = 6
 };
 static const gxp_column gxp_surface_columns[] = {
     GXP_COLUMN(cuts, surfaces, surface_capacity, 0, sizeof(gxp_surface_record), GXP_TOPOLOGY)};
@@ -1690,7 +1711,8 @@ static const gxp_column gxp_view_columns[] = {
     GXP_COLUMN(view, element,  capacity, 2, sizeof(uint32_t), 0),
     GXP_COLUMN(view, copies,   capacity, 3, 4 * sizeof(uint32_t), 0),
     GXP_COLUMN(view, volume,   capacity, 4, sizeof(double), 0),
-    GXP_COLUMN(view, cell,     capacity, 5, sizeof(uint32_t), 0)};
+    GXP_COLUMN(view, cell,     capacity, 5, sizeof(uint32_t), 0),
+    GXP_COLUMN(view, material, capacity, 6, sizeof(uint32_t), GXP_LATER)};
 static const gxp_column gxp_sum_columns[] = {
     GXP_COLUMN(view, fragment_volume,  sum_capacity, 0, sizeof(double), 0),
     GXP_COLUMN(view, fragment_mass,    sum_capacity, 1, sizeof(double), 0),
@@ -1799,8 +1821,10 @@ static const gxp_column gxp_lists[] = {
     GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements),
     GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_cells),
     GXP_WORDS(scratch.seed_leaves), GXP_WORDS(scratch.flooded), GXP_WORDS(scratch.seeded), GXP_WORDS(scratch.wound),
-    GXP_WORDS(scratch.leaf_points), GXP_WORDS(scratch.wall_leaves), GXP_WORDS(scratch.cell_leaves),
-    GXP_WORDS(scratch.part_leaves), GXP_WORDS(scratch.facet_points),
+    GXP_WORDS(scratch.leaf_points),
+    GXP_KEYS(scratch.given_to), GXP_WORDS(scratch.remade), GXP_KEYS(scratch.interfaces),
+    GXP_WORDS(scratch.wall_leaves), GXP_WORDS(scratch.cell_leaves), GXP_WORDS(scratch.part_leaves),
+    GXP_WORDS(scratch.facet_points),
     GXP_KEYS(scratch.pairs), GXP_WORDS(scratch.subdomains), GXP_WORDS(scratch.subdomain_cells),
     GXP_WORDS(scratch.taken), GXP_WORDS(scratch.face_facets),
     GXP_WORDS(scratch.boundary.points), GXP_WORDS(scratch.boundary.slots), GXP_WORDS(scratch.boundary.triangles),
@@ -2323,9 +2347,19 @@ static int gxp_rounds_inverted(const gx_body *body, uint32_t element) {
     return gxi_tet_gradients(x, gradients, NULL) == GX_ERROR_INVERTED;
 }
 
-static double gxp_density(const gx_body *body, uint32_t element) {
-    return body->mesh.materials[body->mesh.element_materials[element]].density;
+/* Coordinates are at most 2^GXP_REACH, the longest side is at least 2^-GXP_REACH. Masses of elements are 2^-GXP_WEIGHT
+   ... 2^GXP_WEIGHT: the inertia of 2^28 of them is below 2^940. */
+#define GXP_REACH  100
+#define GXP_WEIGHT 700
+
+static double gxp_density(const gx_body *body, const gxp_cell *cell) {
+    return body->mesh.materials[cell->material].density;
 }
+
+static int gxp_is_mass(double mass) { return mass >= ldexp(1, -GXP_WEIGHT) && mass <= ldexp(1, GXP_WEIGHT); }
+
+/* May there be interfaces? */
+static int gxp_is_mixed(const gx_body *body) { return body->mesh.material_count > 1; }
 
 static void gxp_box_of(const gx_body *body, gxp_box *box) {
     double low[3], high[3];
@@ -2912,6 +2946,7 @@ static gx_result gxp_list_cells(gx_body *body) {
             view->cell[view->count] = cell;
             view->slot[view->count] = body->cells.slot[cell];
             view->element[view->count] = e;
+            if (view->material != NULL) view->material[view->count] = c->material;
             memcpy(view->copies + 4 * (size_t)view->count++, c->copies, sizeof c->copies);
             gxp_unite_all(view->copy_fragment.data, c->copies);
         }
@@ -3078,7 +3113,7 @@ static void gxp_surface_free(gx_body *body, gxp_surface *s) {
 }
 
 static gx_result gxp_check_surface_arrays(const gx_surface *s, gx_failure *failure) {
-    if (s->kind > GX_SURFACE_KEEP) return gxp_refuse(failure, "surfaces.kind");
+    if (s->kind > GX_SURFACE_MATERIAL) return gxp_refuse(failure, "surfaces.kind");
     if (s->vertex_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "surfaces.vertex_count", SIZE_MAX);
     if (s->triangle_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "surfaces.triangle_count", SIZE_MAX);
     if (s->vertices == NULL) return gxp_refuse(failure, "surfaces.vertices");
@@ -3099,8 +3134,10 @@ static gx_result gxp_check_slots(const gx_body *body, const gx_surface *s, gx_fa
 
 static gx_result gxp_check_surface(const gx_body *body, const gx_surface *s, gx_failure *failure) {
     gx_result result = gxp_check_surface_arrays(s, failure);
-    if (result == GX_OK) result = gxp_check_slots(body, s, failure);
     size_t i;
+    if (result == GX_OK) result = gxp_check_slots(body, s, failure);
+    if (result == GX_OK && s->kind == GX_SURFACE_MATERIAL && s->material >= body->mesh.material_count)
+        result = gxp_fail(failure, GX_ERROR_INDEX, "surfaces.material", SIZE_MAX);
     for (i = 0; i < s->vertex_count && result == GX_OK; i++) {
         result = gxb_complex_check_point(body->complex, s->vertices + 3 * i);
         if (result != GX_OK) return gxp_fail(failure, result, "surfaces.vertices", i);
@@ -3835,8 +3872,19 @@ static gx_result gxp_find_outside(gx_body *body, int scoped) {
     return result;
 }
 
-/* Appends to scratch.removed the leaves around which the solid winds or, if it keeps these, the others. All surfaces of
-   the cut are in the complex. */
+/* Notes that the surface gives its material to the leaves around which it winds. */
+static gx_result gxp_note_given(gx_body *body, const gxp_surface *s) {
+    gxp_scratch *scratch = &body->scratch;
+    uint32_t i;
+    gx_result result = gxp_keys_room(body, &scratch->given_to, scratch->flooded.count);
+    for (i = 0; i < scratch->flooded.count && result == GX_OK; i++)
+        if (gxp_is_wound(body, scratch->flooded.data[i]))
+            result = gxp_push_key(body, &scratch->given_to, scratch->flooded.data[i], (uint32_t)s->number);
+    return result;
+}
+
+/* Finds the leaves around which a closed surface winds. Appends to scratch.removed those that a solid removes: these
+   or, if it keeps these, the others; or notes their material. All surfaces of the cut are in the complex. */
 static gx_result gxp_find_solid(gxp_cut *cut, const gxp_surface *s) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
@@ -3848,6 +3896,7 @@ static gx_result gxp_find_solid(gxp_cut *cut, const gxp_surface *s) {
         result = s->given->scope_slots != NULL ? gxp_seed_slots(body, s->given) : gxp_seed_untouched(cut);
     if (result == GX_OK) result = gxp_find_windings(body, s, scoped);
     if (result == GX_OK && s->given->kind == GX_SURFACE_KEEP) return gxp_find_outside(body, scoped);
+    if (result == GX_OK && s->given->kind == GX_SURFACE_MATERIAL) return gxp_note_given(body, s);
     if (result == GX_OK) result = gxp_words_room(body, &scratch->removed, scratch->flooded.count);
     for (i = 0; i < scratch->flooded.count && result == GX_OK; i++)
         if (gxp_is_wound(body, scratch->flooded.data[i]))
@@ -3879,7 +3928,7 @@ static gx_result gxp_list_covered(gx_body *body, const gxp_surface *s, gxp_words
     return result;
 }
 
-/* Appends to scratch.removed the leaves that lie in none of a shape's surfaces. */
+/* Appends to scratch.removed the leaves that lie in none of a shape's surfaces. Notes the materials of the others. */
 static gx_result gxp_find_shape(gxp_cut *cut, const gxp_surface *surfaces) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
@@ -3893,6 +3942,7 @@ static gx_result gxp_find_shape(gxp_cut *cut, const gxp_surface *surfaces) {
         for (i = 0; i < scratch->flooded.count && result == GX_OK; i++)
             if (gxp_is_wound(body, scratch->flooded.data[i]))
                 result = gxp_push(body, &scratch->wound, scratch->flooded.data[i]);
+        if (gxp_is_mixed(body) && result == GX_OK) result = gxp_note_given(body, &surfaces[s]);
     }
     gxp_sort_unique(&scratch->wound);
     for (leaf = i = 0; leaf < body->leaves.count && result == GX_OK; leaf++)
@@ -3900,6 +3950,138 @@ static gx_result gxp_find_shape(gxp_cut *cut, const gxp_surface *surfaces) {
             i++;
         else
             result = gxp_push_outside(body, leaf);
+    return result;
+}
+
+/* >>materials: what is of which material --------------------------------------------------------------------------- */
+/* Each cell is of one material. Two leaves of an element that an open facet joins, but that are in different cells, are
+   at an interface: it divides cells, and joins their copies as a link does. In: the leaves that a cut's surfaces give
+   materials; pairs of materials to be released. Out: cells that are to be divided by material, those of whole elements
+   with their new one; walls at interfaces. Touches cells, through the undo log, walls and scratch. */
+
+/* The material that the cut gives to a leaf; GXP_NONE: that of its cell stays. */
+static uint32_t gxp_given_material(const gx_body *body, uint32_t leaf) {
+    const gxp_keys *given = &body->scratch.given_to;
+    const uint32_t i = given->count > 0 ? gxp_first_key(given, (uint64_t)leaf << 32) : 0;
+    return i < given->count && GXP_FIRST(given->data[i]) == leaf ? GXP_SECOND(given->data[i]) : GXP_NONE;
+}
+
+/* The material of a leaf once the cut is made */
+static uint32_t gxp_leaf_material(const gx_body *body, uint32_t leaf) {
+    const uint32_t given = gxp_given_material(body, leaf);
+    return given != GXP_NONE ? given : body->cells.data[body->leaves.data[leaf].cell].material;
+}
+
+/* Is the open facet between two leaves of an element an interface? While cells are divided, leaves of one cell are of
+   two materials if the cut gives them such. */
+static int gxp_is_interface(const gx_body *body, uint32_t leaf, uint32_t other) {
+    return gxp_is_mixed(body) && (body->leaves.data[leaf].cell != body->leaves.data[other].cell ||
+                                  gxp_given_material(body, leaf) != gxp_given_material(body, other));
+}
+
+/* Has the element kept cells of several materials? */
+static int gxp_has_materials(const gx_body *body, uint32_t element) {
+    uint32_t cell = element, first = GXP_NONE;
+    for (; cell != GXP_NONE; cell = body->cells.data[cell].next) {
+        if (!body->cells.data[cell].kept) continue;
+        if (first != GXP_NONE && first != body->cells.data[cell].material) return 1;
+        first = body->cells.data[cell].material;
+    }
+    return 0;
+}
+
+/* Gives a material to the cell of a whole element. */
+static gx_result gxp_remake_cell(gx_body *body, uint32_t cell, uint32_t material) {
+    gxp_cell *c = &body->cells.data[cell];
+    const gx_result result = gxp_save_cell(body, cell);
+    if (result != GX_OK) return result;
+    c->material = material & INT32_MAX;
+    gxi_tet_mass(c->volume, gxp_density(body, c), c->mass);
+    return gxp_push(body, &body->scratch.remade, cell);
+}
+
+/* Gives the leaves that are left their materials. Of several surfaces around a leaf the last one counts. Whole elements
+   have theirs at once; cells that may have to be divided are touched. */
+static gx_result gxp_give_materials(gxp_cut *cut) {
+    gx_body *body = cut->body;
+    gxp_keys *given = &body->scratch.given_to;
+    uint32_t i, n = 0;
+    gx_result result = gxp_sort_keys(body, given, 0, given->count);
+    for (i = 0; i < given->count && result == GX_OK; i++) {
+        const uint32_t leaf = GXP_FIRST(given->data[i]), cell = body->leaves.data[leaf].cell;
+        const uint32_t surface = GXP_SECOND(given->data[i]), material = cut->desc->surfaces[surface].material;
+        const uint32_t element = body->cells.data[cell].element;
+        if (i + 1 < given->count && GXP_FIRST(given->data[i + 1]) == leaf) continue;
+        if (!gxp_is_kept(body, leaf) || body->cells.data[cell].material == material) continue;
+        if (!gxp_is_mass(gxp_element_volume(body, element) * body->mesh.materials[material].density)) {
+            cut->failure.surface = surface;
+            return gxp_fail(&cut->failure, GX_ERROR_RANGE, "surfaces.material", SIZE_MAX);
+        }
+        if (gxb_complex_root(body->complex, element) == 2 * leaf)
+            result = gxp_remake_cell(body, cell, material);
+        else {
+            given->data[n++] = (uint64_t)leaf << 32 | material;
+            result = gxp_push(body, &body->scratch.touched, cell);
+        }
+    }
+    given->count = n;
+    return result;
+}
+
+/* Does the cut release what is of material a from what is of material b? */
+static int gxp_is_released(const gx_cut_desc *desc, uint32_t a, uint32_t b) {
+    size_t i;
+    int k, released = 0;
+    for (i = 0; i < desc->release_count && a != b; i++)
+        for (k = 0; k < 2; k++) {
+            const uint32_t p = desc->release[2 * i + (size_t)k], q = desc->release[2 * i + 1 - (size_t)k];
+            released |= (p == GX_ANY_MATERIAL || p == a) && (q == GX_ANY_MATERIAL || q == b);
+        }
+    return released;
+}
+
+/* May something behind a face of the element be released from its material? */
+static int gxp_may_release(const gxp_cut *cut, uint32_t element, uint32_t material) {
+    const gx_body *body = cut->body;
+    uint32_t k, cell;
+    if (body->scratch.given_to.count > 0) return 1;
+    for (k = 0; k < 4; k++)
+        for (cell = gxp_neighbour(body, element, k); cell != GXP_NONE; cell = body->cells.data[cell].next)
+            if (body->cells.data[cell].kept && gxp_is_released(cut->desc, material, body->cells.data[cell].material))
+                return 1;
+    return 0;
+}
+
+/* Makes walls of the open facets of a leaf at which the cut releases it from what lies behind. */
+static gx_result gxp_release_leaf(gxp_cut *cut, uint32_t leaf, int scoped) {
+    gx_body *body = cut->body;
+    gxb_complex *cx = body->complex;
+    const uint32_t material = gxp_leaf_material(body, leaf), element = gxb_complex_leaf(cx, leaf)->element;
+    uint32_t first, count = 0, i;
+    gx_result result;
+    if (gxb_complex_leaf(cx, leaf)->facet_count == 0 && !gxp_may_release(cut, element, material)) return GX_OK;
+    result = gxb_complex_open_element(cx, element);
+    if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
+    for (i = 0; i < count && result == GX_OK; i++) {
+        const uint32_t facet = gxp_item(cx, first + i);
+        const gxb_facet *f = gxb_complex_facet(cx, facet);
+        const uint32_t other = f->leaf[f->leaf[0] == leaf];
+        if (gxp_is_link(body, facet) && gxp_is_released(cut->desc, material, gxp_leaf_material(body, other)) &&
+            (!scoped || gxp_in_scope(body, other)))
+            result = gxb_complex_set_wall(cx, facet);
+    }
+    return result;
+}
+
+/* Makes walls of all that the cut releases. */
+static gx_result gxp_release_materials(gxp_cut *cut) {
+    gx_body *body = cut->body;
+    const int scoped = gxp_has_scope(cut->desc);
+    uint32_t leaf;
+    gx_result result = gxp_stamp_scope(cut);
+    for (leaf = 0; leaf < body->leaves.count && result == GX_OK; leaf++)
+        if (gxp_is_kept(body, leaf) && (!scoped || gxp_in_scope(body, leaf)))
+            result = gxp_release_leaf(cut, leaf, scoped);
     return result;
 }
 
@@ -3988,6 +4170,20 @@ static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
     return fabs(gxb_num_to_double(&sum));
 }
 
+/* Replaces the leaf behind each interface of new cells by its cell. Each stands there once. */
+static gx_result gxp_settle_interfaces(gx_body *body) {
+    gxp_keys *keys = &body->scratch.interfaces;
+    uint32_t i, n = 0;
+    gx_result result;
+    for (i = 0; i < keys->count; i++)
+        keys->data[i] = (keys->data[i] & ~(uint64_t)UINT32_MAX) | body->leaves.data[GXP_SECOND(keys->data[i])].cell;
+    result = gxp_sort_keys(body, keys, 0, keys->count);
+    for (i = 0; i < keys->count && result == GX_OK; i++)
+        if (n == 0 || keys->data[n - 1] != keys->data[i]) keys->data[n++] = keys->data[i];
+    keys->count = n;
+    return result;
+}
+
 /* Replaces the leaf behind each link of new cells by its cell, and sorts the links of each cell: those to one cell
    stand together. */
 static gx_result gxp_settle_links(gx_body *body) {
@@ -4002,7 +4198,7 @@ static gx_result gxp_settle_links(gx_body *body) {
             link[j] = (uint64_t)body->leaves.data[GXP_LINK_CELL(link[j])].cell << 33 | (link[j] & 0x1ffffffffu);
         result = gxp_sort_keys(body, &scratch->links, from, to);
     }
-    return result;
+    return result == GX_OK ? gxp_settle_interfaces(body) : result;
 }
 
 /* The index of a cell among the new ones, or GXP_NONE */
@@ -4077,6 +4273,13 @@ static gx_result gxp_judge_link(gxp_cut *cut, uint32_t first, uint32_t end) {
     return result;
 }
 
+/* Is a link not weighed? Where an element has several materials, cells of all of them lie side by side at a face, and
+   each has its share of what joins the two elements. */
+static int gxp_is_shared_face(const gx_body *body, uint32_t cell, uint32_t other) {
+    return gxp_is_mixed(body) && (gxp_has_materials(body, body->cells.data[cell].element) ||
+                                  gxp_has_materials(body, body->cells.data[other].element));
+}
+
 /* Weighs the links of a new cell roughly. All facets of a face between the same two cells are one link. Whole faces are
    skipped, and links to new cells before this one. Links that may be the smallest or may have to be severed are noted
    in scratch.narrow. *bound: the smallest share so far. */
@@ -4092,7 +4295,8 @@ static gx_result gxp_weigh_links(gxp_cut *cut, uint32_t index, double *bound) {
                        facet = GXP_LINK_FACET(scratch->links.data[first]);
         for (end = first + 1; end < last && GXP_LINK_CELL(scratch->links.data[end]) == other; end++) {}
         if (gxp_new_index(body, other) < index ||
-            gxb_complex_face_facet(body->complex, gxb_complex_facet(body->complex, facet)->face) == facet)
+            gxb_complex_face_facet(body->complex, gxb_complex_facet(body->complex, facet)->face) == facet ||
+            gxp_is_shared_face(body, scratch->new_cells.data[index], other))
             continue;
         result = gxp_is_wide(cut, first, end, bound, &wide);
         if (result == GX_OK && !wide) result = gxp_push(body, &scratch->narrow, first);
@@ -4219,6 +4423,8 @@ static gx_result gxp_walk_leaves(gx_body *body, uint32_t start) {
                 scratch->links.data[scratch->links.count++] =
                     (uint64_t)other << 33 | (uint64_t)facet << 2 |
                     gxp_local_face(cx, gxb_complex_leaf(cx, leaf)->element, f->face);
+            else if (gxp_is_interface(body, leaf, other))
+                result = gxp_push_key(body, &scratch->interfaces, scratch->link_first.count - 1, other);
             else if (body->leaves.mark[other].stamp != scratch->stamp) {
                 body->leaves.mark[other].stamp = scratch->stamp;
                 result = gxp_push(body, &scratch->part_leaves, other);
@@ -4241,11 +4447,12 @@ static gx_result gxp_give_leaves(gx_body *body, uint32_t cell) {
     return result;
 }
 
-/* Divides a touched cell into its connected parts; the first one keeps the slot. */
+/* Divides a touched cell into its connected parts, each of one material; the first one keeps the slot. */
 static gx_result gxp_divide_cell(gxp_cut *cut, uint32_t cell) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
-    uint32_t leaf, parts = 0, i;
+    const uint32_t material = body->cells.data[cell].material;
+    uint32_t leaf, parts = 0, given, i;
     gx_result result = GX_OK;
     scratch->cell_leaves.count = 0;
     for (leaf = body->cells.data[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
@@ -4262,6 +4469,8 @@ static gx_result gxp_divide_cell(gxp_cut *cut, uint32_t cell) {
             cut->report.created_cells++;
         }
         if (result == GX_OK) result = gxp_give_leaves(body, slot);
+        given = gxp_given_material(body, leaf);
+        body->cells.data[slot].material = (given == GXP_NONE ? material : given) & INT32_MAX;
         if (result == GX_OK) result = gxp_push(body, &scratch->new_cells, slot);
     }
     if (result == GX_OK && parts == 0) {
@@ -4298,7 +4507,7 @@ static gx_result gxp_touch_severed(gxp_cut *cut) {
         if (body->cells.data[cell].kept && gxp_new_index(body, cell) == GXP_NONE)
             result = gxp_push(body, &scratch->new_cells, cell);
     }
-    scratch->links.count = scratch->link_first.count = 0;
+    scratch->links.count = scratch->link_first.count = scratch->interfaces.count = 0;
     scratch->stamp++;
     for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++)
         result = gxp_walk_leaves(body, body->cells.data[scratch->new_cells.data[i]].first_leaf);
@@ -4340,7 +4549,7 @@ static gx_result gxp_divide_cells(gxp_cut *cut) {
     if (result == GX_OK) result = gxp_grow_rows(body, GXP_CELLS, scratch->touched.count);
     if (result == GX_OK) result = gxp_start_words(body, &scratch->new_cells, 2 * (size_t)scratch->touched.count);
     if (result == GX_OK) result = gxp_start_words(body, &scratch->link_first, 2 * (size_t)scratch->touched.count);
-    scratch->new_cells.count = scratch->links.count = scratch->link_first.count = 0;
+    scratch->new_cells.count = scratch->links.count = scratch->link_first.count = scratch->interfaces.count = 0;
     scratch->stamp++;
     for (i = 0; i < scratch->touched.count && result == GX_OK; i++) {
         uint32_t *stamp = &body->cells.stamp[body->cells.data[scratch->touched.data[i]].element];
@@ -4403,7 +4612,23 @@ static gx_result gxp_cross_links(gx_body *body, uint32_t index, uint32_t k, int 
     return result;
 }
 
-/* Visits the cells that are linked to a cell that is not new, across the faces around the node. */
+/* Visits the cells across interfaces from a new cell. As gxp_cross_links */
+static gx_result gxp_cross_interfaces(gx_body *body, uint32_t index, int all, uint32_t *open) {
+    gxp_scratch *scratch = &body->scratch;
+    const gxp_keys *keys = &scratch->interfaces;
+    uint32_t i = gxp_first_key(keys, (uint64_t)index << 32);
+    gx_result result = GX_OK;
+    for (; i < keys->count && GXP_FIRST(keys->data[i]) == index && result == GX_OK; i++) {
+        const uint32_t other = GXP_SECOND(keys->data[i]);
+        if (body->cells.stamp[other] == scratch->stamp) continue;
+        if (gxp_new_index(body, other) == GXP_NONE) *open = 1;
+        if (all || gxp_new_index(body, other) != GXP_NONE)
+            result = gxp_visit_cell(body, other, &scratch->subdomain_cells);
+    }
+    return result;
+}
+
+/* Visits the cells that are linked to a cell that is not new, across the faces around the node and interfaces. */
 static gx_result gxp_cross_faces(gx_body *body, uint32_t cell, uint32_t node) {
     gxb_complex *cx = body->complex;
     const uint32_t element = body->cells.data[cell].element;
@@ -4421,7 +4646,8 @@ static gx_result gxp_cross_faces(gx_body *body, uint32_t cell, uint32_t node) {
         result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
         for (i = 0; i < count && result == GX_OK; i++) {
             const uint32_t facet = gxp_item(cx, first + i), face = gxb_complex_facet(cx, facet)->face;
-            if (face != GXB_NONE && face != opposite) result = gxp_cross_facet(body, facet, leaf);
+            if (face != opposite && (face != GXB_NONE || gxp_is_mixed(body)))
+                result = gxp_cross_facet(body, facet, leaf);
         }
     }
     return result;
@@ -4441,6 +4667,8 @@ static gx_result gxp_walk_subdomain(gx_body *body, uint32_t cell, uint32_t node,
         else
             result = gxp_cross_links(body, index, (uint32_t)gxp_local_node(body, body->cells.data[c].element, node),
                                      all, open);
+        if (result == GX_OK && index != GXP_NONE && scratch->interfaces.count > 0)
+            result = gxp_cross_interfaces(body, index, all, open);
         if (result == GX_OK && body->mesh.node_pinched[node]) result = gxp_cross_pinches(body, c, node);
     }
     return result;
@@ -4832,7 +5060,7 @@ static gx_result gxp_integrate_cell(gx_body *body, uint32_t cell, double volume)
     if (result == GX_OK) result = gxp_boundary_moments(body, element, &k, &m);
     if (result != GX_OK) return result;
     body->cells.data[cell].volume = 6 * volume * m.volume;
-    gxi_part_mass(&m, k, volume, gxp_density(body, element), body->cells.data[cell].mass);
+    gxi_part_mass(&m, k, volume, gxp_density(body, &body->cells.data[cell]), body->cells.data[cell].mass);
     return GX_OK;
 }
 
@@ -4887,14 +5115,16 @@ static uint32_t gxp_rest_cell(const gx_body *body, uint32_t element) {
 /* Sets a cell, which was logged, to the element less its other cells. Returns 0 if too little remains. */
 static int gxp_leave_rest(gx_body *body, uint32_t rest, double volume) {
     const uint32_t element = body->cells.data[rest].element;
+    const double density = gxp_density(body, &body->cells.data[rest]);
     double mass[10], left = volume;
     uint32_t cell;
     int i;
-    gxi_tet_mass(volume, gxp_density(body, element), mass);
+    gxi_tet_mass(volume, density, mass);
     for (cell = element; cell != GXP_NONE; cell = body->cells.data[cell].next) {
+        const double ratio = density / gxp_density(body, &body->cells.data[cell]); /* exactly 1 if it is of the same */
         if (cell == rest) continue;
         left -= body->cells.data[cell].volume;
-        for (i = 0; i < 10; i++) mass[i] -= body->cells.data[cell].mass[i];
+        for (i = 0; i < 10; i++) mass[i] -= ratio * body->cells.data[cell].mass[i];
     }
     if (!(left >= GXP_REST * volume)) return 0;
     body->cells.data[rest].volume = left;
@@ -4989,7 +5219,7 @@ static void gxp_add_bulk(const gxp_bulk *from, gxp_bulk *sum) {
  */
 static void gxp_add_cell_bulk(const gx_body *body, const gxp_cell *cell, gxp_bulk *bulk) {
     static const uint8_t at[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
-    const double density = gxp_density(body, cell->element), whole = gxp_element_volume(body, cell->element);
+    const double density = gxp_density(body, cell), whole = gxp_element_volume(body, cell->element);
     const double *low = body->mesh.boxes[0].low;
     double x[12], middle[3];
     int i, j, k;
@@ -5273,7 +5503,7 @@ static double gxp_triangle_area(const double corners[12], const double *a, const
 }
 
 /* Adds the facets that bound a cell to the boundary, which has no triangles; without faces, those in its element's
-   faces are left out. So are facets with the cell on both sides. */
+   faces are left out. So are facets with the cell on both sides, and interfaces. */
 static gx_result gxp_bound_cell(gx_body *body, uint32_t cell, int faces) {
     gxb_complex *cx = body->complex;
     uint32_t leaf, first, count, i;
@@ -5286,7 +5516,9 @@ static gx_result gxp_bound_cell(gx_body *body, uint32_t cell, int faces) {
             const gxb_facet *f = gxb_complex_facet(cx, facet);
             const uint32_t other = f->leaf[f->leaf[0] == leaf];
             if (f->face != GXB_NONE && !faces) continue;
-            if (gxp_is_kept(body, other) && body->leaves.data[other].cell == cell) continue;
+            if (gxp_is_kept(body, other) &&
+                (body->leaves.data[other].cell == cell || (f->face == GXB_NONE && !f->wall)))
+                continue;
             result = gxp_add_boundary_facet(body, body->cells.data[cell].element, facet, 0);
         }
     }
@@ -5551,13 +5783,28 @@ typedef struct gxp_settling {
     size_t size;
 } gxp_settling;
 
+/* Surveys the complex. Interfaces stay: leaves of different cells are not united. */
+static gx_result gxp_survey(gx_body *body, gxb_renumbering *r) {
+    const size_t size = body->leaves.count * sizeof(uint32_t);
+    uint32_t *cells = NULL, i;
+    gx_result result;
+    if (gxp_is_mixed(body)) {
+        cells = (uint32_t *)gxp_allocate(&body->config.allocator, size);
+        if (cells == NULL) return GX_ERROR_MEMORY;
+        for (i = 0; i < body->leaves.count; i++) cells[i] = body->leaves.data[i].cell;
+    }
+    result = gxb_complex_survey(body->complex, body->mesh.node_pinched, cells, r);
+    gxp_release(&body->config.allocator, cells, size);
+    return result;
+}
+
 /* Plans a compaction, once a body has cost enough since the last one. What is beyond the limits stays as it is. */
 static gx_result gxp_plan_settling(gx_body *body, gxp_settling *s) {
     gx_result result = GX_OK;
     memset(s, 0, sizeof *s);
     if (!gxb_complex_is_sparse(body->complex)) return GX_OK;
     if (body->skin.made) result = gxp_words_room(body, &body->skin.dirty, body->mesh.element_count);
-    if (result == GX_OK) result = gxb_complex_survey(body->complex, body->mesh.node_pinched, &s->renumbering);
+    if (result == GX_OK) result = gxp_survey(body, &s->renumbering);
     if (result != GX_OK) return result == GX_ERROR_LIMIT ? GX_OK : result;
     s->size = body->cells.count * sizeof(uint32_t) + body->cuts.surface_count;
     s->place = (uint32_t *)gxp_allocate(&body->config.allocator, s->size);
@@ -5583,7 +5830,8 @@ static void gxp_settle(gx_body *body, gxp_settling *s) {
 /* gx_body_cut: check, begin, arrange, enrich, integrate, then commit, or roll back on any error. The commit cannot
    fail. It drops dead copies, wakes the touched copies and marks model, skin, view and snapshot as stale. */
 
-static uint64_t gxp_hash_cut(uint64_t past, const gx_cut_desc *desc) {
+static uint64_t gxp_hash_cut(uint64_t past, const gxp_cut *cut) {
+    const gx_cut_desc *desc = cut->desc;
     size_t i;
     past = gxp_hash_words(past, desc->scope_fragments, desc->scope_fragment_count);
     past = gxp_hash_doubles(gxp_hash_words(past, desc->scope_cells, desc->scope_cell_count), &desc->sever_below, 1);
@@ -5593,19 +5841,34 @@ static uint64_t gxp_hash_cut(uint64_t past, const gx_cut_desc *desc) {
                                 3 * s->vertex_count);
         past = gxp_hash_texture(gxp_hash_words(past, s->triangles, 3 * s->triangle_count), s->texture, s->vertex_count);
         if (s->scope_slots != NULL) past = gxp_hash_words(gxp_mix(past), s->scope_slots, s->scope_slot_count);
+        if (gxp_is_mixed(cut->body) && (cut->shapes || s->kind == GX_SURFACE_MATERIAL))
+            past = gxp_mix(past ^ s->material);
     }
-    return past;
+    return desc->release_count > 0 ? gxp_hash_words(gxp_mix(past), desc->release, 2 * desc->release_count) : past;
+}
+
+static gx_result gxp_check_release(const gx_body *body, const gx_cut_desc *desc, gx_failure *failure) {
+    size_t i;
+    if (desc->release_count > 0 && desc->release == NULL) return gxp_refuse(failure, "release");
+    if (desc->release_count > SIZE_MAX / 2) return gxp_fail(failure, GX_ERROR_LIMIT, "release_count", SIZE_MAX);
+    for (i = 0; i < 2 * desc->release_count; i++)
+        if (desc->release[i] != GX_ANY_MATERIAL && desc->release[i] >= body->mesh.material_count)
+            return gxp_fail(failure, GX_ERROR_INDEX, "release", i / 2);
+    return GX_OK;
 }
 
 static gx_result gxp_check_cut(gxp_cut *cut) {
     const gx_cut_desc *desc = cut->desc;
     gx_failure *failure = &cut->failure;
     size_t i;
-    gx_result result = GX_OK;
-    if (desc->surfaces == NULL) return gxp_refuse(failure, "surfaces");
+    gx_result result = gxp_check_release(cut->body, desc, failure);
+    if (result != GX_OK) return result;
+    if (desc->surfaces == NULL && (desc->surface_count > 0 || desc->release_count == 0))
+        return gxp_refuse(failure, "surfaces");
     if (desc->scope_fragment_count > 0 && desc->scope_fragments == NULL) return gxp_refuse(failure, "scope_fragments");
     if (desc->scope_cell_count > 0 && desc->scope_cells == NULL) return gxp_refuse(failure, "scope_cells");
-    if (desc->surface_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "surface_count", SIZE_MAX);
+    if (desc->surface_count == 0 && desc->release_count == 0)
+        return gxp_fail(failure, GX_ERROR_EMPTY, "surface_count", SIZE_MAX);
     if (!gxp_is_finite(desc->sever_below)) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "sever_below", SIZE_MAX);
     if (desc->sever_below < 0 || desc->sever_below > 1) return gxp_refuse(failure, "sever_below");
     for (i = 0; i < desc->surface_count && result == GX_OK; i++) {
@@ -5653,18 +5916,24 @@ static gx_result gxp_arrange_surfaces(gxp_cut *cut, gxp_surface *surfaces) {
 static gx_result gxp_arrange(gxp_cut *cut) {
     gx_body *body = cut->body;
     const size_t count = cut->desc->surface_count;
-    gxp_surface *surfaces = (gxp_surface *)gxp_allocate(&body->config.allocator, count * sizeof *surfaces);
+    gxp_surface *surfaces = NULL;
     gx_result result;
     size_t i;
-    if (surfaces == NULL) return GX_ERROR_MEMORY;
-    memset(surfaces, 0, count * sizeof *surfaces);
+    if (count > 0) {
+        surfaces = (gxp_surface *)gxp_allocate(&body->config.allocator, count * sizeof *surfaces);
+        if (surfaces == NULL) return GX_ERROR_MEMORY;
+        memset(surfaces, 0, count * sizeof *surfaces);
+    }
     body->scratch.touched.count = body->scratch.removed.count = body->scratch.pinches.count = 0;
+    body->scratch.given_to.count = body->scratch.remade.count = 0;
     result = gxp_arrange_surfaces(cut, surfaces);
     for (i = 0; i < count; i++)
         if (surfaces[i].given != NULL) gxp_surface_free(body, &surfaces[i]);
     gxp_release(&body->config.allocator, surfaces, count * sizeof *surfaces);
     if (result == GX_OK) result = gxp_list_new_leaves(cut);
-    return result == GX_OK ? gxp_remove_leaves(body) : result;
+    if (result == GX_OK) result = gxp_remove_leaves(body);
+    if (result == GX_OK && body->scratch.given_to.count > 0) result = gxp_give_materials(cut);
+    return result == GX_OK && cut->desc->release_count > 0 ? gxp_release_materials(cut) : result;
 }
 
 /* From leaves to copies: touched cells fall apart, small links are severed, nodes get copies. */
@@ -5820,6 +6089,7 @@ static void gxp_commit(gxp_cut *cut) {
     gxp_note_changed(body);
     for (i = 0; i < scratch->new_cells.count; i++)
         gxp_touch_copies(body, &body->cells.data[scratch->new_cells.data[i]]);
+    for (i = 0; i < scratch->remade.count; i++) gxp_touch_copies(body, &body->cells.data[scratch->remade.data[i]]);
     for (i = 0; i < scratch->touched.count; i++) {
         gxp_cell *cell = &body->cells.data[scratch->touched.data[i]];
         if (cell->kept) continue;
@@ -5832,7 +6102,7 @@ static void gxp_commit(gxp_cut *cut) {
     for (i = scratch->dead.count; i-- > 0;) gxp_drop_copy(body, scratch->dead.data[i]);
     gxb_complex_commit(body->complex);
     body->undo.cells.rows.count = body->undo.leaves.rows.count = 0;
-    body->cuts.hash = gxp_hash_cut(body->cuts.hash, cut->desc);
+    body->cuts.hash = gxp_hash_cut(body->cuts.hash, cut);
     if (cut->report.created_copies + cut->report.removed_copies > 0)
         body->cuts.epoch = body->cuts.hash != 0 ? body->cuts.hash : 1;
     body->holds.stale = view->stale = 1;
@@ -7569,6 +7839,7 @@ GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view, gx_failure *failu
     view->affine_rate = body->copies.linear_rate;
     view->positions = body->mesh.positions;
     view->elements = gxb_complex_element_nodes(body->complex, 0);
+    view->cell_material = own->material;
     return GX_OK;
 }
 
@@ -8429,22 +8700,24 @@ static gx_result gxp_make_constraints(gx_body *body) {
 
 /* >>model: the model that the solver takes ------------------------------------------------------------------------- */
 /* In: cells, copies, held flags. Out: the solver's model, made anew or changed where cuts have been. The cells of an
-   element that move by the same four copies are one element of the model, a part. Touches the solver and the model's
-   arrays, which are there only while it is made. */
+   element that are of one material and move by the same four copies are one element of the model, a part. Touches the
+   solver and the model's arrays, which are there only while it is made. */
 
-/* Adds a cell to the part with its copies, or begins a new part. first: the element's first part. */
+/* Adds a cell to the part with its copies and material, or begins a new part. first: the element's first part. */
 static void gxp_add_part(gx_body *body, const gxp_cell *cell, uint32_t first, const double gradients[12]) {
     gxs_element *part;
     uint32_t i;
     int k;
     for (i = first; i < body->model.part_count; i++)
-        if (memcmp(body->model.parts[i].copy, cell->copies, sizeof cell->copies) == 0) break;
+        if (memcmp(body->model.parts[i].copy, cell->copies, sizeof cell->copies) == 0 &&
+            body->model.parts[i].material == cell->material)
+            break;
     part = &body->model.parts[i];
     if (i == body->model.part_count) {
         memset(part, 0, sizeof *part);
         memcpy(part->copy, cell->copies, sizeof part->copy);
         memcpy(part->gradient, gradients, 12 * sizeof *gradients);
-        part->material = body->mesh.element_materials[cell->element];
+        part->material = cell->material;
         part->group = cell->element;
         body->model.part_count++;
     }
@@ -9107,7 +9380,7 @@ static gx_result gxp_add_skin_triangle(gx_body *body, const gxp_skin_face *face,
     s->triangle_count++;
     s->element[t] = face->element;
     s->cell[t] = face->cell;
-    s->material[t] = body->mesh.element_materials[face->element];
+    s->material[t] = body->cells.data[face->cell].material;
     s->surface[t] = face->surface;
     memset(s->links[t].normal, 0, sizeof s->links[t].normal);
     gxp_set_normal(s->links[t].normal, face->normal);
@@ -11121,7 +11394,7 @@ static void gxp_copy_facet(const gx_body *body, uint32_t t, gxp_touch_surface *t
         v->element = facet->element;
         v->fragment = facet->fragment;
         v->size = cbrt(6 * gxp_element_volume(body, v->element));
-        v->young = body->mesh.materials[body->mesh.element_materials[v->element]].elastic.young;
+        v->young = body->mesh.materials[s->material[t]].elastic.young;
     }
 }
 
@@ -15560,11 +15833,6 @@ GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_
    cubes and two corners of the face between them. Exact winding numbers of nodes tell which elements are inside, so far
    as the surfaces do not come near them; those that they come near are found as a cut finds elements, and made. */
 
-/* Coordinates are at most 2^GXP_REACH, the longest side is at least 2^-GXP_REACH. Masses of elements are 2^-GXP_WEIGHT
-   ... 2^GXP_WEIGHT: the inertia of 2^28 of them is below 2^940. */
-#define GXP_REACH  100
-#define GXP_WEIGHT 700
-
 /* Nodes are named by their place in the arrays below: corners of cubes first, then middles. */
 typedef struct gxp_grid {
     const gx_allocator *allocator;
@@ -15951,6 +16219,7 @@ static gx_result gxp_name_shape(gx_failure *failure, gx_result result) {
                                            {"surfaces.triangles", "shape.surfaces.triangles"},
                                            {"surfaces.vertex_count", "shape.surfaces.vertex_count"},
                                            {"surfaces.triangle_count", "shape.surfaces.triangle_count"},
+                                           {"surfaces.material", "shape.surfaces.material"},
                                            {"surfaces.texture", "shape.surfaces.texture"}};
     size_t i;
     if (result == GX_OK || failure == NULL || failure->field == NULL) return result;
@@ -15962,7 +16231,7 @@ static gx_result gxp_name_shape(gx_failure *failure, gx_result result) {
     return result;
 }
 
-static gx_result gxp_check_shape_surface(const gx_surface *s, gx_failure *failure) {
+static gx_result gxp_check_shape_surface(const gx_surface *s, size_t materials, gx_failure *failure) {
     const double most = ldexp(1, GXP_REACH);
     gx_surface plain = *s;
     size_t i;
@@ -15977,12 +16246,15 @@ static gx_result gxp_check_shape_surface(const gx_surface *s, gx_failure *failur
     }
     for (i = 0; i < 3 * s->triangle_count && result == GX_OK; i++)
         if (s->triangles[i] >= s->vertex_count) result = gxp_fail(failure, GX_ERROR_INDEX, "surfaces.triangles", i / 3);
+    if (result == GX_OK && s->material >= materials)
+        result = gxp_fail(failure, GX_ERROR_INDEX, "surfaces.material", SIZE_MAX);
     return gxp_name_shape(failure, result);
 }
 
 /* All but whether the surfaces are closed, which the cut checks */
 static gx_result gxp_check_shape(const gx_body_desc *desc, gx_failure *failure) {
     const gx_shape *shape = desc->shape;
+    const size_t materials = desc->materials != NULL ? desc->material_count : 1;
     size_t i;
     gx_result result = GX_OK;
     if (shape->surfaces == NULL) return gxp_refuse(failure, "shape.surfaces");
@@ -15991,7 +16263,7 @@ static gx_result gxp_check_shape(const gx_body_desc *desc, gx_failure *failure) 
     if (shape->edge < 0) return gxp_refuse(failure, "shape.edge");
     if ((shape->cells > 0) + (shape->edge > 0) + (shape->unknowns > 0) != 1) return gxp_refuse(failure, "shape.cells");
     for (i = 0; i < shape->surface_count && result == GX_OK; i++) {
-        result = gxp_check_shape_surface(&shape->surfaces[i], failure);
+        result = gxp_check_shape_surface(&shape->surfaces[i], materials, failure);
         if (result != GX_OK && failure != NULL) failure->surface = i;
     }
     return result;
@@ -16024,9 +16296,8 @@ static gx_result gxp_check_size(const gx_body_desc *desc, gx_failure *failure) {
 
 /* An element of positive volume may have none in doubles. */
 static gx_result gxp_check_volume(const gx_body *body, uint32_t element, double volume) {
-    const double mass = volume * gxp_density(body, element);
     if (volume <= 0 || gxp_rounds_inverted(body, element)) return GX_ERROR_FLAT;
-    return mass >= ldexp(1, -GXP_WEIGHT) && mass <= ldexp(1, GXP_WEIGHT) ? GX_OK : GX_ERROR_RANGE;
+    return gxp_is_mass(volume * gxp_density(body, &body->cells.data[element])) ? GX_OK : GX_ERROR_RANGE;
 }
 
 /* Blames an element that is flat, too heavy or too light. */
@@ -16042,10 +16313,11 @@ static gx_result gxp_make_first_cells(gx_body *body, gx_failure *failure) {
         memcpy(cell->copies, gxb_complex_element_nodes(body->complex, e), sizeof cell->copies);
         cell->next = GXP_NONE;
         cell->kept = 1;
+        cell->material = body->mesh.element_materials[e] & INT32_MAX;
         cell->volume = gxp_element_volume(body, e);
         result = gxp_check_volume(body, e, cell->volume);
         if (result != GX_OK) return gxp_fail(failure, result, "elements", e);
-        gxi_tet_mass(cell->volume, gxp_density(body, e), cell->mass);
+        gxi_tet_mass(cell->volume, gxp_density(body, cell), cell->mass);
         memset(&body->leaves.data[e], 0, sizeof body->leaves.data[e]);
         body->leaves.data[e].cell = e;
         body->leaves.data[e].next = GXP_NONE;
@@ -16093,6 +16365,8 @@ static gx_result gxp_make_tables(gx_body *body, const gx_body_desc *desc) {
     if (result == GX_OK) result = gxp_make_rows(body, GXP_MATERIALS, body->mesh.material_count);
     if (result == GX_OK && desc->texture != NULL)
         result = gxp_make_column(body, &gxp_node_columns[GXP_TEXTURE_COLUMN], nodes);
+    if (result == GX_OK && gxp_is_mixed(body))
+        result = gxp_make_column(body, &gxp_view_columns[GXP_VIEWED_MATERIALS], body->mesh.element_count);
     if (result == GX_OK) result = gxp_grow_rows(body, GXP_CELLS, body->mesh.element_count);
     if (result == GX_OK) result = gxp_grow_rows(body, GXP_SLOTS, body->mesh.element_count);
     if (result == GX_OK) result = gxp_grow_rows(body, GXP_LEAVES, body->mesh.element_count);
@@ -16379,6 +16653,7 @@ GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_f
 
 #define GXP_BESIDE_WALL 0xfffffff0u /* neighbour across a wall inside the element */
 #define GXP_ACROSS_WALL 0xfffffff1u /* neighbour across a wall on a face */
+#define GXP_BESIDE_OPEN 0xfffffff2u /* neighbour across an interface inside the element */
 
 /* Appends to pairs (face or kind, neighbour) for everything around a cell. */
 static gx_result gxp_push_neighbours(gx_body *body, uint32_t cell, gxp_keys *pairs) {
@@ -16394,7 +16669,7 @@ static gx_result gxp_push_neighbours(gx_body *body, uint32_t cell, gxp_keys *pai
             const uint32_t other = f->leaf[f->leaf[0] == leaf];
             if (!gxp_is_kept(body, other) || body->leaves.data[other].cell == cell) continue;
             result = gxp_push_key(body, pairs,
-                                  f->face == GXB_NONE ? GXP_BESIDE_WALL
+                                  f->face == GXB_NONE ? f->wall ? GXP_BESIDE_WALL : GXP_BESIDE_OPEN
                                   : f->wall           ? GXP_ACROSS_WALL
                                                       : f->face,
                                   body->leaves.data[other].cell);
@@ -16571,7 +16846,7 @@ static void gxp_require_true(gxb_stream *s, int holds) {
 }
 static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
 
-#define GXP_SAVE_VERSION 9u /* raised by every change of the format */
+#define GXP_SAVE_VERSION 10u /* raised by every change of the format */
 #define GXP_BYTE_ORDER   0x01020304u
 
 typedef struct gxp_head {
@@ -16821,9 +17096,12 @@ typedef struct gxp_places {
 static void gxp_check_cell(gxb_stream *s, gx_body *body, uint32_t cell, const gxp_places *seen) {
     gxp_cell *c = &body->cells.data[cell];
     const uint32_t *node = gxb_complex_element_nodes(body->complex, c->element);
-    const double density = gxp_density(body, c->element), most = 2 * gxp_element_volume(body, c->element);
+    const double most = 2 * gxp_element_volume(body, c->element);
+    double density;
     uint32_t leaf, k;
-    gxp_require_true(s, c->kept <= 1 && (c->first_leaf != GXP_NONE) == (c->kept != 0));
+    gxp_require_true(s, (c->first_leaf != GXP_NONE) == c->kept && c->material < body->mesh.material_count);
+    if (s->result != GX_OK) return;
+    density = gxp_density(body, c);
     for (leaf = c->first_leaf; leaf != GXP_NONE && s->result == GX_OK; leaf = body->leaves.data[leaf].next) {
         gxp_require_true(s, leaf < body->leaves.count && !seen->leaf[leaf < body->leaves.count ? leaf : 0]);
         if (s->result != GX_OK) return;
@@ -17608,6 +17886,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_BYTE_ORDER
 #undef GXP_BESIDE_WALL
 #undef GXP_ACROSS_WALL
+#undef GXP_BESIDE_OPEN
 #undef GXP_NO_PLANE
 #undef GXP_BEAD_REACH
 #undef GXP_BEAD_OFF

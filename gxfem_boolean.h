@@ -568,10 +568,11 @@ GXFEM_API int gxb_complex_is_sparse(const gxb_complex *complex);
    parts. Nodes no longer lead to the parts of their facets: triangles in their planes then ask the facets of each leaf.
    gxb_complex_survey finds out what is to be done and takes the memory for it, also in a transaction, which it leaves
    as it was. gxb_complex_compact does it, and cannot fail: after the survey and a commit, with nothing in between.
-   pinned: node_count; elements with a node that is not 0 here keep all they have; NULL: none. renumbering: to be
-   released by gxb_complex_forget, whether it was carried out or not; after an error it holds nothing. Errors: MEMORY,
-   LIMIT. */
-GXFEM_API gx_result gxb_complex_survey(gxb_complex *complex, const uint8_t *pinned, gxb_renumbering *renumbering);
+   pinned: node_count; elements with a node that is not 0 here keep all they have; NULL: none. kinds: leaf_count; leaves
+   with different ones stay apart, as if a wall were between them; NULL: all have the same. renumbering: to be released
+   by gxb_complex_forget, whether it was carried out or not; after an error it holds nothing. Errors: MEMORY, LIMIT. */
+GXFEM_API gx_result gxb_complex_survey(gxb_complex *complex, const uint8_t *pinned, const uint32_t *kinds,
+                                       gxb_renumbering *renumbering);
 GXFEM_API void gxb_complex_compact(gxb_complex *complex, gxb_renumbering *renumbering);
 GXFEM_API void gxb_complex_forget(gxb_complex *complex, gxb_renumbering *renumbering);
 
@@ -5778,8 +5779,14 @@ static uint32_t gxbp_bounding_node(const gxbp_census *c, uint32_t leaf, uint32_t
     return up;
 }
 
+/* Does a facet inside an element separate what lies on its side from what lies behind? */
+static int gxbp_separates(const gxbp_census *c, const gxb_facet *f, uint32_t side, const uint32_t *kinds) {
+    if (f->wall || !gxbp_side_stays(c, f, 1 - side)) return 1;
+    return kinds != NULL && kinds[f->leaf[0]] != kinds[f->leaf[1]];
+}
+
 /* The nodes whose planes bound what stays, and separate it from what lies behind */
-static void gxbp_mark_bounds(gxbp_census *c) {
+static void gxbp_mark_bounds(gxbp_census *c, const uint32_t *kinds) {
     gxb_complex *cx = c->cx;
     uint32_t i, k;
     if (cx->tree_count > 0) memset(c->bounds, 0, cx->tree_count * sizeof *c->bounds);
@@ -5792,7 +5799,7 @@ static void gxbp_mark_bounds(gxbp_census *c) {
         for (k = 0; k < 2; k++) {
             const uint32_t up = gxbp_side_stays(c, f, k) ? gxbp_bounding_node(c, f->leaf[k], f->plane, k) : GXB_NONE;
             if (up == GXB_NONE) continue;
-            c->bounds[up] |= f->wall || !gxbp_side_stays(c, f, 1 - k) ? GXBP_BOUND | GXBP_WALLED : GXBP_BOUND;
+            c->bounds[up] |= gxbp_separates(c, f, k, kinds) ? GXBP_BOUND | GXBP_WALLED : GXBP_BOUND;
         }
     }
 }
@@ -6731,13 +6738,13 @@ static gx_result gxbp_open_census(gxbp_census *c, gxb_complex *cx) {
     return GX_OK;
 }
 
-static gx_result gxbp_take_census(gxbp_census *c, const uint8_t *pinned) {
+static gx_result gxbp_take_census(gxbp_census *c, const uint8_t *pinned, const uint32_t *kinds) {
     gx_result result;
     gxbp_mark_leaves(c, pinned);
     gxbp_mark_polygons(c);
     result = gxbp_write_loops(c);
     if (result != GX_OK) return result;
-    gxbp_mark_bounds(c);
+    gxbp_mark_bounds(c, kinds);
     gxbp_renew_trees(c);
     result = gxbp_unite_polygons(c);
     if (result != GX_OK) return result;
@@ -6824,12 +6831,13 @@ GXFEM_API int gxb_complex_is_sparse(const gxb_complex *cx) {
     return GXBP_IS_SPARSE(removed > 0 && items > (3 * removed > cx->leaf_count ? 2 : 4) * cx->settled + 16384);
 }
 
-GXFEM_API gx_result gxb_complex_survey(gxb_complex *cx, const uint8_t *pinned, gxb_renumbering *r) {
+GXFEM_API gx_result gxb_complex_survey(gxb_complex *cx, const uint8_t *pinned, const uint32_t *kinds,
+                                       gxb_renumbering *r) {
     gxbp_census c;
     gx_result result = gxbp_open_census(&c, cx);
     memset(r, 0, sizeof *r);
     if (result != GX_OK) return result;
-    result = gxbp_take_census(&c, pinned);
+    result = gxbp_take_census(&c, pinned, kinds);
     if (result != GX_OK) {
         gxbp_close_census(&c);
         gxbp_release(&cx->store.allocator, c.block, c.words * sizeof *c.block);

@@ -63,7 +63,8 @@ static inline gx_surface surface_of(const wl_surface *s) {
     surface.vertex_count = s->vertex_count;
     surface.triangles = s->triangles;
     surface.triangle_count = s->triangle_count;
-    surface.kind = s->solid == 0 ? GX_SURFACE_SHEET : s->solid == 1 ? GX_SURFACE_SOLID : GX_SURFACE_KEEP;
+    surface.kind = (uint32_t)(s->solid < 3 ? s->solid : GX_SURFACE_MATERIAL); /* the oracle has the same numbers */
+    surface.material = s->solid < 3 ? 0 : (uint32_t)s->solid - 3;
     return surface;
 }
 

@@ -5,9 +5,10 @@
    The pieces are convex, and no face of a piece straddles the boundary of a cut surface. Then
        regions     pieces joined across faces that lie in no cut triangle; each has one winding number: solids remove
                    them
-       cells       pieces of one element joined across faces that lie in no sheet
+       materials   of a piece: that of the last surface of material that winds around it, else of its element
+       cells       pieces of one element and one material joined across faces that lie in no sheet
        links       cells of two elements whose pieces share a part of their common face (edge, node) that no sheet
-                   covers
+                   covers; cells of one element and two materials whose pieces share a face that no sheet covers
        copies      per node: components of the cells of the elements around it
        fragments   components of all cells
 
@@ -38,13 +39,14 @@ typedef struct oracle_mesh {
     size_t node_count;
     const uint32_t *elements; /* element_count x 4, positive volume */
     size_t element_count;
+    const uint32_t *materials; /* element_count, or NULL: all 0 */
 } oracle_mesh;
 
 typedef struct oracle_surface {
     const double *vertices;    /* x 3 */
     const uint32_t *triangles; /* triangle_count x 3 */
     size_t triangle_count;
-    int solid; /* 1: removes where its winding number is not 0; 2: where it is 0; 0: a sheet */
+    int solid; /* 1: removes where its winding number is not 0; 2: where it is 0; 0: a sheet; 3 + m: gives material m */
 } oracle_surface;
 
 /* ---- sets of planes ---- */
@@ -121,6 +123,7 @@ typedef struct oracle_piece { /* convex hull of some points of its element */
     oracle_set plus;            /* planes on whose positive side it lies */
     size_t region, cell;
     int removed;
+    uint32_t material;
 } oracle_piece;
 
 typedef struct oracle_link {
@@ -141,12 +144,13 @@ typedef struct oracle {
     oracle_piece *pieces;
     size_t piece_count;
     size_t *element_pieces; /* element_count + 1: where each element's pieces start */
-    /* between pieces of different elements */
+    /* between pieces of different elements or materials */
     oracle_link *links;
     size_t link_count;
     size_t cell_count;
     size_t *cell_element; /* cell_count, ascending */
     double *cell_volume;
+    uint32_t *cell_material;
     size_t *cell_fragment;
     size_t *node_copies; /* node_count */
     size_t copy_count;
@@ -645,9 +649,15 @@ static inline size_t oracle_number(size_t *parent, size_t count) {
 
 /* ---- regions, winding numbers, cells ---- */
 
-/* Joins the pieces of each element across faces that no sheet (solids: no surface) covers. Two pieces of one element
-   share a face when they lie on different sides of exactly one plane. */
-static inline void oracle_join_inside(const oracle *o, size_t *parent, int solids) {
+static inline void oracle_add_link(oracle *o, size_t piece, size_t other) {
+    o->links = (oracle_link *)oracle_grow(o->links, o->link_count, sizeof *o->links);
+    o->links[o->link_count].piece[0] = piece;
+    o->links[o->link_count++].piece[1] = other;
+}
+
+/* Joins the pieces of each element across faces that no sheet (solids: no surface) covers; those of different materials
+   are linked. Two pieces of one element share a face when they lie on different sides of exactly one plane. */
+static inline void oracle_join_inside(oracle *o, size_t *parent, int solids) {
     size_t e, i, j;
     for (e = 0; e < o->mesh.element_count; e++)
         for (i = o->element_pieces[e]; i < o->element_pieces[e + 1]; i++)
@@ -661,7 +671,12 @@ static inline void oracle_join_inside(const oracle *o, size_t *parent, int solid
                     continue;
                 oracle_set_add(&on, k);
                 c = oracle_contact_of(o, p, &on);
-                if (!oracle_covered(o, &c, solids)) oracle_join(parent, i, j);
+                if (!oracle_covered(o, &c, solids)) {
+                    if (solids || p->material == q->material)
+                        oracle_join(parent, i, j);
+                    else
+                        oracle_add_link(o, i, j);
+                }
                 rat_arena_release(mark);
             }
 }
@@ -712,11 +727,15 @@ static inline void oracle_remove(oracle *o, const oracle_surface *surfaces, size
         oracle_contact inside;
         p->region = oracle_root(region, i);
         p->removed = o->pieces[p->region].removed;
+        p->material = o->pieces[p->region].material;
         if (p->region != i) continue;
+        if (o->mesh.materials != NULL) p->material = o->mesh.materials[p->element];
         inside = oracle_contact_of(o, p, &nothing);
-        for (s = 0; s < surface_count && !p->removed; s++)
-            if (surfaces[s].solid && (oracle_winding(o, s, inside.center) != 0) == (surfaces[s].solid == 1))
-                p->removed = 1;
+        for (s = 0; s < surface_count && !p->removed; s++) {
+            const int kind = surfaces[s].solid, winds = kind != 0 && oracle_winding(o, s, inside.center) != 0;
+            if (kind == 1 || kind == 2) p->removed = winds == (kind == 1);
+            if (kind >= 3 && winds) p->material = (uint32_t)(kind - 3);
+        }
         rat_arena_release(mark);
     }
     free(region);
@@ -732,7 +751,9 @@ static inline void oracle_find_cells(oracle *o) {
         if (root == i) {
             o->cell_element = (size_t *)oracle_memory(o->cell_element, o->cell_count, sizeof *o->cell_element);
             o->cell_volume = (double *)oracle_memory(o->cell_volume, o->cell_count, sizeof *o->cell_volume);
+            o->cell_material = (uint32_t *)oracle_memory(o->cell_material, o->cell_count, sizeof *o->cell_material);
             o->cell_element[o->cell_count] = p->element;
+            o->cell_material[o->cell_count] = p->material;
             o->cell_volume[o->cell_count] = 0;
             name[i] = o->cell_count++;
         }
@@ -843,9 +864,7 @@ static inline void oracle_link_elements(oracle *o, size_t e, size_t f) {
             for (j = o->element_pieces[f]; j < o->element_pieces[f + 1]; j++) {
                 oracle_contact d = oracle_contact_of(o, &o->pieces[j], &in_f);
                 if (o->pieces[j].removed || d.count < shared || !oracle_same_contact(&c, &d)) continue;
-                o->links = (oracle_link *)oracle_grow(o->links, o->link_count, sizeof *o->links);
-                o->links[o->link_count].piece[0] = i;
-                o->links[o->link_count++].piece[1] = j;
+                oracle_add_link(o, i, j);
             }
         rat_arena_release(mark);
     }
@@ -916,6 +935,7 @@ static inline void oracle_destroy(oracle *o) {
     free(o->links);
     free(o->cell_element);
     free(o->cell_volume);
+    free(o->cell_material);
     free(o->cell_fragment);
     free(o->node_copies);
     free(o->fragment_volume);

@@ -159,7 +159,7 @@ END_TEST
 START_TEST(truth_against_oracle) {
     static const double fold[12] = {-0.9375, -1, 0.3, 2.0625, 2, 0.3, 2.0625, -1, -2.7, -0.9375, 2, -2.7};
     static const uint32_t triangles[6] = {0, 2, 1, 0, 1, 3};
-    const oracle_mesh mesh = {unit_corners, 4, unit_element, 1};
+    const oracle_mesh mesh = {unit_corners, 4, unit_element, 1, NULL};
     const oracle_surface surface = {fold, triangles, 2, 0};
     oracle *o = oracle_create(&mesh, &surface, 1);
     part p = part_create(unit_corners, fold, triangles, 2, 0);

@@ -1810,7 +1810,7 @@ static void compact_and_compare(gxb_complex *cx, memory *own, const scene *s, in
     for (n = 0; failed; n++) {
         gx_result result;
         fail_from(own, n, 0);
-        result = gxb_complex_survey(cx, pinned, &r);
+        result = gxb_complex_survey(cx, pinned, NULL, &r);
         failed = own->failed;
         failures += result != GX_OK;
         assert_that(result == GX_OK || (failed && result == GX_ERROR_MEMORY && r.memory == NULL), "allocation %lu: %d",
@@ -1820,7 +1820,7 @@ static void compact_and_compare(gxb_complex *cx, memory *own, const scene *s, in
     }
     never_fail(own);
     ck_assert_uint_ge(failures, 4);
-    ck_assert_int_eq(gxb_complex_survey(cx, pinned, &r), GX_OK);
+    ck_assert_int_eq(gxb_complex_survey(cx, pinned, NULL, &r), GX_OK);
     gxb_complex_commit(cx);
     for (i = 0; i < 3 * s->cut_count; i++)
         names[i] = in->points[i] < cx->store.point_count ? cx->store.points[in->points[i]].name : GXB_NONE;

@@ -110,6 +110,46 @@ START_TEST(model) {
 }
 END_TEST
 
+/* ---- Materials ---- */
+
+START_TEST(tumour) {
+    static const uint32_t triangles[36] = {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
+                                           1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7};
+    static const double x[24] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1};
+    double inner[24], volume = 0;
+    gx_surface surfaces[2];
+    gx_material materials[2];
+    gx_body *body = NULL;
+    gx_cut_report report;
+    gx_view view;
+    size_t i;
+    memset(surfaces, 0, sizeof surfaces);
+    memset(materials, 0, sizeof materials);
+    for (i = 0; i < 24; i++) inner[i] = 0.3 + 0.5 * x[i];
+    for (i = 0; i < 2; i++) {
+        surfaces[i].vertices = i ? inner : x;
+        surfaces[i].vertex_count = 8;
+        surfaces[i].triangles = triangles;
+        surfaces[i].triangle_count = 12;
+        materials[i].elastic.young = i ? 1e6 : 1e5;
+        materials[i].elastic.poisson = 0.4;
+        materials[i].density = i ? 2000 : 1000;
+    }
+    OK(body_with_tumour(&surfaces[0], &surfaces[1], materials, 4, &body, NULL));
+    view = view_of(body);
+    for (i = 0; i < view.cell_count; i++) volume += view.cell_material[i] == 1 ? view.cell_volume[i] : 0;
+    ck_assert(fabs(volume - 0.125) < 1e-13 && fabs(view.mass - 1125) < 1e-9);
+    ck_assert_uint_eq(view.fragment_count, 1);
+    advance(body, 2);
+    OK(release_tumour(body, &report));
+    view = view_of(body);
+    ck_assert_uint_eq(view.fragment_count, 2);
+    ck_assert(fabs(view.fragment_mass[1] - 250) < 1e-9 || fabs(view.fragment_mass[0] - 250) < 1e-9);
+    advance(body, 2);
+    gx_body_destroy(body);
+}
+END_TEST
+
 /* ---- Draw ---- */
 
 static unsigned char *buffers[4];
@@ -776,6 +816,7 @@ int main(void) {
     TCase *tc = tcase_create("snippets of docs/RECIPES.md");
     tcase_set_timeout(tc, 60);
     tcase_add_test(tc, model);
+    tcase_add_test(tc, tumour);
     tcase_add_test(tc, draw);
     tcase_add_test(tc, marks);
     tcase_add_test(tc, drag);

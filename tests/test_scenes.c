@@ -19,6 +19,7 @@ static oracle *cheese_truth(const cheese_surface *surfaces) {
     oracle_surface input[CHEESE_SURFACES];
     oracle_mesh mesh;
     int i;
+    memset(&mesh, 0, sizeof mesh);
     mesh.positions = cheese_positions;
     mesh.node_count = 4;
     mesh.elements = cheese_element;

@@ -559,6 +559,7 @@ static inline oracle *wl_oracle(const workload *w) {
     oracle_mesh mesh;
     oracle_surface surfaces[WL_SURFACES];
     size_t i;
+    memset(&mesh, 0, sizeof mesh);
     mesh.positions = w->positions;
     mesh.node_count = w->node_count;
     mesh.elements = w->elements;
@@ -591,7 +592,7 @@ static inline double wl_inside_volume(const double tet[4][3], const wl_surface *
     outside.vertices = &tet[0][0];
     for (t = 0; t < s->triangle_count; t++) {
         double cone[4][3];
-        oracle_mesh mesh = {NULL, 4, nodes, 1};
+        oracle_mesh mesh = {NULL, 4, nodes, 1, NULL};
         oracle *o;
         int k, sign;
         for (k = 0; k < 3; k++) memcpy(cone[k], s->vertices + 3 * s->triangles[3 * t + (size_t)k], sizeof cone[k]);

@@ -271,6 +271,7 @@ namespace Gxfem {
         public IntPtr texture;
         public IntPtr scope_slots;
         public UIntPtr scope_slot_count;
+        public uint material;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -313,6 +314,8 @@ namespace Gxfem {
         public IntPtr scope_cells;
         public UIntPtr scope_cell_count;
         public double sever_below;
+        public IntPtr release;
+        public UIntPtr release_count;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -368,6 +371,7 @@ namespace Gxfem {
         public IntPtr affine_rate;
         public IntPtr positions;
         public IntPtr elements;
+        public IntPtr cell_material;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -909,6 +913,7 @@ namespace Gxfem {
         public const uint GX_SURFACE_SHEET = 0;
         public const uint GX_SURFACE_SOLID = 1;
         public const uint GX_SURFACE_KEEP = 2;
+        public const uint GX_SURFACE_MATERIAL = 3;
         public const uint GX_FRAGMENT_UNCHANGED = 0;
         public const uint GX_FRAGMENT_TOUCHED = 1;
         public const uint GX_FRAGMENT_SPLIT = 2;
@@ -1271,7 +1276,7 @@ namespace Gxfem {
         public static extern uint gxb_complex_support(IntPtr complex, uint point, uint element);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
-        public static extern gx_result gxb_complex_survey(IntPtr complex, IntPtr pinned, IntPtr renumbering);
+        public static extern gx_result gxb_complex_survey(IntPtr complex, IntPtr pinned, IntPtr kinds, IntPtr renumbering);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern IntPtr gxb_complex_tree_node(IntPtr complex, uint node);

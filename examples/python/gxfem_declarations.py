@@ -46,6 +46,7 @@ GXS_STOP_ASLEEP = 4
 GX_SURFACE_SHEET = 0
 GX_SURFACE_SOLID = 1
 GX_SURFACE_KEEP = 2
+GX_SURFACE_MATERIAL = 3
 GX_FRAGMENT_UNCHANGED = 0
 GX_FRAGMENT_TOUCHED = 1
 GX_FRAGMENT_SPLIT = 2
@@ -560,6 +561,7 @@ gx_surface._fields_ = [
     ('texture', POINTER(c_float)),
     ('scope_slots', POINTER(c_uint32)),
     ('scope_slot_count', c_size_t),
+    ('material', c_uint32),
 ]
 
 gx_shape._fields_ = [
@@ -599,6 +601,8 @@ gx_cut_desc._fields_ = [
     ('scope_cells', POINTER(c_uint32)),
     ('scope_cell_count', c_size_t),
     ('sever_below', c_double),
+    ('release', POINTER(c_uint32)),
+    ('release_count', c_size_t),
 ]
 
 gx_cut_report._fields_ = [
@@ -652,6 +656,7 @@ gx_view._fields_ = [
     ('affine_rate', POINTER(c_double)),
     ('positions', POINTER(c_double)),
     ('elements', POINTER(c_uint32)),
+    ('cell_material', POINTER(c_uint32)),
 ]
 
 gx_motion._fields_ = [
@@ -1263,7 +1268,7 @@ FUNCTIONS = {
     'gxb_complex_shift': (c_int, [POINTER(gxb_complex)]),
     'gxb_complex_side': (c_int, [POINTER(gxb_complex), c_uint32, c_uint32]),
     'gxb_complex_support': (c_uint, [POINTER(gxb_complex), c_uint32, c_uint32]),
-    'gxb_complex_survey': (c_int, [POINTER(gxb_complex), POINTER(c_uint8), POINTER(gxb_renumbering)]),
+    'gxb_complex_survey': (c_int, [POINTER(gxb_complex), POINTER(c_uint8), POINTER(c_uint32), POINTER(gxb_renumbering)]),
     'gxb_complex_tree_node': (POINTER(gxb_node), [POINTER(gxb_complex), c_uint32]),
     'gxb_complex_turn': (c_int, [POINTER(gxb_complex), c_uint32, c_uint32, c_uint32, c_uint32]),
     'gxb_complex_winding': (c_int, [POINTER(gxb_complex), POINTER(c_uint32), c_size_t, POINTER(c_double), POINTER(c_uint32), c_size_t]),
