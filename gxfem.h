@@ -538,7 +538,7 @@ typedef gxs_step_report gx_step_report;
    Affine copies neither follow nor lead, but those of a fragment that moves as a point do. A point with affine copies
    is moved as the material at its position at rest is. forces act on displacements alone, anchor_forces on A too;
    targets leave A as it is, poses turn it. Thin sheets that are flung need two or three Newton iterations in steps of
-   games: one lags. Pairs are refused where copies are affine. A cut of such a body makes its model anew.
+   games: one lags. Pairs are refused where copies are affine.
    failure.index: a spring, point, plane, pair, anchor, region or copy. The fields "displacement" and "velocity" are
    those of gx_view. Errors: ARGUMENT, NOT_FINITE, INDEX, LIMIT, MEMORY, STALE (copies of another epoch), RANGE (a
    number is too large or too small; as for FLAT, an element if field is NULL), FLAT (an element, see gx_body_model),

@@ -654,6 +654,7 @@ END_TEST
 
 START_TEST(lost_copies_are_named) {
     changing c;
+    uint32_t *affine;
     start_changing(&c);
     /* A copy is lost that elements have. */
     c.change.copy_count--;
@@ -661,6 +662,19 @@ START_TEST(lost_copies_are_named) {
     c.change.copy_count++;
     expect_change(&c, GX_ERROR_SEQUENCE, "gxs_solver_set_model", SIZE_MAX); /* no model is set any more */
     expect_step(&c, GX_ERROR_SEQUENCE);
+    set_again(&c);
+    /* affine copies: hidden vectors that are not there, or an element's; the first ones come */
+    affine = (uint32_t *)malloc(c.model.copy_count * sizeof *affine);
+    memset(affine, 0xff, c.model.copy_count * sizeof *affine);
+    c.change.affine = affine;
+    affine[0] = (uint32_t)c.model.copy_count - 2;
+    expect_change(&c, GX_ERROR_INDEX, "affine", 0);
+    affine[0] = c.elements[0].copy[0] / 3 * 3;
+    expect_change(&c, GX_ERROR_ARGUMENT, affine[0] == 0 ? "affine" : "elements.copy", 0);
+    affine[0] = GXS_NOT_AFFINE;
+    expect_change(&c, GX_ERROR_LIMIT, NULL, SIZE_MAX);
+    free(affine);
+    c.change.affine = NULL;
     set_again(&c);
     /* two copies that are one */
     c.origins[7] = 6;
