@@ -2928,7 +2928,7 @@ START_TEST(bad_cuts) {
     EXPECT_NO_CUT(GX_ERROR_ARGUMENT, "sever_below", SIZE_MAX, SIZE_MAX);
     desc.sever_below = 0;
     s[1] = good;
-    s[1].kind = 3;
+    s[1].kind = GX_SURFACE_MATERIAL + 1;
     EXPECT_NO_CUT(GX_ERROR_ARGUMENT, "surfaces.kind", SIZE_MAX, 1);
     s[1] = good;
     s[1].vertices = NULL;
