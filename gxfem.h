@@ -578,7 +578,7 @@ typedef gxs_step_report gx_step_report;
    Affine copies neither follow nor lead, but those of a fragment that moves as a point do. A point with affine copies
    is moved as the material at its position at rest is. forces act on displacements alone, anchor_forces on A too;
    targets leave A as it is, poses turn it. Thin sheets that are flung need two or three Newton iterations in steps of
-   games: one lags. Pairs are refused where copies are affine. A cut of such a body makes its model anew.
+   games: one lags. Pairs are refused where copies are affine.
    failure.index: a spring, point, plane, pair, anchor, region or copy. The fields "displacement" and "velocity" are
    those of gx_view. Errors: ARGUMENT, NOT_FINITE, INDEX, LIMIT, MEMORY, STALE (copies of another epoch), RANGE (a
    number is too large or too small; as for FLAT, an element if field is NULL), FLAT (an element, see gx_body_model),
@@ -1173,8 +1173,9 @@ typedef struct gxp_snapshot {
 typedef struct gxp_hidden {
     gxp_words copies; /* affine copies of the model, ascending. Those of specks are none: a speck moves as a point */
     gxp_words first;  /* vectors of the model: gxs_model.affine; empty if copies is */
-    uint8_t *held;    /* vectors of the model */
-    uint8_t *plain;   /* by copy, while the model is made: 1: part of a speck */
+    gxp_words before, origins; /* while the model is changed: first of the model before; gxs_change.origins */
+    uint8_t *held;             /* vectors of the model */
+    uint8_t *plain;            /* by copy, while the model is made: 1: part of a speck */
     uint32_t held_capacity, plain_capacity;
     double *state; /* of a step: displacement, velocity, both a step ago, x 3 and by vector, then rest times */
     uint32_t state_capacity;
@@ -1861,7 +1862,8 @@ static const gxp_column gxp_lists[] = {
     GXP_WORDS(view.indices), GXP_WORDS(view.copy_fragment), GXP_WORDS(view.fragment_number),
     GXP_WORDS(view.splits), GXP_WORDS(view.split_cells), GXP_WORDS(view.split_parents),
     GXP_WORDS(model.changed), GXP_WORDS(model.thin),
-    GXP_WORDS(hidden.copies), GXP_WORDS(hidden.first), GXP_LIST(hidden.held, hidden.held_capacity, 1),
+    GXP_WORDS(hidden.copies), GXP_WORDS(hidden.first), GXP_WORDS(hidden.before), GXP_WORDS(hidden.origins),
+    GXP_LIST(hidden.held, hidden.held_capacity, 1),
     GXP_LIST(hidden.plain, hidden.plain_capacity, 1),
     GXP_LIST(hidden.state, hidden.state_capacity, sizeof(double)), GXP_WORDS(hidden.span_copies),
     GXP_LIST(hidden.span_weights, hidden.span_capacity, sizeof(double)),
@@ -6161,13 +6163,12 @@ static void gxp_touch_copies(gx_body *body, const gxp_cell *cell) {
 }
 
 /* Notes the elements of the model that have changed. Without memory for that, the model is made whole; so it is where
-   copies are affine, and where the body was saved, loaded, cloned or restored since its last step, so that both bodies
-   then have the same model. */
+   the body was saved, loaded, cloned or restored since its last step, so that both bodies then have the same model. */
 static void gxp_note_changed(gx_body *body) {
     const gxp_words *changed = &body->undo.cells.rows, *made = &body->scratch.new_cells;
     gx_result result = GX_OK;
     uint32_t i;
-    if (body->copies.bends || body->model.resumed != 0) body->model.state = GXP_MODEL_STALE;
+    if (body->model.resumed != 0) body->model.state = GXP_MODEL_STALE;
     if (body->model.state == GXP_MODEL_STALE) return;
     for (i = 0; i < changed->count && result == GX_OK; i++)
         result = gxp_push(body, &body->model.changed, body->cells.data[changed->data[i]].element);
@@ -8910,27 +8911,77 @@ static gx_result gxp_make_model(gx_body *body, gxs_model *model, gx_failure *fai
     return GX_OK;
 }
 
+/* Lists the elements around copies that are affine in the model and were not, or the other way round. before: by copy
+   of the model before, its first hidden vector */
+static gx_result gxp_list_bent(gx_body *body, const gxp_words *before) {
+    gx_result result = GX_OK;
+    uint32_t i;
+    for (i = 0; i < body->copies.count && result == GX_OK; i++) {
+        gxp_around around = gxp_around_copy(body, i);
+        if ((body->hidden.first.data[i] == GXS_NOT_AFFINE) ==
+            (before->data[body->copies.before[i] >> 1] == GXS_NOT_AFFINE))
+            continue;
+        while (result == GX_OK && gxp_next_around(body, &around))
+            result = gxp_push(body, &body->model.changed, body->cells.data[around.cell].element);
+    }
+    gxp_sort_unique(&body->model.changed);
+    return result;
+}
+
+/* Origins of copies and hidden vectors. before: as in gxp_list_bent */
+static gx_result gxp_vector_origins(gx_body *body, const gxp_words *before, gxp_words *origins) {
+    const gxp_words *copies = &body->hidden.copies;
+    gx_result result = gxp_start_words(body, origins, gxp_vector_count(body));
+    uint32_t i, k;
+    if (result != GX_OK) return result;
+    memcpy(origins->data, body->copies.before, body->copies.count * sizeof *origins->data);
+    for (i = 0; i < copies->count; i++) {
+        const uint32_t origin = body->copies.before[copies->data[i]], first = before->data[origin >> 1];
+        for (k = 0; k < 3; k++)
+            origins->data[body->copies.count + 3 * i + k] =
+                first == GXS_NOT_AFFINE ? origin | 1 : 2 * (first + k) | (origin & 1);
+    }
+    return GX_OK;
+}
+
+/* Affine copies, in place of those of the model before. before, origins: of the call */
+static gx_result gxp_change_affine(gx_body *body, gxp_words *before, gxp_words *origins) {
+    const gxp_words last = body->hidden.first;
+    gx_result result;
+    body->hidden.first = *before;
+    *before = last;
+    result = gxp_make_affine(body);
+    if (result != GX_OK || before->count == 0 || body->hidden.copies.count == 0) return result;
+    result = gxp_list_bent(body, before);
+    return result == GX_OK ? gxp_vector_origins(body, before, origins) : result;
+}
+
 /* Applies the changes to the solver's model. After LIMIT, or EMPTY if no part is left, the model must be set whole, and
    nothing has failed. After MEMORY it must be set whole too, but the call has failed. */
 static gx_result gxp_change_model(gx_body *body, gx_failure *failure) {
     gxp_model *model = &body->model;
+    gxp_hidden *hidden = &body->hidden;
     size_t room = 0;
     uint32_t i, cell;
     gxs_change change;
     gx_result result;
     gxp_sort_unique(&model->changed);
+    result = gxp_list_thin(body, 0);
+    if (result == GX_OK) result = gxp_change_affine(body, &hidden->before, &hidden->origins);
     for (i = 0; i < model->changed.count; i++)
         for (cell = model->changed.data[i]; cell != GXP_NONE; cell = body->cells.data[cell].next) room++;
-    result = gxp_reserve(&body->config.allocator, &model->parts, sizeof *model->parts, 0, &model->part_capacity, room);
+    if (result == GX_OK)
+        result =
+            gxp_reserve(&body->config.allocator, &model->parts, sizeof *model->parts, 0, &model->part_capacity, room);
     model->part_count = 0;
     for (i = 0; i < model->changed.count && result == GX_OK; i++)
         result = gxp_add_parts(body, model->changed.data[i], failure);
-    if (result == GX_OK) result = gxp_list_thin(body, 0);
-    if (result == GX_OK) result = gxp_make_constraints(body);
+    if (result == GX_OK && (hidden->before.count > 0) != (hidden->copies.count > 0)) result = GX_ERROR_LIMIT;
     memset(&change, 0, sizeof change);
-    change.copy_count = body->copies.count;
-    change.origins = body->copies.before;
-    change.held = body->copies.held;
+    change.copy_count = gxp_vector_count(body);
+    change.origins = hidden->copies.count > 0 ? hidden->origins.data : body->copies.before;
+    change.held = hidden->copies.count > 0 ? hidden->held : body->copies.held;
+    change.affine = hidden->copies.count > 0 ? hidden->first.data : NULL;
     change.groups = model->changed.data;
     change.group_count = model->changed.count;
     change.elements = model->parts;
@@ -8997,6 +9048,8 @@ GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model, gx_failure *f
     if (model == NULL) return gxp_refuse(failure, "model");
     gxp_end(failure, GX_OK);
     result = gxp_update_held(body);
+    /* the solver's hidden vectors are no longer known */
+    if (body->copies.bends && body->model.state == GXP_MODEL_CHANGED) body->model.state = GXP_MODEL_STALE;
     if (result == GX_OK) result = gxp_make_model(body, model, failure);
     return gxp_close(failure, result);
 }

@@ -52,7 +52,8 @@ typedef struct settings {
     gx_blade_desc edge; /* of the blade */
     double dt, young, poisson, density, affine, gravity[3], stretch[3];
     uint32_t frames, newton, cut_at, cells;
-    int release, quiet, help;
+    int release, rests; /* --release, --static */
+    int quiet, help;
 } settings;
 
 /* What the blade did */
@@ -88,6 +89,7 @@ typedef struct run {
     uint32_t frames_written;
     int bar; /* a progress bar stands on stderr */
     double seconds_start, seconds_newton;
+    gx_step_report balance; /* of --static */
     gxio_error error;
 } run;
 
@@ -157,8 +159,9 @@ static const char usage[] =
     "  --blade-advance M   how far the edge goes before it cuts, m (0: by the mesh)\n"
     "  --blade-inside      the edge may start in the material: a stab\n"
     "  --frames N          steps and frames (60); 0: cut and report only\n"
+    "  --static            in place of frames: the balance of forces, as one frame\n"
     "  --dt S              time step, s (0.033)\n"
-    "  --newton N          Newton iterations per step (1)\n"
+    "  --newton N          Newton iterations per step (1; with --static at most, 1000)\n"
     "  --young P           Young's modulus, Pa (1e6)\n"
     "  --poisson X         Poisson's ratio (0.4)\n"
     "  --density D         kg/m3 (1000)\n"
@@ -294,6 +297,17 @@ static int take_argument(settings *set, option *options, int argc, char **argv, 
     return cause ? gxio_fail(error, name, 0, "'%s' %s", value, cause) : 1;
 }
 
+/* --static: one frame of up to 1000 iterations. What belongs to motion does not go with it. */
+static int settle_options(settings *set, option *options, gxio_error *error) {
+    static const char *const moving[4] = {"--frames", "--dt", "--cut-at", "--blade"};
+    int i;
+    for (i = 0; i < 4; i++)
+        if (find_option(options, moving[i])->seen) return misused(error, moving[i], "does not go with --static");
+    set->frames = 1;
+    if (!find_option(options, "--newton")->seen) set->newton = 1000;
+    return 1;
+}
+
 static int take_arguments(settings *set, int argc, char **argv, gxio_error *error) {
     option options[] = {{"--shape", TAKES_TEXT, &set->shape, 0},
                         {"--cells", TAKES_COUNT, &set->cells, 0},
@@ -310,6 +324,7 @@ static int take_arguments(settings *set, int argc, char **argv, gxio_error *erro
                         {"--blade-inside", TAKES_NOTHING, &set->edge.starts_inside, 0},
                         {"--frames", TAKES_COUNT, &set->frames, 0},
                         {"--dt", TAKES_NUMBER, &set->dt, 0},
+                        {"--static", TAKES_NOTHING, &set->rests, 0},
                         {"--newton", TAKES_COUNT, &set->newton, 0},
                         {"--young", TAKES_NUMBER, &set->young, 0},
                         {"--poisson", TAKES_NUMBER, &set->poisson, 0},
@@ -333,7 +348,7 @@ static int take_arguments(settings *set, int argc, char **argv, gxio_error *erro
     for (o = options; o->name && !set->blade; o++)
         if (o->seen && strncmp(o->name, "--blade-", strlen("--blade-")) == 0)
             return misused(error, o->name, "needs a --blade");
-    return 1;
+    return set->rests ? settle_options(set, options, error) : 1;
 }
 
 static int is_format(const settings *set, const char *format) { return strcmp(set->format, format) == 0; }
@@ -845,6 +860,12 @@ static int refuse_step(run *r, uint32_t frame, const gx_failure *failure) {
     return end_early(r, name, 0, cause.text);
 }
 
+enum { STATIC_CG = 20000 };                  /* iterations in each of Newton's, at most */
+static const double static_tolerance = 1e-8; /* residual of a balance */
+static const double static_accepted = 1e-6;  /* where rounding or --newton ends the search above that */
+static const double static_cg_tolerance = 1e-4;
+
+/* The balance of forces is searched for until the residual is that of rounding; a coarse one is no balance. */
 static int step(run *r, uint32_t frame) {
     gx_step_desc desc;
     gx_step_report report;
@@ -853,9 +874,20 @@ static int step(run *r, uint32_t frame) {
     desc.dt = r->set.dt;
     memcpy(desc.gravity, r->set.gravity, sizeof desc.gravity);
     desc.newton_iterations = r->set.newton;
+    if (r->set.rests) {
+        desc.integrator = GXS_STATIC;
+        desc.dt = 0.0;
+        desc.newton_tolerance = static_tolerance;
+        desc.cg_iterations = STATIC_CG;
+        desc.cg_tolerance = static_cg_tolerance;
+    }
     if (gx_body_step(r->body, &desc, &report, &failure) != GX_OK) return refuse_step(r, frame, &failure);
     r->seconds_newton += report.seconds;
-    return EXIT_DONE;
+    r->balance = report;
+    if (!r->set.rests || report.residual <= static_accepted) return EXIT_DONE;
+    gxio_fail(&r->error, "--static", 0, "no balance after %lu iterations: a residual of %.1e is left",
+              (unsigned long)report.newton_iterations, report.residual);
+    return complain(r, EXIT_FAILED);
 }
 
 /* One frame: cut if it is time to, step, move the blade, write. */
@@ -957,7 +989,36 @@ static void print_materials(FILE *stream, const run *r) {
     fprintf(stream, "],\n");
 }
 
-static void print_report(FILE *stream, run *r, uint64_t hash, double *cell_volumes, double *fragment_volumes) {
+static size_t count_affine(const gx_view *view) {
+    size_t i, count = 0;
+    for (i = 0; view->copy_affine && i < view->copy_count; i++) count += view->copy_affine[i];
+    return count;
+}
+
+/* Displacements and, of affine copies, motions */
+static size_t count_unknowns(const gx_view *view) { return 3 * view->copy_count + 9 * count_affine(view); }
+
+/* The largest displacement of a vertex of the skin, m */
+static gx_result find_tip(run *r, double *tip, gx_failure *failure) {
+    gx_skin skin;
+    gx_result result = gx_body_skin(r->body, NULL, &skin, failure);
+    double *x = NULL;
+    size_t i;
+    *tip = 0.0;
+    if (result == GX_OK) x = (double *)gxio_array(skin.vertex_count, 3 * sizeof(double));
+    if (result == GX_OK && !x) return failure->result = GX_ERROR_MEMORY;
+    if (result == GX_OK) result = gx_body_skin_positions(r->body, x, failure);
+    for (i = 0; result == GX_OK && i < 3 * skin.vertex_count; i += 3) {
+        const double *rest = skin.vertex_rest + i;
+        const double u[3] = {x[i] - rest[0], x[i + 1] - rest[1], x[i + 2] - rest[2]};
+        *tip = fmax(*tip, sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]));
+    }
+    free(x);
+    return result;
+}
+
+static void print_report(FILE *stream, run *r, uint64_t hash, double tip, double *cell_volumes,
+                         double *fragment_volumes) {
     const gx_view *view = &r->view;
     fprintf(stream, "{\n  \"elements\": %lu,\n  \"nodes\": %lu,\n  \"cells\": %lu,\n",
             (unsigned long)view->element_count, (unsigned long)view->node_count, (unsigned long)view->cell_count);
@@ -966,7 +1027,12 @@ static void print_report(FILE *stream, run *r, uint64_t hash, double *cell_volum
             (unsigned long)view->fragment_count);
     print_volumes(stream, "fragment_volumes", fragment_volumes, view->fragment_count);
     fprintf(stream, ",\n  \"volume\": %.17g,\n  \"dofs\": %lu,\n  \"mass\": %.17g,\n", view->volume,
-            3 * (unsigned long)view->copy_count, view->mass);
+            (unsigned long)count_unknowns(view), view->mass);
+    fprintf(stream, "  \"affine_copies\": %lu,\n  \"tip\": %.17g,\n", (unsigned long)count_affine(view), tip);
+    if (r->set.rests)
+        fprintf(stream, "  \"newton_iterations\": %lu,\n  \"cg_iterations\": %lu,\n  \"residual\": %.17g,\n",
+                (unsigned long)r->balance.newton_iterations, (unsigned long)r->balance.cg_iterations,
+                r->balance.residual);
     fprintf(stream, "  \"topology_hash\": \"%08lx%08lx\",\n  \"min_link_ratio\": %.17g,\n", (unsigned long)(hash >> 32),
             (unsigned long)(hash & 0xffffffffu), smallest_link(r));
     fprintf(stream,
@@ -993,15 +1059,16 @@ static int report(run *r) {
     double *cells = copy_doubles(r->view.cell_volume, r->view.cell_count);
     double *fragments = copy_doubles(r->view.fragment_volume, r->view.fragment_count);
     gxio_writer writer;
+    double tip = 0.0;
     int code = EXIT_DONE;
-    if (failure.result != GX_OK)
+    if (failure.result != GX_OK || find_tip(r, &tip, &failure) != GX_OK)
         code = fail(r, "report", &failure);
     else if (!cells || !fragments)
         code = lack_memory(r, "report");
     else if (!gxio_writer_open(&writer, r->set.report, &r->error))
         code = complain(r, EXIT_MISUSED);
     else {
-        print_report(writer.stream, r, hash, cells, fragments);
+        print_report(writer.stream, r, hash, tip, cells, fragments);
         if (!gxio_writer_close(&writer, 1, &r->error)) code = complain(r, EXIT_MISUSED);
     }
     free(cells);
@@ -1012,8 +1079,13 @@ static int report(run *r) {
 static void summarise_frames(const run *r) {
     char first[32], last[32];
     if (!r->set.frames) return;
-    printf("steps     %lu of %g s, %.3g ms each\n", (unsigned long)r->set.frames, r->set.dt,
-           1e3 * r->seconds_newton / r->set.frames);
+    if (r->set.rests)
+        printf("balance   %lu iterations, %lu of conjugate gradients, %.3g s; residual %.1e\n",
+               (unsigned long)r->balance.newton_iterations, (unsigned long)r->balance.cg_iterations, r->seconds_newton,
+               r->balance.residual);
+    else
+        printf("steps     %lu of %g s, %.3g ms each\n", (unsigned long)r->set.frames, r->set.dt,
+               1e3 * r->seconds_newton / r->set.frames);
     if (is_format(&r->set, "html")) {
         printf("wrote     %s; open it in a browser\n", r->set.out);
         return;
@@ -1043,7 +1115,12 @@ static void summarise(const run *r) {
     if (r->blade) summarise_blade(&r->strokes);
     printf("body      %lu cells, %lu fragments, volume %.15g m3, mass %.6g kg\n", (unsigned long)view->cell_count,
            (unsigned long)view->fragment_count, view->volume, view->mass);
-    printf("unknowns  %lu copies x 3 = %lu\n", (unsigned long)view->copy_count, 3 * (unsigned long)view->copy_count);
+    if (count_affine(view))
+        printf("unknowns  %lu copies x 3 + %lu affine ones x 9 = %lu\n", (unsigned long)view->copy_count,
+               (unsigned long)count_affine(view), (unsigned long)count_unknowns(view));
+    else
+        printf("unknowns  %lu copies x 3 = %lu\n", (unsigned long)view->copy_count,
+               (unsigned long)count_unknowns(view));
     if (r->has_cut)
         printf("cut time  %.3g ms: arrangement %.3g, enrichment %.3g, integrals %.3g\n",
                1e3 * (r->cut.seconds_arrangement + r->cut.seconds_enrichment + r->cut.seconds_integrals),

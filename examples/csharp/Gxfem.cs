@@ -112,6 +112,7 @@ namespace Gxfem {
         public UIntPtr element_count;
         public IntPtr constraints;
         public UIntPtr constraint_count;
+        public IntPtr affine;
         public ulong epoch;
     }
 

@@ -453,6 +453,7 @@ gxs_change._fields_ = [
     ('element_count', c_size_t),
     ('constraints', POINTER(gxs_constraint)),
     ('constraint_count', c_size_t),
+    ('affine', POINTER(c_uint32)),
     ('epoch', c_uint64),
 ]
 
