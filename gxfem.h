@@ -1419,6 +1419,7 @@ typedef struct gxp_relation {
     uint8_t ahead;    /* 1: the front advances there */
     uint8_t strays;   /* 1: the edge has left its cut through the side */
     uint8_t doubtful; /* 1: ahead only because the cut's sheet is in the air there */
+    uint8_t beside;   /* 1: in the air, ahead only because it is behind and off the cut's sheet */
 } gxp_relation;
 
 /* A part of a segment of the edge that is in a cell */
@@ -13895,14 +13896,55 @@ static gx_result gxp_place_in_air(gx_blade *blade, uint32_t layer, const gxp_sig
     return result;
 }
 
-/* How a layer sees a place in space: v->position is given. */
-static gx_result gxp_see_place(gx_blade *blade, uint32_t layer, gxp_front_vertex *v) {
+/* The material point of what a search has found, by the map of its cell */
+static void gxp_map_sight(const gx_blade *blade, const gxp_sight *sight, double rest[3]) {
+    static const double origin[3] = {0, 0, 0};
+    double corners[4][3];
+    gxp_cell_corners(blade->body, &blade->body->cells.data[blade->near.cells[sight->index].cell], 0, origin, corners);
+    gxp_weigh(corners, sight->weights, rest);
+}
+
+/* A place in the material that is farther from the one before it there than this, in distances in space, may be in
+   other cells of its layer too. */
+#define GXP_LEAP 2.0
+
+/* Where a layer lies over itself, a place is in several of its cells. The one whose material is nearest to that of the
+   place before it is meant: the edge goes on in the same part of the layer until it leaves that. */
+static gx_result gxp_seek_beside(gx_blade *blade, uint32_t layer, const gxp_front_vertex *v,
+                                 const gxp_front_vertex *beside, gxp_sight *sight) {
+    const gxp_vicinity *near = &blade->near;
+    const double reach = GXP_LEAP * sqrt(gxp_square_distance(v->position, beside->position));
+    double rest[3], least;
+    uint32_t i;
+    gx_result result = GX_OK;
+    gxp_map_sight(blade, sight, rest);
+    least = gxp_square_distance(rest, beside->rest);
+    for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++) {
+        gxp_sight other;
+        double square;
+        if (least <= reach * reach) break;
+        other.index = GXP_NONE;
+        result = gxp_seek_inside(blade, GXP_SECOND(near->order.data[i]), v->position, &other);
+        if (result != GX_OK || other.index == GXP_NONE) continue;
+        gxp_map_sight(blade, &other, rest);
+        square = gxp_square_distance(rest, beside->rest);
+        if (square >= least) continue;
+        least = square;
+        *sight = other;
+    }
+    return result;
+}
+
+/* How a layer sees a place in space: v->position is given. beside: a place next to it on the edge, or NULL */
+static gx_result gxp_see_place(gx_blade *blade, uint32_t layer, const gxp_front_vertex *beside, gxp_front_vertex *v) {
     static const double origin[3] = {0, 0, 0};
     const gxp_vicinity *near = &blade->near;
     const gxp_close_cell *c;
     double corners[4][3];
     gxp_sight sight;
-    const gx_result result = gxp_seek(blade, layer, v->position, &sight);
+    gx_result result = gxp_seek(blade, layer, v->position, &sight);
+    if (result == GX_OK && beside != NULL && sight.index != GXP_NONE && !(sight.square > 0))
+        result = gxp_seek_beside(blade, layer, v, beside, &sight);
     if (result != GX_OK) return result;
     c = &near->cells[sight.index != GXP_NONE ? sight.index
                                              : GXP_SECOND(near->order.data[near->layer_start.data[layer]])];
@@ -13925,13 +13967,13 @@ static gx_result gxp_see_place(gx_blade *blade, uint32_t layer, gxp_front_vertex
     return v->distance > 0 ? gxp_place_in_air(blade, layer, &sight, corners, v) : GX_OK;
 }
 
-/* How a layer sees a place on the edge */
+/* How a layer sees a place on the edge. beside: the place before it, or NULL */
 static gx_result gxp_see(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count, double along,
-                         gxp_front_vertex *v) {
+                         const gxp_front_vertex *beside, gxp_front_vertex *v) {
     memset(v, 0, sizeof *v);
     v->along = along;
     gxp_edge_position(edge, count, along, v->position);
-    return gxp_see_place(blade, layer, v);
+    return gxp_see_place(blade, layer, beside, v);
 }
 
 /* Are there places between two that must be seen? In the air the line between them must stay out of the layer: they
@@ -13952,7 +13994,7 @@ static gx_result gxp_refine(gx_blade *blade, uint32_t layer, const double *edge,
     const double along = 0.5 * a->along + 0.5 * b->along;
     gx_result result;
     if (!gxp_must_refine(blade, a, b) || !(along > a->along && along < b->along)) return GX_OK;
-    result = gxp_see(blade, layer, edge, count, along, &middle);
+    result = gxp_see(blade, layer, edge, count, along, a, &middle);
     if (result == GX_OK) result = gxp_refine(blade, layer, edge, count, a, &middle);
     if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->seen, &middle);
     return result == GX_OK ? gxp_refine(blade, layer, edge, count, &middle, b) : result;
@@ -14017,7 +14059,7 @@ static gx_result gxp_push_cap(gx_blade *blade, uint32_t layer, const double *edg
     gxp_front_vertex v = *far;
     gx_result result = GX_OK;
     if (reach < length)
-        result = gxp_see(blade, layer, edge, count, near->along + reach / length * (far->along - near->along), &v);
+        result = gxp_see(blade, layer, edge, count, near->along + reach / length * (far->along - near->along), near, &v);
     return result == GX_OK ? gxp_push_vertex(blade->body, &blade->samples, &v) : result;
 }
 
@@ -14055,10 +14097,10 @@ static gx_result gxp_see_edge(gx_blade *blade, uint32_t layer, const double *edg
     gx_result result;
     blade->last_sight = GXP_NONE;
     blade->seen.count = 0;
-    result = gxp_see(blade, layer, edge, count, 0, &before);
+    result = gxp_see(blade, layer, edge, count, 0, NULL, &before);
     if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->seen, &before);
     for (i = 1; i < count && result == GX_OK; i++) {
-        result = gxp_see(blade, layer, edge, count, (double)i, &v);
+        result = gxp_see(blade, layer, edge, count, (double)i, &before, &v);
         if (result == GX_OK) result = gxp_refine(blade, layer, edge, count, &before, &v);
         if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->seen, &v);
         before = v;
@@ -14075,6 +14117,8 @@ static gx_result gxp_see_edge(gx_blade *blade, uint32_t layer, const double *edg
    from its sheet, else the edge has left the cut through its side. */
 #define GXP_LEAST_ADVANCE 0.02
 #define GXP_CUT_WIDTH     0.15
+/* A vertex that has come less far is the old front's. */
+#define GXP_STAYED 1e-9
 /* A material point on the layer's surface that is no farther from the sheet is on a wall of the cut. */
 #define GXP_ON_SHEET 1e-6
 /* So far on the other side of the sheet does a track begin, in element sizes. */
@@ -14102,10 +14146,11 @@ static void gxp_near_front(const gxp_front_list *front, const double rest[3], gx
     r->distance = sqrt(gxp_square_distance(rest, nearest));
 }
 
-/* The point of a sheet nearest to a material point. Returns the distance. */
-static double gxp_near_sheet(const gxp_points *sheet, const double rest[3], double nearest[3]) {
+/* The triangle of a sheet nearest to a material point: the index of its first corner. Returns the distance. */
+static double gxp_near_sheet_part(const gxp_points *sheet, const double rest[3], double nearest[3], uint32_t *first) {
     double best = HUGE_VAL;
     uint32_t i;
+    *first = 0;
     for (i = 0; i + 2 < sheet->count; i += 3) {
         const double *x = sheet->data + 3 * (size_t)i;
         double at[3], square = 0;
@@ -14119,9 +14164,16 @@ static double gxp_near_sheet(const gxp_points *sheet, const double rest[3], doub
         square = gxp_onto_triangle(rest, x, x + 3, x + 6, at);
         if (square >= best) continue;
         best = square;
+        *first = i;
         memcpy(nearest, at, sizeof at);
     }
     return sqrt(best);
+}
+
+/* The point of a sheet nearest to a material point. Returns the distance. */
+static double gxp_near_sheet(const gxp_points *sheet, const double rest[3], double nearest[3]) {
+    uint32_t first;
+    return gxp_near_sheet_part(sheet, rest, nearest, &first);
 }
 
 /* A place behind the front: is it in the cut, has it left that through the side, or is it beside the front, ahead of
@@ -14163,7 +14215,9 @@ static int gxp_front_direction(const gxp_front_list *front, const gxp_relation *
 static void gxp_judge_air(const gx_blade *blade, const gxp_front_vertex *v, gxp_relation *r) {
     double nearest[3];
     const double distance = gxp_near_sheet(&blade->sheet, v->rest, nearest);
-    r->ahead = distance > GXP_CUT_WIDTH * v->size && distance > 2 * blade->tolerance;
+    const int off = distance > GXP_CUT_WIDTH * v->size && distance > 2 * blade->tolerance;
+    r->beside = off && !r->ahead;
+    r->ahead = off != 0;
 }
 
 /* Is a place in the air next to this layer's own cut: between its walls, or before their rims? There the maps of the
@@ -14258,6 +14312,63 @@ static int gxp_is_beside_behind(const gxp_front_list *samples, const gxp_relatio
     return !r[i].doubtful && !r[i].ahead && !(samples->data[i].distance > 0);
 }
 
+/* Places in the air beside the sheet, next to one in the material that has left the cut through its side, have left it
+   with that one: not those between it and one that is ahead. step: 1, to the next places; -1, to those before */
+static void gxp_stray_together(const gxp_front_list *samples, gxp_relation *r, uint32_t index, int step) {
+    uint32_t i = index, end;
+    for (;;) {
+        const int is_end =
+            step > 0 ? i + 1 >= samples->count || samples->data[i].gap : i == 0 || samples->data[i - 1].gap;
+        if (is_end) break;
+        i = step > 0 ? i + 1 : i - 1;
+        if (r[i].beside) continue;
+        if (r[i].ahead) return;
+        break;
+    }
+    for (end = i, i = index; i != end;) {
+        i = step > 0 ? i + 1 : i - 1;
+        if (r[i].beside) r[i].ahead = 0;
+    }
+}
+
+/* The way of a place from the front, of length 1. Returns 0 if it has none. */
+static int gxp_way_from_front(const gxp_front_list *front, const gxp_front_vertex *v, double way[3]) {
+    gxp_relation r;
+    double nearest[3];
+    int k;
+    gxp_near_front(front, v->rest, &r, nearest);
+    for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
+    return gxp_unit(way, way);
+}
+
+/* Ways whose directions differ by less than this cosine says are one. */
+#define GXP_SAME_WAY 0.8
+
+/* A place that seems to have left the cut through its side, next to one ahead that has come the same way, is ahead:
+   where the edge turns, only the front's direction is another. */
+static void gxp_come_along(gxp_relation *r, const gxp_front_list *samples, const gxp_front_list *front, uint32_t from,
+                           uint32_t to) {
+    double way[3], other[3];
+    if (samples->data[from < to ? from : to].gap) return;
+    if (!r[to].strays || !r[from].ahead || r[from].beside) return;
+    if (!gxp_way_from_front(front, &samples->data[from], other)) return;
+    if (!gxp_way_from_front(front, &samples->data[to], way) || !(gxp_dot(way, other) > GXP_SAME_WAY)) return;
+    r[to].ahead = 1;
+    r[to].strays = 0;
+}
+
+/* Judges places by those next to them. */
+static void gxp_judge_together(const gxp_front_list *samples, const gxp_front_list *front, gxp_relation *r) {
+    uint32_t i;
+    for (i = 0; i + 1 < samples->count; i++) gxp_come_along(r, samples, front, i, i + 1);
+    for (i = samples->count; i > 1; i--) gxp_come_along(r, samples, front, i - 1, i - 2);
+    for (i = 0; i < samples->count; i++) {
+        if (!r[i].strays) continue;
+        gxp_stray_together(samples, r, i, -1);
+        gxp_stray_together(samples, r, i, 1);
+    }
+}
+
 /* Lists in blade.advanced the front as far as the samples have come: these where they are ahead, else its own
    vertices. */
 static gx_result gxp_advance_front(gx_blade *blade, gxp_advance *move) {
@@ -14278,6 +14389,7 @@ static gx_result gxp_advance_front(gx_blade *blade, gxp_advance *move) {
         result = gxp_relate(blade, v, &r[i]);
         if (in_air) r[i].ahead = !move->is_back && r[i].distance > 0 && !gxp_is_in_open_cut(blade, v);
     }
+    if (result == GX_OK && !in_air) gxp_judge_together(samples, &blade->front, r);
     for (i = 0; i < samples->count && result == GX_OK; i++) {
         const gxp_front_vertex *v = &samples->data[i];
         if (r[i].doubtful && gxp_is_beside_behind(samples, r, i)) r[i].ahead = 0;
@@ -14386,10 +14498,30 @@ static double gxp_bend(const gx_blade *blade) {
 
 static int gxp_has_direction(const gxp_front_vertex *v) { return gxp_dot(v->ahead, v->ahead) > 0; }
 
-/* The direction in which each vertex of the new front has come from the old one. Those that have not come take the
-   old front's, or their neighbours'. */
-static void gxp_set_directions(const gxp_front_list *from, gxp_front_list *to) {
+/* The direction of a front at the point of it that is nearest to a vertex. Returns 0 if it has none there. */
+static int gxp_old_direction(const gxp_front_list *from, const gxp_relation *r, double ahead[3]) {
+    const gxp_front_vertex *v = &from->data[r->segment];
+    int k;
+    if (!gxp_has_direction(&v[0]) && !gxp_has_direction(&v[1])) return 0;
+    for (k = 0; k < 3; k++) ahead[k] = (1 - r->share) * v[0].ahead[k] + r->share * v[1].ahead[k];
+    return 1;
+}
+
+/* Vertices without a direction take that of the nearest one that has. */
+static void gxp_spread_directions(gxp_front_list *to) {
     uint32_t i, off;
+    for (i = 0; i < to->count; i++)
+        for (off = 1; off < to->count && !gxp_has_direction(&to->data[i]); off++) {
+            if (i >= off) memcpy(to->data[i].ahead, to->data[i - off].ahead, sizeof to->data[i].ahead);
+            if (!gxp_has_direction(&to->data[i]) && i + off < to->count)
+                memcpy(to->data[i].ahead, to->data[i + off].ahead, sizeof to->data[i].ahead);
+        }
+}
+
+/* The direction in which each vertex of the new front has come from the old one. Those that have stayed keep theirs.
+   Those that have hardly come take their neighbours', which have: where the edge turns, the old front's is another. */
+static void gxp_set_directions(const gxp_front_list *from, gxp_front_list *to) {
+    uint32_t i, come = 0;
     int k;
     for (i = 0; i < to->count; i++) {
         gxp_front_vertex *v = &to->data[i];
@@ -14397,17 +14529,19 @@ static void gxp_set_directions(const gxp_front_list *from, gxp_front_list *to) {
         double nearest[3], way[3];
         gxp_near_front(from, v->rest, &r, nearest);
         for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
-        if (gxp_unit(way, v->ahead) && r.distance > GXP_LEAST_ADVANCE * v->size) continue;
-        if (!gxp_has_direction(&from->data[r.segment]) && !gxp_has_direction(&from->data[r.segment + 1])) continue;
-        for (k = 0; k < 3; k++)
-            v->ahead[k] = (1 - r.share) * from->data[r.segment].ahead[k] + r.share * from->data[r.segment + 1].ahead[k];
+        if (gxp_unit(way, way) && r.distance > GXP_LEAST_ADVANCE * v->size) {
+            memcpy(v->ahead, way, sizeof way);
+            come++;
+        } else if (r.distance > GXP_STAYED * v->size || !gxp_old_direction(from, &r, v->ahead))
+            v->ahead[0] = v->ahead[1] = v->ahead[2] = 0;
     }
-    for (i = 0; i < to->count; i++)
-        for (off = 1; off < to->count && !gxp_has_direction(&to->data[i]); off++) {
-            if (i >= off) memcpy(to->data[i].ahead, to->data[i - off].ahead, sizeof to->data[i].ahead);
-            if (!gxp_has_direction(&to->data[i]) && i + off < to->count)
-                memcpy(to->data[i].ahead, to->data[i + off].ahead, sizeof to->data[i].ahead);
-        }
+    for (i = 0; i < to->count && come == 0; i++) {
+        gxp_relation r;
+        double nearest[3];
+        gxp_near_front(from, to->data[i].rest, &r, nearest);
+        gxp_old_direction(from, &r, to->data[i].ahead);
+    }
+    gxp_spread_directions(to);
 }
 
 /* Cuts the strip up to a new front, which becomes the layer's. */
@@ -14454,23 +14588,38 @@ static gx_result gxp_begin_outside(gx_blade *blade, gxp_advance *move, gx_blade_
     return gxp_copy_front(blade->body, &blade->front, &blade->samples);
 }
 
-/* The place on the sheet at which the edge has left it: the nearest one, but for the rim of the sheet, which a track
-   would miss. way: from there to where the edge is. */
-static void gxp_leave_sheet(const gxp_front_list *front, const gxp_points *sheet, const double rest[3], double inward,
-                            double nearest[3], double way[3]) {
-    double direction[3], at[3], off;
-    gxp_relation r;
-    int k;
-    gxp_near_sheet(sheet, rest, nearest);
-    gxp_near_front(front, nearest, &r, at);
-    if (r.distance < inward && gxp_front_direction(front, &r, direction) && gxp_unit(direction, direction)) {
-        for (k = 0; k < 3; k++) at[k] -= inward * direction[k];
-        gxp_near_sheet(sheet, at, nearest);
-        for (k = 0; k < 3; k++) way[k] = rest[k] - nearest[k];
-        off = gxp_dot(way, direction);
-        for (k = 0; k < 3; k++) way[k] -= off * direction[k];
-        return;
+/* Moves a point of a sheet away from its rims, if it is next to one: to where the sheet goes on on all sides. */
+static void gxp_move_inward(const gxp_points *sheet, uint32_t first, double inward, double nearest[3]) {
+    static const double turns[8][2] = {{1, 0},  {0.7071, 0.7071},   {0, 1},  {-0.7071, 0.7071},
+                                       {-1, 0}, {-0.7071, -0.7071}, {0, -1}, {0.7071, -0.7071}};
+    const double *x = sheet->data + 3 * (size_t)first;
+    double u[3], v[3], normal[3], outward[3] = {0, 0, 0}, place[3], at[3];
+    int i, k;
+    for (k = 0; k < 3; k++) {
+        u[k] = x[3 + k] - x[k];
+        v[k] = x[6 + k] - x[k];
     }
+    gxp_cross(normal, u, v);
+    if (!gxp_unit(normal, normal) || !gxp_unit(u, u)) return;
+    gxp_cross(v, normal, u);
+    for (i = 0; i < 8; i++) {
+        for (k = 0; k < 3; k++) place[k] = nearest[k] + inward * (turns[i][0] * u[k] + turns[i][1] * v[k]);
+        if (gxp_near_sheet(sheet, place, at) <= 0.5 * inward) continue;
+        for (k = 0; k < 3; k++) outward[k] += turns[i][0] * u[k] + turns[i][1] * v[k];
+    }
+    if (gxp_dot(outward, outward) < 0.25 || !gxp_unit(outward, outward)) return;
+    for (k = 0; k < 3; k++) place[k] = nearest[k] - inward * outward[k];
+    gxp_near_sheet(sheet, place, nearest);
+}
+
+/* The place on the sheet at which the edge has left it: the nearest one, but for the rims of the sheet, which a track
+   would miss. way: from there to where the edge is. */
+static void gxp_leave_sheet(const gxp_points *sheet, const double rest[3], double inward, double nearest[3],
+                            double way[3]) {
+    uint32_t first;
+    int k;
+    gxp_near_sheet_part(sheet, rest, nearest, &first);
+    gxp_move_inward(sheet, first, inward, nearest);
     for (k = 0; k < 3; k++) way[k] = rest[k] - nearest[k];
 }
 
@@ -14480,7 +14629,7 @@ static void gxp_cross_sheet(const gx_blade *blade, const double side[3], gxp_fro
     double nearest[3], way[3];
     const double across = fmax(2 * blade->tolerance, GXP_CROSSING * v->size);
     int k;
-    gxp_leave_sheet(&blade->front, &blade->sheet, v->rest, across, nearest, way);
+    gxp_leave_sheet(&blade->sheet, v->rest, across, nearest, way);
     memcpy(v->ahead, side, sizeof v->ahead);
     if (gxp_dot(way, way) > 4 * blade->tolerance * blade->tolerance) gxp_unit(way, v->ahead);
     for (k = 0; k < 3; k++) v->rest[k] = nearest[k] - across * v->ahead[k];
@@ -14498,7 +14647,7 @@ static gx_result gxp_list_crossings(gx_blade *blade) {
         double nearest[3], way[3];
         const double distance = gxp_near_sheet(&blade->sheet, v->rest, nearest);
         if (v->distance > 0 || !(distance > most)) continue;
-        gxp_leave_sheet(&blade->front, &blade->sheet, v->rest, GXP_CROSSING * v->size, nearest, way);
+        gxp_leave_sheet(&blade->sheet, v->rest, GXP_CROSSING * v->size, nearest, way);
         if (gxp_unit(way, side)) most = distance;
     }
     blade->crossings.count = 0;
@@ -16537,7 +16686,7 @@ static gx_result gxp_push_tool_place(gx_blade *blade, uint32_t layer, const doub
     gx_result result;
     memset(&v, 0, sizeof v);
     memcpy(v.position, position, sizeof v.position);
-    result = gxp_see_place(blade, layer, &v);
+    result = gxp_see_place(blade, layer, NULL, &v);
     if (result == GX_OK && v.distance > 0) result = gxp_is_in_layer(blade, layer, v.extended, &inside);
     if (!inside) memcpy(v.rest, v.extended, sizeof v.rest);
     return result == GX_OK ? gxp_push_vertex(blade->body, &blade->samples, &v) : result;
