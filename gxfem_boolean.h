@@ -1188,20 +1188,20 @@ static GXBP_COLD void gxbp_num_increase(gxb_num *r, const gxb_num *a, int factor
     gxbp_num_copy(r, &sum, 1);
 }
 
-/* r = num / den with a relative error below 2^-180. Each of at most four steps adds the quotient of the remainder, 50
-   bits. A remainder below 2^-192 of num is left, so that r has at most 250 bits. num is overwritten, and becomes no
-   longer than the longer of num and den with one limb more. */
-static GXBP_COLD void gxbp_num_divide(gxb_num *r, gxb_num *num, const gxb_num *den) {
+/* r = num / den with a relative error below 2^(-45 steps), for at most 16 steps. Each adds the quotient of the
+   remainder, 50 bits. A remainder below 2^(-48 steps) of num is left, so that r has at most 48 steps + 58 bits. num is
+   overwritten, and becomes no longer than the longer of num and den with one limb more. */
+static GXBP_COLD void gxbp_num_divide(gxb_num *r, gxb_num *num, const gxb_num *den, int steps) {
     GXB_NUM(q);
     GXB_NUM(t);
     int step, first = 0, power;
     gxb_num_set(r, 0, 0);
-    for (step = 0; step < 4 && num->sign != 0; step++) {
+    for (step = 0; step < steps && num->sign != 0; step++) {
         gxb_num_set(&q, gxb_num_ratio(num, den), 0);
         if (q.sign == 0) return;
         (void)gxbp_num_mantissa(&q, &power);
         if (step == 0) first = power;
-        if (power < first - 192) return;
+        if (power < first - 48 * steps) return;
         gxbp_num_increase(r, &q, 1);
         gxb_num_mul(&t, &q, den);
         gxbp_num_increase(num, &t, -1);
@@ -5402,7 +5402,7 @@ GXFEM_API GXBP_RARE void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t 
         gxbp_distance(cx, point, gxbp_face_plane(cx, element, k), &num, &weight);
         gxbp_distance(cx, cx->elements[4 * element + k], gxbp_face_plane(cx, element, k), &height, NULL);
         gxb_num_mul(&den, &weight, &height);
-        gxbp_num_divide(&lambda[k], &num, &den);
+        gxbp_num_divide(&lambda[k], &num, &den, 4);
     }
 }
 
@@ -13802,9 +13802,12 @@ static GXBP_APART void gxbp_join_shells(gxb_boolean *b, uint32_t *parent, int32_
 
 /* >>volumes: volumes of shells ------------------------------------------------------------------------------------- */
 /* In: the output and its shells. Out: six times the volume of each shell, by sums of doubles with bounds, or from
-   coordinates of 180 bits where these bounds are too large. Touches the caller's arrays only. */
+   coordinates of 180 bits or 720 where these bounds are too large. Touches the caller's arrays only. */
 
-static GXBP_RARE void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *fine) {
+/* Coordinates have 45 bits for each step of division. */
+enum { GXBP_FINE_BITS = 45, GXBP_FINE_STEPS = 4, GXBP_FINER_STEPS = 16 };
+
+static GXBP_RARE void gxbp_fine_point(gxb_boolean *b, uint32_t point, int steps, gxbp_vec *fine) {
     gxbp_vec store, rest;
     const gxb_num *x = gxbp_exact_cpoint(&b->store, point, b->store.points[point].kind == GXB_EXPLICIT ? fine : &store);
     int k;
@@ -13813,20 +13816,22 @@ static GXBP_RARE void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *
     gxbp_vec_init(&rest);
     for (k = 0; k < 3; k++) {
         gxbp_num_copy(&rest.c[k], &x[k], 1);
-        gxbp_num_divide(&fine->c[k], &rest.c[k], &x[3]);
+        gxbp_num_divide(&fine->c[k], &rest.c[k], &x[3], steps);
     }
 }
 
-/* Coordinates of 180 bits of the result's vertices, each computed once. first: the first of a vertex's limbs, GXB_NONE
- * until they are computed */
+/* Coordinates of the result's vertices, each computed once for each number of steps. first: the first of a vertex's
+ * limbs. steps: 0 until they are computed */
 typedef struct gxbp_fine {
     uint32_t first;
+    int steps;
     gxb_num c[3];
 } gxbp_fine;
 typedef struct gxbp_fines {
     gxbp_fine *vertices;
     gxb_limb *limbs;
     uint32_t limb_count, limb_capacity;
+    int steps; /* at work */
 } gxbp_fines;
 
 static GXBP_RARE void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t vertex) {
@@ -13834,12 +13839,13 @@ static GXBP_RARE void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t
     gxbp_fine *v = &fines->vertices[vertex];
     gxbp_vec x;
     uint32_t k;
-    if (v->first != GXB_NONE) return;
-    gxbp_fine_point(b, point, &x);
+    if (v->steps == fines->steps) return;
+    gxbp_fine_point(b, point, fines->steps, &x);
     if (!gxbp_room(b, &fines->limbs, fines->limb_count, &fines->limb_capacity, sizeof *fines->limbs,
                    (size_t)x.c[0].n + x.c[1].n + x.c[2].n))
         return;
     v->first = fines->limb_count;
+    v->steps = fines->steps;
     for (k = 0; k < 3; k++) {
         v->c[k] = x.c[k];
         memcpy(fines->limbs + fines->limb_count, x.c[k].d, x.c[k].n * sizeof *fines->limbs);
@@ -13856,17 +13862,42 @@ static const gxb_num *gxbp_use_fine(gxbp_fines *fines, uint32_t vertex) {
     return v->c;
 }
 
-/* Six times the volume of a list of triangles, from coordinates of 180 bits. */
-static GXBP_RARE double gxbp_fine_volume(gxb_boolean *b, uint32_t t, const uint32_t *next, gxbp_fines *fines) {
-    GXB_NUM(total);
+/* |a| < 2^bits; |a| >= 2^(bits - GXB_LIMB_BITS) unless it is 0 */
+static int gxbp_num_bits(const gxb_num *a) { return (a->exp + (int)a->n) * GXB_LIMB_BITS; }
+
+/* total: the sum of det(p, q, r) over a list of triangles, six times what they enclose. Returns whether its relative
+   error is below 2^-53. Coordinates are below 2^size and have an error of 2^(size - 45 steps). A determinant is a sum
+   of six products of three, so it has an error of 2^5 times that of a coordinate times 2^(2 size). */
+static GXBP_RARE int gxbp_sum_fine(gxb_boolean *b, uint32_t t, const uint32_t *next, gxbp_fines *fines,
+                                   gxb_num *total) {
     GXB_NUM(term);
-    uint32_t k;
-    for (; t != GXB_NONE; t = next[t]) {
+    int size = -GXB_NUM_LIMBS * GXB_LIMB_BITS, bits;
+    uint32_t k, j, count = 0;
+    gxb_num_set(total, 0, 0);
+    for (; t != GXB_NONE; t = next[t], count++) {
         const uint32_t *v = b->out.triangles + 3 * (size_t)t;
         for (k = 0; k < 3; k++) gxbp_need_fine(b, fines, v[k]);
-        if (b->error != GX_OK) return 0;
+        if (b->error != GX_OK) return 1;
+        for (k = 0; k < 3; k++)
+            for (j = 0; j < 3; j++) {
+                bits = gxbp_num_bits(&fines->vertices[v[k]].c[j]);
+                if (fines->vertices[v[k]].c[j].sign != 0 && bits > size) size = bits;
+            }
         gxbp_num_det3(&term, gxbp_use_fine(fines, v[0]), gxbp_use_fine(fines, v[1]), gxbp_use_fine(fines, v[2]));
-        gxbp_num_increase(&total, &term, 1);
+        gxbp_num_increase(total, &term, 1);
+    }
+    bits = 5 + 3 * size - GXBP_FINE_BITS * fines->steps;
+    for (; count > 0; count >>= 1) bits++;
+    return total->sign != 0 && gxbp_num_bits(total) - GXB_LIMB_BITS > bits + 53;
+}
+
+/* Six times the volume of a list of triangles. Its sign tells solids from cavities, so it must be certain. */
+static GXBP_RARE double gxbp_fine_volume(gxb_boolean *b, uint32_t t, const uint32_t *next, gxbp_fines *fines) {
+    GXB_NUM(total);
+    fines->steps = GXBP_FINE_STEPS;
+    if (!gxbp_sum_fine(b, t, next, fines, &total)) {
+        fines->steps = GXBP_FINER_STEPS;
+        (void)gxbp_sum_fine(b, t, next, fines, &total);
     }
     return gxb_num_to_double(&total);
 }
@@ -13985,7 +14016,7 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent
                                           int all) {
     const uint32_t count = b->out.triangle_count;
     const size_t vertices = b->out.point_count * sizeof(gxbp_fine), bytes = vertices + 2 * count * sizeof(uint32_t);
-    gxbp_fines fines = {NULL, NULL, 0, 0};
+    gxbp_fines fines = {NULL, NULL, 0, 0, 0};
     uint32_t t, *first, *next;
     fines.vertices = (gxbp_fine *)gxbp_allocate(&b->store.allocator, bytes);
     if (fines.vertices == NULL) {
@@ -13999,7 +14030,7 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent
         next[t] = first[parent[t]];
         first[parent[t]] = t;
     }
-    for (t = 0; t < b->out.point_count; t++) fines.vertices[t].first = GXB_NONE;
+    for (t = 0; t < b->out.point_count; t++) fines.vertices[t].steps = 0;
     for (t = 0; t < count && b->error == GX_OK; t++)
         if (parent[t] == t && (all || gxbp_is_rough(volume[t], error[t]))) {
             volume[t] = gxbp_fine_volume(b, first[t], next, &fines);

@@ -48,7 +48,8 @@
  *                 >>linearise Hessians, block diagonal
  *   multigrid:    >>galerkin coarse matrices | >>nesting those of affine copies | >>factor of the last level |
  *                 >>assembly the assembled matrix | >>smoother its step length | >>cycle the V-cycle
- *   changes:      >>edits lanes that a cut changes | >>renewal copies and components | >>update levels, all of it
+ *   changes:      >>edits lanes that a cut changes | >>affine-edits those of affine copies |
+ *                 >>renewal copies and components | >>update levels, all of it
  *   steps:        >>components momentum | >>points springs, contact | >>pairs two sides in contact | >>terms all that
  *                 acts at points | >>cg conjugate gradients | >>ageing of coarse matrices | >>sleep rest |
  *                 >>balance residual, start | >>search lengths | >>integrators BDF, midpoint | >>newton iterations,
@@ -309,6 +310,9 @@ typedef struct gxs_change {
     size_t element_count;
     const gxs_constraint *constraints; /* constraint_count: all constraints from now on */
     size_t constraint_count;
+    /* copy_count, as gxs_model.affine; NULL: none. Hidden vectors have origins like copies. One whose origin is no
+     * hidden vector begins with zeros: its copy becomes affine, and the elements around that copy are to be replaced */
+    const uint32_t *affine;
     uint64_t epoch; /* of the numbering from now on */
 } gxs_change;
 
@@ -390,6 +394,11 @@ typedef struct gxs_plane {
  * semi-definite, 00 01 02 11 12 22, or NULL. Called on the thread of the step only. */
 typedef double (*gxs_contact_fn)(void *user, size_t point, const double *position, double *force, double *hessian);
 
+/* Of a pair */
+enum {
+    GXS_PAIR_OUTSIDE = 1, /* the other side is outside the model */
+    GXS_PAIR_WAKES = 2    /* components that it joins are awake in this step: the other side has moved */
+};
 /* Keeps two material points, or a point and a triangle, from going through each other: a point of relative position
  * r. Its weights are 0 in sum: those of one side, and minus those of the other. Its position is that of one side at
  * rest minus that of the other, m. Energy stiffness/2 depth^2 where depth = offset - normal . r is above 0. Both sides
@@ -397,9 +406,13 @@ typedef double (*gxs_contact_fn)(void *user, size_t point, const double *positio
  * angular momentum alone, too. Friction is Coulomb's: friction x the normal force at the step's start. It comes from
  * an elastic slip, which gxs_step_desc.pair_slips keeps: up to friction x force / stiffness, and at least
  * sticking_speed x dt, the sides stick. Not for GXS_MIDPOINT, which would gain energy, nor, so far, for models with
- * affine copies. */
+ * affine copies. The other side may be outside the model, as a rigid body is: then weights are 1 in sum, position is
+ * that of the point at rest minus the place of the other side at the step's end, and way is how far that place has
+ * gone within the step. */
 typedef struct gxs_pair {
     gxs_point point;
+    uint32_t flags;        /* GXS_PAIR_, or 0 */
+    double way[3];         /* m; GXS_PAIR_OUTSIDE only */
     double normal[3];      /* of length 1, from the other side to this one */
     double offset;         /* m */
     double stiffness;      /* N/m, 0 or more */
@@ -556,8 +569,9 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
  * group or element), or a constraint is not allowed (its index). GX_ERROR_LIMIT: the change does not fit. Either the
  * matrix is assembled, mass is lumped, GXS_VOLUME_RATIO is used, empty lanes exceed a quarter of the elements by two
  * chunks, GXS_AUTOMATIC would now choose otherwise, a copy is held that was not or the other way round, two old copies
- * (origins without + 1) are the same, no element is left, an element that stays has lost a copy, or the model has
- * affine copies. After this and GX_ERROR_MEMORY no model is set: set one. On other errors the old model stays. */
+ * (origins without + 1) are the same, no element is left, an element that stays has lost a copy, the first affine copy
+ * comes or the last one goes. After this and GX_ERROR_MEMORY no model is set: set one. On other errors the old model
+ * stays. */
 GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure);
 /* Sets to 0 the rest times of copies whose state has been written since the last step. Their components then wake even
  * if another model is set before the next step, or another solver takes that step. Vectors use the present numbering;
@@ -828,6 +842,9 @@ extern "C" {
 #define GXSP_NESTED_COST 12
 #define GXSP_NESTED_FROM 0.8f
 #define GXSP_WIDEST      8
+
+/* An update keeps that lattice while its factor takes at most so many times as much. */
+#define GXSP_NESTED_SLACK 2
 
 /* Elements of affine copies: blocks of one task; and of one round, after which the results are summed, so that these
  * take memory for one round only. Sums go by blocks, whatever the threads do. */
@@ -1728,8 +1745,10 @@ typedef struct gxsp_affine {
     size_t count;  /* elements; 0: there are none */
     double length; /* m: hidden vectors are columns of A times this */
     gxsp_affine_block *blocks;
-    uint32_t block_count, group_count;
+    uint32_t *groups; /* block_count x GXSP_LANES: gxs_element.group; GXSP_NONE: the lane has no element */
+    uint32_t block_count, block_room, group_count, group_room;
     uint32_t round;        /* first block of the round under way: see GXSP_AFFINE_ROUND */
+    uint32_t slot_blocks;  /* blocks for which slots have room */
     uint32_t *place;       /* n: 4 x group + part; GXSP_NONE: a copy that is not affine. NULL: there are no groups */
     uint32_t (*member)[4]; /* group_count: vectors of a group */
     double (*slots)[3];    /* blocks of a round x 16 x GXSP_LANES: their results */
@@ -1738,9 +1757,12 @@ typedef struct gxsp_affine {
     double (*full)[10][9]; /* group_count: blocks of the parts p <= q, in the order of gxs_element.mass, by rows */
     float (*root)[78];     /* group_count: W by rows, lower triangle: the inverse of the 12x12 block is W^T W */
     uint32_t *hidden; /* by node of level 1: the first of its three hidden nodes, or GXSP_NONE. NULL: no multigrid */
-    float (*offset)[4][3]; /* group_count: (X_i - X_J) / length for each parent J */
-    double *block;         /* 9 per entry of level 1: what the elements here add */
-    double *entry;         /* factor of level 1, rows as in gxsp_factor */
+    uint32_t hidden_count;     /* nodes that hidden has */
+    float (*offset)[4][3];     /* group_count: (X_i - X_J) / length for each parent J */
+    double origin[3], spacing; /* of level 1's lattice before it was widened, m */
+    float stretch;             /* by which it was widened */
+    double *block;             /* 9 per entry of level 1: what the elements here add */
+    double *entry;             /* factor of level 1, rows as in gxsp_factor */
 } gxsp_affine;
 
 /* A block's elements in explicit steps. A lane without an element has zeros. */
@@ -1904,6 +1926,9 @@ static const gxsp_column gxsp_copy_columns[] = {
     {GXSP_IN(vectors.right),                                    sizeof(gxsp_vector4), 0,          GXSP_BY_OWNER,   0},
     {GXSP_IN(smoother.renewed),                                 1,                    0,          GXSP_FOR_STEPS,  0},
     {GXSP_IN(coarse.displacement),                              3 * sizeof(double),   0,          GXSP_BY_OWNER,   1},
+    {GXSP_IN(affine.place),                                     sizeof(uint32_t),     0,          GXSP_BY_OWNER,   0},
+    {GXSP_IN(affine.sum),                                       3 * sizeof(double),   0,          GXSP_BY_OWNER,   0},
+    {GXSP_IN(affine.own),                                       6 * sizeof(double),   0,          GXSP_BY_OWNER,   0},
     {GXSP_IN(multigrid.levels) + offsetof(gxsp_level, parent),  4 * sizeof(uint32_t), 0,          GXSP_BY_OWNER,   1},
     {GXSP_IN(multigrid.levels) + offsetof(gxsp_level, weight),  4 * sizeof(float),    0,          GXSP_BY_OWNER,   1}};
 
@@ -3767,22 +3792,35 @@ static inline int gxsp_is_grouped(const gxsp_system *system, size_t copy) {
     return system->affine.place && system->affine.place[copy] != GXSP_NONE;
 }
 
-/* Groups. Hidden vectors take over the rest position of their copy. */
-static void gxsp_groups_make(gxsp_system *system, const gxs_model *model) {
+/* Room for so many groups. What they had is lost. */
+static void gxsp_groups_room(gxsp_system *system, uint32_t count) {
+    gxsp_affine *affine = &system->affine;
+    if (count <= affine->group_room) return;
+    affine->group_room = affine->group_room > 0 ? (uint32_t)gxsp_room(count) : count;
+    affine->member =
+        (uint32_t(*)[4])gxsp_grow(&system->pool, affine->member, 0, affine->group_room, sizeof *affine->member);
+    affine->full =
+        (double(*)[10][9])gxsp_grow(&system->pool, affine->full, 0, affine->group_room, sizeof *affine->full);
+    affine->root = (float(*)[78])gxsp_grow(&system->pool, affine->root, 0, affine->group_room, sizeof *affine->root);
+}
+
+static uint32_t gxsp_count_groups(const uint32_t *affine, size_t copies) {
+    uint32_t count = 0;
+    size_t i;
+    for (i = 0; i < copies; i++) count += affine[i] != GXS_NOT_AFFINE;
+    return count;
+}
+
+/* Groups; there is room. Hidden vectors take over the rest position of their copy. first: n, as gxs_model.affine */
+static void gxsp_groups_make(gxsp_system *system, const uint32_t *first) {
     gxsp_affine *affine = &system->affine;
     size_t i, k;
     uint32_t group = 0;
-    for (i = 0; i < system->model.n; i++) affine->group_count += model->affine[i] != GXS_NOT_AFFINE;
-    if (affine->group_count == 0) return;
-    affine->length = model->affine_length;
-    affine->place = (uint32_t *)gxsp_take(&system->pool, system->model.n, sizeof(uint32_t));
-    affine->member = (uint32_t(*)[4])gxsp_take(&system->pool, affine->group_count, sizeof *affine->member);
-    if (system->pool.failed) return;
     memset(affine->place, 0xff, system->model.n * sizeof *affine->place);
     for (i = 0; i < system->model.n; i++) {
-        if (model->affine[i] == GXS_NOT_AFFINE) continue;
+        if (first[i] == GXS_NOT_AFFINE) continue;
         for (k = 0; k < 4; k++) {
-            const uint32_t vector = k == 0 ? (uint32_t)i : model->affine[i] + (uint32_t)k - 1;
+            const uint32_t vector = k == 0 ? (uint32_t)i : first[i] + (uint32_t)k - 1;
             affine->member[group][k] = vector;
             affine->place[vector] = 4 * group + (uint32_t)k;
             if (k > 0 && system->model.positions)
@@ -3791,6 +3829,17 @@ static void gxsp_groups_make(gxsp_system *system, const gxs_model *model) {
         }
         group++;
     }
+    affine->group_count = group;
+}
+
+/* The groups of a new model */
+static void gxsp_groups_begin(gxsp_system *system, const gxs_model *model) {
+    const uint32_t count = gxsp_count_groups(model->affine, system->model.n);
+    if (count == 0) return;
+    system->affine.length = model->affine_length;
+    system->affine.place = (uint32_t *)gxsp_take(&system->pool, system->model.n, sizeof(uint32_t));
+    gxsp_groups_room(system, count);
+    if (!system->pool.failed) gxsp_groups_make(system, model->affine);
 }
 
 /* Shape functions at the four points of an element: x_p = c + L t_p, with L L^T the covariance of its mass. They
@@ -3856,11 +3905,19 @@ static void gxsp_affine_fill(gxsp_system *system, const gxs_element *element, gx
     }
 }
 
-/* Row sums of the mass at hidden vectors, int rho N_i (x - X_i) / length: gravity acts on them by these */
-static void gxsp_affine_lump(gxsp_system *system, const gxsp_affine_block *block, int l) {
+/* Row sum of the mass of a lane's element at corner k: the four points have equal weights */
+static double gxsp_affine_mass(const gxsp_affine_block *block, int l, int k) {
+    return block->rest.mass[l] *
+           (block->shape[0][k][l] + block->shape[1][k][l] + block->shape[2][k][l] + block->shape[3][k][l]);
+}
+
+/* Row sums of the mass at hidden vectors, int rho N_i (x - X_i) / length: gravity acts on them by these. touched: those
+ * of these copies; NULL: all */
+static void gxsp_affine_lump(gxsp_system *system, const gxsp_affine_block *block, int l, const uint8_t *touched) {
     int i, j, k, p;
     for (i = 0; i < 4; i++)
-        for (k = 0; k < 3 && block->vector[4 + 3 * i][l] != GXSP_NONE; k++) {
+        for (k = 0; k < 3 && block->vector[4 + 3 * i][l] != GXSP_NONE && (!touched || touched[block->vector[i][l]]);
+             k++) {
             double sum = 0;
             for (p = 0; p < 4; p++) {
                 double way = 0; /* (x - X_i) / (4 length) at the point */
@@ -3873,6 +3930,17 @@ static void gxsp_affine_lump(gxsp_system *system, const gxsp_affine_block *block
         }
 }
 
+/* A block without elements; there is room */
+static gxsp_affine_block *gxsp_affine_open(gxsp_system *system, uint32_t b, gxs_material_kind kind) {
+    gxsp_affine_block *block = &system->affine.blocks[b];
+    memset(block, 0, sizeof *block);
+    block->kind = kind;
+    memset(block->vector, 0xff, sizeof block->vector);
+    memset(system->affine.groups + (size_t)b * GXSP_LANES, 0xff, GXSP_LANES * sizeof(uint32_t));
+    if (kind == GXS_CUSTOM) block->general = (gxsp_general *)gxsp_take(&system->pool, 4, sizeof(gxsp_general));
+    return block;
+}
+
 /* Blocks of the elements: those of one kind together. order: elements of each kind, in the caller's order */
 static void gxsp_affine_blocks(gxsp_system *system, const gxs_model *model, const uint32_t *elements) {
     gxsp_affine *affine = &system->affine;
@@ -3880,33 +3948,31 @@ static void gxsp_affine_blocks(gxsp_system *system, const gxs_model *model, cons
     int kind, l, k;
     for (e = 0; e < affine->count; e++) count[model->materials[model->elements[elements[e]].material].kind]++;
     for (kind = 0; kind <= GXS_CUSTOM; kind++) affine->block_count += (count[kind] + GXSP_LANES - 1) / GXSP_LANES;
+    affine->block_room = affine->block_count;
     affine->blocks = (gxsp_affine_block *)gxsp_take(&system->pool, affine->block_count, sizeof *affine->blocks);
-    if (system->pool.failed) return;
-    for (kind = 0; kind <= GXS_CUSTOM; kind++)
+    affine->groups = (uint32_t *)gxsp_take(&system->pool, (size_t)affine->block_count * GXSP_LANES, sizeof(uint32_t));
+    for (kind = 0; kind <= GXS_CUSTOM && !system->pool.failed; kind++)
         for (e = first = 0; first < count[kind]; b++) {
-            gxsp_affine_block *block = &affine->blocks[b];
-            block->kind = (gxs_material_kind)kind;
-            memset(block->vector, 0xff, sizeof block->vector);
-            if (kind == GXS_CUSTOM) block->general = (gxsp_general *)gxsp_take(&system->pool, 4, sizeof(gxsp_general));
+            gxsp_affine_block *block = gxsp_affine_open(system, b, (gxs_material_kind)kind);
             for (l = 0; l < GXSP_LANES && first < count[kind]; l++, first++, e++) {
                 while ((int)model->materials[model->elements[elements[e]].material].kind != kind) e++;
+                affine->groups[(size_t)b * GXSP_LANES + (size_t)l] = model->elements[elements[e]].group;
                 gxsp_affine_fill(system, &model->elements[elements[e]], block, l);
-                gxsp_affine_lump(system, block, l);
+                gxsp_affine_lump(system, block, l, NULL);
             }
             for (k = l; k < GXSP_LANES; k++) /* a valid material of this kind */
                 block->rest.material[k] = block->rest.material[0];
         }
 }
 
-/* Memory for results of passes */
+/* Memory for results of a round of blocks */
 static void gxsp_affine_results(gxsp_system *system) {
     gxsp_affine *affine = &system->affine;
-    const size_t blocks = affine->block_count < GXSP_AFFINE_ROUND ? affine->block_count : GXSP_AFFINE_ROUND;
-    affine->slots = (double(*)[3])gxsp_take(&system->pool, blocks * 16 * GXSP_LANES, sizeof *affine->slots);
-    affine->sum = (double(*)[3])gxsp_take(&system->pool, system->model.n, sizeof *affine->sum);
-    affine->own = (double(*)[6])gxsp_take(&system->pool, system->model.n, sizeof *affine->own);
-    affine->full = (double(*)[10][9])gxsp_take(&system->pool, affine->group_count, sizeof *affine->full);
-    affine->root = (float(*)[78])gxsp_take(&system->pool, affine->group_count, sizeof *affine->root);
+    const uint32_t blocks = affine->block_count < GXSP_AFFINE_ROUND ? affine->block_count : GXSP_AFFINE_ROUND;
+    if (blocks <= affine->slot_blocks) return;
+    affine->slots = (double(*)[3])gxsp_grow(&system->pool, affine->slots, 0, (size_t)blocks * 16 * GXSP_LANES,
+                                            sizeof *affine->slots);
+    affine->slot_blocks = blocks;
 }
 
 /* Divides the model's elements: those with an affine corner come here, `plain` gets the others. Both lists are in
@@ -3933,7 +3999,9 @@ static void gxsp_affine_make(gxsp_system *system, gxsp_pool *scratch, const gxs_
     plain->elements = others;
     plain->element_count = system->model.element_count = count;
     gxsp_affine_blocks(system, model, elements);
-    if (!system->pool.failed) gxsp_affine_results(system);
+    gxsp_affine_results(system);
+    system->affine.sum = (double(*)[3])gxsp_take(&system->pool, system->model.n, sizeof *system->affine.sum);
+    system->affine.own = (double(*)[6])gxsp_take(&system->pool, system->model.n, sizeof *system->affine.own);
 }
 
 /* Joins the vectors of a group. forest: n */
@@ -4256,6 +4324,9 @@ static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GX
  * idea, one level up). Values between lattice points are linear on the six tetrahedra around a cell's diagonal:
  * at most four weights, exact for affine fields. */
 
+/* A coordinate in spacings of a lattice. Keeps lattice planes off those of the mesh */
+static float gxsp_place(double x, double origin, double spacing) { return (float)((x - origin) / spacing) + 0.31f; }
+
 /* Rest positions in spacings of the first lattice: GXSP_SPACING edges of an average whole element. Returns
  * the spacing; 0: there is no lattice. */
 static double gxsp_find_places(const gxsp_system *system, const gxs_model *model, float (*to)[3]) {
@@ -4274,10 +4345,8 @@ static double gxsp_find_places(const gxsp_system *system, const gxs_model *model
     spacing = GXSP_SPACING * cbrt(5 * volume / (double)counted); /* five elements to a cube */
     for (i = 0; i < system->model.n; i++)
         for (k = 0; k < 3; k++) {
-            double place = (system->model.positions[3 * i + k] - system->model.positions[k]) / spacing;
-            if (!(fabs(place) < 1e6)) /* single precision could not hold it */
-                return 0;
-            to[i][k] = (float)place + 0.31f; /* keeps lattice planes off those of the mesh */
+            to[i][k] = gxsp_place(system->model.positions[3 * i + k], system->model.positions[k], spacing);
+            if (!(fabs((double)to[i][k]) < 1e6)) return 0; /* single precision could not hold it */
         }
     return spacing;
 }
@@ -4672,36 +4741,39 @@ static uint32_t gxsp_nested_parents(const gxsp_system *system, uint32_t vector, 
     return count;
 }
 
-/* Numbers the hidden nodes, which follow the count others, and finds the offsets of affine copies from their parents.
- * place: n x 3, in spacings of the lattice; transfer: as gxsp_transfer_end has left it. Returns the number of nodes. */
-static uint32_t gxsp_nested_nodes(gxsp_system *system, float (*place)[3], const gxsp_transfer *transfer, double spacing,
-                                  uint32_t count) {
+/* Gives hidden nodes, from number `nodes` on, to the parents of affine copies that have none. hidden: by node, count of
+ * them. Returns the number of nodes. */
+static uint32_t gxsp_nested_nodes(gxsp_system *system, uint32_t count, uint32_t nodes) {
     gxsp_affine *affine = &system->affine;
-    gxsp_level points; /* lattice points of the nodes */
-    uint32_t group, nodes = count;
-    int k, a;
-    memset(&points, 0, sizeof points);
-    affine->hidden = (uint32_t *)gxsp_take(&system->multigrid.pool, count, sizeof(uint32_t));
-    affine->offset = (float(*)[4][3])gxsp_take(&system->multigrid.pool, affine->group_count, sizeof *affine->offset);
-    points.place = (int32_t(*)[3])gxsp_take(&system->multigrid.pool, count, sizeof *points.place);
-    if (system->multigrid.pool.failed) return 0;
-    gxsp_transfer_places(&system->multigrid.levels[0], transfer, &points);
-    memset(affine->hidden, 0xff, count * sizeof *affine->hidden);
-    for (group = 0; group < affine->group_count; group++) {
-        const uint32_t copy = affine->member[group][0];
+    uint32_t group;
+    int k;
+    for (group = 0; group < affine->group_count; group++)
         for (k = 0; k < 4; k++) {
-            const uint32_t parent = system->multigrid.levels[0].parent[copy][k];
-            if (parent == GXSP_NONE) continue;
-            if (affine->hidden[parent] == GXSP_NONE) {
-                affine->hidden[parent] = nodes;
-                nodes += 3;
-            }
-            for (a = 0; a < 3; a++)
-                affine->offset[group][k][a] =
-                    (float)(((double)place[copy][a] - points.place[parent][a]) * spacing / affine->length);
+            const uint32_t parent = system->multigrid.levels[0].parent[affine->member[group][0]][k];
+            if (parent == GXSP_NONE || affine->hidden[parent] != GXSP_NONE) continue;
+            affine->hidden[parent] = nodes;
+            nodes += 3;
         }
-    }
+    affine->hidden_count = count;
     return nodes;
+}
+
+/* Offsets of affine copies from their parents, whose places are known */
+static void gxsp_nested_offsets(gxsp_system *system) {
+    gxsp_affine *affine = &system->affine;
+    const gxsp_level *fine = &system->multigrid.levels[0];
+    uint32_t group;
+    int k, a;
+    for (group = 0; group < affine->group_count; group++)
+        for (k = 0; k < 4; k++)
+            for (a = 0; a < 3; a++) {
+                const uint32_t copy = affine->member[group][0], parent = fine->parent[copy][k];
+                const double x = system->model.positions[3 * (size_t)copy + (size_t)a];
+                const float place = gxsp_place(x, affine->origin[a], affine->spacing) / affine->stretch;
+                if (parent == GXSP_NONE) continue;
+                affine->offset[group][k][a] = (float)(((double)place - fine[1].place[parent][a]) *
+                                                      ((double)affine->stretch * affine->spacing) / affine->length);
+            }
 }
 
 /* Adds the clusters that the elements join. */
@@ -4731,6 +4803,13 @@ static int gxsp_compare_keys(const void *a, const void *b) {
     return (p > q) - (p < q);
 }
 
+/* Has an element a coarse node that is dirty? */
+static int gxsp_nested_dirty(const gxsp_system *system, const gxsp_affine_block *block, int l, const uint8_t *dirty) {
+    uint32_t bases[16], i, count = gxsp_nested_bases(system, block, l, bases);
+    for (i = 0; i < count && !dirty[bases[i]]; i++) {}
+    return i < count;
+}
+
 /* Lists the entries of a coarse node and another one, or itself, with their hidden nodes. */
 static void gxsp_nested_entries(const uint32_t *hidden, uint32_t p, uint32_t q, gxsp_list *list) {
     const uint32_t some = hidden[p] == GXSP_NONE ? 1 : 4, others = hidden[q] == GXSP_NONE ? 1 : 4;
@@ -4742,8 +4821,9 @@ static void gxsp_nested_entries(const uint32_t *hidden, uint32_t p, uint32_t q, 
         }
 }
 
-/* Lists the entries of level 1's matrix to which the elements add. */
-static void gxsp_nested_pattern(const gxsp_system *system, gxsp_pool *scratch, gxsp_list *list) {
+/* Lists the entries of level 1's matrix to which the elements add. dirty: by coarse node; only entries with a dirty
+ * node are listed; NULL: all are */
+static void gxsp_nested_pattern(const gxsp_system *system, gxsp_pool *scratch, const uint8_t *dirty, gxsp_list *list) {
     const gxsp_affine *affine = &system->affine;
     uint64_t *key = (uint64_t *)gxsp_take(scratch, (size_t)affine->block_count * GXSP_LANES * 136, sizeof *key);
     uint32_t bases[16], b, i, j, count;
@@ -4753,9 +4833,11 @@ static void gxsp_nested_pattern(const gxsp_system *system, gxsp_pool *scratch, g
     for (b = 0; b < affine->block_count; b++)
         for (l = 0; l < GXSP_LANES; l++)
             for (count = gxsp_nested_bases(system, &affine->blocks[b], l, bases), i = 0; i < count; i++)
-                for (j = i; j < count; j++)
+                for (j = i; j < count; j++) {
+                    if (dirty && !dirty[bases[i]] && !dirty[bases[j]]) continue;
                     key[keys++] =
                         bases[i] < bases[j] ? (uint64_t)bases[i] << 32 | bases[j] : (uint64_t)bases[j] << 32 | bases[i];
+                }
     qsort(key, keys, sizeof *key, gxsp_compare_keys);
     for (k = 0; k < keys; k++)
         if (k == 0 || key[k] != key[k - 1])
@@ -5013,7 +5095,7 @@ static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gx
     for (c = 0; c < system->mesh.chunk_count; c++)
         if (!before || gxsp_follows_dirty(system, &system->mesh.chunks[c], dirty))
             gxsp_list_pairs(system, &system->mesh.chunks[c], memory, before ? dirty : NULL, &list);
-    if (system->affine.count > 0) gxsp_nested_pattern(system, scratch, &list);
+    if (system->affine.count > 0) gxsp_nested_pattern(system, scratch, before ? dirty : NULL, &list);
     if (!scratch->failed)
         gxsp_rows_make(&system->multigrid.pool, scratch, &system->multigrid.levels[1], list.pair, list.count);
 }
@@ -5195,6 +5277,24 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (
     gxsp_levels_make(system, scratch, NULL, NULL);
 }
 
+/* What levels have beside their pattern, where copies are affine */
+static void gxsp_nested_end(gxsp_system *system, gxsp_pool *scratch) {
+    gxsp_level *next = &system->multigrid.levels[1];
+    gxsp_count_edges(system);
+    system->multigrid.level_count = 2;
+    next->block = (float *)gxsp_take(&system->multigrid.pool, gxsp_block_numbers(next), sizeof(float));
+    system->affine.block = (double *)gxsp_take(&system->multigrid.pool, gxsp_block_numbers(next), sizeof(double));
+    gxsp_factor_make(system, scratch);
+}
+
+/* Hidden nodes and offsets are to be found: memory for them. count: nodes */
+static void gxsp_nested_begin(gxsp_system *system, uint32_t count) {
+    gxsp_affine *affine = &system->affine;
+    affine->hidden = (uint32_t *)gxsp_take(&system->multigrid.pool, count, sizeof(uint32_t));
+    affine->offset = (float(*)[4][3])gxsp_take(&system->multigrid.pool, affine->group_count, sizeof *affine->offset);
+    if (!system->multigrid.pool.failed) memset(affine->hidden, 0xff, count * sizeof *affine->hidden);
+}
+
 /* The same where copies are affine. Level 1 is factored, so its lattice is widened until that is cheap. */
 static void gxsp_nested_make(gxsp_system *system, gxsp_pool *scratch, float (*place)[3], double spacing) {
     gxsp_level *next = &system->multigrid.levels[1];
@@ -5209,15 +5309,20 @@ static void gxsp_nested_make(gxsp_system *system, gxsp_pool *scratch, float (*pl
     transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
     mark = scratch->last;
     for (i = 0; i < system->model.n && left_out; i++) left_out[i] = system->model.fixed[i] || gxsp_is_hidden(system, i);
+    memcpy(system->affine.origin, system->model.positions, sizeof system->affine.origin);
+    system->affine.spacing = spacing;
     for (stretch = GXSP_NESTED_FROM;; stretch *= 1.25f) {
         if (scratch->failed) return;
         for (i = 0; i < 3 * system->model.n; i++) own[i / 3][i % 3] = place[i / 3][i % 3] / stretch;
         count = gxsp_first_transfer(system, own, left_out, &transfer);
         if (count == 0) return;
-        count = gxsp_nested_nodes(system, own, &transfer, (double)stretch * spacing, count);
+        gxsp_nested_begin(system, count);
         if (system->multigrid.pool.failed) return;
-        gxsp_level_make(&system->multigrid.pool, next, count);
+        gxsp_level_make(&system->multigrid.pool, next, gxsp_nested_nodes(system, count, count));
         if (system->multigrid.pool.failed) return;
+        gxsp_transfer_places(&system->multigrid.levels[0], &transfer, next);
+        system->affine.stretch = stretch;
+        gxsp_nested_offsets(system);
         gxsp_pairs_make(system, scratch);
         if (!scratch->failed) gxsp_first_pattern(system, scratch, NULL, NULL);
         if (scratch->failed || system->multigrid.pool.failed) return;
@@ -5225,11 +5330,7 @@ static void gxsp_nested_make(gxsp_system *system, gxsp_pool *scratch, float (*pl
         gxsp_release_to(&system->multigrid.pool, NULL);
         gxsp_release_to(scratch, mark);
     }
-    gxsp_count_edges(system);
-    system->multigrid.level_count = 2;
-    next->block = (float *)gxsp_take(&system->multigrid.pool, gxsp_block_numbers(next), sizeof(float));
-    system->affine.block = (double *)gxsp_take(&system->multigrid.pool, gxsp_block_numbers(next), sizeof(double));
-    gxsp_factor_make(system, scratch);
+    gxsp_nested_end(system, scratch);
 }
 
 /* >>lights: copies with next to no mass ---------------------------------------------------------------------------- */
@@ -5486,7 +5587,7 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     system->model.materials = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
     system->state.damped = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
     gxsp_copies_make(system, model->positions);
-    if (model->affine && !system->pool.failed) gxsp_groups_make(system, model);
+    if (model->affine && !system->pool.failed) gxsp_groups_begin(system, model);
     if (scratch->failed || system->pool.failed) return SIZE_MAX;
     for (i = 0; i < system->model.material_count; i++) {
         system->state.damped[i] = system->model.materials[i] = gxsp_material_make(&model->materials[i]);
@@ -5817,8 +5918,8 @@ static void gxsp_affine_evaluate(gxsp_system *system, gxsp_pass *pass) {
     int k, l;
     gxsp_over_affine(system, gxsp_task_affine_state, pass, pass->sum);
     for (b = 0; b < affine->block_count; b++)
-        for (l = 0; l < GXSP_LANES && affine->blocks[b].vector[0][l] != GXSP_NONE; l++)
-            for (k = 0; k < 3; k++)
+        for (l = 0; l < GXSP_LANES; l++)
+            for (k = 0; k < 3 && affine->blocks[b].vector[0][l] != GXSP_NONE; k++)
                 gxsp_lead_of(system, affine->blocks[b].vector[0][l])->energies[k] += affine->blocks[b].energies[k][l];
 }
 
@@ -5990,8 +6091,8 @@ static void gxsp_affine_diagonal(gxsp_system *system, double rate) {
     memset(affine->own, 0, system->model.n * sizeof *affine->own);
     memset(affine->full, 0, affine->group_count * sizeof *affine->full);
     for (b = 0; b < affine->block_count; b++)
-        for (l = 0; l < GXSP_LANES && affine->blocks[b].vector[0][l] != GXSP_NONE && !affine->blocks[b].still; l++)
-            for (k = 0; k < 4; k++)
+        for (l = 0; l < GXSP_LANES && !affine->blocks[b].still; l++)
+            for (k = 0; k < 4 && affine->blocks[b].vector[0][l] != GXSP_NONE; k++)
                 if (!gxsp_follows(system, affine->blocks[b].vector[k][l]))
                     gxsp_affine_corner_blocks(system, &affine->blocks[b], l, k, rate);
     gxsp_affine_terms(system);
@@ -7863,8 +7964,9 @@ static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
 /* In: tangents of elements with affine copies, level 1's matrix from chunks. Out: the factor of their sum, in double
  * precision: bending is softer than the rounding and the shift of single precision. */
 
-/* Adds an element's Hessian between its coarse functions. rate: times scale */
-static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *block, int l, double rate) {
+/* Adds an element's Hessian between its coarse functions. rate: times scale; dirty: see gxsp_nested_pattern */
+static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *block, int l, double rate,
+                                const uint8_t *dirty) {
     const gxsp_level *level = &system->multigrid.levels[1];
     uint32_t node[64], parents[16], count = 0, c, d, k, n;
     double share[64][16], gradient[64][3], value[64], flux[27];
@@ -7887,7 +7989,7 @@ static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *bl
             gxsp_point_flux(block, p, l, gradient[d], flux);
             for (c = 0; c < count; c++) {
                 double to[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0}, *entry;
-                if (node[c] > node[d]) continue;
+                if (node[c] > node[d] || (dirty && !dirty[node[c]] && !dirty[node[d]])) continue;
                 entry = system->affine.block + 9 * (size_t)gxsp_find_entry(level, node[c], node[d]);
                 gxsp_point_couple(gradient[c], flux, to);
                 to[0] += rate * block->rest.mass[l] * value[c] * value[d];
@@ -7973,17 +8075,20 @@ static int gxsp_nested_factor(gxsp_system *system, uint32_t *place) {
     return 1;
 }
 
-/* All numbers of level 1 beside those of chunks, and its factor. rate: times scale. 0: a number overflowed. */
-static int gxsp_nested_numbers(gxsp_system *system, double rate) {
+/* All numbers of level 1 beside those of chunks, and its factor. dirty: coarse nodes whose numbers are new, without
+ * springs and contact; NULL: all are. rate: times scale. 0: a number overflowed. */
+static int gxsp_nested_numbers(gxsp_system *system, double rate, const uint8_t *dirty) {
     const gxsp_affine *affine = &system->affine;
     uint32_t b;
     size_t t;
     int l;
-    memset(affine->block, 0, gxsp_block_numbers(&system->multigrid.levels[1]) * sizeof(double));
+    if (!dirty) memset(affine->block, 0, gxsp_block_numbers(&system->multigrid.levels[1]) * sizeof(double));
     for (b = 0; b < affine->block_count; b++)
         for (l = 0; l < GXSP_LANES; l++)
-            if (affine->blocks[b].rest.weight[l] > 0) gxsp_nested_element(system, &affine->blocks[b], l, rate);
-    for (t = 0; t < system->lasting->count; t++) gxsp_nested_term(system, &system->lasting->term[t]);
+            if (affine->blocks[b].rest.weight[l] > 0 &&
+                (!dirty || gxsp_nested_dirty(system, &affine->blocks[b], l, dirty)))
+                gxsp_nested_element(system, &affine->blocks[b], l, rate, dirty);
+    for (t = 0; t < system->lasting->count && !dirty; t++) gxsp_nested_term(system, &system->lasting->term[t]);
     return gxsp_nested_factor(system, system->multigrid.pairs.local);
 }
 
@@ -8193,7 +8298,7 @@ static int gxsp_coarse_numbers(gxsp_system *system, double rate) {
         if (!system->lasting->term[t].assembled && system->affine.count == 0)
             gxsp_coarse_term(system, &system->lasting->term[t]);
     if (system->affine.count > 0)
-        finite = gxsp_invert_diagonal(fine + 1, NULL) && gxsp_nested_numbers(system, system->model.scale * rate);
+        finite = gxsp_invert_diagonal(fine + 1, NULL) && gxsp_nested_numbers(system, system->model.scale * rate, NULL);
     else
         finite = gxsp_lower_numbers(system, NULL);
     gxsp_return_memory(system);
@@ -8621,11 +8726,14 @@ typedef struct gxsp_renewal {
     uint32_t *successor; /* before: new number of a copy; GXSP_NONE: it is gone */
     uint8_t *touched;    /* change->copy_count: an element around the copy goes or comes */
     gxsp_edit *edits;    /* edit_count lanes of changed groups; then placed_count lanes of further elements */
-    uint32_t edit_count, placed_count;       /* see edits */
+    uint32_t edit_count, placed_count; /* see edits */
+    gxsp_edit *bent; /* lanes of changed groups among elements with affine copies; chunk: their block */
+    uint32_t bent_count, added_count;        /* added_count: elements of the change with affine copies */
     uint32_t *left, *left_class, left_count; /* left_count elements of the change that take no lane of their group, and
                                                 their classes */
     uint8_t *dirty; /* by node of level 1 before the update: some of its followers are touched */
     uint8_t *alike; /* change->copy_count: the copy follows the same copies as before */
+    int dear;       /* level 1 has become too dear to be factored */
 } gxsp_renewal;
 
 /* Groups that change: a bit for each, indexed by the low bits of their numbers */
@@ -8647,6 +8755,13 @@ static int gxsp_changes(const gxs_change *change, const gxsp_filter *filter, uin
     return change->groups[low] == group;
 }
 
+static void gxsp_filter_make(const gxs_change *change, gxsp_filter *filter) {
+    size_t i;
+    memset(filter, 0, sizeof *filter);
+    for (i = 0; i < change->group_count; i++)
+        filter->bit[change->groups[i] % GXSP_FILTER / 64] |= (uint64_t)1 << change->groups[i] % 64;
+}
+
 /* All lanes of the groups that change, in the order of groups, then of lanes */
 static void gxsp_find_edits(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
@@ -8655,9 +8770,7 @@ static void gxsp_find_edits(gxsp_renewal *update) {
     gxsp_filter filter;
     uint32_t c, lane, pass, count = 0;
     size_t i;
-    memset(&filter, 0, sizeof filter);
-    for (i = 0; i < update->change->group_count; i++)
-        filter.bit[update->change->groups[i] % GXSP_FILTER / 64] |= (uint64_t)1 << update->change->groups[i] % 64;
+    gxsp_filter_make(update->change, &filter);
     for (pass = 0; pass < 2 && update->change->group_count > 0; pass++) { /* count, then list */
         if (pass == 1 && !(found = (gxsp_edit *)gxsp_take(update->scratch, count, sizeof *found))) return;
         for (c = 0, count = 0; c < system->mesh.chunk_count; c++)
@@ -8682,6 +8795,14 @@ static void gxsp_find_edits(gxsp_renewal *update) {
     update->edit_count = count;
 }
 
+/* Will an element of the change have an affine copy? */
+static int gxsp_will_bend(const gxs_change *change, const gxs_element *element) {
+    int k;
+    for (k = 0; k < 4 && change->affine; k++)
+        if (change->affine[element->copy[k]] != GXS_NOT_AFFINE) return 1;
+    return 0;
+}
+
 /* Class of an element of the change. Called before copies are moved */
 static uint32_t gxsp_class_of(const gxsp_renewal *update, const gxs_element *element) {
     const gxsp_system *system = update->system;
@@ -8698,6 +8819,10 @@ static void gxsp_match_edits(gxsp_renewal *update) {
     for (e = 0; e < change->element_count && !update->scratch->failed; e++) {
         const gxs_element *element = &change->elements[e];
         const uint32_t class_index = gxsp_class_of(update, element);
+        if (gxsp_will_bend(change, element)) {
+            update->added_count++;
+            continue;
+        }
         while (first < update->edit_count && update->edits[first].group < element->group) first++;
         for (i = first; i < update->edit_count && update->edits[i].group == element->group; i++)
             if (update->edits[i].element == GXSP_NONE &&
@@ -8712,22 +8837,29 @@ static void gxsp_match_edits(gxsp_renewal *update) {
     }
 }
 
-/* Touches the copies around elements that go, and marks the coarse nodes that these follow as dirty. */
+/* Touches a copy as of before the update, and marks the coarse nodes that it follows as dirty. */
+static void gxsp_touch_copy(const gxsp_renewal *update, uint32_t copy) {
+    const gxsp_multigrid *multigrid = &update->system->multigrid;
+    int q;
+    if (update->successor[copy] != GXSP_NONE) update->touched[update->successor[copy]] = 1;
+    for (q = 0; q < 4 && multigrid->level_count > 0; q++)
+        if (multigrid->levels[0].parent[copy][q] != GXSP_NONE) update->dirty[multigrid->levels[0].parent[copy][q]] = 1;
+}
+
+/* Touches the copies around elements that go. */
 static void gxsp_touch_removed(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
     uint32_t i, copies[4];
-    int k, q;
+    int k;
     for (i = 0; i < update->edit_count; i++) {
         const gxsp_edit *edit = &update->edits[i];
         gxsp_lane_copies(system, &system->mesh.chunks[edit->chunk], edit->lane / GXSP_LANES,
                          (int)(edit->lane % GXSP_LANES), copies);
-        for (k = 0; k < 4; k++) {
-            if (update->successor[copies[k]] != GXSP_NONE) update->touched[update->successor[copies[k]]] = 1;
-            for (q = 0; q < 4 && system->multigrid.level_count > 0; q++)
-                if (system->multigrid.levels[0].parent[copies[k]][q] != GXSP_NONE)
-                    update->dirty[system->multigrid.levels[0].parent[copies[k]][q]] = 1;
-        }
+        for (k = 0; k < 4; k++) gxsp_touch_copy(update, copies[k]);
     }
+    for (i = 0; i < update->bent_count; i++)
+        for (k = 0; k < 4; k++)
+            gxsp_touch_copy(update, system->affine.blocks[update->bent[i].chunk].vector[k][update->bent[i].lane]);
 }
 
 static void gxsp_touch_added(const gxsp_renewal *update) {
@@ -8915,6 +9047,179 @@ static int gxsp_renew_nodes(gxsp_renewal *update) {
     return 1;
 }
 
+/* >>affine-edits: elements with affine copies in an update --------------------------------------------------------- */
+
+/* In: a gxs_change, copies in their new numbering. Out: groups, and the blocks of elements with affine copies. An
+ * element takes any free lane of its kind: blocks have no nodes of their own, so that its place does not matter. */
+
+/* The lanes that change */
+static void gxsp_find_bent(gxsp_renewal *update) {
+    const gxsp_affine *affine = &update->system->affine;
+    gxsp_filter filter;
+    uint32_t lane, pass, count = 0;
+    gxsp_filter_make(update->change, &filter);
+    for (pass = 0; pass < 2 && affine->count > 0 && update->change->group_count > 0; pass++) { /* count, then list */
+        if (pass == 1 && !(update->bent = (gxsp_edit *)gxsp_take(update->scratch, count, sizeof *update->bent))) return;
+        for (lane = count = 0; lane < affine->block_count * GXSP_LANES; lane++) {
+            if (affine->groups[lane] == GXSP_NONE || !gxsp_changes(update->change, &filter, affine->groups[lane]))
+                continue;
+            if (pass == 1) {
+                update->bent[count].chunk = lane / GXSP_LANES, update->bent[count].lane = lane % GXSP_LANES;
+                update->bent[count].group = affine->groups[lane], update->bent[count].element = GXSP_NONE;
+            }
+            count++;
+        }
+    }
+    update->bent_count = count;
+}
+
+/* A lane without element: no weight, no mass, no vectors; F = 1 */
+static void gxsp_affine_empty(gxsp_affine_block *block, uint32_t l) {
+    int k;
+    for (k = 0; k < 16; k++) block->vector[k][l] = GXSP_NONE, block->shape[k / 4][k % 4][l] = 0;
+    for (k = 0; k < 9; k++) block->gradient[k][l] = block->edge[k][l] = 0;
+    block->rest.weight[l] = block->rest.mass[l] = 0;
+}
+
+/* Empties the lanes that change, and gives the others the new numbers of their vectors. 0: an element that stays has
+ * lost one of them. */
+static int gxsp_renew_blocks(const gxsp_renewal *update) {
+    gxsp_affine *affine = &update->system->affine;
+    uint32_t i, b, k;
+    for (i = 0; i < update->bent_count; i++) {
+        gxsp_affine_empty(&affine->blocks[update->bent[i].chunk], update->bent[i].lane);
+        affine->groups[update->bent[i].chunk * GXSP_LANES + update->bent[i].lane] = GXSP_NONE;
+    }
+    for (b = 0; b < affine->block_count; b++)
+        for (k = 0; k < 16 * GXSP_LANES; k++) {
+            uint32_t *vector = &affine->blocks[b].vector[k / GXSP_LANES][k % GXSP_LANES];
+            if (*vector == GXSP_NONE) continue;
+            *vector = update->successor[*vector];
+            if (*vector == GXSP_NONE) return 0;
+        }
+    return 1;
+}
+
+/* The vectors of a group are touched if one of them is. */
+static void gxsp_touch_groups(const gxsp_renewal *update) {
+    const gxsp_affine *affine = &update->system->affine;
+    uint32_t group;
+    for (group = 0; group < affine->group_count; group++) {
+        const uint32_t *member = affine->member[group];
+        if (update->touched[member[0]] | update->touched[member[1]] | update->touched[member[2]] |
+            update->touched[member[3]])
+            update->touched[member[0]] = update->touched[member[1]] = update->touched[member[2]] =
+                update->touched[member[3]] = 1;
+    }
+}
+
+/* Groups of the new copies. Those of copies that become affine begin with zeros. before: old numbering, see
+ * gxsp_affine.place */
+static void gxsp_renew_groups(const gxsp_renewal *update, const uint32_t *before) {
+    gxsp_system *system = update->system;
+    uint32_t group, k;
+    gxsp_groups_room(system, gxsp_count_groups(update->change->affine, system->model.n));
+    if (system->pool.failed) return;
+    gxsp_groups_make(system, update->change->affine);
+    for (group = 0; group < system->affine.group_count; group++)
+        for (k = 1; k < 4; k++) {
+            const uint32_t vector = system->affine.member[group][k],
+                           from = before[update->change->origins[vector] >> 1];
+            if (from != GXSP_NONE && (from & 3) > 0) continue;
+            memset(system->vectors.current + 3 * (size_t)vector, 0, 3 * sizeof(double));
+            memset(system->vectors.guess[0][vector], 0, sizeof(gxsp_vector4));
+            memset(system->vectors.guess[1][vector], 0, sizeof(gxsp_vector4));
+            if (system->multigrid.level_count == 0) continue;
+            memset(system->coarse.displacement + 3 * (size_t)vector, 0, 3 * sizeof(double));
+            memset(system->multigrid.levels[0].parent[vector], 0xff, sizeof system->multigrid.levels[0].parent[vector]);
+            memset(system->multigrid.levels[0].weight[vector], 0, sizeof system->multigrid.levels[0].weight[vector]);
+        }
+    gxsp_touch_groups(update);
+}
+
+/* A free lane of a kind, from one on; behind all others if there is none. There is room. */
+static uint32_t gxsp_affine_lane(gxsp_system *system, gxs_material_kind kind, uint32_t lane) {
+    gxsp_affine *affine = &system->affine;
+    for (; lane < affine->block_count * GXSP_LANES; lane++)
+        if (affine->groups[lane] == GXSP_NONE && affine->blocks[lane / GXSP_LANES].kind == kind) return lane;
+    (void)gxsp_affine_open(system, affine->block_count++, kind);
+    return lane;
+}
+
+/* Puts the elements of the change that have affine copies into lanes. */
+static void gxsp_place_bent(gxsp_renewal *update) {
+    gxsp_system *system = update->system;
+    gxsp_affine *affine = &system->affine;
+    uint32_t e, l, lane[GXS_CUSTOM + 1] = {0, 0, 0, 0, 0};
+    const uint32_t room = affine->block_count + update->added_count / GXSP_LANES + GXS_CUSTOM + 1;
+    if (room > affine->block_room) {
+        affine->block_room = (uint32_t)gxsp_room(room);
+        affine->blocks = (gxsp_affine_block *)gxsp_grow(&system->pool, affine->blocks, affine->block_count,
+                                                        affine->block_room, sizeof *affine->blocks);
+        affine->groups = (uint32_t *)gxsp_grow(&system->pool, affine->groups, (size_t)affine->block_count * GXSP_LANES,
+                                               (size_t)affine->block_room * GXSP_LANES, sizeof(uint32_t));
+    }
+    for (e = 0; e < update->change->element_count && !system->pool.failed; e++) {
+        const gxs_element *element = &update->change->elements[e];
+        const gxs_material_kind kind = system->model.materials[element->material].kind;
+        gxsp_affine_block *block;
+        if (!gxsp_will_bend(update->change, element)) continue;
+        lane[kind] = gxsp_affine_lane(system, kind, lane[kind]);
+        block = &affine->blocks[lane[kind] / GXSP_LANES];
+        affine->groups[lane[kind]] = element->group;
+        for (l = 0; l < GXSP_LANES; l++) /* a valid material of this kind */
+            if (affine->groups[lane[kind] / GXSP_LANES * GXSP_LANES + l] == GXSP_NONE)
+                block->rest.material[l] = element->material;
+        gxsp_affine_fill(system, element, block, (int)(lane[kind] % GXSP_LANES));
+    }
+    affine->count += update->added_count;
+    affine->count -= update->bent_count;
+    gxsp_affine_results(system);
+}
+
+/* Does the element of a lane give corner k stiffness or mass? */
+static int gxsp_affine_supports(const gxsp_affine_block *block, int l, int k) {
+    return block->vector[0][l] != GXSP_NONE && (block->rest.weight[l] > 0 || gxsp_affine_mass(block, l, k) > 0);
+}
+
+/* Adds to masses of touched copies, and whether anything supports them. */
+static void gxsp_recount_bent(const gxsp_renewal *update) {
+    gxsp_system *system = update->system;
+    const uint8_t *touched = update->touched;
+    uint32_t b, group;
+    int k, l;
+    for (b = 0; b < system->affine.block_count; b++)
+        for (l = 0; l < GXSP_LANES; l++) {
+            const gxsp_affine_block *block = &system->affine.blocks[b];
+            int any = 0;
+            for (k = 0; k < 4 && block->vector[0][l] != GXSP_NONE; k++) {
+                const uint32_t copy = block->vector[k][l];
+                if (!touched[copy]) continue;
+                any = 1;
+                system->model.lumped[copy] += gxsp_affine_mass(block, l, k);
+                system->model.fixed[copy] &= !gxsp_affine_supports(block, l, k);
+            }
+            if (any) gxsp_affine_lump(system, block, l, touched);
+        }
+    for (group = 0; group < system->affine.group_count; group++)
+        for (k = 1; k < 4; k++)
+            system->model.fixed[system->affine.member[group][k]] = system->model.fixed[system->affine.member[group][0]];
+}
+
+/* Joins what the elements and groups connect. forest: n */
+static void gxsp_join_bent(const gxsp_system *system, uint32_t *forest) {
+    uint32_t b;
+    int k, l;
+    for (b = 0; b < system->affine.block_count; b++)
+        for (l = 0; l < GXSP_LANES; l++)
+            for (k = 1; k < 4; k++) {
+                const gxsp_affine_block *block = &system->affine.blocks[b];
+                if (gxsp_affine_supports(block, l, 0) || gxsp_affine_supports(block, l, k))
+                    gxsp_join(forest, block->vector[0][l], block->vector[k][l]);
+            }
+    gxsp_join_groups(system, forest);
+}
+
 /* >>renewal: copies and components after an update ----------------------------------------------------------------- */
 
 /* In: new numbers of copies, touched copies. Out: the columns over copies in their new order, masses, followers,
@@ -9026,6 +9331,7 @@ static void gxsp_recount_copies(const gxsp_renewal *update) {
                 }
         }
     }
+    if (system->affine.count > 0) gxsp_recount_bent(update);
     for (i = 0; i < system->model.n; i++) system->model.fixed[i] |= system->model.held[i];
 }
 
@@ -9058,6 +9364,7 @@ static void gxsp_renew_components(gxsp_renewal *update) {
             gxsp_join(forest, system->mesh.nodes[slot],
                       system->mesh.nodes[system->mesh.chunks[c].first_node + system->mesh.slot_root[slot]]);
         }
+    gxsp_join_bent(system, forest);
     gxsp_join_followers(system, forest);
     gxsp_number_components(system, forest);
     system->model.components = (gxsp_component *)gxsp_grow(&system->pool, system->model.components, 0,
@@ -9107,6 +9414,13 @@ static void gxsp_join_dirty(gxsp_renewal *update, uint32_t *forest) {
         if (fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
             gxsp_join_parents(update, system->model.followers[e / 4].copy, system->model.followers[e / 4].master[e % 4],
                               forest);
+    for (c = 0; c < system->affine.block_count; c++)
+        for (e = 0; e < 6 * GXSP_LANES; e++) {
+            const gxsp_affine_block *block = &system->affine.blocks[c];
+            const uint32_t l = e % GXSP_LANES, i = block->vector[gxsp_edge_ends[e / GXSP_LANES][0]][l],
+                           j = block->vector[gxsp_edge_ends[e / GXSP_LANES][1]][l];
+            if (block->rest.weight[l] > 0) gxsp_join_parents(update, i, j, forest);
+        }
 }
 
 /* Splits dirty coarse nodes into clusters: the first one of each node keeps its number, others get new ones. from:
@@ -9144,8 +9458,10 @@ static void gxsp_drop_fixed(const gxsp_renewal *update) {
         }
 }
 
-/* Copies blocks of level 1's entries between nodes that are not dirty, from the level before. */
-static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const uint8_t *dirty) {
+/* Copies blocks of level 1's entries between nodes that are not dirty, from the level before. from, to: what elements
+ * with affine copies add to them; NULL: there are none */
+static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const uint8_t *dirty, const double *from,
+                             double *to) {
     uint32_t i, k, entry;
     for (i = 0; i < before->n; i++) {
         if (dirty[i]) continue;
@@ -9153,18 +9469,27 @@ static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const 
             if (dirty[before->column[k]]) continue;
             while (level->column[entry] < before->column[k]) entry++;
             memcpy(level->block + 9 * (size_t)entry, before->block + 9 * (size_t)k, 9 * sizeof(float));
+            if (from) memcpy(to + 9 * (size_t)entry, from + 9 * (size_t)k, 9 * sizeof(double));
         }
     }
 }
 
+static int gxsp_block_dirty(const gxsp_system *system, const gxsp_affine_block *block, const uint8_t *dirty) {
+    int l;
+    for (l = 0; l < GXSP_LANES; l++)
+        if (gxsp_nested_dirty(system, block, l, dirty)) return 1;
+    return 0;
+}
+
 /* Numbers of the coarse levels. Those of entries with dirty nodes come from the Hessian at the state at which the
  * others were made, so that the matrix stays semi-definite. */
-static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, const uint8_t *dirty) {
+static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, const double *affine,
+                              const uint8_t *dirty) {
     gxsp_system *system = update->system;
     gxsp_pass pass;
     uint32_t c;
     int finite;
-    gxsp_keep_blocks(before, &system->multigrid.levels[1], dirty);
+    gxsp_keep_blocks(before, &system->multigrid.levels[1], dirty, affine, system->affine.block);
     memset(&pass, 0, sizeof pass);
     pass.system = system;
     pass.materials = system->state.damped;
@@ -9175,9 +9500,14 @@ static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, co
             system->state.chunk_still[c] = 0;
             gxsp_task_linearise(&pass, c);
         }
+    for (c = 0; c < system->affine.block_count; c++)
+        if (gxsp_block_dirty(system, &system->affine.blocks[c], dirty))
+            gxsp_affine_tangents(&pass, &system->affine.blocks[c]);
     gxsp_lend_memory(system);
     gxsp_coarse_elements(system, dirty);
-    finite = gxsp_lower_numbers(system, dirty);
+    finite = affine ? gxsp_invert_diagonal(&system->multigrid.levels[1], dirty) &&
+                          gxsp_nested_numbers(system, pass.rate, dirty)
+                    : gxsp_lower_numbers(system, dirty);
     gxsp_return_memory(system);
     return finite;
 }
@@ -9188,41 +9518,88 @@ static int gxsp_most_are_dirty(const gxsp_system *system, const uint8_t *dirty) 
     uint32_t c, count = 0;
     for (c = 0; c < system->mesh.chunk_count; c++)
         count += (uint32_t)gxsp_follows_dirty(system, &system->mesh.chunks[c], dirty);
-    return (double)count > GXSP_DIRTY * (double)system->mesh.chunk_count;
+    for (c = 0; c < system->affine.block_count; c++) /* eight of these elements cost about as much as a chunk */
+        count += (uint32_t)gxsp_block_dirty(system, &system->affine.blocks[c], dirty);
+    return (double)count > GXSP_DIRTY * ((double)system->mesh.chunk_count + system->affine.block_count);
 }
 
 /* Have the coarse matrices served their time? */
 static int gxsp_coarse_ends(const gxsp_system *system) { return system->coarse.served >= system->coarse.life; }
 
+/* Hidden nodes, where copies are affine. Coarse nodes that had some keep them, and these are dirty as they are; others
+ * get them behind all nodes. count: coarse nodes without new hidden ones; before: so far. Returns the number of nodes.
+ */
+static uint32_t gxsp_renew_hidden(gxsp_renewal *update, uint32_t before, uint32_t count) {
+    gxsp_system *system = update->system;
+    const uint32_t *hidden = system->affine.hidden, known = system->affine.hidden_count;
+    uint32_t i;
+    if (system->affine.count == 0) return count;
+    gxsp_nested_begin(system, count);
+    if (system->multigrid.pool.failed) return count;
+    memcpy(system->affine.hidden, hidden, (known < before ? known : before) * sizeof *hidden);
+    for (i = 0; i < before; i++)
+        if (system->affine.hidden[i] != GXSP_NONE && update->dirty[i])
+            memset(update->dirty + system->affine.hidden[i], 1, 3);
+    return gxsp_nested_nodes(system, count, count);
+}
+
+/* Nodes of level 1, their places and which of them are dirty. from: see gxsp_number_dirty. */
+static uint8_t *gxsp_renew_coarse_nodes(gxsp_renewal *update, const gxsp_level *before, const uint32_t *from,
+                                        uint32_t count) {
+    gxsp_multigrid *multigrid = &update->system->multigrid;
+    const uint32_t all = gxsp_renew_hidden(update, before->n, count);
+    uint8_t *dirty = (uint8_t *)gxsp_take(update->scratch, all, 1);
+    uint32_t i;
+    memset(&multigrid->levels[1], 0, (GXSP_LEVELS - 1) * sizeof multigrid->levels[1]);
+    gxsp_level_make(&multigrid->pool, &multigrid->levels[1], all);
+    if (update->scratch->failed || multigrid->pool.failed) return dirty;
+    memset(dirty, 1, all);
+    memcpy(dirty, update->dirty, before->n);
+    memcpy(multigrid->levels[1].place, before->place, before->n * sizeof *before->place);
+    for (i = before->n; i < count; i++)
+        memcpy(multigrid->levels[1].place[i], before->place[from[i - before->n]], sizeof *before->place);
+    if (update->system->affine.count > 0) gxsp_nested_offsets(update->system);
+    return dirty;
+}
+
+/* Level 1 where copies are affine: its pattern, and whether its factor is still cheap */
+static void gxsp_renew_nested(gxsp_renewal *update, const gxsp_level *before, const uint8_t *dirty) {
+    gxsp_system *system = update->system;
+    gxsp_pairs_make(system, update->scratch);
+    if (update->scratch->failed) return;
+    gxsp_first_pattern(system, update->scratch, before, dirty);
+    if (update->scratch->failed || system->multigrid.pool.failed) return;
+    update->dear =
+        system->affine.stretch <= GXSP_WIDEST && !gxsp_factors(update->scratch, &system->multigrid.levels[1],
+                                                               GXSP_NESTED_SLACK * GXSP_NESTED_COST * system->model.n);
+    gxsp_nested_end(system, update->scratch);
+}
+
 static void gxsp_renew_levels(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     gxsp_pool *scratch = update->scratch, old = system->multigrid.pool;
     gxsp_level before = system->multigrid.levels[1];
+    const double *affine = system->affine.count > 0 ? system->affine.block : NULL;
     uint32_t *forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
-    uint32_t *from = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t)), count = 0, i;
+    uint32_t *from = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
     uint8_t *dirty = NULL;
     system->multigrid.pool = gxsp_pool_make(&old.allocator);
     gxsp_edges_make(system, scratch);
     if (!scratch->failed && !system->multigrid.pool.failed) {
         gxsp_drop_fixed(update);
         gxsp_join_dirty(update, forest);
-        count = gxsp_number_dirty(update, forest, from);
-        memset(&system->multigrid.levels[1], 0, (GXSP_LEVELS - 1) * sizeof system->multigrid.levels[1]);
-        gxsp_level_make(&system->multigrid.pool, &system->multigrid.levels[1], count);
-        dirty = (uint8_t *)gxsp_take(scratch, count, 1);
+        dirty = gxsp_renew_coarse_nodes(update, &before, from, gxsp_number_dirty(update, forest, from));
     }
     if (!scratch->failed && !system->multigrid.pool.failed) {
-        memset(dirty, 1, count);
-        memcpy(dirty, update->dirty, before.n);
-        memcpy(system->multigrid.levels[1].place, before.place, before.n * sizeof *before.place);
-        for (i = before.n; i < count; i++)
-            memcpy(system->multigrid.levels[1].place[i], before.place[from[i - before.n]], sizeof *before.place);
-        gxsp_levels_make(system, scratch, &before, dirty);
+        if (affine)
+            gxsp_renew_nested(update, &before, dirty);
+        else
+            gxsp_levels_make(system, scratch, &before, dirty);
     }
     if (!scratch->failed && !system->multigrid.pool.failed) gxsp_share_memory(system);
     if (!scratch->failed && !system->multigrid.pool.failed && !system->pool.failed && system->coarse.rate >= 0 &&
         (system->coarse.stiffness > 0 || system->coarse.quick || system->coarse.worn || gxsp_coarse_ends(system) ||
-         gxsp_most_are_dirty(system, dirty) || !gxsp_renew_numbers(update, &before, dirty)))
+         gxsp_most_are_dirty(system, dirty) || !gxsp_renew_numbers(update, &before, affine, dirty)))
         /* the next step makes all numbers anew; springs and contact are no longer known */
         system->coarse.rate = -1;
     gxsp_release_to(&old, NULL);
@@ -9243,8 +9620,9 @@ static void gxsp_renew_steps(gxsp_renewal *update) {
 }
 
 /* Can the model's form take changes? */
-static int gxsp_is_flexible(const gxsp_system *system) {
-    return !system->multigrid.fine && !system->model.volume && !system->model.lumped_mass && !system->affine.place;
+static int gxsp_is_flexible(const gxsp_system *system, const gxs_change *change) {
+    return !system->multigrid.fine && !system->model.volume && !system->model.lumped_mass &&
+           (system->affine.place != NULL) == (change->affine != NULL);
 }
 
 /* Are the chunks still worth keeping, and is the choice of preconditioner still right? */
@@ -9254,6 +9632,8 @@ static int gxsp_is_compact(gxsp_renewal *update) {
     size_t lanes = 0;
     for (c = 0; c < system->mesh.chunk_count; c++) lanes += system->mesh.chunks[c].block_count * GXSP_LANES;
     if (lanes > system->model.element_count + system->model.element_count / 4 + 2 * GXSP_CHUNK) return 0;
+    if (system->affine.block_count * GXSP_LANES > system->affine.count + system->affine.count / 4 + 2 * GXSP_CHUNK)
+        return 0;
     return !count || !system->multigrid.chosen ||
            gxsp_large_component(system, count) == (system->multigrid.level_count > 0);
 }
@@ -9262,21 +9642,33 @@ static int gxsp_is_compact(gxsp_renewal *update) {
  * out: see the pools. */
 static int gxsp_update_system(gxsp_renewal *update) {
     gxsp_system *system = update->system;
+    uint32_t *place = NULL; /* of gxsp_affine, before */
     system->leap.made = 0;
     gxsp_find_edits(update);
+    gxsp_find_bent(update);
     gxsp_match_edits(update);
+    if (system->affine.place) place = (uint32_t *)gxsp_take(update->scratch, update->before, sizeof *place);
     if (update->scratch->failed) return 1;
+    if (place) memcpy(place, system->affine.place, update->before * sizeof *place);
     gxsp_touch_removed(update);
     gxsp_touch_followers(update);
-    system->model.element_count += update->change->element_count;
+    system->model.element_count += update->change->element_count - update->added_count;
     system->model.element_count -= update->edit_count;
     gxsp_replace_elements(update);
     if (system->pool.failed) return 1;
-    if (system->model.element_count == 0 || !gxsp_renew_nodes(update)) return 0;
+    if (place ? system->affine.count + update->added_count == update->bent_count : system->model.element_count == 0)
+        return 0;
+    if (!gxsp_renew_nodes(update) || !gxsp_renew_blocks(update)) return 0;
     gxsp_move_copies(update);
     if (update->scratch->failed || system->pool.failed) return 1;
+    if (place) {
+        gxsp_renew_groups(update, place);
+        if (!system->pool.failed) gxsp_place_bent(update);
+        if (system->pool.failed) return 1;
+    }
     gxsp_renew_steps(update);
     gxsp_touch_added(update);
+    gxsp_touch_groups(update);
     gxsp_recount_copies(update);
     gxsp_renew_lights(update);
     gxsp_set_followers(system, update->change->constraints, update->change->constraint_count);
@@ -9286,7 +9678,7 @@ static int gxsp_update_system(gxsp_renewal *update) {
         gxsp_renew_levels(update);
     else if (!system->pool.failed)
         gxsp_share_memory(system);
-    return gxsp_is_compact(update);
+    return !update->dear && gxsp_is_compact(update);
 }
 
 /* >>components: translations and momentum of loose components ------------------------------------------------------ */
@@ -9587,6 +9979,7 @@ static gxsp_grip gxsp_pair_grip(const gxsp_problem *problem, size_t i, const dou
     gxsp_grip grip;
     int c;
     gxsp_point_position(&pair->point, problem->given, before);
+    for (c = 0; c < 3 && (pair->flags & GXS_PAIR_OUTSIDE); c++) before[c] += pair->way[c];
     depth = pair->offset - gxsp_dot(pair->normal, before, 1);
     elastic = depth > 0 ? pair->friction * depth : 0;
     grip.load = pair->stiffness * elastic;
@@ -9852,7 +10245,9 @@ static void gxsp_terms_make(const gxsp_problem *problem, const double *displacem
             share->copy = gxsp_copies(point)[n];
             share->weight = (float)gxsp_weights(point)[n];
         }
-        if (next > problem->step->spring_count + problem->step->point_count) {
+        if (next > problem->step->spring_count + problem->step->point_count &&
+            !(problem->step->pairs[next - 1 - problem->step->spring_count - problem->step->point_count].flags &
+              GXS_PAIR_OUTSIDE)) {
             gxsp_balance_shares(lasting->share + term->first, gxsp_weights(point), point->count);
             for (n = 0; n < point->count; n++) term->spread += fabsf(lasting->share[term->first + n].weight);
         }
@@ -10388,6 +10783,14 @@ static int gxsp_is_written(const gxsp_system *system, size_t copy, const double 
            (system->state.stepped && gxsp_differs(displacement, system->vectors.current + 3 * copy));
 }
 
+/* Wakes the components that a pair joins to something outside that has moved. */
+static void gxsp_wake_paired(gxsp_system *system, const gxs_pair *pair) {
+    uint32_t k;
+    for (k = 0; k < pair->point.count && (pair->flags & GXS_PAIR_WAKES); k++)
+        if (fabs(gxsp_weights(&pair->point)[k]) > 0)
+            system->model.components[system->model.component[gxsp_copies(&pair->point)[k]]].woken = 1;
+}
+
 /* Wakes the components that a change touches. */
 static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement, const double *velocity) {
     gxsp_system *system = problem->system;
@@ -10406,6 +10809,7 @@ static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement,
                            (springs && (component->has_spring[0] || component->has_spring[1])) ||
                            component->has_pair[0] > component->has_pair[1];
     }
+    for (i = 0; i < step->pair_count; i++) gxsp_wake_paired(system, &step->pairs[i]);
     for (i = 0; i < system->model.n; i++) {
         gxsp_component *component = &system->model.components[system->model.component[i]];
         if (step->targets && system->model.held[i] && gxsp_differs(step->targets + 3 * i, displacement + 3 * i))
@@ -11264,10 +11668,12 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
     gxsp_report_pairs(problem, ends);
     memcpy(displacement, ends, count * sizeof(double));
     memcpy(velocity, speeds, count * sizeof(double));
-    if (midpoint || problem->report.substeps > 0 || problem->report.quick)
+    /* followers, which current has moved with their masters by each direction, are rounded otherwise in ends */
+    if (midpoint || problem->report.substeps > 0 || problem->report.quick || system->model.follower_count > 0)
         memcpy(system->vectors.current, ends, count * sizeof(double));
     system->state.stepped = 1;
-    system->state.base_known = !midpoint && !problem->report.quick && gxsp_point_count(step) == 0;
+    system->state.base_known = !midpoint && !problem->report.quick && gxsp_point_count(step) == 0 &&
+                               (system->model.follower_count == 0 || problem->report.substeps > 0);
     system->leap.known = problem->report.quick != 0;
     system->lasting->scene = problem->scene;
     for (i = 0; i < system->model.component_count; i++) {
@@ -12281,15 +12687,18 @@ static gx_result gxsp_check_plane(const gxs_plane *plane, size_t index, gx_failu
              : GX_OK;
 }
 
-/* A pair of a step. Weights are 0 in sum up to the rounding of those who made them. */
+/* A pair of a step. Weights are 0 in sum, or 1, up to the rounding of those who made them. */
 static gx_result gxsp_check_pair(const gxs_step_desc *step, size_t index, size_t n, gx_failure *failure) {
     static const char *const names[6] = {"pairs.point.count",  "pairs.point.copy",    "pairs.point.weight",
                                          "pairs.point.copies", "pairs.point.weights", "pairs.point.position"};
     const gxs_pair *pair = &step->pairs[index];
-    double sum = 0, size = 0;
+    double sum = pair->flags & GXS_PAIR_OUTSIDE ? -1 : 0, size = 0;
     uint32_t k;
     gx_result result;
+    if (pair->flags > (GXS_PAIR_OUTSIDE | GXS_PAIR_WAKES))
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, "pairs.flags", index);
     if ((result = gxsp_check_point(&pair->point, n, names, index, failure)) != GX_OK ||
+        (result = gxsp_check_finite(pair->way, 3, "pairs.way", index, failure)) != GX_OK ||
         (result = gxsp_check_finite(pair->normal, 3, "pairs.normal", index, failure)) != GX_OK ||
         (result = gxsp_check_finite(&pair->offset, 1, "pairs.offset", index, failure)) != GX_OK ||
         (result = gxsp_check_size(pair->stiffness, "pairs.stiffness", index, failure)) != GX_OK ||
@@ -12301,7 +12710,7 @@ static gx_result gxsp_check_pair(const gxs_step_desc *step, size_t index, size_t
         size += fabs(gxsp_weights(&pair->point)[k]);
     }
     if (size > 1e30) return gxsp_fail(failure, GX_ERROR_RANGE, names[pair->point.copies ? 4 : 2], index);
-    if (fabs(sum) > 1e-12 * size)
+    if (fabs(sum) > (pair->flags & GXS_PAIR_OUTSIDE ? 1e-9 : 1e-12) * size)
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, names[pair->point.copies ? 4 : 2], index);
     if (fabs(gxsp_dot(pair->normal, pair->normal, 1) - 1) > 1e-6)
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, "pairs.normal", index);
@@ -12356,6 +12765,24 @@ static gx_result gxsp_check_vectors(const gxs_step_desc *step, size_t n, const d
     for (i = 0; step->targets && result == GX_OK && i < n; i++)
         if (held[i]) result = gxsp_check_finite(step->targets + 3 * i, 3, "targets", i, failure);
     return result;
+}
+
+/* Affine copies of a change. They and their hidden vectors are as in a model. */
+static gx_result gxsp_check_changed_affine(const gxs_solver *solver, const gxs_change *change, gxsp_pool *scratch,
+                                           gx_failure *failure) {
+    uint8_t *owned = change->affine ? (uint8_t *)gxsp_take(scratch, change->copy_count, 1) : NULL;
+    gxs_model model;
+    if (!owned) return GX_OK; /* without memory the caller fails */
+    memset(&model, 0, sizeof model);
+    model.copy_count = change->copy_count;
+    model.held = change->held;
+    model.affine = change->affine;
+    model.affine_length = solver->system->affine.place ? solver->system->affine.length : 1;
+    model.elements = change->elements;
+    model.element_count = change->element_count;
+    model.constraints = change->constraints;
+    model.constraint_count = change->constraint_count;
+    return gxsp_check_affine(&model, solver, owned, failure);
 }
 
 /* Is the change one of this model? */
@@ -12885,6 +13312,10 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
         return failure->result;
     }
     scratch = gxsp_pool_make(&solver->allocator);
+    if (gxsp_check_changed_affine(solver, change, &scratch, failure) != GX_OK) {
+        gxsp_release_to(&scratch, NULL);
+        return failure->result;
+    }
     solver->lasting.tempo.age = 0;
     solver->lasting.tempo.before_dt = 0;
     system->state.product_rate = -1;
@@ -12904,7 +13335,8 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
         gxsp_release_to(&scratch, NULL);
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, "constraints", bad);
     }
-    fits = scratch.failed || (gxsp_is_flexible(system) && gxsp_find_successors(&update) && gxsp_update_system(&update));
+    fits = scratch.failed ||
+           (gxsp_is_flexible(system, change) && gxsp_find_successors(&update) && gxsp_update_system(&update));
     gxsp_release_to(&scratch, NULL);
     if (scratch.failed || system->pool.failed || system->multigrid.pool.failed)
         gxsp_end(failure, GX_ERROR_MEMORY);
@@ -13278,6 +13710,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_WIDEN
 #undef GXSP_ADD_PRODUCT
 #undef GXSP_SUM_DOUBLES
+#undef GXSP_NESTED_SLACK
 #undef GXSP_AFFINE_TASK
 #undef GXSP_AFFINE_ROUND
 #ifdef GXFEM_SCALAR
