@@ -12963,7 +12963,7 @@ static void gxsp_parts_copy(const gxsp_parts *parts, const gxs_step_desc *step, 
     own[2] = step->sleep_speed > 0 ? step->rest_times : NULL;
     own[3] = step->pair_slips;
     for (k = 0; k < 4; k++)
-        if (own[k] && count[k] > 0) memcpy(back ? own[k] : kept[k], back ? kept[k] : own[k], count[k] * sizeof(double));
+        if (own[k]) memcpy(back ? own[k] : kept[k], back ? kept[k] : own[k], count[k] * sizeof(double));
 }
 
 /* Frequency of the motion, rad/s; 0: not known, or nothing resists */
@@ -12971,10 +12971,9 @@ static double gxsp_tempo_frequency(const gxsp_tempo *tempo) {
     return tempo->motion > 0 && tempo->work > 0 ? sqrt(tempo->work / tempo->motion) : 0;
 }
 
-/* The share of the motion in what is displaced, 0 ... 1 */
+/* The share of the motion in what is displaced, 0 ... 1. The frequency is known. */
 static double gxsp_tempo_share(const gxsp_tempo *tempo) {
-    const double way = tempo->motion / tempo->weight, rest = 2 * fmax(0, tempo->stored);
-    return way > 0 ? sqrt(way / (way + rest)) : 0;
+    return sqrt(tempo->motion / (tempo->motion + 2 * fmax(0, tempo->stored) * tempo->weight));
 }
 
 /* The work of L on a way, J */
@@ -13016,7 +13015,7 @@ static void gxsp_tempo_measure(gxs_solver *solver, double dt, double seconds, co
         if (!system->state.still[i / 3]) kinetic += system->model.lumped[i / 3] * velocity[i] * velocity[i];
     }
     tempo->steps = 0;
-    if (!gxsp_finite(work) || !gxsp_finite(motion) || !gxsp_finite(stored)) return;
+    if (!gxsp_finite(work + motion + stored)) return;
     if (tempo->leaps && system->leap.suits) {
         tempo->resist[0] = keep * tempo->resist[0] + each * gxsp_leap_resistance(system, from, displacement);
         tempo->resist[1] = keep * tempo->resist[1] + motion;
@@ -13064,8 +13063,9 @@ static gxsp_plan gxsp_plan_implicit(const gxs_solver *solver, const gxs_step_des
     return plan;
 }
 
-/* The explicit step for an error; work 0: it cannot be explicit. The filter adds h^2 L / 12 to the inertia, so that L
- * in place of the body's stiffness gives the error, and its masses have an error of their own. */
+/* The explicit step for an error, without targets and points; work 0: it cannot be explicit. The filter adds h^2 L / 12
+ * to the inertia, so that L in place of the body's stiffness gives the error, and its masses have an error of their
+ * own. */
 static gxsp_plan gxsp_plan_explicit(const gxs_solver *solver, const gxs_step_desc *step, double error) {
     const gxsp_leap *leap = &solver->system->leap;
     const gxsp_tempo *tempo = &solver->lasting.tempo;
@@ -13081,16 +13081,14 @@ static gxsp_plan gxsp_plan_explicit(const gxs_solver *solver, const gxs_step_des
     gxsp_plan plan;
     uint32_t degree;
     memset(&plan, 0, sizeof plan);
-    if (!leap->suits || step->targets || gxsp_point_count(step) > 0 || !(0.5 * step->dt * step->mass_damping < 1) ||
-        !(substeps <= GXSP_QUALITY_SUBSTEPS))
-        return plan;
+    if (!leap->suits || !(0.5 * step->dt * step->mass_damping < 1) || !(substeps <= GXSP_QUALITY_SUBSTEPS)) return plan;
     plan.integrator = GXS_EXPLICIT;
     plan.parts = 1;
-    plan.substeps = substeps < 1 ? 1 : (uint32_t)substeps;
+    plan.substeps = (uint32_t)fmax(1, substeps);
     degree = gxsp_leap_degree(leap, step->dt / plan.substeps, factor);
     plan.error = GXSP_LEAP_MASS * later * share / 6;
     if (degree > 1) plan.error += all / plan.substeps / plan.substeps * (1 - 1.0 / degree / degree);
-    plan.work = degree > 0 ? plan.substeps * (1 + GXSP_WORK_PRODUCT * (degree - 1.0)) + GXSP_WORK_STEP : 0;
+    plan.work = plan.substeps * (1 + GXSP_WORK_PRODUCT * (degree - 1.0)) + GXSP_WORK_STEP;
     return plan;
 }
 
