@@ -60,7 +60,8 @@
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
  *     a step, with contact:      >>touch >>colliders >>meeting >>pressing >>step
- *     a blade in space:          >>layers >>edges >>fronts >>glances >>strokes >>ways >>blade >>contacts >>carve
+ *     a blade in space:          >>layers >>edges >>relations >>fronts >>glances >>strokes >>ways >>blade
+ *                                >>contacts >>carve
  *     beginning, end, bytes:     >>grid >>create >>hashes >>stream >>scabbard >>save
  *
  * Words. Facet: a polygon inside an element or in an element face, made by cuts. Wall: a facet that a sheet covers.
@@ -1625,7 +1626,12 @@ typedef struct gxp_scratch {
     gxp_keys order;          /* place in the order of insertion, triangle */
     gxp_words near_elements; /* that a triangle may meet */
     /* >>pinches */
-    gxp_words joint_leaves, joint_edges, joint_cells; /* around a node or edge */
+    gxp_words joint_leaves; /* around a node, or of an element */
+    gxp_words joint_edges;  /* parts of edges in which these meet: joints 0, 1, ...; then a node is one */
+    gxp_words joint_walls;  /* by joint: 1 if a wall touches it */
+    gxp_words leaf_joints;  /* on a leaf's boundary */
+    gxp_keys joint_cells;   /* joint, cell; ascending */
+    gxp_keys cell_joints;   /* the same by cell */
     /* >>solids */
     gxp_words seed_leaves; /* where the flood starts */
     gxp_words flooded;     /* leaves whose winding number is known */
@@ -1910,7 +1916,8 @@ static const gxp_column gxp_lists[] = {
     GXP_KEYS(scratch.links), GXP_KEYS(scratch.glue), GXP_KEYS(scratch.seams), GXP_WORDS(scratch.cluster),
     GXP_WORDS(scratch.link_first), GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
     GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements),
-    GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_cells),
+    GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_walls),
+    GXP_WORDS(scratch.leaf_joints), GXP_KEYS(scratch.joint_cells), GXP_KEYS(scratch.cell_joints),
     GXP_WORDS(scratch.seed_leaves), GXP_WORDS(scratch.flooded), GXP_WORDS(scratch.seeded), GXP_WORDS(scratch.wound),
     GXP_WORDS(scratch.leaf_points),
     GXP_KEYS(scratch.given_to), GXP_WORDS(scratch.remade), GXP_KEYS(scratch.interfaces),
@@ -3462,32 +3469,58 @@ static void gxp_find_pinched_edges(gx_body *body) {
         }
 }
 
-/* A point or an edge of the complex in which elements meet; the other of the two is GXB_NONE */
-typedef struct gxp_joint {
-    uint32_t point, edge;
-    int found, walled;
-} gxp_joint;
+/* Where a word is in an ascending list, GXP_NONE: nowhere */
+static uint32_t gxp_place_of(const gxp_words *words, uint32_t value) {
+    uint32_t low = 0, high = words->count;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (words->data[middle] < value)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < words->count && words->data[low] == value ? low : GXP_NONE;
+}
 
-/* Is the joint on the leaf's boundary (found), and does a wall touch it there (walled)? */
-static gx_result gxp_find_leaf_joint(gx_body *body, uint32_t leaf, gxp_joint *joint) {
+/* Makes the edges in scratch.joint_edges joints: the parts of mesh edges in which elements meet, joints 0, 1, ... in
+   ascending order. The joint after them is a node. */
+static gx_result gxp_start_joints(gx_body *body) {
+    gxp_scratch *scratch = &body->scratch;
+    gx_result result;
+    gxp_sort_unique(&scratch->joint_edges);
+    result = gxp_start_words(body, &scratch->joint_walls, (size_t)scratch->joint_edges.count + 1);
+    if (result != GX_OK) return result;
+    scratch->joint_walls.count = scratch->joint_edges.count + 1;
+    memset(scratch->joint_walls.data, 0, scratch->joint_walls.count * sizeof *scratch->joint_walls.data);
+    return GX_OK;
+}
+
+/* Lists in scratch.leaf_joints the joints on the boundary of a leaf of an open element, and notes in
+   scratch.joint_walls at which a wall touches it. node: that is a joint, or GXB_NONE */
+static gx_result gxp_find_leaf_joints(gx_body *body, uint32_t leaf, uint32_t node) {
     gxb_complex *cx = body->complex;
-    uint32_t first, count = 0, i, j, e0, en;
-    gx_result result = gxb_complex_open_element(cx, gxb_complex_leaf(cx, leaf)->element);
-    if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
-    joint->found = 0;
+    gxp_scratch *scratch = &body->scratch;
+    uint32_t first, count = 0, i, j, k, e0, en;
+    gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
+    scratch->leaf_joints.count = 0;
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint32_t facet = gxp_item(cx, first + i);
+        const int wall = gxb_complex_facet(cx, facet)->wall != 0 || gxb_complex_leaf(cx, leaf)->removed != 0;
         result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
         for (j = 0; j < en && result == GX_OK; j++) {
             const uint32_t e = gxp_item(cx, e0 + j);
-            if (joint->point != GXB_NONE ? gxb_complex_edge_start(cx, e) != joint->point : e >> 1 != joint->edge)
-                continue;
-            joint->found = 1;
-            joint->walled |= gxb_complex_facet(cx, facet)->wall != 0 || gxb_complex_leaf(cx, leaf)->removed != 0 ||
-                             (joint->point != GXB_NONE ? gxb_complex_point(cx, joint->point)->wall
-                                                       : gxb_complex_edge(cx, joint->edge)->wall) != 0;
+            uint32_t joints[2] = {GXP_NONE, GXP_NONE};
+            joints[0] = gxp_place_of(&scratch->joint_edges, e >> 1);
+            if (node != GXB_NONE && gxb_complex_edge_start(cx, e) == node) joints[1] = scratch->joint_edges.count;
+            for (k = 0; k < 2 && result == GX_OK; k++) {
+                if (joints[k] == GXP_NONE) continue;
+                result = gxp_push(body, &scratch->leaf_joints, joints[k]);
+                if (wall || (k == 0 ? gxb_complex_edge(cx, e >> 1)->wall : gxb_complex_point(cx, node)->wall) != 0)
+                    scratch->joint_walls.data[joints[k]] = 1;
+            }
         }
     }
+    gxp_sort_unique(&scratch->leaf_joints);
     return result;
 }
 
@@ -3495,26 +3528,20 @@ static gx_result gxp_find_leaf_joint(gx_body *body, uint32_t leaf, gxp_joint *jo
    of the two is GXB_NONE. */
 static gx_result gxp_is_joint_in_scope(gx_body *body, uint32_t element, uint32_t node, uint32_t edge, int *found) {
     gxp_scratch *scratch = &body->scratch;
-    gx_result result = GX_OK;
-    uint32_t i, j;
+    gx_result result;
+    uint32_t i;
     *found = 0;
     scratch->joint_leaves.count = scratch->joint_edges.count = 0;
-    if (edge == GXB_NONE)
-        result = gxp_push(body, &scratch->joint_edges, GXB_NONE);
-    else
+    result = gxb_complex_open_element(body->complex, element);
+    if (edge != GXB_NONE && result == GX_OK)
         result = gxp_push_divided_edges(body, gxb_complex_mesh_edge(body->complex, edge), &scratch->joint_edges);
+    if (result == GX_OK) result = gxp_start_joints(body);
     if (result == GX_OK)
         result = gxp_push_leaves(body, gxb_complex_root(body->complex, element), &scratch->joint_leaves);
-    for (i = 0; i < scratch->joint_leaves.count && result == GX_OK; i++) {
-        gxp_joint joint;
+    for (i = 0; i < scratch->joint_leaves.count && result == GX_OK && !*found; i++) {
         if (!gxp_in_scope(body, scratch->joint_leaves.data[i])) continue;
-        for (j = 0; j < scratch->joint_edges.count && result == GX_OK && !*found; j++) {
-            joint.point = node;
-            joint.edge = scratch->joint_edges.data[j];
-            joint.walled = 0;
-            result = gxp_find_leaf_joint(body, scratch->joint_leaves.data[i], &joint);
-            *found |= joint.found;
-        }
+        result = gxp_find_leaf_joints(body, scratch->joint_leaves.data[i], node);
+        *found = scratch->leaf_joints.count > 0;
     }
     return result;
 }
@@ -3551,60 +3578,71 @@ static gx_result gxp_cover_pinches(gx_body *body, gxb_triangle *t, uint32_t elem
     return result;
 }
 
-/* Appends the cells around the node that have the joint on their boundary. Removed leaves count as walls. */
-static gx_result gxp_find_joint_cells(gx_body *body, uint32_t node, gxp_joint *joint, gxp_words *found) {
+/* Drops keys that are there twice; they are ascending. */
+static void gxp_drop_same_keys(gxp_keys *keys) {
+    uint32_t i, n = 0;
+    for (i = 0; i < keys->count; i++)
+        if (n == 0 || keys->data[i] != keys->data[n - 1]) keys->data[n++] = keys->data[i];
+    keys->count = n;
+}
+
+/* Lists the pinched edges of a node, in parts, in scratch.joint_edges, and the leaves around it in joint_leaves. */
+static gx_result gxp_list_joint_edges(gx_body *body, uint32_t node) {
     gxp_scratch *scratch = &body->scratch;
-    uint32_t j, i;
+    gxb_complex *cx = body->complex;
+    uint32_t i, k;
     gx_result result = GX_OK;
-    joint->walled = 0;
-    scratch->joint_leaves.count = 0;
-    for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1] && result == GX_OK; j++)
-        result =
-            gxp_push_leaves(body, gxb_complex_root(body->complex, body->mesh.node_elements[j]), &scratch->joint_leaves);
+    scratch->joint_leaves.count = scratch->joint_edges.count = 0;
+    for (i = body->mesh.node_start[node]; i < body->mesh.node_start[node + 1] && result == GX_OK; i++) {
+        const uint32_t element = body->mesh.node_elements[i], *nodes = gxb_complex_element_nodes(cx, element);
+        result = gxb_complex_open_element(cx, element);
+        if (result == GX_OK) result = gxp_push_leaves(body, gxb_complex_root(cx, element), &scratch->joint_leaves);
+        for (k = 0; k < 6 && result == GX_OK; k++) {
+            const uint32_t edge = gxb_complex_element_edges(cx, element)[k];
+            if (!body->mesh.edge_pinched[edge]) continue;
+            if (nodes[gxp_edge_nodes[k][0]] == node || nodes[gxp_edge_nodes[k][1]] == node)
+                result = gxp_push_divided_edges(body, gxb_complex_mesh_edge(cx, edge), &scratch->joint_edges);
+        }
+    }
+    return result == GX_OK ? gxp_start_joints(body) : result;
+}
+
+/* Lists which cells around a node meet in which joints: the node, if it is pinched, and its pinched edges. Removed
+   leaves count as walls. */
+static gx_result gxp_list_joints(gx_body *body, uint32_t node) {
+    gxp_scratch *scratch = &body->scratch;
+    const uint32_t point = body->mesh.node_pinched[node] & 1 ? node : GXB_NONE;
+    uint32_t i, k;
+    gx_result result = gxp_list_joint_edges(body, node);
+    scratch->joint_cells.count = scratch->cell_joints.count = 0;
     for (i = 0; i < scratch->joint_leaves.count && result == GX_OK; i++) {
         const uint32_t leaf = scratch->joint_leaves.data[i];
-        result = gxp_find_leaf_joint(body, leaf, joint);
-        if (joint->found && !gxb_complex_leaf(body->complex, leaf)->removed && result == GX_OK)
-            result = gxp_push(body, found, body->leaves.data[leaf].cell);
+        result = gxp_find_leaf_joints(body, leaf, point);
+        if (gxb_complex_leaf(body->complex, leaf)->removed) continue;
+        for (k = 0; k < scratch->leaf_joints.count && result == GX_OK; k++)
+            result =
+                gxp_push_key(body, &scratch->joint_cells, scratch->leaf_joints.data[k], body->leaves.data[leaf].cell);
     }
-    return result;
+    if (result == GX_OK) result = gxp_sort_keys(body, &scratch->joint_cells, 0, scratch->joint_cells.count);
+    gxp_drop_same_keys(&scratch->joint_cells);
+    for (i = 0; i < scratch->joint_cells.count && result == GX_OK; i++)
+        result = gxp_push_key(body, &scratch->cell_joints, GXP_SECOND(scratch->joint_cells.data[i]),
+                              GXP_FIRST(scratch->joint_cells.data[i]));
+    return result == GX_OK ? gxp_sort_keys(body, &scratch->cell_joints, 0, scratch->cell_joints.count) : result;
 }
 
-/* Visits the cells that the joint connects to this cell. */
-static gx_result gxp_cross_joint(gx_body *body, uint32_t cell, uint32_t node, uint32_t point, uint32_t edge) {
+/* Visits the cells that joints connect to this one: those that gxp_list_joints has listed. */
+static gx_result gxp_cross_joints(gx_body *body, uint32_t cell) {
     gxp_scratch *scratch = &body->scratch;
-    gxp_joint joint;
-    uint32_t i, member = 0;
-    gx_result result;
-    joint.point = point;
-    joint.edge = edge;
-    joint.walled = joint.found = 0;
-    scratch->joint_cells.count = 0;
-    result = gxp_find_joint_cells(body, node, &joint, &scratch->joint_cells);
-    for (i = 0; i < scratch->joint_cells.count; i++) member |= scratch->joint_cells.data[i] == cell;
-    for (i = 0; i < scratch->joint_cells.count && result == GX_OK && member && !joint.walled; i++)
-        result = gxp_visit_cell(body, scratch->joint_cells.data[i], &scratch->subdomain_cells);
-    return result;
-}
-
-/* Visits the cells that the node, if it is pinched, and its pinched edges connect to this cell. */
-static gx_result gxp_cross_pinches(gx_body *body, uint32_t cell, uint32_t node) {
-    gxp_scratch *scratch = &body->scratch;
-    const uint32_t element = body->cells.data[cell].element;
-    gxb_complex *cx = body->complex;
-    uint32_t k, i;
-    gx_result result = gxb_complex_open_element(cx, element);
-    if (result == GX_OK && (body->mesh.node_pinched[node] & 1))
-        result = gxp_cross_joint(body, cell, node, node, GXB_NONE);
-    for (k = 0; k < 6 && result == GX_OK; k++) {
-        const uint32_t edge = gxb_complex_element_edges(cx, element)[k];
-        const uint32_t a = gxb_complex_element_nodes(cx, element)[gxp_edge_nodes[k][0]],
-                       b = gxb_complex_element_nodes(cx, element)[gxp_edge_nodes[k][1]];
-        if (!body->mesh.edge_pinched[edge] || (a != node && b != node)) continue;
-        scratch->joint_edges.count = 0;
-        result = gxp_push_divided_edges(body, gxb_complex_mesh_edge(cx, edge), &scratch->joint_edges);
-        for (i = 0; i < scratch->joint_edges.count && result == GX_OK; i++)
-            result = gxp_cross_joint(body, cell, node, GXB_NONE, scratch->joint_edges.data[i]);
+    const gxp_keys *of_cell = &scratch->cell_joints, *of_joint = &scratch->joint_cells;
+    uint32_t i = gxp_first_key(of_cell, (uint64_t)cell << 32), j;
+    gx_result result = GX_OK;
+    for (; i < of_cell->count && GXP_FIRST(of_cell->data[i]) == cell; i++) {
+        const uint32_t joint = GXP_SECOND(of_cell->data[i]);
+        if (scratch->joint_walls.data[joint]) continue;
+        j = gxp_first_key(of_joint, (uint64_t)joint << 32);
+        for (; j < of_joint->count && GXP_FIRST(of_joint->data[j]) == joint && result == GX_OK; j++)
+            result = gxp_visit_cell(body, GXP_SECOND(of_joint->data[j]), &scratch->subdomain_cells);
     }
     return result;
 }
@@ -4759,7 +4797,7 @@ static gx_result gxp_walk_subdomain(gx_body *body, uint32_t cell, uint32_t node,
                                      all, open);
         if (result == GX_OK && index != GXP_NONE && scratch->interfaces.count > 0)
             result = gxp_cross_interfaces(body, index, all, open);
-        if (result == GX_OK && body->mesh.node_pinched[node]) result = gxp_cross_pinches(body, c, node);
+        if (result == GX_OK && body->mesh.node_pinched[node]) result = gxp_cross_joints(body, c);
     }
     return result;
 }
@@ -4840,6 +4878,7 @@ static gx_result gxp_find_subdomains(gx_body *body, uint32_t first, uint32_t end
     scratch->subdomain_cells.count = scratch->subdomains.count = scratch->taken.count = 0;
     scratch->stamp++;
     *sure = all || !body->mesh.node_pinched[node];
+    if (*sure && body->mesh.node_pinched[node]) result = gxp_list_joints(body, node);
     for (i = first; i < end && result == GX_OK && *sure; i++) {
         const uint32_t cell = GXP_SECOND(scratch->pairs.data[i]), start = scratch->subdomain_cells.count,
                        copy = gxp_copy_of(body, cell, node);
@@ -14059,7 +14098,8 @@ static gx_result gxp_push_cap(gx_blade *blade, uint32_t layer, const double *edg
     gxp_front_vertex v = *far;
     gx_result result = GX_OK;
     if (reach < length)
-        result = gxp_see(blade, layer, edge, count, near->along + reach / length * (far->along - near->along), near, &v);
+        result =
+            gxp_see(blade, layer, edge, count, near->along + reach / length * (far->along - near->along), near, &v);
     return result == GX_OK ? gxp_push_vertex(blade->body, &blade->samples, &v) : result;
 }
 
@@ -14108,10 +14148,10 @@ static gx_result gxp_see_edge(gx_blade *blade, uint32_t layer, const double *edg
     return result == GX_OK ? gxp_list_runs(blade, layer, edge, count) : result;
 }
 
-/* >>fronts: how far the edge has come in a layer ------------------------------------------------------------------- */
-/* In: a layer's front and how it sees the edge. Out: the front advanced where the edge is ahead of it, and the strip of
-   triangles between the two. Where the edge goes back through its own cut the front stays. Touches the blade's working
-   memory. */
+/* >>relations: where a place on the edge lies by the front --------------------------------------------------------- */
+/* In: a layer's front, the sheet of its last strips, places of the edge as the layer sees them. Out: which of them are
+   ahead of the front, which are behind it in the cut, and which have left that through its side. Changes nothing but
+   what it returns. */
 
 /* Shares of an element's size. An advance of less is none. A place behind the front is in the cut if it is no farther
    from its sheet, else the edge has left the cut through its side. */
@@ -14249,34 +14289,6 @@ static gx_result gxp_relate(gx_blade *blade, const gxp_front_vertex *v, gxp_rela
     return result;
 }
 
-/* What the layer's edge does at a move */
-typedef struct gxp_advance {
-    double most; /* the largest advance, m; of places inside, if there are any */
-    int strays;
-    int is_back; /* 1: all of the edge is in the air, and has come there through its own cut */
-} gxp_advance;
-
-/* The vertex of the front next to the nearest point */
-static uint32_t gxp_pin(const gxp_relation *r) { return r->segment + (r->share > 0.5); }
-
-/* Appends the front's own vertices for a run of places that are not ahead: *at is the first vertex not passed yet. */
-static gx_result gxp_stay(gx_blade *blade, const gxp_relation *r, uint32_t count, int first, int last, uint32_t *at) {
-    uint32_t low = GXP_NONE, high = 0, i;
-    gx_result result = GX_OK;
-    for (i = 0; i < count; i++) {
-        const uint32_t pin = gxp_pin(&r[i]);
-        if (pin < low) low = pin;
-        if (pin > high) high = pin;
-    }
-    if (first) low = 0;
-    if (last) high = blade->front.count - 1;
-    if (low < *at) low = *at;
-    for (i = low; i <= high && result == GX_OK; i++)
-        result = gxp_push_vertex(blade->body, &blade->advanced, &blade->front.data[i]);
-    if (high > *at) *at = high;
-    return result;
-}
-
 /* Has an edge that is all in the air come there through its cut? From each vertex of the front in the material, the way
    to the edge begins in the cut's sheet. Otherwise there is material on it that the edge has passed. */
 static gx_result gxp_came_back(gx_blade *blade, int *is_back) {
@@ -14367,6 +14379,39 @@ static void gxp_judge_together(const gxp_front_list *samples, const gxp_front_li
         gxp_stray_together(samples, r, i, -1);
         gxp_stray_together(samples, r, i, 1);
     }
+}
+
+/* >>fronts: how far the edge has come in a layer ------------------------------------------------------------------- */
+/* In: a layer's front and how it sees the edge. Out: the front advanced where the edge is ahead of it, and the strip of
+   triangles between the two. Where the edge goes back through its own cut the front stays. Touches the blade's working
+   memory. */
+
+/* What the layer's edge does at a move */
+typedef struct gxp_advance {
+    double most; /* the largest advance, m; of places inside, if there are any */
+    int strays;
+    int is_back; /* 1: all of the edge is in the air, and has come there through its own cut */
+} gxp_advance;
+
+/* The vertex of the front next to the nearest point */
+static uint32_t gxp_pin(const gxp_relation *r) { return r->segment + (r->share > 0.5); }
+
+/* Appends the front's own vertices for a run of places that are not ahead: *at is the first vertex not passed yet. */
+static gx_result gxp_stay(gx_blade *blade, const gxp_relation *r, uint32_t count, int first, int last, uint32_t *at) {
+    uint32_t low = GXP_NONE, high = 0, i;
+    gx_result result = GX_OK;
+    for (i = 0; i < count; i++) {
+        const uint32_t pin = gxp_pin(&r[i]);
+        if (pin < low) low = pin;
+        if (pin > high) high = pin;
+    }
+    if (first) low = 0;
+    if (last) high = blade->front.count - 1;
+    if (low < *at) low = *at;
+    for (i = low; i <= high && result == GX_OK; i++)
+        result = gxp_push_vertex(blade->body, &blade->advanced, &blade->front.data[i]);
+    if (high > *at) *at = high;
+    return result;
 }
 
 /* Lists in blade.advanced the front as far as the samples have come: these where they are ahead, else its own
@@ -19157,6 +19202,9 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_CAP
 #undef GXP_SURELY
 #undef GXP_AIR
+#undef GXP_LEAP
+#undef GXP_SAME_WAY
+#undef GXP_STAYED
 #undef GXP_LEAST_ADVANCE
 #undef GXP_CHORD_HALVES
 #undef GXP_CHORD_OFF
