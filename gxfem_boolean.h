@@ -902,9 +902,14 @@ extern "C" {
 #define GXBP_APART          __attribute__((noinline))
 #else
 #define GXBP_FETCH(address) ((void)(address))
+#if defined(_MSC_VER)
+#define GXBP_COLD  __declspec(noinline)
+#define GXBP_APART __declspec(noinline)
+#else
 #define GXBP_COLD
-#define GXBP_RARE
 #define GXBP_APART
+#endif
+#define GXBP_RARE
 #endif
 
 /* >>bits: doubles taken apart and put together without floating-point arithmetic ----------------------------------- */
@@ -1286,14 +1291,19 @@ static GXBP_COLD void gxbp_num_increase(gxb_num *r, const gxb_num *a, int factor
 }
 
 /* r = num / den with a relative error below 2^(-45 steps), for at most 16 steps. Each adds the quotient of the
-   remainder, 50 bits. num is overwritten. */
+   remainder, 50 bits. A remainder below 2^(-48 steps) of num is left, so that r has at most 48 steps + 58 bits. num is
+   overwritten, and becomes no longer than the longer of num and den with one limb more. */
 static GXBP_COLD void gxbp_num_divide(gxb_num *r, gxb_num *num, const gxb_num *den, int steps) {
     GXB_NUM(q);
     GXB_NUM(t);
-    int step;
+    int step, first = 0, power;
     gxb_num_set(r, 0, 0);
     for (step = 0; step < steps && num->sign != 0; step++) {
         gxb_num_set(&q, gxb_num_ratio(num, den), 0);
+        if (q.sign == 0) return;
+        (void)gxbp_num_mantissa(&q, &power);
+        if (step == 0) first = power;
+        if (power < first - 48 * steps) return;
         gxbp_num_increase(r, &q, 1);
         gxb_num_mul(&t, &q, den);
         gxbp_num_increase(num, &t, -1);
@@ -1327,10 +1337,17 @@ static GXBP_RARE void gxbp_num_cross(gxb_num r[3], const gxb_num a[3], const gxb
     gxbp_num_det2(&r[2], &a[0], &b[1], &a[1], &b[0]);
 }
 
-/* A vector of numbers with its limbs. */
+/* Room for polynomials of this degree in coordinates of the frame. These are integers times 2^-180, below 2^129. The
+   polynomials here have coefficients below 2^2.2 for each degree, so below 2^(131.2 degree), and bits down to
+   2^(-180 degree): 311.2 bits for each degree. A number may begin and end within a limb, and a sum or a product have a
+   limb more until it is trimmed. */
+#define GXBP_LIMBS(degree) ((5 * (degree) + 4) * (64 / GXB_LIMB_BITS))
+
+/* Four numbers with their limbs: coordinates and weight of a point, at most of degree 7 (three planes), or normal and
+   distance of a plane, degrees 2 and 3. Or differences of any finite doubles, 2099 bits. */
 typedef struct gxbp_vec {
     gxb_num c[4];
-    gxb_limb limbs[4][GXB_NUM_LIMBS];
+    gxb_limb limbs[4][GXBP_LIMBS(7)];
 } gxbp_vec;
 
 static GXBP_APART void gxbp_vec_init(gxbp_vec *v) {
@@ -1339,10 +1356,22 @@ static GXBP_APART void gxbp_vec_init(gxbp_vec *v) {
     for (k = 0; k < 4; k++) v->c[k].d = v->limbs[k];
 }
 
+/* Four numbers of any length: products of differences of any finite doubles, or of a point's coordinates */
+typedef struct gxbp_large {
+    gxb_num c[4];
+    gxb_limb limbs[4][GXB_NUM_LIMBS];
+} gxbp_large;
+
+static GXBP_APART void gxbp_large_init(gxbp_large *v) {
+    int k;
+    memset(v->c, 0, sizeof v->c);
+    for (k = 0; k < 4; k++) v->c[k].d = v->limbs[k];
+}
+
 /* r = a.(b x c) */
 static GXBP_COLD void gxbp_num_det3(gxb_num *r, const gxb_num a[3], const gxb_num b[3], const gxb_num c[3]) {
-    gxbp_vec normal;
-    gxbp_vec_init(&normal);
+    gxbp_large normal;
+    gxbp_large_init(&normal);
     gxbp_num_cross(normal.c, b, c);
     gxbp_num_dot(r, a, normal.c);
 }
@@ -1401,24 +1430,23 @@ static GXBP_COLD void gxbp_exact_line_plane(gxb_num point[4], const gxb_num p[4]
 /* Three planes by Cramer's rule: X = d1 n2 x n3 + d2 n3 x n1 + d3 n1 x n2, W = n1.(n2 x n3); degrees 7 and 6. */
 static GXBP_COLD void gxbp_exact_three_planes(gxb_num point[4], const gxb_num a[4], const gxb_num b[4],
                                               const gxb_num c[4]) {
-    gxbp_vec bc, ca, ab, row, d;
+    gxbp_vec bc, ca, ab;
+    gxb_num row[3], d[3]; /* have the limbs of others */
     int k;
     gxbp_vec_init(&bc);
     gxbp_vec_init(&ca);
     gxbp_vec_init(&ab);
-    gxbp_vec_init(&row);
-    gxbp_vec_init(&d);
     gxbp_num_cross(bc.c, b, c);
     gxbp_num_cross(ca.c, c, a);
     gxbp_num_cross(ab.c, a, b);
-    gxbp_num_copy(&d.c[0], &a[3], 1);
-    gxbp_num_copy(&d.c[1], &b[3], 1);
-    gxbp_num_copy(&d.c[2], &c[3], 1);
+    d[0] = a[3];
+    d[1] = b[3];
+    d[2] = c[3];
     for (k = 0; k < 3; k++) {
-        gxbp_num_copy(&row.c[0], &bc.c[k], 1);
-        gxbp_num_copy(&row.c[1], &ca.c[k], 1);
-        gxbp_num_copy(&row.c[2], &ab.c[k], 1);
-        gxbp_num_dot(&point[k], row.c, d.c);
+        row[0] = bc.c[k];
+        row[1] = ca.c[k];
+        row[2] = ab.c[k];
+        gxbp_num_dot(&point[k], row, d);
     }
     gxbp_num_dot(&point[3], a, bc.c);
     gxbp_make_weight_positive(point);
@@ -1883,12 +1911,14 @@ static int gxbp_filter_insphere(const double *const p[5]) {
 /* Degree 4: 140 limbs of 64 bits for any finite doubles. */
 static GXBP_COLD int gxbp_incircle_exact(const double *const p[4]) {
     gxbp_vec row[3];
+    gxbp_large square;
     GXB_NUM(r);
     int i;
     gxbp_exact_differences(row, p, 4, 2);
+    gxbp_large_init(&square);
     for (i = 0; i < 3; i++) {
-        gxbp_num_dot(&row[i].c[3], row[i].c, row[i].c);
-        row[i].c[2] = row[i].c[3];
+        gxbp_num_dot(&square.c[i], row[i].c, row[i].c);
+        row[i].c[2] = square.c[i];
     }
     gxbp_num_det3(&r, row[0].c, row[1].c, row[2].c);
     return r.sign;
@@ -1899,14 +1929,15 @@ static GXBP_COLD int gxbp_incircle_exact(const double *const p[4]) {
 static GXBP_COLD int gxbp_insphere_exact(const double *const p[5]) {
     gxbp_vec row[4];
     GXB_NUM(minor);
+    GXB_NUM(square);
     GXB_NUM(term);
     GXB_NUM(sum);
     int i;
     gxbp_exact_differences(row, p, 5, 3);
     for (i = 0; i < 4; i++) {
         gxbp_num_det3(&minor, row[i == 0].c, row[i <= 1 ? 2 : 1].c, row[i <= 2 ? 3 : 2].c);
-        gxbp_num_dot(&row[i].c[3], row[i].c, row[i].c);
-        gxb_num_mul(&term, &row[i].c[3], &minor);
+        gxbp_num_dot(&square, row[i].c, row[i].c);
+        gxb_num_mul(&term, &square, &minor);
         gxbp_num_increase(&sum, &term, i % 2 == 0 ? -1 : 1);
     }
     return sum.sign;
@@ -1984,13 +2015,12 @@ GXFEM_API void gxb_point_three_planes(gxb_point *point, const gxb_plane *a, cons
     point->plane[2] = c;
 }
 
-static GXBP_COLD void gxbp_plane_exact(gxbp_vec *v, const gxb_plane *plane) {
+static GXBP_COLD void gxbp_plane_exact(gxb_num v[4], const gxb_plane *plane) {
     gxbp_vec p, q, r;
     gxbp_vec_set(&p, plane->p);
     gxbp_vec_set(&q, plane->q);
     gxbp_vec_set(&r, plane->r);
-    gxbp_vec_init(v);
-    gxbp_exact_plane(v->c, p.c, q.c, r.c);
+    gxbp_exact_plane(v, p.c, q.c, r.c);
 }
 
 static GXBP_COLD void gxbp_point_exact(gxbp_vec *v, const gxb_point *point) {
@@ -2000,14 +2030,17 @@ static GXBP_COLD void gxbp_point_exact(gxbp_vec *v, const gxb_point *point) {
         return;
     }
     gxbp_vec_init(v);
-    gxbp_plane_exact(&a, point->plane[0]);
+    gxbp_vec_init(&a);
+    gxbp_plane_exact(a.c, point->plane[0]);
     if (point->plane[1] == NULL) {
         gxbp_vec_set(&b, point->p);
         gxbp_vec_set(&c, point->q);
         gxbp_exact_line_plane(v->c, b.c, c.c, a.c);
     } else {
-        gxbp_plane_exact(&b, point->plane[1]);
-        gxbp_plane_exact(&c, point->plane[2]);
+        gxbp_vec_init(&b);
+        gxbp_vec_init(&c);
+        gxbp_plane_exact(b.c, point->plane[1]);
+        gxbp_plane_exact(c.c, point->plane[2]);
         gxbp_exact_three_planes(v->c, a.c, b.c, c.c);
     }
 }
@@ -2024,7 +2057,8 @@ GXFEM_API int gxb_side(const gxb_point *point, const gxb_plane *plane) {
         GXB_NUM(r);
         gxbp_vec x, n;
         gxbp_point_exact(&x, point);
-        gxbp_plane_exact(&n, plane);
+        gxbp_vec_init(&n);
+        gxbp_plane_exact(n.c, plane);
         gxbp_exact_side(&r, x.c, n.c);
         return r.sign;
     }
@@ -2047,17 +2081,17 @@ GXFEM_API int gxb_compare(const gxb_point *a, const gxb_point *b, int axis) {
 
 /* |a b c| of the homogeneous coordinates i and j: degree 20 for three points of three planes */
 static GXBP_COLD int gxbp_orient_exact(const gxb_num a[4], const gxb_num b[4], const gxb_num c[4], int i, int j) {
-    gxbp_vec row, cofactor;
+    gxbp_large cofactor;
+    gxb_num row[3]; /* has the limbs of a */
     GXB_NUM(r);
-    gxbp_vec_init(&row);
-    gxbp_vec_init(&cofactor);
+    gxbp_large_init(&cofactor);
     gxbp_num_det2(&cofactor.c[0], &b[j], &c[3], &c[j], &b[3]);
     gxbp_num_det2(&cofactor.c[1], &c[i], &b[3], &b[i], &c[3]);
     gxbp_num_det2(&cofactor.c[2], &b[i], &c[j], &c[i], &b[j]);
-    gxbp_num_copy(&row.c[0], &a[i], 1);
-    gxbp_num_copy(&row.c[1], &a[j], 1);
-    gxbp_num_copy(&row.c[2], &a[3], 1);
-    gxbp_num_dot(&r, row.c, cofactor.c);
+    row[0] = a[i];
+    row[1] = a[j];
+    row[2] = a[3];
+    gxbp_num_dot(&r, row, cofactor.c);
     return r.sign;
 }
 
@@ -2081,7 +2115,8 @@ GXFEM_API int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const 
     axis %= 3;
     sign = gxbp_filter_sign(n[axis], plane->filter.error);
     if (sign == 0) {
-        gxbp_plane_exact(&exact_n, plane);
+        gxbp_vec_init(&exact_n);
+        gxbp_plane_exact(exact_n.c, plane);
         for (k = 0; k < 3 && exact_n.c[axis].sign == 0; k++) axis = k;
         sign = exact_n.c[axis].sign;
     }
@@ -2606,6 +2641,7 @@ static gx_result gxbp_frame_exact(const gxb_store *store, const double x[3], gxb
         gxb_num_set(&b, store->origin[k], store->shift);
         if ((a.sign != 0 && (gxbp_num_mantissa(&a, &power), power + 52 < -128)) || (a.sign != 0 && power + 52 > 128))
             return GX_ERROR_RANGE;
+        if (b.sign != 0 && (gxbp_num_mantissa(&b, &power), power + 52 > 129)) return GX_ERROR_RANGE; /* far from a */
         gxb_num_sub(&v->c[k], &a, &b);
         if (v->c[k].sign != 0 && (gxbp_num_mantissa(&v->c[k], &power), power + 52 > 128)) return GX_ERROR_RANGE;
     }
@@ -5228,12 +5264,13 @@ static int gxbp_probe_misses(const gxbp_probe *probe, const double *const x[3]) 
 
 /* gxbp_ray_side for a probe: W (a_y b_z - a_z b_y) + Y (a_z - b_z) + Z (b_y - a_y) */
 static GXBP_COLD int gxbp_probe_side(const gxbp_probe *probe, const double a[3], const double b[3]) {
-    gxbp_vec p, q, row;
+    gxbp_vec p, q;
+    gxbp_large row;
     GXB_NUM(r);
     int k, sign;
     gxbp_vec_init(&p);
     gxbp_vec_init(&q);
-    gxbp_vec_init(&row);
+    gxbp_large_init(&row);
     for (k = 1; k < 3; k++) {
         gxb_num_set(&p.c[k], a[k], probe->shift);
         gxb_num_set(&q.c[k], b[k], probe->shift);
@@ -5249,14 +5286,15 @@ static GXBP_COLD int gxbp_probe_side(const gxbp_probe *probe, const double a[3],
 
 /* gxb_orient3d(a, b, c, probe) */
 static GXBP_COLD int gxbp_probe_orient(const gxbp_probe *probe, const double *const x[3]) {
-    gxbp_vec p[3], n;
+    gxbp_vec p[3];
+    gxbp_large n;
     GXB_NUM(r);
     int k, c;
     for (c = 0; c < 3; c++) {
         gxbp_vec_init(&p[c]);
         for (k = 0; k < 3; k++) gxb_num_set(&p[c].c[k], x[c][k], probe->shift);
     }
-    gxbp_vec_init(&n);
+    gxbp_large_init(&n);
     gxbp_exact_plane(n.c, p[0].c, p[1].c, p[2].c);
     gxbp_exact_side(&r, probe->exact.c, n.c);
     return -r.sign;
@@ -9030,14 +9068,15 @@ static void gxbp_drop_exits(gxb_boolean *b, gxbp_exits *exits) {
 static GXBP_COLD int gxbp_has_area_exactly(const double *p, const double *q, const double *r) {
     const double *x[3];
     gxb_plane plane;
-    gxbp_vec n;
+    gxbp_large n;
     int sign[3];
     x[0] = p;
     x[1] = q;
     x[2] = r;
     if (gxbp_normal_short(x, sign)) return sign[0] != 0 || sign[1] != 0 || sign[2] != 0;
     gxb_plane_init(&plane, p, q, r);
-    gxbp_plane_exact(&n, &plane);
+    gxbp_large_init(&n);
+    gxbp_plane_exact(n.c, &plane);
     return n.c[0].sign != 0 || n.c[1].sign != 0 || n.c[2].sign != 0;
 }
 
@@ -13225,12 +13264,13 @@ static GXBP_APART void gxbp_round_vertices(gxb_boolean *b) {
 
 static GXBP_COLD int gxbp_faces_exactly(gxb_boolean *b, uint32_t plane, const double *p, const double *q,
                                         const double *r) {
-    gxbp_vec store, given[3], n;
+    gxbp_vec store, given[3];
+    gxbp_large n;
     GXB_NUM(value);
     gxbp_vec_set(&given[0], p);
     gxbp_vec_set(&given[1], q);
     gxbp_vec_set(&given[2], r);
-    gxbp_vec_init(&n);
+    gxbp_large_init(&n);
     gxbp_exact_plane(n.c, given[0].c, given[1].c, given[2].c);
     gxbp_num_dot(&value, n.c, gxbp_exact_cplane(&b->store, plane, &store));
     return value.sign;
@@ -15092,6 +15132,7 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_TINY
 #undef GXBP_NO_BALL
 #undef GXBP_UNKNOWN
+#undef GXBP_LIMBS
 #undef GXBP_RESERVE
 #undef GXBP_ARRAY
 #undef GXBP_UNDO_ITEM
