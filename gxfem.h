@@ -1607,6 +1607,10 @@ typedef struct gxp_boundary {
     gxp_words slots;     /* by point of the complex: its place in points, if it is there */
     gxp_words triangles; /* x 3, places in points */
     gxp_words facets;    /* in faces of the element: 2 x facet, + 1 if the material is in front */
+    gxp_words leaves;    /* that it bounds */
+    gxp_words fixed_of;  /* by place in points: the place in fixed, or GXP_NONE */
+    gxb_fixed *fixed;    /* x 4: coordinates of those points that needed more digits */
+    uint32_t fixed_count, fixed_capacity;
 } gxp_boundary;
 
 typedef struct gxp_scratch {
@@ -1926,8 +1930,9 @@ static const gxp_column gxp_lists[] = {
     GXP_KEYS(scratch.pairs), GXP_WORDS(scratch.subdomains), GXP_WORDS(scratch.subdomain_cells),
     GXP_WORDS(scratch.taken), GXP_WORDS(scratch.face_facets),
     GXP_WORDS(scratch.boundary.points), GXP_WORDS(scratch.boundary.slots), GXP_WORDS(scratch.boundary.triangles),
-    GXP_WORDS(scratch.boundary.facets),
+    GXP_WORDS(scratch.boundary.facets), GXP_WORDS(scratch.boundary.leaves), GXP_WORDS(scratch.boundary.fixed_of),
     GXP_LIST(scratch.boundary.lambdas, scratch.boundary.lambda_capacity, 4 * sizeof(double)),
+    GXP_LIST(scratch.boundary.fixed, scratch.boundary.fixed_capacity, 4 * sizeof(gxb_fixed)),
     GXP_WORDS(scratch.sheet_cells), GXP_WORDS(scratch.bulk_of), GXP_WORDS(scratch.bulk_met), GXP_WORDS(scratch.bent),
     GXP_LIST(scratch.bulks, scratch.bulk_capacity, sizeof(gxp_bulk))};
 /* clang-format on */
@@ -4948,12 +4953,15 @@ static gx_result gxp_divide_nodes(gxp_cut *cut) {
    coordinates of the element. Sums whose terms cancel are summed in exact numbers. Touches cells, through the undo log.
  */
 
+/* So many points are kept at most: they should stay in the cache. */
+#define GXP_BOUNDARY_POINTS 16384u
+
 /* Empties the boundary. Points are kept while the element stays the same: its cells share those of its walls. */
 static void gxp_clear_boundary(gx_body *body, int other_element) {
     gxp_scratch *scratch = &body->scratch;
     gxp_boundary *boundary = &scratch->boundary;
-    if (other_element || boundary->points.count > 64) boundary->points.count = 0;
-    boundary->triangles.count = boundary->facets.count = 0;
+    if (other_element || boundary->points.count > GXP_BOUNDARY_POINTS) boundary->points.count = 0;
+    boundary->triangles.count = boundary->facets.count = boundary->leaves.count = 0;
 }
 
 /* Adds a point of the complex with its barycentric coordinates in the element. */
@@ -4970,6 +4978,9 @@ static gx_result gxp_new_boundary_point(gx_body *body, uint32_t element, uint32_
     result = gxp_reserve(&body->config.allocator, &boundary->lambdas, 4 * sizeof(double), boundary->points.count,
                          &boundary->lambda_capacity, 1);
     *index = boundary->points.count;
+    if (*index == 0) boundary->fixed_count = 0;
+    boundary->fixed_of.count = *index;
+    if (result == GX_OK) result = gxp_push(body, &boundary->fixed_of, GXP_NONE);
     if (result == GX_OK) result = gxp_push(body, &boundary->points, point);
     if (result != GX_OK) return result;
     boundary->slots.data[point] = *index;
@@ -5014,6 +5025,7 @@ static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, uint32_t st
     gxb_complex *cx = body->complex;
     uint32_t first, count, i;
     gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
+    if (result == GX_OK) result = gxp_push(body, &body->scratch.boundary.leaves, leaf);
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint32_t facet = gxp_item(cx, first + i);
         const gxb_facet *f = gxb_complex_facet(cx, facet);
@@ -5026,6 +5038,91 @@ static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, uint32_t st
                      : !gxp_is_kept(body, other) || body->leaves.data[other].cell != body->leaves.data[leaf].cell)
             result = gxp_add_boundary_facet(body, gxb_complex_leaf(cx, leaf)->element, facet, inward);
     }
+    return result;
+}
+
+/* The coordinates of one of the boundary's points along three axes, with 184 bits behind the point */
+static gx_result gxp_fixed_coordinates(gx_body *body, uint32_t element, uint32_t point, const unsigned axes[3],
+                                       gxb_fixed x[3]) {
+    gxp_boundary *boundary = &body->scratch.boundary;
+    uint32_t *place = &boundary->fixed_of.data[point];
+    int c;
+    if (*place == GXP_NONE) {
+        const gx_result result = gxp_reserve(&body->config.allocator, &boundary->fixed, 4 * sizeof *boundary->fixed,
+                                             boundary->fixed_count, &boundary->fixed_capacity, 1);
+        if (result != GX_OK) return result;
+        *place = boundary->fixed_count++;
+        gxb_complex_barycentric_fixed(body->complex, boundary->points.data[point], element,
+                                      boundary->fixed + 4 * (size_t)*place);
+    }
+    for (c = 0; c < 3; c++) x[c] = boundary->fixed[4 * (size_t)*place + axes[c]];
+    return GX_OK;
+}
+
+/* Adds the moments of a tetrahedron of which six times the volume is D: D / 6, D s_i / 24, D (s_i s_j + the sum of
+   products x_i x_j of its corners x) / 120, where s is their sum. */
+static void gxp_add_tetrahedron(const double *x[4], const unsigned axes[3], double D, gxi_moments2 *m) {
+    double s[3], q;
+    int i, j, n, slot = 0;
+    for (i = 0; i < 3; i++) {
+        s[i] = x[0][axes[i]] + x[1][axes[i]] + x[2][axes[i]] + x[3][axes[i]];
+        m->first[i] += D * s[i] / 24;
+    }
+    m->volume += D / 6;
+    for (i = 0; i < 3; i++)
+        for (j = i; j < 3; j++) {
+            q = s[i] * s[j];
+            for (n = 0; n < 4; n++) q += x[n][axes[i]] * x[n][axes[j]];
+            m->second[slot++] += D * q / 120;
+        }
+}
+
+/* Adds the moments of a leaf in the frame with origin k, by tetrahedra from one of its corners to its triangles. The
+   leaf is convex, so no volume is negative and nothing cancels; volumes are exact. *count: of tetrahedra */
+static gx_result gxp_add_leaf_moments(gx_body *body, uint32_t element, uint32_t leaf, unsigned k, gxi_moments2 *m,
+                                      uint32_t *count) {
+    gxp_boundary *boundary = &body->scratch.boundary;
+    const uint32_t start = boundary->triangles.count;
+    gxb_complex *cx = body->complex;
+    unsigned axes[3];
+    gxb_fixed x[4][3];
+    uint32_t first, facets, i, j, o;
+    gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &facets);
+    for (i = 0; i < facets && result == GX_OK; i++) {
+        const uint32_t facet = gxp_item(cx, first + i);
+        result = gxp_add_boundary_facet(body, element, facet, gxb_complex_facet(cx, facet)->leaf[0] == leaf);
+    }
+    gxi_part_axes(k, axes);
+    o = boundary->triangles.data[start];
+    if (result == GX_OK) result = gxp_fixed_coordinates(body, element, o, axes, x[3]);
+    for (i = start; i < boundary->triangles.count && result == GX_OK; i += 3) {
+        const uint32_t *t = boundary->triangles.data + i;
+        const double *corner[4];
+        if (t[0] == o || t[1] == o || t[2] == o) continue;
+        for (j = 0; j < 3 && result == GX_OK; j++) result = gxp_fixed_coordinates(body, element, t[j], axes, x[j]);
+        if (result != GX_OK) break;
+        for (j = 0; j < 3; j++) corner[j] = boundary->lambdas + 4 * (size_t)t[j];
+        corner[3] = boundary->lambdas + 4 * (size_t)o;
+        gxp_add_tetrahedron(corner, axes, gxb_fixed_determinant(x[3], x[0], x[1], x[2]), m);
+        (*count)++;
+    }
+    boundary->triangles.count = start;
+    return result;
+}
+
+/* The error of a tetrahedron's determinant, from six errors of 2^-179 in each of three edges of length 1 at most, is
+   this share of a volume that it moves by less than its last digits. */
+#define GXP_FIXED_VOLUME 7.5e-37 /* 2^-120 */
+
+/* Moments of the leaves that the boundary bounds. *enough: whether the volume is right to its last digits */
+static gx_result gxp_leaf_moments(gx_body *body, uint32_t element, unsigned k, gxi_moments2 *m, int *enough) {
+    const gxp_words *leaves = &body->scratch.boundary.leaves;
+    uint32_t i, count = 0;
+    gx_result result = GX_OK;
+    memset(m, 0, sizeof *m);
+    for (i = 0; i < leaves->count && result == GX_OK; i++)
+        result = gxp_add_leaf_moments(body, element, leaves->data[i], k, m, &count);
+    *enough = m->volume > GXP_FIXED_VOLUME * count;
     return result;
 }
 
@@ -5168,6 +5265,7 @@ static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned 
     gxp_boundary *boundary = &body->scratch.boundary;
     const gxb_complex *cx = body->complex;
     uint32_t i;
+    int enough;
     gx_result result = GX_OK;
     *k = gxp_nearest_vertex(body);
     for (i = 0; i < boundary->facets.count && result == GX_OK; i++) {
@@ -5178,9 +5276,9 @@ static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned 
     if (result == GX_OK)
         result = gxi_part_moments_at(boundary->lambdas, boundary->points.count, boundary->triangles.data,
                                      boundary->triangles.count / 3, *k, m);
-    if (result == GX_OK && m->volume < GXP_CANCELLATION * gxp_cone_volumes(body, *k))
-        result = gxp_fine_moments(body, element, *k, m);
-    return result;
+    if (result != GX_OK || m->volume >= GXP_CANCELLATION * gxp_cone_volumes(body, *k)) return result;
+    result = gxp_leaf_moments(body, element, *k, m, &enough);
+    return result == GX_OK && !enough ? gxp_fine_moments(body, element, *k, m) : result;
 }
 
 /* The volume and mass of a cell; volume: of its element */
@@ -19176,6 +19274,8 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_LAST_ROUND
 #undef GXP_EXPECTED
 #undef GXP_CANCELLATION
+#undef GXP_BOUNDARY_POINTS
+#undef GXP_FIXED_VOLUME
 #undef GXP_REST_CELLS
 #undef GXP_REST
 #undef GXP_WEIGHT_LOSS
