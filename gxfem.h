@@ -254,7 +254,7 @@ typedef struct gx_body_desc {
     /* In thicknesses of elements, 0 ... 1000. Where material is thinner, its copies carry an affine motion each (are
        affine), so that sheets bend as they should. Creation and cuts find it, the latter among what they touch; an
        affine copy stays so. A layer of cubes of five or six elements has a thickness of 0.94; 1 is a good value.
-       0: none, at no cost. Other values: no gx_body_contact and no pairs yet */
+       0: none, at no cost. Other values: pairs of a step need their anchors (gx_step_desc.pair_anchors) */
     double affine_below;
     gx_allocator allocator;      /* zero: malloc, free, realloc */
     double (*clock)(void *user); /* seconds, for the reports' timings and the steps' budgets; NULL: timings are 0 */
@@ -579,7 +579,7 @@ typedef gxs_step_report gx_step_report;
    Affine copies neither follow nor lead, but those of a fragment that moves as a point do. A point with affine copies
    is moved as the material at its position at rest is. forces act on displacements alone, anchor_forces on A too;
    targets leave A as it is, poses turn it. Thin sheets that are flung need two or three Newton iterations in steps of
-   games: one lags. Pairs are refused where copies are affine.
+   games: one lags. Pairs without anchors are refused where copies are affine.
    failure.index: a spring, point, plane, pair, anchor, region or copy. The fields "displacement" and "velocity" are
    those of gx_view. Errors: ARGUMENT, NOT_FINITE, INDEX, LIMIT, MEMORY, STALE (copies of another epoch), RANGE (a
    number is too large or too small; as for FLAT, an element if field is NULL), FLAT (an element, see gx_body_model),
@@ -615,7 +615,7 @@ typedef struct gx_contact_desc {
 } gx_contact_desc;
 /* Switches contact on for later steps, or off (NULL). It forgets the slips of friction. Steps with contact refuse
    GXS_MIDPOINT ("integrator") and "quality". Contact is saved, cloned and restored with what presses and sticks.
-   Errors: ARGUMENT (also: gx_body_desc.affine_below is not 0), NOT_FINITE. */
+   Errors: ARGUMENT, NOT_FINITE. */
 GXFEM_API gx_result gx_body_contact(gx_body *body, const gx_contact_desc *desc /* or NULL: off */,
                                     gx_failure *failure /* or NULL */);
 
@@ -8442,8 +8442,11 @@ static gx_result gxp_attach_points(gx_body *body, const gx_step_desc *desc, gxs_
     return result;
 }
 
-/* The point of a pair: anchor's position relative to that of other. copies, weights: room for 8, used by the point.
-   Returns 0 if the material of one is gone. */
+/* Vectors of one side of a pair with anchors at most */
+static size_t gxp_side_room(const gx_body *body) { return body->hidden.copies.count > 0 ? 16 : 4; }
+
+/* The point of a pair: anchor's position relative to that of other. copies, weights: room for two sides, used by the
+   point. Returns 0 if the material of one is gone. */
 static int gxp_place_pair(gx_body *body, const gx_anchor *anchor, const gx_anchor *other, uint32_t *copies,
                           double *weights, gxs_point *point) {
     gxs_point side[2];
@@ -8456,11 +8459,15 @@ static int gxp_place_pair(gx_body *body, const gx_anchor *anchor, const gx_ancho
         return 0;
     }
     point->count = 0;
-    for (i = 0; i < 2; i++)
-        for (k = 0; k < side[i].count; k++) {
-            copies[point->count] = side[i].copy[k];
-            weights[point->count++] = i == 0 ? side[i].weight[k] : -side[i].weight[k];
-        }
+    for (i = 0; i < 2; i++) {
+        uint32_t *own = copies + point->count;
+        double *share = weights + point->count;
+        memcpy(own, side[i].copy, sizeof side[i].copy);
+        memcpy(share, side[i].weight, sizeof side[i].weight);
+        gxp_expand_point(body, &side[i], own, share);
+        for (k = 0; k < side[i].count && i == 1; k++) share[k] = -share[k];
+        point->count += side[i].count;
+    }
     for (i = 0; i < 3; i++) point->position[i] -= side[1].position[i];
     point->copies = copies;
     point->weights = weights;
@@ -8470,17 +8477,20 @@ static int gxp_place_pair(gx_body *body, const gx_anchor *anchor, const gx_ancho
 static gx_result gxp_attach_pairs(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step, gx_failure *failure) {
     static const char *const names[3] = {"pair_anchors.element", "pair_anchors.position", "pair_anchors.toward"};
     gxp_attached *attached = &body->attached;
+    const size_t span = 2 * gxp_side_room(body);
     gx_result result;
     size_t i;
+    if (desc->pair_count > 0 && desc->pair_anchors == NULL && body->hidden.copies.count > 0)
+        return gxp_refuse(failure, "pairs"); /* where its two sides are is not known */
     if (desc->pair_anchors == NULL || desc->pairs == NULL) return GX_OK;
     result = gxp_attached_room(body, &attached->pairs, sizeof *attached->pairs, &attached->pair_capacity,
                                desc->pair_count, "pair_count", failure);
     if (result == GX_OK)
         result = gxp_attached_room(body, &attached->sides.data, sizeof(uint32_t), &attached->sides.capacity,
-                                   8 * desc->pair_count, "pair_count", failure);
+                                   span * desc->pair_count, "pair_count", failure);
     if (result == GX_OK)
         result = gxp_attached_room(body, &attached->weights, sizeof(double), &attached->weight_capacity,
-                                   8 * desc->pair_count, "pair_count", failure);
+                                   span * desc->pair_count, "pair_count", failure);
     for (i = 0; i < desc->pair_count && result == GX_OK; i++) {
         const gx_anchor *anchor = &desc->pair_anchors[2 * i];
         gxs_pair *pair = &attached->pairs[i];
@@ -8488,7 +8498,7 @@ static gx_result gxp_attach_pairs(gx_body *body, const gx_step_desc *desc, gxs_s
         result = gxp_check_anchor(body, anchor, names, 2 * i, failure);
         if (result == GX_OK) result = gxp_check_anchor(body, anchor + 1, names, 2 * i + 1, failure);
         if (result == GX_OK &&
-            !gxp_place_pair(body, anchor, anchor + 1, attached->sides.data + 8 * i, attached->weights + 8 * i,
+            !gxp_place_pair(body, anchor, anchor + 1, attached->sides.data + span * i, attached->weights + span * i,
                             &pair->point) &&
             gxp_is_finite(pair->stiffness) && pair->stiffness > 0)
             pair->stiffness = 0;
@@ -12312,6 +12322,16 @@ static int gxp_has_changed(const gxp_touch *t, uint32_t id) {
 #define GXP_TOUCH_SAME   0.25
 #define GXP_TOUCH_BEHIND 1e-9
 
+/* What the affine rate of a copy adds to the velocity of a material point along an axis; 0 where it has none */
+static double gxp_affine_speed(const gx_body *body, uint32_t copy, const double rest[3], int axis) {
+    const double *x = body->mesh.positions + 3 * (size_t)body->copies.node[copy];
+    double speed = 0;
+    int j;
+    for (j = 0; j < 3 && body->copies.affine != NULL && body->copies.affine[copy]; j++)
+        speed += body->copies.linear_rate[9 * (size_t)copy + 3 * (size_t)j + (size_t)axis] * (rest[j] - x[j]);
+    return speed;
+}
+
 /* Position, velocity and normal of all vertices, normals of facets */
 static void gxp_move_surface(gx_body *body, const gxp_touch_surface *s) {
     double *moved = body->touch.moved;
@@ -12324,7 +12344,8 @@ static void gxp_move_surface(gx_body *body, const gxp_touch_surface *s) {
         for (k = 3; k < 9; k++) x[k] = 0;
         for (n = 0; n < 4 && v->weights[n] > 0; n++)
             for (k = 0; k < 3; k++)
-                x[3 + k] += v->weights[n] * body->copies.velocity[3 * (size_t)v->copies[n] + (size_t)k];
+                x[3 + k] += v->weights[n] * (body->copies.velocity[3 * (size_t)v->copies[n] + (size_t)k] +
+                                             gxp_affine_speed(body, v->copies[n], v->rest, k));
     }
     for (i = 0; i < s->facet_count; i++) {
         static const uint32_t corner[3] = {0, 1, 2};
@@ -12639,38 +12660,51 @@ static void gxp_add_share(gxs_point *point, uint32_t *copies, double *weights, u
     weights[i] += weight;
 }
 
-/* Adds a share of a vertex to a point: of its place at rest and of what moves it. */
-static void gxp_add_place(const gxp_touch_vertex *v, double share, gxs_point *point, uint32_t *copies,
-                          double *weights) {
-    int k;
+/* Adds a share of a vertex to a point: of its place at rest and of what moves it, copies and their hidden vectors. */
+static void gxp_add_place(const gx_body *body, const gxp_touch_vertex *v, double share, gxs_point *point,
+                          uint32_t *copies, double *weights) {
+    int k, j;
     for (k = 0; k < 3; k++) point->position[k] += share * v->rest[k];
-    for (k = 0; k < 4 && v->weights[k] > 0; k++)
-        gxp_add_share(point, copies, weights, v->copies[k], share * v->weights[k]);
+    for (k = 0; k < 4 && v->weights[k] > 0; k++) {
+        const double weight = share * v->weights[k], *x = body->mesh.positions;
+        const uint32_t hidden = body->hidden.copies.count > 0 ? body->hidden.first.data[v->copies[k]] : GXS_NOT_AFFINE;
+        gxp_add_share(point, copies, weights, v->copies[k], weight);
+        x += 3 * (size_t)body->copies.node[v->copies[k]];
+        for (j = 0; j < 3 && hidden != GXS_NOT_AFFINE; j++)
+            gxp_add_share(point, copies, weights, hidden + (uint32_t)j,
+                          weight * (v->rest[j] - x[j]) / body->mesh.affine_length);
+    }
 }
 
 /* The point of a pair: its sample, relative to the place on the facet, or to that of the collider at the step's end.
    Returns 0 if nothing moves it. */
-static int gxp_meeting_point(const gxp_touch_surface *s, const gxp_touch_pair *pair, uint32_t *copies, double *weights,
-                             gxs_point *point) {
+static int gxp_meeting_point(const gx_body *body, const gxp_touch_surface *s, const gxp_touch_pair *pair,
+                             uint32_t *copies, double *weights, gxs_point *point) {
     double moves = 0;
     uint32_t m;
     int i, k;
     if (pair->sample < s->vertex_count)
-        gxp_add_place(&s->vertices[pair->sample], 1, point, copies, weights);
+        gxp_add_place(body, &s->vertices[pair->sample], 1, point, copies, weights);
     else
         for (i = 0; i < 3; i++)
             if (pair->share[i] > 0)
-                gxp_add_place(&s->vertices[s->facets[pair->sample - s->vertex_count].vertex[i]], pair->share[i], point,
-                              copies, weights);
+                gxp_add_place(body, &s->vertices[s->facets[pair->sample - s->vertex_count].vertex[i]], pair->share[i],
+                              point, copies, weights);
     for (i = 0; i < 3 && pair->facet != GXP_NONE; i++)
         if (pair->share[i] > 0)
-            gxp_add_place(&s->vertices[s->facets[pair->facet].vertex[i]], -pair->share[i], point, copies, weights);
+            gxp_add_place(body, &s->vertices[s->facets[pair->facet].vertex[i]], -pair->share[i], point, copies,
+                          weights);
     for (k = 0; k < 3; k++) point->position[k] -= pair->place[k] + pair->way[k];
     for (m = 0; m < point->count; m++) moves += fabs(weights[m]);
     for (m = 0; m < point->count && !(moves > 1e-9); m++) weights[m] = 0; /* it was rounding */
     point->copies = copies;
     point->weights = weights;
     return moves > 1e-9;
+}
+
+/* Vectors of the point of a pair at most */
+static size_t gxp_pair_span(const gx_body *body) {
+    return GXP_TOUCH_COPIES * (body->hidden.copies.count > 0 ? 4u : 1u);
 }
 
 /* A pair as the solver takes it. It begins with the force with which the sample pressed before. */
@@ -12696,8 +12730,8 @@ static void gxp_set_pair(gx_body *body, const gxp_touch_surface *s, uint32_t i, 
         if (pair->collider == GXP_NONE || t->changed.data[pair->collider]) to->flags |= GXS_PAIR_WAKES;
         memcpy(to->way, pair->way, sizeof to->way);
     }
-    if (!gxp_meeting_point(s, pair, t->sides.data + GXP_TOUCH_COPIES * (size_t)i,
-                           t->weights + GXP_TOUCH_COPIES * (size_t)i, &to->point))
+    if (!gxp_meeting_point(body, s, pair, t->sides.data + gxp_pair_span(body) * i, t->weights + gxp_pair_span(body) * i,
+                           &to->point))
         to->stiffness = 0;
     to->offset = fmin(0, fmin(0, pair->gap + pair->pressed) + dt * (recovery + fmax(0, pair->approach)));
     memcpy(t->slips + 3 * (t->given + (size_t)i), pair->slip, sizeof pair->slip);
@@ -12709,7 +12743,7 @@ static gx_result gxp_join_pairs(gx_body *body, gxp_touch_surface *s, double dt, 
     gxp_touch *t = &body->touch;
     gxp_attached *attached = &body->attached;
     const size_t given = step->pair_count, all = given + t->found;
-    const size_t copies = GXP_TOUCH_COPIES * (size_t)t->found;
+    const size_t copies = gxp_pair_span(body) * t->found;
     const int own = given > 0 && step->pairs != attached->pairs;
     gx_result result = all > INT32_MAX ? GX_ERROR_LIMIT : GX_OK;
     uint32_t i;
@@ -12743,8 +12777,7 @@ static gx_result gxp_attach_contact(gx_body *body, const gx_step_desc *desc, gxs
     const double dt = gxp_is_finite(step->dt) && step->dt > 0 ? step->dt : 0;
     gx_result result;
     body->touch.kept = 0;
-    if (body->copies.affine != NULL) return gxp_refuse(failure, "affine_below"); /* pairs have no affine copies */
-    if (step->quality > 0) return gxp_refuse(failure, "quality");                /* its parts would not search again */
+    if (step->quality > 0) return gxp_refuse(failure, "quality"); /* its parts would not search again */
     if (step->integrator == GXS_MIDPOINT) return gxp_refuse(failure, "integrator");
     if (step->pair_count > 0 && step->pairs == NULL) return gxp_refuse(failure, "pairs");
     result = gxp_take_colliders(body, desc, failure);
@@ -12758,14 +12791,21 @@ static gx_result gxp_attach_contact(gx_body *body, const gx_step_desc *desc, gxs
     return result == GX_OK ? gxp_end(failure, gxp_join_pairs(body, *surface, dt, step)) : result;
 }
 
+/* A number of a vector of the solver's model: of a copy's displacement, or of a hidden vector */
+static double gxp_vector_at(const gx_body *body, uint32_t vector, int axis) {
+    const uint32_t part = vector - body->copies.count;
+    if (vector < body->copies.count) return body->copies.displacement[3 * (size_t)vector + (size_t)axis];
+    return body->mesh.affine_length *
+           body->copies.linear[9 * (size_t)body->hidden.copies.data[part / 3] + 3 * (part % 3) + (uint32_t)axis];
+}
+
 /* Where a pair's sample is now, relative to its other side */
 static void gxp_pair_now(const gx_body *body, const gxs_pair *pair, double r[3]) {
     uint32_t i;
     int k;
     memcpy(r, pair->point.position, 3 * sizeof *r);
     for (i = 0; i < pair->point.count; i++)
-        for (k = 0; k < 3; k++)
-            r[k] += pair->point.weights[i] * body->copies.displacement[3 * (size_t)pair->point.copies[i] + (size_t)k];
+        for (k = 0; k < 3; k++) r[k] += pair->point.weights[i] * gxp_vector_at(body, pair->point.copies[i], k);
 }
 
 /* The stiffness of a pair's hold on the collider: of its depth and, while it sticks, of its slip. 00 01 02 11 12 22 */
@@ -12891,7 +12931,6 @@ GXFEM_API gx_result gx_body_contact(gx_body *body, const gx_contact_desc *desc, 
     double numbers[5];
     int i;
     if (body == NULL) return gxp_refuse(failure, "body");
-    if (desc != NULL && body->copies.affine != NULL) return gxp_refuse(failure, "affine_below");
     memset(&own, 0, sizeof own);
     if (desc != NULL) own = *desc;
     numbers[0] = own.stiffness;
