@@ -59,8 +59,9 @@
  *     what acts on it:           >>attached >>supports >>model
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
- *     a step, with contact:      >>touch >>meeting >>step
- *     a blade in space:          >>layers >>edges >>fronts >>glances >>strokes >>ways >>blade >>contacts >>carve
+ *     a step, with contact:      >>touch >>colliders >>meeting >>pressing >>step
+ *     a blade in space:          >>layers >>edges >>relations >>fronts >>glances >>strokes >>ways >>blade
+ *                                >>contacts >>carve
  *     beginning, end, bytes:     >>grid >>create >>hashes >>stream >>scabbard >>save
  *
  * Words. Facet: a polygon inside an element or in an element face, made by cuts. Wall: a facet that a sheet covers.
@@ -71,9 +72,9 @@
  * Exact: the set of cells and their links, hence copies and fragments. Decisions are signs of polynomials in the given
  * coordinates (gxfem_boolean.h). Rounded once, to doubles: volumes, masses and vertices.
  *
- * Not there yet: contact with the host's bodies but by points (pieces of a body touch each other: gx_body_contact);
- * surfaces given in the deformed state (a moving edge is: gx_blade); unknowns within a partly cut element (a sheet that
- * ends inside an element separates nothing there until another sheet completes it).
+ * Not there yet: contact of two bodies of the library (pieces of one touch each other and the host's rigid bodies:
+ * gx_body_contact); surfaces given in the deformed state (a moving edge is: gx_blade); unknowns within a partly cut
+ * element (a sheet that ends inside an element separates nothing there until another sheet completes it).
  *
  * Limits: fewer than 2^28 elements a body (2^24 where pointers have 32 bits), fewer than 2^30 cells and 2^30 copies
  * for steps, some 1.4e9 of each other kind of object, 5e8 vertices and triangles a surface (GX_ERROR_LIMIT). A body's
@@ -81,6 +82,8 @@
  * 2^-700 ... 2^700. So all volumes, masses, centres and inertia are finite, those of whole bodies are normal numbers,
  * and floats hold the skin. Divided by the body's size, coordinates of bodies and cuts are 0 or 2^-128 ... 2^128 in
  * absolute value (GX_ERROR_RANGE). One thread at a time may use a body. There is no global state, no output, no clock.
+ * A call takes less than 48 kB of stack, besides that of the caller's own functions. gx_body_load takes more where one
+ * edge, face or element was divided over and over: 50 bytes for each time in a row.
  *
  * References: GXFEM = Ton-That, Kry, Andrews: Generalized eXtended Finite Element Method for Deformable Cutting via
  * Boolean Operations (2024). RXFEM = Koschier, Bender, Thuerey: Robust eXtended Finite Elements for Complex Cutting of
@@ -251,7 +254,7 @@ typedef struct gx_body_desc {
     /* In thicknesses of elements, 0 ... 1000. Where material is thinner, its copies carry an affine motion each (are
        affine), so that sheets bend as they should. Creation and cuts find it, the latter among what they touch; an
        affine copy stays so. A layer of cubes of five or six elements has a thickness of 0.94; 1 is a good value.
-       0: none, at no cost. Other values: no blades, no gx_body_carve, no gx_body_contact and no pairs yet */
+       0: none, at no cost. Other values: no gx_body_contact and no pairs yet */
     double affine_below;
     gx_allocator allocator;      /* zero: malloc, free, realloc */
     double (*clock)(void *user); /* seconds, for the reports' timings and the steps' budgets; NULL: timings are 0 */
@@ -472,6 +475,40 @@ GXFEM_API gx_region gx_region_sphere(const double center[3], double radius);
 GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t region_count,
                                  gx_failure *failure /* or NULL */);
 
+/* Rigid bodies of the caller's that pieces press on while contact is on (gx_body_contact) */
+enum {
+    GX_COLLIDER_PLANE = 0, /* what is below z = 0 */
+    GX_COLLIDER_SPHERE,    /* size[0]: radius */
+    GX_COLLIDER_CAPSULE,   /* size[0]: radius; size[1]: half the length of its axis, which is along z */
+    GX_COLLIDER_BOX,       /* size: half the length of its edges along each axis */
+    GX_COLLIDER_DISTANCE   /* distance() says where it is; size[0]: its smallest radius, for samples; 0: not known */
+};
+/* Signed distance of a point from the surface of a collider, m, below 0 inside, in the collider's own frame; normal:
+   receives its gradient there, outward, of any length but 0. Never larger than the true distance. Called on the thread
+   of the step. */
+typedef double (*gx_distance_fn)(void *user, const double position[3], double normal[3]);
+/* x = R X + o takes its own frame to space. Within a step o moves with velocity, and the body turns about it. */
+typedef struct gx_collider {
+    uint32_t id;   /* its name from step to step, below UINT32_MAX, each once */
+    uint32_t kind; /* GX_COLLIDER_ */
+    double size[3];
+    double pose[12];         /* at the step's start: three rows of R o, R a rotation */
+    double velocity[3];      /* of o, m/s */
+    double spin[3];          /* rad/s, in space */
+    double friction;         /* Coulomb's coefficient, 0 or more */
+    gx_distance_fn distance; /* GX_COLLIDER_DISTANCE only */
+    void *user;
+} gx_collider;
+/* What a collider feels at the end of a step */
+typedef struct gx_collider_load {
+    double force[3];  /* N: minus the sum of all that it does to the body */
+    double torque[3]; /* N m, about its o at the step's end */
+    /* by rows: how force and torque resist a translation (the first three) and a turn about o. Of the contacts alone:
+       the body gives way, too */
+    double stiffness[36];
+    uint32_t contacts; /* places that press */
+} gx_collider_load;
+
 /* A time step. Zero but for dt: implicit Euler, one Newton iteration, nothing but inertia and elasticity. Arrays are by
    copy, as in gx_view. Points, forces and targets name copies: they have the epoch of the view, skin or hit that they
    come from, and are refused (GX_ERROR_STALE) after a cut that began another one. Anchors in their place are good after
@@ -483,6 +520,7 @@ typedef struct gx_step_desc {
     /* GXS_BDF1 damps what swings: at dt = 1/60 s half of a free swing is gone after 5 s. GXS_BDF2 keeps it. */
     gxs_integrator integrator;
     uint32_t substeps;          /* GXS_EXPLICIT only: that many of dt; 0: as few as are cheap */
+    uint32_t quick;             /* above 0: quick steps of so many iterations, 2 or 3, say (see gxs_step_desc) */
     uint32_t newton_iterations; /* at most; 0: 1, but as many as thin sheets need where copies are affine */
     double newton_tolerance;    /* stop at this residual (see gxs_step_report); 0: 1e-8 */
     uint32_t cg_iterations;     /* per Newton iteration, at most; 0: 1000 */
@@ -517,14 +555,17 @@ typedef struct gx_step_desc {
     const gx_anchor *pair_anchors;
     /* pair_count x 3, m: read and written, see gxs_step_desc; those of lost anchors stay. NULL: friction creeps */
     double *pair_slips;
-    double *pair_forces;         /* pair_count x 3: receives the force on the first side, N; or NULL */
-    double sleep_speed;          /* m/s: slower fragments fall asleep (see gxs_step_desc); 0: none */
-    double sleep_time;           /* s, for how long they must be slower; 0: 0.5 */
-    double (*clock)(void *user); /* s; NULL: the body's */
+    double *pair_forces;          /* pair_count x 3: receives the force on the first side, N; or NULL */
+    const gx_collider *colliders; /* collider_count: see gx_body_contact */
+    size_t collider_count;
+    gx_collider_load *collider_loads; /* collider_count: receives what each of them feels; or NULL */
+    double sleep_speed;               /* m/s: slower fragments fall asleep (see gxs_step_desc); 0: none */
+    double sleep_time;                /* s, for how long they must be slower; 0: 0.5 */
+    double (*clock)(void *user);      /* s; NULL: the body's */
     void *clock_user;
     double budget_seconds; /* no iteration begins after this time; 0: no limit. Needs a clock */
-    /* above 0: the error of the motion asked for, as a share of it, .03 say, in place of integrator, substeps and the
-       numbers of Newton's method and CG: the step is divided as the motion demands (see gxs_step_desc) */
+    /* above 0: the error of the motion asked for, as a share of it, .03 say, in place of integrator, substeps, quick
+       and the numbers of Newton's method and CG: the step is divided as the motion demands (see gxs_step_desc) */
     double quality;
 } gx_step_desc;
 typedef gxs_step_report gx_step_report;
@@ -561,7 +602,10 @@ GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model, gx_failure *f
    once: pieces that overlap when contact begins, or that are found late, press as they did before, and come apart at
    the speed `recovery`. What a piece pressed with, and the slip of its friction, stay with the material through cuts.
    A piece's own thickness is no contact: a facet is left out if it was near at rest and the vertex did not face it
-   then, or was behind it. */
+   then, or was behind it.
+   Pieces press on the caller's rigid bodies as well: see gx_step_desc.colliders. Samples are the vertices of the
+   surface; facets on which the distance from a collider bends have more of them. Each is joined to the tangent plane of
+   the collider there, by c E A / h. A collider that is inside a piece is seen at any depth. */
 typedef struct gx_contact_desc {
     double stiffness;      /* c; 0: 10. Iterations of a step grow with its root */
     double friction;       /* Coulomb's coefficient, 0 or more */
@@ -571,16 +615,15 @@ typedef struct gx_contact_desc {
     uint32_t max_pairs;    /* of a step, which is refused beyond: GX_ERROR_LIMIT; 0: no limit but memory */
 } gx_contact_desc;
 /* Switches contact on for later steps, or off (NULL). It forgets the slips of friction. Steps with contact refuse
-   GXS_MIDPOINT ("integrator") and "quality". Contact is not saved, and neither clone nor restore copies it: a body that
-   was loaded, or made by gx_body_clone, has none, and gx_body_restore leaves it on or off as it is and forgets the
-   slips.
+   GXS_MIDPOINT ("integrator") and "quality". Contact is saved, cloned and restored with what presses and sticks.
    Errors: ARGUMENT (also: gx_body_desc.affine_below is not 0), NOT_FINITE. */
 GXFEM_API gx_result gx_body_contact(gx_body *body, const gx_contact_desc *desc /* or NULL: off */,
                                     gx_failure *failure /* or NULL */);
 
 /* A place where a piece pressed on another one, or on itself, at the end of the last step */
 typedef struct gx_contact {
-    uint32_t fragment, other; /* below gx_view.fragment_count; equal: of one piece */
+    uint32_t fragment, other; /* below gx_view.fragment_count; equal: of one piece; other is UINT32_MAX: a collider */
+    uint32_t collider;        /* its id; UINT32_MAX: it is a piece */
     double position[3];       /* on the surface of fragment, in space, m */
     double normal[3];         /* from other to fragment, of length 1 */
     double force[3];          /* on fragment, N */
@@ -761,8 +804,8 @@ GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index);
    out later, before the path bends. edge: point_count x 3, in space, m; as many points at
    each move until the blade is lifted, 2 or more; ends may be 10^12 elements away. scope: fragments that alone are cut,
    below gx_view.fragment_count; count 0: all. On an error body and blade are as they were. Errors: ARGUMENT (also:
-   gx_body_desc.affine_below is not 0; the first edge is inside the material and starts_inside is 0, index: point),
-   INDEX, NOT_FINITE and RANGE (edge, or "displacement", index: copy), LIMIT, MEMORY. */
+   the first edge is inside the material and starts_inside is 0, index: point), INDEX, NOT_FINITE and RANGE (edge, or
+   "displacement", index: copy), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t point_count,
                                   const uint32_t *scope_fragments, size_t scope_fragment_count,
                                   gx_blade_report *report /* or NULL */, gx_failure *failure /* or NULL */);
@@ -790,8 +833,8 @@ GXFEM_API gx_result gx_blade_contacts(gx_blade *blade, gx_blade_contact *contact
 /* Removes the material that a closed tool in space covers now (a drill, a punch), from each piece where it meets the
    tool. tool: vertices in space, m; kind and scope_slots are not read. Its triangles are divided where elements
    are smaller.
-   Errors: as gx_body_cut, and ARGUMENT ("affine_below" is not 0); a field of the tool reads "tool.vertices"; NOT_FINITE
-   and RANGE also of "displacement" (index: copy). */
+   Errors: as gx_body_cut; a field of the tool reads "tool.vertices"; NOT_FINITE and RANGE also of "displacement"
+   (index: copy). */
 GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_report *report /* or NULL */,
                                   gx_failure *failure /* or NULL */);
 
@@ -809,14 +852,14 @@ GXFEM_API const char *gx_result_text(gx_result result);
 /* >>saving --------------------------------------------------------------------------------------------------------- */
 
 /* A body as bytes or as another body, with all that it is: mesh, materials, cuts, displacement, velocity, rest times,
-   the history of BDF2, held regions, ids of fragments and their changes. Further cuts give the same cells, and further
-   steps the same bits in the same program. For that, saving, cloning and restoring make the solvers of all bodies
-   concerned start anew: the next step makes its preconditioner and takes no guess from the last. Sleeping copies go on
-   sleeping. Pointers are not saved. */
+   the history of BDF2, held regions, contact, ids of fragments and their changes. Further cuts give the same cells, and
+   further steps the same bits in the same program. For that, saving, cloning and restoring make the solvers of all
+   bodies concerned start anew: the next step makes its preconditioner and takes no guess from the last. Sleeping copies
+   go on sleeping. Pointers are not saved. */
 
 /* Writes the body to memory, which has room for capacity bytes. *size: receives how many bytes it takes, also after
    CAPACITY. memory NULL: computes *size only. Fields have fixed widths, in the machine's byte order, which the bytes
-   tell. Errors: ARGUMENT, CAPACITY (capacity is below *size). */
+   tell. Errors: ARGUMENT, CAPACITY (capacity is below *size); with contact MEMORY, LIMIT. */
 GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, size_t *size,
                                  gx_failure *failure /* or NULL */);
 /* Reads a body. Bytes from anywhere do no harm: a checksum detects accidental damage, and everything that a body relies
@@ -856,14 +899,21 @@ extern "C" {
 #pragma clang attribute push(__attribute__((target("no-simd128"))), apply_to = function)
 #endif
 
-/* COLD functions are seldom called: kept out of line and compiled for size. */
+/* COLD functions are seldom called: kept out of line and compiled for size. APART: out of line, so that their arrays
+   are not in the frame of what calls them. */
 #if defined(__GNUC__) || defined(__clang__)
 #define GXP_COLD              __attribute__((cold, noinline))
+#define GXP_APART             __attribute__((noinline))
 #define GXP_PREFETCH(address) __builtin_prefetch(address)
 #define GXP_PREFETCHES                                                                                                 \
     static inline __attribute__((always_inline)) /* without it gcc takes such a function for pure and drops calls */
 #else
 #define GXP_COLD
+#if defined(_MSC_VER)
+#define GXP_APART __declspec(noinline)
+#else
+#define GXP_APART
+#endif
 #define GXP_PREFETCH(address) ((void)(address))
 #define GXP_PREFETCHES        static inline
 #endif
@@ -1333,6 +1383,7 @@ typedef struct gxp_close_cell { /* a kept cell around the edge */
     uint32_t facets, facet_count;          /* of a divided element's cell, once they were asked for */
     double heights[4];                     /* of the corners over the faces opposite to them, likewise, m */
     uint8_t is_divided;                    /* its element is */
+    uint8_t is_bent;                       /* its map is quadratic: corners alone do not tell it */
     uint8_t has_facets, has_heights;
 } gxp_close_cell;
 typedef struct gxp_close_facet { /* a triangle that bounds a cell of a divided element */
@@ -1370,6 +1421,7 @@ typedef struct gxp_relation {
     uint8_t ahead;    /* 1: the front advances there */
     uint8_t strays;   /* 1: the edge has left its cut through the side */
     uint8_t doubtful; /* 1: ahead only because the cut's sheet is in the air there */
+    uint8_t beside;   /* 1: in the air, ahead only because it is behind and off the cut's sheet */
 } gxp_relation;
 
 /* A part of a segment of the edge that is in a cell */
@@ -1464,26 +1516,52 @@ typedef struct gxp_touch_vertex { /* of the surface: a sample */
     double normal[3];  /* outward, of length 1, at rest */
     double area, size; /* m2: its share of the surface; m: of its element */
     double young;      /* Pa */
-    double pressed;    /* m: depth by which its pair pressed at the end of the last step; 0: it had none */
-    double slip[3];    /* m: elastic, of its friction */
 } gxp_touch_vertex;
 
 typedef struct gxp_touch_facet {
     uint32_t vertex[3], element, fragment;
 } gxp_touch_facet;
 
+/* What a sample pressed with at the end of the last step. A sample is a vertex or, from vertex_count on, a facet */
+typedef struct gxp_touch_state {
+    uint32_t sample, other; /* other: a collider's id; GXP_NONE: the body itself */
+    double pressed;         /* m: depth */
+    double slip[3];         /* m: elastic, of its friction */
+    double rest[3];         /* m: of a facet, which has many, the place */
+} gxp_touch_state;
+
 typedef struct gxp_touch_surface { /* facets by fragment, then as they lie in space at rest */
     gxp_touch_vertex *vertices;
     gxp_touch_facet *facets;
+    gxp_touch_state *states; /* by sample, ascending */
     uint32_t vertex_count, facet_count, vertex_capacity, facet_capacity;
+    uint32_t state_count, state_capacity;
+    double largest; /* m: size of the vertices' elements */
 } gxp_touch_surface;
 
-typedef struct gxp_touch_pair { /* of a step */
-    uint32_t vertex, facet;
-    double share[3];             /* of the facet's corners: the place that the vertex touches */
-    double normal[3];            /* of the facet, in space, of length 1 */
+typedef struct gxp_touch_pair {  /* of a step */
+    uint32_t sample;             /* see gxp_touch_state */
+    uint32_t parts;              /* of a facet's edges */
+    uint32_t facet;              /* that a vertex touches; GXP_NONE: it is a collider, or nothing any more */
+    uint32_t collider, other;    /* place among the step's colliders, id; GXP_NONE: none */
+    double share[3];             /* of the corners of that facet; of a sample that is a facet, those of its own */
+    double normal[3];            /* of the other side, in space, of length 1 */
     double gap, approach, score; /* m; m/s; m2: the smallest is taken */
+    double gap_before;           /* m: after the step, what gap was before */
+    double area, rest[3];        /* m2, m: of the sample */
+    double pressed, slip[3];     /* m: of its state */
+    double place[3], way[3];     /* m: of the collider's point at the step's start; its way within the step */
 } gxp_touch_pair;
+
+typedef struct gxp_touch_beside { /* a sample that may come near a collider */
+    uint32_t collider, parts;     /* parts above 1: it is a facet, whose edges are divided */
+    double area;                  /* m2: of the facet, or of what this entry adds to a vertex */
+} gxp_touch_beside;
+
+typedef struct gxp_touch_known { /* a collider of the last step */
+    uint32_t id, unused;
+    uint64_t hash; /* of its shape and pose */
+} gxp_touch_known;
 
 typedef struct gxp_touch {
     int on;
@@ -1492,9 +1570,18 @@ typedef struct gxp_touch {
        the step has succeeded. */
     gxp_touch_surface surfaces[2];
     uint32_t current;
-    int made;      /* surfaces[current] is of the cuts whose hash is `hash` */
-    uint64_t hash; /* cuts.hash */
+    int made;               /* surfaces[current] is of the cuts whose hash is `hash` */
+    uint64_t hash;          /* cuts.hash */
+    uint64_t pressed;       /* hash of the states after the last step; 0: nothing pressed */
+    gxp_touch_known *known; /* ascending ids */
+    uint32_t known_count, known_capacity;
     /* of a step */
+    const gx_collider *colliders; /* collider_count: the caller's */
+    uint32_t collider_count;
+    gxp_keys named;    /* id, place of a collider; ascending */
+    gxp_words changed; /* of each collider: 1 if it moves or is not as it was in the last step */
+    gxp_touch_beside *beside;
+    uint32_t beside_capacity;
     gxp_touch_pair *pairs;
     double *moved;          /* vertices x 9: position and velocity in space, outward normal */
     double *facing;         /* facets x 3: normals in space, of length 1, or 0 */
@@ -1502,11 +1589,12 @@ typedef struct gxp_touch {
     gxp_words sides;        /* pairs x GXP_TOUCH_COPIES: copies of their points */
     double *weights;        /* likewise */
     double *slips, *forces; /* all pairs of the step x 3 */
-    gxp_keys order;
-    gxp_words ranked;     /* facets along a curve; then vertices that a cut has made */
-    uint32_t leaf_count;  /* a power of two */
-    uint32_t given;       /* pairs of the caller, which stand first */
-    uint32_t found, kept; /* pairs of contact: of this step; of the last one that succeeded */
+    gxp_keys order;         /* facets; places of vertices; samples beside colliders */
+    gxp_keys placed;        /* facets by element */
+    gxp_words ranked;       /* facets along a curve */
+    uint32_t leaf_count;    /* a power of two */
+    uint32_t given;         /* pairs of the caller, which stand first */
+    uint32_t found, kept;   /* pairs of contact: of this step; of the last one that succeeded */
     uint32_t pair_capacity, moved_capacity, facing_capacity, box_capacity, weight_capacity, slip_capacity,
         force_capacity;
 } gxp_touch;
@@ -1520,6 +1608,10 @@ typedef struct gxp_boundary {
     gxp_words slots;     /* by point of the complex: its place in points, if it is there */
     gxp_words triangles; /* x 3, places in points */
     gxp_words facets;    /* in faces of the element: 2 x facet, + 1 if the material is in front */
+    gxp_words leaves;    /* that it bounds */
+    gxp_words fixed_of;  /* by place in points: the place in fixed, or GXP_NONE */
+    gxb_fixed *fixed;    /* x 4: coordinates of those points that needed more digits */
+    uint32_t fixed_count, fixed_capacity;
 } gxp_boundary;
 
 typedef struct gxp_scratch {
@@ -1539,7 +1631,12 @@ typedef struct gxp_scratch {
     gxp_keys order;          /* place in the order of insertion, triangle */
     gxp_words near_elements; /* that a triangle may meet */
     /* >>pinches */
-    gxp_words joint_leaves, joint_edges, joint_cells; /* around a node or edge */
+    gxp_words joint_leaves; /* around a node, or of an element */
+    gxp_words joint_edges;  /* parts of edges in which these meet: joints 0, 1, ...; then a node is one */
+    gxp_words joint_walls;  /* by joint: 1 if a wall touches it */
+    gxp_words leaf_joints;  /* on a leaf's boundary */
+    gxp_keys joint_cells;   /* joint, cell; ascending */
+    gxp_keys cell_joints;   /* the same by cell */
     /* >>solids */
     gxp_words seed_leaves; /* where the flood starts */
     gxp_words flooded;     /* leaves whose winding number is known */
@@ -1807,6 +1904,9 @@ static const gxp_column gxp_lists[] = {
     GXP_LIST(touch.surfaces[0].facets, touch.surfaces[0].facet_capacity, sizeof(gxp_touch_facet)),
     GXP_LIST(touch.surfaces[1].vertices, touch.surfaces[1].vertex_capacity, sizeof(gxp_touch_vertex)),
     GXP_LIST(touch.surfaces[1].facets, touch.surfaces[1].facet_capacity, sizeof(gxp_touch_facet)),
+    GXP_LIST(touch.surfaces[0].states, touch.surfaces[0].state_capacity, sizeof(gxp_touch_state)),
+    GXP_LIST(touch.surfaces[1].states, touch.surfaces[1].state_capacity, sizeof(gxp_touch_state)),
+    GXP_LIST(touch.known, touch.known_capacity, sizeof(gxp_touch_known)),
     GXP_LIST(touch.pairs, touch.pair_capacity, sizeof(gxp_touch_pair)),
     GXP_LIST(touch.moved, touch.moved_capacity, 9 * sizeof(double)),
     GXP_LIST(touch.facing, touch.facing_capacity, 3 * sizeof(double)),
@@ -1814,13 +1914,15 @@ static const gxp_column gxp_lists[] = {
     GXP_LIST(touch.weights, touch.weight_capacity, sizeof(double)),
     GXP_LIST(touch.slips, touch.slip_capacity, 3 * sizeof(double)),
     GXP_LIST(touch.forces, touch.force_capacity, 3 * sizeof(double)),
-    GXP_KEYS(touch.order), GXP_WORDS(touch.ranked),
+    GXP_KEYS(touch.order), GXP_WORDS(touch.ranked), GXP_KEYS(touch.named), GXP_WORDS(touch.changed),
+    GXP_LIST(touch.beside, touch.beside_capacity, sizeof(gxp_touch_beside)), GXP_KEYS(touch.placed),
     GXP_WORDS(scratch.removed), GXP_KEYS(scratch.removed_of), GXP_WORDS(scratch.pinches), GXP_WORDS(scratch.touched),
     GXP_WORDS(scratch.new_cells),
     GXP_KEYS(scratch.links), GXP_KEYS(scratch.glue), GXP_KEYS(scratch.seams), GXP_WORDS(scratch.cluster),
     GXP_WORDS(scratch.link_first), GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
     GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements),
-    GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_cells),
+    GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_walls),
+    GXP_WORDS(scratch.leaf_joints), GXP_KEYS(scratch.joint_cells), GXP_KEYS(scratch.cell_joints),
     GXP_WORDS(scratch.seed_leaves), GXP_WORDS(scratch.flooded), GXP_WORDS(scratch.seeded), GXP_WORDS(scratch.wound),
     GXP_WORDS(scratch.leaf_points),
     GXP_KEYS(scratch.given_to), GXP_WORDS(scratch.remade), GXP_KEYS(scratch.interfaces),
@@ -1829,8 +1931,9 @@ static const gxp_column gxp_lists[] = {
     GXP_KEYS(scratch.pairs), GXP_WORDS(scratch.subdomains), GXP_WORDS(scratch.subdomain_cells),
     GXP_WORDS(scratch.taken), GXP_WORDS(scratch.face_facets),
     GXP_WORDS(scratch.boundary.points), GXP_WORDS(scratch.boundary.slots), GXP_WORDS(scratch.boundary.triangles),
-    GXP_WORDS(scratch.boundary.facets),
+    GXP_WORDS(scratch.boundary.facets), GXP_WORDS(scratch.boundary.leaves), GXP_WORDS(scratch.boundary.fixed_of),
     GXP_LIST(scratch.boundary.lambdas, scratch.boundary.lambda_capacity, 4 * sizeof(double)),
+    GXP_LIST(scratch.boundary.fixed, scratch.boundary.fixed_capacity, 4 * sizeof(gxb_fixed)),
     GXP_WORDS(scratch.sheet_cells), GXP_WORDS(scratch.bulk_of), GXP_WORDS(scratch.bulk_met), GXP_WORDS(scratch.bent),
     GXP_LIST(scratch.bulks, scratch.bulk_capacity, sizeof(gxp_bulk))};
 /* clang-format on */
@@ -3372,32 +3475,58 @@ static void gxp_find_pinched_edges(gx_body *body) {
         }
 }
 
-/* A point or an edge of the complex in which elements meet; the other of the two is GXB_NONE */
-typedef struct gxp_joint {
-    uint32_t point, edge;
-    int found, walled;
-} gxp_joint;
+/* Where a word is in an ascending list, GXP_NONE: nowhere */
+static uint32_t gxp_place_of(const gxp_words *words, uint32_t value) {
+    uint32_t low = 0, high = words->count;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (words->data[middle] < value)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < words->count && words->data[low] == value ? low : GXP_NONE;
+}
 
-/* Is the joint on the leaf's boundary (found), and does a wall touch it there (walled)? */
-static gx_result gxp_find_leaf_joint(gx_body *body, uint32_t leaf, gxp_joint *joint) {
+/* Makes the edges in scratch.joint_edges joints: the parts of mesh edges in which elements meet, joints 0, 1, ... in
+   ascending order. The joint after them is a node. */
+static gx_result gxp_start_joints(gx_body *body) {
+    gxp_scratch *scratch = &body->scratch;
+    gx_result result;
+    gxp_sort_unique(&scratch->joint_edges);
+    result = gxp_start_words(body, &scratch->joint_walls, (size_t)scratch->joint_edges.count + 1);
+    if (result != GX_OK) return result;
+    scratch->joint_walls.count = scratch->joint_edges.count + 1;
+    memset(scratch->joint_walls.data, 0, scratch->joint_walls.count * sizeof *scratch->joint_walls.data);
+    return GX_OK;
+}
+
+/* Lists in scratch.leaf_joints the joints on the boundary of a leaf of an open element, and notes in
+   scratch.joint_walls at which a wall touches it. node: that is a joint, or GXB_NONE */
+static gx_result gxp_find_leaf_joints(gx_body *body, uint32_t leaf, uint32_t node) {
     gxb_complex *cx = body->complex;
-    uint32_t first, count = 0, i, j, e0, en;
-    gx_result result = gxb_complex_open_element(cx, gxb_complex_leaf(cx, leaf)->element);
-    if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
-    joint->found = 0;
+    gxp_scratch *scratch = &body->scratch;
+    uint32_t first, count = 0, i, j, k, e0, en;
+    gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
+    scratch->leaf_joints.count = 0;
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint32_t facet = gxp_item(cx, first + i);
+        const int wall = gxb_complex_facet(cx, facet)->wall != 0 || gxb_complex_leaf(cx, leaf)->removed != 0;
         result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
         for (j = 0; j < en && result == GX_OK; j++) {
             const uint32_t e = gxp_item(cx, e0 + j);
-            if (joint->point != GXB_NONE ? gxb_complex_edge_start(cx, e) != joint->point : e >> 1 != joint->edge)
-                continue;
-            joint->found = 1;
-            joint->walled |= gxb_complex_facet(cx, facet)->wall != 0 || gxb_complex_leaf(cx, leaf)->removed != 0 ||
-                             (joint->point != GXB_NONE ? gxb_complex_point(cx, joint->point)->wall
-                                                       : gxb_complex_edge(cx, joint->edge)->wall) != 0;
+            uint32_t joints[2] = {GXP_NONE, GXP_NONE};
+            joints[0] = gxp_place_of(&scratch->joint_edges, e >> 1);
+            if (node != GXB_NONE && gxb_complex_edge_start(cx, e) == node) joints[1] = scratch->joint_edges.count;
+            for (k = 0; k < 2 && result == GX_OK; k++) {
+                if (joints[k] == GXP_NONE) continue;
+                result = gxp_push(body, &scratch->leaf_joints, joints[k]);
+                if (wall || (k == 0 ? gxb_complex_edge(cx, e >> 1)->wall : gxb_complex_point(cx, node)->wall) != 0)
+                    scratch->joint_walls.data[joints[k]] = 1;
+            }
         }
     }
+    gxp_sort_unique(&scratch->leaf_joints);
     return result;
 }
 
@@ -3405,26 +3534,20 @@ static gx_result gxp_find_leaf_joint(gx_body *body, uint32_t leaf, gxp_joint *jo
    of the two is GXB_NONE. */
 static gx_result gxp_is_joint_in_scope(gx_body *body, uint32_t element, uint32_t node, uint32_t edge, int *found) {
     gxp_scratch *scratch = &body->scratch;
-    gx_result result = GX_OK;
-    uint32_t i, j;
+    gx_result result;
+    uint32_t i;
     *found = 0;
     scratch->joint_leaves.count = scratch->joint_edges.count = 0;
-    if (edge == GXB_NONE)
-        result = gxp_push(body, &scratch->joint_edges, GXB_NONE);
-    else
+    result = gxb_complex_open_element(body->complex, element);
+    if (edge != GXB_NONE && result == GX_OK)
         result = gxp_push_divided_edges(body, gxb_complex_mesh_edge(body->complex, edge), &scratch->joint_edges);
+    if (result == GX_OK) result = gxp_start_joints(body);
     if (result == GX_OK)
         result = gxp_push_leaves(body, gxb_complex_root(body->complex, element), &scratch->joint_leaves);
-    for (i = 0; i < scratch->joint_leaves.count && result == GX_OK; i++) {
-        gxp_joint joint;
+    for (i = 0; i < scratch->joint_leaves.count && result == GX_OK && !*found; i++) {
         if (!gxp_in_scope(body, scratch->joint_leaves.data[i])) continue;
-        for (j = 0; j < scratch->joint_edges.count && result == GX_OK && !*found; j++) {
-            joint.point = node;
-            joint.edge = scratch->joint_edges.data[j];
-            joint.walled = 0;
-            result = gxp_find_leaf_joint(body, scratch->joint_leaves.data[i], &joint);
-            *found |= joint.found;
-        }
+        result = gxp_find_leaf_joints(body, scratch->joint_leaves.data[i], node);
+        *found = scratch->leaf_joints.count > 0;
     }
     return result;
 }
@@ -3461,60 +3584,71 @@ static gx_result gxp_cover_pinches(gx_body *body, gxb_triangle *t, uint32_t elem
     return result;
 }
 
-/* Appends the cells around the node that have the joint on their boundary. Removed leaves count as walls. */
-static gx_result gxp_find_joint_cells(gx_body *body, uint32_t node, gxp_joint *joint, gxp_words *found) {
+/* Drops keys that are there twice; they are ascending. */
+static void gxp_drop_same_keys(gxp_keys *keys) {
+    uint32_t i, n = 0;
+    for (i = 0; i < keys->count; i++)
+        if (n == 0 || keys->data[i] != keys->data[n - 1]) keys->data[n++] = keys->data[i];
+    keys->count = n;
+}
+
+/* Lists the pinched edges of a node, in parts, in scratch.joint_edges, and the leaves around it in joint_leaves. */
+static gx_result gxp_list_joint_edges(gx_body *body, uint32_t node) {
     gxp_scratch *scratch = &body->scratch;
-    uint32_t j, i;
+    gxb_complex *cx = body->complex;
+    uint32_t i, k;
     gx_result result = GX_OK;
-    joint->walled = 0;
-    scratch->joint_leaves.count = 0;
-    for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1] && result == GX_OK; j++)
-        result =
-            gxp_push_leaves(body, gxb_complex_root(body->complex, body->mesh.node_elements[j]), &scratch->joint_leaves);
+    scratch->joint_leaves.count = scratch->joint_edges.count = 0;
+    for (i = body->mesh.node_start[node]; i < body->mesh.node_start[node + 1] && result == GX_OK; i++) {
+        const uint32_t element = body->mesh.node_elements[i], *nodes = gxb_complex_element_nodes(cx, element);
+        result = gxb_complex_open_element(cx, element);
+        if (result == GX_OK) result = gxp_push_leaves(body, gxb_complex_root(cx, element), &scratch->joint_leaves);
+        for (k = 0; k < 6 && result == GX_OK; k++) {
+            const uint32_t edge = gxb_complex_element_edges(cx, element)[k];
+            if (!body->mesh.edge_pinched[edge]) continue;
+            if (nodes[gxp_edge_nodes[k][0]] == node || nodes[gxp_edge_nodes[k][1]] == node)
+                result = gxp_push_divided_edges(body, gxb_complex_mesh_edge(cx, edge), &scratch->joint_edges);
+        }
+    }
+    return result == GX_OK ? gxp_start_joints(body) : result;
+}
+
+/* Lists which cells around a node meet in which joints: the node, if it is pinched, and its pinched edges. Removed
+   leaves count as walls. */
+static gx_result gxp_list_joints(gx_body *body, uint32_t node) {
+    gxp_scratch *scratch = &body->scratch;
+    const uint32_t point = body->mesh.node_pinched[node] & 1 ? node : GXB_NONE;
+    uint32_t i, k;
+    gx_result result = gxp_list_joint_edges(body, node);
+    scratch->joint_cells.count = scratch->cell_joints.count = 0;
     for (i = 0; i < scratch->joint_leaves.count && result == GX_OK; i++) {
         const uint32_t leaf = scratch->joint_leaves.data[i];
-        result = gxp_find_leaf_joint(body, leaf, joint);
-        if (joint->found && !gxb_complex_leaf(body->complex, leaf)->removed && result == GX_OK)
-            result = gxp_push(body, found, body->leaves.data[leaf].cell);
+        result = gxp_find_leaf_joints(body, leaf, point);
+        if (gxb_complex_leaf(body->complex, leaf)->removed) continue;
+        for (k = 0; k < scratch->leaf_joints.count && result == GX_OK; k++)
+            result =
+                gxp_push_key(body, &scratch->joint_cells, scratch->leaf_joints.data[k], body->leaves.data[leaf].cell);
     }
-    return result;
+    if (result == GX_OK) result = gxp_sort_keys(body, &scratch->joint_cells, 0, scratch->joint_cells.count);
+    gxp_drop_same_keys(&scratch->joint_cells);
+    for (i = 0; i < scratch->joint_cells.count && result == GX_OK; i++)
+        result = gxp_push_key(body, &scratch->cell_joints, GXP_SECOND(scratch->joint_cells.data[i]),
+                              GXP_FIRST(scratch->joint_cells.data[i]));
+    return result == GX_OK ? gxp_sort_keys(body, &scratch->cell_joints, 0, scratch->cell_joints.count) : result;
 }
 
-/* Visits the cells that the joint connects to this cell. */
-static gx_result gxp_cross_joint(gx_body *body, uint32_t cell, uint32_t node, uint32_t point, uint32_t edge) {
+/* Visits the cells that joints connect to this one: those that gxp_list_joints has listed. */
+static gx_result gxp_cross_joints(gx_body *body, uint32_t cell) {
     gxp_scratch *scratch = &body->scratch;
-    gxp_joint joint;
-    uint32_t i, member = 0;
-    gx_result result;
-    joint.point = point;
-    joint.edge = edge;
-    joint.walled = joint.found = 0;
-    scratch->joint_cells.count = 0;
-    result = gxp_find_joint_cells(body, node, &joint, &scratch->joint_cells);
-    for (i = 0; i < scratch->joint_cells.count; i++) member |= scratch->joint_cells.data[i] == cell;
-    for (i = 0; i < scratch->joint_cells.count && result == GX_OK && member && !joint.walled; i++)
-        result = gxp_visit_cell(body, scratch->joint_cells.data[i], &scratch->subdomain_cells);
-    return result;
-}
-
-/* Visits the cells that the node, if it is pinched, and its pinched edges connect to this cell. */
-static gx_result gxp_cross_pinches(gx_body *body, uint32_t cell, uint32_t node) {
-    gxp_scratch *scratch = &body->scratch;
-    const uint32_t element = body->cells.data[cell].element;
-    gxb_complex *cx = body->complex;
-    uint32_t k, i;
-    gx_result result = gxb_complex_open_element(cx, element);
-    if (result == GX_OK && (body->mesh.node_pinched[node] & 1))
-        result = gxp_cross_joint(body, cell, node, node, GXB_NONE);
-    for (k = 0; k < 6 && result == GX_OK; k++) {
-        const uint32_t edge = gxb_complex_element_edges(cx, element)[k];
-        const uint32_t a = gxb_complex_element_nodes(cx, element)[gxp_edge_nodes[k][0]],
-                       b = gxb_complex_element_nodes(cx, element)[gxp_edge_nodes[k][1]];
-        if (!body->mesh.edge_pinched[edge] || (a != node && b != node)) continue;
-        scratch->joint_edges.count = 0;
-        result = gxp_push_divided_edges(body, gxb_complex_mesh_edge(cx, edge), &scratch->joint_edges);
-        for (i = 0; i < scratch->joint_edges.count && result == GX_OK; i++)
-            result = gxp_cross_joint(body, cell, node, GXB_NONE, scratch->joint_edges.data[i]);
+    const gxp_keys *of_cell = &scratch->cell_joints, *of_joint = &scratch->joint_cells;
+    uint32_t i = gxp_first_key(of_cell, (uint64_t)cell << 32), j;
+    gx_result result = GX_OK;
+    for (; i < of_cell->count && GXP_FIRST(of_cell->data[i]) == cell; i++) {
+        const uint32_t joint = GXP_SECOND(of_cell->data[i]);
+        if (scratch->joint_walls.data[joint]) continue;
+        j = gxp_first_key(of_joint, (uint64_t)joint << 32);
+        for (; j < of_joint->count && GXP_FIRST(of_joint->data[j]) == joint && result == GX_OK; j++)
+            result = gxp_visit_cell(body, GXP_SECOND(of_joint->data[j]), &scratch->subdomain_cells);
     }
     return result;
 }
@@ -4133,6 +4267,22 @@ static gx_result gxp_rough_area(gxb_complex *cx, uint32_t facet, double *area, d
     return result;
 }
 
+/* sum += (b - o) x (a - o) in the plane of two barycentric coordinates */
+static GXP_APART void gxp_fine_cross(gxb_num *sum, const gxp_fine_point *a, const gxp_fine_point *b,
+                                     const gxp_fine_point *o, const unsigned *axes) {
+    GXB_NUM(x);
+    GXB_NUM(y);
+    GXB_NUM(z);
+    GXB_NUM(w);
+    gxb_num_sub(&x, &b->c[axes[1]], &o->c[axes[1]]);
+    gxb_num_sub(&y, &b->c[axes[2]], &o->c[axes[2]]);
+    gxb_num_sub(&z, &a->c[axes[1]], &o->c[axes[1]]);
+    gxb_num_sub(&w, &a->c[axes[2]], &o->c[axes[2]]);
+    z.sign = -z.sign;
+    gxp_num_add_product(sum, &x, &w);
+    gxp_num_add_product(sum, &y, &z);
+}
+
 /* The polygon of scratch.facet_points as a share of the face opposite to node k, in numbers of any size: its area in
    the plane of two barycentric coordinates, where the face has area 1. */
 static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
@@ -4141,32 +4291,15 @@ static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
     uint32_t i;
     int c;
     GXB_NUM(sum);
-    GXB_NUM(one);
     gxi_part_axes(k, axes);
-    gxb_num_set(&one, 1.0, 0);
     for (i = 0; i < 3; i++)
         for (c = 0; c < 4; c++) p[i].c[c].d = p[i].limbs[c];
     for (i = 0; i < body->scratch.facet_points.count; i++) {
         /* a: this point, b: the one before */
         gxp_fine_point *const a = &p[1 + i % 2], *const b = &p[1 + (i + 1) % 2];
-        GXB_NUM(x);
-        GXB_NUM(y);
-        GXB_NUM(z);
-        GXB_NUM(w);
-        GXB_NUM(s);
-        GXB_NUM(t);
-        GXB_NUM(d);
         gxb_complex_barycentric_fine(body->complex, body->scratch.facet_points.data[i], element,
                                      i == 0 ? p[0].c : a->c);
-        if (i < 2) continue;
-        gxb_num_sub(&x, &b->c[axes[1]], &p[0].c[axes[1]]);
-        gxb_num_sub(&y, &b->c[axes[2]], &p[0].c[axes[2]]);
-        gxb_num_sub(&z, &a->c[axes[1]], &p[0].c[axes[1]]);
-        gxb_num_sub(&w, &a->c[axes[2]], &p[0].c[axes[2]]);
-        gxb_num_mul(&s, &x, &w);
-        gxb_num_mul(&t, &y, &z);
-        gxb_num_sub(&d, &s, &t);
-        gxp_num_add_product(&sum, &d, &one);
+        if (i >= 2) gxp_fine_cross(&sum, a, b, &p[0], axes);
     }
     return fabs(gxb_num_to_double(&sum));
 }
@@ -4670,7 +4803,7 @@ static gx_result gxp_walk_subdomain(gx_body *body, uint32_t cell, uint32_t node,
                                      all, open);
         if (result == GX_OK && index != GXP_NONE && scratch->interfaces.count > 0)
             result = gxp_cross_interfaces(body, index, all, open);
-        if (result == GX_OK && body->mesh.node_pinched[node]) result = gxp_cross_pinches(body, c, node);
+        if (result == GX_OK && body->mesh.node_pinched[node]) result = gxp_cross_joints(body, c);
     }
     return result;
 }
@@ -4751,6 +4884,7 @@ static gx_result gxp_find_subdomains(gx_body *body, uint32_t first, uint32_t end
     scratch->subdomain_cells.count = scratch->subdomains.count = scratch->taken.count = 0;
     scratch->stamp++;
     *sure = all || !body->mesh.node_pinched[node];
+    if (*sure && body->mesh.node_pinched[node]) result = gxp_list_joints(body, node);
     for (i = first; i < end && result == GX_OK && *sure; i++) {
         const uint32_t cell = GXP_SECOND(scratch->pairs.data[i]), start = scratch->subdomain_cells.count,
                        copy = gxp_copy_of(body, cell, node);
@@ -4820,12 +4954,15 @@ static gx_result gxp_divide_nodes(gxp_cut *cut) {
    coordinates of the element. Sums whose terms cancel are summed in exact numbers. Touches cells, through the undo log.
  */
 
+/* So many points are kept at most: they should stay in the cache. */
+#define GXP_BOUNDARY_POINTS 16384u
+
 /* Empties the boundary. Points are kept while the element stays the same: its cells share those of its walls. */
 static void gxp_clear_boundary(gx_body *body, int other_element) {
     gxp_scratch *scratch = &body->scratch;
     gxp_boundary *boundary = &scratch->boundary;
-    if (other_element || boundary->points.count > 64) boundary->points.count = 0;
-    boundary->triangles.count = boundary->facets.count = 0;
+    if (other_element || boundary->points.count > GXP_BOUNDARY_POINTS) boundary->points.count = 0;
+    boundary->triangles.count = boundary->facets.count = boundary->leaves.count = 0;
 }
 
 /* Adds a point of the complex with its barycentric coordinates in the element. */
@@ -4842,6 +4979,9 @@ static gx_result gxp_new_boundary_point(gx_body *body, uint32_t element, uint32_
     result = gxp_reserve(&body->config.allocator, &boundary->lambdas, 4 * sizeof(double), boundary->points.count,
                          &boundary->lambda_capacity, 1);
     *index = boundary->points.count;
+    if (*index == 0) boundary->fixed_count = 0;
+    boundary->fixed_of.count = *index;
+    if (result == GX_OK) result = gxp_push(body, &boundary->fixed_of, GXP_NONE);
     if (result == GX_OK) result = gxp_push(body, &boundary->points, point);
     if (result != GX_OK) return result;
     boundary->slots.data[point] = *index;
@@ -4886,6 +5026,7 @@ static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, uint32_t st
     gxb_complex *cx = body->complex;
     uint32_t first, count, i;
     gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
+    if (result == GX_OK) result = gxp_push(body, &body->scratch.boundary.leaves, leaf);
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint32_t facet = gxp_item(cx, first + i);
         const gxb_facet *f = gxb_complex_facet(cx, facet);
@@ -4901,12 +5042,97 @@ static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, uint32_t st
     return result;
 }
 
+/* The coordinates of one of the boundary's points along three axes, with 184 bits behind the point */
+static gx_result gxp_fixed_coordinates(gx_body *body, uint32_t element, uint32_t point, const unsigned axes[3],
+                                       gxb_fixed x[3]) {
+    gxp_boundary *boundary = &body->scratch.boundary;
+    uint32_t *place = &boundary->fixed_of.data[point];
+    int c;
+    if (*place == GXP_NONE) {
+        const gx_result result = gxp_reserve(&body->config.allocator, &boundary->fixed, 4 * sizeof *boundary->fixed,
+                                             boundary->fixed_count, &boundary->fixed_capacity, 1);
+        if (result != GX_OK) return result;
+        *place = boundary->fixed_count++;
+        gxb_complex_barycentric_fixed(body->complex, boundary->points.data[point], element,
+                                      boundary->fixed + 4 * (size_t)*place);
+    }
+    for (c = 0; c < 3; c++) x[c] = boundary->fixed[4 * (size_t)*place + axes[c]];
+    return GX_OK;
+}
+
+/* Adds the moments of a tetrahedron of which six times the volume is D: D / 6, D s_i / 24, D (s_i s_j + the sum of
+   products x_i x_j of its corners x) / 120, where s is their sum. */
+static void gxp_add_tetrahedron(const double *x[4], const unsigned axes[3], double D, gxi_moments2 *m) {
+    double s[3], q;
+    int i, j, n, slot = 0;
+    for (i = 0; i < 3; i++) {
+        s[i] = x[0][axes[i]] + x[1][axes[i]] + x[2][axes[i]] + x[3][axes[i]];
+        m->first[i] += D * s[i] / 24;
+    }
+    m->volume += D / 6;
+    for (i = 0; i < 3; i++)
+        for (j = i; j < 3; j++) {
+            q = s[i] * s[j];
+            for (n = 0; n < 4; n++) q += x[n][axes[i]] * x[n][axes[j]];
+            m->second[slot++] += D * q / 120;
+        }
+}
+
+/* Adds the moments of a leaf in the frame with origin k, by tetrahedra from one of its corners to its triangles. The
+   leaf is convex, so no volume is negative and nothing cancels; volumes are exact. *count: of tetrahedra */
+static gx_result gxp_add_leaf_moments(gx_body *body, uint32_t element, uint32_t leaf, unsigned k, gxi_moments2 *m,
+                                      uint32_t *count) {
+    gxp_boundary *boundary = &body->scratch.boundary;
+    const uint32_t start = boundary->triangles.count;
+    gxb_complex *cx = body->complex;
+    unsigned axes[3];
+    gxb_fixed x[4][3];
+    uint32_t first, facets, i, j, o;
+    gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &facets);
+    for (i = 0; i < facets && result == GX_OK; i++) {
+        const uint32_t facet = gxp_item(cx, first + i);
+        result = gxp_add_boundary_facet(body, element, facet, gxb_complex_facet(cx, facet)->leaf[0] == leaf);
+    }
+    gxi_part_axes(k, axes);
+    o = boundary->triangles.data[start];
+    if (result == GX_OK) result = gxp_fixed_coordinates(body, element, o, axes, x[3]);
+    for (i = start; i < boundary->triangles.count && result == GX_OK; i += 3) {
+        const uint32_t *t = boundary->triangles.data + i;
+        const double *corner[4];
+        if (t[0] == o || t[1] == o || t[2] == o) continue;
+        for (j = 0; j < 3 && result == GX_OK; j++) result = gxp_fixed_coordinates(body, element, t[j], axes, x[j]);
+        if (result != GX_OK) break;
+        for (j = 0; j < 3; j++) corner[j] = boundary->lambdas + 4 * (size_t)t[j];
+        corner[3] = boundary->lambdas + 4 * (size_t)o;
+        gxp_add_tetrahedron(corner, axes, gxb_fixed_determinant(x[3], x[0], x[1], x[2]), m);
+        (*count)++;
+    }
+    boundary->triangles.count = start;
+    return result;
+}
+
+/* The error of a tetrahedron's determinant, from six errors of 2^-179 in each of three edges of length 1 at most, is
+   this share of a volume that it moves by less than its last digits. */
+#define GXP_FIXED_VOLUME 7.5e-37 /* 2^-120 */
+
+/* Moments of the leaves that the boundary bounds. *enough: whether the volume is right to its last digits */
+static gx_result gxp_leaf_moments(gx_body *body, uint32_t element, unsigned k, gxi_moments2 *m, int *enough) {
+    const gxp_words *leaves = &body->scratch.boundary.leaves;
+    uint32_t i, count = 0;
+    gx_result result = GX_OK;
+    memset(m, 0, sizeof *m);
+    for (i = 0; i < leaves->count && result == GX_OK; i++)
+        result = gxp_add_leaf_moments(body, element, leaves->data[i], k, m, &count);
+    *enough = m->volume > GXP_FIXED_VOLUME * count;
+    return result;
+}
+
 typedef struct gxp_fine_sums {
     gxb_num c[10];
     gxb_limb limbs[10][GXB_NUM_LIMBS];
 } gxp_fine_sums;
 /* det(a, b, c) */
-static void gxp_fine_determinant(gxb_num *det, gxb_num *p[3][3]) {
+static GXP_APART void gxp_fine_determinant(gxb_num *det, gxb_num *p[3][3]) {
     static const int cyclic[3][2] = {{1, 2}, {2, 0}, {0, 1}};
     int k;
     det->sign = det->exp = 0;
@@ -4924,7 +5150,7 @@ static void gxp_fine_determinant(gxb_num *det, gxb_num *p[3][3]) {
 
 /* Adds the cone from the origin to a triangle. With D = det(a,b,c), s = a+b+c: D, D s_i, D (s_i s_j + a_i a_j + b_i b_j
    + c_i c_j). */
-static void gxp_fine_add(gxp_fine_sums *sums, gxb_num *p[3][3]) {
+static GXP_APART void gxp_fine_add(gxp_fine_sums *sums, gxb_num *p[3][3]) {
     gxb_limb limbs[3][GXB_NUM_LIMBS];
     gxb_num s[3];
     int i, j, k, slot = 4;
@@ -4957,26 +5183,19 @@ static void gxp_fine_coordinates(gx_body *body, uint32_t element, uint32_t point
     gxb_complex_barycentric_fine(body->complex, body->scratch.boundary.points.data[point], element, points[point].c);
 }
 
-/* Moments of the boundary in the frame with origin k, from coordinates with 180 bits. */
-static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, gxi_moments2 *m) {
-    gxp_boundary *boundary = &body->scratch.boundary;
-    const size_t size = boundary->points.count * sizeof(gxp_fine_point);
-    gxp_fine_point *points = (gxp_fine_point *)gxp_allocate(&body->config.allocator, size);
+/* Moments of the boundary's triangles, from the coordinates of its points along three axes */
+static GXP_APART void gxp_fine_sum(const gxp_boundary *boundary, gxp_fine_point *points, const unsigned *axes,
+                                   gxi_moments2 *m) {
     gxp_fine_sums sums;
-    unsigned axes[3];
     uint32_t i, t;
     int a, c;
-    if (points == NULL) return GX_ERROR_MEMORY;
     for (i = 0; i < 10; i++) {
         sums.c[i].sign = sums.c[i].exp = 0;
         sums.c[i].n = 0;
         sums.c[i].d = sums.limbs[i];
     }
-    for (i = 0; i < boundary->points.count; i++) points[i].c[0].d = NULL;
-    gxi_part_axes(k, axes);
     for (t = 0; t + 2 < boundary->triangles.count; t += 3) {
         gxb_num *p[3][3];
-        for (a = 0; a < 3; a++) gxp_fine_coordinates(body, element, boundary->triangles.data[t + (uint32_t)a], points);
         for (a = 0; a < 3; a++)
             for (c = 0; c < 3; c++) p[a][c] = &points[boundary->triangles.data[t + (uint32_t)a]].c[axes[c]];
         gxp_fine_add(&sums, p);
@@ -4984,6 +5203,21 @@ static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, g
     m->volume = gxb_num_to_double(&sums.c[0]) / 6;
     for (a = 0; a < 3; a++) m->first[a] = gxb_num_to_double(&sums.c[1 + a]) / 24;
     for (a = 0; a < 6; a++) m->second[a] = gxb_num_to_double(&sums.c[4 + a]) / 120;
+}
+
+/* Moments of the boundary in the frame with origin k, from coordinates with 180 bits. */
+static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, gxi_moments2 *m) {
+    const gxp_boundary *boundary = &body->scratch.boundary;
+    const size_t size = boundary->points.count * sizeof(gxp_fine_point);
+    gxp_fine_point *points = (gxp_fine_point *)gxp_allocate(&body->config.allocator, size);
+    unsigned axes[3];
+    uint32_t i;
+    if (points == NULL) return GX_ERROR_MEMORY;
+    for (i = 0; i < boundary->points.count; i++) points[i].c[0].d = NULL;
+    for (i = 0; i < boundary->triangles.count; i++)
+        gxp_fine_coordinates(body, element, boundary->triangles.data[i], points);
+    gxi_part_axes(k, axes);
+    gxp_fine_sum(boundary, points, axes, m);
     gxp_release(&body->config.allocator, points, size);
     return GX_OK;
 }
@@ -5032,6 +5266,7 @@ static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned 
     gxp_boundary *boundary = &body->scratch.boundary;
     const gxb_complex *cx = body->complex;
     uint32_t i;
+    int enough;
     gx_result result = GX_OK;
     *k = gxp_nearest_vertex(body);
     for (i = 0; i < boundary->facets.count && result == GX_OK; i++) {
@@ -5042,9 +5277,9 @@ static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned 
     if (result == GX_OK)
         result = gxi_part_moments_at(boundary->lambdas, boundary->points.count, boundary->triangles.data,
                                      boundary->triangles.count / 3, *k, m);
-    if (result == GX_OK && m->volume < GXP_CANCELLATION * gxp_cone_volumes(body, *k))
-        result = gxp_fine_moments(body, element, *k, m);
-    return result;
+    if (result != GX_OK || m->volume >= GXP_CANCELLATION * gxp_cone_volumes(body, *k)) return result;
+    result = gxp_leaf_moments(body, element, *k, m, &enough);
+    return result == GX_OK && !enough ? gxp_fine_moments(body, element, *k, m) : result;
 }
 
 /* The volume and mass of a cell; volume: of its element */
@@ -6369,7 +6604,7 @@ static uint32_t gxp_anchor_cell(gx_body *body, const gx_anchor *anchor) {
 
 /* det(b - a, c - a, d - a) of x = a b c d, exact */
 static GXP_COLD void gxp_exact_determinant(const double *const x[4], gxb_num *r) {
-    gxb_limb limbs[9][GXB_NUM_LIMBS];
+    gxb_limb limbs[9][GXB_NUM_LIMBS / 4]; /* differences of doubles have a fifth of the longest number's bits */
     gxb_num e[9];
     int i, k;
     GXB_NUM(p);
@@ -7461,8 +7696,7 @@ GXFEM_API gx_region gx_region_sphere(const double center[3], double radius) {
 
 /* >>map: from rest to space ---------------------------------------------------------------------------------------- */
 /* In: a material point, or a cell. Out: where it is, how fast its corners are. Nothing else in this file turns
-   displacements of copies into positions, but for >>tree, >>locate and what follows there. Blades take a cell's map to
-   be affine, and refuse bodies that may have affine copies. Touches nothing. */
+   displacements of copies into positions, but for >>tree, >>locate and what follows there. Touches nothing. */
 
 /* sum += weight A (x - X) of an affine copy; x: a material point. linear: a body's copies.linear or linear_rate */
 static void gxp_add_linear(const gx_body *body, const double *linear, uint32_t copy, double weight, const double x[3],
@@ -10605,14 +10839,67 @@ static gx_result gxp_find_cells_at(gx_body *body, const double point[3], gxp_wor
 
 /* --- the maps of a cell --- */
 
-/* Pulls a point of space back by the affine map of a cell's deformed element, also from outside of it. weights: of the
-   cell's copies, 1 in sum. At rest the material point is the point, bit by bit. 0: the element is flat. */
+/* Outside of its element, the map of a bent cell goes on as the affine map that touches it next to there: at the same
+   coordinates with those below 0 left out. So it has no folds of its own where nothing is. */
+static void gxp_touch_bent(const gx_body *body, const gxp_cell *c, const double weights[4], const double point[3],
+                           double inside[4], double off[3], double slope[3][3]) {
+    double rest[12], material[3], sum = 0;
+    int n;
+    for (n = 0; n < 4; n++) sum += inside[n] = fmax(weights[n], 0);
+    for (n = 0; n < 4; n++) inside[n] /= sum;
+    gxp_element_positions(body, c->element, rest);
+    gxp_weigh_material(rest, inside, material);
+    gxp_bent_residual(body, c, rest, inside, material, point, off, slope);
+}
+
+/* Where a bent cell's map has a place, also outside of its element. weights: 1 in sum */
+static void gxp_image_of_bent(const gx_body *body, const gxp_cell *c, const double weights[4], double x[3]) {
+    static const double origin[3] = {0, 0, 0};
+    double inside[4], slope[3][3];
+    int i, k;
+    gxp_touch_bent(body, c, weights, origin, inside, x, slope);
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 3; k++) x[k] += (weights[i + 1] - inside[i + 1]) * slope[i][k];
+}
+
+/* The place that a bent cell's map has at a point of space, also outside of its element: in doubles, by Newton's
+   method. Where that finds none, the place by the last map that touches. 0: there is none, the cell is flat. */
+static int gxp_place_in_bent(const gx_body *body, const gxp_cell *c, const double point[3], double weights[4]) {
+    double inside[4], off[3], slope[3][3], normal[3][3];
+    int step, i;
+    for (i = 0; i < 4; i++) weights[i] = 0.25;
+    for (step = 0; step < GXP_UNBEND_STEPS; step++) {
+        double volume, most = 0;
+        gxp_touch_bent(body, c, weights, point, inside, off, slope);
+        for (i = 0; i < 3; i++) gxp_cross(normal[i], slope[(i + 1) % 3], slope[(i + 2) % 3]);
+        volume = gxp_dot(slope[0], normal[0]);
+        if (!(fabs(volume) > 0)) return 0;
+        for (i = 1; i < 4; i++) {
+            const double next = inside[i] - gxp_dot(off, normal[i - 1]) / volume;
+            most = fmax(most, fabs(next - weights[i]));
+            weights[i] = next;
+        }
+        weights[0] = 1 - weights[1] - weights[2] - weights[3];
+        if (!(most > GXP_UNBEND_SMALL) || !(most < 1e9)) break;
+    }
+    return gxp_is_finite(weights[0]);
+}
+
+/* Pulls a point of space back by the map of a cell's deformed element, also from outside of it. weights: of the cell's
+   copies, 1 in sum. At rest the material point is the point, bit by bit, unless the cell is bent. 0: the element is
+   flat. */
 static int gxp_pull_back(const gx_body *body, uint32_t cell, const double point[3], double weights[4],
                          double material[3]) {
     const gxp_cell *c = &body->cells.data[cell];
     gxb_pullback back;
     double x[12], rest[12];
     int i, still = 1;
+    if (gxp_is_bent(body, c)) {
+        if (!gxp_place_in_bent(body, c, point, weights)) return 0;
+        gxp_element_positions(body, c->element, rest);
+        gxp_weigh_material(rest, weights, material);
+        return 1;
+    }
     gxp_moved_corners(body, c, x);
     gxp_element_positions(body, c->element, rest);
     gxb_pullback_set(&back, x, point);
@@ -10638,10 +10925,18 @@ static void gxp_image(const gx_body *body, uint32_t cell, const double material[
     gxp_map_affine(body, c, weights, material, position);
 }
 
-/* The volume of a cell's deformed element as a share of that at rest, below 0 where it is inverted; in doubles */
+/* The volume of a cell's deformed element as a share of that at rest, below 0 where it is inverted; in doubles. Of a
+   bent cell that of the map which touches in the middle. */
 static double gxp_stretch(const gx_body *body, uint32_t cell) {
+    static const double middle[4] = {0.25, 0.25, 0.25, 0.25}, origin[3] = {0, 0, 0};
     const gxp_cell *c = &body->cells.data[cell];
     double x[12];
+    if (gxp_is_bent(body, c)) {
+        double inside[4], off[3], slope[3][3], normal[3];
+        gxp_touch_bent(body, c, middle, origin, inside, off, slope);
+        gxp_cross(normal, slope[1], slope[2]);
+        return gxp_dot(slope[0], normal) / (6 * gxp_element_volume(body, c->element));
+    }
     gxp_moved_corners(body, c, x);
     return gxi_tet_volume(x) / gxp_element_volume(body, c->element);
 }
@@ -11395,6 +11690,7 @@ static void gxp_copy_facet(const gx_body *body, uint32_t t, gxp_touch_surface *t
         v->element = facet->element;
         v->fragment = facet->fragment;
         v->size = cbrt(6 * gxp_element_volume(body, v->element));
+        to->largest = fmax(to->largest, v->size);
         v->young = body->mesh.materials[s->material[t]].elastic.young;
     }
 }
@@ -11412,6 +11708,7 @@ static gx_result gxp_copy_samples(gx_body *body, gxp_touch_surface *to) {
     if (result != GX_OK) return result;
     to->vertex_count = s->vertex_count;
     to->facet_count = s->triangle_count;
+    to->largest = 0;
     for (i = 0; i < to->vertex_count; i++) gxp_copy_sample(s, i, &to->vertices[i]);
     for (i = 0; i < to->facet_count; i++)
         gxp_copy_facet(body, body->touch.ranked.data[GXP_SECOND(body->touch.order.data[i])], to, &to->facets[i]);
@@ -11435,6 +11732,19 @@ static gx_result gxp_make_surface(gx_body *body, gxp_touch_surface *to) {
     return result;
 }
 
+/* The first state of a sample, or of one behind it */
+static uint32_t gxp_first_state(const gxp_touch_surface *s, uint32_t sample) {
+    uint32_t low = 0, high = s->state_count;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (s->states[middle].sample < sample)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 /* The vertex of a surface at the same place with the most similar normal; GXP_NONE: there is none. order: its vertices,
    by hashes of their places */
 static uint32_t gxp_same_sample(const gxp_touch_surface *s, const gxp_keys *order, const gxp_touch_vertex *v) {
@@ -11451,26 +11761,62 @@ static uint32_t gxp_same_sample(const gxp_touch_surface *s, const gxp_keys *orde
     return found;
 }
 
-/* Interpolates the state of a vertex that a cut has put on a facet of its element. order: facets by element */
-static void gxp_state_on_facet(const gxp_touch_surface *s, const gxp_keys *order, gxp_touch_vertex *v) {
-    double best = 1e-12 * v->size * v->size;
-    uint32_t i;
-    int n, k;
+/* The facet of a surface that a material point is on, facing the same way, and where on it; GXP_NONE: there is none.
+   order: facets by element */
+static uint32_t gxp_facet_at(const gxp_touch_surface *s, const gxp_keys *order, const double rest[3],
+                             const double normal[3], double size, double share[3]) {
+    double best = 1e-12 * size * size;
+    uint32_t i, found = GXP_NONE;
     for (i = 0; i < order->count; i++) {
         const gxp_touch_facet *f = &s->facets[GXP_SECOND(order->data[i])];
-        double p[3][3], share[3] = {0, 0, 0}, square;
-        if (gxp_dot(v->normal, s->vertices[f->vertex[0]].normal) < 0.5) continue;
+        double p[3][3], own[3] = {0, 0, 0}, square;
+        int n, k;
+        if (gxp_dot(normal, s->vertices[f->vertex[0]].normal) < 0.5) continue;
         for (n = 0; n < 3; n++)
-            for (k = 0; k < 3; k++) p[n][k] = s->vertices[f->vertex[n]].rest[k] - v->rest[k];
-        square = gxp_near_triangle(p, best, share);
+            for (k = 0; k < 3; k++) p[n][k] = s->vertices[f->vertex[n]].rest[k] - rest[k];
+        square = gxp_near_triangle(p, best, own);
         if (!(square < best)) continue;
         best = square;
-        v->pressed = v->slip[0] = v->slip[1] = v->slip[2] = 0;
-        for (n = 0; n < 3; n++) {
-            v->pressed += share[n] * s->vertices[f->vertex[n]].pressed;
-            for (k = 0; k < 3; k++) v->slip[k] += share[n] * s->vertices[f->vertex[n]].slip[k];
-        }
+        found = GXP_SECOND(order->data[i]);
+        memcpy(share, own, sizeof own);
     }
+    return found;
+}
+
+/* Room for another state; it is the last one. */
+static gx_result gxp_push_state(gx_body *body, gxp_touch_surface *to, const gxp_touch_state *state, uint32_t sample) {
+    const gx_result result =
+        gxp_reserve(&body->config.allocator, &to->states, sizeof *to->states, to->state_count, &to->state_capacity, 1);
+    if (result != GX_OK) return result;
+    to->states[to->state_count] = *state;
+    to->states[to->state_count++].sample = sample;
+    return GX_OK;
+}
+
+/* Adds a share of the states of a vertex to those of the last vertex of another surface. */
+static gx_result gxp_add_states(gx_body *body, const gxp_touch_surface *from, uint32_t vertex, double share,
+                                gxp_touch_surface *to, uint32_t last) {
+    uint32_t i = gxp_first_state(from, vertex), at;
+    int k;
+    for (; i < from->state_count && from->states[i].sample == vertex && share > 0; i++) {
+        const gxp_touch_state *state = &from->states[i];
+        for (at = to->state_count;
+             at > 0 && to->states[at - 1].sample == last && to->states[at - 1].other != state->other;)
+            at--;
+        if (at == 0 || to->states[at - 1].sample != last) {
+            gxp_touch_state none;
+            gx_result result;
+            memset(&none, 0, sizeof none);
+            none.other = state->other;
+            memcpy(none.rest, to->vertices[last].rest, sizeof none.rest);
+            result = gxp_push_state(body, to, &none, last);
+            if (result != GX_OK) return result;
+            at = to->state_count;
+        }
+        to->states[at - 1].pressed += share * state->pressed;
+        for (k = 0; k < 3; k++) to->states[at - 1].slip[k] += share * state->slip[k];
+    }
+    return GX_OK;
 }
 
 /* The facets of an element: a part of `order`, which is sorted by elements. Nothing of it is owned. */
@@ -11484,39 +11830,73 @@ static gxp_keys gxp_facets_of(const gxp_keys *order, uint32_t element) {
     return part;
 }
 
-/* The state of the material goes from one surface to another. Vertices that are in both keep theirs, bit for bit. */
-static gx_result gxp_carry_state(gx_body *body, const gxp_touch_surface *from, gxp_touch_surface *to) {
-    gxp_keys *order = &body->touch.order;
-    gxp_words *fresh = &body->touch.ranked;
-    gx_result result = gxp_start_words(body, fresh, to->vertex_count);
-    uint32_t i, loaded = 0;
-    for (i = 0; i < from->vertex_count; i++) loaded |= from->vertices[i].pressed > 0;
-    if (!loaded) return result;
-    order->count = 0;
-    if (result == GX_OK) result = gxp_keys_room(body, order, 2 * ((size_t)from->vertex_count + from->facet_count));
-    if (result != GX_OK) return result;
-    for (i = 0; i < from->vertex_count; i++)
-        order->data[order->count++] = gxp_hash_doubles(0, from->vertices[i].rest, 3) << 32 | i;
-    result = gxp_sort_keys(body, order, 0, order->count);
+/* The states of vertices go from one surface to another. Vertices that are in both keep theirs, bit for bit; others
+   get a mean of the facet that they are on. places: vertices of `from` by hashes of their places; elements: its facets
+   by element */
+static gx_result gxp_carry_vertices(gx_body *body, const gxp_touch_surface *from, const gxp_keys *places,
+                                    const gxp_keys *elements, gxp_touch_surface *to) {
+    uint32_t i, n;
+    gx_result result = GX_OK;
     for (i = 0; i < to->vertex_count && result == GX_OK; i++) {
-        const uint32_t same = gxp_same_sample(from, order, &to->vertices[i]);
-        if (same == GXP_NONE) {
-            fresh->data[fresh->count++] = i;
+        const gxp_touch_vertex *v = &to->vertices[i];
+        const uint32_t same = gxp_same_sample(from, places, v);
+        double share[3] = {0, 0, 0};
+        gxp_keys facets;
+        uint32_t facet;
+        if (same != GXP_NONE) {
+            result = gxp_add_states(body, from, same, 1, to, i);
             continue;
         }
-        to->vertices[i].pressed = from->vertices[same].pressed;
-        memcpy(to->vertices[i].slip, from->vertices[same].slip, sizeof to->vertices[i].slip);
-    }
-    order->count = 0;
-    for (i = 0; i < from->facet_count && result == GX_OK; i++)
-        order->data[order->count++] = (uint64_t)from->facets[i].element << 32 | i;
-    if (result == GX_OK) result = gxp_sort_keys(body, order, 0, order->count);
-    for (i = 0; i < fresh->count && result == GX_OK; i++) {
-        gxp_touch_vertex *v = &to->vertices[fresh->data[i]];
-        const gxp_keys facets = gxp_facets_of(order, v->element);
-        gxp_state_on_facet(from, &facets, v);
+        facets = gxp_facets_of(elements, v->element);
+        facet = gxp_facet_at(from, &facets, v->rest, v->normal, v->size, share);
+        for (n = 0; n < 3 && facet != GXP_NONE && result == GX_OK; n++)
+            result = gxp_add_states(body, from, from->facets[facet].vertex[n], share[n], to, i);
     }
     return result;
+}
+
+/* Facets get the states of those on which they lie: all of them, since a sample takes the nearest. */
+static gx_result gxp_carry_facets(gx_body *body, const gxp_touch_surface *from, const gxp_keys *elements,
+                                  gxp_touch_surface *to) {
+    uint32_t i, n;
+    gx_result result = GX_OK;
+    if (gxp_first_state(from, from->vertex_count) == from->state_count) return result;
+    for (i = 0; i < to->facet_count && result == GX_OK; i++) {
+        const gxp_touch_facet *f = &to->facets[i];
+        const gxp_keys facets = gxp_facets_of(elements, f->element);
+        const gxp_touch_vertex *v = &to->vertices[f->vertex[0]];
+        double center[3], share[3];
+        uint32_t facet;
+        int k;
+        for (k = 0; k < 3; k++)
+            center[k] = (v->rest[k] + to->vertices[f->vertex[1]].rest[k] + to->vertices[f->vertex[2]].rest[k]) / 3;
+        facet = gxp_facet_at(from, &facets, center, v->normal, v->size, share);
+        if (facet == GXP_NONE) continue;
+        for (n = gxp_first_state(from, from->vertex_count + facet);
+             n < from->state_count && from->states[n].sample == from->vertex_count + facet && result == GX_OK; n++)
+            result = gxp_push_state(body, to, &from->states[n], to->vertex_count + i);
+    }
+    return result;
+}
+
+/* The state of the material goes from one surface to another. */
+static gx_result gxp_carry_states(gx_body *body, const gxp_touch_surface *from, gxp_touch_surface *to) {
+    gxp_keys *places = &body->touch.order, *elements = &body->touch.placed;
+    gx_result result = GX_OK;
+    uint32_t i;
+    to->state_count = places->count = elements->count = 0;
+    if (from->state_count == 0) return result;
+    result = gxp_keys_room(body, places, 2 * (size_t)from->vertex_count);
+    if (result == GX_OK) result = gxp_keys_room(body, elements, 2 * (size_t)from->facet_count);
+    if (result != GX_OK) return result;
+    for (i = 0; i < from->vertex_count; i++)
+        places->data[places->count++] = gxp_hash_doubles(0, from->vertices[i].rest, 3) << 32 | i;
+    for (i = 0; i < from->facet_count; i++)
+        elements->data[elements->count++] = (uint64_t)from->facets[i].element << 32 | i;
+    result = gxp_sort_keys(body, places, 0, places->count);
+    if (result == GX_OK) result = gxp_sort_keys(body, elements, 0, elements->count);
+    if (result == GX_OK) result = gxp_carry_vertices(body, from, places, elements, to);
+    return result == GX_OK ? gxp_carry_facets(body, from, elements, to) : result;
 }
 
 /* The surface of a step: the one that is there, or another, made anew after a cut */
@@ -11527,13 +11907,398 @@ static gx_result gxp_step_surface(gx_body *body, gxp_touch_surface **surface) {
     *surface = own;
     if (t->made && t->hash == body->cuts.hash) return GX_OK;
     *surface = other;
+    other->state_count = 0;
     result = gxp_make_surface(body, other);
-    return result == GX_OK && t->made ? gxp_carry_state(body, own, other) : result;
+    return result == GX_OK && t->made ? gxp_carry_states(body, own, other) : result;
+}
+
+/* Makes the surface of the present cuts hold the state, as the next step would: for saving. */
+static gx_result gxp_refresh_contact(gx_body *body) {
+    gxp_touch *t = &body->touch;
+    gxp_touch_surface *surface;
+    gx_result result;
+    if (!t->on || !t->made || t->hash == body->cuts.hash) return GX_OK;
+    result = gxp_step_surface(body, &surface);
+    if (result != GX_OK) return result;
+    t->current = 1 - t->current;
+    t->hash = body->cuts.hash;
+    t->kept = 0;
+    return GX_OK;
+}
+
+/* >>colliders: where pieces meet rigid bodies ---------------------------------------------------------------------- */
+/* In: colliders, the surface of contact and how it moves. Out: the tangent planes of colliders that samples meet within
+   a step. Touches lists of a step. */
+
+/* Steps by the distance to a collider on the way of a sample; a way that needs more passes it closely */
+#define GXP_TOUCH_ADVANCES 16
+/* Samples of facets on which the distance bends: so many to the length of what a collider has, at most so many parts of
+   an edge. A cosine: normals of a collider that bend less are as good as one */
+#define GXP_TOUCH_FINE  4
+#define GXP_TOUCH_PARTS 24u
+#define GXP_TOUCH_FLAT  0.995
+/* In sizes of an element: gaps that have a pair if the step may make them smaller */
+#define GXP_TOUCH_NEAR 0.02
+
+/* Signed distance from a ball around the origin */
+static double gxp_ball_distance(const double p[3], double radius, double normal[3]) {
+    const double far = sqrt(gxp_dot(p, p));
+    normal[0] = 1; /* across a capsule's axis */
+    normal[1] = normal[2] = 0;
+    if (far > 0) (void)gxp_unit(p, normal);
+    return far - radius;
+}
+
+static double gxp_box_distance(const double half[3], const double p[3], double normal[3]) {
+    double beyond[3], square = 0;
+    int k, most = 0;
+    for (k = 0; k < 3; k++) {
+        beyond[k] = fabs(p[k]) - half[k];
+        if (beyond[k] > beyond[most]) most = k;
+        square += beyond[k] > 0 ? beyond[k] * beyond[k] : 0;
+    }
+    for (k = 0; k < 3; k++)
+        normal[k] = square > 0 ? (beyond[k] > 0 ? copysign(beyond[k], p[k]) : 0) : k == most ? copysign(1, p[k]) : 0;
+    if (square > 0) (void)gxp_unit(normal, normal);
+    return square > 0 ? sqrt(square) : beyond[most];
+}
+
+/* Signed distance of a place in the collider's frame; normal: of length 1, or 0 where the caller's has none. Not
+   finite: the caller's is not. */
+static double gxp_collider_distance(const gx_collider *c, const double p[3], double normal[3]) {
+    double d, given[3] = {0, 0, 0}, along;
+    switch (c->kind) {
+    case GX_COLLIDER_SPHERE: return gxp_ball_distance(p, c->size[0], normal);
+    case GX_COLLIDER_CAPSULE:
+        along = p[2] > c->size[1] ? c->size[1] : p[2] < -c->size[1] ? -c->size[1] : p[2];
+        given[0] = p[0];
+        given[1] = p[1];
+        given[2] = p[2] - along;
+        return gxp_ball_distance(given, c->size[0], normal);
+    case GX_COLLIDER_BOX: return gxp_box_distance(c->size, p, normal);
+    case GX_COLLIDER_DISTANCE:
+        d = c->distance(c->user, p, given);
+        normal[0] = normal[1] = normal[2] = 0;
+        if (!gxp_is_finite(given[0]) || !gxp_is_finite(given[1]) || !gxp_is_finite(given[2])) return HUGE_VAL;
+        (void)gxp_unit(given, normal);
+        return d;
+    default:
+        normal[0] = normal[1] = 0;
+        normal[2] = 1;
+        return p[2];
+    }
+}
+
+/* The velocity of a collider at a place in space */
+static void gxp_collider_velocity(const gx_collider *c, const double x[3], double velocity[3]) {
+    const double arm[3] = {x[0] - c->pose[3], x[1] - c->pose[7], x[2] - c->pose[11]};
+    int k;
+    gxp_cross(velocity, c->spin, arm);
+    for (k = 0; k < 3; k++) velocity[k] += c->velocity[k];
+}
+
+/* A direction in space, in the collider's frame, and back */
+static void gxp_to_collider(const gx_collider *c, const double x[3], double own[3]) {
+    int k;
+    for (k = 0; k < 3; k++) own[k] = c->pose[k] * x[0] + c->pose[4 + k] * x[1] + c->pose[8 + k] * x[2];
+}
+static void gxp_from_collider(const gx_collider *c, const double own[3], double x[3]) {
+    int k;
+    for (k = 0; k < 3; k++) x[k] = gxp_dot(c->pose + 4 * k, own);
+}
+
+/* A sample beside a collider, in the collider's frame */
+typedef struct gxp_approach {
+    double at[3], motion[3]; /* m, at the step's start; m/s, relative to the collider */
+    double normal[3];        /* of the collider where they are nearest */
+    double distance, time;   /* m: there; s: then */
+    int wild;                /* 1: the caller's distance is not a number */
+} gxp_approach;
+
+/* x: position and velocity in space */
+static gxp_approach gxp_make_approach(const gx_collider *c, const double x[6]) {
+    gxp_approach a;
+    double d[3], v[3];
+    int k;
+    memset(&a, 0, sizeof a);
+    gxp_collider_velocity(c, x, v);
+    for (k = 0; k < 3; k++) {
+        d[k] = x[k] - c->pose[4 * k + 3];
+        v[k] = x[3 + k] - v[k];
+    }
+    gxp_to_collider(c, d, a.at);
+    gxp_to_collider(c, v, a.motion);
+    return a;
+}
+
+/* Does the sample come near its collider within dt? Goes along its way by steps no longer than the distance. */
+static int gxp_comes_near(const gx_collider *c, double size, double dt, gxp_approach *a) {
+    const double speed = sqrt(gxp_dot(a->motion, a->motion));
+    int i, k;
+    for (i = 0; i < GXP_TOUCH_ADVANCES; i++) {
+        double p[3];
+        for (k = 0; k < 3; k++) p[k] = a->at[k] + a->time * a->motion[k];
+        a->distance = gxp_collider_distance(c, p, a->normal);
+        if (!gxp_is_finite(a->distance)) {
+            a->wild = 1;
+            return 0;
+        }
+        if (a->distance < GXP_TOUCH_NEAR * size) return gxp_dot(a->normal, a->normal) > 0;
+        if (!(a->distance <= speed * (dt - a->time))) return 0;
+        a->time += a->distance / speed;
+    }
+    return 0;
+}
+
+/* Does a sample meet a collider within the step? It then gets the tangent plane of the collider where the two meet,
+   moving with the collider. x: position and velocity of the sample. pair: sample, collider, share and area are set;
+   receives all else. *wild: 1: the caller's distance is not a number */
+static int gxp_meets_collider(const gx_body *body, const double x[6], double size, double dt, gxp_touch_pair *pair,
+                              int *wild) {
+    const gx_collider *c = &body->touch.colliders[pair->collider];
+    gxp_approach a = gxp_make_approach(c, x);
+    int k;
+    pair->other = c->id;
+    if (!gxp_comes_near(c, size, dt, &a)) {
+        *wild |= a.wild;
+        return 0;
+    }
+    pair->approach = -gxp_dot(a.normal, a.motion);
+    pair->gap = a.distance + a.time * pair->approach;
+    gxp_from_collider(c, a.normal, pair->normal);
+    for (k = 0; k < 3; k++) pair->place[k] = x[k] - pair->gap * pair->normal[k];
+    gxp_collider_velocity(c, pair->place, pair->way);
+    for (k = 0; k < 3; k++) pair->way[k] *= dt;
+    return 1;
+}
+
+/* The length, m, of what a collider may have between samples, at most; an element's size if it is not known */
+static double gxp_collider_feature(const gx_collider *c, double size) {
+    double least = size;
+    int k;
+    if (c->kind == GX_COLLIDER_SPHERE || c->kind == GX_COLLIDER_CAPSULE) return c->size[0];
+    for (k = 0; k < 3 && c->kind == GX_COLLIDER_BOX; k++) least = fmin(least, 2 * c->size[k]);
+    return c->kind == GX_COLLIDER_DISTANCE && c->size[0] > 0 ? c->size[0] : least;
+}
+
+/* Into how many parts the edges of a facet are divided for samples beside a collider: 1 where the distance is as good
+   as linear on it, so that its corners tell all. 0: it does not come near. */
+static uint32_t gxp_facet_parts(const gx_body *body, const gxp_touch_surface *s, double dt, uint32_t facet,
+                                const gx_collider *c, int *wild) {
+    const gxp_touch_facet *f = &s->facets[facet];
+    const double size = s->vertices[f->vertex[0]].size;
+    double normal[3][3], center[3] = {0, 0, 0}, reach = 0, nearest = HUGE_VAL, longest = 0, parts;
+    gxp_approach corner[3];
+    int i, k, bent = 0;
+    for (i = 0; i < 3; i++) {
+        corner[i] = gxp_make_approach(c, body->touch.moved + 9 * (size_t)f->vertex[i]);
+        for (k = 0; k < 3; k++) center[k] += corner[i].at[k] / 3;
+    }
+    for (i = 0; i < 3; i++) {
+        const double *a = corner[i].at, *b = corner[(i + 1) % 3].at, *v = corner[i].motion;
+        const double out[3] = {a[0] - center[0], a[1] - center[1], a[2] - center[2]};
+        const double edge[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+        const double d = gxp_collider_distance(c, a, normal[i]);
+        *wild |= !gxp_is_finite(d);
+        nearest = fmin(nearest, d);
+        reach = fmax(reach, sqrt(gxp_dot(out, out)) + dt * sqrt(gxp_dot(v, v)));
+        longest = fmax(longest, sqrt(gxp_dot(edge, edge)));
+    }
+    for (i = 0; i < 3; i++) bent |= gxp_dot(normal[i], normal[(i + 1) % 3]) < GXP_TOUCH_FLAT;
+    if (*wild || !bent) return 1;
+    if (nearest > GXP_TOUCH_NEAR * size && gxp_collider_distance(c, center, normal[0]) > reach + GXP_TOUCH_NEAR * size)
+        return 0;
+    parts = ceil(GXP_TOUCH_FINE * longest / fmax(gxp_collider_feature(c, size), 1e-3 * size));
+    return parts < GXP_TOUCH_PARTS ? (uint32_t)fmax(1, parts) : GXP_TOUCH_PARTS;
+}
+
+/* Lists a sample for the search of pairs with a collider. */
+static gx_result gxp_list_sample(gx_body *body, uint32_t sample, uint32_t collider, uint32_t parts, double area) {
+    gxp_touch *t = &body->touch;
+    gx_result result =
+        gxp_reserve(&body->config.allocator, &t->beside, sizeof *t->beside, t->order.count, &t->beside_capacity, 1);
+    if (result == GX_OK) result = gxp_keys_room(body, &t->order, 1);
+    if (result != GX_OK) return result;
+    t->beside[t->order.count].collider = collider;
+    t->beside[t->order.count].parts = parts;
+    t->beside[t->order.count].area = area;
+    t->order.data[t->order.count] = (uint64_t)sample << 32 | t->order.count;
+    t->order.count++;
+    return GX_OK;
+}
+
+/* Lists the samples of a facet: its corners, each with a third of its area, or the facet, which has many. */
+static gx_result gxp_list_samples(gx_body *body, const gxp_touch_surface *s, double dt, uint32_t facet,
+                                  uint32_t collider, int *wild) {
+    static const uint32_t corner[3] = {0, 1, 2};
+    const gxp_touch_facet *f = &s->facets[facet];
+    const gx_collider *c = &body->touch.colliders[collider];
+    const uint32_t parts = c->kind == GX_COLLIDER_PLANE ? 1 : gxp_facet_parts(body, s, dt, facet, c, wild);
+    double x[9], n[3], area;
+    gx_result result = GX_OK;
+    int k;
+    for (k = 0; k < 3; k++) memcpy(x + 3 * k, s->vertices[f->vertex[k]].rest, 3 * sizeof *x);
+    gxp_triangle_normal(x, corner, n);
+    area = 0.5 * sqrt(gxp_dot(n, n));
+    if (parts > 1) return gxp_list_sample(body, s->vertex_count + facet, collider, parts, area);
+    for (k = 0; k < 3 && parts == 1 && result == GX_OK; k++)
+        result = gxp_list_sample(body, f->vertex[k], collider, 1, area / 3);
+    return result;
+}
+
+/* Lists the samples in boxes that a collider may come near to within the step. */
+static gx_result gxp_list_beside(gx_body *body, const gxp_touch_surface *s, double dt, uint32_t collider, int *wild) {
+    const gxp_touch *t = &body->touch;
+    const gx_collider *c = &t->colliders[collider];
+    const double turn = sqrt(gxp_dot(c->spin, c->spin)), speed = sqrt(gxp_dot(c->velocity, c->velocity));
+    uint32_t stack[64], count = 0, i;
+    gx_result result = GX_OK;
+    stack[count++] = 0;
+    while (count > 0 && result == GX_OK) {
+        const uint32_t box = stack[--count];
+        const gxp_bounds *b = &t->boxes[box];
+        double x[3], own[3], normal[3], half = 0, far, d;
+        int k;
+        if (b->low[0] > b->high[0]) continue;
+        for (k = 0; k < 3; k++) {
+            x[k] = 0.5 * (b->low[k] + b->high[k]) - c->pose[4 * k + 3];
+            half += 0.25 * (b->high[k] - b->low[k]) * (b->high[k] - b->low[k]);
+        }
+        half = sqrt(half);
+        far = sqrt(gxp_dot(x, x));
+        gxp_to_collider(c, x, own);
+        d = gxp_collider_distance(c, own, normal);
+        if (!gxp_is_finite(d)) {
+            *wild = 1;
+            return result;
+        }
+        if (d > half + GXP_TOUCH_NEAR * s->largest + dt * (speed + turn * (far + half))) continue;
+        if (box + 1 < t->leaf_count) {
+            stack[count++] = 2 * box + 2;
+            stack[count++] = 2 * box + 1;
+            continue;
+        }
+        for (i = GXP_TOUCH_LEAF * (box + 1 - t->leaf_count);
+             i < GXP_TOUCH_LEAF * (box + 2 - t->leaf_count) && i < s->facet_count && result == GX_OK; i++)
+            result = gxp_list_samples(body, s, dt, i, collider, wild);
+    }
+    return result;
+}
+
+/* Lists the samples beside colliders by sample: touch.order, second: place in touch.beside. */
+static gx_result gxp_list_all_beside(gx_body *body, const gxp_touch_surface *s, double dt, gx_failure *failure) {
+    gx_result result = GX_OK;
+    uint32_t i;
+    body->touch.order.count = 0;
+    for (i = 0; i < body->touch.collider_count && s->facet_count > 0 && result == GX_OK; i++) {
+        int wild = 0;
+        result = gxp_list_beside(body, s, dt, i, &wild);
+        if (wild) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "colliders.distance", i);
+    }
+    if (result == GX_OK) result = gxp_sort_keys(body, &body->touch.order, 0, body->touch.order.count);
+    return gxp_end(failure, result);
+}
+
+static gx_result gxp_check_collider(const gx_collider *c, size_t index, gx_failure *failure) {
+    static const char *const names[5] = {"colliders.size", "colliders.pose", "colliders.velocity", "colliders.spin",
+                                         "colliders.friction"};
+    static const int sizes[5] = {0, 1, 2, 3, 1}; /* by kind: numbers of size that are read */
+    const double *const numbers[5] = {c->size, c->pose, c->velocity, c->spin, &c->friction};
+    const int counts[5] = {c->kind < 5 ? sizes[c->kind] : 0, 12, 3, 3, 1};
+    double turned[3];
+    int i, k;
+    if (c->id == GXP_NONE) return gxp_fail(failure, GX_ERROR_ARGUMENT, "colliders.id", index);
+    if (c->kind > GX_COLLIDER_DISTANCE) return gxp_fail(failure, GX_ERROR_ARGUMENT, "colliders.kind", index);
+    for (i = 0; i < 5; i++)
+        for (k = 0; k < counts[i]; k++) {
+            if (!gxp_is_finite(numbers[i][k])) return gxp_fail(failure, GX_ERROR_NOT_FINITE, names[i], index);
+            if ((i == 0 || i == 4) && numbers[i][k] < 0) return gxp_fail(failure, GX_ERROR_ARGUMENT, names[i], index);
+        }
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 3; k++)
+            if (fabs(gxp_dot(c->pose + 4 * i, c->pose + 4 * k) - (i == k)) > 1e-6)
+                return gxp_fail(failure, GX_ERROR_ARGUMENT, "colliders.pose", index);
+    gxp_cross(turned, c->pose, c->pose + 4);
+    if (gxp_dot(turned, c->pose + 8) < 0) return gxp_fail(failure, GX_ERROR_ARGUMENT, "colliders.pose", index);
+    if (c->kind == GX_COLLIDER_DISTANCE && c->distance == NULL)
+        return gxp_fail(failure, GX_ERROR_ARGUMENT, "colliders.distance", index);
+    return GX_OK;
+}
+
+/* Hash of a collider's shape and pose */
+static uint64_t gxp_hash_collider(const gx_collider *c) {
+    uint64_t hash = gxp_hash_words(1, &c->kind, 1);
+    hash = gxp_hash_doubles(hash, c->size, 3);
+    hash = gxp_hash_doubles(hash, c->pose, 12);
+    return gxp_hash_doubles(hash, &c->friction, 1);
+}
+
+/* Is a collider other than in the last step, or will it be after this one? */
+static int gxp_is_changed(const gxp_touch *t, const gx_collider *c) {
+    uint32_t low = 0, high = t->known_count;
+    if (gxp_dot(c->velocity, c->velocity) > 0 || gxp_dot(c->spin, c->spin) > 0) return 1;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (t->known[middle].id < c->id)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low == t->known_count || t->known[low].id != c->id || t->known[low].hash != gxp_hash_collider(c);
+}
+
+/* Takes the colliders of a step: checks, names and compares them. */
+static gx_result gxp_take_colliders(gx_body *body, const gx_step_desc *desc, gx_failure *failure) {
+    gxp_touch *t = &body->touch;
+    const size_t count = desc->collider_count;
+    gx_result result = GX_OK;
+    uint32_t i;
+    t->colliders = desc->colliders;
+    t->collider_count = t->named.count = t->changed.count = 0;
+    if (count == 0) return GX_OK;
+    if (desc->colliders == NULL) return gxp_refuse(failure, "colliders");
+    if (count > INT32_MAX / 4) return gxp_fail(failure, GX_ERROR_LIMIT, "collider_count", SIZE_MAX);
+    for (i = 0; i < count && result == GX_OK; i++) result = gxp_check_collider(&desc->colliders[i], i, failure);
+    if (result != GX_OK) return result;
+    result = gxp_keys_room(body, &t->named, 2 * count);
+    if (result == GX_OK) result = gxp_words_room(body, &t->changed, count);
+    if (result == GX_OK)
+        result = gxp_reserve(&body->config.allocator, &t->known, sizeof *t->known, t->known_count, &t->known_capacity,
+                             count > t->known_count ? count - t->known_count : 0);
+    for (i = 0; i < count && result == GX_OK; i++) {
+        t->named.data[t->named.count++] = (uint64_t)desc->colliders[i].id << 32 | i;
+        t->changed.data[t->changed.count++] = (uint32_t)gxp_is_changed(t, &desc->colliders[i]);
+    }
+    if (result == GX_OK) result = gxp_sort_keys(body, &t->named, 0, t->named.count);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    for (i = 1; i < count; i++)
+        if (GXP_FIRST(t->named.data[i]) == GXP_FIRST(t->named.data[i - 1]))
+            return gxp_fail(failure, GX_ERROR_ARGUMENT, "colliders.id", GXP_SECOND(t->named.data[i]));
+    t->collider_count = (uint32_t)count;
+    return GX_OK;
+}
+
+/* After a step: remembers its colliders. */
+static void gxp_know_colliders(gxp_touch *t) {
+    uint32_t i;
+    t->known_count = t->collider_count;
+    for (i = 0; i < t->collider_count; i++) {
+        const gx_collider *c = &t->colliders[GXP_SECOND(t->named.data[i])];
+        t->known[i].id = c->id;
+        t->known[i].unused = 0;
+        t->known[i].hash = gxp_hash_collider(c);
+    }
+}
+
+/* Is a collider gone, or other than in the last step? */
+static int gxp_has_changed(const gxp_touch *t, uint32_t id) {
+    const uint32_t i = gxp_first_key(&t->named, (uint64_t)id << 32);
+    return i == t->named.count || GXP_FIRST(t->named.data[i]) != id || t->changed.data[GXP_SECOND(t->named.data[i])];
 }
 
 /* >>meeting: pairs of a step --------------------------------------------------------------------------------------- */
-/* In: the surface, where its material is and how fast. Out: the pairs that a step gets beside the caller's, and, after
-   the step, what their vertices press with. Touches what a step with contact works with. */
+/* In: the surface, where its material is and how fast. Out: the pairs that a step gets beside the caller's. Touches
+   what a step with contact works with. */
 
 /* A vertex touches at most one facet, in whose frame all is told: the gap is the vertex's height above the facet's
    plane. Pairs stay what they are within the step, so that its energy is well defined. A pair without load, in front of
@@ -11541,11 +12306,11 @@ static gx_result gxp_step_surface(gx_body *body, gxp_touch_surface **surface) {
 
 /* A cosine: facets that face a vertex less do not meet it. */
 #define GXP_TOUCH_FACING 0.5
-/* In sizes of an element: gaps that have a pair if the step may make them smaller; how far beside a facet a vertex may
-   be, with a share of its gap; how far behind a facet at rest is a piece's own thickness */
-#define GXP_TOUCH_NEAR   0.02
+/* In sizes of an element: how far beside a facet a vertex may be, with a share of its gap; from how far a sample of a
+   facet takes the state of another one; how far behind a facet at rest is a piece's own thickness */
 #define GXP_TOUCH_BESIDE 0.002
 #define GXP_TOUCH_SLANT  0.1
+#define GXP_TOUCH_SAME   0.25
 #define GXP_TOUCH_BEHIND 1e-9
 
 /* Position, velocity and normal of all vertices, normals of facets */
@@ -11630,16 +12395,16 @@ static int gxp_is_thickness(const gxp_touch_surface *s, const gxp_touch_vertex *
    near each other, the place is the one where the vertex will be when the gap is closed. */
 static int gxp_meets(const gx_body *body, const gxp_touch_surface *s, double dt, gxp_touch_pair *pair) {
     const gxp_touch *t = &body->touch;
-    const gxp_touch_vertex *v = &s->vertices[pair->vertex];
+    const gxp_touch_vertex *v = &s->vertices[pair->sample];
     const gxp_touch_facet *f = &s->facets[pair->facet];
-    const double *x = t->moved + 9 * (size_t)pair->vertex, *n = t->facing + 3 * (size_t)pair->facet;
+    const double *x = t->moved + 9 * (size_t)pair->sample, *n = t->facing + 3 * (size_t)pair->facet;
     const double facing = -gxp_dot(x + 6, n), *corner[3];
     const double reach = t->desc.depth * fmin(v->size, s->vertices[f->vertex[0]].size);
     double p[3][3], y[3], d[3], height, time = 0, along;
     int i, k;
     if (!(facing > GXP_TOUCH_FACING)) return 0;
     for (i = 0; i < 3; i++) {
-        if (f->vertex[i] == pair->vertex) return 0;
+        if (f->vertex[i] == pair->sample) return 0;
         corner[i] = t->moved + 9 * (size_t)f->vertex[i];
     }
     for (pair->approach = height = 0, k = 0; k < 3; k++) {
@@ -11678,12 +12443,12 @@ static void gxp_try_facet(const gx_body *body, const gxp_touch_surface *s, doubl
 static void gxp_seek_facet(const gx_body *body, const gxp_touch_surface *s, double dt, gxp_touch_pair *best) {
     const gxp_touch *t = &body->touch;
     const double slack =
-        (t->desc.depth * (1 + GXP_TOUCH_SLANT) + GXP_TOUCH_NEAR + GXP_TOUCH_BESIDE) * s->vertices[best->vertex].size;
+        (t->desc.depth * (1 + GXP_TOUCH_SLANT) + GXP_TOUCH_NEAR + GXP_TOUCH_BESIDE) * s->vertices[best->sample].size;
     uint32_t stack[64], count = 0, i;
     gxp_bounds way;
     int k;
     gxp_empty_bounds(&way);
-    gxp_add_way(t->moved + 9 * (size_t)best->vertex, dt, &way);
+    gxp_add_way(t->moved + 9 * (size_t)best->sample, dt, &way);
     stack[count++] = 0;
     while (count > 0) {
         const uint32_t box = stack[--count];
@@ -11702,27 +12467,155 @@ static void gxp_seek_facet(const gx_body *body, const gxp_touch_surface *s, doub
     }
 }
 
-/* Lists the pairs of all vertices. */
+/* A pair of a sample that touches nothing so far */
+static gxp_touch_pair gxp_no_pair(uint32_t sample) {
+    gxp_touch_pair pair;
+    memset(&pair, 0, sizeof pair);
+    pair.sample = sample;
+    pair.facet = pair.collider = pair.other = GXP_NONE;
+    return pair;
+}
+
+/* The vertex by whose element a sample is measured */
+static const gxp_touch_vertex *gxp_sample_vertex(const gxp_touch_surface *s, uint32_t sample) {
+    return &s->vertices[sample < s->vertex_count ? sample : s->facets[sample - s->vertex_count].vertex[0]];
+}
+
+/* What a pair's sample pressed with before. A facet has many samples: the nearest one counts, which after a cut need
+   not be where it was. */
+static void gxp_recall_state(const gxp_touch_surface *s, gxp_touch_pair *pair) {
+    const double size = gxp_sample_vertex(s, pair->sample)->size;
+    double best = GXP_TOUCH_SAME * size * GXP_TOUCH_SAME * size;
+    uint32_t i;
+    for (i = gxp_first_state(s, pair->sample); i < s->state_count && s->states[i].sample == pair->sample; i++) {
+        const gxp_touch_state *state = &s->states[i];
+        const double d[3] = {state->rest[0] - pair->rest[0], state->rest[1] - pair->rest[1],
+                             state->rest[2] - pair->rest[2]};
+        const double square = pair->sample < s->vertex_count ? 0 : gxp_dot(d, d);
+        if (state->other != pair->other || !(square < best)) continue;
+        best = square;
+        pair->pressed = state->pressed;
+        memcpy(pair->slip, state->slip, sizeof pair->slip);
+        if (!(best > 0)) return;
+    }
+}
+
+/* Lists a pair with what its sample pressed with. */
+static gx_result gxp_list_pair(gx_body *body, const gxp_touch_surface *s, const gxp_touch_pair *pair,
+                               gx_failure *failure) {
+    gxp_touch *t = &body->touch;
+    gx_result result;
+    if (t->desc.max_pairs > 0 && t->found >= t->desc.max_pairs)
+        return gxp_fail(failure, GX_ERROR_LIMIT, "max_pairs", SIZE_MAX);
+    result = gxp_reserve(&body->config.allocator, &t->pairs, sizeof *t->pairs, t->found, &t->pair_capacity, 1);
+    if (result != GX_OK) return gxp_end(failure, result);
+    t->pairs[t->found] = *pair;
+    gxp_recall_state(s, &t->pairs[t->found++]);
+    return GX_OK;
+}
+
+/* Lists the pair of a vertex with a collider, if they meet. */
+static gx_result gxp_seek_at_vertex(gx_body *body, const gxp_touch_surface *s, double dt, gxp_touch_pair *pair,
+                                    gx_failure *failure) {
+    const gxp_touch_vertex *v = &s->vertices[pair->sample];
+    int wild = 0;
+    memcpy(pair->rest, v->rest, sizeof pair->rest);
+    if (gxp_meets_collider(body, body->touch.moved + 9 * (size_t)pair->sample, v->size, dt, pair, &wild))
+        return gxp_list_pair(body, s, pair, failure);
+    return wild ? gxp_fail(failure, GX_ERROR_NOT_FINITE, "colliders.distance", pair->collider) : GX_OK;
+}
+
+/* Lists the pairs of a facet with a collider: at the corners of all parts, each with its share of the area. */
+static gx_result gxp_seek_on_facet(gx_body *body, const gxp_touch_surface *s, double dt, double area,
+                                   gxp_touch_pair *pair, gx_failure *failure) {
+    const gxp_touch_facet *f = &s->facets[pair->sample - s->vertex_count];
+    const uint32_t parts = pair->parts;
+    uint32_t i, j, m;
+    gx_result result = GX_OK;
+    for (i = 0; i <= parts; i++)
+        for (j = 0; i + j <= parts && result == GX_OK; j++) {
+            const int rims = (i == 0) + (j == 0) + (i + j == parts);
+            double x[6] = {0, 0, 0, 0, 0, 0};
+            int n, wild = 0;
+            pair->share[0] = (double)(parts - i - j) / parts;
+            pair->share[1] = (double)i / parts;
+            pair->share[2] = (double)j / parts;
+            pair->area = area * (rims == 0 ? 6 : rims == 1 ? 3 : 1) / (3.0 * parts * parts);
+            pair->rest[0] = pair->rest[1] = pair->rest[2] = 0;
+            for (n = 0; n < 3; n++) {
+                for (m = 0; m < 6; m++) x[m] += pair->share[n] * body->touch.moved[9 * (size_t)f->vertex[n] + m];
+                for (m = 0; m < 3; m++) pair->rest[m] += pair->share[n] * s->vertices[f->vertex[n]].rest[m];
+            }
+            if (gxp_meets_collider(body, x, s->vertices[f->vertex[0]].size, dt, pair, &wild))
+                result = gxp_list_pair(body, s, pair, failure);
+            if (wild) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "colliders.distance", pair->collider);
+        }
+    return result;
+}
+
+/* Where a sample has pressed on a collider that has left, a pair without stiffness wakes what rested on it. first: of
+   the sample's pairs */
+static gx_result gxp_wake_left(gx_body *body, const gxp_touch_surface *s, uint32_t sample, uint32_t first,
+                               gx_failure *failure) {
+    gxp_touch *t = &body->touch;
+    uint32_t i, j;
+    gx_result result = GX_OK;
+    for (i = gxp_first_state(s, sample); i < s->state_count && s->states[i].sample == sample && result == GX_OK; i++) {
+        gxp_touch_pair lost = gxp_no_pair(sample);
+        if (s->states[i].other == GXP_NONE || !gxp_has_changed(t, s->states[i].other)) continue;
+        for (j = first; j < t->found && t->pairs[j].other != s->states[i].other;) j++;
+        if (j < t->found) continue;
+        lost.share[0] = lost.normal[0] = 1;
+        lost.other = s->states[i].other; /* once */
+        result = gxp_list_pair(body, s, &lost, failure);
+    }
+    return result;
+}
+
+/* Lists the pairs of a sample with colliders: those that touch.order has for it from *next on. */
+static gx_result gxp_seek_colliders(gx_body *body, const gxp_touch_surface *s, double dt, uint32_t sample,
+                                    uint32_t *next, gx_failure *failure) {
+    gxp_touch *t = &body->touch;
+    const uint32_t first = t->found;
+    gx_result result = GX_OK;
+    while (*next < t->order.count && GXP_FIRST(t->order.data[*next]) == sample && result == GX_OK) {
+        gxp_touch_pair pair = gxp_no_pair(sample);
+        double area = 0;
+        pair.collider = t->beside[GXP_SECOND(t->order.data[*next])].collider;
+        pair.parts = t->beside[GXP_SECOND(t->order.data[*next])].parts;
+        for (; *next < t->order.count && GXP_FIRST(t->order.data[*next]) == sample &&
+               t->beside[GXP_SECOND(t->order.data[*next])].collider == pair.collider;
+             (*next)++)
+            area += t->beside[GXP_SECOND(t->order.data[*next])].area;
+        pair.area = area;
+        result = sample < s->vertex_count ? gxp_seek_at_vertex(body, s, dt, &pair, failure)
+                                          : gxp_seek_on_facet(body, s, dt, area, &pair, failure);
+    }
+    return result == GX_OK ? gxp_wake_left(body, s, sample, first, failure) : result;
+}
+
+/* Lists the pairs of all samples. */
 static gx_result gxp_seek_pairs(gx_body *body, const gxp_touch_surface *s, double dt, gx_failure *failure) {
     gxp_touch *t = &body->touch;
-    gx_result result = GX_OK;
-    uint32_t i;
+    gx_result result = gxp_list_all_beside(body, s, dt, failure);
+    uint32_t i, next = 0;
+    const uint32_t state_end = s->state_count > 0 ? s->states[s->state_count - 1].sample + 1 : 0;
     t->found = 0;
     for (i = 0; i < s->vertex_count && result == GX_OK && s->facet_count > 0; i++) {
-        gxp_touch_pair best;
-        if (!(s->vertices[i].area > 0)) continue;
-        memset(&best, 0, sizeof best);
-        best.vertex = i;
-        best.facet = GXP_NONE;
-        gxp_seek_facet(body, s, dt, &best);
-        if (best.facet == GXP_NONE) continue;
-        if (t->desc.max_pairs > 0 && t->found >= t->desc.max_pairs)
-            return gxp_fail(failure, GX_ERROR_LIMIT, "max_pairs", SIZE_MAX);
-        result = gxp_reserve(&body->config.allocator, &t->pairs, sizeof *t->pairs, t->found, &t->pair_capacity, 1);
-        if (result == GX_OK) t->pairs[t->found++] = best;
+        gxp_touch_pair best = gxp_no_pair(i);
+        if (s->vertices[i].area > 0) gxp_seek_facet(body, s, dt, &best);
+        if (best.facet != GXP_NONE) result = gxp_list_pair(body, s, &best, failure);
+        if (result == GX_OK && (t->order.count > 0 || i < state_end))
+            result = gxp_seek_colliders(body, s, dt, i, &next, failure);
     }
-    return gxp_end(failure, result);
+    for (; i < s->vertex_count + s->facet_count && (next < t->order.count || i < state_end) && result == GX_OK; i++)
+        result = gxp_seek_colliders(body, s, dt, i, &next, failure);
+    return result;
 }
+
+/* >>pressing: what pairs do ---------------------------------------------------------------------------------------- */
+/* In: the pairs of a step. Out: the same as the solver takes them; after the step, what samples press with, and what
+   the caller learns of it. Touches what a step with contact works with. */
 
 /* Room for what a step with that surface needs before it knows its pairs */
 static gx_result gxp_surface_room(gx_body *body, const gxp_touch_surface *s) {
@@ -11747,50 +12640,72 @@ static void gxp_add_share(gxs_point *point, uint32_t *copies, double *weights, u
     weights[i] += weight;
 }
 
-/* The point of a pair: its vertex, relative to the place on the facet. Returns 0 if nothing moves it. */
+/* Adds a share of a vertex to a point: of its place at rest and of what moves it. */
+static void gxp_add_place(const gxp_touch_vertex *v, double share, gxs_point *point, uint32_t *copies,
+                          double *weights) {
+    int k;
+    for (k = 0; k < 3; k++) point->position[k] += share * v->rest[k];
+    for (k = 0; k < 4 && v->weights[k] > 0; k++)
+        gxp_add_share(point, copies, weights, v->copies[k], share * v->weights[k]);
+}
+
+/* The point of a pair: its sample, relative to the place on the facet, or to that of the collider at the step's end.
+   Returns 0 if nothing moves it. */
 static int gxp_meeting_point(const gxp_touch_surface *s, const gxp_touch_pair *pair, uint32_t *copies, double *weights,
                              gxs_point *point) {
-    const gxp_touch_vertex *v = &s->vertices[pair->vertex];
-    const gxp_touch_facet *f = &s->facets[pair->facet];
     double moves = 0;
     uint32_t m;
     int i, k;
-    memcpy(point->position, v->rest, sizeof point->position);
-    for (i = 0; i < 4 && v->weights[i] > 0; i++) gxp_add_share(point, copies, weights, v->copies[i], v->weights[i]);
-    for (i = 0; i < 3; i++) {
-        const gxp_touch_vertex *w = &s->vertices[f->vertex[i]];
-        if (!(pair->share[i] > 0)) continue;
-        for (k = 0; k < 3; k++) point->position[k] -= pair->share[i] * w->rest[k];
-        for (k = 0; k < 4 && w->weights[k] > 0; k++)
-            gxp_add_share(point, copies, weights, w->copies[k], -pair->share[i] * w->weights[k]);
-    }
+    if (pair->sample < s->vertex_count)
+        gxp_add_place(&s->vertices[pair->sample], 1, point, copies, weights);
+    else
+        for (i = 0; i < 3; i++)
+            if (pair->share[i] > 0)
+                gxp_add_place(&s->vertices[s->facets[pair->sample - s->vertex_count].vertex[i]], pair->share[i], point,
+                              copies, weights);
+    for (i = 0; i < 3 && pair->facet != GXP_NONE; i++)
+        if (pair->share[i] > 0)
+            gxp_add_place(&s->vertices[s->facets[pair->facet].vertex[i]], -pair->share[i], point, copies, weights);
+    for (k = 0; k < 3; k++) point->position[k] -= pair->place[k] + pair->way[k];
     for (m = 0; m < point->count; m++) moves += fabs(weights[m]);
+    for (m = 0; m < point->count && !(moves > 1e-9); m++) weights[m] = 0; /* it was rounding */
     point->copies = copies;
     point->weights = weights;
     return moves > 1e-9;
 }
 
-/* A pair as the solver takes it. It begins with the force with which the vertex pressed before. */
+/* A pair as the solver takes it. It begins with the force with which the sample pressed before. */
 static void gxp_set_pair(gx_body *body, const gxp_touch_surface *s, uint32_t i, double dt, gxs_pair *to) {
     const gxp_touch *t = &body->touch;
     const gxp_touch_pair *pair = &t->pairs[i];
-    const gxp_touch_vertex *v = &s->vertices[pair->vertex], *w = &s->vertices[s->facets[pair->facet].vertex[0]];
+    const gxp_touch_vertex *v = gxp_sample_vertex(s, pair->sample);
     const double recovery = t->desc.recovery > 0 ? t->desc.recovery : 2 * v->size;
     memset(to, 0, sizeof *to);
     to->point.epoch = body->cuts.epoch;
     memcpy(to->normal, pair->normal, sizeof to->normal);
-    to->stiffness = 0.5 * t->desc.stiffness * fmin(v->young, w->young) * v->area / v->size;
+    to->friction = t->desc.friction;
+    to->sticking_speed = t->desc.sticking_speed;
+    if (pair->facet != GXP_NONE) { /* the other side has a sample of its own somewhere near: each has half */
+        const gxp_touch_vertex *w = &s->vertices[s->facets[pair->facet].vertex[0]];
+        to->stiffness = 0.5 * t->desc.stiffness * fmin(v->young, w->young) * v->area / v->size;
+    } else {
+        to->flags = GXS_PAIR_OUTSIDE;
+        if (pair->collider != GXP_NONE) {
+            to->stiffness = t->desc.stiffness * v->young * pair->area / v->size;
+            to->friction = t->colliders[pair->collider].friction;
+        }
+        if (pair->collider == GXP_NONE || t->changed.data[pair->collider]) to->flags |= GXS_PAIR_WAKES;
+        memcpy(to->way, pair->way, sizeof to->way);
+    }
     if (!gxp_meeting_point(s, pair, t->sides.data + GXP_TOUCH_COPIES * (size_t)i,
                            t->weights + GXP_TOUCH_COPIES * (size_t)i, &to->point))
         to->stiffness = 0;
-    to->offset = fmin(0, fmin(0, pair->gap + v->pressed) + dt * (recovery + fmax(0, pair->approach)));
-    to->friction = t->desc.friction;
-    to->sticking_speed = t->desc.sticking_speed;
-    memcpy(t->slips + 3 * (t->given + (size_t)i), v->slip, sizeof v->slip);
+    to->offset = fmin(0, fmin(0, pair->gap + pair->pressed) + dt * (recovery + fmax(0, pair->approach)));
+    memcpy(t->slips + 3 * (t->given + (size_t)i), pair->slip, sizeof pair->slip);
 }
 
 /* Puts the pairs of contact behind the caller's. */
-static gx_result gxp_join_pairs(gx_body *body, const gxp_touch_surface *s, double dt, gxs_step_desc *step) {
+static gx_result gxp_join_pairs(gx_body *body, gxp_touch_surface *s, double dt, gxs_step_desc *step) {
     const gx_allocator *a = &body->config.allocator;
     gxp_touch *t = &body->touch;
     gxp_attached *attached = &body->attached;
@@ -11807,6 +12722,9 @@ static gx_result gxp_join_pairs(gx_body *body, const gxp_touch_surface *s, doubl
     if (result == GX_OK) result = gxp_reserve(a, &t->weights, sizeof(double), 0, &t->weight_capacity, copies);
     if (result == GX_OK) result = gxp_reserve(a, &t->slips, 3 * sizeof(double), 0, &t->slip_capacity, all);
     if (result == GX_OK) result = gxp_reserve(a, &t->forces, 3 * sizeof(double), 0, &t->force_capacity, all);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &s->states, sizeof *s->states, s->state_count, &s->state_capacity,
+                             t->found > s->state_count ? t->found - s->state_count : 0);
     if (result != GX_OK) return result;
     t->given = (uint32_t)given;
     if (own) memcpy(attached->pairs, step->pairs, given * sizeof *attached->pairs);
@@ -11821,8 +12739,8 @@ static gx_result gxp_join_pairs(gx_body *body, const gxp_touch_surface *s, doubl
 }
 
 /* Adds the pairs of contact to a step. surface: receives the one that they are of */
-static gx_result gxp_attach_contact(gx_body *body, gxs_step_desc *step, gxp_touch_surface **surface,
-                                    gx_failure *failure) {
+static gx_result gxp_attach_contact(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step,
+                                    gxp_touch_surface **surface, gx_failure *failure) {
     const double dt = gxp_is_finite(step->dt) && step->dt > 0 ? step->dt : 0;
     gx_result result;
     body->touch.kept = 0;
@@ -11830,6 +12748,8 @@ static gx_result gxp_attach_contact(gx_body *body, gxs_step_desc *step, gxp_touc
     if (step->quality > 0) return gxp_refuse(failure, "quality");                /* its parts would not search again */
     if (step->integrator == GXS_MIDPOINT) return gxp_refuse(failure, "integrator");
     if (step->pair_count > 0 && step->pairs == NULL) return gxp_refuse(failure, "pairs");
+    result = gxp_take_colliders(body, desc, failure);
+    if (result != GX_OK) return result;
     result = gxp_step_surface(body, surface);
     if (result == GX_OK) result = gxp_surface_room(body, *surface);
     if (gxp_end(failure, result) != GX_OK) return result;
@@ -11839,18 +12759,91 @@ static gx_result gxp_attach_contact(gx_body *body, gxs_step_desc *step, gxp_touc
     return result == GX_OK ? gxp_end(failure, gxp_join_pairs(body, *surface, dt, step)) : result;
 }
 
-/* How far a pair's vertex is in front of its facet now */
-static double gxp_gap_now(const gx_body *body, const gxs_pair *pair) {
-    double r[3] = {pair->point.position[0], pair->point.position[1], pair->point.position[2]};
+/* Where a pair's sample is now, relative to its other side */
+static void gxp_pair_now(const gx_body *body, const gxs_pair *pair, double r[3]) {
     uint32_t i;
     int k;
+    memcpy(r, pair->point.position, 3 * sizeof *r);
     for (i = 0; i < pair->point.count; i++)
         for (k = 0; k < 3; k++)
             r[k] += pair->point.weights[i] * body->copies.displacement[3 * (size_t)pair->point.copies[i] + (size_t)k];
-    return gxp_dot(r, pair->normal);
 }
 
-/* After a step: the caller's pairs get their slips and forces, vertices what they press with. */
+/* The stiffness of a pair's hold on the collider: of its depth and, while it sticks, of its slip. 00 01 02 11 12 22 */
+static void gxp_hold_stiffness(const gxs_pair *pair, const gxp_touch_pair *own, double dt, const double slip[3],
+                               double hold[6]) {
+    const double elastic = pair->friction * fmax(0, pair->offset - own->gap_before);
+    const double reach = fmax(elastic, dt * (pair->sticking_speed > 0 ? pair->sticking_speed : 1e-3));
+    const double along =
+        reach > 0 && sqrt(gxp_dot(slip, slip)) < (1 - 1e-9) * reach ? pair->stiffness * elastic / reach : 0;
+    const double across = own->pressed > 0 ? pair->stiffness : 0;
+    int i, j, at = 0;
+    for (i = 0; i < 3; i++)
+        for (j = i; j < 3; j++)
+            hold[at++] = (i == j ? along : 0) + (across - along) * pair->normal[i] * pair->normal[j];
+}
+
+/* Adds what a pair does to its collider. arm: from the collider's o to the sample */
+static void gxp_add_load(const double force[3], const double hold[6], const double arm[3], gx_collider_load *load) {
+    static const int packed[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+    const double turn[3][3] = {{0, arm[2], -arm[1]}, {-arm[2], 0, arm[0]}, {arm[1], -arm[0], 0}}; /* of the sample */
+    double torque[3], jacobian[3][6], moved[3][6];
+    int i, j, k;
+    gxp_cross(torque, arm, force);
+    for (k = 0; k < 3; k++) {
+        load->force[k] -= force[k];
+        load->torque[k] -= torque[k];
+        for (j = 0; j < 3; j++) {
+            jacobian[k][j] = k == j;
+            jacobian[k][3 + j] = turn[k][j];
+        }
+    }
+    for (k = 0; k < 3; k++)
+        for (j = 0; j < 6; j++)
+            moved[k][j] = hold[packed[k][0]] * jacobian[0][j] + hold[packed[k][1]] * jacobian[1][j] +
+                          hold[packed[k][2]] * jacobian[2][j];
+    for (i = 0; i < 6; i++)
+        for (j = 0; j < 6; j++)
+            load->stiffness[6 * i + j] +=
+                jacobian[0][i] * moved[0][j] + jacobian[1][i] * moved[1][j] + jacobian[2][i] * moved[2][j];
+    load->contacts++;
+}
+
+/* What colliders feel at the end of a step */
+static void gxp_report_loads(const gx_body *body, const gx_step_desc *desc) {
+    const gxp_touch *t = &body->touch;
+    uint32_t i;
+    if (desc->collider_loads == NULL || desc->collider_count == 0) return;
+    memset(desc->collider_loads, 0, desc->collider_count * sizeof *desc->collider_loads);
+    for (i = 0; i < t->found; i++) {
+        const gxp_touch_pair *pair = &t->pairs[i];
+        const gxs_pair *solved = &body->attached.pairs[t->given + i];
+        const double *force = t->forces + 3 * ((size_t)t->given + i);
+        double r[3], arm[3], hold[6];
+        int k;
+        if (pair->collider == GXP_NONE || !(gxp_dot(force, force) > 0)) continue;
+        gxp_pair_now(body, solved, r);
+        for (k = 0; k < 3; k++)
+            arm[k] = r[k] + pair->place[k] + pair->way[k] - t->colliders[pair->collider].pose[4 * k + 3] -
+                     desc->dt * t->colliders[pair->collider].velocity[k];
+        gxp_hold_stiffness(solved, pair, desc->dt, t->slips + 3 * ((size_t)t->given + i), hold);
+        gxp_add_load(force, hold, arm, &desc->collider_loads[pair->collider]);
+    }
+}
+
+/* Hash of what samples press with; 0: nothing does */
+static uint64_t gxp_hash_states(const gxp_touch_surface *s) {
+    uint64_t hash = 1;
+    uint32_t i;
+    for (i = 0; i < s->state_count; i++) {
+        hash = gxp_hash_words(hash, &s->states[i].sample, 1);
+        hash = gxp_hash_words(hash, &s->states[i].other, 1);
+        hash = gxp_hash_doubles(gxp_hash_doubles(hash, &s->states[i].pressed, 1), s->states[i].slip, 3);
+    }
+    return s->state_count > 0 ? hash | 1 : 0;
+}
+
+/* After a step: the caller's pairs get their slips and forces, samples what they press with. */
 static void gxp_keep_contact(gx_body *body, const gx_step_desc *desc, gxp_touch_surface *surface) {
     gxp_touch *t = &body->touch;
     uint32_t i;
@@ -11858,17 +12851,28 @@ static void gxp_keep_contact(gx_body *body, const gx_step_desc *desc, gxp_touch_
         memcpy(desc->pair_slips, t->slips, 3 * (size_t)t->given * sizeof(double));
     if (t->given > 0 && desc->pair_forces != NULL)
         memcpy(desc->pair_forces, t->forces, 3 * (size_t)t->given * sizeof(double));
-    for (i = 0; i < surface->vertex_count; i++) {
-        gxp_touch_vertex *v = &surface->vertices[i];
-        v->pressed = v->slip[0] = v->slip[1] = v->slip[2] = 0;
-    }
+    surface->state_count = 0;
     for (i = 0; i < t->found; i++) {
-        const gxs_pair *pair = &body->attached.pairs[t->given + i];
-        gxp_touch_vertex *v = &surface->vertices[t->pairs[i].vertex];
-        t->pairs[i].gap = gxp_gap_now(body, pair);
-        v->pressed = pair->stiffness > 0 ? fmax(0, pair->offset - t->pairs[i].gap) : 0;
-        memcpy(v->slip, t->slips + 3 * ((size_t)t->given + i), sizeof v->slip);
+        const gxs_pair *solved = &body->attached.pairs[t->given + i];
+        gxp_touch_pair *pair = &t->pairs[i];
+        gxp_touch_state state;
+        double r[3];
+        gxp_pair_now(body, solved, r);
+        pair->gap_before = pair->gap;
+        pair->gap = gxp_dot(r, solved->normal);
+        pair->pressed = solved->stiffness > 0 ? fmax(0, solved->offset - pair->gap) : 0;
+        memcpy(pair->slip, t->slips + 3 * ((size_t)t->given + i), sizeof pair->slip);
+        if (!(pair->pressed > 0) && !(gxp_dot(pair->slip, pair->slip) > 0)) continue;
+        state.sample = pair->sample;
+        state.other = pair->other;
+        state.pressed = pair->pressed;
+        memcpy(state.slip, pair->slip, sizeof state.slip);
+        memcpy(state.rest, pair->rest, sizeof state.rest);
+        surface->states[surface->state_count++] = state;
     }
+    t->pressed = gxp_hash_states(surface);
+    gxp_report_loads(body, desc);
+    gxp_know_colliders(t);
     t->current = surface == &t->surfaces[0] ? 0 : 1;
     t->made = 1;
     t->hash = body->cuts.hash;
@@ -11876,7 +12880,11 @@ static void gxp_keep_contact(gx_body *body, const gx_step_desc *desc, gxp_touch_
 }
 
 /* Forgets the surface and its state, not that contact is on. */
-static void gxp_forget_contact(gx_body *body) { body->touch.made = 0; }
+static void gxp_forget_contact(gx_body *body) {
+    body->touch.made = 0;
+    body->touch.known_count = 0;
+    body->touch.pressed = 0;
+}
 
 GXFEM_API gx_result gx_body_contact(gx_body *body, const gx_contact_desc *desc, gx_failure *failure) {
     static const char *const names[5] = {"stiffness", "friction", "sticking_speed", "recovery", "depth"};
@@ -11904,6 +12912,20 @@ GXFEM_API gx_result gx_body_contact(gx_body *body, const gx_contact_desc *desc, 
     return gxp_end(failure, GX_OK);
 }
 
+/* Where the sample of a pair is in space */
+static void gxp_place_sample(const gx_body *body, const gxp_touch_surface *s, const gxp_touch_pair *pair, double x[3]) {
+    const int facet = pair->sample >= s->vertex_count;
+    int i, k;
+    x[0] = x[1] = x[2] = 0;
+    for (i = 0; i < (facet ? 3 : 1); i++) {
+        const gxp_touch_vertex *v =
+            &s->vertices[facet ? s->facets[pair->sample - s->vertex_count].vertex[i] : pair->sample];
+        double own[3];
+        gxp_map_point(body, v->rest, v->copies, v->weights, 4, own);
+        for (k = 0; k < 3; k++) x[k] += (facet ? pair->share[i] : 1) * own[k];
+    }
+}
+
 GXFEM_API gx_result gx_body_contacts(const gx_body *body, gx_contact *contacts, size_t capacity, size_t *count,
                                      gx_failure *failure) {
     const gxp_touch *t;
@@ -11919,16 +12941,17 @@ GXFEM_API gx_result gx_body_contacts(const gx_body *body, gx_contact *contacts, 
     if (!t->on || (t->made && t->hash != body->cuts.hash))
         return gxp_fail(failure, GX_ERROR_SEQUENCE, t->on ? "gx_body_step" : "gx_body_contact", SIZE_MAX);
     for (i = 0; i < t->kept && t->made; i++) {
-        const gxp_touch_vertex *v = &s->vertices[t->pairs[i].vertex];
-        if (!(v->pressed > 0)) continue;
+        const gxp_touch_pair *pair = &t->pairs[i];
+        if (!(pair->pressed > 0)) continue;
         if (all < capacity) {
             gx_contact *c = &contacts[all];
-            c->fragment = v->fragment;
-            c->other = s->facets[t->pairs[i].facet].fragment;
-            gxp_map_point(body, v->rest, v->copies, v->weights, 4, c->position);
-            memcpy(c->normal, t->pairs[i].normal, sizeof c->normal);
+            c->fragment = gxp_sample_vertex(s, pair->sample)->fragment;
+            c->other = pair->facet != GXP_NONE ? s->facets[pair->facet].fragment : GXP_NONE;
+            c->collider = pair->other;
+            gxp_place_sample(body, s, pair, c->position);
+            memcpy(c->normal, pair->normal, sizeof c->normal);
             memcpy(c->force, t->forces + 3 * ((size_t)t->given + i), sizeof c->force);
-            c->depth = -t->pairs[i].gap;
+            c->depth = -pair->gap;
         }
         all++;
     }
@@ -11981,6 +13004,7 @@ static gx_result gxp_translate_step(gx_body *body, const gx_step_desc *desc, gxs
     step->dt = desc->dt;
     step->integrator = desc->integrator;
     step->substeps = desc->substeps;
+    step->quick = desc->quick;
     step->newton_iterations = desc->newton_iterations;
     step->newton_tolerance = desc->newton_tolerance;
     step->cg_iterations = desc->cg_iterations;
@@ -12119,13 +13143,15 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (desc == NULL) return gxp_refuse(failure, "desc");
+    if (desc->collider_count > 0 && !body->touch.on)
+        return gxp_fail(failure, GX_ERROR_SEQUENCE, "gx_body_contact", SIZE_MAX);
     gxp_wake_resumed(body, body->copies.count);
     gxp_end(&refused, GX_OK);
     result = gxp_update_model(body, &refused);
     if (result != GX_OK) return gxp_fail(failure, result, NULL, refused.index);
     result = gxp_translate_step(body, desc, &step);
     if (gxp_end(failure, result) == GX_OK) result = gxp_attach(body, desc, &step, failure);
-    if (result == GX_OK && body->touch.on) result = gxp_attach_contact(body, &step, &surface, failure);
+    if (result == GX_OK && body->touch.on) result = gxp_attach_contact(body, desc, &step, &surface, failure);
     if (result == GX_OK && body->hidden.copies.count > 0) result = gxp_end(failure, gxp_expand(body, desc, &step));
     if (result != GX_OK) return result;
     if (body->model.empty) {
@@ -12231,6 +13257,27 @@ static void gxp_weigh(double corners[4][3], const double weights[4], double p[3]
     }
 }
 
+/* Where a cell's map has a place, also outside of its element */
+static void gxp_image_by(const gx_body *body, const gxp_cell *cell, const double weights[4], double x[3]) {
+    static const double origin[3] = {0, 0, 0};
+    double corners[4][3];
+    if (gxp_is_bent(body, cell)) {
+        gxp_image_of_bent(body, cell, weights, x);
+        return;
+    }
+    gxp_cell_corners(body, cell, 1, origin, corners);
+    gxp_weigh(corners, weights, x);
+}
+
+/* The place that a cell's map has at a point of space, also outside of its element; not a number: the cell is flat */
+static void gxp_place_by_map(const gx_body *body, const gxp_cell *cell, const double x[3], double weights[4]) {
+    static const double origin[3] = {0, 0, 0};
+    double corners[4][3];
+    if (gxp_is_bent(body, cell) && gxp_place_in_bent(body, cell, x, weights)) return;
+    gxp_cell_corners(body, cell, 1, origin, corners);
+    gxp_tet_weights(corners, x, weights);
+}
+
 static gx_result gxp_push_vertex(gx_body *body, gxp_front_list *list, const gxp_front_vertex *vertex) {
     const gx_result result =
         gxp_reserve(&body->config.allocator, &list->data, sizeof *list->data, list->count, &list->capacity, 1);
@@ -12300,8 +13347,7 @@ static gx_result gxp_place_by(gx_blade *blade, uint32_t layer, int old, const gx
     if (best == GXP_NONE || result != GX_OK) return result;
     gxp_cell_corners(body, &body->cells.data[best], 0, origin, corners);
     gxp_tet_weights(corners, point, weights);
-    gxp_cell_corners(body, &body->cells.data[best], 1, origin, corners);
-    gxp_weigh(corners, weights, x);
+    gxp_image_by(body, &body->cells.data[best], weights, x);
     return GX_OK;
 }
 
@@ -12466,6 +13512,28 @@ static gx_result gxp_prepare_quads(gx_blade *blade) {
     return result;
 }
 
+/* What contains a bent cell is larger than what contains its corners. */
+static void gxp_contain_bent(const gx_body *body, gxp_close_cell *c) {
+    const gxp_cell *row = &body->cells.data[c->cell];
+    gxp_bounds box;
+    int k;
+    gxp_cell_bounds(body, row->element, row, &box);
+    for (k = 0; k < 3; k++) {
+        c->low[k] = box.low[k];
+        c->high[k] = box.high[k];
+        c->middle[k] = 0.5 * box.low[k] + 0.5 * box.high[k];
+    }
+    c->radius = sqrt(gxp_square_distance(c->middle, c->high));
+}
+
+/* The place that a near cell's map has at a point of space */
+static void gxp_near_weights(const gx_body *body, gxp_close_cell *c, const double x[3], double weights[4]) {
+    if (c->is_bent)
+        gxp_place_by_map(body, &body->cells.data[c->cell], x, weights);
+    else
+        gxp_tet_weights(c->corners, x, weights);
+}
+
 /* The deformed corners of a cell, and what contains them */
 static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
     const gxp_cell *row = &body->cells.data[c->cell];
@@ -12482,6 +13550,8 @@ static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
     c->radius = 0;
     for (n = 0; n < 4; n++) c->radius = gxp_more(c->radius, gxp_square_distance(c->middle, c->corners[n]));
     c->radius = sqrt(c->radius);
+    c->is_bent = (uint8_t)gxp_is_bent(body, row);
+    if (c->is_bent) gxp_contain_bent(body, c);
     c->is_divided = (uint8_t)(gxb_complex_root(body->complex, row->element) & 1);
     c->has_facets = c->has_heights = 0;
     c->size = body->mesh.sizes[row->element];
@@ -12771,6 +13841,7 @@ static gx_result gxp_list_facets(gx_blade *blade, gxp_close_cell *c) {
             for (k = 0; k < 3; k++)
                 facet->corners[n][k] = l[0] * c->corners[0][k] + l[1] * c->corners[1][k] + l[2] * c->corners[2][k] +
                                        l[3] * c->corners[3][k];
+            if (c->is_bent) gxp_image_of_bent(body, &body->cells.data[c->cell], l, facet->corners[n]);
         }
         facet->face = gxp_facet_face(lambda);
     }
@@ -12819,11 +13890,11 @@ static gx_result gxp_seek_outside(gx_blade *blade, uint32_t index, const double 
     uint32_t i;
     if (gxp_square_to_box(x, c->low, c->high) >= sight->square) return GX_OK;
     if (c->stretch < GXP_FLAT_MAP || c->stretch > GXP_BLOWN_MAP) return GX_OK; /* inverted: outside is inside */
-    gxp_tet_weights(c->corners, x, weights);
+    gxp_near_weights(blade->body, c, x, weights);
     if (!c->has_heights) gxp_measure_heights(c);
     beyond[4] = 0;
     for (i = 0; i < 4; i++) {
-        const double off = weights[i] * c->heights[i];
+        const double off = c->is_bent ? 0 : weights[i] * c->heights[i]; /* a curved face is at any distance */
         beyond[i] = weights[i] < 0 ? GXP_SURELY * off * off : HUGE_VAL;
         if (weights[i] < 0 && beyond[i] >= sight->square) return GX_OK;
     }
@@ -12851,7 +13922,7 @@ static gx_result gxp_seek_inside(gx_blade *blade, uint32_t index, const double x
     gx_result result = GX_OK;
     if (gxp_square_to_box(x, c->low, c->high) > 0) return GX_OK;
     if (fabs(c->stretch) < GXP_FLAT_MAP || fabs(c->stretch) > GXP_BLOWN_MAP) return GX_OK;
-    gxp_tet_weights(c->corners, x, weights);
+    gxp_near_weights(blade->body, c, x, weights);
     if (weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0 && weights[3] >= 0)
         result = gxp_is_own_part(blade->body, c, weights, &own);
     if (!own || result != GX_OK) return result;
@@ -12936,17 +14007,17 @@ static gx_result gxp_is_in_layer(gx_blade *blade, uint32_t layer, const double r
    surface. It moves towards that one while there is material of the layer: the map extended is not the layer's. */
 static gx_result gxp_place_in_air(gx_blade *blade, uint32_t layer, const gxp_sight *sight, double corners[4][3],
                                   gxp_front_vertex *v) {
-    const gxp_close_cell *c = &blade->near.cells[sight->index];
+    gxp_close_cell *c = &blade->near.cells[sight->index];
     double weights[4], surface[3], position[3], away;
     const double reach = GXP_CAP * v->size, share = v->distance > reach ? reach / v->distance : 1;
     int k, tries, inside = 1;
     gx_result result = GX_OK;
-    gxp_tet_weights(blade->near.cells[sight->index].corners, sight->nearest, weights);
+    gxp_near_weights(blade->body, c, sight->nearest, weights);
     gxp_weigh(corners, weights, surface);
     memcpy(v->foot, surface, sizeof surface);
     memcpy(v->foot_at, sight->nearest, sizeof v->foot_at);
     for (k = 0; k < 3; k++) position[k] = sight->nearest[k] + share * (v->position[k] - sight->nearest[k]);
-    gxp_tet_weights(blade->near.cells[sight->index].corners, position, weights);
+    gxp_near_weights(blade->body, c, position, weights);
     gxp_weigh(corners, weights, v->rest);
     away = sqrt(gxp_square_distance(v->rest, surface));
     if (away > 1.5 * c->size)
@@ -12963,14 +14034,55 @@ static gx_result gxp_place_in_air(gx_blade *blade, uint32_t layer, const gxp_sig
     return result;
 }
 
-/* How a layer sees a place in space: v->position is given. */
-static gx_result gxp_see_place(gx_blade *blade, uint32_t layer, gxp_front_vertex *v) {
+/* The material point of what a search has found, by the map of its cell */
+static void gxp_map_sight(const gx_blade *blade, const gxp_sight *sight, double rest[3]) {
+    static const double origin[3] = {0, 0, 0};
+    double corners[4][3];
+    gxp_cell_corners(blade->body, &blade->body->cells.data[blade->near.cells[sight->index].cell], 0, origin, corners);
+    gxp_weigh(corners, sight->weights, rest);
+}
+
+/* A place in the material that is farther from the one before it there than this, in distances in space, may be in
+   other cells of its layer too. */
+#define GXP_LEAP 2.0
+
+/* Where a layer lies over itself, a place is in several of its cells. The one whose material is nearest to that of the
+   place before it is meant: the edge goes on in the same part of the layer until it leaves that. */
+static gx_result gxp_seek_beside(gx_blade *blade, uint32_t layer, const gxp_front_vertex *v,
+                                 const gxp_front_vertex *beside, gxp_sight *sight) {
+    const gxp_vicinity *near = &blade->near;
+    const double reach = GXP_LEAP * sqrt(gxp_square_distance(v->position, beside->position));
+    double rest[3], least;
+    uint32_t i;
+    gx_result result = GX_OK;
+    gxp_map_sight(blade, sight, rest);
+    least = gxp_square_distance(rest, beside->rest);
+    for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++) {
+        gxp_sight other;
+        double square;
+        if (least <= reach * reach) break;
+        other.index = GXP_NONE;
+        result = gxp_seek_inside(blade, GXP_SECOND(near->order.data[i]), v->position, &other);
+        if (result != GX_OK || other.index == GXP_NONE) continue;
+        gxp_map_sight(blade, &other, rest);
+        square = gxp_square_distance(rest, beside->rest);
+        if (square >= least) continue;
+        least = square;
+        *sight = other;
+    }
+    return result;
+}
+
+/* How a layer sees a place in space: v->position is given. beside: a place next to it on the edge, or NULL */
+static gx_result gxp_see_place(gx_blade *blade, uint32_t layer, const gxp_front_vertex *beside, gxp_front_vertex *v) {
     static const double origin[3] = {0, 0, 0};
     const gxp_vicinity *near = &blade->near;
     const gxp_close_cell *c;
     double corners[4][3];
     gxp_sight sight;
-    const gx_result result = gxp_seek(blade, layer, v->position, &sight);
+    gx_result result = gxp_seek(blade, layer, v->position, &sight);
+    if (result == GX_OK && beside != NULL && sight.index != GXP_NONE && !(sight.square > 0))
+        result = gxp_seek_beside(blade, layer, v, beside, &sight);
     if (result != GX_OK) return result;
     c = &near->cells[sight.index != GXP_NONE ? sight.index
                                              : GXP_SECOND(near->order.data[near->layer_start.data[layer]])];
@@ -12993,13 +14105,13 @@ static gx_result gxp_see_place(gx_blade *blade, uint32_t layer, gxp_front_vertex
     return v->distance > 0 ? gxp_place_in_air(blade, layer, &sight, corners, v) : GX_OK;
 }
 
-/* How a layer sees a place on the edge */
+/* How a layer sees a place on the edge. beside: the place before it, or NULL */
 static gx_result gxp_see(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count, double along,
-                         gxp_front_vertex *v) {
+                         const gxp_front_vertex *beside, gxp_front_vertex *v) {
     memset(v, 0, sizeof *v);
     v->along = along;
     gxp_edge_position(edge, count, along, v->position);
-    return gxp_see_place(blade, layer, v);
+    return gxp_see_place(blade, layer, beside, v);
 }
 
 /* Are there places between two that must be seen? In the air the line between them must stay out of the layer: they
@@ -13020,7 +14132,7 @@ static gx_result gxp_refine(gx_blade *blade, uint32_t layer, const double *edge,
     const double along = 0.5 * a->along + 0.5 * b->along;
     gx_result result;
     if (!gxp_must_refine(blade, a, b) || !(along > a->along && along < b->along)) return GX_OK;
-    result = gxp_see(blade, layer, edge, count, along, &middle);
+    result = gxp_see(blade, layer, edge, count, along, a, &middle);
     if (result == GX_OK) result = gxp_refine(blade, layer, edge, count, a, &middle);
     if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->seen, &middle);
     return result == GX_OK ? gxp_refine(blade, layer, edge, count, &middle, b) : result;
@@ -13085,7 +14197,8 @@ static gx_result gxp_push_cap(gx_blade *blade, uint32_t layer, const double *edg
     gxp_front_vertex v = *far;
     gx_result result = GX_OK;
     if (reach < length)
-        result = gxp_see(blade, layer, edge, count, near->along + reach / length * (far->along - near->along), &v);
+        result =
+            gxp_see(blade, layer, edge, count, near->along + reach / length * (far->along - near->along), near, &v);
     return result == GX_OK ? gxp_push_vertex(blade->body, &blade->samples, &v) : result;
 }
 
@@ -13123,10 +14236,10 @@ static gx_result gxp_see_edge(gx_blade *blade, uint32_t layer, const double *edg
     gx_result result;
     blade->last_sight = GXP_NONE;
     blade->seen.count = 0;
-    result = gxp_see(blade, layer, edge, count, 0, &before);
+    result = gxp_see(blade, layer, edge, count, 0, NULL, &before);
     if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->seen, &before);
     for (i = 1; i < count && result == GX_OK; i++) {
-        result = gxp_see(blade, layer, edge, count, (double)i, &v);
+        result = gxp_see(blade, layer, edge, count, (double)i, &before, &v);
         if (result == GX_OK) result = gxp_refine(blade, layer, edge, count, &before, &v);
         if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->seen, &v);
         before = v;
@@ -13134,15 +14247,17 @@ static gx_result gxp_see_edge(gx_blade *blade, uint32_t layer, const double *edg
     return result == GX_OK ? gxp_list_runs(blade, layer, edge, count) : result;
 }
 
-/* >>fronts: how far the edge has come in a layer ------------------------------------------------------------------- */
-/* In: a layer's front and how it sees the edge. Out: the front advanced where the edge is ahead of it, and the strip of
-   triangles between the two. Where the edge goes back through its own cut the front stays. Touches the blade's working
-   memory. */
+/* >>relations: where a place on the edge lies by the front --------------------------------------------------------- */
+/* In: a layer's front, the sheet of its last strips, places of the edge as the layer sees them. Out: which of them are
+   ahead of the front, which are behind it in the cut, and which have left that through its side. Changes nothing but
+   what it returns. */
 
 /* Shares of an element's size. An advance of less is none. A place behind the front is in the cut if it is no farther
    from its sheet, else the edge has left the cut through its side. */
 #define GXP_LEAST_ADVANCE 0.02
 #define GXP_CUT_WIDTH     0.15
+/* A vertex that has come less far is the old front's. */
+#define GXP_STAYED 1e-9
 /* A material point on the layer's surface that is no farther from the sheet is on a wall of the cut. */
 #define GXP_ON_SHEET 1e-6
 /* So far on the other side of the sheet does a track begin, in element sizes. */
@@ -13170,10 +14285,11 @@ static void gxp_near_front(const gxp_front_list *front, const double rest[3], gx
     r->distance = sqrt(gxp_square_distance(rest, nearest));
 }
 
-/* The point of a sheet nearest to a material point. Returns the distance. */
-static double gxp_near_sheet(const gxp_points *sheet, const double rest[3], double nearest[3]) {
+/* The triangle of a sheet nearest to a material point: the index of its first corner. Returns the distance. */
+static double gxp_near_sheet_part(const gxp_points *sheet, const double rest[3], double nearest[3], uint32_t *first) {
     double best = HUGE_VAL;
     uint32_t i;
+    *first = 0;
     for (i = 0; i + 2 < sheet->count; i += 3) {
         const double *x = sheet->data + 3 * (size_t)i;
         double at[3], square = 0;
@@ -13187,9 +14303,16 @@ static double gxp_near_sheet(const gxp_points *sheet, const double rest[3], doub
         square = gxp_onto_triangle(rest, x, x + 3, x + 6, at);
         if (square >= best) continue;
         best = square;
+        *first = i;
         memcpy(nearest, at, sizeof at);
     }
     return sqrt(best);
+}
+
+/* The point of a sheet nearest to a material point. Returns the distance. */
+static double gxp_near_sheet(const gxp_points *sheet, const double rest[3], double nearest[3]) {
+    uint32_t first;
+    return gxp_near_sheet_part(sheet, rest, nearest, &first);
 }
 
 /* A place behind the front: is it in the cut, has it left that through the side, or is it beside the front, ahead of
@@ -13231,7 +14354,9 @@ static int gxp_front_direction(const gxp_front_list *front, const gxp_relation *
 static void gxp_judge_air(const gx_blade *blade, const gxp_front_vertex *v, gxp_relation *r) {
     double nearest[3];
     const double distance = gxp_near_sheet(&blade->sheet, v->rest, nearest);
-    r->ahead = distance > GXP_CUT_WIDTH * v->size && distance > 2 * blade->tolerance;
+    const int off = distance > GXP_CUT_WIDTH * v->size && distance > 2 * blade->tolerance;
+    r->beside = off && !r->ahead;
+    r->ahead = off != 0;
 }
 
 /* Is a place in the air next to this layer's own cut: between its walls, or before their rims? There the maps of the
@@ -13260,34 +14385,6 @@ static gx_result gxp_relate(gx_blade *blade, const gxp_front_vertex *v, gxp_rela
     }
     if (!r->ahead) result = gxp_judge_behind(blade, v, r);
     if (r->distance < GXP_LEAST_ADVANCE * v->size && r->distance < 0.1 * blade->min_advance) r->ahead = 0;
-    return result;
-}
-
-/* What the layer's edge does at a move */
-typedef struct gxp_advance {
-    double most; /* the largest advance, m; of places inside, if there are any */
-    int strays;
-    int is_back; /* 1: all of the edge is in the air, and has come there through its own cut */
-} gxp_advance;
-
-/* The vertex of the front next to the nearest point */
-static uint32_t gxp_pin(const gxp_relation *r) { return r->segment + (r->share > 0.5); }
-
-/* Appends the front's own vertices for a run of places that are not ahead: *at is the first vertex not passed yet. */
-static gx_result gxp_stay(gx_blade *blade, const gxp_relation *r, uint32_t count, int first, int last, uint32_t *at) {
-    uint32_t low = GXP_NONE, high = 0, i;
-    gx_result result = GX_OK;
-    for (i = 0; i < count; i++) {
-        const uint32_t pin = gxp_pin(&r[i]);
-        if (pin < low) low = pin;
-        if (pin > high) high = pin;
-    }
-    if (first) low = 0;
-    if (last) high = blade->front.count - 1;
-    if (low < *at) low = *at;
-    for (i = low; i <= high && result == GX_OK; i++)
-        result = gxp_push_vertex(blade->body, &blade->advanced, &blade->front.data[i]);
-    if (high > *at) *at = high;
     return result;
 }
 
@@ -13326,6 +14423,96 @@ static int gxp_is_beside_behind(const gxp_front_list *samples, const gxp_relatio
     return !r[i].doubtful && !r[i].ahead && !(samples->data[i].distance > 0);
 }
 
+/* Places in the air beside the sheet, next to one in the material that has left the cut through its side, have left it
+   with that one: not those between it and one that is ahead. step: 1, to the next places; -1, to those before */
+static void gxp_stray_together(const gxp_front_list *samples, gxp_relation *r, uint32_t index, int step) {
+    uint32_t i = index, end;
+    for (;;) {
+        const int is_end =
+            step > 0 ? i + 1 >= samples->count || samples->data[i].gap : i == 0 || samples->data[i - 1].gap;
+        if (is_end) break;
+        i = step > 0 ? i + 1 : i - 1;
+        if (r[i].beside) continue;
+        if (r[i].ahead) return;
+        break;
+    }
+    for (end = i, i = index; i != end;) {
+        i = step > 0 ? i + 1 : i - 1;
+        if (r[i].beside) r[i].ahead = 0;
+    }
+}
+
+/* The way of a place from the front, of length 1. Returns 0 if it has none. */
+static int gxp_way_from_front(const gxp_front_list *front, const gxp_front_vertex *v, double way[3]) {
+    gxp_relation r;
+    double nearest[3];
+    int k;
+    gxp_near_front(front, v->rest, &r, nearest);
+    for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
+    return gxp_unit(way, way);
+}
+
+/* Ways whose directions differ by less than this cosine says are one. */
+#define GXP_SAME_WAY 0.8
+
+/* A place that seems to have left the cut through its side, next to one ahead that has come the same way, is ahead:
+   where the edge turns, only the front's direction is another. */
+static void gxp_come_along(gxp_relation *r, const gxp_front_list *samples, const gxp_front_list *front, uint32_t from,
+                           uint32_t to) {
+    double way[3], other[3];
+    if (samples->data[from < to ? from : to].gap) return;
+    if (!r[to].strays || !r[from].ahead || r[from].beside) return;
+    if (!gxp_way_from_front(front, &samples->data[from], other)) return;
+    if (!gxp_way_from_front(front, &samples->data[to], way) || !(gxp_dot(way, other) > GXP_SAME_WAY)) return;
+    r[to].ahead = 1;
+    r[to].strays = 0;
+}
+
+/* Judges places by those next to them. */
+static void gxp_judge_together(const gxp_front_list *samples, const gxp_front_list *front, gxp_relation *r) {
+    uint32_t i;
+    for (i = 0; i + 1 < samples->count; i++) gxp_come_along(r, samples, front, i, i + 1);
+    for (i = samples->count; i > 1; i--) gxp_come_along(r, samples, front, i - 1, i - 2);
+    for (i = 0; i < samples->count; i++) {
+        if (!r[i].strays) continue;
+        gxp_stray_together(samples, r, i, -1);
+        gxp_stray_together(samples, r, i, 1);
+    }
+}
+
+/* >>fronts: how far the edge has come in a layer ------------------------------------------------------------------- */
+/* In: a layer's front and how it sees the edge. Out: the front advanced where the edge is ahead of it, and the strip of
+   triangles between the two. Where the edge goes back through its own cut the front stays. Touches the blade's working
+   memory. */
+
+/* What the layer's edge does at a move */
+typedef struct gxp_advance {
+    double most; /* the largest advance, m; of places inside, if there are any */
+    int strays;
+    int is_back; /* 1: all of the edge is in the air, and has come there through its own cut */
+} gxp_advance;
+
+/* The vertex of the front next to the nearest point */
+static uint32_t gxp_pin(const gxp_relation *r) { return r->segment + (r->share > 0.5); }
+
+/* Appends the front's own vertices for a run of places that are not ahead: *at is the first vertex not passed yet. */
+static gx_result gxp_stay(gx_blade *blade, const gxp_relation *r, uint32_t count, int first, int last, uint32_t *at) {
+    uint32_t low = GXP_NONE, high = 0, i;
+    gx_result result = GX_OK;
+    for (i = 0; i < count; i++) {
+        const uint32_t pin = gxp_pin(&r[i]);
+        if (pin < low) low = pin;
+        if (pin > high) high = pin;
+    }
+    if (first) low = 0;
+    if (last) high = blade->front.count - 1;
+    if (low < *at) low = *at;
+    for (i = low; i <= high && result == GX_OK; i++)
+        result = gxp_push_vertex(blade->body, &blade->advanced, &blade->front.data[i]);
+    if (high > *at) *at = high;
+    return result;
+}
+
 /* Lists in blade.advanced the front as far as the samples have come: these where they are ahead, else its own
    vertices. */
 static gx_result gxp_advance_front(gx_blade *blade, gxp_advance *move) {
@@ -13346,6 +14533,7 @@ static gx_result gxp_advance_front(gx_blade *blade, gxp_advance *move) {
         result = gxp_relate(blade, v, &r[i]);
         if (in_air) r[i].ahead = !move->is_back && r[i].distance > 0 && !gxp_is_in_open_cut(blade, v);
     }
+    if (result == GX_OK && !in_air) gxp_judge_together(samples, &blade->front, r);
     for (i = 0; i < samples->count && result == GX_OK; i++) {
         const gxp_front_vertex *v = &samples->data[i];
         if (r[i].doubtful && gxp_is_beside_behind(samples, r, i)) r[i].ahead = 0;
@@ -13454,10 +14642,30 @@ static double gxp_bend(const gx_blade *blade) {
 
 static int gxp_has_direction(const gxp_front_vertex *v) { return gxp_dot(v->ahead, v->ahead) > 0; }
 
-/* The direction in which each vertex of the new front has come from the old one. Those that have not come take the
-   old front's, or their neighbours'. */
-static void gxp_set_directions(const gxp_front_list *from, gxp_front_list *to) {
+/* The direction of a front at the point of it that is nearest to a vertex. Returns 0 if it has none there. */
+static int gxp_old_direction(const gxp_front_list *from, const gxp_relation *r, double ahead[3]) {
+    const gxp_front_vertex *v = &from->data[r->segment];
+    int k;
+    if (!gxp_has_direction(&v[0]) && !gxp_has_direction(&v[1])) return 0;
+    for (k = 0; k < 3; k++) ahead[k] = (1 - r->share) * v[0].ahead[k] + r->share * v[1].ahead[k];
+    return 1;
+}
+
+/* Vertices without a direction take that of the nearest one that has. */
+static void gxp_spread_directions(gxp_front_list *to) {
     uint32_t i, off;
+    for (i = 0; i < to->count; i++)
+        for (off = 1; off < to->count && !gxp_has_direction(&to->data[i]); off++) {
+            if (i >= off) memcpy(to->data[i].ahead, to->data[i - off].ahead, sizeof to->data[i].ahead);
+            if (!gxp_has_direction(&to->data[i]) && i + off < to->count)
+                memcpy(to->data[i].ahead, to->data[i + off].ahead, sizeof to->data[i].ahead);
+        }
+}
+
+/* The direction in which each vertex of the new front has come from the old one. Those that have stayed keep theirs.
+   Those that have hardly come take their neighbours', which have: where the edge turns, the old front's is another. */
+static void gxp_set_directions(const gxp_front_list *from, gxp_front_list *to) {
+    uint32_t i, come = 0;
     int k;
     for (i = 0; i < to->count; i++) {
         gxp_front_vertex *v = &to->data[i];
@@ -13465,17 +14673,19 @@ static void gxp_set_directions(const gxp_front_list *from, gxp_front_list *to) {
         double nearest[3], way[3];
         gxp_near_front(from, v->rest, &r, nearest);
         for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
-        if (gxp_unit(way, v->ahead) && r.distance > GXP_LEAST_ADVANCE * v->size) continue;
-        if (!gxp_has_direction(&from->data[r.segment]) && !gxp_has_direction(&from->data[r.segment + 1])) continue;
-        for (k = 0; k < 3; k++)
-            v->ahead[k] = (1 - r.share) * from->data[r.segment].ahead[k] + r.share * from->data[r.segment + 1].ahead[k];
+        if (gxp_unit(way, way) && r.distance > GXP_LEAST_ADVANCE * v->size) {
+            memcpy(v->ahead, way, sizeof way);
+            come++;
+        } else if (r.distance > GXP_STAYED * v->size || !gxp_old_direction(from, &r, v->ahead))
+            v->ahead[0] = v->ahead[1] = v->ahead[2] = 0;
     }
-    for (i = 0; i < to->count; i++)
-        for (off = 1; off < to->count && !gxp_has_direction(&to->data[i]); off++) {
-            if (i >= off) memcpy(to->data[i].ahead, to->data[i - off].ahead, sizeof to->data[i].ahead);
-            if (!gxp_has_direction(&to->data[i]) && i + off < to->count)
-                memcpy(to->data[i].ahead, to->data[i + off].ahead, sizeof to->data[i].ahead);
-        }
+    for (i = 0; i < to->count && come == 0; i++) {
+        gxp_relation r;
+        double nearest[3];
+        gxp_near_front(from, to->data[i].rest, &r, nearest);
+        gxp_old_direction(from, &r, to->data[i].ahead);
+    }
+    gxp_spread_directions(to);
 }
 
 /* Cuts the strip up to a new front, which becomes the layer's. */
@@ -13522,23 +14732,38 @@ static gx_result gxp_begin_outside(gx_blade *blade, gxp_advance *move, gx_blade_
     return gxp_copy_front(blade->body, &blade->front, &blade->samples);
 }
 
-/* The place on the sheet at which the edge has left it: the nearest one, but for the rim of the sheet, which a track
-   would miss. way: from there to where the edge is. */
-static void gxp_leave_sheet(const gxp_front_list *front, const gxp_points *sheet, const double rest[3], double inward,
-                            double nearest[3], double way[3]) {
-    double direction[3], at[3], off;
-    gxp_relation r;
-    int k;
-    gxp_near_sheet(sheet, rest, nearest);
-    gxp_near_front(front, nearest, &r, at);
-    if (r.distance < inward && gxp_front_direction(front, &r, direction) && gxp_unit(direction, direction)) {
-        for (k = 0; k < 3; k++) at[k] -= inward * direction[k];
-        gxp_near_sheet(sheet, at, nearest);
-        for (k = 0; k < 3; k++) way[k] = rest[k] - nearest[k];
-        off = gxp_dot(way, direction);
-        for (k = 0; k < 3; k++) way[k] -= off * direction[k];
-        return;
+/* Moves a point of a sheet away from its rims, if it is next to one: to where the sheet goes on on all sides. */
+static void gxp_move_inward(const gxp_points *sheet, uint32_t first, double inward, double nearest[3]) {
+    static const double turns[8][2] = {{1, 0},  {0.7071, 0.7071},   {0, 1},  {-0.7071, 0.7071},
+                                       {-1, 0}, {-0.7071, -0.7071}, {0, -1}, {0.7071, -0.7071}};
+    const double *x = sheet->data + 3 * (size_t)first;
+    double u[3], v[3], normal[3], outward[3] = {0, 0, 0}, place[3], at[3];
+    int i, k;
+    for (k = 0; k < 3; k++) {
+        u[k] = x[3 + k] - x[k];
+        v[k] = x[6 + k] - x[k];
     }
+    gxp_cross(normal, u, v);
+    if (!gxp_unit(normal, normal) || !gxp_unit(u, u)) return;
+    gxp_cross(v, normal, u);
+    for (i = 0; i < 8; i++) {
+        for (k = 0; k < 3; k++) place[k] = nearest[k] + inward * (turns[i][0] * u[k] + turns[i][1] * v[k]);
+        if (gxp_near_sheet(sheet, place, at) <= 0.5 * inward) continue;
+        for (k = 0; k < 3; k++) outward[k] += turns[i][0] * u[k] + turns[i][1] * v[k];
+    }
+    if (gxp_dot(outward, outward) < 0.25 || !gxp_unit(outward, outward)) return;
+    for (k = 0; k < 3; k++) place[k] = nearest[k] - inward * outward[k];
+    gxp_near_sheet(sheet, place, nearest);
+}
+
+/* The place on the sheet at which the edge has left it: the nearest one, but for the rims of the sheet, which a track
+   would miss. way: from there to where the edge is. */
+static void gxp_leave_sheet(const gxp_points *sheet, const double rest[3], double inward, double nearest[3],
+                            double way[3]) {
+    uint32_t first;
+    int k;
+    gxp_near_sheet_part(sheet, rest, nearest, &first);
+    gxp_move_inward(sheet, first, inward, nearest);
     for (k = 0; k < 3; k++) way[k] = rest[k] - nearest[k];
 }
 
@@ -13548,7 +14773,7 @@ static void gxp_cross_sheet(const gx_blade *blade, const double side[3], gxp_fro
     double nearest[3], way[3];
     const double across = fmax(2 * blade->tolerance, GXP_CROSSING * v->size);
     int k;
-    gxp_leave_sheet(&blade->front, &blade->sheet, v->rest, across, nearest, way);
+    gxp_leave_sheet(&blade->sheet, v->rest, across, nearest, way);
     memcpy(v->ahead, side, sizeof v->ahead);
     if (gxp_dot(way, way) > 4 * blade->tolerance * blade->tolerance) gxp_unit(way, v->ahead);
     for (k = 0; k < 3; k++) v->rest[k] = nearest[k] - across * v->ahead[k];
@@ -13566,7 +14791,7 @@ static gx_result gxp_list_crossings(gx_blade *blade) {
         double nearest[3], way[3];
         const double distance = gxp_near_sheet(&blade->sheet, v->rest, nearest);
         if (v->distance > 0 || !(distance > most)) continue;
-        gxp_leave_sheet(&blade->front, &blade->sheet, v->rest, GXP_CROSSING * v->size, nearest, way);
+        gxp_leave_sheet(&blade->sheet, v->rest, GXP_CROSSING * v->size, nearest, way);
         if (gxp_unit(way, side)) most = distance;
     }
     blade->crossings.count = 0;
@@ -13796,8 +15021,7 @@ static void gxp_follow_place(const gx_body *body, const double x[3], uint32_t *c
     int faces;
     for (faces = 0; next != GXP_NONE && faces < GXP_BEAD_FACES; faces++) {
         *cell = next;
-        gxp_cell_corners(body, &body->cells.data[next], 1, origin, corners);
-        gxp_tet_weights(corners, x, weights);
+        gxp_place_by_map(body, &body->cells.data[next], x, weights);
         for (face = 0, k = 1; k < 4; k++)
             if (weights[k] < weights[face]) face = k;
         next = weights[face] < -GXP_BEAD_TOUCH ? gxp_cell_across(body, next, face) : GXP_NONE;
@@ -14533,8 +15757,7 @@ static gx_result gxp_keep_far_place(gx_blade *blade, const double *edge, uint32_
     v.element = body->cells.data[near.cell].element;
     v.size = blade->largest;
     v.distance = sqrt(near.square);
-    gxp_cell_corners(body, &body->cells.data[near.cell], 1, origin, corners);
-    gxp_weigh(corners, near.weights, v.foot_at);
+    gxp_image_by(body, &body->cells.data[near.cell], near.weights, v.foot_at);
     gxp_cell_corners(body, &body->cells.data[near.cell], 0, origin, corners);
     gxp_weigh(corners, near.weights, v.foot);
     memcpy(v.rest, v.foot, sizeof v.rest);
@@ -14949,17 +16172,33 @@ static gx_result gxp_step_along(gx_blade *blade, const double *edge, uint32_t co
     }
 }
 
-/* May moves be left out after one that was worked out just now? It has had one step. */
-static int gxp_may_get_ready(const gx_blade *blade) { return blade->steps == 1 && gxp_is_free(blade); }
+/* May moves be left out after one that was worked out just now? It has had one step. Where copies are affine, none are:
+   copies.struck has no A. */
+static int gxp_may_get_ready(const gx_blade *blade) {
+    return blade->steps == 1 && blade->body->copies.bends == 0 && gxp_is_free(blade);
+}
 
-/* Works out the move that was left out last, with the body as it was then: the first steps of the present move. */
+/* No A is the one that boxes of the tree were made for. */
+static void gxp_forget_seen_bends(gx_body *body) {
+    uint32_t i;
+    for (i = 0; i < body->copies.count; i++)
+        if (body->copies.affine[i]) body->copies.linear_seen[9 * (size_t)i] = HUGE_VAL;
+}
+
+/* Works out the move that was left out last, with the body as it was then: the first steps of the present move. No copy
+   was affine then. */
 static gx_result gxp_make_up(gx_blade *blade, int *begun, gx_blade_report *report, gx_failure *failure) {
     const gxp_points *edge = &blade->now.glance.edge;
+    gxp_copies *copies = &blade->body->copies;
+    const int bends = copies->bends;
     gx_result result;
     gxp_swap_struck(blade->body);
+    copies->bends = 0;
     result = gxp_refit_near(blade, GXP_NEAR_SLACK, failure);
     if (result == GX_OK) result = gxp_step_along(blade, edge->data, edge->count, NULL, 0, begun, report, failure);
     gxp_swap_struck(blade->body);
+    copies->bends = bends;
+    if (bends) gxp_forget_seen_bends(blade->body);
     if (result != GX_OK) return result;
     if (gxp_may_get_ready(blade) && blade->surface_starts.count == 0)
         result = gxp_end(failure, gxp_get_ready(blade));
@@ -14980,7 +16219,10 @@ static gx_result gxp_finish_move(gx_blade *blade, int ready, gx_blade_report *re
     if (result == GX_OK && ready && cuts) gxp_note_bead_elements(blade);
     if (result == GX_OK) result = gxp_cut_surfaces(blade, GX_SURFACE_SHEET, report, failure);
     if (result == GX_OK && ready && cuts) gxp_place_beads(blade);
-    if (result == GX_OK && ready) gxp_be_ready(blade);
+    if (result == GX_OK && ready && blade->body->copies.bends)
+        gxp_end_glances(&blade->then.glance); /* the cut has made copies affine */
+    else if (result == GX_OK && ready)
+        gxp_be_ready(blade);
     return result;
 }
 
@@ -15029,7 +16271,6 @@ GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t po
     gx_blade_report own;
     gx_result result;
     if (blade == NULL) return gxp_refuse(failure, "blade");
-    if (blade->body->copies.affine != NULL) return gxp_refuse(failure, "affine_below"); /* layers see affine maps */
     if (scope_fragment_count > 0 && scope_fragments == NULL) return gxp_refuse(failure, "scope_fragments");
     result = gxp_check_edge(blade, edge, point_count, failure);
     if (result == GX_OK && scope_fragment_count > 0)
@@ -15335,6 +16576,53 @@ static int gxp_clip_to_element(const gxp_edge_part *edge, const gxp_cell *cell, 
     return 1;
 }
 
+/* Adds the spans of a cell's part of the edge, of which low, high and touch (as a share of an element) are known. */
+static gx_result gxp_add_cell_part(gx_body *body, gxp_cell_part *part, double touch) {
+    const uint32_t element = body->cells.data[part->cell].element;
+    part->touch = touch * gxp_element_size(body, element);
+    return gxp_add_leaf_spans(body, part, gxb_complex_root(body->complex, element), 0, 1);
+}
+
+/* In a bent cell a straight part of the edge is curved: it is halved until its chord is off by less than this share of
+   the element, at most so often. The chord stands for it, and next to nothing is as much. */
+#define GXP_CHORD_OFF    1e-3
+#define GXP_CHORD_HALVES 6
+
+/* Adds the spans of a part of the edge in a bent cell. low, high: shares of the part; w: the places of their points.
+ */
+static gx_result gxp_meet_bent(gx_body *body, gxp_cell_part *part, double low, double high, double w[2][4],
+                               int halves) {
+    const gxp_edge_part *edge = part->edge;
+    const gxp_cell *c = &body->cells.data[part->cell];
+    const double middle = 0.5 * low + 0.5 * high;
+    double halved[3][4], x[3], rest[12], from = 0, to = 1, off = 0, weights[4];
+    int n, k, beyond = 0;
+    memcpy(halved[0], w[0], sizeof halved[0]);
+    memcpy(halved[2], w[1], sizeof halved[2]);
+    gxp_edge_position(edge->x[0], 2, middle, x);
+    if (!gxp_place_in_bent(body, c, x, halved[1])) return GX_OK;
+    for (k = 0; k < 4; k++) {
+        off = fmax(off, fabs(halved[1][k] - 0.5 * w[0][k] - 0.5 * w[1][k]));
+        beyond |= fmax(fmax(w[0][k], w[1][k]), halved[1][k]) < -GXP_CHORD_OFF;
+    }
+    if (beyond && halves > 1) return GX_OK;
+    if (off > GXP_CHORD_OFF && halves < GXP_CHORD_HALVES) {
+        const gx_result result = gxp_meet_bent(body, part, low, middle, halved, halves + 1);
+        return result == GX_OK ? gxp_meet_bent(body, part, middle, high, halved + 1, halves + 1) : result;
+    }
+    for (k = 0; k < 4; k++)
+        if (!gxp_narrow(w[0][k] + GXP_CHORD_OFF, w[1][k] + GXP_CHORD_OFF, &from, &to)) return GX_OK;
+    gxp_element_positions(body, c->element, rest);
+    for (n = 0; n < 2; n++) {
+        const double share = n == 0 ? from : to;
+        for (k = 0; k < 4; k++) weights[k] = w[0][k] + share * (w[1][k] - w[0][k]);
+        gxp_weigh_material(rest, weights, part->rest[n]);
+    }
+    part->low = gxp_between(edge->low, edge->high, gxp_between(low, high, from));
+    part->high = gxp_between(edge->low, edge->high, gxp_between(low, high, to));
+    return gxp_add_cell_part(body, part, GXP_CHORD_OFF);
+}
+
 /* Adds the spans of a part of the edge in a cell. */
 static gx_result gxp_meet_cell(gx_body *body, void *user, uint32_t cell) {
     const gxp_edge_part *edge = (const gxp_edge_part *)user;
@@ -15343,20 +16631,25 @@ static gx_result gxp_meet_cell(gx_body *body, void *user, uint32_t cell) {
     const uint32_t before = blade->span_count;
     gxp_cell_part part;
     gxp_close_cell close;
-    double weights[4], point[3], low = 0, high = 1, touch;
+    double weights[2][4], point[3], low = 0, high = 1, touch;
     int n;
     gx_result result;
-    if (!gxp_clip_to_element(edge, c, &low, &high, &touch)) return GX_OK;
     part.edge = edge;
     part.cell = cell;
-    part.low = gxp_between(edge->low, edge->high, low);
-    part.high = gxp_between(edge->low, edge->high, high);
-    part.touch = touch * gxp_element_size(body, c->element);
-    for (n = 0; n < 2; n++) {
-        gxp_edge_position(edge->ends, 2, n == 0 ? part.low : part.high, point);
-        (void)gxp_pull_back(body, cell, point, weights, part.rest[n]);
+    if (gxp_is_bent(body, c)) {
+        for (n = 0; n < 2; n++)
+            if (!gxp_place_in_bent(body, c, edge->x[n], weights[n])) return GX_OK;
+        result = gxp_meet_bent(body, &part, 0, 1, weights, 0);
+    } else {
+        if (!gxp_clip_to_element(edge, c, &low, &high, &touch)) return GX_OK;
+        part.low = gxp_between(edge->low, edge->high, low);
+        part.high = gxp_between(edge->low, edge->high, high);
+        for (n = 0; n < 2; n++) {
+            gxp_edge_position(edge->ends, 2, n == 0 ? part.low : part.high, point);
+            (void)gxp_pull_back(body, cell, point, weights[0], part.rest[n]);
+        }
+        result = gxp_add_cell_part(body, &part, touch);
     }
-    result = gxp_add_leaf_spans(body, &part, gxb_complex_root(body->complex, c->element), 0, 1);
     if (result != GX_OK || blade->span_count == before || gxp_close_index(&blade->near, cell) != GXP_NONE)
         return result;
     close.cell = cell;
@@ -15537,7 +16830,7 @@ static gx_result gxp_push_tool_place(gx_blade *blade, uint32_t layer, const doub
     gx_result result;
     memset(&v, 0, sizeof v);
     memcpy(v.position, position, sizeof v.position);
-    result = gxp_see_place(blade, layer, &v);
+    result = gxp_see_place(blade, layer, NULL, &v);
     if (result == GX_OK && v.distance > 0) result = gxp_is_in_layer(blade, layer, v.extended, &inside);
     if (!inside) memcpy(v.rest, v.extended, sizeof v.rest);
     return result == GX_OK ? gxp_push_vertex(blade->body, &blade->samples, &v) : result;
@@ -15817,7 +17110,6 @@ GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (tool == NULL) return gxp_refuse(failure, "tool");
-    if (body->copies.affine != NULL) return gxp_refuse(failure, "affine_below"); /* see gx_blade_move */
     result = gxp_check_tool(tool, failure);
     if (result == GX_OK) result = gx_blade_create(body, NULL, &blade, failure);
     if (result != GX_OK) return result;
@@ -16805,7 +18097,7 @@ GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
     for (i = 0; i < gxb_complex_leaf_count(body->complex); i++)
         hash = gxp_mix(hash ^ gxb_complex_leaf(body->complex, i)->removed);
     for (blade = body->blades; blade != NULL; blade = blade->next) hash = gxp_hash_blade(hash, &blade->now);
-    return hash;
+    return body->touch.pressed != 0 ? gxp_mix(hash ^ body->touch.pressed) : hash;
 }
 
 GXFEM_API const char *gx_result_text(gx_result result) {
@@ -16847,7 +18139,7 @@ static void gxp_require_true(gxb_stream *s, int holds) {
 }
 static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
 
-#define GXP_SAVE_VERSION 10u /* raised by every change of the format */
+#define GXP_SAVE_VERSION 11u /* raised by every change of the format */
 #define GXP_BYTE_ORDER   0x01020304u
 
 typedef struct gxp_head {
@@ -17492,7 +18784,8 @@ static void gxp_drop_blades(gx_body *body, uint32_t count) {
 /* The row counts of the state, whether there is a history, and whether a blade leaves out moves */
 typedef struct gxp_state_counts {
     uint32_t rows[GXP_TABLES], history, struck;
-    int affine; /* there may be affine copies: the saved mesh tells */
+    uint32_t contact, pressing, known; /* 1: contact is on; its states; the colliders of the last step */
+    int affine;                        /* there may be affine copies: the saved mesh tells */
 } gxp_state_counts;
 
 static uint32_t gxp_state_use(const gxp_state_counts *n) {
@@ -17504,6 +18797,9 @@ static void gxp_pass_state_counts(gxb_stream *s, gxp_state_counts *n) {
     gxp_pass_counts(s, GXP_STATE, n->rows);
     gxp_pass_word(s, &n->history);
     gxp_pass_word(s, &n->struck);
+    gxp_pass_word(s, &n->contact);
+    gxp_pass_word(s, &n->pressing);
+    gxp_pass_word(s, &n->known);
 }
 
 static gxp_state_counts gxp_count_state(const gx_body *body) {
@@ -17512,13 +18808,76 @@ static gxp_state_counts gxp_count_state(const gx_body *body) {
     n.history = body->copies.previous_dt > 0;
     n.struck = (uint32_t)gxp_has_glances(body);
     n.affine = body->copies.affine != NULL;
+    n.contact = (uint32_t)body->touch.on;
+    n.pressing = body->touch.on && body->touch.made ? body->touch.surfaces[body->touch.current].state_count : 0;
+    n.known = body->touch.on ? body->touch.known_count : 0;
     return n;
+}
+
+/* The surface that gets the states of contact when they are read: the present one if it is of the present cuts */
+static uint32_t gxp_arriving_surface(const gx_body *body) {
+    const gxp_touch *t = &body->touch;
+    return t->made && t->hash == body->cuts.hash ? t->current : 1 - t->current;
+}
+
+/* Room for the state of contact; the present one stays. */
+static gx_result gxp_contact_room(gx_body *body, const gxp_state_counts *n) {
+    const gx_allocator *a = &body->config.allocator;
+    gxp_touch *t = &body->touch;
+    gxp_touch_surface *to = &t->surfaces[gxp_arriving_surface(body)];
+    gx_result result = gxp_reserve(a, &to->states, sizeof *to->states, to->state_count, &to->state_capacity,
+                                   n->pressing > to->state_count ? n->pressing - to->state_count : 0);
+    return result == GX_OK ? gxp_reserve(a, &t->known, sizeof *t->known, t->known_count, &t->known_capacity,
+                                         n->known > t->known_count ? n->known - t->known_count : 0)
+                           : result;
+}
+
+/* Writes the state of contact, or reads it if there is room. When reading, a surface that is not of the present cuts is
+   still to be made, if something presses. */
+static void gxp_pass_contact(gxb_stream *s, gx_body *body, const gxp_state_counts *n) {
+    gxp_touch *t = &body->touch;
+    gx_contact_desc *desc = &t->desc;
+    gxp_touch_surface *to;
+    uint32_t i;
+    if (s->in != NULL) {
+        const uint32_t arriving = gxp_arriving_surface(body);
+        t->made = n->contact && (n->pressing > 0 || arriving == t->current);
+        t->current = arriving;
+        t->hash = body->cuts.hash;
+        t->on = (int)n->contact;
+        t->known_count = n->known;
+        t->surfaces[arriving].state_count = n->pressing;
+        t->kept = 0;
+        t->pressed = 0;
+    }
+    if (!n->contact) return;
+    to = &t->surfaces[t->current];
+    gxb_stream_pass(s, &desc->stiffness, 1, sizeof(double));
+    gxb_stream_pass(s, &desc->friction, 1, sizeof(double));
+    gxb_stream_pass(s, &desc->sticking_speed, 1, sizeof(double));
+    gxb_stream_pass(s, &desc->recovery, 1, sizeof(double));
+    gxb_stream_pass(s, &desc->depth, 1, sizeof(double));
+    gxp_pass_word(s, &desc->max_pairs);
+    gxb_stream_pass(s, &t->pressed, 1, sizeof t->pressed);
+    for (i = 0; i < n->known; i++) {
+        gxp_pass_word(s, &t->known[i].id);
+        gxb_stream_pass(s, &t->known[i].hash, 1, sizeof t->known[i].hash);
+    }
+    for (i = 0; i < n->pressing; i++) {
+        gxp_touch_state *state = &to->states[i];
+        gxp_pass_word(s, &state->sample);
+        gxp_pass_word(s, &state->other);
+        gxb_stream_pass(s, &state->pressed, 1, sizeof(double));
+        gxb_stream_pass(s, state->slip, 3, sizeof(double));
+        gxb_stream_pass(s, state->rest, 3, sizeof(double));
+    }
 }
 
 /* Room for a state with these counts; the present one stays. */
 static gx_result gxp_state_room(gx_body *body, const gxp_state_counts *n) {
     gx_result result = gxp_rows_room(body, gxp_state_use(n), n->rows);
     if (result == GX_OK && n->struck) result = gxp_start_struck(body);
+    if (result == GX_OK) result = gxp_contact_room(body, n);
     return result == GX_OK && n->history ? gxp_start_history(body, 2) : result;
 }
 
@@ -17542,6 +18901,7 @@ static void gxp_pass_state(gxb_stream *s, gx_body *body, const gxp_state_counts 
     gxb_stream_pass(s, &scene.planes, 1, sizeof scene.planes);
     gxb_stream_pass(s, &scene.forces, 1, sizeof scene.forces);
     gxb_stream_pass(s, &scene.springs, 1, sizeof scene.springs);
+    gxp_pass_contact(s, body, n);
     if (s->in == NULL) return;
     gxp_find_bends(body);
     gxp_resume_in(body, &scene);
@@ -17603,15 +18963,48 @@ static void gxp_check_state(gxb_stream *s, gx_body *body, const gxp_state_counts
     gxp_require_true(s, snapshot->stale || body->view.fragment_count == snapshot->count);
 }
 
+/* Are contact's numbers such that a step made them? Those of samples are checked when the surface is there. */
+static void gxp_check_contact(gxb_stream *s, const gx_body *body, const gxp_state_counts *n) {
+    const gxp_touch *t = &body->touch;
+    const gxp_touch_surface *own = &t->surfaces[t->current];
+    const double numbers[5] = {t->desc.stiffness, t->desc.friction, t->desc.sticking_speed, t->desc.recovery,
+                               t->desc.depth};
+    uint32_t i;
+    int k;
+    if (!n->contact) return;
+    gxp_require_true(s, body->copies.affine == NULL && numbers[0] > 0 && numbers[4] > 0);
+    for (i = 0; i < 5; i++) gxp_require_true(s, gxp_is_finite(numbers[i]) && numbers[i] >= 0);
+    for (i = 1; i < n->known; i++) gxp_require_true(s, t->known[i - 1].id < t->known[i].id);
+    for (i = 0; i < n->pressing; i++) {
+        const gxp_touch_state *state = &own->states[i];
+        gxp_require_true(s, i == 0 || own->states[i - 1].sample <= state->sample);
+        gxp_require_true(s, gxp_is_finite(state->pressed) && state->pressed >= 0);
+        for (k = 0; k < 3; k++) gxp_require_true(s, gxp_is_finite(state->slip[k]) && gxp_is_finite(state->rest[k]));
+    }
+}
+
+/* Makes the surface of contact of a body that was read, if something presses there. */
+static void gxp_load_contact(gxb_stream *s, gx_body *body, const gxp_state_counts *n) {
+    gxp_touch_surface *own = &body->touch.surfaces[body->touch.current];
+    if (n->pressing == 0) return;
+    gxp_require(s, gxp_make_surface(body, own));
+    gxp_require_true(s, own->states[n->pressing - 1].sample < own->vertex_count + own->facet_count);
+}
+
 static void gxp_load_state(gxb_stream *s, gx_body *body, int trusted) {
     gxp_state_counts n;
     n.affine = body->copies.affine != NULL;
     gxp_pass_state_counts(s, &n);
     gxp_check_counts(s, gxp_state_use(&n), n.rows);
-    gxp_require_true(s, n.rows[GXP_COPIES] == body->copies.count && n.history <= 1 && n.struck <= 1);
+    gxp_require_true(s, n.rows[GXP_COPIES] == body->copies.count && n.history <= 1 && n.struck <= 1 && n.contact <= 1 &&
+                            (n.contact || (n.pressing == 0 && n.known == 0)));
+    gxb_stream_has(s, n.pressing, 2 * sizeof(uint32_t) + 7 * sizeof(double));
+    gxb_stream_has(s, n.known, sizeof(uint32_t) + sizeof(uint64_t));
     if (s->result == GX_OK) gxp_require(s, gxp_state_room(body, &n));
     if (s->result == GX_OK) gxp_pass_state(s, body, &n);
     if (s->result == GX_OK && !trusted) gxp_check_state(s, body, &n);
+    if (s->result == GX_OK && !trusted) gxp_check_contact(s, body, &n);
+    if (s->result == GX_OK) gxp_load_contact(s, body, &n);
 }
 
 static void gxp_write(gxb_stream *s, gx_body *body) {
@@ -17633,9 +19026,11 @@ GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, s
     gxb_stream s;
     size_t start;
     gxp_head head;
+    gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (size == NULL) return gxp_refuse(failure, "size");
-    gxp_end(failure, GX_OK);
+    result = gxp_refresh_contact(body);
+    if (gxp_end(failure, result) != GX_OK) return result;
     gxp_note_written(body);
     memset(&s, 0, sizeof s);
     gxp_pass_head(&s, &head);
@@ -17755,12 +19150,17 @@ static int gxp_same_regions(const gx_body *a, const gx_body *b) {
 
 /* Copies the state of a body with the same cells and copies. */
 static gx_result gxp_restore_state(gx_body *body, gx_body *from) {
-    gxp_state_counts n = gxp_count_state(from);
     const int same_held = gxp_same_regions(body, from);
+    gxp_state_counts n;
     gxb_stream s;
     unsigned char *bytes;
     size_t size;
-    gx_result result = gxp_state_room(body, &n);
+    gx_result result = gxp_refresh_contact(from);
+    if (result != GX_OK) return result;
+    n = gxp_count_state(from);
+    result = gxp_state_room(body, &n);
+    if (result == GX_OK && n.pressing > 0 && gxp_arriving_surface(body) != body->touch.current)
+        result = gxp_make_surface(body, &body->touch.surfaces[1 - body->touch.current]);
     if (result != GX_OK) return result;
     gxp_note_written(from);
     memset(&s, 0, sizeof s);
@@ -17803,15 +19203,11 @@ static gx_result gxp_restore_all(gx_body *body, gx_body *from) {
 }
 
 GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *failure) {
-    gx_contact_desc contact;
     uint32_t made;
-    int on;
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (from == NULL) return gxp_refuse(failure, "from");
     if (body == from) return gxp_end(failure, GX_OK);
-    on = body->touch.on;
-    contact = body->touch.desc;
     result = gxp_prepare_blades(body, from, &made);
     if (result == GX_OK)
         result = body->cuts.hash == from->cuts.hash && body->copies.count == from->copies.count &&
@@ -17819,17 +19215,15 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
                          body->leaves.count == from->leaves.count && gxp_same_materials(body, from)
                    ? gxp_restore_state(body, from)
                    : gxp_restore_all(body, from);
-    if (result == GX_OK) {
+    if (result == GX_OK)
         gxp_take_blades(body, from);
-        body->touch.on = on;
-        body->touch.desc = contact;
-        gxp_forget_contact(body);
-    } else
+    else
         gxp_drop_blades(body, made);
     return gxp_end(failure, result);
 }
 
 #undef GXP_COLD
+#undef GXP_APART
 #undef GXP_PREFETCH
 #undef GXP_PREFETCHES
 #undef GXP_NONE
@@ -17853,8 +19247,13 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_TOUCH_LEAF
 #undef GXP_TOUCH_FACING
 #undef GXP_TOUCH_NEAR
+#undef GXP_TOUCH_ADVANCES
+#undef GXP_TOUCH_FINE
+#undef GXP_TOUCH_PARTS
+#undef GXP_TOUCH_FLAT
 #undef GXP_TOUCH_BESIDE
 #undef GXP_TOUCH_SLANT
+#undef GXP_TOUCH_SAME
 #undef GXP_TOUCH_BEHIND
 #undef GXP_TOUCH_COPIES
 #undef GXP_TREE_LEAVES
@@ -17876,6 +19275,8 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_LAST_ROUND
 #undef GXP_EXPECTED
 #undef GXP_CANCELLATION
+#undef GXP_BOUNDARY_POINTS
+#undef GXP_FIXED_VOLUME
 #undef GXP_REST_CELLS
 #undef GXP_REST
 #undef GXP_WEIGHT_LOSS
@@ -17902,7 +19303,12 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_CAP
 #undef GXP_SURELY
 #undef GXP_AIR
+#undef GXP_LEAP
+#undef GXP_SAME_WAY
+#undef GXP_STAYED
 #undef GXP_LEAST_ADVANCE
+#undef GXP_CHORD_HALVES
+#undef GXP_CHORD_OFF
 #undef GXP_CUT_WIDTH
 #undef GXP_ON_SHEET
 #undef GXP_BLADE_SPECK

@@ -43,7 +43,8 @@
  *                 >>pattern of level 1 | >>hierarchy all levels | >>lights copies with next to no mass |
  *                 >>sharing of memory | >>system a model in the solver's form
  *   operator:     >>rule elements with affine copies | >>forces energies, forces | >>blocks 3x3 blocks |
- *                 >>singles affine copies' products | >>product single precision | >>doubles double precision |
+ *                 >>strains forces and Hessians in single precision | >>singles affine copies' products | >>product
+ * single precision | >>doubles double precision |
  *                 >>linearise Hessians, block diagonal
  *   multigrid:    >>galerkin coarse matrices | >>nesting those of affine copies | >>factor of the last level |
  *                 >>assembly the assembled matrix | >>smoother its step length | >>cycle the V-cycle
@@ -52,7 +53,8 @@
  *   steps:        >>components momentum | >>points springs, contact | >>pairs two sides in contact | >>terms all that
  *                 acts at points | >>cg conjugate gradients | >>ageing of coarse matrices | >>sleep rest |
  *                 >>balance residual, start | >>search lengths | >>integrators BDF, midpoint | >>newton iterations,
- *                 bound on E | >>midpoint second half, end of a step | >>leapfrog explicit steps
+ *                 bound on E | >>midpoint second half, end of a step | >>leapfrog explicit steps | >>quick steps of a
+ *                 few iterations
  *   entrance:     >>check what is given | >>quality steps by the error asked for | >>api the public functions |
  *                 >>single a material at one F
  *
@@ -94,7 +96,7 @@
  * it out until something touches it.
  *
  * WHAT IT DOES NOT DO. No cutting and no meshes: it sees elements of four copies. No search for contacts between
- * components: give points, planes, pairs and your own forces. No threads of its own: see gx_jobs; a task takes up to 90
+ * components: give points, planes, pairs and your own forces. No threads of its own: see gx_jobs; a task takes up to 32
  * kB of stack.
  *
  * LIMITS. poisson in [0, 0.5); beyond 0.49999 the Hessian's single precision shows. Copies and elements below 2^30.
@@ -392,6 +394,11 @@ typedef struct gxs_plane {
  * semi-definite, 00 01 02 11 12 22, or NULL. Called on the thread of the step only. */
 typedef double (*gxs_contact_fn)(void *user, size_t point, const double *position, double *force, double *hessian);
 
+/* Of a pair */
+enum {
+    GXS_PAIR_OUTSIDE = 1, /* the other side is outside the model */
+    GXS_PAIR_WAKES = 2    /* components that it joins are awake in this step: the other side has moved */
+};
 /* Keeps two material points, or a point and a triangle, from going through each other: a point of relative position
  * r. Its weights are 0 in sum: those of one side, and minus those of the other. Its position is that of one side at
  * rest minus that of the other, m. Energy stiffness/2 depth^2 where depth = offset - normal . r is above 0. Both sides
@@ -399,9 +406,13 @@ typedef double (*gxs_contact_fn)(void *user, size_t point, const double *positio
  * angular momentum alone, too. Friction is Coulomb's: friction x the normal force at the step's start. It comes from
  * an elastic slip, which gxs_step_desc.pair_slips keeps: up to friction x force / stiffness, and at least
  * sticking_speed x dt, the sides stick. Not for GXS_MIDPOINT, which would gain energy, nor, so far, for models with
- * affine copies. */
+ * affine copies. The other side may be outside the model, as a rigid body is: then weights are 1 in sum, position is
+ * that of the point at rest minus the place of the other side at the step's end, and way is how far that place has
+ * gone within the step. */
 typedef struct gxs_pair {
     gxs_point point;
+    uint32_t flags;        /* GXS_PAIR_, or 0 */
+    double way[3];         /* m; GXS_PAIR_OUTSIDE only */
     double normal[3];      /* of length 1, from the other side to this one */
     double offset;         /* m */
     double stiffness;      /* N/m, 0 or more */
@@ -426,6 +437,15 @@ typedef struct gxs_step_desc {
     /* at most. 0: 1; where copies are affine, in steps in time, as many as thin sheets need that are flung: until one
      * moves affine copies by less than a hundredth of their motion in the step, 40 at most */
     uint32_t newton_iterations;
+    /* above 0: a quick step of BDF1, BDF2 or the midpoint rule, for about a third of the time of a usual one: so many
+     * iterations of conjugate gradients at most (2 or 3 are enough in soft bodies) from where inertia leads, with the
+     * Hessian there and the preconditioner of earlier steps. No line search, no measure of balance:
+     * newton_iterations, newton_tolerance and cg_iterations are not read. A component whose energy would rise is slowed
+     * down. Mass is lumped, forces are single precision. Stable neo-Hookean materials without damping, under gravity
+     * and forces, without targets, springs, contact points, pairs, constraints or affine copies; not with
+     * GXS_MATRIX_ASSEMBLED or GXS_VOLUME_RATIO. Any other step is a usual one, as is one that would gain too much
+     * energy: see gxs_step_report.quick */
+    uint32_t quick;
     /* stop at this residual (see gxs_step_report); 0: 1e-8, far below what one iteration leaves in motion */
     double newton_tolerance;
     uint32_t cg_iterations; /* per Newton iteration, at most; 0: 1000 */
@@ -464,12 +484,12 @@ typedef struct gxs_step_desc {
     /* no iteration begins after this time, and the step ends with what it has; 0: no limit. Results then depend on the
      * machine */
     double budget_seconds;
-    /* above 0: the error asked for, in place of integrator, substeps, Newton's and CG's numbers and previous_..., which
-     * are not read; 0: those hold. The step is then divided into as many as the motion demands, explicit or implicit.
-     * The error is that of the displacement after a third of a second of such motion, as a share of the motion (root
-     * of the mean square by mass), beside exact time steps of the same elements: about, see gxs_step_report.error.
-     * What more than GXS_PARTS steps would have to follow is damped. Held copies go to their targets on straight
-     * lines. With budget_seconds the error is larger where this one takes longer. */
+    /* above 0: the error asked for, in place of integrator, substeps, quick, Newton's and CG's numbers and
+     * previous_..., which are not read; 0: those hold. The step is then divided into as many as the motion demands,
+     * explicit or implicit. The error is that of the displacement after a third of a second of such motion, as a share
+     * of the motion (root of the mean square by mass), beside exact time steps of the same elements: about, see
+     * gxs_step_report.error. What more than GXS_PARTS steps would have to follow is damped. Held copies go to their
+     * targets on straight lines. With budget_seconds the error is larger where this one takes longer. */
     double quality;
 } gxs_step_desc;
 
@@ -489,18 +509,20 @@ typedef struct gxs_step_report {
     gxs_stop stop;
     /* displacements solved for: three per copy that is awake, not held and follows nothing */
     size_t active_unknowns;
-    uint32_t substeps;         /* of GXS_EXPLICIT; 0: the step was implicit */
-    uint32_t parts;            /* steps taken: 1 without quality; their iterations and seconds are summed */
+    uint32_t substeps; /* of GXS_EXPLICIT; 0: the step was implicit */
+    uint32_t quick;    /* not 0: the step was quick (with quality: the last of them). Then there is no residual */
+    uint32_t parts;    /* steps taken: 1 without quality; their iterations and seconds are summed */
     gxs_integrator integrator; /* of the last of them */
     double error;              /* with quality: the estimate of what was asked for; 0: nothing is known of the motion */
-    uint32_t newton_iterations; /* 0: the start was in balance to rounding, or the step was explicit */
+    uint32_t newton_iterations; /* 0: the start was in balance to rounding, or the step was explicit or quick */
     uint32_t cg_iterations;     /* sum over Newton iterations */
     uint32_t line_search_steps; /* step lengths tried; sum over Newton iterations */
     /* |load - inertia - elastic| / (|load| + |inertia| + |elastic|) on copies that are not held; the larger of the two
      * measures (see above) */
     double residual;
     /* E at the end, J, without sleeping components and up to a constant, the load on held copies. With the midpoint
-     * rule this and the residual are those at half the step */
+     * rule this and the residual are those at half the step. Quick steps: the sum of elastic, kinetic and potential
+     * energy */
     double energy;
     gxs_preconditioner preconditioner; /* in the last linear solve; GXS_AUTOMATIC: there was none */
     double seconds;           /* of the step; gx_body_step includes the renewal of the solver's model after a cut */
@@ -529,7 +551,8 @@ typedef struct gxs_solver gxs_solver;
  * where they are. Both get the velocity of that motion. GX_ERROR_SEQUENCE: no model is set. GX_ERROR_DIVERGED and, with
  * GXS_STATIC, GX_ERROR_FREE leave displacement and velocity unchanged. A residual above newton_tolerance when the
  * iterations are used up is no error: see the report. Allocates (GX_ERROR_MEMORY) only if there are more springs,
- * contact points and pairs, or copies of them, than ever before, and in the first step of a model with GXS_EXPLICIT. */
+ * contact points and pairs, or copies of them, than ever before, and in the first step of a model with GXS_EXPLICIT or
+ * quick. */
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
                                     double *velocity, gxs_step_report *report, gx_failure *failure);
 /* Checks the parts of a step's description that need no solver: its numbers, springs, points, planes and pairs, and
@@ -633,6 +656,11 @@ extern "C" {
 /* Blocks of a chunk: 384 elements, whose nodes (about 150) stay in the first-level cache. */
 #define GXSP_CHUNK_BLOCKS 48
 #define GXSP_CHUNK        (GXSP_CHUNK_BLOCKS * GXSP_LANES)
+
+/* Passes copy the nodes of a chunk to the stack where there are no more than this: meshes of cubes have 125 to 165, cut
+ * into pieces of an element's size 300. Other chunks, of elements that share few nodes, are read copy by copy. */
+#define GXSP_NEAR         320
+#define GXSP_NEAR_NUMBERS (3 * GXSP_NEAR + 1)
 
 /* A residual below this (about 50 units in the last place) is rounding: no iteration can lower it. */
 #define GXSP_ROUNDING 1e-14
@@ -767,6 +795,16 @@ extern "C" {
 /* Kinetic energy of so many times that of the mean velocity is that of vibrations that steps do not follow. */
 #define GXSP_QUALITY_HIDDEN 4.0
 
+/* What has been made for explicit and for quick steps */
+#define GXSP_LEAP_BLOCKS 1
+#define GXSP_LEAP_ALL    2
+
+/* Quick steps that one linearisation serves at most, for the diagonal; coarse matrices have a life of their own. What a
+ * component may be slowed down by if its energy has risen, as a share of its kinetic energy: beyond, the step is not
+ * quick. */
+#define GXSP_QUICK_AGE 64
+#define GXSP_QUICK_CUT 0.2
+
 /* Rows in a group of the stiffness bound; divides GXSP_RANGE */
 #define GXSP_LEAP_ROWS 4
 
@@ -896,15 +934,19 @@ extern "C" {
 #endif
 
 /* INLINE: compilers must know the column numbers. Columns that might be equal are not vectorised. COLD: seldom called,
- * kept out of line and compiled for size. */
+ * kept out of line and compiled for size. APART: kept out of line, so that its arrays are not in the frame of what
+ * calls it: a frame has at most 16 kB. */
 #if defined(__GNUC__) || defined(__clang__)
 #define GXSP_COLD   __attribute__((cold, noinline))
+#define GXSP_APART  __attribute__((noinline))
 #define GXSP_INLINE static inline __attribute__((always_inline))
 #elif defined(_MSC_VER)
 #define GXSP_COLD   __declspec(noinline)
+#define GXSP_APART  __declspec(noinline)
 #define GXSP_INLINE static __forceinline
 #else
 #define GXSP_COLD
+#define GXSP_APART
 #define GXSP_INLINE static inline
 #endif
 
@@ -1479,9 +1521,11 @@ typedef struct gxsp_component {
     double limit, ended;
     /* midpoint rule: E at base; E at the middle without drift and E at a trial, both minus base; J */
     double base, low, gain;
-    double drift[3];    /* midpoint rule: translation of the second half, which is not shortened, m */
-    double slope, work; /* dE/dlength of the direction, and the load's work along it; J */
-    double left;        /* work of the linear solve's remaining residual along the direction; J */
+    double elastic, slack; /* quick steps: elastic energy at the end of the last one, and what E is below its limit; J
+                            */
+    double drift[3];       /* midpoint rule: translation of the second half, which is not shortened, m */
+    double slope, work;    /* dE/dlength of the direction, and the load's work along it; J */
+    double left;           /* work of the linear solve's remaining residual along the direction; J */
     double rounding;    /* size of the rounding of positions and of the load's terms, in units in the last place; J */
     double length;      /* step length, as a share of the direction */
     int settled;        /* its length is found. A chunk whose components are all settled is not evaluated again */
@@ -1627,6 +1671,7 @@ typedef struct gxsp_coarse {
     double rate;          /* of the inertia in the matrices; below 0: they were never made */
     double *displacement; /* n x 3: at which they were made; of a multigrid only */
     double stiffness;     /* sum of springs' and contact's Hessians in them */
+    int quick;            /* they were made by a quick step, so with lumped mass */
     int worn;             /* they must be made anew */
     uint32_t served;      /* iterations since they were made */
     uint32_t life;        /* iterations that they are to serve */
@@ -1683,6 +1728,7 @@ typedef struct gxsp_history {
     int stepped;    /* current is what the last step returned; copies that a cut has made are at their origin's place */
     int base_known; /* current is what the last step returned, and components know its elastic energies */
     int failed;     /* the last step failed: the components that it woke stay awake */
+    int quick;      /* the step is quick: products are those of the strains, mass is lumped */
     double product_rate;  /* of the linearisation for gxs_solver_product; below 0: there is none */
     uint32_t guess_count; /* valid guesses: 0, 1 or 2 */
 } gxsp_history;
@@ -1734,14 +1780,24 @@ typedef struct gxsp_leap_block {
     float mu[GXSP_LANES], lambda[GXSP_LANES]; /* weight x moduli, J */
 } gxsp_leap_block;
 
-/* What explicit steps need of the model, made by the first one; and their vectors. All arrays are in its own pool. */
+/* What products need of a block's elements at a displacement, see >>strains. A lane without an element has zeros. */
+typedef struct gxsp_strain {
+    float gradient[9][GXSP_LANES]; /* of the displacement, by rows */
+    /* factors of D, of F : D, of cof F : D and of dcof F in the change of stress, times weight and scale */
+    float own[GXSP_LANES], along[GXSP_LANES], sides[GXSP_LANES], turn[GXSP_LANES];
+} gxsp_strain;
+
+/* What explicit and quick steps need of the model, made by the first one; and their vectors. All arrays are in its own
+ * pool. */
 typedef struct gxsp_leap {
     gxsp_pool pool;
-    int made;                /* for the present model */
-    int suits;               /* materials and copies allow explicit steps. Else nothing below is there */
+    /* for the present model: GXSP_LEAP_BLOCKS: what quick steps need; GXSP_LEAP_ALL: what explicit ones need, too */
+    int made;
+    int suits;               /* materials and copies allow such steps. Else nothing below is there */
     gxsp_leap_block *blocks; /* block_count: those of the first chunk, then of the next */
     size_t block_count;
     uint32_t *first_block; /* chunk_count: of each chunk */
+    gxsp_strain *strains;  /* block_count: of the last quick step; NULL before the first */
     /* L, which bounds the stiffness: one number for a pair of copies, by groups of rows. order: n: copies of the rows.
      * start: n / GXSP_LEAP_ROWS, rounded up, + 1; entry k of the group's row r is at GXSP_LEAP_ROWS (start + k) + r */
     uint32_t *order, *start, *column;
@@ -1756,6 +1812,10 @@ typedef struct gxsp_leap {
     double factor; /* on L; 0: the first */
     double limit;  /* of energy, J. Valid if limited */
     int limited;   /* the last step was explicit */
+    /* quick steps since Hessian and diagonal were made; 0: they must be. The last one was quick: components have their
+     * slack */
+    uint32_t served;
+    int known;
 } gxsp_leap;
 
 /* A model in the solver's form, and all that its steps work with. One allocation of pool, as are its arrays. */
@@ -3504,7 +3564,7 @@ static uint32_t gxsp_place_strips(gxsp_layout *layout, uint32_t blocks, uint32_t
 }
 
 /* The lane of each element of a chunk. nodes: of the elements; neighbours follow each other */
-static void gxsp_assign_lanes(gxsp_layout *layout, uint32_t (*nodes)[4], uint32_t count, uint32_t blocks) {
+static GXSP_APART void gxsp_assign_lanes(gxsp_layout *layout, uint32_t (*nodes)[4], uint32_t count, uint32_t blocks) {
     uint32_t lane, length, first = 0;
     layout->nodes = nodes;
     layout->count = count;
@@ -3550,8 +3610,8 @@ static int gxsp_lane_supports(const gxsp_chunk *chunk, uint32_t lane, int k) {
 }
 
 /* Puts elements of a chunk into their lanes. elements: sorted; nodes: theirs, numbered in the chunk */
-static void gxsp_fill_chunk(const gxsp_chunk *chunk, const gxs_model *model, const gxsp_sorted *elements,
-                            uint32_t (*nodes)[4], uint32_t count) {
+static GXSP_APART void gxsp_fill_chunk(const gxsp_chunk *chunk, const gxs_model *model, const gxsp_sorted *elements,
+                                       uint32_t (*nodes)[4], uint32_t count) {
     gxsp_layout layout;
     uint32_t placed[GXSP_CHUNK][4], lane;
     int k;
@@ -3730,6 +3790,9 @@ static int gxsp_is_affine(const gxs_model *model, const gxs_element *element) {
 }
 
 /* Is a vector one of the hidden ones of an affine copy? A translation does not move those. */
+/* Is the mass that of each copy's row, for the model or for the step at work? */
+static inline int gxsp_is_lumped(const gxsp_system *system) { return system->model.lumped_mass || system->state.quick; }
+
 static inline int gxsp_is_hidden(const gxsp_system *system, size_t copy) {
     const uint32_t *place = system->affine.place;
     return place && place[copy] != GXSP_NONE && (place[copy] & 3) > 0;
@@ -5702,46 +5765,58 @@ static void gxsp_affine_inertia(const gxsp_affine_block *block, int point, doubl
     }
 }
 
-/* Energies and forces of a block: see gxsp_task_state */
-static void gxsp_affine_state(const gxsp_pass *pass, gxsp_affine_block *block, double (*slots)[3]) {
-    const int led = pass->inertia || pass->rotated; /* never both */
-    gxsp_lanes x[48], other[48], bend[18], bend_other[18], y[48], forces[18], w[12], w_other[12], ahead[9];
+/* What the points of a block share: x and what is subtracted from it or ahead of it, with their bends, and the sums of
+ * forces on vectors and bends */
+typedef struct gxsp_affine_sums {
+    gxsp_lanes x[48], other[48], bend[18], bend_other[18], y[48], forces[18];
+} gxsp_affine_sums;
+
+/* The share of one point in energies and forces of a block */
+static GXSP_APART void gxsp_affine_point(const gxsp_pass *pass, gxsp_affine_block *block, int p,
+                                         gxsp_affine_sums *sums) {
+    gxsp_lanes w[12], w_other[12], ahead[9], own[12];
     gxsp_state s;
-    int p, k, l;
-    gxsp_affine_gather(block, pass->from, x);
-    gxsp_affine_bend(block, x, bend);
-    if (led) gxsp_affine_gather(block, pass->inertia ? pass->system->vectors.target : pass->rotated, other);
-    for (k = 0; k < 48 && pass->inertia; k++) GXSP_EACH_LANE(l) other[k][l] = x[k][l] - other[k][l];
-    if (led) gxsp_affine_bend(block, other, bend_other);
-    memset(y, 0, sizeof y);
-    memset(forces, 0, sizeof forces);
-    memset(block->energies, 0, sizeof block->energies);
-    for (p = 0; p < 4; p++) {
-        gxsp_lanes own[12];
-        gxsp_affine_corners(block, p, x, bend, w);
-        if (led) gxsp_affine_corners(block, p, other, bend_other, w_other);
-        gxsp_block_parameters(pass->materials, &block->rest, &s);
-        gxsp_block_gradient(block->gradient, w, s.g);
-        if (pass->rotated) gxsp_block_gradient(block->gradient, w_other, ahead);
-        if (pass->nudge && block->kind != GXS_LINEAR && block->kind != GXS_CUSTOM) gxsp_nudge(s.g);
-        gxsp_material_state(block->kind, &s);
-        if (pass->rotated && block->kind != GXS_LINEAR) gxsp_rotate_stress(s.g, ahead, s.p);
-        memset(own, 0, sizeof own);
-        gxsp_block_force(block->rest.weight, block->gradient, s.p, own);
-        gxsp_affine_collect(block, p, own, y, forces);
-        for (l = 0; l < GXSP_LANES; l++) {
-            block->energies[0][l] += block->rest.weight[l] * s.energy[l];
-            block->energies[2][l] += block->rest.weight[l] * s.size[l];
-        }
-        if (pass->inertia) gxsp_affine_inertia(block, p, pass->rate, other, w_other, y, forces, block->energies[1]);
+    int l;
+    gxsp_affine_corners(block, p, sums->x, sums->bend, w);
+    if (pass->inertia || pass->rotated) gxsp_affine_corners(block, p, sums->other, sums->bend_other, w_other);
+    gxsp_block_parameters(pass->materials, &block->rest, &s);
+    gxsp_block_gradient(block->gradient, w, s.g);
+    if (pass->rotated) gxsp_block_gradient(block->gradient, w_other, ahead);
+    if (pass->nudge && block->kind != GXS_LINEAR && block->kind != GXS_CUSTOM) gxsp_nudge(s.g);
+    gxsp_material_state(block->kind, &s);
+    if (pass->rotated && block->kind != GXS_LINEAR) gxsp_rotate_stress(s.g, ahead, s.p);
+    memset(own, 0, sizeof own);
+    gxsp_block_force(block->rest.weight, block->gradient, s.p, own);
+    gxsp_affine_collect(block, p, own, sums->y, sums->forces);
+    for (l = 0; l < GXSP_LANES; l++) {
+        block->energies[0][l] += block->rest.weight[l] * s.energy[l];
+        block->energies[2][l] += block->rest.weight[l] * s.size[l];
     }
+    if (pass->inertia)
+        gxsp_affine_inertia(block, p, pass->rate, sums->other, w_other, sums->y, sums->forces, block->energies[1]);
+}
+
+/* Energies and forces of a block: see gxsp_task_state */
+static GXSP_APART void gxsp_affine_state(const gxsp_pass *pass, gxsp_affine_block *block, double (*slots)[3]) {
+    const int led = pass->inertia || pass->rotated; /* never both */
+    gxsp_affine_sums sums;
+    int p, k, l;
+    gxsp_affine_gather(block, pass->from, sums.x);
+    gxsp_affine_bend(block, sums.x, sums.bend);
+    if (led) gxsp_affine_gather(block, pass->inertia ? pass->system->vectors.target : pass->rotated, sums.other);
+    for (k = 0; k < 48 && pass->inertia; k++) GXSP_EACH_LANE(l) sums.other[k][l] = sums.x[k][l] - sums.other[k][l];
+    if (led) gxsp_affine_bend(block, sums.other, sums.bend_other);
+    memset(sums.y, 0, sizeof sums.y);
+    memset(sums.forces, 0, sizeof sums.forces);
+    memset(block->energies, 0, sizeof block->energies);
+    for (p = 0; p < 4; p++) gxsp_affine_point(pass, block, p, &sums);
     for (l = 0; l < GXSP_LANES; l++) block->energies[2][l] += block->energies[1][l];
-    gxsp_affine_return(block, forces, y);
-    gxsp_affine_scatter(y, slots);
+    gxsp_affine_return(block, sums.forces, sums.y);
+    gxsp_affine_scatter(sums.y, slots);
 }
 
 /* Hessian of a block at pass->from, point by point */
-static void gxsp_affine_tangents(const gxsp_pass *pass, gxsp_affine_block *block) {
+static GXSP_APART void gxsp_affine_tangents(const gxsp_pass *pass, gxsp_affine_block *block) {
     gxsp_lanes x[48], bend[18], w[12];
     gxsp_state s;
     gxsp_svd svd;
@@ -5760,8 +5835,8 @@ static void gxsp_affine_tangents(const gxsp_pass *pass, gxsp_affine_block *block
 }
 
 /* The product of a block with x, into its slots. pass->rate: times scale */
-static void gxsp_affine_product(const gxsp_pass *pass, const gxsp_affine_block *block, gxsp_lanes *x,
-                                double (*slots)[3]) {
+static GXSP_APART void gxsp_affine_product(const gxsp_pass *pass, const gxsp_affine_block *block, gxsp_lanes *x,
+                                           double (*slots)[3]) {
     gxsp_lanes y[48], bend[18], forces[18], w[12], energy;
     int p, k, l;
     gxsp_affine_bend(block, x, bend);
@@ -6074,16 +6149,21 @@ GXSP_INLINE void gxsp_prefetch_block(const gxsp_system *system, size_t index, ui
     if (chunk->moments) gxsp_prefetch(&chunk->moments[b], sizeof *chunk->moments);
 }
 
-/* x of a chunk's nodes: x 3, and one more number, which vectors read */
-static void gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *x,
-                            double *GXSP_RESTRICT to) {
+/* Numbers of a chunk's nodes: x 3, and one more, which vectors read */
+typedef double gxsp_near[GXSP_NEAR_NUMBERS];
+
+/* x of a chunk's nodes. Returns to; NULL: there is no room for so many nodes */
+static const double *gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *x,
+                                     double *GXSP_RESTRICT to) {
     const uint32_t *copies = system->mesh.nodes + chunk->first_node;
     size_t i, c;
+    if (chunk->node_count > GXSP_NEAR) return NULL;
     for (i = 0; i < chunk->node_count; i++) {
         gxsp_prefetch(x + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *x);
         for (c = 0; c < 3; c++) to[3 * i + c] = x[3 * (size_t)copies[i] + c];
     }
     to[3 * i] = 0;
+    return to;
 }
 
 #if defined(GXSP_SHUFFLES) && !defined(GXSP_AVX)
@@ -6120,8 +6200,8 @@ static inline void gxsp_load_four(const uint16_t *node, const double *x, double 
 
 /* x of a block's corners from that of the chunk's nodes. A corner that has not changed since the block before keeps
  * its values. */
-static void gxsp_block_load(const gxsp_chunk *chunk, uint32_t b, const double *GXSP_RESTRICT x,
-                            gxsp_lanes *GXSP_RESTRICT corners) {
+static void gxsp_block_load_near(const gxsp_chunk *chunk, uint32_t b, const double *GXSP_RESTRICT x,
+                                 gxsp_lanes *GXSP_RESTRICT corners) {
     const gxsp_corners *corner = &chunk->corners[b];
     int i, l;
     for (i = 0; i < 4; i++)
@@ -6141,12 +6221,21 @@ static void gxsp_block_load_copies(const gxsp_system *system, const gxsp_chunk *
         }
 }
 
-/* Shape function gradients of a block. rest: positions of the chunk's nodes; corners: of the block's, kept from
- * block to block as in gxsp_block_load */
-static gxsp_lanes *gxsp_block_gradients(const gxsp_chunk *chunk, uint32_t b, const double *rest, gxsp_lanes *corners,
-                                        gxsp_lanes *made) {
+/* The same from what gxsp_chunk_load has returned for x */
+static inline void gxsp_block_load(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, const double *near,
+                                   const double *x, gxsp_lanes *corners) {
+    if (near)
+        gxsp_block_load_near(chunk, b, near, corners);
+    else
+        gxsp_block_load_copies(system, chunk, b, x, corners);
+}
+
+/* Shape function gradients of a block. rest: positions of the chunk's nodes (gxsp_chunk_load); corners: of the
+ * block's, kept from block to block as in gxsp_block_load_near */
+static gxsp_lanes *gxsp_block_gradients(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b,
+                                        const double *rest, gxsp_lanes *corners, gxsp_lanes *made) {
     if (chunk->gradients) return chunk->gradients[b].entry;
-    gxsp_block_load(chunk, b, rest, corners);
+    gxsp_block_load(system, chunk, b, rest, system->model.positions, corners);
     gxsp_gradients_make(chunk->rest[b].weight, corners, made);
     return made;
 }
@@ -6221,32 +6310,25 @@ static void gxsp_add_energies(const gxsp_system *system, const gxsp_chunk *chunk
     }
 }
 
-/* Energies of a chunk at pass->from, component by component, and elastic + inertial forces */
-static void gxsp_task_state(void *context, size_t index) {
-    const gxsp_pass *pass = (const gxsp_pass *)context;
+/* Energies and forces of a chunk's blocks, into its partial sums and slots, which are 0. positions, state: what
+ * gxsp_chunk_load has returned for positions and pass->from */
+static GXSP_APART void gxsp_blocks_state(const gxsp_pass *pass, size_t index, const double *positions,
+                                         const double *state) {
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     double *slots = &system->vectors.slots[chunk->first_node][0];
+    const int inertia = pass->inertia && gxsp_accelerates(system, chunk, pass->from);
     uint32_t b;
-    int k, l, inertia;
-    double positions[3 * 4 * GXSP_CHUNK + 1], state[3 * 4 * GXSP_CHUNK + 1];
+    int k, l;
     gxsp_lanes corners[12], x[12], other[12], forces[12], made[9];
-    if (gxsp_chunk_settled(system, chunk)) return;
-    for (b = 0; b < chunk->partial_count; b++)
-        memset(system->mesh.partials[chunk->first_partial + b].energies, 0, sizeof system->mesh.partials->energies);
-    memset(slots, 0, 3 * (size_t)chunk->node_count * sizeof *slots);
-    if (system->state.chunk_still[index]) return;
-    inertia = pass->inertia && gxsp_accelerates(system, chunk, pass->from);
-    gxsp_chunk_load(system, chunk, pass->from, state);
-    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, positions);
     memset(forces, 0, sizeof forces);
     for (b = 0; b < chunk->block_count; b++) {
         const gxsp_rest *rest = &chunk->rest[b];
         gxsp_lanes ahead[9], led[12], energies[3], *gradients;
         gxsp_state s;
         gxsp_prefetch_block(system, index, b, GXSP_RESTS_AHEAD, 0);
-        gxsp_block_load(chunk, b, state, x);
-        gradients = gxsp_block_gradients(chunk, b, positions, corners, made);
+        gxsp_block_load(system, chunk, b, state, pass->from, x);
+        gradients = gxsp_block_gradients(system, chunk, b, positions, corners, made);
         if (inertia || pass->rotated) /* never both: rotated stresses come without inertia */
             gxsp_block_load_copies(system, chunk, b, inertia ? system->vectors.target : pass->rotated, other);
         gxsp_block_parameters(pass->materials, rest, &s);
@@ -6269,6 +6351,23 @@ static void gxsp_task_state(void *context, size_t index) {
         gxsp_add_energies(system, chunk, b, energies);
         gxsp_block_store(chunk, b, forces, slots);
     }
+}
+
+/* Energies of a chunk at pass->from, component by component, and elastic + inertial forces */
+static void gxsp_task_state(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const double *rest = NULL;
+    gxsp_near positions, state;
+    uint32_t p;
+    if (gxsp_chunk_settled(system, chunk)) return;
+    for (p = 0; p < chunk->partial_count; p++)
+        memset(system->mesh.partials[chunk->first_partial + p].energies, 0, sizeof system->mesh.partials->energies);
+    memset(system->vectors.slots[chunk->first_node], 0, chunk->node_count * sizeof *system->vectors.slots);
+    if (system->state.chunk_still[index]) return;
+    if (!chunk->gradients) rest = gxsp_chunk_load(system, chunk, system->model.positions, positions);
+    gxsp_blocks_state(pass, index, rest, gxsp_chunk_load(system, chunk, pass->from, state));
 }
 
 /* sum = sum over the slots of each copy, 3 doubles each */
@@ -6515,6 +6614,339 @@ static void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, float (*t
 }
 #endif
 
+/* x of a block's corners. A corner that has not changed since the block before keeps its values. */
+static void gxsp_block_gather(const gxsp_chunk *chunk, uint32_t b, const gxsp_vector4 *GXSP_RESTRICT x,
+                              gxsp_singles *GXSP_RESTRICT to) {
+    const gxsp_corners *corner = &chunk->corners[b];
+    int i;
+    for (i = 0; i < 4; i++)
+        if (chunk->changed[b] >> i & 1) gxsp_gather_eight(corner->node[i], x, to[3 * i], to[3 * i + 1], to[3 * i + 2]);
+}
+
+/* Adds a block's result to its corners, and sets it to 0. The result at a corner that the next block has too is
+ * kept for it. */
+static void gxsp_block_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *GXSP_RESTRICT from,
+                               gxsp_vector4 *GXSP_RESTRICT y) {
+    const gxsp_corners *corner = &chunk->corners[b];
+    int i, k, l;
+    for (i = 0; i < 4; i++) {
+        if (!(chunk->changed[b + 1] >> i & 1)) continue;
+        for (l = 0; l < GXSP_LANES; l += 4)
+            gxsp_scatter_four(corner->node[i] + l, from[3 * i] + l, from[3 * i + 1] + l, from[3 * i + 2] + l, y);
+        for (k = 3 * i; k < 3 * i + 3; k++) GXSP_EACH_LANE(l) from[k][l] = 0;
+    }
+}
+
+/* As gxsp_block_gather, from x of all copies */
+static GXSP_COLD void gxsp_block_gather_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b,
+                                               const gxsp_vector4 *x, gxsp_singles *to) {
+    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
+    int i, l, c;
+    for (i = 0; i < 4; i++)
+        for (l = 0; l < GXSP_LANES && chunk->changed[b] >> i & 1; l++)
+            for (c = 0; c < 3; c++) to[3 * i + c][l] = x[copies[chunk->corners[b].node[i][l]]][c];
+}
+
+/* >>strains: forces, Hessians and energies of stable neo-Hookean elements, in single precision --------------------- */
+
+/* In: a displacement. Out: forces in the chunks' slots, the strains that products need, or energies of components.
+ * >>leapfrog and >>quick use it. The Hessian is exact: nothing is decomposed or projected, so that a strain costs no
+ * more than the forces there. It may be indefinite where elements are pressed. */
+
+/* Forces of a block, dU/du, added to y; and the largest modulus of its Hessians relative to that at rest. With G the
+ * gradient of the displacement x, F = 1 + G, P = mu (1 - 1 / (Ic + 1)) F + (lambda (J - 1) - 3/4 mu) cof F, written so
+ * that nothing cancels near rest. The modulus is at most the sum of those of the terms of its derivative:
+ *     mu Ic / (Ic + 1) + 2 mu Ic / (Ic + 1)^2 + lambda |cof F|^2 + |lambda (J - 1) - 3/4 mu| |F|, |F| <= (3 + Ic) /
+ * sqrt 12
+ * strain, unless NULL, receives what products need, in place of the modulus; scale: of the operator
+ */
+GXSP_INLINE void gxsp_leap_force(const gxsp_leap_block *GXSP_RESTRICT b, gxsp_singles *GXSP_RESTRICT x,
+                                 gxsp_singles *GXSP_RESTRICT y, float *GXSP_RESTRICT stiffest, int keep, float scale,
+                                 gxsp_strain *GXSP_RESTRICT strain) {
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float g0 = b->gradient[0][l], g1 = b->gradient[1][l], g2 = b->gradient[2][l], g3 = b->gradient[3][l],
+                    g4 = b->gradient[4][l], g5 = b->gradient[5][l], g6 = b->gradient[6][l], g7 = b->gradient[7][l],
+                    g8 = b->gradient[8][l], mu = b->mu[l], lambda = b->lambda[l];
+        const float x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
+        const float p0 = x[3][l] - x0, p1 = x[4][l] - x1, p2 = x[5][l] - x2, q0 = x[6][l] - x0, q1 = x[7][l] - x1,
+                    q2 = x[8][l] - x2, r0 = x[9][l] - x0, r1 = x[10][l] - x1, r2 = x[11][l] - x2;
+        const float d0 = p0 * g0 + q0 * g3 + r0 * g6, d1 = p0 * g1 + q0 * g4 + r0 * g7,
+                    d2 = p0 * g2 + q0 * g5 + r0 * g8, d3 = p1 * g0 + q1 * g3 + r1 * g6,
+                    d4 = p1 * g1 + q1 * g4 + r1 * g7, d5 = p1 * g2 + q1 * g5 + r1 * g8,
+                    d6 = p2 * g0 + q2 * g3 + r2 * g6, d7 = p2 * g1 + q2 * g4 + r2 * g7,
+                    d8 = p2 * g2 + q2 * g5 + r2 * g8;
+        /* cofactors of G; those of F less 1 */
+        const float k0 = d4 * d8 - d5 * d7, k1 = d5 * d6 - d3 * d8, k2 = d3 * d7 - d4 * d6, k3 = d2 * d7 - d1 * d8,
+                    k4 = d0 * d8 - d2 * d6, k5 = d1 * d6 - d0 * d7, k6 = d1 * d5 - d2 * d4, k7 = d2 * d3 - d0 * d5,
+                    k8 = d0 * d4 - d1 * d3;
+        const float trace = d0 + d4 + d8;
+        const float c0 = trace - d0 + k0, c1 = k1 - d3, c2 = k2 - d6, c3 = k3 - d1, c4 = trace - d4 + k4, c5 = k5 - d7,
+                    c6 = k6 - d2, c7 = k7 - d5, c8 = trace - d8 + k8;
+        const float square = d0 * d0 + d1 * d1 + d2 * d2 + d3 * d3 + d4 * d4 + d5 * d5 + d6 * d6 + d7 * d7 + d8 * d8;
+        const float i = 2 * trace + square, j = trace + (k0 + k4 + k8) + (d0 * k0 + d1 * k1 + d2 * k2); /* Ic-3, J-1 */
+        const float inverse = 1 / (i + 4), growth = 0.25f * mu * i * inverse, rest = 0.75f * mu;
+        const float pressure = lambda * j, own = rest + growth, cofactor = pressure - rest, unit = growth + pressure;
+        const float s0 = own * d0 + cofactor * c0 + unit, s1 = own * d1 + cofactor * c1, s2 = own * d2 + cofactor * c2,
+                    s3 = own * d3 + cofactor * c3, s4 = own * d4 + cofactor * c4 + unit, s5 = own * d5 + cofactor * c5,
+                    s6 = own * d6 + cofactor * c6, s7 = own * d7 + cofactor * c7, s8 = own * d8 + cofactor * c8 + unit;
+        const float f0 = s0 * g0 + s1 * g1 + s2 * g2, f1 = s3 * g0 + s4 * g1 + s5 * g2,
+                    f2 = s6 * g0 + s7 * g1 + s8 * g2, f3 = s0 * g3 + s1 * g4 + s2 * g5,
+                    f4 = s3 * g3 + s4 * g4 + s5 * g5, f5 = s6 * g3 + s7 * g4 + s8 * g5,
+                    f6 = s0 * g6 + s1 * g7 + s2 * g8, f7 = s3 * g6 + s4 * g7 + s5 * g8,
+                    f8 = s6 * g6 + s7 * g7 + s8 * g8;
+        if (keep) {
+            const float times = scale * mu, push = scale * lambda;
+            strain->gradient[0][l] = d0, strain->gradient[1][l] = d1, strain->gradient[2][l] = d2;
+            strain->gradient[3][l] = d3, strain->gradient[4][l] = d4, strain->gradient[5][l] = d5;
+            strain->gradient[6][l] = d6, strain->gradient[7][l] = d7, strain->gradient[8][l] = d8;
+            strain->own[l] = times * (3 + i) * inverse;
+            strain->along[l] = 2 * times * inverse * inverse;
+            strain->sides[l] = push;
+            strain->turn[l] = push * j - 0.75f * times;
+        }
+        if (!keep) {
+            const float sides = (1 + c0) * (1 + c0) + (1 + c4) * (1 + c4) + (1 + c8) * (1 + c8) + c1 * c1 + c2 * c2 +
+                                c3 * c3 + c5 * c5 + c6 * c6 + c7 * c7;
+            const float steep = (cofactor > 0 ? cofactor : -cofactor) * (6 + i) * 0.2886752f;
+            const float modulus = own + 2 * mu * (3 + i) * inverse * inverse + lambda * sides + steep;
+            const float ratio = modulus / (2.4240382f * mu + 3 * lambda + 1e-30f);
+            stiffest[l] = ratio > stiffest[l] ? ratio : stiffest[l];
+        }
+        y[0][l] -= f0 + f3 + f6, y[1][l] -= f1 + f4 + f7, y[2][l] -= f2 + f5 + f8;
+        y[3][l] += f0, y[4][l] += f1, y[5][l] += f2, y[6][l] += f3, y[7][l] += f4, y[8][l] += f5, y[9][l] += f6,
+            y[10][l] += f7, y[11][l] += f8;
+    }
+}
+
+/* x of a copy relative to an origin, in single precision */
+static inline void gxsp_leap_place(const double *x, const double *origin, float *to) {
+    to[0] = (float)(x[0] - origin[0]), to[1] = (float)(x[1] - origin[1]), to[2] = (float)(x[2] - origin[2]);
+}
+
+/* pass->from of a chunk's nodes relative to its first one, before they are rounded: bodies may be far from where they
+ * were at rest. Returns to; NULL: there is no room for so many nodes */
+static const gxsp_vector4 *gxsp_leap_load(const gxsp_pass *pass, const gxsp_chunk *chunk, gxsp_vector4 *to) {
+    const uint32_t *copies = pass->system->mesh.nodes + chunk->first_node;
+    const double *origin = pass->from + 3 * (size_t)copies[0];
+    uint32_t i;
+    if (chunk->node_count > GXSP_NEAR) return NULL;
+    for (i = 0; i < chunk->node_count; i++) {
+        gxsp_prefetch(pass->from + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *pass->from);
+        gxsp_leap_place(pass->from + 3 * (size_t)copies[i], origin, to[i]);
+        to[i][3] = 0;
+    }
+    return (const gxsp_vector4 *)to;
+}
+
+/* As gxsp_block_gather, from pass->from of all copies relative to that of the chunk's first node */
+static GXSP_COLD void gxsp_leap_gather_copies(const gxsp_pass *pass, const gxsp_chunk *chunk, uint32_t b,
+                                              gxsp_singles *to) {
+    const uint32_t *copies = pass->system->mesh.nodes + chunk->first_node;
+    int i, l, c;
+    for (i = 0; i < 4; i++)
+        for (l = 0; l < GXSP_LANES && chunk->changed[b] >> i & 1; l++) {
+            float place[3];
+            gxsp_leap_place(pass->from + 3 * (size_t)copies[chunk->corners[b].node[i][l]],
+                            pass->from + 3 * (size_t)copies[0], place);
+            for (c = 0; c < 3; c++) to[3 * i + c][l] = place[c];
+        }
+}
+
+/* pass->from at a block's corners. near: what gxsp_leap_load has returned */
+static inline void gxsp_leap_gather(const gxsp_pass *pass, const gxsp_chunk *chunk, uint32_t b,
+                                    const gxsp_vector4 *near, gxsp_singles *to) {
+    if (near)
+        gxsp_block_gather(chunk, b, near, to);
+    else
+        gxsp_leap_gather_copies(pass, chunk, b, to);
+}
+
+/* Forces of a chunk at pass->from into its slots, and its largest modulus */
+static void gxsp_task_leap_force(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const gxsp_leap_block *blocks = system->leap.blocks + system->leap.first_block[index];
+    const gxsp_vector4 *near;
+    gxsp_vector4 in[GXSP_NEAR], *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
+    gxsp_singles from[12], to[12], stiffest;
+    uint32_t b;
+    int l;
+    system->leap.stiffest[index] = 0;
+    if (system->state.chunk_still[index]) return;
+    near = gxsp_leap_load(pass, chunk, in);
+    memset(out, 0, chunk->node_count * sizeof *out);
+    memset(to, 0, sizeof to);
+    memset(stiffest, 0, sizeof stiffest);
+    for (b = 0; b < chunk->block_count; b++) {
+        if (b + GXSP_TANGENTS_AHEAD < chunk->block_count)
+            gxsp_prefetch(&blocks[b + GXSP_TANGENTS_AHEAD], sizeof *blocks);
+        gxsp_leap_gather(pass, chunk, b, near, from);
+        gxsp_leap_force(&blocks[b], from, to, stiffest, 0, 0, NULL);
+        gxsp_block_scatter(chunk, b, to, out);
+    }
+    for (l = 0; l < GXSP_LANES; l++)
+        if (stiffest[l] > system->leap.stiffest[index]) system->leap.stiffest[index] = stiffest[l];
+}
+
+/* The same, with the strains */
+static void gxsp_task_strain_force(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const size_t first = system->leap.first_block[index];
+    const float scale = (float)system->model.scale;
+    const gxsp_vector4 *near;
+    gxsp_vector4 in[GXSP_NEAR], *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
+    gxsp_singles from[12], to[12];
+    uint32_t b;
+    if (system->state.chunk_still[index]) return;
+    near = gxsp_leap_load(pass, chunk, in);
+    memset(out, 0, chunk->node_count * sizeof *out);
+    memset(to, 0, sizeof to);
+    for (b = 0; b < chunk->block_count; b++) {
+        if (b + GXSP_TANGENTS_AHEAD < chunk->block_count)
+            gxsp_prefetch(&system->leap.blocks[first + b + GXSP_TANGENTS_AHEAD], sizeof *system->leap.blocks);
+        gxsp_leap_gather(pass, chunk, b, near, from);
+        gxsp_leap_force(&system->leap.blocks[first + b], from, to, NULL, 1, scale, &system->leap.strains[first + b]);
+        gxsp_block_scatter(chunk, b, to, out);
+    }
+}
+
+/* y += K x at a strain. With D the gradient of x and F = 1 + G,
+ *     dP = own D + along (F : D) F + sides (cof F : D) cof F + turn dcof F,
+ * where dcof F is bilinear in F and D. A rotation of what is at rest meets nothing: own D + turn D^T = 0 there. */
+static void gxsp_strain_product(const gxsp_leap_block *GXSP_RESTRICT b, const gxsp_strain *GXSP_RESTRICT s,
+                                gxsp_singles *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT y) {
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float g0 = b->gradient[0][l], g1 = b->gradient[1][l], g2 = b->gradient[2][l], g3 = b->gradient[3][l],
+                    g4 = b->gradient[4][l], g5 = b->gradient[5][l], g6 = b->gradient[6][l], g7 = b->gradient[7][l],
+                    g8 = b->gradient[8][l], own = s->own[l], turn = s->turn[l];
+        const float f0 = 1 + s->gradient[0][l], f1 = s->gradient[1][l], f2 = s->gradient[2][l], f3 = s->gradient[3][l],
+                    f4 = 1 + s->gradient[4][l], f5 = s->gradient[5][l], f6 = s->gradient[6][l], f7 = s->gradient[7][l],
+                    f8 = 1 + s->gradient[8][l];
+        const float x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
+        const float p0 = x[3][l] - x0, p1 = x[4][l] - x1, p2 = x[5][l] - x2, q0 = x[6][l] - x0, q1 = x[7][l] - x1,
+                    q2 = x[8][l] - x2, r0 = x[9][l] - x0, r1 = x[10][l] - x1, r2 = x[11][l] - x2;
+        const float d0 = p0 * g0 + q0 * g3 + r0 * g6, d1 = p0 * g1 + q0 * g4 + r0 * g7,
+                    d2 = p0 * g2 + q0 * g5 + r0 * g8, d3 = p1 * g0 + q1 * g3 + r1 * g6,
+                    d4 = p1 * g1 + q1 * g4 + r1 * g7, d5 = p1 * g2 + q1 * g5 + r1 * g8,
+                    d6 = p2 * g0 + q2 * g3 + r2 * g6, d7 = p2 * g1 + q2 * g4 + r2 * g7,
+                    d8 = p2 * g2 + q2 * g5 + r2 * g8;
+        const float c0 = f4 * f8 - f5 * f7, c1 = f5 * f6 - f3 * f8, c2 = f3 * f7 - f4 * f6, c3 = f2 * f7 - f1 * f8,
+                    c4 = f0 * f8 - f2 * f6, c5 = f1 * f6 - f0 * f7, c6 = f1 * f5 - f2 * f4, c7 = f2 * f3 - f0 * f5,
+                    c8 = f0 * f4 - f1 * f3;
+        const float t0 = f4 * d8 + d4 * f8 - f5 * d7 - d5 * f7, t1 = f5 * d6 + d5 * f6 - f3 * d8 - d3 * f8,
+                    t2 = f3 * d7 + d3 * f7 - f4 * d6 - d4 * f6, t3 = f2 * d7 + d2 * f7 - f1 * d8 - d1 * f8,
+                    t4 = f0 * d8 + d0 * f8 - f2 * d6 - d2 * f6, t5 = f1 * d6 + d1 * f6 - f0 * d7 - d0 * f7,
+                    t6 = f1 * d5 + d1 * f5 - f2 * d4 - d2 * f4, t7 = f2 * d3 + d2 * f3 - f0 * d5 - d0 * f5,
+                    t8 = f0 * d4 + d0 * f4 - f1 * d3 - d1 * f3;
+        const float m = s->along[l] *
+                        (f0 * d0 + f1 * d1 + f2 * d2 + f3 * d3 + f4 * d4 + f5 * d5 + f6 * d6 + f7 * d7 + f8 * d8),
+                    n = s->sides[l] *
+                        (c0 * d0 + c1 * d1 + c2 * d2 + c3 * d3 + c4 * d4 + c5 * d5 + c6 * d6 + c7 * d7 + c8 * d8);
+        const float s0 = own * d0 + m * f0 + n * c0 + turn * t0, s1 = own * d1 + m * f1 + n * c1 + turn * t1,
+                    s2 = own * d2 + m * f2 + n * c2 + turn * t2, s3 = own * d3 + m * f3 + n * c3 + turn * t3,
+                    s4 = own * d4 + m * f4 + n * c4 + turn * t4, s5 = own * d5 + m * f5 + n * c5 + turn * t5,
+                    s6 = own * d6 + m * f6 + n * c6 + turn * t6, s7 = own * d7 + m * f7 + n * c7 + turn * t7,
+                    s8 = own * d8 + m * f8 + n * c8 + turn * t8;
+        const float w0 = s0 * g0 + s1 * g1 + s2 * g2, w1 = s3 * g0 + s4 * g1 + s5 * g2,
+                    w2 = s6 * g0 + s7 * g1 + s8 * g2, w3 = s0 * g3 + s1 * g4 + s2 * g5,
+                    w4 = s3 * g3 + s4 * g4 + s5 * g5, w5 = s6 * g3 + s7 * g4 + s8 * g5,
+                    w6 = s0 * g6 + s1 * g7 + s2 * g8, w7 = s3 * g6 + s4 * g7 + s5 * g8,
+                    w8 = s6 * g6 + s7 * g7 + s8 * g8;
+        y[0][l] -= w0 + w3 + w6, y[1][l] -= w1 + w4 + w7, y[2][l] -= w2 + w5 + w8;
+        y[3][l] += w0, y[4][l] += w1, y[5][l] += w2, y[6][l] += w3, y[7][l] += w4, y[8][l] += w5, y[9][l] += w6,
+            y[10][l] += w7, y[11][l] += w8;
+    }
+}
+
+/* K x of a chunk into its slots, as gxsp_task_product does it */
+static void gxsp_task_strain_product(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
+    const gxsp_leap_block *blocks = system->leap.blocks + system->leap.first_block[index];
+    const gxsp_strain *strains = system->leap.strains + system->leap.first_block[index];
+    const int near = chunk->node_count <= GXSP_NEAR;
+    gxsp_vector4 in[GXSP_NEAR], *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
+    gxsp_singles from[12], to[12];
+    uint32_t b, i;
+    if (system->state.chunk_still[index]) return;
+    for (i = 0; i < chunk->node_count && near; i++) {
+        gxsp_prefetch(pass->x[copies[i + GXSP_AHEAD]], sizeof *pass->x);
+        memcpy(in[i], pass->x[copies[i]], sizeof *in);
+    }
+    memset(out, 0, chunk->node_count * sizeof *out);
+    memset(to, 0, sizeof to);
+    for (b = 0; b < chunk->block_count; b++) {
+        if (b + GXSP_TANGENTS_AHEAD < chunk->block_count) {
+            gxsp_prefetch(blocks[b + GXSP_TANGENTS_AHEAD].gradient, sizeof blocks->gradient);
+            gxsp_prefetch(&strains[b + GXSP_TANGENTS_AHEAD], sizeof *strains);
+        }
+        if (near)
+            gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        else
+            gxsp_block_gather_copies(system, chunk, b, (const gxsp_vector4 *)pass->x, from);
+        gxsp_strain_product(&blocks[b], &strains[b], from, to);
+        gxsp_block_scatter(chunk, b, to, out);
+    }
+}
+
+/* Elastic energies of a block's elements, J; see gxsp_neo_hookean */
+static void gxsp_strain_energy(const gxsp_leap_block *GXSP_RESTRICT b, gxsp_singles *GXSP_RESTRICT x,
+                               double *GXSP_RESTRICT energy) {
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float g0 = b->gradient[0][l], g1 = b->gradient[1][l], g2 = b->gradient[2][l], g3 = b->gradient[3][l],
+                    g4 = b->gradient[4][l], g5 = b->gradient[5][l], g6 = b->gradient[6][l], g7 = b->gradient[7][l],
+                    g8 = b->gradient[8][l], mu = b->mu[l], lambda = b->lambda[l];
+        const float x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
+        const float p0 = x[3][l] - x0, p1 = x[4][l] - x1, p2 = x[5][l] - x2, q0 = x[6][l] - x0, q1 = x[7][l] - x1,
+                    q2 = x[8][l] - x2, r0 = x[9][l] - x0, r1 = x[10][l] - x1, r2 = x[11][l] - x2;
+        const float d0 = p0 * g0 + q0 * g3 + r0 * g6, d1 = p0 * g1 + q0 * g4 + r0 * g7,
+                    d2 = p0 * g2 + q0 * g5 + r0 * g8, d3 = p1 * g0 + q1 * g3 + r1 * g6,
+                    d4 = p1 * g1 + q1 * g4 + r1 * g7, d5 = p1 * g2 + q1 * g5 + r1 * g8,
+                    d6 = p2 * g0 + q2 * g3 + r2 * g6, d7 = p2 * g1 + q2 * g4 + r2 * g7,
+                    d8 = p2 * g2 + q2 * g5 + r2 * g8;
+        const float k0 = d4 * d8 - d5 * d7, k1 = d5 * d6 - d3 * d8, k2 = d3 * d7 - d4 * d6, k4 = d0 * d8 - d2 * d6,
+                    k8 = d0 * d4 - d1 * d3, trace = d0 + d4 + d8;
+        const float square = d0 * d0 + d1 * d1 + d2 * d2 + d3 * d3 + d4 * d4 + d5 * d5 + d6 * d6 + d7 * d7 + d8 * d8;
+        const float det = d0 * k0 + d1 * k1 + d2 * k2, i = 2 * trace + square, j = trace + (k0 + k4 + k8) + det;
+        const float turned = d0 * d0 + d4 * d4 + d8 * d8 + 2 * (d1 * d3 + d2 * d6 + d5 * d7);
+        energy[l] = (double)(0.375f * mu * (square + turned - trace * trace - 2 * det) + 0.5f * lambda * j * j) +
+                    0.5 * (double)mu * gxsp_log_rest(0.25 * (double)i);
+    }
+}
+
+/* Elastic energies of a chunk at pass->from, component by component */
+static void gxsp_task_strain_energy(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const gxsp_leap_block *blocks = system->leap.blocks + system->leap.first_block[index];
+    const gxsp_vector4 *near;
+    gxsp_vector4 in[GXSP_NEAR];
+    gxsp_lanes energies[3];
+    gxsp_singles from[12];
+    uint32_t b;
+    memset(energies, 0, sizeof energies);
+    for (b = 0; b < chunk->partial_count; b++)
+        memset(system->mesh.partials[chunk->first_partial + b].energies, 0, sizeof system->mesh.partials->energies);
+    if (system->state.chunk_still[index]) return;
+    near = gxsp_leap_load(pass, chunk, in);
+    for (b = 0; b < chunk->block_count; b++) {
+        if (b + GXSP_TANGENTS_AHEAD < chunk->block_count)
+            gxsp_prefetch(&blocks[b + GXSP_TANGENTS_AHEAD], sizeof *blocks);
+        gxsp_leap_gather(pass, chunk, b, near, from);
+        gxsp_strain_energy(&blocks[b], from, energies[0]);
+        gxsp_add_energies(system, chunk, b, energies);
+    }
+}
+
 /* >>singles: products of elements with affine copies --------------------------------------------------------------- */
 
 /* In: tangents, a vector. Out: their product as in >>rule, in single precision, for conjugate gradients. >>doubles has
@@ -6700,40 +7132,18 @@ static double gxsp_affine_multiply(gxsp_system *system, gxsp_pass *pass) {
 /* In: the last linearisation and a vector. Out: the product on copies that follow nothing; what sleeps counts as
  * 0. */
 
-/* x of a block's corners. A corner that has not changed since the block before keeps its values. */
-static void gxsp_block_gather(const gxsp_chunk *chunk, uint32_t b, const gxsp_vector4 *GXSP_RESTRICT x,
-                              gxsp_singles *GXSP_RESTRICT to) {
-    const gxsp_corners *corner = &chunk->corners[b];
-    int i;
-    for (i = 0; i < 4; i++)
-        if (chunk->changed[b] >> i & 1) gxsp_gather_eight(corner->node[i], x, to[3 * i], to[3 * i + 1], to[3 * i + 2]);
-}
-
-/* Adds a block's result to its corners, and sets it to 0. The result at a corner that the next block has too is
- * kept for it. */
-static void gxsp_block_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *GXSP_RESTRICT from,
-                               gxsp_vector4 *GXSP_RESTRICT y) {
-    const gxsp_corners *corner = &chunk->corners[b];
-    int i, k, l;
-    for (i = 0; i < 4; i++) {
-        if (!(chunk->changed[b + 1] >> i & 1)) continue;
-        for (l = 0; l < GXSP_LANES; l += 4)
-            gxsp_scatter_four(corner->node[i] + l, from[3 * i] + l, from[3 * i + 1] + l, from[3 * i + 2] + l, y);
-        for (k = 3 * i; k < 3 * i + 3; k++) GXSP_EACH_LANE(l) from[k][l] = 0;
-    }
-}
-
 static void gxsp_task_product(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     const uint32_t *copies = system->mesh.nodes + chunk->first_node;
-    gxsp_vector4 in[4 * GXSP_CHUNK]; /* not the chunks' own memory: stays in the cache */
+    const int near = chunk->node_count <= GXSP_NEAR;
+    gxsp_vector4 in[GXSP_NEAR]; /* not the chunks' own memory: stays in the cache */
     gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
     gxsp_singles from[12], to[12];
     uint32_t b, i;
     if (system->state.chunk_still[index]) return;
-    for (i = 0; i < chunk->node_count; i++) {
+    for (i = 0; i < chunk->node_count && near; i++) {
         gxsp_prefetch(pass->x[copies[i + GXSP_AHEAD]], sizeof *pass->x);
         memcpy(in[i], pass->x[copies[i]], sizeof *in);
     }
@@ -6741,7 +7151,10 @@ static void gxsp_task_product(void *context, size_t index) {
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; b++) {
         gxsp_prefetch_block(system, index, b, GXSP_TANGENTS_AHEAD, 1);
-        gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        if (near)
+            gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        else
+            gxsp_block_gather_copies(system, chunk, b, (const gxsp_vector4 *)pass->x, from);
         gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_moments(chunk, b), gxsp_block_general(chunk, b),
                           0, from, to);
         gxsp_block_scatter(chunk, b, to, out);
@@ -6757,7 +7170,7 @@ static void gxsp_task_product_sum(void *context, size_t index) {
     double work = 0;
     for (; i < end; i++) {
         const float *direction = pass->x[i],
-                    m = system->model.lumped_mass ? (float)(pass->rate * system->model.lumped[i]) : 0;
+                    m = gxsp_is_lumped(system) ? (float)(pass->rate * system->model.lumped[i]) : 0;
         const double *right = pass->right ? pass->right + 3 * i : NULL;
         float x = m * direction[0], y = m * direction[1], z = m * direction[2], *to = pass->y[i];
         uint32_t s;
@@ -6865,7 +7278,8 @@ static double gxsp_product_from(gxsp_system *system, double rate, const double *
     if (system->multigrid.fine)
         work = gxsp_rows_product(system, x, y);
     else {
-        gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_product, &pass);
+        gxsp_parallel(system->jobs, system->mesh.chunk_count,
+                      system->state.quick ? gxsp_task_strain_product : gxsp_task_product, &pass);
         gxsp_over_ranges(system, gxsp_task_product_sum, &pass, &work, 1);
         if (system->affine.count > 0) work += gxsp_affine_multiply(system, &pass);
     }
@@ -6912,23 +7326,43 @@ static void gxsp_block_gather_doubles(const gxsp_chunk *chunk, uint32_t b, const
     }
 }
 
+/* The same, from the direction of all copies: see gxsp_copy_direction */
+static GXSP_COLD void gxsp_block_gather_direction(const gxsp_pass *pass, const gxsp_chunk *chunk, uint32_t b,
+                                                  gxsp_singles *to) {
+    const uint32_t *copies = pass->system->mesh.nodes + chunk->first_node;
+    const gxsp_corners *corner = &chunk->corners[b];
+    int i, l, c;
+    for (l = 0; l < GXSP_LANES; l++) {
+        double origin[3] = {0, 0, 0}, x[3];
+        for (i = 0; i < 4; i++) {
+            gxsp_copy_direction(pass, copies[corner->node[i][l]], x);
+            for (c = 0; c < 3; c++) to[3 * i + c][l] = (float)(x[c] - origin[c]);
+            if (i == 0) memcpy(origin, x, sizeof origin);
+        }
+    }
+}
+
 /* The product of pass->from, times pass->factor, into the chunk's slots, 4 floats each */
 static void gxsp_task_apply(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     const uint32_t *copies = system->mesh.nodes + chunk->first_node;
-    double in[3 * 4 * GXSP_CHUNK + 1]; /* one more than is read as numbers */
+    const int near = chunk->node_count <= GXSP_NEAR;
+    gxsp_near in;
     gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
     gxsp_singles from[12], to[12];
     uint32_t b, i;
-    for (i = 0; i < chunk->node_count; i++) gxsp_copy_direction(pass, copies[i], in + 3 * (size_t)i);
+    for (i = 0; i < chunk->node_count && near; i++) gxsp_copy_direction(pass, copies[i], in + 3 * (size_t)i);
     in[3 * (size_t)i] = 0;
     memset(out, 0, chunk->node_count * sizeof *out);
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; b++) {
         gxsp_prefetch_block(system, index, b, GXSP_TANGENTS_AHEAD, 1);
-        gxsp_block_gather_doubles(chunk, b, in, from);
+        if (near)
+            gxsp_block_gather_doubles(chunk, b, in, from);
+        else
+            gxsp_block_gather_direction(pass, chunk, b, from);
         gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_moments(chunk, b), gxsp_block_general(chunk, b),
                           1, from, to);
         gxsp_block_scatter(chunk, b, to, out);
@@ -7029,32 +7463,28 @@ static void gxsp_diagonal_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_sing
     }
 }
 
-/* Hessian of a chunk at pass->from, and its diagonal blocks into the slots */
-static void gxsp_task_linearise(void *context, size_t index) {
-    const gxsp_pass *pass = (const gxsp_pass *)context;
+/* Hessians of a chunk's blocks, and their diagonal blocks into the slots, which are 0. positions, state: as in
+ * gxsp_blocks_state */
+static GXSP_APART void gxsp_blocks_linearise(const gxsp_pass *pass, size_t index, const double *positions,
+                                             const double *state) {
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     float *slots = (float *)(void *)system->vectors.slots[chunk->first_node];
-    double positions[3 * 4 * GXSP_CHUNK + 1], state[3 * 4 * GXSP_CHUNK + 1];
     gxsp_lanes corners[12], x[12], made[2][9], *gradients[2];
     gxsp_singles own[24];
+    const double rate = system->state.quick ? 0 : pass->rate; /* lumped mass is added to the sums */
     uint32_t b, k, blocks;
     int l;
-    system->state.chunk_collapsed[index] = 0;
-    if (system->state.chunk_still[index]) return;
-    memset(slots, 0, 6 * (size_t)chunk->node_count * sizeof *slots);
     memset(own, 0, sizeof own);
-    gxsp_chunk_load(system, chunk, pass->from, state);
-    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, positions);
     for (b = 0; b < chunk->block_count; b += blocks) { /* two at a time */
         gxsp_state s[2];
         gxsp_svd svd[2];
         blocks = b + 1 < chunk->block_count ? 2 : 1;
         for (k = 0; k < blocks; k++) {
             gxsp_prefetch_block(system, index, b + k, GXSP_RESTS_AHEAD, 0);
-            gxsp_block_load(chunk, b + k, state, x);
+            gxsp_block_load(system, chunk, b + k, state, pass->from, x);
             gxsp_block_parameters(pass->materials, &chunk->rest[b + k], &s[k]);
-            gradients[k] = gxsp_block_gradients(chunk, b + k, positions, corners, made[k]);
+            gradients[k] = gxsp_block_gradients(system, chunk, b + k, positions, corners, made[k]);
             gxsp_block_gradient(gradients[k], x, s[k].g);
         }
         system->state.chunk_collapsed[index] |=
@@ -7064,11 +7494,25 @@ static void gxsp_task_linearise(void *context, size_t index) {
             gxsp_tangent *tangent = &chunk->tangents[b + k];
             gxsp_tangent_make(chunk->kind, rest, gradients[k], system->model.scale, pass->exact, &s[k], &svd[k],
                               tangent, gxsp_block_general(chunk, b + k));
-            GXSP_EACH_LANE(l) tangent->mass[l] = (float)(pass->rate * rest->mass[l]);
+            GXSP_EACH_LANE(l) tangent->mass[l] = (float)(rate * rest->mass[l]);
             gxsp_block_diagonal(chunk, b + k, own);
             gxsp_diagonal_scatter(chunk, b + k, own, slots);
         }
     }
+}
+
+/* Hessian of a chunk at pass->from, and its diagonal blocks into the slots */
+static void gxsp_task_linearise(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const double *rest = NULL;
+    gxsp_near positions, state;
+    system->state.chunk_collapsed[index] = 0;
+    if (system->state.chunk_still[index]) return;
+    memset(system->vectors.slots[chunk->first_node], 0, chunk->node_count * sizeof *system->vectors.slots);
+    if (!chunk->gradients) rest = gxsp_chunk_load(system, chunk, system->model.positions, positions);
+    gxsp_blocks_linearise(pass, index, rest, gxsp_chunk_load(system, chunk, pass->from, state));
 }
 
 /* Inverse of a positive semi-definite 3x3, packed, in place, as W^T W with W the inverse Cholesky factor. So it is
@@ -7119,7 +7563,7 @@ static void gxsp_task_diagonal(void *context, size_t index) {
         }
         for (k = 0; system->affine.count > 0 && k < 6 && !system->state.still[i]; k++)
             sum[k] += system->affine.own[i][k];
-        for (k = 0; system->model.lumped_mass && k < 6; k++)
+        for (k = 0; gxsp_is_lumped(system) && k < 6; k++)
             sum[k] += k == 0 || k == 3 || k == 5 ? pass->rate * system->model.lumped[i] : 0;
         if (system->state.still[i] || sum[0] + sum[3] + sum[5] < GXSP_TINY) /* only coarser levels move such a copy */
             memset(sum, 0, sizeof sum);
@@ -7535,7 +7979,7 @@ static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *bl
                                 const uint8_t *dirty) {
     const gxsp_level *level = &system->multigrid.levels[1];
     uint32_t node[64], parents[16], count = 0, c, d, k, n;
-    double share[64][16], gradient[4][64][3], value[4][64], flux[27];
+    double share[64][16], gradient[64][3], value[64], flux[27];
     float weights[16];
     int p, m;
     for (k = 0; k < 16; k++) {
@@ -7549,22 +7993,22 @@ static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *bl
             share[c][k] += (double)weights[n];
         }
     }
-    for (p = 0; p < 4; p++)
-        for (c = 0; c < count; c++) gxsp_point_function(block, p, l, share[c], gradient[p][c], &value[p][c]);
-    for (p = 0; p < 4; p++)
+    for (p = 0; p < 4; p++) {
+        for (c = 0; c < count; c++) gxsp_point_function(block, p, l, share[c], gradient[c], &value[c]);
         for (d = 0; d < count; d++) {
-            gxsp_point_flux(block, p, l, gradient[p][d], flux);
+            gxsp_point_flux(block, p, l, gradient[d], flux);
             for (c = 0; c < count; c++) {
                 double to[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0}, *entry;
                 if (node[c] > node[d] || (dirty && !dirty[node[c]] && !dirty[node[d]])) continue;
                 entry = system->affine.block + 9 * (size_t)gxsp_find_entry(level, node[c], node[d]);
-                gxsp_point_couple(gradient[p][c], flux, to);
-                to[0] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
-                to[4] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
-                to[8] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
+                gxsp_point_couple(gradient[c], flux, to);
+                to[0] += rate * block->rest.mass[l] * value[c] * value[d];
+                to[4] += rate * block->rest.mass[l] * value[c] * value[d];
+                to[8] += rate * block->rest.mass[l] * value[c] * value[d];
                 for (m = 0; m < 9; m++) entry[3 * (m % 3) + m / 3] += to[m];
             }
         }
+    }
 }
 
 /* Springs and contact between coarse functions, where level 1's matrix has an entry for them */
@@ -7858,7 +8302,7 @@ static int gxsp_coarse_numbers(gxsp_system *system, double rate) {
     else {
         memset(fine[1].block, 0, 9 * (size_t)fine[1].start[fine[1].n] * sizeof(float));
         gxsp_coarse_elements(system, NULL);
-        if (system->model.lumped_mass) gxsp_coarse_lumped(system, system->model.scale * rate);
+        if (gxsp_is_lumped(system)) gxsp_coarse_lumped(system, system->model.scale * rate);
     }
     for (t = 0; t < system->lasting->count; t++)
         if (!system->lasting->term[t].assembled && system->affine.count == 0)
@@ -9164,7 +9608,7 @@ static void gxsp_renew_levels(gxsp_renewal *update) {
     }
     if (!scratch->failed && !system->multigrid.pool.failed) gxsp_share_memory(system);
     if (!scratch->failed && !system->multigrid.pool.failed && !system->pool.failed && system->coarse.rate >= 0 &&
-        (system->coarse.stiffness > 0 || system->coarse.worn || gxsp_coarse_ends(system) ||
+        (system->coarse.stiffness > 0 || system->coarse.quick || system->coarse.worn || gxsp_coarse_ends(system) ||
          gxsp_most_are_dirty(system, dirty) || !gxsp_renew_numbers(update, &before, affine, dirty)))
         /* the next step makes all numbers anew; springs and contact are no longer known */
         system->coarse.rate = -1;
@@ -9545,6 +9989,7 @@ static gxsp_grip gxsp_pair_grip(const gxsp_problem *problem, size_t i, const dou
     gxsp_grip grip;
     int c;
     gxsp_point_position(&pair->point, problem->given, before);
+    for (c = 0; c < 3 && (pair->flags & GXS_PAIR_OUTSIDE); c++) before[c] += pair->way[c];
     depth = pair->offset - gxsp_dot(pair->normal, before, 1);
     elastic = depth > 0 ? pair->friction * depth : 0;
     grip.load = pair->stiffness * elastic;
@@ -9810,7 +10255,9 @@ static void gxsp_terms_make(const gxsp_problem *problem, const double *displacem
             share->copy = gxsp_copies(point)[n];
             share->weight = (float)gxsp_weights(point)[n];
         }
-        if (next > problem->step->spring_count + problem->step->point_count) {
+        if (next > problem->step->spring_count + problem->step->point_count &&
+            !(problem->step->pairs[next - 1 - problem->step->spring_count - problem->step->point_count].flags &
+              GXS_PAIR_OUTSIDE)) {
             gxsp_balance_shares(lasting->share + term->first, gxsp_weights(point), point->count);
             for (n = 0; n < point->count; n++) term->spread += fabsf(lasting->share[term->first + n].weight);
         }
@@ -10140,7 +10587,8 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem) {
         if (system->affine.count > 0 && system->multigrid.used && now.rest <= goal * first.displacement &&
             gxsp_has_gained(&gains, goal))
             break;
-        if (gxsp_converged(&now, &first, goal) || gxsp_out_of_time(problem)) break;
+        if (iteration + 1 == problem->cg_iterations || gxsp_converged(&now, &first, goal) || gxsp_out_of_time(problem))
+            break;
         rho = gxsp_precondition_definite(system, rate, &now, &changed);
         pass.factor = changed ? 0 : rho / before;
         gxsp_over_ranges(system, gxsp_task_search, &pass, NULL, 0);
@@ -10199,16 +10647,19 @@ static int gxsp_prepare(gxsp_problem *problem) {
         gxsp_assemble(system, system->model.scale * problem->rate);
         if (!gxsp_invert_fine(system)) return 0;
     }
-    system->multigrid.used = system->multigrid.level_count > 0 && gxsp_coarse_pays(system, problem->rate);
+    system->multigrid.used =
+        system->multigrid.level_count > 0 && (system->state.quick || gxsp_coarse_pays(system, problem->rate));
     if (!system->multigrid.used) return 1;
     if (!system->multigrid.fine) gxsp_choose_omega(system, problem->rate);
-    other = system->coarse.rate < problem->rate || system->coarse.rate > problem->rate;
+    other = system->coarse.rate < problem->rate || system->coarse.rate > problem->rate ||
+            system->coarse.quick != system->state.quick;
     if (!other && (problem->exact || !(system->coarse.worn || gxsp_coarse_ends(system)))) return 1;
     system->coarse.lived = system->coarse.served;
     system->coarse.pace_old = other ? 0 : system->coarse.pace;
     system->coarse.pace = system->coarse.read_nepers = 0;
     system->coarse.read = system->coarse.served = 0;
     system->coarse.rate = problem->rate;
+    system->coarse.quick = system->state.quick;
     memcpy(system->coarse.displacement, system->vectors.current, 3 * system->model.n * sizeof(double));
     system->coarse.worn = 0;
     system->coarse.stiffness = system->state.term_stiffness;
@@ -10342,6 +10793,14 @@ static int gxsp_is_written(const gxsp_system *system, size_t copy, const double 
            (system->state.stepped && gxsp_differs(displacement, system->vectors.current + 3 * copy));
 }
 
+/* Wakes the components that a pair joins to something outside that has moved. */
+static void gxsp_wake_paired(gxsp_system *system, const gxs_pair *pair) {
+    uint32_t k;
+    for (k = 0; k < pair->point.count && (pair->flags & GXS_PAIR_WAKES); k++)
+        if (fabs(gxsp_weights(&pair->point)[k]) > 0)
+            system->model.components[system->model.component[gxsp_copies(&pair->point)[k]]].woken = 1;
+}
+
 /* Wakes the components that a change touches. */
 static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement, const double *velocity) {
     gxsp_system *system = problem->system;
@@ -10360,6 +10819,7 @@ static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement,
                            (springs && (component->has_spring[0] || component->has_spring[1])) ||
                            component->has_pair[0] > component->has_pair[1];
     }
+    for (i = 0; i < step->pair_count; i++) gxsp_wake_paired(system, &step->pairs[i]);
     for (i = 0; i < system->model.n; i++) {
         gxsp_component *component = &system->model.components[system->model.component[i]];
         if (step->targets && system->model.held[i] && gxsp_differs(step->targets + 3 * i, displacement + 3 * i))
@@ -10422,6 +10882,7 @@ static void gxsp_choose_sleepers(gxsp_problem *problem, const double *displaceme
     }
     if (!changed && system->state.still_known) return;
     system->state.still_known = 1;
+    system->leap.served = 0;
     system->state.base_known &= !changed;
     gxsp_mark_still(system);
     system->state.active = 3 * system->model.n;
@@ -11253,9 +11714,13 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
     gxsp_report_pairs(problem, ends);
     memcpy(displacement, ends, count * sizeof(double));
     memcpy(velocity, speeds, count * sizeof(double));
-    if (midpoint || problem->report.substeps > 0) memcpy(system->vectors.current, ends, count * sizeof(double));
+    /* followers, which current has moved with their masters by each direction, are rounded otherwise in ends */
+    if (midpoint || problem->report.substeps > 0 || problem->report.quick || system->model.follower_count > 0)
+        memcpy(system->vectors.current, ends, count * sizeof(double));
     system->state.stepped = 1;
-    system->state.base_known = !midpoint && gxsp_point_count(step) == 0;
+    system->state.base_known = !midpoint && !problem->report.quick && gxsp_point_count(step) == 0 &&
+                               (system->model.follower_count == 0 || problem->report.substeps > 0);
+    system->leap.known = problem->report.quick != 0;
     system->lasting->scene = problem->scene;
     for (i = 0; i < system->model.component_count; i++) {
         system->model.components[i].forces[0] = system->model.components[i].forces[1];
@@ -11327,13 +11792,14 @@ static uint32_t *gxsp_leap_blocks_make(gxsp_system *system, gxsp_pool *scratch) 
     if (leap->pool.failed || scratch->failed) return NULL;
     for (c = 0; c < system->mesh.chunk_count; c++) {
         const gxsp_chunk *chunk = &system->mesh.chunks[c];
-        double positions[3 * 4 * GXSP_CHUNK + 1];
+        const double *positions = NULL;
+        gxsp_near near;
         gxsp_lanes corners[12], made[9];
-        if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, positions);
+        if (!chunk->gradients) positions = gxsp_chunk_load(system, chunk, system->model.positions, near);
         for (b = 0; b < chunk->block_count; b++) {
             gxsp_leap_block *to = &leap->blocks[leap->first_block[c] + b];
             const gxsp_rest *rest = &chunk->rest[b];
-            gxsp_lanes *gradients = gxsp_block_gradients(chunk, b, positions, corners, made);
+            gxsp_lanes *gradients = gxsp_block_gradients(system, chunk, b, positions, corners, made);
             for (lane = 0; lane < GXSP_LANES; lane++) {
                 const gxsp_material *material = &system->model.materials[rest->material[lane]];
                 const int used = chunk->groups[b * GXSP_LANES + lane] != GXSP_NONE;
@@ -11541,25 +12007,32 @@ static void gxsp_leap_find_top(gxsp_system *system) {
     }
 }
 
-/* All that explicit steps need of the model. Returns 0 if there is no memory. */
-static int gxsp_leap_make(gxsp_system *system) {
+/* L, masses and vectors: what explicit steps need besides blocks. copies: of all lanes */
+static void gxsp_leap_rest_make(gxsp_system *system, gxsp_pool *scratch, const uint32_t *copies) {
+    gxsp_leap *leap = &system->leap;
+    gxsp_vector4 **vectors[4];
+    int k;
+    gxsp_leap_rows_make(system, scratch, copies);
+    if (!scratch->failed && !leap->pool.failed) gxsp_leap_masses_make(system);
+    vectors[0] = &leap->start_of_filter, vectors[1] = &leap->last, vectors[2] = &leap->before, vectors[3] = &leap->next;
+    for (k = 0; k < 4; k++) *vectors[k] = (gxsp_vector4 *)gxsp_take(&leap->pool, system->model.n, sizeof(gxsp_vector4));
+    leap->stiffest = (float *)gxsp_take(&leap->pool, system->mesh.chunk_count, sizeof(float));
+}
+
+/* All that explicit steps need of the model (GXSP_LEAP_ALL), or quick ones. Returns 0 if there is no memory. */
+static int gxsp_leap_make(gxsp_system *system, int all) {
     gxsp_leap *leap = &system->leap;
     gxsp_pool scratch = gxsp_pool_make(&system->pool.allocator);
     const uint32_t *copies;
-    gxsp_vector4 **vectors[4];
-    int k;
+    if (leap->made >= all) return 1;
     gxsp_release_to(&leap->pool, NULL);
     memset(leap, 0, sizeof *leap);
     leap->pool = gxsp_pool_make(&system->pool.allocator);
     leap->suits = gxsp_leap_suits(system);
-    leap->made = 1;
+    leap->made = all;
     if (!leap->suits) return 1;
     copies = gxsp_leap_blocks_make(system, &scratch);
-    if (copies) gxsp_leap_rows_make(system, &scratch, copies);
-    if (copies && !scratch.failed && !leap->pool.failed) gxsp_leap_masses_make(system);
-    vectors[0] = &leap->start_of_filter, vectors[1] = &leap->last, vectors[2] = &leap->before, vectors[3] = &leap->next;
-    for (k = 0; k < 4; k++) *vectors[k] = (gxsp_vector4 *)gxsp_take(&leap->pool, system->model.n, sizeof(gxsp_vector4));
-    leap->stiffest = (float *)gxsp_take(&leap->pool, system->mesh.chunk_count, sizeof(float));
+    if (copies && all == GXSP_LEAP_ALL) gxsp_leap_rest_make(system, &scratch, copies);
     if (!copies || scratch.failed || leap->pool.failed) {
         gxsp_release_to(&scratch, NULL);
         gxsp_release_to(&leap->pool, NULL);
@@ -11567,97 +12040,8 @@ static int gxsp_leap_make(gxsp_system *system) {
         return 0;
     }
     gxsp_release_to(&scratch, NULL);
-    gxsp_leap_find_top(system);
+    if (all == GXSP_LEAP_ALL) gxsp_leap_find_top(system);
     return 1;
-}
-
-/* Forces of a block, dU/du, added to y; and the largest modulus of its Hessians relative to that at rest. With G the
- * gradient of the displacement x, F = 1 + G, P = mu (1 - 1 / (Ic + 1)) F + (lambda (J - 1) - 3/4 mu) cof F, written so
- * that nothing cancels near rest. The modulus is at most the sum of those of the terms of its derivative:
- *     mu Ic / (Ic + 1) + 2 mu Ic / (Ic + 1)^2 + lambda |cof F|^2 + |lambda (J - 1) - 3/4 mu| |F|, |F| <= (3 + Ic) /
- * sqrt 12
- */
-static void gxsp_leap_force(const gxsp_leap_block *GXSP_RESTRICT b, gxsp_singles *GXSP_RESTRICT x,
-                            gxsp_singles *GXSP_RESTRICT y, float *GXSP_RESTRICT stiffest) {
-    int l;
-    GXSP_EACH_LANE(l) {
-        const float g0 = b->gradient[0][l], g1 = b->gradient[1][l], g2 = b->gradient[2][l], g3 = b->gradient[3][l],
-                    g4 = b->gradient[4][l], g5 = b->gradient[5][l], g6 = b->gradient[6][l], g7 = b->gradient[7][l],
-                    g8 = b->gradient[8][l], mu = b->mu[l], lambda = b->lambda[l];
-        const float x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
-        const float p0 = x[3][l] - x0, p1 = x[4][l] - x1, p2 = x[5][l] - x2, q0 = x[6][l] - x0, q1 = x[7][l] - x1,
-                    q2 = x[8][l] - x2, r0 = x[9][l] - x0, r1 = x[10][l] - x1, r2 = x[11][l] - x2;
-        const float d0 = p0 * g0 + q0 * g3 + r0 * g6, d1 = p0 * g1 + q0 * g4 + r0 * g7,
-                    d2 = p0 * g2 + q0 * g5 + r0 * g8, d3 = p1 * g0 + q1 * g3 + r1 * g6,
-                    d4 = p1 * g1 + q1 * g4 + r1 * g7, d5 = p1 * g2 + q1 * g5 + r1 * g8,
-                    d6 = p2 * g0 + q2 * g3 + r2 * g6, d7 = p2 * g1 + q2 * g4 + r2 * g7,
-                    d8 = p2 * g2 + q2 * g5 + r2 * g8;
-        /* cofactors of G; those of F less 1 */
-        const float k0 = d4 * d8 - d5 * d7, k1 = d5 * d6 - d3 * d8, k2 = d3 * d7 - d4 * d6, k3 = d2 * d7 - d1 * d8,
-                    k4 = d0 * d8 - d2 * d6, k5 = d1 * d6 - d0 * d7, k6 = d1 * d5 - d2 * d4, k7 = d2 * d3 - d0 * d5,
-                    k8 = d0 * d4 - d1 * d3;
-        const float trace = d0 + d4 + d8;
-        const float c0 = trace - d0 + k0, c1 = k1 - d3, c2 = k2 - d6, c3 = k3 - d1, c4 = trace - d4 + k4, c5 = k5 - d7,
-                    c6 = k6 - d2, c7 = k7 - d5, c8 = trace - d8 + k8;
-        const float square = d0 * d0 + d1 * d1 + d2 * d2 + d3 * d3 + d4 * d4 + d5 * d5 + d6 * d6 + d7 * d7 + d8 * d8;
-        const float i = 2 * trace + square, j = trace + (k0 + k4 + k8) + (d0 * k0 + d1 * k1 + d2 * k2); /* Ic-3, J-1 */
-        const float inverse = 1 / (i + 4), growth = 0.25f * mu * i * inverse, rest = 0.75f * mu;
-        const float pressure = lambda * j, own = rest + growth, cofactor = pressure - rest, unit = growth + pressure;
-        const float s0 = own * d0 + cofactor * c0 + unit, s1 = own * d1 + cofactor * c1, s2 = own * d2 + cofactor * c2,
-                    s3 = own * d3 + cofactor * c3, s4 = own * d4 + cofactor * c4 + unit, s5 = own * d5 + cofactor * c5,
-                    s6 = own * d6 + cofactor * c6, s7 = own * d7 + cofactor * c7, s8 = own * d8 + cofactor * c8 + unit;
-        const float f0 = s0 * g0 + s1 * g1 + s2 * g2, f1 = s3 * g0 + s4 * g1 + s5 * g2,
-                    f2 = s6 * g0 + s7 * g1 + s8 * g2, f3 = s0 * g3 + s1 * g4 + s2 * g5,
-                    f4 = s3 * g3 + s4 * g4 + s5 * g5, f5 = s6 * g3 + s7 * g4 + s8 * g5,
-                    f6 = s0 * g6 + s1 * g7 + s2 * g8, f7 = s3 * g6 + s4 * g7 + s5 * g8,
-                    f8 = s6 * g6 + s7 * g7 + s8 * g8;
-        const float sides = (1 + c0) * (1 + c0) + (1 + c4) * (1 + c4) + (1 + c8) * (1 + c8) + c1 * c1 + c2 * c2 +
-                            c3 * c3 + c5 * c5 + c6 * c6 + c7 * c7;
-        const float steep = (cofactor > 0 ? cofactor : -cofactor) * (6 + i) * 0.2886752f;
-        const float modulus = own + 2 * mu * (3 + i) * inverse * inverse + lambda * sides + steep;
-        const float ratio = modulus / (2.4240382f * mu + 3 * lambda + 1e-30f);
-        stiffest[l] = ratio > stiffest[l] ? ratio : stiffest[l];
-        y[0][l] -= f0 + f3 + f6, y[1][l] -= f1 + f4 + f7, y[2][l] -= f2 + f5 + f8;
-        y[3][l] += f0, y[4][l] += f1, y[5][l] += f2, y[6][l] += f3, y[7][l] += f4, y[8][l] += f5, y[9][l] += f6,
-            y[10][l] += f7, y[11][l] += f8;
-    }
-}
-
-/* Forces of a chunk at pass->from into its slots, and its largest modulus. Displacements are taken relative to the
- * chunk's first node before they are rounded: bodies may be far from where they were at rest. */
-static void gxsp_task_leap_force(void *context, size_t index) {
-    const gxsp_pass *pass = (const gxsp_pass *)context;
-    const gxsp_system *system = pass->system;
-    const gxsp_chunk *chunk = &system->mesh.chunks[index];
-    const gxsp_leap_block *blocks = system->leap.blocks + system->leap.first_block[index];
-    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
-    const double *origin = pass->from + 3 * (size_t)copies[0];
-    gxsp_vector4 in[4 * GXSP_CHUNK], out[4 * GXSP_CHUNK];
-    gxsp_singles from[12], to[12], stiffest;
-    uint32_t b, i;
-    int l;
-    system->leap.stiffest[index] = 0;
-    if (system->state.chunk_still[index]) return;
-    for (i = 0; i < chunk->node_count; i++) {
-        const double *x = pass->from + 3 * (size_t)copies[i];
-        gxsp_prefetch(pass->from + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *x);
-        in[i][0] = (float)(x[0] - origin[0]), in[i][1] = (float)(x[1] - origin[1]),
-        in[i][2] = (float)(x[2] - origin[2]);
-        in[i][3] = 0;
-    }
-    memset(out, 0, chunk->node_count * sizeof *out);
-    memset(to, 0, sizeof to);
-    memset(stiffest, 0, sizeof stiffest);
-    for (b = 0; b < chunk->block_count; b++) {
-        if (b + GXSP_TANGENTS_AHEAD < chunk->block_count)
-            gxsp_prefetch(&blocks[b + GXSP_TANGENTS_AHEAD], sizeof *blocks);
-        gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
-        gxsp_leap_force(&blocks[b], from, to, stiffest);
-        gxsp_block_scatter(chunk, b, to, out);
-    }
-    memcpy((gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node, out, chunk->node_count * sizeof *out);
-    for (l = 0; l < GXSP_LANES; l++)
-        if (stiffest[l] > system->leap.stiffest[index]) system->leap.stiffest[index] = stiffest[l];
 }
 
 /* Accelerations, before the filter: gravity, nodal forces and elastic ones over the mass; 0 where nothing moves */
@@ -11874,6 +12258,227 @@ static int gxsp_leap_step(gxsp_problem *problem, const double *displacement, con
     problem->report.stop = GXS_STOP_ITERATIONS;
     problem->report.energy = gxsp_potential(problem, energies, u);
     system->state.guess_count = 0;
+    return 1;
+}
+
+/* >>quick: steps of a few iterations ------------------------------------------------------------------------------- */
+
+/* In: the step and the state at its start. Out: the state at its end in direction and residual, or nothing where the
+ * step must be a usual one.
+ *
+ * Backward Euler, BDF2 and the midpoint rule by one linear solve of a few iterations from where inertia leads. Forces
+ * and the exact Hessian there come from one pass in single precision (>>strains). The preconditioner is that of
+ * earlier steps: its diagonal and coarse matrices age, the Hessian does not. No line search: energies of components at
+ * the end are compared with those at the start. One that has gained is slowed down; what gains more than a share of its
+ * kinetic energy has left the linear model, and the step is not quick. */
+
+/* Memory for quick steps. Returns 0 if there is none. */
+static int gxsp_quick_make(gxsp_system *system) {
+    gxsp_leap *leap = &system->leap;
+    if (!gxsp_leap_make(system, GXSP_LEAP_BLOCKS)) return 0;
+    if (leap->suits && !leap->strains)
+        leap->strains = (gxsp_strain *)gxsp_take(&leap->pool, leap->block_count, sizeof *leap->strains);
+    leap->pool.failed = 0;
+    return !leap->suits || leap->strains;
+}
+
+/* Can this step be quick? */
+static int gxsp_quick_allowed(const gxsp_problem *problem) {
+    const gxs_step_desc *step = problem->step;
+    const gxsp_system *system = problem->system;
+    return step->quick > 0 && system->leap.suits && !system->multigrid.fine && !system->model.volume &&
+           step->integrator <= GXS_MIDPOINT && !step->targets && gxsp_point_count(step) == 0 &&
+           system->state.active > 0;
+}
+
+/* residual = load - inertia - elastic forces, from the slots; 0 where nothing moves */
+static void gxsp_task_quick_balance(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    gxsp_vector4 *slots = (gxsp_vector4 *)(void *)system->vectors.slots;
+    size_t i, end = gxsp_range(system, index, &i), c;
+    for (; i < end; i++) {
+        double load[3], inertia = pass->rate * system->model.lumped[i];
+        float sum[3] = {0, 0, 0};
+        uint32_t s;
+        for (s = system->mesh.copy_start[i]; s < system->mesh.copy_start[i + 1]; s++) {
+            const float *from = slots[system->mesh.copy_slot[s]];
+            gxsp_prefetch(slots[system->mesh.copy_slot[s + GXSP_AHEAD]], sizeof *slots);
+            sum[0] += from[0], sum[1] += from[1], sum[2] += from[2];
+        }
+        gxsp_load(pass->problem, i, load);
+        for (c = 0; c < 3; c++)
+            system->vectors.residual[3 * i + c] =
+                system->state.still[i]
+                    ? 0
+                    : load[c] - (double)sum[c] - inertia * (pass->from[3 * i + c] - system->vectors.target[3 * i + c]);
+    }
+}
+
+/* Elastic energies of all components at a displacement into their gain, J */
+static void gxsp_quick_elastic(gxsp_system *system, const double *from) {
+    gxsp_pass pass;
+    uint32_t p;
+    memset(&pass, 0, sizeof pass);
+    pass.system = system;
+    pass.from = from;
+    gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_strain_energy, &pass);
+    for (p = 0; p < system->model.component_count; p++) system->model.components[p].gain = 0;
+    for (p = 0; p < system->mesh.partial_count; p++)
+        system->model.components[system->mesh.partials[p].component].gain += system->mesh.partials[p].energies[0];
+}
+
+/* Of all components: momentum / mass into sum, kinetic energy about that into low, gain += kinetic energy minus the
+ * work of the load, and the size of what rounds into rounding. A held component has no mean. */
+static void gxsp_quick_kinetic(const gxsp_problem *problem, const double *u, const double *v) {
+    gxsp_system *system = problem->system;
+    uint32_t p;
+    size_t i;
+    gxsp_clear_components(system);
+    for (p = 0; p < system->model.component_count; p++)
+        system->model.components[p].low = system->model.components[p].rounding = 0;
+    for (i = 0; i < system->model.n; i++) {
+        gxsp_component *component = &system->model.components[system->model.component[i]];
+        const double mass = system->state.still[i] ? 0 : system->model.lumped[i], *speed = v + 3 * i;
+        double load[3], kinetic, work;
+        gxsp_load(problem, i, load);
+        gxsp_add_to_component(system, i, mass * speed[0], mass * speed[1], mass * speed[2]);
+        kinetic = 0.5 * mass * gxsp_dot(speed, speed, 1);
+        work = gxsp_dot(load, u + 3 * i, 1);
+        component->low += kinetic;
+        component->gain -= work;
+        component->rounding += kinetic + fabs(work);
+    }
+    gxsp_average_components(system, 0);
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        component->gain += component->low;
+        component->low -= 0.5 * component->mass * gxsp_dot(component->sum, component->sum, 1);
+    }
+}
+
+/* Energies at the start into the components' limit, with what they were below it before */
+static void gxsp_quick_limit(const gxsp_problem *problem, const double *displacement, const double *velocity) {
+    gxsp_system *system = problem->system;
+    const int known = system->leap.known &&
+                      memcmp(displacement, system->vectors.current, 3 * system->model.n * sizeof *displacement) == 0;
+    uint32_t p;
+    if (!known) gxsp_quick_elastic(system, displacement);
+    for (p = 0; p < system->model.component_count && known; p++)
+        system->model.components[p].gain = system->model.components[p].elastic;
+    gxsp_quick_kinetic(problem, displacement, velocity);
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        component->limit = component->gain + (known ? component->slack : 0);
+    }
+}
+
+/* The solve: current from where inertia leads. 0: a number is not finite, or the exact Hessian is indefinite at once.
+ */
+static int gxsp_quick_solve(gxsp_problem *problem) {
+    gxsp_system *system = problem->system;
+    gxsp_pass pass;
+    size_t i;
+    gxsp_find_base(problem, system->vectors.current);
+    for (i = 0; i < system->model.n; i++)
+        if (!system->state.still[i])
+            memcpy(system->vectors.current + 3 * i, system->vectors.target + 3 * i, 3 * sizeof(double));
+    gxsp_untouch_components(system);
+    gxsp_terms_make(problem, system->vectors.current);
+    gxsp_balance_momentum(problem, 0, NULL, system->vectors.current);
+    if (gxsp_first_not_finite(system->vectors.current, 3 * system->model.n) < 3 * system->model.n) return 0;
+    if (system->leap.served == 0 || system->leap.served >= GXSP_QUICK_AGE ||
+        (system->multigrid.used && (system->coarse.worn || gxsp_coarse_ends(system) ||
+                                    system->coarse.rate < problem->rate || system->coarse.rate > problem->rate))) {
+        if (!gxsp_linearise_all(problem) || problem->collapsed) return 0;
+        system->leap.served = 0;
+    }
+    system->leap.served++;
+    memset(&pass, 0, sizeof pass);
+    pass.system = system;
+    pass.problem = problem;
+    pass.from = system->vectors.current;
+    pass.rate = problem->rate;
+    gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_strain_force, &pass);
+    gxsp_over_ranges(system, gxsp_task_quick_balance, &pass, NULL, 0);
+    system->state.guess_count = 0;
+    if (!gxsp_solve(problem)) return 0;
+    system->state.guess_count = 0;
+    for (i = 0; i < 3 * system->model.n; i++) system->vectors.current[i] += system->vectors.direction[i];
+    return 1;
+}
+
+/* Slows components down whose energy at the end is above their limit. 0: one has gained too much. */
+static int gxsp_quick_settle(gxsp_problem *problem, const double *u, double *v) {
+    gxsp_system *system = problem->system;
+    size_t i, c;
+    uint32_t p;
+    int any = 0;
+    gxsp_quick_elastic(system, u);
+    for (p = 0; p < system->model.component_count; p++)
+        system->model.components[p].elastic = system->model.components[p].gain;
+    gxsp_quick_kinetic(problem, u, v);
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        const double risen = component->gain - component->limit,
+                     unsure = 1e-12 * component->rounding + 1e-6 * component->elastic;
+        component->length = 1;
+        component->slack = risen < 0 ? -(1 - GXSP_LEAP_FORGET) * risen : -risen;
+        if (!gxsp_finite(risen)) return 0;
+        if (risen <= unsure) continue;
+        component->slack = 0;
+        if (risen > GXSP_QUICK_CUT * component->low) return 0;
+        component->length = sqrt(1 - risen / component->low);
+        any = 1;
+    }
+    for (i = 0; i < system->model.n && any; i++) {
+        const gxsp_component *component = &system->model.components[system->model.component[i]];
+        for (c = 0; c < 3 && !system->state.still[i]; c++)
+            v[3 * i + c] = component->sum[c] + component->length * (v[3 * i + c] - component->sum[c]);
+    }
+    return 1;
+}
+
+/* Energy of all components at the end, J */
+static double gxsp_quick_total(const gxsp_system *system) {
+    double sum = 0;
+    uint32_t p;
+    for (p = 0; p < system->model.component_count; p++)
+        sum += fmin(system->model.components[p].gain, system->model.components[p].limit);
+    return sum;
+}
+
+/* The quick step: displacement into direction, velocity into residual. Returns 0 where the step must be a usual one. */
+static int gxsp_quick_step(gxsp_problem *problem, const double *displacement, const double *velocity) {
+    gxsp_system *system = problem->system;
+    const int midpoint = problem->step->integrator == GXS_MIDPOINT;
+    double *ends = system->vectors.direction, *speeds = system->vectors.residual;
+    size_t i, count = 3 * system->model.n;
+    int done;
+    system->state.quick = 1;
+    gxsp_choose_leads(problem);
+    gxsp_quick_limit(problem, displacement, velocity);
+    gxsp_begin(problem, velocity);
+    problem->cg_iterations = problem->step->quick;
+    done = gxsp_quick_solve(problem);
+    for (i = 0; i < count && done; i++) {
+        const int still = system->state.still[i / 3];
+        ends[i] = still    ? displacement[i]
+                : midpoint ? 2 * system->vectors.current[i] - displacement[i]
+                           : system->vectors.current[i];
+        speeds[i] =
+            still ? 0 : problem->speed * (ends[i] - gxsp_mean(problem, displacement, i)) - (midpoint ? velocity[i] : 0);
+    }
+    done = done && gxsp_quick_settle(problem, ends, speeds);
+    system->state.quick = 0;
+    if (!done) {
+        problem->cg_iterations = problem->step->cg_iterations ? problem->step->cg_iterations : 1000;
+        problem->report.stop = GXS_STOP_BALANCE;
+        return 0;
+    }
+    if (problem->report.stop != GXS_STOP_SECONDS) problem->report.stop = GXS_STOP_ITERATIONS;
+    problem->report.energy = gxsp_quick_total(system);
+    problem->report.quick = 1;
     return 1;
 }
 
@@ -12128,15 +12733,18 @@ static gx_result gxsp_check_plane(const gxs_plane *plane, size_t index, gx_failu
              : GX_OK;
 }
 
-/* A pair of a step. Weights are 0 in sum up to the rounding of those who made them. */
+/* A pair of a step. Weights are 0 in sum, or 1, up to the rounding of those who made them. */
 static gx_result gxsp_check_pair(const gxs_step_desc *step, size_t index, size_t n, gx_failure *failure) {
     static const char *const names[6] = {"pairs.point.count",  "pairs.point.copy",    "pairs.point.weight",
                                          "pairs.point.copies", "pairs.point.weights", "pairs.point.position"};
     const gxs_pair *pair = &step->pairs[index];
-    double sum = 0, size = 0;
+    double sum = pair->flags & GXS_PAIR_OUTSIDE ? -1 : 0, size = 0;
     uint32_t k;
     gx_result result;
+    if (pair->flags > (GXS_PAIR_OUTSIDE | GXS_PAIR_WAKES))
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, "pairs.flags", index);
     if ((result = gxsp_check_point(&pair->point, n, names, index, failure)) != GX_OK ||
+        (result = gxsp_check_finite(pair->way, 3, "pairs.way", index, failure)) != GX_OK ||
         (result = gxsp_check_finite(pair->normal, 3, "pairs.normal", index, failure)) != GX_OK ||
         (result = gxsp_check_finite(&pair->offset, 1, "pairs.offset", index, failure)) != GX_OK ||
         (result = gxsp_check_size(pair->stiffness, "pairs.stiffness", index, failure)) != GX_OK ||
@@ -12148,7 +12756,7 @@ static gx_result gxsp_check_pair(const gxs_step_desc *step, size_t index, size_t
         size += fabs(gxsp_weights(&pair->point)[k]);
     }
     if (size > 1e30) return gxsp_fail(failure, GX_ERROR_RANGE, names[pair->point.copies ? 4 : 2], index);
-    if (fabs(sum) > 1e-12 * size)
+    if (fabs(sum) > (pair->flags & GXS_PAIR_OUTSIDE ? 1e-9 : 1e-12) * size)
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, names[pair->point.copies ? 4 : 2], index);
     if (fabs(gxsp_dot(pair->normal, pair->normal, 1) - 1) > 1e-6)
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, "pairs.normal", index);
@@ -12316,7 +12924,8 @@ static gx_result gxsp_step_once(gxs_solver *solver, const gxs_step_desc *step, d
     gxsp_problem problem;
     gx_result result;
     if (!gxsp_reserve_terms(&solver->lasting, step) ||
-        (step->integrator == GXS_EXPLICIT && !solver->system->leap.made && !gxsp_leap_make(solver->system)))
+        (step->integrator == GXS_EXPLICIT && !gxsp_leap_make(solver->system, GXSP_LEAP_ALL)) ||
+        (step->quick > 0 && !gxsp_quick_make(solver->system)))
         return gxsp_end(failure, GX_ERROR_MEMORY);
     memset(&problem, 0, sizeof problem);
     problem.system = solver->system;
@@ -12331,7 +12940,9 @@ static gx_result gxsp_step_once(gxs_solver *solver, const gxs_step_desc *step, d
     problem.system->state.failed = 1;
     if ((result = gxsp_check_free(&problem, failure)) != GX_OK) return result;
     problem.report.active_unknowns = problem.system->state.active;
-    if (!gxsp_leap_allowed(&problem) || !gxsp_leap_step(&problem, displacement, velocity)) {
+    if (!(gxsp_leap_allowed(&problem) && gxsp_leap_step(&problem, displacement, velocity)) &&
+        !(gxsp_quick_allowed(&problem) && gxsp_quick_step(&problem, displacement, velocity))) {
+        problem.system->leap.served = 0;
         gxsp_begin(&problem, velocity);
         result = gxsp_minimise(&problem);
         if (result == GX_OK) gxsp_find_end(&problem, displacement, velocity);
@@ -12398,7 +13009,7 @@ static void gxsp_parts_copy(const gxsp_parts *parts, const gxs_step_desc *step, 
     own[2] = step->sleep_speed > 0 ? step->rest_times : NULL;
     own[3] = step->pair_slips;
     for (k = 0; k < 4; k++)
-        if (own[k] && count[k] > 0) memcpy(back ? own[k] : kept[k], back ? kept[k] : own[k], count[k] * sizeof(double));
+        if (own[k]) memcpy(back ? own[k] : kept[k], back ? kept[k] : own[k], count[k] * sizeof(double));
 }
 
 /* Frequency of the motion, rad/s; 0: not known, or nothing resists */
@@ -12406,10 +13017,9 @@ static double gxsp_tempo_frequency(const gxsp_tempo *tempo) {
     return tempo->motion > 0 && tempo->work > 0 ? sqrt(tempo->work / tempo->motion) : 0;
 }
 
-/* The share of the motion in what is displaced, 0 ... 1 */
+/* The share of the motion in what is displaced, 0 ... 1. The frequency is known. */
 static double gxsp_tempo_share(const gxsp_tempo *tempo) {
-    const double way = tempo->motion / tempo->weight, rest = 2 * fmax(0, tempo->stored);
-    return way > 0 ? sqrt(way / (way + rest)) : 0;
+    return sqrt(tempo->motion / (tempo->motion + 2 * fmax(0, tempo->stored) * tempo->weight));
 }
 
 /* The work of L on a way, J */
@@ -12451,7 +13061,7 @@ static void gxsp_tempo_measure(gxs_solver *solver, double dt, double seconds, co
         if (!system->state.still[i / 3]) kinetic += system->model.lumped[i / 3] * velocity[i] * velocity[i];
     }
     tempo->steps = 0;
-    if (!gxsp_finite(work) || !gxsp_finite(motion) || !gxsp_finite(stored)) return;
+    if (!gxsp_finite(work + motion + stored)) return;
     if (tempo->leaps && system->leap.suits) {
         tempo->resist[0] = keep * tempo->resist[0] + each * gxsp_leap_resistance(system, from, displacement);
         tempo->resist[1] = keep * tempo->resist[1] + motion;
@@ -12499,8 +13109,9 @@ static gxsp_plan gxsp_plan_implicit(const gxs_solver *solver, const gxs_step_des
     return plan;
 }
 
-/* The explicit step for an error; work 0: it cannot be explicit. The filter adds h^2 L / 12 to the inertia, so that L
- * in place of the body's stiffness gives the error, and its masses have an error of their own. */
+/* The explicit step for an error, without targets and points; work 0: it cannot be explicit. The filter adds h^2 L / 12
+ * to the inertia, so that L in place of the body's stiffness gives the error, and its masses have an error of their
+ * own. */
 static gxsp_plan gxsp_plan_explicit(const gxs_solver *solver, const gxs_step_desc *step, double error) {
     const gxsp_leap *leap = &solver->system->leap;
     const gxsp_tempo *tempo = &solver->lasting.tempo;
@@ -12516,16 +13127,14 @@ static gxsp_plan gxsp_plan_explicit(const gxs_solver *solver, const gxs_step_des
     gxsp_plan plan;
     uint32_t degree;
     memset(&plan, 0, sizeof plan);
-    if (!leap->suits || step->targets || gxsp_point_count(step) > 0 || !(0.5 * step->dt * step->mass_damping < 1) ||
-        !(substeps <= GXSP_QUALITY_SUBSTEPS))
-        return plan;
+    if (!leap->suits || !(0.5 * step->dt * step->mass_damping < 1) || !(substeps <= GXSP_QUALITY_SUBSTEPS)) return plan;
     plan.integrator = GXS_EXPLICIT;
     plan.parts = 1;
-    plan.substeps = substeps < 1 ? 1 : (uint32_t)substeps;
+    plan.substeps = (uint32_t)fmax(1, substeps);
     degree = gxsp_leap_degree(leap, step->dt / plan.substeps, factor);
     plan.error = GXSP_LEAP_MASS * later * share / 6;
     if (degree > 1) plan.error += all / plan.substeps / plan.substeps * (1 - 1.0 / degree / degree);
-    plan.work = degree > 0 ? plan.substeps * (1 + GXSP_WORK_PRODUCT * (degree - 1.0)) + GXSP_WORK_STEP : 0;
+    plan.work = plan.substeps * (1 + GXSP_WORK_PRODUCT * (degree - 1.0)) + GXSP_WORK_STEP;
     return plan;
 }
 
@@ -12545,7 +13154,7 @@ static gxsp_plan gxsp_plan_make(gxs_solver *solver, const gxs_step_desc *step, i
     double error;
     int leaps = tempo->waiting == 0;
     if ((tempo->age == 0 && tempo->measures > 0) || gxsp_point_count(step) > 0 || step->targets) leaps = 0;
-    if (leaps && !solver->system->leap.made && !gxsp_leap_make(solver->system)) *memory = 0, leaps = 0;
+    if (leaps && !gxsp_leap_make(solver->system, GXSP_LEAP_ALL)) *memory = 0, leaps = 0;
     tempo->age += tempo->age < 1;
     tempo->leaps = leaps;
     plan = gxsp_plan_for(solver, step, step->quality, leaps);
@@ -12607,6 +13216,7 @@ static gx_result gxsp_take_parts(gxs_solver *solver, const gxs_step_desc *step, 
     uint32_t k;
     size_t i;
     part.quality = 0;
+    part.quick = 0;
     part.dt = step->dt / plan->parts;
     part.integrator = plan->integrator;
     part.substeps = plan->substeps;
@@ -12863,7 +13473,8 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene) {
     system->state.still_known = system->state.base_known = system->state.stepped = 0;
     system->state.guess_count = 0;
     system->leap.factor = 0;
-    system->leap.limited = 0;
+    system->leap.limited = system->leap.known = 0;
+    system->leap.served = 0;
     system->smoother.omega = 0;
     system->smoother.cautious = system->smoother.next_cautious = 0;
     system->coarse.rate = -1;
@@ -13016,9 +13627,12 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_LANES
 #undef GXSP_CHUNK_BLOCKS
 #undef GXSP_CHUNK
+#undef GXSP_NEAR
+#undef GXSP_NEAR_NUMBERS
 #undef GXSP_EACH_LANE
 #undef GXSP_RESTRICT
 #undef GXSP_COLD
+#undef GXSP_APART
 #undef GXSP_INLINE
 #undef GXSP_ROUNDING
 #undef GXSP_ABSURD
@@ -13065,6 +13679,10 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_LEAP_POWERS
 #undef GXSP_LEAP_GAIN
 #undef GXSP_LEAP_FORGET
+#undef GXSP_LEAP_BLOCKS
+#undef GXSP_LEAP_ALL
+#undef GXSP_QUICK_AGE
+#undef GXSP_QUICK_CUT
 #undef GXSP_LEAP_RAISE
 #undef GXSP_LEAP_LAST
 #undef GXSP_LEAP_ROWS
@@ -13081,6 +13699,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_NESTED_COST
 #undef GXSP_NESTED_FROM
 #undef GXSP_GAINS
+#undef GXSP_SETTLED
+#undef GXSP_SHEETS_MOST
 #undef GXSP_WIDEST
 #undef GXSP_SHIFT
 #undef GXSP_STIFFNESS

@@ -32,6 +32,13 @@ enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_MISUSED = 2 };
 
 /* -------------------------------------------------------------------------------------------- >>settings */
 
+/* What lies inside of a surface is of another material. */
+typedef struct inclusion {
+    char *cut; /* as given, without the numbers behind it; owned */
+    gx_material material;
+    gxio_surface surface;
+} inclusion;
+
 typedef struct settings {
     const char *mesh, *shape, *blade, *out, *format, *report;
     const char **cuts; /* cut_count, as given */
@@ -39,11 +46,13 @@ typedef struct settings {
     size_t cut_count;
     gx_region *regions; /* region_count */
     size_t region_count;
+    inclusion *inclusions; /* inclusion_count: material i + 1 */
+    size_t inclusion_count;
     double thickness;   /* m; 0: sheets stay sheets */
     gx_blade_desc edge; /* of the blade */
     double dt, young, poisson, density, affine, gravity[3], stretch[3];
     uint32_t frames, newton, cut_at, cells;
-    int rests; /* --static */
+    int release, rests; /* --release, --static */
     int quiet, help;
 } settings;
 
@@ -84,7 +93,7 @@ typedef struct run {
     gxio_error error;
 } run;
 
-/* What an option takes. The last four may be given more than once or, the flag, take nothing. */
+/* What an option takes. Those behind the flag, which takes nothing, may be given more than once. */
 enum {
     TAKES_TEXT,
     TAKES_NUMBER,
@@ -94,6 +103,7 @@ enum {
     TAKES_SHEET,
     TAKES_SOLID,
     TAKES_KEEP,
+    TAKES_MATERIAL,
     TAKES_REGION
 };
 
@@ -135,6 +145,10 @@ static const char usage[] =
     "  --sheet CUT         separates what lies on its two sides\n"
     "  --solid CUT         closed: removes what lies inside\n"
     "  --keep CUT          closed: removes what lies outside\n"
+    "  --material CUT,E,NU,RHO\n"
+    "                      closed: what lies inside is another material, with Young's modulus, Poisson's ratio and\n"
+    "                      density; where several lie, the last one\n"
+    "  --release           cuts where materials adjoin\n"
     "  --thickness E       makes each sheet a solid of this thickness, m\n"
     "  --cut-at FRAME      cuts before this frame's step (0)\n"
     "  --blade FILE        a blade that cuts while the body steps, from that frame on. The file has a line for each\n"
@@ -198,6 +212,39 @@ static int parse_region(const char *text, gx_region *region) {
     return 1;
 }
 
+static gx_material material_of(double young, double poisson, double density) {
+    gx_material material;
+    memset(&material, 0, sizeof material);
+    material.elastic.kind = GXS_STABLE_NEO_HOOKEAN;
+    material.elastic.young = young;
+    material.elastic.poisson = poisson;
+    material.density = density;
+    return material;
+}
+
+/* CUT,E,NU,RHO. Returns NULL, or what is wrong with it. */
+static const char *add_inclusion(settings *set, const char *text) {
+    inclusion *added = &set->inclusions[set->inclusion_count];
+    const char *end = text + strlen(text);
+    size_t length;
+    double v[3];
+    int commas = 0;
+    while (end > text && commas < 3) commas += *--end == ',';
+    if (commas < 3 || end == text || gxio_argument_list(end + 1, v, 3, 3) != 3)
+        return "is not CUT,E,NU,RHO with three finite numbers behind the surface";
+    if (!(v[0] > 0.0)) return "must have Young's modulus above 0";
+    if (!(v[1] >= 0.0 && v[1] < 0.5)) return "must have Poisson's ratio at least 0 and below 0.5";
+    if (!(v[2] > 0.0)) return "must have a density above 0";
+    length = (size_t)(end - text);
+    added->cut = (char *)gxio_array(length + 1, 1);
+    if (!added->cut) return "finds no memory";
+    memcpy(added->cut, text, length);
+    added->cut[length] = 0;
+    added->material = material_of(v[0], v[1], v[2]);
+    set->inclusion_count++;
+    return NULL;
+}
+
 static void add_cut(settings *set, const char *spec, uint32_t kind) {
     set->kinds[set->cut_count] = kind;
     set->cuts[set->cut_count++] = spec;
@@ -214,6 +261,7 @@ static const char *store(settings *set, const option *o, const char *value) {
     case TAKES_SHEET: add_cut(set, value, GX_SURFACE_SHEET); return NULL;
     case TAKES_SOLID: add_cut(set, value, GX_SURFACE_SOLID); return NULL;
     case TAKES_KEEP: add_cut(set, value, GX_SURFACE_KEEP); return NULL;
+    case TAKES_MATERIAL: return add_inclusion(set, value);
     default:
         return parse_region(value, &set->regions[set->region_count++])
                  ? NULL
@@ -267,6 +315,8 @@ static int take_arguments(settings *set, int argc, char **argv, gxio_error *erro
                         {"--sheet", TAKES_SHEET, NULL, 0},
                         {"--solid", TAKES_SOLID, NULL, 0},
                         {"--keep", TAKES_KEEP, NULL, 0},
+                        {"--material", TAKES_MATERIAL, NULL, 0},
+                        {"--release", TAKES_NOTHING, &set->release, 0},
                         {"--thickness", TAKES_NUMBER, &set->thickness, 0},
                         {"--cut-at", TAKES_COUNT, &set->cut_at, 0},
                         {"--blade", TAKES_TEXT, &set->blade, 0},
@@ -315,6 +365,7 @@ static int check_settings(const settings *set, gxio_error *error) {
     if (!(set->poisson >= 0.0 && set->poisson < 0.5))
         return misused(error, "--poisson", "must be at least 0 and below 0.5");
     if (!(set->density > 0.0)) return misused(error, "--density", "must be above 0");
+    if (set->release && !set->inclusion_count) return misused(error, "--release", "needs a --material");
     if (set->cut_at && set->cut_at >= set->frames)
         return misused(error, "--cut-at", "must be below the number of frames");
     if (set->blade && !set->frames) return misused(error, "--blade", "needs frames, and --frames is 0");
@@ -340,7 +391,9 @@ static int parse_settings(settings *set, int argc, char **argv, gxio_error *erro
     set->cuts = (const char **)gxio_array(room, sizeof *set->cuts);
     set->kinds = (uint32_t *)gxio_array(room, sizeof *set->kinds);
     set->regions = (gx_region *)gxio_array(room, sizeof *set->regions);
-    if (!set->cuts || !set->kinds || !set->regions) return misused(error, "arguments", "out of memory");
+    set->inclusions = (inclusion *)calloc(room, sizeof *set->inclusions);
+    if (!set->cuts || !set->kinds || !set->regions || !set->inclusions)
+        return misused(error, "arguments", "out of memory");
     if (!take_arguments(set, argc, argv, error)) return 0;
     if (!set->out) set->out = is_format(set, "html") ? "out.html" : "out";
     return set->help ? 1 : check_settings(set, error);
@@ -409,16 +462,18 @@ static int refuse_cut(run *r, const gx_failure *failure) {
     return complain(r, EXIT_FAILED);
 }
 
-static gx_surface view_cut(const run *r, size_t i) {
+static gx_surface surface_of(const gxio_surface *from, uint32_t kind) {
     gx_surface surface;
     memset(&surface, 0, sizeof surface);
-    surface.vertices = r->cuts[i].vertices;
-    surface.vertex_count = r->cuts[i].vertex_count;
-    surface.triangles = r->cuts[i].triangles;
-    surface.triangle_count = r->cuts[i].triangle_count;
-    surface.kind = r->set.kinds[i];
+    surface.vertices = from->vertices;
+    surface.vertex_count = from->vertex_count;
+    surface.triangles = from->triangles;
+    surface.triangle_count = from->triangle_count;
+    surface.kind = kind;
     return surface;
 }
+
+static gx_surface view_cut(const run *r, size_t i) { return surface_of(&r->cuts[i], r->set.kinds[i]); }
 
 /* Replaces a sheet by a solid of the given thickness. Its triangles are new: no line of the file is theirs. */
 static int thicken(run *r, size_t i) {
@@ -476,6 +531,9 @@ static int load(run *r) {
     if (!r->cuts) return lack_memory(r, "cuts");
     for (i = 0; i < r->set.cut_count; i++)
         if (!gxio_surface_load(r->set.cuts[i], &body, &r->cuts[i], &r->error)) return complain(r, EXIT_MISUSED);
+    for (i = 0; i < r->set.inclusion_count; i++)
+        if (!gxio_surface_load(r->set.inclusions[i].cut, &body, &r->set.inclusions[i].surface, &r->error))
+            return complain(r, EXIT_MISUSED);
     for (i = 0; i < r->set.cut_count && code == EXIT_DONE && r->set.thickness > 0.0; i++)
         if (r->set.kinds[i] == GX_SURFACE_SHEET) code = thicken(r, i);
     if (code != EXIT_DONE || !r->set.blade) return code;
@@ -508,15 +566,10 @@ static int make_blade(run *r) {
 
 /* The body of the shape, and its grid as the mesh */
 static int build_shape(run *r, gx_body_desc *desc) {
-    gx_surface surface;
+    const gx_surface surface = surface_of(&r->shape, GX_SURFACE_SOLID);
     gx_shape shape;
     gx_failure failure;
-    memset(&surface, 0, sizeof surface);
     memset(&shape, 0, sizeof shape);
-    surface.vertices = r->shape.vertices;
-    surface.vertex_count = r->shape.vertex_count;
-    surface.triangles = r->shape.triangles;
-    surface.triangle_count = r->shape.triangle_count;
     shape.surfaces = &surface;
     shape.surface_count = 1;
     shape.cells = r->set.cells;
@@ -546,19 +599,55 @@ static int build_mesh(run *r, gx_body_desc *desc) {
     return gx_body_create(desc, &r->body, &failure) == GX_OK ? EXIT_DONE : refuse_mesh(r, &failure);
 }
 
+/* Gives what lies inside of surfaces their material. */
+static int include(run *r) {
+    gx_surface *surfaces = (gx_surface *)gxio_array(r->set.inclusion_count, sizeof *surfaces);
+    gx_cut_desc desc;
+    gx_failure failure;
+    gx_result result;
+    size_t i;
+    if (!surfaces) return lack_memory(r, "--material");
+    for (i = 0; i < r->set.inclusion_count; i++) {
+        surfaces[i] = surface_of(&r->set.inclusions[i].surface, GX_SURFACE_MATERIAL);
+        surfaces[i].material = (uint32_t)i + 1;
+    }
+    memset(&desc, 0, sizeof desc);
+    desc.surfaces = surfaces;
+    desc.surface_count = r->set.inclusion_count;
+    result = gx_body_cut(r->body, &desc, NULL, &failure);
+    free(surfaces);
+    if (result == GX_OK) return EXIT_DONE;
+    fail(r, failure.surface < r->set.inclusion_count ? r->set.inclusions[failure.surface].cut : "--material", &failure);
+    return failure.field ? EXIT_MISUSED : EXIT_FAILED;
+}
+
+/* The materials: the body's, then those of --material. */
+static gx_material *list_materials(const run *r) {
+    gx_material *list = (gx_material *)gxio_array(r->set.inclusion_count + 1, sizeof *list);
+    size_t i;
+    if (!list) return NULL;
+    list[0] = material_of(r->set.young, r->set.poisson, r->set.density);
+    for (i = 0; i < r->set.inclusion_count; i++) list[i + 1] = r->set.inclusions[i].material;
+    return list;
+}
+
 /* The body, stretched, then held: what is held stays where the stretch put it. */
 static int build(run *r) {
     gx_body_desc desc;
+    gx_material *materials;
     gx_failure failure;
     gx_result result;
     int code;
     memset(&desc, 0, sizeof desc);
-    desc.young = r->set.young;
-    desc.poisson = r->set.poisson;
-    desc.density = r->set.density;
+    materials = list_materials(r);
+    if (!materials) return lack_memory(r, "--material");
+    desc.materials = materials;
+    desc.material_count = r->set.inclusion_count + 1;
     desc.affine_below = r->set.affine;
     desc.clock = gxio_seconds;
     code = r->set.shape ? build_shape(r, &desc) : build_mesh(r, &desc);
+    free(materials);
+    if (code == EXIT_DONE && r->set.inclusion_count) code = include(r);
     if (code != EXIT_DONE) return code;
     result = stretch(r, &failure);
     if (result != GX_OK) return fail(r, "body", &failure);
@@ -572,6 +661,7 @@ static int build(run *r) {
 
 /* All cuts in one call. */
 static int cut(run *r) {
+    static const uint32_t any[2] = {GX_ANY_MATERIAL, GX_ANY_MATERIAL};
     gx_surface *surfaces = (gx_surface *)gxio_array(r->set.cut_count, sizeof *surfaces);
     gx_cut_desc desc;
     gx_failure failure;
@@ -582,6 +672,8 @@ static int cut(run *r) {
     memset(&desc, 0, sizeof desc);
     desc.surfaces = surfaces;
     desc.surface_count = r->set.cut_count;
+    desc.release = any;
+    desc.release_count = r->set.release ? 1 : 0;
     result = gx_body_cut(r->body, &desc, &r->cut, &failure);
     free(surfaces);
     r->has_cut = result == GX_OK;
@@ -802,7 +894,7 @@ static int step(run *r, uint32_t frame) {
 static int advance(run *r, uint32_t frame) {
     int code = EXIT_DONE;
     if (frame == r->set.cut_at) {
-        if (r->set.cut_count) code = cut(r);
+        if (r->set.cut_count || r->set.release) code = cut(r);
         if (code == EXIT_DONE) code = look(r);
     }
     if (code == EXIT_DONE) code = step(r, frame);
@@ -817,7 +909,7 @@ static int simulate(run *r) {
     uint32_t frame;
     int code = EXIT_DONE;
     if (!r->set.frames) {
-        if (r->set.cut_count) code = cut(r);
+        if (r->set.cut_count || r->set.release) code = cut(r);
         return code == EXIT_DONE ? look(r) : code;
     }
     if (r->set.cut_at) code = look(r);
@@ -883,6 +975,20 @@ static void print_cells(FILE *stream, const gx_view *view, double *volumes) {
     fprintf(stream, "\n  },\n");
 }
 
+/* Volumes and masses of the materials, in their order */
+static void print_materials(FILE *stream, const run *r) {
+    size_t m, i;
+    fprintf(stream, "  \"materials\": [");
+    for (m = 0; m <= r->set.inclusion_count; m++) {
+        const double density = m ? r->set.inclusions[m - 1].material.density : r->set.density;
+        double volume = 0.0;
+        for (i = 0; i < r->view.cell_count; i++)
+            if ((r->view.cell_material ? r->view.cell_material[i] : 0) == m) volume += r->view.cell_volume[i];
+        fprintf(stream, "%s{\"volume\": %.17g, \"mass\": %.17g}", m ? ", " : "", volume, density * volume);
+    }
+    fprintf(stream, "],\n");
+}
+
 static size_t count_affine(const gx_view *view) {
     size_t i, count = 0;
     for (i = 0; view->copy_affine && i < view->copy_count; i++) count += view->copy_affine[i];
@@ -936,6 +1042,7 @@ static void print_report(FILE *stream, run *r, uint64_t hash, double tip, double
             r->cut.seconds_enrichment + r->strokes.seconds_enrichment,
             r->cut.seconds_integrals + r->strokes.seconds_integrals, r->seconds_newton,
             gxio_seconds(NULL) - r->seconds_start);
+    if (r->set.inclusion_count) print_materials(stream, r);
     if (r->blade) print_blade(stream, &r->strokes);
     fprintf(stream, "  \"frames\": %lu\n}\n", (unsigned long)r->set.frames);
 }
@@ -1034,6 +1141,11 @@ static void release(run *r) {
     gx_body_destroy(r->body);
     gxio_mesh_release(&r->mesh);
     gxio_surface_release(&r->shape);
+    for (i = 0; i < r->set.inclusion_count; i++) {
+        free(r->set.inclusions[i].cut);
+        gxio_surface_release(&r->set.inclusions[i].surface);
+    }
+    free(r->set.inclusions);
     free((void *)r->set.cuts);
     free(r->set.kinds);
     free(r->set.regions);

@@ -285,6 +285,22 @@ has "box as a shape" fragments 2
 refuses "shape and mesh" 2 "--shape" cube5 --shape box:0,0,0,1,1,1
 refuses "shape that is open" 2 "plane:0.5,0.5,0.5,1,0,0: shape.surfaces.triangles .*closed" --shape plane:0.5,0.5,0.5,1,0,0
 refuses "shape of no cells" 2 "--cells" --shape box:0,0,0,1,1,1 --cells 0
+runs "inclusion" grid:2,2,2 --material box:0.5,0.5,0.5,1.5,1.5,1.75,5e6,0.3,2 --density 1 --frames 2 --report r.json
+has "inclusion" fragments 1
+near "inclusion" mass 9.25
+check "inclusion: materials" "$(sed -n 's/^ *"materials": //p' r.json | tr -cs '0-9.' ' ' | awk '
+    { for (i = 1; i <= 4; i++) { d = $i - (i == 1 || i == 2 ? 6.75 : i == 3 ? 1.25 : 2.5); if (d > 1e-12 || d < -1e-12) print "is " $0 } }
+    END { if (NR != 1) print "are not there" }')"
+runs "inclusion comes off" grid:2,2,2 --material box:0.5,0.5,0.5,1.5,1.5,1.75,5e6,0.3,2 --density 1 --release --frames 2 --report r.json
+has "inclusion comes off" fragments 2
+near "inclusion comes off" mass 9.25
+runs "one inclusion in another, in a shape" --shape box:0,0,0,2,2,2 --cells 4 --material box:0.5,0.5,0.5,1.5,1.5,1.75,5e6,0.3,2 --density 1 \
+    --material box:0.75,0.75,0.75,1.25,1.25,2.5,5e6,0.3,0.5 --release --frames 0 --report r.json
+near "one inclusion in another, in a shape" mass 8.84375
+refuses "open inclusion" 2 "plane:0.5,0.5,0.5,1,0,0: surfaces.triangles .*closed" cube5 --material plane:0.5,0.5,0.5,1,0,0,1e6,0.4,1000
+refuses "inclusion without numbers" 2 "--material.*CUT,E,NU,RHO" cube5 --material box:0,0,0,1,1,x
+refuses "inclusion that cannot be pressed" 2 "--material.*ratio" cube5 --material box:0,0,0,1,1,1,1e6,0.5,1000
+refuses "release of nothing" 2 "--release: needs a --material" cube5 --release
 runs "box kept of a grid" grid:2,2,2 --keep box:0.5,0.5,0.5,1.5,1.5,1.5 --frames 0 --report r.json
 near "box kept of a grid" volume 1
 has "box kept of a grid" fragments 1

@@ -1096,7 +1096,7 @@ END_TEST
 /* ---- coarse functions of small components ---- */
 
 /* Appends a bar of cells of one size, apart from the others */
-static void add_bar(workload *w, double x, double size, uint32_t nx, uint32_t ny) {
+static void add_beam(workload *w, double x, double size, uint32_t nx, uint32_t ny) {
     workload bar = grid(nx, ny, 1, 6);
     const size_t nodes = w->node_count, elements = w->element_count;
     size_t i;
@@ -1122,7 +1122,7 @@ START_TEST(small_pieces_beside_a_large_one) {
     gxs_step_report report;
     double *state;
     uint32_t i, iterations = 0;
-    for (i = 0; i < 50; i++) add_bar(&w, 10 + i, 0.01 + 0.01 * i, 1 + i % 3, 1 + i % 2);
+    for (i = 0; i < 50; i++) add_beam(&w, 10 + i, 0.01 + 0.01 * i, 1 + i % 3, 1 + i % 2);
     body = body_of(&w);
     ck_assert_int_eq(gx_body_model(body, &model, NULL), GX_OK);
     state = (double *)calloc(6 * model.copy_count, sizeof *state);

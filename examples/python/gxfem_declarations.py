@@ -38,6 +38,8 @@ GXS_BDF2 = 1
 GXS_MIDPOINT = 2
 GXS_STATIC = 3
 GXS_EXPLICIT = 4
+GXS_PAIR_OUTSIDE = 1
+GXS_PAIR_WAKES = 2
 GXS_STOP_BALANCE = 0
 GXS_STOP_ITERATIONS = 1
 GXS_STOP_SECONDS = 2
@@ -57,6 +59,11 @@ GX_REGION_SPHERE = 2
 GX_REGION_SURFACE = 3
 GX_REGION_NODES = 4
 GX_REGION_ANCHORS = 5
+GX_COLLIDER_PLANE = 0
+GX_COLLIDER_SPHERE = 1
+GX_COLLIDER_CAPSULE = 2
+GX_COLLIDER_BOX = 3
+GX_COLLIDER_DISTANCE = 4
 GX_SKIN_OUTER = 0
 GXB_EXPLICIT = 0
 GXB_LINE_PLANE = 1
@@ -191,6 +198,14 @@ class gx_region(Structure):
     pass
 
 
+class gx_collider(Structure):
+    pass
+
+
+class gx_collider_load(Structure):
+    pass
+
+
 class gx_step_desc(Structure):
     pass
 
@@ -236,6 +251,10 @@ class gx_blade_contact(Structure):
 
 
 class gxb_num(Structure):
+    pass
+
+
+class gxb_fixed(Structure):
     pass
 
 
@@ -477,6 +496,8 @@ gxs_contact_fn = CFUNCTYPE(c_double, c_void_p, c_size_t, POINTER(c_double), POIN
 
 gxs_pair._fields_ = [
     ('point', gxs_point),
+    ('flags', c_uint32),
+    ('way', c_double * 3),
     ('normal', c_double * 3),
     ('offset', c_double),
     ('stiffness', c_double),
@@ -497,6 +518,7 @@ gxs_step_desc._fields_ = [
     ('mass_damping', c_double),
     ('substeps', c_uint32),
     ('newton_iterations', c_uint32),
+    ('quick', c_uint32),
     ('newton_tolerance', c_double),
     ('cg_iterations', c_uint32),
     ('cg_tolerance', c_double),
@@ -526,6 +548,7 @@ gxs_step_report._fields_ = [
     ('stop', c_int),
     ('active_unknowns', c_size_t),
     ('substeps', c_uint32),
+    ('quick', c_uint32),
     ('parts', c_uint32),
     ('integrator', c_int),
     ('error', c_double),
@@ -691,11 +714,33 @@ gx_region._fields_ = [
     ('anchor_count', c_size_t),
 ]
 
+gx_distance_fn = CFUNCTYPE(c_double, c_void_p, POINTER(c_double), POINTER(c_double))
+
+gx_collider._fields_ = [
+    ('id', c_uint32),
+    ('kind', c_uint32),
+    ('size', c_double * 3),
+    ('pose', c_double * 12),
+    ('velocity', c_double * 3),
+    ('spin', c_double * 3),
+    ('friction', c_double),
+    ('distance', CFUNCTYPE(c_double, c_void_p, POINTER(c_double), POINTER(c_double))),
+    ('user', c_void_p),
+]
+
+gx_collider_load._fields_ = [
+    ('force', c_double * 3),
+    ('torque', c_double * 3),
+    ('stiffness', c_double * 36),
+    ('contacts', c_uint32),
+]
+
 gx_step_desc._fields_ = [
     ('dt', c_double),
     ('gravity', c_double * 3),
     ('integrator', c_int),
     ('substeps', c_uint32),
+    ('quick', c_uint32),
     ('newton_iterations', c_uint32),
     ('newton_tolerance', c_double),
     ('cg_iterations', c_uint32),
@@ -724,6 +769,9 @@ gx_step_desc._fields_ = [
     ('pair_anchors', POINTER(gx_anchor)),
     ('pair_slips', POINTER(c_double)),
     ('pair_forces', POINTER(c_double)),
+    ('colliders', POINTER(gx_collider)),
+    ('collider_count', c_size_t),
+    ('collider_loads', POINTER(gx_collider_load)),
     ('sleep_speed', c_double),
     ('sleep_time', c_double),
     ('clock', CFUNCTYPE(c_double, c_void_p)),
@@ -746,6 +794,7 @@ gx_contact_desc._fields_ = [
 gx_contact._fields_ = [
     ('fragment', c_uint32),
     ('other', c_uint32),
+    ('collider', c_uint32),
     ('position', c_double * 3),
     ('normal', c_double * 3),
     ('force', c_double * 3),
@@ -828,6 +877,10 @@ gxb_num._fields_ = [
     ('exp', c_int32),
     ('n', c_uint32),
     ('d', POINTER(c_uint64)),
+]
+
+gxb_fixed._fields_ = [
+    ('d', c_uint64 * 3),
 ]
 
 gxb_plane_filter._fields_ = [
@@ -1091,6 +1144,7 @@ gxb_boolean_desc._fields_ = [
     ('memory_limit', c_size_t),
     ('inside', CFUNCTYPE(c_int, c_void_p, POINTER(c_int32), c_size_t)),
     ('user', c_void_p),
+    ('jobs', gx_jobs),
 ]
 
 gxb_origin._fields_ = [
@@ -1217,6 +1271,7 @@ FUNCTIONS = {
     'gxb_complex_add_point': (c_int, [POINTER(gxb_complex), POINTER(c_double), POINTER(c_uint32)]),
     'gxb_complex_barycentric': (None, [POINTER(gxb_complex), c_uint32, c_uint32, POINTER(c_double)]),
     'gxb_complex_barycentric_fine': (None, [POINTER(gxb_complex), c_uint32, c_uint32, POINTER(gxb_num)]),
+    'gxb_complex_barycentric_fixed': (None, [POINTER(gxb_complex), c_uint32, c_uint32, POINTER(gxb_fixed)]),
     'gxb_complex_begin': (None, [POINTER(gxb_complex)]),
     'gxb_complex_check_point': (c_int, [POINTER(gxb_complex), POINTER(c_double)]),
     'gxb_complex_commit': (None, [POINTER(gxb_complex)]),
@@ -1274,6 +1329,7 @@ FUNCTIONS = {
     'gxb_complex_turn': (c_int, [POINTER(gxb_complex), c_uint32, c_uint32, c_uint32, c_uint32]),
     'gxb_complex_winding': (c_int, [POINTER(gxb_complex), POINTER(c_uint32), c_size_t, POINTER(c_double), POINTER(c_uint32), c_size_t]),
     'gxb_facet_resolve_edges': (c_int, [POINTER(gxb_complex), c_uint32, POINTER(c_uint32), POINTER(c_uint32)]),
+    'gxb_fixed_determinant': (c_double, [POINTER(gxb_fixed), POINTER(gxb_fixed), POINTER(gxb_fixed), POINTER(gxb_fixed)]),
     'gxb_incircle': (c_int, [POINTER(c_double), POINTER(c_double), POINTER(c_double), POINTER(c_double)]),
     'gxb_insphere': (c_int, [POINTER(c_double), POINTER(c_double), POINTER(c_double), POINTER(c_double), POINTER(c_double)]),
     'gxb_is_allocator': (c_int, [POINTER(gx_allocator)]),
