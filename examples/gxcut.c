@@ -161,7 +161,8 @@ static const char usage[] =
     "  --frames N          steps and frames (60); 0: cut and report only\n"
     "  --static            in place of frames: the balance of forces, as one frame\n"
     "  --dt S              time step, s (0.033)\n"
-    "  --newton N          Newton iterations per step (1; with --static at most, 1000)\n"
+    "  --newton N          Newton iterations per step (as the library does: 1, more for flung sheets; with\n"
+    "                      --static at most, 1000)\n"
     "  --young P           Young's modulus, Pa (1e6)\n"
     "  --poisson X         Poisson's ratio (0.4)\n"
     "  --density D         kg/m3 (1000)\n"
@@ -343,6 +344,7 @@ static int take_arguments(settings *set, int argc, char **argv, gxio_error *erro
     int i;
     for (i = 1; i < argc; i++)
         if (!take_argument(set, options, argc, argv, &i, error)) return 0;
+    if (find_option(options, "--newton")->seen && !set->newton) return misused(error, "--newton", "must be at least 1");
     if (find_option(options, "--thickness")->seen && !(set->thickness > 0.0))
         return misused(error, "--thickness", "must be above 0");
     for (o = options; o->name && !set->blade; o++)
@@ -364,7 +366,6 @@ static int check_settings(const settings *set, gxio_error *error) {
         return misused(error, "--poisson", "must be at least 0 and below 0.5");
     if (!(set->density > 0.0)) return misused(error, "--density", "must be above 0");
     if (set->release && !set->inclusion_count) return misused(error, "--release", "needs a --material");
-    if (!set->newton) return misused(error, "--newton", "must be at least 1");
     if (set->cut_at && set->cut_at >= set->frames)
         return misused(error, "--cut-at", "must be below the number of frames");
     if (set->blade && !set->frames) return misused(error, "--blade", "needs frames, and --frames is 0");
@@ -386,7 +387,6 @@ static int parse_settings(settings *set, int argc, char **argv, gxio_error *erro
     set->gravity[2] = -9.81;
     set->stretch[0] = set->stretch[1] = set->stretch[2] = 1.0;
     set->frames = 60;
-    set->newton = 1;
     set->cells = 16;
     set->cuts = (const char **)gxio_array(room, sizeof *set->cuts);
     set->kinds = (uint32_t *)gxio_array(room, sizeof *set->kinds);
