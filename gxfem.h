@@ -59,7 +59,7 @@
  *     what acts on it:           >>attached >>supports >>model
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
- *     a step, with contact:      >>touch >>meeting >>step
+ *     a step, with contact:      >>touch >>colliders >>meeting >>pressing >>step
  *     a blade in space:          >>layers >>edges >>relations >>fronts >>glances >>strokes >>ways >>blade
  *                                >>contacts >>carve
  *     beginning, end, bytes:     >>grid >>create >>hashes >>stream >>scabbard >>save
@@ -72,9 +72,9 @@
  * Exact: the set of cells and their links, hence copies and fragments. Decisions are signs of polynomials in the given
  * coordinates (gxfem_boolean.h). Rounded once, to doubles: volumes, masses and vertices.
  *
- * Not there yet: contact with the host's bodies but by points (pieces of a body touch each other: gx_body_contact);
- * surfaces given in the deformed state (a moving edge is: gx_blade); unknowns within a partly cut element (a sheet that
- * ends inside an element separates nothing there until another sheet completes it).
+ * Not there yet: contact of two bodies of the library (pieces of one touch each other and the host's rigid bodies:
+ * gx_body_contact); surfaces given in the deformed state (a moving edge is: gx_blade); unknowns within a partly cut
+ * element (a sheet that ends inside an element separates nothing there until another sheet completes it).
  *
  * Limits: fewer than 2^28 elements a body (2^24 where pointers have 32 bits), fewer than 2^30 cells and 2^30 copies
  * for steps, some 1.4e9 of each other kind of object, 5e8 vertices and triangles a surface (GX_ERROR_LIMIT). A body's
@@ -82,6 +82,8 @@
  * 2^-700 ... 2^700. So all volumes, masses, centres and inertia are finite, those of whole bodies are normal numbers,
  * and floats hold the skin. Divided by the body's size, coordinates of bodies and cuts are 0 or 2^-128 ... 2^128 in
  * absolute value (GX_ERROR_RANGE). One thread at a time may use a body. There is no global state, no output, no clock.
+ * A call takes less than 48 kB of stack, besides that of the caller's own functions. gx_body_load takes more where one
+ * edge, face or element was divided over and over: 50 bytes for each time in a row.
  *
  * References: GXFEM = Ton-That, Kry, Andrews: Generalized eXtended Finite Element Method for Deformable Cutting via
  * Boolean Operations (2024). RXFEM = Koschier, Bender, Thuerey: Robust eXtended Finite Elements for Complex Cutting of
@@ -252,7 +254,7 @@ typedef struct gx_body_desc {
     /* In thicknesses of elements, 0 ... 1000. Where material is thinner, its copies carry an affine motion each (are
        affine), so that sheets bend as they should. Creation and cuts find it, the latter among what they touch; an
        affine copy stays so. A layer of cubes of five or six elements has a thickness of 0.94; 1 is a good value.
-       0: none, at no cost. Other values: no blades, no gx_body_carve, no gx_body_contact and no pairs yet */
+       0: none, at no cost. Other values: no gx_body_contact and no pairs yet */
     double affine_below;
     gx_allocator allocator;      /* zero: malloc, free, realloc */
     double (*clock)(void *user); /* seconds, for the reports' timings and the steps' budgets; NULL: timings are 0 */
@@ -473,6 +475,40 @@ GXFEM_API gx_region gx_region_sphere(const double center[3], double radius);
 GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t region_count,
                                  gx_failure *failure /* or NULL */);
 
+/* Rigid bodies of the caller's that pieces press on while contact is on (gx_body_contact) */
+enum {
+    GX_COLLIDER_PLANE = 0, /* what is below z = 0 */
+    GX_COLLIDER_SPHERE,    /* size[0]: radius */
+    GX_COLLIDER_CAPSULE,   /* size[0]: radius; size[1]: half the length of its axis, which is along z */
+    GX_COLLIDER_BOX,       /* size: half the length of its edges along each axis */
+    GX_COLLIDER_DISTANCE   /* distance() says where it is; size[0]: its smallest radius, for samples; 0: not known */
+};
+/* Signed distance of a point from the surface of a collider, m, below 0 inside, in the collider's own frame; normal:
+   receives its gradient there, outward, of any length but 0. Never larger than the true distance. Called on the thread
+   of the step. */
+typedef double (*gx_distance_fn)(void *user, const double position[3], double normal[3]);
+/* x = R X + o takes its own frame to space. Within a step o moves with velocity, and the body turns about it. */
+typedef struct gx_collider {
+    uint32_t id;   /* its name from step to step, below UINT32_MAX, each once */
+    uint32_t kind; /* GX_COLLIDER_ */
+    double size[3];
+    double pose[12];         /* at the step's start: three rows of R o, R a rotation */
+    double velocity[3];      /* of o, m/s */
+    double spin[3];          /* rad/s, in space */
+    double friction;         /* Coulomb's coefficient, 0 or more */
+    gx_distance_fn distance; /* GX_COLLIDER_DISTANCE only */
+    void *user;
+} gx_collider;
+/* What a collider feels at the end of a step */
+typedef struct gx_collider_load {
+    double force[3];  /* N: minus the sum of all that it does to the body */
+    double torque[3]; /* N m, about its o at the step's end */
+    /* by rows: how force and torque resist a translation (the first three) and a turn about o. Of the contacts alone:
+       the body gives way, too */
+    double stiffness[36];
+    uint32_t contacts; /* places that press */
+} gx_collider_load;
+
 /* A time step. Zero but for dt: implicit Euler, one Newton iteration, nothing but inertia and elasticity. Arrays are by
    copy, as in gx_view. Points, forces and targets name copies: they have the epoch of the view, skin or hit that they
    come from, and are refused (GX_ERROR_STALE) after a cut that began another one. Anchors in their place are good after
@@ -484,6 +520,7 @@ typedef struct gx_step_desc {
     /* GXS_BDF1 damps what swings: at dt = 1/60 s half of a free swing is gone after 5 s. GXS_BDF2 keeps it. */
     gxs_integrator integrator;
     uint32_t substeps;          /* GXS_EXPLICIT only: that many of dt; 0: as few as are cheap */
+    uint32_t quick;             /* above 0: quick steps of so many iterations, 2 or 3, say (see gxs_step_desc) */
     uint32_t newton_iterations; /* at most; 0: 1 */
     double newton_tolerance;    /* stop at this residual (see gxs_step_report); 0: 1e-8 */
     uint32_t cg_iterations;     /* per Newton iteration, at most; 0: 1000 */
@@ -518,14 +555,17 @@ typedef struct gx_step_desc {
     const gx_anchor *pair_anchors;
     /* pair_count x 3, m: read and written, see gxs_step_desc; those of lost anchors stay. NULL: friction creeps */
     double *pair_slips;
-    double *pair_forces;         /* pair_count x 3: receives the force on the first side, N; or NULL */
-    double sleep_speed;          /* m/s: slower fragments fall asleep (see gxs_step_desc); 0: none */
-    double sleep_time;           /* s, for how long they must be slower; 0: 0.5 */
-    double (*clock)(void *user); /* s; NULL: the body's */
+    double *pair_forces;          /* pair_count x 3: receives the force on the first side, N; or NULL */
+    const gx_collider *colliders; /* collider_count: see gx_body_contact */
+    size_t collider_count;
+    gx_collider_load *collider_loads; /* collider_count: receives what each of them feels; or NULL */
+    double sleep_speed;               /* m/s: slower fragments fall asleep (see gxs_step_desc); 0: none */
+    double sleep_time;                /* s, for how long they must be slower; 0: 0.5 */
+    double (*clock)(void *user);      /* s; NULL: the body's */
     void *clock_user;
     double budget_seconds; /* no iteration begins after this time; 0: no limit. Needs a clock */
-    /* above 0: the error of the motion asked for, as a share of it, .03 say, in place of integrator, substeps and the
-       numbers of Newton's method and CG: the step is divided as the motion demands (see gxs_step_desc) */
+    /* above 0: the error of the motion asked for, as a share of it, .03 say, in place of integrator, substeps, quick
+       and the numbers of Newton's method and CG: the step is divided as the motion demands (see gxs_step_desc) */
     double quality;
 } gx_step_desc;
 typedef gxs_step_report gx_step_report;
@@ -539,7 +579,7 @@ typedef gxs_step_report gx_step_report;
    Affine copies neither follow nor lead, but those of a fragment that moves as a point do. A point with affine copies
    is moved as the material at its position at rest is. forces act on displacements alone, anchor_forces on A too;
    targets leave A as it is, poses turn it. Thin sheets that are flung need two or three Newton iterations in steps of
-   games: one lags. Pairs are refused where copies are affine. A cut of such a body makes its model anew.
+   games: one lags. Pairs are refused where copies are affine.
    failure.index: a spring, point, plane, pair, anchor, region or copy. The fields "displacement" and "velocity" are
    those of gx_view. Errors: ARGUMENT, NOT_FINITE, INDEX, LIMIT, MEMORY, STALE (copies of another epoch), RANGE (a
    number is too large or too small; as for FLAT, an element if field is NULL), FLAT (an element, see gx_body_model),
@@ -561,7 +601,10 @@ GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model, gx_failure *f
    once: pieces that overlap when contact begins, or that are found late, press as they did before, and come apart at
    the speed `recovery`. What a piece pressed with, and the slip of its friction, stay with the material through cuts.
    A piece's own thickness is no contact: a facet is left out if it was near at rest and the vertex did not face it
-   then, or was behind it. */
+   then, or was behind it.
+   Pieces press on the caller's rigid bodies as well: see gx_step_desc.colliders. Samples are the vertices of the
+   surface; facets on which the distance from a collider bends have more of them. Each is joined to the tangent plane of
+   the collider there, by c E A / h. A collider that is inside a piece is seen at any depth. */
 typedef struct gx_contact_desc {
     double stiffness;      /* c; 0: 10. Iterations of a step grow with its root */
     double friction;       /* Coulomb's coefficient, 0 or more */
@@ -571,16 +614,15 @@ typedef struct gx_contact_desc {
     uint32_t max_pairs;    /* of a step, which is refused beyond: GX_ERROR_LIMIT; 0: no limit but memory */
 } gx_contact_desc;
 /* Switches contact on for later steps, or off (NULL). It forgets the slips of friction. Steps with contact refuse
-   GXS_MIDPOINT ("integrator") and "quality". Contact is not saved, and neither clone nor restore copies it: a body that
-   was loaded, or made by gx_body_clone, has none, and gx_body_restore leaves it on or off as it is and forgets the
-   slips.
+   GXS_MIDPOINT ("integrator") and "quality". Contact is saved, cloned and restored with what presses and sticks.
    Errors: ARGUMENT (also: gx_body_desc.affine_below is not 0), NOT_FINITE. */
 GXFEM_API gx_result gx_body_contact(gx_body *body, const gx_contact_desc *desc /* or NULL: off */,
                                     gx_failure *failure /* or NULL */);
 
 /* A place where a piece pressed on another one, or on itself, at the end of the last step */
 typedef struct gx_contact {
-    uint32_t fragment, other; /* below gx_view.fragment_count; equal: of one piece */
+    uint32_t fragment, other; /* below gx_view.fragment_count; equal: of one piece; other is UINT32_MAX: a collider */
+    uint32_t collider;        /* its id; UINT32_MAX: it is a piece */
     double position[3];       /* on the surface of fragment, in space, m */
     double normal[3];         /* from other to fragment, of length 1 */
     double force[3];          /* on fragment, N */
@@ -761,8 +803,8 @@ GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index);
    out later, before the path bends. edge: point_count x 3, in space, m; as many points at
    each move until the blade is lifted, 2 or more; ends may be 10^12 elements away. scope: fragments that alone are cut,
    below gx_view.fragment_count; count 0: all. On an error body and blade are as they were. Errors: ARGUMENT (also:
-   gx_body_desc.affine_below is not 0; the first edge is inside the material and starts_inside is 0, index: point),
-   INDEX, NOT_FINITE and RANGE (edge, or "displacement", index: copy), LIMIT, MEMORY. */
+   the first edge is inside the material and starts_inside is 0, index: point), INDEX, NOT_FINITE and RANGE (edge, or
+   "displacement", index: copy), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t point_count,
                                   const uint32_t *scope_fragments, size_t scope_fragment_count,
                                   gx_blade_report *report /* or NULL */, gx_failure *failure /* or NULL */);
@@ -790,8 +832,8 @@ GXFEM_API gx_result gx_blade_contacts(gx_blade *blade, gx_blade_contact *contact
 /* Removes the material that a closed tool in space covers now (a drill, a punch), from each piece where it meets the
    tool. tool: vertices in space, m; kind and scope_slots are not read. Its triangles are divided where elements
    are smaller.
-   Errors: as gx_body_cut, and ARGUMENT ("affine_below" is not 0); a field of the tool reads "tool.vertices"; NOT_FINITE
-   and RANGE also of "displacement" (index: copy). */
+   Errors: as gx_body_cut; a field of the tool reads "tool.vertices"; NOT_FINITE and RANGE also of "displacement"
+   (index: copy). */
 GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_report *report /* or NULL */,
                                   gx_failure *failure /* or NULL */);
 
@@ -809,14 +851,14 @@ GXFEM_API const char *gx_result_text(gx_result result);
 /* >>saving --------------------------------------------------------------------------------------------------------- */
 
 /* A body as bytes or as another body, with all that it is: mesh, materials, cuts, displacement, velocity, rest times,
-   the history of BDF2, held regions, ids of fragments and their changes. Further cuts give the same cells, and further
-   steps the same bits in the same program. For that, saving, cloning and restoring make the solvers of all bodies
-   concerned start anew: the next step makes its preconditioner and takes no guess from the last. Sleeping copies go on
-   sleeping. Pointers are not saved. */
+   the history of BDF2, held regions, contact, ids of fragments and their changes. Further cuts give the same cells, and
+   further steps the same bits in the same program. For that, saving, cloning and restoring make the solvers of all
+   bodies concerned start anew: the next step makes its preconditioner and takes no guess from the last. Sleeping copies
+   go on sleeping. Pointers are not saved. */
 
 /* Writes the body to memory, which has room for capacity bytes. *size: receives how many bytes it takes, also after
    CAPACITY. memory NULL: computes *size only. Fields have fixed widths, in the machine's byte order, which the bytes
-   tell. Errors: ARGUMENT, CAPACITY (capacity is below *size). */
+   tell. Errors: ARGUMENT, CAPACITY (capacity is below *size); with contact MEMORY, LIMIT. */
 GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, size_t *size,
                                  gx_failure *failure /* or NULL */);
 /* Reads a body. Bytes from anywhere do no harm: a checksum detects accidental damage, and everything that a body relies
@@ -856,14 +898,21 @@ extern "C" {
 #pragma clang attribute push(__attribute__((target("no-simd128"))), apply_to = function)
 #endif
 
-/* COLD functions are seldom called: kept out of line and compiled for size. */
+/* COLD functions are seldom called: kept out of line and compiled for size. APART: out of line, so that their arrays
+   are not in the frame of what calls them. */
 #if defined(__GNUC__) || defined(__clang__)
 #define GXP_COLD              __attribute__((cold, noinline))
+#define GXP_APART             __attribute__((noinline))
 #define GXP_PREFETCH(address) __builtin_prefetch(address)
 #define GXP_PREFETCHES                                                                                                 \
     static inline __attribute__((always_inline)) /* without it gcc takes such a function for pure and drops calls */
 #else
 #define GXP_COLD
+#if defined(_MSC_VER)
+#define GXP_APART __declspec(noinline)
+#else
+#define GXP_APART
+#endif
 #define GXP_PREFETCH(address) ((void)(address))
 #define GXP_PREFETCHES        static inline
 #endif
@@ -1125,8 +1174,9 @@ typedef struct gxp_snapshot {
 typedef struct gxp_hidden {
     gxp_words copies; /* affine copies of the model, ascending. Those of specks are none: a speck moves as a point */
     gxp_words first;  /* vectors of the model: gxs_model.affine; empty if copies is */
-    uint8_t *held;    /* vectors of the model */
-    uint8_t *plain;   /* by copy, while the model is made: 1: part of a speck */
+    gxp_words before, origins; /* while the model is changed: first of the model before; gxs_change.origins */
+    uint8_t *held;             /* vectors of the model */
+    uint8_t *plain;            /* by copy, while the model is made: 1: part of a speck */
     uint32_t held_capacity, plain_capacity;
     double *state; /* of a step: displacement, velocity, both a step ago, x 3 and by vector, then rest times */
     uint32_t state_capacity;
@@ -1332,6 +1382,7 @@ typedef struct gxp_close_cell { /* a kept cell around the edge */
     uint32_t facets, facet_count;          /* of a divided element's cell, once they were asked for */
     double heights[4];                     /* of the corners over the faces opposite to them, likewise, m */
     uint8_t is_divided;                    /* its element is */
+    uint8_t is_bent;                       /* its map is quadratic: corners alone do not tell it */
     uint8_t has_facets, has_heights;
 } gxp_close_cell;
 typedef struct gxp_close_facet { /* a triangle that bounds a cell of a divided element */
@@ -1464,26 +1515,52 @@ typedef struct gxp_touch_vertex { /* of the surface: a sample */
     double normal[3];  /* outward, of length 1, at rest */
     double area, size; /* m2: its share of the surface; m: of its element */
     double young;      /* Pa */
-    double pressed;    /* m: depth by which its pair pressed at the end of the last step; 0: it had none */
-    double slip[3];    /* m: elastic, of its friction */
 } gxp_touch_vertex;
 
 typedef struct gxp_touch_facet {
     uint32_t vertex[3], element, fragment;
 } gxp_touch_facet;
 
+/* What a sample pressed with at the end of the last step. A sample is a vertex or, from vertex_count on, a facet */
+typedef struct gxp_touch_state {
+    uint32_t sample, other; /* other: a collider's id; GXP_NONE: the body itself */
+    double pressed;         /* m: depth */
+    double slip[3];         /* m: elastic, of its friction */
+    double rest[3];         /* m: of a facet, which has many, the place */
+} gxp_touch_state;
+
 typedef struct gxp_touch_surface { /* facets by fragment, then as they lie in space at rest */
     gxp_touch_vertex *vertices;
     gxp_touch_facet *facets;
+    gxp_touch_state *states; /* by sample, ascending */
     uint32_t vertex_count, facet_count, vertex_capacity, facet_capacity;
+    uint32_t state_count, state_capacity;
+    double largest; /* m: size of the vertices' elements */
 } gxp_touch_surface;
 
-typedef struct gxp_touch_pair { /* of a step */
-    uint32_t vertex, facet;
-    double share[3];             /* of the facet's corners: the place that the vertex touches */
-    double normal[3];            /* of the facet, in space, of length 1 */
+typedef struct gxp_touch_pair {  /* of a step */
+    uint32_t sample;             /* see gxp_touch_state */
+    uint32_t parts;              /* of a facet's edges */
+    uint32_t facet;              /* that a vertex touches; GXP_NONE: it is a collider, or nothing any more */
+    uint32_t collider, other;    /* place among the step's colliders, id; GXP_NONE: none */
+    double share[3];             /* of the corners of that facet; of a sample that is a facet, those of its own */
+    double normal[3];            /* of the other side, in space, of length 1 */
     double gap, approach, score; /* m; m/s; m2: the smallest is taken */
+    double gap_before;           /* m: after the step, what gap was before */
+    double area, rest[3];        /* m2, m: of the sample */
+    double pressed, slip[3];     /* m: of its state */
+    double place[3], way[3];     /* m: of the collider's point at the step's start; its way within the step */
 } gxp_touch_pair;
+
+typedef struct gxp_touch_beside { /* a sample that may come near a collider */
+    uint32_t collider, parts;     /* parts above 1: it is a facet, whose edges are divided */
+    double area;                  /* m2: of the facet, or of what this entry adds to a vertex */
+} gxp_touch_beside;
+
+typedef struct gxp_touch_known { /* a collider of the last step */
+    uint32_t id, unused;
+    uint64_t hash; /* of its shape and pose */
+} gxp_touch_known;
 
 typedef struct gxp_touch {
     int on;
@@ -1492,9 +1569,18 @@ typedef struct gxp_touch {
        the step has succeeded. */
     gxp_touch_surface surfaces[2];
     uint32_t current;
-    int made;      /* surfaces[current] is of the cuts whose hash is `hash` */
-    uint64_t hash; /* cuts.hash */
+    int made;               /* surfaces[current] is of the cuts whose hash is `hash` */
+    uint64_t hash;          /* cuts.hash */
+    uint64_t pressed;       /* hash of the states after the last step; 0: nothing pressed */
+    gxp_touch_known *known; /* ascending ids */
+    uint32_t known_count, known_capacity;
     /* of a step */
+    const gx_collider *colliders; /* collider_count: the caller's */
+    uint32_t collider_count;
+    gxp_keys named;    /* id, place of a collider; ascending */
+    gxp_words changed; /* of each collider: 1 if it moves or is not as it was in the last step */
+    gxp_touch_beside *beside;
+    uint32_t beside_capacity;
     gxp_touch_pair *pairs;
     double *moved;          /* vertices x 9: position and velocity in space, outward normal */
     double *facing;         /* facets x 3: normals in space, of length 1, or 0 */
@@ -1502,11 +1588,12 @@ typedef struct gxp_touch {
     gxp_words sides;        /* pairs x GXP_TOUCH_COPIES: copies of their points */
     double *weights;        /* likewise */
     double *slips, *forces; /* all pairs of the step x 3 */
-    gxp_keys order;
-    gxp_words ranked;     /* facets along a curve; then vertices that a cut has made */
-    uint32_t leaf_count;  /* a power of two */
-    uint32_t given;       /* pairs of the caller, which stand first */
-    uint32_t found, kept; /* pairs of contact: of this step; of the last one that succeeded */
+    gxp_keys order;         /* facets; places of vertices; samples beside colliders */
+    gxp_keys placed;        /* facets by element */
+    gxp_words ranked;       /* facets along a curve */
+    uint32_t leaf_count;    /* a power of two */
+    uint32_t given;         /* pairs of the caller, which stand first */
+    uint32_t found, kept;   /* pairs of contact: of this step; of the last one that succeeded */
     uint32_t pair_capacity, moved_capacity, facing_capacity, box_capacity, weight_capacity, slip_capacity,
         force_capacity;
 } gxp_touch;
@@ -1782,7 +1869,8 @@ static const gxp_column gxp_lists[] = {
     GXP_WORDS(view.indices), GXP_WORDS(view.copy_fragment), GXP_WORDS(view.fragment_number),
     GXP_WORDS(view.splits), GXP_WORDS(view.split_cells), GXP_WORDS(view.split_parents),
     GXP_WORDS(model.changed), GXP_WORDS(model.thin),
-    GXP_WORDS(hidden.copies), GXP_WORDS(hidden.first), GXP_LIST(hidden.held, hidden.held_capacity, 1),
+    GXP_WORDS(hidden.copies), GXP_WORDS(hidden.first), GXP_WORDS(hidden.before), GXP_WORDS(hidden.origins),
+    GXP_LIST(hidden.held, hidden.held_capacity, 1),
     GXP_LIST(hidden.plain, hidden.plain_capacity, 1),
     GXP_LIST(hidden.state, hidden.state_capacity, sizeof(double)), GXP_WORDS(hidden.span_copies),
     GXP_LIST(hidden.span_weights, hidden.span_capacity, sizeof(double)),
@@ -1811,6 +1899,9 @@ static const gxp_column gxp_lists[] = {
     GXP_LIST(touch.surfaces[0].facets, touch.surfaces[0].facet_capacity, sizeof(gxp_touch_facet)),
     GXP_LIST(touch.surfaces[1].vertices, touch.surfaces[1].vertex_capacity, sizeof(gxp_touch_vertex)),
     GXP_LIST(touch.surfaces[1].facets, touch.surfaces[1].facet_capacity, sizeof(gxp_touch_facet)),
+    GXP_LIST(touch.surfaces[0].states, touch.surfaces[0].state_capacity, sizeof(gxp_touch_state)),
+    GXP_LIST(touch.surfaces[1].states, touch.surfaces[1].state_capacity, sizeof(gxp_touch_state)),
+    GXP_LIST(touch.known, touch.known_capacity, sizeof(gxp_touch_known)),
     GXP_LIST(touch.pairs, touch.pair_capacity, sizeof(gxp_touch_pair)),
     GXP_LIST(touch.moved, touch.moved_capacity, 9 * sizeof(double)),
     GXP_LIST(touch.facing, touch.facing_capacity, 3 * sizeof(double)),
@@ -1818,7 +1909,8 @@ static const gxp_column gxp_lists[] = {
     GXP_LIST(touch.weights, touch.weight_capacity, sizeof(double)),
     GXP_LIST(touch.slips, touch.slip_capacity, 3 * sizeof(double)),
     GXP_LIST(touch.forces, touch.force_capacity, 3 * sizeof(double)),
-    GXP_KEYS(touch.order), GXP_WORDS(touch.ranked),
+    GXP_KEYS(touch.order), GXP_WORDS(touch.ranked), GXP_KEYS(touch.named), GXP_WORDS(touch.changed),
+    GXP_LIST(touch.beside, touch.beside_capacity, sizeof(gxp_touch_beside)), GXP_KEYS(touch.placed),
     GXP_WORDS(scratch.removed), GXP_KEYS(scratch.removed_of), GXP_WORDS(scratch.pinches), GXP_WORDS(scratch.touched),
     GXP_WORDS(scratch.new_cells),
     GXP_KEYS(scratch.links), GXP_KEYS(scratch.glue), GXP_KEYS(scratch.seams), GXP_WORDS(scratch.cluster),
@@ -4169,6 +4261,22 @@ static gx_result gxp_rough_area(gxb_complex *cx, uint32_t facet, double *area, d
     return result;
 }
 
+/* sum += (b - o) x (a - o) in the plane of two barycentric coordinates */
+static GXP_APART void gxp_fine_cross(gxb_num *sum, const gxp_fine_point *a, const gxp_fine_point *b,
+                                     const gxp_fine_point *o, const unsigned *axes) {
+    GXB_NUM(x);
+    GXB_NUM(y);
+    GXB_NUM(z);
+    GXB_NUM(w);
+    gxb_num_sub(&x, &b->c[axes[1]], &o->c[axes[1]]);
+    gxb_num_sub(&y, &b->c[axes[2]], &o->c[axes[2]]);
+    gxb_num_sub(&z, &a->c[axes[1]], &o->c[axes[1]]);
+    gxb_num_sub(&w, &a->c[axes[2]], &o->c[axes[2]]);
+    z.sign = -z.sign;
+    gxp_num_add_product(sum, &x, &w);
+    gxp_num_add_product(sum, &y, &z);
+}
+
 /* The polygon of scratch.facet_points as a share of the face opposite to node k, in numbers of any size: its area in
    the plane of two barycentric coordinates, where the face has area 1. */
 static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
@@ -4177,32 +4285,15 @@ static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
     uint32_t i;
     int c;
     GXB_NUM(sum);
-    GXB_NUM(one);
     gxi_part_axes(k, axes);
-    gxb_num_set(&one, 1.0, 0);
     for (i = 0; i < 3; i++)
         for (c = 0; c < 4; c++) p[i].c[c].d = p[i].limbs[c];
     for (i = 0; i < body->scratch.facet_points.count; i++) {
         /* a: this point, b: the one before */
         gxp_fine_point *const a = &p[1 + i % 2], *const b = &p[1 + (i + 1) % 2];
-        GXB_NUM(x);
-        GXB_NUM(y);
-        GXB_NUM(z);
-        GXB_NUM(w);
-        GXB_NUM(s);
-        GXB_NUM(t);
-        GXB_NUM(d);
         gxb_complex_barycentric_fine(body->complex, body->scratch.facet_points.data[i], element,
                                      i == 0 ? p[0].c : a->c);
-        if (i < 2) continue;
-        gxb_num_sub(&x, &b->c[axes[1]], &p[0].c[axes[1]]);
-        gxb_num_sub(&y, &b->c[axes[2]], &p[0].c[axes[2]]);
-        gxb_num_sub(&z, &a->c[axes[1]], &p[0].c[axes[1]]);
-        gxb_num_sub(&w, &a->c[axes[2]], &p[0].c[axes[2]]);
-        gxb_num_mul(&s, &x, &w);
-        gxb_num_mul(&t, &y, &z);
-        gxb_num_sub(&d, &s, &t);
-        gxp_num_add_product(&sum, &d, &one);
+        if (i >= 2) gxp_fine_cross(&sum, a, b, &p[0], axes);
     }
     return fabs(gxb_num_to_double(&sum));
 }
@@ -4943,7 +5034,7 @@ typedef struct gxp_fine_sums {
     gxb_limb limbs[10][GXB_NUM_LIMBS];
 } gxp_fine_sums;
 /* det(a, b, c) */
-static void gxp_fine_determinant(gxb_num *det, gxb_num *p[3][3]) {
+static GXP_APART void gxp_fine_determinant(gxb_num *det, gxb_num *p[3][3]) {
     static const int cyclic[3][2] = {{1, 2}, {2, 0}, {0, 1}};
     int k;
     det->sign = det->exp = 0;
@@ -4961,7 +5052,7 @@ static void gxp_fine_determinant(gxb_num *det, gxb_num *p[3][3]) {
 
 /* Adds the cone from the origin to a triangle. With D = det(a,b,c), s = a+b+c: D, D s_i, D (s_i s_j + a_i a_j + b_i b_j
    + c_i c_j). */
-static void gxp_fine_add(gxp_fine_sums *sums, gxb_num *p[3][3]) {
+static GXP_APART void gxp_fine_add(gxp_fine_sums *sums, gxb_num *p[3][3]) {
     gxb_limb limbs[3][GXB_NUM_LIMBS];
     gxb_num s[3];
     int i, j, k, slot = 4;
@@ -4994,26 +5085,19 @@ static void gxp_fine_coordinates(gx_body *body, uint32_t element, uint32_t point
     gxb_complex_barycentric_fine(body->complex, body->scratch.boundary.points.data[point], element, points[point].c);
 }
 
-/* Moments of the boundary in the frame with origin k, from coordinates with 180 bits. */
-static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, gxi_moments2 *m) {
-    gxp_boundary *boundary = &body->scratch.boundary;
-    const size_t size = boundary->points.count * sizeof(gxp_fine_point);
-    gxp_fine_point *points = (gxp_fine_point *)gxp_allocate(&body->config.allocator, size);
+/* Moments of the boundary's triangles, from the coordinates of its points along three axes */
+static GXP_APART void gxp_fine_sum(const gxp_boundary *boundary, gxp_fine_point *points, const unsigned *axes,
+                                   gxi_moments2 *m) {
     gxp_fine_sums sums;
-    unsigned axes[3];
     uint32_t i, t;
     int a, c;
-    if (points == NULL) return GX_ERROR_MEMORY;
     for (i = 0; i < 10; i++) {
         sums.c[i].sign = sums.c[i].exp = 0;
         sums.c[i].n = 0;
         sums.c[i].d = sums.limbs[i];
     }
-    for (i = 0; i < boundary->points.count; i++) points[i].c[0].d = NULL;
-    gxi_part_axes(k, axes);
     for (t = 0; t + 2 < boundary->triangles.count; t += 3) {
         gxb_num *p[3][3];
-        for (a = 0; a < 3; a++) gxp_fine_coordinates(body, element, boundary->triangles.data[t + (uint32_t)a], points);
         for (a = 0; a < 3; a++)
             for (c = 0; c < 3; c++) p[a][c] = &points[boundary->triangles.data[t + (uint32_t)a]].c[axes[c]];
         gxp_fine_add(&sums, p);
@@ -5021,6 +5105,21 @@ static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, g
     m->volume = gxb_num_to_double(&sums.c[0]) / 6;
     for (a = 0; a < 3; a++) m->first[a] = gxb_num_to_double(&sums.c[1 + a]) / 24;
     for (a = 0; a < 6; a++) m->second[a] = gxb_num_to_double(&sums.c[4 + a]) / 120;
+}
+
+/* Moments of the boundary in the frame with origin k, from coordinates with 180 bits. */
+static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, gxi_moments2 *m) {
+    const gxp_boundary *boundary = &body->scratch.boundary;
+    const size_t size = boundary->points.count * sizeof(gxp_fine_point);
+    gxp_fine_point *points = (gxp_fine_point *)gxp_allocate(&body->config.allocator, size);
+    unsigned axes[3];
+    uint32_t i;
+    if (points == NULL) return GX_ERROR_MEMORY;
+    for (i = 0; i < boundary->points.count; i++) points[i].c[0].d = NULL;
+    for (i = 0; i < boundary->triangles.count; i++)
+        gxp_fine_coordinates(body, element, boundary->triangles.data[i], points);
+    gxi_part_axes(k, axes);
+    gxp_fine_sum(boundary, points, axes, m);
     gxp_release(&body->config.allocator, points, size);
     return GX_OK;
 }
@@ -6104,13 +6203,12 @@ static void gxp_touch_copies(gx_body *body, const gxp_cell *cell) {
 }
 
 /* Notes the elements of the model that have changed. Without memory for that, the model is made whole; so it is where
-   copies are affine, and where the body was saved, loaded, cloned or restored since its last step, so that both bodies
-   then have the same model. */
+   the body was saved, loaded, cloned or restored since its last step, so that both bodies then have the same model. */
 static void gxp_note_changed(gx_body *body) {
     const gxp_words *changed = &body->undo.cells.rows, *made = &body->scratch.new_cells;
     gx_result result = GX_OK;
     uint32_t i;
-    if (body->copies.bends || body->model.resumed != 0) body->model.state = GXP_MODEL_STALE;
+    if (body->model.resumed != 0) body->model.state = GXP_MODEL_STALE;
     if (body->model.state == GXP_MODEL_STALE) return;
     for (i = 0; i < changed->count && result == GX_OK; i++)
         result = gxp_push(body, &body->model.changed, body->cells.data[changed->data[i]].element);
@@ -6407,7 +6505,7 @@ static uint32_t gxp_anchor_cell(gx_body *body, const gx_anchor *anchor) {
 
 /* det(b - a, c - a, d - a) of x = a b c d, exact */
 static GXP_COLD void gxp_exact_determinant(const double *const x[4], gxb_num *r) {
-    gxb_limb limbs[9][GXB_NUM_LIMBS];
+    gxb_limb limbs[9][GXB_NUM_LIMBS / 4]; /* differences of doubles have a fifth of the longest number's bits */
     gxb_num e[9];
     int i, k;
     GXB_NUM(p);
@@ -7499,8 +7597,7 @@ GXFEM_API gx_region gx_region_sphere(const double center[3], double radius) {
 
 /* >>map: from rest to space ---------------------------------------------------------------------------------------- */
 /* In: a material point, or a cell. Out: where it is, how fast its corners are. Nothing else in this file turns
-   displacements of copies into positions, but for >>tree, >>locate and what follows there. Blades take a cell's map to
-   be affine, and refuse bodies that may have affine copies. Touches nothing. */
+   displacements of copies into positions, but for >>tree, >>locate and what follows there. Touches nothing. */
 
 /* sum += weight A (x - X) of an affine copy; x: a material point. linear: a body's copies.linear or linear_rate */
 static void gxp_add_linear(const gx_body *body, const double *linear, uint32_t copy, double weight, const double x[3],
@@ -8854,27 +8951,77 @@ static gx_result gxp_make_model(gx_body *body, gxs_model *model, gx_failure *fai
     return GX_OK;
 }
 
+/* Lists the elements around copies that are affine in the model and were not, or the other way round. before: by copy
+   of the model before, its first hidden vector */
+static gx_result gxp_list_bent(gx_body *body, const gxp_words *before) {
+    gx_result result = GX_OK;
+    uint32_t i;
+    for (i = 0; i < body->copies.count && result == GX_OK; i++) {
+        gxp_around around = gxp_around_copy(body, i);
+        if ((body->hidden.first.data[i] == GXS_NOT_AFFINE) ==
+            (before->data[body->copies.before[i] >> 1] == GXS_NOT_AFFINE))
+            continue;
+        while (result == GX_OK && gxp_next_around(body, &around))
+            result = gxp_push(body, &body->model.changed, body->cells.data[around.cell].element);
+    }
+    gxp_sort_unique(&body->model.changed);
+    return result;
+}
+
+/* Origins of copies and hidden vectors. before: as in gxp_list_bent */
+static gx_result gxp_vector_origins(gx_body *body, const gxp_words *before, gxp_words *origins) {
+    const gxp_words *copies = &body->hidden.copies;
+    gx_result result = gxp_start_words(body, origins, gxp_vector_count(body));
+    uint32_t i, k;
+    if (result != GX_OK) return result;
+    memcpy(origins->data, body->copies.before, body->copies.count * sizeof *origins->data);
+    for (i = 0; i < copies->count; i++) {
+        const uint32_t origin = body->copies.before[copies->data[i]], first = before->data[origin >> 1];
+        for (k = 0; k < 3; k++)
+            origins->data[body->copies.count + 3 * i + k] =
+                first == GXS_NOT_AFFINE ? origin | 1 : 2 * (first + k) | (origin & 1);
+    }
+    return GX_OK;
+}
+
+/* Affine copies, in place of those of the model before. before, origins: of the call */
+static gx_result gxp_change_affine(gx_body *body, gxp_words *before, gxp_words *origins) {
+    const gxp_words last = body->hidden.first;
+    gx_result result;
+    body->hidden.first = *before;
+    *before = last;
+    result = gxp_make_affine(body);
+    if (result != GX_OK || before->count == 0 || body->hidden.copies.count == 0) return result;
+    result = gxp_list_bent(body, before);
+    return result == GX_OK ? gxp_vector_origins(body, before, origins) : result;
+}
+
 /* Applies the changes to the solver's model. After LIMIT, or EMPTY if no part is left, the model must be set whole, and
    nothing has failed. After MEMORY it must be set whole too, but the call has failed. */
 static gx_result gxp_change_model(gx_body *body, gx_failure *failure) {
     gxp_model *model = &body->model;
+    gxp_hidden *hidden = &body->hidden;
     size_t room = 0;
     uint32_t i, cell;
     gxs_change change;
     gx_result result;
     gxp_sort_unique(&model->changed);
+    result = gxp_list_thin(body, 0);
+    if (result == GX_OK) result = gxp_change_affine(body, &hidden->before, &hidden->origins);
     for (i = 0; i < model->changed.count; i++)
         for (cell = model->changed.data[i]; cell != GXP_NONE; cell = body->cells.data[cell].next) room++;
-    result = gxp_reserve(&body->config.allocator, &model->parts, sizeof *model->parts, 0, &model->part_capacity, room);
+    if (result == GX_OK)
+        result =
+            gxp_reserve(&body->config.allocator, &model->parts, sizeof *model->parts, 0, &model->part_capacity, room);
     model->part_count = 0;
     for (i = 0; i < model->changed.count && result == GX_OK; i++)
         result = gxp_add_parts(body, model->changed.data[i], failure);
-    if (result == GX_OK) result = gxp_list_thin(body, 0);
-    if (result == GX_OK) result = gxp_make_constraints(body);
+    if (result == GX_OK && (hidden->before.count > 0) != (hidden->copies.count > 0)) result = GX_ERROR_LIMIT;
     memset(&change, 0, sizeof change);
-    change.copy_count = body->copies.count;
-    change.origins = body->copies.before;
-    change.held = body->copies.held;
+    change.copy_count = gxp_vector_count(body);
+    change.origins = hidden->copies.count > 0 ? hidden->origins.data : body->copies.before;
+    change.held = hidden->copies.count > 0 ? hidden->held : body->copies.held;
+    change.affine = hidden->copies.count > 0 ? hidden->first.data : NULL;
     change.groups = model->changed.data;
     change.group_count = model->changed.count;
     change.elements = model->parts;
@@ -8941,6 +9088,8 @@ GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model, gx_failure *f
     if (model == NULL) return gxp_refuse(failure, "model");
     gxp_end(failure, GX_OK);
     result = gxp_update_held(body);
+    /* the solver's hidden vectors are no longer known */
+    if (body->copies.bends && body->model.state == GXP_MODEL_CHANGED) body->model.state = GXP_MODEL_STALE;
     if (result == GX_OK) result = gxp_make_model(body, model, failure);
     return gxp_close(failure, result);
 }
@@ -10591,14 +10740,67 @@ static gx_result gxp_find_cells_at(gx_body *body, const double point[3], gxp_wor
 
 /* --- the maps of a cell --- */
 
-/* Pulls a point of space back by the affine map of a cell's deformed element, also from outside of it. weights: of the
-   cell's copies, 1 in sum. At rest the material point is the point, bit by bit. 0: the element is flat. */
+/* Outside of its element, the map of a bent cell goes on as the affine map that touches it next to there: at the same
+   coordinates with those below 0 left out. So it has no folds of its own where nothing is. */
+static void gxp_touch_bent(const gx_body *body, const gxp_cell *c, const double weights[4], const double point[3],
+                           double inside[4], double off[3], double slope[3][3]) {
+    double rest[12], material[3], sum = 0;
+    int n;
+    for (n = 0; n < 4; n++) sum += inside[n] = fmax(weights[n], 0);
+    for (n = 0; n < 4; n++) inside[n] /= sum;
+    gxp_element_positions(body, c->element, rest);
+    gxp_weigh_material(rest, inside, material);
+    gxp_bent_residual(body, c, rest, inside, material, point, off, slope);
+}
+
+/* Where a bent cell's map has a place, also outside of its element. weights: 1 in sum */
+static void gxp_image_of_bent(const gx_body *body, const gxp_cell *c, const double weights[4], double x[3]) {
+    static const double origin[3] = {0, 0, 0};
+    double inside[4], slope[3][3];
+    int i, k;
+    gxp_touch_bent(body, c, weights, origin, inside, x, slope);
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 3; k++) x[k] += (weights[i + 1] - inside[i + 1]) * slope[i][k];
+}
+
+/* The place that a bent cell's map has at a point of space, also outside of its element: in doubles, by Newton's
+   method. Where that finds none, the place by the last map that touches. 0: there is none, the cell is flat. */
+static int gxp_place_in_bent(const gx_body *body, const gxp_cell *c, const double point[3], double weights[4]) {
+    double inside[4], off[3], slope[3][3], normal[3][3];
+    int step, i;
+    for (i = 0; i < 4; i++) weights[i] = 0.25;
+    for (step = 0; step < GXP_UNBEND_STEPS; step++) {
+        double volume, most = 0;
+        gxp_touch_bent(body, c, weights, point, inside, off, slope);
+        for (i = 0; i < 3; i++) gxp_cross(normal[i], slope[(i + 1) % 3], slope[(i + 2) % 3]);
+        volume = gxp_dot(slope[0], normal[0]);
+        if (!(fabs(volume) > 0)) return 0;
+        for (i = 1; i < 4; i++) {
+            const double next = inside[i] - gxp_dot(off, normal[i - 1]) / volume;
+            most = fmax(most, fabs(next - weights[i]));
+            weights[i] = next;
+        }
+        weights[0] = 1 - weights[1] - weights[2] - weights[3];
+        if (!(most > GXP_UNBEND_SMALL) || !(most < 1e9)) break;
+    }
+    return gxp_is_finite(weights[0]);
+}
+
+/* Pulls a point of space back by the map of a cell's deformed element, also from outside of it. weights: of the cell's
+   copies, 1 in sum. At rest the material point is the point, bit by bit, unless the cell is bent. 0: the element is
+   flat. */
 static int gxp_pull_back(const gx_body *body, uint32_t cell, const double point[3], double weights[4],
                          double material[3]) {
     const gxp_cell *c = &body->cells.data[cell];
     gxb_pullback back;
     double x[12], rest[12];
     int i, still = 1;
+    if (gxp_is_bent(body, c)) {
+        if (!gxp_place_in_bent(body, c, point, weights)) return 0;
+        gxp_element_positions(body, c->element, rest);
+        gxp_weigh_material(rest, weights, material);
+        return 1;
+    }
     gxp_moved_corners(body, c, x);
     gxp_element_positions(body, c->element, rest);
     gxb_pullback_set(&back, x, point);
@@ -10624,10 +10826,18 @@ static void gxp_image(const gx_body *body, uint32_t cell, const double material[
     gxp_map_affine(body, c, weights, material, position);
 }
 
-/* The volume of a cell's deformed element as a share of that at rest, below 0 where it is inverted; in doubles */
+/* The volume of a cell's deformed element as a share of that at rest, below 0 where it is inverted; in doubles. Of a
+   bent cell that of the map which touches in the middle. */
 static double gxp_stretch(const gx_body *body, uint32_t cell) {
+    static const double middle[4] = {0.25, 0.25, 0.25, 0.25}, origin[3] = {0, 0, 0};
     const gxp_cell *c = &body->cells.data[cell];
     double x[12];
+    if (gxp_is_bent(body, c)) {
+        double inside[4], off[3], slope[3][3], normal[3];
+        gxp_touch_bent(body, c, middle, origin, inside, off, slope);
+        gxp_cross(normal, slope[1], slope[2]);
+        return gxp_dot(slope[0], normal) / (6 * gxp_element_volume(body, c->element));
+    }
     gxp_moved_corners(body, c, x);
     return gxi_tet_volume(x) / gxp_element_volume(body, c->element);
 }
@@ -11381,6 +11591,7 @@ static void gxp_copy_facet(const gx_body *body, uint32_t t, gxp_touch_surface *t
         v->element = facet->element;
         v->fragment = facet->fragment;
         v->size = cbrt(6 * gxp_element_volume(body, v->element));
+        to->largest = fmax(to->largest, v->size);
         v->young = body->mesh.materials[s->material[t]].elastic.young;
     }
 }
@@ -11398,6 +11609,7 @@ static gx_result gxp_copy_samples(gx_body *body, gxp_touch_surface *to) {
     if (result != GX_OK) return result;
     to->vertex_count = s->vertex_count;
     to->facet_count = s->triangle_count;
+    to->largest = 0;
     for (i = 0; i < to->vertex_count; i++) gxp_copy_sample(s, i, &to->vertices[i]);
     for (i = 0; i < to->facet_count; i++)
         gxp_copy_facet(body, body->touch.ranked.data[GXP_SECOND(body->touch.order.data[i])], to, &to->facets[i]);
@@ -11421,6 +11633,19 @@ static gx_result gxp_make_surface(gx_body *body, gxp_touch_surface *to) {
     return result;
 }
 
+/* The first state of a sample, or of one behind it */
+static uint32_t gxp_first_state(const gxp_touch_surface *s, uint32_t sample) {
+    uint32_t low = 0, high = s->state_count;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (s->states[middle].sample < sample)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 /* The vertex of a surface at the same place with the most similar normal; GXP_NONE: there is none. order: its vertices,
    by hashes of their places */
 static uint32_t gxp_same_sample(const gxp_touch_surface *s, const gxp_keys *order, const gxp_touch_vertex *v) {
@@ -11437,26 +11662,62 @@ static uint32_t gxp_same_sample(const gxp_touch_surface *s, const gxp_keys *orde
     return found;
 }
 
-/* Interpolates the state of a vertex that a cut has put on a facet of its element. order: facets by element */
-static void gxp_state_on_facet(const gxp_touch_surface *s, const gxp_keys *order, gxp_touch_vertex *v) {
-    double best = 1e-12 * v->size * v->size;
-    uint32_t i;
-    int n, k;
+/* The facet of a surface that a material point is on, facing the same way, and where on it; GXP_NONE: there is none.
+   order: facets by element */
+static uint32_t gxp_facet_at(const gxp_touch_surface *s, const gxp_keys *order, const double rest[3],
+                             const double normal[3], double size, double share[3]) {
+    double best = 1e-12 * size * size;
+    uint32_t i, found = GXP_NONE;
     for (i = 0; i < order->count; i++) {
         const gxp_touch_facet *f = &s->facets[GXP_SECOND(order->data[i])];
-        double p[3][3], share[3] = {0, 0, 0}, square;
-        if (gxp_dot(v->normal, s->vertices[f->vertex[0]].normal) < 0.5) continue;
+        double p[3][3], own[3] = {0, 0, 0}, square;
+        int n, k;
+        if (gxp_dot(normal, s->vertices[f->vertex[0]].normal) < 0.5) continue;
         for (n = 0; n < 3; n++)
-            for (k = 0; k < 3; k++) p[n][k] = s->vertices[f->vertex[n]].rest[k] - v->rest[k];
-        square = gxp_near_triangle(p, best, share);
+            for (k = 0; k < 3; k++) p[n][k] = s->vertices[f->vertex[n]].rest[k] - rest[k];
+        square = gxp_near_triangle(p, best, own);
         if (!(square < best)) continue;
         best = square;
-        v->pressed = v->slip[0] = v->slip[1] = v->slip[2] = 0;
-        for (n = 0; n < 3; n++) {
-            v->pressed += share[n] * s->vertices[f->vertex[n]].pressed;
-            for (k = 0; k < 3; k++) v->slip[k] += share[n] * s->vertices[f->vertex[n]].slip[k];
-        }
+        found = GXP_SECOND(order->data[i]);
+        memcpy(share, own, sizeof own);
     }
+    return found;
+}
+
+/* Room for another state; it is the last one. */
+static gx_result gxp_push_state(gx_body *body, gxp_touch_surface *to, const gxp_touch_state *state, uint32_t sample) {
+    const gx_result result =
+        gxp_reserve(&body->config.allocator, &to->states, sizeof *to->states, to->state_count, &to->state_capacity, 1);
+    if (result != GX_OK) return result;
+    to->states[to->state_count] = *state;
+    to->states[to->state_count++].sample = sample;
+    return GX_OK;
+}
+
+/* Adds a share of the states of a vertex to those of the last vertex of another surface. */
+static gx_result gxp_add_states(gx_body *body, const gxp_touch_surface *from, uint32_t vertex, double share,
+                                gxp_touch_surface *to, uint32_t last) {
+    uint32_t i = gxp_first_state(from, vertex), at;
+    int k;
+    for (; i < from->state_count && from->states[i].sample == vertex && share > 0; i++) {
+        const gxp_touch_state *state = &from->states[i];
+        for (at = to->state_count;
+             at > 0 && to->states[at - 1].sample == last && to->states[at - 1].other != state->other;)
+            at--;
+        if (at == 0 || to->states[at - 1].sample != last) {
+            gxp_touch_state none;
+            gx_result result;
+            memset(&none, 0, sizeof none);
+            none.other = state->other;
+            memcpy(none.rest, to->vertices[last].rest, sizeof none.rest);
+            result = gxp_push_state(body, to, &none, last);
+            if (result != GX_OK) return result;
+            at = to->state_count;
+        }
+        to->states[at - 1].pressed += share * state->pressed;
+        for (k = 0; k < 3; k++) to->states[at - 1].slip[k] += share * state->slip[k];
+    }
+    return GX_OK;
 }
 
 /* The facets of an element: a part of `order`, which is sorted by elements. Nothing of it is owned. */
@@ -11470,39 +11731,73 @@ static gxp_keys gxp_facets_of(const gxp_keys *order, uint32_t element) {
     return part;
 }
 
-/* The state of the material goes from one surface to another. Vertices that are in both keep theirs, bit for bit. */
-static gx_result gxp_carry_state(gx_body *body, const gxp_touch_surface *from, gxp_touch_surface *to) {
-    gxp_keys *order = &body->touch.order;
-    gxp_words *fresh = &body->touch.ranked;
-    gx_result result = gxp_start_words(body, fresh, to->vertex_count);
-    uint32_t i, loaded = 0;
-    for (i = 0; i < from->vertex_count; i++) loaded |= from->vertices[i].pressed > 0;
-    if (!loaded) return result;
-    order->count = 0;
-    if (result == GX_OK) result = gxp_keys_room(body, order, 2 * ((size_t)from->vertex_count + from->facet_count));
-    if (result != GX_OK) return result;
-    for (i = 0; i < from->vertex_count; i++)
-        order->data[order->count++] = gxp_hash_doubles(0, from->vertices[i].rest, 3) << 32 | i;
-    result = gxp_sort_keys(body, order, 0, order->count);
+/* The states of vertices go from one surface to another. Vertices that are in both keep theirs, bit for bit; others
+   get a mean of the facet that they are on. places: vertices of `from` by hashes of their places; elements: its facets
+   by element */
+static gx_result gxp_carry_vertices(gx_body *body, const gxp_touch_surface *from, const gxp_keys *places,
+                                    const gxp_keys *elements, gxp_touch_surface *to) {
+    uint32_t i, n;
+    gx_result result = GX_OK;
     for (i = 0; i < to->vertex_count && result == GX_OK; i++) {
-        const uint32_t same = gxp_same_sample(from, order, &to->vertices[i]);
-        if (same == GXP_NONE) {
-            fresh->data[fresh->count++] = i;
+        const gxp_touch_vertex *v = &to->vertices[i];
+        const uint32_t same = gxp_same_sample(from, places, v);
+        double share[3] = {0, 0, 0};
+        gxp_keys facets;
+        uint32_t facet;
+        if (same != GXP_NONE) {
+            result = gxp_add_states(body, from, same, 1, to, i);
             continue;
         }
-        to->vertices[i].pressed = from->vertices[same].pressed;
-        memcpy(to->vertices[i].slip, from->vertices[same].slip, sizeof to->vertices[i].slip);
-    }
-    order->count = 0;
-    for (i = 0; i < from->facet_count && result == GX_OK; i++)
-        order->data[order->count++] = (uint64_t)from->facets[i].element << 32 | i;
-    if (result == GX_OK) result = gxp_sort_keys(body, order, 0, order->count);
-    for (i = 0; i < fresh->count && result == GX_OK; i++) {
-        gxp_touch_vertex *v = &to->vertices[fresh->data[i]];
-        const gxp_keys facets = gxp_facets_of(order, v->element);
-        gxp_state_on_facet(from, &facets, v);
+        facets = gxp_facets_of(elements, v->element);
+        facet = gxp_facet_at(from, &facets, v->rest, v->normal, v->size, share);
+        for (n = 0; n < 3 && facet != GXP_NONE && result == GX_OK; n++)
+            result = gxp_add_states(body, from, from->facets[facet].vertex[n], share[n], to, i);
     }
     return result;
+}
+
+/* Facets get the states of those on which they lie: all of them, since a sample takes the nearest. */
+static gx_result gxp_carry_facets(gx_body *body, const gxp_touch_surface *from, const gxp_keys *elements,
+                                  gxp_touch_surface *to) {
+    uint32_t i, n;
+    gx_result result = GX_OK;
+    if (gxp_first_state(from, from->vertex_count) == from->state_count) return result;
+    for (i = 0; i < to->facet_count && result == GX_OK; i++) {
+        const gxp_touch_facet *f = &to->facets[i];
+        const gxp_keys facets = gxp_facets_of(elements, f->element);
+        const gxp_touch_vertex *v = &to->vertices[f->vertex[0]];
+        double center[3], share[3];
+        uint32_t facet;
+        int k;
+        for (k = 0; k < 3; k++)
+            center[k] = (v->rest[k] + to->vertices[f->vertex[1]].rest[k] + to->vertices[f->vertex[2]].rest[k]) / 3;
+        facet = gxp_facet_at(from, &facets, center, v->normal, v->size, share);
+        if (facet == GXP_NONE) continue;
+        for (n = gxp_first_state(from, from->vertex_count + facet);
+             n < from->state_count && from->states[n].sample == from->vertex_count + facet && result == GX_OK; n++)
+            result = gxp_push_state(body, to, &from->states[n], to->vertex_count + i);
+    }
+    return result;
+}
+
+/* The state of the material goes from one surface to another. */
+static gx_result gxp_carry_states(gx_body *body, const gxp_touch_surface *from, gxp_touch_surface *to) {
+    gxp_keys *places = &body->touch.order, *elements = &body->touch.placed;
+    gx_result result = GX_OK;
+    uint32_t i;
+    to->state_count = places->count = elements->count = 0;
+    if (from->state_count == 0) return result;
+    result = gxp_keys_room(body, places, 2 * (size_t)from->vertex_count);
+    if (result == GX_OK) result = gxp_keys_room(body, elements, 2 * (size_t)from->facet_count);
+    if (result != GX_OK) return result;
+    for (i = 0; i < from->vertex_count; i++)
+        places->data[places->count++] = gxp_hash_doubles(0, from->vertices[i].rest, 3) << 32 | i;
+    for (i = 0; i < from->facet_count; i++)
+        elements->data[elements->count++] = (uint64_t)from->facets[i].element << 32 | i;
+    result = gxp_sort_keys(body, places, 0, places->count);
+    if (result == GX_OK) result = gxp_sort_keys(body, elements, 0, elements->count);
+    if (result == GX_OK) result = gxp_carry_vertices(body, from, places, elements, to);
+    return result == GX_OK ? gxp_carry_facets(body, from, elements, to) : result;
 }
 
 /* The surface of a step: the one that is there, or another, made anew after a cut */
@@ -11513,13 +11808,398 @@ static gx_result gxp_step_surface(gx_body *body, gxp_touch_surface **surface) {
     *surface = own;
     if (t->made && t->hash == body->cuts.hash) return GX_OK;
     *surface = other;
+    other->state_count = 0;
     result = gxp_make_surface(body, other);
-    return result == GX_OK && t->made ? gxp_carry_state(body, own, other) : result;
+    return result == GX_OK && t->made ? gxp_carry_states(body, own, other) : result;
+}
+
+/* Makes the surface of the present cuts hold the state, as the next step would: for saving. */
+static gx_result gxp_refresh_contact(gx_body *body) {
+    gxp_touch *t = &body->touch;
+    gxp_touch_surface *surface;
+    gx_result result;
+    if (!t->on || !t->made || t->hash == body->cuts.hash) return GX_OK;
+    result = gxp_step_surface(body, &surface);
+    if (result != GX_OK) return result;
+    t->current = 1 - t->current;
+    t->hash = body->cuts.hash;
+    t->kept = 0;
+    return GX_OK;
+}
+
+/* >>colliders: where pieces meet rigid bodies ---------------------------------------------------------------------- */
+/* In: colliders, the surface of contact and how it moves. Out: the tangent planes of colliders that samples meet within
+   a step. Touches lists of a step. */
+
+/* Steps by the distance to a collider on the way of a sample; a way that needs more passes it closely */
+#define GXP_TOUCH_ADVANCES 16
+/* Samples of facets on which the distance bends: so many to the length of what a collider has, at most so many parts of
+   an edge. A cosine: normals of a collider that bend less are as good as one */
+#define GXP_TOUCH_FINE  4
+#define GXP_TOUCH_PARTS 24u
+#define GXP_TOUCH_FLAT  0.995
+/* In sizes of an element: gaps that have a pair if the step may make them smaller */
+#define GXP_TOUCH_NEAR 0.02
+
+/* Signed distance from a ball around the origin */
+static double gxp_ball_distance(const double p[3], double radius, double normal[3]) {
+    const double far = sqrt(gxp_dot(p, p));
+    normal[0] = 1; /* across a capsule's axis */
+    normal[1] = normal[2] = 0;
+    if (far > 0) (void)gxp_unit(p, normal);
+    return far - radius;
+}
+
+static double gxp_box_distance(const double half[3], const double p[3], double normal[3]) {
+    double beyond[3], square = 0;
+    int k, most = 0;
+    for (k = 0; k < 3; k++) {
+        beyond[k] = fabs(p[k]) - half[k];
+        if (beyond[k] > beyond[most]) most = k;
+        square += beyond[k] > 0 ? beyond[k] * beyond[k] : 0;
+    }
+    for (k = 0; k < 3; k++)
+        normal[k] = square > 0 ? (beyond[k] > 0 ? copysign(beyond[k], p[k]) : 0) : k == most ? copysign(1, p[k]) : 0;
+    if (square > 0) (void)gxp_unit(normal, normal);
+    return square > 0 ? sqrt(square) : beyond[most];
+}
+
+/* Signed distance of a place in the collider's frame; normal: of length 1, or 0 where the caller's has none. Not
+   finite: the caller's is not. */
+static double gxp_collider_distance(const gx_collider *c, const double p[3], double normal[3]) {
+    double d, given[3] = {0, 0, 0}, along;
+    switch (c->kind) {
+    case GX_COLLIDER_SPHERE: return gxp_ball_distance(p, c->size[0], normal);
+    case GX_COLLIDER_CAPSULE:
+        along = p[2] > c->size[1] ? c->size[1] : p[2] < -c->size[1] ? -c->size[1] : p[2];
+        given[0] = p[0];
+        given[1] = p[1];
+        given[2] = p[2] - along;
+        return gxp_ball_distance(given, c->size[0], normal);
+    case GX_COLLIDER_BOX: return gxp_box_distance(c->size, p, normal);
+    case GX_COLLIDER_DISTANCE:
+        d = c->distance(c->user, p, given);
+        normal[0] = normal[1] = normal[2] = 0;
+        if (!gxp_is_finite(given[0]) || !gxp_is_finite(given[1]) || !gxp_is_finite(given[2])) return HUGE_VAL;
+        (void)gxp_unit(given, normal);
+        return d;
+    default:
+        normal[0] = normal[1] = 0;
+        normal[2] = 1;
+        return p[2];
+    }
+}
+
+/* The velocity of a collider at a place in space */
+static void gxp_collider_velocity(const gx_collider *c, const double x[3], double velocity[3]) {
+    const double arm[3] = {x[0] - c->pose[3], x[1] - c->pose[7], x[2] - c->pose[11]};
+    int k;
+    gxp_cross(velocity, c->spin, arm);
+    for (k = 0; k < 3; k++) velocity[k] += c->velocity[k];
+}
+
+/* A direction in space, in the collider's frame, and back */
+static void gxp_to_collider(const gx_collider *c, const double x[3], double own[3]) {
+    int k;
+    for (k = 0; k < 3; k++) own[k] = c->pose[k] * x[0] + c->pose[4 + k] * x[1] + c->pose[8 + k] * x[2];
+}
+static void gxp_from_collider(const gx_collider *c, const double own[3], double x[3]) {
+    int k;
+    for (k = 0; k < 3; k++) x[k] = gxp_dot(c->pose + 4 * k, own);
+}
+
+/* A sample beside a collider, in the collider's frame */
+typedef struct gxp_approach {
+    double at[3], motion[3]; /* m, at the step's start; m/s, relative to the collider */
+    double normal[3];        /* of the collider where they are nearest */
+    double distance, time;   /* m: there; s: then */
+    int wild;                /* 1: the caller's distance is not a number */
+} gxp_approach;
+
+/* x: position and velocity in space */
+static gxp_approach gxp_make_approach(const gx_collider *c, const double x[6]) {
+    gxp_approach a;
+    double d[3], v[3];
+    int k;
+    memset(&a, 0, sizeof a);
+    gxp_collider_velocity(c, x, v);
+    for (k = 0; k < 3; k++) {
+        d[k] = x[k] - c->pose[4 * k + 3];
+        v[k] = x[3 + k] - v[k];
+    }
+    gxp_to_collider(c, d, a.at);
+    gxp_to_collider(c, v, a.motion);
+    return a;
+}
+
+/* Does the sample come near its collider within dt? Goes along its way by steps no longer than the distance. */
+static int gxp_comes_near(const gx_collider *c, double size, double dt, gxp_approach *a) {
+    const double speed = sqrt(gxp_dot(a->motion, a->motion));
+    int i, k;
+    for (i = 0; i < GXP_TOUCH_ADVANCES; i++) {
+        double p[3];
+        for (k = 0; k < 3; k++) p[k] = a->at[k] + a->time * a->motion[k];
+        a->distance = gxp_collider_distance(c, p, a->normal);
+        if (!gxp_is_finite(a->distance)) {
+            a->wild = 1;
+            return 0;
+        }
+        if (a->distance < GXP_TOUCH_NEAR * size) return gxp_dot(a->normal, a->normal) > 0;
+        if (!(a->distance <= speed * (dt - a->time))) return 0;
+        a->time += a->distance / speed;
+    }
+    return 0;
+}
+
+/* Does a sample meet a collider within the step? It then gets the tangent plane of the collider where the two meet,
+   moving with the collider. x: position and velocity of the sample. pair: sample, collider, share and area are set;
+   receives all else. *wild: 1: the caller's distance is not a number */
+static int gxp_meets_collider(const gx_body *body, const double x[6], double size, double dt, gxp_touch_pair *pair,
+                              int *wild) {
+    const gx_collider *c = &body->touch.colliders[pair->collider];
+    gxp_approach a = gxp_make_approach(c, x);
+    int k;
+    pair->other = c->id;
+    if (!gxp_comes_near(c, size, dt, &a)) {
+        *wild |= a.wild;
+        return 0;
+    }
+    pair->approach = -gxp_dot(a.normal, a.motion);
+    pair->gap = a.distance + a.time * pair->approach;
+    gxp_from_collider(c, a.normal, pair->normal);
+    for (k = 0; k < 3; k++) pair->place[k] = x[k] - pair->gap * pair->normal[k];
+    gxp_collider_velocity(c, pair->place, pair->way);
+    for (k = 0; k < 3; k++) pair->way[k] *= dt;
+    return 1;
+}
+
+/* The length, m, of what a collider may have between samples, at most; an element's size if it is not known */
+static double gxp_collider_feature(const gx_collider *c, double size) {
+    double least = size;
+    int k;
+    if (c->kind == GX_COLLIDER_SPHERE || c->kind == GX_COLLIDER_CAPSULE) return c->size[0];
+    for (k = 0; k < 3 && c->kind == GX_COLLIDER_BOX; k++) least = fmin(least, 2 * c->size[k]);
+    return c->kind == GX_COLLIDER_DISTANCE && c->size[0] > 0 ? c->size[0] : least;
+}
+
+/* Into how many parts the edges of a facet are divided for samples beside a collider: 1 where the distance is as good
+   as linear on it, so that its corners tell all. 0: it does not come near. */
+static uint32_t gxp_facet_parts(const gx_body *body, const gxp_touch_surface *s, double dt, uint32_t facet,
+                                const gx_collider *c, int *wild) {
+    const gxp_touch_facet *f = &s->facets[facet];
+    const double size = s->vertices[f->vertex[0]].size;
+    double normal[3][3], center[3] = {0, 0, 0}, reach = 0, nearest = HUGE_VAL, longest = 0, parts;
+    gxp_approach corner[3];
+    int i, k, bent = 0;
+    for (i = 0; i < 3; i++) {
+        corner[i] = gxp_make_approach(c, body->touch.moved + 9 * (size_t)f->vertex[i]);
+        for (k = 0; k < 3; k++) center[k] += corner[i].at[k] / 3;
+    }
+    for (i = 0; i < 3; i++) {
+        const double *a = corner[i].at, *b = corner[(i + 1) % 3].at, *v = corner[i].motion;
+        const double out[3] = {a[0] - center[0], a[1] - center[1], a[2] - center[2]};
+        const double edge[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+        const double d = gxp_collider_distance(c, a, normal[i]);
+        *wild |= !gxp_is_finite(d);
+        nearest = fmin(nearest, d);
+        reach = fmax(reach, sqrt(gxp_dot(out, out)) + dt * sqrt(gxp_dot(v, v)));
+        longest = fmax(longest, sqrt(gxp_dot(edge, edge)));
+    }
+    for (i = 0; i < 3; i++) bent |= gxp_dot(normal[i], normal[(i + 1) % 3]) < GXP_TOUCH_FLAT;
+    if (*wild || !bent) return 1;
+    if (nearest > GXP_TOUCH_NEAR * size && gxp_collider_distance(c, center, normal[0]) > reach + GXP_TOUCH_NEAR * size)
+        return 0;
+    parts = ceil(GXP_TOUCH_FINE * longest / fmax(gxp_collider_feature(c, size), 1e-3 * size));
+    return parts < GXP_TOUCH_PARTS ? (uint32_t)fmax(1, parts) : GXP_TOUCH_PARTS;
+}
+
+/* Lists a sample for the search of pairs with a collider. */
+static gx_result gxp_list_sample(gx_body *body, uint32_t sample, uint32_t collider, uint32_t parts, double area) {
+    gxp_touch *t = &body->touch;
+    gx_result result =
+        gxp_reserve(&body->config.allocator, &t->beside, sizeof *t->beside, t->order.count, &t->beside_capacity, 1);
+    if (result == GX_OK) result = gxp_keys_room(body, &t->order, 1);
+    if (result != GX_OK) return result;
+    t->beside[t->order.count].collider = collider;
+    t->beside[t->order.count].parts = parts;
+    t->beside[t->order.count].area = area;
+    t->order.data[t->order.count] = (uint64_t)sample << 32 | t->order.count;
+    t->order.count++;
+    return GX_OK;
+}
+
+/* Lists the samples of a facet: its corners, each with a third of its area, or the facet, which has many. */
+static gx_result gxp_list_samples(gx_body *body, const gxp_touch_surface *s, double dt, uint32_t facet,
+                                  uint32_t collider, int *wild) {
+    static const uint32_t corner[3] = {0, 1, 2};
+    const gxp_touch_facet *f = &s->facets[facet];
+    const gx_collider *c = &body->touch.colliders[collider];
+    const uint32_t parts = c->kind == GX_COLLIDER_PLANE ? 1 : gxp_facet_parts(body, s, dt, facet, c, wild);
+    double x[9], n[3], area;
+    gx_result result = GX_OK;
+    int k;
+    for (k = 0; k < 3; k++) memcpy(x + 3 * k, s->vertices[f->vertex[k]].rest, 3 * sizeof *x);
+    gxp_triangle_normal(x, corner, n);
+    area = 0.5 * sqrt(gxp_dot(n, n));
+    if (parts > 1) return gxp_list_sample(body, s->vertex_count + facet, collider, parts, area);
+    for (k = 0; k < 3 && parts == 1 && result == GX_OK; k++)
+        result = gxp_list_sample(body, f->vertex[k], collider, 1, area / 3);
+    return result;
+}
+
+/* Lists the samples in boxes that a collider may come near to within the step. */
+static gx_result gxp_list_beside(gx_body *body, const gxp_touch_surface *s, double dt, uint32_t collider, int *wild) {
+    const gxp_touch *t = &body->touch;
+    const gx_collider *c = &t->colliders[collider];
+    const double turn = sqrt(gxp_dot(c->spin, c->spin)), speed = sqrt(gxp_dot(c->velocity, c->velocity));
+    uint32_t stack[64], count = 0, i;
+    gx_result result = GX_OK;
+    stack[count++] = 0;
+    while (count > 0 && result == GX_OK) {
+        const uint32_t box = stack[--count];
+        const gxp_bounds *b = &t->boxes[box];
+        double x[3], own[3], normal[3], half = 0, far, d;
+        int k;
+        if (b->low[0] > b->high[0]) continue;
+        for (k = 0; k < 3; k++) {
+            x[k] = 0.5 * (b->low[k] + b->high[k]) - c->pose[4 * k + 3];
+            half += 0.25 * (b->high[k] - b->low[k]) * (b->high[k] - b->low[k]);
+        }
+        half = sqrt(half);
+        far = sqrt(gxp_dot(x, x));
+        gxp_to_collider(c, x, own);
+        d = gxp_collider_distance(c, own, normal);
+        if (!gxp_is_finite(d)) {
+            *wild = 1;
+            return result;
+        }
+        if (d > half + GXP_TOUCH_NEAR * s->largest + dt * (speed + turn * (far + half))) continue;
+        if (box + 1 < t->leaf_count) {
+            stack[count++] = 2 * box + 2;
+            stack[count++] = 2 * box + 1;
+            continue;
+        }
+        for (i = GXP_TOUCH_LEAF * (box + 1 - t->leaf_count);
+             i < GXP_TOUCH_LEAF * (box + 2 - t->leaf_count) && i < s->facet_count && result == GX_OK; i++)
+            result = gxp_list_samples(body, s, dt, i, collider, wild);
+    }
+    return result;
+}
+
+/* Lists the samples beside colliders by sample: touch.order, second: place in touch.beside. */
+static gx_result gxp_list_all_beside(gx_body *body, const gxp_touch_surface *s, double dt, gx_failure *failure) {
+    gx_result result = GX_OK;
+    uint32_t i;
+    body->touch.order.count = 0;
+    for (i = 0; i < body->touch.collider_count && s->facet_count > 0 && result == GX_OK; i++) {
+        int wild = 0;
+        result = gxp_list_beside(body, s, dt, i, &wild);
+        if (wild) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "colliders.distance", i);
+    }
+    if (result == GX_OK) result = gxp_sort_keys(body, &body->touch.order, 0, body->touch.order.count);
+    return gxp_end(failure, result);
+}
+
+static gx_result gxp_check_collider(const gx_collider *c, size_t index, gx_failure *failure) {
+    static const char *const names[5] = {"colliders.size", "colliders.pose", "colliders.velocity", "colliders.spin",
+                                         "colliders.friction"};
+    static const int sizes[5] = {0, 1, 2, 3, 1}; /* by kind: numbers of size that are read */
+    const double *const numbers[5] = {c->size, c->pose, c->velocity, c->spin, &c->friction};
+    const int counts[5] = {c->kind < 5 ? sizes[c->kind] : 0, 12, 3, 3, 1};
+    double turned[3];
+    int i, k;
+    if (c->id == GXP_NONE) return gxp_fail(failure, GX_ERROR_ARGUMENT, "colliders.id", index);
+    if (c->kind > GX_COLLIDER_DISTANCE) return gxp_fail(failure, GX_ERROR_ARGUMENT, "colliders.kind", index);
+    for (i = 0; i < 5; i++)
+        for (k = 0; k < counts[i]; k++) {
+            if (!gxp_is_finite(numbers[i][k])) return gxp_fail(failure, GX_ERROR_NOT_FINITE, names[i], index);
+            if ((i == 0 || i == 4) && numbers[i][k] < 0) return gxp_fail(failure, GX_ERROR_ARGUMENT, names[i], index);
+        }
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 3; k++)
+            if (fabs(gxp_dot(c->pose + 4 * i, c->pose + 4 * k) - (i == k)) > 1e-6)
+                return gxp_fail(failure, GX_ERROR_ARGUMENT, "colliders.pose", index);
+    gxp_cross(turned, c->pose, c->pose + 4);
+    if (gxp_dot(turned, c->pose + 8) < 0) return gxp_fail(failure, GX_ERROR_ARGUMENT, "colliders.pose", index);
+    if (c->kind == GX_COLLIDER_DISTANCE && c->distance == NULL)
+        return gxp_fail(failure, GX_ERROR_ARGUMENT, "colliders.distance", index);
+    return GX_OK;
+}
+
+/* Hash of a collider's shape and pose */
+static uint64_t gxp_hash_collider(const gx_collider *c) {
+    uint64_t hash = gxp_hash_words(1, &c->kind, 1);
+    hash = gxp_hash_doubles(hash, c->size, 3);
+    hash = gxp_hash_doubles(hash, c->pose, 12);
+    return gxp_hash_doubles(hash, &c->friction, 1);
+}
+
+/* Is a collider other than in the last step, or will it be after this one? */
+static int gxp_is_changed(const gxp_touch *t, const gx_collider *c) {
+    uint32_t low = 0, high = t->known_count;
+    if (gxp_dot(c->velocity, c->velocity) > 0 || gxp_dot(c->spin, c->spin) > 0) return 1;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (t->known[middle].id < c->id)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low == t->known_count || t->known[low].id != c->id || t->known[low].hash != gxp_hash_collider(c);
+}
+
+/* Takes the colliders of a step: checks, names and compares them. */
+static gx_result gxp_take_colliders(gx_body *body, const gx_step_desc *desc, gx_failure *failure) {
+    gxp_touch *t = &body->touch;
+    const size_t count = desc->collider_count;
+    gx_result result = GX_OK;
+    uint32_t i;
+    t->colliders = desc->colliders;
+    t->collider_count = t->named.count = t->changed.count = 0;
+    if (count == 0) return GX_OK;
+    if (desc->colliders == NULL) return gxp_refuse(failure, "colliders");
+    if (count > INT32_MAX / 4) return gxp_fail(failure, GX_ERROR_LIMIT, "collider_count", SIZE_MAX);
+    for (i = 0; i < count && result == GX_OK; i++) result = gxp_check_collider(&desc->colliders[i], i, failure);
+    if (result != GX_OK) return result;
+    result = gxp_keys_room(body, &t->named, 2 * count);
+    if (result == GX_OK) result = gxp_words_room(body, &t->changed, count);
+    if (result == GX_OK)
+        result = gxp_reserve(&body->config.allocator, &t->known, sizeof *t->known, t->known_count, &t->known_capacity,
+                             count > t->known_count ? count - t->known_count : 0);
+    for (i = 0; i < count && result == GX_OK; i++) {
+        t->named.data[t->named.count++] = (uint64_t)desc->colliders[i].id << 32 | i;
+        t->changed.data[t->changed.count++] = (uint32_t)gxp_is_changed(t, &desc->colliders[i]);
+    }
+    if (result == GX_OK) result = gxp_sort_keys(body, &t->named, 0, t->named.count);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    for (i = 1; i < count; i++)
+        if (GXP_FIRST(t->named.data[i]) == GXP_FIRST(t->named.data[i - 1]))
+            return gxp_fail(failure, GX_ERROR_ARGUMENT, "colliders.id", GXP_SECOND(t->named.data[i]));
+    t->collider_count = (uint32_t)count;
+    return GX_OK;
+}
+
+/* After a step: remembers its colliders. */
+static void gxp_know_colliders(gxp_touch *t) {
+    uint32_t i;
+    t->known_count = t->collider_count;
+    for (i = 0; i < t->collider_count; i++) {
+        const gx_collider *c = &t->colliders[GXP_SECOND(t->named.data[i])];
+        t->known[i].id = c->id;
+        t->known[i].unused = 0;
+        t->known[i].hash = gxp_hash_collider(c);
+    }
+}
+
+/* Is a collider gone, or other than in the last step? */
+static int gxp_has_changed(const gxp_touch *t, uint32_t id) {
+    const uint32_t i = gxp_first_key(&t->named, (uint64_t)id << 32);
+    return i == t->named.count || GXP_FIRST(t->named.data[i]) != id || t->changed.data[GXP_SECOND(t->named.data[i])];
 }
 
 /* >>meeting: pairs of a step --------------------------------------------------------------------------------------- */
-/* In: the surface, where its material is and how fast. Out: the pairs that a step gets beside the caller's, and, after
-   the step, what their vertices press with. Touches what a step with contact works with. */
+/* In: the surface, where its material is and how fast. Out: the pairs that a step gets beside the caller's. Touches
+   what a step with contact works with. */
 
 /* A vertex touches at most one facet, in whose frame all is told: the gap is the vertex's height above the facet's
    plane. Pairs stay what they are within the step, so that its energy is well defined. A pair without load, in front of
@@ -11527,11 +12207,11 @@ static gx_result gxp_step_surface(gx_body *body, gxp_touch_surface **surface) {
 
 /* A cosine: facets that face a vertex less do not meet it. */
 #define GXP_TOUCH_FACING 0.5
-/* In sizes of an element: gaps that have a pair if the step may make them smaller; how far beside a facet a vertex may
-   be, with a share of its gap; how far behind a facet at rest is a piece's own thickness */
-#define GXP_TOUCH_NEAR   0.02
+/* In sizes of an element: how far beside a facet a vertex may be, with a share of its gap; from how far a sample of a
+   facet takes the state of another one; how far behind a facet at rest is a piece's own thickness */
 #define GXP_TOUCH_BESIDE 0.002
 #define GXP_TOUCH_SLANT  0.1
+#define GXP_TOUCH_SAME   0.25
 #define GXP_TOUCH_BEHIND 1e-9
 
 /* Position, velocity and normal of all vertices, normals of facets */
@@ -11616,16 +12296,16 @@ static int gxp_is_thickness(const gxp_touch_surface *s, const gxp_touch_vertex *
    near each other, the place is the one where the vertex will be when the gap is closed. */
 static int gxp_meets(const gx_body *body, const gxp_touch_surface *s, double dt, gxp_touch_pair *pair) {
     const gxp_touch *t = &body->touch;
-    const gxp_touch_vertex *v = &s->vertices[pair->vertex];
+    const gxp_touch_vertex *v = &s->vertices[pair->sample];
     const gxp_touch_facet *f = &s->facets[pair->facet];
-    const double *x = t->moved + 9 * (size_t)pair->vertex, *n = t->facing + 3 * (size_t)pair->facet;
+    const double *x = t->moved + 9 * (size_t)pair->sample, *n = t->facing + 3 * (size_t)pair->facet;
     const double facing = -gxp_dot(x + 6, n), *corner[3];
     const double reach = t->desc.depth * fmin(v->size, s->vertices[f->vertex[0]].size);
     double p[3][3], y[3], d[3], height, time = 0, along;
     int i, k;
     if (!(facing > GXP_TOUCH_FACING)) return 0;
     for (i = 0; i < 3; i++) {
-        if (f->vertex[i] == pair->vertex) return 0;
+        if (f->vertex[i] == pair->sample) return 0;
         corner[i] = t->moved + 9 * (size_t)f->vertex[i];
     }
     for (pair->approach = height = 0, k = 0; k < 3; k++) {
@@ -11664,12 +12344,12 @@ static void gxp_try_facet(const gx_body *body, const gxp_touch_surface *s, doubl
 static void gxp_seek_facet(const gx_body *body, const gxp_touch_surface *s, double dt, gxp_touch_pair *best) {
     const gxp_touch *t = &body->touch;
     const double slack =
-        (t->desc.depth * (1 + GXP_TOUCH_SLANT) + GXP_TOUCH_NEAR + GXP_TOUCH_BESIDE) * s->vertices[best->vertex].size;
+        (t->desc.depth * (1 + GXP_TOUCH_SLANT) + GXP_TOUCH_NEAR + GXP_TOUCH_BESIDE) * s->vertices[best->sample].size;
     uint32_t stack[64], count = 0, i;
     gxp_bounds way;
     int k;
     gxp_empty_bounds(&way);
-    gxp_add_way(t->moved + 9 * (size_t)best->vertex, dt, &way);
+    gxp_add_way(t->moved + 9 * (size_t)best->sample, dt, &way);
     stack[count++] = 0;
     while (count > 0) {
         const uint32_t box = stack[--count];
@@ -11688,27 +12368,155 @@ static void gxp_seek_facet(const gx_body *body, const gxp_touch_surface *s, doub
     }
 }
 
-/* Lists the pairs of all vertices. */
+/* A pair of a sample that touches nothing so far */
+static gxp_touch_pair gxp_no_pair(uint32_t sample) {
+    gxp_touch_pair pair;
+    memset(&pair, 0, sizeof pair);
+    pair.sample = sample;
+    pair.facet = pair.collider = pair.other = GXP_NONE;
+    return pair;
+}
+
+/* The vertex by whose element a sample is measured */
+static const gxp_touch_vertex *gxp_sample_vertex(const gxp_touch_surface *s, uint32_t sample) {
+    return &s->vertices[sample < s->vertex_count ? sample : s->facets[sample - s->vertex_count].vertex[0]];
+}
+
+/* What a pair's sample pressed with before. A facet has many samples: the nearest one counts, which after a cut need
+   not be where it was. */
+static void gxp_recall_state(const gxp_touch_surface *s, gxp_touch_pair *pair) {
+    const double size = gxp_sample_vertex(s, pair->sample)->size;
+    double best = GXP_TOUCH_SAME * size * GXP_TOUCH_SAME * size;
+    uint32_t i;
+    for (i = gxp_first_state(s, pair->sample); i < s->state_count && s->states[i].sample == pair->sample; i++) {
+        const gxp_touch_state *state = &s->states[i];
+        const double d[3] = {state->rest[0] - pair->rest[0], state->rest[1] - pair->rest[1],
+                             state->rest[2] - pair->rest[2]};
+        const double square = pair->sample < s->vertex_count ? 0 : gxp_dot(d, d);
+        if (state->other != pair->other || !(square < best)) continue;
+        best = square;
+        pair->pressed = state->pressed;
+        memcpy(pair->slip, state->slip, sizeof pair->slip);
+        if (!(best > 0)) return;
+    }
+}
+
+/* Lists a pair with what its sample pressed with. */
+static gx_result gxp_list_pair(gx_body *body, const gxp_touch_surface *s, const gxp_touch_pair *pair,
+                               gx_failure *failure) {
+    gxp_touch *t = &body->touch;
+    gx_result result;
+    if (t->desc.max_pairs > 0 && t->found >= t->desc.max_pairs)
+        return gxp_fail(failure, GX_ERROR_LIMIT, "max_pairs", SIZE_MAX);
+    result = gxp_reserve(&body->config.allocator, &t->pairs, sizeof *t->pairs, t->found, &t->pair_capacity, 1);
+    if (result != GX_OK) return gxp_end(failure, result);
+    t->pairs[t->found] = *pair;
+    gxp_recall_state(s, &t->pairs[t->found++]);
+    return GX_OK;
+}
+
+/* Lists the pair of a vertex with a collider, if they meet. */
+static gx_result gxp_seek_at_vertex(gx_body *body, const gxp_touch_surface *s, double dt, gxp_touch_pair *pair,
+                                    gx_failure *failure) {
+    const gxp_touch_vertex *v = &s->vertices[pair->sample];
+    int wild = 0;
+    memcpy(pair->rest, v->rest, sizeof pair->rest);
+    if (gxp_meets_collider(body, body->touch.moved + 9 * (size_t)pair->sample, v->size, dt, pair, &wild))
+        return gxp_list_pair(body, s, pair, failure);
+    return wild ? gxp_fail(failure, GX_ERROR_NOT_FINITE, "colliders.distance", pair->collider) : GX_OK;
+}
+
+/* Lists the pairs of a facet with a collider: at the corners of all parts, each with its share of the area. */
+static gx_result gxp_seek_on_facet(gx_body *body, const gxp_touch_surface *s, double dt, double area,
+                                   gxp_touch_pair *pair, gx_failure *failure) {
+    const gxp_touch_facet *f = &s->facets[pair->sample - s->vertex_count];
+    const uint32_t parts = pair->parts;
+    uint32_t i, j, m;
+    gx_result result = GX_OK;
+    for (i = 0; i <= parts; i++)
+        for (j = 0; i + j <= parts && result == GX_OK; j++) {
+            const int rims = (i == 0) + (j == 0) + (i + j == parts);
+            double x[6] = {0, 0, 0, 0, 0, 0};
+            int n, wild = 0;
+            pair->share[0] = (double)(parts - i - j) / parts;
+            pair->share[1] = (double)i / parts;
+            pair->share[2] = (double)j / parts;
+            pair->area = area * (rims == 0 ? 6 : rims == 1 ? 3 : 1) / (3.0 * parts * parts);
+            pair->rest[0] = pair->rest[1] = pair->rest[2] = 0;
+            for (n = 0; n < 3; n++) {
+                for (m = 0; m < 6; m++) x[m] += pair->share[n] * body->touch.moved[9 * (size_t)f->vertex[n] + m];
+                for (m = 0; m < 3; m++) pair->rest[m] += pair->share[n] * s->vertices[f->vertex[n]].rest[m];
+            }
+            if (gxp_meets_collider(body, x, s->vertices[f->vertex[0]].size, dt, pair, &wild))
+                result = gxp_list_pair(body, s, pair, failure);
+            if (wild) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "colliders.distance", pair->collider);
+        }
+    return result;
+}
+
+/* Where a sample has pressed on a collider that has left, a pair without stiffness wakes what rested on it. first: of
+   the sample's pairs */
+static gx_result gxp_wake_left(gx_body *body, const gxp_touch_surface *s, uint32_t sample, uint32_t first,
+                               gx_failure *failure) {
+    gxp_touch *t = &body->touch;
+    uint32_t i, j;
+    gx_result result = GX_OK;
+    for (i = gxp_first_state(s, sample); i < s->state_count && s->states[i].sample == sample && result == GX_OK; i++) {
+        gxp_touch_pair lost = gxp_no_pair(sample);
+        if (s->states[i].other == GXP_NONE || !gxp_has_changed(t, s->states[i].other)) continue;
+        for (j = first; j < t->found && t->pairs[j].other != s->states[i].other;) j++;
+        if (j < t->found) continue;
+        lost.share[0] = lost.normal[0] = 1;
+        lost.other = s->states[i].other; /* once */
+        result = gxp_list_pair(body, s, &lost, failure);
+    }
+    return result;
+}
+
+/* Lists the pairs of a sample with colliders: those that touch.order has for it from *next on. */
+static gx_result gxp_seek_colliders(gx_body *body, const gxp_touch_surface *s, double dt, uint32_t sample,
+                                    uint32_t *next, gx_failure *failure) {
+    gxp_touch *t = &body->touch;
+    const uint32_t first = t->found;
+    gx_result result = GX_OK;
+    while (*next < t->order.count && GXP_FIRST(t->order.data[*next]) == sample && result == GX_OK) {
+        gxp_touch_pair pair = gxp_no_pair(sample);
+        double area = 0;
+        pair.collider = t->beside[GXP_SECOND(t->order.data[*next])].collider;
+        pair.parts = t->beside[GXP_SECOND(t->order.data[*next])].parts;
+        for (; *next < t->order.count && GXP_FIRST(t->order.data[*next]) == sample &&
+               t->beside[GXP_SECOND(t->order.data[*next])].collider == pair.collider;
+             (*next)++)
+            area += t->beside[GXP_SECOND(t->order.data[*next])].area;
+        pair.area = area;
+        result = sample < s->vertex_count ? gxp_seek_at_vertex(body, s, dt, &pair, failure)
+                                          : gxp_seek_on_facet(body, s, dt, area, &pair, failure);
+    }
+    return result == GX_OK ? gxp_wake_left(body, s, sample, first, failure) : result;
+}
+
+/* Lists the pairs of all samples. */
 static gx_result gxp_seek_pairs(gx_body *body, const gxp_touch_surface *s, double dt, gx_failure *failure) {
     gxp_touch *t = &body->touch;
-    gx_result result = GX_OK;
-    uint32_t i;
+    gx_result result = gxp_list_all_beside(body, s, dt, failure);
+    uint32_t i, next = 0;
+    const uint32_t state_end = s->state_count > 0 ? s->states[s->state_count - 1].sample + 1 : 0;
     t->found = 0;
     for (i = 0; i < s->vertex_count && result == GX_OK && s->facet_count > 0; i++) {
-        gxp_touch_pair best;
-        if (!(s->vertices[i].area > 0)) continue;
-        memset(&best, 0, sizeof best);
-        best.vertex = i;
-        best.facet = GXP_NONE;
-        gxp_seek_facet(body, s, dt, &best);
-        if (best.facet == GXP_NONE) continue;
-        if (t->desc.max_pairs > 0 && t->found >= t->desc.max_pairs)
-            return gxp_fail(failure, GX_ERROR_LIMIT, "max_pairs", SIZE_MAX);
-        result = gxp_reserve(&body->config.allocator, &t->pairs, sizeof *t->pairs, t->found, &t->pair_capacity, 1);
-        if (result == GX_OK) t->pairs[t->found++] = best;
+        gxp_touch_pair best = gxp_no_pair(i);
+        if (s->vertices[i].area > 0) gxp_seek_facet(body, s, dt, &best);
+        if (best.facet != GXP_NONE) result = gxp_list_pair(body, s, &best, failure);
+        if (result == GX_OK && (t->order.count > 0 || i < state_end))
+            result = gxp_seek_colliders(body, s, dt, i, &next, failure);
     }
-    return gxp_end(failure, result);
+    for (; i < s->vertex_count + s->facet_count && (next < t->order.count || i < state_end) && result == GX_OK; i++)
+        result = gxp_seek_colliders(body, s, dt, i, &next, failure);
+    return result;
 }
+
+/* >>pressing: what pairs do ---------------------------------------------------------------------------------------- */
+/* In: the pairs of a step. Out: the same as the solver takes them; after the step, what samples press with, and what
+   the caller learns of it. Touches what a step with contact works with. */
 
 /* Room for what a step with that surface needs before it knows its pairs */
 static gx_result gxp_surface_room(gx_body *body, const gxp_touch_surface *s) {
@@ -11733,50 +12541,72 @@ static void gxp_add_share(gxs_point *point, uint32_t *copies, double *weights, u
     weights[i] += weight;
 }
 
-/* The point of a pair: its vertex, relative to the place on the facet. Returns 0 if nothing moves it. */
+/* Adds a share of a vertex to a point: of its place at rest and of what moves it. */
+static void gxp_add_place(const gxp_touch_vertex *v, double share, gxs_point *point, uint32_t *copies,
+                          double *weights) {
+    int k;
+    for (k = 0; k < 3; k++) point->position[k] += share * v->rest[k];
+    for (k = 0; k < 4 && v->weights[k] > 0; k++)
+        gxp_add_share(point, copies, weights, v->copies[k], share * v->weights[k]);
+}
+
+/* The point of a pair: its sample, relative to the place on the facet, or to that of the collider at the step's end.
+   Returns 0 if nothing moves it. */
 static int gxp_meeting_point(const gxp_touch_surface *s, const gxp_touch_pair *pair, uint32_t *copies, double *weights,
                              gxs_point *point) {
-    const gxp_touch_vertex *v = &s->vertices[pair->vertex];
-    const gxp_touch_facet *f = &s->facets[pair->facet];
     double moves = 0;
     uint32_t m;
     int i, k;
-    memcpy(point->position, v->rest, sizeof point->position);
-    for (i = 0; i < 4 && v->weights[i] > 0; i++) gxp_add_share(point, copies, weights, v->copies[i], v->weights[i]);
-    for (i = 0; i < 3; i++) {
-        const gxp_touch_vertex *w = &s->vertices[f->vertex[i]];
-        if (!(pair->share[i] > 0)) continue;
-        for (k = 0; k < 3; k++) point->position[k] -= pair->share[i] * w->rest[k];
-        for (k = 0; k < 4 && w->weights[k] > 0; k++)
-            gxp_add_share(point, copies, weights, w->copies[k], -pair->share[i] * w->weights[k]);
-    }
+    if (pair->sample < s->vertex_count)
+        gxp_add_place(&s->vertices[pair->sample], 1, point, copies, weights);
+    else
+        for (i = 0; i < 3; i++)
+            if (pair->share[i] > 0)
+                gxp_add_place(&s->vertices[s->facets[pair->sample - s->vertex_count].vertex[i]], pair->share[i], point,
+                              copies, weights);
+    for (i = 0; i < 3 && pair->facet != GXP_NONE; i++)
+        if (pair->share[i] > 0)
+            gxp_add_place(&s->vertices[s->facets[pair->facet].vertex[i]], -pair->share[i], point, copies, weights);
+    for (k = 0; k < 3; k++) point->position[k] -= pair->place[k] + pair->way[k];
     for (m = 0; m < point->count; m++) moves += fabs(weights[m]);
+    for (m = 0; m < point->count && !(moves > 1e-9); m++) weights[m] = 0; /* it was rounding */
     point->copies = copies;
     point->weights = weights;
     return moves > 1e-9;
 }
 
-/* A pair as the solver takes it. It begins with the force with which the vertex pressed before. */
+/* A pair as the solver takes it. It begins with the force with which the sample pressed before. */
 static void gxp_set_pair(gx_body *body, const gxp_touch_surface *s, uint32_t i, double dt, gxs_pair *to) {
     const gxp_touch *t = &body->touch;
     const gxp_touch_pair *pair = &t->pairs[i];
-    const gxp_touch_vertex *v = &s->vertices[pair->vertex], *w = &s->vertices[s->facets[pair->facet].vertex[0]];
+    const gxp_touch_vertex *v = gxp_sample_vertex(s, pair->sample);
     const double recovery = t->desc.recovery > 0 ? t->desc.recovery : 2 * v->size;
     memset(to, 0, sizeof *to);
     to->point.epoch = body->cuts.epoch;
     memcpy(to->normal, pair->normal, sizeof to->normal);
-    to->stiffness = 0.5 * t->desc.stiffness * fmin(v->young, w->young) * v->area / v->size;
+    to->friction = t->desc.friction;
+    to->sticking_speed = t->desc.sticking_speed;
+    if (pair->facet != GXP_NONE) { /* the other side has a sample of its own somewhere near: each has half */
+        const gxp_touch_vertex *w = &s->vertices[s->facets[pair->facet].vertex[0]];
+        to->stiffness = 0.5 * t->desc.stiffness * fmin(v->young, w->young) * v->area / v->size;
+    } else {
+        to->flags = GXS_PAIR_OUTSIDE;
+        if (pair->collider != GXP_NONE) {
+            to->stiffness = t->desc.stiffness * v->young * pair->area / v->size;
+            to->friction = t->colliders[pair->collider].friction;
+        }
+        if (pair->collider == GXP_NONE || t->changed.data[pair->collider]) to->flags |= GXS_PAIR_WAKES;
+        memcpy(to->way, pair->way, sizeof to->way);
+    }
     if (!gxp_meeting_point(s, pair, t->sides.data + GXP_TOUCH_COPIES * (size_t)i,
                            t->weights + GXP_TOUCH_COPIES * (size_t)i, &to->point))
         to->stiffness = 0;
-    to->offset = fmin(0, fmin(0, pair->gap + v->pressed) + dt * (recovery + fmax(0, pair->approach)));
-    to->friction = t->desc.friction;
-    to->sticking_speed = t->desc.sticking_speed;
-    memcpy(t->slips + 3 * (t->given + (size_t)i), v->slip, sizeof v->slip);
+    to->offset = fmin(0, fmin(0, pair->gap + pair->pressed) + dt * (recovery + fmax(0, pair->approach)));
+    memcpy(t->slips + 3 * (t->given + (size_t)i), pair->slip, sizeof pair->slip);
 }
 
 /* Puts the pairs of contact behind the caller's. */
-static gx_result gxp_join_pairs(gx_body *body, const gxp_touch_surface *s, double dt, gxs_step_desc *step) {
+static gx_result gxp_join_pairs(gx_body *body, gxp_touch_surface *s, double dt, gxs_step_desc *step) {
     const gx_allocator *a = &body->config.allocator;
     gxp_touch *t = &body->touch;
     gxp_attached *attached = &body->attached;
@@ -11793,6 +12623,9 @@ static gx_result gxp_join_pairs(gx_body *body, const gxp_touch_surface *s, doubl
     if (result == GX_OK) result = gxp_reserve(a, &t->weights, sizeof(double), 0, &t->weight_capacity, copies);
     if (result == GX_OK) result = gxp_reserve(a, &t->slips, 3 * sizeof(double), 0, &t->slip_capacity, all);
     if (result == GX_OK) result = gxp_reserve(a, &t->forces, 3 * sizeof(double), 0, &t->force_capacity, all);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &s->states, sizeof *s->states, s->state_count, &s->state_capacity,
+                             t->found > s->state_count ? t->found - s->state_count : 0);
     if (result != GX_OK) return result;
     t->given = (uint32_t)given;
     if (own) memcpy(attached->pairs, step->pairs, given * sizeof *attached->pairs);
@@ -11807,8 +12640,8 @@ static gx_result gxp_join_pairs(gx_body *body, const gxp_touch_surface *s, doubl
 }
 
 /* Adds the pairs of contact to a step. surface: receives the one that they are of */
-static gx_result gxp_attach_contact(gx_body *body, gxs_step_desc *step, gxp_touch_surface **surface,
-                                    gx_failure *failure) {
+static gx_result gxp_attach_contact(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step,
+                                    gxp_touch_surface **surface, gx_failure *failure) {
     const double dt = gxp_is_finite(step->dt) && step->dt > 0 ? step->dt : 0;
     gx_result result;
     body->touch.kept = 0;
@@ -11816,6 +12649,8 @@ static gx_result gxp_attach_contact(gx_body *body, gxs_step_desc *step, gxp_touc
     if (step->quality > 0) return gxp_refuse(failure, "quality");                /* its parts would not search again */
     if (step->integrator == GXS_MIDPOINT) return gxp_refuse(failure, "integrator");
     if (step->pair_count > 0 && step->pairs == NULL) return gxp_refuse(failure, "pairs");
+    result = gxp_take_colliders(body, desc, failure);
+    if (result != GX_OK) return result;
     result = gxp_step_surface(body, surface);
     if (result == GX_OK) result = gxp_surface_room(body, *surface);
     if (gxp_end(failure, result) != GX_OK) return result;
@@ -11825,18 +12660,91 @@ static gx_result gxp_attach_contact(gx_body *body, gxs_step_desc *step, gxp_touc
     return result == GX_OK ? gxp_end(failure, gxp_join_pairs(body, *surface, dt, step)) : result;
 }
 
-/* How far a pair's vertex is in front of its facet now */
-static double gxp_gap_now(const gx_body *body, const gxs_pair *pair) {
-    double r[3] = {pair->point.position[0], pair->point.position[1], pair->point.position[2]};
+/* Where a pair's sample is now, relative to its other side */
+static void gxp_pair_now(const gx_body *body, const gxs_pair *pair, double r[3]) {
     uint32_t i;
     int k;
+    memcpy(r, pair->point.position, 3 * sizeof *r);
     for (i = 0; i < pair->point.count; i++)
         for (k = 0; k < 3; k++)
             r[k] += pair->point.weights[i] * body->copies.displacement[3 * (size_t)pair->point.copies[i] + (size_t)k];
-    return gxp_dot(r, pair->normal);
 }
 
-/* After a step: the caller's pairs get their slips and forces, vertices what they press with. */
+/* The stiffness of a pair's hold on the collider: of its depth and, while it sticks, of its slip. 00 01 02 11 12 22 */
+static void gxp_hold_stiffness(const gxs_pair *pair, const gxp_touch_pair *own, double dt, const double slip[3],
+                               double hold[6]) {
+    const double elastic = pair->friction * fmax(0, pair->offset - own->gap_before);
+    const double reach = fmax(elastic, dt * (pair->sticking_speed > 0 ? pair->sticking_speed : 1e-3));
+    const double along =
+        reach > 0 && sqrt(gxp_dot(slip, slip)) < (1 - 1e-9) * reach ? pair->stiffness * elastic / reach : 0;
+    const double across = own->pressed > 0 ? pair->stiffness : 0;
+    int i, j, at = 0;
+    for (i = 0; i < 3; i++)
+        for (j = i; j < 3; j++)
+            hold[at++] = (i == j ? along : 0) + (across - along) * pair->normal[i] * pair->normal[j];
+}
+
+/* Adds what a pair does to its collider. arm: from the collider's o to the sample */
+static void gxp_add_load(const double force[3], const double hold[6], const double arm[3], gx_collider_load *load) {
+    static const int packed[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+    const double turn[3][3] = {{0, arm[2], -arm[1]}, {-arm[2], 0, arm[0]}, {arm[1], -arm[0], 0}}; /* of the sample */
+    double torque[3], jacobian[3][6], moved[3][6];
+    int i, j, k;
+    gxp_cross(torque, arm, force);
+    for (k = 0; k < 3; k++) {
+        load->force[k] -= force[k];
+        load->torque[k] -= torque[k];
+        for (j = 0; j < 3; j++) {
+            jacobian[k][j] = k == j;
+            jacobian[k][3 + j] = turn[k][j];
+        }
+    }
+    for (k = 0; k < 3; k++)
+        for (j = 0; j < 6; j++)
+            moved[k][j] = hold[packed[k][0]] * jacobian[0][j] + hold[packed[k][1]] * jacobian[1][j] +
+                          hold[packed[k][2]] * jacobian[2][j];
+    for (i = 0; i < 6; i++)
+        for (j = 0; j < 6; j++)
+            load->stiffness[6 * i + j] +=
+                jacobian[0][i] * moved[0][j] + jacobian[1][i] * moved[1][j] + jacobian[2][i] * moved[2][j];
+    load->contacts++;
+}
+
+/* What colliders feel at the end of a step */
+static void gxp_report_loads(const gx_body *body, const gx_step_desc *desc) {
+    const gxp_touch *t = &body->touch;
+    uint32_t i;
+    if (desc->collider_loads == NULL || desc->collider_count == 0) return;
+    memset(desc->collider_loads, 0, desc->collider_count * sizeof *desc->collider_loads);
+    for (i = 0; i < t->found; i++) {
+        const gxp_touch_pair *pair = &t->pairs[i];
+        const gxs_pair *solved = &body->attached.pairs[t->given + i];
+        const double *force = t->forces + 3 * ((size_t)t->given + i);
+        double r[3], arm[3], hold[6];
+        int k;
+        if (pair->collider == GXP_NONE || !(gxp_dot(force, force) > 0)) continue;
+        gxp_pair_now(body, solved, r);
+        for (k = 0; k < 3; k++)
+            arm[k] = r[k] + pair->place[k] + pair->way[k] - t->colliders[pair->collider].pose[4 * k + 3] -
+                     desc->dt * t->colliders[pair->collider].velocity[k];
+        gxp_hold_stiffness(solved, pair, desc->dt, t->slips + 3 * ((size_t)t->given + i), hold);
+        gxp_add_load(force, hold, arm, &desc->collider_loads[pair->collider]);
+    }
+}
+
+/* Hash of what samples press with; 0: nothing does */
+static uint64_t gxp_hash_states(const gxp_touch_surface *s) {
+    uint64_t hash = 1;
+    uint32_t i;
+    for (i = 0; i < s->state_count; i++) {
+        hash = gxp_hash_words(hash, &s->states[i].sample, 1);
+        hash = gxp_hash_words(hash, &s->states[i].other, 1);
+        hash = gxp_hash_doubles(gxp_hash_doubles(hash, &s->states[i].pressed, 1), s->states[i].slip, 3);
+    }
+    return s->state_count > 0 ? hash | 1 : 0;
+}
+
+/* After a step: the caller's pairs get their slips and forces, samples what they press with. */
 static void gxp_keep_contact(gx_body *body, const gx_step_desc *desc, gxp_touch_surface *surface) {
     gxp_touch *t = &body->touch;
     uint32_t i;
@@ -11844,17 +12752,28 @@ static void gxp_keep_contact(gx_body *body, const gx_step_desc *desc, gxp_touch_
         memcpy(desc->pair_slips, t->slips, 3 * (size_t)t->given * sizeof(double));
     if (t->given > 0 && desc->pair_forces != NULL)
         memcpy(desc->pair_forces, t->forces, 3 * (size_t)t->given * sizeof(double));
-    for (i = 0; i < surface->vertex_count; i++) {
-        gxp_touch_vertex *v = &surface->vertices[i];
-        v->pressed = v->slip[0] = v->slip[1] = v->slip[2] = 0;
-    }
+    surface->state_count = 0;
     for (i = 0; i < t->found; i++) {
-        const gxs_pair *pair = &body->attached.pairs[t->given + i];
-        gxp_touch_vertex *v = &surface->vertices[t->pairs[i].vertex];
-        t->pairs[i].gap = gxp_gap_now(body, pair);
-        v->pressed = pair->stiffness > 0 ? fmax(0, pair->offset - t->pairs[i].gap) : 0;
-        memcpy(v->slip, t->slips + 3 * ((size_t)t->given + i), sizeof v->slip);
+        const gxs_pair *solved = &body->attached.pairs[t->given + i];
+        gxp_touch_pair *pair = &t->pairs[i];
+        gxp_touch_state state;
+        double r[3];
+        gxp_pair_now(body, solved, r);
+        pair->gap_before = pair->gap;
+        pair->gap = gxp_dot(r, solved->normal);
+        pair->pressed = solved->stiffness > 0 ? fmax(0, solved->offset - pair->gap) : 0;
+        memcpy(pair->slip, t->slips + 3 * ((size_t)t->given + i), sizeof pair->slip);
+        if (!(pair->pressed > 0) && !(gxp_dot(pair->slip, pair->slip) > 0)) continue;
+        state.sample = pair->sample;
+        state.other = pair->other;
+        state.pressed = pair->pressed;
+        memcpy(state.slip, pair->slip, sizeof state.slip);
+        memcpy(state.rest, pair->rest, sizeof state.rest);
+        surface->states[surface->state_count++] = state;
     }
+    t->pressed = gxp_hash_states(surface);
+    gxp_report_loads(body, desc);
+    gxp_know_colliders(t);
     t->current = surface == &t->surfaces[0] ? 0 : 1;
     t->made = 1;
     t->hash = body->cuts.hash;
@@ -11862,7 +12781,11 @@ static void gxp_keep_contact(gx_body *body, const gx_step_desc *desc, gxp_touch_
 }
 
 /* Forgets the surface and its state, not that contact is on. */
-static void gxp_forget_contact(gx_body *body) { body->touch.made = 0; }
+static void gxp_forget_contact(gx_body *body) {
+    body->touch.made = 0;
+    body->touch.known_count = 0;
+    body->touch.pressed = 0;
+}
 
 GXFEM_API gx_result gx_body_contact(gx_body *body, const gx_contact_desc *desc, gx_failure *failure) {
     static const char *const names[5] = {"stiffness", "friction", "sticking_speed", "recovery", "depth"};
@@ -11890,6 +12813,20 @@ GXFEM_API gx_result gx_body_contact(gx_body *body, const gx_contact_desc *desc, 
     return gxp_end(failure, GX_OK);
 }
 
+/* Where the sample of a pair is in space */
+static void gxp_place_sample(const gx_body *body, const gxp_touch_surface *s, const gxp_touch_pair *pair, double x[3]) {
+    const int facet = pair->sample >= s->vertex_count;
+    int i, k;
+    x[0] = x[1] = x[2] = 0;
+    for (i = 0; i < (facet ? 3 : 1); i++) {
+        const gxp_touch_vertex *v =
+            &s->vertices[facet ? s->facets[pair->sample - s->vertex_count].vertex[i] : pair->sample];
+        double own[3];
+        gxp_map_point(body, v->rest, v->copies, v->weights, 4, own);
+        for (k = 0; k < 3; k++) x[k] += (facet ? pair->share[i] : 1) * own[k];
+    }
+}
+
 GXFEM_API gx_result gx_body_contacts(const gx_body *body, gx_contact *contacts, size_t capacity, size_t *count,
                                      gx_failure *failure) {
     const gxp_touch *t;
@@ -11905,16 +12842,17 @@ GXFEM_API gx_result gx_body_contacts(const gx_body *body, gx_contact *contacts, 
     if (!t->on || (t->made && t->hash != body->cuts.hash))
         return gxp_fail(failure, GX_ERROR_SEQUENCE, t->on ? "gx_body_step" : "gx_body_contact", SIZE_MAX);
     for (i = 0; i < t->kept && t->made; i++) {
-        const gxp_touch_vertex *v = &s->vertices[t->pairs[i].vertex];
-        if (!(v->pressed > 0)) continue;
+        const gxp_touch_pair *pair = &t->pairs[i];
+        if (!(pair->pressed > 0)) continue;
         if (all < capacity) {
             gx_contact *c = &contacts[all];
-            c->fragment = v->fragment;
-            c->other = s->facets[t->pairs[i].facet].fragment;
-            gxp_map_point(body, v->rest, v->copies, v->weights, 4, c->position);
-            memcpy(c->normal, t->pairs[i].normal, sizeof c->normal);
+            c->fragment = gxp_sample_vertex(s, pair->sample)->fragment;
+            c->other = pair->facet != GXP_NONE ? s->facets[pair->facet].fragment : GXP_NONE;
+            c->collider = pair->other;
+            gxp_place_sample(body, s, pair, c->position);
+            memcpy(c->normal, pair->normal, sizeof c->normal);
             memcpy(c->force, t->forces + 3 * ((size_t)t->given + i), sizeof c->force);
-            c->depth = -t->pairs[i].gap;
+            c->depth = -pair->gap;
         }
         all++;
     }
@@ -11967,6 +12905,7 @@ static gx_result gxp_translate_step(gx_body *body, const gx_step_desc *desc, gxs
     step->dt = desc->dt;
     step->integrator = desc->integrator;
     step->substeps = desc->substeps;
+    step->quick = desc->quick;
     step->newton_iterations = desc->newton_iterations;
     step->newton_tolerance = desc->newton_tolerance;
     step->cg_iterations = desc->cg_iterations;
@@ -12105,13 +13044,15 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (desc == NULL) return gxp_refuse(failure, "desc");
+    if (desc->collider_count > 0 && !body->touch.on)
+        return gxp_fail(failure, GX_ERROR_SEQUENCE, "gx_body_contact", SIZE_MAX);
     gxp_wake_resumed(body, body->copies.count);
     gxp_end(&refused, GX_OK);
     result = gxp_update_model(body, &refused);
     if (result != GX_OK) return gxp_fail(failure, result, NULL, refused.index);
     result = gxp_translate_step(body, desc, &step);
     if (gxp_end(failure, result) == GX_OK) result = gxp_attach(body, desc, &step, failure);
-    if (result == GX_OK && body->touch.on) result = gxp_attach_contact(body, &step, &surface, failure);
+    if (result == GX_OK && body->touch.on) result = gxp_attach_contact(body, desc, &step, &surface, failure);
     if (result == GX_OK && body->hidden.copies.count > 0) result = gxp_end(failure, gxp_expand(body, desc, &step));
     if (result != GX_OK) return result;
     if (body->model.empty) {
@@ -12217,6 +13158,27 @@ static void gxp_weigh(double corners[4][3], const double weights[4], double p[3]
     }
 }
 
+/* Where a cell's map has a place, also outside of its element */
+static void gxp_image_by(const gx_body *body, const gxp_cell *cell, const double weights[4], double x[3]) {
+    static const double origin[3] = {0, 0, 0};
+    double corners[4][3];
+    if (gxp_is_bent(body, cell)) {
+        gxp_image_of_bent(body, cell, weights, x);
+        return;
+    }
+    gxp_cell_corners(body, cell, 1, origin, corners);
+    gxp_weigh(corners, weights, x);
+}
+
+/* The place that a cell's map has at a point of space, also outside of its element; not a number: the cell is flat */
+static void gxp_place_by_map(const gx_body *body, const gxp_cell *cell, const double x[3], double weights[4]) {
+    static const double origin[3] = {0, 0, 0};
+    double corners[4][3];
+    if (gxp_is_bent(body, cell) && gxp_place_in_bent(body, cell, x, weights)) return;
+    gxp_cell_corners(body, cell, 1, origin, corners);
+    gxp_tet_weights(corners, x, weights);
+}
+
 static gx_result gxp_push_vertex(gx_body *body, gxp_front_list *list, const gxp_front_vertex *vertex) {
     const gx_result result =
         gxp_reserve(&body->config.allocator, &list->data, sizeof *list->data, list->count, &list->capacity, 1);
@@ -12286,8 +13248,7 @@ static gx_result gxp_place_by(gx_blade *blade, uint32_t layer, int old, const gx
     if (best == GXP_NONE || result != GX_OK) return result;
     gxp_cell_corners(body, &body->cells.data[best], 0, origin, corners);
     gxp_tet_weights(corners, point, weights);
-    gxp_cell_corners(body, &body->cells.data[best], 1, origin, corners);
-    gxp_weigh(corners, weights, x);
+    gxp_image_by(body, &body->cells.data[best], weights, x);
     return GX_OK;
 }
 
@@ -12452,6 +13413,28 @@ static gx_result gxp_prepare_quads(gx_blade *blade) {
     return result;
 }
 
+/* What contains a bent cell is larger than what contains its corners. */
+static void gxp_contain_bent(const gx_body *body, gxp_close_cell *c) {
+    const gxp_cell *row = &body->cells.data[c->cell];
+    gxp_bounds box;
+    int k;
+    gxp_cell_bounds(body, row->element, row, &box);
+    for (k = 0; k < 3; k++) {
+        c->low[k] = box.low[k];
+        c->high[k] = box.high[k];
+        c->middle[k] = 0.5 * box.low[k] + 0.5 * box.high[k];
+    }
+    c->radius = sqrt(gxp_square_distance(c->middle, c->high));
+}
+
+/* The place that a near cell's map has at a point of space */
+static void gxp_near_weights(const gx_body *body, gxp_close_cell *c, const double x[3], double weights[4]) {
+    if (c->is_bent)
+        gxp_place_by_map(body, &body->cells.data[c->cell], x, weights);
+    else
+        gxp_tet_weights(c->corners, x, weights);
+}
+
 /* The deformed corners of a cell, and what contains them */
 static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
     const gxp_cell *row = &body->cells.data[c->cell];
@@ -12468,6 +13451,8 @@ static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
     c->radius = 0;
     for (n = 0; n < 4; n++) c->radius = gxp_more(c->radius, gxp_square_distance(c->middle, c->corners[n]));
     c->radius = sqrt(c->radius);
+    c->is_bent = (uint8_t)gxp_is_bent(body, row);
+    if (c->is_bent) gxp_contain_bent(body, c);
     c->is_divided = (uint8_t)(gxb_complex_root(body->complex, row->element) & 1);
     c->has_facets = c->has_heights = 0;
     c->size = body->mesh.sizes[row->element];
@@ -12757,6 +13742,7 @@ static gx_result gxp_list_facets(gx_blade *blade, gxp_close_cell *c) {
             for (k = 0; k < 3; k++)
                 facet->corners[n][k] = l[0] * c->corners[0][k] + l[1] * c->corners[1][k] + l[2] * c->corners[2][k] +
                                        l[3] * c->corners[3][k];
+            if (c->is_bent) gxp_image_of_bent(body, &body->cells.data[c->cell], l, facet->corners[n]);
         }
         facet->face = gxp_facet_face(lambda);
     }
@@ -12805,11 +13791,11 @@ static gx_result gxp_seek_outside(gx_blade *blade, uint32_t index, const double 
     uint32_t i;
     if (gxp_square_to_box(x, c->low, c->high) >= sight->square) return GX_OK;
     if (c->stretch < GXP_FLAT_MAP || c->stretch > GXP_BLOWN_MAP) return GX_OK; /* inverted: outside is inside */
-    gxp_tet_weights(c->corners, x, weights);
+    gxp_near_weights(blade->body, c, x, weights);
     if (!c->has_heights) gxp_measure_heights(c);
     beyond[4] = 0;
     for (i = 0; i < 4; i++) {
-        const double off = weights[i] * c->heights[i];
+        const double off = c->is_bent ? 0 : weights[i] * c->heights[i]; /* a curved face is at any distance */
         beyond[i] = weights[i] < 0 ? GXP_SURELY * off * off : HUGE_VAL;
         if (weights[i] < 0 && beyond[i] >= sight->square) return GX_OK;
     }
@@ -12837,7 +13823,7 @@ static gx_result gxp_seek_inside(gx_blade *blade, uint32_t index, const double x
     gx_result result = GX_OK;
     if (gxp_square_to_box(x, c->low, c->high) > 0) return GX_OK;
     if (fabs(c->stretch) < GXP_FLAT_MAP || fabs(c->stretch) > GXP_BLOWN_MAP) return GX_OK;
-    gxp_tet_weights(c->corners, x, weights);
+    gxp_near_weights(blade->body, c, x, weights);
     if (weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0 && weights[3] >= 0)
         result = gxp_is_own_part(blade->body, c, weights, &own);
     if (!own || result != GX_OK) return result;
@@ -12922,17 +13908,17 @@ static gx_result gxp_is_in_layer(gx_blade *blade, uint32_t layer, const double r
    surface. It moves towards that one while there is material of the layer: the map extended is not the layer's. */
 static gx_result gxp_place_in_air(gx_blade *blade, uint32_t layer, const gxp_sight *sight, double corners[4][3],
                                   gxp_front_vertex *v) {
-    const gxp_close_cell *c = &blade->near.cells[sight->index];
+    gxp_close_cell *c = &blade->near.cells[sight->index];
     double weights[4], surface[3], position[3], away;
     const double reach = GXP_CAP * v->size, share = v->distance > reach ? reach / v->distance : 1;
     int k, tries, inside = 1;
     gx_result result = GX_OK;
-    gxp_tet_weights(blade->near.cells[sight->index].corners, sight->nearest, weights);
+    gxp_near_weights(blade->body, c, sight->nearest, weights);
     gxp_weigh(corners, weights, surface);
     memcpy(v->foot, surface, sizeof surface);
     memcpy(v->foot_at, sight->nearest, sizeof v->foot_at);
     for (k = 0; k < 3; k++) position[k] = sight->nearest[k] + share * (v->position[k] - sight->nearest[k]);
-    gxp_tet_weights(blade->near.cells[sight->index].corners, position, weights);
+    gxp_near_weights(blade->body, c, position, weights);
     gxp_weigh(corners, weights, v->rest);
     away = sqrt(gxp_square_distance(v->rest, surface));
     if (away > 1.5 * c->size)
@@ -13936,8 +14922,7 @@ static void gxp_follow_place(const gx_body *body, const double x[3], uint32_t *c
     int faces;
     for (faces = 0; next != GXP_NONE && faces < GXP_BEAD_FACES; faces++) {
         *cell = next;
-        gxp_cell_corners(body, &body->cells.data[next], 1, origin, corners);
-        gxp_tet_weights(corners, x, weights);
+        gxp_place_by_map(body, &body->cells.data[next], x, weights);
         for (face = 0, k = 1; k < 4; k++)
             if (weights[k] < weights[face]) face = k;
         next = weights[face] < -GXP_BEAD_TOUCH ? gxp_cell_across(body, next, face) : GXP_NONE;
@@ -14673,8 +15658,7 @@ static gx_result gxp_keep_far_place(gx_blade *blade, const double *edge, uint32_
     v.element = body->cells.data[near.cell].element;
     v.size = blade->largest;
     v.distance = sqrt(near.square);
-    gxp_cell_corners(body, &body->cells.data[near.cell], 1, origin, corners);
-    gxp_weigh(corners, near.weights, v.foot_at);
+    gxp_image_by(body, &body->cells.data[near.cell], near.weights, v.foot_at);
     gxp_cell_corners(body, &body->cells.data[near.cell], 0, origin, corners);
     gxp_weigh(corners, near.weights, v.foot);
     memcpy(v.rest, v.foot, sizeof v.rest);
@@ -15089,17 +16073,33 @@ static gx_result gxp_step_along(gx_blade *blade, const double *edge, uint32_t co
     }
 }
 
-/* May moves be left out after one that was worked out just now? It has had one step. */
-static int gxp_may_get_ready(const gx_blade *blade) { return blade->steps == 1 && gxp_is_free(blade); }
+/* May moves be left out after one that was worked out just now? It has had one step. Where copies are affine, none are:
+   copies.struck has no A. */
+static int gxp_may_get_ready(const gx_blade *blade) {
+    return blade->steps == 1 && blade->body->copies.bends == 0 && gxp_is_free(blade);
+}
 
-/* Works out the move that was left out last, with the body as it was then: the first steps of the present move. */
+/* No A is the one that boxes of the tree were made for. */
+static void gxp_forget_seen_bends(gx_body *body) {
+    uint32_t i;
+    for (i = 0; i < body->copies.count; i++)
+        if (body->copies.affine[i]) body->copies.linear_seen[9 * (size_t)i] = HUGE_VAL;
+}
+
+/* Works out the move that was left out last, with the body as it was then: the first steps of the present move. No copy
+   was affine then. */
 static gx_result gxp_make_up(gx_blade *blade, int *begun, gx_blade_report *report, gx_failure *failure) {
     const gxp_points *edge = &blade->now.glance.edge;
+    gxp_copies *copies = &blade->body->copies;
+    const int bends = copies->bends;
     gx_result result;
     gxp_swap_struck(blade->body);
+    copies->bends = 0;
     result = gxp_refit_near(blade, GXP_NEAR_SLACK, failure);
     if (result == GX_OK) result = gxp_step_along(blade, edge->data, edge->count, NULL, 0, begun, report, failure);
     gxp_swap_struck(blade->body);
+    copies->bends = bends;
+    if (bends) gxp_forget_seen_bends(blade->body);
     if (result != GX_OK) return result;
     if (gxp_may_get_ready(blade) && blade->surface_starts.count == 0)
         result = gxp_end(failure, gxp_get_ready(blade));
@@ -15120,7 +16120,10 @@ static gx_result gxp_finish_move(gx_blade *blade, int ready, gx_blade_report *re
     if (result == GX_OK && ready && cuts) gxp_note_bead_elements(blade);
     if (result == GX_OK) result = gxp_cut_surfaces(blade, GX_SURFACE_SHEET, report, failure);
     if (result == GX_OK && ready && cuts) gxp_place_beads(blade);
-    if (result == GX_OK && ready) gxp_be_ready(blade);
+    if (result == GX_OK && ready && blade->body->copies.bends)
+        gxp_end_glances(&blade->then.glance); /* the cut has made copies affine */
+    else if (result == GX_OK && ready)
+        gxp_be_ready(blade);
     return result;
 }
 
@@ -15169,7 +16172,6 @@ GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t po
     gx_blade_report own;
     gx_result result;
     if (blade == NULL) return gxp_refuse(failure, "blade");
-    if (blade->body->copies.affine != NULL) return gxp_refuse(failure, "affine_below"); /* layers see affine maps */
     if (scope_fragment_count > 0 && scope_fragments == NULL) return gxp_refuse(failure, "scope_fragments");
     result = gxp_check_edge(blade, edge, point_count, failure);
     if (result == GX_OK && scope_fragment_count > 0)
@@ -15475,6 +16477,53 @@ static int gxp_clip_to_element(const gxp_edge_part *edge, const gxp_cell *cell, 
     return 1;
 }
 
+/* Adds the spans of a cell's part of the edge, of which low, high and touch (as a share of an element) are known. */
+static gx_result gxp_add_cell_part(gx_body *body, gxp_cell_part *part, double touch) {
+    const uint32_t element = body->cells.data[part->cell].element;
+    part->touch = touch * gxp_element_size(body, element);
+    return gxp_add_leaf_spans(body, part, gxb_complex_root(body->complex, element), 0, 1);
+}
+
+/* In a bent cell a straight part of the edge is curved: it is halved until its chord is off by less than this share of
+   the element, at most so often. The chord stands for it, and next to nothing is as much. */
+#define GXP_CHORD_OFF    1e-3
+#define GXP_CHORD_HALVES 6
+
+/* Adds the spans of a part of the edge in a bent cell. low, high: shares of the part; w: the places of their points.
+ */
+static gx_result gxp_meet_bent(gx_body *body, gxp_cell_part *part, double low, double high, double w[2][4],
+                               int halves) {
+    const gxp_edge_part *edge = part->edge;
+    const gxp_cell *c = &body->cells.data[part->cell];
+    const double middle = 0.5 * low + 0.5 * high;
+    double halved[3][4], x[3], rest[12], from = 0, to = 1, off = 0, weights[4];
+    int n, k, beyond = 0;
+    memcpy(halved[0], w[0], sizeof halved[0]);
+    memcpy(halved[2], w[1], sizeof halved[2]);
+    gxp_edge_position(edge->x[0], 2, middle, x);
+    if (!gxp_place_in_bent(body, c, x, halved[1])) return GX_OK;
+    for (k = 0; k < 4; k++) {
+        off = fmax(off, fabs(halved[1][k] - 0.5 * w[0][k] - 0.5 * w[1][k]));
+        beyond |= fmax(fmax(w[0][k], w[1][k]), halved[1][k]) < -GXP_CHORD_OFF;
+    }
+    if (beyond && halves > 1) return GX_OK;
+    if (off > GXP_CHORD_OFF && halves < GXP_CHORD_HALVES) {
+        const gx_result result = gxp_meet_bent(body, part, low, middle, halved, halves + 1);
+        return result == GX_OK ? gxp_meet_bent(body, part, middle, high, halved + 1, halves + 1) : result;
+    }
+    for (k = 0; k < 4; k++)
+        if (!gxp_narrow(w[0][k] + GXP_CHORD_OFF, w[1][k] + GXP_CHORD_OFF, &from, &to)) return GX_OK;
+    gxp_element_positions(body, c->element, rest);
+    for (n = 0; n < 2; n++) {
+        const double share = n == 0 ? from : to;
+        for (k = 0; k < 4; k++) weights[k] = w[0][k] + share * (w[1][k] - w[0][k]);
+        gxp_weigh_material(rest, weights, part->rest[n]);
+    }
+    part->low = gxp_between(edge->low, edge->high, gxp_between(low, high, from));
+    part->high = gxp_between(edge->low, edge->high, gxp_between(low, high, to));
+    return gxp_add_cell_part(body, part, GXP_CHORD_OFF);
+}
+
 /* Adds the spans of a part of the edge in a cell. */
 static gx_result gxp_meet_cell(gx_body *body, void *user, uint32_t cell) {
     const gxp_edge_part *edge = (const gxp_edge_part *)user;
@@ -15483,20 +16532,25 @@ static gx_result gxp_meet_cell(gx_body *body, void *user, uint32_t cell) {
     const uint32_t before = blade->span_count;
     gxp_cell_part part;
     gxp_close_cell close;
-    double weights[4], point[3], low = 0, high = 1, touch;
+    double weights[2][4], point[3], low = 0, high = 1, touch;
     int n;
     gx_result result;
-    if (!gxp_clip_to_element(edge, c, &low, &high, &touch)) return GX_OK;
     part.edge = edge;
     part.cell = cell;
-    part.low = gxp_between(edge->low, edge->high, low);
-    part.high = gxp_between(edge->low, edge->high, high);
-    part.touch = touch * gxp_element_size(body, c->element);
-    for (n = 0; n < 2; n++) {
-        gxp_edge_position(edge->ends, 2, n == 0 ? part.low : part.high, point);
-        (void)gxp_pull_back(body, cell, point, weights, part.rest[n]);
+    if (gxp_is_bent(body, c)) {
+        for (n = 0; n < 2; n++)
+            if (!gxp_place_in_bent(body, c, edge->x[n], weights[n])) return GX_OK;
+        result = gxp_meet_bent(body, &part, 0, 1, weights, 0);
+    } else {
+        if (!gxp_clip_to_element(edge, c, &low, &high, &touch)) return GX_OK;
+        part.low = gxp_between(edge->low, edge->high, low);
+        part.high = gxp_between(edge->low, edge->high, high);
+        for (n = 0; n < 2; n++) {
+            gxp_edge_position(edge->ends, 2, n == 0 ? part.low : part.high, point);
+            (void)gxp_pull_back(body, cell, point, weights[0], part.rest[n]);
+        }
+        result = gxp_add_cell_part(body, &part, touch);
     }
-    result = gxp_add_leaf_spans(body, &part, gxb_complex_root(body->complex, c->element), 0, 1);
     if (result != GX_OK || blade->span_count == before || gxp_close_index(&blade->near, cell) != GXP_NONE)
         return result;
     close.cell = cell;
@@ -15957,7 +17011,6 @@ GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (tool == NULL) return gxp_refuse(failure, "tool");
-    if (body->copies.affine != NULL) return gxp_refuse(failure, "affine_below"); /* see gx_blade_move */
     result = gxp_check_tool(tool, failure);
     if (result == GX_OK) result = gx_blade_create(body, NULL, &blade, failure);
     if (result != GX_OK) return result;
@@ -16945,7 +17998,7 @@ GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
     for (i = 0; i < gxb_complex_leaf_count(body->complex); i++)
         hash = gxp_mix(hash ^ gxb_complex_leaf(body->complex, i)->removed);
     for (blade = body->blades; blade != NULL; blade = blade->next) hash = gxp_hash_blade(hash, &blade->now);
-    return hash;
+    return body->touch.pressed != 0 ? gxp_mix(hash ^ body->touch.pressed) : hash;
 }
 
 GXFEM_API const char *gx_result_text(gx_result result) {
@@ -16987,7 +18040,7 @@ static void gxp_require_true(gxb_stream *s, int holds) {
 }
 static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
 
-#define GXP_SAVE_VERSION 10u /* raised by every change of the format */
+#define GXP_SAVE_VERSION 11u /* raised by every change of the format */
 #define GXP_BYTE_ORDER   0x01020304u
 
 typedef struct gxp_head {
@@ -17632,7 +18685,8 @@ static void gxp_drop_blades(gx_body *body, uint32_t count) {
 /* The row counts of the state, whether there is a history, and whether a blade leaves out moves */
 typedef struct gxp_state_counts {
     uint32_t rows[GXP_TABLES], history, struck;
-    int affine; /* there may be affine copies: the saved mesh tells */
+    uint32_t contact, pressing, known; /* 1: contact is on; its states; the colliders of the last step */
+    int affine;                        /* there may be affine copies: the saved mesh tells */
 } gxp_state_counts;
 
 static uint32_t gxp_state_use(const gxp_state_counts *n) {
@@ -17644,6 +18698,9 @@ static void gxp_pass_state_counts(gxb_stream *s, gxp_state_counts *n) {
     gxp_pass_counts(s, GXP_STATE, n->rows);
     gxp_pass_word(s, &n->history);
     gxp_pass_word(s, &n->struck);
+    gxp_pass_word(s, &n->contact);
+    gxp_pass_word(s, &n->pressing);
+    gxp_pass_word(s, &n->known);
 }
 
 static gxp_state_counts gxp_count_state(const gx_body *body) {
@@ -17652,13 +18709,76 @@ static gxp_state_counts gxp_count_state(const gx_body *body) {
     n.history = body->copies.previous_dt > 0;
     n.struck = (uint32_t)gxp_has_glances(body);
     n.affine = body->copies.affine != NULL;
+    n.contact = (uint32_t)body->touch.on;
+    n.pressing = body->touch.on && body->touch.made ? body->touch.surfaces[body->touch.current].state_count : 0;
+    n.known = body->touch.on ? body->touch.known_count : 0;
     return n;
+}
+
+/* The surface that gets the states of contact when they are read: the present one if it is of the present cuts */
+static uint32_t gxp_arriving_surface(const gx_body *body) {
+    const gxp_touch *t = &body->touch;
+    return t->made && t->hash == body->cuts.hash ? t->current : 1 - t->current;
+}
+
+/* Room for the state of contact; the present one stays. */
+static gx_result gxp_contact_room(gx_body *body, const gxp_state_counts *n) {
+    const gx_allocator *a = &body->config.allocator;
+    gxp_touch *t = &body->touch;
+    gxp_touch_surface *to = &t->surfaces[gxp_arriving_surface(body)];
+    gx_result result = gxp_reserve(a, &to->states, sizeof *to->states, to->state_count, &to->state_capacity,
+                                   n->pressing > to->state_count ? n->pressing - to->state_count : 0);
+    return result == GX_OK ? gxp_reserve(a, &t->known, sizeof *t->known, t->known_count, &t->known_capacity,
+                                         n->known > t->known_count ? n->known - t->known_count : 0)
+                           : result;
+}
+
+/* Writes the state of contact, or reads it if there is room. When reading, a surface that is not of the present cuts is
+   still to be made, if something presses. */
+static void gxp_pass_contact(gxb_stream *s, gx_body *body, const gxp_state_counts *n) {
+    gxp_touch *t = &body->touch;
+    gx_contact_desc *desc = &t->desc;
+    gxp_touch_surface *to;
+    uint32_t i;
+    if (s->in != NULL) {
+        const uint32_t arriving = gxp_arriving_surface(body);
+        t->made = n->contact && (n->pressing > 0 || arriving == t->current);
+        t->current = arriving;
+        t->hash = body->cuts.hash;
+        t->on = (int)n->contact;
+        t->known_count = n->known;
+        t->surfaces[arriving].state_count = n->pressing;
+        t->kept = 0;
+        t->pressed = 0;
+    }
+    if (!n->contact) return;
+    to = &t->surfaces[t->current];
+    gxb_stream_pass(s, &desc->stiffness, 1, sizeof(double));
+    gxb_stream_pass(s, &desc->friction, 1, sizeof(double));
+    gxb_stream_pass(s, &desc->sticking_speed, 1, sizeof(double));
+    gxb_stream_pass(s, &desc->recovery, 1, sizeof(double));
+    gxb_stream_pass(s, &desc->depth, 1, sizeof(double));
+    gxp_pass_word(s, &desc->max_pairs);
+    gxb_stream_pass(s, &t->pressed, 1, sizeof t->pressed);
+    for (i = 0; i < n->known; i++) {
+        gxp_pass_word(s, &t->known[i].id);
+        gxb_stream_pass(s, &t->known[i].hash, 1, sizeof t->known[i].hash);
+    }
+    for (i = 0; i < n->pressing; i++) {
+        gxp_touch_state *state = &to->states[i];
+        gxp_pass_word(s, &state->sample);
+        gxp_pass_word(s, &state->other);
+        gxb_stream_pass(s, &state->pressed, 1, sizeof(double));
+        gxb_stream_pass(s, state->slip, 3, sizeof(double));
+        gxb_stream_pass(s, state->rest, 3, sizeof(double));
+    }
 }
 
 /* Room for a state with these counts; the present one stays. */
 static gx_result gxp_state_room(gx_body *body, const gxp_state_counts *n) {
     gx_result result = gxp_rows_room(body, gxp_state_use(n), n->rows);
     if (result == GX_OK && n->struck) result = gxp_start_struck(body);
+    if (result == GX_OK) result = gxp_contact_room(body, n);
     return result == GX_OK && n->history ? gxp_start_history(body, 2) : result;
 }
 
@@ -17682,6 +18802,7 @@ static void gxp_pass_state(gxb_stream *s, gx_body *body, const gxp_state_counts 
     gxb_stream_pass(s, &scene.planes, 1, sizeof scene.planes);
     gxb_stream_pass(s, &scene.forces, 1, sizeof scene.forces);
     gxb_stream_pass(s, &scene.springs, 1, sizeof scene.springs);
+    gxp_pass_contact(s, body, n);
     if (s->in == NULL) return;
     gxp_find_bends(body);
     gxp_resume_in(body, &scene);
@@ -17743,15 +18864,48 @@ static void gxp_check_state(gxb_stream *s, gx_body *body, const gxp_state_counts
     gxp_require_true(s, snapshot->stale || body->view.fragment_count == snapshot->count);
 }
 
+/* Are contact's numbers such that a step made them? Those of samples are checked when the surface is there. */
+static void gxp_check_contact(gxb_stream *s, const gx_body *body, const gxp_state_counts *n) {
+    const gxp_touch *t = &body->touch;
+    const gxp_touch_surface *own = &t->surfaces[t->current];
+    const double numbers[5] = {t->desc.stiffness, t->desc.friction, t->desc.sticking_speed, t->desc.recovery,
+                               t->desc.depth};
+    uint32_t i;
+    int k;
+    if (!n->contact) return;
+    gxp_require_true(s, body->copies.affine == NULL && numbers[0] > 0 && numbers[4] > 0);
+    for (i = 0; i < 5; i++) gxp_require_true(s, gxp_is_finite(numbers[i]) && numbers[i] >= 0);
+    for (i = 1; i < n->known; i++) gxp_require_true(s, t->known[i - 1].id < t->known[i].id);
+    for (i = 0; i < n->pressing; i++) {
+        const gxp_touch_state *state = &own->states[i];
+        gxp_require_true(s, i == 0 || own->states[i - 1].sample <= state->sample);
+        gxp_require_true(s, gxp_is_finite(state->pressed) && state->pressed >= 0);
+        for (k = 0; k < 3; k++) gxp_require_true(s, gxp_is_finite(state->slip[k]) && gxp_is_finite(state->rest[k]));
+    }
+}
+
+/* Makes the surface of contact of a body that was read, if something presses there. */
+static void gxp_load_contact(gxb_stream *s, gx_body *body, const gxp_state_counts *n) {
+    gxp_touch_surface *own = &body->touch.surfaces[body->touch.current];
+    if (n->pressing == 0) return;
+    gxp_require(s, gxp_make_surface(body, own));
+    gxp_require_true(s, own->states[n->pressing - 1].sample < own->vertex_count + own->facet_count);
+}
+
 static void gxp_load_state(gxb_stream *s, gx_body *body, int trusted) {
     gxp_state_counts n;
     n.affine = body->copies.affine != NULL;
     gxp_pass_state_counts(s, &n);
     gxp_check_counts(s, gxp_state_use(&n), n.rows);
-    gxp_require_true(s, n.rows[GXP_COPIES] == body->copies.count && n.history <= 1 && n.struck <= 1);
+    gxp_require_true(s, n.rows[GXP_COPIES] == body->copies.count && n.history <= 1 && n.struck <= 1 && n.contact <= 1 &&
+                            (n.contact || (n.pressing == 0 && n.known == 0)));
+    gxb_stream_has(s, n.pressing, 2 * sizeof(uint32_t) + 7 * sizeof(double));
+    gxb_stream_has(s, n.known, sizeof(uint32_t) + sizeof(uint64_t));
     if (s->result == GX_OK) gxp_require(s, gxp_state_room(body, &n));
     if (s->result == GX_OK) gxp_pass_state(s, body, &n);
     if (s->result == GX_OK && !trusted) gxp_check_state(s, body, &n);
+    if (s->result == GX_OK && !trusted) gxp_check_contact(s, body, &n);
+    if (s->result == GX_OK) gxp_load_contact(s, body, &n);
 }
 
 static void gxp_write(gxb_stream *s, gx_body *body) {
@@ -17773,9 +18927,11 @@ GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, s
     gxb_stream s;
     size_t start;
     gxp_head head;
+    gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (size == NULL) return gxp_refuse(failure, "size");
-    gxp_end(failure, GX_OK);
+    result = gxp_refresh_contact(body);
+    if (gxp_end(failure, result) != GX_OK) return result;
     gxp_note_written(body);
     memset(&s, 0, sizeof s);
     gxp_pass_head(&s, &head);
@@ -17895,12 +19051,17 @@ static int gxp_same_regions(const gx_body *a, const gx_body *b) {
 
 /* Copies the state of a body with the same cells and copies. */
 static gx_result gxp_restore_state(gx_body *body, gx_body *from) {
-    gxp_state_counts n = gxp_count_state(from);
     const int same_held = gxp_same_regions(body, from);
+    gxp_state_counts n;
     gxb_stream s;
     unsigned char *bytes;
     size_t size;
-    gx_result result = gxp_state_room(body, &n);
+    gx_result result = gxp_refresh_contact(from);
+    if (result != GX_OK) return result;
+    n = gxp_count_state(from);
+    result = gxp_state_room(body, &n);
+    if (result == GX_OK && n.pressing > 0 && gxp_arriving_surface(body) != body->touch.current)
+        result = gxp_make_surface(body, &body->touch.surfaces[1 - body->touch.current]);
     if (result != GX_OK) return result;
     gxp_note_written(from);
     memset(&s, 0, sizeof s);
@@ -17943,15 +19104,11 @@ static gx_result gxp_restore_all(gx_body *body, gx_body *from) {
 }
 
 GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *failure) {
-    gx_contact_desc contact;
     uint32_t made;
-    int on;
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (from == NULL) return gxp_refuse(failure, "from");
     if (body == from) return gxp_end(failure, GX_OK);
-    on = body->touch.on;
-    contact = body->touch.desc;
     result = gxp_prepare_blades(body, from, &made);
     if (result == GX_OK)
         result = body->cuts.hash == from->cuts.hash && body->copies.count == from->copies.count &&
@@ -17959,17 +19116,15 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
                          body->leaves.count == from->leaves.count && gxp_same_materials(body, from)
                    ? gxp_restore_state(body, from)
                    : gxp_restore_all(body, from);
-    if (result == GX_OK) {
+    if (result == GX_OK)
         gxp_take_blades(body, from);
-        body->touch.on = on;
-        body->touch.desc = contact;
-        gxp_forget_contact(body);
-    } else
+    else
         gxp_drop_blades(body, made);
     return gxp_end(failure, result);
 }
 
 #undef GXP_COLD
+#undef GXP_APART
 #undef GXP_PREFETCH
 #undef GXP_PREFETCHES
 #undef GXP_NONE
@@ -17993,8 +19148,13 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_TOUCH_LEAF
 #undef GXP_TOUCH_FACING
 #undef GXP_TOUCH_NEAR
+#undef GXP_TOUCH_ADVANCES
+#undef GXP_TOUCH_FINE
+#undef GXP_TOUCH_PARTS
+#undef GXP_TOUCH_FLAT
 #undef GXP_TOUCH_BESIDE
 #undef GXP_TOUCH_SLANT
+#undef GXP_TOUCH_SAME
 #undef GXP_TOUCH_BEHIND
 #undef GXP_TOUCH_COPIES
 #undef GXP_TREE_LEAVES
@@ -18046,6 +19206,8 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_SAME_WAY
 #undef GXP_STAYED
 #undef GXP_LEAST_ADVANCE
+#undef GXP_CHORD_HALVES
+#undef GXP_CHORD_OFF
 #undef GXP_CUT_WIDTH
 #undef GXP_ON_SHEET
 #undef GXP_BLADE_SPECK

@@ -61,15 +61,16 @@
  *     bytes           >>save, >>check (what was read), >>load
  *
  * Of Booleans, in the order of the work:
- *     the object      >>arrangement (its types and struct), >>arena (memory), >>keys (points by definition)
+ *     the object      >>arrangement (its types and struct), >>arena (memory), >>parts (loops by threads), >>keys
+ *                     (points by definition)
  *     an operand      >>boxes (a tree of boxes), >>operands (reading one), >>sides (planes of its triangles)
- *     intersection    >>meet (two triangles), >>edges (points on edges in order)
+ *     intersection    >>meet (two triangles), >>encounters (all pairs), >>edges (points on edges in order)
  *     triangulation   >>triangulate (points), >>constrain (edges), >>divide (one source), >>flats (sources that overlap
  *                     in one plane), >>merge (equal points)
- *     the result      >>states (vectors of winding numbers), >>winding (one for each subtriangle), >>result (triangles
- *                     and vertices), >>retained (one that keeps its place), >>coarse (fewer triangles)
- *     more about it   >>components (shells), >>volumes, >>containers (which shell lies in which), >>mend (defects)
- *     functions       >>api
+ *     the result      >>states (vectors of winding numbers), >>winding (one for each subtriangle), >>floods (by
+ *                     threads), >>result (triangles and vertices), >>retained (one that keeps its place), >>coarse
+ * (fewer triangles) more about it   >>components (shells), >>volumes, >>containers (which shell lies in which), >>mend
+ * (defects) functions       >>api
  *
  * How the complex works. Each element of the mesh starts as one convex leaf, bounded by four facets, which it shares
  * with its neighbours. A triangle is clipped down the element's tree of planes (a binary space partition); each leaf
@@ -746,6 +747,9 @@ typedef struct gxb_boolean_desc {
      */
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
     void *user;
+    /* The host's threads; zero: none. Results are the same, to the last bit. Of two large operands, work takes 40
+       bytes more for each triangle, and 800 kB. A task takes less than 16 kB of stack. */
+    gx_jobs jobs;
 } gxb_boolean_desc;
 
 enum {
@@ -883,9 +887,14 @@ extern "C" {
 #define GXBP_APART          __attribute__((noinline))
 #else
 #define GXBP_FETCH(address) ((void)(address))
+#if defined(_MSC_VER)
+#define GXBP_COLD  __declspec(noinline)
+#define GXBP_APART __declspec(noinline)
+#else
 #define GXBP_COLD
-#define GXBP_RARE
 #define GXBP_APART
+#endif
+#define GXBP_RARE
 #endif
 
 /* >>bits: doubles taken apart and put together without floating-point arithmetic ----------------------------------- */
@@ -1179,15 +1188,20 @@ static GXBP_COLD void gxbp_num_increase(gxb_num *r, const gxb_num *a, int factor
     gxbp_num_copy(r, &sum, 1);
 }
 
-/* r = num / den with a relative error below 2^-180. Each of four steps adds the quotient of the remainder, 50 bits.
-   num is overwritten. */
-static GXBP_COLD void gxbp_num_divide(gxb_num *r, gxb_num *num, const gxb_num *den) {
+/* r = num / den with a relative error below 2^(-45 steps), for at most 16 steps. Each adds the quotient of the
+   remainder, 50 bits. A remainder below 2^(-48 steps) of num is left, so that r has at most 48 steps + 58 bits. num is
+   overwritten, and becomes no longer than the longer of num and den with one limb more. */
+static GXBP_COLD void gxbp_num_divide(gxb_num *r, gxb_num *num, const gxb_num *den, int steps) {
     GXB_NUM(q);
     GXB_NUM(t);
-    int step;
+    int step, first = 0, power;
     gxb_num_set(r, 0, 0);
-    for (step = 0; step < 4 && num->sign != 0; step++) {
+    for (step = 0; step < steps && num->sign != 0; step++) {
         gxb_num_set(&q, gxb_num_ratio(num, den), 0);
+        if (q.sign == 0) return;
+        (void)gxbp_num_mantissa(&q, &power);
+        if (step == 0) first = power;
+        if (power < first - 48 * steps) return;
         gxbp_num_increase(r, &q, 1);
         gxb_num_mul(&t, &q, den);
         gxbp_num_increase(num, &t, -1);
@@ -1221,10 +1235,17 @@ static GXBP_RARE void gxbp_num_cross(gxb_num r[3], const gxb_num a[3], const gxb
     gxbp_num_det2(&r[2], &a[0], &b[1], &a[1], &b[0]);
 }
 
-/* A vector of numbers with its limbs. */
+/* Room for polynomials of this degree in coordinates of the frame. These are integers times 2^-180, below 2^129. The
+   polynomials here have coefficients below 2^2.2 for each degree, so below 2^(131.2 degree), and bits down to
+   2^(-180 degree): 311.2 bits for each degree. A number may begin and end within a limb, and a sum or a product have a
+   limb more until it is trimmed. */
+#define GXBP_LIMBS(degree) ((5 * (degree) + 4) * (64 / GXB_LIMB_BITS))
+
+/* Four numbers with their limbs: coordinates and weight of a point, at most of degree 7 (three planes), or normal and
+   distance of a plane, degrees 2 and 3. Or differences of any finite doubles, 2099 bits. */
 typedef struct gxbp_vec {
     gxb_num c[4];
-    gxb_limb limbs[4][GXB_NUM_LIMBS];
+    gxb_limb limbs[4][GXBP_LIMBS(7)];
 } gxbp_vec;
 
 static GXBP_APART void gxbp_vec_init(gxbp_vec *v) {
@@ -1233,10 +1254,22 @@ static GXBP_APART void gxbp_vec_init(gxbp_vec *v) {
     for (k = 0; k < 4; k++) v->c[k].d = v->limbs[k];
 }
 
+/* Four numbers of any length: products of differences of any finite doubles, or of a point's coordinates */
+typedef struct gxbp_large {
+    gxb_num c[4];
+    gxb_limb limbs[4][GXB_NUM_LIMBS];
+} gxbp_large;
+
+static GXBP_APART void gxbp_large_init(gxbp_large *v) {
+    int k;
+    memset(v->c, 0, sizeof v->c);
+    for (k = 0; k < 4; k++) v->c[k].d = v->limbs[k];
+}
+
 /* r = a.(b x c) */
 static GXBP_COLD void gxbp_num_det3(gxb_num *r, const gxb_num a[3], const gxb_num b[3], const gxb_num c[3]) {
-    gxbp_vec normal;
-    gxbp_vec_init(&normal);
+    gxbp_large normal;
+    gxbp_large_init(&normal);
     gxbp_num_cross(normal.c, b, c);
     gxbp_num_dot(r, a, normal.c);
 }
@@ -1295,24 +1328,23 @@ static GXBP_COLD void gxbp_exact_line_plane(gxb_num point[4], const gxb_num p[4]
 /* Three planes by Cramer's rule: X = d1 n2 x n3 + d2 n3 x n1 + d3 n1 x n2, W = n1.(n2 x n3); degrees 7 and 6. */
 static GXBP_COLD void gxbp_exact_three_planes(gxb_num point[4], const gxb_num a[4], const gxb_num b[4],
                                               const gxb_num c[4]) {
-    gxbp_vec bc, ca, ab, row, d;
+    gxbp_vec bc, ca, ab;
+    gxb_num row[3], d[3]; /* have the limbs of others */
     int k;
     gxbp_vec_init(&bc);
     gxbp_vec_init(&ca);
     gxbp_vec_init(&ab);
-    gxbp_vec_init(&row);
-    gxbp_vec_init(&d);
     gxbp_num_cross(bc.c, b, c);
     gxbp_num_cross(ca.c, c, a);
     gxbp_num_cross(ab.c, a, b);
-    gxbp_num_copy(&d.c[0], &a[3], 1);
-    gxbp_num_copy(&d.c[1], &b[3], 1);
-    gxbp_num_copy(&d.c[2], &c[3], 1);
+    d[0] = a[3];
+    d[1] = b[3];
+    d[2] = c[3];
     for (k = 0; k < 3; k++) {
-        gxbp_num_copy(&row.c[0], &bc.c[k], 1);
-        gxbp_num_copy(&row.c[1], &ca.c[k], 1);
-        gxbp_num_copy(&row.c[2], &ab.c[k], 1);
-        gxbp_num_dot(&point[k], row.c, d.c);
+        row[0] = bc.c[k];
+        row[1] = ca.c[k];
+        row[2] = ab.c[k];
+        gxbp_num_dot(&point[k], row, d);
     }
     gxbp_num_dot(&point[3], a, bc.c);
     gxbp_make_weight_positive(point);
@@ -1777,12 +1809,14 @@ static int gxbp_filter_insphere(const double *const p[5]) {
 /* Degree 4: 140 limbs of 64 bits for any finite doubles. */
 static GXBP_COLD int gxbp_incircle_exact(const double *const p[4]) {
     gxbp_vec row[3];
+    gxbp_large square;
     GXB_NUM(r);
     int i;
     gxbp_exact_differences(row, p, 4, 2);
+    gxbp_large_init(&square);
     for (i = 0; i < 3; i++) {
-        gxbp_num_dot(&row[i].c[3], row[i].c, row[i].c);
-        row[i].c[2] = row[i].c[3];
+        gxbp_num_dot(&square.c[i], row[i].c, row[i].c);
+        row[i].c[2] = square.c[i];
     }
     gxbp_num_det3(&r, row[0].c, row[1].c, row[2].c);
     return r.sign;
@@ -1793,14 +1827,15 @@ static GXBP_COLD int gxbp_incircle_exact(const double *const p[4]) {
 static GXBP_COLD int gxbp_insphere_exact(const double *const p[5]) {
     gxbp_vec row[4];
     GXB_NUM(minor);
+    GXB_NUM(square);
     GXB_NUM(term);
     GXB_NUM(sum);
     int i;
     gxbp_exact_differences(row, p, 5, 3);
     for (i = 0; i < 4; i++) {
         gxbp_num_det3(&minor, row[i == 0].c, row[i <= 1 ? 2 : 1].c, row[i <= 2 ? 3 : 2].c);
-        gxbp_num_dot(&row[i].c[3], row[i].c, row[i].c);
-        gxb_num_mul(&term, &row[i].c[3], &minor);
+        gxbp_num_dot(&square, row[i].c, row[i].c);
+        gxb_num_mul(&term, &square, &minor);
         gxbp_num_increase(&sum, &term, i % 2 == 0 ? -1 : 1);
     }
     return sum.sign;
@@ -1878,13 +1913,12 @@ GXFEM_API void gxb_point_three_planes(gxb_point *point, const gxb_plane *a, cons
     point->plane[2] = c;
 }
 
-static GXBP_COLD void gxbp_plane_exact(gxbp_vec *v, const gxb_plane *plane) {
+static GXBP_COLD void gxbp_plane_exact(gxb_num v[4], const gxb_plane *plane) {
     gxbp_vec p, q, r;
     gxbp_vec_set(&p, plane->p);
     gxbp_vec_set(&q, plane->q);
     gxbp_vec_set(&r, plane->r);
-    gxbp_vec_init(v);
-    gxbp_exact_plane(v->c, p.c, q.c, r.c);
+    gxbp_exact_plane(v, p.c, q.c, r.c);
 }
 
 static GXBP_COLD void gxbp_point_exact(gxbp_vec *v, const gxb_point *point) {
@@ -1894,14 +1928,17 @@ static GXBP_COLD void gxbp_point_exact(gxbp_vec *v, const gxb_point *point) {
         return;
     }
     gxbp_vec_init(v);
-    gxbp_plane_exact(&a, point->plane[0]);
+    gxbp_vec_init(&a);
+    gxbp_plane_exact(a.c, point->plane[0]);
     if (point->plane[1] == NULL) {
         gxbp_vec_set(&b, point->p);
         gxbp_vec_set(&c, point->q);
         gxbp_exact_line_plane(v->c, b.c, c.c, a.c);
     } else {
-        gxbp_plane_exact(&b, point->plane[1]);
-        gxbp_plane_exact(&c, point->plane[2]);
+        gxbp_vec_init(&b);
+        gxbp_vec_init(&c);
+        gxbp_plane_exact(b.c, point->plane[1]);
+        gxbp_plane_exact(c.c, point->plane[2]);
         gxbp_exact_three_planes(v->c, a.c, b.c, c.c);
     }
 }
@@ -1918,7 +1955,8 @@ GXFEM_API int gxb_side(const gxb_point *point, const gxb_plane *plane) {
         GXB_NUM(r);
         gxbp_vec x, n;
         gxbp_point_exact(&x, point);
-        gxbp_plane_exact(&n, plane);
+        gxbp_vec_init(&n);
+        gxbp_plane_exact(n.c, plane);
         gxbp_exact_side(&r, x.c, n.c);
         return r.sign;
     }
@@ -1941,17 +1979,17 @@ GXFEM_API int gxb_compare(const gxb_point *a, const gxb_point *b, int axis) {
 
 /* |a b c| of the homogeneous coordinates i and j: degree 20 for three points of three planes */
 static GXBP_COLD int gxbp_orient_exact(const gxb_num a[4], const gxb_num b[4], const gxb_num c[4], int i, int j) {
-    gxbp_vec row, cofactor;
+    gxbp_large cofactor;
+    gxb_num row[3]; /* has the limbs of a */
     GXB_NUM(r);
-    gxbp_vec_init(&row);
-    gxbp_vec_init(&cofactor);
+    gxbp_large_init(&cofactor);
     gxbp_num_det2(&cofactor.c[0], &b[j], &c[3], &c[j], &b[3]);
     gxbp_num_det2(&cofactor.c[1], &c[i], &b[3], &b[i], &c[3]);
     gxbp_num_det2(&cofactor.c[2], &b[i], &c[j], &c[i], &b[j]);
-    gxbp_num_copy(&row.c[0], &a[i], 1);
-    gxbp_num_copy(&row.c[1], &a[j], 1);
-    gxbp_num_copy(&row.c[2], &a[3], 1);
-    gxbp_num_dot(&r, row.c, cofactor.c);
+    row[0] = a[i];
+    row[1] = a[j];
+    row[2] = a[3];
+    gxbp_num_dot(&r, row, cofactor.c);
     return r.sign;
 }
 
@@ -1975,7 +2013,8 @@ GXFEM_API int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const 
     axis %= 3;
     sign = gxbp_filter_sign(n[axis], plane->filter.error);
     if (sign == 0) {
-        gxbp_plane_exact(&exact_n, plane);
+        gxbp_vec_init(&exact_n);
+        gxbp_plane_exact(exact_n.c, plane);
         for (k = 0; k < 3 && exact_n.c[axis].sign == 0; k++) axis = k;
         sign = exact_n.c[axis].sign;
     }
@@ -2500,6 +2539,7 @@ static gx_result gxbp_frame_exact(const gxb_store *store, const double x[3], gxb
         gxb_num_set(&b, store->origin[k], store->shift);
         if ((a.sign != 0 && (gxbp_num_mantissa(&a, &power), power + 52 < -128)) || (a.sign != 0 && power + 52 > 128))
             return GX_ERROR_RANGE;
+        if (b.sign != 0 && (gxbp_num_mantissa(&b, &power), power + 52 > 129)) return GX_ERROR_RANGE; /* far from a */
         gxb_num_sub(&v->c[k], &a, &b);
         if (v->c[k].sign != 0 && (gxbp_num_mantissa(&v->c[k], &power), power + 52 > 128)) return GX_ERROR_RANGE;
     }
@@ -4952,12 +4992,13 @@ static int gxbp_probe_misses(const gxbp_probe *probe, const double *const x[3]) 
 
 /* gxbp_ray_side for a probe: W (a_y b_z - a_z b_y) + Y (a_z - b_z) + Z (b_y - a_y) */
 static GXBP_COLD int gxbp_probe_side(const gxbp_probe *probe, const double a[3], const double b[3]) {
-    gxbp_vec p, q, row;
+    gxbp_vec p, q;
+    gxbp_large row;
     GXB_NUM(r);
     int k, sign;
     gxbp_vec_init(&p);
     gxbp_vec_init(&q);
-    gxbp_vec_init(&row);
+    gxbp_large_init(&row);
     for (k = 1; k < 3; k++) {
         gxb_num_set(&p.c[k], a[k], probe->shift);
         gxb_num_set(&q.c[k], b[k], probe->shift);
@@ -4973,14 +5014,15 @@ static GXBP_COLD int gxbp_probe_side(const gxbp_probe *probe, const double a[3],
 
 /* gxb_orient3d(a, b, c, probe) */
 static GXBP_COLD int gxbp_probe_orient(const gxbp_probe *probe, const double *const x[3]) {
-    gxbp_vec p[3], n;
+    gxbp_vec p[3];
+    gxbp_large n;
     GXB_NUM(r);
     int k, c;
     for (c = 0; c < 3; c++) {
         gxbp_vec_init(&p[c]);
         for (k = 0; k < 3; k++) gxb_num_set(&p[c].c[k], x[c][k], probe->shift);
     }
-    gxbp_vec_init(&n);
+    gxbp_large_init(&n);
     gxbp_exact_plane(n.c, p[0].c, p[1].c, p[2].c);
     gxbp_exact_side(&r, probe->exact.c, n.c);
     return -r.sign;
@@ -5360,7 +5402,7 @@ GXFEM_API GXBP_RARE void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t 
         gxbp_distance(cx, point, gxbp_face_plane(cx, element, k), &num, &weight);
         gxbp_distance(cx, cx->elements[4 * element + k], gxbp_face_plane(cx, element, k), &height, NULL);
         gxb_num_mul(&den, &weight, &height);
-        gxbp_num_divide(&lambda[k], &num, &den);
+        gxbp_num_divide(&lambda[k], &num, &den, 4);
     }
 }
 
@@ -8045,6 +8087,7 @@ typedef struct gxbp_options {
     void (*coarsen)(gxb_boolean *b), (*mend)(gxb_boolean *b), (*patch)(gxb_boolean *b);
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
     void *user;
+    gx_jobs jobs;
 } gxbp_options;
 
 /* Memory: where it comes from, and how much of it there is. */
@@ -8090,6 +8133,11 @@ typedef struct gxbp_work {
     uint32_t fan_vertex_count, fan_vertex_capacity;
     uint32_t *fan_triangles;
     uint32_t fan_triangle_count, fan_triangle_capacity;
+    /* >>encounters: pairs of boxes, x 2; pairs of sources */
+    uint32_t *box_pairs;
+    uint32_t box_pair_count, box_pair_capacity;
+    struct gxbp_encounter *encounters;
+    uint32_t encounter_count, encounter_capacity;
     uint32_t plane;             /* of the triangulation at work */
     uint32_t stamp, head_stamp; /* of vertices in the triangulation at work, of those with heads */
 } gxbp_work;
@@ -8222,6 +8270,35 @@ static uint32_t gxbp_new_link(gxb_boolean *b, uint32_t value, uint32_t next) {
     return b->mesh.link_count++;
 }
 
+/* >>parts: loops whose parts may run on the host's threads --------------------------------------------------------- */
+/* In: a loop, cut into parts whose number does not depend on threads, and a task for each part. Out: all tasks done. A
+   task writes only what no other task of the loop reads or writes. It allocates nothing and keeps nothing in caches, so
+   it decides by filters only; what they leave open is done after the loop, by the caller, in the loop's order. */
+
+#ifndef GXBP_PART
+#define GXBP_PART 2048u /* items of a part: some ten microseconds; fewer in tests/test_threads.c */
+#endif
+
+static int gxbp_has_jobs(const gxb_boolean *b) { return b->options.jobs.parallel_for != NULL; }
+
+static size_t gxbp_part_count(size_t items) { return (items + GXBP_PART - 1) / GXBP_PART; }
+
+/* Items from first to before *end: those of a part */
+static uint32_t gxbp_part_first(size_t part, uint32_t items, uint32_t *end) {
+    const uint32_t first = (uint32_t)(part * GXBP_PART);
+    *end = items - first < GXBP_PART ? items : first + GXBP_PART;
+    return first;
+}
+
+static void gxbp_each_part(const gxb_boolean *b, size_t count, void (*task)(void *context, size_t part),
+                           void *context) {
+    size_t i;
+    if (gxbp_has_jobs(b) && count > 1)
+        b->options.jobs.parallel_for(b->options.jobs.user, count, task, context);
+    else
+        for (i = 0; i < count; i++) task(context, i);
+}
+
 /* >>keys: points found by coordinates or by definition ------------------------------------------------------------- */
 /* In: coordinates of an input vertex, or the kind and the objects that define a point. Out: the point, new or known.
    Touches the points, their hash table and the union-find of points found to be equal. */
@@ -8254,14 +8331,20 @@ static GXBP_COLD int gxbp_renew_table(gxb_boolean *b, uint32_t **table, uint32_t
     return 1;
 }
 
+enum { GXBP_AHEAD = 8 }; /* points whose places in the table are fetched while others are entered; a power of two */
+
 /* Enters the first count points, except those of frames, in the table. */
 static GXBP_RARE void gxbp_list_points(gxb_boolean *b, uint32_t count) {
     const uint32_t last = b->points.table_size - 1;
-    uint32_t i, k;
+    uint32_t places[GXBP_AHEAD], i, k, ahead = 0;
     memset(b->points.table, 0xff, (size_t)b->points.table_size * sizeof *b->points.table);
     for (i = b->points.table_used = 0; i < count; i++) {
+        for (; ahead < count && ahead < i + GXBP_AHEAD; ahead++) {
+            places[ahead % GXBP_AHEAD] = gxbp_hash_point(b, ahead) & last;
+            GXBP_FETCH(&b->points.table[places[ahead % GXBP_AHEAD]]);
+        }
         if (b->points.vertices[i].key[0] == GXB_FROM_VERTEX && b->points.vertices[i].key[1] == GXB_NONE) continue;
-        for (k = gxbp_hash_point(b, i) & last; b->points.table[k] != GXB_NONE; k = (k + 1) & last) {}
+        for (k = places[i % GXBP_AHEAD]; b->points.table[k] != GXB_NONE; k = (k + 1) & last) {}
         b->points.table[k] = i;
         b->points.table_used++;
     }
@@ -8412,14 +8495,30 @@ static void gxbp_extent(const gxb_boolean *b, uint32_t s, double low[3], double 
     }
 }
 
-static gxbp_box gxbp_box_of(const gxb_boolean *b, uint32_t s) {
+/* An operand as the caller gave it, of which nothing is checked but its indices; scale takes it into the frame. */
+typedef struct gxbp_raw {
+    const gxb_operand *operand;
+    double scale;
+} gxbp_raw;
+
+/* Corner k of triangle t. The scale is a power of two: exact, as in gxbp_scale, but for the sign of a zero. */
+static inline void gxbp_given_corner(const gxbp_raw *given, size_t t, size_t k, double x[3]) {
+    const double *p = given->operand->vertices + 3 * (size_t)given->operand->triangles[3 * t + k];
+    x[0] = p[0] * given->scale;
+    x[1] = p[1] * given->scale;
+    x[2] = p[2] * given->scale;
+}
+
+static inline gxbp_box gxbp_box_of(const gxbp_raw *given, size_t t) {
     gxbp_box box;
-    double low[3], high[3];
+    double p[3], q[3], r[3];
     int k;
-    gxbp_extent(b, s, low, high);
+    gxbp_given_corner(given, t, 0, p);
+    gxbp_given_corner(given, t, 1, q);
+    gxbp_given_corner(given, t, 2, r);
     for (k = 0; k < 3; k++) {
-        box.low[k] = gxbp_float_below(low[k]);
-        box.high[k] = gxbp_float_above(high[k]);
+        box.low[k] = gxbp_float_below(gxbp_min(gxbp_min(p[k], q[k]), r[k]));
+        box.high[k] = gxbp_float_above(gxbp_max(gxbp_max(p[k], q[k]), r[k]));
     }
     return box;
 }
@@ -8441,14 +8540,14 @@ static uint32_t gxbp_spread(uint32_t x) {
 static uint32_t gxbp_lattice(double t) { return t > 0 ? t < 1023 ? (uint32_t)t : 1023 : 0; }
 
 /* Sorts the sources along a Z-order curve by their first corners; work: two words of 64 bits each. */
-static GXBP_APART void gxbp_sort_sources(const gxb_boolean *b, const gxbp_operand *o, uint64_t *work) {
+static GXBP_APART void gxbp_sort_sources(const gxbp_operand *o, const gxbp_raw *given, uint64_t *work) {
     uint64_t *from = work, *to = work + o->source_count, *swap;
-    double low[3], high[3], scale[3];
+    double low[3], high[3], scale[3], x[3];
     uint32_t i, pass, k;
-    memcpy(low, gxbp_corner_of(b, o->source, 0), sizeof low);
+    gxbp_given_corner(given, 0, 0, low);
     memcpy(high, low, sizeof high);
     for (i = 1; i < o->source_count; i++) {
-        const double *x = gxbp_corner_of(b, o->source + i, 0);
+        gxbp_given_corner(given, i, 0, x);
         for (k = 0; k < 3; k++) {
             low[k] = gxbp_min(x[k], low[k]);
             high[k] = gxbp_max(x[k], high[k]);
@@ -8456,8 +8555,8 @@ static GXBP_APART void gxbp_sort_sources(const gxb_boolean *b, const gxbp_operan
     }
     for (k = 0; k < 3; k++) scale[k] = high[k] > low[k] ? 1023 / (high[k] - low[k]) : 0;
     for (i = 0; i < o->source_count; i++) {
-        const double *x = gxbp_corner_of(b, o->source + i, 0);
         uint32_t key = 0;
+        gxbp_given_corner(given, i, 0, x);
         for (k = 0; k < 3; k++) key |= gxbp_spread(gxbp_lattice((x[k] - low[k]) * scale[k])) << k;
         from[i] = (uint64_t)key << 32 | (o->source + i);
     }
@@ -8493,14 +8592,14 @@ static void gxbp_widen_leaf(gxbp_leaf_boxes *leaf, uint32_t x, const gxbp_box *b
 }
 
 /* Boxes of leaf i's sources, and around them */
-static void gxbp_fill_leaf(gxb_boolean *b, const gxbp_operand *o, uint32_t i) {
+static void gxbp_fill_leaf(gxb_boolean *b, const gxbp_operand *o, const gxbp_raw *given, uint32_t i) {
     gxbp_leaf_boxes *leaf = &b->in.bounds[o->bounds + i];
     gxbp_box *around = &b->in.boxes[o->tree.first + i];
     uint32_t x, k;
     for (x = 0; x < GXBP_LEAF; x++) {
         gxbp_box box;
         if (i * GXBP_LEAF + x < o->source_count) {
-            box = gxbp_box_of(b, o->order[i * GXBP_LEAF + x]);
+            box = gxbp_box_of(given, o->order[i * GXBP_LEAF + x] - o->source);
             if (x == 0)
                 *around = box;
             else
@@ -8517,10 +8616,15 @@ static void gxbp_fill_leaf(gxb_boolean *b, const gxbp_operand *o, uint32_t i) {
     }
 }
 
-static void gxbp_fill_tree(gxb_boolean *b, const gxbp_operand *o) {
+/* Fills the tree. keys: two words of 64 bits for each source */
+static GXBP_APART void gxbp_fill_tree(gxb_boolean *b, const gxbp_operand *o, const gxbp_raw *given, uint64_t *keys) {
     const gxbp_tree *t = &o->tree;
     uint32_t i, l;
-    for (i = 0; i < t->size[0]; i++) gxbp_fill_leaf(b, o, i);
+    if (o->source_count > 4 * GXBP_LEAF)
+        gxbp_sort_sources(o, given, keys);
+    else
+        for (i = 0; i < o->source_count; i++) o->order[i] = o->source + i;
+    for (i = 0; i < t->size[0]; i++) gxbp_fill_leaf(b, o, given, i);
     for (l = 1; l < t->levels; l++)
         for (i = 0; i < t->size[l - 1]; i++) {
             gxbp_box *box = &b->in.boxes[t->first + t->level[l] + i / 2];
@@ -8532,18 +8636,12 @@ static void gxbp_fill_tree(gxb_boolean *b, const gxbp_operand *o) {
         }
 }
 
-static GXBP_APART gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
+/* A tree without boxes yet. Room for the leaves' is there. */
+static gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
     gxbp_tree *t = &o->tree;
-    uint32_t size = (o->source_count + GXBP_LEAF - 1) / GXBP_LEAF, total = 0, i;
-    const size_t words = o->source_count;
-    o->order = (uint32_t *)gxbp_allocate(&b->store.allocator, words * sizeof *o->order);
+    uint32_t size = (o->source_count + GXBP_LEAF - 1) / GXBP_LEAF, total = 0;
+    o->order = (uint32_t *)gxbp_allocate(&b->store.allocator, o->source_count * sizeof *o->order);
     if (o->order == NULL) return GX_ERROR_MEMORY;
-    if (o->source_count > 4 * GXBP_LEAF) {
-        uint64_t *work = (uint64_t *)gxbp_borrow(b, 2 * words * sizeof *work);
-        if (work == NULL) return b->error;
-        gxbp_sort_sources(b, o, work);
-    } else
-        for (i = 0; i < o->source_count; i++) o->order[i] = o->source + i;
     o->bounds = b->in.bound_count;
     b->in.bound_count += size;
     for (t->levels = 0;; size = (size + 1) / 2) {
@@ -8553,9 +8651,8 @@ static GXBP_APART gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
         if (size == 1) break;
     }
     t->first = b->in.box_count;
-    if (!GXBP_ROOM(b, in.boxes, in.box, total)) return GX_ERROR_MEMORY;
+    if (!GXBP_ROOM(b, in.boxes, in.box, total)) return b->error;
     b->in.box_count += total;
-    gxbp_fill_tree(b, o);
     return GX_OK;
 }
 
@@ -8659,9 +8756,10 @@ static gx_result gxbp_choose_scale(gxb_boolean *b, const gxb_operand *operand, s
     return GX_ERROR_RANGE;
 }
 
-static uint32_t gxbp_input_point(gxb_boolean *b, const double y[3], uint32_t operand, uint32_t index) {
+/* hash: of its place */
+static uint32_t gxbp_input_point(gxb_boolean *b, const double y[3], uint32_t hash, uint32_t operand, uint32_t index) {
     uint32_t k, id;
-    for (k = gxbp_hash_place(y) & (b->points.table_size - 1); b->points.table[k] != GXB_NONE;
+    for (k = hash & (b->points.table_size - 1); b->points.table[k] != GXB_NONE;
          k = (k + 1) & (b->points.table_size - 1)) {
         const uint32_t p = b->points.table[k];
         if (b->points.vertices[p].key[0] == GXB_FROM_VERTEX && memcmp(b->store.points[p].ball.x, y, 3 * sizeof *y) == 0)
@@ -8810,14 +8908,15 @@ static void gxbp_drop_exits(gxb_boolean *b, gxbp_exits *exits) {
 static GXBP_COLD int gxbp_has_area_exactly(const double *p, const double *q, const double *r) {
     const double *x[3];
     gxb_plane plane;
-    gxbp_vec n;
+    gxbp_large n;
     int sign[3];
     x[0] = p;
     x[1] = q;
     x[2] = r;
     if (gxbp_normal_short(x, sign)) return sign[0] != 0 || sign[1] != 0 || sign[2] != 0;
     gxb_plane_init(&plane, p, q, r);
-    gxbp_plane_exact(&n, &plane);
+    gxbp_large_init(&n);
+    gxbp_plane_exact(n.c, &plane);
     return n.c[0].sign != 0 || n.c[1].sign != 0 || n.c[2].sign != 0;
 }
 
@@ -8836,10 +8935,10 @@ static int gxbp_has_area(const double *p, const double *q, const double *r) {
     return gxbp_has_area_exactly(p, q, r);
 }
 
-/* Resets a source to one subtriangle, which is appended. The caller has made room for it. */
-static inline void gxbp_reset_source(gxb_boolean *b, uint32_t s) {
+/* Makes a source of one subtriangle, number first. */
+static inline void gxbp_make_whole(gxb_boolean *b, uint32_t s, uint32_t first) {
     gxbp_source *t = &b->in.sources[s];
-    gxbp_subtriangle *f = &b->mesh.subtriangles[b->mesh.subtriangle_count];
+    gxbp_subtriangle *f = &b->mesh.subtriangles[first];
     int k;
     for (k = 0; k < 3; k++) {
         t->edge[k] = GXB_NONE;
@@ -8851,20 +8950,7 @@ static inline void gxbp_reset_source(gxb_boolean *b, uint32_t s) {
     t->root = s;
     f->source = t->flags & GXBP_DEGENERATE ? GXB_NONE : s;
     f->next = f->covers = f->state = GXB_NONE;
-    t->subtriangle = b->mesh.subtriangle_count++;
-}
-
-static void gxbp_fill_source(gxb_boolean *b, uint32_t s, uint32_t operand, const uint32_t *twin, uint32_t first) {
-    gxbp_source *t = &b->in.sources[s];
-    const gxb_cpoint *x = b->store.points;
-    int k;
-    for (k = 0; k < 3; k++) t->twin[k] = twin[k] == GXB_NONE ? GXB_NONE : twin[k] + 3 * first;
-    t->plane = GXB_NONE;
-    t->operand = operand;
-    t->flags = gxbp_has_area(x[t->point[0]].ball.x, x[t->point[1]].ball.x, x[t->point[2]].ball.x)
-                 ? 0
-                 : (uint32_t)GXBP_DEGENERATE;
-    gxbp_reset_source(b, s);
+    t->subtriangle = first;
 }
 
 /* A triangle without area is nobody's neighbour. */
@@ -8885,17 +8971,23 @@ static void gxbp_forget_degenerate(gxb_boolean *b, uint32_t first) {
  * one place, local is i. */
 static gx_result gxbp_read_points(gxb_boolean *b, const gxb_operand *o, uint32_t *points, uint32_t *local,
                                   int *distinct, size_t *bad) {
-    size_t i;
+    double places[GXBP_AHEAD][3];
+    uint32_t hashes[GXBP_AHEAD];
+    size_t i, ahead = 0;
     *distinct = 1;
     for (i = 0; i < o->vertex_count; i++) {
-        double y[3];
         gxbp_vertex *v;
-        const gx_result result = gxbp_scale(b, o->vertices + 3 * i, y);
-        if (result != GX_OK) {
-            *bad = i;
-            return result;
+        for (; ahead < o->vertex_count && ahead < i + GXBP_AHEAD; ahead++) { /* fetched while others are entered */
+            const gx_result result = gxbp_scale(b, o->vertices + 3 * ahead, places[ahead % GXBP_AHEAD]);
+            if (result != GX_OK) {
+                *bad = ahead;
+                return result;
+            }
+            hashes[ahead % GXBP_AHEAD] = gxbp_hash_place(places[ahead % GXBP_AHEAD]);
+            GXBP_FETCH(&b->points.table[hashes[ahead % GXBP_AHEAD] & (b->points.table_size - 1)]);
         }
-        points[i] = gxbp_input_point(b, y, b->in.operand_count, (uint32_t)i);
+        points[i] =
+            gxbp_input_point(b, places[i % GXBP_AHEAD], hashes[i % GXBP_AHEAD], b->in.operand_count, (uint32_t)i);
         if (points[i] == GXB_NONE) return b->error;
         v = &b->points.vertices[points[i]]; /* vertices at one place are one: the first of them */
         if (v->head >= i || points[v->head] != points[i]) v->head = (uint32_t)i;
@@ -8905,30 +8997,110 @@ static gx_result gxbp_read_points(gxb_boolean *b, const gxb_operand *o, uint32_t
     return GX_OK;
 }
 
-static GXBP_APART gx_result gxbp_read_triangles(gxb_boolean *b, const gxb_operand *o, uint32_t *work, size_t *bad) {
-    uint32_t *points = work, *local = points + o->vertex_count, *joined = local + o->vertex_count;
-    uint32_t *twin = joined + 3 * o->triangle_count, open, first = b->in.source_count;
-    const uint32_t *triangles = o->triangles;
+/* An operand that is being read, and the memory of its stages */
+typedef struct gxbp_reading {
+    gxb_boolean *b;
+    gxbp_raw given;
+    gxbp_operand *added;
+    uint64_t *keys;                 /* two for each triangle, to sort them */
+    uint32_t *points, *local;       /* of each vertex, see gxbp_read_points */
+    uint32_t *joined, *twin, *room; /* 3 words for each triangle; the same; gxbp_twin_room */
+    uint32_t subtriangle, open;     /* the first subtriangle; a half-edge at the rim, or GXB_NONE */
     int distinct;
-    gx_result result = gxbp_read_points(b, o, points, local, &distinct, bad);
-    size_t h;
-    if (result != GX_OK) return result;
-    if (!distinct) {
-        for (h = 0; h < 3 * o->triangle_count; h++) joined[h] = local[o->triangles[h]];
-        triangles = joined;
+    gx_result result;
+    size_t bad;
+} gxbp_reading;
+
+/* The sources of one part, each with one subtriangle */
+static void gxbp_fill_sources(void *context, size_t part) {
+    const gxbp_reading *r = (const gxbp_reading *)context;
+    gxb_boolean *b = r->b;
+    const gxb_cpoint *x = b->store.points;
+    uint32_t end, h = gxbp_part_first(part, r->added->source_count, &end), k;
+    for (; h < end; h++) {
+        const uint32_t s = r->added->source + h;
+        gxbp_source *t = &b->in.sources[s];
+        for (k = 0; k < 3; k++) {
+            const uint32_t twin = r->twin[3 * h + k];
+            t->point[k] = r->points[r->given.operand->triangles[3 * h + k]];
+            t->twin[k] = twin == GXB_NONE ? GXB_NONE : twin + 3 * r->added->source;
+        }
+        t->plane = GXB_NONE;
+        t->operand = b->in.operand_count;
+        t->flags = gxbp_has_area(x[t->point[0]].ball.x, x[t->point[1]].ball.x, x[t->point[2]].ball.x)
+                     ? 0
+                     : (uint32_t)GXBP_DEGENERATE;
+        gxbp_make_whole(b, s, r->subtriangle + h);
     }
-    gxbp_find_twins(triangles, o->triangle_count, (uint32_t)o->vertex_count, twin, &open, twin + 3 * o->triangle_count);
-    if (open != GXB_NONE && o->operation != GXB_SPLIT) {
-        *bad = open / 3;
+}
+
+static void gxbp_pair_half_edges(gxbp_reading *r, const uint32_t *triangles) {
+    const gxb_operand *o = r->given.operand;
+    gxbp_find_twins(triangles, o->triangle_count, (uint32_t)o->vertex_count, r->twin, &r->open, r->room);
+}
+
+/* Stages that need nothing of each other: points; half-edges, as if no two vertices were at one place; the tree. What
+   is wrong with a vertex is found by the first one. */
+static void gxbp_read_stage(void *context, size_t stage) {
+    gxbp_reading *r = (gxbp_reading *)context;
+    if (stage == 0)
+        r->result = gxbp_read_points(r->b, r->given.operand, r->points, r->local, &r->distinct, &r->bad);
+    else if (stage == 1)
+        gxbp_pair_half_edges(r, r->given.operand->triangles);
+    else
+        gxbp_fill_tree(r->b, r->added, &r->given, r->keys);
+}
+
+static GXBP_APART gx_result gxbp_read_triangles(gxbp_reading *r) {
+    gxb_boolean *b = r->b;
+    const gxb_operand *o = r->given.operand;
+    const size_t parts = gxbp_part_count(o->triangle_count);
+    const int together = gxbp_has_jobs(b) && parts > 1;
+    size_t h;
+    if (together)
+        gxbp_each_part(b, 3, gxbp_read_stage, r);
+    else
+        gxbp_read_stage(r, 0);
+    if (r->result != GX_OK) return r->result;
+    if (!r->distinct) {
+        for (h = 0; h < 3 * o->triangle_count; h++) r->joined[h] = r->local[o->triangles[h]];
+        gxbp_pair_half_edges(r, r->joined);
+    } else if (!together)
+        gxbp_read_stage(r, 1);
+    if (r->open != GXB_NONE && o->operation != GXB_SPLIT) {
+        r->bad = r->open / 3;
         return GX_ERROR_NOT_CLOSED;
     }
-    for (h = 0; h < o->triangle_count; h++) {
-        gxbp_source *t = &b->in.sources[b->in.source_count];
-        int k;
-        for (k = 0; k < 3; k++) t->point[k] = points[triangles[3 * h + (size_t)k]];
-        gxbp_fill_source(b, b->in.source_count, b->in.operand_count, twin + 3 * h, first);
-        b->in.source_count++;
-    }
+    if (b->points.renamed) /* points' names are looked up, which shortens the ways to them */
+        for (h = 0; h < parts; h++) gxbp_fill_sources(r, h);
+    else
+        gxbp_each_part(b, parts, gxbp_fill_sources, r);
+    b->in.source_count += (uint32_t)o->triangle_count;
+    b->mesh.subtriangle_count += (uint32_t)o->triangle_count;
+    if (!together) gxbp_read_stage(r, 2);
+    return GX_OK;
+}
+
+/* Lends memory to the stages. The keys come last if stages follow each other, where twins are no longer needed. */
+static gx_result gxbp_begin_reading(gxb_boolean *b, const gxb_operand *o, gxbp_operand *added, gxbp_reading *r) {
+    const size_t triangles = o->triangle_count, vertices = o->vertex_count,
+                 apart = gxbp_has_jobs(b) && gxbp_part_count(triangles) > 1 ? 4 * triangles : 0;
+    uint32_t *work =
+        (uint32_t *)gxbp_borrow(b, (apart + 2 * vertices + 6 * triangles + gxbp_twin_room(vertices)) * sizeof *work);
+    if (work == NULL) return b->error;
+    memset(r, 0, sizeof *r);
+    r->b = b;
+    r->given.operand = o;
+    r->given.scale = gxbp_power(b->store.shift);
+    r->added = added;
+    r->keys = (uint64_t *)(void *)work;
+    r->points = work + apart;
+    r->local = r->points + vertices;
+    r->joined = r->local + vertices;
+    r->twin = r->joined + 3 * triangles;
+    r->room = r->twin + 3 * triangles;
+    r->subtriangle = b->mesh.subtriangle_count;
+    r->bad = SIZE_MAX;
     return GX_OK;
 }
 
@@ -8938,23 +9110,24 @@ static size_t gxbp_presize(const gxb_boolean *b, size_t count, size_t thirds) {
     return b->in.operand_count > 0 ? count : count + thirds * count / 3;
 }
 
-static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_t *bad) {
-    const size_t words = 2 * o->vertex_count + 6 * o->triangle_count + gxbp_twin_room(o->vertex_count);
+static gx_result gxbp_operand_room(gxb_boolean *b, const gxb_operand *o) {
     const size_t sources = gxbp_presize(b, o->triangle_count, 1), subtriangles = gxbp_presize(b, o->triangle_count, 3),
                  points = gxbp_presize(b, o->vertex_count, 3);
     const size_t leaves = gxbp_presize(b, (o->triangle_count + GXBP_LEAF - 1) / GXBP_LEAF, 1);
-    gxbp_operand *added;
-    gx_result result;
-    uint32_t *work;
     if (!GXBP_ROOM(b, in.operands, in.operand, 1) || !gxbp_operand_box_room(b) ||
         !GXBP_ROOM(b, in.sources, in.source, sources) || !GXBP_ROOM(b, in.bounds, in.bound, leaves) ||
         !GXBP_ROOM(b, mesh.subtriangles, mesh.subtriangle, subtriangles) ||
         !GXBP_ROOM(b, points.vertices, points.vertex, points) || !gxbp_table_room(b, (uint32_t)o->vertex_count))
         return b->error;
-    result = GXBP_RESERVE(&b->store.allocator, &b->store, points, point, points);
+    return GXBP_RESERVE(&b->store.allocator, &b->store, points, point, points);
+}
+
+static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_t *bad) {
+    gxbp_operand *added;
+    gxbp_reading reading;
+    gx_result result = gxbp_operand_room(b, o);
     if (result != GX_OK) return result;
-    work = (uint32_t *)gxbp_borrow(b, words * sizeof *work);
-    if (work == NULL) return b->error;
+    reading.bad = SIZE_MAX;
     added = &b->in.operands[b->in.operand_count];
     memset(added, 0, sizeof *added);
     added->operation = o->operation;
@@ -8962,9 +9135,11 @@ static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operan
     added->simple = o->simple;
     added->source = b->in.source_count;
     added->source_count = (uint32_t)o->triangle_count;
-    result = gxbp_read_triangles(b, o, work, bad);
+    result = gxbp_begin_reading(b, o, added, &reading);
     if (result == GX_OK) result = gxbp_make_tree(b, added);
+    if (result == GX_OK) result = gxbp_read_triangles(&reading);
     if (result != GX_OK) {
+        *bad = reading.bad;
         gxbp_release(&b->store.allocator, added->order, o->triangle_count * sizeof *added->order);
         return result;
     }
@@ -9310,10 +9485,9 @@ static inline void gxbp_record_crossing(gxb_boolean *b, uint32_t s, int k, uint3
     gxbp_found(b, m, point);
 }
 
-/* sign[x][y]: orientation of (p[0], p[y + 1], q[x + 1], q[0]). The differences and products are shared: see
- * gxbp_cross_size for the bound. */
-static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const double *const p[3], int sign[2][2]) {
-    const double *corner[4];
+/* sign[x][y]: orientation of (p[0], p[y + 1], q[x + 1], q[0]); 0: the filter leaves it open. The differences and
+ * products are shared: see gxbp_cross_size for the bound. Returns 1 if none is left open. */
+static int gxbp_orient_pairs_by_filter(const double *const q[3], const double *const p[3], int sign[2][2]) {
     double w[3], u[2][3], v[3], m[3], size[3];
     int x, y, k;
     for (k = 0; k < 3; k++) {
@@ -9329,7 +9503,18 @@ static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const do
                 32 * GXBP_U * (gxbp_abs(a[0]) * size[0] + gxbp_abs(a[1]) * size[1] + gxbp_abs(a[2]) * size[2]) +
                 GXBP_TINY;
             sign[x][y] = gxbp_filter_sign(a[0] * m[0] + a[1] * m[1] + a[2] * m[2], bound);
-            b->store.filter_calls++;
+        }
+    }
+    return sign[0][0] * sign[0][1] * sign[1][0] * sign[1][1] != 0;
+}
+
+static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const double *const p[3], int sign[2][2]) {
+    const double *corner[4];
+    int x, y;
+    b->store.filter_calls += 4;
+    if (gxbp_orient_pairs_by_filter(q, p, sign)) return;
+    for (y = 0; y < 2; y++)
+        for (x = 0; x < 2; x++) {
             if (sign[x][y] != 0) continue;
             b->store.exact_calls++;
             corner[0] = p[0];
@@ -9338,28 +9523,32 @@ static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const do
             corner[3] = q[0];
             sign[x][y] = gxbp_orient3d_exact(corner);
         }
-    }
 }
 
 /* The lone corner: the one that is alone on its side */
 static int gxbp_lone_corner(const int side[3]) { return side[1] == side[2] ? 0 : side[0] == side[2] ? 1 : 2; }
 
-/* No corner lies in the other's plane. Two edges of each triangle cross that plane, those at its lone corner. Where one
-   crosses follows from its orientations with the two edges of the other triangle. Four orientations serve both
-   triangles. The common segment's direction u in s leads from the edge that leaves the lone corner to the one that
-   comes back. The lone corner is to its left, so the corner's side_s is the sign of |n_t n_s u|. For t's direction w
-   its side_t is the sign of |n_s n_t w|. So u and w agree where the lone corners' sides differ. One end of the common
-   segment is the start of both. */
-static void gxbp_meet_across(gxb_boolean *b, uint32_t s, uint32_t t, const int side_s[3], const int side_t[3],
-                             gxbp_meeting *m) {
-    const int i = gxbp_lone_corner(side_s), j = gxbp_lone_corner(side_t);
-    const double *p[3], *q[3];
-    int sign[2][2], y[2], k, x;
+/* Corners of two triangles from their lone corners i and j on */
+static void gxbp_list_corners(const gxb_boolean *b, uint32_t s, int i, uint32_t t, int j, const double *q[3],
+                              const double *p[3]) {
+    int k;
     for (k = 0; k < 3; k++) {
         q[k] = gxbp_corner_of(b, s, (i + k) % 3);
         p[k] = gxbp_corner_of(b, t, (j + k) % 3);
     }
-    gxbp_orient_pairs(b, q, p, sign);
+}
+
+/* The points in which two triangles meet that lie across each other's planes: no corner lies in the other's plane.
+   sign: see gxbp_orient_pairs, of corners in the order of gxbp_list_corners. Two edges of each triangle cross that
+   plane, those at its lone corner. Where one crosses follows from its orientations with the two edges of the other
+   triangle. Four orientations serve both triangles. The common segment's direction u in s leads from the edge that
+   leaves the lone corner to the one that comes back. The lone corner is to its left, so the corner's side_s is the sign
+   of |n_t n_s u|. For t's direction w its side_t is the sign of |n_s n_t w|. So u and w agree where the lone corners'
+   sides differ. One end of the common segment is the start of both. */
+static void gxbp_meet_across(gxb_boolean *b, uint32_t s, uint32_t t, const int side_s[3], const int side_t[3],
+                             int sign[2][2], gxbp_meeting *m) {
+    const int i = gxbp_lone_corner(side_s), j = gxbp_lone_corner(side_t);
+    int y[2], k, x;
     for (k = 0; k < 3; k++) {
         if (k == (i + 1) % 3) continue;
         x = k != i;
@@ -9517,49 +9706,19 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
     gxbp_sides(b, s, b->in.sources[t].plane, 1, side_s);
     if (gxbp_all_on_one_side(side_s)) return;
     m.count = m.left = 0;
-    if (side_s[0] * side_s[1] * side_s[2] != 0 && side_t[0] * side_t[1] * side_t[2] != 0)
-        gxbp_meet_across(b, s, t, side_s, side_t, &m);
-    else {
+    if (side_s[0] * side_s[1] * side_s[2] != 0 && side_t[0] * side_t[1] * side_t[2] != 0) {
+        const double *q[3], *p[3];
+        int sign[2][2];
+        gxbp_list_corners(b, s, gxbp_lone_corner(side_s), t, gxbp_lone_corner(side_t), q, p);
+        gxbp_orient_pairs(b, q, p, sign);
+        gxbp_meet_across(b, s, t, side_s, side_t, sign, &m);
+    } else {
         for (k = 0; k < 3; k++) common += gxbp_is_corner(b, t, b->in.sources[s].point[k]);
         if (common == 1 && (gxbp_touches_by_corner(side_s) || gxbp_touches_by_corner(side_t))) return;
         gxbp_meet_one_way(b, s, t, side_s, &m);
         gxbp_meet_one_way(b, t, s, side_t, &m);
     }
     gxbp_record_meeting(b, s, t, &m);
-}
-
-static GXBP_APART void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, uint32_t i, const gxbp_operand *q,
-                                        uint32_t j) {
-    uint32_t first[GXBP_LEAF], second[GXBP_LEAF], x, y;
-    gxbp_test_leaf(&b->in.bounds[o->bounds + i], &b->in.boxes[q->tree.first + j], first);
-    for (x = 0; x < GXBP_LEAF; x++) {
-        gxbp_box box;
-        if (!first[x] || b->in.sources[o->order[i * GXBP_LEAF + x]].flags & GXBP_DEGENERATE) continue;
-        box = gxbp_leaf_box(&b->in.bounds[o->bounds + i], x);
-        if (!gxbp_test_leaf(&b->in.bounds[q->bounds + j], &box, second)) continue;
-        for (y = o == q && i == j ? x + 1 : 0; y < GXBP_LEAF; y++) {
-            if (!second[y] || b->in.sources[q->order[j * GXBP_LEAF + y]].flags & GXBP_DEGENERATE) continue;
-            gxbp_meet(b, o->order[i * GXBP_LEAF + x], q->order[j * GXBP_LEAF + y]);
-        }
-    }
-}
-
-/* Box i of level l of one tree meets box j of level m of the other. Goes down to the boxes within the one of the higher
- * level, or within both. The depth of the recursion is the higher level. */
-static GXBP_APART void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, uint32_t l, uint32_t i,
-                                       const gxbp_operand *q, uint32_t m, uint32_t j) {
-    const gxbp_tree *s = &o->tree, *t = &q->tree;
-    const uint32_t down_s = l >= m, down_t = m >= l;
-    uint32_t c, d;
-    if (b->error != GX_OK) return;
-    if (l == 0 && m == 0) {
-        gxbp_meet_leaves(b, o, i, q, j);
-        return;
-    }
-    for (c = i << down_s; c < (i + 1) << down_s && c < s->size[l - down_s]; c++)
-        for (d = o == q && c > j << down_t ? c : j << down_t; d < (j + 1) << down_t && d < t->size[m - down_t]; d++)
-            if (gxbp_boxes_meet(b, s, l - down_s, c, t, m - down_t, d))
-                gxbp_meet_boxes(b, o, l - down_s, c, q, m - down_t, d);
 }
 
 /* --- surfaces of which a point sees all cannot cross themselves --- */
@@ -9615,13 +9774,277 @@ static GXBP_APART int gxbp_is_star(const gxb_boolean *b, const gxbp_operand *o) 
     return crossed == 1;
 }
 
+/* >>encounters: pairs of triangles whose boxes meet ---------------------------------------------------------------- */
+/* In: the trees of two operands. Out: all pairs of their sources whose boxes overlap, given to gxbp_meet. With the
+   host's threads, pairs of boxes are searched side by side, and each pair of sources is judged there as far as filters
+   go. The pairs are then met in the order in which they would be without threads. Touches what >>meet does. */
+
+/* What tasks found out about a pair. BESIDE: all of t is on one side of s's plane. APART: they do not meet, and
+   nothing else is known. ACROSS: they meet, each across the other's plane, and the signs are behind the judgement:
+   those of the corners of s, of t, and of gxbp_orient_pairs; 1 where one is positive. */
+enum { GXBP_PAIR_OPEN, GXBP_PAIR_BESIDE, GXBP_PAIR_APART, GXBP_PAIR_ACROSS, GXBP_JUDGEMENT_BITS = 2 };
+typedef struct gxbp_encounter {
+    uint32_t s, t, judged;
+} gxbp_encounter;
+
+/* Where a walk through two trees puts what it finds: pairs of boxes of level floor or below it, or pairs of sources */
+typedef struct gxbp_finds {
+    uint32_t floor;
+    int boxes;            /* 1: pairs of boxes, in b->work.box_pairs; else pairs of sources, in the list */
+    gxbp_encounter *list; /* capacity */
+    uint32_t count, capacity;
+    int full;
+    uint64_t filter_calls;
+} gxbp_finds;
+enum {
+    GXBP_FLOOR = 3,                   /* of pairs of boxes: 64 sources in each */
+    GXBP_TASK_BOXES = 16,             /* pairs of boxes for a task */
+    GXBP_TASK_ENCOUNTERS = GXBP_PART, /* of a task: if there are more, the rest is left to the caller */
+    GXBP_TASKS = 32                   /* at a time */
+};
+
+static void gxbp_source_filter(const gxb_boolean *b, uint32_t s, gxb_plane_filter *f) {
+    const gxbp_source *source = &b->in.sources[s];
+    const gxb_ball *p = &b->store.points[source->point[0]].ball;
+    double u[3], v[3], eu, ev;
+    if (source->plane != GXB_NONE) {
+        *f = b->store.planes[source->plane].filter;
+        return;
+    }
+    eu = gxbp_filter_difference(u, p, &b->store.points[source->point[1]].ball);
+    ev = gxbp_filter_difference(v, p, &b->store.points[source->point[2]].ball);
+    gxbp_filter_plane(f, p, u, eu, v, ev);
+}
+
+/* Sides of a source's corners by the filter, 0 where it leaves them open. Returns how many are not. */
+static int gxbp_sides_by_filter(const gxb_boolean *b, uint32_t s, const gxb_plane_filter *f, int side[3]) {
+    int k, known = 0;
+    for (k = 0; k < 3; k++) {
+        double bound;
+        const double value = gxbp_filter_side(&b->store.points[b->in.sources[s].point[k]].ball, f, &bound);
+        side[k] = gxbp_filter_sign(value, bound);
+        known += side[k] != 0;
+    }
+    return known;
+}
+
+/* Do the edges at a lone corner, on this side, pass beside the other triangle? sign: by the edge, then by the other
+   triangle's edge */
+static int gxbp_passes_beside(int side, int sign[2][2]) {
+    return (-side * sign[0][0] < 0 || side * sign[0][1] < 0) && (-side * sign[1][0] < 0 || side * sign[1][1] < 0);
+}
+
+/* What gxbp_meet would do with a pair, as far as filters tell. f: of s's plane */
+static uint32_t gxbp_judge_pair(const gxb_boolean *b, uint32_t s, uint32_t t, const gxb_plane_filter *f,
+                                gxbp_finds *finds) {
+    gxb_plane_filter g;
+    const double *q[3], *p[3];
+    int side_s[3], side_t[3], sign[2][2], turned[2][2], i, j, k;
+    const int known = gxbp_sides_by_filter(b, t, f, side_t);
+    uint32_t judged = GXBP_PAIR_ACROSS, bit = 1u << GXBP_JUDGEMENT_BITS;
+    finds->filter_calls += 3;
+    if (gxbp_all_on_one_side(side_t)) return GXBP_PAIR_BESIDE;
+    if (b->in.sources[s].operand == b->in.sources[t].operand && gxbp_are_neighbours(b, s, t))
+        return known > 0 ? GXBP_PAIR_APART : GXBP_PAIR_OPEN;
+    if (known < 3) return GXBP_PAIR_OPEN;
+    gxbp_source_filter(b, t, &g);
+    finds->filter_calls += 3;
+    k = gxbp_sides_by_filter(b, s, &g, side_s);
+    if (gxbp_all_on_one_side(side_s)) return GXBP_PAIR_APART;
+    if (k < 3) return GXBP_PAIR_OPEN;
+    i = gxbp_lone_corner(side_s);
+    j = gxbp_lone_corner(side_t);
+    gxbp_list_corners(b, s, i, t, j, q, p);
+    finds->filter_calls += 4;
+    if (!gxbp_orient_pairs_by_filter(q, p, sign)) return GXBP_PAIR_OPEN;
+    for (k = 0; k < 4; k++) turned[k % 2][k / 2] = sign[k / 2][k % 2];
+    if (gxbp_passes_beside(side_s[i], sign) && gxbp_passes_beside(side_t[j], turned)) return GXBP_PAIR_APART;
+    for (k = 0; k < 3; k++, bit *= 2) judged |= side_s[k] > 0 ? bit : 0;
+    for (k = 0; k < 3; k++, bit *= 2) judged |= side_t[k] > 0 ? bit : 0;
+    for (k = 0; k < 4; k++, bit *= 2) judged |= sign[k / 2][k % 2] > 0 ? bit : 0;
+    return judged;
+}
+
+/* Does with a pair what gxbp_meet does, in fewer steps where it is judged. */
+static void gxbp_meet_judged(gxb_boolean *b, const gxbp_encounter *e) {
+    int side_s[3], side_t[3], sign[2][2], k;
+    uint32_t kind = e->judged & 3, bits = e->judged >> GXBP_JUDGEMENT_BITS;
+    gxbp_meeting m;
+    if (kind == GXBP_PAIR_OPEN) {
+        gxbp_meet(b, e->s, e->t);
+        return;
+    }
+    if (b->error != GX_OK || !gxbp_need_plane(b, e->s) || kind == GXBP_PAIR_BESIDE || !gxbp_need_plane(b, e->t) ||
+        kind == GXBP_PAIR_APART)
+        return;
+    for (k = 0; k < 3; k++, bits /= 2) side_s[k] = bits & 1 ? 1 : -1;
+    for (k = 0; k < 3; k++, bits /= 2) side_t[k] = bits & 1 ? 1 : -1;
+    for (k = 0; k < 4; k++, bits /= 2) sign[k / 2][k % 2] = bits & 1 ? 1 : -1;
+    m.count = m.left = 0;
+    gxbp_meet_across(b, e->s, e->t, side_s, side_t, sign, &m);
+    gxbp_record_meeting(b, e->s, e->t, &m);
+}
+
+static void gxbp_find_encounter(const gxb_boolean *b, gxbp_finds *finds, uint32_t s, uint32_t t, gxb_plane_filter *f,
+                                int *filtered) {
+    gxbp_encounter *e = &finds->list[finds->count];
+    if (finds->count == finds->capacity) {
+        finds->full = 1;
+        return;
+    }
+    if (!*filtered) gxbp_source_filter(b, s, f);
+    *filtered = 1;
+    e->s = s;
+    e->t = t;
+    e->judged = gxbp_judge_pair(b, s, t, f, finds);
+    finds->count++;
+}
+
+/* finds NULL: the pairs of two leaves meet; else they are listed there. */
+static GXBP_APART void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, uint32_t i, const gxbp_operand *q,
+                                        uint32_t j, gxbp_finds *finds) {
+    uint32_t first[GXBP_LEAF], second[GXBP_LEAF], x, y;
+    gxbp_test_leaf(&b->in.bounds[o->bounds + i], &b->in.boxes[q->tree.first + j], first);
+    for (x = 0; x < GXBP_LEAF; x++) {
+        gxb_plane_filter f;
+        int filtered = 0;
+        gxbp_box box;
+        uint32_t s;
+        if (!first[x]) continue;
+        s = o->order[i * GXBP_LEAF + x];
+        if (b->in.sources[s].flags & GXBP_DEGENERATE) continue;
+        box = gxbp_leaf_box(&b->in.bounds[o->bounds + i], x);
+        if (!gxbp_test_leaf(&b->in.bounds[q->bounds + j], &box, second)) continue;
+        for (y = o == q && i == j ? x + 1 : 0; y < GXBP_LEAF; y++) {
+            if (!second[y] || b->in.sources[q->order[j * GXBP_LEAF + y]].flags & GXBP_DEGENERATE) continue;
+            if (finds == NULL)
+                gxbp_meet(b, s, q->order[j * GXBP_LEAF + y]);
+            else
+                gxbp_find_encounter(b, finds, s, q->order[j * GXBP_LEAF + y], &f, &filtered);
+        }
+    }
+}
+
+static void gxbp_list_box_pair(gxb_boolean *b, uint32_t i, uint32_t j) {
+    if (!GXBP_ROOM(b, work.box_pairs, work.box_pair, 2)) return;
+    b->work.box_pairs[b->work.box_pair_count++] = i;
+    b->work.box_pairs[b->work.box_pair_count++] = j;
+}
+
+/* Box i of level l of one tree meets box j of level m of the other. Goes down to the boxes within the one of the higher
+ * level, or within both. The depth of the recursion is the higher level. finds NULL: all pairs of sources meet */
+static GXBP_APART void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, uint32_t l, uint32_t i,
+                                       const gxbp_operand *q, uint32_t m, uint32_t j, gxbp_finds *finds) {
+    const gxbp_tree *s = &o->tree, *t = &q->tree;
+    const uint32_t down_s = l >= m, down_t = m >= l;
+    uint32_t c, d;
+    if (b->error != GX_OK || (finds != NULL && finds->full)) return;
+    if (finds != NULL && finds->boxes && l <= finds->floor && m <= finds->floor) {
+        gxbp_list_box_pair(b, i, j);
+        return;
+    }
+    if (l == 0 && m == 0) {
+        gxbp_meet_leaves(b, o, i, q, j, finds);
+        return;
+    }
+    for (c = i << down_s; c < (i + 1) << down_s && c < s->size[l - down_s]; c++)
+        for (d = o == q && c > j << down_t ? c : j << down_t; d < (j + 1) << down_t && d < t->size[m - down_t]; d++)
+            if (gxbp_boxes_meet(b, s, l - down_s, c, t, m - down_t, d))
+                gxbp_meet_boxes(b, o, l - down_s, c, q, m - down_t, d, finds);
+}
+
+/* --- the same on the host's threads --- */
+
+/* Two operands, the levels of their pairs of boxes, and up to GXBP_TASKS tasks, with pairs from first on. done: how
+   many of its pairs of boxes a task has searched to the end */
+typedef struct gxbp_search {
+    gxb_boolean *b;
+    const gxbp_operand *o, *q;
+    uint32_t l, m, first;
+    gxbp_finds finds[GXBP_TASKS];
+    uint32_t done[GXBP_TASKS];
+} gxbp_search;
+
+/* Pairs of boxes of a task, in b->work.box_pairs; *end: behind the last one */
+static uint32_t gxbp_first_pair(const gxbp_search *search, size_t task, uint32_t *end) {
+    const uint32_t count = search->b->work.box_pair_count / 2,
+                   first = search->first + (uint32_t)task * (uint32_t)GXBP_TASK_BOXES;
+    *end = count - first < (uint32_t)GXBP_TASK_BOXES ? count : first + (uint32_t)GXBP_TASK_BOXES;
+    return first;
+}
+
+static void gxbp_meet_pair(const gxbp_search *search, uint32_t pair, gxbp_finds *finds) {
+    const uint32_t *boxes = search->b->work.box_pairs + 2 * (size_t)pair;
+    gxbp_meet_boxes(search->b, search->o, search->l, boxes[0], search->q, search->m, boxes[1], finds);
+}
+
+static void gxbp_search_boxes(void *context, size_t task) {
+    gxbp_search *search = (gxbp_search *)context;
+    gxbp_finds finds = search->finds[task]; /* not beside those of other threads */
+    uint32_t end, i = gxbp_first_pair(search, task, &end), known;
+    for (search->done[task] = 0; i < end; i++) {
+        known = finds.count;
+        gxbp_meet_pair(search, i, &finds);
+        if (finds.full) {
+            finds.count = known;
+            break;
+        }
+        search->done[task]++;
+    }
+    search->finds[task] = finds;
+}
+
+/* Meets what a task has found, then what it has left. */
+static void gxbp_meet_found(const gxbp_search *search, size_t task) {
+    gxb_boolean *b = search->b;
+    const gxbp_finds *finds = &search->finds[task];
+    uint32_t end, i = gxbp_first_pair(search, task, &end) + search->done[task], k;
+    b->store.filter_calls += finds->filter_calls;
+    for (k = 0; k < finds->count && b->error == GX_OK; k++) gxbp_meet_judged(b, &finds->list[k]);
+    for (; i < end && b->error == GX_OK; i++) gxbp_meet_pair(search, i, NULL);
+}
+
+static GXBP_COLD void gxbp_meet_by_parts(gxb_boolean *b, const gxbp_operand *o, uint32_t l, const gxbp_operand *q,
+                                         uint32_t m) {
+    const uint32_t floor = GXBP_FLOOR;
+    gxbp_search search;
+    gxbp_finds finds;
+    uint32_t count, k;
+    memset(&finds, 0, sizeof finds);
+    finds.floor = floor;
+    finds.boxes = 1;
+    b->work.box_pair_count = b->work.encounter_count = 0;
+    gxbp_meet_boxes(b, o, l, 0, q, m, 0, &finds);
+    if (!GXBP_ROOM(b, work.encounters, work.encounter, GXBP_TASKS * GXBP_TASK_ENCOUNTERS)) return;
+    search.b = b;
+    search.o = o;
+    search.q = q;
+    search.l = l < floor ? l : floor;
+    search.m = m < floor ? m : floor;
+    for (search.first = 0; search.first < b->work.box_pair_count / 2 && b->error == GX_OK;
+         search.first += (uint32_t)(GXBP_TASKS * GXBP_TASK_BOXES)) {
+        count = (b->work.box_pair_count / 2 - search.first + (uint32_t)GXBP_TASK_BOXES - 1) / (uint32_t)GXBP_TASK_BOXES;
+        if (count > (uint32_t)GXBP_TASKS) count = GXBP_TASKS;
+        for (k = 0; k < count; k++) {
+            memset(&search.finds[k], 0, sizeof *search.finds);
+            search.finds[k].list = b->work.encounters + k * (uint32_t)GXBP_TASK_ENCOUNTERS;
+            search.finds[k].capacity = GXBP_TASK_ENCOUNTERS;
+        }
+        gxbp_each_part(b, count, gxbp_search_boxes, &search);
+        for (k = 0; k < count; k++) gxbp_meet_found(&search, k);
+    }
+}
+
 /* A surface that is found not to meet itself is simple. */
 static void gxbp_meet_operands(gxb_boolean *b, uint32_t i, uint32_t j) {
     gxbp_operand *o = &b->in.operands[i], *q = &b->in.operands[j];
     const uint32_t l = o->tree.levels - 1, m = q->tree.levels - 1, marks = b->crossings.marks;
     if (i == j && !o->simple) o->simple = (uint32_t)gxbp_is_star(b, o);
     if (i == j && o->simple) return;
-    gxbp_meet_boxes(b, o, l, 0, q, m, 0);
+    if (gxbp_has_jobs(b) && gxbp_part_count((size_t)o->source_count + q->source_count) > 1)
+        gxbp_meet_by_parts(b, o, l, q, m);
+    else
+        gxbp_meet_boxes(b, o, l, 0, q, m, 0, NULL);
     if (i == j) o->simple = b->crossings.marks == marks && b->error == GX_OK;
 }
 
@@ -11522,8 +11945,13 @@ static GXBP_APART uint32_t gxbp_new_step(gxb_boolean *b, gxbp_state_step *step, 
     return step->to;
 }
 
+/* The place of a step among the latest ones */
+static gxbp_state_step *gxbp_step_place(gxb_boolean *b, uint32_t from, uint32_t operand, int change) {
+    return &b->winding.steps[(2 * (from + 5 * operand) + (change > 0)) % GXBP_STEPS];
+}
+
 static uint32_t gxbp_step_state(gxb_boolean *b, uint32_t from, uint32_t operand, int change) {
-    gxbp_state_step *step = &b->winding.steps[(2 * (from + 5 * operand) + (change > 0)) % GXBP_STEPS];
+    gxbp_state_step *step = gxbp_step_place(b, from, operand, change);
     if (step->change == change && step->from == from && step->operand == operand) return step->to;
     return gxbp_new_step(b, step, from, operand, change);
 }
@@ -11541,16 +11969,14 @@ static uint32_t gxbp_root_plane(const gxb_boolean *b, uint32_t f) {
     return b->in.sources[b->mesh.subtriangles[f].source].plane;
 }
 
-/* The side of t's plane on which subtriangle f lies, whose edge k is in that plane. If the filter does not settle the
-   apex, any corner of the source serves: its side times its orientation with the edge is the same for all points. */
-static int gxbp_side_of_subtriangle(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
+/* gxbp_side_of_subtriangle; 0: the filter does not settle it */
+static inline int gxbp_side_of_subtriangle_by_filter(const gxb_boolean *b, uint32_t f, int k, uint32_t t) {
     const gxbp_subtriangle *sub = &b->mesh.subtriangles[f];
     const gxb_plane_filter *filter = &b->store.planes[b->in.sources[t].plane].filter;
     const gxb_cplane *plane = &b->store.planes[gxbp_root_plane(b, f)];
     const gxb_cpoint *x = b->store.points;
     double bound, value = gxbp_filter_side(&x[sub->v[(k + 2) % 3]].ball, filter, &bound);
     int side = gxbp_filter_sign(value, bound), i;
-    b->store.filter_calls++;
     for (i = 0; i < 3 && side == 0; i++) {
         const uint32_t corner = b->in.sources[sub->source].point[i];
         value = gxbp_filter_side(&x[corner].ball, filter, &bound);
@@ -11558,7 +11984,15 @@ static int gxbp_side_of_subtriangle(gxb_boolean *b, uint32_t f, int k, uint32_t 
                gxbp_filter_turn(&x[sub->v[k]].ball, &x[sub->v[(k + 1) % 3]].ball, &x[corner].ball,
                                 (int)(plane->axis + 1) % 3, (int)(plane->axis + 2) % 3);
     }
-    return side != 0 ? side : gxbp_side_of_source(b, sub->v[(k + 2) % 3], t);
+    return side;
+}
+
+/* The side of t's plane on which subtriangle f lies, whose edge k is in that plane. If the filter does not settle the
+   apex, any corner of the source serves: its side times its orientation with the edge is the same for all points. */
+static int gxbp_side_of_subtriangle(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
+    const int side = gxbp_side_of_subtriangle_by_filter(b, f, k, t);
+    b->store.filter_calls++;
+    return side != 0 ? side : gxbp_side_of_source(b, b->mesh.subtriangles[f].v[(k + 2) % 3], t);
 }
 
 /* How a label of edge k changes the winding number of its operand: if the labelling triangle t has a part in front of
@@ -11572,7 +12006,7 @@ static int gxbp_label_step(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
 }
 
 /* The state in front of the subtriangle beyond edge k. */
-static uint32_t gxbp_state_beyond(gxb_boolean *b, uint32_t f, int k) {
+static inline uint32_t gxbp_state_beyond(gxb_boolean *b, uint32_t f, int k) {
     uint32_t list = b->mesh.subtriangles[f].labels[k];
     int begun = 0;
     for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->mesh.links[list].next) {
@@ -11885,7 +12319,7 @@ static void gxbp_reach_operand(gxb_boolean *b, uint32_t f, int k) {
 static void gxbp_add_visit(gxb_boolean *b, uint32_t f) { b->work.visits[b->work.visit_count++] = f; }
 
 /* Spreads the state to all subtriangles of f's triangulation that can be reached. */
-static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
+static inline void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
     const uint32_t base = b->work.visit_count, flat = b->in.sources[b->mesh.subtriangles[f].source].flags & GXBP_FLAT;
     gxbp_add_visit(b, f);
     while (b->work.visit_count > base && b->error == GX_OK) {
@@ -11905,7 +12339,7 @@ static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
 
 /* Spreads a state within a source, then across its edges to sources without states. The order is breadth-first, so that
  * many cache misses overlap. */
-static void gxbp_spread_state(gxb_boolean *b, uint32_t first) {
+static inline void gxbp_spread_state(gxb_boolean *b, uint32_t first) {
     uint32_t i;
     b->work.visit_count = 0;
     gxbp_add_visit(b, first);
@@ -12077,13 +12511,212 @@ static GXBP_COLD void gxbp_close_states(gxb_boolean *b) {
         }
 }
 
+/* >>floods: states spread by threads ------------------------------------------------------------------------------- */
+/* In: a finished arrangement, and the states of the evaluation before. Out: a state for each subtriangle. With the
+   host's threads, the states of large operands spread side by side, one task for each: a task writes to its own
+   operand's sources and subtriangles. Where the filter settles no sign, or a state is not known yet, the task waits.
+   The caller answers between two rounds. Touches what >>winding does. */
+
+enum {
+    GXBP_FLOOD_STACK = GXBP_PART / 8, /* subtriangles of one source to visit; with more, the caller goes on */
+    GXBP_FLOOD_ROUNDS = 64            /* after these, too */
+};
+#define GXBP_NO_ANSWER (GXB_NONE - 1)
+typedef struct gxbp_flood {
+    gxb_boolean *b;
+    uint32_t *queue; /* a subtriangle of each source that was reached */
+    uint32_t count, next;
+    uint32_t stack[GXBP_FLOOD_STACK], stack_count; /* in the source of queue[next] */
+    uint32_t answer;                               /* the state beyond edge k of stack[stack_count - 1] */
+    int k, entered, waiting, stuck;                /* entered: the stack is that of queue[next] */
+    uint64_t filter_calls;
+} gxbp_flood;
+
+/* gxbp_label_step; 2: the filter does not settle it */
+static int gxbp_label_step_by_filter(gxbp_flood *flood, uint32_t f, int k, uint32_t t) {
+    const gxb_boolean *b = flood->b;
+    const gxb_plane_filter *plane;
+    int i, side, open = 0;
+    if (t & GXBP_EDGE_LABEL || b->in.operands[b->in.sources[t].operand].operation == GXB_SPLIT) return 0;
+    plane = &b->store.planes[gxbp_root_plane(b, f)].filter;
+    for (i = 0; i < 3; i++) {
+        double bound;
+        const double value = gxbp_filter_side(&b->store.points[b->in.sources[t].point[i]].ball, plane, &bound);
+        flood->filter_calls++;
+        if (value > bound) break;
+        open |= !(value < -bound);
+    }
+    if (i == 3) return open ? 2 : 0;
+    flood->filter_calls++;
+    side = gxbp_side_of_subtriangle_by_filter(b, f, k, t);
+    return side != 0 ? side : 2;
+}
+
+/* gxbp_state_beyond, if it is known; else GXBP_NO_ANSWER */
+static uint32_t gxbp_known_state_beyond(gxbp_flood *flood, uint32_t f, int k) {
+    const gxb_boolean *b = flood->b;
+    const uint32_t from = b->mesh.subtriangles[f].state;
+    const gxbp_state_step *step;
+    uint32_t list = b->mesh.subtriangles[f].labels[k], operand;
+    int change;
+    if (list == GXBP_LOOSE || list == GXBP_BARE) return from;
+    if (b->mesh.links[list].next != GXBP_BARE) return GXBP_NO_ANSWER;
+    change = gxbp_label_step_by_filter(flood, f, k, b->mesh.links[list].value);
+    if (change == 0) return from;
+    if (change == 2) return GXBP_NO_ANSWER;
+    operand = b->in.sources[b->mesh.links[list].value].operand;
+    step = gxbp_step_place(flood->b, from, operand, change);
+    return step->change == change && step->from == from && step->operand == operand ? step->to : GXBP_NO_ANSWER;
+}
+
+/* As gxbp_spread_within. 0: the flood waits, or is stuck. */
+static int gxbp_flood_within(gxbp_flood *flood) {
+    gxbp_subtriangle *sub = flood->b->mesh.subtriangles;
+    while (flood->stack_count > 0) {
+        const uint32_t f = flood->stack[--flood->stack_count];
+        for (; flood->k < 3; flood->k++) {
+            const uint32_t near = sub[f].near[flood->k];
+            uint32_t state;
+            if (near == GXB_NONE || sub[near].state != GXB_NONE) continue;
+            state = flood->answer != GXBP_NO_ANSWER ? flood->answer : gxbp_known_state_beyond(flood, f, flood->k);
+            flood->answer = GXBP_NO_ANSWER;
+            flood->waiting = state == GXBP_NO_ANSWER;
+            flood->stuck = flood->stack_count + 1 >= GXBP_FLOOD_STACK;
+            if (flood->waiting || flood->stuck) {
+                flood->stack[flood->stack_count++] = f;
+                return 0;
+            }
+            sub[near].state = state;
+            flood->stack[flood->stack_count++] = near;
+        }
+        flood->k = 0;
+    }
+    return 1;
+}
+
+/* As gxbp_spread_state */
+static void gxbp_flood_across(gxbp_flood *flood, uint32_t s) {
+    gxb_boolean *b = flood->b;
+    uint32_t k;
+    for (k = 0; k < 3; k++) {
+        const uint32_t twin = b->in.sources[s].twin[k];
+        uint32_t g;
+        if (twin == GXB_NONE || b->in.sources[twin / 3].flags & (GXBP_REACHED | GXBP_FLAT)) continue;
+        g = gxbp_across_rim(b, s, k);
+        if (g == GXB_NONE) continue;
+        b->mesh.subtriangles[g].state = b->mesh.subtriangles[gxbp_rim_subtriangle(b, s, k)].state;
+        b->in.sources[twin / 3].flags |= GXBP_REACHED;
+        flood->queue[flood->count++] = g;
+    }
+}
+
+static void gxbp_run_flood(void *context, size_t i) {
+    gxbp_flood *flood = &((gxbp_flood *)context)[i];
+    gxb_boolean *b = flood->b;
+    flood->waiting = 0;
+    for (; flood->next < flood->count && !flood->stuck; flood->next++) {
+        const uint32_t f = flood->queue[flood->next], s = b->mesh.subtriangles[f].source;
+        if (b->in.sources[s].flags & GXBP_DIVIDED) {
+            if (!flood->entered) {
+                flood->entered = 1;
+                flood->k = 0;
+                flood->stack_count = 1;
+                flood->stack[0] = f;
+            }
+            if (!gxbp_flood_within(flood)) return;
+            flood->entered = 0;
+        }
+        gxbp_flood_across(flood, s);
+    }
+}
+
+/* Answers floods that wait. Returns how many did. */
+static GXBP_COLD size_t gxbp_answer_floods(gxb_boolean *b, gxbp_flood *floods, size_t count) {
+    size_t i, answered = 0;
+    for (i = 0; i < count && b->error == GX_OK; i++) {
+        if (!floods[i].waiting || floods[i].stuck) continue;
+        floods[i].answer = gxbp_state_beyond(b, floods[i].stack[floods[i].stack_count - 1], floods[i].k);
+        answered++;
+    }
+    return answered;
+}
+
+/* Spreads states from where they are new. */
+static void gxbp_spread_pending(gxb_boolean *b) {
+    while (b->work.pending_count > 0 && b->error == GX_OK)
+        gxbp_spread_state(b, b->work.pending[--b->work.pending_count]);
+}
+
+/* Goes on where a flood has ended too early. The source at which it is comes first: its neighbours read its states. */
+static GXBP_COLD void gxbp_finish_flood(gxb_boolean *b, gxbp_flood *flood) {
+    uint32_t i;
+    b->store.filter_calls += flood->filter_calls;
+    b->work.visit_count = 0;
+    if (flood->entered)
+        for (i = 0; i < flood->stack_count && b->error == GX_OK; i++) gxbp_spread_within(b, flood->stack[i]);
+    for (i = flood->next; i < flood->count && GXBP_ROOM(b, work.pending, work.pending, 1); i++)
+        b->work.pending[b->work.pending_count++] = flood->queue[i];
+    gxbp_spread_pending(b);
+}
+
+/* The first source of an operand that is neither divided nor in a flat; GXB_NONE: there is none */
+static uint32_t gxbp_first_whole(const gxb_boolean *b, const gxbp_operand *o) {
+    uint32_t s;
+    for (s = o->source; s < o->source + o->source_count; s++)
+        if (!(b->in.sources[s].flags & (GXBP_DIVIDED | GXBP_FLAT | GXBP_DEGENERATE))) return s;
+    return GXB_NONE;
+}
+
+static size_t gxbp_begin_floods(gxb_boolean *b, gxbp_flood *floods, uint32_t *queue) {
+    size_t count = 0;
+    uint32_t i;
+    for (i = b->winding.stated; i < b->in.operand_count; i++) {
+        const gxbp_operand *o = &b->in.operands[i];
+        const uint32_t s = o->source_count < GXBP_PART ? GXB_NONE : gxbp_first_whole(b, o);
+        gxbp_flood *flood = &floods[count];
+        if (s == GXB_NONE || b->error != GX_OK) continue;
+        memset(flood, 0, sizeof *flood);
+        flood->b = b;
+        flood->answer = GXBP_NO_ANSWER;
+        flood->queue = queue;
+        flood->queue[flood->count++] = b->in.sources[s].subtriangle;
+        gxbp_note_reached(b, s);
+        b->in.sources[s].flags |= GXBP_REACHED;
+        b->mesh.subtriangles[queue[0]].state = gxbp_state_by_ray(b, queue[0], GXB_NONE, 0);
+        queue += o->source_count;
+        count++;
+    }
+    return count;
+}
+
+/* Spreads states in large new operands, if there are at least two. */
+static GXBP_COLD void gxbp_flood_operands(gxb_boolean *b) {
+    size_t count = 0, sources = 0, i;
+    uint32_t n, rounds;
+    gxbp_flood *floods;
+    for (n = b->winding.stated; n < b->in.operand_count; n++)
+        if (b->in.operands[n].source_count >= GXBP_PART) {
+            count++;
+            sources += b->in.operands[n].source_count;
+        }
+    if (count < 2) return;
+    floods = (gxbp_flood *)gxbp_borrow(b, count * sizeof *floods + sources * sizeof(uint32_t));
+    if (floods == NULL) return;
+    count = gxbp_begin_floods(b, floods, (uint32_t *)(void *)(floods + count));
+    for (rounds = 0; rounds < (uint32_t)GXBP_FLOOD_ROUNDS && b->error == GX_OK; rounds++) {
+        gxbp_each_part(b, count, gxbp_run_flood, floods);
+        if (gxbp_answer_floods(b, floods, count) == 0) break;
+    }
+    for (i = 0; i < count; i++) gxbp_finish_flood(b, &floods[i]);
+}
+
 /* Finds a state by a ray and spreads it to all subtriangles that can be reached. */
 static void gxbp_find_state_of(gxb_boolean *b, uint32_t f) {
     gxbp_note_reached(b, b->mesh.subtriangles[f].source);
     b->mesh.subtriangles[f].state = gxbp_state_by_ray(b, f, GXB_NONE, 0);
     if (!GXBP_ROOM(b, work.pending, work.pending, 1)) return;
-    for (b->work.pending[b->work.pending_count++] = f; b->work.pending_count > 0 && b->error == GX_OK;)
-        gxbp_spread_state(b, b->work.pending[--b->work.pending_count]);
+    b->work.pending[b->work.pending_count++] = f;
+    gxbp_spread_pending(b);
 }
 
 static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
@@ -12102,6 +12735,7 @@ static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
     b->work.pending_count = b->work.visit_count = 0;
     /* each source and each subtriangle is pushed at most once */
     if (!GXBP_ROOM(b, work.visits, work.visit, (size_t)b->in.source_count + b->mesh.subtriangle_count)) return;
+    if (gxbp_has_jobs(b)) gxbp_flood_operands(b);
     /* undivided sources first: their rays are cheap */
     for (s = gxbp_new_sources(b); s < b->in.source_count && b->error == GX_OK; s++) {
         f = b->in.sources[s].subtriangle;
@@ -12410,24 +13044,73 @@ static void gxbp_round_vertex(gxb_boolean *b, uint32_t i) {
     gxbp_describe_point(b, b->out.points[i], &b->out.origins[i]);
 }
 
+/* Is a vertex rounded and described without exact numbers or names that are looked up? */
+static int gxbp_rounds_simply(const gxb_boolean *b, uint32_t point) {
+    const gxb_cpoint *p = &b->store.points[point];
+    const uint32_t *key = b->points.vertices[point].key;
+    if (p->kind == GXB_EXPLICIT) return 1;
+    if (gxbp_is_fine(b) || p->ball.error > GXBP_VERTEX_ERROR * gxbp_max3(p->ball.x)) return 0;
+    return key[0] != GXB_FROM_THREE_TRIANGLES ||
+           !((b->in.sources[key[1]].flags | b->in.sources[key[2]].flags | b->in.sources[key[3]].flags) & GXBP_FLAT);
+}
+
+/* left: of each part, how many vertices were not rounded */
+typedef struct gxbp_rounding {
+    gxb_boolean *b;
+    uint32_t *left;
+} gxbp_rounding;
+
+static void gxbp_round_part(void *context, size_t part) {
+    const gxbp_rounding *r = (const gxbp_rounding *)context;
+    uint32_t end, i = gxbp_part_first(part, r->b->out.point_count, &end), left = 0;
+    for (; i < end; i++)
+        if (gxbp_rounds_simply(r->b, r->b->out.points[i]))
+            gxbp_round_vertex(r->b, i);
+        else
+            left++;
+    r->left[part] = left;
+}
+
+static GXBP_COLD void gxbp_round_by_parts(gxb_boolean *b) {
+    const size_t parts = gxbp_part_count(b->out.point_count);
+    gxbp_rounding r;
+    size_t part;
+    r.b = b;
+    r.left = (uint32_t *)gxbp_borrow(b, parts * sizeof *r.left);
+    if (r.left == NULL) return;
+    gxbp_each_part(b, parts, gxbp_round_part, &r);
+    for (part = 0; part < parts; part++) {
+        uint32_t end, i = gxbp_part_first(part, b->out.point_count, &end);
+        for (; i < end && r.left[part] > 0; i++) {
+            if (gxbp_rounds_simply(b, b->out.points[i])) continue;
+            gxbp_round_vertex(b, i);
+            r.left[part]--;
+        }
+    }
+}
+
 static GXBP_APART void gxbp_round_vertices(gxb_boolean *b) {
     uint32_t i;
     if (b->error != GX_OK || !GXBP_ROOM(b, out.vertices, out.vertex, 3 * (size_t)b->out.point_count) ||
         !GXBP_ROOM(b, out.origins, out.origin, b->out.point_count))
         return;
-    for (i = 0; i < b->out.point_count; i++) gxbp_round_vertex(b, i);
+    if (gxbp_has_jobs(b) && gxbp_part_count(b->out.point_count) > 1)
+        gxbp_round_by_parts(b);
+    else
+        for (i = 0; i < b->out.point_count; i++) gxbp_round_vertex(b, i);
     b->out.vertex_count = 3 * b->out.point_count;
     b->out.origin_count = b->out.point_count;
 }
 
 static GXBP_COLD int gxbp_faces_exactly(gxb_boolean *b, uint32_t plane, const double *p, const double *q,
                                         const double *r) {
-    gxbp_vec store, given[3], n;
+    gxbp_vec store, given[3];
+    gxbp_large n;
     GXB_NUM(value);
     gxbp_vec_set(&given[0], p);
     gxbp_vec_set(&given[1], q);
     gxbp_vec_set(&given[2], r);
-    gxbp_vec_init(&n);
+    gxbp_large_init(&n);
     gxbp_exact_plane(n.c, given[0].c, given[1].c, given[2].c);
     gxbp_num_dot(&value, n.c, gxbp_exact_cplane(&b->store, plane, &store));
     return value.sign;
@@ -13119,9 +13802,12 @@ static GXBP_APART void gxbp_join_shells(gxb_boolean *b, uint32_t *parent, int32_
 
 /* >>volumes: volumes of shells ------------------------------------------------------------------------------------- */
 /* In: the output and its shells. Out: six times the volume of each shell, by sums of doubles with bounds, or from
-   coordinates of 180 bits where these bounds are too large. Touches the caller's arrays only. */
+   coordinates of 180 bits or 720 where these bounds are too large. Touches the caller's arrays only. */
 
-static GXBP_RARE void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *fine) {
+/* Coordinates have 45 bits for each step of division. */
+enum { GXBP_FINE_BITS = 45, GXBP_FINE_STEPS = 4, GXBP_FINER_STEPS = 16 };
+
+static GXBP_RARE void gxbp_fine_point(gxb_boolean *b, uint32_t point, int steps, gxbp_vec *fine) {
     gxbp_vec store, rest;
     const gxb_num *x = gxbp_exact_cpoint(&b->store, point, b->store.points[point].kind == GXB_EXPLICIT ? fine : &store);
     int k;
@@ -13130,20 +13816,22 @@ static GXBP_RARE void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *
     gxbp_vec_init(&rest);
     for (k = 0; k < 3; k++) {
         gxbp_num_copy(&rest.c[k], &x[k], 1);
-        gxbp_num_divide(&fine->c[k], &rest.c[k], &x[3]);
+        gxbp_num_divide(&fine->c[k], &rest.c[k], &x[3], steps);
     }
 }
 
-/* Coordinates of 180 bits of the result's vertices, each computed once. first: the first of a vertex's limbs, GXB_NONE
- * until they are computed */
+/* Coordinates of the result's vertices, each computed once for each number of steps. first: the first of a vertex's
+ * limbs. steps: 0 until they are computed */
 typedef struct gxbp_fine {
     uint32_t first;
+    int steps;
     gxb_num c[3];
 } gxbp_fine;
 typedef struct gxbp_fines {
     gxbp_fine *vertices;
     gxb_limb *limbs;
     uint32_t limb_count, limb_capacity;
+    int steps; /* at work */
 } gxbp_fines;
 
 static GXBP_RARE void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t vertex) {
@@ -13151,12 +13839,13 @@ static GXBP_RARE void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t
     gxbp_fine *v = &fines->vertices[vertex];
     gxbp_vec x;
     uint32_t k;
-    if (v->first != GXB_NONE) return;
-    gxbp_fine_point(b, point, &x);
+    if (v->steps == fines->steps) return;
+    gxbp_fine_point(b, point, fines->steps, &x);
     if (!gxbp_room(b, &fines->limbs, fines->limb_count, &fines->limb_capacity, sizeof *fines->limbs,
                    (size_t)x.c[0].n + x.c[1].n + x.c[2].n))
         return;
     v->first = fines->limb_count;
+    v->steps = fines->steps;
     for (k = 0; k < 3; k++) {
         v->c[k] = x.c[k];
         memcpy(fines->limbs + fines->limb_count, x.c[k].d, x.c[k].n * sizeof *fines->limbs);
@@ -13173,17 +13862,42 @@ static const gxb_num *gxbp_use_fine(gxbp_fines *fines, uint32_t vertex) {
     return v->c;
 }
 
-/* Six times the volume of a list of triangles, from coordinates of 180 bits. */
-static GXBP_RARE double gxbp_fine_volume(gxb_boolean *b, uint32_t t, const uint32_t *next, gxbp_fines *fines) {
-    GXB_NUM(total);
+/* |a| < 2^bits; |a| >= 2^(bits - GXB_LIMB_BITS) unless it is 0 */
+static int gxbp_num_bits(const gxb_num *a) { return (a->exp + (int)a->n) * GXB_LIMB_BITS; }
+
+/* total: the sum of det(p, q, r) over a list of triangles, six times what they enclose. Returns whether its relative
+   error is below 2^-53. Coordinates are below 2^size and have an error of 2^(size - 45 steps). A determinant is a sum
+   of six products of three, so it has an error of 2^5 times that of a coordinate times 2^(2 size). */
+static GXBP_RARE int gxbp_sum_fine(gxb_boolean *b, uint32_t t, const uint32_t *next, gxbp_fines *fines,
+                                   gxb_num *total) {
     GXB_NUM(term);
-    uint32_t k;
-    for (; t != GXB_NONE; t = next[t]) {
+    int size = -GXB_NUM_LIMBS * GXB_LIMB_BITS, bits;
+    uint32_t k, j, count = 0;
+    gxb_num_set(total, 0, 0);
+    for (; t != GXB_NONE; t = next[t], count++) {
         const uint32_t *v = b->out.triangles + 3 * (size_t)t;
         for (k = 0; k < 3; k++) gxbp_need_fine(b, fines, v[k]);
-        if (b->error != GX_OK) return 0;
+        if (b->error != GX_OK) return 1;
+        for (k = 0; k < 3; k++)
+            for (j = 0; j < 3; j++) {
+                bits = gxbp_num_bits(&fines->vertices[v[k]].c[j]);
+                if (fines->vertices[v[k]].c[j].sign != 0 && bits > size) size = bits;
+            }
         gxbp_num_det3(&term, gxbp_use_fine(fines, v[0]), gxbp_use_fine(fines, v[1]), gxbp_use_fine(fines, v[2]));
-        gxbp_num_increase(&total, &term, 1);
+        gxbp_num_increase(total, &term, 1);
+    }
+    bits = 5 + 3 * size - GXBP_FINE_BITS * fines->steps;
+    for (; count > 0; count >>= 1) bits++;
+    return total->sign != 0 && gxbp_num_bits(total) - GXB_LIMB_BITS > bits + 53;
+}
+
+/* Six times the volume of a list of triangles. Its sign tells solids from cavities, so it must be certain. */
+static GXBP_RARE double gxbp_fine_volume(gxb_boolean *b, uint32_t t, const uint32_t *next, gxbp_fines *fines) {
+    GXB_NUM(total);
+    fines->steps = GXBP_FINE_STEPS;
+    if (!gxbp_sum_fine(b, t, next, fines, &total)) {
+        fines->steps = GXBP_FINER_STEPS;
+        (void)gxbp_sum_fine(b, t, next, fines, &total);
     }
     return gxb_num_to_double(&total);
 }
@@ -13195,7 +13909,7 @@ static double gxbp_volume_error(double D, double e, double N, double E) {
 }
 
 /* Six times the volume of the tetrahedron from o to a triangle of the result, d0 . n */
-static double gxbp_rough_volume(const gxb_boolean *b, uint32_t t, const gxb_ball *o) {
+static inline double gxbp_rough_volume(const gxb_boolean *b, uint32_t t, const gxb_ball *o) {
     const gxb_ball *x = &b->store.points[gxbp_out_corner(b, t, 0)].ball;
     double d0[3], d1[3], d2[3], n[3];
     gxbp_difference(d0, o, x);
@@ -13206,7 +13920,7 @@ static double gxbp_rough_volume(const gxb_boolean *b, uint32_t t, const gxb_ball
 }
 
 /* A bound of its error */
-static double gxbp_rough_error(const gxb_boolean *b, uint32_t t, const gxb_ball *o) {
+static inline double gxbp_rough_error(const gxb_boolean *b, uint32_t t, const gxb_ball *o) {
     const gxb_ball *x = &b->store.points[gxbp_out_corner(b, t, 0)].ball;
     double d0[3], d1[3], d2[3], n[3];
     const double e = gxbp_filter_difference(d0, o, x),
@@ -13242,16 +13956,51 @@ static double gxbp_largest_rough_error(const gxb_boolean *b) {
 
 static int gxbp_is_rough(double volume, double error) { return error > GXBP_VOLUME_ERROR * gxbp_abs(volume); }
 
-/* Sums over the sets in volume[root] and error[root]; largest: a bound for all triangles, or 0: each has its own */
-static void gxbp_sum_volumes(const gxb_boolean *b, const uint32_t *parent, double *volume, double *error,
-                             double largest) {
-    uint32_t t;
-    for (t = 0; t < b->out.triangle_count; t++) volume[t] = error[t] = 0;
-    for (t = 0; t < b->out.triangle_count; t++) {
-        const uint32_t root = parent[t];
-        const gxb_ball *o = &b->store.points[gxbp_out_corner(b, root, 0)].ball;
-        volume[root] += gxbp_rough_volume(b, t, o);
-        error[root] += 2 * (largest > 0 ? largest : gxbp_rough_error(b, t, o));
+/* Sums over the sets. Terms and their bounds are found by parts, and added in the order of triangles. */
+typedef struct gxbp_volume_sums {
+    gxb_boolean *b;
+    const uint32_t *parent;
+    double *volume, *error; /* in [root]: the sums */
+    double *terms;          /* 2 for each triangle of all parts, or of one */
+    double largest;         /* a bound for all triangles; 0: each has its own */
+} gxbp_volume_sums;
+
+static int gxbp_has_volume_parts(const gxb_boolean *b) {
+    return gxbp_has_jobs(b) && gxbp_part_count(b->out.triangle_count) > 1;
+}
+
+static double *gxbp_terms_of(const gxbp_volume_sums *v, size_t part) {
+    return v->terms + (gxbp_has_volume_parts(v->b) ? 2 * part * GXBP_PART : 0);
+}
+
+static void gxbp_find_volume_terms(void *context, size_t part) {
+    const gxbp_volume_sums *v = (const gxbp_volume_sums *)context;
+    double *term = gxbp_terms_of(v, part);
+    uint32_t end, t = gxbp_part_first(part, v->b->out.triangle_count, &end);
+    for (; t < end; t++) {
+        const gxb_ball *o = &v->b->store.points[gxbp_out_corner(v->b, v->parent[t], 0)].ball;
+        const double value = gxbp_rough_volume(v->b, t, o); /* both first: then they share what they read */
+        const double error = v->largest > 0 ? v->largest : gxbp_rough_error(v->b, t, o);
+        *term++ = value;
+        *term++ = 2 * error;
+    }
+}
+
+static void gxbp_sum_volumes(gxbp_volume_sums *v) {
+    const uint32_t count = v->b->out.triangle_count;
+    const size_t parts = gxbp_part_count(count);
+    const int all = gxbp_has_volume_parts(v->b);
+    uint32_t t, end;
+    size_t part;
+    if (all) gxbp_each_part(v->b, parts, gxbp_find_volume_terms, v);
+    for (t = 0; t < count; t++) v->volume[t] = v->error[t] = 0;
+    for (part = 0; part < parts; part++) {
+        const double *term = gxbp_terms_of(v, part);
+        if (!all) gxbp_find_volume_terms(v, part);
+        for (t = gxbp_part_first(part, count, &end); t < end; t++) {
+            v->volume[v->parent[t]] += *term++;
+            v->error[v->parent[t]] += *term++;
+        }
     }
 }
 
@@ -13267,7 +14016,7 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent
                                           int all) {
     const uint32_t count = b->out.triangle_count;
     const size_t vertices = b->out.point_count * sizeof(gxbp_fine), bytes = vertices + 2 * count * sizeof(uint32_t);
-    gxbp_fines fines = {NULL, NULL, 0, 0};
+    gxbp_fines fines = {NULL, NULL, 0, 0, 0};
     uint32_t t, *first, *next;
     fines.vertices = (gxbp_fine *)gxbp_allocate(&b->store.allocator, bytes);
     if (fines.vertices == NULL) {
@@ -13281,7 +14030,7 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent
         next[t] = first[parent[t]];
         first[parent[t]] = t;
     }
-    for (t = 0; t < b->out.point_count; t++) fines.vertices[t].first = GXB_NONE;
+    for (t = 0; t < b->out.point_count; t++) fines.vertices[t].steps = 0;
     for (t = 0; t < count && b->error == GX_OK; t++)
         if (parent[t] == t && (all || gxbp_is_rough(volume[t], error[t]))) {
             volume[t] = gxbp_fine_volume(b, first[t], next, &fines);
@@ -13291,13 +14040,28 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent
     gxbp_release(&b->store.allocator, fines.vertices, bytes);
 }
 
+/* Doubles that measuring shells takes: 2 for each triangle and the terms */
+static size_t gxbp_volume_room(const gxb_boolean *b) {
+    const size_t count = b->out.triangle_count;
+    return 2 * count + 2 * (gxbp_has_volume_parts(b) || count < GXBP_PART ? count : GXBP_PART);
+}
+
 /* Six times the volumes of the sets in volume[root], in the frame's units. One bound for all triangles costs less; it
- * is too large for many. */
-static GXBP_APART void gxbp_measure_shells(gxb_boolean *b, const uint32_t *parent, double *volume, double *error) {
+ * is too large for many. terms: see gxbp_volume_room */
+static GXBP_APART void gxbp_measure_shells(gxb_boolean *b, const uint32_t *parent, double *volume, double *error,
+                                           double *terms) {
     const int few = b->out.triangle_count <= GXBP_FEW_TRIANGLES;
-    gxbp_sum_volumes(b, parent, volume, error, few ? gxbp_largest_rough_error(b) : 0);
+    gxbp_volume_sums v;
+    v.b = b;
+    v.parent = parent;
+    v.volume = volume;
+    v.error = error;
+    v.terms = terms;
+    v.largest = few ? gxbp_largest_rough_error(b) : 0;
+    gxbp_sum_volumes(&v);
     if (!gxbp_any_is_rough(b, parent, volume, error)) return;
-    if (few) gxbp_sum_volumes(b, parent, volume, error, 0);
+    v.largest = 0;
+    if (few) gxbp_sum_volumes(&v);
     gxbp_refine_volumes(b, parent, volume, error, 0);
 }
 
@@ -13575,10 +14339,10 @@ static void gxbp_scale_volumes(gxb_boolean *b) {
 /* parent: sets of triangles; work: room for a word per triangle; corners: see gxbp_count_corners */
 static void gxbp_measure_components(gxb_boolean *b, uint32_t *parent, uint32_t *work, const int32_t *corners) {
     const size_t count = b->out.triangle_count;
-    double *volume = (double *)gxbp_borrow(b, 2 * count * sizeof *volume);
+    double *volume = (double *)gxbp_borrow(b, gxbp_volume_room(b) * sizeof *volume);
     if (volume == NULL) return;
     gxbp_flatten_sets(parent, b->out.triangle_count);
-    gxbp_measure_shells(b, parent, volume, volume + count);
+    gxbp_measure_shells(b, parent, volume, volume + count, volume + 2 * count);
     gxbp_join_cavities(b, parent, volume, volume + count, (int32_t *)work);
     gxbp_number_components(b, parent, volume, work);
     gxbp_scale_volumes(b);
@@ -13896,6 +14660,8 @@ static const gxbp_array gxbp_boolean_arrays[] = {/* all that grow */
                                                  GXBP_ARRAY(gxb_boolean, work.fan_vertices, work.fan_vertex),
                                                  GXBP_ARRAY(gxb_boolean, work.fan_triangles, work.fan_triangle),
                                                  GXBP_ARRAY(gxb_boolean, work.segment_ends, work.segment_end),
+                                                 GXBP_ARRAY(gxb_boolean, work.box_pairs, work.box_pair),
+                                                 GXBP_ARRAY(gxb_boolean, work.encounters, work.encounter),
                                                  GXBP_ARRAY(gxb_boolean, work.pending, work.pending),
                                                  GXBP_ARRAY(gxb_boolean, work.room, work.room),
                                                  GXBP_ARRAY(gxb_boolean, work.ordered, work.ordered),
@@ -13963,6 +14729,7 @@ GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean
     b->budget.limit = desc->memory_limit;
     b->options.inside = desc->inside;
     b->options.user = desc->user;
+    b->options.jobs = desc->jobs;
     b->store.allocator.allocate = gxbp_count_allocate;
     b->store.allocator.release = gxbp_count_release;
     if (desc->allocator.allocate == NULL || desc->allocator.reallocate != NULL)
@@ -14068,7 +14835,7 @@ static GXBP_COLD void gxbp_forget_arrangement(gxb_boolean *b) {
     b->kept.valid = 0;
     for (s = 0; s < b->in.source_count; s++) {
         b->in.sources[s].flags &= (uint32_t)GXBP_DEGENERATE;
-        gxbp_reset_source(b, s);
+        gxbp_make_whole(b, s, b->mesh.subtriangle_count++);
     }
 }
 
@@ -14205,6 +14972,7 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_TINY
 #undef GXBP_NO_BALL
 #undef GXBP_UNKNOWN
+#undef GXBP_LIMBS
 #undef GXBP_RESERVE
 #undef GXBP_ARRAY
 #undef GXBP_UNDO_ITEM
@@ -14221,6 +14989,7 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_LOOSE
 #undef GXBP_BARE
 #undef GXBP_ARENA
+#undef GXBP_PART
 #undef GXBP_IS_SPARSE
 #undef GXBP_FAILS
 #undef GXBP_PLANS
@@ -14232,6 +15001,7 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_REMOVED
 #undef GXBP_RIM
 #undef GXBP_OPEN
+#undef GXBP_NO_ANSWER
 #undef GXBP_PAD
 #undef GXBP_VERTEX_ERROR
 #undef GXBP_VOLUME_ERROR

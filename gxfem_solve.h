@@ -43,15 +43,18 @@
  *                 >>pattern of level 1 | >>hierarchy all levels | >>lights copies with next to no mass |
  *                 >>sharing of memory | >>system a model in the solver's form
  *   operator:     >>rule elements with affine copies | >>forces energies, forces | >>blocks 3x3 blocks |
- *                 >>singles affine copies' products | >>product single precision | >>doubles double precision |
+ *                 >>strains forces and Hessians in single precision | >>singles affine copies' products | >>product
+ * single precision | >>doubles double precision |
  *                 >>linearise Hessians, block diagonal
  *   multigrid:    >>galerkin coarse matrices | >>nesting those of affine copies | >>factor of the last level |
  *                 >>assembly the assembled matrix | >>smoother its step length | >>cycle the V-cycle
- *   changes:      >>edits lanes that a cut changes | >>renewal copies and components | >>update levels, all of it
+ *   changes:      >>edits lanes that a cut changes | >>affine-edits those of affine copies |
+ *                 >>renewal copies and components | >>update levels, all of it
  *   steps:        >>components momentum | >>points springs, contact | >>pairs two sides in contact | >>terms all that
  *                 acts at points | >>cg conjugate gradients | >>ageing of coarse matrices | >>sleep rest |
  *                 >>balance residual, start | >>search lengths | >>integrators BDF, midpoint | >>newton iterations,
- *                 bound on E | >>midpoint second half, end of a step | >>leapfrog explicit steps
+ *                 bound on E | >>midpoint second half, end of a step | >>leapfrog explicit steps | >>quick steps of a
+ *                 few iterations
  *   entrance:     >>check what is given | >>quality steps by the error asked for | >>api the public functions |
  *                 >>single a material at one F
  *
@@ -93,7 +96,7 @@
  * it out until something touches it.
  *
  * WHAT IT DOES NOT DO. No cutting and no meshes: it sees elements of four copies. No search for contacts between
- * components: give points, planes, pairs and your own forces. No threads of its own: see gx_jobs; a task takes up to 90
+ * components: give points, planes, pairs and your own forces. No threads of its own: see gx_jobs; a task takes up to 32
  * kB of stack.
  *
  * LIMITS. poisson in [0, 0.5); beyond 0.49999 the Hessian's single precision shows. Copies and elements below 2^30.
@@ -307,6 +310,9 @@ typedef struct gxs_change {
     size_t element_count;
     const gxs_constraint *constraints; /* constraint_count: all constraints from now on */
     size_t constraint_count;
+    /* copy_count, as gxs_model.affine; NULL: none. Hidden vectors have origins like copies. One whose origin is no
+     * hidden vector begins with zeros: its copy becomes affine, and the elements around that copy are to be replaced */
+    const uint32_t *affine;
     uint64_t epoch; /* of the numbering from now on */
 } gxs_change;
 
@@ -388,6 +394,11 @@ typedef struct gxs_plane {
  * semi-definite, 00 01 02 11 12 22, or NULL. Called on the thread of the step only. */
 typedef double (*gxs_contact_fn)(void *user, size_t point, const double *position, double *force, double *hessian);
 
+/* Of a pair */
+enum {
+    GXS_PAIR_OUTSIDE = 1, /* the other side is outside the model */
+    GXS_PAIR_WAKES = 2    /* components that it joins are awake in this step: the other side has moved */
+};
 /* Keeps two material points, or a point and a triangle, from going through each other: a point of relative position
  * r. Its weights are 0 in sum: those of one side, and minus those of the other. Its position is that of one side at
  * rest minus that of the other, m. Energy stiffness/2 depth^2 where depth = offset - normal . r is above 0. Both sides
@@ -395,9 +406,13 @@ typedef double (*gxs_contact_fn)(void *user, size_t point, const double *positio
  * angular momentum alone, too. Friction is Coulomb's: friction x the normal force at the step's start. It comes from
  * an elastic slip, which gxs_step_desc.pair_slips keeps: up to friction x force / stiffness, and at least
  * sticking_speed x dt, the sides stick. Not for GXS_MIDPOINT, which would gain energy, nor, so far, for models with
- * affine copies. */
+ * affine copies. The other side may be outside the model, as a rigid body is: then weights are 1 in sum, position is
+ * that of the point at rest minus the place of the other side at the step's end, and way is how far that place has
+ * gone within the step. */
 typedef struct gxs_pair {
     gxs_point point;
+    uint32_t flags;        /* GXS_PAIR_, or 0 */
+    double way[3];         /* m; GXS_PAIR_OUTSIDE only */
     double normal[3];      /* of length 1, from the other side to this one */
     double offset;         /* m */
     double stiffness;      /* N/m, 0 or more */
@@ -420,6 +435,15 @@ typedef struct gxs_step_desc {
     double mass_damping; /* Rayleigh's alpha, 1/s, 0 or more: force -alpha M v */
     uint32_t substeps;   /* GXS_EXPLICIT only: that many of dt; 0: as few as are cheap, for errors of about 1 % */
     uint32_t newton_iterations; /* at most; 0: 1 */
+    /* above 0: a quick step of BDF1, BDF2 or the midpoint rule, for about a third of the time of a usual one: so many
+     * iterations of conjugate gradients at most (2 or 3 are enough in soft bodies) from where inertia leads, with the
+     * Hessian there and the preconditioner of earlier steps. No line search, no measure of balance:
+     * newton_iterations, newton_tolerance and cg_iterations are not read. A component whose energy would rise is slowed
+     * down. Mass is lumped, forces are single precision. Stable neo-Hookean materials without damping, under gravity
+     * and forces, without targets, springs, contact points, pairs, constraints or affine copies; not with
+     * GXS_MATRIX_ASSEMBLED or GXS_VOLUME_RATIO. Any other step is a usual one, as is one that would gain too much
+     * energy: see gxs_step_report.quick */
+    uint32_t quick;
     /* stop at this residual (see gxs_step_report); 0: 1e-8, far below what one iteration leaves in motion */
     double newton_tolerance;
     uint32_t cg_iterations; /* per Newton iteration, at most; 0: 1000 */
@@ -458,12 +482,12 @@ typedef struct gxs_step_desc {
     /* no iteration begins after this time, and the step ends with what it has; 0: no limit. Results then depend on the
      * machine */
     double budget_seconds;
-    /* above 0: the error asked for, in place of integrator, substeps, Newton's and CG's numbers and previous_..., which
-     * are not read; 0: those hold. The step is then divided into as many as the motion demands, explicit or implicit.
-     * The error is that of the displacement after a third of a second of such motion, as a share of the motion (root
-     * of the mean square by mass), beside exact time steps of the same elements: about, see gxs_step_report.error.
-     * What more than GXS_PARTS steps would have to follow is damped. Held copies go to their targets on straight
-     * lines. With budget_seconds the error is larger where this one takes longer. */
+    /* above 0: the error asked for, in place of integrator, substeps, quick, Newton's and CG's numbers and
+     * previous_..., which are not read; 0: those hold. The step is then divided into as many as the motion demands,
+     * explicit or implicit. The error is that of the displacement after a third of a second of such motion, as a share
+     * of the motion (root of the mean square by mass), beside exact time steps of the same elements: about, see
+     * gxs_step_report.error. What more than GXS_PARTS steps would have to follow is damped. Held copies go to their
+     * targets on straight lines. With budget_seconds the error is larger where this one takes longer. */
     double quality;
 } gxs_step_desc;
 
@@ -483,18 +507,20 @@ typedef struct gxs_step_report {
     gxs_stop stop;
     /* displacements solved for: three per copy that is awake, not held and follows nothing */
     size_t active_unknowns;
-    uint32_t substeps;         /* of GXS_EXPLICIT; 0: the step was implicit */
-    uint32_t parts;            /* steps taken: 1 without quality; their iterations and seconds are summed */
+    uint32_t substeps; /* of GXS_EXPLICIT; 0: the step was implicit */
+    uint32_t quick;    /* not 0: the step was quick (with quality: the last of them). Then there is no residual */
+    uint32_t parts;    /* steps taken: 1 without quality; their iterations and seconds are summed */
     gxs_integrator integrator; /* of the last of them */
     double error;              /* with quality: the estimate of what was asked for; 0: nothing is known of the motion */
-    uint32_t newton_iterations; /* 0: the start was in balance to rounding, or the step was explicit */
+    uint32_t newton_iterations; /* 0: the start was in balance to rounding, or the step was explicit or quick */
     uint32_t cg_iterations;     /* sum over Newton iterations */
     uint32_t line_search_steps; /* step lengths tried; sum over Newton iterations */
     /* |load - inertia - elastic| / (|load| + |inertia| + |elastic|) on copies that are not held; the larger of the two
      * measures (see above) */
     double residual;
     /* E at the end, J, without sleeping components and up to a constant, the load on held copies. With the midpoint
-     * rule this and the residual are those at half the step */
+     * rule this and the residual are those at half the step. Quick steps: the sum of elastic, kinetic and potential
+     * energy */
     double energy;
     gxs_preconditioner preconditioner; /* in the last linear solve; GXS_AUTOMATIC: there was none */
     double seconds;           /* of the step; gx_body_step includes the renewal of the solver's model after a cut */
@@ -523,7 +549,8 @@ typedef struct gxs_solver gxs_solver;
  * where they are. Both get the velocity of that motion. GX_ERROR_SEQUENCE: no model is set. GX_ERROR_DIVERGED and, with
  * GXS_STATIC, GX_ERROR_FREE leave displacement and velocity unchanged. A residual above newton_tolerance when the
  * iterations are used up is no error: see the report. Allocates (GX_ERROR_MEMORY) only if there are more springs,
- * contact points and pairs, or copies of them, than ever before, and in the first step of a model with GXS_EXPLICIT. */
+ * contact points and pairs, or copies of them, than ever before, and in the first step of a model with GXS_EXPLICIT or
+ * quick. */
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
                                     double *velocity, gxs_step_report *report, gx_failure *failure);
 /* Checks the parts of a step's description that need no solver: its numbers, springs, points, planes and pairs, and
@@ -542,8 +569,9 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
  * group or element), or a constraint is not allowed (its index). GX_ERROR_LIMIT: the change does not fit. Either the
  * matrix is assembled, mass is lumped, GXS_VOLUME_RATIO is used, empty lanes exceed a quarter of the elements by two
  * chunks, GXS_AUTOMATIC would now choose otherwise, a copy is held that was not or the other way round, two old copies
- * (origins without + 1) are the same, no element is left, an element that stays has lost a copy, or the model has
- * affine copies. After this and GX_ERROR_MEMORY no model is set: set one. On other errors the old model stays. */
+ * (origins without + 1) are the same, no element is left, an element that stays has lost a copy, the first affine copy
+ * comes or the last one goes. After this and GX_ERROR_MEMORY no model is set: set one. On other errors the old model
+ * stays. */
 GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure);
 /* Sets to 0 the rest times of copies whose state has been written since the last step. Their components then wake even
  * if another model is set before the next step, or another solver takes that step. Vectors use the present numbering;
@@ -626,6 +654,11 @@ extern "C" {
 /* Blocks of a chunk: 384 elements, whose nodes (about 150) stay in the first-level cache. */
 #define GXSP_CHUNK_BLOCKS 48
 #define GXSP_CHUNK        (GXSP_CHUNK_BLOCKS * GXSP_LANES)
+
+/* Passes copy the nodes of a chunk to the stack where there are no more than this: meshes of cubes have 125 to 165, cut
+ * into pieces of an element's size 300. Other chunks, of elements that share few nodes, are read copy by copy. */
+#define GXSP_NEAR         320
+#define GXSP_NEAR_NUMBERS (3 * GXSP_NEAR + 1)
 
 /* A residual below this (about 50 units in the last place) is rounding: no iteration can lower it. */
 #define GXSP_ROUNDING 1e-14
@@ -760,6 +793,16 @@ extern "C" {
 /* Kinetic energy of so many times that of the mean velocity is that of vibrations that steps do not follow. */
 #define GXSP_QUALITY_HIDDEN 4.0
 
+/* What has been made for explicit and for quick steps */
+#define GXSP_LEAP_BLOCKS 1
+#define GXSP_LEAP_ALL    2
+
+/* Quick steps that one linearisation serves at most, for the diagonal; coarse matrices have a life of their own. What a
+ * component may be slowed down by if its energy has risen, as a share of its kinetic energy: beyond, the step is not
+ * quick. */
+#define GXSP_QUICK_AGE 64
+#define GXSP_QUICK_CUT 0.2
+
 /* Rows in a group of the stiffness bound; divides GXSP_RANGE */
 #define GXSP_LEAP_ROWS 4
 
@@ -799,6 +842,9 @@ extern "C" {
 #define GXSP_NESTED_COST 12
 #define GXSP_NESTED_FROM 0.8f
 #define GXSP_WIDEST      8
+
+/* An update keeps that lattice while its factor takes at most so many times as much. */
+#define GXSP_NESTED_SLACK 2
 
 /* Elements of affine copies: blocks of one task; and of one round, after which the results are summed, so that these
  * take memory for one round only. Sums go by blocks, whatever the threads do. */
@@ -879,15 +925,19 @@ extern "C" {
 #endif
 
 /* INLINE: compilers must know the column numbers. Columns that might be equal are not vectorised. COLD: seldom called,
- * kept out of line and compiled for size. */
+ * kept out of line and compiled for size. APART: kept out of line, so that its arrays are not in the frame of what
+ * calls it: a frame has at most 16 kB. */
 #if defined(__GNUC__) || defined(__clang__)
 #define GXSP_COLD   __attribute__((cold, noinline))
+#define GXSP_APART  __attribute__((noinline))
 #define GXSP_INLINE static inline __attribute__((always_inline))
 #elif defined(_MSC_VER)
 #define GXSP_COLD   __declspec(noinline)
+#define GXSP_APART  __declspec(noinline)
 #define GXSP_INLINE static __forceinline
 #else
 #define GXSP_COLD
+#define GXSP_APART
 #define GXSP_INLINE static inline
 #endif
 
@@ -1462,9 +1512,11 @@ typedef struct gxsp_component {
     double limit, ended;
     /* midpoint rule: E at base; E at the middle without drift and E at a trial, both minus base; J */
     double base, low, gain;
-    double drift[3];    /* midpoint rule: translation of the second half, which is not shortened, m */
-    double slope, work; /* dE/dlength of the direction, and the load's work along it; J */
-    double left;        /* work of the linear solve's remaining residual along the direction; J */
+    double elastic, slack; /* quick steps: elastic energy at the end of the last one, and what E is below its limit; J
+                            */
+    double drift[3];       /* midpoint rule: translation of the second half, which is not shortened, m */
+    double slope, work;    /* dE/dlength of the direction, and the load's work along it; J */
+    double left;           /* work of the linear solve's remaining residual along the direction; J */
     double rounding;    /* size of the rounding of positions and of the load's terms, in units in the last place; J */
     double length;      /* step length, as a share of the direction */
     int settled;        /* its length is found. A chunk whose components are all settled is not evaluated again */
@@ -1610,6 +1662,7 @@ typedef struct gxsp_coarse {
     double rate;          /* of the inertia in the matrices; below 0: they were never made */
     double *displacement; /* n x 3: at which they were made; of a multigrid only */
     double stiffness;     /* sum of springs' and contact's Hessians in them */
+    int quick;            /* they were made by a quick step, so with lumped mass */
     int worn;             /* they must be made anew */
     uint32_t served;      /* iterations since they were made */
     uint32_t life;        /* iterations that they are to serve */
@@ -1666,6 +1719,7 @@ typedef struct gxsp_history {
     int stepped;    /* current is what the last step returned; copies that a cut has made are at their origin's place */
     int base_known; /* current is what the last step returned, and components know its elastic energies */
     int failed;     /* the last step failed: the components that it woke stay awake */
+    int quick;      /* the step is quick: products are those of the strains, mass is lumped */
     double product_rate;  /* of the linearisation for gxs_solver_product; below 0: there is none */
     uint32_t guess_count; /* valid guesses: 0, 1 or 2 */
 } gxsp_history;
@@ -1691,8 +1745,10 @@ typedef struct gxsp_affine {
     size_t count;  /* elements; 0: there are none */
     double length; /* m: hidden vectors are columns of A times this */
     gxsp_affine_block *blocks;
-    uint32_t block_count, group_count;
+    uint32_t *groups; /* block_count x GXSP_LANES: gxs_element.group; GXSP_NONE: the lane has no element */
+    uint32_t block_count, block_room, group_count, group_room;
     uint32_t round;        /* first block of the round under way: see GXSP_AFFINE_ROUND */
+    uint32_t slot_blocks;  /* blocks for which slots have room */
     uint32_t *place;       /* n: 4 x group + part; GXSP_NONE: a copy that is not affine. NULL: there are no groups */
     uint32_t (*member)[4]; /* group_count: vectors of a group */
     double (*slots)[3];    /* blocks of a round x 16 x GXSP_LANES: their results */
@@ -1701,9 +1757,12 @@ typedef struct gxsp_affine {
     double (*full)[10][9]; /* group_count: blocks of the parts p <= q, in the order of gxs_element.mass, by rows */
     float (*root)[78];     /* group_count: W by rows, lower triangle: the inverse of the 12x12 block is W^T W */
     uint32_t *hidden; /* by node of level 1: the first of its three hidden nodes, or GXSP_NONE. NULL: no multigrid */
-    float (*offset)[4][3]; /* group_count: (X_i - X_J) / length for each parent J */
-    double *block;         /* 9 per entry of level 1: what the elements here add */
-    double *entry;         /* factor of level 1, rows as in gxsp_factor */
+    uint32_t hidden_count;     /* nodes that hidden has */
+    float (*offset)[4][3];     /* group_count: (X_i - X_J) / length for each parent J */
+    double origin[3], spacing; /* of level 1's lattice before it was widened, m */
+    float stretch;             /* by which it was widened */
+    double *block;             /* 9 per entry of level 1: what the elements here add */
+    double *entry;             /* factor of level 1, rows as in gxsp_factor */
 } gxsp_affine;
 
 /* A block's elements in explicit steps. A lane without an element has zeros. */
@@ -1712,14 +1771,24 @@ typedef struct gxsp_leap_block {
     float mu[GXSP_LANES], lambda[GXSP_LANES]; /* weight x moduli, J */
 } gxsp_leap_block;
 
-/* What explicit steps need of the model, made by the first one; and their vectors. All arrays are in its own pool. */
+/* What products need of a block's elements at a displacement, see >>strains. A lane without an element has zeros. */
+typedef struct gxsp_strain {
+    float gradient[9][GXSP_LANES]; /* of the displacement, by rows */
+    /* factors of D, of F : D, of cof F : D and of dcof F in the change of stress, times weight and scale */
+    float own[GXSP_LANES], along[GXSP_LANES], sides[GXSP_LANES], turn[GXSP_LANES];
+} gxsp_strain;
+
+/* What explicit and quick steps need of the model, made by the first one; and their vectors. All arrays are in its own
+ * pool. */
 typedef struct gxsp_leap {
     gxsp_pool pool;
-    int made;                /* for the present model */
-    int suits;               /* materials and copies allow explicit steps. Else nothing below is there */
+    /* for the present model: GXSP_LEAP_BLOCKS: what quick steps need; GXSP_LEAP_ALL: what explicit ones need, too */
+    int made;
+    int suits;               /* materials and copies allow such steps. Else nothing below is there */
     gxsp_leap_block *blocks; /* block_count: those of the first chunk, then of the next */
     size_t block_count;
     uint32_t *first_block; /* chunk_count: of each chunk */
+    gxsp_strain *strains;  /* block_count: of the last quick step; NULL before the first */
     /* L, which bounds the stiffness: one number for a pair of copies, by groups of rows. order: n: copies of the rows.
      * start: n / GXSP_LEAP_ROWS, rounded up, + 1; entry k of the group's row r is at GXSP_LEAP_ROWS (start + k) + r */
     uint32_t *order, *start, *column;
@@ -1734,6 +1803,10 @@ typedef struct gxsp_leap {
     double factor; /* on L; 0: the first */
     double limit;  /* of energy, J. Valid if limited */
     int limited;   /* the last step was explicit */
+    /* quick steps since Hessian and diagonal were made; 0: they must be. The last one was quick: components have their
+     * slack */
+    uint32_t served;
+    int known;
 } gxsp_leap;
 
 /* A model in the solver's form, and all that its steps work with. One allocation of pool, as are its arrays. */
@@ -1853,6 +1926,9 @@ static const gxsp_column gxsp_copy_columns[] = {
     {GXSP_IN(vectors.right),                                    sizeof(gxsp_vector4), 0,          GXSP_BY_OWNER,   0},
     {GXSP_IN(smoother.renewed),                                 1,                    0,          GXSP_FOR_STEPS,  0},
     {GXSP_IN(coarse.displacement),                              3 * sizeof(double),   0,          GXSP_BY_OWNER,   1},
+    {GXSP_IN(affine.place),                                     sizeof(uint32_t),     0,          GXSP_BY_OWNER,   0},
+    {GXSP_IN(affine.sum),                                       3 * sizeof(double),   0,          GXSP_BY_OWNER,   0},
+    {GXSP_IN(affine.own),                                       6 * sizeof(double),   0,          GXSP_BY_OWNER,   0},
     {GXSP_IN(multigrid.levels) + offsetof(gxsp_level, parent),  4 * sizeof(uint32_t), 0,          GXSP_BY_OWNER,   1},
     {GXSP_IN(multigrid.levels) + offsetof(gxsp_level, weight),  4 * sizeof(float),    0,          GXSP_BY_OWNER,   1}};
 
@@ -3478,7 +3554,7 @@ static uint32_t gxsp_place_strips(gxsp_layout *layout, uint32_t blocks, uint32_t
 }
 
 /* The lane of each element of a chunk. nodes: of the elements; neighbours follow each other */
-static void gxsp_assign_lanes(gxsp_layout *layout, uint32_t (*nodes)[4], uint32_t count, uint32_t blocks) {
+static GXSP_APART void gxsp_assign_lanes(gxsp_layout *layout, uint32_t (*nodes)[4], uint32_t count, uint32_t blocks) {
     uint32_t lane, length, first = 0;
     layout->nodes = nodes;
     layout->count = count;
@@ -3524,8 +3600,8 @@ static int gxsp_lane_supports(const gxsp_chunk *chunk, uint32_t lane, int k) {
 }
 
 /* Puts elements of a chunk into their lanes. elements: sorted; nodes: theirs, numbered in the chunk */
-static void gxsp_fill_chunk(const gxsp_chunk *chunk, const gxs_model *model, const gxsp_sorted *elements,
-                            uint32_t (*nodes)[4], uint32_t count) {
+static GXSP_APART void gxsp_fill_chunk(const gxsp_chunk *chunk, const gxs_model *model, const gxsp_sorted *elements,
+                                       uint32_t (*nodes)[4], uint32_t count) {
     gxsp_layout layout;
     uint32_t placed[GXSP_CHUNK][4], lane;
     int k;
@@ -3704,6 +3780,9 @@ static int gxsp_is_affine(const gxs_model *model, const gxs_element *element) {
 }
 
 /* Is a vector one of the hidden ones of an affine copy? A translation does not move those. */
+/* Is the mass that of each copy's row, for the model or for the step at work? */
+static inline int gxsp_is_lumped(const gxsp_system *system) { return system->model.lumped_mass || system->state.quick; }
+
 static inline int gxsp_is_hidden(const gxsp_system *system, size_t copy) {
     const uint32_t *place = system->affine.place;
     return place && place[copy] != GXSP_NONE && (place[copy] & 3) > 0;
@@ -3713,22 +3792,35 @@ static inline int gxsp_is_grouped(const gxsp_system *system, size_t copy) {
     return system->affine.place && system->affine.place[copy] != GXSP_NONE;
 }
 
-/* Groups. Hidden vectors take over the rest position of their copy. */
-static void gxsp_groups_make(gxsp_system *system, const gxs_model *model) {
+/* Room for so many groups. What they had is lost. */
+static void gxsp_groups_room(gxsp_system *system, uint32_t count) {
+    gxsp_affine *affine = &system->affine;
+    if (count <= affine->group_room) return;
+    affine->group_room = affine->group_room > 0 ? (uint32_t)gxsp_room(count) : count;
+    affine->member =
+        (uint32_t(*)[4])gxsp_grow(&system->pool, affine->member, 0, affine->group_room, sizeof *affine->member);
+    affine->full =
+        (double(*)[10][9])gxsp_grow(&system->pool, affine->full, 0, affine->group_room, sizeof *affine->full);
+    affine->root = (float(*)[78])gxsp_grow(&system->pool, affine->root, 0, affine->group_room, sizeof *affine->root);
+}
+
+static uint32_t gxsp_count_groups(const uint32_t *affine, size_t copies) {
+    uint32_t count = 0;
+    size_t i;
+    for (i = 0; i < copies; i++) count += affine[i] != GXS_NOT_AFFINE;
+    return count;
+}
+
+/* Groups; there is room. Hidden vectors take over the rest position of their copy. first: n, as gxs_model.affine */
+static void gxsp_groups_make(gxsp_system *system, const uint32_t *first) {
     gxsp_affine *affine = &system->affine;
     size_t i, k;
     uint32_t group = 0;
-    for (i = 0; i < system->model.n; i++) affine->group_count += model->affine[i] != GXS_NOT_AFFINE;
-    if (affine->group_count == 0) return;
-    affine->length = model->affine_length;
-    affine->place = (uint32_t *)gxsp_take(&system->pool, system->model.n, sizeof(uint32_t));
-    affine->member = (uint32_t(*)[4])gxsp_take(&system->pool, affine->group_count, sizeof *affine->member);
-    if (system->pool.failed) return;
     memset(affine->place, 0xff, system->model.n * sizeof *affine->place);
     for (i = 0; i < system->model.n; i++) {
-        if (model->affine[i] == GXS_NOT_AFFINE) continue;
+        if (first[i] == GXS_NOT_AFFINE) continue;
         for (k = 0; k < 4; k++) {
-            const uint32_t vector = k == 0 ? (uint32_t)i : model->affine[i] + (uint32_t)k - 1;
+            const uint32_t vector = k == 0 ? (uint32_t)i : first[i] + (uint32_t)k - 1;
             affine->member[group][k] = vector;
             affine->place[vector] = 4 * group + (uint32_t)k;
             if (k > 0 && system->model.positions)
@@ -3737,6 +3829,17 @@ static void gxsp_groups_make(gxsp_system *system, const gxs_model *model) {
         }
         group++;
     }
+    affine->group_count = group;
+}
+
+/* The groups of a new model */
+static void gxsp_groups_begin(gxsp_system *system, const gxs_model *model) {
+    const uint32_t count = gxsp_count_groups(model->affine, system->model.n);
+    if (count == 0) return;
+    system->affine.length = model->affine_length;
+    system->affine.place = (uint32_t *)gxsp_take(&system->pool, system->model.n, sizeof(uint32_t));
+    gxsp_groups_room(system, count);
+    if (!system->pool.failed) gxsp_groups_make(system, model->affine);
 }
 
 /* Shape functions at the four points of an element: x_p = c + L t_p, with L L^T the covariance of its mass. They
@@ -3802,11 +3905,19 @@ static void gxsp_affine_fill(gxsp_system *system, const gxs_element *element, gx
     }
 }
 
-/* Row sums of the mass at hidden vectors, int rho N_i (x - X_i) / length: gravity acts on them by these */
-static void gxsp_affine_lump(gxsp_system *system, const gxsp_affine_block *block, int l) {
+/* Row sum of the mass of a lane's element at corner k: the four points have equal weights */
+static double gxsp_affine_mass(const gxsp_affine_block *block, int l, int k) {
+    return block->rest.mass[l] *
+           (block->shape[0][k][l] + block->shape[1][k][l] + block->shape[2][k][l] + block->shape[3][k][l]);
+}
+
+/* Row sums of the mass at hidden vectors, int rho N_i (x - X_i) / length: gravity acts on them by these. touched: those
+ * of these copies; NULL: all */
+static void gxsp_affine_lump(gxsp_system *system, const gxsp_affine_block *block, int l, const uint8_t *touched) {
     int i, j, k, p;
     for (i = 0; i < 4; i++)
-        for (k = 0; k < 3 && block->vector[4 + 3 * i][l] != GXSP_NONE; k++) {
+        for (k = 0; k < 3 && block->vector[4 + 3 * i][l] != GXSP_NONE && (!touched || touched[block->vector[i][l]]);
+             k++) {
             double sum = 0;
             for (p = 0; p < 4; p++) {
                 double way = 0; /* (x - X_i) / (4 length) at the point */
@@ -3819,6 +3930,17 @@ static void gxsp_affine_lump(gxsp_system *system, const gxsp_affine_block *block
         }
 }
 
+/* A block without elements; there is room */
+static gxsp_affine_block *gxsp_affine_open(gxsp_system *system, uint32_t b, gxs_material_kind kind) {
+    gxsp_affine_block *block = &system->affine.blocks[b];
+    memset(block, 0, sizeof *block);
+    block->kind = kind;
+    memset(block->vector, 0xff, sizeof block->vector);
+    memset(system->affine.groups + (size_t)b * GXSP_LANES, 0xff, GXSP_LANES * sizeof(uint32_t));
+    if (kind == GXS_CUSTOM) block->general = (gxsp_general *)gxsp_take(&system->pool, 4, sizeof(gxsp_general));
+    return block;
+}
+
 /* Blocks of the elements: those of one kind together. order: elements of each kind, in the caller's order */
 static void gxsp_affine_blocks(gxsp_system *system, const gxs_model *model, const uint32_t *elements) {
     gxsp_affine *affine = &system->affine;
@@ -3826,33 +3948,31 @@ static void gxsp_affine_blocks(gxsp_system *system, const gxs_model *model, cons
     int kind, l, k;
     for (e = 0; e < affine->count; e++) count[model->materials[model->elements[elements[e]].material].kind]++;
     for (kind = 0; kind <= GXS_CUSTOM; kind++) affine->block_count += (count[kind] + GXSP_LANES - 1) / GXSP_LANES;
+    affine->block_room = affine->block_count;
     affine->blocks = (gxsp_affine_block *)gxsp_take(&system->pool, affine->block_count, sizeof *affine->blocks);
-    if (system->pool.failed) return;
-    for (kind = 0; kind <= GXS_CUSTOM; kind++)
+    affine->groups = (uint32_t *)gxsp_take(&system->pool, (size_t)affine->block_count * GXSP_LANES, sizeof(uint32_t));
+    for (kind = 0; kind <= GXS_CUSTOM && !system->pool.failed; kind++)
         for (e = first = 0; first < count[kind]; b++) {
-            gxsp_affine_block *block = &affine->blocks[b];
-            block->kind = (gxs_material_kind)kind;
-            memset(block->vector, 0xff, sizeof block->vector);
-            if (kind == GXS_CUSTOM) block->general = (gxsp_general *)gxsp_take(&system->pool, 4, sizeof(gxsp_general));
+            gxsp_affine_block *block = gxsp_affine_open(system, b, (gxs_material_kind)kind);
             for (l = 0; l < GXSP_LANES && first < count[kind]; l++, first++, e++) {
                 while ((int)model->materials[model->elements[elements[e]].material].kind != kind) e++;
+                affine->groups[(size_t)b * GXSP_LANES + (size_t)l] = model->elements[elements[e]].group;
                 gxsp_affine_fill(system, &model->elements[elements[e]], block, l);
-                gxsp_affine_lump(system, block, l);
+                gxsp_affine_lump(system, block, l, NULL);
             }
             for (k = l; k < GXSP_LANES; k++) /* a valid material of this kind */
                 block->rest.material[k] = block->rest.material[0];
         }
 }
 
-/* Memory for results of passes */
+/* Memory for results of a round of blocks */
 static void gxsp_affine_results(gxsp_system *system) {
     gxsp_affine *affine = &system->affine;
-    const size_t blocks = affine->block_count < GXSP_AFFINE_ROUND ? affine->block_count : GXSP_AFFINE_ROUND;
-    affine->slots = (double(*)[3])gxsp_take(&system->pool, blocks * 16 * GXSP_LANES, sizeof *affine->slots);
-    affine->sum = (double(*)[3])gxsp_take(&system->pool, system->model.n, sizeof *affine->sum);
-    affine->own = (double(*)[6])gxsp_take(&system->pool, system->model.n, sizeof *affine->own);
-    affine->full = (double(*)[10][9])gxsp_take(&system->pool, affine->group_count, sizeof *affine->full);
-    affine->root = (float(*)[78])gxsp_take(&system->pool, affine->group_count, sizeof *affine->root);
+    const uint32_t blocks = affine->block_count < GXSP_AFFINE_ROUND ? affine->block_count : GXSP_AFFINE_ROUND;
+    if (blocks <= affine->slot_blocks) return;
+    affine->slots = (double(*)[3])gxsp_grow(&system->pool, affine->slots, 0, (size_t)blocks * 16 * GXSP_LANES,
+                                            sizeof *affine->slots);
+    affine->slot_blocks = blocks;
 }
 
 /* Divides the model's elements: those with an affine corner come here, `plain` gets the others. Both lists are in
@@ -3879,7 +3999,9 @@ static void gxsp_affine_make(gxsp_system *system, gxsp_pool *scratch, const gxs_
     plain->elements = others;
     plain->element_count = system->model.element_count = count;
     gxsp_affine_blocks(system, model, elements);
-    if (!system->pool.failed) gxsp_affine_results(system);
+    gxsp_affine_results(system);
+    system->affine.sum = (double(*)[3])gxsp_take(&system->pool, system->model.n, sizeof *system->affine.sum);
+    system->affine.own = (double(*)[6])gxsp_take(&system->pool, system->model.n, sizeof *system->affine.own);
 }
 
 /* Joins the vectors of a group. forest: n */
@@ -4202,6 +4324,9 @@ static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GX
  * idea, one level up). Values between lattice points are linear on the six tetrahedra around a cell's diagonal:
  * at most four weights, exact for affine fields. */
 
+/* A coordinate in spacings of a lattice. Keeps lattice planes off those of the mesh */
+static float gxsp_place(double x, double origin, double spacing) { return (float)((x - origin) / spacing) + 0.31f; }
+
 /* Rest positions in spacings of the first lattice: GXSP_SPACING edges of an average whole element. Returns
  * the spacing; 0: there is no lattice. */
 static double gxsp_find_places(const gxsp_system *system, const gxs_model *model, float (*to)[3]) {
@@ -4220,10 +4345,8 @@ static double gxsp_find_places(const gxsp_system *system, const gxs_model *model
     spacing = GXSP_SPACING * cbrt(5 * volume / (double)counted); /* five elements to a cube */
     for (i = 0; i < system->model.n; i++)
         for (k = 0; k < 3; k++) {
-            double place = (system->model.positions[3 * i + k] - system->model.positions[k]) / spacing;
-            if (!(fabs(place) < 1e6)) /* single precision could not hold it */
-                return 0;
-            to[i][k] = (float)place + 0.31f; /* keeps lattice planes off those of the mesh */
+            to[i][k] = gxsp_place(system->model.positions[3 * i + k], system->model.positions[k], spacing);
+            if (!(fabs((double)to[i][k]) < 1e6)) return 0; /* single precision could not hold it */
         }
     return spacing;
 }
@@ -4618,36 +4741,39 @@ static uint32_t gxsp_nested_parents(const gxsp_system *system, uint32_t vector, 
     return count;
 }
 
-/* Numbers the hidden nodes, which follow the count others, and finds the offsets of affine copies from their parents.
- * place: n x 3, in spacings of the lattice; transfer: as gxsp_transfer_end has left it. Returns the number of nodes. */
-static uint32_t gxsp_nested_nodes(gxsp_system *system, float (*place)[3], const gxsp_transfer *transfer, double spacing,
-                                  uint32_t count) {
+/* Gives hidden nodes, from number `nodes` on, to the parents of affine copies that have none. hidden: by node, count of
+ * them. Returns the number of nodes. */
+static uint32_t gxsp_nested_nodes(gxsp_system *system, uint32_t count, uint32_t nodes) {
     gxsp_affine *affine = &system->affine;
-    gxsp_level points; /* lattice points of the nodes */
-    uint32_t group, nodes = count;
-    int k, a;
-    memset(&points, 0, sizeof points);
-    affine->hidden = (uint32_t *)gxsp_take(&system->multigrid.pool, count, sizeof(uint32_t));
-    affine->offset = (float(*)[4][3])gxsp_take(&system->multigrid.pool, affine->group_count, sizeof *affine->offset);
-    points.place = (int32_t(*)[3])gxsp_take(&system->multigrid.pool, count, sizeof *points.place);
-    if (system->multigrid.pool.failed) return 0;
-    gxsp_transfer_places(&system->multigrid.levels[0], transfer, &points);
-    memset(affine->hidden, 0xff, count * sizeof *affine->hidden);
-    for (group = 0; group < affine->group_count; group++) {
-        const uint32_t copy = affine->member[group][0];
+    uint32_t group;
+    int k;
+    for (group = 0; group < affine->group_count; group++)
         for (k = 0; k < 4; k++) {
-            const uint32_t parent = system->multigrid.levels[0].parent[copy][k];
-            if (parent == GXSP_NONE) continue;
-            if (affine->hidden[parent] == GXSP_NONE) {
-                affine->hidden[parent] = nodes;
-                nodes += 3;
-            }
-            for (a = 0; a < 3; a++)
-                affine->offset[group][k][a] =
-                    (float)(((double)place[copy][a] - points.place[parent][a]) * spacing / affine->length);
+            const uint32_t parent = system->multigrid.levels[0].parent[affine->member[group][0]][k];
+            if (parent == GXSP_NONE || affine->hidden[parent] != GXSP_NONE) continue;
+            affine->hidden[parent] = nodes;
+            nodes += 3;
         }
-    }
+    affine->hidden_count = count;
     return nodes;
+}
+
+/* Offsets of affine copies from their parents, whose places are known */
+static void gxsp_nested_offsets(gxsp_system *system) {
+    gxsp_affine *affine = &system->affine;
+    const gxsp_level *fine = &system->multigrid.levels[0];
+    uint32_t group;
+    int k, a;
+    for (group = 0; group < affine->group_count; group++)
+        for (k = 0; k < 4; k++)
+            for (a = 0; a < 3; a++) {
+                const uint32_t copy = affine->member[group][0], parent = fine->parent[copy][k];
+                const double x = system->model.positions[3 * (size_t)copy + (size_t)a];
+                const float place = gxsp_place(x, affine->origin[a], affine->spacing) / affine->stretch;
+                if (parent == GXSP_NONE) continue;
+                affine->offset[group][k][a] = (float)(((double)place - fine[1].place[parent][a]) *
+                                                      ((double)affine->stretch * affine->spacing) / affine->length);
+            }
 }
 
 /* Adds the clusters that the elements join. */
@@ -4677,6 +4803,13 @@ static int gxsp_compare_keys(const void *a, const void *b) {
     return (p > q) - (p < q);
 }
 
+/* Has an element a coarse node that is dirty? */
+static int gxsp_nested_dirty(const gxsp_system *system, const gxsp_affine_block *block, int l, const uint8_t *dirty) {
+    uint32_t bases[16], i, count = gxsp_nested_bases(system, block, l, bases);
+    for (i = 0; i < count && !dirty[bases[i]]; i++) {}
+    return i < count;
+}
+
 /* Lists the entries of a coarse node and another one, or itself, with their hidden nodes. */
 static void gxsp_nested_entries(const uint32_t *hidden, uint32_t p, uint32_t q, gxsp_list *list) {
     const uint32_t some = hidden[p] == GXSP_NONE ? 1 : 4, others = hidden[q] == GXSP_NONE ? 1 : 4;
@@ -4688,8 +4821,9 @@ static void gxsp_nested_entries(const uint32_t *hidden, uint32_t p, uint32_t q, 
         }
 }
 
-/* Lists the entries of level 1's matrix to which the elements add. */
-static void gxsp_nested_pattern(const gxsp_system *system, gxsp_pool *scratch, gxsp_list *list) {
+/* Lists the entries of level 1's matrix to which the elements add. dirty: by coarse node; only entries with a dirty
+ * node are listed; NULL: all are */
+static void gxsp_nested_pattern(const gxsp_system *system, gxsp_pool *scratch, const uint8_t *dirty, gxsp_list *list) {
     const gxsp_affine *affine = &system->affine;
     uint64_t *key = (uint64_t *)gxsp_take(scratch, (size_t)affine->block_count * GXSP_LANES * 136, sizeof *key);
     uint32_t bases[16], b, i, j, count;
@@ -4699,9 +4833,11 @@ static void gxsp_nested_pattern(const gxsp_system *system, gxsp_pool *scratch, g
     for (b = 0; b < affine->block_count; b++)
         for (l = 0; l < GXSP_LANES; l++)
             for (count = gxsp_nested_bases(system, &affine->blocks[b], l, bases), i = 0; i < count; i++)
-                for (j = i; j < count; j++)
+                for (j = i; j < count; j++) {
+                    if (dirty && !dirty[bases[i]] && !dirty[bases[j]]) continue;
                     key[keys++] =
                         bases[i] < bases[j] ? (uint64_t)bases[i] << 32 | bases[j] : (uint64_t)bases[j] << 32 | bases[i];
+                }
     qsort(key, keys, sizeof *key, gxsp_compare_keys);
     for (k = 0; k < keys; k++)
         if (k == 0 || key[k] != key[k - 1])
@@ -4959,7 +5095,7 @@ static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gx
     for (c = 0; c < system->mesh.chunk_count; c++)
         if (!before || gxsp_follows_dirty(system, &system->mesh.chunks[c], dirty))
             gxsp_list_pairs(system, &system->mesh.chunks[c], memory, before ? dirty : NULL, &list);
-    if (system->affine.count > 0) gxsp_nested_pattern(system, scratch, &list);
+    if (system->affine.count > 0) gxsp_nested_pattern(system, scratch, before ? dirty : NULL, &list);
     if (!scratch->failed)
         gxsp_rows_make(&system->multigrid.pool, scratch, &system->multigrid.levels[1], list.pair, list.count);
 }
@@ -5141,6 +5277,24 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (
     gxsp_levels_make(system, scratch, NULL, NULL);
 }
 
+/* What levels have beside their pattern, where copies are affine */
+static void gxsp_nested_end(gxsp_system *system, gxsp_pool *scratch) {
+    gxsp_level *next = &system->multigrid.levels[1];
+    gxsp_count_edges(system);
+    system->multigrid.level_count = 2;
+    next->block = (float *)gxsp_take(&system->multigrid.pool, gxsp_block_numbers(next), sizeof(float));
+    system->affine.block = (double *)gxsp_take(&system->multigrid.pool, gxsp_block_numbers(next), sizeof(double));
+    gxsp_factor_make(system, scratch);
+}
+
+/* Hidden nodes and offsets are to be found: memory for them. count: nodes */
+static void gxsp_nested_begin(gxsp_system *system, uint32_t count) {
+    gxsp_affine *affine = &system->affine;
+    affine->hidden = (uint32_t *)gxsp_take(&system->multigrid.pool, count, sizeof(uint32_t));
+    affine->offset = (float(*)[4][3])gxsp_take(&system->multigrid.pool, affine->group_count, sizeof *affine->offset);
+    if (!system->multigrid.pool.failed) memset(affine->hidden, 0xff, count * sizeof *affine->hidden);
+}
+
 /* The same where copies are affine. Level 1 is factored, so its lattice is widened until that is cheap. */
 static void gxsp_nested_make(gxsp_system *system, gxsp_pool *scratch, float (*place)[3], double spacing) {
     gxsp_level *next = &system->multigrid.levels[1];
@@ -5155,15 +5309,20 @@ static void gxsp_nested_make(gxsp_system *system, gxsp_pool *scratch, float (*pl
     transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
     mark = scratch->last;
     for (i = 0; i < system->model.n && left_out; i++) left_out[i] = system->model.fixed[i] || gxsp_is_hidden(system, i);
+    memcpy(system->affine.origin, system->model.positions, sizeof system->affine.origin);
+    system->affine.spacing = spacing;
     for (stretch = GXSP_NESTED_FROM;; stretch *= 1.25f) {
         if (scratch->failed) return;
         for (i = 0; i < 3 * system->model.n; i++) own[i / 3][i % 3] = place[i / 3][i % 3] / stretch;
         count = gxsp_first_transfer(system, own, left_out, &transfer);
         if (count == 0) return;
-        count = gxsp_nested_nodes(system, own, &transfer, (double)stretch * spacing, count);
+        gxsp_nested_begin(system, count);
         if (system->multigrid.pool.failed) return;
-        gxsp_level_make(&system->multigrid.pool, next, count);
+        gxsp_level_make(&system->multigrid.pool, next, gxsp_nested_nodes(system, count, count));
         if (system->multigrid.pool.failed) return;
+        gxsp_transfer_places(&system->multigrid.levels[0], &transfer, next);
+        system->affine.stretch = stretch;
+        gxsp_nested_offsets(system);
         gxsp_pairs_make(system, scratch);
         if (!scratch->failed) gxsp_first_pattern(system, scratch, NULL, NULL);
         if (scratch->failed || system->multigrid.pool.failed) return;
@@ -5171,11 +5330,7 @@ static void gxsp_nested_make(gxsp_system *system, gxsp_pool *scratch, float (*pl
         gxsp_release_to(&system->multigrid.pool, NULL);
         gxsp_release_to(scratch, mark);
     }
-    gxsp_count_edges(system);
-    system->multigrid.level_count = 2;
-    next->block = (float *)gxsp_take(&system->multigrid.pool, gxsp_block_numbers(next), sizeof(float));
-    system->affine.block = (double *)gxsp_take(&system->multigrid.pool, gxsp_block_numbers(next), sizeof(double));
-    gxsp_factor_make(system, scratch);
+    gxsp_nested_end(system, scratch);
 }
 
 /* >>lights: copies with next to no mass ---------------------------------------------------------------------------- */
@@ -5432,7 +5587,7 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     system->model.materials = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
     system->state.damped = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
     gxsp_copies_make(system, model->positions);
-    if (model->affine && !system->pool.failed) gxsp_groups_make(system, model);
+    if (model->affine && !system->pool.failed) gxsp_groups_begin(system, model);
     if (scratch->failed || system->pool.failed) return SIZE_MAX;
     for (i = 0; i < system->model.material_count; i++) {
         system->state.damped[i] = system->model.materials[i] = gxsp_material_make(&model->materials[i]);
@@ -5600,46 +5755,58 @@ static void gxsp_affine_inertia(const gxsp_affine_block *block, int point, doubl
     }
 }
 
-/* Energies and forces of a block: see gxsp_task_state */
-static void gxsp_affine_state(const gxsp_pass *pass, gxsp_affine_block *block, double (*slots)[3]) {
-    const int led = pass->inertia || pass->rotated; /* never both */
-    gxsp_lanes x[48], other[48], bend[18], bend_other[18], y[48], forces[18], w[12], w_other[12], ahead[9];
+/* What the points of a block share: x and what is subtracted from it or ahead of it, with their bends, and the sums of
+ * forces on vectors and bends */
+typedef struct gxsp_affine_sums {
+    gxsp_lanes x[48], other[48], bend[18], bend_other[18], y[48], forces[18];
+} gxsp_affine_sums;
+
+/* The share of one point in energies and forces of a block */
+static GXSP_APART void gxsp_affine_point(const gxsp_pass *pass, gxsp_affine_block *block, int p,
+                                         gxsp_affine_sums *sums) {
+    gxsp_lanes w[12], w_other[12], ahead[9], own[12];
     gxsp_state s;
-    int p, k, l;
-    gxsp_affine_gather(block, pass->from, x);
-    gxsp_affine_bend(block, x, bend);
-    if (led) gxsp_affine_gather(block, pass->inertia ? pass->system->vectors.target : pass->rotated, other);
-    for (k = 0; k < 48 && pass->inertia; k++) GXSP_EACH_LANE(l) other[k][l] = x[k][l] - other[k][l];
-    if (led) gxsp_affine_bend(block, other, bend_other);
-    memset(y, 0, sizeof y);
-    memset(forces, 0, sizeof forces);
-    memset(block->energies, 0, sizeof block->energies);
-    for (p = 0; p < 4; p++) {
-        gxsp_lanes own[12];
-        gxsp_affine_corners(block, p, x, bend, w);
-        if (led) gxsp_affine_corners(block, p, other, bend_other, w_other);
-        gxsp_block_parameters(pass->materials, &block->rest, &s);
-        gxsp_block_gradient(block->gradient, w, s.g);
-        if (pass->rotated) gxsp_block_gradient(block->gradient, w_other, ahead);
-        if (pass->nudge && block->kind != GXS_LINEAR && block->kind != GXS_CUSTOM) gxsp_nudge(s.g);
-        gxsp_material_state(block->kind, &s);
-        if (pass->rotated && block->kind != GXS_LINEAR) gxsp_rotate_stress(s.g, ahead, s.p);
-        memset(own, 0, sizeof own);
-        gxsp_block_force(block->rest.weight, block->gradient, s.p, own);
-        gxsp_affine_collect(block, p, own, y, forces);
-        for (l = 0; l < GXSP_LANES; l++) {
-            block->energies[0][l] += block->rest.weight[l] * s.energy[l];
-            block->energies[2][l] += block->rest.weight[l] * s.size[l];
-        }
-        if (pass->inertia) gxsp_affine_inertia(block, p, pass->rate, other, w_other, y, forces, block->energies[1]);
+    int l;
+    gxsp_affine_corners(block, p, sums->x, sums->bend, w);
+    if (pass->inertia || pass->rotated) gxsp_affine_corners(block, p, sums->other, sums->bend_other, w_other);
+    gxsp_block_parameters(pass->materials, &block->rest, &s);
+    gxsp_block_gradient(block->gradient, w, s.g);
+    if (pass->rotated) gxsp_block_gradient(block->gradient, w_other, ahead);
+    if (pass->nudge && block->kind != GXS_LINEAR && block->kind != GXS_CUSTOM) gxsp_nudge(s.g);
+    gxsp_material_state(block->kind, &s);
+    if (pass->rotated && block->kind != GXS_LINEAR) gxsp_rotate_stress(s.g, ahead, s.p);
+    memset(own, 0, sizeof own);
+    gxsp_block_force(block->rest.weight, block->gradient, s.p, own);
+    gxsp_affine_collect(block, p, own, sums->y, sums->forces);
+    for (l = 0; l < GXSP_LANES; l++) {
+        block->energies[0][l] += block->rest.weight[l] * s.energy[l];
+        block->energies[2][l] += block->rest.weight[l] * s.size[l];
     }
+    if (pass->inertia)
+        gxsp_affine_inertia(block, p, pass->rate, sums->other, w_other, sums->y, sums->forces, block->energies[1]);
+}
+
+/* Energies and forces of a block: see gxsp_task_state */
+static GXSP_APART void gxsp_affine_state(const gxsp_pass *pass, gxsp_affine_block *block, double (*slots)[3]) {
+    const int led = pass->inertia || pass->rotated; /* never both */
+    gxsp_affine_sums sums;
+    int p, k, l;
+    gxsp_affine_gather(block, pass->from, sums.x);
+    gxsp_affine_bend(block, sums.x, sums.bend);
+    if (led) gxsp_affine_gather(block, pass->inertia ? pass->system->vectors.target : pass->rotated, sums.other);
+    for (k = 0; k < 48 && pass->inertia; k++) GXSP_EACH_LANE(l) sums.other[k][l] = sums.x[k][l] - sums.other[k][l];
+    if (led) gxsp_affine_bend(block, sums.other, sums.bend_other);
+    memset(sums.y, 0, sizeof sums.y);
+    memset(sums.forces, 0, sizeof sums.forces);
+    memset(block->energies, 0, sizeof block->energies);
+    for (p = 0; p < 4; p++) gxsp_affine_point(pass, block, p, &sums);
     for (l = 0; l < GXSP_LANES; l++) block->energies[2][l] += block->energies[1][l];
-    gxsp_affine_return(block, forces, y);
-    gxsp_affine_scatter(y, slots);
+    gxsp_affine_return(block, sums.forces, sums.y);
+    gxsp_affine_scatter(sums.y, slots);
 }
 
 /* Hessian of a block at pass->from, point by point */
-static void gxsp_affine_tangents(const gxsp_pass *pass, gxsp_affine_block *block) {
+static GXSP_APART void gxsp_affine_tangents(const gxsp_pass *pass, gxsp_affine_block *block) {
     gxsp_lanes x[48], bend[18], w[12];
     gxsp_state s;
     gxsp_svd svd;
@@ -5658,8 +5825,8 @@ static void gxsp_affine_tangents(const gxsp_pass *pass, gxsp_affine_block *block
 }
 
 /* The product of a block with x, into its slots. pass->rate: times scale */
-static void gxsp_affine_product(const gxsp_pass *pass, const gxsp_affine_block *block, gxsp_lanes *x,
-                                double (*slots)[3]) {
+static GXSP_APART void gxsp_affine_product(const gxsp_pass *pass, const gxsp_affine_block *block, gxsp_lanes *x,
+                                           double (*slots)[3]) {
     gxsp_lanes y[48], bend[18], forces[18], w[12], energy;
     int p, k, l;
     gxsp_affine_bend(block, x, bend);
@@ -5751,8 +5918,8 @@ static void gxsp_affine_evaluate(gxsp_system *system, gxsp_pass *pass) {
     int k, l;
     gxsp_over_affine(system, gxsp_task_affine_state, pass, pass->sum);
     for (b = 0; b < affine->block_count; b++)
-        for (l = 0; l < GXSP_LANES && affine->blocks[b].vector[0][l] != GXSP_NONE; l++)
-            for (k = 0; k < 3; k++)
+        for (l = 0; l < GXSP_LANES; l++)
+            for (k = 0; k < 3 && affine->blocks[b].vector[0][l] != GXSP_NONE; k++)
                 gxsp_lead_of(system, affine->blocks[b].vector[0][l])->energies[k] += affine->blocks[b].energies[k][l];
 }
 
@@ -5924,8 +6091,8 @@ static void gxsp_affine_diagonal(gxsp_system *system, double rate) {
     memset(affine->own, 0, system->model.n * sizeof *affine->own);
     memset(affine->full, 0, affine->group_count * sizeof *affine->full);
     for (b = 0; b < affine->block_count; b++)
-        for (l = 0; l < GXSP_LANES && affine->blocks[b].vector[0][l] != GXSP_NONE && !affine->blocks[b].still; l++)
-            for (k = 0; k < 4; k++)
+        for (l = 0; l < GXSP_LANES && !affine->blocks[b].still; l++)
+            for (k = 0; k < 4 && affine->blocks[b].vector[0][l] != GXSP_NONE; k++)
                 if (!gxsp_follows(system, affine->blocks[b].vector[k][l]))
                     gxsp_affine_corner_blocks(system, &affine->blocks[b], l, k, rate);
     gxsp_affine_terms(system);
@@ -5972,16 +6139,21 @@ GXSP_INLINE void gxsp_prefetch_block(const gxsp_system *system, size_t index, ui
     if (chunk->moments) gxsp_prefetch(&chunk->moments[b], sizeof *chunk->moments);
 }
 
-/* x of a chunk's nodes: x 3, and one more number, which vectors read */
-static void gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *x,
-                            double *GXSP_RESTRICT to) {
+/* Numbers of a chunk's nodes: x 3, and one more, which vectors read */
+typedef double gxsp_near[GXSP_NEAR_NUMBERS];
+
+/* x of a chunk's nodes. Returns to; NULL: there is no room for so many nodes */
+static const double *gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *x,
+                                     double *GXSP_RESTRICT to) {
     const uint32_t *copies = system->mesh.nodes + chunk->first_node;
     size_t i, c;
+    if (chunk->node_count > GXSP_NEAR) return NULL;
     for (i = 0; i < chunk->node_count; i++) {
         gxsp_prefetch(x + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *x);
         for (c = 0; c < 3; c++) to[3 * i + c] = x[3 * (size_t)copies[i] + c];
     }
     to[3 * i] = 0;
+    return to;
 }
 
 #if defined(GXSP_SHUFFLES) && !defined(GXSP_AVX)
@@ -6018,8 +6190,8 @@ static inline void gxsp_load_four(const uint16_t *node, const double *x, double 
 
 /* x of a block's corners from that of the chunk's nodes. A corner that has not changed since the block before keeps
  * its values. */
-static void gxsp_block_load(const gxsp_chunk *chunk, uint32_t b, const double *GXSP_RESTRICT x,
-                            gxsp_lanes *GXSP_RESTRICT corners) {
+static void gxsp_block_load_near(const gxsp_chunk *chunk, uint32_t b, const double *GXSP_RESTRICT x,
+                                 gxsp_lanes *GXSP_RESTRICT corners) {
     const gxsp_corners *corner = &chunk->corners[b];
     int i, l;
     for (i = 0; i < 4; i++)
@@ -6039,12 +6211,21 @@ static void gxsp_block_load_copies(const gxsp_system *system, const gxsp_chunk *
         }
 }
 
-/* Shape function gradients of a block. rest: positions of the chunk's nodes; corners: of the block's, kept from
- * block to block as in gxsp_block_load */
-static gxsp_lanes *gxsp_block_gradients(const gxsp_chunk *chunk, uint32_t b, const double *rest, gxsp_lanes *corners,
-                                        gxsp_lanes *made) {
+/* The same from what gxsp_chunk_load has returned for x */
+static inline void gxsp_block_load(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, const double *near,
+                                   const double *x, gxsp_lanes *corners) {
+    if (near)
+        gxsp_block_load_near(chunk, b, near, corners);
+    else
+        gxsp_block_load_copies(system, chunk, b, x, corners);
+}
+
+/* Shape function gradients of a block. rest: positions of the chunk's nodes (gxsp_chunk_load); corners: of the
+ * block's, kept from block to block as in gxsp_block_load_near */
+static gxsp_lanes *gxsp_block_gradients(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b,
+                                        const double *rest, gxsp_lanes *corners, gxsp_lanes *made) {
     if (chunk->gradients) return chunk->gradients[b].entry;
-    gxsp_block_load(chunk, b, rest, corners);
+    gxsp_block_load(system, chunk, b, rest, system->model.positions, corners);
     gxsp_gradients_make(chunk->rest[b].weight, corners, made);
     return made;
 }
@@ -6119,32 +6300,25 @@ static void gxsp_add_energies(const gxsp_system *system, const gxsp_chunk *chunk
     }
 }
 
-/* Energies of a chunk at pass->from, component by component, and elastic + inertial forces */
-static void gxsp_task_state(void *context, size_t index) {
-    const gxsp_pass *pass = (const gxsp_pass *)context;
+/* Energies and forces of a chunk's blocks, into its partial sums and slots, which are 0. positions, state: what
+ * gxsp_chunk_load has returned for positions and pass->from */
+static GXSP_APART void gxsp_blocks_state(const gxsp_pass *pass, size_t index, const double *positions,
+                                         const double *state) {
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     double *slots = &system->vectors.slots[chunk->first_node][0];
+    const int inertia = pass->inertia && gxsp_accelerates(system, chunk, pass->from);
     uint32_t b;
-    int k, l, inertia;
-    double positions[3 * 4 * GXSP_CHUNK + 1], state[3 * 4 * GXSP_CHUNK + 1];
+    int k, l;
     gxsp_lanes corners[12], x[12], other[12], forces[12], made[9];
-    if (gxsp_chunk_settled(system, chunk)) return;
-    for (b = 0; b < chunk->partial_count; b++)
-        memset(system->mesh.partials[chunk->first_partial + b].energies, 0, sizeof system->mesh.partials->energies);
-    memset(slots, 0, 3 * (size_t)chunk->node_count * sizeof *slots);
-    if (system->state.chunk_still[index]) return;
-    inertia = pass->inertia && gxsp_accelerates(system, chunk, pass->from);
-    gxsp_chunk_load(system, chunk, pass->from, state);
-    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, positions);
     memset(forces, 0, sizeof forces);
     for (b = 0; b < chunk->block_count; b++) {
         const gxsp_rest *rest = &chunk->rest[b];
         gxsp_lanes ahead[9], led[12], energies[3], *gradients;
         gxsp_state s;
         gxsp_prefetch_block(system, index, b, GXSP_RESTS_AHEAD, 0);
-        gxsp_block_load(chunk, b, state, x);
-        gradients = gxsp_block_gradients(chunk, b, positions, corners, made);
+        gxsp_block_load(system, chunk, b, state, pass->from, x);
+        gradients = gxsp_block_gradients(system, chunk, b, positions, corners, made);
         if (inertia || pass->rotated) /* never both: rotated stresses come without inertia */
             gxsp_block_load_copies(system, chunk, b, inertia ? system->vectors.target : pass->rotated, other);
         gxsp_block_parameters(pass->materials, rest, &s);
@@ -6167,6 +6341,23 @@ static void gxsp_task_state(void *context, size_t index) {
         gxsp_add_energies(system, chunk, b, energies);
         gxsp_block_store(chunk, b, forces, slots);
     }
+}
+
+/* Energies of a chunk at pass->from, component by component, and elastic + inertial forces */
+static void gxsp_task_state(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const double *rest = NULL;
+    gxsp_near positions, state;
+    uint32_t p;
+    if (gxsp_chunk_settled(system, chunk)) return;
+    for (p = 0; p < chunk->partial_count; p++)
+        memset(system->mesh.partials[chunk->first_partial + p].energies, 0, sizeof system->mesh.partials->energies);
+    memset(system->vectors.slots[chunk->first_node], 0, chunk->node_count * sizeof *system->vectors.slots);
+    if (system->state.chunk_still[index]) return;
+    if (!chunk->gradients) rest = gxsp_chunk_load(system, chunk, system->model.positions, positions);
+    gxsp_blocks_state(pass, index, rest, gxsp_chunk_load(system, chunk, pass->from, state));
 }
 
 /* sum = sum over the slots of each copy, 3 doubles each */
@@ -6413,6 +6604,339 @@ static void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, float (*t
 }
 #endif
 
+/* x of a block's corners. A corner that has not changed since the block before keeps its values. */
+static void gxsp_block_gather(const gxsp_chunk *chunk, uint32_t b, const gxsp_vector4 *GXSP_RESTRICT x,
+                              gxsp_singles *GXSP_RESTRICT to) {
+    const gxsp_corners *corner = &chunk->corners[b];
+    int i;
+    for (i = 0; i < 4; i++)
+        if (chunk->changed[b] >> i & 1) gxsp_gather_eight(corner->node[i], x, to[3 * i], to[3 * i + 1], to[3 * i + 2]);
+}
+
+/* Adds a block's result to its corners, and sets it to 0. The result at a corner that the next block has too is
+ * kept for it. */
+static void gxsp_block_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *GXSP_RESTRICT from,
+                               gxsp_vector4 *GXSP_RESTRICT y) {
+    const gxsp_corners *corner = &chunk->corners[b];
+    int i, k, l;
+    for (i = 0; i < 4; i++) {
+        if (!(chunk->changed[b + 1] >> i & 1)) continue;
+        for (l = 0; l < GXSP_LANES; l += 4)
+            gxsp_scatter_four(corner->node[i] + l, from[3 * i] + l, from[3 * i + 1] + l, from[3 * i + 2] + l, y);
+        for (k = 3 * i; k < 3 * i + 3; k++) GXSP_EACH_LANE(l) from[k][l] = 0;
+    }
+}
+
+/* As gxsp_block_gather, from x of all copies */
+static GXSP_COLD void gxsp_block_gather_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b,
+                                               const gxsp_vector4 *x, gxsp_singles *to) {
+    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
+    int i, l, c;
+    for (i = 0; i < 4; i++)
+        for (l = 0; l < GXSP_LANES && chunk->changed[b] >> i & 1; l++)
+            for (c = 0; c < 3; c++) to[3 * i + c][l] = x[copies[chunk->corners[b].node[i][l]]][c];
+}
+
+/* >>strains: forces, Hessians and energies of stable neo-Hookean elements, in single precision --------------------- */
+
+/* In: a displacement. Out: forces in the chunks' slots, the strains that products need, or energies of components.
+ * >>leapfrog and >>quick use it. The Hessian is exact: nothing is decomposed or projected, so that a strain costs no
+ * more than the forces there. It may be indefinite where elements are pressed. */
+
+/* Forces of a block, dU/du, added to y; and the largest modulus of its Hessians relative to that at rest. With G the
+ * gradient of the displacement x, F = 1 + G, P = mu (1 - 1 / (Ic + 1)) F + (lambda (J - 1) - 3/4 mu) cof F, written so
+ * that nothing cancels near rest. The modulus is at most the sum of those of the terms of its derivative:
+ *     mu Ic / (Ic + 1) + 2 mu Ic / (Ic + 1)^2 + lambda |cof F|^2 + |lambda (J - 1) - 3/4 mu| |F|, |F| <= (3 + Ic) /
+ * sqrt 12
+ * strain, unless NULL, receives what products need, in place of the modulus; scale: of the operator
+ */
+GXSP_INLINE void gxsp_leap_force(const gxsp_leap_block *GXSP_RESTRICT b, gxsp_singles *GXSP_RESTRICT x,
+                                 gxsp_singles *GXSP_RESTRICT y, float *GXSP_RESTRICT stiffest, int keep, float scale,
+                                 gxsp_strain *GXSP_RESTRICT strain) {
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float g0 = b->gradient[0][l], g1 = b->gradient[1][l], g2 = b->gradient[2][l], g3 = b->gradient[3][l],
+                    g4 = b->gradient[4][l], g5 = b->gradient[5][l], g6 = b->gradient[6][l], g7 = b->gradient[7][l],
+                    g8 = b->gradient[8][l], mu = b->mu[l], lambda = b->lambda[l];
+        const float x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
+        const float p0 = x[3][l] - x0, p1 = x[4][l] - x1, p2 = x[5][l] - x2, q0 = x[6][l] - x0, q1 = x[7][l] - x1,
+                    q2 = x[8][l] - x2, r0 = x[9][l] - x0, r1 = x[10][l] - x1, r2 = x[11][l] - x2;
+        const float d0 = p0 * g0 + q0 * g3 + r0 * g6, d1 = p0 * g1 + q0 * g4 + r0 * g7,
+                    d2 = p0 * g2 + q0 * g5 + r0 * g8, d3 = p1 * g0 + q1 * g3 + r1 * g6,
+                    d4 = p1 * g1 + q1 * g4 + r1 * g7, d5 = p1 * g2 + q1 * g5 + r1 * g8,
+                    d6 = p2 * g0 + q2 * g3 + r2 * g6, d7 = p2 * g1 + q2 * g4 + r2 * g7,
+                    d8 = p2 * g2 + q2 * g5 + r2 * g8;
+        /* cofactors of G; those of F less 1 */
+        const float k0 = d4 * d8 - d5 * d7, k1 = d5 * d6 - d3 * d8, k2 = d3 * d7 - d4 * d6, k3 = d2 * d7 - d1 * d8,
+                    k4 = d0 * d8 - d2 * d6, k5 = d1 * d6 - d0 * d7, k6 = d1 * d5 - d2 * d4, k7 = d2 * d3 - d0 * d5,
+                    k8 = d0 * d4 - d1 * d3;
+        const float trace = d0 + d4 + d8;
+        const float c0 = trace - d0 + k0, c1 = k1 - d3, c2 = k2 - d6, c3 = k3 - d1, c4 = trace - d4 + k4, c5 = k5 - d7,
+                    c6 = k6 - d2, c7 = k7 - d5, c8 = trace - d8 + k8;
+        const float square = d0 * d0 + d1 * d1 + d2 * d2 + d3 * d3 + d4 * d4 + d5 * d5 + d6 * d6 + d7 * d7 + d8 * d8;
+        const float i = 2 * trace + square, j = trace + (k0 + k4 + k8) + (d0 * k0 + d1 * k1 + d2 * k2); /* Ic-3, J-1 */
+        const float inverse = 1 / (i + 4), growth = 0.25f * mu * i * inverse, rest = 0.75f * mu;
+        const float pressure = lambda * j, own = rest + growth, cofactor = pressure - rest, unit = growth + pressure;
+        const float s0 = own * d0 + cofactor * c0 + unit, s1 = own * d1 + cofactor * c1, s2 = own * d2 + cofactor * c2,
+                    s3 = own * d3 + cofactor * c3, s4 = own * d4 + cofactor * c4 + unit, s5 = own * d5 + cofactor * c5,
+                    s6 = own * d6 + cofactor * c6, s7 = own * d7 + cofactor * c7, s8 = own * d8 + cofactor * c8 + unit;
+        const float f0 = s0 * g0 + s1 * g1 + s2 * g2, f1 = s3 * g0 + s4 * g1 + s5 * g2,
+                    f2 = s6 * g0 + s7 * g1 + s8 * g2, f3 = s0 * g3 + s1 * g4 + s2 * g5,
+                    f4 = s3 * g3 + s4 * g4 + s5 * g5, f5 = s6 * g3 + s7 * g4 + s8 * g5,
+                    f6 = s0 * g6 + s1 * g7 + s2 * g8, f7 = s3 * g6 + s4 * g7 + s5 * g8,
+                    f8 = s6 * g6 + s7 * g7 + s8 * g8;
+        if (keep) {
+            const float times = scale * mu, push = scale * lambda;
+            strain->gradient[0][l] = d0, strain->gradient[1][l] = d1, strain->gradient[2][l] = d2;
+            strain->gradient[3][l] = d3, strain->gradient[4][l] = d4, strain->gradient[5][l] = d5;
+            strain->gradient[6][l] = d6, strain->gradient[7][l] = d7, strain->gradient[8][l] = d8;
+            strain->own[l] = times * (3 + i) * inverse;
+            strain->along[l] = 2 * times * inverse * inverse;
+            strain->sides[l] = push;
+            strain->turn[l] = push * j - 0.75f * times;
+        }
+        if (!keep) {
+            const float sides = (1 + c0) * (1 + c0) + (1 + c4) * (1 + c4) + (1 + c8) * (1 + c8) + c1 * c1 + c2 * c2 +
+                                c3 * c3 + c5 * c5 + c6 * c6 + c7 * c7;
+            const float steep = (cofactor > 0 ? cofactor : -cofactor) * (6 + i) * 0.2886752f;
+            const float modulus = own + 2 * mu * (3 + i) * inverse * inverse + lambda * sides + steep;
+            const float ratio = modulus / (2.4240382f * mu + 3 * lambda + 1e-30f);
+            stiffest[l] = ratio > stiffest[l] ? ratio : stiffest[l];
+        }
+        y[0][l] -= f0 + f3 + f6, y[1][l] -= f1 + f4 + f7, y[2][l] -= f2 + f5 + f8;
+        y[3][l] += f0, y[4][l] += f1, y[5][l] += f2, y[6][l] += f3, y[7][l] += f4, y[8][l] += f5, y[9][l] += f6,
+            y[10][l] += f7, y[11][l] += f8;
+    }
+}
+
+/* x of a copy relative to an origin, in single precision */
+static inline void gxsp_leap_place(const double *x, const double *origin, float *to) {
+    to[0] = (float)(x[0] - origin[0]), to[1] = (float)(x[1] - origin[1]), to[2] = (float)(x[2] - origin[2]);
+}
+
+/* pass->from of a chunk's nodes relative to its first one, before they are rounded: bodies may be far from where they
+ * were at rest. Returns to; NULL: there is no room for so many nodes */
+static const gxsp_vector4 *gxsp_leap_load(const gxsp_pass *pass, const gxsp_chunk *chunk, gxsp_vector4 *to) {
+    const uint32_t *copies = pass->system->mesh.nodes + chunk->first_node;
+    const double *origin = pass->from + 3 * (size_t)copies[0];
+    uint32_t i;
+    if (chunk->node_count > GXSP_NEAR) return NULL;
+    for (i = 0; i < chunk->node_count; i++) {
+        gxsp_prefetch(pass->from + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *pass->from);
+        gxsp_leap_place(pass->from + 3 * (size_t)copies[i], origin, to[i]);
+        to[i][3] = 0;
+    }
+    return (const gxsp_vector4 *)to;
+}
+
+/* As gxsp_block_gather, from pass->from of all copies relative to that of the chunk's first node */
+static GXSP_COLD void gxsp_leap_gather_copies(const gxsp_pass *pass, const gxsp_chunk *chunk, uint32_t b,
+                                              gxsp_singles *to) {
+    const uint32_t *copies = pass->system->mesh.nodes + chunk->first_node;
+    int i, l, c;
+    for (i = 0; i < 4; i++)
+        for (l = 0; l < GXSP_LANES && chunk->changed[b] >> i & 1; l++) {
+            float place[3];
+            gxsp_leap_place(pass->from + 3 * (size_t)copies[chunk->corners[b].node[i][l]],
+                            pass->from + 3 * (size_t)copies[0], place);
+            for (c = 0; c < 3; c++) to[3 * i + c][l] = place[c];
+        }
+}
+
+/* pass->from at a block's corners. near: what gxsp_leap_load has returned */
+static inline void gxsp_leap_gather(const gxsp_pass *pass, const gxsp_chunk *chunk, uint32_t b,
+                                    const gxsp_vector4 *near, gxsp_singles *to) {
+    if (near)
+        gxsp_block_gather(chunk, b, near, to);
+    else
+        gxsp_leap_gather_copies(pass, chunk, b, to);
+}
+
+/* Forces of a chunk at pass->from into its slots, and its largest modulus */
+static void gxsp_task_leap_force(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const gxsp_leap_block *blocks = system->leap.blocks + system->leap.first_block[index];
+    const gxsp_vector4 *near;
+    gxsp_vector4 in[GXSP_NEAR], *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
+    gxsp_singles from[12], to[12], stiffest;
+    uint32_t b;
+    int l;
+    system->leap.stiffest[index] = 0;
+    if (system->state.chunk_still[index]) return;
+    near = gxsp_leap_load(pass, chunk, in);
+    memset(out, 0, chunk->node_count * sizeof *out);
+    memset(to, 0, sizeof to);
+    memset(stiffest, 0, sizeof stiffest);
+    for (b = 0; b < chunk->block_count; b++) {
+        if (b + GXSP_TANGENTS_AHEAD < chunk->block_count)
+            gxsp_prefetch(&blocks[b + GXSP_TANGENTS_AHEAD], sizeof *blocks);
+        gxsp_leap_gather(pass, chunk, b, near, from);
+        gxsp_leap_force(&blocks[b], from, to, stiffest, 0, 0, NULL);
+        gxsp_block_scatter(chunk, b, to, out);
+    }
+    for (l = 0; l < GXSP_LANES; l++)
+        if (stiffest[l] > system->leap.stiffest[index]) system->leap.stiffest[index] = stiffest[l];
+}
+
+/* The same, with the strains */
+static void gxsp_task_strain_force(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const size_t first = system->leap.first_block[index];
+    const float scale = (float)system->model.scale;
+    const gxsp_vector4 *near;
+    gxsp_vector4 in[GXSP_NEAR], *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
+    gxsp_singles from[12], to[12];
+    uint32_t b;
+    if (system->state.chunk_still[index]) return;
+    near = gxsp_leap_load(pass, chunk, in);
+    memset(out, 0, chunk->node_count * sizeof *out);
+    memset(to, 0, sizeof to);
+    for (b = 0; b < chunk->block_count; b++) {
+        if (b + GXSP_TANGENTS_AHEAD < chunk->block_count)
+            gxsp_prefetch(&system->leap.blocks[first + b + GXSP_TANGENTS_AHEAD], sizeof *system->leap.blocks);
+        gxsp_leap_gather(pass, chunk, b, near, from);
+        gxsp_leap_force(&system->leap.blocks[first + b], from, to, NULL, 1, scale, &system->leap.strains[first + b]);
+        gxsp_block_scatter(chunk, b, to, out);
+    }
+}
+
+/* y += K x at a strain. With D the gradient of x and F = 1 + G,
+ *     dP = own D + along (F : D) F + sides (cof F : D) cof F + turn dcof F,
+ * where dcof F is bilinear in F and D. A rotation of what is at rest meets nothing: own D + turn D^T = 0 there. */
+static void gxsp_strain_product(const gxsp_leap_block *GXSP_RESTRICT b, const gxsp_strain *GXSP_RESTRICT s,
+                                gxsp_singles *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT y) {
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float g0 = b->gradient[0][l], g1 = b->gradient[1][l], g2 = b->gradient[2][l], g3 = b->gradient[3][l],
+                    g4 = b->gradient[4][l], g5 = b->gradient[5][l], g6 = b->gradient[6][l], g7 = b->gradient[7][l],
+                    g8 = b->gradient[8][l], own = s->own[l], turn = s->turn[l];
+        const float f0 = 1 + s->gradient[0][l], f1 = s->gradient[1][l], f2 = s->gradient[2][l], f3 = s->gradient[3][l],
+                    f4 = 1 + s->gradient[4][l], f5 = s->gradient[5][l], f6 = s->gradient[6][l], f7 = s->gradient[7][l],
+                    f8 = 1 + s->gradient[8][l];
+        const float x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
+        const float p0 = x[3][l] - x0, p1 = x[4][l] - x1, p2 = x[5][l] - x2, q0 = x[6][l] - x0, q1 = x[7][l] - x1,
+                    q2 = x[8][l] - x2, r0 = x[9][l] - x0, r1 = x[10][l] - x1, r2 = x[11][l] - x2;
+        const float d0 = p0 * g0 + q0 * g3 + r0 * g6, d1 = p0 * g1 + q0 * g4 + r0 * g7,
+                    d2 = p0 * g2 + q0 * g5 + r0 * g8, d3 = p1 * g0 + q1 * g3 + r1 * g6,
+                    d4 = p1 * g1 + q1 * g4 + r1 * g7, d5 = p1 * g2 + q1 * g5 + r1 * g8,
+                    d6 = p2 * g0 + q2 * g3 + r2 * g6, d7 = p2 * g1 + q2 * g4 + r2 * g7,
+                    d8 = p2 * g2 + q2 * g5 + r2 * g8;
+        const float c0 = f4 * f8 - f5 * f7, c1 = f5 * f6 - f3 * f8, c2 = f3 * f7 - f4 * f6, c3 = f2 * f7 - f1 * f8,
+                    c4 = f0 * f8 - f2 * f6, c5 = f1 * f6 - f0 * f7, c6 = f1 * f5 - f2 * f4, c7 = f2 * f3 - f0 * f5,
+                    c8 = f0 * f4 - f1 * f3;
+        const float t0 = f4 * d8 + d4 * f8 - f5 * d7 - d5 * f7, t1 = f5 * d6 + d5 * f6 - f3 * d8 - d3 * f8,
+                    t2 = f3 * d7 + d3 * f7 - f4 * d6 - d4 * f6, t3 = f2 * d7 + d2 * f7 - f1 * d8 - d1 * f8,
+                    t4 = f0 * d8 + d0 * f8 - f2 * d6 - d2 * f6, t5 = f1 * d6 + d1 * f6 - f0 * d7 - d0 * f7,
+                    t6 = f1 * d5 + d1 * f5 - f2 * d4 - d2 * f4, t7 = f2 * d3 + d2 * f3 - f0 * d5 - d0 * f5,
+                    t8 = f0 * d4 + d0 * f4 - f1 * d3 - d1 * f3;
+        const float m = s->along[l] *
+                        (f0 * d0 + f1 * d1 + f2 * d2 + f3 * d3 + f4 * d4 + f5 * d5 + f6 * d6 + f7 * d7 + f8 * d8),
+                    n = s->sides[l] *
+                        (c0 * d0 + c1 * d1 + c2 * d2 + c3 * d3 + c4 * d4 + c5 * d5 + c6 * d6 + c7 * d7 + c8 * d8);
+        const float s0 = own * d0 + m * f0 + n * c0 + turn * t0, s1 = own * d1 + m * f1 + n * c1 + turn * t1,
+                    s2 = own * d2 + m * f2 + n * c2 + turn * t2, s3 = own * d3 + m * f3 + n * c3 + turn * t3,
+                    s4 = own * d4 + m * f4 + n * c4 + turn * t4, s5 = own * d5 + m * f5 + n * c5 + turn * t5,
+                    s6 = own * d6 + m * f6 + n * c6 + turn * t6, s7 = own * d7 + m * f7 + n * c7 + turn * t7,
+                    s8 = own * d8 + m * f8 + n * c8 + turn * t8;
+        const float w0 = s0 * g0 + s1 * g1 + s2 * g2, w1 = s3 * g0 + s4 * g1 + s5 * g2,
+                    w2 = s6 * g0 + s7 * g1 + s8 * g2, w3 = s0 * g3 + s1 * g4 + s2 * g5,
+                    w4 = s3 * g3 + s4 * g4 + s5 * g5, w5 = s6 * g3 + s7 * g4 + s8 * g5,
+                    w6 = s0 * g6 + s1 * g7 + s2 * g8, w7 = s3 * g6 + s4 * g7 + s5 * g8,
+                    w8 = s6 * g6 + s7 * g7 + s8 * g8;
+        y[0][l] -= w0 + w3 + w6, y[1][l] -= w1 + w4 + w7, y[2][l] -= w2 + w5 + w8;
+        y[3][l] += w0, y[4][l] += w1, y[5][l] += w2, y[6][l] += w3, y[7][l] += w4, y[8][l] += w5, y[9][l] += w6,
+            y[10][l] += w7, y[11][l] += w8;
+    }
+}
+
+/* K x of a chunk into its slots, as gxsp_task_product does it */
+static void gxsp_task_strain_product(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
+    const gxsp_leap_block *blocks = system->leap.blocks + system->leap.first_block[index];
+    const gxsp_strain *strains = system->leap.strains + system->leap.first_block[index];
+    const int near = chunk->node_count <= GXSP_NEAR;
+    gxsp_vector4 in[GXSP_NEAR], *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
+    gxsp_singles from[12], to[12];
+    uint32_t b, i;
+    if (system->state.chunk_still[index]) return;
+    for (i = 0; i < chunk->node_count && near; i++) {
+        gxsp_prefetch(pass->x[copies[i + GXSP_AHEAD]], sizeof *pass->x);
+        memcpy(in[i], pass->x[copies[i]], sizeof *in);
+    }
+    memset(out, 0, chunk->node_count * sizeof *out);
+    memset(to, 0, sizeof to);
+    for (b = 0; b < chunk->block_count; b++) {
+        if (b + GXSP_TANGENTS_AHEAD < chunk->block_count) {
+            gxsp_prefetch(blocks[b + GXSP_TANGENTS_AHEAD].gradient, sizeof blocks->gradient);
+            gxsp_prefetch(&strains[b + GXSP_TANGENTS_AHEAD], sizeof *strains);
+        }
+        if (near)
+            gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        else
+            gxsp_block_gather_copies(system, chunk, b, (const gxsp_vector4 *)pass->x, from);
+        gxsp_strain_product(&blocks[b], &strains[b], from, to);
+        gxsp_block_scatter(chunk, b, to, out);
+    }
+}
+
+/* Elastic energies of a block's elements, J; see gxsp_neo_hookean */
+static void gxsp_strain_energy(const gxsp_leap_block *GXSP_RESTRICT b, gxsp_singles *GXSP_RESTRICT x,
+                               double *GXSP_RESTRICT energy) {
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float g0 = b->gradient[0][l], g1 = b->gradient[1][l], g2 = b->gradient[2][l], g3 = b->gradient[3][l],
+                    g4 = b->gradient[4][l], g5 = b->gradient[5][l], g6 = b->gradient[6][l], g7 = b->gradient[7][l],
+                    g8 = b->gradient[8][l], mu = b->mu[l], lambda = b->lambda[l];
+        const float x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
+        const float p0 = x[3][l] - x0, p1 = x[4][l] - x1, p2 = x[5][l] - x2, q0 = x[6][l] - x0, q1 = x[7][l] - x1,
+                    q2 = x[8][l] - x2, r0 = x[9][l] - x0, r1 = x[10][l] - x1, r2 = x[11][l] - x2;
+        const float d0 = p0 * g0 + q0 * g3 + r0 * g6, d1 = p0 * g1 + q0 * g4 + r0 * g7,
+                    d2 = p0 * g2 + q0 * g5 + r0 * g8, d3 = p1 * g0 + q1 * g3 + r1 * g6,
+                    d4 = p1 * g1 + q1 * g4 + r1 * g7, d5 = p1 * g2 + q1 * g5 + r1 * g8,
+                    d6 = p2 * g0 + q2 * g3 + r2 * g6, d7 = p2 * g1 + q2 * g4 + r2 * g7,
+                    d8 = p2 * g2 + q2 * g5 + r2 * g8;
+        const float k0 = d4 * d8 - d5 * d7, k1 = d5 * d6 - d3 * d8, k2 = d3 * d7 - d4 * d6, k4 = d0 * d8 - d2 * d6,
+                    k8 = d0 * d4 - d1 * d3, trace = d0 + d4 + d8;
+        const float square = d0 * d0 + d1 * d1 + d2 * d2 + d3 * d3 + d4 * d4 + d5 * d5 + d6 * d6 + d7 * d7 + d8 * d8;
+        const float det = d0 * k0 + d1 * k1 + d2 * k2, i = 2 * trace + square, j = trace + (k0 + k4 + k8) + det;
+        const float turned = d0 * d0 + d4 * d4 + d8 * d8 + 2 * (d1 * d3 + d2 * d6 + d5 * d7);
+        energy[l] = (double)(0.375f * mu * (square + turned - trace * trace - 2 * det) + 0.5f * lambda * j * j) +
+                    0.5 * (double)mu * gxsp_log_rest(0.25 * (double)i);
+    }
+}
+
+/* Elastic energies of a chunk at pass->from, component by component */
+static void gxsp_task_strain_energy(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const gxsp_leap_block *blocks = system->leap.blocks + system->leap.first_block[index];
+    const gxsp_vector4 *near;
+    gxsp_vector4 in[GXSP_NEAR];
+    gxsp_lanes energies[3];
+    gxsp_singles from[12];
+    uint32_t b;
+    memset(energies, 0, sizeof energies);
+    for (b = 0; b < chunk->partial_count; b++)
+        memset(system->mesh.partials[chunk->first_partial + b].energies, 0, sizeof system->mesh.partials->energies);
+    if (system->state.chunk_still[index]) return;
+    near = gxsp_leap_load(pass, chunk, in);
+    for (b = 0; b < chunk->block_count; b++) {
+        if (b + GXSP_TANGENTS_AHEAD < chunk->block_count)
+            gxsp_prefetch(&blocks[b + GXSP_TANGENTS_AHEAD], sizeof *blocks);
+        gxsp_leap_gather(pass, chunk, b, near, from);
+        gxsp_strain_energy(&blocks[b], from, energies[0]);
+        gxsp_add_energies(system, chunk, b, energies);
+    }
+}
+
 /* >>singles: products of elements with affine copies --------------------------------------------------------------- */
 
 /* In: tangents, a vector. Out: their product as in >>rule, in single precision, for conjugate gradients. >>doubles has
@@ -6598,40 +7122,18 @@ static double gxsp_affine_multiply(gxsp_system *system, gxsp_pass *pass) {
 /* In: the last linearisation and a vector. Out: the product on copies that follow nothing; what sleeps counts as
  * 0. */
 
-/* x of a block's corners. A corner that has not changed since the block before keeps its values. */
-static void gxsp_block_gather(const gxsp_chunk *chunk, uint32_t b, const gxsp_vector4 *GXSP_RESTRICT x,
-                              gxsp_singles *GXSP_RESTRICT to) {
-    const gxsp_corners *corner = &chunk->corners[b];
-    int i;
-    for (i = 0; i < 4; i++)
-        if (chunk->changed[b] >> i & 1) gxsp_gather_eight(corner->node[i], x, to[3 * i], to[3 * i + 1], to[3 * i + 2]);
-}
-
-/* Adds a block's result to its corners, and sets it to 0. The result at a corner that the next block has too is
- * kept for it. */
-static void gxsp_block_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *GXSP_RESTRICT from,
-                               gxsp_vector4 *GXSP_RESTRICT y) {
-    const gxsp_corners *corner = &chunk->corners[b];
-    int i, k, l;
-    for (i = 0; i < 4; i++) {
-        if (!(chunk->changed[b + 1] >> i & 1)) continue;
-        for (l = 0; l < GXSP_LANES; l += 4)
-            gxsp_scatter_four(corner->node[i] + l, from[3 * i] + l, from[3 * i + 1] + l, from[3 * i + 2] + l, y);
-        for (k = 3 * i; k < 3 * i + 3; k++) GXSP_EACH_LANE(l) from[k][l] = 0;
-    }
-}
-
 static void gxsp_task_product(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     const uint32_t *copies = system->mesh.nodes + chunk->first_node;
-    gxsp_vector4 in[4 * GXSP_CHUNK]; /* not the chunks' own memory: stays in the cache */
+    const int near = chunk->node_count <= GXSP_NEAR;
+    gxsp_vector4 in[GXSP_NEAR]; /* not the chunks' own memory: stays in the cache */
     gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
     gxsp_singles from[12], to[12];
     uint32_t b, i;
     if (system->state.chunk_still[index]) return;
-    for (i = 0; i < chunk->node_count; i++) {
+    for (i = 0; i < chunk->node_count && near; i++) {
         gxsp_prefetch(pass->x[copies[i + GXSP_AHEAD]], sizeof *pass->x);
         memcpy(in[i], pass->x[copies[i]], sizeof *in);
     }
@@ -6639,7 +7141,10 @@ static void gxsp_task_product(void *context, size_t index) {
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; b++) {
         gxsp_prefetch_block(system, index, b, GXSP_TANGENTS_AHEAD, 1);
-        gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        if (near)
+            gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        else
+            gxsp_block_gather_copies(system, chunk, b, (const gxsp_vector4 *)pass->x, from);
         gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_moments(chunk, b), gxsp_block_general(chunk, b),
                           0, from, to);
         gxsp_block_scatter(chunk, b, to, out);
@@ -6655,7 +7160,7 @@ static void gxsp_task_product_sum(void *context, size_t index) {
     double work = 0;
     for (; i < end; i++) {
         const float *direction = pass->x[i],
-                    m = system->model.lumped_mass ? (float)(pass->rate * system->model.lumped[i]) : 0;
+                    m = gxsp_is_lumped(system) ? (float)(pass->rate * system->model.lumped[i]) : 0;
         const double *right = pass->right ? pass->right + 3 * i : NULL;
         float x = m * direction[0], y = m * direction[1], z = m * direction[2], *to = pass->y[i];
         uint32_t s;
@@ -6763,7 +7268,8 @@ static double gxsp_product_from(gxsp_system *system, double rate, const double *
     if (system->multigrid.fine)
         work = gxsp_rows_product(system, x, y);
     else {
-        gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_product, &pass);
+        gxsp_parallel(system->jobs, system->mesh.chunk_count,
+                      system->state.quick ? gxsp_task_strain_product : gxsp_task_product, &pass);
         gxsp_over_ranges(system, gxsp_task_product_sum, &pass, &work, 1);
         if (system->affine.count > 0) work += gxsp_affine_multiply(system, &pass);
     }
@@ -6810,23 +7316,43 @@ static void gxsp_block_gather_doubles(const gxsp_chunk *chunk, uint32_t b, const
     }
 }
 
+/* The same, from the direction of all copies: see gxsp_copy_direction */
+static GXSP_COLD void gxsp_block_gather_direction(const gxsp_pass *pass, const gxsp_chunk *chunk, uint32_t b,
+                                                  gxsp_singles *to) {
+    const uint32_t *copies = pass->system->mesh.nodes + chunk->first_node;
+    const gxsp_corners *corner = &chunk->corners[b];
+    int i, l, c;
+    for (l = 0; l < GXSP_LANES; l++) {
+        double origin[3] = {0, 0, 0}, x[3];
+        for (i = 0; i < 4; i++) {
+            gxsp_copy_direction(pass, copies[corner->node[i][l]], x);
+            for (c = 0; c < 3; c++) to[3 * i + c][l] = (float)(x[c] - origin[c]);
+            if (i == 0) memcpy(origin, x, sizeof origin);
+        }
+    }
+}
+
 /* The product of pass->from, times pass->factor, into the chunk's slots, 4 floats each */
 static void gxsp_task_apply(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     const uint32_t *copies = system->mesh.nodes + chunk->first_node;
-    double in[3 * 4 * GXSP_CHUNK + 1]; /* one more than is read as numbers */
+    const int near = chunk->node_count <= GXSP_NEAR;
+    gxsp_near in;
     gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
     gxsp_singles from[12], to[12];
     uint32_t b, i;
-    for (i = 0; i < chunk->node_count; i++) gxsp_copy_direction(pass, copies[i], in + 3 * (size_t)i);
+    for (i = 0; i < chunk->node_count && near; i++) gxsp_copy_direction(pass, copies[i], in + 3 * (size_t)i);
     in[3 * (size_t)i] = 0;
     memset(out, 0, chunk->node_count * sizeof *out);
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; b++) {
         gxsp_prefetch_block(system, index, b, GXSP_TANGENTS_AHEAD, 1);
-        gxsp_block_gather_doubles(chunk, b, in, from);
+        if (near)
+            gxsp_block_gather_doubles(chunk, b, in, from);
+        else
+            gxsp_block_gather_direction(pass, chunk, b, from);
         gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_moments(chunk, b), gxsp_block_general(chunk, b),
                           1, from, to);
         gxsp_block_scatter(chunk, b, to, out);
@@ -6927,32 +7453,28 @@ static void gxsp_diagonal_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_sing
     }
 }
 
-/* Hessian of a chunk at pass->from, and its diagonal blocks into the slots */
-static void gxsp_task_linearise(void *context, size_t index) {
-    const gxsp_pass *pass = (const gxsp_pass *)context;
+/* Hessians of a chunk's blocks, and their diagonal blocks into the slots, which are 0. positions, state: as in
+ * gxsp_blocks_state */
+static GXSP_APART void gxsp_blocks_linearise(const gxsp_pass *pass, size_t index, const double *positions,
+                                             const double *state) {
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     float *slots = (float *)(void *)system->vectors.slots[chunk->first_node];
-    double positions[3 * 4 * GXSP_CHUNK + 1], state[3 * 4 * GXSP_CHUNK + 1];
     gxsp_lanes corners[12], x[12], made[2][9], *gradients[2];
     gxsp_singles own[24];
+    const double rate = system->state.quick ? 0 : pass->rate; /* lumped mass is added to the sums */
     uint32_t b, k, blocks;
     int l;
-    system->state.chunk_collapsed[index] = 0;
-    if (system->state.chunk_still[index]) return;
-    memset(slots, 0, 6 * (size_t)chunk->node_count * sizeof *slots);
     memset(own, 0, sizeof own);
-    gxsp_chunk_load(system, chunk, pass->from, state);
-    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, positions);
     for (b = 0; b < chunk->block_count; b += blocks) { /* two at a time */
         gxsp_state s[2];
         gxsp_svd svd[2];
         blocks = b + 1 < chunk->block_count ? 2 : 1;
         for (k = 0; k < blocks; k++) {
             gxsp_prefetch_block(system, index, b + k, GXSP_RESTS_AHEAD, 0);
-            gxsp_block_load(chunk, b + k, state, x);
+            gxsp_block_load(system, chunk, b + k, state, pass->from, x);
             gxsp_block_parameters(pass->materials, &chunk->rest[b + k], &s[k]);
-            gradients[k] = gxsp_block_gradients(chunk, b + k, positions, corners, made[k]);
+            gradients[k] = gxsp_block_gradients(system, chunk, b + k, positions, corners, made[k]);
             gxsp_block_gradient(gradients[k], x, s[k].g);
         }
         system->state.chunk_collapsed[index] |=
@@ -6962,11 +7484,25 @@ static void gxsp_task_linearise(void *context, size_t index) {
             gxsp_tangent *tangent = &chunk->tangents[b + k];
             gxsp_tangent_make(chunk->kind, rest, gradients[k], system->model.scale, pass->exact, &s[k], &svd[k],
                               tangent, gxsp_block_general(chunk, b + k));
-            GXSP_EACH_LANE(l) tangent->mass[l] = (float)(pass->rate * rest->mass[l]);
+            GXSP_EACH_LANE(l) tangent->mass[l] = (float)(rate * rest->mass[l]);
             gxsp_block_diagonal(chunk, b + k, own);
             gxsp_diagonal_scatter(chunk, b + k, own, slots);
         }
     }
+}
+
+/* Hessian of a chunk at pass->from, and its diagonal blocks into the slots */
+static void gxsp_task_linearise(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const double *rest = NULL;
+    gxsp_near positions, state;
+    system->state.chunk_collapsed[index] = 0;
+    if (system->state.chunk_still[index]) return;
+    memset(system->vectors.slots[chunk->first_node], 0, chunk->node_count * sizeof *system->vectors.slots);
+    if (!chunk->gradients) rest = gxsp_chunk_load(system, chunk, system->model.positions, positions);
+    gxsp_blocks_linearise(pass, index, rest, gxsp_chunk_load(system, chunk, pass->from, state));
 }
 
 /* Inverse of a positive semi-definite 3x3, packed, in place, as W^T W with W the inverse Cholesky factor. So it is
@@ -7017,7 +7553,7 @@ static void gxsp_task_diagonal(void *context, size_t index) {
         }
         for (k = 0; system->affine.count > 0 && k < 6 && !system->state.still[i]; k++)
             sum[k] += system->affine.own[i][k];
-        for (k = 0; system->model.lumped_mass && k < 6; k++)
+        for (k = 0; gxsp_is_lumped(system) && k < 6; k++)
             sum[k] += k == 0 || k == 3 || k == 5 ? pass->rate * system->model.lumped[i] : 0;
         if (system->state.still[i] || sum[0] + sum[3] + sum[5] < GXSP_TINY) /* only coarser levels move such a copy */
             memset(sum, 0, sizeof sum);
@@ -7428,11 +7964,12 @@ static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
 /* In: tangents of elements with affine copies, level 1's matrix from chunks. Out: the factor of their sum, in double
  * precision: bending is softer than the rounding and the shift of single precision. */
 
-/* Adds an element's Hessian between its coarse functions. rate: times scale */
-static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *block, int l, double rate) {
+/* Adds an element's Hessian between its coarse functions. rate: times scale; dirty: see gxsp_nested_pattern */
+static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *block, int l, double rate,
+                                const uint8_t *dirty) {
     const gxsp_level *level = &system->multigrid.levels[1];
     uint32_t node[64], parents[16], count = 0, c, d, k, n;
-    double share[64][16], gradient[4][64][3], value[4][64], flux[27];
+    double share[64][16], gradient[64][3], value[64], flux[27];
     float weights[16];
     int p, m;
     for (k = 0; k < 16; k++) {
@@ -7446,22 +7983,22 @@ static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *bl
             share[c][k] += (double)weights[n];
         }
     }
-    for (p = 0; p < 4; p++)
-        for (c = 0; c < count; c++) gxsp_point_function(block, p, l, share[c], gradient[p][c], &value[p][c]);
-    for (p = 0; p < 4; p++)
+    for (p = 0; p < 4; p++) {
+        for (c = 0; c < count; c++) gxsp_point_function(block, p, l, share[c], gradient[c], &value[c]);
         for (d = 0; d < count; d++) {
-            gxsp_point_flux(block, p, l, gradient[p][d], flux);
+            gxsp_point_flux(block, p, l, gradient[d], flux);
             for (c = 0; c < count; c++) {
                 double to[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0}, *entry;
-                if (node[c] > node[d]) continue;
+                if (node[c] > node[d] || (dirty && !dirty[node[c]] && !dirty[node[d]])) continue;
                 entry = system->affine.block + 9 * (size_t)gxsp_find_entry(level, node[c], node[d]);
-                gxsp_point_couple(gradient[p][c], flux, to);
-                to[0] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
-                to[4] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
-                to[8] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
+                gxsp_point_couple(gradient[c], flux, to);
+                to[0] += rate * block->rest.mass[l] * value[c] * value[d];
+                to[4] += rate * block->rest.mass[l] * value[c] * value[d];
+                to[8] += rate * block->rest.mass[l] * value[c] * value[d];
                 for (m = 0; m < 9; m++) entry[3 * (m % 3) + m / 3] += to[m];
             }
         }
+    }
 }
 
 /* Springs and contact between coarse functions, where level 1's matrix has an entry for them */
@@ -7538,17 +8075,20 @@ static int gxsp_nested_factor(gxsp_system *system, uint32_t *place) {
     return 1;
 }
 
-/* All numbers of level 1 beside those of chunks, and its factor. rate: times scale. 0: a number overflowed. */
-static int gxsp_nested_numbers(gxsp_system *system, double rate) {
+/* All numbers of level 1 beside those of chunks, and its factor. dirty: coarse nodes whose numbers are new, without
+ * springs and contact; NULL: all are. rate: times scale. 0: a number overflowed. */
+static int gxsp_nested_numbers(gxsp_system *system, double rate, const uint8_t *dirty) {
     const gxsp_affine *affine = &system->affine;
     uint32_t b;
     size_t t;
     int l;
-    memset(affine->block, 0, gxsp_block_numbers(&system->multigrid.levels[1]) * sizeof(double));
+    if (!dirty) memset(affine->block, 0, gxsp_block_numbers(&system->multigrid.levels[1]) * sizeof(double));
     for (b = 0; b < affine->block_count; b++)
         for (l = 0; l < GXSP_LANES; l++)
-            if (affine->blocks[b].rest.weight[l] > 0) gxsp_nested_element(system, &affine->blocks[b], l, rate);
-    for (t = 0; t < system->lasting->count; t++) gxsp_nested_term(system, &system->lasting->term[t]);
+            if (affine->blocks[b].rest.weight[l] > 0 &&
+                (!dirty || gxsp_nested_dirty(system, &affine->blocks[b], l, dirty)))
+                gxsp_nested_element(system, &affine->blocks[b], l, rate, dirty);
+    for (t = 0; t < system->lasting->count && !dirty; t++) gxsp_nested_term(system, &system->lasting->term[t]);
     return gxsp_nested_factor(system, system->multigrid.pairs.local);
 }
 
@@ -7752,13 +8292,13 @@ static int gxsp_coarse_numbers(gxsp_system *system, double rate) {
     else {
         memset(fine[1].block, 0, 9 * (size_t)fine[1].start[fine[1].n] * sizeof(float));
         gxsp_coarse_elements(system, NULL);
-        if (system->model.lumped_mass) gxsp_coarse_lumped(system, system->model.scale * rate);
+        if (gxsp_is_lumped(system)) gxsp_coarse_lumped(system, system->model.scale * rate);
     }
     for (t = 0; t < system->lasting->count; t++)
         if (!system->lasting->term[t].assembled && system->affine.count == 0)
             gxsp_coarse_term(system, &system->lasting->term[t]);
     if (system->affine.count > 0)
-        finite = gxsp_invert_diagonal(fine + 1, NULL) && gxsp_nested_numbers(system, system->model.scale * rate);
+        finite = gxsp_invert_diagonal(fine + 1, NULL) && gxsp_nested_numbers(system, system->model.scale * rate, NULL);
     else
         finite = gxsp_lower_numbers(system, NULL);
     gxsp_return_memory(system);
@@ -8186,11 +8726,14 @@ typedef struct gxsp_renewal {
     uint32_t *successor; /* before: new number of a copy; GXSP_NONE: it is gone */
     uint8_t *touched;    /* change->copy_count: an element around the copy goes or comes */
     gxsp_edit *edits;    /* edit_count lanes of changed groups; then placed_count lanes of further elements */
-    uint32_t edit_count, placed_count;       /* see edits */
+    uint32_t edit_count, placed_count; /* see edits */
+    gxsp_edit *bent; /* lanes of changed groups among elements with affine copies; chunk: their block */
+    uint32_t bent_count, added_count;        /* added_count: elements of the change with affine copies */
     uint32_t *left, *left_class, left_count; /* left_count elements of the change that take no lane of their group, and
                                                 their classes */
     uint8_t *dirty; /* by node of level 1 before the update: some of its followers are touched */
     uint8_t *alike; /* change->copy_count: the copy follows the same copies as before */
+    int dear;       /* level 1 has become too dear to be factored */
 } gxsp_renewal;
 
 /* Groups that change: a bit for each, indexed by the low bits of their numbers */
@@ -8212,6 +8755,13 @@ static int gxsp_changes(const gxs_change *change, const gxsp_filter *filter, uin
     return change->groups[low] == group;
 }
 
+static void gxsp_filter_make(const gxs_change *change, gxsp_filter *filter) {
+    size_t i;
+    memset(filter, 0, sizeof *filter);
+    for (i = 0; i < change->group_count; i++)
+        filter->bit[change->groups[i] % GXSP_FILTER / 64] |= (uint64_t)1 << change->groups[i] % 64;
+}
+
 /* All lanes of the groups that change, in the order of groups, then of lanes */
 static void gxsp_find_edits(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
@@ -8220,9 +8770,7 @@ static void gxsp_find_edits(gxsp_renewal *update) {
     gxsp_filter filter;
     uint32_t c, lane, pass, count = 0;
     size_t i;
-    memset(&filter, 0, sizeof filter);
-    for (i = 0; i < update->change->group_count; i++)
-        filter.bit[update->change->groups[i] % GXSP_FILTER / 64] |= (uint64_t)1 << update->change->groups[i] % 64;
+    gxsp_filter_make(update->change, &filter);
     for (pass = 0; pass < 2 && update->change->group_count > 0; pass++) { /* count, then list */
         if (pass == 1 && !(found = (gxsp_edit *)gxsp_take(update->scratch, count, sizeof *found))) return;
         for (c = 0, count = 0; c < system->mesh.chunk_count; c++)
@@ -8247,6 +8795,14 @@ static void gxsp_find_edits(gxsp_renewal *update) {
     update->edit_count = count;
 }
 
+/* Will an element of the change have an affine copy? */
+static int gxsp_will_bend(const gxs_change *change, const gxs_element *element) {
+    int k;
+    for (k = 0; k < 4 && change->affine; k++)
+        if (change->affine[element->copy[k]] != GXS_NOT_AFFINE) return 1;
+    return 0;
+}
+
 /* Class of an element of the change. Called before copies are moved */
 static uint32_t gxsp_class_of(const gxsp_renewal *update, const gxs_element *element) {
     const gxsp_system *system = update->system;
@@ -8263,6 +8819,10 @@ static void gxsp_match_edits(gxsp_renewal *update) {
     for (e = 0; e < change->element_count && !update->scratch->failed; e++) {
         const gxs_element *element = &change->elements[e];
         const uint32_t class_index = gxsp_class_of(update, element);
+        if (gxsp_will_bend(change, element)) {
+            update->added_count++;
+            continue;
+        }
         while (first < update->edit_count && update->edits[first].group < element->group) first++;
         for (i = first; i < update->edit_count && update->edits[i].group == element->group; i++)
             if (update->edits[i].element == GXSP_NONE &&
@@ -8277,22 +8837,29 @@ static void gxsp_match_edits(gxsp_renewal *update) {
     }
 }
 
-/* Touches the copies around elements that go, and marks the coarse nodes that these follow as dirty. */
+/* Touches a copy as of before the update, and marks the coarse nodes that it follows as dirty. */
+static void gxsp_touch_copy(const gxsp_renewal *update, uint32_t copy) {
+    const gxsp_multigrid *multigrid = &update->system->multigrid;
+    int q;
+    if (update->successor[copy] != GXSP_NONE) update->touched[update->successor[copy]] = 1;
+    for (q = 0; q < 4 && multigrid->level_count > 0; q++)
+        if (multigrid->levels[0].parent[copy][q] != GXSP_NONE) update->dirty[multigrid->levels[0].parent[copy][q]] = 1;
+}
+
+/* Touches the copies around elements that go. */
 static void gxsp_touch_removed(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
     uint32_t i, copies[4];
-    int k, q;
+    int k;
     for (i = 0; i < update->edit_count; i++) {
         const gxsp_edit *edit = &update->edits[i];
         gxsp_lane_copies(system, &system->mesh.chunks[edit->chunk], edit->lane / GXSP_LANES,
                          (int)(edit->lane % GXSP_LANES), copies);
-        for (k = 0; k < 4; k++) {
-            if (update->successor[copies[k]] != GXSP_NONE) update->touched[update->successor[copies[k]]] = 1;
-            for (q = 0; q < 4 && system->multigrid.level_count > 0; q++)
-                if (system->multigrid.levels[0].parent[copies[k]][q] != GXSP_NONE)
-                    update->dirty[system->multigrid.levels[0].parent[copies[k]][q]] = 1;
-        }
+        for (k = 0; k < 4; k++) gxsp_touch_copy(update, copies[k]);
     }
+    for (i = 0; i < update->bent_count; i++)
+        for (k = 0; k < 4; k++)
+            gxsp_touch_copy(update, system->affine.blocks[update->bent[i].chunk].vector[k][update->bent[i].lane]);
 }
 
 static void gxsp_touch_added(const gxsp_renewal *update) {
@@ -8480,6 +9047,179 @@ static int gxsp_renew_nodes(gxsp_renewal *update) {
     return 1;
 }
 
+/* >>affine-edits: elements with affine copies in an update --------------------------------------------------------- */
+
+/* In: a gxs_change, copies in their new numbering. Out: groups, and the blocks of elements with affine copies. An
+ * element takes any free lane of its kind: blocks have no nodes of their own, so that its place does not matter. */
+
+/* The lanes that change */
+static void gxsp_find_bent(gxsp_renewal *update) {
+    const gxsp_affine *affine = &update->system->affine;
+    gxsp_filter filter;
+    uint32_t lane, pass, count = 0;
+    gxsp_filter_make(update->change, &filter);
+    for (pass = 0; pass < 2 && affine->count > 0 && update->change->group_count > 0; pass++) { /* count, then list */
+        if (pass == 1 && !(update->bent = (gxsp_edit *)gxsp_take(update->scratch, count, sizeof *update->bent))) return;
+        for (lane = count = 0; lane < affine->block_count * GXSP_LANES; lane++) {
+            if (affine->groups[lane] == GXSP_NONE || !gxsp_changes(update->change, &filter, affine->groups[lane]))
+                continue;
+            if (pass == 1) {
+                update->bent[count].chunk = lane / GXSP_LANES, update->bent[count].lane = lane % GXSP_LANES;
+                update->bent[count].group = affine->groups[lane], update->bent[count].element = GXSP_NONE;
+            }
+            count++;
+        }
+    }
+    update->bent_count = count;
+}
+
+/* A lane without element: no weight, no mass, no vectors; F = 1 */
+static void gxsp_affine_empty(gxsp_affine_block *block, uint32_t l) {
+    int k;
+    for (k = 0; k < 16; k++) block->vector[k][l] = GXSP_NONE, block->shape[k / 4][k % 4][l] = 0;
+    for (k = 0; k < 9; k++) block->gradient[k][l] = block->edge[k][l] = 0;
+    block->rest.weight[l] = block->rest.mass[l] = 0;
+}
+
+/* Empties the lanes that change, and gives the others the new numbers of their vectors. 0: an element that stays has
+ * lost one of them. */
+static int gxsp_renew_blocks(const gxsp_renewal *update) {
+    gxsp_affine *affine = &update->system->affine;
+    uint32_t i, b, k;
+    for (i = 0; i < update->bent_count; i++) {
+        gxsp_affine_empty(&affine->blocks[update->bent[i].chunk], update->bent[i].lane);
+        affine->groups[update->bent[i].chunk * GXSP_LANES + update->bent[i].lane] = GXSP_NONE;
+    }
+    for (b = 0; b < affine->block_count; b++)
+        for (k = 0; k < 16 * GXSP_LANES; k++) {
+            uint32_t *vector = &affine->blocks[b].vector[k / GXSP_LANES][k % GXSP_LANES];
+            if (*vector == GXSP_NONE) continue;
+            *vector = update->successor[*vector];
+            if (*vector == GXSP_NONE) return 0;
+        }
+    return 1;
+}
+
+/* The vectors of a group are touched if one of them is. */
+static void gxsp_touch_groups(const gxsp_renewal *update) {
+    const gxsp_affine *affine = &update->system->affine;
+    uint32_t group;
+    for (group = 0; group < affine->group_count; group++) {
+        const uint32_t *member = affine->member[group];
+        if (update->touched[member[0]] | update->touched[member[1]] | update->touched[member[2]] |
+            update->touched[member[3]])
+            update->touched[member[0]] = update->touched[member[1]] = update->touched[member[2]] =
+                update->touched[member[3]] = 1;
+    }
+}
+
+/* Groups of the new copies. Those of copies that become affine begin with zeros. before: old numbering, see
+ * gxsp_affine.place */
+static void gxsp_renew_groups(const gxsp_renewal *update, const uint32_t *before) {
+    gxsp_system *system = update->system;
+    uint32_t group, k;
+    gxsp_groups_room(system, gxsp_count_groups(update->change->affine, system->model.n));
+    if (system->pool.failed) return;
+    gxsp_groups_make(system, update->change->affine);
+    for (group = 0; group < system->affine.group_count; group++)
+        for (k = 1; k < 4; k++) {
+            const uint32_t vector = system->affine.member[group][k],
+                           from = before[update->change->origins[vector] >> 1];
+            if (from != GXSP_NONE && (from & 3) > 0) continue;
+            memset(system->vectors.current + 3 * (size_t)vector, 0, 3 * sizeof(double));
+            memset(system->vectors.guess[0][vector], 0, sizeof(gxsp_vector4));
+            memset(system->vectors.guess[1][vector], 0, sizeof(gxsp_vector4));
+            if (system->multigrid.level_count == 0) continue;
+            memset(system->coarse.displacement + 3 * (size_t)vector, 0, 3 * sizeof(double));
+            memset(system->multigrid.levels[0].parent[vector], 0xff, sizeof system->multigrid.levels[0].parent[vector]);
+            memset(system->multigrid.levels[0].weight[vector], 0, sizeof system->multigrid.levels[0].weight[vector]);
+        }
+    gxsp_touch_groups(update);
+}
+
+/* A free lane of a kind, from one on; behind all others if there is none. There is room. */
+static uint32_t gxsp_affine_lane(gxsp_system *system, gxs_material_kind kind, uint32_t lane) {
+    gxsp_affine *affine = &system->affine;
+    for (; lane < affine->block_count * GXSP_LANES; lane++)
+        if (affine->groups[lane] == GXSP_NONE && affine->blocks[lane / GXSP_LANES].kind == kind) return lane;
+    (void)gxsp_affine_open(system, affine->block_count++, kind);
+    return lane;
+}
+
+/* Puts the elements of the change that have affine copies into lanes. */
+static void gxsp_place_bent(gxsp_renewal *update) {
+    gxsp_system *system = update->system;
+    gxsp_affine *affine = &system->affine;
+    uint32_t e, l, lane[GXS_CUSTOM + 1] = {0, 0, 0, 0, 0};
+    const uint32_t room = affine->block_count + update->added_count / GXSP_LANES + GXS_CUSTOM + 1;
+    if (room > affine->block_room) {
+        affine->block_room = (uint32_t)gxsp_room(room);
+        affine->blocks = (gxsp_affine_block *)gxsp_grow(&system->pool, affine->blocks, affine->block_count,
+                                                        affine->block_room, sizeof *affine->blocks);
+        affine->groups = (uint32_t *)gxsp_grow(&system->pool, affine->groups, (size_t)affine->block_count * GXSP_LANES,
+                                               (size_t)affine->block_room * GXSP_LANES, sizeof(uint32_t));
+    }
+    for (e = 0; e < update->change->element_count && !system->pool.failed; e++) {
+        const gxs_element *element = &update->change->elements[e];
+        const gxs_material_kind kind = system->model.materials[element->material].kind;
+        gxsp_affine_block *block;
+        if (!gxsp_will_bend(update->change, element)) continue;
+        lane[kind] = gxsp_affine_lane(system, kind, lane[kind]);
+        block = &affine->blocks[lane[kind] / GXSP_LANES];
+        affine->groups[lane[kind]] = element->group;
+        for (l = 0; l < GXSP_LANES; l++) /* a valid material of this kind */
+            if (affine->groups[lane[kind] / GXSP_LANES * GXSP_LANES + l] == GXSP_NONE)
+                block->rest.material[l] = element->material;
+        gxsp_affine_fill(system, element, block, (int)(lane[kind] % GXSP_LANES));
+    }
+    affine->count += update->added_count;
+    affine->count -= update->bent_count;
+    gxsp_affine_results(system);
+}
+
+/* Does the element of a lane give corner k stiffness or mass? */
+static int gxsp_affine_supports(const gxsp_affine_block *block, int l, int k) {
+    return block->vector[0][l] != GXSP_NONE && (block->rest.weight[l] > 0 || gxsp_affine_mass(block, l, k) > 0);
+}
+
+/* Adds to masses of touched copies, and whether anything supports them. */
+static void gxsp_recount_bent(const gxsp_renewal *update) {
+    gxsp_system *system = update->system;
+    const uint8_t *touched = update->touched;
+    uint32_t b, group;
+    int k, l;
+    for (b = 0; b < system->affine.block_count; b++)
+        for (l = 0; l < GXSP_LANES; l++) {
+            const gxsp_affine_block *block = &system->affine.blocks[b];
+            int any = 0;
+            for (k = 0; k < 4 && block->vector[0][l] != GXSP_NONE; k++) {
+                const uint32_t copy = block->vector[k][l];
+                if (!touched[copy]) continue;
+                any = 1;
+                system->model.lumped[copy] += gxsp_affine_mass(block, l, k);
+                system->model.fixed[copy] &= !gxsp_affine_supports(block, l, k);
+            }
+            if (any) gxsp_affine_lump(system, block, l, touched);
+        }
+    for (group = 0; group < system->affine.group_count; group++)
+        for (k = 1; k < 4; k++)
+            system->model.fixed[system->affine.member[group][k]] = system->model.fixed[system->affine.member[group][0]];
+}
+
+/* Joins what the elements and groups connect. forest: n */
+static void gxsp_join_bent(const gxsp_system *system, uint32_t *forest) {
+    uint32_t b;
+    int k, l;
+    for (b = 0; b < system->affine.block_count; b++)
+        for (l = 0; l < GXSP_LANES; l++)
+            for (k = 1; k < 4; k++) {
+                const gxsp_affine_block *block = &system->affine.blocks[b];
+                if (gxsp_affine_supports(block, l, 0) || gxsp_affine_supports(block, l, k))
+                    gxsp_join(forest, block->vector[0][l], block->vector[k][l]);
+            }
+    gxsp_join_groups(system, forest);
+}
+
 /* >>renewal: copies and components after an update ----------------------------------------------------------------- */
 
 /* In: new numbers of copies, touched copies. Out: the columns over copies in their new order, masses, followers,
@@ -8591,6 +9331,7 @@ static void gxsp_recount_copies(const gxsp_renewal *update) {
                 }
         }
     }
+    if (system->affine.count > 0) gxsp_recount_bent(update);
     for (i = 0; i < system->model.n; i++) system->model.fixed[i] |= system->model.held[i];
 }
 
@@ -8623,6 +9364,7 @@ static void gxsp_renew_components(gxsp_renewal *update) {
             gxsp_join(forest, system->mesh.nodes[slot],
                       system->mesh.nodes[system->mesh.chunks[c].first_node + system->mesh.slot_root[slot]]);
         }
+    gxsp_join_bent(system, forest);
     gxsp_join_followers(system, forest);
     gxsp_number_components(system, forest);
     system->model.components = (gxsp_component *)gxsp_grow(&system->pool, system->model.components, 0,
@@ -8672,6 +9414,13 @@ static void gxsp_join_dirty(gxsp_renewal *update, uint32_t *forest) {
         if (fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
             gxsp_join_parents(update, system->model.followers[e / 4].copy, system->model.followers[e / 4].master[e % 4],
                               forest);
+    for (c = 0; c < system->affine.block_count; c++)
+        for (e = 0; e < 6 * GXSP_LANES; e++) {
+            const gxsp_affine_block *block = &system->affine.blocks[c];
+            const uint32_t l = e % GXSP_LANES, i = block->vector[gxsp_edge_ends[e / GXSP_LANES][0]][l],
+                           j = block->vector[gxsp_edge_ends[e / GXSP_LANES][1]][l];
+            if (block->rest.weight[l] > 0) gxsp_join_parents(update, i, j, forest);
+        }
 }
 
 /* Splits dirty coarse nodes into clusters: the first one of each node keeps its number, others get new ones. from:
@@ -8709,8 +9458,10 @@ static void gxsp_drop_fixed(const gxsp_renewal *update) {
         }
 }
 
-/* Copies blocks of level 1's entries between nodes that are not dirty, from the level before. */
-static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const uint8_t *dirty) {
+/* Copies blocks of level 1's entries between nodes that are not dirty, from the level before. from, to: what elements
+ * with affine copies add to them; NULL: there are none */
+static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const uint8_t *dirty, const double *from,
+                             double *to) {
     uint32_t i, k, entry;
     for (i = 0; i < before->n; i++) {
         if (dirty[i]) continue;
@@ -8718,18 +9469,27 @@ static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const 
             if (dirty[before->column[k]]) continue;
             while (level->column[entry] < before->column[k]) entry++;
             memcpy(level->block + 9 * (size_t)entry, before->block + 9 * (size_t)k, 9 * sizeof(float));
+            if (from) memcpy(to + 9 * (size_t)entry, from + 9 * (size_t)k, 9 * sizeof(double));
         }
     }
 }
 
+static int gxsp_block_dirty(const gxsp_system *system, const gxsp_affine_block *block, const uint8_t *dirty) {
+    int l;
+    for (l = 0; l < GXSP_LANES; l++)
+        if (gxsp_nested_dirty(system, block, l, dirty)) return 1;
+    return 0;
+}
+
 /* Numbers of the coarse levels. Those of entries with dirty nodes come from the Hessian at the state at which the
  * others were made, so that the matrix stays semi-definite. */
-static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, const uint8_t *dirty) {
+static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, const double *affine,
+                              const uint8_t *dirty) {
     gxsp_system *system = update->system;
     gxsp_pass pass;
     uint32_t c;
     int finite;
-    gxsp_keep_blocks(before, &system->multigrid.levels[1], dirty);
+    gxsp_keep_blocks(before, &system->multigrid.levels[1], dirty, affine, system->affine.block);
     memset(&pass, 0, sizeof pass);
     pass.system = system;
     pass.materials = system->state.damped;
@@ -8740,9 +9500,14 @@ static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, co
             system->state.chunk_still[c] = 0;
             gxsp_task_linearise(&pass, c);
         }
+    for (c = 0; c < system->affine.block_count; c++)
+        if (gxsp_block_dirty(system, &system->affine.blocks[c], dirty))
+            gxsp_affine_tangents(&pass, &system->affine.blocks[c]);
     gxsp_lend_memory(system);
     gxsp_coarse_elements(system, dirty);
-    finite = gxsp_lower_numbers(system, dirty);
+    finite = affine ? gxsp_invert_diagonal(&system->multigrid.levels[1], dirty) &&
+                          gxsp_nested_numbers(system, pass.rate, dirty)
+                    : gxsp_lower_numbers(system, dirty);
     gxsp_return_memory(system);
     return finite;
 }
@@ -8753,41 +9518,88 @@ static int gxsp_most_are_dirty(const gxsp_system *system, const uint8_t *dirty) 
     uint32_t c, count = 0;
     for (c = 0; c < system->mesh.chunk_count; c++)
         count += (uint32_t)gxsp_follows_dirty(system, &system->mesh.chunks[c], dirty);
-    return (double)count > GXSP_DIRTY * (double)system->mesh.chunk_count;
+    for (c = 0; c < system->affine.block_count; c++) /* eight of these elements cost about as much as a chunk */
+        count += (uint32_t)gxsp_block_dirty(system, &system->affine.blocks[c], dirty);
+    return (double)count > GXSP_DIRTY * ((double)system->mesh.chunk_count + system->affine.block_count);
 }
 
 /* Have the coarse matrices served their time? */
 static int gxsp_coarse_ends(const gxsp_system *system) { return system->coarse.served >= system->coarse.life; }
 
+/* Hidden nodes, where copies are affine. Coarse nodes that had some keep them, and these are dirty as they are; others
+ * get them behind all nodes. count: coarse nodes without new hidden ones; before: so far. Returns the number of nodes.
+ */
+static uint32_t gxsp_renew_hidden(gxsp_renewal *update, uint32_t before, uint32_t count) {
+    gxsp_system *system = update->system;
+    const uint32_t *hidden = system->affine.hidden, known = system->affine.hidden_count;
+    uint32_t i;
+    if (system->affine.count == 0) return count;
+    gxsp_nested_begin(system, count);
+    if (system->multigrid.pool.failed) return count;
+    memcpy(system->affine.hidden, hidden, (known < before ? known : before) * sizeof *hidden);
+    for (i = 0; i < before; i++)
+        if (system->affine.hidden[i] != GXSP_NONE && update->dirty[i])
+            memset(update->dirty + system->affine.hidden[i], 1, 3);
+    return gxsp_nested_nodes(system, count, count);
+}
+
+/* Nodes of level 1, their places and which of them are dirty. from: see gxsp_number_dirty. */
+static uint8_t *gxsp_renew_coarse_nodes(gxsp_renewal *update, const gxsp_level *before, const uint32_t *from,
+                                        uint32_t count) {
+    gxsp_multigrid *multigrid = &update->system->multigrid;
+    const uint32_t all = gxsp_renew_hidden(update, before->n, count);
+    uint8_t *dirty = (uint8_t *)gxsp_take(update->scratch, all, 1);
+    uint32_t i;
+    memset(&multigrid->levels[1], 0, (GXSP_LEVELS - 1) * sizeof multigrid->levels[1]);
+    gxsp_level_make(&multigrid->pool, &multigrid->levels[1], all);
+    if (update->scratch->failed || multigrid->pool.failed) return dirty;
+    memset(dirty, 1, all);
+    memcpy(dirty, update->dirty, before->n);
+    memcpy(multigrid->levels[1].place, before->place, before->n * sizeof *before->place);
+    for (i = before->n; i < count; i++)
+        memcpy(multigrid->levels[1].place[i], before->place[from[i - before->n]], sizeof *before->place);
+    if (update->system->affine.count > 0) gxsp_nested_offsets(update->system);
+    return dirty;
+}
+
+/* Level 1 where copies are affine: its pattern, and whether its factor is still cheap */
+static void gxsp_renew_nested(gxsp_renewal *update, const gxsp_level *before, const uint8_t *dirty) {
+    gxsp_system *system = update->system;
+    gxsp_pairs_make(system, update->scratch);
+    if (update->scratch->failed) return;
+    gxsp_first_pattern(system, update->scratch, before, dirty);
+    if (update->scratch->failed || system->multigrid.pool.failed) return;
+    update->dear =
+        system->affine.stretch <= GXSP_WIDEST && !gxsp_factors(update->scratch, &system->multigrid.levels[1],
+                                                               GXSP_NESTED_SLACK * GXSP_NESTED_COST * system->model.n);
+    gxsp_nested_end(system, update->scratch);
+}
+
 static void gxsp_renew_levels(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     gxsp_pool *scratch = update->scratch, old = system->multigrid.pool;
     gxsp_level before = system->multigrid.levels[1];
+    const double *affine = system->affine.count > 0 ? system->affine.block : NULL;
     uint32_t *forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
-    uint32_t *from = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t)), count = 0, i;
+    uint32_t *from = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
     uint8_t *dirty = NULL;
     system->multigrid.pool = gxsp_pool_make(&old.allocator);
     gxsp_edges_make(system, scratch);
     if (!scratch->failed && !system->multigrid.pool.failed) {
         gxsp_drop_fixed(update);
         gxsp_join_dirty(update, forest);
-        count = gxsp_number_dirty(update, forest, from);
-        memset(&system->multigrid.levels[1], 0, (GXSP_LEVELS - 1) * sizeof system->multigrid.levels[1]);
-        gxsp_level_make(&system->multigrid.pool, &system->multigrid.levels[1], count);
-        dirty = (uint8_t *)gxsp_take(scratch, count, 1);
+        dirty = gxsp_renew_coarse_nodes(update, &before, from, gxsp_number_dirty(update, forest, from));
     }
     if (!scratch->failed && !system->multigrid.pool.failed) {
-        memset(dirty, 1, count);
-        memcpy(dirty, update->dirty, before.n);
-        memcpy(system->multigrid.levels[1].place, before.place, before.n * sizeof *before.place);
-        for (i = before.n; i < count; i++)
-            memcpy(system->multigrid.levels[1].place[i], before.place[from[i - before.n]], sizeof *before.place);
-        gxsp_levels_make(system, scratch, &before, dirty);
+        if (affine)
+            gxsp_renew_nested(update, &before, dirty);
+        else
+            gxsp_levels_make(system, scratch, &before, dirty);
     }
     if (!scratch->failed && !system->multigrid.pool.failed) gxsp_share_memory(system);
     if (!scratch->failed && !system->multigrid.pool.failed && !system->pool.failed && system->coarse.rate >= 0 &&
-        (system->coarse.stiffness > 0 || system->coarse.worn || gxsp_coarse_ends(system) ||
-         gxsp_most_are_dirty(system, dirty) || !gxsp_renew_numbers(update, &before, dirty)))
+        (system->coarse.stiffness > 0 || system->coarse.quick || system->coarse.worn || gxsp_coarse_ends(system) ||
+         gxsp_most_are_dirty(system, dirty) || !gxsp_renew_numbers(update, &before, affine, dirty)))
         /* the next step makes all numbers anew; springs and contact are no longer known */
         system->coarse.rate = -1;
     gxsp_release_to(&old, NULL);
@@ -8808,8 +9620,9 @@ static void gxsp_renew_steps(gxsp_renewal *update) {
 }
 
 /* Can the model's form take changes? */
-static int gxsp_is_flexible(const gxsp_system *system) {
-    return !system->multigrid.fine && !system->model.volume && !system->model.lumped_mass && !system->affine.place;
+static int gxsp_is_flexible(const gxsp_system *system, const gxs_change *change) {
+    return !system->multigrid.fine && !system->model.volume && !system->model.lumped_mass &&
+           (system->affine.place != NULL) == (change->affine != NULL);
 }
 
 /* Are the chunks still worth keeping, and is the choice of preconditioner still right? */
@@ -8819,6 +9632,8 @@ static int gxsp_is_compact(gxsp_renewal *update) {
     size_t lanes = 0;
     for (c = 0; c < system->mesh.chunk_count; c++) lanes += system->mesh.chunks[c].block_count * GXSP_LANES;
     if (lanes > system->model.element_count + system->model.element_count / 4 + 2 * GXSP_CHUNK) return 0;
+    if (system->affine.block_count * GXSP_LANES > system->affine.count + system->affine.count / 4 + 2 * GXSP_CHUNK)
+        return 0;
     return !count || !system->multigrid.chosen ||
            gxsp_large_component(system, count) == (system->multigrid.level_count > 0);
 }
@@ -8827,21 +9642,33 @@ static int gxsp_is_compact(gxsp_renewal *update) {
  * out: see the pools. */
 static int gxsp_update_system(gxsp_renewal *update) {
     gxsp_system *system = update->system;
+    uint32_t *place = NULL; /* of gxsp_affine, before */
     system->leap.made = 0;
     gxsp_find_edits(update);
+    gxsp_find_bent(update);
     gxsp_match_edits(update);
+    if (system->affine.place) place = (uint32_t *)gxsp_take(update->scratch, update->before, sizeof *place);
     if (update->scratch->failed) return 1;
+    if (place) memcpy(place, system->affine.place, update->before * sizeof *place);
     gxsp_touch_removed(update);
     gxsp_touch_followers(update);
-    system->model.element_count += update->change->element_count;
+    system->model.element_count += update->change->element_count - update->added_count;
     system->model.element_count -= update->edit_count;
     gxsp_replace_elements(update);
     if (system->pool.failed) return 1;
-    if (system->model.element_count == 0 || !gxsp_renew_nodes(update)) return 0;
+    if (place ? system->affine.count + update->added_count == update->bent_count : system->model.element_count == 0)
+        return 0;
+    if (!gxsp_renew_nodes(update) || !gxsp_renew_blocks(update)) return 0;
     gxsp_move_copies(update);
     if (update->scratch->failed || system->pool.failed) return 1;
+    if (place) {
+        gxsp_renew_groups(update, place);
+        if (!system->pool.failed) gxsp_place_bent(update);
+        if (system->pool.failed) return 1;
+    }
     gxsp_renew_steps(update);
     gxsp_touch_added(update);
+    gxsp_touch_groups(update);
     gxsp_recount_copies(update);
     gxsp_renew_lights(update);
     gxsp_set_followers(system, update->change->constraints, update->change->constraint_count);
@@ -8851,7 +9678,7 @@ static int gxsp_update_system(gxsp_renewal *update) {
         gxsp_renew_levels(update);
     else if (!system->pool.failed)
         gxsp_share_memory(system);
-    return gxsp_is_compact(update);
+    return !update->dear && gxsp_is_compact(update);
 }
 
 /* >>components: translations and momentum of loose components ------------------------------------------------------ */
@@ -9152,6 +9979,7 @@ static gxsp_grip gxsp_pair_grip(const gxsp_problem *problem, size_t i, const dou
     gxsp_grip grip;
     int c;
     gxsp_point_position(&pair->point, problem->given, before);
+    for (c = 0; c < 3 && (pair->flags & GXS_PAIR_OUTSIDE); c++) before[c] += pair->way[c];
     depth = pair->offset - gxsp_dot(pair->normal, before, 1);
     elastic = depth > 0 ? pair->friction * depth : 0;
     grip.load = pair->stiffness * elastic;
@@ -9417,7 +10245,9 @@ static void gxsp_terms_make(const gxsp_problem *problem, const double *displacem
             share->copy = gxsp_copies(point)[n];
             share->weight = (float)gxsp_weights(point)[n];
         }
-        if (next > problem->step->spring_count + problem->step->point_count) {
+        if (next > problem->step->spring_count + problem->step->point_count &&
+            !(problem->step->pairs[next - 1 - problem->step->spring_count - problem->step->point_count].flags &
+              GXS_PAIR_OUTSIDE)) {
             gxsp_balance_shares(lasting->share + term->first, gxsp_weights(point), point->count);
             for (n = 0; n < point->count; n++) term->spread += fabsf(lasting->share[term->first + n].weight);
         }
@@ -9747,7 +10577,8 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem) {
         if (system->affine.count > 0 && system->multigrid.used && now.rest <= goal * first.displacement &&
             gxsp_has_gained(&gains, goal))
             break;
-        if (gxsp_converged(&now, &first, goal) || gxsp_out_of_time(problem)) break;
+        if (iteration + 1 == problem->cg_iterations || gxsp_converged(&now, &first, goal) || gxsp_out_of_time(problem))
+            break;
         rho = gxsp_precondition_definite(system, rate, &now, &changed);
         pass.factor = changed ? 0 : rho / before;
         gxsp_over_ranges(system, gxsp_task_search, &pass, NULL, 0);
@@ -9806,16 +10637,19 @@ static int gxsp_prepare(gxsp_problem *problem) {
         gxsp_assemble(system, system->model.scale * problem->rate);
         if (!gxsp_invert_fine(system)) return 0;
     }
-    system->multigrid.used = system->multigrid.level_count > 0 && gxsp_coarse_pays(system, problem->rate);
+    system->multigrid.used =
+        system->multigrid.level_count > 0 && (system->state.quick || gxsp_coarse_pays(system, problem->rate));
     if (!system->multigrid.used) return 1;
     if (!system->multigrid.fine) gxsp_choose_omega(system, problem->rate);
-    other = system->coarse.rate < problem->rate || system->coarse.rate > problem->rate;
+    other = system->coarse.rate < problem->rate || system->coarse.rate > problem->rate ||
+            system->coarse.quick != system->state.quick;
     if (!other && (problem->exact || !(system->coarse.worn || gxsp_coarse_ends(system)))) return 1;
     system->coarse.lived = system->coarse.served;
     system->coarse.pace_old = other ? 0 : system->coarse.pace;
     system->coarse.pace = system->coarse.read_nepers = 0;
     system->coarse.read = system->coarse.served = 0;
     system->coarse.rate = problem->rate;
+    system->coarse.quick = system->state.quick;
     memcpy(system->coarse.displacement, system->vectors.current, 3 * system->model.n * sizeof(double));
     system->coarse.worn = 0;
     system->coarse.stiffness = system->state.term_stiffness;
@@ -9949,6 +10783,14 @@ static int gxsp_is_written(const gxsp_system *system, size_t copy, const double 
            (system->state.stepped && gxsp_differs(displacement, system->vectors.current + 3 * copy));
 }
 
+/* Wakes the components that a pair joins to something outside that has moved. */
+static void gxsp_wake_paired(gxsp_system *system, const gxs_pair *pair) {
+    uint32_t k;
+    for (k = 0; k < pair->point.count && (pair->flags & GXS_PAIR_WAKES); k++)
+        if (fabs(gxsp_weights(&pair->point)[k]) > 0)
+            system->model.components[system->model.component[gxsp_copies(&pair->point)[k]]].woken = 1;
+}
+
 /* Wakes the components that a change touches. */
 static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement, const double *velocity) {
     gxsp_system *system = problem->system;
@@ -9967,6 +10809,7 @@ static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement,
                            (springs && (component->has_spring[0] || component->has_spring[1])) ||
                            component->has_pair[0] > component->has_pair[1];
     }
+    for (i = 0; i < step->pair_count; i++) gxsp_wake_paired(system, &step->pairs[i]);
     for (i = 0; i < system->model.n; i++) {
         gxsp_component *component = &system->model.components[system->model.component[i]];
         if (step->targets && system->model.held[i] && gxsp_differs(step->targets + 3 * i, displacement + 3 * i))
@@ -10029,6 +10872,7 @@ static void gxsp_choose_sleepers(gxsp_problem *problem, const double *displaceme
     }
     if (!changed && system->state.still_known) return;
     system->state.still_known = 1;
+    system->leap.served = 0;
     system->state.base_known &= !changed;
     gxsp_mark_still(system);
     system->state.active = 3 * system->model.n;
@@ -10824,9 +11668,13 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
     gxsp_report_pairs(problem, ends);
     memcpy(displacement, ends, count * sizeof(double));
     memcpy(velocity, speeds, count * sizeof(double));
-    if (midpoint || problem->report.substeps > 0) memcpy(system->vectors.current, ends, count * sizeof(double));
+    /* followers, which current has moved with their masters by each direction, are rounded otherwise in ends */
+    if (midpoint || problem->report.substeps > 0 || problem->report.quick || system->model.follower_count > 0)
+        memcpy(system->vectors.current, ends, count * sizeof(double));
     system->state.stepped = 1;
-    system->state.base_known = !midpoint && gxsp_point_count(step) == 0;
+    system->state.base_known = !midpoint && !problem->report.quick && gxsp_point_count(step) == 0 &&
+                               (system->model.follower_count == 0 || problem->report.substeps > 0);
+    system->leap.known = problem->report.quick != 0;
     system->lasting->scene = problem->scene;
     for (i = 0; i < system->model.component_count; i++) {
         system->model.components[i].forces[0] = system->model.components[i].forces[1];
@@ -10898,13 +11746,14 @@ static uint32_t *gxsp_leap_blocks_make(gxsp_system *system, gxsp_pool *scratch) 
     if (leap->pool.failed || scratch->failed) return NULL;
     for (c = 0; c < system->mesh.chunk_count; c++) {
         const gxsp_chunk *chunk = &system->mesh.chunks[c];
-        double positions[3 * 4 * GXSP_CHUNK + 1];
+        const double *positions = NULL;
+        gxsp_near near;
         gxsp_lanes corners[12], made[9];
-        if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, positions);
+        if (!chunk->gradients) positions = gxsp_chunk_load(system, chunk, system->model.positions, near);
         for (b = 0; b < chunk->block_count; b++) {
             gxsp_leap_block *to = &leap->blocks[leap->first_block[c] + b];
             const gxsp_rest *rest = &chunk->rest[b];
-            gxsp_lanes *gradients = gxsp_block_gradients(chunk, b, positions, corners, made);
+            gxsp_lanes *gradients = gxsp_block_gradients(system, chunk, b, positions, corners, made);
             for (lane = 0; lane < GXSP_LANES; lane++) {
                 const gxsp_material *material = &system->model.materials[rest->material[lane]];
                 const int used = chunk->groups[b * GXSP_LANES + lane] != GXSP_NONE;
@@ -11112,25 +11961,32 @@ static void gxsp_leap_find_top(gxsp_system *system) {
     }
 }
 
-/* All that explicit steps need of the model. Returns 0 if there is no memory. */
-static int gxsp_leap_make(gxsp_system *system) {
+/* L, masses and vectors: what explicit steps need besides blocks. copies: of all lanes */
+static void gxsp_leap_rest_make(gxsp_system *system, gxsp_pool *scratch, const uint32_t *copies) {
+    gxsp_leap *leap = &system->leap;
+    gxsp_vector4 **vectors[4];
+    int k;
+    gxsp_leap_rows_make(system, scratch, copies);
+    if (!scratch->failed && !leap->pool.failed) gxsp_leap_masses_make(system);
+    vectors[0] = &leap->start_of_filter, vectors[1] = &leap->last, vectors[2] = &leap->before, vectors[3] = &leap->next;
+    for (k = 0; k < 4; k++) *vectors[k] = (gxsp_vector4 *)gxsp_take(&leap->pool, system->model.n, sizeof(gxsp_vector4));
+    leap->stiffest = (float *)gxsp_take(&leap->pool, system->mesh.chunk_count, sizeof(float));
+}
+
+/* All that explicit steps need of the model (GXSP_LEAP_ALL), or quick ones. Returns 0 if there is no memory. */
+static int gxsp_leap_make(gxsp_system *system, int all) {
     gxsp_leap *leap = &system->leap;
     gxsp_pool scratch = gxsp_pool_make(&system->pool.allocator);
     const uint32_t *copies;
-    gxsp_vector4 **vectors[4];
-    int k;
+    if (leap->made >= all) return 1;
     gxsp_release_to(&leap->pool, NULL);
     memset(leap, 0, sizeof *leap);
     leap->pool = gxsp_pool_make(&system->pool.allocator);
     leap->suits = gxsp_leap_suits(system);
-    leap->made = 1;
+    leap->made = all;
     if (!leap->suits) return 1;
     copies = gxsp_leap_blocks_make(system, &scratch);
-    if (copies) gxsp_leap_rows_make(system, &scratch, copies);
-    if (copies && !scratch.failed && !leap->pool.failed) gxsp_leap_masses_make(system);
-    vectors[0] = &leap->start_of_filter, vectors[1] = &leap->last, vectors[2] = &leap->before, vectors[3] = &leap->next;
-    for (k = 0; k < 4; k++) *vectors[k] = (gxsp_vector4 *)gxsp_take(&leap->pool, system->model.n, sizeof(gxsp_vector4));
-    leap->stiffest = (float *)gxsp_take(&leap->pool, system->mesh.chunk_count, sizeof(float));
+    if (copies && all == GXSP_LEAP_ALL) gxsp_leap_rest_make(system, &scratch, copies);
     if (!copies || scratch.failed || leap->pool.failed) {
         gxsp_release_to(&scratch, NULL);
         gxsp_release_to(&leap->pool, NULL);
@@ -11138,97 +11994,8 @@ static int gxsp_leap_make(gxsp_system *system) {
         return 0;
     }
     gxsp_release_to(&scratch, NULL);
-    gxsp_leap_find_top(system);
+    if (all == GXSP_LEAP_ALL) gxsp_leap_find_top(system);
     return 1;
-}
-
-/* Forces of a block, dU/du, added to y; and the largest modulus of its Hessians relative to that at rest. With G the
- * gradient of the displacement x, F = 1 + G, P = mu (1 - 1 / (Ic + 1)) F + (lambda (J - 1) - 3/4 mu) cof F, written so
- * that nothing cancels near rest. The modulus is at most the sum of those of the terms of its derivative:
- *     mu Ic / (Ic + 1) + 2 mu Ic / (Ic + 1)^2 + lambda |cof F|^2 + |lambda (J - 1) - 3/4 mu| |F|, |F| <= (3 + Ic) /
- * sqrt 12
- */
-static void gxsp_leap_force(const gxsp_leap_block *GXSP_RESTRICT b, gxsp_singles *GXSP_RESTRICT x,
-                            gxsp_singles *GXSP_RESTRICT y, float *GXSP_RESTRICT stiffest) {
-    int l;
-    GXSP_EACH_LANE(l) {
-        const float g0 = b->gradient[0][l], g1 = b->gradient[1][l], g2 = b->gradient[2][l], g3 = b->gradient[3][l],
-                    g4 = b->gradient[4][l], g5 = b->gradient[5][l], g6 = b->gradient[6][l], g7 = b->gradient[7][l],
-                    g8 = b->gradient[8][l], mu = b->mu[l], lambda = b->lambda[l];
-        const float x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
-        const float p0 = x[3][l] - x0, p1 = x[4][l] - x1, p2 = x[5][l] - x2, q0 = x[6][l] - x0, q1 = x[7][l] - x1,
-                    q2 = x[8][l] - x2, r0 = x[9][l] - x0, r1 = x[10][l] - x1, r2 = x[11][l] - x2;
-        const float d0 = p0 * g0 + q0 * g3 + r0 * g6, d1 = p0 * g1 + q0 * g4 + r0 * g7,
-                    d2 = p0 * g2 + q0 * g5 + r0 * g8, d3 = p1 * g0 + q1 * g3 + r1 * g6,
-                    d4 = p1 * g1 + q1 * g4 + r1 * g7, d5 = p1 * g2 + q1 * g5 + r1 * g8,
-                    d6 = p2 * g0 + q2 * g3 + r2 * g6, d7 = p2 * g1 + q2 * g4 + r2 * g7,
-                    d8 = p2 * g2 + q2 * g5 + r2 * g8;
-        /* cofactors of G; those of F less 1 */
-        const float k0 = d4 * d8 - d5 * d7, k1 = d5 * d6 - d3 * d8, k2 = d3 * d7 - d4 * d6, k3 = d2 * d7 - d1 * d8,
-                    k4 = d0 * d8 - d2 * d6, k5 = d1 * d6 - d0 * d7, k6 = d1 * d5 - d2 * d4, k7 = d2 * d3 - d0 * d5,
-                    k8 = d0 * d4 - d1 * d3;
-        const float trace = d0 + d4 + d8;
-        const float c0 = trace - d0 + k0, c1 = k1 - d3, c2 = k2 - d6, c3 = k3 - d1, c4 = trace - d4 + k4, c5 = k5 - d7,
-                    c6 = k6 - d2, c7 = k7 - d5, c8 = trace - d8 + k8;
-        const float square = d0 * d0 + d1 * d1 + d2 * d2 + d3 * d3 + d4 * d4 + d5 * d5 + d6 * d6 + d7 * d7 + d8 * d8;
-        const float i = 2 * trace + square, j = trace + (k0 + k4 + k8) + (d0 * k0 + d1 * k1 + d2 * k2); /* Ic-3, J-1 */
-        const float inverse = 1 / (i + 4), growth = 0.25f * mu * i * inverse, rest = 0.75f * mu;
-        const float pressure = lambda * j, own = rest + growth, cofactor = pressure - rest, unit = growth + pressure;
-        const float s0 = own * d0 + cofactor * c0 + unit, s1 = own * d1 + cofactor * c1, s2 = own * d2 + cofactor * c2,
-                    s3 = own * d3 + cofactor * c3, s4 = own * d4 + cofactor * c4 + unit, s5 = own * d5 + cofactor * c5,
-                    s6 = own * d6 + cofactor * c6, s7 = own * d7 + cofactor * c7, s8 = own * d8 + cofactor * c8 + unit;
-        const float f0 = s0 * g0 + s1 * g1 + s2 * g2, f1 = s3 * g0 + s4 * g1 + s5 * g2,
-                    f2 = s6 * g0 + s7 * g1 + s8 * g2, f3 = s0 * g3 + s1 * g4 + s2 * g5,
-                    f4 = s3 * g3 + s4 * g4 + s5 * g5, f5 = s6 * g3 + s7 * g4 + s8 * g5,
-                    f6 = s0 * g6 + s1 * g7 + s2 * g8, f7 = s3 * g6 + s4 * g7 + s5 * g8,
-                    f8 = s6 * g6 + s7 * g7 + s8 * g8;
-        const float sides = (1 + c0) * (1 + c0) + (1 + c4) * (1 + c4) + (1 + c8) * (1 + c8) + c1 * c1 + c2 * c2 +
-                            c3 * c3 + c5 * c5 + c6 * c6 + c7 * c7;
-        const float steep = (cofactor > 0 ? cofactor : -cofactor) * (6 + i) * 0.2886752f;
-        const float modulus = own + 2 * mu * (3 + i) * inverse * inverse + lambda * sides + steep;
-        const float ratio = modulus / (2.4240382f * mu + 3 * lambda + 1e-30f);
-        stiffest[l] = ratio > stiffest[l] ? ratio : stiffest[l];
-        y[0][l] -= f0 + f3 + f6, y[1][l] -= f1 + f4 + f7, y[2][l] -= f2 + f5 + f8;
-        y[3][l] += f0, y[4][l] += f1, y[5][l] += f2, y[6][l] += f3, y[7][l] += f4, y[8][l] += f5, y[9][l] += f6,
-            y[10][l] += f7, y[11][l] += f8;
-    }
-}
-
-/* Forces of a chunk at pass->from into its slots, and its largest modulus. Displacements are taken relative to the
- * chunk's first node before they are rounded: bodies may be far from where they were at rest. */
-static void gxsp_task_leap_force(void *context, size_t index) {
-    const gxsp_pass *pass = (const gxsp_pass *)context;
-    const gxsp_system *system = pass->system;
-    const gxsp_chunk *chunk = &system->mesh.chunks[index];
-    const gxsp_leap_block *blocks = system->leap.blocks + system->leap.first_block[index];
-    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
-    const double *origin = pass->from + 3 * (size_t)copies[0];
-    gxsp_vector4 in[4 * GXSP_CHUNK], out[4 * GXSP_CHUNK];
-    gxsp_singles from[12], to[12], stiffest;
-    uint32_t b, i;
-    int l;
-    system->leap.stiffest[index] = 0;
-    if (system->state.chunk_still[index]) return;
-    for (i = 0; i < chunk->node_count; i++) {
-        const double *x = pass->from + 3 * (size_t)copies[i];
-        gxsp_prefetch(pass->from + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *x);
-        in[i][0] = (float)(x[0] - origin[0]), in[i][1] = (float)(x[1] - origin[1]),
-        in[i][2] = (float)(x[2] - origin[2]);
-        in[i][3] = 0;
-    }
-    memset(out, 0, chunk->node_count * sizeof *out);
-    memset(to, 0, sizeof to);
-    memset(stiffest, 0, sizeof stiffest);
-    for (b = 0; b < chunk->block_count; b++) {
-        if (b + GXSP_TANGENTS_AHEAD < chunk->block_count)
-            gxsp_prefetch(&blocks[b + GXSP_TANGENTS_AHEAD], sizeof *blocks);
-        gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
-        gxsp_leap_force(&blocks[b], from, to, stiffest);
-        gxsp_block_scatter(chunk, b, to, out);
-    }
-    memcpy((gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node, out, chunk->node_count * sizeof *out);
-    for (l = 0; l < GXSP_LANES; l++)
-        if (stiffest[l] > system->leap.stiffest[index]) system->leap.stiffest[index] = stiffest[l];
 }
 
 /* Accelerations, before the filter: gravity, nodal forces and elastic ones over the mass; 0 where nothing moves */
@@ -11445,6 +12212,227 @@ static int gxsp_leap_step(gxsp_problem *problem, const double *displacement, con
     problem->report.stop = GXS_STOP_ITERATIONS;
     problem->report.energy = gxsp_potential(problem, energies, u);
     system->state.guess_count = 0;
+    return 1;
+}
+
+/* >>quick: steps of a few iterations ------------------------------------------------------------------------------- */
+
+/* In: the step and the state at its start. Out: the state at its end in direction and residual, or nothing where the
+ * step must be a usual one.
+ *
+ * Backward Euler, BDF2 and the midpoint rule by one linear solve of a few iterations from where inertia leads. Forces
+ * and the exact Hessian there come from one pass in single precision (>>strains). The preconditioner is that of
+ * earlier steps: its diagonal and coarse matrices age, the Hessian does not. No line search: energies of components at
+ * the end are compared with those at the start. One that has gained is slowed down; what gains more than a share of its
+ * kinetic energy has left the linear model, and the step is not quick. */
+
+/* Memory for quick steps. Returns 0 if there is none. */
+static int gxsp_quick_make(gxsp_system *system) {
+    gxsp_leap *leap = &system->leap;
+    if (!gxsp_leap_make(system, GXSP_LEAP_BLOCKS)) return 0;
+    if (leap->suits && !leap->strains)
+        leap->strains = (gxsp_strain *)gxsp_take(&leap->pool, leap->block_count, sizeof *leap->strains);
+    leap->pool.failed = 0;
+    return !leap->suits || leap->strains;
+}
+
+/* Can this step be quick? */
+static int gxsp_quick_allowed(const gxsp_problem *problem) {
+    const gxs_step_desc *step = problem->step;
+    const gxsp_system *system = problem->system;
+    return step->quick > 0 && system->leap.suits && !system->multigrid.fine && !system->model.volume &&
+           step->integrator <= GXS_MIDPOINT && !step->targets && gxsp_point_count(step) == 0 &&
+           system->state.active > 0;
+}
+
+/* residual = load - inertia - elastic forces, from the slots; 0 where nothing moves */
+static void gxsp_task_quick_balance(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    gxsp_vector4 *slots = (gxsp_vector4 *)(void *)system->vectors.slots;
+    size_t i, end = gxsp_range(system, index, &i), c;
+    for (; i < end; i++) {
+        double load[3], inertia = pass->rate * system->model.lumped[i];
+        float sum[3] = {0, 0, 0};
+        uint32_t s;
+        for (s = system->mesh.copy_start[i]; s < system->mesh.copy_start[i + 1]; s++) {
+            const float *from = slots[system->mesh.copy_slot[s]];
+            gxsp_prefetch(slots[system->mesh.copy_slot[s + GXSP_AHEAD]], sizeof *slots);
+            sum[0] += from[0], sum[1] += from[1], sum[2] += from[2];
+        }
+        gxsp_load(pass->problem, i, load);
+        for (c = 0; c < 3; c++)
+            system->vectors.residual[3 * i + c] =
+                system->state.still[i]
+                    ? 0
+                    : load[c] - (double)sum[c] - inertia * (pass->from[3 * i + c] - system->vectors.target[3 * i + c]);
+    }
+}
+
+/* Elastic energies of all components at a displacement into their gain, J */
+static void gxsp_quick_elastic(gxsp_system *system, const double *from) {
+    gxsp_pass pass;
+    uint32_t p;
+    memset(&pass, 0, sizeof pass);
+    pass.system = system;
+    pass.from = from;
+    gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_strain_energy, &pass);
+    for (p = 0; p < system->model.component_count; p++) system->model.components[p].gain = 0;
+    for (p = 0; p < system->mesh.partial_count; p++)
+        system->model.components[system->mesh.partials[p].component].gain += system->mesh.partials[p].energies[0];
+}
+
+/* Of all components: momentum / mass into sum, kinetic energy about that into low, gain += kinetic energy minus the
+ * work of the load, and the size of what rounds into rounding. A held component has no mean. */
+static void gxsp_quick_kinetic(const gxsp_problem *problem, const double *u, const double *v) {
+    gxsp_system *system = problem->system;
+    uint32_t p;
+    size_t i;
+    gxsp_clear_components(system);
+    for (p = 0; p < system->model.component_count; p++)
+        system->model.components[p].low = system->model.components[p].rounding = 0;
+    for (i = 0; i < system->model.n; i++) {
+        gxsp_component *component = &system->model.components[system->model.component[i]];
+        const double mass = system->state.still[i] ? 0 : system->model.lumped[i], *speed = v + 3 * i;
+        double load[3], kinetic, work;
+        gxsp_load(problem, i, load);
+        gxsp_add_to_component(system, i, mass * speed[0], mass * speed[1], mass * speed[2]);
+        kinetic = 0.5 * mass * gxsp_dot(speed, speed, 1);
+        work = gxsp_dot(load, u + 3 * i, 1);
+        component->low += kinetic;
+        component->gain -= work;
+        component->rounding += kinetic + fabs(work);
+    }
+    gxsp_average_components(system, 0);
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        component->gain += component->low;
+        component->low -= 0.5 * component->mass * gxsp_dot(component->sum, component->sum, 1);
+    }
+}
+
+/* Energies at the start into the components' limit, with what they were below it before */
+static void gxsp_quick_limit(const gxsp_problem *problem, const double *displacement, const double *velocity) {
+    gxsp_system *system = problem->system;
+    const int known = system->leap.known &&
+                      memcmp(displacement, system->vectors.current, 3 * system->model.n * sizeof *displacement) == 0;
+    uint32_t p;
+    if (!known) gxsp_quick_elastic(system, displacement);
+    for (p = 0; p < system->model.component_count && known; p++)
+        system->model.components[p].gain = system->model.components[p].elastic;
+    gxsp_quick_kinetic(problem, displacement, velocity);
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        component->limit = component->gain + (known ? component->slack : 0);
+    }
+}
+
+/* The solve: current from where inertia leads. 0: a number is not finite, or the exact Hessian is indefinite at once.
+ */
+static int gxsp_quick_solve(gxsp_problem *problem) {
+    gxsp_system *system = problem->system;
+    gxsp_pass pass;
+    size_t i;
+    gxsp_find_base(problem, system->vectors.current);
+    for (i = 0; i < system->model.n; i++)
+        if (!system->state.still[i])
+            memcpy(system->vectors.current + 3 * i, system->vectors.target + 3 * i, 3 * sizeof(double));
+    gxsp_untouch_components(system);
+    gxsp_terms_make(problem, system->vectors.current);
+    gxsp_balance_momentum(problem, 0, NULL, system->vectors.current);
+    if (gxsp_first_not_finite(system->vectors.current, 3 * system->model.n) < 3 * system->model.n) return 0;
+    if (system->leap.served == 0 || system->leap.served >= GXSP_QUICK_AGE ||
+        (system->multigrid.used && (system->coarse.worn || gxsp_coarse_ends(system) ||
+                                    system->coarse.rate < problem->rate || system->coarse.rate > problem->rate))) {
+        if (!gxsp_linearise_all(problem) || problem->collapsed) return 0;
+        system->leap.served = 0;
+    }
+    system->leap.served++;
+    memset(&pass, 0, sizeof pass);
+    pass.system = system;
+    pass.problem = problem;
+    pass.from = system->vectors.current;
+    pass.rate = problem->rate;
+    gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_strain_force, &pass);
+    gxsp_over_ranges(system, gxsp_task_quick_balance, &pass, NULL, 0);
+    system->state.guess_count = 0;
+    if (!gxsp_solve(problem)) return 0;
+    system->state.guess_count = 0;
+    for (i = 0; i < 3 * system->model.n; i++) system->vectors.current[i] += system->vectors.direction[i];
+    return 1;
+}
+
+/* Slows components down whose energy at the end is above their limit. 0: one has gained too much. */
+static int gxsp_quick_settle(gxsp_problem *problem, const double *u, double *v) {
+    gxsp_system *system = problem->system;
+    size_t i, c;
+    uint32_t p;
+    int any = 0;
+    gxsp_quick_elastic(system, u);
+    for (p = 0; p < system->model.component_count; p++)
+        system->model.components[p].elastic = system->model.components[p].gain;
+    gxsp_quick_kinetic(problem, u, v);
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        const double risen = component->gain - component->limit,
+                     unsure = 1e-12 * component->rounding + 1e-6 * component->elastic;
+        component->length = 1;
+        component->slack = risen < 0 ? -(1 - GXSP_LEAP_FORGET) * risen : -risen;
+        if (!gxsp_finite(risen)) return 0;
+        if (risen <= unsure) continue;
+        component->slack = 0;
+        if (risen > GXSP_QUICK_CUT * component->low) return 0;
+        component->length = sqrt(1 - risen / component->low);
+        any = 1;
+    }
+    for (i = 0; i < system->model.n && any; i++) {
+        const gxsp_component *component = &system->model.components[system->model.component[i]];
+        for (c = 0; c < 3 && !system->state.still[i]; c++)
+            v[3 * i + c] = component->sum[c] + component->length * (v[3 * i + c] - component->sum[c]);
+    }
+    return 1;
+}
+
+/* Energy of all components at the end, J */
+static double gxsp_quick_total(const gxsp_system *system) {
+    double sum = 0;
+    uint32_t p;
+    for (p = 0; p < system->model.component_count; p++)
+        sum += fmin(system->model.components[p].gain, system->model.components[p].limit);
+    return sum;
+}
+
+/* The quick step: displacement into direction, velocity into residual. Returns 0 where the step must be a usual one. */
+static int gxsp_quick_step(gxsp_problem *problem, const double *displacement, const double *velocity) {
+    gxsp_system *system = problem->system;
+    const int midpoint = problem->step->integrator == GXS_MIDPOINT;
+    double *ends = system->vectors.direction, *speeds = system->vectors.residual;
+    size_t i, count = 3 * system->model.n;
+    int done;
+    system->state.quick = 1;
+    gxsp_choose_leads(problem);
+    gxsp_quick_limit(problem, displacement, velocity);
+    gxsp_begin(problem, velocity);
+    problem->cg_iterations = problem->step->quick;
+    done = gxsp_quick_solve(problem);
+    for (i = 0; i < count && done; i++) {
+        const int still = system->state.still[i / 3];
+        ends[i] = still    ? displacement[i]
+                : midpoint ? 2 * system->vectors.current[i] - displacement[i]
+                           : system->vectors.current[i];
+        speeds[i] =
+            still ? 0 : problem->speed * (ends[i] - gxsp_mean(problem, displacement, i)) - (midpoint ? velocity[i] : 0);
+    }
+    done = done && gxsp_quick_settle(problem, ends, speeds);
+    system->state.quick = 0;
+    if (!done) {
+        problem->cg_iterations = problem->step->cg_iterations ? problem->step->cg_iterations : 1000;
+        problem->report.stop = GXS_STOP_BALANCE;
+        return 0;
+    }
+    if (problem->report.stop != GXS_STOP_SECONDS) problem->report.stop = GXS_STOP_ITERATIONS;
+    problem->report.energy = gxsp_quick_total(system);
+    problem->report.quick = 1;
     return 1;
 }
 
@@ -11699,15 +12687,18 @@ static gx_result gxsp_check_plane(const gxs_plane *plane, size_t index, gx_failu
              : GX_OK;
 }
 
-/* A pair of a step. Weights are 0 in sum up to the rounding of those who made them. */
+/* A pair of a step. Weights are 0 in sum, or 1, up to the rounding of those who made them. */
 static gx_result gxsp_check_pair(const gxs_step_desc *step, size_t index, size_t n, gx_failure *failure) {
     static const char *const names[6] = {"pairs.point.count",  "pairs.point.copy",    "pairs.point.weight",
                                          "pairs.point.copies", "pairs.point.weights", "pairs.point.position"};
     const gxs_pair *pair = &step->pairs[index];
-    double sum = 0, size = 0;
+    double sum = pair->flags & GXS_PAIR_OUTSIDE ? -1 : 0, size = 0;
     uint32_t k;
     gx_result result;
+    if (pair->flags > (GXS_PAIR_OUTSIDE | GXS_PAIR_WAKES))
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, "pairs.flags", index);
     if ((result = gxsp_check_point(&pair->point, n, names, index, failure)) != GX_OK ||
+        (result = gxsp_check_finite(pair->way, 3, "pairs.way", index, failure)) != GX_OK ||
         (result = gxsp_check_finite(pair->normal, 3, "pairs.normal", index, failure)) != GX_OK ||
         (result = gxsp_check_finite(&pair->offset, 1, "pairs.offset", index, failure)) != GX_OK ||
         (result = gxsp_check_size(pair->stiffness, "pairs.stiffness", index, failure)) != GX_OK ||
@@ -11719,7 +12710,7 @@ static gx_result gxsp_check_pair(const gxs_step_desc *step, size_t index, size_t
         size += fabs(gxsp_weights(&pair->point)[k]);
     }
     if (size > 1e30) return gxsp_fail(failure, GX_ERROR_RANGE, names[pair->point.copies ? 4 : 2], index);
-    if (fabs(sum) > 1e-12 * size)
+    if (fabs(sum) > (pair->flags & GXS_PAIR_OUTSIDE ? 1e-9 : 1e-12) * size)
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, names[pair->point.copies ? 4 : 2], index);
     if (fabs(gxsp_dot(pair->normal, pair->normal, 1) - 1) > 1e-6)
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, "pairs.normal", index);
@@ -11774,6 +12765,24 @@ static gx_result gxsp_check_vectors(const gxs_step_desc *step, size_t n, const d
     for (i = 0; step->targets && result == GX_OK && i < n; i++)
         if (held[i]) result = gxsp_check_finite(step->targets + 3 * i, 3, "targets", i, failure);
     return result;
+}
+
+/* Affine copies of a change. They and their hidden vectors are as in a model. */
+static gx_result gxsp_check_changed_affine(const gxs_solver *solver, const gxs_change *change, gxsp_pool *scratch,
+                                           gx_failure *failure) {
+    uint8_t *owned = change->affine ? (uint8_t *)gxsp_take(scratch, change->copy_count, 1) : NULL;
+    gxs_model model;
+    if (!owned) return GX_OK; /* without memory the caller fails */
+    memset(&model, 0, sizeof model);
+    model.copy_count = change->copy_count;
+    model.held = change->held;
+    model.affine = change->affine;
+    model.affine_length = solver->system->affine.place ? solver->system->affine.length : 1;
+    model.elements = change->elements;
+    model.element_count = change->element_count;
+    model.constraints = change->constraints;
+    model.constraint_count = change->constraint_count;
+    return gxsp_check_affine(&model, solver, owned, failure);
 }
 
 /* Is the change one of this model? */
@@ -11869,7 +12878,8 @@ static gx_result gxsp_step_once(gxs_solver *solver, const gxs_step_desc *step, d
     gxsp_problem problem;
     gx_result result;
     if (!gxsp_reserve_terms(&solver->lasting, step) ||
-        (step->integrator == GXS_EXPLICIT && !solver->system->leap.made && !gxsp_leap_make(solver->system)))
+        (step->integrator == GXS_EXPLICIT && !gxsp_leap_make(solver->system, GXSP_LEAP_ALL)) ||
+        (step->quick > 0 && !gxsp_quick_make(solver->system)))
         return gxsp_end(failure, GX_ERROR_MEMORY);
     memset(&problem, 0, sizeof problem);
     problem.system = solver->system;
@@ -11884,7 +12894,9 @@ static gx_result gxsp_step_once(gxs_solver *solver, const gxs_step_desc *step, d
     problem.system->state.failed = 1;
     if ((result = gxsp_check_free(&problem, failure)) != GX_OK) return result;
     problem.report.active_unknowns = problem.system->state.active;
-    if (!gxsp_leap_allowed(&problem) || !gxsp_leap_step(&problem, displacement, velocity)) {
+    if (!(gxsp_leap_allowed(&problem) && gxsp_leap_step(&problem, displacement, velocity)) &&
+        !(gxsp_quick_allowed(&problem) && gxsp_quick_step(&problem, displacement, velocity))) {
+        problem.system->leap.served = 0;
         gxsp_begin(&problem, velocity);
         result = gxsp_minimise(&problem);
         if (result == GX_OK) gxsp_find_end(&problem, displacement, velocity);
@@ -12098,7 +13110,7 @@ static gxsp_plan gxsp_plan_make(gxs_solver *solver, const gxs_step_desc *step, i
     double error;
     int leaps = tempo->waiting == 0;
     if ((tempo->age == 0 && tempo->measures > 0) || gxsp_point_count(step) > 0 || step->targets) leaps = 0;
-    if (leaps && !solver->system->leap.made && !gxsp_leap_make(solver->system)) *memory = 0, leaps = 0;
+    if (leaps && !gxsp_leap_make(solver->system, GXSP_LEAP_ALL)) *memory = 0, leaps = 0;
     tempo->age += tempo->age < 1;
     tempo->leaps = leaps;
     plan = gxsp_plan_for(solver, step, step->quality, leaps);
@@ -12160,6 +13172,7 @@ static gx_result gxsp_take_parts(gxs_solver *solver, const gxs_step_desc *step, 
     uint32_t k;
     size_t i;
     part.quality = 0;
+    part.quick = 0;
     part.dt = step->dt / plan->parts;
     part.integrator = plan->integrator;
     part.substeps = plan->substeps;
@@ -12301,6 +13314,10 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
         return failure->result;
     }
     scratch = gxsp_pool_make(&solver->allocator);
+    if (gxsp_check_changed_affine(solver, change, &scratch, failure) != GX_OK) {
+        gxsp_release_to(&scratch, NULL);
+        return failure->result;
+    }
     solver->lasting.tempo.age = 0;
     solver->lasting.tempo.before_dt = 0;
     system->state.product_rate = -1;
@@ -12320,7 +13337,8 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
         gxsp_release_to(&scratch, NULL);
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, "constraints", bad);
     }
-    fits = scratch.failed || (gxsp_is_flexible(system) && gxsp_find_successors(&update) && gxsp_update_system(&update));
+    fits = scratch.failed ||
+           (gxsp_is_flexible(system, change) && gxsp_find_successors(&update) && gxsp_update_system(&update));
     gxsp_release_to(&scratch, NULL);
     if (scratch.failed || system->pool.failed || system->multigrid.pool.failed)
         gxsp_end(failure, GX_ERROR_MEMORY);
@@ -12411,7 +13429,8 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene) {
     system->state.still_known = system->state.base_known = system->state.stepped = 0;
     system->state.guess_count = 0;
     system->leap.factor = 0;
-    system->leap.limited = 0;
+    system->leap.limited = system->leap.known = 0;
+    system->leap.served = 0;
     system->smoother.omega = 0;
     system->smoother.cautious = system->smoother.next_cautious = 0;
     system->coarse.rate = -1;
@@ -12564,9 +13583,12 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_LANES
 #undef GXSP_CHUNK_BLOCKS
 #undef GXSP_CHUNK
+#undef GXSP_NEAR
+#undef GXSP_NEAR_NUMBERS
 #undef GXSP_EACH_LANE
 #undef GXSP_RESTRICT
 #undef GXSP_COLD
+#undef GXSP_APART
 #undef GXSP_INLINE
 #undef GXSP_ROUNDING
 #undef GXSP_ABSURD
@@ -12613,6 +13635,10 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_LEAP_POWERS
 #undef GXSP_LEAP_GAIN
 #undef GXSP_LEAP_FORGET
+#undef GXSP_LEAP_BLOCKS
+#undef GXSP_LEAP_ALL
+#undef GXSP_QUICK_AGE
+#undef GXSP_QUICK_CUT
 #undef GXSP_LEAP_RAISE
 #undef GXSP_LEAP_LAST
 #undef GXSP_LEAP_ROWS
@@ -12686,6 +13712,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_WIDEN
 #undef GXSP_ADD_PRODUCT
 #undef GXSP_SUM_DOUBLES
+#undef GXSP_NESTED_SLACK
 #undef GXSP_AFFINE_TASK
 #undef GXSP_AFFINE_ROUND
 #ifdef GXFEM_SCALAR

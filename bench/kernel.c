@@ -10,6 +10,7 @@
        S   a bumpy sphere of 8,000 triangles less a turned copy
        +   after a name: evaluated after each operand
        ?   surfaces are not vouched for as simple; all others are
+       2   on two threads; the rows of few triangles have none
 
    filter_share: the share of signs that the filter or the definitions decided. exact_share: the share that took
    exact arithmetic. Each call creates, adds, evaluates, gets the components, and destroys. surface_us: the median
@@ -24,13 +25,14 @@
 #include "../tests/workloads.h"
 #include "clock.h"
 #include "csv.h"
+#include "helper.h"
 #include "progress.h"
 #include <dirent.h>
 #if defined(__GLIBC__)
 #include <malloc.h>
 #endif
 
-enum { OPERANDS = 64, CALLS = 100000, NAMES = 512, NAME = 64, GENERATED = 4 };
+enum { OPERANDS = 64, CALLS = 100000, NAMES = 512, NAME = 64, GENERATED = 4, MANY = 8192 };
 static const double SECONDS = 0.3;
 
 static size_t done, total; /* workloads */
@@ -47,6 +49,8 @@ typedef struct figures {
     uint64_t filter, exact, allocations;
 } figures;
 
+static gxb_boolean_desc how; /* of Booleans: with a helper or without */
+
 static figures run(const char *name, const gxb_operand *operands, size_t count, int each, int ask) {
     gxb_boolean *b = NULL;
     gxb_boolean_result r;
@@ -56,7 +60,7 @@ static figures run(const char *name, const gxb_operand *operands, size_t count, 
     size_t i;
     memset(&r, 0, sizeof r);
     memset(&c, 0, sizeof c);
-    stop_at(name, gxb_boolean_create(NULL, &b, NULL));
+    stop_at(name, gxb_boolean_create(&how, &b, NULL));
     for (i = 0; i < count; i++) {
         stop_at(name, gxb_boolean_add(b, &operands[i], NULL));
         if (i + 1 == count || (each && i > 0)) stop_at(name, gxb_boolean_evaluate(b, &r, NULL));
@@ -137,6 +141,19 @@ static void measure(const char *name, const char *mark, const gxb_operand *opera
     keep_row(name, mark, middle[1], middle[0], &f);
 }
 
+static void measure_helped(const char *name, const gxb_operand *operands, size_t count) {
+    size_t triangles = 0, i;
+    helper h;
+    for (i = 0; i < count; i++) triangles += operands[i].triangle_count;
+    if (triangles < MANY) return;
+    stop_at("threads", helper_start(&h) ? GX_OK : GX_ERROR_MEMORY);
+    how.jobs.parallel_for = helper_parallel_for;
+    how.jobs.user = &h;
+    measure(name, "2", operands, count, 0);
+    memset(&how, 0, sizeof how);
+    helper_stop(&h);
+}
+
 static void measure_all(const char *name, gxb_operand *operands, size_t count) {
     size_t i;
     progress_draw("kernel", done++, total, name);
@@ -146,6 +163,7 @@ static void measure_all(const char *name, gxb_operand *operands, size_t count) {
     }
     measure(name, "", operands, count, 0);
     if (count > 2) measure(name, "+", operands, count, 1);
+    measure_helped(name, operands, count);
     for (i = 0; i < count; i++) operands[i].simple = 0;
     measure(name, "?", operands, count, 0);
 }

@@ -46,12 +46,11 @@
 #include "block.h"
 #include "clock.h"
 #include "csv.h"
+#include "helper.h"
 #include "forms.h"
 #include "progress.h"
 
 #include <math.h>
-#include <pthread.h>
-#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -102,58 +101,6 @@ static void *meter_allocate(void *user, size_t size) {
 static void meter_release(void *user, void *memory, size_t size) {
     ((meter *)user)->now -= size;
     free(memory);
-}
-
-/* One thread that helps the calling one: both take the next index until there is none. Between passes it yields
-   instead of sleeping, as job systems do: a pass takes some 20 microseconds, and waking a thread takes no less.
-   Everything that both write is atomic. */
-typedef struct helper {
-    pthread_t thread;
-    void (*task)(void *, size_t);
-    void *context;
-    size_t count, next;
-    unsigned round, done; /* rounds of work: begun, and finished by the helper */
-    int quit;
-} helper;
-
-static void helper_work(helper *h) {
-    size_t i;
-    while ((i = __atomic_fetch_add(&h->next, 1, __ATOMIC_RELAXED)) < h->count) h->task(h->context, i);
-}
-
-static void *helper_main(void *user) {
-    helper *h = (helper *)user;
-    unsigned seen = 0;
-    while (!__atomic_load_n(&h->quit, __ATOMIC_ACQUIRE)) {
-        if (__atomic_load_n(&h->round, __ATOMIC_ACQUIRE) == seen) {
-            sched_yield();
-            continue;
-        }
-        helper_work(h);
-        __atomic_store_n(&h->done, ++seen, __ATOMIC_RELEASE);
-    }
-    return NULL;
-}
-
-static void helper_parallel_for(void *user, size_t count, void (*task)(void *, size_t), void *context) {
-    helper *h = (helper *)user;
-    h->task = task;
-    h->context = context;
-    h->count = count;
-    h->next = 0;
-    __atomic_store_n(&h->round, h->round + 1, __ATOMIC_RELEASE);
-    helper_work(h);
-    while (__atomic_load_n(&h->done, __ATOMIC_ACQUIRE) != h->round) sched_yield();
-}
-
-static int helper_start(helper *h) {
-    memset(h, 0, sizeof *h);
-    return pthread_create(&h->thread, NULL, helper_main, h) == 0;
-}
-
-static void helper_stop(helper *h) {
-    __atomic_store_n(&h->quit, 1, __ATOMIC_RELEASE);
-    pthread_join(h->thread, NULL);
 }
 
 /* --------------------------------------------------------------------------------------------------- >>run */

@@ -147,6 +147,100 @@ START_TEST(numbers_beyond_doubles) {
 }
 END_TEST
 
+/* A coordinate of the frame with all the bits that it may have: 2^-180 to 2^129 */
+static void widest_coordinate(pc_random *r, gxb_num *x) {
+    GXB_NUM(high);
+    GXB_NUM(low);
+    gxb_num_set(&high, (pc_below(r, 2) ? 1 : -1) * (2 - ldexp((double)(1 + pc_below(r, 4)), -52)), 128);
+    gxb_num_set(&low, 1 + ldexp((double)(1 + 2 * pc_below(r, 1000)), -52), -128);
+    if (pc_below(r, 8) == 0) high.sign = 0, high.exp = 0, high.n = 0;
+    gxb_num_add(x, &high, &low);
+}
+
+static void widest_point(pc_random *r, gxbp_vec *p) {
+    int k;
+    gxbp_vec_init(p);
+    for (k = 0; k < 3; k++) widest_coordinate(r, &p->c[k]);
+    gxb_num_set(&p->c[3], 1, 0);
+}
+
+/* Products have the limbs of their factors, sums one more than the longer summand, before zeros are trimmed off. */
+static void check_room(const gxb_num *c, int count, size_t room, const char *what) {
+    int k;
+    for (k = 0; k < count; k++) assert_that(c[k].n + 1 <= room, "%s: %u limbs", what, c[k].n);
+}
+
+/* The longest numbers by which points and planes are made fit into their room. */
+START_TEST(numbers_have_room) {
+    pc_random r = seeded(1);
+    gxbp_large plane[3], line, point, cross, side;
+    const size_t room = sizeof((gxbp_vec *)0)->limbs[0] / sizeof(gxb_limb), large = GXB_NUM_LIMBS;
+    int i, k;
+    for (i = 0; i < 2000; i++) {
+        gxbp_vec p[3], rounded;
+        for (k = 0; k < 3; k++) {
+            widest_point(&r, &p[0]);
+            widest_point(&r, &p[1]);
+            widest_point(&r, &p[2]);
+            gxbp_large_init(&plane[k]);
+            gxbp_exact_plane(plane[k].c, p[0].c, p[1].c, p[2].c);
+            check_room(plane[k].c, 4, room, "a plane");
+        }
+        gxbp_large_init(&line);
+        gxbp_exact_line_plane(line.c, p[0].c, p[1].c, plane[0].c);
+        check_room(line.c, 4, room, "a line and a plane");
+        gxbp_large_init(&cross);
+        gxbp_num_cross(cross.c, plane[0].c, plane[1].c);
+        check_room(cross.c, 3, room, "a line's direction");
+        gxbp_large_init(&point);
+        gxbp_exact_three_planes(point.c, plane[0].c, plane[1].c, plane[2].c);
+        check_room(point.c, 4, room, "three planes");
+        gxbp_large_init(&side);
+        gxbp_exact_side(&side.c[0], point.c, plane[0].c);
+        ck_assert_int_eq(side.c[0].sign, 0); /* it is in its plane */
+        for (k = 0; k < 3; k++) widest_point(&r, &p[k]);
+        gxbp_exact_plane(plane[0].c, p[0].c, p[1].c, p[2].c);
+        gxbp_exact_side(&side.c[0], point.c, plane[0].c);
+        check_room(side.c, 1, large, "a side");
+        ck_assert_int_eq(gxbp_orient_exact(point.c, line.c, point.c, 0, 1), 0);
+        gxbp_vec_init(&rounded);
+        for (k = 0; k < 3; k++) gxbp_num_copy(&rounded.c[k], &point.c[k], 1);
+        for (k = 0; k < 3; k++) {
+            gxbp_num_divide(&side.c[k], &rounded.c[k], &point.c[3], 4);
+            check_room(&rounded.c[k], 1, room, "a remainder");
+            check_room(&side.c[k], 1, 32, "a quotient");
+        }
+    }
+}
+END_TEST
+
+/* A quotient whose second digit lies far below the first has no more bits than others, and is as exact. */
+START_TEST(quotients_are_short) {
+    GXB_NUM(one);
+    GXB_NUM(tiny);
+    GXB_NUM(sum);
+    GXB_NUM(three);
+    GXB_NUM(quotient);
+    int gap;
+    gxb_num_set(&one, 1, 0);
+    gxb_num_set(&three, 3, 0);
+    for (gap = 10; gap < 900; gap += 10) {
+        GXB_NUM(product);
+        GXB_NUM(error);
+        GXB_NUM(bound);
+        gxb_num_set(&tiny, 1, -gap);
+        gxb_num_add(&sum, &three, &tiny);
+        gxb_num_add(&product, &three, &tiny);
+        gxbp_num_divide(&quotient, &sum, &three, 4); /* 1 + 2^-gap / 3 */
+        ck_assert_uint_le(quotient.n * GXB_LIMB_BITS, 250 + 2 * GXB_LIMB_BITS);
+        gxb_num_mul(&sum, &quotient, &three);
+        gxb_num_sub(&error, &sum, &product);
+        gxb_num_set(&bound, 3, -180);
+        assert_that(gxbp_num_compare_magnitude(&error, &bound) < 0 || error.sign == 0, "gap %d", gap);
+    }
+}
+END_TEST
+
 START_TEST(numbers_take_a_shift) {
     pc_random r = seeded(1);
     int i;
@@ -2041,6 +2135,8 @@ static Suite *boolean_suite(void) {
     tcase_add_loop_test(numbers, numbers_become_doubles, 0, 2);
     tcase_add_test(numbers, numbers_beyond_doubles);
     tcase_add_test(numbers, numbers_take_a_shift);
+    tcase_add_test(numbers, numbers_have_room);
+    tcase_add_test(numbers, quotients_are_short);
     tcase_add_test(predicates, orientation_is_as_documented);
     tcase_add_loop_test(predicates, predicates_have_the_right_sign, 0, 4);
     tcase_add_loop_test(predicates, inherited_errors_stay_within_bounds, 0, 2);

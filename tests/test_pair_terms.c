@@ -168,6 +168,10 @@ static void sample_make(sample *a, uint32_t count) {
     a->pair.sticking_speed = 1e-3;
     for (k = 0; k < 3 * COPIES; k++) a->start[k] = 0.3 * uniform(), a->end[k] = a->start[k] + 0.3 * uniform();
     for (c = 0; c < 3; c++) a->slip[c] = 0.1 * uniform();
+    if (uniform() > 0) { /* one side, and the way of what is outside */
+        a->pair.flags = GXS_PAIR_OUTSIDE;
+        for (c = 0; c < 3; c++) a->pair.way[c] = 0.1 * uniform();
+    }
     a->step = step_make(0.01, 0);
     a->step.pairs = &a->pair;
     a->step.pair_count = 1;
@@ -184,6 +188,7 @@ static long double slow_energy(const sample *a, const double *u) {
     depth = was = a->pair.offset;
     for (c = 0; c < 3; c++) {
         now[c] = before[c] = a->pair.point.position[c];
+        before[c] += a->pair.way[c];
         for (k = 0; k < a->pair.point.count; k++) {
             now[c] += (long double)a->weight[k] * u[3 * a->copy[k] + (uint32_t)c];
             before[c] += (long double)a->weight[k] * a->start[3 * a->copy[k] + (uint32_t)c];
@@ -745,6 +750,10 @@ CHANGE(bad_stiffness, t->pairs[5].stiffness = nan_value())
 CHANGE(negative_friction, t->pairs[0].friction = -0.1)
 CHANGE(negative_speed, t->pairs[0].sticking_speed = -0.1)
 CHANGE(bad_slip, t->slips[4] = nan_value())
+CHANGE(wrong_flags, t->pairs[2].flags = 4)
+CHANGE(bad_way, t->pairs[1].way[2] = nan_value())
+CHANGE(two_sides, t->pairs[3].flags = GXS_PAIR_OUTSIDE)
+CHANGE(one_side, t->pairs[3].flags = GXS_PAIR_OUTSIDE | GXS_PAIR_WAKES; t->pairs[3].point.count = 3)
 CHANGE(zero_weights, memset(t->weights, 0, SPAN * sizeof *t->weights))
 
 START_TEST(bad_input_is_named) {
@@ -769,6 +778,10 @@ START_TEST(bad_input_is_named) {
     expect(bad_stiffness, GX_ERROR_NOT_FINITE, "pairs.stiffness", 5);
     expect(negative_friction, GX_ERROR_ARGUMENT, "pairs.friction", 0);
     expect(negative_speed, GX_ERROR_ARGUMENT, "pairs.sticking_speed", 0);
+    expect(wrong_flags, GX_ERROR_ARGUMENT, "pairs.flags", 2);
+    expect(bad_way, GX_ERROR_NOT_FINITE, "pairs.way", 1);
+    expect(two_sides, GX_ERROR_ARGUMENT, "pairs.point.weights", 3);
+    expect(one_side, GX_OK, NULL, 0);
     expect(bad_slip, GX_ERROR_NOT_FINITE, "pair_slips", 1);
 }
 END_TEST

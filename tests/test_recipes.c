@@ -596,6 +596,34 @@ START_TEST(contact) {
 }
 END_TEST
 
+/* A body on the ground, which feels its weight, is pushed by a ball, which feels that. */
+START_TEST(contact_with_ball) {
+    gx_body *body = make_body(3, NULL);
+    gx_collider_load feels[2];
+    gx_step_desc step;
+    gx_motion before, after;
+    double center[3] = {-0.27, 0.5, 0.5};
+    const double still[3] = {0, 0, 0}, velocity[3] = {0.5, 0, 0};
+    int frame;
+    memset(&step, 0, sizeof step);
+    step.dt = 1.0 / 60;
+    step.gravity[2] = -9.81;
+    OK(let_pieces_touch(body));
+    for (frame = 0; frame < 120; frame++) OK(step_with_ball(body, step, 0.25, center, still, feels));
+    OK(gx_body_motion(body, &before, 1, NULL));
+    ck_assert_double_lt(fabs(feels[0].force[2] + 9.81 * before.mass), 0.01 * 9.81 * before.mass);
+    ck_assert_uint_eq(feels[1].contacts, 0);
+    for (frame = 0; frame < 60; frame++) {
+        OK(step_with_ball(body, step, 0.25, center, velocity, feels));
+        center[0] += step.dt * velocity[0];
+    }
+    OK(gx_body_motion(body, &after, 1, NULL));
+    ck_assert_double_gt(after.center[0] - before.center[0], 0.2);
+    ck_assert_double_lt(feels[1].force[0], 0);
+    gx_body_destroy(body);
+}
+END_TEST
+
 START_TEST(threads) {
     gx_body *alone = make_hanging(12, NULL), *together;
     pool p;
@@ -829,6 +857,7 @@ int main(void) {
     tcase_add_test(tc, ground);
     tcase_add_test(tc, ground_after_cuts);
     tcase_add_test(tc, contact);
+    tcase_add_test(tc, contact_with_ball);
     tcase_add_test(tc, threads);
     tcase_add_test(tc, undo_and_save);
     tcase_add_loop_test(tc, integrator, 0, 3);

@@ -478,6 +478,46 @@ START_TEST(steps_go_on) {
 }
 END_TEST
 
+/* Quick steps: some, a clone or a save in the middle, more, a usual step, a cut, and more. */
+START_TEST(quick_steps_go_on) {
+    workload w = grid(5, 5, 6, 5);
+    gx_body_desc desc = desc_of(&w);
+    gx_body *body = NULL, *copy = NULL;
+    gx_step_desc step;
+    gx_step_report report;
+    int k;
+    random_seed((uint64_t)_i + 177);
+    memset(&step, 0, sizeof step);
+    step.dt = 0.01;
+    step.gravity[2] = -9.81;
+    desc.young = 2e5;
+    desc.support_below = 1e-9; /* no copy follows others */
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+    add_axis_plane(&w, 0, 2.4);
+    add_axis_plane(&w, 1, 2.6);
+    cut_by(body, &w, 0, 1);
+    ck_assert_int_eq(hold_low(body, 0.5), GX_OK);
+    shake(body, 0.02);
+    step.integrator = _i % 2 ? GXS_BDF2 : GXS_MIDPOINT;
+    step.quick = 2;
+    for (k = 0; k < 3; k++) ck_assert_int_eq(gx_body_step(body, &step, &report, NULL), GX_OK);
+    ck_assert_uint_eq(report.quick, 1);
+    copy = twin_of(body, _i / 2);
+    expect_same_steps(body, copy, &step, 4, (uint64_t)_i);
+    step.quick = 0;
+    expect_same_steps(body, copy, &step, 1, (uint64_t)_i);
+    step.quick = 2;
+    cut_by(body, &w, 1, 1);
+    cut_by(copy, &w, 1, 1);
+    expect_same_steps(body, copy, &step, 2, (uint64_t)_i);
+    ck_assert_int_eq(gx_body_step(body, &step, &report, NULL), GX_OK);
+    ck_assert_uint_eq(report.quick, 1);
+    gx_body_destroy(body);
+    gx_body_destroy(copy);
+    wl_free(&w);
+}
+END_TEST
+
 /* A cut that no step has seen when the body is saved, or one between saving and the next step: what is loaded makes the
    solver's model anew, and so does the body. */
 START_TEST(cut_beside_saving) {
@@ -1416,6 +1456,7 @@ int main(void) {
     tcase_add_loop_test(tests, far_and_small_bodies, 0, 6);
     tcase_add_loop_test(tests, pinched_bodies, 0, 2);
     tcase_add_loop_test(tests, steps_go_on, 0, 18);
+    tcase_add_loop_test(tests, quick_steps_go_on, 0, 4);
     tcase_add_loop_test(tests, cut_beside_saving, 0, 8);
     tcase_add_test(tests, sleepers_sleep_on);
     tcase_add_loop_test(tests, rollback, 0, 4);

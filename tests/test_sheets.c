@@ -932,19 +932,293 @@ START_TEST(nearest_points_of_bent_bodies) {
 }
 END_TEST
 
+/* ---- blades ---- */
+
+/* What a bent cell's map does with a place, also outside of its element, it undoes. */
+START_TEST(maps_are_undone) {
+    const double size = _i % 2 ? 0.05 : 0.15;
+    workload w;
+    gx_body *body = bent_body(&w, size);
+    int round, undone = 0, all = 0;
+    random_seed((uint64_t)_i + 3);
+    for (round = 0; round < 2000 / FEWER; round++) {
+        const gxp_cell *c = &body->cells.data[random_below((int)body->cells.count)];
+        double weights[4], back[4], x[3], again[3], off = 0, far = 0;
+        int n, k;
+        for (weights[0] = 1, n = 1; n < 4; n++) weights[0] -= weights[n] = random_real(-0.5, 1);
+        if (!gxp_is_bent(body, c)) continue;
+        all++;
+        gxp_image_of_bent(body, c, weights, x);
+        ck_assert(gxp_place_in_bent(body, c, x, back));
+        gxp_image_of_bent(body, c, back, again);
+        for (k = 0; k < 3; k++) off = fmax(off, fabs(again[k] - x[k]));
+        for (n = 0; n < 4; n++) far = fmax(far, fabs(back[n] - weights[n]));
+        undone += off < 1e-12 * (1 + far);
+        if (size < 0.1) ck_assert_msg(off < 1e-12 && far < 1e-10, "%g, %g", off, far); /* no folds */
+    }
+    ck_assert_msg(undone > 0.97 * all && all > 100 / FEWER, "%d of %d", undone, all); /* folded: other places, or none
+                                                                                       */
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A plate is rolled up and twisted: where a material point is, and the derivative there by its coordinates */
+static void roll(double time, const double x[3], double at[3], double slope[3][3]) {
+    const double turn = 0.35 * time, twist = 0.12 * time, angle = turn * x[0], r = 1 / turn - (x[2] - 0.5),
+                 bend[3] = {r * sin(angle), x[1], 1 / turn - r * cos(angle)},
+                 by[3][3] = {{r * turn * cos(angle), 0, r * turn * sin(angle)},
+                             {0, 1, 0},
+                             {-sin(angle), 0, cos(angle)}},
+                 c = cos(twist * bend[1]), s = sin(twist * bend[1]);
+    int j;
+    at[0] = c * bend[0] + s * bend[2];
+    at[1] = bend[1];
+    at[2] = c * bend[2] - s * bend[0];
+    for (j = 0; j < 3; j++) {
+        slope[j][0] = c * by[j][0] + s * by[j][2] + twist * at[2] * by[j][1];
+        slope[j][1] = by[j][1];
+        slope[j][2] = c * by[j][2] - s * by[j][0] - twist * at[0] * by[j][1];
+    }
+}
+
+/* All copies follow the roll. */
+static void follow_roll(gx_body *body, double time) {
+    const gx_view view = view_of(body);
+    size_t i;
+    int j, k;
+    for (i = 0; i < view.copy_count; i++) {
+        const double *x = body->mesh.positions + 3 * (size_t)view.copy_node[i];
+        double at[3], slope[3][3];
+        roll(time, x, at, slope);
+        for (k = 0; k < 3; k++) view.displacement[3 * i + (size_t)k] = at[k] - x[k];
+        for (j = 0; j < 3 && view.copy_affine[i]; j++)
+            for (k = 0; k < 3; k++) body->copies.linear[9 * i + 3 * (size_t)j + (size_t)k] = slope[j][k] - (j == k);
+    }
+}
+
+enum { ROLL_POINTS = 7 };
+static double cut_place(double y) { return 2.9 + 0.5 * sin(0.9 * y); } /* of the sheet, x by y */
+
+/* Where an uncut plate of 6 x 3 x 1 has a material point, also outside of it */
+static void place_rolled(gx_body *twin, const double rest[3], double x[3]) {
+    static const double origin[3] = {0, 0, 0}, size[3] = {6, 3, 1};
+    double inside[3], corners[4][3], weights[4];
+    uint32_t cell;
+    int k;
+    for (k = 0; k < 3; k++) inside[k] = fmin(fmax(rest[k], 1e-3), size[k] - 1e-3);
+    ck_assert_int_eq(gxp_find_rest_cell(twin, inside, &cell), GX_OK);
+    ck_assert_uint_ne(cell, UINT32_MAX);
+    gxp_cell_corners(twin, &twin->cells.data[cell], 0, origin, corners);
+    gxp_tet_weights(corners, rest, weights);
+    gxp_image_of_bent(twin, &twin->cells.data[cell], weights, x);
+}
+
+/* The edge of a blade at a material line of the sheet, as the cells of an uncut body in the same motion have it */
+static void roll_edge(gx_body *twin, double y, double edge[3 * ROLL_POINTS]) {
+    static const double height[ROLL_POINTS] = {-0.5, 0, 0.25, 0.5, 0.75, 1, 1.5};
+    int i;
+    for (i = 0; i < ROLL_POINTS; i++) {
+        const double rest[3] = {cut_place(y), y, height[i]};
+        place_rolled(twin, rest, edge + 3 * i);
+    }
+}
+
+/* How far the walls in the skin are from the sheet, and how many of their vertices there are */
+static double wall_error(gx_body *body, size_t *vertices) {
+    double error = 0;
+    gx_skin skin;
+    size_t t;
+    int n;
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
+    *vertices = 0;
+    for (t = 0; t < skin.triangle_count; t++)
+        for (n = 0; n < 3 && skin.triangle_surface[t] != GX_SKIN_OUTER; n++) {
+            const double *x = skin.vertex_rest + 3 * (size_t)skin.triangles[3 * t + (size_t)n];
+            error = fmax(error, fabs(x[0] - cut_place(x[1])));
+            *vertices += 1;
+        }
+    return error;
+}
+
+/* A blade follows a known sheet through a plate that is rolled up meanwhile: two pieces, their wall is the sheet. */
+START_TEST(blades_cut_rolled_plates) {
+    workload w = grid(6, 3, 1, _i % 2 ? 5 : 6);
+    gx_body *body = sheet_body(&w, 1), *twin = sheet_body(&w, 1);
+    const int frames = 20 + 10 * (_i % 3);
+    double edge[3 * ROLL_POINTS], error;
+    gx_blade *blade;
+    gx_view view;
+    size_t vertices;
+    int i;
+    ck_assert_uint_eq(affine_count(body), w.node_count);
+    ck_assert_int_eq(gx_blade_create(body, NULL, &blade, NULL), GX_OK);
+    for (i = 0; i <= frames; i++) {
+        const double time = 0.1 + (double)i / frames;
+        follow_roll(body, time);
+        follow_roll(twin, time);
+        roll_edge(twin, -0.5 + 4.0 * i / frames, edge);
+        ck_assert_int_eq(gx_blade_move(blade, edge, ROLL_POINTS, NULL, 0, NULL, NULL), GX_OK);
+    }
+    ck_assert_int_eq(gx_blade_lift(blade, NULL, NULL), GX_OK);
+    view = view_of(body);
+    ck_assert_msg(view.fragment_count == 2, "%u", (unsigned)view.fragment_count);
+    error = wall_error(body, &vertices);
+    ck_assert_msg(error < 0.03 && vertices > 20, "%g, %zu", error, vertices);
+    gx_body_destroy(body);
+    gx_body_destroy(twin);
+    wl_free(&w);
+}
+END_TEST
+
+/* Soft plates are flung, and a straight edge passes through them. GXFEM_PASSES: how many */
+START_TEST(blades_pass_through_flung_plates) {
+    workload w = grid(6, 3, 1, _i % 2 ? 5 : 6);
+    gx_step_desc step = step_of(0.02, -2);
+    gx_body_desc desc = desc_of(&w);
+    gx_body *body = NULL;
+    gx_blade *blade = NULL;
+    gx_view view;
+    double phase, fast, twist, at, tilt;
+    size_t i;
+    int k;
+    random_seed((uint64_t)_i + 1);
+    phase = random_real(0, 6);
+    fast = random_real(1, 3);
+    twist = random_real(-1, 1);
+    at = random_real(1.5, 4.5);
+    tilt = random_real(-0.5, 0.5);
+    desc.affine_below = 1;
+    desc.young = 3e4;
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+    view = view_of(body);
+    for (i = 0; i < view.copy_count; i++) {
+        const double *x = body->mesh.positions + 3 * (size_t)view.copy_node[i];
+        view.velocity[3 * i + 2] = fast * sin(0.8 * x[0] + phase) + twist * (x[1] - 1.5);
+    }
+    ck_assert_int_eq(gx_blade_create(body, NULL, &blade, NULL), GX_OK);
+    for (k = 0; k <= 24; k++) {
+        const double y = -0.6 + 4.2 * k / 24, edge[6] = {at - 4 * tilt, y, -4, at + 4 * tilt, y + 0.3, 5};
+        advance(body, &step);
+        ck_assert_int_eq(gx_blade_move(blade, edge, 2, NULL, 0, NULL, NULL), GX_OK);
+    }
+    ck_assert_int_eq(gx_blade_lift(blade, NULL, NULL), GX_OK);
+    view = view_of(body);
+    ck_assert_msg(view.fragment_count == 2, "seed %d: %u", _i + 1, (unsigned)view.fragment_count);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* The material that a drill covers goes from a rolled plate: a box at rest, of which the plate's motion makes the tool.
+ */
+START_TEST(rolled_plates_are_carved) {
+    enum { ALONG = 8 };
+    workload w = grid(6, 3, 1, 5);
+    gx_body *body = sheet_body(&w, 1), *twin = sheet_body(&w, 1);
+    static const double low[3] = {2.2, 0.8, -0.3}, high[3] = {3.7, 2.1, 1.3};
+    double vertices[6 * (ALONG + 1) * (ALONG + 1)][3];
+    uint32_t triangles[12 * ALONG * ALONG][3], same[6 * (ALONG + 1) * (ALONG + 1)], count = 0, n = 0;
+    gx_cut_report report;
+    gx_surface tool;
+    int face, i, j;
+    follow_roll(body, 0.8);
+    follow_roll(twin, 0.8);
+    for (face = 0; face < 6; face++) {
+        const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+        for (i = 0; i <= ALONG; i++)
+            for (j = 0; j <= ALONG; j++, n++) {
+                double rest[3];
+                rest[axis] = face % 2 ? high[axis] : low[axis];
+                rest[u] = i == ALONG ? high[u] : low[u] + (high[u] - low[u]) * i / ALONG;
+                rest[v] = j == ALONG ? high[v] : low[v] + (high[v] - low[v]) * j / ALONG;
+                place_rolled(twin, rest, vertices[n]);
+                for (same[n] = 0; memcmp(vertices[same[n]], vertices[n], sizeof vertices[n]) != 0;) same[n]++;
+                if (i < ALONG && j < ALONG) {
+                    const uint32_t other = n + 1, next = n + ALONG + 1, last = n + ALONG + 2;
+                    const uint32_t t[2][2][3] = {{{n, last, next}, {n, other, last}},
+                                                 {{n, next, last}, {n, last, other}}};
+                    memcpy(triangles[count], t[face % 2], sizeof t[0]);
+                    count += 2;
+                }
+            }
+    }
+    memset(&tool, 0, sizeof tool);
+    for (n = 0; n < count; n++)
+        for (i = 0; i < 3; i++) triangles[n][i] = same[triangles[n][i]]; /* faces share their rims */
+    tool.vertices = vertices[0];
+    tool.vertex_count = 6 * (ALONG + 1) * (ALONG + 1);
+    tool.triangles = triangles[0];
+    tool.triangle_count = count;
+    ck_assert_int_eq(gx_body_carve(body, &tool, &report, NULL), GX_OK);
+    ck_assert_msg(fabs(report.removed_volume - 1.5 * 1.3) < 0.02, "%g", report.removed_volume);
+    ck_assert_uint_eq(view_of(body).fragment_count, 1);
+    gx_body_destroy(body);
+    gx_body_destroy(twin);
+    wl_free(&w);
+}
+END_TEST
+
+/* Contacts of an edge in a bent body: as long as what of the edge is in the body, each where its material is */
+START_TEST(contacts_in_bent_bodies) {
+    workload w;
+    gx_body *body = bent_body(&w, 0.05);
+    gx_blade_desc desc;
+    gx_blade *blade = NULL;
+    int round, met = 0;
+    random_seed((uint64_t)_i + 21);
+    memset(&desc, 0, sizeof desc);
+    desc.starts_inside = 1;
+    ck_assert_int_eq(gx_blade_create(body, &desc, &blade, NULL), GX_OK);
+    for (round = 0; round < 40 / FEWER; round++) {
+        enum { SAMPLES = 2000, ROOM = 256 };
+        static gx_blade_contact contacts[ROOM];
+        double edge[6], sum = 0, length = 0;
+        size_t count, i, inside = 0;
+        int k;
+        for (k = 0; k < 3; k++) {
+            edge[k] = random_real(-4, -2);
+            edge[3 + k] = random_real(6, 8);
+            length += (edge[3 + k] - edge[k]) * (edge[3 + k] - edge[k]);
+        }
+        ck_assert_int_eq(gx_blade_move(blade, edge, 2, NULL, 0, NULL, NULL), GX_OK);
+        ck_assert_int_eq(gx_blade_contacts(blade, contacts, ROOM, &count, NULL), GX_OK);
+        for (i = 0; i < SAMPLES; i++) {
+            gx_hit hits[16];
+            double x[3];
+            size_t all;
+            for (k = 0; k < 3; k++) x[k] = edge[k] + (edge[3 + k] - edge[k]) * ((double)i + 0.5) / SAMPLES;
+            ck_assert_int_eq(gx_body_locate_all(body, x, hits, 16, &all, NULL), GX_OK);
+            inside += all; /* pieces overlap: each is met */
+        }
+        for (i = 0; i < count; i++) {
+            double back[3];
+            const gx_hit *hit = &contacts[i].hit;
+            ck_assert_int_eq(gx_body_place(body, hit->slot, hit->material, back, NULL), GX_OK);
+            for (k = 0; k < 3; k++) ck_assert(fabs(back[k] - hit->position[k]) < 1e-4);
+            sum += contacts[i].length;
+        }
+        met += inside > 0;
+        ck_assert_msg(fabs(sum - sqrt(length) * (double)inside / SAMPLES) < 0.05 + 0.02 * sum, "%g, %g", sum,
+                      sqrt(length) * (double)inside / SAMPLES);
+        ck_assert_int_eq(gx_blade_lift(blade, NULL, NULL), GX_OK);
+        if (round == 0) ck_assert_uint_gt(count, 3);
+    }
+    ck_assert_int_gt(met, 4);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* What is not there yet says so; bad thicknesses are named. */
 START_TEST(refusals_are_named) {
     static const double bad[3] = {-1, 1e9, HUGE_VAL};
     workload w = grid(2, 2, 1, 5);
     gx_body_desc desc = desc_of(&w);
     gx_body *body = sheet_body(&w, 1);
-    const double edge[6] = {0, 0, 5, 1, 0, 5};
     gx_failure failure;
-    gx_surface tool;
-    gx_blade *blade;
     gx_step_desc step = step_of(0.01, 0);
     gxs_pair pair;
-    gx_skin skin;
     uint64_t hash;
     int i;
     for (i = 0; i < 3; i++) {
@@ -953,10 +1227,6 @@ START_TEST(refusals_are_named) {
         ck_assert_int_eq(gx_body_create(&desc, &none, &failure), i < 2 ? GX_ERROR_ARGUMENT : GX_ERROR_NOT_FINITE);
         ck_assert_str_eq(failure.field, "affine_below");
     }
-    add_box(&w, 1, 0.2, 0.2, 0.2, 0.5, 0.5, 2);
-    tool = surface_of(&w.surfaces[0]);
-    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
-    ck_assert_int_eq(gx_blade_create(body, NULL, &blade, NULL), GX_OK);
     hash = gx_body_state_hash(body);
     memset(&pair, 0, sizeof pair);
     pair.normal[2] = 1;
@@ -969,19 +1239,13 @@ START_TEST(refusals_are_named) {
     ck_assert_int_eq(gx_body_step(body, &step, NULL, &failure), GX_ERROR_ARGUMENT);
     ck_assert_str_eq(failure.field, "pairs");
     ck_assert_uint_eq(gx_body_state_hash(body), hash);
-    for (i = 0; i < 2; i++) {
-        gx_result result = i == 0 ? gx_body_carve(body, &tool, NULL, &failure)
-                                  : gx_blade_move(blade, edge, 2, NULL, 0, NULL, &failure);
-        ck_assert_int_eq(result, GX_ERROR_ARGUMENT);
-        ck_assert_str_eq(failure.field, "affine_below");
-        ck_assert_uint_eq(gx_body_state_hash(body), hash);
-    }
     gx_body_destroy(body);
     wl_free(&w);
 }
 END_TEST
 
 int main(void) {
+    const char *passes = getenv("GXFEM_PASSES");
     Suite *suite = suite_create("sheets");
     TCase *tcase = tcase_create("which");
     tcase_set_timeout(tcase, 300);
@@ -1004,6 +1268,14 @@ int main(void) {
     ADD_SOME(tcase, located_points_are_placed_there, 4);
     tcase_add_loop_test(tcase, nearest_points_of_bent_bodies, 0, 2);
     tcase_add_test(tcase, refusals_are_named);
+    suite_add_tcase(suite, tcase);
+    tcase = tcase_create("blades");
+    tcase_set_timeout(tcase, 300);
+    tcase_add_loop_test(tcase, maps_are_undone, 0, 2);
+    tcase_add_loop_test(tcase, blades_cut_rolled_plates, 0, 6);
+    tcase_add_test(tcase, rolled_plates_are_carved);
+    tcase_add_loop_test(tcase, contacts_in_bent_bodies, 0, 2);
+    tcase_add_loop_test(tcase, blades_pass_through_flung_plates, 0, passes != NULL ? atoi(passes) : 14 / FEWER);
     suite_add_tcase(suite, tcase);
     return run_suite(suite);
 }

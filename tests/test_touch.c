@@ -88,6 +88,7 @@ static double overlap_of(gx_body *body) {
     double *x, deepest = 0;
     size_t i, t;
     uint32_t *fragment;
+    memset(&skin, 0, sizeof skin);
     ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
     x = (double *)oracle_memory(NULL, 3 * skin.vertex_count + 1, sizeof *x);
     fragment = (uint32_t *)oracle_memory(NULL, skin.vertex_count + 1, sizeof *fragment);
@@ -95,7 +96,7 @@ static double overlap_of(gx_body *body) {
     for (t = 0; t < 3 * skin.triangle_count; t++) fragment[skin.triangles[t]] = skin.triangle_fragment[t / 3];
     for (i = 0; i < skin.vertex_count; i++) {
         gx_hit hits[64];
-        size_t count, h;
+        size_t count = 0, h;
         ck_assert_int_eq(gx_body_locate_all(body, x + 3 * i, hits, 64, &count, NULL), GX_OK);
         for (h = 0; h < count; h++)
             if (hits[h].fragment != fragment[i]) {
@@ -149,6 +150,7 @@ START_TEST(search_is_exhaustive) {
     gx_body *body;
     gxp_touch_surface *surface;
     gxs_step_desc none;
+    const gx_step_desc given = falling(1);
     gx_view view;
     size_t i, met = 0;
     uint32_t v, f;
@@ -171,12 +173,10 @@ START_TEST(search_is_exhaustive) {
         }
         memset(&none, 0, sizeof none);
         none.dt = dt;
-        ck_assert_int_eq(gxp_attach_contact(body, &none, &surface, NULL), GX_OK);
+        ck_assert_int_eq(gxp_attach_contact(body, &given, &none, &surface, NULL), GX_OK);
         for (v = 0, i = 0; v < surface->vertex_count; v++) {
             gxp_touch_pair best;
-            memset(&best, 0, sizeof best);
-            best.vertex = v;
-            best.facet = GXB_NONE;
+            best = gxp_no_pair(v);
             for (f = 0; f < surface->facet_count; f++) gxp_try_facet(body, surface, dt, f, &best);
             if (best.facet == GXB_NONE) continue;
             CHECK_SEED(i < body->touch.found, seed);
@@ -187,6 +187,157 @@ START_TEST(search_is_exhaustive) {
         met += i;
     }
     ck_assert_uint_gt(met, 20);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+static double slanted(void *user, const double p[3], double normal[3]) {
+    (void)user;
+    normal[0] = 0.6;
+    normal[1] = 0;
+    normal[2] = 0.8;
+    return 0.6 * p[0] + 0.8 * p[2];
+}
+
+static gx_collider random_collider(uint32_t id, uint32_t kind) {
+    gx_collider c;
+    double q[4], square = 0;
+    int k;
+    memset(&c, 0, sizeof c);
+    c.id = id;
+    c.kind = kind;
+    c.distance = slanted;
+    for (k = 0; k < 3; k++) {
+        c.size[k] = random_real(0.1, 1.5);
+        c.pose[4 * k + 3] = random_real(-0.5, 3.5);
+        c.velocity[k] = random_real(-5, 5);
+        c.spin[k] = random_real(-2, 2);
+    }
+    for (k = 0; k < 4; k++) {
+        q[k] = random_real(-1, 1);
+        square += q[k] * q[k];
+    }
+    for (k = 0; k < 4; k++) q[k] /= sqrt(square);
+    for (k = 0; k < 3; k++) { /* of a quaternion */
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        c.pose[5 * k] = 1 - 2 * (q[i] * q[i] + q[j] * q[j]);
+        c.pose[4 * k + i] = 2 * (q[k] * q[i] - q[3] * q[j]);
+        c.pose[4 * k + j] = 2 * (q[k] * q[j] + q[3] * q[i]);
+    }
+    return c;
+}
+
+/* Distances of colliders: the foot is on the surface, no other point of it is nearer, the normal is the gradient. */
+START_TEST(distances_of_colliders) {
+    int round, other, k;
+    random_seed((uint64_t)_i + 1);
+    for (round = 0; round < 100; round++) {
+        const gx_collider c = random_collider(0, (uint32_t)_i);
+        double p[3], n[3], foot[3], none[3], d, ahead;
+        for (k = 0; k < 3; k++) p[k] = random_below(4) == 0 ? 0 : random_real(-2, 2);
+        d = gxp_collider_distance(&c, p, n);
+        ck_assert_double_lt(fabs(gxp_dot(n, n) - 1), 1e-12);
+        for (k = 0; k < 3; k++) foot[k] = p[k] - d * n[k];
+        ck_assert_double_lt(fabs(gxp_collider_distance(&c, foot, none)), 1e-12);
+        for (k = 0; k < 3; k++) foot[k] = p[k] + 1e-6 * n[k];
+        ahead = gxp_collider_distance(&c, foot, none);
+        ck_assert_double_lt(fabs(ahead - d - 1e-6), 1e-9);
+        for (other = 0; other < 50; other++) { /* other points of the surface */
+            double q[3], m[3], e, square = 0;
+            for (k = 0; k < 3; k++) q[k] = random_real(-3, 3);
+            e = gxp_collider_distance(&c, q, m);
+            for (k = 0; k < 3; k++) square += (q[k] - e * m[k] - p[k]) * (q[k] - e * m[k] - p[k]);
+            ck_assert_double_ge(sqrt(square), fabs(d) - 1e-12);
+        }
+    }
+}
+END_TEST
+
+/* Samples that meet colliders: the same as by trying all facets and vertices, and none is missed on facets that are
+   left out. */
+START_TEST(colliders_are_found) {
+    const uint64_t seed = (uint64_t)_i + 1;
+    workload w = grid(3, 3, 3, 6);
+    gx_collider colliders[4];
+    gx_step_desc given = falling(0.02);
+    gxs_step_desc none;
+    gxp_touch_surface *surface;
+    gx_body *body;
+    gx_view view;
+    uint32_t i, c, f, met = 0, listed = 0;
+    int round, wild = 0;
+    random_seed(seed);
+    for (round = 0; round < 2; round++) {
+        const double p[3] = {random_real(0, 3), random_real(0, 3), random_real(0, 3)},
+                     n[3] = {random_real(-1, 1), random_real(-1, 1), random_real(0.1, 1)};
+        add_plane(&w, p, n, 12);
+    }
+    body = cut_in_sequence(&w);
+    switch_on(body, 0);
+    view = view_of(body);
+    for (i = 0; i < 3 * view.copy_count; i++) {
+        view.displacement[i] = random_real(-0.1, 0.1);
+        view.velocity[i] = random_real(-3, 3);
+    }
+    for (i = 0; i < 4; i++) colliders[i] = random_collider(90 - i, i == 0 ? 0 : (uint32_t)random_below(5));
+    memset(&none, 0, sizeof none);
+    none.dt = given.dt;
+    given.colliders = colliders;
+    given.collider_count = 4;
+    ck_assert_int_eq(gxp_attach_contact(body, &given, &none, &surface, NULL), GX_OK);
+    for (c = 0; c < 4; c++) {
+        double *areas = (double *)oracle_memory(NULL, surface->vertex_count + 1, sizeof *areas);
+        for (i = 0; i < surface->vertex_count; i++) areas[i] = 0;
+        for (f = 0; f < surface->facet_count; f++) {
+            const gxp_touch_facet *facet = &surface->facets[f];
+            const double size = surface->vertices[facet->vertex[0]].size;
+            const uint32_t parts = colliders[c].kind == GX_COLLIDER_PLANE
+                                     ? 1
+                                     : gxp_facet_parts(body, surface, none.dt, f, &colliders[c], &wild);
+            const uint32_t fine = parts > 1 ? parts : 12;
+            uint32_t a, b, m;
+            double x[9], n[3];
+            for (a = 0; a <= fine; a++)
+                for (b = 0; a + b <= fine && parts != 1; b++) {
+                    gxp_touch_pair pair = gxp_no_pair(surface->vertex_count + f);
+                    double at[6] = {0, 0, 0, 0, 0, 0};
+                    const double share[3] = {(double)(fine - a - b) / fine, (double)a / fine, (double)b / fine};
+                    pair.collider = c;
+                    for (i = 0; i < 3; i++)
+                        for (m = 0; m < 6; m++) at[m] += share[i] * body->touch.moved[9 * (size_t)facet->vertex[i] + m];
+                    if (!gxp_meets_collider(body, at, size, none.dt, &pair, &wild)) continue;
+                    CHECK_SEED(parts > 1, seed);
+                    for (i = 0; i < body->touch.found; i++)
+                        if (body->touch.pairs[i].sample == pair.sample && body->touch.pairs[i].collider == c &&
+                            memcmp(body->touch.pairs[i].share, share, sizeof share) == 0)
+                            break;
+                    CHECK_SEED(i < body->touch.found, seed);
+                    met++;
+                }
+            for (i = 0; i < 3; i++) memcpy(x + 3 * i, surface->vertices[facet->vertex[i]].rest, 3 * sizeof *x);
+            {
+                static const uint32_t corner[3] = {0, 1, 2};
+                gxp_triangle_normal(x, corner, n);
+            }
+            for (i = 0; i < 3 && parts == 1; i++) areas[facet->vertex[i]] += sqrt(gxp_dot(n, n)) / 6;
+        }
+        for (f = 0; f < surface->vertex_count; f++) {
+            gxp_touch_pair pair = gxp_no_pair(f);
+            pair.collider = c;
+            if (!(areas[f] > 0) || !gxp_meets_collider(body, body->touch.moved + 9 * (size_t)f,
+                                                       surface->vertices[f].size, none.dt, &pair, &wild))
+                continue;
+            for (i = 0; i < body->touch.found; i++)
+                if (body->touch.pairs[i].sample == f && body->touch.pairs[i].collider == c) break;
+            CHECK_SEED(i < body->touch.found, seed);
+            CHECK_SEED(fabs(body->touch.pairs[i].area - areas[f]) <= 1e-12 * areas[f], seed);
+            met++;
+        }
+        free(areas);
+    }
+    for (i = 0; i < body->touch.found; i++) listed += body->touch.pairs[i].collider != GXB_NONE;
+    CHECK_SEED(listed == met, seed);
     gx_body_destroy(body);
     wl_free(&w);
 }
@@ -545,9 +696,8 @@ START_TEST(refusals) {
         ck_assert_int_eq(gx_body_contact(other, &desc, &failure), GX_ERROR_ARGUMENT);
         ck_assert_str_eq(failure.field, "affine_below");
         ck_assert_int_eq(gx_body_contact(body, &desc, NULL), GX_OK);
-        ck_assert_int_eq(gx_body_restore(body, other, NULL), GX_OK); /* contact stays on */
-        ck_assert_int_eq(gx_body_step(body, &step, NULL, &failure), GX_ERROR_ARGUMENT);
-        ck_assert_str_eq(failure.field, "affine_below");
+        ck_assert_int_eq(gx_body_restore(body, other, NULL), GX_OK); /* which has none */
+        ck_assert_int_eq(gx_body_contacts(body, NULL, 0, &count, &failure), GX_ERROR_SEQUENCE);
         gx_body_destroy(other);
         gx_body_destroy(body);
         wl_free(&w);
@@ -639,29 +789,43 @@ START_TEST(beside_the_callers_pairs) {
 }
 END_TEST
 
-/* A step after a cut that runs out of memory leaves all as it was, and gives the same when it is taken again. */
+/* A step that runs out of memory leaves all as it was. Taken again it gives the same bits, if contact is all that was
+   new to it (cases 2, 3); after a cut the solver's model is made whole, and the same to the solver's tolerance. */
 START_TEST(without_memory) {
     workload w = grid(2, 2, 2, 6);
     memory m;
     gx_body *body[2];
+    gx_collider colliders[2];
     gx_step_desc step = falling(0.01);
     size_t n, count[2];
     int i;
     gx_result result = GX_ERROR_MEMORY;
+    random_seed(5);
+    colliders[0] = random_collider(8, GX_COLLIDER_PLANE);
+    colliders[1] = random_collider(3, GX_COLLIDER_SPHERE);
+    memset(colliders[0].pose, 0, sizeof colliders[0].pose);
+    for (i = 0; i < 3; i++) colliders[0].pose[5 * i] = 1;
+    colliders[1].size[0] = 0.4;
+    colliders[1].pose[3] = 2.3;
+    colliders[1].pose[7] = 0.8;
+    colliders[1].pose[11] = 1.6;
     add_axis_plane(&w, 2, 1.3);
     add_axis_plane(&w, 0, 1.1);
     for (i = 0; i < 2; i++) {
         body[i] = i == 0 ? body_in(&m, &w) : body_of(&w);
         cut_by(body[i], &w, 0, 1);
         hold_below(body[i], 0.1);
-        switch_on(body[i], 0.5);
+        if (_i < 2) switch_on(body[i], 0.5);
         for (n = 0; n < 5; n++) take(body[i], &step);
-        cut_by(body[i], &w, 1, 1);
+        if (_i < 2) cut_by(body[i], &w, 1, 1);
+        if (_i >= 2) switch_on(body[i], 0.5);
     }
+    step.colliders = colliders;
+    step.collider_count = 2;
     for (n = 0; result != GX_OK; n++) {
         const uint64_t state = gx_body_state_hash(body[0]);
         ck_assert_uint_lt(n, 10000);
-        fail_from(&m, n, _i);
+        fail_from(&m, n, _i % 2);
         result = gx_body_step(body[0], &step, NULL, NULL);
         never_fail(&m);
         ck_assert(result == GX_OK || (result == GX_ERROR_MEMORY && gx_body_state_hash(body[0]) == state));
@@ -673,7 +837,7 @@ START_TEST(without_memory) {
     {
         const gx_view view[2] = {view_of(body[0]), view_of(body[1])};
         for (n = 0; n < 3 * view[0].copy_count; n++)
-            ck_assert_double_lt(fabs(view[0].displacement[n] - view[1].displacement[n]), 1e-4);
+            ck_assert_double_le(fabs(view[0].displacement[n] - view[1].displacement[n]), _i < 2 ? 1e-4 : 0);
     }
     gx_body_destroy(body[0]);
     ck_assert(is_whole(&m));
@@ -682,30 +846,219 @@ START_TEST(without_memory) {
 }
 END_TEST
 
-/* A body that is put back to what it was has contact still, with other copies than before. */
-START_TEST(after_going_back) {
-    static const double up[3] = {0, 0, 1};
-    workload w;
-    gx_body *body = cut_cube(&w, 3, up, 1.5), *clone = NULL, *again;
-    gx_step_desc step = falling(0.01);
-    int frame;
-    hold_below(body, 0.1);
-    ck_assert_int_eq(gx_body_clone(body, &clone, NULL), GX_OK);
-    switch_on(body, 0.5);
-    for (frame = 0; frame < 10; frame++) take(body, &step);
-    add_axis_plane(&w, 0, 1.3);
-    cut_by(body, &w, 1, 1);
-    for (frame = 0; frame < 3; frame++) take(body, &step);
-    ck_assert_int_eq(gx_body_restore(body, clone, NULL), GX_OK);
-    again = clone;
-    switch_on(again, 0.5);
-    for (frame = 0; frame < 5; frame++) {
-        take(body, &step);
-        take(again, &step);
-        ck_assert(gx_body_state_hash(body) == gx_body_state_hash(again));
+/* ---- saved, cloned, restored ---- */
+
+/* Pieces that lean on each other, a ground and a small sphere, with friction; asleep soon if asked for */
+static gx_body *leaning(workload *w, gx_collider colliders[2], gx_step_desc *step) {
+    const double p[3] = {1, 1, 1.1}, n[3] = {0.15, 0.1, 1};
+    gx_body *body;
+    int i;
+    *w = grid(2, 2, 2, 6);
+    add_plane(w, p, n, 12);
+    body = cut_at_once(w);
+    switch_on(body, 0.4);
+    random_seed(3);
+    colliders[0] = random_collider(70, GX_COLLIDER_PLANE);
+    colliders[1] = random_collider(2, GX_COLLIDER_SPHERE);
+    for (i = 0; i < 2; i++) {
+        memset(colliders[i].pose, 0, sizeof colliders[i].pose);
+        memset(colliders[i].velocity, 0, sizeof colliders[i].velocity);
+        memset(colliders[i].spin, 0, sizeof colliders[i].spin);
+        colliders[i].pose[0] = colliders[i].pose[5] = colliders[i].pose[10] = 1;
+        colliders[i].friction = 0.5;
     }
+    colliders[1].size[0] = 0.3;
+    colliders[1].pose[3] = 0.6;
+    colliders[1].pose[7] = 0.7;
+    colliders[1].pose[11] = -0.25;
+    *step = falling(0.02);
+    step->colliders = colliders;
+    step->collider_count = 2;
+    for (i = 0; i < 25; i++) take(body, step);
+    ck_assert_uint_gt(body->touch.surfaces[body->touch.current].state_count, 20);
+    return body;
+}
+
+static gx_body *twin_by(gx_body *body, int way, const workload *w) {
+    gx_body *twin = NULL;
+    size_t size = 0;
+    void *bytes;
+    switch (way) {
+    case 0: ck_assert_int_eq(gx_body_clone(body, &twin, NULL), GX_OK); return twin;
+    case 1:
+        ck_assert_int_eq(gx_body_save(body, NULL, 0, &size, NULL), GX_OK);
+        bytes = oracle_memory(NULL, size, 1);
+        ck_assert_int_eq(gx_body_save(body, bytes, size, &size, NULL), GX_OK);
+        ck_assert_int_eq(gx_body_load(bytes, size, NULL, &twin, NULL), GX_OK);
+        free(bytes);
+        return twin;
+    default: /* one with the same cells, which has contact or not, or one with others */
+        twin = body_of(w);
+        if (way < 4) cut_by(twin, w, 0, w->surface_count);
+        if (way == 3) {
+            gx_step_desc step = falling(0.02);
+            switch_on(twin, 0);
+            take(twin, &step);
+        }
+        ck_assert_int_eq(gx_body_restore(twin, body, NULL), GX_OK);
+        return twin;
+    }
+}
+
+/* A body and its twin take the same steps, bit by bit, also if a cut has been or comes between. */
+START_TEST(goes_on_alike) {
+    const int way = _i % 5, cut = _i / 5; /* 1: before, 2: after */
+    workload w;
+    gx_collider colliders[2];
+    gx_step_desc step;
+    gx_body *body = leaning(&w, colliders, &step), *twin;
+    gx_failure failure;
+    uint64_t state;
+    size_t count[2];
+    int frame;
+    add_axis_plane(&w, 0, 0.55);
+    if (cut == 1) cut_by(body, &w, 1, 1);
+    if (cut != 1) w.surface_count--;
+    state = gx_body_state_hash(body);
+    twin = twin_by(body, way, &w);
+    ck_assert(gx_body_state_hash(body) == state);
+    ck_assert(gx_body_state_hash(twin) == state);
+    ck_assert_int_eq(gx_body_contacts(twin, NULL, 0, &count[0], &failure), GX_OK);
+    ck_assert_uint_eq(count[0], 0);
+    if (cut != 1) w.surface_count++;
+    if (cut == 2) {
+        cut_by(body, &w, 1, 1);
+        cut_by(twin, &w, 1, 1);
+    }
+    for (frame = 0; frame < 4; frame++) {
+        take(body, &step);
+        take(twin, &step);
+        ck_assert(gx_body_state_hash(body) == gx_body_state_hash(twin));
+    }
+    ck_assert(force_of(body, &count[0]) == force_of(twin, &count[1]) && count[0] == count[1]);
     gx_body_destroy(body);
-    gx_body_destroy(again);
+    gx_body_destroy(twin);
+    wl_free(&w);
+}
+END_TEST
+
+/* What sleeps on colliders sleeps on after loading, which knows them. */
+START_TEST(sleeps_on_after_loading) {
+    workload w;
+    gx_collider colliders[2];
+    gx_step_desc step;
+    gx_body *body = leaning(&w, colliders, &step), *twin;
+    gx_step_report report;
+    int frame;
+    step.sleep_speed = 0.05;
+    step.sleep_time = 0.2;
+    for (frame = 0; frame < 400; frame++) {
+        report = take(body, &step);
+        if (report.stop == GXS_STOP_ASLEEP) break;
+    }
+    ck_assert_int_eq(report.stop, GXS_STOP_ASLEEP);
+    twin = twin_by(body, _i, &w);
+    report = take(twin, &step);
+    ck_assert_int_eq(report.stop, GXS_STOP_ASLEEP);
+    take(body, &step);
+    ck_assert(gx_body_state_hash(body) == gx_body_state_hash(twin));
+    colliders[1].pose[11] -= 0.1;
+    report = take(twin, &step);
+    ck_assert_int_ne(report.stop, GXS_STOP_ASLEEP);
+    take(body, &step);
+    ck_assert(gx_body_state_hash(body) == gx_body_state_hash(twin));
+    gx_body_destroy(body);
+    gx_body_destroy(twin);
+    wl_free(&w);
+}
+END_TEST
+
+static void expect_damage(gx_body *body, void *at, const void *wrong, size_t size, const char *what) {
+    unsigned char right[16], *bytes;
+    gx_body *other = NULL;
+    size_t all = 0;
+    gx_result result;
+    memcpy(right, at, size);
+    memcpy(at, wrong, size);
+    ck_assert_int_eq(gx_body_save(body, NULL, 0, &all, NULL), GX_OK);
+    bytes = (unsigned char *)oracle_memory(NULL, all, 1);
+    ck_assert_int_eq(gx_body_save(body, bytes, all, &all, NULL), GX_OK);
+    memcpy(at, right, size);
+    result = gx_body_load(bytes, all, NULL, &other, NULL);
+    ck_assert_msg(result == GX_ERROR_DAMAGED && other == NULL, "%s: %s", what, gx_result_text(result));
+    free(bytes);
+}
+
+/* What a step relies on is checked when contact is loaded. */
+START_TEST(damage_to_contact) {
+    workload w;
+    gx_collider colliders[2];
+    gx_step_desc step;
+    gx_body *body = leaning(&w, colliders, &step);
+    gxp_touch *t = &body->touch;
+    gxp_touch_surface *s = &t->surfaces[t->current];
+    gxp_touch_state *state = &s->states[s->state_count - 1];
+    double *const numbers[5] = {&t->desc.stiffness, &t->desc.friction, &t->desc.sticking_speed, &t->desc.recovery,
+                                &t->desc.depth};
+    const double infinite = HUGE_VAL, negative = -1, zero = 0;
+    const uint32_t beyond = s->vertex_count + s->facet_count, none = UINT32_MAX, first = 0;
+    int i;
+    for (i = 0; i < 5; i++) {
+        expect_damage(body, numbers[i], &infinite, sizeof infinite, "a number of contact");
+        expect_damage(body, numbers[i], &negative, sizeof negative, "a number of contact");
+        if (i % 4 == 0) expect_damage(body, numbers[i], &zero, sizeof zero, "a number of contact");
+    }
+    expect_damage(body, &state->pressed, &infinite, sizeof infinite, "a depth");
+    expect_damage(body, &state->pressed, &negative, sizeof negative, "a depth");
+    for (i = 0; i < 3; i++) {
+        expect_damage(body, &state->slip[i], &infinite, sizeof infinite, "a slip");
+        expect_damage(body, &state->rest[i], &infinite, sizeof infinite, "a place");
+    }
+    expect_damage(body, &state->sample, &beyond, sizeof beyond, "a sample that is not");
+    expect_damage(body, &state->sample, &first, sizeof first, "samples out of order");
+    expect_damage(body, &t->known[0].id, &none, sizeof none, "colliders out of order");
+    i = 2;
+    expect_damage(body, &t->on, &i, sizeof i, "on or off");
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Saving, cloning and restoring that run out of memory leave the body as it was. */
+START_TEST(saving_without_memory) {
+    memory m;
+    workload w = grid(2, 2, 2, 6);
+    gx_body *body, *other = NULL, *free_one;
+    gx_step_desc step = falling(0.02);
+    gx_result result = GX_ERROR_MEMORY;
+    size_t n;
+    int frame;
+    add_axis_plane(&w, 2, 1.3);
+    add_axis_plane(&w, 0, 1.1);
+    body = body_in(&m, &w);
+    free_one = body_of(&w);
+    cut_by(body, &w, 0, 1);
+    cut_by(free_one, &w, 0, 1);
+    hold_below(body, 0.1);
+    switch_on(body, 0.5);
+    for (frame = 0; frame < 5; frame++) take(body, &step);
+    ck_assert_uint_gt(body->touch.surfaces[body->touch.current].state_count, 0);
+    if (_i % 2) cut_by(body, &w, 1, 1); /* the surface is to be made for saving */
+    for (n = 0; result != GX_OK; n++) {
+        const uint64_t state = gx_body_state_hash(body);
+        ck_assert_uint_lt(n, 20000);
+        fail_from(&m, n, 1);
+        result = _i < 2 ? gx_body_clone(body, &other, NULL) : gx_body_restore(body, free_one, NULL);
+        never_fail(&m);
+        ck_assert(result == GX_OK || (result == GX_ERROR_MEMORY && gx_body_state_hash(body) == state));
+    }
+    take(body, &step);
+    if (other != NULL) take(other, &step);
+    if (other != NULL) ck_assert(gx_body_state_hash(body) == gx_body_state_hash(other));
+    gx_body_destroy(other);
+    gx_body_destroy(body);
+    gx_body_destroy(free_one);
+    ck_assert(is_whole(&m));
     wl_free(&w);
 }
 END_TEST
@@ -715,6 +1068,8 @@ static Suite *suite(void) {
     TCase *tests = tcase_create("touch");
     tcase_set_timeout(tests, 300);
     ADD_SOME(tests, search_is_exhaustive, 8);
+    tcase_add_loop_test(tests, distances_of_colliders, 0, 5);
+    ADD_SOME(tests, colliders_are_found, 8);
     ADD_SOME(tests, rests_from_the_cut_on, 2);
     ADD_SOME(tests, a_closed_cut_carries, 3);
     ADD_SOME(tests, blocks_collide, 2);
@@ -725,8 +1080,11 @@ static Suite *suite(void) {
     tcase_add_test(tests, lips_meet);
     tcase_add_test(tests, refusals);
     tcase_add_test(tests, beside_the_callers_pairs);
-    tcase_add_loop_test(tests, without_memory, 0, 2);
-    tcase_add_test(tests, after_going_back);
+    tcase_add_loop_test(tests, without_memory, 0, 4);
+    ADD_SOME(tests, goes_on_alike, 15);
+    tcase_add_loop_test(tests, sleeps_on_after_loading, 0, 2);
+    tcase_add_test(tests, damage_to_contact);
+    ADD_SOME(tests, saving_without_memory, 4);
     suite_add_tcase(s, tests);
     return s;
 }

@@ -112,6 +112,7 @@ namespace Gxfem {
         public UIntPtr element_count;
         public IntPtr constraints;
         public UIntPtr constraint_count;
+        public IntPtr affine;
         public ulong epoch;
     }
 
@@ -173,6 +174,8 @@ namespace Gxfem {
     [StructLayout(LayoutKind.Sequential)]
     public unsafe struct gxs_pair {
         public gxs_point point;
+        public uint flags;
+        public fixed double way[3];
         public fixed double normal[3];
         public double offset;
         public double stiffness;
@@ -194,6 +197,7 @@ namespace Gxfem {
         public double mass_damping;
         public uint substeps;
         public uint newton_iterations;
+        public uint quick;
         public double newton_tolerance;
         public uint cg_iterations;
         public double cg_tolerance;
@@ -232,6 +236,7 @@ namespace Gxfem {
         public gxs_stop stop;
         public UIntPtr active_unknowns;
         public uint substeps;
+        public uint quick;
         public uint parts;
         public gxs_integrator integrator;
         public double error;
@@ -409,11 +414,33 @@ namespace Gxfem {
     }
 
     [StructLayout(LayoutKind.Sequential)]
+    public unsafe struct gx_collider {
+        public uint id;
+        public uint kind;
+        public fixed double size[3];
+        public fixed double pose[12];
+        public fixed double velocity[3];
+        public fixed double spin[3];
+        public double friction;
+        public IntPtr distance;
+        public IntPtr user;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    public unsafe struct gx_collider_load {
+        public fixed double force[3];
+        public fixed double torque[3];
+        public fixed double stiffness[36];
+        public uint contacts;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
     public unsafe struct gx_step_desc {
         public double dt;
         public fixed double gravity[3];
         public gxs_integrator integrator;
         public uint substeps;
+        public uint quick;
         public uint newton_iterations;
         public double newton_tolerance;
         public uint cg_iterations;
@@ -442,6 +469,9 @@ namespace Gxfem {
         public IntPtr pair_anchors;
         public IntPtr pair_slips;
         public IntPtr pair_forces;
+        public IntPtr colliders;
+        public UIntPtr collider_count;
+        public IntPtr collider_loads;
         public double sleep_speed;
         public double sleep_time;
         public IntPtr clock;
@@ -464,6 +494,7 @@ namespace Gxfem {
     public unsafe struct gx_contact {
         public uint fragment;
         public uint other;
+        public uint collider;
         public fixed double position[3];
         public fixed double normal[3];
         public fixed double force[3];
@@ -834,6 +865,7 @@ namespace Gxfem {
         public UIntPtr memory_limit;
         public IntPtr inside;
         public IntPtr user;
+        public gx_jobs jobs;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -910,6 +942,8 @@ namespace Gxfem {
     }
 
     public static class Native {
+        public const uint GXS_PAIR_OUTSIDE = 1;
+        public const uint GXS_PAIR_WAKES = 2;
         public const uint GX_SURFACE_SHEET = 0;
         public const uint GX_SURFACE_SOLID = 1;
         public const uint GX_SURFACE_KEEP = 2;
@@ -924,6 +958,11 @@ namespace Gxfem {
         public const uint GX_REGION_SURFACE = 3;
         public const uint GX_REGION_NODES = 4;
         public const uint GX_REGION_ANCHORS = 5;
+        public const uint GX_COLLIDER_PLANE = 0;
+        public const uint GX_COLLIDER_SPHERE = 1;
+        public const uint GX_COLLIDER_CAPSULE = 2;
+        public const uint GX_COLLIDER_BOX = 3;
+        public const uint GX_COLLIDER_DISTANCE = 4;
         public const uint GX_SKIN_OUTER = 0;
         public const uint GXB_EXPLICIT = 0;
         public const uint GXB_LINE_PLANE = 1;

@@ -38,6 +38,8 @@ GXS_BDF2 = 1
 GXS_MIDPOINT = 2
 GXS_STATIC = 3
 GXS_EXPLICIT = 4
+GXS_PAIR_OUTSIDE = 1
+GXS_PAIR_WAKES = 2
 GXS_STOP_BALANCE = 0
 GXS_STOP_ITERATIONS = 1
 GXS_STOP_SECONDS = 2
@@ -57,6 +59,11 @@ GX_REGION_SPHERE = 2
 GX_REGION_SURFACE = 3
 GX_REGION_NODES = 4
 GX_REGION_ANCHORS = 5
+GX_COLLIDER_PLANE = 0
+GX_COLLIDER_SPHERE = 1
+GX_COLLIDER_CAPSULE = 2
+GX_COLLIDER_BOX = 3
+GX_COLLIDER_DISTANCE = 4
 GX_SKIN_OUTER = 0
 GXB_EXPLICIT = 0
 GXB_LINE_PLANE = 1
@@ -188,6 +195,14 @@ class gx_anchor(Structure):
 
 
 class gx_region(Structure):
+    pass
+
+
+class gx_collider(Structure):
+    pass
+
+
+class gx_collider_load(Structure):
     pass
 
 
@@ -438,6 +453,7 @@ gxs_change._fields_ = [
     ('element_count', c_size_t),
     ('constraints', POINTER(gxs_constraint)),
     ('constraint_count', c_size_t),
+    ('affine', POINTER(c_uint32)),
     ('epoch', c_uint64),
 ]
 
@@ -476,6 +492,8 @@ gxs_contact_fn = CFUNCTYPE(c_double, c_void_p, c_size_t, POINTER(c_double), POIN
 
 gxs_pair._fields_ = [
     ('point', gxs_point),
+    ('flags', c_uint32),
+    ('way', c_double * 3),
     ('normal', c_double * 3),
     ('offset', c_double),
     ('stiffness', c_double),
@@ -496,6 +514,7 @@ gxs_step_desc._fields_ = [
     ('mass_damping', c_double),
     ('substeps', c_uint32),
     ('newton_iterations', c_uint32),
+    ('quick', c_uint32),
     ('newton_tolerance', c_double),
     ('cg_iterations', c_uint32),
     ('cg_tolerance', c_double),
@@ -525,6 +544,7 @@ gxs_step_report._fields_ = [
     ('stop', c_int),
     ('active_unknowns', c_size_t),
     ('substeps', c_uint32),
+    ('quick', c_uint32),
     ('parts', c_uint32),
     ('integrator', c_int),
     ('error', c_double),
@@ -690,11 +710,33 @@ gx_region._fields_ = [
     ('anchor_count', c_size_t),
 ]
 
+gx_distance_fn = CFUNCTYPE(c_double, c_void_p, POINTER(c_double), POINTER(c_double))
+
+gx_collider._fields_ = [
+    ('id', c_uint32),
+    ('kind', c_uint32),
+    ('size', c_double * 3),
+    ('pose', c_double * 12),
+    ('velocity', c_double * 3),
+    ('spin', c_double * 3),
+    ('friction', c_double),
+    ('distance', CFUNCTYPE(c_double, c_void_p, POINTER(c_double), POINTER(c_double))),
+    ('user', c_void_p),
+]
+
+gx_collider_load._fields_ = [
+    ('force', c_double * 3),
+    ('torque', c_double * 3),
+    ('stiffness', c_double * 36),
+    ('contacts', c_uint32),
+]
+
 gx_step_desc._fields_ = [
     ('dt', c_double),
     ('gravity', c_double * 3),
     ('integrator', c_int),
     ('substeps', c_uint32),
+    ('quick', c_uint32),
     ('newton_iterations', c_uint32),
     ('newton_tolerance', c_double),
     ('cg_iterations', c_uint32),
@@ -723,6 +765,9 @@ gx_step_desc._fields_ = [
     ('pair_anchors', POINTER(gx_anchor)),
     ('pair_slips', POINTER(c_double)),
     ('pair_forces', POINTER(c_double)),
+    ('colliders', POINTER(gx_collider)),
+    ('collider_count', c_size_t),
+    ('collider_loads', POINTER(gx_collider_load)),
     ('sleep_speed', c_double),
     ('sleep_time', c_double),
     ('clock', CFUNCTYPE(c_double, c_void_p)),
@@ -745,6 +790,7 @@ gx_contact_desc._fields_ = [
 gx_contact._fields_ = [
     ('fragment', c_uint32),
     ('other', c_uint32),
+    ('collider', c_uint32),
     ('position', c_double * 3),
     ('normal', c_double * 3),
     ('force', c_double * 3),
@@ -1090,6 +1136,7 @@ gxb_boolean_desc._fields_ = [
     ('memory_limit', c_size_t),
     ('inside', CFUNCTYPE(c_int, c_void_p, POINTER(c_int32), c_size_t)),
     ('user', c_void_p),
+    ('jobs', gx_jobs),
 ]
 
 gxb_origin._fields_ = [
