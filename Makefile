@@ -154,7 +154,7 @@ $(BUILD)/web/player.css $(BUILD)/web/player.js: $(BUILD)/web/%: examples/%
 
 # From clang 16 on vectors are right (gxfem_boolean.h): a step then takes half the time.
 newest_clang = $(shell for c in clang-21 clang-20 clang-19 clang-18 clang-17 clang-16 clang; do command -v $$c >/dev/null && echo $$c && break; done)
-web_clang = $(or $(CLANG),$(newest_clang)) --target=wasm32-wasi --sysroot=$(or $(SYSROOT),/usr) -std=c99 -O2 $(WARNINGS) -I. -mexec-model=reactor
+web_clang = $(or $(CLANG),$(newest_clang)) --target=wasm32-wasi --sysroot=$(or $(SYSROOT),/usr) -std=c99 -Os $(WARNINGS) -I. -mexec-model=reactor
 web_link = -Wl,-z,stack-size=65536 -Wl,--stack-first -Wl,--strip-all -lm
 $(BUILD)/web/jelly.wasm: web_vectors =
 $(BUILD)/web/jelly-simd.wasm: web_vectors = -msimd128

@@ -60,7 +60,8 @@
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
  *     a step, with contact:      >>touch >>colliders >>meeting >>pressing >>step
- *     a blade in space:          >>layers >>edges >>fronts >>glances >>strokes >>ways >>blade >>contacts >>carve
+ *     a blade in space:          >>layers >>edges >>relations >>fronts >>glances >>strokes >>ways >>blade
+ *                                >>contacts >>carve
  *     beginning, end, bytes:     >>grid >>create >>hashes >>stream >>scabbard >>save
  *
  * Words. Facet: a polygon inside an element or in an element face, made by cuts. Wall: a facet that a sheet covers.
@@ -1606,6 +1607,10 @@ typedef struct gxp_boundary {
     gxp_words slots;     /* by point of the complex: its place in points, if it is there */
     gxp_words triangles; /* x 3, places in points */
     gxp_words facets;    /* in faces of the element: 2 x facet, + 1 if the material is in front */
+    gxp_words leaves;    /* that it bounds */
+    gxp_words fixed_of;  /* by place in points: the place in fixed, or GXP_NONE */
+    gxb_fixed *fixed;    /* x 4: coordinates of those points that needed more digits */
+    uint32_t fixed_count, fixed_capacity;
 } gxp_boundary;
 
 typedef struct gxp_scratch {
@@ -1625,7 +1630,12 @@ typedef struct gxp_scratch {
     gxp_keys order;          /* place in the order of insertion, triangle */
     gxp_words near_elements; /* that a triangle may meet */
     /* >>pinches */
-    gxp_words joint_leaves, joint_edges, joint_cells; /* around a node or edge */
+    gxp_words joint_leaves; /* around a node, or of an element */
+    gxp_words joint_edges;  /* parts of edges in which these meet: joints 0, 1, ...; then a node is one */
+    gxp_words joint_walls;  /* by joint: 1 if a wall touches it */
+    gxp_words leaf_joints;  /* on a leaf's boundary */
+    gxp_keys joint_cells;   /* joint, cell; ascending */
+    gxp_keys cell_joints;   /* the same by cell */
     /* >>solids */
     gxp_words seed_leaves; /* where the flood starts */
     gxp_words flooded;     /* leaves whose winding number is known */
@@ -1910,7 +1920,8 @@ static const gxp_column gxp_lists[] = {
     GXP_KEYS(scratch.links), GXP_KEYS(scratch.glue), GXP_KEYS(scratch.seams), GXP_WORDS(scratch.cluster),
     GXP_WORDS(scratch.link_first), GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
     GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements),
-    GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_cells),
+    GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_walls),
+    GXP_WORDS(scratch.leaf_joints), GXP_KEYS(scratch.joint_cells), GXP_KEYS(scratch.cell_joints),
     GXP_WORDS(scratch.seed_leaves), GXP_WORDS(scratch.flooded), GXP_WORDS(scratch.seeded), GXP_WORDS(scratch.wound),
     GXP_WORDS(scratch.leaf_points),
     GXP_KEYS(scratch.given_to), GXP_WORDS(scratch.remade), GXP_KEYS(scratch.interfaces),
@@ -1919,8 +1930,9 @@ static const gxp_column gxp_lists[] = {
     GXP_KEYS(scratch.pairs), GXP_WORDS(scratch.subdomains), GXP_WORDS(scratch.subdomain_cells),
     GXP_WORDS(scratch.taken), GXP_WORDS(scratch.face_facets),
     GXP_WORDS(scratch.boundary.points), GXP_WORDS(scratch.boundary.slots), GXP_WORDS(scratch.boundary.triangles),
-    GXP_WORDS(scratch.boundary.facets),
+    GXP_WORDS(scratch.boundary.facets), GXP_WORDS(scratch.boundary.leaves), GXP_WORDS(scratch.boundary.fixed_of),
     GXP_LIST(scratch.boundary.lambdas, scratch.boundary.lambda_capacity, 4 * sizeof(double)),
+    GXP_LIST(scratch.boundary.fixed, scratch.boundary.fixed_capacity, 4 * sizeof(gxb_fixed)),
     GXP_WORDS(scratch.sheet_cells), GXP_WORDS(scratch.bulk_of), GXP_WORDS(scratch.bulk_met), GXP_WORDS(scratch.bent),
     GXP_LIST(scratch.bulks, scratch.bulk_capacity, sizeof(gxp_bulk))};
 /* clang-format on */
@@ -3462,32 +3474,58 @@ static void gxp_find_pinched_edges(gx_body *body) {
         }
 }
 
-/* A point or an edge of the complex in which elements meet; the other of the two is GXB_NONE */
-typedef struct gxp_joint {
-    uint32_t point, edge;
-    int found, walled;
-} gxp_joint;
+/* Where a word is in an ascending list, GXP_NONE: nowhere */
+static uint32_t gxp_place_of(const gxp_words *words, uint32_t value) {
+    uint32_t low = 0, high = words->count;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (words->data[middle] < value)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < words->count && words->data[low] == value ? low : GXP_NONE;
+}
 
-/* Is the joint on the leaf's boundary (found), and does a wall touch it there (walled)? */
-static gx_result gxp_find_leaf_joint(gx_body *body, uint32_t leaf, gxp_joint *joint) {
+/* Makes the edges in scratch.joint_edges joints: the parts of mesh edges in which elements meet, joints 0, 1, ... in
+   ascending order. The joint after them is a node. */
+static gx_result gxp_start_joints(gx_body *body) {
+    gxp_scratch *scratch = &body->scratch;
+    gx_result result;
+    gxp_sort_unique(&scratch->joint_edges);
+    result = gxp_start_words(body, &scratch->joint_walls, (size_t)scratch->joint_edges.count + 1);
+    if (result != GX_OK) return result;
+    scratch->joint_walls.count = scratch->joint_edges.count + 1;
+    memset(scratch->joint_walls.data, 0, scratch->joint_walls.count * sizeof *scratch->joint_walls.data);
+    return GX_OK;
+}
+
+/* Lists in scratch.leaf_joints the joints on the boundary of a leaf of an open element, and notes in
+   scratch.joint_walls at which a wall touches it. node: that is a joint, or GXB_NONE */
+static gx_result gxp_find_leaf_joints(gx_body *body, uint32_t leaf, uint32_t node) {
     gxb_complex *cx = body->complex;
-    uint32_t first, count = 0, i, j, e0, en;
-    gx_result result = gxb_complex_open_element(cx, gxb_complex_leaf(cx, leaf)->element);
-    if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
-    joint->found = 0;
+    gxp_scratch *scratch = &body->scratch;
+    uint32_t first, count = 0, i, j, k, e0, en;
+    gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
+    scratch->leaf_joints.count = 0;
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint32_t facet = gxp_item(cx, first + i);
+        const int wall = gxb_complex_facet(cx, facet)->wall != 0 || gxb_complex_leaf(cx, leaf)->removed != 0;
         result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
         for (j = 0; j < en && result == GX_OK; j++) {
             const uint32_t e = gxp_item(cx, e0 + j);
-            if (joint->point != GXB_NONE ? gxb_complex_edge_start(cx, e) != joint->point : e >> 1 != joint->edge)
-                continue;
-            joint->found = 1;
-            joint->walled |= gxb_complex_facet(cx, facet)->wall != 0 || gxb_complex_leaf(cx, leaf)->removed != 0 ||
-                             (joint->point != GXB_NONE ? gxb_complex_point(cx, joint->point)->wall
-                                                       : gxb_complex_edge(cx, joint->edge)->wall) != 0;
+            uint32_t joints[2] = {GXP_NONE, GXP_NONE};
+            joints[0] = gxp_place_of(&scratch->joint_edges, e >> 1);
+            if (node != GXB_NONE && gxb_complex_edge_start(cx, e) == node) joints[1] = scratch->joint_edges.count;
+            for (k = 0; k < 2 && result == GX_OK; k++) {
+                if (joints[k] == GXP_NONE) continue;
+                result = gxp_push(body, &scratch->leaf_joints, joints[k]);
+                if (wall || (k == 0 ? gxb_complex_edge(cx, e >> 1)->wall : gxb_complex_point(cx, node)->wall) != 0)
+                    scratch->joint_walls.data[joints[k]] = 1;
+            }
         }
     }
+    gxp_sort_unique(&scratch->leaf_joints);
     return result;
 }
 
@@ -3495,26 +3533,20 @@ static gx_result gxp_find_leaf_joint(gx_body *body, uint32_t leaf, gxp_joint *jo
    of the two is GXB_NONE. */
 static gx_result gxp_is_joint_in_scope(gx_body *body, uint32_t element, uint32_t node, uint32_t edge, int *found) {
     gxp_scratch *scratch = &body->scratch;
-    gx_result result = GX_OK;
-    uint32_t i, j;
+    gx_result result;
+    uint32_t i;
     *found = 0;
     scratch->joint_leaves.count = scratch->joint_edges.count = 0;
-    if (edge == GXB_NONE)
-        result = gxp_push(body, &scratch->joint_edges, GXB_NONE);
-    else
+    result = gxb_complex_open_element(body->complex, element);
+    if (edge != GXB_NONE && result == GX_OK)
         result = gxp_push_divided_edges(body, gxb_complex_mesh_edge(body->complex, edge), &scratch->joint_edges);
+    if (result == GX_OK) result = gxp_start_joints(body);
     if (result == GX_OK)
         result = gxp_push_leaves(body, gxb_complex_root(body->complex, element), &scratch->joint_leaves);
-    for (i = 0; i < scratch->joint_leaves.count && result == GX_OK; i++) {
-        gxp_joint joint;
+    for (i = 0; i < scratch->joint_leaves.count && result == GX_OK && !*found; i++) {
         if (!gxp_in_scope(body, scratch->joint_leaves.data[i])) continue;
-        for (j = 0; j < scratch->joint_edges.count && result == GX_OK && !*found; j++) {
-            joint.point = node;
-            joint.edge = scratch->joint_edges.data[j];
-            joint.walled = 0;
-            result = gxp_find_leaf_joint(body, scratch->joint_leaves.data[i], &joint);
-            *found |= joint.found;
-        }
+        result = gxp_find_leaf_joints(body, scratch->joint_leaves.data[i], node);
+        *found = scratch->leaf_joints.count > 0;
     }
     return result;
 }
@@ -3551,60 +3583,71 @@ static gx_result gxp_cover_pinches(gx_body *body, gxb_triangle *t, uint32_t elem
     return result;
 }
 
-/* Appends the cells around the node that have the joint on their boundary. Removed leaves count as walls. */
-static gx_result gxp_find_joint_cells(gx_body *body, uint32_t node, gxp_joint *joint, gxp_words *found) {
+/* Drops keys that are there twice; they are ascending. */
+static void gxp_drop_same_keys(gxp_keys *keys) {
+    uint32_t i, n = 0;
+    for (i = 0; i < keys->count; i++)
+        if (n == 0 || keys->data[i] != keys->data[n - 1]) keys->data[n++] = keys->data[i];
+    keys->count = n;
+}
+
+/* Lists the pinched edges of a node, in parts, in scratch.joint_edges, and the leaves around it in joint_leaves. */
+static gx_result gxp_list_joint_edges(gx_body *body, uint32_t node) {
     gxp_scratch *scratch = &body->scratch;
-    uint32_t j, i;
+    gxb_complex *cx = body->complex;
+    uint32_t i, k;
     gx_result result = GX_OK;
-    joint->walled = 0;
-    scratch->joint_leaves.count = 0;
-    for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1] && result == GX_OK; j++)
-        result =
-            gxp_push_leaves(body, gxb_complex_root(body->complex, body->mesh.node_elements[j]), &scratch->joint_leaves);
+    scratch->joint_leaves.count = scratch->joint_edges.count = 0;
+    for (i = body->mesh.node_start[node]; i < body->mesh.node_start[node + 1] && result == GX_OK; i++) {
+        const uint32_t element = body->mesh.node_elements[i], *nodes = gxb_complex_element_nodes(cx, element);
+        result = gxb_complex_open_element(cx, element);
+        if (result == GX_OK) result = gxp_push_leaves(body, gxb_complex_root(cx, element), &scratch->joint_leaves);
+        for (k = 0; k < 6 && result == GX_OK; k++) {
+            const uint32_t edge = gxb_complex_element_edges(cx, element)[k];
+            if (!body->mesh.edge_pinched[edge]) continue;
+            if (nodes[gxp_edge_nodes[k][0]] == node || nodes[gxp_edge_nodes[k][1]] == node)
+                result = gxp_push_divided_edges(body, gxb_complex_mesh_edge(cx, edge), &scratch->joint_edges);
+        }
+    }
+    return result == GX_OK ? gxp_start_joints(body) : result;
+}
+
+/* Lists which cells around a node meet in which joints: the node, if it is pinched, and its pinched edges. Removed
+   leaves count as walls. */
+static gx_result gxp_list_joints(gx_body *body, uint32_t node) {
+    gxp_scratch *scratch = &body->scratch;
+    const uint32_t point = body->mesh.node_pinched[node] & 1 ? node : GXB_NONE;
+    uint32_t i, k;
+    gx_result result = gxp_list_joint_edges(body, node);
+    scratch->joint_cells.count = scratch->cell_joints.count = 0;
     for (i = 0; i < scratch->joint_leaves.count && result == GX_OK; i++) {
         const uint32_t leaf = scratch->joint_leaves.data[i];
-        result = gxp_find_leaf_joint(body, leaf, joint);
-        if (joint->found && !gxb_complex_leaf(body->complex, leaf)->removed && result == GX_OK)
-            result = gxp_push(body, found, body->leaves.data[leaf].cell);
+        result = gxp_find_leaf_joints(body, leaf, point);
+        if (gxb_complex_leaf(body->complex, leaf)->removed) continue;
+        for (k = 0; k < scratch->leaf_joints.count && result == GX_OK; k++)
+            result =
+                gxp_push_key(body, &scratch->joint_cells, scratch->leaf_joints.data[k], body->leaves.data[leaf].cell);
     }
-    return result;
+    if (result == GX_OK) result = gxp_sort_keys(body, &scratch->joint_cells, 0, scratch->joint_cells.count);
+    gxp_drop_same_keys(&scratch->joint_cells);
+    for (i = 0; i < scratch->joint_cells.count && result == GX_OK; i++)
+        result = gxp_push_key(body, &scratch->cell_joints, GXP_SECOND(scratch->joint_cells.data[i]),
+                              GXP_FIRST(scratch->joint_cells.data[i]));
+    return result == GX_OK ? gxp_sort_keys(body, &scratch->cell_joints, 0, scratch->cell_joints.count) : result;
 }
 
-/* Visits the cells that the joint connects to this cell. */
-static gx_result gxp_cross_joint(gx_body *body, uint32_t cell, uint32_t node, uint32_t point, uint32_t edge) {
+/* Visits the cells that joints connect to this one: those that gxp_list_joints has listed. */
+static gx_result gxp_cross_joints(gx_body *body, uint32_t cell) {
     gxp_scratch *scratch = &body->scratch;
-    gxp_joint joint;
-    uint32_t i, member = 0;
-    gx_result result;
-    joint.point = point;
-    joint.edge = edge;
-    joint.walled = joint.found = 0;
-    scratch->joint_cells.count = 0;
-    result = gxp_find_joint_cells(body, node, &joint, &scratch->joint_cells);
-    for (i = 0; i < scratch->joint_cells.count; i++) member |= scratch->joint_cells.data[i] == cell;
-    for (i = 0; i < scratch->joint_cells.count && result == GX_OK && member && !joint.walled; i++)
-        result = gxp_visit_cell(body, scratch->joint_cells.data[i], &scratch->subdomain_cells);
-    return result;
-}
-
-/* Visits the cells that the node, if it is pinched, and its pinched edges connect to this cell. */
-static gx_result gxp_cross_pinches(gx_body *body, uint32_t cell, uint32_t node) {
-    gxp_scratch *scratch = &body->scratch;
-    const uint32_t element = body->cells.data[cell].element;
-    gxb_complex *cx = body->complex;
-    uint32_t k, i;
-    gx_result result = gxb_complex_open_element(cx, element);
-    if (result == GX_OK && (body->mesh.node_pinched[node] & 1))
-        result = gxp_cross_joint(body, cell, node, node, GXB_NONE);
-    for (k = 0; k < 6 && result == GX_OK; k++) {
-        const uint32_t edge = gxb_complex_element_edges(cx, element)[k];
-        const uint32_t a = gxb_complex_element_nodes(cx, element)[gxp_edge_nodes[k][0]],
-                       b = gxb_complex_element_nodes(cx, element)[gxp_edge_nodes[k][1]];
-        if (!body->mesh.edge_pinched[edge] || (a != node && b != node)) continue;
-        scratch->joint_edges.count = 0;
-        result = gxp_push_divided_edges(body, gxb_complex_mesh_edge(cx, edge), &scratch->joint_edges);
-        for (i = 0; i < scratch->joint_edges.count && result == GX_OK; i++)
-            result = gxp_cross_joint(body, cell, node, GXB_NONE, scratch->joint_edges.data[i]);
+    const gxp_keys *of_cell = &scratch->cell_joints, *of_joint = &scratch->joint_cells;
+    uint32_t i = gxp_first_key(of_cell, (uint64_t)cell << 32), j;
+    gx_result result = GX_OK;
+    for (; i < of_cell->count && GXP_FIRST(of_cell->data[i]) == cell; i++) {
+        const uint32_t joint = GXP_SECOND(of_cell->data[i]);
+        if (scratch->joint_walls.data[joint]) continue;
+        j = gxp_first_key(of_joint, (uint64_t)joint << 32);
+        for (; j < of_joint->count && GXP_FIRST(of_joint->data[j]) == joint && result == GX_OK; j++)
+            result = gxp_visit_cell(body, GXP_SECOND(of_joint->data[j]), &scratch->subdomain_cells);
     }
     return result;
 }
@@ -4759,7 +4802,7 @@ static gx_result gxp_walk_subdomain(gx_body *body, uint32_t cell, uint32_t node,
                                      all, open);
         if (result == GX_OK && index != GXP_NONE && scratch->interfaces.count > 0)
             result = gxp_cross_interfaces(body, index, all, open);
-        if (result == GX_OK && body->mesh.node_pinched[node]) result = gxp_cross_pinches(body, c, node);
+        if (result == GX_OK && body->mesh.node_pinched[node]) result = gxp_cross_joints(body, c);
     }
     return result;
 }
@@ -4840,6 +4883,7 @@ static gx_result gxp_find_subdomains(gx_body *body, uint32_t first, uint32_t end
     scratch->subdomain_cells.count = scratch->subdomains.count = scratch->taken.count = 0;
     scratch->stamp++;
     *sure = all || !body->mesh.node_pinched[node];
+    if (*sure && body->mesh.node_pinched[node]) result = gxp_list_joints(body, node);
     for (i = first; i < end && result == GX_OK && *sure; i++) {
         const uint32_t cell = GXP_SECOND(scratch->pairs.data[i]), start = scratch->subdomain_cells.count,
                        copy = gxp_copy_of(body, cell, node);
@@ -4909,12 +4953,15 @@ static gx_result gxp_divide_nodes(gxp_cut *cut) {
    coordinates of the element. Sums whose terms cancel are summed in exact numbers. Touches cells, through the undo log.
  */
 
+/* So many points are kept at most: they should stay in the cache. */
+#define GXP_BOUNDARY_POINTS 16384u
+
 /* Empties the boundary. Points are kept while the element stays the same: its cells share those of its walls. */
 static void gxp_clear_boundary(gx_body *body, int other_element) {
     gxp_scratch *scratch = &body->scratch;
     gxp_boundary *boundary = &scratch->boundary;
-    if (other_element || boundary->points.count > 64) boundary->points.count = 0;
-    boundary->triangles.count = boundary->facets.count = 0;
+    if (other_element || boundary->points.count > GXP_BOUNDARY_POINTS) boundary->points.count = 0;
+    boundary->triangles.count = boundary->facets.count = boundary->leaves.count = 0;
 }
 
 /* Adds a point of the complex with its barycentric coordinates in the element. */
@@ -4931,6 +4978,9 @@ static gx_result gxp_new_boundary_point(gx_body *body, uint32_t element, uint32_
     result = gxp_reserve(&body->config.allocator, &boundary->lambdas, 4 * sizeof(double), boundary->points.count,
                          &boundary->lambda_capacity, 1);
     *index = boundary->points.count;
+    if (*index == 0) boundary->fixed_count = 0;
+    boundary->fixed_of.count = *index;
+    if (result == GX_OK) result = gxp_push(body, &boundary->fixed_of, GXP_NONE);
     if (result == GX_OK) result = gxp_push(body, &boundary->points, point);
     if (result != GX_OK) return result;
     boundary->slots.data[point] = *index;
@@ -4975,6 +5025,7 @@ static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, uint32_t st
     gxb_complex *cx = body->complex;
     uint32_t first, count, i;
     gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
+    if (result == GX_OK) result = gxp_push(body, &body->scratch.boundary.leaves, leaf);
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint32_t facet = gxp_item(cx, first + i);
         const gxb_facet *f = gxb_complex_facet(cx, facet);
@@ -4987,6 +5038,91 @@ static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, uint32_t st
                      : !gxp_is_kept(body, other) || body->leaves.data[other].cell != body->leaves.data[leaf].cell)
             result = gxp_add_boundary_facet(body, gxb_complex_leaf(cx, leaf)->element, facet, inward);
     }
+    return result;
+}
+
+/* The coordinates of one of the boundary's points along three axes, with 184 bits behind the point */
+static gx_result gxp_fixed_coordinates(gx_body *body, uint32_t element, uint32_t point, const unsigned axes[3],
+                                       gxb_fixed x[3]) {
+    gxp_boundary *boundary = &body->scratch.boundary;
+    uint32_t *place = &boundary->fixed_of.data[point];
+    int c;
+    if (*place == GXP_NONE) {
+        const gx_result result = gxp_reserve(&body->config.allocator, &boundary->fixed, 4 * sizeof *boundary->fixed,
+                                             boundary->fixed_count, &boundary->fixed_capacity, 1);
+        if (result != GX_OK) return result;
+        *place = boundary->fixed_count++;
+        gxb_complex_barycentric_fixed(body->complex, boundary->points.data[point], element,
+                                      boundary->fixed + 4 * (size_t)*place);
+    }
+    for (c = 0; c < 3; c++) x[c] = boundary->fixed[4 * (size_t)*place + axes[c]];
+    return GX_OK;
+}
+
+/* Adds the moments of a tetrahedron of which six times the volume is D: D / 6, D s_i / 24, D (s_i s_j + the sum of
+   products x_i x_j of its corners x) / 120, where s is their sum. */
+static void gxp_add_tetrahedron(const double *x[4], const unsigned axes[3], double D, gxi_moments2 *m) {
+    double s[3], q;
+    int i, j, n, slot = 0;
+    for (i = 0; i < 3; i++) {
+        s[i] = x[0][axes[i]] + x[1][axes[i]] + x[2][axes[i]] + x[3][axes[i]];
+        m->first[i] += D * s[i] / 24;
+    }
+    m->volume += D / 6;
+    for (i = 0; i < 3; i++)
+        for (j = i; j < 3; j++) {
+            q = s[i] * s[j];
+            for (n = 0; n < 4; n++) q += x[n][axes[i]] * x[n][axes[j]];
+            m->second[slot++] += D * q / 120;
+        }
+}
+
+/* Adds the moments of a leaf in the frame with origin k, by tetrahedra from one of its corners to its triangles. The
+   leaf is convex, so no volume is negative and nothing cancels; volumes are exact. *count: of tetrahedra */
+static gx_result gxp_add_leaf_moments(gx_body *body, uint32_t element, uint32_t leaf, unsigned k, gxi_moments2 *m,
+                                      uint32_t *count) {
+    gxp_boundary *boundary = &body->scratch.boundary;
+    const uint32_t start = boundary->triangles.count;
+    gxb_complex *cx = body->complex;
+    unsigned axes[3];
+    gxb_fixed x[4][3];
+    uint32_t first, facets, i, j, o;
+    gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &facets);
+    for (i = 0; i < facets && result == GX_OK; i++) {
+        const uint32_t facet = gxp_item(cx, first + i);
+        result = gxp_add_boundary_facet(body, element, facet, gxb_complex_facet(cx, facet)->leaf[0] == leaf);
+    }
+    gxi_part_axes(k, axes);
+    o = boundary->triangles.data[start];
+    if (result == GX_OK) result = gxp_fixed_coordinates(body, element, o, axes, x[3]);
+    for (i = start; i < boundary->triangles.count && result == GX_OK; i += 3) {
+        const uint32_t *t = boundary->triangles.data + i;
+        const double *corner[4];
+        if (t[0] == o || t[1] == o || t[2] == o) continue;
+        for (j = 0; j < 3 && result == GX_OK; j++) result = gxp_fixed_coordinates(body, element, t[j], axes, x[j]);
+        if (result != GX_OK) break;
+        for (j = 0; j < 3; j++) corner[j] = boundary->lambdas + 4 * (size_t)t[j];
+        corner[3] = boundary->lambdas + 4 * (size_t)o;
+        gxp_add_tetrahedron(corner, axes, gxb_fixed_determinant(x[3], x[0], x[1], x[2]), m);
+        (*count)++;
+    }
+    boundary->triangles.count = start;
+    return result;
+}
+
+/* The error of a tetrahedron's determinant, from six errors of 2^-179 in each of three edges of length 1 at most, is
+   this share of a volume that it moves by less than its last digits. */
+#define GXP_FIXED_VOLUME 7.5e-37 /* 2^-120 */
+
+/* Moments of the leaves that the boundary bounds. *enough: whether the volume is right to its last digits */
+static gx_result gxp_leaf_moments(gx_body *body, uint32_t element, unsigned k, gxi_moments2 *m, int *enough) {
+    const gxp_words *leaves = &body->scratch.boundary.leaves;
+    uint32_t i, count = 0;
+    gx_result result = GX_OK;
+    memset(m, 0, sizeof *m);
+    for (i = 0; i < leaves->count && result == GX_OK; i++)
+        result = gxp_add_leaf_moments(body, element, leaves->data[i], k, m, &count);
+    *enough = m->volume > GXP_FIXED_VOLUME * count;
     return result;
 }
 
@@ -5129,6 +5265,7 @@ static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned 
     gxp_boundary *boundary = &body->scratch.boundary;
     const gxb_complex *cx = body->complex;
     uint32_t i;
+    int enough;
     gx_result result = GX_OK;
     *k = gxp_nearest_vertex(body);
     for (i = 0; i < boundary->facets.count && result == GX_OK; i++) {
@@ -5139,9 +5276,9 @@ static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned 
     if (result == GX_OK)
         result = gxi_part_moments_at(boundary->lambdas, boundary->points.count, boundary->triangles.data,
                                      boundary->triangles.count / 3, *k, m);
-    if (result == GX_OK && m->volume < GXP_CANCELLATION * gxp_cone_volumes(body, *k))
-        result = gxp_fine_moments(body, element, *k, m);
-    return result;
+    if (result != GX_OK || m->volume >= GXP_CANCELLATION * gxp_cone_volumes(body, *k)) return result;
+    result = gxp_leaf_moments(body, element, *k, m, &enough);
+    return result == GX_OK && !enough ? gxp_fine_moments(body, element, *k, m) : result;
 }
 
 /* The volume and mass of a cell; volume: of its element */
@@ -14108,10 +14245,10 @@ static gx_result gxp_see_edge(gx_blade *blade, uint32_t layer, const double *edg
     return result == GX_OK ? gxp_list_runs(blade, layer, edge, count) : result;
 }
 
-/* >>fronts: how far the edge has come in a layer ------------------------------------------------------------------- */
-/* In: a layer's front and how it sees the edge. Out: the front advanced where the edge is ahead of it, and the strip of
-   triangles between the two. Where the edge goes back through its own cut the front stays. Touches the blade's working
-   memory. */
+/* >>relations: where a place on the edge lies by the front --------------------------------------------------------- */
+/* In: a layer's front, the sheet of its last strips, places of the edge as the layer sees them. Out: which of them are
+   ahead of the front, which are behind it in the cut, and which have left that through its side. Changes nothing but
+   what it returns. */
 
 /* Shares of an element's size. An advance of less is none. A place behind the front is in the cut if it is no farther
    from its sheet, else the edge has left the cut through its side. */
@@ -14249,34 +14386,6 @@ static gx_result gxp_relate(gx_blade *blade, const gxp_front_vertex *v, gxp_rela
     return result;
 }
 
-/* What the layer's edge does at a move */
-typedef struct gxp_advance {
-    double most; /* the largest advance, m; of places inside, if there are any */
-    int strays;
-    int is_back; /* 1: all of the edge is in the air, and has come there through its own cut */
-} gxp_advance;
-
-/* The vertex of the front next to the nearest point */
-static uint32_t gxp_pin(const gxp_relation *r) { return r->segment + (r->share > 0.5); }
-
-/* Appends the front's own vertices for a run of places that are not ahead: *at is the first vertex not passed yet. */
-static gx_result gxp_stay(gx_blade *blade, const gxp_relation *r, uint32_t count, int first, int last, uint32_t *at) {
-    uint32_t low = GXP_NONE, high = 0, i;
-    gx_result result = GX_OK;
-    for (i = 0; i < count; i++) {
-        const uint32_t pin = gxp_pin(&r[i]);
-        if (pin < low) low = pin;
-        if (pin > high) high = pin;
-    }
-    if (first) low = 0;
-    if (last) high = blade->front.count - 1;
-    if (low < *at) low = *at;
-    for (i = low; i <= high && result == GX_OK; i++)
-        result = gxp_push_vertex(blade->body, &blade->advanced, &blade->front.data[i]);
-    if (high > *at) *at = high;
-    return result;
-}
-
 /* Has an edge that is all in the air come there through its cut? From each vertex of the front in the material, the way
    to the edge begins in the cut's sheet. Otherwise there is material on it that the edge has passed. */
 static gx_result gxp_came_back(gx_blade *blade, int *is_back) {
@@ -14367,6 +14476,39 @@ static void gxp_judge_together(const gxp_front_list *samples, const gxp_front_li
         gxp_stray_together(samples, r, i, -1);
         gxp_stray_together(samples, r, i, 1);
     }
+}
+
+/* >>fronts: how far the edge has come in a layer ------------------------------------------------------------------- */
+/* In: a layer's front and how it sees the edge. Out: the front advanced where the edge is ahead of it, and the strip of
+   triangles between the two. Where the edge goes back through its own cut the front stays. Touches the blade's working
+   memory. */
+
+/* What the layer's edge does at a move */
+typedef struct gxp_advance {
+    double most; /* the largest advance, m; of places inside, if there are any */
+    int strays;
+    int is_back; /* 1: all of the edge is in the air, and has come there through its own cut */
+} gxp_advance;
+
+/* The vertex of the front next to the nearest point */
+static uint32_t gxp_pin(const gxp_relation *r) { return r->segment + (r->share > 0.5); }
+
+/* Appends the front's own vertices for a run of places that are not ahead: *at is the first vertex not passed yet. */
+static gx_result gxp_stay(gx_blade *blade, const gxp_relation *r, uint32_t count, int first, int last, uint32_t *at) {
+    uint32_t low = GXP_NONE, high = 0, i;
+    gx_result result = GX_OK;
+    for (i = 0; i < count; i++) {
+        const uint32_t pin = gxp_pin(&r[i]);
+        if (pin < low) low = pin;
+        if (pin > high) high = pin;
+    }
+    if (first) low = 0;
+    if (last) high = blade->front.count - 1;
+    if (low < *at) low = *at;
+    for (i = low; i <= high && result == GX_OK; i++)
+        result = gxp_push_vertex(blade->body, &blade->advanced, &blade->front.data[i]);
+    if (high > *at) *at = high;
+    return result;
 }
 
 /* Lists in blade.advanced the front as far as the samples have come: these where they are ahead, else its own
@@ -19130,6 +19272,8 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_LAST_ROUND
 #undef GXP_EXPECTED
 #undef GXP_CANCELLATION
+#undef GXP_BOUNDARY_POINTS
+#undef GXP_FIXED_VOLUME
 #undef GXP_REST_CELLS
 #undef GXP_REST
 #undef GXP_WEIGHT_LOSS
@@ -19156,6 +19300,9 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_CAP
 #undef GXP_SURELY
 #undef GXP_AIR
+#undef GXP_LEAP
+#undef GXP_SAME_WAY
+#undef GXP_STAYED
 #undef GXP_LEAST_ADVANCE
 #undef GXP_CHORD_HALVES
 #undef GXP_CHORD_OFF

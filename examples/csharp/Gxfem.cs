@@ -586,6 +586,11 @@ namespace Gxfem {
     }
 
     [StructLayout(LayoutKind.Sequential)]
+    public unsafe struct gxb_fixed {
+        public fixed ulong d[3];
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
     public unsafe struct gxb_plane_filter {
         public fixed double n[3];
         public fixed double @base[3];
@@ -1159,6 +1164,9 @@ namespace Gxfem {
         public static extern void gxb_complex_barycentric_fine(IntPtr complex, uint point, uint element, IntPtr lambda);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
+        public static extern void gxb_complex_barycentric_fixed(IntPtr complex, uint point, uint element, IntPtr lambda);
+
+        [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern void gxb_complex_begin(IntPtr complex);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
@@ -1328,6 +1336,9 @@ namespace Gxfem {
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern gx_result gxb_facet_resolve_edges(IntPtr complex, uint facet, IntPtr first, IntPtr count);
+
+        [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
+        public static extern double gxb_fixed_determinant(IntPtr o, IntPtr a, IntPtr b, IntPtr c);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern int gxb_incircle(IntPtr a, IntPtr b, IntPtr c, IntPtr d);
