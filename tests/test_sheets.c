@@ -617,14 +617,19 @@ START_TEST(arrays_reach_affine_copies) {
 }
 END_TEST
 
-/* A cut body of which some copies are affine */
-static gx_body *partly_affine(workload *w) {
+/* A cut body of which some copies are affine. flap: a slice hangs together with the rest at its end, in elements of
+   which some copies are affine */
+static gx_body *partly_affine(workload *w, int flap) {
     gx_body *body;
+    int i;
     *w = grid(5, 4, 3, 5);
     body = sheet_body(w, 1);
-    add_axis_plane(w, 2, 1.37);
-    add_axis_plane(w, 2, 1.6);
-    add_axis_plane(w, 0, 2.31);
+    for (i = 0; i < 2; i++) {
+        const double z = i == 0 ? 1.37 : 1.6, x = flap ? 1.3 : -64;
+        const double a[3] = {x, -64, z}, b[3] = {64, -64, z}, c[3] = {64, 64, z}, d[3] = {x, 64, z};
+        wl_add_quad(wl_add_surface(w, 0), a, b, c, d);
+    }
+    add_axis_plane(w, 0, flap ? 9 : 2.31);
     cut_by(body, w, 0, 3);
     ck_assert_uint_gt(affine_count(body), 0);
     ck_assert_uint_lt(affine_count(body), view_of(body).copy_count);
@@ -655,7 +660,7 @@ START_TEST(points_are_told_in_many_ways) {
     gx_failure failure;
     for (way = 0; way < WAYS; way++) {
         workload w;
-        gx_body *body = partly_affine(&w);
+        gx_body *body = partly_affine(&w, 0);
         gx_step_desc step = step_of(0.05, 0);
         gxs_spring springs[2], bad;
         gx_skin skin;
@@ -790,6 +795,28 @@ START_TEST(specks_do_not_turn) {
         ck_assert(view.affine_rate[i] == 0);
     }
     ck_assert_uint_gt(affine, 0);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A plate that is taken away whole: its affine copies go, too, and steps and cuts of nothing are nothing. */
+START_TEST(nothing_is_left) {
+    workload w = grid(3, 2, 1, 5);
+    gx_body *body = sheet_body(&w, 1);
+    gx_step_desc step = step_of(0.01, -10);
+    gx_step_report report;
+    gx_surface tool;
+    hold_left(body);
+    advance(body, &step);
+    add_box(&w, 1, -1, -1, -1, 4, 3, 2);
+    tool = surface_of(&w.surfaces[0]);
+    ck_assert_int_eq(gx_body_carve(body, &tool, NULL, NULL), GX_OK);
+    add_axis_plane(&w, 0, 1.2);
+    cut_by(body, &w, 1, 1);
+    ck_assert_uint_eq(view_of(body).copy_count, 0);
+    ck_assert_int_eq(gx_body_step(body, &step, &report, NULL), GX_OK);
+    ck_assert_int_eq(report.stop, GXS_STOP_ASLEEP);
     gx_body_destroy(body);
     wl_free(&w);
 }
@@ -1036,8 +1063,8 @@ END_TEST
 /* ---- picking and locating ---- */
 
 /* Such a body, bent at random. size: of displacements and slopes */
-static gx_body *bent_body(workload *w, double size) {
-    gx_body *body = partly_affine(w);
+static gx_body *bent_body(workload *w, double size, int flap) {
+    gx_body *body = partly_affine(w, flap);
     shake(body, size);
     return body;
 }
@@ -1045,7 +1072,7 @@ static gx_body *bent_body(workload *w, double size) {
 /* A ray meets the nearest triangle of the skin as it is drawn. */
 START_TEST(rays_meet_what_is_drawn) {
     workload w;
-    gx_body *body = bent_body(&w, 0.2);
+    gx_body *body = bent_body(&w, 0.2, 0);
     gx_skin skin;
     double *x;
     int round, met = 0;
@@ -1100,7 +1127,7 @@ END_TEST
 START_TEST(located_points_are_placed_there) {
     const double size = _i % 2 ? 0.05 : 0.2;
     workload w;
-    gx_body *body = bent_body(&w, size);
+    gx_body *body = bent_body(&w, size, _i / 2);
     gx_view view = view_of(body);
     int round, found = 0;
     random_seed((uint64_t)_i + 5);
@@ -1160,6 +1187,9 @@ START_TEST(what_turns_is_located_anew) {
         ck_assert(hit.distance == 0);
         for (k = 0; k < 3; k++) ck_assert(fabs(hit.material[k] - material[k]) < 1e-9);
     }
+    at[2] = 1.5; /* above: the top is where it was */
+    ck_assert_int_eq(gx_body_locate(body, at, 1, &hit, NULL), GX_OK);
+    ck_assert_msg(fabs(hit.distance - 0.5) < 1e-9, "%g", hit.distance);
     for (i = 0; i < view.copy_count; i++)
         for (k = 0; k < 9; k++) {
             body->copies.linear[9 * i + (size_t)k] = k % 4 == 0 ? -1 : 0;
@@ -1175,7 +1205,7 @@ END_TEST
 /* Outside of all cells: the nearest point of the surface that is drawn. */
 START_TEST(nearest_points_of_bent_bodies) {
     workload w;
-    gx_body *body = bent_body(&w, 0.05);
+    gx_body *body = bent_body(&w, 0.05, 0);
     gx_skin skin;
     double *x;
     int round, outside = 0;
@@ -1214,7 +1244,7 @@ END_TEST
 START_TEST(maps_are_undone) {
     const double size = _i % 2 ? 0.05 : 0.15;
     workload w;
-    gx_body *body = bent_body(&w, size);
+    gx_body *body = bent_body(&w, size, 0);
     int round, undone = 0, all = 0;
     random_seed((uint64_t)_i + 3);
     for (round = 0; round < 2000 / FEWER; round++) {
@@ -1438,7 +1468,7 @@ END_TEST
 /* Contacts of an edge in a bent body: as long as what of the edge is in the body, each where its material is */
 START_TEST(contacts_in_bent_bodies) {
     workload w;
-    gx_body *body = bent_body(&w, 0.05);
+    gx_body *body = bent_body(&w, 0.05, 0);
     gx_blade_desc desc;
     gx_blade *blade = NULL;
     int round, met = 0;
@@ -1540,6 +1570,7 @@ int main(void) {
     tcase_add_test(tcase, points_are_told_in_many_ways);
     tcase_add_test(tcase, failures_name_copies);
     tcase_add_test(tcase, specks_do_not_turn);
+    tcase_add_test(tcase, nothing_is_left);
     tcase_add_loop_test(tcase, copies_go_on_alike, 0, 2);
     tcase_add_test(tcase, damaged_flags_are_refused);
     tcase_add_test(tcase, none_is_none);
