@@ -8303,21 +8303,20 @@ static size_t gxp_vector_count(const gx_body *body) {
 
 /* Room for a point's span with hidden vectors; 0: the point stays as it is, or the solver refuses it. */
 static size_t gxp_span_room(const gxs_point *point) {
-    const int whole = point->count <= GXS_POINT_OWN ? point->copies == NULL || point->weights != NULL
-                                                    : point->copies != NULL && point->weights != NULL;
+    const int whole =
+        point->copies != NULL ? point->weights != NULL : point->weights == NULL && point->count <= GXS_POINT_OWN;
     return whole && point->count <= GXS_POINT_MOST ? 4 * (size_t)point->count : 0;
 }
 
 /* Writes the point's span with the hidden vectors of its affine copies, whose weights are N_i (x - X_i) over
    affine_length: then the point is moved by the sum of N_i (a_i + A_i (x - X_i)). copies, weights: room for
-   gxp_span_room. The point refers to them, unless none of its copies is affine. */
+   gxp_span_room, which is not 0. The point refers to them, unless none of its copies is affine. */
 static void gxp_expand_point(const gx_body *body, gxs_point *point, uint32_t *copies, double *weights) {
     const uint32_t *from = point->copies != NULL ? point->copies : point->copy, *first = body->hidden.first.data;
     const double *weight = point->copies != NULL ? point->weights : point->weight;
-    const size_t room = gxp_span_room(point);
     uint32_t i, count = 0;
     int k, affine = 0;
-    if (room == 0 || body->hidden.copies.count == 0 || point->epoch != body->cuts.epoch) return;
+    if (body->hidden.copies.count == 0 || point->epoch != body->cuts.epoch) return;
     for (i = 0; i < point->count; i++) affine |= from[i] >= body->copies.count || first[from[i]] != GXS_NOT_AFFINE;
     if (!affine) return;
     for (i = 0; i < point->count; i++) { /* a hidden vector is no copy: the solver refuses what is beyond them */
@@ -13119,7 +13118,7 @@ static gx_result gxp_step_affine(gx_body *body, const gxs_step_desc *given, gx_s
     result = gxs_solver_step(body->solver, &step, u, v, report, &own);
     memcpy(copies->rest_time, rest, n * sizeof *rest);
     if (result != GX_OK) {
-        if (own.index != SIZE_MAX && own.field != NULL && own.index >= n && own.index < vectors &&
+        if (own.field != NULL && own.index >= n &&
             (strcmp(own.field, "displacement") == 0 || strcmp(own.field, "velocity") == 0))
             own.index = body->hidden.copies.data[(own.index - n) / 3];
         if (failure != NULL) *failure = own;
@@ -17294,14 +17293,13 @@ static void gxp_cross_line(gxp_grid *grid, const double *a, const double *b, con
     line[0] = first;
 }
 
-/* The places along an axis between two coordinates, in halves of a cube, with the first beyond each. Coordinates are at
-   most 2^36 halves: these are rounded by far less than 2^-6. */
+/* The places along an axis between two coordinates of surfaces, in halves of a cube, with the first beyond each: these
+   are in the grid, which reaches farther by a cube. Coordinates are at most 2^36 halves: these are rounded by far less
+   than 2^-6. */
 static void gxp_grid_range(const gxp_grid *grid, int axis, double low, double high, uint32_t range[2]) {
-    const double last = 2.0 * grid->size[axis], slack = 0.015625;
-    const double from = floor((low - grid->start[axis]) / grid->half - slack);
-    const double to = ceil((high - grid->start[axis]) / grid->half + slack);
-    range[0] = from > 0 ? (uint32_t)from : 0;
-    range[1] = to < last ? (uint32_t)to : (uint32_t)last;
+    const double slack = 0.015625;
+    range[0] = (uint32_t)floor((low - grid->start[axis]) / grid->half - slack);
+    range[1] = (uint32_t)ceil((high - grid->start[axis]) / grid->half + slack);
 }
 
 /* Counts the crossings of a triangle with all lines of nodes along x. */
@@ -17380,7 +17378,7 @@ static void gxp_mark_elements(gxp_grid *grid, const gxp_search *search, const do
         for (k = 0; k < 3; k++) {
             const uint32_t reach = k == axis ? 3 : 2;
             low[k] = range[k][0] > reach ? (range[k][0] - reach + 1) / 2 : 0;
-            high[k] = (range[k][1] - (k == axis && range[k][1] > 0)) / 2;
+            high[k] = (range[k][1] - (k == axis)) / 2;
         }
         for (cube[2] = low[2]; cube[2] <= high[2]; cube[2]++)
             for (cube[1] = low[1]; cube[1] <= high[1]; cube[1]++)
