@@ -1624,7 +1624,7 @@ END_TEST
    that is in reality. Without anchors it is refused, as its sides are not known. */
 START_TEST(anchored_pairs_know_their_sides) {
     workload w;
-    gx_body *body = bent_body(&w, 0.02);
+    gx_body *body = bent_body(&w, 0.02, 0);
     gx_step_desc step = step_of(1e-9, 0);
     gxs_pair pair;
     gx_failure failure;
