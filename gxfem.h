@@ -19009,7 +19009,7 @@ static void gxp_check_contact(gxb_stream *s, const gx_body *body, const gxp_stat
     uint32_t i;
     int k;
     if (!n->contact) return;
-    gxp_require_true(s, body->copies.affine == NULL && numbers[0] > 0 && numbers[4] > 0);
+    gxp_require_true(s, numbers[0] > 0 && numbers[4] > 0);
     for (i = 0; i < 5; i++) gxp_require_true(s, gxp_is_finite(numbers[i]) && numbers[i] >= 0);
     for (i = 1; i < n->known; i++) gxp_require_true(s, t->known[i - 1].id < t->known[i].id);
     for (i = 0; i < n->pressing; i++) {
